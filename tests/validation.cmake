@@ -16,7 +16,7 @@ foreach(name
     eye_samples
     eye_walk
     pareto_front
-    gem_maps gem_optimum gem_tilts gem_view
+    gem_grid_file gem_maps gem_optimum gem_tilts gem_view
     guide_sums map_texels
     field
     file_comparison

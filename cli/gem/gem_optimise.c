@@ -7,6 +7,7 @@
 
 #include "colorimetry/plot/chart.h"
 #include "scenes/cuts/cut_stretch.h"
+#include "validation/gem/gem_grid_file.h"
 #include "validation/gem/gem_optimum.h"
 
 #include <argp.h>
@@ -30,7 +31,10 @@ enum {
   KEY_AXIS,
   KEY_RANGE,
   KEY_SIZE,
-  KEY_THREADS
+  KEY_THREADS,
+  KEY_PART,
+  KEY_PAIRS,
+  KEY_MERGE
 };
 
 /* Those of which more, or less, is wanted whatever the stone. */
@@ -46,7 +50,11 @@ enum { MEASURES = sizeof measures / sizeof measures[0] };
 
 typedef struct request {
   abbe_gem_stone_input stone;
-  const char *out, *plot;
+  const char *out, *plot, *pairs;
+  abbe_command_part part;
+  bool merge;
+  const char **table; /* to merge */
+  size_t tables;
   double crown[2], pavilion[2], head_deg, tilt_deg, axis_deg;
   size_t crowns, pavilions, size, threads;
   int measure;
@@ -69,6 +77,10 @@ static const struct argp_option options[] = {
     {"range", KEY_RANGE, "FROM:TO", 0, "wavelengths, nm; without it, 380:780", 0},
     {"size", KEY_SIZE, "PIXELS", 0, "a side of the view, of 4 rays a pixel; without it, 32", 0},
     {"threads", KEY_THREADS, "N", 0, "without it, all; results do not depend on it", 0},
+    {"part", KEY_PART, "K/N", 0,
+     "judge every N-th pair alone, from the K-th on, 0/8 to 7/8; with --pairs", 0},
+    {"pairs", KEY_PAIRS, "FILE.csv", ABBE_ARGUMENT_WRITES, "the pairs that were judged", 0},
+    {"merge", KEY_MERGE, NULL, 0, "judge nothing: take the tables that follow the design", 0},
     {0}};
 
 static void read_angles(const request *q, const char *option, const char *text, double angle[2]) {
@@ -104,9 +116,33 @@ static error_t parse_more(int key, char *arg, request *q) {
   case KEY_THREADS:
     q->threads = abbe_command_count(q->stone.in.program, "--threads", arg, 1, 1024);
     return 0;
+  case KEY_PART:
+    abbe_command_read_part(q->stone.in.program, arg, &q->part);
+    return 0;
+  case KEY_PAIRS:
+    q->pairs = abbe_command_target(q->stone.in.program, "--pairs", arg, ".csv");
+    return 0;
+  case KEY_MERGE:
+    q->merge = true;
+    return 0;
   default:
     return ARGP_ERR_UNKNOWN;
   }
+}
+
+/* That the parts' options go together, and which pieces of work there are. */
+static void check_parts(const request *q, struct argp_state *state) {
+  if (q->tables > 0 && !q->merge) argp_error(state, "one design; '%s' is too much", q->table[0]);
+  if (q->merge && q->tables == 0)
+    argp_error(state, "--merge: of which tables? They follow the design");
+  if (q->part.parts == 0) return;
+  if (q->merge) argp_error(state, "--part judges pairs, and --merge judges nothing");
+  if (q->pairs == NULL) argp_error(state, "--part: into which table? Give --pairs FILE.csv");
+  if (q->out != NULL || q->plot != NULL)
+    argp_error(state, "a part knows no best of all; -o and --plot go with --merge");
+  if (q->part.part >= q->crowns * q->pavilions)
+    argp_error(state, "--part %zu/%zu has none of %zu pairs", q->part.part, q->part.parts,
+               q->crowns * q->pavilions);
 }
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
@@ -137,6 +173,11 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case ARGP_KEY_END:
     if (q->stone.in.material_name == NULL)
       argp_error(state, "of which stone? Give --material NAME; 'abbe materials list' has them");
+    check_parts(q, state);
+    return 0;
+  case ARGP_KEY_ARG:
+    if (q->stone.in.path == NULL) return ARGP_ERR_UNKNOWN; /* the design, which is the child's */
+    q->table[q->tables++] = arg;
     return 0;
   default:
     return parse_more(key, arg, q);
@@ -265,6 +306,8 @@ static abbe_gem_optimum_desc describe(const request *q, abbe_progress *progress)
                                           .side = q->size,
                                           .repeats = 4,
                                           .threads = q->threads},
+                                 .part = q->part.part,
+                                 .parts = q->part.parts,
                                  .progress = abbe_progress_update,
                                  .user = progress};
 }
@@ -300,25 +343,52 @@ static abbe_result check_plot(const char *path, abbe_error *error) {
                         "%s: a plot wants a name that ends with .png or .svg", path);
 }
 
+static abbe_result merge(const request *q, abbe_gem_optimum *o, abbe_error *error) {
+  const abbe_gem_stone_input *s = &q->stone;
+  const abbe_gem_optimum_desc desc = describe(q, NULL);
+  size_t first = 0;
+  abbe_result result = abbe_gem_optimum_begin(&s->in.cut, &s->in.stone, s->in.material,
+                                              &s->wavelengths, &s->weights, &desc, o, error);
+  for (size_t i = 0; i < q->tables && result == ABBE_OK; i++)
+    result = abbe_gem_grid_file_read(q->table[i], o, error);
+  const size_t missing = result == ABBE_OK ? abbe_gem_optimum_missing(o, &first) : 0;
+  if (missing == 0) return result;
+  return abbe_error_set(
+      error, ABBE_INVALID_ARGUMENT,
+      "%zu of %zu pairs are in none of the tables, the first of them pair %zu; is "
+      "a part missing?",
+      missing, o->crowns * o->pavilions, first);
+}
+
+static abbe_result search(const request *q, abbe_gem_optimum *o, abbe_error *error) {
+  const abbe_gem_stone_input *s = &q->stone;
+  abbe_progress progress;
+  abbe_progress_begin(&progress, "searching", s->in.quiet);
+  const abbe_gem_optimum_desc desc = describe(q, &progress);
+  abbe_result result = abbe_gem_optimum_find(&s->in.cut, &s->in.stone, s->in.material,
+                                             &s->wavelengths, &s->weights, &desc, o, error);
+  abbe_progress_end(&progress);
+  return result;
+}
+
 static abbe_result run(request *q, abbe_error *error) {
   const abbe_gem_stone_input *s = &q->stone;
   abbe_gem_optimum optimum = {0};
   abbe_result result = check_plot(q->plot, error);
   if (result == ABBE_OK)
-    result = abbe_command_check_targets((const char *[]){q->out, q->plot}, 2, error);
+    result = abbe_command_check_targets((const char *[]){q->out, q->plot, q->pairs}, 3, error);
   if (result == ABBE_OK) result = abbe_gem_stone_input_load(&q->stone, error);
   if (result == ABBE_OK) result = find_angles(q, error);
-  if (result == ABBE_OK) {
-    abbe_progress progress;
-    abbe_progress_begin(&progress, "searching", s->in.quiet);
-    const abbe_gem_optimum_desc desc = describe(q, &progress);
-    result = abbe_gem_optimum_find(&s->in.cut, &s->in.stone, s->in.material, &s->wavelengths,
-                                   &s->weights, &desc, &optimum, error);
-    abbe_progress_end(&progress);
-  }
+  if (result == ABBE_OK) result = q->merge ? merge(q, &optimum, error) : search(q, &optimum, error);
+  if (result == ABBE_OK && q->pairs != NULL)
+    result = abbe_gem_grid_file_write(q->pairs, &optimum, error);
   if (result == ABBE_OK && q->plot != NULL) result = plot(q, s, &optimum, error);
   if (result == ABBE_OK && q->out != NULL) result = write_best(q, &optimum, error);
-  if (result == ABBE_OK && !s->in.json) print(q, s, &optimum);
+  if (result == ABBE_OK && !s->in.json && q->part.parts > 0)
+    printf("%zu of %zu pairs are in %s\n",
+           optimum.crowns * optimum.pavilions - abbe_gem_optimum_missing(&optimum, NULL),
+           optimum.crowns * optimum.pavilions, q->pairs);
+  if (result == ABBE_OK && !s->in.json && q->part.parts == 0) print(q, s, &optimum);
   if (result == ABBE_OK && s->in.json) result = print_json(q, s, &optimum, error);
   abbe_gem_optimum_free(&optimum);
   abbe_gem_stone_input_free(&q->stone);
@@ -330,13 +400,16 @@ int abbe_gem_optimise(int argc, char **argv) {
   static const struct argp argp = {
       options,
       parse,
-      "FILE",
+      "FILE\nFILE --merge TABLE.csv...",
       "Tries pairs of crown and pavilion angles for a design in a stone, all its meets kept, and "
       "says which is best by a measure.\v"
       "Examples:\n"
       "  abbe gem optimise brilliant.asc --material quartz -o best.asc --plot best.png\n"
       "  abbe gem optimise brilliant.asc --material diamond --measure cos --crown 30:40 "
-      "--pavilion 39:43 --grid 21x21\n",
+      "--pavilion 39:43 --grid 21x21\n"
+      "  abbe gem optimise pear.asc --material ruby --grid 201x201 --part 3/8 --pairs part-3.csv\n"
+      "  abbe gem optimise pear.asc --material ruby --grid 201x201 --merge part-*.csv -o "
+      "best.asc\n",
       children,
       NULL,
       NULL};
@@ -345,8 +418,12 @@ int abbe_gem_optimise(int argc, char **argv) {
                .crowns = 21,
                .pavilions = 21,
                .size = 32};
-  abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
+  q.table = calloc((size_t)argc, sizeof *q.table);
   abbe_error error = {0};
-  const abbe_result result = run(&q, &error);
+  abbe_result result = ABBE_OK;
+  if (q.table == NULL) result = abbe_error_set(&error, ABBE_NO_MEMORY, "no memory for arguments");
+  if (result == ABBE_OK) abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
+  if (result == ABBE_OK) result = run(&q, &error);
+  free(q.table);
   return abbe_command_end(argv[0], result, &error);
 }

@@ -79,7 +79,8 @@ static abbe_result check(const abbe_gem_optimum_desc *d, abbe_error *error) {
                       d->crown_to_rad < 0.5 * PI && d->pavilion_from_rad > 0 &&
                       d->pavilion_to_rad >= d->pavilion_from_rad && d->pavilion_to_rad < 0.5 * PI;
   if (angles && d->crowns >= 1 && d->pavilions >= 1 && d->crowns <= ABBE_GEM_MOST_ANGLES &&
-      d->pavilions <= ABBE_GEM_MOST_ANGLES && (unsigned)d->measure < ABBE_GEM_AMOUNT_COUNT)
+      d->pavilions <= ABBE_GEM_MOST_ANGLES && (unsigned)d->measure < ABBE_GEM_AMOUNT_COUNT &&
+      (d->parts == 0 || d->part < d->parts))
     return ABBE_OK;
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                         "a grid of %zu x %zu angles, %g to %g and %g to %g rad; each is above 0 "
@@ -95,8 +96,9 @@ static double *spread(double from, double to, size_t count) {
   return out;
 }
 
-static abbe_result begin(const abbe_cut *cut, const abbe_cut_polyhedron *p,
-                         const abbe_gem_optimum_desc *d, abbe_gem_optimum *out, abbe_error *error) {
+static abbe_result make_grid(const abbe_cut *cut, const abbe_cut_polyhedron *p,
+                             const abbe_gem_optimum_desc *d, abbe_gem_optimum *out,
+                             abbe_error *error) {
   const size_t crown = abbe_cut_stretch_main(cut, p, ABBE_CUT_CROWN);
   const size_t pavilion = abbe_cut_stretch_main(cut, p, ABBE_CUT_PAVILION);
   if (crown == cut->tier_count || pavilion == cut->tier_count)
@@ -109,10 +111,44 @@ static abbe_result begin(const abbe_cut *cut, const abbe_cut_polyhedron *p,
   out->pavilions = d->pavilions;
   out->crown_rad = spread(d->crown_from_rad, d->crown_to_rad, d->crowns);
   out->pavilion_rad = spread(d->pavilion_from_rad, d->pavilion_to_rad, d->pavilions);
+  out->measure = d->measure;
+  out->least = d->least;
   out->value = calloc(d->crowns * d->pavilions, sizeof *out->value);
+  for (size_t i = 0; out->value != NULL && i < d->crowns * d->pavilions; i++)
+    out->value[i] = (abbe_gem_number){NAN, NAN};
   if (out->crown_rad != NULL && out->pavilion_rad != NULL && out->value != NULL) return ABBE_OK;
   return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu x %zu angles", d->crowns,
                         d->pavilions);
+}
+
+void abbe_gem_optimum_know(abbe_gem_optimum *o, size_t i, abbe_gem_number value) {
+  o->value[i] = value;
+  const double gain = value.value - o->value[o->best].value;
+  if (isnan(gain) ? !isnan(value.value) : o->least ? gain < 0 : gain > 0) o->best = i;
+}
+
+size_t abbe_gem_optimum_missing(const abbe_gem_optimum *o, size_t *first) {
+  size_t missing = 0;
+  for (size_t i = 0; i < o->crowns * o->pavilions; i++) {
+    if (!isnan(o->value[i].value)) continue;
+    if (missing++ == 0 && first != NULL) *first = i;
+  }
+  return missing;
+}
+
+abbe_result abbe_gem_optimum_begin(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
+                                   const abbe_material *material,
+                                   const abbe_wavelengths *wavelengths, const abbe_weights *weights,
+                                   const abbe_gem_optimum_desc *desc, abbe_gem_optimum *out,
+                                   abbe_error *error) {
+  ABBE_REQUIRE(cut && polyhedron && material && wavelengths && weights && desc && out, error);
+  memset(out, 0, sizeof *out);
+  const work w = {material, wavelengths, weights, desc};
+  abbe_result result = check(desc, error);
+  if (result == ABBE_OK) result = make_grid(cut, polyhedron, desc, out, error);
+  if (result == ABBE_OK) result = judge(&w, cut, &out->design, error);
+  if (result != ABBE_OK) abbe_gem_optimum_free(out);
+  return result;
 }
 
 abbe_result abbe_gem_optimum_find(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
@@ -120,19 +156,16 @@ abbe_result abbe_gem_optimum_find(const abbe_cut *cut, const abbe_cut_polyhedron
                                   const abbe_wavelengths *wavelengths, const abbe_weights *weights,
                                   const abbe_gem_optimum_desc *desc, abbe_gem_optimum *out,
                                   abbe_error *error) {
-  ABBE_REQUIRE(cut && polyhedron && material && wavelengths && weights && desc && out, error);
-  memset(out, 0, sizeof *out);
+  abbe_result result =
+      abbe_gem_optimum_begin(cut, polyhedron, material, wavelengths, weights, desc, out, error);
+  if (result != ABBE_OK) return result;
   const work w = {material, wavelengths, weights, desc};
-  abbe_result result = check(desc, error);
-  if (result == ABBE_OK) result = begin(cut, polyhedron, desc, out, error);
-  if (result == ABBE_OK) result = judge(&w, cut, &out->design, error);
-  const size_t all = out->crowns * out->pavilions;
-  for (size_t i = 0; i < all && result == ABBE_OK; i++) {
+  const size_t all = out->crowns * out->pavilions, step = desc->parts > 0 ? desc->parts : 1;
+  for (size_t i = desc->parts > 0 ? desc->part : 0; i < all && result == ABBE_OK; i += step) {
     result = try_pair(&w, cut, polyhedron, out, i, error);
-    const double gain = out->value[i].value - out->value[out->best].value;
-    if (desc->least ? gain < 0 : gain > 0) out->best = i;
+    if (result == ABBE_OK) abbe_gem_optimum_know(out, i, out->value[i]);
     if (result == ABBE_OK && desc->progress != NULL &&
-        !desc->progress(desc->user, (double)(i + 1) / (double)all))
+        !desc->progress(desc->user, fmin((double)(i + step) / (double)all, 1)))
       result = abbe_error_set(error, ABBE_CANCELLED, "the search was given up");
   }
   if (result != ABBE_OK) abbe_gem_optimum_free(out);

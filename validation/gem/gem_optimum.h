@@ -24,6 +24,7 @@ typedef struct abbe_gem_optimum_desc {
   bool least; /* the least of it is best */
   double width_m;
   abbe_gem_view_desc view;
+  size_t part, parts;         /* every parts-th pair from the part-th on; parts 0: all */
   abbe_gem_progress progress; /* or NULL */
   void *user;
 } abbe_gem_optimum_desc;
@@ -31,15 +32,24 @@ typedef struct abbe_gem_optimum_desc {
 typedef struct abbe_gem_optimum {
   size_t crowns, pavilions;
   double *crown_rad, *pavilion_rad; /* ascending */
-  abbe_gem_number *value;           /* [pavilions][crowns] */
+  abbe_gem_number *value;           /* [pavilions][crowns]; NaN where a pair is not judged */
   size_t best;                      /* of value[] */
+  abbe_gem_amount measure;
+  bool least;
   double design_crown_rad, design_pavilion_rad;
   abbe_gem_number design; /* of the design as it is */
 } abbe_gem_optimum;
 
-/* weights: of the wavelengths, in XYZ. ABBE_INVALID_ARGUMENT for what is outside its range,
- * ABBE_GEOMETRY for a design without slanted facets on either side; ABBE_CANCELLED; what
- * abbe_cut_stretch_apply, abbe_cut_polyhedron_make and abbe_gem_view_make say. */
+/* The grid, with the design judged and no pair. weights: of the wavelengths, in XYZ.
+ * ABBE_INVALID_ARGUMENT for what is outside its range, ABBE_GEOMETRY for a design without slanted
+ * facets on either side; what abbe_cut_polyhedron_make and abbe_gem_view_make say. */
+abbe_result abbe_gem_optimum_begin(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
+                                   const abbe_material *material,
+                                   const abbe_wavelengths *wavelengths, const abbe_weights *weights,
+                                   const abbe_gem_optimum_desc *desc, abbe_gem_optimum *out,
+                                   abbe_error *error);
+/* The same, and judges the pairs of desc's part. ABBE_CANCELLED too, and what
+ * abbe_cut_stretch_apply says. */
 abbe_result abbe_gem_optimum_find(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
                                   const abbe_material *material,
                                   const abbe_wavelengths *wavelengths, const abbe_weights *weights,
@@ -47,6 +57,11 @@ abbe_result abbe_gem_optimum_find(const abbe_cut *cut, const abbe_cut_polyhedron
                                   abbe_error *error);
 /* Safe on a zeroed one. */
 void abbe_gem_optimum_free(abbe_gem_optimum *optimum);
+
+/* What value[i] is, and whether that is the best of those that are known. */
+void abbe_gem_optimum_know(abbe_gem_optimum *optimum, size_t i, abbe_gem_number value);
+/* How many pairs have no value; *first (may be NULL): the first of them. */
+size_t abbe_gem_optimum_missing(const abbe_gem_optimum *optimum, size_t *first);
 
 /* Moves the design's planes to the angles of value[i]; the polyhedron is that of the cut as it was.
  * Errors as abbe_cut_stretch_apply, and ABBE_INVALID_ARGUMENT for a pair that is not there. */

@@ -1,0 +1,129 @@
+/* Parts of a search for angles: together they are the one search, to the last bit, in any order;
+ * what does not go together is named. */
+#include "validation/gem/gem_grid_file.h"
+
+#include "base/file.h"
+#include "tests/validation/gem/gem_stones.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+enum { PARTS = 3 };
+static const char *const path[PARTS] = {"grid_file_0.csv", "grid_file_1.csv", "grid_file_2.csv"};
+
+static abbe_material glass(double n) {
+  static char name[] = "plain";
+  return (abbe_material){.name = name,
+                         .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {n}},
+                         .min_nm = 300,
+                         .max_nm = 800};
+}
+
+static abbe_gem_optimum_desc describe(void) {
+  return (abbe_gem_optimum_desc){.crown_from_rad = 30 * DEG,
+                                 .crown_to_rad = 40 * DEG,
+                                 .pavilion_from_rad = 35 * DEG,
+                                 .pavilion_to_rad = 46 * DEG,
+                                 .crowns = 3,
+                                 .pavilions = 4,
+                                 .measure = ABBE_GEM_ISO,
+                                 .width_m = 0.0065,
+                                 .view = {.side = 16, .repeats = 4, .threads = 1}};
+}
+
+static abbe_gem_optimum search(const judged *j, const abbe_material *m,
+                               const abbe_gem_optimum_desc *desc, bool judge) {
+  abbe_gem_optimum o;
+  abbe_error error = {0};
+  need((judge ? abbe_gem_optimum_find : abbe_gem_optimum_begin)(
+           &j->cut, &j->polyhedron, m, &j->wavelengths, &j->weights, desc, &o, &error),
+       &error);
+  return o;
+}
+
+static void write_parts(const judged *j, const abbe_material *m) {
+  for (size_t k = 0; k < PARTS; k++) {
+    abbe_gem_optimum_desc desc = describe();
+    desc.part = k;
+    desc.parts = PARTS;
+    abbe_gem_optimum part = search(j, m, &desc, true);
+    assert_int_equal(abbe_gem_optimum_missing(&part, NULL), 8);
+    abbe_error error = {0};
+    need(abbe_gem_grid_file_write(path[k], &part, &error), &error);
+    abbe_gem_optimum_free(&part);
+  }
+}
+
+static void parts_are_the_whole(void **state) {
+  (void)state;
+  const abbe_material quartz = glass(1.54);
+  judged j = judged_make(design_a, &quartz, 1);
+  const abbe_gem_optimum_desc desc = describe();
+  abbe_gem_optimum whole = search(&j, &quartz, &desc, true);
+  abbe_gem_optimum merged = search(&j, &quartz, &desc, false);
+  abbe_error error = {0};
+  size_t first = 0;
+  write_parts(&j, &quartz);
+  assert_int_equal(abbe_gem_optimum_missing(&whole, NULL), 0);
+  need(abbe_gem_grid_file_read(path[2], &merged, &error), &error);
+  need(abbe_gem_grid_file_read(path[0], &merged, &error), &error);
+  assert_int_equal(abbe_gem_optimum_missing(&merged, &first), 4);
+  assert_int_equal(first, 1);
+  assert_int_equal(abbe_gem_grid_file_read(path[0], &merged, &error), ABBE_INVALID_ARGUMENT);
+  assert_non_null(strstr(error.text, "known already"));
+  need(abbe_gem_grid_file_read(path[1], &merged, &error), &error);
+  assert_int_equal(abbe_gem_optimum_missing(&merged, NULL), 0);
+  assert_memory_equal(merged.value, whole.value, 12 * sizeof *whole.value);
+  assert_int_equal(merged.best, whole.best);
+  abbe_gem_optimum_free(&merged);
+  abbe_gem_optimum_free(&whole);
+  judged_free(&j);
+}
+
+static void refuse(const judged *j, const abbe_material *m, const abbe_gem_optimum_desc *desc,
+                   const char *text, abbe_result code, const char *says) {
+  abbe_gem_optimum o = search(j, m, desc, false);
+  abbe_error error = {0};
+  const char *from = path[0];
+  if (text != NULL) {
+    need(abbe_file_write("grid_file_bad.csv", text, strlen(text), &error), &error);
+    from = "grid_file_bad.csv";
+  }
+  assert_int_equal(abbe_gem_grid_file_read(from, &o, &error), code);
+  if (strstr(error.text, says) == NULL) fail_msg("'%s' does not say '%s'", error.text, says);
+  abbe_gem_optimum_free(&o);
+}
+
+static void what_is_of_another_search_or_broken(void **state) {
+  (void)state;
+  const abbe_material quartz = glass(1.54), heavy = glass(1.9);
+  judged j = judged_make(design_a, &quartz, 1);
+  write_parts(&j, &quartz);
+  abbe_gem_optimum_desc desc = describe();
+  refuse(&j, &heavy, &desc, NULL, ABBE_INVALID_ARGUMENT, "another search");
+  desc.crowns = 4;
+  refuse(&j, &quartz, &desc, NULL, ABBE_INVALID_ARGUMENT, "3 x 4");
+  desc = describe();
+  desc.measure = ABBE_GEM_COS;
+  refuse(&j, &quartz, &desc, NULL, ABBE_INVALID_ARGUMENT, "another search");
+  desc = describe();
+  char *data, bad[4096];
+  size_t size;
+  assert_int_equal(abbe_file_read(path[0], sizeof bad / 2, &data, &size, NULL), ABBE_OK);
+  snprintf(bad, sizeof bad, "%s99,0,0,0,0\n", data);
+  refuse(&j, &quartz, &desc, bad, ABBE_PARSE, "line 7: pair 99 of 0 to 11");
+  snprintf(bad, sizeof bad, "%s1,0.5,0.6,nan,0\n", data);
+  refuse(&j, &quartz, &desc, bad, ABBE_PARSE, "line 7: column 4");
+  refuse(&j, &quartz, &desc, "", ABBE_PARSE, "no table");
+  refuse(&j, &quartz, &desc, "a,b\n1,2\n", ABBE_PARSE, "begins with");
+  free(data);
+  for (size_t k = 0; k < PARTS; k++) assert_int_equal(unlink(path[k]), 0);
+  assert_int_equal(unlink("grid_file_bad.csv"), 0);
+  judged_free(&j);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(parts_are_the_whole),
+                                     cmocka_unit_test(what_is_of_another_search_or_broken)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
