@@ -182,6 +182,9 @@ static abbe_result check(const work *w, abbe_error *error) {
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the %s profile's passes sum colours; bands go with the default profile",
                           abbe_profile_name(w->desc.profile));
+  if (w->desc.volume != NULL)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a volume of caustics holds colours; bands go with photons");
   if (w->scene->environment != NULL)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "surroundings are not rendered in bands; abbe trace --bands has them");

@@ -113,6 +113,9 @@ static abbe_result check_map(const abbe_renderer *r, size_t light, abbe_error *e
       r->plan.light_view[light].light != light)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the scene has no spectral map of light %zu", light);
+  if (r->plan.volume)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "caustics are looked up in a volume, so there is no spectral map");
   abbe_result result = check_drawn(r, error);
   if (result != ABBE_OK) return result;
   if (is_published(r) || !abbe_photon_lights_is_face(&r->views, light) ||

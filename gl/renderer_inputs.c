@@ -224,6 +224,8 @@ static uint64_t mix_light_plan(uint64_t h, const abbe_plan *plan) {
   MIX(h, d->interfaces);
   MIX(h, d->direction);
   MIX(h, d->history);
+  MIX(h, d->volume);
+  MIX(h, d->lookup);
   h = mix_layout(h, d->map_layout, d->map_layout_light);
   const bool facts[] = {plan->spheres,
                         plan->convex,

@@ -82,6 +82,7 @@ static void free_eye(abbe_renderer *r) {
 static void free_light(abbe_renderer *r) {
   abbe_published_free(&r->published);
   abbe_caustics_free(&r->caustics);
+  abbe_volume_light_free(&r->volume);
   abbe_spectral_map_free(&r->map);
   abbe_receiver_atlas_free(&r->atlas);
   abbe_light_layers_free(&r->layers);
@@ -110,6 +111,7 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK) result = abbe_refractor_faces_make(&r->scene, &r->faces, error);
   if (result == ABBE_OK) result = abbe_light_layers_make(&r->views, &r->faces, &r->layers, error);
   r->atlas.views = &r->views;
+  if (result == ABBE_OK) result = abbe_volume_light_make(&r->scene, &r->volume, error);
   if (result != ABBE_OK) return result;
   if (r->plan.caustics)
     return abbe_caustics_make(&r->views, &r->layers, &r->atlas, &r->map, &r->variant, &r->caustics,
@@ -122,7 +124,7 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   variant.aovs = r->plan.desc.aovs;
   variant.textured = r->plan.textured;
   abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);
-  r->lighting = (abbe_lighting){&r->scene, &r->views, &r->layers, &r->atlas, &r->map, &r->camera};
+  r->lighting = (abbe_lighting){&r->scene, &r->views, &r->layers, &r->atlas, &r->map, &r->camera, &r->volume};
   abbe_result result = abbe_receivers_pass_make(&r->lighting, &variant, &r->receivers, error);
   if (result == ABBE_OK)
     result = abbe_refraction_pass_make(&r->lighting, &r->faces, &r->receivers, &variant,

@@ -31,6 +31,7 @@ struct abbe_renderer {
   abbe_receiver_atlas atlas;
   abbe_spectral_map map;
   abbe_caustics caustics;
+  abbe_volume_light volume; /* in place of them, where caustics are looked up */
   abbe_published published; /* in place of these and those below */
   bool lit;           /* all of that is drawn: the maps hold the light as it is now */
 

@@ -51,6 +51,7 @@ foreach(name
     sphere_quadrature
     trace_run
     tracer
+    volume_fill volume_space volume_sums
     sweep_pictures
     sweep_plot
     sweep_presets

@@ -84,6 +84,7 @@ int abbe_command_plan(int argc, char **argv) {
   abbe_plan plan = {0};
   abbe_result result = abbe_scene_input_load_with(argv[0], o.render.scene, o.render.materials,
                                                   &o.render.changes, &scene, &error);
+  if (result == ABBE_OK) result = abbe_render_options_load_volume(&o.render, &error);
   bool loaded = result == ABBE_OK;
   if (loaded) result = abbe_plan_make(&scene, &o.render.desc, &plan, &error);
   if (loaded) abbe_scene_input_note(&scene);
@@ -94,5 +95,6 @@ int abbe_command_plan(int argc, char **argv) {
   }
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);
+  abbe_caustic_volume_free(&o.render.volume);
   return abbe_render_options_end(&o.render, loaded, result, &error);
 }

@@ -419,10 +419,13 @@ int abbe_command_render(int argc, char **argv) {
     result = abbe_scene_input_load_with(argv[0], q.render.scene, q.render.materials,
                                         &q.render.changes, &scene, &error);
   bool loaded = result == ABBE_OK;
+  if (loaded) result = abbe_render_options_load_volume(&q.render, &error);
+  loaded = result == ABBE_OK;
   if (loaded && q.errors.asked) result = abbe_error_bars_check(q.render.desc.profile, NULL, &error);
   if (result == ABBE_OK)
     result = abbe_map_options_resolve(&q.map, &scene, q.render.desc.map_size == 0, &error);
   if (result == ABBE_OK) result = choose_and_draw(&q, &scene, &error);
   abbe_scene_free(&scene);
+  abbe_caustic_volume_free(&q.render.volume);
   return abbe_render_options_end(&q.render, loaded, result, &error);
 }

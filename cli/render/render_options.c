@@ -4,6 +4,8 @@
 #include "cli/base/command.h"
 #include "cli/base/spectral_options.h"
 
+#include "scenes/volume/volume_file.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -30,6 +32,9 @@ enum {
   OPTION_EXITS,
   OPTION_SPACE,
   OPTION_OBSERVER,
+  OPTION_TRANSPORT,
+  OPTION_VOLUME,
+  OPTION_LOOKUP,
   OPTION_EVERYTHING,
   OPTION_MATERIALS
 };
@@ -37,7 +42,7 @@ enum {
 static const struct argp_option options[] = {
     {"profile", OPTION_PROFILE, "NAME", 0,
      "default; published methods, and each with CIE weights in W: thesis, thesis-cie, shah2007, "
-     "shah2007-cie, wyman2006, wyman2006-cie",
+     "shah2007-cie, wyman2006, wyman2006-cie; wyman2003, of volumes alone",
      1},
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
     {"wavelengths", OPTION_WAVELENGTHS, "N", 0,
@@ -83,6 +88,13 @@ static const struct argp_option options[] = {
      "exits followed at the most, 1 to 32 (8; to 24 in a gem; 4 by layers)", 1},
     {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
     {"observer", OPTION_OBSERVER, "NAME", 0, ABBE_OBSERVER_HELP, 1},
+    {"transport", OPTION_TRANSPORT, "NAME", 0,
+     "of caustics: photons, or volume, looked up in what abbe volume has made (photons)", 1},
+    {"volume", OPTION_VOLUME, "FILE.exr", ABBE_ARGUMENT_READS, "that they are looked up in", 1},
+    {"lookup", OPTION_LOOKUP, "NAME", 0,
+     "of light between the volume's nodes: nearest, blend, turn (blend; of a ball, and of "
+     "wyman2003, turn)",
+     1},
     {"everything", OPTION_EVERYTHING, NULL, 0,
      "switch on what no fact asks for, to measure what the plan saves", 1},
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
@@ -97,6 +109,8 @@ static const char *const models[] = {ABBE_MODELS(ABBE_NAME_OF_2)};
 static const char *const estimators[] = {ABBE_ESTIMATORS(ABBE_NAME_OF_2)};
 static const char *const directions[] = {ABBE_DIRECTIONS(ABBE_NAME_OF_2)};
 static const char *const fills[] = {ABBE_FILLS(ABBE_NAME_OF_2)};
+static const char *const transports[] = {ABBE_TRANSPORTS(ABBE_NAME_OF_2)};
+static const char *const lookups[] = {ABBE_VOLUME_LOOKUPS(ABBE_NAME_OF_2)};
 static const char *const spaces[] = {ABBE_RGB_SPACES(ABBE_NAME_OF_3)};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
@@ -176,6 +190,17 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_OBSERVER:
     d->observer = abbe_spectral_options_observer(p, text);
     return 0;
+  case OPTION_TRANSPORT:
+    d->transport = (abbe_transport)abbe_command_choice(p, "--transport", text, transports,
+                                                       ABBE_TRANSPORT_COUNT);
+    return 0;
+  case OPTION_VOLUME:
+    o->volume_path = text;
+    return 0;
+  case OPTION_LOOKUP:
+    d->lookup = (abbe_volume_lookup)abbe_command_choice(p, "--lookup", text, lookups,
+                                                        ABBE_VOLUME_LOOKUP_COUNT);
+    return 0;
   case OPTION_EVERYTHING:
     d->everything = true;
     return 0;
@@ -195,6 +220,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 }
 
 const struct argp abbe_render_options_argp = {options, parse, "SCENE.yaml", NULL, NULL, NULL, NULL};
+
+abbe_result abbe_render_options_load_volume(abbe_render_options *request, abbe_error *error) {
+  if (request->volume_path == NULL) return ABBE_OK;
+  const abbe_result result = abbe_volume_file_read(request->volume_path, &request->volume, error);
+  if (result == ABBE_OK) request->desc.volume = &request->volume;
+  return result;
+}
 
 int abbe_render_options_end(const abbe_render_options *request, bool scene_loaded,
                             abbe_result result, abbe_error *error) {

@@ -14,11 +14,16 @@ typedef struct abbe_render_options {
   const char *materials; /* table to use instead of the scene's */
   abbe_scene_input_changes changes;
   abbe_render_desc desc;
+  const char *volume_path;    /* NULL: none */
+  abbe_caustic_volume volume; /* of that file; whoever loads it frees it */
 } abbe_render_options;
 
 /* An argp child: profile, size, wavelengths, photons …, and the scene as the one argument. Its
  * input is an abbe_render_options with program set. */
 extern const struct argp abbe_render_options_argp;
+
+/* The volume that is named, into the request; errors of abbe_volume_file_read. */
+abbe_result abbe_render_options_load_volume(abbe_render_options *request, abbe_error *error);
 
 /* abbe_command_end for a request: once the scene is loaded, an invalid argument is the request's
  * own and ends with ABBE_EXIT_USAGE. */

@@ -330,6 +330,10 @@ abbe_result abbe_error_bars_make(abbe_context *context, const abbe_scene *scene,
   work w = {.context = context, .scene = scene, .desc = desc};
   abbe_result result =
       abbe_error_bars_check(abbe_renderer_plan(renderer)->desc.profile, desc, error);
+  if (result == ABBE_OK && abbe_renderer_plan(renderer)->volume)
+    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "caustics of a volume are the same with other photons, so they have no "
+                            "error bars; 'abbe volume' tells how noisy they are");
   if (result == ABBE_OK) result = begin(&w, renderer, variants, error);
   if (result == ABBE_OK) result = draw_variants(&w, variants, error);
   if (result == ABBE_OK && w.frames > variants) {

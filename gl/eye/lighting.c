@@ -22,5 +22,6 @@ void abbe_lighting_use(const abbe_lighting *lighting, GLuint program) {
   abbe_spectral_map_set(lighting->map, program);
   abbe_gpu_scene_set(lighting->scene, program);
   abbe_light_layers_set(lighting->layers, program);
+  abbe_volume_light_set(lighting->volume, program);
   set_camera(lighting, program);
 }

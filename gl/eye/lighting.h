@@ -8,6 +8,7 @@
 #include "gl/light/light_layers.h"
 #include "gl/light/receiver_atlas.h"
 #include "gl/scene/camera_view.h"
+#include "gl/volume/volume_light.h"
 
 typedef struct abbe_lighting {
   const abbe_gpu_scene *scene;
@@ -16,6 +17,7 @@ typedef struct abbe_lighting {
   const abbe_receiver_atlas *atlas;
   const abbe_spectral_map *map;
   const abbe_camera_view *camera;
+  const abbe_volume_light *volume;
 } abbe_lighting;
 
 /* The program is in use, everything is bound, the camera is told. */

@@ -14,7 +14,7 @@ static const abbe_program_stage behind[] = {{GL_VERTEX_SHADER, "screen.vert"},
  */
 static size_t views_of_light(const abbe_receivers_pass *pass, size_t light, abbe_view out[2]) {
   const abbe_gpu_scene *scene = pass->lighting->scene;
-  if (scene->plan->cubes || pass->lighting->atlas->used ||
+  if (scene->plan->cubes || scene->plan->volume || pass->lighting->atlas->used ||
       !abbe_lit_window_cone(&scene->local->light[light], &out[0]))
     return 0;
   out[1] = pass->lighting->views->light[light].map.view;

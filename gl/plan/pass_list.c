@@ -2,6 +2,11 @@
 
 static const char unlit[] = "no light meets a refractor";
 
+/* Why no photons are followed. */
+static const char *no_photons(const abbe_plan *plan) {
+  return plan->volume ? "caustics are looked up in a volume" : unlit;
+}
+
 static int count_faces(const abbe_plan *plan, size_t light) {
   int faces = 0;
   for (size_t i = 0; i < plan->light_view_count; i++)
@@ -28,7 +33,7 @@ static void list_maps(const abbe_scene *scene, abbe_plan *plan) {
                                            : "its cone misses every refractor");
   }
   abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MAPS, "%s",
-                !plan->caustics                                 ? unlit
+                !plan->caustics                                 ? no_photons(plan)
                 : abbe_profile_is_published(plan->desc.profile) ? knows_none(plan)
                 : plan->receiver_shadows ? "a receiver may hide from a light where its light lands"
                 : plan->outside_map_view
@@ -78,9 +83,9 @@ static void list_back(abbe_plan *plan, abbe_pass pass, bool met, const char *unm
 static void list_photons(abbe_plan *plan) {
   const size_t least = abbe_plan_least_wavelengths(plan), most = plan->desc.wavelengths;
   if (!plan->caustics) {
-    abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT, unlit);
-    abbe_plan_add(plan, ABBE_PASS_PHOTONS, unlit);
-    abbe_plan_add(plan, ABBE_PASS_SPECTRAL_MAP, unlit);
+    abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT, no_photons(plan));
+    abbe_plan_add(plan, ABBE_PASS_PHOTONS, no_photons(plan));
+    abbe_plan_add(plan, ABBE_PASS_SPECTRAL_MAP, no_photons(plan));
     return;
   }
   if (abbe_profile_is_wyman2006(plan->desc.profile))
@@ -118,8 +123,8 @@ static void list_light(abbe_plan *plan) {
                     ? "it casts the shadows; receivers are hit exactly"
                     : "receivers are hit exactly");
   abbe_plan_add(plan, ABBE_PASS_LIGHT_FRONT, "%s",
-                plan->caustics ? "photons start where the light sees a refractor" : unlit);
-  list_back(plan, ABBE_PASS_LIGHT_BACK, plan->caustics, unlit);
+                plan->caustics ? "photons start where the light sees a refractor" : no_photons(plan));
+  list_back(plan, ABBE_PASS_LIGHT_BACK, plan->caustics, no_photons(plan));
   list_photons(plan);
   if (abbe_profile_is_wyman2006(plan->desc.profile))
     abbe_plan_add(plan, ABBE_PASS_GAP_FILL, "photons are drawn as '%s'",

@@ -58,10 +58,15 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   if (result == ABBE_OK) result = abbe_support_layout(scene, out, error);
   if (result == ABBE_OK) abbe_light_views_reach(scene, out);
   if (result == ABBE_OK) result = abbe_light_views_choose(scene, out, error);
+  if (result == ABBE_OK) result = abbe_support_volume(scene, out, error);
   if (result == ABBE_OK) result = abbe_precision_check(scene, out, error);
   if (result != ABBE_OK) {
     abbe_plan_free(out);
     return result;
+  }
+  if (out->desc.transport == ABBE_TRANSPORT_VOLUME) {
+    out->volume = out->caustics;
+    out->caustics = false;
   }
   abbe_receiver_model_shadows(scene, out);
   abbe_spectral_needs_count(out);

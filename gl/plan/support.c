@@ -1,6 +1,9 @@
 #include "gl/plan/support.h"
 
+#include "colorimetry/weights.h"
 #include "scenes/geometry/vector.h"
+
+#include <math.h>
 
 abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *plan,
                                    abbe_error *error) {
@@ -93,4 +96,62 @@ abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan,
                         "the object '%s' (line %zu) is a mirror, and the model 'layers' follows no "
                         "light off mirrors; leave it out, or take the model 'hierarchy'",
                         mirror->name, mirror->line);
+}
+
+/* Lights that are nearer, in the object's radii, shift a ball's focus by more than a tenth of its
+ * distance. */
+static const double volume_least_radii = 10;
+
+/* Whether all of the ball around the object is where the light has its full strength. */
+static bool holds_all(const abbe_light *light, const double to[3], double distance, double radius) {
+  if (light->kind != ABBE_LIGHT_SPOT) return true;
+  const double off = acos(fmin(abbe_vector_dot(light->direction, to) / distance, 1));
+  return off + asin(radius / distance) <= light->cone_rad - light->soft_rad;
+}
+
+static abbe_result check_volume_light(const abbe_light *light, const abbe_render_desc *d,
+                                      const double centre[3], abbe_error *error) {
+  const abbe_caustic_volume *v = d->volume;
+  double white[3], to[3], distance = INFINITY;
+  abbe_weights_band_xyz(&light->illuminant, d->min_nm, d->max_nm, d->min_nm, d->max_nm, white);
+  abbe_vector_subtract(centre, light->position, to);
+  if (light->kind != ABBE_LIGHT_DIRECTIONAL) distance = abbe_vector_length(to);
+  if (distance < volume_least_radii * v->body.radius)
+    return abbe_error_set(
+        error, ABBE_UNSUPPORTED,
+        "the light '%s' is %.3g m from '%s', and the volume is of light from far "
+        "away: %.3g m and more, ten times the object's radius; move it there, make "
+        "it directional, or take the transport 'photons'",
+        light->name, distance, v->body.name, volume_least_radii * v->body.radius);
+  if (!holds_all(light, to, distance, v->body.radius))
+    return abbe_error_set(
+        error, ABBE_UNSUPPORTED,
+        "the light '%s' meets a part of '%s' alone, and the volume is of light on "
+        "all of it; widen its cone, or take the transport 'photons'",
+        light->name, v->body.name);
+  for (int k = 0; k < 3; k++)
+    if (!(fabs(white[k] - v->white[k]) <= 0.005))
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "the light '%s' has a white of X %.3f, Z %.3f for Y 1, and the volume "
+                            "was made for X %.3f, Z %.3f: make one for it (abbe volume --light)",
+                            light->name, white[0], white[2], v->white[0], v->white[2]);
+  return ABBE_OK;
+}
+
+abbe_result abbe_support_volume(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
+  ABBE_REQUIRE(scene && plan, error);
+  const abbe_render_desc *d = &plan->desc;
+  abbe_volume_place place;
+  if (d->transport != ABBE_TRANSPORT_VOLUME) return ABBE_OK;
+  if (plan->refractor_count != 1)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "a volume holds the caustics of one object alone, '%s'; this scene has "
+                          "%zu that bend light",
+                          d->volume->body.name, plan->refractor_count);
+  abbe_result result = abbe_volume_body_find(
+      &d->volume->body, &scene->object[plan->refractor_object[0]], &place, error);
+  for (size_t i = 0; i < scene->light_count && result == ABBE_OK; i++)
+    if (d->volume->kind == ABBE_VOLUME_VECTOR)
+      result = check_volume_light(&scene->light[i], d, place.centre, error);
+  return result;
 }

@@ -19,6 +19,11 @@ abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan,
 /* ABBE_UNSUPPORTED for what a published method does not know, where it is asked for. */
 abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 
+/* ABBE_UNSUPPORTED for what a volume of caustics does not hold, where one is asked for: other
+ * objects that bend light, another shape; but of printed ones also lights that are near, that meet a
+ * part of the object, or are of another colour. */
+abbe_result abbe_support_volume(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
+
 /* ABBE_INVALID_ARGUMENT for a given map layout that is not the layout of its light's map. */
 abbe_result abbe_support_layout(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 

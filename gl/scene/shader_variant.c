@@ -41,6 +41,11 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
                        : p->desc.wavelengths > 1 ? 8
                                                  : 2,
   };
+  if (p->volume) {
+    out->volume = true;
+    out->volume_kind = p->desc.volume->kind;
+    out->volume_region = p->desc.volume->region.desc.kind;
+  }
   for (size_t i = 0; i < p->refractor_count; i++)
     if (p->model[i] == ABBE_REFRACTOR_CONVEX)
       out->planes += scene->local->object[p->refractor_object[i]].exact.count;
@@ -129,6 +134,11 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
     print_count(to, "SOFT_COLUMNS", ABBE_IRRADIANCE_MAP_COLUMNS);
   }
   print_flag(to, "CAUSTICS", v->caustics);
+  print_flag(to, "VOLUME", v->volume);
+  print_flag(to, "VOLUME_PRINTED", v->volume && v->volume_kind == ABBE_VOLUME_PRINTED);
+  print_flag(to, "VOLUME_GRID", v->volume && v->volume_region == ABBE_REGION_GRID);
+  print_flag(to, "VOLUME_GEODESIC", v->volume && v->volume_region == ABBE_REGION_GEODESIC);
+  print_flag(to, "VOLUME_OCTAHEDRAL", v->volume && v->volume_region == ABBE_REGION_OCTAHEDRAL);
   print_flag(to, "WALK", v->walk);
   print_flag(to, "MIRRORS", v->mirrors);
   print_flag(to, "CUBES", v->cubes);

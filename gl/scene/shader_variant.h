@@ -20,6 +20,9 @@ typedef struct abbe_shader_variant {
   size_t bvh_stack, receiver_root, shadow_planes;
   bool spheres, convex, layers, hierarchy, receiver_hierarchy, one_convex, one_shadow;
   bool receiver_shadows, absorbing, textured, environment, caustics, walk, mirrors, cubes;
+  bool volume; /* caustics are looked up in the plan's, of that kind */
+  abbe_volume_kind volume_kind;
+  abbe_region_kind volume_region;
   bool copies; /* a software rasteriser: tables are copied first (copies.glsl) */
   /* the picture */
   bool aovs;

@@ -48,6 +48,9 @@ const float touch = 1e-5;
 #include "receiver_hit.glsl"
 #include "receiver_shadow.glsl"
 #include "caustic_lookup.glsl"
+#ifdef VOLUME
+#include "volume_lookup.glsl"
+#endif
 
 // rgb irradiance from one light on p (n faces the viewer), on a side of a chart: straight, and through
 // refractors.
@@ -68,6 +71,11 @@ void light_irradiance(int light, vec3 p, vec3 n, int side, out vec3 direct, out 
 #ifdef TILES
   caustic = tile_irradiance(light, p, side, l.misc.w != 0.0);
 #endif
+#endif
+#if defined(VOLUME_PRINTED)
+  caustic = volume_irradiance(light, p, n, l.white.rgb);
+#elif defined(VOLUME)
+  caustic = rgb_from_xyz * volume_irradiance(light, p, n);
 #endif
   if (!receiver_lit(light, p, d, distance_m)) return;
   bool directional = int(l.position.w) == 2;

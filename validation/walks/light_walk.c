@@ -46,6 +46,8 @@ struct abbe_light_walk {
   bool small;        /* so few faces that packets stay together wherever their rays go */
   bool *hidden;      /* [lights] abbe_lamp_is_hidden */
   bool for_map;
+  abbe_light_walk_stretch take; /* NULL: nobody watches */
+  void *watcher;
   abbe_ray_record record;
   abbe_light_walk_room room;
 };
@@ -113,6 +115,11 @@ void abbe_light_walk_split(abbe_light_walk *walk, unsigned interfaces) {
 
 void abbe_light_walk_for_map(abbe_light_walk *walk, bool map) {
   walk->for_map = map;
+}
+
+void abbe_light_walk_watch(abbe_light_walk *walk, abbe_light_walk_stretch take, void *user) {
+  walk->take = take;
+  walk->watcher = user;
 }
 
 void abbe_light_walk_keep(abbe_light_walk *walk, size_t packets) {
@@ -220,6 +227,8 @@ static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, abb
   float o[3] = {rays->ray.org_x[k], rays->ray.org_y[k], rays->ray.org_z[k]};
   float d[3] = {rays->ray.dir_x[k], rays->ray.dir_y[k], rays->ray.dir_z[k]};
   for (int i = 0; i < 3; i++) p->scatter.d[i][k] = d[i];
+  if (r->w->take != NULL && !first && s->inside == 0)
+    r->w->take(r->w->watcher, o, d, rays->ray.tfar[k], s->flux, s->step);
   if (id == RTC_INVALID_GEOMETRY_ID) return first ? NOT_COUNTED : s->inside != 0 ? LOST : MISSED;
   if (first && r->w->g->surface[id].kind == ABBE_GEOMETRY_RECEIVERS) return NOT_COUNTED;
   abbe_hit *hit = &p->hit[k];
@@ -341,24 +350,10 @@ static void deposit(run *r, size_t k, const abbe_light_path *s) {
 
 static void end_path(run *r, size_t k, path_state state, const abbe_light_path *s) {
   const double flux = (double)(s->y * s->flux);
-  switch (state) {
-  case DEPOSITED:
-    deposit(r, k, s);
-    break;
-  case MISSED:
-    r->ledger->missed += flux;
-    break;
-  case TRAPPED:
-    r->ledger->trapped += flux;
-    break;
-  case LOST:
-    r->ledger->lost += flux;
-    break;
-  case SCATTERS:
-  case MIRRORED:
-  case NOT_COUNTED:
-    break;
-  }
+  if (state == DEPOSITED) deposit(r, k, s);
+  if (state == MISSED) r->ledger->missed += flux;
+  if (state == TRAPPED) r->ledger->trapped += flux;
+  if (state == LOST) r->ledger->lost += flux;
 }
 
 /* The paths of a packet on the branches that its lanes have taken, or with `second` those of split

@@ -51,6 +51,13 @@ void abbe_light_walk_split(abbe_light_walk *walk, unsigned interfaces);
  * what receivers hide from it, which asks for a ray each. At first they are. */
 void abbe_light_walk_for_map(abbe_light_walk *walk, bool map);
 
+/* A stretch in the open of a path that has met a refractor or a mirror: from o along unit d, frame
+ * units, INFINITY where it meets nothing more; its flux as it sets out, W. */
+typedef void (*abbe_light_walk_stretch)(void *user, const float o[3], const float d[3],
+                                        float length, float flux, uint32_t step);
+/* Told every stretch of the next runs; NULL: nobody is. */
+void abbe_light_walk_watch(abbe_light_walk *walk, abbe_light_walk_stretch take, void *user);
+
 /* Follows count <= ABBE_LIGHT_WALK_BATCH photons of one light of the geometry's scene, or of its
  * environment (light NULL: nothing is hidden from it, for it has no map); writes at
  * most count hits, twice as many for each interface to split at (ABBE_LIGHT_WALK_HITS), and adds to

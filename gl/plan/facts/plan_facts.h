@@ -71,6 +71,7 @@ typedef struct abbe_plan {
   /* What the light and the camera's rays may meet. */
   bool reaches[ABBE_SCENE_MAX_LIGHTS]; /* the light may meet a refractor: it has a map */
   bool caustics;                       /* some light may meet one */
+  bool volume;                         /* one may, and its caustics are looked up: no photons */
   bool camera_sees_refractor;          /* the camera may */
   /* Light is followed from interface to interface of all refractors: what leaves one may meet one
    * again, or a receiver inside; or one is a mirror; or the BVH was asked for. Without this no

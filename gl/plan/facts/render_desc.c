@@ -22,17 +22,26 @@ bool abbe_profile_is_wyman2006(abbe_profile profile) {
   return profile == ABBE_PROFILE_WYMAN2006 || profile == ABBE_PROFILE_WYMAN2006_CIE;
 }
 
+bool abbe_profile_is_wyman2003(abbe_profile profile) {
+  return profile == ABBE_PROFILE_WYMAN2003;
+}
+
 bool abbe_profile_estimates(abbe_profile profile) {
   return abbe_profile_is_shah2007(profile) || abbe_profile_is_wyman2006(profile);
 }
 
 bool abbe_profile_is_published(abbe_profile profile) {
-  return profile != ABBE_PROFILE_DEFAULT;
+  return profile != ABBE_PROFILE_DEFAULT && profile != ABBE_PROFILE_WYMAN2003;
 }
 
 bool abbe_profile_is_printed(abbe_profile profile) {
   return profile == ABBE_PROFILE_THESIS || profile == ABBE_PROFILE_SHAH2007 ||
          profile == ABBE_PROFILE_WYMAN2006;
+}
+
+const char *abbe_transport_name(abbe_transport transport) {
+  static const char *const names[] = {ABBE_TRANSPORTS(ABBE_NAME_OF)};
+  return (int)transport >= 0 && transport < ABBE_TRANSPORT_COUNT ? names[transport] : "unknown";
 }
 
 const char *abbe_fill_name(abbe_fill fill) {
@@ -99,6 +108,11 @@ static void fill_in_defaults(size_t width, size_t height, abbe_render_desc *d) {
   if (d->fill == ABBE_FILL_AUTO)
     d->fill = thesis ? ABBE_FILL_SMEAR : published ? ABBE_FILL_NONE : ABBE_FILL_BRIDGE;
   if (d->energy_share == 0) d->energy_share = ABBE_PLAN_SHARE;
+  const bool volume = d->volume != NULL || abbe_profile_is_wyman2003(d->profile);
+  if (d->transport == ABBE_TRANSPORT_AUTO)
+    d->transport = volume ? ABBE_TRANSPORT_VOLUME : ABBE_TRANSPORT_PHOTONS;
+  if (d->lookup == ABBE_VOLUME_LOOKUP_AUTO && abbe_profile_is_wyman2003(d->profile))
+    d->lookup = ABBE_VOLUME_LOOKUP_TURN;
 }
 
 static abbe_result check_counts(const abbe_render_desc *d, abbe_error *error) {
@@ -195,6 +209,41 @@ static abbe_result check_published(const abbe_render_desc *d, abbe_error *error)
   return check_wyman(d, error);
 }
 
+/* What goes with a volume, and what asks for one. */
+static abbe_result check_volume(const abbe_render_desc *d, abbe_error *error) {
+  const bool asked = d->transport == ABBE_TRANSPORT_VOLUME;
+  const bool printed = abbe_profile_is_wyman2003(d->profile);
+  if ((int)d->transport < 0 || d->transport >= ABBE_TRANSPORT_COUNT || (int)d->lookup < 0 ||
+      d->lookup >= ABBE_VOLUME_LOOKUP_COUNT)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no such transport or lookup");
+  if (asked && d->volume == NULL)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "caustics are to be looked up in a volume, and none is given; 'abbe "
+                          "volume' makes one%s",
+                          printed ? ", with --printed for wyman2003" : "");
+  if (!asked && (d->volume != NULL || printed || d->lookup != ABBE_VOLUME_LOOKUP_AUTO))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a volume and its lookup go with the transport 'volume', not with '%s'",
+                          abbe_transport_name(d->transport));
+  if (!asked) return ABBE_OK;
+  if (abbe_profile_is_published(d->profile) || d->everything)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the transport 'volume' does not go with %s%s",
+                          d->everything ? "all that is switched on" : "the profile ",
+                          d->everything ? "" : abbe_profile_name(d->profile));
+  if (d->observer != ABBE_OBSERVER_CIE_1931)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a volume holds the colours of the observer '%s', not of '%s'",
+                          abbe_observer_text(ABBE_OBSERVER_CIE_1931),
+                          abbe_observer_text(d->observer));
+  if (printed == (d->volume->kind == ABBE_VOLUME_PRINTED)) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "the profile '%s' looks up %s volumes, and this one is not: make it %s "
+                        "--printed",
+                        abbe_profile_name(d->profile), printed ? "printed" : "vector",
+                        printed ? "with" : "without");
+}
+
 /* Whether it knows the fill, which is not AUTO any more. */
 static bool knows_fill(const abbe_render_desc *d) {
   const bool published = abbe_profile_is_published(d->profile);
@@ -237,7 +286,8 @@ static abbe_result check_choices(const abbe_render_desc *d, abbe_error *error) {
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the fill '%s' does not go with the profile '%s'",
                           abbe_fill_name(d->fill), abbe_profile_name(d->profile));
-  return check_published(d, error);
+  const abbe_result result = check_published(d, error);
+  return result == ABBE_OK ? check_volume(d, error) : result;
 }
 
 abbe_result abbe_render_desc_resolve(const abbe_render_desc *desc, size_t width, size_t height,

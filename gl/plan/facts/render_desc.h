@@ -10,6 +10,7 @@
 #include "colorimetry/rgb_space.h"
 #include "scenes/view/estimator.h"
 #include "scenes/view/map_layout.h"
+#include "scenes/volume/caustic_volume.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -19,13 +20,16 @@ extern "C" {
 #endif
 
 /* Methods as they were published, with their own constants, and each (-cie) with the default
- * profile's wavelengths, CIE weights, indices, Fresnel's law and units. */
+ * profile's wavelengths, CIE weights, indices, Fresnel's law and units. wyman2003 looks caustics up
+ * in a printed volume; all else is the default profile's, as is its twin: the transport 'volume'.
+ */
 #define ABBE_PROFILES(X)                                                                           \
   X(DEFAULT, "default")                                                                            \
   X(THESIS, "thesis")                                                                              \
   X(THESIS_CIE, "thesis-cie")                                                                      \
-  X(SHAH2007, "shah2007") X(SHAH2007_CIE, "shah2007-cie") X(WYMAN2006, "wyman2006")                \
-      X(WYMAN2006_CIE, "wyman2006-cie")
+  X(SHAH2007, "shah2007")                                                                          \
+  X(SHAH2007_CIE, "shah2007-cie") X(WYMAN2006, "wyman2006") X(WYMAN2006_CIE, "wyman2006-cie")      \
+      X(WYMAN2003, "wyman2003")
 typedef enum abbe_profile {
 #define ABBE_PROFILE_ENUM(code, name) ABBE_PROFILE_##code,
   ABBE_PROFILES(ABBE_PROFILE_ENUM)
@@ -40,8 +44,9 @@ typedef enum abbe_profile {
 #define ABBE_FILLS(X)                                                                              \
   X(AUTO, "auto")                                                                                  \
   X(NONE, "none")                                                                                  \
-  X(BRIDGE, "bridge") X(SMEAR, "smear") X(POINTS, "points") X(QUADS, "quads")                      \
-      X(TRIANGLES, "triangles") X(GATHER_EYE, "gather-eye") X(GATHER_LIGHT, "gather-light")
+  X(BRIDGE, "bridge")                                                                              \
+  X(SMEAR, "smear") X(POINTS, "points") X(QUADS, "quads") X(TRIANGLES, "triangles")                \
+      X(GATHER_EYE, "gather-eye") X(GATHER_LIGHT, "gather-light")
 typedef enum abbe_fill {
 #define ABBE_FILL_ENUM(code, name) ABBE_FILL_##code,
   ABBE_FILLS(ABBE_FILL_ENUM)
@@ -58,6 +63,16 @@ typedef enum abbe_direction {
 #undef ABBE_DIRECTION_ENUM
       ABBE_DIRECTION_COUNT
 } abbe_direction;
+
+/* How caustics come to receivers: by photons, or looked up in a volume that was computed beforehand
+ * (scenes/volume/caustic_volume.h). AUTO: in a volume where one is given. */
+#define ABBE_TRANSPORTS(X) X(AUTO, "auto") X(PHOTONS, "photons") X(VOLUME, "volume")
+typedef enum abbe_transport {
+#define ABBE_TRANSPORT_ENUM(code, name) ABBE_TRANSPORT_##code,
+  ABBE_TRANSPORTS(ABBE_TRANSPORT_ENUM)
+#undef ABBE_TRANSPORT_ENUM
+      ABBE_TRANSPORT_COUNT
+} abbe_transport;
 
 /* How light is followed through refractors. AUTO: by the scene; the others ask for one model for
  * all refractors. */
@@ -136,6 +151,11 @@ typedef struct abbe_render_desc {
    * or redrawn goes on with the frames before, so that a picture is no longer that of a renderer
    * made anew; in units the photons of each frame are shifted. */
   size_t history;
+  abbe_transport transport;
+  /* Of the transport 'volume', which it lives as long as; of the profile wyman2003 a printed one.
+   * lookup AUTO: abbe_caustic_volume_resolve; wyman2003: turned. */
+  const abbe_caustic_volume *volume;
+  abbe_volume_lookup lookup;
   /* paths below this share of their light end; 0: 0.01, or 0.005 where paths that end leave too
    * much light inside a convex solid */
   double energy_share;
@@ -176,8 +196,10 @@ bool abbe_profile_is_printed(abbe_profile profile);
 bool abbe_profile_is_thesis(abbe_profile profile);
 bool abbe_profile_is_shah2007(abbe_profile profile);
 bool abbe_profile_is_wyman2006(abbe_profile profile);
+bool abbe_profile_is_wyman2003(abbe_profile profile);
 /* Whether rays are brought to receivers by an estimator: the last two. */
 bool abbe_profile_estimates(abbe_profile profile);
+const char *abbe_transport_name(abbe_transport transport);
 const char *abbe_fill_name(abbe_fill fill);
 const char *abbe_model_name(abbe_model model);
 

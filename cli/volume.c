@@ -1,0 +1,311 @@
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "cli/base/progress.h"
+#include "cli/base/scene_input.h"
+
+#include "base/nearest.h"
+#include "scenes/volume/volume_file.h"
+#include "validation/volume/volume_fill.h"
+
+#include <argp.h>
+#include <cjson/cJSON.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+typedef struct request {
+  const char *program, *scene, *out, *object, *light, *materials;
+  abbe_scene_input_changes changes;
+  abbe_volume_fill_desc desc;
+  double radii; /* of the region, in the object's; 0: 3 */
+  bool json, quiet;
+} request;
+
+enum {
+  OPTION_OBJECT = 0x100,
+  OPTION_LIGHT,
+  OPTION_NODES,
+  OPTION_HARMONICS,
+  OPTION_SHELLS,
+  OPTION_GRID,
+  OPTION_RADII,
+  OPTION_PRINTED,
+  OPTION_PHOTONS,
+  OPTION_PASSES,
+  OPTION_UNTIL_ERROR,
+  OPTION_RANGE,
+  OPTION_SEED,
+  OPTION_THREADS,
+  OPTION_MATERIALS,
+  OPTION_JSON
+};
+
+static const struct argp_option options[] = {
+    {"output", 'o', "FILE.exr", ABBE_ARGUMENT_WRITES, "the volume", 0},
+    {"json", OPTION_JSON, NULL, 0, "what was done, as JSON on standard output", 0},
+    {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
+    {"object", OPTION_OBJECT, "NAME", 0, "whose caustics; the scene's only refractor without", 1},
+    {"light", OPTION_LIGHT, "NAME", 0, "of whose colour the light is; the first without", 1},
+    {"nodes", OPTION_NODES, "N", 0,
+     "directions of light: 1, 12, 42, 162, 642 or 2562 (162; of a ball 1)", 1},
+    {"sh", OPTION_HARMONICS, "N", 0,
+     "spherical harmonics of the light's direction to degree N, 1 to 12, in place of the nodes", 1},
+    {"shells", OPTION_SHELLS, "SxN|SxMxM", 0,
+     "S shells of N triangles (80, 320, 1280, 5120 ...) or M x M octahedral texels (24x5120)", 1},
+    {"grid", OPTION_GRID, "N", 0, "or N x N x N cubes, 2 to 256", 1},
+    {"radii", OPTION_RADII, "X", 0, "how far the region goes, in radii of the object (3)", 1},
+    {"printed", OPTION_PRINTED, NULL, 0, "bytes as the method was published, for wyman2003", 1},
+    {"photons", OPTION_PHOTONS, "N", 0, "of a node and pass (262144)", 2},
+    {"passes", OPTION_PASSES, "N", 0, "of a node (4)", 2},
+    {"until-error", OPTION_UNTIL_ERROR, "X", 0,
+     "more passes, until a node's relative standard error is below X", 2},
+    {"range", OPTION_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", 2},
+    {"seed", OPTION_SEED, "N", 0, "of the random numbers (0)", 2},
+    {"threads", OPTION_THREADS, "N", 0, "all cores without; the result is the same", 2},
+    {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
+     "a table instead of the scene's: default, thesis or a file", 1},
+    ABBE_SCENE_INPUT_OPTIONS(1),
+    {0}};
+
+/* "24x5120" or "24x72x72". */
+static void take_shells(request *q, const char *text) {
+  abbe_region_desc *r = &q->desc.region;
+  unsigned long n[3] = {0};
+  int count = 0;
+  for (const char *at = text; count < 3; count++) {
+    char *end;
+    n[count] = *at >= '0' && *at <= '9' ? strtoul(at, &end, 10) : 0;
+    if (n[count] == 0) break;
+    at = end + (*end == 'x');
+    if (*end != 'x' && *end != '\0') break;
+    if (*end == '\0') {
+      count++;
+      break;
+    }
+  }
+  *r = (abbe_region_desc){.shells = n[0]};
+  size_t faces = 20;
+  for (; count == 2 && faces < n[1] && r->levels < ABBE_SPHERE_MESH_MOST_LEVELS; faces *= 4)
+    r->levels++;
+  if (count == 2 && faces == n[1] && n[1] > 20) {
+    r->kind = ABBE_REGION_GEODESIC;
+  } else if (count == 3 && n[1] == n[2]) {
+    r->kind = ABBE_REGION_OCTAHEDRAL;
+    r->side = n[1];
+  } else {
+    fprintf(stderr,
+            "%s: --shells '%s': shells and their cells, such as 24x5120 (80, 320, 1280, 5120, "
+            "20480 or 81920 triangles) or 24x72x72 (texels)\n",
+            q->program, text);
+    exit(ABBE_EXIT_USAGE);
+  }
+}
+
+static error_t parse_work(int key, char *text, request *q) {
+  abbe_volume_fill_desc *d = &q->desc;
+  const char *p = q->program;
+  switch (key) {
+  case OPTION_PHOTONS:
+    d->photons = abbe_command_count(p, "--photons", text, 1, ABBE_VOLUME_FILL_MOST_PHOTONS);
+    return 0;
+  case OPTION_PASSES:
+    d->passes = abbe_command_count(p, "--passes", text, 1, ABBE_VOLUME_FILL_MOST_PASSES);
+    return 0;
+  case OPTION_UNTIL_ERROR:
+    d->until_error = abbe_command_number(p, "--until-error", text, 1e-6, 1);
+    return 0;
+  case OPTION_RANGE:
+    abbe_command_range(p, "--range", text, &d->min_nm, &d->max_nm);
+    return 0;
+  case OPTION_SEED:
+    d->seed = (uint32_t)abbe_command_count(p, "--seed", text, 0, UINT32_MAX);
+    return 0;
+  case OPTION_THREADS:
+    d->threads = abbe_command_count(p, "--threads", text, 1, 256);
+    return 0;
+  case OPTION_MATERIALS:
+    q->materials = text;
+    return 0;
+  default:
+    return abbe_scene_input_take(&q->changes, key, text, p);
+  }
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  request *q = state->input;
+  abbe_volume_fill_desc *d = &q->desc;
+  switch (key) {
+  case 'o':
+    q->out = abbe_command_target(state->name, "-o", text, ".exr");
+    return 0;
+  case OPTION_JSON:
+    q->json = true;
+    return 0;
+  case 'q':
+    q->quiet = true;
+    return 0;
+  case OPTION_OBJECT:
+    q->object = text;
+    return 0;
+  case OPTION_LIGHT:
+    q->light = text;
+    return 0;
+  case OPTION_NODES:
+    d->nodes = abbe_command_count(q->program, "--nodes", text, 1, ABBE_LIGHT_NODES_MOST);
+    return 0;
+  case OPTION_HARMONICS:
+    d->degree = abbe_command_count(q->program, "--sh", text, 1, ABBE_LIGHT_HARMONICS_MOST);
+    return 0;
+  case OPTION_SHELLS:
+    take_shells(q, text);
+    return 0;
+  case OPTION_GRID:
+    d->region = (abbe_region_desc){
+        .kind = ABBE_REGION_GRID,
+        .side = abbe_command_count(q->program, "--grid", text, 2, ABBE_REGION_MOST_SIDE)};
+    return 0;
+  case OPTION_RADII:
+    q->radii = abbe_command_number(q->program, "--radii", text, 1.1, 1000);
+    return 0;
+  case OPTION_PRINTED:
+    d->kind = ABBE_VOLUME_PRINTED;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (q->scene != NULL) argp_error(state, "one scene at a time: what is '%s'?", text);
+    q->scene = text;
+    return 0;
+  case ARGP_KEY_END:
+    if (q->scene == NULL) argp_error(state, "of which scene? Try scenes/sphere.yaml");
+    if (q->out == NULL) argp_error(state, "where to? Give -o FILE.exr");
+    return 0;
+  default:
+    return parse_work(key, text, q);
+  }
+}
+
+static abbe_result find_object(const request *q, const abbe_scene *scene, size_t *out,
+                               abbe_error *error) {
+  const char *names[ABBE_SCENE_MAX_OBJECTS];
+  size_t count = 0;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    if (abbe_object_kind_of(&scene->object[i]) == ABBE_OBJECT_RECEIVER) continue;
+    names[count++] = scene->object[i].name;
+    if (q->object == NULL || strcmp(q->object, scene->object[i].name) == 0) *out = i;
+    if (q->object != NULL && *out == i) return ABBE_OK;
+  }
+  if (q->object == NULL && count == 1) return ABBE_OK;
+  if (q->object == NULL)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: %zu objects bend light; say of which: --object NAME", q->scene,
+                          count);
+  const char *near = abbe_nearest_word(q->object, names, (int)count);
+  return abbe_error_set(error, ABBE_NOT_FOUND, "%s: no object '%s' bends light%s%s%s", q->scene,
+                        q->object, near ? "; did you mean '" : "", near ? near : "",
+                        near ? "'?" : "");
+}
+
+static abbe_result fill(request *q, const abbe_scene *scene, abbe_caustic_volume *volume,
+                        abbe_volume_fill_statistics *done, abbe_error *error) {
+  abbe_progress progress;
+  abbe_volume_body body;
+  q->desc.object = (size_t)-1;
+  abbe_result result = find_object(q, scene, &q->desc.object, error);
+  if (result == ABBE_OK && q->light != NULL)
+    result = abbe_scene_find_light(scene, q->light, &q->desc.light, error);
+  if (result == ABBE_OK && q->radii > 0) {
+    result = abbe_volume_body_make(&scene->object[q->desc.object], &body, error);
+    q->desc.region.outer = q->radii * body.radius;
+  }
+  if (result != ABBE_OK) return result;
+  q->desc.progress = abbe_progress_update;
+  q->desc.user = &progress;
+  q->desc.stop = abbe_progress_stopped();
+  abbe_progress_begin(&progress, "volume", q->quiet);
+  result = abbe_volume_fill(scene, &q->desc, volume, done, error);
+  abbe_progress_end(&progress);
+  return result;
+}
+
+static double file_bytes(const char *path) {
+  struct stat s;
+  return stat(path, &s) == 0 ? (double)s.st_size : 0;
+}
+
+static void summarise(const request *q, const abbe_caustic_volume *v,
+                      const abbe_volume_fill_statistics *s) {
+  const double nodes = (double)v->nodes.count;
+  fprintf(stderr,
+          "%s: %zu node%s of %zu cells; %.3g photons and %.3g s a node, relative error %.2g; %.4g "
+          "MB in memory, %.4g on disk\n",
+          v->body.name, v->nodes.count, v->nodes.count > 1 ? "s" : "", v->region.cells,
+          (double)s->photons / nodes, s->seconds / nodes, s->error,
+          1e-6 * (double)abbe_caustic_volume_bytes(v), 1e-6 * file_bytes(q->out));
+  if (s->outflow[1] > 0)
+    fprintf(stderr, "flux out through the shells: %.5g to %.5g of what left the object\n",
+            s->outflow[0], s->outflow[1]);
+}
+
+static abbe_result print_json(const request *q, const abbe_caustic_volume *v,
+                              const abbe_volume_fill_statistics *s, abbe_error *error) {
+  cJSON *root = cJSON_CreateObject();
+  const struct {
+    const char *name;
+    double value;
+  } all[] = {
+      {"nodes", (double)v->nodes.count},  {"cells", (double)v->region.cells},
+      {"radius_m", v->body.radius},       {"photons", (double)s->photons},
+      {"passes", (double)s->passes},      {"seconds", s->seconds},
+      {"relative_error", s->error},       {"bytes_memory", (double)abbe_caustic_volume_bytes(v)},
+      {"bytes_disk", file_bytes(q->out)}, {"reached_w", s->ledger.reached},
+      {"missed_w", s->ledger.missed},     {"absorbed_w", s->ledger.absorbed},
+      {"lost_w", s->ledger.lost},         {"outflow_least", s->outflow[0]},
+      {"outflow_greatest", s->outflow[1]}};
+  bool made = cJSON_AddStringToObject(root, "file", q->out) != NULL &&
+              cJSON_AddStringToObject(root, "object", v->body.name) != NULL;
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+    made = made && cJSON_AddNumberToObject(root, all[i].name, all[i].value) != NULL;
+  const abbe_result result = abbe_command_print_json(made ? root : NULL, error);
+  cJSON_Delete(root);
+  return result;
+}
+
+static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
+  abbe_caustic_volume volume = {0};
+  abbe_volume_fill_statistics done;
+  abbe_result result = fill(q, scene, &volume, &done, error);
+  if (result == ABBE_OK) result = abbe_volume_file_write(q->out, &volume, error);
+  if (result == ABBE_OK && !q->quiet) summarise(q, &volume, &done);
+  if (result == ABBE_OK && q->json) result = print_json(q, &volume, &done, error);
+  abbe_caustic_volume_free(&volume);
+  return result;
+}
+
+int abbe_command_volume(int argc, char **argv) {
+  static const struct argp parser = {
+      .options = options,
+      .parser = parse,
+      .args_doc = "SCENE.yaml",
+      .doc =
+          "Computes an object's caustics beforehand: the light that it sends to the space around "
+          "it, for light from many directions. 'abbe render --transport volume' then looks them "
+          "up, wherever the object and the light are moved to.\v"
+          "Examples:\n"
+          "  abbe volume scenes/sphere.yaml -o sphere-volume.exr\n"
+          "  abbe volume scenes/prism.yaml -o prism-volume.exr --nodes 642 --shells 24x48x48\n"
+          "  abbe volume scenes/ring.yaml -o ring-volume.exr --grid 64 --until-error 0.02\n"
+          "  abbe volume scenes/sphere.yaml -o printed.exr --nodes 162 --printed\n"
+          "  abbe render scenes/sphere.yaml --png sphere.png --transport volume --volume "
+          "sphere-volume.exr\n",
+  };
+  request q = {.program = argv[0]};
+  abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &q);
+  abbe_error error = {0};
+  abbe_scene scene = {0};
+  abbe_result result = abbe_command_check_targets(&q.out, 1, &error);
+  if (result == ABBE_OK)
+    result = abbe_scene_input_load_with(argv[0], q.scene, q.materials, &q.changes, &scene, &error);
+  if (result == ABBE_OK) result = run(&q, &scene, &error);
+  abbe_scene_free(&scene);
+  return abbe_command_end(q.program, result, &error);
+}

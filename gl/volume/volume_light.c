@@ -1,0 +1,149 @@
+#include "gl/volume/volume_light.h"
+
+#include "scenes/geometry/vector.h"
+#include "scenes/volume/caustic_volume.h"
+#include "scenes/volume/half.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { UNIT = 3 }; /* that no pass of the camera's has */
+
+/* Words of a cell: nine halves and a spare one; three bytes and a spare one. */
+static size_t words_of(const abbe_caustic_volume *v) {
+  return v->kind == ABBE_VOLUME_PRINTED ? 1 : 5;
+}
+
+static void pack_node(const abbe_caustic_volume *v, size_t node, uint32_t *out) {
+  const size_t channels = abbe_caustic_volume_channels(v), words = words_of(v);
+  const uint16_t *value = v->value + node * v->region.cells * channels;
+  for (size_t i = 0; i < v->region.cells; i++, value += channels, out += words) {
+    memset(out, 0, words * sizeof *out);
+    for (size_t c = 0; c < channels; c++)
+      if (v->kind == ABBE_VOLUME_PRINTED)
+        out[0] |= (uint32_t)abbe_half_value(value[c]) << 8 * c;
+      else
+        out[c / 2] |= (uint32_t)value[c] << 16 * (c % 2);
+  }
+}
+
+/* The sum of all blocks by their weights, as halves. */
+static void pack_sum(const abbe_caustic_volume *v, const abbe_volume_sight *sight, uint32_t *out) {
+  const size_t each = v->region.cells * 9;
+  for (size_t i = 0; i < v->region.cells; i++, out += 5)
+    for (size_t c = 0; c < 9; c++) {
+      double sum = 0;
+      for (size_t k = 0; k < sight->count; k++)
+        sum += sight->weight[k] * abbe_half_value(v->value[sight->block[k] * each + 9 * i + c]);
+      out[c / 2] |= (uint32_t)abbe_half_of(sum) << 16 * (c % 2);
+    }
+}
+
+/* Turned into the body's coordinates, and there into the node's light. */
+static void join_turns(const abbe_volume_place *place, const double turn[9], float out[9]) {
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      double sum = 0;
+      for (int k = 0; k < 3; k++) sum += turn[3 * i + k] * place->turn[3 * j + k];
+      out[3 * j + i] = (float)sum;
+    }
+}
+
+/* Towards the light, in the world; what unit power brings to the centre, across the beam. */
+static double look_at_light(const abbe_light *light, const double centre[3], double to_light[3]) {
+  double distance = 1;
+  if (light->kind == ABBE_LIGHT_DIRECTIONAL) {
+    for (int k = 0; k < 3; k++) to_light[k] = -light->direction[k];
+  } else {
+    abbe_vector_subtract(light->position, centre, to_light);
+    distance = abbe_vector_length(to_light);
+  }
+  abbe_vector_normalise(to_light);
+  const double away[3] = {-to_light[0], -to_light[1], -to_light[2]};
+  return abbe_light_profile(light, away) / (distance * distance);
+}
+
+static void sight_light(abbe_volume_light *v, const abbe_caustic_volume *volume,
+                        const abbe_volume_place *place, size_t light, uint32_t *values) {
+  const abbe_plan *plan = v->scene->plan;
+  double to_light[3], own[3];
+  abbe_volume_sight sight;
+  v->strength[light] =
+      (float)look_at_light(&v->scene->local->light[light], place->centre, to_light);
+  for (int k = 0; k < 3; k++)
+    own[k] = place->turn[k] * to_light[0] + place->turn[3 + k] * to_light[1] +
+             place->turn[6 + k] * to_light[2];
+  abbe_caustic_volume_look(volume, plan->desc.lookup, own, &sight);
+  const size_t block = volume->region.cells * words_of(volume);
+  const bool summed = volume->degree > 0;
+  for (size_t k = 0; k < (summed ? 1 : sight.count); k++) {
+    uint32_t *to = values + (3 * light + k) * block;
+    v->weight[3 * light + k] = summed ? 1 : (float)sight.weight[k];
+    join_turns(place, sight.turn[k], v->turn[3 * light + k]);
+    if (summed)
+      pack_sum(volume, &sight, to);
+    else
+      pack_node(volume, sight.block[k], to);
+  }
+}
+
+abbe_result abbe_volume_light_make(const abbe_gpu_scene *scene, abbe_volume_light *out,
+                                   abbe_error *error) {
+  const abbe_plan *plan = scene->plan;
+  *out = (abbe_volume_light){0};
+  if (!plan->volume) return ABBE_OK;
+  const abbe_caustic_volume *volume = plan->desc.volume;
+  const size_t block = volume->region.cells * words_of(volume), lights = plan->light_view_count;
+  const bool table = volume->region.desc.kind == ABBE_REGION_GEODESIC;
+  const size_t side = table ? volume->region.mesh.table_side : 0;
+  const size_t count = 3 * lights * block + side * side;
+  abbe_volume_place place;
+  abbe_result result = abbe_volume_body_find(
+      &volume->body, &scene->local->object[plan->refractor_object[0]], &place, error);
+  if (result != ABBE_OK) return result;
+  uint32_t *values = calloc(count, sizeof *values);
+  if (values == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a volume's nodes");
+  out->scene = scene;
+  for (int k = 0; k < 3; k++) out->centre[k] = (float)place.centre[k];
+  for (size_t i = 0; i < lights; i++) sight_light(out, volume, &place, i, values);
+  if (table)
+    memcpy(values + 3 * lights * block, volume->region.mesh.table, side * side * sizeof *values);
+  result = abbe_gpu_make_buffer(scene->gpu, count * sizeof *values, values, &out->cells, error);
+  free(values);
+  return result;
+}
+
+void abbe_volume_light_free(abbe_volume_light *v) {
+  if (v->scene == NULL) return;
+  abbe_gpu_drop_buffers(v->scene->gpu, 1, &v->cells);
+  *v = (abbe_volume_light){0};
+}
+
+void abbe_volume_light_set(const abbe_volume_light *v, GLuint program) {
+  if (v->scene == NULL) return;
+  abbe_gpu *gpu = v->scene->gpu;
+  const abbe_gl *gl = gpu->gl;
+  const abbe_plan *plan = v->scene->plan;
+  const abbe_caustic_volume *volume = plan->desc.volume;
+  const abbe_volume_region *r = &volume->region;
+  const GLsizei lights = (GLsizei)plan->light_view_count;
+  const bool shells = r->desc.kind != ABBE_REGION_GRID;
+  abbe_gpu_bind_texels(gpu, program, "volume_cells", UNIT, GL_R32UI, v->cells);
+  gl->UniformMatrix3fv(gl->GetUniformLocation(program, "volume_turn"), 3 * lights, GL_FALSE,
+                       &v->turn[0][0]);
+  gl->Uniform1fv(gl->GetUniformLocation(program, "volume_weight"), 3 * lights, v->weight);
+  gl->Uniform1fv(gl->GetUniformLocation(program, "volume_strength"), lights, v->strength);
+  gl->Uniform3f(gl->GetUniformLocation(program, "volume_centre"), v->centre[0], v->centre[1],
+                v->centre[2]);
+  abbe_gpu_set_float(gpu, program, "volume_inner", r->desc.inner);
+  abbe_gpu_set_float(gpu, program, "volume_outer", r->desc.outer);
+  abbe_gpu_set_float(gpu, program, "volume_shells",
+                     shells ? (double)r->rows / log(r->desc.outer / r->desc.inner) : 0);
+  abbe_gpu_set_float(gpu, program, "volume_byte", 255 * volume->byte);
+  abbe_gpu_set_int(gpu, program, "volume_side", (int)r->desc.side);
+  abbe_gpu_set_int(gpu, program, "volume_row", (int)r->row);
+  abbe_gpu_set_int(gpu, program, "volume_rows", (int)r->rows);
+  abbe_gpu_set_int(gpu, program, "volume_table", (int)r->mesh.table_side);
+}

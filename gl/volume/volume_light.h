@@ -1,0 +1,29 @@
+/* volume_light.h: caustics that were computed beforehand, on the device: the values of the nodes
+ * that lights are looked up at, and what a shader needs to look there. Nothing is traced.
+ * Internal to gl/.
+ */
+#ifndef ABBE_GL_VOLUME_VOLUME_LIGHT_H
+#define ABBE_GL_VOLUME_VOLUME_LIGHT_H
+
+#include "gl/scene/gpu_scene.h"
+
+enum { ABBE_VOLUME_LIGHT_SIGHTS = 3 * ABBE_SCENE_MAX_LIGHTS };
+
+typedef struct abbe_volume_light {
+  const abbe_gpu_scene *scene; /* NULL: the plan has no volume */
+  GLuint cells;                /* values of each light's nodes, then the table of directions */
+  float centre[3];
+  float turn[ABBE_VOLUME_LIGHT_SIGHTS][9]; /* of places into a node's light, column-major */
+  float weight[ABBE_VOLUME_LIGHT_SIGHTS];  /* 0: there is no such node */
+  float strength[ABBE_SCENE_MAX_LIGHTS];   /* irradiance of unit power at the centre */
+} abbe_volume_light;
+
+/* For the lights and the object where they are now; values are handed over for their nodes alone.
+ * ABBE_GL, ABBE_NO_MEMORY, errors of abbe_volume_body_find. */
+abbe_result abbe_volume_light_make(const abbe_gpu_scene *scene, abbe_volume_light *out,
+                                   abbe_error *error);
+void abbe_volume_light_free(abbe_volume_light *volume);
+/* Bound, and told to the program that is in use; without a volume nothing is done. */
+void abbe_volume_light_set(const abbe_volume_light *volume, GLuint program);
+
+#endif

@@ -1,0 +1,107 @@
+/* caustic_volume.h: the light that an object sends to the space around it, for directional lights
+ * from many directions, computed beforehand: for each light node and cell the vector irradiance of
+ * unit light; or, as the method was printed, the share of the beam's light
+ * [WymanHansenShirley2003].
+ *
+ * All in the object's own coordinates: places from its centre in m, as it stood when the volume was
+ * made. It holds numbers; validation/volume/volume_fill.h finds them out, volume_file.h stores
+ * them.
+ */
+#ifndef ABBE_SCENES_VOLUME_CAUSTIC_VOLUME_H
+#define ABBE_SCENES_VOLUME_CAUSTIC_VOLUME_H
+
+#include "scenes/volume/light_harmonics.h"
+#include "scenes/volume/volume_body.h"
+#include "scenes/volume/volume_region.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum abbe_volume_kind {
+  /* F of X, Y and Z, of light with an irradiance of 1 across its beam whose white has Y = 1: what
+   * lies before it gets -n . F, where all light comes from the front. */
+  ABBE_VOLUME_VECTOR,
+  /* R, G and B (linear Rec.709 of equal white) in bytes: light on a surface that faces the object's
+   * centre, of that of the beam. */
+  ABBE_VOLUME_PRINTED
+} abbe_volume_kind;
+
+/* Where light from between nodes is looked up: at the node nearest to it; at the three around it;
+ * there, about the axes that bring the light to each of them. */
+#define ABBE_VOLUME_LOOKUPS(X)                                                                     \
+  X(AUTO, "auto") X(NEAREST, "nearest") X(BLEND, "blend") X(TURN, "turn")
+typedef enum abbe_volume_lookup {
+#define ABBE_VOLUME_LOOKUP_ENUM(code, name) ABBE_VOLUME_LOOKUP_##code,
+  ABBE_VOLUME_LOOKUPS(ABBE_VOLUME_LOOKUP_ENUM)
+#undef ABBE_VOLUME_LOOKUP_ENUM
+      ABBE_VOLUME_LOOKUP_COUNT
+} abbe_volume_lookup;
+
+typedef struct abbe_caustic_volume {
+  abbe_volume_kind kind;
+  abbe_volume_body body;
+  abbe_volume_region region;
+  abbe_light_nodes nodes;
+  size_t degree;   /* above 0: harmonics of the light's direction, to that degree, in place of
+                      values at the nodes */
+  double white[3]; /* XYZ of the light that it was made for, Y = 1 */
+  double min_nm, max_nm;
+  double byte;     /* PRINTED: what a byte of 1 stands for */
+  double error;    /* relative standard error of what was summed up; 0: not known */
+  uint16_t *value; /* halves [blocks][region.cells][channels] */
+} abbe_caustic_volume;
+
+/* One for each node or coefficient. */
+static inline size_t abbe_caustic_volume_blocks(const abbe_caustic_volume *v) {
+  return v->degree > 0 ? abbe_light_harmonics_count(v->degree) : v->nodes.count;
+}
+
+/* 9: F.x, F.y, F.z of X, then of Y, then of Z; printed 3. */
+static inline size_t abbe_caustic_volume_channels(const abbe_caustic_volume *v) {
+  return v->kind == ABBE_VOLUME_PRINTED ? 3 : 9;
+}
+
+/* Room for the values of a body, a region and nodes that are there, all 0: ABBE_NO_MEMORY;
+ * ABBE_INVALID_ARGUMENT for more than ABBE_CAUSTIC_VOLUME_MOST of them. */
+#define ABBE_CAUSTIC_VOLUME_MOST ((size_t)1 << 31)
+abbe_result abbe_caustic_volume_allocate(abbe_caustic_volume *volume, abbe_error *error);
+void abbe_caustic_volume_free(abbe_caustic_volume *volume);
+size_t abbe_caustic_volume_bytes(const abbe_caustic_volume *volume); /* of values, in memory */
+
+/* Values at nodes become coefficients of harmonics to that degree, 1 to ABBE_LIGHT_HARMONICS_MOST,
+ * by least squares. ABBE_INVALID_ARGUMENT for a printed volume, and as abbe_light_harmonics_fit. */
+abbe_result abbe_caustic_volume_project(abbe_caustic_volume *volume, size_t degree,
+                                        abbe_error *error);
+
+/* How a lookup that is left open is done: by turns of a ball, which they are exact for, and where
+ * there is one node; else by three nodes, printed too. */
+abbe_volume_lookup abbe_caustic_volume_resolve(const abbe_caustic_volume *volume,
+                                               abbe_volume_lookup lookup);
+
+/* Which blocks light from unit direction to_light is looked up at, by their weights: of nodes at
+ * most three, with the turn of each into its node's light (row-major; the unit matrix but of TURN);
+ * of harmonics all, with none. */
+typedef struct abbe_volume_sight {
+  size_t count;
+  size_t block[ABBE_LIGHT_HARMONICS_MOST_COUNT];
+  double weight[ABBE_LIGHT_HARMONICS_MOST_COUNT];
+  double turn[3][9];
+} abbe_volume_sight;
+void abbe_caustic_volume_look(const abbe_caustic_volume *volume, abbe_volume_lookup lookup,
+                              const double to_light[3], abbe_volume_sight *out);
+
+/* Vector irradiance at p of light of unit irradiance: f[0] of X, f[1] of Y, f[2] of Z, interpolated
+ * between cells; beyond the region that of its rim on the way there, thinned by the square of the
+ * distance. ABBE_VOLUME_VECTOR alone. */
+void abbe_caustic_volume_flux(const abbe_caustic_volume *volume, const abbe_volume_sight *sight,
+                              const double p[3], double f[3][3]);
+/* Of a printed one: R, G and B of the nearest cell, beyond the region of its rim; before the cosine
+ * between the receiver's normal and -p. */
+void abbe_caustic_volume_ratio(const abbe_caustic_volume *volume, const abbe_volume_sight *sight,
+                               const double p[3], double rgb[3]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

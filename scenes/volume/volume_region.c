@@ -1,0 +1,242 @@
+#include "scenes/volume/volume_region.h"
+
+#include "scenes/geometry/vector.h"
+
+#include <stdlib.h>
+
+/* ---- making ---- */
+
+static abbe_result check(const abbe_region_desc *d, abbe_error *error) {
+  const bool grid = d->kind == ABBE_REGION_GRID;
+  if (!(d->outer > 0) || !isfinite(d->outer) ||
+      (!grid && (!(d->inner > 0) || !(d->inner < d->outer))))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a region from %g to %g m holds no space",
+                          grid ? 0 : d->inner, d->outer);
+  if (grid && (d->side < 2 || d->side > ABBE_REGION_MOST_SIDE))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a grid of %zu cells a side; it may be 2 to %d", d->side,
+                          ABBE_REGION_MOST_SIDE);
+  if (!grid && (d->shells < 1 || d->shells > ABBE_REGION_MOST_SHELLS))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%zu shells; it may be 1 to %d", d->shells,
+                          ABBE_REGION_MOST_SHELLS);
+  return ABBE_OK;
+}
+
+static abbe_result make_shells(abbe_volume_region *r, abbe_error *error) {
+  const abbe_region_desc *d = &r->desc;
+  const bool octahedral = d->kind == ABBE_REGION_OCTAHEDRAL;
+  abbe_result result = octahedral ? abbe_sphere_mesh_octahedral(d->side, &r->mesh, error)
+                                  : abbe_sphere_mesh_geodesic(d->levels, &r->mesh, error);
+  if (result != ABBE_OK) return result;
+  r->rows = d->shells;
+  r->row = octahedral ? d->side * d->side : r->mesh.face_count;
+  r->radius = calloc(r->rows + 1, sizeof *r->radius);
+  r->solid_angle = calloc(r->row, sizeof *r->solid_angle);
+  if (r->radius == NULL || r->solid_angle == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for shells");
+  for (size_t i = 0; i <= r->rows; i++)
+    r->radius[i] = d->inner * pow(d->outer / d->inner, (double)i / (double)r->rows);
+  r->radius[r->rows] = d->outer;
+  for (size_t f = 0; f < r->mesh.face_count; f++)
+    r->solid_angle[octahedral ? f / 2 : f] += abbe_sphere_mesh_area(&r->mesh, f);
+  return ABBE_OK;
+}
+
+abbe_result abbe_volume_region_make(const abbe_region_desc *desc, abbe_volume_region *out,
+                                    abbe_error *error) {
+  ABBE_REQUIRE(desc && out, error);
+  *out = (abbe_volume_region){.desc = *desc};
+  abbe_result result = check(desc, error);
+  if (result == ABBE_OK && desc->kind == ABBE_REGION_GRID) {
+    out->rows = desc->side;
+    out->row = desc->side * desc->side;
+  } else if (result == ABBE_OK) {
+    result = make_shells(out, error);
+  }
+  out->cells = out->row * out->rows;
+  if (result == ABBE_OK && out->cells > ABBE_REGION_MOST_CELLS)
+    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%zu cells are more than %zu", out->cells,
+                            ABBE_REGION_MOST_CELLS);
+  if (result != ABBE_OK) abbe_volume_region_free(out);
+  return result;
+}
+
+void abbe_volume_region_free(abbe_volume_region *r) {
+  if (r == NULL) return;
+  abbe_sphere_mesh_free(&r->mesh);
+  free(r->radius);
+  free(r->solid_angle);
+  *r = (abbe_volume_region){0};
+}
+
+/* ---- places ---- */
+
+static double step_of(const abbe_volume_region *r) {
+  return 2 * r->desc.outer / (double)r->desc.side;
+}
+
+static size_t cell_of_face(const abbe_volume_region *r, size_t face) {
+  return r->desc.kind == ABBE_REGION_OCTAHEDRAL ? face / 2 : face;
+}
+
+/* Which shell, as a number: 0 at the inside of the first, `rows` at the outside of the last. */
+static double shell_of(const abbe_volume_region *r, double radius) {
+  return (double)r->rows * log(radius / r->desc.inner) / log(r->desc.outer / r->desc.inner);
+}
+
+static bool find(const abbe_volume_region *r, const double p[3], bool by_table, size_t *cell) {
+  if (r->desc.kind == ABBE_REGION_GRID) {
+    size_t at[3];
+    for (int k = 0; k < 3; k++) {
+      const double x = (p[k] + r->desc.outer) / step_of(r);
+      if (!(x >= 0) || !(x < (double)r->desc.side)) return false;
+      at[k] = (size_t)x;
+    }
+    *cell = (at[2] * r->desc.side + at[1]) * r->desc.side + at[0];
+    return true;
+  }
+  const double radius = abbe_vector_length(p);
+  if (!(radius >= r->desc.inner) || !(radius < r->desc.outer)) return false;
+  const double shell = shell_of(r, radius);
+  size_t row = shell > 0 ? (size_t)shell : 0;
+  if (row >= r->rows) row = r->rows - 1;
+  by_table = by_table && r->desc.kind == ABBE_REGION_GEODESIC;
+  *cell = row * r->row + cell_of_face(r, by_table ? abbe_sphere_mesh_look_up(&r->mesh, p)
+                                                  : abbe_sphere_mesh_find(&r->mesh, p));
+  return true;
+}
+
+bool abbe_volume_region_find(const abbe_volume_region *r, const double p[3], size_t *cell) {
+  return find(r, p, false, cell);
+}
+
+bool abbe_volume_region_look_up(const abbe_volume_region *r, const double p[3], size_t *cell) {
+  return find(r, p, true, cell);
+}
+
+void abbe_volume_region_middle(const abbe_volume_region *r, size_t cell, double p[3]) {
+  const size_t row = cell / r->row, in = cell % r->row, side = r->desc.side;
+  if (r->desc.kind == ABBE_REGION_GRID) {
+    const size_t at[3] = {in % side, in / side, row};
+    for (int k = 0; k < 3; k++) p[k] = ((double)at[k] + 0.5) * step_of(r) - r->desc.outer;
+    return;
+  }
+  if (r->desc.kind == ABBE_REGION_OCTAHEDRAL) {
+    const double uv[2] = {2 * ((double)(in % side) + 0.5) / (double)side - 1,
+                          2 * ((double)(in / side) + 0.5) / (double)side - 1};
+    abbe_octahedral_direction(uv, p);
+  } else {
+    for (int k = 0; k < 3; k++) {
+      p[k] = 0;
+      for (int c = 0; c < 3; c++) p[k] += r->mesh.corner[r->mesh.face[in][c]][k];
+    }
+    abbe_vector_normalise(p);
+  }
+  const double radius = 0.5 * (r->radius[row] + r->radius[row + 1]);
+  for (int k = 0; k < 3; k++) p[k] *= radius;
+}
+
+double abbe_volume_region_volume(const abbe_volume_region *r, size_t cell) {
+  if (r->desc.kind == ABBE_REGION_GRID) return pow(step_of(r), 3);
+  const size_t row = cell / r->row;
+  return r->solid_angle[cell % r->row] * (pow(r->radius[row + 1], 3) - pow(r->radius[row], 3)) / 3;
+}
+
+/* Half the sum of what d meets of all faces of a triangle's part of a shell, of which sides that
+ * two triangles of a cell share are not any. */
+static double across_face(const abbe_volume_region *r, size_t row, size_t face, const double d[3]) {
+  const double low = r->radius[row], high = r->radius[row + 1];
+  const uint32_t *corner = r->mesh.face[face];
+  double across[3], sum = 0;
+  abbe_vector_triangle(r->mesh.corner[corner[0]], r->mesh.corner[corner[1]],
+                       r->mesh.corner[corner[2]], across);
+  sum += 0.5 * fabs(abbe_vector_dot(across, d)) * (low * low + high * high);
+  for (int k = 0; k < 3; k++) {
+    if (cell_of_face(r, r->mesh.next[face][k]) == cell_of_face(r, face)) continue;
+    abbe_vector_cross(r->mesh.corner[corner[k]], r->mesh.corner[corner[(k + 1) % 3]], across);
+    sum += 0.5 * fabs(abbe_vector_dot(across, d)) * (high * high - low * low);
+  }
+  return 0.5 * sum;
+}
+
+double abbe_volume_region_across(const abbe_volume_region *r, size_t cell, const double d[3]) {
+  const size_t row = cell / r->row, in = cell % r->row;
+  if (r->desc.kind == ABBE_REGION_GRID)
+    return pow(step_of(r), 2) * (fabs(d[0]) + fabs(d[1]) + fabs(d[2]));
+  if (r->desc.kind == ABBE_REGION_GEODESIC) return across_face(r, row, in, d);
+  return across_face(r, row, 2 * in, d) + across_face(r, row, 2 * in + 1, d);
+}
+
+/* ---- between cells ---- */
+
+/* Below and above x, cells' middles being at 0.5, 1.5 ..., and the share of the second. */
+static double split(double x, size_t count, size_t at[2]) {
+  const double most = (double)count - 1, y = fmin(fmax(x - 0.5, 0), most);
+  at[0] = (size_t)y;
+  at[1] = at[0] + 1 < count ? at[0] + 1 : at[0];
+  return y - (double)at[0];
+}
+
+/* Texel (i, j) of the octahedral map, which may lie one beyond its rim. */
+static size_t fold(size_t side, long i, long j) {
+  const long n = (long)side;
+  if (i < 0 || i >= n) {
+    i = i < 0 ? 0 : n - 1;
+    j = n - 1 - j;
+  }
+  if (j < 0 || j >= n) {
+    j = j < 0 ? 0 : n - 1;
+    i = n - 1 - i;
+  }
+  return (size_t)j * side + (size_t)i;
+}
+
+static size_t between_octahedral(const abbe_volume_region *r, const double p[3], size_t in[4],
+                                 double weight[4]) {
+  double uv[2], part[2];
+  long at[2];
+  abbe_octahedral_place(p, uv);
+  for (int k = 0; k < 2; k++) {
+    const double x = (uv[k] + 1) / 2 * (double)r->desc.side - 0.5;
+    at[k] = (long)floor(x);
+    part[k] = x - floor(x);
+  }
+  for (size_t k = 0; k < 4; k++) {
+    const bool right = k % 2 != 0, up = k / 2 != 0;
+    in[k] = fold(r->desc.side, at[0] + right, at[1] + up);
+    weight[k] = (right ? part[0] : 1 - part[0]) * (up ? part[1] : 1 - part[1]);
+  }
+  return 4;
+}
+
+static size_t between_grid(const abbe_volume_region *r, const double p[3], size_t cell[8],
+                           double weight[8]) {
+  size_t at[3][2];
+  double part[3];
+  for (int k = 0; k < 3; k++)
+    part[k] = split((p[k] + r->desc.outer) / step_of(r), r->desc.side, at[k]);
+  for (size_t i = 0; i < 8; i++) {
+    cell[i] = (at[2][i / 4] * r->desc.side + at[1][i / 2 % 2]) * r->desc.side + at[0][i % 2];
+    weight[i] = 1;
+    for (size_t k = 0; k < 3; k++) weight[i] *= (i >> k & 1) ? part[k] : 1 - part[k];
+  }
+  return 8;
+}
+
+size_t abbe_volume_region_between(const abbe_volume_region *r, const double p[3], size_t cell[8],
+                                  double weight[8]) {
+  if (r->desc.kind == ABBE_REGION_GRID) return between_grid(r, p, cell, weight);
+  size_t row[2], in[4] = {0}, count = 1;
+  double share[4] = {1};
+  const double radius = fmax(abbe_vector_length(p), 1e-300);
+  const double part = split(shell_of(r, radius), r->rows, row);
+  if (r->desc.kind == ABBE_REGION_OCTAHEDRAL)
+    count = between_octahedral(r, p, in, share);
+  else
+    in[0] = abbe_sphere_mesh_look_up(&r->mesh, p);
+  for (size_t i = 0; i < 2 * count; i++) {
+    cell[i] = row[i / count] * r->row + in[i % count];
+    weight[i] = share[i % count] * (i < count ? 1 - part : part);
+  }
+  return 2 * count;
+}

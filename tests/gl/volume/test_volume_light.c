@@ -1,0 +1,270 @@
+/* Caustics looked up in volumes: every pixel of a floor has what the processor finds there, however
+ * the object and the light are moved; what a volume does not hold is refused. */
+#include "tests/gl/frame.h"
+
+#include "colorimetry/rgb_space.h"
+#include "scenes/geometry/transform.h"
+#include "scenes/geometry/vector.h"
+#include "scenes/object_motion.h"
+#include "validation/volume/volume_fill.h"
+
+#define PI 3.14159265358979323846
+
+static const char ball[] = CAMERA SUN FLOOR
+    "- {name: orb, shape: sphere, radius: 0.1, levels: 4, material: crown, transform: [{translate: "
+    "[0, 0, 0.15]}]}\n";
+static const char wedge[] = CAMERA SUN FLOOR
+    "- {name: wedge, shape: prism, apex: 50, side: 0.2, length: 0.2, material: crown, transform: "
+    "[{translate: [0, 0, 0.2]}]}\n";
+
+static const abbe_region_desc regions[] = {
+    {.kind = ABBE_REGION_GRID, .side = 16},
+    {.kind = ABBE_REGION_GEODESIC, .levels = 3, .shells = 8},
+    {.kind = ABBE_REGION_OCTAHEDRAL, .side = 16, .shells = 8}};
+
+static void make_volume(const abbe_scene *scene, abbe_volume_kind kind, size_t region, size_t nodes,
+                        abbe_caustic_volume *out) {
+  abbe_error error = {0};
+  abbe_volume_fill_statistics done;
+  const abbe_volume_fill_desc desc = {.object = 1,
+                                      .kind = kind,
+                                      .nodes = nodes,
+                                      .region = regions[region],
+                                      .photons = 8192,
+                                      .passes = 1,
+                                      .threads = 2};
+  assert_ok(abbe_volume_fill(scene, &desc, out, &done, &error), &error);
+}
+
+/* Where pixel i of the picture sees the floor; false where the object may be in the way. */
+static bool see_floor(const abbe_scene *scene, size_t width, size_t height, size_t i,
+                      const abbe_volume_place *place, double radius, double p[3]) {
+  const abbe_camera *c = &scene->camera;
+  double forward[3], right[3], up[3], d[3], to[3];
+  abbe_vector_subtract(c->target, c->eye, forward);
+  abbe_vector_normalise(forward);
+  abbe_vector_cross(forward, c->up, right);
+  abbe_vector_normalise(right);
+  abbe_vector_cross(right, forward, up);
+  const double half = tan(c->fov_y_rad / 2);
+  const double x = (2 * ((double)(i % width) + 0.5) / (double)width - 1) * half * (double)width /
+                   (double)height,
+               y = (1 - 2 * ((double)(i / width) + 0.5) / (double)height) * half;
+  for (int k = 0; k < 3; k++) d[k] = forward[k] + x * right[k] + y * up[k];
+  if (!(d[2] < 0)) return false;
+  for (int k = 0; k < 3; k++) p[k] = c->eye[k] - c->eye[2] / d[2] * d[k];
+  if (fabs(p[0]) > 0.99 || fabs(p[1]) > 0.99) return false;
+  abbe_vector_normalise(d);
+  abbe_vector_subtract(place->centre, c->eye, to);
+  const double along = abbe_vector_dot(to, d);
+  return abbe_vector_dot(to, to) - along * along > 1.1 * radius * radius;
+}
+
+/* What the floor sends of a light, in ACEScg; printed in the light's own white. */
+static void oracle(const abbe_scene *scene, const abbe_caustic_volume *v, abbe_volume_lookup lookup,
+                   const abbe_volume_place *place, const double p[3], double rgb[3]) {
+  const abbe_light *light = &scene->light[0];
+  double from[3], to_light[3], own[3], at[3], matrix[9], xyz[3], f[3][3];
+  abbe_volume_sight sight;
+  double strength = light->power;
+  abbe_vector_subtract(p, place->centre, from);
+  for (int k = 0; k < 3; k++) to_light[k] = -light->direction[k];
+  if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
+    abbe_vector_subtract(light->position, place->centre, to_light);
+    strength /= abbe_vector_dot(to_light, to_light);
+    abbe_vector_normalise(to_light);
+  }
+  for (int k = 0; k < 3; k++) {
+    own[k] = at[k] = 0;
+    for (int j = 0; j < 3; j++) {
+      own[k] += place->turn[3 * j + k] * to_light[j];
+      at[k] += place->turn[3 * j + k] * from[j];
+    }
+  }
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
+  abbe_caustic_volume_look(v, lookup, own, &sight);
+  if (v->kind == ABBE_VOLUME_PRINTED) {
+    double ratio[3], white[3];
+    abbe_caustic_volume_ratio(v, &sight, at, ratio);
+    abbe_rgb_space_apply(matrix, v->white, white);
+    const double facing = fmax(-from[2] / abbe_vector_length(from), 0);
+    for (int k = 0; k < 3; k++) rgb[k] = 0.5 / PI * strength * facing * ratio[k] * white[k];
+    return;
+  }
+  abbe_caustic_volume_flux(v, &sight, at, f);
+  for (int c = 0; c < 3; c++) {
+    double down = 0; /* of F in the world */
+    for (int j = 0; j < 3; j++) down -= place->turn[6 + j] * f[c][j];
+    xyz[c] = 0.5 / PI * strength * fmax(down, 0);
+  }
+  abbe_rgb_space_apply(matrix, xyz, rgb);
+}
+
+/* Mean difference between the caustic of a frame and the oracle's, of the mean. */
+static double mean_difference(const abbe_scene *scene, const abbe_caustic_volume *v,
+                              abbe_volume_lookup lookup) {
+  enum { SIDE = 64 };
+  abbe_image picture = {0};
+  abbe_volume_place place;
+  abbe_error error = {0};
+  const bool printed = v->kind == ABBE_VOLUME_PRINTED;
+  const abbe_render_desc desc = {.profile = printed ? ABBE_PROFILE_WYMAN2003 : ABBE_PROFILE_DEFAULT,
+                                 .width = SIDE,
+                                 .height = SIDE,
+                                 .supersample = 1,
+                                 .adaptive = 1,
+                                 .aovs = true,
+                                 .transport = ABBE_TRANSPORT_VOLUME,
+                                 .volume = v,
+                                 .lookup = lookup};
+  assert_ok(abbe_volume_body_find(&v->body, &scene->object[1], &place, &error), &error);
+  abbe_renderer *renderer = make_renderer(scene, &desc);
+  draw_frame(renderer);
+  read_picture(renderer, true, &picture);
+  abbe_renderer_free(renderer);
+  const size_t first = abbe_image_find_channel(&picture, "caustic.R");
+  double off = 0, all = 0;
+  for (size_t i = 0; i < SIDE * SIDE; i++) {
+    double p[3], rgb[3];
+    if (!see_floor(scene, SIDE, SIDE, i, &place, v->body.radius, p)) continue;
+    oracle(scene, v, lookup, &place, p, rgb);
+    for (size_t k = 0; k < 3; k++) {
+      const double seen = (double)picture.data[i * picture.channels + first + k];
+      off += fabs(seen - rgb[k]);
+      all += fabs(rgb[k]);
+    }
+  }
+  assert_true(all > 0);
+  abbe_image_free(&picture);
+  return off / all;
+}
+
+/* Single precision finds another cell than double at its edges, once in a thousand places. */
+static void test_pixels_have_what_the_volume_holds(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  load_text(ball, &scene);
+  for (size_t region = 0; region < 3; region++)
+    for (int kind = 0; kind < 2; kind++) {
+      abbe_caustic_volume v;
+      make_volume(&scene, (abbe_volume_kind)kind, region, 12, &v);
+      for (int lookup = ABBE_VOLUME_LOOKUP_NEAREST; lookup < ABBE_VOLUME_LOOKUP_COUNT; lookup++)
+        assert_near(mean_difference(&scene, &v, (abbe_volume_lookup)lookup), 0, 0.004);
+      abbe_caustic_volume_free(&v);
+    }
+  abbe_scene_free(&scene);
+}
+
+/* The object turned and moved, the light a point elsewhere: the same volume. */
+static void test_objects_and_lights_move(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_caustic_volume v;
+  double turn[16], step[16];
+  static const double axis[3] = {0.3, 1, 0.2}, offset[3] = {0.05, 0.1, 0.12};
+  load_text(wedge, &scene);
+  make_volume(&scene, ABBE_VOLUME_VECTOR, 2, 12, &v);
+  abbe_transform_rotate(0.7, axis, turn);
+  abbe_transform_translate(offset, step);
+  abbe_transform_multiply(step, turn, turn);
+  assert_int_equal(abbe_object_move(&scene.object[1], turn, NULL), ABBE_OK);
+  for (int lookup = ABBE_VOLUME_LOOKUP_NEAREST; lookup < ABBE_VOLUME_LOOKUP_COUNT; lookup++)
+    assert_near(mean_difference(&scene, &v, (abbe_volume_lookup)lookup), 0, 0.004);
+  scene.light[0].kind = ABBE_LIGHT_POINT;
+  static const double there[3] = {-0.8, -0.4, 2.4};
+  memcpy(scene.light[0].position, there, sizeof there);
+  assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_BLEND), 0, 0.004);
+  assert_int_equal(abbe_caustic_volume_project(&v, 2, NULL), ABBE_OK);
+  assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_AUTO), 0, 0.004);
+  abbe_caustic_volume_free(&v);
+  abbe_scene_free(&scene);
+}
+
+/* A light that moves under a renderer draws what a renderer of its own draws there. */
+static void test_a_changed_light_is_as_one_made_anew(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_caustic_volume v;
+  abbe_image changed = {0}, anew = {0};
+  abbe_error error = {0};
+  load_text(ball, &scene);
+  make_volume(&scene, ABBE_VOLUME_VECTOR, 2, 42, &v);
+  abbe_render_desc desc = small_frame;
+  desc.volume = &v;
+  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  draw_frame(renderer);
+  scene.light[0].direction[0] = 0.6;
+  scene.light[0].direction[1] = 0;
+  scene.light[0].direction[2] = -0.8;
+  assert_ok(abbe_renderer_change(renderer, &scene, &desc, &error), &error);
+  draw_frame(renderer);
+  read_picture(renderer, false, &changed);
+  abbe_renderer_free(renderer);
+  renderer = make_renderer(&scene, &desc);
+  draw_frame(renderer);
+  read_picture(renderer, false, &anew);
+  assert_same_pixels(&changed, &anew);
+  abbe_image map = {0};
+  assert_int_equal(abbe_renderer_read_map(renderer, 0, true, &map, &error), ABBE_UNSUPPORTED);
+  abbe_renderer_free(renderer);
+  abbe_image_free(&changed);
+  abbe_image_free(&anew);
+  abbe_caustic_volume_free(&v);
+  abbe_scene_free(&scene);
+}
+
+static void refuse(const abbe_scene *scene, const abbe_render_desc *desc, abbe_result wanted,
+                   const char *part) {
+  abbe_plan plan;
+  abbe_error error = {0};
+  assert_int_equal(abbe_plan_make(scene, desc, &plan, &error), wanted);
+  assert_contains(error.text, part);
+}
+
+static void test_what_it_does_not_hold_is_refused(void **state) {
+  (void)state;
+  abbe_scene scene = {0}, two = {0};
+  abbe_caustic_volume v, printed;
+  load_text(ball, &scene);
+  load_text(CAMERA SUN FLOOR BALL("crown") BRICK("crown"), &two);
+  make_volume(&scene, ABBE_VOLUME_VECTOR, 0, 1, &v);
+  make_volume(&scene, ABBE_VOLUME_PRINTED, 0, 1, &printed);
+  abbe_render_desc d = {.transport = ABBE_TRANSPORT_VOLUME};
+  refuse(&scene, &d, ABBE_INVALID_ARGUMENT, "abbe volume");
+  d = (abbe_render_desc){.transport = ABBE_TRANSPORT_PHOTONS, .volume = &v};
+  refuse(&scene, &d, ABBE_INVALID_ARGUMENT, "photons");
+  d = (abbe_render_desc){.profile = ABBE_PROFILE_WYMAN2003, .volume = &v};
+  refuse(&scene, &d, ABBE_INVALID_ARGUMENT, "--printed");
+  d = (abbe_render_desc){.volume = &printed};
+  refuse(&scene, &d, ABBE_INVALID_ARGUMENT, "--printed");
+  d = (abbe_render_desc){.profile = ABBE_PROFILE_THESIS, .volume = &v};
+  refuse(&scene, &d, ABBE_INVALID_ARGUMENT, "thesis");
+  d = (abbe_render_desc){.lookup = ABBE_VOLUME_LOOKUP_BLEND};
+  refuse(&scene, &d, ABBE_INVALID_ARGUMENT, "lookup");
+  d = (abbe_render_desc){.volume = &v};
+  refuse(&two, &d, ABBE_UNSUPPORTED, "one object alone");
+  scene.light[0].kind = ABBE_LIGHT_POINT;
+  scene.light[0].position[2] = 0.9;
+  refuse(&scene, &d, ABBE_UNSUPPORTED, "far away");
+  scene.light[0].kind = ABBE_LIGHT_SPOT;
+  scene.light[0].position[2] = 3;
+  scene.light[0].cone_rad = 0.01;
+  refuse(&scene, &d, ABBE_UNSUPPORTED, "cone");
+  scene.light[0].kind = ABBE_LIGHT_DIRECTIONAL;
+  v.white[0] += 0.1;
+  refuse(&scene, &d, ABBE_UNSUPPORTED, "white");
+  abbe_caustic_volume_free(&v);
+  abbe_caustic_volume_free(&printed);
+  abbe_scene_free(&scene);
+  abbe_scene_free(&two);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_pixels_have_what_the_volume_holds),
+      cmocka_unit_test(test_objects_and_lights_move),
+      cmocka_unit_test(test_a_changed_light_is_as_one_made_anew),
+      cmocka_unit_test(test_what_it_does_not_hold_is_refused),
+  };
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}

@@ -1,0 +1,100 @@
+/* The shape behind a volume: found again where it is moved and turned, told apart where it is
+ * another. */
+#include "tests/scenes/scene_text.h"
+
+#include "scenes/geometry/transform.h"
+#include "scenes/geometry/vector.h"
+#include "scenes/object_motion.h"
+#include "scenes/volume/volume_body.h"
+
+#define SCENE                                                                                      \
+  CAMERA POINT_LIGHT FLOOR                                                                         \
+      "- {name: wedge, shape: prism, apex: 50, side: 0.1, length: 0.13, material: crown, "         \
+      "transform: "                                                                                \
+      "[{translate: [0.2, 0.1, 0.2]}]}\n"                                                          \
+      "- {name: ball, shape: sphere, radius: 0.05, levels: 3, material: flat, transform: "         \
+      "[{translate: [-0.2, 0.1, 0.2]}]}\n"
+
+static void test_motion_is_found(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  static const double axis[3] = {1, -2, 0.5}, offset[3] = {0.1, -0.2, 0.3};
+  load_text(SCENE, &scene);
+  for (size_t i = 1; i < 3; i++) {
+    abbe_volume_body body;
+    abbe_volume_place first, then;
+    abbe_error error = {0};
+    double matrix[16], step[16], centre[3];
+    assert_int_equal(abbe_volume_body_make(&scene.object[i], &body, &error), ABBE_OK);
+    assert_int_equal(body.ball, i == 2);
+    assert_int_equal(abbe_volume_body_find(&body, &scene.object[i], &first, &error), ABBE_OK);
+    abbe_transform_rotate(2.2, axis, matrix);
+    abbe_transform_translate(offset, step);
+    abbe_transform_multiply(step, matrix, matrix);
+    assert_int_equal(abbe_object_move(&scene.object[i], matrix, NULL), ABBE_OK);
+    assert_int_equal(abbe_volume_body_find(&body, &scene.object[i], &then, &error), ABBE_OK);
+    abbe_transform_point(matrix, first.centre, centre);
+    for (int k = 0; k < 3; k++) {
+      const double e[3] = {k == 0, k == 1, k == 2};
+      double turned[3];
+      abbe_transform_direction(matrix, e, turned);
+      assert_near(then.centre[k], centre[k], 1e-12);
+      for (int r = 0; r < 3 && i == 1; r++) assert_near(then.turn[3 * r + k], turned[r], 1e-9);
+      for (int r = 0; r < 3; r++) assert_near(first.turn[3 * r + k], r == k, 1e-12);
+    }
+  }
+  abbe_scene_free(&scene);
+}
+
+static void test_the_ball_around_it_holds_it(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  load_text(SCENE, &scene);
+  for (size_t i = 1; i < 3; i++) {
+    abbe_volume_body body;
+    abbe_volume_place place;
+    double most = 0;
+    assert_int_equal(abbe_volume_body_make(&scene.object[i], &body, NULL), ABBE_OK);
+    assert_int_equal(abbe_volume_body_find(&body, &scene.object[i], &place, NULL), ABBE_OK);
+    for (size_t k = 0; k < scene.object[i].mesh.vertex_count; k++) {
+      double p[3];
+      abbe_vector_subtract(scene.object[i].mesh.position[k], place.centre, p);
+      most = fmax(most, abbe_vector_length(p));
+    }
+    assert_near(body.radius, most, i == 1 ? 1e-12 : 1e-3);
+  }
+  abbe_scene_free(&scene);
+}
+
+static void test_others_are_told_apart(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_volume_body wedge, ball;
+  abbe_volume_place place;
+  abbe_error error = {0};
+  load_text(SCENE, &scene);
+  assert_int_equal(abbe_volume_body_make(&scene.object[0], &wedge, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "receiver");
+  assert_int_equal(abbe_volume_body_make(&scene.object[1], &wedge, NULL), ABBE_OK);
+  assert_int_equal(abbe_volume_body_make(&scene.object[2], &ball, NULL), ABBE_OK);
+  assert_int_equal(abbe_volume_body_find(&wedge, &scene.object[2], &place, &error),
+                   ABBE_UNSUPPORTED);
+  assert_contains(error.text, "crown");
+  assert_int_equal(abbe_volume_body_find(&wedge, &scene.object[0], &place, &error),
+                   ABBE_UNSUPPORTED);
+  scene.object[1].mesh.position[wedge.anchor[0]][0] += 0.01; /* bent */
+  assert_int_equal(abbe_volume_body_find(&wedge, &scene.object[1], &place, &error),
+                   ABBE_UNSUPPORTED);
+  assert_contains(error.text, "shape");
+  scene.object[2].exact.radius *= 1.01;
+  assert_int_equal(abbe_volume_body_find(&ball, &scene.object[2], &place, &error),
+                   ABBE_UNSUPPORTED);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_motion_is_found),
+                                     cmocka_unit_test(test_the_ball_around_it_holds_it),
+                                     cmocka_unit_test(test_others_are_told_apart)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

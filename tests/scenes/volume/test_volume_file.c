@@ -1,0 +1,144 @@
+/* Volumes as files: they come back bit for bit, and broken ones are told apart. */
+#include "tests/scenes/volume/volumes.h"
+
+#include "colorimetry/image/exr.h"
+#include "scenes/volume/volume_file.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+static const char path[] = "volume-file-test.exr";
+static const abbe_region_desc regions[] = {
+    {.kind = ABBE_REGION_GRID, .side = 6, .outer = 0.3},
+    {.kind = ABBE_REGION_GEODESIC, .levels = 1, .shells = 5, .inner = 0.1, .outer = 0.7},
+    {.kind = ABBE_REGION_OCTAHEDRAL, .side = 4, .shells = 3, .inner = 0.01, .outer = 0.1}};
+
+static void test_files_give_volumes_back(void **state) {
+  (void)state;
+  for (int i = 0; i < 15; i++) {
+    abbe_caustic_volume v, back;
+    abbe_error error = {0};
+    const size_t nodes = i / 3 % 2 != 0 ? 12 : 1;
+    make_volume(i < 6 || i >= 12 ? ABBE_VOLUME_VECTOR : ABBE_VOLUME_PRINTED, regions[i % 3],
+                i < 12 ? nodes : 12, i % 2 != 0, &v);
+    if (i >= 12) assert_int_equal(abbe_caustic_volume_project(&v, 2, &error), ABBE_OK);
+    assert_int_equal(abbe_volume_file_write(path, &v, &error), ABBE_OK);
+    assert_int_equal(abbe_volume_file_read(path, &back, &error), ABBE_OK);
+    assert_int_equal(back.kind, v.kind);
+    const abbe_region_desc *a = &back.region.desc, *b = &v.region.desc;
+    assert_true(a->kind == b->kind && a->side == b->side && a->levels == b->levels &&
+                a->shells == b->shells && a->inner == b->inner && a->outer == b->outer);
+    assert_int_equal(back.nodes.count, v.nodes.count);
+    assert_int_equal(back.degree, v.degree);
+    assert_memory_equal(back.nodes.direction, v.nodes.direction, v.nodes.count * 24);
+    assert_string_equal(back.body.name, v.body.name);
+    assert_string_equal(back.body.material, v.body.material);
+    assert_int_equal(back.body.ball, v.body.ball);
+    assert_near(back.body.radius, 1, 0);
+    if (!v.body.ball) assert_memory_equal(back.body.anchor_at, v.body.anchor_at, 72);
+    assert_memory_equal(back.white, v.white, sizeof v.white);
+    assert_near(back.error, v.error, 0);
+    if (v.kind == ABBE_VOLUME_PRINTED) assert_near(back.byte, v.byte, 0);
+    assert_memory_equal(back.value, v.value,
+                        abbe_caustic_volume_blocks(&v) * v.region.cells *
+                            abbe_caustic_volume_channels(&v) * 2);
+    abbe_caustic_volume_free(&v);
+    abbe_caustic_volume_free(&back);
+  }
+  unlink(path);
+}
+
+/* A good file with one attribute changed. */
+static abbe_result read_with(const char *name, const char *text, abbe_error *error) {
+  abbe_caustic_volume v, back;
+  abbe_image image = {0};
+  make_volume(ABBE_VOLUME_PRINTED, regions[1], 12, false, &v);
+  assert_int_equal(abbe_volume_file_write(path, &v, NULL), ABBE_OK);
+  assert_int_equal(abbe_exr_read(path, &image, NULL), ABBE_OK);
+  assert_int_equal(abbe_image_set_attribute(&image, name, text, NULL), ABBE_OK);
+  assert_int_equal(abbe_exr_write_half(path, &image, NULL), ABBE_OK);
+  const abbe_result result = abbe_volume_file_read(path, &back, error);
+  if (result == ABBE_OK) abbe_caustic_volume_free(&back);
+  abbe_image_free(&image);
+  abbe_caustic_volume_free(&v);
+  unlink(path);
+  return result;
+}
+
+static void test_broken_attributes_are_told(void **state) {
+  (void)state;
+  static const char *const broken[][2] = {
+      {"abbe:volume", "scalar"},
+      {"abbe:volume_region", "5 shells of 81 triangles, 0.1 to 0.7 m"},
+      {"abbe:volume_region", "5 shells of 80 triangles, 0.7 to 0.1 m"},
+      {"abbe:volume_region", "6 shells of 80 triangles, 0.1 to 0.7 m"}, /* more than there are */
+      {"abbe:volume_region", "1e9 shells of 80 triangles, 0.1 to 0.7 m"},
+      {"abbe:volume_region", "grid of 4294967296 cells a side, 1 m wide"},
+      {"abbe:volume_region", "grid of nan cells a side, 1 m wide"},
+      {"abbe:volume_nodes", "13 of a geodesic sphere"},
+      {"abbe:volume_nodes", "-12 of a geodesic sphere"},
+      {"abbe:volume_nodes", "42 of a geodesic sphere"},
+      {"abbe:volume_nodes", "1 along 0 0 0"},
+      {"abbe:volume_body", "radius 0 m"},
+      {"abbe:volume_body",
+       "radius 1 m, 3 vertices, 1 faces; of them 0 at 1 0 0, 1 at 0 1 0, 9 at 0 0 1"},
+      {"abbe:volume_body",
+       "radius 1 m, 3 vertices, 1 faces; of them 0 at 1 0 0, 1 at 2 0 0, 2 at 0 0 1"},
+      {"abbe:volume_light", "XYZ 1 1 1, 780 to 380 nm"},
+      {"abbe:volume_error", ""},
+      {"abbe:volume_byte", "-1"},
+  };
+  for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
+    abbe_error error = {0};
+    assert_int_equal(read_with(broken[i][0], broken[i][1], &error), ABBE_PARSE);
+    assert_contains(error.text, path);
+  }
+  abbe_error error = {0};
+  assert_int_equal(read_with("abbe:other", "", &error), ABBE_OK);
+}
+
+static void test_other_pictures_are_no_volumes(void **state) {
+  (void)state;
+  static const char *const names[] = {"R", "G", "B"};
+  abbe_image image = {0};
+  abbe_caustic_volume v;
+  abbe_error error = {0};
+  assert_int_equal(abbe_image_make(4, 4, 3, names, &image, NULL), ABBE_OK);
+  assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
+  assert_int_equal(abbe_volume_file_read(path, &v, &error), ABBE_NOT_FOUND);
+  assert_contains(error.text, "abbe volume");
+  abbe_image_free(&image);
+  unlink(path);
+  assert_int_equal(abbe_volume_file_read(path, &v, &error), ABBE_IO);
+}
+
+/* Values that a volume cannot have. */
+static void test_broken_values_are_told(void **state) {
+  (void)state;
+  static const float wrong[] = {NAN, INFINITY, 0.5f, 256, -1};
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    abbe_caustic_volume v, back;
+    abbe_image image = {0};
+    abbe_error error = {0};
+    make_volume(ABBE_VOLUME_PRINTED, regions[0], 1, true, &v);
+    assert_int_equal(abbe_volume_file_write(path, &v, NULL), ABBE_OK);
+    assert_int_equal(abbe_exr_read(path, &image, NULL), ABBE_OK);
+    image.data[7] = wrong[i];
+    assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
+    assert_int_equal(abbe_volume_file_read(path, &back, &error), ABBE_PARSE);
+    assert_contains(error.text, "channel");
+    abbe_image_free(&image);
+    abbe_caustic_volume_free(&v);
+  }
+  unlink(path);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_files_give_volumes_back),
+      cmocka_unit_test(test_broken_attributes_are_told),
+      cmocka_unit_test(test_other_pictures_are_no_volumes),
+      cmocka_unit_test(test_broken_values_are_told),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

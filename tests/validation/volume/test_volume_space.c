@@ -1,0 +1,49 @@
+/* How much of a cell an object leaves: of a ball in a grid, by its volume. */
+#include "tests/scenes/scene_text.h"
+
+#include "validation/volume/volume_space.h"
+
+#include <stdlib.h>
+
+#define PI 3.14159265358979323846
+
+static void test_a_ball_takes_its_volume(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_geometry g;
+  abbe_volume_region r;
+  const double radius = 0.05, centre[3] = {0, 0, 0.1};
+  load_text(CAMERA POINT_LIGHT FLOOR "- {name: ball, shape: sphere, radius: 0.05, levels: 3, "
+                                     "material: flat, transform: [{translate: [0, 0, 0.1]}]}\n",
+            &scene);
+  abbe_scene alone = scene;
+  alone.object = &scene.object[1];
+  alone.object_count = 1;
+  const abbe_region_desc desc = {.kind = ABBE_REGION_GRID, .side = 20, .outer = 2 * radius};
+  assert_int_equal(abbe_geometry_make(&alone, &g, NULL), ABBE_OK);
+  assert_int_equal(abbe_volume_region_make(&desc, &r, NULL), ABBE_OK);
+  float *share = calloc(r.cells, sizeof *share);
+  assert_int_equal(abbe_volume_space_measure(&g, &r, centre, radius, 400000, share, NULL), ABBE_OK);
+  double taken = 0;
+  for (size_t cell = 0; cell < r.cells; cell++) {
+    double p[3], near = 0, far = 0;
+    abbe_volume_region_middle(&r, cell, p);
+    for (int k = 0; k < 3; k++) {
+      near += pow(fmax(fabs(p[k]) - 0.05 * 2 * radius, 0), 2);
+      far += pow(fabs(p[k]) + 0.05 * 2 * radius, 2);
+    }
+    if (sqrt(far) < radius) assert_near((double)share[cell], 0, 1e-3);
+    if (sqrt(near) > radius) assert_near((double)share[cell], 1, 1e-3);
+    taken += (1 - (double)share[cell]) * abbe_volume_region_volume(&r, cell);
+  }
+  assert_near(taken / (4 * PI / 3 * pow(radius, 3)), 1, 0.01);
+  free(share);
+  abbe_volume_region_free(&r);
+  abbe_geometry_free(&g);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_ball_takes_its_volume)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
