@@ -159,6 +159,9 @@ static abbe_result read_map_bands(abbe_renderer *r, size_t light, size_t bands, 
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the %s profile's passes sum colours; bands go with the default profile",
                           abbe_profile_name(r->plan.desc.profile));
+  if (r->plan.desc.history > 1)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "bands are of one frame, not of a history of %zu", r->plan.desc.history);
   abbe_result result = check_map(r, light, error);
   if (result != ABBE_OK) return result;
   result = abbe_map_bands_read(&r->caustics, light, bands, r->local.unit, out, error);
@@ -171,20 +174,23 @@ void abbe_renderer_map_layout(const abbe_renderer *r, size_t light, abbe_map_lay
   abbe_local_scene_to_world(&r->local, &out->view);
 }
 
-void abbe_renderer_photon_view(const abbe_renderer *r, size_t light, abbe_view *out) {
-  *out = r->views.light[light].near_view;
-  abbe_local_scene_to_world(&r->local, out);
-}
-
-static abbe_result read_hits(abbe_renderer *r, size_t light, float **data, unsigned **cells,
-                             size_t *count, size_t *slots, size_t *samples, abbe_error *error) {
+static abbe_result read_hits(abbe_renderer *r, size_t light, size_t first, abbe_renderer_hits *out,
+                             abbe_error *error) {
   const abbe_result made = abbe_renderer_parts_check(r, error);
   if (made != ABBE_OK) return made;
   if (light >= r->plan.light_view_count || !r->plan.reaches[light] || is_published(r))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no photons start from light %zu", light);
-  *slots = r->plan.hit_slots;
-  *samples = r->caustics.trace.hits.stride;
-  return abbe_caustics_read_hits(&r->caustics, light, r->local.origin, data, cells, count, error);
+  if (first >= r->plan.desc.wavelengths)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "wavelength %zu of %zu is asked for", first,
+                          r->plan.desc.wavelengths);
+  const abbe_photon_light *from = &r->views.light[light];
+  out->slots = r->plan.hit_slots;
+  out->samples = r->caustics.trace.hits.stride;
+  out->view = from->near_view;
+  abbe_local_scene_to_world(&r->local, &out->view);
+  for (int k = 0; k < 2; k++) out->grid[k] = from->cells[k];
+  return abbe_caustics_read_hits(&r->caustics, light, first, r->local.origin, &out->at, &out->path,
+                                 &out->cell, &out->count, error);
 }
 
 static abbe_result find_texture(abbe_renderer *r, abbe_renderer_picture *out, abbe_error *error) {
@@ -309,12 +315,21 @@ abbe_result abbe_renderer_read_map_bands(abbe_renderer *r, size_t light, size_t 
   return leave(r->context, read_map_bands(r, light, bands, out, error));
 }
 
-abbe_result abbe_renderer_read_hits(abbe_renderer *r, size_t light, float **data, unsigned **cells,
-                                    size_t *count, size_t *slots, size_t *samples,
-                                    abbe_error *error) {
-  ABBE_REQUIRE(r && data && count && slots && samples, error);
-  *data = NULL;
-  const abbe_result result = enter(r->context, error);
+abbe_result abbe_renderer_read_hits(abbe_renderer *r, size_t light, size_t first,
+                                    abbe_renderer_hits *out, abbe_error *error) {
+  ABBE_REQUIRE(r && out, error);
+  *out = (abbe_renderer_hits){0};
+  abbe_result result = enter(r->context, error);
   if (result != ABBE_OK) return result;
-  return leave(r->context, read_hits(r, light, data, cells, count, slots, samples, error));
+  result = leave(r->context, read_hits(r, light, first, out, error));
+  if (result != ABBE_OK) abbe_renderer_hits_free(out);
+  return result;
+}
+
+void abbe_renderer_hits_free(abbe_renderer_hits *hits) {
+  if (hits == NULL) return;
+  free(hits->at);
+  free(hits->path);
+  free(hits->cell);
+  *hits = (abbe_renderer_hits){0};
 }

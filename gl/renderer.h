@@ -118,16 +118,26 @@ abbe_result abbe_renderer_read_map_bands(abbe_renderer *renderer, size_t light, 
  * light with a cube. */
 void abbe_renderer_map_layout(const abbe_renderer *renderer, size_t light, abbe_map_layout *out);
 
-/* Hits of the first batch of wavelengths, for tests: [count][slots][samples] x 4 floats, world
- * position in m and flux for unit weight in W, all 0 where nothing lands. *data and *cells (x | y
- * << 16 of each photon; cells may be NULL) are malloc'd, the caller frees them.
- * ABBE_INVALID_ARGUMENT where no photons start from that light. */
-abbe_result abbe_renderer_read_hits(abbe_renderer *renderer, size_t light, float **data,
-                                    unsigned **cells, size_t *count, size_t *slots, size_t *samples,
-                                    abbe_error *error);
-/* The view through which a light's photons start: the middle of cell (x, y) of a grid of N is at
- * uv = ((x + 0.5) / N, (y + 0.5) / N). */
-void abbe_renderer_photon_view(const abbe_renderer *renderer, size_t light, abbe_view *out);
+/* Where a light's photons land at some wavelengths of the plan's. */
+typedef struct abbe_renderer_hits {
+  size_t count, slots, samples; /* photons; hits of each; wavelengths from the first on */
+  /* [count][slots][samples] x 4: world position in m and flux for unit weight in W, all 0 where
+   * nothing lands */
+  float *at;
+  unsigned *path; /* [count][slots][samples]: equal where light met the same faces; 0: no hit */
+  unsigned *cell; /* [count]: x | y << 16 of a photon's cell in the grid */
+  /* Fitted to the map, so it may be coarser than the request's: the middle of cell (x, y) is at
+   * uv = ((x + 0.5) / grid[0], (y + 0.5) / grid[1]) of the view. */
+  size_t grid[2];
+  abbe_view view;
+} abbe_renderer_hits;
+
+/* Traces one batch of wavelengths, number `first` and those after it that there is room for; the
+ * last batch has empty ones behind it. It leaves maps and pictures as they are.
+ * ABBE_INVALID_ARGUMENT where no photons start from that light or there is no such wavelength. */
+abbe_result abbe_renderer_read_hits(abbe_renderer *renderer, size_t light, size_t first,
+                                    abbe_renderer_hits *out, abbe_error *error);
+void abbe_renderer_hits_free(abbe_renderer_hits *hits);
 
 #ifdef __cplusplus
 }

@@ -111,6 +111,7 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK) result = abbe_refractor_faces_make(&r->scene, &r->faces, error);
   if (result == ABBE_OK) result = abbe_light_layers_make(&r->views, &r->faces, &r->layers, error);
   r->atlas.views = &r->views;
+  r->map.history = &r->history;
   if (result == ABBE_OK) result = abbe_volume_light_make(&r->scene, &r->volume, error);
   if (result != ABBE_OK) return result;
   if (r->plan.caustics)
@@ -140,6 +141,8 @@ static abbe_result make_parts(abbe_renderer *r, const abbe_scene *scene, unsigne
                               abbe_error *error) {
   abbe_result result = make_local_scene(r, scene, error);
   if (result != ABBE_OK) return result;
+  const size_t frames = r->plan.caustics && !is_published(r) ? r->plan.desc.history : 0;
+  if ((parts & LIGHT) != 0) abbe_map_history_change(&r->history, frames, r->local.origin);
   abbe_gpu_scene_begin(&r->gpu, r->local.scene, r->local.unit, &r->plan, local_layout(r),
                        &r->scene);
   result = abbe_gpu_scene_make(&r->scene, scene_parts(parts), error);
@@ -208,6 +211,7 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
 
 void abbe_renderer_parts_free(abbe_renderer *r) {
   free_parts(r, ALL);
+  abbe_map_history_free(&r->history);
   abbe_gpu_free(&r->gpu);
   abbe_local_scene_free(&r->local);
   abbe_plan_free(&r->plan);
@@ -239,7 +243,8 @@ static abbe_result run_passes(abbe_renderer *r, abbe_error *error) {
     r->lit = result == ABBE_OK;
   } else {
     if (!r->lit) result = draw_light(r, error);
-    r->lit = r->lit || (result == ABBE_OK && !r->gpu.stopped);
+    r->lit =
+        r->lit || (result == ABBE_OK && !r->gpu.stopped && abbe_map_history_settled(&r->history));
     if (result == ABBE_OK && !r->seen) result = draw_eye(r, error);
   }
   return result != ABBE_OK ? result : abbe_gl_check(r->gpu.gl, "the frame's passes", error);

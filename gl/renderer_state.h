@@ -29,6 +29,7 @@ struct abbe_renderer {
   abbe_refractor_faces faces;
   abbe_light_layers layers;
   abbe_receiver_atlas atlas;
+  abbe_map_history history; /* of maps, from change to change */
   abbe_spectral_map map;
   abbe_caustics caustics;
   abbe_volume_light volume; /* in place of them, where caustics are looked up */

@@ -73,7 +73,9 @@ static const struct argp_option options[] = {
     {"direction", OPTION_DIRECTION, "NAME", 0,
      "of wyman2006, by which caustics are shaded: own, mean, direct (mean)", 1},
     {"history", OPTION_HISTORY, "N", 0,
-     "of wyman2006's gathers, frames that a picture holds, 1 to 4: with --frames (1)", 1},
+     "frames that a picture holds, 1 to 4, of the default profile and wyman2006's gathers: with "
+     "--frames (1)",
+     1},
     {"estimator", OPTION_ESTIMATOR, "NAME", 0,
      "of shah2007 and wyman2006, how rays are brought to receivers: shah, axis, newton, secant, "
      "false-position, "

@@ -2,6 +2,7 @@
 #include "cli/base/command.h"
 #include "cli/base/scene_input.h"
 #include "cli/base/shipped.h"
+#include "gl/plan/facts/render_desc.h"
 
 #ifdef ABBE_HAVE_VIEW
 #include "base/file.h"
@@ -24,12 +25,15 @@ enum {
   OPTION_LAST,
   OPTION_MATERIALS,
   OPTION_OCIO,
-  OPTION_SERVE
+  OPTION_SERVE,
+  OPTION_WAVELENGTHS,
+  OPTION_PHOTONS,
+  OPTION_MAP
 };
 
 typedef struct view_options {
   const char *program, *scene, *script, *keep, *materials, *ocio;
-  size_t width, height;
+  size_t width, height, wavelengths, photons, map_size;
   int last, port; /* port below 0: nothing is served */
   abbe_scene_input_changes changes;
 } view_options;
@@ -46,6 +50,10 @@ static const struct argp_option options[] = {
      "a table instead of the scene's: default, thesis or a file", 1},
     {"set", ABBE_SCENE_INPUT_SET, "KEY=VALUE", 0,
      "another value in the scene to begin with, such as camera.fov=30; may be repeated", 1},
+    {"wavelengths", OPTION_WAVELENGTHS, "N", 0, "at rest, for all stages (as each stage has them)",
+     1},
+    {"photons", OPTION_PHOTONS, "N", 0, "a side, so too", 1},
+    {"map", OPTION_MAP, "N", 0, "texels a side, so too", 1},
     {"script", OPTION_SCRIPT, "FILE", ABBE_ARGUMENT_READS,
      "lead the viewer by a script, without a display", 2},
     {"serve", OPTION_SERVE, "PORT", 0,
@@ -73,6 +81,16 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_LAST:
     o->last = 1 + abbe_command_choice(o->program, "--last", text, stages, 5);
     return 0;
+  case OPTION_WAVELENGTHS:
+    o->wavelengths =
+        abbe_command_count(o->program, "--wavelengths", text, 1, ABBE_RENDER_MAX_WAVELENGTHS);
+    return 0;
+  case OPTION_PHOTONS:
+    o->photons = abbe_command_count(o->program, "--photons", text, 1, ABBE_RENDER_MAX_PHOTONS);
+    return 0;
+  case OPTION_MAP:
+    o->map_size = abbe_command_count(o->program, "--map", text, 1, ABBE_RENDER_MAX_MAP);
+    return 0;
   case OPTION_MATERIALS:
     o->materials = text;
     return 0;
@@ -98,7 +116,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 static abbe_result begin(const view_options *o, const char *path, abbe_view_document *out,
                          abbe_error *error) {
   char *own = strdup(path);
-  *out = (abbe_view_document){.path = own};
+  *out = (abbe_view_document){
+      .path = own, .wavelengths = o->wavelengths, .photons = o->photons, .map_size = o->map_size};
   abbe_result result =
       own != NULL ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
   for (size_t i = 0; i < o->changes.set_count && result == ABBE_OK; i++) {

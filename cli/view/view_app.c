@@ -49,7 +49,8 @@ abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc
                              .keep = desc->keep,
                              .ocio = desc->ocio,
                              .seen_s = -1,
-                             .event_s = -1};
+                             .event_s = -1,
+                             .cancelled_s = -1};
   abbe_result result = abbe_view_state_begin(&app->state, desc->document, error);
   app->state.refine.last = desc->last;
   if (result == ABBE_OK) result = abbe_display_list(desc->ocio, &app->views, error);
@@ -220,6 +221,9 @@ static bool wants_feed(const abbe_view_session *app, abbe_view_request *out) {
       (double)layers->data[layers->channels * (s->pixel[1] * layers->width + s->pixel[0]) + z];
   const double xy[2] = {(double)s->pixel[0] + 0.5, (double)s->pixel[1] + 0.5};
   abbe_view_camera_point(&s->camera, s->width, s->height, xy, distance, out->point);
+  abbe_view_probe probe;
+  abbe_view_probe_make(&app->pictures, s->pixel, &probe);
+  out->nm = probe.dominant_nm > 0 ? probe.dominant_nm : 550;
   /* as wide as some pixels */
   out->radius = FEED_PIXELS * distance * 2 * tan(0.5 * s->camera.fov_y_rad) / (double)s->height;
   return distance > 0;
@@ -248,12 +252,22 @@ static void take_look(abbe_view_session *app, abbe_view_result *result) {
   result->feed = NULL;
 }
 
+/* What is being done for an older state ends soon. */
+static void cancel_obsolete(abbe_view_session *app) {
+  const abbe_view_refine *refine = &app->state.refine;
+  const bool obsolete = app->looks ? app->running.serial != refine->serial
+                                   : abbe_view_refine_cancels(refine, &app->running);
+  if (!obsolete) return;
+  if (app->cancelled_s < 0) app->cancelled_s = abbe_clock_seconds();
+  abbe_view_worker_cancel(app->worker);
+}
+
 static void give(abbe_view_session *app, double now_s) {
   abbe_view_state *s = &app->state;
   abbe_view_request request = {.width = s->width, .height = s->height, .reload = app->reload};
   if (s->width == 0 || s->height == 0) return;
   if (!abbe_view_worker_idle(app->worker)) {
-    if (abbe_view_refine_cancels(&s->refine, &app->running)) abbe_view_worker_cancel(app->worker);
+    cancel_obsolete(app);
     return;
   }
   request.maps = wants_map(app);
@@ -266,6 +280,7 @@ static void give(abbe_view_session *app, double now_s) {
       ABBE_OK)
     return;
   app->running = request.job;
+  app->looks = request.asks || request.maps;
   if (request.asks) {
     app->fed_serial = s->refine.serial;
     memcpy(app->fed_pixel, s->pixel, sizeof app->fed_pixel);
@@ -367,6 +382,8 @@ static void draw_feed(const abbe_view_session *app) {
   const abbe_view_feed *feed = abbe_view_session_feed(app);
   if (feed == NULL) return;
   const size_t every = feed->ray_count / 12 + 1;
+  for (size_t i = 0; i + 1 < feed->sight.count; i++)
+    show_line(s, feed->sight.place[i], feed->sight.place[i + 1], 0x30e0a0ff, 1.5);
   for (size_t i = 0; i < feed->ray_count; i += every) {
     show_line(s, feed->ray[i].light, feed->ray[i].entry, 0xa0ffe9b0, 1);
     show_line(s, feed->ray[i].entry, feed->point, 0xc0ffffff, 1);
@@ -412,6 +429,9 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
   feed(app, input, now_s);
   look_at_files(app, now_s);
   if (abbe_view_worker_take(app->worker, &app->taken)) {
+    if (app->cancelled_s >= 0)
+      app->cancel_ms = fmax(app->cancel_ms, 1e3 * (abbe_clock_seconds() - app->cancelled_s));
+    app->cancelled_s = -1;
     if (app->taken.turned)
       abbe_view_turn_take(app, &app->taken, now_s);
     else if (app->taken.looked)

@@ -211,6 +211,12 @@ static void draw_feed(const abbe_view_session *app) {
   const abbe_view_feed *feed = abbe_view_session_feed(app);
   const abbe_view_outline *o = &app->state.outline;
   if (feed == NULL) return;
+  if (feed->on_refractor && !feed->sight.lands) {
+    abbe_ui_text(DIM, "what is seen here through a refractor is no receiver");
+    return;
+  }
+  if (feed->on_refractor)
+    pair("seen through", "%zu faces, at %.0f nm", feed->sight.count - 1, feed->sight.nm);
   if (feed->ray_count == 0) {
     abbe_ui_text(DIM, "no light comes here through a refractor");
     return;

@@ -83,25 +83,30 @@ static bool find_handle(const script *s, const char *name, double xy[2]) {
   return false;
 }
 
-/* "FROM:TO", nm: where the rendered picture has most colour of a dominant wavelength in between. */
+/* "FROM:TO", nm: where the rendered picture has most colour of a dominant wavelength in between;
+ * with
+ * ":LEFT:TOP:RIGHT:BOTTOM" behind, in that part of it. */
 static bool find_hue(const script *s, const char *text, double xy[2]) {
   const abbe_image *image = &s->hidden.session.pictures.rendered;
   const abbe_view_pictures pictures = {.rendered = *image};
-  double from, to, best = 0;
-  if (!abbe_number_read(text, &text, &from) || *text != ':' ||
-      !abbe_number_read(text + 1, &text, &to) || image->data == NULL)
-    return false;
-  for (size_t y = 0; y < image->height; y++)
+  double is[6] = {0, 0, 0, 0, INFINITY, INFINITY}, best = 0;
+  for (int k = 0; k < 6; k++) {
+    if (!abbe_number_read(text, &text, &is[k]) || (*text != ':' && *text != '\0')) return false;
+    if (*text == '\0' && k == 1) break;
+    if (*text == ':') text++;
+  }
+  for (size_t y = 0; image->data != NULL && y < image->height; y++)
     for (size_t x = 0; x < image->width; x++) {
       abbe_view_probe probe;
+      const double at[2] = {(double)x + 0.5, (double)y + 0.5};
       const float *v = &image->data[image->channels * (y * image->width + x)];
+      if (at[0] < is[2] || at[1] < is[3] || at[0] > is[4] || at[1] > is[5]) continue;
       if (!(fmaxf(v[0], fmaxf(v[1], v[2])) > 1.5F * fminf(v[0], fminf(v[1], v[2])))) continue;
       abbe_view_probe_make(&pictures, (const size_t[2]){x, y}, &probe);
-      if (probe.dominant_nm < from || probe.dominant_nm > to) continue;
+      if (probe.dominant_nm < is[0] || probe.dominant_nm > is[1]) continue;
       if (probe.purity * probe.xyz[1] <= best) continue;
       best = probe.purity * probe.xyz[1];
-      xy[0] = (double)x + 0.5;
-      xy[1] = (double)y + 0.5;
+      memcpy(xy, at, sizeof at);
     }
   return best > 0;
 }
@@ -300,9 +305,14 @@ static bool has_come(script *s, const char *what) {
 }
 
 static abbe_result do_wait(script *s, abbe_error *error) {
-  const char *what = s->words > 1 ? s->word[1] : "rest";
+  const char *what = s->words > 1 ? s->word[1] : "rest", *end;
   const double start = abbe_clock_seconds();
+  double seconds;
   pump(s);
+  if (abbe_number_read(what, &end, &seconds) && *end == '\0') {
+    for (; abbe_clock_seconds() - start < seconds; pump(s)) sleep_a_little();
+    return ABBE_OK;
+  }
   while (!has_come(s, what)) {
     if (abbe_clock_seconds() - start > PATIENCE_S)
       return fail(

@@ -24,6 +24,7 @@ typedef struct abbe_view_session {
   char *scene[ABBE_VIEW_MOST_SCENES];
   size_t scene_count;
   abbe_view_job running;
+  bool looks;  /* that is no picture */
   bool reload; /* at the next job */
   abbe_view_pictures pictures;
   abbe_view_result taken;     /* while it is looked at */
@@ -48,12 +49,14 @@ typedef struct abbe_view_session {
   double area[2];               /* of the picture in the window */
   double seen_s, frames_ms[32]; /* times between pictures while something moves */
   size_t frame_count;
-  double event_s, latency_ms; /* of the oldest change that is not shown; of the last picture */
-  size_t turn_frame;          /* of the turntable, from 1; 0: it stands */
-  uint64_t turn_serial;       /* what it turns */
-  bool turned;                /* the last one is whole */
-  char note[1200];            /* what was saved, or why not */
-  char **file;                /* of the scene, and when they were changed last */
+  double event_s, latency_ms;    /* of the oldest change that is not shown; of the last picture */
+  double cancelled_s, cancel_ms; /* when a job was told to stop, below 0: none was; the longest that
+                                    one took to do so */
+  size_t turn_frame;             /* of the turntable, from 1; 0: it stands */
+  uint64_t turn_serial;          /* what it turns */
+  bool turned;                   /* the last one is whole */
+  char note[1200];               /* what was saved, or why not */
+  char **file;                   /* of the scene, and when they were changed last */
   long long *changed;
   size_t file_count;
   double looked_s;

@@ -188,6 +188,8 @@ static abbe_render_desc request_of(const abbe_view_worker *w, const abbe_view_re
   desc.supersample = moving ? 1 : settings_of(w, job->stage).supersample;
   desc.upsample = moving ? job->eye_step + 1 : 0;
   desc.adaptive = moving ? 1 : 0;
+  /* light that moves is blended with the last frames'; what is better is of one frame */
+  desc.history = moving && job->light == ABBE_VIEW_MOVING ? ABBE_RENDER_MAX_HISTORY : 0;
   desc.aovs = true; /* in motion too: without them other programs would have to be compiled */
   desc.width = q->width;
   desc.height = q->height;
@@ -310,7 +312,7 @@ static abbe_result look(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
   if (q->maps) return abbe_view_look_map(w->renderer, &out->map, error);
   out->feed = malloc(sizeof *out->feed);
   if (out->feed == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for photons");
-  return abbe_view_look_feed(w->renderer, w->scene, q->point, q->radius, &w->stop, out->feed,
+  return abbe_view_look_feed(w->renderer, w->scene, q->point, q->radius, q->nm, &w->stop, out->feed,
                              error);
 }
 

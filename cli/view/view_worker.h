@@ -23,10 +23,10 @@ typedef struct abbe_view_request {
   abbe_view_document document; /* the request's own */
   bool reload;                 /* the files anew */
   size_t width, height;
-  bool asks; /* no picture, but what feeds this place: */
-  double point[3], radius;
-  bool maps;  /* no picture, but the spectral map */
-  bool turns; /* the picture, seen from elsewhere: */
+  bool asks;                   /* no picture, but what feeds this place: */
+  double point[3], radius, nm; /* its colour's wavelength */
+  bool maps;                   /* no picture, but the spectral map */
+  bool turns;                  /* the picture, seen from elsewhere: */
   double turn_rad;
 } abbe_view_request;
 

@@ -38,49 +38,90 @@ static bool next_batch(const abbe_caustics *c, abbe_hit_batch *b) {
   return true;
 }
 
-/* Hits of all wavelengths, each once, into the fit of the map, and of the tiles. */
-static abbe_result sort_hits(abbe_caustics *c, size_t light, abbe_map_fit *fit,
-                             abbe_tile_light **beside, abbe_error *error) {
+/* Fits of a light's map: to all receivers, and to the layout that the last frame had. */
+typedef struct map_fits {
+  abbe_map_fit *whole, *kept; /* NULL: there is none */
+  abbe_map_layout layout;     /* of that */
+  abbe_tile_light **beside;
+} map_fits;
+
+static abbe_result make_fits(abbe_caustics *c, size_t light, bool given, map_fits *out,
+                             abbe_error *error) {
+  const abbe_map_layout *map = &c->views->light[light].map;
+  const size_t sides = c->atlas->used ? 2 * c->views->scene->charts.count : 0;
+  abbe_map_layout last;
+  *out = (map_fits){.whole = calloc(1, sizeof *out->whole),
+                    .beside = calloc(sides + 1, sizeof *out->beside)};
+  const bool follows = !given && !abbe_photon_lights_is_face(c->views, light) &&
+                       abbe_map_history_layout(c->map->history, light, &last);
+  if (follows) {
+    out->layout = *map;
+    abbe_photon_lights_take_layout(c->views, &last, &out->layout);
+    out->kept = calloc(1, sizeof *out->kept);
+  }
+  if (out->whole == NULL || out->beside == NULL || (follows && out->kept == NULL))
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the map");
+  return ABBE_OK;
+}
+
+static void free_fits(abbe_caustics *c, map_fits *fits) {
+  const size_t sides = c->atlas->used ? 2 * c->views->scene->charts.count : 0;
+  for (size_t i = 0; i < sides && fits->beside != NULL; i++) free(fits->beside[i]);
+  free(fits->beside);
+  free(fits->whole);
+  free(fits->kept);
+}
+
+/* Hits of all wavelengths, each once, into the fits of the map, and of the tiles. */
+static abbe_result sort_hits(abbe_caustics *c, size_t light, map_fits *fits, abbe_error *error) {
   const size_t n = plan_of(c)->desc.wavelengths, most = c->trace.hits.stride;
+  const size_t count = abbe_trace_pass_hit_count(&c->trace, light);
+  abbe_map_fit *fit = fits->whole;
   abbe_result result = abbe_photon_start_run(&c->start, light, error);
+  fit->view = &c->views->light[light].map.view;
+  if (fits->kept != NULL) fits->kept->view = &fits->layout.view;
   for (size_t first = 0; first < n && result == ABBE_OK; first += most) {
     float *hit = NULL;
     GLuint *path = NULL;
-    const size_t count = abbe_trace_pass_hit_count(&c->trace, light);
     abbe_trace_pass_batch(&c->trace, light, first, n - first < most ? n - first : most, n);
     result = abbe_trace_pass_read(&c->trace, light, first, &hit, &path, error);
-    if (result == ABBE_OK) abbe_map_fit_add(fit, c->atlas, light, hit, path, count);
+    if (result == ABBE_OK) abbe_map_fit_add(fit, c->atlas, hit, path, count);
+    if (result == ABBE_OK && fits->kept != NULL)
+      abbe_map_fit_add(fits->kept, c->atlas, hit, path, count);
     if (result == ABBE_OK && fit->part > 0)
-      result = abbe_receiver_atlas_sort(c->atlas, hit, path, count, fit->part, beside, error);
+      result = abbe_receiver_atlas_sort(c->atlas, hit, path, count, fit->part, fits->beside, error);
     free(hit);
     free(path);
   }
   return result;
 }
 
+/* Where frames follow one another, maps have room for what moves. */
+static double room_around(const abbe_caustics *c) {
+  return plan_of(c)->desc.history > 1 ? 0.15 : 0.02;
+}
+
 static abbe_result fit_map(abbe_caustics *c, size_t light, abbe_error *error) {
   abbe_map_layout *map = &c->views->light[light].map;
-  const size_t sides = c->atlas->used ? 2 * c->views->scene->charts.count : 0;
-  abbe_map_fit *fit = calloc(1, sizeof *fit);
-  abbe_tile_light **beside = calloc(sides + 1, sizeof *beside);
-  abbe_result result = fit != NULL && beside != NULL
-                           ? ABBE_OK
-                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the map");
   /* Tiles are for what no map of the light could hold, whichever window is given. */
   const bool given = abbe_photon_lights_map_is_given(c->views, light);
   const abbe_map_layout layout = *map;
+  map_fits fits;
+  abbe_result result = make_fits(c, light, given, &fits, error);
   if (result == ABBE_OK && given) {
     abbe_photon_lights_whole_map(c->views, light, map);
     abbe_photon_lights_upload(c->views);
   }
-  if (result == ABBE_OK) result = sort_hits(c, light, fit, beside, error);
-  if (given) *map = layout;
-  if (result == ABBE_OK && !given) abbe_map_fit_layout(fit, map);
+  if (result == ABBE_OK) result = sort_hits(c, light, &fits, error);
+  if (given)
+    *map = layout;
+  else if (result == ABBE_OK && fits.kept != NULL && abbe_map_fit_serves(fits.kept))
+    *map = fits.layout;
+  else if (result == ABBE_OK)
+    abbe_map_fit_layout(fits.whole, room_around(c), map);
   if (result == ABBE_OK)
-    result = abbe_receiver_atlas_choose(c->atlas, light, beside, fit->total, error);
-  for (size_t i = 0; i < sides && beside != NULL; i++) free(beside[i]);
-  free(beside);
-  free(fit);
+    result = abbe_receiver_atlas_choose(c->atlas, light, fits.beside, fits.whole->total, error);
+  free_fits(c, &fits);
   return result;
 }
 
@@ -137,17 +178,27 @@ static abbe_result start_fit(abbe_caustics *c, abbe_error *error) {
   return use_grids(c, error);
 }
 
+/* Where this frame's photons start in their cells. */
+static abbe_result place_grids(abbe_caustics *c, abbe_error *error) {
+  double shift[2];
+  abbe_map_history_shift(c->map->history, plan_of(c)->desc.photon_shift, shift);
+  for (size_t light = 0; light < plan_of(c)->light_view_count; light++)
+    abbe_photon_lights_shift_cells(c->views, light, shift);
+  c->placed = c->map->history->frame;
+  abbe_photon_lights_upload(c->views);
+  const abbe_result result = abbe_light_layers_run(c->layers, error);
+  return result == ABBE_OK ? use_grids(c, error) : result;
+}
+
 static abbe_result fit_grids(abbe_caustics *c, abbe_error *error) {
   abbe_result result = ABBE_OK;
   abbe_photon_lights_upload(c->views); /* the maps that were fitted */
   for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++)
     if (plan_of(c)->reaches[light]) result = abbe_cell_fit_run(&c->trace, c->views, light, error);
   for (size_t light = 0; light < plan_of(c)->light_view_count; light++)
-    abbe_photon_lights_shift_cells(c->views, light);
-  if (result != ABBE_OK) return result;
-  abbe_photon_lights_upload(c->views);
-  result = abbe_light_layers_run(c->layers, error);
-  if (result == ABBE_OK) result = use_grids(c, error);
+    memcpy(c->views->light[light].unshifted, c->views->light[light].near_view.window,
+           sizeof c->views->light[light].unshifted);
+  if (result == ABBE_OK) result = place_grids(c, error);
   return result == ABBE_OK ? abbe_gpu_tell(c->views->scene->gpu, 1, error) : result;
 }
 
@@ -157,6 +208,9 @@ static abbe_result make_passes(abbe_caustics *c, const abbe_shader_variant *vari
   abbe_result result = abbe_refine_pass_compile(&c->refine, &photons, error);
   if (result == ABBE_OK)
     result = abbe_spectral_map_make(c->views, c->atlas, variant, c->map, error);
+  for (size_t light = 0; light < plan_of(c)->light_view_count; light++)
+    abbe_map_history_lay_out(c->map->history, light, &c->views->light[light].map,
+                             &c->atlas->tiles[light]);
   if (result == ABBE_OK)
     result = abbe_deposit_pass_make(&c->trace, &c->refine, c->map, &photons, variant, &c->deposit,
                                     error);
@@ -262,9 +316,15 @@ static abbe_result run_light(abbe_caustics *c, size_t light, abbe_error *error) 
   return ABBE_OK;
 }
 
+/* To the grids of the next frame in the sequence. */
+static abbe_result move_on(abbe_caustics *c, abbe_error *error) {
+  memset(c->measured, 0, sizeof c->measured);
+  return place_grids(c, error);
+}
+
 abbe_result abbe_caustics_run(abbe_caustics *c, double *untimed_ms, abbe_error *error) {
   abbe_gpu *gpu = c->views->scene->gpu;
-  abbe_result result = ABBE_OK;
+  abbe_result result = c->placed != c->map->history->frame ? move_on(c, error) : ABBE_OK;
   c->energy_known = gpu->statistics != NULL;
   memset(c->energy, 0, sizeof c->energy);
   for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++) {
@@ -277,6 +337,7 @@ abbe_result abbe_caustics_run(abbe_caustics *c, double *untimed_ms, abbe_error *
     *untimed_ms += 1e3 * abbe_clock_seconds() - start_ms;
   }
   if (result == ABBE_OK) result = abbe_gl_check(gpu->gl, "the photon passes", error);
+  if (result == ABBE_OK && !gpu->stopped) abbe_map_history_next(c->map->history);
   if (result != ABBE_OK) c->energy_known = false;
   return result;
 }
@@ -310,20 +371,13 @@ static abbe_result read_cells(const abbe_caustics *c, size_t count, unsigned **c
   return abbe_gl_check(gl, "the reading of photons", error);
 }
 
-abbe_result abbe_caustics_read_hits(abbe_caustics *c, size_t light, const double origin[3],
-                                    float **data, unsigned **cells, size_t *count,
-                                    abbe_error *error) {
+/* To world places, and W of the light as it is. */
+static void place_hits(const abbe_caustics *c, size_t light, const double origin[3], float *data,
+                       const unsigned *path) {
   const double power = c->views->scene->local->light[light].power;
-  GLuint *path = NULL;
-  abbe_result result = abbe_light_layers_run(c->layers, error);
-  if (result == ABBE_OK) result = abbe_photon_start_run(&c->start, light, error);
-  if (result != ABBE_OK) return result;
-  *count = c->views->light[light].photon_count;
-  abbe_trace_pass_batch(&c->trace, light, 0, c->trace.hits.stride, plan_of(c)->desc.wavelengths);
-  result = abbe_trace_pass_read(&c->trace, light, 0, data, &path, error);
   const size_t hits = abbe_trace_pass_hit_count(&c->trace, light);
-  for (size_t i = 0; result == ABBE_OK && i < hits; i++) {
-    float *at = *data + 4 * i;
+  for (size_t i = 0; i < hits; i++) {
+    float *at = data + 4 * i;
     double place[3] = {at[0], at[1], at[2]};
     if (!(at[3] > 0)) continue;
     at[3] = (float)(at[3] * power);
@@ -331,10 +385,19 @@ abbe_result abbe_caustics_read_hits(abbe_caustics *c, size_t light, const double
       abbe_receiver_atlas_world(c->atlas, light, at, place);
     for (size_t k = 0; k < 3; k++) at[k] = (float)(place[k] + origin[k]);
   }
-  free(path);
-  if (result == ABBE_OK && cells != NULL) result = read_cells(c, *count, cells, error);
-  if (result == ABBE_OK) return ABBE_OK;
-  free(*data);
-  *data = NULL;
-  return result;
+}
+
+abbe_result abbe_caustics_read_hits(abbe_caustics *c, size_t light, size_t first,
+                                    const double origin[3], float **at, unsigned **path,
+                                    unsigned **cell, size_t *count, abbe_error *error) {
+  const size_t n = plan_of(c)->desc.wavelengths, most = c->trace.hits.stride;
+  abbe_result result = abbe_light_layers_run(c->layers, error);
+  if (result == ABBE_OK) result = abbe_photon_start_run(&c->start, light, error);
+  if (result != ABBE_OK) return result;
+  *count = c->views->light[light].photon_count;
+  abbe_trace_pass_batch(&c->trace, light, first, n - first < most ? n - first : most, n);
+  result = abbe_trace_pass_read(&c->trace, light, first, at, path, error);
+  if (result != ABBE_OK) return result;
+  place_hits(c, light, origin, *at, *path);
+  return read_cells(c, *count, cell, error);
 }

@@ -25,6 +25,7 @@ typedef struct abbe_caustics {
   abbe_trace_pass trace;
   abbe_refine_pass refine;
   abbe_deposit_pass deposit;
+  size_t placed;                        /* the frame of the history that grids are placed for */
   bool measured[ABBE_SCENE_MAX_LIGHTS]; /* lists have room for the light, as a frame has found */
   abbe_ledger energy[ABBE_SCENE_MAX_LIGHTS]; /* of unit power of each, as the last run found */
   bool energy_known;                         /* it had statistics */
@@ -47,10 +48,10 @@ abbe_result abbe_caustics_run(abbe_caustics *caustics, double *untimed_ms, abbe_
 bool abbe_caustics_know_energy(const abbe_caustics *caustics);
 void abbe_caustics_energy(const abbe_caustics *caustics, abbe_ledger *out);
 
-/* Hits of the first batch of wavelengths, as of abbe_renderer_read_hits; places move by
- * `origin`. */
-abbe_result abbe_caustics_read_hits(abbe_caustics *caustics, size_t light, const double origin[3],
-                                    float **data, unsigned **cells, size_t *count,
-                                    abbe_error *error);
+/* Hits of the batch of wavelengths from `first` on, as of abbe_renderer_read_hits; places move by
+ * `origin`. What was read is the caller's, also after an error. */
+abbe_result abbe_caustics_read_hits(abbe_caustics *caustics, size_t light, size_t first,
+                                    const double origin[3], float **at, unsigned **path,
+                                    unsigned **cell, size_t *count, abbe_error *error);
 
 #endif

@@ -26,18 +26,18 @@ static double part_of(const float *hit, size_t count) {
   return (double)most / (1 << 24);
 }
 
-void abbe_map_fit_add(abbe_map_fit *fit, const abbe_receiver_atlas *atlas, size_t light,
-                      const float *hit, const GLuint *path, size_t count) {
-  const abbe_view *view = &atlas->views->light[light].map.view;
+void abbe_map_fit_add(abbe_map_fit *fit, const abbe_receiver_atlas *atlas, const float *hit,
+                      const GLuint *path, size_t count) {
   if (fit->part == 0) fit->part = part_of(hit, count);
   if (!(fit->part > 0)) return;
   for (size_t i = 0; i < count; i++) {
     const float *at = hit + 4 * i;
     double p[3] = {at[0], at[1], at[2]}, uvz[3];
-    if (!(at[3] > 0) || abbe_receiver_atlas_holds(atlas, path[i]) ||
-        !abbe_view_project(view, p, uvz))
-      continue;
+    if (!(at[3] > 0) || abbe_receiver_atlas_holds(atlas, path[i])) continue;
     const double parts = rint(at[3] / fit->part);
+    const bool before = abbe_view_project(fit->view, p, uvz);
+    if (!before || uvz[0] < 0 || uvz[0] > 1 || uvz[1] < 0 || uvz[1] > 1) fit->outside += parts;
+    if (!before) continue;
     fit->total += parts;
     for (int axis = 0; axis < 2; axis++) {
       double bin = fmin(fmax(floor(uvz[axis] * ABBE_FIT_BINS), 0), ABBE_FIT_BINS - 1);
@@ -79,14 +79,14 @@ static void make_warp(const double share[ABBE_WARP_STEPS], double total,
   for (int k = 1; k <= ABBE_WARP_STEPS; k++) knot[k] /= sum;
 }
 
-void abbe_map_fit_layout(const abbe_map_fit *fit, abbe_map_layout *layout) {
+void abbe_map_fit_layout(const abbe_map_fit *fit, double wider, abbe_map_layout *layout) {
   abbe_view *view = &layout->view;
   double old[4], near = view->near, far = view->far, share[ABBE_WARP_STEPS];
   if (!(fit->total > 0)) return;
   memcpy(old, view->window, sizeof old);
   for (int axis = 0; axis < 2; axis++)
     tighten(fit->bin[axis], fit->total, &view->window[2 * axis], &view->window[2 * axis + 1]);
-  abbe_view_pad(view, 0.02);
+  abbe_view_pad(view, wider);
   view->near = near;
   view->far = far;
   for (int axis = 0; axis < 2; axis++) {
@@ -94,4 +94,15 @@ void abbe_map_fit_layout(const abbe_map_fit *fit, abbe_map_layout *layout) {
            view->window[2 * axis + 1], share);
     make_warp(share, fit->total, layout->knot[axis]);
   }
+}
+
+bool abbe_map_fit_serves(const abbe_map_fit *fit) {
+  static const double filled = 0.4;
+  if (!(fit->total > 0) || fit->outside > 4 * map_tail * fit->total) return false;
+  for (int axis = 0; axis < 2; axis++) {
+    double low = 0, high = 1;
+    tighten(fit->bin[axis], fit->total, &low, &high);
+    if (high - low < filled) return false;
+  }
+  return true;
 }

@@ -15,9 +15,8 @@ static abbe_result make_texture(abbe_spectral_map *map, abbe_error *error) {
   const abbe_gl *gl = scene_of(map)->gpu->gl;
   const bool caustics = scene_of(map)->plan->caustics;
   const size_t side = caustics ? scene_of(map)->plan->desc.map_size : 1;
-  abbe_result result =
-      abbe_gpu_make_levels(scene_of(map)->gpu, GL_RGBA32F, side, map->layers,
-                           map->views->map_levels, &map->texture, error);
+  abbe_result result = abbe_gpu_make_levels(scene_of(map)->gpu, GL_RGBA32F, side, map->layers,
+                                            map->views->map_levels, &map->texture, error);
   if (result != ABBE_OK) return result;
   for (size_t i = 0; i < map->layers && !caustics; i++)
     gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, (GLint)i, 1, 1, 1, GL_RGBA, GL_FLOAT, black);
@@ -38,10 +37,12 @@ abbe_result abbe_spectral_map_make(const abbe_photon_lights *views,
   result = abbe_gpu_make_buffer(gpu, texels * abbe_photon_lights_map_words(views) * 4, NULL,
                                 &out->sums, error);
   if (result == ABBE_OK)
-    result = abbe_shader_variant_compute(variant, gpu, "map_resolve.comp", NULL, &out->resolve,
-                                         error);
+    result =
+        abbe_shader_variant_compute(variant, gpu, "map_resolve.comp", NULL, &out->resolve, error);
+  if (result == ABBE_OK) result = abbe_gpu_compute(gpu, "map_mip.comp", NULL, &out->mip, error);
   if (result == ABBE_OK)
-    result = abbe_gpu_compute(gpu, "map_mip.comp", NULL, &out->mip, error);
+    result = abbe_map_history_make(out->history, gpu, views->scene->plan->desc.map_size,
+                                   out->layers, error);
   return result;
 }
 
@@ -103,10 +104,13 @@ void abbe_spectral_map_resolve(abbe_spectral_map *map, size_t light) {
   const size_t side = scene_of(map)->plan->desc.map_size;
   const abbe_receiver_tiles *tiles = &map->atlas->tiles[light];
   resolve_layer(map, light, light, side);
+  abbe_map_history_blend(map->history, map->texture, light, light, side);
   make_mips(map, light, light, side);
   if (tiles->count == 0) return;
-  resolve_layer(map, light, map->atlas->layer[light], tiles->rows);
-  make_mips(map, light, map->atlas->layer[light], tiles->rows);
+  const size_t layer = map->atlas->layer[light];
+  resolve_layer(map, light, layer, tiles->rows);
+  abbe_map_history_blend(map->history, map->texture, light, layer, tiles->rows);
+  make_mips(map, light, layer, tiles->rows);
 }
 
 abbe_result abbe_spectral_map_read_ledger(const abbe_spectral_map *map, size_t light,
@@ -142,10 +146,9 @@ abbe_result abbe_spectral_map_read(const abbe_spectral_map *map, size_t light, d
     if (i == light || plan->light_view[i].light != light) continue;
     for (size_t k = 0; k < layer; k++) data[light * layer + k] += data[i * layer + k];
   }
-  abbe_result result = abbe_map_picture_flux(data + light * layer, side,
-                                             &map->views->light[light].map,
-                                             unit * scene_of(map)->local->light[light].power, out,
-                                             error);
+  abbe_result result =
+      abbe_map_picture_flux(data + light * layer, side, &map->views->light[light].map,
+                            unit * scene_of(map)->local->light[light].power, out, error);
   free(data);
   return result;
 }

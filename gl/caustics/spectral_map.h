@@ -1,11 +1,12 @@
-/* spectral_map.h: where light lies that refractors have bent: X, Y, Z flux over window area, of unit
- * power of the light; a layer a light, and a layer of tiles for each that has any; summed in whole
- * units, in levels. Internal to gl/.
+/* spectral_map.h: where light lies that refractors have bent: X, Y, Z flux over window area, of
+ * unit power of the light; a layer a light, and a layer of tiles for each that has any; summed in
+ * whole units, in levels. Internal to gl/.
  */
 #ifndef ABBE_GL_CAUSTICS_SPECTRAL_MAP_H
 #define ABBE_GL_CAUSTICS_SPECTRAL_MAP_H
 
 #include "colorimetry/image/image.h"
+#include "gl/caustics/map_history.h"
 #include "gl/device/statistics.h"
 #include "gl/light/receiver_atlas.h"
 
@@ -15,6 +16,8 @@
 typedef struct abbe_spectral_map {
   const abbe_photon_lights *views;
   const abbe_receiver_atlas *atlas;
+  abbe_map_history
+      *history; /* whose light maps hold beside this frame's; set by whoever makes it */
   GLuint texture, sums;
   GLuint resolve, mip; /* programs */
   size_t layers;
@@ -29,7 +32,7 @@ abbe_result abbe_spectral_map_make(const abbe_photon_lights *views,
 void abbe_spectral_map_free(abbe_spectral_map *map);
 
 void abbe_spectral_map_clear(abbe_spectral_map *map);
-/* The light's sums to its layers' texels, in all levels. */
+/* The light's sums to its layers' texels, in all levels, with the history's. */
 void abbe_spectral_map_resolve(abbe_spectral_map *map, size_t light);
 /* The texture, into the program that is in use. */
 void abbe_spectral_map_set(const abbe_spectral_map *map, GLuint program);

@@ -23,6 +23,7 @@ extern "C" {
   X(GENQUERIES, GenQueries)                                                                        \
   X(GETQUERYOBJECTUIV, GetQueryObjectuiv)                                                          \
   X(COPYBUFFERSUBDATA, CopyBufferSubData) X(ATTACHSHADER, AttachShader)                            \
+  X(COPYIMAGESUBDATA, CopyImageSubData)                                                            \
   X(BINDBUFFER, BindBuffer)                                                                        \
   X(BINDBUFFERBASE, BindBufferBase)                                                                \
   X(BINDFRAMEBUFFER, BindFramebuffer)                                                              \

@@ -58,8 +58,8 @@ bool abbe_photon_lights_map_is_given(const abbe_photon_lights *views, size_t lig
 }
 
 /* All of it but the range, which must hold this scene's receivers. */
-static void take_layout(const abbe_photon_lights *views, const abbe_map_layout *given,
-                        abbe_map_layout *out) {
+void abbe_photon_lights_take_layout(const abbe_photon_lights *views, const abbe_map_layout *given,
+                                    abbe_map_layout *out) {
   *out = *given;
   out->view.near = INFINITY;
   out->view.far = -INFINITY;
@@ -138,13 +138,14 @@ static void fit_views(abbe_photon_lights *views) {
     }
     abbe_photon_lights_whole_map(views, i, &state->map);
     if (abbe_photon_lights_map_is_given(views, i))
-      take_layout(views, views->scene->map_layout, &state->map);
+      abbe_photon_lights_take_layout(views, views->scene->map_layout, &state->map);
   }
 }
 
-void abbe_photon_lights_shift_cells(abbe_photon_lights *views, size_t light) {
-  const double *shift = views->scene->plan->desc.photon_shift;
+void abbe_photon_lights_shift_cells(abbe_photon_lights *views, size_t light,
+                                    const double shift[2]) {
   abbe_photon_light *state = &views->light[light];
+  memcpy(state->near_view.window, state->unshifted, sizeof state->unshifted);
   if (fmax(fabs(shift[0]), fabs(shift[1])) == 0) return;
   for (int axis = 0; axis < 2; axis++) {
     double *low = &state->near_view.window[2 * axis], *high = low + 1;
@@ -223,8 +224,7 @@ static void upload_texel_sizes(const abbe_photon_lights *views, size_t light, in
 static void upload_warps(abbe_photon_lights *views, size_t light) {
   float row[ABBE_WARP_STEPS][4];
   for (int k = 0; k < ABBE_WARP_STEPS; k++)
-    for (int i = 0; i < 4; i++)
-      row[k][i] = (float)views->light[light].map.knot[i % 2][k + i / 2];
+    for (int i = 0; i < 4; i++) row[k][i] = (float)views->light[light].map.knot[i % 2][k + i / 2];
   views->scene->gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, views->warps);
   views->scene->gpu->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(light * sizeof row),
                                        sizeof row, row);

@@ -17,7 +17,8 @@ enum { ABBE_WARP_STEPS = ABBE_MAP_LAYOUT_STEPS };
 typedef struct abbe_photon_light {
   abbe_view near_view;
   abbe_map_layout map;
-  size_t cells[2]; /* of the photon grid, across and up */
+  size_t cells[2];     /* of the photon grid, across and up */
+  double unshifted[4]; /* the near view's window before its grid was shifted */
   size_t photon_count;
   double cell_flux;  /* most that one photon cell can carry, of unit power of the light */
   double white_peak; /* largest of X, Y, Z of the light's white, by its Y */
@@ -38,8 +39,8 @@ abbe_result abbe_photon_lights_make(const abbe_gpu_scene *scene, abbe_photon_lig
 void abbe_photon_lights_free(abbe_photon_lights *views);
 /* Writes the tables anew: after any change of a view, of cells or of what is reached. */
 void abbe_photon_lights_upload(abbe_photon_lights *views);
-/* Cells a side, at most: the plan's, or so many fewer that all points of a light with a size have as
- * many together. */
+/* Cells a side, at most: the plan's, or so many fewer that all points of a light with a size have
+ * as many together. */
 size_t abbe_photon_lights_photons(const abbe_gpu_scene *scene, size_t light);
 void abbe_photon_lights_bind(const abbe_photon_lights *views);
 
@@ -53,8 +54,12 @@ bool abbe_photon_lights_is_face(const abbe_photon_lights *views, size_t light);
 /* A light's map around all receivers, before it is fitted to the photons' hits. */
 void abbe_photon_lights_whole_map(const abbe_photon_lights *views, size_t light,
                                   abbe_map_layout *out);
-/* Moves the photon grid by the request's part of a cell; what is lit stays in the window. */
-void abbe_photon_lights_shift_cells(abbe_photon_lights *views, size_t light);
+/* The layout with the range of this scene's receivers; `out` is of the light. */
+void abbe_photon_lights_take_layout(const abbe_photon_lights *views, const abbe_map_layout *given,
+                                    abbe_map_layout *out);
+/* Moves the photon grid by this part of a cell from where `unshifted` has it; what is lit stays in
+ * the window. */
+void abbe_photon_lights_shift_cells(abbe_photon_lights *views, size_t light, const double shift[2]);
 void abbe_photon_lights_set_grid(const abbe_photon_lights *views, GLuint program, size_t light);
 
 /* Flux of one unit of a light's map sums, of unit power of the light: what photons carry and maps

@@ -310,17 +310,16 @@ static void light_lands_on_a_ball_behind_a_pane(void **state) {
   abbe_scene scene = {0};
   abbe_image picture = {0};
   abbe_error error = {0};
-  float *at = NULL;
-  size_t count, orders, samples, on_globe = 0, seen = 0;
+  abbe_renderer_hits hits;
+  size_t on_globe = 0, seen = 0;
   load_text(UNDER_A_PANE, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   const abbe_ledger e = draw_frame(renderer).energy;
   assert_true(abbe_ledger_imbalance(&e) < 1e-4);
   assert_near(e.deposited / e.reached, pane_passes, 1e-3);
-  assert_ok(abbe_renderer_read_hits(renderer, 0, &at, NULL, &count, &orders, &samples, &error),
-            &error);
-  for (size_t i = 0; i < count * orders * samples; i++) {
-    const float *p = at + 4 * i;
+  assert_ok(abbe_renderer_read_hits(renderer, 0, 0, &hits, &error), &error);
+  for (size_t i = 0; i < hits.count * hits.slots * hits.samples; i++) {
+    const float *p = hits.at + 4 * i;
     if (p[3] <= 0) continue;
     const double aside = hypot((double)p[0], (double)p[1]);
     const double up = (double)p[2] - globe_centre[2];
@@ -332,7 +331,7 @@ static void light_lands_on_a_ball_behind_a_pane(void **state) {
       assert_near(p[2], 0, 1e-6);
     }
   }
-  assert_true(on_globe > count / 4);
+  assert_true(on_globe > hits.count / 4);
   read_picture(renderer, true, &picture);
   const size_t caustic = abbe_image_find_channel(&picture, "caustic.Y");
   const size_t direct = abbe_image_find_channel(&picture, "direct.Y");
@@ -352,7 +351,7 @@ static void light_lands_on_a_ball_behind_a_pane(void **state) {
   assert_near(sum / expected, 1, 5e-3);
   assert_true(worst < 0.045);
   abbe_image_free(&picture);
-  free(at);
+  abbe_renderer_hits_free(&hits);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
 }

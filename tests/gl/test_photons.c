@@ -3,41 +3,26 @@
 
 #include "spectral/optics.h"
 
-typedef struct hits {
-  float *at; /* [count][orders][samples][4] */
-  unsigned *cell;
-  size_t count, orders, samples, grid;
-  abbe_view view;
-} hits;
-
-static void trace_photons(const abbe_scene *scene, const abbe_render_desc *desc, hits *l) {
+static void trace_photons(const abbe_scene *scene, const abbe_render_desc *desc,
+                          abbe_renderer_hits *l) {
   abbe_scene aside = *scene;
   look_aside(&aside);
   abbe_renderer *renderer = make_renderer(&aside, desc);
   abbe_error error = {0};
   draw_frame(renderer);
-  assert_ok(abbe_renderer_read_hits(renderer, 0, &l->at, &l->cell, &l->count, &l->orders,
-                                    &l->samples, &error),
-            &error);
-  abbe_renderer_photon_view(renderer, 0, &l->view);
-  l->grid = abbe_renderer_plan(renderer)->desc.photons;
+  assert_ok(abbe_renderer_read_hits(renderer, 0, 0, l, &error), &error);
   abbe_renderer_free(renderer);
   assert_true(l->count > 0);
 }
 
-static void hits_free(hits *l) {
-  free(l->at);
-  free(l->cell);
+static const float *hit(const abbe_renderer_hits *l, size_t photon, size_t order, size_t sample) {
+  return l->at + 4 * ((photon * l->slots + order) * l->samples + sample);
 }
 
-static const float *hit(const hits *l, size_t photon, size_t order, size_t sample) {
-  return l->at + 4 * ((photon * l->orders + order) * l->samples + sample);
-}
-
-static void photon_ray(const hits *l, size_t photon, double o[3], double d[3]) {
+static void photon_ray(const abbe_renderer_hits *l, size_t photon, double o[3], double d[3]) {
   unsigned cell = l->cell[photon];
-  double uv[2] = {((cell & 0xffffu) + 0.5) / (double)l->grid,
-                  ((cell >> 16) + 0.5) / (double)l->grid};
+  double uv[2] = {((cell & 0xffffu) + 0.5) / (double)l->grid[0],
+                  ((cell >> 16) + 0.5) / (double)l->grid[1]};
   abbe_view_ray(&l->view, uv, o, d);
 }
 
@@ -86,12 +71,13 @@ static void step(sphere_path *path, double out[3], double *out_share) {
 /* Floats of about 1 carry 6e-8; each passage of the sphere stretches small differences by up to
  * its radius over its focal length, and 1 / cosine at the floor: a hundredfold in all, for rays
  * that do not graze. */
-static void compare_path(const hits *l, size_t photon, sphere_path path, size_t *compared) {
+static void compare_path(const abbe_renderer_hits *l, size_t photon, sphere_path path,
+                         size_t *compared) {
   double o[3], d[3], out[3], share, power = 1;
   photon_ray(l, photon, o, d);
   if (!enter(&path, o, d) || -dot(d, path.normal) < 0.3) return;
   double c = dot(d, l->view.forward);
-  double flux = power * c * c * c * abbe_view_area(&l->view) / (double)(l->grid * l->grid);
+  double flux = power * c * c * c * abbe_view_area(&l->view) / (double)(l->grid[0] * l->grid[1]);
   for (size_t order = 0; order < 3; order++) {
     step(&path, out, &share);
     double t = -path.p[2] / out[2];
@@ -111,7 +97,7 @@ static void compare_path(const hits *l, size_t photon, sphere_path path, size_t 
 static void test_a_sphere_lands_as_double_precision_says(void **state) {
   (void)state;
   abbe_scene scene = {0};
-  hits l = {0};
+  abbe_renderer_hits l = {0};
   abbe_error error = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   abbe_render_desc desc = small_frame;
@@ -124,7 +110,7 @@ static void test_a_sphere_lands_as_double_precision_says(void **state) {
   size_t compared = 0;
   for (size_t i = 0; i < l.count; i++) compare_path(&l, i, path, &compared);
   assert_true(compared > l.count / 2);
-  hits_free(&l);
+  abbe_renderer_hits_free(&l);
   abbe_scene_free(&scene);
 }
 
@@ -140,7 +126,7 @@ static void test_a_sphere_lands_as_double_precision_says(void **state) {
   "- {name: prism, shape: prism, apex: 60, side: 0.2, length: 0.2, material: %s,\n"                \
   "   transform: [{translate: [0, 0, 1]}]}\n"
 
-static void trace_prism(const char *glass, double wall_x, hits *l) {
+static void trace_prism(const char *glass, double wall_x, abbe_renderer_hits *l) {
   char text[1024];
   double pi = acos(-1), up = asin(1.5 * sin(pi / 6)) - pi / 6;
   abbe_scene scene = {0};
@@ -155,7 +141,7 @@ static void trace_prism(const char *glass, double wall_x, hits *l) {
 
 /* Whether the photon meets the entrance face well above the prism's middle: then it leaves through
  * the other face, and not through the base. */
-static bool enters_high(const hits *l, size_t photon) {
+static bool enters_high(const abbe_renderer_hits *l, size_t photon) {
   double o[3], d[3], normal[3] = {-cos(acos(-1) / 6), 0, 0.5};
   photon_ray(l, photon, o, d);
   double inradius = 0.2 / (2 * sqrt(3)), apex_z = 1 + 0.2 / sqrt(3);
@@ -167,7 +153,7 @@ static bool enters_high(const hits *l, size_t photon) {
 
 static void test_a_prism_deviates_least_as_the_formula_says(void **state) {
   (void)state;
-  hits near = {0}, far = {0};
+  abbe_renderer_hits near = {0}, far = {0};
   double expected;
   trace_prism("flat", 1, &near);
   trace_prism("flat", 1.5, &far);
@@ -190,11 +176,11 @@ static void test_a_prism_deviates_least_as_the_formula_says(void **state) {
     compared++;
   }
   assert_true(compared > 100);
-  hits_free(&near);
-  hits_free(&far);
+  abbe_renderer_hits_free(&near);
+  abbe_renderer_hits_free(&far);
 }
 
-static double mean_height(const hits *l, size_t sample) {
+static double mean_height(const abbe_renderer_hits *l, size_t sample) {
   double sum = 0, flux = 0;
   for (size_t i = 0; i < l->count; i++) {
     const float *at = hit(l, i, 0, sample);
@@ -210,19 +196,19 @@ static double mean_height(const hits *l, size_t sample) {
 /* The beam comes from below and is bent down: the more, the lower on the wall. */
 static void test_violet_is_bent_more_than_red(void **state) {
   (void)state;
-  hits l = {0};
+  abbe_renderer_hits l = {0};
   trace_prism("crown", 1, &l);
   assert_int_equal(l.samples, 7);
   for (size_t sample = 1; sample < 7; sample++)
     assert_true(mean_height(&l, sample) > mean_height(&l, sample - 1) + 1e-3);
-  hits_free(&l);
+  abbe_renderer_hits_free(&l);
 }
 
 /* The shipped prism's spectrum on its wall runs from violet, deviated most, to red. */
 static void test_the_shipped_prism_makes_a_spectrum(void **state) {
   (void)state;
   abbe_scene scene = {0};
-  hits l = {0};
+  abbe_renderer_hits l = {0};
   load_shipped("prism", &scene);
   trace_photons(&scene, &small_frame, &l);
   double before = 0;
@@ -238,7 +224,7 @@ static void test_the_shipped_prism_makes_a_spectrum(void **state) {
     if (sample > 0) assert_true(sum / flux < before);
     before = sum / flux;
   }
-  hits_free(&l);
+  abbe_renderer_hits_free(&l);
   abbe_scene_free(&scene);
 }
 
@@ -249,7 +235,7 @@ static void test_a_hill_moves_no_hit_on_the_floor(void **state) {
   size_t on_hill = 0;
   for (int k = 0; k < 2; k++) {
     char text[1024];
-    hits alone = {0}, beside = {0};
+    abbe_renderer_hits alone = {0}, beside = {0};
     abbe_scene scene = {0};
     snprintf(text, sizeof text, "%s%s", CAMERA POINT_LIGHT FLOOR, balls[k]);
     load_text(text, &scene);
@@ -260,13 +246,13 @@ static void test_a_hill_moves_no_hit_on_the_floor(void **state) {
     trace_photons(&scene, &small_frame, &beside);
     abbe_scene_free(&scene);
     assert_int_equal(alone.count, beside.count);
-    assert_int_equal(alone.orders, beside.orders);
+    assert_int_equal(alone.slots, beside.slots);
     size_t on_floor = 0;
     for (size_t i = 0; i < alone.count; i++) {
       size_t j = 0;
       while (j < beside.count && beside.cell[j] != alone.cell[i]) j++;
       assert_true(j < beside.count);
-      for (size_t slot = 0; slot < alone.orders; slot++) {
+      for (size_t slot = 0; slot < alone.slots; slot++) {
         const float *a = hit(&alone, i, slot, 0), *b = hit(&beside, j, slot, 0);
         if (b[3] <= 0) continue; /* nothing, or in the hill's shadow */
         on_hill += b[2] > 1e-4f;
@@ -277,8 +263,8 @@ static void test_a_hill_moves_no_hit_on_the_floor(void **state) {
       }
     }
     assert_true(on_floor > alone.count);
-    hits_free(&alone);
-    hits_free(&beside);
+    abbe_renderer_hits_free(&alone);
+    abbe_renderer_hits_free(&beside);
   }
   assert_true(on_hill > 0);
 }

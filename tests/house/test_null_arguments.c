@@ -107,7 +107,6 @@ static const struct {
     {"abbe_renderer_frame", "user"},
     {"abbe_renderer_frame", "statistics"},
     {"abbe_renderer_make", "desc"},
-    {"abbe_renderer_read_hits", "cells"},
     {"abbe_rii_load", "report"},
     {"abbe_rii_load", "name"},
     {"abbe_rii_parse", "report"},

@@ -1,13 +1,15 @@
-/* view_feed.h: where the light of a place has come in: the photons that land near it, the cells of
+/* view_feed.h: where the light of a place has come in: the photons that light it, the cells of
  * refractors through which they went first, and the facets that these belong to.
  *
- * It takes photons' hits as the renderer has them (gl/renderer.h) and follows each one's ray from
- * its light to the first refractor. What happened inside is not in a hit, so the facets are those
- * of the entry alone.
+ * It takes photons' hits as the renderer has them (gl/renderer.h). A photon lights what lies
+ * between its hit and its neighbours', and between its hits at two wavelengths, as the map has it.
+ * Each one's ray is followed from its light to the first refractor. What happened inside is not in
+ * a hit, so the facets are those of the entry alone.
  */
 #ifndef ABBE_CLI_VIEW_PICTURE_VIEW_FEED_H
 #define ABBE_CLI_VIEW_PICTURE_VIEW_FEED_H
 
+#include "cli/view/picture/view_sight.h"
 #include "scenes/scene.h"
 #include "scenes/view/view.h"
 
@@ -27,7 +29,9 @@ typedef struct abbe_view_facet {
 
 typedef struct abbe_view_feed {
   double point[3], radius; /* whose light is asked for, m */
-  size_t photons;          /* that land there, at any wavelength */
+  bool on_refractor;       /* the place that was asked for lies on one, where no photon lands: */
+  abbe_view_sight sight;   /* through it to the point */
+  size_t photons;          /* that light it, at any wavelength */
   size_t ray_count;        /* of these, the strongest that meet a refractor */
   abbe_view_ray_in ray[ABBE_VIEW_FEED_RAYS];
   size_t facet_count; /* the strongest */
@@ -38,16 +42,23 @@ typedef struct abbe_view_feed {
   double flux;
 } abbe_view_feed;
 
-/* A light's hits. */
+/* A light's hits at some wavelengths side by side. */
 typedef struct abbe_view_hits {
-  const float *at;      /* [count][slots][samples] x 4: world place, flux */
+  const float *at; /* [count][slots][samples] x 4: world place, flux */
+  const unsigned
+      *path; /* [count][slots][samples]: equal where light met the same faces; 0: no hit */
   const unsigned *cell; /* [count], x | y << 16 of the grid */
-  size_t count, slots, samples, grid;
+  size_t count, slots, samples, grid[2];
+  bool last;      /* the last sample has no other behind it, in this batch or the next */
   abbe_view view; /* that the grid is of */
 } abbe_view_hits;
 
 void abbe_view_feed_begin(const double point[3], double radius, abbe_view_feed *out);
-/* Once for each light. ABBE_NO_MEMORY. */
+/* Where the eye sees a refractor at the place, it becomes that which is seen through it at this
+ * wavelength. False: none is, and nothing is to be added. */
+bool abbe_view_feed_look(abbe_view_feed *feed, const abbe_scene *scene, double nm);
+/* Once for each light and batch of its wavelengths; a batch begins with the last wavelength of the
+ * one before it. ABBE_NO_MEMORY. */
 abbe_result abbe_view_feed_add(abbe_view_feed *feed, const abbe_view_hits *hits, abbe_error *error);
 /* Follows what was added; nothing is to be freed then. */
 void abbe_view_feed_end(abbe_view_feed *feed, const abbe_scene *scene);

@@ -6,11 +6,11 @@
 #include "cli/view/picture/view_feed.h"
 #include "gl/renderer.h"
 
-/* The renderer has drawn that scene. What was found before *stop became true stands. Errors of
- * abbe_renderer_read_hits, ABBE_NO_MEMORY. */
+/* The renderer has drawn that scene. nm: by which what is seen through a refractor is found. What
+ * was found before *stop became true stands. Errors of abbe_renderer_read_hits, ABBE_NO_MEMORY. */
 abbe_result abbe_view_look_feed(abbe_renderer *renderer, const abbe_scene *scene,
-                                const double point[3], double radius, const volatile int *stop,
-                                abbe_view_feed *out, abbe_error *error);
+                                const double point[3], double radius, double nm,
+                                const volatile int *stop, abbe_view_feed *out, abbe_error *error);
 /* Of the first light from which photons start; zeroed where there is none. Errors of
  * abbe_renderer_read_map. */
 abbe_result abbe_view_look_map(abbe_renderer *renderer, abbe_image *out, abbe_error *error);

@@ -169,16 +169,21 @@ static abbe_result check_wyman(const abbe_render_desc *d, abbe_error *error) {
   const bool wyman = abbe_profile_is_wyman2006(d->profile);
   const bool gathers = d->fill == ABBE_FILL_GATHER_EYE || d->fill == ABBE_FILL_GATHER_LIGHT;
   if ((int)d->direction < 0 || d->direction >= ABBE_DIRECTION_COUNT ||
-      (!wyman && (d->direction != ABBE_DIRECTION_AUTO || d->history > 0)))
+      (!wyman && d->direction != ABBE_DIRECTION_AUTO))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "a direction of shading and a history of frames go with the profiles "
-                          "wyman2006 and wyman2006-cie, not with '%s'",
+                          "a direction of shading goes with the profiles wyman2006 and "
+                          "wyman2006-cie, not with '%s'",
+                          abbe_profile_name(d->profile));
+  if (!wyman && d->profile != ABBE_PROFILE_DEFAULT && d->history > 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a history of frames goes with the profiles default, wyman2006 and "
+                          "wyman2006-cie, not with '%s'",
                           abbe_profile_name(d->profile));
   if (d->profile == ABBE_PROFILE_WYMAN2006_CIE && d->direction != ABBE_DIRECTION_DIRECT)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "in units light is the same whatever direction it is shaded by; "
                           "wyman2006-cie takes none, wyman2006 does");
-  if (d->history > 1 && !gathers)
+  if (wyman && d->history > 1 && !gathers)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a history of %zu frames goes with gathers, not with the fill '%s'",
                           d->history, abbe_fill_name(d->fill));

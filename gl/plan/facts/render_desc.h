@@ -147,9 +147,11 @@ typedef struct abbe_render_desc {
   abbe_estimator estimator;
   size_t iterations, interfaces;
   abbe_direction direction; /* of wyman2006; in its twin direct alone */
-  /* Of wyman2006's gathers: frames that a picture holds, 1 to 4, 0: 1. A renderer that is changed
-   * or redrawn goes on with the frames before, so that a picture is no longer that of a renderer
-   * made anew; in units the photons of each frame are shifted. */
+  /* Frames that a picture holds, 1 to 4, 0: 1; of the default profile and wyman2006's gathers. A
+   * renderer that is changed or redrawn goes on with the frames before, so that a picture is no
+   * longer that of a renderer made anew; in units the photons of each frame are shifted. The default
+   * profile takes a still scene's next frames until the picture is the mean of so many, and where
+   * the scene has changed since no texel of its map leaves what this frame has around it. */
   size_t history;
   abbe_transport transport;
   /* Of the transport 'volume', which it lives as long as; of the profile wyman2003 a printed one.

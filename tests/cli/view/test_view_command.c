@@ -2,7 +2,9 @@
 #include "tests/cli/run_program.h"
 
 #define SCRIPTS "\"$house\"/tests/cli/view/scripts/"
-#define VIEW "\"$abbe\" view \"$house\"/scenes/gem.yaml "
+/* light enough for what is asserted */
+#define FEW "--photons 96 --map 256 --wavelengths 9 "
+#define VIEW "\"$abbe\" view \"$house\"/scenes/gem.yaml " FEW
 
 #ifdef ABBE_HAVE_VIEW
 
@@ -32,7 +34,8 @@ static void what_is_wrong_is_said_and_the_picture_stays(void **state) {
   must("cp \"$house\"/scenes/sphere.yaml scene.yaml; cp scene.yaml good.yaml");
   must("sed 's/radius:/radios:/' good.yaml > broken.yaml");
   must("sed 's/^ambient:.*/ambient: 1.5/' good.yaml > bright.yaml");
-  must("\"$abbe\" view scene.yaml --last balanced --size 500x200 --script " SCRIPTS "faults.txt");
+  must("\"$abbe\" view scene.yaml " FEW "--last balanced --size 500x200 --script " SCRIPTS
+       "faults.txt");
   must("rm *.yaml");
   must(VIEW "--last balanced --size 500x200 --script " SCRIPTS "refused.txt");
   assert_int_equal(run_left(), 0);
@@ -55,7 +58,7 @@ static void a_turntable(void **state) {
   must("printf '%s\\n' 'wait accurate' 'remember hash first' 'key t' 'wait turntable' "
        "'assert note contains a-turn.png' 'wait accurate' 'assert hash = $first' 'key control+s' "
        "'key t' 'wheel 20,20 1' 'wait accurate' 'assert turning = no' > a.txt");
-  must("\"$abbe\" view \"$house\"/scenes/sphere.yaml --last accurate --size 404x64 --keep a "
+  must("\"$abbe\" view \"$house\"/scenes/sphere.yaml " FEW "--last accurate --size 404x64 --keep a "
        "--script a.txt");
   must("test $(ls a-turn-0*.png | wc -l) = 36 && cmp a-turn-0001.png a.png");
   must("! cmp -s a-turn-0001.png a-turn-0019.png; grep -q acTL a-turn.png");
@@ -67,8 +70,8 @@ static void a_turntable(void **state) {
 static void a_lost_context_is_made_good(void **state) {
   (void)state;
   must("cp \"$house\"/scenes/sphere.yaml good.yaml");
-  must("ABBE_LOST=lost LD_PRELOAD=" ABBE_LOST_CONTEXT
-       " \"$abbe\" view good.yaml --last accurate --size 500x200 --script " SCRIPTS "lost.txt");
+  must("ABBE_LOST=lost LD_PRELOAD=" ABBE_LOST_CONTEXT " \"$abbe\" view good.yaml " FEW
+       "--last accurate --size 500x200 --script " SCRIPTS "lost.txt");
   assert_contains(run_errors, "lost_context: a context is lost");
   must("rm good.yaml lost");
   assert_int_equal(run_left(), 0);
@@ -88,7 +91,7 @@ static void what_is_read_is_not_written_over(void **state) {
   /* another scene than at the start, picked in the panel */
   must("printf '%s\\n' 'wait balanced' 'choose scene other-view.yaml' 'wait balanced' "
        "'slide exposure 0.6' 'key control+s' 'assert note contains lost' > a.txt");
-  must("cp before.yaml other.yaml; \"$abbe\" view other.yaml --last balanced --size 420x600 "
+  must("cp before.yaml other.yaml; \"$abbe\" view other.yaml " FEW "--last balanced --size 420x600 "
        "--script a.txt");
   must("cmp before.yaml other-view.yaml && cmp before.yaml scenes/gem.yaml");
   must("test ! -e other-view.exr && test ! -e scenes/gem.exr");
@@ -140,6 +143,9 @@ static void wrong_use(void **state) {
   assert_true(run_refuses("\"$abbe\" view", 2, "which scene?"));
   assert_true(run_refuses(VIEW "--size 0x1", 2, "--size"));
   assert_true(run_refuses(VIEW "--last soon", 2, "--last"));
+  assert_true(run_refuses(VIEW "--photons 0", 2, "--photons"));
+  assert_true(run_refuses(VIEW "--wavelengths few", 2, "--wavelengths"));
+  assert_true(run_refuses(VIEW "--map 5000", 2, "--map"));
   assert_true(run_refuses(VIEW "--serve 65536", 2, "--serve"));
   assert_true(run_refuses(VIEW "--serve 0 --script a.txt", 2, "not both"));
 }

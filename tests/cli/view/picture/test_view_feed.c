@@ -31,8 +31,9 @@ static void make_cube(abbe_object *object) {
 }
 
 /* Photons of a beam downward from above, one a cell, which all land at their own cell's place on
- * the level z = -3. */
+ * the level z = -3, each by a path of its own. */
 static void shine(float *at, unsigned *cell, abbe_view_hits *out, double tilt) {
+  static unsigned path[GRID * GRID];
   const double origin[3] = {3 * tilt, 0, 3}, down[3] = {-tilt, 0, -1}, up[3] = {0, 1, 0};
   abbe_view_look(origin, down, up, true, &out->view);
   const double window[4] = {-0.8, 0.8, -0.8, 0.8};
@@ -41,11 +42,14 @@ static void shine(float *at, unsigned *cell, abbe_view_hits *out, double tilt) {
   out->cell = cell;
   out->count = (size_t)GRID * GRID;
   out->slots = out->samples = 1;
-  out->grid = GRID;
+  out->grid[0] = out->grid[1] = GRID;
+  out->path = path;
+  out->last = true;
   for (unsigned y = 0; y < GRID; y++)
     for (unsigned x = 0; x < GRID; x++) {
       const unsigned i = y * GRID + x;
       cell[i] = x | y << 16;
+      path[i] = i + 1;
       const float hit[4] = {(float)x, (float)y, -3, 0.5F};
       memcpy(at + 4 * (size_t)i, hit, sizeof hit);
     }
@@ -136,9 +140,139 @@ static void test_nothing_lands_or_nothing_is_met(void **state) {
   assert_int_equal(feed.ray_count + feed.facet_count, 0);
 }
 
+static size_t count_lights(const abbe_view_hits *hits, const double point[3], double radius) {
+  static const abbe_scene nothing = {0};
+  static abbe_view_feed feed;
+  abbe_error error = {0};
+  abbe_view_feed_begin(point, radius, &feed);
+  assert_ok(abbe_view_feed_add(&feed, hits, &error), &error);
+  abbe_view_feed_end(&feed, &nothing);
+  return feed.photons;
+}
+
+/* Hits a metre apart, asked for at places far from all: between neighbours of one path there is
+ * light, between others there is none, and beside the outermost none either. */
+static void test_light_lies_between_neighbours(void **state) {
+  (void)state;
+  enum { LEFT = 7 }; /* columns below it are of one path, the others of another */
+  static float at[4 * GRID * GRID];
+  static unsigned cell[GRID * GRID], path[GRID * GRID];
+  abbe_view_hits hits;
+  const double between[3] = {3.45, 7.3, -3}, apart[3] = {LEFT - 0.2, 7.3, -3};
+  const double torn[3] = {LEFT - 0.49, 7.3, -3}, beside[3] = {-0.7, 7.3, -3};
+  shine(at, cell, &hits, 0);
+  assert_int_equal(count_lights(&hits, between, 0.1), 0);
+  for (int i = 0; i < GRID * GRID; i++) path[i] = i % GRID < LEFT ? 1 : 2;
+  hits.path = path;
+  assert_int_equal(count_lights(&hits, between, 0.1), 2); /* x 3, and 4 from 3.5 on */
+  assert_int_equal(count_lights(&hits, apart, 0.1), 1);   /* the right one's half alone */
+  assert_int_equal(count_lights(&hits, torn, 0.1), 2);    /* where both end */
+  assert_int_equal(count_lights(&hits, beside, 0.1), 0);
+  assert_int_equal(count_lights(&hits, between, 0.03),
+                   0); /* a metre is a tear to so small a place */
+}
+
+/* Three wavelengths that one photon spreads over 20 m, and two batches of two of them. */
+static void test_light_lies_between_wavelengths(void **state) {
+  (void)state;
+  const float at[12] = {-3, 0, 0, 1, 7, 0, 0, 1, 17, 0, 0, 1};
+  const unsigned path[3] = {5, 5, 5}, torn[3] = {5, 5, 6}, cell[1] = {0};
+  abbe_view_hits hits;
+  static float grid_at[4 * GRID * GRID];
+  static unsigned grid_cell[GRID * GRID];
+  shine(grid_at, grid_cell, &hits, 0);
+  hits.at = at;
+  hits.path = path;
+  hits.cell = cell;
+  hits.count = hits.grid[0] = hits.grid[1] = 1;
+  hits.samples = 3;
+  for (int x = -3; x < 18; x++)
+    assert_int_equal(count_lights(&hits, (const double[3]){x, 0.4, 0}, 0.5), 1);
+  assert_int_equal(count_lights(&hits, (const double[3]){-3.6, 0, 0}, 0.5), 0);
+  assert_int_equal(count_lights(&hits, (const double[3]){12, 0.6, 0}, 0.5), 0);
+  hits.path = torn;
+  assert_int_equal(count_lights(&hits, (const double[3]){2, 0, 0}, 0.5), 1);
+  assert_int_equal(count_lights(&hits, (const double[3]){12, 0, 0}, 0.5), 0);
+  assert_int_equal(count_lights(&hits, (const double[3]){17, 0, 0}, 0.5), 1);
+  /* in batches that share the middle one: one photon, and each wavelength's flux once */
+  static abbe_view_feed feed;
+  abbe_error error = {0};
+  abbe_view_feed_begin((const double[3]){7, 0, 0}, 11, &feed);
+  hits.path = path;
+  hits.samples = 2;
+  hits.last = false;
+  assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
+  hits.at = at + 4;
+  hits.last = true;
+  assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
+  assert_int_equal(feed.photons, 1);
+  assert_near(feed.flux, 3, 1e-12);
+  abbe_view_feed_end(&feed, &(const abbe_scene){0});
+}
+
+/* A grid that is coarser one way than the other: rays go through the middles of its own cells. */
+static void test_cells_of_an_oblong_grid(void **state) {
+  (void)state;
+  static float at[4 * GRID * GRID];
+  static unsigned cell[GRID * GRID];
+  static abbe_view_feed feed;
+  abbe_object object = {0};
+  make_cube(&object);
+  const abbe_scene scene = {.object_count = 1, .object = &object};
+  abbe_view_hits hits;
+  abbe_error error = {0};
+  shine(at, cell, &hits, 0);
+  hits.grid[1] = 2 * GRID;
+  abbe_view_feed_begin((const double[3]){8, 15, -3}, 0.5, &feed);
+  assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
+  abbe_view_feed_end(&feed, &scene);
+  assert_int_equal(feed.ray_count, 1);
+  const double right = fabs(feed.ray[0].entry[0]), above = fabs(feed.ray[0].entry[1]);
+  assert_near(right, 1.6 * (8.5 / GRID - 0.5), 1e-9);
+  assert_near(above, 1.6 * (0.5 - 15.5 / (2 * GRID)), 1e-9);
+  abbe_mesh_free(&object.mesh);
+}
+
+/* On the cube, seen from outside; not before it, nor beside it on the ground. What is seen through
+ * it is asked for then, where that is a receiver. */
+static void test_what_is_seen_may_be_the_refractor(void **state) {
+  (void)state;
+  static abbe_view_feed feed;
+  static abbe_material glass = {.name = "glass", .min_nm = 380, .max_nm = 780};
+  abbe_object object[2] = {{0}};
+  make_cube(&object[0]);
+  make_cube(&object[1]); /* far below: a floor */
+  for (size_t i = 0; i < 8; i++) object[1].mesh.position[i][2] -= 4;
+  object[0].material = &glass;
+  object[1].material = NULL;
+  glass.dispersion.model = ABBE_DISPERSION_CONSTANT;
+  glass.dispersion.count = 1;
+  glass.dispersion.c[0] = 1.5;
+  const abbe_scene scene = {.object_count = 2, .object = object, .camera.eye = {0.2, 0.1, 5}};
+  const struct {
+    double point[3], height;
+    bool on;
+  } cases[] = {{{0.2, 0.1, 1}, -3, true}, {{3, 0, -1}, -1, false}, {{0.2, 0.1, 3}, 3, false}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    abbe_view_feed_begin(cases[i].point, 0.01, &feed);
+    assert_true(abbe_view_feed_look(&feed, &scene, 550));
+    assert_true(feed.on_refractor == cases[i].on);
+    assert_near(feed.point[2], cases[i].height, 1e-9);
+    assert_near(feed.radius, cases[i].on ? 0.01 * 8 / 4 : 0.01, 1e-9);
+  }
+  const abbe_scene alone = {.object_count = 1, .object = object, .camera.eye = {0.2, 0.1, 5}};
+  abbe_view_feed_begin(cases[0].point, 0.01, &feed);
+  assert_false(abbe_view_feed_look(&feed, &alone, 550)); /* nothing lies behind */
+  for (int k = 0; k < 2; k++) abbe_mesh_free(&object[k].mesh);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_light_from_above_comes_through_the_top),
                                      cmocka_unit_test(test_two_facets_share_as_they_are_seen),
-                                     cmocka_unit_test(test_nothing_lands_or_nothing_is_met)};
+                                     cmocka_unit_test(test_nothing_lands_or_nothing_is_met),
+                                     cmocka_unit_test(test_light_lies_between_neighbours),
+                                     cmocka_unit_test(test_light_lies_between_wavelengths),
+                                     cmocka_unit_test(test_cells_of_an_oblong_grid),
+                                     cmocka_unit_test(test_what_is_seen_may_be_the_refractor)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

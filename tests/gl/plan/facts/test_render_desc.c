@@ -70,6 +70,8 @@ static void limits_are_kept(void **state) {
       {{.estimator = ABBE_ESTIMATOR_RATIO}, "not with 'default'"},
       {{.direction = ABBE_DIRECTION_OWN}, "not with 'default'"},
       {{.profile = ABBE_PROFILE_SHAH2007, .history = 4}, "not with 'shah2007'"},
+      {{.profile = ABBE_PROFILE_THESIS, .history = 2}, "not with 'thesis'"},
+      {{.history = 5}, "frames is 5"},
       {{.profile = ABBE_PROFILE_WYMAN2006, .history = 5}, "frames is 5"},
       {{.profile = ABBE_PROFILE_WYMAN2006, .history = 4, .fill = ABBE_FILL_QUADS}, "'quads'"},
       {{.profile = ABBE_PROFILE_WYMAN2006, .wavelengths = 3}, "one index for all"},

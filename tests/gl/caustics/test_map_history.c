@@ -1,0 +1,242 @@
+/* Frames that follow one another: a still scene, a jump, slow motion. */
+#include "tests/gl/frame.h"
+
+enum { SIDE = 96, FRAMES = ABBE_RENDER_MAX_HISTORY };
+
+/* Where photons start in frames of a sequence, parts of a cell. */
+static const double places[FRAMES][2] = {
+    {-0.375, 0.125}, {0.375, -0.125}, {0.125, 0.375}, {-0.125, -0.375}};
+
+static const abbe_render_desc desc = {.width = 16,
+                                      .height = 16,
+                                      .photons = 40,
+                                      .map_size = SIDE,
+                                      .wavelengths = 5,
+                                      .history = FRAMES};
+
+/* A brick of crown glass, so far to the right: what comes through it is a patch or a few. */
+static void load_brick(double x, abbe_scene *scene) {
+  char text[1024];
+  const int digits = (int)lround(1e5 * x);
+  snprintf(
+      text, sizeof text,
+      CAMERA POINT_LIGHT FLOOR
+      "- {name: brick, shape: box, size: [0.1, 0.08, 0.06], transform: [{rotate: {axis: [0, 0, "
+      "1], angle: 20}}, {translate: [0.%05d, 0, 0.2]}], material: crown}\n",
+      digits);
+  load_text(text, scene);
+  look_aside(scene);
+}
+
+/* Even texels around bricks up to 0.3 m to the right. */
+static void lay_out(const abbe_scene *scene, abbe_map_layout *out) {
+  static const double window[4] = {-0.5, 0.9, -0.5, 0.5};
+  abbe_renderer *renderer = make_renderer(scene, &desc);
+  abbe_renderer_map_layout(renderer, 0, out);
+  abbe_renderer_free(renderer);
+  memcpy(out->view.window, window, sizeof window);
+  abbe_map_layout_make(&out->view, out);
+}
+
+/* A frame alone, of the sequence's number k. */
+static void draw_alone(const abbe_scene *scene, const abbe_render_desc *like, size_t k,
+                       abbe_image *out) {
+  abbe_render_desc alone = *like;
+  alone.history = 0;
+  memcpy(alone.photon_shift, places[k % FRAMES], sizeof alone.photon_shift);
+  make_map(scene, &alone, out);
+}
+
+/* The mean of frames first to last of the sequence. */
+static void draw_mean(const abbe_scene *scene, const abbe_render_desc *like, size_t first,
+                      size_t last, abbe_image *out) {
+  draw_alone(scene, like, first, out);
+  for (size_t k = first + 1; k <= last; k++) {
+    abbe_image one = {0};
+    draw_alone(scene, like, k, &one);
+    for (size_t i = 0; i < 3 * SIDE * SIDE; i++) out->data[i] += one.data[i];
+    abbe_image_free(&one);
+  }
+  for (size_t i = 0; i < 3 * SIDE * SIDE; i++) out->data[i] /= (float)(last - first + 1);
+}
+
+static double apart(const abbe_image *a, const abbe_image *b) {
+  double most = 0;
+  for (size_t i = 0; i < 3 * SIDE * SIDE; i++)
+    most = fmax(most, fabs((double)a->data[i] - (double)b->data[i]));
+  return most / image_max(b, 1);
+}
+
+static void test_a_still_scene_comes_to_the_mean(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_map_layout layout;
+  abbe_image map = {0}, mean = {0}, last = {0};
+  load_brick(0.1, &scene);
+  lay_out(&scene, &layout);
+  abbe_render_desc given = desc;
+  given.map_layout = &layout;
+  abbe_renderer *renderer = make_renderer(&scene, &given);
+  for (size_t k = 0; k < FRAMES; k++) {
+    abbe_image_free(&map);
+    abbe_image_free(&mean);
+    draw_frame(renderer);
+    read_map(renderer, 0, &map);
+    draw_mean(&scene, &given, 0, k, &mean);
+    assert_true(apart(&map, &mean) < 1e-6);
+  }
+  draw_alone(&scene, &given, 0, &last);
+  assert_true(apart(&last, &mean) > 0.01); /* passes do differ */
+  abbe_image_free(&last);
+  /* and stays */
+  const abbe_statistics s = draw_frame(renderer);
+  assert_true(s.kept[ABBE_PASS_SPECTRAL_MAP] && s.kept[ABBE_PASS_PHOTONS]);
+  read_map(renderer, 0, &last);
+  assert_same_pixels(&map, &last);
+  abbe_renderer_free(renderer);
+  abbe_image_free(&map);
+  abbe_image_free(&mean);
+  abbe_image_free(&last);
+  abbe_scene_free(&scene);
+}
+
+/* The least and the most of a texel and the eight around it. */
+static void nearby(const abbe_image *map, size_t i, double *least, double *most) {
+  const int channel = (int)(i % 3), x = (int)(i / 3 % SIDE), y = (int)(i / 3 / SIDE);
+  *least = INFINITY;
+  *most = 0;
+  for (int b = y > 0 ? y - 1 : 0; b <= y + 1 && b < SIDE; b++)
+    for (int a = x > 0 ? x - 1 : 0; a <= x + 1 && a < SIDE; a++) {
+      const double v = (double)map->data[3 * (b * SIDE + a) + channel];
+      *least = fmin(*least, v);
+      *most = fmax(*most, v);
+    }
+}
+
+/* The brick jumps aside. In the first frame already no texel leaves what that frame has
+ * around it, so where it is dark nothing is left; after as many frames as are kept it is the mean
+ * of these. */
+static void test_nothing_is_left_after_a_jump(void **state) {
+  (void)state;
+  abbe_scene scene[2] = {{0}};
+  abbe_map_layout layout;
+  abbe_image before = {0}, map = {0}, alone = {0};
+  abbe_error error = {0};
+  for (int k = 0; k < 2; k++) load_brick(0.05 + 0.14 * k, &scene[k]);
+  lay_out(&scene[0], &layout);
+  abbe_render_desc given = desc;
+  given.map_layout = &layout;
+  abbe_renderer *renderer = make_renderer(&scene[0], &given);
+  for (size_t k = 0; k < FRAMES; k++) draw_frame(renderer);
+  read_map(renderer, 0, &before);
+  assert_ok(abbe_renderer_change(renderer, &scene[1], &given, &error), &error);
+  for (size_t k = FRAMES; k < 2 * FRAMES; k++) {
+    double was = 0, ghost = 0, off = 0;
+    draw_frame(renderer);
+    abbe_image_free(&map);
+    abbe_image_free(&alone);
+    read_map(renderer, 0, &map);
+    draw_mean(&scene[1], &given, FRAMES, k, &alone); /* of those since the jump */
+    for (size_t i = 0; i < 3 * SIDE * SIDE; i++) {
+      double least, most;
+      nearby(&alone, i, &least, &most);
+      const double here = (double)map.data[i];
+      off += fabs(here - (double)alone.data[i]);
+      if (k == FRAMES)
+        assert_true(here > least * (1 - 1e-6) - 1e-12 && here < most * (1 + 1e-6) + 1e-12);
+      if (most > 0) continue;
+      was += (double)before.data[i];
+      ghost += here;
+    }
+    const double all = image_sum(&alone, 0) + image_sum(&alone, 1) + image_sum(&alone, 2);
+    print_message("frame %zu after a jump: %.4f of the light elsewhere than without history\n",
+                  k - FRAMES + 1, 0.5 * off / all);
+    assert_true(was > 0.1 * all && ghost == 0);
+    assert_true(0.5 * off / all < (k + 1 < 2 * FRAMES ? 0.25 : 1e-6));
+  }
+  abbe_renderer_free(renderer);
+  abbe_image_free(&before);
+  abbe_image_free(&map);
+  abbe_image_free(&alone);
+  for (int k = 0; k < 2; k++) abbe_scene_free(&scene[k]);
+}
+
+typedef struct motion {
+  double flicker, error; /* root mean square over the mean */
+} motion;
+
+/* The lamp of the gem moves by a millimetre a frame: pictures against those of many photons.
+ * flicker: of the change from frame to frame of what a frame is off. */
+static void measure_motion(size_t history, motion *out) {
+  enum { STEPS = 10, WARM = 4, WIDTH = 96 };
+  const abbe_render_desc moving = {.width = WIDTH,
+                                   .height = WIDTH,
+                                   .supersample = 1,
+                                   .adaptive = 1,
+                                   .photons = 48,
+                                   .map_size = 256,
+                                   .wavelengths = 5,
+                                   .aovs = true,
+                                   .history = history};
+  abbe_render_desc many = moving;
+  many.history = 0;
+  many.photons = 384;
+  many.map_size = 1024;
+  abbe_scene scene[2] = {{0}};
+  abbe_renderer *renderer[2] = {NULL};
+  double last[WIDTH * WIDTH] = {0}, change = 0, off = 0, mean = 0;
+  size_t count = 0;
+  for (int k = 0; k < 2; k++) load_shipped("gem", &scene[k]);
+  for (int step = 0; step < STEPS; step++) {
+    abbe_image picture[2] = {{0}};
+    for (int k = 0; k < 2; k++) {
+      abbe_error error = {0};
+      scene[k].light[0].position[0] += 1e-3;
+      if (step == 0)
+        renderer[k] = make_renderer(&scene[k], k == 0 ? &moving : &many);
+      else
+        assert_ok(abbe_renderer_change(renderer[k], &scene[k], k == 0 ? &moving : &many, &error),
+                  &error);
+      draw_frame(renderer[k]);
+      read_picture(renderer[k], true, &picture[k]);
+    }
+    const size_t y = abbe_image_find_channel(&picture[0], "caustic.Y"), n = picture[0].channels;
+    for (size_t i = 0; i < WIDTH * WIDTH; i++) {
+      const double truth = (double)picture[1].data[i * n + y];
+      const double now = (double)picture[0].data[i * n + y] - truth;
+      if (step >= WARM) {
+        change += (now - last[i]) * (now - last[i]);
+        off += now * now;
+        mean += truth;
+        count++;
+      }
+      last[i] = now;
+    }
+    for (int k = 0; k < 2; k++) abbe_image_free(&picture[k]);
+  }
+  mean /= (double)count;
+  out->flicker = sqrt(change / (double)count) / mean;
+  out->error = sqrt(off / (double)count) / mean;
+  for (int k = 0; k < 2; k++) {
+    abbe_renderer_free(renderer[k]);
+    abbe_scene_free(&scene[k]);
+  }
+}
+
+static void test_what_moves_flickers_less(void **state) {
+  (void)state;
+  motion alone, with;
+  measure_motion(1, &alone);
+  measure_motion(FRAMES, &with);
+  print_message("flicker %.3f alone, %.3f with history; error %.3f, %.3f\n", alone.flicker,
+                with.flicker, alone.error, with.error);
+  assert_true(with.flicker < 0.8 * alone.flicker);
+  assert_true(with.error < 1.05 * alone.error);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_still_scene_comes_to_the_mean),
+                                     cmocka_unit_test(test_nothing_is_left_after_a_jump),
+                                     cmocka_unit_test(test_what_moves_flickers_less)};
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}
