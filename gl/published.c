@@ -24,9 +24,20 @@ void abbe_published_free(abbe_published *p) {
   *p = (abbe_published){0};
 }
 
-abbe_result abbe_published_run(abbe_published *p, abbe_error *error) {
-  if (is_wyman(p)) return abbe_wyman2006_run(&p->wyman, error);
-  return is_shah(p) ? abbe_shah2007_run(&p->shah, error) : abbe_thesis_run(&p->thesis, error);
+abbe_result abbe_published_run(abbe_published *p, bool lit, abbe_error *error) {
+  if (is_wyman(p)) return abbe_wyman2006_run(&p->wyman, lit, error);
+  return is_shah(p) ? abbe_shah2007_run(&p->shah, lit, error) : abbe_thesis_run(&p->thesis, error);
+}
+
+bool abbe_published_keeps_light(const abbe_render_desc *desc) {
+  if (abbe_profile_is_wyman2006(desc->profile))
+    return desc->fill == ABBE_FILL_GATHER_LIGHT && desc->history <= 1;
+  return abbe_profile_is_shah2007(desc->profile);
+}
+
+void abbe_published_look(abbe_published *p) {
+  if (is_wyman(p)) abbe_image_eye_look(&p->wyman.eye);
+  if (is_shah(p)) abbe_image_eye_look(&p->shah.eye);
 }
 
 void abbe_published_take_frames(abbe_published *p, abbe_wyman_history *out) {

@@ -18,7 +18,12 @@ abbe_result abbe_published_make(const abbe_gpu_scene *scene, const abbe_shader_v
                                 abbe_published *out, abbe_error *error);
 /* A zeroed one too; it is zeroed. */
 void abbe_published_free(abbe_published *published);
-abbe_result abbe_published_run(abbe_published *published, abbe_error *error);
+/* lit: the light's passes have run and hold, so that the camera's alone run where they keep it. */
+abbe_result abbe_published_run(abbe_published *published, bool lit, abbe_error *error);
+/* Whether a moved camera leaves what the light's passes make as it is: maps in the light's image
+ * that hold no frames before. abbe_published_look then follows the camera. */
+bool abbe_published_keeps_light(const abbe_render_desc *desc);
+void abbe_published_look(abbe_published *published);
 
 /* The frames that a filter over time goes on with, from a renderer that is changed to what it
  * becomes; what is left of them afterwards is the caller's. */

@@ -147,6 +147,8 @@ static abbe_result make_parts(abbe_renderer *r, const abbe_scene *scene, unsigne
                        &r->scene);
   result = abbe_gpu_scene_make(&r->scene, scene_parts(parts), error);
   if (result == ABBE_OK && (parts & LIGHT) != 0) result = make_light(r, error);
+  if (result == ABBE_OK && is_published(r) && (parts & (LIGHT | EYE)) == EYE)
+    abbe_published_look(&r->published);
   if (result != ABBE_OK || is_published(r)) return result;
   if ((parts & (LIGHT | POWERS)) == POWERS) abbe_photon_lights_upload(&r->views);
   return (parts & EYE) != 0 ? make_eye(r, error) : ABBE_OK;
@@ -174,6 +176,13 @@ static abbe_result plan_scene(const abbe_scene *scene, const abbe_render_desc *d
   return result;
 }
 
+/* Whether the camera alone has moved, and the published method's light stays. */
+static bool looks_alone(const abbe_renderer *r, const abbe_plan *plan, unsigned parts) {
+  const abbe_render_desc *before = &r->plan.desc, *now = &plan->desc;
+  return parts == EYE && r->lit && abbe_published_keeps_light(now) && before->width == now->width &&
+         before->height == now->height;
+}
+
 abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene,
                                        const abbe_render_desc *desc, abbe_error *error) {
   abbe_renderer_inputs inputs;
@@ -186,7 +195,7 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   if (r->surrounded.light != NULL) scene = &r->surrounded;
   abbe_renderer_inputs_of(scene, &plan, &inputs);
   unsigned parts = r->made ? abbe_renderer_inputs_differ(&r->inputs, &inputs) : ALL;
-  if (abbe_profile_is_published(plan.desc.profile) && parts != 0)
+  if (abbe_profile_is_published(plan.desc.profile) && parts != 0 && !looks_alone(r, &plan, parts))
     parts = ALL; /* its tables hold all */
   const bool crowded = abbe_gpu_program_count(&r->gpu) > ABBE_GPU_MOST_PROGRAMS;
   if (crowded && (parts & LIGHT) != 0) parts = ALL;
@@ -239,7 +248,7 @@ static abbe_result draw_eye(abbe_renderer *r, abbe_error *error) {
 static abbe_result run_passes(abbe_renderer *r, abbe_error *error) {
   abbe_result result = ABBE_OK;
   if (is_published(r)) {
-    if (!r->seen) result = abbe_published_run(&r->published, error);
+    if (!r->seen) result = abbe_published_run(&r->published, r->lit, error);
     r->lit = result == ABBE_OK;
   } else {
     if (!r->lit) result = draw_light(r, error);

@@ -34,6 +34,7 @@ typedef struct abbe_camera {
   double eye[3], target[3], up[3];
   double fov_y_rad;     /* full vertical angle */
   size_t width, height; /* pixels of the scene's own picture, default 512 x 512 */
+  bool inside;          /* the eye may be inside a refractor, as under water */
 } abbe_camera;
 
 typedef enum abbe_light_kind {
@@ -114,6 +115,7 @@ typedef struct abbe_object {
 typedef struct abbe_scene {
   char *path;
   char *description;
+  double time; /* s: when waves and what has keyframes are as they are here */
   abbe_camera camera;
   size_t light_count; /* 0 only with an environment */
   abbe_light *light;
@@ -162,8 +164,11 @@ const char *abbe_scene_file(const abbe_scene *scene, size_t index);
 #define ABBE_SCENE_LEAST_GAP 0x1p-20
 
 /* Refuses what cannot be rendered, by name: neither light nor environment, no receiver, a light (a
- * disk: any part of it) or the camera inside a refractor or on its surface, a light's position or
- * the camera on a mirror, no receiver and no mirror in the camera's view. Called by the loader. */
+ * disk: any part of it) inside a refractor or on its surface, the camera on one, inside one where
+ * it does not say that it may be, or inside one that absorbs light or is a crystal, a light's
+ * position or the camera on a mirror, no receiver and no mirror in the camera's view. Called by the
+ * loader.
+ */
 abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error);
 
 /* Bounds of the objects chosen: refractors and mirrors, receivers, or both. False where there are
@@ -173,6 +178,11 @@ bool abbe_scene_bounds(const abbe_scene *scene, bool refractors, bool receivers,
 
 /* Sets its bounds by its vertices, or its exact sphere. */
 void abbe_object_bound(abbe_object *object);
+
+/* Whether the point is inside the object, which is closed. */
+bool abbe_object_contains(const abbe_object *object, const double point[3]);
+/* The first refractor that the camera's eye is inside of, or NULL. */
+const abbe_object *abbe_scene_around_eye(const abbe_scene *scene);
 
 /* From a point to the object's surface, m; to a sphere's exact one, negative inside it. */
 double abbe_object_distance(const abbe_object *object, const double point[3]);

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool inside(const abbe_object *object, const double p[3]) {
+bool abbe_object_contains(const abbe_object *object, const double p[3]) {
   for (int k = 0; k < 3; k++)
     if (!(p[k] >= object->min[k] && p[k] <= object->max[k])) return false;
   if (object->exact.kind == ABBE_EXACT_SPHERE) {
@@ -95,7 +95,8 @@ static const abbe_object *refractor_in(const abbe_scene *scene, const abbe_light
 
 static const abbe_object *refractor_around(const abbe_scene *scene, const double p[3]) {
   for (size_t i = 0; i < scene->object_count; i++)
-    if (refracts(&scene->object[i]) && inside(&scene->object[i], p)) return &scene->object[i];
+    if (refracts(&scene->object[i]) && abbe_object_contains(&scene->object[i], p))
+      return &scene->object[i];
   return NULL;
 }
 
@@ -192,6 +193,35 @@ static void compare_sizes(const abbe_scene *scene, const abbe_object *around, ch
       own > rest ? ": if its file is in another unit, 'fit: METRES' gives it its size" : "");
 }
 
+const abbe_object *abbe_scene_around_eye(const abbe_scene *scene) {
+  return refractor_around(scene, scene->camera.eye);
+}
+
+/* An eye inside is mostly a mesh in another unit: the scene has to say that it is meant. */
+static abbe_result check_inside(const abbe_scene *scene, abbe_error *error) {
+  char sizes[256];
+  const abbe_object *around = abbe_scene_around_eye(scene);
+  if (around == NULL) return ABBE_OK;
+  compare_sizes(scene, around, sizes, sizeof sizes);
+  if (!scene->camera.inside)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%s: the camera's eye is inside the refractor '%s' (line %zu); move it "
+                          "outside, or say 'inside: true' in the camera if it is meant to be%s",
+                          path_of(scene), around->name, around->line, sizes);
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *o = &scene->object[i];
+    const bool clear = !refracts(o) || (o->material->attenuation == NULL &&
+                                        !abbe_material_is_uniaxial(o->material));
+    if (clear || !abbe_object_contains(o, scene->camera.eye)) continue;
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%s: the camera's eye is inside the refractor '%s' (line %zu) of the "
+                          "material '%s', which %s; an eye may be inside clear glass or water",
+                          path_of(scene), o->name, o->line, o->material->name,
+                          o->material->attenuation != NULL ? "absorbs light" : "is a crystal");
+  }
+  return ABBE_OK;
+}
+
 static abbe_result check_places(const abbe_scene *scene, abbe_error *error) {
   char sizes[256];
   const double gap = least_gap(scene);
@@ -232,14 +262,7 @@ static abbe_result check_places(const abbe_scene *scene, abbe_error *error) {
                           "move it farther off",
                           path_of(scene), abbe_object_kind_name(abbe_object_kind_of(around)),
                           around->name, around->line, gap);
-  around = refractor_around(scene, scene->camera.eye);
-  if (around) compare_sizes(scene, around, sizes, sizeof sizes);
-  if (around)
-    return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "%s: the camera's eye is inside the refractor '%s' (line %zu); it is "
-                          "modelled in air only, so move it outside%s",
-                          path_of(scene), around->name, around->line, sizes);
-  return ABBE_OK;
+  return check_inside(scene, error);
 }
 
 abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error) {

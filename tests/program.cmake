@@ -50,7 +50,7 @@ foreach(name
     relight_command
     render_command
     trace_command
-    tilt turntable
+    tilt time_frames turntable
     validate_command
     )
   abbe_test(${name} program abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)

@@ -3,7 +3,7 @@ foreach(name
     accumulator
     bands
     camera
-    catacaustic
+    catacaustic wave_caustic
     checkpoint checkpoint_forged
     closed_form
     compare compare_noise

@@ -1,5 +1,6 @@
 #include "cli/base/scene_input.h"
 
+#include "base/number.h"
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/shipped.h"
@@ -30,7 +31,10 @@ error_t abbe_scene_input_take(abbe_scene_input_changes *changes, int key, const 
     changes->stone = text;
   else if (key == ABBE_SCENE_INPUT_TILT)
     take_tilt(changes, text, program);
-  else if (key != ABBE_SCENE_INPUT_SET)
+  else if (key == ABBE_SCENE_INPUT_AT) {
+    changes->timed = true;
+    changes->time = abbe_command_number(program, "--at", text, -1e6, 1e6);
+  } else if (key != ABBE_SCENE_INPUT_SET)
     return ARGP_ERR_UNKNOWN;
   else if (changes->set_count < ABBE_SCENE_INPUT_MOST)
     changes->set[changes->set_count++] = text;
@@ -48,22 +52,43 @@ abbe_result abbe_scene_input_load(const char *program, const char *path, const c
   return abbe_scene_input_load_with(program, path, materials, &none, out, error);
 }
 
+/* With the changes in it. */
+static abbe_result load(const char *path, const char *materials,
+                        const abbe_scene_input_changes *changes, abbe_scene *out,
+                        abbe_error *error) {
+  const char *set[ABBE_SCENE_INPUT_MOST + 1];
+  char time[64];
+  memcpy(set, changes->set, sizeof changes->set);
+  set[changes->set_count] = time;
+  abbe_number_format(time, sizeof time, "time=%.17g", changes->time);
+  const abbe_scene_options options = {.materials = materials,
+                                      .stone = changes->stone,
+                                      .set = set,
+                                      .set_count = changes->set_count + changes->timed};
+  const abbe_result result = abbe_scene_load(path, &options, out, error);
+  if (result != ABBE_OK || changes->tilt_deg == 0) return result;
+  return abbe_refractors_tilt(out, changes->tilt_deg * RAD, changes->axis_deg * RAD, error);
+}
+
 abbe_result abbe_scene_input_load_with(const char *program, const char *path, const char *materials,
                                        const abbe_scene_input_changes *changes, abbe_scene *out,
                                        abbe_error *error) {
   char shipped[2 * PATH_MAX];
-  const abbe_scene_options options = {.materials = materials,
-                                      .stone = changes->stone,
-                                      .set = changes->set,
-                                      .set_count = changes->set_count};
   const char *found = abbe_shipped_find(path, shipped, sizeof shipped);
   if (found != path) fprintf(stderr, "note: %s is not here; %s is taken\n", path, found);
-  abbe_result result = abbe_scene_load(found, &options, out, error);
+  const abbe_result result = load(found, materials, changes, out, error);
   for (size_t i = 0; result == ABBE_OK && i < abbe_scene_file_count(out); i++)
     abbe_arguments_add(program, ABBE_ARGUMENT_READS, "the scene's file", abbe_scene_file(out, i));
-  if (result == ABBE_OK && changes->tilt_deg != 0)
-    result = abbe_refractors_tilt(out, changes->tilt_deg * RAD, changes->axis_deg * RAD, error);
   return result;
+}
+
+abbe_result abbe_scene_input_at(const abbe_scene *scene, const char *materials,
+                                const abbe_scene_input_changes *changes, double time,
+                                abbe_scene *out, abbe_error *error) {
+  abbe_scene_input_changes timed = *changes;
+  timed.timed = true;
+  timed.time = time;
+  return load(scene->path, materials, &timed, out, error);
 }
 
 void abbe_scene_input_note(const abbe_scene *scene) {

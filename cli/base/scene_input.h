@@ -13,16 +13,23 @@ struct cJSON;
 
 enum { ABBE_SCENE_INPUT_MOST = 64 };
 
-/* What --material, --set and --tilt ask of the scene. */
+/* What --material, --set, --tilt and --at ask of the scene. */
 typedef struct abbe_scene_input_changes {
   const char *stone; /* NULL: as the scene says */
   const char *set[ABBE_SCENE_INPUT_MOST];
   size_t set_count;
   double tilt_deg, axis_deg; /* of the refractors (scenes/refractor_tilt.h) */
+  bool timed;                /* at `time` s and not when the scene says */
+  double time;
 } abbe_scene_input_changes;
 
 /* Rows of a command's options, and in *changes what they say. */
-enum { ABBE_SCENE_INPUT_MATERIAL = 0x7f00, ABBE_SCENE_INPUT_SET, ABBE_SCENE_INPUT_TILT };
+enum {
+  ABBE_SCENE_INPUT_MATERIAL = 0x7f00,
+  ABBE_SCENE_INPUT_SET,
+  ABBE_SCENE_INPUT_TILT,
+  ABBE_SCENE_INPUT_AT
+};
 #define ABBE_SCENE_INPUT_OPTIONS(group)                                                            \
   {"material",                                                                                     \
    ABBE_SCENE_INPUT_MATERIAL,                                                                      \
@@ -38,11 +45,16 @@ enum { ABBE_SCENE_INPUT_MATERIAL = 0x7f00, ABBE_SCENE_INPUT_SET, ABBE_SCENE_INPU
        "another value in the scene, such as camera.fov=30 or lights.lamp.intensity=2; may be "     \
        "repeated",                                                                                 \
        group},                                                                                     \
+      {"tilt",                                                                                     \
+       ABBE_SCENE_INPUT_TILT,                                                                      \
+       "DEG[,AXIS]",                                                                               \
+       0,                                                                                          \
+       "tilt the refractors about their middle, about the horizontal axis of azimuth AXIS (0: "    \
+       "+x)",                                                                                      \
+       group},                                                                                     \
   {                                                                                                \
-    "tilt", ABBE_SCENE_INPUT_TILT, "DEG[,AXIS]", 0,                                                \
-        "tilt the refractors about their middle, about the horizontal axis of azimuth AXIS (0: "   \
-        "+x)",                                                                                     \
-        group                                                                                      \
+    "at", ABBE_SCENE_INPUT_AT, "SECONDS", 0,                                                       \
+        "the scene at that time, of its waves and keyframes (its own 'time', else 0)", group       \
   }
 /* ARGP_ERR_UNKNOWN where key is none of them; ends the program where there are too many,
  * or where a tilt is none. */
@@ -53,6 +65,11 @@ error_t abbe_scene_input_take(abbe_scene_input_changes *changes, int key, const 
 abbe_result abbe_scene_input_load_with(const char *program, const char *path, const char *materials,
                                        const abbe_scene_input_changes *changes, abbe_scene *out,
                                        abbe_error *error);
+
+/* The same scene at another time, s; its files are named already. */
+abbe_result abbe_scene_input_at(const abbe_scene *scene, const char *materials,
+                                const abbe_scene_input_changes *changes, double time,
+                                abbe_scene *out, abbe_error *error);
 
 /* abbe_scene_load with that table of materials (NULL: the scene's own). A path that leads nowhere
  * and is found in the share folder that came with the program is taken there, with a note. Ends the

@@ -3,9 +3,9 @@
 #include "cli/base/progress.h"
 #include "cli/base/scene_input.h"
 #include "cli/base/screen_options.h"
+#include "cli/render/render_frames.h"
 #include "cli/render/render_request.h"
 #include "cli/render/traced_picture.h"
-#include "cli/render/turntable.h"
 
 #include "colorimetry/image/exr.h"
 #include "gl/accuracy/frame_times.h"
@@ -41,7 +41,10 @@ static const struct argp_option options[] = {
     {"stats", OPTION_STATS, "FILE", ABBE_ARGUMENT_WRITES,
      "times, photons and the energy ledger as JSON", 0},
     {"json", OPTION_JSON, NULL, 0, "the same on standard output", 0},
-    {"frames", OPTION_FRAMES, "N", 0, "warm up, then report the median of N frames (1)", 0},
+    {"frames", OPTION_FRAMES, "N|A:B", 0,
+     "warm up, then report the median of N frames (1); A:B: frames A to B - 1 over time, numbered, "
+     "and FILE.png that moves",
+     0},
     {"gl", OPTION_GL, "NAME", 0, "osmesa (CPU) or egl (osmesa)", 0},
     {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
     {0}};
@@ -56,7 +59,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     state->child_inputs[1] = &q->map;
     state->child_inputs[2] = &q->preset;
     state->child_inputs[3] = &q->errors;
-    state->child_inputs[4] = &q->turntable;
+    state->child_inputs[4] = &q->series;
     state->child_inputs[5] = &q->screen;
     return 0;
   case 'o':
@@ -81,7 +84,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     q->json = true;
     return 0;
   case OPTION_FRAMES:
-    q->frames = abbe_command_count(p, "--frames", text, 1, 1000);
+    if (strchr(text, ':') != NULL)
+      abbe_frame_series_take(&q->series, text);
+    else
+      q->frames = abbe_command_count(p, "--frames", text, 1, 1000);
     return 0;
   case OPTION_GL:
     q->backend = (abbe_context_backend)abbe_command_choice(p, "--gl", text, backends, 2);
@@ -96,11 +102,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     abbe_screen_options_end(&q->screen, q->png, state);
     if (q->bands > 0 && q->map.save == NULL && q->exr == NULL)
       argp_error(state, "--bands are those of -o FILE.exr and --save-map FILE.exr: give one");
-    if (q->turntable.frames > 0 && (q->map.save != NULL || q->frames > 0 || q->errors.asked ||
-                                    q->bands > 0 || (q->exr == NULL && q->png == NULL)))
-      argp_error(state, "--turntable writes frames by -o FILE.exr and --png FILE.png, and goes "
-                        "without --save-map, --frames, --bands and --error-bars");
-    if (q->turntable.merge && q->png == NULL)
+    if (q->series.count > 0 && (q->map.save != NULL || q->frames > 0 || q->errors.asked ||
+                                q->bands > 0 || (q->exr == NULL && q->png == NULL)))
+      argp_error(state,
+                 "%s writes frames by -o FILE.exr and --png FILE.png, and goes "
+                 "without --save-map, --frames N, --bands and --error-bars",
+                 q->series.around ? "--turntable" : "--frames A:B");
+    if (q->series.merge && q->png == NULL)
       argp_error(state, "--merge makes a PNG that moves: give --png FILE.png");
     if (q->errors.mean && q->aovs)
       argp_error(state, "--mean has no --aovs: they are of one picture, not of the mean");
@@ -114,8 +122,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 static abbe_result check_display(const request *q, abbe_error *error) {
   if (q->png == NULL) return ABBE_OK;
   const bool printed = abbe_profile_is_printed(q->render.desc.profile);
-  return abbe_screen_options_check(
-      &q->screen, printed ? ABBE_RGB_SPACE_REC709 : q->render.desc.space, error);
+  return abbe_screen_options_check(&q->screen,
+                                   printed ? ABBE_RGB_SPACE_REC709 : q->render.desc.space, error);
 }
 
 /* One frame, or the median of several after a warm-up, and the baseline under them. */
@@ -241,7 +249,7 @@ static abbe_result write_picture(request *q, const abbe_scene *scene, abbe_conte
 static abbe_result render(request *q, const abbe_scene *scene, abbe_context *context,
                           abbe_error *error) {
   abbe_renderer *renderer = NULL;
-  abbe_statistics statistics;
+  abbe_statistics statistics = {0};
   abbe_error_bars bars = {0};
   preparation preparing = {.request = q};
   abbe_render_desc desc = q->render.desc;
@@ -266,12 +274,12 @@ static abbe_result render(request *q, const abbe_scene *scene, abbe_context *con
       result = abbe_error_set(error, ABBE_UNSUPPORTED,
                               "%s has no refractor, so there is no spectral map to save",
                               q->render.scene);
-    else if (q->turntable.frames > 0)
-      result = abbe_turntable_draw(q, scene, &desc, renderer, context, &statistics, error);
+    else if (q->series.count > 0)
+      result = abbe_render_frames_draw(q, scene, &desc, renderer, context, &statistics, error);
     else
       result = run_frames(q, renderer, &statistics, error);
   }
-  if (result == ABBE_OK && q->turntable.frames == 0)
+  if (result == ABBE_OK && q->series.count == 0)
     result = write_picture(q, scene, context, renderer, &bars, error);
   if (result == ABBE_OK) result = abbe_render_write_stats(q, &statistics, &bars, context, error);
   if (result == ABBE_OK) abbe_render_summarise(q, &statistics, prepared_s);
@@ -298,7 +306,7 @@ static const char *renderers_own(const request *q) {
          : q->map.like != NULL                ? "--map-like"
          : q->frames > 0                      ? "--frames"
          : q->errors.asked                    ? "--error-bars"
-         : q->turntable.frames > 0            ? "--turntable"
+         : q->series.count > 0                ? (q->series.around ? "--turntable" : "--frames")
          : d->wavelengths > 0                 ? "--wavelengths"
          : d->photons > 0                     ? "--photons"
          : d->map_size > 0                    ? "--map"
@@ -355,7 +363,7 @@ static abbe_result choose_picture(request *q, const abbe_scene *scene, abbe_erro
 
 static abbe_result choose_and_draw(request *q, const abbe_scene *scene, abbe_error *error) {
   abbe_context *context = NULL;
-  if (q->turntable.merge) return abbe_turntable_merge(q, error);
+  if (q->series.merge) return abbe_frame_series_merge(&q->series, q->png, error);
   q->preset.request.timed = q->stats != NULL || q->json;
   abbe_result result = choose_picture(q, scene, error);
   const bool chosen = q->picture.point != NULL;
@@ -377,7 +385,7 @@ int abbe_command_render(int argc, char **argv) {
       {&abbe_map_options_argp, 0, "Spectral map:", 3},
       {&abbe_preset_options_argp, 0, "By error or by time:", 2},
       {&abbe_error_options_argp, 0, "How far off it is:", 4},
-      {&abbe_turntable_argp, 0, "From all around:", 5},
+      {&abbe_render_frames_argp, 0, "From all around, and over time:", 5},
       {&abbe_screen_options_argp, 0, "How the PNG shows it:", 6},
       {0}};
   static const struct argp argp = {
@@ -395,6 +403,7 @@ int abbe_command_render(int argc, char **argv) {
       "  abbe render scenes/gem.yaml --png gem.png --budget-ms 100 --json\n"
       "  abbe render scenes/gem.yaml -o gem.exr --error-bars --error-png gem-error.png\n"
       "  abbe render scenes/stone.yaml --turntable 72 --png stone.png --size 256x256\n"
+      "  abbe render scenes/water/pool.yaml --frames 0:48 --fps 24 --png pool.png --size 256x256\n"
       "  abbe render scenes/prism.yaml -o bands.exr --bands 20\n"
       "  abbe render scenes/stone.yaml --turntable 72 --png stone.png --part 3/8\n"
       "  abbe render scenes/gem.yaml --save-map test.exr --map-like reference.exr\n",
@@ -405,7 +414,7 @@ int abbe_command_render(int argc, char **argv) {
                .preset.program = argv[0],
                .preset.tool = -1,
                .errors.program = argv[0],
-               .turntable.program = argv[0],
+               .series.program = argv[0],
                .screen.program = argv[0]};
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};

@@ -28,6 +28,7 @@ enum {
   OPTION_ESTIMATOR,
   OPTION_ITERATIONS,
   OPTION_INTERFACES,
+  OPTION_LOW_PASS,
   OPTION_SHARE,
   OPTION_EXITS,
   OPTION_SPACE,
@@ -84,6 +85,8 @@ static const struct argp_option options[] = {
     {"iterations", OPTION_ITERATIONS, "N", 0, "of the estimator, 1 to 64 (1)", 1},
     {"interfaces", OPTION_INTERFACES, "N", 0,
      "of shah2007 and wyman2006, that refract light: 1, as of water, or 2 (2)", 1},
+    {"low-pass", OPTION_LOW_PASS, "N", 0,
+     "of shah2007, smooth its map by a Gaussian of N texels, 1 to 32 (none)", 1},
     {"share", OPTION_SHARE, "X", 0,
      "paths end below this share of their light (0.01; 0.005 in a gem)", 1},
     {"exits", OPTION_EXITS, "N", 0,
@@ -178,6 +181,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_INTERFACES:
     d->interfaces = abbe_command_count(p, "--interfaces", text, 1, 2);
+    return 0;
+  case OPTION_LOW_PASS:
+    d->low_pass = abbe_command_count(p, "--low-pass", text, 1, ABBE_RENDER_MAX_LOW_PASS);
     return 0;
   case OPTION_SHARE:
     d->energy_share = abbe_command_number(p, "--share", text, 1e-9, 1);

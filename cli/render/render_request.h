@@ -3,6 +3,7 @@
 #define ABBE_CLI_RENDER_RENDER_REQUEST_H
 
 #include "cli/base/command.h"
+#include "cli/base/frame_series.h"
 #include "cli/base/map_options.h"
 #include "cli/base/screen_options.h"
 #include "cli/render/error_options.h"
@@ -10,15 +11,6 @@
 #include "cli/render/render_options.h"
 
 #include "gl/device/context.h"
-
-/* --turntable; zeroed but for program. */
-typedef struct abbe_turntable_options {
-  const char *program;
-  size_t frames;     /* 0: one picture */
-  double per_second; /* 0: 25 */
-  abbe_command_part part;
-  bool merge; /* frames that are there */
-} abbe_turntable_options;
 
 typedef struct abbe_render_request {
   abbe_render_options render;
@@ -30,7 +22,7 @@ typedef struct abbe_render_request {
   bool may_trace;              /* where the rendered picture does not keep its bound */
   const char *picture_note;    /* on how that was chosen, or NULL */
   abbe_error_options errors;
-  abbe_turntable_options turntable;
+  abbe_frame_series series; /* --turntable, --frames A:B; zeroed but for program */
   const char *exr, *png, *stats;
   bool aovs, unfilled, quiet, json;
   size_t frames, bands;

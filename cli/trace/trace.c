@@ -1,3 +1,4 @@
+#include "cli/trace/trace.h"
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/map_options.h"
@@ -5,6 +6,7 @@
 #include "cli/base/screen_options.h"
 #include "cli/base/spectral_options.h"
 #include "cli/trace/trace.h"
+#include "cli/trace/trace_frames.h"
 #include "cli/trace/trace_passes.h"
 #include "cli/trace/trace_results.h"
 
@@ -201,6 +203,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &q->map;
     state->child_inputs[1] = &q->screen;
+    state->child_inputs[2] = &q->series;
     return 0;
   case 'o':
     q->exr = abbe_command_target(state->name, "-o", text, ".exr");
@@ -247,6 +250,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case ARGP_KEY_END:
     if (q->scene == NULL) argp_error(state, "which scene? Try scenes/sphere.yaml");
     check_parts(q, state);
+    abbe_trace_frames_check(q, state);
     if (q->part_end == 0 && q->exr == NULL && q->png == NULL && q->map.save == NULL &&
         q->stats == NULL && !q->json && !q->rates && !(q->merge && q->checkpoint != NULL))
       argp_error(state, "where to? Give -o FILE.exr, --save-map FILE.exr or both");
@@ -388,6 +392,7 @@ static int run_command(int argc, char **argv, abbe_trace_ranks *ranks) {
   static const struct argp_child children[] = {
       {&abbe_map_options_argp, 0, "Receiver map:", 3},
       {&abbe_screen_options_argp, 0, "How the PNG shows it:", 4},
+      {&abbe_trace_frames_argp, 0, "Over time:", 5},
       {0}};
   static const struct argp argp = {
       options,
@@ -400,6 +405,7 @@ static int run_command(int argc, char **argv, abbe_trace_ranks *ranks) {
       "  abbe trace scenes/ring.yaml -o ring.exr --spp 4 --filter\n"
       "  abbe trace scenes/prism.yaml --save-map prism-map.exr --spp 256 --bands 40\n"
       "  abbe trace scenes/bunny.yaml -o bunny.exr --time 600 --resume\n"
+      "  abbe trace scenes/water/pool.yaml --frames 0:24 --png pool.png --spp 8 --filter\n"
       "  abbe trace scenes/gem.yaml -o matched.exr --physics matched\n"
       "  abbe trace scenes/gem.yaml -o gem.exr --passes 8:16 --checkpoint part-1.ck\n"
       "  abbe trace scenes/gem.yaml -o gem.exr --merge part-*.ck\n",
@@ -408,6 +414,7 @@ static int run_command(int argc, char **argv, abbe_trace_ranks *ranks) {
       NULL};
   request q = {.program = argv[0],
                .screen.program = argv[0],
+               .series.program = argv[0],
                .every = 30,
                .ranks = ranks != NULL ? &ranks->ranks : NULL};
   q.parts = calloc((size_t)argc + 1, sizeof *q.parts);
@@ -428,7 +435,10 @@ static int run_command(int argc, char **argv, abbe_trace_ranks *ranks) {
     result = abbe_scene_input_load_with(argv[0], q.scene, q.materials, &q.changes, &scene, &error);
   if (result == ABBE_OK && !q.quiet) abbe_scene_input_note(&scene);
   if (q.ranks != NULL) result = abbe_ranks_agree(q.ranks, result, &error);
-  if (result == ABBE_OK) result = run(&q, &scene, &error);
+  q.series.resume = q.resume;
+  if (result == ABBE_OK)
+    result =
+        q.series.count > 0 ? abbe_trace_frames(&q, &scene, run, &error) : run(&q, &scene, &error);
   free(q.checkpoint_path);
   free(q.parts);
   abbe_scene_free(&scene);

@@ -2,6 +2,7 @@
 #ifndef ABBE_CLI_TRACE_TRACE_REQUEST_H
 #define ABBE_CLI_TRACE_TRACE_REQUEST_H
 
+#include "cli/base/frame_series.h"
 #include "cli/base/map_options.h"
 #include "cli/base/scene_input.h"
 #include "cli/base/screen_options.h"
@@ -16,6 +17,7 @@ typedef struct abbe_trace_request {
   abbe_map_options map;
   abbe_trace_desc desc;
   size_t passes;
+  abbe_frame_series series;    /* --frames; zeroed but for program */
   size_t part_first, part_end; /* --passes: of the whole, the end not among them; 0, 0: all */
   bool merge;
   const char **parts; /* files to merge */

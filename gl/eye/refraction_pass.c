@@ -126,7 +126,8 @@ abbe_result abbe_refraction_pass_draw(abbe_refraction_pass *pass, abbe_error *er
                                       .owner_layer = -1,
                                       .width = pass->lighting->camera->samples[0],
                                       .height = pass->lighting->camera->samples[1],
-                                      .back = back != 0};
+                                      .back = back != 0,
+                                      .both = scene_of(pass)->plan->eye_inside != 0};
     result = abbe_refractor_faces_draw(pass->faces, &target, false, error);
     abbe_gpu_book_lap(gpu, back ? ABBE_PASS_EYE_BACK : ABBE_PASS_EYE_FRONT);
   }
@@ -157,6 +158,8 @@ static void use(abbe_refraction_pass *pass, GLuint program) {
   abbe_gpu_bind_texture(gpu, program, "eye_owner", 6, pass->owner);
   abbe_gpu_set_float(gpu, program, "share_limit", scene_of(pass)->plan->eye_share);
   abbe_gpu_set_float(gpu, program, "pixel_angle", angle);
+  if (scene_of(pass)->plan->multi_refractor_paths)
+    abbe_gpu_set_uint(gpu, program, "eye_inside", scene_of(pass)->plan->eye_inside);
 }
 
 /* Those of the listed pixels, as far as there are any. */

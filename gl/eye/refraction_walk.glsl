@@ -27,6 +27,8 @@ vec3 mirror_spectrum(int r) {
 }
 #endif
 
+uniform uint eye_inside;  // refractors that the eye is in, which are clear
+
 // What w shows, times its share. What is not followed shows what the rest has shown.
 vec3 shown(PathState w) {
   PathState pending[PENDING];
@@ -54,7 +56,9 @@ vec3 shown(PathState w) {
       left += ended;
       left += dropped;
     } else {
-      light += w.share * radiance;
+      // radiance over the squared index is the same on both sides of an interface
+      float n = medium_n(eye_inside) / (receiver ? medium_n(w.inside) : 1.0);
+      light += n * n * w.share * radiance;
       seen_share += w.share;
       w.share = 0.0;
     }
@@ -72,7 +76,7 @@ Interface first;
 
 void look(ivec2 at) {
   aim_at(at);
-  start = PathState(eye, sight, 1.0, 0u, 0u, -1, -1, -1);
+  start = PathState(eye, sight, 1.0, eye_inside, 0u, -1, -1, -1);
   first.hit.t = 1e30;
   found = next_interface(start, first);
   front = first.hit;

@@ -49,6 +49,11 @@ abbe_result abbe_image_eye_make(const abbe_gpu_scene *scene, const abbe_image_pl
   return result == ABBE_OK ? make_programs(out, variant, more, error) : result;
 }
 
+void abbe_image_eye_look(abbe_image_eye *e) {
+  abbe_camera_view_fit(e->scene->local, &e->scene->plan->desc, &e->camera);
+  abbe_image_view_make(&e->camera.view, &e->places.view);
+}
+
 void abbe_image_eye_free(abbe_image_eye *e) {
   if (e->scene == NULL) return;
   GLuint textures[] = {e->lit, e->lit_depth, e->picture};

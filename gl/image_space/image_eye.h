@@ -22,6 +22,8 @@ abbe_result abbe_image_eye_make(const abbe_gpu_scene *scene, const abbe_image_pl
                                 const abbe_shader_variant *variant, const char *more,
                                 float (*colour)[3], abbe_image_eye *out, abbe_error *error);
 void abbe_image_eye_free(abbe_image_eye *eye);
+/* From where the scene's camera is now; the picture's size is as it was. */
+void abbe_image_eye_look(abbe_image_eye *eye);
 abbe_result abbe_image_eye_run(abbe_image_eye *eye, GLuint caustic_map, abbe_error *error);
 
 #endif

@@ -44,8 +44,8 @@ abbe_result abbe_refractor_faces_draw(const abbe_refractor_faces *faces,
   gl->Enable(GL_DEPTH_TEST);
   gl->CullFace(target->back ? GL_FRONT : GL_BACK);
   for (size_t i = 0; i < scene->plan->refractor_count; i++) {
-    if (scene->plan->mirror[i])
-      gl->Disable(GL_CULL_FACE); /* it has two sides */
+    if (scene->plan->mirror[i] || target->both)
+      gl->Disable(GL_CULL_FACE); /* a mirror has two sides */
     else
       gl->Enable(GL_CULL_FACE);
     abbe_gpu_set_uint(scene->gpu, faces->program, "owner", i + 1);

@@ -55,12 +55,16 @@ static abbe_result make_programs(abbe_shah2007 *s, const abbe_shader_variant *va
   const abbe_render_desc *d = &s->scene->plan->desc;
   float(*shares)[3] = NULL;
   char more[640], search[768];
+  const abbe_program_stage low_pass[] = {{GL_VERTEX_SHADER, "screen.vert"},
+                                         {GL_FRAGMENT_SHADER, "shah_low_pass.frag"}};
   abbe_image_tables_define(d, more, sizeof more);
   snprintf(search, sizeof search, "%s#define ESTIMATOR %d\n#define ITERATIONS %zu\n%s", more,
            (int)d->estimator, d->iterations,
            is_printed(s->scene) ? "#define SEARCH_AS_PRINTED\n" : "");
   abbe_result result =
       abbe_shader_variant_program(variant, s->scene->gpu, splat, 2, search, &s->splat, error);
+  if (result == ABBE_OK && d->low_pass > 0)
+    result = abbe_gpu_program(s->scene->gpu, low_pass, 2, NULL, &s->low_pass, error);
   if (result == ABBE_OK) result = abbe_image_tables_colours(s->scene, true, &shares, error);
   if (result == ABBE_OK)
     result = abbe_image_eye_make(s->scene, &s->light, variant, more, shares, &s->eye, error);
@@ -79,6 +83,9 @@ abbe_result abbe_shah2007_make(const abbe_gpu_scene *scene, const abbe_shader_va
   if (result == ABBE_OK)
     result =
         abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, map[0], map[1], 0, true, &out->map, error);
+  if (result == ABBE_OK && d->low_pass > 0)
+    result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, map[0], map[1], 0, true, &out->smoothed,
+                                   error);
   if (result == ABBE_OK) result = abbe_image_tables_colours(scene, false, &out->colour, error);
   if (result == ABBE_OK) result = make_programs(out, variant, error);
   return result;
@@ -89,6 +96,7 @@ void abbe_shah2007_free(abbe_shah2007 *s) {
   abbe_image_eye_free(&s->eye);
   abbe_image_places_free(&s->light);
   abbe_gpu_drop_textures(s->scene->gpu, 1, &s->map);
+  abbe_gpu_drop_textures(s->scene->gpu, 1, &s->smoothed);
   free(s->colour);
   *s = (abbe_shah2007){0};
 }
@@ -149,10 +157,32 @@ static abbe_result splat_vertices(abbe_shah2007 *s, abbe_error *error) {
   return ABBE_OK;
 }
 
-abbe_result abbe_shah2007_run(abbe_shah2007 *s, abbe_error *error) {
-  abbe_gpu_scene_bind(s->scene);
+/* Along one axis and then along the other, back into the map. */
+static abbe_result smooth_map(abbe_shah2007 *s, abbe_error *error) {
+  abbe_gpu *gpu = s->scene->gpu;
+  const abbe_render_desc *d = &s->scene->plan->desc;
+  abbe_result result = ABBE_OK;
+  if (d->low_pass == 0) return ABBE_OK;
+  for (int axis = 0; axis < 2 && result == ABBE_OK; axis++) {
+    gpu->gl->UseProgram(s->low_pass);
+    abbe_gpu_bind_texture(gpu, s->low_pass, "map", 0, axis == 0 ? s->map : s->smoothed);
+    gpu->gl->Uniform2i(gpu->gl->GetUniformLocation(s->low_pass, "along"), axis == 0, axis == 1);
+    abbe_gpu_set_float(gpu, s->low_pass, "sigma", (double)d->low_pass);
+    result = abbe_image_view_draw_screen(s->scene, axis == 0 ? s->smoothed : s->map, d->map_size,
+                                         d->map_size, error);
+  }
+  return result;
+}
+
+static abbe_result draw_map(abbe_shah2007 *s, abbe_error *error) {
   abbe_result result = see_from_light(s, error);
   if (result == ABBE_OK) result = splat_vertices(s, error);
+  return result == ABBE_OK ? smooth_map(s, error) : result;
+}
+
+abbe_result abbe_shah2007_run(abbe_shah2007 *s, bool lit, abbe_error *error) {
+  abbe_gpu_scene_bind(s->scene);
+  abbe_result result = lit ? ABBE_OK : draw_map(s, error);
   if (result == ABBE_OK) result = abbe_image_eye_run(&s->eye, s->map, error);
   return result == ABBE_OK ? abbe_gl_check(s->scene->gpu->gl, "the shah2007 profile", error)
                            : result;

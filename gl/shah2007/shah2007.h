@@ -17,17 +17,17 @@ typedef struct abbe_shah2007 {
   abbe_map_layout layout; /* of the light's one frustum */
   abbe_image_places light;
   abbe_image_eye eye;
-  GLuint splat; /* program */
-  GLuint map;
-  float (*colour)[3];  /* [wavelengths] XYZ, or RGB as printed; of unit light */
-  size_t photon_count; /* of the last frame: pixels that show objects */
+  GLuint splat, low_pass; /* programs */
+  GLuint map, smoothed;   /* smoothed: where the map is filtered */
+  float (*colour)[3];     /* [wavelengths] XYZ, or RGB as printed; of unit light */
+  size_t photon_count;    /* of the last frame: pixels that show objects */
 } abbe_shah2007;
 
 abbe_result abbe_shah2007_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
                                abbe_shah2007 *out, abbe_error *error);
 void abbe_shah2007_free(abbe_shah2007 *shah);
-/* A frame, all passes. ABBE_GL. */
-abbe_result abbe_shah2007_run(abbe_shah2007 *shah, abbe_error *error);
+/* A frame; lit: the camera's passes alone, for the map is there. ABBE_GL. */
+abbe_result abbe_shah2007_run(abbe_shah2007 *shah, bool lit, abbe_error *error);
 
 /* As of abbe_renderer_read and _read_map. */
 abbe_result abbe_shah2007_read(const abbe_shah2007 *shah, abbe_image *out, abbe_error *error);

@@ -145,17 +145,23 @@ static abbe_result see_from_light(abbe_wyman2006 *w, abbe_error *error) {
   return result;
 }
 
-abbe_result abbe_wyman2006_run(abbe_wyman2006 *w, abbe_error *error) {
-  abbe_gpu *gpu = w->scene->gpu;
-  abbe_wyman_target *target = own_target(w);
-  abbe_gpu_scene_bind(w->scene);
+static abbe_result draw_photons(abbe_wyman2006 *w, abbe_wyman_target *target, abbe_error *error) {
   abbe_result result = see_from_light(w, error);
   if (result == ABBE_OK && in_camera(w->scene))
     result = abbe_image_places_receivers(&w->eye.places, error);
   if (result == ABBE_OK) result = abbe_wyman_target_run(target, w->colour, true, error);
-  abbe_gpu_book_lap(gpu, ABBE_PASS_PHOTONS);
+  abbe_gpu_book_lap(w->scene->gpu, ABBE_PASS_PHOTONS);
+  if (result == ABBE_OK) target->history.frame++;
+  return result;
+}
+
+abbe_result abbe_wyman2006_run(abbe_wyman2006 *w, bool lit, abbe_error *error) {
+  abbe_gpu *gpu = w->scene->gpu;
+  abbe_wyman_target *target = own_target(w);
+  const bool kept = lit && !in_camera(w->scene) && w->scene->plan->desc.history <= 1;
+  abbe_gpu_scene_bind(w->scene);
+  abbe_result result = kept ? ABBE_OK : draw_photons(w, target, error);
   if (result != ABBE_OK) return result;
-  target->history.frame++;
   gpu->gl->UseProgram(w->eye.receivers);
   abbe_image_view_set_view(w->scene, w->eye.receivers, "camera_view", &w->eye.places.view.view);
   abbe_gpu_bind_texture(gpu, w->eye.receivers, "caustic_directions", 3, target->light_directions);

@@ -23,8 +23,9 @@ typedef struct abbe_wyman2006 {
 abbe_result abbe_wyman2006_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
                                 abbe_wyman2006 *out, abbe_error *error);
 void abbe_wyman2006_free(abbe_wyman2006 *wyman);
-/* A frame, all passes. ABBE_GL. */
-abbe_result abbe_wyman2006_run(abbe_wyman2006 *wyman, abbe_error *error);
+/* A frame; lit: where the light's image is gathered in, the camera's passes alone, for it is there.
+ * ABBE_GL. */
+abbe_result abbe_wyman2006_run(abbe_wyman2006 *wyman, bool lit, abbe_error *error);
 
 /* Hands out the frames that it has drawn, before it is freed. */
 void abbe_wyman2006_leave(abbe_wyman2006 *wyman, abbe_wyman_history *out);

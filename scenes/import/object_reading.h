@@ -26,6 +26,7 @@ typedef enum abbe_object_form {
   ABBE_OBJECT_RECTANGLE,
   ABBE_OBJECT_LATHE,
   ABBE_OBJECT_CUT,
+  ABBE_OBJECT_WATER,
   ABBE_OBJECT_MESH
 } abbe_object_form;
 
@@ -42,6 +43,10 @@ typedef struct abbe_object_reading {
 /* The surface under `shape` or `mesh`, in its own coordinates, and its form, radius and normals. */
 abbe_result abbe_object_read_surface(abbe_object_reading *reading, abbe_object *object,
                                      abbe_error *error);
+
+/* Water at the scene's time. */
+abbe_result abbe_object_read_water(const abbe_object_reading *reading, abbe_mesh *out,
+                                   abbe_error *error);
 
 #ifdef __cplusplus
 }

@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const shape_names[] = {"sphere", "ring",      "gem",   "brilliant", "prism",
-                                          "box",    "rectangle", "lathe", "cut",       NULL};
+static const char *const shape_names[] = {"sphere",    "ring",  "gem", "brilliant", "prism", "box",
+                                          "rectangle", "lathe", "cut", "water",     NULL};
 
 /* A length that must be there; the shape itself says that it must be above zero. */
 static abbe_result need_length(const abbe_object_reading *r, const char *key, double *out,
@@ -270,6 +270,9 @@ abbe_result abbe_object_read_surface(abbe_object_reading *r, abbe_object *object
     break;
   case ABBE_OBJECT_CUT:
     result = read_cut(r, out, error);
+    break;
+  case ABBE_OBJECT_WATER:
+    result = abbe_object_read_water(r, out, error);
     break;
   case ABBE_OBJECT_MESH:
     result = read_mesh(r, object, error);

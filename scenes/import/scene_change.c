@@ -1,7 +1,9 @@
 #include "scenes/import/scene_change.h"
 
 #include "base/nearest.h"
+#include "scenes/import/scene_value.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -175,4 +177,125 @@ abbe_result abbe_scene_change_material(abbe_yaml_edit *edit, const char *text, a
                         "has a material%s%.60s%s",
                         edit->name, name, nearest ? "; did you mean '" : "", nearest ? nearest : "",
                         nearest ? "'?" : "");
+}
+
+/* ---- keyframes ---- */
+
+enum { MOST_FRAMES = 10000, MOST_NUMBERS = 16 };
+
+typedef struct keyframe {
+  double time, value[MOST_NUMBERS];
+  size_t count; /* 0: a number alone, value[0] */
+} keyframe;
+
+static bool has_key(const abbe_yaml *yaml, abbe_yaml_node mapping, const char *wanted) {
+  for (size_t i = 0; i < abbe_yaml_count(yaml, mapping); i++) {
+    const char *key = abbe_yaml_text(yaml, abbe_yaml_key(yaml, mapping, i));
+    if (key != NULL && strcmp(key, wanted) == 0) return true;
+  }
+  return false;
+}
+
+/* The first child, in the order of the file, that has keyframes, and its parent. */
+static bool find_keyframes(const abbe_yaml *yaml, abbe_yaml_node at, abbe_yaml_node *parent,
+                           size_t *index) {
+  if (abbe_yaml_is_scalar(yaml, at)) return false;
+  for (size_t i = 0; i < abbe_yaml_count(yaml, at); i++) {
+    const abbe_yaml_node child = child_of(yaml, at, i);
+    if (abbe_yaml_is_mapping(yaml, child) && has_key(yaml, child, "keyframes")) {
+      *parent = at;
+      *index = i;
+      return true;
+    }
+    if (find_keyframes(yaml, child, parent, index)) return true;
+  }
+  return false;
+}
+
+bool abbe_scene_change_has_keyframes(const abbe_yaml *yaml) {
+  abbe_yaml_node parent;
+  size_t index;
+  return find_keyframes(yaml, abbe_yaml_root(yaml), &parent, &index);
+}
+
+static abbe_result read_keyframe(abbe_yaml *yaml, abbe_yaml_node node, keyframe *out,
+                                 abbe_error *error) {
+  if (!abbe_yaml_is_sequence(yaml, node) || abbe_yaml_count(yaml, node) != 2)
+    return abbe_yaml_fail(
+        yaml, node, error,
+        "a keyframe is a time and a value, such as [1.5, 30] or [1.5, [0, 0, 1]]");
+  const abbe_yaml_node value = abbe_yaml_item(yaml, node, 1);
+  const bool list = abbe_yaml_is_sequence(yaml, value);
+  abbe_result result = abbe_yaml_number(yaml, abbe_yaml_item(yaml, node, 0), "keyframes",
+                                        -ABBE_SCENE_FAR, ABBE_SCENE_FAR, &out->time, error);
+  out->count = list ? abbe_yaml_count(yaml, value) : 0;
+  if (result == ABBE_OK && list && (out->count == 0 || out->count > MOST_NUMBERS))
+    return abbe_yaml_fail(yaml, value, error, "a keyframe's value is a number or 1 to %d numbers",
+                          MOST_NUMBERS);
+  for (size_t k = 0; k < (list ? out->count : 1) && result == ABBE_OK; k++)
+    result = abbe_yaml_number(yaml, list ? abbe_yaml_item(yaml, value, k) : value, "keyframes",
+                              -1e12, 1e12, &out->value[k], error);
+  return result;
+}
+
+static bool follows(const keyframe *before, const keyframe *next) {
+  return next->time > before->time && next->count == before->count;
+}
+
+static abbe_result interpolate(abbe_yaml *yaml, abbe_yaml_node list, double time, keyframe *out,
+                               abbe_error *error) {
+  const size_t count = abbe_yaml_count(yaml, list);
+  keyframe before, next;
+  if (!abbe_yaml_is_sequence(yaml, list) || count == 0 || count > MOST_FRAMES)
+    return abbe_yaml_fail(yaml, list, error,
+                          "'keyframes' wants a list of 1 to %d pairs [TIME, VALUE]", MOST_FRAMES);
+  abbe_result result = read_keyframe(yaml, abbe_yaml_item(yaml, list, 0), &before, error);
+  if (result == ABBE_OK) *out = before;
+  for (size_t i = 1; i < count && result == ABBE_OK; i++, before = next) {
+    const abbe_yaml_node node = abbe_yaml_item(yaml, list, i);
+    result = read_keyframe(yaml, node, &next, error);
+    if (result == ABBE_OK && !follows(&before, &next))
+      return abbe_yaml_fail(yaml, node, error,
+                            "keyframes come in rising order of time, all with as many numbers");
+    if (result != ABBE_OK || time < before.time) continue;
+    const double t = fmin((time - before.time) / (next.time - before.time), 1);
+    for (size_t k = 0; k < MOST_NUMBERS && k < (next.count > 0 ? next.count : 1); k++)
+      out->value[k] = before.value[k] + t * (next.value[k] - before.value[k]);
+  }
+  return result;
+}
+
+static abbe_result value_at(abbe_yaml *yaml, abbe_yaml_node node, double time, keyframe *out,
+                            abbe_error *error) {
+  double repeat = 0;
+  const abbe_yaml_node length = abbe_yaml_get(yaml, node, "repeat");
+  abbe_result result =
+      abbe_yaml_get_number(yaml, node, "repeat", 0, ABBE_SCENE_FAR, &repeat, error);
+  if (result == ABBE_OK && length.id != 0 && !(repeat > 0))
+    return abbe_yaml_fail(yaml, length, error, "'repeat' is a time in seconds, above 0");
+  if (repeat > 0) time -= repeat * floor(time / repeat);
+  if (result == ABBE_OK)
+    result = interpolate(yaml, abbe_yaml_get(yaml, node, "keyframes"), time, out, error);
+  return result == ABBE_OK ? abbe_yaml_check_keys(yaml, node, "a value with keyframes", error)
+                           : result;
+}
+
+abbe_result abbe_scene_change_keyframes(abbe_yaml_edit *edit, abbe_error *error) {
+  abbe_yaml_node parent;
+  size_t index;
+  double time;
+  abbe_result result = abbe_scene_value_time(edit->yaml, &time, error);
+  while (result == ABBE_OK &&
+         find_keyframes(edit->yaml, abbe_yaml_root(edit->yaml), &parent, &index)) {
+    keyframe at;
+    char *text = NULL;
+    result = value_at(edit->yaml, child_of(edit->yaml, parent, index), time, &at, error);
+    if (result == ABBE_OK)
+      result = abbe_yaml_edit_list(at.value, at.count > 0 ? at.count : 1, &text, error);
+    if (result == ABBE_OK && at.count == 0) text[strlen(text) - 1] = '\0'; /* no brackets */
+    if (result == ABBE_OK)
+      result = abbe_yaml_edit_replace(edit, parent, index, at.count > 0 ? text : text + 1, error);
+    free(text);
+  }
+  return result;
 }

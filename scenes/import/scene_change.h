@@ -1,6 +1,6 @@
 /* scene_change.h: values of a scene file that are put in the place of others before it is read, so
  * that what is wrong with them is said as of any value of the file. It knows no key of the format
- * but 'objects' and 'material'. Internal to scenes/. */
+ * but 'objects', 'material', 'time' and 'keyframes'. Internal to scenes/. */
 #ifndef ABBE_SCENES_IMPORT_SCENE_CHANGE_H
 #define ABBE_SCENES_IMPORT_SCENE_CHANGE_H
 
@@ -18,6 +18,15 @@ abbe_result abbe_scene_change_set(abbe_yaml_edit *edit, const char *assignment, 
 /* "STONE": what all refractors are made of, which must be one material; or "NAME=STONE": what is
  * made of the material NAME, or the object NAME. ABBE_INVALID_ARGUMENT where nothing is. */
 abbe_result abbe_scene_change_material(abbe_yaml_edit *edit, const char *text, abbe_error *error);
+
+/* Whether some value of the document is a mapping with 'keyframes'. */
+bool abbe_scene_change_has_keyframes(const abbe_yaml *yaml);
+
+/* Each {keyframes: [[TIME, VALUE], ...], repeat: SECONDS} becomes its value at the scene's 'time':
+ * numbers or lists of as many numbers, straight lines between them, the first before and the last
+ * behind; with 'repeat' the time counts from 0 to it again and again. ABBE_SCHEMA with file, line
+ * and key for what is none. */
+abbe_result abbe_scene_change_keyframes(abbe_yaml_edit *edit, abbe_error *error);
 
 #ifdef __cplusplus
 }

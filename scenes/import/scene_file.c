@@ -34,6 +34,7 @@ static abbe_result read_camera(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera
   if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "fov", 0.1, 170, &fov, error);
   if (result == ABBE_OK)
     result = abbe_yaml_get_numbers(yaml, node, "size", 2, 1, ABBE_IMAGE_MAX_SIDE, size, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_bool(yaml, node, "inside", &out->inside, error);
   if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "the camera", error);
   if (result != ABBE_OK) return result;
   out->fov_y_rad = fov * RADIANS;
@@ -362,6 +363,7 @@ static abbe_result read_scene(abbe_yaml *yaml, const char *folder,
   if (result == ABBE_OK)
     result = abbe_yaml_get_number(yaml, root, "background", 0, ABBE_SCENE_BRIGHTEST,
                                   &out->background, error);
+  if (result == ABBE_OK) result = abbe_scene_value_time(yaml, &out->time, error);
   if (result == ABBE_OK) result = read_camera(yaml, root, &out->camera, error);
   if (result == ABBE_OK) result = read_lights(yaml, root, folder, out, error);
   /* all keys are known before the costly part begins */
@@ -414,12 +416,13 @@ static abbe_result change_text(const char *text, size_t size, const char *name,
   return result;
 }
 
-/* The same as a document. */
+/* The same as a document, with the values of its time in the place of keyframes where asked for. */
 static abbe_result parse_changed(const char *text, size_t size, const char *name,
-                                 const abbe_scene_options *options, abbe_yaml **out,
+                                 const abbe_scene_options *options, bool keyframes, abbe_yaml **out,
                                  abbe_error *error) {
   abbe_yaml_edit edit = {0};
   abbe_result result = change_text(text, size, name, options, &edit, error);
+  if (result == ABBE_OK && keyframes) result = abbe_scene_change_keyframes(&edit, error);
   if (result == ABBE_OK) result = abbe_yaml_parse(edit.text, edit.size, name, out, error);
   abbe_yaml_edit_free(&edit);
   return result;
@@ -429,20 +432,28 @@ static bool changes(const abbe_scene_options *options) {
   return options && (options->stone || options->set_count > 0);
 }
 
+static abbe_result parse_document(const char *text, size_t size, const char *name,
+                                  const abbe_scene_options *options, abbe_yaml **out,
+                                  abbe_error *error) {
+  const bool changed = changes(options);
+  abbe_result result = changed ? parse_changed(text, size, name, options, false, out, error)
+                               : abbe_yaml_parse(text, size, name, out, error);
+  if (result != ABBE_OK || !abbe_scene_change_has_keyframes(*out)) return result;
+  abbe_yaml_free(*out);
+  *out = NULL;
+  return parse_changed(text, size, name, options, true, out, error);
+}
+
 abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options, abbe_scene *out,
                             abbe_error *error) {
   ABBE_REQUIRE(path && out, error);
   memset(out, 0, sizeof *out);
   abbe_yaml *yaml = NULL;
-  abbe_result result;
-  if (changes(options)) {
-    char *text = NULL;
-    size_t size = 0;
-    result = abbe_file_read_text(path, SCENE_MOST_BYTES, &text, &size, error);
-    if (result == ABBE_OK) result = parse_changed(text, size, path, options, &yaml, error);
-    free(text);
-  } else
-    result = abbe_yaml_load(path, &yaml, error);
+  char *text = NULL;
+  size_t size = 0;
+  abbe_result result = abbe_file_read_text(path, SCENE_MOST_BYTES, &text, &size, error);
+  if (result == ABBE_OK) result = parse_document(text, size, path, options, &yaml, error);
+  free(text);
   return result == ABBE_OK ? read_document(yaml, path, options, out, error) : result;
 }
 
@@ -452,8 +463,7 @@ abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
   ABBE_REQUIRE(text && name && out, error);
   memset(out, 0, sizeof *out);
   abbe_yaml *yaml = NULL;
-  abbe_result result = changes(options) ? parse_changed(text, size, name, options, &yaml, error)
-                                        : abbe_yaml_parse(text, size, name, &yaml, error);
+  const abbe_result result = parse_document(text, size, name, options, &yaml, error);
   return result == ABBE_OK ? read_document(yaml, name, options, out, error) : result;
 }
 

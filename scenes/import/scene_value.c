@@ -33,6 +33,13 @@ abbe_result abbe_scene_value_point(abbe_yaml *yaml, abbe_yaml_node mapping, cons
                            : result;
 }
 
+abbe_result abbe_scene_value_time(abbe_yaml *yaml, double *out, abbe_error *error) {
+  ABBE_REQUIRE(yaml && out, error);
+  *out = 0;
+  return abbe_yaml_get_number(yaml, abbe_yaml_root(yaml), "time", -ABBE_SCENE_FAR, ABBE_SCENE_FAR,
+                              out, error);
+}
+
 abbe_result abbe_scene_value_illuminant(abbe_yaml *yaml, abbe_yaml_node mapping, const char *folder,
                                         abbe_illuminant *out, char **path, abbe_error *error) {
   ABBE_REQUIRE(yaml && folder && out && path, error);

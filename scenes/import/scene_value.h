@@ -27,6 +27,9 @@ abbe_result abbe_scene_value_locate(const abbe_yaml *yaml, abbe_yaml_node node, 
 abbe_result abbe_scene_value_point(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                    double out[3], abbe_error *error);
 
+/* The scene's 'time', s; 0 without one. */
+abbe_result abbe_scene_value_time(abbe_yaml *yaml, double *out, abbe_error *error);
+
 /* What the key 'illuminant' of a light says; an absent one leaves D65 in a zeroed *out. *path: the
  * file that it is of, malloc'd, or left as it is. Errors of abbe_illuminant_make, with file and
  * line. */

@@ -2,8 +2,8 @@
  * between mirrors, penumbras, a lamp's image through a hole and in a mirror. */
 #include "tests/gl/frame.h"
 
-#include "validation/known/catacaustic.h"
-#include "validation/known/closed_form.h"
+#include "validation/known/forms/catacaustic.h"
+#include "validation/known/forms/closed_form.h"
 
 #define PI 3.14159265358979323846
 

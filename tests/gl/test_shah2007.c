@@ -35,6 +35,35 @@ static void test_what_arrives_is_what_was_sent(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* A low pass keeps the light, and spreads it by its variance along either axis. */
+static void test_a_low_pass_spreads_light(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  double sum[2], variance[2] = {0};
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
+  for (int k = 0; k < 2; k++) {
+    abbe_render_desc desc = small;
+    abbe_image map = {0};
+    double mean = 0, square = 0;
+    desc.map_size = 256;
+    desc.low_pass = k == 0 ? 0 : 5;
+    sum[k] = map_energy(&scene, &desc, &map);
+    for (size_t i = 0; i < map.width * map.height; i++) {
+      const double x = (double)(i % map.width),
+                   light = (double)map.data[i * map.channels + 1] / sum[k];
+      mean += light * x;
+      square += light * x * x;
+    }
+    variance[k] = square - mean * mean;
+    abbe_image_free(&map);
+  }
+  print_message("%.6f of the light, %.3f texels^2 more\n", sum[1] / sum[0],
+                variance[1] - variance[0]);
+  assert_near(sum[1] / sum[0], 1, 1e-3);
+  assert_near(variance[1] - variance[0], 25, 1); /* less the tails that are cut */
+  abbe_scene_free(&scene);
+}
+
 /* Each estimator's map has the exact one's light, and nearly its place: moments of the caustic. */
 static void test_estimators_land_alike(void **state) {
   (void)state;
@@ -162,6 +191,7 @@ static void test_as_printed(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_low_pass_spreads_light),
       cmocka_unit_test(test_what_arrives_is_what_was_sent),
       cmocka_unit_test(test_estimators_land_alike),
       cmocka_unit_test(test_a_flat_mirror_has_the_lamps_light),

@@ -1,5 +1,5 @@
 /* Balls: the focus of a ball lens, and the rainbows of a drop. */
-#include "validation/known/closed_form.h"
+#include "validation/known/forms/closed_form.h"
 #include "validation/known/known_group.h"
 
 #include "base/number.h"

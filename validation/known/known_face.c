@@ -1,5 +1,5 @@
 /* Flat faces: the shift of a slab, Fresnel's shares, the critical angle. */
-#include "validation/known/closed_form.h"
+#include "validation/known/forms/closed_form.h"
 #include "validation/known/known_group.h"
 
 #include "base/number.h"

@@ -1,5 +1,5 @@
 /* Lights with a size, straight and off mirrors: form factors, penumbras, images through holes. */
-#include "validation/known/closed_form.h"
+#include "validation/known/forms/closed_form.h"
 #include "validation/known/known_light.h"
 
 #include "base/number.h"

@@ -1,11 +1,10 @@
 /* Mirrors: what metals reflect, a ball's light from afar, images between two mirrors, and what a
  * ring throws onto its floor. */
-#include "validation/known/catacaustic.h"
-#include "validation/known/closed_form.h"
+#include "validation/known/forms/catacaustic.h"
+#include "validation/known/forms/closed_form.h"
 #include "validation/known/known_light.h"
 
 #include "base/number.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/geometry/vector.h"
 #include "spectral/dispersion/dispersion.h"
 #include "validation/transport/mirrors.h"

@@ -1,5 +1,5 @@
 /* Balls within balls: where refractors overlap the later one is there. */
-#include "validation/known/closed_form.h"
+#include "validation/known/forms/closed_form.h"
 #include "validation/known/known_group.h"
 
 #include "base/number.h"

@@ -1,6 +1,6 @@
 /* Panes under a slanting beam: what they reflect and pass with all reflections inside, clear and
  * absorbing. */
-#include "validation/known/closed_form.h"
+#include "validation/known/forms/closed_form.h"
 #include "validation/known/known_light.h"
 
 #include "base/number.h"

@@ -1,6 +1,6 @@
 /* Light under a sphere as the eye sees it: pictures of whole runs, ring by ring, against the
  * quadrature. The plane is seen past the sphere, straight or through a pane. */
-#include "validation/known/closed_form.h"
+#include "validation/known/forms/closed_form.h"
 #include "validation/known/known_light.h"
 #include "validation/known/sphere_quadrature.h"
 

@@ -1,5 +1,5 @@
 /* Prisms: least deviation, and the spectrum of a slit. */
-#include "validation/known/closed_form.h"
+#include "validation/known/forms/closed_form.h"
 #include "validation/known/known_group.h"
 
 #include "base/number.h"

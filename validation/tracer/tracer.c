@@ -215,6 +215,14 @@ static abbe_result choose_samples(abbe_tracer *t, abbe_error *error) {
   return ABBE_OK;
 }
 
+static abbe_media_set around_eye(const abbe_geometry *g) {
+  abbe_media_set set = 0;
+  for (size_t i = 0; i < g->refractor_count; i++)
+    if (abbe_object_contains(&g->scene->object[g->refractor_object[i]], g->scene->camera.eye))
+      set |= (abbe_media_set)1 << i;
+  return set;
+}
+
 /* The eye needs photons around where some ray that met a refractor lands. */
 static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
   t->eye_gathers =
@@ -231,6 +239,7 @@ static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
                            .white = (const float(*)[3])t->white,
                            .physics = t->desc.physics,
                            .seed = t->desc.seed,
+                           .inside = around_eye(&t->geometry),
                            .least_branch = ABBE_EYE_LEAST_BRANCH};
   if (t->desc.physics.eye_orders > 0) {
     t->eye.physics.orders = t->desc.physics.eye_orders;

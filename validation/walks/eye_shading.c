@@ -234,17 +234,31 @@ static void shade(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_
   if (!straight) add_caustic(c, p, hit, side, &reflected);
 }
 
+/* Radiance over the squared index is the same on both sides of an interface [BornWolf1999, 4.8]:
+ * what a path of the eye brings of what is shown at its end. */
+static float spread(const abbe_eye_context *c, const abbe_eye_path *p, bool within) {
+  const int end = within ? abbe_media_of(p->inside) : -1, eye = abbe_media_of(c->w->inside);
+  if (end == eye) return 1;
+  const float n = abbe_media_n(c->w->media, eye, p->step, p->within) /
+                  abbe_media_n(c->w->media, end, p->step, p->within);
+  return n * n;
+}
+
 /* What ends a path: a receiver, a lamp, or nothing at all. */
-void abbe_eye_arrive(const abbe_eye_context *c, const abbe_eye_path *p, bool met,
+void abbe_eye_arrive(const abbe_eye_context *c, const abbe_eye_path *path, bool met,
                      const abbe_hit *hit, bool straight) {
   const abbe_scene *scene = c->w->geometry->scene;
+  const bool received = met && hit->surface->kind == ABBE_GEOMETRY_RECEIVERS;
+  abbe_eye_path own = *path;
+  const abbe_eye_path *p = &own;
+  own.share *= spread(c, path, received);
   if (!met) {
     if (scene->background > 0) add_white(c, p, (float)scene->background, NULL);
     if (c->w->environment->environment == NULL) return;
     float rgb[3];
     abbe_environment_light_seen(c->w->environment, p->d, rgb);
     add_environment(c, p, rgb, 1, NULL);
-  } else if (hit->surface->kind == ABBE_GEOMETRY_RECEIVERS) {
+  } else if (received) {
     shade(c, p, hit, straight);
   } else if (abbe_eye_dot(p->d, hit->n) < 0) {
     size_t l = hit->surface->index;

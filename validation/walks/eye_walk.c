@@ -423,8 +423,12 @@ void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
   clear(w, out);
   abbe_eye_random4(&c, 0, 0, shift);
   for (uint32_t i = 0; i < count; i++) {
-    abbe_eye_path p = {
-        .share = 1 / (float)count, .branch = 1, .tint = {1, 1, 1}, .carried = 1, .id = i * IDS};
+    abbe_eye_path p = {.share = 1 / (float)count,
+                       .branch = 1,
+                       .tint = {1, 1, 1},
+                       .inside = w->inside,
+                       .carried = 1,
+                       .id = i * IDS};
     memcpy(p.o, w->camera->eye, sizeof p.o);
     walk_sample(&c, &p, column + place(i, golden[0], shift[0]), row + place(i, golden[1], shift[1]),
                 place(i, golden[2], shift[2]));

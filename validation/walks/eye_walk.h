@@ -43,6 +43,7 @@ typedef struct abbe_eye_walk {
   const float (*white)[3];  /* [lights] in the picture's space */
   abbe_physics physics;
   uint32_t seed;
+  abbe_media_set inside; /* refractors that the eye is in; their media are clear */
   float least_branch; /* share of what came into the glass below which roulette decides; 1: at all
                          interfaces */
   const uint8_t *samples;       /* [pixels] of each pixel in a pass; NULL: one */

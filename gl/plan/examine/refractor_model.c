@@ -55,6 +55,8 @@ static const char *why_in_turn(const abbe_scene *scene, const abbe_plan *plan) {
   if (plan->desc.model == ABBE_MODEL_LAYERS || refractors > MAX_FOLLOWED) return NULL;
   if (plan->desc.model == ABBE_MODEL_BVH) return "as asked";
   if (refractors > 1) return "there is more than one refractor";
+  if (scene->camera.inside && abbe_scene_around_eye(scene) != NULL)
+    return "the eye is inside a refractor";
   if (only->exact.kind != ABBE_EXACT_SPHERE && only->exact.kind != ABBE_EXACT_CONVEX &&
       !abbe_mesh_is_convex(&only->mesh))
     return "the refractor is not convex";
@@ -166,6 +168,9 @@ static abbe_result add_refractor(const abbe_scene *scene, size_t i, abbe_plan *p
   abbe_result result = abbe_spectral_needs_examine(scene, object->material, plan, error);
   if (result == ABBE_OK) result = check_asked(object, plan, error);
   if (result != ABBE_OK) return result;
+  if (scene->camera.inside && plan->refractor_count < MAX_FOLLOWED &&
+      abbe_object_contains(object, scene->camera.eye))
+    plan->eye_inside |= 1u << plan->refractor_count;
   add(plan, i, false, model_of(object, plan));
   write_reason(object, plan, reason, sizeof reason);
   list_model(plan, i, object->name, reason, unlisted);
@@ -203,6 +208,16 @@ static void list_in_turn(abbe_plan *plan, const char *why) {
                                             : "there are more refractors than are followed");
 }
 
+static abbe_result check_eye(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
+  const abbe_object *around = scene->camera.inside ? abbe_scene_around_eye(scene) : NULL;
+  if (around == NULL || plan->multi_refractor_paths) return ABBE_OK;
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "the eye is inside the refractor '%s' (line %zu), from where neither "
+                        "published profiles nor the model 'layers' nor a scene of more than %d "
+                        "refractors are seen; move it outside, or trace the scene",
+                        around->name, around->line, MAX_FOLLOWED);
+}
+
 /* What is left out of the lists of refractors would not be met by a mirror's light. */
 static abbe_result check_followed(const abbe_plan *plan, abbe_error *error) {
   if (plan->mirror_count == 0 || plan->refractor_count <= MAX_FOLLOWED) return ABBE_OK;
@@ -236,6 +251,7 @@ abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan
     if (result != ABBE_OK) return result;
   }
   abbe_result result = check_followed(plan, error);
+  if (result == ABBE_OK) result = check_eye(scene, plan, error);
   if (result != ABBE_OK) return result;
   if (unlisted > 0)
     abbe_plan_add(plan, ABBE_CHOICE_MORE_REFRACTORS, "and %zu refractors more", unlisted);

@@ -72,6 +72,7 @@ typedef struct abbe_plan {
   bool reaches[ABBE_SCENE_MAX_LIGHTS]; /* the light may meet a refractor: it has a map */
   bool caustics;                       /* some light may meet one */
   bool volume;                         /* one may, and its caustics are looked up: no photons */
+  unsigned eye_inside;                 /* bit r: the eye is inside refractor r */
   bool camera_sees_refractor;          /* the camera may */
   /* Light is followed from interface to interface of all refractors: what leaves one may meet one
    * again, or a receiver inside; or one is a mirror; or the BVH was asked for. Without this no
@@ -82,7 +83,7 @@ typedef struct abbe_plan {
   bool outside_map_view;     /* some receiver lies beyond a light's map view */
   bool receiver_shadows;     /* some receiver may hide another from a light */
   bool surrounded;           /* an environment is around the scene */
-  bool sized_lights; /* points stand for a light with a size */
+  bool sized_lights;         /* points stand for a light with a size */
 
   /* The scene's lights, and after them the views that cubes have more than one of. */
   size_t light_view_count;

@@ -136,6 +136,7 @@ static abbe_result check_counts(const abbe_render_desc *d, abbe_error *error) {
       {"the number of exits", d->exits, 0, ABBE_RENDER_MAX_EXITS},
       {"the number of iterations", d->iterations, 0, ABBE_ESTIMATOR_MAX_ITERATIONS},
       {"the number of interfaces", d->interfaces, 0, 2},
+      {"the low pass of the map", d->low_pass, 0, ABBE_RENDER_MAX_LOW_PASS},
       {"the number of a picture's frames", d->history, 0, ABBE_RENDER_MAX_HISTORY},
   };
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
@@ -203,6 +204,11 @@ static abbe_result check_published(const abbe_render_desc *d, abbe_error *error)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "an estimator, its iterations and a number of interfaces go with the "
                           "profiles shah2007 and wyman2006 and their twins, not with '%s'",
+                          abbe_profile_name(d->profile));
+  if (d->low_pass > 0 && !abbe_profile_is_shah2007(d->profile))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a low pass of the map goes with the profiles shah2007 and shah2007-cie, "
+                          "not with '%s'",
                           abbe_profile_name(d->profile));
   if (d->profile == ABBE_PROFILE_SHAH2007 && d->wavelengths != 0 && d->wavelengths != 1 &&
       d->wavelengths != ABBE_PLAN_SHAH_COLOURS)

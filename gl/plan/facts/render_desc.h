@@ -94,7 +94,8 @@ typedef enum abbe_model {
 #define ABBE_RENDER_MAX_ADAPTIVE 8 /* a side */
 #define ABBE_RENDER_MAX_ENVIRONMENT_LIGHTS 16
 #define ABBE_RENDER_MAX_LIGHT_POINTS 16
-#define ABBE_RENDER_MAX_HISTORY 4 /* frames */
+#define ABBE_RENDER_MAX_HISTORY 4   /* frames */
+#define ABBE_RENDER_MAX_LOW_PASS 32 /* texels */
 
 /* Called now and then with the share done, 0 to 1; false stops the work with ABBE_CANCELLED. */
 typedef bool (*abbe_render_progress)(void *user, double done);
@@ -146,6 +147,8 @@ typedef struct abbe_render_desc {
    * Elsewhere 0. */
   abbe_estimator estimator;
   size_t iterations, interfaces;
+  size_t low_pass;          /* of shah2007: standard deviation of the filter over its map, texels, 0
+                               (none) to 32 */
   abbe_direction direction; /* of wyman2006; in its twin direct alone */
   /* Frames that a picture holds, 1 to 4, 0: 1; of the default profile and wyman2006's gathers. A
    * renderer that is changed or redrawn goes on with the frames before, so that a picture is no

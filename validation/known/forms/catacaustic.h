@@ -4,8 +4,8 @@
  * caustic of a circle by reflection: of parallel light a nephroid, of a lamp on the wall a
  * cardioid. Double precision, whole rays, any number of reflections; the wall reflects all.
  */
-#ifndef ABBE_VALIDATION_KNOWN_CATACAUSTIC_H
-#define ABBE_VALIDATION_KNOWN_CATACAUSTIC_H
+#ifndef ABBE_VALIDATION_KNOWN_FORMS_CATACAUSTIC_H
+#define ABBE_VALIDATION_KNOWN_FORMS_CATACAUSTIC_H
 
 #include <stddef.h>
 

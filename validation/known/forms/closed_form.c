@@ -1,4 +1,4 @@
-#include "validation/known/closed_form.h"
+#include "validation/known/forms/closed_form.h"
 
 #include <complex.h>
 #include <math.h>

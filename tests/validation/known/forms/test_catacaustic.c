@@ -1,7 +1,7 @@
 /* A ring's caustics: cusps where the books have them, how light grows at a fold, no light lost. */
 #include "tests/check.h"
 
-#include "validation/known/catacaustic.h"
+#include "validation/known/forms/catacaustic.h"
 
 static const double PI = 3.14159265358979;
 

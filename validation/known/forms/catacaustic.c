@@ -1,4 +1,4 @@
-#include "validation/known/catacaustic.h"
+#include "validation/known/forms/catacaustic.h"
 
 #include <math.h>
 

@@ -5,8 +5,8 @@
  * the surroundings, angles in radians. What light throws onto a plane under a sphere is no closed
  * form: see sphere_quadrature.h.
  */
-#ifndef ABBE_VALIDATION_KNOWN_CLOSED_FORM_H
-#define ABBE_VALIDATION_KNOWN_CLOSED_FORM_H
+#ifndef ABBE_VALIDATION_KNOWN_FORMS_CLOSED_FORM_H
+#define ABBE_VALIDATION_KNOWN_FORMS_CLOSED_FORM_H
 
 #include <stdbool.h>
 #include <stddef.h>

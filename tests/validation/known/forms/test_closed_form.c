@@ -3,7 +3,7 @@
 
 #include "spectral/formats/material_table_load.h"
 #include "spectral/optics.h"
-#include "validation/known/closed_form.h"
+#include "validation/known/forms/closed_form.h"
 
 #define PI 3.14159265358979323846
 

@@ -1,0 +1,44 @@
+/* frame_series.h: pictures one after another: which frames, when each of them is, what its files
+ * are called, and the PNG that moves. It draws nothing.
+ */
+#ifndef ABBE_CLI_BASE_FRAME_SERIES_H
+#define ABBE_CLI_BASE_FRAME_SERIES_H
+
+#include "base/error.h"
+#include "cli/base/command.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define ABBE_FRAME_SERIES_MOST 100000
+
+typedef struct abbe_frame_series {
+  const char *program;
+  size_t first, count; /* numbers first to first + count - 1; count 0: one picture and no series */
+  bool around;         /* the camera goes around, and time stands still */
+  double per_second;   /* 0: 25 */
+  abbe_command_part part;
+  bool merge;  /* frames that are there, and draw none */
+  bool resume; /* draw those alone that are not there */
+} abbe_frame_series;
+
+/* "A:B": frames A to B - 1. Ends the program where it is none. */
+void abbe_frame_series_take(abbe_frame_series *series, const char *text);
+
+/* Whether frame i of the count is this process's to draw: of its part, and, where that is asked
+ * for, with a file that is not there yet. exr and png as below, or NULL. */
+bool abbe_frame_series_draws(const abbe_frame_series *series, size_t i, const char *exr,
+                             const char *png);
+
+/* When frame i is, s, in a scene whose own time is scene_time. */
+double abbe_frame_series_time(const abbe_frame_series *series, double scene_time, size_t i);
+
+/* "stone.png" is "stone-0001.png" for the number 1; malloc'd, NULL without a path. */
+abbe_result abbe_frame_series_name(const char *path, size_t number, char **out, abbe_error *error);
+
+/* path, a PNG that moves, of the series' numbered files beside it. Errors of
+ * abbe_animated_png_write. */
+abbe_result abbe_frame_series_merge(const abbe_frame_series *series, const char *path,
+                                    abbe_error *error);
+
+#endif

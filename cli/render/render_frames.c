@@ -1,0 +1,185 @@
+#include "cli/render/render_frames.h"
+
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "cli/base/progress.h"
+#include "cli/base/scene_input.h"
+
+#include "colorimetry/image/exr.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { OPTION_TURNTABLE = 0x800, OPTION_FPS, OPTION_PART, OPTION_MERGE, OPTION_RESUME };
+enum { MOST_AROUND = 9999 };
+
+static const struct argp_option options[] = {
+    {"turntable", OPTION_TURNTABLE, "N", 0,
+     "N frames from all around, numbered: FILE-0001.exr, FILE-0001.png, and FILE.png that moves",
+     5},
+    {"part", OPTION_PART, "K/N", 0,
+     "only every N-th frame from the K-th on, 0/8 to 7/8, and no PNG that moves", 5},
+    {"resume", OPTION_RESUME, NULL, 0, "draw those frames alone whose files are not there", 5},
+    {"merge", OPTION_MERGE, NULL, 0,
+     "draw nothing: make FILE.png of the numbered frames that are there", 5},
+    {"fps", OPTION_FPS, "F", 0, "frames a second, of time and of the PNG that moves (25)", 5},
+    {0}};
+
+/* What says nothing of one picture. */
+static void check(const abbe_frame_series *o, struct argp_state *state) {
+  const bool asked = o->part.parts > 0 || o->merge || o->resume || o->per_second > 0;
+  if (asked && o->count == 0)
+    argp_error(state, "--%s goes with --turntable N or --frames A:B",
+               o->merge            ? "merge"
+               : o->resume         ? "resume"
+               : o->per_second > 0 ? "fps"
+                                   : "part");
+  if (o->part.parts > 0 && o->part.part >= o->count)
+    argp_error(state, "--part %zu/%zu has none of %zu frames", o->part.part, o->part.parts,
+               o->count);
+  if (o->part.parts > 0 && o->merge)
+    argp_error(state, "--part draws frames, and --merge draws nothing");
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  abbe_frame_series *o = state->input;
+  switch (key) {
+  case OPTION_TURNTABLE:
+    o->count = abbe_command_count(o->program, "--turntable", text, 2, MOST_AROUND);
+    o->first = 1;
+    o->around = true;
+    return 0;
+  case OPTION_FPS:
+    o->per_second = abbe_command_number(o->program, "--fps", text, 0.1, 1000);
+    return 0;
+  case OPTION_PART:
+    abbe_command_read_part(o->program, text, &o->part);
+    return 0;
+  case OPTION_MERGE:
+    o->merge = true;
+    return 0;
+  case OPTION_RESUME:
+    o->resume = true;
+    return 0;
+  case ARGP_KEY_END:
+    check(o, state);
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+const struct argp abbe_render_frames_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};
+
+/* v turned about the unit axis, the right-handed way. */
+static void turn(const double v[3], const double axis[3], double rad, double out[3]) {
+  const double c = cos(rad), s = sin(rad);
+  const double along = v[0] * axis[0] + v[1] * axis[1] + v[2] * axis[2];
+  for (int k = 0; k < 3; k++) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    out[k] = v[k] * c + (axis[i] * v[j] - axis[j] * v[i]) * s + axis[k] * along * (1 - c);
+  }
+}
+
+static abbe_camera camera_at(const abbe_camera *first, double rad) {
+  abbe_camera camera = *first;
+  double axis[3], from[3], to[3], length = 0;
+  for (int k = 0; k < 3; k++) length += first->up[k] * first->up[k];
+  for (int k = 0; k < 3; k++) {
+    axis[k] = first->up[k] / sqrt(length);
+    from[k] = first->eye[k] - first->target[k];
+  }
+  turn(from, axis, rad, to);
+  for (int k = 0; k < 3; k++) camera.eye[k] = first->target[k] + to[k];
+  return camera;
+}
+
+static abbe_result write_frame(const abbe_render_request *q, const abbe_image *image, size_t number,
+                               abbe_error *error) {
+  char *exr = NULL, *png = NULL;
+  abbe_render_request own = *q;
+  abbe_result result = abbe_frame_series_name(q->exr, number, &exr, error);
+  if (result == ABBE_OK) result = abbe_frame_series_name(q->png, number, &png, error);
+  own.png = png;
+  if (result == ABBE_OK && exr != NULL) result = abbe_exr_write(exr, image, error);
+  if (result == ABBE_OK && png != NULL) result = abbe_render_write_png(&own, image, error);
+  free(exr);
+  free(png);
+  return result;
+}
+
+/* The scene of a frame: the same with another camera, whose parts are the scene's, or all of it at
+ * another time. */
+typedef struct frame_scene {
+  abbe_scene scene;
+  bool owned;
+} frame_scene;
+
+static abbe_result make_scene(const abbe_render_request *q, const abbe_scene *scene, size_t i,
+                              frame_scene *out, abbe_error *error) {
+  const double full = 2 * 3.14159265358979323846;
+  const abbe_frame_series *s = &q->series;
+  out->owned = !s->around;
+  if (!s->around)
+    return abbe_scene_input_at(scene, q->render.materials, &q->render.changes,
+                               abbe_frame_series_time(s, scene->time, i), &out->scene, error);
+  out->scene = *scene;
+  out->scene.camera = camera_at(&scene->camera, full * (double)i / (double)s->count);
+  return ABBE_OK;
+}
+
+static void free_scene(frame_scene *f) {
+  if (f->owned) abbe_scene_free(&f->scene);
+  *f = (frame_scene){0};
+}
+
+/* *shown: the scene that the renderer holds, which it must until it holds the next. */
+static abbe_result draw_frame(const abbe_render_request *q, const abbe_scene *scene,
+                              const abbe_render_desc *desc, abbe_renderer *renderer,
+                              const abbe_context *context, size_t i, frame_scene shown[2],
+                              abbe_statistics *statistics, abbe_error *error) {
+  abbe_image image = {0};
+  shown[1] = shown[0];
+  shown[0] = (frame_scene){0};
+  abbe_result result = make_scene(q, scene, i, &shown[0], error);
+  if (result == ABBE_OK) result = abbe_renderer_change(renderer, &shown[0].scene, desc, error);
+  if (result == ABBE_OK) free_scene(&shown[1]);
+  if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, statistics, error);
+  if (result == ABBE_OK) result = abbe_renderer_read(renderer, q->aovs, &image, error);
+  if (result == ABBE_OK) result = abbe_render_annotate(q, renderer, context, &image, error);
+  if (result == ABBE_OK) result = write_frame(q, &image, q->series.first + i, error);
+  abbe_image_free(&image);
+  return result;
+}
+
+abbe_result abbe_render_frames_draw(const abbe_render_request *q, const abbe_scene *scene,
+                                    const abbe_render_desc *desc, abbe_renderer *renderer,
+                                    const abbe_context *context, abbe_statistics *statistics,
+                                    abbe_error *error) {
+  const abbe_frame_series *s = &q->series;
+  abbe_progress progress;
+  abbe_render_desc own = *desc;
+  frame_scene shown[2] = {{{0}, false}};
+  own.progress = NULL;
+  own.compiling = NULL;
+  abbe_progress_begin(&progress, s->around ? "turntable" : "frames", q->quiet);
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < s->count && result == ABBE_OK; i++) {
+    if (!abbe_frame_series_draws(s, i, q->exr, q->png)) continue;
+    result = draw_frame(q, scene, &own, renderer, context, i, shown, statistics, error);
+    if (!abbe_progress_update(&progress, (double)(i + 1) / (double)s->count) && result == ABBE_OK &&
+        i + 1 < s->count)
+      result = abbe_error_set(error, ABBE_CANCELLED,
+                              "stopped after %zu of %zu frames; --resume goes on", i + 1, s->count);
+  }
+  abbe_progress_end(&progress);
+  if (result == ABBE_OK && q->png != NULL && s->part.parts == 0)
+    result = abbe_frame_series_merge(s, q->png, error);
+  /* the renderer is not to look at a scene that is gone */
+  abbe_error ignored = {0};
+  const abbe_result back = abbe_renderer_change(renderer, scene, &own, &ignored);
+  if (result == ABBE_OK && back != ABBE_OK)
+    result = abbe_error_set(error, back, "%s", ignored.text);
+  for (int k = 0; k < 2; k++) free_scene(&shown[k]);
+  return result;
+}

@@ -1,0 +1,20 @@
+// A Gaussian of `sigma` texels along one axis of the map. What it lays past the map's edge is lost there.
+uniform sampler2D map;
+uniform ivec2 along;
+uniform float sigma;
+layout(location = 0) out vec4 light;
+
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy), size = textureSize(map, 0);
+  int reach = int(ceil(3.0 * sigma));
+  float sum = 0.0;
+  light = vec4(0);
+  for (int k = -reach; k <= reach; k++) {
+    ivec2 there = at + k * along;
+    float weight = exp(-0.5 * float(k * k) / (sigma * sigma));
+    sum += weight;
+    if (all(greaterThanEqual(there, ivec2(0))) && all(lessThan(there, size)))
+      light += weight * texelFetch(map, there, 0);
+  }
+  light /= sum;
+}

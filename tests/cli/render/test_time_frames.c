@@ -1,0 +1,95 @@
+/* `abbe render --frames A:B` and `abbe trace --frames A:B`: numbered frames over time, the PNG that
+ * moves, parts, and going on. */
+#include "tests/cli/run_program.h"
+
+static const char pool[] =
+    "cat > pool.yaml <<END\n"
+    "camera: {eye: [0, -0.5, 0.5], target: [0, 0, -0.05], fov: 20}\n"
+    "lights: [{name: sun, kind: directional, direction: [0.2, 0.1, -1], irradiance: "
+    "{keyframes: [[0, 1], [1, 3]]}}]\n"
+    "objects:\n"
+    "- {name: water, shape: water, size: [0.3, 0.3, 0.06], cells: 16, material: water, "
+    "waves: [{amplitude: 0.003, wavelength: 0.1}]}\n"
+    "- {name: bottom, shape: rectangle, width: 0.4, height: 0.4, reflectance: 0.8, transform: "
+    "[{translate: [0, 0, -0.05]}]}\n"
+    "END\n";
+
+#define RENDER "\"$abbe\" render pool.yaml --size 16x16 --photons 16 --map 64 -q "
+#define TRACE "\"$abbe\" trace pool.yaml --size 8x8 --spp 2 --photons 512 -q "
+
+static void frames_and_what_moves(void **state) {
+  (void)state;
+  assert_int_equal(run_line(pool), 0);
+  if (run_line(RENDER "--frames 2:5 --fps 4 --png t.png -o t.exr && ls t*") != 0)
+    fail_msg("%s", run_errors);
+  assert_string_equal(run_output, "t-0002.exr\nt-0002.png\nt-0003.exr\nt-0003.png\nt-0004.exr\n"
+                                  "t-0004.png\nt.png\n");
+  assert_int_equal(run_line("grep -c acTL t.png"), 0);
+  /* frame 3 at 4 a second is the scene at 0.75 s, and others are not */
+  assert_int_equal(run_line(RENDER "--at 0.75 -o one.exr && \"$abbe\" compare one.exr t-0003.exr "
+                                   "--tolerance relative_rmse=1e-5"),
+                   0);
+  assert_int_equal(run_line(RENDER "--set time=0.75 -o two.exr && cmp one.exr two.exr"), 0);
+  assert_int_not_equal(run_line("cmp t-0002.png t-0003.png"), 0);
+  /* a frame that is gone is drawn again, and the others are not */
+  if (run_line("rm t-0003.* t.png && touch -d 2001-01-01 t-0002.png t-0004.png && cp t-0002.exr "
+               "kept.exr && " RENDER "--frames 2:5 --fps 4 --png t.png -o t.exr --resume && "
+               "find . -name 't*.png' -newermt 2002-01-01 | sort && cmp kept.exr t-0002.exr") != 0)
+    fail_msg("%s", run_errors);
+  assert_string_equal(run_output, "./t-0003.png\n./t.png\n");
+  assert_int_equal(run_line("rm t* one.exr kept.exr"), 0);
+}
+
+static void parts_are_put_together(void **state) {
+  (void)state;
+  if (run_line(RENDER "--frames 0:4 --fps 4 --png t.png && " RENDER
+                      "--frames 0:4 --fps 4 --png u.png --part 1/2 && " RENDER
+                      "--frames 0:4 --fps 4 --png u.png --part 0/2 && " RENDER
+                      "--frames 0:4 --fps 4 --png u.png --merge && cmp t.png u.png") != 0)
+    fail_msg("%s", run_errors);
+  assert_int_equal(run_line("rm t* u*"), 0);
+}
+
+static void traced_frames(void **state) {
+  (void)state;
+  if (run_line(TRACE "--frames 1:3 --fps 2 --png t.png -o t.exr && ls t*") != 0)
+    fail_msg("%s", run_errors);
+  assert_string_equal(run_output, "t-0001.exr\nt-0001.png\nt-0002.exr\nt-0002.png\nt.png\n");
+  if (run_line(TRACE "--at 0.5 -o one.exr && \"$abbe\" compare one.exr t-0001.exr --tolerance "
+                     "relative_rmse=1e-5") != 0)
+    fail_msg("%s", run_errors);
+  if (run_line("rm t-0002.png && touch -d 2001-01-01 t-0001.png && " TRACE
+               "--frames 1:3 --fps 2 --png t.png -o t.exr --resume && "
+               "find . -name 't*.png' -newermt 2002-01-01 | sort") != 0)
+    fail_msg("%s", run_errors);
+  assert_string_equal(run_output, "./t-0002.png\n./t.png\n");
+  assert_int_equal(run_line("rm t* one.exr"), 0);
+  assert_int_equal(run_line("rm pool.yaml"), 0);
+  assert_int_equal(run_left(), 0);
+}
+
+#define GEM "\"$abbe\" render \"$house\"/scenes/gem.yaml "
+#define GEM_TRACE "\"$abbe\" trace \"$house\"/scenes/gem.yaml "
+
+static void what_is_refused(void **state) {
+  (void)state;
+  assert_true(run_refuses(GEM "--frames 4:4 --png t.png", 2, "are no frames"));
+  assert_true(run_refuses(GEM "--frames 4: --png t.png", 2, "--frames"));
+  assert_true(run_refuses(GEM "--frames 0:4 --json", 2, "--frames A:B writes frames"));
+  assert_true(run_refuses(GEM "--frames 0:4 --png t.png --part 7/8", 2, "none of 4 frames"));
+  assert_true(run_refuses(GEM "--resume --png t.png", 2, "goes with --turntable N or --frames"));
+  assert_true(run_refuses(GEM "--at soon --png t.png", 2, "--at"));
+  assert_true(run_refuses(GEM_TRACE "--frames 0:4 --json", 2, "--frames writes frames"));
+  assert_true(run_refuses(GEM_TRACE "--frames 0:4 -o t.exr --merge a b", 2, "goes without"));
+  assert_true(run_refuses(GEM_TRACE "--fps 4 -o t.exr", 2, "--fps goes with --frames"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(frames_and_what_moves),
+      cmocka_unit_test(parts_are_put_together),
+      cmocka_unit_test(traced_frames),
+      cmocka_unit_test(what_is_refused),
+  };
+  return cmocka_run_group_tests(tests, run_setup, run_teardown);
+}

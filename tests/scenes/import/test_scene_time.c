@@ -1,0 +1,138 @@
+/* Time in a scene file: keyframes, water at its instant, and what is wrong with either. */
+#include "tests/check.h"
+
+#include "scenes/import/scene_file.h"
+#include "scenes/shapes/water.h"
+
+#define FRONT "camera: {eye: [0, -1, 1], target: [0, 0, 0]}\n"
+#define FLOOR "objects:\n- {name: floor, shape: rectangle, width: 1, height: 1, reflectance: 0.5}\n"
+#define LAMP(value)                                                                                \
+  "lights: [{name: lamp, kind: point, position: [0, 0, 2], intensity: " value "}]\n"
+
+static abbe_scene load_at(const char *text, const char *time) {
+  const char *const set[] = {time};
+  const abbe_scene_options options = {.set = set, .set_count = time != NULL};
+  abbe_scene scene;
+  abbe_error error = {0};
+  if (abbe_scene_parse(text, strlen(text), "t.yaml", &options, &scene, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  return scene;
+}
+
+static void numbers_go_between_keyframes(void **state) {
+  (void)state;
+  static const struct {
+    const char *time;
+    double is;
+  } rows[] = {{NULL, 1},     {"time=-5", 1}, {"time=0", 1}, {"time=1", 2},  {"time=1.5", 3},
+              {"time=2", 4}, {"time=3", 3},  {"time=4", 2}, {"time=99", 2}, {"time=2.25", 3.75}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    abbe_scene scene =
+        load_at(FRONT LAMP("{keyframes: [[0, 1], [1, 2], [2, 4], [4, 2]]}") FLOOR, rows[i].time);
+    assert_near(scene.light[0].power, rows[i].is, 1e-12);
+    abbe_scene_free(&scene);
+  }
+}
+
+/* The scene's own time, places and angles, a list in block style, and a time that repeats. */
+static void all_kinds_of_values_move(void **state) {
+  (void)state;
+  static const char text[] =
+      "time: 2.5\ncamera:\n  eye: {keyframes: [[2, [0, -1, 1]], [3, [0, -2, 3]]]}\n"
+      "  target: [0, 0, 0]\n"
+      "  fov:\n    repeat: 2\n    keyframes:\n      - [0, 30]\n      - [1, 50]\n" LAMP("1") FLOOR
+      "- name: ball\n  shape: sphere\n  radius: 0.1\n  material: water\n  transform:\n"
+      "    - translate: {keyframes: [[0, [1, 0, 1]], [5, [0, 1, 1]]]}\n"
+      "    - rotate: {axis: [0, 0, 1], angle: {keyframes: [[0, 0], [5, 180]]}}\n";
+  abbe_scene scene = load_at(text, NULL);
+  assert_near(scene.time, 2.5, 0);
+  assert_near(scene.camera.eye[1], -1.5, 1e-12);
+  assert_near(scene.camera.eye[2], 2, 1e-12);
+  assert_near(scene.camera.fov_y_rad, 40 * 3.14159265358979323846 / 180, 1e-12);
+  assert_near(scene.object[1].exact.centre[0], -0.5, 1e-12);
+  assert_near(scene.object[1].exact.centre[1], 0.5, 1e-12);
+  assert_near(scene.object[1].exact.centre[2], 1, 1e-12);
+  abbe_scene_free(&scene);
+}
+
+/* At the scene's time the surface is that of the shape at that time. */
+static void water_is_at_its_time(void **state) {
+  (void)state;
+  static const char text[] = FRONT LAMP("1") FLOOR
+      "- {name: pool, shape: water, size: [1, 0.5, 0.1], material: water, cells: [40, 20],\n"
+      "   waves: [{amplitude: 0.005, wavelength: 0.3, direction: 30, phase: 20}],\n"
+      "   drops: [{at: [0.1, 0], time: 0.1, depth: 0.002, radius: 0.06}]}\n";
+  const abbe_water_wave wave = {0.005, 0.3, 30 * 3.14159265358979323846 / 180,
+                                20 * 3.14159265358979323846 / 180};
+  const abbe_water_drop drop = {{0.1, 0}, 0.1, 0.002, 0.06};
+  const abbe_water water = {.size = {1, 0.5, 0.1},
+                            .cells = {40, 20},
+                            .time = 0.75,
+                            .wave_count = 1,
+                            .wave = &wave,
+                            .drop_count = 1,
+                            .drop = &drop};
+  abbe_mesh known;
+  assert_int_equal(abbe_water_make(&water, &known, NULL), ABBE_OK);
+  abbe_scene scene = load_at(text, "time=0.75");
+  const abbe_mesh *seen = &scene.object[1].mesh;
+  assert_null(scene.object[1].fixes);
+  assert_int_equal(seen->vertex_count, known.vertex_count);
+  for (size_t v = 0; v < known.vertex_count; v++)
+    for (int k = 0; k < 3; k++) {
+      assert_near(seen->position[v][k], known.position[v][k], 1e-12);
+      assert_near(seen->normal[v][k], known.normal[v][k], 1e-9);
+    }
+  abbe_scene_free(&scene);
+  scene = load_at(FRONT LAMP("1") FLOOR
+                  "- {name: pool, shape: water, size: [1, 0.5, 0.1], material: water}\n",
+                  NULL);
+  assert_int_equal(scene.object[1].exact.kind, ABBE_EXACT_CONVEX);
+  abbe_scene_free(&scene);
+  abbe_mesh_free(&known);
+}
+
+static void refuses(const char *text, const char *part, const char *line) {
+  abbe_scene scene;
+  abbe_error error = {0};
+  assert_int_not_equal(abbe_scene_parse(text, strlen(text), "t.yaml", NULL, &scene, &error),
+                       ABBE_OK);
+  assert_contains(error.text, part);
+  assert_contains(error.text, line);
+}
+
+#define POOL(keys) FRONT LAMP("1") FLOOR "- {shape: water, material: water, " keys "}\n"
+
+static void what_is_refused(void **state) {
+  (void)state;
+  refuses(FRONT LAMP("{keyframes: 3}") FLOOR, "'keyframes' wants a list", "t.yaml:2");
+  refuses(FRONT LAMP("{keyframes: []}") FLOOR, "'keyframes' wants a list", "t.yaml:2");
+  refuses(FRONT LAMP("{keyframes: [[0, 1], [0, 2]]}") FLOOR, "rising order", "t.yaml:2");
+  refuses(FRONT LAMP("{keyframes: [[0, 1], [1, [2, 3]]]}") FLOOR, "as many numbers", "t.yaml:2");
+  refuses(FRONT LAMP("{keyframes: [[0, 1, 2]]}") FLOOR, "a time and a value", "t.yaml:2");
+  refuses(FRONT LAMP("{keyframes: [[0, .nan]]}") FLOOR, "keyframes", "t.yaml:2");
+  refuses(FRONT LAMP("{keyframes: [[0, -1]]}") FLOOR, "intensity", "t.yaml:2");
+  refuses(FRONT LAMP("{keyframes: [[0, 1]], repeat: 0}") FLOOR, "'repeat'", "t.yaml:2");
+  refuses(FRONT LAMP("{keyframes: [[0, 1]], repaet: 1}") FLOOR, "repaet", "t.yaml:2");
+  refuses("time: soon\n" FRONT LAMP("1") FLOOR, "time", "t.yaml:1");
+  refuses(POOL("size: [1, 1]"), "size", "t.yaml:5");
+  refuses(POOL("size: [1, 1, 0.1], waves: {amplitude: 1}"), "'waves' wants a list", "t.yaml:5");
+  refuses(POOL("size: [1, 1, 0.1], waves: [{amplitude: 0.01}]"), "wavelength", "t.yaml:5");
+  refuses(POOL("size: [1, 1, 0.1], waves: [{amplitude: 0.2, wavelength: 1}]"), "bare", "t.yaml:5");
+  refuses(POOL("size: [1, 1, 0.1], waves: [{amplitud: 0.2, wavelength: 1}]"), "amplitude",
+          "t.yaml:5");
+  refuses(POOL("size: [1, 1, 0.1], drops: [{depth: 0.01, radius: 0.1}]"), "'at'", "t.yaml:5");
+  refuses(POOL("size: [1, 1, 0.1], rain: {every: 0, depth: 0.01, radius: 0.1}"), "every",
+          "t.yaml:5");
+  refuses(POOL("size: [1, 1, 0.1], cells: 2.5"), "whole", "t.yaml:5");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(numbers_go_between_keyframes),
+      cmocka_unit_test(all_kinds_of_values_move),
+      cmocka_unit_test(water_is_at_its_time),
+      cmocka_unit_test(what_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,216 @@
+/* Water: a flat one is a box, waves go at the speed of their relation, rings of drops too, and no
+ * water comes or goes. */
+#include "scenes/shapes/water.h"
+
+#include "tests/check.h"
+
+#include "scenes/geometry/vector.h"
+#include "scenes/shapes/convex.h"
+
+#define PI 3.14159265358979323846
+
+static abbe_mesh make(const abbe_water *water) {
+  abbe_mesh mesh;
+  abbe_error error = {0};
+  if (abbe_water_make(water, &mesh, &error) != ABBE_OK) fail_msg("%s", error.text);
+  return mesh;
+}
+
+static abbe_mesh_report check_closed(const abbe_mesh *mesh) {
+  abbe_mesh_report report;
+  assert_int_equal(abbe_mesh_check(mesh, &report, NULL), ABBE_OK);
+  assert_int_equal(report.open_edges, 0);
+  assert_int_equal(report.crowded_edges, 0);
+  assert_int_equal(report.flipped_edges, 0);
+  assert_int_equal(report.degenerate_faces, 0);
+  assert_int_equal(report.shells, 1);
+  for (size_t f = 0; f < mesh->face_count; f++) {
+    double n[3];
+    abbe_vector_triangle(mesh->position[mesh->face[f][0]], mesh->position[mesh->face[f][1]],
+                         mesh->position[mesh->face[f][2]], n);
+    abbe_vector_normalise(n);
+    for (int k = 0; k < 3; k++) {
+      const double *normal = mesh->normal[mesh->face[f][k]];
+      assert_true(fabs(abbe_vector_length(normal) - 1) < 1e-12);
+      assert_true(abbe_vector_dot(n, normal) > 0.9);
+    }
+  }
+  return report;
+}
+
+static void still_water_is_a_box(void **state) {
+  (void)state;
+  const abbe_water water = {.size = {0.4, 0.3, 0.2}};
+  double plane[8][4];
+  abbe_convex found;
+  abbe_mesh mesh = make(&water);
+  const abbe_mesh_report report = check_closed(&mesh);
+  assert_near(report.volume, 0.4 * 0.3 * 0.2, 1e-15);
+  assert_near(report.max[2], 0, 0);
+  assert_near(report.min[2], -0.2, 0);
+  assert_int_equal(abbe_convex_find(&mesh, 8, plane, NULL, &found, NULL), ABBE_OK);
+  assert_int_equal(found.verdict, ABBE_CONVEX_SOLID);
+  assert_int_equal(found.planes, 6);
+  abbe_mesh_free(&mesh);
+}
+
+/* Long waves over little water, deep water's, and the slowest of all, which tension and gravity
+ * make together: (4 g T / rho)^(1/4), 0.23 m/s at 17 mm. */
+static void waves_have_the_speeds_that_are_known(void **state) {
+  (void)state;
+  const double g = 9.80665, tension = 0.0728 / 998.2;
+  assert_near(abbe_water_frequency(2 * PI / 100, 0.1) * 100 / (2 * PI), sqrt(g * 0.1), 1e-4);
+  assert_near(abbe_water_frequency(2 * PI / 10, INFINITY) * 10 / (2 * PI), sqrt(g * 10 / (2 * PI)),
+              1e-4);
+  double slowest = INFINITY, at = 0;
+  for (double length = 0.01; length < 0.03; length += 1e-5) {
+    const double speed = abbe_water_frequency(2 * PI / length, INFINITY) * length / (2 * PI);
+    if (speed < slowest) at = length;
+    slowest = fmin(slowest, speed);
+  }
+  assert_near(slowest, pow(4 * g * tension, 0.25), 1e-7);
+  assert_near(slowest, 0.231, 1e-3);
+  assert_near(at, 0.0171, 1e-4);
+}
+
+/* After a time the surface is what it was, moved by its speed along its direction; and normals are
+ * those of the heights. */
+static void a_wave_goes_its_way(void **state) {
+  (void)state;
+  const double length = 0.2, turn = 0.7, k = 2 * PI / length, time = 0.37, phase = 0.4;
+  const abbe_water_wave wave = {0.003, length, turn, phase};
+  const abbe_water water = {
+      .size = {0.5, 0.5, 0.08}, .cells = {64, 64}, .time = time, .wave_count = 1, .wave = &wave};
+  abbe_mesh mesh = make(&water);
+  const double speed = abbe_water_frequency(k, 0.08) / k;
+  check_closed(&mesh);
+  for (size_t v = 0; v < 65 * 65; v++) {
+    const double *p = mesh.position[v], *n = mesh.normal[v];
+    const double way = k * (cos(turn) * p[0] + sin(turn) * p[1] - speed * time) + phase;
+    assert_near(p[2], 0.003 * cos(way), 1e-15);
+    assert_near(-n[0] / n[2], -0.003 * k * cos(turn) * sin(way), 1e-12);
+    assert_near(-n[1] / n[2], -0.003 * k * sin(turn) * sin(way), 1e-12);
+  }
+  abbe_mesh_free(&mesh);
+}
+
+static const double radius = 0.02;
+static const abbe_water_drop drop = {{0.03, -0.02}, 1.5, 0.004, radius};
+
+static abbe_mesh after(double age) {
+  const abbe_water water = {.size = {1, 1, 0.1},
+                            .cells = {320, 320},
+                            .time = drop.time + age,
+                            .drop_count = 1,
+                            .drop = &drop};
+  return make(&water);
+}
+
+/* At first the crater, to the step of its table; at every time all the water that there was. */
+static void a_drop_takes_no_water(void **state) {
+  (void)state;
+  abbe_mesh mesh = after(0);
+  double worst = 0;
+  for (size_t v = 0; v < 321 * 321; v++) {
+    const double *p = mesh.position[v];
+    const double r2 = pow(p[0] - drop.at[0], 2) + pow(p[1] - drop.at[1], 2);
+    const double crater = -drop.depth * (1 - r2 / (radius * radius)) * exp(-r2 / (radius * radius));
+    worst = fmax(worst, fabs(p[2] - crater));
+  }
+  print_message("the crater is off by %.2g of its depth\n", worst / drop.depth);
+  assert_true(worst < 2e-3 * drop.depth);
+  abbe_mesh_free(&mesh);
+  for (int i = 1; i < 4; i++) {
+    mesh = after(0.08 * i); /* before the fastest waves reach a wall */
+    const abbe_mesh_report report = check_closed(&mesh);
+    assert_near(report.volume, 0.1, 1e-3 * PI * radius * radius * drop.depth);
+    assert_true(report.max[2] > 0.01 * drop.depth); /* it does go on */
+    abbe_mesh_free(&mesh);
+  }
+}
+
+/* The part of the surface that is a plane wave of that number along x. */
+static double part_of(const abbe_mesh *mesh, double k) {
+  double sum = 0;
+  for (size_t v = 0; v < 321 * 321; v++)
+    sum += mesh->position[v][2] * cos(k * (mesh->position[v][0] - drop.at[0]));
+  return sum;
+}
+
+/* Each part of a ring swings at its own frequency, as long as the walls are not reached. */
+static void rings_obey_their_relation(void **state) {
+  (void)state;
+  abbe_mesh first = after(0);
+  for (int i = 1; i < 5; i++) {
+    const double age = 0.07 * i;
+    abbe_mesh mesh = after(age);
+    for (int m = 1; m < 6; m++) {
+      const double k = 30 * m, damping = exp(-2e-6 * k * k * age);
+      const double known = cos(abbe_water_frequency(k, 0.1) * age) * damping;
+      const double seen = part_of(&mesh, k) / part_of(&first, k);
+      if (fabs(seen - known) > 5e-3) print_error("k %g after %g s: %g, %g\n", k, age, seen, known);
+      assert_near(seen, known, 5e-3);
+    }
+    abbe_mesh_free(&mesh);
+  }
+  abbe_mesh_free(&first);
+}
+
+/* Any instant is computed by itself, the same each time; rain moves on. */
+static void rain_falls(void **state) {
+  (void)state;
+  abbe_water water = {.size = {0.3, 0.2, 0.05}, .time = 7, .rain = {0.4, 0.002, 0.01, 3}};
+  abbe_mesh a = make(&water), b = make(&water);
+  assert_int_equal(a.vertex_count, b.vertex_count);
+  assert_memory_equal(a.position, b.position, a.vertex_count * sizeof *a.position);
+  check_closed(&a);
+  abbe_mesh_free(&b);
+  water.time += 0.05;
+  b = make(&water);
+  double apart = 0;
+  for (size_t v = 0; v < a.vertex_count; v++)
+    apart = fmax(apart, fabs(a.position[v][2] - b.position[v][2]));
+  assert_true(apart > 1e-5 && apart < 0.01);
+  abbe_mesh_free(&a);
+  abbe_mesh_free(&b);
+}
+
+static void refuses(abbe_water water, const char *word) {
+  abbe_mesh mesh;
+  abbe_error error = {0};
+  assert_int_equal(abbe_water_make(&water, &mesh, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, word);
+  assert_null(mesh.position);
+}
+
+static void what_is_no_water(void **state) {
+  (void)state;
+  const abbe_water_wave high = {0.3, 1, 0, 0}, none = {0.01, 0, 0, 0},
+                        short_one = {1e-6, 1e-4, 0, 0};
+  const abbe_water_wave nan = {NAN, 1, 0, 0};
+  const abbe_water_drop bad = {{0, 0}, 0, 0.001, -1};
+  refuses((abbe_water){.size = {1, 0, 1}}, "size");
+  refuses((abbe_water){.size = {1, 1, INFINITY}}, "size");
+  refuses((abbe_water){.size = {1, 1, 1}, .time = NAN}, "time");
+  refuses((abbe_water){.size = {1, 1, 1}, .cells = {5000, 1}}, "2048");
+  refuses((abbe_water){.size = {1, 1, 0.2}, .wave_count = 1, .wave = &high}, "bare");
+  refuses((abbe_water){.size = {1, 1, 1}, .wave_count = 1, .wave = &none}, "wavelength");
+  refuses((abbe_water){.size = {1, 1, 1}, .wave_count = 1, .wave = &nan}, "amplitude");
+  refuses((abbe_water){.size = {1, 1, 1}, .wave_count = 1, .wave = &short_one}, "cells");
+  refuses((abbe_water){.size = {1, 1, 1}, .drop_count = 1, .drop = &bad}, "radius");
+  refuses((abbe_water){.size = {1, 1, 1}, .rain = {-1, 1, 1, 0}}, "rain");
+  refuses((abbe_water){.size = {1, 1, 1}, .rain = {0.01, 0.001, 0.01, 0}}, "more than 64 drops");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(still_water_is_a_box),
+      cmocka_unit_test(waves_have_the_speeds_that_are_known),
+      cmocka_unit_test(a_wave_goes_its_way),
+      cmocka_unit_test(a_drop_takes_no_water),
+      cmocka_unit_test(rings_obey_their_relation),
+      cmocka_unit_test(rain_falls),
+      cmocka_unit_test(what_is_no_water),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
