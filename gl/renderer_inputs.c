@@ -117,6 +117,7 @@ static uint64_t of_surfaces(const abbe_scene *scene, const abbe_plan *plan) {
   MIX(h, plan->desc.max_nm);
   MIX(h, plan->light_view_count);
   MIX(h, plan->textured);
+  MIX(h, plan->receiver_colours);
   h = mix_illuminants(h, scene, plan);
   h = mix_environment(h, scene->environment, plan);
   h = mix_array(h, scene->soft_light, scene->soft_light != NULL, sizeof *scene->soft_light);
@@ -256,6 +257,7 @@ static uint64_t mix_eye(uint64_t h, const abbe_scene *scene, const abbe_plan *pl
   MIX(h, d->sample_shift);
   MIX(h, d->aovs);
   MIX(h, plan->textured);
+  MIX(h, plan->receiver_colours);
   MIX(h, plan->camera_sees_refractor);
   MIX(h, plan->eye_exits);
   MIX(h, plan->eye_share);

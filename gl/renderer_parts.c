@@ -105,7 +105,8 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
   abbe_shader_variant_make(&r->scene, &r->variant);
   r->variant.copies = r->gpu.software;
   if (is_published(r)) return abbe_published_make(&r->scene, &r->variant, &r->published, error);
-  r->variant.textured = false; /* no light is followed beyond a receiver */
+  /* no light is followed beyond a receiver */
+  r->variant.textured = r->variant.receiver_colours = false;
   abbe_result result = abbe_photon_lights_make(&r->scene, &r->views, error);
   r->variant.wide = r->views.wide;
   if (result == ABBE_OK) result = abbe_refractor_faces_make(&r->scene, &r->faces, error);
@@ -124,6 +125,7 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   abbe_shader_variant variant = r->variant;
   variant.aovs = r->plan.desc.aovs;
   variant.textured = r->plan.textured;
+  variant.receiver_colours = r->plan.receiver_colours;
   abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);
   r->lighting = (abbe_lighting){&r->scene, &r->views, &r->layers, &r->atlas, &r->map, &r->camera, &r->volume};
   abbe_result result = abbe_receivers_pass_make(&r->lighting, &variant, &r->receivers, error);

@@ -53,6 +53,7 @@ abbe_test(adaptive_pass gl ${gl_rooms})
 abbe_test(surroundings gl ${gl_rooms})
 abbe_test(error_bars gl abbe_validation ${gl_rooms})
 abbe_test(reflected_colour gl abbe_validation ${gl_rooms})
+abbe_test(receiver_colours gl abbe_validation ${gl_rooms})
 abbe_test(observers gl abbe_validation ${gl_rooms})
 abbe_test(error_picture cpu ${gl_rooms})
 

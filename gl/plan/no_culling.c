@@ -37,6 +37,7 @@ static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc
     rewrite(plan, ABBE_CHOICE_WAVELENGTHS, 7, "wavelengths");
     rewrite(plan, ABBE_PASS_PHOTONS, 7, "wavelengths");
   }
+  plan->receiver_colours = plan->caustics && !plan->volume && plan->receiver_count > 0;
   plan->fills = plan->desc.fill != ABBE_FILL_NONE && plan->desc.wavelengths > 1;
   if (!plan->multi_refractor_paths && (asked == NULL || asked->exits == 0)) {
     plan->hit_slots += ABBE_RENDER_MAX_EXITS - plan->desc.exits;

@@ -180,6 +180,10 @@ static void list_eye(abbe_plan *plan) {
                   plan->camera_sees_refractor ? "one direction a wavelength" : unseen);
   list_picture(plan);
   abbe_plan_add(plan, ABBE_CHOICE_TEXTURES, plan->textured ? "a receiver has one" : "none");
+  abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_COLOURS,
+                plan->receiver_colours
+                    ? "tables of what they reflect of bands, for light arrives dispersed"
+                    : "no dispersed light falls on a receiver in colours");
 }
 
 void abbe_pass_list_add(const abbe_scene *scene, abbe_plan *plan) {

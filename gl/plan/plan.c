@@ -72,6 +72,7 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   abbe_spectral_needs_count(out);
   abbe_path_limits_choose(scene, desc, out);
   combine(out);
+  out->receiver_colours = abbe_receiver_model_disperses(scene, out);
   abbe_pass_list_add(scene, out);
   abbe_refractor_model_note(scene, out);
   abbe_spectral_needs_note(scene, out);

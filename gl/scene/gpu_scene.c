@@ -181,6 +181,7 @@ void abbe_gpu_scene_free(abbe_gpu_scene *scene, unsigned parts) {
   if (parts & ABBE_SCENE_SURFACES) {
     abbe_gpu_drop_buffers(scene->gpu, 1, &scene->surfaces);
     abbe_gpu_drop_buffers(scene->gpu, 1, &scene->reflections);
+    abbe_gpu_drop_buffers(scene->gpu, 1, &scene->band_reflections);
     abbe_gpu_drop_textures(scene->gpu, 1, &scene->surface_texture);
     abbe_gpu_environment_free(scene->gpu, &scene->environment);
   }
@@ -217,6 +218,9 @@ void abbe_gpu_scene_bind(const abbe_gpu_scene *scene) {
 void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program) {
   const abbe_gl *gl = scene->gpu->gl;
   abbe_gpu_bind_array(scene->gpu, program, "surface_texture", 1, scene->surface_texture);
+  if (scene->band_reflections != 0) /* in the unit of a volume, with which there are none */
+    abbe_gpu_bind_texels(scene->gpu, program, "band_reflections", 3, GL_RGBA32F,
+                         scene->band_reflections);
   GLint matrix = gl->GetUniformLocation(program, "rgb_from_xyz");
   if (matrix >= 0) gl->UniformMatrix3fv(matrix, 1, GL_FALSE, scene->rgb_from_xyz);
   matrix = gl->GetUniformLocation(program, "xyz_from_rgb");

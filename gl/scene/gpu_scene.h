@@ -47,6 +47,7 @@ typedef struct abbe_gpu_scene {
   size_t mesh_bytes; /* of their vertices and faces */
   GLuint refractors, planes, receivers, surfaces, reflections, spectra, bands, shadows;
   GLuint surface_texture;
+  GLuint band_reflections; /* 0: no dispersed light falls on receivers in colours */
   abbe_gpu_environment environment;
   size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
 
@@ -98,6 +99,10 @@ abbe_result abbe_gpu_spectra_upload(abbe_gpu_scene *scene, abbe_error *error);
  * reflections: rows of the table of these, three a matrix; the plan's facts decide it. */
 size_t abbe_gpu_surfaces_reflections(const abbe_gpu_scene *scene);
 abbe_result abbe_gpu_surfaces_upload(abbe_gpu_scene *scene, abbe_error *error);
+
+/* gpu_band_reflections.c: what receivers in colours reflect of bands of each light
+ * (band_reflection.h), where the plan asks for it. */
+abbe_result abbe_gpu_band_reflections_upload(abbe_gpu_scene *scene, abbe_error *error);
 
 /* gpu_bvh.c: the triangles of what is traversed. */
 abbe_result abbe_gpu_bvh_make(abbe_gpu_scene *scene, abbe_error *error);

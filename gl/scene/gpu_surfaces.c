@@ -192,6 +192,7 @@ abbe_result abbe_gpu_surfaces_upload(abbe_gpu_scene *scene, abbe_error *error) {
                                   surface, &scene->surfaces, error);
   free(surface);
   if (result == ABBE_OK) result = upload_reflections(scene, error);
+  if (result == ABBE_OK) result = abbe_gpu_band_reflections_upload(scene, error);
   if (result != ABBE_OK) return result;
   return abbe_gpu_environment_make(scene->gpu, scene->local, abbe_gpu_scene_working_space(scene),
                                    &scene->plan->desc, &scene->environment, error);

@@ -1,5 +1,6 @@
 #include "gl/scene/shader_variant.h"
 
+#include "colorimetry/reflectance/band_reflection.h"
 #include "gl/scene/spectra/camera_bands.h"
 
 #include <stdio.h>
@@ -32,6 +33,7 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
       .receiver_shadows = p->receiver_shadows,
       .absorbing = p->absorbing,
       .textured = p->textured,
+      .receiver_colours = p->receiver_colours,
       .environment = scene->environment.texture != 0,
       .caustics = p->caustics,
       .walk = p->multi_refractor_paths,
@@ -127,6 +129,11 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "RECEIVER_HIERARCHY", v->receiver_hierarchy);
   print_flag(to, "ABSORBING", v->absorbing);
   print_flag(to, "TEXTURED", v->textured);
+  if (v->receiver_colours) {
+    print_count(to, "RECEIVER_COLOURS", 1);
+    print_count(to, "BAND_TURNS", ABBE_BAND_REFLECTION_TURNS);
+    print_count(to, "BAND_RINGS", ABBE_BAND_REFLECTION_RINGS);
+  }
   print_flag(to, "ENVIRONMENT", v->environment);
   if (v->area_lights > 0) print_count(to, "AREA_LIGHTS", v->area_lights);
   if (v->environment) {

@@ -19,7 +19,8 @@ typedef struct abbe_shader_variant {
   size_t exits, slots;
   size_t bvh_stack, receiver_root, shadow_planes;
   bool spheres, convex, layers, hierarchy, receiver_hierarchy, one_convex, one_shadow;
-  bool receiver_shadows, absorbing, textured, environment, caustics, walk, mirrors, cubes;
+  bool receiver_shadows, absorbing, textured, receiver_colours, environment, caustics, walk, mirrors,
+      cubes;
   bool volume; /* caustics are looked up in the plan's, of that kind */
   abbe_volume_kind volume_kind;
   abbe_region_kind volume_region;

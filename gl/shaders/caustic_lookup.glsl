@@ -72,7 +72,7 @@ vec2 place_on_map(int light, vec3 p) {
 #define PLACE_ON_MAP(p) place_on_map(light, p)
 
 #ifdef TILES
-// rgb irradiance of the tile on that side of a chart: it holds what reaches that side, whatever the light
+// Irradiance, as caustic_colour, of the tile on that side of a chart: it holds what reaches that side, whatever the light
 // sees of it. lit: the light meets a refractor.
 vec3 tile_irradiance(int light, vec3 p, int side, bool lit) {
   int tile = tile_of_side(light, side);
@@ -89,8 +89,8 @@ vec3 tile_irradiance(int light, vec3 p, int side, bool lit) {
 #else
     const float steep = 1.0;
 #endif
-    irradiance = rgb_from_xyz *
-                 layer_mean(atlas_layer(light), at, to_right, to_above, rect / layer_side, false) * steep;
+    irradiance = caustic_colour(
+        layer_mean(atlas_layer(light), at, to_right, to_above, rect / layer_side, false) * steep);
   }
   return irradiance;
 }

@@ -45,6 +45,13 @@ void copy_surroundings() {
 // that stands on a receiver touches it to a rounding. In radii of the refractors' bounds.
 const float touch = 1e-5;
 
+// Of light on its way to a receiver. RECEIVER_COLOURS: X, Y, Z, whose band is told before it is reflected.
+#ifdef RECEIVER_COLOURS
+vec3 caustic_colour(vec3 xyz) { return xyz; }
+#else
+vec3 caustic_colour(vec3 xyz) { return rgb_from_xyz * xyz; }
+#endif
+
 #include "receiver_hit.glsl"
 #include "receiver_shadow.glsl"
 #include "caustic_lookup.glsl"
@@ -52,8 +59,8 @@ const float touch = 1e-5;
 #include "volume_lookup.glsl"
 #endif
 
-// rgb irradiance from one light on p (n faces the viewer), on a side of a chart: straight, and through
-// refractors.
+// Irradiance from one light on p (n faces the viewer), on a side of a chart: straight, rgb, and through
+// refractors, as caustic_colour.
 void light_irradiance(int light, vec3 p, vec3 n, int side, out vec3 direct, out vec3 caustic) {
   Light l = LIGHT(light);
   vec3 d;
@@ -75,7 +82,7 @@ void light_irradiance(int light, vec3 p, vec3 n, int side, out vec3 direct, out 
 #if defined(VOLUME_PRINTED)
   caustic = volume_irradiance(light, p, n, l.white.rgb);
 #elif defined(VOLUME)
-  caustic = rgb_from_xyz * volume_irradiance(light, p, n);
+  caustic = caustic_colour(volume_irradiance(light, p, n));
 #endif
   if (!receiver_lit(light, p, d, distance_m)) return;
   bool directional = int(l.position.w) == 2;
@@ -95,7 +102,7 @@ void light_irradiance(int light, vec3 p, vec3 n, int side, out vec3 direct, out 
 #endif
   if (!held) return;
   vec3 flux = layer_mean(light, at, to_right, to_above, vec4(0, 0, 1, 1), true);
-  caustic += rgb_from_xyz * flux * (abs(facing) * falloff / window_measure(l.map_view, d));
+  caustic += caustic_colour(flux) * (abs(facing) * falloff / window_measure(l.map_view, d));
 #endif
 }
 
@@ -134,6 +141,12 @@ mat3 reflection_of(int surface, vec3 share, int light) {
 }
 #endif
 
+#ifdef RECEIVER_COLOURS
+#include "receiver_colours.glsl"
+#else
+vec3 reflect_caustic(int surface, vec3 share, int light, mat3 reflection, vec3 rgb) { return reflection * rgb; }
+#endif
+
 #ifdef ENVIRONMENT
 // rgb irradiance by normal, nodes as scenes/environment/irradiance_map.h has them.
 layout(std140, binding = BINDING_SOFT_LIGHT) uniform SoftLight { vec4 soft_light[SOFT_ROWS * SOFT_COLUMNS]; };
@@ -165,7 +178,8 @@ Shading shade(vec3 p, vec3 n, int surface, vec2 uv, int side) {
     light_irradiance(i, p, n, side, direct, caustic);        \
     mat3 reflection = reflection_of(surface, share, i);      \
     s.direct += reflection * direct / PI;                    \
-    s.caustic += reflection * caustic * (LIGHT(i).white.w / PI); \
+    s.caustic +=                                             \
+        reflect_caustic(surface, share, i, reflection, caustic) * (LIGHT(i).white.w / PI); \
   }
   OF_LIGHTS(SHINE)
 #endif

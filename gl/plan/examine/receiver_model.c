@@ -95,3 +95,31 @@ void abbe_receiver_model_shadows(const abbe_scene *scene, abbe_plan *plan) {
                 plan->receiver_shadows ? "a receiver may stand between a light and another"
                                        : "the receivers bound a convex room around the lights");
 }
+
+bool abbe_receiver_model_is_coloured(const abbe_object *object) {
+  const double even = 0.01;
+  double least = INFINITY, most = 0;
+  if (object->texture.data != NULL) return true;
+  if (object->spectrum == NULL) {
+    for (int k = 0; k < 3; k++) {
+      least = fmin(least, object->reflectance[k]);
+      most = fmax(most, object->reflectance[k]);
+    }
+    return most - least > even * most;
+  }
+  const double *value = abbe_spectrum_value(object->spectrum);
+  for (size_t i = 0; i < abbe_spectrum_count(object->spectrum); i++) {
+    least = fmin(least, value[i]);
+    most = fmax(most, value[i]);
+  }
+  return most - least > even * most;
+}
+
+bool abbe_receiver_model_disperses(const abbe_scene *scene, const abbe_plan *plan) {
+  if (!plan->caustics || !plan->dispersive || plan->desc.wavelengths < 2 ||
+      abbe_profile_is_published(plan->desc.profile))
+    return false;
+  for (size_t i = 0; i < plan->receiver_count; i++)
+    if (abbe_receiver_model_is_coloured(&scene->object[plan->receiver_object[i]])) return true;
+  return false;
+}

@@ -48,6 +48,7 @@ extern "C" {
   X(RECEIVER_MAPS, "maps on receivers", p->tiles)                                                  \
   X(ABSORPTION, "absorption", p->absorbing)                                                        \
   X(TEXTURES, "textures", p->textured)                                                             \
+  X(RECEIVER_COLOURS, "colours of receivers", p->receiver_colours)                                 \
   X(LIGHT_SIZE, "lights with a size", p->sized_lights)                                             \
   X(ENVIRONMENT, "environment", p->surrounded)
 

@@ -109,6 +109,8 @@ typedef struct abbe_plan {
                      wavelength */
   bool draw_back; /* views show the back of refractors, too */
   bool textured;  /* some receiver has a texture */
+  bool receiver_colours; /* dispersed light may fall on receivers in colours: tables say what they
+                            reflect of its bands */
 
   size_t entry_count; /* models and passes, in the order in which they run */
   abbe_plan_entry entry[ABBE_PLAN_MAX_ENTRIES];

@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Those of gl/: one that is added is compiled here, and counted. */
-enum { COMPUTE_SHADERS = 18 };
+enum { COMPUTE_SHADERS = 19 };
 
 /* Bits: spheres, convex, layers, what no model asks for (many exits, further channels, shared
  * bands), absorbing (and caustics), shadows (and textures, and lengths kept of paths inside),
@@ -19,7 +19,7 @@ static void write_defines(unsigned bits, char *out, size_t size) {
       "LAYERS\n#define FRONT_LAYER",
       "MANY_EXITS\n#define AOVS\n#define INTERLEAVES",
       "ABSORBING\n#define CAUSTICS",
-      "RECEIVER_SHADOWS\n#define TEXTURED\n#define SHADOW_PLANES 32\n#define TINTING",
+      "RECEIVER_SHADOWS\n#define TEXTURED\n#define RECEIVER_COLOURS\n#define SHADOW_PLANES 32\n#define TINTING",
       "HIERARCHY",
       "WALK"};
   int used = snprintf(
@@ -30,7 +30,7 @@ static void write_defines(unsigned bits, char *out, size_t size) {
       "PLANE_ROOM 9\n"
       "#define RECEIVER_ROOM 6\n#define SURFACE_ROOM 6\n#define SPECTRUM_ROOM 14\n"
       "#define BAND_ROOM 140\n#define BAND_SETS 5\n#define HIERARCHY_STACK 24\n#define STEPS 64\n"
-      "#define BRIDGE\n#define DOUBTS_BRIDGES\n");
+      "#define BRIDGE\n#define DOUBTS_BRIDGES\n#define BAND_TURNS 128\n#define BAND_RINGS 12\n");
   for (int i = 0; i < 8; i++)
     if (bits >> i & 1) used += snprintf(out + used, size - (size_t)used, "#define %s\n", names[i]);
 }

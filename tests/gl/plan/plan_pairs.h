@@ -69,7 +69,7 @@ typedef struct pair {
 } pair;
 
 /* The plan of one ball on a floor. */
-#define BALL_ROWS(tiles)                                                                           \
+#define BALL_ROWS(tiles, colours)                                                                  \
   COUNTS(7, 8, 9),                                                                                 \
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "ball", "exact sphere: the object is a sphere"),             \
       RESTS(CHOICE_MULTI_REFRACTOR_PATHS, "light that leaves the refractor cannot meet it again"), \
@@ -92,7 +92,7 @@ typedef struct pair {
       RESTS(PASS_EYE_BACK, "every refractor has an exact surface"),                                \
       RUNS(PASS_EYE_ADAPTIVE, "4 x 4 rays for a sample of a receiver where its light bends"),      \
       RUNS(PASS_EYE_REFRACTION, "until less than 0.005 of its light is left, 256 exits at most"),  \
-      RUNS(PASS_EYE_PICTURE, "2 x 2 samples a pixel"), RESTS(CHOICE_TEXTURES, "none"),                 \
+      RUNS(PASS_EYE_PICTURE, "2 x 2 samples a pixel"), RESTS(CHOICE_TEXTURES, "none"), colours,        \
       RESTS(CHOICE_LIGHT_SIZE, "none"),                                                            \
       RESTS(CHOICE_ENVIRONMENT, "none"),
 
@@ -108,7 +108,7 @@ typedef struct pair {
       RUNS(CHOICE_RECEIVER_MAPS, "a receiver may hide from a light where its light lands")
 
 static const row ball_rows[] = {
-    BALL_ROWS(RESTS(CHOICE_RECEIVER_MAPS, "the lights' maps hold all receivers")) END};
+    BALL_ROWS(RESTS(CHOICE_RECEIVER_MAPS, "the lights' maps hold all receivers"), GREY) END};
 
 static const pair pairs[] = {
     {"no refractor",
@@ -382,7 +382,7 @@ static const pair pairs[] = {
      ball,
      CAMERA POINT_LIGHT WOOD BALL("crown"),
      {0},
-     {RUNS(CHOICE_TEXTURES, "a receiver has one"), END}},
+     {RUNS(CHOICE_TEXTURES, "a receiver has one"), COLOURED, END}},
     {"a light with a size", ball, CAMERA DISK_LIGHT FLOOR BALL("crown"), {.light_points = 1},
      {RUNS(CHOICE_LIGHT_SIZE, LAMP_HAS_SIZE), END}},
     {"an environment",

@@ -56,6 +56,12 @@ typedef struct row {
     }                                                                                              \
   }
 
+#define GREY                                                                                       \
+  RESTS(CHOICE_RECEIVER_COLOURS, "no dispersed light falls on a receiver in colours")
+#define COLOURED                                                                                   \
+  RUNS(CHOICE_RECEIVER_COLOURS,                                                                    \
+       "tables of what they reflect of bands, for light arrives dispersed")
+
 typedef struct line {
   row_kind kind;
   abbe_plan_item item;

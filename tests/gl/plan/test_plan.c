@@ -4,7 +4,8 @@
 
 static const row sphere_rows[] = {
     BALL_ROWS(RUNS(CHOICE_RECEIVER_MAPS,
-                   "a receiver lies more than 76 degrees off the view of a light's map")) END};
+                   "a receiver lies more than 76 degrees off the view of a light's map"),
+              COLOURED) END};
 
 /* What each has otherwise than scenes/sphere.yaml. */
 static const struct {
@@ -12,7 +13,7 @@ static const struct {
   row row[24];
 } shipped[] = {
     {"rainbow",
-     {RUNS_OF(CHOICE_REFRACTOR_MODEL, "drop", "exact sphere: the object is a sphere"), SHADOWED,
+     {RUNS_OF(CHOICE_REFRACTOR_MODEL, "drop", "exact sphere: the object is a sphere"), SHADOWED, GREY,
       GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"gem",
      {COUNTS(7, 20, 21),
@@ -39,7 +40,7 @@ static const struct {
                                      "at most; 2.9 % of it is still inside then"),
       RESTS_OF(CHOICE_LIGHT_MAP, "lamp of the left card", "its cone misses every refractor"),
       RESTS_OF(CHOICE_LIGHT_MAP, "lamp of the high card", "its cone misses every refractor"),
-      RUNS(CHOICE_RECEIVER_MAPS, "a receiver may hide from a light where its light lands"),
+      RUNS(CHOICE_RECEIVER_MAPS, "a receiver may hide from a light where its light lands"), GREY,
       GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"ring",
      {COUNTS(7, 8, 16),

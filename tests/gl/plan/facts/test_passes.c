@@ -32,6 +32,7 @@ static const char *const texts[] = {
     [ABBE_CHOICE_RECEIVER_MAPS] = "maps on receivers",
     [ABBE_CHOICE_ABSORPTION] = "absorption",
     [ABBE_CHOICE_TEXTURES] = "textures",
+    [ABBE_CHOICE_RECEIVER_COLOURS] = "colours of receivers",
     [ABBE_CHOICE_LIGHT_SIZE] = "lights with a size",
     [ABBE_CHOICE_ENVIRONMENT] = "environment",
 };
