@@ -29,6 +29,7 @@ enum {
   OPTION_HARMONICS,
   OPTION_SHELLS,
   OPTION_GRID,
+  OPTION_JOIN,
   OPTION_RADII,
   OPTION_PRINTED,
   OPTION_PHOTONS,
@@ -54,6 +55,8 @@ static const struct argp_option options[] = {
     {"shells", OPTION_SHELLS, "SxN|SxMxM", 0,
      "S shells of N triangles (80, 320, 1280, 5120 ...) or M x M octahedral texels (24x5120)", 1},
     {"grid", OPTION_GRID, "N", 0, "or N x N x N cubes, 2 to 256", 1},
+    {"join", OPTION_JOIN, "X", 0,
+     "join cells that differ by less than X of the beam's irradiance: several resolutions", 1},
     {"radii", OPTION_RADII, "X", 0, "how far the region goes, in radii of the object (3)", 1},
     {"printed", OPTION_PRINTED, NULL, 0, "bytes as the method was published, for wyman2003", 1},
     {"photons", OPTION_PHOTONS, "N", 0, "of a node and pass (262144)", 2},
@@ -165,6 +168,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
         .kind = ABBE_REGION_GRID,
         .side = abbe_command_count(q->program, "--grid", text, 2, ABBE_REGION_MOST_SIDE)};
     return 0;
+  case OPTION_JOIN:
+    d->joins = true;
+    d->tolerance = abbe_command_number(q->program, "--join", text, 0, 1e6);
+    return 0;
   case OPTION_RADII:
     q->radii = abbe_command_number(q->program, "--radii", text, 1.1, 1000);
     return 0;
@@ -241,6 +248,8 @@ static void summarise(const request *q, const abbe_caustic_volume *v,
           v->body.name, v->nodes.count, v->nodes.count > 1 ? "s" : "", v->region.cells,
           (double)s->photons / nodes, s->seconds / nodes, s->error,
           1e-6 * (double)abbe_caustic_volume_bytes(v), 1e-6 * file_bytes(q->out));
+  if (s->joint_bytes > 0)
+    fprintf(stderr, "joint cells take %.4g MB\n", 1e-6 * (double)s->joint_bytes);
   if (s->outflow[1] > 0)
     fprintf(stderr, "flux out through the shells: %.5g to %.5g of what left the object\n",
             s->outflow[0], s->outflow[1]);
@@ -257,10 +266,10 @@ static abbe_result print_json(const request *q, const abbe_caustic_volume *v,
       {"radius_m", v->body.radius},       {"photons", (double)s->photons},
       {"passes", (double)s->passes},      {"seconds", s->seconds},
       {"relative_error", s->error},       {"bytes_memory", (double)abbe_caustic_volume_bytes(v)},
-      {"bytes_disk", file_bytes(q->out)}, {"reached_w", s->ledger.reached},
-      {"missed_w", s->ledger.missed},     {"absorbed_w", s->ledger.absorbed},
-      {"lost_w", s->ledger.lost},         {"outflow_least", s->outflow[0]},
-      {"outflow_greatest", s->outflow[1]}};
+      {"bytes_disk", file_bytes(q->out)}, {"bytes_joint", (double)s->joint_bytes},
+      {"reached_w", s->ledger.reached},   {"missed_w", s->ledger.missed},
+      {"absorbed_w", s->ledger.absorbed}, {"lost_w", s->ledger.lost},
+      {"outflow_least", s->outflow[0]},   {"outflow_greatest", s->outflow[1]}};
   bool made = cJSON_AddStringToObject(root, "file", q->out) != NULL &&
               cJSON_AddStringToObject(root, "object", v->body.name) != NULL;
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)

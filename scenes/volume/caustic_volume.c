@@ -2,6 +2,7 @@
 
 #include "scenes/geometry/vector.h"
 #include "scenes/volume/half.h"
+#include "scenes/volume/volume_tree.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -106,6 +107,27 @@ abbe_result abbe_caustic_volume_project(abbe_caustic_volume *v, size_t degree, a
   v->value = value;
   v->degree = degree;
   return ABBE_OK;
+}
+
+abbe_result abbe_caustic_volume_join(abbe_caustic_volume *v, double tolerance, size_t *bytes,
+                                     abbe_error *error) {
+  ABBE_REQUIRE(v && bytes, error);
+  const size_t channels = abbe_caustic_volume_channels(v), each = v->region.cells * channels;
+  abbe_volume_order order;
+  *bytes = 0;
+  if (v->kind == ABBE_VOLUME_PRINTED || v->value == NULL)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "cells of vectors alone are joined");
+  abbe_result result = abbe_volume_order_make(&v->region, &order, error);
+  for (size_t k = 0; k < abbe_caustic_volume_blocks(v) && result == ABBE_OK; k++) {
+    abbe_volume_tree tree;
+    result = abbe_volume_tree_make(&order, channels, v->value + k * each, tolerance, &tree, error);
+    if (result != ABBE_OK) break;
+    *bytes += abbe_volume_tree_bytes(&tree, channels);
+    abbe_volume_tree_expand(&tree, &order, channels, v->value + k * each);
+    abbe_volume_tree_free(&tree);
+  }
+  abbe_volume_order_free(&order);
+  return result;
 }
 
 /* Into the region, towards its centre or away from it; the share of the distance that is left. */

@@ -74,6 +74,12 @@ size_t abbe_caustic_volume_bytes(const abbe_caustic_volume *volume); /* of value
 abbe_result abbe_caustic_volume_project(abbe_caustic_volume *volume, size_t degree,
                                         abbe_error *error);
 
+/* Joins cells of every block within a tolerance of unit irradiance (volume_tree.h): each has the
+ * joint value then. *bytes: what the joint values take. ABBE_INVALID_ARGUMENT as
+ * abbe_volume_order_make, and for a printed volume. */
+abbe_result abbe_caustic_volume_join(abbe_caustic_volume *volume, double tolerance, size_t *bytes,
+                                     abbe_error *error);
+
 /* How a lookup that is left open is done: by turns of a ball, which they are exact for, and where
  * there is one node; else by three nodes, printed too. */
 abbe_volume_lookup abbe_caustic_volume_resolve(const abbe_caustic_volume *volume,

@@ -31,6 +31,8 @@ abbe_result abbe_volume_order_make(const abbe_volume_region *r, abbe_volume_orde
                                    abbe_error *error) {
   ABBE_REQUIRE(r && out, error);
   const bool geodesic = r->desc.kind == ABBE_REGION_GEODESIC;
+  *out = (abbe_volume_order){0};
+  if (r->cells == 0) return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a region without cells");
   *out = (abbe_volume_order){.cells = r->cells,
                              .branch = r->desc.kind == ABBE_REGION_GRID ? 8 : 4,
                              .levels = geodesic ? r->desc.levels : 0};

@@ -373,6 +373,8 @@ abbe_result abbe_volume_fill(const abbe_scene *scene, const abbe_volume_fill_des
     out->error = statistics->error = sqrt(statistics->error / (double)out->nodes.count);
   if (result == ABBE_OK && desc->degree > 0)
     result = abbe_caustic_volume_project(out, desc->degree, error);
+  if (result == ABBE_OK && desc->joins)
+    result = abbe_caustic_volume_join(out, desc->tolerance, &statistics->joint_bytes, error);
   free_tables(f);
   free(f);
   if (result != ABBE_OK) abbe_caustic_volume_free(out);

@@ -26,6 +26,8 @@ typedef struct abbe_volume_fill_desc {
   size_t degree;           /* above 0: harmonics to that degree, of what the nodes hold */
   abbe_region_desc region; /* without sizes: 24 shells of 5120 triangles; outer 0: three radii of
                               the object, inner 0: just below its surface */
+  bool joins;              /* cells are joined within the tolerance (volume_tree.h) */
+  double tolerance;        /* of unit irradiance; 0: those that are the same */
   size_t photons;          /* a node and pass; 0: 2^18 */
   size_t passes;           /* 0: 4 */
   double until_error;      /* above 0: more passes, until a node's relative error is below */
@@ -40,6 +42,7 @@ typedef struct abbe_volume_fill_desc {
 typedef struct abbe_volume_fill_statistics {
   size_t passes; /* of all nodes */
   uint64_t photons;
+  size_t joint_bytes;       /* that the joint values take; else 0 */
   double seconds;           /* wall time, of the photons */
   double error;             /* relative standard error, root mean square over nodes */
   abbe_light_ledger ledger; /* W for unit irradiance, mean over nodes */

@@ -213,6 +213,62 @@ static void test_a_changed_light_is_as_one_made_anew(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* The largest step between pictures of a light that turns past nodes, of the mean light. */
+static double largest_step(abbe_scene *scene, const abbe_caustic_volume *v,
+                           abbe_volume_lookup lookup) {
+  enum { FRAMES = 24, SIDE = 32 };
+  const abbe_render_desc desc = {.width = SIDE,
+                                 .height = SIDE,
+                                 .supersample = 1,
+                                 .adaptive = 1,
+                                 .aovs = true,
+                                 .volume = v,
+                                 .lookup = lookup};
+  abbe_renderer *renderer = NULL;
+  abbe_image before = {0}, now = {0};
+  abbe_error error = {0};
+  double most = 0;
+  for (int f = 0; f < FRAMES; f++) {
+    const double turn = 0.5 + 0.8 * f / FRAMES;
+    scene->light[0].direction[0] = 0.6 * cos(turn);
+    scene->light[0].direction[1] = 0.6 * sin(turn);
+    scene->light[0].direction[2] = -0.8;
+    if (renderer == NULL)
+      renderer = make_renderer(scene, &desc);
+    else
+      assert_ok(abbe_renderer_change(renderer, scene, &desc, &error), &error);
+    draw_frame(renderer);
+    read_picture(renderer, true, &now);
+    const size_t green = abbe_image_find_channel(&now, "caustic.G");
+    double step = 0;
+    for (size_t i = 0; f > 0 && i < SIDE * SIDE; i++)
+      step += fabs((double)now.data[i * now.channels + green] -
+                   (double)before.data[i * now.channels + green]);
+    most = fmax(most, step / image_sum(&now, green));
+    abbe_image_free(&before);
+    before = now;
+    now = (abbe_image){0};
+  }
+  abbe_image_free(&before);
+  abbe_renderer_free(renderer);
+  return most;
+}
+
+/* From node to node the nearest one's caustic jumps; three nodes' fades. */
+static void test_blends_do_not_pop(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_caustic_volume v;
+  load_text(wedge, &scene);
+  make_volume(&scene, ABBE_VOLUME_VECTOR, 2, 42, &v);
+  const double jump = largest_step(&scene, &v, ABBE_VOLUME_LOOKUP_NEAREST);
+  const double fade = largest_step(&scene, &v, ABBE_VOLUME_LOOKUP_BLEND);
+  print_message("largest step: nearest %.3f, blend %.3f of the light\n", jump, fade);
+  assert_true(fade < 0.4 * jump);
+  abbe_caustic_volume_free(&v);
+  abbe_scene_free(&scene);
+}
+
 static void refuse(const abbe_scene *scene, const abbe_render_desc *desc, abbe_result wanted,
                    const char *part) {
   abbe_plan plan;
@@ -264,6 +320,7 @@ int main(void) {
       cmocka_unit_test(test_pixels_have_what_the_volume_holds),
       cmocka_unit_test(test_objects_and_lights_move),
       cmocka_unit_test(test_a_changed_light_is_as_one_made_anew),
+      cmocka_unit_test(test_blends_do_not_pop),
       cmocka_unit_test(test_what_it_does_not_hold_is_refused),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);

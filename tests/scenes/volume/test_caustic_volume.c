@@ -139,6 +139,24 @@ static void test_harmonics_of_the_light(void **state) {
   abbe_caustic_volume_free(&v);
 }
 
+/* No value is off by more than the tolerance, and fewer bytes hold them. */
+static void test_joint_cells(void **state) {
+  (void)state;
+  const abbe_region_desc small = {.kind = ABBE_REGION_GRID, .side = 16, .outer = 3};
+  abbe_caustic_volume v, joint;
+  size_t same = 0, bytes = 0;
+  make_volume(ABBE_VOLUME_VECTOR, small, 12, false, &v);
+  make_volume(ABBE_VOLUME_VECTOR, small, 12, false, &joint);
+  assert_int_equal(abbe_caustic_volume_join(&joint, 0, &same, NULL), ABBE_OK);
+  assert_memory_equal(joint.value, v.value, 12 * v.region.cells * 18);
+  assert_int_equal(abbe_caustic_volume_join(&joint, 6, &bytes, NULL), ABBE_OK);
+  assert_true(bytes < same);
+  for (size_t i = 0; i < 12 * v.region.cells * 9; i++)
+    assert_near(abbe_half_value(joint.value[i]), abbe_half_value(v.value[i]), 6);
+  abbe_caustic_volume_free(&v);
+  abbe_caustic_volume_free(&joint);
+}
+
 /* Beyond the rim light thins by the square of the distance; printed it does not. */
 static void test_beyond_the_region(void **state) {
   (void)state;
@@ -190,6 +208,7 @@ int main(void) {
       cmocka_unit_test(test_turns_are_exact_for_a_ball),
       cmocka_unit_test(test_a_ball_is_turned_by_itself),
       cmocka_unit_test(test_harmonics_of_the_light),
+      cmocka_unit_test(test_joint_cells),
       cmocka_unit_test(test_beyond_the_region),
       cmocka_unit_test(test_too_many_values_are_refused),
   };
