@@ -4,8 +4,9 @@ foreach(name transform disjoint_sets vector
         cut cut_asc cut_diagram designs cut_file cut_gcs cut_gem cut_measures cut_polyhedron cut_stretch cut_text
         scene object_file object_motion refractor_tilt object_surface reflectance_file scene_file mesh_import mesh_files ply_strips
         alias_table area_lights environment environment_file environment_lights environment_picture environment_source irradiance_map
-        radiance_map sky
+        radiance_cube radiance_map sky
         sphere_mesh light_nodes light_harmonics volume_region volume_body caustic_volume volume_file volume_tree
+        point_grid surface_curvature surface_samples
         view estimator map_layout map_resample pov_file export_index)
   abbe_test(${name} cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 endforeach()

@@ -29,13 +29,21 @@ typedef double sums[VALUES];
 /* A place that stands out of its surroundings. */
 typedef struct lamp {
   sums value;
+  size_t number; /* in the order in which they were found */
 } lamp;
+
+/* What of a bin is a lamp's: the radiance above that. */
+typedef struct cut {
+  double above;
+  size_t lamp; /* its number; MOST_LAMPS: none's */
+} cut;
 
 typedef struct search {
   const abbe_environment *environment;
   sums *bin;            /* [BINS], of what is brighter than the present bound */
   unsigned char *place; /* [BINS]: 1 where it is looked for, then 2 where it belongs to a lamp */
   size_t *found;        /* [BINS], bins of one lamp */
+  cut *cuts;            /* [BINS] */
   double (*way)[2];     /* cosine and sine of each column's azimuth */
   lamp lamp[MOST_LAMPS];
   size_t count;
@@ -115,6 +123,7 @@ static size_t find_bins(search *s, size_t first) {
 static void find_lamps(search *s, double above) {
   const double least = LEAST_SHARE * s->environment->luminance;
   memset(s->place, 1, BINS);
+  for (size_t i = 0; i < BINS; i++) s->cuts[i].lamp = MOST_LAMPS;
   for (bool wide = true; wide; above = above > 0 ? 2 * above : s->environment->luminance * 1e-3) {
     wide = false;
     fill(s, above);
@@ -129,6 +138,8 @@ static void find_lamps(search *s, double above) {
         for (size_t i = 0; i < count; i++) s->place[s->found[i]] = 3;
         wide = true;
       } else if (s->count < MOST_LAMPS) {
+        for (size_t i = 0; i < count; i++) s->cuts[s->found[i]] = (cut){above, s->count};
+        s->lamp[s->count].number = s->count;
         memcpy(s->lamp[s->count++].value, value, sizeof value);
       }
     }
@@ -211,14 +222,27 @@ static void find_soft(const search *s, abbe_irradiance_map *out) {
     }
 }
 
-/* The lights and what they leave, into the copy. */
-static abbe_result add_all(search *s, size_t most, const abbe_environment_lights_desc *d,
-                           abbe_scene *out, abbe_error *error) {
-  const abbe_environment *e = s->environment;
-  abbe_upsampling up;
-  abbe_result result =
-      abbe_upsampling_make_by(d->observer, &e->illuminant, d->min_nm, d->max_nm, &up, error);
-  if (result != ABBE_OK) return result;
+static void drop_search(search *s) {
+  free(s->bin);
+  free(s->place);
+  free(s->found);
+  free(s->cuts);
+  free(s->way);
+}
+
+/* The brightest lamps, at most so many. */
+static abbe_result look_for_lamps(const abbe_environment *e, size_t most, search *s,
+                                  abbe_error *error) {
+  *s = (search){.environment = e,
+                .bin = malloc(BINS * sizeof *s->bin),
+                .place = malloc(BINS),
+                .found = malloc(BINS * sizeof *s->found),
+                .cuts = malloc(BINS * sizeof *s->cuts),
+                .way = malloc(e->map.width * sizeof *s->way)};
+  if (s->bin == NULL || s->place == NULL || s->found == NULL || s->cuts == NULL || s->way == NULL) {
+    drop_search(s);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the environment's lights");
+  }
   for (size_t x = 0; x < e->map.width; x++) {
     double level[3];
     abbe_radiance_map_direction(&e->map, (double)x + 0.5, (double)e->map.height / 2, level);
@@ -227,6 +251,43 @@ static abbe_result add_all(search *s, size_t most, const abbe_environment_lights
   find_lamps(s, OVER_MEAN * mean_of_most(e));
   qsort(s->lamp, s->count, sizeof *s->lamp, by_light);
   if (s->count > most) s->count = most;
+  return ABBE_OK;
+}
+
+static bool is_kept(const search *s, size_t number) {
+  for (size_t i = 0; i < s->count; i++)
+    if (s->lamp[i].number == number) return true;
+  return false;
+}
+
+abbe_result abbe_environment_lights_leave(const abbe_environment *environment, size_t count,
+                                          abbe_radiance_map *out, abbe_error *error) {
+  ABBE_REQUIRE(environment && out, error);
+  const abbe_radiance_map *map = &environment->map;
+  search s;
+  *out = (abbe_radiance_map){0};
+  abbe_result result = look_for_lamps(environment, count, &s, error);
+  if (result != ABBE_OK) return result;
+  result = abbe_radiance_map_make(map->width, out, error);
+  for (size_t i = 0; result == ABBE_OK && i < map->width * map->height; i++) {
+    const size_t x = i % map->width, y = i / map->width;
+    const cut *c = &s.cuts[y * ROWS / map->height * COLUMNS + x * COLUMNS / map->width];
+    const double bright = luminance_of(map->rgb + 3 * i);
+    const double share = bright > c->above && is_kept(&s, c->lamp) ? c->above / bright : 1;
+    for (size_t k = 0; k < 3; k++) out->rgb[3 * i + k] = (float)share * map->rgb[3 * i + k];
+  }
+  drop_search(&s);
+  return result;
+}
+
+/* The lights and what they leave, into the copy. */
+static abbe_result add_all(search *s, const abbe_environment_lights_desc *d, abbe_scene *out,
+                           abbe_error *error) {
+  const abbe_environment *e = s->environment;
+  abbe_upsampling up;
+  abbe_result result =
+      abbe_upsampling_make_by(d->observer, &e->illuminant, d->min_nm, d->max_nm, &up, error);
+  if (result != ABBE_OK) return result;
   for (size_t i = 0; i < s->count && result == ABBE_OK; i++) {
     result = set_light(e, &up, &s->lamp[i], i + 1, &out->light[out->light_count], error);
     out->environment_lights++;
@@ -253,21 +314,16 @@ abbe_result abbe_environment_lights_add(const abbe_scene *scene,
   }
   if (own > 0) memcpy(out->light, scene->light, own * sizeof *out->light);
   if (scene->environment == NULL) return ABBE_OK;
-  search s = {.environment = scene->environment,
-              .bin = malloc(BINS * sizeof *s.bin),
-              .place = malloc(BINS),
-              .found = malloc(BINS * sizeof *s.found),
-              .way = malloc(scene->environment->map.width * sizeof *s.way)};
+  search s = {0};
   out->soft_light = malloc(sizeof *out->soft_light);
-  abbe_result result = ABBE_OK;
-  if (s.bin == NULL || s.place == NULL || s.found == NULL || s.way == NULL ||
-      out->soft_light == NULL)
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the environment's lights");
-  if (result == ABBE_OK) result = add_all(&s, count, desc, out, error);
-  free(s.bin);
-  free(s.place);
-  free(s.found);
-  free(s.way);
+  abbe_result result =
+      out->soft_light != NULL
+          ? look_for_lamps(scene->environment, count, &s, error)
+          : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the environment's lights");
+  if (result == ABBE_OK) {
+    result = add_all(&s, desc, out, error);
+    drop_search(&s);
+  }
   if (result != ABBE_OK) abbe_environment_lights_drop(out);
   return result;
 }

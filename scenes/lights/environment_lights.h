@@ -34,6 +34,11 @@ typedef struct abbe_environment_lights_desc {
 abbe_result abbe_environment_lights_add(const abbe_scene *scene,
                                         const abbe_environment_lights_desc *desc, abbe_scene *out,
                                         abbe_error *error);
+/* What the `count` brightest of its lights leave of an environment, as radiance: a map as large as
+ * its own, in which the texels of their lamps are cut down to where these begin to stand out. With
+ * as many as the copy above has it is the radiance of its soft light. ABBE_NO_MEMORY. */
+abbe_result abbe_environment_lights_leave(const abbe_environment *environment, size_t count,
+                                          abbe_radiance_map *out, abbe_error *error);
 /* Frees such a copy; the scene stays. */
 void abbe_environment_lights_drop(abbe_scene *copy);
 

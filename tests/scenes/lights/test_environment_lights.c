@@ -1,8 +1,8 @@
 /* Directional lights in place of an environment, and the soft light that is left. */
 #include "tests/scenes/scene_text.h"
 
-#include "scenes/lights/environment_lights.h"
 #include "scenes/geometry/vector.h"
+#include "scenes/lights/environment_lights.h"
 
 static const double PI = 3.14159265358979;
 
@@ -69,6 +69,40 @@ static void every_open_plane_has_its_irradiance(void **state) {
     }
     for (size_t i = 1; i < lit.light_count; i++)
       assert_true(lit.light[i].power <= lit.light[i - 1].power);
+    drop(&scene, &lit);
+  }
+}
+
+/* As radiance, what the lights leave and the lights are all: by luminance, with their directions,
+ * and by colour where a lamp has one. No texel gains. */
+static void what_is_left_and_the_lights_are_all(void **state) {
+  (void)state;
+  static const double luminance[3] = {0.2126390058715104, 0.7151686787677559, 0.0721923153607337};
+  for (size_t count = 0; count <= 2; count++) {
+    abbe_scene scene, lit;
+    abbe_radiance_map left;
+    add(STUDIO, count, &scene, &lit);
+    assert_int_equal(lit.environment_lights, count);
+    const abbe_environment *e = scene.environment;
+    assert_int_equal(abbe_environment_lights_leave(e, lit.environment_lights, &left, NULL),
+                     ABBE_OK);
+    double flux[3] = {0, 0, 0};
+    for (size_t i = 0; i < left.width * left.height; i++) {
+      double d[3], y = 0;
+      abbe_radiance_map_direction(&left, (double)(i % left.width) + 0.5,
+                                  (double)(i / left.width) + 0.5, d);
+      for (size_t k = 0; k < 3; k++) {
+        const double taken = (double)(e->map.rgb[3 * i + k] - left.rgb[3 * i + k]);
+        assert_true(taken >= 0);
+        y += luminance[k] * taken * abbe_radiance_map_solid_angle(&left, i / left.width);
+      }
+      for (int k = 0; k < 3; k++)
+        for (int r = 0; r < 3; r++) flux[k] += y * e->to_map[3 * r + k] * d[r];
+    }
+    for (size_t i = 0; i < lit.environment_lights; i++)
+      for (int k = 0; k < 3; k++) flux[k] += lit.light[i].power * lit.light[i].direction[k];
+    for (int k = 0; k < 3; k++) assert_near(flux[k], 0, 1e-4);
+    abbe_radiance_map_free(&left);
     drop(&scene, &lit);
   }
 }
@@ -170,6 +204,7 @@ static void own_lights_stay_and_leave_room(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(one_softbox_is_one_light),
                                      cmocka_unit_test(every_open_plane_has_its_irradiance),
+                                     cmocka_unit_test(what_is_left_and_the_lights_are_all),
                                      cmocka_unit_test(only_lamps_become_lights),
                                      cmocka_unit_test(smooth_surroundings_need_no_light),
                                      cmocka_unit_test(the_sun_stands_out_of_its_sky),

@@ -1,0 +1,44 @@
+/* point_grid.h: points in cubic cells, by a hash of the cell: who is within a cell's edge of a
+ * place.
+ *
+ * The points are the caller's; the grid holds their numbers. It may grow while it is asked.
+ */
+#ifndef ABBE_SCENES_SAMPLES_POINT_GRID_H
+#define ABBE_SCENES_SAMPLES_POINT_GRID_H
+
+#include "base/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct abbe_point_grid {
+  double cell;    /* edge of a cell, m */
+  uint32_t *head; /* [mask + 1] last number of a cell's chain, or UINT32_MAX */
+  uint32_t *next; /* [room] */
+  uint32_t *key;  /* [room] of each number's cell, which tells those of a chain apart */
+  size_t mask, room;
+} abbe_point_grid;
+
+/* An empty grid for numbers below `room`; cell > 0. ABBE_INVALID_ARGUMENT, ABBE_NO_MEMORY. */
+abbe_result abbe_point_grid_make(double cell, size_t room, abbe_point_grid *out, abbe_error *error);
+void abbe_point_grid_free(abbe_point_grid *grid);
+
+/* Adds a number below `room`, once, at its place. */
+void abbe_point_grid_add(abbe_point_grid *grid, const double at[3], size_t number);
+
+/* Called with a number of such a cell; false: no more. */
+typedef bool (*abbe_point_visit)(void *user, size_t number);
+/* All numbers of the 27 cells around a place: those of all points no farther than a cell's edge are
+ * among them. */
+void abbe_point_grid_visit(const abbe_point_grid *grid, const double at[3], abbe_point_visit visit,
+                           void *user);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,311 @@
+#include "scenes/samples/surface_samples.h"
+
+#include "scenes/geometry/vector.h"
+#include "scenes/samples/point_grid.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* For each sample that is asked for; in all at least, and at the most. */
+enum { CANDIDATES = 48, LEAST_CANDIDATES = 4096, MOST_CANDIDATES = 1 << 18, HALVINGS = 24 };
+
+const char *abbe_sample_strategy_name(abbe_sample_strategy strategy) {
+#define ABBE_NAME_OF(code, name) name,
+  static const char *const names[] = {ABBE_SAMPLE_STRATEGIES(ABBE_NAME_OF)};
+#undef ABBE_NAME_OF
+  return (int)strategy >= 0 && strategy < ABBE_SAMPLE_STRATEGY_COUNT ? names[strategy] : "unknown";
+}
+
+/* ---- candidates ---- */
+
+/* SplitMix64 [Steele2014] by number: number k of a seed, in [0, 1). */
+static double random_of(uint64_t seed, uint64_t k) {
+  uint64_t z = (seed + 1) * 0xd1342543de82ef95u + k * 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+/* Area of all faces up to and with each, of all meshes numbered through. */
+static double sum_areas(const abbe_mesh *const *mesh, size_t mesh_count, double *sum) {
+  double area = 0;
+  size_t face = 0;
+  for (size_t m = 0; m < mesh_count; m++)
+    for (size_t i = 0; i < mesh[m]->face_count; i++) {
+      const uint32_t *f = mesh[m]->face[i];
+      double across[3];
+      abbe_vector_triangle(mesh[m]->position[f[0]], mesh[m]->position[f[1]],
+                           mesh[m]->position[f[2]], across);
+      area += 0.5 * abbe_vector_length(across);
+      sum[face++] = area;
+    }
+  return area;
+}
+
+/* The first face whose sum is above. */
+static size_t find_face(const double *sum, size_t count, double at) {
+  size_t low = 0, high = count - 1;
+  while (low < high) {
+    const size_t middle = low + (high - low) / 2;
+    if (sum[middle] > at)
+      high = middle;
+    else
+      low = middle + 1;
+  }
+  return low;
+}
+
+static void set_point(const abbe_mesh *const *mesh, size_t face, const double u[2],
+                      abbe_surface_point *out) {
+  size_t m = 0;
+  for (; face >= mesh[m]->face_count; m++) face -= mesh[m]->face_count;
+  const uint32_t *f = mesh[m]->face[face];
+  const double root = sqrt(u[0]), weight[3] = {1 - root, root * (1 - u[1]), root * u[1]};
+  *out = (abbe_surface_point){.mesh = (uint32_t)m};
+  for (int c = 0; c < 3; c++)
+    for (int k = 0; k < 3; k++) {
+      out->position[k] += weight[c] * mesh[m]->position[f[c]][k];
+      out->normal[k] += weight[c] * mesh[m]->normal[f[c]][k];
+    }
+  if (abbe_vector_normalise(out->normal)) return;
+  abbe_vector_triangle(mesh[m]->position[f[0]], mesh[m]->position[f[1]], mesh[m]->position[f[2]],
+                       out->normal);
+  abbe_vector_normalise(out->normal);
+}
+
+static abbe_result draw_candidates(const abbe_mesh *const *mesh, size_t mesh_count, uint64_t seed,
+                                   abbe_surface_samples *s, abbe_error *error) {
+  size_t faces = 0;
+  for (size_t m = 0; m < mesh_count; m++) faces += mesh[m]->face_count;
+  double *sum = malloc((faces + 1) * sizeof *sum);
+  if (sum == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu faces", faces);
+  s->area = sum_areas(mesh, mesh_count, sum);
+  const bool any = s->area > 0 && isfinite(s->area);
+  for (size_t i = 0; any && i < s->candidate_count; i++) {
+    const double u[2] = {random_of(seed, 3 * i + 1), random_of(seed, 3 * i + 2)};
+    set_point(mesh, find_face(sum, faces, s->area * random_of(seed, 3 * i)), u, &s->candidate[i]);
+  }
+  free(sum);
+  return any ? ABBE_OK
+             : abbe_error_set(error, ABBE_GEOMETRY,
+                              "the surfaces to be sampled have an area of %g m2", s->area);
+}
+
+static bool face_alike(const abbe_surface_point *a, const abbe_surface_point *b, bool sided) {
+  return !sided || abbe_vector_dot(a->normal, b->normal) > 0;
+}
+
+/* ---- neighbour ---- */
+
+typedef struct cover {
+  const abbe_surface_samples *s;
+  const abbe_surface_point *at;
+  double radius;
+  bool sided, covered;
+} cover;
+
+static bool look_for_cover(void *user, size_t number) {
+  cover *c = user;
+  const abbe_surface_point *kept = &c->s->candidate[number];
+  double apart[3];
+  abbe_vector_subtract(kept->position, c->at->position, apart);
+  c->covered = abbe_vector_length(apart) < c->radius && face_alike(kept, c->at, c->sided);
+  return !c->covered;
+}
+
+/* Numbers of those that are kept, into `kept`; more than `most` are given up. SIZE_MAX: no memory.
+ */
+static size_t remove_neighbours(const abbe_surface_samples *s, double radius, bool sided,
+                                size_t most, uint32_t *kept) {
+  abbe_point_grid grid;
+  size_t count = 0;
+  if (abbe_point_grid_make(radius, s->candidate_count, &grid, NULL) != ABBE_OK) return SIZE_MAX;
+  for (size_t i = 0; i < s->candidate_count && count <= most; i++) {
+    cover c = {s, &s->candidate[i], radius, sided, false};
+    abbe_point_grid_visit(&grid, c.at->position, look_for_cover, &c);
+    if (c.covered) continue;
+    abbe_point_grid_add(&grid, c.at->position, i);
+    if (count < most) kept[count] = (uint32_t)i;
+    count++;
+  }
+  abbe_point_grid_free(&grid);
+  return count;
+}
+
+/* ---- grid ---- */
+
+typedef struct in_cell {
+  int64_t cell[4]; /* the last: the octant of the normal's largest side, where sides are apart */
+  uint32_t number;
+} in_cell;
+
+static int by_cell(const void *a, const void *b) {
+  const in_cell *x = a, *y = b;
+  for (int k = 0; k < 4; k++)
+    if (x->cell[k] != y->cell[k]) return x->cell[k] < y->cell[k] ? -1 : 1;
+  return (x->number > y->number) - (x->number < y->number);
+}
+
+/* Which of two sides a normal shows: its largest component's sign. */
+static int64_t side_of(const double n[3]) {
+  int k = 0;
+  for (int i = 1; i < 3; i++)
+    if (fabs(n[i]) > fabs(n[k])) k = i;
+  return n[k] < 0;
+}
+
+/* As above, of cubes of an edge; the first candidate of each. */
+static size_t take_cells(const abbe_surface_samples *s, double edge, bool sided, size_t most,
+                         uint32_t *kept) {
+  in_cell *all = malloc((s->candidate_count + 1) * sizeof *all);
+  size_t count = 0;
+  if (all == NULL) return SIZE_MAX;
+  for (size_t i = 0; i < s->candidate_count; i++) {
+    const abbe_surface_point *p = &s->candidate[i];
+    for (int k = 0; k < 3; k++) all[i].cell[k] = (int64_t)floor(p->position[k] / edge);
+    all[i].cell[3] = sided ? side_of(p->normal) : 0;
+    all[i].number = (uint32_t)i;
+  }
+  qsort(all, s->candidate_count, sizeof *all, by_cell);
+  for (size_t i = 0; i < s->candidate_count; i++) {
+    if (i > 0 && memcmp(all[i].cell, all[i - 1].cell, sizeof all[i].cell) == 0) continue;
+    if (count < most) kept[count] = all[i].number;
+    count++;
+  }
+  free(all);
+  return count;
+}
+
+/* ---- which are kept ---- */
+
+typedef size_t (*keep_some)(const abbe_surface_samples *s, double reach, bool sided, size_t most,
+                            uint32_t *kept);
+
+/* The smallest reach that keeps no more than are asked for. */
+static size_t keep_by_reach(abbe_surface_samples *s, const abbe_surface_sampling *sampling,
+                            size_t most, keep_some keep, uint32_t *kept) {
+  double low = 0, high = 2 * sqrt(s->area / (double)most);
+  size_t count = keep(s, high, sampling->sided, most, kept);
+  for (int i = 0; i < 64 && count > most && count != SIZE_MAX; i++) {
+    low = high;
+    high *= 2;
+    count = keep(s, high, sampling->sided, most, kept);
+  }
+  for (int i = 0; i < HALVINGS && count != SIZE_MAX; i++) {
+    const double middle = 0.5 * (low + high);
+    const size_t there = keep(s, middle, sampling->sided, most, kept);
+    if (there == SIZE_MAX) return there;
+    if (there > most)
+      low = middle;
+    else
+      high = middle;
+    if (there == most) break;
+  }
+  s->reach = high;
+  return count == SIZE_MAX ? count : keep(s, high, sampling->sided, most, kept);
+}
+
+static void quantize(abbe_surface_samples *s) {
+  for (size_t i = 0; i < s->count; i++)
+    for (int k = 0; k < 3; k++)
+      s->sample[i].position[k] = (floor(s->sample[i].position[k] / s->reach) + 0.5) * s->reach;
+}
+
+static abbe_result keep(abbe_surface_samples *s, const abbe_surface_sampling *sampling, size_t most,
+                        abbe_error *error) {
+  const abbe_sample_strategy strategy = sampling->strategy;
+  const bool cells =
+      strategy == ABBE_SAMPLE_STRATEGY_GRID || strategy == ABBE_SAMPLE_STRATEGY_QUANTIZED;
+  uint32_t *kept = malloc(most * sizeof *kept);
+  size_t count = kept != NULL ? most : SIZE_MAX;
+  for (size_t i = 0; kept != NULL && i < most; i++) kept[i] = (uint32_t)i;
+  if (kept != NULL && strategy != ABBE_SAMPLE_STRATEGY_RANDOM)
+    count = keep_by_reach(s, sampling, most, cells ? take_cells : remove_neighbours, kept);
+  if (count == SIZE_MAX) {
+    free(kept);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu samples of surfaces", most);
+  }
+  s->count = count;
+  for (size_t i = 0; i < count; i++) s->sample[i] = s->candidate[kept[i]];
+  free(kept);
+  s->spacing = sqrt(s->area / (double)count);
+  if (strategy == ABBE_SAMPLE_STRATEGY_QUANTIZED) quantize(s);
+  return ABBE_OK;
+}
+
+/* ---- shares ---- */
+
+typedef struct search {
+  const abbe_surface_samples *s;
+  const abbe_surface_point *at;
+  double least;
+  size_t found;
+} search;
+
+/* Of samples that face as the candidate does, if there are any near. */
+static bool look_for_nearest(void *user, size_t number) {
+  search *w = user;
+  const abbe_surface_point *sample = &w->s->sample[number];
+  double apart[3];
+  abbe_vector_subtract(sample->position, w->at->position, apart);
+  const double far = abbe_vector_length(apart) + (face_alike(sample, w->at, true) ? 0 : 1e30);
+  if (far >= w->least) return true;
+  w->least = far;
+  w->found = number;
+  return true;
+}
+
+static abbe_result share_out(abbe_surface_samples *s, abbe_error *error) {
+  abbe_point_grid grid;
+  const double cell = 2 * fmax(s->spacing, s->reach);
+  abbe_result result = abbe_point_grid_make(cell, s->count, &grid, error);
+  if (result != ABBE_OK) return result;
+  for (size_t i = 0; i < s->count; i++) abbe_point_grid_add(&grid, s->sample[i].position, i);
+  for (size_t i = 0; i < s->candidate_count; i++) {
+    search w = {s, &s->candidate[i], INFINITY, 0};
+    abbe_point_grid_visit(&grid, w.at->position, look_for_nearest, &w);
+    for (size_t k = 0; w.least > cell && k < s->count; k++) look_for_nearest(&w, k);
+    s->owner[i] = (uint32_t)w.found;
+    s->share[w.found] += s->area / (double)s->candidate_count;
+  }
+  abbe_point_grid_free(&grid);
+  return ABBE_OK;
+}
+
+abbe_result abbe_surface_samples_make(const abbe_mesh *const *mesh, size_t mesh_count,
+                                      const abbe_surface_sampling *sampling,
+                                      abbe_surface_samples *out, abbe_error *error) {
+  ABBE_REQUIRE(mesh && sampling && out, error);
+  *out = (abbe_surface_samples){0};
+  const size_t most = sampling->count > 0 ? sampling->count : 1;
+  if (most > ABBE_SURFACE_MAX_SAMPLES)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%zu samples of surfaces; there may be 1 to %d", most,
+                          ABBE_SURFACE_MAX_SAMPLES);
+  size_t count = CANDIDATES * most;
+  if (count < LEAST_CANDIDATES) count = LEAST_CANDIDATES;
+  if (count > MOST_CANDIDATES) count = MOST_CANDIDATES;
+  out->candidate_count = count;
+  out->candidate = calloc(count, sizeof *out->candidate);
+  out->owner = calloc(count, sizeof *out->owner);
+  out->sample = calloc(most, sizeof *out->sample);
+  out->share = calloc(most, sizeof *out->share);
+  abbe_result result =
+      out->candidate == NULL || out->owner == NULL || out->sample == NULL || out->share == NULL
+          ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu samples of surfaces", most)
+          : draw_candidates(mesh, mesh_count, sampling->seed, out, error);
+  if (result == ABBE_OK) result = keep(out, sampling, most, error);
+  if (result == ABBE_OK) result = share_out(out, error);
+  if (result != ABBE_OK) abbe_surface_samples_free(out);
+  return result;
+}
+
+void abbe_surface_samples_free(abbe_surface_samples *samples) {
+  if (samples == NULL) return;
+  free(samples->sample);
+  free(samples->share);
+  free(samples->candidate);
+  free(samples->owner);
+  *samples = (abbe_surface_samples){0};
+}

@@ -1,0 +1,75 @@
+/* surface_samples.h: a few points that stand for surfaces, spread over them by area
+ * [WandStrasser2003].
+ *
+ * Candidates are many points, uniform by area at random; of these a strategy keeps some. random
+ * keeps the first ones. grid keeps one of each cube that holds any, so its density goes with the
+ * cubes that a surface crosses: with the sum of the absolute components of its normal. quantized
+ * keeps those and moves them to their cubes' middles. neighbour goes through the candidates in
+ * their order and drops each that is nearer to a kept one than a radius. It knows no light.
+ */
+#ifndef ABBE_SCENES_SAMPLES_SURFACE_SAMPLES_H
+#define ABBE_SCENES_SAMPLES_SURFACE_SAMPLES_H
+
+#include "base/error.h"
+#include "scenes/mesh/mesh.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_SAMPLE_STRATEGIES(X)                                                                  \
+  X(AUTO, "auto")                                                                                  \
+  X(RANDOM, "random") X(GRID, "grid") X(QUANTIZED, "quantized") X(NEIGHBOUR, "neighbour")
+typedef enum abbe_sample_strategy {
+#define ABBE_SAMPLE_STRATEGY_ENUM(code, name) ABBE_SAMPLE_STRATEGY_##code,
+  ABBE_SAMPLE_STRATEGIES(ABBE_SAMPLE_STRATEGY_ENUM)
+#undef ABBE_SAMPLE_STRATEGY_ENUM
+      ABBE_SAMPLE_STRATEGY_COUNT
+} abbe_sample_strategy;
+
+#define ABBE_SURFACE_MAX_SAMPLES 4096
+
+typedef struct abbe_surface_point {
+  double position[3], normal[3]; /* m; unit, interpolated between the corners' */
+  uint32_t mesh;                 /* which of those given */
+} abbe_surface_point;
+
+typedef struct abbe_surface_samples {
+  size_t count;
+  abbe_surface_point *sample; /* [count] */
+  double *share;              /* [count] m2: of the candidates that are nearest to it; they sum to
+                                 area */
+  double area;                /* of all meshes, m2 */
+  double spacing;             /* sqrt(area / count), m */
+  double reach;               /* the radius of neighbour, the edge of a cube; 0 at random; m */
+  size_t candidate_count;
+  abbe_surface_point *candidate; /* [candidate_count], in their order */
+  uint32_t *owner;               /* [candidate_count] the sample nearest to each */
+} abbe_surface_samples;
+
+/* What is asked for. Zeros: NEIGHBOUR, 1 sample. */
+typedef struct abbe_surface_sampling {
+  size_t count; /* at most so many are kept; of random as many, else nearly */
+  abbe_sample_strategy strategy;
+  uint64_t seed; /* of the candidates */
+  bool sided;    /* points whose normals are more than 90 degrees apart are on different sides of a
+                    sheet: no neighbour drops the other, no cube holds both */
+} abbe_surface_sampling;
+
+/* Of all faces of the meshes together; faces without area are never met. ABBE_INVALID_ARGUMENT for
+ * more than ABBE_SURFACE_MAX_SAMPLES, ABBE_GEOMETRY where there is no area, ABBE_NO_MEMORY. */
+abbe_result abbe_surface_samples_make(const abbe_mesh *const *mesh, size_t mesh_count,
+                                      const abbe_surface_sampling *sampling,
+                                      abbe_surface_samples *out, abbe_error *error);
+void abbe_surface_samples_free(abbe_surface_samples *samples);
+
+const char *abbe_sample_strategy_name(abbe_sample_strategy strategy);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,117 @@
+/* A cube of a map: directions, solid angles, and the same light in every level. */
+#include "tests/check.h"
+
+#include "scenes/environment/environment_source.h"
+#include "scenes/environment/radiance_cube.h"
+#include "scenes/geometry/vector.h"
+
+static const double PI = 3.14159265358979323846;
+
+static void test_solid_angles_fill_the_sphere(void **state) {
+  (void)state;
+  for (size_t side = 1; side <= 32; side *= 2) {
+    double sum = 0;
+    for (size_t i = 0; i < side * side; i++)
+      sum += 6 * abbe_radiance_cube_solid_angle(side, i % side, i / side);
+    assert_near(sum, 4 * PI, 1e-12);
+  }
+}
+
+/* As OpenGL finds them: the major axis is the face, and what goes with it the place. */
+static void test_directions_are_opengls(void **state) {
+  (void)state;
+  static const int major[6] = {0, 0, 1, 1, 2, 2};
+  for (size_t face = 0; face < 6; face++) {
+    const double x = 0.7, y = 0.2, sign = face % 2 == 0 ? 1 : -1;
+    double d[3];
+    abbe_radiance_cube_direction(face, x, y, d);
+    const int m = major[face];
+    const double ma = fabs(d[m]);
+    assert_true(sign * d[m] > 0 && ma >= fabs(d[(m + 1) % 3]) && ma >= fabs(d[(m + 2) % 3]));
+    const double sc = m == 0 ? -sign * d[2] : m == 1 ? d[0] : sign * d[0];
+    const double tc = m == 1 ? sign * d[2] : -d[1];
+    assert_near(0.5 * (sc / ma + 1), x, 1e-12);
+    assert_near(0.5 * (tc / ma + 1), y, 1e-12);
+  }
+}
+
+static void make_map(abbe_radiance_map *map) {
+  const abbe_environment_source dusk = {.kind = ABBE_SOURCE_UNIFORM, .radiance = {0.2, 0.3, 0.5}};
+  abbe_environment_source spot = {.kind = ABBE_SOURCE_SPOT,
+                                  .radiance = {40, 30, 20},
+                                  .centre = {0.6, 0, 0.8},
+                                  .radius_rad = 0.05};
+  assert_int_equal(abbe_radiance_map_make(512, map, NULL), ABBE_OK);
+  assert_int_equal(abbe_environment_source_add(&dusk, map, NULL), ABBE_OK);
+  assert_int_equal(abbe_environment_source_add(&spot, map, NULL), ABBE_OK);
+}
+
+static void test_every_level_holds_the_light(void **state) {
+  (void)state;
+  abbe_radiance_map map;
+  abbe_radiance_cube cube;
+  double mean[3], first[3] = {0, 0, 0};
+  make_map(&map);
+  abbe_radiance_map_mean(&map, mean);
+  assert_int_equal(abbe_radiance_cube_make(&map, 128, &cube, NULL), ABBE_OK);
+  assert_int_equal(cube.level_count, 8);
+  for (size_t k = 0; k < cube.level_count; k++) {
+    const size_t side = cube.side >> k;
+    double sum[3] = {0, 0, 0};
+    for (size_t i = 0; i < 6 * side * side; i++)
+      for (size_t c = 0; c < 3; c++)
+        sum[c] += (double)cube.level[k][3 * i + c] *
+                  abbe_radiance_cube_solid_angle(side, i % side, i / side % side) / (4 * PI);
+    for (int c = 0; c < 3; c++) {
+      if (k == 0) first[c] = sum[c];
+      assert_near(sum[c], mean[c], 2e-3 * mean[c]);
+      assert_near(sum[c], first[c], 1e-5 * mean[c]);
+    }
+  }
+  abbe_radiance_cube_free(&cube);
+  abbe_radiance_map_free(&map);
+}
+
+/* Where the map is smooth a texel is what the map shows in its direction. */
+static void test_texels_show_the_map(void **state) {
+  (void)state;
+  abbe_radiance_map map;
+  abbe_radiance_cube cube;
+  make_map(&map);
+  assert_int_equal(abbe_radiance_cube_make(&map, 256, &cube, NULL), ABBE_OK);
+  for (size_t i = 0; i < 6 * 256 * 256; i += 97) {
+    double d[3], rgb[3];
+    abbe_radiance_cube_direction(i / 65536, ((double)(i % 256) + 0.5) / 256,
+                                 ((double)(i / 256 % 256) + 0.5) / 256, d);
+    abbe_radiance_map_at(&map, d, rgb);
+    for (size_t c = 0; c < 3; c++) assert_near((double)cube.level[0][3 * i + c], rgb[c], 0.6);
+    if (d[0] < 0) assert_near((double)cube.level[0][3 * i + 1], 0.3, 1e-6);
+  }
+  abbe_radiance_cube_free(&cube);
+  abbe_radiance_map_free(&map);
+}
+
+static void test_wrong_sides(void **state) {
+  (void)state;
+  abbe_radiance_map map = {0};
+  abbe_radiance_cube cube;
+  abbe_error error = {0};
+  const size_t wrong[] = {0, 3, 100, 2048};
+  for (size_t i = 0; i < 4; i++)
+    assert_int_equal(abbe_radiance_cube_make(&map, wrong[i], &cube, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "a power of two");
+  assert_int_equal(abbe_radiance_cube_make(&map, 16, &cube, &error), ABBE_INVALID_ARGUMENT);
+  abbe_radiance_cube_free(&cube);
+  abbe_radiance_cube_free(NULL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_solid_angles_fill_the_sphere),
+      cmocka_unit_test(test_directions_are_opengls),
+      cmocka_unit_test(test_every_level_holds_the_light),
+      cmocka_unit_test(test_texels_show_the_map),
+      cmocka_unit_test(test_wrong_sides),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,74 @@
+/* Points in cells: whoever is within a cell's edge is found, once, and wrong cells are refused. */
+#include "tests/check.h"
+#include "tests/random.h"
+
+#include "scenes/samples/point_grid.h"
+
+#include <stdlib.h>
+
+enum { COUNT = 2000 };
+
+static double at[COUNT][3];
+static int times[COUNT];
+
+static bool count(void *user, size_t number) {
+  (void)user;
+  times[number]++;
+  return true;
+}
+
+static bool stop(void *user, size_t number) {
+  (void)number;
+  ++*(int *)user;
+  return false;
+}
+
+static void test_all_near_ones_are_found(void **state) {
+  (void)state;
+  uint64_t random = 1;
+  abbe_point_grid grid;
+  const double cell = 0.07;
+  assert_int_equal(abbe_point_grid_make(cell, COUNT, &grid, NULL), ABBE_OK);
+  for (int i = 0; i < COUNT; i++) {
+    for (int k = 0; k < 3; k++) at[i][k] = random_between(&random, -0.5, 0.5);
+    abbe_point_grid_add(&grid, at[i], (size_t)i);
+  }
+  for (int q = 0; q < 100; q++) {
+    double p[3];
+    for (int k = 0; k < 3; k++) p[k] = random_between(&random, -0.6, 0.6);
+    memset(times, 0, sizeof times);
+    abbe_point_grid_visit(&grid, p, count, NULL);
+    for (int i = 0; i < COUNT; i++) {
+      double far = 0, wide = 0;
+      for (int k = 0; k < 3; k++) {
+        far += pow(at[i][k] - p[k], 2);
+        wide = fmax(wide, fabs(at[i][k] - p[k]));
+      }
+      assert_true(times[i] <= 1);
+      if (sqrt(far) <= cell) assert_int_equal(times[i], 1);
+      if (wide > 2 * cell) assert_int_equal(times[i], 0);
+    }
+  }
+  int seen = 0;
+  abbe_point_grid_visit(&grid, at[0], stop, &seen);
+  assert_int_equal(seen, 1);
+  abbe_point_grid_free(&grid);
+}
+
+static void test_wrong_cells(void **state) {
+  (void)state;
+  abbe_point_grid grid;
+  abbe_error error = {0};
+  const double wrong[] = {0, -1, NAN, INFINITY};
+  for (size_t i = 0; i < 4; i++)
+    assert_int_equal(abbe_point_grid_make(wrong[i], 4, &grid, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "above 0 m");
+  abbe_point_grid_free(&grid);
+  abbe_point_grid_free(NULL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_all_near_ones_are_found),
+                                     cmocka_unit_test(test_wrong_cells)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,85 @@
+/* How normals turn: by 1/R on a sphere, in all directions; by 1/R around a cylinder and not along
+ * it; not at all on a plane. */
+#include "tests/check.h"
+
+#include "scenes/geometry/vector.h"
+#include "scenes/samples/surface_curvature.h"
+#include "scenes/shapes/shape.h"
+
+#include <stdlib.h>
+
+static abbe_surface_curvature *fit(const abbe_mesh *mesh, abbe_surface_samples *s) {
+  const abbe_surface_sampling sampling = {400, ABBE_SAMPLE_STRATEGY_NEIGHBOUR, 1, true};
+  assert_int_equal(abbe_surface_samples_make(&mesh, 1, &sampling, s, NULL), ABBE_OK);
+  abbe_surface_curvature *out = calloc(s->count, sizeof *out);
+  assert_int_equal(abbe_surface_curvature_fit(s, out, NULL), ABBE_OK);
+  for (size_t i = 0; i < s->count; i++) {
+    double across[3];
+    assert_true(fabs(out[i].curvature[0]) >= fabs(out[i].curvature[1]));
+    assert_near(abbe_vector_dot(out[i].along[0], out[i].along[1]), 0, 1e-12);
+    abbe_vector_cross(out[i].along[0], out[i].along[1], across);
+    assert_true(abbe_vector_dot(across, s->sample[i].normal) > 0.9);
+  }
+  return out;
+}
+
+static void test_sphere(void **state) {
+  (void)state;
+  const double radius = 0.02;
+  abbe_mesh ball = {0};
+  abbe_surface_samples s = {0};
+  assert_int_equal(abbe_shape_sphere(radius, 5, &ball, NULL), ABBE_OK);
+  abbe_surface_curvature *c = fit(&ball, &s);
+  for (size_t i = 0; i < s.count; i++)
+    for (int k = 0; k < 2; k++) assert_near(c[i].curvature[k] * radius, 1, 0.03);
+  free(c);
+  abbe_surface_samples_free(&s);
+  abbe_mesh_free(&ball);
+}
+
+/* Seen from inside the normals of its mesh spread the other way; both walls are there. */
+static void test_cylinder(void **state) {
+  (void)state;
+  const double inner = 0.04, outer = 0.0435, height = 0.1;
+  const double profile[4][2] = {{inner, 0}, {inner, height}, {outer, height}, {outer, 0}};
+  abbe_mesh ring = {0};
+  abbe_surface_samples s = {0};
+  assert_int_equal(abbe_shape_lathe(profile, 4, 256, &ring, NULL), ABBE_OK);
+  abbe_surface_curvature *c = fit(&ring, &s);
+  size_t walls[2] = {0, 0};
+  for (size_t i = 0; i < s.count; i++) {
+    const double *p = s.sample[i].position, r = hypot(p[0], p[1]);
+    const double out = s.sample[i].normal[0] * p[0] + s.sample[i].normal[1] * p[1];
+    const bool inside = r < 0.5 * (inner + outer);
+    /* away from the corners, whose normals break */
+    if (fabs(s.sample[i].normal[2]) > 0.1 || p[2] < s.spacing || p[2] > height - s.spacing)
+      continue;
+    walls[inside]++;
+    assert_near(c[i].curvature[0] * (inside ? inner : outer), out > 0 ? 1 : -1, 0.05);
+    assert_near(c[i].curvature[1] * inner, 0, 0.05);
+    assert_near(fabs(c[i].along[1][2]), 1, 0.01);
+  }
+  assert_true(walls[0] > 50 && walls[1] > 50);
+  free(c);
+  abbe_surface_samples_free(&s);
+  abbe_mesh_free(&ring);
+}
+
+static void test_plane(void **state) {
+  (void)state;
+  abbe_mesh plane = {0};
+  abbe_surface_samples s = {0};
+  assert_int_equal(abbe_shape_rectangle(0.3, 0.2, &plane, NULL), ABBE_OK);
+  abbe_surface_curvature *c = fit(&plane, &s);
+  for (size_t i = 0; i < s.count; i++)
+    for (int k = 0; k < 2; k++) assert_near(c[i].curvature[k], 0, 1e-9);
+  free(c);
+  abbe_surface_samples_free(&s);
+  abbe_mesh_free(&plane);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_sphere), cmocka_unit_test(test_cylinder),
+                                     cmocka_unit_test(test_plane)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,274 @@
+/* Samples of surfaces: what each strategy keeps, how dense it is, and how fast the irradiance that
+ * a mirror of uniform radiance gives converges to its closed forms. */
+#include "tests/check.h"
+#include "tests/random.h"
+
+#include "scenes/geometry/vector.h"
+#include "scenes/samples/surface_samples.h"
+#include "scenes/shapes/shape.h"
+
+#include <stdlib.h>
+
+static const double PI = 3.14159265358979323846;
+
+static const abbe_sample_strategy strategies[] = {
+    ABBE_SAMPLE_STRATEGY_RANDOM, ABBE_SAMPLE_STRATEGY_GRID, ABBE_SAMPLE_STRATEGY_QUANTIZED,
+    ABBE_SAMPLE_STRATEGY_NEIGHBOUR};
+enum { STRATEGIES = 4 };
+
+static void take(const abbe_mesh *mesh, size_t count, abbe_sample_strategy strategy, uint64_t seed,
+                 bool sided, abbe_surface_samples *out) {
+  abbe_error error = {0};
+  const abbe_surface_sampling sampling = {count, strategy, seed, sided};
+  assert_int_equal(abbe_surface_samples_make(&mesh, 1, &sampling, out, &error), ABBE_OK);
+}
+
+/* A rectangle of a width and a height about a middle, spanned by two unit directions. */
+static void make_rectangle(const double middle[3], const double u[3], const double v[3],
+                           double width, double height, abbe_mesh *out) {
+  static const double corner[4][2] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
+  assert_int_equal(abbe_mesh_make(4, 2, false, out, NULL), ABBE_OK);
+  for (int i = 0; i < 4; i++) {
+    for (int k = 0; k < 3; k++)
+      out->position[i][k] = middle[k] + corner[i][0] * width * u[k] + corner[i][1] * height * v[k];
+    abbe_vector_cross(u, v, out->normal[i]);
+  }
+  const uint32_t face[2][3] = {{0, 1, 2}, {0, 2, 3}};
+  memcpy(out->face, face, sizeof face);
+}
+
+static double distance(const abbe_surface_point *a, const abbe_surface_point *b) {
+  double d[3];
+  abbe_vector_subtract(a->position, b->position, d);
+  return abbe_vector_length(d);
+}
+
+/* Kept ones are a radius apart, and every candidate is within it of a kept one. */
+static void test_neighbours_are_apart_and_cover(void **state) {
+  (void)state;
+  abbe_mesh ring = {0};
+  assert_int_equal(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, NULL), ABBE_OK);
+  for (int sided = 0; sided < 2; sided++) {
+    abbe_surface_samples s = {0};
+    take(&ring, 300, ABBE_SAMPLE_STRATEGY_NEIGHBOUR, 7, sided != 0, &s);
+    assert_true(s.count <= 300 && s.count > 285);
+    for (size_t i = 0; i < s.count; i++)
+      for (size_t k = i + 1; k < s.count; k++)
+        assert_true(distance(&s.sample[i], &s.sample[k]) >= s.reach ||
+                    (sided && abbe_vector_dot(s.sample[i].normal, s.sample[k].normal) <= 0));
+    for (size_t i = 0; i < s.candidate_count; i++) {
+      double least = INFINITY;
+      for (size_t k = 0; k < s.count; k++)
+        if (!sided || abbe_vector_dot(s.candidate[i].normal, s.sample[k].normal) > 0)
+          least = fmin(least, distance(&s.candidate[i], &s.sample[k]));
+      assert_true(least < s.reach);
+    }
+    abbe_surface_samples_free(&s);
+  }
+  abbe_mesh_free(&ring);
+}
+
+/* All lie on the surface but those that are moved to their cubes; shares are the whole area. */
+static void test_area_and_places(void **state) {
+  (void)state;
+  abbe_mesh ball = {0};
+  assert_int_equal(abbe_shape_sphere(0.02, 5, &ball, NULL), ABBE_OK);
+  for (int k = 0; k < STRATEGIES; k++) {
+    abbe_surface_samples s = {0};
+    take(&ball, 200, strategies[k], 3, false, &s);
+    double sum = 0;
+    for (size_t i = 0; i < s.count; i++) {
+      sum += s.share[i];
+      const double radius = abbe_vector_length(s.sample[i].position);
+      if (strategies[k] != ABBE_SAMPLE_STRATEGY_QUANTIZED) assert_near(radius, 0.02, 2e-5);
+      if (strategies[k] == ABBE_SAMPLE_STRATEGY_QUANTIZED)
+        assert_true(fabs(radius - 0.02) <= 0.87 * s.reach + 2e-5);
+      assert_near(abbe_vector_length(s.sample[i].normal), 1, 1e-12);
+    }
+    print_message("%s: %zu of 200\n", abbe_sample_strategy_name(strategies[k]), s.count);
+    assert_true(s.count <= 200 && s.count >= 190);
+    assert_near(s.area, 4 * PI * 4e-4, 3e-6);
+    assert_near(sum, s.area, 1e-12);
+    assert_near(s.spacing, sqrt(s.area / (double)s.count), 1e-15);
+    abbe_surface_samples_free(&s);
+  }
+  abbe_mesh_free(&ball);
+}
+
+/* Samples a square metre on a plane across (0, 0, 1) over those on one across a tilted normal, both
+ * in one set, a metre apart. */
+static double density_ratio(abbe_sample_strategy strategy, const double n[3]) {
+  const double x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, near[3] = {0.013, 0.007, 0.0031},
+               far[3] = {3, 3, 3};
+  double u[3], v[3], flat = 0, tilted = 0;
+  abbe_mesh mesh[2] = {{0}, {0}};
+  make_rectangle(near, x, y, 1, 1, &mesh[0]);
+  abbe_vector_cross(fabs(n[2]) < 0.9 ? (double[3]){0, 0, 1} : x, n, u);
+  abbe_vector_normalise(u);
+  abbe_vector_cross(n, u, v);
+  make_rectangle(far, u, v, 1, 1, &mesh[1]);
+  const abbe_mesh *both[2] = {&mesh[0], &mesh[1]};
+  for (uint64_t seed = 0; seed < 4; seed++) {
+    abbe_surface_samples s = {0};
+    const abbe_surface_sampling sampling = {400, strategy, seed, false};
+    assert_int_equal(abbe_surface_samples_make(both, 2, &sampling, &s, NULL), ABBE_OK);
+    for (size_t i = 0; i < s.count; i++) *(s.sample[i].mesh == 0 ? &flat : &tilted) += 1;
+    abbe_surface_samples_free(&s);
+  }
+  abbe_mesh_free(&mesh[0]);
+  abbe_mesh_free(&mesh[1]);
+  return tilted / flat;
+}
+
+/* A grid's cubes are crossed by a tilted plane more often, as |n|_1, less those of which so little
+ * is crossed that no candidate fell there; neighbours see no direction. */
+static void test_density_by_normal(void **state) {
+  (void)state;
+  const double edge[3] = {0, sqrt(0.5), sqrt(0.5)},
+               corner[3] = {sqrt(1 / 3.0), sqrt(1 / 3.0), sqrt(1 / 3.0)};
+  const double grid_edge = density_ratio(ABBE_SAMPLE_STRATEGY_GRID, edge);
+  const double grid_corner = density_ratio(ABBE_SAMPLE_STRATEGY_GRID, corner);
+  const double even = density_ratio(ABBE_SAMPLE_STRATEGY_NEIGHBOUR, corner);
+  const double random = density_ratio(ABBE_SAMPLE_STRATEGY_RANDOM, corner);
+  print_message("grid: %.3f of %.3f, %.3f of %.3f; neighbour %.3f, random %.3f\n", grid_edge,
+                sqrt(2), grid_corner, sqrt(3), even, random);
+  assert_true(grid_edge > 1.25 && grid_edge < 1.45);
+  assert_true(grid_corner > 1.45 && grid_corner < 1.77);
+  assert_near(even, 1, 0.05);
+  assert_near(random, 1, 0.12);
+}
+
+/* Irradiance at `at`, facing `n`, by a mirror that shows radiance 1 everywhere: that of a lamp of
+ * its shape. */
+static double estimate(const abbe_surface_samples *s, const double at[3], const double n[3]) {
+  double sum = 0;
+  for (size_t i = 0; i < s->count; i++) {
+    double d[3];
+    abbe_vector_subtract(s->sample[i].position, at, d);
+    const double d2 = abbe_vector_dot(d, d), there = -abbe_vector_dot(d, s->sample[i].normal),
+                 here = abbe_vector_dot(d, n);
+    if (there > 0 && here > 0) sum += there * here / (d2 * d2);
+  }
+  return sum * s->area / (double)s->count;
+}
+
+/* Lambert's: half the sum over edges of the angle that each fills, times its plane's normal. */
+static double polygon(const double (*corner)[3], size_t count, const double at[3],
+                      const double n[3]) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++) {
+    double a[3], b[3], across[3];
+    abbe_vector_subtract(corner[i], at, a);
+    abbe_vector_subtract(corner[(i + 1) % count], at, b);
+    abbe_vector_normalise(a);
+    abbe_vector_normalise(b);
+    abbe_vector_cross(a, b, across);
+    const double angle = atan2(abbe_vector_length(across), abbe_vector_dot(a, b));
+    abbe_vector_normalise(across);
+    sum += 0.5 * angle * abbe_vector_dot(across, n);
+  }
+  return fabs(sum);
+}
+
+/* Slope of the error's root mean square over many seeds, by the number of samples. */
+static double slope(const abbe_mesh *mesh, abbe_sample_strategy strategy, const double at[3],
+                    const double n[3], double right) {
+  enum { SIZES = 4, SEEDS = 48 };
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (int k = 0; k < SIZES; k++) {
+    double square = 0, count = 0;
+    for (uint64_t seed = 0; seed < SEEDS; seed++) {
+      abbe_surface_samples s = {0};
+      take(mesh, (size_t)16 << 2 * k, strategy, seed, false, &s);
+      square += pow(estimate(&s, at, n) / right - 1, 2) / SEEDS;
+      count += (double)s.count / SEEDS;
+      abbe_surface_samples_free(&s);
+    }
+    const double x = log(count), y = 0.5 * log(square);
+    print_message("  %.0f: %.4g\n", count, sqrt(square));
+    sx += x;
+    sy += y;
+    sxx += x * x;
+    sxy += x * y;
+  }
+  return (SIZES * sxy - sx * sy) / (SIZES * sxx - sx * sx);
+}
+
+static void test_convergence_to_a_polygon(void **state) {
+  (void)state;
+  const double middle[3] = {0.05, 0.02, 0.4}, u[3] = {0, 0.8, 0.6}, v[3] = {1, 0, 0}, at[3] = {0},
+               n[3] = {0, 0, 1};
+  abbe_mesh mirror = {0};
+  make_rectangle(middle, u, v, 0.4, 0.3, &mirror);
+  double facing[3];
+  abbe_vector_cross(u, v, facing);
+  assert_true(abbe_vector_dot(facing, middle) < 0);
+  const double right = polygon((const double(*)[3])mirror.position, 4, at, n);
+  double by[STRATEGIES];
+  for (int k = 0; k < STRATEGIES; k++) {
+    by[k] = slope(&mirror, strategies[k], at, n, right);
+    print_message("%s: slope %.2f\n", abbe_sample_strategy_name(strategies[k]), by[k]);
+  }
+  assert_near(by[0], -0.5, 0.08);
+  assert_true(by[1] < -0.55 && by[3] < -0.6);
+  abbe_mesh_free(&mirror);
+}
+
+/* A disk of radius R, h above: pi R^2 / (R^2 + h^2). */
+static void test_a_coaxial_disk(void **state) {
+  (void)state;
+  enum { AROUND = 512 };
+  const double radius = 0.2, h = 0.25, at[3] = {0}, n[3] = {0, 0, 1};
+  abbe_mesh disk = {0};
+  assert_int_equal(abbe_mesh_make(AROUND + 1, AROUND, false, &disk, NULL), ABBE_OK);
+  for (uint32_t i = 0; i <= AROUND; i++) {
+    const double angle = 2 * PI * i / AROUND, r = i < AROUND ? radius : 0;
+    const double place[3] = {r * cos(angle), r * sin(angle), h}, down[3] = {0, 0, -1};
+    memcpy(disk.position[i], place, sizeof place);
+    memcpy(disk.normal[i], down, sizeof down);
+    const uint32_t face[3] = {AROUND, (i + 1) % AROUND, i};
+    if (i < AROUND) memcpy(disk.face[i], face, sizeof face);
+  }
+  const double right = PI * radius * radius / (radius * radius + h * h);
+  for (int k = 0; k < STRATEGIES; k++) {
+    double sum = 0;
+    for (uint64_t seed = 0; seed < 16; seed++) {
+      abbe_surface_samples s = {0};
+      take(&disk, 1024, strategies[k], seed, false, &s);
+      sum += estimate(&s, at, n) / 16;
+      abbe_surface_samples_free(&s);
+    }
+    print_message("%s: %.4f of %.4f\n", abbe_sample_strategy_name(strategies[k]), sum, right);
+    assert_near(sum, right, 0.02 * right);
+  }
+  abbe_mesh_free(&disk);
+}
+
+static void test_wrong_requests(void **state) {
+  (void)state;
+  abbe_mesh nothing = {0};
+  const abbe_mesh *mesh = &nothing;
+  abbe_surface_samples s;
+  abbe_error error = {0};
+  abbe_surface_sampling sampling = {.count = 10};
+  assert_int_equal(abbe_surface_samples_make(&mesh, 1, &sampling, &s, &error), ABBE_GEOMETRY);
+  assert_contains(error.text, "an area of 0 m2");
+  sampling.count = ABBE_SURFACE_MAX_SAMPLES + 1;
+  assert_int_equal(abbe_surface_samples_make(&mesh, 1, &sampling, &s, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "1 to 4096");
+  assert_string_equal(abbe_sample_strategy_name((abbe_sample_strategy)99), "unknown");
+  abbe_surface_samples_free(NULL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_neighbours_are_apart_and_cover),
+      cmocka_unit_test(test_area_and_places),
+      cmocka_unit_test(test_density_by_normal),
+      cmocka_unit_test(test_convergence_to_a_polygon),
+      cmocka_unit_test(test_a_coaxial_disk),
+      cmocka_unit_test(test_wrong_requests),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
