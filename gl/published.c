@@ -8,12 +8,18 @@ static bool is_wyman(const abbe_published *p) {
   return p->wyman.scene != NULL;
 }
 
+static bool is_wand(const abbe_published *p) {
+  return p->wand.scene != NULL;
+}
+
 abbe_result abbe_published_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
                                 abbe_published *out, abbe_error *error) {
   if (abbe_profile_is_shah2007(scene->plan->desc.profile))
     return abbe_shah2007_make(scene, variant, &out->shah, error);
   if (abbe_profile_is_wyman2006(scene->plan->desc.profile))
     return abbe_wyman2006_make(scene, variant, &out->wyman, error);
+  if (abbe_profile_is_wand2003(scene->plan->desc.profile))
+    return abbe_wand2003_make(scene, variant, &out->wand, error);
   return abbe_thesis_make(scene, variant, &out->thesis, error);
 }
 
@@ -21,11 +27,13 @@ void abbe_published_free(abbe_published *p) {
   abbe_thesis_free(&p->thesis);
   abbe_shah2007_free(&p->shah);
   abbe_wyman2006_free(&p->wyman);
+  abbe_wand2003_free(&p->wand);
   *p = (abbe_published){0};
 }
 
 abbe_result abbe_published_run(abbe_published *p, bool lit, abbe_error *error) {
   if (is_wyman(p)) return abbe_wyman2006_run(&p->wyman, lit, error);
+  if (is_wand(p)) return abbe_wand2003_run(&p->wand, error);
   return is_shah(p) ? abbe_shah2007_run(&p->shah, lit, error) : abbe_thesis_run(&p->thesis, error);
 }
 
@@ -51,6 +59,7 @@ void abbe_published_give_frames(abbe_published *p, abbe_wyman_history *frames) {
 
 abbe_result abbe_published_read(const abbe_published *p, abbe_image *out, abbe_error *error) {
   if (is_wyman(p)) return abbe_wyman2006_read(&p->wyman, out, error);
+  if (is_wand(p)) return abbe_wand2003_read(&p->wand, out, error);
   return is_shah(p) ? abbe_shah2007_read(&p->shah, out, error)
                     : abbe_thesis_read(&p->thesis, out, error);
 }
@@ -64,15 +73,18 @@ abbe_result abbe_published_read_map(abbe_published *p, bool filled, abbe_image *
 
 const abbe_map_layout *abbe_published_layout(const abbe_published *p) {
   if (is_wyman(p)) return &p->wyman.layout;
+  if (is_wand(p)) return &p->wand.layout;
   return is_shah(p) ? &p->shah.layout : &p->thesis.layout;
 }
 
 GLuint abbe_published_picture(const abbe_published *p) {
   if (is_wyman(p)) return p->wyman.eye.picture;
+  if (is_wand(p)) return p->wand.picture;
   return is_shah(p) ? p->shah.eye.picture : p->thesis.picture;
 }
 
 size_t abbe_published_photons(const abbe_published *p) {
   if (is_wyman(p)) return p->wyman.photon_count;
+  if (is_wand(p)) return 0;
   return is_shah(p) ? p->shah.photon_count : p->thesis.photon_count;
 }

@@ -6,12 +6,14 @@
 
 #include "gl/shah2007/shah2007.h"
 #include "gl/thesis/thesis.h"
+#include "gl/wand2003/wand2003.h"
 #include "gl/wyman2006/wyman2006.h"
 
 typedef struct abbe_published {
   abbe_thesis thesis;
   abbe_shah2007 shah;
   abbe_wyman2006 wyman;
+  abbe_wand2003 wand;
 } abbe_published;
 
 abbe_result abbe_published_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,

@@ -228,6 +228,10 @@ static uint64_t mix_light_plan(uint64_t h, const abbe_plan *plan) {
   MIX(h, d->history);
   MIX(h, d->volume);
   MIX(h, d->lookup);
+  MIX(h, d->transport);
+  MIX(h, d->pinholes);
+  MIX(h, d->strategy);
+  MIX(h, d->footprint);
   h = mix_layout(h, d->map_layout, d->map_layout_light);
   const bool facts[] = {plan->spheres,
                         plan->convex,
@@ -273,6 +277,7 @@ void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
   part[ABBE_PART_SHADOWS] = mix_places(part[ABBE_PART_GEOMETRY], scene, plan);
   light = mix_light_plan(mix_beams(part[ABBE_PART_SHADOWS], scene, plan), plan);
   MIX(light, part[ABBE_PART_SPECTRA]);
+  if (plan->desc.transport == ABBE_TRANSPORT_PINHOLE) MIX(light, part[ABBE_PART_SURFACES]);
   part[ABBE_PART_LIGHT] = light;
   part[ABBE_PART_EYE] = mix_eye(light, scene, plan);
   part[ABBE_PART_POWERS] = 3;

@@ -7,6 +7,7 @@
 #include "gl/caustics/caustics.h"
 #include "gl/eye/adaptive_pass.h"
 #include "gl/eye/picture.h"
+#include "gl/pinholes/pinhole_pages.h"
 #include "gl/published.h"
 #include "gl/renderer.h"
 #include "gl/renderer_inputs.h"
@@ -33,8 +34,9 @@ struct abbe_renderer {
   abbe_spectral_map map;
   abbe_caustics caustics;
   abbe_volume_light volume; /* in place of them, where caustics are looked up */
+  abbe_pinhole_pages pinholes;
   abbe_published published; /* in place of these and those below */
-  bool lit;           /* all of that is drawn: the maps hold the light as it is now */
+  bool lit;                 /* all of that is drawn: the maps hold the light as it is now */
 
   /* eye */
   abbe_camera_view camera;

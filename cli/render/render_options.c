@@ -23,6 +23,9 @@ enum {
   OPTION_LIGHT_POINTS,
   OPTION_MODEL,
   OPTION_FILL,
+  OPTION_PINHOLES,
+  OPTION_STRATEGY,
+  OPTION_FOOTPRINT,
   OPTION_DIRECTION,
   OPTION_HISTORY,
   OPTION_ESTIMATOR,
@@ -43,7 +46,7 @@ enum {
 static const struct argp_option options[] = {
     {"profile", OPTION_PROFILE, "NAME", 0,
      "default; published methods, and each with CIE weights in W: thesis, thesis-cie, shah2007, "
-     "shah2007-cie, wyman2006, wyman2006-cie; wyman2003, of volumes alone",
+     "shah2007-cie, wyman2006, wyman2006-cie; wyman2003, of volumes alone; wand2003",
      1},
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
     {"wavelengths", OPTION_WAVELENGTHS, "N", 0,
@@ -71,6 +74,15 @@ static const struct argp_option options[] = {
      "points, "
      "quads, triangles, gather-eye, gather-light (gather-light)",
      1},
+    {"pinholes", OPTION_PINHOLES, "N", 0,
+     "of transport pinhole, samples of surfaces at the most, 1 to 4096 (256)", 1},
+    {"strategy", OPTION_STRATEGY, "NAME", 0,
+     "of transport pinhole, how samples are spread: random, grid, quantized, neighbour (neighbour)",
+     1},
+    {"footprint", OPTION_FOOTPRINT, "NAME", 0,
+     "of transport pinhole, whether a sample shows as much of the surroundings as it reflects by "
+     "its curvature: on, off (on)",
+     1},
     {"direction", OPTION_DIRECTION, "NAME", 0,
      "of wyman2006, by which caustics are shaded: own, mean, direct (mean)", 1},
     {"history", OPTION_HISTORY, "N", 0,
@@ -94,7 +106,10 @@ static const struct argp_option options[] = {
     {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
     {"observer", OPTION_OBSERVER, "NAME", 0, ABBE_OBSERVER_HELP, 1},
     {"transport", OPTION_TRANSPORT, "NAME", 0,
-     "of caustics: photons, or volume, looked up in what abbe volume has made (photons)", 1},
+     "of caustics: photons; volume, looked up in what abbe volume has made; or pinhole, photons of "
+     "what stands out of surroundings and samples of mirrors and refractors for the rest (photons; "
+     "of wand2003 pinhole)",
+     1},
     {"volume", OPTION_VOLUME, "FILE.exr", ABBE_ARGUMENT_READS, "that they are looked up in", 1},
     {"lookup", OPTION_LOOKUP, "NAME", 0,
      "of light between the volume's nodes: nearest, blend, turn (blend; of a ball, and of "
@@ -112,16 +127,38 @@ static const struct argp_option options[] = {
 static const char *const profiles[] = {ABBE_PROFILES(ABBE_NAME_OF_2)};
 static const char *const models[] = {ABBE_MODELS(ABBE_NAME_OF_2)};
 static const char *const estimators[] = {ABBE_ESTIMATORS(ABBE_NAME_OF_2)};
+static const char *const strategies[] = {ABBE_SAMPLE_STRATEGIES(ABBE_NAME_OF_2)};
+static const char *const footprints[] = {ABBE_FOOTPRINTS(ABBE_NAME_OF_2)};
 static const char *const directions[] = {ABBE_DIRECTIONS(ABBE_NAME_OF_2)};
 static const char *const fills[] = {ABBE_FILLS(ABBE_NAME_OF_2)};
 static const char *const transports[] = {ABBE_TRANSPORTS(ABBE_NAME_OF_2)};
 static const char *const lookups[] = {ABBE_VOLUME_LOOKUPS(ABBE_NAME_OF_2)};
 static const char *const spaces[] = {ABBE_RGB_SPACES(ABBE_NAME_OF_3)};
 
+/* Of the transport by pinholes; false: the key is another's. */
+static bool take_pinholes(int key, const char *text, const char *p, abbe_render_desc *d) {
+  switch (key) {
+  case OPTION_PINHOLES:
+    d->pinholes = abbe_command_count(p, "--pinholes", text, 1, ABBE_SURFACE_MAX_SAMPLES);
+    return true;
+  case OPTION_STRATEGY:
+    d->strategy = (abbe_sample_strategy)abbe_command_choice(p, "--strategy", text, strategies,
+                                                            ABBE_SAMPLE_STRATEGY_COUNT);
+    return true;
+  case OPTION_FOOTPRINT:
+    d->footprint = (abbe_footprint)abbe_command_choice(p, "--footprint", text, footprints,
+                                                       ABBE_FOOTPRINT_COUNT);
+    return true;
+  default:
+    return false;
+  }
+}
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   abbe_render_options *o = state->input;
   abbe_render_desc *d = &o->desc;
   const char *p = o->program;
+  if (take_pinholes(key, text, p, d)) return 0;
   switch (key) {
   case OPTION_PROFILE:
     d->profile =

@@ -30,6 +30,7 @@ static void set_enables(const abbe_gl *gl) {
       GL_SAMPLE_SHADING,
       GL_SCISSOR_TEST,
       GL_STENCIL_TEST,
+      GL_TEXTURE_CUBE_MAP_SEAMLESS,
   };
   for (size_t i = 0; i < sizeof off / sizeof *off; i++) gl->Disable(off[i]);
   for (GLenum i = 0; i < 8; i++) gl->Disable(GL_CLIP_DISTANCE0 + i); /* 8: every GL has these */

@@ -23,5 +23,6 @@ void abbe_lighting_use(const abbe_lighting *lighting, GLuint program) {
   abbe_gpu_scene_set(lighting->scene, program);
   abbe_light_layers_set(lighting->layers, program);
   abbe_volume_light_set(lighting->volume, program);
+  abbe_pinhole_pages_set(lighting->pinholes, program);
   set_camera(lighting, program);
 }

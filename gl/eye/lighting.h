@@ -7,6 +7,7 @@
 #include "gl/caustics/spectral_map.h"
 #include "gl/light/light_layers.h"
 #include "gl/light/receiver_atlas.h"
+#include "gl/pinholes/pinhole_pages.h"
 #include "gl/scene/camera_view.h"
 #include "gl/volume/volume_light.h"
 
@@ -18,6 +19,7 @@ typedef struct abbe_lighting {
   const abbe_spectral_map *map;
   const abbe_camera_view *camera;
   const abbe_volume_light *volume;
+  const abbe_pinhole_pages *pinholes;
 } abbe_lighting;
 
 /* The program is in use, everything is bound, the camera is told. */

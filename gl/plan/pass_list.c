@@ -55,21 +55,25 @@ static void list_sizes(const abbe_scene *scene, abbe_plan *plan) {
 }
 
 static void list_environment(const abbe_scene *scene, abbe_plan *plan) {
+  const bool pinholes = plan->desc.transport == ABBE_TRANSPORT_PINHOLE;
   double kept = 0;
   for (size_t i = 0; i < scene->environment_lights; i++)
     kept += scene->light[scene->light_count - 1 - i].power;
   if (!plan->surrounded)
     abbe_plan_add(plan, ABBE_CHOICE_ENVIRONMENT, "none");
   else if (scene->environment_lights == 0)
-    abbe_plan_add(plan, ABBE_CHOICE_ENVIRONMENT,
-                  "the camera sees it whole; nothing in it stands out, so it lights receivers "
-                  "without shadows or caustics: where it is alike all around, clear objects and "
-                  "mirrors change nothing outside");
+    abbe_plan_add(plan, ABBE_CHOICE_ENVIRONMENT, "the camera sees it whole; %s",
+                  pinholes ? "pinholes show all of it to receivers"
+                           : "nothing in it stands out, so it lights receivers without shadows or "
+                             "caustics: where it is alike all around, clear objects and mirrors "
+                             "change nothing outside");
   else
     abbe_plan_add(plan, ABBE_CHOICE_ENVIRONMENT,
                   "the camera sees it whole; %zu directional lights, sharp, stand for the %.0f %% "
-                  "that stand out of it; the rest lights receivers without shadows or caustics",
-                  scene->environment_lights, 100 * kept / scene->environment->luminance);
+                  "that stand out of it; %s",
+                  scene->environment_lights, 100 * kept / scene->environment->luminance,
+                  pinholes ? "pinholes show the rest to receivers"
+                           : "the rest lights receivers without shadows or caustics");
 }
 
 /* What a view draws of refractors for their back; `unmet`: why it draws none. */
@@ -120,7 +124,7 @@ static void list_light(abbe_plan *plan) {
   abbe_plan_add(plan, ABBE_PASS_RECEIVER_DEPTH,
                 plan->receivers == ABBE_RECEIVER_DEPTH
                     ? "receivers are found by their depth from the light"
-                : abbe_profile_is_published(plan->desc.profile)
+                : abbe_profile_has_lamp(plan->desc.profile)
                     ? "it casts the shadows; receivers are hit exactly"
                     : "receivers are hit exactly");
   abbe_plan_add(plan, ABBE_PASS_LIGHT_FRONT, "%s",
@@ -135,6 +139,18 @@ static void list_light(abbe_plan *plan) {
                   apart ? "wavelengths land apart" : "the thesis fills whatever lands");
   else
     abbe_plan_add(plan, ABBE_PASS_GAP_FILL, apart ? "none, as asked" : "nothing lands apart");
+}
+
+static void list_pinholes(abbe_plan *plan) {
+  const abbe_render_desc *d = &plan->desc;
+  if (d->transport != ABBE_TRANSPORT_PINHOLE) return;
+  abbe_plan_add(plan, ABBE_PASS_PINHOLES,
+                "at most %zu samples of surfaces, '%s', footprints %s; %s", d->pinholes,
+                abbe_sample_strategy_name(d->strategy),
+                d->footprint == ABBE_FOOTPRINT_ON ? "by curvature" : "off",
+                abbe_profile_is_wand2003(d->profile)
+                    ? "each pixel sees each, whatever is between"
+                    : "each receiver's map sees each, and what lies behind it");
 }
 
 static void list_absorption(abbe_plan *plan) {
@@ -189,6 +205,7 @@ static void list_eye(abbe_plan *plan) {
 void abbe_pass_list_add(const abbe_scene *scene, abbe_plan *plan) {
   list_maps(scene, plan);
   list_light(plan);
+  list_pinholes(plan);
   list_absorption(plan);
   list_eye(plan);
   list_sizes(scene, plan);

@@ -55,6 +55,7 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   if (result == ABBE_OK) result = abbe_refractor_model_choose(scene, out, error);
   if (result == ABBE_OK) abbe_receiver_model_choose(scene, out);
   if (result == ABBE_OK) result = abbe_support_published(scene, out, error);
+  if (result == ABBE_OK) result = abbe_support_pinholes(scene, out, error);
   if (result == ABBE_OK) result = abbe_support_layout(scene, out, error);
   if (result == ABBE_OK) abbe_light_views_reach(scene, out);
   if (result == ABBE_OK) result = abbe_light_views_choose(scene, out, error);
@@ -91,13 +92,15 @@ abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *
   abbe_result result =
       abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &d, error);
   if (result != ABBE_OK) return result;
-  const size_t others = scene->environment != NULL ? d.environment_lights : 0;
+  /* wand2003 shows all of an environment through its pinholes. */
+  const bool cut = scene->environment != NULL && !abbe_profile_is_wand2003(d.profile);
+  const size_t others = cut ? d.environment_lights : 0;
   abbe_scene pointed;
   result =
       abbe_area_lights_add(scene, d.light_points, ABBE_SCENE_MAX_LIGHTS - others, &pointed, error);
   if (result != ABBE_OK) return result;
   const abbe_environment_lights_desc lights = {
-      .count = d.environment_lights, .min_nm = d.min_nm, .max_nm = d.max_nm, .observer = d.observer};
+      .count = others, .min_nm = d.min_nm, .max_nm = d.max_nm, .observer = d.observer};
   result = abbe_environment_lights_add(&pointed, &lights, out, error);
   free(pointed.light);
   return result;

@@ -5,12 +5,56 @@
 
 #include <math.h>
 
+/* Light from all around, off mirrors, once. */
+static abbe_result support_wand(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
+  if (scene->environment == NULL)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the wand2003 profile's light is an environment; this scene has none");
+  if (scene->light_count > 0)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the wand2003 profile knows no light but an environment; this scene has "
+                          "'%s': make it a sun or a spot of the environment",
+                          scene->light[0].name);
+  for (size_t i = 0; i < plan->refractor_count; i++)
+    if (!plan->mirror[i])
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "the wand2003 profile follows light off mirrors; '%s' is a refractor",
+                            scene->object[plan->refractor_object[i]].name);
+  if (plan->refractor_count == 0)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the wand2003 profile needs a mirror; this scene has none");
+  return ABBE_OK;
+}
+
+abbe_result abbe_support_pinholes(const abbe_scene *scene, const abbe_plan *plan,
+                                  abbe_error *error) {
+  ABBE_REQUIRE(scene && plan, error);
+  if (plan->desc.transport != ABBE_TRANSPORT_PINHOLE) return ABBE_OK;
+  if (abbe_profile_is_wand2003(plan->desc.profile)) return support_wand(scene, plan, error);
+  if (scene->environment == NULL)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the transport 'pinhole' carries an environment's light; this scene has "
+                          "none: take the transport 'photons'");
+  if (plan->refractor_count == 0 || !plan->multi_refractor_paths)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the transport 'pinhole' follows light through at least one mirror or "
+                          "refractor and at most 32, and not through the model 'layers'");
+  for (size_t i = 0; i < plan->receiver_count; i++)
+    if (plan->receiver_model[i] != ABBE_RECEIVER_EXACT)
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "the transport 'pinhole' lights rectangles and boxes; the receiver "
+                            "'%s' (line %zu) is a mesh: take the transport 'photons'",
+                            scene->object[plan->receiver_object[i]].name,
+                            scene->object[plan->receiver_object[i]].line);
+  return ABBE_OK;
+}
+
 abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *plan,
                                    abbe_error *error) {
   ABBE_REQUIRE(scene && plan, error);
   const char *profile = abbe_profile_name(plan->desc.profile);
   const bool thesis = abbe_profile_is_thesis(plan->desc.profile);
-  if (!abbe_profile_is_published(plan->desc.profile)) return ABBE_OK;
+  if (!abbe_profile_has_lamp(plan->desc.profile)) return ABBE_OK;
   if (scene->environment != NULL)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the %s profile knows no environment; this scene has one", profile);

@@ -16,8 +16,13 @@ extern "C" {
 /* ABBE_UNSUPPORTED for a mirror where the thesis's profiles or the model 'layers' is asked for. */
 abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 
+/* What the transport by pinholes follows, in wand2003 and in the default profile: an environment,
+ * mirrors or refractors, receivers that are rectangles. ABBE_UNSUPPORTED. */
+abbe_result abbe_support_pinholes(const abbe_scene *scene, const abbe_plan *plan,
+                                  abbe_error *error);
 /* ABBE_UNSUPPORTED for what a published method does not know, where it is asked for. */
-abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
+abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *plan,
+                                   abbe_error *error);
 
 /* ABBE_UNSUPPORTED for what a volume of caustics does not hold, where one is asked for: other
  * objects that bend light, another shape; but of printed ones also lights that are near, that meet a

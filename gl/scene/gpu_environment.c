@@ -6,10 +6,9 @@
 
 #include <stdlib.h>
 
-/* From the environment's RGB, which is relative to its illuminant. */
-static abbe_result find_colours(const abbe_illuminant *illuminant, abbe_rgb_space space,
-                                const abbe_render_desc *desc, double matrix[9],
-                                abbe_error *error) {
+abbe_result abbe_gpu_environment_colours(const abbe_illuminant *illuminant, abbe_rgb_space space,
+                                         const abbe_render_desc *desc, double matrix[9],
+                                         abbe_error *error) {
   abbe_upsampling up;
   abbe_result result = abbe_upsampling_make_by(desc->observer, illuminant, desc->min_nm,
                                                desc->max_nm, &up, error);
@@ -72,7 +71,7 @@ abbe_result abbe_gpu_environment_make(abbe_gpu *gpu, const abbe_scene *scene, ab
   const abbe_environment *e = scene->environment;
   if (e == NULL) return ABBE_OK;
   double matrix[9];
-  abbe_result result = find_colours(&e->illuminant, space, desc, matrix, error);
+  abbe_result result = abbe_gpu_environment_colours(&e->illuminant, space, desc, matrix, error);
   if (result == ABBE_OK) result = make_texture(gpu, &e->map, matrix, &out->texture, error);
   if (result == ABBE_OK && scene->soft_light != NULL)
     result = make_soft_light(gpu, scene->soft_light, matrix, &out->soft_light, error);

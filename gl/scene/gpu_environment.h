@@ -20,6 +20,11 @@ typedef struct abbe_gpu_environment {
 abbe_result abbe_gpu_environment_make(abbe_gpu *gpu, const abbe_scene *scene, abbe_rgb_space space,
                                       const abbe_render_desc *desc, abbe_gpu_environment *out,
                                       abbe_error *error);
+/* To `space` from the RGB of an environment, which is relative to its illuminant; row-major. Errors of
+ * abbe_upsampling_make_by. */
+abbe_result abbe_gpu_environment_colours(const abbe_illuminant *illuminant, abbe_rgb_space space,
+                                         const abbe_render_desc *desc, double matrix[9],
+                                         abbe_error *error);
 void abbe_gpu_environment_free(abbe_gpu *gpu, abbe_gpu_environment *environment);
 
 /* Into the program that is in use, where it asks for it. `unit`: W in one of the scene's lights. */

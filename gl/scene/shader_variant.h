@@ -24,6 +24,7 @@ typedef struct abbe_shader_variant {
   bool volume; /* caustics are looked up in the plan's, of that kind */
   abbe_volume_kind volume_kind;
   abbe_region_kind volume_region;
+  bool pinholes; /* receivers have pages of what these show */
   bool copies; /* a software rasteriser: tables are copied first (copies.glsl) */
   /* the picture */
   bool aovs;

@@ -147,19 +147,9 @@ mat3 reflection_of(int surface, vec3 share, int light) {
 vec3 reflect_caustic(int surface, vec3 share, int light, mat3 reflection, vec3 rgb) { return reflection * rgb; }
 #endif
 
-#ifdef ENVIRONMENT
-// rgb irradiance by normal, nodes as scenes/environment/irradiance_map.h has them.
-layout(std140, binding = BINDING_SOFT_LIGHT) uniform SoftLight { vec4 soft_light[SOFT_ROWS * SOFT_COLUMNS]; };
-
-vec3 soft_irradiance(vec3 n) {
-  float y = acos(clamp(n.z, -1.0, 1.0)) / PI * float(SOFT_ROWS - 1);
-  float x = fract(atan(n.y, n.x) / (2.0 * PI)) * float(SOFT_COLUMNS);
-  int row = min(int(y), SOFT_ROWS - 2), column = min(int(x), SOFT_COLUMNS - 1);
-  int at = row * SOFT_COLUMNS + column, next = row * SOFT_COLUMNS + (column + 1) % SOFT_COLUMNS;
-  vec2 part = vec2(x - float(column), y - float(row));
-  return environment_scale * mix(mix(soft_light[at], soft_light[next], part.x),
-             mix(soft_light[at + SOFT_COLUMNS], soft_light[next + SOFT_COLUMNS], part.x), part.y).rgb;
-}
+#include "soft_light.glsl"
+#ifdef PINHOLES
+#include "pinhole_lookup.glsl"
 #endif
 
 struct Shading {
@@ -186,6 +176,9 @@ Shading shade(vec3 p, vec3 n, int surface, vec2 uv, int side) {
   s.fill = reflection_of(surface, share, LIGHTS) * ambient / PI;
 #ifdef ENVIRONMENT
   s.fill += reflection_of(surface, share, LIGHTS + 1) * soft_irradiance(n) / PI;
+#endif
+#ifdef PINHOLES
+  s.caustic += reflection_of(surface, share, LIGHTS + 1) * pinhole_irradiance(p, n, surface) / PI;
 #endif
   return s;
 }

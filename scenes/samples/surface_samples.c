@@ -74,8 +74,31 @@ static void set_point(const abbe_mesh *const *mesh, size_t face, const double u[
   abbe_vector_normalise(out->normal);
 }
 
-static abbe_result draw_candidates(const abbe_mesh *const *mesh, size_t mesh_count, uint64_t seed,
-                                   abbe_surface_samples *s, abbe_error *error) {
+/* Which face candidate i lies on, and where on it, in [0, 1): by three random numbers; or evenly,
+ * by two of a recurrence of the powers of the root of x^3 = x + 1 [Roberts2018] from a place that
+ * the seed chooses: what the first leaves within its face is the place along it. */
+static size_t draw(const abbe_surface_sampling *sampling, const double *sum, size_t faces, size_t i,
+                   double u[2]) {
+  static const double step[2] = {0.75487766624669276, 0.56984029099805327};
+  const double area = sum[faces - 1];
+  if (!sampling->even) {
+    for (uint64_t k = 0; k < 2; k++) u[k] = random_of(sampling->seed, 3 * i + 1 + k);
+    return find_face(sum, faces, area * random_of(sampling->seed, 3 * i));
+  }
+  for (uint64_t k = 0; k < 2; k++) {
+    u[k] = random_of(sampling->seed, k) + (double)(i + 1) * step[k];
+    u[k] -= floor(u[k]);
+  }
+  const double at = area * u[0];
+  const size_t face = find_face(sum, faces, at);
+  const double before = face > 0 ? sum[face - 1] : 0, own = sum[face] - before;
+  u[0] = own > 0 ? fmin(fmax((at - before) / own, 0), 1) : 0;
+  return face;
+}
+
+static abbe_result draw_candidates(const abbe_mesh *const *mesh, size_t mesh_count,
+                                   const abbe_surface_sampling *sampling, abbe_surface_samples *s,
+                                   abbe_error *error) {
   size_t faces = 0;
   for (size_t m = 0; m < mesh_count; m++) faces += mesh[m]->face_count;
   double *sum = malloc((faces + 1) * sizeof *sum);
@@ -83,8 +106,9 @@ static abbe_result draw_candidates(const abbe_mesh *const *mesh, size_t mesh_cou
   s->area = sum_areas(mesh, mesh_count, sum);
   const bool any = s->area > 0 && isfinite(s->area);
   for (size_t i = 0; any && i < s->candidate_count; i++) {
-    const double u[2] = {random_of(seed, 3 * i + 1), random_of(seed, 3 * i + 2)};
-    set_point(mesh, find_face(sum, faces, s->area * random_of(seed, 3 * i)), u, &s->candidate[i]);
+    double u[2];
+    const size_t face = draw(sampling, sum, faces, i, u);
+    set_point(mesh, face, u, &s->candidate[i]);
   }
   free(sum);
   return any ? ABBE_OK
@@ -294,7 +318,7 @@ abbe_result abbe_surface_samples_make(const abbe_mesh *const *mesh, size_t mesh_
   abbe_result result =
       out->candidate == NULL || out->owner == NULL || out->sample == NULL || out->share == NULL
           ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu samples of surfaces", most)
-          : draw_candidates(mesh, mesh_count, sampling->seed, out, error);
+          : draw_candidates(mesh, mesh_count, sampling, out, error);
   if (result == ABBE_OK) result = keep(out, sampling, most, error);
   if (result == ABBE_OK) result = share_out(out, error);
   if (result != ABBE_OK) abbe_surface_samples_free(out);

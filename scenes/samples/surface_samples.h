@@ -1,11 +1,12 @@
 /* surface_samples.h: a few points that stand for surfaces, spread over them by area
  * [WandStrasser2003].
  *
- * Candidates are many points, uniform by area at random; of these a strategy keeps some. random
- * keeps the first ones. grid keeps one of each cube that holds any, so its density goes with the
- * cubes that a surface crosses: with the sum of the absolute components of its normal. quantized
- * keeps those and moves them to their cubes' middles. neighbour goes through the candidates in
- * their order and drops each that is nearer to a kept one than a radius. It knows no light.
+ * Candidates are many points, uniform by area, at random or evenly; of these a strategy keeps some.
+ * random keeps the first ones. grid keeps one of each cube that holds any, so its density goes with
+ * the cubes that a surface crosses: with the sum of the absolute components of its normal.
+ * quantized keeps those and moves them to their cubes' middles. neighbour goes through the
+ * candidates in their order and drops each that is nearer to a kept one than a radius. It knows no
+ * light.
  */
 #ifndef ABBE_SCENES_SAMPLES_SURFACE_SAMPLES_H
 #define ABBE_SCENES_SAMPLES_SURFACE_SAMPLES_H
@@ -58,6 +59,8 @@ typedef struct abbe_surface_sampling {
   uint64_t seed; /* of the candidates */
   bool sided;    /* points whose normals are more than 90 degrees apart are on different sides of a
                     sheet: no neighbour drops the other, no cube holds both */
+  bool even; /* candidates follow an additive recurrence, which fills the surfaces evenly: shares
+                are then closer to the area that is nearest */
 } abbe_surface_sampling;
 
 /* Of all faces of the meshes together; faces without area are never met. ABBE_INVALID_ARGUMENT for

@@ -10,7 +10,7 @@ void abbe_receiver_model_choose(const abbe_scene *scene, abbe_plan *plan) {
   /* The published methods look their receivers up; an exact estimator meets them as the default
    * profile does. */
   const bool looked_up =
-      abbe_profile_is_published(plan->desc.profile) && plan->desc.estimator != ABBE_ESTIMATOR_EXACT;
+      abbe_profile_has_lamp(plan->desc.profile) && plan->desc.estimator != ABBE_ESTIMATOR_EXACT;
   const abbe_object *general = NULL, *beyond = NULL;
   plan->receivers = looked_up ? ABBE_RECEIVER_DEPTH : ABBE_RECEIVER_EXACT;
   for (size_t i = 0; i < plan->receiver_count; i++) {

@@ -54,6 +54,8 @@ static const char *why_in_turn(const abbe_scene *scene, const abbe_plan *plan) {
   if (refractors == 0) return NULL;
   if (plan->desc.model == ABBE_MODEL_LAYERS || refractors > MAX_FOLLOWED) return NULL;
   if (plan->desc.model == ABBE_MODEL_BVH) return "as asked";
+  if (plan->desc.transport == ABBE_TRANSPORT_PINHOLE)
+    return "light of all around is followed from every receiver";
   if (refractors > 1) return "there is more than one refractor";
   if (scene->camera.inside && abbe_scene_around_eye(scene) != NULL)
     return "the eye is inside a refractor";

@@ -16,18 +16,19 @@ extern "C" {
  * plan p (gl/plan/facts/plan_facts.h). The published methods draw front and back in one pass, of
  * which their plans list both halves. */
 #define ABBE_PASSES(X)                                                                             \
-  X(RECEIVER_DEPTH, LIGHT, "light: receiver depth", is_published(p))                               \
+  X(RECEIVER_DEPTH, LIGHT, "light: receiver depth", has_lamp(p))                                   \
   X(LIGHT_FRONT, LIGHT, "light: refractor front", p->caustics)                                     \
   X(LIGHT_BACK, LIGHT, "light: refractor back", p->caustics && p->draw_back)                       \
-  X(LIGHT_FRONT_AND_BACK, LIGHT, "light: refractor layers", is_published(p) && p->caustics)        \
+  X(LIGHT_FRONT_AND_BACK, LIGHT, "light: refractor layers", has_lamp(p) && p->caustics)            \
   X(PHOTON_PLACEMENT, LIGHT, "light: photon placement", p->caustics && !is_gridded(p))             \
   X(PHOTONS, LIGHT, "light: photons", p->caustics)                                                 \
   X(SPECTRAL_MAP, LIGHT, "light: spectral map", p->caustics)                                       \
   X(GAP_FILL, LIGHT, "light: gap fill", p->fills)                                                  \
+  X(PINHOLES, LIGHT, "light: pinholes", has_pinholes(p))                                           \
   X(EYE_RECEIVERS, EYE, "eye: receivers", true)                                                    \
   X(EYE_FRONT, EYE, "eye: refractor front", p->camera_sees_refractor)                              \
   X(EYE_BACK, EYE, "eye: refractor back", p->camera_sees_refractor && p->draw_back)                \
-  X(EYE_FRONT_AND_BACK, EYE, "eye: refractor layers", is_published(p) && p->camera_sees_refractor) \
+  X(EYE_FRONT_AND_BACK, EYE, "eye: refractor layers", has_lamp(p) && p->camera_sees_refractor)     \
   X(EYE_ADAPTIVE, EYE, "eye: adaptive samples", p->desc.adaptive > 1)                              \
   X(EYE_REFRACTION, EYE, "eye: refraction", p->camera_sees_refractor)                              \
   X(EYE_PICTURE, EYE, "eye: picture", p->desc.supersample > 1 || p->desc.upsample > 1)

@@ -38,8 +38,12 @@ size_t abbe_plan_least_wavelengths(const abbe_plan *plan) {
   return apart && changes == plan->lengths && n > coarse ? coarse : n;
 }
 
-static bool is_published(const abbe_plan *p) {
-  return abbe_profile_is_published(p->desc.profile);
+static bool has_lamp(const abbe_plan *p) {
+  return abbe_profile_has_lamp(p->desc.profile);
+}
+
+static bool has_pinholes(const abbe_plan *p) {
+  return p->desc.transport == ABBE_TRANSPORT_PINHOLE;
 }
 
 /* Its photons are the pixels of what the light sees. */

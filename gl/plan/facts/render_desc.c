@@ -26,6 +26,14 @@ bool abbe_profile_is_wyman2003(abbe_profile profile) {
   return profile == ABBE_PROFILE_WYMAN2003;
 }
 
+bool abbe_profile_is_wand2003(abbe_profile profile) {
+  return profile == ABBE_PROFILE_WAND2003;
+}
+
+bool abbe_profile_has_lamp(abbe_profile profile) {
+  return abbe_profile_is_published(profile) && !abbe_profile_is_wand2003(profile);
+}
+
 bool abbe_profile_estimates(abbe_profile profile) {
   return abbe_profile_is_shah2007(profile) || abbe_profile_is_wyman2006(profile);
 }
@@ -39,14 +47,14 @@ bool abbe_profile_is_printed(abbe_profile profile) {
          profile == ABBE_PROFILE_WYMAN2006;
 }
 
-const char *abbe_transport_name(abbe_transport transport) {
-  static const char *const names[] = {ABBE_TRANSPORTS(ABBE_NAME_OF)};
-  return (int)transport >= 0 && transport < ABBE_TRANSPORT_COUNT ? names[transport] : "unknown";
-}
-
 const char *abbe_fill_name(abbe_fill fill) {
   static const char *const names[] = {ABBE_FILLS(ABBE_NAME_OF)};
   return (int)fill >= 0 && fill < ABBE_FILL_COUNT ? names[fill] : "unknown";
+}
+
+const char *abbe_transport_name(abbe_transport transport) {
+  static const char *const names[] = {ABBE_TRANSPORTS(ABBE_NAME_OF)};
+  return (int)transport >= 0 && transport < ABBE_TRANSPORT_COUNT ? names[transport] : "unknown";
 }
 
 const char *abbe_model_name(abbe_model model) {
@@ -76,6 +84,15 @@ static void fill_in_wyman(abbe_render_desc *d) {
         abbe_profile_is_printed(d->profile) ? ABBE_DIRECTION_MEAN : ABBE_DIRECTION_DIRECT;
 }
 
+static void fill_in_pinholes(abbe_render_desc *d) {
+  if (d->transport == ABBE_TRANSPORT_AUTO && abbe_profile_is_wand2003(d->profile))
+    d->transport = ABBE_TRANSPORT_PINHOLE;
+  if (d->transport != ABBE_TRANSPORT_PINHOLE) return;
+  if (d->pinholes == 0) d->pinholes = ABBE_PLAN_PINHOLES;
+  if (d->strategy == ABBE_SAMPLE_STRATEGY_AUTO) d->strategy = ABBE_SAMPLE_STRATEGY_NEIGHBOUR;
+  if (d->footprint == ABBE_FOOTPRINT_AUTO) d->footprint = ABBE_FOOTPRINT_ON;
+}
+
 static void fill_in_estimates(abbe_render_desc *d) {
   const bool printed = abbe_profile_is_printed(d->profile);
   if (printed && d->min_nm == 0) d->min_nm = shah_nm[0];
@@ -93,6 +110,7 @@ static void fill_in_defaults(size_t width, size_t height, abbe_render_desc *d) {
   const bool thesis = abbe_profile_is_thesis(d->profile);
   if (abbe_profile_is_wyman2006(d->profile)) fill_in_wyman(d);
   if (abbe_profile_estimates(d->profile)) fill_in_estimates(d);
+  fill_in_pinholes(d);
   if (d->width == 0) d->width = width;
   if (d->height == 0) d->height = height;
   if (d->min_nm == 0) d->min_nm = ABBE_WAVELENGTH_MIN_NM;
@@ -137,6 +155,7 @@ static abbe_result check_counts(const abbe_render_desc *d, abbe_error *error) {
       {"the number of iterations", d->iterations, 0, ABBE_ESTIMATOR_MAX_ITERATIONS},
       {"the number of interfaces", d->interfaces, 0, 2},
       {"the low pass of the map", d->low_pass, 0, ABBE_RENDER_MAX_LOW_PASS},
+      {"the number of pinholes", d->pinholes, 0, ABBE_SURFACE_MAX_SAMPLES},
       {"the number of a picture's frames", d->history, 0, ABBE_RENDER_MAX_HISTORY},
   };
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
@@ -193,6 +212,25 @@ static abbe_result check_wyman(const abbe_render_desc *d, abbe_error *error) {
                           "the profile 'wyman2006' has one index for all colours; it cannot take "
                           "%zu wavelengths, wyman2006-cie can",
                           d->wavelengths);
+  return ABBE_OK;
+}
+
+static abbe_result check_pinholes(const abbe_render_desc *d, abbe_error *error) {
+  const bool pinholes = d->transport == ABBE_TRANSPORT_PINHOLE;
+  const char *name = abbe_profile_name(d->profile);
+  if ((int)d->transport < 0 || d->transport >= ABBE_TRANSPORT_COUNT ||
+      (pinholes ? abbe_profile_has_lamp(d->profile) : abbe_profile_is_wand2003(d->profile)))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the transport '%s' does not go with the profile '%s'",
+                          abbe_transport_name(d->transport), name);
+  const bool asked = d->pinholes > 0 || d->strategy != ABBE_SAMPLE_STRATEGY_AUTO ||
+                     d->footprint != ABBE_FOOTPRINT_AUTO;
+  if ((int)d->strategy < 0 || d->strategy >= ABBE_SAMPLE_STRATEGY_COUNT || (int)d->footprint < 0 ||
+      d->footprint >= ABBE_FOOTPRINT_COUNT || (asked && !pinholes))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a number of pinholes, a strategy for them and footprints go with the "
+                          "transport 'pinhole', not with '%s'",
+                          abbe_transport_name(d->transport));
   return ABBE_OK;
 }
 
@@ -297,7 +335,8 @@ static abbe_result check_choices(const abbe_render_desc *d, abbe_error *error) {
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the fill '%s' does not go with the profile '%s'",
                           abbe_fill_name(d->fill), abbe_profile_name(d->profile));
-  const abbe_result result = check_published(d, error);
+  abbe_result result = check_published(d, error);
+  if (result == ABBE_OK) result = check_pinholes(d, error);
   return result == ABBE_OK ? check_volume(d, error) : result;
 }
 

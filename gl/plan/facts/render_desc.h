@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "colorimetry/observer.h"
 #include "colorimetry/rgb_space.h"
+#include "scenes/samples/surface_samples.h"
 #include "scenes/view/estimator.h"
 #include "scenes/view/map_layout.h"
 #include "scenes/volume/caustic_volume.h"
@@ -29,7 +30,7 @@ extern "C" {
   X(THESIS_CIE, "thesis-cie")                                                                      \
   X(SHAH2007, "shah2007")                                                                          \
   X(SHAH2007_CIE, "shah2007-cie") X(WYMAN2006, "wyman2006") X(WYMAN2006_CIE, "wyman2006-cie")      \
-      X(WYMAN2003, "wyman2003")
+      X(WYMAN2003, "wyman2003") X(WAND2003, "wand2003")
 typedef enum abbe_profile {
 #define ABBE_PROFILE_ENUM(code, name) ABBE_PROFILE_##code,
   ABBE_PROFILES(ABBE_PROFILE_ENUM)
@@ -64,15 +65,28 @@ typedef enum abbe_direction {
       ABBE_DIRECTION_COUNT
 } abbe_direction;
 
-/* How caustics come to receivers: by photons, or looked up in a volume that was computed beforehand
- * (scenes/volume/caustic_volume.h). AUTO: in a volume where one is given. */
-#define ABBE_TRANSPORTS(X) X(AUTO, "auto") X(PHOTONS, "photons") X(VOLUME, "volume")
+/* How caustics come to receivers: by photons; looked up in a volume that was computed beforehand
+ * (scenes/volume/caustic_volume.h); or those of what stands out of surroundings by photons, and
+ * those of the rest through samples of mirrors and refractors as pinholes. AUTO: in a volume where one
+ * is given, by pinholes in wand2003. */
+#define ABBE_TRANSPORTS(X)                                                                         \
+  X(AUTO, "auto") X(PHOTONS, "photons") X(VOLUME, "volume") X(PINHOLE, "pinhole")
 typedef enum abbe_transport {
 #define ABBE_TRANSPORT_ENUM(code, name) ABBE_TRANSPORT_##code,
   ABBE_TRANSPORTS(ABBE_TRANSPORT_ENUM)
 #undef ABBE_TRANSPORT_ENUM
       ABBE_TRANSPORT_COUNT
 } abbe_transport;
+
+/* Whether a pinhole shows the surroundings as wide as its sample reflects them, by curvature. AUTO
+ * is on. */
+#define ABBE_FOOTPRINTS(X) X(AUTO, "auto") X(OFF, "off") X(ON, "on")
+typedef enum abbe_footprint {
+#define ABBE_FOOTPRINT_ENUM(code, name) ABBE_FOOTPRINT_##code,
+  ABBE_FOOTPRINTS(ABBE_FOOTPRINT_ENUM)
+#undef ABBE_FOOTPRINT_ENUM
+      ABBE_FOOTPRINT_COUNT
+} abbe_footprint;
 
 /* How light is followed through refractors. AUTO: by the scene; the others ask for one model for
  * all refractors. */
@@ -109,6 +123,7 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 #define ABBE_PLAN_ADAPTIVE 4
 #define ABBE_PLAN_ENVIRONMENT_LIGHTS 4
 #define ABBE_PLAN_LIGHT_POINTS 8
+#define ABBE_PLAN_PINHOLES 256
 /* Exits that are followed at the most, and the share of its light below which a path ends, where
  * the request leaves them open. */
 #define ABBE_PLAN_EXITS 8
@@ -149,6 +164,11 @@ typedef struct abbe_render_desc {
   size_t iterations, interfaces;
   size_t low_pass;          /* of shah2007: standard deviation of the filter over its map, texels, 0
                                (none) to 32 */
+  /* Of the transport by pinholes alone: samples of all surfaces together, at most
+   * ABBE_SURFACE_MAX_SAMPLES, 0: 256; how they are chosen, AUTO: neighbour. */
+  size_t pinholes;
+  abbe_sample_strategy strategy;
+  abbe_footprint footprint;
   abbe_direction direction; /* of wyman2006; in its twin direct alone */
   /* Frames that a picture holds, 1 to 4, 0: 1; of the default profile and wyman2006's gathers. A
    * renderer that is changed or redrawn goes on with the frames before, so that a picture is no
@@ -202,10 +222,13 @@ bool abbe_profile_is_thesis(abbe_profile profile);
 bool abbe_profile_is_shah2007(abbe_profile profile);
 bool abbe_profile_is_wyman2006(abbe_profile profile);
 bool abbe_profile_is_wyman2003(abbe_profile profile);
-/* Whether rays are brought to receivers by an estimator: the last two. */
+bool abbe_profile_is_wand2003(abbe_profile profile);
+/* Whether it looks from its one light: all but wand2003, whose light is from all around. */
+bool abbe_profile_has_lamp(abbe_profile profile);
+/* Whether rays are brought to receivers by an estimator: shah2007 and wyman2006. */
 bool abbe_profile_estimates(abbe_profile profile);
-const char *abbe_transport_name(abbe_transport transport);
 const char *abbe_fill_name(abbe_fill fill);
+const char *abbe_transport_name(abbe_transport transport);
 const char *abbe_model_name(abbe_model model);
 
 #ifdef __cplusplus

@@ -34,6 +34,11 @@ static void what_is_left_open_gets_its_default(void **state) {
   assert_true(d.direction == ABBE_DIRECTION_MEAN && d.history == 1 && d.iterations == 1);
   d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_WYMAN2006_CIE, .fill = ABBE_FILL_NONE});
   assert_true(d.direction == ABBE_DIRECTION_DIRECT && d.fill == ABBE_FILL_POINTS);
+  d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_WAND2003});
+  assert_true(d.transport == ABBE_TRANSPORT_PINHOLE && d.pinholes == 256 && d.supersample == 1);
+  assert_true(d.strategy == ABBE_SAMPLE_STRATEGY_NEIGHBOUR && d.footprint == ABBE_FOOTPRINT_ON);
+  d = resolve(&(abbe_render_desc){0});
+  assert_true(d.transport == ABBE_TRANSPORT_PHOTONS && d.pinholes == 0);
   d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_THESIS_CIE});
   assert_true(d.photons == 512 && d.fill == ABBE_FILL_SMEAR && d.max_nm == 780);
 }
@@ -42,6 +47,7 @@ static void names_are_the_options(void **state) {
   (void)state;
   assert_string_equal(abbe_profile_name(ABBE_PROFILE_THESIS_CIE), "thesis-cie");
   assert_string_equal(abbe_fill_name(ABBE_FILL_SMEAR), "smear");
+  assert_string_equal(abbe_transport_name(ABBE_TRANSPORT_PINHOLE), "pinhole");
   assert_string_equal(abbe_model_name(ABBE_MODEL_CONVEX), "convex");
   assert_string_equal(abbe_profile_name((abbe_profile)-1), "unknown");
   assert_string_equal(abbe_fill_name(ABBE_FILL_COUNT), "unknown");
@@ -78,6 +84,14 @@ static void limits_are_kept(void **state) {
       {{.profile = ABBE_PROFILE_WYMAN2006, .fill = ABBE_FILL_SMEAR}, "'smear'"},
       {{.profile = ABBE_PROFILE_WYMAN2006_CIE, .direction = ABBE_DIRECTION_MEAN}, "in units"},
       {{.fill = ABBE_FILL_QUADS}, "'quads'"},
+      {{.pinholes = 5}, "go with the transport 'pinhole'"},
+      {{.footprint = ABBE_FOOTPRINT_OFF}, "not with 'photons'"},
+      {{.strategy = ABBE_SAMPLE_STRATEGY_GRID}, "a strategy for them"},
+      {{.transport = ABBE_TRANSPORT_PINHOLE, .pinholes = 4097}, "pinholes is 4097"},
+      {{.transport = ABBE_TRANSPORT_COUNT}, "'unknown'"},
+      {{.transport = ABBE_TRANSPORT_PINHOLE, .strategy = ABBE_SAMPLE_STRATEGY_COUNT}, "strategy"},
+      {{.profile = ABBE_PROFILE_THESIS, .transport = ABBE_TRANSPORT_PINHOLE}, "with the profile"},
+      {{.profile = ABBE_PROFILE_WAND2003, .transport = ABBE_TRANSPORT_PHOTONS}, "'wand2003'"},
       {{.profile = ABBE_PROFILE_THESIS, .interfaces = 1}, "not with 'thesis'"},
       {{.profile = ABBE_PROFILE_THESIS, .adaptive = 2}, "knows no adaptive samples"},
       {{.supersample = 2, .upsample = 2}, "a sample for 2 x 2 pixels and 2 samples"},

@@ -1,0 +1,31 @@
+/* pinhole_pages.h: maps on receivers of what mirrors and refractors make there of the surroundings'
+ * soft light: of what is left of them beside directional lights (environment_lights.h), whose light
+ * photons carry. They hold the difference to what nothing hides, so that both sum to all light.
+ * Internal to gl/.
+ */
+#ifndef ABBE_GL_PINHOLES_PINHOLE_PAGES_H
+#define ABBE_GL_PINHOLES_PINHOLE_PAGES_H
+
+#include "gl/pinholes/pinhole_samples.h"
+#include "gl/pinholes/pinhole_sky.h"
+#include "gl/scene/shader_variant.h"
+
+typedef struct abbe_pinhole_pages {
+  const abbe_gpu_scene *scene; /* NULL: there are none */
+  abbe_pinhole_samples samples;
+  abbe_pinhole_sky sky;
+  size_t side, count; /* texels of a page; pages: two a parallelogram */
+  GLuint fill;        /* program */
+  GLuint texture;     /* irradiance, W/m2, working space; an array */
+} abbe_pinhole_pages;
+
+/* Where the plan's transport is by pinholes. Errors of its parts; ABBE_GL, ABBE_NO_MEMORY. */
+abbe_result abbe_pinhole_pages_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
+                                    abbe_pinhole_pages *out, abbe_error *error);
+void abbe_pinhole_pages_free(abbe_pinhole_pages *pages);
+/* All that may be lit. ABBE_GL, ABBE_CANCELLED. */
+abbe_result abbe_pinhole_pages_run(abbe_pinhole_pages *pages, abbe_error *error);
+/* Into the program that is in use (pinhole_lookup.glsl). */
+void abbe_pinhole_pages_set(const abbe_pinhole_pages *pages, GLuint program);
+
+#endif

@@ -1,0 +1,160 @@
+#include "gl/pinholes/pinhole_samples.h"
+
+#include "gl/device/float4.h"
+#include "gl/scene/spectra/camera_bands.h"
+#include "scenes/geometry/vector.h"
+#include "scenes/samples/surface_curvature.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  UNIT = 4,
+  ROWS = ABBE_PINHOLE_ROWS,
+  PART_ROWS = ABBE_PINHOLE_PART_ROWS,
+  PARTS = ABBE_PINHOLE_PARTS
+};
+
+typedef float row[4];
+
+/* ---- what surfaces are like ---- */
+
+abbe_result abbe_pinhole_samples_colours(const abbe_gpu_scene *scene, double (**out)[3],
+                                         abbe_error *error) {
+  const size_t count = scene->plan->refractor_count, set = scene->band_count;
+  abbe_camera_band *band = calloc(count * ABBE_CAMERA_BAND_SETS * set + 1, sizeof *band);
+  double(*colour)[3] = calloc(count + 1, sizeof *colour), from_xyz[9], white[3];
+  abbe_result result = band != NULL && colour != NULL
+                           ? ABBE_OK
+                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
+  if (result == ABBE_OK)
+    result = abbe_camera_bands_fill(scene->local, scene->plan, &scene->tables, band, error);
+  abbe_rgb_space_from_xyz(abbe_gpu_scene_working_space(scene), from_xyz);
+  abbe_rgb_space_apply(from_xyz, scene->tables.camera.sum, white);
+  for (size_t i = 0; result == ABBE_OK && i < count; i++) {
+    /* the band of all wavelengths */
+    const abbe_camera_band *all = &band[i * ABBE_CAMERA_BAND_SETS * set + set - 1];
+    double xyz[3];
+    for (int k = 0; k < 3; k++)
+      xyz[k] = scene->tables.camera.sum[k] * (double)all->weight_n[k] * (double)all->attenuation[0];
+    abbe_rgb_space_apply(from_xyz, xyz, colour[i]);
+    for (int k = 0; k < 3; k++) colour[i][k] = scene->plan->mirror[i] ? colour[i][k] / white[k] : 1;
+  }
+  free(band);
+  if (result != ABBE_OK) free(colour);
+  *out = result == ABBE_OK ? colour : NULL;
+  return result;
+}
+
+/* Whether it is seen from both sides: open mirrors are. */
+static bool has_two_sides(const abbe_object *object) {
+  abbe_mesh_report report;
+  return abbe_mesh_check(&object->mesh, &report, NULL) == ABBE_OK && report.open_edges > 0;
+}
+
+/* From a ball's triangles onto the ball, which rays meet. */
+static void move_to_sphere(const abbe_gpu_scene *scene, abbe_surface_point *p) {
+  const size_t i = p->mesh;
+  const abbe_exact *e = &scene->local->object[scene->plan->refractor_object[i]].exact;
+  double from[3];
+  if (scene->plan->model[i] != ABBE_REFRACTOR_SPHERE) return;
+  abbe_vector_subtract(p->position, e->centre, from);
+  if (!abbe_vector_normalise(from)) return;
+  for (int k = 0; k < 3; k++) p->position[k] = e->centre[k] + e->radius * from[k];
+  memcpy(p->normal, from, sizeof from);
+}
+
+/* ---- rows ---- */
+
+static void store_sample(const abbe_surface_samples *s, const abbe_surface_curvature *c, size_t i,
+                         double area, bool two_sides, const double colour[3], row *out) {
+  const abbe_surface_point *p = &s->sample[i];
+  const double half = 0.5 * s->spacing;
+  abbe_float4_store(p->position, area, out[0]);
+  abbe_float4_store(p->normal, two_sides ? -half : half, out[1]);
+  abbe_float4_store(c->along[0], c->curvature[0], out[2]);
+  abbe_float4_store(colour, c->curvature[1], out[3]);
+}
+
+/* The first candidates of each sample, which are as even as all are. */
+static void store_parts(const abbe_surface_samples *s, size_t *taken, row *out) {
+  for (size_t i = 0; i < s->candidate_count; i++) {
+    const size_t of = s->owner[i], k = taken[of];
+    if (k == PARTS) continue;
+    taken[of]++;
+    row *part = out + PART_ROWS * (of * PARTS + k);
+    abbe_float4_store(s->candidate[i].position, 0, part[0]);
+    abbe_float4_store(s->candidate[i].normal, 0, part[1]);
+  }
+  for (size_t i = 0; i < s->count; i++)
+    for (size_t k = 0; k < taken[i]; k++)
+      out[PART_ROWS * (i * PARTS + k)][3] = (float)(s->share[i] / (double)taken[i]);
+}
+
+static abbe_result upload(const abbe_gpu_scene *scene, bool published,
+                          const abbe_surface_samples *s, abbe_pinhole_samples *out,
+                          abbe_error *error) {
+  const size_t parts = published ? 0 : s->count * PARTS, count = s->count * ROWS;
+  row *rows = calloc(count + parts * PART_ROWS + 1, sizeof *rows);
+  size_t *taken = calloc(s->count + 1, sizeof *taken);
+  abbe_surface_curvature *curvature = calloc(s->count + 1, sizeof *curvature);
+  double(*colour)[3] = NULL;
+  abbe_result result = rows != NULL && taken != NULL && curvature != NULL
+                           ? abbe_surface_curvature_fit(s, curvature, error)
+                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for pinholes");
+  if (result == ABBE_OK) result = abbe_pinhole_samples_colours(scene, &colour, error);
+  for (size_t i = 0; result == ABBE_OK && i < s->count; i++) {
+    const size_t mesh = s->sample[i].mesh;
+    const bool two = scene->plan->mirror[mesh] &&
+                     has_two_sides(&scene->local->object[scene->plan->refractor_object[mesh]]);
+    store_sample(s, &curvature[i], i, published ? s->area / (double)s->count : s->share[i], two,
+                 colour[mesh], rows + ROWS * i);
+  }
+  if (result == ABBE_OK && !published) store_parts(s, taken, rows + count);
+  if (result == ABBE_OK)
+    result = abbe_gpu_make_buffer(scene->gpu, (count + parts * PART_ROWS) * sizeof *rows, rows,
+                                  &out->rows, error);
+  free(rows);
+  free(taken);
+  free(curvature);
+  free(colour);
+  return result;
+}
+
+abbe_result abbe_pinhole_samples_make(const abbe_gpu_scene *scene, bool published,
+                                      abbe_pinhole_samples *out, abbe_error *error) {
+  const abbe_plan *plan = scene->plan;
+  const abbe_surface_sampling sampling = {.count = plan->desc.pinholes,
+                                          .strategy = plan->desc.strategy,
+                                          .sided = !published,
+                                          .even = !published};
+  const abbe_mesh **mesh = calloc(plan->refractor_count + 1, sizeof *mesh);
+  abbe_surface_samples s;
+  *out = (abbe_pinhole_samples){0};
+  if (mesh == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for pinholes");
+  for (size_t i = 0; i < plan->refractor_count; i++)
+    mesh[i] = &scene->local->object[plan->refractor_object[i]].mesh;
+  abbe_result result = abbe_surface_samples_make(mesh, plan->refractor_count, &sampling, &s, error);
+  free(mesh);
+  if (result != ABBE_OK) return result;
+  const bool moved = plan->desc.strategy == ABBE_SAMPLE_STRATEGY_QUANTIZED;
+  for (size_t i = 0; i < s.candidate_count; i++) move_to_sphere(scene, &s.candidate[i]);
+  for (size_t i = 0; i < s.count && !moved; i++) move_to_sphere(scene, &s.sample[i]);
+  out->count = s.count;
+  out->area = s.area;
+  out->spacing = s.spacing;
+  result = upload(scene, published, &s, out, error);
+  abbe_surface_samples_free(&s);
+  return result;
+}
+
+void abbe_pinhole_samples_free(abbe_gpu *gpu, abbe_pinhole_samples *samples) {
+  abbe_gpu_drop_buffers(gpu, 1, &samples->rows);
+  *samples = (abbe_pinhole_samples){0};
+}
+
+void abbe_pinhole_samples_bind(const abbe_gpu_scene *scene, const abbe_pinhole_samples *samples,
+                               GLuint program) {
+  abbe_gpu_bind_texels(scene->gpu, program, "pinholes", UNIT, GL_RGBA32F, samples->rows);
+}

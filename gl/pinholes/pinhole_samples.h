@@ -1,0 +1,37 @@
+/* pinhole_samples.h: samples of a scene's mirrors and refractors, as shaders read them
+ * (pinholes.glsl). Internal to gl/.
+ */
+#ifndef ABBE_GL_PINHOLES_PINHOLE_SAMPLES_H
+#define ABBE_GL_PINHOLES_PINHOLE_SAMPLES_H
+
+#include "gl/scene/gpu_scene.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Rows of four floats: of each sample, and of each of its parts, which come after all samples. */
+enum { ABBE_PINHOLE_ROWS = 4, ABBE_PINHOLE_PART_ROWS = 2, ABBE_PINHOLE_PARTS = 8 };
+
+typedef struct abbe_pinhole_samples {
+  GLuint rows;
+  size_t count;
+  double area, spacing; /* of all surfaces, m2; root of a sample's mean share, m */
+} abbe_pinhole_samples;
+
+/* As the plan's request says, of all mirrors and refractors together. As published: each stands for
+ * the same area, and has no parts. Else each stands for what is nearest to it, the two sides of a
+ * sheet apart, and has parts for who is near. Errors of abbe_surface_samples_make; ABBE_GL. */
+abbe_result abbe_pinhole_samples_make(const abbe_gpu_scene *scene, bool published,
+                                      abbe_pinhole_samples *out, abbe_error *error);
+void abbe_pinhole_samples_free(abbe_gpu *gpu, abbe_pinhole_samples *samples);
+
+/* What a mirror of the plan reflects of the environment's white at normal incidence, in the working
+ * space; 1 of a refractor. ABBE_NO_MEMORY, errors of abbe_camera_bands_fill. */
+abbe_result abbe_pinhole_samples_colours(const abbe_gpu_scene *scene, double (**out)[3],
+                                         abbe_error *error);
+
+/* Into the program that is in use: `pinholes`, at a unit below ABBE_GPU_TEXEL_UNITS. */
+void abbe_pinhole_samples_bind(const abbe_gpu_scene *scene, const abbe_pinhole_samples *samples,
+                               GLuint program);
+
+#endif

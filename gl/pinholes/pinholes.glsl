@@ -1,0 +1,55 @@
+// Samples of surfaces as pinholes through which receivers see what is around [WandStrasser2003]; rows as
+// gl/pinholes/pinhole_samples.h has them.
+uniform samplerBuffer pinholes;
+uniform samplerCube pinhole_sky;  // W/(m2 sr), by the surroundings' own directions
+uniform mat3 environment_from_world;
+uniform float sky_side;  // texels of a face
+
+const float SKY_TEXEL = 1.4472025;  // rad, of a face of one texel: the root of its solid angle
+
+struct Pinhole {
+  vec3 p, n;              // n towards who looks
+  float area, half_width;  // m2; half of the samples' spacing, m
+  vec3 u, v;               // unit tangents
+  vec2 turn;               // of the normal along them, 1/m
+  vec3 colour;
+};
+
+// As seen from a place: of a sheet the side that is seen.
+Pinhole pinhole_at(int i, vec3 from) {
+  vec4 place = texelFetch(pinholes, 4 * i), normal = texelFetch(pinholes, 4 * i + 1);
+  vec4 along = texelFetch(pinholes, 4 * i + 2), rest = texelFetch(pinholes, 4 * i + 3);
+  float side = normal.w < 0.0 && dot(normal.xyz, from - place.xyz) < 0.0 ? -1.0 : 1.0;
+  vec3 v = normalize(cross(normal.xyz, along.xyz));
+  return Pinhole(place.xyz, side * normal.xyz, place.w, abs(normal.w), along.xyz, v, side * vec2(along.w, rest.w),
+                 rest.rgb);
+}
+
+// Where light comes from that a mirror at p of a normal sends to a place.
+vec3 mirrored(vec3 from, vec3 p, vec3 n) { return reflect(normalize(p - from), normalize(n)); }
+
+// By how much that differs half a spacing away along u, and along v.
+void footprint(Pinhole s, vec3 from, vec3 r, out vec3 by_u, out vec3 by_v) {
+  vec3 u = s.half_width * s.u, v = s.half_width * s.v;
+  by_u = mirrored(from, s.p + u, s.n + s.turn.x * u) - r;
+  by_v = mirrored(from, s.p + v, s.n + s.turn.y * v) - r;
+}
+
+vec3 sky_at(vec3 d, float level) { return textureLod(pinhole_sky, environment_from_world * d, level).rgb; }
+
+// The mean over what is as wide as a and b around r: taps along the longer, in a level as wide as the shorter.
+vec3 sky_over(vec3 r, vec3 a, vec3 b) {
+  const float MOST_TAPS = 16.0;
+  bool first = dot(a, a) > dot(b, b);
+  vec3 longer = first ? a : b, shorter = first ? b : a;
+  float texel = SKY_TEXEL / sky_side, wide = length(longer);
+  float narrow = max(length(shorter), wide / MOST_TAPS);
+  float level = max(log2(max(narrow, 1e-9) / texel), 0.0);
+  float taps = clamp(ceil(wide / max(narrow, texel) - 1e-3), 1.0, MOST_TAPS), tap = 1.0 / taps, k = 0.5 * tap;
+  vec3 sum = vec3(0);
+  do {
+    sum += sky_at(r + longer * (k - 0.5), level);
+    k += tap;
+  } while (k < 1.0);
+  return sum * tap;
+}

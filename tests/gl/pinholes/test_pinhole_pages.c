@@ -1,0 +1,201 @@
+/* Pinholes for soft light: nothing changes where light is alike all around and nothing is absorbed;
+ * what a mirror absorbs and hides is what its shape tells; and what the pages hold agrees with
+ * them. */
+#include "tests/gl/frame.h"
+
+#include "scenes/geometry/vector.h"
+
+static const double PI = 3.14159265358979323846;
+
+#define DOWN                                                                                       \
+  "materials: glass.yaml\n"                                                                        \
+  "camera: {eye: [0, 0, 2], target: [0, 0, 0], up: [0, 1, 0], fov: 28.0724869}\n"
+#define SOFT "environment: {uniform: 0.5, size: 256}\n"
+#define WHITE_FLOOR                                                                                \
+  "objects:\n- {name: floor, shape: rectangle, width: 4, height: 4, reflectance: 1}\n"
+#define WALL(share)                                                                                \
+  "- {name: wall, shape: rectangle, width: 0.3, height: 0.5, mirror: " share                       \
+  ", transform: [{rotate: {axis: [0, 1, 0], angle: -90}}, {translate: [0.3, 0, 0.15]}]}\n"
+#define ROOF                                                                                       \
+  "- {name: roof, shape: rectangle, width: 0.5, height: 0.5, mirror: 0.9, transform: "             \
+  "[{translate: [0, 0, 0.3]}]}\n"
+#define MIRROR_BALL(share)                                                                         \
+  "- {name: mirror ball, shape: sphere, radius: 0.08, levels: 4, mirror: " share                   \
+  ", transform: [{translate: [-0.2, 0.1, 0.1]}]}\n"
+
+enum { SIDE = 48 };
+
+static void draw(const char *text, abbe_transport transport, size_t pinholes, abbe_image *out) {
+  abbe_scene scene;
+  abbe_render_desc desc = {.width = SIDE,
+                           .height = SIDE,
+                           .supersample = 1,
+                           .map_size = 512,
+                           .photons = 64,
+                           .wavelengths = 1,
+                           .transport = transport,
+                           .pinholes = pinholes,
+                           .aovs = true,
+                           .space = ABBE_RGB_SPACE_REC709};
+  load_text(text, &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  draw_frame(renderer);
+  read_picture(renderer, false, out);
+  assert_finite(out);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+static double at(const abbe_image *p, size_t x, size_t y) {
+  return PI * (double)p->data[(y * p->width + x) * p->channels + 1];
+}
+
+static void place_of(size_t x, size_t y, double p[3]) {
+  p[0] = ((double)x + 0.5) / SIDE - 0.5;
+  p[1] = 0.5 - ((double)y + 0.5) / SIDE;
+  p[2] = 0;
+}
+
+/* Clear glass and whole mirrors in a room of even light are not there, however few the pinholes;
+ * the floor is lit from above alone, so nothing that looks down to it may be. */
+static void test_furnace(void **state) {
+  (void)state;
+  abbe_image with, without;
+  static const char text[] = DOWN SOFT WHITE_FLOOR WALL("1");
+  draw(text, ABBE_TRANSPORT_PINHOLE, 50, &with);
+  draw(text, ABBE_TRANSPORT_PHOTONS, 0, &without);
+  for (size_t i = 0; i < SIDE * SIDE * 3; i++)
+    assert_near((double)with.data[i], (double)without.data[i], 2e-5);
+  abbe_image_free(&with);
+  abbe_image_free(&without);
+}
+
+static double polygon(const double (*corner)[3], const double at[3]) {
+  double sum = 0;
+  for (size_t i = 0; i < 4; i++) {
+    double a[3], b[3], across[3];
+    abbe_vector_subtract(corner[i], at, a);
+    abbe_vector_subtract(corner[(i + 1) % 4], at, b);
+    abbe_vector_normalise(a);
+    abbe_vector_normalise(b);
+    abbe_vector_cross(a, b, across);
+    const double angle = atan2(abbe_vector_length(across), abbe_vector_dot(a, b));
+    abbe_vector_normalise(across);
+    sum += 0.5 * angle * across[2];
+  }
+  return fabs(sum);
+}
+
+/* Largest difference to `share` of what the polygon sends, of even light, over all open light. */
+static double worst_of(const abbe_image *picture, const double (*corner)[3], double share,
+                       size_t columns) {
+  double worst = 0;
+  for (size_t y = 0; y < SIDE; y++)
+    for (size_t x = 0; x < columns; x++) {
+      double p[3];
+      place_of(x, y, p);
+      const double right = 0.5 * (PI - share * polygon(corner, p));
+      worst = fmax(worst, fabs(at(picture, x, y) / right - 1));
+    }
+  return worst;
+}
+
+/* A mirror on the floor takes what it absorbs. */
+static void test_a_mirror_absorbs(void **state) {
+  (void)state;
+  const double corner[4][3] = {
+      {0.3, -0.25, 0}, {0.3, 0.25, 0}, {0.3, 0.25, 0.3}, {0.3, -0.25, 0.3}};
+  abbe_image picture;
+  draw(DOWN SOFT WHITE_FLOOR WALL("0.25"), ABBE_TRANSPORT_PINHOLE, 1024, &picture);
+  const double worst = worst_of(&picture, corner, 0.75, 37); /* up to 2 cm before it */
+  print_message("off by %.4f at most\n", worst);
+  assert_true(worst < 0.02);
+  abbe_image_free(&picture);
+}
+
+/* One that lies above shows the floor, which is dark: it hides all that it covers. */
+static void test_a_roof_hides(void **state) {
+  (void)state;
+  const double corner[4][3] = {
+      {-0.25, -0.25, 0.3}, {0.25, -0.25, 0.3}, {0.25, 0.25, 0.3}, {-0.25, 0.25, 0.3}};
+  abbe_image picture;
+  draw(DOWN SOFT WHITE_FLOOR ROOF, ABBE_TRANSPORT_PINHOLE, 1024, &picture);
+  const double worst = worst_of(&picture, corner, 1, 8); /* beside the roof, as seen from above */
+  print_message("off by %.4f at most\n", worst);
+  assert_true(worst < 0.02);
+  abbe_image_free(&picture);
+}
+
+/* What one mirror hides of another counts once: behind a wall that hides it a ball changes nothing.
+ */
+static void test_hidden_ones(void **state) {
+  (void)state;
+  static const char behind[] = "- {name: far ball, shape: sphere, radius: 0.05, levels: 4, mirror: "
+                               "0, transform: [{translate: [0.45, 0, 0.06]}]}\n";
+  char text[2048];
+  abbe_image with, without;
+  snprintf(text, sizeof text, "%s%s", DOWN SOFT WHITE_FLOOR WALL("1"), behind);
+  draw(text, ABBE_TRANSPORT_PINHOLE, 200, &with);
+  draw(DOWN SOFT WHITE_FLOOR WALL("1"), ABBE_TRANSPORT_PHOTONS, 0, &without);
+  for (size_t y = 16; y < 32; y++)
+    for (size_t x = 0; x < 36; x++) assert_near(at(&with, x, y), at(&without, x, y), 2e-3);
+  abbe_image_free(&with);
+  abbe_image_free(&without);
+}
+
+/* Refractors too: a clear ball is not there in even light, but where it shows the dark floor. */
+static void test_glass_hides_little(void **state) {
+  (void)state;
+  abbe_image glass, black, without;
+  static const char ball[] = DOWN SOFT WHITE_FLOOR BALL("flat");
+  draw(ball, ABBE_TRANSPORT_PINHOLE, 300, &glass);
+  draw(DOWN SOFT WHITE_FLOOR MIRROR_BALL("0"), ABBE_TRANSPORT_PINHOLE, 300, &black);
+  draw(ball, ABBE_TRANSPORT_PHOTONS, 0, &without);
+  double of_glass = 0, of_black = 0, open = 0.5 * PI * SIDE * 10;
+  for (size_t y = 0; y < SIDE; y++)
+    for (size_t x = 0; x < 10; x++) {
+      of_glass += open / (SIDE * 10) - at(&glass, x, y);
+      of_black += open / (SIDE * 10) - at(&black, x, y);
+      assert_near(at(&without, x, y), 0.5 * PI, 1e-3);
+      assert_true(at(&glass, x, y) < 0.5 * PI + 1e-3);
+    }
+  print_message("glass hides %.5f, black %.5f\n", of_glass / open, of_black / open);
+  assert_true(of_black > 0 && of_glass < 0.5 * of_black);
+  abbe_image_free(&glass);
+  abbe_image_free(&black);
+  abbe_image_free(&without);
+}
+
+static void test_refusals(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *says;
+  } cases[] = {
+      {DOWN SOFT WHITE_FLOOR, "at least one mirror"},
+      {DOWN SUN WHITE_FLOOR WALL("0.9"), "this scene has none"},
+      {DOWN SOFT WHITE_FLOOR HILL WALL("0.9"), "'hill'"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    abbe_scene scene;
+    abbe_renderer *renderer = NULL;
+    abbe_error error = {0};
+    const abbe_render_desc desc = {.width = 16, .height = 16, .transport = ABBE_TRANSPORT_PINHOLE};
+    load_text(cases[i].text, &scene);
+    assert_int_equal(abbe_renderer_make(context, &scene, &desc, &renderer, &error),
+                     ABBE_UNSUPPORTED);
+    assert_contains(error.text, cases[i].says);
+    abbe_scene_free(&scene);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_furnace),
+      cmocka_unit_test(test_a_mirror_absorbs),
+      cmocka_unit_test(test_a_roof_hides),
+      cmocka_unit_test(test_hidden_ones),
+      cmocka_unit_test(test_glass_hides_little),
+      cmocka_unit_test(test_refusals),
+  };
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}

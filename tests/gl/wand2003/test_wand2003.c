@@ -1,0 +1,332 @@
+/* Caustics by projected surroundings: linear in light, the same turned, what one pinhole adds and
+ * by how much its softening lessens that, mirrors' closed forms, and when footprints matter. */
+#include "tests/gl/frame.h"
+
+#include "scenes/geometry/vector.h"
+#include "scenes/samples/surface_samples.h"
+
+static const double PI = 3.14159265358979323846;
+
+/* Straight down, half a metre each way at the floor. */
+#define DOWN                                                                                       \
+  "materials: glass.yaml\n"                                                                        \
+  "camera: {eye: [0, 0, 2], target: [0, 0, 0], up: [0, 1, 0], fov: 28.0724869}\n"
+#define WHITE_FLOOR                                                                                \
+  "objects:\n- {name: floor, shape: rectangle, width: 4, height: 4, reflectance: 1}\n"
+/* Upright, facing -x, half a metre wide, its foot on the floor. */
+#define WALL(share)                                                                                \
+  "- {name: wall, shape: rectangle, width: 0.3, height: 0.5, mirror: " share                       \
+  ", transform: [{rotate: {axis: [0, 1, 0], angle: -90}}, {translate: [0.3, 0, 0.15]}]}\n"
+#define MIRROR_BALL                                                                                \
+  "- {name: ball, shape: sphere, radius: 0.01, levels: 5, mirror: 0.8, transform: [{translate: "   \
+  "[0, 0, 0.3]}]}\n"
+
+enum { SIDE = 64 };
+
+static abbe_render_desc request(size_t pinholes) {
+  return (abbe_render_desc){.profile = ABBE_PROFILE_WAND2003,
+                            .width = SIDE,
+                            .height = SIDE,
+                            .pinholes = pinholes,
+                            .space = ABBE_RGB_SPACE_REC709};
+}
+
+static void draw(const char *text, const abbe_render_desc *desc, abbe_image *out) {
+  abbe_scene scene;
+  load_text(text, &scene);
+  abbe_renderer *renderer = make_renderer(&scene, desc);
+  draw_frame(renderer);
+  read_picture(renderer, false, out);
+  assert_finite(out);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+/* Irradiance on the white floor at a pixel, of green. */
+static double at(const abbe_image *p, size_t x, size_t y) {
+  return PI * (double)p->data[(y * p->width + x) * p->channels + 1];
+}
+
+/* The pixel's place on the floor; rows go down. */
+static void place_of(size_t x, size_t y, double p[3]) {
+  p[0] = ((double)x + 0.5) / SIDE - 0.5;
+  p[1] = 0.5 - ((double)y + 0.5) / SIDE;
+  p[2] = 0;
+}
+
+#define SOFT "environment: {uniform: 0.5, size: 256}\n"
+
+/* What one pinhole adds is A L cos cos / (d2 + eps), eps its disk's diameter squared: of light
+ * without it, less by eps / (d2 + eps). */
+static void test_one_pinhole(void **state) {
+  (void)state;
+  static const char text[] = DOWN SOFT WHITE_FLOOR WALL("0.8");
+  abbe_scene scene;
+  abbe_image picture, base;
+  abbe_render_desc desc = request(1);
+  desc.strategy = ABBE_SAMPLE_STRATEGY_RANDOM;
+  load_text(text, &scene);
+  draw(text, &desc, &picture);
+  draw(DOWN SOFT WHITE_FLOOR WALL("0"), &desc, &base);
+  assert_near(at(&base, 3, 3), 0.5 * PI, 1e-3);
+  const abbe_mesh *mesh = &scene.object[1].mesh;
+  abbe_surface_samples s;
+  const abbe_surface_sampling sampling = {.count = 1, .strategy = ABBE_SAMPLE_STRATEGY_RANDOM};
+  assert_int_equal(abbe_surface_samples_make(&mesh, 1, &sampling, &s, NULL), ABBE_OK);
+  const double eps = 4 * s.area / PI;
+  double most = 0;
+  for (size_t y = 0; y < SIDE; y += 3)
+    for (size_t x = 0; x < SIDE; x += 3) {
+      double p[3], d[3];
+      place_of(x, y, p);
+      if (p[0] > 0.28) continue; /* behind it */
+      abbe_vector_subtract(s.sample[0].position, p, d);
+      const double d2 = abbe_vector_dot(d, d);
+      const double there = fabs(d[0]) / sqrt(d2), here = d[2] / sqrt(d2);
+      const double right = 0.8 * 0.5 * s.area * there * here / (d2 + eps);
+      most = fmax(most, right);
+      assert_near(at(&picture, x, y) - at(&base, x, y), right, 2e-3 * right + 2e-6);
+    }
+  assert_true(most > 0.01);
+  abbe_image_free(&base);
+  abbe_image_free(&picture);
+  abbe_surface_samples_free(&s);
+  abbe_scene_free(&scene);
+}
+
+/* Lambert's: half the sum over edges of the angle that each fills, times its plane's normal. */
+static double polygon(const double (*corner)[3], const double at[3]) {
+  double sum = 0;
+  for (size_t i = 0; i < 4; i++) {
+    double a[3], b[3], across[3];
+    abbe_vector_subtract(corner[i], at, a);
+    abbe_vector_subtract(corner[(i + 1) % 4], at, b);
+    abbe_vector_normalise(a);
+    abbe_vector_normalise(b);
+    abbe_vector_cross(a, b, across);
+    const double angle = atan2(abbe_vector_length(across), abbe_vector_dot(a, b));
+    abbe_vector_normalise(across);
+    sum += 0.5 * angle * across[2];
+  }
+  return fabs(sum);
+}
+
+/* A mirror under light that is alike all around is a lamp of its shape. */
+static void test_a_mirror_is_a_lamp_of_its_shape(void **state) {
+  (void)state;
+  const double corner[4][3] = {
+      {0.3, -0.25, 0}, {0.3, 0.25, 0}, {0.3, 0.25, 0.3}, {0.3, -0.25, 0.3}};
+  abbe_image picture;
+  const abbe_render_desc desc = request(2048);
+  draw(DOWN SOFT WHITE_FLOOR WALL("0.8"), &desc, &picture);
+  double worst = 0;
+  for (size_t y = 0; y < SIDE; y += 3)
+    for (size_t x = 0; x < 44; x += 3) { /* 10 cm away and farther */
+      double p[3];
+      place_of(x, y, p);
+      const double right = 0.8 * 0.5 * polygon(corner, p);
+      worst = fmax(worst, fabs(at(&picture, x, y) - 0.5 * PI - right) / right);
+    }
+  print_message("off by %.4f at most\n", worst);
+  assert_true(worst < 0.04);
+  abbe_image_free(&picture);
+}
+
+/* Whatever is around, a ball sends the same to all sides far away: r2 / 4 of the integral of
+ * radiance. */
+static void test_a_ball_sends_light_to_all_sides(void **state) {
+  (void)state;
+  static const char sky[] =
+      "environment: {size: 256, spots: [{elevation: 50, azimuth: 30, radiance: 8, sigma: 12}, "
+      "{elevation: -30, azimuth: 200, radiance: 4, sigma: 20}], uniform: 0.1}\n";
+  char text[2048], bare[2048];
+  abbe_image picture, without;
+  const abbe_render_desc desc = request(2048);
+  abbe_scene scene;
+  snprintf(text, sizeof text, DOWN "%s" WHITE_FLOOR MIRROR_BALL, sky);
+  /* a mirror that adds nothing */
+  snprintf(bare, sizeof bare, DOWN "%s" WHITE_FLOOR WALL("0"), sky);
+  load_text(text, &scene);
+  const double all = 4 * PI * scene.environment->mean[1];
+  draw(text, &desc, &picture);
+  draw(bare, &desc, &without);
+  for (size_t y = 4; y < SIDE; y += 8)
+    for (size_t x = 2; x < 24; x += 3) {
+      double p[3];
+      place_of(x, y, p);
+      const double d2 = p[0] * p[0] + p[1] * p[1] + 0.09;
+      const double right = 0.8 * 1e-4 / 4 * all / d2 * 0.3 / sqrt(d2);
+      assert_near(at(&picture, x, y) - at(&without, x, y), right, 0.06 * right + 2e-6);
+    }
+  abbe_image_free(&picture);
+  abbe_image_free(&without);
+  abbe_scene_free(&scene);
+}
+
+#define SPOT(sigma, radiance)                                                                      \
+  "environment: {size: 512, uniform: 0.2, spots: [{elevation: 55, azimuth: 160, "                  \
+  "radiance: " radiance ", sigma: " sigma "}]}\n"
+#define PIPE                                                                                       \
+  "- {name: pipe, shape: lathe, around: 256, profile: [[0.3, 0], [0.3, 0.2]], mirror: 0.9}\n"
+
+static void test_linear(void **state) {
+  (void)state;
+  abbe_image one, two;
+  const abbe_render_desc desc = request(200);
+  draw(DOWN SPOT("12", "5") WHITE_FLOOR PIPE, &desc, &one);
+  draw(DOWN "environment: {size: 512, scale: 3, uniform: 0.2, spots: [{elevation: 55, azimuth: "
+            "160, radiance: 5, sigma: 12}]}\n" WHITE_FLOOR PIPE,
+       &desc, &two);
+  for (size_t i = 0; i < SIDE * SIDE * 3; i++)
+    assert_near((double)two.data[i], 3 * (double)one.data[i], 2e-6 + 1e-5 * (double)two.data[i]);
+  abbe_image_free(&one);
+  abbe_image_free(&two);
+}
+
+/* Surroundings, mirror and eye by 90 degrees about z: the pixels of a quarter turn are as before,
+ * but for how triangles and texels lie. */
+static void test_turned_together(void **state) {
+  (void)state;
+  static const char mirror[] = "- {name: mirror, shape: rectangle, width: 0.3, height: 0.2, "
+                               "mirror: 0.9, transform: [{rotate: {axis: [0, 1, 0], angle: -60}}, "
+                               "{translate: [0.3, 0.1, 0.3]}%s]}\n";
+  char text[2][2048], object[512];
+  abbe_image picture[2];
+  const abbe_render_desc desc = request(300);
+  for (int k = 0; k < 2; k++) {
+    snprintf(object, sizeof object, mirror,
+             k == 0 ? "" : ", {rotate: {axis: [0, 0, 1], angle: 90}}");
+    snprintf(text[k], sizeof text[k],
+             "materials: glass.yaml\n"
+             "camera: {eye: [0, 0, 2], target: [0, 0, 0], up: [%d, %d, 0], fov: 28.0724869}\n"
+             "environment: {size: 512, rotate: %d, uniform: 0.2, spots: [{elevation: 40, azimuth: "
+             "120, radiance: 5, sigma: 15}]}\n" WHITE_FLOOR "%s",
+             k == 0 ? 0 : -1, k == 0 ? 1 : 0, k == 0 ? 0 : 90, object);
+    draw(text[k], &desc, &picture[k]);
+  }
+  for (size_t i = 1; i < SIDE * SIDE * 3; i += 3) {
+    const double a = (double)picture[0].data[i], b = (double)picture[1].data[i];
+    assert_near(a, b, 0.01 * a);
+  }
+  abbe_image_free(&picture[0]);
+  abbe_image_free(&picture[1]);
+}
+
+/* Root mean square of the difference of footprints on and off, over the mean of what mirrors add.
+ */
+static double footprint_matters(const char *text, const char *bare) {
+  abbe_image on, off, base;
+  abbe_render_desc desc = request(400);
+  draw(text, &desc, &on);
+  draw(bare, &desc, &base);
+  desc.footprint = ABBE_FOOTPRINT_OFF;
+  draw(text, &desc, &off);
+  double square = 0, sum = 0;
+  for (size_t i = 1; i < SIDE * SIDE * 3; i += 3) {
+    square += pow((double)(on.data[i] - off.data[i]), 2);
+    sum += (double)(on.data[i] - base.data[i]);
+  }
+  abbe_image_free(&on);
+  abbe_image_free(&off);
+  abbe_image_free(&base);
+  return sqrt(square * SIDE * SIDE) / sum;
+}
+
+/* Light that is wider than footprints is looked up alike; light as narrow as theirs is not. */
+static void test_footprints(void **state) {
+  (void)state;
+  const double wide = footprint_matters(DOWN SPOT("35", "1") WHITE_FLOOR PIPE,
+                                        DOWN SPOT("35", "1") WHITE_FLOOR WALL("0"));
+  const double narrow = footprint_matters(DOWN SPOT("1.5", "400") WHITE_FLOOR PIPE,
+                                          DOWN SPOT("1.5", "400") WHITE_FLOOR WALL("0"));
+  print_message("footprints change %.4f of wide light, %.4f of narrow\n", wide, narrow);
+  assert_true(wide < 0.02);
+  assert_true(narrow > 0.2);
+}
+
+/* What an upright mirror wall of a pipe sends of a beam of 1 W/m2 along its axis onto the floor:
+ * light that meets it at azimuth phi and height z lands z / tan e on, mirrored about the wall's
+ * normal. Means over the pixels of four rows about the middle, by a quadrature. */
+static void send_off_pipe(double radius, double height, double e, double share, double out[SIDE]) {
+  enum { AROUND = 4000, UP = 2000 };
+  memset(out, 0, SIDE * sizeof *out);
+  for (int i = 0; i < AROUND; i++)
+    for (int k = 0; k < UP; k++) {
+      const double phi = PI * ((i + 0.5) / AROUND - 0.5), z = height * (k + 0.5) / UP;
+      const double s = z / tan(e),
+                   flux = share * cos(phi) * cos(e) * PI * radius * height / ((double)AROUND * UP);
+      const double x = radius * cos(phi) - s * cos(2 * phi),
+                   y = radius * sin(phi) - s * sin(2 * phi);
+      const int pixel = (int)floor((x + 0.5) * SIDE);
+      if (fabs(y) < 2.0 / SIDE && pixel >= 0 && pixel < SIDE)
+        out[pixel] += flux / (4.0 / SIDE / SIDE);
+    }
+}
+
+/* A pipe's wall under a small sun draws a nephroid, whose cusp is at half the radius. */
+static void test_a_pipe_draws_a_nephroid(void **state) {
+  (void)state;
+  static const char sun[] =
+      "environment: {size: 1024, sun: {elevation: 35, azimuth: 180, irradiance: 1, diameter: 6}}\n";
+  char text[2048], bare[2048];
+  abbe_image picture, base;
+  abbe_render_desc desc = request(4096);
+  snprintf(text, sizeof text, DOWN "%s" WHITE_FLOOR PIPE, sun);
+  snprintf(bare, sizeof bare, DOWN "%s" WHITE_FLOOR WALL("0"), sun);
+  draw(text, &desc, &picture);
+  draw(bare, &desc, &base);
+  const double radius = 0.3;
+  double right[SIDE], worst = 0, most = 0, p[3];
+  send_off_pipe(radius, 0.2, 35 * PI / 180, 0.9, right);
+  for (size_t x = 0; x < SIDE; x++) {
+    double caustic = 0;
+    for (size_t y = SIDE / 2 - 2; y < SIDE / 2 + 2; y++)
+      caustic += (at(&picture, x, y) - at(&base, x, y)) / 4;
+    place_of(x, SIDE / 2, p);
+    if (p[0] < 0.1 * radius || p[0] > 0.68 * radius) continue; /* nearer softening counts */
+    print_message("%.2f R: %.3f of %.3f\n", p[0] / radius, caustic, right[x]);
+    worst = fmax(worst, fabs(caustic / right[x] - 1));
+    most = fmax(most, caustic);
+  }
+  assert_true(most > 4);
+  assert_true(worst < 0.08);
+  abbe_image_free(&picture);
+  abbe_image_free(&base);
+}
+
+static void test_refusals(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *says;
+  } cases[] = {
+      {DOWN SOFT WHITE_FLOOR, "needs a mirror"},
+      {DOWN SUN WHITE_FLOOR WALL("0.9"), "this scene has none"},
+      {DOWN SOFT SUN WHITE_FLOOR WALL("0.9"), "'sun'"},
+      {DOWN SOFT WHITE_FLOOR WALL("0.9") BALL("flat"), "'ball' is a refractor"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    abbe_scene scene;
+    abbe_renderer *renderer = NULL;
+    abbe_error error = {0};
+    const abbe_render_desc desc = request(10);
+    load_text(cases[i].text, &scene);
+    assert_int_equal(abbe_renderer_make(context, &scene, &desc, &renderer, &error),
+                     ABBE_UNSUPPORTED);
+    assert_contains(error.text, cases[i].says);
+    abbe_scene_free(&scene);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_one_pinhole),
+      cmocka_unit_test(test_a_mirror_is_a_lamp_of_its_shape),
+      cmocka_unit_test(test_a_ball_sends_light_to_all_sides),
+      cmocka_unit_test(test_linear),
+      cmocka_unit_test(test_turned_together),
+      cmocka_unit_test(test_footprints),
+      cmocka_unit_test(test_a_pipe_draws_a_nephroid),
+      cmocka_unit_test(test_refusals),
+  };
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}
