@@ -107,17 +107,14 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case KEY_LIST:
     r->list = true;
     return 0;
-  case ARGP_KEY_ARG:
-    if (r->in != NULL) argp_error(state, "'%s' is one argument too many", arg);
-    r->in = arg;
-    return 0;
   case ARGP_KEY_END:
-    if (!r->list && r->in == NULL) argp_error(state, "which file?");
-    if (!r->list && r->out == NULL) argp_error(state, "-o names the PNG to write");
-    if (!r->list) abbe_screen_options_end(&r->screen, r->out, state);
+    if (r->list) return 0;
+    abbe_arguments_one_file(key, arg, &r->in, state);
+    if (r->out == NULL) argp_error(state, "-o names the PNG to write");
+    abbe_screen_options_end(&r->screen, r->out, state);
     return 0;
   default:
-    return ARGP_ERR_UNKNOWN;
+    return abbe_arguments_one_file(key, arg, &r->in, state);
   }
 }
 

@@ -154,15 +154,8 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case KEY_JSON:
     r->json = true;
     return 0;
-  case ARGP_KEY_ARG:
-    if (r->path != NULL) argp_error(state, "'%s' is one argument too many", arg);
-    r->path = arg;
-    return 0;
-  case ARGP_KEY_END:
-    if (r->path == NULL) argp_error(state, "which file?");
-    return 0;
   default:
-    return ARGP_ERR_UNKNOWN;
+    return abbe_arguments_one_file(key, arg, &r->path, state);
   }
 }
 

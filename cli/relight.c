@@ -75,18 +75,14 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case KEY_RELATIVE:
     r->desc.relative = true;
     return 0;
-  case ARGP_KEY_ARG:
-    if (r->in != NULL) argp_error(state, "'%s' is one argument too many", text);
-    r->in = text;
-    return 0;
   case ARGP_KEY_END:
-    if (r->in == NULL) argp_error(state, "which file?");
+    abbe_arguments_one_file(key, text, &r->in, state);
     if (r->exr == NULL && r->png == NULL)
       argp_error(state, "where to? Give -o FILE.exr, --png FILE.png or both");
     abbe_screen_options_end(&r->screen, r->png, state);
     return 0;
   default:
-    return ARGP_ERR_UNKNOWN;
+    return abbe_arguments_one_file(key, text, &r->in, state);
   }
 }
 

@@ -92,6 +92,11 @@ add_test(NAME materials_page
           docs/materials.md)
 abbe_label(program NAMES materials_page)
 
+add_test(NAME colour_check_page
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
+          docs/colour-check.md)
+abbe_label(program NAMES colour_check_page)
+
 add_test(NAME export_page
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
           docs/export.md)

@@ -206,3 +206,12 @@ void abbe_arguments_parse(const struct argp *argp, unsigned flags, int argc, cha
   }
   if (argp_parse(argp, argc, argv, 0, NULL, input) != 0) no_memory(argv[0]);
 }
+
+error_t abbe_arguments_one_file(int key, char *text, const char **path, struct argp_state *state) {
+  if (key != ARGP_KEY_ARG && key != ARGP_KEY_END) return ARGP_ERR_UNKNOWN;
+  if (key == ARGP_KEY_ARG && *path != NULL)
+    argp_error(state, "'%s' is one argument too many", text);
+  if (key == ARGP_KEY_ARG) *path = text;
+  if (*path == NULL) argp_error(state, "which file?");
+  return 0;
+}

@@ -29,4 +29,8 @@ void abbe_arguments_parse(const struct argp *argp, unsigned flags, int argc, cha
  * likewise. A path that is NULL or empty is none. */
 void abbe_arguments_add(const char *program, unsigned flags, const char *what, const char *path);
 
+/* For the parser of a command about one file, what is no option: takes ARGP_KEY_ARG, and
+ * ARGP_KEY_END, at which there must be one; ARGP_ERR_UNKNOWN for other keys. */
+error_t abbe_arguments_one_file(int key, char *text, const char **path, struct argp_state *state);
+
 #endif
