@@ -429,8 +429,7 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
   feed(app, input, now_s);
   look_at_files(app, now_s);
   if (abbe_view_worker_take(app->worker, &app->taken)) {
-    if (app->cancelled_s >= 0)
-      app->cancel_ms = fmax(app->cancel_ms, 1e3 * (abbe_clock_seconds() - app->cancelled_s));
+    if (app->cancelled_s >= 0) app->cancel_ms = 1e3 * (abbe_clock_seconds() - app->cancelled_s);
     app->cancelled_s = -1;
     if (app->taken.turned)
       abbe_view_turn_take(app, &app->taken, now_s);

@@ -50,8 +50,8 @@ typedef struct abbe_view_session {
   double seen_s, frames_ms[32]; /* times between pictures while something moves */
   size_t frame_count;
   double event_s, latency_ms;    /* of the oldest change that is not shown; of the last picture */
-  double cancelled_s, cancel_ms; /* when a job was told to stop, below 0: none was; the longest that
-                                    one took to do so */
+  double cancelled_s, cancel_ms; /* when a job was told to stop, below 0: none was; how long the
+                                    last one took to do so */
   size_t turn_frame;             /* of the turntable, from 1; 0: it stands */
   uint64_t turn_serial;          /* what it turns */
   bool turned;                   /* the last one is whole */

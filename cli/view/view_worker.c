@@ -264,7 +264,7 @@ static abbe_result draw(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
 /* The mean of the picture that stands and of others that it could have been. */
 static abbe_result draw_mean(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out,
                              abbe_error *error) {
-  const abbe_error_bars_desc desc = {.of_mean = true, .progress = goes_on, .user = w};
+  const abbe_error_bars_desc desc = {.of_mean = true, .aovs = true, .progress = goes_on, .user = w};
   abbe_view_request before = *q;
   before.job.stage = ABBE_VIEW_ACCURATE;
   const abbe_result result = w->renderer != NULL ? ABBE_OK : draw(w, &before, out, error);

@@ -301,7 +301,7 @@ static abbe_result summarise_all(const work *w, abbe_error_bars *bars, abbe_erro
 static abbe_result begin(work *w, abbe_renderer *renderer, size_t variants, abbe_error *error) {
   const abbe_plan *plan = abbe_renderer_plan(renderer);
   w->request = plan->desc;
-  w->request.aovs = false;
+  w->request.aovs = w->desc->aovs && plan->desc.aovs;
   w->frames = variants + (plan->refractor_count > 0 ? 1 : 0);
   if (w->request.map_layout == NULL) w->request.map_layout_light = 0;
   /* No layout serves all faces of a cube: each is fitted anew. */

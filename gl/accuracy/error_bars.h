@@ -36,6 +36,7 @@ extern "C" {
 typedef struct abbe_error_bars_desc {
   size_t variants; /* 2 to ABBE_ERROR_BARS_MAX_VARIANTS; 0: 4 */
   bool of_mean;    /* the errors of the mean, not of the picture */
+  bool aovs;       /* variants keep what the picture keeps: slower, by programs that are there */
   abbe_render_progress progress;
   void *user;
 } abbe_error_bars_desc;

@@ -83,8 +83,11 @@ static abbe_result sort_hits(abbe_caustics *c, size_t light, map_fits *fits, abb
   for (size_t first = 0; first < n && result == ABBE_OK; first += most) {
     float *hit = NULL;
     GLuint *path = NULL;
+    abbe_gpu *gpu = c->views->scene->gpu;
     abbe_trace_pass_batch(&c->trace, light, first, n - first < most ? n - first : most, n);
-    result = abbe_trace_pass_read(&c->trace, light, first, &hit, &path, error);
+    result = abbe_gpu_tell(gpu, gpu->done, error); /* reading takes its time */
+    if (result == ABBE_OK)
+      result = abbe_trace_pass_read(&c->trace, light, first, &hit, &path, error);
     if (result == ABBE_OK) abbe_map_fit_add(fit, c->atlas, hit, path, count);
     if (result == ABBE_OK && fits->kept != NULL)
       abbe_map_fit_add(fits->kept, c->atlas, hit, path, count);
@@ -330,7 +333,7 @@ abbe_result abbe_caustics_run(abbe_caustics *c, double *untimed_ms, abbe_error *
   for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++) {
     if (!plan_of(c)->reaches[light]) continue;
     result = run_light(c, light, error);
-    if (result != ABBE_OK || gpu->statistics == NULL) continue;
+    if (result != ABBE_OK || gpu->statistics == NULL || gpu->stopped) continue;
     const double start_ms = 1e3 * abbe_clock_seconds();
     abbe_photon_ledger_read(&c->ledger, light, &c->energy[light]);
     result = abbe_spectral_map_read_ledger(c->map, light, &c->energy[light], error);

@@ -1,27 +1,49 @@
 #include "cli/view/picture/view_look.h"
 
-/* All wavelengths of a light, batch by batch: each begins with the last one of that before it. */
-static abbe_result add_light(abbe_renderer *renderer, size_t light, const volatile int *stop,
-                             abbe_view_feed *feed, abbe_error *error) {
+#include <math.h>
+
+/* One batch of a light's wavelengths. last: no other follows. Where the next begins: with the last
+ * one of this. */
+static abbe_result add_batch(abbe_renderer *renderer, size_t light, size_t first, bool alone,
+                             abbe_view_feed *feed, size_t *next, abbe_error *error) {
   const size_t wavelengths = abbe_renderer_plan(renderer)->desc.wavelengths;
+  abbe_renderer_hits hits;
+  abbe_result result = abbe_renderer_read_hits(renderer, light, first, &hits, error);
+  if (result != ABBE_OK) return result;
+  const bool last = first + hits.samples >= wavelengths;
+  const abbe_view_hits batch = {.at = hits.at,
+                                .path = hits.path,
+                                .cell = hits.cell,
+                                .count = hits.count,
+                                .slots = hits.slots,
+                                .samples = hits.samples,
+                                .grid = {hits.grid[0], hits.grid[1]},
+                                .last = last || alone,
+                                .view = hits.view};
+  result = abbe_view_feed_add(feed, &batch, error);
+  *next = last || hits.samples < 2 ? first + hits.samples : first + hits.samples - 1;
+  abbe_renderer_hits_free(&hits);
+  return result;
+}
+
+/* The number of the wavelength before this one. */
+static size_t wavelength_before(const abbe_render_desc *desc, double nm) {
+  const double share = (nm - desc->min_nm) / (desc->max_nm - desc->min_nm);
+  return (size_t)(fmin(fmax(share, 0), 1) * (double)(desc->wavelengths - 1));
+}
+
+/* Of all lights: a batch about a wavelength, or all of them. */
+static abbe_result add_lights(abbe_renderer *renderer, double nm, bool all,
+                              const volatile int *stop, abbe_view_feed *feed, abbe_error *error) {
+  const abbe_plan *plan = abbe_renderer_plan(renderer);
+  const size_t most = plan->desc.wavelengths;
   abbe_result result = ABBE_OK;
-  for (size_t first = 0; first < wavelengths && result == ABBE_OK && !*stop;) {
-    abbe_renderer_hits hits;
-    result = abbe_renderer_read_hits(renderer, light, first, &hits, error);
-    if (result != ABBE_OK) break;
-    const bool last = first + hits.samples >= wavelengths;
-    const abbe_view_hits batch = {.at = hits.at,
-                                  .path = hits.path,
-                                  .cell = hits.cell,
-                                  .count = hits.count,
-                                  .slots = hits.slots,
-                                  .samples = hits.samples,
-                                  .grid = {hits.grid[0], hits.grid[1]},
-                                  .last = last,
-                                  .view = hits.view};
-    result = abbe_view_feed_add(feed, &batch, error);
-    first = last || hits.samples < 2 ? first + hits.samples : first + hits.samples - 1;
-    abbe_renderer_hits_free(&hits);
+  for (size_t i = 0; i < plan->light_view_count; i++) {
+    size_t first = all ? 0 : wavelength_before(&plan->desc, nm);
+    while (plan->reaches[i] && first < most && result == ABBE_OK && !*stop) {
+      result = add_batch(renderer, i, first, !all, feed, &first, error);
+      if (!all) break;
+    }
   }
   return result;
 }
@@ -29,12 +51,13 @@ static abbe_result add_light(abbe_renderer *renderer, size_t light, const volati
 abbe_result abbe_view_look_feed(abbe_renderer *renderer, const abbe_scene *scene,
                                 const double point[3], double radius, double nm,
                                 const volatile int *stop, abbe_view_feed *out, abbe_error *error) {
-  const abbe_plan *plan = abbe_renderer_plan(renderer);
   abbe_result result = ABBE_OK;
   abbe_view_feed_begin(point, radius, out);
-  const bool sees = abbe_view_feed_look(out, scene, nm);
-  for (size_t i = 0; sees && i < plan->light_view_count && result == ABBE_OK && !*stop; i++)
-    if (plan->reaches[i]) result = add_light(renderer, i, stop, out, error);
+  if (abbe_view_feed_look(out, scene, nm)) {
+    result = add_lights(renderer, nm, false, stop, out, error);
+    if (result == ABBE_OK && out->photons == 0)
+      result = add_lights(renderer, nm, true, stop, out, error);
+  }
   abbe_view_feed_end(out, scene);
   return result;
 }

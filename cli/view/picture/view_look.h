@@ -6,7 +6,8 @@
 #include "cli/view/picture/view_feed.h"
 #include "gl/renderer.h"
 
-/* The renderer has drawn that scene. nm: by which what is seen through a refractor is found. What
+/* The renderer has drawn that scene. nm: the wavelength by which what is seen through a refractor
+ * is found, and about which photons are looked for first, at all others where there are none. What
  * was found before *stop became true stands. Errors of abbe_renderer_read_hits, ABBE_NO_MEMORY. */
 abbe_result abbe_view_look_feed(abbe_renderer *renderer, const abbe_scene *scene,
                                 const double point[3], double radius, double nm,

@@ -168,7 +168,7 @@ typedef struct motion {
 /* The lamp of the gem moves by a millimetre a frame: pictures against those of many photons.
  * flicker: of the change from frame to frame of what a frame is off. */
 static void measure_motion(size_t history, motion *out) {
-  enum { STEPS = 10, WARM = 4, WIDTH = 96 };
+  enum { STEPS = 8, WARM = 3, WIDTH = 80 };
   const abbe_render_desc moving = {.width = WIDTH,
                                    .height = WIDTH,
                                    .supersample = 1,
@@ -180,8 +180,8 @@ static void measure_motion(size_t history, motion *out) {
                                    .history = history};
   abbe_render_desc many = moving;
   many.history = 0;
-  many.photons = 384;
-  many.map_size = 1024;
+  many.photons = 192;
+  many.map_size = 512;
   abbe_scene scene[2] = {{0}};
   abbe_renderer *renderer[2] = {NULL};
   double last[WIDTH * WIDTH] = {0}, change = 0, off = 0, mean = 0;
