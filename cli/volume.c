@@ -243,11 +243,12 @@ static void summarise(const request *q, const abbe_caustic_volume *v,
                       const abbe_volume_fill_statistics *s) {
   const double nodes = (double)v->nodes.count;
   fprintf(stderr,
-          "%s: %zu node%s of %zu cells; %.3g photons and %.3g s a node, relative error %.2g; %.4g "
-          "MB in memory, %.4g on disk\n",
+          "%s: %zu node%s of %zu cells; %.3g photons and %.3g s a node; %.4g MB in memory, %.4g on "
+          "disk\n",
           v->body.name, v->nodes.count, v->nodes.count > 1 ? "s" : "", v->region.cells,
-          (double)s->photons / nodes, s->seconds / nodes, s->error,
+          (double)s->photons / nodes, s->seconds / nodes,
           1e-6 * (double)abbe_caustic_volume_bytes(v), 1e-6 * file_bytes(q->out));
+  if (s->error > 0) fprintf(stderr, "relative standard error %.2g\n", s->error);
   if (s->joint_bytes > 0)
     fprintf(stderr, "joint cells take %.4g MB\n", 1e-6 * (double)s->joint_bytes);
   if (s->outflow[1] > 0)

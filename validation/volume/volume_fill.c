@@ -369,8 +369,11 @@ abbe_result abbe_volume_fill(const abbe_scene *scene, const abbe_volume_fill_des
   for (size_t node = 0; result == ABBE_OK && node < out->nodes.count; node++)
     result = fill_node(f, node, error);
   statistics->seconds = abbe_clock_seconds() - from;
-  if (result == ABBE_OK)
-    out->error = statistics->error = sqrt(statistics->error / (double)out->nodes.count);
+  if (result == ABBE_OK) statistics->error = sqrt(statistics->error / (double)out->nodes.count);
+  if (result == ABBE_OK && statistics->passes >= LEAST_PASSES * out->nodes.count)
+    out->error = statistics->error;
+  else
+    statistics->error = NAN;
   if (result == ABBE_OK && desc->degree > 0)
     result = abbe_caustic_volume_project(out, desc->degree, error);
   if (result == ABBE_OK && desc->joins)

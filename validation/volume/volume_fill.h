@@ -42,9 +42,9 @@ typedef struct abbe_volume_fill_desc {
 typedef struct abbe_volume_fill_statistics {
   size_t passes; /* of all nodes */
   uint64_t photons;
-  size_t joint_bytes;       /* that the joint values take; else 0 */
-  double seconds;           /* wall time, of the photons */
-  double error;             /* relative standard error, root mean square over nodes */
+  size_t joint_bytes; /* that the joint values take; else 0 */
+  double seconds;     /* wall time, of the photons */
+  double error;       /* relative standard error, root mean square over nodes; NaN of a pass */
   abbe_light_ledger ledger; /* W for unit irradiance, mean over nodes */
   double outflow[2];        /* of shells, vector: of Y, least and greatest over nodes and shells
                                beyond the object, as a share of what left it; else 0 */
