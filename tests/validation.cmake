@@ -20,7 +20,7 @@ foreach(name
     guide_sums map_texels
     field
     file_comparison
-    flip ssim
+    flip ssim frame_flicker
     geometry
     solid
     interface

@@ -30,6 +30,7 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
   X(display, "turn a linear EXR into a PNG for a screen, through OpenColorIO")                     \
   X(environment, "say how much light a scene's surroundings hold, and write them as a picture")    \
   X(export, "write a scene for pbrt, Mitsuba, LuxCore, glTF, Blender or POV-Ray")                  \
+  X(flicker, "say how a series of frames errs over time: flicker and ghosts")                      \
   X(outline, "say where a caustic's light and hues fall, and how far two pictures agree")          \
   X(pixel, "say what a picture has at a pixel: spectrum, XYZ, wavelength, colour temperature")     \
   X(relight, "show a spectral picture to another observer, or under another illuminant")              \

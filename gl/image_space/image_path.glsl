@@ -7,6 +7,7 @@ struct Ray {
   vec3 o, r;
   float share;   // of its light
   float inside;  // attenuation along its way, 1/m: of what follows, where light stays in the refractor
+  float n;       // index of what it goes on in: 1 is air
   bool total;    // it was totally reflected at the back, and goes on in the mirror direction
 };
 
@@ -34,7 +35,7 @@ vec3 normal_behind(vec3 p, vec3 t) {
 bool leave_object(ivec2 pixel, int wavelength, out Ray ray) {
   vec4 front = texelFetch(object_places, ivec3(pixel, 0), 0), normal = texelFetch(object_normals, ivec3(pixel, 0), 0);
   int refractor = int(normal.w + 0.5) - 1;
-  ray = Ray(front.xyz, vec3(0), 1.0, 0.0, false);
+  ray = Ray(front.xyz, vec3(0), 1.0, 0.0, 1.0, false);
   if (front.w < 0.5 || refractor < 0) return false;
   vec4 spectrum = spectra[refractor * counts.wavelengths + wavelength];
   vec3 d = seen_direction(front.xyz), n = normal.xyz;
@@ -56,6 +57,7 @@ bool leave_object(ivec2 pixel, int wavelength, out Ray ray) {
   ray.r = inner;
 #if INTERFACES == 1
   ray.inside = spectrum.y;
+  ray.n = index;
   return true;
 #else
   float way = back.w > 0.5 ? distance(back.xyz, front.xyz) : 0.0;

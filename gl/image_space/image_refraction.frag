@@ -32,7 +32,8 @@ void main() {
 #ifdef AS_PRINTED
     sum += seen * colour[i] * share;
 #else
-    sum += xyz_from_rgb * seen * colour[i] * share;
+    // radiance over the squared index is the same on both sides of an interface
+    sum += xyz_from_rgb * seen * colour[i] * (share / (ray.n * ray.n));
 #endif
   }
 #ifndef AS_PRINTED

@@ -61,6 +61,8 @@ static const struct named {
     {"export", "", READS},
     {"export", "output", WRITES},
     {"export", "materials", READS},
+    {"flicker", "", READS},
+    {"flicker", "reference", READS},
     {"outline", "", READS},
     {"outline", "minus", READS},
     {"info", "", READS},

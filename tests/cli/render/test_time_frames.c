@@ -37,6 +37,15 @@ static void frames_and_what_moves(void **state) {
                "find . -name 't*.png' -newermt 2002-01-01 | sort && cmp kept.exr t-0002.exr") != 0)
     fail_msg("%s", run_errors);
   assert_string_equal(run_output, "./t-0003.png\n./t.png\n");
+  /* a series held against itself has no error, and what moves is not flicker */
+  if (run_line("\"$abbe\" flicker t.exr --frames 2:5 --reference t.exr --json") != 0)
+    fail_msg("%s", run_errors);
+  assert_contains(run_output, "\"error\":\t0,");
+  assert_contains(run_output, "\"flicker\":\t0,");
+  if (run_line("\"$abbe\" flicker t.exr --frames 2:5") != 0) fail_msg("%s", run_errors);
+  assert_contains(run_output, "picture, of the RMS of the frame");
+  assert_int_equal(run_line("\"$abbe\" flicker t.exr --frames 2:6"), 1);
+  assert_contains(run_errors, "t-0005.exr");
   assert_int_equal(run_line("rm t* one.exr kept.exr"), 0);
 }
 
