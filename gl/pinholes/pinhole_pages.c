@@ -4,7 +4,7 @@
 #include "scenes/lights/environment_lights.h"
 
 enum {
-  UNIT = 3,
+  UNIT = 5,
   LEAST_SIDE = 16,
   MAP_TEXELS = 8, /* of the spectral map, a side, for one of a page */
   LEAST_CUBE = 16,

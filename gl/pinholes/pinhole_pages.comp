@@ -47,6 +47,8 @@ vec3 mirror_spectrum(int r) { return bands[joined_band(r)].attenuation.yzw; }
 #endif
 
 const int MOST_SEGMENTS = 24;
+// Paths through a refractor fan out, and one stands for many: they show the surroundings blurred, rad.
+const float FANNED_OUT = 0.35;
 
 // What comes along the path backwards, rgb; by_u and by_v: by how much its last direction differs over its
 // sample, where it was mirrored once.
@@ -57,8 +59,8 @@ vec3 carried(PathState w, Interface h, vec3 by_u, vec3 by_v) {
     pending[k].share = 0.0;
   }
   vec3 weight = bands[joined_band(h.hit.refractor)].weight_n.xyz, light = vec3(0);
-  float followed = 0.0, left = 0.0;
-  bool going = true, met = true;
+  float followed = 0.0, left = 0.0, blurred = log2(FANNED_OUT * sky_side / SKY_TEXEL);
+  bool going = true, met = true, mirror = is_mirror(h.hit.refractor);
   for (int segment = 0; going && segment < MOST_SEGMENTS; segment++) {
     if (segment > 0) {
       h.hit.t = 1e30;
@@ -74,7 +76,8 @@ vec3 carried(PathState w, Interface h, vec3 by_u, vec3 by_v) {
       branch(w, h, 0.5 * share_limit, pending, ended, dropped, absorbed);
       left += ended + dropped;
     } else {
-      light += dark ? vec3(0) : w.share * sky_over(w.d, by_u, by_v);
+      vec3 sky = mirror ? sky_over(w.d, by_u, by_v) : sky_at(w.d, max(blurred, 0.0));
+      light += dark ? vec3(0) : w.share * sky;
       followed += w.share;
       w.share = 0.0;
     }

@@ -166,6 +166,41 @@ static void test_glass_hides_little(void **state) {
   abbe_image_free(&without);
 }
 
+/* Beside what dispersion asks for on coloured receivers: the light is that without pinholes but for
+ * what these add. */
+static void test_dispersion_on_colours(void **state) {
+  (void)state;
+  static const char text[] =
+      DOWN "environment: {size: 256, uniform: 0.4, spots: [{elevation: 60, azimuth: 20, radiance: "
+           "80, sigma: 3}, {elevation: 40, azimuth: 200, radiance: 2, sigma: 20}]}\n"
+           "objects:\n- {name: floor, shape: rectangle, width: 4, height: 4, reflectance: [0.7, "
+           "0.5, 0.2]}\n" BALL("crown");
+  double sum[2];
+  for (int k = 0; k < 2; k++) {
+    abbe_scene scene;
+    abbe_image picture;
+    const abbe_render_desc desc = {.width = SIDE,
+                                   .height = SIDE,
+                                   .supersample = 1,
+                                   .map_size = 256,
+                                   .photons = 64,
+                                   .pinholes = k == 1 ? 60 : 0,
+                                   .transport =
+                                       k == 1 ? ABBE_TRANSPORT_PINHOLE : ABBE_TRANSPORT_PHOTONS};
+    load_text(text, &scene);
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_picture(renderer, false, &picture);
+    assert_finite(&picture);
+    sum[k] = image_sum(&picture, 1);
+    abbe_renderer_free(renderer);
+    abbe_image_free(&picture);
+    abbe_scene_free(&scene);
+  }
+  print_message("%.4f of the light without\n", sum[1] / sum[0]);
+  assert_near(sum[1] / sum[0], 1, 0.05);
+}
+
 static void test_refusals(void **state) {
   (void)state;
   static const struct {
@@ -195,6 +230,7 @@ int main(void) {
       cmocka_unit_test(test_a_roof_hides),
       cmocka_unit_test(test_hidden_ones),
       cmocka_unit_test(test_glass_hides_little),
+      cmocka_unit_test(test_dispersion_on_colours),
       cmocka_unit_test(test_refusals),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
