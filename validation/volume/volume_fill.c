@@ -48,6 +48,9 @@ typedef struct fill {
 
 static abbe_result check_counts(const abbe_scene *scene, const abbe_volume_fill_desc *d,
                                 abbe_error *error) {
+  if (scene->light_count == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the scene has no light of its own, whose colour the volume would have");
   if (d->object >= scene->object_count || d->light >= scene->light_count)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "object %zu in light %zu: the scene has %zu objects and %zu lights",

@@ -248,6 +248,10 @@ static void test_requests(void **state) {
   abbe_volume_fill_desc desc = {.object = 0, .photons = 1000, .passes = 1};
   assert_int_equal(abbe_volume_fill(&scene, &desc, &v, &done, &error), ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "receiver");
+  abbe_scene dark = scene;
+  dark.light_count = 0;
+  assert_int_equal(abbe_volume_fill(&dark, &desc, &v, &done, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "no light");
   desc.object = 7;
   assert_int_equal(abbe_volume_fill(&scene, &desc, &v, &done, &error), ABBE_INVALID_ARGUMENT);
   desc.object = 1;
