@@ -49,7 +49,6 @@ abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc
                              .keep = desc->keep,
                              .ocio = desc->ocio,
                              .seen_s = -1,
-                             .event_s = -1,
                              .cancelled_s = -1};
   abbe_result result = abbe_view_state_begin(&app->state, desc->document, error);
   app->state.refine.last = desc->last;
@@ -180,6 +179,15 @@ static void take_rendered(abbe_view_session *app, abbe_view_result *result) {
   *result = (abbe_view_result){.job = app->last.job};
 }
 
+/* How long the oldest event that this picture shows, and none before it, has waited for it. */
+static void time_events(abbe_view_session *app, uint64_t shown, double now_s) {
+  if (shown <= app->pictured) return;
+  const double event_s = app->event_s[(app->pictured + 1) % ABBE_VIEW_TIMED];
+  if (shown - app->pictured < ABBE_VIEW_TIMED && event_s > 0)
+    app->latency_ms = 1e3 * (now_s - event_s);
+  while (app->pictured < shown) app->event_s[++app->pictured % ABBE_VIEW_TIMED] = 0;
+}
+
 static void take(abbe_view_session *app, abbe_view_result *result, double now_s) {
   abbe_view_refine *refine = &app->state.refine;
   const bool moved = result->job.stage == ABBE_VIEW_MOVING;
@@ -193,8 +201,7 @@ static void take(abbe_view_session *app, abbe_view_result *result, double now_s)
   if (moved && app->seen_s > 0 && pictured_s - app->seen_s < 1)
     app->frames_ms[app->frame_count++ % 32] = 1e3 * (pictured_s - app->seen_s);
   app->seen_s = moved ? pictured_s : -1;
-  if (app->event_s >= 0) app->latency_ms = 1e3 * (pictured_s - app->event_s);
-  app->event_s = -1;
+  time_events(app, result->job.serial, pictured_s);
   if (result->job.stage == ABBE_VIEW_TRACED) {
     app->stage = ABBE_VIEW_TRACED;
     if (result->traced.data == NULL) return;
@@ -347,7 +354,8 @@ static void feed(abbe_view_session *app, const abbe_ui_input *input, double now_
   if (input->wheel != 0 && x < app->area[0] && !abbe_ui_has_pointer())
     abbe_view_state_wheel(s, input->wheel, now_s);
   abbe_view_state_tick(s, input->seconds, now_s);
-  if (s->refine.serial != serial && app->event_s < 0) app->event_s = abbe_clock_seconds();
+  for (uint64_t k = serial + 1; k <= s->refine.serial; k++)
+    app->event_s[k % ABBE_VIEW_TIMED] = abbe_clock_seconds();
 }
 
 void abbe_view_app_key(abbe_view_session *app, int key, bool down, int modifiers, double now_s) {

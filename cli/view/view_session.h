@@ -12,6 +12,7 @@
 
 #define ABBE_VIEW_PANEL_WIDTH 340
 #define ABBE_VIEW_MOST_SCENES 64
+#define ABBE_VIEW_TIMED 256
 
 typedef struct abbe_view_session {
   abbe_view_state state;
@@ -49,14 +50,16 @@ typedef struct abbe_view_session {
   double area[2];               /* of the picture in the window */
   double seen_s, frames_ms[32]; /* times between pictures while something moves */
   size_t frame_count;
-  double event_s, latency_ms;    /* of the oldest change that is not shown; of the last picture */
-  double cancelled_s, cancel_ms; /* when a job was told to stop, below 0: none was; how long the
-                                    last one took to do so */
-  size_t turn_frame;             /* of the turntable, from 1; 0: it stands */
-  uint64_t turn_serial;          /* what it turns */
-  bool turned;                   /* the last one is whole */
-  char note[1200];               /* what was saved, or why not */
-  char **file;                   /* of the scene, and when they were changed last */
+  double event_s[ABBE_VIEW_TIMED]; /* of changes by pointer, by their number; 0: another change */
+  uint64_t pictured;               /* the last change that a picture has shown, */
+  double latency_ms;               /* and from the first one that it showed to it */
+  double cancelled_s, cancel_ms;   /* when a job was told to stop, below 0: none was; how long the
+                                      last one took to do so */
+  size_t turn_frame;               /* of the turntable, from 1; 0: it stands */
+  uint64_t turn_serial;            /* what it turns */
+  bool turned;                     /* the last one is whole */
+  char note[1200];                 /* what was saved, or why not */
+  char **file;                     /* of the scene, and when they were changed last */
   long long *changed;
   size_t file_count;
   double looked_s;
