@@ -15,6 +15,7 @@ static const struct {
     {"abbe_agf_load", "report"},
     {"abbe_agf_parse", "report"},
     {"abbe_agf_write", "report"},
+    {"abbe_band_reflection_fill", "measured"},
     {"abbe_compare", "options"},
     {"abbe_convex_find", "plane_of"},
     {"abbe_csv_points_load", "report"},

@@ -96,7 +96,7 @@ abbe_result abbe_reflectance_make(const abbe_geometry *geometry, const abbe_spec
                                   const abbe_bands *bands,
                                   const abbe_environment_light *environment, abbe_rgb_space space,
                                   abbe_reflectance *out, abbe_error *error) {
-  ABBE_REQUIRE(geometry && s && bands && environment && out, error);
+  ABBE_REQUIRE(geometry && geometry->scene && s && bands && environment && out, error);
   const size_t objects = geometry->scene->object_count;
   double from_xyz[9];
   abbe_rgb_space_from_xyz(space, from_xyz);
