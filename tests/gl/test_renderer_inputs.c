@@ -78,7 +78,8 @@ static void give_texture(edited *e) {
   X("a spot's soft edge", e->scene.light[1].soft_rad *= 0.5, WAY)                                  \
   X("the sun's direction", e->scene.light[2].direction[0] += 0.01, PLACE)                          \
   X("an object's name", floor_of(e)->name[0] = 'd', 0)                                             \
-  X("a reflectance", floor_of(e)->reflectance[1] = 0.25, SURFACES)                                 \
+  X("the first coloured receiver", floor_of(e)->reflectance[1] = 0.25, SURFACES | EYE)             \
+  X("a reflectance", floor_of(e)->reflectance[1] = 0.2, SURFACES)                                  \
   X("a texture's repeat", floor_of(e)->texture_repeat[0] = 2, SURFACES)                            \
   X("the first texture", give_texture(e), SURFACES | EYE)                                          \
   X("a texture's colour", texel[0][0] = 0.125f, SURFACES)                                          \
