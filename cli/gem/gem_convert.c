@@ -14,7 +14,7 @@ typedef struct request {
 } request;
 
 static const struct argp_option options[] = {
-    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "where to: .asc, .gem, .stl, .obj or .glb", 0},
+    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "where to: .asc, .gem, .gcs, .stl, .obj or .glb", 0},
     {0}};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
@@ -28,7 +28,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case ARGP_KEY_END:
     if (q->output == NULL)
-      argp_error(state, "where to? Give -o FILE.asc, .gem, .stl, .obj or .glb");
+      argp_error(state, "where to? Give -o FILE.asc, .gem, .gcs, .stl, .obj or .glb");
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

@@ -28,7 +28,7 @@ typedef struct request {
 } request;
 
 static const struct argp_option options[] = {
-    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "the design: .asc or .gem, or a solid", 0},
+    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "the design: .asc, .gem or .gcs, or a solid", 0},
     {"index", OPTION_INDEX, "N", 0, "to be cut for, where no material is named", 0},
     {"from-index", OPTION_FROM, "N", 0, "that the design was made for, where it does not say", 0},
     {"pavilion", OPTION_PAVILION, "DEG", 0,

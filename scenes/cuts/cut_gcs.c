@@ -353,3 +353,118 @@ abbe_result abbe_cut_gcs_parse(const char *data, size_t size, const char *name, 
   if (d.r.result != ABBE_OK) abbe_cut_free(out);
   return d.r.result;
 }
+
+/* ---- out ---- */
+
+/* From the design to the file: turned by half a turn, moved down, scaled. */
+typedef struct writing {
+  const abbe_cut *cut;
+  const abbe_cut_polyhedron *p;
+  FILE *to;
+  double scale, middle;
+} writing;
+
+static void write_text(FILE *to, const char *key, const char *text) {
+  if (text == NULL || text[0] == '\0') return;
+  fprintf(to, " %s=\"", key);
+  for (const char *c = text; *c != '\0'; c++) {
+    if (strchr("&<>\"", *c) != NULL || (unsigned char)*c < ' ')
+      fprintf(to, "&#%d;", (unsigned char)*c < ' ' ? ' ' : *c);
+    else
+      fputc(*c, to);
+  }
+  fputc('"', to);
+}
+
+static void write_value(FILE *to, const char *key, double value) {
+  char text[ABBE_NUMBER_TEXT_SIZE];
+  fprintf(to, " %s=\"%s\"", key, abbe_number_text(value, text));
+}
+
+static double depth_of(const writing *w, const abbe_cut_facet *f) {
+  return w->scale * (f->d - w->middle * f->n[2]);
+}
+
+static void write_facet(const writing *w, const abbe_cut_face *face) {
+  const abbe_cut_facet *f = &w->cut->facet[face->facet];
+  const double turn = atan2(-f->n[1], -f->n[0]) * 180 / PI;
+  const bool crown = !signbit(w->cut->tier[f->tier].angle_deg);
+  fputs("    <facet", w->to);
+  write_value(w->to, "nx", -f->n[0]);
+  write_value(w->to, "ny", -f->n[1]);
+  write_value(w->to, "nz", f->n[2]);
+  write_value(w->to, "index_angle", fmod(720 + (crown ? 90 + turn : 270 - turn), 360));
+  fputs(">\n", w->to);
+  for (size_t i = 0; i < face->count; i++) {
+    const double *at = w->p->vertex[w->p->corner[face->first + i]];
+    fputs("      <vertex", w->to);
+    write_value(w->to, "x", -w->scale * at[0]);
+    write_value(w->to, "y", -w->scale * at[1]);
+    write_value(w->to, "z", w->scale * (at[2] - w->middle));
+    fputs("/>\n", w->to);
+  }
+  fputs("    </facet>\n", w->to);
+}
+
+static void write_tier(const writing *w, size_t t) {
+  const abbe_cut_tier *tier = &w->cut->tier[t];
+  const abbe_cut_facet *first = NULL;
+  bool alike = true;
+  for (size_t i = 0; i < w->p->face_count; i++) {
+    const abbe_cut_facet *f = &w->cut->facet[w->p->face[i].facet];
+    if (f->tier != t) continue;
+    if (first == NULL) first = f;
+    alike = alike && fabs(depth_of(w, f) - depth_of(w, first)) <= 1e-12;
+  }
+  if (first == NULL) return;
+  fputs("  <tier", w->to);
+  write_value(w->to, "angle", signbit(tier->angle_deg) ? 180 + tier->angle_deg : tier->angle_deg);
+  if (alike) write_value(w->to, "depth", depth_of(w, first));
+  write_text(w->to, "name", abbe_cut_facet_name(w->cut, (size_t)(first - w->cut->facet)));
+  write_text(w->to, "instructions", tier->instruction);
+  fputs(">\n", w->to);
+  for (size_t i = 0; i < w->p->face_count; i++)
+    if (w->cut->facet[w->p->face[i].facet].tier == t) write_facet(w, &w->p->face[i]);
+  fputs("  </tier>\n", w->to);
+}
+
+static void write_info(const writing *w) {
+  static const char *const heads[] = {"title", "author", "date", "shape"};
+  fputs("  <info", w->to);
+  for (int i = 0; i < ABBE_CUT_LINES; i++) write_text(w->to, heads[i], w->cut->heading[i]);
+  write_text(w->to, "footer1", w->cut->footnote[0]);
+  write_text(w->to, "footer2", w->cut->footnote[1]);
+  fputs("/>\n", w->to);
+}
+
+static abbe_result check_depths(const writing *w, abbe_error *error) {
+  for (size_t i = 0; i < w->p->face_count; i++)
+    if (!(depth_of(w, &w->cut->facet[w->p->face[i].facet]) >= 1 / ABBE_CUT_FAR))
+      return abbe_error_set(error, ABBE_GEOMETRY,
+                            "a facet's plane passes the middle of the stone's axis on the wrong "
+                            "side, which a .gcs file cannot say; write .asc");
+  return ABBE_OK;
+}
+
+abbe_result abbe_cut_gcs_write(const abbe_cut *cut, const abbe_cut_polyhedron *p, FILE *to,
+                               abbe_report *report, abbe_error *error) {
+  ABBE_REQUIRE(cut && p && to, error);
+  const double reach = fmax(fmax(p->max[0], -p->min[0]), fmax(p->max[1], -p->min[1]));
+  const writing w = {cut, p, to, 1 / reach, 0.5 * (p->min[2] + p->max[2])};
+  const abbe_result result = check_depths(&w, error);
+  if (result != ABBE_OK) return result;
+  fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<GemCutStudio version=\"1000\">\n", to);
+  fprintf(to, "  <index gear=\"%d\" symmetry=\"%d\" mirror=\"%d\"/>\n", cut->gear, cut->folds,
+          cut->mirror);
+  for (size_t t = 0; t < cut->tier_count; t++) write_tier(&w, t);
+  if (cut->refractive_index > 0) {
+    fputs("  <render", to);
+    write_value(to, "refractive_index", cut->refractive_index);
+    fputs("/>\n", to);
+  }
+  write_info(&w);
+  fputs("</GemCutStudio>\n", to);
+  if (cut->footnote[2] != NULL)
+    abbe_report_add(report, ABBE_NOTE_LOST, 0, NULL, "a .gcs file has two lines at its foot");
+  return ferror(to) ? abbe_error_set(error, ABBE_IO, "the design cannot be written") : ABBE_OK;
+}

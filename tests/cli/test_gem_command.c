@@ -100,7 +100,7 @@ static void what_is_refused(void **state) {
       {GEM "info" QUARTZ "--weld 0.5", "--weld", 2},
       {GEM "diagram" QUARTZ, "where to?", 2},
       {GEM "diagram" QUARTZ "-o d.jpg", "ends with .pdf, .svg or .png", 1},
-      {GEM "convert" QUARTZ "-o s.gltf", "a design is written as .asc or .gem", 1},
+      {GEM "convert" QUARTZ "-o s.gltf", "a design is written as .asc, .gem or .gcs", 1},
       {GEM "retarget" QUARTZ, "for which stone?", 2},
       {GEM "retarget" QUARTZ "--index 1.6 --material diamond", "one of them", 2},
   };

@@ -1,7 +1,7 @@
 #include "scenes/cuts/cut_gcs.h"
 
 #include "scenes/cuts/cut_polyhedron.h"
-#include "tests/check.h"
+#include "tests/scenes/cuts/designs.h"
 
 #include <stdlib.h>
 
@@ -133,6 +133,49 @@ static void names_of_encodings_are_heeded(void **state) {
   abbe_cut_free(&cut);
 }
 
+/* What is written has the same planes, but for size and height, and is read back as the same stone.
+ */
+static void what_is_written_is_read_back(void **state) {
+  (void)state;
+  const char *const designs[] = {design_a, design_b, design_c, design_d};
+  for (int k = 0; k < 4; k++) {
+    abbe_cut cut = design_parse(designs[k]);
+    abbe_cut_polyhedron p, q;
+    abbe_error error = {0};
+    char *text = NULL;
+    size_t size = 0;
+    FILE *to = open_memstream(&text, &size);
+    assert_non_null(to);
+    assert_int_equal(abbe_cut_polyhedron_make(&cut, 0, &p, NULL), ABBE_OK);
+    if (abbe_cut_gcs_write(&cut, &p, to, NULL, &error) != ABBE_OK) fail_msg("%s", error.text);
+    assert_int_equal(fclose(to), 0);
+    abbe_cut back = read(text);
+    assert_int_equal(abbe_cut_polyhedron_make(&back, 0, &q, NULL), ABBE_OK);
+    assert_int_equal(q.vertex_count, p.vertex_count);
+    assert_int_equal(q.edge_count, p.edge_count);
+    assert_int_equal(q.face_count, p.face_count);
+    assert_int_equal(back.gear, cut.gear);
+    const double scale = q.max[0] / p.max[0];
+    assert_near(fmax(fmax(q.max[0], -q.min[0]), fmax(q.max[1], -q.min[1])), 1, 1e-9);
+    assert_near(q.max[2] + q.min[2], 0, 1e-9);
+    assert_near(q.volume / (scale * scale * scale * p.volume), 1, 1e-9);
+    for (size_t i = 0; i < p.face_count; i++) {
+      const abbe_cut_facet *f = &cut.facet[p.face[i].facet];
+      double nearest = 3;
+      for (size_t j = 0; j < q.face_count; j++) {
+        const double *n = back.facet[q.face[j].facet].n;
+        nearest = fmin(nearest, fabs(n[0] - f->n[0]) + fabs(n[1] - f->n[1]) + fabs(n[2] - f->n[2]));
+      }
+      assert_near(nearest, 0, 1e-12);
+    }
+    abbe_cut_polyhedron_free(&p);
+    abbe_cut_polyhedron_free(&q);
+    abbe_cut_free(&cut);
+    abbe_cut_free(&back);
+    free(text);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_design_is_read),
@@ -140,6 +183,7 @@ int main(void) {
       cmocka_unit_test(bad_files_are_refused),
       cmocka_unit_test(what_reaches_outside_is_refused),
       cmocka_unit_test(names_of_encodings_are_heeded),
+      cmocka_unit_test(what_is_written_is_read_back),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
