@@ -2,6 +2,7 @@
  * what a mirror absorbs and hides is what its shape tells; and what the pages hold agrees with
  * them. */
 #include "tests/gl/frame.h"
+#include "validation/known/forms/closed_form.h"
 
 #include "scenes/geometry/vector.h"
 
@@ -70,22 +71,6 @@ static void test_furnace(void **state) {
   abbe_image_free(&without);
 }
 
-static double polygon(const double (*corner)[3], const double at[3]) {
-  double sum = 0;
-  for (size_t i = 0; i < 4; i++) {
-    double a[3], b[3], across[3];
-    abbe_vector_subtract(corner[i], at, a);
-    abbe_vector_subtract(corner[(i + 1) % 4], at, b);
-    abbe_vector_normalise(a);
-    abbe_vector_normalise(b);
-    abbe_vector_cross(a, b, across);
-    const double angle = atan2(abbe_vector_length(across), abbe_vector_dot(a, b));
-    abbe_vector_normalise(across);
-    sum += 0.5 * angle * across[2];
-  }
-  return fabs(sum);
-}
-
 /* Largest difference to `share` of what the polygon sends, of even light, over all open light. */
 static double worst_of(const abbe_image *picture, const double (*corner)[3], double share,
                        size_t columns) {
@@ -94,7 +79,8 @@ static double worst_of(const abbe_image *picture, const double (*corner)[3], dou
     for (size_t x = 0; x < columns; x++) {
       double p[3];
       place_of(x, y, p);
-      const double right = 0.5 * (PI - share * polygon(corner, p));
+      static const double up[3] = {0, 0, 1};
+      const double right = 0.5 * (PI - share * PI * abbe_closed_form_polygon(corner, 4, p, up));
       worst = fmax(worst, fabs(at(picture, x, y) / right - 1));
     }
   return worst;

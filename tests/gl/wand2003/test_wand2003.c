@@ -1,6 +1,7 @@
 /* Caustics by projected surroundings: linear in light, the same turned, what one pinhole adds and
  * by how much its softening lessens that, mirrors' closed forms, and when footprints matter. */
 #include "tests/gl/frame.h"
+#include "validation/known/forms/closed_form.h"
 
 #include "scenes/geometry/vector.h"
 #include "scenes/samples/surface_samples.h"
@@ -94,23 +95,6 @@ static void test_one_pinhole(void **state) {
   abbe_scene_free(&scene);
 }
 
-/* Lambert's: half the sum over edges of the angle that each fills, times its plane's normal. */
-static double polygon(const double (*corner)[3], const double at[3]) {
-  double sum = 0;
-  for (size_t i = 0; i < 4; i++) {
-    double a[3], b[3], across[3];
-    abbe_vector_subtract(corner[i], at, a);
-    abbe_vector_subtract(corner[(i + 1) % 4], at, b);
-    abbe_vector_normalise(a);
-    abbe_vector_normalise(b);
-    abbe_vector_cross(a, b, across);
-    const double angle = atan2(abbe_vector_length(across), abbe_vector_dot(a, b));
-    abbe_vector_normalise(across);
-    sum += 0.5 * angle * across[2];
-  }
-  return fabs(sum);
-}
-
 /* A mirror under light that is alike all around is a lamp of its shape. */
 static void test_a_mirror_is_a_lamp_of_its_shape(void **state) {
   (void)state;
@@ -124,7 +108,8 @@ static void test_a_mirror_is_a_lamp_of_its_shape(void **state) {
     for (size_t x = 0; x < 44; x += 3) { /* 10 cm away and farther */
       double p[3];
       place_of(x, y, p);
-      const double right = 0.8 * 0.5 * polygon(corner, p);
+      static const double up[3] = {0, 0, 1};
+      const double right = 0.8 * 0.5 * PI * abbe_closed_form_polygon(corner, 4, p, up);
       worst = fmax(worst, fabs(at(&picture, x, y) - 0.5 * PI - right) / right);
     }
   print_message("off by %.4f at most\n", worst);

@@ -70,4 +70,13 @@ static inline abbe_gem_view judged_view(const judged *j, const abbe_gem_view_des
 
 #define DEG (3.14159265358979323846 / 180)
 
+/* Of one index, without absorption. */
+static inline abbe_material glass(double n) {
+  static char name[] = "plain";
+  return (abbe_material){.name = name,
+                         .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {n}},
+                         .min_nm = 300,
+                         .max_nm = 800};
+}
+
 #endif

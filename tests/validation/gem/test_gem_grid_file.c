@@ -11,14 +11,6 @@
 enum { PARTS = 3 };
 static const char *const path[PARTS] = {"grid_file_0.csv", "grid_file_1.csv", "grid_file_2.csv"};
 
-static abbe_material glass(double n) {
-  static char name[] = "plain";
-  return (abbe_material){.name = name,
-                         .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {n}},
-                         .min_nm = 300,
-                         .max_nm = 800};
-}
-
 static abbe_gem_optimum_desc describe(void) {
   return (abbe_gem_optimum_desc){.crown_from_rad = 30 * DEG,
                                  .crown_to_rad = 40 * DEG,

@@ -4,14 +4,6 @@
 
 #include "tests/validation/gem/gem_stones.h"
 
-static abbe_material glass(double n) {
-  static char name[] = "plain";
-  return (abbe_material){.name = name,
-                         .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {n}},
-                         .min_nm = 300,
-                         .max_nm = 800};
-}
-
 static abbe_gem_optimum_desc describe(void) {
   return (abbe_gem_optimum_desc){.crown_from_rad = 30 * DEG,
                                  .crown_to_rad = 40 * DEG,
