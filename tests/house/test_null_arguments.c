@@ -28,6 +28,7 @@ static const struct {
     {"abbe_cut_asc_write", "report"},
     {"abbe_cut_file_read", "report"},
     {"abbe_cut_gcs_parse", "report"},
+    {"abbe_cut_gcs_write", "report"},
     {"abbe_cut_gem_parse", "report"},
     {"abbe_cut_gem_write", "report"},
     {"abbe_difference_picture_write", "title"},
