@@ -12,7 +12,7 @@
 #include <string.h>
 
 #define PI 3.14159265358979323846
-enum { MOST_DEPTH = 16, ASSUMED_GEAR = 96 };
+enum { MOST_DEPTH = 16, ASSUMED_GEAR = 96, MOST_FOLDS = 1000 };
 
 typedef struct reading {
   XML_Parser parser;
@@ -91,6 +91,22 @@ static char *words(reading *r, const char **attributes, const char *key) {
 
 /* ---- elements ---- */
 
+/* For people alone, since every facet is listed: what is no number of folds is passed over, not
+ * refused. 0 says nothing. */
+static void begin_symmetry(reading *r, const char **attributes) {
+  const char *text = attribute(attributes, "symmetry"), *mirror = attribute(attributes, "mirror");
+  const char *end;
+  double folds = 0;
+  if (text && (!abbe_number_read(text, &end, &folds) || *end != '\0' || folds != round(folds) ||
+               !(folds >= 0 && folds <= MOST_FOLDS))) {
+    abbe_report_add(r->report, ABBE_NOTE_SKIPPED, line_of(r), NULL,
+                    "the symmetry '%.40s' is no number of folds", text);
+    return;
+  }
+  r->cut->folds = (int)folds;
+  r->cut->mirror = mirror && (strcmp(mirror, "1") == 0 || strcmp(mirror, "true") == 0);
+}
+
 static void begin_index(reading *r, const char **attributes) {
   const double gear = number(r, attributes, "gear", ASSUMED_GEAR);
   if (gear == 0 || gear != round(gear) || fabs(gear) > ABBE_CUT_MAX_GEAR)
@@ -98,6 +114,7 @@ static void begin_index(reading *r, const char **attributes) {
   else
     r->cut->gear = (int)gear;
   r->geared = true;
+  if (r->result == ABBE_OK) begin_symmetry(r, attributes);
 }
 
 static void begin_tier(reading *r, const char **attributes) {

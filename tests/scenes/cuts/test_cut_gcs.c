@@ -41,6 +41,8 @@ static void a_design_is_read(void **state) {
   abbe_cut cut = read(HEAD TABLE REST);
   abbe_cut_polyhedron p;
   assert_int_equal(cut.gear, 80);
+  assert_int_equal(cut.folds, 4);
+  assert_true(cut.mirror);
   assert_near(cut.refractive_index, 1.76, 0);
   assert_string_equal(cut.heading[0], "Box & point");
   assert_string_equal(cut.footnote[0], "f");
@@ -76,6 +78,25 @@ static void a_missing_normal_is_found(void **state) {
       assert_near(without.facet[i].n[axis], with.facet[i].n[axis], 1e-15);
   abbe_cut_free(&with);
   abbe_cut_free(&without);
+}
+
+/* The symmetry tells people something, and stones nothing. */
+static void a_strange_symmetry_is_passed_over(void **state) {
+  (void)state;
+  static const char *const said[] = {"symmetry='-1'", "symmetry='2.5'", "symmetry='round'",
+                                     "symmetry='99999999'", "mirror='0'"};
+  for (size_t i = 0; i < sizeof said / sizeof *said; i++) {
+    char text[2500];
+    abbe_cut cut;
+    abbe_report report = {0};
+    snprintf(text, sizeof text, "<GemCutStudio><index gear='80' %s/>" TABLE REST, said[i]);
+    assert_int_equal(abbe_cut_gcs_parse(text, strlen(text), "x.gcs", &cut, &report, NULL), ABBE_OK);
+    assert_int_equal(cut.folds, 0);
+    assert_false(cut.mirror);
+    assert_int_equal(report.count, i < 4);
+    abbe_report_free(&report);
+    abbe_cut_free(&cut);
+  }
 }
 
 static void refuse(const char *text, abbe_result code, const char *part) {
@@ -155,6 +176,8 @@ static void what_is_written_is_read_back(void **state) {
     assert_int_equal(q.edge_count, p.edge_count);
     assert_int_equal(q.face_count, p.face_count);
     assert_int_equal(back.gear, cut.gear);
+    assert_int_equal(back.folds, cut.folds);
+    assert_int_equal(back.mirror, cut.mirror);
     const double scale = q.max[0] / p.max[0];
     assert_near(fmax(fmax(q.max[0], -q.min[0]), fmax(q.max[1], -q.min[1])), 1, 1e-9);
     assert_near(q.max[2] + q.min[2], 0, 1e-9);
@@ -180,6 +203,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_design_is_read),
       cmocka_unit_test(a_missing_normal_is_found),
+      cmocka_unit_test(a_strange_symmetry_is_passed_over),
       cmocka_unit_test(bad_files_are_refused),
       cmocka_unit_test(what_reaches_outside_is_refused),
       cmocka_unit_test(names_of_encodings_are_heeded),
