@@ -254,19 +254,30 @@ static void write_glass(const abbe_export_writing *w, const abbe_material *m) {
   fputs("    </medium>\n", w->file);
 }
 
+static void write_reflectance(const abbe_export_writing *w, const abbe_object *o) {
+  fputs("      <spectrum name=\"reflectance\" type=\"irregular\">\n", w->file);
+  for (int k = 0; k < 2; k++) {
+    list l = {w->file, 0, k == 0};
+    fprintf(w->file, "        <string name=\"%s\" value=\"", k == 0 ? "wavelengths" : "values");
+    abbe_export_reflectance(o, put_one, &l);
+    fputs("\"/>\n", w->file);
+  }
+  fputs("      </spectrum>\n", w->file);
+}
+
 static abbe_result write_diffuse(const abbe_export_writing *w, const abbe_object *o,
                                  const char *name, abbe_error *error) {
-  const double *r = o->reflectance;
   fputs("    <bsdf type=\"twosided\"><bsdf type=\"diffuse\">\n", w->file);
   if (o->texture_path != NULL)
     fprintf(w->file,
             "      <texture name=\"reflectance\" type=\"bitmap\">"
             "<string name=\"filename\" value=\"%s-%s.exr\"/></texture>\n",
             w->files->name, name);
-  else if (r[0] == r[1] && r[1] == r[2])
-    abbe_number_write(w->file, "      <spectrum name=\"reflectance\" value=\"%.9g\"/>\n", r[0]);
+  else if (abbe_export_is_grey(o))
+    abbe_number_write(w->file, "      <spectrum name=\"reflectance\" value=\"%.9g\"/>\n",
+                      o->reflectance[0]);
   else
-    write_point(w, "      <rgb name=\"reflectance\" value=\"", r, "\"/>\n");
+    write_reflectance(w, o);
   fputs("    </bsdf></bsdf>\n", w->file);
   return o->texture_path != NULL ? abbe_export_texture(w, o, name, error) : ABBE_OK;
 }

@@ -203,7 +203,6 @@ static void write_glass(const abbe_export_writing *w, size_t i) {
 static abbe_result write_material(const abbe_export_writing *w, size_t i, const abbe_object *o,
                                   abbe_error *error) {
   char name[ABBE_EXPORT_NAME_SIZE];
-  const double *r = o->reflectance;
   if (o->material != NULL) {
     abbe_export_name(name, "m", abbe_export_glass_of(w, o->material), o->material->name);
     fprintf(w->file, "  NamedMaterial \"%s\"\n", name);
@@ -225,13 +224,14 @@ static abbe_result write_material(const abbe_export_writing *w, size_t i, const 
             "  Material \"diffuse\" \"texture reflectance\" \"%s\"\n",
             name, w->files->name, name, name);
     return abbe_export_texture(w, o, name, error);
-  } else if (r[0] == r[1] && r[1] == r[2]) {
+  } else if (abbe_export_is_grey(o)) {
     abbe_number_write(w->file,
                       "  Material \"diffuse\" \"spectrum reflectance\" [ 360 %.9g 830 %.9g ]\n",
-                      r[0], r[0]);
+                      o->reflectance[0], o->reflectance[0]);
   } else {
-    fputs("  Material \"diffuse\" \"rgb reflectance\" [ ", w->file);
-    abbe_export_vector(w->file, r, " ");
+    line l = {w->file, 0};
+    fputs("  Material \"diffuse\" \"spectrum reflectance\" [", w->file);
+    abbe_export_reflectance(o, put_pair, &l);
     fputs(" ]\n", w->file);
   }
   return ABBE_OK;

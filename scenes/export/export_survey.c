@@ -72,11 +72,9 @@ static abbe_result survey_object(const survey *s, const abbe_object *o, double l
     CHANGED(s, o->name, "the sphere is %zu triangles", o->mesh.face_count);
   if (kind == ABBE_OBJECT_REFRACTOR) result = add_glass(s, o->material, lambda_nm, error);
   if (kind == ABBE_OBJECT_MIRROR) survey_mirror(s, o);
-  const double *r = o->reflectance;
-  const bool coloured = o->texture_path != NULL || r[0] != r[1] || r[1] != r[2];
-  if (o->spectrum != NULL)
+  if (o->spectrum != NULL && !s->spectral)
     LOST(s, o->name, "its measured reflectance: its colour under D65 is written");
-  else if (kind == ABBE_OBJECT_RECEIVER && coloured && s->spectral)
+  else if (kind == ABBE_OBJECT_RECEIVER && o->texture_path != NULL && s->spectral)
     CHANGED(s, o->name, "its colour is lifted to a spectrum in the program's own way");
   if (kind == ABBE_OBJECT_RECEIVER && o->texture_path != NULL &&
       s->target == ABBE_SCENE_EXPORT_GLTF)

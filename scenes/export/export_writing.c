@@ -1,6 +1,7 @@
 #include "scenes/export/export_writing.h"
 
 #include "base/number.h"
+#include "colorimetry/reflectance/reflected_light.h"
 #include "colorimetry/rgb_space.h"
 #include "colorimetry/weights.h"
 #include "scenes/geometry/vector.h"
@@ -105,6 +106,38 @@ void abbe_export_light_spectrum(const abbe_illuminant *illuminant, double factor
       illuminant->kind == ABBE_ILLUMINANT_TABULATED || illuminant->kind == ABBE_ILLUMINANT_A;
   for (double nm = ABBE_WAVELENGTH_MIN_NM; nm <= ABBE_WAVELENGTH_MAX_NM; nm += dense ? 1 : 5)
     put(user, nm, factor * abbe_illuminant_power(illuminant, nm));
+}
+
+bool abbe_export_is_grey(const abbe_object *receiver) {
+  const double *r = receiver->reflectance;
+  return receiver->spectrum == NULL && r[0] == r[1] && r[1] == r[2];
+}
+
+/* A Rec.709 colour is lifted to what is linear between multiples of 5 nm, as a table's points are;
+ * what is measured has its own points, or is curved between them. */
+static double next_point(const abbe_spectrum *measured, double nm) {
+  if (measured == NULL) return nm + ABBE_EXPORT_TABLE_STEP_NM;
+  if (abbe_spectrum_interpolation(measured) != ABBE_INTERPOLATION_LINEAR) return nm + 1;
+  const double *at = abbe_spectrum_lambda_nm(measured);
+  const size_t count = abbe_spectrum_count(measured);
+  size_t i = 0;
+  while (i < count && at[i] <= nm) i++;
+  return i < count ? at[i] : INFINITY;
+}
+
+void abbe_export_reflectance(const abbe_object *receiver,
+                             void (*put)(void *user, double lambda_nm, double value), void *user) {
+  const double last =
+      ABBE_EXPORT_TABLE_FIRST_NM + ABBE_EXPORT_TABLE_STEP_NM * (ABBE_EXPORT_TABLE_COUNT - 1);
+  for (double nm = ABBE_EXPORT_TABLE_FIRST_NM;;
+       nm = fmin(next_point(receiver->spectrum, nm), last)) {
+    double channel[3], sum = 0;
+    abbe_reflectance_channels(receiver->spectrum, nm, channel);
+    for (int c = 0; c < 3; c++)
+      sum += (receiver->spectrum != NULL ? 1 : receiver->reflectance[c]) * channel[c];
+    put(user, nm, sum);
+    if (nm >= last) return;
+  }
 }
 
 static void put_corner(abbe_mesh *mesh, size_t i, const abbe_light *light, const double a[3],

@@ -56,6 +56,12 @@ void abbe_export_light_rgb(const abbe_illuminant *illuminant, double rgb[3]);
 void abbe_export_light_spectrum(const abbe_illuminant *illuminant, double factor,
                                 void (*put)(void *user, double lambda_nm, double value),
                                 void *user);
+/* Calls put with a receiver's reflectance, as Abbe has it: from 360 to 830 nm, at the points
+ * between which it is linear. */
+void abbe_export_reflectance(const abbe_object *receiver,
+                             void (*put)(void *user, double lambda_nm, double value), void *user);
+/* Whether that is one number at all wavelengths, reflectance[0]. */
+bool abbe_export_is_grey(const abbe_object *receiver);
 /* A rectangle's or disk's front as a mesh whose normal is the light's direction. A disk has
  * ABBE_EXPORT_DISK_SIDES sides and its own area. */
 abbe_result abbe_export_light_mesh(const abbe_light *light, abbe_mesh *out, abbe_error *error);

@@ -3,6 +3,8 @@
  * that could not be finished. */
 #include "tests/scenes/export/export_text.h"
 
+#include "colorimetry/reflectance/reflected_light.h"
+
 #include <cjson/cJSON.h>
 #include <sys/stat.h>
 
@@ -163,6 +165,72 @@ static void test_losses_are_said(void **state) {
   clear_folder();
 }
 
+/* ---- reflectances ---- */
+
+/* The pairs of a spectrum, as many as its brackets or its two lists hold. */
+static size_t read_pairs(const char *text, abbe_scene_export_target target, double (*out)[2]) {
+  const bool pbrt = target == ABBE_SCENE_EXPORT_PBRT;
+  const char *at = strstr(text, pbrt ? "\"spectrum reflectance\" [" : "name=\"reflectance\" type");
+  assert_non_null(at);
+  size_t count = 0;
+  for (int k = 0; k < (pbrt ? 1 : 2); k++) {
+    at = pbrt ? strchr(at, '[') + 1 : strstr(at, "value=\"") + strlen("value=\"");
+    size_t i = 0;
+    for (char *end; strchr("]\"", *at) == NULL; i++) {
+      out[pbrt ? i / 2 : i][pbrt ? i % 2 : (size_t)k] = strtod(at, &end);
+      assert_true(end > at && i < 600);
+      at = end + strspn(end, ", \n");
+    }
+    count = pbrt ? i / 2 : i;
+  }
+  return count;
+}
+
+static double between(double (*pair)[2], size_t count, double nm) {
+  size_t i = 0;
+  while (i + 2 < count && pair[i + 1][0] < nm) i++;
+  return pair[i][1] +
+         (nm - pair[i][0]) / (pair[i + 1][0] - pair[i][0]) * (pair[i + 1][1] - pair[i][1]);
+}
+
+/* Of both programs that take spectra: read back, the floor reflects at each wavelength what it does
+ * here, whether that was measured or lifted from three numbers. */
+static void test_reflectances_are_read_back(void **state) {
+  (void)state;
+  static const char *const floors[] = {"{patch: orange}", "[0.7, 0.3, 0.1]"};
+  static const abbe_scene_export_target targets[] = {ABBE_SCENE_EXPORT_PBRT,
+                                                     ABBE_SCENE_EXPORT_MITSUBA};
+  for (int i = 0; i < 4; i++) {
+    char source[2000];
+    double pair[600][2];
+    abbe_scene scene;
+    snprintf(
+        source, sizeof source,
+        CAMERA POINT_LIGHT
+        "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: %s}\n" BALL(
+            "crown"),
+        floors[i / 2]);
+    load_text(source, &scene);
+    char *text = written(&scene, targets[i % 2]);
+    const size_t count = read_pairs(text, targets[i % 2], pair);
+    assert_true(count > 80 && pair[0][0] == 360 && pair[count - 1][0] == 830);
+    for (double nm = 360; nm <= 830; nm += 1.25) {
+      double channel[3], own = 0;
+      abbe_reflectance_channels(scene.object[0].spectrum, nm, channel);
+      for (int c = 0; c < 3; c++)
+        own += i / 2 == 0 ? channel[c] : channel[c] * scene.object[0].reflectance[c];
+      assert_near(between(pair, count, nm), own, 1e-8);
+    }
+    assert_false(noted(ABBE_NOTE_LOST, "floor", "") || noted(ABBE_NOTE_CHANGED, "floor", ""));
+    done(text);
+    text = written(&scene, ABBE_SCENE_EXPORT_LUXCORE);
+    assert_int_equal(noted(ABBE_NOTE_LOST, "floor", "measured reflectance"), i / 2 == 0);
+    done(text);
+    abbe_scene_free(&scene);
+  }
+  clear_folder();
+}
+
 /* Names become identifiers; what would end a comment does not. */
 static void test_names_do_no_harm(void **state) {
   (void)state;
@@ -299,6 +367,7 @@ int main(void) {
       cmocka_unit_test(test_lights_keep_their_power),
       cmocka_unit_test(test_photometric_and_film_units),
       cmocka_unit_test(test_losses_are_said),
+      cmocka_unit_test(test_reflectances_are_read_back),
       cmocka_unit_test(test_names_do_no_harm),
       cmocka_unit_test(test_nothing_half_written_stays),
       cmocka_unit_test(test_shipped_scenes_are_well_formed),
