@@ -40,7 +40,7 @@ foreach(name
     photon_grid
     projection_map
     random
-    ranked_run
+    rank_files ranked_optimum ranked_run
     reflectance
     route
     scatter

@@ -1,6 +1,7 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
+#include "cli/base/rank_job.h"
 #include "cli/gem/gem.h"
 #include "cli/gem/gem_output.h"
 #include "cli/gem/gem_stone_input.h"
@@ -9,6 +10,8 @@
 #include "scenes/cuts/cut_stretch.h"
 #include "validation/gem/gem_grid_file.h"
 #include "validation/gem/gem_optimum.h"
+#include "validation/ranks/rank_files.h"
+#include "validation/ranks/ranked_optimum.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>
@@ -58,6 +61,7 @@ typedef struct request {
   double crown[2], pavilion[2], head_deg, tilt_deg, axis_deg;
   size_t crowns, pavilions, size, threads;
   int measure;
+  const abbe_rank_job *job; /* of ranks that share the pairs; NULL: one process */
 } request;
 
 static const struct argp_option options[] = {
@@ -130,9 +134,18 @@ static error_t parse_more(int key, char *arg, request *q) {
   }
 }
 
+/* The file beside which ranks keep theirs, or NULL. */
+static const char *kept_beside(const request *q) {
+  return q->pairs != NULL ? q->pairs : q->out != NULL ? q->out : q->plot;
+}
+
 /* That the parts' options go together, and which pieces of work there are. */
 static void check_parts(const request *q, struct argp_state *state) {
   if (q->tables > 0 && !q->merge) argp_error(state, "one design; '%s' is too much", q->table[0]);
+  if (q->job != NULL && (q->merge || q->part.parts > 0))
+    argp_error(state, "--part and --merge are for one process: abbe gem optimise");
+  if (q->job != NULL && kept_beside(q) == NULL)
+    argp_error(state, "ranks keep their pairs in files: give --pairs FILE.csv, -o or --plot");
   if (q->merge && q->tables == 0)
     argp_error(state, "--merge: of which tables? They follow the design");
   if (q->part.parts == 0) return;
@@ -371,31 +384,62 @@ static abbe_result search(const request *q, abbe_gem_optimum *o, abbe_error *err
   return result;
 }
 
-static abbe_result run(request *q, abbe_error *error) {
+enum { KEEP_S = 10 }; /* between two writings of what a rank has judged */
+
+static abbe_result search_together(const request *q, abbe_gem_optimum *o, abbe_error *error) {
   const abbe_gem_stone_input *s = &q->stone;
+  abbe_progress progress;
+  abbe_progress_begin(&progress, "searching", s->in.quiet);
+  const abbe_gem_optimum_desc search = describe(q, &progress);
+  const abbe_ranked_optimum_desc desc = {.cut = &s->in.cut,
+                                         .polyhedron = &s->in.stone,
+                                         .material = s->in.material,
+                                         .wavelengths = &s->wavelengths,
+                                         .weights = &s->weights,
+                                         .search = &search,
+                                         .path = kept_beside(q),
+                                         .keep_s = KEEP_S};
+  const abbe_result result = abbe_ranked_optimum_find(&q->job->ranks, &desc, o, error);
+  abbe_progress_end(&progress);
+  return result;
+}
+
+/* All pairs are known. */
+static abbe_result write_all(request *q, const abbe_gem_optimum *o, abbe_error *error) {
+  const abbe_gem_stone_input *s = &q->stone;
+  abbe_result result = ABBE_OK;
+  if (q->pairs != NULL) result = abbe_gem_grid_file_write(q->pairs, o, error);
+  if (result == ABBE_OK && q->plot != NULL) result = plot(q, s, o, error);
+  if (result == ABBE_OK && q->out != NULL) result = write_best(q, o, error);
+  if (result == ABBE_OK && q->job != NULL) abbe_rank_files_remove(kept_beside(q));
+  if (result == ABBE_OK && !s->in.json && q->part.parts > 0)
+    printf("%zu of %zu pairs are in %s\n",
+           o->crowns * o->pavilions - abbe_gem_optimum_missing(o, NULL), o->crowns * o->pavilions,
+           q->pairs);
+  if (result == ABBE_OK && !s->in.json && q->part.parts == 0) print(q, s, o);
+  if (result == ABBE_OK && s->in.json) result = print_json(q, s, o, error);
+  return result;
+}
+
+static abbe_result run(request *q, abbe_error *error) {
   abbe_gem_optimum optimum = {0};
   abbe_result result = check_plot(q->plot, error);
   if (result == ABBE_OK)
     result = abbe_command_check_targets((const char *[]){q->out, q->plot, q->pairs}, 3, error);
   if (result == ABBE_OK) result = abbe_gem_stone_input_load(&q->stone, error);
   if (result == ABBE_OK) result = find_angles(q, error);
-  if (result == ABBE_OK) result = q->merge ? merge(q, &optimum, error) : search(q, &optimum, error);
-  if (result == ABBE_OK && q->pairs != NULL)
-    result = abbe_gem_grid_file_write(q->pairs, &optimum, error);
-  if (result == ABBE_OK && q->plot != NULL) result = plot(q, s, &optimum, error);
-  if (result == ABBE_OK && q->out != NULL) result = write_best(q, &optimum, error);
-  if (result == ABBE_OK && !s->in.json && q->part.parts > 0)
-    printf("%zu of %zu pairs are in %s\n",
-           optimum.crowns * optimum.pavilions - abbe_gem_optimum_missing(&optimum, NULL),
-           optimum.crowns * optimum.pavilions, q->pairs);
-  if (result == ABBE_OK && !s->in.json && q->part.parts == 0) print(q, s, &optimum);
-  if (result == ABBE_OK && s->in.json) result = print_json(q, s, &optimum, error);
+  result = abbe_rank_job_agree(q->job, result, error);
+  if (result == ABBE_OK)
+    result = q->job != NULL ? search_together(q, &optimum, error)
+             : q->merge     ? merge(q, &optimum, error)
+                            : search(q, &optimum, error);
+  if (result == ABBE_OK && !abbe_rank_job_is_silent(q->job)) result = write_all(q, &optimum, error);
   abbe_gem_optimum_free(&optimum);
   abbe_gem_stone_input_free(&q->stone);
   return result;
 }
 
-int abbe_gem_optimise(int argc, char **argv) {
+static int run_command(int argc, char **argv, abbe_rank_job *job) {
   static const struct argp_child children[] = {{&abbe_gem_input_argp, 0, NULL, 0}, {0}};
   static const struct argp argp = {
       options,
@@ -417,13 +461,24 @@ int abbe_gem_optimise(int argc, char **argv) {
                .head_deg = ABBE_GEM_HEAD_DEG,
                .crowns = 21,
                .pavilions = 21,
-               .size = 32};
+               .size = 32,
+               .job = job};
   q.table = calloc((size_t)argc, sizeof *q.table);
   abbe_error error = {0};
   abbe_result result = ABBE_OK;
   if (q.table == NULL) result = abbe_error_set(&error, ABBE_NO_MEMORY, "no memory for arguments");
   if (result == ABBE_OK) abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
+  if (result == ABBE_OK && job != NULL) job->ready();
+  if (abbe_rank_job_is_silent(job)) q.stone.in.quiet = true;
   if (result == ABBE_OK) result = run(&q, &error);
   free(q.table);
-  return abbe_command_end(argv[0], result, &error);
+  return abbe_rank_job_end(job, argv[0], result, &error);
+}
+
+int abbe_gem_optimise(int argc, char **argv) {
+  return run_command(argc, argv, NULL);
+}
+
+int abbe_gem_optimise_by_ranks(int argc, char **argv, abbe_rank_job *job) {
+  return run_command(argc, argv, job);
 }

@@ -1,5 +1,9 @@
 #include "cli/base/command.h"
 #include "cli/base/output.h"
+#include "cli/base/rank_job.h"
+#include "cli/gem/gem.h"
+#include "cli/render/render.h"
+#include "cli/sweep/sweep.h"
 #include "cli/trace/trace.h"
 
 #include "colorimetry/image/display_ocio.h"
@@ -72,30 +76,57 @@ static void say(const char *message) {
   fputs(message, stderr);
 }
 
+/* What ranks share, by the words that name it. */
+static const struct {
+  const char *word, *verb, *program, *shared;
+  int (*run)(int argc, char **argv, abbe_rank_job *job);
+} commands[] = {
+    {"trace", NULL, "abbe-mpi trace", "passes, or frames over time", abbe_trace_by_ranks},
+    {"render", NULL, "abbe-mpi render", "frames from all around, or over time",
+     abbe_render_by_ranks},
+    {"sweep", NULL, "abbe-mpi sweep", "settings", abbe_sweep_by_ranks},
+    {"gem", "optimise", "abbe-mpi gem optimise", "pairs of angles", abbe_gem_optimise_by_ranks}};
+enum { COMMANDS = sizeof commands / sizeof *commands };
+
 static int help(FILE *to) {
   if (own_rank > 0) return to == stdout ? ABBE_EXIT_DONE : ABBE_EXIT_USAGE;
-  fprintf(to, "abbe-mpi " ABBE_VERSION ": one trace by the ranks of an MPI job\n\n"
-              "usage: mpirun abbe-mpi trace SCENE.yaml [OPTION…]\n\n"
-              "Options are those of abbe trace; each rank keeps a checkpoint of its own.\n"
-              "  mpirun -n 4 abbe-mpi trace scenes/gem.yaml -o gem.exr --spp 256 --resume\n\n"
+  fprintf(to, "abbe-mpi " ABBE_VERSION ": the work of one command by the ranks of an MPI job\n\n"
+              "usage: mpirun abbe-mpi COMMAND [OPTION…] FILE\n\n"
+              "Options are those of abbe COMMAND. Ranks share\n");
+  for (int i = 0; i < COMMANDS; i++)
+    fprintf(to, "  %s%s%-*s %s\n", commands[i].word, commands[i].verb != NULL ? " " : "",
+            13 - (int)strlen(commands[i].word), commands[i].verb != NULL ? commands[i].verb : "",
+            commands[i].shared);
+  fprintf(to, "\n  mpirun -n 4 abbe-mpi trace scenes/gem.yaml -o gem.exr --spp 256 --resume\n\n"
               "Exit codes: 0 done, 1 failed, 2 used wrongly.\n");
   return to == stdout ? ABBE_EXIT_DONE : ABBE_EXIT_USAGE;
 }
 
-static int run(int argc, char **argv) {
+/* The command that the arguments begin with, or COMMANDS. */
+static int find_command(int argc, char **argv) {
+  for (int i = 0; i < COMMANDS; i++)
+    if (argc >= 2 && strcmp(argv[1], commands[i].word) == 0 &&
+        (commands[i].verb == NULL || (argc >= 3 && strcmp(argv[2], commands[i].verb) == 0)))
+      return i;
+  return COMMANDS;
+}
+
+static int run(int argc, char **argv, int command) {
   int count;
   MPI_Comm_size(MPI_COMM_WORLD, &count);
   MPI_Type_contiguous(sizeof(abbe_whole_sum), MPI_BYTE, &sum_type);
   MPI_Type_commit(&sum_type);
   MPI_Op_create(add, 1, &sum_op);
-  abbe_trace_ranks ranks = {.ranks = {(size_t)own_rank, (size_t)count, sum, spread, most},
-                            .ready = ready};
+  abbe_rank_job job = {.ranks = {(size_t)own_rank, (size_t)count, sum, spread, most},
+                       .ready = ready};
   if (own_rank > 0) tell_ready(true);
   if (!is_ready && own_rank > 0) return ABBE_EXIT_USAGE;
-  char program[] = "abbe-mpi trace";
-  argv[1] = program;
-  const int code = abbe_trace_by_ranks(argc - 1, argv + 1, &ranks);
-  if (ranks.alone && count > 1) {
+  const int words = commands[command].verb == NULL ? 1 : 2;
+  char program[64];
+  snprintf(program, sizeof program, "%s", commands[command].program);
+  argv[words] = program;
+  const int code = commands[command].run(argc - words, argv + words, &job);
+  if (job.alone && count > 1) {
     has_failed = true;
     fflush(NULL);
     MPI_Abort(MPI_COMM_WORLD, code);
@@ -114,12 +145,13 @@ int main(int argc, char **argv) {
   signal(SIGXFSZ, SIG_IGN);
   MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &threads);
   MPI_Comm_rank(MPI_COMM_WORLD, &own_rank);
-  is_ready = true; /* unless there is something to trace, all answer alike */
+  is_ready = true; /* unless there is work, all answer alike */
   atexit(end_all);
   if (argc == 2 && strcmp(argv[1], "--version") == 0)
     return own_rank == 0 && printf("%s\n", argp_program_version) < 0;
   if (argc == 2 && strcmp(argv[1], "--help") == 0) return help(stdout);
-  if (argc < 2 || strcmp(argv[1], "trace") != 0) return help(stderr);
+  const int command = find_command(argc, argv);
+  if (command == COMMANDS) return help(stderr);
   is_ready = false;
-  return run(argc, argv);
+  return run(argc, argv, command);
 }

@@ -1,3 +1,4 @@
+#include "cli/render/render.h"
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
@@ -48,6 +49,19 @@ static const struct argp_option options[] = {
     {"gl", OPTION_GL, "NAME", 0, "osmesa (CPU) or egl (osmesa)", 0},
     {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
     {0}};
+
+/* Frames that ranks draw must be alike, whatever the clock of each says. */
+static void check_ranks(const request *q, struct argp_state *state) {
+  if (q->job == NULL) return;
+  if (q->series.count == 0)
+    argp_error(state, "ranks share frames: give --turntable N or --frames A:B; one picture is for "
+                      "one process: abbe render");
+  if (q->series.part.parts > 0 || q->series.merge)
+    argp_error(state, "--part and --merge are for one process: abbe render");
+  if (q->preset.request.budget_ms > 0)
+    argp_error(state, "--budget-ms may choose otherwise for each rank: give --preset or "
+                      "--max-error");
+}
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   static const char *const backends[] = {"osmesa", "egl"};
@@ -108,6 +122,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
                  "%s writes frames by -o FILE.exr and --png FILE.png, and goes "
                  "without --save-map, --frames N, --bands and --error-bars",
                  q->series.around ? "--turntable" : "--frames A:B");
+    check_ranks(q, state);
     if (q->series.merge && q->png == NULL)
       argp_error(state, "--merge makes a PNG that moves: give --png FILE.png");
     if (q->errors.mean && q->aovs)
@@ -379,7 +394,29 @@ static abbe_result choose_and_draw(request *q, const abbe_scene *scene, abbe_err
   return result;
 }
 
-int abbe_command_render(int argc, char **argv) {
+/* Each frame is some rank's; the PNG that moves is made once all are there. */
+static abbe_result draw_together(request *q, const abbe_scene *scene, abbe_result before,
+                                 abbe_error *error) {
+  before = abbe_rank_job_agree(q->job, before, error);
+  if (before != ABBE_OK || q->job == NULL)
+    return before == ABBE_OK ? choose_and_draw(q, scene, error) : before;
+  q->series.part = abbe_rank_job_part(q->job);
+  const bool draws = q->series.part.part < q->series.count;
+  abbe_result result = draws ? choose_and_draw(q, scene, error) : ABBE_OK;
+  result = abbe_rank_job_agree(q->job, result, error);
+  if (result == ABBE_OK && q->png != NULL && !abbe_rank_job_is_silent(q->job))
+    result = abbe_frame_series_merge(&q->series, q->png, error);
+  return result;
+}
+
+/* Rank 0 alone says what came of it. */
+static void be_silent(request *q) {
+  q->quiet = true;
+  q->json = false;
+  q->stats = NULL;
+}
+
+static int run_command(int argc, char **argv, abbe_rank_job *job) {
   static const struct argp_child children[] = {
       {&abbe_render_options_argp, 0, "Speed and accuracy:", 1},
       {&abbe_map_options_argp, 0, "Spectral map:", 3},
@@ -415,8 +452,11 @@ int abbe_command_render(int argc, char **argv) {
                .preset.tool = -1,
                .errors.program = argv[0],
                .series.program = argv[0],
-               .screen.program = argv[0]};
+               .screen.program = argv[0],
+               .job = job};
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
+  if (job != NULL) job->ready();
+  if (abbe_rank_job_is_silent(job)) be_silent(&q);
   abbe_error error = {0};
   abbe_scene scene = {0};
   /* The AOVs tell where the caustic is, whose error is summed up. */
@@ -433,8 +473,17 @@ int abbe_command_render(int argc, char **argv) {
   if (loaded && q.errors.asked) result = abbe_error_bars_check(q.render.desc.profile, NULL, &error);
   if (result == ABBE_OK)
     result = abbe_map_options_resolve(&q.map, &scene, q.render.desc.map_size == 0, &error);
-  if (result == ABBE_OK) result = choose_and_draw(&q, &scene, &error);
+  result = draw_together(&q, &scene, result, &error);
   abbe_scene_free(&scene);
   abbe_caustic_volume_free(&q.render.volume);
+  if (abbe_rank_job_is_silent(job) && result == ABBE_CANCELLED) return ABBE_EXIT_FAILED;
   return abbe_render_options_end(&q.render, loaded, result, &error);
+}
+
+int abbe_command_render(int argc, char **argv) {
+  return run_command(argc, argv, NULL);
+}
+
+int abbe_render_by_ranks(int argc, char **argv, abbe_rank_job *job) {
+  return run_command(argc, argv, job);
 }

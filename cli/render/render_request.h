@@ -5,6 +5,7 @@
 #include "cli/base/command.h"
 #include "cli/base/frame_series.h"
 #include "cli/base/map_options.h"
+#include "cli/base/rank_job.h"
 #include "cli/base/screen_options.h"
 #include "cli/render/error_options.h"
 #include "cli/render/preset_options.h"
@@ -23,6 +24,7 @@ typedef struct abbe_render_request {
   const char *picture_note;    /* on how that was chosen, or NULL */
   abbe_error_options errors;
   abbe_frame_series series; /* --turntable, --frames A:B; zeroed but for program */
+  abbe_rank_job *job;       /* of ranks that share the frames; NULL: one process */
   const char *exr, *png, *stats;
   bool aovs, unfilled, quiet, json;
   size_t frames, bands;

@@ -1,3 +1,4 @@
+#include "cli/sweep/sweep.h"
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
@@ -6,6 +7,7 @@
 #include "cli/sweep/sweep_report.h"
 
 #include "validation/landing/estimator_study.h"
+#include "validation/sweep/ranks/ranked_sweep.h"
 #include "validation/sweep/scaling_study.h"
 #include "validation/sweep/sweep_page.h"
 #include "validation/sweep/sweep_setting.h"
@@ -97,9 +99,10 @@ static void print_settings(const abbe_sweep_setting *setting, size_t count) {
   }
 }
 
+/* Ranks that could not begin (`before`) end all of them. */
 static abbe_result measure(const abbe_sweep_options *q, const abbe_scene *scene,
-                           const abbe_sweep_setting *setting, size_t count, abbe_sweep_table *out,
-                           abbe_error *error) {
+                           const abbe_sweep_setting *setting, size_t count, abbe_result before,
+                           abbe_sweep_table *out, abbe_error *error) {
   bar b = {.quiet = q->quiet};
   abbe_context *context = NULL;
   abbe_sweep_request work = q->work;
@@ -114,9 +117,12 @@ static abbe_result measure(const abbe_sweep_options *q, const abbe_scene *scene,
   work.progress = update;
   work.user = &b;
   work.stop = abbe_progress_stopped();
-  abbe_result result = claim_references(q, error);
+  abbe_result result = before == ABBE_OK ? claim_references(q, error) : before;
   if (result == ABBE_OK) result = abbe_context_make(q->backend, &context, error);
-  if (result == ABBE_OK) result = abbe_sweep_run(context, scene, &work, out, error);
+  result = abbe_rank_job_agree(q->job, result, error);
+  if (result == ABBE_OK)
+    result = q->job != NULL ? abbe_ranked_sweep(&q->job->ranks, context, scene, &work, out, error)
+                            : abbe_sweep_run(context, scene, &work, out, error);
   if (b.what != NULL) abbe_progress_end(&b.progress);
   abbe_context_free(context);
   return result;
@@ -132,8 +138,8 @@ static abbe_result sweep_scene(const abbe_sweep_options *q, abbe_sweep_table *ou
   if (result == ABBE_OK) result = keep_part(&q->part, setting, &count, error);
   if (result == ABBE_OK && q->list_only)
     print_settings(setting, count);
-  else if (result == ABBE_OK)
-    result = measure(q, &scene, setting, count, out, error);
+  else if (result == ABBE_OK || q->job != NULL)
+    result = measure(q, &scene, setting, count, result, out, error);
   free(setting);
   abbe_scene_free(&scene);
   return result;
@@ -279,7 +285,8 @@ static abbe_result show(const abbe_sweep_options *q, const abbe_sweep_table *tab
 
 static abbe_result run(const abbe_sweep_options *q, abbe_error *error) {
   const char *const targets[] = {q->work.table, q->plot, q->report};
-  abbe_result result = abbe_command_check_targets(targets, 3, error);
+  abbe_result result =
+      abbe_rank_job_agree(q->job, abbe_command_check_targets(targets, 3, error), error);
   if (result != ABBE_OK) return result;
   if (q->scaling) return study_scaling(q, error);
   if (q->estimators) return study_estimators(q, error);
@@ -289,29 +296,41 @@ static abbe_result run(const abbe_sweep_options *q, abbe_error *error) {
   result = q->scene == NULL ? load_tables(q, tables, error) : sweep_scene(q, &tables[0], error);
   if (result == ABBE_OK && q->scene == NULL && q->work.table != NULL)
     result = join_tables(q, tables, &count, error);
-  if (result == ABBE_OK && !q->list_only && !q->work.trace_only)
+  if (result == ABBE_OK && !q->list_only && !q->work.trace_only && !abbe_rank_job_is_silent(q->job))
     result = show(q, tables, count, error);
   for (size_t i = 0; i < count; i++) abbe_sweep_table_free(&tables[i]);
   free(tables);
   return result;
 }
 
-int abbe_command_sweep(int argc, char **argv) {
+static int run_command(int argc, char **argv, abbe_rank_job *job) {
   abbe_error error = {0};
   abbe_sweep_grids grids;
-  abbe_sweep_options q = {.program = argv[0], .grids = &grids};
+  abbe_sweep_options q = {.program = argv[0], .grids = &grids, .job = job};
   q.work.frames = 5;
   q.work.time = ABBE_SWEEP_FRAME_MS;
   q.work.error = ABBE_SWEEP_CAUSTIC_DE;
   abbe_result result = abbe_sweep_grids_load(NULL, &grids, &error);
   if (result == ABBE_OK) {
     abbe_arguments_parse(&abbe_sweep_options_argp, ABBE_ARGUMENT_READS, argc, argv, &q);
+    if (job != NULL) job->ready();
+    q.quiet = q.quiet || abbe_rank_job_is_silent(job);
     if (q.listed && q.list.profiles.count == 0) {
       q.list.profiles.count = ABBE_SWEEP_PROFILE_COUNT;
       for (size_t i = 0; i < ABBE_SWEEP_PROFILE_COUNT; i++) q.list.profiles.value[i] = i;
     }
     result = run(&q, &error);
+  } else if (job != NULL) {
+    job->alone = true;
   }
   abbe_sweep_grids_free(&grids);
-  return abbe_command_end(argv[0], result, &error);
+  return abbe_rank_job_end(job, argv[0], result, &error);
+}
+
+int abbe_command_sweep(int argc, char **argv) {
+  return run_command(argc, argv, NULL);
+}
+
+int abbe_sweep_by_ranks(int argc, char **argv, abbe_rank_job *job) {
+  return run_command(argc, argv, job);
 }

@@ -264,9 +264,25 @@ bool abbe_sweep_options_is_table(const char *path) {
   return length > 4 && strcmp(path + length - 4, ".csv") == 0;
 }
 
+/* What a job of ranks does not share. */
+static void check_ranks(const request *q, struct argp_state *state) {
+  const char *alone = q->part.parts > 0    ? "--part"
+                      : q->list_only       ? "--list"
+                      : q->scaling         ? "--scaling"
+                      : q->estimators      ? "--estimators"
+                      : q->processes       ? "--processes"
+                      : q->work.trace_only ? "--trace-only"
+                                           : NULL;
+  if (q->job == NULL) return;
+  if (alone != NULL) argp_error(state, "%s is for one process: abbe sweep", alone);
+  if (abbe_sweep_options_is_table(q->argument[0]))
+    argp_error(state, "'%s' is a table: it is shown by one process, abbe sweep", q->argument[0]);
+}
+
 static void finish(request *q, struct argp_state *state) {
   abbe_sweep_request *w = &q->work;
   if (q->argument_count == 0) argp_error(state, "which scene? Give a file such as scenes/gem.yaml");
+  check_ranks(q, state);
   if (abbe_sweep_options_is_table(q->argument[0])) {
     if (q->part.parts > 0 || q->listed || q->grid != NULL || q->scaling || q->estimators)
       argp_error(state, "'%s' is a table: it is shown, and nothing is measured", q->argument[0]);

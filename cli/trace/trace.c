@@ -388,7 +388,20 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
   return result;
 }
 
-static int run_command(int argc, char **argv, abbe_trace_ranks *ranks) {
+/* Of ranks, each traces frames of its own. */
+static abbe_result trace_frames(request *q, const abbe_rank_job *job, const abbe_scene *scene,
+                                abbe_error *error) {
+  if (job == NULL) return abbe_trace_frames(q, scene, run, error);
+  q->ranks = NULL;
+  q->series.part = abbe_rank_job_part(job);
+  abbe_result result = abbe_trace_frames(q, scene, run, error);
+  result = abbe_rank_job_agree(job, result, error);
+  if (result == ABBE_OK && q->png != NULL && !abbe_rank_job_is_silent(job))
+    result = abbe_frame_series_merge(&q->series, q->png, error);
+  return result;
+}
+
+static int run_command(int argc, char **argv, abbe_rank_job *job) {
   static const struct argp_child children[] = {
       {&abbe_map_options_argp, 0, "Receiver map:", 3},
       {&abbe_screen_options_argp, 0, "How the PNG shows it:", 4},
@@ -416,7 +429,7 @@ static int run_command(int argc, char **argv, abbe_trace_ranks *ranks) {
                .screen.program = argv[0],
                .series.program = argv[0],
                .every = 30,
-               .ranks = ranks != NULL ? &ranks->ranks : NULL};
+               .ranks = job != NULL ? &job->ranks : NULL};
   q.parts = calloc((size_t)argc + 1, sizeof *q.parts);
   abbe_error error = {0};
   if (q.parts == NULL) {
@@ -424,8 +437,8 @@ static int run_command(int argc, char **argv, abbe_trace_ranks *ranks) {
     return abbe_command_end(argv[0], ABBE_NO_MEMORY, &error);
   }
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
-  if (ranks != NULL) ranks->ready();
-  q.quiet = q.quiet || (ranks != NULL && ranks->ranks.rank > 0);
+  if (job != NULL) job->ready();
+  q.quiet = q.quiet || abbe_rank_job_is_silent(job);
   if (q.part_end > 0) q.passes = q.part_end - q.part_first;
   if (q.passes == 0) q.passes = q.seconds > 0 || q.until > 0 ? MOST_PASSES : DEFAULT_PASSES;
   abbe_scene scene = {0};
@@ -434,24 +447,22 @@ static int run_command(int argc, char **argv, abbe_trace_ranks *ranks) {
   if (result == ABBE_OK)
     result = abbe_scene_input_load_with(argv[0], q.scene, q.materials, &q.changes, &scene, &error);
   if (result == ABBE_OK && !q.quiet) abbe_scene_input_note(&scene);
-  if (q.ranks != NULL) result = abbe_ranks_agree(q.ranks, result, &error);
+  result = abbe_rank_job_agree(job, result, &error);
   q.series.resume = q.resume;
   if (result == ABBE_OK)
-    result =
-        q.series.count > 0 ? abbe_trace_frames(&q, &scene, run, &error) : run(&q, &scene, &error);
+    result = q.series.count > 0 ? trace_frames(&q, job, &scene, &error) : run(&q, &scene, &error);
   free(q.checkpoint_path);
   free(q.parts);
   abbe_scene_free(&scene);
-  if (ranks != NULL) ranks->alone = result != ABBE_OK && result != ABBE_CANCELLED;
-  /* why all of them end is said once */
-  if (ranks != NULL && ranks->ranks.rank > 0 && result == ABBE_CANCELLED) return ABBE_EXIT_FAILED;
-  return abbe_command_end(argv[0], result, &error);
+  if (job != NULL)
+    job->alone = q.series.count == 0 && result != ABBE_OK && result != ABBE_CANCELLED;
+  return abbe_rank_job_end(job, argv[0], result, &error);
 }
 
 int abbe_command_trace(int argc, char **argv) {
   return run_command(argc, argv, NULL);
 }
 
-int abbe_trace_by_ranks(int argc, char **argv, abbe_trace_ranks *ranks) {
-  return run_command(argc, argv, ranks);
+int abbe_trace_by_ranks(int argc, char **argv, abbe_rank_job *job) {
+  return run_command(argc, argv, job);
 }

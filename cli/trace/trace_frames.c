@@ -37,12 +37,14 @@ void abbe_trace_frames_check(const abbe_trace_request *q, struct argp_state *sta
   const abbe_frame_series *s = &q->series;
   if (s->count == 0 && (s->per_second > 0 || s->part.parts > 0))
     argp_error(state, "--%s goes with --frames A:B", s->per_second > 0 ? "fps" : "part");
+  if (s->part.parts > 0 && q->ranks != NULL)
+    argp_error(state, "--part is for one process: abbe trace");
   if (s->part.parts > 0 && s->part.part >= s->count)
     argp_error(state, "--part %zu/%zu has none of %zu frames", s->part.part, s->part.parts,
                s->count);
   if (s->count > 0 &&
       (q->map.save != NULL || q->stats != NULL || q->json || q->rates || q->checkpoint != NULL ||
-       q->part_end > 0 || q->merge || q->ranks != NULL || (q->exr == NULL && q->png == NULL)))
+       q->part_end > 0 || q->merge || (q->exr == NULL && q->png == NULL)))
     argp_error(state, "--frames writes frames by -o FILE.exr and --png FILE.png, and goes without "
                       "--save-map, --stats, --json, --rates, --checkpoint, --passes and --merge");
 }

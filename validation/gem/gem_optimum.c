@@ -55,7 +55,8 @@ abbe_result abbe_gem_optimum_apply(const abbe_gem_optimum *o, abbe_cut *cut,
 
 /* The planes are the copy's own; names and texts are the design's. */
 static abbe_result try_pair(const work *w, const abbe_cut *cut, const abbe_cut_polyhedron *p,
-                            abbe_gem_optimum *o, size_t i, abbe_error *error) {
+                            const abbe_gem_optimum *o, size_t i, abbe_gem_number *out,
+                            abbe_error *error) {
   abbe_cut own = *cut;
   own.tier = malloc(cut->tier_count * sizeof *own.tier);
   own.facet = malloc(cut->facet_count * sizeof *own.facet);
@@ -68,7 +69,7 @@ static abbe_result try_pair(const work *w, const abbe_cut *cut, const abbe_cut_p
     memcpy(own.facet, cut->facet, cut->facet_count * sizeof *own.facet);
     result = abbe_gem_optimum_apply(o, &own, p, i, error);
   }
-  if (result == ABBE_OK) result = judge(w, &own, &o->value[i], error);
+  if (result == ABBE_OK) result = judge(w, &own, out, error);
   free(own.tier);
   free(own.facet);
   return result;
@@ -124,7 +125,8 @@ static abbe_result make_grid(const abbe_cut *cut, const abbe_cut_polyhedron *p,
 void abbe_gem_optimum_know(abbe_gem_optimum *o, size_t i, abbe_gem_number value) {
   o->value[i] = value;
   const double gain = value.value - o->value[o->best].value;
-  if (isnan(gain) ? !isnan(value.value) : o->least ? gain < 0 : gain > 0) o->best = i;
+  if (isnan(gain) ? !isnan(value.value) : gain == 0 ? i < o->best : o->least ? gain < 0 : gain > 0)
+    o->best = i;
 }
 
 size_t abbe_gem_optimum_missing(const abbe_gem_optimum *o, size_t *first) {
@@ -151,6 +153,19 @@ abbe_result abbe_gem_optimum_begin(const abbe_cut *cut, const abbe_cut_polyhedro
   return result;
 }
 
+abbe_result abbe_gem_optimum_judge(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
+                                   const abbe_material *material,
+                                   const abbe_wavelengths *wavelengths, const abbe_weights *weights,
+                                   const abbe_gem_optimum_desc *desc, abbe_gem_optimum *optimum,
+                                   size_t i, abbe_error *error) {
+  ABBE_REQUIRE(cut && polyhedron && material && wavelengths && weights && desc && optimum, error);
+  const work w = {material, wavelengths, weights, desc};
+  abbe_gem_number value;
+  const abbe_result result = try_pair(&w, cut, polyhedron, optimum, i, &value, error);
+  if (result == ABBE_OK) abbe_gem_optimum_know(optimum, i, value);
+  return result;
+}
+
 abbe_result abbe_gem_optimum_find(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
                                   const abbe_material *material,
                                   const abbe_wavelengths *wavelengths, const abbe_weights *weights,
@@ -159,11 +174,10 @@ abbe_result abbe_gem_optimum_find(const abbe_cut *cut, const abbe_cut_polyhedron
   abbe_result result =
       abbe_gem_optimum_begin(cut, polyhedron, material, wavelengths, weights, desc, out, error);
   if (result != ABBE_OK) return result;
-  const work w = {material, wavelengths, weights, desc};
   const size_t all = out->crowns * out->pavilions, step = desc->parts > 0 ? desc->parts : 1;
   for (size_t i = desc->parts > 0 ? desc->part : 0; i < all && result == ABBE_OK; i += step) {
-    result = try_pair(&w, cut, polyhedron, out, i, error);
-    if (result == ABBE_OK) abbe_gem_optimum_know(out, i, out->value[i]);
+    result = abbe_gem_optimum_judge(cut, polyhedron, material, wavelengths, weights, desc, out, i,
+                                    error);
     if (result == ABBE_OK && desc->progress != NULL &&
         !desc->progress(desc->user, fmin((double)(i + step) / (double)all, 1)))
       result = abbe_error_set(error, ABBE_CANCELLED, "the search was given up");

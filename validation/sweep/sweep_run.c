@@ -43,7 +43,8 @@ static abbe_result find(work *w, bool matched, abbe_sweep_reference *out, abbe_e
   desc.stop = w->q->stop;
   w->what = matched ? "matched" : "reference";
   w->share = 1;
-  abbe_result result = abbe_sweep_reference_name(w->q->table, out == &w->matched, out, error);
+  const char *beside = w->q->references != NULL ? w->q->references : w->q->table;
+  abbe_result result = abbe_sweep_reference_name(beside, out == &w->matched, out, error);
   if (result == ABBE_OK)
     result = abbe_sweep_reference_find(w->sweep.context, w->scene, &desc, out, error);
   if (result != ABBE_CANCELLED) return result;

@@ -23,6 +23,7 @@ typedef struct abbe_sweep_request {
   const char *table;                     /* where the rows are kept, a .csv */
   const char *reference, *reference_map; /* files; both NULL: traced */
   abbe_sweep_reference_desc traced;      /* how; its progress, user and stop are not looked at */
+  const char *references;                /* beside which file traced ones are; NULL: the table */
   bool decompose;                        /* a second reference, of matched physics */
   bool trace_only;                       /* no rows */
   size_t frames;                         /* behind each median */

@@ -89,10 +89,27 @@ static void wrong_requests_are_refused(void **state) {
   judged_free(&j);
 }
 
+/* Whatever the order in which pairs become known. */
+static void the_first_of_equals_is_best(void **state) {
+  (void)state;
+  static const size_t orders[2][3] = {{0, 1, 2}, {2, 1, 0}};
+  static const double value[3] = {0.2, 0.5, 0.5};
+  for (int k = 0; k < 2; k++) {
+    abbe_gem_number held[3] = {{NAN, NAN}, {NAN, NAN}, {NAN, NAN}};
+    abbe_gem_optimum o = {.crowns = 3, .pavilions = 1, .value = held};
+    for (int i = 0; i < 3; i++) {
+      const size_t pair = orders[k][i];
+      abbe_gem_optimum_know(&o, pair, (abbe_gem_number){value[pair], 0});
+    }
+    assert_int_equal(o.best, 1);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(it_leaves_the_window_behind),
       cmocka_unit_test(wrong_requests_are_refused),
+      cmocka_unit_test(the_first_of_equals_is_best),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,59 @@
+#include "validation/ranks/rank_files.h"
+
+#include "base/file.h"
+#include "tests/check.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+static void put(const char *path) {
+  assert_int_equal(abbe_file_write(path, "x", 1, NULL), ABBE_OK);
+}
+
+/* Of neighbours only those that a rank would write are found, in the order of their numbers. */
+static void ranks_files_are_found_and_removed(void **state) {
+  (void)state;
+  static const char *const strange[] = {"rank_files.csv",    "rank_files.csv.01",
+                                        "rank_files.csv.",   "rank_files.csv.1b",
+                                        "rank_files.csv2.1", "a_rank_files.csv.1"};
+  size_t *rank, count;
+  char *name;
+  for (size_t i = 0; i < sizeof strange / sizeof *strange; i++) put(strange[i]);
+  assert_int_equal(abbe_rank_files_find("rank_files.csv", &rank, &count, NULL), ABBE_OK);
+  assert_int_equal(count, 0);
+  assert_null(rank);
+  static const size_t there[] = {0, 2, 11};
+  for (size_t i = 3; i-- > 0;) {
+    assert_int_equal(abbe_rank_files_name("rank_files.csv", there[i], &name, NULL), ABBE_OK);
+    put(name);
+    free(name);
+  }
+  assert_int_equal(access("rank_files.csv.11", F_OK), 0);
+  char here[4096], path[sizeof here + 32];
+  assert_non_null(getcwd(here, sizeof here));
+  snprintf(path, sizeof path, "%s/rank_files.csv", here);
+  assert_int_equal(abbe_rank_files_find(path, &rank, &count, NULL), ABBE_OK);
+  assert_int_equal(count, 3);
+  assert_memory_equal(rank, there, sizeof there);
+  free(rank);
+  abbe_rank_files_remove(path);
+  assert_int_equal(abbe_rank_files_find(path, &rank, &count, NULL), ABBE_OK);
+  assert_int_equal(count, 0);
+  for (size_t i = 0; i < sizeof strange / sizeof *strange; i++)
+    assert_int_equal(unlink(strange[i]), 0);
+}
+
+static void a_folder_that_is_not_there_is_named(void **state) {
+  (void)state;
+  size_t *rank, count;
+  abbe_error error = {0};
+  assert_int_equal(abbe_rank_files_find("nowhere/a.csv", &rank, &count, &error), ABBE_IO);
+  assert_contains(error.text, "nowhere/: the folder cannot be read");
+  abbe_rank_files_remove("nowhere/a.csv");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(ranks_files_are_found_and_removed),
+                                     cmocka_unit_test(a_folder_that_is_not_there_is_named)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

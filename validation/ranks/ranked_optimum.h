@@ -1,0 +1,37 @@
+/* ranked_optimum.h: one search for a gem's angles (gem/gem_optimum.h) by several processes, "ranks"
+ * (tracer/ranked_run.h): each judges pairs of its own and keeps them in a file of its own, so that
+ * a rank that is killed costs no more than it had not written.
+ */
+#ifndef ABBE_VALIDATION_RANKS_RANKED_OPTIMUM_H
+#define ABBE_VALIDATION_RANKS_RANKED_OPTIMUM_H
+
+#include "validation/gem/gem_optimum.h"
+#include "validation/tracer/ranked_run.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct abbe_ranked_optimum_desc {
+  const abbe_cut *cut;
+  const abbe_cut_polyhedron *polyhedron;
+  const abbe_material *material;
+  const abbe_wavelengths *wavelengths;
+  const abbe_weights *weights;
+  const abbe_gem_optimum_desc *search; /* without parts; progress is of this rank's pairs */
+  const char *path;                    /* beside which ranks keep their files (rank_files.h) */
+  double keep_s;                       /* seconds between two writings of them */
+} abbe_ranked_optimum_desc;
+
+/* Every rank calls it alike. Pairs of files that are there already are not judged again, whatever
+ * number of ranks there was. out: all pairs, to the bit those of abbe_gem_optimum_find, at rank 0;
+ * zeroed at the others. The files stay until the caller removes them. ABBE_CANCELLED, at all ranks
+ * but those that failed, where one was stopped or failed; errors of abbe_gem_optimum_find,
+ * abbe_gem_grid_file_read and abbe_gem_grid_file_write. */
+abbe_result abbe_ranked_optimum_find(const abbe_ranks *ranks, const abbe_ranked_optimum_desc *desc,
+                                     abbe_gem_optimum *out, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
