@@ -39,7 +39,7 @@ abbe_result abbe_published_run(abbe_published *p, bool lit, abbe_error *error) {
 
 bool abbe_published_keeps_light(const abbe_render_desc *desc) {
   if (abbe_profile_is_wyman2006(desc->profile))
-    return desc->fill == ABBE_FILL_GATHER_LIGHT && desc->history <= 1;
+    return abbe_wyman2006_keeps_light(desc);
   return abbe_profile_is_shah2007(desc->profile);
 }
 
@@ -81,6 +81,23 @@ GLuint abbe_published_picture(const abbe_published *p) {
   if (is_wyman(p)) return p->wyman.eye.picture;
   if (is_wand(p)) return p->wand.picture;
   return is_shah(p) ? p->shah.eye.picture : p->thesis.picture;
+}
+
+size_t abbe_published_cells(const abbe_published *p) {
+  const abbe_gpu_scene *scene = is_shah(p)    ? p->shah.scene
+                                : is_wyman(p) ? p->wyman.scene
+                                : is_wand(p)  ? p->wand.scene
+                                              : p->thesis.scene;
+  const size_t side = scene->plan->desc.photons;
+  const size_t views = is_shah(p)    ? p->shah.light.object_faces
+                       : is_wyman(p) ? p->wyman.light.object_faces
+                                     : 1;
+  return views * side * side;
+}
+
+double abbe_published_layers(const abbe_published *p) {
+  if (!is_wyman(p)) return 0;
+  return p->wyman.picture.scene != NULL ? p->wyman.picture.layers : p->wyman.map.layers;
 }
 
 size_t abbe_published_photons(const abbe_published *p) {

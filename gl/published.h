@@ -22,8 +22,8 @@ abbe_result abbe_published_make(const abbe_gpu_scene *scene, const abbe_shader_v
 void abbe_published_free(abbe_published *published);
 /* lit: the light's passes have run and hold, so that the camera's alone run where they keep it. */
 abbe_result abbe_published_run(abbe_published *published, bool lit, abbe_error *error);
-/* Whether a moved camera leaves what the light's passes make as it is: maps in the light's image
- * that hold no frames before. abbe_published_look then follows the camera. */
+/* Whether a moved camera leaves what the light's passes make as it is: maps in the light's image, or
+ * photons, that hold no frames before. abbe_published_look then follows the camera. */
 bool abbe_published_keeps_light(const abbe_render_desc *desc);
 void abbe_published_look(abbe_published *published);
 
@@ -39,7 +39,10 @@ abbe_result abbe_published_read_map(abbe_published *published, bool filled, abbe
                                     abbe_error *error);
 const abbe_map_layout *abbe_published_layout(const abbe_published *published);
 GLuint abbe_published_picture(const abbe_published *published);
-/* Photons of the last frame with statistics. */
+/* Photons of the last frame with statistics; of how many cells; and how many polygons lie over a
+ * pixel, in the mean, where photons are drawn as polygons. */
 size_t abbe_published_photons(const abbe_published *published);
+size_t abbe_published_cells(const abbe_published *published);
+double abbe_published_layers(const abbe_published *published);
 
 #endif

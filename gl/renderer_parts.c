@@ -271,7 +271,7 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
   s->wavelengths = r->plan.desc.wavelengths;
   s->device_bytes = abbe_gpu_bytes(&r->gpu) + r->scene.mesh_bytes;
   double cells = (double)r->plan.desc.photons * (double)r->plan.desc.photons;
-  size_t first = abbe_published_photons(&r->published);
+  size_t first = is_published(r) ? abbe_published_photons(&r->published) : 0;
   if (!is_published(r)) {
     for (size_t i = 0; i < r->plan.light_view_count; i++)
       s->photons += r->views.light[i].photon_count;
@@ -279,6 +279,8 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
     first = r->views.light[0].photon_count;
   } else {
     s->photons = first;
+    cells = (double)abbe_published_cells(&r->published);
+    s->polygon_layers = abbe_published_layers(&r->published);
   }
   s->refractor_share = (double)first / cells;
   if (r->plan.caustics && !is_published(r)) abbe_caustics_energy(&r->caustics, &s->energy);

@@ -31,6 +31,7 @@ enum {
   OPTION_ESTIMATOR,
   OPTION_ITERATIONS,
   OPTION_INTERFACES,
+  OPTION_FACES,
   OPTION_LOW_PASS,
   OPTION_SHARE,
   OPTION_EXITS,
@@ -97,6 +98,10 @@ static const struct argp_option options[] = {
     {"iterations", OPTION_ITERATIONS, "N", 0, "of the estimator, 1 to 64 (1)", 1},
     {"interfaces", OPTION_INTERFACES, "N", 0,
      "of shah2007 and wyman2006, that refract light: 1, as of water, or 2 (2)", 1},
+    {"faces", OPTION_FACES, "N", 0,
+     "of shah2007 and wyman2006, views of the light: 1, or the 6 of a cube around it (6 where one "
+     "does not hold what is around a point light)",
+     1},
     {"low-pass", OPTION_LOW_PASS, "N", 0,
      "of shah2007, smooth its map by a Gaussian of N texels, 1 to 32 (none)", 1},
     {"share", OPTION_SHARE, "X", 0,
@@ -218,6 +223,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_INTERFACES:
     d->interfaces = abbe_command_count(p, "--interfaces", text, 1, 2);
+    return 0;
+  case OPTION_FACES:
+    d->faces = abbe_command_count(p, "--faces", text, 1, ABBE_RENDER_CUBE_FACES);
     return 0;
   case OPTION_LOW_PASS:
     d->low_pass = abbe_command_count(p, "--low-pass", text, 1, ABBE_RENDER_MAX_LOW_PASS);

@@ -45,6 +45,7 @@ static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_er
   cJSON_AddNumberToObject(root, "photons", (double)s->photons);
   cJSON_AddNumberToObject(root, "wavelengths", (double)s->wavelengths);
   cJSON_AddNumberToObject(root, "refractor_share", s->refractor_share);
+  if (s->polygon_layers > 0) cJSON_AddNumberToObject(root, "polygon_layers", s->polygon_layers);
   cJSON *energy = cJSON_AddObjectToObject(root, "energy");
   cJSON_AddNumberToObject(energy, "reached", s->energy.reached);
   cJSON_AddNumberToObject(energy, "reflected", s->energy.reflected);

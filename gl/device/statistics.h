@@ -47,6 +47,7 @@ typedef struct abbe_statistics {
   size_t photons;         /* lit cells that show a refractor, of all lights */
   size_t wavelengths;     /* the plan's */
   double refractor_share; /* of the cells of the first light's grid, those that have a photon */
+  double polygon_layers;  /* of wyman2006: polygons over a pixel of its image, mean; else 0 */
   size_t device_bytes;    /* of buffers and textures */
   abbe_ledger energy;
 } abbe_statistics;

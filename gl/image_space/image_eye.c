@@ -16,13 +16,15 @@ static abbe_result make_programs(abbe_image_eye *e, const abbe_shader_variant *v
   static const abbe_program_stage refracted[] = {{GL_VERTEX_SHADER, "screen.vert"},
                                                  {GL_FRAGMENT_SHADER, "image_refraction.frag"}};
   char search[1024];
+  char lit_by[1024];
   const int length =
       snprintf(search, sizeof search, "%s#define ESTIMATOR %d\n#define ITERATIONS %d\n", more,
                (int)ABBE_ESTIMATOR_AXIS, ITERATIONS);
+  snprintf(lit_by, sizeof lit_by, "%s%s", more, e->light->faces > 1 ? "#define LIT_CUBE\n" : "");
   if (length < 0 || (size_t)length >= sizeof search)
     return abbe_error_set(error, ABBE_GL, "a shader's definitions are too long");
   abbe_result result =
-      abbe_shader_variant_program(variant, e->scene->gpu, lit, 2, more, &e->receivers, error);
+      abbe_shader_variant_program(variant, e->scene->gpu, lit, 2, lit_by, &e->receivers, error);
   if (result == ABBE_OK)
     result = abbe_shader_variant_program(variant, e->scene->gpu, refracted, 2, search,
                                          &e->refraction, error);
@@ -35,8 +37,10 @@ abbe_result abbe_image_eye_make(const abbe_gpu_scene *scene, const abbe_image_pl
   const size_t size[2] = {scene->plan->desc.width, scene->plan->desc.height};
   *out = (abbe_image_eye){.scene = scene, .light = light, .colour = colour};
   abbe_camera_view_fit(scene->local, &scene->plan->desc, &out->camera);
+  abbe_image_cube sight;
+  abbe_image_cube_one(&out->camera.view, &sight);
   abbe_result result =
-      abbe_image_places_make(scene, &out->camera.view, size, size, false, &out->places, error);
+      abbe_image_places_make(scene, &sight, size, size, false, &out->places, error);
   if (result == ABBE_OK)
     result =
         abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, size[0], size[1], 0, false, &out->lit, error);
@@ -51,7 +55,9 @@ abbe_result abbe_image_eye_make(const abbe_gpu_scene *scene, const abbe_image_pl
 
 void abbe_image_eye_look(abbe_image_eye *e) {
   abbe_camera_view_fit(e->scene->local, &e->scene->plan->desc, &e->camera);
-  abbe_image_view_make(&e->camera.view, &e->places.view);
+  abbe_image_cube sight;
+  abbe_image_cube_one(&e->camera.view, &sight);
+  abbe_image_places_look(&e->places, &sight);
 }
 
 void abbe_image_eye_free(abbe_image_eye *e) {
@@ -66,18 +72,25 @@ void abbe_image_eye_free(abbe_image_eye *e) {
 static void set_lighting(abbe_image_eye *e, GLuint caustic_map) {
   const abbe_gpu_scene *scene = e->scene;
   const abbe_gl *gl = scene->gpu->gl;
-  const abbe_view *light = &e->light->view.view;
+  const abbe_image_places *light = e->light;
   const double *eye = scene->local->camera.eye;
   GLuint p = e->receivers;
   abbe_image_view_set_clip(scene, p, "view_projection", &e->places.view);
-  abbe_image_view_set_view(scene, p, "lit_from", light);
+  for (size_t f = 0; f < light->faces; f++)
+    abbe_image_view_set_face(scene, p, "lit_from", f, &light->face[f].view);
   abbe_image_view_set_lamp(scene, p, scene->local->light[0].direction);
-  abbe_image_view_set_units(scene, p, light);
-  abbe_gpu_set_float(scene->gpu, p, "shadow_bias", bias_share * light->far);
+  abbe_image_view_set_units(scene, p, &light->view.view);
+  abbe_gpu_set_float(scene->gpu, p, "shadow_bias", bias_share * light->view.view.far);
   gl->Uniform3f(gl->GetUniformLocation(p, "eye"), (float)eye[0], (float)eye[1], (float)eye[2]);
-  abbe_gpu_bind_texture(scene->gpu, p, "caustic_map", 0, caustic_map);
   abbe_gpu_bind_array(scene->gpu, p, "surface_texture", 1, scene->surface_texture);
-  abbe_gpu_bind_texture(scene->gpu, p, "shadow_map", 2, e->light->depth);
+  if (light->faces > 1 && abbe_profile_is_shah2007(scene->plan->desc.profile))
+    abbe_gpu_bind_array(scene->gpu, p, "caustic_map", 0, caustic_map);
+  else
+    abbe_gpu_bind_texture(scene->gpu, p, "caustic_map", 0, caustic_map);
+  if (light->faces > 1)
+    abbe_gpu_bind_array(scene->gpu, p, "shadow_map", 2, light->depth);
+  else
+    abbe_gpu_bind_texture(scene->gpu, p, "shadow_map", 2, light->depth);
 }
 
 static abbe_result light_receivers(abbe_image_eye *e, GLuint caustic_map, abbe_error *error) {
@@ -125,7 +138,7 @@ static abbe_result refract_eye(abbe_image_eye *e, abbe_error *error) {
   abbe_gpu_bind_texture(scene->gpu, p, "receivers_lit", 0, e->lit);
   abbe_gpu_bind_texture(scene->gpu, p, "receiver_depths", 1, e->lit_depth);
   result =
-      abbe_image_view_draw_screen(scene, e->picture, e->places.size[0], e->places.size[1], error);
+      abbe_image_view_draw_screen(scene, e->picture, -1, e->places.size[0], e->places.size[1], error);
   abbe_gpu_book_lap(scene->gpu, ABBE_PASS_EYE_REFRACTION);
   return result;
 }

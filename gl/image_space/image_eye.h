@@ -24,6 +24,7 @@ abbe_result abbe_image_eye_make(const abbe_gpu_scene *scene, const abbe_image_pl
 void abbe_image_eye_free(abbe_image_eye *eye);
 /* From where the scene's camera is now; the picture's size is as it was. */
 void abbe_image_eye_look(abbe_image_eye *eye);
+/* caustic_map: in the light's image, an array where that has more than one view. */
 abbe_result abbe_image_eye_run(abbe_image_eye *eye, GLuint caustic_map, abbe_error *error);
 
 #endif

@@ -5,6 +5,7 @@ in vec3 place[];
 in vec3 place_normal[];
 uniform vec4 seen_along;  // w 1: from this point; 0: along this direction
 uniform int mirror;
+uniform int first_layer;  // of this view
 uniform int only;  // this layer; -1: both
 out vec3 world;
 out vec3 world_normal;
@@ -15,7 +16,7 @@ void main() {
   int layer = mirror == 1 || dot(face, along) < 0.0 ? 0 : 1;
   if (only >= 0 && layer != only) return;
   for (int i = 0; i < 3; i++) {
-    gl_Layer = layer;
+    gl_Layer = first_layer + layer;
     world = place[i];
     world_normal = place_normal[i];
     gl_Position = gl_in[i].gl_Position;

@@ -11,6 +11,7 @@ struct Ray {
   bool total;    // it was totally reflected at the back, and goes on in the mirror direction
 };
 
+uniform int object_face;   // whose pixels these are
 uniform vec2 grid_shift;  // of the objects' pixels, as a share of the window
 
 #ifdef MIRRORS
@@ -22,18 +23,24 @@ float mirrored_share(vec4 spectrum, float c) {
 
 // n of the back where the ray comes out of the front at p along t; the silhouette where none is seen there.
 vec3 normal_behind(vec3 p, vec3 t) {
-  View v = places_view();
+#if OBJECT_FACES > 1
+  int face = cube_face(p - seen_from[0].xyz);
+#else
+  int face = 0;
+#endif
+  View v = object_view(face);
   vec3 uvz, n = vec3(0);
   bool before = project(v, p, uvz);
   uvz.xy -= grid_shift;
-  if (before && inside(uvz.xy)) n = textureLod(object_normals, vec3(uvz.xy, 1), 0.0).xyz;
+  if (before && inside(uvz.xy)) n = textureLod(object_normals, vec3(uvz.xy, 2 * face + 1), 0.0).xyz;
   if (dot(n, n) < 1e-6) n = t - dot(t, v.forward.xyz) * v.forward.xyz;
   return normalize(n);
 }
 
 // False where nothing is seen.
 bool leave_object(ivec2 pixel, int wavelength, out Ray ray) {
-  vec4 front = texelFetch(object_places, ivec3(pixel, 0), 0), normal = texelFetch(object_normals, ivec3(pixel, 0), 0);
+  ivec3 texel = ivec3(pixel, 2 * object_face);
+  vec4 front = texelFetch(object_places, texel, 0), normal = texelFetch(object_normals, texel, 0);
   int refractor = int(normal.w + 0.5) - 1;
   ray = Ray(front.xyz, vec3(0), 1.0, 0.0, 1.0, false);
   if (front.w < 0.5 || refractor < 0) return false;
@@ -53,7 +60,7 @@ bool leave_object(ivec2 pixel, int wavelength, out Ray ray) {
 #ifndef AS_PRINTED
   ray.share = 1.0 - fresnel(-dot(d, n), 1.0 / index);
 #endif
-  vec4 back = texelFetch(object_places, ivec3(pixel, 1), 0);
+  vec4 back = texelFetch(object_places, texel + ivec3(0, 0, 1), 0);
   ray.r = inner;
 #if INTERFACES == 1
   ray.inside = spectrum.y;

@@ -1,20 +1,21 @@
 #include "gl/image_space/image_places.h"
 
 static const GLfloat nothing[4] = {0, 0, 0, 0}, far_away = 1;
-static const int flat = -1;
+static const int all_of_it = -1;
 
 static abbe_result make_targets(abbe_image_places *p, abbe_error *error) {
+  const size_t faces = p->faces > 1 ? p->faces : 0, layers = 2 * p->object_faces;
   const struct {
     GLuint *texture;
     GLenum format;
     const size_t *size;
     size_t layers;
     bool linear;
-  } all[] = {{&p->receivers, GL_RGBA32F, p->size, 0, false},
-             {&p->depth, GL_DEPTH_COMPONENT32F, p->size, 0, false},
-             {&p->places, GL_RGBA32F, p->grid, 2, false},
-             {&p->normals, GL_RGBA32F, p->grid, 2, true},
-             {&p->depths, GL_DEPTH_COMPONENT32F, p->grid, 2, false}};
+  } all[] = {{&p->receivers, GL_RGBA32F, p->size, faces, false},
+             {&p->depth, GL_DEPTH_COMPONENT32F, p->size, faces, false},
+             {&p->places, GL_RGBA32F, p->grid, layers, false},
+             {&p->normals, GL_RGBA32F, p->grid, layers, true},
+             {&p->depths, GL_DEPTH_COMPONENT32F, p->grid, layers, false}};
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof all / sizeof *all && result == ABBE_OK; i++)
     result = abbe_gpu_make_texture(p->scene->gpu, all[i].format, all[i].size[0], all[i].size[1],
@@ -30,18 +31,38 @@ static abbe_result make_programs(abbe_image_places *p, abbe_error *error) {
   static const abbe_program_stage objects[] = {{GL_VERTEX_SHADER, "image_objects.vert"},
                                                {GL_GEOMETRY_SHADER, "image_objects.geom"},
                                                {GL_FRAGMENT_SHADER, "image_objects.frag"}};
+  static const abbe_program_stage seen_around[] = {{GL_VERTEX_SHADER, "image_objects.vert"},
+                                                   {GL_GEOMETRY_SHADER, "image_faces.geom"},
+                                                   {GL_FRAGMENT_SHADER, "image_places.frag"}};
+  static const abbe_program_stage depth_around[] = {{GL_VERTEX_SHADER, "image_objects.vert"},
+                                                    {GL_GEOMETRY_SHADER, "image_faces.geom"},
+                                                    {GL_FRAGMENT_SHADER, "depth.frag"}};
   abbe_gpu *gpu = p->scene->gpu;
-  abbe_result result = abbe_gpu_program(gpu, seen, 2, "", &p->seen, error);
-  if (result == ABBE_OK) result = abbe_gpu_program(gpu, depth, 2, "", &p->depth_only, error);
+  const bool around = p->faces > 1;
+  const size_t stages = around ? 3 : 2;
+  abbe_result result =
+      abbe_gpu_program(gpu, around ? seen_around : seen, stages, "", &p->seen, error);
+  if (result == ABBE_OK)
+    result =
+        abbe_gpu_program(gpu, around ? depth_around : depth, stages, "", &p->depth_only, error);
   if (result == ABBE_OK) result = abbe_gpu_program(gpu, objects, 3, "", &p->objects, error);
   return result;
 }
 
-abbe_result abbe_image_places_make(const abbe_gpu_scene *scene, const abbe_view *view,
+void abbe_image_places_look(abbe_image_places *p, const abbe_image_cube *cube) {
+  p->faces = cube->faces;
+  p->object_faces = cube->object_faces;
+  for (size_t f = 0; f < p->faces; f++) abbe_image_view_make(&cube->face[f], &p->face[f]);
+  for (size_t f = 0; f < p->object_faces; f++)
+    abbe_image_view_make(&cube->object_face[f], &p->object_face[f]);
+  p->view = p->face[0];
+}
+
+abbe_result abbe_image_places_make(const abbe_gpu_scene *scene, const abbe_image_cube *cube,
                                    const size_t size[2], const size_t grid[2], bool counts,
                                    abbe_image_places *out, abbe_error *error) {
   *out = (abbe_image_places){.scene = scene};
-  abbe_image_view_make(view, &out->view);
+  abbe_image_places_look(out, cube);
   for (int k = 0; k < 2; k++) {
     out->size[k] = size[k];
     out->grid[k] = grid[k];
@@ -59,17 +80,26 @@ void abbe_image_places_free(abbe_image_places *p) {
   *p = (abbe_image_places){0};
 }
 
+static void set_faces(const abbe_image_places *p, GLuint program) {
+  static const char *const names[ABBE_LIGHT_CUBE_FACES] = {
+      "face_matrix[0]", "face_matrix[1]", "face_matrix[2]",
+      "face_matrix[3]", "face_matrix[4]", "face_matrix[5]"};
+  if (p->faces == 1) abbe_image_view_set_clip(p->scene, program, "view_projection", &p->view);
+  for (size_t f = 0; f < p->faces && p->faces > 1; f++)
+    abbe_image_view_set_clip(p->scene, program, names[f], &p->face[f]);
+}
+
 abbe_result abbe_image_places_receivers(abbe_image_places *p, abbe_error *error) {
   const abbe_gl *gl = p->scene->gpu->gl;
   const abbe_plan *plan = p->scene->plan;
-  abbe_result result = abbe_gpu_set_target(p->scene->gpu, &p->receivers, &flat, 1, p->depth,
+  abbe_result result = abbe_gpu_set_target(p->scene->gpu, &p->receivers, &all_of_it, 1, p->depth,
                                            p->size[0], p->size[1], error);
   if (result != ABBE_OK) return result;
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
   gl->ClearBufferfv(GL_DEPTH, 0, &far_away);
   gl->Enable(GL_DEPTH_TEST);
   gl->UseProgram(p->seen);
-  abbe_image_view_set_clip(p->scene, p->seen, "view_projection", &p->view);
+  set_faces(p, p->seen);
   for (size_t i = 0; i < plan->receiver_count; i++)
     abbe_gpu_meshes_draw(p->scene, plan->receiver_object[i]);
   return ABBE_OK;
@@ -83,16 +113,18 @@ abbe_result abbe_image_places_shadow(abbe_image_places *p, abbe_error *error) {
   if (result != ABBE_OK) return result;
   gl->Enable(GL_DEPTH_TEST);
   gl->UseProgram(p->depth_only);
-  abbe_image_view_set_clip(p->scene, p->depth_only, "view_projection", &p->view);
+  set_faces(p, p->depth_only);
   for (size_t i = 0; i < plan->refractor_count; i++)
     abbe_gpu_meshes_draw(p->scene, plan->refractor_object[i]);
   return ABBE_OK;
 }
 
-/* One of the two layers, or with -1 both. */
-static void draw_objects(abbe_image_places *p, int only) {
+/* Of one view: one of the two layers, or with -1 both. */
+static void draw_face(abbe_image_places *p, const abbe_image_view *view, size_t face, int only) {
   const abbe_plan *plan = p->scene->plan;
+  abbe_image_view_set_clip(p->scene, p->objects, "view_projection", view);
   abbe_gpu_set_int(p->scene->gpu, p->objects, "only", only);
+  abbe_gpu_set_int(p->scene->gpu, p->objects, "first_layer", (int)(2 * face));
   for (size_t i = 0; i < plan->refractor_count; i++) {
     abbe_gpu_set_int(p->scene->gpu, p->objects, "object", (int)i);
     abbe_gpu_set_int(p->scene->gpu, p->objects, "mirror", plan->mirror[i]);
@@ -101,9 +133,9 @@ static void draw_objects(abbe_image_places *p, int only) {
 }
 
 /* The view of the objects' pixels. */
-static abbe_image_view shifted_view(const abbe_image_places *p) {
-  abbe_view view = p->view.view;
-  abbe_image_view out = p->view;
+static abbe_image_view shifted_view(const abbe_image_places *p, size_t face) {
+  abbe_view view = p->object_face[face].view;
+  abbe_image_view out = p->object_face[face];
   if (p->shift[0] == 0 && p->shift[1] == 0) return out;
   for (int axis = 0; axis < 2; axis++) {
     double *window = &view.window[2 * axis];
@@ -113,6 +145,13 @@ static abbe_image_view shifted_view(const abbe_image_places *p) {
   }
   abbe_image_view_make(&view, &out);
   return out;
+}
+
+static void draw_objects(abbe_image_places *p, int only) {
+  for (size_t f = 0; f < p->object_faces; f++) {
+    const abbe_image_view view = shifted_view(p, f);
+    draw_face(p, &view, f, only);
+  }
 }
 
 abbe_result abbe_image_places_objects(abbe_image_places *p, abbe_error *error) {
@@ -129,8 +168,6 @@ abbe_result abbe_image_places_objects(abbe_image_places *p, abbe_error *error) {
   gl->ClearBufferfv(GL_DEPTH, 0, &far_away);
   gl->Enable(GL_DEPTH_TEST);
   gl->UseProgram(p->objects);
-  const abbe_image_view shifted = shifted_view(p);
-  abbe_image_view_set_clip(p->scene, p->objects, "view_projection", &shifted);
   gl->Uniform4f(gl->GetUniformLocation(p->objects, "seen_along"), (float)from[0], (float)from[1],
                 (float)from[2], view->orthographic ? 0 : 1);
   if (p->query == 0) {
@@ -153,11 +190,17 @@ size_t abbe_image_places_count(const abbe_image_places *p) {
 void abbe_image_places_set(const abbe_image_places *p, GLuint program) {
   abbe_gpu *gpu = p->scene->gpu;
   const abbe_gl *gl = gpu->gl;
-  abbe_image_view_set_view(p->scene, program, "seen_from", &p->view.view);
+  for (size_t f = 0; f < p->faces; f++)
+    abbe_image_view_set_face(p->scene, program, "seen_from", f, &p->face[f].view);
+  for (size_t f = 0; f < p->object_faces; f++)
+    abbe_image_view_set_face(p->scene, program, "objects_from", f, &p->object_face[f].view);
   gl->Uniform2f(gl->GetUniformLocation(program, "grid_shift"),
                 (float)(p->shift[0] / (double)p->grid[0]),
                 (float)(p->shift[1] / (double)p->grid[1]));
-  abbe_gpu_bind_texture(gpu, program, "receiver_places", 2, p->receivers);
+  if (p->faces > 1)
+    abbe_gpu_bind_array(gpu, program, "receiver_places", 2, p->receivers);
+  else
+    abbe_gpu_bind_texture(gpu, program, "receiver_places", 2, p->receivers);
   abbe_gpu_bind_array(gpu, program, "object_places", 3, p->places);
   abbe_gpu_bind_array(gpu, program, "object_normals", 4, p->normals);
 }

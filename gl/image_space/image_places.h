@@ -1,10 +1,12 @@
 /* image_places.h: what a light or the camera sees, as places: of receivers one a pixel, of
  * refractors and mirrors in front and behind one a pixel of a grid of its own, with normals; and
- * the depth of all. A pass of the published methods. Internal to gl/.
+ * the depth of all. Through one view, or all around. A pass of the published methods. Internal to
+ * gl/.
  */
 #ifndef ABBE_GL_IMAGE_SPACE_IMAGE_PLACES_H
 #define ABBE_GL_IMAGE_SPACE_IMAGE_PLACES_H
 
+#include "gl/image_space/image_cube.h"
 #include "gl/image_space/image_view.h"
 #include "gl/scene/shader_variant.h"
 
@@ -13,21 +15,25 @@
 
 typedef struct abbe_image_places {
   const abbe_gpu_scene *scene;
-  abbe_image_view view;
-  size_t size[2], grid[2];          /* pixels of receivers, and of objects */
+  size_t faces, object_faces;       /* 1, or six, layers of what follows: receivers', objects' */
+  abbe_image_view view;             /* the first of receivers */
+  abbe_image_view face[ABBE_LIGHT_CUBE_FACES], object_face[ABBE_LIGHT_CUBE_FACES];
+  size_t size[2], grid[2];          /* pixels of receivers, and of objects, of a view */
   double shift[2];                  /* of the objects' pixels, in pixels, right and up */
   GLuint seen, objects, depth_only; /* programs */
   GLuint receivers;                 /* place, m; w: 1, or 0 where none is seen */
   GLuint depth;                     /* of receivers; of all, where shadows are asked for */
-  GLuint places, normals, depths;   /* of objects: front and back */
+  GLuint places, normals, depths;   /* of objects: front and back of each view */
   GLuint query;                     /* fragments of fronts; 0: they are not counted */
 } abbe_image_places;
 
 /* counts: how many pixels show objects is counted, as they are drawn. */
-abbe_result abbe_image_places_make(const abbe_gpu_scene *scene, const abbe_view *view,
+abbe_result abbe_image_places_make(const abbe_gpu_scene *scene, const abbe_image_cube *cube,
                                    const size_t size[2], const size_t grid[2], bool counts,
                                    abbe_image_places *out, abbe_error *error);
 void abbe_image_places_free(abbe_image_places *places);
+/* From now on through these, of as many faces. */
+void abbe_image_places_look(abbe_image_places *places, const abbe_image_cube *cube);
 
 abbe_result abbe_image_places_receivers(abbe_image_places *places, abbe_error *error);
 /* Refractors and mirrors into the depth of all, too. */
@@ -36,7 +42,8 @@ abbe_result abbe_image_places_objects(abbe_image_places *places, abbe_error *err
 /* Waits for the device: the pixels that were counted, by an occlusion query. */
 size_t abbe_image_places_count(const abbe_image_places *places);
 
-/* For image_places.glsl, at units 2 to 4, into the program that is in use. */
+/* For image_places.glsl, at units 2 to 4, into the program that is in use; what it is compiled for
+ * besides: PLACES_CUBE and OBJECT_FACES of more faces than one. */
 void abbe_image_places_set(const abbe_image_places *places, GLuint program);
 
 #endif

@@ -2,15 +2,25 @@
 // with diffuse shading and shadow beside it; else in units, as receiver.glsl has them. CAUSTIC_RATIOS: the map
 // holds what the caustic's light is of the lamp's, by the window's area; with CAUSTICS_SEEN in the camera's pixels
 // instead of the light's, or with CAUSTICS_WHOLE the ratio itself.
+// LIT_CUBE: the light's maps are the faces of a cube around it.
 #include "view.glsl"
 in vec3 world;
 in vec3 world_normal;
 in vec2 surface_uv;
-uniform sampler2D caustic_map;
+#ifdef LIT_CUBE
+const int LIT_FACES = 6;
+uniform sampler2DArray shadow_map;
+#else
+const int LIT_FACES = 1;
 uniform sampler2D shadow_map;
+#endif
+#if defined(LIT_CUBE) && !defined(CAUSTICS_SEEN)
+uniform sampler2DArray caustic_map;
+#else
+uniform sampler2D caustic_map;
+#endif
 uniform sampler2DArray surface_texture;
-uniform mat4 light_matrix;
-uniform vec4 lit_from[6];  // the light's view
+uniform vec4 lit_from[6 * LIT_FACES];  // the light's views
 uniform float shadow_bias;  // m
 uniform vec3 eye;
 uniform vec4 spot;  // world direction, cosine of the cone
@@ -69,15 +79,32 @@ vec3 shaded_caustic(View light, vec3 n, vec3 along, vec2 uv) {
 }
 #endif
 
+// Of the light's view that shows a place: a number of its map, and its depth there.
+#ifdef LIT_CUBE
+int lit_face() { return cube_face(world - lit_from[0].xyz); }
+float nearest_depth(vec2 uv, int face) { return textureLod(shadow_map, vec3(uv, face), 0.0).x; }
+#else
+int lit_face() { return 0; }
+float nearest_depth(vec2 uv, int face) { return texture(shadow_map, uv).x; }
+#endif
+#ifndef CAUSTIC_RATIOS
+#ifdef LIT_CUBE
+vec3 caustic_light(vec2 uv, int face) { return textureLod(caustic_map, vec3(uv, face), 0.0).rgb; }
+#else
+vec3 caustic_light(vec2 uv, int face) { return texture(caustic_map, uv).rgb; }
+#endif
+#endif
+
 void main() {
-  View light = View(lit_from[0], lit_from[1], lit_from[2], lit_from[3], lit_from[4], lit_from[5]);
+  int face = lit_face(), k = 6 * face;
+  View light = View(lit_from[k], lit_from[k + 1], lit_from[k + 2], lit_from[k + 3], lit_from[k + 4], lit_from[k + 5]);
   bool perspective = light.origin.w > 0.5;
   vec3 n = normalize(world_normal), uvz;
   if (dot(n, eye - world) < 0.0) n = -n;
   vec3 along = perspective ? normalize(world - light.origin.xyz) : light.forward.xyz;
   bool seen = project(light, world, uvz) && inside(uvz.xy);
   // A depth back to what the light sees: the bias is in metres along its axis.
-  float depth = texture(shadow_map, uvz.xy).x, near = light.range.x, far = light.range.y;
+  float depth = nearest_depth(uvz.xy, face), near = light.range.x, far = light.range.y;
   float nearest = perspective ? near * far / (far - depth * (far - near)) : mix(near, far, depth);
   bool shaded = seen && nearest < dot(world - light.origin.xyz, light.forward.xyz) - shadow_bias;
   float c = dot(along, spot.xyz);
@@ -89,7 +116,7 @@ void main() {
 #ifdef CAUSTIC_RATIOS
   vec3 caustic = seen ? caustic_texel(caustic_map, uvz.xy).rgb : vec3(0);
 #else
-  vec3 caustic = seen ? texture(caustic_map, uvz.xy).rgb : vec3(0);
+  vec3 caustic = seen ? caustic_light(uvz.xy, face) : vec3(0);
 #endif
 #ifdef AS_PRINTED
 #ifdef CAUSTIC_RATIOS

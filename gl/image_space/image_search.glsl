@@ -1,7 +1,7 @@
 // Where a ray meets receivers, by what a view sees of them: the float twin of scenes/view/estimator.c.
 // ESTIMATOR, one of ESTIMATOR_SHAH and so on, ITERATIONS, and SEARCH_AS_PRINTED: starts and steps in metres.
 // Who includes this gives
-// look_up(at, seen), places_view() and, for the exact one, receiver_hit().
+// look_up(at, seen), places_view(), places_axis(at) and, for the exact one, receiver_hit().
 const float START_M = 1.0, STEP_M = 0.1, STEP_SHARE = 0.015625;
 const int DOUBLINGS = 8;
 const float BEHIND = 1e-3;  // of the view's far end
@@ -37,7 +37,7 @@ float search() {
   for (int i = 0; i < ITERATIONS; i++) {
     bool seen = look_along(d);
 #if ESTIMATOR == ESTIMATOR_AXIS
-    vec3 axis = places_view().forward.xyz;
+    vec3 axis = places_axis(search_o + d * search_r);
     float next = dot(search_seen - search_o, axis) / dot(search_r, axis);
 #else
     float next = distance(search_seen, search_o);
@@ -191,7 +191,7 @@ float search() {
 #if ESTIMATOR == ESTIMATOR_IMPOSTOR
 float search() {
   View v = places_view();
-  bool perspective = v.origin.w > 0.5, ahead = dot(search_r, v.forward.xyz) > 0.0;
+  bool perspective = v.origin.w > 0.5, ahead = dot(search_r, places_axis(v.origin.xyz + search_r)) > 0.0;
   float far = 0.0;
   bool seen = perspective && ahead && look_up(v.origin.xyz + search_r, search_seen);
   if (seen) far = distance(search_seen, v.origin.xyz);

@@ -8,6 +8,7 @@
 #include "spectral/wavelengths.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -57,12 +58,7 @@ void abbe_image_view_fit_light(const abbe_gpu_scene *scene, abbe_view *view) {
   } else {
     abbe_view_pad(view, 0.01);
   }
-  double half = 0.5 * fmax(view->window[1] - view->window[0], view->window[3] - view->window[2]);
-  for (int axis = 0; axis < 2; axis++) {
-    double middle = 0.5 * (view->window[2 * axis] + view->window[2 * axis + 1]);
-    view->window[2 * axis] = middle - half;
-    view->window[2 * axis + 1] = middle + half;
-  }
+  abbe_view_square(view);
 }
 
 void abbe_image_view_set_matrix(const abbe_gpu_scene *scene, GLuint program, const char *name,
@@ -78,6 +74,13 @@ void abbe_image_view_set_clip(const abbe_gpu_scene *scene, GLuint program, const
   double matrix[16];
   abbe_transform_multiply(view->clip, view->look, matrix);
   abbe_image_view_set_matrix(scene, program, name, matrix);
+}
+
+void abbe_image_view_set_face(const abbe_gpu_scene *scene, GLuint program, const char *name,
+                              size_t face, const abbe_view *view) {
+  char row[64];
+  snprintf(row, sizeof row, "%s[%zu]", name, 6 * face);
+  abbe_image_view_set_view(scene, program, row, view);
 }
 
 void abbe_image_view_set_view(const abbe_gpu_scene *scene, GLuint program, const char *name,
@@ -138,11 +141,10 @@ void abbe_image_view_set_units(const abbe_gpu_scene *scene, GLuint program,
   abbe_gpu_set_float(scene->gpu, program, "ambient", scene->local->ambient);
 }
 
-abbe_result abbe_image_view_draw_screen(const abbe_gpu_scene *scene, GLuint target, size_t width,
-                                        size_t height, abbe_error *error) {
-  static const int flat = -1;
+abbe_result abbe_image_view_draw_screen(const abbe_gpu_scene *scene, GLuint target, int layer,
+                                        size_t width, size_t height, abbe_error *error) {
   const abbe_gl *gl = scene->gpu->gl;
-  abbe_result result = abbe_gpu_set_target(scene->gpu, &target, &flat, 1, 0, width, height, error);
+  abbe_result result = abbe_gpu_set_target(scene->gpu, &target, &layer, 1, 0, width, height, error);
   if (result != ABBE_OK) return result;
   gl->Disable(GL_DEPTH_TEST);
   gl->BindVertexArray(scene->gpu->empty_array);

@@ -1,4 +1,4 @@
-/* image_view.h: what the published methods share, as all of them work in images: the light's one
+/* image_view.h: what the published methods share, as all of them work in images: the light's
  * frustum, matrices, the lamp, a pass over a whole image, reading. Internal to gl/.
  */
 #ifndef ABBE_GL_IMAGE_SPACE_IMAGE_VIEW_H
@@ -31,6 +31,9 @@ void abbe_image_view_set_clip(const abbe_gpu_scene *scene, GLuint program, const
                               const abbe_image_view *view);
 void abbe_image_view_set_view(const abbe_gpu_scene *scene, GLuint program, const char *name,
                               const abbe_view *view);
+/* The same of one of several views that follow one another. */
+void abbe_image_view_set_face(const abbe_gpu_scene *scene, GLuint program, const char *name,
+                              size_t face, const abbe_view *view);
 /* spot, spot_inner and spot_colour: the lamp, white in Rec.709 at full strength, with a cone along
  * the direction; a point light's reaches everywhere. */
 void abbe_image_view_set_lamp(const abbe_gpu_scene *scene, GLuint program,
@@ -41,9 +44,9 @@ void abbe_image_view_set_surface(const abbe_gpu_scene *scene, GLuint program, si
 /* What only physical units ask for: rgb_from_xyz, xyz_from_rgb, forward, white, power, ambient. */
 void abbe_image_view_set_units(const abbe_gpu_scene *scene, GLuint program, const abbe_view *light);
 
-/* A triangle over all of the target. */
-abbe_result abbe_image_view_draw_screen(const abbe_gpu_scene *scene, GLuint target, size_t width,
-                                        size_t height, abbe_error *error);
+/* A triangle over all of the target; layer: of an array, -1: of none. */
+abbe_result abbe_image_view_draw_screen(const abbe_gpu_scene *scene, GLuint target, int layer,
+                                        size_t width, size_t height, abbe_error *error);
 
 /* As of abbe_renderer_read and _read_map. */
 abbe_result abbe_image_view_read(const abbe_gpu_scene *scene, GLuint picture, abbe_image *out,

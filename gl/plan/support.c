@@ -79,6 +79,11 @@ abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *pla
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the %s profile knows point and spot lights; '%s' is directional",
                           profile, scene->light[0].name);
+  if (plan->desc.faces > 1 && scene->light[0].kind == ABBE_LIGHT_DIRECTIONAL)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "a cube of views goes around a point or spot light; '%s' is directional, "
+                          "and its one view holds everything",
+                          scene->light[0].name);
   if (plan->refractor_count == 0)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the %s profile needs a refractor; this scene has none", profile);

@@ -76,14 +76,6 @@ vec2 warp(int light, vec2 uv) {
 
 #ifdef CUBES
 const int ALL_FACES = 63;
-
-// The face of a cube to which a direction belongs: the same rule as abbe_light_cube_face.
-int cube_face(vec3 d) {
-  vec3 a = abs(d);
-  bool x = a.x >= a.y && a.x >= a.z, y = !x && a.y >= a.z;
-  float along = x ? d.x : y ? d.y : d.z;
-  return (x ? 0 : y ? 2 : 4) + (along < 0.0 ? 1 : 0);
-}
 #endif
 
 float light_profile(Light l, vec3 direction) {

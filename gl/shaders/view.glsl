@@ -28,6 +28,14 @@ void view_ray(View v, vec2 uv, out vec3 origin, out vec3 direction) {
   direction = perspective ? normalize(v.forward.xyz + side) : v.forward.xyz;
 }
 
+// The face of a cube around a point to which a direction belongs: the same rule as abbe_light_cube_face.
+int cube_face(vec3 d) {
+  vec3 a = abs(d);
+  bool x = a.x >= a.y && a.x >= a.z, y = !x && a.y >= a.z;
+  float along = x ? d.x : y ? d.y : d.z;
+  return (x ? 0 : y ? 2 : 4) + (along < 0.0 ? 1 : 0);
+}
+
 // Window area (tangent plane, or m2) to solid angle (or m2 across the beam) along direction.
 float window_measure(View v, vec3 direction) {
   float c = dot(direction, v.forward.xyz);

@@ -2,7 +2,8 @@
  * normals of refractors and mirrors at the grid's resolution, a vertex for each of its pixels,
  * which is brought to a receiver by a few lookups and splatted, and a lookup of the map by
  * projection. Two interfaces by the distance between front and back along the view, one, or one
- * reflection.
+ * reflection. Places, shadow and map are those of one frustum, or of the six faces of a cube around
+ * a point or spot light, which then sees its objects through one view or six.
  *
  * As printed: from 1 m on, flux (N . L) / V with V the pixels that an occlusion query counts,
  * exp(-K d) by the distance between front and back, an index each for red, green and blue. Where
@@ -33,59 +34,110 @@ static bool is_printed(const abbe_gpu_scene *scene) {
   return abbe_profile_is_printed(scene->plan->desc.profile);
 }
 
-static double splat_size(const abbe_gpu_scene *scene) {
-  const abbe_render_desc *d = &scene->plan->desc;
-  return fmin(fmax(3.0 * (double)d->map_size / (double)d->photons, least_size), most_size);
+static bool around(const abbe_shah2007 *s) {
+  return s->light.faces > 1;
+}
+
+static double splat_size(double apart) {
+  return fmin(fmax(3.0 * apart, least_size), most_size);
+}
+
+static double window_side(const abbe_image_view *view) {
+  return view->view.window[1] - view->view.window[0];
+}
+
+/* The distance of undisturbed vertices on the map, texels. */
+static double vertices_apart(const abbe_shah2007 *s) {
+  const abbe_render_desc *d = &s->scene->plan->desc;
+  return (double)d->map_size / (double)d->photons * window_side(&s->light.object_face[0]) /
+         window_side(&s->light.face[0]);
 }
 
 /* What a splat's peak is of a vertex of unit light. */
 static double vertex_strength(const abbe_shah2007 *s) {
   const abbe_render_desc *d = &s->scene->plan->desc;
-  const double across = (double)d->map_size / (double)d->photons, sigma = splat_size(s->scene) / 6;
-  const double peak = across * across / (tau * sigma * sigma * held);
-  if (!is_printed(s->scene)) return peak;
-  const double cells = (double)d->photons * (double)d->photons;
-  return peak * white_share * cells / fmax((double)s->photon_count, 1);
+  const double apart = vertices_apart(s), sigma = splat_size(apart) / 6;
+  const double texel = 1 / (tau * sigma * sigma * held);
+  if (!is_printed(s->scene)) return texel * apart * apart;
+  const double texels = (double)d->map_size * (double)d->map_size;
+  return texel * white_share * texels / fmax((double)s->photon_count, 1);
 }
 
 static abbe_result make_programs(abbe_shah2007 *s, const abbe_shader_variant *variant,
                                  abbe_error *error) {
   static const abbe_program_stage splat[] = {{GL_VERTEX_SHADER, "shah_splat.vert"},
                                              {GL_FRAGMENT_SHADER, "shah_splat.frag"}};
+  static const abbe_program_stage splat_around[] = {{GL_VERTEX_SHADER, "shah_splat.vert"},
+                                                    {GL_GEOMETRY_SHADER, "shah_faces.geom"},
+                                                    {GL_FRAGMENT_SHADER, "shah_splat.frag"}};
   const abbe_render_desc *d = &s->scene->plan->desc;
   float(*shares)[3] = NULL;
-  char more[640], search[768];
+  char more[640], search[800];
   const abbe_program_stage low_pass[] = {{GL_VERTEX_SHADER, "screen.vert"},
                                          {GL_FRAGMENT_SHADER, "shah_low_pass.frag"}};
+  const char *cube = around(s) ? "#define PLACES_CUBE\n" : "";
   abbe_image_tables_define(d, more, sizeof more);
-  snprintf(search, sizeof search, "%s#define ESTIMATOR %d\n#define ITERATIONS %zu\n%s", more,
-           (int)d->estimator, d->iterations,
+  snprintf(search, sizeof search,
+           "%s#define ESTIMATOR %d\n#define ITERATIONS %zu\n#define OBJECT_FACES %zu\n%s%s", more,
+           (int)d->estimator, d->iterations, s->light.object_faces, cube,
            is_printed(s->scene) ? "#define SEARCH_AS_PRINTED\n" : "");
   abbe_result result =
-      abbe_shader_variant_program(variant, s->scene->gpu, splat, 2, search, &s->splat, error);
+      around(s) ? abbe_shader_variant_program(variant, s->scene->gpu, splat_around, 3, search,
+                                              &s->splat, error)
+                : abbe_shader_variant_program(variant, s->scene->gpu, splat, 2, search, &s->splat,
+                                              error);
   if (result == ABBE_OK && d->low_pass > 0)
-    result = abbe_gpu_program(s->scene->gpu, low_pass, 2, NULL, &s->low_pass, error);
+    result = abbe_gpu_program(s->scene->gpu, low_pass, 2, cube, &s->low_pass, error);
   if (result == ABBE_OK) result = abbe_image_tables_colours(s->scene, true, &shares, error);
   if (result == ABBE_OK)
     result = abbe_image_eye_make(s->scene, &s->light, variant, more, shares, &s->eye, error);
   return result;
 }
 
+/* Texels that a face shares with its neighbours at each edge: what splats and the low pass lay
+ * over it comes from there. */
+static abbe_result look_around(const abbe_gpu_scene *scene, abbe_image_cube *out,
+                               abbe_error *error) {
+  const abbe_render_desc *d = &scene->plan->desc;
+  const double apart = (double)d->map_size / (double)d->photons;
+  const size_t border = (size_t)ceil(0.5 * splat_size(apart)) + 2 + 3 * d->low_pass;
+  if (4 * border > d->map_size)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "faces of %zu texels a side would share more than half of them with "
+                          "their neighbours, %zu at each edge, by splats of %.0f texels%s; ask for "
+                          "a larger map or for more photons",
+                          d->map_size, border, splat_size(apart),
+                          d->low_pass > 0 ? " and the low pass" : "");
+  abbe_image_cube_make(scene, d->map_size, border, false, out);
+  return ABBE_OK;
+}
+
+static abbe_result look_from_light(const abbe_gpu_scene *scene, abbe_image_cube *out,
+                                   abbe_error *error) {
+  abbe_view view;
+  if (scene->plan->desc.faces > 1) return look_around(scene, out, error);
+  abbe_image_view_fit_light(scene, &view);
+  abbe_image_cube_one(&view, out);
+  return ABBE_OK;
+}
+
 abbe_result abbe_shah2007_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
                                abbe_shah2007 *out, abbe_error *error) {
   const abbe_render_desc *d = &scene->plan->desc;
   const size_t map[2] = {d->map_size, d->map_size}, grid[2] = {d->photons, d->photons};
-  abbe_view view;
+  abbe_image_cube sight;
   out->scene = scene;
-  abbe_image_view_fit_light(scene, &view);
-  abbe_map_layout_make(&view, &out->layout);
-  abbe_result result = abbe_image_places_make(scene, &view, map, grid, true, &out->light, error);
+  abbe_result result = look_from_light(scene, &sight, error);
+  if (result != ABBE_OK) return result;
+  const size_t layers = sight.faces > 1 ? sight.faces : 0;
+  abbe_map_layout_make(&sight.face[0], &out->layout);
+  result = abbe_image_places_make(scene, &sight, map, grid, true, &out->light, error);
   if (result == ABBE_OK)
-    result =
-        abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, map[0], map[1], 0, true, &out->map, error);
-  if (result == ABBE_OK && d->low_pass > 0)
-    result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, map[0], map[1], 0, true, &out->smoothed,
+    result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, map[0], map[1], layers, true, &out->map,
                                    error);
+  if (result == ABBE_OK && d->low_pass > 0)
+    result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, map[0], map[1], layers, true,
+                                   &out->smoothed, error);
   if (result == ABBE_OK) result = abbe_image_tables_colours(scene, false, &out->colour, error);
   if (result == ABBE_OK) result = make_programs(out, variant, error);
   return result;
@@ -124,7 +176,7 @@ static void set_splats(abbe_shah2007 *s) {
   abbe_image_view_set_lamp(scene, p, light->direction);
   abbe_gpu_set_int(scene->gpu, p, "grid", (int)d->photons);
   abbe_gpu_set_float(scene->gpu, p, "map_side", (double)d->map_size);
-  abbe_gpu_set_float(scene->gpu, p, "splat_size", splat_size(scene));
+  abbe_gpu_set_float(scene->gpu, p, "splat_size", splat_size(vertices_apart(s)));
   abbe_gpu_set_float(scene->gpu, p, "strength", vertex_strength(s));
   abbe_gpu_set_float(scene->gpu, p, "object_bias", 1e-3 * scene->refractor_radius);
   gl->Uniform3fv(gl->GetUniformLocation(p, "colour"), (GLsizei)d->wavelengths, &s->colour[0][0]);
@@ -148,8 +200,9 @@ static abbe_result splat_vertices(abbe_shah2007 *s, abbe_error *error) {
   gl->UseProgram(s->splat);
   set_splats(s);
   gl->BindVertexArray(scene->gpu->empty_array);
-  for (size_t i = 0; i < d->wavelengths; i++) {
-    abbe_gpu_set_int(scene->gpu, s->splat, "wavelength", (int)i);
+  for (size_t i = 0; i < d->wavelengths * s->light.object_faces; i++) {
+    abbe_gpu_set_int(scene->gpu, s->splat, "wavelength", (int)(i % d->wavelengths));
+    abbe_gpu_set_int(scene->gpu, s->splat, "object_face", (int)(i / d->wavelengths));
     gl->DrawArrays(GL_POINTS, 0, (GLsizei)(d->photons * d->photons));
   }
   gl->Disable(GL_BLEND);
@@ -157,20 +210,30 @@ static abbe_result splat_vertices(abbe_shah2007 *s, abbe_error *error) {
   return ABBE_OK;
 }
 
-/* Along one axis and then along the other, back into the map. */
-static abbe_result smooth_map(abbe_shah2007 *s, abbe_error *error) {
+/* Along one axis and then along the other, back into the map; face -1: its only one. */
+static abbe_result smooth_face(abbe_shah2007 *s, int face, abbe_error *error) {
   abbe_gpu *gpu = s->scene->gpu;
   const abbe_render_desc *d = &s->scene->plan->desc;
   abbe_result result = ABBE_OK;
-  if (d->low_pass == 0) return ABBE_OK;
   for (int axis = 0; axis < 2 && result == ABBE_OK; axis++) {
+    const GLuint from = axis == 0 ? s->map : s->smoothed, to = axis == 0 ? s->smoothed : s->map;
     gpu->gl->UseProgram(s->low_pass);
-    abbe_gpu_bind_texture(gpu, s->low_pass, "map", 0, axis == 0 ? s->map : s->smoothed);
+    abbe_gpu_set_int(gpu, s->low_pass, "face", face);
+    if (face < 0)
+      abbe_gpu_bind_texture(gpu, s->low_pass, "map", 0, from);
+    else
+      abbe_gpu_bind_array(gpu, s->low_pass, "map", 0, from);
     gpu->gl->Uniform2i(gpu->gl->GetUniformLocation(s->low_pass, "along"), axis == 0, axis == 1);
     abbe_gpu_set_float(gpu, s->low_pass, "sigma", (double)d->low_pass);
-    result = abbe_image_view_draw_screen(s->scene, axis == 0 ? s->smoothed : s->map, d->map_size,
-                                         d->map_size, error);
+    result = abbe_image_view_draw_screen(s->scene, to, face, d->map_size, d->map_size, error);
   }
+  return result;
+}
+
+static abbe_result smooth_map(abbe_shah2007 *s, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  for (size_t f = 0; f < s->light.faces && s->low_pass != 0 && result == ABBE_OK; f++)
+    result = smooth_face(s, around(s) ? (int)f : -1, error);
   return result;
 }
 

@@ -16,20 +16,24 @@ uniform float splat_size;  // texels
 uniform vec4 spot;         // direction, cosine of the cone
 uniform float spot_inner;
 uniform float object_bias;  // m
+#ifdef PLACES_CUBE
+out vec3 landed;        // m
+out vec4 landed_light;  // w: 0 where none lands
+#else
 flat out vec2 centre;  // on the map, 0 to 1
 flat out vec3 peak;
+#endif
 
 // Light of a pixel, of what a unit of it is.
 float pixel_light(vec3 at, ivec2 pixel) {
   vec3 d = seen_direction(at);
   float c = dot(d, spot.xyz), beam = spot_inner > spot.w ? smoothstep(spot.w, spot_inner, c) : step(spot.w, c);
 #ifdef AS_PRINTED
-  return beam * abs(dot(texelFetch(object_normals, ivec3(pixel, 0), 0).xyz, d));
+  return beam * abs(dot(texelFetch(object_normals, ivec3(pixel, 2 * object_face), 0).xyz, d));
 #else
   vec3 seen;
-  View v = places_view();
-  bool hidden = look_up(at, seen) && dot(seen - at, v.forward.xyz) < -object_bias;
-  return hidden ? 0.0 : beam * window_measure(v, d);
+  bool hidden = look_up(at, seen) && dot(seen - at, places_axis(at)) < -object_bias;
+  return hidden ? 0.0 : beam * window_measure(object_view(object_face), d);
 #endif
 }
 
@@ -37,17 +41,30 @@ void main() {
   ivec2 pixel = ivec2(gl_VertexID % grid, gl_VertexID / grid);
   Ray ray;
   vec3 at, uvz;
+#ifdef PLACES_CUBE
+  landed = vec3(0);
+  landed_light = vec4(0);
+#else
   centre = vec2(-1);
   peak = vec3(0);
+#endif
   gl_PointSize = 1.0;
   gl_Position = vec4(2, 2, 2, 1);  // outside
   if (!leave_object(pixel, wavelength, ray) || ray.total) return;
   if (!find_receiver(ray.o, ray.r, at)) return;
+#ifndef PLACES_CUBE
   if (!project(places_view(), at, uvz) || !inside(uvz.xy)) return;
-  float light = strength * pixel_light(texelFetch(object_places, ivec3(pixel, 0), 0).xyz, pixel) * ray.share;
+#endif
+  vec3 front = texelFetch(object_places, ivec3(pixel, 2 * object_face), 0).xyz;
+  float light = strength * pixel_light(front, pixel) * ray.share;
   if (ray.inside > 0.0) light *= exp(-ray.inside * distance(ray.o, at));
+#ifdef PLACES_CUBE
+  landed = at;
+  landed_light = vec4(light * colour[wavelength], 1);
+#else
   centre = uvz.xy;
   peak = light * colour[wavelength];
   gl_PointSize = splat_size;
   gl_Position = vec4(2.0 * uvz.xy - 1.0, 0, 1);
+#endif
 }

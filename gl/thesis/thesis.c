@@ -205,7 +205,7 @@ static abbe_result fill_gaps(abbe_thesis *t, abbe_error *error) {
   abbe_gpu_start_lap(t->scene->gpu);
   t->scene->gpu->gl->UseProgram(t->fill);
   abbe_gpu_bind_texture(t->scene->gpu, t->fill, "spectral_map", 0, t->map);
-  abbe_result result = abbe_image_view_draw_screen(t->scene, t->filled, map, map, error);
+  abbe_result result = abbe_image_view_draw_screen(t->scene, t->filled, -1, map, map, error);
   abbe_gpu_book_lap(t->scene->gpu, ABBE_PASS_GAP_FILL);
   return result;
 }
@@ -283,7 +283,7 @@ static abbe_result refract_eye(abbe_thesis *t, abbe_error *error) {
   abbe_gpu_bind_array(t->scene->gpu, t->refraction, "depths", 1, t->eye_depths);
   abbe_gpu_bind_texture(t->scene->gpu, t->refraction, "receiver_depth", 2, t->eye_receiver_depth);
   abbe_gpu_bind_texture(t->scene->gpu, t->refraction, "receivers", 3, t->eye_receivers);
-  result = abbe_image_view_draw_screen(t->scene, t->picture, width, height, error);
+  result = abbe_image_view_draw_screen(t->scene, t->picture, -1, width, height, error);
   abbe_gpu_book_lap(t->scene->gpu, ABBE_PASS_EYE_REFRACTION);
   return result;
 }

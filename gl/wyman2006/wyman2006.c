@@ -10,6 +10,9 @@
  * ray; the frames of the filter weigh alike; the plane is that of the largest face of a receiver;
  * what is more than a hundredth of the distance before or behind the camera's surface is not drawn.
  *
+ * Six views, each of 90 degrees, see what is all around the light; photons then go to the camera's
+ * image alone.
+ *
  * In units (wyman2006-cie) the field is fitted, photons carry XYZ flux by wavelength with Fresnel's
  * law, and light is what they bring to an area, whatever their direction; sparse neighbourhoods
  * stay, and where frames are filtered their grids are shifted. */
@@ -24,17 +27,36 @@
 static const double jitter[4][2] = {
     {-0.375, -0.125}, {0.125, -0.375}, {0.375, 0.125}, {-0.125, 0.375}};
 
+/* Texels beyond a face's edge: places are interpolated there. */
+enum { shared_border = 2 };
+
 static bool is_printed(const abbe_gpu_scene *scene) {
   return abbe_profile_is_printed(scene->plan->desc.profile);
+}
+
+static bool draws_polygons(const abbe_render_desc *d) {
+  return (d->fill == ABBE_FILL_QUADS || d->fill == ABBE_FILL_TRIANGLES) && d->photons > 1;
 }
 
 static bool in_camera(const abbe_gpu_scene *scene) {
   return scene->plan->desc.fill != ABBE_FILL_GATHER_LIGHT;
 }
 
-static void look_from_light(const abbe_gpu_scene *scene, abbe_view *out) {
-  abbe_image_view_fit_light(scene, out);
-  for (int k = 0; is_printed(scene) && k < 4; k++) out->window[k] = k % 2 == 0 ? -1 : 1;
+/* As printed through 90 degrees, be it one view or six. */
+static void look_from_light(const abbe_gpu_scene *scene, abbe_image_cube *out) {
+  const abbe_render_desc *d = &scene->plan->desc;
+  if (d->faces > 1) {
+    abbe_image_cube_make(scene, d->map_size, shared_border, is_printed(scene), out);
+    /* polygons of one view and of the next meet where the outermost photons do, on the seam */
+    const double apart = (double)d->photons / (double)(d->photons - 1);
+    for (size_t f = 0; f < out->object_faces && out->object_faces > 1 && draws_polygons(d); f++)
+      for (int k = 0; k < 4; k++) out->object_face[f].window[k] *= apart;
+    return;
+  }
+  abbe_view view;
+  abbe_image_view_fit_light(scene, &view);
+  for (int k = 0; is_printed(scene) && k < 4; k++) view.window[k] = k % 2 == 0 ? -1 : 1;
+  abbe_image_cube_one(&view, out);
 }
 
 static abbe_result make_eye(abbe_wyman2006 *w, const abbe_shader_variant *variant,
@@ -63,9 +85,10 @@ static abbe_result make_eye(abbe_wyman2006 *w, const abbe_shader_variant *varian
  * polygons bunch at the texels' middles. */
 static void interpolate_receivers(const abbe_image_places *light) {
   const abbe_gl *gl = light->scene->gpu->gl;
-  gl->BindTexture(GL_TEXTURE_2D, light->receivers);
-  gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  const GLenum kind = light->faces > 1 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+  gl->BindTexture(kind, light->receivers);
+  gl->TexParameteri(kind, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  gl->TexParameteri(kind, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
 }
 
 abbe_result abbe_wyman2006_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
@@ -73,19 +96,19 @@ abbe_result abbe_wyman2006_make(const abbe_gpu_scene *scene, const abbe_shader_v
   const abbe_render_desc *d = &scene->plan->desc;
   const size_t map[2] = {d->map_size, d->map_size}, grid[2] = {d->photons, d->photons};
   char definitions[768];
-  abbe_view view;
+  abbe_image_cube sight;
   out->scene = scene;
   abbe_image_tables_define(d, definitions, sizeof definitions);
-  look_from_light(scene, &view);
-  abbe_map_layout_make(&view, &out->layout);
-  abbe_result result = abbe_image_places_make(scene, &view, map, grid, true, &out->light, error);
+  look_from_light(scene, &sight);
+  abbe_map_layout_make(&sight.face[0], &out->layout);
+  abbe_result result = abbe_image_places_make(scene, &sight, map, grid, true, &out->light, error);
   if (result == ABBE_OK) interpolate_receivers(&out->light);
   if (result == ABBE_OK)
     result =
         abbe_wyman_photons_make(scene, &out->light, variant, definitions, &out->photons, error);
   if (result == ABBE_OK) result = abbe_image_tables_colours(scene, false, &out->colour, error);
   if (result == ABBE_OK) result = make_eye(out, variant, definitions, error);
-  if (result == ABBE_OK)
+  if (result == ABBE_OK && sight.faces == 1)
     result = abbe_wyman_target_make(&out->photons, &out->light, false, variant, &out->map, error);
   if (result == ABBE_OK && in_camera(scene))
     result = abbe_wyman_target_make(&out->photons, &out->eye.places, true, variant, &out->picture,
@@ -145,22 +168,31 @@ static abbe_result see_from_light(abbe_wyman2006 *w, abbe_error *error) {
   return result;
 }
 
-static abbe_result draw_photons(abbe_wyman2006 *w, abbe_wyman_target *target, abbe_error *error) {
-  abbe_result result = see_from_light(w, error);
+/* kept: their buffer is there. */
+static abbe_result draw_photons(abbe_wyman2006 *w, abbe_wyman_target *target, bool kept,
+                                abbe_error *error) {
+  abbe_result result = kept ? ABBE_OK : see_from_light(w, error);
+  abbe_gpu_start_lap(w->scene->gpu);
   if (result == ABBE_OK && in_camera(w->scene))
     result = abbe_image_places_receivers(&w->eye.places, error);
-  if (result == ABBE_OK) result = abbe_wyman_target_run(target, w->colour, true, error);
+  if (result == ABBE_OK) result = abbe_wyman_target_run(target, w->colour, true, kept, error);
   abbe_gpu_book_lap(w->scene->gpu, ABBE_PASS_PHOTONS);
   if (result == ABBE_OK) target->history.frame++;
   return result;
 }
 
+bool abbe_wyman2006_keeps_light(const abbe_render_desc *desc) {
+  return desc->history <= 1 && (desc->fill == ABBE_FILL_GATHER_LIGHT ||
+                                (desc->wavelengths == 1 && desc->faces <= 1));
+}
+
 abbe_result abbe_wyman2006_run(abbe_wyman2006 *w, bool lit, abbe_error *error) {
   abbe_gpu *gpu = w->scene->gpu;
   abbe_wyman_target *target = own_target(w);
-  const bool kept = lit && !in_camera(w->scene) && w->scene->plan->desc.history <= 1;
+  const bool kept = lit && abbe_wyman2006_keeps_light(&w->scene->plan->desc);
+  const bool map = kept && !in_camera(w->scene);
   abbe_gpu_scene_bind(w->scene);
-  abbe_result result = kept ? ABBE_OK : draw_photons(w, target, error);
+  abbe_result result = map ? ABBE_OK : draw_photons(w, target, kept, error);
   if (result != ABBE_OK) return result;
   gpu->gl->UseProgram(w->eye.receivers);
   abbe_image_view_set_view(w->scene, w->eye.receivers, "camera_view", &w->eye.places.view.view);
@@ -177,7 +209,7 @@ abbe_result abbe_wyman2006_read_map(abbe_wyman2006 *w, abbe_image *out, abbe_err
   abbe_result result = ABBE_OK;
   if (in_camera(w->scene)) {
     abbe_gpu_scene_bind(w->scene);
-    result = abbe_wyman_target_run(&w->map, w->colour, false, error);
+    result = abbe_wyman_target_run(&w->map, w->colour, false, false, error);
   }
   if (result != ABBE_OK) return result;
   return abbe_image_view_read_map(w->scene, w->map.light, &w->layout, out, error);

@@ -11,7 +11,7 @@
 
 typedef struct abbe_wyman2006 {
   const abbe_gpu_scene *scene;
-  abbe_map_layout layout; /* of the light's one frustum */
+  abbe_map_layout layout; /* of the light's one frustum; of a cube, its first face's */
   abbe_image_places light;
   abbe_image_eye eye;
   abbe_wyman_photons photons;
@@ -23,8 +23,11 @@ typedef struct abbe_wyman2006 {
 abbe_result abbe_wyman2006_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
                                 abbe_wyman2006 *out, abbe_error *error);
 void abbe_wyman2006_free(abbe_wyman2006 *wyman);
-/* A frame; lit: where the light's image is gathered in, the camera's passes alone, for it is there.
- * ABBE_GL. */
+/* Whether a camera that moves leaves what the light's passes make as it is: the light's image, or
+ * with one wavelength and view the buffer of photons that go to the camera's; where it holds no
+ * frames before. */
+bool abbe_wyman2006_keeps_light(const abbe_render_desc *desc);
+/* A frame; lit: what is kept is there. ABBE_GL. */
 abbe_result abbe_wyman2006_run(abbe_wyman2006 *wyman, bool lit, abbe_error *error);
 
 /* Hands out the frames that it has drawn, before it is freed. */

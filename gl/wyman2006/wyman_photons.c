@@ -30,8 +30,10 @@ static abbe_result make_program(abbe_wyman_photons *p, const abbe_shader_variant
                                               {GL_FRAGMENT_SHADER, "wyman_photons.frag"}};
   const abbe_render_desc *d = &p->scene->plan->desc;
   char text[1024];
-  const int length = snprintf(text, sizeof text, "%s#define ESTIMATOR %d\n#define ITERATIONS %zu\n",
-                              definitions, (int)d->estimator, d->iterations);
+  const int length = snprintf(
+      text, sizeof text, "%s#define ESTIMATOR %d\n#define ITERATIONS %zu\n#define OBJECT_FACES %zu\n%s",
+      definitions, (int)d->estimator, d->iterations, p->light->object_faces,
+      p->light->faces > 1 ? "#define PLACES_CUBE\n" : "");
   if (length < 0 || (size_t)length >= sizeof text)
     return abbe_error_set(error, ABBE_GL, "a shader's definitions are too long");
   return abbe_shader_variant_program(variant, p->scene->gpu, stages, 2, text, &p->program, error);
@@ -60,7 +62,7 @@ void abbe_wyman_photons_free(abbe_wyman_photons *p) {
 }
 
 abbe_result abbe_wyman_photons_run(const abbe_wyman_photons *p, size_t wavelength,
-                                   abbe_error *error) {
+                                   size_t face, abbe_error *error) {
   static const int flat[2] = {-1, -1};
   const abbe_gpu_scene *scene = p->scene;
   const abbe_gl *gl = scene->gpu->gl;
@@ -74,6 +76,7 @@ abbe_result abbe_wyman_photons_run(const abbe_wyman_photons *p, size_t wavelengt
   abbe_image_places_set(p->light, p->program);
   abbe_image_view_set_lamp(scene, p->program, scene->local->light[0].direction);
   abbe_gpu_set_int(scene->gpu, p->program, "wavelength", (int)wavelength);
+  abbe_gpu_set_int(scene->gpu, p->program, "object_face", (int)face);
   abbe_gpu_set_float(scene->gpu, p->program, "object_bias", 1e-3 * scene->refractor_radius);
   gl->Uniform4f(gl->GetUniformLocation(p->program, "mirror_plane"), (float)p->background[0],
                 (float)p->background[1], (float)p->background[2], (float)p->background[3]);

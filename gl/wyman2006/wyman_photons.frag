@@ -25,7 +25,7 @@ float beam_of(vec3 d) {
 
 bool land(ivec2 pixel, Ray ray, out vec3 at) {
 #if defined(AS_PRINTED) && defined(MIRRORS)
-  if (refractors[int(texelFetch(object_normals, ivec3(pixel, 0), 0).w + 0.5) - 1].info.z == -1) {
+  if (refractors[int(texelFetch(object_normals, ivec3(pixel, 2 * object_face), 0).w + 0.5) - 1].info.z == -1) {
     float towards = dot(mirror_plane.xyz, ray.r), d = (mirror_plane.w - dot(mirror_plane.xyz, ray.o)) / towards;
     at = ray.o + d * ray.r;
     return towards != 0.0 && d > 0.0;
@@ -41,13 +41,13 @@ void main() {
   place = vec4(0);
   incident = vec4(0);
   if (!leave_object(pixel, wavelength, ray) || ray.total || !land(pixel, ray, at)) return;
-  vec3 front = texelFetch(object_places, ivec3(pixel, 0), 0).xyz, d = seen_direction(front);
+  vec3 front = texelFetch(object_places, ivec3(pixel, 2 * object_face), 0).xyz, d = seen_direction(front);
   float light = ray.share * beam_of(d);
   if (ray.inside > 0.0) light *= exp(-ray.inside * distance(ray.o, at));
 #ifndef AS_PRINTED
   vec3 seen;
-  if (look_up(front, seen) && dot(seen - front, places_view().forward.xyz) < -object_bias) light = 0.0;
+  if (look_up(front, seen) && dot(seen - front, places_axis(front)) < -object_bias) light = 0.0;
 #endif
   place = vec4(at, light);
-  incident = vec4(normalize(ray.r), window_measure(places_view(), d));
+  incident = vec4(normalize(ray.r), window_measure(object_view(object_face), d));
 }

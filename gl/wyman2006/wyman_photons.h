@@ -1,4 +1,4 @@
-/* wyman_photons.h: a photon a pixel of the light's grid, one wavelength at a time: where it meets
+/* wyman_photons.h: a photon a pixel of the light's grid, one wavelength and one view at a time: where it meets
  * its first diffuse surface, from where, and how much of it. Internal to gl/.
  */
 #ifndef ABBE_GL_WYMAN2006_WYMAN_PHOTONS_H
@@ -19,8 +19,8 @@ abbe_result abbe_wyman_photons_make(const abbe_gpu_scene *scene, const abbe_imag
                                     const abbe_shader_variant *variant, const char *definitions,
                                     abbe_wyman_photons *out, abbe_error *error);
 void abbe_wyman_photons_free(abbe_wyman_photons *photons);
-/* The light's places are drawn by then. ABBE_GL. */
+/* The light's places are drawn by then; face: of its views of objects. ABBE_GL. */
 abbe_result abbe_wyman_photons_run(const abbe_wyman_photons *photons, size_t wavelength,
-                                   abbe_error *error);
+                                   size_t face, abbe_error *error);
 
 #endif

@@ -83,6 +83,7 @@ abbe_result abbe_wyman_target_make(const abbe_wyman_photons *photons,
       .directions = d->direction != ABBE_DIRECTION_DIRECT,
       .polygons = d->fill == ABBE_FILL_QUADS || d->fill == ABBE_FILL_TRIANGLES,
       .gathers = d->fill == ABBE_FILL_GATHER_EYE || d->fill == ABBE_FILL_GATHER_LIGHT};
+  if (out->polygons) photons->scene->gpu->gl->GenQueries(1, &out->query);
   abbe_result result = make_targets(out, error);
   return result == ABBE_OK ? make_programs(out, variant, error) : result;
 }
@@ -96,6 +97,7 @@ void abbe_wyman_target_free(abbe_wyman_target *t) {
   abbe_gpu_drop_textures(gpu, 2, t->filtered);
   abbe_gpu_drop_textures(gpu, 2, t->gathered);
   abbe_gpu_drop_textures(gpu, ABBE_WYMAN_KEPT, t->history.sums);
+  if (t->query != 0) gpu->gl->DeleteQueries(1, &t->query);
   *t = (abbe_wyman_target){0};
 }
 
@@ -108,7 +110,7 @@ static void set_drawing(const abbe_wyman_target *t) {
   const abbe_gl *gl = scene->gpu->gl;
   const abbe_image_places *light = t->photons->light;
   const double side = (double)scene->plan->desc.photons;
-  const double cell = window_area(&light->view.view) / (side * side);
+  const double cell = window_area(&light->object_face[0].view) / (side * side);
   const double pixel = window_area(&t->places->view.view) /
                        ((double)t->places->size[0] * (double)t->places->size[1]);
   const double *from = light->view.view.origin;
@@ -124,8 +126,15 @@ static void set_drawing(const abbe_wyman_target *t) {
                 (float)from[2]);
 }
 
+/* Waits for the device: how many polygons lie over a pixel, in the mean. */
+static double count_layers(const abbe_wyman_target *t) {
+  GLuint fragments = 0;
+  t->scene->gpu->gl->GetQueryObjectuiv(t->query, GL_QUERY_RESULT, &fragments);
+  return fragments / ((double)t->places->size[0] * (double)t->places->size[1]);
+}
+
 /* What is drawn first clears the image. */
-static abbe_result draw(const abbe_wyman_target *t, const float colour[3], bool first,
+static abbe_result draw(abbe_wyman_target *t, const float colour[3], bool first,
                         abbe_error *error) {
   const abbe_gpu_scene *scene = t->scene;
   const abbe_gl *gl = scene->gpu->gl;
@@ -143,9 +152,13 @@ static abbe_result draw(const abbe_wyman_target *t, const float colour[3], bool 
   set_drawing(t);
   gl->Uniform3f(gl->GetUniformLocation(t->draw, "colour"), colour[0], colour[1], colour[2]);
   gl->BindVertexArray(scene->gpu->empty_array);
+  const bool counts = t->query != 0 && scene->gpu->statistics != NULL;
+  if (counts) gl->BeginQuery(GL_SAMPLES_PASSED, t->query);
   gl->DrawArrays(t->polygons ? GL_TRIANGLES : GL_POINTS, 0,
                  (GLsizei)(t->polygons ? 6 * cells : side * side));
+  if (counts) gl->EndQuery(GL_SAMPLES_PASSED);
   gl->Disable(GL_BLEND);
+  if (counts) t->layers += count_layers(t) / (double)scene->plan->desc.wavelengths;
   return ABBE_OK;
 }
 
@@ -206,12 +219,14 @@ static abbe_result gather(abbe_wyman_target *t, abbe_error *error) {
 }
 
 abbe_result abbe_wyman_target_run(abbe_wyman_target *t, float (*colour)[3], bool next_frame,
-                                  abbe_error *error) {
+                                  bool kept, abbe_error *error) {
   const abbe_render_desc *d = &t->scene->plan->desc;
   abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < d->wavelengths && result == ABBE_OK; i++) {
-    result = abbe_wyman_photons_run(t->photons, i, error);
-    if (result == ABBE_OK) result = draw(t, colour[i], i == 0, error);
+  if (t->scene->gpu->statistics != NULL) t->layers = 0;
+  const size_t faces = t->photons->light->object_faces;
+  for (size_t i = 0; i < d->wavelengths * faces && result == ABBE_OK; i++) {
+    if (!kept) result = abbe_wyman_photons_run(t->photons, i % d->wavelengths, i / d->wavelengths, error);
+    if (result == ABBE_OK) result = draw(t, colour[i % d->wavelengths], i == 0, error);
   }
   t->light = t->sum;
   t->light_directions = t->direction_sum;

@@ -29,6 +29,8 @@ typedef struct abbe_wyman_target {
   GLuint draw, area, gather, filter; /* programs */
   GLuint sum, direction_sum, areas, filtered[2], gathered[2];
   abbe_wyman_history history;
+  GLuint query; /* fragments of polygons; 0: none are drawn */
+  double layers; /* of polygons over a pixel, mean of the last frame with statistics */
   GLuint light, light_directions; /* of the last run, two of those above; directions: 0: none */
 } abbe_wyman_target;
 
@@ -37,8 +39,9 @@ abbe_result abbe_wyman_target_make(const abbe_wyman_photons *photons,
                                    const abbe_shader_variant *variant, abbe_wyman_target *out,
                                    abbe_error *error);
 void abbe_wyman_target_free(abbe_wyman_target *target);
-/* The image's receivers and the light's places are drawn by then. colour: of each wavelength. */
+/* The image's receivers and the light's places are drawn by then. colour: of each wavelength; kept:
+ * photons are those of the last run, of one wavelength. */
 abbe_result abbe_wyman_target_run(abbe_wyman_target *target, float (*colour)[3], bool next_frame,
-                                  abbe_error *error);
+                                  bool kept, abbe_error *error);
 
 #endif

@@ -27,6 +27,7 @@ typedef enum abbe_object_form {
   ABBE_OBJECT_LATHE,
   ABBE_OBJECT_CUT,
   ABBE_OBJECT_WATER,
+  ABBE_OBJECT_KNOT,
   ABBE_OBJECT_MESH
 } abbe_object_form;
 

@@ -5,6 +5,7 @@
 #include "scenes/import/object_reading.h"
 #include "scenes/import/scene_value.h"
 #include "scenes/shapes/brilliant.h"
+#include "scenes/shapes/knot.h"
 #include "scenes/shapes/shape.h"
 
 #include <math.h>
@@ -13,7 +14,7 @@
 #include <string.h>
 
 static const char *const shape_names[] = {"sphere",    "ring",  "gem", "brilliant", "prism", "box",
-                                          "rectangle", "lathe", "cut", "water",     NULL};
+                                          "rectangle", "lathe", "cut", "water",     "knot",  NULL};
 
 /* A length that must be there; the shape itself says that it must be above zero. */
 static abbe_result need_length(const abbe_object_reading *r, const char *key, double *out,
@@ -47,6 +48,26 @@ static abbe_result read_ring(const abbe_object_reading *r, abbe_mesh *out, abbe_
   if (result == ABBE_OK) result = read_count(r, "around", 3, 4096, &around, error);
   if (result == ABBE_OK) result = read_count(r, "across", 3, 4096, &across, error);
   return result == ABBE_OK ? abbe_shape_ring(major, minor, around, across, out, error) : result;
+}
+
+static abbe_result read_knot(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
+  abbe_knot knot = {.spine = 0.5};
+  const struct {
+    const char *key;
+    size_t most, *count;
+  } counts[] = {{"turns", ABBE_KNOT_MAX_WINDINGS, &knot.turns},
+                {"coils", ABBE_KNOT_MAX_WINDINGS, &knot.coils},
+                {"spines", ABBE_KNOT_MAX_SPINES, &knot.spines},
+                {"along", ABBE_KNOT_MAX_SEGMENTS, &knot.along},
+                {"across", ABBE_KNOT_MAX_SEGMENTS, &knot.across}};
+  abbe_result result = need_length(r, "major", &knot.major, error);
+  if (result == ABBE_OK) result = need_length(r, "minor", &knot.minor, error);
+  if (result == ABBE_OK) result = need_length(r, "radius", &knot.radius, error);
+  for (size_t i = 0; i < sizeof counts / sizeof *counts && result == ABBE_OK; i++)
+    result = read_count(r, counts[i].key, 1, counts[i].most, counts[i].count, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_number(r->yaml, r->node, "spine", 0, 2, &knot.spine, error);
+  return result == ABBE_OK ? abbe_knot_make(&knot, out, error) : result;
 }
 
 static abbe_result read_gem(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
@@ -273,6 +294,9 @@ abbe_result abbe_object_read_surface(abbe_object_reading *r, abbe_object *object
     break;
   case ABBE_OBJECT_WATER:
     result = abbe_object_read_water(r, out, error);
+    break;
+  case ABBE_OBJECT_KNOT:
+    result = read_knot(r, out, error);
     break;
   case ABBE_OBJECT_MESH:
     result = read_mesh(r, object, error);

@@ -81,6 +81,15 @@ void abbe_view_pad(abbe_view *view, double share) {
   if (!view->orthographic) view->near = fmax(view->near, 1e-3 * view->far);
 }
 
+void abbe_view_square(abbe_view *view) {
+  double half = 0.5 * fmax(view->window[1] - view->window[0], view->window[3] - view->window[2]);
+  for (int axis = 0; axis < 2; axis++) {
+    double middle = 0.5 * (view->window[2 * axis] + view->window[2 * axis + 1]);
+    view->window[2 * axis] = middle - half;
+    view->window[2 * axis + 1] = middle + half;
+  }
+}
+
 void abbe_view_matrix(const abbe_view *view, double out[16]) {
   double look[16], clip[16], target[3];
   for (int k = 0; k < 3; k++) target[k] = view->origin[k] + view->forward[k];

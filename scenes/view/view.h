@@ -36,6 +36,9 @@ bool abbe_view_fit(abbe_view *view, const double (*points)[3], size_t count);
 /* Widens window and depth range by the share (0.02: 2 % of each side), and keeps both non-empty. */
 void abbe_view_pad(abbe_view *view, double share);
 
+/* Widens the shorter side of the window to the longer, about its middle. */
+void abbe_view_square(abbe_view *view);
+
 /* Column-major world-to-clip matrix. */
 void abbe_view_matrix(const abbe_view *view, double out[16]);
 

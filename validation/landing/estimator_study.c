@@ -1,5 +1,6 @@
 #include "validation/landing/estimator_study.h"
 
+#include "base/clock.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "scenes/geometry/vector.h"
@@ -10,7 +11,7 @@
 
 static const double lambda_nm = 550;
 static const size_t iterations[] = {1, 2, 3, 5, 8};
-enum { STEPS = sizeof iterations / sizeof *iterations, RATE_STEP = 12, LEAST_RATES = 8 };
+enum { ROUNDS = 3, STEPS = sizeof iterations / sizeof *iterations, RATE_STEP = 12, LEAST_RATES = 8 };
 
 typedef struct work {
   abbe_landing_rays rays;
@@ -44,6 +45,19 @@ static abbe_estimate estimate(work *w, const abbe_estimator_point *p, size_t n, 
   return abbe_estimator_run(&desc, ray->origin, ray->direction);
 }
 
+/* The least of some rounds, ns a ray. */
+static double measure_time(work *w, const abbe_estimator_point *p) {
+  double least = INFINITY;
+  for (int round = 0; round < ROUNDS; round++) {
+    const double start = abbe_clock_seconds();
+    for (size_t i = 0; i < w->rays.count; i++)
+      if (w->rays.ray[i].reflected == p->reflected)
+        w->error[i] = estimate(w, p, p->iterations, false, &w->rays.ray[i]).distance;
+    least = fmin(least, abbe_clock_seconds() - start);
+  }
+  return 1e9 * least / (double)p->rays;
+}
+
 static void measure_errors(work *w, abbe_estimator_point *p) {
   size_t found = 0;
   double lookups = 0;
@@ -63,6 +77,7 @@ static void measure_errors(work *w, abbe_estimator_point *p) {
   p->worst = quantile(w->error, found, 1);
   p->lost = 1 - (double)found / (double)p->rays;
   p->lookups = lookups / (double)p->rays;
+  p->ns = measure_time(w, p);
 }
 
 /* Where errors are small, and far above rounding. */
@@ -152,15 +167,15 @@ void abbe_estimator_study_print(const abbe_estimator_study *study, FILE *to) {
   fprintf(to,
           "a texture of %zu x %zu places, a ray for each of %zu x %zu cells; %zu rays land where "
           "the light does not see\n\n"
-          "| light | estimator | iterations | lookups | median, texels | 95 %% | worst | lost | "
-          "rate (law) |\n|---|---|---|---|---|---|---|---|---|\n",
+          "| light | estimator | iterations | lookups | ns a ray | median, texels | 95 %% | worst | lost | "
+          "rate (law) |\n|---|---|---|---|---|---|---|---|---|---|\n",
           study->side, study->side, study->grid, study->grid, study->hidden);
   for (size_t i = 0; i < study->count; i++) {
     const abbe_estimator_point *p = &study->point[i];
     fprintf(to, "| %s | %s%s | %zu", p->reflected ? "reflected" : "refracted",
             abbe_estimator_name(p->kind), p->printed ? ", as printed" : "", p->iterations);
-    abbe_number_write(to, " | %.1f | %.3g | %.3g | %.3g | %.2g %% |", p->lookups, p->median, p->p95,
-                      p->worst, 100 * p->lost);
+    abbe_number_write(to, " | %.1f | %.0f | %.3g | %.3g | %.3g | %.2g %% |", p->lookups, p->ns, p->median,
+                      p->p95, p->worst, 100 * p->lost);
     if (isfinite(p->rate) && p->iterations == 1)
       abbe_number_write(to, " %.3f (%.3f) |\n", p->rate, p->law);
     else
@@ -176,14 +191,15 @@ abbe_result abbe_estimator_study_save(const abbe_estimator_study *study, const c
   if (result != ABBE_OK) return result;
   fprintf(writer.stream, "# side: %zu\n# grid: %zu\n# hidden: %zu\n", study->side, study->grid,
           study->hidden);
-  fprintf(writer.stream, "light,estimator,printed,iterations,rays,lookups,median_texels,"
+  fprintf(writer.stream, "light,estimator,printed,iterations,rays,lookups,ns,median_texels,"
                          "p95_texels,worst_texels,lost,rate,law\n");
   for (size_t i = 0; i < study->count; i++) {
     const abbe_estimator_point *p = &study->point[i];
-    const double value[] = {p->lookups, p->median, p->p95, p->worst, p->lost, p->rate, p->law};
+    const double value[] = {p->lookups, p->ns,   p->median, p->p95,
+                            p->worst,   p->lost, p->rate,   p->law};
     fprintf(writer.stream, "%s,%s,%d,%zu,%zu", p->reflected ? "reflected" : "refracted",
             abbe_estimator_name(p->kind), p->printed, p->iterations, p->rays);
-    for (int k = 0; k < 7; k++) {
+    for (size_t k = 0; k < sizeof value / sizeof *value; k++) {
       char text[ABBE_NUMBER_TEXT_SIZE];
       fprintf(writer.stream, ",%s", isfinite(value[k]) ? abbe_number_text(value[k], text) : "");
     }

@@ -24,7 +24,7 @@ typedef struct abbe_estimator_point {
   size_t rays;
   double median, p95, worst; /* of the place, in texels, of the rays that are found */
   double lost;               /* share of the rays for which nothing is found */
-  double lookups;            /* mean, of a ray */
+  double lookups, ns;        /* mean, of a ray; ns: on this processor, in double precision */
   /* Of shah and axis with lookups of the triangles themselves: median ratio of successive errors,
    * in size, and the median of what abbe_estimator_rate says for these rays; else NaN. */
   double rate, law;

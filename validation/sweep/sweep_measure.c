@@ -178,6 +178,7 @@ static abbe_result measure_map(const abbe_sweep *s, abbe_renderer *renderer, abb
   const abbe_plan *plan = abbe_renderer_plan(renderer);
   bool thesis = abbe_profile_is_published(plan->desc.profile);
   if (!plan->caustics || s->light >= plan->light_view_count) return ABBE_OK;
+  if (thesis && plan->desc.faces > 1) return ABBE_OK; /* a cube has no one layout */
   abbe_result result =
       thesis ? abbe_renderer_read_map(renderer, s->light, true, &map, error)
              : abbe_renderer_read_map_bands(renderer, s->light, ABBE_SWEEP_BANDS, &map, error);

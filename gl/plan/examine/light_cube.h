@@ -2,7 +2,7 @@
  *
  * A point light whose refractors do not fit one view looks through some of these. Faces are numbered
  * +x, -x, +y, -y, +z, -z, along the world's axes. Every direction belongs to exactly one (the
- * shaders' cube_face in common.glsl is the same rule). This knows where objects lie; it knows no GL.
+ * shaders' cube_face in view.glsl is the same rule). This knows where objects lie; it knows no GL.
  */
 #ifndef ABBE_GL_PLAN_EXAMINE_LIGHT_CUBE_H
 #define ABBE_GL_PLAN_EXAMINE_LIGHT_CUBE_H

@@ -113,18 +113,25 @@ static abbe_result examine_view(const abbe_scene *scene, size_t light, abbe_plan
   const bool thesis = abbe_profile_is_published(plan->desc.profile);
   const abbe_light *from = &scene->light[light];
   abbe_view view;
+  const bool cube = abbe_profile_estimates(plan->desc.profile) && plan->desc.faces == 0 &&
+                    plan->desc.fill != ABBE_FILL_GATHER_LIGHT;
   if (thesis && from->kind == ABBE_LIGHT_SPOT) return ABBE_OK; /* its view is its cone */
-  if (abbe_light_views_fit(scene, from, plan, &view, &plan->off_view[light])) {
-    find_aside(scene, plan, &view);
-    return ABBE_OK;
-  }
+  const bool fits = abbe_light_views_fit(scene, from, plan, &view, &plan->off_view[light]);
+  if (fits) find_aside(scene, plan, &view);
+  if (cube && (!fits || plan->outside_map_view))
+    plan->desc.faces = ABBE_LIGHT_CUBE_FACES;
+  if (fits || plan->desc.faces > 1) return ABBE_OK;
   if (!thesis) return make_cube(scene, light, plan, error);
   return abbe_error_set(error, ABBE_UNSUPPORTED,
                         "the %s profile looks through one view, and the light '%s' sees the "
                         "refractor '%s' more than 76 degrees off the middle of all; move it away, "
-                        "or take the default profile",
+                        "or take the default profile%s",
                         abbe_profile_name(plan->desc.profile), from->name,
-                        scene->object[plan->off_view[light]].name);
+                        scene->object[plan->off_view[light]].name,
+                        abbe_profile_estimates(plan->desc.profile)
+                            ? ", or six views (--faces 6; of wyman2006, with photons in the "
+                              "camera's image)"
+                            : "");
 }
 
 abbe_result abbe_light_views_choose(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {

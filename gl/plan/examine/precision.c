@@ -144,7 +144,8 @@ abbe_result abbe_precision_check(const abbe_scene *scene, const abbe_plan *plan,
   if (plan->refractor_count == 0 || abbe_profile_is_printed(plan->desc.profile)) return ABBE_OK;
   for (size_t i = 0; i < scene->light_count && result == ABBE_OK; i++)
     if (plan->reaches[i])
-      result = plan->light_view[i].face >= 0 ? check_cube(scene, plan, i, error)
-                                             : check_one_view(scene, plan, &scene->light[i], error);
+      result = plan->light_view[i].face >= 0 || plan->desc.faces > 1
+                   ? check_cube(scene, plan, i, error)
+                   : check_one_view(scene, plan, &scene->light[i], error);
   return result;
 }

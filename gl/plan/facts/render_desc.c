@@ -154,6 +154,7 @@ static abbe_result check_counts(const abbe_render_desc *d, abbe_error *error) {
       {"the number of exits", d->exits, 0, ABBE_RENDER_MAX_EXITS},
       {"the number of iterations", d->iterations, 0, ABBE_ESTIMATOR_MAX_ITERATIONS},
       {"the number of interfaces", d->interfaces, 0, 2},
+      {"the number of the light's views", d->faces, 0, ABBE_RENDER_CUBE_FACES},
       {"the low pass of the map", d->low_pass, 0, ABBE_RENDER_MAX_LOW_PASS},
       {"the number of pinholes", d->pinholes, 0, ABBE_SURFACE_MAX_SAMPLES},
       {"the number of a picture's frames", d->history, 0, ABBE_RENDER_MAX_HISTORY},
@@ -243,6 +244,19 @@ static abbe_result check_published(const abbe_render_desc *d, abbe_error *error)
                           "an estimator, its iterations and a number of interfaces go with the "
                           "profiles shah2007 and wyman2006 and their twins, not with '%s'",
                           abbe_profile_name(d->profile));
+  if (d->faces > 0 && !estimates)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a number of the light's views goes with the profiles shah2007 and "
+                          "wyman2006 and their twins, not with '%s'",
+                          abbe_profile_name(d->profile));
+  if (d->faces > 1 && d->fill == ABBE_FILL_GATHER_LIGHT)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "photons are gathered in one image of the light's, not in %zu; take "
+                          "points, quads, triangles or gather-eye",
+                          d->faces);
+  if (d->faces > 1 && d->faces != ABBE_RENDER_CUBE_FACES)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a light has %zu views; it may have 1, or the 6 of a cube", d->faces);
   if (d->low_pass > 0 && !abbe_profile_is_shah2007(d->profile))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a low pass of the map goes with the profiles shah2007 and shah2007-cie, "

@@ -110,6 +110,7 @@ typedef enum abbe_model {
 #define ABBE_RENDER_MAX_LIGHT_POINTS 16
 #define ABBE_RENDER_MAX_HISTORY 4   /* frames */
 #define ABBE_RENDER_MAX_LOW_PASS 32 /* texels */
+#define ABBE_RENDER_CUBE_FACES 6
 
 /* Called now and then with the share done, 0 to 1; false stops the work with ABBE_CANCELLED. */
 typedef bool (*abbe_render_progress)(void *user, double done);
@@ -162,6 +163,9 @@ typedef struct abbe_render_desc {
    * Elsewhere 0. */
   abbe_estimator estimator;
   size_t iterations, interfaces;
+  size_t faces;             /* of shah2007 and wyman2006: views of the light, 1, or the 6 of a cube
+                               around it; 0: 6 where one does not hold a point light's
+                               surroundings, 1 for a gather in the light's image */
   size_t low_pass;          /* of shah2007: standard deviation of the filter over its map, texels, 0
                                (none) to 32 */
   /* Of the transport by pinholes alone: samples of all surfaces together, at most

@@ -77,6 +77,7 @@ static GLuint make_program(const abbe_gl *gl, const world *w, abbe_estimator kin
       "#define ESTIMATOR_EXACT 11\n#define ESTIMATOR %d\n#define ITERATIONS %zu\n%s%s"
       "#include \"view.glsl\"\nuniform vec4 rows[6];\n"
       "View places_view() { return View(rows[0], rows[1], rows[2], rows[3], rows[4], rows[5]); }\n"
+      "vec3 places_axis(vec3 at) { return places_view().forward.xyz; }\n"
       "%s#include \"image_search.glsl\"\n"
       "vec4 f(vec4 a, vec4 b) {\n  vec3 at;\n"
       "  bool found = find_receiver(a.xyz, b.xyz, at);\n"

@@ -1,0 +1,108 @@
+/* Knots: closed, of a tube's volume, with normals of their own surface, and what they refuse. */
+#include "tests/check.h"
+
+#include "scenes/geometry/vector.h"
+#include "scenes/mesh/mesh.h"
+#include "scenes/shapes/knot.h"
+
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+static const abbe_knot plain = {
+    .major = 0.05, .minor = 0.025, .radius = 0.008, .along = 400, .across = 32};
+
+static abbe_mesh_report report_of(const abbe_mesh *m) {
+  abbe_mesh_report report;
+  abbe_error error = {0};
+  assert_int_equal(abbe_mesh_check(m, &report, &error), ABBE_OK);
+  assert_int_equal(report.open_edges + report.crowded_edges + report.flipped_edges, 0);
+  assert_int_equal(report.degenerate_faces, 0);
+  assert_int_equal(report.shells, 1);
+  return report;
+}
+
+/* By Pappus: the area across times the length of the middle line. */
+static void a_tube_has_its_volume(void **state) {
+  (void)state;
+  abbe_mesh m;
+  assert_int_equal(abbe_knot_make(&plain, &m, NULL), ABBE_OK);
+  assert_int_equal(m.face_count, 2 * 400 * 32);
+  const double right = pi * 0.008 * 0.008 * abbe_knot_length(&plain);
+  assert_near(report_of(&m).volume / right, 1, 0.01); /* of 32 corners for a circle: -0.0064 */
+  abbe_mesh_free(&m);
+}
+
+/* A ring, once around: its length, and that a tube has room up to its hole. */
+static void a_ring_is_the_simplest_knot(void **state) {
+  (void)state;
+  const abbe_knot ring = {.major = 1, .minor = 1e-4, .radius = 0.1, .turns = 1, .coils = 1};
+  assert_near(abbe_knot_length(&ring), 2 * pi, 1e-4);
+  assert_near(abbe_knot_room(&ring), 1, 1e-3);
+}
+
+static void spines_stand_out(void **state) {
+  (void)state;
+  abbe_knot k = plain;
+  abbe_mesh m[2];
+  k.radius = 0.006;
+  assert_int_equal(abbe_knot_make(&k, &m[0], NULL), ABBE_OK);
+  k.spines = 30;
+  k.spine = 0.5;
+  assert_int_equal(abbe_knot_make(&k, &m[1], NULL), ABBE_OK);
+  double most = 0;
+  for (size_t v = 0; v < m[0].vertex_count; v++) {
+    double out[3];
+    abbe_vector_subtract(m[1].position[v], m[0].position[v], out);
+    most = fmax(most, abbe_vector_length(out));
+  }
+  assert_near(most, 0.5 * 0.006, 1e-6);
+  assert_true(report_of(&m[1]).volume > 1.02 * report_of(&m[0]).volume);
+  for (size_t f = 0; f < m[1].face_count; f++) { /* normals are those of the faces, nearly */
+    double u[3], v[3], n[3];
+    const uint32_t *corner = m[1].face[f];
+    abbe_vector_subtract(m[1].position[corner[1]], m[1].position[corner[0]], u);
+    abbe_vector_subtract(m[1].position[corner[2]], m[1].position[corner[0]], v);
+    abbe_vector_cross(u, v, n);
+    abbe_vector_normalise(n);
+    for (int k2 = 0; k2 < 3; k2++) {
+      assert_near(abbe_vector_length(m[1].normal[corner[k2]]), 1, 1e-12);
+      assert_true(abbe_vector_dot(n, m[1].normal[corner[k2]]) > 0.8);
+    }
+  }
+  abbe_mesh_free(&m[0]);
+  abbe_mesh_free(&m[1]);
+}
+
+static void what_is_no_knot(void **state) {
+  (void)state;
+  abbe_knot bad[8];
+  static const char *const says[8] = {"meets itself", "common divisor", "hole",   "radius 0",
+                                      "spines",       "segments",       "spines", "meets itself"};
+  for (int i = 0; i < 8; i++) bad[i] = plain;
+  bad[0].radius = 0.03;
+  bad[1].turns = bad[1].coils = 2;
+  bad[2].minor = 0.06;
+  bad[3].radius = 0;
+  bad[4].spine = 3;
+  bad[5].across = 2;
+  bad[6].spine = NAN;
+  bad[7].spines = 10; /* the tube has room, and its spines have none */
+  bad[7].spine = 2;
+  for (int i = 0; i < 8; i++) {
+    abbe_mesh m;
+    abbe_error error = {0};
+    assert_int_equal(abbe_knot_make(&bad[i], &m, &error), ABBE_INVALID_ARGUMENT);
+    if (strstr(error.text, says[i]) == NULL) print_error("%s\n", error.text);
+    assert_non_null(strstr(error.text, says[i]));
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_tube_has_its_volume),
+      cmocka_unit_test(a_ring_is_the_simplest_knot),
+      cmocka_unit_test(spines_stand_out),
+      cmocka_unit_test(what_is_no_knot),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
