@@ -445,58 +445,6 @@ static void noise_goes_by_four(void **state) {
   abbe_scene_free(&scene);
 }
 
-/* W7. A camera that moves keeps the map in the light's image, or the buffer of photons that go to
- * its own, and sees what it would see anew. */
-static void still_light_is_kept(void **state) {
-  (void)state;
-  static const struct {
-    abbe_profile profile;
-    abbe_fill fill;
-    bool draws; /* photons, into the camera's image */
-  } rows[] = {{ABBE_PROFILE_SHAH2007, ABBE_FILL_AUTO, false},
-              {ABBE_PROFILE_SHAH2007_CIE, ABBE_FILL_AUTO, false},
-              {ABBE_PROFILE_WYMAN2006, ABBE_FILL_AUTO, false},
-              {ABBE_PROFILE_WYMAN2006_CIE, ABBE_FILL_AUTO, false},
-              {ABBE_PROFILE_WYMAN2006, ABBE_FILL_POINTS, true},
-              {ABBE_PROFILE_WYMAN2006, ABBE_FILL_QUADS, true},
-              {ABBE_PROFILE_WYMAN2006_CIE, ABBE_FILL_GATHER_EYE, true}};
-  abbe_scene scene = {0}, moved = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
-  load_text(
-      "materials: glass.yaml\ncamera: {eye: [0.4, -0.8, 0.6], target: [0, 0, 0]}\n" POINT_LIGHT
-          FLOOR BALL("flat"),
-      &moved);
-  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    const abbe_render_desc desc = {.profile = rows[i].profile,
-                                   .fill = rows[i].fill,
-                                   .width = 64,
-                                   .height = 48,
-                                   .photons = 64,
-                                   .map_size = 64};
-    abbe_image kept = {0}, anew = {0};
-    abbe_error error = {0};
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
-    abbe_statistics statistics = draw_frame(renderer);
-    assert_true(abbe_statistics_ran(&statistics, ABBE_PASS_PHOTONS));
-    assert_ok(abbe_renderer_change(renderer, &moved, &desc, &error), &error);
-    statistics = draw_frame(renderer);
-    assert_int_equal(abbe_statistics_ran(&statistics, ABBE_PASS_PHOTONS), rows[i].draws);
-    assert_false(abbe_statistics_ran(&statistics, ABBE_PASS_RECEIVER_DEPTH));
-    assert_int_equal(statistics.polygon_layers > 0, rows[i].fill == ABBE_FILL_QUADS);
-    read_picture(renderer, false, &kept);
-    abbe_renderer_free(renderer);
-    renderer = make_renderer(&moved, &desc);
-    draw_frame(renderer);
-    read_picture(renderer, false, &anew);
-    abbe_renderer_free(renderer);
-    assert_same_pixels(&kept, &anew);
-    abbe_image_free(&kept);
-    abbe_image_free(&anew);
-  }
-  abbe_scene_free(&scene);
-  abbe_scene_free(&moved);
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(gathers_have_their_bias),
@@ -506,7 +454,6 @@ int main(void) {
       cmocka_unit_test(folds_sharpen_by_the_root),
       cmocka_unit_test(motion_lags),
       cmocka_unit_test(noise_goes_by_four),
-      cmocka_unit_test(still_light_is_kept),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
 }
