@@ -22,6 +22,7 @@ static void object_free(abbe_object *object) {
   free(object->mesh_others);
   abbe_material_free(object->own_material);
   free(object->own_material);
+  abbe_medium_free(object->medium);
   free(object->fixes);
 }
 
@@ -35,6 +36,7 @@ void abbe_scene_free(abbe_scene *scene) {
   for (size_t i = 0; i < scene->object_count; i++) object_free(&scene->object[i]);
   abbe_environment_free(scene->environment);
   free(scene->environment);
+  abbe_medium_free(scene->medium);
   free(scene->light);
   free(scene->object);
   abbe_material_table_free(&scene->table);
@@ -89,6 +91,13 @@ const char *abbe_scene_file(const abbe_scene *scene, size_t index) {
     index -= files;
   }
   return NULL;
+}
+
+bool abbe_scene_is_hazy(const abbe_scene *scene) {
+  bool hazy = scene->medium != NULL;
+  for (size_t i = 0; i < scene->object_count; i++)
+    hazy = hazy || scene->object[i].medium != NULL;
+  return hazy;
 }
 
 const abbe_object *abbe_scene_mirror(const abbe_scene *scene) {

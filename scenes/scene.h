@@ -14,6 +14,7 @@
 #include "colorimetry/image/image.h"
 #include "scenes/environment/environment.h"
 #include "scenes/environment/irradiance_map.h"
+#include "scenes/medium/medium.h"
 #include "scenes/mesh/mesh.h"
 #include "scenes/shapes/convex.h"
 #include "spectral/materials/material_table.h"
@@ -97,6 +98,7 @@ typedef struct abbe_object {
   double axis[3];                /* of a uniaxial crystal: unit, its optic axis in the world; of
                                     other materials of no meaning */
   abbe_material *own_material;   /* refractor: that of its mesh's file, owned, or NULL */
+  abbe_medium *medium;           /* refractor: what scatters in it, owned, or NULL */
   double reflectance[3];         /* receiver: linear Rec.709, 0 to 1, as reflected_light.h lifts it;
                                     of a spectrum: its colour under D65, kept within that */
   abbe_spectrum *spectrum;       /* receiver: its measured reflectance, owned; NULL: Rec.709's */
@@ -124,6 +126,7 @@ typedef struct abbe_scene {
   abbe_irradiance_map *soft_light; /* what they leave of it, as irradiance without shadows, in its
                                       RGB; NULL in a scene as it is loaded */
   abbe_environment *environment;   /* owned; NULL: dark surroundings */
+  abbe_medium *medium;             /* of the air, owned, or NULL: it is clear */
   size_t object_count;
   abbe_object *object;
   abbe_material_table table;
@@ -143,6 +146,9 @@ static inline const char *abbe_object_kind_name(abbe_object_kind kind) {
          : kind == ABBE_OBJECT_REFRACTOR ? "refractor"
                                          : "receiver";
 }
+
+/* Whether light is scattered or absorbed in the air, or scattered in a refractor. */
+bool abbe_scene_is_hazy(const abbe_scene *scene);
 
 /* The first mirror, or NULL. */
 const abbe_object *abbe_scene_mirror(const abbe_scene *scene);

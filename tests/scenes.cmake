@@ -6,6 +6,7 @@ foreach(name transform disjoint_sets vector
         alias_table area_lights environment environment_file environment_lights environment_picture environment_source irradiance_map
         radiance_cube radiance_map sky
         sphere_mesh light_nodes light_harmonics volume_region volume_body caustic_volume volume_file volume_tree
+        medium medium_file
         point_grid surface_curvature surface_samples
         view estimator map_layout map_resample pov_file export_index)
   abbe_test(${name} cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base)

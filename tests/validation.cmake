@@ -22,6 +22,7 @@ foreach(name
     file_comparison
     flip ssim frame_flicker
     geometry
+    haze air_light haze_grid shaft_photons haze_trace
     solid
     interface
     light_walk path_splitting

@@ -23,6 +23,7 @@ static void add_ledger(cJSON *root, const abbe_light_ledger *l, bool map) {
   cJSON_AddNumberToObject(energy, "missed", l->missed);
   cJSON_AddNumberToObject(energy, "trapped", l->trapped);
   cJSON_AddNumberToObject(energy, "lost", l->lost);
+  cJSON_AddNumberToObject(energy, "scattered", l->scattered);
 }
 
 static abbe_result write_stats(const abbe_trace_request *q, const abbe_tracer *tracer,
@@ -116,6 +117,8 @@ void abbe_trace_summarise(const abbe_trace_request *q, const abbe_tracer *tracer
     if (s.ledger.hidden > 0)
       fprintf(stderr, ", %.2f %% where receivers hide it from its lamp, in no map",
               whole * s.ledger.hidden);
+    if (s.ledger.scattered > 0)
+      fprintf(stderr, ", %.2f %% scattered on its way", whole * s.ledger.scattered);
     if (s.ledger.trapped > 0)
       fprintf(stderr, ", %.2f %% trapped, which is not modelled", whole * s.ledger.trapped);
   }

@@ -54,6 +54,7 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   if (result == ABBE_OK) result = make_lists(scene, out, error);
   if (result == ABBE_OK) result = abbe_refractor_model_choose(scene, out, error);
   if (result == ABBE_OK) abbe_receiver_model_choose(scene, out);
+  if (result == ABBE_OK) result = abbe_support_haze(scene, out, error);
   if (result == ABBE_OK) result = abbe_support_published(scene, out, error);
   if (result == ABBE_OK) result = abbe_support_pinholes(scene, out, error);
   if (result == ABBE_OK) result = abbe_support_layout(scene, out, error);

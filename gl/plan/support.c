@@ -95,6 +95,20 @@ abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *pla
   return ABBE_OK;
 }
 
+abbe_result abbe_support_haze(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
+  ABBE_REQUIRE(scene && plan, error);
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (scene->object[i].medium != NULL)
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "the object '%s' (line %zu) has a 'medium' that scatters light, which "
+                            "is not rendered; trace the scene (abbe trace), or leave it out",
+                            scene->object[i].name, scene->object[i].line);
+  if (scene->medium == NULL) return ABBE_OK;
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "the air has a 'medium' that scatters or absorbs light, which is not "
+                        "rendered; trace the scene (abbe trace), or leave it out");
+}
+
 /* A layout belongs to where its light is. */
 static bool looks_from(const abbe_view *view, const abbe_light *light) {
   const bool directional = light->kind == ABBE_LIGHT_DIRECTIONAL;

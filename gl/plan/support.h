@@ -29,6 +29,9 @@ abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *pla
  * part of the object, or are of another colour. */
 abbe_result abbe_support_volume(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 
+/* ABBE_UNSUPPORTED for a medium that scatters. */
+abbe_result abbe_support_haze(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
+
 /* ABBE_INVALID_ARGUMENT for a given map layout that is not the layout of its light's map. */
 abbe_result abbe_support_layout(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 

@@ -72,6 +72,7 @@ static abbe_result survey_object(const survey *s, const abbe_object *o, double l
     CHANGED(s, o->name, "the sphere is %zu triangles", o->mesh.face_count);
   if (kind == ABBE_OBJECT_REFRACTOR) result = add_glass(s, o->material, lambda_nm, error);
   if (kind == ABBE_OBJECT_MIRROR) survey_mirror(s, o);
+  if (o->medium != NULL) LOST(s, o->name, "what scatters in it: its inside is clear");
   if (o->spectrum != NULL && !s->spectral)
     LOST(s, o->name, "its measured reflectance: its colour under D65 is written");
   else if (kind == ABBE_OBJECT_RECEIVER && o->texture_path != NULL && s->spectral)
@@ -111,6 +112,7 @@ static void survey_surroundings(const survey *s) {
     else
       CHANGED(s, "environment", "resampled to STEM-environment.exr, linear Rec.709");
   }
+  if (s->scene->medium != NULL) LOST(s, "medium", "the air is clear");
   if (s->scene->ambient > 0)
     LOST(s, "ambient", "the format has no light without shadows (%.3g W/m2)", s->scene->ambient);
   if (s->scene->background > 0)

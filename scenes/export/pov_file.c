@@ -341,6 +341,10 @@ abbe_result abbe_pov_file_write(const char *path, const abbe_scene *scene,
     result = abbe_error_set(error, ABBE_UNSUPPORTED,
                             "the scene has an 'environment', which is not exported; leave it out, "
                             "and give the scene 'lights'");
+  if (result == ABBE_OK && abbe_scene_is_hazy(scene))
+    result = abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "the scene has a 'medium' that scatters light, which is not written "
+                            "for POV-Ray; leave it out");
   const abbe_object *mirror = abbe_scene_mirror(scene);
   if (result == ABBE_OK && mirror != NULL)
     result = abbe_error_set(error, ABBE_UNSUPPORTED,

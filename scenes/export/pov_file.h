@@ -48,8 +48,9 @@ double abbe_pov_file_scale(const abbe_scene *scene);
 /* Writes the scene to path (beside and renamed); options may be NULL. In the file four values can
  * be set by POV-Ray's command line: Declare=Caustics=0 leaves caustics out, Photons and
  * Samples replace the options, Gather is how many photons make a place's light at the least.
- * ABBE_INVALID_ARGUMENT for options out of range, ABBE_UNSUPPORTED for an environment, a mirror and
- * the path of a texture that POV-Ray cannot spell, errors of abbe_pov_file_glass, ABBE_IO. */
+ * ABBE_INVALID_ARGUMENT for options out of range, ABBE_UNSUPPORTED for an environment, a medium, a
+ * mirror and the path of a texture that POV-Ray cannot spell, errors of abbe_pov_file_glass,
+ * ABBE_IO. */
 abbe_result abbe_pov_file_write(const char *path, const abbe_scene *scene,
                                 const abbe_pov_options *options, abbe_error *error);
 

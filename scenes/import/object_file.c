@@ -8,6 +8,7 @@
 #include "scenes/import/object_surface.h"
 #include "scenes/import/reflectance_file.h"
 #include "scenes/import/scene_value.h"
+#include "scenes/medium/medium_file.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/wavelengths.h"
 
@@ -265,6 +266,22 @@ static abbe_result read_mirror(const abbe_object_reading *r, abbe_yaml_node node
   return abbe_scene_value_locate(r->yaml, node, ABBE_UNSUPPORTED, error);
 }
 
+/* Of crystals' two waves no medium is known; what does not refract has no inside. */
+static abbe_result read_medium(const abbe_object_reading *r, abbe_object *out, abbe_error *error) {
+  const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, "medium");
+  if (node.id == 0) return ABBE_OK;
+  if (out->material == NULL)
+    return abbe_yaml_fail(r->yaml, node, error,
+                          "'medium' is what scatters inside of an object that refracts; this one "
+                          "has no 'material' (the air's 'medium' stands beside 'objects')");
+  if (abbe_material_is_uniaxial(out->material))
+    return abbe_yaml_fail(r->yaml, node, error,
+                          "the material '%s' is a crystal, in which scattering is not modelled: "
+                          "leave the 'medium' out, or take a material with one index",
+                          out->material->name);
+  return abbe_medium_file_read(r->yaml, r->node, false, &out->medium, error);
+}
+
 static abbe_result read_substance(const abbe_object_reading *r, const abbe_material_table *table,
                                   abbe_object *out, abbe_error *error) {
   const abbe_yaml_node material = abbe_yaml_get(r->yaml, r->node, "material");
@@ -279,10 +296,11 @@ static abbe_result read_substance(const abbe_object_reading *r, const abbe_mater
         "reflects), or a 'reflectance' or 'texture' (it receives light); this one "
         "has %s",
         found == 0 ? "none" : "more than one");
-  const abbe_result result = material.id ? read_refractor(r, material, table, out, error)
-                             : mirror.id ? read_mirror(r, mirror, table, out, error)
-                                         : read_receiver(r, out, error);
-  return result == ABBE_OK ? read_axis(r, out, error) : result;
+  abbe_result result = material.id ? read_refractor(r, material, table, out, error)
+                       : mirror.id ? read_mirror(r, mirror, table, out, error)
+                                   : read_receiver(r, out, error);
+  if (result == ABBE_OK) result = read_axis(r, out, error);
+  return result == ABBE_OK ? read_medium(r, out, error) : result;
 }
 
 /* --- the surface in the world --- */

@@ -236,7 +236,7 @@ static abbe_result make_part(const abbe_object *whole, size_t i, size_t count, a
   out->name = malloc(size);
   if (!out->name) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a name");
   snprintf(out->name, size, "%s (part %zu of %zu)", whole->name, i + 1, count);
-  return ABBE_OK;
+  return abbe_medium_copy(whole->medium, &out->medium, error);
 }
 
 /* A refractor's mesh, closed; where shells cross, as several solids. */

@@ -8,6 +8,7 @@
 #include "scenes/import/object_reading.h"
 #include "scenes/import/scene_change.h"
 #include "scenes/import/scene_value.h"
+#include "scenes/medium/medium_file.h"
 #include "spectral/formats/material_table_load.h"
 
 #include <stdio.h>
@@ -365,6 +366,7 @@ static abbe_result read_scene(abbe_yaml *yaml, const char *folder,
                                   &out->background, error);
   if (result == ABBE_OK) result = abbe_scene_value_time(yaml, &out->time, error);
   if (result == ABBE_OK) result = read_camera(yaml, root, &out->camera, error);
+  if (result == ABBE_OK) result = abbe_medium_file_read(yaml, root, true, &out->medium, error);
   if (result == ABBE_OK) result = read_lights(yaml, root, folder, out, error);
   /* all keys are known before the costly part begins */
   abbe_yaml_get(yaml, root, "materials");

@@ -11,7 +11,7 @@
 
 #include <string.h>
 
-const char *const fuzz_words[] = {"\x02\x10", "\x03\x08", "abbe checkpoint 7\n", "\n\n", "scene ",
+const char *const fuzz_words[] = {"\x02\x10", "\x03\x08", "abbe checkpoint 8\n", "\n\n", "scene ",
                                   "physics ", NULL};
 
 enum { MOST = 1 << 16 };

@@ -46,6 +46,7 @@ static const struct {
     {"abbe_import_load", "options"},
     {"abbe_import_parse", "report"},
     {"abbe_import_parse", "options"},
+    {"abbe_medium_copy", "medium"},
     {"abbe_lib_comparison_draw", "title"},
     {"abbe_lib_comparison_make", "mask"},
     {"abbe_lib_comparison_make", "settings"},

@@ -40,6 +40,7 @@ extern "C" {
     "light from all around: flux into bodies, irradiance of floors, mirrors and glass")            \
   X(mirror, "metals, a mirror ball's light, images between mirrors, a ring's caustics")            \
   X(water, "waves: where rays land, the focus under a crest, light on the bottom")                 \
+  X(medium, "light scattered once in mist and water: slabs, a lamp, a shaft, what is left")         \
   X(lamp, "lights with a size: form factors, penumbras, images through a hole and in mirrors")     \
   X(sphere, "light under a sphere, rings and enclosed flux, one wavelength")                       \
   X(white, "light under a sphere in XYZ under D65")                                                \

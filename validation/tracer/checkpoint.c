@@ -10,7 +10,7 @@
 
 /* File: a line of magic, lines of text that say what the run is, an empty line, then counts,
  * ledger and sums as the machine keeps them, and a hash of all before it. */
-static const char magic[] = "abbe checkpoint 7\n";
+static const char magic[] = "abbe checkpoint 8\n";
 enum { HEAD = 4096 }; /* bytes that hold all the lines */
 
 /* ---- hash: FNV-1a, 64 bits ---- */
@@ -45,8 +45,19 @@ static uint64_t hash_light(uint64_t h, const abbe_light *l) {
   return l->kind == ABBE_LIGHT_RECTANGLE ? hash_doubles(h, l->edge[0], 6) : h;
 }
 
+static uint64_t hash_haze(uint64_t h, const abbe_haze *haze) {
+  const size_t rows = haze->refractors + 1, values = rows * (haze->steps + 1);
+  if (!abbe_haze_is(haze)) return h;
+  h = hash(h, haze->scattering, values * sizeof *haze->scattering);
+  h = hash(h, haze->extinction, values * sizeof *haze->extinction);
+  h = hash(h, haze->g, rows * sizeof *haze->g);
+  h = hash(h, haze->low, sizeof haze->low);
+  return hash(h, haze->high, sizeof haze->high);
+}
+
 static uint64_t hash_media(uint64_t h, const abbe_media *m) {
   const size_t values = m->refractors * (m->steps + 1);
+  h = hash_haze(h, &m->haze);
   h = hash(h, m->n, values * sizeof *m->n);
   if (m->attenuation != NULL) h = hash(h, m->attenuation, values * sizeof *m->attenuation);
   if (m->extraordinary == NULL) return h;

@@ -1,5 +1,6 @@
 #include "validation/tracer/light_pass.h"
 
+#include "validation/shafts/shaft_photons.h"
 #include "validation/tracer/emission.h"
 #include "validation/tracer/map_texels.h"
 #include "validation/walks/path_splitting.h"
@@ -83,24 +84,46 @@ static bool prepare_splat(const abbe_tracer *t, const abbe_photon_hit *l, struct
   return true;
 }
 
-static void add_splat(const sink *s, const splat *p) {
+static void add_to_pixel(const sink *s, size_t pixel, uint32_t step, float value, bool caustic) {
   abbe_tracer *t = s->t;
-  const abbe_photon_hit *l = p->hit;
-  abbe_reflected reflected;
-  abbe_reflectance_find(&t->reflectance, l->surface, l->face, l->u, l->v, &reflected);
-  size_t colour = s->light * t->sampling.steps + l->step, at = p->pixel * t->picture_channels;
-  const float kept = abbe_reflectance_at_step(&t->reflectance, &reflected, l->step);
-  float value = p->value * 0.318309886f * kept, rgb[3], seen[3];
+  size_t colour = s->light * t->sampling.steps + step, at = pixel * t->picture_channels;
+  float rgb[3], seen[3];
   for (size_t k = 0; k < 3; k++) rgb[k] = value * t->colour[colour][k];
   abbe_tracer_finish(t, rgb, seen);
   for (size_t k = 0; k < 3; k++) {
     abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_RGB + k, seen[k]);
-    abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_CAUSTIC + k, seen[k]);
+    if (caustic)
+      abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_CAUSTIC + k, seen[k]);
   }
   if (t->bands.count == 0) return;
-  size_t band = t->bands.of_step[l->step];
+  size_t band = t->bands.of_step[step];
   abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_BANDS + band,
                        value * t->sampling.power[colour] / (float)t->bands.width_nm);
+}
+
+static void add_splat(const sink *s, const splat *p) {
+  const abbe_tracer *t = s->t;
+  const abbe_photon_hit *l = p->hit;
+  abbe_reflected reflected;
+  abbe_reflectance_find(&t->reflectance, l->surface, l->face, l->u, l->v, &reflected);
+  const float kept = abbe_reflectance_at_step(&t->reflectance, &reflected, l->step);
+  /* of the light on its way to the eye */
+  float o[3], d[3], left = 1, square = 0;
+  for (int k = 0; k < 3; k++) {
+    o[k] = l->p[k];
+    d[k] = t->camera.eye[k] - l->p[k];
+    square += d[k] * d[k];
+  }
+  if (abbe_haze_is(&t->media.haze)) {
+    for (int k = 0; k < 3; k++) d[k] /= sqrtf(square);
+    left = abbe_haze_left(&t->media.haze, abbe_media_of(t->eye.inside), o, d, 0, sqrtf(square),
+                          l->step, 0.5f);
+  }
+  add_to_pixel(s, p->pixel, l->step, p->value * 0.318309886f * kept * left, true);
+}
+
+static void add_shaft(void *user, const abbe_shaft_splat *p) {
+  add_to_pixel(user, p->pixel, p->step, p->value, false);
 }
 
 static uint64_t flush_splats(const sink *s, struct RTCRay16 *packet, const splat *splats,
@@ -139,7 +162,29 @@ typedef struct task_result {
   abbe_light_ledger ledger;
   uint64_t splat_rays;
   size_t kept; /* photons for the eye's gathers, from the task's first photon on */
+  abbe_shaft_photons *shafts; /* NULL: nothing scatters */
 } task_result;
+
+/* For a task whose photons haze may scatter in sight of the eye. */
+static abbe_shaft_photons *watch_shafts(const abbe_emission *e, sink *s) {
+  abbe_tracer *t = s->t;
+  if (t->desc.no_picture || !abbe_haze_is(&t->media.haze)) return NULL;
+  abbe_shaft_photons *shafts = aligned_alloc(64, (sizeof *shafts + 63) / 64 * 64);
+  if (shafts == NULL) return NULL;
+  memset(shafts, 0, sizeof *shafts);
+  shafts->geometry = &t->geometry;
+  shafts->haze = &t->media.haze;
+  shafts->camera = &t->camera;
+  shafts->eye_medium = abbe_media_of(t->eye.inside);
+  shafts->near = t->eye.shaft_near;
+  shafts->pass = e->pass;
+  shafts->seed = t->desc.seed;
+  shafts->colour = (uint32_t)(e->light * t->sampling.steps);
+  shafts->add = add_shaft;
+  shafts->user = s;
+  abbe_light_walk_watch(t->walk[s->thread], abbe_shaft_photons_take, shafts);
+  return shafts;
+}
 
 static void run_task(const abbe_emission *e, uint32_t from, uint32_t to, size_t thread,
                      abbe_grid_photon *keep, task_result *out) {
@@ -148,7 +193,7 @@ static void run_task(const abbe_emission *e, uint32_t from, uint32_t to, size_t 
   abbe_photon *photon = room->photon;
   abbe_photon_hit *hit = room->hit;
   sink s = {.t = t, .thread = thread, .light = e->light};
-  *out = (task_result){0};
+  *out = (task_result){.shafts = watch_shafts(e, &s)};
   abbe_light_walk_split(t->walk[thread], t->splits[e->light]);
   abbe_light_walk_for_map(t->walk[thread], abbe_tracer_maps(t, e->light));
   for (uint32_t j = from; j < to; j += ABBE_LIGHT_WALK_BATCH) {
@@ -166,6 +211,32 @@ static void run_task(const abbe_emission *e, uint32_t from, uint32_t to, size_t 
       memcpy(g->p, l->p, sizeof g->p);
     }
   }
+  abbe_light_walk_watch(t->walk[thread], NULL, NULL);
+  if (out->shafts == NULL) return;
+  abbe_shaft_photons_flush(out->shafts);
+  out->splat_rays += out->shafts->rays;
+}
+
+/* Those of a task behind those of the tasks before. */
+static abbe_result join_shafts(abbe_tracer *t, task_result *task, abbe_error *error) {
+  const abbe_shaft_photons *s = task->shafts;
+  abbe_result result = ABBE_OK;
+  if (abbe_haze_is(&t->media.haze) && !t->desc.no_picture && (s == NULL || s->full))
+    result = abbe_error_set(error, ABBE_NO_MEMORY,
+                            "no memory for what a medium scatters: ask for fewer photons a pass");
+  if (result == ABBE_OK && s != NULL && s->count > 0) {
+    abbe_haze_photon *all = realloc(t->shaft, (t->shaft_count + s->count) * sizeof *all);
+    if (all == NULL)
+      result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu photons in a medium",
+                              t->shaft_count + s->count);
+    else
+      memcpy(all + t->shaft_count, s->photon, s->count * sizeof *all);
+    if (all != NULL) t->shaft = all;
+    if (all != NULL) t->shaft_count += s->count;
+  }
+  abbe_shaft_photons_free(task->shafts);
+  free(task->shafts);
+  return result;
 }
 
 static void add_ledger(abbe_light_ledger *to, const abbe_light_ledger *from) {
@@ -177,6 +248,7 @@ static void add_ledger(abbe_light_ledger *to, const abbe_light_ledger *from) {
   to->missed += from->missed;
   to->trapped += from->trapped;
   to->lost += from->lost;
+  to->scattered += from->scattered;
 }
 
 /* The tasks of one light; results are joined in the order of the tasks, whoever did them. */
@@ -187,6 +259,7 @@ static abbe_result run_light(abbe_tracer *t, const abbe_emission *e, const volat
   if (result == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu tasks", tasks);
   size_t base = *landed;
+  abbe_result joined = ABBE_OK;
   bool keeps = t->eye_gathers;
 #pragma omp parallel for schedule(dynamic) num_threads((int)t->desc.threads)
   for (size_t i = 0; i < tasks; i++) {
@@ -204,10 +277,13 @@ static abbe_result run_light(abbe_tracer *t, const abbe_emission *e, const volat
       memmove(t->landed + *landed, t->landed + base + abbe_tracer_most_hits(t, e->light, i * TASK),
               result[i].kept * sizeof *t->landed);
     *landed += result[i].kept;
+    if (stop != NULL && *stop && result[i].shafts == NULL) continue;
+    const abbe_result one = join_shafts(t, &result[i], joined == ABBE_OK ? error : NULL);
+    if (joined == ABBE_OK) joined = one;
   }
   t->statistics.photons += e->count;
   free(result);
-  return stop != NULL && *stop ? abbe_error_set(error, ABBE_CANCELLED, "stopped") : ABBE_OK;
+  return stop != NULL && *stop ? abbe_error_set(error, ABBE_CANCELLED, "stopped") : joined;
 }
 
 uint64_t abbe_tracer_walk_rays(const abbe_tracer *t) {
@@ -219,6 +295,7 @@ uint64_t abbe_tracer_walk_rays(const abbe_tracer *t) {
 abbe_result abbe_tracer_light_pass(abbe_tracer *t, const volatile int *stop, size_t *landed_count,
                                    abbe_error *error) {
   *landed_count = 0;
+  t->shaft_count = 0;
   abbe_result result = ABBE_OK;
   for (size_t l = 0; l < t->sampling.lights && result == ABBE_OK; l++) {
     if (t->photons[l] == 0) continue;

@@ -203,6 +203,18 @@ static float first_radius(const abbe_tracer *t) {
   return (float)sides * 2 * t->camera.half_height / (float)t->desc.height * sqrtf(far);
 }
 
+/* Four pixels as far away as the eye sees, or less where a pixel has many photons, which are spread
+ * over a depth. Within a quarter of that distance photons are gathered even where they are seen
+ * straight, by a quarter of the radius. */
+static void choose_shafts(abbe_tracer *t) {
+  if (!abbe_haze_is(&t->media.haze)) return;
+  const double pixels = (double)(t->desc.width * t->desc.height);
+  const double sides = fmin(4, 6 * pow(pixels / (double)t->desc.photons, 0.25));
+  const float depth = abbe_eye_samples_depth(&t->geometry, &t->camera);
+  t->shaft_radius = (float)sides * 2 * t->camera.half_height / (float)t->desc.height * depth;
+  t->eye.shaft_near = 0.25f * depth;
+}
+
 static abbe_result choose_samples(abbe_tracer *t, abbe_error *error) {
   t->samples = malloc(t->desc.width * t->desc.height);
   if (t->samples == NULL)
@@ -212,6 +224,7 @@ static abbe_result choose_samples(abbe_tracer *t, abbe_error *error) {
                          t->samples);
   t->eye.samples = t->samples;
   t->radius = first_radius(t);
+  choose_shafts(t);
   return ABBE_OK;
 }
 
@@ -295,6 +308,8 @@ void abbe_tracer_free(abbe_tracer *t) {
   abbe_guide_sums_free(&t->guides);
   abbe_accumulator_free(&t->map);
   abbe_photon_grid_free(&t->grid);
+  abbe_haze_grid_free(&t->shafts);
+  free(t->shaft);
   abbe_bands_free(&t->bands);
   abbe_reflectance_free(&t->reflectance);
   abbe_environment_light_free(&t->environment);
@@ -334,6 +349,15 @@ static double shrunk_by(size_t pass) {
   return pow((double)pass + 1, -shrink);
 }
 
+/* Photons that haze scattered in this pass. */
+static abbe_result fill_shafts(abbe_tracer *t, double factor, abbe_error *error) {
+  t->eye.shafts = NULL;
+  if (!abbe_haze_is(&t->media.haze)) return ABBE_OK;
+  t->eye.shaft_radius = (float)((double)t->shaft_radius * factor);
+  t->eye.shafts = &t->shafts;
+  return abbe_haze_grid_fill(&t->shafts, t->shaft, t->shaft_count, t->eye.shaft_radius, error);
+}
+
 static abbe_result eye_pass(abbe_tracer *t, size_t landed, const volatile int *stop,
                             abbe_error *error) {
   t->eye.grid = NULL;
@@ -345,6 +369,8 @@ static abbe_result eye_pass(abbe_tracer *t, size_t landed, const volatile int *s
         abbe_photon_grid_fill(&t->grid, t->landed, landed, t->eye.radius, t->desc.threads, error);
     if (result != ABBE_OK) return result;
     t->eye.grid = &t->grid;
+    result = fill_shafts(t, factor, error);
+    if (result != ABBE_OK) return result;
   }
   uint64_t rays = 0;
 #pragma omp parallel for schedule(dynamic) num_threads((int)t->desc.threads) reduction(+ : rays)

@@ -47,6 +47,10 @@ struct abbe_tracer {
   abbe_photon_grid grid;
   abbe_grid_photon *landed; /* of the pass that is under way, where the eye needs them */
   size_t landed_room;
+  abbe_haze_grid shafts;
+  abbe_haze_photon *shaft; /* [shaft_count] of the pass, that haze scatters */
+  size_t shaft_count;
+  float shaft_radius; /* of the first gather in haze, frame */
   bool eye_gathers;         /* some pixel may show a receiver through or in a refractor */
   float radius;             /* of the first gather, frame */
   size_t first, pass, step; /* the first in the sums, the next one, and from one to the next */

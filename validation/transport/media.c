@@ -91,6 +91,8 @@ abbe_result abbe_media_make(const abbe_geometry *geometry, const double *lambda_
   for (size_t i = 0; i < m.refractors && result == ABBE_OK; i++)
     crystals = crystals || m.crystal[i];
   if (!crystals) free_crystals(&m);
+  if (result == ABBE_OK)
+    result = abbe_haze_make(geometry, lambda_nm, steps, m.attenuation, &m.haze, error);
   if (result != ABBE_OK) abbe_media_free(&m);
   *out = m;
   return result;
@@ -103,6 +105,7 @@ void abbe_media_free(abbe_media *m) {
   free(m->dispersive);
   free(m->stuff);
   free_crystals(m);
+  abbe_haze_free(&m->haze);
   *m = (abbe_media){0};
 }
 

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "validation/transport/geometry.h"
+#include "validation/transport/haze.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -46,6 +47,7 @@ typedef struct abbe_media {
   float *extraordinary; /* the other index of crystals, as n; NULL where there are none */
   bool *crystal;        /* [refractors] */
   double (*axis)[3];    /* [refractors] unit, of crystals */
+  abbe_haze haze;       /* what scatters in them and in the air */
 } abbe_media;
 
 /* Tables over the steps + 1 wavelengths lambda_nm, ascending. Errors as abbe_material_n. */

@@ -181,19 +181,19 @@ static void free_tables(fill *f) {
 
 /* ---- photons of a node ---- */
 
-static void take_stretch(void *user, const float o[3], const float d[3], float length, float flux,
-                         uint32_t step) {
+static void take_stretch(void *user, const abbe_light_stretch *s) {
   const worker *w = user;
+  if (s->medium >= 0) return;
   const fill *f = w->fill;
   double from[3], along[3];
   float colour[3];
-  abbe_geometry_to_world(&f->geometry, o, from);
+  abbe_geometry_to_world(&f->geometry, s->o, from);
   for (int k = 0; k < 3; k++) {
     from[k] -= f->place.centre[k];
-    along[k] = (double)d[k];
-    colour[k] = flux * f->colour[step][k];
+    along[k] = (double)s->d[k];
+    colour[k] = s->flux * f->colour[s->step][k];
   }
-  abbe_volume_sums_add(&w->fill->sums, w->thread, from, along, (double)length * f->geometry.unit,
+  abbe_volume_sums_add(&w->fill->sums, w->thread, from, along, (double)s->length * f->geometry.unit,
                        colour);
 }
 

@@ -39,3 +39,19 @@ void abbe_eye_samples_share(const abbe_geometry *g, const abbe_trace_camera *c, 
   uint8_t many = each >= 1 ? (uint8_t)lround(each) : 1; /* not a number where nothing shows one */
   for (size_t i = 0; i < width * height; i++) samples[i] = samples[i] > 1 ? many : 1;
 }
+
+float abbe_eye_samples_depth(const abbe_geometry *g, const abbe_trace_camera *c) {
+  enum { PLACES = 32 };
+  float sum = 0, d[3];
+  size_t count = 0;
+  for (size_t i = 0; i < PLACES * PLACES; i++) {
+    abbe_hit hit;
+    const float x = ((float)(i % PLACES) + 0.5f) / PLACES,
+                y = ((float)(i / PLACES) + 0.5f) / PLACES;
+    abbe_trace_camera_ray(c, x * (float)c->width, y * (float)c->height, d);
+    if (!abbe_geometry_hit(g, ABBE_GEOMETRY_OBJECTS, c->eye, d, INFINITY, &hit)) continue;
+    for (int k = 0; k < 3; k++) sum += (hit.p[k] - c->eye[k]) * d[k];
+    count++;
+  }
+  return count > 0 ? sum / (float)count : 1;
+}

@@ -24,6 +24,9 @@ extern "C" {
 void abbe_eye_samples_share(const abbe_geometry *geometry, const abbe_trace_camera *camera,
                             double rays, size_t threads, uint8_t *samples);
 
+/* How far the eye sees, mean over places of the picture that show something; frame; 1: none do. */
+float abbe_eye_samples_depth(const abbe_geometry *geometry, const abbe_trace_camera *camera);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,6 +1,8 @@
 #include "validation/walks/eye_shading.h"
 
 #include "scenes/geometry/vector.h"
+#include "validation/medium/air_light.h"
+#include "validation/transport/lamp_place.h"
 
 #include <string.h>
 
@@ -70,31 +72,54 @@ static void add_environment(const abbe_eye_context *c, const abbe_eye_path *p, c
 typedef struct gathering {
   const abbe_eye_context *c;
   const abbe_eye_path *p;
-  const abbe_reflected *reflected;
+  const abbe_reflected *reflected; /* of a receiver */
+  int medium;                      /* of a haze */
+  float from;                      /* where the haze begins on the path */
   float sum[3];
   float band[ABBE_BANDS_MAX];
 } gathering;
 
+/* How much a photon of that step counts for the path: of one wavelength, in a window of wavelengths
+ * around it, cut at the ends of the range. */
+static float window(const abbe_eye_walk *w, const abbe_eye_path *p, size_t step) {
+  if (!p->dispersed) return 1;
+  const size_t steps = w->sampling->steps;
+  const double *nm = w->sampling->lambda_nm;
+  double own = nm[p->step] + (double)p->within * (nm[p->step + 1] - nm[p->step]);
+  double other = 0.5 * (nm[step] + nm[step + 1]);
+  if (fabs(own - other) > w->window_nm) return 0;
+  double span = fmin(other + w->window_nm, nm[steps]) - fmax(other - w->window_nm, nm[0]);
+  double density = 1 / ((double)steps * (nm[p->step + 1] - nm[p->step]));
+  return (float)(1 / (span * density));
+}
+
+static void add_photon(gathering *g, size_t colour, float flux) {
+  const abbe_eye_walk *w = g->c->w;
+  for (int k = 0; k < 3; k++) g->sum[k] += flux * w->colour[colour][k];
+  if (w->bands->count > 0)
+    g->band[w->bands->of_step[colour % w->sampling->steps]] +=
+        flux * w->sampling->power[colour] / (float)w->bands->width_nm;
+}
+
 static void take_photon(void *user, const abbe_grid_photon *photon) {
   gathering *g = user;
   const abbe_eye_walk *w = g->c->w;
-  size_t steps = w->sampling->steps, step = photon->colour % steps;
-  float flux = fabsf(photon->flux);
-  if (g->p->dispersed) {
-    /* a window of wavelengths around the path's, cut at the ends of the range */
-    const double *nm = w->sampling->lambda_nm;
-    double own = nm[g->p->step] + (double)g->p->within * (nm[g->p->step + 1] - nm[g->p->step]);
-    double other = 0.5 * (nm[step] + nm[step + 1]);
-    if (fabs(own - other) > w->window_nm) return;
-    double span = fmin(other + w->window_nm, nm[steps]) - fmax(other - w->window_nm, nm[0]);
-    double density = 1 / ((double)steps * (nm[g->p->step + 1] - nm[g->p->step]));
-    flux *= (float)(1 / (span * density));
+  const size_t step = photon->colour % w->sampling->steps;
+  const float flux = fabsf(photon->flux) * window(w, g->p, step);
+  if (flux > 0)
+    add_photon(g, photon->colour,
+               flux * abbe_reflectance_at_step(w->reflectance, g->reflected, (uint32_t)step));
+}
+
+/* What was gathered, times scale, into the sample. */
+static void add_gathered(const gathering *g, float scale, bool caustic) {
+  abbe_eye_sample *out = g->c->out;
+  for (int k = 0; k < 3; k++) {
+    const float add = scale * g->p->tint[k] * g->sum[k];
+    out->rgb[k] += add;
+    if (caustic) out->caustic[k] += add;
   }
-  flux *= abbe_reflectance_at_step(w->reflectance, g->reflected, (uint32_t)step);
-  for (int k = 0; k < 3; k++) g->sum[k] += flux * w->colour[photon->colour][k];
-  if (w->bands->count > 0)
-    g->band[w->bands->of_step[step]] +=
-        flux * w->sampling->power[photon->colour] / (float)w->bands->width_nm;
+  for (size_t i = 0; i < g->c->w->bands->count; i++) out->band[i] += scale * g->band[i];
 }
 
 static void add_caustic(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_hit *hit,
@@ -105,36 +130,24 @@ static void add_caustic(const abbe_eye_context *c, const abbe_eye_path *p, const
   abbe_photon_grid_gather(w->grid, hit->p, w->radius,
                           (uint32_t)(hit->surface - w->geometry->surface), side, take_photon, &g);
   float unit = (float)w->geometry->unit, r = w->radius * unit;
-  float scale = p->share * inverse_pi * inverse_pi / (r * r);
-  for (int k = 0; k < 3; k++) {
-    float add = scale * p->tint[k] * g.sum[k];
-    c->out->rgb[k] += add;
-    c->out->caustic[k] += add;
-  }
-  for (size_t i = 0; i < w->bands->count; i++) c->out->band[i] += scale * g.band[i];
+  add_gathered(&g, p->share * inverse_pi * inverse_pi / (r * r), true);
+}
+
+/* What haze in the air leaves of light that comes straight along -d over that distance. */
+static float left_of(const abbe_eye_context *c, const abbe_eye_path *p, const float o[3],
+                     const float d[3], float distance) {
+  return abbe_haze_left(&c->w->media->haze, -1, o, d, 0, distance, p->step, p->within);
 }
 
 /* Irradiance of a light at the hit on the viewer's side, W/m2, seen past everything. n faces the
  * viewer. */
-static float irradiance(const abbe_eye_context *c, const abbe_light *light, const abbe_hit *hit,
-                        const float n[3], const float random[2]) {
+static float irradiance(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_light *light,
+                        const abbe_hit *hit, const float n[3], const float random[2]) {
   const abbe_geometry *g = c->w->geometry;
   float from[3], d[3], o[3], limit = INFINITY, power = (float)light->power, falloff = 1;
   for (int k = 0; k < 3; k++) d[k] = -(float)light->direction[k];
   if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
-    abbe_geometry_to_frame(g, light->position, from);
-    if (light->kind == ABBE_LIGHT_DISK) {
-      float a[3], b[3], r = (float)(light->radius / g->unit) * sqrtf(random[0]);
-      float angle = 6.28318531f * random[1];
-      abbe_geometry_across(d, a, b);
-      for (int k = 0; k < 3; k++) from[k] += r * (cosf(angle) * a[k] + sinf(angle) * b[k]);
-      power *= (float)(3.14159265358979 * light->radius * light->radius);
-    } else if (light->kind == ABBE_LIGHT_RECTANGLE) {
-      const float x = 2 * random[0] - 1, y = 2 * random[1] - 1, unit = (float)g->unit;
-      for (int k = 0; k < 3; k++)
-        from[k] += (x * (float)light->edge[0][k] + y * (float)light->edge[1][k]) / unit;
-      power *= (float)abbe_light_area(light);
-    }
+    power = abbe_lamp_place(g, light, random, from);
     for (int k = 0; k < 3; k++) d[k] = from[k] - hit->p[k];
     limit = sqrtf(abbe_eye_dot(d, d));
     for (int k = 0; k < 3; k++) d[k] /= limit;
@@ -149,38 +162,42 @@ static float irradiance(const abbe_eye_context *c, const abbe_light *light, cons
   abbe_geometry_leave(hit, d, o);
   c->out->rays++;
   unsigned mask = ABBE_GEOMETRY_OBJECTS;
-  return abbe_geometry_occluded(g, mask, o, d, limit) ? 0 : e;
+  return abbe_geometry_occluded(g, mask, o, d, limit) ? 0 : e * left_of(c, p, o, d, limit);
 }
 
-/* Whether the environment is seen from the hit along d, on the side of n. */
-static bool sees_out(const abbe_eye_context *c, const abbe_hit *hit, const float n[3],
-                     const float d[3]) {
+/* How much of the environment is seen from the hit along d, on the side of n: 0 where something
+ * hides it. */
+static float sees_out(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_hit *hit,
+                      const float n[3], const float d[3]) {
   float o[3];
-  if (!(abbe_eye_dot(n, d) > 0)) return false;
+  if (!(abbe_eye_dot(n, d) > 0)) return 0;
   abbe_geometry_leave(hit, d, o);
   c->out->rays++;
   unsigned mask = ABBE_GEOMETRY_OBJECTS;
-  return !abbe_geometry_occluded(c->w->geometry, mask, o, d, INFINITY);
+  const bool hidden = abbe_geometry_occluded(c->w->geometry, mask, o, d, INFINITY);
+  return hidden ? 0 : left_of(c, p, o, d, INFINITY);
 }
 
 /* One direction drawn by the environment's radiance, one by the cosine, weighted by the balance
  * heuristic [VeachGuibas1995]: u in [0, 1)^5. Adds irradiance over pi, RGB. */
-static void sample_surroundings(const abbe_eye_context *c, const abbe_hit *hit, const float n[3],
-                                const double u[5], float out[3]) {
+static void sample_surroundings(const abbe_eye_context *c, const abbe_eye_path *p,
+                                const abbe_hit *hit, const float n[3], const double u[5],
+                                float out[3]) {
   const abbe_environment_light *e = c->w->environment;
   float d[3], pdf, rgb[3], x[3], y[3];
   abbe_environment_light_sample(e, u, d, &pdf, rgb);
   float cosine = abbe_eye_dot(n, d) * inverse_pi;
-  if (sees_out(c, hit, n, d))
-    for (int k = 0; k < 3; k++) out[k] += rgb[k] * cosine / (pdf + cosine);
+  float seen = sees_out(c, p, hit, n, d);
+  for (int k = 0; seen > 0 && k < 3; k++) out[k] += seen * rgb[k] * cosine / (pdf + cosine);
   abbe_geometry_across(n, x, y);
   float r = sqrtf((float)u[3]), angle = 6.28318531f * (float)u[4];
   for (int k = 0; k < 3; k++)
     d[k] = r * (cosf(angle) * x[k] + sinf(angle) * y[k]) + sqrtf(1 - (float)u[3]) * n[k];
-  if (!sees_out(c, hit, n, d)) return;
+  seen = sees_out(c, p, hit, n, d);
+  if (!(seen > 0)) return;
   cosine = abbe_eye_dot(n, d) * inverse_pi;
   abbe_environment_light_seen(e, d, rgb);
-  const float weight = cosine / (abbe_environment_light_pdf(e, d) + cosine);
+  const float weight = seen * cosine / (abbe_environment_light_pdf(e, d) + cosine);
   for (int k = 0; k < 3; k++) out[k] += rgb[k] * weight;
 }
 
@@ -201,7 +218,7 @@ static void surrounding_light(const abbe_eye_context *c, const abbe_eye_path *p,
     for (int k = 0; k < 5; k++)
       u[k] = (double)abbe_random_shift(abbe_random_float(i * golden[k]), random[k]);
     u[0] += 0x1p-24 * (double)random[5]; /* as texels may be many */
-    sample_surroundings(c, hit, n, u, out);
+    sample_surroundings(c, p, hit, n, u, out);
   }
   for (int k = 0; k < 3; k++) out[k] /= (float)count;
 }
@@ -222,7 +239,7 @@ static void shade(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_
   for (int k = 0; k < 3; k++) n[k] = side * normal[k];
   for (size_t l = 0; l < scene->light_count; l++) {
     abbe_eye_random4(c, ~p->id, (uint32_t)(p->steps * ABBE_SCENE_MAX_LIGHTS + l), random);
-    float e = irradiance(c, &scene->light[l], hit, n, random);
+    float e = irradiance(c, p, &scene->light[l], hit, n, random);
     if (e > 0) add_light(c, p, l, e * inverse_pi, &reflected);
   }
   if (w->environment->environment != NULL) {
@@ -242,6 +259,83 @@ static float spread(const abbe_eye_context *c, const abbe_eye_path *p, bool with
   const float n = abbe_media_n(c->w->media, eye, p->step, p->within) /
                   abbe_media_n(c->w->media, end, p->step, p->within);
   return n * n;
+}
+
+/* ---- haze ---- */
+
+/* Light that lamps and surroundings send straight to the haze in the air on the path's way; more
+ * samples where the path behind is cheap. */
+static void add_air_light(const abbe_eye_context *c, const abbe_eye_path *p,
+                          const abbe_air_ray *ray, bool straight) {
+  const abbe_scene *scene = c->w->geometry->scene;
+  const uint32_t count = straight ? STRAIGHT_SAMPLES : 1;
+  for (uint32_t i = 0; i < count; i++) {
+    const uint32_t salt = 0x68617a65u + i;
+    float u[4], v[4];
+    for (size_t l = 0; l < scene->light_count; l++) {
+      abbe_eye_random4(c, ~p->id ^ salt, (uint32_t)(p->steps * ABBE_SCENE_MAX_LIGHTS + l), u);
+      u[0] = (u[0] + (float)i) / (float)count;
+      const float radiance = abbe_air_light_lamp(ray, l, u, &c->out->rays);
+      if (radiance > 0) add_light(c, p, l, radiance / (float)count, NULL);
+    }
+    if (c->w->environment->environment == NULL) continue;
+    abbe_eye_random4(c, ~p->id ^ salt ^ 0x736b79u, p->steps, u);
+    abbe_eye_random4(c, ~p->id ^ salt ^ 0x68656d69u, p->steps, v);
+    const double all[6] = {(double)u[0] + 0x1p-24 * (double)v[3], (double)u[1], (double)u[2],
+                           (double)u[3], (double)v[0], (double)v[1]};
+    float rgb[3];
+    abbe_air_light_surroundings(ray, c->w->environment, all, rgb, &c->out->rays);
+    add_environment(c, p, rgb, 1 / (float)count, NULL);
+  }
+}
+
+static void take_scattered(void *user, const abbe_haze_photon *photon, float t) {
+  gathering *g = user;
+  const abbe_eye_walk *w = g->c->w;
+  const abbe_haze *h = &w->media->haze;
+  const uint32_t step = (uint32_t)(photon->colour % w->sampling->steps);
+  float flux = photon->flux * window(w, g->p, step);
+  if (!(flux > 0)) return;
+  flux *= abbe_haze_phase(h, g->medium, -abbe_eye_dot(photon->d, g->p->d));
+  add_photon(g, photon->colour,
+             flux * expf(-(t - g->from) * abbe_haze_extinction(h, g->medium, step, 0.5f)));
+}
+
+/* Light that refractors and mirrors send to the haze, from the photons around the path. */
+static void add_shafts(const abbe_eye_context *c, const abbe_eye_path *p, int medium, float from,
+                       float to, float radius) {
+  const abbe_eye_walk *w = c->w;
+  gathering g = {.c = c, .p = p, .medium = medium, .from = from};
+  abbe_haze_grid_gather(w->shafts, p->o, p->d, from, to, radius, medium, take_scattered, &g);
+  const float r = radius * (float)w->geometry->unit;
+  add_gathered(&g, p->share * inverse_pi / (r * r), false);
+}
+
+void abbe_eye_haze(const abbe_eye_context *c, abbe_eye_path *p, float length, bool straight) {
+  const abbe_eye_walk *w = c->w;
+  const abbe_haze *h = &w->media->haze;
+  const int medium = abbe_media_of(p->inside);
+  float from = 0, to = length;
+  if (!abbe_haze_clip(h, medium, p->o, p->d, &from, &to)) return;
+  if (abbe_haze_scatters(h, medium)) {
+    abbe_eye_path own = *p;
+    own.share *= spread(c, p, true);
+    const abbe_air_ray ray = {.geometry = w->geometry,
+                              .haze = h,
+                              .o = {p->o[0], p->o[1], p->o[2]},
+                              .d = {p->d[0], p->d[1], p->d[2]},
+                              .from = from,
+                              .to = to,
+                              .step = p->step,
+                              .within = p->within};
+    if (medium < 0) add_air_light(c, &own, &ray, straight);
+    /* farther off, photons find an eye that sees them straight by themselves */
+    const float end = straight ? fminf(to, w->shaft_near) : to;
+    const float radius = straight ? 0.25f * w->shaft_radius : w->shaft_radius;
+    if (w->shafts != NULL && end > from && end < INFINITY)
+      add_shafts(c, &own, medium, from, end, radius);
+  }
+  p->share *= expf(-(to - from) * abbe_haze_extinction(h, medium, p->step, p->within));
 }
 
 /* What ends a path: a receiver, a lamp, or nothing at all. */

@@ -49,6 +49,11 @@ static inline void abbe_eye_random4(const abbe_eye_context *c, uint32_t a, uint3
 void abbe_eye_arrive(const abbe_eye_context *context, const abbe_eye_path *path, bool met,
                      const abbe_hit *hit, bool straight);
 
+/* What haze on the path's way of that length, or INFINITY, adds to the sample and takes of the path.
+ * Where its coefficients vary over wavelength the path is dispersed. straight: as above. */
+void abbe_eye_haze(const abbe_eye_context *context, abbe_eye_path *path, float length,
+                   bool straight);
+
 #ifdef __cplusplus
 }
 #endif

@@ -124,6 +124,10 @@ static bool disperses(const abbe_eye_context *c, const crossing *x) {
   return c->w->bands->count > 0 || (x->from >= 0 && d[x->from]) || (x->to >= 0 && d[x->to]);
 }
 
+static bool is_coloured_haze(const abbe_eye_context *c, const abbe_eye_path *p) {
+  return abbe_haze_is_coloured(&c->w->media->haze, abbe_media_of(p->inside));
+}
+
 /* Absorption along the way in the medium; the whole spectrum's goes by wavelength, so the path
  * takes one. */
 static void absorb(const abbe_eye_context *c, abbe_eye_path *p, float length, float random) {
@@ -240,7 +244,12 @@ static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p
   float length = 0, random[4];
   bool met = trace(c, p, &hit, &length);
   abbe_eye_random4(c, p->id, p->steps, random);
-  if (met) absorb(c, p, length, random[1]);
+  if (abbe_haze_is(&c->w->media->haze)) {
+    if (is_coloured_haze(c, p)) disperse(p, random[1]);
+    abbe_eye_haze(c, p, met ? length : INFINITY, false);
+  } else if (met) {
+    absorb(c, p, length, random[1]);
+  }
   if (p->share < b->least) {
     if (!(random[2] * b->least < p->share)) return false;
     p->share = b->least;
@@ -284,7 +293,7 @@ static void follow_mirror(const abbe_eye_context *c, const abbe_eye_path *first,
   abbe_eye_path p = *first;
   p.id++;
   float eta, cos_t;
-  if (w->bands->count > 0) {
+  if (w->bands->count > 0 || p.dispersed) {
     disperse(&p, random);
     p.share *= reflectance_at(c, x, p.step, p.within, &eta, &cos_t);
   } else {
@@ -328,12 +337,13 @@ static void follow_waves(const abbe_eye_context *c, const abbe_eye_path *first, 
 
 static void follow_through(const abbe_eye_context *c, const abbe_eye_path *first,
                            const abbe_hit *hit, const crossing *x, float random) {
-  uint32_t count = disperses(c, x) || c->w->media->attenuation != NULL ? HEROES : 1;
+  const bool takes = disperses(c, x) || c->w->media->attenuation != NULL;
+  const uint32_t count = takes && !first->dispersed ? HEROES : 1;
   for (uint32_t i = 0; i < count; i++) {
     abbe_eye_path p = *first;
     p.id += 2 + i;
     p.share /= (float)count;
-    if (count > 1) disperse(&p, ((float)i + random) / (float)count);
+    if (takes) disperse(&p, ((float)i + random) / (float)count);
     if (x->crystal) {
       follow_waves(c, &p, hit, x);
       continue;
@@ -350,12 +360,13 @@ static void follow_through(const abbe_eye_context *c, const abbe_eye_path *first
 /* What the eye sees straight in a mirror: wavelengths of their own where it has a colour. */
 static void follow_off(const abbe_eye_context *c, const abbe_eye_path *first, const abbe_hit *hit,
                        float random) {
-  const uint32_t count = is_coloured_mirror(c, hit) ? HEROES : 1;
+  const bool takes = is_coloured_mirror(c, hit);
+  const uint32_t count = takes && !first->dispersed ? HEROES : 1;
   for (uint32_t i = 0; i < count; i++) {
     abbe_eye_path p = *first;
     p.id += 2 + i;
     p.share /= (float)count;
-    if (count > 1) disperse(&p, ((float)i + random) / (float)count);
+    if (takes) disperse(&p, ((float)i + random) / (float)count);
     mirror_on(c, &p, hit);
     if (p.share > 0) follow(c, &p);
   }
@@ -373,14 +384,10 @@ static float place(uint32_t i, uint32_t ratio, float shift) {
   return abbe_random_shift(abbe_random_float(i * ratio), shift);
 }
 
-/* One of the pixel's samples: a path from the eye through the place (x, y) on the film. wave, from
- * 0 to 1, chooses wavelengths. */
-static void walk_sample(const abbe_eye_context *c, abbe_eye_path *p, float x, float y, float wave) {
-  abbe_hit hit;
-  float length;
-  abbe_trace_camera_ray(c->w->camera, x, y, p->d);
-  bool met = trace(c, p, &hit, &length);
-  if (met) add_first(c, p, &hit, length);
+/* On from what the eye's ray meets first. */
+static void walk_on(const abbe_eye_context *c, abbe_eye_path *p, bool met, const abbe_hit *first,
+                    float wave) {
+  abbe_hit hit = *first;
   if (!met || (hit.surface->kind & ABBE_GEOMETRY_SPECULAR) == 0) {
     abbe_eye_arrive(c, p, met, &hit, true);
     return;
@@ -401,6 +408,25 @@ static void walk_sample(const abbe_eye_context *c, abbe_eye_path *p, float x, fl
   }
   follow_mirror(c, p, &hit, &at, wave);
   follow_through(c, p, &hit, &at, wave);
+}
+
+/* One of the pixel's samples: a path from the eye through the place (x, y) on the film. wave, from
+ * 0 to 1, chooses wavelengths, of their own where haze around the eye has a colour. */
+static void walk_sample(const abbe_eye_context *c, abbe_eye_path *p, float x, float y, float wave) {
+  abbe_hit hit = {0};
+  float length = 0;
+  abbe_trace_camera_ray(c->w->camera, x, y, p->d);
+  bool met = trace(c, p, &hit, &length);
+  if (met) add_first(c, p, &hit, length);
+  const uint32_t count = is_coloured_haze(c, p) ? HEROES : 1;
+  for (uint32_t i = 0; i < count; i++) {
+    abbe_eye_path own = *p;
+    own.id += i << 24;
+    own.share /= (float)count;
+    if (count > 1) disperse(&own, ((float)i + wave) / (float)count);
+    abbe_eye_haze(c, &own, met ? length : INFINITY, true);
+    walk_on(c, &own, met, &hit, wave);
+  }
 }
 
 static void clear(const abbe_eye_walk *w, abbe_eye_sample *out) {

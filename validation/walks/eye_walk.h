@@ -6,11 +6,14 @@
  * through it. At every further interface both ways on are followed; Russian roulette takes what is
  * faint. The caustic on a
  * receiver seen that way comes from the photons around the place (consistent); on a receiver that
- * the eye sees straight it is left out, for the photons themselves find the eye (unbiased).
+ * the eye sees straight it is left out, for the photons themselves find the eye (unbiased). In haze
+ * it is alike: what comes straight from lamps is sampled along every path, what comes through
+ * refractors and off mirrors is gathered or, where it is seen straight, left to the photons.
  */
 #ifndef ABBE_VALIDATION_WALKS_EYE_WALK_H
 #define ABBE_VALIDATION_WALKS_EYE_WALK_H
 
+#include "validation/medium/haze_grid.h"
 #include "validation/transport/bands.h"
 #include "validation/transport/environment_light.h"
 #include "validation/transport/geometry.h"
@@ -50,6 +53,10 @@ typedef struct abbe_eye_walk {
   const abbe_photon_grid *grid; /* NULL: no photons */
   float radius;                 /* of the gather, frame */
   double window_nm;             /* half the range of wavelengths that a dispersed path gathers */
+  const abbe_haze_grid *shafts; /* of photons that haze scatters; NULL: none */
+  float shaft_radius;           /* of their gather, frame */
+  float shaft_near; /* as far as this the eye gathers those that it sees straight, by a quarter of
+                       the radius, frame */
 } abbe_eye_walk;
 
 typedef struct abbe_eye_sample {

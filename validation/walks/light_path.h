@@ -31,6 +31,14 @@ typedef struct abbe_light_path {
   uint8_t wave;          /* in a crystal: which of its two */
 } abbe_light_path;
 
+static inline abbe_light_stretch abbe_light_path_stretch(const abbe_light_path *s, const float o[3],
+                                                         const float d[3], float length) {
+  abbe_light_stretch out = {
+      {o[0], o[1], o[2]}, {d[0], d[1], d[2]},      length, s->flux, s->step, s->within, s->id,
+      s->steps,           abbe_media_of(s->inside)};
+  return out;
+}
+
 /* The number that decides at a path's next interface. Neighbouring photons have neighbouring
  * numbers, so the first decisions are spread evenly over them: the fractional parts of multiples
  * of generalised golden ratios, shifted at random in every pass [Roberts2018]. */
@@ -56,12 +64,41 @@ static inline bool abbe_light_path_survives(const abbe_inner_rules *r, abbe_ligh
   return s->flux > 0;
 }
 
-/* Absorption on the way, and the roulette. */
+/* What a haze takes on the way of that length: absorbed, or scattered off the path. */
+static inline bool abbe_light_path_fade(const abbe_inner_rules *r, const abbe_haze *haze,
+                                        abbe_light_path *s, const float o[3], const float d[3],
+                                        float length, abbe_light_ledger *ledger) {
+  const int medium = abbe_media_of(s->inside);
+  float from = 0, to = length;
+  if (!abbe_haze_clip(haze, medium, o, d, &from, &to)) return true;
+  const float whole = abbe_haze_extinction(haze, medium, s->step, s->within);
+  if (!(whole > 0)) return true;
+  const float part = abbe_haze_scattering(haze, medium, s->step, s->within) / whole;
+  const float left = expf(-(to - from) * whole), taken = s->y * s->flux * (1 - left);
+  ledger->scattered += (double)(part * taken);
+  ledger->absorbed += (double)((1 - part) * taken);
+  s->flux *= left;
+  s->carried *= left;
+  return abbe_light_path_survives(r, s, ledger);
+}
+
+/* Haze on the way from the light to what a path meets first; the ledger begins there. parallel:
+ * from beyond everything. */
+static inline void abbe_light_path_begin(const abbe_haze *haze, abbe_light_path *s, bool parallel,
+                                         const float o[3], const float d[3], float length) {
+  if (!abbe_haze_is(haze)) return;
+  s->flux *= abbe_haze_left(haze, -1, o, d, parallel ? -INFINITY : 0, length, s->step, s->within);
+  s->full = s->flux;
+}
+
+/* Absorption on the way, haze, and the roulette. */
 static inline bool abbe_light_path_absorb(const abbe_inner_rules *r, const abbe_media *media,
-                                          abbe_light_path *s, float length,
-                                          abbe_light_ledger *ledger) {
-  if (media->attenuation == NULL) return true;
+                                          abbe_light_path *s, const float o[3], const float d[3],
+                                          float length, abbe_light_ledger *ledger) {
+  if (abbe_haze_is(&media->haze))
+    return abbe_light_path_fade(r, &media->haze, s, o, d, length, ledger);
   int medium = abbe_media_of(s->inside);
+  if (medium < 0 || media->attenuation == NULL) return true;
   float left = expf(-length * abbe_media_attenuation(media, medium, s->step, s->within));
   ledger->absorbed += (double)(s->y * s->flux * (1 - left));
   s->flux *= left;

@@ -160,7 +160,7 @@ typedef struct run {
   abbe_light_walk *w;
   const abbe_light *light;
   abbe_inner_rules rules;
-  bool hidden;
+  bool hidden, parallel;
   packet packet;
   size_t hits;
   abbe_photon_hit *hit;
@@ -227,26 +227,28 @@ static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, abb
   float o[3] = {rays->ray.org_x[k], rays->ray.org_y[k], rays->ray.org_z[k]};
   float d[3] = {rays->ray.dir_x[k], rays->ray.dir_y[k], rays->ray.dir_z[k]};
   for (int i = 0; i < 3; i++) p->scatter.d[i][k] = d[i];
-  if (r->w->take != NULL && !first && s->inside == 0)
-    r->w->take(r->w->watcher, o, d, rays->ray.tfar[k], s->flux, s->step);
-  if (id == RTC_INVALID_GEOMETRY_ID) return first ? NOT_COUNTED : s->inside != 0 ? LOST : MISSED;
+  const float length = rays->ray.tfar[k];
+  const abbe_light_stretch stretch = abbe_light_path_stretch(s, o, d, length);
+  if (r->w->take != NULL && !first) r->w->take(r->w->watcher, &stretch);
+  if (id == RTC_INVALID_GEOMETRY_ID && (first || s->inside != 0)) return first ? NOT_COUNTED : LOST;
+  const bool left =
+      first || abbe_light_path_absorb(&r->rules, r->w->media, s, o, d, length, r->ledger);
+  if (id == RTC_INVALID_GEOMETRY_ID) return left ? MISSED : NOT_COUNTED;
   if (first && r->w->g->surface[id].kind == ABBE_GEOMETRY_RECEIVERS) return NOT_COUNTED;
   abbe_hit *hit = &p->hit[k];
   abbe_geometry_place(&r->w->g->surface[id], rays->hit.primID[k], rays->hit.u[k], rays->hit.v[k], o,
                       d, rays->ray.tfar[k], hit);
   if (hit->surface->kind == ABBE_GEOMETRY_RECEIVERS) {
     if (s->inside != 0) r->ledger->contact += (double)(s->y * s->flux);
-    return DEPOSITED;
+    return left ? DEPOSITED : NOT_COUNTED;
   }
+  if (first) abbe_light_path_begin(&r->w->media->haze, s, r->parallel, o, d, length);
   if (first) r->ledger->reached += (double)(s->y * s->flux);
-  bool absorbed = s->inside != 0 &&
-                  !abbe_light_path_absorb(&r->rules, r->w->media, s, rays->ray.tfar[k], r->ledger);
-  if (hit->surface->kind == ABBE_GEOMETRY_MIRRORS)
-    return absorbed ? NOT_COUNTED : mirror(r, hit, d, s);
+  if (hit->surface->kind == ABBE_GEOMETRY_MIRRORS) return left ? mirror(r, hit, d, s) : NOT_COUNTED;
   p->scatter.chance[k] = abbe_light_path_chance(&r->rules, s);
   bool too_long = ++s->steps >= ABBE_INNER_MAX_STEPS;
   meet_interface(r->w, s, d, p, k);
-  return too_long ? LOST : absorbed ? NOT_COUNTED : SCATTERS;
+  return too_long ? LOST : left ? SCATTERS : NOT_COUNTED;
 }
 
 static bool is_split(const abbe_light_walk *w, const abbe_light_path *s) {
@@ -280,7 +282,8 @@ static bool stays_in_solid(const abbe_light_walk *w, const abbe_light_path *s) {
   if (s->inside == 0) return false;
   if (s->steps < ABBE_PHOTON_SPLITS && w->splits >> s->steps != 0) return false; /* one is split */
   const int medium = abbe_media_of(s->inside);
-  return abbe_solid_is(&w->g->solid[medium]) && !abbe_media_is_crystal(w->media, medium);
+  return abbe_solid_is(&w->g->solid[medium]) && !abbe_media_is_crystal(w->media, medium) &&
+         !abbe_haze_scatters(&w->media->haze, medium);
 }
 
 /* Into the batch of its solid, whose paths leave it first where it is another's. */
@@ -476,6 +479,7 @@ size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t
            .light = light,
            .rules = {.seed = w->seed, .pass = pass, .physics = w->physics},
            .hidden = w->for_map && light != NULL && w->hidden[light - w->g->scene->light],
+           .parallel = light == NULL || light->kind == ABBE_LIGHT_DIRECTIONAL,
            .hit = hit,
            .ledger = ledger};
   abbe_random_bits(0x73686966, 0, pass, w->seed, r.rules.shift);

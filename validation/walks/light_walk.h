@@ -51,11 +51,9 @@ void abbe_light_walk_split(abbe_light_walk *walk, unsigned interfaces);
  * what receivers hide from it, which asks for a ray each. At first they are. */
 void abbe_light_walk_for_map(abbe_light_walk *walk, bool map);
 
-/* A stretch in the open of a path that has met a refractor or a mirror: from o along unit d, frame
- * units, INFINITY where it meets nothing more; its flux as it sets out, W. */
-typedef void (*abbe_light_walk_stretch)(void *user, const float o[3], const float d[3],
-                                        float length, float flux, uint32_t step);
-/* Told every stretch of the next runs; NULL: nobody is. */
+typedef void (*abbe_light_walk_stretch)(void *user, const abbe_light_stretch *stretch);
+/* Told every stretch of the next runs, in the open and in refractors, but for those inside of convex
+ * solids in which nothing scatters; NULL: nobody is. */
 void abbe_light_walk_watch(abbe_light_walk *walk, abbe_light_walk_stretch take, void *user);
 
 /* Follows count <= ABBE_LIGHT_WALK_BATCH photons of one light of the geometry's scene, or of its

@@ -20,6 +20,17 @@ typedef struct abbe_photon {
   uint32_t id;      /* its random numbers; unique in its pass, and next to its neighbours' */
 } abbe_photon;
 
+/* A stretch of a path that has met a refractor or a mirror: from o along unit d, frame units. */
+typedef struct abbe_light_stretch {
+  float o[3], d[3];
+  float length; /* INFINITY where it meets nothing more */
+  float flux;   /* as it sets out, W */
+  uint32_t step;
+  float within;
+  uint32_t id, steps; /* of the photon; interfaces met so far */
+  int medium;         /* the refractor that it is in, or -1: the air */
+} abbe_light_stretch;
+
 /* Where a photon landed on a receiver. */
 typedef struct abbe_photon_hit {
   uint32_t surface, face;
@@ -42,12 +53,13 @@ typedef struct abbe_light_ledger {
   double contact;   /* the part of it that came from inside a refractor that touches the receiver */
   double hidden;    /* the part of it that other receivers hide from the lamp, so that its map does
                        not hold it; of the light that a map is made of */
-  double absorbed;  /* along inner paths */
+  double absorbed;  /* along inner paths, and by what the air holds */
   double missed;    /* met no receiver; with it what the renderer's ledger has as reflected */
   double trapped;   /* matched physics: the path was as long as the renderer follows one, and still
                        reflected; 0 with full physics */
   double lost;      /* where single precision lost track of inside and outside, or the path was
                        longer than 10000 interfaces; the renderer has no such light */
+  double scattered; /* off its path by a medium, after its first refractor or mirror */
 } abbe_light_ledger;
 
 #ifdef __cplusplus

@@ -1,0 +1,51 @@
+/* medium.h: what scatters and absorbs light on its way: mist, or what is afloat in water.
+ *
+ * Homogeneous: coefficients by wavelength and a phase function after Henyey and Greenstein, alike
+ * everywhere in a region. Light is scattered once: what is scattered goes to the eye or is lost.
+ */
+#ifndef ABBE_SCENES_MEDIUM_MEDIUM_H
+#define ABBE_SCENES_MEDIUM_MEDIUM_H
+
+#include "base/error.h"
+#include "spectral/spectrum.h"
+
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A phase function is no narrower than with this mean cosine either way. */
+#define ABBE_MEDIUM_MOST_G 0.99
+
+typedef struct abbe_medium {
+  abbe_spectrum *scattering; /* 1/m, natural; owned; NULL: none */
+  abbe_spectrum *absorption; /* the same; in a refractor NULL, for its material has it */
+  double g;                  /* mean cosine of the angle by which light is turned; 0: isotropic */
+  double min[3], max[3];     /* the air's region, world, m; of a refractor's medium of no meaning */
+} abbe_medium;
+
+/* A medium that the caller owns; of NULL, NULL. ABBE_NO_MEMORY. */
+abbe_result abbe_medium_copy(const abbe_medium *medium, abbe_medium **out, abbe_error *error);
+void abbe_medium_free(abbe_medium *medium);
+
+/* 1/m at lambda_nm; of NULL, 0. */
+double abbe_medium_scattering(const abbe_medium *medium, double lambda_nm);
+double abbe_medium_absorption(const abbe_medium *medium, double lambda_nm);
+
+/* Whether coefficients vary over [low_nm, high_nm]. */
+bool abbe_medium_is_coloured(const abbe_medium *medium, double low_nm, double high_nm);
+
+/* Share of the scattered light a steradian, 1/sr, where its way turns by the angle of that cosine;
+ * over all directions 1. [HenyeyGreenstein1941] */
+double abbe_medium_phase(double g, double cosine);
+
+/* The part [*from, *to] of the line o + t d that the region holds, cut to what they are before;
+ * false where nothing is left. d need not be unit; *to may be infinite. */
+bool abbe_medium_clip(const double min[3], const double max[3], const double o[3],
+                      const double d[3], double *from, double *to);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

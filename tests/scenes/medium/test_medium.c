@@ -1,0 +1,98 @@
+/* Media by themselves: a phase function that is one, coefficients by wavelength, a region. */
+#include "tests/check.h"
+#include "tests/random.h"
+
+#include "scenes/medium/medium.h"
+
+/* All that is scattered goes somewhere, and turns by the angle of the mean cosine g. */
+static void the_phase_function_is_normal(void **state) {
+  (void)state;
+  static const double g[] = {0, 0.3, -0.6, 0.9, 0.99};
+  enum { PARTS = 400000 };
+  for (size_t i = 0; i < sizeof g / sizeof *g; i++) {
+    double sum = 0, cosines = 0;
+    for (int k = 0; k < PARTS; k++) {
+      /* steps that shrink towards the peak: cosine = 1 - 2 x^3 or its mirror image */
+      const double x = (k + 0.5) / PARTS, turn = g[i] < 0 ? -1 : 1;
+      const double cosine = turn * (1 - 2 * x * x * x), weight = 6 * x * x / PARTS;
+      const double share = 2 * 3.14159265358979323846 * weight * abbe_medium_phase(g[i], cosine);
+      sum += share;
+      cosines += share * cosine;
+    }
+    assert_near(sum, 1, 1e-7);
+    assert_near(cosines, g[i], 1e-7);
+  }
+  assert_near(abbe_medium_phase(0, 0.4), 1 / (4 * 3.14159265358979323846), 1e-15);
+}
+
+static abbe_medium *make(void) {
+  static const double nm[] = {400, 500, 700}, scattering[] = {4, 2, 2}, anywhere = 555, all = 0.5;
+  static abbe_medium m;
+  m = (abbe_medium){.g = 0.2};
+  assert_int_equal(
+      abbe_spectrum_make(nm, scattering, 3, ABBE_INTERPOLATION_LINEAR, &m.scattering, NULL),
+      ABBE_OK);
+  assert_int_equal(
+      abbe_spectrum_make(&anywhere, &all, 1, ABBE_INTERPOLATION_LINEAR, &m.absorption, NULL),
+      ABBE_OK);
+  return &m;
+}
+
+static void coefficients_go_by_wavelength(void **state) {
+  (void)state;
+  abbe_medium *m = make(), *copy = NULL;
+  assert_int_equal(abbe_medium_copy(m, &copy, NULL), ABBE_OK);
+  abbe_spectrum_free(m->scattering);
+  abbe_spectrum_free(m->absorption);
+  assert_near(abbe_medium_scattering(copy, 450), 3, 1e-12);
+  assert_near(abbe_medium_scattering(copy, 380), 4, 0);
+  assert_near(abbe_medium_scattering(copy, 600), 2, 0);
+  assert_near(abbe_medium_absorption(copy, 600), 0.5, 0);
+  assert_near(copy->g, 0.2, 0);
+  assert_true(abbe_medium_is_coloured(copy, 380, 780));
+  assert_true(abbe_medium_is_coloured(copy, 480, 520));
+  assert_false(abbe_medium_is_coloured(copy, 500, 780));
+  abbe_medium_free(copy);
+  abbe_medium_free(NULL);
+  assert_int_equal(abbe_medium_copy(NULL, &copy, NULL), ABBE_OK);
+  assert_null(copy);
+  assert_near(abbe_medium_scattering(NULL, 500), 0, 0);
+  assert_false(abbe_medium_is_coloured(NULL, 380, 780));
+}
+
+/* What of a line is in a box: places of it, asked one by one. */
+static void a_box_cuts_lines(void **state) {
+  (void)state;
+  const double min[3] = {-1, 0, 2}, max[3] = {0.5, 1, 3};
+  uint64_t random = 5;
+  size_t met = 0;
+  for (int i = 0; i < 400; i++) {
+    double o[3], d[3], from = 0, to = INFINITY;
+    for (int k = 0; k < 3; k++) {
+      const double size = max[k] - min[k];
+      d[k] = i % 7 == k ? 0 : random_between(&random, -1, 1);
+      o[k] = random_between(&random, min[k] - 0.4 * size, max[k] + 0.4 * size) - 5 * d[k];
+    }
+    const bool some = abbe_medium_clip(min, max, o, d, &from, &to);
+    met += some;
+    for (int j = 0; j < 200; j++) {
+      const double t = 0.05 * (j + 0.5);
+      bool inside = true;
+      for (int k = 0; k < 3; k++) {
+        const double x = o[k] + t * d[k];
+        inside = inside && x > min[k] && x < max[k];
+      }
+      assert_int_equal(inside, some && t > from && t < to);
+    }
+  }
+  assert_in_range(met, 20, 380);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_phase_function_is_normal),
+      cmocka_unit_test(coefficients_go_by_wavelength),
+      cmocka_unit_test(a_box_cuts_lines),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

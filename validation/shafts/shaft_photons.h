@@ -1,0 +1,62 @@
+/* shaft_photons.h: photons on their way through haze: each stretch of a path is scattered at one
+ * place of it, which the eye may see.
+ *
+ * A place that the eye sees straight, in the medium that the eye is in, adds to its pixel at once,
+ * unbiased; nearer than a distance it does not, where few would add much. All are kept for gathers
+ * along paths of the eye. The path goes on with what is left of it, whatever happened here.
+ *
+ * Internal to validation/: it is not installed.
+ */
+#ifndef ABBE_VALIDATION_SHAFTS_SHAFT_PHOTONS_H
+#define ABBE_VALIDATION_SHAFTS_SHAFT_PHOTONS_H
+
+#include "validation/medium/haze_grid.h"
+#include "validation/transport/media.h"
+#include "validation/walks/camera.h"
+#include "validation/walks/photon.h"
+
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { ABBE_SHAFT_LANES = 16 };
+
+/* On its way to the eye. */
+typedef struct abbe_shaft_splat {
+  size_t pixel;
+  uint32_t step;
+  float value; /* radiance that the pixel's mean gains */
+} abbe_shaft_splat;
+
+/* Of one light and one thread. What is above `add` is given; the rest starts zeroed. */
+typedef struct abbe_shaft_photons {
+  const abbe_geometry *geometry;
+  const abbe_haze *haze;
+  const abbe_trace_camera *camera;
+  int eye_medium; /* refractor that the eye is in, or -1 */
+  float near;     /* frame: no nearer to the eye are places splatted */
+  uint32_t pass, seed;
+  uint32_t colour; /* of the light's first step */
+  void (*add)(void *user, const abbe_shaft_splat *splat);
+  void *user;
+  struct RTCRay16 packet; /* to the eye, of splats that wait */
+  abbe_shaft_splat splat[ABBE_SHAFT_LANES];
+  size_t waiting;
+  uint64_t rays;
+  size_t count, room;
+  abbe_haze_photon *photon; /* [count] owned */
+  bool full;                /* there was no memory for another */
+} abbe_shaft_photons;
+
+/* A watcher of light walks (abbe_light_walk_watch); user: an abbe_shaft_photons. */
+void abbe_shaft_photons_take(void *user, const abbe_light_stretch *stretch);
+/* Splats that wait are traced and added. */
+void abbe_shaft_photons_flush(abbe_shaft_photons *photons);
+void abbe_shaft_photons_free(abbe_shaft_photons *photons);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

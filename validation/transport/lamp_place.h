@@ -1,0 +1,39 @@
+/* lamp_place.h: a place on a lamp, drawn evenly over its area.
+ *
+ * Internal to validation/: it is not installed.
+ */
+#ifndef ABBE_VALIDATION_TRANSPORT_LAMP_PLACE_H
+#define ABBE_VALIDATION_TRANSPORT_LAMP_PLACE_H
+
+#include "validation/transport/geometry.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Of a light that is not directional, of u in [0, 1)^2; the place (frame). Returns W/sr along the
+ * direction of full intensity, as of all of it. */
+static inline float abbe_lamp_place(const abbe_geometry *g, const abbe_light *light,
+                                    const float u[2], float place[3]) {
+  float power = (float)light->power;
+  abbe_geometry_to_frame(g, light->position, place);
+  if (light->kind == ABBE_LIGHT_DISK) {
+    float n[3], a[3], b[3], r = (float)(light->radius / g->unit) * sqrtf(u[0]);
+    float angle = 6.28318531f * u[1];
+    for (int k = 0; k < 3; k++) n[k] = -(float)light->direction[k];
+    abbe_geometry_across(n, a, b);
+    for (int k = 0; k < 3; k++) place[k] += r * (cosf(angle) * a[k] + sinf(angle) * b[k]);
+    power *= (float)(3.14159265358979 * light->radius * light->radius);
+  } else if (light->kind == ABBE_LIGHT_RECTANGLE) {
+    const float x = 2 * u[0] - 1, y = 2 * u[1] - 1, unit = (float)g->unit;
+    for (int k = 0; k < 3; k++)
+      place[k] += (x * (float)light->edge[0][k] + y * (float)light->edge[1][k]) / unit;
+    power *= (float)abbe_light_area(light);
+  }
+  return power;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
