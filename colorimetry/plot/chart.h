@@ -39,7 +39,7 @@ typedef struct abbe_chart_series {
   const double *x, *y;      /* [count]; y may be NULL for a band */
   const double *low, *high; /* [count] ends of error bars, or edges of the band; or NULL */
   const char *const *text;  /* [count] names beside the points, where there is room; or NULL */
-  int colour;               /* 1 to ABBE_CHART_COLOURS; 0: the next in turn */
+  int colour;               /* 1 to 2 ABBE_CHART_COLOURS, the second of them dashed; 0: the next */
 } abbe_chart_series;
 
 typedef struct abbe_chart_axis {

@@ -140,7 +140,7 @@ static void draw_sample(abbe_chart_panel *p, size_t index, double x, double y) {
     abbe_chart_draw_line(p->cr, x, y, x + SAMPLE, y);
   }
   if (s->style == ABBE_CHART_POINTS || s->style == ABBE_CHART_JOINED_POINTS)
-    abbe_chart_dot(p->cr, x + SAMPLE / 2, y);
+    abbe_chart_draw_dot(p, index, x + SAMPLE / 2, y);
 }
 
 /* The label of entry i: the series first, then the shaded ranges. */

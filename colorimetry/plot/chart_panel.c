@@ -107,10 +107,10 @@ abbe_result abbe_chart_panel_make(const abbe_chart *chart, abbe_chart_panel *out
          (s->low == NULL) != (s->high == NULL)))
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "series %zu of a chart lacks its x, its y, or an end of its bars", i);
-    if (s->colour < 0 || s->colour > ABBE_CHART_COLOURS)
+    if (s->colour < 0 || s->colour > 2 * ABBE_CHART_COLOURS)
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "series %zu of a chart has the colour %d; there are 1 to %d", i,
-                            s->colour, ABBE_CHART_COLOURS);
+                            s->colour, 2 * ABBE_CHART_COLOURS);
   }
   abbe_result result = make_axis(chart, false, &out->x, error);
   if (result == ABBE_OK) result = make_axis(chart, true, &out->y, error);

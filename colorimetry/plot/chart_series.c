@@ -25,8 +25,9 @@ double abbe_chart_panel_y(const abbe_chart_panel *p, double value) {
 static int colour_of(const abbe_chart *c, size_t index, int *turn) {
   int next = 0;
   for (size_t i = 0; i < index; i++) next += c->series[i].colour == 0;
-  *turn = c->series[index].colour == 0 ? next / ABBE_CHART_COLOURS : 0;
-  return c->series[index].colour > 0 ? c->series[index].colour - 1 : next % ABBE_CHART_COLOURS;
+  if (c->series[index].colour > 0) next = c->series[index].colour - 1;
+  *turn = next / ABBE_CHART_COLOURS;
+  return next % ABBE_CHART_COLOURS;
 }
 
 void abbe_chart_set_pen(const abbe_chart_panel *p, size_t index, double alpha) {
@@ -40,10 +41,18 @@ void abbe_chart_set_pen(const abbe_chart_panel *p, size_t index, double alpha) {
   cairo_set_dash(p->cr, dash, dashed || turn > 0 ? 2 : 0, 0);
 }
 
-void abbe_chart_dot(cairo_t *cr, double x, double y) {
-  cairo_new_sub_path(cr);
-  cairo_arc(cr, x, y, 3.2, 0, 2 * PI);
-  cairo_fill(cr);
+void abbe_chart_draw_dot(const abbe_chart_panel *p, size_t index, double x, double y) {
+  int turn;
+  colour_of(p->chart, index, &turn);
+  cairo_set_dash(p->cr, NULL, 0, 0);
+  cairo_new_sub_path(p->cr);
+  cairo_arc(p->cr, x, y, 3.2, 0, 2 * PI);
+  if (turn == 0) {
+    cairo_fill(p->cr);
+    return;
+  }
+  cairo_set_line_width(p->cr, 1.3);
+  cairo_stroke(p->cr);
 }
 
 static void draw_band(abbe_chart_panel *p, const abbe_chart_series *s) {
@@ -72,11 +81,11 @@ static void draw_line(abbe_chart_panel *p, const abbe_chart_series *s) {
   cairo_stroke(p->cr);
 }
 
-static void draw_points(abbe_chart_panel *p, const abbe_chart_series *s) {
-  cairo_set_dash(p->cr, NULL, 0, 0);
+static void draw_points(abbe_chart_panel *p, size_t index) {
+  const abbe_chart_series *s = &p->chart->series[index];
   for (size_t i = 0; i < s->count; i++) {
     double x = abbe_chart_panel_x(p, s->x[i]), y = abbe_chart_panel_y(p, s->y[i]);
-    if (isfinite(x + y)) abbe_chart_dot(p->cr, x, y);
+    if (isfinite(x + y)) abbe_chart_draw_dot(p, index, x, y);
   }
 }
 
@@ -105,7 +114,7 @@ void abbe_chart_draw_series(abbe_chart_panel *p, size_t index) {
   if (s->low != NULL) draw_bars(p, s);
   abbe_chart_set_pen(p, index, 1);
   if (s->style != ABBE_CHART_POINTS) draw_line(p, s);
-  if (s->style == ABBE_CHART_POINTS || s->style == ABBE_CHART_JOINED_POINTS) draw_points(p, s);
+  if (s->style == ABBE_CHART_POINTS || s->style == ABBE_CHART_JOINED_POINTS) draw_points(p, index);
 }
 
 double abbe_chart_shade_grey(const abbe_chart *c, size_t index) {

@@ -15,7 +15,7 @@ double abbe_chart_panel_y(const abbe_chart_panel *p, double value);
 
 /* The pen of a series: its colour, of that opacity, and its dashes. */
 void abbe_chart_set_pen(const abbe_chart_panel *p, size_t index, double alpha);
-void abbe_chart_dot(struct _cairo *cr, double x, double y);
+void abbe_chart_draw_dot(const abbe_chart_panel *panel, size_t index, double x, double y);
 /* Each label has its grey; the ranges without one that follow it are more of the same. */
 double abbe_chart_shade_grey(const abbe_chart *c, size_t index);
 

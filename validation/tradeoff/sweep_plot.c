@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_CHARTS = 4, MAX_PROFILES = 10, LABEL = 64 };
+enum { MAX_CHARTS = 4, MAX_PROFILES = 16, LABEL = 64 };
 
 /* One chart's numbers, in pieces of memory of a row each. */
 typedef struct figures {
@@ -52,14 +52,18 @@ static abbe_result open_figures(size_t count, figures *f, abbe_error *error) {
   return ABBE_OK;
 }
 
-/* The same in every chart, whatever a table's order is. */
+/* The same in every chart, whatever a table's order is; blue is the front of all. */
+static const struct {
+  const char *profile;
+  int colour;
+} colours[] = {{"default", 2},        {"thesis", 3},       {"thesis-cie", 4},
+               {ABBE_SWEEP_TRACE, 5}, {"trace-filter", 6}, {"shah2007", 7},
+               {"shah2007-cie", 8},   {"wyman2006", 11},   {"wyman2006-cie", 12}};
+
 static int colour_of(const char *profile, size_t number) {
-  static const char *const known[] = {
-      "default",  "thesis",       "thesis-cie", ABBE_SWEEP_TRACE, ABBE_SWEEP_TRACE_FILTER,
-      "shah2007", "shah2007-cie", "wyman2006",  "wyman2006-cie"};
-  for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-    if (strcmp(profile, known[i]) == 0) return (int)(i % 7) + 2;
-  return (int)(number % 5) + 2;
+  for (size_t i = 0; i < sizeof colours / sizeof *colours; i++)
+    if (strcmp(profile, colours[i].profile) == 0) return colours[i].colour;
+  return (int)(number % 4) + 13;
 }
 
 static void find_profiles(const abbe_sweep_table *table, figures *f) {
@@ -208,7 +212,7 @@ abbe_result abbe_sweep_plot(const char *path, const abbe_sweep_table *table, abb
 
 /* ---- several scenes ---- */
 
-enum { MAX_SCENES = 16 };
+enum { MAX_SCENES = 16, ALL_PROFILES = MAX_PROFILES };
 
 /* One scene against one time: each profile's own front. */
 static abbe_result make_fronts(const abbe_sweep_table *table, abbe_sweep_number time,
@@ -252,11 +256,32 @@ static size_t known_times(const abbe_sweep_table *tables, size_t count,
   return times;
 }
 
-/* A legend of all would hide half of a small chart: each chart of the first row has a part of it.
- */
-static void keep_labels(figures *f, size_t chart, size_t times) {
-  for (size_t k = 0; k < f->series_count; k++)
-    if (k * times / f->series_count != chart) f->series[k].label = NULL;
+/* Whose fronts the charts hold, each profile once. */
+static size_t list_labels(const figures *f, size_t charts, const char *out[ALL_PROFILES]) {
+  size_t count = 0;
+  for (size_t i = 0; i < charts; i++)
+    for (size_t k = 0; k < f[i].profiles && count < ALL_PROFILES; k++) {
+      size_t m = 0;
+      while (m < count && strcmp(out[m], f[i].profile[k]) != 0) m++;
+      if (m == count) out[count++] = f[i].profile[k];
+    }
+  return count;
+}
+
+/* A legend of all would hide half of a small chart: each chart of the first row has a part of it,
+ * of what other scenes hold too. */
+static void share_legend(figures *f, abbe_chart *chart, size_t charts, size_t times) {
+  const char *label[ALL_PROFILES];
+  const size_t count = list_labels(f, charts, label);
+  for (size_t i = 0; i < charts; i++)
+    for (size_t k = 0; k < f[i].series_count; k++)
+      if (i + 1 != times || f[i].series[k].style != ABBE_CHART_DASHED) f[i].series[k].label = NULL;
+  for (size_t k = 0; k < count; k++) {
+    figures *at = &f[k * times / count];
+    at->series[at->series_count++] = (abbe_chart_series){
+        .label = label[k], .style = ABBE_CHART_JOINED_POINTS, .colour = colour_of(label[k], k)};
+    chart[k * times / count].series_count = at->series_count;
+  }
 }
 
 abbe_result abbe_sweep_plot_scenes(const char *path, const abbe_sweep_table *tables, size_t count,
@@ -280,7 +305,7 @@ abbe_result abbe_sweep_plot_scenes(const char *path, const abbe_sweep_table *tab
                 : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the sweeps' charts");
   for (size_t i = 0; i < charts && result == ABBE_OK; i++)
     result = make_fronts(&tables[i / times], time[i % times], number, &f[i], &chart[i], error);
-  for (size_t i = 0; i < charts && result == ABBE_OK; i++) keep_labels(&f[i], i, times);
+  if (result == ABBE_OK) share_legend(f, chart, charts, times);
   if (result == ABBE_OK)
     result = abbe_chart_write_grid(path, chart, charts, times, 420 * times, 230 * count, error);
   for (size_t i = 0; i < charts && f != NULL; i++) close_figures(&f[i]);

@@ -239,7 +239,7 @@ static void awkward_charts_are_drawn_or_refused(void **state) {
   }
   const float field[1] = {0};
   abbe_chart_field good = {.width = 1, .height = 1, .value = field}, none = {.width = 1};
-  abbe_chart_series bare = {.count = 1}, odd = {.colour = 9};
+  abbe_chart_series bare = {.count = 1}, odd = {.colour = 17};
   const struct {
     abbe_chart chart;
     const char *part;
@@ -248,7 +248,7 @@ static void awkward_charts_are_drawn_or_refused(void **state) {
       {{.y = {.min = 0, .max = 1, .log = true}}, "the y axis of a chart cannot run from 0 to 1 in"},
       {{.y = {.min = 0, .max = INFINITY}}, "cannot run from 0 to inf"},
       {{.series_count = 1, .series = &bare}, "series 0 of a chart lacks"},
-      {{.series_count = 1, .series = &odd}, "has the colour 9"},
+      {{.series_count = 1, .series = &odd}, "has the colour 17"},
       {{.field = &none}, "field of 1 x 0"},
   };
   unlink(path[0]);
