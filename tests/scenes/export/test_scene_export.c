@@ -93,6 +93,8 @@ static void test_lights_keep_their_power(void **state) {
   assert_near(v[2], -0.8, 1e-9);
   done(text);
   text = written(&scene, ABBE_SCENE_EXPORT_BLENDER);
+  assert_non_null(strstr(text, "use_denoising = False")); /* nor what else makes light less */
+  assert_non_null(strstr(text, "sample_clamp_indirect = 0"));
   numbers_after(text, "'l0_lamp', ", v, 13);
   assert_near(v[12], 2 * sphere, 1e-6);
   numbers_after(text, "'l1_sun', ", v, 13);
