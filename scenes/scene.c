@@ -26,18 +26,23 @@ static void object_free(abbe_object *object) {
   free(object->fixes);
 }
 
+void abbe_lights_free(abbe_light *light, size_t count) {
+  if (!light) return;
+  for (size_t i = 0; i < count; i++) {
+    free(light[i].name);
+    abbe_illuminant_free(&light[i].illuminant);
+    free(light[i].illuminant_path);
+  }
+  free(light);
+}
+
 void abbe_scene_free(abbe_scene *scene) {
   if (!scene) return;
-  for (size_t i = 0; i < scene->light_count; i++) {
-    free(scene->light[i].name);
-    abbe_illuminant_free(&scene->light[i].illuminant);
-    free(scene->light[i].illuminant_path);
-  }
+  abbe_lights_free(scene->light, scene->light_count);
   for (size_t i = 0; i < scene->object_count; i++) object_free(&scene->object[i]);
   abbe_environment_free(scene->environment);
   free(scene->environment);
   abbe_medium_free(scene->medium);
-  free(scene->light);
   free(scene->object);
   abbe_material_table_free(&scene->table);
   free(scene->path);

@@ -154,6 +154,8 @@ bool abbe_scene_is_hazy(const abbe_scene *scene);
 const abbe_object *abbe_scene_mirror(const abbe_scene *scene);
 
 void abbe_scene_free(abbe_scene *scene);
+/* A list of lights, and what they own. */
+void abbe_lights_free(abbe_light *light, size_t count);
 
 /* The illuminant of the first light, or of the environment where there is no light. */
 const abbe_illuminant *abbe_scene_illuminant(const abbe_scene *scene);

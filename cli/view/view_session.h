@@ -7,7 +7,7 @@
 
 #include "cli/view/picture/view_probe.h"
 #include "cli/view/view_ui.h"
-#include "cli/view/view_worker.h"
+#include "cli/view/work/view_worker.h"
 #include "gl/device/api.h"
 
 #define ABBE_VIEW_PANEL_WIDTH 340
@@ -18,7 +18,7 @@ typedef struct abbe_view_session {
   abbe_view_state state;
   abbe_view_worker *worker;
   const abbe_gl *gl;
-  const char *keep, *ocio;
+  const char *keep, *ocio, *materials;
   abbe_display *display;
   char *views; /* lines "display / view" */
   size_t view; /* of these */
@@ -44,10 +44,11 @@ typedef struct abbe_view_session {
   abbe_view_feed *feed; /* of the pixel; NULL: not known */
   uint64_t fed_serial;  /* of what was asked for last, and its pixel */
   size_t fed_pixel[2];
-  uint64_t mapped_serial;       /* of what the map was asked for last, */
-  abbe_view_stage mapped;       /* and at which stage */
-  abbe_ui_input input;          /* of the frame before */
-  double area[2];               /* of the picture in the window */
+  uint64_t mapped_serial; /* of what the map was asked for last, */
+  abbe_view_stage mapped; /* and at which stage */
+  abbe_ui_input input;    /* of the frame before */
+  double area[2];         /* of the picture in the window */
+  double first_s;         /* from the program's start to its first picture; 0: there is none */
   double seen_s, frames_ms[32]; /* times between pictures while something moves */
   size_t frame_count;
   double event_s[ABBE_VIEW_TIMED]; /* of changes by pointer, by their number; 0: another change */

@@ -3,7 +3,7 @@
 #include "scenes/geometry/vector.h"
 #include "scenes/import/mesh_files.h"
 #include "scenes/import/mesh_import.h"
-#include "scenes/import/ply_strips.h"
+#include "scenes/mesh/ply_strips.h"
 #include "scenes/mesh/mesh.h"
 #include "scenes/mesh/mesh_parts.h"
 #include "scenes/mesh/topology.h"

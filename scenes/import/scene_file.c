@@ -4,6 +4,7 @@
 #include "base/yaml/yaml.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/import/environment_file.h"
+#include "scenes/import/light_file.h"
 #include "scenes/import/object_file.h"
 #include "scenes/import/object_reading.h"
 #include "scenes/import/scene_change.h"
@@ -16,7 +17,6 @@
 #include <string.h>
 
 #define RADIANS (3.14159265358979323846 / 180.0)
-#define FAINTEST 1e-30
 #define SCENE_MOST_BYTES ((size_t)16 << 20) /* as of every YAML file */
 
 /* --- camera --- */
@@ -54,231 +54,14 @@ static abbe_result read_camera(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera
   return ABBE_OK;
 }
 
-/* --- lights --- */
-
-static const char *const light_kinds[] = {"point", "spot",      "directional",
-                                          "disk",  "rectangle", NULL};
-
-/* The key belongs to other kinds of light. */
-static abbe_result refuse_key(abbe_yaml *yaml, abbe_yaml_node node, const char *key, int kind,
-                              const char *instead, abbe_error *error) {
-  const abbe_yaml_node found = abbe_yaml_get(yaml, node, key);
-  if (found.id == 0) return ABBE_OK;
-  return abbe_yaml_fail(yaml, found, error, "a %s light has no '%s'; %s", light_kinds[kind], key,
-                        instead);
-}
-
-static abbe_result read_direction(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
-                                  abbe_error *error) {
-  const abbe_yaml_node direction = abbe_yaml_get(yaml, node, "direction");
-  const abbe_yaml_node target = abbe_yaml_get(yaml, node, "target");
-  if ((direction.id != 0) == (target.id != 0))
-    return abbe_yaml_fail(yaml, node, error,
-                          "a %s light has either a 'direction' (the way the light travels) or a "
-                          "'target' point; this one has %s",
-                          light_kinds[out->kind], direction.id ? "both" : "neither");
-  abbe_result result = ABBE_OK;
-  if (direction.id) {
-    result = abbe_scene_value_point(yaml, node, "direction", out->direction, error);
-  } else {
-    if (out->kind == ABBE_LIGHT_DIRECTIONAL)
-      result = abbe_scene_value_point(yaml, node, "position", out->position, error);
-    if (result == ABBE_OK)
-      result = abbe_scene_value_point(yaml, node, "target", out->direction, error);
-    abbe_vector_subtract(out->direction, out->position, out->direction);
-  }
-  if (result == ABBE_OK && !abbe_vector_normalise(out->direction))
-    result = abbe_yaml_fail(yaml, direction.id ? direction : target, error,
-                            "the light's direction is zero; it must point somewhere");
-  return result;
-}
-
-static abbe_result read_cone(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
-                             abbe_error *error) {
-  double cone = 0.0, soft = 0.0;
-  abbe_yaml_node ignored;
-  abbe_result result = abbe_yaml_require(yaml, node, "cone", &ignored, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "cone", 0.001, 85, &cone, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "soft", 0, cone, &soft, error);
-  out->cone_rad = cone * RADIANS;
-  out->soft_rad = soft * RADIANS;
-  return result;
-}
-
-static abbe_result read_radius(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
-                               abbe_error *error) {
-  abbe_yaml_node value;
-  abbe_result result = abbe_yaml_require(yaml, node, "radius", &value, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, node, "radius", 0, ABBE_SCENE_FAR, &out->radius, error);
-  if (result == ABBE_OK && !(out->radius > 0.0))
-    result =
-        abbe_yaml_fail(yaml, value, error,
-                       "'radius' is zero; a disk has an area (a light without one is a point)");
-  return result;
-}
-
-static abbe_result read_side(abbe_yaml *yaml, abbe_yaml_node node, const char *key, double *out,
-                             abbe_error *error) {
-  abbe_yaml_node value;
-  abbe_result result = abbe_yaml_require(yaml, node, key, &value, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, node, key, 0, ABBE_SCENE_FAR, out, error);
-  if (result == ABBE_OK && !(*out > 0.0))
-    result = abbe_yaml_fail(yaml, value, error, "'%s' is zero; a rectangle has an area", key);
-  return result;
-}
-
-/* The height grows along z, or along y where the light looks along z; roll turns it about the
- * normal. */
-static abbe_result read_rectangle(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
-                                  abbe_error *error) {
-  const double z[3] = {0, 0, 1}, y[3] = {0, 1, 0}, upright = 1e-6;
-  double width = 0, height = 0, roll = 0, across[3], up[3];
-  abbe_result result = read_side(yaml, node, "width", &width, error);
-  if (result == ABBE_OK) result = read_side(yaml, node, "height", &height, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "roll", -360, 360, &roll, error);
-  if (result != ABBE_OK) return result;
-  const double *n = out->direction;
-  abbe_vector_cross(hypot(n[0], n[1]) < upright ? y : z, n, across);
-  abbe_vector_normalise(across);
-  abbe_vector_cross(n, across, up);
-  const double c = cos(roll * RADIANS), s = sin(roll * RADIANS);
-  for (int k = 0; k < 3; k++) {
-    out->edge[0][k] = 0.5 * width * (c * across[k] + s * up[k]);
-    out->edge[1][k] = 0.5 * height * (c * up[k] - s * across[k]);
-  }
-  out->radius = 0.5 * hypot(width, height);
-  return ABBE_OK;
-}
-
-static abbe_result refuse_sides(abbe_yaml *yaml, abbe_yaml_node node, int kind, abbe_error *error) {
-  static const char *const keys[] = {"width", "height", "roll"};
-  abbe_result result = ABBE_OK;
-  for (int i = 0; i < 3 && result == ABBE_OK; i++)
-    result = refuse_key(yaml, node, keys[i], kind, "a rectangle light has", error);
-  return result;
-}
-
-static abbe_result read_shape_of_light(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
-                                       abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  if (out->kind != ABBE_LIGHT_DIRECTIONAL)
-    result = abbe_scene_value_point(yaml, node, "position", out->position, error);
-  if (result == ABBE_OK && out->kind == ABBE_LIGHT_POINT) {
-    result = refuse_key(yaml, node, "direction", 0, "it shines in every direction", error);
-    if (result == ABBE_OK)
-      result = refuse_key(yaml, node, "target", 0, "it shines in every direction", error);
-  } else if (result == ABBE_OK) {
-    result = read_direction(yaml, node, out, error);
-  }
-  if (result == ABBE_OK && out->kind == ABBE_LIGHT_DISK)
-    result = read_radius(yaml, node, out, error);
-  else if (result == ABBE_OK)
-    result = refuse_key(yaml, node, "radius", (int)out->kind, "a disk light has", error);
-  if (result == ABBE_OK && out->kind == ABBE_LIGHT_RECTANGLE)
-    result = read_rectangle(yaml, node, out, error);
-  else if (result == ABBE_OK)
-    result = refuse_sides(yaml, node, (int)out->kind, error);
-  if (result == ABBE_OK && out->kind == ABBE_LIGHT_SPOT) return read_cone(yaml, node, out, error);
-  if (result == ABBE_OK)
-    result = refuse_key(yaml, node, "cone", (int)out->kind, "a spot light has", error);
-  if (result == ABBE_OK)
-    result = refuse_key(yaml, node, "soft", (int)out->kind, "a spot light has", error);
-  return result;
-}
-
-/* What each kind of light is bright in. */
-static const struct {
-  const char *key, *said;
-} powers[] = {[ABBE_LIGHT_POINT] = {"intensity", "it has an 'intensity' (W/sr)"},
-              [ABBE_LIGHT_SPOT] = {"intensity", "it has an 'intensity' (W/sr)"},
-              [ABBE_LIGHT_DIRECTIONAL] = {"irradiance", "it has an 'irradiance' (W/m2)"},
-              [ABBE_LIGHT_DISK] = {"radiance", "it has a 'radiance' (W/(m2 sr))"},
-              [ABBE_LIGHT_RECTANGLE] = {"radiance", "it has a 'radiance' (W/(m2 sr))"}};
-
-static abbe_result read_power(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
-                              abbe_error *error) {
-  const char *key = powers[out->kind].key;
-  abbe_yaml_node value;
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < sizeof powers / sizeof *powers && result == ABBE_OK; i++)
-    if (strcmp(powers[i].key, key) != 0)
-      result = refuse_key(yaml, node, powers[i].key, (int)out->kind, powers[out->kind].said, error);
-  if (result == ABBE_OK) result = abbe_yaml_require(yaml, node, key, &value, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, node, key, 0, ABBE_SCENE_BRIGHTEST, &out->power, error);
-  if (result == ABBE_OK && !(out->power > 0.0))
-    result = abbe_yaml_fail(yaml, value, error, "'%s' is zero; a light must shine", key);
-  if (result == ABBE_OK && out->power < FAINTEST)
-    result =
-        abbe_yaml_fail(yaml, value, error,
-                       "'%s: %g' is too faint: pictures and maps are kept in single precision, "
-                       "which takes %g and more",
-                       key, out->power, FAINTEST);
-  return result;
-}
-
-static abbe_result read_light(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
-                              abbe_light *out, abbe_error *error) {
-  int kind = 0;
-  abbe_yaml_node ignored;
-  abbe_result result = abbe_yaml_require(yaml, node, "kind", &ignored, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_choice(yaml, node, "kind", light_kinds, &kind, error);
-  out->kind = (abbe_light_kind)kind;
-  if (result == ABBE_OK) result = abbe_yaml_get_name(yaml, node, "name", &out->name, error);
-  if (result == ABBE_OK && !out->name) {
-    char name[64];
-    snprintf(name, sizeof name, "light on line %zu", abbe_yaml_line(yaml, node));
-    out->name = strdup(name);
-    if (!out->name) result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a name");
-  }
-  if (result == ABBE_OK) result = read_shape_of_light(yaml, node, out, error);
-  if (result == ABBE_OK) result = read_power(yaml, node, out, error);
-  if (result == ABBE_OK)
-    result = abbe_scene_value_illuminant(yaml, node, folder, &out->illuminant,
-                                         &out->illuminant_path, error);
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "a light", error);
-  return result;
-}
-
-/* --- lists --- */
-
-/* The list under key, of at most `most` entries; an absent one has none. */
-static abbe_result read_list(abbe_yaml *yaml, abbe_yaml_node root, const char *key, size_t most,
-                             abbe_yaml_node *list, size_t *count, abbe_error *error) {
-  *list = abbe_yaml_get(yaml, root, key);
-  *count = abbe_yaml_count(yaml, *list);
-  if (list->id != 0 && !abbe_yaml_is_sequence(yaml, *list))
-    return abbe_yaml_fail(yaml, *list, error, "'%s' wants a list", key);
-  if (*count > most)
-    return abbe_yaml_fail(yaml, *list, error, "'%s' has %zu entries; at most %zu are possible", key,
-                          *count, most);
-  return ABBE_OK;
-}
-
-static abbe_result read_lights(abbe_yaml *yaml, abbe_yaml_node root, const char *folder,
-                               abbe_scene *out, abbe_error *error) {
-  abbe_yaml_node list;
-  size_t count;
-  abbe_result result = read_list(yaml, root, "lights", ABBE_SCENE_MAX_LIGHTS, &list, &count, error);
-  if (result != ABBE_OK || count == 0) return result;
-  out->light = calloc(count, sizeof *out->light);
-  if (!out->light) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu lights", count);
-  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
-    out->light_count = i + 1;
-    result = read_light(yaml, abbe_yaml_item(yaml, list, i), folder, &out->light[i], error);
-  }
-  return result;
-}
+/* --- objects --- */
 
 static abbe_result read_objects(abbe_yaml *yaml, abbe_yaml_node root, const char *folder,
                                 abbe_scene *out, abbe_error *error) {
   abbe_yaml_node list;
   size_t count, faces = 0;
   abbe_result result =
-      read_list(yaml, root, "objects", ABBE_SCENE_MAX_OBJECTS, &list, &count, error);
+      abbe_scene_value_list(yaml, root, "objects", ABBE_SCENE_MAX_OBJECTS, &list, &count, error);
   if (result != ABBE_OK || count == 0) return result;
   out->object = calloc(ABBE_SCENE_MAX_OBJECTS, sizeof *out->object);
   if (!out->object)
@@ -351,6 +134,15 @@ static abbe_result read_table(abbe_yaml *yaml, abbe_yaml_node root, const char *
   return result;
 }
 
+static abbe_result read_brightness(abbe_yaml *yaml, abbe_yaml_node root, abbe_scene *out,
+                                   abbe_error *error) {
+  const double most = ABBE_SCENE_BRIGHTEST;
+  const abbe_result result =
+      abbe_yaml_get_number(yaml, root, "ambient", 0, most, &out->ambient, error);
+  if (result != ABBE_OK) return result;
+  return abbe_yaml_get_number(yaml, root, "background", 0, most, &out->background, error);
+}
+
 static abbe_result read_scene(abbe_yaml *yaml, const char *folder,
                               const abbe_scene_options *options, abbe_scene *out,
                               abbe_error *error) {
@@ -358,16 +150,12 @@ static abbe_result read_scene(abbe_yaml *yaml, const char *folder,
   if (!abbe_yaml_is_mapping(yaml, root))
     return abbe_yaml_fail(yaml, root, error, "a scene must be a mapping (key: value)");
   abbe_result result = abbe_yaml_get_string(yaml, root, "description", &out->description, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_yaml_get_number(yaml, root, "ambient", 0, ABBE_SCENE_BRIGHTEST, &out->ambient, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, root, "background", 0, ABBE_SCENE_BRIGHTEST,
-                                  &out->background, error);
+  if (result == ABBE_OK) result = read_brightness(yaml, root, out, error);
   if (result == ABBE_OK) result = abbe_scene_value_time(yaml, &out->time, error);
   if (result == ABBE_OK) result = read_camera(yaml, root, &out->camera, error);
   if (result == ABBE_OK) result = abbe_medium_file_read(yaml, root, true, &out->medium, error);
-  if (result == ABBE_OK) result = read_lights(yaml, root, folder, out, error);
+  if (result == ABBE_OK)
+    result = abbe_lights_read(yaml, root, folder, &out->light, &out->light_count, error);
   /* all keys are known before the costly part begins */
   abbe_yaml_get(yaml, root, "materials");
   abbe_yaml_get(yaml, root, "objects");
@@ -446,17 +234,75 @@ static abbe_result parse_document(const char *text, size_t size, const char *nam
   return parse_changed(text, size, name, options, true, out, error);
 }
 
+static abbe_result load_document(const char *path, const abbe_scene_options *options,
+                                 abbe_yaml **out, abbe_error *error) {
+  char *text = NULL;
+  size_t size = 0;
+  abbe_result result = abbe_file_read_text(path, SCENE_MOST_BYTES, &text, &size, error);
+  if (result == ABBE_OK) result = parse_document(text, size, path, options, out, error);
+  free(text);
+  return result;
+}
+
 abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options, abbe_scene *out,
                             abbe_error *error) {
   ABBE_REQUIRE(path && out, error);
   memset(out, 0, sizeof *out);
   abbe_yaml *yaml = NULL;
-  char *text = NULL;
-  size_t size = 0;
-  abbe_result result = abbe_file_read_text(path, SCENE_MOST_BYTES, &text, &size, error);
-  if (result == ABBE_OK) result = parse_document(text, size, path, options, &yaml, error);
-  free(text);
+  const abbe_result result = load_document(path, options, &yaml, error);
   return result == ABBE_OK ? read_document(yaml, path, options, out, error) : result;
+}
+
+/* A value set anew may take another line, and what comes after it moves. */
+static void number_objects(abbe_yaml *yaml, abbe_yaml_node root, abbe_scene *scene) {
+  const abbe_yaml_node list = abbe_yaml_get(yaml, root, "objects");
+  const size_t items = abbe_yaml_count(yaml, list);
+  size_t item = 0, before = 0;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    if (i > 0 && scene->object[i].line != before) item++;
+    before = scene->object[i].line;
+    if (item < items)
+      scene->object[i].line = abbe_yaml_line(yaml, abbe_yaml_item(yaml, list, item));
+  }
+}
+
+static void swap_light(abbe_scene *a, abbe_scene *b) {
+  const abbe_scene kept = *a;
+  a->light = b->light;
+  a->light_count = b->light_count;
+  a->ambient = b->ambient;
+  a->background = b->background;
+  b->light = kept.light;
+  b->light_count = kept.light_count;
+  b->ambient = kept.ambient;
+  b->background = kept.background;
+}
+
+abbe_result abbe_scene_load_lights(const char *path, const abbe_scene_options *options,
+                                   abbe_scene *scene, abbe_error *error) {
+  ABBE_REQUIRE(path && scene, error);
+  abbe_yaml *yaml = NULL;
+  abbe_scene lit = {0};
+  abbe_result result = load_document(path, options, &yaml, error);
+  if (result != ABBE_OK) return result;
+  const abbe_yaml_node root = abbe_yaml_root(yaml);
+  char *folder = folder_of(path);
+  if (folder == NULL) result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
+  if (result == ABBE_OK) result = read_brightness(yaml, root, &lit, error);
+  if (result == ABBE_OK)
+    result = abbe_lights_read(yaml, root, folder, &lit.light, &lit.light_count, error);
+  if (result == ABBE_OK) {
+    swap_light(scene, &lit);
+    result = abbe_scene_check(scene, error);
+    if (result == ABBE_OK)
+      number_objects(yaml, root, scene);
+    else
+      swap_light(scene, &lit);
+  }
+  abbe_lights_free(lit.light, lit.light_count);
+  free(folder);
+  abbe_yaml_free(yaml);
+  return result;
 }
 
 abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,

@@ -22,7 +22,13 @@ typedef struct abbe_scene_options {
  * line, key and value. On failure *out is zeroed. options may be NULL. */
 abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options, abbe_scene *out,
                             abbe_error *error);
-/* The same from text; name stands for the path, in messages and for relative paths. */
+/* Of a scene that abbe_scene_load has made: its lights, ambient light and background as they are
+ * with these options, which differ from those that it was made with in values of these alone. All
+ * else stays as it is, so that no mesh is read again. On failure the scene is as it was; errors as
+ * of abbe_scene_load. */
+abbe_result abbe_scene_load_lights(const char *path, const abbe_scene_options *options,
+                                   abbe_scene *scene, abbe_error *error);
+/* As abbe_scene_load, from text; name stands for the path, in messages and for relative paths. */
 abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
                              const abbe_scene_options *options, abbe_scene *out, abbe_error *error);
 

@@ -33,6 +33,20 @@ abbe_result abbe_scene_value_point(abbe_yaml *yaml, abbe_yaml_node mapping, cons
                            : result;
 }
 
+abbe_result abbe_scene_value_list(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
+                                  size_t most, abbe_yaml_node *list, size_t *count,
+                                  abbe_error *error) {
+  ABBE_REQUIRE(yaml && key && list && count, error);
+  *list = abbe_yaml_get(yaml, mapping, key);
+  *count = abbe_yaml_count(yaml, *list);
+  if (list->id != 0 && !abbe_yaml_is_sequence(yaml, *list))
+    return abbe_yaml_fail(yaml, *list, error, "'%s' wants a list", key);
+  if (*count > most)
+    return abbe_yaml_fail(yaml, *list, error, "'%s' has %zu entries; at most %zu are possible", key,
+                          *count, most);
+  return ABBE_OK;
+}
+
 abbe_result abbe_scene_value_time(abbe_yaml *yaml, double *out, abbe_error *error) {
   ABBE_REQUIRE(yaml && out, error);
   *out = 0;

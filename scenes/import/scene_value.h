@@ -27,6 +27,11 @@ abbe_result abbe_scene_value_locate(const abbe_yaml *yaml, abbe_yaml_node node, 
 abbe_result abbe_scene_value_point(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                    double out[3], abbe_error *error);
 
+/* The list under a key of the mapping, of at most `most` entries; an absent one has none. */
+abbe_result abbe_scene_value_list(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
+                                  size_t most, abbe_yaml_node *list, size_t *count,
+                                  abbe_error *error);
+
 /* The scene's 'time', s; 0 without one. */
 abbe_result abbe_scene_value_time(abbe_yaml *yaml, double *out, abbe_error *error);
 

@@ -1,7 +1,7 @@
 /* PLY files of triangle strips, which are read without assimp and in this process. */
 #include "tests/fuzz/fuzz.h"
 
-#include "scenes/import/ply_strips.h"
+#include "scenes/mesh/ply_strips.h"
 
 #include <math.h>
 #include <stdlib.h>

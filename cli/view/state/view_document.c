@@ -82,12 +82,18 @@ static bool is_camera(const char *set) {
   return strncmp(set, "camera.", 7) == 0;
 }
 
-/* Whether all changes of one, but for the camera's, stand in the other in the same order. */
-static bool same_but_camera(const abbe_view_document *a, const abbe_view_document *b) {
+static bool is_light_or_camera(const char *set) {
+  return is_camera(set) || strncmp(set, "lights.", 7) == 0 || is_of(set, "ambient") ||
+         is_of(set, "background");
+}
+
+/* Whether all changes of one, but for those of a kind, stand in the other in the same order. */
+static bool same_but(bool (*is_of_kind)(const char *set), const abbe_view_document *a,
+                     const abbe_view_document *b) {
   size_t i = 0, k = 0;
   for (;;) {
-    while (i < a->set_count && is_camera(a->set[i])) i++;
-    while (k < b->set_count && is_camera(b->set[k])) k++;
+    while (i < a->set_count && is_of_kind(a->set[i])) i++;
+    while (k < b->set_count && is_of_kind(b->set[k])) k++;
     if (i == a->set_count || k == b->set_count) return i == a->set_count && k == b->set_count;
     if (strcmp(a->set[i++], b->set[k++]) != 0) return false;
   }
@@ -96,9 +102,10 @@ static bool same_but_camera(const abbe_view_document *a, const abbe_view_documen
 abbe_view_difference abbe_view_document_compare(const abbe_view_document *a,
                                                 const abbe_view_document *b) {
   const bool paths = a->path != NULL && b->path != NULL && strcmp(a->path, b->path) == 0;
-  if (!paths || a->wavelengths != b->wavelengths || a->photons != b->photons ||
-      a->map_size != b->map_size || !same_but_camera(a, b))
-    return ABBE_VIEW_CHANGED;
+  if (!paths || !same_but(is_light_or_camera, a, b)) return ABBE_VIEW_CHANGED;
+  if (!same_but(is_camera, a, b)) return ABBE_VIEW_LIGHTS;
+  if (a->wavelengths != b->wavelengths || a->photons != b->photons || a->map_size != b->map_size)
+    return ABBE_VIEW_SETTINGS;
   if (a->set_count != b->set_count) return ABBE_VIEW_CAMERA;
   for (size_t i = 0; i < a->set_count; i++) {
     bool there = false;

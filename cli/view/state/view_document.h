@@ -38,11 +38,13 @@ const char *abbe_view_document_value(const abbe_view_document *document, const c
 /* "[x, y, z]" with six digits, which read back as *numbers are then. */
 void abbe_view_document_point(double point[3], char *out, size_t size);
 
-/* What differs between two. */
+/* What differs between two: this and nothing that stands below it. */
 typedef enum abbe_view_difference {
   ABBE_VIEW_SAME,
-  ABBE_VIEW_CAMERA, /* only values under "camera." */
-  ABBE_VIEW_CHANGED /* more than that */
+  ABBE_VIEW_CAMERA,   /* values under "camera." */
+  ABBE_VIEW_SETTINGS, /* wavelengths, photons, texels */
+  ABBE_VIEW_LIGHTS,   /* values under "lights.", ambient light, background */
+  ABBE_VIEW_CHANGED   /* any value, or the file */
 } abbe_view_difference;
 abbe_view_difference abbe_view_document_compare(const abbe_view_document *a,
                                                 const abbe_view_document *b);

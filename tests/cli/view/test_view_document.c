@@ -70,11 +70,23 @@ static void test_what_differs(void **state) {
   set(&b, "ambient", "1");
   set(&b, "camera.eye", "[1, 0, 0]"); /* other places in the list, the same values */
   assert_int_equal(abbe_view_document_compare(&a, &b), ABBE_VIEW_SAME);
-  set(&b, "ambient", "2");
-  assert_int_equal(abbe_view_document_compare(&a, &b), ABBE_VIEW_CHANGED);
-  set(&b, "ambient", "1");
   b.photons = 64;
-  assert_int_equal(abbe_view_document_compare(&a, &b), ABBE_VIEW_CHANGED);
+  assert_int_equal(abbe_view_document_compare(&a, &b), ABBE_VIEW_SETTINGS);
+  set(&b, "ambient", "2");
+  assert_int_equal(abbe_view_document_compare(&a, &b), ABBE_VIEW_LIGHTS);
+  b.photons = 0;
+  set(&b, "ambient", "1");
+  set(&b, "lights.lamp.position", "[1, 2, 3]");
+  assert_int_equal(abbe_view_document_compare(&a, &b), ABBE_VIEW_LIGHTS);
+  static const char *const others[] = {
+      "objects.gem.material", "lights", "environment.rotate", "ambient.x", "time", "materials"};
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+    abbe_view_document c;
+    assert_int_equal(abbe_view_document_copy(&b, &c, NULL), ABBE_OK);
+    set(&c, others[i], "1");
+    assert_int_equal(abbe_view_document_compare(&b, &c), ABBE_VIEW_CHANGED);
+    abbe_view_document_free(&c);
+  }
   abbe_view_document_free(&a);
   abbe_view_document_free(&b);
 }

@@ -3,8 +3,8 @@
  * assimp takes one triangle of each strip, so these are read here: positions and strips, in text or
  * binary of either order. Everything else in the file is passed over.
  */
-#ifndef ABBE_SCENES_IMPORT_PLY_STRIPS_H
-#define ABBE_SCENES_IMPORT_PLY_STRIPS_H
+#ifndef ABBE_SCENES_MESH_PLY_STRIPS_H
+#define ABBE_SCENES_MESH_PLY_STRIPS_H
 
 #include "base/error.h"
 #include "scenes/mesh/mesh.h"

@@ -1,12 +1,10 @@
-#include "cli/view/view_worker.h"
+#include "cli/view/work/view_worker.h"
 
 #include "base/clock.h"
-#include "base/number.h"
 #include "cli/view/picture/view_look.h"
-#include "cli/view/state/view_camera.h"
+#include "cli/view/work/view_scene.h"
 #include "gl/accuracy/preset.h"
 #include "gl/renderer.h"
-#include "scenes/import/scene_file.h"
 #include "validation/tracer/tracer.h"
 
 #include <math.h>
@@ -20,7 +18,6 @@ struct abbe_view_worker {
   pthread_mutex_t lock;
   pthread_cond_t signal;
   void (*wake)(void);
-  const char *materials;
   volatile int stop, quit;
   bool busy, done;
   abbe_view_request request;
@@ -33,10 +30,9 @@ struct abbe_view_worker {
   uint64_t traced; /* the serial that the tracer is of */
   abbe_presets presets;
   abbe_preset_front front;
-  bool fronted, loaded;
-  abbe_view_document document; /* that the scene is of */
-  abbe_scene *scene, *drawn;   /* the renderer looks at what it has drawn until it has the other */
-  abbe_camera own;             /* the scene's, as the file has it */
+  bool fronted;
+  abbe_view_scene scene;
+  abbe_scene *drawn; /* the renderer looks at what it has drawn until it has the other */
   abbe_result started;
   abbe_error error;
 };
@@ -44,9 +40,7 @@ struct abbe_view_worker {
 void abbe_view_result_free(abbe_view_result *result) {
   abbe_image_free(&result->picture);
   abbe_image_free(&result->traced);
-  abbe_view_outline_free(&result->outline);
-  for (size_t i = 0; i < result->file_count; i++) free(result->file[i]);
-  free(result->file);
+  abbe_view_scene_news_free(&result->news);
   free(result->line);
   free(result->feed);
   abbe_image_free(&result->map);
@@ -60,89 +54,6 @@ static bool goes_on(void *user, double done) {
   return !w->stop;
 }
 
-/* ---- the scene ---- */
-
-static bool is_place(const char *set) {
-  return strncmp(set, "camera.eye=", 11) == 0 || strncmp(set, "camera.target=", 14) == 0;
-}
-
-static void read_place(const abbe_view_document *document, const char *key, double out[3]) {
-  const char *text = abbe_view_document_value(document, key);
-  double v[3];
-  for (int k = 0; k < 3; k++) {
-    if (text == NULL || (*text != '[' && *text != ',')) return;
-    if (!abbe_number_read(text + 1, &text, &v[k])) return;
-  }
-  memcpy(out, v, sizeof v);
-}
-
-static abbe_result outline(const abbe_view_worker *w, const abbe_view_document *d,
-                           abbe_view_result *out, abbe_error *error) {
-  const abbe_scene_options all = {.set = (const char *const *)d->set, .set_count = d->set_count};
-  char *text = NULL;
-  size_t size = 0;
-  abbe_result result = abbe_scene_text(d->path, &all, &text, &size, error);
-  if (result == ABBE_OK)
-    result = abbe_view_outline_make(w->scene, text, size, &out->outline, error);
-  free(text);
-  out->outlined = result == ABBE_OK;
-  const size_t files = abbe_scene_file_count(w->scene);
-  out->file = calloc(files + 1, sizeof *out->file);
-  for (size_t i = 0; out->file != NULL && i < files; i++) {
-    const char *file = abbe_scene_file(w->scene, i);
-    if (file != NULL && (out->file[out->file_count] = strdup(file)) != NULL) out->file_count++;
-  }
-  return result;
-}
-
-static void free_scene(abbe_scene *scene) {
-  if (scene != NULL) abbe_scene_free(scene);
-  free(scene);
-}
-
-/* The scene anew; the old one stays where the new one cannot be read. */
-static abbe_result load(abbe_view_worker *w, const abbe_view_document *d, abbe_view_result *out,
-                        abbe_error *error) {
-  const char *set[ABBE_VIEW_MOST_CHANGES];
-  abbe_scene_options options = {.materials = w->materials, .set = set};
-  abbe_view_document kept;
-  abbe_scene *scene = calloc(1, sizeof *scene);
-  if (scene == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the scene");
-  for (size_t i = 0; i < d->set_count; i++)
-    if (!is_place(d->set[i])) set[options.set_count++] = d->set[i];
-  abbe_result result = abbe_scene_load(d->path, &options, scene, error);
-  if (result == ABBE_OK) result = abbe_view_document_copy(d, &kept, error);
-  if (result != ABBE_OK) {
-    free_scene(scene);
-    return result;
-  }
-  abbe_tracer_free(w->tracer);
-  w->tracer = NULL;
-  if (w->scene != w->drawn) free_scene(w->scene);
-  w->scene = scene;
-  abbe_view_document_free(&w->document);
-  w->document = kept;
-  w->own = scene->camera;
-  w->loaded = true;
-  return outline(w, d, out, error);
-}
-
-static abbe_result take_scene(abbe_view_worker *w, const abbe_view_request *q,
-                              abbe_view_result *out, abbe_error *error) {
-  const abbe_view_document *d = &q->document;
-  const bool other =
-      !w->loaded || q->reload || abbe_view_document_compare(&w->document, d) == ABBE_VIEW_CHANGED;
-  const bool another = !w->loaded || strcmp(w->document.path, d->path) != 0;
-  if (another) w->fronted = false;
-  const abbe_result result = other ? load(w, d, out, error) : ABBE_OK;
-  if (result != ABBE_OK) return result;
-  w->scene->camera = w->own;
-  read_place(d, "camera.eye", w->scene->camera.eye);
-  read_place(d, "camera.target", w->scene->camera.target);
-  if (q->turns && q->turn_rad != 0) abbe_view_camera_orbit(&w->scene->camera, q->turn_rad, 0);
-  return abbe_scene_check(w->scene, error);
-}
-
 /* ---- settings ---- */
 
 /* What the presets have for such a scene, once for each scene. */
@@ -152,7 +63,7 @@ static void find_front(abbe_view_worker *w) {
   if (w->fronted) return;
   w->front.count = 0;
   w->fronted = true;
-  if (abbe_plan_make(w->scene, NULL, &plan, NULL) != ABBE_OK) return;
+  if (abbe_plan_make(w->scene.now, NULL, &plan, NULL) != ABBE_OK) return;
   if (abbe_presets_find(&w->presets, &plan, &front, NULL) == ABBE_OK) w->front = *front;
   abbe_plan_free(&plan);
 }
@@ -232,11 +143,13 @@ static abbe_result change(abbe_view_worker *w, const abbe_render_desc *desc, abb
   watched.progress = goes_on;
   watched.progress_user = w;
   const abbe_result result =
-      w->renderer == NULL ? abbe_renderer_make(w->context, w->scene, &watched, &w->renderer, error)
-                          : abbe_renderer_change(w->renderer, w->scene, &watched, error);
+      w->renderer == NULL
+          ? abbe_renderer_make(w->context, w->scene.now, &watched, &w->renderer, error)
+          : abbe_renderer_change(w->renderer, w->scene.now, &watched, error);
   if (result != ABBE_OK) return result;
-  if (w->drawn != w->scene) free_scene(w->drawn);
-  w->drawn = w->scene;
+  if (w->drawn != w->scene.now) abbe_view_scene_drop(w->drawn);
+  w->drawn = w->scene.now;
+  w->scene.relit = false;
   return ABBE_OK;
 }
 
@@ -270,7 +183,7 @@ static abbe_result draw_mean(abbe_view_worker *w, const abbe_view_request *q, ab
   const abbe_result result = w->renderer != NULL ? ABBE_OK : draw(w, &before, out, error);
   if (result != ABBE_OK) return result;
   out->desc = abbe_renderer_plan(w->renderer)->desc;
-  return abbe_error_bars_make(w->context, w->scene, w->renderer, &desc, &out->bars, error);
+  return abbe_error_bars_make(w->context, w->scene.now, w->renderer, &desc, &out->bars, error);
 }
 
 /* Whether the passes' picture is worth its reading: its error falls with their root. */
@@ -289,12 +202,13 @@ static abbe_result trace(abbe_view_worker *w, const abbe_view_request *q, abbe_v
       .bands = pixels <= ABBE_VIEW_BANDS_PIXELS
                    ? ABBE_VIEW_BANDS
                    : (size_t)fmax(1, (double)(ABBE_VIEW_BANDS * ABBE_VIEW_BANDS_PIXELS) /
-                                         (double)pixels)};
+                                         (double)pixels),
+      .stop = &w->stop};
   abbe_result result = ABBE_OK;
   if (w->tracer == NULL || w->traced != q->job.serial) {
     abbe_tracer_free(w->tracer);
     w->tracer = NULL;
-    result = abbe_tracer_make(w->scene, &desc, &w->tracer, error);
+    result = abbe_tracer_make(w->scene.now, &desc, &w->tracer, error);
     w->traced = q->job.serial;
   }
   if (result == ABBE_OK) result = abbe_tracer_pass(w->tracer, &w->stop, error);
@@ -306,14 +220,30 @@ static abbe_result trace(abbe_view_worker *w, const abbe_view_request *q, abbe_v
 /* What was drawn last is looked into, if it is of this scene still. */
 static abbe_result look(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out,
                         abbe_error *error) {
-  if (w->renderer == NULL || w->drawn != w->scene ||
-      abbe_view_document_compare(&w->document, &q->document) == ABBE_VIEW_CHANGED)
+  if (w->renderer == NULL || w->drawn != w->scene.now || w->scene.relit ||
+      abbe_view_document_compare(&w->scene.document, &q->document) >= ABBE_VIEW_SETTINGS)
     return ABBE_OK;
   if (q->maps) return abbe_view_look_map(w->renderer, &out->map, error);
   out->feed = malloc(sizeof *out->feed);
   if (out->feed == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for photons");
-  return abbe_view_look_feed(w->renderer, w->scene, q->point, q->radius, q->nm, &w->stop, out->feed,
-                             error);
+  return abbe_view_look_feed(w->renderer, w->scene.now, q->point, q->radius, q->nm, &w->stop,
+                             out->feed, error);
+}
+
+/* What the request is of; a tracer and a front are of one scene. */
+static abbe_result take_scene(abbe_view_worker *w, const abbe_view_request *q,
+                              abbe_view_result *out, abbe_error *error) {
+  abbe_view_scene *s = &w->scene;
+  abbe_scene *before = s->now;
+  const abbe_view_document *d = &q->document;
+  if (s->now == NULL || strcmp(s->document.path, d->path) != 0) w->fronted = false;
+  const abbe_result result =
+      abbe_view_scene_take(s, d, q->reload, q->turns ? q->turn_rad : 0, &out->news, error);
+  if (s->now == before) return result;
+  abbe_tracer_free(w->tracer);
+  w->tracer = NULL;
+  if (before != w->drawn) abbe_view_scene_drop(before);
+  return result;
 }
 
 static abbe_result make(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out,
@@ -336,7 +266,7 @@ static abbe_result make(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
 static abbe_result renew(abbe_view_worker *w, abbe_error *error) {
   abbe_renderer_free(w->renderer);
   abbe_context_free(w->context);
-  if (w->drawn != w->scene) free_scene(w->drawn);
+  if (w->drawn != w->scene.now) abbe_view_scene_drop(w->drawn);
   w->renderer = NULL;
   w->context = NULL;
   w->drawn = NULL;
@@ -355,7 +285,8 @@ static void work(abbe_view_worker *w, const abbe_view_request *q, abbe_view_resu
     *out = (abbe_view_result){.job = q->job, .turned = q->turns, .looked = q->asks || q->maps};
     if (result == ABBE_OK) result = make(w, q, out, &error);
   }
-  out->ms = 1e3 * (abbe_clock_seconds() - start);
+  out->ended_s = abbe_clock_seconds();
+  out->ms = 1e3 * (out->ended_s - start);
   out->outcome = result == ABBE_OK          ? ABBE_VIEW_DONE
                  : result == ABBE_CANCELLED ? ABBE_VIEW_CANCELLED
                                             : ABBE_VIEW_REFUSED;
@@ -406,7 +337,7 @@ abbe_result abbe_view_worker_make(const char *materials, void (*wake)(void), abb
   *out = NULL;
   if (w == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the viewer");
   w->wake = wake;
-  w->materials = materials;
+  w->scene.materials = materials;
   abbe_result result = abbe_presets_load(NULL, &w->presets, error);
   pthread_mutex_init(&w->lock, NULL);
   pthread_cond_init(&w->signal, NULL);
@@ -440,9 +371,8 @@ void abbe_view_worker_free(abbe_view_worker *w) {
   pthread_join(w->thread, NULL);
   abbe_view_result_free(&w->result);
   abbe_view_document_free(&w->request.document);
-  abbe_view_document_free(&w->document);
-  if (w->drawn != w->scene) free_scene(w->drawn);
-  free_scene(w->scene);
+  if (w->drawn != w->scene.now) abbe_view_scene_drop(w->drawn);
+  abbe_view_scene_free(&w->scene);
   abbe_presets_free(&w->presets);
   pthread_cond_destroy(&w->signal);
   pthread_mutex_destroy(&w->lock);

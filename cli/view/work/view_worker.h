@@ -5,11 +5,12 @@
  * nothing: which job is next, and whether one is to stop, is cli/view/state/view_refine.h's
  * business.
  */
-#ifndef ABBE_CLI_VIEW_VIEW_WORKER_H
-#define ABBE_CLI_VIEW_VIEW_WORKER_H
+#ifndef ABBE_CLI_VIEW_WORK_VIEW_WORKER_H
+#define ABBE_CLI_VIEW_WORK_VIEW_WORKER_H
 
 #include "cli/view/picture/view_feed.h"
 #include "cli/view/state/view_state.h"
+#include "cli/view/work/view_scene.h"
 #include "colorimetry/image/image.h"
 #include "gl/accuracy/error_bars.h"
 #include "gl/device/statistics.h"
@@ -42,13 +43,10 @@ typedef struct abbe_view_result {
   abbe_view_outcome outcome;
   char sentence[1024];
   size_t width, height;
-  double ms;
+  double ms, ended_s; /* how long it took; when it ended, by base/clock.h */
   abbe_image picture; /* rendered: R, G, B, and at rest direct.* and caustic.* */
   abbe_image traced;  /* R, G, B, stderr.*, bands */
-  bool outlined;      /* the scene was read: */
-  abbe_view_outline outline;
-  size_t file_count;
-  char **file;            /* that it was read from */
+  abbe_view_scene_news news;
   abbe_render_desc asked; /* of a rendered picture; the rest was left to the plan: */
   abbe_render_desc desc;  /* as the plan has it */
   size_t line_count;

@@ -1,7 +1,7 @@
 #include "tests/check.h"
 
 #include "scenes/geometry/vector.h"
-#include "scenes/import/ply_strips.h"
+#include "scenes/mesh/ply_strips.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

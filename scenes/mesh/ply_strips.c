@@ -1,4 +1,4 @@
-#include "scenes/import/ply_strips.h"
+#include "scenes/mesh/ply_strips.h"
 
 #include "base/number.h"
 

@@ -1,0 +1,219 @@
+#include "scenes/import/light_file.h"
+
+#include "scenes/geometry/vector.h"
+#include "scenes/import/scene_value.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define RADIANS (3.14159265358979323846 / 180.0)
+#define FAINTEST 1e-30
+
+static const char *const light_kinds[] = {"point", "spot",      "directional",
+                                          "disk",  "rectangle", NULL};
+
+/* The key belongs to other kinds of light. */
+static abbe_result refuse_key(abbe_yaml *yaml, abbe_yaml_node node, const char *key, int kind,
+                              const char *instead, abbe_error *error) {
+  const abbe_yaml_node found = abbe_yaml_get(yaml, node, key);
+  if (found.id == 0) return ABBE_OK;
+  return abbe_yaml_fail(yaml, found, error, "a %s light has no '%s'; %s", light_kinds[kind], key,
+                        instead);
+}
+
+static abbe_result read_direction(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
+                                  abbe_error *error) {
+  const abbe_yaml_node direction = abbe_yaml_get(yaml, node, "direction");
+  const abbe_yaml_node target = abbe_yaml_get(yaml, node, "target");
+  if ((direction.id != 0) == (target.id != 0))
+    return abbe_yaml_fail(yaml, node, error,
+                          "a %s light has either a 'direction' (the way the light travels) or a "
+                          "'target' point; this one has %s",
+                          light_kinds[out->kind], direction.id ? "both" : "neither");
+  abbe_result result = ABBE_OK;
+  if (direction.id) {
+    result = abbe_scene_value_point(yaml, node, "direction", out->direction, error);
+  } else {
+    if (out->kind == ABBE_LIGHT_DIRECTIONAL)
+      result = abbe_scene_value_point(yaml, node, "position", out->position, error);
+    if (result == ABBE_OK)
+      result = abbe_scene_value_point(yaml, node, "target", out->direction, error);
+    abbe_vector_subtract(out->direction, out->position, out->direction);
+  }
+  if (result == ABBE_OK && !abbe_vector_normalise(out->direction))
+    result = abbe_yaml_fail(yaml, direction.id ? direction : target, error,
+                            "the light's direction is zero; it must point somewhere");
+  return result;
+}
+
+static abbe_result read_cone(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
+                             abbe_error *error) {
+  double cone = 0.0, soft = 0.0;
+  abbe_yaml_node ignored;
+  abbe_result result = abbe_yaml_require(yaml, node, "cone", &ignored, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "cone", 0.001, 85, &cone, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "soft", 0, cone, &soft, error);
+  out->cone_rad = cone * RADIANS;
+  out->soft_rad = soft * RADIANS;
+  return result;
+}
+
+static abbe_result read_radius(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
+                               abbe_error *error) {
+  abbe_yaml_node value;
+  abbe_result result = abbe_yaml_require(yaml, node, "radius", &value, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_number(yaml, node, "radius", 0, ABBE_SCENE_FAR, &out->radius, error);
+  if (result == ABBE_OK && !(out->radius > 0.0))
+    result =
+        abbe_yaml_fail(yaml, value, error,
+                       "'radius' is zero; a disk has an area (a light without one is a point)");
+  return result;
+}
+
+static abbe_result read_side(abbe_yaml *yaml, abbe_yaml_node node, const char *key, double *out,
+                             abbe_error *error) {
+  abbe_yaml_node value;
+  abbe_result result = abbe_yaml_require(yaml, node, key, &value, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_number(yaml, node, key, 0, ABBE_SCENE_FAR, out, error);
+  if (result == ABBE_OK && !(*out > 0.0))
+    result = abbe_yaml_fail(yaml, value, error, "'%s' is zero; a rectangle has an area", key);
+  return result;
+}
+
+/* The height grows along z, or along y where the light looks along z; roll turns it about the
+ * normal. */
+static abbe_result read_rectangle(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
+                                  abbe_error *error) {
+  const double z[3] = {0, 0, 1}, y[3] = {0, 1, 0}, upright = 1e-6;
+  double width = 0, height = 0, roll = 0, across[3], up[3];
+  abbe_result result = read_side(yaml, node, "width", &width, error);
+  if (result == ABBE_OK) result = read_side(yaml, node, "height", &height, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "roll", -360, 360, &roll, error);
+  if (result != ABBE_OK) return result;
+  const double *n = out->direction;
+  abbe_vector_cross(hypot(n[0], n[1]) < upright ? y : z, n, across);
+  abbe_vector_normalise(across);
+  abbe_vector_cross(n, across, up);
+  const double c = cos(roll * RADIANS), s = sin(roll * RADIANS);
+  for (int k = 0; k < 3; k++) {
+    out->edge[0][k] = 0.5 * width * (c * across[k] + s * up[k]);
+    out->edge[1][k] = 0.5 * height * (c * up[k] - s * across[k]);
+  }
+  out->radius = 0.5 * hypot(width, height);
+  return ABBE_OK;
+}
+
+static abbe_result refuse_sides(abbe_yaml *yaml, abbe_yaml_node node, int kind, abbe_error *error) {
+  static const char *const keys[] = {"width", "height", "roll"};
+  abbe_result result = ABBE_OK;
+  for (int i = 0; i < 3 && result == ABBE_OK; i++)
+    result = refuse_key(yaml, node, keys[i], kind, "a rectangle light has", error);
+  return result;
+}
+
+static abbe_result read_shape_of_light(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
+                                       abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  if (out->kind != ABBE_LIGHT_DIRECTIONAL)
+    result = abbe_scene_value_point(yaml, node, "position", out->position, error);
+  if (result == ABBE_OK && out->kind == ABBE_LIGHT_POINT) {
+    result = refuse_key(yaml, node, "direction", 0, "it shines in every direction", error);
+    if (result == ABBE_OK)
+      result = refuse_key(yaml, node, "target", 0, "it shines in every direction", error);
+  } else if (result == ABBE_OK) {
+    result = read_direction(yaml, node, out, error);
+  }
+  if (result == ABBE_OK && out->kind == ABBE_LIGHT_DISK)
+    result = read_radius(yaml, node, out, error);
+  else if (result == ABBE_OK)
+    result = refuse_key(yaml, node, "radius", (int)out->kind, "a disk light has", error);
+  if (result == ABBE_OK && out->kind == ABBE_LIGHT_RECTANGLE)
+    result = read_rectangle(yaml, node, out, error);
+  else if (result == ABBE_OK)
+    result = refuse_sides(yaml, node, (int)out->kind, error);
+  if (result == ABBE_OK && out->kind == ABBE_LIGHT_SPOT) return read_cone(yaml, node, out, error);
+  if (result == ABBE_OK)
+    result = refuse_key(yaml, node, "cone", (int)out->kind, "a spot light has", error);
+  if (result == ABBE_OK)
+    result = refuse_key(yaml, node, "soft", (int)out->kind, "a spot light has", error);
+  return result;
+}
+
+/* What each kind of light is bright in. */
+static const struct {
+  const char *key, *said;
+} powers[] = {[ABBE_LIGHT_POINT] = {"intensity", "it has an 'intensity' (W/sr)"},
+              [ABBE_LIGHT_SPOT] = {"intensity", "it has an 'intensity' (W/sr)"},
+              [ABBE_LIGHT_DIRECTIONAL] = {"irradiance", "it has an 'irradiance' (W/m2)"},
+              [ABBE_LIGHT_DISK] = {"radiance", "it has a 'radiance' (W/(m2 sr))"},
+              [ABBE_LIGHT_RECTANGLE] = {"radiance", "it has a 'radiance' (W/(m2 sr))"}};
+
+static abbe_result read_power(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
+                              abbe_error *error) {
+  const char *key = powers[out->kind].key;
+  abbe_yaml_node value;
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < sizeof powers / sizeof *powers && result == ABBE_OK; i++)
+    if (strcmp(powers[i].key, key) != 0)
+      result = refuse_key(yaml, node, powers[i].key, (int)out->kind, powers[out->kind].said, error);
+  if (result == ABBE_OK) result = abbe_yaml_require(yaml, node, key, &value, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_number(yaml, node, key, 0, ABBE_SCENE_BRIGHTEST, &out->power, error);
+  if (result == ABBE_OK && !(out->power > 0.0))
+    result = abbe_yaml_fail(yaml, value, error, "'%s' is zero; a light must shine", key);
+  if (result == ABBE_OK && out->power < FAINTEST)
+    result =
+        abbe_yaml_fail(yaml, value, error,
+                       "'%s: %g' is too faint: pictures and maps are kept in single precision, "
+                       "which takes %g and more",
+                       key, out->power, FAINTEST);
+  return result;
+}
+
+static abbe_result read_light(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
+                              abbe_light *out, abbe_error *error) {
+  int kind = 0;
+  abbe_yaml_node ignored;
+  abbe_result result = abbe_yaml_require(yaml, node, "kind", &ignored, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_choice(yaml, node, "kind", light_kinds, &kind, error);
+  out->kind = (abbe_light_kind)kind;
+  if (result == ABBE_OK) result = abbe_yaml_get_name(yaml, node, "name", &out->name, error);
+  if (result == ABBE_OK && !out->name) {
+    char name[64];
+    snprintf(name, sizeof name, "light on line %zu", abbe_yaml_line(yaml, node));
+    out->name = strdup(name);
+    if (!out->name) result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a name");
+  }
+  if (result == ABBE_OK) result = read_shape_of_light(yaml, node, out, error);
+  if (result == ABBE_OK) result = read_power(yaml, node, out, error);
+  if (result == ABBE_OK)
+    result = abbe_scene_value_illuminant(yaml, node, folder, &out->illuminant,
+                                         &out->illuminant_path, error);
+  if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "a light", error);
+  return result;
+}
+
+abbe_result abbe_lights_read(abbe_yaml *yaml, abbe_yaml_node root, const char *folder,
+                             abbe_light **out, size_t *count, abbe_error *error) {
+  ABBE_REQUIRE(yaml && folder && out && count, error);
+  abbe_yaml_node list;
+  size_t listed;
+  abbe_result result =
+      abbe_scene_value_list(yaml, root, "lights", ABBE_SCENE_MAX_LIGHTS, &list, &listed, error);
+  *out = NULL;
+  *count = 0;
+  if (result != ABBE_OK || listed == 0) return result;
+  abbe_light *light = calloc(listed, sizeof *light);
+  if (!light) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu lights", listed);
+  *out = light;
+  for (size_t i = 0; i < listed && result == ABBE_OK; i++) {
+    *count = i + 1;
+    result = read_light(yaml, abbe_yaml_item(yaml, list, i), folder, &light[i], error);
+  }
+  return result;
+}
