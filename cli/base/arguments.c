@@ -140,6 +140,15 @@ static size_t find_long(const char *program, const option_list *list, const char
   wrong_use(program);
 }
 
+/* Where "-" is meant to be standard output, it is no file. */
+static bool is_stream(const char *program, unsigned flags, const char *called, const char *value) {
+  if (!(flags & ABBE_ARGUMENT_WRITES) || strcmp(value, "-") != 0) return false;
+  if (flags & ABBE_ARGUMENT_STREAMS) return true;
+  fprintf(stderr, "%s: %s goes into a file, not to standard output; ./- is a file of that name\n",
+          program, called);
+  wrong_use(program);
+}
+
 static void take_value(const char *program, option_list *list, size_t i, const char *value) {
   static const unsigned once = ABBE_ARGUMENT_ONCE | ABBE_ARGUMENT_READS | ABBE_ARGUMENT_WRITES;
   static char called[MAX_OPTIONS][40];
@@ -152,7 +161,8 @@ static void take_value(const char *program, option_list *list, size_t i, const c
     wrong_use(program);
   }
   list->value[i] = value;
-  if (flags & (ABBE_ARGUMENT_READS | ABBE_ARGUMENT_WRITES))
+  if ((flags & (ABBE_ARGUMENT_READS | ABBE_ARGUMENT_WRITES)) &&
+      !is_stream(program, flags, called[i], value))
     abbe_arguments_add(program, flags, called[i], value);
 }
 

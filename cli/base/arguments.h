@@ -3,7 +3,7 @@
  * An option that is not there, or that lacks the last letter of one, is refused with the name that
  * was meant. A file that is named twice for one option is refused, for one would be ignored. And no
  * output may be an input or another output: not the same file by device and inode, nor, where there
- * is none yet, the same name in the same folder.
+ * is none yet, the same name in the same folder. "-" is the name of no output.
  */
 #ifndef ABBE_CLI_BASE_ARGUMENTS_H
 #define ABBE_CLI_BASE_ARGUMENTS_H
@@ -17,6 +17,7 @@ enum {
   ABBE_ARGUMENT_READS = 0x200,   /* names a file that is read, once */
   ABBE_ARGUMENT_WRITES = 0x400,  /* names a file that is written, once */
   ABBE_ARGUMENT_REPEATS = 0x800, /* names a file each time */
+  ABBE_ARGUMENT_STREAMS = 0x1000 /* "-" is standard output, where it is written */
 };
 
 /* argp_parse under the rules. The flags are those of what is no option: 0, or

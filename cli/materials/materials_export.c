@@ -50,7 +50,8 @@ static const struct argp_option options[] = {
     ABBE_MATERIALS_TABLE_OPTION,
     {"to", KEY_TO, "FORMAT", 0,
      "yaml, sqlite, agf, rii, csv, pbrt, povray, mdl or gltf; without it, by the ending of -o", 0},
-    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "where to; without it, to standard output", 0},
+    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES | ABBE_ARGUMENT_STREAMS,
+     "where to; without it or as -, to standard output", 0},
     {"force", KEY_FORCE, NULL, 0, "write over a file that is there", 0},
     {"range", KEY_RANGE, "FROM:TO", 0, "nm, of the points (csv); 380:780 within the record's", 0},
     {"step", KEY_STEP, "NM", 0, "between the points (csv); 5", 0},
@@ -68,7 +69,7 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     r->format = abbe_command_choice(r->program, "--to", arg, format_names, FORMATS);
     return 0;
   case 'o':
-    r->output = arg;
+    r->output = strcmp(arg, "-") == 0 ? NULL : arg;
     return 0;
   case KEY_RANGE:
     abbe_command_range(r->program, "--range", arg, &r->sampling.min_nm, &r->sampling.max_nm);

@@ -39,8 +39,8 @@ static const struct argp_option options[] = {
     {"bands", OPTION_BANDS, "N", 0,
      "N bands of wavelengths in the EXR and the saved map too: N frames more", 0},
     {"unfilled", OPTION_UNFILLED, NULL, 0, "the thesis's map before its fill", 0},
-    {"stats", OPTION_STATS, "FILE", ABBE_ARGUMENT_WRITES,
-     "times, photons and the energy ledger as JSON", 0},
+    {"stats", OPTION_STATS, "FILE|-", ABBE_ARGUMENT_WRITES | ABBE_ARGUMENT_STREAMS,
+     "times, photons and the energy ledger as JSON; -: on standard output", 0},
     {"json", OPTION_JSON, NULL, 0, "the same on standard output", 0},
     {"frames", OPTION_FRAMES, "N|A:B", 0,
      "warm up, then report the median of N frames (1); A:B: frames A to B - 1 over time, numbered, "
@@ -92,7 +92,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     q->unfilled = true;
     return 0;
   case OPTION_STATS:
-    q->stats = abbe_command_target(state->name, "--stats", text, ".json");
+    if (strcmp(text, "-") == 0)
+      q->json = true;
+    else
+      q->stats = abbe_command_target(state->name, "--stats", text, ".json");
     return 0;
   case OPTION_JSON:
     q->json = true;

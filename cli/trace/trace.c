@@ -59,8 +59,8 @@ static const struct argp_option options[] = {
      "the scene-linear picture with its standard errors", 0},
     {"png", OPTION_PNG, "FILE.png", ABBE_ARGUMENT_WRITES,
      "the picture for a display, through OpenColorIO", 0},
-    {"stats", OPTION_STATS, "FILE", ABBE_ARGUMENT_WRITES,
-     "passes, rays, times and the energy ledger as JSON", 0},
+    {"stats", OPTION_STATS, "FILE|-", ABBE_ARGUMENT_WRITES | ABBE_ARGUMENT_STREAMS,
+     "passes, rays, times and the energy ledger as JSON; -: on standard output", 0},
     {"json", OPTION_JSON, NULL, 0, "the same on standard output", 0},
     {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
     {"spp", OPTION_SPP, "N", 0, "passes: a sample a pixel or more, each with its photons (64)", 1},
@@ -212,7 +212,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     q->png = abbe_command_target(state->name, "--png", text, ".png");
     return 0;
   case OPTION_STATS:
-    q->stats = abbe_command_target(state->name, "--stats", text, ".json");
+    if (strcmp(text, "-") == 0)
+      q->json = true;
+    else
+      q->stats = abbe_command_target(state->name, "--stats", text, ".json");
     return 0;
   case OPTION_JSON:
     q->json = true;

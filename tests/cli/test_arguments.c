@@ -204,6 +204,29 @@ static void test_no_output_over_another_file(void **state) {
   assert_int_equal(run_line("rm alias; rmdir sub"), 0);
 }
 
+/* A dash is standard output where that makes sense, and no file anywhere. */
+static void test_a_dash_is_no_file(void **state) {
+  (void)state;
+  static const char gem[] = "\"$abbe\" trace \"$house\"/scenes/gem.yaml --size 8x8 --spp 1 "
+                            "--photons 64 -q ";
+  static const char *const refused[] = {"-o -", "--png -", "--save-map=- --map 4",
+                                        "-o a.exr --checkpoint -"};
+  char line[300];
+  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+    snprintf(line, sizeof line, "%s%s", gem, refused[i]);
+    assert_int_equal(run_line(line), 2);
+    assert_contains(run_errors, "goes into a file, not to standard output");
+  }
+  snprintf(line, sizeof line, "%s--stats - --json && ! test -e ./-", gem);
+  assert_int_equal(run_line(line), 0);
+  assert_contains(run_output, "relative_error");
+  assert_null(strstr(strstr(run_output, "relative_error") + 1, "relative_error")); /* once */
+  assert_int_equal(
+      run_line("\"$abbe\" materials export diamond --to csv -o - | grep -c , && ! test "
+               "-e ./-"),
+      0);
+}
+
 /* Two files that are two may be named, whatever they are called. */
 static void test_other_files_are_let_through(void **state) {
   (void)state;
@@ -348,6 +371,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(test_the_list_is_whole, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_no_output_over_another_file, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_other_files_are_let_through, run_setup, run_teardown),
+      cmocka_unit_test_setup_teardown(test_a_dash_is_no_file, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_files_of_a_scene, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_files_that_no_option_names, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_names_that_are_meant, run_setup, run_teardown),
