@@ -321,12 +321,20 @@ abbe_result abbe_renderer_read_map_bands(abbe_renderer *r, size_t light, size_t 
 }
 
 abbe_result abbe_renderer_read_hits(abbe_renderer *r, size_t light, size_t first,
+                                    abbe_render_progress progress, void *user,
                                     abbe_renderer_hits *out, abbe_error *error) {
   ABBE_REQUIRE(r && out, error);
   *out = (abbe_renderer_hits){0};
+  abbe_error lost = {0};
+  watched w = {r->context, progress, user, ABBE_OK, &lost, NULL};
   abbe_result result = enter(r->context, error);
   if (result != ABBE_OK) return result;
-  result = leave(r->context, read_hits(r, light, first, out, error));
+  abbe_gpu_watch(&r->gpu, progress != NULL ? watch : NULL, &w);
+  result = read_hits(r, light, first, out, error);
+  if (result == ABBE_OK) result = abbe_gpu_tell(&r->gpu, 1, error);
+  abbe_gpu_watch(&r->gpu, NULL, NULL);
+  if (w.result != ABBE_OK) result = abbe_error_set(error, w.result, "%s", lost.text);
+  if (w.result == ABBE_OK) result = leave(r->context, result);
   if (result != ABBE_OK) abbe_renderer_hits_free(out);
   return result;
 }

@@ -133,9 +133,11 @@ typedef struct abbe_renderer_hits {
 } abbe_renderer_hits;
 
 /* Traces one batch of wavelengths, number `first` and those after it that there is room for; the
- * last batch has empty ones behind it. It leaves maps and pictures as they are.
- * ABBE_INVALID_ARGUMENT where no photons start from that light or there is no such wavelength. */
+ * last batch has empty ones behind it. It leaves maps and pictures as they are. progress (may be
+ * NULL) as of abbe_renderer_frame. ABBE_INVALID_ARGUMENT where no photons start from that light or
+ * there is no such wavelength. */
 abbe_result abbe_renderer_read_hits(abbe_renderer *renderer, size_t light, size_t first,
+                                    abbe_render_progress progress, void *user,
                                     abbe_renderer_hits *out, abbe_error *error);
 void abbe_renderer_hits_free(abbe_renderer_hits *hits);
 

@@ -116,10 +116,10 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
   r->map.history = &r->history;
   if (result == ABBE_OK) result = abbe_volume_light_make(&r->scene, &r->volume, error);
   if (result != ABBE_OK) return result;
-  result = r->plan.caustics ? abbe_caustics_make(&r->views, &r->layers, &r->atlas, &r->map,
-                                                 &r->variant, &r->caustics, error)
-                            : abbe_spectral_map_make(&r->views, &r->atlas, &r->variant, &r->map,
-                                                     error);
+  result = r->plan.caustics
+               ? abbe_caustics_make(&r->views, &r->layers, &r->atlas, &r->map, &r->variant,
+                                    &r->caustics, error)
+               : abbe_spectral_map_make(&r->views, &r->atlas, &r->variant, &r->map, error);
   if (result != ABBE_OK) return result;
   return abbe_pinhole_pages_make(&r->scene, &r->variant, &r->pinholes, error);
 }
@@ -233,20 +233,25 @@ void abbe_renderer_parts_free(abbe_renderer *r) {
   abbe_environment_lights_drop(&r->surrounded);
 }
 
+/* Whether the next pass is to be run. */
+static bool goes_on(abbe_renderer *r, abbe_result result) {
+  return result == ABBE_OK && abbe_gpu_ask(&r->gpu);
+}
+
 static abbe_result draw_light(abbe_renderer *r, abbe_error *error) {
   abbe_result result = abbe_light_layers_run(&r->layers, error);
-  if (result == ABBE_OK && r->plan.caustics)
+  if (r->plan.caustics && goes_on(r, result))
     result = abbe_caustics_run(&r->caustics, &r->untimed_ms, error);
-  if (result == ABBE_OK) result = abbe_pinhole_pages_run(&r->pinholes, error);
+  if (goes_on(r, result)) result = abbe_pinhole_pages_run(&r->pinholes, error);
   return result;
 }
 
 static abbe_result draw_eye(abbe_renderer *r, abbe_error *error) {
   abbe_result result = abbe_receivers_pass_run(&r->receivers, error);
-  if (result == ABBE_OK) result = abbe_refraction_pass_draw(&r->refraction, error);
-  if (result == ABBE_OK) result = abbe_adaptive_pass_run(&r->adaptive, error);
-  if (result == ABBE_OK) result = abbe_refraction_pass_run(&r->refraction, error);
-  if (result == ABBE_OK) abbe_picture_run(&r->picture);
+  if (goes_on(r, result)) result = abbe_refraction_pass_draw(&r->refraction, error);
+  if (goes_on(r, result)) result = abbe_adaptive_pass_run(&r->adaptive, error);
+  if (goes_on(r, result)) result = abbe_refraction_pass_run(&r->refraction, error);
+  if (goes_on(r, result)) abbe_picture_run(&r->picture);
   return result;
 }
 

@@ -245,15 +245,28 @@ static double colour_error(const work *w, const abbe_error_bars *bars, const eye
   return abbe_difference_ciede2000(lab[0], lab[1]);
 }
 
+/* Of every pixel; they are many, so whoever watches is asked now and then. */
+static abbe_result find_colour_errors(work *w, const abbe_error_bars *bars, const eye *e,
+                                      double *out, abbe_error *error) {
+  enum { SOME = 8192 };
+  const size_t pixels = w->picture.width * w->picture.height;
+  for (size_t p = 0; p < pixels; p++) {
+    if (p % SOME == 0 && !show_frame(w, 0))
+      return abbe_error_set(error, ABBE_CANCELLED, "the error bars were cancelled");
+    out[p] = colour_error(w, bars, e, p);
+  }
+  return ABBE_OK;
+}
+
 /* `light` and `least`: the region; light NULL is all of the picture. */
-static void summarise(const work *w, const abbe_error_bars *bars, const eye *e, const double *light,
-                      double least, abbe_error_bars_summary *out) {
+static void summarise(const work *w, const abbe_error_bars *bars, const double *colour,
+                      const double *light, double least, abbe_error_bars_summary *out) {
   double squares = 0, sum = 0, colours = 0;
   *out = (abbe_error_bars_summary){0};
   for (size_t p = 0; p < w->picture.width * w->picture.height; p++) {
     if (light != NULL && !(light[p] >= least)) continue;
     out->pixels++;
-    colours += colour_error(w, bars, e, p);
+    colours += colour[p];
     for (size_t c = 0; c < 3; c++) {
       squares += pow((double)at(&bars->error, p, c), 2);
       sum += (double)at(&w->picture, p, c);
@@ -275,25 +288,27 @@ static void light_of(const work *w, const eye *e, size_t first, double *out) {
   }
 }
 
-static abbe_result summarise_all(const work *w, abbe_error_bars *bars, abbe_error *error) {
+static abbe_result summarise_all(work *w, abbe_error_bars *bars, abbe_error *error) {
   static const double d65[3] = {0.95047, 1, 1.08883};
   size_t pixels = w->picture.width * w->picture.height;
-  double *light = malloc(2 * pixels * sizeof *light), *sorted = light + pixels;
+  double *light = malloc(3 * pixels * sizeof *light);
   if (light == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for error bars");
+  double *sorted = light + pixels, *colour = sorted + pixels;
   eye e;
   abbe_rgb_space_to_xyz(w->request.space, e.to_xyz);
   light_of(w, &e, 0, sorted);
   double white = threshold(sorted, pixels, 0.01, true);
   for (int c = 0; c < 3; c++) e.white[c] = d65[c] * (isfinite(white) ? white : 1);
-  summarise(w, bars, &e, NULL, 0, &bars->whole);
+  const abbe_result result = find_colour_errors(w, bars, &e, colour, error);
+  if (result == ABBE_OK) summarise(w, bars, colour, NULL, 0, &bars->whole);
   size_t caustic = w->picture.channels == 10 ? 7 : 0;
-  if (caustic > 0) {
+  if (result == ABBE_OK && caustic > 0) {
     light_of(w, &e, caustic, light);
     memcpy(sorted, light, pixels * sizeof *light);
-    summarise(w, bars, &e, light, threshold(sorted, pixels, 0.95, false), &bars->caustic);
+    summarise(w, bars, colour, light, threshold(sorted, pixels, 0.95, false), &bars->caustic);
   }
   free(light);
-  return ABBE_OK;
+  return result;
 }
 
 /* All of it */

@@ -241,7 +241,9 @@ abbe_result abbe_gpu_program(abbe_gpu *gpu, const abbe_program_stage *stages, si
   const abbe_stored_key key = {.kind = ABBE_STORED_PROGRAM, .text = text};
   *out = abbe_gpu_store_take(&gpu->store, &key);
   abbe_result result = ABBE_OK;
-  if (*out == 0) {
+  if (*out == 0 && !abbe_gpu_ask(gpu)) {
+    result = abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+  } else if (*out == 0) {
     const double start_ms = 1e3 * abbe_clock_seconds();
     result = abbe_program_make(gpu->gl, stages, count, defines, out, error);
     tell_compiling(gpu, 1e3 * abbe_clock_seconds() - start_ms);

@@ -32,12 +32,12 @@ typedef struct abbe_gpu {
   GLuint list_groups;                  /* program */
   GLuint texels[ABBE_GPU_TEXEL_UNITS]; /* textures that show buffers, one a unit */
   abbe_gpu_store store;
-  abbe_statistics *statistics;         /* of the frame that runs, or NULL: no pass is waited for */
+  abbe_statistics *statistics; /* of the frame that runs, or NULL: no pass is waited for */
   double lap_start_ms;
   abbe_render_progress progress; /* of whoever watches; NULL: nobody does */
   void *progress_user;
-  double done;  /* what they were told last */
-  bool stopped; /* they want no more: nothing is dispatched */
+  double done;                   /* what they were told last */
+  bool stopped;                  /* they want no more: nothing is dispatched */
   void (*compiling)(void *user); /* told once, with progress_user, that shaders are compiled */
 } abbe_gpu;
 
@@ -47,8 +47,8 @@ void abbe_gpu_free(abbe_gpu *gpu);
 
 /* A storage buffer; data may be NULL: what is in it is then not known. What is made is put back by
  * abbe_gpu_drop_*, and taken up by what is made alike; where there is no room, what is not in use
- * gives way. So of textures. ABBE_GL, also where an older error of OpenGL is pending, which is cleared;
- * ABBE_NO_MEMORY. */
+ * gives way. So of textures. ABBE_GL, also where an older error of OpenGL is pending, which is
+ * cleared; ABBE_NO_MEMORY. */
 abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
                                  abbe_error *error);
 /* A texture of one level, an array where layers > 0. ABBE_GL, ABBE_NO_MEMORY. */
@@ -72,8 +72,9 @@ void abbe_gpu_make_way(abbe_gpu *gpu);
 size_t abbe_gpu_bytes(const abbe_gpu *gpu);
 
 /* Programs, which are the device's: the same stages and definitions are compiled once. Uniforms
- * keep what another user has set. Errors as of abbe_program_make. More than
- * ABBE_GPU_MOST_PROGRAMS are many: who makes all programs anew drops them before. */
+ * keep what another user has set. Errors as of abbe_program_make; ABBE_CANCELLED by whoever
+ * watches, who is asked before one is compiled. More than ABBE_GPU_MOST_PROGRAMS are many: who
+ * makes all programs anew drops them before. */
 #define ABBE_GPU_MOST_PROGRAMS 200
 size_t abbe_gpu_program_count(const abbe_gpu *gpu);
 /* Those of all users. */

@@ -1,5 +1,7 @@
 #include "gl/light/light_layers.h"
 
+#include <string.h>
+
 /* Texels: few photons need no more than four a cell, whose shadows are as coarse. */
 enum { MIN_LAYER_SIDE = 128, USUAL_LAYER_SIDE = 256, MAX_LAYER_SIDE = 2048 };
 
@@ -36,12 +38,23 @@ void abbe_light_layers_free(abbe_light_layers *layers) {
   abbe_gpu_drop_textures(layers->views->scene->gpu, sizeof textures / sizeof *textures, textures);
 }
 
+static abbe_drawn_view key_of(const abbe_view *view) {
+  abbe_drawn_view key;
+  abbe_view_matrix(view, key.matrix);
+  memcpy(key.from, view->origin, sizeof key.from);
+  memcpy(key.forward, view->forward, sizeof key.forward);
+  return key;
+}
+
 abbe_result abbe_light_layers_draw(abbe_light_layers *layers, size_t light, abbe_error *error) {
   const abbe_plan *plan = layers->views->scene->plan;
   abbe_gpu *gpu = layers->views->scene->gpu;
   /* So near to exact surfaces their triangles tell too little of what they cover. */
   const bool all = abbe_photon_lights_is_face(layers->views, light) && !plan->layers && !plan->bvh;
+  const abbe_drawn_view key = key_of(&layers->views->light[light].near_view);
   abbe_result result = ABBE_OK;
+  if (gpu->statistics == NULL && memcmp(&key, &layers->drawn[light], sizeof key) == 0)
+    return ABBE_OK;
   abbe_refractor_faces_use(layers->faces, &layers->views->light[light].near_view);
   for (int back = 0; back <= (plan->draw_back ? 1 : 0) && result == ABBE_OK; back++) {
     const abbe_faces_target target = {.layers = layers->layers,
@@ -57,6 +70,7 @@ abbe_result abbe_light_layers_draw(abbe_light_layers *layers, size_t light, abbe
     result = abbe_refractor_faces_draw(layers->faces, &target, all, error);
     abbe_gpu_book_lap(gpu, back ? ABBE_PASS_LIGHT_BACK : ABBE_PASS_LIGHT_FRONT);
   }
+  layers->drawn[light] = result == ABBE_OK ? key : (abbe_drawn_view){0};
   return result;
 }
 

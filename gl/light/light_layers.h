@@ -6,12 +6,19 @@
 
 #include "gl/light/photon_lights.h"
 #include "gl/scene/refractor_faces.h"
+#include "scenes/scene.h"
+
+/* What tells a view from another one. */
+typedef struct abbe_drawn_view {
+  double matrix[16], from[3], forward[3];
+} abbe_drawn_view;
 
 typedef struct abbe_light_layers {
   const abbe_photon_lights *views;
   const abbe_refractor_faces *faces;
   GLuint layers, owner, depth; /* front and back of each light; whose the front is */
   size_t side;
+  abbe_drawn_view drawn[ABBE_SCENE_MAX_LIGHTS]; /* of each light; all zero: none */
 } abbe_light_layers;
 
 abbe_result abbe_light_layers_make(const abbe_photon_lights *views,
@@ -19,7 +26,8 @@ abbe_result abbe_light_layers_make(const abbe_photon_lights *views,
                                    abbe_error *error);
 void abbe_light_layers_free(abbe_light_layers *layers);
 
-/* Of one light, then of all whose light may meet a refractor. */
+/* Of one light, then of all whose light may meet a refractor. What is there already is drawn again
+ * only where passes are timed. */
 abbe_result abbe_light_layers_draw(abbe_light_layers *layers, size_t light, abbe_error *error);
 abbe_result abbe_light_layers_run(abbe_light_layers *layers, abbe_error *error);
 

@@ -5,8 +5,7 @@
 abbe_result abbe_photon_cells_make(abbe_gpu *gpu, size_t side, abbe_photon_cells *out,
                                    abbe_error *error) {
   out->gpu = gpu;
-  abbe_result result =
-      abbe_gpu_compute(gpu, "photon_place.comp", NULL, &out->place, error);
+  abbe_result result = abbe_gpu_compute(gpu, "photon_place.comp", NULL, &out->place, error);
   if (result == ABBE_OK)
     result = abbe_gpu_compute(gpu, "photon_groups.comp", NULL, &out->groups, error);
   for (int level = 0; level < ABBE_CELL_LEVELS && result == ABBE_OK; level++) {
@@ -32,6 +31,7 @@ static void clear_header(abbe_gpu *gpu, GLuint list) {
 
 static void count_groups(abbe_photon_cells *cells, GLuint list) {
   const abbe_gl *gl = cells->gpu->gl;
+  if (cells->gpu->stopped) return;
   gl->UseProgram(cells->groups);
   abbe_gpu_set_uint(cells->gpu, cells->groups, "group_size", ABBE_GPU_GROUP);
   abbe_gpu_bind_storage(cells->gpu, BINDING_CELLS, list);
@@ -87,8 +87,8 @@ abbe_result abbe_photon_start_make(const abbe_photon_lights *views, const abbe_l
     result = abbe_gpu_make_buffer(gpu, ABBE_PHOTON_HEADER + cells * ABBE_PHOTON_BYTES, NULL,
                                   &out->photons, error);
   if (result == ABBE_OK)
-    result = abbe_shader_variant_compute(variant, gpu, "photon_cover.comp", NULL, &out->cover,
-                                         error);
+    result =
+        abbe_shader_variant_compute(variant, gpu, "photon_cover.comp", NULL, &out->cover, error);
   return result;
 }
 
@@ -123,6 +123,7 @@ abbe_result abbe_photon_start_run(abbe_photon_start *start, size_t light, abbe_e
   const GLuint lit = start->cells.list[ABBE_CELL_LEVELS - 1];
   abbe_result result = abbe_photon_cells_run(&start->cells, start->views->light[light].cells,
                                              start->layers->layers, 2 * (int)light, error);
+  if (result == ABBE_OK) result = abbe_gpu_tell(gpu, gpu->done, error);
   if (result != ABBE_OK) return result;
   abbe_gpu_clear_buffer(gpu, start->photon_of_cell);
   clear_header(gpu, start->photons);
@@ -132,5 +133,6 @@ abbe_result abbe_photon_start_run(abbe_photon_start *start, size_t light, abbe_e
   abbe_gpu_bind_storage(gpu, BINDING_CELLS, lit);
   abbe_gpu_dispatch_counted(gpu, start->cover, lit);
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-  return abbe_gl_check(gpu->gl, "the start of photons", error);
+  result = abbe_gl_check(gpu->gl, "the start of photons", error);
+  return result == ABBE_OK ? abbe_gpu_tell(gpu, gpu->done, error) : result;
 }

@@ -3,6 +3,7 @@
 #include "gl/device/bindings.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { MOST_HIT_BYTES = 1 << 30, MAX_HIT_BYTES = 96 << 20, MOST_SAMPLES = 64 };
 
@@ -60,7 +61,9 @@ abbe_result abbe_trace_pass_make(abbe_photon_start *start, abbe_photon_spectra *
   abbe_result result = ABBE_OK;
   /* No room to keep all of the coarse set: every photon takes all wavelengths, in batches. */
   if (a_sample * spectra->nodes > room) result = abbe_photon_spectra_take_all(spectra, error);
-  out->hits.stride = abbe_photon_spectra_refines(spectra) ? spectra->nodes : samples < n ? samples : n;
+  out->hits.stride = abbe_photon_spectra_refines(spectra) ? spectra->nodes
+                     : samples < n                        ? samples
+                                                          : n;
   return result;
 }
 
@@ -193,30 +196,55 @@ size_t abbe_trace_pass_hit_count(const abbe_trace_pass *pass, size_t light) {
          pass->hits.stride;
 }
 
+/* Hits as the device has them, and what is read of them. */
+typedef struct reading {
+  float *raw, *hit;
+  GLuint *signature, *path;
+} reading;
+
+static void read_some(const abbe_trace_pass *pass, size_t light, size_t first, size_t at,
+                      size_t count, const reading *r) {
+  const abbe_gl *gl = scene_of(pass)->gpu->gl;
+  const size_t bytes = abbe_photon_signature_bytes(pass->spectra);
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, pass->hits.hits);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(at * ABBE_HIT_BYTES),
+                       (GLsizeiptr)(count * ABBE_HIT_BYTES), r->raw);
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, pass->hits.signatures);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(at * bytes),
+                       (GLsizeiptr)(count * bytes), r->signature);
+  abbe_receiver_atlas_place(pass->atlas, light, r->raw, r->signature, bytes / sizeof *r->signature,
+                            count);
+  abbe_photon_attenuate(pass->spectra, first, pass->hits.stride, count, r->raw, r->signature);
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < 4 && r->signature[i] == 0; k++) r->raw[4 * i + k] = 0;
+  memcpy(r->hit + 4 * at, r->raw, 4 * count * sizeof *r->hit);
+  memcpy(r->path + at, r->signature, count * sizeof *r->path);
+}
+
 abbe_result abbe_trace_pass_read(abbe_trace_pass *pass, size_t light, size_t first, float **hits,
                                  GLuint **paths, abbe_error *error) {
-  const abbe_gl *gl = scene_of(pass)->gpu->gl;
+  enum { AT_ONCE = 1 << 16 };
+  abbe_gpu *gpu = scene_of(pass)->gpu;
   const size_t count = abbe_trace_pass_hit_count(pass, light);
-  const size_t signature_bytes = abbe_photon_signature_bytes(pass->spectra);
-  float *hit = malloc(count * ABBE_HIT_BYTES + 1);
-  GLuint *path = malloc(count * signature_bytes + 1);
-  if (hit == NULL || path == NULL) {
-    free(hit);
-    free(path);
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu hits", count);
+  const size_t step = AT_ONCE / pass->hits.stride * pass->hits.stride;
+  const reading r = {.raw = malloc(step * ABBE_HIT_BYTES),
+                     .hit = malloc(4 * count * sizeof *r.hit + 1),
+                     .signature = malloc(step * abbe_photon_signature_bytes(pass->spectra)),
+                     .path = malloc(count * sizeof *r.path + 1)};
+  const bool whole = r.raw != NULL && r.hit != NULL && r.signature != NULL && r.path != NULL;
+  abbe_result result =
+      whole ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu hits", count);
+  for (size_t at = 0; at < count && result == ABBE_OK; at += step) {
+    read_some(pass, light, first, at, count - at < step ? count - at : step, &r);
+    result = abbe_gpu_tell(gpu, gpu->done, error);
   }
-  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, pass->hits.hits);
-  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * ABBE_HIT_BYTES), hit);
-  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, pass->hits.signatures);
-  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * signature_bytes), path);
-  abbe_receiver_atlas_place(pass->atlas, light, hit, path, signature_bytes / sizeof *path, count);
-  abbe_photon_attenuate(pass->spectra, first, pass->hits.stride, count, hit, path);
-  for (size_t i = 0; i < count; i++)
-    for (size_t k = 0; k < 4 && path[i] == 0; k++) hit[4 * i + k] = 0;
-  *hits = hit;
-  if (paths != NULL)
-    *paths = path;
-  else
-    free(path);
-  return abbe_gl_check(gl, "the reading of hits", error);
+  if (result == ABBE_OK) result = abbe_gl_check(gpu->gl, "the reading of hits", error);
+  free(r.raw);
+  free(r.signature);
+  if (result != ABBE_OK) free(r.hit);
+  if (result != ABBE_OK || paths == NULL) free(r.path);
+  if (result != ABBE_OK) return result;
+  *hits = r.hit;
+  if (paths != NULL) *paths = r.path;
+  return ABBE_OK;
 }

@@ -317,7 +317,7 @@ static void light_lands_on_a_ball_behind_a_pane(void **state) {
   const abbe_ledger e = draw_frame(renderer).energy;
   assert_true(abbe_ledger_imbalance(&e) < 1e-4);
   assert_near(e.deposited / e.reached, pane_passes, 1e-3);
-  assert_ok(abbe_renderer_read_hits(renderer, 0, 0, &hits, &error), &error);
+  assert_ok(abbe_renderer_read_hits(renderer, 0, 0, NULL, NULL, &hits, &error), &error);
   for (size_t i = 0; i < hits.count * hits.slots * hits.samples; i++) {
     const float *p = hits.at + 4 * i;
     if (p[3] <= 0) continue;

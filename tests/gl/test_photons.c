@@ -10,7 +10,7 @@ static void trace_photons(const abbe_scene *scene, const abbe_render_desc *desc,
   abbe_renderer *renderer = make_renderer(&aside, desc);
   abbe_error error = {0};
   draw_frame(renderer);
-  assert_ok(abbe_renderer_read_hits(renderer, 0, 0, l, &error), &error);
+  assert_ok(abbe_renderer_read_hits(renderer, 0, 0, NULL, NULL, l, &error), &error);
   abbe_renderer_free(renderer);
   assert_true(l->count > 0);
 }

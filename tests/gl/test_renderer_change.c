@@ -253,9 +253,94 @@ static void a_cancelled_renderer_goes_on(void **state) {
   abbe_renderer_hits hits;
   assert_int_equal(abbe_renderer_frame(renderer, NULL, NULL, NULL, &error), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_renderer_baseline(renderer, &ms, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_renderer_read_hits(renderer, 0, 0, &hits, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_renderer_read_hits(renderer, 0, 0, NULL, NULL, &hits, &error),
+                   ABBE_INVALID_ARGUMENT);
   assert_int_equal(change(renderer, &scene, &tiny), ABBE_OK);
   assert_as_made_anew(renderer, &scene, &tiny, "a cancelled change");
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+/* Units of work, counted: what is dispatched, drawn and compiled. */
+static struct {
+  abbe_gl real;
+  int units, most, left; /* since somebody was asked last; the most; calls until they stop it */
+  bool stopped;
+} counted;
+
+static void count_dispatch(GLuint x, GLuint y, GLuint z) {
+  counted.units++;
+  counted.real.DispatchCompute(x, y, z);
+}
+static void count_indirect(GLintptr at) {
+  counted.units++;
+  counted.real.DispatchComputeIndirect(at);
+}
+static void count_elements(GLenum mode, GLsizei count, GLenum type, const void *at) {
+  counted.units++;
+  counted.real.DrawElements(mode, count, type, at);
+}
+static void count_arrays(GLenum mode, GLint first, GLsizei count) {
+  counted.units++;
+  counted.real.DrawArrays(mode, first, count);
+}
+static void count_program(GLuint program) {
+  counted.units++;
+  counted.real.LinkProgram(program);
+}
+
+static bool stop_counted(void *user, double done) {
+  (void)user;
+  (void)done;
+  assert_false(counted.stopped); /* nobody is asked again */
+  if (counted.units > counted.most) counted.most = counted.units;
+  counted.units = 0;
+  counted.stopped = --counted.left <= 0;
+  return !counted.stopped;
+}
+
+static void begin_count(void) {
+  abbe_gl *gl = (abbe_gl *)abbe_context_gl(context);
+  counted.real = *gl;
+  gl->DispatchCompute = count_dispatch;
+  gl->DispatchComputeIndirect = count_indirect;
+  gl->DrawElements = count_elements;
+  gl->DrawArrays = count_arrays;
+  gl->LinkProgram = count_program;
+}
+
+static void end_count(void) {
+  *(abbe_gl *)abbe_context_gl(context) = counted.real;
+}
+
+/* Whoever watches is asked after every few units of work, and after their no there is next to none:
+ * of a change and the frame after it, from another light on, of another size. */
+static void a_cancel_is_heard_soon(void **state) {
+  (void)state;
+  enum { MOST_APART = 12, MOST_AFTER = 2 };
+  abbe_scene scene = {0};
+  abbe_error error = {0};
+  load_text(GLASS_SCENE, &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &tiny);
+  abbe_render_desc watched = tiny;
+  watched.progress = stop_counted;
+  begin_count();
+  for (int most = 1, done = 0; !done; most += 1 + most / 8) {
+    counted.left = most;
+    counted.units = counted.most = 0;
+    counted.stopped = false;
+    scene.light[0].position[0] += 0.001;
+    watched.width = 16 + (size_t)(most % 16);
+    abbe_result result = change(renderer, &scene, &watched);
+    if (result == ABBE_OK) result = abbe_renderer_frame(renderer, stop_counted, NULL, NULL, &error);
+    done = result == ABBE_OK;
+    assert_true(done || result == ABBE_CANCELLED);
+    if (!done && counted.units > MOST_AFTER) fail_msg("%d units after no %d", counted.units, most);
+    if (counted.most > MOST_APART) fail_msg("%d units between two questions", counted.most);
+  }
+  end_count();
+  watched.progress = NULL;
+  assert_as_made_anew(renderer, &scene, &watched, "cancelled changes");
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
 }
@@ -383,6 +468,7 @@ int main(void) {
       cmocka_unit_test(a_watched_frame_is_the_same),
       cmocka_unit_test(a_refused_change_changes_nothing),
       cmocka_unit_test(a_cancelled_renderer_goes_on),
+      cmocka_unit_test(a_cancel_is_heard_soon),
       cmocka_unit_test(random_changes_of_a_solid),
       cmocka_unit_test(random_changes_of_meshes),
       cmocka_unit_test(another_scene_is_a_change_too),

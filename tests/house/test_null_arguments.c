@@ -108,6 +108,7 @@ static const struct {
     {"abbe_record_draft_open", "path"},
     {"abbe_render_desc_resolve", "desc"},
     {"abbe_renderer_frame", "user"},
+    {"abbe_renderer_read_hits", "user"},
     {"abbe_renderer_frame", "statistics"},
     {"abbe_renderer_make", "desc"},
     {"abbe_rii_load", "report"},

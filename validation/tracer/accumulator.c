@@ -47,19 +47,28 @@ void abbe_accumulator_free(abbe_accumulator *a) {
   *a = (abbe_accumulator){0};
 }
 
+/* The value's sum of all threads, which is 0 from now on. */
+static int64_t take_value(abbe_accumulator *a, size_t value) {
+  int64_t whole = 0;
+  for (size_t t = 0; t < a->threads; t++) {
+    const int64_t more = a->adding[t][value];
+    if (more == 0) continue;
+    a->adding[t][value] = 0;
+    if (!__builtin_add_overflow(whole, more, &whole)) continue;
+#pragma omp atomic
+    a->cut[t]++;
+    whole = more > 0 ? INT64_MAX : INT64_MIN;
+  }
+  return whole;
+}
+
 void abbe_accumulator_end_pass(abbe_accumulator *a) {
+#pragma omp parallel for num_threads((int)a->threads)
   for (size_t i = 0; i < a->values; i++) {
-    int64_t whole = 0;
-    for (size_t t = 0; t < a->threads; t++) {
-      int64_t more = a->adding[t][i];
-      if (!__builtin_add_overflow(whole, more, &whole)) continue;
-      a->cut[t]++;
-      whole = more > 0 ? INT64_MAX : INT64_MIN;
-    }
-    abbe_whole_sum_add_sample(whole, &a->sum[i], &a->square[i]);
+    const int64_t whole = take_value(a, i);
+    if (whole != 0) abbe_whole_sum_add_sample(whole, &a->sum[i], &a->square[i]);
   }
   a->passes++;
-  abbe_accumulator_drop_pass(a);
 }
 
 int64_t abbe_accumulator_adding(const abbe_accumulator *a, size_t value) {
@@ -72,6 +81,7 @@ int64_t abbe_accumulator_adding(const abbe_accumulator *a, size_t value) {
 }
 
 void abbe_accumulator_drop_pass(abbe_accumulator *a) {
+#pragma omp parallel for num_threads((int)a->threads)
   for (size_t t = 0; t < a->threads; t++) memset(a->adding[t], 0, a->values * sizeof **a->adding);
 }
 

@@ -186,8 +186,8 @@ static abbe_shaft_photons *watch_shafts(const abbe_emission *e, sink *s) {
   return shafts;
 }
 
-static void run_task(const abbe_emission *e, uint32_t from, uint32_t to, size_t thread,
-                     abbe_grid_photon *keep, task_result *out) {
+static void run_task(const abbe_emission *e, uint32_t from, uint32_t to, const volatile int *stop,
+                     size_t thread, abbe_grid_photon *keep, task_result *out) {
   abbe_tracer *t = (abbe_tracer *)e->t;
   abbe_light_walk_room *room = abbe_light_walk_get_room(t->walk[thread]);
   abbe_photon *photon = room->photon;
@@ -196,7 +196,7 @@ static void run_task(const abbe_emission *e, uint32_t from, uint32_t to, size_t 
   *out = (task_result){.shafts = watch_shafts(e, &s)};
   abbe_light_walk_split(t->walk[thread], t->splits[e->light]);
   abbe_light_walk_for_map(t->walk[thread], abbe_tracer_maps(t, e->light));
-  for (uint32_t j = from; j < to; j += ABBE_LIGHT_WALK_BATCH) {
+  for (uint32_t j = from; j < to && (stop == NULL || !*stop); j += ABBE_LIGHT_WALK_BATCH) {
     size_t count = abbe_emission_batch(e, j, to, photon);
     size_t landed = abbe_light_walk_run(t->walk[thread], abbe_tracer_light(t, e->light), e->pass,
                                         photon, count, hit, &out->ledger);
@@ -266,7 +266,7 @@ static abbe_result run_light(abbe_tracer *t, const abbe_emission *e, const volat
     if (stop != NULL && *stop) continue;
     uint32_t from = (uint32_t)(i * TASK);
     uint32_t to = (uint32_t)(e->count - from < TASK ? e->count : from + TASK);
-    run_task(e, from, to, (size_t)omp_get_thread_num(),
+    run_task(e, from, to, stop, (size_t)omp_get_thread_num(),
              keeps ? t->landed + base + abbe_tracer_most_hits(t, e->light, from) : NULL,
              &result[i]);
   }
@@ -322,6 +322,7 @@ abbe_result abbe_tracer_share_photons(abbe_tracer *t, abbe_error *error) {
     abbe_result result = wanted && l < t->scene->light_count
                              ? abbe_projection_map_make(&t->geometry, l, &t->projection[l], error)
                              : ABBE_OK;
+    if (result == ABBE_OK) result = abbe_tracer_check_wanted(t, error);
     if (result != ABBE_OK) return result;
     total += reach_of(t, l);
   }
@@ -344,7 +345,7 @@ static size_t land_trial(const abbe_tracer *t, const abbe_emission *e, abbe_phot
   size_t landed = 0;
   abbe_light_walk_split(t->walk[0], 0);
   abbe_light_walk_for_map(t->walk[0], false);
-  for (uint32_t j = 0; j < e->count; j += ABBE_LIGHT_WALK_BATCH) {
+  for (uint32_t j = 0; j < e->count && abbe_tracer_is_wanted(t); j += ABBE_LIGHT_WALK_BATCH) {
     size_t count = abbe_emission_batch(e, j, (uint32_t)e->count, photon);
     landed += abbe_light_walk_run(t->walk[0], abbe_tracer_light(t, e->light), e->pass, photon,
                                   count, hit + landed, &ledger);
@@ -365,6 +366,7 @@ abbe_result abbe_tracer_choose_splits(abbe_tracer *t, abbe_error *error) {
     t->photon_rays +=
         (double)t->photons[l] * (double)(abbe_tracer_walk_rays(t) - before) / SPLIT_TRIALS;
     abbe_emission_free(&e);
+    if (result == ABBE_OK) result = abbe_tracer_check_wanted(t, error);
   }
   free(hit);
   return result;

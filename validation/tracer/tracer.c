@@ -279,6 +279,7 @@ abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *des
   if (desc != NULL) t->desc = *desc;
   abbe_result result = resolve(scene, &t->desc, error);
   if (result == ABBE_OK) result = make_tables(t, error);
+  if (result == ABBE_OK) result = abbe_tracer_check_wanted(t, error);
   if (result == ABBE_OK) result = abbe_tracer_share_photons(t, error);
   if (result == ABBE_OK) result = abbe_tracer_choose_splits(t, error);
   if (result == ABBE_OK && !t->desc.no_map) {
@@ -375,9 +376,8 @@ static abbe_result eye_pass(abbe_tracer *t, size_t landed, const volatile int *s
   uint64_t rays = 0;
 #pragma omp parallel for schedule(dynamic) num_threads((int)t->desc.threads) reduction(+ : rays)
   for (size_t row = 0; row < t->desc.height; row++) {
-    if (stop != NULL && *stop) continue;
     abbe_eye_sample s;
-    for (size_t column = 0; column < t->desc.width; column++) {
+    for (size_t column = 0; column < t->desc.width && (stop == NULL || !*stop); column++) {
       size_t pixel = row * t->desc.width + column;
       abbe_eye_walk_pixel(&t->eye, pixel, (uint32_t)t->pass, &s);
       add_sample(t, (size_t)omp_get_thread_num(), pixel, &s);
@@ -421,12 +421,19 @@ static void end_ledger(abbe_tracer *t) {
     t->ledger[i] += abbe_whole_sum_quantise(part[i], per_unit, 0x1p60 / per_unit);
 }
 
+static void drop_pass(abbe_tracer *t) {
+  if (!t->desc.no_picture) abbe_accumulator_drop_pass(&t->picture);
+  if (!t->desc.no_map) abbe_accumulator_drop_pass(&t->map);
+  t->stopped = false;
+}
+
 abbe_result abbe_tracer_pass(abbe_tracer *t, const volatile int *stop, abbe_error *error) {
   ABBE_REQUIRE(t, error);
   if (t->pass >= ABBE_WHOLE_SUM_MOST_PASSES)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there are no more than %u passes",
                           ABBE_WHOLE_SUM_MOST_PASSES);
   unsigned mode = flush_tiny_numbers(t);
+  if (t->stopped) drop_pass(t);
   t->statistics.ledger = (abbe_light_ledger){0};
   abbe_trace_statistics before = t->statistics;
   size_t landed = 0;
@@ -438,8 +445,7 @@ abbe_result abbe_tracer_pass(abbe_tracer *t, const volatile int *stop, abbe_erro
   restore_mode(t, mode);
   if (result != ABBE_OK) {
     t->statistics = before;
-    if (!t->desc.no_picture) abbe_accumulator_drop_pass(&t->picture);
-    if (!t->desc.no_map) abbe_accumulator_drop_pass(&t->map);
+    t->stopped = true; /* whoever stops it is not to wait for its sums to be cleared */
     return result;
   }
   t->statistics.light_seconds += middle - start;

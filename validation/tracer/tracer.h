@@ -49,6 +49,9 @@ typedef struct abbe_trace_desc {
   size_t photons;                /* a pass; 0: 2^20, or four a pixel where that is more */
   uint32_t seed;
   size_t threads; /* 0: all cores */
+  /* Other than 0: the tracer's making, or the reading of what it has traced, ends soon with
+   * ABBE_CANCELLED. It lives as long as the tracer. May be NULL. */
+  const volatile int *stop;
 } abbe_trace_desc;
 
 typedef struct abbe_tracer abbe_tracer;

@@ -72,11 +72,13 @@ static abbe_result attributes(const abbe_tracer *t, const char *kind, abbe_image
   snprintf(passes, sizeof passes, "%zu", abbe_tracer_passes(t));
   snprintf(seed, sizeof seed, "%u", (unsigned)t->desc.seed);
   snprintf(photons, sizeof photons, "%zu", t->desc.photons);
-  const char *pair[][2] = {
-      {"abbe:kind", kind},     {"abbe:physics", t->desc.physics.matched ? "matched" : "full"},
-      {"abbe:passes", passes}, {"abbe:photons", photons},
-      {"abbe:seed", seed},     {"abbe:scene", t->scene->path ? t->scene->path : "-"},
-      {"abbe:observer", abbe_observer_text(t->desc.observer)}};
+  const char *pair[][2] = {{"abbe:kind", kind},
+                           {"abbe:physics", t->desc.physics.matched ? "matched" : "full"},
+                           {"abbe:passes", passes},
+                           {"abbe:photons", photons},
+                           {"abbe:seed", seed},
+                           {"abbe:scene", t->scene->path ? t->scene->path : "-"},
+                           {"abbe:observer", abbe_observer_text(t->desc.observer)}};
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof pair / sizeof *pair && result == ABBE_OK; i++)
     result = abbe_image_set_attribute(out, pair[i][0], pair[i][1], error);
@@ -96,13 +98,17 @@ static abbe_result read_sums(const abbe_tracer *t, const abbe_accumulator *sums,
   for (size_t i = 0; i < list->count; i++) names[i] = list->name[i];
   abbe_result result = abbe_image_make(width, height, list->count, names, out, error);
   if (result != ABBE_OK) return result;
-  for (size_t i = 0; i < width * height; i++)
-    for (size_t k = 0; k < summed; k++) {
-      size_t value = i * channels + list->value[k];
-      out->data[i * list->count + k] = (float)(list->error[k] ? abbe_accumulator_error(sums, value)
-                                                              : abbe_accumulator_mean(sums, value));
-    }
-  result = attributes(t, kind, out, error);
+#pragma omp parallel for num_threads((int)t->desc.threads)
+  for (size_t row = 0; row < height; row++)
+    for (size_t i = row * width; i < (row + 1) * width && abbe_tracer_is_wanted(t); i++)
+      for (size_t k = 0; k < summed; k++) {
+        size_t value = i * channels + list->value[k];
+        out->data[i * list->count + k] =
+            (float)(list->error[k] ? abbe_accumulator_error(sums, value)
+                                   : abbe_accumulator_mean(sums, value));
+      }
+  result = abbe_tracer_check_wanted(t, error);
+  if (result == ABBE_OK) result = attributes(t, kind, out, error);
   if (result != ABBE_OK) abbe_image_free(out);
   return result;
 }

@@ -31,8 +31,8 @@ struct abbe_tracer {
   abbe_environment_light environment; /* its number as a light is the scene's light_count */
   abbe_trace_camera camera;
   abbe_map_layout layout;
-  abbe_rgb_space mixing; /* light is added up in the picture's space, in ACEScg for XYZ */
-  float to_xyz[9];       /* from there, for XYZ pictures; row-major */
+  abbe_rgb_space mixing;           /* light is added up in the picture's space, in ACEScg for XYZ */
+  float to_xyz[9];                 /* from there, for XYZ pictures; row-major */
   float (*colour)[3], (*white)[3]; /* in that space */
   abbe_projection_map *projection; /* [sampling.lights] */
   size_t *photons;                 /* [sampling.lights] a pass */
@@ -50,7 +50,8 @@ struct abbe_tracer {
   abbe_haze_grid shafts;
   abbe_haze_photon *shaft; /* [shaft_count] of the pass, that haze scatters */
   size_t shaft_count;
-  float shaft_radius; /* of the first gather in haze, frame */
+  float shaft_radius;       /* of the first gather in haze, frame */
+  bool stopped;             /* a pass, midway: its sums are cleared before the next */
   bool eye_gathers;         /* some pixel may show a receiver through or in a refractor */
   float radius;             /* of the first gather, frame */
   size_t first, pass, step; /* the first in the sums, the next one, and from one to the next */
@@ -59,6 +60,15 @@ struct abbe_tracer {
   uint64_t other_rays; /* of the walks: trials, and from before a checkpoint was taken up */
   abbe_trace_statistics statistics; /* its ledger: of the pass that is under way */
 };
+
+/* Whether nobody has asked for an end of what is made of it. */
+static inline bool abbe_tracer_is_wanted(const abbe_tracer *t) {
+  return t->desc.stop == NULL || *t->desc.stop == 0;
+}
+
+static inline abbe_result abbe_tracer_check_wanted(const abbe_tracer *t, abbe_error *error) {
+  return abbe_tracer_is_wanted(t) ? ABBE_OK : abbe_error_set(error, ABBE_CANCELLED, "stopped");
+}
 
 /* From the space of mixing to the picture's. */
 static inline void abbe_tracer_finish(const abbe_tracer *t, const float mixed[3], float out[3]) {

@@ -130,7 +130,7 @@ abbe_result abbe_view_feed_add(abbe_view_feed *feed, const abbe_view_hits *h, ab
   const size_t each = h->slots * h->samples;
   uint32_t *photon_of = NULL;
   abbe_result result = index_cells(h, &photon_of, error);
-  for (size_t i = 0; i < h->count && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < h->count && result == ABBE_OK && (h->stop == NULL || !*h->stop); i++) {
     double flux = 0;
     for (size_t hit = i * each; hit < (i + 1) * each; hit++)
       if (lights(feed, h, photon_of, i, hit)) flux += (double)h->at[4 * hit + 3];

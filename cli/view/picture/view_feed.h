@@ -49,8 +49,9 @@ typedef struct abbe_view_hits {
       *path; /* [count][slots][samples]: equal where light met the same faces; 0: no hit */
   const unsigned *cell; /* [count], x | y << 16 of the grid */
   size_t count, slots, samples, grid[2];
-  bool last;      /* the last sample has no other behind it, in this batch or the next */
-  abbe_view view; /* that the grid is of */
+  bool last;                /* the last sample has no other behind it, in this batch or the next */
+  abbe_view view;           /* that the grid is of */
+  const volatile int *stop; /* other than 0: the rest is left out; or NULL */
 } abbe_view_hits;
 
 void abbe_view_feed_begin(const double point[3], double radius, abbe_view_feed *out);

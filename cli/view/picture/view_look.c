@@ -2,13 +2,21 @@
 
 #include <math.h>
 
+static bool goes_on(void *user, double done) {
+  const volatile int *stop = user;
+  (void)done;
+  return *stop == 0;
+}
+
 /* One batch of a light's wavelengths. last: no other follows. Where the next begins: with the last
  * one of this. */
 static abbe_result add_batch(abbe_renderer *renderer, size_t light, size_t first, bool alone,
-                             abbe_view_feed *feed, size_t *next, abbe_error *error) {
+                             volatile int *stop, abbe_view_feed *feed, size_t *next,
+                             abbe_error *error) {
   const size_t wavelengths = abbe_renderer_plan(renderer)->desc.wavelengths;
   abbe_renderer_hits hits;
-  abbe_result result = abbe_renderer_read_hits(renderer, light, first, &hits, error);
+  abbe_result result =
+      abbe_renderer_read_hits(renderer, light, first, goes_on, (void *)stop, &hits, error);
   if (result != ABBE_OK) return result;
   const bool last = first + hits.samples >= wavelengths;
   const abbe_view_hits batch = {.at = hits.at,
@@ -19,6 +27,7 @@ static abbe_result add_batch(abbe_renderer *renderer, size_t light, size_t first
                                 .samples = hits.samples,
                                 .grid = {hits.grid[0], hits.grid[1]},
                                 .last = last || alone,
+                                .stop = stop,
                                 .view = hits.view};
   result = abbe_view_feed_add(feed, &batch, error);
   *next = last || hits.samples < 2 ? first + hits.samples : first + hits.samples - 1;
@@ -33,15 +42,15 @@ static size_t wavelength_before(const abbe_render_desc *desc, double nm) {
 }
 
 /* Of all lights: a batch about a wavelength, or all of them. */
-static abbe_result add_lights(abbe_renderer *renderer, double nm, bool all,
-                              const volatile int *stop, abbe_view_feed *feed, abbe_error *error) {
+static abbe_result add_lights(abbe_renderer *renderer, double nm, bool all, volatile int *stop,
+                              abbe_view_feed *feed, abbe_error *error) {
   const abbe_plan *plan = abbe_renderer_plan(renderer);
   const size_t most = plan->desc.wavelengths;
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < plan->light_view_count; i++) {
     size_t first = all ? 0 : wavelength_before(&plan->desc, nm);
     while (plan->reaches[i] && first < most && result == ABBE_OK && !*stop) {
-      result = add_batch(renderer, i, first, !all, feed, &first, error);
+      result = add_batch(renderer, i, first, !all, stop, feed, &first, error);
       if (!all) break;
     }
   }
@@ -49,8 +58,8 @@ static abbe_result add_lights(abbe_renderer *renderer, double nm, bool all,
 }
 
 abbe_result abbe_view_look_feed(abbe_renderer *renderer, const abbe_scene *scene,
-                                const double point[3], double radius, double nm,
-                                const volatile int *stop, abbe_view_feed *out, abbe_error *error) {
+                                const double point[3], double radius, double nm, volatile int *stop,
+                                abbe_view_feed *out, abbe_error *error) {
   abbe_result result = ABBE_OK;
   abbe_view_feed_begin(point, radius, out);
   if (abbe_view_feed_look(out, scene, nm)) {

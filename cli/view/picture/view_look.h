@@ -7,11 +7,12 @@
 #include "gl/renderer.h"
 
 /* The renderer has drawn that scene. nm: the wavelength by which what is seen through a refractor
- * is found, and about which photons are looked for first, at all others where there are none. What
- * was found before *stop became true stands. Errors of abbe_renderer_read_hits, ABBE_NO_MEMORY. */
+ * is found, and about which photons are looked for first, at all others where there are none.
+ * ABBE_CANCELLED where *stop becomes other than 0. Errors of abbe_renderer_read_hits,
+ * ABBE_NO_MEMORY. */
 abbe_result abbe_view_look_feed(abbe_renderer *renderer, const abbe_scene *scene,
-                                const double point[3], double radius, double nm,
-                                const volatile int *stop, abbe_view_feed *out, abbe_error *error);
+                                const double point[3], double radius, double nm, volatile int *stop,
+                                abbe_view_feed *out, abbe_error *error);
 /* Of the first light from which photons start; zeroed where there is none. Errors of
  * abbe_renderer_read_map. */
 abbe_result abbe_view_look_map(abbe_renderer *renderer, abbe_image *out, abbe_error *error);

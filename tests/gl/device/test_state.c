@@ -270,7 +270,7 @@ static void take(const abbe_scene *scene, const abbe_render_desc *desc, bool awk
     ENTRY("read_map_bands",
           assert_ok(abbe_renderer_read_map_bands(renderer, 0, 4, &out->bands, &error), &error));
     ENTRY("read_hits",
-          assert_ok(abbe_renderer_read_hits(renderer, 0, 0, &out->hits, &error), &error));
+          assert_ok(abbe_renderer_read_hits(renderer, 0, 0, NULL, NULL, &out->hits, &error), &error));
     assert_true(out->hits.count > 0);
   }
   assert_true(image_max(&out->picture, 1) > 0 && image_max(&out->map, 1) > 0);

@@ -2,6 +2,7 @@
 #include "tests/validation/trace_scene.h"
 
 #include "validation/tracer/checkpoint.h"
+#include "validation/tracer/light_pass.h"
 #include "validation/tracer/trace_run.h"
 
 #include <unistd.h>
@@ -75,10 +76,41 @@ static void test_checkpoints(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* Whoever asks for an end has it before another ray is traced, whatever is being made. */
+static void test_an_end_is_heard_everywhere(void **state) {
+  (void)state;
+  volatile int stop = 0;
+  abbe_trace_desc desc = small;
+  abbe_error error = {0};
+  abbe_image image;
+  abbe_tracer *tracer = NULL;
+  abbe_scene scene;
+  load_text(SCENE, &scene);
+  desc.stop = &stop;
+  tracer = make_tracer(&scene, &desc);
+  run_passes(tracer, 2);
+  stop = 1;
+  const uint64_t walked = abbe_tracer_walk_rays(tracer);
+  assert_int_equal(abbe_tracer_pass(tracer, &stop, &error), ABBE_CANCELLED);
+  assert_true(abbe_tracer_walk_rays(tracer) == walked);
+  assert_int_equal(abbe_tracer_picture(tracer, &image, &error), ABBE_CANCELLED);
+  assert_null(image.data);
+  assert_int_equal(abbe_tracer_map(tracer, &image, &error), ABBE_CANCELLED);
+  abbe_tracer *other = NULL;
+  assert_int_equal(abbe_tracer_make(&scene, &desc, &other, &error), ABBE_CANCELLED);
+  assert_null(other);
+  stop = 0;
+  assert_int_equal(abbe_tracer_picture(tracer, &image, &error), ABBE_OK);
+  abbe_image_free(&image);
+  abbe_tracer_free(tracer);
+  abbe_scene_free(&scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_what_ends_a_run),
       cmocka_unit_test(test_checkpoints),
+      cmocka_unit_test(test_an_end_is_heard_everywhere),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

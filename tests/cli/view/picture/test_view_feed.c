@@ -35,6 +35,7 @@ static void make_cube(abbe_object *object) {
 static void shine(float *at, unsigned *cell, abbe_view_hits *out, double tilt) {
   static unsigned path[GRID * GRID];
   const double origin[3] = {3 * tilt, 0, 3}, down[3] = {-tilt, 0, -1}, up[3] = {0, 1, 0};
+  *out = (abbe_view_hits){0};
   abbe_view_look(origin, down, up, true, &out->view);
   const double window[4] = {-0.8, 0.8, -0.8, 0.8};
   memcpy(out->view.window, window, sizeof window);
@@ -133,7 +134,12 @@ static void test_nothing_lands_or_nothing_is_met(void **state) {
   assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
   abbe_view_feed_end(&feed, &scene);
   assert_int_equal(feed.photons + feed.ray_count + feed.facet_count + feed.edge_count, 0);
+  const volatile int stop = 1;
+  hits.stop = &stop;
   abbe_view_feed_begin((const double[3]){4, 7, -3}, 1.1, &feed);
+  assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
+  assert_int_equal(feed.photons, 0);
+  hits.stop = NULL;
   assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
   abbe_view_feed_end(&feed, &scene);
   assert_int_equal(feed.photons, 5);
