@@ -48,6 +48,7 @@ abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc
   *app = (abbe_view_session){.gl = abbe_context_gl(context),
                              .keep = desc->keep,
                              .ocio = desc->ocio,
+                             .materials = desc->materials,
                              .seen_s = -1,
                              .cancelled_s = -1};
   abbe_result result = abbe_view_state_begin(&app->state, desc->document, error);
@@ -95,12 +96,13 @@ static long long changed_at(const char *path) {
 }
 
 static void watch_files(abbe_view_session *app, abbe_view_result *result) {
-  if (!result->outlined || result->file == NULL) return;
+  abbe_view_scene_news *news = &result->news;
+  if (!news->outlined || news->file == NULL) return;
   forget_files(app);
-  app->file = result->file;
-  app->file_count = result->file_count;
-  result->file = NULL;
-  result->file_count = 0;
+  app->file = news->file;
+  app->file_count = news->file_count;
+  news->file = NULL;
+  news->file_count = 0;
   app->changed = calloc(app->file_count + 1, sizeof *app->changed);
   for (size_t i = 0; app->changed != NULL && i < app->file_count; i++)
     app->changed[i] = changed_at(app->file[i]);
@@ -193,11 +195,13 @@ static void take(abbe_view_session *app, abbe_view_result *result, double now_s)
   const bool moved = result->job.stage == ABBE_VIEW_MOVING;
   abbe_view_refine_end(refine, &result->job, result->outcome, result->ms, now_s);
   watch_files(app, result);
-  if (result->outlined) abbe_view_state_learn(&app->state, &result->outline);
+  if (result->news.outlined) abbe_view_state_learn(&app->state, &result->news.outline);
   if (result->outcome == ABBE_VIEW_REFUSED && result->job.serial == refine->serial)
     snprintf(app->state.refusal, sizeof app->state.refusal, "%s", result->sentence);
   if (result->outcome != ABBE_VIEW_DONE) return;
   const double pictured_s = abbe_clock_seconds();
+  if (app->first_s == 0) app->first_s = abbe_clock_process_seconds();
+  if (moved && app->seen_s < 0) app->frame_count = 0; /* after a rest */
   if (moved && app->seen_s > 0 && pictured_s - app->seen_s < 1)
     app->frames_ms[app->frame_count++ % 32] = 1e3 * (pictured_s - app->seen_s);
   app->seen_s = moved ? pictured_s : -1;
@@ -437,7 +441,8 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
   feed(app, input, now_s);
   look_at_files(app, now_s);
   if (abbe_view_worker_take(app->worker, &app->taken)) {
-    if (app->cancelled_s >= 0) app->cancel_ms = 1e3 * (abbe_clock_seconds() - app->cancelled_s);
+    if (app->cancelled_s >= 0)
+      app->cancel_ms = 1e3 * fmax(0, app->taken.ended_s - app->cancelled_s);
     app->cancelled_s = -1;
     if (app->taken.turned)
       abbe_view_turn_take(app, &app->taken, now_s);

@@ -1,6 +1,7 @@
 #include "cli/view/view_keep.h"
 
 #include "base/file.h"
+#include "base/number.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/screen_png.h"
 #include "scenes/import/scene_file.h"
@@ -34,6 +35,18 @@ static void quote(FILE *out, const char *text) {
   fputc('\'', out);
 }
 
+abbe_result abbe_view_keep_rests(const abbe_view_session *session, abbe_error *error) {
+  const abbe_view_refine *refine = &session->state.refine;
+  if (refine->refused)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "what stands is the picture before the last change, which cannot be "
+                          "drawn; go back first (control z)");
+  if (session->pictures.rendered.data != NULL && refine->stage >= ABBE_VIEW_BALANCED)
+    return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "a picture is kept once it has come to rest; wait a moment");
+}
+
 char *abbe_view_keep_command(const abbe_view_session *session) {
   const abbe_view_document *now = abbe_view_history_now(&session->state.history);
   const abbe_render_desc *d = &session->last.asked;
@@ -48,9 +61,15 @@ char *abbe_view_keep_command(const abbe_view_session *session) {
                   {"adaptive", d->adaptive},
                   {"exits", d->exits}};
   growing out = {0};
-  if (d->width == 0 || (out.stream = open_memstream(&out.text, &out.size)) == NULL) return NULL;
+  if (abbe_view_keep_rests(session, NULL) != ABBE_OK || d->width == 0 ||
+      (out.stream = open_memstream(&out.text, &out.size)) == NULL)
+    return NULL;
   fputs("abbe render ", out.stream);
   quote(out.stream, now->path);
+  if (session->materials != NULL) {
+    fputs(" --materials ", out.stream);
+    quote(out.stream, session->materials);
+  }
   for (size_t i = 0; i < now->set_count; i++) {
     fputs(" --set ", out.stream);
     quote(out.stream, now->set[i]);
@@ -59,6 +78,11 @@ char *abbe_view_keep_command(const abbe_view_session *session) {
   for (size_t i = 0; i < sizeof settings / sizeof *settings; i++)
     if (settings[i].value > 0)
       fprintf(out.stream, " --%s %zu", settings[i].option, settings[i].value);
+  if (d->energy_share > 0) {
+    char share[ABBE_NUMBER_TEXT_SIZE];
+    abbe_number_format(share, sizeof share, " --share %.9g", d->energy_share);
+    fputs(share, out.stream);
+  }
   if (d->fill != ABBE_FILL_AUTO) fprintf(out.stream, " --fill %s", abbe_fill_name(d->fill));
   if (d->model != ABBE_MODEL_AUTO) fprintf(out.stream, " --model %s", abbe_model_name(d->model));
   if (session->stage == ABBE_VIEW_MEAN || session->stage == ABBE_VIEW_TRACED)
@@ -132,14 +156,12 @@ abbe_result abbe_view_keep_png(const abbe_view_session *session, const abbe_imag
 abbe_result abbe_view_keep(abbe_view_session *session, abbe_error *error) {
   const abbe_image *image = &session->pictures.rendered;
   char exr[1024], png[1024], yaml[1024];
-  if (image->data == NULL || session->stage < ABBE_VIEW_BALANCED)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "a picture is kept once it has come to rest; wait a moment");
   snprintf(exr, sizeof exr, "%.1000s.exr", session->keep);
   snprintf(png, sizeof png, "%.1000s.png", session->keep);
   snprintf(yaml, sizeof yaml, "%.1000s.yaml", session->keep);
   const bool scene = !names_files(session, yaml);
-  abbe_result result = abbe_view_keep_check(session, exr, error);
+  abbe_result result = abbe_view_keep_rests(session, error);
+  if (result == ABBE_OK) result = abbe_view_keep_check(session, exr, error);
   if (result == ABBE_OK) result = abbe_view_keep_check(session, png, error);
   if (result == ABBE_OK) result = abbe_view_keep_check(session, yaml, error);
   if (result == ABBE_OK) result = abbe_exr_write(exr, image, error);

@@ -5,9 +5,13 @@
 
 #include "cli/view/view_session.h"
 
+/* Whether the picture that stands is that of the last change, at rest; else ABBE_INVALID_ARGUMENT.
+ */
+abbe_result abbe_view_keep_rests(const abbe_view_session *session, abbe_error *error);
 /* Writes KEEP.exr, KEEP.png and KEEP.yaml, and says so in the session's note. The scene is written
- * beside the files that it names or not at all. ABBE_INVALID_ARGUMENT where no picture has come to
- * rest, or where one of the three is a file that the scene is read from; errors of files. */
+ * beside the files that it names or not at all. Errors of abbe_view_keep_rests;
+ * ABBE_INVALID_ARGUMENT where one of the three is a file that the scene is read from; errors of
+ * files. */
 abbe_result abbe_view_keep(abbe_view_session *session, abbe_error *error);
 /* The image as it is shown, through the display and view that are chosen. Errors of
  * abbe_view_keep_check and of files. */
@@ -19,8 +23,8 @@ abbe_result abbe_view_keep_check(const abbe_view_session *session, const char *t
 /* Whether two names are of one file that is there, by links too, or are the same name. */
 bool abbe_view_keep_same_file(const char *a, const char *b);
 
-/* `abbe render …` that draws the last picture at rest, without names of outputs; malloc'd, NULL
- * where there is none or no memory. */
+/* `abbe render …` that draws the picture that stands, without names of outputs; malloc'd, NULL
+ * where it is not at rest, and without memory. */
 char *abbe_view_keep_command(const abbe_view_session *session);
 
 #endif

@@ -64,6 +64,26 @@ static void draw_head(abbe_view_session *app) {
   if (app->note[0] != '\0') abbe_ui_text(DIM, app->note);
 }
 
+/* What it is made of, and its proportions. */
+static void draw_refractor(abbe_view_session *app, const abbe_view_object *object, bool one_of_many,
+                           double now_s) {
+  abbe_view_state *s = &app->state;
+  const abbe_view_outline *o = &s->outline;
+  char key[ABBE_VIEW_KEY + 16], label[ABBE_VIEW_NAME + 16];
+  size_t stone = 0;
+  snprintf(key, sizeof key, "%s.material", object->key);
+  const char *set = abbe_view_document_value(abbe_view_history_now(&s->history), key);
+  const char *is = set != NULL ? set : object->material;
+  while (stone < o->stone_count && strcmp(o->stone[stone], is) != 0) stone++;
+  snprintf(label, sizeof label, "%s, of", object->name);
+  abbe_ui_scope_begin(object->key);
+  if (abbe_ui_choose(label, (const char *const *)o->stone, o->stone_count, &stone))
+    abbe_view_state_set(s, key, o->stone[stone], false, now_s);
+  for (size_t k = 0; k < object->value_count; k++)
+    slide(app, &object->value[k], one_of_many ? object->name : "", false, now_s);
+  abbe_ui_scope_end();
+}
+
 static void draw_scene(abbe_view_session *app, double now_s) {
   abbe_view_state *s = &app->state;
   const abbe_view_outline *o = &s->outline;
@@ -78,24 +98,15 @@ static void draw_scene(abbe_view_session *app, double now_s) {
     abbe_view_state_open(s, app->scene[at], now_s);
     return;
   }
-  for (size_t i = 0; i < o->object_count; i++) {
-    const abbe_view_object *object = &o->object[i];
-    char key[ABBE_VIEW_KEY + 16], label[ABBE_VIEW_NAME + 16];
-    size_t stone = 0;
-    if (object->material[0] == '\0') continue;
-    snprintf(key, sizeof key, "%s.material", object->key);
-    const char *set = abbe_view_document_value(abbe_view_history_now(&s->history), key);
-    while (stone < o->stone_count &&
-           strcmp(o->stone[stone], set != NULL ? set : object->material) != 0)
-      stone++;
-    snprintf(label, sizeof label, "%s, of", object->name);
-    if (abbe_ui_choose(label, (const char *const *)o->stone, o->stone_count, &stone))
-      abbe_view_state_set(s, key, o->stone[stone], false, now_s);
-    for (size_t k = 0; k < object->value_count; k++)
-      slide(app, &object->value[k], "", false, now_s);
-  }
-  for (size_t i = 0; i < o->light_count; i++)
+  size_t refractors = 0;
+  for (size_t i = 0; i < o->object_count; i++) refractors += o->object[i].material[0] != '\0';
+  for (size_t i = 0; i < o->object_count; i++)
+    if (o->object[i].material[0] != '\0') draw_refractor(app, &o->object[i], refractors > 1, now_s);
+  for (size_t i = 0; i < o->light_count; i++) {
+    abbe_ui_scope_begin(o->light[i].key);
     slide(app, &o->light[i].power, o->light[i].name, true, now_s);
+    abbe_ui_scope_end();
+  }
   if (o->surrounded) slide(app, &o->rotate, "surroundings:", false, now_s);
   slide(app, &o->ambient, "", false, now_s);
 }
@@ -283,7 +294,7 @@ void abbe_view_panel_draw(abbe_view_session *app, double now_s) {
   if (abbe_ui_section("Plan and passes", false)) draw_passes(app);
   if (abbe_ui_section("Command", false)) {
     char *command = abbe_view_keep_command(app);
-    abbe_ui_text(DIM, command != NULL ? command : "there is none yet");
+    abbe_ui_text(DIM, command != NULL ? command : "there is one once the picture has come to rest");
     free(command);
   }
 }

@@ -16,11 +16,9 @@ static void name_of(const abbe_view_session *session, size_t frame, char out[LON
 
 abbe_result abbe_view_turn_begin(abbe_view_session *session, abbe_error *error) {
   char name[LONGEST];
-  if (session->pictures.rendered.data == NULL || session->stage < ABBE_VIEW_BALANCED)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the turntable begins once the picture has come to rest; wait a moment");
   name_of(session, 0, name);
-  const abbe_result result = abbe_view_keep_check(session, name, error);
+  abbe_result result = abbe_view_keep_rests(session, error);
+  if (result == ABBE_OK) result = abbe_view_keep_check(session, name, error);
   if (result != ABBE_OK) return result;
   session->turn_frame = 1;
   session->turn_serial = session->state.refine.serial;

@@ -182,9 +182,20 @@ void abbe_ui_text(abbe_ui_colour colour, const char *text) {
 }
 
 void abbe_ui_pair(const char *name, const char *value) {
+  const float column = ImGui::GetWindowWidth() * 0.46F;
   ImGui::TextDisabled("%s", name);
-  ImGui::SameLine(ImGui::GetWindowWidth() * 0.46F);
+  ImGui::SameLine(ImGui::GetItemRectSize().x + 20 < column ? column : 0);
+  ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(value);
+  ImGui::PopTextWrapPos();
+}
+
+void abbe_ui_scope_begin(const char *id) {
+  ImGui::PushID(id);
+}
+
+void abbe_ui_scope_end(void) {
+  ImGui::PopID();
 }
 
 void abbe_ui_gap(void) {

@@ -45,8 +45,11 @@ void abbe_ui_panel_end(void);
 /* Whether the section is open; it is at first if `open`. */
 bool abbe_ui_section(const char *label, bool open);
 void abbe_ui_text(abbe_ui_colour colour, const char *text);
-/* A name at the left and its value at a fixed place. */
+/* A name at the left and its value at a fixed place, or behind a long name. */
 void abbe_ui_pair(const char *name, const char *value);
+/* Widgets of one label are told apart by the scope that they are in. */
+void abbe_ui_scope_begin(const char *id);
+void abbe_ui_scope_end(void);
 void abbe_ui_gap(void);
 void abbe_ui_beside(void);
 bool abbe_ui_button(const char *label);

@@ -74,7 +74,8 @@ static void loop(window *w, const abbe_gl *gl) {
     glfwGetFramebufferSize(w->handle, &width, &height);
     w->input.seconds = now - last;
     last = now;
-    if (width > 0 && height > 0 && !glfwGetWindowAttrib(w->handle, GLFW_ICONIFIED)) {
+    const bool seen = width > 0 && height > 0 && !glfwGetWindowAttrib(w->handle, GLFW_ICONIFIED);
+    if (seen) {
       w->input.width = width;
       w->input.height = height;
       gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -85,7 +86,7 @@ static void loop(window *w, const abbe_gl *gl) {
     }
     w->input.wheel = 0;
     w->input.text[0] = '\0';
-    const double wait = abbe_view_app_wait(&w->session, abbe_clock_seconds());
+    const double wait = seen ? abbe_view_app_wait(&w->session, abbe_clock_seconds()) : 1;
     if (wait > 0)
       glfwWaitEventsTimeout(wait);
     else

@@ -82,6 +82,11 @@ static inline int run_line(const char *line) {
   return WEXITSTATUS(status);
 }
 
+/* The same, of a line that ends well. */
+static inline void run_must(const char *line) {
+  if (run_line(line) != 0) fail_msg("%s: %s", line, run_errors);
+}
+
 /* Exit code `code`, a sentence on stderr that holds part, nothing on stdout, nothing left. */
 static inline bool run_refuses(const char *line, int code, const char *part) {
   int actual = run_line(line);

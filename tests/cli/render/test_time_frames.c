@@ -19,61 +19,53 @@ static const char pool[] =
 
 static void frames_and_what_moves(void **state) {
   (void)state;
-  assert_int_equal(run_line(pool), 0);
-  if (run_line(RENDER "--frames 2:5 --fps 4 --png t.png -o t.exr && ls t*") != 0)
-    fail_msg("%s", run_errors);
+  run_must(pool);
+  run_must(RENDER "--frames 2:5 --fps 4 --png t.png -o t.exr && ls t*");
   assert_string_equal(run_output, "t-0002.exr\nt-0002.png\nt-0003.exr\nt-0003.png\nt-0004.exr\n"
                                   "t-0004.png\nt.png\n");
-  assert_int_equal(run_line("grep -c acTL t.png"), 0);
+  run_must("grep -c acTL t.png");
   /* frame 3 at 4 a second is the scene at 0.75 s, and others are not */
-  assert_int_equal(run_line(RENDER "--at 0.75 -o one.exr && \"$abbe\" compare one.exr t-0003.exr "
-                                   "--tolerance relative_rmse=1e-5"),
-                   0);
-  assert_int_equal(run_line(RENDER "--set time=0.75 -o two.exr && cmp one.exr two.exr"), 0);
+  run_must(RENDER "--at 0.75 -o one.exr && \"$abbe\" compare one.exr t-0003.exr "
+                  "--tolerance relative_rmse=1e-5");
+  run_must(RENDER "--set time=0.75 -o two.exr && cmp one.exr two.exr");
   assert_int_not_equal(run_line("cmp t-0002.png t-0003.png"), 0);
   /* a frame that is gone is drawn again, and the others are not */
-  if (run_line("rm t-0003.* t.png && touch -d 2001-01-01 t-0002.png t-0004.png && cp t-0002.exr "
-               "kept.exr && " RENDER "--frames 2:5 --fps 4 --png t.png -o t.exr --resume && "
-               "find . -name 't*.png' -newermt 2002-01-01 | sort && cmp kept.exr t-0002.exr") != 0)
-    fail_msg("%s", run_errors);
+  run_must("rm t-0003.* t.png && touch -d 2001-01-01 t-0002.png t-0004.png && cp t-0002.exr "
+           "kept.exr && " RENDER "--frames 2:5 --fps 4 --png t.png -o t.exr --resume && "
+           "find . -name 't*.png' -newermt 2002-01-01 | sort && cmp kept.exr t-0002.exr");
   assert_string_equal(run_output, "./t-0003.png\n./t.png\n");
   /* a series held against itself has no error, and what moves is not flicker */
-  if (run_line("\"$abbe\" flicker t.exr --frames 2:5 --reference t.exr --json") != 0)
-    fail_msg("%s", run_errors);
+  run_must("\"$abbe\" flicker t.exr --frames 2:5 --reference t.exr --json");
   assert_contains(run_output, "\"error\":\t0,");
   assert_contains(run_output, "\"flicker\":\t0,");
-  if (run_line("\"$abbe\" flicker t.exr --frames 2:5") != 0) fail_msg("%s", run_errors);
+  run_must("\"$abbe\" flicker t.exr --frames 2:5");
   assert_contains(run_output, "picture, of the RMS of the frame");
   assert_int_equal(run_line("\"$abbe\" flicker t.exr --frames 2:6"), 1);
   assert_contains(run_errors, "t-0005.exr");
-  assert_int_equal(run_line("rm t* one.exr kept.exr"), 0);
+  run_must("rm t* one.exr kept.exr");
 }
 
 static void parts_are_put_together(void **state) {
   (void)state;
-  if (run_line(RENDER "--frames 0:4 --fps 4 --png t.png && " RENDER
-                      "--frames 0:4 --fps 4 --png u.png --part 1/2 && " RENDER
-                      "--frames 0:4 --fps 4 --png u.png --part 0/2 && " RENDER
-                      "--frames 0:4 --fps 4 --png u.png --merge && cmp t.png u.png") != 0)
-    fail_msg("%s", run_errors);
-  assert_int_equal(run_line("rm t* u*"), 0);
+  run_must(RENDER "--frames 0:4 --fps 4 --png t.png && " RENDER
+                  "--frames 0:4 --fps 4 --png u.png --part 1/2 && " RENDER
+                  "--frames 0:4 --fps 4 --png u.png --part 0/2 && " RENDER
+                  "--frames 0:4 --fps 4 --png u.png --merge && cmp t.png u.png");
+  run_must("rm t* u*");
 }
 
 static void traced_frames(void **state) {
   (void)state;
-  if (run_line(TRACE "--frames 1:3 --fps 2 --png t.png -o t.exr && ls t*") != 0)
-    fail_msg("%s", run_errors);
+  run_must(TRACE "--frames 1:3 --fps 2 --png t.png -o t.exr && ls t*");
   assert_string_equal(run_output, "t-0001.exr\nt-0001.png\nt-0002.exr\nt-0002.png\nt.png\n");
-  if (run_line(TRACE "--at 0.5 -o one.exr && \"$abbe\" compare one.exr t-0001.exr --tolerance "
-                     "relative_rmse=1e-5") != 0)
-    fail_msg("%s", run_errors);
-  if (run_line("rm t-0002.png && touch -d 2001-01-01 t-0001.png && " TRACE
-               "--frames 1:3 --fps 2 --png t.png -o t.exr --resume && "
-               "find . -name 't*.png' -newermt 2002-01-01 | sort") != 0)
-    fail_msg("%s", run_errors);
+  run_must(TRACE "--at 0.5 -o one.exr && \"$abbe\" compare one.exr t-0001.exr --tolerance "
+                 "relative_rmse=1e-5");
+  run_must("rm t-0002.png && touch -d 2001-01-01 t-0001.png && " TRACE
+           "--frames 1:3 --fps 2 --png t.png -o t.exr --resume && "
+           "find . -name 't*.png' -newermt 2002-01-01 | sort");
   assert_string_equal(run_output, "./t-0002.png\n./t.png\n");
-  assert_int_equal(run_line("rm t* one.exr"), 0);
-  assert_int_equal(run_line("rm pool.yaml"), 0);
+  run_must("rm t* one.exr");
+  run_must("rm pool.yaml");
   assert_int_equal(run_left(), 0);
 }
 

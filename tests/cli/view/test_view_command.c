@@ -8,94 +8,93 @@
 
 #ifdef ABBE_HAVE_VIEW
 
-/* What a script says, and what it has kept, goes by the run's own folder. */
-static void must(const char *line) {
-  if (run_line(line) != 0) fail_msg("%s: %s", line, run_errors);
-}
-
 /* Opens the gem, turns it, makes it a diamond, drags the lamp, clicks the violet edge, keeps all.
  */
 static void the_story(void **state) {
   (void)state;
-  must(VIEW "--size 640x400 --keep story --script " SCRIPTS "story.txt > said");
+  run_must(VIEW "--size 640x400 --keep story --script " SCRIPTS "story.txt > said");
   /* the scene that was kept differs in what was changed, and draws the same picture */
-  must("diff \"$house\"/scenes/gem.yaml story.yaml | grep -c '^>' > lines; grep -qx 4 lines");
-  must("grep -q 'material: diamond' story.yaml && grep -q '# A cut stone' story.yaml");
-  must("sed -n 's/^command abbe/\"$abbe\"/p' said > again.sh");
-  must("grep -q -e '--set objects.gem.material=diamond' again.sh");
-  must("echo \"$(cat again.sh) --gl egl -q -o again.exr\" > again.sh && . ./again.sh");
-  must("\"$abbe\" compare again.exr story.exr --tolerance relative_rmse=1e-6");
-  must("rm said lines again.sh again.exr story.exr story.yaml *.png");
+  run_must("diff \"$house\"/scenes/gem.yaml story.yaml | grep -c '^>' > lines; grep -qx 4 lines");
+  run_must("grep -q 'material: diamond' story.yaml && grep -q '# A cut stone' story.yaml");
+  run_must("sed -n 's/^command abbe/\"$abbe\"/p' said > again.sh");
+  run_must("grep -q -e '--set objects.gem.material=diamond' again.sh");
+  run_must("echo \"$(cat again.sh) --gl egl -q -o again.exr\" > again.sh && . ./again.sh");
+  run_must("\"$abbe\" compare again.exr story.exr --tolerance relative_rmse=1e-6");
+  run_must("rm said lines again.sh again.exr story.exr story.yaml *.png");
   assert_int_equal(run_left(), 0);
 }
 
 static void what_is_wrong_is_said_and_the_picture_stays(void **state) {
   (void)state;
-  must("cp \"$house\"/scenes/sphere.yaml scene.yaml; cp scene.yaml good.yaml");
-  must("sed 's/radius:/radios:/' good.yaml > broken.yaml");
-  must("sed 's/^ambient:.*/ambient: 1.5/' good.yaml > bright.yaml");
-  must("\"$abbe\" view scene.yaml " FEW "--last balanced --size 500x200 --script " SCRIPTS
-       "faults.txt");
-  must("rm *.yaml");
-  must(VIEW "--last balanced --size 500x200 --script " SCRIPTS "refused.txt");
+  run_must("cp \"$house\"/scenes/sphere.yaml scene.yaml; cp scene.yaml good.yaml");
+  run_must("sed 's/radius:/radios:/' good.yaml > broken.yaml");
+  run_must("sed 's/^ambient:.*/ambient: 1.5/' good.yaml > bright.yaml");
+  run_must("\"$abbe\" view scene.yaml " FEW "--last balanced --size 500x200 --script " SCRIPTS
+           "faults.txt");
+  run_must("rm *.yaml");
+  run_must(VIEW "--last balanced --size 500x200 --script " SCRIPTS "refused.txt");
   assert_int_equal(run_left(), 0);
 }
 
 static void what_is_shown_beside_the_picture(void **state) {
   (void)state;
-  must(VIEW "--last accurate --size 640x300 --script " SCRIPTS "shown.txt");
+  run_must(VIEW "--last accurate --size 640x300 --script " SCRIPTS "shown.txt");
   /* four pictures, no two alike */
-  must("test $(cat caustic.png luminance.png distance.png map.png | wc -c) -gt 8000");
-  must("test $(md5sum caustic.png luminance.png distance.png map.png | cut -c1-32 | sort -u | wc "
-       "-l) = 4");
-  must("rm *.png");
+  run_must("test $(cat caustic.png luminance.png distance.png map.png | wc -c) -gt 8000");
+  run_must(
+      "test $(md5sum caustic.png luminance.png distance.png map.png | cut -c1-32 | sort -u | wc "
+      "-l) = 4");
+  run_must("rm *.png");
   assert_int_equal(run_left(), 0);
 }
 
 /* A whole turn comes back to where it began, and what stood stands again. */
 static void a_turntable(void **state) {
   (void)state;
-  must("printf '%s\\n' 'wait accurate' 'remember hash first' 'key t' 'wait turntable' "
-       "'assert note contains a-turn.png' 'wait accurate' 'assert hash = $first' 'key control+s' "
-       "'key t' 'wheel 20,20 1' 'wait accurate' 'assert turning = no' > a.txt");
-  must("\"$abbe\" view \"$house\"/scenes/sphere.yaml " FEW "--last accurate --size 404x64 --keep a "
-       "--script a.txt");
-  must("test $(ls a-turn-0*.png | wc -l) = 36 && cmp a-turn-0001.png a.png");
-  must("! cmp -s a-turn-0001.png a-turn-0019.png; grep -q acTL a-turn.png");
-  must("rm a*");
+  run_must(
+      "printf '%s\\n' 'wait accurate' 'remember hash first' 'key t' 'wait turntable' "
+      "'assert note contains a-turn.png' 'wait accurate' 'assert hash = $first' 'key control+s' "
+      "'key t' 'wheel 20,20 1' 'wait accurate' 'assert turning = no' > a.txt");
+  run_must("\"$abbe\" view \"$house\"/scenes/sphere.yaml " FEW
+           "--last accurate --size 404x64 --keep a "
+           "--script a.txt");
+  run_must("test $(ls a-turn-0*.png | wc -l) = 36 && cmp a-turn-0001.png a.png");
+  run_must("! cmp -s a-turn-0001.png a-turn-0019.png; grep -q acTL a-turn.png");
+  run_must("rm a*");
   assert_int_equal(run_left(), 0);
 }
 
 /* What was drawn in a context that is lost is drawn again in another, to the bit. */
 static void a_lost_context_is_made_good(void **state) {
   (void)state;
-  must("cp \"$house\"/scenes/sphere.yaml good.yaml");
-  must("ABBE_LOST=lost LD_PRELOAD=" ABBE_LOST_CONTEXT " \"$abbe\" view good.yaml " FEW
-       "--last accurate --size 500x200 --script " SCRIPTS "lost.txt");
+  run_must("cp \"$house\"/scenes/sphere.yaml good.yaml");
+  run_must("ABBE_LOST=lost LD_PRELOAD=" ABBE_LOST_CONTEXT " \"$abbe\" view good.yaml " FEW
+           "--last accurate --size 500x200 --script " SCRIPTS "lost.txt");
   assert_contains(run_errors, "lost_context: a context is lost");
-  must("rm good.yaml lost");
+  run_must("rm good.yaml lost");
   assert_int_equal(run_left(), 0);
 }
 
 /* Neither the scene nor the table beside it is lost by keeping, whatever the name is. */
 static void what_is_read_is_not_written_over(void **state) {
   (void)state;
-  must("mkdir scenes; cp \"$house\"/scenes/sphere.yaml scenes/gem.yaml");
-  must("cp scenes/gem.yaml other-view.yaml; ln scenes/gem.yaml link.yaml");
-  must("cp scenes/gem.yaml before.yaml");
+  run_must("mkdir scenes; cp \"$house\"/scenes/sphere.yaml scenes/gem.yaml");
+  run_must("cp scenes/gem.yaml other-view.yaml; ln scenes/gem.yaml link.yaml");
+  run_must("cp scenes/gem.yaml before.yaml");
   assert_int_equal(run_line("\"$abbe\" view scenes/gem.yaml --keep scenes/gem --script /dev/null"),
                    2);
   assert_contains(run_errors, "--keep scenes/gem would write over scenes/gem.yaml");
   assert_int_equal(run_line("\"$abbe\" view scenes/gem.yaml --keep ./link --script /dev/null"), 2);
   assert_contains(run_errors, "choose another name");
   /* another scene than at the start, picked in the panel */
-  must("printf '%s\\n' 'wait balanced' 'choose scene other-view.yaml' 'wait balanced' "
-       "'slide exposure 0.6' 'key control+s' 'assert note contains lost' > a.txt");
-  must("cp before.yaml other.yaml; \"$abbe\" view other.yaml " FEW "--last balanced --size 420x600 "
-       "--script a.txt");
-  must("cmp before.yaml other-view.yaml && cmp before.yaml scenes/gem.yaml");
-  must("test ! -e other-view.exr && test ! -e scenes/gem.exr");
-  must("rm -r scenes *.yaml a.txt");
+  run_must("printf '%s\\n' 'wait balanced' 'choose scene other-view.yaml' 'wait balanced' "
+           "'slide exposure 0.6' 'key control+s' 'assert note contains lost' > a.txt");
+  run_must("cp before.yaml other.yaml; \"$abbe\" view other.yaml " FEW
+           "--last balanced --size 420x600 "
+           "--script a.txt");
+  run_must("cmp before.yaml other-view.yaml && cmp before.yaml scenes/gem.yaml");
+  run_must("test ! -e other-view.exr && test ! -e scenes/gem.exr");
+  run_must("rm -r scenes *.yaml a.txt");
   assert_int_equal(run_left(), 0);
 }
 
@@ -114,12 +113,12 @@ static void scripts_that_do_not_hold(void **state) {
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     char line[512];
     snprintf(line, sizeof line, "printf '%s\\n' > a.txt", cases[i].line);
-    must(line);
+    run_must(line);
     const int code = run_line(VIEW "--last balanced --size 420x100 --script a.txt");
     if (code != cases[i].code) fail_msg("'%s' ends with %d: %s", line, code, run_errors);
     assert_contains(run_errors, cases[i].sentence);
   }
-  must("rm a.txt");
+  run_must("rm a.txt");
   assert_int_equal(run_left(), 0);
 }
 
