@@ -38,6 +38,7 @@ foreach(name
     bounded_trace
     checked_picture
     pass_error
+    time_left
     photon_grid
     projection_map
     random

@@ -3,15 +3,18 @@
 #include "base/clock.h"
 #include "cli/base/output.h"
 
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
 
 enum { BAR_WIDTH = 30 };
 
-static volatile sig_atomic_t interrupted;
+/* over: interrupted, or out of time. */
+static volatile sig_atomic_t interrupted, over;
 
 /* The first asks the work to stop, at once or as soon as some begins; a second ends the program. */
 static void interrupt(int signal_number) {
@@ -19,7 +22,12 @@ static void interrupt(int signal_number) {
     signal(signal_number, SIG_DFL);
     raise(signal_number);
   }
-  interrupted = 1;
+  interrupted = over = 1;
+}
+
+static void end_time(int signal_number) {
+  (void)signal_number;
+  over = 1;
 }
 
 /* Whoever asks for the end, a user or a machine that goes down: what is done is saved. A terminal
@@ -64,10 +72,29 @@ const volatile int *abbe_progress_stopped(void) {
   return &interrupted;
 }
 
+static void set_alarm(double seconds) {
+  const double whole = floor(seconds);
+  const struct itimerval once = {
+      .it_value = {(time_t)whole, (suseconds_t)(1e6 * (seconds - whole))}};
+  setitimer(ITIMER_REAL, &once, NULL);
+}
+
+const volatile int *abbe_progress_stopped_after(double seconds) {
+  struct sigaction action;
+  memset(&action, 0, sizeof action);
+  action.sa_handler = end_time;
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGALRM, &action, NULL);
+  over = interrupted;
+  set_alarm(fmin(fmax(seconds, 1e-3), 1e9));
+  return &over;
+}
+
 double abbe_progress_seconds(const abbe_progress *progress) {
   return abbe_clock_seconds() - progress->start_s;
 }
 
 void abbe_progress_end(abbe_progress *progress) {
+  set_alarm(0);
   if (progress->shown) fprintf(abbe_output_raw(stderr), "\r%*s\r", BAR_WIDTH + 60, "");
 }

@@ -19,6 +19,8 @@ void abbe_progress_begin(abbe_progress *progress, const char *what, bool quiet);
 bool abbe_progress_update(void *progress, double done);
 /* Becomes other than 0 when the user asks to stop, for work that looks at it by itself. */
 const volatile int *abbe_progress_stopped(void);
+/* The same, and also after so many seconds from now, above 0; until abbe_progress_end. */
+const volatile int *abbe_progress_stopped_after(double seconds);
 /* Since the beginning, s. */
 double abbe_progress_seconds(const abbe_progress *progress);
 /* Clears the bar. */

@@ -156,19 +156,22 @@ void abbe_preset_options_describe_picture(const abbe_picture_choice *c, double m
   cJSON_AddNumberToObject(p, "error", c->promised_error);
   cJSON_AddNumberToObject(p, "margin", c->front.margin[point->tool]);
   cJSON_AddNumberToObject(p, "margin_scenes", (double)c->front.margin_scenes);
+  const bool told = abbe_picture_choice_tells(c);
+  cJSON_AddBoolToObject(p, "checked", told || error_met >= 0);
   if (error_met >= 0) {
     cJSON_AddNumberToObject(p, "error_met", error_met);
     cJSON_AddStringToObject(p, "error_met_is",
-                            point->tool != ABBE_PICTURE_RENDER || c->traced_instead
-                                ? "an estimate by half of its passes"
-                            : c->passes > 0 ? "an estimate by traced passes"
-                                            : "an estimate by error bars: sampling alone");
+                            !told       ? "an estimate by error bars: sampling alone"
+                            : c->others ? "an estimate by traced passes"
+                                        : "an estimate by half of its passes");
   } else {
     cJSON_AddNullToObject(p, "error_met");
   }
+  abbe_picture_choice_say_error(c, text, sizeof text);
+  cJSON_AddStringToObject(p, "error_is", text);
   if (c->passes > 0) cJSON_AddNumberToObject(p, "passes", (double)c->passes);
   if (c->passes > 0) cJSON_AddBoolToObject(p, "traced_instead", c->traced_instead);
-  if (abbe_picture_choice_tells(c)) {
+  if (told) {
     cJSON_AddNumberToObject(p, "error_at_most", c->met.bound);
     if (q->max_error > 0) cJSON_AddBoolToObject(p, "error_kept", c->met.bound <= q->max_error);
   }
@@ -184,9 +187,10 @@ void abbe_preset_options_note_picture(const abbe_picture_choice *c) {
   const abbe_picture_point *point = c->point;
   abbe_picture_describe(point, text, sizeof text);
   fprintf(stderr,
-          "note: %s; a mean CIEDE2000 of at most %.3g in the caustic is promised, by what was "
-          "measured on %s",
-          text, c->promised_error, c->front.scenes);
+          "note: %s; a mean CIEDE2000 of at most %.3g in the caustic is %s, by what was measured "
+          "on %s",
+          text, c->promised_error, c->request.max_error > 0 ? "promised" : "expected",
+          c->front.scenes);
   if (c->timed) fprintf(stderr, "; %.0f ms from start to end are promised", c->promised_ms);
   fprintf(stderr, "\n");
   note_unrest(c->unrest);
@@ -198,19 +202,19 @@ void abbe_preset_options_note_picture(const abbe_picture_choice *c) {
             c->request.budget_ms);
 }
 
-void abbe_preset_options_note_traced(const abbe_picture_choice *c) {
-  if (!abbe_picture_choice_tells(c)) return;
-  fprintf(stderr, "note: %zu passes tell an error of about %.3g, at most %.3g", c->passes,
-          c->met.estimate, c->met.bound);
+void abbe_preset_options_note_error(const abbe_picture_choice *c) {
+  char text[300];
+  if (c->point == NULL) return;
+  const bool told = abbe_picture_choice_tells(c), own = c->point->tool != ABBE_PICTURE_RENDER;
+  abbe_picture_choice_say_error(c, text, sizeof text);
+  fprintf(stderr, "note: the error is %s", text);
   if (c->traced_instead)
     fprintf(stderr, ", of what they made; it is taken, for the rendered picture's is not known to "
                     "be that small");
-  else if (c->point->tool == ABBE_PICTURE_RENDER)
-    fprintf(stderr, " of the rendered picture");
-  else if (c->passes > c->point->setting.passes)
+  else if (told && own && !c->others && c->passes > c->point->setting.passes)
     fprintf(stderr, "; %zu were too few for what is asked", c->point->setting.passes);
-  else if (c->met.estimate > c->promised_error)
-    fprintf(stderr, "; that is more than was promised, for this scene's light is of another kind");
+  else if (told && c->met.estimate > c->promised_error)
+    fprintf(stderr, "; that is more, for this scene's light is of another kind");
   fprintf(stderr, "\n");
 }
 

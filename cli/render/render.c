@@ -4,6 +4,7 @@
 #include "cli/base/progress.h"
 #include "cli/base/scene_input.h"
 #include "cli/base/screen_options.h"
+#include "cli/render/render_check.h"
 #include "cli/render/render_frames.h"
 #include "cli/render/render_request.h"
 #include "cli/render/traced_picture.h"
@@ -190,56 +191,23 @@ static void note_picture(const request *q) {
     fprintf(stderr, "note: options stand against that choice; what it promises is void\n");
 }
 
-/* Whether passes of the tracer are to tell the rendered picture's error. */
-static bool is_checked(const request *q) {
-  return q->picture.point != NULL && q->picture.request.max_error > 0;
-}
-
-static abbe_traced_picture_desc describe_traced(const request *q) {
-  const abbe_render_desc *d = &q->render.desc;
-  return (abbe_traced_picture_desc){.width = d->width,
-                                    .height = d->height,
-                                    .min_nm = d->min_nm,
-                                    .max_nm = d->max_nm,
-                                    .space = d->space,
-                                    .observer = d->observer,
-                                    .quiet = q->quiet};
-}
-
 /* By the tracer, where it serves the request best. */
 static abbe_result trace(request *q, const abbe_scene *scene, abbe_error *error) {
-  const abbe_traced_picture_desc desc = describe_traced(q);
+  const abbe_traced_picture_desc desc = abbe_render_describe_traced(q);
   abbe_image image = {0};
   if (!q->quiet) abbe_scene_input_note(scene);
   if (!q->quiet) note_picture(q);
   abbe_result result = abbe_traced_picture_make(&q->picture, scene, &desc, &image, error);
   if (result == ABBE_OK && q->exr != NULL) result = abbe_exr_write(q->exr, &image, error);
   if (result == ABBE_OK && q->png != NULL) result = abbe_render_write_png(q, &image, error);
+  if (result == ABBE_OK) result = abbe_render_check_in_time(q, scene, &image, error);
   if (result == ABBE_OK) result = abbe_render_write_traced_stats(q, error);
-  if (result == ABBE_OK && !q->quiet) abbe_preset_options_note_traced(&q->picture);
+  if (result == ABBE_OK && !q->quiet) abbe_preset_options_note_error(&q->picture);
   if (result == ABBE_OK && !q->quiet && !q->json)
     fprintf(stderr, "traced; %.0f ms from start to end\n", abbe_render_process_ms());
   if (result == ABBE_OK)
     result = abbe_picture_choice_check(&q->picture, abbe_render_process_ms(), error);
   abbe_image_free(&image);
-  return result;
-}
-
-/* The picture becomes what the passes made where that is the one that keeps the bound. */
-static abbe_result check_rendered(request *q, const abbe_scene *scene, abbe_renderer *renderer,
-                                  abbe_image *image, abbe_error *error) {
-  abbe_image layers = {0}, traced = {0};
-  if (!is_checked(q) || !abbe_renderer_plan(renderer)->caustics) return ABBE_OK;
-  const abbe_traced_picture_desc desc = describe_traced(q);
-  abbe_result result = abbe_renderer_read(renderer, true, &layers, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_traced_picture_check(&q->picture, scene, &desc, q->may_trace, &layers, &traced, error);
-  if (result == ABBE_OK && q->picture.traced_instead) {
-    abbe_image_free(image);
-    *image = traced;
-  }
-  abbe_image_free(&layers);
   return result;
 }
 
@@ -249,7 +217,7 @@ static abbe_result write_picture(request *q, const abbe_scene *scene, abbe_conte
                                  abbe_error *error) {
   abbe_image image = {0};
   abbe_result result = abbe_renderer_read(renderer, q->aovs, &image, error);
-  if (result == ABBE_OK) result = check_rendered(q, scene, renderer, &image, error);
+  if (result == ABBE_OK) result = abbe_render_check_frame(q, scene, renderer, &image, error);
   if (result == ABBE_OK && !q->picture.traced_instead)
     result = abbe_render_annotate(q, renderer, context, &image, error);
   if (result == ABBE_OK)
@@ -299,9 +267,11 @@ static abbe_result render(request *q, const abbe_scene *scene, abbe_context *con
   }
   if (result == ABBE_OK && q->series.count == 0)
     result = write_picture(q, scene, context, renderer, &bars, error);
+  if (result == ABBE_OK && q->series.count == 0)
+    result = abbe_render_check_frame_in_time(q, scene, renderer, error);
   if (result == ABBE_OK) result = abbe_render_write_stats(q, &statistics, &bars, context, error);
   if (result == ABBE_OK) abbe_render_summarise(q, &statistics, prepared_s);
-  if (result == ABBE_OK && !q->quiet && is_checked(q)) abbe_preset_options_note_traced(&q->picture);
+  if (result == ABBE_OK && !q->quiet && !q->overridden) abbe_preset_options_note_error(&q->picture);
   if (result == ABBE_OK && !q->quiet && !q->json) abbe_error_options_summarise(&q->errors, &bars);
   /* The picture is there; but a bound that was asked for and is not kept is told by the exit code.
    */
@@ -375,7 +345,8 @@ static abbe_result choose_picture(request *q, const abbe_scene *scene, abbe_erro
   abbe_preset_point point = {0};
   result = abbe_sweep_setting_desc(&q->picture.point->setting, &point.desc, error);
   if (result == ABBE_OK) q->overridden = !abbe_preset_apply(&point, &q->render.desc);
-  if (is_checked(q)) q->render.desc.aovs = true; /* they tell where the caustic is */
+  /* They tell where the caustic is. */
+  if (abbe_render_is_checked(q) || p->budget_ms > 0) q->render.desc.aovs = true;
   return result;
 }
 

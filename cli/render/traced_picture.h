@@ -20,6 +20,13 @@ abbe_result abbe_traced_picture_make(abbe_picture_choice *choice, const abbe_sce
                                      const abbe_traced_picture_desc *desc, abbe_image *out,
                                      abbe_error *error);
 
+/* Holds the picture, with its caustic's layers, against traced passes of other chance, with a bar,
+ * in the time that the budget leaves, until they tell whether its error is what was expected. Sets
+ * the choice's passes, others, timed_out and met. Errors of abbe_checked_picture_make. */
+abbe_result abbe_traced_picture_check_in_time(abbe_picture_choice *choice, const abbe_scene *scene,
+                                              const abbe_traced_picture_desc *desc,
+                                              const abbe_image *picture, abbe_error *error);
+
 /* Holds the rendered picture, with its caustic's layers, against traced passes, with a bar. Sets
  * the choice's passes and met. `traced` receives what the passes made where that keeps the error
  * that is asked for and the picture does not, and the choice's traced_instead then says so; else it

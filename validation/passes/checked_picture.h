@@ -4,12 +4,13 @@
  * passes of the tracer, twice as many each time, until they tell that it does, or keep the bound
  * themselves: then theirs can be taken instead, and the other is not known to keep it. To tell
  * takes fewer passes than to make as good a picture, for their noise is known and taken off
- * (pass_error.h).
+ * (pass_error.h). Where the time has an end, passes are begun only where they end before it.
  */
 #ifndef ABBE_VALIDATION_PASSES_CHECKED_PICTURE_H
 #define ABBE_VALIDATION_PASSES_CHECKED_PICTURE_H
 
 #include "validation/passes/pass_error.h"
+#include "validation/passes/time_left.h"
 #include "validation/tracer/tracer.h"
 
 #ifdef __cplusplus
@@ -19,22 +20,28 @@ extern "C" {
 enum { ABBE_CHECKED_PICTURE_MOST_PASSES = 1024 };
 
 typedef struct abbe_checked_picture_desc {
-  abbe_trace_desc trace;                     /* of the picture's size, wavelengths and space */
-  double max_error;                          /* mean CIEDE2000 in the caustic, above 0 */
-  bool only_check;                           /* ends too once the picture is known not to keep it */
+  abbe_trace_desc trace; /* of the picture's size, wavelengths and space; of a seed of its own where
+                            the picture is traced too */
+  double max_error;      /* mean CIEDE2000 in the caustic, above 0 */
+  bool only_check;       /* ends too once the picture is known not to keep it */
   bool (*progress)(void *user, double done); /* of the passes under way; false stops; or NULL */
   void *user;
   const volatile int *stop; /* other than 0 stops a pass midway; or NULL */
+  abbe_time_left left;      /* for all of this */
+  double first_s;           /* what the tracer and two passes are expected to take, where the time
+                               has an end */
 } abbe_checked_picture_desc;
 
 typedef struct abbe_checked_picture {
-  size_t passes;
+  size_t passes;          /* that tell; 0: none */
   abbe_pass_error given;  /* of the picture, by the passes; NaN: they tell nothing */
   abbe_pass_error traced; /* of the passes' own picture */
+  bool timed_out;         /* more passes would tell more, and there was no time for them */
 } abbe_checked_picture;
 
-/* `traced` receives what the passes made. Ends with both bounds above max_error after
- * ABBE_CHECKED_PICTURE_MOST_PASSES, and with NaN after two passes where the picture has no caustic.
+/* `traced` receives what the passes made, unless timed_out. Ends with both bounds above max_error
+ * after ABBE_CHECKED_PICTURE_MOST_PASSES or out of time, and with NaN after two passes where the
+ * picture has no caustic. What passes told stands, also where the next ones ran out of time.
  * ABBE_INVALID_ARGUMENT for a max_error of 0 and pictures of different sizes; ABBE_CANCELLED;
  * errors of abbe_tracer_make, abbe_tracer_pass and abbe_pass_error_of_picture. */
 abbe_result abbe_checked_picture_make(const abbe_scene *scene,

@@ -1,6 +1,7 @@
 #include "validation/sweep/picture_choice.h"
 
 #include "base/clock.h"
+#include "base/number.h"
 #include "base/yaml/yaml.h"
 #include "gl/accuracy/frame_times.h"
 #include "gl/plan/plan.h"
@@ -219,9 +220,9 @@ static abbe_result measure(abbe_picture_choice *c, const abbe_scene *scene, yard
                               &row.setting);
   abbe_result result = abbe_sweep_trace_measure(scene, &desc, &row, NULL, error);
   const double own = row.number[ABBE_SWEEP_OWN_DE];
-  const double once_ms = 1e3 * (abbe_clock_seconds() - start);
+  c->once_ms = 1e3 * (abbe_clock_seconds() - start);
   desc.frames = REPEATS;
-  if (result == ABBE_OK && (REPEATS + 1) * once_ms <= repeats_share * c->request.budget_ms) {
+  if (result == ABBE_OK && (REPEATS + 1) * c->once_ms <= repeats_share * c->request.budget_ms) {
     result = abbe_sweep_trace_measure(scene, &desc, &row, NULL, error);
     c->unrest =
         abbe_frame_times_unrest(row.number[ABBE_SWEEP_FRAME_MS], row.number[ABBE_SWEEP_FASTEST_MS]);
@@ -322,6 +323,33 @@ abbe_result abbe_picture_choose(const abbe_picture_request *request, const abbe_
 
 bool abbe_picture_choice_tells(const abbe_picture_choice *c) {
   return c->passes > 0 && isfinite(c->met.bound);
+}
+
+double abbe_picture_choice_pass_s(const abbe_picture_choice *c, size_t photons) {
+  const double its = ABBE_PICTURE_YARDSTICK_PHOTONS * ABBE_PICTURE_YARDSTICK_PHOTONS;
+  return c->once_ms > 0 ? 1e-3 * c->once_ms * fmax(1, (double)photons / its) : NAN;
+}
+
+/* Why passes tell nothing. */
+static const char *find_reason(const abbe_picture_choice *c) {
+  if (c->passes > 0 && c->others && c->timed_out)
+    return "so few passes as the budget left time for are too noisy to tell";
+  if (c->passes > 0 && c->others)
+    return "nothing is lit through refractors, or passes are too noisy to tell";
+  if (c->timed_out) return "the budget left no time for it";
+  if (c->request.max_error > 0) return "its passes tell nothing";
+  return "no passes were traced for that";
+}
+
+void abbe_picture_choice_say_error(const abbe_picture_choice *c, char *out, size_t size) {
+  if (abbe_picture_choice_tells(c))
+    abbe_number_format(
+        out, size, "about %.3g (at most %.3g), told by %zu passes, %s; expected were %.3g",
+        c->met.estimate, c->met.bound, c->passes,
+        c->others ? "against which the picture is held" : "half against half", c->promised_error);
+  else
+    abbe_number_format(out, size, "%.3g, expected (not checked: %s)", c->promised_error,
+                       find_reason(c));
 }
 
 /* Where a budget's time went, as far as it is known. */

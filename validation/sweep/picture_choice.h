@@ -68,10 +68,13 @@ typedef struct abbe_picture_choice {
   double promised_error;           /* of this scene */
   double promised_ms;              /* on this machine, of the whole process, with the yardstick */
   double spent_ms;                 /* on the yardstick; 0: it was not needed */
+  double once_ms;                  /* one run of it, the tracer's making included; or 0 */
   double unrest;       /* of its repeats (gl/accuracy/frame_times.h); NaN: it has none */
   double prepared_ms;  /* on what stands before the first frame; 0: nothing was rendered */
   bool compiled;       /* shaders were, which happens once on a machine */
   size_t passes;       /* that the picture is traced of, or checked by; 0: none */
+  bool others;         /* they are not the picture's own: it is held against them */
+  bool timed_out;      /* to tell its error, or to tell it better, there was no time left */
   abbe_pass_error met; /* what they tell of its error: NaN, or 0 passes: nothing */
   bool traced_instead; /* the rendered picture did not keep max_error, and the passes do */
 } abbe_picture_choice;
@@ -95,6 +98,11 @@ abbe_result abbe_picture_choice_check(const abbe_picture_choice *choice, double 
 
 /* Whether passes have told the picture's error. */
 bool abbe_picture_choice_tells(const abbe_picture_choice *choice);
+/* "about 1.6 (at most 1.9), told by ...; expected were 2", or "2, expected (not checked: ...)". */
+void abbe_picture_choice_say_error(const abbe_picture_choice *choice, char *out, size_t size);
+/* What the tracer and two passes of so many photons take at the most, s, by the yardstick; NaN
+ * without one. */
+double abbe_picture_choice_pass_s(const abbe_picture_choice *choice, size_t photons);
 
 /* "the renderer: 7 wavelengths, ..." or "the tracer: 4 passes of 262144 photons, filtered". */
 void abbe_picture_describe(const abbe_picture_point *point, char *out, size_t size);

@@ -129,6 +129,43 @@ static void test_what_is_refused(void **state) {
            "    trace:\\n      front:\\n"                                                          \
            "      - {photons: 64, passes: 4, ms: 2, error: 1e-6, least: 1e-6}\\n' >q.yaml"
 
+/* With a time, passes tell the error where time is left, and else it is said to be expected. An age
+ * is left here, or nothing. */
+static void test_what_a_budget_tells(void **state) {
+  (void)state;
+  assert_int_equal(run_line(PICTURES), 0);
+  assert_int_equal(run_line("sed 's/    trace:/    trace-filter:/' q.yaml >f.yaml"), 0);
+  static const struct {
+    const char *line, *met;
+  } told[] = {
+      {GEM "--presets q.yaml --budget-ms 1e6 --json --tool trace", "half of its passes"},
+      {GEM "--presets f.yaml --budget-ms 1e6 --json --tool trace-filter", "by traced passes"},
+      {GEM "--presets q.yaml --budget-ms 1e6 --json --tool render", "by traced passes"},
+  };
+  for (size_t i = 0; i < sizeof told / sizeof *told; i++) {
+    cJSON *json = promise_of(told[i].line);
+    assert_true(cJSON_IsTrue(item(json, "checked")) && cJSON_IsTrue(item(json, "budget_met")));
+    assert_contains(cJSON_GetStringValue(item(json, "error_met_is")), told[i].met);
+    assert_contains(cJSON_GetStringValue(item(json, "error_is")), "told by");
+    assert_true(cJSON_GetNumberValue(item(json, "passes")) >= 2);
+    assert_true(cJSON_GetNumberValue(item(json, "error_at_most")) >=
+                cJSON_GetNumberValue(item(json, "error_met")));
+    assert_contains(run_errors, "in the caustic is expected, by what was measured on gem");
+    assert_contains(run_errors, "note: the error is about");
+    cJSON_Delete(json);
+  }
+  cJSON *json = promise_that_ends(GEM "--presets q.yaml --budget-ms 1 --json --tool render", 3);
+  assert_true(cJSON_IsFalse(item(json, "checked")) && cJSON_IsNull(item(json, "error_met")));
+  assert_contains(cJSON_GetStringValue(item(json, "error_is")),
+                  "expected (not checked: the budget left no time for it)");
+  assert_contains(run_errors, "note: the error is 8, expected (not checked");
+  cJSON_Delete(json);
+  json = promise_of(GEM "--presets q.yaml --preset draft --json --tool render");
+  assert_contains(cJSON_GetStringValue(item(json, "error_is")), "no passes were traced for that");
+  cJSON_Delete(json);
+  assert_int_equal(run_line("rm q.yaml f.yaml"), 0);
+}
+
 static void test_what_makes_the_picture(void **state) {
   (void)state;
   assert_int_equal(run_line(PICTURES), 0);
@@ -153,7 +190,8 @@ static void test_what_makes_the_picture(void **state) {
   cJSON_Delete(json);
   json = promise_that_ends(GEM "--presets q.yaml --max-error 0.5 --tool trace --json", 3);
   assert_true(cJSON_IsFalse(item(json, "error_kept")));
-  assert_contains(run_errors, "more than was promised");
+  assert_contains(run_errors, "half against half; expected were");
+  assert_contains(run_errors, "that is more, for this scene's light is of another kind");
   assert_contains(run_errors, "an error of 0.5 is not known to be kept: 4 passes tell one of");
   cJSON_Delete(json);
   assert_int_equal(run_line("\"$abbe\" info a.exr && rm a.exr"), 0);
@@ -182,7 +220,7 @@ static void test_what_makes_the_picture(void **state) {
   json = promise_that_ends(GEM "--presets r.yaml --max-error 3 --json --tool render", 3);
   assert_true(cJSON_IsFalse(item(json, "traced_instead")));
   assert_true(cJSON_IsFalse(item(json, "error_kept")));
-  assert_contains(run_errors, "of the rendered picture");
+  assert_contains(run_errors, "against which the picture is held; expected were 0.1");
   assert_contains(run_errors, "an error of 3 is not known to be kept");
   cJSON_Delete(json);
   json = promise_of(GEM "--presets q.yaml --preset accurate --json --samples 1");
@@ -239,6 +277,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(test_by_name, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_by_error_and_by_time, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_what_makes_the_picture, run_setup, run_teardown),
+      cmocka_unit_test_setup_teardown(test_what_a_budget_tells, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_what_is_refused, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_presets_of_a_sweep, run_setup, run_teardown),
   };

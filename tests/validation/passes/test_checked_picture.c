@@ -68,6 +68,71 @@ static void test_a_bad_picture(void **state) {
   abbe_image_free(&picture);
 }
 
+/* A clock that loses a second each time somebody looks. */
+static double look(void *user) {
+  return *(double *)user -= 1;
+}
+
+static abbe_checked_picture check_in(double seconds, double first_s, const abbe_image *picture,
+                                     double max_error, bool only_check) {
+  abbe_image traced;
+  abbe_checked_picture out;
+  abbe_error error = {0};
+  const abbe_checked_picture_desc desc = {.trace = trace,
+                                          .max_error = max_error,
+                                          .only_check = only_check,
+                                          .left = {look, &seconds},
+                                          .first_s = first_s};
+  if (abbe_checked_picture_make(&scene, &desc, picture, &traced, &out, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  assert_true((traced.data == NULL) == out.timed_out);
+  abbe_image_free(&traced);
+  return out;
+}
+
+/* Passes are begun where they end in time, and what was told before stands. */
+static void test_in_the_time_that_is_left(void **state) {
+  (void)state;
+  abbe_image picture = make_picture(64), traced;
+  abbe_checked_picture c = check_in(100, 90, &picture, 1e-3, false);
+  assert_int_equal(c.passes, 0);
+  assert_true(c.timed_out && isnan(c.given.bound));
+  c = check_in(100, NAN, &picture, 1e-3, false);
+  assert_int_equal(c.passes, 0);
+  /* More time, more passes; all that were told are those of no limit. */
+  size_t last = 0;
+  for (double s = 20; s < 1000; s *= 3) {
+    c = check_in(s, 1, &picture, 1e-3, false);
+    assert_true(c.timed_out && c.passes >= 2 && c.passes > last);
+    last = c.passes;
+  }
+  c = check_in(1e9, 1, &picture, 2, false);
+  const abbe_checked_picture free = check(&picture, 2, &traced);
+  assert_false(c.timed_out || free.timed_out);
+  assert_int_equal(c.passes, free.passes);
+  assert_near(c.given.bound, free.given.bound, 0);
+  abbe_image_free(&traced);
+  /* Time that ends amid passes. */
+  c = check_in(5, 0, &picture, 1e-3, false);
+  assert_true(c.timed_out);
+  assert_int_equal(c.passes, 0);
+  abbe_image_free(&picture);
+}
+
+/* Who only asks is answered as soon as the picture is known to be no good. */
+static void test_a_bad_picture_is_soon_known(void **state) {
+  (void)state;
+  abbe_image picture = make_picture(64);
+  for (size_t i = 0; i < picture.width * picture.height * picture.channels; i++)
+    picture.data[i] *= 4;
+  const abbe_checked_picture all = check_in(1e9, 1, &picture, 1, false);
+  const abbe_checked_picture soon = check_in(1e9, 1, &picture, 1, true);
+  if (!(soon.passes < all.passes && soon.given.estimate > 1))
+    fail_msg("%zu of %zu passes: %g", soon.passes, all.passes, soon.given.estimate);
+  assert_false(soon.timed_out);
+  abbe_image_free(&picture);
+}
+
 static bool say_no(void *user, double done) {
   (void)done;
   ++*(int *)user;
@@ -102,6 +167,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_a_good_picture),
       cmocka_unit_test(test_a_bad_picture),
+      cmocka_unit_test(test_in_the_time_that_is_left),
+      cmocka_unit_test(test_a_bad_picture_is_soon_known),
       cmocka_unit_test(test_what_ends_it),
   };
   load_text(SCENE, &scene);

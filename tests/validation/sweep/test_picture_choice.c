@@ -140,6 +140,48 @@ static void test_what_passes_tell(void **state) {
   assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_TOLERANCE);
 }
 
+static void assert_says(const abbe_picture_choice *c, const char *right) {
+  char text[300];
+  abbe_picture_choice_say_error(c, text, sizeof text);
+  assert_string_equal(text, right);
+}
+
+/* What was measured elsewhere is expected; what passes of this picture say is told. */
+static void test_told_or_expected(void **state) {
+  (void)state;
+  abbe_picture_choice c;
+  write_file(WHOLE);
+  choose((abbe_picture_request){.budget_ms = 1e9}, &c);
+  c.promised_error = 2;
+  assert_says(&c, "2, expected (not checked: no passes were traced for that)");
+  c.timed_out = c.others = true;
+  assert_says(&c, "2, expected (not checked: the budget left no time for it)");
+  c.passes = 4;
+  c.met = (abbe_pass_error){NAN, NAN};
+  assert_says(&c, "2, expected (not checked: so few passes as the budget left time for are too "
+                  "noisy to tell)");
+  c.met = (abbe_pass_error){1.5, 1.75};
+  assert_says(&c, "about 1.5 (at most 1.75), told by 4 passes, against which the picture is held; "
+                  "expected were 2");
+  c.others = false;
+  assert_says(&c, "about 1.5 (at most 1.75), told by 4 passes, half against half; expected were 2");
+  /* An error that is too large is told and is no failure where a time was asked for. */
+  abbe_error error = {0};
+  c.met = (abbe_pass_error){17, 27};
+  assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_OK);
+}
+
+/* Of many photons a pass takes as many times as long, of few no less than the yardstick's. */
+static void test_what_passes_take(void **state) {
+  (void)state;
+  const size_t its = ABBE_PICTURE_YARDSTICK_PHOTONS * ABBE_PICTURE_YARDSTICK_PHOTONS;
+  abbe_picture_choice c = {.once_ms = 50};
+  assert_near(abbe_picture_choice_pass_s(&c, 4 * its), 0.2, 1e-12);
+  assert_near(abbe_picture_choice_pass_s(&c, 1), 0.05, 1e-12);
+  c.once_ms = 0;
+  assert_true(isnan(abbe_picture_choice_pass_s(&c, its)));
+}
+
 static void test_by_time(void **state) {
   (void)state;
   abbe_picture_choice c;
@@ -241,6 +283,8 @@ int main(void) {
       cmocka_unit_test(test_the_renderer_alone),
       cmocka_unit_test(test_promises_are_told_by_the_yardstick),
       cmocka_unit_test(test_what_passes_tell),
+      cmocka_unit_test(test_told_or_expected),
+      cmocka_unit_test(test_what_passes_take),
       cmocka_unit_test(test_by_time),
       cmocka_unit_test(test_a_busy_machine),
       cmocka_unit_test(test_words),

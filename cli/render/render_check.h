@@ -1,0 +1,25 @@
+/* render_check.h: what of `abbe render` tells a picture's error by traced passes. */
+#ifndef ABBE_CLI_RENDER_RENDER_CHECK_H
+#define ABBE_CLI_RENDER_RENDER_CHECK_H
+
+#include "cli/render/render_request.h"
+#include "cli/render/traced_picture.h"
+
+/* Whether passes of the tracer are to tell the rendered picture's error before it is written. */
+bool abbe_render_is_checked(const abbe_render_request *request);
+
+/* The picture that is asked for, to the tracer. */
+abbe_traced_picture_desc abbe_render_describe_traced(const abbe_render_request *request);
+
+/* The picture becomes what the passes made where that is the one that keeps the bound. */
+abbe_result abbe_render_check_frame(abbe_render_request *request, const abbe_scene *scene,
+                                    abbe_renderer *renderer, abbe_image *image, abbe_error *error);
+
+/* With the files written, what is left of a budget goes into telling the picture's error: of one
+ * with its caustic's layers, and of the frame that the renderer holds. */
+abbe_result abbe_render_check_in_time(abbe_render_request *request, const abbe_scene *scene,
+                                      const abbe_image *picture, abbe_error *error);
+abbe_result abbe_render_check_frame_in_time(abbe_render_request *request, const abbe_scene *scene,
+                                            abbe_renderer *renderer, abbe_error *error);
+
+#endif

@@ -1,0 +1,44 @@
+/* What fits into the time that is left. */
+#include "tests/check.h"
+
+#include "validation/passes/time_left.h"
+
+#include <math.h>
+
+static double two_seconds(void *user) {
+  ++*(int *)user;
+  return 2;
+}
+
+static double none(void *user) {
+  (void)user;
+  return -1;
+}
+
+static void test_what_fits(void **state) {
+  (void)state;
+  int asked = 0;
+  const abbe_time_left two = {two_seconds, &asked}, over = {none, NULL};
+  assert_near(abbe_time_left_seconds(&two), 2, 0);
+  assert_true(abbe_time_left_holds(&two, 1.5));
+  assert_false(abbe_time_left_holds(&two, 1.6)); /* it may take a third longer */
+  assert_int_equal(asked, 3);
+  assert_false(abbe_time_left_holds(&two, NAN));
+  assert_false(abbe_time_left_holds(&over, 0));
+}
+
+static void test_without_an_end(void **state) {
+  (void)state;
+  const abbe_time_left always = {0};
+  assert_true(isinf(abbe_time_left_seconds(&always)));
+  assert_true(abbe_time_left_holds(&always, 1e9));
+  assert_true(abbe_time_left_holds(&always, NAN));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_what_fits),
+      cmocka_unit_test(test_without_an_end),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
