@@ -64,5 +64,6 @@
 #define UNIT_SIDE_OF_FACE 13
 #define UNIT_WARPS 14
 #define UNIT_ENVIRONMENT 15
+#define UNIT_ENVIRONMENT_CUBE 16
 
 #endif

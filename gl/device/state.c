@@ -4,7 +4,8 @@
 
 #include <stddef.h>
 
-_Static_assert(UNIT_SIDE_OF_FACE < ABBE_GL_STATE_UNITS, "the last unit keeps a caller's sampler");
+_Static_assert(UNIT_ENVIRONMENT_CUBE < ABBE_GL_STATE_UNITS,
+               "the last unit keeps a caller's sampler");
 
 static void set_enables(const abbe_gl *gl) {
   static const GLenum off[] = {
@@ -78,6 +79,7 @@ void abbe_gl_state_begin(const abbe_gl *gl) {
   /* One flag a kind of error, of which there are eight; a lost context has no end of them. */
   for (int i = 0; i < 8 && gl->GetError() != GL_NO_ERROR; i++) continue;
   set_all(gl, 1);
+  gl->Enable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
 }
 
 void abbe_gl_state_end(const abbe_gl *gl) {

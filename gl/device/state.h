@@ -9,14 +9,14 @@
 
 /* Units from 0 on whose sampler objects are taken away: a sampler would override what a texture
  * says of its own filter. No pass uses further units (bindings.h). */
-#define ABBE_GL_STATE_UNITS 16
+#define ABBE_GL_STATE_UNITS 17
 
 /* Of the current context: every enable and every setting of rasterising, testing, blending and
- * pixel transfer as GL begins with it, but rows of pixels without padding; no sampler objects and no
- * pixel buffers. Errors that are pending are dropped. */
+ * pixel transfer as GL begins with it, but rows of pixels without padding and cube maps read across
+ * their edges; no sampler objects and no pixel buffers. Errors that are pending are dropped. */
 void abbe_gl_state_begin(const abbe_gl *gl);
 
-/* The same settings once more, rows of pixels padded to 4 bytes; framebuffer 0, no program, no
+/* GL's own settings once more, rows of pixels padded to 4 bytes; framebuffer 0, no program, no
  * vertex array, texture unit 0 active. */
 void abbe_gl_state_end(const abbe_gl *gl);
 

@@ -9,6 +9,15 @@ layout(local_size_x = 256) in;
 #include "refractor.glsl"
 #include "receiver.glsl"
 #include "receiver_sight.glsl"
+#ifdef ENVIRONMENT
+#define KEEPS_SPREAD
+#endif
+#include "ray_spread.glsl"
+#ifdef KEEPS_SPREAD
+#define SPREAD_OF(path) (path).spread
+#else
+#define SPREAD_OF(path) no_spread()
+#endif
 
 // Pixel as below; joined bands (a bit each), level (four bits) whose bands are wanted, and how many
 // levels above it they were joined.
@@ -127,8 +136,8 @@ bool area_light_seen(vec3 p, vec3 d, float t_min, float t_max, out vec3 radiance
 #endif
 
 // Radiance along the ray from p, refractors taken away, of a receiver no farther than t_max; met:
-// there is one.
-vec3 seen(vec3 p, vec3 d, float t_min, float t_max, out bool met) {
+// there is one. spread: of the ray, where it meets none.
+vec3 seen(vec3 p, vec3 d, Spread spread, float t_min, float t_max, out bool met) {
   float t;
   Sighting at;
   met = receiver_seen(p, d, t_min, t_max, t, at);
@@ -139,7 +148,7 @@ vec3 seen(vec3 p, vec3 d, float t_min, float t_max, out bool met) {
     return lamp;
   }
 #endif
-  if (!met) return surroundings(d);
+  if (!met) return surroundings_over(d, spread.turn_x, spread.turn_y);
   Shading s = shade(at.p, at.n, at.surface, at.uv, at.side);
   return s.direct + s.caustic + s.fill;
 }
@@ -147,14 +156,23 @@ vec3 seen(vec3 p, vec3 d, float t_min, float t_max, out bool met) {
 // What the pixel's ray meets first; look() says.
 bool found;
 vec3 sight;
+Spread sight_spread;
 Hit front;
 void look(ivec2 at);
 
 void aim_at(ivec2 at) {
-  vec3 o;
+  vec3 o, beside;
+  vec2 size = vec2(textureSize(eye_owner, 0));
   refractor = int(texelFetch(eye_owner, at, 0).x) - 1;
   band_set = band_set_of(at);
-  view_ray(camera_view(), (vec2(at) + 0.5) / vec2(textureSize(eye_owner, 0)), o, sight);
+  view_ray(camera_view(), (vec2(at) + 0.5) / size, o, sight);
+  sight_spread = no_spread();
+#ifdef KEEPS_SPREAD
+  view_ray(camera_view(), (vec2(at) + vec2(1.5, 0.5)) / size, o, beside);
+  sight_spread.turn_x = beside - sight;
+  view_ray(camera_view(), (vec2(at) + vec2(0.5, 1.5)) / size, o, beside);
+  sight_spread.turn_y = beside - sight;
+#endif
 }
 
 #ifdef WALK

@@ -8,6 +8,40 @@ void layers_hit(int r, vec3 p, vec3 d, out vec3 q, out vec3 n) {
 }
 #endif
 
+// The spread of the ray's neighbours on its way: of spheres and facets; what layers show counts as flat.
+#if defined(KEEPS_SPREAD) && defined(SPHERES)
+mat3 bend_outwards() {
+  return mat3(refractors[refractor].info.x == MODEL_SPHERE ? 1.0 / refractors[refractor].sphere.w : 0.0);
+}
+
+Spread spread_in_mirror(Hit front) {
+  return spread_mirrored(spread_at(sight_spread, sight, front.t, front.n), sight, front.n, bend_outwards());
+}
+
+Spread spread_within(Hit front, float n) {
+  return spread_refracted(spread_at(sight_spread, sight, front.t, front.n), sight, front.n, bend_outwards(), 1.0 / n);
+}
+
+// From p along d to an interface: outside, and further within.
+Spread spread_outside(InnerHit h, vec3 p, vec3 d, float n, inout Spread within) {
+  mat3 bend = -bend_outwards();
+  within = spread_at(within, d, distance(h.p, p), h.n);
+  Spread outside = spread_refracted(within, d, -h.n, bend, n);
+  within = spread_mirrored(within, d, -h.n, bend);
+  return outside;
+}
+#else
+Spread spread_in_mirror(Hit front) { return spread_mirrored(sight_spread, front.n); }
+
+Spread spread_within(Hit front, float n) { return spread_refracted(sight_spread, sight, front.n, 1.0 / n); }
+
+Spread spread_outside(InnerHit h, vec3 p, vec3 d, float n, inout Spread within) {
+  Spread outside = spread_refracted(within, d, -h.n, n);
+  within = spread_mirrored(within, h.n);
+  return outside;
+}
+#endif
+
 // The light of one band, from interface to interface. What is left when the path ends shows what the rest
 // has shown. Its loops have two ways out, with values of their own for what is used after them: of what the
 // last turn alone has made, lanes that took fewer turns may find another's (Mesa 22's llvmpipe).
@@ -19,6 +53,7 @@ vec3 through(Hit front, vec3 d, int band) {
   // Of what went in: where nearly all is mirrored, the rest is followed too.
   float limit = share_limit * ray.share, shown = 0.0, left = 0.0;
   bool met;
+  Spread within = spread_within(front, n), outside = within;
   for (int order = 0; order < counts.exits;) {
     Outgoing leaving = Outgoing(ray.p, vec3(0), ray.d, 0.0);
     bool shows = false;
@@ -26,6 +61,9 @@ vec3 through(Hit front, vec3 d, int band) {
       InnerHit h = next_inner_hit(refractor, ray);
 #ifdef ABSORBING
       ray.share *= exp(-attenuation * distance(h.p, ray.p));
+#endif
+#ifdef KEEPS_SPREAD
+      outside = spread_outside(h, ray.p, ray.d, n, within);
 #endif
       leaving = leave(h, n, ray);
       shows = leaving.share > 0.5 * limit;
@@ -35,7 +73,7 @@ vec3 through(Hit front, vec3 d, int band) {
       if (!CHEAP_INTERFACES || shows || ray.share < limit) break;
     }
     if (shows) {
-      light += leaving.share * seen(leaving.p, leaving.d, -touch * refractor_bounds.w, 1e30, met);
+      light += leaving.share * seen(leaving.p, leaving.d, outside, -touch * refractor_bounds.w, 1e30, met);
       shown += leaving.share;
     }
     if (ray.share < limit) break;

@@ -47,7 +47,7 @@ void main() {
 #endif
   }
   bool met;
-  vec3 mirrored = seen(front.p, reflect(sight, front.n), -touch * refractor_bounds.w, 1e30, met);
+  vec3 mirrored = seen(front.p, reflect(sight, front.n), spread_in_mirror(front), -touch * refractor_bounds.w, 1e30, met);
   sum += mirror * (xyz_from_rgb * mirrored);
   write_pixel(pixel[listed], base, count, sum);
 }

@@ -11,22 +11,20 @@ shared vec3 path_sum[PIXELS * PIXEL_THREADS];
 int place = int(gl_LocalInvocationID.x) % PIXELS, pixel_thread = int(gl_LocalInvocationID.x) / PIXELS;
 
 shared ivec4 task[PIXELS];  // refractor, first band, how many, and whether something is met
-shared PathState task_start[PIXELS];
 shared Interface task_first[PIXELS];
 
 void give_task(int base, int count) {
   task[place] = ivec4(refractor, base, count, found ? 1 : 0);
-  task_start[place] = start;
   task_first[place] = first;
 }
 
-void take_task(out int base, out int count) {
+void take_task(ivec2 at, out int base, out int count) {
+  begin_path(at);
   refractor = task[place].x;
   base = task[place].y;
   band_set = base / counts.bands - refractor * BAND_SETS;
   count = task[place].z;
   found = task[place].w != 0;
-  start = task_start[place];
   first = task_first[place];
   front = first.hit;
 }
@@ -75,7 +73,7 @@ void main() {
     give_task(base, count);
   }
   barrier();
-  take_task(base, count);
+  take_task(at, base, count);
 #else
   look(at);
   wanted_level(entry.y, base, count);
@@ -117,7 +115,7 @@ void main() {
     give_task(base, count);
   }
   barrier();
-  take_task(base, count);
+  take_task(pixel_of(where), base, count);
 #else
   look(pixel_of(where));
   choose_bands(base, count);

@@ -11,7 +11,7 @@
 #define BANDS_AT_ONCE counts.wavelengths
 #endif
 int most_segments() {
-  return max(8, min(224, 49152 / (PLANE_ROOM + 64)) / ((BANDS_AT_ONCE + PIXEL_THREADS) / PIXEL_THREADS));
+  return max(8, min(224, 49152 / (PLANE_ROOM + 64 + FOOTPRINT_TAPS)) / ((BANDS_AT_ONCE + PIXEL_THREADS) / PIXEL_THREADS));
 }
 
 int band_of_refractor;  // that is followed, among one refractor's
@@ -45,7 +45,7 @@ vec3 shown(PathState w) {
     h.hit.t = 1e30;
     bool met = next_interface(w, h), receiver;
     float t_min = w.inside == 0u ? -touch * refractor_bounds.w : 0.0;
-    vec3 radiance = seen(w.p, w.d, t_min, met ? h.hit.t : 1e30, receiver);
+    vec3 radiance = seen(w.p, w.d, SPREAD_OF(w), t_min, met ? h.hit.t : 1e30, receiver);
 #ifdef ABSORBING
     if (w.inside != 0u && met)
       w.share *= exp(-h.hit.t * refractor_spectrum(medium_of(w.inside)).y);
@@ -74,9 +74,17 @@ vec3 shown(PathState w) {
 PathState start;
 Interface first;
 
-void look(ivec2 at) {
+void begin_path(ivec2 at) {
   aim_at(at);
+#ifdef KEEPS_SPREAD
+  start = PathState(eye, sight, 1.0, eye_inside, 0u, -1, -1, -1, sight_spread);
+#else
   start = PathState(eye, sight, 1.0, eye_inside, 0u, -1, -1, -1);
+#endif
+}
+
+void look(ivec2 at) {
+  begin_path(at);
   first.hit.t = 1e30;
   found = next_interface(start, first);
   front = first.hit;

@@ -101,7 +101,7 @@ static void begin(abbe_pinhole_pages *pages) {
   gl->UseProgram(pages->fill);
   abbe_gpu_scene_set(scene, pages->fill);
   abbe_pinhole_samples_bind(scene, &pages->samples, pages->fill);
-  abbe_pinhole_sky_begin(scene, &pages->sky, pages->fill);
+  abbe_pinhole_sky_set(scene, &pages->sky, pages->fill);
   abbe_gpu_set_float(scene->gpu, pages->fill, "share_limit", scene->plan->eye_share);
   abbe_gpu_set_float(scene->gpu, pages->fill, "seen_off", 1e-4 * scene->refractor_radius);
   abbe_gpu_set_int(scene->gpu, pages->fill, "pinhole_count", (int)pages->samples.count);
@@ -122,7 +122,6 @@ abbe_result abbe_pinhole_pages_run(abbe_pinhole_pages *pages, abbe_error *error)
       if (sees_refractors(pages->scene, exact->parallelogram[k / 2], k % 2 != 0))
         result = fill_page(pages, page, error);
   }
-  abbe_pinhole_sky_end(pages->scene);
   pages->scene->gpu->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   abbe_gpu_book_lap(pages->scene->gpu, ABBE_PASS_PINHOLES);
   return result;

@@ -59,7 +59,7 @@ vec3 carried(PathState w, Interface h, vec3 by_u, vec3 by_v) {
     pending[k].share = 0.0;
   }
   vec3 weight = bands[joined_band(h.hit.refractor)].weight_n.xyz, light = vec3(0);
-  float followed = 0.0, left = 0.0, blurred = log2(FANNED_OUT * sky_side / SKY_TEXEL);
+  float followed = 0.0, left = 0.0, blurred = log2(FANNED_OUT * sky_side / CUBE_TEXEL);
   bool going = true, met = true, mirror = is_mirror(h.hit.refractor);
   for (int segment = 0; going && segment < MOST_SEGMENTS; segment++) {
     if (segment > 0) {

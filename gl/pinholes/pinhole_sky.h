@@ -20,10 +20,7 @@ abbe_result abbe_pinhole_sky_make(const abbe_gpu_scene *scene, const abbe_radian
                                   size_t side, abbe_pinhole_sky *out, abbe_error *error);
 void abbe_pinhole_sky_free(abbe_gpu *gpu, abbe_pinhole_sky *sky);
 
-/* Into the program that is in use, whose pinholes then see across the cube's edges until
- * abbe_pinhole_sky_end. */
-void abbe_pinhole_sky_begin(const abbe_gpu_scene *scene, const abbe_pinhole_sky *sky,
-                            GLuint program);
-void abbe_pinhole_sky_end(const abbe_gpu_scene *scene);
+/* Into the program that is in use. */
+void abbe_pinhole_sky_set(const abbe_gpu_scene *scene, const abbe_pinhole_sky *sky, GLuint program);
 
 #endif

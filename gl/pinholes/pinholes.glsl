@@ -5,7 +5,7 @@ uniform samplerCube pinhole_sky;  // W/(m2 sr), by the surroundings' own directi
 uniform mat3 environment_from_world;
 uniform float sky_side;  // texels of a face
 
-const float SKY_TEXEL = 1.4472025;  // rad, of a face of one texel: the root of its solid angle
+#include "cube_mean.glsl"
 
 struct Pinhole {
   vec3 p, n;              // n towards who looks
@@ -37,19 +37,8 @@ void footprint(Pinhole s, vec3 from, vec3 r, out vec3 by_u, out vec3 by_v) {
 
 vec3 sky_at(vec3 d, float level) { return textureLod(pinhole_sky, environment_from_world * d, level).rgb; }
 
-// The mean over what is as wide as a and b around r: taps along the longer, in a level as wide as the shorter.
+// The mean over what is as wide as a and b around r.
 vec3 sky_over(vec3 r, vec3 a, vec3 b) {
-  const float MOST_TAPS = 16.0;
-  bool first = dot(a, a) > dot(b, b);
-  vec3 longer = first ? a : b, shorter = first ? b : a;
-  float texel = SKY_TEXEL / sky_side, wide = length(longer);
-  float narrow = max(length(shorter), wide / MOST_TAPS);
-  float level = max(log2(max(narrow, 1e-9) / texel), 0.0);
-  float taps = clamp(ceil(wide / max(narrow, texel) - 1e-3), 1.0, MOST_TAPS), tap = 1.0 / taps, k = 0.5 * tap;
-  vec3 sum = vec3(0);
-  do {
-    sum += sky_at(r + longer * (k - 0.5), level);
-    k += tap;
-  } while (k < 1.0);
-  return sum * tap;
+  return cube_mean(pinhole_sky, CUBE_TEXEL / sky_side, environment_from_world * r, environment_from_world * a,
+                   environment_from_world * b, 16.0, true);
 }

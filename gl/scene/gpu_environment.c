@@ -10,8 +10,8 @@ abbe_result abbe_gpu_environment_colours(const abbe_illuminant *illuminant, abbe
                                          const abbe_render_desc *desc, double matrix[9],
                                          abbe_error *error) {
   abbe_upsampling up;
-  abbe_result result = abbe_upsampling_make_by(desc->observer, illuminant, desc->min_nm,
-                                               desc->max_nm, &up, error);
+  abbe_result result =
+      abbe_upsampling_make_by(desc->observer, illuminant, desc->min_nm, desc->max_nm, &up, error);
   if (result != ABBE_OK) return result;
   double from_xyz[9];
   abbe_rgb_space_from_xyz(space, from_xyz);
@@ -54,6 +54,36 @@ static abbe_result make_texture(abbe_gpu *gpu, const abbe_radiance_map *map, con
   return abbe_gl_check(gl, "the upload of the environment", error);
 }
 
+abbe_result abbe_gpu_environment_cube(abbe_gpu *gpu, const abbe_radiance_cube *cube,
+                                      const double matrix[9], GLuint *out, abbe_error *error) {
+  const abbe_gl *gl = gpu->gl;
+  abbe_result result = abbe_gpu_make_cube(gpu, cube->side, cube->level_count, out, error);
+  if (result != ABBE_OK) return result;
+  gl->BindTexture(GL_TEXTURE_CUBE_MAP, *out);
+  for (size_t i = 0; i < 6 * cube->level_count; i++) {
+    const size_t face = i % 6, level = i / 6, side = cube->side >> level;
+    float *texel = convert(matrix, cube->level[level] + 3 * face * side * side, side * side, error);
+    if (texel == NULL) return ABBE_NO_MEMORY;
+    gl->TexSubImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + (GLenum)face, (GLint)level, 0, 0,
+                      (GLsizei)side, (GLsizei)side, GL_RGBA, GL_FLOAT, texel);
+    free(texel);
+  }
+  return abbe_gl_check(gl, "the upload of the environment", error);
+}
+
+/* Its texels are the power of two nearest to as wide as the map's. */
+static abbe_result make_cube(abbe_gpu *gpu, const abbe_radiance_map *map, const double matrix[9],
+                             GLuint *out, abbe_error *error) {
+  abbe_radiance_cube cube;
+  size_t side = 1;
+  while (side < ABBE_RADIANCE_CUBE_MAX_SIDE && 6 * side <= map->width) side *= 2;
+  abbe_result result = abbe_radiance_cube_make(map, side, &cube, error);
+  if (result != ABBE_OK) return result;
+  result = abbe_gpu_environment_cube(gpu, &cube, matrix, out, error);
+  abbe_radiance_cube_free(&cube);
+  return result;
+}
+
 static abbe_result make_soft_light(abbe_gpu *gpu, const abbe_irradiance_map *map,
                                    const double matrix[9], GLuint *out, abbe_error *error) {
   enum { NODES = ABBE_IRRADIANCE_MAP_ROWS * ABBE_IRRADIANCE_MAP_COLUMNS };
@@ -73,6 +103,7 @@ abbe_result abbe_gpu_environment_make(abbe_gpu *gpu, const abbe_scene *scene, ab
   double matrix[9];
   abbe_result result = abbe_gpu_environment_colours(&e->illuminant, space, desc, matrix, error);
   if (result == ABBE_OK) result = make_texture(gpu, &e->map, matrix, &out->texture, error);
+  if (result == ABBE_OK) result = make_cube(gpu, &e->map, matrix, &out->cube, error);
   if (result == ABBE_OK && scene->soft_light != NULL)
     result = make_soft_light(gpu, scene->soft_light, matrix, &out->soft_light, error);
   return result;
@@ -80,6 +111,7 @@ abbe_result abbe_gpu_environment_make(abbe_gpu *gpu, const abbe_scene *scene, ab
 
 void abbe_gpu_environment_free(abbe_gpu *gpu, abbe_gpu_environment *environment) {
   abbe_gpu_drop_textures(gpu, 1, &environment->texture);
+  abbe_gpu_drop_textures(gpu, 1, &environment->cube);
   abbe_gpu_drop_buffers(gpu, 1, &environment->soft_light);
 }
 
@@ -99,4 +131,6 @@ void abbe_gpu_environment_set(abbe_gpu *gpu, const abbe_scene *scene,
   gl->UniformMatrix3fv(at, 1, GL_FALSE, matrix);
   gl->ActiveTexture(GL_TEXTURE0 + UNIT_ENVIRONMENT);
   gl->BindTexture(GL_TEXTURE_2D, environment->texture);
+  gl->ActiveTexture(GL_TEXTURE0 + UNIT_ENVIRONMENT_CUBE);
+  gl->BindTexture(GL_TEXTURE_CUBE_MAP, environment->cube);
 }

@@ -15,11 +15,17 @@ struct PathState {
   vec3 interface_n;      // the normal there, and whether it came through
   bool transmitted;
 #endif
+#ifdef KEEPS_SPREAD
+  Spread spread;  // ray_spread.glsl, which comes before
+#endif
 };
 
 struct Interface {
   Hit hit;      // n: interpolated, outwards
   vec3 face_n;  // of the face itself, outwards
+#ifdef KEEPS_SPREAD
+  mat3 bend;    // how the normal turns along the face, 1/m
+#endif
 };
 
 const int PENDING = 4;  // branches that wait, the strongest
@@ -117,6 +123,9 @@ bool next_interface(PathState w, inout Interface h) {
       h.hit.refractor = r;
       h.face_n = h.hit.n;
       found = true;
+#ifdef KEEPS_SPREAD
+      h.bend = mat3(info.x == MODEL_SPHERE ? 1.0 / refractors[r].sphere.w : 0.0);
+#endif
 #ifdef HIERARCHY
       owner = -1;
       triangle.t = h.hit.t;
@@ -146,9 +155,11 @@ bool next_interface(PathState w, inout Interface h) {
     int i = triangle.triangle;
     vec4 corner = hierarchy_triangle(3 * i);
     vec3 e1 = hierarchy_triangle(3 * i + 1).xyz, e2 = hierarchy_triangle(3 * i + 2).xyz;
-    vec3 n = (1.0 - triangle.u - triangle.v) * hierarchy_corner(4 * i).xyz +
-             triangle.u * hierarchy_corner(4 * i + 1).xyz +
-             triangle.v * hierarchy_corner(4 * i + 2).xyz;
+    vec3 n0 = hierarchy_corner(4 * i).xyz, n1 = hierarchy_corner(4 * i + 1).xyz, n2 = hierarchy_corner(4 * i + 2).xyz;
+    vec3 n = (1.0 - triangle.u - triangle.v) * n0 + triangle.u * n1 + triangle.v * n2;
+#ifdef KEEPS_SPREAD
+    h.bend = triangle_bend(e1, e2, n0, n1, n2, n);
+#endif
     h.face_n = normalize(cross(e1, e2));
     h.hit.n = dot(n, n) > 0.0 ? normalize(n) : h.face_n;
     h.hit.p = corner.xyz + triangle.u * e1 + triangle.v * e2;
@@ -173,6 +184,9 @@ bool split(inout PathState w, Interface h, out PathState mirrored) {
   int r = h.hit.refractor;
   uint after = w.inside ^ 1u << r;
   bool entering = (w.inside >> r & 1u) == 0u;
+#ifdef KEEPS_SPREAD
+  w.spread = spread_at(w.spread, w.d, h.hit.t, h.face_n);
+#endif
   w.p = h.hit.p;
   w.refractor = r;
   w.facet = h.hit.facet;
@@ -185,6 +199,11 @@ bool split(inout PathState w, Interface h, out PathState mirrored) {
   float reflected = fresnel(-dot(w.d, n), eta);
   vec3 through;
   if (!refract_direction(w.d, n, eta, through)) reflected = 1.0;
+#ifdef KEEPS_SPREAD
+  mat3 bend = entering ? h.bend : -h.bend;
+  mirrored.spread = spread_mirrored(w.spread, w.d, n, bend);
+  w.spread = spread_refracted(w.spread, w.d, n, bend, eta);
+#endif
   mirrored.d = keep_side(face_n, reflect(w.d, n));
   w.d = keep_side(-face_n, through);
   mirrored.share *= reflected;
@@ -208,6 +227,9 @@ float reflect_off(inout PathState w, Interface h) {
   vec3 n = side * h.hit.n, face_n = side * h.face_n;
   if (dot(w.d, n) >= 0.0) n = face_n;
   w.share *= mirror_reflectance(mirror_spectrum(r), -dot(w.d, n));
+#ifdef KEEPS_SPREAD
+  w.spread = spread_mirrored(spread_at(w.spread, w.d, h.hit.t, face_n), w.d, n, side * h.bend);
+#endif
   w.d = keep_side(face_n, reflect(w.d, n));
   w.p = h.hit.p;
   w.refractor = r;

@@ -77,7 +77,7 @@ static void use(abbe_wand2003 *w, GLuint program) {
   gl->Uniform2f(gl->GetUniformLocation(program, "samples"), (float)w->scene->plan->desc.width,
                 (float)w->scene->plan->desc.height);
   abbe_pinhole_samples_bind(w->scene, &w->samples, program);
-  abbe_pinhole_sky_begin(w->scene, &w->sky, program);
+  abbe_pinhole_sky_set(w->scene, &w->sky, program);
 }
 
 static void draw_receivers(abbe_wand2003 *w, GLuint program) {
@@ -156,7 +156,6 @@ static abbe_result draw(abbe_wand2003 *w, abbe_error *error) {
 abbe_result abbe_wand2003_run(abbe_wand2003 *w, abbe_error *error) {
   abbe_gpu_scene_bind(w->scene);
   abbe_result result = draw(w, error);
-  abbe_pinhole_sky_end(w->scene);
   return result == ABBE_OK ? abbe_gl_check(w->scene->gpu->gl, "the wand2003 profile", error)
                            : result;
 }

@@ -102,8 +102,9 @@ abbe_result abbe_tracer_map(const abbe_tracer *tracer, abbe_image *out, abbe_err
 
 void abbe_tracer_statistics(const abbe_tracer *tracer, abbe_trace_statistics *out);
 
-/* Rays a second of one thread's photon walk, and of Embree alone on the very same packets of rays;
- * traces a part of a pass that is not counted. */
+/* Rays a second of one thread's photon walk, and of Embree alone on the very same packets of rays,
+ * those that ask what is hidden from a lamp among them; traces a part of a pass that is not
+ * counted. */
 abbe_result abbe_tracer_rates(abbe_tracer *tracer, double *walk, double *embree, abbe_error *error);
 
 #ifdef __cplusplus

@@ -24,6 +24,11 @@ static double walk_seconds(abbe_tracer *t, const abbe_emission *e) {
   return end - start;
 }
 
+/* Of both kinds, so far. */
+static uint64_t rays_of(const abbe_light_walk *walk) {
+  return abbe_light_walk_rays(walk) + abbe_light_walk_lamp_rays(walk);
+}
+
 /* The best of a few turns of each, in turn, so that a busy machine harms neither more. */
 abbe_result abbe_tracer_rates(abbe_tracer *t, double *walk, double *embree, abbe_error *error) {
   ABBE_REQUIRE(t && walk && embree, error);
@@ -37,9 +42,9 @@ abbe_result abbe_tracer_rates(abbe_tracer *t, double *walk, double *embree, abbe
   abbe_emission e = {0};
   abbe_result result = abbe_emission_make(t, light, PHOTONS, 0, t->desc.seed, &e, error);
   for (int i = 0; i < TURNS && result == ABBE_OK; i++) {
-    uint64_t rays = abbe_light_walk_rays(t->walk[0]), replayed;
+    uint64_t rays = rays_of(t->walk[0]), replayed;
     double seconds = walk_seconds(t, &e), alone;
-    *walk = fmax(*walk, (double)(abbe_light_walk_rays(t->walk[0]) - rays) / seconds);
+    *walk = fmax(*walk, (double)(rays_of(t->walk[0]) - rays) / seconds);
     abbe_light_walk_keep(t->walk[0], PACKETS);
     walk_seconds(t, &e);
     if (abbe_light_walk_replay(t->walk[0], &alone, &replayed))

@@ -36,19 +36,30 @@ static inline bool abbe_mirrors_is_grey(const abbe_mirrors *m, size_t mirror) {
   return m->reflectance[mirror] >= 0;
 }
 
-/* Unpolarised reflectance for cos_i in [0, 1], within step k at the share f of it. [BornWolf1999]
- */
-static inline float abbe_mirrors_reflect(const abbe_mirrors *m, size_t mirror, float cos_i,
-                                         uint32_t k, float f) {
-  if (m->reflectance[mirror] >= 0) return m->reflectance[mirror];
-  const float(*at)[2] = (const float(*)[2])m->nk + mirror * (m->steps + 1) + k;
-  const float n = at[0][0] + f * (at[1][0] - at[0][0]), kk = at[0][1] + f * (at[1][1] - at[0][1]);
-  const float c2 = cos_i * cos_i, s2 = 1 - c2, t0 = n * n - kk * kk - s2;
-  const float t1 = sqrtf(t0 * t0 + 4 * n * n * kk * kk), a2 = 0.5f * (t1 + t0);
+/* Unpolarised reflectance of a metal for cos_i in [0, 1]. [BornWolf1999] */
+static inline float abbe_mirrors_metal(float cos_i, float n, float k) {
+  const float c2 = cos_i * cos_i, s2 = 1 - c2, t0 = n * n - k * k - s2;
+  const float t1 = sqrtf(t0 * t0 + 4 * n * n * k * k), a2 = 0.5f * (t1 + t0);
   const float t2 = 2 * cos_i * sqrtf(a2 > 0 ? a2 : 0);
   const float s = (t1 + c2 - t2) / (t1 + c2 + t2);
   const float p = (c2 * t1 + s2 * s2 - t2 * s2) / (c2 * t1 + s2 * s2 + t2 * s2);
   return 0.5f * s * (1 + p);
+}
+
+/* n and k of a metal within step k at the share f of it. */
+static inline void abbe_mirrors_nk(const abbe_mirrors *m, size_t mirror, uint32_t k, float f,
+                                   float nk[2]) {
+  const float(*at)[2] = (const float(*)[2])m->nk + mirror * (m->steps + 1) + k;
+  for (int c = 0; c < 2; c++) nk[c] = at[0][c] + f * (at[1][c] - at[0][c]);
+}
+
+/* Unpolarised reflectance for cos_i in [0, 1], within step k at the share f of it. */
+static inline float abbe_mirrors_reflect(const abbe_mirrors *m, size_t mirror, float cos_i,
+                                         uint32_t k, float f) {
+  if (m->reflectance[mirror] >= 0) return m->reflectance[mirror];
+  float nk[2];
+  abbe_mirrors_nk(m, mirror, k, f, nk);
+  return abbe_mirrors_metal(cos_i, nk[0], nk[1]);
 }
 
 #ifdef __cplusplus

@@ -61,13 +61,10 @@ bool abbe_lamp_is_hidden(const abbe_geometry *g, const abbe_light *light) {
   return false;
 }
 
-void abbe_lamp_rays_trace(abbe_lamp_rays *s, const abbe_geometry *g, abbe_light_ledger *ledger) {
-  struct RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  _Alignas(64) int valid[ABBE_RAY_LANES];
-  for (size_t k = 0; k < ABBE_RAY_LANES; k++) valid[k] = k < s->count ? -1 : 0;
-  if (s->count > 0) rtcOccluded16(valid, g->embree, &context, &s->ray);
+void abbe_lamp_rays_trace(abbe_lamp_rays *s, const abbe_geometry *g, abbe_light_ledger *ledger,
+                          abbe_ray_record *record) {
+  if (s->count > 0) abbe_ray_batch_occlude(&s->ray, s->count, g->embree, record);
+  s->traced += s->count;
   for (size_t k = 0; k < s->count; k++) {
     s->photon[k]->hidden = s->ray.tfar[k] < 0;
     if (s->photon[k]->hidden) ledger->hidden += s->flux[k];
@@ -77,7 +74,7 @@ void abbe_lamp_rays_trace(abbe_lamp_rays *s, const abbe_geometry *g, abbe_light_
 
 void abbe_lamp_rays_add(abbe_lamp_rays *s, const abbe_geometry *g, const abbe_light *light,
                         const abbe_hit *hit, abbe_photon_hit *photon, double flux,
-                        abbe_light_ledger *ledger) {
+                        abbe_light_ledger *ledger, abbe_ray_record *record) {
   size_t at = s->count++;
   float from[3], d[3], o[3], limit = INFINITY;
   for (int k = 0; k < 3; k++) d[k] = -(float)light->direction[k];
@@ -101,5 +98,5 @@ void abbe_lamp_rays_add(abbe_lamp_rays *s, const abbe_geometry *g, const abbe_li
   ray->flags[at] = 0;
   s->photon[at] = photon;
   s->flux[at] = flux;
-  if (s->count == ABBE_RAY_LANES) abbe_lamp_rays_trace(s, g, ledger);
+  if (s->count == ABBE_RAY_LANES) abbe_lamp_rays_trace(s, g, ledger, record);
 }

@@ -23,6 +23,7 @@ bool abbe_lamp_is_hidden(const abbe_geometry *g, const abbe_light *light);
 typedef struct abbe_lamp_rays {
   struct RTCRay16 ray;
   size_t count;
+  uint64_t traced; /* so far */
   abbe_photon_hit *photon[ABBE_RAY_LANES];
   double flux[ABBE_RAY_LANES]; /* W, for the ledger */
 } abbe_lamp_rays;
@@ -30,9 +31,10 @@ typedef struct abbe_lamp_rays {
 /* One more; a full packet is traced. */
 void abbe_lamp_rays_add(abbe_lamp_rays *rays, const abbe_geometry *g, const abbe_light *light,
                         const abbe_hit *hit, abbe_photon_hit *photon, double flux,
-                        abbe_light_ledger *ledger);
+                        abbe_light_ledger *ledger, abbe_ray_record *record);
 /* Traces those that wait, marks what is hidden and adds it to the ledger. */
-void abbe_lamp_rays_trace(abbe_lamp_rays *rays, const abbe_geometry *g, abbe_light_ledger *ledger);
+void abbe_lamp_rays_trace(abbe_lamp_rays *rays, const abbe_geometry *g, abbe_light_ledger *ledger,
+                          abbe_ray_record *record);
 
 #ifdef __cplusplus
 }

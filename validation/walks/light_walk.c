@@ -109,6 +109,10 @@ uint64_t abbe_light_walk_rays(const abbe_light_walk *walk) {
   return walk->rays;
 }
 
+uint64_t abbe_light_walk_lamp_rays(const abbe_light_walk *walk) {
+  return walk->lamp_rays.traced;
+}
+
 void abbe_light_walk_split(abbe_light_walk *walk, unsigned interfaces) {
   walk->splits = interfaces & ((1u << ABBE_PHOTON_SPLITS) - 1);
 }
@@ -138,7 +142,7 @@ typedef enum path_state {
   SCATTERS,   /* at an interface */
   DEPOSITED,  /* on a receiver */
   MISSED,     /* met nothing any more */
-  MIRRORED,   /* on its way already */
+  MIRRORED,   /* at a mirror */
   TRAPPED,    /* matched: as long as the renderer follows one, and not out yet */
   LOST,       /* inside of nothing, or too long */
   NOT_COUNTED /* never met a refractor, or has no light left */
@@ -147,6 +151,7 @@ typedef enum path_state {
 /* A packet of paths between their rays of this bounce and those of the next. */
 typedef struct packet {
   abbe_scatter scatter;
+  abbe_mirroring mirroring;
   abbe_media_set before[LANES], after[LANES];
   bool straight[LANES]; /* media of one index: no interface */
   bool crystal[LANES];  /* on either side */
@@ -167,24 +172,14 @@ typedef struct run {
   abbe_light_ledger *ledger;
 } run;
 
-static float dot(const float a[3], const float b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+/* Numbers that decide for one branch at any share, but for total reflection's. */
+static const float REFLECT = -1, TRANSMIT = 2;
 
 /* What a path meets at a refractor: normals, indices, media. */
 static void meet_interface(const abbe_light_walk *w, const abbe_light_path *s, const float d[3],
                            packet *p, size_t k) {
   const abbe_hit *hit = &p->hit[k];
-  float along = dot(d, hit->ng), shaded = dot(d, hit->n);
-  bool entering = along < 0;
-  float side = entering ? 1 : -1;
-  const float *outside = (shaded < 0) == entering ? hit->n : hit->ng;
-  for (int i = 0; i < 3; i++) {
-    p->scatter.n[i][k] = side * outside[i];
-    p->scatter.ng[i][k] = side * hit->ng[i];
-    p->scatter.p[i][k] = hit->p[i];
-  }
-  p->scatter.size[k] = hit->surface->sphere ? hit->surface->radius : 0;
+  const bool entering = abbe_scatter_meet(&p->scatter, k, hit, d);
   abbe_media_cross(s->inside, hit->surface->index, entering, &p->before[k], &p->after[k]);
   int from = abbe_media_of(p->before[k]), to = abbe_media_of(p->after[k]);
   p->straight[k] = abbe_media_same(w->media, from, to);
@@ -193,29 +188,6 @@ static void meet_interface(const abbe_light_walk *w, const abbe_light_path *s, c
   p->scatter.eta[k] = p->straight[k] ? 1
                                      : abbe_media_n(w->media, from, s->step, s->within) /
                                            abbe_media_n(w->media, to, s->step, s->within);
-}
-
-/* A mirror absorbs what it does not reflect; the path goes into the next batch. */
-static path_state mirror(run *r, const abbe_hit *hit, const float d[3], abbe_light_path *s) {
-  abbe_light_walk *w = r->w;
-  const float side = dot(d, hit->ng) < 0 ? 1 : -1;
-  const float *outside = dot(d, hit->n) * side < 0 ? hit->n : hit->ng;
-  const float n[3] = {side * outside[0], side * outside[1], side * outside[2]};
-  const float cos_i = fminf(-dot(d, n), 1);
-  const float share =
-      abbe_mirrors_reflect(w->mirrors, hit->surface->index, cos_i, s->step, s->within);
-  r->ledger->absorbed += (double)(s->y * s->flux * (1 - share));
-  s->flux *= share;
-  s->carried *= share;
-  if (++s->steps >= ABBE_INNER_MAX_STEPS) return LOST;
-  if (!(s->flux > 0) || !abbe_light_path_survives(&r->rules, s, r->ledger)) return NOT_COUNTED;
-  float out[3], o[3];
-  abbe_interface_reflect(d, n, cos_i, out);
-  abbe_interface_keep_side(hit->ng, side, out);
-  abbe_geometry_leave(hit, out, o);
-  abbe_ray_put(w->next->ray, w->next->count, o, out);
-  w->next->path[w->next->count++] = *s;
-  return MIRRORED;
 }
 
 /* Lane k of a packet of rays that Embree has been through: where the path is, and what becomes of
@@ -244,7 +216,12 @@ static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, abb
   }
   if (first) abbe_light_path_begin(&r->w->media->haze, s, r->parallel, o, d, length);
   if (first) r->ledger->reached += (double)(s->y * s->flux);
-  if (hit->surface->kind == ABBE_GEOMETRY_MIRRORS) return left ? mirror(r, hit, d, s) : NOT_COUNTED;
+  if (hit->surface->kind == ABBE_GEOMETRY_MIRRORS) {
+    if (!left) return NOT_COUNTED;
+    abbe_scatter_meet_mirror(&p->scatter, &p->mirroring, k, hit, d, r->w->mirrors, s->step,
+                             s->within);
+    return MIRRORED;
+  }
   p->scatter.chance[k] = abbe_light_path_chance(&r->rules, s);
   bool too_long = ++s->steps >= ABBE_INNER_MAX_STEPS;
   meet_interface(r->w, s, d, p, k);
@@ -254,9 +231,6 @@ static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, abb
 static bool is_split(const abbe_light_walk *w, const abbe_light_path *s) {
   return s->steps <= ABBE_PHOTON_SPLITS && (w->splits >> (s->steps - 1u) & 1) != 0;
 }
-
-/* Numbers that decide for one branch at any share, but for total reflection's. */
-static const float REFLECT = -1, TRANSMIT = 2;
 
 /* What the path carries on the branch that was chosen, or on one of both; false for no light. */
 static bool take_branch(const packet *p, size_t k, bool split, abbe_light_path *s) {
@@ -332,23 +306,46 @@ static path_state go_on(run *r, size_t k, abbe_light_path *s) {
   return SCATTERS;
 }
 
+/* A mirror absorbs what it does not reflect; the path goes into the next batch. */
+static path_state leave_mirror(run *r, size_t k, const abbe_light_path *path) {
+  const packet *p = &r->packet;
+  ray_batch *next = r->w->next;
+  abbe_light_path *s = &next->path[next->count];
+  const float share = p->mirroring.share[k];
+  *s = *path;
+  r->ledger->absorbed += (double)(s->y * s->flux * (1 - share));
+  s->flux *= share;
+  s->carried *= share;
+  if (++s->steps >= ABBE_INNER_MAX_STEPS) return LOST;
+  if (!(s->flux > 0) || !abbe_light_path_survives(&r->rules, s, r->ledger)) return NOT_COUNTED;
+  float o[3], d[3];
+  for (int i = 0; i < 3; i++) {
+    o[i] = p->scatter.from[i][k];
+    d[i] = p->scatter.out[i][k];
+  }
+  abbe_ray_put(next->ray, next->count++, o, d);
+  return MIRRORED;
+}
+
 static void deposit(run *r, size_t k, const abbe_light_path *s) {
   const abbe_hit *hit = &r->packet.hit[k];
   abbe_photon_hit *out = &r->hit[r->hits++];
   const double flux = (double)(s->y * s->flux);
-  float d[3];
-  for (int i = 0; i < 3; i++) d[i] = r->packet.scatter.d[i][k];
+  float along = 0;
+  for (int i = 0; i < 3; i++) along += r->packet.scatter.d[i][k] * hit->ng[i];
   *out = (abbe_photon_hit){.surface = hit->surface->object,
                            .face = hit->face,
                            .u = hit->u,
                            .v = hit->v,
-                           .side = dot(d, hit->ng) < 0 ? 1 : -1,
+                           .side = along < 0 ? 1 : -1,
                            .flux = s->flux,
                            .step = s->step,
                            .chance = {s->chance[0], s->chance[1]}};
   memcpy(out->p, hit->p, sizeof out->p);
   r->ledger->deposited += flux;
-  if (r->hidden) abbe_lamp_rays_add(&r->w->lamp_rays, r->w->g, r->light, hit, out, flux, r->ledger);
+  if (r->hidden)
+    abbe_lamp_rays_add(&r->w->lamp_rays, r->w->g, r->light, hit, out, flux, r->ledger,
+                       &r->w->record);
 }
 
 static void end_path(run *r, size_t k, path_state state, const abbe_light_path *s) {
@@ -365,7 +362,11 @@ static void advance(run *r, const abbe_light_path *paths, size_t count, bool sec
   for (size_t k = 0; k < count; k++) {
     path_state state = r->packet.state[k];
     if (state != SCATTERS) {
-      if (!second && state != NOT_COUNTED) end_path(r, k, state, &paths[k]);
+      if (second || state == NOT_COUNTED) continue;
+      if (state != MIRRORED)
+        end_path(r, k, state, &paths[k]);
+      else if (leave_mirror(r, k, &paths[k]) == LOST)
+        end_path(r, k, LOST, &r->w->next->path[r->w->next->count]);
       continue;
     }
     abbe_light_path s = paths[k];
@@ -390,14 +391,16 @@ static void scatter_packet(run *r, const abbe_light_path *paths, size_t count) {
  * transmitted. */
 static void scatter(run *r, const abbe_light_path *paths, size_t count) {
   abbe_scatter *s = &r->packet.scatter;
-  bool splits[LANES], any = false, scatters = false;
+  bool splits[LANES], any = false, scatters = false, mirrors = false;
   for (size_t k = 0; k < count; k++) {
     splits[k] = r->packet.state[k] == SCATTERS && is_split(r->w, &paths[k]);
     if (splits[k]) s->chance[k] = REFLECT;
     scatters = scatters || r->packet.state[k] == SCATTERS;
+    mirrors = mirrors || r->packet.state[k] == MIRRORED;
     any = any || splits[k];
   }
-  if (scatters) scatter_packet(r, paths, count);
+  if (scatters || mirrors) scatter_packet(r, paths, count);
+  if (mirrors) abbe_scatter_mirror(s, &r->packet.mirroring);
   advance(r, paths, count, false);
   if (!any) return;
   for (size_t k = 0; k < count; k++)
@@ -490,6 +493,6 @@ size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t
     w->batch = w->next;
     w->next = done;
   }
-  abbe_lamp_rays_trace(&w->lamp_rays, w->g, ledger);
+  abbe_lamp_rays_trace(&w->lamp_rays, w->g, ledger, &w->record);
   return r.hits;
 }

@@ -64,10 +64,12 @@ size_t abbe_light_walk_run(abbe_light_walk *walk, const abbe_light *light, uint3
                            const abbe_photon *photon, size_t count, abbe_photon_hit *hit,
                            abbe_light_ledger *ledger);
 
-/* Rays of paths that were traced so far; those that ask what is hidden are not among them. */
+/* Rays of paths that were traced so far; and those that ask what is hidden from a lamp. */
 uint64_t abbe_light_walk_rays(const abbe_light_walk *walk);
-/* Keeps every packet of rays of the next runs, up to a limit, to trace them again for its own
- * sake: seconds that Embree alone takes for them, and their number. False before any were kept. */
+uint64_t abbe_light_walk_lamp_rays(const abbe_light_walk *walk);
+/* Keeps every packet of rays of both kinds of the next runs, up to a limit, to trace them again for
+ * its own sake: seconds that Embree alone takes for them, and their number. False before any were
+ * kept. */
 void abbe_light_walk_keep(abbe_light_walk *walk, size_t packets);
 bool abbe_light_walk_replay(abbe_light_walk *walk, double *seconds, uint64_t *rays);
 

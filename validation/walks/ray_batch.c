@@ -16,6 +16,22 @@ void abbe_ray_record_keep(abbe_ray_record *r, const struct RTCRayHit16 *packet, 
     to->ray.flags[k] = k < lanes ? KEPT | (coherent ? KEPT_COHERENT : 0) : 0;
 }
 
+void abbe_ray_record_keep_shadow(abbe_ray_record *r, const struct RTCRay16 *packet, size_t lanes) {
+  if (r->shadows == r->room) return;
+  struct RTCRay16 *to = &r->shadow[r->shadows++];
+  *to = *packet;
+  for (size_t k = 0; k < LANES; k++) to->flags[k] = k < lanes ? KEPT : 0;
+}
+
+static void occlude_packet(RTCScene scene, struct RTCRay16 *packet, size_t lanes) {
+  struct RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  _Alignas(64) int valid[LANES];
+  for (size_t k = 0; k < LANES; k++) valid[k] = k < lanes ? -1 : 0;
+  rtcOccluded16(valid, scene, &context, packet);
+}
+
 static void trace_packet(RTCScene scene, struct RTCRayHit16 *packet, size_t lanes, bool coherent) {
   struct RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -36,14 +52,34 @@ void abbe_ray_batch_trace(struct RTCRayHit16 *packets, size_t count, bool cohere
   }
 }
 
+void abbe_ray_batch_occlude(struct RTCRay16 *packet, size_t lanes, RTCScene scene,
+                            abbe_ray_record *record) {
+  if (record->packet != NULL) abbe_ray_record_keep_shadow(record, packet, lanes);
+  occlude_packet(scene, packet, lanes);
+}
+
 void abbe_ray_record_make(size_t packets, abbe_ray_record *out) {
-  struct RTCRayHit16 *room = packets > 0 ? aligned_alloc(64, packets * sizeof *room) : NULL;
-  *out = (abbe_ray_record){.packet = room, .room = room != NULL ? packets : 0};
+  *out = (abbe_ray_record){.room = packets};
+  if (packets == 0) return;
+  out->packet = aligned_alloc(64, packets * sizeof *out->packet);
+  out->shadow = aligned_alloc(64, packets * sizeof *out->shadow);
+  if (out->packet == NULL || out->shadow == NULL) abbe_ray_record_free(out);
 }
 
 void abbe_ray_record_free(abbe_ray_record *record) {
   free(record->packet);
+  free(record->shadow);
   *record = (abbe_ray_record){0};
+}
+
+/* How many lanes held a ray, whose marks are taken away. */
+static size_t lanes_kept(unsigned *flags) {
+  size_t lanes = 0;
+  for (size_t k = 0; k < LANES; k++) {
+    lanes += flags[k] & KEPT;
+    flags[k] = 0;
+  }
+  return lanes;
 }
 
 bool abbe_ray_record_replay(abbe_ray_record *r, RTCScene scene, double *seconds, uint64_t *rays) {
@@ -52,16 +88,17 @@ bool abbe_ray_record_replay(abbe_ray_record *r, RTCScene scene, double *seconds,
   const double start_s = abbe_clock_seconds();
   for (size_t i = 0; i < r->count; i++) {
     struct RTCRayHit16 *packet = &r->packet[i];
-    bool coherent = (packet->ray.flags[0] & KEPT_COHERENT) != 0;
-    size_t lanes = 0;
-    for (size_t k = 0; k < LANES; k++) {
-      lanes += packet->ray.flags[k] & KEPT;
-      packet->ray.flags[k] = 0;
-    }
+    const bool coherent = (packet->ray.flags[0] & KEPT_COHERENT) != 0;
+    const size_t lanes = lanes_kept(packet->ray.flags);
     trace_packet(scene, packet, lanes, coherent);
     *rays += lanes;
   }
+  for (size_t i = 0; i < r->shadows; i++) {
+    const size_t lanes = lanes_kept(r->shadow[i].flags);
+    occlude_packet(scene, &r->shadow[i], lanes);
+    *rays += lanes;
+  }
   *seconds = abbe_clock_seconds() - start_s;
-  r->count = 0;
+  r->count = r->shadows = 0;
   return true;
 }

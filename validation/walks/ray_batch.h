@@ -51,10 +51,11 @@ static inline void abbe_ray_reset(struct RTCRayHit16 *p) {
  */
 typedef struct abbe_ray_record {
   struct RTCRayHit16 *packet;
-  size_t count, room;
+  struct RTCRay16 *shadow; /* those that ask whether anything is on their way */
+  size_t count, shadows, room;
 } abbe_ray_record;
 
-/* Room for so many packets; 0: none from now on. */
+/* Room for so many packets of each kind; 0: none from now on. */
 void abbe_ray_record_make(size_t packets, abbe_ray_record *out);
 void abbe_ray_record_free(abbe_ray_record *record);
 /* Seconds that Embree alone takes for what was kept, and the number of rays; forgets them. False
@@ -62,9 +63,15 @@ void abbe_ray_record_free(abbe_ray_record *record);
 bool abbe_ray_record_replay(abbe_ray_record *record, RTCScene scene, double *seconds,
                             uint64_t *rays);
 
-/* Keeps one packet more, of so many rays, while there is room. */
+/* Keeps one packet more, of so many rays, while there is room. Of shadows: coherent ones. */
+void abbe_ray_record_keep_shadow(abbe_ray_record *record, const struct RTCRay16 *packet,
+                                 size_t lanes);
 void abbe_ray_record_keep(abbe_ray_record *record, const struct RTCRayHit16 *packet, size_t lanes,
                           bool coherent);
+
+/* Whether anything is on the way of the first rays of a packet: their tfar is below 0 then. */
+void abbe_ray_batch_occlude(struct RTCRay16 *packet, size_t lanes, RTCScene scene,
+                            abbe_ray_record *record);
 
 /* Traces rays [0, count). coherent: rays of a packet go to neighbouring places. */
 void abbe_ray_batch_trace(struct RTCRayHit16 *packets, size_t count, bool coherent, RTCScene scene,

@@ -34,3 +34,26 @@ SIDE_BY_SIDE void abbe_scatter_packet(abbe_scatter *s) {
     s->reflects[k] = reflects;
   }
 }
+
+void abbe_scatter_meet_mirror(abbe_scatter *s, abbe_mirroring *m, size_t k, const abbe_hit *hit,
+                              const float d[3], const abbe_mirrors *mirrors, uint32_t step,
+                              float within) {
+  const size_t mirror = hit->surface->index;
+  float nk[2] = {1, 1};
+  abbe_scatter_meet(s, k, hit, d);
+  s->eta[k] = 1;
+  s->chance[k] = -1;
+  if (!abbe_mirrors_is_grey(mirrors, mirror)) abbe_mirrors_nk(mirrors, mirror, step, within, nk);
+  m->n[k] = nk[0];
+  m->k[k] = nk[1];
+  m->grey[k] = mirrors->reflectance[mirror];
+}
+
+SIDE_BY_SIDE void abbe_scatter_mirror(const abbe_scatter *s, abbe_mirroring *m) {
+  for (size_t k = 0; k < ABBE_RAY_LANES; k++) {
+    float c = -(s->d[0][k] * s->n[0][k] + s->d[1][k] * s->n[1][k] + s->d[2][k] * s->n[2][k]);
+    c = c < 1 ? c : 1;
+    const float metal = abbe_mirrors_metal(c, m->n[k], m->k[k]);
+    m->share[k] = m->grey[k] >= 0 ? m->grey[k] : metal;
+  }
+}

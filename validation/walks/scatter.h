@@ -7,6 +7,7 @@
 #ifndef ABBE_VALIDATION_WALKS_SCATTER_H
 #define ABBE_VALIDATION_WALKS_SCATTER_H
 
+#include "validation/transport/mirrors.h"
 #include "validation/walks/ray_batch.h"
 
 #ifdef __cplusplus
@@ -28,6 +29,39 @@ typedef struct abbe_scatter {
 
 /* All lanes, whether they hold a path or not. */
 void abbe_scatter_packet(abbe_scatter *s);
+
+/* What mirrors reflect of a packet's paths. */
+typedef struct abbe_mirroring {
+  /* In: n and k of a metal, or a reflectance; that below 0 for a metal. */
+  __attribute__((aligned(64))) float n[ABBE_RAY_LANES], k[ABBE_RAY_LANES], grey[ABBE_RAY_LANES];
+  float share[ABBE_RAY_LANES]; /* out */
+} abbe_mirroring;
+
+/* By the directions and normals of s; all lanes, whatever they hold. */
+void abbe_scatter_mirror(const abbe_scatter *s, abbe_mirroring *m);
+
+/* Where lane k comes along unit d to a hit: its place, normals and size; true: from outside. */
+static inline bool abbe_scatter_meet(abbe_scatter *s, size_t k, const abbe_hit *hit,
+                                     const float d[3]) {
+  const float along = d[0] * hit->ng[0] + d[1] * hit->ng[1] + d[2] * hit->ng[2];
+  const float shaded = d[0] * hit->n[0] + d[1] * hit->n[1] + d[2] * hit->n[2];
+  const bool entering = along < 0;
+  const float side = entering ? 1 : -1;
+  const float *outside = (shaded < 0) == entering ? hit->n : hit->ng;
+  for (int i = 0; i < 3; i++) {
+    s->n[i][k] = side * outside[i];
+    s->ng[i][k] = side * hit->ng[i];
+    s->p[i][k] = hit->p[i];
+  }
+  s->size[k] = hit->surface->sphere ? hit->surface->radius : 0;
+  return entering;
+}
+
+/* The same at a mirror, from either side, within step at the share `within` of it: of one index on
+ * both sides, and all that goes on is reflected. */
+void abbe_scatter_meet_mirror(abbe_scatter *s, abbe_mirroring *m, size_t k, const abbe_hit *hit,
+                              const float d[3], const abbe_mirrors *mirrors, uint32_t step,
+                              float within);
 
 #ifdef __cplusplus
 }

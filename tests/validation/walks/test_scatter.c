@@ -81,7 +81,45 @@ static void test_every_lane_is_one_interface(void **state) {
   assert_true(reflected > 200 && reflected < 3000);
 }
 
+/* Off mirrors of gold, of one reflectance, and of no normal but the face's, from both sides. */
+static void test_every_lane_is_one_mirror(void **state) {
+  (void)state;
+  float reflectance[2] = {-1, 0.7f}, nk[6][2] = {{0.2f, 3}, {1.4f, 1.9f}, {0.13f, 4.1f}};
+  const abbe_mirrors mirrors = {.count = 2, .steps = 2, .reflectance = reflectance, .nk = nk};
+  uint64_t seed = 11;
+  for (int turn = 0; turn < 50; turn++) {
+    abbe_scatter s = {.size = {0}};
+    abbe_mirroring m = {.n = {0}};
+    float cos_i[ABBE_RAY_LANES], expected[ABBE_RAY_LANES];
+    for (size_t k = 0; k < ABBE_RAY_LANES; k++) {
+      const abbe_surface surface = {.index = k % 3 == 0, .sphere = k % 2 == 0, .radius = 2};
+      abbe_hit hit = {.surface = &surface};
+      float d[3], within = (float)random_between(&seed, 0, 1);
+      unit(&seed, d);
+      unit(&seed, hit.ng);
+      for (int i = 0; i < 3; i++) {
+        s.d[i][k] = d[i];
+        hit.n[i] = hit.ng[i];
+        hit.p[i] = (float)random_between(&seed, -1, 1);
+      }
+      const uint32_t step = (uint32_t)(k % 2);
+      abbe_scatter_meet_mirror(&s, &m, k, &hit, d, &mirrors, step, within);
+      cos_i[k] = fminf(fabsf(dot(d, hit.ng)), 1);
+      expected[k] = abbe_mirrors_reflect(&mirrors, surface.index, cos_i[k], step, within);
+      assert_near((double)s.size[k], surface.sphere ? 2 : 0, 0);
+    }
+    abbe_scatter_packet(&s);
+    abbe_scatter_mirror(&s, &m);
+    for (size_t k = 0; k < ABBE_RAY_LANES; k++) {
+      assert_true(s.reflects[k]);
+      check_lane(&s, k);
+      assert_near((double)m.share[k], (double)expected[k], 1e-6);
+    }
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_lane_is_one_interface)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_lane_is_one_interface),
+                                     cmocka_unit_test(test_every_lane_is_one_mirror)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
