@@ -27,6 +27,8 @@ enum {
   OPTION_LIGHT,
   OPTION_NODES,
   OPTION_HARMONICS,
+  OPTION_RAYS,
+  OPTION_ASYMMETRIC,
   OPTION_SHELLS,
   OPTION_GRID,
   OPTION_JOIN,
@@ -35,6 +37,9 @@ enum {
   OPTION_PHOTONS,
   OPTION_PASSES,
   OPTION_UNTIL_ERROR,
+  OPTION_RESUME,
+  OPTION_CHECKPOINT,
+  OPTION_EVERY,
   OPTION_RANGE,
   OPTION_SEED,
   OPTION_THREADS,
@@ -52,8 +57,17 @@ static const struct argp_option options[] = {
      "directions of light: 1, 12, 42, 162, 642 or 2562 (162; of a ball 1)", 1},
     {"sh", OPTION_HARMONICS, "N", 0,
      "spherical harmonics of the light's direction to degree N, 1 to 12, in place of the nodes", 1},
+    {"rays", OPTION_RAYS, "N", 0,
+     "the rays of N points of the object's surface in place of cells' values: any illuminant, "
+     "lamps "
+     "nearby, sharp between nodes",
+     1},
+    {"asymmetric", OPTION_ASYMMETRIC, NULL, 0,
+     "of rays: do not look for the object's symmetry, to measure what it saves", 1},
     {"shells", OPTION_SHELLS, "SxN|SxMxM", 0,
-     "S shells of N triangles (80, 320, 1280, 5120 ...) or M x M octahedral texels (24x5120)", 1},
+     "S shells of N triangles (80, 320, 1280, 5120 ...) or M x M octahedral texels (24x5120; of "
+     "rays 24x48x48)",
+     1},
     {"grid", OPTION_GRID, "N", 0, "or N x N x N cubes, 2 to 256", 1},
     {"join", OPTION_JOIN, "X", 0,
      "join cells that differ by less than X of the beam's irradiance: several resolutions", 1},
@@ -63,6 +77,10 @@ static const struct argp_option options[] = {
     {"passes", OPTION_PASSES, "N", 0, "of a node (4)", 2},
     {"until-error", OPTION_UNTIL_ERROR, "X", 0,
      "more passes, until a node's relative standard error is below X", 2},
+    {"resume", OPTION_RESUME, NULL, 0, "go on from the checkpoint, where there is one", 2},
+    {"checkpoint", OPTION_CHECKPOINT, "FILE", ABBE_ARGUMENT_WRITES,
+     "where it is kept until all is done (OUTPUT.checkpoint)", 2},
+    {"checkpoint-every", OPTION_EVERY, "SECONDS", 0, "how often it is written (30)", 2},
     {"range", OPTION_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", 2},
     {"seed", OPTION_SEED, "N", 0, "of the random numbers (0)", 2},
     {"threads", OPTION_THREADS, "N", 0, "all cores without; the result is the same", 2},
@@ -118,6 +136,15 @@ static error_t parse_work(int key, char *text, request *q) {
   case OPTION_UNTIL_ERROR:
     d->until_error = abbe_command_number(p, "--until-error", text, 1e-6, 1);
     return 0;
+  case OPTION_RESUME:
+    d->resume = true;
+    return 0;
+  case OPTION_CHECKPOINT:
+    d->checkpoint = text;
+    return 0;
+  case OPTION_EVERY:
+    d->checkpoint_s = abbe_command_number(p, "--checkpoint-every", text, 0, 1e9);
+    return 0;
   case OPTION_RANGE:
     abbe_command_range(p, "--range", text, &d->min_nm, &d->max_nm);
     return 0;
@@ -159,6 +186,12 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_HARMONICS:
     d->degree = abbe_command_count(q->program, "--sh", text, 1, ABBE_LIGHT_HARMONICS_MOST);
+    return 0;
+  case OPTION_RAYS:
+    d->exits = abbe_command_count(q->program, "--rays", text, 1, ABBE_LIGHT_EXITS_MOST);
+    return 0;
+  case OPTION_ASYMMETRIC:
+    d->asymmetric = true;
     return 0;
   case OPTION_SHELLS:
     take_shells(q, text);
@@ -248,6 +281,12 @@ static void summarise(const request *q, const abbe_caustic_volume *v,
           v->body.name, v->nodes.count, v->nodes.count > 1 ? "s" : "", v->region.cells,
           (double)s->photons / nodes, s->seconds / nodes,
           1e-6 * (double)abbe_caustic_volume_bytes(v), 1e-6 * file_bytes(q->out));
+  if (v->kind == ABBE_VOLUME_EXITS)
+    fprintf(
+        stderr,
+        "%zu exits of %zu points, and of %zu maps of them, carry %.4g of the light; %zu sequences "
+        "of facets; of %.2g it is not known how they change\n",
+        v->exits.count, v->exits.points, s->maps, s->carried, s->sequences, s->alone);
   if (s->error > 0) fprintf(stderr, "relative standard error %.2g\n", s->error);
   if (s->joint_bytes > 0)
     fprintf(stderr, "joint cells take %.4g MB\n", 1e-6 * (double)s->joint_bytes);
@@ -263,14 +302,17 @@ static abbe_result print_json(const request *q, const abbe_caustic_volume *v,
     const char *name;
     double value;
   } all[] = {
-      {"nodes", (double)v->nodes.count},  {"cells", (double)v->region.cells},
-      {"radius_m", v->body.radius},       {"photons", (double)s->photons},
-      {"passes", (double)s->passes},      {"seconds", s->seconds},
-      {"relative_error", s->error},       {"bytes_memory", (double)abbe_caustic_volume_bytes(v)},
-      {"bytes_disk", file_bytes(q->out)}, {"bytes_joint", (double)s->joint_bytes},
-      {"reached_w", s->ledger.reached},   {"missed_w", s->ledger.missed},
-      {"absorbed_w", s->ledger.absorbed}, {"lost_w", s->ledger.lost},
-      {"outflow_least", s->outflow[0]},   {"outflow_greatest", s->outflow[1]}};
+      {"nodes", (double)v->nodes.count},   {"cells", (double)v->region.cells},
+      {"radius_m", v->body.radius},        {"photons", (double)s->photons},
+      {"passes", (double)s->passes},       {"seconds", s->seconds},
+      {"relative_error", s->error},        {"bytes_memory", (double)abbe_caustic_volume_bytes(v)},
+      {"bytes_disk", file_bytes(q->out)},  {"bytes_joint", (double)s->joint_bytes},
+      {"reached_w", s->ledger.reached},    {"missed_w", s->ledger.missed},
+      {"exits", (double)v->exits.count},   {"exits_carried", s->carried},
+      {"exits_alone", s->alone},           {"sequences", (double)s->sequences},
+      {"points", (double)v->exits.points}, {"symmetry", (double)s->maps},
+      {"absorbed_w", s->ledger.absorbed},  {"lost_w", s->ledger.lost},
+      {"outflow_least", s->outflow[0]},    {"outflow_greatest", s->outflow[1]}};
   bool made = cJSON_AddStringToObject(root, "file", q->out) != NULL &&
               cJSON_AddStringToObject(root, "object", v->body.name) != NULL;
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
@@ -280,14 +322,31 @@ static abbe_result print_json(const request *q, const abbe_caustic_volume *v,
   return result;
 }
 
+/* Beside the volume, where it has no name of its own. */
+static abbe_result name_checkpoint(request *q, char **path, abbe_error *error) {
+  const size_t size = strlen(q->out) + 16;
+  *path = malloc(size);
+  if (*path == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
+  snprintf(*path, size, "%s.checkpoint", q->out);
+  if (q->desc.checkpoint == NULL) {
+    q->desc.checkpoint = *path;
+    abbe_arguments_add(q->program, ABBE_ARGUMENT_WRITES, "the checkpoint", *path);
+  }
+  return ABBE_OK;
+}
+
 static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
   abbe_caustic_volume volume = {0};
   abbe_volume_fill_statistics done;
-  abbe_result result = fill(q, scene, &volume, &done, error);
+  char *path;
+  abbe_result result = name_checkpoint(q, &path, error);
+  if (result == ABBE_OK) result = fill(q, scene, &volume, &done, error);
   if (result == ABBE_OK) result = abbe_volume_file_write(q->out, &volume, error);
+  if (result == ABBE_OK) remove(q->desc.checkpoint);
   if (result == ABBE_OK && !q->quiet) summarise(q, &volume, &done);
   if (result == ABBE_OK && q->json) result = print_json(q, &volume, &done, error);
   abbe_caustic_volume_free(&volume);
+  free(path);
   return result;
 }
 
@@ -304,11 +363,14 @@ int abbe_command_volume(int argc, char **argv) {
           "  abbe volume scenes/sphere.yaml -o sphere-volume.exr\n"
           "  abbe volume scenes/prism.yaml -o prism-volume.exr --nodes 642 --shells 24x48x48\n"
           "  abbe volume scenes/ring.yaml -o ring-volume.exr --grid 64 --until-error 0.02\n"
+          "  abbe volume scenes/ring.yaml -o ring-volume.exr --grid 64 --until-error 0.02 "
+          "--resume\n"
+          "  abbe volume scenes/prism.yaml -o prism-rays.exr --rays 16384 --shells 32x64x64\n"
           "  abbe volume scenes/sphere.yaml -o printed.exr --nodes 162 --printed\n"
           "  abbe render scenes/sphere.yaml --png sphere.png --transport volume --volume "
           "sphere-volume.exr\n",
   };
-  request q = {.program = argv[0]};
+  request q = {.program = argv[0], .desc = {.checkpoint_s = 30}};
   abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};
   abbe_scene scene = {0};

@@ -53,7 +53,7 @@ foreach(name
     sphere_quadrature
     trace_run
     tracer
-    volume_fill volume_space volume_sums
+    exit_fill exit_points exit_walk volume_checkpoint volume_fill volume_space volume_sums
     sweep_pictures
     sweep_plot
     sweep_presets

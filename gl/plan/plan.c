@@ -33,6 +33,15 @@ static abbe_result make_lists(const abbe_scene *scene, abbe_plan *plan, abbe_err
   return ABBE_OK;
 }
 
+/* Maps of rays go with receivers that are parallelograms alone, as many as uniforms hold. */
+static size_t count_pages(const abbe_plan *plan) {
+  enum { MOST = 192 };
+  const size_t pages = 2 * plan->parallelogram_count;
+  const bool rays = plan->volume && plan->desc.volume->kind == ABBE_VOLUME_EXITS;
+  const bool fit = pages * plan->light_view_count <= MOST;
+  return rays && fit && plan->receivers == ABBE_RECEIVER_EXACT ? pages : 0;
+}
+
 /* Facts that follow from others. */
 static void combine(abbe_plan *plan) {
   const bool published = abbe_profile_is_published(plan->desc.profile), caustics = plan->caustics;
@@ -68,6 +77,7 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   }
   if (out->desc.transport == ABBE_TRANSPORT_VOLUME) {
     out->volume = out->caustics;
+    out->volume_pages = count_pages(out);
     out->caustics = false;
   }
   abbe_receiver_model_shadows(scene, out);

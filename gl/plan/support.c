@@ -201,6 +201,17 @@ static abbe_result check_volume_light(const abbe_light *light, const abbe_render
   return ABBE_OK;
 }
 
+/* Exits have wavelengths, which any light and observer may weigh, as far as they go. */
+static abbe_result check_exits_range(const abbe_render_desc *d, abbe_error *error) {
+  const abbe_caustic_volume *v = d->volume;
+  if (d->min_nm >= v->min_nm - 1e-6 && d->max_nm <= v->max_nm + 1e-6) return ABBE_OK;
+  return abbe_error_set(
+      error, ABBE_UNSUPPORTED,
+      "the volume's exits are of %g to %g nm, and the picture's light of %g to %g "
+      "nm: make one for it (abbe volume --range)",
+      v->min_nm, v->max_nm, d->min_nm, d->max_nm);
+}
+
 abbe_result abbe_support_volume(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
   ABBE_REQUIRE(scene && plan, error);
   const abbe_render_desc *d = &plan->desc;
@@ -216,5 +227,7 @@ abbe_result abbe_support_volume(const abbe_scene *scene, const abbe_plan *plan, 
   for (size_t i = 0; i < scene->light_count && result == ABBE_OK; i++)
     if (d->volume->kind == ABBE_VOLUME_VECTOR)
       result = check_volume_light(&scene->light[i], d, place.centre, error);
+  if (result == ABBE_OK && d->volume->kind == ABBE_VOLUME_EXITS)
+    result = check_exits_range(d, error);
   return result;
 }

@@ -48,6 +48,7 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
     out->volume = true;
     out->volume_kind = p->desc.volume->kind;
     out->volume_region = p->desc.volume->region.desc.kind;
+    out->volume_pages = p->volume_pages;
   }
   for (size_t i = 0; i < p->refractor_count; i++)
     if (p->model[i] == ABBE_REFRACTOR_CONVEX)
@@ -143,6 +144,7 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   }
   print_flag(to, "CAUSTICS", v->caustics);
   print_flag(to, "VOLUME", v->volume);
+  if (v->volume && v->volume_pages > 0) print_count(to, "VOLUME_PAGES", v->volume_pages);
   print_flag(to, "VOLUME_PRINTED", v->volume && v->volume_kind == ABBE_VOLUME_PRINTED);
   print_flag(to, "VOLUME_GRID", v->volume && v->volume_region == ABBE_REGION_GRID);
   print_flag(to, "VOLUME_GEODESIC", v->volume && v->volume_region == ABBE_REGION_GEODESIC);

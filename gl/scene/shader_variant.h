@@ -19,13 +19,14 @@ typedef struct abbe_shader_variant {
   size_t exits, slots;
   size_t bvh_stack, receiver_root, shadow_planes;
   bool spheres, convex, layers, hierarchy, receiver_hierarchy, one_convex, one_shadow;
-  bool receiver_shadows, absorbing, textured, receiver_colours, environment, caustics, walk, mirrors,
-      cubes;
+  bool receiver_shadows, absorbing, textured, receiver_colours, environment, caustics, walk,
+      mirrors, cubes;
   bool volume; /* caustics are looked up in the plan's, of that kind */
   abbe_volume_kind volume_kind;
   abbe_region_kind volume_region;
-  bool pinholes; /* receivers have pages of what these show */
-  bool copies; /* a software rasteriser: tables are copied first (copies.glsl) */
+  size_t volume_pages; /* of a light, in place of cells */
+  bool pinholes;       /* receivers have pages of what these show */
+  bool copies;         /* a software rasteriser: tables are copied first (copies.glsl) */
   /* the picture */
   bool aovs;
   size_t pixel_threads; /* threads of a pixel (refraction_threads.glsl) */

@@ -55,7 +55,9 @@ vec3 caustic_colour(vec3 xyz) { return rgb_from_xyz * xyz; }
 #include "receiver_hit.glsl"
 #include "receiver_shadow.glsl"
 #include "caustic_lookup.glsl"
-#ifdef VOLUME
+#ifdef VOLUME_PAGES
+#include "volume_pages.glsl"
+#elif defined(VOLUME)
 #include "volume_lookup.glsl"
 #endif
 

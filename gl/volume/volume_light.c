@@ -1,7 +1,7 @@
 #include "gl/volume/volume_light.h"
 
 #include "scenes/geometry/vector.h"
-#include "scenes/volume/caustic_volume.h"
+#include "scenes/volume/exit_light.h"
 #include "scenes/volume/half.h"
 
 #include <math.h>
@@ -40,6 +40,30 @@ static void pack_sum(const abbe_caustic_volume *v, const abbe_volume_sight *sigh
     }
 }
 
+/* Of rays that leave the object in that light, as halves. */
+static abbe_result pack_exits(const abbe_volume_light *v, const abbe_caustic_volume *volume,
+                              const abbe_volume_place *place, size_t light, uint32_t *out,
+                              abbe_error *error) {
+  const abbe_plan *plan = v->scene->plan;
+  const abbe_exit_light_desc desc = {.light = &v->scene->local->light[light],
+                                     .object = &v->scene->local->object[plan->refractor_object[0]],
+                                     .place = place,
+                                     .observer = plan->desc.observer,
+                                     .min_nm = plan->desc.min_nm,
+                                     .max_nm = plan->desc.max_nm};
+  const size_t cells = volume->region.cells;
+  float *value = malloc(9 * cells * sizeof *value);
+  if (value == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu cells", cells);
+  const abbe_result result = abbe_exit_light_fill(volume, &desc, value, error);
+  for (size_t i = 0; result == ABBE_OK && i < cells; i++, out += 5) {
+    memset(out, 0, 5 * sizeof *out);
+    for (size_t c = 0; c < 9; c++)
+      out[c / 2] |= (uint32_t)abbe_half_of_float(value[9 * i + c]) << 16 * (c % 2);
+  }
+  free(value);
+  return result;
+}
+
 /* Turned into the body's coordinates, and there into the node's light. */
 static void join_turns(const abbe_volume_place *place, const double turn[9], float out[9]) {
   for (int i = 0; i < 3; i++)
@@ -62,6 +86,18 @@ static double look_at_light(const abbe_light *light, const double centre[3], dou
   abbe_vector_normalise(to_light);
   const double away[3] = {-to_light[0], -to_light[1], -to_light[2]};
   return abbe_light_profile(light, away) / (distance * distance);
+}
+
+/* One block, of that light alone. */
+static abbe_result sight_exits(abbe_volume_light *v, const abbe_caustic_volume *volume,
+                               const abbe_volume_place *place, size_t light, uint32_t *values,
+                               abbe_error *error) {
+  static const double as_it_is[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  v->strength[light] = 1; /* the rays have the light's */
+  v->weight[3 * light] = 1;
+  join_turns(place, as_it_is, v->turn[3 * light]);
+  return pack_exits(v, volume, place, light,
+                    values + 3 * light * volume->region.cells * words_of(volume), error);
 }
 
 static void sight_light(abbe_volume_light *v, const abbe_caustic_volume *volume,
@@ -102,27 +138,38 @@ abbe_result abbe_volume_light_make(const abbe_gpu_scene *scene, abbe_volume_ligh
   abbe_result result = abbe_volume_body_find(
       &volume->body, &scene->local->object[plan->refractor_object[0]], &place, error);
   if (result != ABBE_OK) return result;
+  out->scene = scene;
+  if (plan->volume_pages > 0) return abbe_volume_pages_make(scene, &place, &out->pages, error);
   uint32_t *values = calloc(count, sizeof *values);
   if (values == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a volume's nodes");
-  out->scene = scene;
   for (int k = 0; k < 3; k++) out->centre[k] = (float)place.centre[k];
-  for (size_t i = 0; i < lights; i++) sight_light(out, volume, &place, i, values);
+  for (size_t i = 0; i < lights && result == ABBE_OK; i++)
+    if (volume->kind == ABBE_VOLUME_EXITS)
+      result = sight_exits(out, volume, &place, i, values, error);
+    else
+      sight_light(out, volume, &place, i, values);
   if (table)
     memcpy(values + 3 * lights * block, volume->region.mesh.table, side * side * sizeof *values);
-  result = abbe_gpu_make_buffer(scene->gpu, count * sizeof *values, values, &out->cells, error);
+  if (result == ABBE_OK)
+    result = abbe_gpu_make_buffer(scene->gpu, count * sizeof *values, values, &out->cells, error);
   free(values);
   return result;
 }
 
 void abbe_volume_light_free(abbe_volume_light *v) {
   if (v->scene == NULL) return;
+  abbe_volume_pages_free(&v->pages);
   abbe_gpu_drop_buffers(v->scene->gpu, 1, &v->cells);
   *v = (abbe_volume_light){0};
 }
 
 void abbe_volume_light_set(const abbe_volume_light *v, GLuint program) {
   if (v->scene == NULL) return;
+  if (v->pages.scene != NULL) {
+    abbe_volume_pages_set(&v->pages, program, UNIT);
+    return;
+  }
   abbe_gpu *gpu = v->scene->gpu;
   const abbe_gl *gl = gpu->gl;
   const abbe_plan *plan = v->scene->plan;

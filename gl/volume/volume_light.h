@@ -5,12 +5,13 @@
 #ifndef ABBE_GL_VOLUME_VOLUME_LIGHT_H
 #define ABBE_GL_VOLUME_VOLUME_LIGHT_H
 
-#include "gl/scene/gpu_scene.h"
+#include "gl/volume/volume_pages.h"
 
 enum { ABBE_VOLUME_LIGHT_SIGHTS = 3 * ABBE_SCENE_MAX_LIGHTS };
 
 typedef struct abbe_volume_light {
   const abbe_gpu_scene *scene; /* NULL: the plan has no volume */
+  abbe_volume_pages pages;     /* of rays: in place of cells */
   GLuint cells;                /* values of each light's nodes, then the table of directions */
   float centre[3];
   float turn[ABBE_VOLUME_LIGHT_SIGHTS][9]; /* of places into a node's light, column-major */

@@ -16,8 +16,8 @@ static size_t count_of(const abbe_caustic_volume *v) {
 abbe_result abbe_caustic_volume_allocate(abbe_caustic_volume *v, abbe_error *error) {
   ABBE_REQUIRE(v, error);
   const size_t each = v->region.cells * abbe_caustic_volume_channels(v);
-  if (each == 0 || v->nodes.count == 0)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a volume without nodes or cells");
+  if (each == 0 || v->nodes.count == 0 || v->kind == ABBE_VOLUME_EXITS)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a volume without nodes, cells or values");
   if (abbe_caustic_volume_blocks(v) > ABBE_CAUSTIC_VOLUME_MOST / each)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%zu nodes of %zu cells are more than a volume holds: ask for fewer of "
@@ -33,11 +33,13 @@ void abbe_caustic_volume_free(abbe_caustic_volume *v) {
   if (v == NULL) return;
   abbe_volume_region_free(&v->region);
   abbe_light_nodes_free(&v->nodes);
+  abbe_light_exits_free(&v->exits);
   free(v->value);
   *v = (abbe_caustic_volume){0};
 }
 
 size_t abbe_caustic_volume_bytes(const abbe_caustic_volume *v) {
+  if (v->kind == ABBE_VOLUME_EXITS) return abbe_light_exits_bytes(&v->exits);
   return count_of(v) * (v->kind == ABBE_VOLUME_PRINTED ? 1 : sizeof *v->value);
 }
 
@@ -82,7 +84,7 @@ abbe_result abbe_caustic_volume_project(abbe_caustic_volume *v, size_t degree, a
   ABBE_REQUIRE(v, error);
   const size_t nodes = v->nodes.count, count = abbe_light_harmonics_count(degree);
   const size_t each = v->region.cells * abbe_caustic_volume_channels(v);
-  if (v->kind == ABBE_VOLUME_PRINTED || degree == 0 || v->degree > 0 || v->value == NULL)
+  if (v->kind != ABBE_VOLUME_VECTOR || degree == 0 || v->degree > 0 || v->value == NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "harmonics are made of a volume of vectors at nodes, to degree 1 to %d",
                           ABBE_LIGHT_HARMONICS_MOST);
@@ -115,7 +117,7 @@ abbe_result abbe_caustic_volume_join(abbe_caustic_volume *v, double tolerance, s
   const size_t channels = abbe_caustic_volume_channels(v), each = v->region.cells * channels;
   abbe_volume_order order;
   *bytes = 0;
-  if (v->kind == ABBE_VOLUME_PRINTED || v->value == NULL)
+  if (v->kind != ABBE_VOLUME_VECTOR || v->value == NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "cells of vectors alone are joined");
   abbe_result result = abbe_volume_order_make(&v->region, &order, error);
   for (size_t k = 0; k < abbe_caustic_volume_blocks(v) && result == ABBE_OK; k++) {

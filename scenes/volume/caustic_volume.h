@@ -1,7 +1,8 @@
 /* caustic_volume.h: the light that an object sends to the space around it, for directional lights
  * from many directions, computed beforehand: for each light node and cell the vector irradiance of
  * unit light; or, as the method was printed, the share of the beam's light
- * [WymanHansenShirley2003].
+ * [WymanHansenShirley2003]; or the rays that leave the object (light_exits.h), from which the cells
+ * are filled for a light where it stands (exit_light.h).
  *
  * All in the object's own coordinates: places from its centre in m, as it stood when the volume was
  * made. It holds numbers; validation/volume/volume_fill.h finds them out, volume_file.h stores
@@ -10,6 +11,7 @@
 #ifndef ABBE_SCENES_VOLUME_CAUSTIC_VOLUME_H
 #define ABBE_SCENES_VOLUME_CAUSTIC_VOLUME_H
 
+#include "scenes/volume/light_exits.h"
 #include "scenes/volume/light_harmonics.h"
 #include "scenes/volume/volume_body.h"
 #include "scenes/volume/volume_region.h"
@@ -24,7 +26,9 @@ typedef enum abbe_volume_kind {
   ABBE_VOLUME_VECTOR,
   /* R, G and B (linear Rec.709 of equal white) in bytes: light on a surface that faces the object's
    * centre, of that of the beam. */
-  ABBE_VOLUME_PRINTED
+  ABBE_VOLUME_PRINTED,
+  /* Rays that leave the object; it has no values, and looks none up. */
+  ABBE_VOLUME_EXITS
 } abbe_volume_kind;
 
 /* Where light from between nodes is looked up: at the node nearest to it; at the three around it;
@@ -47,9 +51,10 @@ typedef struct abbe_caustic_volume {
                       values at the nodes */
   double white[3]; /* XYZ of the light that it was made for, Y = 1 */
   double min_nm, max_nm;
-  double byte;     /* PRINTED: what a byte of 1 stands for */
-  double error;    /* relative standard error of what was summed up; 0: not known */
-  uint16_t *value; /* halves [blocks][region.cells][channels] */
+  double byte;            /* PRINTED: what a byte of 1 stands for */
+  double error;           /* relative standard error of what was summed up; 0: not known */
+  uint16_t *value;        /* halves [blocks][region.cells][channels]; EXITS: NULL */
+  abbe_light_exits exits; /* EXITS: for the nodes, and cells of the region */
 } abbe_caustic_volume;
 
 /* One for each node or coefficient. */
@@ -63,20 +68,22 @@ static inline size_t abbe_caustic_volume_channels(const abbe_caustic_volume *v) 
 }
 
 /* Room for the values of a body, a region and nodes that are there, all 0: ABBE_NO_MEMORY;
- * ABBE_INVALID_ARGUMENT for more than ABBE_CAUSTIC_VOLUME_MOST of them. */
+ * ABBE_INVALID_ARGUMENT for more than ABBE_CAUSTIC_VOLUME_MOST of them, and for exits. */
 #define ABBE_CAUSTIC_VOLUME_MOST ((size_t)1 << 31)
 abbe_result abbe_caustic_volume_allocate(abbe_caustic_volume *volume, abbe_error *error);
 void abbe_caustic_volume_free(abbe_caustic_volume *volume);
-size_t abbe_caustic_volume_bytes(const abbe_caustic_volume *volume); /* of values, in memory */
+/* Of values or exits, in memory. */
+size_t abbe_caustic_volume_bytes(const abbe_caustic_volume *volume);
 
 /* Values at nodes become coefficients of harmonics to that degree, 1 to ABBE_LIGHT_HARMONICS_MOST,
- * by least squares. ABBE_INVALID_ARGUMENT for a printed volume, and as abbe_light_harmonics_fit. */
+ * by least squares. ABBE_INVALID_ARGUMENT for another than a vector volume, and as
+ * abbe_light_harmonics_fit. */
 abbe_result abbe_caustic_volume_project(abbe_caustic_volume *volume, size_t degree,
                                         abbe_error *error);
 
 /* Joins cells of every block within a tolerance of unit irradiance (volume_tree.h): each has the
  * joint value then. *bytes: what the joint values take. ABBE_INVALID_ARGUMENT as
- * abbe_volume_order_make, and for a printed volume. */
+ * abbe_volume_order_make, and for another than a vector volume. */
 abbe_result abbe_caustic_volume_join(abbe_caustic_volume *volume, double tolerance, size_t *bytes,
                                      abbe_error *error);
 

@@ -3,7 +3,8 @@
  *
  * Pixels follow each other along rows, node after node and cell after cell; those that are left in
  * the last row are 0. Channels are X.x, X.y, X.z, Y.x ... of a vector volume, R, G, B of a printed
- * one.
+ * one. Of exits there are points, then exits node after node, then the cells' free space; channels
+ * are P.x to Dn.z, T and S.
  */
 #ifndef ABBE_SCENES_VOLUME_VOLUME_FILE_H
 #define ABBE_SCENES_VOLUME_VOLUME_FILE_H

@@ -48,6 +48,7 @@ static const struct named {
     {"plan", "volume", READS},
     {"volume", "", READS},
     {"volume", "output", WRITES},
+    {"volume", "checkpoint", WRITES},
     {"volume", "materials", READS},
     {"weights", "illuminant", READS},
     {"display", "", READS},

@@ -141,6 +141,7 @@ static const struct {
     {"abbe_text_diff", "before"},
     {"abbe_text_diff", "after"},
     {"abbe_tracer_pass", "stop"},
+    {"abbe_light_exits_make", "symmetry"},
     {"abbe_volume_sums_make", "beam"},
     {"abbe_volume_sums_make", "share"},
     {"abbe_yaml_edit_list", "value"},

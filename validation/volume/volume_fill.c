@@ -2,11 +2,15 @@
 
 #include "base/clock.h"
 #include "colorimetry/rgb_space.h"
+#include "colorimetry/weights.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/volume/half.h"
 #include "spectral/wavelengths.h"
 #include "validation/transport/random.h"
 #include "validation/transport/spectral_sampling.h"
+#include "validation/volume/exit_fill.h"
+#include "validation/volume/lone_object.h"
+#include "validation/volume/volume_checkpoint.h"
 #include "validation/volume/volume_space.h"
 #include "validation/volume/volume_sums.h"
 #include "validation/walks/light_walk.h"
@@ -25,14 +29,10 @@ typedef struct worker {
   abbe_light_walk *walk;
 } worker;
 
-/* The object alone in one directional light, and all that follows light there. */
+/* All that follows light through the object alone. */
 typedef struct fill {
   abbe_volume_fill_desc desc;
-  abbe_scene scene; /* a shallow copy */
-  abbe_object object;
-  abbe_light light;
-  abbe_volume_place place;
-  abbe_geometry geometry;
+  abbe_lone_object lone;
   abbe_spectral_sampling sampling;
   abbe_media media;
   abbe_mirrors mirrors;
@@ -46,15 +46,7 @@ typedef struct fill {
 
 /* ---- the request ---- */
 
-static abbe_result check_counts(const abbe_scene *scene, const abbe_volume_fill_desc *d,
-                                abbe_error *error) {
-  if (scene->light_count == 0)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the scene has no light of its own, whose colour the volume would have");
-  if (d->object >= scene->object_count || d->light >= scene->light_count)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "object %zu in light %zu: the scene has %zu objects and %zu lights",
-                          d->object + 1, d->light + 1, scene->object_count, scene->light_count);
+static abbe_result check_counts(const abbe_volume_fill_desc *d, abbe_error *error) {
   if (d->photons > ABBE_VOLUME_FILL_MOST_PHOTONS || d->passes > ABBE_VOLUME_FILL_MOST_PASSES)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%zu photons a pass, %zu passes; at most %u and %d", d->photons,
@@ -62,19 +54,27 @@ static abbe_result check_counts(const abbe_scene *scene, const abbe_volume_fill_
   if (d->degree > 0 && d->kind == ABBE_VOLUME_PRINTED)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "harmonics are of vectors; a printed volume has bytes at nodes");
+  if (d->exits > 0 && (d->degree > 0 || d->joins || d->kind == ABBE_VOLUME_PRINTED))
+    return abbe_error_set(
+        error, ABBE_INVALID_ARGUMENT,
+        "exits are rays at nodes: they go with neither harmonics nor joint cells, "
+        "and are not printed");
   return ABBE_OK;
 }
 
 static void resolve(const abbe_volume_body *body, double surface, abbe_volume_fill_desc *d) {
   abbe_region_desc *r = &d->region;
-  if (d->nodes == 0) d->nodes = body->ball && d->degree == 0 ? 1 : 162;
+  if (d->nodes == 0) d->nodes = body->ball && d->degree == 0 && d->exits == 0 ? 1 : 162;
   if (d->photons == 0) d->photons = 1u << 18;
   if (d->passes == 0) d->passes = 4;
   if (d->until_error > 0 && d->passes < LEAST_PASSES) d->passes = LEAST_PASSES;
   if (d->min_nm == 0) d->min_nm = ABBE_WAVELENGTH_MIN_NM;
   if (d->max_nm == 0) d->max_nm = ABBE_WAVELENGTH_MAX_NM;
   if (d->threads == 0) d->threads = (size_t)omp_get_num_procs();
-  if (r->kind == ABBE_REGION_GRID && r->side == 0) {
+  if (r->kind == ABBE_REGION_GRID && r->side == 0 && d->exits > 0) {
+    r->kind = ABBE_REGION_OCTAHEDRAL;
+    r->side = 48;
+  } else if (r->kind == ABBE_REGION_GRID && r->side == 0) {
     r->kind = ABBE_REGION_GEODESIC;
     r->levels = 4;
   }
@@ -87,33 +87,19 @@ static void resolve(const abbe_volume_body *body, double surface, abbe_volume_fi
 static abbe_result begin(const abbe_scene *scene, fill *f, abbe_error *error) {
   abbe_volume_fill_desc *d = &f->desc;
   abbe_caustic_volume *v = f->volume;
-  abbe_result result = check_counts(scene, d, error);
+  abbe_result result = abbe_lone_object_make(scene, d->object, d->light, &f->lone, error);
+  if (result == ABBE_OK) result = check_counts(d, error);
   if (result != ABBE_OK) return result;
-  f->object = scene->object[d->object];
-  f->light = (abbe_light){.name = scene->light[d->light].name,
-                          .kind = ABBE_LIGHT_DIRECTIONAL,
-                          .direction = {0, 0, -1},
-                          .power = 1,
-                          .illuminant = scene->light[d->light].illuminant};
-  f->scene = *scene;
-  f->scene.object = &f->object;
-  f->scene.object_count = 1;
-  f->scene.light = &f->light;
-  f->scene.light_count = 1;
-  f->scene.environment = NULL;
-  f->scene.soft_light = NULL;
-  f->scene.environment_lights = 0;
-  result = abbe_volume_body_make(&f->object, &v->body, error);
-  if (result == ABBE_OK) result = abbe_volume_body_find(&v->body, &f->object, &f->place, error);
-  if (result != ABBE_OK) return result;
-  resolve(&v->body, fabs(abbe_object_distance(&f->object, f->place.centre)), d);
-  v->kind = d->kind;
+  v->body = f->lone.body;
+  resolve(&v->body, abbe_lone_object_depth(&f->lone), d);
+  v->kind = d->exits > 0 ? ABBE_VOLUME_EXITS : d->kind;
   v->min_nm = d->min_nm;
   v->max_nm = d->max_nm;
   result = abbe_volume_region_make(&d->region, &v->region, error);
   if (result == ABBE_OK)
     result = abbe_light_nodes_make(d->nodes, (const double[3]){0, 0, 1}, &v->nodes, error);
-  return result == ABBE_OK ? abbe_caustic_volume_allocate(v, error) : result;
+  if (result != ABBE_OK || d->exits > 0) return result;
+  return abbe_caustic_volume_allocate(v, error);
 }
 
 /* ---- tables ---- */
@@ -139,15 +125,12 @@ static abbe_result make_tables(fill *f, abbe_error *error) {
                                                .min_nm = d->min_nm,
                                                .max_nm = d->max_nm,
                                                .uniform = 0.15};
-  abbe_result result = abbe_geometry_make(&f->scene, &f->geometry, error);
+  const abbe_geometry *g = &f->lone.geometry;
+  abbe_result result = abbe_spectral_sampling_make(&f->lone.scene, &sampled, &f->sampling, error);
   if (result == ABBE_OK)
-    result = abbe_spectral_sampling_make(&f->scene, &sampled, &f->sampling, error);
+    result = abbe_media_make(g, f->sampling.lambda_nm, f->sampling.steps, &f->media, error);
   if (result == ABBE_OK)
-    result =
-        abbe_media_make(&f->geometry, f->sampling.lambda_nm, f->sampling.steps, &f->media, error);
-  if (result == ABBE_OK)
-    result = abbe_mirrors_make(&f->geometry, f->sampling.lambda_nm, f->sampling.steps, &f->mirrors,
-                               error);
+    result = abbe_mirrors_make(g, f->sampling.lambda_nm, f->sampling.steps, &f->mirrors, error);
   if (result != ABBE_OK) return result;
   memcpy(f->volume->white, f->sampling.white[0], sizeof f->volume->white);
   f->colour = calloc(f->sampling.steps, sizeof *f->colour);
@@ -158,11 +141,11 @@ static abbe_result make_tables(fill *f, abbe_error *error) {
   make_colours(f);
   for (size_t i = 0; i < d->threads && result == ABBE_OK; i++) {
     f->worker[i] = (worker){.fill = f, .thread = i};
-    result = abbe_light_walk_make(&f->geometry, &f->media, &f->mirrors, &full, d->seed,
-                                  &f->worker[i].walk, error);
+    result =
+        abbe_light_walk_make(g, &f->media, &f->mirrors, &full, d->seed, &f->worker[i].walk, error);
   }
   if (result == ABBE_OK && d->kind == ABBE_VOLUME_VECTOR)
-    result = abbe_volume_space_measure(&f->geometry, &f->volume->region, f->place.centre,
+    result = abbe_volume_space_measure(g, &f->volume->region, f->lone.place.centre,
                                        f->volume->body.radius, LINES, f->space, error);
   return result;
 }
@@ -176,7 +159,7 @@ static void free_tables(fill *f) {
   abbe_mirrors_free(&f->mirrors);
   abbe_media_free(&f->media);
   abbe_spectral_sampling_free(&f->sampling);
-  abbe_geometry_free(&f->geometry);
+  abbe_lone_object_free(&f->lone);
 }
 
 /* ---- photons of a node ---- */
@@ -187,14 +170,14 @@ static void take_stretch(void *user, const abbe_light_stretch *s) {
   const fill *f = w->fill;
   double from[3], along[3];
   float colour[3];
-  abbe_geometry_to_world(&f->geometry, s->o, from);
+  abbe_geometry_to_world(&f->lone.geometry, s->o, from);
   for (int k = 0; k < 3; k++) {
-    from[k] -= f->place.centre[k];
+    from[k] -= f->lone.place.centre[k];
     along[k] = (double)s->d[k];
     colour[k] = s->flux * f->colour[s->step][k];
   }
-  abbe_volume_sums_add(&w->fill->sums, w->thread, from, along, (double)s->length * f->geometry.unit,
-                       colour);
+  abbe_volume_sums_add(&w->fill->sums, w->thread, from, along,
+                       (double)s->length * f->lone.geometry.unit, colour);
 }
 
 /* The beam's disk around the object: its two axes. */
@@ -222,9 +205,9 @@ static void start(const fill *f, const beam *b, uint32_t j, abbe_photon *p) {
   for (int k = 0; k < 3; k++) u[k] = (double)(j * golden[k] + b->shift[k]) * 0x1p-32;
   const double r = b->radius * sqrt(u[0]), a = 2 * PI * u[1];
   for (int k = 0; k < 3; k++)
-    world[k] =
-        f->place.centre[k] + r * (cos(a) * b->x[k] + sin(a) * b->y[k]) - 2 * b->radius * b->way[k];
-  abbe_geometry_to_frame(&f->geometry, world, p->o);
+    world[k] = f->lone.place.centre[k] + r * (cos(a) * b->x[k] + sin(a) * b->y[k]) -
+               2 * b->radius * b->way[k];
+  abbe_geometry_to_frame(&f->lone.geometry, world, p->o);
   for (int k = 0; k < 3; k++) p->d[k] = (float)b->way[k];
   p->step = abbe_spectral_sampling_step(fminf((float)u[2], 0x1.fffffep-1f), &p->within);
   p->flux = (float)(PI * b->radius * b->radius / (double)f->desc.photons);
@@ -355,6 +338,98 @@ static abbe_result fill_node(fill *f, size_t node, abbe_error *error) {
   return result;
 }
 
+/* Rays in place of sums. */
+static abbe_result fill_exits(fill *f, abbe_error *error) {
+  const abbe_volume_fill_desc *d = &f->desc;
+  const abbe_exit_fill_desc desc = {.points = d->exits,
+                                    .asymmetric = d->asymmetric,
+                                    .min_nm = d->min_nm,
+                                    .max_nm = d->max_nm,
+                                    .seed = d->seed,
+                                    .threads = d->threads,
+                                    .progress = d->progress,
+                                    .user = d->user,
+                                    .stop = d->stop,
+                                    .checkpoint = d->checkpoint,
+                                    .checkpoint_s = d->checkpoint_s,
+                                    .resume = d->resume};
+  abbe_exit_fill_statistics done;
+  abbe_weights_white(ABBE_OBSERVER_CIE_1931, &f->lone.light.illuminant, d->min_nm, d->max_nm,
+                     f->volume->white);
+  const abbe_result result = abbe_exit_fill(&f->lone, &desc, f->volume, &done, error);
+  f->statistics->photons = done.rays;
+  f->statistics->carried = done.carried;
+  f->statistics->alone = done.alone;
+  f->statistics->sequences = done.sequences;
+  f->statistics->maps = done.maps;
+  return result;
+}
+
+/* Of all that decides what a node's values are. */
+static uint64_t key_of(const fill *f) {
+  const abbe_volume_fill_desc *d = &f->desc;
+  const abbe_region_desc *r = &f->volume->region.desc;
+  const double numbers[] = {(double)f->volume->kind,
+                            (double)f->volume->nodes.count,
+                            (double)d->photons,
+                            (double)d->passes,
+                            d->until_error,
+                            (double)d->seed,
+                            (double)r->kind,
+                            (double)r->side,
+                            (double)r->levels,
+                            (double)r->shells,
+                            r->inner,
+                            r->outer,
+                            d->min_nm,
+                            d->max_nm};
+  uint64_t h = abbe_lone_object_key(&f->lone, &f->media, &f->mirrors, ABBE_VOLUME_KEY);
+  h = abbe_volume_key(h, numbers, sizeof numbers);
+  return abbe_volume_key(h, f->colour, f->sampling.steps * sizeof *f->colour);
+}
+
+static abbe_result fill_nodes(fill *f, abbe_error *error) {
+  const abbe_volume_fill_desc *d = &f->desc;
+  abbe_caustic_volume *v = f->volume;
+  const size_t values = v->nodes.count * v->region.cells * abbe_caustic_volume_channels(v);
+  size_t node = 0;
+  abbe_volume_keeping keeping = {.path = d->checkpoint,
+                                 .every_s = d->checkpoint_s,
+                                 .resume = d->resume,
+                                 .key = key_of(f),
+                                 .part = {{v->value, values * sizeof *v->value},
+                                          {&v->byte, sizeof v->byte},
+                                          {f->statistics, sizeof *f->statistics}},
+                                 .parts = 3};
+  abbe_result result = abbe_volume_keeping_begin(&keeping, &node, error);
+  for (; result == ABBE_OK && node < v->nodes.count; node++) {
+    const abbe_volume_fill_statistics before = *f->statistics;
+    result = fill_node(f, node, error);
+    if (result == ABBE_OK) result = abbe_volume_keeping_end_node(&keeping, node + 1, false, error);
+    if (result != ABBE_CANCELLED) continue;
+    *f->statistics = before; /* the node that was stopped is begun anew */
+    abbe_volume_keeping_end_node(&keeping, node, true, NULL);
+  }
+  return result;
+}
+
+/* Sums at all nodes, and what becomes of them. */
+static abbe_result fill_values(fill *f, abbe_error *error) {
+  const abbe_volume_fill_desc *d = &f->desc;
+  abbe_volume_fill_statistics *s = f->statistics;
+  abbe_caustic_volume *v = f->volume;
+  abbe_result result = make_tables(f, error);
+  if (result == ABBE_OK) result = fill_nodes(f, error);
+  s->error = result == ABBE_OK && s->passes >= LEAST_PASSES * v->nodes.count
+                 ? sqrt(s->error / (double)v->nodes.count)
+                 : NAN;
+  if (!isnan(s->error)) v->error = s->error;
+  if (result == ABBE_OK && d->degree > 0) result = abbe_caustic_volume_project(v, d->degree, error);
+  if (result == ABBE_OK && d->joins)
+    result = abbe_caustic_volume_join(v, d->tolerance, &s->joint_bytes, error);
+  return result;
+}
+
 abbe_result abbe_volume_fill(const abbe_scene *scene, const abbe_volume_fill_desc *desc,
                              abbe_caustic_volume *out, abbe_volume_fill_statistics *statistics,
                              abbe_error *error) {
@@ -367,20 +442,9 @@ abbe_result abbe_volume_fill(const abbe_scene *scene, const abbe_volume_fill_des
   f->volume = out;
   f->statistics = statistics;
   abbe_result result = begin(scene, f, error);
-  if (result == ABBE_OK) result = make_tables(f, error);
   const double from = abbe_clock_seconds();
-  for (size_t node = 0; result == ABBE_OK && node < out->nodes.count; node++)
-    result = fill_node(f, node, error);
+  if (result == ABBE_OK) result = desc->exits > 0 ? fill_exits(f, error) : fill_values(f, error);
   statistics->seconds = abbe_clock_seconds() - from;
-  if (result == ABBE_OK) statistics->error = sqrt(statistics->error / (double)out->nodes.count);
-  if (result == ABBE_OK && statistics->passes >= LEAST_PASSES * out->nodes.count)
-    out->error = statistics->error;
-  else
-    statistics->error = NAN;
-  if (result == ABBE_OK && desc->degree > 0)
-    result = abbe_caustic_volume_project(out, desc->degree, error);
-  if (result == ABBE_OK && desc->joins)
-    result = abbe_caustic_volume_join(out, desc->tolerance, &statistics->joint_bytes, error);
   free_tables(f);
   free(f);
   if (result != ABBE_OK) abbe_caustic_volume_free(out);

@@ -1,5 +1,6 @@
 /* volume_fill.h: caustic volumes filled by photons: an object alone in light from each of the nodes
- * in turn, and what its paths bring to the cells around it once they have met it.
+ * in turn, and what its paths bring to the cells around it once they have met it; or a table of the
+ * rays that leave it (exit_fill.h).
  *
  * It is the tracer's own physics (light_walk.h). Same request, same volume, on any number of
  * threads.
@@ -22,9 +23,13 @@ typedef struct abbe_volume_fill_desc {
   size_t object; /* of the scene: a refractor or a mirror */
   size_t light;  /* of the scene, whose illuminant it is */
   abbe_volume_kind kind;
-  size_t nodes;            /* 0: 162; of a ball 1 */
+  size_t nodes;            /* 0: 162; of a ball 1, but for exits */
+  size_t exits;            /* above 0: in place of values the rays of so many points, at most
+                              ABBE_LIGHT_EXITS_MOST; photons and passes are not read */
+  bool asymmetric;         /* the object's symmetry is not looked for */
   size_t degree;           /* above 0: harmonics to that degree, of what the nodes hold */
-  abbe_region_desc region; /* without sizes: 24 shells of 5120 triangles; outer 0: three radii of
+  abbe_region_desc region; /* without sizes: 24 shells of 5120 triangles, for exits of
+                              48 x 48 texels; outer 0: three radii of
                               the object, inner 0: just below its surface */
   bool joins;              /* cells are joined within the tolerance (volume_tree.h) */
   double tolerance;        /* of unit irradiance; 0: those that are the same */
@@ -37,21 +42,29 @@ typedef struct abbe_volume_fill_desc {
   bool (*progress)(void *user, double done); /* false stops; or NULL */
   void *user;
   const volatile int *stop; /* other than 0 stops; or NULL */
+  const char *checkpoint;   /* whole nodes are kept there; NULL: none are */
+  double checkpoint_s;      /* at the least between two */
+  bool resume;              /* go on from it, where there is one */
 } abbe_volume_fill_desc;
 
 typedef struct abbe_volume_fill_statistics {
   size_t passes; /* of all nodes */
   uint64_t photons;
   size_t joint_bytes; /* that the joint values take; else 0 */
-  double seconds;     /* wall time, of the photons */
-  double error;       /* relative standard error, root mean square over nodes; NaN of a pass */
+  double seconds;     /* wall time */
+  double carried;     /* of exits: see abbe_exit_fill_statistics, whose rays photons is */
+  double alone;
+  size_t sequences, maps;
+  double error; /* relative standard error, root mean square over nodes; NaN of a pass */
   abbe_light_ledger ledger; /* W for unit irradiance, mean over nodes */
   double outflow[2];        /* of shells, vector: of Y, least and greatest over nodes and shells
                                beyond the object, as a share of what left it; else 0 */
 } abbe_volume_fill_statistics;
 
 /* ABBE_INVALID_ARGUMENT for what is outside the limits, a receiver, and a scene without lights;
- * ABBE_CANCELLED; errors of the tracer's tables. */
+ * ABBE_CANCELLED; errors of the tracer's tables, and of a checkpoint that belongs to something
+ * else.
+ */
 abbe_result abbe_volume_fill(const abbe_scene *scene, const abbe_volume_fill_desc *desc,
                              abbe_caustic_volume *out, abbe_volume_fill_statistics *statistics,
                              abbe_error *error);

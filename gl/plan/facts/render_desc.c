@@ -294,7 +294,11 @@ static abbe_result check_volume(const abbe_render_desc *d, abbe_error *error) {
                           "the transport 'volume' does not go with %s%s",
                           d->everything ? "all that is switched on" : "the profile ",
                           d->everything ? "" : abbe_profile_name(d->profile));
-  if (d->observer != ABBE_OBSERVER_CIE_1931)
+  const bool exits = d->volume->kind == ABBE_VOLUME_EXITS;
+  if (exits && d->lookup != ABBE_VOLUME_LOOKUP_AUTO)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a volume of exits has no lookup to choose: its rays are interpolated");
+  if (d->observer != ABBE_OBSERVER_CIE_1931 && !exits)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a volume holds the colours of the observer '%s', not of '%s'",
                           abbe_observer_text(ABBE_OBSERVER_CIE_1931),

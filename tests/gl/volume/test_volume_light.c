@@ -6,6 +6,8 @@
 #include "scenes/geometry/transform.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/object_motion.h"
+#include "scenes/volume/exit_pages.h"
+#include "scenes/volume/half.h"
 #include "validation/volume/volume_fill.h"
 
 #define PI 3.14159265358979323846
@@ -26,8 +28,10 @@ static void make_volume(const abbe_scene *scene, abbe_volume_kind kind, size_t r
                         abbe_caustic_volume *out) {
   abbe_error error = {0};
   abbe_volume_fill_statistics done;
+  const bool exits = kind == ABBE_VOLUME_EXITS;
   const abbe_volume_fill_desc desc = {.object = 1,
-                                      .kind = kind,
+                                      .kind = exits ? ABBE_VOLUME_VECTOR : kind,
+                                      .exits = exits ? 400 : 0,
                                       .nodes = nodes,
                                       .region = regions[region],
                                       .photons = 8192,
@@ -66,12 +70,13 @@ static void oracle(const abbe_scene *scene, const abbe_caustic_volume *v, abbe_v
   const abbe_light *light = &scene->light[0];
   double from[3], to_light[3], own[3], at[3], matrix[9], xyz[3], f[3][3];
   abbe_volume_sight sight;
+  const bool rays = lookup == ABBE_VOLUME_LOOKUP_COUNT; /* which have the light's distance */
   double strength = light->power;
   abbe_vector_subtract(p, place->centre, from);
   for (int k = 0; k < 3; k++) to_light[k] = -light->direction[k];
   if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
     abbe_vector_subtract(light->position, place->centre, to_light);
-    strength /= abbe_vector_dot(to_light, to_light);
+    if (!rays) strength /= abbe_vector_dot(to_light, to_light);
     abbe_vector_normalise(to_light);
   }
   for (int k = 0; k < 3; k++) {
@@ -82,7 +87,8 @@ static void oracle(const abbe_scene *scene, const abbe_caustic_volume *v, abbe_v
     }
   }
   abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
-  abbe_caustic_volume_look(v, lookup, own, &sight);
+  abbe_caustic_volume_look(v, rays ? ABBE_VOLUME_LOOKUP_BLEND : lookup,
+                           rays ? v->nodes.direction[0] : own, &sight);
   if (v->kind == ABBE_VOLUME_PRINTED) {
     double ratio[3], white[3];
     abbe_caustic_volume_ratio(v, &sight, at, ratio);
@@ -98,6 +104,54 @@ static void oracle(const abbe_scene *scene, const abbe_caustic_volume *v, abbe_v
     xyz[c] = 0.5 / PI * strength * fmax(down, 0);
   }
   abbe_rgb_space_apply(matrix, xyz, rgb);
+}
+
+/* What rays bring to the cells in the scene's light, as a volume of one node that lights alike from
+ * anywhere at any distance. */
+static void fill_by_rays(const abbe_scene *scene, const abbe_caustic_volume *v,
+                         const abbe_volume_place *place, abbe_caustic_volume *out) {
+  const abbe_exit_light_desc desc = {.light = &scene->light[0],
+                                     .object = &scene->object[1],
+                                     .place = place,
+                                     .min_nm = 380,
+                                     .max_nm = 780};
+  const size_t count = 9 * v->region.cells;
+  float *value = malloc(count * sizeof *value);
+  assert_non_null(value);
+  *out = (abbe_caustic_volume){.body = v->body};
+  assert_int_equal(abbe_volume_region_make(&v->region.desc, &out->region, NULL), ABBE_OK);
+  assert_int_equal(abbe_light_nodes_make(1, (const double[3]){0, 0, 1}, &out->nodes, NULL),
+                   ABBE_OK);
+  assert_int_equal(abbe_caustic_volume_allocate(out, NULL), ABBE_OK);
+  assert_int_equal(abbe_exit_light_fill(v, &desc, value, NULL), ABBE_OK);
+  for (size_t i = 0; i < count; i++) out->value[i] = abbe_half_of((double)value[i]);
+  free(value);
+}
+
+/* What rays bring to the floor, straight from their maps. */
+static void look_at_pages(const abbe_scene *scene, const abbe_exit_pages *pages, const double p[3],
+                          double rgb[3]) {
+  const double *at = scene->object[0].exact.parallelogram[0];
+  double from[3], n[3], matrix[9], xyz[3];
+  abbe_vector_subtract(p, at, from);
+  abbe_vector_cross(at + 3, at + 6, n);
+  const double u = abbe_vector_dot(from, at + 3) / abbe_vector_dot(at + 3, at + 3),
+               v = abbe_vector_dot(from, at + 6) / abbe_vector_dot(at + 6, at + 6);
+  abbe_exit_pages_at(pages, n[2] > 0 ? 0 : 1, u, v, xyz);
+  for (int k = 0; k < 3; k++) xyz[k] *= 0.5 / PI * scene->light[0].power;
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
+  abbe_rgb_space_apply(matrix, xyz, rgb);
+}
+
+static void make_pages(const abbe_scene *scene, const abbe_caustic_volume *v,
+                       const abbe_volume_place *place, abbe_exit_pages *out) {
+  const abbe_exit_light_desc desc = {.light = &scene->light[0],
+                                     .object = &scene->object[1],
+                                     .place = place,
+                                     .min_nm = 380,
+                                     .max_nm = 780};
+  const double(*floor)[9] = (const double(*)[9])scene->object[0].exact.parallelogram;
+  assert_int_equal(abbe_exit_pages_make(v, &desc, floor, 1, 256, out, NULL), ABBE_OK);
 }
 
 /* Mean difference between the caustic of a frame and the oracle's, of the mean. */
@@ -117,17 +171,29 @@ static double mean_difference(const abbe_scene *scene, const abbe_caustic_volume
                                  .transport = ABBE_TRANSPORT_VOLUME,
                                  .volume = v,
                                  .lookup = lookup};
+  abbe_caustic_volume filled = {0};
   assert_ok(abbe_volume_body_find(&v->body, &scene->object[1], &place, &error), &error);
   abbe_renderer *renderer = make_renderer(scene, &desc);
   draw_frame(renderer);
   read_picture(renderer, true, &picture);
+  abbe_exit_pages pages = {0};
+  if (v->kind == ABBE_VOLUME_EXITS && scene->object_count == 2)
+    make_pages(scene, v, &place, &pages);
+  if (v->kind == ABBE_VOLUME_EXITS && pages.count == 0) {
+    fill_by_rays(scene, v, &place, &filled);
+    lookup = ABBE_VOLUME_LOOKUP_COUNT;
+    v = &filled;
+  }
   abbe_renderer_free(renderer);
   const size_t first = abbe_image_find_channel(&picture, "caustic.R");
   double off = 0, all = 0;
   for (size_t i = 0; i < SIDE * SIDE; i++) {
     double p[3], rgb[3];
     if (!see_floor(scene, SIDE, SIDE, i, &place, v->body.radius, p)) continue;
-    oracle(scene, v, lookup, &place, p, rgb);
+    if (pages.count > 0)
+      look_at_pages(scene, &pages, p, rgb);
+    else
+      oracle(scene, v, lookup, &place, p, rgb);
     for (size_t k = 0; k < 3; k++) {
       const double seen = (double)picture.data[i * picture.channels + first + k];
       off += fabs(seen - rgb[k]);
@@ -136,6 +202,8 @@ static double mean_difference(const abbe_scene *scene, const abbe_caustic_volume
   }
   assert_true(all > 0);
   abbe_image_free(&picture);
+  abbe_exit_pages_free(&pages);
+  abbe_caustic_volume_free(&filled);
   return off / all;
 }
 
@@ -175,6 +243,35 @@ static void test_objects_and_lights_move(void **state) {
   memcpy(scene.light[0].position, there, sizeof there);
   assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_BLEND), 0, 0.004);
   assert_int_equal(abbe_caustic_volume_project(&v, 2, NULL), ABBE_OK);
+  assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_AUTO), 0, 0.004);
+  abbe_caustic_volume_free(&v);
+  abbe_scene_free(&scene);
+}
+
+/* Rays: of the sun, a lamp that is near, a cone that meets a part of the object; of any white. */
+static void test_rays_serve_any_light(void **state) {
+  (void)state;
+  static const double lamp[3] = {-0.1, -0.2, 0.7}, down[3] = {0, 0, -1};
+  abbe_scene scene = {0};
+  abbe_caustic_volume v;
+  load_text(wedge, &scene);
+  make_volume(&scene, ABBE_VOLUME_EXITS, 2, 12, &v);
+  assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_AUTO), 0, 0.004);
+  abbe_light *light = &scene.light[0];
+  light->illuminant = (abbe_illuminant){.kind = ABBE_ILLUMINANT_A};
+  light->kind = ABBE_LIGHT_POINT;
+  memcpy(light->position, lamp, sizeof lamp);
+  assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_AUTO), 0, 0.004);
+  light->kind = ABBE_LIGHT_SPOT;
+  memcpy(light->direction, down, sizeof down);
+  light->cone_rad = 0.4;
+  light->soft_rad = 0.1;
+  assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_AUTO), 0, 0.004);
+  abbe_scene_free(&scene);
+  /* where a receiver is a mesh: in cells */
+  char text[2048];
+  snprintf(text, sizeof text, "%s%s", wedge, HILL);
+  load_text(text, &scene);
   assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_AUTO), 0, 0.004);
   abbe_caustic_volume_free(&v);
   abbe_scene_free(&scene);
@@ -309,6 +406,12 @@ static void test_what_it_does_not_hold_is_refused(void **state) {
   scene.light[0].kind = ABBE_LIGHT_DIRECTIONAL;
   v.white[0] += 0.1;
   refuse(&scene, &d, ABBE_UNSUPPORTED, "white");
+  v.kind = ABBE_VOLUME_EXITS;
+  d.lookup = ABBE_VOLUME_LOOKUP_BLEND;
+  refuse(&scene, &d, ABBE_INVALID_ARGUMENT, "interpolated");
+  d = (abbe_render_desc){.volume = &v, .max_nm = 800};
+  refuse(&scene, &d, ABBE_UNSUPPORTED, "800");
+  v.kind = ABBE_VOLUME_VECTOR;
   abbe_caustic_volume_free(&v);
   abbe_caustic_volume_free(&printed);
   abbe_scene_free(&scene);
@@ -319,6 +422,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_pixels_have_what_the_volume_holds),
       cmocka_unit_test(test_objects_and_lights_move),
+      cmocka_unit_test(test_rays_serve_any_light),
       cmocka_unit_test(test_a_changed_light_is_as_one_made_anew),
       cmocka_unit_test(test_blends_do_not_pop),
       cmocka_unit_test(test_what_it_does_not_hold_is_refused),

@@ -48,6 +48,65 @@ static void test_files_give_volumes_back(void **state) {
   unlink(path);
 }
 
+/* Rays that leave a body, of made-up numbers. */
+static void make_exits(abbe_caustic_volume *out) {
+  enum { POINTS = 7 };
+  abbe_exit_halves point[POINTS] = {0};
+  make_volume(ABBE_VOLUME_VECTOR, regions[0], 12, false, out);
+  free(out->value);
+  out->value = NULL;
+  out->kind = ABBE_VOLUME_EXITS;
+  for (int i = 0; i < POINTS; i++) {
+    point[i][ABBE_EXIT_NORMAL + i % 3] = abbe_half_of(i < 3 ? 1 : -1);
+    point[i][ABBE_EXIT_BIN] = abbe_half_of(31 * i);
+  }
+  assert_int_equal(abbe_light_exits_make(&out->nodes, POINTS, (const abbe_exit_halves *)point, NULL,
+                                         1, 0.75, out->region.cells, &out->exits, NULL),
+                   ABBE_OK);
+  for (size_t i = 0; i < out->exits.count * ABBE_EXIT_HALVES; i++)
+    out->exits.exit[i / ABBE_EXIT_HALVES][i % ABBE_EXIT_HALVES] = abbe_half_of((double)i / 64 - 3);
+  for (size_t i = 0; i < out->exits.cells; i++) out->exits.space[i] = abbe_half_of((double)i / 512);
+}
+
+static void test_files_give_rays_back(void **state) {
+  (void)state;
+  abbe_caustic_volume v, back;
+  abbe_error error = {0};
+  make_exits(&v);
+  assert_true(v.exits.count > 20);
+  assert_int_equal(abbe_volume_file_write(path, &v, &error), ABBE_OK);
+  assert_int_equal(abbe_volume_file_read(path, &back, &error), ABBE_OK);
+  assert_int_equal(back.kind, ABBE_VOLUME_EXITS);
+  assert_int_equal(back.exits.points, v.exits.points);
+  assert_int_equal(back.exits.count, v.exits.count);
+  assert_near(back.exits.area, 0.75, 0);
+  assert_near(back.exits.radius, 1, 0);
+  assert_memory_equal(back.exits.point, v.exits.point, v.exits.points * sizeof *v.exits.point);
+  assert_memory_equal(back.exits.exit, v.exits.exit, v.exits.count * sizeof *v.exits.exit);
+  assert_memory_equal(back.exits.space, v.exits.space, v.exits.cells * sizeof *v.exits.space);
+  abbe_caustic_volume_free(&back);
+  /* and are told where they are broken */
+  static const char *const broken[][2] = {{"abbe:volume_exits", "0 points of 1 m2, 40 exits"},
+                                          {"abbe:volume_exits", "6 points of -1 m2, 40 exits"},
+                                          {"abbe:volume_exits", "1e12 points of 1 m2, 40 exits"},
+                                          {"abbe:volume_exits", "7 points of 1 m2, 40 exits"},
+                                          {"abbe:volume_nodes", "42 of a geodesic sphere"},
+                                          {"abbe:volume_nodes", "1 along 0 0 1"},
+                                          {"abbe:volume", "vector"}};
+  for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
+    abbe_image image = {0};
+    assert_int_equal(abbe_volume_file_write(path, &v, NULL), ABBE_OK);
+    assert_int_equal(abbe_exr_read(path, &image, NULL), ABBE_OK);
+    assert_int_equal(abbe_image_set_attribute(&image, broken[i][0], broken[i][1], NULL), ABBE_OK);
+    assert_int_equal(abbe_exr_write_half(path, &image, NULL), ABBE_OK);
+    assert_int_equal(abbe_volume_file_read(path, &back, &error), ABBE_PARSE);
+    assert_contains(error.text, path);
+    abbe_image_free(&image);
+  }
+  abbe_caustic_volume_free(&v);
+  unlink(path);
+}
+
 /* A good file with one attribute changed. */
 static abbe_result read_with(const char *name, const char *text, abbe_error *error) {
   abbe_caustic_volume v, back;
@@ -136,6 +195,7 @@ static void test_broken_values_are_told(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_files_give_volumes_back),
+      cmocka_unit_test(test_files_give_rays_back),
       cmocka_unit_test(test_broken_attributes_are_told),
       cmocka_unit_test(test_other_pictures_are_no_volumes),
       cmocka_unit_test(test_broken_values_are_told),

@@ -1,0 +1,34 @@
+// Caustics of rays that leave an object, on maps of receivers (scenes/volume/exit_pages.h): for each light
+// and each side of each parallelogram a layer of the whole and one of a window.
+uniform sampler2DArray volume_pages;
+uniform vec4 volume_window[VOLUME_PAGES * LIGHTS];
+
+// How far a place is from a parallelogram, in parts of its edges.
+float volume_off(Receiver r, vec3 p, out vec2 uv) {
+  vec3 from = p - r.corner.xyz;
+  uv = vec2(dot(from, r.du.xyz), dot(from, r.dv.xyz));
+  vec2 over = max(abs(uv - 0.5) - 0.5, vec2(0));
+  return over.x + over.y + abs(dot(from, r.normal.xyz)) * (length(r.du.xyz) + length(r.dv.xyz));
+}
+
+void volume_nearer(int i, Receiver r, vec3 p, vec3 n, inout float least, inout vec3 place) {
+  vec2 uv;
+  float off = volume_off(r, p, uv);
+  bool nearer = off < least;
+  place = nearer ? vec3(uv, 2 * i + (dot(n, r.normal.xyz) > 0.0 ? 0 : 1)) : place;
+  least = nearer ? off : least;
+}
+
+// XYZ irradiance of unit power on the side of a receiver at p that n points from.
+vec3 volume_irradiance(int light, vec3 p, vec3 n) {
+  vec3 place = vec3(0);
+  float least = 1e30;
+#define VOLUME_NEARER(i) volume_nearer(i, RECEIVER(i), p, n, least, place);
+  OF_RECEIVERS(VOLUME_NEARER)
+  int page = light * VOLUME_PAGES + int(place.z);
+  vec4 window = volume_window[page];
+  if (window.z == 0.0) return vec3(0);
+  vec2 at = (place.xy - window.xy) * window.zw;
+  bool fine = min(at.x, at.y) >= 0.0 && max(at.x, at.y) <= 1.0;
+  return textureLod(volume_pages, vec3(fine ? at : place.xy, 2 * page + (fine ? 1 : 0)), 0.0).rgb;
+}

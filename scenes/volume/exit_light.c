@@ -1,0 +1,287 @@
+#include "scenes/volume/exit_light.h"
+
+#include "colorimetry/weights.h"
+#include "scenes/geometry/vector.h"
+#include "scenes/volume/half.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A cell with less of its space left than that holds nothing. */
+static const double least_space = 0.02;
+
+/* Into the object's own coordinates. */
+static void turn_back(const double turn[9], const double v[3], double out[3]) {
+  for (int k = 0; k < 3; k++) out[k] = turn[k] * v[0] + turn[3 + k] * v[1] + turn[6 + k] * v[2];
+}
+
+static abbe_result find_planes(const abbe_exit_light_desc *d, double (**out)[4], size_t *count,
+                               abbe_error *error) {
+  const abbe_exact *exact = &d->object->exact;
+  *count = exact->kind == ABBE_EXACT_CONVEX ? exact->count : 0;
+  *out = malloc((*count + 1) * sizeof **out);
+  if (*out == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for planes");
+  for (size_t i = 0; i < *count; i++) {
+    turn_back(d->place->turn, exact->plane[i], (*out)[i]);
+    (*out)[i][3] = exact->plane[i][3] - abbe_vector_dot(exact->plane[i], d->place->centre);
+  }
+  return ABBE_OK;
+}
+
+/* From a place of the world to the light, unit, and the irradiance across the beam there of a power
+ * of 1. */
+static double look_at_light(const abbe_light *light, const double from[3], double to_light[3]) {
+  double square = 1;
+  if (light->kind == ABBE_LIGHT_DIRECTIONAL) {
+    for (int k = 0; k < 3; k++) to_light[k] = -light->direction[k];
+  } else {
+    abbe_vector_subtract(light->position, from, to_light);
+    square = abbe_vector_dot(to_light, to_light);
+  }
+  if (!abbe_vector_normalise(to_light)) return 0;
+  const double away[3] = {-to_light[0], -to_light[1], -to_light[2]};
+  return abbe_light_profile(light, away) / square;
+}
+
+/* The point in the world. */
+static void place_point(const abbe_volume_place *place, const double p[3], double out[3]) {
+  for (int i = 0; i < 3; i++) out[i] = place->centre[i] + abbe_vector_dot(&place->turn[3 * i], p);
+}
+
+/* What a light and a table are asked with. */
+typedef struct sight {
+  const abbe_caustic_volume *volume;
+  const abbe_exit_light_desc *desc;
+  abbe_exit_light_take take;
+  void *user;
+  const double (*plane)[4];
+  size_t planes;
+} sight;
+
+static void turn(const double map[9], const double v[3], double out[3]) {
+  for (int i = 0; i < 3; i++) out[i] = abbe_vector_dot(&map[3 * i], v);
+}
+
+/* The rays of the points that a map makes of the table's: for them the light stands where the map
+ * brings it from, and their rays go where the map brings them. */
+static void send_image(const sight *s, const double map[9]) {
+  const abbe_light_exits *e = &s->volume->exits;
+  const abbe_exit_light_desc *d = s->desc;
+  const double part = e->area / (double)(e->points * e->symmetry.count);
+  const bool far = d->light->kind == ABBE_LIGHT_DIRECTIONAL;
+  abbe_exit_aim aim = {0};
+  for (size_t i = 0; i < e->points; i++) {
+    double p[3], n[3], image[3], world[3], to_light[3], own[3], there[3];
+    size_t bin;
+    abbe_light_exits_point(e, i, p, n, &bin);
+    turn(map, p, image);
+    place_point(d->place, image, world);
+    const double strength = look_at_light(d->light, world, to_light);
+    turn_back(d->place->turn, to_light, own);
+    turn_back(map, own, there);
+    const double flux = part * strength * abbe_vector_dot(n, there);
+    if (!(flux > 0)) continue;
+    if (!far || aim.blend.count == 0) abbe_light_exits_aim(&s->volume->nodes, there, &aim);
+    abbe_exit_ray ray[3];
+    const size_t count =
+        abbe_light_exits_at(e, &s->volume->nodes, &aim, i, s->plane, s->planes, ray);
+    for (size_t k = 0; k < count; k++) {
+      abbe_exit_ray out = ray[k];
+      turn(map, ray[k].place, out.place);
+      turn(map, ray[k].way, out.way);
+      turn(map, ray[k].place_by, out.place_by);
+      turn(map, ray[k].way_by, out.way_by);
+      s->take(s->user, &out, flux * ray[k].share, bin);
+    }
+  }
+}
+
+abbe_result abbe_exit_light_rays(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
+                                 abbe_exit_light_take take, void *user, abbe_error *error) {
+  ABBE_REQUIRE(v && d && d->light && d->object && d->place && take, error);
+  const abbe_light_exits *e = &v->exits;
+  double(*plane)[4];
+  size_t planes;
+  if (e->points == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the volume holds no exits");
+  abbe_result result = find_planes(d, &plane, &planes, error);
+  if (result != ABBE_OK) return result;
+  const sight s = {v, d, take, user, (const double(*)[4])plane, planes};
+  for (size_t i = 0; i < e->symmetry.count; i++) send_image(&s, e->symmetry.map[i]);
+  free(plane);
+  return ABBE_OK;
+}
+
+/* ---- all its wavelengths ---- */
+
+enum { MOST_PARTS = 16, PLACES = 1024 };
+
+/* A ray that a clear object bends by its index stands for all wavelengths: it goes on as some, a
+ * part of the light each. Others have their own alone. */
+typedef struct spread {
+  abbe_exit_light_take_colour take;
+  void *user;
+  double own[ABBE_LIGHT_EXITS_BINS][3]; /* XYZ of a watt of a bin's points */
+  double upto[ABBE_LIGHT_EXITS_BINS + 1];
+  double sum[ABBE_LIGHT_EXITS_BINS + 1][3]; /* XYZ of all bins before */
+  double index[ABBE_LIGHT_EXITS_BINS];      /* NaN of the first: it is not asked */
+  double range;                             /* of the index, from least to greatest */
+  uint32_t turn;                            /* of rays, for the places within parts */
+} spread;
+
+/* XYZ of wavelengths up to the place x of 0 to 1 among points by their chance. */
+static void colour_upto(const spread *s, double x, double xyz[3]) {
+  size_t low = 0, high = ABBE_LIGHT_EXITS_BINS - 1;
+  while (low < high) {
+    const size_t middle = (low + high + 1) / 2;
+    if (s->upto[middle] <= x)
+      low = middle;
+    else
+      high = middle - 1;
+  }
+  const double part = fmin((x - s->upto[low]) / (s->upto[low + 1] - s->upto[low]), 1);
+  for (int k = 0; k < 3; k++)
+    xyz[k] = s->sum[low][k] + part * (s->sum[low + 1][k] - s->sum[low][k]);
+}
+
+static double index_at(const spread *s, double x) {
+  size_t low = 0, high = ABBE_LIGHT_EXITS_BINS - 1;
+  while (low < high) {
+    const size_t middle = (low + high + 1) / 2;
+    if (s->upto[middle] <= x)
+      low = middle;
+    else
+      high = middle - 1;
+  }
+  return s->index[low];
+}
+
+/* The more parts the further its wavelengths go apart. */
+static size_t count_parts(const spread *s, const abbe_exit_ray *ray) {
+  static const double apart = 0.004; /* about rad */
+  const double all = s->range * abbe_vector_length(ray->way_by);
+  size_t parts = 1;
+  while (parts < MOST_PARTS && (double)parts * apart < all) parts *= 2;
+  return parts;
+}
+
+static void spread_ray(void *user, const abbe_exit_ray *ray, double flux, size_t bin) {
+  spread *s = user;
+  double xyz[3];
+  if (isnan(s->index[0])) {
+    for (int k = 0; k < 3; k++) xyz[k] = flux * s->own[bin][k];
+    s->take(s->user, ray, flux, xyz);
+    return;
+  }
+  const size_t parts = count_parts(s, ray);
+  const double within = (double)(s->turn++ * 2654435769u) * 0x1p-32;
+  double before[3] = {0};
+  for (size_t i = 0; i < parts; i++) {
+    abbe_exit_ray out = *ray;
+    double after[3];
+    const double step =
+        index_at(s, ((double)i + (parts > 1 ? within : 0.5)) / (double)parts) - s->index[bin];
+    colour_upto(s, ((double)i + 1) / (double)parts, after);
+    for (int k = 0; k < 3; k++) {
+      xyz[k] = flux * (after[k] - before[k]);
+      before[k] = after[k];
+      out.place[k] += step * ray->place_by[k];
+      out.way[k] += step * ray->way_by[k];
+    }
+    abbe_vector_normalise(out.way);
+    s->take(s->user, &out, flux / (double)parts, xyz);
+  }
+}
+
+static bool is_clear(const abbe_object *o) {
+  return o->material != NULL && !o->mirror && o->material->attenuation == NULL;
+}
+
+/* A point stands for its bin with the bin's chance. */
+static void make_spread(const abbe_caustic_volume *v, const abbe_exit_light_desc *d, spread *s) {
+  double chance[ABBE_LIGHT_EXITS_BINS], least = INFINITY, most = -INFINITY;
+  abbe_weights_range range;
+  abbe_light_exits_chances(v->min_nm, v->max_nm, chance);
+  abbe_weights_range_make_by(d->observer, &d->light->illuminant, d->min_nm, d->max_nm, &range);
+  const double step = (v->max_nm - v->min_nm) / ABBE_LIGHT_EXITS_BINS;
+  bool known = is_clear(d->object);
+  for (size_t i = 0; i < ABBE_LIGHT_EXITS_BINS; i++) {
+    const double from = v->min_nm + (double)i * step;
+    double xyz[3];
+    abbe_weights_range_xyz(&range, from, from + step, xyz);
+    s->upto[i + 1] = s->upto[i] + chance[i];
+    for (int k = 0; k < 3; k++) {
+      s->own[i][k] = xyz[k] / chance[i];
+      s->sum[i + 1][k] = s->sum[i][k] + xyz[k];
+    }
+    known = known &&
+            abbe_material_n(d->object->material, from + 0.5 * step, &s->index[i], NULL) == ABBE_OK;
+    if (!known) continue;
+    least = fmin(least, s->index[i]);
+    most = fmax(most, s->index[i]);
+  }
+  s->range = known ? most - least : 0;
+  if (!known) s->index[0] = NAN;
+}
+
+abbe_result abbe_exit_light_colours(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
+                                    abbe_exit_light_take_colour take, void *user,
+                                    abbe_error *error) {
+  ABBE_REQUIRE(v && d && d->light && d->object && take, error);
+  spread *s = calloc(1, sizeof *s);
+  if (s == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
+  s->take = take;
+  s->user = user;
+  make_spread(v, d, s);
+  const abbe_result result = abbe_exit_light_rays(v, d, spread_ray, s, error);
+  free(s);
+  return result;
+}
+
+/* ---- into cells ---- */
+
+typedef struct deposit {
+  const abbe_volume_region *region;
+  abbe_region_piece *piece;
+  double *weight; /* [cells] 1 / m3 of free space */
+  float *value;
+} deposit;
+
+static void add_ray(void *user, const abbe_exit_ray *ray, double flux, const double xyz[3]) {
+  const deposit *d = user;
+  (void)flux;
+  const size_t count = abbe_volume_region_walk(d->region, ray->place, ray->way, INFINITY, d->piece);
+  float f[9];
+  for (size_t c = 0; c < 9; c++) f[c] = (float)(xyz[c / 3] * ray->way[c % 3]);
+  for (size_t i = 0; i < count; i++) {
+    const float share = (float)(d->piece[i].length * d->weight[d->piece[i].cell]);
+    float *to = d->value + 9 * d->piece[i].cell;
+    for (size_t c = 0; c < 9; c++) to[c] += share * f[c];
+  }
+}
+
+abbe_result abbe_exit_light_fill(const abbe_caustic_volume *v, const abbe_exit_light_desc *desc,
+                                 float *value, abbe_error *error) {
+  ABBE_REQUIRE(v && desc && desc->light && value, error);
+  const size_t cells = v->region.cells;
+  if (v->exits.cells != cells)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the volume holds no exits");
+  deposit d = {.region = &v->region, .value = value};
+  d.piece = malloc(ABBE_REGION_MOST_PIECES * sizeof *d.piece);
+  d.weight = malloc((cells + 1) * sizeof *d.weight);
+  abbe_result result = d.piece != NULL && d.weight != NULL
+                           ? ABBE_OK
+                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a light's rays");
+  if (result == ABBE_OK) {
+    for (size_t i = 0; i < cells; i++) {
+      const double space = abbe_half_value(v->exits.space[i]);
+      d.weight[i] =
+          space < least_space ? 0 : 1 / (space * abbe_volume_region_volume(&v->region, i));
+    }
+    memset(value, 0, 9 * cells * sizeof *value);
+    result = abbe_exit_light_colours(v, desc, add_ray, &d, error);
+  }
+  free(d.piece);
+  free(d.weight);
+  return result;
+}

@@ -1,0 +1,49 @@
+/* exit_light.h: the vector irradiance around an object in a light as it stands, summed up over the
+ * rays that leave the object (light_exits.h): values as a vector volume has them, of one block.
+ *
+ * Nothing is traced: what it asks is where the light and the object are. */
+#ifndef ABBE_SCENES_VOLUME_EXIT_LIGHT_H
+#define ABBE_SCENES_VOLUME_EXIT_LIGHT_H
+
+#include "colorimetry/observer.h"
+#include "scenes/volume/caustic_volume.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct abbe_exit_light_desc {
+  const abbe_light *light;        /* in the world, of any kind; with a size it is its centre */
+  const abbe_object *object;      /* whose planes the rays leave, where it is convex */
+  const abbe_volume_place *place; /* where it stands */
+  abbe_observer observer;
+  double min_nm, max_nm; /* the light's power is that over this range */
+} abbe_exit_light_desc;
+
+/* value[cells][9]: F of X, Y and Z of the light with a power of 1 and a white of Y = 1, in the
+ * object's own coordinates (ABBE_VOLUME_VECTOR). ABBE_INVALID_ARGUMENT for a volume without exits,
+ * ABBE_NO_MEMORY. */
+abbe_result abbe_exit_light_fill(const abbe_caustic_volume *volume,
+                                 const abbe_exit_light_desc *desc, float *value, abbe_error *error);
+
+/* A ray, the flux that it carries of light with a power of 1, W, and its bin of wavelengths. */
+typedef void (*abbe_exit_light_take)(void *user, const abbe_exit_ray *ray, double flux, size_t bin);
+/* The same rays one by one. ABBE_INVALID_ARGUMENT, ABBE_NO_MEMORY. */
+abbe_result abbe_exit_light_rays(const abbe_caustic_volume *volume,
+                                 const abbe_exit_light_desc *desc, abbe_exit_light_take take,
+                                 void *user, abbe_error *error);
+
+/* The same with all wavelengths of the light: those of a clear object's ray go on as parts of it,
+ * the more the further apart they go. xyz: of a part, W times the colour of a watt of the light,
+ * whose white has Y = 1. */
+typedef void (*abbe_exit_light_take_colour)(void *user, const abbe_exit_ray *ray, double flux,
+                                            const double xyz[3]);
+abbe_result abbe_exit_light_colours(const abbe_caustic_volume *volume,
+                                    const abbe_exit_light_desc *desc,
+                                    abbe_exit_light_take_colour take, void *user,
+                                    abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

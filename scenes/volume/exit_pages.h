@@ -1,0 +1,42 @@
+/* exit_pages.h: what the rays that leave an object (exit_light.h) bring to parallelograms, as maps
+ * on them: for each of their sides one of the whole and a finer one of where most of it lands.
+ *
+ * A ray ends at the first parallelogram that it meets. It knows no other receivers.
+ */
+#ifndef ABBE_SCENES_VOLUME_EXIT_PAGES_H
+#define ABBE_SCENES_VOLUME_EXIT_PAGES_H
+
+#include "scenes/volume/exit_light.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_EXIT_PAGES_MOST_SIDE 1024
+
+typedef struct abbe_exit_pages {
+  size_t side, count; /* texels; sides of parallelograms: 2 i is where the normal U x V of the i-th
+                         points to, 2 i + 1 the other */
+  float (*window)[4]; /* [count] the finer map's least u and v, 0 to 1, and 1 over its width in
+                         each; widths of 0: nothing lands on that side */
+  float (*value)[4]; /* [count][2][side][side] irradiance of X, Y, Z and 0, W/m2 of a light of power
+                        1: of the whole without the window, and of the window */
+  double flux;       /* of Y that landed on any, W */
+} abbe_exit_pages;
+
+/* parallelogram[parallelograms]: corner, U, V, in the world. ABBE_INVALID_ARGUMENT for a side
+ * beyond 1 to ABBE_EXIT_PAGES_MOST_SIDE and as abbe_exit_light_colours, ABBE_NO_MEMORY. */
+abbe_result abbe_exit_pages_make(const abbe_caustic_volume *volume,
+                                 const abbe_exit_light_desc *desc, const double (*parallelogram)[9],
+                                 size_t parallelograms, size_t side, abbe_exit_pages *out,
+                                 abbe_error *error);
+void abbe_exit_pages_free(abbe_exit_pages *pages);
+
+/* XYZ at a place of a page, u and v of 0 to 1, between its texels, as the renderer has it. */
+void abbe_exit_pages_at(const abbe_exit_pages *pages, size_t page, double u, double v,
+                        double xyz[3]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

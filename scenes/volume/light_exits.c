@@ -1,0 +1,261 @@
+#include "scenes/volume/light_exits.h"
+
+#include "colorimetry/weights.h"
+#include "scenes/geometry/vector.h"
+#include "scenes/volume/half.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Cosine from which on a point faces the light: the same for who writes a table and who reads it.
+ */
+static const double least_cosine = 1e-3;
+static const double least_weight = 1e-9; /* of a node */
+static const double least_part = 0.15;   /* of wavelengths' chances that is even */
+static const double most_apart = 0.1;    /* directions of rays that become one, about rad */
+static const double most_turn = 0.5;     /* that a ray alone is moved by, about rad */
+static const double on_surface = 2e-3;   /* in radii */
+
+/* ---- the table ---- */
+
+static void unpack(const uint16_t *half, double scale, double out[3]) {
+  for (int k = 0; k < 3; k++) out[k] = scale * abbe_half_value(half[k]);
+}
+
+/* Indices of exits, in the order of nodes and points; returns their number. */
+static size_t number_exits(const abbe_light_nodes *nodes, abbe_light_exits *e) {
+  size_t count = 0;
+  for (size_t i = 0; i < nodes->count; i++)
+    for (size_t k = 0; k < e->points; k++) {
+      double n[3];
+      unpack(&e->point[k][ABBE_EXIT_NORMAL], 1, n);
+      if (abbe_vector_dot(n, nodes->direction[i]) > least_cosine)
+        e->at[i * e->points + k] = (uint32_t)++count;
+    }
+  return count;
+}
+
+abbe_result abbe_light_exits_make(const abbe_light_nodes *nodes, size_t points,
+                                  const abbe_exit_halves *point, const abbe_body_symmetry *symmetry,
+                                  double radius, double area, size_t cells, abbe_light_exits *out,
+                                  abbe_error *error) {
+  static const double unit_map[1][9] = {{1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  ABBE_REQUIRE(nodes && point && out, error);
+  *out = (abbe_light_exits){.points = points, .radius = radius, .area = area, .cells = cells};
+  if (points < 1 || points > ABBE_LIGHT_EXITS_MOST || !(radius > 0) || !(area > 0) || cells == 0 ||
+      nodes->count < 2)
+    return abbe_error_set(
+        error, ABBE_INVALID_ARGUMENT,
+        "exits of %zu points of a surface of %g m2 for %zu nodes; points may be 1 "
+        "to %d, and nodes 12 and more",
+        points, area, nodes->count, ABBE_LIGHT_EXITS_MOST);
+  const bool plain = symmetry == NULL;
+  abbe_result result = abbe_body_symmetry_make(plain ? 1 : symmetry->count,
+                                               plain ? unit_map : (const double(*)[9])symmetry->map,
+                                               &out->symmetry, error);
+  if (result != ABBE_OK) return result;
+  out->point = malloc(points * sizeof *out->point);
+  out->at = calloc(nodes->count * points, sizeof *out->at);
+  out->space = calloc(cells, sizeof *out->space);
+  if (out->point == NULL || out->at == NULL || out->space == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu points", points);
+  if (result == ABBE_OK) {
+    memcpy(out->point, point, points * sizeof *point);
+    out->count = number_exits(nodes, out);
+    if (out->count > ABBE_LIGHT_EXITS_MOST_EXITS)
+      result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                              "%zu exits are more than a table holds, %zu: ask for fewer nodes or "
+                              "points",
+                              out->count, ABBE_LIGHT_EXITS_MOST_EXITS);
+  }
+  if (result == ABBE_OK) out->exit = calloc(out->count + 1, sizeof *out->exit);
+  if (result == ABBE_OK && out->exit == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu exits", out->count);
+  if (result != ABBE_OK) abbe_light_exits_free(out);
+  return result;
+}
+
+void abbe_light_exits_free(abbe_light_exits *e) {
+  if (e == NULL) return;
+  abbe_body_symmetry_free(&e->symmetry);
+  free(e->space);
+  free(e->point);
+  free(e->exit);
+  free(e->at);
+  *e = (abbe_light_exits){0};
+}
+
+size_t abbe_light_exits_bytes(const abbe_light_exits *e) {
+  return (e->points + e->count) * sizeof *e->exit + e->cells * sizeof *e->space;
+}
+
+void abbe_light_exits_chances(double min_nm, double max_nm, double chance[ABBE_LIGHT_EXITS_BINS]) {
+  const abbe_illuminant even = {.kind = ABBE_ILLUMINANT_E};
+  abbe_weights_range range;
+  double sum = 0;
+  abbe_weights_range_make(&even, min_nm, max_nm, &range);
+  for (size_t i = 0; i < ABBE_LIGHT_EXITS_BINS; i++) {
+    const double step = (max_nm - min_nm) / ABBE_LIGHT_EXITS_BINS;
+    double xyz[3];
+    abbe_weights_range_xyz(&range, min_nm + (double)i * step, min_nm + ((double)i + 1) * step, xyz);
+    chance[i] = xyz[0] + xyz[1] + xyz[2];
+    sum += chance[i];
+  }
+  for (size_t i = 0; i < ABBE_LIGHT_EXITS_BINS; i++)
+    chance[i] = sum > 0 ? least_part / ABBE_LIGHT_EXITS_BINS + (1 - least_part) * chance[i] / sum
+                        : 1.0 / ABBE_LIGHT_EXITS_BINS;
+}
+
+/* ---- between nodes ---- */
+
+void abbe_light_exits_axes(const double node[3], double x[3], double y[3]) {
+  const double other[3] = {fabs(node[0]) < 0.6, fabs(node[0]) >= 0.6, 0};
+  abbe_vector_cross(other, node, x);
+  abbe_vector_normalise(x);
+  abbe_vector_cross(node, x, y);
+}
+
+void abbe_light_exits_aim(const abbe_light_nodes *nodes, const double to_light[3],
+                          abbe_exit_aim *out) {
+  abbe_light_nodes_blend(nodes, to_light, &out->blend);
+  for (int k = 0; k < 3; k++) {
+    out->along[k] = 0;
+    for (size_t i = 0; i < out->blend.count; i++)
+      out->along[k] += out->blend.weight[i] * nodes->direction[out->blend.node[i]][k];
+  }
+}
+
+void abbe_light_exits_point(const abbe_light_exits *e, size_t point, double place[3],
+                            double normal[3], size_t *bin) {
+  const uint16_t *p = e->point[point];
+  unpack(p + ABBE_EXIT_POINT, e->radius, place);
+  unpack(p + ABBE_EXIT_NORMAL, 1, normal);
+  abbe_vector_normalise(normal);
+  const double at = abbe_half_value(p[ABBE_EXIT_BIN]);
+  *bin = at > 0 ? (size_t)fmin(at, ABBE_LIGHT_EXITS_BINS - 1) : 0;
+}
+
+/* An exit of a node, and how light from the aim's direction would change it. */
+typedef struct candidate {
+  double weight, carried;
+  double place[3], way[3]; /* at the node */
+  double step[3], turn[3]; /* to where light from the aim goes, to first order */
+  double place_by[3], way_by[3];
+  unsigned facets;
+} candidate;
+
+static void read_candidate(const abbe_light_exits *e, const double node[3],
+                           const abbe_exit_aim *aim, const uint16_t *half, candidate *c) {
+  double axis[2][3];
+  abbe_light_exits_axes(node, axis[0], axis[1]);
+  unpack(half + ABBE_EXIT_PLACE, e->radius, c->place);
+  unpack(half + ABBE_EXIT_WAY, 1, c->way);
+  unpack(half + ABBE_EXIT_PLACE_BY_INDEX, e->radius, c->place_by);
+  unpack(half + ABBE_EXIT_WAY_BY_INDEX, 1, c->way_by);
+  c->carried = abbe_half_value(half[ABBE_EXIT_CARRIED]);
+  c->facets = (unsigned)fmax(abbe_half_value(half[ABBE_EXIT_FACETS]), 0);
+  memset(c->step, 0, sizeof c->step);
+  memset(c->turn, 0, sizeof c->turn);
+  for (int a = 0; a < 2; a++) {
+    double step[3], turn[3];
+    const double far = abbe_vector_dot(axis[a], aim->along);
+    unpack(half + ABBE_EXIT_PLACE_BY + 3 * a, e->radius * far, step);
+    unpack(half + ABBE_EXIT_WAY_BY + 3 * a, far, turn);
+    for (int k = 0; k < 3; k++) {
+      c->step[k] += step[k];
+      c->turn[k] += turn[k];
+    }
+  }
+}
+
+/* Whether all of them met the same facets and, moved to the aim, go much the same way: a smooth
+ * surface may be met far apart without another facet. */
+static bool is_one(const candidate *c, size_t count) {
+  for (size_t i = 0; i < count; i++) {
+    if (c[i].facets == 0 || c[i].facets != c[0].facets || !(c[i].carried > 0)) return false;
+    double square = 0;
+    for (int k = 0; k < 3; k++)
+      square += pow(c[i].way[k] + c[i].turn[k] - c[0].way[k] - c[0].turn[k], 2);
+    if (!(square < most_apart * most_apart)) return false;
+  }
+  return count > 0;
+}
+
+/* Nodes' values by weight err by half the second derivative one way, values moved to first order by
+ * as much the other: half of both by the third alone. */
+static void join(const candidate *c, size_t count, abbe_exit_ray *ray) {
+  *ray = (abbe_exit_ray){.facets = c[0].facets};
+  const double part = count > 1 ? 0.5 : 1;
+  for (size_t i = 0; i < count; i++) {
+    ray->share += c[i].weight * c[i].carried;
+    for (int k = 0; k < 3; k++) {
+      ray->place[k] += c[i].weight * (c[i].place[k] + part * c[i].step[k]);
+      ray->way[k] += c[i].weight * (c[i].way[k] + part * c[i].turn[k]);
+      ray->place_by[k] += c[i].weight * c[i].place_by[k];
+      ray->way_by[k] += c[i].weight * c[i].way_by[k];
+    }
+  }
+  abbe_vector_normalise(ray->way);
+}
+
+static void move(const candidate *c, abbe_exit_ray *ray) {
+  const double turn = abbe_vector_length(c->turn);
+  const double part = turn > most_turn ? most_turn / turn : 1;
+  for (int k = 0; k < 3; k++) {
+    ray->place[k] = c->place[k] + part * c->step[k];
+    ray->way[k] = c->way[k] + part * c->turn[k];
+    ray->place_by[k] = c->place_by[k];
+    ray->way_by[k] = c->way_by[k];
+  }
+  abbe_vector_normalise(ray->way);
+  ray->facets = c->facets;
+}
+
+static bool is_within(const double p[3], const double (*plane)[4], size_t planes, double within) {
+  for (size_t i = 0; i < planes; i++)
+    if (abbe_vector_dot(plane[i], p) > plane[i][3] + within) return false;
+  return true;
+}
+
+/* Each for itself, of those that may be. */
+static size_t go_alone(const candidate *c, size_t count, const double (*plane)[4], size_t planes,
+                       double within, abbe_exit_ray ray[3]) {
+  abbe_exit_ray all[3];
+  bool may[3];
+  double sum = 0;
+  size_t used = 0;
+  for (size_t i = 0; i < count; i++) {
+    move(&c[i], &all[i]);
+    may[i] = !(c[i].carried > 0) || is_within(all[i].place, plane, planes, within);
+    sum += may[i] ? c[i].weight : 0;
+  }
+  for (size_t i = 0; i < count; i++) {
+    if ((!may[i] && sum > 0) || !(c[i].carried > 0)) continue;
+    ray[used] = all[i];
+    ray[used++].share = c[i].carried * c[i].weight / (sum > 0 ? sum : 1);
+  }
+  return used;
+}
+
+size_t abbe_light_exits_at(const abbe_light_exits *e, const abbe_light_nodes *nodes,
+                           const abbe_exit_aim *aim, size_t point, const double (*plane)[4],
+                           size_t planes, abbe_exit_ray ray[3]) {
+  candidate c[3];
+  size_t count = 0, asked = 0;
+  double sum = 0;
+  for (size_t i = 0; i < aim->blend.count; i++) {
+    const size_t node = aim->blend.node[i];
+    if (!(aim->blend.weight[i] > least_weight)) continue;
+    asked++;
+    const uint32_t at = e->at[node * e->points + point];
+    if (at == 0) continue; /* what faces away says nothing about light that comes from the front */
+    read_candidate(e, nodes->direction[node], aim, e->exit[at - 1], &c[count]);
+    c[count].weight = aim->blend.weight[i];
+    sum += c[count++].weight;
+  }
+  for (size_t i = 0; i < count; i++) c[i].weight /= sum;
+  if (count < asked || !is_one(c, count))
+    return go_alone(c, count, plane, planes, on_surface * e->radius, ray);
+  join(c, count, ray);
+  return 1;
+}

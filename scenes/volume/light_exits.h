@@ -1,0 +1,112 @@
+/* light_exits.h: the rays that leave an object: for points of its surface where light first meets
+ * it, each with a wavelength of its own, and for the directions of light nodes, where the light
+ * goes out again and which way; and for light from any other direction the rays between them.
+ *
+ * A ray on its way through an object depends on the point and the direction where it came in and on
+ * nothing else, so that one table serves lights at any distance and cones that meet a part of the
+ * object. Rays of three nodes that met the same facets become one; others go on alone, each moved
+ * by how it changes with the light, so that what stands beside its place does so by the square of
+ * the distance between nodes. Of an object that turns and reflections bring onto itself it takes
+ * the points of the part that these make the whole of. Places are from the object's centre in m, as
+ * it stood when the table was made. It holds numbers; validation/volume/exit_fill.h finds them out.
+ */
+#ifndef ABBE_SCENES_VOLUME_LIGHT_EXITS_H
+#define ABBE_SCENES_VOLUME_LIGHT_EXITS_H
+
+#include "scenes/volume/body_symmetry.h"
+#include "scenes/volume/light_nodes.h"
+
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_LIGHT_EXITS_MOST 131072 /* points */
+#define ABBE_LIGHT_EXITS_BINS 256    /* of wavelengths, alike in width */
+
+/* Halves of a point: place in the object's radii, unit normal of its face, bin of wavelengths; the
+ * rest is 0. */
+enum { ABBE_EXIT_POINT = 0, ABBE_EXIT_NORMAL = 3, ABBE_EXIT_BIN = 6 };
+/* Halves of an exit: place in radii and unit direction, how both change with the light along the
+ * two axes of the node (abbe_light_exits_axes), the share of the light that gets there, 0 where
+ * none does, which facets the ray met: a whole number for each sequence, 0 where it is not known;
+ * and how place and direction change with the object's index. */
+enum {
+  ABBE_EXIT_PLACE = 0,
+  ABBE_EXIT_WAY = 3,
+  ABBE_EXIT_PLACE_BY = 6,
+  ABBE_EXIT_WAY_BY = 12,
+  ABBE_EXIT_CARRIED = 18,
+  ABBE_EXIT_FACETS = 19,
+  ABBE_EXIT_PLACE_BY_INDEX = 20,
+  ABBE_EXIT_WAY_BY_INDEX = 23,
+  ABBE_EXIT_HALVES = 26
+};
+#define ABBE_EXIT_MOST_FACETS 2047 /* sequences: whole numbers that halves hold */
+
+typedef uint16_t abbe_exit_halves[ABBE_EXIT_HALVES];
+
+typedef struct abbe_light_exits {
+  size_t points;       /* 0: there is no table */
+  double radius, area; /* of the object, m; of its surface, m2, in equal parts for the points and
+                          what the maps make of them */
+  abbe_body_symmetry symmetry;
+  size_t cells;            /* of the region around it: */
+  uint16_t *space;         /* [cells] halves: share of each that the object leaves free */
+  abbe_exit_halves *point; /* [points] */
+  size_t count;
+  abbe_exit_halves
+      *exit;    /* [count] by nodes, then by points, of those that face the node's light */
+  uint32_t *at; /* [nodes][points] index of an exit and 1; 0: the point faces away */
+} abbe_light_exits;
+
+/* A table whose exits and space are 0. point[points] are its points, copied, and so is the symmetry
+ * (NULL: none). ABBE_INVALID_ARGUMENT
+ * for a number of points beyond 1 to ABBE_LIGHT_EXITS_MOST, sizes that are not above 0, and more
+ * than ABBE_LIGHT_EXITS_MOST_EXITS exits, ABBE_NO_MEMORY. */
+#define ABBE_LIGHT_EXITS_MOST_EXITS ((size_t)1 << 26)
+abbe_result abbe_light_exits_make(const abbe_light_nodes *nodes, size_t points,
+                                  const abbe_exit_halves *point, const abbe_body_symmetry *symmetry,
+                                  double radius, double area, size_t cells, abbe_light_exits *out,
+                                  abbe_error *error);
+void abbe_light_exits_free(abbe_light_exits *exits);
+size_t abbe_light_exits_bytes(const abbe_light_exits *exits); /* in memory, without the indices */
+
+/* How likely a point has each bin of wavelengths: by what the eye sees of equal energy, and a part
+ * of it evenly, so that no wavelength starves; they sum to 1. */
+void abbe_light_exits_chances(double min_nm, double max_nm, double chance[ABBE_LIGHT_EXITS_BINS]);
+
+/* Two unit vectors across a node's direction; with it right-handed. */
+void abbe_light_exits_axes(const double node[3], double x[3], double y[3]);
+
+/* A light's direction between its nodes: their weights, and the sum of the nodes by them. */
+typedef struct abbe_exit_aim {
+  abbe_node_blend blend;
+  double along[3];
+} abbe_exit_aim;
+void abbe_light_exits_aim(const abbe_light_nodes *nodes, const double to_light[3],
+                          abbe_exit_aim *out);
+
+typedef struct abbe_exit_ray {
+  double place[3], way[3];       /* m from the object's centre; unit */
+  double place_by[3], way_by[3]; /* their change with the object's index */
+  double share;                  /* of the light that came in at the point */
+  unsigned facets;
+} abbe_exit_ray;
+
+/* A point's place, normal and bin. */
+void abbe_light_exits_point(const abbe_light_exits *exits, size_t point, double place[3],
+                            double normal[3], size_t *bin);
+
+/* The rays of light that comes in at a point: at most three, of shares that sum to at most 1.
+ * plane[planes] (n, d: n . x <= d): of a convex object, whose rays leave it on its surface; a ray
+ * that does not is left out while there is another. Returns how many. */
+size_t abbe_light_exits_at(const abbe_light_exits *exits, const abbe_light_nodes *nodes,
+                           const abbe_exit_aim *aim, size_t point, const double (*plane)[4],
+                           size_t planes, abbe_exit_ray ray[3]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

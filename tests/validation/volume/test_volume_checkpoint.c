@@ -1,0 +1,112 @@
+/* Volumes put aside: what was kept comes back, what is broken or another's is told, and a fill that
+ * was stopped goes on to the same bits. */
+#include "tests/validation/trace_scene.h"
+
+#include "validation/volume/volume_checkpoint.h"
+#include "validation/volume/volume_fill.h"
+
+#include <string.h>
+
+static const char path[] = "volume-checkpoint-test";
+
+static void test_bytes_come_back(void **state) {
+  (void)state;
+  double numbers[3] = {1, -2, 0.1}, back[3] = {0};
+  char word[5] = "node", read[5] = "";
+  const abbe_kept_bytes from[] = {{numbers, sizeof numbers}, {word, sizeof word}},
+                        to[] = {{back, sizeof back}, {read, sizeof read}};
+  uint64_t nodes = 0;
+  abbe_error error = {0};
+  assert_int_equal(abbe_volume_checkpoint_save(path, 77, 12, from, 2, &error), ABBE_OK);
+  assert_int_equal(abbe_volume_checkpoint_load(path, 78, &nodes, to, 2, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, path);
+  assert_int_equal(abbe_volume_checkpoint_load(path, 77, &nodes, to, 1, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_near(back[0], 0, 0);
+  assert_int_equal(abbe_volume_checkpoint_load(path, 77, &nodes, to, 2, &error), ABBE_OK);
+  assert_int_equal(nodes, 12);
+  assert_memory_equal(back, numbers, sizeof back);
+  assert_string_equal(read, "node");
+  unlink(path);
+  assert_int_equal(abbe_volume_checkpoint_load(path, 77, &nodes, to, 2, &error), ABBE_IO);
+}
+
+static void test_broken_files_are_told(void **state) {
+  (void)state;
+  char *data;
+  size_t size;
+  double number = 3;
+  const abbe_kept_bytes part = {&number, sizeof number};
+  uint64_t nodes;
+  assert_int_equal(abbe_volume_checkpoint_save(path, 1, 2, &part, 1, NULL), ABBE_OK);
+  assert_int_equal(abbe_file_read(path, 1 << 20, &data, &size, NULL), ABBE_OK);
+  for (size_t cut = 0; cut < size; cut += 7) {
+    assert_int_equal(abbe_file_write(path, data, cut, NULL), ABBE_OK);
+    assert_int_equal(abbe_volume_checkpoint_load(path, 1, &nodes, &part, 1, NULL), ABBE_PARSE);
+  }
+  for (size_t i = 0; i < size; i += 5) {
+    data[i] ^= 1;
+    assert_int_equal(abbe_file_write(path, data, size, NULL), ABBE_OK);
+    assert_int_equal(abbe_volume_checkpoint_load(path, 1, &nodes, &part, 1, NULL), ABBE_PARSE);
+    data[i] ^= 1;
+  }
+  free(data);
+  unlink(path);
+}
+
+static bool stop_halfway(void *user, double done) {
+  (void)user;
+  return done < 0.5;
+}
+
+/* Stopped after half the nodes, and gone on with: what an unbroken run makes. */
+static void test_fills_go_on_to_the_same_bits(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  load_text(CAMERA SUN FLOOR BRICK("crown"), &scene);
+  for (int exits = 0; exits < 2; exits++) {
+    abbe_caustic_volume whole, part;
+    abbe_volume_fill_statistics once, twice;
+    abbe_error error = {0};
+    abbe_volume_fill_desc d = {.object = 1,
+                               .nodes = 12,
+                               .exits = exits ? 200 : 0,
+                               .region = {.kind = ABBE_REGION_GRID, .side = 4},
+                               .photons = 2000,
+                               .passes = 2,
+                               .threads = 2};
+    assert_int_equal(abbe_volume_fill(&scene, &d, &whole, &once, &error), ABBE_OK);
+    d.checkpoint = path;
+    d.checkpoint_s = 1000;
+    d.progress = stop_halfway;
+    assert_int_equal(abbe_volume_fill(&scene, &d, &part, &twice, &error), ABBE_CANCELLED);
+    d.progress = NULL;
+    d.resume = true;
+    d.seed = 1;
+    assert_int_equal(abbe_volume_fill(&scene, &d, &part, &twice, &error), ABBE_INVALID_ARGUMENT);
+    assert_contains(error.text, path);
+    d.seed = 0;
+    assert_int_equal(abbe_volume_fill(&scene, &d, &part, &twice, &error), ABBE_OK);
+    assert_int_equal(once.photons, twice.photons);
+    if (exits)
+      assert_memory_equal(whole.exits.exit, part.exits.exit,
+                          whole.exits.count * sizeof *whole.exits.exit);
+    else
+      assert_memory_equal(whole.value, part.value, 12 * 64 * 9 * sizeof *whole.value);
+    assert_near(once.error, twice.error, 0);
+    abbe_caustic_volume_free(&whole);
+    abbe_caustic_volume_free(&part);
+    unlink(path);
+  }
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_bytes_come_back),
+      cmocka_unit_test(test_broken_files_are_told),
+      cmocka_unit_test(test_fills_go_on_to_the_same_bits),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,42 @@
+/* lone_object.h: an object of a scene alone in one directional light of unit power, as caustics
+ * that are computed beforehand have it, and its surfaces for the tracer.
+ *
+ * Internal to validation/: it is not installed.
+ */
+#ifndef ABBE_VALIDATION_VOLUME_LONE_OBJECT_H
+#define ABBE_VALIDATION_VOLUME_LONE_OBJECT_H
+
+#include "scenes/volume/volume_body.h"
+#include "validation/transport/geometry.h"
+#include "validation/transport/media.h"
+#include "validation/transport/mirrors.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct abbe_lone_object {
+  abbe_scene scene; /* a shallow copy */
+  abbe_object object;
+  abbe_light light;
+  abbe_volume_body body;
+  abbe_volume_place place;
+  abbe_geometry geometry;
+} abbe_lone_object;
+
+/* It points into itself: it is not copied. The scene outlives it. ABBE_INVALID_ARGUMENT for an
+ * object or light that there is not and for a receiver; errors of abbe_geometry_make. */
+abbe_result abbe_lone_object_make(const abbe_scene *scene, size_t object, size_t light,
+                                  abbe_lone_object *out, abbe_error *error);
+void abbe_lone_object_free(abbe_lone_object *lone);
+/* FNV-1a, on from h, of what light meets of it, in the tables of its materials too
+ * (volume_checkpoint.h). */
+uint64_t abbe_lone_object_key(const abbe_lone_object *lone, const abbe_media *media,
+                              const abbe_mirrors *mirrors, uint64_t h);
+/* From its centre to its surface, m. */
+double abbe_lone_object_depth(const abbe_lone_object *lone);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

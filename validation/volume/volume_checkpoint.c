@@ -1,0 +1,96 @@
+#include "validation/volume/volume_checkpoint.h"
+
+#include "base/clock.h"
+#include "base/file.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* File: magic, key, nodes, the parts as the machine keeps them, and a hash of all before it. */
+static const char magic[16] = "abbe volume 1\n";
+enum { HEAD = sizeof magic + 2 * sizeof(uint64_t), TAIL = sizeof(uint64_t) };
+
+uint64_t abbe_volume_key(uint64_t h, const void *data, size_t size) {
+  const unsigned char *p = data;
+  for (size_t i = 0; i < size; i++) h = (h ^ p[i]) * 1099511628211u;
+  return h;
+}
+
+abbe_result abbe_volume_checkpoint_save(const char *path, uint64_t key, uint64_t nodes,
+                                        const abbe_kept_bytes *part, size_t parts,
+                                        abbe_error *error) {
+  ABBE_REQUIRE(path && part, error);
+  unsigned char head[HEAD];
+  abbe_file_writer writer = {0};
+  memcpy(head, magic, sizeof magic);
+  memcpy(head + sizeof magic, &key, sizeof key);
+  memcpy(head + sizeof magic + sizeof key, &nodes, sizeof nodes);
+  abbe_result result = abbe_file_writer_open(&writer, path, error);
+  if (result != ABBE_OK) return result;
+  uint64_t h = abbe_volume_key(ABBE_VOLUME_KEY, head, HEAD);
+  bool whole = fwrite(head, 1, HEAD, writer.stream) == HEAD;
+  for (size_t i = 0; i < parts && whole; i++) {
+    h = abbe_volume_key(h, part[i].data, part[i].size);
+    whole = fwrite(part[i].data, 1, part[i].size, writer.stream) == part[i].size;
+  }
+  whole = whole && fwrite(&h, sizeof h, 1, writer.stream) == 1;
+  if (whole) return abbe_file_writer_commit(&writer, error);
+  abbe_file_writer_discard(&writer);
+  return abbe_error_set(error, ABBE_IO, "%s: the checkpoint cannot be written", path);
+}
+
+abbe_result abbe_volume_checkpoint_load(const char *path, uint64_t key, uint64_t *nodes,
+                                        const abbe_kept_bytes *part, size_t parts,
+                                        abbe_error *error) {
+  ABBE_REQUIRE(path && nodes && part, error);
+  size_t total = HEAD + TAIL, size;
+  uint64_t of = 0, done = 0, sum = 0;
+  char *data;
+  for (size_t i = 0; i < parts; i++) total += part[i].size;
+  abbe_result result = abbe_file_read(path, (size_t)1 << 36, &data, &size, error);
+  if (result != ABBE_OK) return result;
+  if (size >= HEAD + TAIL) {
+    memcpy(&of, data + sizeof magic, sizeof of);
+    memcpy(&done, data + sizeof magic + sizeof of, sizeof done);
+    memcpy(&sum, data + size - TAIL, sizeof sum);
+  }
+  if (size < HEAD + TAIL || memcmp(data, magic, sizeof magic) != 0 ||
+      sum != abbe_volume_key(ABBE_VOLUME_KEY, data, size - TAIL))
+    result =
+        abbe_error_set(error, ABBE_PARSE, "%s: it is no checkpoint of a volume, or cut off", path);
+  else if (of != key || size != total)
+    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "%s: it belongs to another object or request, or to another kind of "
+                            "processor: start anew without --resume",
+                            path);
+  size_t at = HEAD;
+  for (size_t i = 0; result == ABBE_OK && i < parts; at += part[i++].size)
+    if (part[i].size > 0) memcpy(part[i].data, data + at, part[i].size);
+  if (result == ABBE_OK) *nodes = done;
+  free(data);
+  return result;
+}
+
+abbe_result abbe_volume_keeping_begin(abbe_volume_keeping *k, size_t *node, abbe_error *error) {
+  ABBE_REQUIRE(k && node, error);
+  uint64_t nodes = 0;
+  *node = 0;
+  k->saved_s = abbe_clock_seconds();
+  if (k->path == NULL || !k->resume || access(k->path, F_OK) != 0) return ABBE_OK;
+  const abbe_result result =
+      abbe_volume_checkpoint_load(k->path, k->key, &nodes, k->part, k->parts, error);
+  *node = (size_t)nodes;
+  return result;
+}
+
+abbe_result abbe_volume_keeping_end_node(abbe_volume_keeping *k, size_t nodes, bool now,
+                                         abbe_error *error) {
+  ABBE_REQUIRE(k, error);
+  if (k->path == NULL || (!now && abbe_clock_seconds() < k->saved_s + k->every_s)) return ABBE_OK;
+  const abbe_result result =
+      abbe_volume_checkpoint_save(k->path, k->key, nodes, k->part, k->parts, error);
+  k->saved_s = abbe_clock_seconds();
+  return result;
+}
