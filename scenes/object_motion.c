@@ -62,6 +62,7 @@ abbe_result abbe_object_move(abbe_object *object, const double matrix[16], abbe_
   move_exact(&object->exact, matrix, scale);
   abbe_transform_direction(matrix, object->axis, object->axis);
   abbe_vector_normalise(object->axis);
+  abbe_brushing_move(&object->brushing, matrix);
   abbe_object_bound(object);
   return ABBE_OK;
 }

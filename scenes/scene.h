@@ -4,7 +4,7 @@
  * A scene is plain data, ready for the renderer, the tracer and the plan. Lengths in metres,
  * angles in radians, right-handed, z up by convention. Objects are refractors (a dielectric from
  * the material table, surrounded by air with n = 1), receivers (opaque, Lambertian, seen from both
- * sides) or mirrors (opaque, specular on both sides, whole or open).
+ * sides) or mirrors (opaque, smooth or brushed, on both sides, whole or open).
  */
 #ifndef ABBE_SCENES_SCENE_H
 #define ABBE_SCENES_SCENE_H
@@ -16,6 +16,7 @@
 #include "scenes/environment/irradiance_map.h"
 #include "scenes/medium/medium.h"
 #include "scenes/mesh/mesh.h"
+#include "scenes/shapes/brushing.h"
 #include "scenes/shapes/convex.h"
 #include "spectral/materials/material_table.h"
 #include "spectral/spectrum.h"
@@ -109,6 +110,7 @@ typedef struct abbe_object {
   bool mirror;
   const abbe_material *conductor; /* mirror: of its n and k, owned by the scene's table, or NULL: */
   double mirror_reflectance;      /* 0 to 1, at all angles and wavelengths */
+  abbe_brushing brushing;         /* mirror: how rough it is */
   char *mesh_path;                /* NULL or the file that the mesh is of */
   char *mesh_others;              /* and those that it names, as abbe_mesh_load has them */
   char *fixes;                    /* what was fixed, and what is not whole still, or NULL */

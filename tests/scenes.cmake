@@ -1,6 +1,6 @@
 foreach(name transform disjoint_sets vector
         mesh mesh_fix mesh_repair mesh_charts topology shells
-        convex shape brilliant knot water scene_time
+        convex shape brilliant brushing knot water scene_time
         cut cut_asc cut_diagram designs cut_file cut_gcs cut_gem cut_measures cut_polyhedron cut_stretch cut_text
         scene object_file object_motion refractor_tilt object_surface reflectance_file light_file scene_file mesh_import mesh_files ply_strips
         alias_table area_lights environment environment_file environment_lights environment_picture environment_source irradiance_map

@@ -97,6 +97,16 @@ void abbe_scene_input_note(const abbe_scene *scene) {
       fprintf(stderr, "note: object '%s': %s\n", scene->object[i].name, scene->object[i].fixes);
 }
 
+static const char *roughened(const abbe_brushing *b, char *text, size_t size) {
+  const size_t used = strlen(text);
+  const abbe_microfacets *m = &b->facets;
+  if (m->x < m->y || m->y < m->x)
+    snprintf(text + used, size - used, ", brushed, %g along and %g across", m->x, m->y);
+  else
+    snprintf(text + used, size - used, ", rough, %g", m->x);
+  return text;
+}
+
 static const char *made_of(const abbe_object *o, char *text, size_t size) {
   switch (abbe_object_kind_of(o)) {
   case ABBE_OBJECT_REFRACTOR:
@@ -106,7 +116,7 @@ static const char *made_of(const abbe_object *o, char *text, size_t size) {
       snprintf(text, size, "mirror of %s", o->conductor->name);
     else
       snprintf(text, size, "mirror, %g", o->mirror_reflectance);
-    return text;
+    return abbe_brushing_is_rough(&o->brushing) ? roughened(&o->brushing, text, size) : text;
   default:
     return "receiver";
   }
@@ -117,7 +127,7 @@ void abbe_scene_input_list(const abbe_scene *scene) {
   printf("What is there, with its size and the middle of its bounds, m:\n");
   for (size_t i = 0; i < scene->object_count && i < MOST; i++) {
     const abbe_object *o = &scene->object[i];
-    char size[64], middle[64], made[ABBE_MATERIAL_MAX_NAME + 16];
+    char size[64], middle[64], made[ABBE_MATERIAL_MAX_NAME + 80];
     snprintf(size, sizeof size, "%.3g x %.3g x %.3g", o->max[0] - o->min[0], o->max[1] - o->min[1],
              o->max[2] - o->min[2]);
     snprintf(middle, sizeof middle, "(%.3g, %.3g, %.3g)", 0.5 * (o->min[0] + o->max[0]),
@@ -140,6 +150,10 @@ void abbe_scene_input_list_json(const abbe_scene *scene, cJSON *root) {
       cJSON_AddStringToObject(item, "mirror", o->conductor->name);
     else if (o->mirror)
       cJSON_AddNumberToObject(item, "mirror", o->mirror_reflectance);
+    if (abbe_brushing_is_rough(&o->brushing)) {
+      const double both[] = {o->brushing.facets.x, o->brushing.facets.y};
+      cJSON_AddItemToObject(item, "roughness", cJSON_CreateDoubleArray(both, 2));
+    }
     cJSON_AddItemToObject(item, "min", cJSON_CreateDoubleArray(o->min, 3));
     cJSON_AddItemToObject(item, "max", cJSON_CreateDoubleArray(o->max, 3));
     cJSON_AddNumberToObject(item, "faces", (double)o->mesh.face_count);

@@ -83,10 +83,10 @@ static const char *const functions[] = {
     "        inside.inputs['Density'].default_value = most\n"
     "        end(nodes, links, inside, 'Volume', out)\n"
     "    return stuff\n\n\n",
-    "def mirror(name, color):\n"
+    "def mirror(name, color, roughness=0):\n"
     "    stuff, nodes, links = begin(name)\n    one = nodes.new('ShaderNodeBsdfGlossy')\n"
     "    one.inputs['Color'].default_value = list(color) + [1]\n"
-    "    one.inputs['Roughness'].default_value = 0\n    end(nodes, links, one)\n"
+    "    one.inputs['Roughness'].default_value = roughness\n    end(nodes, links, one)\n"
     "    return stuff\n\n\n"
     "def picture(nodes, links, name, socket, kind):\n"
     "    node = nodes.new(kind)\n    node.image = bpy.data.images.load(os.path.join(HERE, name))\n"
@@ -257,6 +257,8 @@ static abbe_result write_object(const abbe_export_writing *w, size_t i, abbe_err
   if (o->mirror) abbe_export_mirror_rgb(o, rgb);
   fprintf(w->file, "%s = %s('%s', ", name, o->mirror ? "mirror" : "diffuse", name);
   tuple(w, o->mirror ? rgb : o->reflectance);
+  if (abbe_brushing_is_rough(&o->brushing)) /* squared it is GGX's alpha there */
+    abbe_number_write(w->file, ", %.9g", sqrt(abbe_export_roughness(o)));
   if (o->texture_path != NULL) {
     fprintf(w->file, ", '%s-%s.exr'", w->files->name, name);
     result = abbe_export_texture(w, o, name, error);

@@ -202,8 +202,8 @@ static abbe_result add_surface(building *b, const abbe_object *o, const char *na
   }
   double rgb[3];
   if (o->mirror) abbe_export_mirror_rgb(o, rgb);
-  cJSON *material =
-      begin_material(b, name, o->mirror ? rgb : o->reflectance, o->mirror, !o->mirror);
+  cJSON *material = begin_material(b, name, o->mirror ? rgb : o->reflectance, o->mirror,
+                                   o->mirror ? sqrt(abbe_export_roughness(o)) : 1);
   cJSON_AddBoolToObject(material, "doubleSided", true);
   return o->texture_path != NULL ? add_texture(b, o, material, error) : ABBE_OK;
 }

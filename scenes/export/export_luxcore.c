@@ -163,8 +163,9 @@ static void write_mirror(const abbe_export_writing *w, const char *name, const a
   put(w, "textures", name, "k", k);
   put_word(w, "materials", name, "type", "metal2");
   put_word(w, "materials", name, "fresnel", name);
-  put_number(w, "materials", name, "uroughness", 0);
-  put_number(w, "materials", name, "vroughness", 0);
+  const double roughness = abbe_export_roughness(o);
+  put_number(w, "materials", name, "uroughness", roughness);
+  put_number(w, "materials", name, "vroughness", roughness);
 }
 
 static abbe_result write_object(const abbe_export_writing *w, size_t i, abbe_error *error) {

@@ -283,7 +283,14 @@ static abbe_result write_diffuse(const abbe_export_writing *w, const abbe_object
 }
 
 static void write_mirror(const abbe_export_writing *w, const abbe_object *o) {
-  fputs("    <bsdf type=\"twosided\"><bsdf type=\"conductor\">\n", w->file);
+  const bool rough = abbe_brushing_is_rough(&o->brushing);
+  fprintf(w->file, "    <bsdf type=\"twosided\"><bsdf type=\"%sconductor\">\n",
+          rough ? "rough" : "");
+  if (rough)
+    abbe_number_write(w->file,
+                      "      <string name=\"distribution\" value=\"ggx\"/>\n"
+                      "      <float name=\"alpha\" value=\"%.9g\"/>\n",
+                      abbe_export_roughness(o));
   if (o->conductor != NULL) {
     write_table(w, "eta", o->conductor, conductor_n);
     write_table(w, "k", o->conductor, conductor_k);

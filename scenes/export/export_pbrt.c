@@ -200,6 +200,15 @@ static void write_glass(const abbe_export_writing *w, size_t i) {
   fputc('\n', w->file);
 }
 
+/* GGX's alpha is what pbrt takes without remapping. */
+static void put_roughness(FILE *file, const abbe_object *o) {
+  if (!abbe_brushing_is_rough(&o->brushing))
+    fputs(" \"float roughness\" 0", file);
+  else
+    abbe_number_write(file, " \"float roughness\" %.9g \"bool remaproughness\" false",
+                      abbe_export_roughness(o));
+}
+
 static abbe_result write_material(const abbe_export_writing *w, size_t i, const abbe_object *o,
                                   abbe_error *error) {
   char name[ABBE_EXPORT_NAME_SIZE];
@@ -208,14 +217,15 @@ static abbe_result write_material(const abbe_export_writing *w, size_t i, const 
     fprintf(w->file, "  NamedMaterial \"%s\"\n", name);
     if (o->material->attenuation != NULL) fprintf(w->file, "  MediumInterface \"%s\" \"\"\n", name);
   } else if (o->conductor != NULL) {
-    fputs("  Material \"conductor\" \"float roughness\" 0", w->file);
+    fputs("  Material \"conductor\"", w->file);
+    put_roughness(w->file, o);
     put_table(w->file, "eta", o->conductor, conductor_n);
     put_table(w->file, "k", o->conductor, conductor_k);
     fputc('\n', w->file);
   } else if (o->mirror) {
-    abbe_number_write(w->file,
-                      "  Material \"conductor\" \"float roughness\" 0 "
-                      "\"spectrum reflectance\" [ 360 %.9g 830 %.9g ]\n",
+    fputs("  Material \"conductor\"", w->file);
+    put_roughness(w->file, o);
+    abbe_number_write(w->file, " \"spectrum reflectance\" [ 360 %.9g 830 %.9g ]\n",
                       o->mirror_reflectance, o->mirror_reflectance);
   } else if (o->texture_path != NULL) {
     abbe_export_name(name, "o", i, o->name);

@@ -50,7 +50,19 @@ static abbe_result add_glass(const survey *s, const abbe_material *m, double lam
   return ABBE_OK;
 }
 
+static void survey_roughness(const survey *s, const abbe_object *o) {
+  const abbe_microfacets *m = &o->brushing.facets;
+  if (!abbe_brushing_is_rough(&o->brushing)) return;
+  if (s->target == ABBE_SCENE_EXPORT_LUXCORE && o->conductor == NULL)
+    LOST(s, o->name, "its roughness: a mirror that is no metal is smooth");
+  else if (m->x < m->y || m->y < m->x)
+    LOST(s, o->name, "the way its grooves run: the root of both roughnesses' product is written");
+  if (s->target == ABBE_SCENE_EXPORT_LUXCORE && o->conductor != NULL)
+    CHANGED(s, o->name, "its facets are Schlick's instead of GGX's");
+}
+
 static void survey_mirror(const survey *s, const abbe_object *o) {
+  survey_roughness(s, o);
   if (o->conductor != NULL) {
     if (s->target == ABBE_SCENE_EXPORT_LUXCORE)
       CHANGED(s, o->name, "n and k are three numbers each, of 611.4, 549.1 and 464.2 nm");

@@ -186,6 +186,10 @@ void abbe_export_nk(const abbe_material *conductor, double lambda_nm, double *n,
   if (abbe_material_nk(conductor, at, n, k, NULL) != ABBE_OK) *n = *k = 1;
 }
 
+double abbe_export_roughness(const abbe_object *mirror) {
+  return sqrt(mirror->brushing.facets.x * mirror->brushing.facets.y);
+}
+
 void abbe_export_mirror_rgb(const abbe_object *mirror, double rgb[3]) {
   const abbe_illuminant d65 = {0};
   double xyz[3] = {0}, matrix[9];

@@ -72,6 +72,9 @@ void abbe_export_attenuation_rgb(const abbe_material *material, double per_m[3])
 void abbe_export_nk(const abbe_material *conductor, double lambda_nm, double *n, double *k);
 /* What a mirror reflects of white light at normal incidence, linear Rec.709 within 0 to 1. */
 void abbe_export_mirror_rgb(const abbe_object *mirror, double rgb[3]);
+/* GGX's alpha of a mirror, alike along its grooves and across: the root of both's product; 0: it is
+ * smooth. */
+double abbe_export_roughness(const abbe_object *mirror);
 
 /* Adds the surroundings as STEM-environment.exr, linear Rec.709. direction says from where, in
  * world axes, light comes at (u, v), both in [0, 1], v downwards. */

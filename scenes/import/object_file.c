@@ -282,6 +282,70 @@ static abbe_result read_medium(const abbe_object_reading *r, abbe_object *out, a
   return abbe_medium_file_read(r->yaml, r->node, false, &out->medium, error);
 }
 
+/* One number, or one along the grooves and one across. */
+static abbe_result read_roughness(const abbe_object_reading *r, abbe_yaml_node node,
+                                  abbe_microfacets *out, abbe_error *error) {
+  double both[2] = {0, 0};
+  abbe_result result;
+  if (abbe_yaml_is_sequence(r->yaml, node)) {
+    result = abbe_yaml_get_numbers(r->yaml, r->node, "roughness", 2, 0, 1, both, error);
+  } else {
+    result = abbe_yaml_get_number(r->yaml, r->node, "roughness", 0, 1, &both[0], error);
+    both[1] = both[0];
+  }
+  const double least = fmin(both[0], both[1]), most = fmax(both[0], both[1]);
+  if (result == ABBE_OK && most > 0 && least < ABBE_MICROFACETS_LEAST)
+    return abbe_yaml_fail(r->yaml, node, error,
+                          "'roughness' is 0, of a smooth mirror, or from %g to 1, both along the "
+                          "grooves and across",
+                          ABBE_MICROFACETS_LEAST);
+  *out = (abbe_microfacets){both[0], both[1]};
+  return result;
+}
+
+/* In the object's own coordinates, until it is placed. */
+static abbe_result read_grooves(const abbe_object_reading *r, abbe_yaml_node node,
+                                abbe_brushing *out, abbe_error *error) {
+  const abbe_yaml_node along = abbe_yaml_get(r->yaml, node, "along");
+  const abbe_yaml_node around = abbe_yaml_get(r->yaml, node, "around");
+  if (!abbe_yaml_is_mapping(r->yaml, node) || (along.id != 0) == (around.id != 0))
+    return abbe_yaml_fail(r->yaml, node, error,
+                          "'brushed' wants {along: [x, y, z]} or {around: [x, y, z]}: grooves that "
+                          "run that way, or around that axis");
+  out->around = around.id != 0;
+  abbe_result result =
+      abbe_scene_value_point(r->yaml, node, out->around ? "around" : "along", out->axis, error);
+  if (result == ABBE_OK) result = abbe_yaml_check_keys(r->yaml, node, "'brushed'", error);
+  if (result == ABBE_OK && !abbe_vector_normalise(out->axis))
+    return abbe_yaml_fail(r->yaml, node, error, "'brushed' is zero; it must point somewhere");
+  return result;
+}
+
+static abbe_result read_brushing(const abbe_object_reading *r, abbe_object *out,
+                                 abbe_error *error) {
+  const abbe_yaml_node rough = abbe_yaml_get(r->yaml, r->node, "roughness");
+  const abbe_yaml_node brushed = abbe_yaml_get(r->yaml, r->node, "brushed");
+  if (rough.id == 0 && brushed.id == 0) return ABBE_OK;
+  if (!out->mirror)
+    return abbe_yaml_fail(r->yaml, rough.id ? rough : brushed, error,
+                          "'%s' is of a mirror; %s: leave it out",
+                          rough.id ? "roughness" : "brushed",
+                          out->material != NULL ? "the surfaces of what refracts are smooth here"
+                                                : "what receives light scatters it evenly");
+  if (rough.id == 0)
+    return abbe_yaml_fail(r->yaml, brushed, error,
+                          "'brushed' says which way grooves run; a 'roughness: [along, across]' "
+                          "says how deep they are");
+  abbe_result result = read_roughness(r, rough, &out->brushing.facets, error);
+  if (result == ABBE_OK && brushed.id) result = read_grooves(r, brushed, &out->brushing, error);
+  const abbe_microfacets *m = &out->brushing.facets;
+  if (result == ABBE_OK && !brushed.id && (m->x < m->y || m->y < m->x))
+    return abbe_yaml_fail(r->yaml, rough, error,
+                          "a 'roughness' of two numbers wants 'brushed: {along: [x, y, z]}' or "
+                          "'{around: ...}', which says which way the grooves run");
+  return result;
+}
+
 static abbe_result read_substance(const abbe_object_reading *r, const abbe_material_table *table,
                                   abbe_object *out, abbe_error *error) {
   const abbe_yaml_node material = abbe_yaml_get(r->yaml, r->node, "material");
@@ -300,6 +364,7 @@ static abbe_result read_substance(const abbe_object_reading *r, const abbe_mater
                        : mirror.id ? read_mirror(r, mirror, table, out, error)
                                    : read_receiver(r, out, error);
   if (result == ABBE_OK) result = read_axis(r, out, error);
+  if (result == ABBE_OK) result = read_brushing(r, out, error);
   return result == ABBE_OK ? read_medium(r, out, error) : result;
 }
 

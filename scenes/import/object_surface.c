@@ -296,6 +296,7 @@ static abbe_result place_one(const abbe_object_surface *s, const double matrix[1
   abbe_result result = abbe_mesh_transform(&out->mesh, matrix, error);
   abbe_transform_direction(matrix, out->axis, out->axis);
   abbe_vector_normalise(out->axis);
+  abbe_brushing_move(&out->brushing, matrix);
   if (result == ABBE_OK) result = find_exact(s, matrix, out, error);
   if (result == ABBE_OK) abbe_object_bound(out);
   if (result == ABBE_OK && !(abbe_vector_finite(out->min) && abbe_vector_finite(out->max)))

@@ -10,7 +10,8 @@
 static const double tolerance = 1e-4;
 
 static bool is_ball(const abbe_object *o) {
-  return o->exact.kind == ABBE_EXACT_SPHERE;
+  const abbe_microfacets *m = &o->brushing.facets;
+  return o->exact.kind == ABBE_EXACT_SPHERE && !(m->x < m->y || m->y < m->x);
 }
 
 /* The mean of all vertices: it turns with them, as the middle of bounds does not. */
@@ -27,6 +28,10 @@ static void name_material(const abbe_object *o, char *out, size_t size) {
     snprintf(out, size, "%s", m->name);
   else
     abbe_number_format(out, size, "mirror %.6g", o->mirror_reflectance);
+  const size_t used = strlen(out);
+  if (abbe_brushing_is_rough(&o->brushing))
+    abbe_number_format(out + used, size - used, ", rough %.6g %.6g", o->brushing.facets.x,
+                       o->brushing.facets.y);
 }
 
 /* Far from the centre, from the line through it and the first, from the plane through it and both.

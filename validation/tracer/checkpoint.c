@@ -91,6 +91,9 @@ static uint64_t hash_scene(const abbe_tracer *t) {
   h = hash(h, t->reflectance.set, s->object_count * sizeof *t->reflectance.set);
   h = hash(h, t->mirrors.reflectance, t->mirrors.count * sizeof *t->mirrors.reflectance);
   h = hash(h, t->mirrors.nk, t->mirrors.count * (t->mirrors.steps + 1) * sizeof *t->mirrors.nk);
+  for (size_t i = 0; i < t->mirrors.count; i++)
+    if (abbe_mirrors_is_rough(&t->mirrors, i))
+      h = hash(h, &t->mirrors.lobe[i], sizeof t->mirrors.lobe[i]);
   for (size_t i = 0; i < s->object_count; i++) {
     const abbe_object *o = &s->object[i];
     const abbe_surface *f = &t->geometry.surface[i];

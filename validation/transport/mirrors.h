@@ -1,7 +1,7 @@
 /* mirrors.h: what mirrors reflect, in single precision: metals by their n and k, others by one
- * number.
+ * number; and where to, smooth ones and rough ones.
  *
- * Its oracle is abbe_optics_fresnel_conductor.
+ * Its oracles are abbe_optics_fresnel_conductor and spectral/microfacets.h.
  *
  * Internal to validation/: it is not installed.
  */
@@ -19,10 +19,16 @@
 extern "C" {
 #endif
 
+/* Of one: its facets and grooves (scenes/shapes/brushing.h), in the frame; x 0: smooth. */
+typedef struct abbe_mirror_lobe {
+  float x, y, around, axis[3], centre[3];
+} abbe_mirror_lobe;
+
 typedef struct abbe_mirrors {
   size_t count, steps;
-  float *reflectance; /* [count] at all angles and wavelengths; below 0: a metal */
-  float (*nk)[2];     /* [count][steps + 1] at the steps' edges */
+  abbe_mirror_lobe *lobe; /* [count] */
+  float *reflectance;     /* [count] at all angles and wavelengths; below 0: a metal */
+  float (*nk)[2];         /* [count][steps + 1] at the steps' edges */
 } abbe_mirrors;
 
 /* Of the geometry's mirrors over the steps + 1 wavelengths lambda_nm, ascending. Errors as
@@ -61,6 +67,29 @@ static inline float abbe_mirrors_reflect(const abbe_mirrors *m, size_t mirror, f
   abbe_mirrors_nk(m, mirror, k, f, nk);
   return abbe_mirrors_metal(cos_i, nk[0], nk[1]);
 }
+
+static inline bool abbe_mirrors_is_rough(const abbe_mirrors *m, size_t mirror) {
+  return m->lobe[mirror].x > 0;
+}
+
+/* Where light along unit d meets a rough mirror: frame; n: unit, on the light's side; x along the
+ * grooves, y across; wo: back along d, in x, y and n. */
+typedef struct abbe_rough_hit {
+  abbe_microfacets facets;
+  double x[3], y[3], n[3], wo[3];
+} abbe_rough_hit;
+
+void abbe_mirrors_meet(const abbe_mirrors *m, size_t mirror, const float p[3], const float n[3],
+                       const float d[3], abbe_rough_hit *out);
+
+/* A way on, drawn of u in [0, 1)^2: unit `out`, its density in *pdf, 1/sr, the cosine to the
+ * facet's normal in *cos_h. Returns the share of what the facet reflects that goes there. */
+float abbe_mirrors_scatter(const abbe_rough_hit *hit, const float u[2], float out[3], float *pdf,
+                           float *cos_h);
+
+/* Of light from there, along -to: radiance by irradiance, 1/sr, of facets that reflect all; the
+ * density of abbe_mirrors_scatter, and the cosine to the facet's normal. */
+float abbe_mirrors_lobe(const abbe_rough_hit *hit, const float to[3], float *pdf, float *cos_h);
 
 #ifdef __cplusplus
 }

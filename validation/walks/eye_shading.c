@@ -139,12 +139,12 @@ static float left_of(const abbe_eye_context *c, const abbe_eye_path *p, const fl
   return abbe_haze_left(&c->w->media->haze, -1, o, d, 0, distance, p->step, p->within);
 }
 
-/* Irradiance of a light at the hit on the viewer's side, W/m2, seen past everything. n faces the
- * viewer. */
+/* Irradiance of a light at the hit on the viewer's side, W/m2, seen past everything; d: unit,
+ * towards it. n faces the viewer. */
 static float irradiance(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_light *light,
-                        const abbe_hit *hit, const float n[3], const float random[2]) {
+                        const abbe_hit *hit, const float n[3], const float random[2], float d[3]) {
   const abbe_geometry *g = c->w->geometry;
-  float from[3], d[3], o[3], limit = INFINITY, power = (float)light->power, falloff = 1;
+  float from[3], o[3], limit = INFINITY, power = (float)light->power, falloff = 1;
   for (int k = 0; k < 3; k++) d[k] = -(float)light->direction[k];
   if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
     power = abbe_lamp_place(g, light, random, from);
@@ -227,7 +227,7 @@ static void shade(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_
                   bool straight) {
   const abbe_eye_walk *w = c->w;
   const abbe_scene *scene = w->geometry->scene;
-  float albedo[3], n[3], random[4];
+  float albedo[3], n[3], random[4], to[3];
   abbe_reflected reflected;
   uint32_t surface = (uint32_t)(hit->surface - w->geometry->surface);
   abbe_reflectance_find(w->reflectance, surface, hit->face, hit->u, hit->v, &reflected);
@@ -239,7 +239,7 @@ static void shade(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_
   for (int k = 0; k < 3; k++) n[k] = side * normal[k];
   for (size_t l = 0; l < scene->light_count; l++) {
     abbe_eye_random4(c, ~p->id, (uint32_t)(p->steps * ABBE_SCENE_MAX_LIGHTS + l), random);
-    float e = irradiance(c, p, &scene->light[l], hit, n, random);
+    float e = irradiance(c, p, &scene->light[l], hit, n, random, to);
     if (e > 0) add_light(c, p, l, e * inverse_pi, &reflected);
   }
   if (w->environment->environment != NULL) {
@@ -281,8 +281,12 @@ static void add_air_light(const abbe_eye_context *c, const abbe_eye_path *p,
     if (c->w->environment->environment == NULL) continue;
     abbe_eye_random4(c, ~p->id ^ salt ^ 0x736b79u, p->steps, u);
     abbe_eye_random4(c, ~p->id ^ salt ^ 0x68656d69u, p->steps, v);
-    const double all[6] = {(double)u[0] + 0x1p-24 * (double)v[3], (double)u[1], (double)u[2],
-                           (double)u[3], (double)v[0], (double)v[1]};
+    const double all[6] = {(double)u[0] + 0x1p-24 * (double)v[3],
+                           (double)u[1],
+                           (double)u[2],
+                           (double)u[3],
+                           (double)v[0],
+                           (double)v[1]};
     float rgb[3];
     abbe_air_light_surroundings(ray, c->w->environment, all, rgb, &c->out->rays);
     add_environment(c, p, rgb, 1 / (float)count, NULL);
@@ -338,6 +342,81 @@ void abbe_eye_haze(const abbe_eye_context *c, abbe_eye_path *p, float length, bo
   p->share *= expf(-(to - from) * abbe_haze_extinction(h, medium, p->step, p->within));
 }
 
+/* Density of a light's even points over its area by solid angle, where unit d meets it at p, 1/sr;
+ * 0 of one without size. */
+static float lamp_pdf(const abbe_geometry *g, const abbe_light *light, const float from[3],
+                      const float d[3], const float p[3]) {
+  const float unit = (float)g->unit, area = (float)abbe_light_area(light) / (unit * unit);
+  float square = 0, facing = 0;
+  if (!abbe_light_has_size(light)) return 0;
+  for (int k = 0; k < 3; k++) {
+    square += (p[k] - from[k]) * (p[k] - from[k]);
+    facing -= d[k] * (float)light->direction[k];
+  }
+  return facing > 0 ? square / (facing * area) : 0;
+}
+
+/* Where the ray from p along unit d meets the light's plane. */
+static void on_lamp(const abbe_geometry *g, const abbe_light *light, const float p[3],
+                    const float d[3], float out[3]) {
+  float centre[3], along = 0, away = 0;
+  abbe_geometry_to_frame(g, light->position, centre);
+  for (int k = 0; k < 3; k++) {
+    away += (centre[k] - p[k]) * (float)light->direction[k];
+    along += d[k] * (float)light->direction[k];
+  }
+  for (int k = 0; k < 3; k++) out[k] = p[k] + away / along * d[k];
+}
+
+static void gloss_of_surroundings(const abbe_eye_context *c, const abbe_eye_path *p,
+                                  const abbe_hit *hit, const float n[3],
+                                  const abbe_rough_hit *rough) {
+  const abbe_environment_light *e = c->w->environment;
+  float random[4], d[3], rgb[3], pdf, lobe_pdf, cos_h;
+  abbe_eye_random4(c, ~p->id ^ 0x676c6f73u, p->steps, random);
+  const double u[3] = {(double)random[0] + 0x1p-24 * (double)random[3], (double)random[1],
+                       (double)random[2]};
+  abbe_environment_light_sample(e, u, d, &pdf, rgb);
+  const float f = abbe_mirrors_lobe(rough, d, &lobe_pdf, &cos_h);
+  const float seen = f > 0 ? sees_out(c, p, hit, n, d) : 0;
+  if (!(seen > 0)) return;
+  const float share = seen * f * abbe_eye_dot(n, d) / (pdf + lobe_pdf);
+  add_environment(
+      c, p, rgb,
+      share * abbe_mirrors_reflect(c->w->mirrors, hit->surface->index, cos_h, p->step, p->within),
+      NULL);
+}
+
+void abbe_eye_gloss(const abbe_eye_context *c, const abbe_eye_path *path, const abbe_hit *hit,
+                    const float n[3], const abbe_rough_hit *rough) {
+  const abbe_eye_walk *w = c->w;
+  const abbe_scene *scene = w->geometry->scene;
+  abbe_eye_path own = *path;
+  own.share *= spread(c, path, true);
+  for (size_t l = 0; l < scene->light_count; l++) {
+    const abbe_light *light = &scene->light[l];
+    float random[4], d[3], p[3], lobe_pdf, cos_h, weight = 1;
+    abbe_eye_random4(c, ~path->id ^ 0x6c616d70u,
+                     (uint32_t)(path->steps * ABBE_SCENE_MAX_LIGHTS + l), random);
+    const float e = irradiance(c, path, light, hit, n, random, d);
+    const float f = e > 0 ? abbe_mirrors_lobe(rough, d, &lobe_pdf, &cos_h) : 0;
+    if (!(f > 0)) continue;
+    if (abbe_light_has_size(light)) {
+      on_lamp(w->geometry, light, hit->p, d, p);
+      const float pdf = lamp_pdf(w->geometry, light, hit->p, d, p);
+      weight = pdf / (pdf + lobe_pdf);
+    }
+    weight *= abbe_mirrors_reflect(w->mirrors, hit->surface->index, cos_h, own.step, own.within);
+    add_light(c, &own, l, e * f * weight, NULL);
+  }
+  if (w->environment->environment != NULL) gloss_of_surroundings(c, &own, hit, n, rough);
+}
+
+/* What is left to a path off a rough mirror, which has looked for what has that density itself. */
+static float weight_of(const abbe_eye_path *p, float pdf) {
+  return p->lobe > 0 ? p->lobe / (p->lobe + pdf) : 1;
+}
+
 /* What ends a path: a receiver, a lamp, or nothing at all. */
 void abbe_eye_arrive(const abbe_eye_context *c, const abbe_eye_path *path, bool met,
                      const abbe_hit *hit, bool straight) {
@@ -351,11 +430,13 @@ void abbe_eye_arrive(const abbe_eye_context *c, const abbe_eye_path *path, bool 
     if (c->w->environment->environment == NULL) return;
     float rgb[3];
     abbe_environment_light_seen(c->w->environment, p->d, rgb);
-    add_environment(c, p, rgb, 1, NULL);
+    const float pdf = p->lobe > 0 ? abbe_environment_light_pdf(c->w->environment, p->d) : 0;
+    add_environment(c, p, rgb, weight_of(p, pdf), NULL);
   } else if (received) {
     shade(c, p, hit, straight);
   } else if (abbe_eye_dot(p->d, hit->n) < 0) {
     size_t l = hit->surface->index;
-    add_light(c, p, l, (float)scene->light[l].power, NULL);
+    const float pdf = lamp_pdf(c->w->geometry, &scene->light[l], p->o, p->d, hit->p);
+    add_light(c, p, l, (float)scene->light[l].power * weight_of(p, pdf), NULL);
   }
 }

@@ -27,6 +27,8 @@ typedef struct abbe_eye_path {
   float carried; /* matched: what a splitting path would carry */
   uint32_t walls, steps, id;
   uint8_t wave; /* in a crystal: which of its two */
+  float lobe;   /* density with which the rough mirror that it comes from sent it on, 1/sr; 0: it
+                   comes from none */
 } abbe_eye_path;
 
 typedef struct abbe_eye_context {
@@ -53,6 +55,11 @@ void abbe_eye_arrive(const abbe_eye_context *context, const abbe_eye_path *path,
  * Where its coefficients vary over wavelength the path is dispersed. straight: as above. */
 void abbe_eye_haze(const abbe_eye_context *context, abbe_eye_path *path, float length,
                    bool straight);
+/* What a rough mirror shows of lamps and the environment that it sees straight: of what comes to it
+ * by other ways a path's next ray tells, and of these, too, where their weights leave room
+ * [VeachGuibas1995]. n: on the path's side. */
+void abbe_eye_gloss(const abbe_eye_context *context, const abbe_eye_path *path, const abbe_hit *hit,
+                    const float n[3], const abbe_rough_hit *rough);
 
 #ifdef __cplusplus
 }

@@ -220,15 +220,31 @@ static bool scatter_waves(const abbe_eye_context *c, branches *b, abbe_eye_path 
   return goes;
 }
 
+/* One way on from a rough mirror, d; what it shows of lamps is added. Returns the share that goes
+ * there of what the facet met reflects. */
+static float scatter_off(const abbe_eye_context *c, abbe_eye_path *p, const abbe_hit *hit,
+                         const float n[3], float d[3], float *cos_h) {
+  abbe_rough_hit rough;
+  float random[4];
+  abbe_eye_random4(c, p->id ^ 0x6c6f6265u, p->steps, random);
+  abbe_mirrors_meet(c->w->mirrors, hit->surface->index, hit->p, n, p->d, &rough);
+  abbe_eye_gloss(c, p, hit, n, &rough);
+  return abbe_mirrors_scatter(&rough, random, d, &p->lobe, cos_h);
+}
+
 /* On from a mirror, with what it reflects. */
 static void mirror_on(const abbe_eye_context *c, abbe_eye_path *p, const abbe_hit *hit) {
   const float side = abbe_eye_dot(p->d, hit->ng) < 0 ? 1 : -1;
   const float *outside = abbe_eye_dot(p->d, hit->n) * side < 0 ? hit->n : hit->ng;
   float n[3], d[3];
   for (int k = 0; k < 3; k++) n[k] = side * outside[k];
-  const float cos_i = fminf(-abbe_eye_dot(p->d, n), 1);
+  float cos_i = fminf(-abbe_eye_dot(p->d, n), 1);
+  p->lobe = 0;
+  if (abbe_mirrors_is_rough(c->w->mirrors, hit->surface->index))
+    p->share *= scatter_off(c, p, hit, n, d, &cos_i);
+  else
+    abbe_interface_reflect(p->d, n, cos_i, d);
   p->share *= abbe_mirrors_reflect(c->w->mirrors, hit->surface->index, cos_i, p->step, p->within);
-  abbe_interface_reflect(p->d, n, cos_i, d);
   abbe_interface_keep_side(hit->ng, side, d);
   memcpy(p->d, d, sizeof d);
   abbe_geometry_leave(hit, d, p->o);
@@ -263,6 +279,7 @@ static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p
     mirror_on(c, p, &hit);
     return p->share > 0;
   }
+  p->lobe = 0;
   crossing x;
   cross(c, p, &hit, &x);
   if (abbe_media_same(c->w->media, x.from, x.to)) {
@@ -361,7 +378,8 @@ static void follow_through(const abbe_eye_context *c, const abbe_eye_path *first
 static void follow_off(const abbe_eye_context *c, const abbe_eye_path *first, const abbe_hit *hit,
                        float random) {
   const bool takes = is_coloured_mirror(c, hit);
-  const uint32_t count = takes && !first->dispersed ? HEROES : 1;
+  const bool spreads = abbe_mirrors_is_rough(c->w->mirrors, hit->surface->index);
+  const uint32_t count = spreads || (takes && !first->dispersed) ? HEROES : 1;
   for (uint32_t i = 0; i < count; i++) {
     abbe_eye_path p = *first;
     p.id += 2 + i;

@@ -9,6 +9,7 @@
 #include "validation/transport/double_refraction.h"
 #include "validation/transport/interface.h"
 #include "validation/transport/media.h"
+#include "validation/transport/mirrors.h"
 #include "validation/transport/random.h"
 #include "validation/walks/inner_walk.h"
 #include "validation/walks/scatter.h"
@@ -104,6 +105,28 @@ static inline bool abbe_light_path_absorb(const abbe_inner_rules *r, const abbe_
   s->flux *= left;
   s->carried *= left;
   return abbe_light_path_survives(r, s, ledger);
+}
+
+/* At a rough mirror: puts into lane k, in place of what a smooth one does, where the path goes on
+ * and the share that does. */
+static inline void abbe_light_path_roughen(const abbe_inner_rules *r, const abbe_mirrors *m,
+                                           const abbe_hit *hit, const abbe_light_path *s,
+                                           abbe_scatter *p, abbe_mirroring *mirroring, size_t k) {
+  const size_t mirror = hit->surface->index;
+  if (!abbe_mirrors_is_rough(m, mirror)) return;
+  float d[3], n[3], ng[3], out[3], random[4], pdf, cos_h;
+  for (int i = 0; i < 3; i++) {
+    d[i] = p->d[i][k];
+    n[i] = p->n[i][k];
+    ng[i] = p->ng[i][k];
+  }
+  abbe_rough_hit rough;
+  abbe_random4(s->id, s->steps, r->pass, r->seed ^ 0x6c6f6265u, random);
+  abbe_mirrors_meet(m, mirror, hit->p, n, d, &rough);
+  const float share = abbe_mirrors_scatter(&rough, random, out, &pdf, &cos_h);
+  mirroring->share[k] = share * abbe_mirrors_reflect(m, mirror, cos_h, s->step, s->within);
+  abbe_interface_keep_side(ng, 1, out);
+  for (int i = 0; i < 3; i++) p->out[i][k] = out[i];
 }
 
 /* At a face of a crystal: puts into lane k, in place of what it has, where the path goes on as that

@@ -401,6 +401,10 @@ static void scatter(run *r, const abbe_light_path *paths, size_t count) {
   }
   if (scatters || mirrors) scatter_packet(r, paths, count);
   if (mirrors) abbe_scatter_mirror(s, &r->packet.mirroring);
+  for (size_t k = 0; mirrors && k < count; k++)
+    if (r->packet.state[k] == MIRRORED)
+      abbe_light_path_roughen(&r->rules, r->w->mirrors, &r->packet.hit[k], &paths[k], s,
+                              &r->packet.mirroring, k);
   advance(r, paths, count, false);
   if (!any) return;
   for (size_t k = 0; k < count; k++)

@@ -156,6 +156,26 @@ static void mirrors_are_metals_or_numbers_of_any_shape(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* Along a direction or around an axis, which turns with the object. */
+static void mirrors_may_be_brushed(void **state) {
+  (void)state;
+  abbe_scene scene = read("{shape: sphere, radius: 1, mirror: silver, roughness: 0.25}");
+  assert_true(scene.object[0].brushing.facets.x == 0.25);
+  assert_true(scene.object[0].brushing.facets.y == 0.25);
+  abbe_scene_free(&scene);
+  scene = read("{shape: sphere, radius: 1, mirror: 0.9, roughness: [0.1, 0.4], brushed: {around: "
+               "[0, 0, 2]}, transform: [{rotate: {axis: [1, 0, 0], angle: 90}}, {translate: [1, 2, "
+               "3]}]}");
+  const abbe_brushing *b = &scene.object[0].brushing;
+  assert_true(abbe_brushing_is_rough(b) && b->around);
+  assert_true(b->facets.x == 0.1 && b->facets.y == 0.4);
+  assert_true(fabs(b->axis[1] + 1) < 1e-12 && fabs(b->centre[1] - 2) < 1e-12);
+  abbe_scene_free(&scene);
+  scene = read("{shape: sphere, radius: 1, mirror: 0.9, roughness: 0}");
+  assert_false(abbe_brushing_is_rough(&scene.object[0].brushing));
+  abbe_scene_free(&scene);
+}
+
 static void boxes_are_planes_or_parallelograms(void **state) {
   (void)state;
   abbe_scene scene = read("{shape: box, size: [1, 2, 3], material: diamond}");
@@ -268,6 +288,7 @@ int main(void) {
       cmocka_unit_test(a_sphere_stays_one_under_similarities_only),
       cmocka_unit_test(crystals_have_an_optic_axis),
       cmocka_unit_test(mirrors_are_metals_or_numbers_of_any_shape),
+      cmocka_unit_test(mirrors_may_be_brushed),
       cmocka_unit_test(boxes_are_planes_or_parallelograms),
       cmocka_unit_test(steps_apply_in_order),
       cmocka_unit_test(look_turns_z_to_the_target),

@@ -348,6 +348,17 @@ static void bad_scenes_are_explained(void **state) {
       {"mirror_and_material", ABBE_SCHEMA, "this one has more than one"},
       {"mirror_and_reflectance", ABBE_SCHEMA, "this one has more than one"},
       {"mirror_repaired", ABBE_SCHEMA, "'repair' is for the mesh of a file that refracts"},
+      {"roughness_of_glass", ABBE_SCHEMA,
+       ":20: 'roughness' is of a mirror; the surfaces of what refracts are smooth here: leave it "
+       "out"},
+      {"roughness_of_a_floor", ABBE_SCHEMA, "what receives light scatters it evenly"},
+      {"roughness_too_small", ABBE_SCHEMA, "'roughness' is 0, of a smooth mirror, or from 0.001"},
+      {"roughness_above_one", ABBE_SCHEMA, "'roughness"},
+      {"roughness_of_three", ABBE_SCHEMA, "'roughness'"},
+      {"roughness_without_a_way", ABBE_SCHEMA, "wants 'brushed: {along: [x, y, z]}'"},
+      {"brushed_both_ways", ABBE_SCHEMA, "'brushed' wants {along: [x, y, z]} or {around"},
+      {"brushed_to_nothing", ABBE_SCHEMA, "'brushed' is zero"},
+      {"brushed_smooth", ABBE_SCHEMA, "a 'roughness: [along, across]' says how deep"},
       {"mirror_alone", ABBE_SCHEMA, "has no receiver"},
       {"conductor_refracts", ABBE_UNSUPPORTED,
        ":19: the material 'silver' is a conductor: no light comes through it; say 'mirror: silver' "
