@@ -7,7 +7,7 @@
 
 typedef struct request {
   abbe_render_desc desc;
-  int profile, fill, model, space, observer, gl;
+  int profile, fill, model, transport, strategy, footprint, space, observer, gl;
 } request;
 
 #define NAME_OF_2(code, name) name,
@@ -15,6 +15,9 @@ typedef struct request {
 static const char *const profiles[] = {ABBE_PROFILES(NAME_OF_2)};
 static const char *const fills[] = {ABBE_FILLS(NAME_OF_2)};
 static const char *const models[] = {ABBE_MODELS(NAME_OF_2)};
+static const char *const transports[] = {ABBE_TRANSPORTS(NAME_OF_2)};
+static const char *const strategies[] = {ABBE_SAMPLE_STRATEGIES(NAME_OF_2)};
+static const char *const footprints[] = {ABBE_FOOTPRINTS(NAME_OF_2)};
 static const char *const spaces[] = {ABBE_RGB_SPACES(NAME_OF_3)};
 static const char *const observers[] = {ABBE_OBSERVERS(NAME_OF_3)};
 static const char *const backends[] = {ABBE_CONTEXT_BACKENDS(NAME_OF_2)};
@@ -41,6 +44,10 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
       ABBE_LIB_CHOICE("profile", &q->profile, profiles),
       ABBE_LIB_CHOICE("fill", &q->fill, fills),
       ABBE_LIB_CHOICE("model", &q->model, models),
+      ABBE_LIB_CHOICE("transport", &q->transport, transports),
+      ABBE_LIB_COUNT("pinholes", &d->pinholes, 1, ABBE_SURFACE_MAX_SAMPLES),
+      ABBE_LIB_CHOICE("strategy", &q->strategy, strategies),
+      ABBE_LIB_CHOICE("footprint", &q->footprint, footprints),
       ABBE_LIB_CHOICE("space", &q->space, spaces),
       ABBE_LIB_CHOICE("observer", &q->observer, observers),
       ABBE_LIB_CHOICE("gl", &q->gl, backends),
@@ -50,6 +57,9 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
   d->profile = (abbe_profile)q->profile;
   d->fill = (abbe_fill)q->fill;
   d->model = (abbe_model)q->model;
+  d->transport = (abbe_transport)q->transport;
+  d->strategy = (abbe_sample_strategy)q->strategy;
+  d->footprint = (abbe_footprint)q->footprint;
   d->space = (abbe_rgb_space)q->space;
   d->observer = (abbe_observer)q->observer;
   return result;

@@ -51,10 +51,13 @@ void abbe_lib_scene_set_progress(abbe_lib_scene *scene, abbe_lib_progress progre
 /* The picture by OpenGL. Settings, each of which may be left out: width, height (pixels),
  * wavelengths, min_nm, max_nm, photons (a side), map_size (a side), supersample, upsample,
  * adaptive, environment_lights, light_points, exits, energy_share, profile (default, thesis,
- * thesis-cie, shah2007, shah2007-cie), fill (auto, none, bridge, smear), model (auto, sphere,
- * convex, layers, hierarchy), space (acescg, rec709, xyz), observer (1931, 1964, 2015-2, 2015-10),
- * aovs (1: direct.*, caustic.* and Z too), gl (osmesa, egl: of the first picture). docs/rendering.md says what they do.
- * ABBE_INVALID_ARGUMENT, ABBE_UNSUPPORTED, ABBE_GL, ABBE_CANCELLED, ABBE_NO_MEMORY. */
+ * thesis-cie, shah2007, shah2007-cie, wyman2006, wyman2006-cie, wand2003), fill (auto, none,
+ * bridge, smear), model (auto, sphere, convex, layers, hierarchy), transport (auto, photons,
+ * pinhole), of pinholes also pinholes (a number), strategy (auto, random, grid, quantized,
+ * neighbour) and footprint (auto, off, on), space (acescg, rec709, xyz), observer (1931, 1964,
+ * 2015-2, 2015-10), aovs (1: direct.*, caustic.* and Z too), gl (osmesa, egl: of the first
+ * picture). docs/rendering.md says what they do. ABBE_INVALID_ARGUMENT, ABBE_UNSUPPORTED, ABBE_GL,
+ * ABBE_CANCELLED, ABBE_NO_MEMORY. */
 abbe_result abbe_lib_scene_render(abbe_lib_scene *scene, const char *const *settings, size_t count,
                                   abbe_lib_picture **out, abbe_error *error);
 /* Where a light's flux landed in the last rendered picture, X, Y, Z in W a texel, and so many bands
@@ -66,10 +69,10 @@ abbe_result abbe_lib_scene_map(abbe_lib_scene *scene, const char *light, size_t 
 /* The reference: every path with its own wavelength, and standard errors from two passes on
  * (channels stderr.*, caustic.*). Settings: passes (64, unless seconds or error is given), seconds,
  * error (relative standard error), width, height, photons (a pass), bands, seed, threads, min_nm,
- * max_nm, space, observer, physics (full, or matched: what the renderer models and no more), filter (1: less
- * noise, by non-local means), map_size (a side), light (whose map). like: a map, for a map of the
- * same texels; or NULL. picture and map may be NULL: then that is left out. ABBE_INVALID_ARGUMENT,
- * ABBE_OUT_OF_RANGE, ABBE_UNSUPPORTED, ABBE_CANCELLED, ABBE_NO_MEMORY. */
+ * max_nm, space, observer, physics (full, or matched: what the renderer models and no more), filter
+ * (1: less noise, by non-local means), map_size (a side), light (whose map). like: a map, for a map
+ * of the same texels; or NULL. picture and map may be NULL: then that is left out.
+ * ABBE_INVALID_ARGUMENT, ABBE_OUT_OF_RANGE, ABBE_UNSUPPORTED, ABBE_CANCELLED, ABBE_NO_MEMORY. */
 abbe_result abbe_lib_scene_trace(abbe_lib_scene *scene, const char *const *settings, size_t count,
                                  const abbe_lib_picture *like, abbe_lib_picture **picture,
                                  abbe_lib_picture **map, abbe_error *error);

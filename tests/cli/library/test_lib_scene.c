@@ -173,8 +173,36 @@ static void test_a_map_wants_a_picture(void **state) {
   abbe_lib_scene_free(s);
 }
 
+/* A lamp is no environment: settings of pinholes come to the request, which says what is missing.
+ */
+static void test_pinholes_are_asked_for(void **state) {
+  (void)state;
+  static const struct {
+    const char *const settings[2];
+    abbe_result result;
+    const char *says;
+  } rows[] = {
+      {{"transport=pinhole", "pinholes=20"}, ABBE_UNSUPPORTED, "an environment's light"},
+      {{"strategy=grid", "footprint=off"},
+       ABBE_INVALID_ARGUMENT,
+       "go with the transport 'pinhole'"},
+      {{"transport=pinhole", "pinholes=5000"}, ABBE_INVALID_ARGUMENT, "4096"},
+      {{"transport=pinhole", "strategy=nearest"}, ABBE_INVALID_ARGUMENT, "neighbour"},
+  };
+  abbe_lib_scene *s = opened(NULL, 0);
+  for (size_t i = 0; i < COUNT(rows); i++) {
+    abbe_lib_picture *p = NULL;
+    abbe_error error = {0};
+    assert_int_equal(abbe_lib_scene_render(s, rows[i].settings, 2, &p, &error), rows[i].result);
+    assert_contains(error.text, rows[i].says);
+    assert_null(p);
+  }
+  abbe_lib_scene_free(s);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_change_is_a_scene_opened_so),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pinholes_are_asked_for),
+                                     cmocka_unit_test(test_a_change_is_a_scene_opened_so),
                                      cmocka_unit_test(test_the_camera_moves_and_comes_back),
                                      cmocka_unit_test(test_a_trace_agrees_with_the_picture),
                                      cmocka_unit_test(test_progress_stops_the_work),
