@@ -82,7 +82,8 @@ static const struct argp_option options[] = {
     {"grid", OPTION_GRID, "quick|full|thin|presets", 0,
      "a named set of settings; presets: do they keep their promise here? (quick)", 1},
     {"profiles", OPTION_PROFILES, "LIST", 0,
-     "default,thesis,thesis-cie,shah2007,shah2007-cie,wyman2006,wyman2006-cie,trace,trace-filter "
+     "default,thesis,thesis-cie,shah2007,shah2007-cie,wyman2006,wyman2006-cie,wand2003,trace,"
+     "trace-filter,pinhole-64,pinhole-256,pinhole-1024 "
      "(all)",
      1},
     {"wavelengths", OPTION_WAVELENGTHS, "LIST", 0, "such as 3,7,21", 1},

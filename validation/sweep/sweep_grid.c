@@ -15,8 +15,14 @@ extern const size_t abbe_embedded_grids_yaml_size;
 /* ---- reading ---- */
 
 #define ABBE_NAME_OF(code, name) name,
+#define ABBE_PINHOLE_NAME_OF(count) ABBE_SWEEP_PINHOLE #count,
+#define ABBE_COUNT_OF(count) count,
 const char *const abbe_sweep_profiles[] = {ABBE_PROFILES(ABBE_NAME_OF) ABBE_SWEEP_TRACE,
-                                           ABBE_SWEEP_TRACE_FILTER};
+                                           ABBE_SWEEP_TRACE_FILTER,
+                                           ABBE_SWEEP_PINHOLES(ABBE_PINHOLE_NAME_OF)};
+static const size_t pinholes[] = {ABBE_SWEEP_PINHOLES(ABBE_COUNT_OF)};
+_Static_assert(sizeof abbe_sweep_profiles / sizeof *abbe_sweep_profiles == ABBE_SWEEP_PROFILE_COUNT,
+               "each contestant has a name");
 static const char *const fill_names[] = {ABBE_FILLS(ABBE_NAME_OF)};
 static const char *const model_names[] = {ABBE_MODELS(ABBE_NAME_OF)};
 #undef ABBE_NAME_OF
@@ -261,10 +267,13 @@ static abbe_result add_grid(expansion *e, const abbe_sweep_grid *g, abbe_error *
     d.fill = (abbe_fill)take(&g->fills, &counter);
     d.model = (abbe_model)take(&g->models, &counter);
     const size_t profile = take(&g->profiles, &counter), passes = take(&g->passes, &counter);
-    d.profile = (abbe_profile)profile;
+    const bool by_pinholes = profile >= ABBE_SWEEP_PROFILE_PINHOLE;
+    d.profile = by_pinholes ? ABBE_PROFILE_DEFAULT : (abbe_profile)profile;
+    d.transport = by_pinholes ? ABBE_TRANSPORT_PINHOLE : ABBE_TRANSPORT_AUTO;
+    d.pinholes = by_pinholes ? pinholes[profile - ABBE_SWEEP_PROFILE_PINHOLE] : 0;
     if (g->share_count > 0) d.energy_share = g->share[counter % shares];
     result =
-        profile < ABBE_PROFILE_COUNT
+        profile < ABBE_PROFILE_COUNT || by_pinholes
             ? add_render(e, &d, error)
             : add_trace(e, d.photons, passes, profile == ABBE_SWEEP_PROFILE_TRACE_FILTER, error);
   }

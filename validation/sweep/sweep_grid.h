@@ -28,7 +28,7 @@ typedef struct abbe_sweep_values {
 
 /* All combinations of its axes. A zeroed grid is the default profile's default. */
 typedef struct abbe_sweep_grid {
-  abbe_sweep_values profiles; /* abbe_profile, or one of the two below */
+  abbe_sweep_values profiles; /* abbe_profile, or one of those below */
   abbe_sweep_values wavelengths, photons, map, samples, upsample, exits;
   abbe_sweep_values passes; /* of the tracer; of it, photons count too, and nothing else */
   abbe_sweep_values fills;  /* abbe_fill */
@@ -38,10 +38,13 @@ typedef struct abbe_sweep_grid {
   double share[ABBE_SWEEP_MAX_VALUES];
 } abbe_sweep_grid;
 
-/* Contestants beside the profiles, as values of that axis: the tracer, and it filtered. */
+/* Contestants beside the profiles, as values of that axis: the tracer, and it filtered; the default
+ * profile with soft light through so many pinholes. */
 #define ABBE_SWEEP_PROFILE_TRACE ABBE_PROFILE_COUNT
 #define ABBE_SWEEP_PROFILE_TRACE_FILTER (ABBE_PROFILE_COUNT + 1)
-#define ABBE_SWEEP_PROFILE_COUNT (ABBE_PROFILE_COUNT + 2)
+#define ABBE_SWEEP_PROFILE_PINHOLE (ABBE_PROFILE_COUNT + 2)
+#define ABBE_SWEEP_PINHOLES(X) X(64) X(256) X(1024)
+#define ABBE_SWEEP_PROFILE_COUNT (ABBE_PROFILE_COUNT + 5)
 extern const char *const abbe_sweep_profiles[ABBE_SWEEP_PROFILE_COUNT];
 #define ABBE_SWEEP_TRACE_PASSES 4 /* where none are asked for, and of 512 x 512 photons */
 #define ABBE_SWEEP_TRACE_PHOTONS 512

@@ -29,6 +29,13 @@ static unsigned long long hash_object(unsigned long long h, const abbe_object *o
   }
   if (!o->mirror) return h;
   h = hash(h, &o->mirror_reflectance, sizeof o->mirror_reflectance);
+  if (abbe_brushing_is_rough(&o->brushing)) {
+    const abbe_brushing *b = &o->brushing;
+    const double numbers[] = {b->facets.x, b->facets.y, b->around ? 1 : 0};
+    h = hash(h, numbers, sizeof numbers);
+    h = hash(h, b->axis, sizeof b->axis);
+    h = hash(h, b->centre, sizeof b->centre);
+  }
   for (int i = 0; i < INDEX_STEPS && o->conductor != NULL; i++) {
     double nk[2] = {0, 0};
     abbe_material_nk(o->conductor, 380 + 50.0 * i, &nk[0], &nk[1], NULL);

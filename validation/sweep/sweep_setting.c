@@ -3,6 +3,7 @@
 #include "gl/accuracy/preset_choice.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 void abbe_sweep_setting_of_trace(size_t photons, size_t passes, bool filtered,
@@ -28,16 +29,29 @@ void abbe_sweep_setting_of(const abbe_render_desc *d, abbe_sweep_setting *out) {
                               .upsample = d->upsample,
                               .share = thesis ? 0.01 : d->energy_share,
                               .exits = d->exits};
-  snprintf(out->profile, sizeof out->profile, "%s", abbe_profile_name(d->profile));
+  if (d->profile == ABBE_PROFILE_DEFAULT && d->transport == ABBE_TRANSPORT_PINHOLE)
+    snprintf(out->profile, sizeof out->profile, "%s%zu", ABBE_SWEEP_PINHOLE, d->pinholes);
+  else
+    snprintf(out->profile, sizeof out->profile, "%s", abbe_profile_name(d->profile));
   snprintf(out->fill, sizeof out->fill, "%s", abbe_fill_name(d->fill));
   snprintf(out->model, sizeof out->model, "%s", abbe_model_name(d->model));
+}
+
+/* 0: it is another contestant. */
+static size_t pinholes_of(const char *profile) {
+  const size_t length = strlen(ABBE_SWEEP_PINHOLE);
+  if (strncmp(profile, ABBE_SWEEP_PINHOLE, length) != 0) return 0;
+  char *end = NULL;
+  const unsigned long count = strtoul(profile + length, &end, 10);
+  return *end == '\0' && count <= ABBE_SURFACE_MAX_SAMPLES ? count : 0;
 }
 
 abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_render_desc *out,
                                     abbe_error *error) {
   ABBE_REQUIRE(setting && out, error);
   int profile = 0, fill = 0, model = 0;
-  while (profile < ABBE_PROFILE_COUNT &&
+  const size_t pinholes = pinholes_of(setting->profile);
+  while (pinholes == 0 && profile < ABBE_PROFILE_COUNT &&
          strcmp(abbe_profile_name((abbe_profile)profile), setting->profile) != 0)
     profile++;
   while (fill < ABBE_FILL_COUNT && strcmp(abbe_fill_name((abbe_fill)fill), setting->fill) != 0)
@@ -50,22 +64,26 @@ abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_rend
     return abbe_error_set(error, ABBE_NOT_FOUND,
                           "the renderer has no profile '%s' with a fill '%s' and a model '%s'",
                           setting->profile, setting->fill, setting->model);
-  *out = (abbe_render_desc){.profile = (abbe_profile)profile,
-                            .wavelengths = setting->wavelengths,
-                            .photons = setting->photons,
-                            .map_size = setting->map,
-                            .supersample = setting->samples,
-                            .upsample = setting->upsample,
-                            .fill = (abbe_fill)fill,
-                            .model = (abbe_model)model,
-                            .energy_share = setting->share,
-                            .exits = setting->exits};
+  *out =
+      (abbe_render_desc){.profile = (abbe_profile)profile,
+                         .transport = pinholes > 0 ? ABBE_TRANSPORT_PINHOLE : ABBE_TRANSPORT_AUTO,
+                         .pinholes = pinholes,
+                         .wavelengths = setting->wavelengths,
+                         .photons = setting->photons,
+                         .map_size = setting->map,
+                         .supersample = setting->samples,
+                         .upsample = setting->upsample,
+                         .fill = (abbe_fill)fill,
+                         .model = (abbe_model)model,
+                         .energy_share = setting->share,
+                         .exits = setting->exits};
   return ABBE_OK;
 }
 
 void abbe_sweep_setting_describe(const abbe_sweep_setting *setting, char *out, size_t size) {
   abbe_render_desc desc;
-  if (abbe_sweep_setting_desc(setting, &desc, NULL) == ABBE_OK)
+  if (pinholes_of(setting->profile) == 0 &&
+      abbe_sweep_setting_desc(setting, &desc, NULL) == ABBE_OK)
     abbe_preset_describe(&desc, out, size);
   else
     abbe_sweep_setting_label(setting, out, size);
@@ -73,5 +91,6 @@ void abbe_sweep_setting_describe(const abbe_sweep_setting *setting, char *out, s
 
 bool abbe_sweep_setting_is_fine(const abbe_sweep_setting *setting) {
   abbe_render_desc desc;
-  return abbe_sweep_setting_desc(setting, &desc, NULL) == ABBE_OK && abbe_preset_is_fine(&desc);
+  return pinholes_of(setting->profile) == 0 &&
+         abbe_sweep_setting_desc(setting, &desc, NULL) == ABBE_OK && abbe_preset_is_fine(&desc);
 }

@@ -23,10 +23,12 @@ extern "C" {
  * filtered. */
 #define ABBE_SWEEP_TRACE "trace"
 #define ABBE_SWEEP_TRACE_FILTER "trace-filter"
+/* And their number: the default profile with soft light through so many pinholes. */
+#define ABBE_SWEEP_PINHOLE "pinhole-"
 
 /* One contestant's setting, every field resolved. Of the tracer's only photons and passes count. */
 typedef struct abbe_sweep_setting {
-  char profile[ABBE_SWEEP_WORD]; /* of the renderer, or one of the tracer's two names */
+  char profile[ABBE_SWEEP_WORD]; /* of the renderer, or one of the names above */
   size_t wavelengths, photons, map, samples, upsample;
   char fill[ABBE_SWEEP_WORD];
   char model[ABBE_SWEEP_WORD]; /* as it was asked for: "auto" is the plan's choice */

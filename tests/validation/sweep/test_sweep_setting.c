@@ -30,6 +30,28 @@ static void test_there_and_back(void **state) {
   assert_near(setting.share, 0.01, 0);
 }
 
+static void test_pinholes_are_contestants(void **state) {
+  (void)state;
+  abbe_sweep_setting setting;
+  abbe_render_desc desc = fine;
+  char text[200];
+  desc.transport = ABBE_TRANSPORT_PINHOLE;
+  desc.pinholes = 256;
+  abbe_sweep_setting_of(&desc, &setting);
+  assert_string_equal(setting.profile, "pinhole-256");
+  assert_false(abbe_sweep_setting_is_fine(&setting)); /* presets have none */
+  abbe_sweep_setting_describe(&setting, text, sizeof text);
+  assert_contains(text, "pinhole-256");
+  abbe_render_desc back;
+  assert_int_equal(abbe_sweep_setting_desc(&setting, &back, NULL), ABBE_OK);
+  assert_memory_equal(&back, &desc, sizeof back);
+  static const char *const wrong[] = {"pinhole-", "pinhole-x", "pinhole-99999", "pinhole-0"};
+  for (int i = 0; i < 4; i++) {
+    snprintf(setting.profile, sizeof setting.profile, "%s", wrong[i]);
+    assert_int_equal(abbe_sweep_setting_desc(&setting, &back, NULL), ABBE_NOT_FOUND);
+  }
+}
+
 static void test_unknown_names(void **state) {
   (void)state;
   static const abbe_sweep_setting wrong = {
@@ -47,6 +69,7 @@ static void test_unknown_names(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_there_and_back),
+      cmocka_unit_test(test_pinholes_are_contestants),
       cmocka_unit_test(test_unknown_names),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
