@@ -149,6 +149,12 @@ abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan,
   ABBE_REQUIRE(scene && plan, error);
   const abbe_object *mirror = abbe_scene_mirror(scene);
   const bool thesis = abbe_profile_is_thesis(plan->desc.profile);
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (abbe_brushing_is_rough(&scene->object[i].brushing))
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "the object '%s' (line %zu) is a rough mirror, which the renderer does "
+                            "not draw; leave its 'roughness' out, or trace the scene",
+                            scene->object[i].name, scene->object[i].line);
   if (mirror == NULL || (!thesis && plan->desc.model != ABBE_MODEL_LAYERS)) return ABBE_OK;
   if (thesis)
     return abbe_error_set(error, ABBE_UNSUPPORTED,

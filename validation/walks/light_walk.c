@@ -308,7 +308,9 @@ static path_state go_on(run *r, size_t k, abbe_light_path *s) {
 
 /* A mirror absorbs what it does not reflect; the path goes into the next batch. */
 static path_state leave_mirror(run *r, size_t k, const abbe_light_path *path) {
-  const packet *p = &r->packet;
+  packet *p = &r->packet;
+  abbe_light_path_roughen(&r->rules, r->w->mirrors, &p->hit[k], path, &p->scatter, &p->mirroring,
+                          k);
   ray_batch *next = r->w->next;
   abbe_light_path *s = &next->path[next->count];
   const float share = p->mirroring.share[k];
@@ -401,10 +403,6 @@ static void scatter(run *r, const abbe_light_path *paths, size_t count) {
   }
   if (scatters || mirrors) scatter_packet(r, paths, count);
   if (mirrors) abbe_scatter_mirror(s, &r->packet.mirroring);
-  for (size_t k = 0; mirrors && k < count; k++)
-    if (r->packet.state[k] == MIRRORED)
-      abbe_light_path_roughen(&r->rules, r->w->mirrors, &r->packet.hit[k], &paths[k], s,
-                              &r->packet.mirroring, k);
   advance(r, paths, count, false);
   if (!any) return;
   for (size_t k = 0; k < count; k++)
