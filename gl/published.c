@@ -38,8 +38,7 @@ abbe_result abbe_published_run(abbe_published *p, bool lit, abbe_error *error) {
 }
 
 bool abbe_published_keeps_light(const abbe_render_desc *desc) {
-  if (abbe_profile_is_wyman2006(desc->profile))
-    return abbe_wyman2006_keeps_light(desc);
+  if (abbe_profile_is_wyman2006(desc->profile)) return abbe_wyman2006_keeps_light(desc);
   return abbe_profile_is_shah2007(desc->profile);
 }
 

@@ -22,8 +22,8 @@ abbe_result abbe_published_make(const abbe_gpu_scene *scene, const abbe_shader_v
 void abbe_published_free(abbe_published *published);
 /* lit: the light's passes have run and hold, so that the camera's alone run where they keep it. */
 abbe_result abbe_published_run(abbe_published *published, bool lit, abbe_error *error);
-/* Whether a moved camera leaves what the light's passes make as it is: maps in the light's image, or
- * photons, that hold no frames before. abbe_published_look then follows the camera. */
+/* Whether a moved camera leaves what the light's passes make as it is: maps in the light's image,
+ * or photons, that hold no frames before. abbe_published_look then follows the camera. */
 bool abbe_published_keeps_light(const abbe_render_desc *desc);
 void abbe_published_look(abbe_published *published);
 

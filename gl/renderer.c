@@ -119,10 +119,11 @@ static abbe_result check_map(const abbe_renderer *r, size_t light, abbe_error *e
   abbe_result result = check_drawn(r, error);
   if (result != ABBE_OK) return result;
   if (is_published(r) && r->plan.desc.faces > 1)
-    return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "the light '%s' has a cube of maps, each with its own layout; ask for one "
-                          "view (--faces 1), or for the picture",
-                          r->scene.local->light[light].name);
+    return abbe_error_set(
+        error, ABBE_UNSUPPORTED,
+        "the light '%s' has a cube of maps, each with its own layout; ask for one "
+        "view (--faces 1), or for the picture",
+        r->scene.local->light[light].name);
   if (is_published(r) || !abbe_photon_lights_is_face(&r->views, light) ||
       abbe_photon_lights_map_is_given(&r->views, light))
     return ABBE_OK;

@@ -59,9 +59,8 @@ void abbe_image_cube_make(const abbe_gpu_scene *scene, size_t side, size_t borde
                           abbe_image_cube *out) {
   const abbe_plan *plan = scene->plan;
   const double *origin = scene->local->light[0].position;
-  const double far =
-      1.01 * fmax(farthest_of(scene, plan->receiver_object, plan->receiver_count),
-                  farthest_of(scene, plan->refractor_object, plan->refractor_count));
+  const double far = 1.01 * fmax(farthest_of(scene, plan->receiver_object, plan->receiver_count),
+                                 farthest_of(scene, plan->refractor_object, plan->refractor_count));
   *out = (abbe_image_cube){.faces = ABBE_LIGHT_CUBE_FACES, .object_faces = 1};
   open_faces(origin, (double)side / (double)(side - 2 * border), far, out->face);
   if (!whole && fit_objects(scene, far, &out->object_face[0])) return;

@@ -137,8 +137,8 @@ static abbe_result refract_eye(abbe_image_eye *e, abbe_error *error) {
                  &e->colour[0][0]);
   abbe_gpu_bind_texture(scene->gpu, p, "receivers_lit", 0, e->lit);
   abbe_gpu_bind_texture(scene->gpu, p, "receiver_depths", 1, e->lit_depth);
-  result =
-      abbe_image_view_draw_screen(scene, e->picture, -1, e->places.size[0], e->places.size[1], error);
+  result = abbe_image_view_draw_screen(scene, e->picture, -1, e->places.size[0], e->places.size[1],
+                                       error);
   abbe_gpu_book_lap(scene->gpu, ABBE_PASS_EYE_REFRACTION);
   return result;
 }

@@ -81,9 +81,9 @@ void abbe_image_places_free(abbe_image_places *p) {
 }
 
 static void set_faces(const abbe_image_places *p, GLuint program) {
-  static const char *const names[ABBE_LIGHT_CUBE_FACES] = {
-      "face_matrix[0]", "face_matrix[1]", "face_matrix[2]",
-      "face_matrix[3]", "face_matrix[4]", "face_matrix[5]"};
+  static const char *const names[ABBE_LIGHT_CUBE_FACES] = {"face_matrix[0]", "face_matrix[1]",
+                                                           "face_matrix[2]", "face_matrix[3]",
+                                                           "face_matrix[4]", "face_matrix[5]"};
   if (p->faces == 1) abbe_image_view_set_clip(p->scene, program, "view_projection", &p->view);
   for (size_t f = 0; f < p->faces && p->faces > 1; f++)
     abbe_image_view_set_clip(p->scene, program, names[f], &p->face[f]);

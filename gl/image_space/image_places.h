@@ -15,8 +15,8 @@
 
 typedef struct abbe_image_places {
   const abbe_gpu_scene *scene;
-  size_t faces, object_faces;       /* 1, or six, layers of what follows: receivers', objects' */
-  abbe_image_view view;             /* the first of receivers */
+  size_t faces, object_faces; /* 1, or six, layers of what follows: receivers', objects' */
+  abbe_image_view view;       /* the first of receivers */
   abbe_image_view face[ABBE_LIGHT_CUBE_FACES], object_face[ABBE_LIGHT_CUBE_FACES];
   size_t size[2], grid[2];          /* pixels of receivers, and of objects, of a view */
   double shift[2];                  /* of the objects' pixels, in pixels, right and up */

@@ -129,7 +129,8 @@ static void list_light(abbe_plan *plan) {
                     ? "it casts the shadows; receivers are hit exactly"
                     : "receivers are hit exactly");
   abbe_plan_add(plan, ABBE_PASS_LIGHT_FRONT, "%s",
-                plan->caustics ? "photons start where the light sees a refractor" : no_photons(plan));
+                plan->caustics ? "photons start where the light sees a refractor"
+                               : no_photons(plan));
   list_back(plan, ABBE_PASS_LIGHT_BACK, plan->caustics, no_photons(plan));
   list_photons(plan);
   if (abbe_profile_is_wyman2006(plan->desc.profile))

@@ -81,11 +81,10 @@ static abbe_result make_programs(abbe_shah2007 *s, const abbe_shader_variant *va
            "%s#define ESTIMATOR %d\n#define ITERATIONS %zu\n#define OBJECT_FACES %zu\n%s%s", more,
            (int)d->estimator, d->iterations, s->light.object_faces, cube,
            is_printed(s->scene) ? "#define SEARCH_AS_PRINTED\n" : "");
-  abbe_result result =
-      around(s) ? abbe_shader_variant_program(variant, s->scene->gpu, splat_around, 3, search,
-                                              &s->splat, error)
-                : abbe_shader_variant_program(variant, s->scene->gpu, splat, 2, search, &s->splat,
-                                              error);
+  abbe_result result = around(s) ? abbe_shader_variant_program(variant, s->scene->gpu, splat_around,
+                                                               3, search, &s->splat, error)
+                                 : abbe_shader_variant_program(variant, s->scene->gpu, splat, 2,
+                                                               search, &s->splat, error);
   if (result == ABBE_OK && d->low_pass > 0)
     result = abbe_gpu_program(s->scene->gpu, low_pass, 2, cube, &s->low_pass, error);
   if (result == ABBE_OK) result = abbe_image_tables_colours(s->scene, true, &shares, error);

@@ -182,8 +182,8 @@ static abbe_result draw_photons(abbe_wyman2006 *w, abbe_wyman_target *target, bo
 }
 
 bool abbe_wyman2006_keeps_light(const abbe_render_desc *desc) {
-  return desc->history <= 1 && (desc->fill == ABBE_FILL_GATHER_LIGHT ||
-                                (desc->wavelengths == 1 && desc->faces <= 1));
+  return desc->history <= 1 &&
+         (desc->fill == ABBE_FILL_GATHER_LIGHT || (desc->wavelengths == 1 && desc->faces <= 1));
 }
 
 abbe_result abbe_wyman2006_run(abbe_wyman2006 *w, bool lit, abbe_error *error) {

@@ -30,10 +30,11 @@ static abbe_result make_program(abbe_wyman_photons *p, const abbe_shader_variant
                                               {GL_FRAGMENT_SHADER, "wyman_photons.frag"}};
   const abbe_render_desc *d = &p->scene->plan->desc;
   char text[1024];
-  const int length = snprintf(
-      text, sizeof text, "%s#define ESTIMATOR %d\n#define ITERATIONS %zu\n#define OBJECT_FACES %zu\n%s",
-      definitions, (int)d->estimator, d->iterations, p->light->object_faces,
-      p->light->faces > 1 ? "#define PLACES_CUBE\n" : "");
+  const int length =
+      snprintf(text, sizeof text,
+               "%s#define ESTIMATOR %d\n#define ITERATIONS %zu\n#define OBJECT_FACES %zu\n%s",
+               definitions, (int)d->estimator, d->iterations, p->light->object_faces,
+               p->light->faces > 1 ? "#define PLACES_CUBE\n" : "");
   if (length < 0 || (size_t)length >= sizeof text)
     return abbe_error_set(error, ABBE_GL, "a shader's definitions are too long");
   return abbe_shader_variant_program(variant, p->scene->gpu, stages, 2, text, &p->program, error);
@@ -61,8 +62,8 @@ void abbe_wyman_photons_free(abbe_wyman_photons *p) {
   *p = (abbe_wyman_photons){0};
 }
 
-abbe_result abbe_wyman_photons_run(const abbe_wyman_photons *p, size_t wavelength,
-                                   size_t face, abbe_error *error) {
+abbe_result abbe_wyman_photons_run(const abbe_wyman_photons *p, size_t wavelength, size_t face,
+                                   abbe_error *error) {
   static const int flat[2] = {-1, -1};
   const abbe_gpu_scene *scene = p->scene;
   const abbe_gl *gl = scene->gpu->gl;

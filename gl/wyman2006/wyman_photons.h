@@ -1,5 +1,5 @@
-/* wyman_photons.h: a photon a pixel of the light's grid, one wavelength and one view at a time: where it meets
- * its first diffuse surface, from where, and how much of it. Internal to gl/.
+/* wyman_photons.h: a photon a pixel of the light's grid, one wavelength and one view at a time:
+ * where it meets its first diffuse surface, from where, and how much of it. Internal to gl/.
  */
 #ifndef ABBE_GL_WYMAN2006_WYMAN_PHOTONS_H
 #define ABBE_GL_WYMAN2006_WYMAN_PHOTONS_H

@@ -225,7 +225,8 @@ abbe_result abbe_wyman_target_run(abbe_wyman_target *t, float (*colour)[3], bool
   if (t->scene->gpu->statistics != NULL) t->layers = 0;
   const size_t faces = t->photons->light->object_faces;
   for (size_t i = 0; i < d->wavelengths * faces && result == ABBE_OK; i++) {
-    if (!kept) result = abbe_wyman_photons_run(t->photons, i % d->wavelengths, i / d->wavelengths, error);
+    if (!kept)
+      result = abbe_wyman_photons_run(t->photons, i % d->wavelengths, i / d->wavelengths, error);
     if (result == ABBE_OK) result = draw(t, colour[i % d->wavelengths], i == 0, error);
   }
   t->light = t->sum;

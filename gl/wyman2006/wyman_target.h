@@ -29,7 +29,7 @@ typedef struct abbe_wyman_target {
   GLuint draw, area, gather, filter; /* programs */
   GLuint sum, direction_sum, areas, filtered[2], gathered[2];
   abbe_wyman_history history;
-  GLuint query; /* fragments of polygons; 0: none are drawn */
+  GLuint query;  /* fragments of polygons; 0: none are drawn */
   double layers; /* of polygons over a pixel, mean of the last frame with statistics */
   GLuint light, light_directions; /* of the last run, two of those above; directions: 0: none */
 } abbe_wyman_target;

@@ -70,7 +70,8 @@ static void surface_at(const abbe_knot *k, double t, double turn, double place[3
   const double tall = 0.5 + 0.5 * cos((double)k->spines * t), back = 0.5 + 0.5 * cos(turn);
   const double spine = k->spines > 0 ? k->spine * tall * tall * pow(back, 4) : 0;
   const double radius = k->radius * (1 + spine);
-  for (int c = 0; c < 3; c++) place[c] = at[c] + radius * (cos(turn) * out[c] + sin(turn) * side[c]);
+  for (int c = 0; c < 3; c++)
+    place[c] = at[c] + radius * (cos(turn) * out[c] + sin(turn) * side[c]);
 }
 
 static void normal_at(const abbe_knot *k, double t, double turn, double out[3]) {
@@ -105,10 +106,11 @@ static abbe_result check(const abbe_knot *k, abbe_error *error) {
                             "zero",
                             what[i], length[i]);
   if (k->minor >= k->major)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "a knot around a torus whose tube (%g) is as wide as its middle line (%g) "
-                          "has no hole to wind through; the minor radius must be the smaller",
-                          k->minor, k->major);
+    return abbe_error_set(
+        error, ABBE_INVALID_ARGUMENT,
+        "a knot around a torus whose tube (%g) is as wide as its middle line (%g) "
+        "has no hole to wind through; the minor radius must be the smaller",
+        k->minor, k->major);
   if (k->turns > ABBE_KNOT_MAX_WINDINGS || k->coils > ABBE_KNOT_MAX_WINDINGS ||
       common_divisor(k->turns, k->coils) != 1)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

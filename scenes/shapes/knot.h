@@ -1,4 +1,5 @@
-/* knot.h: a tube along a knot, with spines on its back: a curled solid with as many faces as wanted.
+/* knot.h: a tube along a knot, with spines on its back: a curled solid with as many faces as
+ * wanted.
  *
  * Its middle line winds around a torus that stands around z, centred, and comes back to itself.
  * Smooth normals are those of the surface itself. Lengths in metres.
@@ -28,8 +29,9 @@ typedef struct abbe_knot {
   size_t along, across; /* segments; 0: 1250, 100: 250,000 faces */
 } abbe_knot;
 
-/* 2 along across faces, closed. ABBE_INVALID_ARGUMENT where the tube would meet itself: it may be as
- * wide as the middle line's global radius of curvature [GonzalezMaddocks1999]. ABBE_NO_MEMORY. */
+/* 2 along across faces, closed. ABBE_INVALID_ARGUMENT where the tube would meet itself: it may be
+ * as wide as the middle line's global radius of curvature [GonzalezMaddocks1999]. ABBE_NO_MEMORY.
+ */
 abbe_result abbe_knot_make(const abbe_knot *knot, abbe_mesh *out, abbe_error *error);
 
 /* Of the middle line: its length, and the radius of the widest tube along it, m. */

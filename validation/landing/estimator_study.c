@@ -11,7 +11,12 @@
 
 static const double lambda_nm = 550;
 static const size_t iterations[] = {1, 2, 3, 5, 8};
-enum { ROUNDS = 3, STEPS = sizeof iterations / sizeof *iterations, RATE_STEP = 12, LEAST_RATES = 8 };
+enum {
+  ROUNDS = 3,
+  STEPS = sizeof iterations / sizeof *iterations,
+  RATE_STEP = 12,
+  LEAST_RATES = 8
+};
 
 typedef struct work {
   abbe_landing_rays rays;
@@ -167,15 +172,16 @@ void abbe_estimator_study_print(const abbe_estimator_study *study, FILE *to) {
   fprintf(to,
           "a texture of %zu x %zu places, a ray for each of %zu x %zu cells; %zu rays land where "
           "the light does not see\n\n"
-          "| light | estimator | iterations | lookups | ns a ray | median, texels | 95 %% | worst | lost | "
+          "| light | estimator | iterations | lookups | ns a ray | median, texels | 95 %% | worst "
+          "| lost | "
           "rate (law) |\n|---|---|---|---|---|---|---|---|---|---|\n",
           study->side, study->side, study->grid, study->grid, study->hidden);
   for (size_t i = 0; i < study->count; i++) {
     const abbe_estimator_point *p = &study->point[i];
     fprintf(to, "| %s | %s%s | %zu", p->reflected ? "reflected" : "refracted",
             abbe_estimator_name(p->kind), p->printed ? ", as printed" : "", p->iterations);
-    abbe_number_write(to, " | %.1f | %.0f | %.3g | %.3g | %.3g | %.2g %% |", p->lookups, p->ns, p->median,
-                      p->p95, p->worst, 100 * p->lost);
+    abbe_number_write(to, " | %.1f | %.0f | %.3g | %.3g | %.3g | %.2g %% |", p->lookups, p->ns,
+                      p->median, p->p95, p->worst, 100 * p->lost);
     if (isfinite(p->rate) && p->iterations == 1)
       abbe_number_write(to, " %.3f (%.3f) |\n", p->rate, p->law);
     else

@@ -118,8 +118,7 @@ static abbe_result examine_view(const abbe_scene *scene, size_t light, abbe_plan
   if (thesis && from->kind == ABBE_LIGHT_SPOT) return ABBE_OK; /* its view is its cone */
   const bool fits = abbe_light_views_fit(scene, from, plan, &view, &plan->off_view[light]);
   if (fits) find_aside(scene, plan, &view);
-  if (cube && (!fits || plan->outside_map_view))
-    plan->desc.faces = ABBE_LIGHT_CUBE_FACES;
+  if (cube && (!fits || plan->outside_map_view)) plan->desc.faces = ABBE_LIGHT_CUBE_FACES;
   if (fits || plan->desc.faces > 1) return ABBE_OK;
   if (!thesis) return make_cube(scene, light, plan, error);
   return abbe_error_set(error, ABBE_UNSUPPORTED,

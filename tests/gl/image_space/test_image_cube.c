@@ -48,8 +48,8 @@ static void free_cube(cube_map *m) {
   *m = (cube_map){0};
 }
 
-/* Of a texel: its direction, its light by the window's area, and that area; false in the border that
- * faces share. */
+/* Of a texel: its direction, its light by the window's area, and that area; false in the border
+ * that faces share. */
 static bool texel_at(const cube_map *m, int face, int x, int y, double d[3], double *light,
                      double *area) {
   const abbe_view *v = &m->view[face];
@@ -74,12 +74,17 @@ static double cube_light(const cube_map *m, double where[3]) {
   return sum;
 }
 
-/* Panes of 0.2 x 0.2 m, 0.3 m from the lamp, across these directions: the faces' middles, that of an
- * edge, and a corner. */
+/* Panes of 0.2 x 0.2 m, 0.3 m from the lamp, across these directions: the faces' middles, that of
+ * an edge, and a corner. */
 enum { PANES = 8 };
 static const double pane[PANES][3] = {
-    {1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
-    {0, -1, 0}, {0, 0, 1},  {0, 0, -1}, {0, -0.70710678118654752, -0.70710678118654752},
+    {1, 0, 0},
+    {-1, 0, 0},
+    {0, 1, 0},
+    {0, -1, 0},
+    {0, 0, 1},
+    {0, 0, -1},
+    {0, -0.70710678118654752, -0.70710678118654752},
     {0.57735026918962576, 0.57735026918962576, 0.57735026918962576}};
 
 static size_t add_pane(const double d[3], const char *of, char *text, size_t used, size_t size) {
@@ -114,7 +119,8 @@ static void what_is_sent_arrives_all_around(void **state) {
   size_t used = strlen(text);
   double sum[2] = {0}, worst = 0;
   size_t count[2] = {0};
-  for (int i = 0; i < PANES; i++) used = add_pane(pane[i], "material: flat", text, used, sizeof text);
+  for (int i = 0; i < PANES; i++)
+    used = add_pane(pane[i], "material: flat", text, used, sizeof text);
   abbe_render_desc desc = around;
   desc.photons = 256; /* denser than texels, else the two grids beat */
   load_text(text, &scene);
@@ -202,8 +208,8 @@ static void estimators_land_across_seams(void **state) {
   (void)state;
   static const char text[] = ROOM "- {name: ball, shape: sphere, radius: 0.08, levels: 4, "
                                   "transform: [{translate: [0.3, 0.25, -0.05]}], material: flat}\n";
-  static const abbe_estimator kinds[] = {ABBE_ESTIMATOR_EXACT, ABBE_ESTIMATOR_SHAH,
-                                         ABBE_ESTIMATOR_AXIS, ABBE_ESTIMATOR_SECANT,
+  static const abbe_estimator kinds[] = {ABBE_ESTIMATOR_EXACT,    ABBE_ESTIMATOR_SHAH,
+                                         ABBE_ESTIMATOR_AXIS,     ABBE_ESTIMATOR_SECANT,
                                          ABBE_ESTIMATOR_IMPOSTOR, ABBE_ESTIMATOR_RATIO};
   abbe_scene scene = {0};
   double exact = 0, at[3] = {0};
