@@ -71,6 +71,37 @@ static void cuts_are_solids_of_their_planes(void **state) {
   }
 }
 
+/* With its defaults; refusals name the line. */
+static void knots_are_read(void **state) {
+  (void)state;
+  static const struct {
+    const char *keys, *says;
+  } bad[] = {{"radius: 0.03", "meets itself"},
+             {"spines: 9", "'radius'"},
+             {"radius: 0.01, across: 9999", "across: 9999"},
+             {"radius: 0.01, spine: -1", "spine: -1"}};
+  abbe_scene scene = read("{shape: knot, major: 0.05, minor: 0.025, radius: 0.01, spines: 20, "
+                          "along: 90, across: 12, material: water}");
+  assert_int_equal(scene.object[0].mesh.face_count, 2 * 90 * 12);
+  abbe_scene_free(&scene);
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    abbe_object object[1];
+    abbe_error error = {0};
+    abbe_yaml *yaml;
+    size_t count = 0;
+    char text[256];
+    snprintf(text, sizeof text, "\n{shape: knot, major: 0.05, minor: 0.025, %s, reflectance: 0.5}",
+             bad[i].keys);
+    assert_int_equal(abbe_yaml_parse(text, strlen(text), "text", &yaml, &error), ABBE_OK);
+    assert_int_not_equal(
+        abbe_object_read(yaml, abbe_yaml_root(yaml), "", &table, object, 1, &count, &error),
+        ABBE_OK);
+    if (strstr(error.text, bad[i].says) == NULL || strstr(error.text, "text:2:") == NULL)
+      fail_msg("%s", error.text);
+    abbe_yaml_free(yaml);
+  }
+}
+
 static void a_sphere_stays_one_under_similarities_only(void **state) {
   (void)state;
   abbe_scene scene = read("{shape: sphere, radius: 2, material: water, transform: [{scale: 0.5}, "
@@ -285,6 +316,7 @@ static void paths_follow_the_folder(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(cuts_are_solids_of_their_planes),
+      cmocka_unit_test(knots_are_read),
       cmocka_unit_test(a_sphere_stays_one_under_similarities_only),
       cmocka_unit_test(crystals_have_an_optic_axis),
       cmocka_unit_test(mirrors_are_metals_or_numbers_of_any_shape),
