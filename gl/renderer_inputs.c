@@ -142,6 +142,10 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
     const abbe_material *material = o->mirror ? o->conductor : o->material;
     MIX(h, o->mirror);
     MIX(h, o->mirror_reflectance);
+    MIX(h, o->brushing.facets);
+    MIX(h, o->brushing.around);
+    MIX(h, o->brushing.axis);
+    MIX(h, o->brushing.centre);
     if (material != NULL) h = mix_material(h, material);
     MIX(h, o->min); /* how long paths through it are */
     MIX(h, o->max);
@@ -269,6 +273,15 @@ static uint64_t mix_eye(uint64_t h, const abbe_scene *scene, const abbe_plan *pl
   return h;
 }
 
+static uint64_t mix_powers(uint64_t h, const abbe_scene *scene, const abbe_plan *plan) {
+  for (size_t i = 0; i < scene->light_count; i++) MIX(h, scene->light[i].power);
+  MIX(h, scene->ambient); /* the unit of power goes by the greatest of all */
+  MIX(h, scene->background);
+  MIX(h, plan->desc.space);
+  MIX(h, plan->desc.observer); /* whose white a light has */
+  return h;
+}
+
 void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
                              abbe_renderer_inputs *out) {
   uint64_t *part = out->part, light;
@@ -279,15 +292,10 @@ void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
   light = mix_light_plan(mix_beams(part[ABBE_PART_SHADOWS], scene, plan), plan);
   MIX(light, part[ABBE_PART_SPECTRA]);
   if (plan->desc.transport == ABBE_TRANSPORT_PINHOLE) MIX(light, part[ABBE_PART_SURFACES]);
+  if (plan->rough) light = mix_powers(light, scene, plan); /* samples show lamps, too */
   part[ABBE_PART_LIGHT] = light;
   part[ABBE_PART_EYE] = mix_eye(light, scene, plan);
-  part[ABBE_PART_POWERS] = 3;
-  for (size_t i = 0; i < scene->light_count; i++)
-    MIX(part[ABBE_PART_POWERS], scene->light[i].power);
-  MIX(part[ABBE_PART_POWERS], scene->ambient); /* the unit of power goes by the greatest of all */
-  MIX(part[ABBE_PART_POWERS], scene->background);
-  MIX(part[ABBE_PART_POWERS], plan->desc.space);
-  MIX(part[ABBE_PART_POWERS], plan->desc.observer); /* whose white a light has */
+  part[ABBE_PART_POWERS] = mix_powers(3, scene, plan);
 }
 
 unsigned abbe_renderer_inputs_differ(const abbe_renderer_inputs *a, const abbe_renderer_inputs *b) {

@@ -97,6 +97,7 @@ static void make_coarse(const abbe_render_desc *desc, const abbe_map_layout *map
   out->photons = half(desc->photons);
   out->map_size = half(desc->map_size);
   out->wavelengths = half(desc->wavelengths);
+  if (desc->transport == ABBE_TRANSPORT_PINHOLE) out->pinholes = half(desc->pinholes);
 }
 
 /* Work */

@@ -135,18 +135,36 @@ bool area_light_seen(vec3 p, vec3 d, float t_min, float t_max, out vec3 radiance
 }
 #endif
 
+#ifdef ROUGH
+#define LOBE_STATE
+vec2 lobe_u;  // as in walk.glsl
+float lobe_width;
+#ifdef ENVIRONMENT
+#define TURNS_SKY
+#include "pinhole_sky.glsl"
+#endif
+#endif
+
 // Radiance along the ray from p, refractors taken away, of a receiver no farther than t_max; met:
 // there is one. spread: of the ray, where it meets none.
 vec3 seen(vec3 p, vec3 d, Spread spread, float t_min, float t_max, out bool met) {
   float t;
   Sighting at;
   met = receiver_seen(p, d, t_min, t_max, t, at);
+#ifdef ROUGH
+  bool blurred = lobe_width > 0.0;  // a rough mirror shows lamps itself, also those that stand for the surroundings
+#else
+  const bool blurred = false;
+#endif
 #ifdef AREA_LIGHTS
   vec3 lamp;
-  if (area_light_seen(p, d, t_min, met ? t : t_max, lamp)) {
+  if (!blurred && area_light_seen(p, d, t_min, met ? t : t_max, lamp)) {
     met = true;
     return lamp;
   }
+#endif
+#if defined(ROUGH) && defined(ENVIRONMENT)
+  if (!met && blurred) return background + environment_scale * sky_at(d, sky_level(lobe_width));
 #endif
   if (!met) return surroundings_over(d, spread.turn_x, spread.turn_y);
   Shading s = shade(at.p, at.n, at.surface, at.uv, at.side);

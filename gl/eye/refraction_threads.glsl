@@ -40,6 +40,14 @@ int pixel_thread = int(gl_LocalInvocationID.x) % PIXEL_THREADS;
 // reflected by an interface; mirrored: the share that is.
 vec3 band_light(int band, bool in_mirror, out float mirrored) {
   band_of_refractor = band - first_band(refractor);
+#ifdef ROUGH
+  if (is_rough(first.hit.refractor)) {
+    mirrored = 0.0;
+    return in_mirror ? vec3(0) : xyz_from_rgb * rough_shown();
+  }
+  lobe_u = lobe_way(0, lobe_shift);
+  lobe_width = 0.0;
+#endif
   PathState w = start, reflected = start;
 #ifdef MIRRORS
   bool off_mirror = is_mirror(first.hit.refractor);

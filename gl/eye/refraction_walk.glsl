@@ -11,7 +11,11 @@
 #define BANDS_AT_ONCE counts.wavelengths
 #endif
 int most_segments() {
+#ifdef ROUGH
+  return max(8, 49152 / (PLANE_ROOM + 64 + FOOTPRINT_TAPS) / (8 * (BANDS_AT_ONCE + PIXEL_THREADS) / PIXEL_THREADS));
+#else
   return max(8, min(224, 49152 / (PLANE_ROOM + 64 + FOOTPRINT_TAPS)) / ((BANDS_AT_ONCE + PIXEL_THREADS) / PIXEL_THREADS));
+#endif
 }
 
 int band_of_refractor;  // that is followed, among one refractor's
@@ -29,6 +33,10 @@ vec3 mirror_spectrum(int r) {
 
 uniform uint eye_inside;  // refractors that the eye is in, which are clear
 
+#ifdef ROUGH
+#include "rough_lamps.glsl"
+#endif
+
 // What w shows, times its share. What is not followed shows what the rest has shown.
 vec3 shown(PathState w) {
   PathState pending[PENDING];
@@ -36,7 +44,7 @@ vec3 shown(PathState w) {
     pending[k] = w;
     pending[k].share = 0.0;
   }
-  vec3 light = vec3(0);
+  vec3 light = vec3(0), lamps = vec3(0);
   float seen_share = 0.0, left = 0.0;  // left: share of what is not followed
   bool going = w.share > 0.0;
   int most = most_segments();
@@ -52,6 +60,9 @@ vec3 shown(PathState w) {
 #endif
     if (met && !receiver) {
       float ended, dropped, absorbed;
+#ifdef ROUGH
+      if (is_rough(h.hit.refractor)) lamps += w.share * lobe_shows(w, h, vec2(0.5 * lobe_width));
+#endif
       branch(w, h, 0.5 * share_limit, pending, ended, dropped, absorbed);
       left += ended;
       left += dropped;
@@ -68,14 +79,38 @@ vec3 shown(PathState w) {
     left += last ? w.share : 0.0;
     for (int k = 0; k < PENDING; k++) left += last ? pending[k].share : 0.0;
   }
-  return light * (seen_share > 0.0 ? 1.0 + left / seen_share : 0.0);
+  return light * (seen_share > 0.0 ? 1.0 + left / seen_share : 0.0) + lamps;
 }
 
 PathState start;
 Interface first;
 
+#ifdef ROUGH
+float lobe_shift;  // of the pixel
+
+// The light of a rough mirror that is met first.
+vec3 rough_shown() {
+  lobe_width = 0.0;
+  vec3 sum = lobe_shows(start, first, vec2(0.5 * pixel_angle));
+  for (int k = 0; k < LOBE_WAYS; k++) {
+    lobe_u = lobe_way(k, lobe_shift);
+    lobe_width = 0.0;
+    PathState way = start;
+    reflect_off(way, first);
+    sum += shown(way) / float(LOBE_WAYS);
+  }
+  return sum;
+}
+#endif
+
 void begin_path(ivec2 at) {
   aim_at(at);
+#ifdef ROUGH
+  // Neighbours take ways far from each other [Roberts2018].
+  lobe_shift = fract(dot(vec2(at), vec2(0.7548776662, 0.5698402910)));
+  lobe_u = lobe_way(0, lobe_shift);
+  lobe_width = 0.0;
+#endif
 #ifdef KEEPS_SPREAD
   start = PathState(eye, sight, 1.0, eye_inside, 0u, -1, -1, -1, sight_spread);
 #else

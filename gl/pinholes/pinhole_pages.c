@@ -9,7 +9,9 @@ enum {
   MAP_TEXELS = 8, /* of the spectral map, a side, for one of a page */
   LEAST_CUBE = 16,
   MOST_CUBE = 512,
-  AT_ONCE = 8 /* samples of a pass: a thread has so many turns of loops (refraction_walk.glsl) */
+  AT_ONCE = 8, /* samples of a pass: a thread has so many turns of loops (refraction_walk.glsl) */
+  ROUGH_AT_ONCE = 1, /* where each has several ways */
+  SKY_UNIT = 4 /* for the camera; that of front and back layers, which there are none of then */
 };
 
 /* As sharp as what is around. */
@@ -72,11 +74,12 @@ static bool sees_refractors(const abbe_gpu_scene *scene, const double p[9], bool
 static abbe_result fill_page(abbe_pinhole_pages *pages, size_t page, abbe_error *error) {
   abbe_gpu *gpu = pages->scene->gpu;
   const size_t all = pages->samples.count;
+  const size_t step = pages->scene->plan->rough ? ROUGH_AT_ONCE : AT_ONCE;
   abbe_result result = ABBE_OK;
   abbe_gpu_set_int(gpu, pages->fill, "page", (int)page);
-  for (size_t i = 0; i < all && result == ABBE_OK; i += AT_ONCE) {
+  for (size_t i = 0; i < all && result == ABBE_OK; i += step) {
     abbe_gpu_set_int(gpu, pages->fill, "first_pinhole", (int)i);
-    abbe_gpu_set_int(gpu, pages->fill, "end_pinhole", (int)(i + AT_ONCE < all ? i + AT_ONCE : all));
+    abbe_gpu_set_int(gpu, pages->fill, "end_pinhole", (int)(i + step < all ? i + step : all));
     abbe_gpu_dispatch_2d(gpu, pages->fill, pages->side, pages->side);
     gpu->gl->MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     if (gpu->progress != NULL && !abbe_gpu_ask(gpu))
@@ -101,7 +104,7 @@ static void begin(abbe_pinhole_pages *pages) {
   gl->UseProgram(pages->fill);
   abbe_gpu_scene_set(scene, pages->fill);
   abbe_pinhole_samples_bind(scene, &pages->samples, pages->fill);
-  abbe_pinhole_sky_set(scene, &pages->sky, pages->fill);
+  abbe_pinhole_sky_set(scene, &pages->sky, ABBE_PINHOLE_SKY_UNIT, pages->fill);
   abbe_gpu_set_float(scene->gpu, pages->fill, "share_limit", scene->plan->eye_share);
   abbe_gpu_set_float(scene->gpu, pages->fill, "seen_off", 1e-4 * scene->refractor_radius);
   abbe_gpu_set_int(scene->gpu, pages->fill, "pinhole_count", (int)pages->samples.count);
@@ -128,6 +131,7 @@ abbe_result abbe_pinhole_pages_run(abbe_pinhole_pages *pages, abbe_error *error)
 }
 
 void abbe_pinhole_pages_set(const abbe_pinhole_pages *pages, GLuint program) {
-  if (pages->scene != NULL)
-    abbe_gpu_bind_array(pages->scene->gpu, program, "pinhole_pages", UNIT, pages->texture);
+  if (pages->scene == NULL) return;
+  abbe_gpu_bind_array(pages->scene->gpu, program, "pinhole_pages", UNIT, pages->texture);
+  if (pages->scene->plan->rough) abbe_pinhole_sky_set(pages->scene, &pages->sky, SKY_UNIT, program);
 }

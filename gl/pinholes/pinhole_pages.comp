@@ -46,6 +46,18 @@ vec2 refractor_spectrum(int r) {
 vec3 mirror_spectrum(int r) { return bands[joined_band(r)].attenuation.yzw; }
 #endif
 
+#ifdef ROUGH
+uniform float scene_size;
+uniform float light_unit;  // W of the lights' unit
+#include "rough_lamps.glsl"
+
+// a, or what is as wide in its direction.
+vec3 widened(vec3 a, vec3 other, float wide) {
+  float is = length(a);
+  return is >= wide ? a : is > 1e-6 ? a * (wide / is) : other * wide;
+}
+#endif
+
 const int MOST_SEGMENTS = 24;
 // Paths through a refractor fan out, and one stands for many: they show the surroundings blurred, rad.
 const float FANNED_OUT = 0.35;
@@ -58,7 +70,7 @@ vec3 carried(PathState w, Interface h, vec3 by_u, vec3 by_v) {
     pending[k] = w;
     pending[k].share = 0.0;
   }
-  vec3 weight = bands[joined_band(h.hit.refractor)].weight_n.xyz, light = vec3(0);
+  vec3 weight = bands[joined_band(h.hit.refractor)].weight_n.xyz, light = vec3(0), lamps = vec3(0);
   float followed = 0.0, left = 0.0, blurred = log2(FANNED_OUT * sky_side / CUBE_TEXEL);
   bool going = true, met = true, mirror = is_mirror(h.hit.refractor);
   for (int segment = 0; going && segment < MOST_SEGMENTS; segment++) {
@@ -73,9 +85,22 @@ vec3 carried(PathState w, Interface h, vec3 by_u, vec3 by_v) {
 #endif
     if (met && !dark) {
       float ended, dropped, absorbed;
+#ifdef ROUGH
+      // The first one's lamps are asked for once for all ways (rough_light).
+      if (segment > 0 && is_rough(h.hit.refractor))
+        lamps += w.share * light_unit * lobe_shows(w, h, vec2(0.5 * lobe_width));
+#endif
       branch(w, h, 0.5 * share_limit, pending, ended, dropped, absorbed);
       left += ended + dropped;
     } else {
+#ifdef ROUGH
+      if (lobe_width > 0.0) {
+        vec3 u = abs(w.d.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
+        u = normalize(cross(w.d, u));
+        by_u = widened(by_u, u, lobe_width);
+        by_v = widened(by_v, cross(w.d, u), lobe_width);
+      }
+#endif
       vec3 sky = mirror ? sky_over(w.d, by_u, by_v) : sky_at(w.d, max(blurred, 0.0));
       light += dark ? vec3(0) : w.share * sky;
       followed += w.share;
@@ -87,11 +112,44 @@ vec3 carried(PathState w, Interface h, vec3 by_u, vec3 by_v) {
   left += w.share;
   for (int k = 0; k < PENDING; k++) left += pending[k].share;
   light *= followed > 0.0 ? 1.0 + left / followed : 0.0;
+  light += lamps;
   return rgb_from_xyz * (weight * (xyz_from_rgb * light));
 }
 
+#ifdef ROUGH
+// What a sample of a rough mirror shows: the surroundings by some of the lobe's ways, each as wide as the share
+// that it stands for, and lamps, whose lobe is as much wider as the sample is.
+vec3 rough_light(PathState w, Interface h, Pinhole s, int number, float scale, vec3 by_u, vec3 by_v) {
+  vec3 sum = vec3(0), wider = vec3(0);
+#ifdef FOOTPRINTS
+  // Of even slopes of that half width, by GGX's measure: their standard deviation times the root of two.
+  RoughHit m = rough_hit(w, h);
+  float half_width = 0.8165 * scale * s.half_width, near = 0.5 * half_width / max(distance(w.p, h.hit.p), 1e-20);
+  vec2 along = abs(s.turn) * half_width;
+  for (int k = 0; k < 2; k++) {
+    vec3 axis = k == 0 ? m.x : m.y;
+    float u = dot(axis, s.u), v = dot(axis, s.v);
+    wider[k] = along.x * u * u + along.y * v * v + near;
+  }
+  // Lobes that are wider than samples are apart sum to what they should by themselves.
+  wider.xy = sqrt(max(wider.xy * wider.xy - 0.25 * m.facets * m.facets, vec2(0)));
+#endif
+  float weight = 1.0 / float(LOBE_WAYS);
+  vec3 of_lamps = light_unit * lobe_shows(w, h, wider.xy);
+  vec3 band = bands[joined_band(h.hit.refractor)].weight_n.xyz;
+  sum = rgb_from_xyz * (band * (xyz_from_rgb * of_lamps));
+  for (int k = 0; k < LOBE_WAYS; k++) {
+    lobe_u = lobe_way(k, 0.618034 * float(number));
+    lobe_width = 0.0;
+    sum += weight * carried(w, h, by_u, by_v);
+  }
+  lobe_width = 0.0;
+  return sum;
+}
+#endif
+
 // What a sample of an area changes at p, where n is the receiver's side.
-vec3 changed(vec3 p, vec3 n, Pinhole s, float area, float scale) {
+vec3 changed(vec3 p, vec3 n, Pinhole s, int number, float area, float scale) {
   vec3 to = s.p - p;
   float far2 = dot(to, to), far = sqrt(far2);
   vec3 d = to / max(far, 1e-20);
@@ -113,7 +171,14 @@ vec3 changed(vec3 p, vec3 n, Pinhole s, float area, float scale) {
   wide_u = (u - dot(u, d) * d) / far;
   wide_v = (v - dot(v, d) * d) / far;
 #endif
-  return weight * (carried(w, h, by_u, by_v) - sky_over(d, wide_u, wide_v));
+#ifdef ROUGH
+  lobe_u = lobe_way(0, 0.618034 * float(number));
+  lobe_width = 0.0;
+  vec3 light = is_rough(h.hit.refractor) ? rough_light(w, h, s, number, scale, by_u, by_v) : carried(w, h, by_u, by_v);
+#else
+  vec3 light = carried(w, h, by_u, by_v);
+#endif
+  return weight * (light - sky_over(d, wide_u, wide_v));
 }
 
 // A part of a sample: its own place and normal; it turns as the sample does.
@@ -147,7 +212,7 @@ void main() {
       float area = whole.area;
       Pinhole s = whole;
       if (near) s = part_of(whole, i, k, area);
-      sum += changed(p, n, s, area, sqrt(area / whole.area));
+      sum += changed(p, n, s, i, area, sqrt(area / whole.area));
     }
   }
   if (there) imageStore(pages, ivec3(at, page), vec4(sum, 1));

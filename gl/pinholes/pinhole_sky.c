@@ -2,8 +2,6 @@
 
 #include "scenes/environment/radiance_cube.h"
 
-enum { UNIT = 6 };
-
 abbe_result abbe_pinhole_sky_make(const abbe_gpu_scene *scene, const abbe_radiance_map *map,
                                   size_t side, abbe_pinhole_sky *out, abbe_error *error) {
   const abbe_render_desc *d = &scene->plan->desc;
@@ -25,11 +23,11 @@ void abbe_pinhole_sky_free(abbe_gpu *gpu, abbe_pinhole_sky *sky) {
   *sky = (abbe_pinhole_sky){0};
 }
 
-void abbe_pinhole_sky_set(const abbe_gpu_scene *scene, const abbe_pinhole_sky *sky,
+void abbe_pinhole_sky_set(const abbe_gpu_scene *scene, const abbe_pinhole_sky *sky, int unit,
                           GLuint program) {
   abbe_gpu *gpu = scene->gpu;
-  abbe_gpu_set_int(gpu, program, "pinhole_sky", UNIT);
+  abbe_gpu_set_int(gpu, program, "pinhole_sky", unit);
   abbe_gpu_set_float(gpu, program, "sky_side", (double)sky->side);
-  gpu->gl->ActiveTexture(GL_TEXTURE0 + UNIT);
+  gpu->gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
   gpu->gl->BindTexture(GL_TEXTURE_CUBE_MAP, sky->texture);
 }

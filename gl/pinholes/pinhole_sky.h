@@ -9,6 +9,8 @@
 
 #include <stddef.h>
 
+enum { ABBE_PINHOLE_SKY_UNIT = 6 };
+
 typedef struct abbe_pinhole_sky {
   GLuint texture; /* W/(m2 sr), working space, by the map's own directions */
   size_t side;
@@ -20,7 +22,8 @@ abbe_result abbe_pinhole_sky_make(const abbe_gpu_scene *scene, const abbe_radian
                                   size_t side, abbe_pinhole_sky *out, abbe_error *error);
 void abbe_pinhole_sky_free(abbe_gpu *gpu, abbe_pinhole_sky *sky);
 
-/* Into the program that is in use. */
-void abbe_pinhole_sky_set(const abbe_gpu_scene *scene, const abbe_pinhole_sky *sky, GLuint program);
+/* Into the program that is in use, at a texture unit. */
+void abbe_pinhole_sky_set(const abbe_gpu_scene *scene, const abbe_pinhole_sky *sky, int unit,
+                          GLuint program);
 
 #endif

@@ -1,11 +1,7 @@
 // Samples of surfaces as pinholes through which receivers see what is around [WandStrasser2003]; rows as
 // gl/pinholes/pinhole_samples.h has them.
 uniform samplerBuffer pinholes;
-uniform samplerCube pinhole_sky;  // W/(m2 sr), by the surroundings' own directions
-uniform mat3 environment_from_world;
-uniform float sky_side;  // texels of a face
-
-#include "cube_mean.glsl"
+#include "pinhole_sky.glsl"
 
 struct Pinhole {
   vec3 p, n;              // n towards who looks
@@ -33,12 +29,4 @@ void footprint(Pinhole s, vec3 from, vec3 r, out vec3 by_u, out vec3 by_v) {
   vec3 u = s.half_width * s.u, v = s.half_width * s.v;
   by_u = mirrored(from, s.p + u, s.n + s.turn.x * u) - r;
   by_v = mirrored(from, s.p + v, s.n + s.turn.y * v) - r;
-}
-
-vec3 sky_at(vec3 d, float level) { return textureLod(pinhole_sky, environment_from_world * d, level).rgb; }
-
-// The mean over what is as wide as a and b around r.
-vec3 sky_over(vec3 r, vec3 a, vec3 b) {
-  return cube_mean(pinhole_sky, CUBE_TEXEL / sky_side, environment_from_world * r, environment_from_world * a,
-                   environment_from_world * b, 16.0, true);
 }

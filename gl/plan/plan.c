@@ -54,12 +54,25 @@ static void combine(abbe_plan *plan) {
   plan->lengths = caustics && plan->tinting && !plan->multi_refractor_paths && !published;
 }
 
+/* Light goes on from rough mirrors through samples of them alone. */
+static void choose_transport(const abbe_scene *scene, const abbe_render_desc *desc,
+                             abbe_plan *plan) {
+  for (size_t i = 0; i < scene->object_count; i++)
+    plan->rough = plan->rough || abbe_brushing_is_rough(&scene->object[i].brushing);
+  const bool open = desc == NULL || desc->transport == ABBE_TRANSPORT_AUTO;
+  if (plan->rough && open && plan->desc.transport == ABBE_TRANSPORT_PHOTONS &&
+      !abbe_profile_is_published(plan->desc.profile))
+    abbe_render_desc_take_pinholes(&plan->desc);
+}
+
 static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
                              abbe_error *error) {
+  choose_transport(scene, desc, out);
   out->surrounded = scene->environment != NULL;
   for (size_t i = 0; i < scene->light_count; i++)
     out->sized_lights = out->sized_lights || abbe_light_has_size(&scene->light[i]);
   abbe_result result = abbe_support_mirrors(scene, out, error);
+  if (result == ABBE_OK) result = abbe_support_roughness(scene, out, error);
   if (result == ABBE_OK) result = make_lists(scene, out, error);
   if (result == ABBE_OK) result = abbe_refractor_model_choose(scene, out, error);
   if (result == ABBE_OK) abbe_receiver_model_choose(scene, out);

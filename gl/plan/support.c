@@ -149,12 +149,6 @@ abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan,
   ABBE_REQUIRE(scene && plan, error);
   const abbe_object *mirror = abbe_scene_mirror(scene);
   const bool thesis = abbe_profile_is_thesis(plan->desc.profile);
-  for (size_t i = 0; i < scene->object_count; i++)
-    if (abbe_brushing_is_rough(&scene->object[i].brushing))
-      return abbe_error_set(error, ABBE_UNSUPPORTED,
-                            "the object '%s' (line %zu) is a rough mirror, which the renderer does "
-                            "not draw; leave its 'roughness' out, or trace the scene",
-                            scene->object[i].name, scene->object[i].line);
   if (mirror == NULL || (!thesis && plan->desc.model != ABBE_MODEL_LAYERS)) return ABBE_OK;
   if (thesis)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
@@ -165,6 +159,29 @@ abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan,
                         "the object '%s' (line %zu) is a mirror, and the model 'layers' follows no "
                         "light off mirrors; leave it out, or take the model 'hierarchy'",
                         mirror->name, mirror->line);
+}
+
+abbe_result abbe_support_roughness(const abbe_scene *scene, const abbe_plan *plan,
+                                   abbe_error *error) {
+  ABBE_REQUIRE(scene && plan, error);
+  const abbe_render_desc *d = &plan->desc;
+  const abbe_object *rough = NULL;
+  for (size_t i = 0; i < scene->object_count && rough == NULL; i++)
+    if (abbe_brushing_is_rough(&scene->object[i].brushing)) rough = &scene->object[i];
+  if (rough == NULL) return ABBE_OK;
+  if (abbe_profile_is_published(d->profile))
+    return abbe_error_set(
+        error, ABBE_UNSUPPORTED,
+        "the object '%s' (line %zu) is a rough mirror, and the %s profile knows "
+        "smooth ones alone; leave its 'roughness' out, or take the default profile",
+        rough->name, rough->line, abbe_profile_name(d->profile));
+  if (d->transport == ABBE_TRANSPORT_PINHOLE) return ABBE_OK;
+  return abbe_error_set(
+      error, ABBE_UNSUPPORTED,
+      "the object '%s' (line %zu) is a rough mirror, and the renderer sends light "
+      "on from one by the transport 'pinhole' alone, not by '%s'; leave its "
+      "'roughness' out, or trace the scene",
+      rough->name, rough->line, abbe_transport_name(d->transport));
 }
 
 /* Lights that are nearer, in the object's radii, shift a ball's focus by more than a tenth of its

@@ -13,6 +13,9 @@
 extern "C" {
 #endif
 
+/* ABBE_UNSUPPORTED for a rough mirror but by the transport of pinholes in the default profile. */
+abbe_result abbe_support_roughness(const abbe_scene *scene, const abbe_plan *plan,
+                                   abbe_error *error);
 /* ABBE_UNSUPPORTED for a mirror where the thesis's profiles or the model 'layers' is asked for. */
 abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 
@@ -25,8 +28,8 @@ abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *pla
                                    abbe_error *error);
 
 /* ABBE_UNSUPPORTED for what a volume of caustics does not hold, where one is asked for: other
- * objects that bend light, another shape; but of printed ones also lights that are near, that meet a
- * part of the object, or are of another colour. */
+ * objects that bend light, another shape; but of printed ones also lights that are near, that meet
+ * a part of the object, or are of another colour. */
 abbe_result abbe_support_volume(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 
 /* ABBE_UNSUPPORTED for a medium that scatters. */

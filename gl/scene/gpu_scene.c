@@ -215,6 +215,28 @@ void abbe_gpu_scene_bind(const abbe_gpu_scene *scene) {
   }
 }
 
+/* Grooves and facets of mirrors (walk.glsl). */
+static void set_rough(const abbe_gpu_scene *scene, GLuint program) {
+  enum { MOST = 32 }; /* as light off mirrors is followed among so many */
+  const abbe_gl *gl = scene->gpu->gl;
+  const size_t count = scene->plan->refractor_count < MOST ? scene->plan->refractor_count : MOST;
+  float facets[MOST][4] = {{0}}, axis[MOST][3], centre[MOST][3];
+  for (size_t i = 0; i < count; i++) {
+    const abbe_brushing *b = &scene->local->object[scene->plan->refractor_object[i]].brushing;
+    facets[i][0] = (float)b->facets.x;
+    facets[i][1] = (float)b->facets.y;
+    facets[i][2] = b->around ? 1 : 0;
+    for (int k = 0; k < 3; k++) {
+      axis[i][k] = (float)b->axis[k];
+      centre[i][k] = (float)b->centre[k];
+    }
+  }
+  const GLsizei n = (GLsizei)count;
+  gl->Uniform4fv(gl->GetUniformLocation(program, "rough_facets"), n, facets[0]);
+  gl->Uniform3fv(gl->GetUniformLocation(program, "rough_axis"), n, axis[0]);
+  gl->Uniform3fv(gl->GetUniformLocation(program, "rough_centre"), n, centre[0]);
+}
+
 void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program) {
   const abbe_gl *gl = scene->gpu->gl;
   abbe_gpu_bind_array(scene->gpu, program, "surface_texture", 1, scene->surface_texture);
@@ -233,6 +255,10 @@ void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program) {
                 (float)scene->refractor_centre[0], (float)scene->refractor_centre[1],
                 (float)scene->refractor_centre[2], (float)scene->refractor_radius);
   abbe_gpu_set_float(scene->gpu, program, "scene_size", scene->size);
+  if (scene->plan->rough) {
+    set_rough(scene, program);
+    abbe_gpu_set_float(scene->gpu, program, "light_unit", scene->unit);
+  }
   abbe_gpu_area_lights_set(scene, program);
   abbe_gpu_environment_set(scene->gpu, scene->local, &scene->environment, scene->unit, program);
 }

@@ -37,6 +37,7 @@ static bool move_object(const double origin[3], abbe_object *o) {
   for (size_t i = 0; i < o->exact.count && from.exact.parallelogram != NULL; i++)
     move(origin, o->exact.parallelogram[i]);
   move(origin, o->exact.centre);
+  move(origin, o->brushing.centre);
   move(origin, o->min);
   move(origin, o->max);
   return true;

@@ -38,6 +38,7 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
       .caustics = p->caustics,
       .walk = p->multi_refractor_paths,
       .mirrors = p->mirror_count > 0,
+      .rough = p->rough,
       .cubes = p->cubes,
       .pinholes = p->desc.transport == ABBE_TRANSPORT_PINHOLE,
       .pixel_threads = !p->multi_refractor_paths ? 1
@@ -151,6 +152,7 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "VOLUME_OCTAHEDRAL", v->volume && v->volume_region == ABBE_REGION_OCTAHEDRAL);
   print_flag(to, "WALK", v->walk);
   print_flag(to, "MIRRORS", v->mirrors);
+  print_flag(to, "ROUGH", v->rough);
   print_flag(to, "CUBES", v->cubes);
   print_flag(to, "PINHOLES", v->pinholes);
   print_count(to, "PIXEL_THREADS", v->pixel_threads);

@@ -47,3 +47,50 @@ bool refract_direction(vec3 d, vec3 n, float eta, out vec3 t) {
   t = normalize(eta * d + bend * n);
   return true;
 }
+
+#ifdef ROUGH
+// GGX's facets, as spectral/microfacets.h has them: a is their roughness along x and y; directions away from
+// the surface, z its normal.
+
+float facets_density(vec2 a, vec3 h) {
+  vec2 s = h.xy / a;
+  float square = dot(s, s) + h.z * h.z;
+  return h.z > 0.0 ? 1.0 / (PI * a.x * a.y * square * square) : 0.0;
+}
+
+float facets_hidden(vec2 a, vec3 w) {
+  vec2 s = a * w.xy / w.z;
+  return 0.5 * (sqrt(1.0 + dot(s, s)) - 1.0);
+}
+
+float facets_visible(vec2 a, vec3 w) { return w.z > 0.0 ? 1.0 / (1.0 + facets_hidden(a, w)) : 0.0; }
+
+float facets_from_both(vec2 a, vec3 wi, vec3 wo) {
+  return min(wi.z, wo.z) > 0.0 ? 1.0 / (1.0 + facets_hidden(a, wi) + facets_hidden(a, wo)) : 0.0;
+}
+
+// Radiance by irradiance, 1/sr, of facets that reflect all.
+float facets_reflect(vec2 a, vec3 wi, vec3 wo) {
+  float both = facets_from_both(a, wi, wo);
+  return both > 0.0 ? facets_density(a, normalize(wi + wo)) * both / (4.0 * wi.z * wo.z) : 0.0;
+}
+
+// Of what facets_sample draws, 1/sr.
+float facets_pdf(vec2 a, vec3 wo, vec3 wi) {
+  return facets_density(a, normalize(wi + wo)) * facets_visible(a, wo) / (4.0 * wo.z);
+}
+
+// A facet that wo sees, and where it reflects wo to; returns the share that no other facet takes.
+float facets_sample(vec2 a, vec3 wo, vec2 u, out vec3 h, out vec3 wi) {
+  vec3 v = normalize(vec3(a * wo.xy, wo.z));
+  float across = length(v.xy), radius = sqrt(u.x), turn = 2.0 * PI * u.y;
+  vec3 t = across > 0.0 ? vec3(-v.y, v.x, 0.0) / across : vec3(1, 0, 0), b = cross(v, t);
+  float x = radius * cos(turn), share = 0.5 * (1.0 + v.z);
+  float y = (1.0 - share) * sqrt(max(1.0 - x * x, 0.0)) + share * radius * sin(turn);
+  vec3 top = x * t + y * b + sqrt(max(1.0 - x * x - y * y, 0.0)) * v;
+  h = normalize(vec3(a * top.xy, max(top.z, 1e-6)));
+  wi = reflect(-wo, h);
+  float seen = facets_visible(a, wo);
+  return seen > 0.0 ? facets_from_both(a, wi, wo) / seen : 0.0;
+}
+#endif

@@ -2,7 +2,8 @@
 // known by its own model, reflected and refracted at each. Where refractors overlap the one listed
 // last is there. Who includes this gives refractor_spectrum(r): n and attenuation (1/m) of refractor
 // r at the wavelength that is followed. MIRRORS: some of them are mirrors, which reflect on both sides and
-// which no path is ever in; mirror_spectrum(r) gives what they reflect by.
+// which no path is ever in; mirror_spectrum(r) gives what they reflect by. ROUGH: some of those are rough;
+// photons (KEEPS_INTERFACE) end there, and other paths go on by their lobe.
 
 struct PathState {
   vec3 p, d;
@@ -219,6 +220,65 @@ bool split(inout PathState w, Interface h, out PathState mirrored) {
   return true;
 }
 
+#ifdef ROUGH
+// Rough mirrors on paths of receivers and of the camera. A path goes on by one facet, which lobe_u chooses; of
+// lamps it shows what the lobe makes of their light (lobe_shows). Who includes this sets lobe_u and clears
+// lobe_width before a path, and takes LOBE_WAYS ways off a mirror.
+
+const int LOBE_WAYS = 8;
+uniform vec4 rough_facets[REFRACTORS];  // roughness along the grooves and across, 0: smooth; 1: they run
+uniform vec3 rough_axis[REFRACTORS];    // around the axis through the centre, 0: along it
+uniform vec3 rough_centre[REFRACTORS];
+
+#ifndef LOBE_STATE
+#define LOBE_STATE
+vec2 lobe_u;
+float lobe_width;  // root of the solid angle for which the path stands, rad; 0: it met no rough mirror
+#endif
+
+bool is_rough(int r) { return rough_facets[r].x > 0.0; }
+
+// The way of number k, of LOBE_WAYS; `shift` is of the place: multiples of generalised golden ratios [Roberts2018].
+vec2 lobe_way(int k, float shift) {
+  return fract(vec2(0.7548776662, 0.5698402910) * float(k) + vec2(0.5, 0.25) + vec2(shift, 0.6180339887 * shift));
+}
+
+// Where light comes to a rough mirror: x along the grooves, y across; wo: back along it, in x, y and n.
+struct RoughHit {
+  vec3 x, y, n, wo, face_n;
+  vec2 facets;
+};
+
+RoughHit rough_hit(PathState w, Interface h) {
+  int r = h.hit.refractor;
+  float side = dot(w.d, h.face_n) < 0.0 ? 1.0 : -1.0;
+  vec3 n = side * h.hit.n, face_n = side * h.face_n;
+  if (dot(w.d, n) >= 0.0) n = face_n;
+  vec3 along = rough_facets[r].z > 0.0 ? cross(rough_axis[r], h.hit.p - rough_centre[r]) : rough_axis[r];
+  vec3 x = along - dot(along, n) * n, least = abs(n);
+  vec3 other = least.x < min(least.y, least.z) ? vec3(1, 0, 0) : least.y < least.z ? vec3(0, 1, 0) : vec3(0, 0, 1);
+  x = dot(x, x) > 1e-10 * dot(along, along) ? normalize(x) : normalize(other - dot(other, n) * n);
+  vec3 y = cross(n, x);
+  vec3 wo = normalize(vec3(-dot(w.d, x), -dot(w.d, y), max(-dot(w.d, n), 1e-4)));
+  return RoughHit(x, y, n, wo, face_n, rough_facets[r].xy);
+}
+
+// One way on; returns the share that is not reflected.
+float scatter_off(inout PathState w, Interface h) {
+  RoughHit m = rough_hit(w, h);
+  vec3 facet, wi;
+  float before = w.share;
+  float share = facets_sample(m.facets, m.wo, lobe_u, facet, wi);
+  float pdf = facets_pdf(m.facets, m.wo, wi);
+  w.share *= share * mirror_reflectance(mirror_spectrum(h.hit.refractor), min(dot(m.wo, facet), 1.0));
+  w.d = keep_side(m.face_n, normalize(wi.x * m.x + wi.y * m.y + wi.z * m.n));
+  w.facet = dot(w.d, h.face_n) < 0.0 ? -1 : 1;
+  lobe_width = max(lobe_width, min(inversesqrt(max(pdf, 1e-6) * float(LOBE_WAYS)), 1.0));
+  lobe_u = fract(lobe_u + vec2(0.7548776662, 0.5698402910));
+  return before - w.share;
+}
+#endif
+
 #ifdef MIRRORS
 // On from a mirror that w comes to; returns the share that the mirror absorbs.
 float reflect_off(inout PathState w, Interface h) {
@@ -226,14 +286,26 @@ float reflect_off(inout PathState w, Interface h) {
   float side = dot(w.d, h.face_n) < 0.0 ? 1.0 : -1.0, before = w.share;
   vec3 n = side * h.hit.n, face_n = side * h.face_n;
   if (dot(w.d, n) >= 0.0) n = face_n;
-  w.share *= mirror_reflectance(mirror_spectrum(r), -dot(w.d, n));
-#ifdef KEEPS_SPREAD
-  w.spread = spread_mirrored(spread_at(w.spread, w.d, h.hit.t, face_n), w.d, n, side * h.bend);
+  w.facet = int(side);
+#ifdef ROUGH
+  bool rough = is_rough(r);
+#ifdef KEEPS_INTERFACE
+  if (rough) w.share = 0.0;
+#else
+  if (rough) scatter_off(w, h);
 #endif
-  w.d = keep_side(face_n, reflect(w.d, n));
+#else
+  const bool rough = false;
+#endif
+  if (!rough) {
+    w.share *= mirror_reflectance(mirror_spectrum(r), -dot(w.d, n));
+#ifdef KEEPS_SPREAD
+    w.spread = spread_mirrored(spread_at(w.spread, w.d, h.hit.t, face_n), w.d, n, side * h.bend);
+#endif
+    w.d = keep_side(face_n, reflect(w.d, n));
+  }
   w.p = h.hit.p;
   w.refractor = r;
-  w.facet = int(side);
   w.interfaces = max(w.interfaces, 0);
 #ifdef KEEPS_INTERFACE
   w.interface_n = n;

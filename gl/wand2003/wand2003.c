@@ -77,7 +77,7 @@ static void use(abbe_wand2003 *w, GLuint program) {
   gl->Uniform2f(gl->GetUniformLocation(program, "samples"), (float)w->scene->plan->desc.width,
                 (float)w->scene->plan->desc.height);
   abbe_pinhole_samples_bind(w->scene, &w->samples, program);
-  abbe_pinhole_sky_set(w->scene, &w->sky, program);
+  abbe_pinhole_sky_set(w->scene, &w->sky, ABBE_PINHOLE_SKY_UNIT, program);
 }
 
 static void draw_receivers(abbe_wand2003 *w, GLuint program) {

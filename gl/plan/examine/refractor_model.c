@@ -192,7 +192,10 @@ static abbe_result add_mirror(const abbe_scene *scene, size_t i, abbe_plan *plan
            model == ABBE_REFRACTOR_SPHERE ? " and a sphere" : ", on both sides of its faces");
   list_model(plan, i, object->name, reason, unlisted);
   if (plan->entry_count < MAX_LISTED)
-    abbe_plan_add_about(plan, ABBE_CHOICE_MIRROR, i, object->name, "%s", reflects);
+    abbe_plan_add_about(plan, ABBE_CHOICE_MIRROR, i, object->name, "%s%s", reflects,
+                        abbe_brushing_is_rough(&object->brushing)
+                            ? "; rough, so its samples send on lamps' light, too, and photons end"
+                            : "");
   return ABBE_OK;
 }
 
@@ -265,6 +268,9 @@ abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan
 void abbe_refractor_model_note(const abbe_scene *scene, abbe_plan *plan) {
   const abbe_object *first[2] = {NULL, NULL};
   size_t pairs = 0;
+  if (plan->rough)
+    abbe_plan_note(plan, "light of lamps that comes to a rough mirror through glass or off another "
+                         "mirror is left out");
   if (plan->multi_refractor_paths) return;
   if (plan->refractor_count > 1)
     abbe_plan_note(plan, "light that leaves one refractor and meets another goes on unrefracted");

@@ -59,6 +59,7 @@ typedef struct abbe_plan {
   abbe_refractor_model *model; /* [refractor_count] */
   bool *mirror;                /* [refractor_count] it is one */
   size_t mirror_count;
+  bool rough; /* some mirror is */
   size_t receiver_count;
   size_t *receiver_object;
   abbe_receiver_model *receiver_model; /* [receiver_count] */

@@ -93,6 +93,11 @@ static void fill_in_pinholes(abbe_render_desc *d) {
   if (d->footprint == ABBE_FOOTPRINT_AUTO) d->footprint = ABBE_FOOTPRINT_ON;
 }
 
+void abbe_render_desc_take_pinholes(abbe_render_desc *desc) {
+  desc->transport = ABBE_TRANSPORT_PINHOLE;
+  fill_in_pinholes(desc);
+}
+
 static void fill_in_estimates(abbe_render_desc *d) {
   const bool printed = abbe_profile_is_printed(d->profile);
   if (printed && d->min_nm == 0) d->min_nm = shah_nm[0];

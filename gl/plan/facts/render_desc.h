@@ -29,8 +29,9 @@ extern "C" {
   X(THESIS, "thesis")                                                                              \
   X(THESIS_CIE, "thesis-cie")                                                                      \
   X(SHAH2007, "shah2007")                                                                          \
-  X(SHAH2007_CIE, "shah2007-cie") X(WYMAN2006, "wyman2006") X(WYMAN2006_CIE, "wyman2006-cie")      \
-      X(WYMAN2003, "wyman2003") X(WAND2003, "wand2003")
+  X(SHAH2007_CIE, "shah2007-cie")                                                                  \
+  X(WYMAN2006, "wyman2006")                                                                        \
+  X(WYMAN2006_CIE, "wyman2006-cie") X(WYMAN2003, "wyman2003") X(WAND2003, "wand2003")
 typedef enum abbe_profile {
 #define ABBE_PROFILE_ENUM(code, name) ABBE_PROFILE_##code,
   ABBE_PROFILES(ABBE_PROFILE_ENUM)
@@ -46,8 +47,10 @@ typedef enum abbe_profile {
   X(AUTO, "auto")                                                                                  \
   X(NONE, "none")                                                                                  \
   X(BRIDGE, "bridge")                                                                              \
-  X(SMEAR, "smear") X(POINTS, "points") X(QUADS, "quads") X(TRIANGLES, "triangles")                \
-      X(GATHER_EYE, "gather-eye") X(GATHER_LIGHT, "gather-light")
+  X(SMEAR, "smear")                                                                                \
+  X(POINTS, "points")                                                                              \
+  X(QUADS, "quads") X(TRIANGLES, "triangles") X(GATHER_EYE, "gather-eye")                          \
+      X(GATHER_LIGHT, "gather-light")
 typedef enum abbe_fill {
 #define ABBE_FILL_ENUM(code, name) ABBE_FILL_##code,
   ABBE_FILLS(ABBE_FILL_ENUM)
@@ -67,8 +70,8 @@ typedef enum abbe_direction {
 
 /* How caustics come to receivers: by photons; looked up in a volume that was computed beforehand
  * (scenes/volume/caustic_volume.h); or those of what stands out of surroundings by photons, and
- * those of the rest through samples of mirrors and refractors as pinholes. AUTO: in a volume where one
- * is given, by pinholes in wand2003. */
+ * those of the rest through samples of mirrors and refractors as pinholes. AUTO: in a volume where
+ * one is given, by pinholes in wand2003. */
 #define ABBE_TRANSPORTS(X)                                                                         \
   X(AUTO, "auto") X(PHOTONS, "photons") X(VOLUME, "volume") X(PINHOLE, "pinhole")
 typedef enum abbe_transport {
@@ -176,9 +179,9 @@ typedef struct abbe_render_desc {
   abbe_direction direction; /* of wyman2006; in its twin direct alone */
   /* Frames that a picture holds, 1 to 4, 0: 1; of the default profile and wyman2006's gathers. A
    * renderer that is changed or redrawn goes on with the frames before, so that a picture is no
-   * longer that of a renderer made anew; in units the photons of each frame are shifted. The default
-   * profile takes a still scene's next frames until the picture is the mean of so many, and where
-   * the scene has changed since no texel of its map leaves what this frame has around it. */
+   * longer that of a renderer made anew; in units the photons of each frame are shifted. The
+   * default profile takes a still scene's next frames until the picture is the mean of so many, and
+   * where the scene has changed since no texel of its map leaves what this frame has around it. */
   size_t history;
   abbe_transport transport;
   /* Of the transport 'volume', which it lives as long as; of the profile wyman2003 a printed one.
@@ -200,7 +203,8 @@ typedef struct abbe_render_desc {
   const abbe_map_layout *map_layout;
   size_t map_layout_light;
   /* Of the photon grid in cells and of the eye's samples in their distance, x and y, -0.5 to 0.5:
-   * other pictures that the same request could have given (gl/accuracy/error_bars.h). */
+   * other pictures that the same request could have given (gl/accuracy/error_bars.h). Pinholes are
+   * other ones for each shift of the grid. */
   double photon_shift[2], sample_shift[2];
   bool everything;               /* all on, to measure what the plan saves (gl/plan/no_culling.h) */
   bool aovs;                     /* keep direct and caustic light of the receivers apart as well */
@@ -210,6 +214,9 @@ typedef struct abbe_render_desc {
    * seconds, the first time on a machine. May be NULL. */
   void (*compiling)(void *user);
 } abbe_render_desc;
+
+/* A resolved request, by the transport of pinholes from now on. */
+void abbe_render_desc_take_pinholes(abbe_render_desc *desc);
 
 /* The request with its defaults filled in, for a picture of width x height pixels unless it says
  * otherwise; what the scene has to tell stays 0: wavelengths and exits. desc may be NULL.

@@ -40,6 +40,29 @@ static void mirrors_are_refused_by_name_where_none_are_followed(void **state) {
   refuse_plan(text, &desc, ABBE_UNSUPPORTED, "the model 'layers' follows no light off mirrors");
 }
 
+/* By pinholes where nothing else is asked for, and not at all by others. */
+static void rough_mirrors_go_by_pinholes(void **state) {
+  (void)state;
+  static const char text[] = CAMERA
+      "environment: {size: 64, uniform: 1}\n" FLOOR
+      "- {name: dull plate, shape: rectangle, width: 1, height: 1, mirror: 0.9, roughness: 0.2, "
+      "transform: [{translate: [0, 0, -1]}]}\n";
+  abbe_scene scene;
+  abbe_plan plan;
+  load_text(text, &scene);
+  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+  assert_true(plan.rough);
+  assert_int_equal(plan.desc.transport, ABBE_TRANSPORT_PINHOLE);
+  assert_int_equal(plan.desc.pinholes, ABBE_PLAN_PINHOLES);
+  assert_contains(plan.note[0], "comes to a rough mirror through glass");
+  abbe_plan_free(&plan);
+  abbe_scene_free(&scene);
+  abbe_render_desc desc = {.transport = ABBE_TRANSPORT_PHOTONS};
+  refuse_plan(text, &desc, ABBE_UNSUPPORTED, "'dull plate' (line 6) is a rough mirror");
+  desc = (abbe_render_desc){.profile = ABBE_PROFILE_WAND2003};
+  refuse_plan(text, &desc, ABBE_UNSUPPORTED, "the wand2003 profile knows smooth ones alone");
+}
+
 static void mirrors_are_followed_among_so_many(void **state) {
   (void)state;
   char text[8192] = CAMERA POINT_LIGHT FLOOR LOOKING_GLASS;
@@ -89,6 +112,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_thesis_refuses_disks),
       cmocka_unit_test(mirrors_are_refused_by_name_where_none_are_followed),
+      cmocka_unit_test(rough_mirrors_go_by_pinholes),
       cmocka_unit_test(mirrors_are_followed_among_so_many),
       cmocka_unit_test(a_map_layout_belongs_to_its_light),
   };

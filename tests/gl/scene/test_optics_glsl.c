@@ -7,6 +7,7 @@
  */
 #include "tests/gl/glsl.h"
 
+#include "spectral/microfacets.h"
 #include "spectral/optics.h"
 
 #include <float.h>
@@ -114,6 +115,52 @@ static void test_fresnel_conductor(void **state) {
   print_message("largest error of fresnel_conductor: %.2g\n", worst);
 }
 
+/* Rough mirrors' lobe, its density and its sampler, from straight on to grazing. */
+static void test_microfacets(void **state) {
+  (void)state;
+  static const double facets[][2] = {{0.05, 0.05}, {0.1, 0.5}, {0.7, 0.2}, {1, 1}};
+  count = 0;
+  for (int m = 0; m < 4; m++)
+    for (int i = 0; i < 500; i++, count++) {
+      const double a = tilt(i), b = tilt(3 * i + m), c = 0.02 + 0.97 * tilt(7 * i),
+                   s = sqrt(1 - c * c);
+      inputs[count][0] = (float)(s * cos(6.2831853 * a));
+      inputs[count][1] = (float)(s * sin(6.2831853 * a));
+      inputs[count][2] = (float)facets[m][0];
+      inputs[count][3] = (float)facets[m][1];
+      inputs[count][4] = (float)(0.98 * b); /* the last part of the disk is steep */
+      inputs[count][5] = (float)tilt(11 * i + 5 * m);
+    }
+  static const char start[] =
+      "const float PI = 3.14159265358979;\n#define ROUGH\n#include \"optics.glsl\"\n"
+      "vec4 f(vec4 a, vec4 b) {\n  vec3 h, wi, wo = vec3(a.xy, sqrt(1.0 - dot(a.xy, a.xy)));\n"
+      "  float share = facets_sample(a.zw, wo, b.xy, h, wi);\n";
+  static const char *const end[] = {
+      "  return vec4(wi, share);\n}\n",
+      "  return vec4(facets_reflect(a.zw, wi, wo), facets_pdf(a.zw, wo, wi), h.xy);\n}\n"};
+  for (int part = 0; part < 2; part++) {
+    char text[1024];
+    snprintf(text, sizeof text, "%s%s", start, end[part]);
+    glsl_evaluate(abbe_context_gl(context), text, (const float(*)[8])inputs, count, outputs);
+    for (size_t i = 0; i < count; i++) {
+      const double x = inputs[i][0], y = inputs[i][1], u[2] = {inputs[i][4], inputs[i][5]};
+      const double wo[3] = {x, y, sqrt(1 - x * x - y * y)};
+      const abbe_microfacets m = {inputs[i][2], inputs[i][3]};
+      double h[3], wi[3];
+      const double share = abbe_microfacets_sample(&m, wo, u, h, wi);
+      if (part == 0) {
+        for (int k = 0; k < 3; k++) assert_near(outputs[i][k], wi[k], 1e-4);
+        if (fabs(wi[2]) > 1e-3) assert_near(outputs[i][3], share, 5e-3);
+      } else if (wi[2] > 1e-2) {
+        const double f = abbe_microfacets_reflect(&m, wi, wo),
+                     pdf = abbe_microfacets_pdf(&m, wo, wi);
+        assert_near(outputs[i][0], f, 2e-3 * f);
+        assert_near(outputs[i][1], pdf, 2e-3 * pdf);
+      }
+    }
+  }
+}
+
 static double refracted_angle(double c, double eta) {
   bool total;
   double t = abbe_optics_cos_refracted(c, eta, &total);
@@ -184,9 +231,9 @@ static void test_equal_indices_change_nothing(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_fresnel),
-                                     cmocka_unit_test(test_fresnel_conductor),
-                                     cmocka_unit_test(test_refract_direction),
-                                     cmocka_unit_test(test_equal_indices_change_nothing)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_fresnel), cmocka_unit_test(test_fresnel_conductor),
+      cmocka_unit_test(test_microfacets), cmocka_unit_test(test_refract_direction),
+      cmocka_unit_test(test_equal_indices_change_nothing)};
   return cmocka_run_group_tests(tests, make_context, free_context);
 }
