@@ -60,8 +60,8 @@ bool abbe_view_refine_next(const abbe_view_refine *refine, double now_s, abbe_vi
       last_of(refine) >= ABBE_VIEW_BALANCED)
     job.stage = ABBE_VIEW_BALANCED;
   job.light = job.stage > ABBE_VIEW_ACCURATE ? ABBE_VIEW_ACCURATE : job.stage;
-  job.light_step = refine->light_step;
-  if (job.stage == ABBE_VIEW_MOVING) job.eye_step = refine->eye_step;
+  job.light_step = refine->pace.light_step;
+  if (job.stage == ABBE_VIEW_MOVING) job.eye_step = refine->pace.eye_step;
   if (refine->light >= job.light) { /* better light is there */
     job.light = refine->light;
     job.light_step = refine->drawn_light_step;
@@ -85,46 +85,14 @@ bool abbe_view_refine_cancels(const abbe_view_refine *refine, const abbe_view_jo
   return refine->spectrum && job->stage == ABBE_VIEW_MEAN && last_of(refine) == ABBE_VIEW_TRACED;
 }
 
-/* Fewer samples by a step are this share of the work. */
-static double eye_share(size_t step) {
-  return 1 / (double)((step + 1) * (step + 1));
-}
-
-/* The steps of the next moving picture, by what the last one took: the light gives way first where
- * it was drawn, for what the eye sees sharp is what is looked at. */
-static void adapt(abbe_view_refine *refine, const abbe_view_job *job, bool lit, double ms) {
-  const double most = ABBE_VIEW_MOVING_MS, roomy = 0.8 * ABBE_VIEW_MOVING_MS;
-  size_t step = job->eye_step;
-  refine->moving_ms = ms;
-  if (ms > most) {
-    if (lit && refine->light_step + 1 < ABBE_VIEW_LIGHT_STEPS)
-      refine->light_step = job->light_step + 1;
-    else if (job->eye_step + 1 < ABBE_VIEW_EYE_STEPS)
-      refine->eye_step = job->eye_step + 1;
-    return;
-  }
-  while (step > 0 && ms * eye_share(step - 1) / eye_share(job->eye_step) < roomy) step--;
-  refine->eye_step = step;
-  if (step < job->eye_step || !lit) return;
-  size_t light = job->light_step;
-  double expected = 2 * ms; /* a step is some twice the photons */
-  for (; light > 0 && expected < roomy; expected *= 2) light--;
-  refine->light_step = light;
-}
-
 void abbe_view_refine_end(abbe_view_refine *refine, const abbe_view_job *job,
                           abbe_view_outcome outcome, double ms, double now_s) {
   (void)now_s;
   const bool lit = refine->light != job->light || refine->drawn_light_step != job->light_step;
   if (outcome == ABBE_VIEW_REFUSED && job->serial == refine->serial) refine->refused = true;
   if (outcome != ABBE_VIEW_DONE) return;
-  /* one that took many times as long as the one before it compiled programs: that does not last */
-  const bool strange = refine->moving_ms > 0 && !refine->strange && ms > 4 * refine->moving_ms &&
-                       ms > 4 * ABBE_VIEW_MOVING_MS;
-  if (job->stage == ABBE_VIEW_MOVING) {
-    refine->strange = strange;
-    if (!strange) adapt(refine, job, lit, ms);
-  }
+  if (job->stage == ABBE_VIEW_MOVING)
+    abbe_view_pace_take(&refine->pace, job->light_step, job->eye_step, lit, ms);
   /* light that was drawn for an older state of the scene is no light for this one, unless only the
    * camera has moved since */
   const bool current = job->serial == refine->serial;

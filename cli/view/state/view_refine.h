@@ -2,14 +2,16 @@
  * they rest.
  *
  * A state machine: changes, times and finished jobs in, jobs out. It draws nothing, knows no scene
- * and no settings, only their order. Moving, a job takes the steps that kept the last ones below
- * ABBE_VIEW_MOVING_MS, and goes back to as many finer ones as its time has room for; after
+ * and no settings, only their order. Moving, a job takes the steps that cli/view/state/view_pace.h
+ * finds; after
  * ABBE_VIEW_REST_S without a change the stages follow each other up to the last. A change makes any
  * stage but a moving one obsolete at once: a moving one is nearly done, and what it shows is newer
  * than what stands.
  */
 #ifndef ABBE_CLI_VIEW_STATE_VIEW_REFINE_H
 #define ABBE_CLI_VIEW_STATE_VIEW_REFINE_H
+
+#include "cli/view/state/view_pace.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -31,10 +33,7 @@ typedef enum abbe_view_stage {
 } abbe_view_stage;
 const char *abbe_view_stage_name(abbe_view_stage stage);
 
-#define ABBE_VIEW_MOVING_MS 50.0 /* of a picture and what it takes to make it, 20 a second */
 #define ABBE_VIEW_REST_S 0.15
-#define ABBE_VIEW_EYE_STEPS 4   /* 0: a sample a pixel, then one for 2 x 2, 3 x 3, 4 x 4 */
-#define ABBE_VIEW_LIGHT_STEPS 4 /* 0: the draft's photons, then ever fewer */
 #define ABBE_VIEW_TRACED_PASSES 64
 
 /* What a change leaves as it was. */
@@ -64,14 +63,12 @@ typedef struct abbe_view_refine {
   bool held;              /* a button is down: it moves */
   uint64_t serial, shown; /* of the last change; of what the last picture shows */
   double changed_s;
-  abbe_view_stage stage;       /* of the picture that shows serial; NONE: an older one stands */
-  size_t passes;               /* traced */
-  abbe_view_stage light;       /* whose light is drawn for this scene; NONE: none */
-  size_t light_step, eye_step; /* to be tried next */
-  size_t drawn_light_step;     /* of the light that is drawn */
-  double moving_ms;            /* of the last moving picture that counts */
-  bool strange;                /* the last one does not: nothing follows from one alone */
-  bool camera_only;            /* all that has changed since the last picture */
+  abbe_view_stage stage;   /* of the picture that shows serial; NONE: an older one stands */
+  size_t passes;           /* traced */
+  abbe_view_stage light;   /* whose light is drawn for this scene; NONE: none */
+  size_t drawn_light_step; /* of the light that is drawn */
+  abbe_view_pace pace;     /* of moving pictures */
+  bool camera_only;        /* all that has changed since the last picture */
   bool refused;
 } abbe_view_refine;
 

@@ -120,7 +120,8 @@ static void test_a_late_picture_brings_no_light(void **state) {
   assert_int_equal(next(&r, 1.02).light, ABBE_VIEW_MOVING);
 }
 
-static void test_slow_pictures_get_cheaper_and_fast_ones_better(void **state) {
+/* Moving jobs take the steps that the times of the last ones lead to, those at rest none. */
+static void test_slow_pictures_get_cheaper(void **state) {
   (void)state;
   abbe_view_refine r = refined(ABBE_VIEW_ACCURATE);
   double now = 1;
@@ -131,70 +132,19 @@ static void test_slow_pictures_get_cheaper_and_fast_ones_better(void **state) {
     abbe_view_refine_end(&r, &job, ABBE_VIEW_DONE,
                          400.0 / (double)((job.eye_step + 1) * (job.eye_step + 1)), now);
   }
-  assert_int_equal(r.eye_step, 2); /* 100 is too long, 44 is not, and 100 is no way back */
-  assert_near(r.moving_ms, 400.0 / 9, 1e-9);
-  for (int i = 0; i < 10; i++, now += 0.05) {
-    abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, now);
-    draw(&r, now, 5);
-  }
-  assert_int_equal(r.eye_step, 0);
-}
-
-/* One picture that waits for a compiler says nothing of the next; two do. */
-static void test_one_strange_picture_changes_nothing(void **state) {
-  (void)state;
-  abbe_view_refine r = begun();
-  double now = 1;
-  for (int i = 0; i < 4; i++, now += 0.05) {
+  assert_int_equal(r.pace.eye_step, 2); /* 100 is too long, 44 is not, and 100 is no way back */
+  assert_near(r.pace.ms, 400.0 / 9, 1e-9);
+  now += 1;
+  assert_int_equal(next(&r, now).stage, ABBE_VIEW_BALANCED);
+  assert_int_equal(next(&r, now).eye_step, 0);
+  draw(&r, now, 3000); /* at rest it may take its time */
+  assert_int_equal(r.pace.eye_step, 2);
+  for (int i = 0; i < 40; i++, now += 0.05) {
     abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, now);
-    draw(&r, now, i == 2 ? 900 : 30);
-    assert_int_equal(r.light_step, 0);
-    assert_int_equal(r.eye_step, 0);
-    assert_near(r.moving_ms, 30, 0);
+    const abbe_view_job job = draw(&r, now, i < 5 ? 80 : 5);
+    if (i == 4) assert_true(job.light_step > 0);
   }
-  for (int i = 0; i < 2; i++, now += 1) {
-    abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, now);
-    draw(&r, now, 900);
-  }
-  assert_int_equal(r.light_step, 1);
-}
-
-/* From the coarsest to the finest in one picture each, where there is room for it. */
-static void test_the_way_back_is_short(void **state) {
-  (void)state;
-  abbe_view_refine r = begun();
-  r.eye_step = ABBE_VIEW_EYE_STEPS - 1;
-  r.light_step = ABBE_VIEW_LIGHT_STEPS - 1;
-  abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, 1);
-  draw(&r, 1, 2);
-  assert_int_equal(r.eye_step, 0);
-  abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, 1.05);
-  draw(&r, 1.05, 4); /* 8, 16 and 32 ms fit */
-  assert_int_equal(r.light_step, 0);
-  r.light_step = ABBE_VIEW_LIGHT_STEPS - 1;
-  abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, 1.1);
-  draw(&r, 1.1, 9); /* 18 and 36 do, 72 does not */
-  assert_int_equal(r.light_step, 1);
-}
-
-static void test_the_light_gives_way_first(void **state) {
-  (void)state;
-  abbe_view_refine r = begun();
-  double now = 1;
-  for (size_t i = 1; i < ABBE_VIEW_LIGHT_STEPS; i++, now += 0.05) {
-    abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, now);
-    draw(&r, now, 80);
-    assert_int_equal(r.light_step, i);
-    assert_int_equal(r.eye_step, 0);
-  }
-  abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, now);
-  draw(&r, now, 80);
-  assert_int_equal(r.eye_step, 1);
-  now += 0.05;
-  abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, now);
-  const abbe_view_job job = draw(&r, now, 8);
-  assert_int_equal(job.light_step, ABBE_VIEW_LIGHT_STEPS - 1);
-  assert_int_equal(r.eye_step, 0);
+  assert_int_equal(r.pace.eye_step + r.pace.light_step, 0);
 }
 
 static void test_what_is_refused_waits_for_a_change(void **state) {
@@ -238,19 +188,15 @@ static void test_stages_end_where_they_are_wanted(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_stages_follow_each_other),
-      cmocka_unit_test(test_light_is_of_the_stage),
-      cmocka_unit_test(test_refining_waits_for_rest),
-      cmocka_unit_test(test_a_change_cancels_all_but_what_moves),
-      cmocka_unit_test(test_the_camera_keeps_the_light),
-      cmocka_unit_test(test_a_late_picture_brings_no_light),
-      cmocka_unit_test(test_slow_pictures_get_cheaper_and_fast_ones_better),
-      cmocka_unit_test(test_one_strange_picture_changes_nothing),
-      cmocka_unit_test(test_the_way_back_is_short),
-      cmocka_unit_test(test_the_light_gives_way_first),
-      cmocka_unit_test(test_what_is_refused_waits_for_a_change),
-      cmocka_unit_test(test_a_spectrum_is_traced_before_the_mean),
-      cmocka_unit_test(test_stages_end_where_they_are_wanted)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_stages_follow_each_other),
+                                     cmocka_unit_test(test_light_is_of_the_stage),
+                                     cmocka_unit_test(test_refining_waits_for_rest),
+                                     cmocka_unit_test(test_a_change_cancels_all_but_what_moves),
+                                     cmocka_unit_test(test_the_camera_keeps_the_light),
+                                     cmocka_unit_test(test_a_late_picture_brings_no_light),
+                                     cmocka_unit_test(test_slow_pictures_get_cheaper),
+                                     cmocka_unit_test(test_what_is_refused_waits_for_a_change),
+                                     cmocka_unit_test(test_a_spectrum_is_traced_before_the_mean),
+                                     cmocka_unit_test(test_stages_end_where_they_are_wanted)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

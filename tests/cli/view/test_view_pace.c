@@ -1,0 +1,145 @@
+/* How coarse moving pictures are, by injected times: of machines whose pictures take so long for
+ * what is fixed, for the light of the finest step and for the eye's samples of the finest. */
+#include "tests/check.h"
+
+#include "cli/view/state/view_pace.h"
+
+typedef struct machine {
+  double fixed, light, eye;
+} machine;
+
+static double time_of(const machine *m, size_t light, size_t eye, bool lit) {
+  return m->fixed + (lit ? m->light / (double)(1u << light) : 0) +
+         m->eye / (double)((eye + 1) * (eye + 1));
+}
+
+/* Draws so many pictures; the last one's time. */
+static double draw(abbe_view_pace *p, const machine *m, bool lit, int pictures) {
+  double ms = 0;
+  for (int i = 0; i < pictures; i++) {
+    ms = time_of(m, p->light_step, p->eye_step, lit);
+    abbe_view_pace_take(p, p->light_step, p->eye_step, lit, ms);
+    assert_true(p->light_step < ABBE_VIEW_LIGHT_STEPS && p->eye_step < ABBE_VIEW_EYE_STEPS);
+  }
+  return ms;
+}
+
+/* Where any step keeps the time, it is kept after a few pictures, whatever takes it, and but for
+ * one in eight from then on; where the finest does, it is the finest. */
+static void test_the_time_is_kept_where_it_can_be(void **state) {
+  (void)state;
+  static const double parts[] = {0, 5, 20, 45, 80, 150, 300};
+  enum { PARTS = sizeof parts / sizeof *parts };
+  for (size_t f = 0; f < 4; f++)
+    for (size_t l = 0; l < PARTS; l++)
+      for (size_t e = 0; e < PARTS; e++) {
+        const machine m = {parts[f], parts[l], parts[e]};
+        abbe_view_pace p = {0};
+        const bool can =
+            time_of(&m, ABBE_VIEW_LIGHT_STEPS - 1, ABBE_VIEW_EYE_STEPS - 1, true) <= 50;
+        draw(&p, &m, true, 20);
+        const double ms = time_of(&m, p.light_step, p.eye_step, true);
+        if (can && ms > 50) fail_msg("%g + %g + %g: %g ms", m.fixed, m.light, m.eye, ms);
+        if (time_of(&m, 0, 0, true) <= 50) assert_int_equal(p.light_step + p.eye_step, 0);
+        int late = 0; /* finer ones are tried now and then */
+        for (int i = 0; i < 48; i++) late += draw(&p, &m, true, 1) > 50;
+        if (can && late > 6) fail_msg("%g + %g + %g: %d late", m.fixed, m.light, m.eye, late);
+      }
+}
+
+/* Fewer photons and samples are no end: where they save nothing the picture is whole. */
+static void test_what_saves_nothing_is_left(void **state) {
+  (void)state;
+  static const machine fixed = {170, 0, 0}, nearly = {170, 3, 6}, eye = {100, 0, 300};
+  abbe_view_pace p = {0};
+  draw(&p, &fixed, true, 20);
+  assert_int_equal(p.light_step + p.eye_step, 0);
+  p = (abbe_view_pace){0};
+  draw(&p, &nearly, true, 20);
+  assert_int_equal(p.light_step + p.eye_step, 0);
+  p = (abbe_view_pace){0};
+  draw(&p, &eye, true, 20); /* 400, 175, 133 and 119 ms */
+  assert_int_equal(p.eye_step, 2);
+}
+
+static void test_the_light_gives_way_first(void **state) {
+  (void)state;
+  static const machine even = {5, 60, 20};
+  abbe_view_pace p = {0};
+  draw(&p, &even, true, 10); /* 85, 55 and 40 ms */
+  assert_int_equal(p.light_step, 2);
+  assert_int_equal(p.eye_step, 0);
+}
+
+/* What is kept of the light takes no time, so the eye's steps alone count then. */
+static void test_a_camera_that_moves(void **state) {
+  (void)state;
+  static const machine m = {2, 1000, 400};
+  abbe_view_pace p = {0};
+  draw(&p, &m, false, 10);
+  assert_int_equal(p.light_step, 0);
+  assert_int_equal(p.eye_step, 2);
+  static const machine fast = {2, 1000, 12};
+  draw(&p, &fast, false, 3);
+  assert_int_equal(p.eye_step, 0);
+}
+
+/* What else the machine does comes and goes. */
+static void test_times_that_change(void **state) {
+  (void)state;
+  static const machine quiet = {4, 16, 14}, busy = {12, 60, 48};
+  abbe_view_pace p = {0};
+  draw(&p, &quiet, true, 5);
+  assert_int_equal(p.light_step + p.eye_step, 0);
+  for (int turn = 0; turn < 3; turn++) {
+    draw(&p, &busy, true, 6);
+    assert_true(time_of(&busy, p.light_step, p.eye_step, true) <= 50);
+    draw(&p, &quiet, true, 6);
+    assert_int_equal(p.light_step + p.eye_step, 0);
+  }
+}
+
+/* Times of a machine that was busy do not keep pictures coarse for ever. */
+static void test_what_was_slow_is_tried_again(void **state) {
+  (void)state;
+  abbe_view_pace p = {0};
+  for (int i = 0; i < 60; i++)
+    abbe_view_pace_take(&p, p.light_step, p.eye_step, true, i < 4 ? 80 : 5);
+  assert_int_equal(p.light_step + p.eye_step, 0);
+}
+
+/* One picture that waits for a compiler says nothing of the next; two do. */
+static void test_one_strange_picture(void **state) {
+  (void)state;
+  abbe_view_pace p = {0};
+  for (int i = 0; i < 5; i++) {
+    abbe_view_pace_take(&p, p.light_step, p.eye_step, true, i == 2 ? 900 : 30);
+    assert_int_equal(p.light_step + p.eye_step, 0);
+    assert_near(p.ms, 30, 0);
+  }
+  for (int i = 0; i < 2; i++) abbe_view_pace_take(&p, 0, 0, true, 900);
+  assert_true(p.light_step + p.eye_step > 2);
+}
+
+/* From the coarsest to the finest in one picture, where there is room for it. */
+static void test_the_way_back_is_short(void **state) {
+  (void)state;
+  abbe_view_pace p = {.light_step = 3, .eye_step = 3};
+  abbe_view_pace_take(&p, 3, 3, true, 2);
+  assert_int_equal(p.light_step + p.eye_step, 0);
+  p = (abbe_view_pace){.light_step = 3};
+  abbe_view_pace_take(&p, 3, 0, true, 9); /* 22 ms are expected of step 1, 40.5 of 0 */
+  assert_int_equal(p.light_step, 1);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_time_is_kept_where_it_can_be),
+                                     cmocka_unit_test(test_what_saves_nothing_is_left),
+                                     cmocka_unit_test(test_the_light_gives_way_first),
+                                     cmocka_unit_test(test_a_camera_that_moves),
+                                     cmocka_unit_test(test_times_that_change),
+                                     cmocka_unit_test(test_what_was_slow_is_tried_again),
+                                     cmocka_unit_test(test_one_strange_picture),
+                                     cmocka_unit_test(test_the_way_back_is_short)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
