@@ -175,9 +175,10 @@ void abbe_view_state_wheel(abbe_view_state *state, double clicks, double now_s) 
   if (state->outline.light_count + state->outline.object_count == 0 || clicks == 0) return;
   abbe_view_camera_zoom(&c, pow(0.9, fmax(-20, fmin(20, clicks))));
   /* turns of the wheel that follow each other are one step */
-  state->continued = now_s - state->refine.changed_s < 0.5 && state->refine.serial > 1;
+  state->continued = now_s - state->refine.changed_s < 0.5 && state->refine.serial == state->turned;
   take_camera(state, &c, now_s);
   state->continued = false;
+  state->turned = state->refine.serial;
 }
 
 void abbe_view_state_tick(abbe_view_state *state, double seconds, double now_s) {

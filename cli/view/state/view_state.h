@@ -64,6 +64,7 @@ typedef struct abbe_view_state {
   bool down[ABBE_VIEW_BUTTON_COUNT];
   double from[2], at[2];   /* of the pointer: where a button went down; now */
   bool dragged, continued; /* the pointer has left that place; the step is begun */
+  uint64_t turned;         /* the change that was the wheel's last turn */
   int modifiers;
   abbe_view_handle held;
   double held_point[3];

@@ -141,6 +141,23 @@ static void test_handles_move_and_tilt_objects(void **state) {
   abbe_view_state_free(s);
 }
 
+/* Turns of the wheel that follow each other are one step, apart from what was changed before. */
+static void test_the_wheel_is_a_step(void **state) {
+  (void)state;
+  abbe_view_state *s = begun();
+  abbe_view_state_set(s, "ambient", "1", false, 1);
+  const size_t before = s->history.at;
+  abbe_view_state_wheel(s, 1, 1.1);
+  assert_int_equal(s->history.at, before + 1);
+  abbe_view_state_wheel(s, 1, 1.2);
+  assert_int_equal(s->history.at, before + 1);
+  abbe_view_state_wheel(s, 1, 3);
+  assert_int_equal(s->history.at, before + 2);
+  assert_true(abbe_view_state_undo(s, 4) && abbe_view_state_undo(s, 4));
+  assert_string_equal(abbe_view_document_value(abbe_view_history_now(&s->history), "ambient"), "1");
+  abbe_view_state_free(s);
+}
+
 static void test_lights_move(void **state) {
   (void)state;
   abbe_view_state *s = begun();
@@ -207,6 +224,7 @@ int main(void) {
                                      cmocka_unit_test(test_a_drag_turns_the_camera_in_one_step),
                                      cmocka_unit_test(test_other_buttons_pan_and_look),
                                      cmocka_unit_test(test_handles_move_and_tilt_objects),
+                                     cmocka_unit_test(test_the_wheel_is_a_step),
                                      cmocka_unit_test(test_lights_move),
                                      cmocka_unit_test(test_a_click_asks_for_a_spectrum),
                                      cmocka_unit_test(test_edits_and_settings),
