@@ -119,6 +119,7 @@ static const struct {
     {"abbe_route_follow", "vertex"},
     {"abbe_scaling_study_measure", "user"},
     {"abbe_scene_load", "options"},
+    {"abbe_scene_load_lights", "options"},
     {"abbe_scene_parse", "options"},
     {"abbe_scene_text", "options"},
     {"abbe_shader_write", "report"},
