@@ -25,7 +25,8 @@ static abbe_result make_sky(const abbe_gpu_scene *scene, abbe_pinhole_sky *out, 
   const abbe_environment *e = scene->local->environment;
   abbe_radiance_map left;
   abbe_result result =
-      abbe_environment_lights_leave(e, scene->local->environment_lights, &left, error);
+      e == NULL ? abbe_radiance_map_make(4 * LEAST_CUBE, &left, error) /* dark */
+                : abbe_environment_lights_leave(e, scene->local->environment_lights, &left, error);
   if (result != ABBE_OK) return result;
   result = abbe_pinhole_sky_make(scene, &left, cube_side(&left), out, error);
   abbe_radiance_map_free(&left);

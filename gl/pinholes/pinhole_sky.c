@@ -8,9 +8,10 @@ abbe_result abbe_pinhole_sky_make(const abbe_gpu_scene *scene, const abbe_radian
   double matrix[9];
   abbe_radiance_cube cube;
   *out = (abbe_pinhole_sky){.side = side};
-  abbe_result result =
-      abbe_gpu_environment_colours(&scene->local->environment->illuminant,
-                                   abbe_gpu_scene_working_space(scene), d, matrix, error);
+  const abbe_environment *around = scene->local->environment;
+  abbe_result result = abbe_gpu_environment_colours(
+      around != NULL ? &around->illuminant : abbe_scene_illuminant(scene->local),
+      abbe_gpu_scene_working_space(scene), d, matrix, error);
   if (result == ABBE_OK) result = abbe_radiance_cube_make(map, side, &cube, error);
   if (result != ABBE_OK) return result;
   result = abbe_gpu_environment_cube(scene->gpu, &cube, matrix, &out->texture, error);

@@ -31,7 +31,7 @@ abbe_result abbe_support_pinholes(const abbe_scene *scene, const abbe_plan *plan
   ABBE_REQUIRE(scene && plan, error);
   if (plan->desc.transport != ABBE_TRANSPORT_PINHOLE) return ABBE_OK;
   if (abbe_profile_is_wand2003(plan->desc.profile)) return support_wand(scene, plan, error);
-  if (scene->environment == NULL)
+  if (scene->environment == NULL && !plan->rough)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the transport 'pinhole' carries an environment's light; this scene has "
                           "none: take the transport 'photons'");

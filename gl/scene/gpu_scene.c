@@ -258,6 +258,7 @@ void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program) {
   if (scene->plan->rough) {
     set_rough(scene, program);
     abbe_gpu_set_float(scene->gpu, program, "light_unit", scene->unit);
+    abbe_gpu_set_float(scene->gpu, program, "environment_scale", 1 / scene->unit);
   }
   abbe_gpu_area_lights_set(scene, program);
   abbe_gpu_environment_set(scene->gpu, scene->local, &scene->environment, scene->unit, program);

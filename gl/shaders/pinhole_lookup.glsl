@@ -2,6 +2,9 @@
 // parallelogram.
 #include "pinhole_map.glsl"
 uniform sampler2DArray pinhole_pages;
+#ifndef ENVIRONMENT
+uniform float environment_scale;
+#endif
 
 // How far a place is from a parallelogram, in parts of its edges.
 float off_receiver(Receiver r, vec3 p, out vec2 uv) {
