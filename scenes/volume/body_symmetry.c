@@ -128,6 +128,16 @@ static void frame_of(const double a[3], const double b[3], double side, double o
   }
 }
 
+/* A map that is there already: corners of faceted meshes are several marks in one place. */
+static bool is_known(const abbe_body_symmetry *s, const double map[9]) {
+  for (size_t i = 0; i < s->count; i++) {
+    double off = 0;
+    for (int k = 0; k < 9; k++) off = fmax(off, fabs(map[k] - s->map[i][k]));
+    if (off < 100 * tolerance) return true;
+  }
+  return false;
+}
+
 /* False where there are too many. */
 static bool try_map(search *s, const mark *c, const mark *d, double side) {
   double from[9], to[9], map[9];
@@ -135,9 +145,7 @@ static bool try_map(search *s, const mark *c, const mark *d, double side) {
   frame_of(c->place, d->place, side, to);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) map[3 * i + j] = abbe_vector_dot(&to[3 * i], &from[3 * j]);
-  double off = 0;
-  for (int k = 0; k < 9; k++) off = fmax(off, fabs(map[k] - unit_map[k]));
-  if (off < tolerance || !keeps_all(s, map)) return true;
+  if (is_known(s->found, map) || !keeps_all(s, map)) return true;
   if (s->found->count >= ABBE_BODY_SYMMETRY_MOST) return false;
   memcpy(s->found->map[s->found->count++], map, sizeof map);
   return true;

@@ -56,6 +56,7 @@ typedef struct sight {
   void *user;
   const double (*plane)[4];
   size_t planes;
+  size_t first, end; /* points */
 } sight;
 
 static void turn(const double map[9], const double v[3], double out[3]) {
@@ -70,7 +71,7 @@ static void send_image(const sight *s, const double map[9]) {
   const double part = e->area / (double)(e->points * e->symmetry.count);
   const bool far = d->light->kind == ABBE_LIGHT_DIRECTIONAL;
   abbe_exit_aim aim = {0};
-  for (size_t i = 0; i < e->points; i++) {
+  for (size_t i = s->first; i < s->end; i++) {
     double p[3], n[3], image[3], world[3], to_light[3], own[3], there[3];
     size_t bin;
     abbe_light_exits_point(e, i, p, n, &bin);
@@ -96,9 +97,9 @@ static void send_image(const sight *s, const double map[9]) {
   }
 }
 
-abbe_result abbe_exit_light_rays(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
-                                 abbe_exit_light_take take, void *user, abbe_error *error) {
-  ABBE_REQUIRE(v && d && d->light && d->object && d->place && take, error);
+static abbe_result send_part(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
+                             size_t part, size_t parts, abbe_exit_light_take take, void *user,
+                             abbe_error *error) {
   const abbe_light_exits *e = &v->exits;
   double(*plane)[4];
   size_t planes;
@@ -106,10 +107,23 @@ abbe_result abbe_exit_light_rays(const abbe_caustic_volume *v, const abbe_exit_l
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the volume holds no exits");
   abbe_result result = find_planes(d, &plane, &planes, error);
   if (result != ABBE_OK) return result;
-  const sight s = {v, d, take, user, (const double(*)[4])plane, planes};
+  const sight s = {v,
+                   d,
+                   take,
+                   user,
+                   (const double(*)[4])plane,
+                   planes,
+                   e->points * part / parts,
+                   e->points * (part + 1) / parts};
   for (size_t i = 0; i < e->symmetry.count; i++) send_image(&s, e->symmetry.map[i]);
   free(plane);
   return ABBE_OK;
+}
+
+abbe_result abbe_exit_light_rays(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
+                                 abbe_exit_light_take take, void *user, abbe_error *error) {
+  ABBE_REQUIRE(v && d && d->light && d->object && d->place && take, error);
+  return send_part(v, d, 0, 1, take, user, error);
 }
 
 /* ---- all its wavelengths ---- */
@@ -123,10 +137,12 @@ typedef struct spread {
   void *user;
   double own[ABBE_LIGHT_EXITS_BINS][3]; /* XYZ of a watt of a bin's points */
   double upto[ABBE_LIGHT_EXITS_BINS + 1];
-  double sum[ABBE_LIGHT_EXITS_BINS + 1][3]; /* XYZ of all bins before */
-  double index[ABBE_LIGHT_EXITS_BINS];      /* NaN of the first: it is not asked */
-  double range;                             /* of the index, from least to greatest */
-  uint32_t turn;                            /* of rays, for the places within parts */
+  double sum[ABBE_LIGHT_EXITS_BINS + 1][3];   /* XYZ of all bins before */
+  double index[ABBE_LIGHT_EXITS_BINS];        /* NaN of the first: it is not asked */
+  double place[PLACES];                       /* index by the place among points */
+  double part[MOST_PARTS + 1][MOST_PARTS][3]; /* XYZ of a watt of each part of so many */
+  double range;                               /* of the index, from least to greatest */
+  uint32_t turn;                              /* of rays, for the places within parts */
 } spread;
 
 /* XYZ of wavelengths up to the place x of 0 to 1 among points by their chance. */
@@ -144,16 +160,27 @@ static void colour_upto(const spread *s, double x, double xyz[3]) {
     xyz[k] = s->sum[low][k] + part * (s->sum[low + 1][k] - s->sum[low][k]);
 }
 
+/* By the place x of 0 to 1 among points. */
 static double index_at(const spread *s, double x) {
-  size_t low = 0, high = ABBE_LIGHT_EXITS_BINS - 1;
-  while (low < high) {
-    const size_t middle = (low + high + 1) / 2;
-    if (s->upto[middle] <= x)
-      low = middle;
-    else
-      high = middle - 1;
+  return s->place[(size_t)fmin(x * PLACES, PLACES - 1)];
+}
+
+static void make_places(spread *s) {
+  size_t bin = 0;
+  for (size_t i = 0; i < PLACES; i++) {
+    while (bin + 1 < ABBE_LIGHT_EXITS_BINS && s->upto[bin + 1] <= ((double)i + 0.5) / PLACES) bin++;
+    s->place[i] = s->index[bin];
   }
-  return s->index[low];
+  for (size_t parts = 1; parts <= MOST_PARTS; parts *= 2) {
+    double before[3] = {0}, after[3];
+    for (size_t i = 0; i < parts; i++) {
+      colour_upto(s, ((double)i + 1) / (double)parts, after);
+      for (int k = 0; k < 3; k++) {
+        s->part[parts][i][k] = after[k] - before[k];
+        before[k] = after[k];
+      }
+    }
+  }
 }
 
 /* The more parts the further its wavelengths go apart. */
@@ -175,16 +202,12 @@ static void spread_ray(void *user, const abbe_exit_ray *ray, double flux, size_t
   }
   const size_t parts = count_parts(s, ray);
   const double within = (double)(s->turn++ * 2654435769u) * 0x1p-32;
-  double before[3] = {0};
   for (size_t i = 0; i < parts; i++) {
     abbe_exit_ray out = *ray;
-    double after[3];
     const double step =
         index_at(s, ((double)i + (parts > 1 ? within : 0.5)) / (double)parts) - s->index[bin];
-    colour_upto(s, ((double)i + 1) / (double)parts, after);
     for (int k = 0; k < 3; k++) {
-      xyz[k] = flux * (after[k] - before[k]);
-      before[k] = after[k];
+      xyz[k] = flux * s->part[parts][i][k];
       out.place[k] += step * ray->place_by[k];
       out.way[k] += step * ray->way_by[k];
     }
@@ -222,20 +245,30 @@ static void make_spread(const abbe_caustic_volume *v, const abbe_exit_light_desc
   }
   s->range = known ? most - least : 0;
   if (!known) s->index[0] = NAN;
+  if (known) make_places(s);
+}
+
+abbe_result abbe_exit_light_part(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
+                                 size_t part, size_t parts, abbe_exit_light_take_colour take,
+                                 void *user, abbe_error *error) {
+  ABBE_REQUIRE(v && d && d->light && d->object && d->place && take, error);
+  if (part >= parts)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "part %zu of %zu", part, parts);
+  spread *s = calloc(1, sizeof *s);
+  if (s == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
+  s->take = take;
+  s->user = user;
+  s->turn = (uint32_t)part << 24;
+  make_spread(v, d, s);
+  const abbe_result result = send_part(v, d, part, parts, spread_ray, s, error);
+  free(s);
+  return result;
 }
 
 abbe_result abbe_exit_light_colours(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
                                     abbe_exit_light_take_colour take, void *user,
                                     abbe_error *error) {
-  ABBE_REQUIRE(v && d && d->light && d->object && take, error);
-  spread *s = calloc(1, sizeof *s);
-  if (s == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
-  s->take = take;
-  s->user = user;
-  make_spread(v, d, s);
-  const abbe_result result = abbe_exit_light_rays(v, d, spread_ray, s, error);
-  free(s);
-  return result;
+  return abbe_exit_light_part(v, d, 0, 1, take, user, error);
 }
 
 /* ---- into cells ---- */

@@ -42,6 +42,10 @@ abbe_result abbe_exit_light_colours(const abbe_caustic_volume *volume,
                                     const abbe_exit_light_desc *desc,
                                     abbe_exit_light_take_colour take, void *user,
                                     abbe_error *error);
+/* Those of the part-th of so many parts of the points, for threads side by side. */
+abbe_result abbe_exit_light_part(const abbe_caustic_volume *volume,
+                                 const abbe_exit_light_desc *desc, size_t part, size_t parts,
+                                 abbe_exit_light_take_colour take, void *user, abbe_error *error);
 
 #ifdef __cplusplus
 }

@@ -6,6 +6,9 @@
 #include <string.h>
 
 enum { BINS = 512, MOST_TEXELS = 64 };
+/* Of the points, and of the rows of maps, that threads do side by side; no result depends on who.
+ */
+enum { PARTS = 8, BANDS = 8 };
 
 /* A window leaves so much of a side's light out on each of its ends. */
 static const double left_out = 0.0025;
@@ -124,13 +127,14 @@ static void cut_ends(const double *flux, double sum, double *low, double *high) 
 static abbe_result fit_windows(const catching *c, abbe_exit_pages *p, abbe_error *error) {
   double(*flux)[2][BINS] = calloc(p->count, sizeof *flux);
   if (flux == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for pages");
-  for (size_t i = 0; i < c->count; i++) {
-    const landing *l = &c->landing[i];
-    const float at[2] = {l->u, l->v};
-    for (int a = 0; a < 2; a++)
-      flux[l->page][a][(size_t)fminf(at[a] * BINS, BINS - 1)] += (double)l->xyz[1];
-    p->flux += (double)l->xyz[1];
-  }
+  for (size_t part = 0; part < PARTS; part++)
+    for (size_t i = 0; i < c[part].count; i++) {
+      const landing *l = &c[part].landing[i];
+      const float at[2] = {l->u, l->v};
+      for (int a = 0; a < 2; a++)
+        flux[l->page][a][(size_t)fminf(at[a] * BINS, BINS - 1)] += (double)l->xyz[1];
+      p->flux += (double)l->xyz[1];
+    }
   for (size_t i = 0; i < p->count; i++)
     for (int a = 0; a < 2; a++) {
       double sum = 0, low, high;
@@ -152,49 +156,69 @@ static float *texel(const abbe_exit_pages *p, size_t page, size_t fine, size_t x
 
 /* Shares of texels from *first on of a tent of that half width around x, in texels; they sum to 1.
  */
-static size_t make_tent(double x, double half, size_t side, size_t *first, double *share) {
-  const double wide = fmin(fmax(half, 1), 0.4 * MOST_TEXELS);
-  const long from = (long)floor(x - 0.5 - wide) + 1, to = (long)ceil(x - 0.5 + wide) - 1;
-  const long low = from > 0 ? from : 0;
-  const long high = to < (long)side - 1 ? to : (long)side - 1;
-  double sum = 0;
-  *first = (size_t)low;
-  size_t count = 0;
-  for (long i = low; i <= high; i++) {
-    share[count] = fmax(1 - fabs((double)i + 0.5 - x) / wide, 0);
+static int make_tent(float x, float half, int side, int *first, float *share) {
+  const float wide = fminf(fmaxf(half, 1), 0.4f * MOST_TEXELS);
+  const int from = (int)floorf(x - 0.5f - wide) + 1, to = (int)ceilf(x - 0.5f + wide) - 1;
+  const int low = from > 0 ? from : 0, high = to < side - 1 ? to : side - 1;
+  float sum = 0;
+  int count = 0;
+  *first = low;
+  for (int i = low; i <= high; i++) {
+    const float part = 1 - fabsf((float)i + 0.5f - x) / wide;
+    share[count] = part > 0 ? part : 0;
     sum += share[count++];
   }
-  for (size_t i = 0; i < count; i++) share[i] /= sum;
+  for (int i = 0; i < count; i++) share[i] /= sum;
   return sum > 0 ? count : 0;
 }
 
-static void splat(const abbe_exit_pages *p, const landing *l, const double area) {
+/* Onto the rows of a band alone. */
+static void splat(const abbe_exit_pages *p, const landing *l, float area, int band) {
   const float *w = p->window[l->page];
-  const double side = (double)p->side;
-  double at[2] = {(double)((l->u - w[0]) * w[2]), (double)((l->v - w[1]) * w[3])};
-  const bool fine = at[0] >= 0 && at[0] <= 1 && at[1] >= 0 && at[1] <= 1;
-  double half[2] = {(double)l->wide[0] * side, (double)l->wide[1] * side};
-  double texels = area / (side * side), share[2][MOST_TEXELS + 2];
-  size_t first[2], count[2];
-  for (int a = 0; a < 2; a++) {
-    if (!fine) at[a] = (double)(a == 0 ? l->u : l->v);
-    if (fine) half[a] *= (double)w[2 + a];
-    if (fine) texels /= (double)w[2 + a];
-    count[a] = make_tent(at[a] * side, half[a], p->side, &first[a], share[a]);
-  }
-  for (size_t y = 0; y < count[1]; y++)
-    for (size_t x = 0; x < count[0]; x++) {
-      const float part = (float)(share[0][x] * share[1][y] / texels);
-      float *to = texel(p, l->page, fine, first[0] + x, first[1] + y);
+  const int side = (int)p->side, low = side * band / BANDS, high = side * (band + 1) / BANDS;
+  const float u = (l->u - w[0]) * w[2], v = (l->v - w[1]) * w[3];
+  const bool fine = u >= 0 && u <= 1 && v >= 0 && v <= 1;
+  const float n = (float)side, du = fine ? w[2] : 1, dv = fine ? w[3] : 1;
+  const float y = (fine ? v : l->v) * n, tall = fmaxf(l->wide[1] * n * dv, 1) + 1;
+  if (y + tall < (float)low || y - tall > (float)high) return;
+  float across[MOST_TEXELS + 2], along[MOST_TEXELS + 2];
+  int first_x, first_y;
+  const int columns = make_tent((fine ? u : l->u) * n, l->wide[0] * n * du, side, &first_x, across);
+  const int rows = make_tent(y, l->wide[1] * n * dv, side, &first_y, along);
+  const float scale = n * n * du * dv / area;
+  for (int j = 0; j < rows; j++) {
+    if (first_y + j < low || first_y + j >= high) continue;
+    float *to = texel(p, l->page, fine, (size_t)first_x, (size_t)(first_y + j));
+    for (int i = 0; i < columns; i++, to += 4) {
+      const float part = across[i] * along[j] * scale;
       for (int k = 0; k < 3; k++) to[k] += part * l->xyz[k];
     }
+  }
 }
 
 static abbe_result make_texels(const catching *c, abbe_exit_pages *p, abbe_error *error) {
   abbe_result result = fit_windows(c, p, error);
   if (result != ABBE_OK) return result;
-  for (size_t i = 0; i < c->count; i++)
-    splat(p, &c->landing[i], c->sheet[c->landing[i].page / 2].area);
+#pragma omp parallel for schedule(dynamic)
+  for (int band = 0; band < BANDS; band++)
+    for (size_t part = 0; part < PARTS; part++)
+      for (size_t i = 0; i < c[part].count; i++) {
+        const landing *l = &c[part].landing[i];
+        splat(p, l, (float)c[part].sheet[l->page / 2].area, band);
+      }
+  return ABBE_OK;
+}
+
+/* What each part's rays meet. */
+static abbe_result catch_all(const abbe_caustic_volume *v, const abbe_exit_light_desc *desc,
+                             catching *c, abbe_error *error) {
+  abbe_result result[PARTS];
+#pragma omp parallel for schedule(dynamic)
+  for (size_t part = 0; part < PARTS; part++)
+    result[part] = abbe_exit_light_part(v, desc, part, PARTS, catch_ray, &c[part], NULL);
+  for (size_t part = 0; part < PARTS; part++)
+    if (result[part] != ABBE_OK || c[part].full)
+      return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for rays");
   return ABBE_OK;
 }
 
@@ -211,18 +235,21 @@ abbe_result abbe_exit_pages_make(const abbe_caustic_volume *v, const abbe_exit_l
   sheet *sheets = calloc(parallelograms + 1, sizeof *sheets);
   out->window = calloc(out->count + 1, sizeof *out->window);
   out->value = calloc(out->count * 2 * side * side + 1, sizeof *out->value);
-  catching c = {.place = desc->place, .sheet = sheets, .sheets = parallelograms};
-  c.spacing = sqrt(v->exits.area / (double)(v->exits.points * v->exits.symmetry.count));
+  const double points = (double)(v->exits.points * v->exits.symmetry.count);
+  catching c[PARTS];
+  for (size_t part = 0; part < PARTS; part++)
+    c[part] = (catching){.place = desc->place,
+                         .sheet = sheets,
+                         .sheets = parallelograms,
+                         .spacing = sqrt(v->exits.area / points)};
   abbe_result result = ABBE_OK;
   if (sheets == NULL || out->window == NULL || out->value == NULL)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu pages", out->count);
   for (size_t i = 0; result == ABBE_OK && i < parallelograms; i++)
     make_sheet(parallelogram[i], &sheets[i]);
-  if (result == ABBE_OK) result = abbe_exit_light_colours(v, desc, catch_ray, &c, error);
-  if (result == ABBE_OK && c.full)
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for rays");
-  if (result == ABBE_OK) result = make_texels(&c, out, error);
-  free(c.landing);
+  if (result == ABBE_OK) result = catch_all(v, desc, c, error);
+  if (result == ABBE_OK) result = make_texels(c, out, error);
+  for (size_t part = 0; part < PARTS; part++) free(c[part].landing);
   free(sheets);
   if (result != ABBE_OK) abbe_exit_pages_free(out);
   return result;

@@ -39,6 +39,7 @@ static void test_orders_of_known_groups(void **state) {
       {"- {name: ring, shape: ring, major: 0.08, minor: 0.02, around: 24, across: 12, mirror: "
        "0.9" TURNED,
        96},
+      {"- {name: tower, shape: box, size: [0.1, 0.15, 0.2], mirror: 0.9" TURNED, 8},
       {"- {name: ball, shape: sphere, radius: 0.1, material: flat" TURNED, 1},
   };
   for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
