@@ -1,5 +1,7 @@
 #include "validation/walks/lamp_rays.h"
 
+#include "validation/transport/side_by_side.h"
+
 enum { FEW_FACES = 256 /* of receivers, held against each other */ };
 
 static float above(const float n[3], const float a[3], const float p[3]) {
@@ -61,9 +63,41 @@ bool abbe_lamp_is_hidden(const abbe_geometry *g, const abbe_light *light) {
   return false;
 }
 
+/* Rays to the lamp in the frame, or against its direction, where `far`; as abbe_geometry_leave has
+ * it, off their faces. */
+SIDE_BY_SIDE static void aim(const float lamp[3], int far, abbe_lamp_rays *s) {
+  struct RTCRay16 *ray = &s->ray;
+  for (size_t k = 0; k < ABBE_RAY_LANES; k++) {
+    const float p[3] = {s->p[0][k], s->p[1][k], s->p[2][k]};
+    float d[3], size = s->size[k];
+    for (int i = 0; i < 3; i++) d[i] = far ? lamp[i] : lamp[i] - p[i];
+    const float limit = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), scale = far ? 1 : limit;
+    for (int i = 0; i < 3; i++) d[i] /= scale;
+    const float side = d[0] * s->ng[0][k] + d[1] * s->ng[1][k] + d[2] * s->ng[2][k];
+    for (int i = 0; i < 3; i++) size = fabsf(p[i]) > size ? fabsf(p[i]) : size;
+    const float offset = side < 0 ? -ABBE_GEOMETRY_OFFSET * size : ABBE_GEOMETRY_OFFSET * size;
+    ray->org_x[k] = p[0] + offset * s->ng[0][k];
+    ray->org_y[k] = p[1] + offset * s->ng[1][k];
+    ray->org_z[k] = p[2] + offset * s->ng[2][k];
+    ray->dir_x[k] = d[0];
+    ray->dir_y[k] = d[1];
+    ray->dir_z[k] = d[2];
+    ray->tnear[k] = 0;
+    ray->tfar[k] = far ? INFINITY : limit;
+    ray->mask[k] = ABBE_GEOMETRY_RECEIVERS | ABBE_GEOMETRY_MIRRORS;
+    ray->flags[k] = 0;
+  }
+}
+
 void abbe_lamp_rays_trace(abbe_lamp_rays *s, const abbe_geometry *g, abbe_light_ledger *ledger,
                           abbe_ray_record *record) {
-  if (s->count > 0) abbe_ray_batch_occlude(&s->ray, s->count, g->embree, record);
+  if (s->count == 0) return;
+  const bool far = s->light->kind == ABBE_LIGHT_DIRECTIONAL;
+  float lamp[3];
+  for (int k = 0; k < 3; k++) lamp[k] = -(float)s->light->direction[k];
+  if (!far) abbe_geometry_to_frame(g, s->light->position, lamp);
+  aim(lamp, far, s);
+  abbe_ray_batch_occlude(&s->ray, s->count, g->embree, record);
   s->traced += s->count;
   for (size_t k = 0; k < s->count; k++) {
     s->photon[k]->hidden = s->ray.tfar[k] < 0;
@@ -75,27 +109,13 @@ void abbe_lamp_rays_trace(abbe_lamp_rays *s, const abbe_geometry *g, abbe_light_
 void abbe_lamp_rays_add(abbe_lamp_rays *s, const abbe_geometry *g, const abbe_light *light,
                         const abbe_hit *hit, abbe_photon_hit *photon, double flux,
                         abbe_light_ledger *ledger, abbe_ray_record *record) {
-  size_t at = s->count++;
-  float from[3], d[3], o[3], limit = INFINITY;
-  for (int k = 0; k < 3; k++) d[k] = -(float)light->direction[k];
-  if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
-    abbe_geometry_to_frame(g, light->position, from);
-    for (int k = 0; k < 3; k++) d[k] = from[k] - hit->p[k];
-    limit = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    for (int k = 0; k < 3; k++) d[k] /= limit;
+  const size_t at = s->count++;
+  s->light = light;
+  for (int k = 0; k < 3; k++) {
+    s->p[k][at] = hit->p[k];
+    s->ng[k][at] = hit->ng[k];
   }
-  abbe_geometry_leave(hit, d, o);
-  struct RTCRay16 *ray = &s->ray;
-  ray->org_x[at] = o[0];
-  ray->org_y[at] = o[1];
-  ray->org_z[at] = o[2];
-  ray->dir_x[at] = d[0];
-  ray->dir_y[at] = d[1];
-  ray->dir_z[at] = d[2];
-  ray->tnear[at] = 0;
-  ray->tfar[at] = limit;
-  ray->mask[at] = ABBE_GEOMETRY_RECEIVERS | ABBE_GEOMETRY_MIRRORS;
-  ray->flags[at] = 0;
+  s->size[at] = hit->surface->sphere ? hit->surface->radius : 0;
   s->photon[at] = photon;
   s->flux[at] = flux;
   if (s->count == ABBE_RAY_LANES) abbe_lamp_rays_trace(s, g, ledger, record);

@@ -19,11 +19,13 @@ extern "C" {
  * convex room around it hide nothing, and no ray need be traced. */
 bool abbe_lamp_is_hidden(const abbe_geometry *g, const abbe_light *light);
 
-/* Photon hits that wait for their ray to the lamp. A zeroed one has none. */
+/* Photon hits that wait for their ray to the lamp, of one light. A zeroed one has none. */
 typedef struct abbe_lamp_rays {
   struct RTCRay16 ray;
   size_t count;
   uint64_t traced; /* so far */
+  const abbe_light *light;
+  float p[3][ABBE_RAY_LANES], ng[3][ABBE_RAY_LANES], size[ABBE_RAY_LANES];
   abbe_photon_hit *photon[ABBE_RAY_LANES];
   double flux[ABBE_RAY_LANES]; /* W, for the ledger */
 } abbe_lamp_rays;
