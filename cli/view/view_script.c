@@ -14,7 +14,8 @@
 #include <time.h>
 
 enum { MOST_WORDS = 16, MOST_REMEMBERED = 32, LONGEST = 4096 };
-#define PATIENCE_S 300.0
+#define PATIENCE_S 300.0 /* of processor time, for the machine may be busy */
+#define REST_FRAMES 400  /* in which nothing is left to do: files are looked at meanwhile */
 #define SCRIPT_MOST_BYTES ((size_t)1 << 20)
 
 typedef struct script {
@@ -313,14 +314,16 @@ static abbe_result do_wait(script *s, abbe_error *error) {
     for (; abbe_clock_seconds() - start < seconds; pump(s)) sleep_a_little();
     return ABBE_OK;
   }
-  while (!has_come(s, what)) {
-    if (abbe_clock_seconds() - start > PATIENCE_S)
+  const clock_t begun = clock();
+  for (size_t rest = 0; !has_come(s, what); pump(s)) {
+    rest = abbe_view_app_rests(&s->hidden.session, abbe_clock_seconds()) ? rest + 1 : 0;
+    const bool late = (double)(clock() - begun) / CLOCKS_PER_SEC > PATIENCE_S;
+    if (late || rest > REST_FRAMES)
       return fail(
-          s, ABBE_TOLERANCE, error, "'%.60s' has not come in %.0f s; the stage is %s%s%.300s", what,
-          PATIENCE_S, abbe_view_stage_name(s->hidden.session.stage),
+          s, ABBE_TOLERANCE, error, "'%.60s' has not come%s; the stage is %s%s%.300s", what,
+          late ? "" : ", and nothing is left to do", abbe_view_stage_name(s->hidden.session.stage),
           s->hidden.session.state.refusal[0] != '\0' ? ": " : "", s->hidden.session.state.refusal);
     sleep_a_little();
-    pump(s);
   }
   pump(s);
   return ABBE_OK;

@@ -103,9 +103,10 @@ static void scripts_that_do_not_hold(void **state) {
   static const struct {
     const char *line, *sentence;
     int code;
-  } cases[] = {{"wait balanced\nassert stage = mean", "stage is 'balanced', not = 'mean'", 3},
+  } cases[] = {{"assert stage = mean", "stage is 'none', not = 'mean'", 3},
                {"\n\nwhistle", "a.txt:3: whistle: is no command", 1},
                {"assert nothing = 1", "there is no value 'nothing'", 1},
+               {"wait mean", "'mean' has not come, and nothing is left to do", 3},
                {"click nowhere", "there is no 'nowhere' in sight", 1},
                {"assert stage like none", "'like' is none of", 1},
                {"size 0x5", "WxH", 1},
