@@ -26,7 +26,8 @@ static const double PI = 3.14159265358979323846;
 
 enum { SIDE = 48 };
 
-static void draw(const char *text, abbe_transport transport, size_t pinholes, abbe_image *out) {
+static void draw_shifted(const char *text, abbe_transport transport, size_t pinholes,
+                         abbe_sample_strategy strategy, double shift, abbe_image *out) {
   abbe_scene scene;
   abbe_render_desc desc = {.width = SIDE,
                            .height = SIDE,
@@ -36,6 +37,8 @@ static void draw(const char *text, abbe_transport transport, size_t pinholes, ab
                            .wavelengths = 1,
                            .transport = transport,
                            .pinholes = pinholes,
+                           .strategy = strategy,
+                           .photon_shift = {shift, 0},
                            .aovs = true,
                            .space = ABBE_RGB_SPACE_REC709};
   load_text(text, &scene);
@@ -45,6 +48,10 @@ static void draw(const char *text, abbe_transport transport, size_t pinholes, ab
   assert_finite(out);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
+}
+
+static void draw(const char *text, abbe_transport transport, size_t pinholes, abbe_image *out) {
+  draw_shifted(text, transport, pinholes, ABBE_SAMPLE_STRATEGY_AUTO, 0, out);
 }
 
 static double at(const abbe_image *p, size_t x, size_t y) {
@@ -97,6 +104,37 @@ static void test_a_mirror_absorbs(void **state) {
   print_message("off by %.4f at most\n", worst);
   assert_true(worst < 0.02);
   abbe_image_free(&picture);
+}
+
+/* Each shift of the photons' grid has samples of its own, whose errors even out. */
+static void test_frames_have_other_samples(void **state) {
+  (void)state;
+  enum { FRAMES = 4, STEP = 6 };
+  static const double up[3] = {0, 0, 1},
+                      corner[4][3] = {
+                          {0.3, -0.25, 0}, {0.3, 0.25, 0}, {0.3, 0.25, 0.3}, {0.3, -0.25, 0.3}};
+  static double sum[SIDE][SIDE];
+  double single = 0, mean = 0;
+  memset(sum, 0, sizeof sum);
+  for (int i = 0; i < FRAMES; i++) {
+    abbe_image picture;
+    draw_shifted(DOWN SOFT WHITE_FLOOR WALL("0"), ABBE_TRANSPORT_PINHOLE, 16,
+                 ABBE_SAMPLE_STRATEGY_RANDOM, (i + 0.5) / FRAMES - 0.5, &picture);
+    for (size_t y = 0; y < SIDE; y += STEP)
+      for (size_t x = 0; x < 34; x += STEP) {
+        double p[3];
+        place_of(x, y, p);
+        const double right = 0.5 * PI * (1 - abbe_closed_form_polygon(corner, 4, p, up));
+        const double off = at(&picture, x, y) - right;
+        sum[y][x] += off / FRAMES;
+        single += off * off / FRAMES;
+      }
+    abbe_image_free(&picture);
+  }
+  for (size_t y = 0; y < SIDE; y += STEP)
+    for (size_t x = 0; x < 34; x += STEP) mean += sum[y][x] * sum[y][x];
+  print_message("the mean of %d frames is off by %.3f of one\n", FRAMES, sqrt(mean / single));
+  assert_true(single > 0 && mean < 0.5 * single);
 }
 
 /* One that lies above shows the floor, which is dark: it hides all that it covers. */
@@ -213,6 +251,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_furnace),
       cmocka_unit_test(test_a_mirror_absorbs),
+      cmocka_unit_test(test_frames_have_other_samples),
       cmocka_unit_test(test_a_roof_hides),
       cmocka_unit_test(test_hidden_ones),
       cmocka_unit_test(test_glass_hides_little),
