@@ -216,8 +216,13 @@ static void spread_ray(void *user, const abbe_exit_ray *ray, double flux, size_t
   }
 }
 
-static bool is_clear(const abbe_object *o) {
-  return o->material != NULL && !o->mirror && o->material->attenuation == NULL;
+/* Its index where all wavelengths lose alike: of a clear object; of a grey mirror one that bends
+ * nothing. */
+static bool find_index(const abbe_object *o, double lambda_nm, double *n) {
+  *n = 1;
+  if (o->mirror) return o->conductor == NULL;
+  return o->material != NULL && o->material->attenuation == NULL &&
+         abbe_material_n(o->material, lambda_nm, n, NULL) == ABBE_OK;
 }
 
 /* A point stands for its bin with the bin's chance. */
@@ -227,7 +232,7 @@ static void make_spread(const abbe_caustic_volume *v, const abbe_exit_light_desc
   abbe_light_exits_chances(v->min_nm, v->max_nm, chance);
   abbe_weights_range_make_by(d->observer, &d->light->illuminant, d->min_nm, d->max_nm, &range);
   const double step = (v->max_nm - v->min_nm) / ABBE_LIGHT_EXITS_BINS;
-  bool known = is_clear(d->object);
+  bool known = true;
   for (size_t i = 0; i < ABBE_LIGHT_EXITS_BINS; i++) {
     const double from = v->min_nm + (double)i * step;
     double xyz[3];
@@ -237,8 +242,7 @@ static void make_spread(const abbe_caustic_volume *v, const abbe_exit_light_desc
       s->own[i][k] = xyz[k] / chance[i];
       s->sum[i + 1][k] = s->sum[i][k] + xyz[k];
     }
-    known = known &&
-            abbe_material_n(d->object->material, from + 0.5 * step, &s->index[i], NULL) == ABBE_OK;
+    known = known && find_index(d->object, from + 0.5 * step, &s->index[i]);
     if (!known) continue;
     least = fmin(least, s->index[i]);
     most = fmax(most, s->index[i]);
