@@ -48,6 +48,18 @@ static uint64_t mix_material(uint64_t h, const abbe_material *m) {
   return mix_spectrum(h, m->attenuation);
 }
 
+static uint64_t mix_medium(uint64_t h, const abbe_medium *m) {
+  const bool there = m != NULL;
+  MIX(h, there);
+  if (!there) return h;
+  h = mix_spectrum(h, m->scattering);
+  h = mix_spectrum(h, m->absorption);
+  MIX(h, m->g);
+  MIX(h, m->min);
+  MIX(h, m->max);
+  return h;
+}
+
 static uint64_t mix_shape(uint64_t h, const abbe_object *o) {
   const abbe_mesh *m = &o->mesh;
   const abbe_exact *e = &o->exact;
@@ -147,6 +159,7 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
     MIX(h, o->brushing.axis);
     MIX(h, o->brushing.centre);
     if (material != NULL) h = mix_material(h, material);
+    h = mix_medium(h, o->medium);
     MIX(h, o->min); /* how long paths through it are */
     MIX(h, o->max);
   }
@@ -290,6 +303,7 @@ void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
   part[ABBE_PART_SPECTRA] = of_spectra(scene, plan);
   part[ABBE_PART_SHADOWS] = mix_places(part[ABBE_PART_GEOMETRY], scene, plan);
   light = mix_light_plan(mix_beams(part[ABBE_PART_SHADOWS], scene, plan), plan);
+  light = mix_medium(light, scene->medium);
   MIX(light, part[ABBE_PART_SPECTRA]);
   if (plan->desc.transport == ABBE_TRANSPORT_PINHOLE) MIX(light, part[ABBE_PART_SURFACES]);
   if (plan->rough) light = mix_powers(light, scene, plan); /* samples show lamps, too */

@@ -67,6 +67,7 @@ static unsigned scene_parts(unsigned parts) {
 }
 
 static void free_eye(abbe_renderer *r) {
+  abbe_haze_pass_free(&r->haze);
   abbe_picture_free(&r->picture);
   abbe_adaptive_pass_free(&r->adaptive);
   abbe_refraction_pass_free(&r->refraction);
@@ -140,6 +141,8 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
     result = abbe_adaptive_pass_make(&r->receivers, &r->refraction, &variant, &r->adaptive, error);
   if (result == ABBE_OK)
     result = abbe_picture_make(&r->receivers, &r->refraction, &r->picture, error);
+  if (result == ABBE_OK)
+    result = abbe_haze_pass_make(&r->picture, &r->caustics, &variant, &r->haze, error);
   return result;
 }
 
@@ -252,6 +255,7 @@ static abbe_result draw_eye(abbe_renderer *r, abbe_error *error) {
   if (goes_on(r, result)) result = abbe_adaptive_pass_run(&r->adaptive, error);
   if (goes_on(r, result)) result = abbe_refraction_pass_run(&r->refraction, error);
   if (goes_on(r, result)) abbe_picture_run(&r->picture);
+  if (goes_on(r, result)) result = abbe_haze_pass_run(&r->haze, error);
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include "gl/caustics/caustics.h"
 #include "gl/eye/adaptive_pass.h"
 #include "gl/eye/picture.h"
+#include "gl/haze/haze_pass.h"
 #include "gl/pinholes/pinhole_pages.h"
 #include "gl/published.h"
 #include "gl/renderer.h"
@@ -45,6 +46,7 @@ struct abbe_renderer {
   abbe_refraction_pass refraction;
   abbe_adaptive_pass adaptive;
   abbe_picture picture;
+  abbe_haze_pass haze;
   bool seen; /* the picture is drawn */
 
   GLuint baseline;   /* what abbe_renderer_baseline draws into; 0 before */

@@ -1,7 +1,7 @@
 set(gl_rooms abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 foreach(name bindings camera_view gpu_store light_cube light_views local_scene material_range
     camera_bands mirror_nodes mirror_plan passes plan plan_facts precision reach receiver_charts receiver_model refractor_model render_desc
-    renderer_inputs
+    renderer_inputs haze_model
     shader_variant spectral_needs spectral_tables statistics support)
   abbe_test(${name} cpu ${gl_rooms})
 endforeach()
@@ -10,6 +10,7 @@ abbe_test(program gl ${gl_rooms})
 abbe_test(state gl ${gl_rooms} PkgConfig::OSMESA)
 abbe_test(optics_glsl gl ${gl_rooms})
 abbe_test(walk gl ${gl_rooms})
+abbe_test(haze_pass gl ${gl_rooms})
 abbe_test(mirror_frames gl ${gl_rooms})
 abbe_test(known_frames gl abbe_validation ${gl_rooms})
 abbe_test(bvh gl ${gl_rooms})

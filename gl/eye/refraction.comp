@@ -144,6 +144,7 @@ float lobe_width;
 #include "pinhole_sky.glsl"
 #endif
 #endif
+float seen_at;  // how far off what was seen last is, where it is a receiver or lamp
 
 // Radiance along the ray from p, refractors taken away, of a receiver no farther than t_max; met:
 // there is one. spread: of the ray, where it meets none.
@@ -156,6 +157,7 @@ vec3 seen(vec3 p, vec3 d, Spread spread, float t_min, float t_max, out bool met)
 #else
   const bool blurred = false;
 #endif
+  seen_at = t;
 #ifdef AREA_LIGHTS
   vec3 lamp;
   if (!blurred && area_light_seen(p, d, t_min, met ? t : t_max, lamp)) {

@@ -55,8 +55,13 @@ vec3 shown(PathState w) {
     float t_min = w.inside == 0u ? -touch * refractor_bounds.w : 0.0;
     vec3 radiance = seen(w.p, w.d, SPREAD_OF(w), t_min, met ? h.hit.t : 1e30, receiver);
 #ifdef ABSORBING
-    if (w.inside != 0u && met)
-      w.share *= exp(-h.hit.t * refractor_spectrum(medium_of(w.inside)).y);
+#ifdef HAZE
+    bool fades = segment > 0 || eye_inside == 0u;  // around the eye haze.comp does
+#else
+    const bool fades = true;
+#endif
+    if (w.inside != 0u && met && fades)
+      w.share *= exp(-(receiver ? seen_at : h.hit.t) * refractor_spectrum(medium_of(w.inside)).y);
 #endif
     if (met && !receiver) {
       float ended, dropped, absorbed;

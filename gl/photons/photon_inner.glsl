@@ -24,20 +24,22 @@ float mirror(PhotonRay photon, uint path, float reflected) {
   Hit front = photon.front;
   ReceiverHit to = meet_receiver(front.p, reflect(photon.d, front.n), -touch * refractor_bounds.w, 1e30);
   if (to.state < HELD) return reflected;
-  keep_hit(photon, PhotonHit(counts.exits, to.place, reflected * photon.flux,
+  float left = air_left(photon, front.p, to.at);
+  keep_hit(photon, PhotonHit(counts.exits, to.place, reflected * photon.flux * left,
                              signature_of(path * 17u + to.receiver, to, uint(front.refractor)), 0.0,
                              vec4(front.p, interface_word(front.n, false, to.tile))));
-  return 0.0;
+  return reflected * (1.0 - left);
 }
 
 // What leaves at interface `order`. Returns the share that is lost.
 float keep_outgoing(PhotonRay photon, Outgoing o, int order, uint path, float path_m) {
   ReceiverHit to = meet_receiver(o.p, o.d, -touch * refractor_bounds.w, 1e30);
   if (to.state < HELD) return o.share;
-  keep_hit(photon, PhotonHit(order, to.place, o.share * photon.flux,
+  float left = air_left(photon, o.p, to.at);
+  keep_hit(photon, PhotonHit(order, to.place, o.share * photon.flux * left,
                              signature_of(path * 31u + to.receiver, to, uint(photon.front.refractor)), path_m,
                              vec4(o.p, interface_word(o.n, true, to.tile))));
-  return 0.0;
+  return o.share * (1.0 - left);
 }
 
 // Each hit is handed on with its slot; `entry` takes the shares of the light that go elsewhere. Loops have

@@ -83,6 +83,19 @@ ReceiverHit meet_receiver(vec3 p, vec3 d, float t_min, float t_max) {
   return to;
 }
 
+// What haze in the air leaves of light on its way to its first interface, and behind the last.
+float air_left(PhotonRay photon, vec3 last, vec3 place) {
+#ifdef HAZE
+  bool parallel = int(pass_light.position.w) == 2;
+  vec3 along = place - last;
+  float length_m = length(along);
+  return haze_left(photon.o, photon.d, parallel ? -HAZE_FAR : 0.0, photon.front.t) *
+         haze_left(last, along / max(length_m, 1e-30), 0.0, length_m);
+#else
+  return 1.0;
+#endif
+}
+
 // A hit's signature; `path` counts the receiver too.
 uint signature_of(uint path, ReceiverHit to, uint owner) {
 #ifdef TILES

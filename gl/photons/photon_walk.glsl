@@ -38,7 +38,9 @@ void end_path(PhotonRay photon, PathState w, ReceiverHit to, uint owner, inout u
   if (slot >= 0) {
     bool last = w.transmitted && w.inside == 0u && w.refractor == int(owner);
     vec3 n = dot(w.interface_n, w.d) < 0.0 ? -w.interface_n : w.interface_n;
-    keep_hit(photon, PhotonHit(slot, to.place, w.share * photon.flux,
+    float left = air_left(photon, w.p, to.at);
+    e.absorbed += w.share * (1.0 - left);
+    keep_hit(photon, PhotonHit(slot, to.place, w.share * photon.flux * left,
                                signature_of(w.path * 31u + to.receiver, to, owner), 0.0,
                                vec4(w.p, interface_word(n, last, to.tile))));
   } else if (to.state >= HELD || (to.state == NO_RECEIVER && w.inside != 0u)) {

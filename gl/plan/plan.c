@@ -1,5 +1,6 @@
 #include "gl/plan/plan.h"
 
+#include "gl/plan/examine/haze_model.h"
 #include "gl/plan/examine/light_views.h"
 #include "gl/plan/examine/path_limits.h"
 #include "gl/plan/examine/precision.h"
@@ -94,11 +95,13 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
     out->caustics = false;
   }
   abbe_receiver_model_shadows(scene, out);
+  abbe_haze_model_choose(scene, out);
   abbe_spectral_needs_count(out);
   abbe_path_limits_choose(scene, desc, out);
   combine(out);
   out->receiver_colours = abbe_receiver_model_disperses(scene, out);
   abbe_pass_list_add(scene, out);
+  abbe_haze_model_note(scene, out);
   abbe_refractor_model_note(scene, out);
   abbe_spectral_needs_note(scene, out);
   if (out->desc.everything) abbe_no_culling_apply(scene, desc, out);

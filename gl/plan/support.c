@@ -97,16 +97,17 @@ abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *pla
 
 abbe_result abbe_support_haze(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
   ABBE_REQUIRE(scene && plan, error);
-  for (size_t i = 0; i < scene->object_count; i++)
-    if (scene->object[i].medium != NULL)
-      return abbe_error_set(error, ABBE_UNSUPPORTED,
-                            "the object '%s' (line %zu) has a 'medium' that scatters light, which "
-                            "is not rendered; trace the scene (abbe trace), or leave it out",
-                            scene->object[i].name, scene->object[i].line);
-  if (scene->medium == NULL) return ABBE_OK;
-  return abbe_error_set(error, ABBE_UNSUPPORTED,
-                        "the air has a 'medium' that scatters or absorbs light, which is not "
-                        "rendered; trace the scene (abbe trace), or leave it out");
+  if (!abbe_scene_is_hazy(scene)) return ABBE_OK;
+  if (abbe_profile_is_published(plan->desc.profile))
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the scene has a 'medium' that scatters light, of which the %s profile "
+                          "knows nothing; leave it out, or take the default profile",
+                          abbe_profile_name(plan->desc.profile));
+  if (plan->desc.transport != ABBE_TRANSPORT_PHOTONS)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the scene has a 'medium' that scatters light, which photons carry "
+                          "alone; take the transport 'photons'");
+  return ABBE_OK;
 }
 
 /* A layout belongs to where its light is. */

@@ -32,7 +32,8 @@ abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *pla
  * a part of the object, or are of another colour. */
 abbe_result abbe_support_volume(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 
-/* ABBE_UNSUPPORTED for a medium that scatters. */
+/* ABBE_UNSUPPORTED for a medium that scatters in a published method, and where light is looked up.
+ */
 abbe_result abbe_support_haze(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 
 /* ABBE_INVALID_ARGUMENT for a given map layout that is not the layout of its light's map. */

@@ -237,6 +237,25 @@ static void set_rough(const abbe_gpu_scene *scene, GLuint program) {
   gl->Uniform3fv(gl->GetUniformLocation(program, "rough_centre"), n, centre[0]);
 }
 
+static void set_haze(const abbe_gpu_scene *scene, GLuint program) {
+  const abbe_gl *gl = scene->gpu->gl;
+  const abbe_medium *air = scene->local->medium;
+  const abbe_plan_haze *h = &scene->plan->air_haze, *eye = &scene->plan->eye_haze;
+  if (!scene->plan->hazy) return;
+  float low[3] = {0}, high[3] = {0};
+  for (int k = 0; k < 3 && air != NULL; k++) {
+    low[k] = (float)air->min[k];
+    high[k] = (float)air->max[k];
+  }
+  gl->Uniform3f(gl->GetUniformLocation(program, "haze_low"), low[0], low[1], low[2]);
+  gl->Uniform3f(gl->GetUniformLocation(program, "haze_high"), high[0], high[1], high[2]);
+  gl->Uniform3f(gl->GetUniformLocation(program, "haze_air"), (GLfloat)h->scattering,
+                (GLfloat)(h->scattering + h->absorption), (GLfloat)h->g);
+  gl->Uniform3f(gl->GetUniformLocation(program, "haze_around"), (GLfloat)eye->scattering,
+                (GLfloat)(eye->scattering + eye->absorption), (GLfloat)eye->g);
+  abbe_gpu_set_int(scene->gpu, program, "eye_in_air", scene->plan->eye_in_air);
+}
+
 void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program) {
   const abbe_gl *gl = scene->gpu->gl;
   abbe_gpu_bind_array(scene->gpu, program, "surface_texture", 1, scene->surface_texture);
@@ -260,6 +279,7 @@ void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program) {
     abbe_gpu_set_float(scene->gpu, program, "light_unit", scene->unit);
     abbe_gpu_set_float(scene->gpu, program, "environment_scale", 1 / scene->unit);
   }
+  set_haze(scene, program);
   abbe_gpu_area_lights_set(scene, program);
   abbe_gpu_environment_set(scene->gpu, scene->local, &scene->environment, scene->unit, program);
 }

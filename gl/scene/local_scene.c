@@ -58,6 +58,7 @@ static bool needs_move(const abbe_scene *scene, double centre[3]) {
 static abbe_result move_scene(const abbe_scene *scene, abbe_local_scene *out, abbe_error *error) {
   abbe_scene *copy = &out->copy;
   *copy = *scene;
+  copy->medium = NULL;
   copy->light = copy_of(scene->light, scene->light_count * sizeof *scene->light);
   copy->object = calloc(scene->object_count + 1, sizeof *scene->object);
   bool whole = copy->light != NULL && copy->object != NULL;
@@ -69,6 +70,13 @@ static abbe_result move_scene(const abbe_scene *scene, abbe_local_scene *out, ab
   for (size_t i = 0; i < scene->light_count; i++) {
     move(out->origin, copy->light[i].position);
     move(out->origin, copy->light[i].centre);
+  }
+  if (scene->medium != NULL) {
+    copy->medium = copy_of(scene->medium, sizeof *scene->medium);
+    if (copy->medium == NULL)
+      return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to move the scene");
+    move(out->origin, copy->medium->min);
+    move(out->origin, copy->medium->max);
   }
   move(out->origin, copy->camera.eye);
   move(out->origin, copy->camera.target);
@@ -143,6 +151,7 @@ void abbe_local_scene_free(abbe_local_scene *local) {
     }
     free(local->copy.light);
     free(local->copy.object);
+    free(local->copy.medium); /* its tables are the original's */
   }
   memset(local, 0, sizeof *local);
 }

@@ -40,6 +40,7 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
       .mirrors = p->mirror_count > 0,
       .rough = p->rough,
       .cubes = p->cubes,
+      .haze = p->hazy,
       .pinholes = p->desc.transport == ABBE_TRANSPORT_PINHOLE,
       .pixel_threads = !p->multi_refractor_paths ? 1
                        : p->desc.wavelengths > 1 ? 8
@@ -154,6 +155,7 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "MIRRORS", v->mirrors);
   print_flag(to, "ROUGH", v->rough);
   print_flag(to, "CUBES", v->cubes);
+  print_flag(to, "HAZE", v->haze);
   print_flag(to, "PINHOLES", v->pinholes);
   print_count(to, "PIXEL_THREADS", v->pixel_threads);
 }

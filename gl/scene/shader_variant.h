@@ -25,6 +25,7 @@ typedef struct abbe_shader_variant {
   abbe_volume_kind volume_kind;
   abbe_region_kind volume_region;
   size_t volume_pages; /* of a light, in place of cells */
+  bool haze;           /* in the air, or around the eye */
   bool pinholes;       /* receivers have pages of what these show */
   bool copies;         /* a software rasteriser: tables are copied first (copies.glsl) */
   /* the picture */

@@ -52,6 +52,10 @@ vec3 caustic_colour(vec3 xyz) { return xyz; }
 vec3 caustic_colour(vec3 xyz) { return rgb_from_xyz * xyz; }
 #endif
 
+#ifdef HAZE
+#include "haze.glsl"
+#endif
+
 #include "receiver_hit.glsl"
 #include "receiver_shadow.glsl"
 #include "caustic_lookup.glsl"
@@ -91,6 +95,9 @@ void light_irradiance(int light, vec3 p, vec3 n, int side, out vec3 direct, out 
   float falloff = directional ? 1.0 : 1.0 / (distance_m * distance_m);
   if (facing > 0.0) {
     float e = l.white.w * light_profile(l, d) * facing * falloff;
+#ifdef HAZE
+    e *= haze_left(p, -d, 0.0, directional ? HAZE_FAR : distance_m);
+#endif
     if (e > 0.0) direct = l.white.rgb * (e * refractor_shadow(light, p, d, distance_m));
   }
 #ifdef CAUSTICS

@@ -16,7 +16,7 @@ static const double invisible = 2e-6;
 static bool is_invisible(const abbe_scene *scene, const abbe_object *object,
                          const abbe_plan *plan) {
   abbe_material_range range;
-  if (abbe_profile_is_printed(plan->desc.profile) ||
+  if (abbe_profile_is_printed(plan->desc.profile) || object->medium != NULL ||
       abbe_material_range_make(object->material, plan->desc.min_nm, plan->desc.max_nm, &range,
                                NULL) != ABBE_OK)
     return false;
@@ -168,6 +168,9 @@ static abbe_result add_refractor(const abbe_scene *scene, size_t i, abbe_plan *p
   const abbe_object *object = &scene->object[i];
   char reason[288];
   abbe_result result = abbe_spectral_needs_examine(scene, object->material, plan, error);
+  plan->absorbing = plan->absorbing || object->medium != NULL;
+  plan->tinting = plan->tinting || abbe_medium_is_coloured(object->medium, plan->desc.min_nm,
+                                                          plan->desc.max_nm);
   if (result == ABBE_OK) result = check_asked(object, plan, error);
   if (result != ABBE_OK) return result;
   if (scene->camera.inside && plan->refractor_count < MAX_FOLLOWED &&

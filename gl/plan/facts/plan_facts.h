@@ -49,6 +49,11 @@ typedef struct abbe_light_view {
                      those through which no light reaches a refractor; without a cube, all */
 } abbe_light_view;
 
+/* A medium that scatters, one number for all wavelengths: 1/m, and the mean cosine. */
+typedef struct abbe_plan_haze {
+  double scattering, absorption, g;
+} abbe_plan_haze;
+
 typedef struct abbe_plan {
   abbe_render_desc desc; /* the request, with a value for each that it left to the plan */
 
@@ -86,6 +91,9 @@ typedef struct abbe_plan {
   bool receiver_shadows;     /* some receiver may hide another from a light */
   bool surrounded;           /* an environment is around the scene */
   bool sized_lights;         /* points stand for a light with a size */
+  bool hazy;                 /* a medium scatters, or absorbs in the air; then: */
+  bool eye_in_air;
+  abbe_plan_haze air_haze, eye_haze; /* of the air, and of what the eye is in */
 
   /* The scene's lights, and after them the views that cubes have more than one of. */
   size_t light_view_count;

@@ -9,7 +9,7 @@ enum { STEPS = 12, FEW_NODES = 16 };
 /* Light through a material. */
 typedef struct passage {
   const abbe_weights_range *light;
-  const abbe_material *material;
+  const abbe_object *object;
   double path_m; /* usual inside */
 } passage;
 
@@ -23,7 +23,8 @@ static double attenuation_of(const passage *p, double from, double to, double *y
     double xyz[3];
     abbe_weights_range_xyz(p->light, a, b, xyz);
     weight[k] = xyz[0] + xyz[1] + xyz[2];
-    per_m[k] = abbe_material_attenuation(p->material, 0.5 * (a + b));
+    per_m[k] = abbe_material_attenuation(p->object->material, 0.5 * (a + b)) +
+               abbe_medium_scattering(p->object->medium, 0.5 * (a + b));
     total += weight[k];
     *y += xyz[1];
   }
@@ -71,7 +72,7 @@ abbe_node_bands *abbe_band_attenuation_fill(const abbe_scene *scene, const abbe_
       const abbe_object *object = &scene->object[plan->refractor_object[k]];
       double square = 0;
       for (int x = 0; x < 3; x++) square += pow(object->max[x] - object->min[x], 2);
-      const passage p = {&range, object->material, fmax(0.5 * sqrt(square), 1e-12)};
+      const passage p = {&range, object, fmax(0.5 * sqrt(square), 1e-12)};
       for (size_t i = 0; i < w->count; i++) fill_node(&p, w, i, out++);
     }
   }

@@ -56,7 +56,7 @@ static double place_of(const abbe_wavelengths *w, size_t i, int share) {
 
 /* Bands meet midway between the share's own wavelengths, and end where the range ends. */
 static abbe_result fill_share(const abbe_spectral_tables *tables, const abbe_weights_range *light,
-                              const abbe_material *material, int share, abbe_camera_band *band,
+                              const abbe_object *object, int share, abbe_camera_band *band,
                               abbe_error *error) {
   const abbe_wavelengths *w = &tables->all;
   double from = w->edge_nm[0];
@@ -65,12 +65,13 @@ static abbe_result fill_share(const abbe_spectral_tables *tables, const abbe_wei
     const double to =
         i + 1 < w->count ? 0.5 * (at + place_of(w, i + 1, share)) : w->edge_nm[w->count];
     double xyz[3], n;
-    const abbe_result result = abbe_material_n(material, at, &n, error);
+    const abbe_result result = abbe_material_n(object->material, at, &n, error);
     if (result != ABBE_OK) return result;
     abbe_weights_range_xyz(light, from, to, xyz);
     weigh(xyz, tables->camera.sum, w->count, band[i].weight_n);
     band[i].weight_n[3] = (float)n;
-    band[i].attenuation[0] = (float)abbe_material_attenuation(material, at);
+    band[i].attenuation[0] = (float)(abbe_material_attenuation(object->material, at) +
+                                     abbe_medium_scattering(object->medium, at));
     from = to;
   }
   join_levels(w->count, band);
@@ -131,7 +132,7 @@ abbe_result abbe_camera_bands_fill(const abbe_scene *scene, const abbe_plan *pla
       else if (set == 0)
         fill_first(tables, i, out);
       else
-        result = fill_share(tables, &light, object->material, set - 1, out, error);
+        result = fill_share(tables, &light, object, set - 1, out, error);
     }
   }
   return result;

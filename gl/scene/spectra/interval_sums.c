@@ -41,8 +41,8 @@ static void weigh_part(const abbe_interval_sums *of, const abbe_weights_range *r
 /* One interval from node b = i down to node a = i - 1, step by step. Where the index stays, the
  * place along is by wavelength; so it is without a material. */
 static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *w,
-                          const abbe_weights_range *range, const abbe_material *material, size_t i,
-                          float (*out)[4]) {
+                          const abbe_weights_range *range, const abbe_material *material,
+                          const abbe_medium *medium, size_t i, float (*out)[4]) {
   const size_t texels = abbe_interval_sums_texels(of->plan);
   double min = w->edge_nm[0], max = w->edge_nm[w->count];
   double a = i > 0 ? w->lambda_nm[i - 1] : w->edge_nm[0];
@@ -75,8 +75,9 @@ static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *
       sum[c] += part.light[c];
       moment[c] += part.light[c] * t[1 + c];
       if (!of->plan->lengths) continue;
-      const double per_m =
-          fmin(abbe_material_attenuation(material, at[1 + c]), ABBE_BAND_MOST_PER_M);
+      const double per_m = fmin(abbe_material_attenuation(material, at[1 + c]) +
+                                    abbe_medium_scattering(medium, at[1 + c]),
+                                ABBE_BAND_MOST_PER_M);
       taken[c] += part.light[c] * per_m;
     }
     abbe_float4_store(sum, t[0], out[0]);
@@ -96,7 +97,8 @@ float (*abbe_interval_sums_fill(const abbe_interval_sums *of, const abbe_wavelen
                                w->edge_nm[0], w->edge_nm[w->count], &range);
     for (size_t k = 0; k < plan->refractor_count; k++)
       for (size_t i = 0; i <= w->count; i++, out += an_interval)
-        fill_interval(of, w, &range, abbe_mirror_nodes_laid_by(of->scene, plan, k), i, out);
+        fill_interval(of, w, &range, abbe_mirror_nodes_laid_by(of->scene, plan, k),
+                      of->scene->object[plan->refractor_object[k]].medium, i, out);
   }
   return out;
 }

@@ -51,13 +51,16 @@ static abbe_result evaluate_materials(const abbe_scene *scene, const abbe_plan *
     }
     for (size_t k = 0; k < n; k++) t->index[i * n + k] = 1;
     if (material == NULL) continue;
-    if (!plan->mirror[i]) t->attenuation_550[i] = abbe_material_attenuation(material, 550.0);
+    if (!plan->mirror[i])
+      t->attenuation_550[i] = abbe_material_attenuation(material, 550.0) +
+                              abbe_medium_scattering(object->medium, 550.0);
     for (size_t k = 0; k < n; k++) {
       const double lambda_nm = t->all.lambda_nm[k];
       abbe_result result = abbe_material_n(material, lambda_nm, &t->index[i * n + k], error);
       if (result != ABBE_OK) return result;
       if (!plan->mirror[i])
-        t->attenuation[i * n + k] = abbe_material_attenuation(material, lambda_nm);
+        t->attenuation[i * n + k] = abbe_material_attenuation(material, lambda_nm) +
+                                    abbe_medium_scattering(object->medium, lambda_nm);
     }
   }
   return ABBE_OK;

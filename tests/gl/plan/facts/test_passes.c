@@ -21,6 +21,7 @@ static const char *const texts[] = {
     [ABBE_PASS_EYE_ADAPTIVE] = "eye: adaptive samples",
     [ABBE_PASS_EYE_REFRACTION] = "eye: refraction",
     [ABBE_PASS_EYE_PICTURE] = "eye: picture",
+    [ABBE_PASS_EYE_HAZE] = "eye: haze",
     [ABBE_CHOICE_REFRACTOR_MODEL] = "model: ",
     [ABBE_CHOICE_MIRROR] = "mirror: ",
     [ABBE_CHOICE_MORE_REFRACTORS] = "models",

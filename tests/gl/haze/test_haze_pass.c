@@ -1,0 +1,125 @@
+/* Haze in the renderer's pictures, against closed forms: a slab of mist in the sun, what is left of
+ * what is behind it, a lamp in mist, and a shaft of sunlight under still water. */
+#include "tests/gl/frame.h"
+
+#include "scenes/medium/medium.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* Mean of the green channel of a picture of 16 by 16 pixels, in Rec.709: of white light Y. */
+static double green_of(const char *text, size_t photons) {
+  abbe_scene scene;
+  abbe_image picture;
+  abbe_render_desc desc = {.width = 16,
+                           .height = 16,
+                           .photons = photons,
+                           .map_size = 64,
+                           .wavelengths = 3,
+                           .supersample = 1,
+                           .space = ABBE_RGB_SPACE_REC709};
+  load_text(text, &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  draw_frame(renderer);
+  read_picture(renderer, false, &picture);
+  double sum = 0;
+  for (size_t i = 0; i < 256; i++) sum += (double)picture.data[i * picture.channels + 1] / 256;
+  abbe_image_free(&picture);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+  return sum;
+}
+
+#define VIEW(more)                                                                                 \
+  more "camera: {eye: [2.383508, 0, 2], target: [0, 0, 0], up: [0, 1, 0], fov: 1}\n"               \
+       "medium: {scattering: 0.8, absorption: 0.3, g: 0.4, box: [[-40, -40, -0.5], [40, 40, "      \
+       "0.5]]}\n"                                                                                  \
+       "objects: [{name: spot, shape: rectangle, width: 0.004, height: 0.004, reflectance: 0,\n"   \
+       "           transform: [{translate: [-7.150524, 0, -6]}]}]\n"
+
+/* The sun 30 degrees off upright, the eye at 50 degrees: as validation's known answers have it. */
+static void a_slab_in_the_sun(void **state) {
+  (void)state;
+  const double sun = 30 * pi / 180, view = 50 * pi / 180, m0 = cos(sun), m = cos(view);
+  const double turned = sin(sun) * sin(view) - m0 * m;
+  const double exact = 0.8 / 1.1 * abbe_medium_phase(0.4, turned) * m0 / (m0 + m) *
+                       (1 - exp(-1.1 * (1 / m0 + 1 / m)));
+  const double drawn =
+      green_of(VIEW("lights: [{name: sun, kind: directional, direction: [0.5, 0, -0.8660254], "
+                    "irradiance: 1}]\n"),
+               64);
+  assert_near(drawn / exact, 1, 4e-3);
+  const double left = green_of(VIEW("background: 1\nlights: [{name: sun, kind: directional, "
+                                    "direction: [0.5, 0, -0.8660254], irradiance: 1.0e-9}]\n"),
+                               64);
+  assert_near(left / exp(-1.1 / m), 1, 3e-3);
+}
+
+/* Past it at 0.2 m, from 1 m before to 1 m behind. */
+static void a_lamp_in_mist(void **state) {
+  (void)state;
+  static const char *const lamps[] = {
+      "kind: point, position: [0, 0.2, 0], intensity: 1",
+      "kind: spot, position: [0, 0.2, 0], direction: [0, -1, 0], cone: 40, intensity: 1"};
+  for (int i = 0; i < 2; i++) {
+    char text[1024];
+    double exact = 0;
+    enum { PARTS = 20000 };
+    for (int k = 0; k < PARTS; k++) {
+      const double t = 2 * (k + 0.5) / PARTS, along = 1 - t, distance = hypot(0.2, along);
+      if (i == 1 && 0.2 / distance < cos(40 * pi / 180)) continue;
+      exact += 2.0 / PARTS * 0.4 * abbe_medium_phase(0.7, along / distance) *
+               exp(-0.5 * (t + distance)) / (distance * distance);
+    }
+    snprintf(text, sizeof text,
+             "camera: {eye: [-1.5, 0, 0], target: [0, 0, 0], fov: 0.5}\n"
+             "lights: [{name: lamp, %s}]\n"
+             "medium: {scattering: 0.4, absorption: 0.1, g: 0.7, box: [[-1, -1, -1], [1, 1, 1]]}\n"
+             "objects: [{name: far off, shape: rectangle, width: 9, height: 9, reflectance: 0,\n"
+             "           transform: [{rotate: {axis: [0, 1, 0], angle: 90}}, "
+             "{translate: [5, 0, 0]}]}]\n",
+             lamps[i]);
+    assert_near(green_of(text, 64) / exact, 1, 4e-3);
+  }
+}
+
+/* Lines of photons, seen by an eye in the water: the way down is as long as the place is deep. */
+static void a_shaft_under_still_water(void **state) {
+  (void)state;
+  static const char text[] =
+      "materials: glass.yaml\n"
+      "camera: {eye: [-0.3, 0, -0.2], target: [1, 0, -0.2], fov: 30, inside: true}\n"
+      "lights: [{name: sun, kind: directional, direction: [0, 0.5, -0.8660254], irradiance: 1}]\n"
+      "objects:\n"
+      "- {name: water, shape: water, size: [0.8, 0.8, 0.41], cells: 8, material: flat,\n"
+      "   medium: {scattering: 0.8, g: 0.5}}\n"
+      "- {name: bottom, shape: rectangle, width: 4, height: 4, reflectance: 0,\n"
+      "   transform: [{translate: [0, 0, -0.4]}]}\n"
+      "- {name: side, shape: rectangle, width: 2, height: 0.56, reflectance: 0,\n"
+      "   transform: [{rotate: {axis: [1, 0, 0], angle: 90}}, {translate: [0, -0.41, -0.22]}]}\n"
+      "- {name: wall, shape: rectangle, width: 0.38, height: 1, reflectance: 0,\n"
+      "   transform: [{rotate: {axis: [0, 1, 0], angle: 90}}, {translate: [0.3, 0, -0.2]}]}\n";
+  const double sun = pi / 6, inside = asin(0.5 / 1.5), half = tan(15 * pi / 180);
+  const double rs = (cos(sun) - 1.5 * cos(inside)) / (cos(sun) + 1.5 * cos(inside));
+  const double rp = (1.5 * cos(sun) - cos(inside)) / (1.5 * cos(sun) + cos(inside));
+  const double e = (1 - 0.5 * (rs * rs + rp * rp)) * cos(sun) / cos(inside);
+  double exact = 0;
+  enum { SIDE = 100 };
+  for (int i = 0; i < SIDE * SIDE; i++) {
+    const double a = half * ((2 * (i % SIDE) + 1) / (double)SIDE - 1);
+    const double b = half * ((2 * (i / SIDE) + 1) / (double)SIDE - 1);
+    const double l = sqrt(1 + a * a + b * b), turned = -(sin(inside) * a - cos(inside) * b) / l;
+    const double slope = 0.8 * (1 - b / l / cos(inside));
+    exact += e * 0.8 * abbe_medium_phase(0.5, turned) * exp(-0.8 * 0.2 / cos(inside)) *
+             -expm1(-slope * 0.6 * l) / slope / (SIDE * SIDE);
+  }
+  assert_near(green_of(text, 256) / exact, 1, 0.03);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_slab_in_the_sun),
+      cmocka_unit_test(a_lamp_in_mist),
+      cmocka_unit_test(a_shaft_under_still_water),
+  };
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}

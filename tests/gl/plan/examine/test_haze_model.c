@@ -1,0 +1,80 @@
+/* What the plan makes of media that scatter, and what it says that it leaves out. */
+#include "tests/gl/plan/planned.h"
+
+#include "gl/plan/examine/haze_model.h"
+
+#define MIST(scattering)                                                                           \
+  "medium: {scattering: " scattering ", absorption: 0.5, g: 0.4, box: [[-1, -1, 0], [1, 1, 1]]}\n"
+
+static void mist_is_a_fact(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_plan plan;
+  load_text(CAMERA POINT_LIGHT MIST("2") FLOOR BALL("flat"), &scene);
+  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+  assert_true(plan.hazy && plan.eye_in_air);
+  assert_near(plan.air_haze.scattering, 2, 1e-9);
+  assert_near(plan.air_haze.absorption, 0.5, 1e-9);
+  assert_near(plan.eye_haze.g, 0.4, 0);
+  assert_true(abbe_plan_find(&plan, ABBE_PASS_EYE_HAZE, 0)->runs);
+  assert_true(is_noted(&plan, "scatters light once"));
+  assert_true(is_noted(&plan, "as far as it lands on a receiver"));
+  assert_false(is_noted(&plan, "mean over wavelengths"));
+  abbe_plan_free(&plan);
+  abbe_scene_free(&scene);
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
+  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+  assert_false(plan.hazy);
+  assert_null(abbe_plan_find(&plan, ABBE_PASS_EYE_HAZE, 0));
+  abbe_plan_free(&plan);
+  abbe_scene_free(&scene);
+}
+
+/* Between what it is at the ends, nearer to what the eye sees most of. */
+static void a_coloured_medium_is_its_mean(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_plan plan;
+  load_text(CAMERA POINT_LIGHT MIST("[[380, 0], [780, 4]]") FLOOR BALL("flat"), &scene);
+  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+  assert_near(plan.air_haze.scattering, 4 * (560 - 380) / 400.0, 0.1);
+  assert_true(is_noted(&plan, "mean over wavelengths"));
+  abbe_plan_free(&plan);
+  abbe_scene_free(&scene);
+}
+
+/* An object's medium takes of light like an absorbing material. */
+static void murky_glass_attenuates(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_plan plan;
+  load_text(CAMERA POINT_LIGHT FLOOR
+            "- {name: ball, shape: sphere, radius: 0.08, transform: [{translate: [0, 0, 0.2]}], "
+            "material: flat, medium: {scattering: 3}}\n",
+            &scene);
+  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+  assert_true(plan.hazy && plan.absorbing && !plan.tinting);
+  assert_near(plan.eye_haze.scattering, 0, 0);
+  abbe_plan_free(&plan);
+  abbe_scene_free(&scene);
+}
+
+static void published_methods_refuse_it(void **state) {
+  (void)state;
+  abbe_render_desc desc = {.profile = ABBE_PROFILE_THESIS};
+  refuse_plan(CAMERA POINT_LIGHT MIST("2") FLOOR BALL("flat"), &desc, ABBE_UNSUPPORTED,
+              "of which the thesis profile knows nothing");
+  desc.profile = ABBE_PROFILE_SHAH2007;
+  refuse_plan(CAMERA POINT_LIGHT MIST("2") FLOOR BALL("flat"), &desc, ABBE_UNSUPPORTED,
+              "take the default profile");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(mist_is_a_fact),
+      cmocka_unit_test(a_coloured_medium_is_its_mean),
+      cmocka_unit_test(murky_glass_attenuates),
+      cmocka_unit_test(published_methods_refuse_it),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
