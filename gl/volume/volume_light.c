@@ -45,22 +45,28 @@ static abbe_result pack_exits(const abbe_volume_light *v, const abbe_caustic_vol
                               const abbe_volume_place *place, size_t light, uint32_t *out,
                               abbe_error *error) {
   const abbe_plan *plan = v->scene->plan;
+  double(*sheet)[9] = abbe_volume_pages_sheets(v->scene);
+  if (sheet == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for receivers");
   const abbe_exit_light_desc desc = {.light = &v->scene->local->light[light],
                                      .object = &v->scene->local->object[plan->refractor_object[0]],
                                      .place = place,
+                                     .sheet = (const double(*)[9])sheet,
+                                     .sheets = plan->parallelogram_count,
                                      .observer = plan->desc.observer,
                                      .min_nm = plan->desc.min_nm,
                                      .max_nm = plan->desc.max_nm};
   const size_t cells = volume->region.cells;
   float *value = malloc(9 * cells * sizeof *value);
-  if (value == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu cells", cells);
-  const abbe_result result = abbe_exit_light_fill(volume, &desc, value, error);
+  const abbe_result result =
+      value != NULL ? abbe_exit_light_fill(volume, &desc, value, error)
+                    : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu cells", cells);
   for (size_t i = 0; result == ABBE_OK && i < cells; i++, out += 5) {
     memset(out, 0, 5 * sizeof *out);
     for (size_t c = 0; c < 9; c++)
       out[c / 2] |= (uint32_t)abbe_half_of_float(value[9 * i + c]) << 16 * (c % 2);
   }
   free(value);
+  free(sheet);
   return result;
 }
 

@@ -13,8 +13,7 @@ static size_t side_of(const abbe_plan *plan) {
   return side < ABBE_EXIT_PAGES_MOST_SIDE ? side : ABBE_EXIT_PAGES_MOST_SIDE;
 }
 
-/* Those of all receivers, as the shaders count them. */
-static double (*gather(const abbe_gpu_scene *scene))[9] {
+double (*abbe_volume_pages_sheets(const abbe_gpu_scene *scene))[9] {
   const abbe_plan *plan = scene->plan;
   double(*all)[9] = calloc(plan->parallelogram_count + 1, sizeof *all);
   size_t count = 0;
@@ -64,7 +63,7 @@ abbe_result abbe_volume_pages_make(const abbe_gpu_scene *scene, const abbe_volum
   if (plan->volume_pages == 0) return ABBE_OK;
   out->scene = scene;
   out->window = calloc(lights * out->count + 1, sizeof *out->window);
-  double(*all)[9] = gather(scene);
+  double(*all)[9] = abbe_volume_pages_sheets(scene);
   abbe_result result = all != NULL && out->window != NULL
                            ? ABBE_OK
                            : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for pages");

@@ -14,6 +14,10 @@ typedef struct abbe_volume_pages {
   float (*window)[4];          /* [lights][count] */
 } abbe_volume_pages;
 
+/* [plan's parallelogram_count and one more] of all receivers, as the shaders count them; malloc'd.
+ * NULL: no memory. */
+double (*abbe_volume_pages_sheets(const abbe_gpu_scene *scene))[9];
+
 /* For the lights and the object where they are now. ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_volume_pages_make(const abbe_gpu_scene *scene, const abbe_volume_place *place,
                                    abbe_volume_pages *out, abbe_error *error);

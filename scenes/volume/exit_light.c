@@ -28,9 +28,31 @@ static abbe_result find_planes(const abbe_exit_light_desc *d, double (**out)[4],
   return ABBE_OK;
 }
 
+/* Whether something stands on the way from p along the unit vector d, up to a distance. */
+static bool is_hidden(const abbe_exit_light_desc *desc, const double p[3], const double d[3],
+                      double limit) {
+  for (size_t i = 0; i < desc->sheets; i++) {
+    const double *u = desc->sheet[i] + 3, *v = desc->sheet[i] + 6;
+    double n[3], from[3], at[3], du[3], dv[3];
+    abbe_vector_cross(u, v, n);
+    abbe_vector_subtract(desc->sheet[i], p, from);
+    const double t = abbe_vector_dot(n, from) / abbe_vector_dot(n, d);
+    if (!(t > 1e-9 * abbe_vector_length(from)) || !(t < limit)) continue;
+    for (int k = 0; k < 3; k++) at[k] = t * d[k] - from[k];
+    abbe_vector_cross(v, n, du);
+    abbe_vector_cross(n, u, dv);
+    const double square = abbe_vector_dot(n, n), x = abbe_vector_dot(at, du) / square,
+                 y = abbe_vector_dot(at, dv) / square;
+    if (x >= 0 && x <= 1 && y >= 0 && y <= 1) return true;
+  }
+  return false;
+}
+
 /* From a place of the world to the light, unit, and the irradiance across the beam there of a power
  * of 1. */
-static double look_at_light(const abbe_light *light, const double from[3], double to_light[3]) {
+static double look_at_light(const abbe_exit_light_desc *desc, const double from[3],
+                            double to_light[3]) {
+  const abbe_light *light = desc->light;
   double square = 1;
   if (light->kind == ABBE_LIGHT_DIRECTIONAL) {
     for (int k = 0; k < 3; k++) to_light[k] = -light->direction[k];
@@ -40,6 +62,8 @@ static double look_at_light(const abbe_light *light, const double from[3], doubl
   }
   if (!abbe_vector_normalise(to_light)) return 0;
   const double away[3] = {-to_light[0], -to_light[1], -to_light[2]};
+  const bool far = light->kind == ABBE_LIGHT_DIRECTIONAL;
+  if (is_hidden(desc, from, to_light, far ? INFINITY : sqrt(square))) return 0;
   return abbe_light_profile(light, away) / square;
 }
 
@@ -77,7 +101,7 @@ static void send_image(const sight *s, const double map[9]) {
     abbe_light_exits_point(e, i, p, n, &bin);
     turn(map, p, image);
     place_point(d->place, image, world);
-    const double strength = look_at_light(d->light, world, to_light);
+    const double strength = look_at_light(d, world, to_light);
     turn_back(d->place->turn, to_light, own);
     turn_back(map, own, there);
     const double flux = part * strength * abbe_vector_dot(n, there);

@@ -235,6 +235,9 @@ abbe_result abbe_exit_pages_make(const abbe_caustic_volume *v, const abbe_exit_l
   sheet *sheets = calloc(parallelograms + 1, sizeof *sheets);
   out->window = calloc(out->count + 1, sizeof *out->window);
   out->value = calloc(out->count * 2 * side * side + 1, sizeof *out->value);
+  abbe_exit_light_desc seen = *desc;
+  seen.sheet = parallelogram;
+  seen.sheets = parallelograms;
   const double points = (double)(v->exits.points * v->exits.symmetry.count);
   catching c[PARTS];
   for (size_t part = 0; part < PARTS; part++)
@@ -247,7 +250,7 @@ abbe_result abbe_exit_pages_make(const abbe_caustic_volume *v, const abbe_exit_l
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu pages", out->count);
   for (size_t i = 0; result == ABBE_OK && i < parallelograms; i++)
     make_sheet(parallelogram[i], &sheets[i]);
-  if (result == ABBE_OK) result = catch_all(v, desc, c, error);
+  if (result == ABBE_OK) result = catch_all(v, &seen, c, error);
   if (result == ABBE_OK) result = make_texels(c, out, error);
   for (size_t part = 0; part < PARTS; part++) free(c[part].landing);
   free(sheets);

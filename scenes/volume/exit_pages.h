@@ -1,7 +1,8 @@
 /* exit_pages.h: what the rays that leave an object (exit_light.h) bring to parallelograms, as maps
  * on them: for each of their sides one of the whole and a finer one of where most of it lands.
  *
- * A ray ends at the first parallelogram that it meets. It knows no other receivers.
+ * A ray ends at the first parallelogram that it meets, and they hide the light from the object. It
+ * knows no other receivers.
  */
 #ifndef ABBE_SCENES_VOLUME_EXIT_PAGES_H
 #define ABBE_SCENES_VOLUME_EXIT_PAGES_H
@@ -24,7 +25,7 @@ typedef struct abbe_exit_pages {
   double flux;       /* of Y that landed on any, W */
 } abbe_exit_pages;
 
-/* parallelogram[parallelograms]: corner, U, V, in the world. ABBE_INVALID_ARGUMENT for a side
+/* parallelogram[parallelograms]: corner, U, V, in the world; the desc's sheets are not read. ABBE_INVALID_ARGUMENT for a side
  * beyond 1 to ABBE_EXIT_PAGES_MOST_SIDE and as abbe_exit_light_colours, ABBE_NO_MEMORY. */
 abbe_result abbe_exit_pages_make(const abbe_caustic_volume *volume,
                                  const abbe_exit_light_desc *desc, const double (*parallelogram)[9],

@@ -141,6 +141,22 @@ static void test_the_first_sheet_takes_it(void **state) {
   free_bench(&b);
 }
 
+/* A lid over half of the plate hides the sun from that half. */
+static void test_what_hides_the_light(void **state) {
+  (void)state;
+  bench b;
+  abbe_exit_pages pages;
+  make_bench(40, &b);
+  const double *d = b.scene.light[0].direction;
+  const double middle = 0.1 + d[0] / d[2] * 0.2; /* over the plate's, on the way to the sun */
+  double sheets[2][9] = {{0}, {middle, -1, 0.71, 0, 2, 0, 2, 0, 0}};
+  memcpy(sheets[0], floor_below, sizeof floor_below);
+  make_pages(&b, (const double(*)[9])sheets, 2, &b.scene.light[0], &pages);
+  assert_near(pages.flux, 0.25 * 0.04 * -d[2], 2e-4);
+  abbe_exit_pages_free(&pages);
+  free_bench(&b);
+}
+
 static void test_requests(void **state) {
   (void)state;
   bench b;
@@ -159,8 +175,8 @@ static void test_requests(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_beam_on_a_floor),
-                                     cmocka_unit_test(test_the_first_sheet_takes_it),
-                                     cmocka_unit_test(test_requests)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_beam_on_a_floor), cmocka_unit_test(test_the_first_sheet_takes_it),
+      cmocka_unit_test(test_what_hides_the_light), cmocka_unit_test(test_requests)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
