@@ -143,6 +143,7 @@ static void add_splats(abbe_deposit_pass *pass, size_t light) {
   abbe_gpu_set_int(gpu, pass->add, "light", (int)light);
   abbe_gpu_set_int(gpu, pass->add, "map_size", (int)scene_of(pass)->plan->desc.map_size);
   abbe_gpu_set_uint(gpu, pass->add, "most", pass->splat_room);
+  abbe_gpu_set_int(gpu, pass->add, "has_edges", scene_of(pass)->plan->edges ? 1 : 0);
   abbe_gpu_set_uint(gpu, pass->add, "map_texels", pass->map->views->map_texels);
   abbe_gpu_bind_storage(gpu, BINDING_MAP_SUMS, pass->map->sums);
   abbe_gpu_dispatch_list(gpu, pass->add, pass->splats, 0, pass->splat_room, 1);

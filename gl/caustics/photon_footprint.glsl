@@ -69,6 +69,13 @@ Footprint footprint_of(Photon photon, Reference r) {
   float half_trace = 0.5 * (xx + yy), root = length(vec2(0.5 * (xx - yy), xy));
   float wide = sqrt(half_trace + root), narrow = sqrt(max(half_trace - root, 0.0));
   vec2 axis = xx > yy ? vec2(0.5 * (xx - yy) + root, xy) : vec2(xy, 0.5 * (yy - xx) + root);
+  // Nearly square, it has no axes to speak of: then it lies as the cell's sides do.
+  bool square = narrow > 0.6 * wide;
+  vec2 side_axis = dot(a, a) > dot(b, b) ? a : b;
+  float area = wide * narrow;
+  axis = square ? side_axis : axis;
+  wide = square ? max(length(side_axis), 1e-20) : wide;
+  narrow = square ? area / wide : narrow;
   Footprint f;
   f.across = wide * axis / max(length(axis), 1e-20);
   bool by_a = dot(a, a) > dot(b, b);

@@ -1,5 +1,6 @@
-// Adds listed splats to their level of the map, part by part and each over four texels, which together get
-// all of it, to the last unit. Y goes by what a box of the part's extent covers of them, so that parts
+// Adds listed splats to the map, part by part and each over four texels, which together get all of it, to the
+// last unit. Where light has edges a splat of few parts goes to the level below its own and lies there in rows:
+// then little of it lands beside the area that it lights. Y goes by what a box of the part's extent covers of them, so that parts
 // which lie side by side make an even light, whatever their distance; X and Z beside it by how far they lie
 // from it, however little.
 layout(local_size_x = 256) in;
@@ -14,6 +15,7 @@ layout(std430, binding = BINDING_MAP_SUMS) buffer MapSums { uint map_sum[]; };
 uniform int map_size;
 uniform uint most;
 uniform uint map_texels;  // of all levels
+uniform bool has_edges;    // light has, where refractors have faces
 
 uint level_offset(int level) {
   // side^2 (1 + 1/4 + ...), level terms.
@@ -22,7 +24,9 @@ uint level_offset(int level) {
 }
 
 const float LEAST_EXTENT = 0.25;  // of a texel
-const int MOST_ACROSS = 15, MOST_ALONG = 15;
+const int MOST_ACROSS = 60, MOST_ALONG = 60;
+const float MOST_WIDE = 0.84;  // of a texel: what lies turned is wider, and more than a texel leaves gaps
+const int MOST_PARTS = 64;  // of a splat in the level below its own, or it stays in its own
 
 void add(uint texel, int channel, uint v) {
 #ifdef WIDE
@@ -37,7 +41,7 @@ void add(uint texel, int channel, uint v) {
 struct ListedSplat {
   uvec3 units;
   vec2 centre, across, shift, skew;
-  vec2 aside;   // half of its width beside `across`
+  vec2 beside;  // its other side, square to `across`
   vec2 off[3];  // of X, Y and Z from the middle
   vec3 slope;   // along the shift X, Y and Z grow or fall evenly, as their means tell
   int level;
@@ -54,7 +58,7 @@ ListedSplat splat_at(uint word) {
   s.shift = unpackHalf2x16(splat[word + 9u]);
   s.skew = unpackHalf2x16(splat[word + 10u]);
   vec2 rest = unpackHalf2x16(splat[word + 11u]);
-  s.aside = rest.x * abs(s.across.yx) / max(length(s.across), 1e-20);
+  s.beside = rest.x * vec2(-s.across.y, s.across.x) / max(length(s.across), 1e-20);
   s.next_share = rest.y;
   s.level = int(y_level & 7u);
   s.centre = vec2(splat[word] >> 5, y_level >> 5) / 32768.0;
@@ -71,31 +75,34 @@ ListedSplat splat_at(uint word) {
 
 // Of a splat in one level.
 struct Grid {
-  int level, across, along;
+  int level, beside, across, along;
   float size;
 };
 
-Grid grid_of(int level, float wide, float shifted) {
+Grid grid_of(int level, float narrow, float wide, float shifted) {
   Grid g;
   g.level = level;
   g.size = exp2(float(level));
-  g.across = clamp(int(ceil(wide / g.size)), 1, MOST_ACROSS);
+  g.beside = max(int(ceil(narrow / (MOST_WIDE * g.size))), 1);
+  g.across = clamp(int(ceil(wide / (MOST_WIDE * g.size))), 1, MOST_ACROSS);
   g.along = clamp(int(ceil(shifted / g.size - 0.25)), 1, MOST_ALONG);
   return g;
 }
 
-// A cell of a grid: its number along and across, from 0.
+int parts_of(Grid g) { return g.beside * g.across * g.along; }
+
+// A cell of a grid: its number beside, along and across, from 0.
 struct Cell {
-  float row, column;
+  float beside, row, column;
 };
 
 Cell cell_of(Grid g, int k) {
-  float row = floor((float(k) + 0.5) / float(g.across));
-  return Cell(row, float(k) - row * float(g.across));
+  float rows = floor((float(k) + 0.5) / float(g.across)), beside = floor((rows + 0.5) / float(g.along));
+  return Cell(beside, rows - beside * float(g.along), float(k) - rows * float(g.across));
 }
 
 // Shares of X, Y and Z that have been given when the cell is.
-vec3 given_upto(ListedSplat s, Grid g, Cell c) {
+vec3 given_of_row(ListedSplat s, Grid g, Cell c) {
   if (g.along == 1) return vec3((c.column + 1.0) / float(g.across));
   float per_row = 1.0 / float(g.along), t = c.row * per_row;
   vec3 upto = t + 6.0 * s.slope * t * (t - 1.0);
@@ -103,13 +110,19 @@ vec3 given_upto(ListedSplat s, Grid g, Cell c) {
          (c.column + 1.0) / float(g.across) * per_row * (1.0 + 6.0 * s.slope * (2.0 * t + per_row - 1.0));
 }
 
+vec3 given_upto(ListedSplat s, Grid g, Cell c) {
+  return (c.beside + given_of_row(s, g, c)) / float(g.beside);
+}
+
 // Where the middle of the cell's Y lies. Y's parts share among texels what they cover of them.
 vec2 middle_of(ListedSplat s, Grid g, Cell c, vec2 off_y) {
   float at_part = (c.column + 0.5) / float(g.across) - 0.5, per_row = 1.0 / float(g.along);
-  vec2 middle =
-      s.centre + s.across * at_part + s.skew * abs(at_part) + s.shift * ((c.row + 0.5) * per_row - 0.5);
+  vec2 beside = s.beside * ((c.beside + 0.5) / float(g.beside) - 0.5);
+  vec2 middle = s.centre + beside + s.across * at_part + s.skew * abs(at_part) +
+                s.shift * ((c.row + 0.5) * per_row - 0.5);
   vec2 part = (s.across + sign(at_part) * s.skew) / float(g.across);
-  vec2 extent = clamp((s.aside + abs(part) + abs(s.shift) * per_row) / g.size, LEAST_EXTENT, 1.0);
+  vec2 box = abs(s.beside) / float(g.beside) + abs(part) + abs(s.shift) * per_row;
+  vec2 extent = clamp(box / g.size, LEAST_EXTENT, 1.0);
   vec2 exact = (middle + off_y) / g.size - 0.5, whole_texels = floor(exact);
   return (whole_texels + clamp((exact - whole_texels - 0.5) / extent + 0.5, 0.0, 1.0) + 0.5) * g.size;
 }
@@ -157,9 +170,13 @@ void main() {
   if (listed >= min(splat_count, most)) return;
   ListedSplat s = splat_at(listed * SPLAT_WORDS);
   float wide = length(s.across) + length(s.skew), shifted = max(abs(s.shift.x), abs(s.shift.y));
-  Grid fine = grid_of(s.level, wide, shifted), next = grid_of(s.level + 1, wide, shifted);
-  int fine_count = fine.across * fine.along;
-  int count = fine_count + (s.next_share > 0.0 ? next.across * next.along : 0);
+  float narrow = length(s.beside);
+  Grid fine = grid_of(s.level, narrow, wide, shifted);
+  Grid finer = grid_of(max(s.level - 1, 0), narrow, wide, shifted);
+  if (has_edges && parts_of(finer) <= MOST_PARTS) fine = finer;
+  Grid next = grid_of(fine.level + 1, narrow, wide, shifted);
+  int fine_count = parts_of(fine);
+  int count = fine_count + (s.next_share > 0.0 ? parts_of(next) : 0);
   uvec3 given = uvec3(0);
   for (int n = 0; n < count; n++) {
     bool coarse = n >= fine_count;

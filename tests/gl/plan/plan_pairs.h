@@ -83,7 +83,7 @@ typedef struct pair {
       RUNS(PASS_LIGHT_FRONT, "photons start where the light sees a refractor"),                    \
       RESTS(PASS_LIGHT_BACK, "every refractor has an exact surface"),                              \
       RUNS(PASS_PHOTON_PLACEMENT, "at most 256 a side, where light meets a refractor"),            \
-      RUNS(PASS_PHOTONS, "4 to 7 wavelengths, as each photon's hits ask"),                     \
+      RUNS(PASS_PHOTONS, "4 to 7 wavelengths, as each photon's hits ask"),                         \
       RUNS(PASS_SPECTRAL_MAP, "1024 x 1024 texels"),                                               \
       RUNS(PASS_GAP_FILL, "bridge: wavelengths land apart"),                                       \
       RESTS(CHOICE_ABSORPTION, "every material is clear"),                                         \
@@ -92,9 +92,8 @@ typedef struct pair {
       RESTS(PASS_EYE_BACK, "every refractor has an exact surface"),                                \
       RUNS(PASS_EYE_ADAPTIVE, "4 x 4 rays for a sample of a receiver where its light bends"),      \
       RUNS(PASS_EYE_REFRACTION, "until less than 0.005 of its light is left, 256 exits at most"),  \
-      RUNS(PASS_EYE_PICTURE, "2 x 2 samples a pixel"), RESTS(CHOICE_TEXTURES, "none"), colours,        \
-      RESTS(CHOICE_LIGHT_SIZE, "none"),                                                            \
-      RESTS(CHOICE_ENVIRONMENT, "none"),
+      RUNS(PASS_EYE_PICTURE, "2 x 2 samples a pixel"), RESTS(CHOICE_TEXTURES, "none"), colours,    \
+      RESTS(CHOICE_LIGHT_SIZE, "none"), RESTS(CHOICE_ENVIRONMENT, "none"),
 
 #define UNLIT                                                                                      \
   RESTS(CHOICE_RECEIVER_MAPS, "no light meets a refractor"),                                       \
@@ -174,8 +173,7 @@ static const pair pairs[] = {
      ball,
      CAMERA POINT_LIGHT FLOOR BALL("murk"),
      {0},
-     {RUNS(CHOICE_ABSORPTION,
-           "a material attenuates by wavelength: hits keep the length inside"),
+     {RUNS(CHOICE_ABSORPTION, "a material attenuates by wavelength: hits keep the length inside"),
       END}},
     {"a material that absorbs outside the range alone",
      ball,
@@ -189,8 +187,7 @@ static const pair pairs[] = {
      {COUNTS(7, 8, 9),
       RUNS(CHOICE_WAVELENGTHS, "7 from 380 to 780 nm: the attenuation varies with wavelength"),
       RUNS(PASS_PHOTONS, "7 wavelengths through the refractors"),
-      RUNS(CHOICE_ABSORPTION,
-           "a material attenuates by wavelength: hits keep the length inside"),
+      RUNS(CHOICE_ABSORPTION, "a material attenuates by wavelength: hits keep the length inside"),
       END}},
     {"a constant index, and an attenuation that is constant",
      flat,
@@ -205,7 +202,7 @@ static const pair pairs[] = {
               "convex planes: the object is a convex faceted solid"),
       RUNS(CHOICE_INNER_REFLECTIONS, "followed until less than 0.01 of the light is left, 8 exits "
                                      "at most; 0.17 % of it is still inside then"),
-      END}},
+      IN_ROWS, END}},
     {"an index above 2, of a cube",
      cube,
      CAMERA POINT_LIGHT FLOOR CUBE("dense"),
@@ -257,7 +254,7 @@ static const pair pairs[] = {
               "all of it, front and back"),
       RUNS(CHOICE_INNER_REFLECTIONS,
            "followed until less than 0.01 of the light is left, 4 exits at most"),
-      RUNS(PASS_LIGHT_BACK, "a mesh without an exact surface ends at its back layer"),
+      RUNS(PASS_LIGHT_BACK, "a mesh without an exact surface ends at its back layer"), IN_ROWS,
       RUNS(PASS_EYE_BACK, "a mesh without an exact surface ends at its back layer"),
       RUNS(PASS_EYE_REFRACTION, "until less than 0.005 of its light is left, 4 exits at most"),
       END}},
@@ -269,7 +266,7 @@ static const pair pairs[] = {
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "ball",
               "triangle hierarchy: the object is a general mesh, and light may meet it more than "
               "twice"),
-      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"), IN_ROWS,
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       END}},
     {"a second refractor, apart",
@@ -279,7 +276,7 @@ static const pair pairs[] = {
      {COUNTS(7, 8, 16),
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "brick",
               "convex planes: the object is a convex faceted solid"),
-      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "there is more than one refractor"),
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "there is more than one refractor"), IN_ROWS,
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       END}},
     {"a second refractor, within",
@@ -383,7 +380,10 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT WOOD BALL("crown"),
      {0},
      {RUNS(CHOICE_TEXTURES, "a receiver has one"), COLOURED, END}},
-    {"a light with a size", ball, CAMERA DISK_LIGHT FLOOR BALL("crown"), {.light_points = 1},
+    {"a light with a size",
+     ball,
+     CAMERA DISK_LIGHT FLOOR BALL("crown"),
+     {.light_points = 1},
      {RUNS(CHOICE_LIGHT_SIZE, LAMP_HAS_SIZE), END}},
     {"an environment",
      ball,
@@ -439,8 +439,7 @@ static const pair pairs[] = {
      {.wavelengths = 21},
      {COUNTS(21, 8, 9), RUNS(CHOICE_WAVELENGTHS, "21 from 380 to 780 nm: as asked"),
       RUNS(PASS_PHOTONS, "4 to 21 wavelengths, as each photon's hits ask"),
-      RUNS(CHOICE_ABSORPTION,
-           "a material attenuates by wavelength: hits keep the length inside"),
+      RUNS(CHOICE_ABSORPTION, "a material attenuates by wavelength: hits keep the length inside"),
       END}},
     {"many wavelengths of a glass that tints, from wall to wall of a mesh",
      ball,
@@ -449,7 +448,7 @@ static const pair pairs[] = {
      {COUNTS(21, 8, 16), RUNS_OF(CHOICE_REFRACTOR_MODEL, "ring", "triangle hierarchy"),
       RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
       RUNS(CHOICE_WAVELENGTHS, "21 from 380 to 780 nm: as asked"),
-      RUNS(PASS_PHOTONS, "21 wavelengths through the refractors"),
+      RUNS(PASS_PHOTONS, "21 wavelengths through the refractors"), IN_ROWS,
       RUNS(CHOICE_ABSORPTION, "a material attenuates; path lengths are kept"),
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},

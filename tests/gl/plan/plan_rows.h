@@ -56,11 +56,10 @@ typedef struct row {
     }                                                                                              \
   }
 
-#define GREY                                                                                       \
-  RESTS(CHOICE_RECEIVER_COLOURS, "no dispersed light falls on a receiver in colours")
+#define GREY RESTS(CHOICE_RECEIVER_COLOURS, "no dispersed light falls on a receiver in colours")
 #define COLOURED                                                                                   \
-  RUNS(CHOICE_RECEIVER_COLOURS,                                                                    \
-       "tables of what they reflect of bands, for light arrives dispersed")
+  RUNS(CHOICE_RECEIVER_COLOURS, "tables of what they reflect of bands, for light arrives "         \
+                                "dispersed")
 
 typedef struct line {
   row_kind kind;
@@ -89,6 +88,9 @@ static inline line *put(lines *l, row_kind kind, abbe_plan_item item) {
 #define LAMP_HAS_SIZE                                                                              \
   "a disk, 'lamp' first: 1 points stand for each, with as many sharp shadows; the camera sees it " \
   "in refractors alone"
+
+/* Of a scene with a refractor that is no sphere. */
+#define IN_ROWS RUNS(PASS_SPECTRAL_MAP, "splats in rows: a refractor is no sphere")
 
 /* The renderer gives an environment lights of its own, after the scene's. */
 static inline const char *light_name(const abbe_scene *scene, size_t light) {

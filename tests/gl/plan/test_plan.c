@@ -13,15 +13,15 @@ static const struct {
   row row[24];
 } shipped[] = {
     {"rainbow",
-     {RUNS_OF(CHOICE_REFRACTOR_MODEL, "drop", "exact sphere: the object is a sphere"), SHADOWED, GREY,
-      GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
+     {RUNS_OF(CHOICE_REFRACTOR_MODEL, "drop", "exact sphere: the object is a sphere"), SHADOWED,
+      GREY, GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"gem",
      {COUNTS(7, 20, 21),
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "gem", "convex planes: the object is a convex faceted solid"),
       RUNS(CHOICE_INNER_REFLECTIONS, "followed until less than 0.005 of the light is left, 20 "
                                      "exits at most; 0.4 % of it is still inside then"),
-      RUNS(CHOICE_ABSORPTION,
-           "a material attenuates by wavelength: hits keep the length inside"),
+      IN_ROWS,
+      RUNS(CHOICE_ABSORPTION, "a material attenuates by wavelength: hits keep the length inside"),
       GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"prism",
      {RUNS_OF(CHOICE_REFRACTOR_MODEL, "prism",
@@ -29,7 +29,7 @@ static const struct {
       RUNS(CHOICE_RECEIVER_SHADOWS, "a receiver may stand between a light and another"),
       RUNS(CHOICE_INNER_REFLECTIONS, "followed until less than 0.01 of the light is left, 8 exits "
                                      "at most; 0.16 % of it is still inside then"),
-      RUNS(CHOICE_RECEIVER_MAPS, "a receiver may hide from a light where its light lands"),
+      RUNS(CHOICE_RECEIVER_MAPS, "a receiver may hide from a light where its light lands"), IN_ROWS,
       RUNS(CHOICE_TEXTURES, "a receiver has one"), GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"diamond",
      {COUNTS(7, 24, 25),
@@ -40,14 +40,14 @@ static const struct {
                                      "at most; 2.9 % of it is still inside then"),
       RESTS_OF(CHOICE_LIGHT_MAP, "lamp of the left card", "its cone misses every refractor"),
       RESTS_OF(CHOICE_LIGHT_MAP, "lamp of the high card", "its cone misses every refractor"),
-      RUNS(CHOICE_RECEIVER_MAPS, "a receiver may hide from a light where its light lands"), GREY,
-      GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
+      RUNS(CHOICE_RECEIVER_MAPS, "a receiver may hide from a light where its light lands"), IN_ROWS,
+      GREY, GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"ring",
      {COUNTS(7, 8, 16),
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "ring",
               "triangle hierarchy: the object is a general mesh, and light may meet it more than "
               "twice"),
-      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"), IN_ROWS,
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"bunny",
@@ -55,7 +55,7 @@ static const struct {
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "bunny",
               "triangle hierarchy: the object is a general mesh, and light may meet it more than "
               "twice"),
-      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"), IN_ROWS,
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"glass",
@@ -63,7 +63,7 @@ static const struct {
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "glass",
               "triangle hierarchy: the object is a general mesh, and light may meet it more than "
               "twice"),
-      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"), IN_ROWS,
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       RUNS(CHOICE_TEXTURES, "a receiver has one"), GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
 };

@@ -1,0 +1,175 @@
+/* Splats on the map (photon_splat.comp): each lights the parallelogram that it stands for, and side
+ * by side they make an even light, at every size, turn and place against the texels.
+ */
+#include "tests/gl/glsl.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SIDE = 128, LEVELS = 6, WORDS = 12, MOST = 4096, UNITS = 1 << 20 };
+
+typedef struct splat {
+  double at[2], across[2], narrow; /* texels; the side of a length square to `across` */
+  int level;
+} splat;
+
+/* Of a number that a half holds to 11 bits. */
+static uint32_t half_of(double value) {
+  int exponent;
+  const double m = frexp(fabs(value), &exponent);
+  if (value == 0) return 0;
+  return (value < 0 ? 0x8000u : 0) | ((uint32_t)(exponent + 14) << 10) |
+         ((uint32_t)lrint(ldexp(m, 11)) - 1024u);
+}
+
+static uint32_t halves(double a, double b) {
+  return half_of(a) | half_of(b) << 16;
+}
+
+static void pack(const splat *s, uint32_t word[WORDS]) {
+  memset(word, 0, WORDS * sizeof *word);
+  word[0] = (uint32_t)(s->at[0] * 32768) << 5;
+  word[1] = (uint32_t)(s->at[1] * 32768) << 5 | (uint32_t)s->level;
+  word[2] = halves(s->across[0], s->across[1]);
+  for (int c = 0; c < 3; c++) word[3 + c] = UNITS;
+  word[11] = halves(s->narrow, 0);
+}
+
+static size_t texels_of(int level) {
+  return (size_t)(SIDE >> level) * (SIDE >> level);
+}
+
+static uint32_t list[4 + MOST * WORDS], sums[2 * SIDE * SIDE * 3];
+
+static void run(const splat *splats, size_t count) {
+  const abbe_gl *gl = abbe_context_gl(context);
+  static GLuint program;
+  abbe_error error = {0};
+  if (program == 0 && abbe_program_make_compute(gl, "photon_splat.comp", "#define LIGHTS 1\n",
+                                                &program, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  memset(list, 0, sizeof list);
+  list[0] = (uint32_t)count;
+  for (size_t i = 0; i < count; i++) pack(&splats[i], list + 4 + i * WORDS);
+  memset(sums, 0, sizeof sums);
+  GLuint buffer[2] = {glsl_buffer(gl, BINDING_SPLATS, sizeof list, list),
+                      glsl_buffer(gl, BINDING_MAP_SUMS, sizeof sums, sums)};
+  gl->UseProgram(program);
+  gl->Uniform1i(gl->GetUniformLocation(program, "map_size"), SIDE);
+  gl->Uniform1ui(gl->GetUniformLocation(program, "most"), MOST);
+  gl->Uniform1i(gl->GetUniformLocation(program, "has_edges"), 1);
+  gl->DispatchCompute((GLuint)((count + 255) / 256), 1, 1);
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof sums, sums);
+  gl->DeleteBuffers(2, buffer);
+  assert_int_equal(abbe_gl_check(gl, "the splats", NULL), ABBE_OK);
+}
+
+/* The level whose texels are as wide as a footprint's narrower side asks for
+ * (photon_footprint.glsl). */
+static int level_of(double narrow) {
+  const double fine = log2(fmax(narrow, 0.5)) + 1.25;
+  return (int)fmin(fmax(floor(fine), 0), LEVELS - 1);
+}
+
+static splat make(double x, double y, double wide, double narrow, double turn) {
+  return (splat){.at = {x, y},
+                 .across = {wide * cos(turn), wide * sin(turn)},
+                 .narrow = narrow,
+                 .level = level_of(narrow)};
+}
+
+/* Of Y: all, its middle, and its variance along an axis and square to it, texels evenly lit. */
+typedef struct spread {
+  double all, at[2], along, beside;
+} spread;
+
+static spread measure(double turn) {
+  const double axis[2][2] = {{cos(turn), sin(turn)}, {-sin(turn), cos(turn)}};
+  double sum = 0, first[2] = {0, 0}, second[2] = {0, 0};
+  const uint32_t *texel = sums;
+  for (int level = 0; level < LEVELS; level++) {
+    const int side = SIDE >> level;
+    const double size = (double)(1 << level);
+    for (int y = 0; y < side; y++)
+      for (int x = 0; x < side; x++, texel += 3) {
+        const double light = texel[1], p[2] = {size * (x + 0.5), size * (y + 0.5)};
+        sum += light;
+        for (int k = 0; k < 2; k++) {
+          const double t = axis[k][0] * p[0] + axis[k][1] * p[1];
+          first[k] += light * t;
+          second[k] += light * (t * t + size * size / 12);
+        }
+      }
+  }
+  const double m[2] = {first[0] / sum, first[1] / sum};
+  return (spread){sum,
+                  {axis[0][0] * m[0] + axis[1][0] * m[1], axis[0][1] * m[0] + axis[1][1] * m[1]},
+                  second[0] / sum - m[0] * m[0],
+                  second[1] / sum - m[1] * m[1]};
+}
+
+/* A rectangle's variance along a side is a twelfth of its square. What the texels add is less than
+ * that of a box as wide as the narrower side and half of it, whatever the rectangle's size and
+ * turn: light stays where the photon's cell sends it. */
+static void test_light_stays_in_its_area(void **state) {
+  (void)state;
+  double worst = 0;
+  for (int i = 0; i < 200; i++) {
+    const double narrow = 2 * pow(8, fmod(0.618034 * i, 1)), ratio = 1 + 3 * fmod(0.7549 * i, 1);
+    const double turn = 6.28 * fmod(0.5698 * i, 1);
+    const splat s =
+        make(60 + fmod(3.7 * i, 8), 60 + fmod(5.3 * i, 8), ratio * narrow, narrow, turn);
+    run(&s, 1);
+    const spread m = measure(turn);
+    assert_near(m.all, UNITS, 0);
+    const double added =
+        fmax(m.along - pow(ratio * narrow, 2) / 12, m.beside - narrow * narrow / 12);
+    worst = fmax(worst, added / (narrow * narrow));
+    if (hypot(m.at[0] - s.at[0], m.at[1] - s.at[1]) > 0.3 * narrow)
+      fail_msg("%g x %g turned by %g: %g, %g for %g, %g", ratio * narrow, narrow, turn, m.at[0],
+               m.at[1], s.at[0], s.at[1]);
+  }
+  print_message("variance added: %g of the narrower side's square\n", worst);
+  if (!(worst < 0.5)) fail_msg("variance added: %g of the narrower side's square", worst);
+}
+
+/* Squares side by side, turned against the texels. */
+static void test_side_by_side_they_are_even(void **state) {
+  (void)state;
+  static splat splats[MOST];
+  double worst = 0;
+  for (int i = 0; i < 24; i++) {
+    const double a = 2 * pow(4, i / 24.0), turn = 1.57 * fmod(0.618034 * i, 1);
+    const double u[2] = {a * cos(turn), a * sin(turn)};
+    size_t count = 0;
+    for (int y = -64; y < 64; y++)
+      for (int x = -64; x < 64; x++) {
+        const double px = 64.3 + x * u[0] - y * u[1], py = 63.8 + x * u[1] + y * u[0];
+        if (fmin(px, py) < 8 || fmax(px, py) > 120) continue;
+        assert_true(count < MOST);
+        splats[count++] = make(px, py, a, a, turn);
+      }
+    run(splats, count);
+    const uint32_t *texel = sums;
+    for (int level = 0; level < LEVELS; texel += 3 * texels_of(level), level++) {
+      const int side = SIDE >> level, from = 40 >> level, to = 88 >> level;
+      const double right = UNITS / (a * a) * ldexp(1, 2 * level);
+      for (int y = from; y < to; y++)
+        for (int x = from; x < to; x++) {
+          const double light = texel[3 * (y * side + x) + 1];
+          if (light > 0) worst = fmax(worst, fabs(light / right - 1));
+        }
+    }
+  }
+  print_message("uneven by %g\n", worst);
+  if (!(worst < 0.1)) fail_msg("uneven by %g", worst);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_light_stays_in_its_area),
+      cmocka_unit_test(test_side_by_side_they_are_even),
+  };
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}
