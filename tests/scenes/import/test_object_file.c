@@ -85,20 +85,20 @@ static void knots_are_read(void **state) {
   assert_int_equal(scene.object[0].mesh.face_count, 2 * 90 * 12);
   abbe_scene_free(&scene);
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-    abbe_object object[1];
+    abbe_scene one = {.object = calloc(1, sizeof *one.object)};
     abbe_error error = {0};
     abbe_yaml *yaml;
-    size_t count = 0;
     char text[256];
     snprintf(text, sizeof text, "\n{shape: knot, major: 0.05, minor: 0.025, %s, reflectance: 0.5}",
              bad[i].keys);
     assert_int_equal(abbe_yaml_parse(text, strlen(text), "text", &yaml, &error), ABBE_OK);
-    assert_int_not_equal(
-        abbe_object_read(yaml, abbe_yaml_root(yaml), "", &table, object, 1, &count, &error),
-        ABBE_OK);
+    assert_int_not_equal(abbe_object_read(yaml, abbe_yaml_root(yaml), "", &table, one.object, 1,
+                                          &one.object_count, &error),
+                         ABBE_OK);
     if (strstr(error.text, bad[i].says) == NULL || strstr(error.text, "text:2:") == NULL)
       fail_msg("%s", error.text);
     abbe_yaml_free(yaml);
+    abbe_scene_free(&one);
   }
 }
 
