@@ -22,8 +22,6 @@ struct Footprint {
   float next_share;
 };
 
-const float FINEST_BLEND = 0.25;
-
 // From the hit to that of the neighbouring photon on the same path, in texels, as far as if the
 // two started a cell apart; zero if there is none.
 vec2 neighbour_step(ivec2 cell, ivec2 to, vec2 start, Reference r) {
@@ -83,12 +81,10 @@ Footprint footprint_of(Photon photon, Reference r) {
   if (dot(f.across, by_a ? a : b) < 0.0) f.across = -f.across;
   f.skew *= min(1.0, wide / max(length(f.skew), 1e-20));
   float least = max(max(narrow, wide / float(MAX_ACROSS)), 0.5);
-  float at = max(log2(least) + 0.75, 0.0);
-  bool finest = at < 0.5 + FINEST_BLEND;
-  float whole = finest ? 0.0 : clamp(floor(at), 1.0, float(counts.map_levels - 1));
-  float share = finest ? 0.5 * (at - 0.5) / FINEST_BLEND + 0.5 : at - whole;
+  float fine = max(log2(least) + 1.25, 0.0), whole = min(floor(fine), float(counts.map_levels - 1));
   f.level = int(whole);
-  f.next_share = f.level + 1 < counts.map_levels ? clamp(share, 0.0, 1.0) : 0.0;
+  bool shares = f.level > 0 && f.level + 1 < counts.map_levels;
+  f.next_share = shares ? clamp(2.0 * (fine - whole) - 1.0, 0.0, 1.0) : 0.0;
   // A tear between neighbours is not a footprint: no farther than the texels can cover.
   float most_wide = 2.0 * exp2(whole) * float(MAX_ACROSS);
   f.wide = min(wide, most_wide);

@@ -15,7 +15,7 @@ layout(std430, binding = BINDING_MAP_SUMS) buffer MapSums { uint map_sum[]; };
 uniform int map_size;
 uniform uint most;
 uniform uint map_texels;  // of all levels
-uniform bool has_edges;    // light has, where refractors have faces
+uniform bool has_edges;    // light has, where refractors have facets
 
 uint level_offset(int level) {
   // side^2 (1 + 1/4 + ...), level terms.
@@ -24,9 +24,9 @@ uint level_offset(int level) {
 }
 
 const float LEAST_EXTENT = 0.25;  // of a texel
-const int MOST_ACROSS = 60, MOST_ALONG = 60;
+const int MOST_IN_LINE = 15, MOST_IN_ROWS = 60;
 const float MOST_WIDE = 0.84;  // of a texel: what lies turned is wider, and more than a texel leaves gaps
-const int MOST_PARTS = 64;  // of a splat in the level below its own, or it stays in its own
+const int MOST_PARTS = 16;  // of a splat in the level below its own, or it stays in its own
 
 void add(uint texel, int channel, uint v) {
 #ifdef WIDE
@@ -83,9 +83,11 @@ Grid grid_of(int level, float narrow, float wide, float shifted) {
   Grid g;
   g.level = level;
   g.size = exp2(float(level));
-  g.beside = max(int(ceil(narrow / (MOST_WIDE * g.size))), 1);
-  g.across = clamp(int(ceil(wide / (MOST_WIDE * g.size))), 1, MOST_ACROSS);
-  g.along = clamp(int(ceil(shifted / g.size - 0.25)), 1, MOST_ALONG);
+  float part = has_edges ? MOST_WIDE * g.size : g.size;
+  int most = has_edges ? MOST_IN_ROWS : MOST_IN_LINE;
+  g.beside = has_edges ? max(int(ceil(narrow / part)), 1) : 1;
+  g.across = clamp(int(ceil(wide / part)), 1, most);
+  g.along = clamp(int(ceil(shifted / g.size - 0.25)), 1, most);
   return g;
 }
 

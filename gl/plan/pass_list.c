@@ -113,13 +113,13 @@ static void list_photons(abbe_plan *plan) {
                   least, most);
   else
     abbe_plan_add(plan, ABBE_PASS_PHOTONS, "%zu wavelengths through the refractors", most);
-  abbe_plan_add(
-      plan, ABBE_PASS_SPECTRAL_MAP, "%zu x %zu texels%s%s%s%s", plan->desc.map_size,
-      plan->desc.map_size,
-      plan->edges ? ", splats in rows: a refractor is no sphere, so light may end at edges" : "",
-      plan->desc.faces > 1 ? " for each face of a cube around the light" : "",
-      plan->desc.map_layout != NULL ? ", one light's laid out as asked" : "",
-      plan->desc.history > 1 ? ", the mean of frames that follow one another" : "");
+  abbe_plan_add(plan, ABBE_PASS_SPECTRAL_MAP, "%zu x %zu texels%s%s%s%s", plan->desc.map_size,
+                plan->desc.map_size,
+                plan->edges ? ", splats in rows: a refractor has facets, so light ends at edges"
+                            : "",
+                plan->desc.faces > 1 ? " for each face of a cube around the light" : "",
+                plan->desc.map_layout != NULL ? ", one light's laid out as asked" : "",
+                plan->desc.history > 1 ? ", the mean of frames that follow one another" : "");
 }
 
 static void list_light(abbe_plan *plan) {

@@ -115,7 +115,7 @@ typedef struct abbe_plan {
   /* What follows from the facts above. */
   bool tiles;     /* light may land where its light's map cannot hold it: receivers have tiles */
   bool fills;     /* light is laid between wavelengths */
-  bool edges;     /* some refractor is no sphere: light may end at edges, and splats are cut finer */
+  bool edges;     /* some refractor has facets: light ends at edges, and splats are cut finer */
   bool lengths;   /* hits keep the length of their path inside: it tells what is absorbed at any
                      wavelength */
   bool draw_back; /* views show the back of refractors, too */

@@ -89,8 +89,8 @@ static inline line *put(lines *l, row_kind kind, abbe_plan_item item) {
   "a disk, 'lamp' first: 1 points stand for each, with as many sharp shadows; the camera sees it " \
   "in refractors alone"
 
-/* Of a scene with a refractor that is no sphere. */
-#define IN_ROWS RUNS(PASS_SPECTRAL_MAP, "splats in rows: a refractor is no sphere")
+/* Of a scene with facets. */
+#define IN_ROWS RUNS(PASS_SPECTRAL_MAP, "splats in rows: a refractor has facets")
 
 /* The renderer gives an environment lights of its own, after the scene's. */
 static inline const char *light_name(const abbe_scene *scene, size_t light) {

@@ -47,7 +47,7 @@ static const struct {
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "ring",
               "triangle hierarchy: the object is a general mesh, and light may meet it more than "
               "twice"),
-      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"), IN_ROWS,
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"bunny",
@@ -55,7 +55,7 @@ static const struct {
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "bunny",
               "triangle hierarchy: the object is a general mesh, and light may meet it more than "
               "twice"),
-      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"), IN_ROWS,
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"glass",
@@ -63,7 +63,7 @@ static const struct {
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "glass",
               "triangle hierarchy: the object is a general mesh, and light may meet it more than "
               "twice"),
-      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"), IN_ROWS,
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       RUNS(CHOICE_TEXTURES, "a receiver has one"), GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
 };
