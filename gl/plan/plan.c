@@ -52,7 +52,7 @@ static void combine(abbe_plan *plan) {
   plan->fills = !abbe_profile_is_wyman2006(plan->desc.profile) &&
                 plan->desc.fill != ABBE_FILL_NONE &&
                 ((apart && !published) || (published && caustics));
-  plan->edges = caustics && !published && plan->convex;
+  plan->edges = caustics && !published && plan->facets;
   plan->lengths = caustics && plan->tinting && !plan->multi_refractor_paths && !published;
 }
 

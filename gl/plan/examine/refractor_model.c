@@ -153,7 +153,8 @@ static void list_model(abbe_plan *plan, size_t object, const char *name, const c
     ++*unlisted;
 }
 
-static void add(abbe_plan *plan, size_t i, bool mirror, abbe_refractor_model model) {
+static void add(const abbe_scene *scene, abbe_plan *plan, size_t i, bool mirror,
+                abbe_refractor_model model) {
   plan->refractor_object[plan->refractor_count] = i;
   plan->mirror[plan->refractor_count] = mirror;
   plan->model[plan->refractor_count++] = model;
@@ -161,6 +162,7 @@ static void add(abbe_plan *plan, size_t i, bool mirror, abbe_refractor_model mod
   plan->convex = plan->convex || model == ABBE_REFRACTOR_CONVEX;
   plan->layers = plan->layers || model == ABBE_REFRACTOR_LAYERS;
   plan->bvh = plan->bvh || model == ABBE_REFRACTOR_BVH;
+  plan->facets = plan->facets || scene->object[i].exact.kind == ABBE_EXACT_CONVEX;
 }
 
 static abbe_result add_refractor(const abbe_scene *scene, size_t i, abbe_plan *plan,
@@ -169,14 +171,14 @@ static abbe_result add_refractor(const abbe_scene *scene, size_t i, abbe_plan *p
   char reason[288];
   abbe_result result = abbe_spectral_needs_examine(scene, object->material, plan, error);
   plan->absorbing = plan->absorbing || object->medium != NULL;
-  plan->tinting = plan->tinting || abbe_medium_is_coloured(object->medium, plan->desc.min_nm,
-                                                          plan->desc.max_nm);
+  plan->tinting = plan->tinting ||
+                  abbe_medium_is_coloured(object->medium, plan->desc.min_nm, plan->desc.max_nm);
   if (result == ABBE_OK) result = check_asked(object, plan, error);
   if (result != ABBE_OK) return result;
   if (scene->camera.inside && plan->refractor_count < MAX_FOLLOWED &&
       abbe_object_contains(object, scene->camera.eye))
     plan->eye_inside |= 1u << plan->refractor_count;
-  add(plan, i, false, model_of(object, plan));
+  add(scene, plan, i, false, model_of(object, plan));
   write_reason(object, plan, reason, sizeof reason);
   list_model(plan, i, object->name, reason, unlisted);
   return ABBE_OK;
@@ -189,7 +191,7 @@ static abbe_result add_mirror(const abbe_scene *scene, size_t i, abbe_plan *plan
   char reason[288], reflects[128];
   abbe_result result = abbe_spectral_needs_mirror(object, plan, reflects, sizeof reflects, error);
   if (result != ABBE_OK) return result;
-  add(plan, i, true, model);
+  add(scene, plan, i, true, model);
   plan->mirror_count++;
   snprintf(reason, sizeof reason, "%s: the object is a mirror%s", abbe_refractor_model_name(model),
            model == ABBE_REFRACTOR_SPHERE ? " and a sphere" : ", on both sides of its faces");

@@ -71,6 +71,7 @@ typedef struct abbe_plan {
   /* Models of refractors in use; the most general model of receivers; parallelograms that are hit
    * exactly. */
   bool spheres, convex, layers, bvh;
+  bool facets; /* some of them is a solid of planes, whatever its model */
   abbe_receiver_model receivers;
   size_t parallelogram_count;
 
