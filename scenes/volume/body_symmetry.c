@@ -113,21 +113,6 @@ static bool keeps_all(const search *s, const double map[9]) {
   return true;
 }
 
-/* Of two directions that are not along each other: three unit vectors across, as columns. */
-static void frame_of(const double a[3], const double b[3], double side, double out[9]) {
-  double x[3], y[3], z[3];
-  memcpy(x, a, sizeof x);
-  abbe_vector_normalise(x);
-  abbe_vector_cross(a, b, z);
-  abbe_vector_normalise(z);
-  abbe_vector_cross(z, x, y);
-  for (int k = 0; k < 3; k++) {
-    out[3 * k] = x[k];
-    out[3 * k + 1] = y[k];
-    out[3 * k + 2] = side * z[k];
-  }
-}
-
 /* A map that is there already: corners of faceted meshes are several marks in one place. */
 static bool is_known(const abbe_body_symmetry *s, const double map[9]) {
   for (size_t i = 0; i < s->count; i++) {
@@ -141,8 +126,8 @@ static bool is_known(const abbe_body_symmetry *s, const double map[9]) {
 /* False where there are too many. */
 static bool try_map(search *s, const mark *c, const mark *d, double side) {
   double from[9], to[9], map[9];
-  frame_of(s->first->place, s->second->place, 1, from);
-  frame_of(c->place, d->place, side, to);
+  abbe_vector_frame(s->first->place, s->second->place, 1, from);
+  abbe_vector_frame(c->place, d->place, side, to);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) map[3 * i + j] = abbe_vector_dot(&to[3 * i], &from[3 * j]);
   if (is_known(s->found, map) || !keeps_all(s, map)) return true;

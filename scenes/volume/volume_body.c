@@ -80,25 +80,10 @@ abbe_result abbe_volume_body_make(const abbe_object *object, abbe_volume_body *o
                         object->name);
 }
 
-/* Three unit vectors of two, as columns. */
-static void frame_of(const double a[3], const double b[3], double out[9]) {
-  double x[3], y[3], z[3];
-  memcpy(x, a, sizeof x);
-  abbe_vector_normalise(x);
-  abbe_vector_cross(a, b, z);
-  abbe_vector_normalise(z);
-  abbe_vector_cross(z, x, y);
-  for (int k = 0; k < 3; k++) {
-    out[3 * k] = x[k];
-    out[3 * k + 1] = y[k];
-    out[3 * k + 2] = z[k];
-  }
-}
-
 static void turn_by_anchors(const abbe_volume_body *body, double now[3][3], double turn[9]) {
   double from[9], to[9];
-  frame_of(body->anchor_at[0], body->anchor_at[1], from);
-  frame_of(now[0], now[1], to);
+  abbe_vector_frame(body->anchor_at[0], body->anchor_at[1], 1, from);
+  abbe_vector_frame(now[0], now[1], 1, to);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       turn[3 * i + j] = 0;

@@ -83,6 +83,18 @@ static abbe_result slab_scene(const slab *s, double background, double irradianc
       -side * 3 * away);
 }
 
+/* Where the scene was made: the row, right to 2e-3 of its value, and of use to useful_share of it.
+ * Frees the scene. */
+static abbe_result add_row(abbe_known_run *run, abbe_known_setting *row, double useful_share,
+                           abbe_result made, abbe_scene *scene, double from, double to,
+                           abbe_error *error) {
+  row->slack = 2e-3 * row->exact;
+  row->useful = useful_share * row->exact;
+  if (made == ABBE_OK) made = abbe_known_add_setting(run, row, scene, from, to, error);
+  abbe_scene_free(scene);
+  return made;
+}
+
 static abbe_result add_slab(abbe_known_run *run, const slab *s, double from, double to,
                             abbe_error *error) {
   char what[112];
@@ -94,17 +106,13 @@ static abbe_result add_slab(abbe_known_run *run, const slab *s, double from, dou
                             .samples = 1 << 14,
                             .side = 8,
                             .channel = "Y"};
-  row.slack = 2e-3 * row.exact;
-  row.useful = 3e-2 * row.exact;
   abbe_number_format(
       what, sizeof what,
       "mist of depth %.2g, g %.2g, in the sun %.2g degrees off upright, from %s at %.2g",
       (s->scattering + s->absorption) * s->thickness, s->g, s->sun_deg,
       s->below ? "below" : "above", s->view_deg);
   abbe_result result = slab_scene(s, 0, 1, &scene, error);
-  if (result == ABBE_OK) result = abbe_known_add_setting(run, &row, &scene, from, to, error);
-  abbe_scene_free(&scene);
-  return result;
+  return add_row(run, &row, 3e-2, result, &scene, from, to, error);
 }
 
 /* The background behind the slab. */
@@ -119,12 +127,8 @@ static abbe_result add_left(abbe_known_run *run, double from, double to, abbe_er
       .samples = 1 << 12,
       .side = 8,
       .channel = "Y"};
-  row.slack = 2e-3 * row.exact;
-  row.useful = 1e-2 * row.exact;
   abbe_result result = slab_scene(&s, 1, 1e-9, &scene, error);
-  if (result == ABBE_OK) result = abbe_known_add_setting(run, &row, &scene, from, to, error);
-  abbe_scene_free(&scene);
-  return result;
+  return add_row(run, &row, 1e-2, result, &scene, from, to, error);
 }
 
 /* Sunlight that reaches a ball below it. */
@@ -137,8 +141,6 @@ static abbe_result add_reached(abbe_known_run *run, double from, double to, abbe
                             .reason = reason,
                             .samples = 1 << 17,
                             .side = 8};
-  row.slack = 2e-3 * row.exact;
-  row.useful = 1e-2 * row.exact;
   abbe_result result = abbe_known_scene(
       &scene, error,
       "camera: {eye: [0, -2, 0], target: [0, 0, -1]}\n"
@@ -148,9 +150,7 @@ static abbe_result add_reached(abbe_known_run *run, double from, double to, abbe
       "- {name: ball, shape: sphere, radius: 0.1, levels: 3, material: water}\n"
       "- {name: floor, shape: rectangle, width: 4, height: 4, reflectance: 0.5,\n"
       "   transform: [{translate: [0, 0, -1]}]}\n");
-  if (result == ABBE_OK) result = abbe_known_add_setting(run, &row, &scene, from, to, error);
-  abbe_scene_free(&scene);
-  return result;
+  return add_row(run, &row, 1e-2, result, &scene, from, to, error);
 }
 
 /* ---- a lamp in mist ---- */
@@ -181,8 +181,6 @@ static abbe_result add_lamp(abbe_known_run *run, double g, double from, double t
                             .samples = 1 << 16,
                             .side = 32,
                             .channel = "Y"};
-  row.slack = 2e-3 * row.exact;
-  row.useful = 3e-2 * row.exact;
   abbe_number_format(what, sizeof what, "a lamp in mist, g %.2g, seen 0.2 m past it", g);
   abbe_result result = abbe_known_scene(
       &scene, error,
@@ -192,9 +190,7 @@ static abbe_result add_lamp(abbe_known_run *run, double g, double from, double t
       "objects: [{name: far off, shape: rectangle, width: 9, height: 9, reflectance: 0,\n"
       "           transform: [{rotate: {axis: [0, 1, 0], angle: 90}}, {translate: [5, 0, 0]}]}]\n",
       g);
-  if (result == ABBE_OK) result = abbe_known_add_setting(run, &row, &scene, from, to, error);
-  abbe_scene_free(&scene);
-  return result;
+  return add_row(run, &row, 3e-2, result, &scene, from, to, error);
 }
 
 /* ---- under water ---- */
@@ -284,15 +280,11 @@ static abbe_result add_shaft(abbe_known_run *run, bool above, double from, doubl
   row.exact =
       above ? shaft_radiance(&s, 0, down, 0.4) / (n * n) * (1 - abbe_closed_form_fresnel(0, n))
             : seen_from_within(&s);
-  row.slack = 2e-3 * row.exact;
-  row.useful = 5e-2 * row.exact;
   result = above ? water_scene("eye: [0, 0, 2], target: [0, 0, 0], up: [0, 1, 0]", 4, &s, "",
                                &scene, error)
                  : water_scene("eye: [-0.3, 0, -0.2], target: [1, 0, -0.2], inside: true", 30, &s,
                                wall, &scene, error);
-  if (result == ABBE_OK) result = abbe_known_add_setting(run, &row, &scene, from, to, error);
-  abbe_scene_free(&scene);
-  return result;
+  return add_row(run, &row, 5e-2, result, &scene, from, to, error);
 }
 
 abbe_result abbe_known_medium(abbe_known_run *run, abbe_error *error) {

@@ -48,12 +48,27 @@ static void triangle_points_along_its_normal(void **state) {
   assert_true(n[0] == 0 && n[1] == 0 && n[2] == 2);
 }
 
+/* A frame and its mirror image: columns of length 1, square to each other, to one hand each. */
+static void frames_are_square(void **state) {
+  (void)state;
+  const double a[3] = {0, 3, 0}, b[3] = {-2, 5, 0};
+  double frame[9], image[9];
+  abbe_vector_frame(a, b, 1, frame);
+  abbe_vector_frame(a, b, -1, image);
+  const double known[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1};
+  for (int k = 0; k < 9; k++) {
+    assert_true(fabs(frame[k] - known[k]) < 1e-15);
+    assert_true(fabs(image[k] - (k == 8 ? -1 : known[k])) < 1e-15);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(products),
       cmocka_unit_test(normalising_zero_or_infinity_is_refused),
       cmocka_unit_test(what_is_next_to_nothing_has_a_direction),
       cmocka_unit_test(triangle_points_along_its_normal),
+      cmocka_unit_test(frames_are_square),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

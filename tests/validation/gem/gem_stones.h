@@ -5,6 +5,7 @@
 #include "tests/scenes/cuts/designs.h"
 
 #include "spectral/formats/material_table_load.h"
+#include "validation/gem/gem_optimum.h"
 #include "validation/gem/gem_view.h"
 
 #define GIRDLE_OF_FOUR "a -90 1.0 96 24 48 72\n"
@@ -69,6 +70,19 @@ static inline abbe_gem_view judged_view(const judged *j, const abbe_gem_view_des
 }
 
 #define DEG (3.14159265358979323846 / 180)
+
+/* A search of 3 x 4 pairs of angles, by few rays. */
+static inline abbe_gem_optimum_desc small_search(void) {
+  return (abbe_gem_optimum_desc){.crown_from_rad = 30 * DEG,
+                                 .crown_to_rad = 40 * DEG,
+                                 .pavilion_from_rad = 35 * DEG,
+                                 .pavilion_to_rad = 46 * DEG,
+                                 .crowns = 3,
+                                 .pavilions = 4,
+                                 .measure = ABBE_GEM_ISO,
+                                 .width_m = 0.0065,
+                                 .view = {.side = 16, .repeats = 4, .threads = 1}};
+}
 
 /* Of one index, without absorption. */
 static inline abbe_material glass(double n) {

@@ -11,18 +11,6 @@
 enum { PARTS = 3 };
 static const char *const path[PARTS] = {"grid_file_0.csv", "grid_file_1.csv", "grid_file_2.csv"};
 
-static abbe_gem_optimum_desc describe(void) {
-  return (abbe_gem_optimum_desc){.crown_from_rad = 30 * DEG,
-                                 .crown_to_rad = 40 * DEG,
-                                 .pavilion_from_rad = 35 * DEG,
-                                 .pavilion_to_rad = 46 * DEG,
-                                 .crowns = 3,
-                                 .pavilions = 4,
-                                 .measure = ABBE_GEM_ISO,
-                                 .width_m = 0.0065,
-                                 .view = {.side = 16, .repeats = 4, .threads = 1}};
-}
-
 static abbe_gem_optimum search(const judged *j, const abbe_material *m,
                                const abbe_gem_optimum_desc *desc, bool judge) {
   abbe_gem_optimum o;
@@ -35,7 +23,7 @@ static abbe_gem_optimum search(const judged *j, const abbe_material *m,
 
 static void write_parts(const judged *j, const abbe_material *m) {
   for (size_t k = 0; k < PARTS; k++) {
-    abbe_gem_optimum_desc desc = describe();
+    abbe_gem_optimum_desc desc = small_search();
     desc.part = k;
     desc.parts = PARTS;
     abbe_gem_optimum part = search(j, m, &desc, true);
@@ -50,7 +38,7 @@ static void parts_are_the_whole(void **state) {
   (void)state;
   const abbe_material quartz = glass(1.54);
   judged j = judged_make(design_a, &quartz, 1);
-  const abbe_gem_optimum_desc desc = describe();
+  const abbe_gem_optimum_desc desc = small_search();
   abbe_gem_optimum whole = search(&j, &quartz, &desc, true);
   abbe_gem_optimum merged = search(&j, &quartz, &desc, false);
   abbe_error error = {0};
@@ -91,14 +79,14 @@ static void what_is_of_another_search_or_broken(void **state) {
   const abbe_material quartz = glass(1.54), heavy = glass(1.9);
   judged j = judged_make(design_a, &quartz, 1);
   write_parts(&j, &quartz);
-  abbe_gem_optimum_desc desc = describe();
+  abbe_gem_optimum_desc desc = small_search();
   refuse(&j, &heavy, &desc, NULL, ABBE_INVALID_ARGUMENT, "another search");
   desc.crowns = 4;
   refuse(&j, &quartz, &desc, NULL, ABBE_INVALID_ARGUMENT, "3 x 4");
-  desc = describe();
+  desc = small_search();
   desc.measure = ABBE_GEM_COS;
   refuse(&j, &quartz, &desc, NULL, ABBE_INVALID_ARGUMENT, "another search");
-  desc = describe();
+  desc = small_search();
   char *data, bad[4096];
   size_t size;
   assert_int_equal(abbe_file_read(path[0], sizeof bad / 2, &data, &size, NULL), ABBE_OK);

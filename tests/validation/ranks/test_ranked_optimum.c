@@ -26,15 +26,7 @@ typedef struct asked {
 
 static asked prepare(void) {
   asked a = {.quartz = glass(1.54)};
-  a.search = (abbe_gem_optimum_desc){.crown_from_rad = 30 * DEG,
-                                     .crown_to_rad = 40 * DEG,
-                                     .pavilion_from_rad = 35 * DEG,
-                                     .pavilion_to_rad = 46 * DEG,
-                                     .crowns = 3,
-                                     .pavilions = 4,
-                                     .measure = ABBE_GEM_ISO,
-                                     .width_m = 0.0065,
-                                     .view = {.side = 16, .repeats = 4, .threads = 1}};
+  a.search = small_search();
   a.j = judged_make(design_a, &a.quartz, 1);
   return a;
 }
