@@ -93,7 +93,7 @@ static void print_row(const abbe_frame_error *row) {
 }
 
 static void print_table(const request *q, const abbe_frame_flicker *f, const abbe_frame_error *row,
-                        const abbe_frame_error *all) {
+                        const abbe_frame_error *all, const abbe_frame_error *largest) {
   printf("%s, of the RMS of %s\nframe      error    flicker      ghost\n",
          f->caustic ? "caustic" : "picture", q->reference != NULL ? "the reference" : "the frame");
   for (size_t i = 0; i < f->count; i++) {
@@ -102,6 +102,8 @@ static void print_table(const request *q, const abbe_frame_flicker *f, const abb
   }
   printf("  all");
   print_row(all);
+  printf(" most");
+  print_row(largest);
 }
 
 static void add_row(cJSON *item, const abbe_frame_error *row) {
@@ -114,10 +116,11 @@ static void add_row(cJSON *item, const abbe_frame_error *row) {
 
 static abbe_result print_json(const request *q, const abbe_frame_flicker *f,
                               const abbe_frame_error *row, const abbe_frame_error *all,
-                              abbe_error *error) {
+                              const abbe_frame_error *largest, abbe_error *error) {
   cJSON *root = cJSON_CreateObject();
   cJSON_AddStringToObject(root, "of", f->caustic ? "caustic" : "picture");
   add_row(root, all);
+  add_row(cJSON_AddObjectToObject(root, "largest"), largest);
   cJSON *list = cJSON_AddArrayToObject(root, "frames");
   for (size_t i = 0; i < f->count; i++) {
     cJSON *item = cJSON_CreateObject();
@@ -148,17 +151,18 @@ int abbe_command_flicker(int argc, char **argv) {
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};
   abbe_frame_flicker flicker = {.caustic = q.caustic};
-  abbe_frame_error all, *row = calloc(q.series.count, sizeof *row);
+  abbe_frame_error all, largest, *row = calloc(q.series.count, sizeof *row);
   abbe_result result =
       row != NULL ? ABBE_OK : abbe_error_set(&error, ABBE_NO_MEMORY, "no memory for frames");
   for (size_t i = 0; i < q.series.count && result == ABBE_OK; i++)
     result = add_frame(&q, i, &flicker, &row[i], &error);
   if (result == ABBE_OK) {
     abbe_frame_flicker_sum_up(row, q.series.count, &all);
+    abbe_frame_flicker_largest(row, q.series.count, &largest);
     if (q.json)
-      result = print_json(&q, &flicker, row, &all, &error);
+      result = print_json(&q, &flicker, row, &all, &largest, &error);
     else
-      print_table(&q, &flicker, row, &all);
+      print_table(&q, &flicker, row, &all, &largest);
   }
   abbe_frame_flicker_free(&flicker);
   free(row);

@@ -2,6 +2,7 @@
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
 #include "cli/base/scene_input.h"
+#include "cli/base/work_options.h"
 
 #include "base/nearest.h"
 #include "scenes/volume/volume_file.h"
@@ -18,6 +19,7 @@ typedef struct request {
   const char *program, *scene, *out, *object, *light, *materials;
   abbe_scene_input_changes changes;
   abbe_volume_fill_desc desc;
+  abbe_work_options work;
   double radii; /* of the region, in the object's; 0: 3 */
   bool json, quiet;
 } request;
@@ -27,6 +29,7 @@ enum {
   OPTION_LIGHT,
   OPTION_NODES,
   OPTION_HARMONICS,
+  OPTION_RANK,
   OPTION_RAYS,
   OPTION_ASYMMETRIC,
   OPTION_SHELLS,
@@ -37,12 +40,7 @@ enum {
   OPTION_PHOTONS,
   OPTION_PASSES,
   OPTION_UNTIL_ERROR,
-  OPTION_RESUME,
   OPTION_CHECKPOINT,
-  OPTION_EVERY,
-  OPTION_RANGE,
-  OPTION_SEED,
-  OPTION_THREADS,
   OPTION_MATERIALS,
   OPTION_JSON
 };
@@ -57,6 +55,9 @@ static const struct argp_option options[] = {
      "directions of light: 1, 12, 42, 162, 642 or 2562 (162; of a ball 1)", 1},
     {"sh", OPTION_HARMONICS, "N", 0,
      "spherical harmonics of the light's direction to degree N, 1 to 12, in place of the nodes", 1},
+    {"rank", OPTION_RANK, "N", 0,
+     "the N modes of the light's direction that leave the least, 1 to 256, in place of the nodes",
+     1},
     {"rays", OPTION_RAYS, "N", 0,
      "the rays of N points of the object's surface in place of cells' values: any illuminant, "
      "lamps "
@@ -77,13 +78,9 @@ static const struct argp_option options[] = {
     {"passes", OPTION_PASSES, "N", 0, "of a node (4)", 2},
     {"until-error", OPTION_UNTIL_ERROR, "X", 0,
      "more passes, until a node's relative standard error is below X", 2},
-    {"resume", OPTION_RESUME, NULL, 0, "go on from the checkpoint, where there is one", 2},
+    ABBE_WORK_OPTIONS(2, 2),
     {"checkpoint", OPTION_CHECKPOINT, "FILE", ABBE_ARGUMENT_WRITES,
      "where it is kept until all is done (OUTPUT.checkpoint)", 2},
-    {"checkpoint-every", OPTION_EVERY, "SECONDS", 0, "how often it is written (30)", 2},
-    {"range", OPTION_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", 2},
-    {"seed", OPTION_SEED, "N", 0, "of the random numbers (0)", 2},
-    {"threads", OPTION_THREADS, "N", 0, "all cores without; the result is the same", 2},
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
      "a table instead of the scene's: default, thesis or a file", 1},
     ABBE_SCENE_INPUT_OPTIONS(1),
@@ -136,29 +133,16 @@ static error_t parse_work(int key, char *text, request *q) {
   case OPTION_UNTIL_ERROR:
     d->until_error = abbe_command_number(p, "--until-error", text, 1e-6, 1);
     return 0;
-  case OPTION_RESUME:
-    d->resume = true;
-    return 0;
   case OPTION_CHECKPOINT:
     d->checkpoint = text;
-    return 0;
-  case OPTION_EVERY:
-    d->checkpoint_s = abbe_command_number(p, "--checkpoint-every", text, 0, 1e9);
-    return 0;
-  case OPTION_RANGE:
-    abbe_command_range(p, "--range", text, &d->min_nm, &d->max_nm);
-    return 0;
-  case OPTION_SEED:
-    d->seed = (uint32_t)abbe_command_count(p, "--seed", text, 0, UINT32_MAX);
-    return 0;
-  case OPTION_THREADS:
-    d->threads = abbe_command_count(p, "--threads", text, 1, 256);
     return 0;
   case OPTION_MATERIALS:
     q->materials = text;
     return 0;
   default:
-    return abbe_scene_input_take(&q->changes, key, text, p);
+    return abbe_work_options_take(&q->work, key, text, p) == 0
+               ? 0
+               : abbe_scene_input_take(&q->changes, key, text, p);
   }
 }
 
@@ -186,6 +170,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_HARMONICS:
     d->degree = abbe_command_count(q->program, "--sh", text, 1, ABBE_LIGHT_HARMONICS_MOST);
+    return 0;
+  case OPTION_RANK:
+    d->rank = abbe_command_count(q->program, "--rank", text, 1, ABBE_CAUSTIC_VOLUME_MOST_RANK);
     return 0;
   case OPTION_RAYS:
     d->exits = abbe_command_count(q->program, "--rays", text, 1, ABBE_LIGHT_EXITS_MOST);
@@ -258,6 +245,12 @@ static abbe_result fill(request *q, const abbe_scene *scene, abbe_caustic_volume
     q->desc.region.outer = q->radii * body.radius;
   }
   if (result != ABBE_OK) return result;
+  q->desc.min_nm = q->work.min_nm;
+  q->desc.max_nm = q->work.max_nm;
+  q->desc.seed = q->work.seed;
+  q->desc.threads = q->work.threads;
+  q->desc.resume = q->work.resume;
+  q->desc.checkpoint_s = q->work.every_s;
   q->desc.progress = abbe_progress_update;
   q->desc.user = &progress;
   q->desc.stop = abbe_progress_stopped();
@@ -288,6 +281,8 @@ static void summarise(const request *q, const abbe_caustic_volume *v,
         "of facets; of %.2g it is not known how they change\n",
         v->exits.count, v->exits.points, s->maps, s->carried, s->sequences, s->alone);
   if (s->error > 0) fprintf(stderr, "relative standard error %.2g\n", s->error);
+  if (v->rank > 0)
+    fprintf(stderr, "%zu modes leave %.3g of the values (root mean square)\n", v->rank, s->left);
   if (s->joint_bytes > 0)
     fprintf(stderr, "joint cells take %.4g MB\n", 1e-6 * (double)s->joint_bytes);
   if (s->outflow[1] > 0)
@@ -311,6 +306,7 @@ static abbe_result print_json(const request *q, const abbe_caustic_volume *v,
       {"exits", (double)v->exits.count},   {"exits_carried", s->carried},
       {"exits_alone", s->alone},           {"sequences", (double)s->sequences},
       {"points", (double)v->exits.points}, {"symmetry", (double)s->maps},
+      {"modes", (double)v->rank},          {"modes_left", s->left},
       {"absorbed_w", s->ledger.absorbed},  {"lost_w", s->ledger.lost},
       {"outflow_least", s->outflow[0]},    {"outflow_greatest", s->outflow[1]}};
   bool made = cJSON_AddStringToObject(root, "file", q->out) != NULL &&
@@ -370,7 +366,7 @@ int abbe_command_volume(int argc, char **argv) {
           "  abbe render scenes/sphere.yaml --png sphere.png --transport volume --volume "
           "sphere-volume.exr\n",
   };
-  request q = {.program = argv[0], .desc = {.checkpoint_s = 30}};
+  request q = {.program = argv[0], .work.every_s = 30};
   abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};
   abbe_scene scene = {0};

@@ -1,5 +1,6 @@
 #include "cli/base/frame_series.h"
 
+#include "base/number.h"
 #include "colorimetry/image/animated_png.h"
 
 #include <stdio.h>
@@ -27,6 +28,59 @@ void abbe_frame_series_take(abbe_frame_series *s, const char *text) {
   }
   s->count = last - s->first;
   s->around = false;
+}
+
+void abbe_frame_series_take_move(abbe_frame_series *s, abbe_scene_input_changes *changes,
+                                 const char *text) {
+  const char *equals = strchr(text, '='), *colon = equals != NULL ? strchr(equals, ':') : NULL;
+  const bool numbers = colon != NULL && strchr("+-.[0123456789", equals[1]) != NULL &&
+                       colon > equals + 1 && colon[1] != '\0' &&
+                       strchr("+-.[0123456789", colon[1]) != NULL;
+  if (!numbers || equals == text || colon - text >= ABBE_FRAME_SERIES_MOVE_TEXT ||
+      strlen(colon) > ABBE_FRAME_SERIES_MOVE_TEXT) {
+    fprintf(stderr,
+            "%s: --move '%s' moves nothing; write KEY=A:B with numbers, such as "
+            "lights.lamp.intensity=1:3 or lights.sun.direction=[0,0,-1]:[1,0,-1]\n",
+            s->program, text);
+    exit(ABBE_EXIT_USAGE);
+  }
+  if (s->moves == ABBE_FRAME_SERIES_MOVES) {
+    fprintf(stderr, "%s: no more than %d --move; write keyframes into the scene\n", s->program,
+            ABBE_FRAME_SERIES_MOVES);
+    exit(ABBE_EXIT_USAGE);
+  }
+  char *first = s->move_first[s->moves];
+  snprintf(first, ABBE_FRAME_SERIES_MOVE_TEXT, "%.*s", (int)(colon - text), text);
+  s->move_last[s->moves++] = colon + 1;
+  abbe_scene_input_take(changes, ABBE_SCENE_INPUT_SET, first, s->program);
+}
+
+void abbe_frame_series_check_moves(const abbe_frame_series *s, struct argp_state *state) {
+  if (s->moves > 0 && (s->count == 0 || s->around))
+    argp_error(state, "--move goes with --frames A:B");
+}
+
+/* The place of the change that a scene begins with, for that of all frames. */
+static void put_change(abbe_scene_input_changes *changes, const char *first, const char *all) {
+  for (size_t i = 0; i < changes->set_count; i++)
+    if (strcmp(changes->set[i], first) == 0) changes->set[i] = all;
+}
+
+abbe_result abbe_frame_series_scene(const abbe_frame_series *s, const abbe_scene *scene,
+                                    const char *materials, const abbe_scene_input_changes *changes,
+                                    size_t i, abbe_scene *out, abbe_error *error) {
+  char move[ABBE_FRAME_SERIES_MOVES][3 * ABBE_FRAME_SERIES_MOVE_TEXT];
+  abbe_scene_input_changes own = *changes;
+  for (size_t m = 0; m < s->moves && s->count > 1; m++) {
+    const char *first = s->move_first[m];
+    const int key = (int)strcspn(first, "=");
+    abbe_number_format(move[m], sizeof move[m], "%.*s={keyframes: [[%.17g, %s], [%.17g, %s]]}", key,
+                       first, abbe_frame_series_time(s, scene->time, 0), first + key + 1,
+                       abbe_frame_series_time(s, scene->time, s->count - 1), s->move_last[m]);
+    put_change(&own, first, move[m]);
+  }
+  return abbe_scene_input_at(scene, materials, &own, abbe_frame_series_time(s, scene->time, i), out,
+                             error);
 }
 
 abbe_result abbe_frame_series_name(const char *path, size_t number, char **out, abbe_error *error) {

@@ -1,16 +1,18 @@
-/* frame_series.h: pictures one after another: which frames, when each of them is, what its files
- * are called, and the PNG that moves. It draws nothing.
+/* frame_series.h: pictures one after another: which frames, when each of them is, what moves in
+ * them, what their files are called, and the PNG that moves. It draws nothing.
  */
 #ifndef ABBE_CLI_BASE_FRAME_SERIES_H
 #define ABBE_CLI_BASE_FRAME_SERIES_H
 
 #include "base/error.h"
 #include "cli/base/command.h"
+#include "cli/base/scene_input.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 
 #define ABBE_FRAME_SERIES_MOST 100000
+enum { ABBE_FRAME_SERIES_MOVES = 16, ABBE_FRAME_SERIES_MOVE_TEXT = 256 };
 
 typedef struct abbe_frame_series {
   const char *program;
@@ -20,10 +22,33 @@ typedef struct abbe_frame_series {
   abbe_command_part part;
   bool merge;  /* frames that are there, and draw none */
   bool resume; /* draw those alone that are not there */
+  size_t moves;
+  char move_first[ABBE_FRAME_SERIES_MOVES][ABBE_FRAME_SERIES_MOVE_TEXT]; /* "KEY=A" */
+  const char *move_last[ABBE_FRAME_SERIES_MOVES];                        /* "B" */
 } abbe_frame_series;
 
 /* "A:B": frames A to B - 1. Ends the program where it is none. */
 void abbe_frame_series_take(abbe_frame_series *series, const char *text);
+
+/* A row of a command's options with frames over time. */
+#define ABBE_FRAME_SERIES_MOVE(key, group)                                                         \
+  {                                                                                                \
+    "move", key, "KEY=A:B", 0,                                                                     \
+        "a number or numbers of the scene go from A at the first of --frames A:B to B at the "     \
+        "last, "                                                                                   \
+        "such as lights.sun.direction=[0,0,-1]:[1,0,-1]; may be repeated",                         \
+        group                                                                                      \
+  }
+/* "KEY=A:B"; the scene begins with KEY=A. Ends the program where it is none, or one too many. */
+void abbe_frame_series_take_move(abbe_frame_series *series, abbe_scene_input_changes *changes,
+                                 const char *text);
+/* Moves without frames over time end the program. */
+void abbe_frame_series_check_moves(const abbe_frame_series *series, struct argp_state *state);
+
+/* The scene of frame i, at its time and with what has moved till then. */
+abbe_result abbe_frame_series_scene(const abbe_frame_series *series, const abbe_scene *scene,
+                                    const char *materials, const abbe_scene_input_changes *changes,
+                                    size_t i, abbe_scene *out, abbe_error *error);
 
 /* Whether frame i of the count is this process's to draw: of its part, and, where that is asked
  * for, with a file that is not there yet. exr and png as below, or NULL. */

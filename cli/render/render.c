@@ -27,7 +27,8 @@ enum {
   OPTION_STATS,
   OPTION_GL,
   OPTION_FRAMES,
-  OPTION_JSON
+  OPTION_JSON,
+  OPTION_MOVE
 };
 
 typedef abbe_render_request request;
@@ -47,6 +48,7 @@ static const struct argp_option options[] = {
      "warm up, then report the median of N frames (1); A:B: frames A to B - 1 over time, numbered, "
      "and FILE.png that moves",
      0},
+    ABBE_FRAME_SERIES_MOVE(OPTION_MOVE, 0),
     {"gl", OPTION_GL, "NAME", 0, "osmesa (CPU) or egl (osmesa)", 0},
     {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
     {0}};
@@ -107,6 +109,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     else
       q->frames = abbe_command_count(p, "--frames", text, 1, 1000);
     return 0;
+  case OPTION_MOVE:
+    abbe_frame_series_take_move(&q->series, &q->render.changes, text);
+    return 0;
   case OPTION_GL:
     q->backend = (abbe_context_backend)abbe_command_choice(p, "--gl", text, backends, 2);
     return 0;
@@ -126,6 +131,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
                  "%s writes frames by -o FILE.exr and --png FILE.png, and goes "
                  "without --save-map, --frames N, --bands and --error-bars",
                  q->series.around ? "--turntable" : "--frames A:B");
+    abbe_frame_series_check_moves(&q->series, state);
     check_ranks(q, state);
     if (q->series.merge && q->png == NULL)
       argp_error(state, "--merge makes a PNG that moves: give --png FILE.png");

@@ -121,8 +121,8 @@ static abbe_result make_scene(const abbe_render_request *q, const abbe_scene *sc
   const abbe_frame_series *s = &q->series;
   out->owned = !s->around;
   if (!s->around)
-    return abbe_scene_input_at(scene, q->render.materials, &q->render.changes,
-                               abbe_frame_series_time(s, scene->time, i), &out->scene, error);
+    return abbe_frame_series_scene(s, scene, q->render.materials, &q->render.changes, i,
+                                   &out->scene, error);
   out->scene = *scene;
   out->scene.camera = camera_at(&scene->camera, full * (double)i / (double)s->count);
   return ABBE_OK;

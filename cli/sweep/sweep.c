@@ -185,6 +185,47 @@ static abbe_result study_estimators(const abbe_sweep_options *q, abbe_error *err
   return result;
 }
 
+static abbe_result study_transports(const abbe_sweep_options *q, abbe_error *error) {
+  abbe_transport_contestant list[ABBE_TRANSPORT_STUDY_MOST];
+  const size_t count = abbe_transport_study_contestants(q->grid, list);
+  abbe_scene scene = {0};
+  abbe_context *context = NULL;
+  abbe_sweep_reference reference = {0};
+  abbe_transport_study *study = calloc(1, sizeof *study);
+  abbe_progress progress;
+  abbe_error why = {0};
+  char file[ABBE_SWEEP_PATH];
+  size_t refused = 0, light;
+  snprintf(file, sizeof file, "%.900s-volume.exr", q->work.table);
+  abbe_arguments_add(q->program, ABBE_ARGUMENT_WRITES, "the volume", file);
+  abbe_result result =
+      study != NULL ? abbe_scene_input_load(q->program, q->scene, q->materials, &scene, error)
+                    : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the study");
+  if (result == ABBE_OK)
+    result = abbe_sweep_reference_load(&scene, q->work.reference, NULL, &reference, &light, error);
+  if (result == ABBE_OK) result = abbe_context_make(q->backend, &context, error);
+  if (result == ABBE_OK) {
+    const abbe_sweep sweep = {.context = context,
+                              .scene = &scene,
+                              .frames = q->work.frames,
+                              .picture = &reference.picture};
+    abbe_progress_begin(&progress, q->grid, q->quiet);
+    result = abbe_transport_study_measure(&sweep, list, count, file, abbe_progress_update,
+                                          &progress, study, &refused, &why, error);
+    abbe_progress_end(&progress);
+  }
+  if (result == ABBE_OK && refused > 0 && !q->quiet)
+    fprintf(stderr, "note: %zu of %zu ways are left out; the first: %s\n", refused, count,
+            why.text);
+  if (result == ABBE_OK) result = abbe_transport_study_save(study, q->work.table, error);
+  if (result == ABBE_OK) abbe_transport_study_print(study, stdout);
+  abbe_context_free(context);
+  abbe_sweep_reference_free(&reference);
+  abbe_scene_free(&scene);
+  free(study);
+  return result;
+}
+
 /* ---- tables ---- */
 
 /* What a report draws again. */
@@ -290,6 +331,7 @@ static abbe_result run(const abbe_sweep_options *q, abbe_error *error) {
   if (result != ABBE_OK) return result;
   if (q->scaling) return study_scaling(q, error);
   if (q->estimators) return study_estimators(q, error);
+  if (abbe_sweep_options_compares_transports(q)) return study_transports(q, error);
   size_t count = q->scene == NULL ? q->argument_count : 1;
   abbe_sweep_table *tables = calloc(count, sizeof *tables);
   if (tables == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the tables");

@@ -79,8 +79,11 @@ static const struct argp_option options[] = {
      0},
     {"json", OPTION_JSON, NULL, 0, "all rows as JSON on standard output", 0},
     {"quiet", 'q', NULL, 0, "no progress", 0},
-    {"grid", OPTION_GRID, "quick|full|thin|presets", 0,
-     "a named set of settings; presets: do they keep their promise here? (quick)", 1},
+    {"grid", OPTION_GRID, "quick|full|thin|presets|volume|pinhole", 0,
+     "a named set of settings; presets: do they keep their promise here? volume, pinhole: ways for "
+     "the light by what is computed beforehand, and by samples of mirrors, with their bytes and "
+     "what frames of a moving light take (quick)",
+     1},
     {"profiles", OPTION_PROFILES, "LIST", 0,
      "default,thesis,thesis-cie,shah2007,shah2007-cie,wyman2006,wyman2006-cie,wand2003,trace,"
      "trace-filter,pinhole-64,pinhole-256,pinhole-1024 "
@@ -260,6 +263,11 @@ static error_t parse_reference(int key, char *text, request *q) {
   return 0;
 }
 
+bool abbe_sweep_options_compares_transports(const abbe_sweep_options *q) {
+  abbe_transport_contestant list[ABBE_TRANSPORT_STUDY_MOST];
+  return q->grid != NULL && abbe_transport_study_contestants(q->grid, list) > 0;
+}
+
 bool abbe_sweep_options_is_table(const char *path) {
   size_t length = strlen(path);
   return length > 4 && strcmp(path + length - 4, ".csv") == 0;
@@ -307,6 +315,13 @@ static void finish(request *q, struct argp_state *state) {
     argp_error(state,
                "--scaling times frames: it goes with -o, --plot, --frames, --gl, --materials "
                "and a square --size alone");
+  if (abbe_sweep_options_compares_transports(q) &&
+      (w->reference == NULL || q->traced || q->report != NULL || q->json || q->plot != NULL ||
+       q->list_only || q->part.parts > 0 || w->reference_map != NULL || q->processes))
+    argp_error(state,
+               "--grid %s draws beside a traced picture: it goes with -o, --reference FILE.exr, "
+               "--frames, --gl and --materials alone",
+               q->grid);
   bool named = w->reference != NULL || w->reference_map != NULL;
   if (named && q->traced)
     argp_error(state,
@@ -322,11 +337,15 @@ static void finish(request *q, struct argp_state *state) {
 
 /* The name of a grid that there is, or "presets". */
 static const char *choose_grid(const request *q, const char *text) {
-  const char *names[ABBE_SWEEP_MAX_GRIDS + 1];
+#define ABBE_STUDY_NAME(name, code) name,
+  static const char *const studies[] = {ABBE_TRANSPORT_STUDIES(ABBE_STUDY_NAME)};
+  enum { STUDIES = sizeof studies / sizeof *studies };
+  const char *names[ABBE_SWEEP_MAX_GRIDS + 1 + STUDIES];
   size_t count = q->grids->count;
   for (size_t i = 0; i < count; i++) names[i] = q->grids->grid[i].name;
-  names[count] = "presets";
-  return names[abbe_command_choice(q->program, "--grid", text, names, (int)count + 1)];
+  names[count++] = "presets";
+  for (size_t i = 0; i < STUDIES; i++) names[count++] = studies[i];
+  return names[abbe_command_choice(q->program, "--grid", text, names, (int)count)];
 }
 
 static error_t parse(int key, char *text, struct argp_state *state) {
@@ -426,6 +445,7 @@ const struct argp abbe_sweep_options_argp = {
     "  abbe sweep scenes/gem.yaml -o gem.csv --decompose --report gem.md\n"
     "  abbe sweep scenes/gem.yaml -o scaling.csv --scaling --plot scaling.png\n"
     "  abbe sweep scenes/sphere.yaml --estimators\n"
+    "  abbe sweep prism.yaml -o prism.csv --grid volume --reference prism.exr\n"
     "  abbe sweep *.csv --write-presets presets.yaml\n",
     NULL,
     NULL,

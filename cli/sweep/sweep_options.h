@@ -5,6 +5,7 @@
 #include "cli/base/command.h"
 #include "cli/base/rank_job.h"
 
+#include "validation/sweep/studies/transport_study.h"
 #include "validation/sweep/sweep_grid.h"
 #include "validation/sweep/sweep_run.h"
 
@@ -37,6 +38,9 @@ typedef struct abbe_sweep_options {
 
 /* Its input is an abbe_sweep_options with program, grids and defaults set. */
 extern const struct argp abbe_sweep_options_argp;
+
+/* Whether --grid asks for a study of transports. */
+bool abbe_sweep_options_compares_transports(const abbe_sweep_options *options);
 
 /* Whether a path names a table and no scene. */
 bool abbe_sweep_options_is_table(const char *path);

@@ -32,22 +32,18 @@ enum {
   OPTION_SIZE,
   OPTION_MAP,
   OPTION_BANDS,
-  OPTION_RANGE,
   OPTION_SPACE,
   OPTION_OBSERVER,
   OPTION_HALF,
   OPTION_FILTER,
-  OPTION_SEED,
-  OPTION_THREADS,
   OPTION_MATERIALS,
-  OPTION_RESUME,
   OPTION_CHECKPOINT,
   OPTION_PASSES,
   OPTION_MERGE,
-  OPTION_EVERY,
   OPTION_STATS,
   OPTION_JSON,
-  OPTION_RATES
+  OPTION_RATES,
+  OPTION_MOVE
 };
 
 enum { DEFAULT_PASSES = 64, MOST_PASSES = 1000000 };
@@ -74,25 +70,22 @@ static const struct argp_option options[] = {
     {"map", OPTION_MAP, "N|WxH", 0, "texels a side of the receiver map, or across and down (512)",
      1},
     {"bands", OPTION_BANDS, "N", 0, "spectral layers too, N bands over the range", 1},
-    {"range", OPTION_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", 1},
     {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
     {"observer", OPTION_OBSERVER, "NAME", 0, ABBE_OBSERVER_HELP, 1},
     {"filter", OPTION_FILTER, NULL, 0,
      "take noise off the picture, by non-local means; what was traced is kept as raw.*", 1},
     {"half", OPTION_HALF, NULL, 0, "files in half precision: 11 bits, and half the size", 1},
-    {"seed", OPTION_SEED, "N", 0, "of the random numbers (0)", 1},
-    {"threads", OPTION_THREADS, "N", 0, "all cores without; the result is the same", 1},
     ABBE_SCENE_INPUT_OPTIONS(1),
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
      "a table instead of the scene's: default, thesis or a file", 1},
-    {"resume", OPTION_RESUME, NULL, 0, "go on from the checkpoint, where there is one", 2},
+    ABBE_FRAME_SERIES_MOVE(OPTION_MOVE, 5),
+    ABBE_WORK_OPTIONS(1, 2),
     {"checkpoint", OPTION_CHECKPOINT, "FILE", ABBE_ARGUMENT_WRITES,
      "keep it there, also when all is done (OUTPUT.checkpoint, until all is done)", 2},
     {"passes", OPTION_PASSES, "A:B", 0,
      "passes A to B - 1 of the whole alone, into --checkpoint FILE, and no other file", 2},
     {"merge", OPTION_MERGE, NULL, 0,
      "trace nothing: put parts together, the checkpoints named behind the scene", 2},
-    {"checkpoint-every", OPTION_EVERY, "SECONDS", 0, "how often it is written (30)", 2},
     {"rates", OPTION_RATES, NULL, 0, "rays a second, beside Embree's own rate on the same rays", 2},
     {0}};
 
@@ -132,6 +125,9 @@ static error_t parse_work(int key, char *text, request *q) {
   case OPTION_MERGE:
     q->merge = true;
     return 0;
+  case OPTION_MOVE:
+    abbe_frame_series_take_move(&q->series, &q->changes, text);
+    return 0;
   case OPTION_TIME:
     q->seconds = abbe_command_number(p, "--time", text, 0.001, 1e9);
     return 0;
@@ -156,9 +152,6 @@ static error_t parse_work(int key, char *text, request *q) {
   case OPTION_BANDS:
     d->bands = abbe_command_count(p, "--bands", text, 1, 256);
     return 0;
-  case OPTION_RANGE:
-    abbe_command_range(p, "--range", text, &d->min_nm, &d->max_nm);
-    return 0;
   case OPTION_SPACE:
     d->space =
         (abbe_rgb_space)abbe_command_choice(p, "--space", text, spaces, ABBE_RGB_SPACE_COUNT);
@@ -166,14 +159,10 @@ static error_t parse_work(int key, char *text, request *q) {
   case OPTION_OBSERVER:
     d->observer = abbe_spectral_options_observer(p, text);
     return 0;
-  case OPTION_SEED:
-    d->seed = (uint32_t)abbe_command_count(p, "--seed", text, 0, UINT32_MAX);
-    return 0;
-  case OPTION_THREADS:
-    d->threads = abbe_command_count(p, "--threads", text, 1, ABBE_TRACER_MAX_THREADS);
-    return 0;
   default:
-    return abbe_scene_input_take(&q->changes, key, text, p);
+    return abbe_work_options_take(&q->work, key, text, p) == 0
+               ? 0
+               : abbe_scene_input_take(&q->changes, key, text, p);
   }
 }
 
@@ -193,7 +182,7 @@ static void check_parts(const request *q, struct argp_state *state) {
   if (!part && !q->merge) return;
   if (q->passes > 0 || q->seconds > 0 || q->until > 0)
     argp_error(state, "%s has its own number of passes: no --spp, --time or --until-error", name);
-  if (q->rates || (q->merge && q->resume))
+  if (q->rates || (q->merge && q->work.resume))
     argp_error(state, "%s goes without --%s", name, q->rates ? "rates" : "resume");
 }
 
@@ -232,14 +221,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_FILTER:
     q->filter = q->desc.guides = true;
     return 0;
-  case OPTION_RESUME:
-    q->resume = true;
-    return 0;
   case OPTION_CHECKPOINT:
     q->checkpoint = text;
-    return 0;
-  case OPTION_EVERY:
-    q->every = abbe_command_number(q->program, "--checkpoint-every", text, 0, 1e9);
     return 0;
   case OPTION_RATES:
     q->rates = true;
@@ -311,7 +294,7 @@ static abbe_result print_rates(const request *q, abbe_tracer *tracer, abbe_error
 /* The image of fewer passes is not in a checkpoint of more, nor that of others. */
 static abbe_result resume(const request *q, abbe_tracer *tracer, abbe_error *error) {
   const bool part = q->part_end > 0;
-  if (!q->resume || q->checkpoint_path == NULL || access(q->checkpoint_path, F_OK) != 0)
+  if (!q->work.resume || q->checkpoint_path == NULL || access(q->checkpoint_path, F_OK) != 0)
     return part ? abbe_tracer_begin_at(tracer, q->part_first, 1, error) : ABBE_OK;
   abbe_result result = abbe_checkpoint_load(tracer, q->checkpoint_path, error);
   if (result != ABBE_OK) return result;
@@ -336,7 +319,7 @@ static abbe_result trace(request *q, abbe_tracer *tracer, abbe_error *error) {
                                    .seconds = q->seconds,
                                    .error = q->until,
                                    .checkpoint = q->checkpoint_path,
-                                   .checkpoint_s = q->every};
+                                   .checkpoint_s = q->work.every_s};
   abbe_result result = q->merge ? abbe_checkpoint_merge(tracer, q->parts, q->part_count, error)
                                 : resume(q, tracer, error);
   if (result != ABBE_OK) return result;
@@ -431,7 +414,7 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
   request q = {.program = argv[0],
                .screen.program = argv[0],
                .series.program = argv[0],
-               .every = 30,
+               .work.every_s = 30,
                .ranks = job != NULL ? &job->ranks : NULL};
   q.parts = calloc((size_t)argc + 1, sizeof *q.parts);
   abbe_error error = {0};
@@ -442,6 +425,10 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   if (job != NULL) job->ready();
   q.quiet = q.quiet || abbe_rank_job_is_silent(job);
+  q.desc.min_nm = q.work.min_nm;
+  q.desc.max_nm = q.work.max_nm;
+  q.desc.seed = q.work.seed;
+  q.desc.threads = q.work.threads;
   if (q.part_end > 0) q.passes = q.part_end - q.part_first;
   if (q.passes == 0) q.passes = q.seconds > 0 || q.until > 0 ? MOST_PASSES : DEFAULT_PASSES;
   abbe_scene scene = {0};
@@ -451,7 +438,7 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
     result = abbe_scene_input_load_with(argv[0], q.scene, q.materials, &q.changes, &scene, &error);
   if (result == ABBE_OK && !q.quiet) abbe_scene_input_note(&scene);
   result = abbe_rank_job_agree(job, result, &error);
-  q.series.resume = q.resume;
+  q.series.resume = q.work.resume;
   if (result == ABBE_OK)
     result = q.series.count > 0 ? trace_frames(&q, job, &scene, &error) : run(&q, &scene, &error);
   free(q.checkpoint_path);

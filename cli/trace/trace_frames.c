@@ -35,6 +35,7 @@ const struct argp abbe_trace_frames_argp = {options, parse, NULL, NULL, NULL, NU
 
 void abbe_trace_frames_check(const abbe_trace_request *q, struct argp_state *state) {
   const abbe_frame_series *s = &q->series;
+  abbe_frame_series_check_moves(s, state);
   if (s->count == 0 && (s->per_second > 0 || s->part.parts > 0))
     argp_error(state, "--%s goes with --frames A:B", s->per_second > 0 ? "fps" : "part");
   if (s->part.parts > 0 && q->ranks != NULL)
@@ -67,14 +68,14 @@ static abbe_result name_files(abbe_trace_request *own, size_t number, char *name
 
 static abbe_result trace_frame(const abbe_trace_request *q, const abbe_scene *scene, size_t i,
                                abbe_trace_frame trace_one, abbe_error *error) {
-  const double time = abbe_frame_series_time(&q->series, scene->time, i);
   abbe_trace_request own = *q;
   abbe_scene moved = {0};
   char *name[2] = {NULL, NULL};
   own.checkpoint_path = NULL;
   abbe_result result = name_files(&own, q->series.first + i, name, error);
   if (result == ABBE_OK)
-    result = abbe_scene_input_at(scene, q->materials, &q->changes, time, &moved, error);
+    result =
+        abbe_frame_series_scene(&q->series, scene, q->materials, &q->changes, i, &moved, error);
   if (result == ABBE_OK && !q->quiet) fprintf(stderr, "frame %zu of %zu\n", i + 1, q->series.count);
   if (result == ABBE_OK) result = trace_one(&own, &moved, error);
   abbe_scene_free(&moved);

@@ -25,7 +25,7 @@ abbe_result abbe_trace_passes(const abbe_trace_request *q, const abbe_trace_run_
 static abbe_result resume_rank(const abbe_trace_request *q, abbe_tracer *tracer,
                                abbe_error *error) {
   const abbe_ranks *r = q->ranks;
-  if (!q->resume || q->checkpoint_path == NULL || access(q->checkpoint_path, F_OK) != 0)
+  if (!q->work.resume || q->checkpoint_path == NULL || access(q->checkpoint_path, F_OK) != 0)
     return abbe_tracer_begin_at(tracer, r->rank, r->count, error);
   abbe_result result = abbe_checkpoint_load(tracer, q->checkpoint_path, error);
   if (result != ABBE_OK) return result;
@@ -44,7 +44,7 @@ static abbe_result trace_ranks(abbe_trace_request *q, abbe_tracer *tracer, abbe_
                                    .seconds = q->seconds,
                                    .error = q->until,
                                    .checkpoint = q->checkpoint_path,
-                                   .checkpoint_s = q->every};
+                                   .checkpoint_s = q->work.every_s};
   abbe_result result = abbe_trace_passes(q, &run, tracer, error);
   if (result != ABBE_OK) return result;
   if (q->ranks->rank == 0) {

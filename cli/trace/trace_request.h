@@ -6,6 +6,7 @@
 #include "cli/base/map_options.h"
 #include "cli/base/scene_input.h"
 #include "cli/base/screen_options.h"
+#include "cli/base/work_options.h"
 
 #include "validation/tracer/ranked_run.h"
 #include "validation/tracer/tracer.h"
@@ -16,15 +17,16 @@ typedef struct abbe_trace_request {
   const char *exr, *png, *stats, *checkpoint;
   abbe_map_options map;
   abbe_trace_desc desc;
+  abbe_work_options work; /* its wavelengths, seed and threads are the desc's once all is read */
   size_t passes;
   abbe_frame_series series;    /* --frames; zeroed but for program */
   size_t part_first, part_end; /* --passes: of the whole, the end not among them; 0, 0: all */
   bool merge;
   const char **parts; /* files to merge */
   size_t part_count;
-  double seconds, until, every;
+  double seconds, until;
   const abbe_ranks *ranks; /* that trace it together; NULL: one process */
-  bool resume, json, quiet, rates, half, filter;
+  bool json, quiet, rates, half, filter;
   double filter_seconds; /* spent */
   abbe_screen_options screen;
   char *checkpoint_path;

@@ -10,6 +10,7 @@
 #include "cli/view/view_script.h"
 #include "cli/view/view_serve.h"
 #include "cli/view/view_window.h"
+#include "scenes/volume/volume_file.h"
 #endif
 
 #include <argp.h>
@@ -26,13 +27,14 @@ enum {
   OPTION_MATERIALS,
   OPTION_OCIO,
   OPTION_SERVE,
+  OPTION_VOLUME,
   OPTION_WAVELENGTHS,
   OPTION_PHOTONS,
   OPTION_MAP
 };
 
 typedef struct view_options {
-  const char *program, *scene, *script, *keep, *materials, *ocio;
+  const char *program, *scene, *script, *keep, *materials, *ocio, *volume;
   size_t width, height, wavelengths, photons, map_size;
   int last, port; /* port below 0: nothing is served */
   abbe_scene_input_changes changes;
@@ -50,6 +52,9 @@ static const struct argp_option options[] = {
      "a table instead of the scene's: default, thesis or a file", 1},
     {"set", ABBE_SCENE_INPUT_SET, "KEY=VALUE", 0,
      "another value in the scene to begin with, such as camera.fov=30; may be repeated", 1},
+    {"volume", OPTION_VOLUME, "FILE.exr", ABBE_ARGUMENT_READS,
+     "look caustics up in what abbe volume has made, wherever lights and the object are dragged",
+     1},
     {"wavelengths", OPTION_WAVELENGTHS, "N", 0, "at rest, for all stages (as each stage has them)",
      1},
     {"photons", OPTION_PHOTONS, "N", 0, "a side, so too", 1},
@@ -93,6 +98,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_MATERIALS:
     o->materials = text;
+    return 0;
+  case OPTION_VOLUME:
+    o->volume = text;
     return 0;
   case OPTION_OCIO:
     o->ocio = text;
@@ -157,7 +165,10 @@ static abbe_result view(const view_options *o, abbe_error *error) {
   const char *name = abbe_file_name(path), *dot = strrchr(name, '.');
   snprintf(keep, sizeof keep, "%.*s-view", dot != NULL ? (int)(dot - name) : (int)strlen(name),
            name);
+  abbe_caustic_volume volume = {0};
   const abbe_view_app_desc desc = {.document = &document,
+                                   .volume_path = o->volume,
+                                   .volume = o->volume != NULL ? &volume : NULL,
                                    .materials = o->materials,
                                    .keep = o->keep != NULL ? o->keep : keep,
                                    .ocio = o->ocio,
@@ -168,6 +179,8 @@ static abbe_result view(const view_options *o, abbe_error *error) {
     result =
         abbe_scene_input_load_with(o->program, o->scene, o->materials, &o->changes, &scene, error);
   if (result == ABBE_OK) result = check_keep(desc.keep, &scene, error);
+  if (result == ABBE_OK && o->volume != NULL)
+    result = abbe_volume_file_read(o->volume, &volume, error);
   abbe_scene_free(&scene);
   if (result == ABBE_OK)
     result = o->script != NULL ? abbe_view_script_run(o->script, &desc, o->width, o->height, error)
@@ -175,6 +188,7 @@ static abbe_result view(const view_options *o, abbe_error *error) {
                  ? abbe_view_serve_run((unsigned)o->port, &desc, o->width, o->height, error)
                  : abbe_view_window_run(&desc, o->width, o->height, error);
   abbe_view_document_free(&document);
+  abbe_caustic_volume_free(&volume);
   return result;
 }
 #else
@@ -202,6 +216,7 @@ int abbe_command_view(int argc, char **argv) {
       "  abbe view scenes/gem.yaml\n"
       "  abbe view scenes/gem.yaml --set objects.gem.material=diamond --size 1200x800\n"
       "  abbe view scenes/gem.yaml --script tour.txt\n"
+      "  abbe view docs/examples/ball.yaml --volume ball-volume.exr\n"
       "  abbe view scenes/gem.yaml --serve 8080",
       NULL,
       NULL,

@@ -49,15 +49,17 @@ abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc
                              .keep = desc->keep,
                              .ocio = desc->ocio,
                              .materials = desc->materials,
+                             .volume = desc->volume_path,
                              .seen_s = -1,
                              .cancelled_s = -1};
   abbe_result result = abbe_view_state_begin(&app->state, desc->document, error);
   app->state.refine.last = desc->last;
+  app->state.refine.single = desc->volume != NULL;
   if (result == ABBE_OK) result = abbe_display_list(desc->ocio, &app->views, error);
   if (result == ABBE_OK) result = abbe_view_session_choose_view(app, 0, error);
   if (result == ABBE_OK) result = abbe_ui_make(error);
   if (result == ABBE_OK)
-    result = abbe_view_worker_make(desc->materials, desc->wake, &app->worker, error);
+    result = abbe_view_worker_make(desc->materials, desc->volume, desc->wake, &app->worker, error);
   if (result == ABBE_OK) list_scenes(app, desc->document->path);
   if (result != ABBE_OK) abbe_view_app_end(app);
   return result;

@@ -12,11 +12,13 @@
 
 typedef struct abbe_view_app_desc {
   const abbe_view_document *document;
-  const char *materials; /* or NULL */
-  const char *keep;      /* what saved files are called, without an ending */
-  const char *ocio;      /* configuration, or NULL */
-  abbe_view_stage last;  /* where refining ends; NONE: nowhere */
-  void (*wake)(void);    /* or NULL */
+  const char *materials;             /* or NULL */
+  const char *keep;                  /* what saved files are called, without an ending */
+  const char *ocio;                  /* configuration, or NULL */
+  const char *volume_path;           /* or NULL; what it holds: */
+  const abbe_caustic_volume *volume; /* that caustics are looked up in, for as long as it runs */
+  abbe_view_stage last;              /* where refining ends; NONE: nowhere */
+  void (*wake)(void);                /* or NULL */
 } abbe_view_app_desc;
 
 /* The context is current and stays so, with the widgets' in it. Errors of abbe_view_worker_make,

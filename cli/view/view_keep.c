@@ -70,6 +70,10 @@ char *abbe_view_keep_command(const abbe_view_session *session) {
     fputs(" --materials ", out.stream);
     quote(out.stream, session->materials);
   }
+  if (session->volume != NULL) {
+    fputs(" --volume ", out.stream);
+    quote(out.stream, session->volume);
+  }
   for (size_t i = 0; i < now->set_count; i++) {
     fputs(" --set ", out.stream);
     quote(out.stream, now->set[i]);

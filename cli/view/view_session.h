@@ -18,7 +18,7 @@ typedef struct abbe_view_session {
   abbe_view_state state;
   abbe_view_worker *worker;
   const abbe_gl *gl;
-  const char *keep, *ocio, *materials;
+  const char *keep, *ocio, *materials, *volume;
   abbe_display *display;
   char *views; /* lines "display / view" */
   size_t view; /* of these */

@@ -28,16 +28,24 @@ static void pack_node(const abbe_caustic_volume *v, size_t node, uint32_t *out) 
   }
 }
 
+static void pack_floats(const float *value, size_t cells, uint32_t *out) {
+  for (size_t i = 0; i < cells; i++, out += 5) {
+    memset(out, 0, 5 * sizeof *out);
+    for (size_t c = 0; c < 9; c++)
+      out[c / 2] |= (uint32_t)abbe_half_of_float(value[9 * i + c]) << 16 * (c % 2);
+  }
+}
+
 /* The sum of all blocks by their weights, as halves. */
-static void pack_sum(const abbe_caustic_volume *v, const abbe_volume_sight *sight, uint32_t *out) {
-  const size_t each = v->region.cells * 9;
-  for (size_t i = 0; i < v->region.cells; i++, out += 5)
-    for (size_t c = 0; c < 9; c++) {
-      double sum = 0;
-      for (size_t k = 0; k < sight->count; k++)
-        sum += sight->weight[k] * abbe_half_value(v->value[sight->block[k] * each + 9 * i + c]);
-      out[c / 2] |= (uint32_t)abbe_half_of(sum) << 16 * (c % 2);
-    }
+static abbe_result pack_sum(const abbe_caustic_volume *v, const abbe_volume_sight *sight,
+                            uint32_t *out, abbe_error *error) {
+  const size_t cells = v->region.cells;
+  float *sum = malloc(9 * cells * sizeof *sum);
+  if (sum == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu cells", cells);
+  abbe_caustic_volume_sum(v, sight, sum);
+  pack_floats(sum, cells, out);
+  free(sum);
+  return ABBE_OK;
 }
 
 /* Of rays that leave the object in that light, as halves. */
@@ -60,11 +68,7 @@ static abbe_result pack_exits(const abbe_volume_light *v, const abbe_caustic_vol
   const abbe_result result =
       value != NULL ? abbe_exit_light_fill(volume, &desc, value, error)
                     : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu cells", cells);
-  for (size_t i = 0; result == ABBE_OK && i < cells; i++, out += 5) {
-    memset(out, 0, 5 * sizeof *out);
-    for (size_t c = 0; c < 9; c++)
-      out[c / 2] |= (uint32_t)abbe_half_of_float(value[9 * i + c]) << 16 * (c % 2);
-  }
+  if (result == ABBE_OK) pack_floats(value, cells, out);
   free(value);
   free(sheet);
   return result;
@@ -106,8 +110,9 @@ static abbe_result sight_exits(abbe_volume_light *v, const abbe_caustic_volume *
                     values + 3 * light * volume->region.cells * words_of(volume), error);
 }
 
-static void sight_light(abbe_volume_light *v, const abbe_caustic_volume *volume,
-                        const abbe_volume_place *place, size_t light, uint32_t *values) {
+static abbe_result sight_light(abbe_volume_light *v, const abbe_caustic_volume *volume,
+                               const abbe_volume_place *place, size_t light, uint32_t *values,
+                               abbe_error *error) {
   const abbe_plan *plan = v->scene->plan;
   double to_light[3], own[3];
   abbe_volume_sight sight;
@@ -118,16 +123,17 @@ static void sight_light(abbe_volume_light *v, const abbe_caustic_volume *volume,
              place->turn[6 + k] * to_light[2];
   abbe_caustic_volume_look(volume, plan->desc.lookup, own, &sight);
   const size_t block = volume->region.cells * words_of(volume);
-  const bool summed = volume->degree > 0;
-  for (size_t k = 0; k < (summed ? 1 : sight.count); k++) {
-    uint32_t *to = values + (3 * light + k) * block;
-    v->weight[3 * light + k] = summed ? 1 : (float)sight.weight[k];
-    join_turns(place, sight.turn[k], v->turn[3 * light + k]);
-    if (summed)
-      pack_sum(volume, &sight, to);
-    else
-      pack_node(volume, sight.block[k], to);
+  if (abbe_caustic_volume_is_sum(volume)) { /* one block, as it stands */
+    v->weight[3 * light] = 1;
+    join_turns(place, sight.turn[0], v->turn[3 * light]);
+    return pack_sum(volume, &sight, values + 3 * light * block, error);
   }
+  for (size_t k = 0; k < sight.count; k++) {
+    v->weight[3 * light + k] = (float)sight.weight[k];
+    join_turns(place, sight.turn[k], v->turn[3 * light + k]);
+    pack_node(volume, sight.block[k], values + (3 * light + k) * block);
+  }
+  return ABBE_OK;
 }
 
 abbe_result abbe_volume_light_make(const abbe_gpu_scene *scene, abbe_volume_light *out,
@@ -154,7 +160,7 @@ abbe_result abbe_volume_light_make(const abbe_gpu_scene *scene, abbe_volume_ligh
     if (volume->kind == ABBE_VOLUME_EXITS)
       result = sight_exits(out, volume, &place, i, values, error);
     else
-      sight_light(out, volume, &place, i, values);
+      result = sight_light(out, volume, &place, i, values, error);
   if (table)
     memcpy(values + 3 * lights * block, volume->region.mesh.table, side * side * sizeof *values);
   if (result == ABBE_OK)

@@ -24,7 +24,8 @@ abbe_result abbe_caustic_volume_allocate(abbe_caustic_volume *v, abbe_error *err
                           "either",
                           v->nodes.count, v->region.cells);
   v->value = calloc(count_of(v), sizeof *v->value);
-  if (v->value != NULL) return ABBE_OK;
+  v->mode = v->rank > 0 ? calloc(v->rank * v->nodes.count, sizeof *v->mode) : NULL;
+  if (v->value != NULL && (v->mode != NULL || v->rank == 0)) return ABBE_OK;
   return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu nodes of %zu cells",
                         v->nodes.count, v->region.cells);
 }
@@ -35,17 +36,19 @@ void abbe_caustic_volume_free(abbe_caustic_volume *v) {
   abbe_light_nodes_free(&v->nodes);
   abbe_light_exits_free(&v->exits);
   free(v->value);
+  free(v->mode);
   *v = (abbe_caustic_volume){0};
 }
 
 size_t abbe_caustic_volume_bytes(const abbe_caustic_volume *v) {
   if (v->kind == ABBE_VOLUME_EXITS) return abbe_light_exits_bytes(&v->exits);
-  return count_of(v) * (v->kind == ABBE_VOLUME_PRINTED ? 1 : sizeof *v->value);
+  return count_of(v) * (v->kind == ABBE_VOLUME_PRINTED ? 1 : sizeof *v->value) +
+         v->rank * v->nodes.count * sizeof *v->mode;
 }
 
 abbe_volume_lookup abbe_caustic_volume_resolve(const abbe_caustic_volume *v,
                                                abbe_volume_lookup lookup) {
-  if (v->degree > 0) return ABBE_VOLUME_LOOKUP_BLEND;
+  if (abbe_caustic_volume_is_sum(v)) return ABBE_VOLUME_LOOKUP_BLEND;
   if (v->nodes.count == 1) return ABBE_VOLUME_LOOKUP_TURN;
   if (lookup != ABBE_VOLUME_LOOKUP_AUTO) return lookup;
   return v->body.ball ? ABBE_VOLUME_LOOKUP_TURN : ABBE_VOLUME_LOOKUP_BLEND;
@@ -56,6 +59,19 @@ static void look_at_harmonics(const abbe_caustic_volume *v, const double to_ligh
   out->count = abbe_light_harmonics_count(v->degree);
   abbe_light_harmonics_at(v->degree, to_light, out->weight);
   for (size_t k = 0; k < out->count; k++) out->block[k] = k;
+}
+
+/* A mode between nodes is the mean of its values there. */
+static void look_at_modes(const abbe_caustic_volume *v, const abbe_node_blend *blend,
+                          abbe_volume_sight *out) {
+  out->count = v->rank;
+  for (size_t k = 0; k < v->rank; k++) {
+    out->block[k] = k;
+    out->weight[k] = 0;
+    for (size_t i = 0; i < blend->count; i++)
+      out->weight[k] +=
+          blend->weight[i] * abbe_half_value(v->mode[k * v->nodes.count + blend->node[i]]);
+  }
 }
 
 void abbe_caustic_volume_look(const abbe_caustic_volume *v, abbe_volume_lookup lookup,
@@ -71,6 +87,10 @@ void abbe_caustic_volume_look(const abbe_caustic_volume *v, abbe_volume_lookup l
     abbe_light_nodes_nearest(&v->nodes, to_light, &blend);
   else
     abbe_light_nodes_blend(&v->nodes, to_light, &blend);
+  if (v->rank > 0) {
+    look_at_modes(v, &blend, out);
+    return;
+  }
   out->count = blend.count;
   for (size_t k = 0; k < blend.count; k++) {
     out->block[k] = blend.node[k];
@@ -80,35 +100,104 @@ void abbe_caustic_volume_look(const abbe_caustic_volume *v, abbe_volume_lookup l
   }
 }
 
-abbe_result abbe_caustic_volume_project(abbe_caustic_volume *v, size_t degree, abbe_error *error) {
-  ABBE_REQUIRE(v, error);
-  const size_t nodes = v->nodes.count, count = abbe_light_harmonics_count(degree);
+void abbe_caustic_volume_sum(const abbe_caustic_volume *v, const abbe_volume_sight *sight,
+                             float *sums) {
+  enum { CHUNK = 8192 }; /* sums that stay in the cache while blocks go by */
   const size_t each = v->region.cells * abbe_caustic_volume_channels(v);
-  if (v->kind != ABBE_VOLUME_VECTOR || degree == 0 || v->degree > 0 || v->value == NULL)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "harmonics are made of a volume of vectors at nodes, to degree 1 to %d",
-                          ABBE_LIGHT_HARMONICS_MOST);
-  double *fit = malloc(count * nodes * sizeof *fit);
+#pragma omp parallel for
+  for (size_t from = 0; from < each; from += CHUNK) {
+    const size_t to = each - from < CHUNK ? each : from + CHUNK;
+    memset(sums + from, 0, (to - from) * sizeof *sums);
+    for (size_t k = 0; k < sight->count; k++) {
+      const uint16_t *value = v->value + sight->block[k] * each;
+      const float weight = (float)sight->weight[k];
+      for (size_t i = from; i < to; i++) sums[i] += weight * (float)abbe_half_value(value[i]);
+    }
+  }
+}
+
+/* In place of values at nodes, sums of them by weights fit[count][nodes]. */
+static abbe_result combine(abbe_caustic_volume *v, size_t count, const double *fit,
+                           abbe_error *error) {
+  const size_t nodes = v->nodes.count;
+  const size_t each = v->region.cells * abbe_caustic_volume_channels(v);
   uint16_t *value = malloc(count * each * sizeof *value);
-  abbe_result result = fit != NULL && value != NULL
-                           ? abbe_light_harmonics_fit(&v->nodes, degree, fit, error)
-                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for harmonics");
-  for (size_t i = 0; i < each && result == ABBE_OK; i++)
+  if (value == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu sums of nodes", count);
+#pragma omp parallel for
+  for (size_t i = 0; i < each; i++)
     for (size_t k = 0; k < count; k++) {
       double sum = 0;
       for (size_t j = 0; j < nodes; j++)
         sum += fit[k * nodes + j] * abbe_half_value(v->value[j * each + i]);
       value[k * each + i] = abbe_half_of(sum);
     }
-  free(fit);
-  if (result != ABBE_OK) {
-    free(value);
-    return result;
-  }
   free(v->value);
   v->value = value;
-  v->degree = degree;
   return ABBE_OK;
+}
+
+abbe_result abbe_caustic_volume_project(abbe_caustic_volume *v, size_t degree, abbe_error *error) {
+  ABBE_REQUIRE(v, error);
+  const size_t nodes = v->nodes.count, count = abbe_light_harmonics_count(degree);
+  if (v->kind != ABBE_VOLUME_VECTOR || degree == 0 || abbe_caustic_volume_is_sum(v) ||
+      v->value == NULL)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "harmonics are made of a volume of vectors at nodes, to degree 1 to %d",
+                          ABBE_LIGHT_HARMONICS_MOST);
+  double *fit = malloc(count * nodes * sizeof *fit);
+  abbe_result result = fit != NULL
+                           ? abbe_light_harmonics_fit(&v->nodes, degree, fit, error)
+                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for harmonics");
+  if (result == ABBE_OK) result = combine(v, count, fit, error);
+  free(fit);
+  if (result == ABBE_OK) v->degree = degree;
+  return result;
+}
+
+/* The values by the modes, over the number of nodes; the modes themselves as halves. */
+static abbe_result keep_modes(abbe_caustic_volume *v, size_t rank, double *mode,
+                              abbe_error *error) {
+  const size_t count = rank * v->nodes.count;
+  uint16_t *half = malloc(count * sizeof *half);
+  if (half == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu modes", rank);
+  for (size_t i = 0; i < count; i++) {
+    half[i] = abbe_half_of(mode[i]);
+    mode[i] /= (double)v->nodes.count;
+  }
+  const abbe_result result = combine(v, rank, mode, error);
+  if (result != ABBE_OK) {
+    free(half);
+    return result;
+  }
+  v->mode = half;
+  v->rank = rank;
+  return ABBE_OK;
+}
+
+abbe_result abbe_caustic_volume_reduce(abbe_caustic_volume *v, size_t rank, double *left,
+                                       abbe_error *error) {
+  ABBE_REQUIRE(v && left, error);
+  const size_t nodes = v->nodes.count;
+  if (v->kind != ABBE_VOLUME_VECTOR || abbe_caustic_volume_is_sum(v) || v->value == NULL ||
+      rank == 0 || rank > nodes || rank > ABBE_CAUSTIC_VOLUME_MOST_RANK)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%zu modes: they are made of a volume of vectors at nodes, 1 to %d of "
+                          "them and to as many as there are nodes, %zu",
+                          rank, ABBE_CAUSTIC_VOLUME_MOST_RANK, nodes);
+  double *mode = malloc((nodes + 1) * nodes * sizeof *mode);
+  if (mode == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu modes", nodes);
+  double *singular = mode + nodes * nodes, all = 0, out = 0;
+  abbe_result result = abbe_light_modes_find(
+      nodes, v->region.cells * abbe_caustic_volume_channels(v), v->value, singular, mode, error);
+  for (size_t k = nodes; result == ABBE_OK && k-- > 0;) {
+    all += singular[k] * singular[k];
+    if (k >= rank) out = all;
+  }
+  if (result == ABBE_OK) result = keep_modes(v, rank, mode, error);
+  free(mode);
+  *left = result == ABBE_OK && all > 0 ? sqrt(out / all) : 0;
+  return result;
 }
 
 abbe_result abbe_caustic_volume_join(abbe_caustic_volume *v, double tolerance, size_t *bytes,

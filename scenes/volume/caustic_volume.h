@@ -13,6 +13,7 @@
 
 #include "scenes/volume/light_exits.h"
 #include "scenes/volume/light_harmonics.h"
+#include "scenes/volume/light_modes.h"
 #include "scenes/volume/volume_body.h"
 #include "scenes/volume/volume_region.h"
 
@@ -49,17 +50,27 @@ typedef struct abbe_caustic_volume {
   abbe_light_nodes nodes;
   size_t degree;   /* above 0: harmonics of the light's direction, to that degree, in place of
                       values at the nodes */
+  size_t rank;     /* above 0: so many modes of the light's direction in their place */
   double white[3]; /* XYZ of the light that it was made for, Y = 1 */
   double min_nm, max_nm;
   double byte;            /* PRINTED: what a byte of 1 stands for */
   double error;           /* relative standard error of what was summed up; 0: not known */
   uint16_t *value;        /* halves [blocks][region.cells][channels]; EXITS: NULL */
+  uint16_t *mode;         /* halves [rank][nodes.count], light_modes.h; without a rank NULL */
   abbe_light_exits exits; /* EXITS: for the nodes, and cells of the region */
 } abbe_caustic_volume;
 
-/* One for each node or coefficient. */
+#define ABBE_CAUSTIC_VOLUME_MOST_RANK 256
+
+/* One for each node, coefficient or mode. */
 static inline size_t abbe_caustic_volume_blocks(const abbe_caustic_volume *v) {
+  if (v->rank > 0) return v->rank;
   return v->degree > 0 ? abbe_light_harmonics_count(v->degree) : v->nodes.count;
+}
+
+/* Whether any light takes all blocks by their weights, not those of a node or three. */
+static inline bool abbe_caustic_volume_is_sum(const abbe_caustic_volume *v) {
+  return v->degree > 0 || v->rank > 0;
 }
 
 /* 9: F.x, F.y, F.z of X, then of Y, then of Z; printed 3. */
@@ -81,6 +92,13 @@ size_t abbe_caustic_volume_bytes(const abbe_caustic_volume *volume);
 abbe_result abbe_caustic_volume_project(abbe_caustic_volume *volume, size_t degree,
                                         abbe_error *error);
 
+/* Values at nodes become the `rank` terms of their singular value decomposition that leave the
+ * least mean square, 1 to as many as there are nodes and ABBE_CAUSTIC_VOLUME_MOST_RANK. *left: the
+ * root of what they leave, of the root of all squares. ABBE_INVALID_ARGUMENT for other ranks, and
+ * for another than a vector volume; ABBE_NO_MEMORY. */
+abbe_result abbe_caustic_volume_reduce(abbe_caustic_volume *volume, size_t rank, double *left,
+                                       abbe_error *error);
+
 /* Joins cells of every block within a tolerance of unit irradiance (volume_tree.h): each has the
  * joint value then. *bytes: what the joint values take. ABBE_INVALID_ARGUMENT as
  * abbe_volume_order_make, and for another than a vector volume. */
@@ -94,15 +112,20 @@ abbe_volume_lookup abbe_caustic_volume_resolve(const abbe_caustic_volume *volume
 
 /* Which blocks light from unit direction to_light is looked up at, by their weights: of nodes at
  * most three, with the turn of each into its node's light (row-major; the unit matrix but of TURN);
- * of harmonics all, with none. */
+ * of harmonics and modes all, with none. */
 typedef struct abbe_volume_sight {
   size_t count;
-  size_t block[ABBE_LIGHT_HARMONICS_MOST_COUNT];
-  double weight[ABBE_LIGHT_HARMONICS_MOST_COUNT];
+  size_t block[ABBE_CAUSTIC_VOLUME_MOST_RANK]; /* more than there are harmonics */
+  double weight[ABBE_CAUSTIC_VOLUME_MOST_RANK];
   double turn[3][9];
 } abbe_volume_sight;
 void abbe_caustic_volume_look(const abbe_caustic_volume *volume, abbe_volume_lookup lookup,
                               const double to_light[3], abbe_volume_sight *out);
+
+/* All blocks by their weights, without turns: one block for that light, sums[region.cells *
+ * channels]. */
+void abbe_caustic_volume_sum(const abbe_caustic_volume *volume, const abbe_volume_sight *sight,
+                             float *sums);
 
 /* Vector irradiance at p of light of unit irradiance: f[0] of X, f[1] of Y, f[2] of Z, interpolated
  * between cells; beyond the region that of its rim on the way there, thinned by the square of the

@@ -34,6 +34,7 @@ static const struct named {
     {"view", "script", READS},
     {"view", "materials", READS},
     {"view", "ocio", READS},
+    {"view", "volume", READS},
     {"trace", "", READS},
     {"trace", "output", WRITES},
     {"trace", "png", WRITES},

@@ -118,6 +118,8 @@ static const struct {
     {"abbe_rii_write", "report"},
     {"abbe_route_follow", "vertex"},
     {"abbe_scaling_study_measure", "user"},
+    {"abbe_transport_study_measure", "user"},
+    {"abbe_transport_study_measure", "why"},
     {"abbe_scene_load", "options"},
     {"abbe_scene_load_lights", "options"},
     {"abbe_scene_parse", "options"},

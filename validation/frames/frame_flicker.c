@@ -113,3 +113,13 @@ void abbe_frame_flicker_sum_up(const abbe_frame_error *row, size_t count, abbe_f
   for (int k = 0; k < 3; k++) mean[k] = known[k] > 0 ? sqrt(sum[k] / (double)known[k]) : NAN;
   *out = (abbe_frame_error){mean[0], mean[1], mean[2]};
 }
+
+/* NaN gives way to any number. */
+void abbe_frame_flicker_largest(const abbe_frame_error *row, size_t count, abbe_frame_error *out) {
+  *out = (abbe_frame_error){NAN, NAN, NAN};
+  for (size_t i = 0; i < count; i++) {
+    out->error = fmax(out->error, row[i].error);
+    out->change = fmax(out->change, row[i].change);
+    out->ghost = fmax(out->ghost, row[i].ghost);
+  }
+}

@@ -44,6 +44,8 @@ abbe_result abbe_frame_flicker_add(abbe_frame_flicker *flicker, const abbe_image
 
 /* Root mean squares over those of the rows that are known; NaN where none is. */
 void abbe_frame_flicker_sum_up(const abbe_frame_error *row, size_t count, abbe_frame_error *out);
+/* The largest of each: of changes, how far a frame pops. NaN where none is known. */
+void abbe_frame_flicker_largest(const abbe_frame_error *row, size_t count, abbe_frame_error *out);
 
 #ifdef __cplusplus
 }

@@ -265,6 +265,14 @@ abbe_result abbe_sweep_measure(const abbe_sweep *s, const abbe_sweep_setting *se
   return result;
 }
 
+abbe_result abbe_sweep_compare_picture(const abbe_sweep *s, const abbe_image *picture, bool scaled,
+                                       abbe_sweep_row *out, abbe_error *error) {
+  ABBE_REQUIRE(s && picture && out, error);
+  const abbe_sweep_setting none = {.photons = 0};
+  clear_row(&none, out);
+  return compare_picture(s, picture, scaled, out, error);
+}
+
 abbe_result abbe_sweep_time(const abbe_sweep *s, const abbe_sweep_setting *setting, size_t width,
                             size_t height, abbe_sweep_row *out, abbe_error *error) {
   ABBE_REQUIRE(s && setting && out, error);

@@ -48,6 +48,11 @@ abbe_result abbe_sweep_measure(const abbe_sweep *sweep, const abbe_sweep_setting
                                abbe_render_progress progress, void *user, abbe_sweep_row *out,
                                abbe_image *picture, abbe_error *error);
 
+/* A picture against the reference's, which is there, over all of it and its caustic; scaled: times
+ * the factor that suits it best. Other numbers are not known. Errors of abbe_compare. */
+abbe_result abbe_sweep_compare_picture(const abbe_sweep *sweep, const abbe_image *picture,
+                                       bool scaled, abbe_sweep_row *out, abbe_error *error);
+
 /* The times alone, at another size (0: the scene's). */
 abbe_result abbe_sweep_time(const abbe_sweep *sweep, const abbe_sweep_setting *setting,
                             size_t width, size_t height, abbe_sweep_row *out, abbe_error *error);

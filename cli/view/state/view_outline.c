@@ -58,8 +58,20 @@ static void join(const char *key, const char *value, char *out) {
   out[ABBE_VIEW_KEY - 1] = '\0';
 }
 
-static void make_light(abbe_yaml *yaml, abbe_yaml_node list, size_t i, const abbe_light *light,
+/* So near to the middle that its handle is seen. */
+static void place_sun(const abbe_camera *camera, const double direction[3], abbe_view_light *out) {
+  double to[3];
+  abbe_vector_subtract(camera->target, camera->eye, to);
+  const double away = 0.15 * abbe_vector_length(to);
+  for (int k = 0; k < 3; k++) {
+    out->aim[k] = camera->target[k];
+    out->position[k] = camera->target[k] - away * direction[k];
+  }
+}
+
+static void make_light(abbe_yaml *yaml, abbe_yaml_node list, size_t i, const abbe_scene *scene,
                        abbe_view_light *out) {
+  const abbe_light *light = &scene->light[i];
   static const char *const keys[] = {"intensity", "intensity", "irradiance", "radiance",
                                      "radiance"};
   static const char *const units[] = {"W/sr", "W/sr", "W/m\u00b2", "W/(m\u00b2 sr)",
@@ -68,8 +80,10 @@ static void make_light(abbe_yaml *yaml, abbe_yaml_node list, size_t i, const abb
   key_of(yaml, "lights", list, i, out->key);
   snprintf(out->name, sizeof out->name, "%.79s", light->name);
   out->kind = light->kind;
-  out->placed = abbe_yaml_get(yaml, node, "position").id != 0;
+  const bool sun = light->kind == ABBE_LIGHT_DIRECTIONAL;
+  out->placed = abbe_yaml_get(yaml, node, sun ? "direction" : "position").id != 0;
   memcpy(out->position, light->position, sizeof out->position);
+  if (sun) place_sun(&scene->camera, light->direction, out);
   out->power = (abbe_view_value){
       .label = keys[light->kind], .unit = units[light->kind], .value = light->power, .scale = 1};
   join(out->key, keys[light->kind], out->power.key);
@@ -193,7 +207,7 @@ abbe_result abbe_view_outline_make(const abbe_scene *scene, const char *text, si
   const abbe_yaml_node lights = abbe_yaml_get(yaml, root, "lights");
   const abbe_yaml_node objects = abbe_yaml_get(yaml, root, "objects");
   for (size_t i = 0; i < scene->light_count && i < abbe_yaml_count(yaml, lights); i++)
-    make_light(yaml, lights, i, &scene->light[i], &out->light[out->light_count++]);
+    make_light(yaml, lights, i, scene, &out->light[out->light_count++]);
   for (size_t i = 0; i < abbe_yaml_count(yaml, objects); i++)
     if (out->object_count < ABBE_VIEW_MOST_OBJECTS) make_object(yaml, objects, i, scene, out);
   out->surrounded = scene->environment != NULL;

@@ -25,8 +25,9 @@ typedef struct abbe_view_value {
 typedef struct abbe_view_light {
   char name[ABBE_VIEW_NAME], key[ABBE_VIEW_KEY]; /* "lights.lamp" */
   abbe_light_kind kind;
-  bool placed; /* it has a position, which may be set */
-  double position[3];
+  bool placed;        /* it has a position or a direction, which may be set */
+  double position[3]; /* of a directional light on the way to it from `aim` */
+  double aim[3];      /* the middle of what the camera sees */
   abbe_view_value power;
 } abbe_view_light;
 

@@ -42,8 +42,8 @@ static abbe_view_stage last_of(const abbe_view_refine *refine) {
 static abbe_view_stage stage_after(const abbe_view_refine *refine) {
   const bool traces = refine->stage == ABBE_VIEW_TRACED && refine->passes < ABBE_VIEW_TRACED_PASSES;
   if (traces) return ABBE_VIEW_TRACED;
-  if (refine->stage == ABBE_VIEW_ACCURATE && refine->spectrum &&
-      last_of(refine) == ABBE_VIEW_TRACED)
+  if (refine->stage == ABBE_VIEW_ACCURATE &&
+      (refine->single || (refine->spectrum && last_of(refine) == ABBE_VIEW_TRACED)))
     return ABBE_VIEW_TRACED;
   return refine->stage == ABBE_VIEW_TRACED ? ABBE_VIEW_NONE : (abbe_view_stage)(refine->stage + 1);
 }

@@ -60,6 +60,7 @@ typedef enum abbe_view_outcome {
 typedef struct abbe_view_refine {
   abbe_view_stage last;   /* wanted; NONE: TRACED */
   bool spectrum;          /* wanted: the mean is left out, for traced passes tell it */
+  bool single;            /* no picture could be another: there is no mean */
   bool held;              /* a button is down: it moves */
   uint64_t serial, shown; /* of the last change; of what the last picture shows */
   double changed_s;

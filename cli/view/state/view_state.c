@@ -266,7 +266,10 @@ static void pull(abbe_view_state *state, double now_s) {
     return;
   if (light) {
     char key[ABBE_VIEW_KEY + 16], value[96];
-    snprintf(key, sizeof key, "%s.position", o->light[state->held.index].key);
+    const abbe_view_light *held = &o->light[state->held.index];
+    const bool sun = held->kind == ABBE_LIGHT_DIRECTIONAL;
+    snprintf(key, sizeof key, "%s.%s", held->key, sun ? "direction" : "position");
+    for (int k = 0; k < 3 && sun; k++) point[k] = held->aim[k] - point[k];
     abbe_view_document_point(point, value, sizeof value);
     abbe_view_state_set(state, key, value, state->continued, now_s);
     state->continued = true;

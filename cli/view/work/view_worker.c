@@ -19,6 +19,7 @@ struct abbe_view_worker {
   pthread_cond_t signal;
   void (*wake)(void);
   volatile int stop, quit;
+  const abbe_caustic_volume *volume; /* or NULL */
   bool busy, done;
   abbe_view_request request;
   abbe_view_result result;
@@ -100,7 +101,9 @@ static abbe_render_desc request_of(const abbe_view_worker *w, const abbe_view_re
   desc.upsample = moving ? job->eye_step + 1 : 0;
   desc.adaptive = moving ? 1 : 0;
   /* light that moves is blended with the last frames'; what is better is of one frame */
-  desc.history = moving && job->light == ABBE_VIEW_MOVING ? ABBE_RENDER_MAX_HISTORY : 0;
+  desc.volume = w->volume;
+  desc.history =
+      moving && job->light == ABBE_VIEW_MOVING && w->volume == NULL ? ABBE_RENDER_MAX_HISTORY : 0;
   desc.aovs = true; /* in motion too: without them other programs would have to be compiled */
   desc.width = q->width;
   desc.height = q->height;
@@ -220,6 +223,7 @@ static abbe_result trace(abbe_view_worker *w, const abbe_view_request *q, abbe_v
 /* What was drawn last is looked into, if it is of this scene still. */
 static abbe_result look(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out,
                         abbe_error *error) {
+  if (w->volume != NULL) return ABBE_OK; /* of no photons */
   if (w->renderer == NULL || w->drawn != w->scene.now || w->scene.relit ||
       abbe_view_document_compare(&w->scene.document, &q->document) >= ABBE_VIEW_SETTINGS)
     return ABBE_OK;
@@ -331,12 +335,13 @@ static void *begin(void *user) {
   return NULL;
 }
 
-abbe_result abbe_view_worker_make(const char *materials, void (*wake)(void), abbe_view_worker **out,
-                                  abbe_error *error) {
+abbe_result abbe_view_worker_make(const char *materials, const abbe_caustic_volume *volume,
+                                  void (*wake)(void), abbe_view_worker **out, abbe_error *error) {
   abbe_view_worker *w = calloc(1, sizeof *w);
   *out = NULL;
   if (w == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the viewer");
   w->wake = wake;
+  w->volume = volume;
   w->scene.materials = materials;
   abbe_result result = abbe_presets_load(NULL, &w->presets, error);
   pthread_mutex_init(&w->lock, NULL);

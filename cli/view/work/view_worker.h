@@ -65,10 +65,11 @@ void abbe_view_result_free(abbe_view_result *result);
 
 typedef struct abbe_view_worker abbe_view_worker;
 
-/* Starts the thread. wake (may be NULL) is called on it whenever a result is there. ABBE_GL where
+/* Starts the thread. volume (may be NULL): caustics are looked up in it, which stays where it is.
+ * wake (may be NULL) is called on it whenever a result is there. ABBE_GL where
  * there is no EGL for it, ABBE_NO_MEMORY. */
-abbe_result abbe_view_worker_make(const char *materials, void (*wake)(void), abbe_view_worker **out,
-                                  abbe_error *error);
+abbe_result abbe_view_worker_make(const char *materials, const abbe_caustic_volume *volume,
+                                  void (*wake)(void), abbe_view_worker **out, abbe_error *error);
 /* Cancels what is being done and ends the thread. */
 void abbe_view_worker_free(abbe_view_worker *worker);
 

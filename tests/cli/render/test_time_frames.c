@@ -45,6 +45,20 @@ static void frames_and_what_moves(void **state) {
   run_must("rm t* one.exr kept.exr");
 }
 
+/* What moves is halfway on the middle frame, and where it begins and ends on the others. */
+static void what_is_moved(void **state) {
+  (void)state;
+  run_must(RENDER "--frames 2:5 --fps 4 --move 'camera.eye=[0, -0.5, 0.5]:[0.25, -0.5, 0.5]' "
+                  "--move camera.fov=20:30 -o m.exr");
+  run_must(RENDER "--at 0.75 --set camera.eye=[0.125,-0.5,0.5] --set camera.fov=25 -o one.exr && "
+                  "\"$abbe\" compare one.exr m-0003.exr --tolerance relative_rmse=1e-5");
+  run_must(RENDER "--at 1 --set camera.eye=[0.25,-0.5,0.5] --set camera.fov=30 -o one.exr && "
+                  "\"$abbe\" compare one.exr m-0004.exr --tolerance relative_rmse=1e-5");
+  run_must(RENDER "--at 0.5 -o one.exr && \"$abbe\" compare one.exr m-0002.exr --tolerance "
+                  "relative_rmse=1e-5");
+  run_must("rm m* one.exr");
+}
+
 static void parts_are_put_together(void **state) {
   (void)state;
   run_must(RENDER "--frames 0:4 --fps 4 --png t.png && " RENDER
@@ -80,6 +94,11 @@ static void what_is_refused(void **state) {
   assert_true(run_refuses(GEM "--frames 0:4 --png t.png --part 7/8", 2, "none of 4 frames"));
   assert_true(run_refuses(GEM "--resume --png t.png", 2, "goes with --turntable N or --frames"));
   assert_true(run_refuses(GEM "--at soon --png t.png", 2, "--at"));
+  assert_true(run_refuses(GEM "--move camera.fov=20 --frames 0:4 --png t.png", 2, "moves nothing"));
+  assert_true(run_refuses(GEM "--move camera.fov=20:wide --frames 0:4 --png t.png", 2, "KEY=A:B"));
+  assert_true(run_refuses(GEM "--move camera.fov=20:30 --png t.png", 2, "goes with --frames A:B"));
+  assert_true(run_refuses(GEM "--move camera.fog=20:30 --frames 0:4 --png t.png", 1, "no key 'fog'"));
+  assert_true(run_refuses(GEM_TRACE "--move camera.fov=20:30 -o t.exr", 2, "goes with --frames"));
   assert_true(run_refuses(GEM_TRACE "--frames 0:4 --json", 2, "--frames writes frames"));
   assert_true(run_refuses(GEM_TRACE "--frames 0:4 -o t.exr --merge a b", 2, "goes without"));
   assert_true(run_refuses(GEM_TRACE "--fps 4 -o t.exr", 2, "--fps goes with --frames"));
@@ -87,9 +106,8 @@ static void what_is_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(frames_and_what_moves),
-      cmocka_unit_test(parts_are_put_together),
-      cmocka_unit_test(traced_frames),
+      cmocka_unit_test(frames_and_what_moves),  cmocka_unit_test(what_is_moved),
+      cmocka_unit_test(parts_are_put_together), cmocka_unit_test(traced_frames),
       cmocka_unit_test(what_is_refused),
   };
   return cmocka_run_group_tests(tests, run_setup, run_teardown);

@@ -75,6 +75,27 @@ static void a_lost_context_is_made_good(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
+/* The sun is dragged, and caustics are looked up there; rendering by the command that is said gives
+ * the same picture. */
+static void caustics_are_looked_up(void **state) {
+  (void)state;
+  run_must("cp \"$house\"/docs/examples/ball.yaml ball.yaml && \"$abbe\" volume ball.yaml -o v.exr "
+           "--shells 6x12x12 --photons 20000 --passes 1 -q");
+  run_must("printf '%s\\n' 'wait accurate' 'remember hash first' 'drag handle:sun 30,40' "
+           "'wait accurate' 'assert hash != $first' 'key control+s' 'say command' > a.txt");
+  run_must(
+      "\"$abbe\" view ball.yaml --volume v.exr --last accurate --size 440x80 --keep a --script "
+      "a.txt > said");
+  run_must("sed -n 's/^command abbe/\"$abbe\"/p' said > again.sh");
+  run_must("grep -q -e '--volume .*--set .lights.sun.direction' again.sh");
+  run_must("echo \"$(cat again.sh) --gl egl -q -o again.exr\" > again.sh && . ./again.sh");
+  run_must("\"$abbe\" compare again.exr a.exr --tolerance relative_rmse=1e-6");
+  run_must("rm ball.yaml a* said v.exr");
+  assert_int_equal(run_left(), 0);
+  assert_true(
+      run_refuses(VIEW "--volume \"$house\"/scenes/gem.yaml --script /dev/null", 1, "gem.yaml: "));
+}
+
 /* Neither the scene nor the table beside it is lost by keeping, whatever the name is. */
 static void what_is_read_is_not_written_over(void **state) {
   (void)state;
@@ -158,6 +179,7 @@ int main(void) {
       cmocka_unit_test(what_is_shown_beside_the_picture),
       cmocka_unit_test(a_turntable),
       cmocka_unit_test(a_lost_context_is_made_good),
+      cmocka_unit_test(caustics_are_looked_up),
       cmocka_unit_test(what_is_read_is_not_written_over),
       cmocka_unit_test(scripts_that_do_not_hold),
       cmocka_unit_test(without_a_display),

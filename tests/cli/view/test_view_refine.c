@@ -174,6 +174,17 @@ static void test_a_spectrum_is_traced_before_the_mean(void **state) {
   assert_int_equal(draw(&r, 0, 20).pass, 1);
 }
 
+/* Without a mean the tracer follows, or nothing. */
+static void test_a_picture_without_a_mean(void **state) {
+  (void)state;
+  abbe_view_refine r = begun();
+  r.single = true;
+  while (r.stage < ABBE_VIEW_ACCURATE) draw(&r, 0, 20);
+  assert_int_equal(next(&r, 0).stage, ABBE_VIEW_TRACED);
+  r.last = ABBE_VIEW_MEAN;
+  assert_true(idle(&r, 9));
+}
+
 static void test_stages_end_where_they_are_wanted(void **state) {
   (void)state;
   abbe_view_refine r = begun();
@@ -196,6 +207,7 @@ int main(void) {
                                      cmocka_unit_test(test_a_late_picture_brings_no_light),
                                      cmocka_unit_test(test_slow_pictures_get_cheaper),
                                      cmocka_unit_test(test_what_is_refused_waits_for_a_change),
+                                     cmocka_unit_test(test_a_picture_without_a_mean),
                                      cmocka_unit_test(test_a_spectrum_is_traced_before_the_mean),
                                      cmocka_unit_test(test_stages_end_where_they_are_wanted)};
   return cmocka_run_group_tests(tests, NULL, NULL);

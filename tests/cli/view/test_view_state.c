@@ -175,6 +175,35 @@ static void test_lights_move(void **state) {
   abbe_view_state_free(s);
 }
 
+/* A sun's handle stands on the way to it; dragged on its level it turns what it shines on. */
+static void test_the_sun_moves(void **state) {
+  (void)state;
+  static abbe_view_state s;
+  char path[] = ABBE_SOURCE_DIR "/docs/examples/ball.yaml";
+  double xy[2];
+  memset(&s, 0, sizeof s);
+  const abbe_view_document document = {.path = path};
+  assert_int_equal(abbe_view_state_begin(&s, &document, NULL), ABBE_OK);
+  abbe_view_state_resize(&s, 512, 512, 0);
+  learn(&s);
+  const abbe_view_light before = s.outline.light[0];
+  assert_true(before.placed);
+  static const double slopes[3] = {-0.5, 0.2, 1}; /* of [0.5, -0.2, -1], from there to the middle */
+  for (int k = 0; k < 3; k++)
+    assert_near((before.aim[k] - before.position[k]) / (before.aim[2] - before.position[2]),
+                slopes[k], 1e-12);
+  assert_true(abbe_view_camera_project(&s.camera, 512, 512, before.position, xy));
+  assert_int_equal(abbe_view_state_handle_at(&s, xy[0], xy[1]).kind, ABBE_VIEW_LIGHT_HANDLE);
+  drag(&s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0] + 60, xy[1], 0);
+  assert_non_null(value(&s, "lights.sun.direction"));
+  assert_null(value(&s, "lights.sun.position"));
+  learn(&s);
+  const abbe_view_light *after = &s.outline.light[0];
+  const double slope = (after->aim[0] - after->position[0]) / (after->aim[2] - after->position[2]);
+  assert_true(slope > -0.4); /* it shines less to the right from farther right */
+  abbe_view_state_free(&s);
+}
+
 static void test_a_click_asks_for_a_spectrum(void **state) {
   (void)state;
   abbe_view_state *s = begun();
@@ -225,6 +254,7 @@ int main(void) {
                                      cmocka_unit_test(test_other_buttons_pan_and_look),
                                      cmocka_unit_test(test_handles_move_and_tilt_objects),
                                      cmocka_unit_test(test_the_wheel_is_a_step),
+                                     cmocka_unit_test(test_the_sun_moves),
                                      cmocka_unit_test(test_lights_move),
                                      cmocka_unit_test(test_a_click_asks_for_a_spectrum),
                                      cmocka_unit_test(test_edits_and_settings),

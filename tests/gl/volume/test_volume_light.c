@@ -226,7 +226,7 @@ static void test_pixels_have_what_the_volume_holds(void **state) {
 /* The object turned and moved, the light a point elsewhere: the same volume. */
 static void test_objects_and_lights_move(void **state) {
   (void)state;
-  abbe_scene scene = {0};
+  abbe_scene scene = {0}, original = {0};
   abbe_caustic_volume v;
   double turn[16], step[16];
   static const double axis[3] = {0.3, 1, 0.2}, offset[3] = {0.05, 0.1, 0.12};
@@ -245,6 +245,15 @@ static void test_objects_and_lights_move(void **state) {
   assert_int_equal(abbe_caustic_volume_project(&v, 2, NULL), ABBE_OK);
   assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_AUTO), 0, 0.004);
   abbe_caustic_volume_free(&v);
+  /* of modes, a blend alone */
+  double left;
+  load_text(wedge, &original);
+  make_volume(&original, ABBE_VOLUME_VECTOR, 2, 12, &v);
+  assert_int_equal(abbe_caustic_volume_reduce(&v, 5, &left, NULL), ABBE_OK);
+  assert_true(left > 0.01);
+  assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_AUTO), 0, 0.004);
+  abbe_caustic_volume_free(&v);
+  abbe_scene_free(&original);
   abbe_scene_free(&scene);
 }
 

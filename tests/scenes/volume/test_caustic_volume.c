@@ -5,6 +5,8 @@
 
 #include "scenes/geometry/vector.h"
 
+#include <stdlib.h>
+
 static const abbe_region_desc
     grid = {.kind = ABBE_REGION_GRID, .side = 24, .outer = 3},
     shells = {.kind = ABBE_REGION_OCTAHEDRAL, .side = 32, .shells = 24, .inner = 0.9, .outer = 3},
@@ -139,6 +141,77 @@ static void test_harmonics_of_the_light(void **state) {
   abbe_caustic_volume_free(&v);
 }
 
+/* The largest and the root mean square difference of all values at nodes, of the largest and of
+ * theirs. */
+static void compare_at_nodes(const abbe_caustic_volume *dense, const abbe_caustic_volume *v,
+                             double *largest, double *rms) {
+  const size_t each = dense->region.cells * 9;
+  float *sum = malloc(each * sizeof *sum);
+  double off = 0, all = 0, most = 0;
+  assert_non_null(sum);
+  *largest = 0;
+  for (size_t node = 0; node < dense->nodes.count; node++) {
+    abbe_volume_sight sight;
+    abbe_caustic_volume_look(v, ABBE_VOLUME_LOOKUP_AUTO, dense->nodes.direction[node], &sight);
+    abbe_caustic_volume_sum(v, &sight, sum);
+    for (size_t i = 0; i < each; i++) {
+      const double x = abbe_half_value(dense->value[node * each + i]), d = (double)sum[i] - x;
+      *largest = fmax(*largest, fabs(d));
+      most = fmax(most, fabs(x));
+      off += d * d;
+      all += x * x;
+    }
+  }
+  free(sum);
+  *largest /= most;
+  *rms = sqrt(off / all);
+}
+
+/* As many modes as nodes are the dense volume, to the rounding of halves; of fewer the error is
+ * what was said, and less with more; lookups are those of the sum. */
+static void test_modes_of_the_light(void **state) {
+  (void)state;
+  const abbe_region_desc small = {.kind = ABBE_REGION_GRID, .side = 6, .outer = 2};
+  abbe_caustic_volume dense;
+  abbe_error error = {0};
+  double before = 1;
+  make_volume(ABBE_VOLUME_VECTOR, small, 42, false, &dense);
+  for (size_t rank = 1; rank <= 42; rank = rank < 32 ? 2 * rank : rank + 10) {
+    abbe_caustic_volume v;
+    double left, largest, rms;
+    make_volume(ABBE_VOLUME_VECTOR, small, 42, false, &v);
+    assert_int_equal(abbe_caustic_volume_reduce(&v, rank, &left, &error), ABBE_OK);
+    assert_int_equal(abbe_caustic_volume_blocks(&v), rank);
+    assert_int_equal(abbe_caustic_volume_bytes(&v), 2 * rank * (9 * v.region.cells + 42));
+    compare_at_nodes(&dense, &v, &largest, &rms);
+    assert_near(rms, left, 0x1p-11);
+    assert_true(left <= before);
+    before = left;
+    if (rank == 42) {
+      assert_near(left, 0, 0);
+      assert_near(largest, 0, 0x1p-10);
+    }
+    abbe_volume_sight sight;
+    double p[3], f[3][3];
+    const double l[3] = {0.48, -0.6, 0.64};
+    float *sum = malloc(9 * v.region.cells * sizeof *sum);
+    abbe_volume_region_middle(&v.region, 77, p);
+    abbe_caustic_volume_look(&v, ABBE_VOLUME_LOOKUP_AUTO, l, &sight);
+    abbe_caustic_volume_flux(&v, &sight, p, f);
+    abbe_caustic_volume_sum(&v, &sight, sum);
+    for (size_t c = 0; c < 9; c++) assert_near(f[c / 3][c % 3], (double)sum[77 * 9 + c], 1e-5);
+    free(sum);
+    assert_int_equal(abbe_caustic_volume_reduce(&v, 1, &left, &error), ABBE_INVALID_ARGUMENT);
+    assert_int_equal(abbe_caustic_volume_project(&v, 1, &error), ABBE_INVALID_ARGUMENT);
+    abbe_caustic_volume_free(&v);
+  }
+  double left;
+  assert_int_equal(abbe_caustic_volume_reduce(&dense, 43, &left, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "as many as there are nodes, 42");
+  assert_int_equal(abbe_caustic_volume_reduce(&dense, 0, &left, &error), ABBE_INVALID_ARGUMENT);
+  abbe_caustic_volume_free(&dense);
+}
+
 /* No value is off by more than the tolerance, and fewer bytes hold them. */
 static void test_joint_cells(void **state) {
   (void)state;
@@ -208,6 +281,7 @@ int main(void) {
       cmocka_unit_test(test_turns_are_exact_for_a_ball),
       cmocka_unit_test(test_a_ball_is_turned_by_itself),
       cmocka_unit_test(test_harmonics_of_the_light),
+      cmocka_unit_test(test_modes_of_the_light),
       cmocka_unit_test(test_joint_cells),
       cmocka_unit_test(test_beyond_the_region),
       cmocka_unit_test(test_too_many_values_are_refused),

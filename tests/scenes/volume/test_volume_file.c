@@ -15,13 +15,17 @@ static const abbe_region_desc regions[] = {
 
 static void test_files_give_volumes_back(void **state) {
   (void)state;
-  for (int i = 0; i < 15; i++) {
+  for (int i = 0; i < 18; i++) {
     abbe_caustic_volume v, back;
     abbe_error error = {0};
     const size_t nodes = i / 3 % 2 != 0 ? 12 : 1;
     make_volume(i < 6 || i >= 12 ? ABBE_VOLUME_VECTOR : ABBE_VOLUME_PRINTED, regions[i % 3],
                 i < 12 ? nodes : 12, i % 2 != 0, &v);
-    if (i >= 12) assert_int_equal(abbe_caustic_volume_project(&v, 2, &error), ABBE_OK);
+    double left;
+    if (i >= 15)
+      assert_int_equal(abbe_caustic_volume_reduce(&v, 4, &left, &error), ABBE_OK);
+    else if (i >= 12)
+      assert_int_equal(abbe_caustic_volume_project(&v, 2, &error), ABBE_OK);
     assert_int_equal(abbe_volume_file_write(path, &v, &error), ABBE_OK);
     assert_int_equal(abbe_volume_file_read(path, &back, &error), ABBE_OK);
     assert_int_equal(back.kind, v.kind);
@@ -30,6 +34,8 @@ static void test_files_give_volumes_back(void **state) {
                 a->shells == b->shells && a->inner == b->inner && a->outer == b->outer);
     assert_int_equal(back.nodes.count, v.nodes.count);
     assert_int_equal(back.degree, v.degree);
+    assert_int_equal(back.rank, v.rank);
+    if (v.rank > 0) assert_memory_equal(back.mode, v.mode, v.rank * v.nodes.count * 2);
     assert_memory_equal(back.nodes.direction, v.nodes.direction, v.nodes.count * 24);
     assert_string_equal(back.body.name, v.body.name);
     assert_string_equal(back.body.material, v.body.material);
@@ -138,6 +144,9 @@ static void test_broken_attributes_are_told(void **state) {
       {"abbe:volume_nodes", "-12 of a geodesic sphere"},
       {"abbe:volume_nodes", "42 of a geodesic sphere"},
       {"abbe:volume_nodes", "1 along 0 0 0"},
+      {"abbe:volume_nodes", "4 modes of 12 of a geodesic sphere"}, /* of bytes */
+      {"abbe:volume_nodes", "13 modes of 12 of a geodesic sphere"},
+      {"abbe:volume_nodes", "0 modes of 12 of a geodesic sphere"},
       {"abbe:volume_body", "radius 0 m"},
       {"abbe:volume_body",
        "radius 1 m, 3 vertices, 1 faces; of them 0 at 1 0 0, 1 at 0 1 0, 9 at 0 0 1"},

@@ -41,6 +41,14 @@ static void errors_that_stay_do_not_flicker(void **state) {
   e = add(&f, make(false, 4, 5), make(false, 4, 4)); /* now it goes to the others */
   assert_near(e.change, sqrt(1.0 / 16), 1e-7);
   assert_int_equal(f.count, 3);
+  const abbe_frame_error first = {1, NAN, 0.25}, row[] = {first, {0.5, 0.3, 0}, e};
+  abbe_frame_error most;
+  abbe_frame_flicker_largest(row, 3, &most);
+  assert_near(most.error, 1, 0);
+  assert_near(most.change, 0.3, 0);
+  assert_near(most.ghost, 0.25, 0);
+  abbe_frame_flicker_largest(row, 1, &most);
+  assert_true(isnan(most.change));
   abbe_frame_flicker_free(&f);
 }
 

@@ -382,6 +382,10 @@ static void test_requests(void **state) {
   assert_int_equal(abbe_volume_fill(&scene, &desc, &v, &done, &error), ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "harmonics");
   desc.degree = 0;
+  desc.rank = 2;
+  assert_int_equal(abbe_volume_fill(&scene, &desc, &v, &done, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "modes");
+  desc.rank = 0;
   desc.progress = stop_at_once;
   desc.user = &calls;
   assert_int_equal(abbe_volume_fill(&scene, &desc, &v, &done, &error), ABBE_CANCELLED);

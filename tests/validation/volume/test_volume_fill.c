@@ -245,7 +245,17 @@ static void test_requests(void **state) {
   abbe_error error = {0};
   int calls = 0;
   load_text(ORB("crown"), &scene);
-  abbe_volume_fill_desc desc = {.object = 0, .photons = 1000, .passes = 1};
+  abbe_volume_fill_desc desc = {.object = 1, .photons = 1000, .passes = 1, .nodes = 12, .rank = 13};
+  assert_int_equal(abbe_volume_fill(&scene, &desc, &v, &done, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "13 modes of 12 nodes");
+  desc.rank = 0;
+  desc.degree = 3;
+  assert_int_equal(abbe_volume_fill(&scene, &desc, &v, &done, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "16 harmonics of 12 nodes");
+  desc.rank = 3;
+  assert_int_equal(abbe_volume_fill(&scene, &desc, &v, &done, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "one of them");
+  desc = (abbe_volume_fill_desc){.object = 0, .photons = 1000, .passes = 1};
   assert_int_equal(abbe_volume_fill(&scene, &desc, &v, &done, &error), ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "receiver");
   abbe_scene dark = scene;

@@ -1,0 +1,142 @@
+/* Ways for light side by side: slopes and fronts by hand, and what is measured of a ball's. */
+#include "tests/gl/frame.h"
+
+#include "base/file.h"
+#include "validation/sweep/studies/transport_study.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+static void test_what_pays_and_fronts(void **state) {
+  (void)state;
+  static abbe_transport_study s;
+  /* moved_ms, caustic_de, bytes, precompute_s; the second is better than the third in all */
+  static const double rows[4][4] = {
+      {500, 0.7, NAN, NAN}, {100, 1, 1e6, 4.1}, {120, 2, 2e6, 1}, {600, 3, 5e5, 10}};
+  s.count = 4;
+  for (size_t i = 0; i < 4; i++) {
+    for (int k = 0; k < ABBE_TRANSPORT_NUMBER_COUNT; k++) s.row[i].number[k] = NAN;
+    s.row[i].number[ABBE_TRANSPORT_MOVED_MS_NUMBER] = rows[i][0];
+    s.row[i].number[ABBE_TRANSPORT_CAUSTIC_DE_NUMBER] = rows[i][1];
+    s.row[i].number[ABBE_TRANSPORT_BYTES_MEMORY_NUMBER] = rows[i][2];
+    s.row[i].number[ABBE_TRANSPORT_PRECOMPUTE_S_NUMBER] = rows[i][3];
+  }
+  abbe_transport_study_judge(&s);
+  static const bool on_time[] = {true, true, false, false}, on_bytes[] = {false, true, false, true};
+  for (size_t i = 0; i < 4; i++) {
+    assert_int_equal(s.row[i].on_time, on_time[i]);
+    assert_int_equal(s.row[i].on_bytes, on_bytes[i]);
+  }
+  assert_near(s.row[1].number[ABBE_TRANSPORT_PAYS_AFTER_NUMBER], 11, 0); /* of 400 ms each */
+  assert_near(s.row[2].number[ABBE_TRANSPORT_PAYS_AFTER_NUMBER], 3, 0);
+  assert_true(isnan(s.row[3].number[ABBE_TRANSPORT_PAYS_AFTER_NUMBER])); /* slower: never */
+  assert_true(isnan(s.row[0].number[ABBE_TRANSPORT_PAYS_AFTER_NUMBER]));
+}
+
+static void test_slopes(void **state) {
+  (void)state;
+  static abbe_transport_study s;
+  s.count = 4;
+  for (size_t i = 0; i < 4; i++) {
+    const double samples = pow(4, (double)i);
+    s.row[i].contestant.render.pinholes = (size_t)samples;
+    s.row[i].number[ABBE_TRANSPORT_SAMPLES_NUMBER] = samples;
+    s.row[i].number[ABBE_TRANSPORT_CAUSTIC_RMSE_NUMBER] = 3 / sqrt(samples);
+  }
+  s.row[3].contestant.render.strategy = ABBE_SAMPLE_STRATEGY_GRID;
+  assert_near(abbe_transport_study_slope(&s, 0), -0.5, 1e-12);
+  assert_near(abbe_transport_study_slope(&s, 2), -0.5, 1e-12);
+  assert_true(isnan(abbe_transport_study_slope(&s, 3)));
+}
+
+static void test_named_contestants(void **state) {
+  (void)state;
+  abbe_transport_contestant list[ABBE_TRANSPORT_STUDY_MOST];
+  assert_int_equal(abbe_transport_study_contestants("none", list), 0);
+  const size_t volumes = abbe_transport_study_contestants("volume", list);
+  assert_true(volumes > 10 && volumes <= ABBE_TRANSPORT_STUDY_MOST);
+  assert_int_equal(list[0].render.transport, ABBE_TRANSPORT_AUTO);
+  const size_t pinholes = abbe_transport_study_contestants("pinhole", list);
+  assert_int_equal(pinholes, 1 + 2 * 3 * (ABBE_SAMPLE_STRATEGY_COUNT - 1));
+}
+
+static bool never(void *user, double done) {
+  (void)user;
+  (void)done;
+  return false;
+}
+
+#define ORB                                                                                        \
+  CAMERA SUN FLOOR                                                                                 \
+      "- {name: orb, shape: sphere, radius: 0.1, levels: 3, material: crown, transform: "          \
+      "[{translate: [0, 0, 0.15]}]}\n"
+
+static void test_a_ball(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image picture = {0};
+  abbe_error error = {0}, why = {0};
+  static abbe_transport_study s;
+  size_t refused;
+  char folder[] = "/tmp/abbe-test-transports-XXXXXX", file[64], table[64], *text;
+  assert_non_null(mkdtemp(folder));
+  snprintf(file, sizeof file, "%s/v.exr", folder);
+  snprintf(table, sizeof table, "%s/t.csv", folder);
+  load_text(ORB, &scene);
+  const abbe_render_desc photons = {.width = 32, .height = 32, .photons = 48, .aovs = true};
+  abbe_renderer *renderer = make_renderer(&scene, &photons);
+  draw_frame(renderer);
+  read_picture(renderer, true, &picture);
+  abbe_renderer_free(renderer);
+  const abbe_region_desc grid = {.kind = ABBE_REGION_GRID, .side = 8};
+  const abbe_transport_contestant list[] = {
+      {.render = {.photons = 48}},
+      {.render = {.profile = ABBE_PROFILE_WAND2003}}, /* knows no glass */
+      {.render = {.transport = ABBE_TRANSPORT_VOLUME},
+       .fill = {.nodes = 12, .rank = 4, .region = grid, .passes = 1, .photons = 2000}}};
+  abbe_sweep sweep = {.context = context, .scene = &scene, .frames = 1, .picture = &picture};
+  assert_int_equal(
+      abbe_transport_study_measure(&sweep, list, 3, file, never, NULL, &s, &refused, NULL, &error),
+      ABBE_CANCELLED);
+  assert_ok(
+      abbe_transport_study_measure(&sweep, list, 3, file, NULL, NULL, &s, &refused, &why, &error),
+      &error);
+  assert_int_equal(s.count, 2);
+  assert_int_equal(refused, 1);
+  assert_true(why.text[0] != '\0');
+  const double *own = s.row[0].number, *n = s.row[1].number;
+  assert_near(own[ABBE_TRANSPORT_CAUSTIC_DE_NUMBER], 0, 1e-3); /* it is the reference */
+  assert_true(n[ABBE_TRANSPORT_CAUSTIC_DE_NUMBER] > 0.1);
+  assert_true(own[ABBE_TRANSPORT_MOVED_MS_NUMBER] > 0 && n[ABBE_TRANSPORT_MOVED_MS_NUMBER] > 0);
+  assert_true(own[ABBE_TRANSPORT_POP_NUMBER] > 0 && own[ABBE_TRANSPORT_POP_NUMBER] < 1);
+  assert_true(isnan(own[ABBE_TRANSPORT_BYTES_MEMORY_NUMBER]));
+  assert_near(n[ABBE_TRANSPORT_BYTES_MEMORY_NUMBER], 2 * 4 * (512 * 9 + 12), 0);
+  assert_true(n[ABBE_TRANSPORT_BYTES_DISK_NUMBER] > 1000);
+  assert_true(n[ABBE_TRANSPORT_BYTES_GPU_NUMBER] > 512 * 20);
+  assert_near(n[ABBE_TRANSPORT_NODES_NUMBER], 12, 0);
+  assert_near(n[ABBE_TRANSPORT_RANK_NUMBER], 4, 0);
+  assert_near(n[ABBE_TRANSPORT_PHOTONS_NODE_NUMBER], 2000, 0);
+  assert_int_not_equal(access(file, F_OK), 0);
+  size_t size;
+  assert_ok(abbe_transport_study_save(&s, table, &error), &error);
+  assert_ok(abbe_file_read(table, 1 << 16, &text, &size, &error), &error);
+  assert_contains(text,
+                  "transport,strategy,footprint,region,lookup,samples,nodes,cells,order,rank,");
+  assert_contains(text, "\nvolume,,,grid 8,auto,,12,512,,4,2000,");
+  free(text);
+  unlink(table);
+  rmdir(folder);
+  sweep.picture = NULL;
+  assert_int_equal(
+      abbe_transport_study_measure(&sweep, list, 3, file, NULL, NULL, &s, &refused, NULL, &error),
+      ABBE_INVALID_ARGUMENT);
+  abbe_image_free(&picture);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_what_pays_and_fronts), cmocka_unit_test(test_slopes),
+      cmocka_unit_test(test_named_contestants), cmocka_unit_test(test_a_ball)};
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}
