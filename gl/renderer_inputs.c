@@ -241,6 +241,7 @@ static uint64_t mix_light_plan(uint64_t h, const abbe_plan *plan) {
   MIX(h, d->iterations);
   MIX(h, d->interfaces);
   MIX(h, d->direction);
+  MIX(h, d->polygons);
   MIX(h, d->low_pass);
   MIX(h, d->faces);
   MIX(h, d->history);

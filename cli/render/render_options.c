@@ -8,6 +8,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum {
   OPTION_PROFILE = 0x100,
@@ -27,6 +28,7 @@ enum {
   OPTION_STRATEGY,
   OPTION_FOOTPRINT,
   OPTION_DIRECTION,
+  OPTION_POLYGONS,
   OPTION_HISTORY,
   OPTION_ESTIMATOR,
   OPTION_ITERATIONS,
@@ -86,6 +88,10 @@ static const struct argp_option options[] = {
      1},
     {"direction", OPTION_DIRECTION, "NAME", 0,
      "of wyman2006, by which caustics are shaded: own, mean, direct (mean)", 1},
+    {"polygons", OPTION_POLYGONS, "LIST", 0,
+     "of wyman2006's quads and triangles: even beams, light by corners, those between surfaces "
+     "culled, drawn in-light, such as corners,culled (none)",
+     1},
     {"history", OPTION_HISTORY, "N", 0,
      "frames that a picture holds, 1 to 4, of the default profile and wyman2006's gathers: with "
      "--frames (1)",
@@ -129,6 +135,7 @@ static const struct argp_option options[] = {
 
 #define ABBE_NAME_OF_2(code, name) name,
 #define ABBE_NAME_OF_3(code, name, ocio) name,
+#define ABBE_BIT_OF(code, name, bit) bit,
 static const char *const profiles[] = {ABBE_PROFILES(ABBE_NAME_OF_2)};
 static const char *const models[] = {ABBE_MODELS(ABBE_NAME_OF_2)};
 static const char *const estimators[] = {ABBE_ESTIMATORS(ABBE_NAME_OF_2)};
@@ -139,6 +146,22 @@ static const char *const fills[] = {ABBE_FILLS(ABBE_NAME_OF_2)};
 static const char *const transports[] = {ABBE_TRANSPORTS(ABBE_NAME_OF_2)};
 static const char *const lookups[] = {ABBE_VOLUME_LOOKUPS(ABBE_NAME_OF_2)};
 static const char *const spaces[] = {ABBE_RGB_SPACES(ABBE_NAME_OF_3)};
+
+/* A list of words, as bits. */
+static unsigned read_polygons(const char *program, const char *text) {
+  static const char *const names[] = {ABBE_POLYGONS(ABBE_NAME_OF_3)};
+  static const unsigned bits[] = {ABBE_POLYGONS(ABBE_BIT_OF)};
+  enum { COUNT = sizeof names / sizeof *names };
+  unsigned all = 0;
+  for (const char *at = text; at != NULL;) {
+    const size_t length = strcspn(at, ",");
+    char word[32];
+    snprintf(word, sizeof word, "%.*s", (int)length, at);
+    all |= bits[abbe_command_choice(program, "--polygons", word, names, COUNT)];
+    at = at[length] == ',' ? at + length + 1 : NULL;
+  }
+  return all;
+}
 
 /* Of the transport by pinholes; false: the key is another's. */
 static bool take_pinholes(int key, const char *text, const char *p, abbe_render_desc *d) {
@@ -210,6 +233,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_DIRECTION:
     d->direction = (abbe_direction)abbe_command_choice(p, "--direction", text, directions,
                                                        ABBE_DIRECTION_COUNT);
+    return 0;
+  case OPTION_POLYGONS:
+    d->polygons = read_polygons(p, text);
     return 0;
   case OPTION_HISTORY:
     d->history = abbe_command_count(p, "--history", text, 1, ABBE_RENDER_MAX_HISTORY);

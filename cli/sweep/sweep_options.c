@@ -29,6 +29,7 @@ enum {
   OPTION_EXITS,
   OPTION_MODEL,
   OPTION_SHARE,
+  OPTION_HISTORY,
   OPTION_FRAMES,
   OPTION_SIZE,
   OPTION_ERROR,
@@ -98,6 +99,8 @@ static const struct argp_option options[] = {
     {"model", OPTION_MODEL, "LIST", 0, "of transport: auto, layers, hierarchy, ...", 1},
     {"exits", OPTION_EXITS, "LIST", 0, "followed at the most", 1},
     {"share", OPTION_SHARE, "LIST", 0, "of their light below which paths end", 1},
+    {"history", OPTION_HISTORY, "LIST", 0,
+     "frames that a picture is made of, 1 to 4: the error after 1, 2, 4 and 8", 1},
     {"passes", OPTION_PASSES, "LIST", 0, "of the tracer, each of photons x photons photons", 1},
     {"frames", OPTION_FRAMES, "N", 0, "warm up, then the median of N (5)", 1},
     {"processes", OPTION_PROCESSES, NULL, 0,
@@ -150,6 +153,7 @@ static void take_count(const request *q, const char *option, const char *word, s
   size_t most = strcmp(option, "--samples") == 0       ? 4
                 : strcmp(option, "--upsample") == 0    ? 4
                 : strcmp(option, "--exits") == 0       ? ABBE_RENDER_MAX_EXITS
+                : strcmp(option, "--history") == 0     ? ABBE_RENDER_MAX_HISTORY
                 : strcmp(option, "--wavelengths") == 0 ? ABBE_RENDER_MAX_WAVELENGTHS
                 : strcmp(option, "--passes") == 0      ? 65536
                                                        : ABBE_RENDER_MAX_PHOTONS;
@@ -209,6 +213,7 @@ static error_t parse_list(int key, const char *text, request *q) {
                {OPTION_SAMPLES, "--samples", &g->samples},
                {OPTION_UPSAMPLE, "--upsample", &g->upsample},
                {OPTION_EXITS, "--exits", &g->exits},
+               {OPTION_HISTORY, "--history", &g->history},
                {OPTION_PASSES, "--passes", &g->passes},
                {OPTION_PROFILES, "--profiles", &g->profiles},
                {OPTION_MODEL, "--model", &g->models},

@@ -45,6 +45,28 @@ static abbe_result print_baseline(const abbe_sweep_table *table, const char *pro
   return ABBE_OK;
 }
 
+static void print_histories(const abbe_sweep_table *table) {
+  static const abbe_sweep_number numbers[] = {ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_AFTER_1,
+                                              ABBE_SWEEP_AFTER_2, ABBE_SWEEP_AFTER_4,
+                                              ABBE_SWEEP_AFTER_8};
+  enum { COUNT = sizeof numbers / sizeof *numbers };
+  char label[64], text[ABBE_SWEEP_SHORT];
+  bool begun = false;
+  for (size_t i = 0; i < table->count; i++) {
+    const abbe_sweep_row *row = &table->row[i];
+    if (!abbe_sweep_setting_has_history(&row->setting)) continue;
+    if (!begun) printf("\nframes that follow one another, the scene at rest:\n%-34s", "");
+    for (int k = 0; k < COUNT && !begun; k++)
+      printf(" %12s%s", abbe_sweep_number_name(numbers[k]), k + 1 == COUNT ? "\n" : "");
+    begun = true;
+    abbe_sweep_setting_label(&row->setting, label, sizeof label);
+    printf("%-34s", label);
+    for (int k = 0; k < COUNT; k++)
+      printf(" %12s", abbe_sweep_number_short(row->number[numbers[k]], text));
+    printf("\n");
+  }
+}
+
 abbe_result abbe_sweep_report_print(const abbe_sweep_table *table, abbe_sweep_number time,
                                     abbe_sweep_number number, abbe_error *error) {
   size_t count, *order = abbe_sweep_table_front(table, time, &count);
@@ -66,6 +88,7 @@ abbe_result abbe_sweep_report_print(const abbe_sweep_table *table, abbe_sweep_nu
   for (int i = 0; i < ABBE_BASELINE_COUNT; i++)
     for (int k = 0; k < ABBE_SWEEP_TIMES && result == ABBE_OK; k++)
       result = print_baseline(table, abbe_baselines[i], abbe_sweep_times[k], number, error);
+  print_histories(table);
   const double unrest = abbe_sweep_table_unrest(table);
   if (unrest > ABBE_SWEEP_QUIET)
     printf("\nnote: the machine was busy: the median frame of half of the settings took more than "
@@ -120,6 +143,7 @@ static cJSON *describe_row(const abbe_sweep_row *row) {
   cJSON_AddNumberToObject(o, "share", s->share);
   cJSON_AddStringToObject(o, "model", s->model);
   cJSON_AddNumberToObject(o, "passes", (double)s->passes);
+  cJSON_AddNumberToObject(o, "history", (double)s->history);
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++)
     add_number(o, abbe_sweep_number_name((abbe_sweep_number)i), row->number[i]);
   cJSON_AddBoolToObject(o, "front", row->front);

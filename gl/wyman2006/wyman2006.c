@@ -10,6 +10,8 @@
  * ray; the frames of the filter weigh alike; the plane is that of the largest face of a receiver;
  * what is more than a hundredth of the distance before or behind the camera's surface is not drawn.
  *
+ * Variants of polygons (abbe_render_desc.polygons) are those that the paper names beside its own.
+ *
  * Six views, each of 90 degrees, see what is all around the light; photons then go to the camera's
  * image alone.
  *
@@ -39,7 +41,7 @@ static bool draws_polygons(const abbe_render_desc *d) {
 }
 
 static bool in_camera(const abbe_gpu_scene *scene) {
-  return scene->plan->desc.fill != ABBE_FILL_GATHER_LIGHT;
+  return !abbe_render_desc_in_light(&scene->plan->desc);
 }
 
 /* As printed through 90 degrees, be it one view or six. */
@@ -63,7 +65,8 @@ static abbe_result make_eye(abbe_wyman2006 *w, const abbe_shader_variant *varian
                             const char *definitions, abbe_error *error) {
   const abbe_fill fill = w->scene->plan->desc.fill;
   const abbe_direction direction = w->scene->plan->desc.direction;
-  const bool whole = fill == ABBE_FILL_QUADS || fill == ABBE_FILL_TRIANGLES;
+  const bool whole =
+      in_camera(w->scene) && (fill == ABBE_FILL_QUADS || fill == ABBE_FILL_TRIANGLES);
   float(*shares)[3] = NULL;
   char more[960];
   const int length = snprintf(more, sizeof more, "%s#define CAUSTIC_RATIOS\n%s%s%s%s", definitions,
@@ -183,7 +186,7 @@ static abbe_result draw_photons(abbe_wyman2006 *w, abbe_wyman_target *target, bo
 
 bool abbe_wyman2006_keeps_light(const abbe_render_desc *desc) {
   return desc->history <= 1 &&
-         (desc->fill == ABBE_FILL_GATHER_LIGHT || (desc->wavelengths == 1 && desc->faces <= 1));
+         (abbe_render_desc_in_light(desc) || (desc->wavelengths == 1 && desc->faces <= 1));
 }
 
 abbe_result abbe_wyman2006_run(abbe_wyman2006 *w, bool lit, abbe_error *error) {

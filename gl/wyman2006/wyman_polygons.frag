@@ -1,7 +1,7 @@
 // In the light's image as what points are summed to: a ratio by what a texel's window area is in solid angle.
 #include "wyman_target.glsl"
-flat in vec3 ratio;
-flat in vec3 direction;
+OF_POLYGON in vec3 ratio;
+OF_POLYGON in vec3 direction;
 in vec3 world;
 layout(location = 0) out vec4 sum;  // w: how many polygons lie there
 layout(location = 1) out vec4 directions;

@@ -2,6 +2,7 @@
 
 #include "scenes/geometry/transform.h"
 
+#include <math.h>
 #include <stdio.h>
 
 static const GLfloat nothing[4] = {0, 0, 0, 0};
@@ -9,6 +10,19 @@ static const int flat[2] = {-1, -1};
 
 static bool is_printed(const abbe_gpu_scene *scene) {
   return abbe_profile_is_printed(scene->plan->desc.profile);
+}
+
+/* What polygons are compiled for. */
+static void define_polygons(const abbe_wyman_target *t, char *out, size_t size) {
+  const unsigned kind = t->scene->plan->desc.polygons;
+  const abbe_image_places *light = t->photons->light;
+  *out = '\0';
+  if (t->polygons)
+    snprintf(out, size, "%s%s%s%s#define OBJECT_FACES %zu\n",
+             kind & ABBE_POLYGONS_EVEN ? "#define EVEN\n" : "",
+             kind & ABBE_POLYGONS_CORNERS ? "#define CORNERS\n" : "",
+             kind & ABBE_POLYGONS_CULLED ? "#define CULLED\n" : "",
+             light->faces > 1 ? "#define PLACES_CUBE\n" : "", light->object_faces);
 }
 
 static abbe_result make_programs(abbe_wyman_target *t, const abbe_shader_variant *variant,
@@ -25,12 +39,13 @@ static abbe_result make_programs(abbe_wyman_target *t, const abbe_shader_variant
                                               {GL_FRAGMENT_SHADER, "wyman_history.frag"}};
   const abbe_render_desc *d = &t->scene->plan->desc;
   abbe_gpu *gpu = t->scene->gpu;
-  char more[160];
-  snprintf(more, sizeof more, "%s%s%s%s%s", t->camera ? "#define IN_CAMERA\n" : "",
+  char more[320], kind[160];
+  define_polygons(t, kind, sizeof kind);
+  snprintf(more, sizeof more, "%s%s%s%s%s%s", t->camera ? "#define IN_CAMERA\n" : "",
            d->fill == ABBE_FILL_TRIANGLES ? "#define TRIANGLES\n" : "",
            t->directions ? "#define DIRECTIONS\n" : "",
            d->direction == ABBE_DIRECTION_MEAN ? "#define MEAN_DIRECTION\n" : "",
-           is_printed(t->scene) ? "#define AS_PRINTED\n" : "");
+           is_printed(t->scene) ? "#define AS_PRINTED\n" : "", kind);
   abbe_result result = abbe_shader_variant_program(variant, gpu, t->polygons ? polygons : points, 2,
                                                    more, &t->draw, error);
   if (result == ABBE_OK && t->gathers)
@@ -101,6 +116,17 @@ void abbe_wyman_target_free(abbe_wyman_target *t) {
   *t = (abbe_wyman_target){0};
 }
 
+/* Of a corner of a window, from its middle. */
+static double corner_angle(double x, double y) {
+  return atan2(x * y, sqrt(1 + x * x + y * y));
+}
+
+/* What a view sees, sr. */
+static double solid_angle(const abbe_view *v) {
+  return corner_angle(v->window[1], v->window[3]) - corner_angle(v->window[0], v->window[3]) -
+         corner_angle(v->window[1], v->window[2]) + corner_angle(v->window[0], v->window[2]);
+}
+
 static double window_area(const abbe_view *view) {
   return (view->window[1] - view->window[0]) * (view->window[3] - view->window[2]);
 }
@@ -114,14 +140,17 @@ static void set_drawing(const abbe_wyman_target *t) {
   const double pixel = window_area(&t->places->view.view) /
                        ((double)t->places->size[0] * (double)t->places->size[1]);
   const double *from = light->view.view.origin;
+  if (scene->plan->desc.polygons & ABBE_POLYGONS_CULLED) abbe_image_places_set(light, t->draw);
   abbe_image_view_set_view(scene, t->draw, "drawn_from", &t->places->view.view);
   abbe_image_view_set_clip(scene, t->draw, "drawn_matrix", &t->places->view);
   abbe_gpu_bind_texture(scene->gpu, t->draw, "photon_places", 0, t->photons->places);
   abbe_gpu_bind_texture(scene->gpu, t->draw, "photon_directions", 1, t->photons->incident);
-  abbe_gpu_bind_texture(scene->gpu, t->draw, "drawn_places", 2, t->places->receivers);
+  abbe_gpu_bind_texture(scene->gpu, t->draw, "drawn_places", 5, t->places->receivers);
   abbe_gpu_set_int(scene->gpu, t->draw, "grid", (int)side);
   abbe_gpu_set_float(scene->gpu, t->draw, "strength", cell / pixel);
   abbe_gpu_set_float(scene->gpu, t->draw, "cell_area", cell);
+  abbe_gpu_set_float(scene->gpu, t->draw, "even_beam",
+                     solid_angle(&light->object_face[0].view) / (side * side));
   gl->Uniform3f(gl->GetUniformLocation(t->draw, "light_at"), (float)from[0], (float)from[1],
                 (float)from[2]);
 }

@@ -3,6 +3,11 @@
 uniform vec4 drawn_from[6];
 uniform sampler2D drawn_places;
 const float HIDDEN = 0.01;  // of the distance
+#ifdef CORNERS  // light varies over a polygon
+#define OF_POLYGON
+#else
+#define OF_POLYGON flat
+#endif
 
 View drawn_view() {
   return View(drawn_from[0], drawn_from[1], drawn_from[2], drawn_from[3], drawn_from[4], drawn_from[5]);

@@ -87,6 +87,40 @@ static void a_ball_shines_evenly(void **state) {
   drop(&f);
 }
 
+/* Pixel by pixel: the grid of photons and the texels leave no pattern in light that diverges. */
+static void a_balls_light_is_smooth(void **state) {
+  (void)state;
+  enum { SIDE = 64 };
+  frame f;
+  abbe_render_desc desc = tiny;
+  desc.width = desc.height = SIDE;
+  desc.photons = 0; /* as by default */
+  desc.map_size = 0;
+  draw("materials: default\ncamera: {eye: [-0.7, 0, 0.6], target: [-0.7, 0, 0], up: [0, 1, 0], "
+       "fov: 40}\n"
+       "lights:\n- {name: sun, kind: directional, direction: [0.5, 0, -1], irradiance: "
+       "1}\n" WHITE_FLOOR SHINING("ball", "shape: sphere, radius: 0.001, levels: 6",
+                                  "{translate: [0, 0, 1]}", "0.8"),
+       &desc, &f);
+  const size_t channel = abbe_image_find_channel(&f.aovs, "caustic.Y");
+  const double half = 0.6 * tan(20 * PI / 180), intensity = 0.8 * 0.001 * 0.001 / 4;
+  double mean = 0, square = 0, worst = 0;
+  for (size_t i = 0; i < SIDE * SIDE; i++) {
+    const double x = -0.7 + half * (2 * ((double)(i % SIDE) + 0.5) / SIDE - 1);
+    const double y = half * (2 * ((double)(i / SIDE) + 0.5) / SIDE - 1);
+    const double known = intensity * pow(1 + x * x + y * y, -1.5) / PI;
+    const double ratio = (double)f.aovs.data[i * f.aovs.channels + channel] / known;
+    mean += ratio / (SIDE * SIDE);
+    square += ratio * ratio / (SIDE * SIDE);
+    worst = fmax(worst, fabs(ratio - 1));
+  }
+  const double ripple = sqrt(fmax(square - mean * mean, 0));
+  print_message("%.4f of the ball's light, %.4f off it, %.4f at the most\n", mean, ripple, worst);
+  assert_near(mean, 1, 0.01);
+  assert_true(ripple < 0.01);
+  drop(&f);
+}
+
 /* The pane stands at x = 0.5: light comes from the lamp, and from its image at x = 1.1. On either
  * side of the pane, for both mirror. */
 static void check_pane(const char *angle) {
@@ -245,6 +279,7 @@ static void the_ledger_closes(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_ball_shines_evenly),
+      cmocka_unit_test(a_balls_light_is_smooth),
       cmocka_unit_test(a_pane_shines_like_the_lamps_image),
       cmocka_unit_test(a_mirrors_shadow_is_dark),
       cmocka_unit_test(a_whole_mirror_is_not_seen_in_uniform_light),

@@ -1,48 +1,13 @@
 /* Photons in image space, in units and as printed: what arrives, light that nothing bends, what a
  * flat mirror sends, the three directions, sparse neighbourhoods, and the filter over frames. */
-#include "tests/gl/frame.h"
+#include "tests/gl/image_space/image_pictures.h"
 
 #include "gl/scene/camera_view.h"
 #include "scenes/geometry/vector.h"
 
-#define PANE(material)                                                                             \
-  "- {name: pane, shape: box, size: [0.3, 0.3, 0.001], transform: [{translate: [0.05, 0.03, "      \
-  "0.3]}], material: " material "}\n"
-#define MIRROR(share)                                                                              \
-  "- {name: mirror, shape: rectangle, width: 0.1, height: 0.1, mirror: " share                     \
-  ", transform: [{rotate: {axis: [0, 1, 0], angle: 60}}, {translate: [0.1, 0, 0.15]}]}\n"
-
 static const abbe_fill fills[] = {ABBE_FILL_POINTS, ABBE_FILL_QUADS, ABBE_FILL_TRIANGLES,
                                   ABBE_FILL_GATHER_EYE, ABBE_FILL_GATHER_LIGHT};
 enum { FILLS = sizeof fills / sizeof *fills };
-
-static const abbe_render_desc small = {.profile = ABBE_PROFILE_WYMAN2006_CIE,
-                                       .width = 64,
-                                       .height = 64,
-                                       .photons = 512,
-                                       .map_size = 128,
-                                       .supersample = 1,
-                                       .upsample = 1,
-                                       .space = ABBE_RGB_SPACE_XYZ};
-
-static double map_energy(const abbe_scene *scene, const abbe_render_desc *desc) {
-  abbe_image map = {0};
-  abbe_renderer *renderer = make_renderer(scene, desc);
-  draw_frame(renderer);
-  read_map(renderer, 0, &map);
-  abbe_renderer_free(renderer);
-  const double sum = image_sum(&map, 1);
-  abbe_image_free(&map);
-  return sum;
-}
-
-static void make_picture(const abbe_scene *scene, const abbe_render_desc *desc, abbe_image *out) {
-  abbe_renderer *renderer = make_renderer(scene, desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, out);
-  abbe_renderer_free(renderer);
-  assert_finite(out);
-}
 
 /* A pane turns no light: each reconstruction's map holds the lamp's power through it, less two
  * reflections. Polygons miss half a cell all around. */
@@ -60,21 +25,6 @@ static void test_what_arrives_is_what_was_sent(void **state) {
     assert_near(sum, angle * 0.9216, 0.03 * angle);
   }
   abbe_scene_free(&scene);
-}
-
-/* Mean of a channel over the middle of the picture, and how far its pixels are from it. */
-static double middle(const abbe_image *image, double *spread) {
-  double sum = 0, least = INFINITY, most = -INFINITY;
-  const size_t from = image->width / 2 - 12, to = from + 24;
-  for (size_t y = from; y < to; y++)
-    for (size_t x = from; x < to; x++) {
-      const double value = (double)image->data[(y * image->width + x) * image->channels + 1];
-      sum += value / (24 * 24);
-      least = fmin(least, value);
-      most = fmax(most, value);
-    }
-  *spread = (most - least) / sum;
-  return sum;
 }
 
 /* Behind a thin pane, where the shadow map knows a shadow, the ratio of solid angles is 1, and the

@@ -60,6 +60,7 @@ static abbe_result read_render(const reader *r, abbe_yaml_node node, abbe_sweep_
                 {"samples", 4, &s->samples},
                 {"upsample", 4, &s->upsample},
                 {"exits", ABBE_RENDER_MAX_EXITS, &s->exits}};
+  s->history = 1;
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof counts / sizeof *counts && result == ABBE_OK; i++)
     result = get_count(r, node, counts[i].key, counts[i].most, counts[i].out);

@@ -29,7 +29,7 @@ typedef struct abbe_sweep_values {
 /* All combinations of its axes. A zeroed grid is the default profile's default. */
 typedef struct abbe_sweep_grid {
   abbe_sweep_values profiles; /* abbe_profile, or one of those below */
-  abbe_sweep_values wavelengths, photons, map, samples, upsample, exits;
+  abbe_sweep_values wavelengths, photons, map, samples, upsample, exits, history;
   abbe_sweep_values passes; /* of the tracer; of it, photons count too, and nothing else */
   abbe_sweep_values fills;  /* abbe_fill */
   abbe_sweep_values models; /* abbe_model */

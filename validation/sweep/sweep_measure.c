@@ -105,6 +105,31 @@ static abbe_result compare_picture(const abbe_sweep *s, const abbe_image *pictur
   return ABBE_OK;
 }
 
+/* The errors of a new renderer's first frames, where each takes those before. */
+static abbe_result compare_history(const abbe_sweep *s, abbe_renderer *renderer, bool scaled,
+                                   abbe_sweep_row *out, abbe_error *error) {
+  static const abbe_sweep_number after[9] = {[1] = ABBE_SWEEP_AFTER_1,
+                                             [2] = ABBE_SWEEP_AFTER_2,
+                                             [4] = ABBE_SWEEP_AFTER_4,
+                                             [8] = ABBE_SWEEP_AFTER_8};
+  abbe_result result = ABBE_OK;
+  if (s->picture == NULL || !abbe_sweep_setting_has_history(&out->setting)) return ABBE_OK;
+  for (size_t frame = 1; frame <= 8 && result == ABBE_OK; frame++) {
+    abbe_image drawn = {0};
+    abbe_comparison c;
+    abbe_renderer_redraw(renderer);
+    result = abbe_renderer_frame(renderer, NULL, NULL, NULL, error);
+    if (result != ABBE_OK || after[frame] == 0) continue;
+    result = abbe_renderer_read(renderer, false, &drawn, error);
+    if (result == ABBE_OK) result = compare(s->picture, &drawn, scaled, &c, error);
+    abbe_image_free(&drawn);
+    if (result != ABBE_OK) continue;
+    if (c.masked) out->number[after[frame]] = c.mask.metric[ABBE_COMPARE_CIEDE2000_MEAN].value;
+    abbe_comparison_free(&c);
+  }
+  return result;
+}
+
 /* A map in the reference's layout whose texels make whole ones of it stays as it is. */
 static abbe_result fit_map(const abbe_sweep *s, abbe_image *map, bool own_layout,
                            abbe_error *error) {
@@ -177,11 +202,13 @@ static abbe_result measure_map(const abbe_sweep *s, abbe_renderer *renderer, abb
   abbe_image map = {0}, before = {0};
   const abbe_plan *plan = abbe_renderer_plan(renderer);
   bool thesis = abbe_profile_is_published(plan->desc.profile);
+  const bool whole = thesis || plan->desc.history > 1; /* bands are of one frame */
   if (!plan->caustics || s->light >= plan->light_view_count) return ABBE_OK;
   if (thesis && plan->desc.faces > 1) return ABBE_OK; /* a cube has no one layout */
+  if (s->map == NULL && !abbe_profile_is_thesis(plan->desc.profile)) return ABBE_OK;
   abbe_result result =
-      thesis ? abbe_renderer_read_map(renderer, s->light, true, &map, error)
-             : abbe_renderer_read_map_bands(renderer, s->light, ABBE_SWEEP_BANDS, &map, error);
+      whole ? abbe_renderer_read_map(renderer, s->light, true, &map, error)
+            : abbe_renderer_read_map_bands(renderer, s->light, ABBE_SWEEP_BANDS, &map, error);
   if (result == ABBE_OK && thesis) {
     result = abbe_renderer_read_map(renderer, s->light, false, &before, error);
     if (result == ABBE_OK) note_fill(&before, &map, out);
@@ -235,6 +262,7 @@ static abbe_result measure_frames(const abbe_sweep *s, const abbe_sweep_setting 
   abbe_result result = make_desc(s, setting, &layout, &desc, error);
   bool scaled = abbe_profile_is_printed(desc.profile);
   if (result == ABBE_OK) result = abbe_renderer_make(s->context, s->scene, &desc, &renderer, error);
+  if (result == ABBE_OK) result = compare_history(s, renderer, scaled, out, error);
   if (result == ABBE_OK) result = time_frames(s, renderer, progress, user, out, error);
   if (result == ABBE_OK) result = abbe_renderer_read(renderer, false, drawn, error);
   if (result == ABBE_OK && s->picture != NULL)

@@ -182,6 +182,7 @@ static abbe_result list_fronts(work *w, abbe_sweep_number number, bool *listed, 
 
 /* Cold ones take long and differ little, so they are run for the fronts alone. */
 static bool is_timed(const abbe_sweep_row *row, bool cold) {
+  if (abbe_sweep_setting_has_history(&row->setting)) return true; /* a process draws one frame */
   return isfinite(row->number[ABBE_SWEEP_WARM_MS]) &&
          (!cold || isfinite(row->number[ABBE_SWEEP_COLD_MS]));
 }

@@ -12,6 +12,7 @@ void abbe_sweep_setting_of_trace(size_t photons, size_t passes, bool filtered,
                               .passes = passes,
                               .samples = 1,
                               .upsample = 1,
+                              .history = 1,
                               .share = 0.01, /* without effect, as the words below */
                               .fill = "none",
                               .model = "auto"};
@@ -28,7 +29,8 @@ void abbe_sweep_setting_of(const abbe_render_desc *d, abbe_sweep_setting *out) {
                               .samples = thesis ? 1 : d->supersample,
                               .upsample = d->upsample,
                               .share = thesis ? 0.01 : d->energy_share,
-                              .exits = d->exits};
+                              .exits = d->exits,
+                              .history = d->history > 1 ? d->history : 1};
   if (d->profile == ABBE_PROFILE_DEFAULT && d->transport == ABBE_TRANSPORT_PINHOLE)
     snprintf(out->profile, sizeof out->profile, "%s%zu", ABBE_SWEEP_PINHOLE, d->pinholes);
   else
@@ -76,7 +78,8 @@ abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_rend
                          .fill = (abbe_fill)fill,
                          .model = (abbe_model)model,
                          .energy_share = setting->share,
-                         .exits = setting->exits};
+                         .exits = setting->exits,
+                         .history = setting->history > 1 ? setting->history : 0};
   return ABBE_OK;
 }
 

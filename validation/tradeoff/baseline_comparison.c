@@ -41,7 +41,9 @@ static void meet(const abbe_sweep_table *table, abbe_sweep_number time, abbe_swe
   double least_ms = INFINITY, least_error = INFINITY;
   for (size_t i = 0; i < table->count; i++) {
     const abbe_sweep_row *row = &table->row[i];
-    if (strcmp(row->setting.profile, "default") != 0) continue;
+    if (strcmp(row->setting.profile, "default") != 0 ||
+        abbe_sweep_setting_has_history(&row->setting))
+      continue;
     double own_ms = row->number[time], own = row->number[number];
     if (own <= error) least_ms = fmin(least_ms, own_ms);
     if (own_ms <= ms) least_error = fmin(least_error, own);
@@ -86,7 +88,9 @@ abbe_result abbe_baseline_comparison_make(const abbe_sweep_table *table, const c
     bool counts = strcmp(row->setting.profile, profile) == 0;
     cost[i] = counts ? row->number[time] : NAN;
     cost[count + i] = row->number[number];
-    if (is_own(&row->setting, profile)) out->baseline = row;
+    if (is_own(&row->setting, profile) &&
+        (out->baseline == NULL || row->setting.history > out->baseline->setting.history))
+      out->baseline = row;
   }
   if (result == ABBE_OK) {
     out->front = abbe_pareto_front_order(cost, cost + count, count, order);

@@ -36,8 +36,9 @@ const char *abbe_baseline_key(const char *profile);
 typedef struct abbe_baseline_comparison {
   const abbe_sweep_row *baseline; /* of the thesis 7 wavelengths, 512 photons, map 1024, smear; of
                                      caustics mapping 128 photons, map 768; of photons in
-                                     image space 1024, map 512, gather-light; NULL: no row, or the
-                                     tracer, which has no settings of its own */
+                                     image space 1024, map 512, gather-light, with the longest
+                                     history that there is; NULL: no row, or the tracer, which has
+                                     no settings of its own */
   double equal_error_speedup;     /* its time over the least time of an error no larger */
   double equal_time_error_ratio;  /* the least error in a time no longer, over its error */
   size_t front;                   /* points of the baseline's front; 0: no rows */

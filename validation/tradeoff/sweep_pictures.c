@@ -91,7 +91,9 @@ static bool get_common(const group *g, size_t table, const abbe_sweep_setting *s
 static bool gather(const group *g, const abbe_sweep_setting *setting, abbe_picture_tool tool,
                    point *out) {
   *out = (point){.setting = setting, .tool = tool, .least = INFINITY};
-  if (abbe_picture_tool_of(setting) != tool || setting->share > most_share) return false;
+  if (abbe_picture_tool_of(setting) != tool || setting->share > most_share ||
+      abbe_sweep_setting_has_history(setting))
+    return false;
   for (size_t i = 0; i < g->count; i++) {
     double ms, error;
     if (!get_common(g, i, setting, &ms, &error)) return false;

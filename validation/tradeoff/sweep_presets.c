@@ -119,7 +119,9 @@ static abbe_result open_front(const abbe_sweep_table *tables, size_t count, size
   f->error = f->cost + own->count;
   for (size_t i = 0; i < own->count; i++) {
     const abbe_sweep_setting *setting = &own->row[i].setting;
-    if (strcmp(setting->profile, "default") != 0 || setting->share > most_share) continue;
+    if (strcmp(setting->profile, "default") != 0 || setting->share > most_share ||
+        abbe_sweep_setting_has_history(setting))
+      continue;
     f->points += gather(f, setting, &f->point[f->points]);
   }
   make_costs_the_worst(f);

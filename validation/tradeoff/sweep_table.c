@@ -32,7 +32,7 @@ static const char *const fact_names[] = {
 
 static const char *const setting_columns[] = {"profile", "wavelengths", "photons", "map",
                                               "samples", "fill",        "exits",   "share",
-                                              "model",   "upsample",    "passes"};
+                                              "model",   "upsample",    "passes",  "history"};
 enum {
   SETTING_COLUMNS = sizeof setting_columns / sizeof *setting_columns,
   COLUMNS = SETTING_COLUMNS + ABBE_SWEEP_NUMBER_COUNT + 1
@@ -82,18 +82,22 @@ bool abbe_sweep_setting_is_traced(const abbe_sweep_setting *setting) {
          strcmp(setting->profile, ABBE_SWEEP_TRACE_FILTER) == 0;
 }
 
+bool abbe_sweep_setting_has_history(const abbe_sweep_setting *setting) {
+  return setting->history > 1;
+}
+
 bool abbe_sweep_setting_same(const abbe_sweep_setting *a, const abbe_sweep_setting *b) {
   return strcmp(a->profile, b->profile) == 0 && strcmp(a->fill, b->fill) == 0 &&
          strcmp(a->model, b->model) == 0 && a->wavelengths == b->wavelengths &&
          a->photons == b->photons && a->map == b->map && a->samples == b->samples &&
          a->upsample == b->upsample && a->exits == b->exits && a->share == b->share &&
-         a->passes == b->passes;
+         a->passes == b->passes && a->history == b->history;
 }
 
 void abbe_sweep_setting_label(const abbe_sweep_setting *s, char *out, size_t size) {
   bool plain = strcmp(s->profile, "default") == 0;
   char exits[24] = "", share[48] = "", model[24] = "", number[ABBE_NUMBER_TEXT_SIZE];
-  char upsample[24] = "", fill[48] = "";
+  char upsample[24] = "", fill[48] = "", history[24] = "";
   if (abbe_sweep_setting_is_traced(s)) {
     snprintf(out, size, "%s %zu x p%zu", s->profile, s->passes, s->photons);
     return;
@@ -107,9 +111,10 @@ void abbe_sweep_setting_label(const abbe_sweep_setting *s, char *out, size_t siz
     snprintf(fill, sizeof fill, " no fill");
   else if (strncmp(s->profile, "wyman2006", 9) == 0)
     snprintf(fill, sizeof fill, " %s", s->fill);
-  snprintf(out, size, "%s%sw%zu p%zu m%zu s%zu%s%s%s%s%s", plain ? "" : s->profile,
+  if (abbe_sweep_setting_has_history(s)) snprintf(history, sizeof history, " h%zu", s->history);
+  snprintf(out, size, "%s%sw%zu p%zu m%zu s%zu%s%s%s%s%s%s", plain ? "" : s->profile,
            plain ? "" : " ", s->wavelengths, s->photons, s->map, s->samples, upsample, fill, exits,
-           share, model);
+           share, model, history);
 }
 
 /* The table */
@@ -200,7 +205,8 @@ abbe_result abbe_sweep_table_mark(abbe_sweep_table *table, abbe_sweep_number tim
   }
   for (size_t i = 0; i < count; i++) {
     const abbe_sweep_row *row = &table->row[i];
-    bool counts = profile == NULL || strcmp(profile, row->setting.profile) == 0;
+    bool counts = !abbe_sweep_setting_has_history(&row->setting) &&
+                  (profile == NULL || strcmp(profile, row->setting.profile) == 0);
     cost[i] = counts ? row->number[time] : NAN;
     cost[count + i] = row->number[number];
   }
@@ -298,9 +304,9 @@ bool abbe_sweep_model_read(const abbe_sweep_table *table, abbe_sweep_model *out)
 static void write_row(FILE *to, const abbe_sweep_row *row) {
   const abbe_sweep_setting *s = &row->setting;
   char text[ABBE_NUMBER_TEXT_SIZE];
-  fprintf(to, "%s,%zu,%zu,%zu,%zu,%s,%zu,%s,%s,%zu,%zu", s->profile, s->wavelengths, s->photons,
+  fprintf(to, "%s,%zu,%zu,%zu,%zu,%s,%zu,%s,%s,%zu,%zu,%zu", s->profile, s->wavelengths, s->photons,
           s->map, s->samples, s->fill, s->exits, abbe_number_text(s->share, text), s->model,
-          s->upsample, s->passes);
+          s->upsample, s->passes, s->history);
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) {
     bool known = isfinite(row->number[i]);
     fprintf(to, ",%s", known ? abbe_number_text(row->number[i], text) : "");
@@ -399,9 +405,9 @@ static abbe_result read_row(const reader *r, abbe_sweep_row *row, abbe_error *er
   if (r->cells != COLUMNS)
     return abbe_error_set(error, ABBE_PARSE, "%s:%zu: the row has %zu cells, not %d", r->name,
                           r->line, r->cells, (int)COLUMNS);
-  size_t *const counts[] = {NULL,      &s->wavelengths, &s->photons, &s->map, &s->samples,
-                            NULL,      &s->exits,       NULL,        NULL,    &s->upsample,
-                            &s->passes};
+  size_t *const counts[] = {NULL,       &s->wavelengths, &s->photons, &s->map, &s->samples,
+                            NULL,       &s->exits,       NULL,        NULL,    &s->upsample,
+                            &s->passes, &s->history};
   abbe_result result = read_word(r, 0, s->profile, error);
   if (result == ABBE_OK) result = read_word(r, 5, s->fill, error);
   if (result == ABBE_OK) result = read_word(r, 8, s->model, error);

@@ -34,7 +34,8 @@ typedef struct abbe_sweep_setting {
   char model[ABBE_SWEEP_WORD]; /* as it was asked for: "auto" is the plan's choice */
   double share;
   size_t exits;
-  size_t passes; /* of the tracer, each of photons x photons photons; 0: the renderer's setting */
+  size_t passes;  /* of the tracer, each of photons x photons photons; 0: the renderer's setting */
+  size_t history; /* frames that a picture is made of, where they follow one another; 1: its own */
 } abbe_sweep_setting;
 
 /* X(code, column, text). Errors are against the reference; beside each stands what the reference's
@@ -49,7 +50,11 @@ typedef struct abbe_sweep_setting {
   X(BASELINE_MS, "baseline_ms", "surfaces alone, ms")        /* default profile */                 \
   X(WARM_MS, "warm_ms", "whole process, shaders cached, ms") /* median of processes */             \
   X(COLD_MS, "cold_ms", "whole process, no shader cached, ms")                                     \
-  X(OWN_DE, "own_de", "caustic, mean CIEDE2000 by its own halves")                  /* traced */   \
+  X(OWN_DE, "own_de", "caustic, mean CIEDE2000 by its own halves")       /* traced */              \
+  X(AFTER_1, "after_1_de", "caustic, mean CIEDE2000 of the first frame") /* of a history, where */ \
+  X(AFTER_2, "after_2_de", "of the second frame") /* the scene is at rest */                       \
+  X(AFTER_4, "after_4_de", "of the fourth frame")                                                  \
+  X(AFTER_8, "after_8_de", "of the eighth frame")                                                  \
   X(FILL_INVENTED, "fill_invented", "light that the fill adds, share of the map's") /* of the */   \
   X(FILL_LOST, "fill_lost", "light that the fill drops, share of the map's") /* map before it */   \
   X(MAP_SCALE, "map_scale", "factor on the map")          /* 1, or the best one */                 \
@@ -143,6 +148,9 @@ extern const abbe_sweep_number abbe_sweep_shown[ABBE_SWEEP_SHOWN];
 const char *abbe_sweep_number_short(double value, char out[ABBE_SWEEP_SHORT]);
 
 bool abbe_sweep_setting_is_traced(const abbe_sweep_setting *setting);
+/* Whether its picture takes earlier frames. A frame's time is then not what its error takes, so
+ * that it is on no front, in no preset, and nothing that the default profile is judged by. */
+bool abbe_sweep_setting_has_history(const abbe_sweep_setting *setting);
 bool abbe_sweep_setting_same(const abbe_sweep_setting *a, const abbe_sweep_setting *b);
 /* For charts: "w7 p256 m1024 s2", with what else is unusual; "trace 4 x p512". */
 void abbe_sweep_setting_label(const abbe_sweep_setting *setting, char *out, size_t size);

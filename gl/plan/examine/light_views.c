@@ -114,7 +114,7 @@ static abbe_result examine_view(const abbe_scene *scene, size_t light, abbe_plan
   const abbe_light *from = &scene->light[light];
   abbe_view view;
   const bool cube = abbe_profile_estimates(plan->desc.profile) && plan->desc.faces == 0 &&
-                    plan->desc.fill != ABBE_FILL_GATHER_LIGHT;
+                    !abbe_render_desc_in_light(&plan->desc);
   if (thesis && from->kind == ABBE_LIGHT_SPOT) return ABBE_OK; /* its view is its cone */
   const bool fits = abbe_light_views_fit(scene, from, plan, &view, &plan->off_view[light]);
   if (fits) find_aside(scene, plan, &view);

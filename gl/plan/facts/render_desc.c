@@ -73,6 +73,11 @@ enum {
   THESIS_PHOTONS = 512
 };
 
+bool abbe_render_desc_in_light(const abbe_render_desc *d) {
+  return abbe_profile_is_wyman2006(d->profile) &&
+         (d->fill == ABBE_FILL_GATHER_LIGHT || (d->polygons & ABBE_POLYGONS_IN_LIGHT) != 0);
+}
+
 static void fill_in_wyman(abbe_render_desc *d) {
   if (d->photons == 0) d->photons = WYMAN_PHOTONS;
   if (d->map_size == 0) d->map_size = WYMAN_MAP;
@@ -190,6 +195,21 @@ static abbe_result check_numbers(const abbe_render_desc *d, abbe_error *error) {
   return ABBE_OK;
 }
 
+static abbe_result check_polygons(const abbe_render_desc *d, abbe_error *error) {
+  const bool polygons = abbe_profile_is_wyman2006(d->profile) &&
+                        (d->fill == ABBE_FILL_QUADS || d->fill == ABBE_FILL_TRIANGLES);
+  if (d->polygons > ABBE_POLYGONS_ALL || (!polygons && d->polygons != 0))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "polygons of another kind go with the profiles wyman2006 and "
+                          "wyman2006-cie and the fills quads and triangles, not with '%s' and '%s'",
+                          abbe_profile_name(d->profile), abbe_fill_name(d->fill));
+  if ((d->polygons & ABBE_POLYGONS_EVEN) != 0 && !abbe_profile_is_printed(d->profile))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "in units a beam has the light of its solid angle; wyman2006-cie takes "
+                          "no even ones, wyman2006 does");
+  return ABBE_OK;
+}
+
 /* What the published methods alone know, and what they do not. */
 static abbe_result check_wyman(const abbe_render_desc *d, abbe_error *error) {
   const bool wyman = abbe_profile_is_wyman2006(d->profile);
@@ -218,7 +238,7 @@ static abbe_result check_wyman(const abbe_render_desc *d, abbe_error *error) {
                           "the profile 'wyman2006' has one index for all colours; it cannot take "
                           "%zu wavelengths, wyman2006-cie can",
                           d->wavelengths);
-  return ABBE_OK;
+  return check_polygons(d, error);
 }
 
 static abbe_result check_pinholes(const abbe_render_desc *d, abbe_error *error) {
@@ -254,10 +274,10 @@ static abbe_result check_published(const abbe_render_desc *d, abbe_error *error)
                           "a number of the light's views goes with the profiles shah2007 and "
                           "wyman2006 and their twins, not with '%s'",
                           abbe_profile_name(d->profile));
-  if (d->faces > 1 && d->fill == ABBE_FILL_GATHER_LIGHT)
+  if (d->faces > 1 && abbe_render_desc_in_light(d))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "photons are gathered in one image of the light's, not in %zu; take "
-                          "points, quads, triangles or gather-eye",
+                          "photons go to one image of the light's, not to %zu; take points, quads, "
+                          "triangles or gather-eye in the camera's",
                           d->faces);
   if (d->faces > 1 && d->faces != ABBE_RENDER_CUBE_FACES)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

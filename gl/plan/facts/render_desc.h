@@ -49,8 +49,8 @@ typedef enum abbe_profile {
   X(BRIDGE, "bridge")                                                                              \
   X(SMEAR, "smear")                                                                                \
   X(POINTS, "points")                                                                              \
-  X(QUADS, "quads") X(TRIANGLES, "triangles") X(GATHER_EYE, "gather-eye")                          \
-      X(GATHER_LIGHT, "gather-light")
+  X(QUADS, "quads")                                                                                \
+  X(TRIANGLES, "triangles") X(GATHER_EYE, "gather-eye") X(GATHER_LIGHT, "gather-light")
 typedef enum abbe_fill {
 #define ABBE_FILL_ENUM(code, name) ABBE_FILL_##code,
   ABBE_FILLS(ABBE_FILL_ENUM)
@@ -67,6 +67,19 @@ typedef enum abbe_direction {
 #undef ABBE_DIRECTION_ENUM
       ABBE_DIRECTION_COUNT
 } abbe_direction;
+
+/* What wyman2006 does otherwise with quads and triangles, bits of a request. even: as printed,
+ * beams have the light of one photon of the field each, not that of their solid angle; corners:
+ * light by corner, of all polygons around it, not by polygon; culled: polygons between surfaces are
+ * left out; in-light: they are drawn into the light's image, which the light then projects. */
+#define ABBE_POLYGONS(X)                                                                           \
+  X(EVEN, "even", 1) X(CORNERS, "corners", 2) X(CULLED, "culled", 4) X(IN_LIGHT, "in-light", 8)
+enum {
+#define ABBE_POLYGONS_ENUM(code, name, bit) ABBE_POLYGONS_##code = (bit),
+  ABBE_POLYGONS(ABBE_POLYGONS_ENUM)
+#undef ABBE_POLYGONS_ENUM
+      ABBE_POLYGONS_ALL = 15
+};
 
 /* How caustics come to receivers: by photons; looked up in a volume that was computed beforehand
  * (scenes/volume/caustic_volume.h); or those of what stands out of surroundings by photons, and
@@ -166,17 +179,18 @@ typedef struct abbe_render_desc {
    * Elsewhere 0. */
   abbe_estimator estimator;
   size_t iterations, interfaces;
-  size_t faces;             /* of shah2007 and wyman2006: views of the light, 1, or the 6 of a cube
-                               around it; 0: 6 where one does not hold a point light's
-                               surroundings, 1 for a gather in the light's image */
-  size_t low_pass;          /* of shah2007: standard deviation of the filter over its map, texels, 0
-                               (none) to 32 */
+  size_t faces;    /* of shah2007 and wyman2006: views of the light, 1, or the 6 of a cube
+                      around it; 0: 6 where one does not hold a point light's
+                      surroundings, 1 for a gather in the light's image */
+  size_t low_pass; /* of shah2007: standard deviation of the filter over its map, texels, 0
+                      (none) to 32 */
   /* Of the transport by pinholes alone: samples of all surfaces together, at most
    * ABBE_SURFACE_MAX_SAMPLES, 0: 256; how they are chosen, AUTO: neighbour. */
   size_t pinholes;
   abbe_sample_strategy strategy;
   abbe_footprint footprint;
   abbe_direction direction; /* of wyman2006; in its twin direct alone */
+  unsigned polygons;        /* of wyman2006's quads and triangles: bits of ABBE_POLYGONS */
   /* Frames that a picture holds, 1 to 4, 0: 1; of the default profile and wyman2006's gathers. A
    * renderer that is changed or redrawn goes on with the frames before, so that a picture is no
    * longer that of a renderer made anew; in units the photons of each frame are shifted. The
@@ -223,6 +237,9 @@ void abbe_render_desc_take_pinholes(abbe_render_desc *desc);
  * ABBE_INVALID_ARGUMENT, with a sentence, for what is outside the limits above. */
 abbe_result abbe_render_desc_resolve(const abbe_render_desc *desc, size_t width, size_t height,
                                      abbe_render_desc *out, abbe_error *error);
+
+/* Whether it is wyman2006 whose photons go to the light's image, and not to the camera's. */
+bool abbe_render_desc_in_light(const abbe_render_desc *desc);
 
 const char *abbe_profile_name(abbe_profile profile);
 /* Whether it is a published method, with passes of its own: all in images, of one light. */

@@ -9,12 +9,14 @@ static void still_light_is_kept(void **state) {
     abbe_profile profile;
     abbe_fill fill;
     bool draws; /* photons, into the camera's image */
+    unsigned polygons;
   } rows[] = {{ABBE_PROFILE_SHAH2007, ABBE_FILL_AUTO, false},
               {ABBE_PROFILE_SHAH2007_CIE, ABBE_FILL_AUTO, false},
               {ABBE_PROFILE_WYMAN2006, ABBE_FILL_AUTO, false},
               {ABBE_PROFILE_WYMAN2006_CIE, ABBE_FILL_AUTO, false},
               {ABBE_PROFILE_WYMAN2006, ABBE_FILL_POINTS, true},
               {ABBE_PROFILE_WYMAN2006, ABBE_FILL_QUADS, true},
+              {ABBE_PROFILE_WYMAN2006_CIE, ABBE_FILL_QUADS, false, ABBE_POLYGONS_IN_LIGHT},
               {ABBE_PROFILE_WYMAN2006_CIE, ABBE_FILL_GATHER_EYE, true}};
   abbe_scene scene = {0}, moved = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
@@ -25,6 +27,7 @@ static void still_light_is_kept(void **state) {
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     const abbe_render_desc desc = {.profile = rows[i].profile,
                                    .fill = rows[i].fill,
+                                   .polygons = rows[i].polygons,
                                    .width = 64,
                                    .height = 48,
                                    .photons = 64,
@@ -38,7 +41,8 @@ static void still_light_is_kept(void **state) {
     statistics = draw_frame(renderer);
     assert_int_equal(abbe_statistics_ran(&statistics, ABBE_PASS_PHOTONS), rows[i].draws);
     assert_false(abbe_statistics_ran(&statistics, ABBE_PASS_RECEIVER_DEPTH));
-    assert_int_equal(statistics.polygon_layers > 0, rows[i].fill == ABBE_FILL_QUADS);
+    const bool covers = rows[i].fill == ABBE_FILL_QUADS; /* also what is kept */
+    assert_int_equal(statistics.polygon_layers > 0, covers);
     read_picture(renderer, false, &kept);
     abbe_renderer_free(renderer);
     renderer = make_renderer(&moved, &desc);

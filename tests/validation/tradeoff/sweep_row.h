@@ -16,6 +16,7 @@ static inline abbe_sweep_row sweep_row(const char *profile, size_t photons) {
                                     .fill = "bridge",
                                     .share = 0.01,
                                     .exits = 8,
+                                    .history = 1,
                                     .model = "auto"}};
   snprintf(row.setting.profile, sizeof row.setting.profile, "%s", profile);
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) row.number[i] = NAN;

@@ -59,6 +59,23 @@ static void test_what_is_saved_is_loaded(void **state) {
   abbe_sweep_table_free(&read);
 }
 
+static void test_frames_before_are_apart(void **state) {
+  (void)state;
+  abbe_sweep_table table = {0};
+  char text[64];
+  add(&table, row_of("default", 7, 10, 5));
+  abbe_sweep_row row = row_of("default", 7, 5, 2);
+  row.setting.history = 4;
+  add(&table, row);
+  abbe_sweep_setting_label(&row.setting, text, sizeof text);
+  assert_string_equal(text, "w7 p128 m512 s2 h4");
+  assert_int_equal(
+      abbe_sweep_table_mark(&table, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, NULL, NULL),
+      ABBE_OK);
+  assert_true(table.row[0].front && !table.row[1].front);
+  abbe_sweep_table_free(&table);
+}
+
 static void test_settings_are_told_apart(void **state) {
   (void)state;
   abbe_sweep_table table = {0};
@@ -71,8 +88,8 @@ static void test_settings_are_told_apart(void **state) {
   assert_contains(error.text, "w7 p128 m512 s2");
   size_t *const counts[] = {&row.setting.wavelengths, &row.setting.photons,  &row.setting.map,
                             &row.setting.samples,     &row.setting.upsample, &row.setting.exits,
-                            &row.setting.passes};
-  for (int i = 0; i < 7; i++) {
+                            &row.setting.passes,      &row.setting.history};
+  for (int i = 0; i < 8; i++) {
     ++*counts[i];
     assert_null(abbe_sweep_table_find(&table, &row.setting));
     --*counts[i];
@@ -198,11 +215,11 @@ static void test_broken_tables_are_named(void **state) {
       {"default,7,", "default,-7,", "is not a whole number"},
       {"default,7,", ",7,", "s.csv:3: profile '' is not a word"},
       {"default,7,", "a-profile-of-a-long-name,7,", "is not a word of 1 to 15 letters"},
-      {"auto,1,0,10,", "auto,1,0,ten,", "s.csv:3: frame_ms 'ten' is not a number"},
-      {"auto,1,0,10,", "auto,1,0,1e999,", "is not a number"},
-      {"0.01,auto,1,0,10,", "0,auto,1,0,10,", "is not a share above 0"},
-      {"auto,1,0,10,", "auto,1,0,10,,", "the row has 50 cells, not 49"},
-      {"frame_ms", "frame_s", "column 12 is 'frame_s' where a sweep has 'frame_ms'"},
+      {"auto,1,0,1,10,", "auto,1,0,1,ten,", "s.csv:3: frame_ms 'ten' is not a number"},
+      {"auto,1,0,1,10,", "auto,1,0,1,1e999,", "is not a number"},
+      {"0.01,auto,1,0,1,10,", "0,auto,1,0,1,10,", "is not a share above 0"},
+      {"auto,1,0,1,10,", "auto,1,0,1,10,,", "the row has 55 cells, not 54"},
+      {"frame_ms", "frame_s", "column 13 is 'frame_s' where a sweep has 'frame_ms'"},
       {"front\n", "front,more\n", "where a sweep has ''"},
   };
   char *text = text_of_one_row(), changed[8300];
@@ -295,6 +312,7 @@ static void test_names(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_what_is_saved_is_loaded),
+      cmocka_unit_test(test_frames_before_are_apart),
       cmocka_unit_test(test_settings_are_told_apart),
       cmocka_unit_test(test_the_front_of_all_and_of_a_profile),
       cmocka_unit_test(test_the_front_of_a_process),

@@ -1,0 +1,129 @@
+/* Kinds of polygons of photons in image space: beams that are alike, light by corners, what lies
+ * between surfaces, and the light's image; and what gathers in two images have in common. */
+#include "tests/gl/image_space/image_pictures.h"
+
+/* As printed, by beams that are all alike: under the lamp, in the middle of a field of 90 degrees,
+ * a cell has 4 / N^2 sr, and the mean one 2 pi / 3 / N^2. */
+static void test_even_beams(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image picture = {0};
+  double spread;
+  load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
+  abbe_render_desc desc = small;
+  desc.width = desc.height = 192;
+  desc.profile = ABBE_PROFILE_WYMAN2006;
+  desc.space = ABBE_RGB_SPACE_REC709;
+  desc.fill = ABBE_FILL_QUADS;
+  desc.polygons = ABBE_POLYGONS_EVEN;
+  make_picture(&scene, &desc, &picture);
+  const double mean = middle(&picture, &spread), share = 3.14159265358979 / 6 / pow(0.99, 3);
+  print_message("even beams: %.4f\n", mean);
+  assert_near(mean, 0.5 * (0.99 * share + 0.1), 0.015);
+  abbe_image_free(&picture);
+  abbe_scene_free(&scene);
+}
+
+/* Other kinds of polygons: what arrives is what was sent, by quads and triangles alike, and behind
+ * the pane it is the direct light, also where the light projects it. */
+static void test_polygons_of_other_kinds(void **state) {
+  (void)state;
+  static const unsigned kinds[] = {ABBE_POLYGONS_CORNERS, ABBE_POLYGONS_CULLED,
+                                   ABBE_POLYGONS_IN_LIGHT,
+                                   ABBE_POLYGONS_CORNERS | ABBE_POLYGONS_IN_LIGHT};
+  abbe_scene pane = {0}, mirror = {0};
+  abbe_image picture = {0};
+  double spread;
+  load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &pane);
+  load_text(CAMERA POINT_LIGHT FLOOR MIRROR("0.8"), &mirror);
+  abbe_render_desc desc = small;
+  desc.width = desc.height = 192;
+  for (int f = 0; f < 2; f++) {
+    desc.fill = f == 0 ? ABBE_FILL_QUADS : ABBE_FILL_TRIANGLES;
+    desc.polygons = 0;
+    make_picture(&pane, &desc, &picture);
+    const double own = middle(&picture, &spread), sent = map_energy(&mirror, &desc);
+    abbe_image_free(&picture);
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+      desc.polygons = kinds[k];
+      make_picture(&pane, &desc, &picture);
+      const double mean = middle(&picture, &spread), arrives = map_energy(&mirror, &desc);
+      print_message("%s, %u: %.4f and %.4f, spread %.3f\n", abbe_fill_name(desc.fill), kinds[k],
+                    mean / own, arrives / sent, spread);
+      assert_near(mean / own, 1, 0.01);
+      assert_near(arrives / sent, 1, 0.02);
+      assert_true(spread < 0.1);
+      abbe_image_free(&picture);
+    }
+  }
+  abbe_scene_free(&pane);
+  abbe_scene_free(&mirror);
+}
+
+/* A step under the pane: one column of cells in 63 lies between it and the floor. It is under the
+ * lamp, where a column has a little more light than its share. */
+static void test_polygons_between_surfaces(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  load_text(CAMERA POINT_LIGHT FLOOR
+            "- {name: step, shape: rectangle, width: 1, height: 2, reflectance: 0.5, transform: "
+            "[{translate: [0.561, 0, 0.1]}]}\n" PANE("flat"),
+            &scene);
+  for (int f = 0; f < 2; f++) {
+    abbe_render_desc desc = small;
+    desc.fill = f == 0 ? ABBE_FILL_QUADS : ABBE_FILL_TRIANGLES;
+    desc.photons = 64;
+    desc.map_size = 1024;
+    const double kept = map_energy(&scene, &desc);
+    desc.polygons = ABBE_POLYGONS_CULLED;
+    const double lost = 63 * (1 - map_energy(&scene, &desc) / kept);
+    print_message("%s: %.3f columns are between\n", abbe_fill_name(desc.fill), lost);
+    assert_near(lost, 1.15, 0.25);
+  }
+  abbe_scene_free(&scene);
+}
+
+/* G4. What the camera's image and the light's gather of a ball's caustic draws near as pixels and
+ * texels shrink: the mean difference by the mean light. */
+static void test_gathers_agree(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  double apart[2];
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
+  for (int k = 0; k < 2; k++) {
+    abbe_image picture[2] = {{0}, {0}};
+    double off = 0, all = 0;
+    for (int i = 0; i < 2; i++) {
+      abbe_render_desc desc = small;
+      desc.width = desc.height = k == 0 ? 64 : 256;
+      desc.map_size = k == 0 ? 128 : 512;
+      desc.photons = 1024;
+      desc.wavelengths = 1;
+      desc.fill = i == 0 ? ABBE_FILL_GATHER_EYE : ABBE_FILL_GATHER_LIGHT;
+      make_picture(&scene, &desc, &picture[i]);
+    }
+    const size_t side = picture[0].width;
+    for (size_t p = 0; p < side * side; p++) { /* on the floor before the ball */
+      if (p / side < side * 5 / 8) continue;
+      const double a = (double)picture[0].data[p * picture[0].channels + 1];
+      const double b = (double)picture[1].data[p * picture[1].channels + 1];
+      off += fabs(a - b);
+      all += fmax(a, b);
+    }
+    apart[k] = off / all;
+    for (int i = 0; i < 2; i++) abbe_image_free(&picture[i]);
+  }
+  print_message("gathers are %.4f apart, then %.4f\n", apart[0], apart[1]);
+  assert_true(apart[0] > 0 && apart[1] < 0.7 * apart[0]);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_even_beams),
+      cmocka_unit_test(test_polygons_of_other_kinds),
+      cmocka_unit_test(test_polygons_between_surfaces),
+      cmocka_unit_test(test_gathers_agree),
+  };
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}
