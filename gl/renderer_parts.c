@@ -254,7 +254,7 @@ static abbe_result draw_eye(abbe_renderer *r, abbe_error *error) {
   if (goes_on(r, result)) result = abbe_refraction_pass_draw(&r->refraction, error);
   if (goes_on(r, result)) result = abbe_adaptive_pass_run(&r->adaptive, error);
   if (goes_on(r, result)) result = abbe_refraction_pass_run(&r->refraction, error);
-  if (goes_on(r, result)) abbe_picture_run(&r->picture);
+  if (goes_on(r, result)) result = abbe_picture_run(&r->picture, error);
   if (goes_on(r, result)) result = abbe_haze_pass_run(&r->haze, error);
   return result;
 }

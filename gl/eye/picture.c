@@ -17,9 +17,11 @@ abbe_result abbe_picture_make(const abbe_receivers_pass *receivers,
   if (desc->supersample == 1 && desc->upsample == 1) return ABBE_OK;
   abbe_result result = abbe_gpu_make_texture(gpu, GL_RGBA32F, desc->width, desc->height, 0, false,
                                              &out->pixels, error);
-  const char *file = desc->upsample > 1 ? "eye_enlarge.comp" : "eye_resolve.comp";
-  if (result == ABBE_OK) result = abbe_gpu_compute(gpu, file, NULL, &out->program, error);
-  return result;
+  /* Drawn, not computed: a software rasteriser stores pixel by pixel what is no target. */
+  const abbe_program_stage stages[] = {
+      {GL_VERTEX_SHADER, "screen.vert"},
+      {GL_FRAGMENT_SHADER, desc->upsample > 1 ? "eye_enlarge.frag" : "eye_resolve.frag"}};
+  return result == ABBE_OK ? abbe_gpu_program(gpu, stages, 2, "", &out->program, error) : result;
 }
 
 void abbe_picture_free(abbe_picture *picture) {
@@ -28,13 +30,18 @@ void abbe_picture_free(abbe_picture *picture) {
   picture->receivers->lighting->scene->gpu->gl->DeleteTextures(1, &picture->view);
 }
 
-void abbe_picture_run(abbe_picture *picture) {
+abbe_result abbe_picture_run(abbe_picture *picture, abbe_error *error) {
+  static const int flat = -1;
   abbe_gpu *gpu = picture->receivers->lighting->scene->gpu;
   const abbe_gl *gl = gpu->gl;
   const abbe_render_desc *desc = desc_of(picture);
   const GLuint program = picture->program;
-  if (program == 0) return;
+  if (program == 0) return ABBE_OK;
   abbe_gpu_start_lap(gpu);
+  abbe_result result = abbe_gpu_set_target(gpu, &picture->pixels, &flat, 1, 0, desc->width,
+                                           desc->height, error);
+  if (result != ABBE_OK) return result;
+  gl->Disable(GL_DEPTH_TEST);
   gl->UseProgram(program);
   abbe_gpu_bind_array(gpu, program, "receivers", 0, picture->receivers->colour);
   if (desc->supersample > 1) {
@@ -43,11 +50,10 @@ void abbe_picture_run(abbe_picture *picture) {
   } else {
     abbe_gpu_set_int(gpu, program, "pixels", (int)desc->upsample);
   }
-  gl->BindImageTexture(0, picture->pixels, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-  gl->Uniform2i(gl->GetUniformLocation(program, "size"), (GLint)desc->width, (GLint)desc->height);
-  abbe_gpu_dispatch_2d(gpu, program, desc->width, desc->height);
-  gl->MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+  gl->BindVertexArray(gpu->empty_array);
+  gl->DrawArrays(GL_TRIANGLES, 0, 3);
   abbe_gpu_book_lap(gpu, ABBE_PASS_EYE_PICTURE);
+  return ABBE_OK;
 }
 
 GLuint abbe_picture_texture(abbe_picture *picture) {
@@ -90,7 +96,7 @@ static double between(size_t i, size_t pixels, size_t samples, size_t out[2]) {
   return at - (double)out[0];
 }
 
-/* As eye_enlarge.comp does. */
+/* As eye_enlarge.frag does. */
 static void copy_enlarged(const abbe_picture *picture, const float *from, abbe_image *image,
                           size_t to, size_t count) {
   const size_t *samples = picture->receivers->lighting->camera->samples;

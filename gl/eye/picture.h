@@ -21,7 +21,7 @@ abbe_result abbe_picture_make(const abbe_receivers_pass *receivers,
                               const abbe_refraction_pass *refraction, abbe_picture *out,
                               abbe_error *error);
 void abbe_picture_free(abbe_picture *picture);
-void abbe_picture_run(abbe_picture *picture);
+abbe_result abbe_picture_run(abbe_picture *picture, abbe_error *error);
 
 /* The picture as a 2D texture, rows upward, in the space of the passes; the picture keeps it. */
 GLuint abbe_picture_texture(abbe_picture *picture);

@@ -86,10 +86,14 @@ abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_rend
 void abbe_sweep_setting_describe(const abbe_sweep_setting *setting, char *out, size_t size) {
   abbe_render_desc desc;
   if (pinholes_of(setting->profile) == 0 &&
-      abbe_sweep_setting_desc(setting, &desc, NULL) == ABBE_OK)
+      abbe_sweep_setting_desc(setting, &desc, NULL) == ABBE_OK) {
     abbe_preset_describe(&desc, out, size);
-  else
+    const size_t used = strlen(out);
+    if (abbe_sweep_setting_has_history(setting))
+      snprintf(out + used, size - used, ", of %zu frames", setting->history);
+  } else {
     abbe_sweep_setting_label(setting, out, size);
+  }
 }
 
 bool abbe_sweep_setting_is_fine(const abbe_sweep_setting *setting) {

@@ -10,14 +10,14 @@ static void still_light_is_kept(void **state) {
     abbe_fill fill;
     bool draws; /* photons, into the camera's image */
     unsigned polygons;
-  } rows[] = {{ABBE_PROFILE_SHAH2007, ABBE_FILL_AUTO, false},
-              {ABBE_PROFILE_SHAH2007_CIE, ABBE_FILL_AUTO, false},
-              {ABBE_PROFILE_WYMAN2006, ABBE_FILL_AUTO, false},
-              {ABBE_PROFILE_WYMAN2006_CIE, ABBE_FILL_AUTO, false},
-              {ABBE_PROFILE_WYMAN2006, ABBE_FILL_POINTS, true},
-              {ABBE_PROFILE_WYMAN2006, ABBE_FILL_QUADS, true},
+  } rows[] = {{ABBE_PROFILE_SHAH2007, ABBE_FILL_AUTO, false, 0},
+              {ABBE_PROFILE_SHAH2007_CIE, ABBE_FILL_AUTO, false, 0},
+              {ABBE_PROFILE_WYMAN2006, ABBE_FILL_AUTO, false, 0},
+              {ABBE_PROFILE_WYMAN2006_CIE, ABBE_FILL_AUTO, false, 0},
+              {ABBE_PROFILE_WYMAN2006, ABBE_FILL_POINTS, true, 0},
+              {ABBE_PROFILE_WYMAN2006, ABBE_FILL_QUADS, true, 0},
               {ABBE_PROFILE_WYMAN2006_CIE, ABBE_FILL_QUADS, false, ABBE_POLYGONS_IN_LIGHT},
-              {ABBE_PROFILE_WYMAN2006_CIE, ABBE_FILL_GATHER_EYE, true}};
+              {ABBE_PROFILE_WYMAN2006_CIE, ABBE_FILL_GATHER_EYE, true, 0}};
   abbe_scene scene = {0}, moved = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
   load_text(

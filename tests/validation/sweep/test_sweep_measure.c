@@ -159,41 +159,37 @@ static void test_the_method_in_units_gets_no_factor(void **state) {
   abbe_scene_free(&scene);
 }
 
-/* Of a still scene whose grids move, the fourth frame is the mean of four and stays; held against
- * itself it has no error, and the first has. As printed nothing moves. */
+/* Of a still scene the fourth frame is the mean of four grids, and stays; held against itself it
+ * has no error, and the frames before have. */
 static void test_frames_come_together(void **state) {
   (void)state;
-  static const abbe_profile profiles[] = {ABBE_PROFILE_DEFAULT, ABBE_PROFILE_WYMAN2006_CIE,
-                                          ABBE_PROFILE_WYMAN2006};
   abbe_scene scene = {0};
+  abbe_image picture;
+  abbe_render_desc desc;
   load_text(CAMERA SPOT FLOOR BALL("flat"), &scene);
-  for (int i = 0; i < 3; i++) {
-    abbe_sweep_setting setting = small_setting(&scene, profiles[i]);
-    abbe_image picture;
-    abbe_render_desc desc;
-    setting.history = 4;
-    assert_int_equal(abbe_sweep_setting_desc(&setting, &desc, NULL), ABBE_OK);
-    desc.width = desc.height = 32;
-    desc.aovs = profiles[i] == ABBE_PROFILE_DEFAULT;
-    abbe_renderer *renderer = make_renderer(&scene, &desc);
-    for (int k = 0; k < 4; k++) {
-      abbe_renderer_redraw(renderer);
-      draw_frame(renderer);
-    }
-    read_picture(renderer, desc.aovs, &picture);
-    abbe_renderer_free(renderer);
-    const abbe_sweep sweep = {
-        .context = context, .scene = &scene, .frames = 4, .picture = &picture};
-    const abbe_sweep_row row = measure(&sweep, &setting);
-    const double *n = row.number, first = profiles[i] == ABBE_PROFILE_WYMAN2006 ? 0 : 0.02;
-    print_message("%s: %.3g, %.3g, %.3g, %.3g\n", setting.profile, n[ABBE_SWEEP_AFTER_1],
-                  n[ABBE_SWEEP_AFTER_2], n[ABBE_SWEEP_AFTER_4], n[ABBE_SWEEP_AFTER_8]);
-    assert_true(n[ABBE_SWEEP_AFTER_1] >= first && n[ABBE_SWEEP_AFTER_2] >= 0.2 * first);
-    assert_near(n[ABBE_SWEEP_AFTER_4], 0, 1e-4);
-    assert_near(n[ABBE_SWEEP_AFTER_8], 0, 1e-2 * fmax(n[ABBE_SWEEP_AFTER_1], 1e-2));
-    assert_near(n[ABBE_SWEEP_CAUSTIC_DE], 0, 1e-2 * fmax(n[ABBE_SWEEP_AFTER_1], 1e-2));
-    abbe_image_free(&picture);
+  abbe_sweep_setting setting = small_setting(&scene, ABBE_PROFILE_DEFAULT);
+  setting.history = 4;
+  assert_int_equal(abbe_sweep_setting_desc(&setting, &desc, NULL), ABBE_OK);
+  desc.width = desc.height = 32;
+  desc.aovs = true;
+  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  for (int k = 0; k < 4; k++) {
+    abbe_renderer_redraw(renderer);
+    draw_frame(renderer);
   }
+  read_picture(renderer, true, &picture);
+  abbe_renderer_free(renderer);
+  const abbe_sweep sweep = {.context = context, .scene = &scene, .frames = 4, .picture = &picture};
+  const abbe_sweep_row row = measure(&sweep, &setting);
+  const double *n = row.number;
+  print_message("%.3g, %.3g, %.3g, %.3g\n", n[ABBE_SWEEP_AFTER_1], n[ABBE_SWEEP_AFTER_2],
+                n[ABBE_SWEEP_AFTER_4], n[ABBE_SWEEP_AFTER_8]);
+  assert_true(n[ABBE_SWEEP_AFTER_1] > 0.02 && n[ABBE_SWEEP_AFTER_2] < n[ABBE_SWEEP_AFTER_1]);
+  assert_true(n[ABBE_SWEEP_AFTER_2] > 0.2 * n[ABBE_SWEEP_AFTER_1]);
+  assert_near(n[ABBE_SWEEP_AFTER_4], 0, 1e-4);
+  assert_near(n[ABBE_SWEEP_AFTER_8], 0, 1e-3);
+  assert_near(n[ABBE_SWEEP_CAUSTIC_DE], 0, 1e-3);
+  abbe_image_free(&picture);
   abbe_scene_free(&scene);
 }
 

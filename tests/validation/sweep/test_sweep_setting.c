@@ -22,6 +22,12 @@ static void test_there_and_back(void **state) {
   assert_true(abbe_sweep_setting_is_fine(&setting));
   setting.photons = 64;
   assert_false(abbe_sweep_setting_is_fine(&setting));
+  char text[200];
+  setting.history = 4;
+  abbe_sweep_setting_describe(&setting, text, sizeof text);
+  assert_contains(text, ", of 4 frames");
+  assert_int_equal(abbe_sweep_setting_desc(&setting, &desc, NULL), ABBE_OK);
+  assert_int_equal(desc.history, 4);
   /* What is without effect in a thesis profile makes one setting of all. */
   desc.profile = ABBE_PROFILE_THESIS;
   desc.energy_share = 0.5;

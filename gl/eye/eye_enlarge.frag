@@ -1,15 +1,11 @@
 // The picture, of more pixels than samples: light between the four samples around a pixel, distance of
 // the nearest.
-layout(local_size_x = 32, local_size_y = 16) in;
-#include "thread.glsl"
 layout(binding = 0) uniform sampler2DArray receivers;  // and refractors over them
-layout(rgba32f, binding = 0) writeonly uniform image2D picture;
 uniform int pixels;  // a sample side
-uniform ivec2 size;  // pixels
+layout(location = 0) out vec4 picture;
 
 void main() {
-  ivec2 pixel = ivec2(texel_number());
-  if (any(greaterThanEqual(pixel, size))) return;
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
   vec2 at = (vec2(pixel) + 0.5) / float(pixels) - 0.5;
   ivec2 last = textureSize(receivers, 0).xy - 1;
   ivec2 low = max(ivec2(floor(at)), ivec2(0)), high = min(ivec2(floor(at)) + 1, last);
@@ -19,5 +15,5 @@ void main() {
   vec3 above = mix(texelFetch(receivers, ivec3(low.x, high.y, 0), 0).rgb,
                    texelFetch(receivers, ivec3(high, 0), 0).rgb, f.x);
   ivec2 nearest = min(pixel / pixels, last);
-  imageStore(picture, pixel, vec4(mix(below, above, f.y), texelFetch(receivers, ivec3(nearest, 0), 0).w));
+  picture = vec4(mix(below, above, f.y), texelFetch(receivers, ivec3(nearest, 0), 0).w);
 }
