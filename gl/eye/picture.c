@@ -38,8 +38,8 @@ abbe_result abbe_picture_run(abbe_picture *picture, abbe_error *error) {
   const GLuint program = picture->program;
   if (program == 0) return ABBE_OK;
   abbe_gpu_start_lap(gpu);
-  abbe_result result = abbe_gpu_set_target(gpu, &picture->pixels, &flat, 1, 0, desc->width,
-                                           desc->height, error);
+  abbe_result result =
+      abbe_gpu_set_target(gpu, &picture->pixels, &flat, 1, 0, desc->width, desc->height, error);
   if (result != ABBE_OK) return result;
   gl->Disable(GL_DEPTH_TEST);
   gl->UseProgram(program);
