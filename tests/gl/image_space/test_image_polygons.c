@@ -1,6 +1,6 @@
 /* Kinds of polygons of photons in image space: beams that are alike, light by corners, what lies
  * between surfaces, and the light's image; and what gathers in two images have in common. */
-#include "tests/gl/image_pictures.h"
+#include "tests/gl/image_space/image_pictures.h"
 
 /* As printed, by beams that are all alike: under the lamp, in the middle of a field of 90 degrees,
  * a cell has 4 / N^2 sr, and the mean one 2 pi / 3 / N^2. */

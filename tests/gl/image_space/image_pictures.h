@@ -1,8 +1,8 @@
 /* image_pictures.h: small pictures by photons in image space, of a pane and of a mirror over a
  * floor.
  */
-#ifndef ABBE_TESTS_GL_IMAGE_PICTURES_H
-#define ABBE_TESTS_GL_IMAGE_PICTURES_H
+#ifndef ABBE_TESTS_GL_IMAGE_SPACE_IMAGE_PICTURES_H
+#define ABBE_TESTS_GL_IMAGE_SPACE_IMAGE_PICTURES_H
 
 #include "tests/gl/frame.h"
 

@@ -1,6 +1,6 @@
 /* Photons in image space, in units and as printed: what arrives, light that nothing bends, what a
  * flat mirror sends, the three directions, sparse neighbourhoods, and the filter over frames. */
-#include "tests/gl/image_pictures.h"
+#include "tests/gl/image_space/image_pictures.h"
 
 #include "gl/scene/camera_view.h"
 #include "scenes/geometry/vector.h"
