@@ -25,7 +25,7 @@ foreach(name
     haze air_light haze_grid shaft_photons haze_trace
     solid
     interface
-    light_walk path_splitting
+    light_walk lamp_rays path_splitting
     known_answers
     known_chart
     known_light

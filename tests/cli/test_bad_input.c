@@ -99,6 +99,28 @@ static void test_pipes_are_not_waited_for(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
+#define AROUND(picture)                                                                            \
+  "printf '" picture "' >around.hdr; echo 'camera: {eye: [0, -1, 0.5], target: [0, 0, 0]}\n"       \
+  "environment: {file: around.hdr}\n"                                                              \
+  "objects: [{shape: rectangle, width: 2, height: 2, reflectance: 1}]' >scene.yaml; \"$abbe\" "    \
+  "render scene.yaml" TO "; code=$?; rm -f around.hdr scene.yaml; exit $code"
+#define RADIANCE "#?RADIANCE\\nFORMAT=32-bit_rle_rgbe\\n\\n"
+#define BLACK "\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0"
+
+static void test_pictures_that_are_no_surroundings(void **state) {
+  (void)state;
+  static const refusal rows[] = {
+      {AROUND(""), "around.hdr"},
+      {AROUND(RADIANCE), "around.hdr: is cut off"},
+      {AROUND(RADIANCE "-Y 2 +X 4\\n\\1\\1\\1\\200"), "around.hdr: is cut off (line 1 of 2)"},
+      {AROUND(RADIANCE "-Y 2 +X 2\\n" BLACK), "2 x 2 pixels"},
+      {AROUND(RADIANCE "-Y 2 +X 4\\n" BLACK BLACK), "black"},
+      {AROUND(RADIANCE "-Y 99999 +X 3\\n"), "around.hdr"},
+      {AROUND("\\211PNG"), "around.hdr"},
+  };
+  refuse_all(rows, sizeof rows / sizeof *rows, 1);
+}
+
 static void test_requests_that_cannot_be_met(void **state) {
   (void)state;
   static const refusal rows[] = {
@@ -110,6 +132,8 @@ static void test_requests_that_cannot_be_met(void **state) {
        "; code=$?; rm bad.ocio; exit $code",
        "bad.ocio"},
       {GEM " --range 100:200" TO, "has no index at 100 nm"},
+      {"\"$abbe\" render \"$house\"/scenes/metals.yaml --range 100:780" TO,
+       "gold has no n and k at 100 nm"},
   };
   refuse_all(rows, sizeof rows / sizeof *rows, 1);
 }
@@ -229,6 +253,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_scenes_that_cannot_be_used),
       cmocka_unit_test(test_pipes_are_not_waited_for),
+      cmocka_unit_test(test_pictures_that_are_no_surroundings),
       cmocka_unit_test(test_requests_that_cannot_be_met),
       cmocka_unit_test(test_targets_that_cannot_be_written),
       cmocka_unit_test(test_a_full_disk),

@@ -163,6 +163,30 @@ static void a_mirrors_shadow_is_dark(void **state) {
   drop(&f);
 }
 
+/* But another mirror may light that shadow: two upright panes in a sun that stands at 45 degrees.
+ * The left one hides the floor from 1 to 21 cm behind it, and the right one throws its light from 9
+ * to 29 cm. */
+static void a_mirrors_shadow_may_be_lit_by_another(void **state) {
+  (void)state;
+  frame f;
+  draw(EYE("[0.15, -0.5, 0.6]",
+           "[0.15, 0, 0]") "lights:\n- {name: sun, kind: directional, direction: "
+                           "[1, 0, -1], irradiance: 1}\n" WHITE_FLOOR SHINING(
+                               "left", "shape: rectangle, width: 0.2, height: 0.4",
+                               "{rotate: {axis: [0, 1, 0], angle: 90}}, {translate: [0, 0, 0.11]}",
+                               "0.8") SHINING("right", "shape: rectangle, width: 0.2, height: 0.4",
+                                              "{rotate: {axis: [0, 1, 0], angle: 90}}, {translate: "
+                                              "[0.3, 0, 0.11]}",
+                                              "0.8"),
+       &tiny, &f);
+  const double known = 0.8 * sqrt(0.5) / PI;
+  print_message("%.4f of the light\n", mean_of(&f.aovs, "caustic.Y") / known);
+  assert_near(mean_of(&f.aovs, "caustic.Y") / known, 1, 0.01);
+  assert_near(mean_of(&f.aovs, "direct.Y"), 0, 1e-6);
+  assert_near(f.energy.deposited / (2 * 0.8 * 0.2 * 0.4 * sqrt(0.5)), 1, 5e-3);
+  drop(&f);
+}
+
 /* In surroundings that are alike all around, a whole mirror is not seen: a ball, and a ring, in
  * which light goes from wall to wall. */
 static void a_whole_mirror_is_not_seen_in_uniform_light(void **state) {
@@ -282,6 +306,7 @@ int main(void) {
       cmocka_unit_test(a_balls_light_is_smooth),
       cmocka_unit_test(a_pane_shines_like_the_lamps_image),
       cmocka_unit_test(a_mirrors_shadow_is_dark),
+      cmocka_unit_test(a_mirrors_shadow_may_be_lit_by_another),
       cmocka_unit_test(a_whole_mirror_is_not_seen_in_uniform_light),
       cmocka_unit_test(gold_has_its_colour),
       cmocka_unit_test(light_goes_through_glass_off_a_mirror_and_back),

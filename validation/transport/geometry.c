@@ -61,19 +61,38 @@ static void face_normal(const abbe_mesh *mesh, size_t face, float out[3]) {
   for (int k = 0; k < 3; k++) out[k] = (float)(known ? n[k] : mesh->normal[f[0]][k]);
 }
 
-static bool make_planes(size_t faces, abbe_surface *s) {
-  s->plane = aligned_alloc(64, (faces + 1) * sizeof *s->plane);
-  if (s->plane == NULL) return false;
-  for (size_t i = 0; i < faces; i++) {
-    const float *a = s->position[s->face[i][0]], *b = s->position[s->face[i][1]],
-                *c = s->position[s->face[i][2]];
-    abbe_plane_face *p = &s->plane[i];
-    *p = (abbe_plane_face){0};
-    for (int k = 0; k < 3; k++) {
-      p->corner[k] = a[k];
-      p->second[k] = b[k] - a[k];
-      p->third[k] = c[k] - a[k];
-      p->normal[k] = s->normal[i][k];
+static void make_plane(const abbe_surface *s, size_t face, abbe_plane_face *p) {
+  const uint32_t *f = s->face[face];
+  for (int k = 0; k < 3; k++) {
+    p->corner[k] = s->position[f[0]][k];
+    p->second[k] = s->position[f[1]][k] - p->corner[k];
+    p->third[k] = s->position[f[2]][k] - p->corner[k];
+  }
+}
+
+static void make_bend(const abbe_surface *s, size_t face, abbe_bent_face *b) {
+  const uint32_t *f = s->face[face];
+  for (int k = 0; k < 3; k++) {
+    b->corner[k] = s->normal[f[0]][k];
+    b->second[k] = s->normal[f[1]][k] - b->corner[k];
+    b->third[k] = s->normal[f[2]][k] - b->corner[k];
+  }
+}
+
+static bool make_faces(const abbe_mesh *mesh, abbe_surface *s) {
+  const size_t room = mesh->face_count + 1;
+  s->plane = aligned_alloc(64, room * sizeof *s->plane);
+  s->bent = s->flat ? NULL : aligned_alloc(64, room * sizeof *s->bent);
+  if (s->plane == NULL || (!s->flat && s->bent == NULL)) return false;
+  for (size_t i = 0; i < mesh->face_count; i++) {
+    s->plane[i] = (abbe_plane_face){0};
+    make_plane(s, i, &s->plane[i]);
+    if (s->flat) {
+      memcpy(s->plane[i].normal, s->normal[i], sizeof s->normal[i]);
+    } else {
+      face_normal(mesh, i, s->plane[i].normal);
+      s->bent[i] = (abbe_bent_face){0};
+      make_bend(s, i, &s->bent[i]);
     }
   }
   return true;
@@ -101,7 +120,7 @@ static bool copy_mesh(const abbe_geometry *g, const abbe_object *object, abbe_su
       for (int k = 0; k < 3; k++) s->normal[i][k] = (float)mesh->normal[i][k];
   }
   s->uv = (const double(*)[2])mesh->uv;
-  return !s->flat || make_planes(mesh->face_count, s);
+  return make_faces(mesh, s);
 }
 
 static void attach(abbe_geometry *g, RTCGeometry geometry, unsigned id, unsigned mask) {
@@ -326,6 +345,7 @@ void abbe_geometry_free(abbe_geometry *g) {
     free(g->surface[i].normal);
     free(g->surface[i].face);
     free(g->surface[i].plane);
+    free(g->surface[i].bent);
   }
   abbe_solids_free(g->solid, g->refractor_count);
   free(g->surface);

@@ -34,11 +34,16 @@ enum {
   ABBE_GEOMETRY_OBJECTS = ABBE_GEOMETRY_SPECULAR | ABBE_GEOMETRY_RECEIVERS
 };
 
-/* A face with one normal, in one line of the cache and padded for the compiler: its first corner,
- * the ways to the others, and the normal. */
+/* A face in one line of the cache, padded for the compiler: its first corner, the ways to the
+ * others, and its normal. */
 typedef struct abbe_plane_face {
   __attribute__((aligned(64))) float corner[4], second[4], third[4], normal[4];
 } abbe_plane_face;
+
+/* The same of normals that are interpolated: the first corner's, and what the others' are more. */
+typedef struct abbe_bent_face {
+  __attribute__((aligned(64))) float corner[4], second[4], third[4];
+} abbe_bent_face;
 
 /* The surface behind one of Embree's geometry identifiers; frame units. */
 typedef struct abbe_surface {
@@ -52,7 +57,8 @@ typedef struct abbe_surface {
   float (*normal)[3];     /* flat: [faces]; else [vertices] */
   const double (*uv)[2];  /* [vertices] of the mesh, or NULL */
   uint32_t (*face)[3];    /* [faces] */
-  abbe_plane_face *plane; /* flat: [faces]; else NULL */
+  abbe_plane_face *plane; /* [faces], or NULL: no triangles */
+  abbe_bent_face *bent;   /* [faces] of triangles that are not flat, or NULL */
 } abbe_surface;
 
 typedef struct abbe_geometry {
@@ -125,43 +131,27 @@ static inline void abbe_geometry_place(const abbe_surface *s, uint32_t face, flo
     }
     return;
   }
-  if (s->face == NULL) {
+  if (s->plane == NULL) {
     for (int k = 0; k < 3; k++) {
       hit->p[k] = o[k] + t * d[k];
       hit->ng[k] = hit->n[k] = s->normal[0][k];
     }
     return;
   }
-  if (s->plane != NULL) {
-    const abbe_plane_face *f = &s->plane[face];
-    float p[4];
-    for (int k = 0; k < 4; k++) p[k] = f->corner[k] + u * f->second[k] + v * f->third[k];
-    for (int k = 0; k < 3; k++) {
-      hit->p[k] = p[k];
-      hit->ng[k] = hit->n[k] = f->normal[k];
-    }
-    return;
-  }
-  const uint32_t *f = s->face[face];
-  const float *a = s->position[f[0]], *b = s->position[f[1]], *c = s->position[f[2]];
-  for (int k = 0; k < 3; k++) hit->p[k] = a[k] + u * (b[k] - a[k]) + v * (c[k] - a[k]);
-  float e[3], h[3], n[3], w = 1 - u - v;
+  const abbe_plane_face *f = &s->plane[face];
+  float p[4], n[4];
+  for (int k = 0; k < 4; k++) p[k] = f->corner[k] + u * f->second[k] + v * f->third[k];
   for (int k = 0; k < 3; k++) {
-    e[k] = b[k] - a[k];
-    h[k] = c[k] - a[k];
-    n[k] = w * s->normal[f[0]][k] + u * s->normal[f[1]][k] + v * s->normal[f[2]][k];
+    hit->p[k] = p[k];
+    hit->ng[k] = hit->n[k] = f->normal[k];
   }
-  hit->ng[0] = e[1] * h[2] - e[2] * h[1];
-  hit->ng[1] = e[2] * h[0] - e[0] * h[2];
-  hit->ng[2] = e[0] * h[1] - e[1] * h[0];
-  float g = hit->ng[0] * hit->ng[0] + hit->ng[1] * hit->ng[1] + hit->ng[2] * hit->ng[2];
-  float l = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-  g = 1 / sqrtf(g);
-  l = l > 0 ? 1 / sqrtf(l) : 0;
-  for (int k = 0; k < 3; k++) {
-    hit->ng[k] *= g;
-    hit->n[k] = l > 0 ? n[k] * l : hit->ng[k];
-  }
+  if (s->bent == NULL) return;
+  const abbe_bent_face *b = &s->bent[face];
+  for (int k = 0; k < 4; k++) n[k] = b->corner[k] + u * b->second[k] + v * b->third[k];
+  const float square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+  if (!(square > 0)) return;
+  const float scale = 1 / sqrtf(square);
+  for (int k = 0; k < 3; k++) hit->n[k] = n[k] * scale;
 }
 
 /* How far a ray starts off the face that it leaves, as a share of its coordinates. */

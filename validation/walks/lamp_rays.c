@@ -34,7 +34,6 @@ static bool stands_before(const abbe_geometry *g, const abbe_light *light, const
 /* Receivers that are the walls of a convex room around the lamp hide nothing. */
 bool abbe_lamp_is_hidden(const abbe_geometry *g, const abbe_light *light) {
   size_t faces = 0;
-  if (g->mirror_count > 0) return true;
   for (size_t i = 0; i < g->surface_count; i++) {
     const abbe_surface *s = &g->surface[i];
     if (s->kind != ABBE_GEOMETRY_RECEIVERS) continue;
@@ -84,7 +83,7 @@ SIDE_BY_SIDE static void aim(const float lamp[3], int far, abbe_lamp_rays *s) {
     ray->dir_z[k] = d[2];
     ray->tnear[k] = 0;
     ray->tfar[k] = far ? INFINITY : limit;
-    ray->mask[k] = ABBE_GEOMETRY_RECEIVERS | ABBE_GEOMETRY_MIRRORS;
+    ray->mask[k] = ABBE_GEOMETRY_RECEIVERS;
     ray->flags[k] = 0;
   }
 }

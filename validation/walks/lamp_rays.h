@@ -1,7 +1,8 @@
 /* lamp_rays.h: whether the lamp would see the places where its photons land past other receivers.
  *
- * The map of a light holds only those: the others are marked as hidden. Rays to the lamp wait until
- * there is a packet of them.
+ * The map of a light holds only those: the others are marked as hidden. Refractors and mirrors hide
+ * nothing: what lands in their shadow has its place in the map. Rays to the lamp wait until there
+ * is a packet of them.
  *
  * Internal to validation/: it is not installed.
  */

@@ -255,6 +255,32 @@ static void light_is_linear(void **state) {
   abbe_image_free(&twice);
 }
 
+/* In the shipped scenes of surroundings and mirrors no light is made or lost. */
+static void the_ledger_closes(void **state) {
+  (void)state;
+  static const char *const names[] = {"metal-ring", "metal-ball",   "spoon",         "metals",
+                                      "octahedra",  "glass-studio", "diamond-studio"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    abbe_scene scene;
+    load_shipped(names[i], &scene);
+    const abbe_trace_desc desc = {
+        .no_map = true, .width = 4, .height = 4, .photons = 30000, .threads = 2};
+    abbe_tracer *tracer = make_tracer(&scene, &desc);
+    run_passes(tracer, 1);
+    abbe_trace_statistics s;
+    abbe_tracer_statistics(tracer, &s);
+    const abbe_light_ledger *l = &s.ledger;
+    const double all = l->deposited + l->missed + l->absorbed + l->trapped + l->lost + l->scattered;
+    print_message("%s: open by %.2g, %.2g lost\n", names[i], all / l->reached - 1,
+                  l->lost / l->reached);
+    assert_true(l->reached > 0);
+    assert_near(all / l->reached, 1, 1e-4);
+    assert_true(l->lost < 1e-4 * l->reached);
+    abbe_tracer_free(tracer);
+    abbe_scene_free(&scene);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_convex_body_meets_pi_times_its_surface),
                                      cmocka_unit_test(clear_glass_is_not_seen_in_uniform_light),
@@ -262,6 +288,7 @@ int main(void) {
                                      cmocka_unit_test(an_open_floor_has_its_irradiance),
                                      cmocka_unit_test(a_clear_ball_takes_nothing_away),
                                      cmocka_unit_test(turning_all_changes_nothing),
-                                     cmocka_unit_test(light_is_linear)};
+                                     cmocka_unit_test(light_is_linear),
+                                     cmocka_unit_test(the_ledger_closes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
