@@ -111,8 +111,8 @@ static void test_pictures_that_are_no_surroundings(void **state) {
   (void)state;
   static const refusal rows[] = {
       {AROUND(""), "around.hdr"},
-      {AROUND(RADIANCE), "around.hdr: is cut off"},
-      {AROUND(RADIANCE "-Y 2 +X 4\\n\\1\\1\\1\\200"), "around.hdr: is cut off (line 1 of 2)"},
+      {AROUND(RADIANCE), "scene.yaml:2: around.hdr: it cannot be read as a Radiance picture"},
+      {AROUND(RADIANCE "-Y 2 +X 4\\nabcd"), "cut off (line 1 of 2)"},
       {AROUND(RADIANCE "-Y 2 +X 2\\n" BLACK), "2 x 2 pixels"},
       {AROUND(RADIANCE "-Y 2 +X 4\\n" BLACK BLACK), "black"},
       {AROUND(RADIANCE "-Y 99999 +X 3\\n"), "around.hdr"},
