@@ -277,6 +277,7 @@ static uint64_t mix_eye(uint64_t h, const abbe_scene *scene, const abbe_plan *pl
   MIX(h, d->supersample);
   MIX(h, d->upsample);
   MIX(h, d->adaptive);
+  MIX(h, d->receiver_samples);
   MIX(h, d->sample_shift);
   MIX(h, d->aovs);
   MIX(h, plan->textured);
@@ -296,6 +297,18 @@ static uint64_t mix_powers(uint64_t h, const abbe_scene *scene, const abbe_plan 
   return h;
 }
 
+/* Lights with a size are seen. */
+static uint64_t of_sights(const abbe_scene *scene, const abbe_plan *plan, const uint64_t *part) {
+  uint64_t h = 5;
+  MIX(h, part[ABBE_PART_GEOMETRY]);
+  MIX(h, part[ABBE_PART_SURFACES]);
+  MIX(h, part[ABBE_PART_SPECTRA]);
+  MIX(h, part[ABBE_PART_POWERS]);
+  MIX(h, plan->volume);
+  if (plan->sized_lights) MIX(h, part[ABBE_PART_LIGHT]);
+  return mix_eye(h, scene, plan);
+}
+
 void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
                              abbe_renderer_inputs *out) {
   uint64_t *part = out->part, light;
@@ -311,6 +324,7 @@ void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
   part[ABBE_PART_LIGHT] = light;
   part[ABBE_PART_EYE] = mix_eye(light, scene, plan);
   part[ABBE_PART_POWERS] = mix_powers(3, scene, plan);
+  out->sights = of_sights(scene, plan, part);
 }
 
 unsigned abbe_renderer_inputs_differ(const abbe_renderer_inputs *a, const abbe_renderer_inputs *b) {

@@ -135,7 +135,7 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
                                 &r->map,   &r->camera, &r->volume, &r->pinholes};
   abbe_result result = abbe_receivers_pass_make(&r->lighting, &variant, &r->receivers, error);
   if (result == ABBE_OK)
-    result = abbe_refraction_pass_make(&r->lighting, &r->faces, &r->receivers, &variant,
+    result = abbe_refraction_pass_make(&r->lighting, &r->faces, &r->receivers, &variant, &r->kept,
                                        &r->refraction, error);
   if (result == ABBE_OK)
     result = abbe_adaptive_pass_make(&r->receivers, &r->refraction, &variant, &r->adaptive, error);
@@ -209,6 +209,8 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   const bool crowded = abbe_gpu_program_count(&r->gpu) > ABBE_GPU_MOST_PROGRAMS;
   if (crowded && (parts & LIGHT) != 0) parts = ALL;
   abbe_wyman_history frames = {0};
+  if ((parts & (GEOMETRY | EYE)) == EYE && r->inputs.sights == inputs.sights)
+    abbe_refraction_pass_leave(&r->refraction, &r->kept);
   if ((parts & LIGHT) != 0) abbe_published_take_frames(&r->published, &frames);
   free_parts(r, parts);
   if (parts == ALL && crowded) abbe_gpu_drop_programs(&r->gpu);
@@ -221,6 +223,7 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   r->made = result == ABBE_OK;
   if (r->made) abbe_published_give_frames(&r->published, &frames);
   abbe_gpu_drop_textures(&r->gpu, ABBE_WYMAN_KEPT, frames.sums);
+  abbe_refraction_kept_free(&r->gpu, &r->kept);
   if (!r->made) free_parts(r, ALL);
   if (!r->made) r->lit = r->seen = false;
   abbe_gpu_trim(&r->gpu);
@@ -327,7 +330,7 @@ abbe_result abbe_renderer_parts_draw(abbe_renderer *r, abbe_render_progress prog
 abbe_result abbe_renderer_parts_baseline(abbe_renderer *r, double *ms, abbe_error *error) {
   static const int first = 0;
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
-  const size_t *samples = r->camera.samples;
+  const size_t *samples = r->camera.receiver_samples;
   const abbe_gl *gl = r->gpu.gl;
   abbe_result result = abbe_renderer_parts_check(r, error);
   if (result != ABBE_OK) return result;

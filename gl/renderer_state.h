@@ -44,6 +44,7 @@ struct abbe_renderer {
   abbe_lighting lighting;
   abbe_receivers_pass receivers;
   abbe_refraction_pass refraction;
+  abbe_refraction_kept kept; /* of the one before, between it and the next; else zero */
   abbe_adaptive_pass adaptive;
   abbe_picture picture;
   abbe_haze_pass haze;

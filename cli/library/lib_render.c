@@ -36,6 +36,7 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
       ABBE_LIB_COUNT("supersample", &d->supersample, 1, 4),
       ABBE_LIB_COUNT("upsample", &d->upsample, 1, 4),
       ABBE_LIB_COUNT("adaptive", &d->adaptive, 1, ABBE_RENDER_MAX_ADAPTIVE),
+      ABBE_LIB_COUNT("receiver_samples", &d->receiver_samples, 1, 4),
       ABBE_LIB_COUNT("environment_lights", &d->environment_lights, 1,
                      ABBE_RENDER_MAX_ENVIRONMENT_LIGHTS),
       ABBE_LIB_COUNT("light_points", &d->light_points, 1, ABBE_RENDER_MAX_LIGHT_POINTS),

@@ -50,7 +50,7 @@ void abbe_lib_scene_set_progress(abbe_lib_scene *scene, abbe_lib_progress progre
 
 /* The picture by OpenGL. Settings, each of which may be left out: width, height (pixels),
  * wavelengths, min_nm, max_nm, photons (a side), map_size (a side), supersample, upsample,
- * adaptive, environment_lights, light_points, exits, energy_share, profile (default, thesis,
+ * adaptive, receiver_samples, environment_lights, light_points, exits, energy_share, profile (default, thesis,
  * thesis-cie, shah2007, shah2007-cie, wyman2006, wyman2006-cie, wand2003), fill (auto, none,
  * bridge, smear), model (auto, sphere, convex, layers, hierarchy), transport (auto, photons,
  * pinhole), of pinholes also pinholes (a number), strategy (auto, random, grid, quantized,

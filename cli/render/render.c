@@ -307,6 +307,7 @@ static const char *renderers_own(const request *q) {
          : d->supersample > 0                 ? "--samples"
          : d->upsample > 0                    ? "--upsample"
          : d->adaptive > 0                    ? "--adaptive"
+         : d->receiver_samples > 0            ? "--receiver-samples"
          : d->environment_lights > 0          ? "--environment-lights"
          : d->light_points > 0                ? "--light-points"
          : d->exits > 0                       ? "--exits"

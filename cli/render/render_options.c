@@ -40,6 +40,7 @@ enum {
   OPTION_SPACE,
   OPTION_OBSERVER,
   OPTION_TRANSPORT,
+  OPTION_RECEIVER_SAMPLES,
   OPTION_VOLUME,
   OPTION_LOOKUP,
   OPTION_EVERYTHING,
@@ -62,6 +63,10 @@ static const struct argp_option options[] = {
      "or a sample for N x N pixels, 1 to 4, and between samples: a draft (1)", 1},
     {"adaptive", OPTION_ADAPTIVE, "N", 0,
      "N x N rays, 1 to 8, for a sample of a receiver where its light bends (4; thesis 1)", 1},
+    {"receiver-samples", OPTION_RECEIVER_SAMPLES, "N", 0,
+     "samples of receivers a pixel side: as --samples, or 1 (as --samples; 1 of a volume with "
+     "--adaptive above 1)",
+     1},
     {"light-points", OPTION_LIGHT_POINTS, "N", 0,
      "points that stand for a light with a size, 1 to 16 in all (8)", 1},
     {"environment-lights", OPTION_ENVIRONMENT_LIGHTS, "N", 0,
@@ -215,6 +220,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_ADAPTIVE:
     d->adaptive = abbe_command_count(p, "--adaptive", text, 1, ABBE_RENDER_MAX_ADAPTIVE);
+    return 0;
+  case OPTION_RECEIVER_SAMPLES:
+    d->receiver_samples = abbe_command_count(p, "--receiver-samples", text, 1, 4);
     return 0;
   case OPTION_ENVIRONMENT_LIGHTS:
     d->environment_lights =

@@ -51,6 +51,14 @@
 /* What receivers reflect of each light. */
 #define BINDING_REFLECTIONS 29
 
+/* Pixels of which some samples show a refractor. */
+#define BINDING_MERGED_PIXELS 30
+
+/* What the camera's rays through refractors show of receivers: the places, and where each pixel's
+ * begin. */
+#define BINDING_SIGHTS 31
+#define BINDING_SIGHT_PIXELS 32
+
 /* A list that becomes the size of a dispatch. */
 #define BINDING_DISPATCH 26
 

@@ -3,6 +3,7 @@
 #include "gl/device/bindings.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* A bend below these is left alone: of the light around the sample, and of what a white receiver
  * shows of the lights, so that noise in the dark asks for nothing. */
@@ -18,12 +19,16 @@ abbe_result abbe_adaptive_pass_make(const abbe_receivers_pass *receivers,
                                     abbe_error *error) {
   *out = (abbe_adaptive_pass){.receivers = receivers, .refraction = refraction};
   const abbe_plan *plan = scene_of(out)->plan;
-  const size_t *samples = receivers->lighting->camera->samples;
+  const size_t *samples = receivers->lighting->camera->receiver_samples;
   abbe_gpu *gpu = scene_of(out)->gpu;
   if (!abbe_plan_runs(plan, ABBE_PASS_EYE_ADAPTIVE, 0)) return ABBE_OK;
   abbe_result result = abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 4 * samples[0] * samples[1],
                                             NULL, &out->samples, error);
-  const char *seen = plan->camera_sees_refractor ? "#define REFRACTORS_SEEN\n" : NULL;
+  const bool fewer = plan->desc.receiver_samples < plan->desc.supersample;
+  char seen[96] = "";
+  if (plan->camera_sees_refractor)
+    snprintf(seen, sizeof seen, "#define REFRACTORS_SEEN\n#define PIXEL_SIDE %zu\n",
+             fewer ? plan->desc.supersample : 1);
   if (result == ABBE_OK)
     result = abbe_gpu_compute(gpu, "adaptive_list.comp", seen, &out->list, error);
   if (result == ABBE_OK)
@@ -55,7 +60,7 @@ static double white_radiance(const abbe_gpu_scene *scene) {
 
 static void list_samples(abbe_adaptive_pass *pass) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  const size_t *samples = pass->receivers->lighting->camera->samples;
+  const size_t *samples = pass->receivers->lighting->camera->receiver_samples;
   abbe_gpu_clear_list(gpu, pass->samples);
   abbe_gpu_bind_storage(gpu, BINDING_ADAPTIVE_SAMPLES, pass->samples);
   gpu->gl->UseProgram(pass->list);
@@ -75,7 +80,7 @@ static void resample(abbe_adaptive_pass *pass) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const abbe_gl *gl = gpu->gl;
   const abbe_receivers_pass *receivers = pass->receivers;
-  const size_t *samples = receivers->lighting->camera->samples;
+  const size_t *samples = receivers->lighting->camera->receiver_samples;
   const GLuint picture[3] = {receivers->colour, receivers->direct, receivers->caustic};
   abbe_lighting_use(receivers->lighting, pass->resample);
   abbe_gpu_set_int(gpu, pass->resample, "side", (int)scene_of(pass)->plan->desc.adaptive);

@@ -1,5 +1,7 @@
 #include "gl/eye/picture.h"
 
+#include "gl/device/bindings.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -15,6 +17,10 @@ abbe_result abbe_picture_make(const abbe_receivers_pass *receivers,
   out->refraction = refraction;
   const abbe_render_desc *desc = desc_of(out);
   if (desc->supersample == 1 && desc->upsample == 1) return ABBE_OK;
+  if (desc->receiver_samples < desc->supersample)
+    return refraction->merged != 0
+               ? abbe_gpu_compute(gpu, "eye_merge.comp", NULL, &out->program, error)
+               : ABBE_OK;
   abbe_result result = abbe_gpu_make_texture(gpu, GL_RGBA32F, desc->width, desc->height, 0, false,
                                              &out->pixels, error);
   /* Drawn, not computed: a software rasteriser stores pixel by pixel what is no target. */
@@ -30,6 +36,24 @@ void abbe_picture_free(abbe_picture *picture) {
   picture->receivers->lighting->scene->gpu->gl->DeleteTextures(1, &picture->view);
 }
 
+/* Over what receivers show, in its place. */
+static void merge(abbe_picture *picture) {
+  abbe_gpu *gpu = picture->receivers->lighting->scene->gpu;
+  const abbe_render_desc *desc = desc_of(picture);
+  const abbe_refraction_pass *refraction = picture->refraction;
+  gpu->gl->UseProgram(picture->program);
+  abbe_gpu_bind_texture(gpu, picture->program, "refraction", 1, refraction->colour);
+  abbe_gpu_set_int(gpu, picture->program, "samples", (int)desc->supersample);
+  abbe_gpu_bind_storage(gpu, BINDING_MERGED_PIXELS, refraction->merged);
+  gpu->gl->BindImageTexture(0, picture->receivers->colour, 0, GL_FALSE, 0, GL_READ_WRITE,
+                            GL_RGBA32F);
+  abbe_gpu_dispatch_list(gpu, picture->program, refraction->merged, 0, desc->width * desc->height,
+                         1);
+  gpu->gl->MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                         GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  abbe_gpu_book_lap(gpu, ABBE_PASS_EYE_PICTURE);
+}
+
 abbe_result abbe_picture_run(abbe_picture *picture, abbe_error *error) {
   static const int flat = -1;
   abbe_gpu *gpu = picture->receivers->lighting->scene->gpu;
@@ -38,6 +62,10 @@ abbe_result abbe_picture_run(abbe_picture *picture, abbe_error *error) {
   const GLuint program = picture->program;
   if (program == 0) return ABBE_OK;
   abbe_gpu_start_lap(gpu);
+  if (desc->receiver_samples < desc->supersample) {
+    merge(picture);
+    return ABBE_OK;
+  }
   abbe_result result =
       abbe_gpu_set_target(gpu, &picture->pixels, &flat, 1, 0, desc->width, desc->height, error);
   if (result != ABBE_OK) return result;
@@ -147,7 +175,7 @@ static void read_layer(const abbe_picture *picture, GLuint texture, float *data,
   if (desc_of(picture)->upsample > 1)
     copy_enlarged(picture, data, out, to, 3);
   else
-    abbe_picture_copy_flipped(data, 0, out, to, 3, desc_of(picture)->supersample);
+    abbe_picture_copy_flipped(data, 0, out, to, 3, desc_of(picture)->receiver_samples);
 }
 
 abbe_result abbe_picture_read(const abbe_picture *picture, bool aovs, double unit, abbe_image *out,
@@ -162,7 +190,7 @@ abbe_result abbe_picture_read(const abbe_picture *picture, bool aovs, double uni
   abbe_result result =
       abbe_image_make(desc->width, desc->height, aovs ? 10 : 3, as_xyz ? xyz : rgb, out, error);
   if (result != ABBE_OK) return result;
-  const size_t side = aovs ? desc->supersample : 1;
+  const size_t side = aovs ? desc->receiver_samples : 1;
   float *data = malloc(out->width * out->height * side * side * 4 * sizeof *data);
   if (data == NULL) {
     abbe_image_free(out);

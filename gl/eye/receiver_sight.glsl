@@ -5,6 +5,7 @@ struct Sighting {
   int surface;
   vec2 uv;
   int side;  // chart_side, where there are TILES
+  int sheet;  // of a parallelogram: twice its number, and 1 where it is seen from behind
 };
 
 // The nearest receiver on the ray, no farther than t_max, if there is any. Sets face_n.
@@ -22,6 +23,7 @@ bool receiver_seen(vec3 o, vec3 d, float t_min, float t_max, out float t, out Si
   s.n = dot(n, d) > 0.0 ? -n : n;
   s.surface = int(rc.corner.w);
   s.side = 0;
+  s.sheet = 2 * r + (dot(n, d) > 0.0 ? 1 : 0);
 #ifdef RECEIVER_HIERARCHY
   face_n = s.n;
   if (r >= RECEIVERS) triangle_at(r - RECEIVERS, s.p, -d, s.n, s.surface, s.uv);

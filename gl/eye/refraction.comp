@@ -1,6 +1,7 @@
 // Refractors as the eye sees them: one direction a wavelength, each exit that carries enough
 // energy followed to what it shows, and the reflection on the outside. Opaque things in front win
 // by the depth test. Threads are of listed pixels: triangles smaller than a pixel cost nothing more.
+// KEEPS_SIGHTS: what it finds of receivers are places, whose light sights.comp looks up.
 // REFINES: bands are joined first, and listed where what they show differs from what their neighbours
 // show; REFINED: the listed bands by all their samples, added to the picture.
 layout(local_size_x = 256) in;
@@ -38,7 +39,12 @@ layout(std430, binding = BINDING_REFINED_PIXELS) buffer RefineList {
   uvec2 refine[];
 };
 #endif
+#ifdef KEEPS_SIGHTS
+#define SIGHTS_ACCESS
+#include "sights.glsl"
+#else
 layout(rgba32f, binding = 0) writeonly uniform image2D picture;  // rgb, distance from the eye
+#endif
 #endif
 uniform sampler2DArray eye_layers;    // 0: front, 1: back; normal, distance
 uniform usampler2D eye_owner;         // refractor + 1
@@ -151,6 +157,9 @@ float seen_at;  // how far off what was seen last is, where it is a receiver or 
 vec3 seen(vec3 p, vec3 d, Spread spread, float t_min, float t_max, out bool met) {
   float t;
   Sighting at;
+#ifdef KEEPS_SIGHTS
+  sight_waits = false;
+#endif
   met = receiver_seen(p, d, t_min, t_max, t, at);
 #ifdef ROUGH
   bool blurred = lobe_width > 0.0;  // a rough mirror shows lamps itself, also those that stand for the surroundings
@@ -169,6 +178,12 @@ vec3 seen(vec3 p, vec3 d, Spread spread, float t_min, float t_max, out bool met)
   if (!met && blurred) return background + environment_scale * sky_at(d, sky_level(lobe_width));
 #endif
   if (!met) return surroundings_over(d, spread.turn_x, spread.turn_y);
+#ifdef KEEPS_SIGHTS
+  sight_waits = true;
+  waiting_sheet = at.sheet;
+  waiting_uv = at.uv;
+  return vec3(0);
+#endif
   Shading s = shade(at.p, at.n, at.surface, at.uv, at.side);
   return s.direct + s.caustic + s.fill;
 }
@@ -208,6 +223,17 @@ void add_to_picture(ivec2 at, vec3 sum) {
   imageStore(picture, at, vec4(others.rgb + rgb_from_xyz * sum, others.w));
 }
 #else
+#ifdef KEEPS_SIGHTS
+// sum: XYZ of what is no receiver.
+void keep_pixel(uint listed, vec3 sum, vec3 mirror) {
+  uint word = listed * SIGHT_WORDS;
+  for (int k = 0; k < 3; k++) {
+    sight_pixels[word + uint(k)] = floatBitsToUint(sum[k]);
+    sight_pixels[word + 4u + uint(k)] = floatBitsToUint(mirror[k]);
+  }
+  sight_pixels[word + 3u] = floatBitsToUint(found ? front.t : 0.0);
+}
+#endif
 // XYZ that all of the pixel's bands show.
 void write_pixel(uint where, int base, int count, vec3 sum) {
 #ifdef REFINES
@@ -228,7 +254,9 @@ void write_pixel(uint where, int base, int count, vec3 sum) {
     refine[atomicAdd(refine_count, 1u)] = uvec2(where, asked | uint(level) << 8 | uint(joined) << 12);
 #endif
   // At the rim an exact surface may miss the pixel that its triangles cover: what lies behind shows.
+#ifndef KEEPS_SIGHTS
   if (found) imageStore(picture, pixel_of(where), vec4(rgb_from_xyz * sum, front.t));
+#endif
 }
 #endif
 

@@ -49,6 +49,9 @@ vec3 through(Hit front, vec3 d, int band) {
   float n = bands[band].weight_n.w, attenuation = bands[band].attenuation.x;
   InnerRay ray = InnerRay(front.p, d, front.facet, 1.0 - fresnel(-dot(d, front.n), 1.0 / n));
   vec3 light = vec3(0);
+#ifdef KEEPS_SIGHTS
+  sight_tail = 0.0;
+#endif
   if (!refract_direction(d, front.n, 1.0 / n, ray.d)) return light;
   // Of what went in: where nearly all is mirrored, the rest is followed too.
   float limit = share_limit * ray.share, shown = 0.0, left = 0.0;
@@ -74,11 +77,18 @@ vec3 through(Hit front, vec3 d, int band) {
     }
     if (shows) {
       light += leaving.share * seen(leaving.p, leaving.d, outside, -touch * refractor_bounds.w, 1e30, met);
+#ifdef KEEPS_SIGHTS
+      if (sight_waits) note_sight(leaving.share);
+#endif
       shown += leaving.share;
     }
     if (ray.share < limit) break;
   }
-  return light * (shown > 0.0 ? 1.0 + left / shown : 0.0);
+  float tail = shown > 0.0 ? 1.0 + left / shown : 0.0;
+#ifdef KEEPS_SIGHTS
+  sight_tail = tail;
+#endif
+  return light * tail;
 }
 
 // Of a refractor without an exact surface the ray meets what the front layer shows.

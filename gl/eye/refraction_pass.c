@@ -10,6 +10,9 @@
 enum { COARSE_BANDS = 7, FINE_FROM = 9 };
 /* Pixels at a time whose bands may ask for all their samples. */
 enum { REFINE_ROOM = 1 << 20 };
+/* As sights.glsl has them: bytes of a place, words of a pixel before its chains; and what their
+ * numbers and a buffer hold. */
+enum { SIGHT_BYTES = 24, SIGHT_HEAD = 8, MOST_SIGHTS = 5592000, MOST_SHEETS = 127 };
 
 static const abbe_gpu_scene *scene_of(const abbe_refraction_pass *pass) {
   return pass->lighting->scene;
@@ -40,6 +43,31 @@ static bool shares_spectrum(const abbe_refraction_pass *pass) {
   return desc->supersample > 1 && desc->wavelengths > 1;
 }
 
+/* Pixels a side for a sample of receivers; 1: both have as many. */
+static size_t pixel_side(const abbe_refraction_pass *pass) {
+  const abbe_render_desc *desc = &scene_of(pass)->plan->desc;
+  return desc->receiver_samples < desc->supersample ? desc->supersample : 1;
+}
+
+/* Frames of a volume follow one another while lights move; places are on parallelograms. */
+static bool keeps_sights(const abbe_refraction_pass *pass) {
+  const abbe_plan *plan = scene_of(pass)->plan;
+  return plan->volume && plan->camera_sees_refractor && resolves(pass) && !refines(pass) &&
+         !plan->rough && !plan->hazy && !plan->desc.everything &&
+         plan->receivers == ABBE_RECEIVER_EXACT && plan->parallelogram_count > 0 &&
+         plan->parallelogram_count <= MOST_SHEETS;
+}
+
+static abbe_result make_list(abbe_refraction_pass *pass, const abbe_shader_variant *variant,
+                             abbe_error *error) {
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  char side[64];
+  if (pixel_side(pass) == 1)
+    return abbe_gpu_compute(gpu, "refraction_list.comp", NULL, &pass->list, error);
+  snprintf(side, sizeof side, "#define PIXEL_SIDE %zu\n", pixel_side(pass));
+  return abbe_shader_variant_compute(variant, gpu, "refraction_list.comp", side, &pass->list, error);
+}
+
 static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_variant *variant,
                                  abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
@@ -51,15 +79,18 @@ static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_v
     snprintf(facts, sizeof facts, "%s#define REFINES\n#define COARSE_BANDS %d\n", shares,
              COARSE_BANDS);
   else
-    snprintf(facts, sizeof facts, "%s%s", shares, interleaves(pass) ? "#define INTERLEAVES\n" : "");
+    snprintf(facts, sizeof facts, "%s%s%s", shares,
+             interleaves(pass) ? "#define INTERLEAVES\n" : "",
+             pass->keeps ? "#define KEEPS_SIGHTS\n" : "");
   snprintf(refined, sizeof refined, "%s#define REFINED\n", shares);
   abbe_result result =
       abbe_shader_variant_compute(&camera, gpu, "refraction.comp", facts, &pass->refract, error);
   if (result == ABBE_OK && refines(pass))
     result = abbe_shader_variant_compute(&camera, gpu, "refraction.comp", refined,
                                          &pass->refract_refined, error);
-  if (result != ABBE_OK) return result;
-  return abbe_gpu_compute(gpu, "refraction_list.comp", NULL, &pass->list, error);
+  if (result == ABBE_OK && pass->keeps)
+    result = abbe_shader_variant_compute(variant, gpu, "sights.comp", NULL, &pass->look_up, error);
+  return result == ABBE_OK ? make_list(pass, variant, error) : result;
 }
 
 static abbe_result make_targets(abbe_refraction_pass *pass, abbe_error *error) {
@@ -80,22 +111,67 @@ static abbe_result make_targets(abbe_refraction_pass *pass, abbe_error *error) {
   if (result == ABBE_OK)
     result =
         abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 4 * w * h, NULL, &pass->pixels, error);
+  if (result == ABBE_OK && pixel_side(pass) > 1)
+    result = abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 4 * w * h, NULL, &pass->merged, error);
   if (result == ABBE_OK && refines(pass))
     result = abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 8 * room, NULL, &pass->refined_pixels,
                                   error);
   return result;
 }
 
+static void take_kept(abbe_refraction_pass *pass, abbe_refraction_kept *kept) {
+  pass->layers = kept->layers;
+  pass->owner = kept->owner;
+  pass->depth = kept->depth;
+  pass->pixels = kept->pixels;
+  pass->merged = kept->merged;
+  pass->colour = kept->colour;
+  pass->sights = kept->sights;
+  pass->sight_pixels = kept->sight_pixels;
+  pass->sight_room = kept->sight_room;
+  pass->sight_bytes = kept->sight_bytes;
+  pass->whole = kept->whole;
+  *kept = (abbe_refraction_kept){0};
+}
+
+void abbe_refraction_pass_leave(abbe_refraction_pass *pass, abbe_refraction_kept *out) {
+  if (!pass->whole) return;
+  *out = (abbe_refraction_kept){.whole = true,
+                                .layers = pass->layers,
+                                .owner = pass->owner,
+                                .depth = pass->depth,
+                                .pixels = pass->pixels,
+                                .merged = pass->merged,
+                                .colour = pass->colour,
+                                .sights = pass->sights,
+                                .sight_pixels = pass->sight_pixels,
+                                .sight_room = pass->sight_room,
+                                .sight_bytes = pass->sight_bytes};
+  abbe_refraction_kept none = {0};
+  take_kept(pass, &none);
+}
+
+void abbe_refraction_kept_free(abbe_gpu *gpu, abbe_refraction_kept *kept) {
+  GLuint textures[] = {kept->layers, kept->owner, kept->depth, kept->colour};
+  GLuint buffers[] = {kept->pixels, kept->merged, kept->sights, kept->sight_pixels};
+  abbe_gpu_drop_textures(gpu, sizeof textures / sizeof *textures, textures);
+  abbe_gpu_drop_buffers(gpu, sizeof buffers / sizeof *buffers, buffers);
+  *kept = (abbe_refraction_kept){0};
+}
+
 abbe_result abbe_refraction_pass_make(const abbe_lighting *lighting,
                                       const abbe_refractor_faces *faces,
                                       const abbe_receivers_pass *receivers,
-                                      const abbe_shader_variant *variant, abbe_refraction_pass *out,
+                                      const abbe_shader_variant *variant,
+                                      abbe_refraction_kept *kept, abbe_refraction_pass *out,
                                       abbe_error *error) {
   *out = (abbe_refraction_pass){.lighting = lighting,
                                 .faces = faces,
                                 .receivers = receivers,
                                 .pixel_threads = variant->pixel_threads};
-  abbe_result result = make_targets(out, error);
+  out->keeps = keeps_sights(out);
+  take_kept(out, kept);
+  abbe_result result = out->whole ? ABBE_OK : make_targets(out, error);
   if (result == ABBE_OK && lighting->scene->plan->camera_sees_refractor)
     result = make_programs(out, variant, error);
   return result;
@@ -105,7 +181,8 @@ void abbe_refraction_pass_free(abbe_refraction_pass *pass) {
   if (pass->lighting == NULL) return;
   abbe_gpu *gpu = scene_of(pass)->gpu;
   GLuint textures[] = {pass->layers, pass->owner, pass->depth, pass->colour};
-  GLuint buffers[] = {pass->pixels, pass->refined_pixels};
+  GLuint buffers[] = {pass->pixels, pass->refined_pixels, pass->merged, pass->sights,
+                      pass->sight_pixels};
   abbe_gpu_drop_textures(gpu, sizeof textures / sizeof *textures, textures);
   abbe_gpu_drop_buffers(gpu, sizeof buffers / sizeof *buffers, buffers);
 }
@@ -114,7 +191,7 @@ void abbe_refraction_pass_free(abbe_refraction_pass *pass) {
 abbe_result abbe_refraction_pass_draw(abbe_refraction_pass *pass, abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   abbe_result result = ABBE_OK;
-  if (!scene_of(pass)->plan->camera_sees_refractor) return ABBE_OK;
+  if (!scene_of(pass)->plan->camera_sees_refractor || pass->whole) return ABBE_OK;
   abbe_gpu_start_lap(gpu);
   abbe_refractor_faces_use(pass->faces, &pass->lighting->camera->view);
   for (int back = 0; back <= (scene_of(pass)->plan->draw_back ? 1 : 0) && result == ABBE_OK;
@@ -136,16 +213,22 @@ abbe_result abbe_refraction_pass_draw(abbe_refraction_pass *pass, abbe_error *er
 
 static void list_pixels(abbe_refraction_pass *pass) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  const size_t *samples = pass->lighting->camera->samples;
+  const size_t *samples = pass->lighting->camera->samples, side = pixel_side(pass);
   abbe_gpu_clear_list(gpu, pass->pixels);
+  if (side > 1) {
+    abbe_gpu_clear_list(gpu, pass->merged);
+    abbe_lighting_use(pass->lighting, pass->list);
+    abbe_gpu_bind_storage(gpu, BINDING_MERGED_PIXELS, pass->merged);
+    gpu->gl->BindImageTexture(0, pass->colour, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  }
   abbe_gpu_bind_storage(gpu, BINDING_PIXELS, pass->pixels);
   gpu->gl->UseProgram(pass->list);
   abbe_gpu_bind_array(gpu, pass->list, "eye_layers", 4, pass->layers);
   abbe_gpu_bind_array(gpu, pass->list, "eye_receivers", 5, pass->receivers->colour);
   abbe_gpu_bind_texture(gpu, pass->list, "eye_owner", 6, pass->owner);
-  abbe_gpu_dispatch_2d(gpu, pass->list, samples[0], samples[1]);
+  abbe_gpu_dispatch_2d(gpu, pass->list, samples[0] / side, samples[1] / side);
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
-                         GL_BUFFER_UPDATE_BARRIER_BIT);
+                         GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
 static void use(abbe_refraction_pass *pass, GLuint program) {
@@ -208,18 +291,97 @@ static abbe_result clear_colour(abbe_refraction_pass *pass, abbe_error *error) {
   return result;
 }
 
-abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_error *error) {
+static void bind_sights(const abbe_refraction_pass *pass) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  const bool seen = scene_of(pass)->plan->camera_sees_refractor;
-  abbe_gpu_start_lap(gpu);
-  abbe_result result = resolves(pass) ? clear_colour(pass, error) : ABBE_OK;
-  if (result != ABBE_OK || !seen) return result;
-  list_pixels(pass);
+  abbe_gpu_bind_storage(gpu, BINDING_SIGHTS, pass->sights);
+  abbe_gpu_bind_storage(gpu, BINDING_SIGHT_PIXELS, pass->sight_pixels);
+}
+
+/* Buffers of so much room and more, in steps, so that those of the next scene are like them. */
+static abbe_result make_room(abbe_refraction_pass *pass, size_t places, size_t bytes,
+                             abbe_error *error) {
+  enum { STEP = 1 << 20 };
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  abbe_result result = ABBE_OK;
+  if (bytes > pass->sight_bytes) {
+    abbe_gpu_drop_buffers(gpu, 1, &pass->sight_pixels);
+    pass->sight_bytes = (bytes / STEP + 1) * STEP;
+    result = abbe_gpu_make_buffer(gpu, pass->sight_bytes, NULL, &pass->sight_pixels, error);
+  }
+  if (result != ABBE_OK || places <= pass->sight_room) return result;
+  abbe_gpu_drop_buffers(gpu, 1, &pass->sights);
+  pass->sight_room = (places / STEP + 1) * STEP;
+  if (pass->sight_room > MOST_SIGHTS) pass->sight_room = MOST_SIGHTS;
+  return abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + SIGHT_BYTES * pass->sight_room, NULL,
+                              &pass->sights, error);
+}
+
+/* Once more with as much room as they have turned out to take. */
+static abbe_result find_sights(abbe_refraction_pass *pass, abbe_error *error) {
+  enum { LIKELY = 12 };
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  const size_t pixels = abbe_gpu_read_count(gpu, pass->pixels);
+  size_t places = LIKELY * pixels + 1;
+  for (;;) {
+    abbe_result result =
+        make_room(pass, places, 4 * (SIGHT_HEAD + pass->pixel_threads) * (pixels + 1), error);
+    if (result != ABBE_OK) return result;
+    abbe_gpu_clear_list(gpu, pass->sights);
+    use(pass, pass->refract);
+    abbe_gpu_set_uint(gpu, pass->refract, "sight_room", pass->sight_room);
+    bind_sights(pass);
+    result = refract_pixels(pass, error);
+    gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    if (result != ABBE_OK || gpu->stopped) return result;
+    places = abbe_gpu_read_count(gpu, pass->sights);
+    if (places <= pass->sight_room) break;
+    if (places > MOST_SIGHTS)
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "the camera's rays show receivers at %zu places, and a buffer holds %d: "
+                            "ask for fewer pixels, samples or exits, or --everything",
+                            places, MOST_SIGHTS);
+  }
+  pass->whole = true;
+  return ABBE_OK;
+}
+
+/* Their light. */
+static void look_up(abbe_refraction_pass *pass) {
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  const size_t *samples = pass->lighting->camera->samples;
+  abbe_lighting_use(pass->lighting, pass->look_up);
+  bind_sights(pass);
+  abbe_gpu_bind_storage(gpu, BINDING_PIXELS, pass->pixels);
+  gpu->gl->BindImageTexture(0, pass->colour, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  abbe_gpu_dispatch_list(gpu, pass->look_up, pass->pixels, 0, samples[0] * samples[1], 1);
+  gpu->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                         GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+static abbe_result show_refractors(abbe_refraction_pass *pass, abbe_error *error) {
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  if (!pass->whole) list_pixels(pass);
+  if (pass->keeps) {
+    const abbe_result result = pass->whole ? ABBE_OK : find_sights(pass, error);
+    if (result == ABBE_OK && !gpu->stopped) look_up(pass);
+    return result;
+  }
   if (refines(pass)) use(pass, pass->refract_refined);
   use(pass, pass->refract);
   gpu->gl->BindImageTexture(0, resolves(pass) ? pass->colour : pass->receivers->colour, 0, GL_FALSE,
                             0, GL_READ_WRITE, GL_RGBA32F);
-  result = refract_pixels(pass, error);
+  return refract_pixels(pass, error);
+}
+
+abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_error *error) {
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  const bool seen = scene_of(pass)->plan->camera_sees_refractor;
+  abbe_gpu_start_lap(gpu);
+  abbe_result result = resolves(pass) && pixel_side(pass) == 1 && !pass->whole
+                           ? clear_colour(pass, error)
+                           : ABBE_OK;
+  if (result != ABBE_OK || !seen) return result;
+  result = show_refractors(pass, error);
   abbe_gpu_book_lap(gpu, ABBE_PASS_EYE_REFRACTION);
   return result;
 }

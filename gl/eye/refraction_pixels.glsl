@@ -36,10 +36,19 @@ void main() {
   look(pixel_of(pixel[listed]));
   int base, count;
   choose_bands(base, count);
+#ifdef KEEPS_SIGHTS
+  sight_chain = 0u;
+#endif
   vec3 sum = vec3(0), mirror = vec3(0);
   for (int i = first_taken(pixel_of(pixel[listed]), count); i < count; i += taken_step(count)) {
     float mirrored;
+#ifdef KEEPS_SIGHTS
+    uint before = sight_chain;
+#endif
     vec3 light = band_light(base + i, mirrored), weight = band_weight(base, i, count);
+#ifdef KEEPS_SIGHTS
+    weigh_sights(before, sight_tail * weight);
+#endif
     mirror += mirrored * weight;
     sum += light * weight;
 #ifdef REFINES
@@ -49,6 +58,14 @@ void main() {
   bool met;
   vec3 mirrored = seen(front.p, reflect(sight, front.n), spread_in_mirror(front), -touch * refractor_bounds.w, 1e30, met);
   sum += mirror * (xyz_from_rgb * mirrored);
+#ifdef KEEPS_SIGHTS
+  sight_pixels[listed * SIGHT_WORDS + 8u] = sight_chain;
+  sight_chain = 0u;
+  if (sight_waits) note_sight(1.0);
+  sight_pixels[listed * SIGHT_WORDS + 7u] = sight_chain;
+  keep_pixel(listed, sum, mirror);
+#else
   write_pixel(pixel[listed], base, count, sum);
+#endif
 }
 #endif

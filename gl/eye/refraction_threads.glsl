@@ -128,6 +128,9 @@ void main() {
   look(pixel_of(where));
   choose_bands(base, count);
 #endif
+#ifdef KEEPS_SIGHTS
+  uint own_chain = 0u;
+#endif
   vec3 sum = vec3(0), mirror = vec3(0);
   int taken_first = first_taken(pixel_of(where), count), taken_by = taken_step(count);
   int taken = (count - taken_first + taken_by - 1) / taken_by;  // and the mirror
@@ -135,8 +138,17 @@ void main() {
     bool in_mirror = k == taken;
     int i = in_mirror ? count / 2 : taken_first + k * taken_by, band = base + i;
     float mirrored;
+#ifdef KEEPS_SIGHTS
+    sight_chain = in_mirror ? 0u : own_chain;
+    uint before = sight_chain;
+#endif
     vec3 light = band_light(band, in_mirror, mirrored);
     vec3 weight = in_mirror ? vec3(0) : band_weight(base, i, count);
+#ifdef KEEPS_SIGHTS
+    weigh_sights(before, sight_tail * (in_mirror ? vec3(1) : weight));
+    if (in_mirror) sight_pixels[listed * SIGHT_WORDS + 7u] = sight_chain;
+    own_chain = in_mirror ? own_chain : sight_chain;
+#endif
     mirror += mirrored * weight;
     sum += light * weight;
     if (in_mirror) in_the_mirror[place] = light;
@@ -144,6 +156,9 @@ void main() {
     if (!in_mirror) path_shown[place * COARSE_BANDS + i] = light;
 #endif
   }
+#ifdef KEEPS_SIGHTS
+  if (there) sight_pixels[listed * SIGHT_WORDS + 8u + uint(pixel_thread)] = own_chain;
+#endif
   path_sum[place * PIXEL_THREADS + pixel_thread] = sum;
   path_mirror[place * PIXEL_THREADS + pixel_thread] = mirror;
   barrier();
@@ -157,6 +172,10 @@ void main() {
   for (int i = 0; i < COARSE_BANDS; i++)
     shown_by[i] = i < count ? path_shown[place * COARSE_BANDS + i] : vec3(0);
 #endif
+#ifdef KEEPS_SIGHTS
+  keep_pixel(listed, all + all_mirror * in_the_mirror[place], all_mirror);
+#else
   write_pixel(where, base, count, all + all_mirror * in_the_mirror[place]);
+#endif
 }
 #endif

@@ -75,6 +75,9 @@ vec3 shown(PathState w) {
       // radiance over the squared index is the same on both sides of an interface
       float n = medium_n(eye_inside) / (receiver ? medium_n(w.inside) : 1.0);
       light += n * n * w.share * radiance;
+#ifdef KEEPS_SIGHTS
+      if (sight_waits) note_sight(n * n * w.share);
+#endif
       seen_share += w.share;
       w.share = 0.0;
     }
@@ -84,7 +87,11 @@ vec3 shown(PathState w) {
     left += last ? w.share : 0.0;
     for (int k = 0; k < PENDING; k++) left += last ? pending[k].share : 0.0;
   }
-  return light * (seen_share > 0.0 ? 1.0 + left / seen_share : 0.0) + lamps;
+  float tail = seen_share > 0.0 ? 1.0 + left / seen_share : 0.0;
+#ifdef KEEPS_SIGHTS
+  sight_tail = tail;
+#endif
+  return light * tail + lamps;
 }
 
 PathState start;

@@ -168,7 +168,10 @@ static void list_absorption(abbe_plan *plan) {
 
 static void list_picture(abbe_plan *plan) {
   const size_t samples = plan->desc.supersample, pixels = plan->desc.upsample;
-  if (samples > 1)
+  if (samples > plan->desc.receiver_samples)
+    abbe_plan_add(plan, ABBE_PASS_EYE_PICTURE,
+                  "%zu x %zu samples a pixel of refractors, one of receivers", samples, samples);
+  else if (samples > 1)
     abbe_plan_add(plan, ABBE_PASS_EYE_PICTURE, "%zu x %zu samples a pixel", samples, samples);
   else if (pixels > 1)
     abbe_plan_add(plan, ABBE_PASS_EYE_PICTURE, "a sample for %zu x %zu pixels", pixels, pixels);

@@ -8,8 +8,11 @@ void abbe_camera_view_fit(const abbe_scene *scene, const abbe_render_desc *desc,
   const size_t pixels[2] = {desc->width, desc->height};
   const abbe_camera *camera = &scene->camera;
   double forward[3];
-  for (int axis = 0; axis < 2; axis++)
+  for (int axis = 0; axis < 2; axis++) {
     out->samples[axis] = (pixels[axis] * desc->supersample + desc->upsample - 1) / desc->upsample;
+    out->receiver_samples[axis] =
+        desc->receiver_samples == 1 && desc->supersample > 1 ? pixels[axis] : out->samples[axis];
+  }
   for (int k = 0; k < 3; k++) forward[k] = camera->target[k] - camera->eye[k];
   abbe_view_look(camera->eye, forward, camera->up, false, &out->view);
   for (size_t i = 0; i < scene->object_count; i++) {

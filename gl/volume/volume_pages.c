@@ -25,15 +25,47 @@ double (*abbe_volume_pages_sheets(const abbe_gpu_scene *scene))[9] {
   return all;
 }
 
-static void hand_over(const abbe_volume_pages *v, size_t light, const abbe_exit_pages *pages) {
+/* Each the mean of 2 x 2 texels of the one before, down to a few. */
+static size_t count_levels(size_t side) {
+  size_t levels = 1;
+  while (side % 2 == 0 && side > LEAST_SIDE) {
+    side /= 2;
+    levels++;
+  }
+  return levels;
+}
+
+/* The two maps of a page, level by level; half: room for a quarter of a map. */
+static void hand_over_page(const float (*value)[4], size_t side, size_t layer, float (*half)[4],
+                           const abbe_gl *gl) {
+  float(*level[2])[4] = {half, half + side * side / 4};
+  const size_t levels = count_levels(side);
+  for (size_t fine = 0; fine < 2; fine++, value += side * side) {
+    const float(*from)[4] = value;
+    size_t texels = side;
+    for (size_t k = 0; k < levels; k++, texels /= 2) {
+      gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, (GLint)k, 0, 0, (GLint)(layer + fine),
+                        (GLsizei)texels, (GLsizei)texels, 1, GL_RGBA, GL_FLOAT, from);
+      if (k + 1 == levels) break;
+      abbe_exit_pages_halve(from, texels, level[k % 2]);
+      from = (const float(*)[4])level[k % 2];
+    }
+  }
+}
+
+static bool hand_over(const abbe_volume_pages *v, size_t light, const abbe_exit_pages *pages) {
   const abbe_gl *gl = v->scene->gpu->gl;
+  const size_t texels = pages->side * pages->side;
+  float(*half)[4] = malloc((texels / 2 + 1) * sizeof *half);
+  if (half == NULL) return false;
   memcpy(v->window + light * v->count, pages->window, v->count * sizeof *v->window);
   gl->BindTexture(GL_TEXTURE_2D_ARRAY, v->texture);
   for (size_t i = 0; i < v->count; i++)
     if (pages->window[i][2] > 0) /* else the shader asks for none */
-      gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, (GLint)(2 * (light * v->count + i)),
-                        (GLsizei)pages->side, (GLsizei)pages->side, 2, GL_RGBA, GL_FLOAT,
-                        pages->value + 2 * i * pages->side * pages->side);
+      hand_over_page((const float(*)[4])pages->value + 2 * i * texels, pages->side,
+                     2 * (light * v->count + i), half, gl);
+  free(half);
+  return true;
 }
 
 static abbe_result light_pages(const abbe_volume_pages *v, const abbe_volume_place *place,
@@ -50,8 +82,9 @@ static abbe_result light_pages(const abbe_volume_pages *v, const abbe_volume_pla
   abbe_result result = abbe_exit_pages_make(
       plan->desc.volume, &desc, all, plan->parallelogram_count, side_of(plan), &pages, error);
   if (result != ABBE_OK) return result;
-  hand_over(v, light, &pages);
+  const bool handed = hand_over(v, light, &pages);
   abbe_exit_pages_free(&pages);
+  if (!handed) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for pages");
   return abbe_gl_check(scene->gpu->gl, "the upload of a volume's pages", error);
 }
 
@@ -68,8 +101,8 @@ abbe_result abbe_volume_pages_make(const abbe_gpu_scene *scene, const abbe_volum
                            ? ABBE_OK
                            : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for pages");
   if (result == ABBE_OK)
-    result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, side, side, 2 * lights * out->count,
-                                   true, &out->texture, error);
+    result = abbe_gpu_make_levels(scene->gpu, GL_RGBA32F, side, 2 * lights * out->count,
+                                  count_levels(side), &out->texture, error);
   for (size_t i = 0; i < lights && result == ABBE_OK; i++)
     result = light_pages(out, place, i, (const double(*)[9])all, error);
   free(all);

@@ -48,6 +48,12 @@ static bool is_hidden(const abbe_exit_light_desc *desc, const double p[3], const
   return false;
 }
 
+/* To a light that is far away, unit. */
+static bool look_along(const abbe_exit_light_desc *desc, double to_light[3]) {
+  for (int k = 0; k < 3; k++) to_light[k] = -desc->light->direction[k];
+  return abbe_vector_normalise(to_light);
+}
+
 /* From a place of the world to the light, unit, and the irradiance across the beam there of a power
  * of 1. */
 static double look_at_light(const abbe_exit_light_desc *desc, const double from[3],
@@ -80,7 +86,7 @@ typedef struct sight {
   void *user;
   const double (*plane)[4];
   size_t planes;
-  size_t first, end; /* points */
+  size_t first, step; /* of points: the first, and from one to the next */
 } sight;
 
 static void turn(const double map[9], const double v[3], double out[3]) {
@@ -94,22 +100,32 @@ static void send_image(const sight *s, const double map[9]) {
   const abbe_exit_light_desc *d = s->desc;
   const double part = e->area / (double)(e->points * e->symmetry.count);
   const bool far = d->light->kind == ABBE_LIGHT_DIRECTIONAL;
+  double to_light[3], own[3], there[3];
   abbe_exit_aim aim = {0};
-  for (size_t i = s->first; i < s->end; i++) {
-    double p[3], n[3], image[3], world[3], to_light[3], own[3], there[3];
+  if (far) {
+    if (!look_along(d, to_light)) return;
+    turn_back(d->place->turn, to_light, own);
+    turn_back(map, own, there);
+    abbe_light_exits_aim(&s->volume->nodes, there, &aim);
+  }
+  for (size_t i = s->first; i < e->points; i += s->step) {
+    double p[3], n[3], image[3], world[3];
     size_t bin;
+    if (far && !abbe_light_exits_faces(e, i, there)) continue;
     abbe_light_exits_point(e, i, p, n, &bin);
     turn(map, p, image);
     place_point(d->place, image, world);
     const double strength = look_at_light(d, world, to_light);
-    turn_back(d->place->turn, to_light, own);
-    turn_back(map, own, there);
+    if (!far) {
+      turn_back(d->place->turn, to_light, own);
+      turn_back(map, own, there);
+    }
     const double flux = part * strength * abbe_vector_dot(n, there);
     if (!(flux > 0)) continue;
-    if (!far || aim.blend.count == 0) abbe_light_exits_aim(&s->volume->nodes, there, &aim);
+    if (!far) abbe_light_exits_aim(&s->volume->nodes, there, &aim);
     abbe_exit_ray ray[3];
     const size_t count =
-        abbe_light_exits_at(e, &s->volume->nodes, &aim, i, s->plane, s->planes, ray);
+        abbe_light_exits_at(e, &aim, i, s->plane, s->planes, ray);
     for (size_t k = 0; k < count; k++) {
       abbe_exit_ray out = ray[k];
       turn(map, ray[k].place, out.place);
@@ -121,12 +137,15 @@ static void send_image(const sight *s, const double map[9]) {
   }
 }
 
-static abbe_result send_part(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
-                             size_t part, size_t parts, abbe_exit_light_take take, void *user,
-                             abbe_error *error) {
+abbe_result abbe_exit_light_part(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
+                                 size_t part, size_t parts, abbe_exit_light_take take, void *user,
+                                 abbe_error *error) {
+  ABBE_REQUIRE(v && d && d->light && d->object && d->place && take, error);
   const abbe_light_exits *e = &v->exits;
   double(*plane)[4];
   size_t planes;
+  if (part >= parts)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "part %zu of %zu", part, parts);
   if (e->points == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the volume holds no exits");
   abbe_result result = find_planes(d, &plane, &planes, error);
@@ -137,8 +156,8 @@ static abbe_result send_part(const abbe_caustic_volume *v, const abbe_exit_light
                    user,
                    (const double(*)[4])plane,
                    planes,
-                   e->points * part / parts,
-                   e->points * (part + 1) / parts};
+                   part,
+                   parts};
   for (size_t i = 0; i < e->symmetry.count; i++) send_image(&s, e->symmetry.map[i]);
   free(plane);
   return ABBE_OK;
@@ -146,31 +165,28 @@ static abbe_result send_part(const abbe_caustic_volume *v, const abbe_exit_light
 
 abbe_result abbe_exit_light_rays(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
                                  abbe_exit_light_take take, void *user, abbe_error *error) {
-  ABBE_REQUIRE(v && d && d->light && d->object && d->place && take, error);
-  return send_part(v, d, 0, 1, take, user, error);
+  return abbe_exit_light_part(v, d, 0, 1, take, user, error);
 }
 
 /* ---- all its wavelengths ---- */
 
-enum { MOST_PARTS = 16, PLACES = 1024 };
+enum { PLACES = 1024 };
 
 /* A ray that a clear object bends by its index stands for all wavelengths: it goes on as some, a
  * part of the light each. Others have their own alone. */
-typedef struct spread {
-  abbe_exit_light_take_colour take;
-  void *user;
+struct abbe_exit_colours {
   double own[ABBE_LIGHT_EXITS_BINS][3]; /* XYZ of a watt of a bin's points */
   double upto[ABBE_LIGHT_EXITS_BINS + 1];
-  double sum[ABBE_LIGHT_EXITS_BINS + 1][3];   /* XYZ of all bins before */
-  double index[ABBE_LIGHT_EXITS_BINS];        /* NaN of the first: it is not asked */
-  double place[PLACES];                       /* index by the place among points */
-  double part[MOST_PARTS + 1][MOST_PARTS][3]; /* XYZ of a watt of each part of so many */
-  double range;                               /* of the index, from least to greatest */
-  uint32_t turn;                              /* of rays, for the places within parts */
-} spread;
+  double sum[ABBE_LIGHT_EXITS_BINS + 1][3]; /* XYZ of all bins before */
+  double index[ABBE_LIGHT_EXITS_BINS];
+  bool known;           /* the index, and it spreads them */
+  double place[PLACES]; /* index by the place among points */
+  double part[ABBE_EXIT_MOST_PARTS + 1][ABBE_EXIT_MOST_PARTS][3]; /* XYZ of a watt of each of so many */
+  double least, most; /* index */
+};
 
 /* XYZ of wavelengths up to the place x of 0 to 1 among points by their chance. */
-static void colour_upto(const spread *s, double x, double xyz[3]) {
+static void colour_upto(const abbe_exit_colours *s, double x, double xyz[3]) {
   size_t low = 0, high = ABBE_LIGHT_EXITS_BINS - 1;
   while (low < high) {
     const size_t middle = (low + high + 1) / 2;
@@ -185,17 +201,17 @@ static void colour_upto(const spread *s, double x, double xyz[3]) {
 }
 
 /* By the place x of 0 to 1 among points. */
-static double index_at(const spread *s, double x) {
+static double index_at(const abbe_exit_colours *s, double x) {
   return s->place[(size_t)fmin(x * PLACES, PLACES - 1)];
 }
 
-static void make_places(spread *s) {
+static void make_places(abbe_exit_colours *s) {
   size_t bin = 0;
   for (size_t i = 0; i < PLACES; i++) {
     while (bin + 1 < ABBE_LIGHT_EXITS_BINS && s->upto[bin + 1] <= ((double)i + 0.5) / PLACES) bin++;
     s->place[i] = s->index[bin];
   }
-  for (size_t parts = 1; parts <= MOST_PARTS; parts *= 2) {
+  for (size_t parts = 1; parts <= ABBE_EXIT_MOST_PARTS; parts++) {
     double before[3] = {0}, after[3];
     for (size_t i = 0; i < parts; i++) {
       colour_upto(s, ((double)i + 1) / (double)parts, after);
@@ -204,39 +220,6 @@ static void make_places(spread *s) {
         before[k] = after[k];
       }
     }
-  }
-}
-
-/* The more parts the further its wavelengths go apart. */
-static size_t count_parts(const spread *s, const abbe_exit_ray *ray) {
-  static const double apart = 0.004; /* about rad */
-  const double all = s->range * abbe_vector_length(ray->way_by);
-  size_t parts = 1;
-  while (parts < MOST_PARTS && (double)parts * apart < all) parts *= 2;
-  return parts;
-}
-
-static void spread_ray(void *user, const abbe_exit_ray *ray, double flux, size_t bin) {
-  spread *s = user;
-  double xyz[3];
-  if (isnan(s->index[0])) {
-    for (int k = 0; k < 3; k++) xyz[k] = flux * s->own[bin][k];
-    s->take(s->user, ray, flux, xyz);
-    return;
-  }
-  const size_t parts = count_parts(s, ray);
-  const double within = (double)(s->turn++ * 2654435769u) * 0x1p-32;
-  for (size_t i = 0; i < parts; i++) {
-    abbe_exit_ray out = *ray;
-    const double step =
-        index_at(s, ((double)i + (parts > 1 ? within : 0.5)) / (double)parts) - s->index[bin];
-    for (int k = 0; k < 3; k++) {
-      xyz[k] = flux * s->part[parts][i][k];
-      out.place[k] += step * ray->place_by[k];
-      out.way[k] += step * ray->way_by[k];
-    }
-    abbe_vector_normalise(out.way);
-    s->take(s->user, &out, flux / (double)parts, xyz);
   }
 }
 
@@ -250,13 +233,16 @@ static bool find_index(const abbe_object *o, double lambda_nm, double *n) {
 }
 
 /* A point stands for its bin with the bin's chance. */
-static void make_spread(const abbe_caustic_volume *v, const abbe_exit_light_desc *d, spread *s) {
-  double chance[ABBE_LIGHT_EXITS_BINS], least = INFINITY, most = -INFINITY;
+static void fill_colours(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
+                         abbe_exit_colours *s) {
+  double chance[ABBE_LIGHT_EXITS_BINS];
   abbe_weights_range range;
   abbe_light_exits_chances(v->min_nm, v->max_nm, chance);
   abbe_weights_range_make_by(d->observer, &d->light->illuminant, d->min_nm, d->max_nm, &range);
   const double step = (v->max_nm - v->min_nm) / ABBE_LIGHT_EXITS_BINS;
-  bool known = true;
+  s->known = true;
+  s->least = INFINITY;
+  s->most = -INFINITY;
   for (size_t i = 0; i < ABBE_LIGHT_EXITS_BINS; i++) {
     const double from = v->min_nm + (double)i * step;
     double xyz[3];
@@ -266,37 +252,47 @@ static void make_spread(const abbe_caustic_volume *v, const abbe_exit_light_desc
       s->own[i][k] = xyz[k] / chance[i];
       s->sum[i + 1][k] = s->sum[i][k] + xyz[k];
     }
-    known = known && find_index(d->object, from + 0.5 * step, &s->index[i]);
-    if (!known) continue;
-    least = fmin(least, s->index[i]);
-    most = fmax(most, s->index[i]);
+    s->known = s->known && find_index(d->object, from + 0.5 * step, &s->index[i]);
+    if (!s->known) continue;
+    s->least = fmin(s->least, s->index[i]);
+    s->most = fmax(s->most, s->index[i]);
   }
-  s->range = known ? most - least : 0;
-  if (!known) s->index[0] = NAN;
-  if (known) make_places(s);
+  if (s->known) make_places(s);
 }
 
-abbe_result abbe_exit_light_part(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
-                                 size_t part, size_t parts, abbe_exit_light_take_colour take,
-                                 void *user, abbe_error *error) {
-  ABBE_REQUIRE(v && d && d->light && d->object && d->place && take, error);
-  if (part >= parts)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "part %zu of %zu", part, parts);
-  spread *s = calloc(1, sizeof *s);
-  if (s == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
-  s->take = take;
-  s->user = user;
-  s->turn = (uint32_t)part << 24;
-  make_spread(v, d, s);
-  const abbe_result result = send_part(v, d, part, parts, spread_ray, s, error);
-  free(s);
-  return result;
+abbe_result abbe_exit_colours_make(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
+                                   abbe_exit_colours **out, abbe_error *error) {
+  ABBE_REQUIRE(v && d && d->light && d->object && out, error);
+  *out = calloc(1, sizeof **out);
+  if (*out == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
+  fill_colours(v, d, *out);
+  return ABBE_OK;
 }
 
-abbe_result abbe_exit_light_colours(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
-                                    abbe_exit_light_take_colour take, void *user,
-                                    abbe_error *error) {
-  return abbe_exit_light_part(v, d, 0, 1, take, user, error);
+void abbe_exit_colours_free(abbe_exit_colours *colours) {
+  free(colours);
+}
+
+void abbe_exit_colours_ends(const abbe_exit_colours *c, size_t bin, double end[2]) {
+  end[0] = c->known ? c->least - c->index[bin] : 0;
+  end[1] = c->known ? c->most - c->index[bin] : 0;
+}
+
+size_t abbe_exit_colours_split(const abbe_exit_colours *c, size_t bin, size_t parts, uint32_t turn,
+                               abbe_exit_part out[ABBE_EXIT_MOST_PARTS]) {
+  if (!c->known) {
+    out[0].step = 0;
+    memcpy(out[0].xyz, c->own[bin], sizeof out[0].xyz);
+    return 1;
+  }
+  if (parts < 1) parts = 1;
+  if (parts > ABBE_EXIT_MOST_PARTS) parts = ABBE_EXIT_MOST_PARTS;
+  const double within = parts > 1 ? (double)(turn * 2654435769u) * 0x1p-32 : 0.5;
+  for (size_t i = 0; i < parts; i++) {
+    out[i].step = index_at(c, ((double)i + within) / (double)parts) - c->index[bin];
+    memcpy(out[i].xyz, c->part[parts][i], sizeof out[i].xyz);
+  }
+  return parts;
 }
 
 /* ---- into cells ---- */
@@ -306,11 +302,11 @@ typedef struct deposit {
   abbe_region_piece *piece;
   double *weight; /* [cells] 1 / m3 of free space */
   float *value;
+  abbe_exit_colours *colours;
+  uint32_t turn; /* of rays, for the places within parts */
 } deposit;
 
-static void add_ray(void *user, const abbe_exit_ray *ray, double flux, const double xyz[3]) {
-  const deposit *d = user;
-  (void)flux;
+static void add_part(const deposit *d, const abbe_exit_ray *ray, const double xyz[3]) {
   const size_t count = abbe_volume_region_walk(d->region, ray->place, ray->way, INFINITY, d->piece);
   float f[9];
   for (size_t c = 0; c < 9; c++) f[c] = (float)(xyz[c / 3] * ray->way[c % 3]);
@@ -318,6 +314,28 @@ static void add_ray(void *user, const abbe_exit_ray *ray, double flux, const dou
     const float share = (float)(d->piece[i].length * d->weight[d->piece[i].cell]);
     float *to = d->value + 9 * d->piece[i].cell;
     for (size_t c = 0; c < 9; c++) to[c] += share * f[c];
+  }
+}
+
+/* The more parts the further its wavelengths go apart. */
+static void add_ray(void *user, const abbe_exit_ray *ray, double flux, size_t bin) {
+  static const double apart = 0.004; /* about rad */
+  deposit *d = user;
+  abbe_exit_part part[ABBE_EXIT_MOST_PARTS];
+  double end[2], xyz[3];
+  abbe_exit_colours_ends(d->colours, bin, end);
+  const double all = (end[1] - end[0]) * abbe_vector_length(ray->way_by);
+  const size_t parts = abbe_exit_colours_split(
+      d->colours, bin, (size_t)fmin(ceil(all / apart), ABBE_EXIT_MOST_PARTS), d->turn++, part);
+  for (size_t i = 0; i < parts; i++) {
+    abbe_exit_ray out = *ray;
+    for (int k = 0; k < 3; k++) {
+      xyz[k] = flux * part[i].xyz[k];
+      out.place[k] += part[i].step * ray->place_by[k];
+      out.way[k] += part[i].step * ray->way_by[k];
+    }
+    abbe_vector_normalise(out.way);
+    add_part(d, &out, xyz);
   }
 }
 
@@ -340,8 +358,10 @@ abbe_result abbe_exit_light_fill(const abbe_caustic_volume *v, const abbe_exit_l
           space < least_space ? 0 : 1 / (space * abbe_volume_region_volume(&v->region, i));
     }
     memset(value, 0, 9 * cells * sizeof *value);
-    result = abbe_exit_light_colours(v, desc, add_ray, &d, error);
+    result = abbe_exit_colours_make(v, desc, &d.colours, error);
   }
+  if (result == ABBE_OK) result = abbe_exit_light_rays(v, desc, add_ray, &d, error);
+  abbe_exit_colours_free(d.colours);
   free(d.piece);
   free(d.weight);
   return result;

@@ -35,20 +35,31 @@ typedef void (*abbe_exit_light_take)(void *user, const abbe_exit_ray *ray, doubl
 abbe_result abbe_exit_light_rays(const abbe_caustic_volume *volume,
                                  const abbe_exit_light_desc *desc, abbe_exit_light_take take,
                                  void *user, abbe_error *error);
-
-/* The same with all wavelengths of the light: those of a clear object's ray go on as parts of it,
- * the more the further apart they go. xyz: of a part, W times the colour of a watt of the light,
- * whose white has Y = 1. */
-typedef void (*abbe_exit_light_take_colour)(void *user, const abbe_exit_ray *ray, double flux,
-                                            const double xyz[3]);
-abbe_result abbe_exit_light_colours(const abbe_caustic_volume *volume,
-                                    const abbe_exit_light_desc *desc,
-                                    abbe_exit_light_take_colour take, void *user,
-                                    abbe_error *error);
-/* Those of the part-th of so many parts of the points, for threads side by side. */
+/* Those of the part-th of so many parts of the points, each spread over the whole object. */
 abbe_result abbe_exit_light_part(const abbe_caustic_volume *volume,
                                  const abbe_exit_light_desc *desc, size_t part, size_t parts,
-                                 abbe_exit_light_take_colour take, void *user, abbe_error *error);
+                                 abbe_exit_light_take take, void *user, abbe_error *error);
+
+/* The colours of these rays. Those of a clear object stand for all wavelengths of the light, which
+ * go on as parts of it; others have the wavelength of their bin alone. */
+typedef struct abbe_exit_colours abbe_exit_colours;
+abbe_result abbe_exit_colours_make(const abbe_caustic_volume *volume,
+                                   const abbe_exit_light_desc *desc, abbe_exit_colours **out,
+                                   abbe_error *error);
+void abbe_exit_colours_free(abbe_exit_colours *colours);
+
+/* How far the object's least and greatest index are from that of a bin; 0 for wavelengths alone. */
+void abbe_exit_colours_ends(const abbe_exit_colours *colours, size_t bin, double end[2]);
+
+#define ABBE_EXIT_MOST_PARTS 16
+typedef struct abbe_exit_part {
+  double step;   /* of the index, from that of the ray's bin */
+  double xyz[3]; /* of a watt of the ray, of light whose white has Y = 1 */
+} abbe_exit_part;
+/* A ray as so many parts of like chance, 1 to ABBE_EXIT_MOST_PARTS; returns how many: 1 for a
+ * wavelength alone. turn: the ray's number, by which it has other wavelengths of each part. */
+size_t abbe_exit_colours_split(const abbe_exit_colours *colours, size_t bin, size_t parts,
+                               uint32_t turn, abbe_exit_part out[ABBE_EXIT_MOST_PARTS]);
 
 #ifdef __cplusplus
 }

@@ -33,6 +33,10 @@ abbe_result abbe_exit_pages_make(const abbe_caustic_volume *volume,
                                  abbe_error *error);
 void abbe_exit_pages_free(abbe_exit_pages *pages);
 
+/* A map of half as many texels a side, each the mean of 2 x 2; side is even, and `to` may not be
+ * `from`. */
+void abbe_exit_pages_halve(const float (*from)[4], size_t side, float (*to)[4]);
+
 /* XYZ at a place of a page, u and v of 0 to 1, between its texels, as the renderer has it. */
 void abbe_exit_pages_at(const abbe_exit_pages *pages, size_t page, double u, double v,
                         double xyz[3]);

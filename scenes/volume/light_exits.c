@@ -117,12 +117,21 @@ void abbe_light_exits_axes(const double node[3], double x[3], double y[3]) {
 
 void abbe_light_exits_aim(const abbe_light_nodes *nodes, const double to_light[3],
                           abbe_exit_aim *out) {
+  double along[3] = {0}, axis[2][3];
   abbe_light_nodes_blend(nodes, to_light, &out->blend);
-  for (int k = 0; k < 3; k++) {
-    out->along[k] = 0;
+  for (int k = 0; k < 3; k++)
     for (size_t i = 0; i < out->blend.count; i++)
-      out->along[k] += out->blend.weight[i] * nodes->direction[out->blend.node[i]][k];
+      along[k] += out->blend.weight[i] * nodes->direction[out->blend.node[i]][k];
+  for (size_t i = 0; i < out->blend.count; i++) {
+    abbe_light_exits_axes(nodes->direction[out->blend.node[i]], axis[0], axis[1]);
+    for (int a = 0; a < 2; a++) out->far[i][a] = abbe_vector_dot(axis[a], along);
   }
+}
+
+bool abbe_light_exits_faces(const abbe_light_exits *e, size_t point, const double to_light[3]) {
+  double n[3];
+  unpack(&e->point[point][ABBE_EXIT_NORMAL], 1, n);
+  return abbe_vector_dot(n, to_light) > 0;
 }
 
 void abbe_light_exits_point(const abbe_light_exits *e, size_t point, double place[3],
@@ -144,27 +153,23 @@ typedef struct candidate {
   unsigned facets;
 } candidate;
 
-static void read_candidate(const abbe_light_exits *e, const double node[3],
-                           const abbe_exit_aim *aim, const uint16_t *half, candidate *c) {
-  double axis[2][3];
-  abbe_light_exits_axes(node, axis[0], axis[1]);
+/* far: of the aim, along the node's axes. */
+static void read_candidate(const abbe_light_exits *e, const double far[2], const uint16_t *half,
+                           candidate *c) {
+  double step[2][3], turn[2][3];
   unpack(half + ABBE_EXIT_PLACE, e->radius, c->place);
   unpack(half + ABBE_EXIT_WAY, 1, c->way);
   unpack(half + ABBE_EXIT_PLACE_BY_INDEX, e->radius, c->place_by);
   unpack(half + ABBE_EXIT_WAY_BY_INDEX, 1, c->way_by);
   c->carried = abbe_half_value(half[ABBE_EXIT_CARRIED]);
   c->facets = (unsigned)fmax(abbe_half_value(half[ABBE_EXIT_FACETS]), 0);
-  memset(c->step, 0, sizeof c->step);
-  memset(c->turn, 0, sizeof c->turn);
   for (int a = 0; a < 2; a++) {
-    double step[3], turn[3];
-    const double far = abbe_vector_dot(axis[a], aim->along);
-    unpack(half + ABBE_EXIT_PLACE_BY + 3 * a, e->radius * far, step);
-    unpack(half + ABBE_EXIT_WAY_BY + 3 * a, far, turn);
-    for (int k = 0; k < 3; k++) {
-      c->step[k] += step[k];
-      c->turn[k] += turn[k];
-    }
+    unpack(half + ABBE_EXIT_PLACE_BY + 3 * a, e->radius * far[a], step[a]);
+    unpack(half + ABBE_EXIT_WAY_BY + 3 * a, far[a], turn[a]);
+  }
+  for (int k = 0; k < 3; k++) {
+    c->step[k] = step[0][k] + step[1][k];
+    c->turn[k] = turn[0][k] + turn[1][k];
   }
 }
 
@@ -237,7 +242,7 @@ static size_t go_alone(const candidate *c, size_t count, const double (*plane)[4
   return used;
 }
 
-size_t abbe_light_exits_at(const abbe_light_exits *e, const abbe_light_nodes *nodes,
+size_t abbe_light_exits_at(const abbe_light_exits *e,
                            const abbe_exit_aim *aim, size_t point, const double (*plane)[4],
                            size_t planes, abbe_exit_ray ray[3]) {
   candidate c[3];
@@ -249,7 +254,7 @@ size_t abbe_light_exits_at(const abbe_light_exits *e, const abbe_light_nodes *no
     asked++;
     const uint32_t at = e->at[node * e->points + point];
     if (at == 0) continue; /* what faces away says nothing about light that comes from the front */
-    read_candidate(e, nodes->direction[node], aim, e->exit[at - 1], &c[count]);
+    read_candidate(e, aim->far[i], e->exit[at - 1], &c[count]);
     c[count].weight = aim->blend.weight[i];
     sum += c[count++].weight;
   }

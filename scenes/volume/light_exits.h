@@ -80,13 +80,17 @@ void abbe_light_exits_chances(double min_nm, double max_nm, double chance[ABBE_L
 /* Two unit vectors across a node's direction; with it right-handed. */
 void abbe_light_exits_axes(const double node[3], double x[3], double y[3]);
 
-/* A light's direction between its nodes: their weights, and the sum of the nodes by them. */
+/* A light's direction between its nodes: their weights, and how far from each node the sum of the
+ * nodes by them is along the node's axes. */
 typedef struct abbe_exit_aim {
   abbe_node_blend blend;
-  double along[3];
+  double far[3][2];
 } abbe_exit_aim;
 void abbe_light_exits_aim(const abbe_light_nodes *nodes, const double to_light[3],
                           abbe_exit_aim *out);
+
+/* Whether a point's face may be turned to a light in that direction. */
+bool abbe_light_exits_faces(const abbe_light_exits *exits, size_t point, const double to_light[3]);
 
 typedef struct abbe_exit_ray {
   double place[3], way[3];       /* m from the object's centre; unit */
@@ -102,8 +106,7 @@ void abbe_light_exits_point(const abbe_light_exits *exits, size_t point, double 
 /* The rays of light that comes in at a point: at most three, of shares that sum to at most 1.
  * plane[planes] (n, d: n . x <= d): of a convex object, whose rays leave it on its surface; a ray
  * that does not is left out while there is another. Returns how many. */
-size_t abbe_light_exits_at(const abbe_light_exits *exits, const abbe_light_nodes *nodes,
-                           const abbe_exit_aim *aim, size_t point, const double (*plane)[4],
+size_t abbe_light_exits_at(const abbe_light_exits *exits, const abbe_exit_aim *aim, size_t point, const double (*plane)[4],
                            size_t planes, abbe_exit_ray ray[3]);
 
 #ifdef __cplusplus

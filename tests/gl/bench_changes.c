@@ -4,12 +4,15 @@
 #include "scenes/geometry/transform.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/object_motion.h"
+#include "scenes/volume/volume_file.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
-enum { MAX_REPEATS = 5 };
+enum { MAX_REPEATS = 5, SUN_FRAMES = 13 };
 
 typedef struct bench {
   abbe_context *context;
@@ -124,6 +127,59 @@ static void time_cancel(bench *b, double *between_ms, double *after_ms) {
   }
 }
 
+static double median(double *ms, size_t count) {
+  qsort(ms, count, sizeof *ms, ascending);
+  return ms[count / 2];
+}
+
+/* Frames of a sun that goes from where it stands to another direction, by a volume: the change and
+ * its frame, and the change alone, by the clock; and what processors spend on them. */
+static void time_sun(bench *b, const char *name, const double to[3]) {
+  double ms[SUN_FRAMES], change_ms[SUN_FRAMES], processor_ms[SUN_FRAMES],
+      processor_change_ms[SUN_FRAMES], from[3];
+  abbe_error error;
+  memcpy(from, b->scene.light[0].direction, sizeof from);
+  for (int k = -2; k < SUN_FRAMES; k++) { /* the first two compile what is new */
+    const double part = (double)(k + 2) / (SUN_FRAMES + 1);
+    double *d = b->scene.light[0].direction, square = 0;
+    for (int i = 0; i < 3; i++) d[i] = from[i] + part * (to[i] - from[i]);
+    for (int i = 0; i < 3; i++) square += d[i] * d[i];
+    for (int i = 0; i < 3; i++) d[i] /= sqrt(square);
+    const double start = now_ms(), spent = (double)clock();
+    must(abbe_renderer_change(b->renderer, &b->scene, &b->desc, &error), &error);
+    const double changed = now_ms(), spent_there = (double)clock();
+    must(abbe_renderer_frame(b->renderer, NULL, NULL, NULL, &error), &error);
+    if (k < 0) continue;
+    ms[k] = now_ms() - start;
+    change_ms[k] = changed - start;
+    processor_ms[k] = 1e3 * ((double)clock() - spent) / CLOCKS_PER_SEC;
+    processor_change_ms[k] = 1e3 * (spent_there - spent) / CLOCKS_PER_SEC;
+  }
+  printf("| %s | %.1f | %.1f | %.1f | %.1f |\n", name, median(ms, SUN_FRAMES),
+         median(change_ms, SUN_FRAMES), median(processor_ms, SUN_FRAMES),
+         median(processor_change_ms, SUN_FRAMES));
+}
+
+/* Of a scene of one sun, by a volume. */
+static int bench_sun(bench *b, char **argument) {
+  static const double to[3] = {-0.25, 0.4, -1};
+  abbe_caustic_volume volume;
+  abbe_error error;
+  must(abbe_volume_file_read(argument[0], &volume, &error), &error);
+  must(abbe_context_make(ABBE_CONTEXT_OSMESA, &b->context, &error), &error);
+  must(abbe_scene_load(argument[2], NULL, &b->scene, &error), &error);
+  b->desc.width = b->desc.height = (size_t)strtoul(argument[1], NULL, 10);
+  b->desc.volume = &volume;
+  must(abbe_renderer_make(b->context, &b->scene, &b->desc, &b->renderer, &error), &error);
+  must(abbe_renderer_frame(b->renderer, NULL, NULL, NULL, &error), &error);
+  time_sun(b, argument[3], to);
+  abbe_renderer_free(b->renderer);
+  abbe_scene_free(&b->scene);
+  abbe_context_free(b->context);
+  abbe_caustic_volume_free(&volume);
+  return 0;
+}
+
 int main(int argc, char **argv) {
   static const struct {
     const char *name;
@@ -135,6 +191,7 @@ int main(int argc, char **argv) {
                  {"material", change_material}};
   bench b = {.repeats = MAX_REPEATS};
   abbe_error error;
+  if (argc == 6 && strcmp(argv[1], "--sun") == 0) return bench_sun(&b, argv + 2);
   if (argc > 1 && strcmp(argv[1], "--quick") == 0) { /* few photons, once: to see that it works */
     b.repeats = 1;
     b.desc.photons = 16;
@@ -142,7 +199,8 @@ int main(int argc, char **argv) {
     argc--, argv++;
   }
   if (argc < 3) {
-    fprintf(stderr, "Usage: bench_changes [--quick] SIZE SCENE…\n");
+    fprintf(stderr, "Usage: bench_changes [--quick] SIZE SCENE…\n"
+                    "       bench_changes --sun VOLUME SIZE SCENE.yaml NAME\n");
     return 2;
   }
   must(abbe_context_make(ABBE_CONTEXT_OSMESA, &b.context, &error), &error);

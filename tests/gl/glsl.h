@@ -60,8 +60,8 @@ static inline void glsl_hierarchy(const abbe_gl *gl, const abbe_bvh *h,
 static inline GLuint glsl_make(const abbe_gl *gl, const char *text) {
   static const char harness[] =
       "layout(local_size_x = 64) in;\n"
-      "layout(std430, binding = 30) readonly buffer HarnessIn { vec4 harness_in[]; };\n"
-      "layout(std430, binding = 31) writeonly buffer HarnessOut { vec4 harness_out[]; };\n"
+      "layout(std430, binding = 38) readonly buffer HarnessIn { vec4 harness_in[]; };\n"
+      "layout(std430, binding = 39) writeonly buffer HarnessOut { vec4 harness_out[]; };\n"
       "uniform uint harness_count;\n"
       "void main() {\n"
       "  uint i = gl_GlobalInvocationID.x;\n"
@@ -81,8 +81,8 @@ static inline GLuint glsl_make(const abbe_gl *gl, const char *text) {
 /* Runs the program in use over count inputs. */
 static inline void glsl_run(const abbe_gl *gl, GLuint program, const float (*in)[8], size_t count,
                             float (*out)[4]) {
-  GLuint inputs = glsl_buffer(gl, 30, count * sizeof *in, in);
-  GLuint outputs = glsl_buffer(gl, 31, count * sizeof *out, NULL);
+  GLuint inputs = glsl_buffer(gl, 38, count * sizeof *in, in);
+  GLuint outputs = glsl_buffer(gl, 39, count * sizeof *out, NULL);
   gl->Uniform1ui(gl->GetUniformLocation(program, "harness_count"), (GLuint)count);
   gl->DispatchCompute((GLuint)((count + 63) / 64), 1, 1);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

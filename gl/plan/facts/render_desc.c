@@ -139,6 +139,9 @@ static void fill_in_defaults(size_t width, size_t height, abbe_render_desc *d) {
   const bool volume = d->volume != NULL || abbe_profile_is_wyman2003(d->profile);
   if (d->transport == ABBE_TRANSPORT_AUTO)
     d->transport = volume ? ABBE_TRANSPORT_VOLUME : ABBE_TRANSPORT_PHOTONS;
+  if (d->receiver_samples == 0)
+    d->receiver_samples =
+        d->transport == ABBE_TRANSPORT_VOLUME && d->adaptive > 1 ? 1 : d->supersample;
   if (d->lookup == ABBE_VOLUME_LOOKUP_AUTO && abbe_profile_is_wyman2003(d->profile))
     d->lookup = ABBE_VOLUME_LOOKUP_TURN;
 }
@@ -358,6 +361,11 @@ static abbe_result check_choices(const abbe_render_desc *d, abbe_error *error) {
                           "a sample for %zu x %zu pixels and %zu samples a pixel side: ask for one "
                           "of the two",
                           d->upsample, d->upsample, d->supersample);
+  if (d->receiver_samples != 1 && d->receiver_samples != d->supersample)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%zu samples of receivers a pixel side and %zu of refractors; receivers may "
+                          "have 1, or as many",
+                          d->receiver_samples, d->supersample);
   if (d->adaptive > 1 && published)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the %s profile knows no adaptive samples; it cannot take %zu a side",

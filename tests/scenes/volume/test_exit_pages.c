@@ -87,7 +87,7 @@ static const double floor_below[9] = {-1, -1, 0, 2, 0, 0, 0, 2, 0};
 static void check_beam(bool mirror) {
   bench b;
   abbe_exit_pages pages;
-  make_bench(60, &b);
+  make_bench(120, &b);
   b.scene.object[1].mirror = mirror;
   abbe_light *sun = &b.scene.light[0];
   const double *d = sun->direction;

@@ -89,7 +89,7 @@ static double largest_error(size_t count, bool apart) {
     abbe_exit_ray ray[3];
     random_light(&seed, 0.6, to_light);
     abbe_light_exits_aim(&nodes, to_light, &aim);
-    const size_t rays = abbe_light_exits_at(&exits, &nodes, &aim, 0, NULL, 0, ray);
+    const size_t rays = abbe_light_exits_at(&exits, &aim, 0, NULL, 0, ray);
     assert_int_equal(rays, apart ? 3 : 1);
     law(to_light, place, way);
     for (size_t k = 0; k < rays; k++) {
@@ -129,7 +129,7 @@ static void test_a_node_is_what_is_stored(void **state) {
     abbe_exit_ray ray[3];
     double place[3], way[3];
     abbe_light_exits_aim(&nodes, nodes.direction[i], &aim);
-    const size_t rays = abbe_light_exits_at(&exits, &nodes, &aim, 0, NULL, 0, ray);
+    const size_t rays = abbe_light_exits_at(&exits, &aim, 0, NULL, 0, ray);
     assert_int_equal(rays, exits.at[i] != 0);
     if (rays == 0) continue;
     law(nodes.direction[i], place, way);
@@ -156,12 +156,12 @@ static void test_rays_leave_a_body_on_its_surface(void **state) {
     abbe_exit_ray all[3], ray[3];
     random_light(&seed, 0.6, to_light);
     abbe_light_exits_aim(&nodes, to_light, &aim);
-    assert_int_equal(abbe_light_exits_at(&exits, &nodes, &aim, 0, NULL, 0, all), 3);
+    assert_int_equal(abbe_light_exits_at(&exits, &aim, 0, NULL, 0, all), 3);
     /* a plane between the first and the others, where there is one */
     const double least = fmin(all[1].place[0], all[2].place[0]);
     const double plane[1][4] = {{n[0], n[1], n[2], 0.5 * (least + all[0].place[0])}};
     const size_t rays =
-        abbe_light_exits_at(&exits, &nodes, &aim, 0, (const double(*)[4])plane, 1, ray);
+        abbe_light_exits_at(&exits, &aim, 0, (const double(*)[4])plane, 1, ray);
     for (size_t k = 0; k < rays; k++) sum += ray[k].share;
     assert_near(sum, 0.75, 1e-6);
     for (size_t k = 0; k < rays && rays < 3; k++)

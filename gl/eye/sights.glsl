@@ -1,0 +1,47 @@
+// What the camera's rays through refractors show of receivers, as places on parallelograms and weights: it
+// stays as it is while the camera, the refractors and the receivers do, whatever lights do. Those of a
+// thread are a chain.
+
+const uint SIGHT = 6u;  // words: u, v; weight of X, Y and Z; and the chain's next one + 1, with the sheet above it
+const uint SIGHT_NEXT = 0xffffffu;
+// Of a pixel: XYZ of what is no receiver, and its distance; XYZ of the share that is mirrored at the front, and
+// the chain of what that shows; a chain of each thread.
+const uint SIGHT_WORDS = 8u + uint(PIXEL_THREADS);
+
+layout(std430, binding = BINDING_SIGHTS) SIGHTS_ACCESS buffer Sights {
+  uint sight_count, sight_groups[3];
+  uint sights[];
+};
+layout(std430, binding = BINDING_SIGHT_PIXELS) SIGHTS_ACCESS buffer SightPixels { uint sight_pixels[]; };
+
+#ifdef KEEPS_SIGHTS
+uniform uint sight_room;
+
+uint sight_chain;    // the last of this thread + 1
+float sight_tail;    // what a path has left shows what the rest of it has shown: so many times that
+bool sight_waits;    // seen() has found a receiver: there
+int waiting_sheet;
+vec2 waiting_uv;
+
+void note_sight(float share) {
+  uint i = atomicAdd(sight_count, 1u);
+  if (i >= sight_room) return;
+  uint word = SIGHT * i;
+  sights[word] = floatBitsToUint(waiting_uv.x);
+  sights[word + 1u] = floatBitsToUint(waiting_uv.y);
+  sights[word + 2u] = sights[word + 3u] = sights[word + 4u] = floatBitsToUint(share);
+  sights[word + 5u] = sight_chain | uint(waiting_sheet) << 24;
+  sight_chain = i + 1u;
+}
+
+// Those that were noted after `from`.
+void weigh_sights(uint from, vec3 weight) {
+  uint i = sight_chain;
+  while (i != from) {
+    uint word = SIGHT * (i - 1u);
+    for (int k = 0; k < 3; k++)
+      sights[word + 2u + uint(k)] = floatBitsToUint(uintBitsToFloat(sights[word + 2u + uint(k)]) * weight[k]);
+    i = sights[word + 5u] & SIGHT_NEXT;
+  }
+}
+#endif
