@@ -27,7 +27,8 @@ typedef enum abbe_renderer_part {
 
 typedef struct abbe_renderer_inputs {
   uint64_t part[ABBE_PART_COUNT];
-  uint64_t sights; /* where the camera's rays through refractors go: all of the eye but the lights */
+  uint64_t
+      sights; /* where the camera's rays through refractors go: all of the eye but the lights */
 } abbe_renderer_inputs;
 
 void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,

@@ -50,10 +50,10 @@ void abbe_lib_scene_set_progress(abbe_lib_scene *scene, abbe_lib_progress progre
 
 /* The picture by OpenGL. Settings, each of which may be left out: width, height (pixels),
  * wavelengths, min_nm, max_nm, photons (a side), map_size (a side), supersample, upsample,
- * adaptive, receiver_samples, environment_lights, light_points, exits, energy_share, profile (default, thesis,
- * thesis-cie, shah2007, shah2007-cie, wyman2006, wyman2006-cie, wand2003), fill (auto, none,
- * bridge, smear), model (auto, sphere, convex, layers, hierarchy), transport (auto, photons,
- * pinhole), of pinholes also pinholes (a number), strategy (auto, random, grid, quantized,
+ * adaptive, receiver_samples, environment_lights, light_points, exits, energy_share, profile
+ * (default, thesis, thesis-cie, shah2007, shah2007-cie, wyman2006, wyman2006-cie, wand2003), fill
+ * (auto, none, bridge, smear), model (auto, sphere, convex, layers, hierarchy), transport (auto,
+ * photons, pinhole), of pinholes also pinholes (a number), strategy (auto, random, grid, quantized,
  * neighbour) and footprint (auto, off, on), space (acescg, rec709, xyz), observer (1931, 1964,
  * 2015-2, 2015-10), aovs (1: direct.*, caustic.* and Z too), gl (osmesa, egl: of the first
  * picture). docs/rendering.md says what they do. ABBE_INVALID_ARGUMENT, ABBE_UNSUPPORTED, ABBE_GL,

@@ -13,8 +13,8 @@
 typedef struct abbe_picture {
   const abbe_receivers_pass *receivers;
   const abbe_refraction_pass *refraction;
-  GLuint program, pixels; /* pixels 0: receivers have a sample a pixel, and their colour is the picture; program 0: as it
-                              is */
+  GLuint program, pixels; /* pixels 0: receivers have a sample a pixel, and their colour is the
+                             picture; program 0: as it is */
   GLuint view;            /* of that colour as a 2D texture, once it was asked for */
 } abbe_picture;
 

@@ -24,7 +24,8 @@ static size_t views_of_light(const abbe_receivers_pass *pass, size_t light, abbe
 /* Around what the view holds of the object. */
 static bool bound_object(const abbe_receivers_pass *pass, const abbe_view *view,
                          const abbe_exact *exact, int out[4]) {
-  const size_t w = pass->lighting->camera->receiver_samples[0], h = pass->lighting->camera->receiver_samples[1];
+  const size_t w = pass->lighting->camera->receiver_samples[0],
+               h = pass->lighting->camera->receiver_samples[1];
   bool any = false;
   for (size_t i = 0; i < exact->count; i++) {
     int part[4];
@@ -116,7 +117,8 @@ static void draw_rows(abbe_receivers_pass *pass, int bottom, int top) {
   const abbe_gpu_scene *scene = pass->lighting->scene;
   const GLuint whole = pass->unlit != 0 ? pass->unlit : pass->lit;
   abbe_lighting_use(pass->lighting, whole);
-  scene->gpu->gl->Scissor(0, bottom, (GLsizei)pass->lighting->camera->receiver_samples[0], top - bottom);
+  scene->gpu->gl->Scissor(0, bottom, (GLsizei)pass->lighting->camera->receiver_samples[0],
+                          top - bottom);
   for (size_t i = 0; i < scene->plan->receiver_count; i++) draw_receiver(pass, whole, i);
   if (pass->unlit != 0) draw_lit_parts(pass, bottom, top);
 }
@@ -125,7 +127,8 @@ static void draw_rows(abbe_receivers_pass *pass, int bottom, int top) {
 static void draw_receivers(abbe_receivers_pass *pass) {
   enum { BAND_SAMPLES = 1 << 16, TILE = 64 };
   abbe_gpu *gpu = pass->lighting->scene->gpu;
-  const size_t w = pass->lighting->camera->receiver_samples[0], h = pass->lighting->camera->receiver_samples[1];
+  const size_t w = pass->lighting->camera->receiver_samples[0],
+               h = pass->lighting->camera->receiver_samples[1];
   const size_t band = gpu->progress != NULL ? (BAND_SAMPLES / w / TILE + 1) * TILE : h;
   gpu->gl->Enable(GL_SCISSOR_TEST);
   for (size_t at = 0; at < h && abbe_gpu_ask(gpu); at += band) {
@@ -138,7 +141,8 @@ static void draw_receivers(abbe_receivers_pass *pass) {
 abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error) {
   const abbe_gpu_scene *scene = pass->lighting->scene;
   const abbe_gl *gl = scene->gpu->gl;
-  const size_t w = pass->lighting->camera->receiver_samples[0], h = pass->lighting->camera->receiver_samples[1];
+  const size_t w = pass->lighting->camera->receiver_samples[0],
+               h = pass->lighting->camera->receiver_samples[1];
   GLuint target[3] = {pass->colour, pass->direct, pass->caustic};
   static const int flat[3] = {0, -1, -1};
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
@@ -167,7 +171,8 @@ abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error
 static abbe_result make_targets(abbe_receivers_pass *pass, abbe_error *error) {
   const abbe_gpu_scene *scene = pass->lighting->scene;
   const abbe_render_desc *desc = &scene->plan->desc;
-  const size_t w = pass->lighting->camera->receiver_samples[0], h = pass->lighting->camera->receiver_samples[1];
+  const size_t w = pass->lighting->camera->receiver_samples[0],
+               h = pass->lighting->camera->receiver_samples[1];
   GLint most = 0;
   scene->gpu->gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
   if (w > (size_t)most || h > (size_t)most)

@@ -65,7 +65,8 @@ static abbe_result make_list(abbe_refraction_pass *pass, const abbe_shader_varia
   if (pixel_side(pass) == 1)
     return abbe_gpu_compute(gpu, "refraction_list.comp", NULL, &pass->list, error);
   snprintf(side, sizeof side, "#define PIXEL_SIDE %zu\n", pixel_side(pass));
-  return abbe_shader_variant_compute(variant, gpu, "refraction_list.comp", side, &pass->list, error);
+  return abbe_shader_variant_compute(variant, gpu, "refraction_list.comp", side, &pass->list,
+                                     error);
 }
 
 static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_variant *variant,
@@ -112,7 +113,8 @@ static abbe_result make_targets(abbe_refraction_pass *pass, abbe_error *error) {
     result =
         abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 4 * w * h, NULL, &pass->pixels, error);
   if (result == ABBE_OK && pixel_side(pass) > 1)
-    result = abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 4 * w * h, NULL, &pass->merged, error);
+    result =
+        abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 4 * w * h, NULL, &pass->merged, error);
   if (result == ABBE_OK && refines(pass))
     result = abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 8 * room, NULL, &pass->refined_pixels,
                                   error);
@@ -336,10 +338,11 @@ static abbe_result find_sights(abbe_refraction_pass *pass, abbe_error *error) {
     places = abbe_gpu_read_count(gpu, pass->sights);
     if (places <= pass->sight_room) break;
     if (places > MOST_SIGHTS)
-      return abbe_error_set(error, ABBE_UNSUPPORTED,
-                            "the camera's rays show receivers at %zu places, and a buffer holds %d: "
-                            "ask for fewer pixels, samples or exits, or --everything",
-                            places, MOST_SIGHTS);
+      return abbe_error_set(
+          error, ABBE_UNSUPPORTED,
+          "the camera's rays show receivers at %zu places, and a buffer holds %d: "
+          "ask for fewer pixels, samples or exits, or --everything",
+          places, MOST_SIGHTS);
   }
   pass->whole = true;
   return ABBE_OK;
@@ -377,9 +380,8 @@ abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_error *err
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const bool seen = scene_of(pass)->plan->camera_sees_refractor;
   abbe_gpu_start_lap(gpu);
-  abbe_result result = resolves(pass) && pixel_side(pass) == 1 && !pass->whole
-                           ? clear_colour(pass, error)
-                           : ABBE_OK;
+  abbe_result result =
+      resolves(pass) && pixel_side(pass) == 1 && !pass->whole ? clear_colour(pass, error) : ABBE_OK;
   if (result != ABBE_OK || !seen) return result;
   result = show_refractors(pass, error);
   abbe_gpu_book_lap(gpu, ABBE_PASS_EYE_REFRACTION);

@@ -39,14 +39,12 @@ typedef struct abbe_refraction_pass {
   bool whole; /* they are found, and so are the faces and lists */
 } abbe_refraction_pass;
 
-/* Of a plan whose camera sees no refractor it has only the picture that is resolved. What *kept holds
- * is taken over, and *kept becomes zero. */
-abbe_result abbe_refraction_pass_make(const abbe_lighting *lighting,
-                                      const abbe_refractor_faces *faces,
-                                      const abbe_receivers_pass *receivers,
-                                      const abbe_shader_variant *variant,
-                                      abbe_refraction_kept *kept, abbe_refraction_pass *out,
-                                      abbe_error *error);
+/* Of a plan whose camera sees no refractor it has only the picture that is resolved. What *kept
+ * holds is taken over, and *kept becomes zero. */
+abbe_result
+abbe_refraction_pass_make(const abbe_lighting *lighting, const abbe_refractor_faces *faces,
+                          const abbe_receivers_pass *receivers, const abbe_shader_variant *variant,
+                          abbe_refraction_kept *kept, abbe_refraction_pass *out, abbe_error *error);
 /* Leaves what can be kept to *out, which is zero; its owner drops it. */
 void abbe_refraction_pass_leave(abbe_refraction_pass *pass, abbe_refraction_kept *out);
 void abbe_refraction_kept_free(abbe_gpu *gpu, abbe_refraction_kept *kept);

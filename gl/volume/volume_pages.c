@@ -44,8 +44,8 @@ static void hand_over_page(const float (*value)[4], size_t side, size_t layer, f
     const float(*from)[4] = value;
     size_t texels = side;
     for (size_t k = 0; k < levels; k++, texels /= 2) {
-      gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, (GLint)k, 0, 0, (GLint)(layer + fine),
-                        (GLsizei)texels, (GLsizei)texels, 1, GL_RGBA, GL_FLOAT, from);
+      gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, (GLint)k, 0, 0, (GLint)(layer + fine), (GLsizei)texels,
+                        (GLsizei)texels, 1, GL_RGBA, GL_FLOAT, from);
       if (k + 1 == levels) break;
       abbe_exit_pages_halve(from, texels, level[k % 2]);
       from = (const float(*)[4])level[k % 2];

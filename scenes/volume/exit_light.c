@@ -124,8 +124,7 @@ static void send_image(const sight *s, const double map[9]) {
     if (!(flux > 0)) continue;
     if (!far) abbe_light_exits_aim(&s->volume->nodes, there, &aim);
     abbe_exit_ray ray[3];
-    const size_t count =
-        abbe_light_exits_at(e, &aim, i, s->plane, s->planes, ray);
+    const size_t count = abbe_light_exits_at(e, &aim, i, s->plane, s->planes, ray);
     for (size_t k = 0; k < count; k++) {
       abbe_exit_ray out = ray[k];
       turn(map, ray[k].place, out.place);
@@ -150,14 +149,7 @@ abbe_result abbe_exit_light_part(const abbe_caustic_volume *v, const abbe_exit_l
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the volume holds no exits");
   abbe_result result = find_planes(d, &plane, &planes, error);
   if (result != ABBE_OK) return result;
-  const sight s = {v,
-                   d,
-                   take,
-                   user,
-                   (const double(*)[4])plane,
-                   planes,
-                   part,
-                   parts};
+  const sight s = {v, d, take, user, (const double(*)[4])plane, planes, part, parts};
   for (size_t i = 0; i < e->symmetry.count; i++) send_image(&s, e->symmetry.map[i]);
   free(plane);
   return ABBE_OK;
@@ -181,7 +173,8 @@ struct abbe_exit_colours {
   double index[ABBE_LIGHT_EXITS_BINS];
   bool known;           /* the index, and it spreads them */
   double place[PLACES]; /* index by the place among points */
-  double part[ABBE_EXIT_MOST_PARTS + 1][ABBE_EXIT_MOST_PARTS][3]; /* XYZ of a watt of each of so many */
+  double part[ABBE_EXIT_MOST_PARTS + 1][ABBE_EXIT_MOST_PARTS]
+             [3];     /* XYZ of a watt of each of so many */
   double least, most; /* index */
 };
 

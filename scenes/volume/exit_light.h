@@ -16,8 +16,8 @@ typedef struct abbe_exit_light_desc {
   const abbe_light *light;        /* in the world, of any kind; with a size it is its centre */
   const abbe_object *object;      /* whose planes the rays leave, where it is convex */
   const abbe_volume_place *place; /* where it stands */
-  const double (*sheet)[9];       /* [sheets] parallelograms of the world, corner, U, V, that may hide
-                                     the light from the object; nothing else does */
+  const double (*sheet)[9]; /* [sheets] parallelograms of the world, corner, U, V, that may hide
+                               the light from the object; nothing else does */
   size_t sheets;
   abbe_observer observer;
   double min_nm, max_nm; /* the light's power is that over this range */

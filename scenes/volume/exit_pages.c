@@ -30,12 +30,13 @@ typedef struct catching {
   const abbe_exit_colours *colours;
   const sheet *sheet;
   size_t sheets;
-  uint32_t turn;           /* of rays */
+  uint32_t turn; /* of rays */
   const abbe_exit_pages *pages;
-  double (*flux)[2][BINS]; /* [pages] of Y, by place along each edge: while windows are looked for */
-  float (**value)[4];      /* [pages][2] maps as the pages have them, NULL: nothing has landed there */
-  double landed;           /* Y, W */
-  bool full;               /* no memory was left */
+  double (
+      *flux)[2][BINS]; /* [pages] of Y, by place along each edge: while windows are looked for */
+  float (**value)[4];  /* [pages][2] maps as the pages have them, NULL: nothing has landed there */
+  double landed;       /* Y, W */
+  bool full;           /* no memory was left */
 } catching;
 
 static void make_sheet(const double p[9], double spacing, sheet *out) {
@@ -95,7 +96,8 @@ static bool meet_at(const catching *c, const line *l, double step, bool *back, s
   return true;
 }
 
-/* As many as leave no gap between them: parts of one ray lie where those of its neighbours do not. */
+/* As many as leave no gap between them: parts of one ray lie where those of its neighbours do not.
+ */
 static size_t count_parts(const catching *c, const line *l, size_t bin) {
   double end[2], uv[2][2];
   size_t which[2];
@@ -106,8 +108,8 @@ static size_t count_parts(const catching *c, const line *l, size_t bin) {
     if (!meet_at(c, l, end[k], &back, &which[k], uv[k])) return ABBE_EXIT_MOST_PARTS;
   if (which[0] != which[1]) return ABBE_EXIT_MOST_PARTS;
   const float *wide = c->sheet[which[0]].wide;
-  const double apart = hypot((uv[1][0] - uv[0][0]) / (double)wide[0],
-                             (uv[1][1] - uv[0][1]) / (double)wide[1]);
+  const double apart =
+      hypot((uv[1][0] - uv[0][0]) / (double)wide[0], (uv[1][1] - uv[0][1]) / (double)wide[1]);
   return (size_t)fmin(ceil(apart / part_width), ABBE_EXIT_MOST_PARTS);
 }
 
@@ -332,8 +334,7 @@ abbe_result abbe_exit_pages_make(const abbe_caustic_volume *v, const abbe_exit_l
   abbe_exit_light_desc seen = *desc;
   seen.sheet = parallelogram;
   seen.sheets = parallelograms;
-  const double spacing =
-      sqrt(v->exits.area / (double)(v->exits.points * v->exits.symmetry.count));
+  const double spacing = sqrt(v->exits.area / (double)(v->exits.points * v->exits.symmetry.count));
   abbe_result result = ABBE_OK;
   if (sheets == NULL || out->window == NULL || out->value == NULL)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu pages", out->count);

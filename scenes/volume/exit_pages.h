@@ -25,8 +25,9 @@ typedef struct abbe_exit_pages {
   double flux;       /* of Y that landed on any, W */
 } abbe_exit_pages;
 
-/* parallelogram[parallelograms]: corner, U, V, in the world; the desc's sheets are not read. ABBE_INVALID_ARGUMENT for a side
- * beyond 1 to ABBE_EXIT_PAGES_MOST_SIDE and as abbe_exit_light_colours, ABBE_NO_MEMORY. */
+/* parallelogram[parallelograms]: corner, U, V, in the world; the desc's sheets are not read.
+ * ABBE_INVALID_ARGUMENT for a side beyond 1 to ABBE_EXIT_PAGES_MOST_SIDE and as
+ * abbe_exit_light_colours, ABBE_NO_MEMORY. */
 abbe_result abbe_exit_pages_make(const abbe_caustic_volume *volume,
                                  const abbe_exit_light_desc *desc, const double (*parallelogram)[9],
                                  size_t parallelograms, size_t side, abbe_exit_pages *out,

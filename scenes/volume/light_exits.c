@@ -242,9 +242,8 @@ static size_t go_alone(const candidate *c, size_t count, const double (*plane)[4
   return used;
 }
 
-size_t abbe_light_exits_at(const abbe_light_exits *e,
-                           const abbe_exit_aim *aim, size_t point, const double (*plane)[4],
-                           size_t planes, abbe_exit_ray ray[3]) {
+size_t abbe_light_exits_at(const abbe_light_exits *e, const abbe_exit_aim *aim, size_t point,
+                           const double (*plane)[4], size_t planes, abbe_exit_ray ray[3]) {
   candidate c[3];
   size_t count = 0, asked = 0;
   double sum = 0;

@@ -106,8 +106,8 @@ void abbe_light_exits_point(const abbe_light_exits *exits, size_t point, double 
 /* The rays of light that comes in at a point: at most three, of shares that sum to at most 1.
  * plane[planes] (n, d: n . x <= d): of a convex object, whose rays leave it on its surface; a ray
  * that does not is left out while there is another. Returns how many. */
-size_t abbe_light_exits_at(const abbe_light_exits *exits, const abbe_exit_aim *aim, size_t point, const double (*plane)[4],
-                           size_t planes, abbe_exit_ray ray[3]);
+size_t abbe_light_exits_at(const abbe_light_exits *exits, const abbe_exit_aim *aim, size_t point,
+                           const double (*plane)[4], size_t planes, abbe_exit_ray ray[3]);
 
 #ifdef __cplusplus
 }

@@ -362,10 +362,11 @@ static abbe_result check_choices(const abbe_render_desc *d, abbe_error *error) {
                           "of the two",
                           d->upsample, d->upsample, d->supersample);
   if (d->receiver_samples != 1 && d->receiver_samples != d->supersample)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "%zu samples of receivers a pixel side and %zu of refractors; receivers may "
-                          "have 1, or as many",
-                          d->receiver_samples, d->supersample);
+    return abbe_error_set(
+        error, ABBE_INVALID_ARGUMENT,
+        "%zu samples of receivers a pixel side and %zu of refractors; receivers may "
+        "have 1, or as many",
+        d->receiver_samples, d->supersample);
   if (d->adaptive > 1 && published)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the %s profile knows no adaptive samples; it cannot take %zu a side",

@@ -169,9 +169,9 @@ typedef struct abbe_render_desc {
   /* rays a side for a sample of a receiver where its light bends, 1 to 8; 1: the sample alone; 0: 4
    * (thesis: 1) */
   size_t adaptive;
-  /* samples of receivers a pixel side: as supersample, or 1 at a pixel's middle, refractors before it
-   * having all of theirs; 0: 1 in a volume with adaptive rays, whose frames follow one another, else as
-   * supersample */
+  /* samples of receivers a pixel side: as supersample, or 1 at a pixel's middle, refractors before
+   * it having all of theirs; 0: 1 in a volume with adaptive rays, whose frames follow one another,
+   * else as supersample */
   size_t receiver_samples;
   /* lights that stand for an environment on receivers and through refractors, 1 to 16; 0: 4 */
   size_t environment_lights;

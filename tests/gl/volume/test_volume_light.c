@@ -21,9 +21,9 @@ static const char wedge[] = CAMERA SUN FLOOR
     "- {name: wedge, shape: prism, apex: 50, side: 0.2, length: 0.2, material: crown, transform: "
     "[{translate: [0, 0, 0.2]}]}\n";
 
-static const char plate[] = CAMERA SUN FLOOR
-    "- {name: plate, shape: box, size: [0.2, 0.1, 0.2], mirror: 0.8, transform: [{rotate: {axis: [0, "
-    "0, 1], angle: 20}}, {translate: [0, 0, 0.2]}]}\n";
+static const char plate[] = CAMERA SUN FLOOR "- {name: plate, shape: box, size: [0.2, 0.1, 0.2], "
+                                             "mirror: 0.8, transform: [{rotate: {axis: [0, "
+                                             "0, 1], angle: 20}}, {translate: [0, 0, 0.2]}]}\n";
 
 static const abbe_region_desc regions[] = {
     {.kind = ABBE_REGION_GRID, .side = 16},

@@ -160,8 +160,7 @@ static void test_rays_leave_a_body_on_its_surface(void **state) {
     /* a plane between the first and the others, where there is one */
     const double least = fmin(all[1].place[0], all[2].place[0]);
     const double plane[1][4] = {{n[0], n[1], n[2], 0.5 * (least + all[0].place[0])}};
-    const size_t rays =
-        abbe_light_exits_at(&exits, &aim, 0, (const double(*)[4])plane, 1, ray);
+    const size_t rays = abbe_light_exits_at(&exits, &aim, 0, (const double(*)[4])plane, 1, ray);
     for (size_t k = 0; k < rays; k++) sum += ray[k].share;
     assert_near(sum, 0.75, 1e-6);
     for (size_t k = 0; k < rays && rays < 3; k++)
