@@ -21,10 +21,6 @@ static const char wedge[] = CAMERA SUN FLOOR
     "- {name: wedge, shape: prism, apex: 50, side: 0.2, length: 0.2, material: crown, transform: "
     "[{translate: [0, 0, 0.2]}]}\n";
 
-static const char plate[] = CAMERA SUN FLOOR "- {name: plate, shape: box, size: [0.2, 0.1, 0.2], "
-                                             "mirror: 0.8, transform: [{rotate: {axis: [0, "
-                                             "0, 1], angle: 20}}, {translate: [0, 0, 0.2]}]}\n";
-
 static const abbe_region_desc regions[] = {
     {.kind = ABBE_REGION_GRID, .side = 16},
     {.kind = ABBE_REGION_GEODESIC, .levels = 3, .shells = 8},
@@ -293,100 +289,6 @@ static void test_rays_serve_any_light(void **state) {
   abbe_scene_free(&scene);
 }
 
-/* A light that moves under a renderer draws what a renderer of its own draws there, bit by bit, and
- * where the camera's rays through the object go is kept. */
-static void check_kept_sights(const char *text, abbe_volume_kind kind) {
-  abbe_scene scene = {0};
-  abbe_caustic_volume v;
-  abbe_image changed = {0}, anew = {0}, map = {0};
-  abbe_error error = {0};
-  load_text(text, &scene);
-  make_volume(&scene, kind, 2, 42, &v);
-  abbe_render_desc desc = small_frame;
-  desc.volume = &v;
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
-  draw_frame(renderer);
-  static const double there[2][3] = {{0.6, 0, -0.8}, {0, 0.28, -0.96}};
-  for (int k = 0; k < 2; k++) {
-    memcpy(scene.light[0].direction, there[k], sizeof there[k]);
-    assert_ok(abbe_renderer_change(renderer, &scene, &desc, &error), &error);
-    const abbe_statistics statistics = draw_frame(renderer);
-    assert_true(statistics.kept[ABBE_PASS_EYE_FRONT]);
-    assert_true(abbe_statistics_ran(&statistics, ABBE_PASS_EYE_REFRACTION));
-  }
-  read_picture(renderer, false, &changed);
-  scene.camera.eye[0] += 0.1;
-  assert_ok(abbe_renderer_change(renderer, &scene, &desc, &error), &error);
-  const abbe_statistics statistics = draw_frame(renderer);
-  assert_false(statistics.kept[ABBE_PASS_EYE_FRONT]);
-  scene.camera.eye[0] -= 0.1;
-  abbe_renderer_free(renderer);
-  renderer = make_renderer(&scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, &anew);
-  assert_same_pixels(&changed, &anew);
-  assert_int_equal(abbe_renderer_read_map(renderer, 0, true, &map, &error), ABBE_UNSUPPORTED);
-  abbe_renderer_free(renderer);
-  abbe_image_free(&changed);
-  abbe_image_free(&anew);
-  abbe_caustic_volume_free(&v);
-  abbe_scene_free(&scene);
-}
-
-static void test_a_changed_light_is_as_one_made_anew(void **state) {
-  (void)state;
-  check_kept_sights(ball, ABBE_VOLUME_VECTOR);
-  check_kept_sights(wedge, ABBE_VOLUME_EXITS);
-  check_kept_sights(plate, ABBE_VOLUME_EXITS);
-}
-
-static void draw_once(const abbe_scene *scene, const abbe_render_desc *desc, abbe_image *out) {
-  abbe_renderer *renderer = make_renderer(scene, desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, out);
-  abbe_renderer_free(renderer);
-}
-
-/* What the camera sees through the object by places of receivers, kept, is what it sees by light
- * looked up on its way, which a sample a pixel is. */
-static void test_kept_sights_show_what_rays_show(void **state) {
-  (void)state;
-  const char *const text[] = {ball, wedge, plate};
-  for (int k = 0; k < 3; k++) {
-    enum { SIDE = 48 };
-    abbe_scene scene = {0};
-    abbe_caustic_volume v;
-    abbe_image kept = {0}, large = {0};
-    load_text(text[k], &scene);
-    make_volume(&scene, k == 0 ? ABBE_VOLUME_VECTOR : ABBE_VOLUME_EXITS, 2, 12, &v);
-    abbe_render_desc desc = {.width = SIDE,
-                             .height = SIDE,
-                             .wavelengths = 1,
-                             .supersample = 2,
-                             .adaptive = 1,
-                             .map_size = 4 * MAP_TEXELS,
-                             .volume = &v};
-    draw_once(&scene, &desc, &kept);
-    desc.width = desc.height = 2 * SIDE;
-    desc.supersample = 1;
-    draw_once(&scene, &desc, &large);
-    double off = 0, all = 0;
-    for (size_t i = 0; i < (size_t)SIDE * SIDE * 3; i++) {
-      const size_t x = i / 3 % SIDE, y = i / 3 / SIDE;
-      double mean = 0;
-      for (size_t n = 0; n < 4; n++)
-        mean += 0.25 * (double)large.data[((2 * y + n / 2) * 2 * SIDE + 2 * x + n % 2) * 3 + i % 3];
-      off += fabs((double)kept.data[i] - mean);
-      all += mean;
-    }
-    assert_near(off / all, 0, 1e-5);
-    abbe_image_free(&kept);
-    abbe_image_free(&large);
-    abbe_caustic_volume_free(&v);
-    abbe_scene_free(&scene);
-  }
-}
-
 /* The largest step between pictures of a light that turns past nodes, of the mean light. */
 static double largest_step(abbe_scene *scene, const abbe_caustic_volume *v,
                            abbe_volume_lookup lookup) {
@@ -500,8 +402,6 @@ int main(void) {
       cmocka_unit_test(test_pixels_have_what_the_volume_holds),
       cmocka_unit_test(test_objects_and_lights_move),
       cmocka_unit_test(test_rays_serve_any_light),
-      cmocka_unit_test(test_a_changed_light_is_as_one_made_anew),
-      cmocka_unit_test(test_kept_sights_show_what_rays_show),
       cmocka_unit_test(test_blends_do_not_pop),
       cmocka_unit_test(test_what_it_does_not_hold_is_refused),
   };
