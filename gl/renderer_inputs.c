@@ -94,6 +94,7 @@ static uint64_t of_geometry(const abbe_scene *scene, const abbe_plan *plan) {
   MIX(h, plan->receivers);
   MIX(h, plan->bvh);
   MIX(h, plan->tiles);
+  MIX(h, plan->page_charts);
   return h;
 }
 
@@ -249,6 +250,7 @@ static uint64_t mix_light_plan(uint64_t h, const abbe_plan *plan) {
   MIX(h, d->lookup);
   MIX(h, d->transport);
   MIX(h, d->pinholes);
+  MIX(h, d->clusters);
   MIX(h, d->strategy);
   MIX(h, d->footprint);
   h = mix_layout(h, d->map_layout, d->map_layout_light);

@@ -47,6 +47,7 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
       ABBE_LIB_CHOICE("model", &q->model, models),
       ABBE_LIB_CHOICE("transport", &q->transport, transports),
       ABBE_LIB_COUNT("pinholes", &d->pinholes, 1, ABBE_SURFACE_MAX_SAMPLES),
+      ABBE_LIB_COUNT("clusters", &d->clusters, 1, ABBE_RENDER_MAX_CLUSTERS),
       ABBE_LIB_CHOICE("strategy", &q->strategy, strategies),
       ABBE_LIB_CHOICE("footprint", &q->footprint, footprints),
       ABBE_LIB_CHOICE("space", &q->space, spaces),

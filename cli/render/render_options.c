@@ -25,6 +25,7 @@ enum {
   OPTION_MODEL,
   OPTION_FILL,
   OPTION_PINHOLES,
+  OPTION_CLUSTERS,
   OPTION_STRATEGY,
   OPTION_FOOTPRINT,
   OPTION_DIRECTION,
@@ -84,6 +85,11 @@ static const struct argp_option options[] = {
      1},
     {"pinholes", OPTION_PINHOLES, "N", 0,
      "of transport pinhole, samples of surfaces at the most, 1 to 4096 (256)", 1},
+    {"clusters", OPTION_CLUSTERS, "N", 0,
+     "of transport pinhole, samples are taken together where they send at most 1/N of a "
+     "hemisphere's "
+     "light, 1 to 1000000, which takes each by itself (50)",
+     1},
     {"strategy", OPTION_STRATEGY, "NAME", 0,
      "of transport pinhole, how samples are spread: random, grid, quantized, neighbour (neighbour)",
      1},
@@ -173,6 +179,9 @@ static bool take_pinholes(int key, const char *text, const char *p, abbe_render_
   switch (key) {
   case OPTION_PINHOLES:
     d->pinholes = abbe_command_count(p, "--pinholes", text, 1, ABBE_SURFACE_MAX_SAMPLES);
+    return true;
+  case OPTION_CLUSTERS:
+    d->clusters = abbe_command_count(p, "--clusters", text, 1, ABBE_RENDER_MAX_CLUSTERS);
     return true;
   case OPTION_STRATEGY:
     d->strategy = (abbe_sample_strategy)abbe_command_choice(p, "--strategy", text, strategies,

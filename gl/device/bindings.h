@@ -59,6 +59,9 @@
 #define BINDING_SIGHTS 31
 #define BINDING_SIGHT_PIXELS 32
 
+/* Texels of pinholes' pages that ask for more of them. */
+#define BINDING_UNFINISHED 33
+
 /* A list that becomes the size of a dispatch. */
 #define BINDING_DISPATCH 26
 

@@ -4,7 +4,7 @@ struct Sighting {
   vec3 p, n;  // n faces the viewer
   int surface;
   vec2 uv;
-  int side;  // chart_side, where there are TILES
+  int side;  // chart_side, where there are CHART_SIDES
   int sheet;  // of a parallelogram: twice its number, and 1 where it is seen from behind
 };
 
@@ -28,7 +28,7 @@ bool receiver_seen(vec3 o, vec3 d, float t_min, float t_max, out float t, out Si
   face_n = s.n;
   if (r >= RECEIVERS) triangle_at(r - RECEIVERS, s.p, -d, s.n, s.surface, s.uv);
 #endif
-#ifdef TILES
+#ifdef CHART_SIDES
   s.side = chart_side(r, d);
 #endif
   return true;

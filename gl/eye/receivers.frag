@@ -8,7 +8,7 @@ in vec3 world_normal;
 in vec2 surface_uv;
 uniform vec3 eye;
 uniform int surface;
-#ifdef TILES
+#ifdef CHART_SIDES
 layout(binding = UNIT_SIDE_OF_FACE) uniform isamplerBuffer side_of_face;  // chart's side that a face's normal points to
 uniform int face_first;                                    // of the object that is drawn
 #endif
@@ -27,7 +27,7 @@ void main() {
   if (dot(n, eye - world) < 0.0) n = -n;
 #endif
   int side = 0;
-#ifdef TILES
+#ifdef CHART_SIDES
   side = texelFetch(side_of_face, face_first + gl_PrimitiveID).x ^ (gl_FrontFacing ? 0 : 1);
 #endif
   Shading s = shade(world, n, surface, surface_uv, side);

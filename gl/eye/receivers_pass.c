@@ -81,7 +81,7 @@ static abbe_result make_unlit(abbe_receivers_pass *pass, const abbe_shader_varia
 static void draw_receiver(abbe_receivers_pass *pass, GLuint program, size_t receiver) {
   const abbe_gpu_scene *scene = pass->lighting->scene;
   abbe_gpu_set_int(scene->gpu, program, "surface", (int)receiver);
-  if (pass->lighting->atlas->used)
+  if (scene->charts.face_first != NULL)
     abbe_gpu_set_int(scene->gpu, program, "face_first", (int)scene->charts.face_first[receiver]);
   abbe_gpu_meshes_draw(scene, scene->plan->receiver_object[receiver]);
 }

@@ -1,16 +1,24 @@
 #include "gl/pinholes/pinhole_pages.h"
 
+#include "gl/device/bindings.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/lights/environment_lights.h"
 
 enum {
   UNIT = 5,
+  PLACES_UNIT = 2,
   LEAST_SIDE = 16,
-  MAP_TEXELS = 8, /* of the spectral map, a side, for one of a page */
+  MAP_TEXELS = 4,        /* of the spectral map, a side, for one of a page */
+  MOST_TEXELS = 1 << 22, /* of all pages: many have fewer each */
+  MOST_PAGES = 2048,     /* layers of an array, as OpenGL promises them */
   LEAST_CUBE = 16,
   MOST_CUBE = 512,
-  AT_ONCE = 8, /* samples of a pass: a thread has so many turns of loops (refraction_walk.glsl) */
-  ROUGH_AT_ONCE = 1, /* where each has several ways */
+  /* Nodes that a thread takes at once: it has so many turns of loops (refraction_walk.glsl), and
+   * needs more where paths branch, and where a sample has several ways. */
+  MIRRORS_AT_ONCE = 32,
+  AT_ONCE = 8,
+  ROUGH_AT_ONCE = 4,
+  STRIDE = 4,  /* of the texels that are taken first */
   SKY_UNIT = 4 /* for the camera; that of front and back layers, which there are none of then */
 };
 
@@ -33,6 +41,22 @@ static abbe_result make_sky(const abbe_gpu_scene *scene, abbe_pinhole_sky *out, 
   return result;
 }
 
+/* Texels a side; of many pages as many as there is room for. */
+static size_t side_of(const abbe_render_desc *d, size_t pages) {
+  size_t side = d->map_size / MAP_TEXELS;
+  while (side > LEAST_SIDE && side * side * pages > MOST_TEXELS) side /= 2;
+  return side > LEAST_SIDE ? side : LEAST_SIDE;
+}
+
+static abbe_result check_count(const abbe_gpu_scene *scene, size_t pages, abbe_error *error) {
+  if (pages <= MOST_PAGES) return ABBE_OK;
+  return abbe_error_set(
+      error, ABBE_UNSUPPORTED,
+      "the receivers fall into %zu flat parts, and the transport 'pinhole' lights "
+      "at most %d: use smoother meshes, or take the transport 'photons'",
+      scene->charts.count, MOST_PAGES / 2);
+}
+
 abbe_result abbe_pinhole_pages_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
                                     abbe_pinhole_pages *out, abbe_error *error) {
   const abbe_render_desc *d = &scene->plan->desc;
@@ -40,13 +64,19 @@ abbe_result abbe_pinhole_pages_make(const abbe_gpu_scene *scene, const abbe_shad
   abbe_shader_variant follows = *variant;
   follows.exits = scene->plan->eye_exits;
   out->scene = scene;
-  out->side = d->map_size / MAP_TEXELS > LEAST_SIDE ? d->map_size / MAP_TEXELS : LEAST_SIDE;
-  out->count = 2 * scene->plan->parallelogram_count;
-  abbe_result result = abbe_pinhole_samples_make(scene, false, &out->samples, error);
+  out->count =
+      2 * (scene->plan->page_charts ? scene->charts.count : scene->plan->parallelogram_count);
+  out->side = side_of(d, out->count);
+  abbe_result result = check_count(scene, out->count, error);
+  if (result == ABBE_OK) result = abbe_pinhole_samples_make(scene, false, &out->samples, error);
+  if (result == ABBE_OK && scene->plan->page_charts)
+    result = abbe_page_charts_make(scene, out->side, &out->charts, error);
   if (result == ABBE_OK) result = make_sky(scene, &out->sky, error);
   if (result == ABBE_OK)
     result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, out->side, out->side, out->count, true,
                                    &out->texture, error);
+  if (result == ABBE_OK)
+    result = abbe_gpu_make_buffer(scene->gpu, ABBE_GPU_LIST_HEADER, NULL, &out->unfinished, error);
   if (result == ABBE_OK)
     result = abbe_shader_variant_compute(
         &follows, scene->gpu, "pinhole_pages.comp",
@@ -58,6 +88,8 @@ void abbe_pinhole_pages_free(abbe_pinhole_pages *pages) {
   if (pages->scene == NULL) return;
   abbe_pinhole_samples_free(pages->scene->gpu, &pages->samples);
   abbe_pinhole_sky_free(pages->scene->gpu, &pages->sky);
+  abbe_page_charts_free(pages->scene->gpu, &pages->charts);
+  abbe_gpu_drop_buffers(pages->scene->gpu, 1, &pages->unfinished);
   abbe_gpu_drop_textures(pages->scene->gpu, 1, &pages->texture);
   *pages = (abbe_pinhole_pages){0};
 }
@@ -71,21 +103,55 @@ static bool sees_refractors(const abbe_gpu_scene *scene, const double p[9], bool
   return (back ? -1 : 1) * abbe_vector_dot(n, to) > -scene->refractor_radius;
 }
 
-/* The pages' parallelograms, as the shaders count them. */
-static abbe_result fill_page(abbe_pinhole_pages *pages, size_t page, abbe_error *error) {
+/* A part of a page's texels, until each has taken all that it asks for. */
+static abbe_result fill_texels(abbe_pinhole_pages *pages, size_t stride, const int first[2],
+                               abbe_error *error) {
   abbe_gpu *gpu = pages->scene->gpu;
-  const size_t all = pages->samples.count;
-  const size_t step = pages->scene->plan->rough ? ROUGH_AT_ONCE : AT_ONCE;
-  abbe_result result = ABBE_OK;
-  abbe_gpu_set_int(gpu, pages->fill, "page", (int)page);
-  for (size_t i = 0; i < all && result == ABBE_OK; i += step) {
-    abbe_gpu_set_int(gpu, pages->fill, "first_pinhole", (int)i);
-    abbe_gpu_set_int(gpu, pages->fill, "end_pinhole", (int)(i + step < all ? i + step : all));
-    abbe_gpu_dispatch_2d(gpu, pages->fill, pages->side, pages->side);
-    gpu->gl->MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  const size_t across = (pages->side + stride - 1) / stride;
+  size_t left = 1;
+  abbe_gpu_set_int(gpu, pages->fill, "stride", (int)stride);
+  gpu->gl->Uniform2i(gpu->gl->GetUniformLocation(pages->fill, "first"), first[0], first[1]);
+  while (left > 0) {
+    abbe_gpu_clear_list(gpu, pages->unfinished);
+    abbe_gpu_bind_storage(gpu, BINDING_UNFINISHED, pages->unfinished);
+    abbe_gpu_dispatch_2d(gpu, pages->fill, across, across);
+    gpu->gl->MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    left = abbe_gpu_read_count(gpu, pages->unfinished);
     if (gpu->progress != NULL && !abbe_gpu_ask(gpu))
-      result = abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+      return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
   }
+  return ABBE_OK;
+}
+
+/* Of a page's texels first some far apart, then those between, columns, rows and crossings. */
+static abbe_result fill_page(abbe_pinhole_pages *pages, size_t page, abbe_error *error) {
+  static const int none[2] = {0, 0};
+  abbe_gpu_set_int(pages->scene->gpu, pages->fill, "page", (int)page);
+  abbe_result result = fill_texels(pages, STRIDE, none, error);
+  for (int stride = STRIDE; stride > 1; stride /= 2)
+    for (int k = 1; k < 4 && result == ABBE_OK; k++) {
+      const int first[2] = {k & 1 ? stride / 2 : 0, k & 2 ? stride / 2 : 0};
+      result = fill_texels(pages, (size_t)stride, first, error);
+    }
+  return result;
+}
+
+/* The pages' charts, as the shaders count them: parallelograms before parts of meshes. What
+ * encloses a space is not seen from inside. */
+static abbe_result fill_pages(abbe_pinhole_pages *pages, abbe_error *error) {
+  const abbe_gpu_scene *scene = pages->scene;
+  const abbe_plan *plan = scene->plan;
+  size_t page = 0;
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < plan->receiver_count; i++) {
+    if (plan->receiver_model[i] != ABBE_RECEIVER_EXACT) continue;
+    const abbe_exact *exact = &scene->local->object[plan->receiver_object[i]].exact;
+    for (size_t k = 0; k < 2 * exact->count && result == ABBE_OK; k++, page++)
+      if (sees_refractors(scene, exact->parallelogram[k / 2], k % 2 != 0))
+        result = fill_page(pages, page, error);
+  }
+  for (; page < pages->count && result == ABBE_OK; page++)
+    if (page % 2 == 0 || !pages->charts.closed[page / 2]) result = fill_page(pages, page, error);
   return result;
 }
 
@@ -108,24 +174,28 @@ static void begin(abbe_pinhole_pages *pages) {
   abbe_pinhole_sky_set(scene, &pages->sky, ABBE_PINHOLE_SKY_UNIT, pages->fill);
   abbe_gpu_set_float(scene->gpu, pages->fill, "share_limit", scene->plan->eye_share);
   abbe_gpu_set_float(scene->gpu, pages->fill, "seen_off", 1e-4 * scene->refractor_radius);
-  abbe_gpu_set_int(scene->gpu, pages->fill, "pinhole_count", (int)pages->samples.count);
+  const double share = 1 / (double)scene->plan->desc.clusters;
+  const bool all = scene->plan->desc.clusters == ABBE_RENDER_MAX_CLUSTERS;
+  abbe_gpu_set_int(scene->gpu, pages->fill, "node_count", (int)pages->samples.node_count);
+  abbe_gpu_set_float(scene->gpu, pages->fill, "cluster_share", all ? 0 : share);
+  abbe_gpu_set_float(scene->gpu, pages->fill, "smooth_share", all ? 0 : share);
+  abbe_gpu_set_int(scene->gpu, pages->fill, "most_shown",
+                   scene->plan->rough                                          ? ROUGH_AT_ONCE
+                   : scene->plan->mirror_count == scene->plan->refractor_count ? MIRRORS_AT_ONCE
+                                                                               : AT_ONCE);
+  if (scene->plan->page_charts)
+    abbe_gpu_bind_texels(scene->gpu, pages->fill, "page_places", PLACES_UNIT, GL_RGBA32F,
+                         pages->charts.places);
   gl->BindImageTexture(0, pages->texture, 0, GL_TRUE, 0, GL_READ_WRITE, GL_RGBA32F);
 }
 
 abbe_result abbe_pinhole_pages_run(abbe_pinhole_pages *pages, abbe_error *error) {
   if (pages->scene == NULL) return ABBE_OK;
-  const abbe_plan *plan = pages->scene->plan;
-  size_t page = 0;
   abbe_gpu_start_lap(pages->scene->gpu);
   abbe_result result = clear(pages, error);
   if (result != ABBE_OK) return result;
   begin(pages);
-  for (size_t i = 0; i < plan->receiver_count; i++) {
-    const abbe_exact *exact = &pages->scene->local->object[plan->receiver_object[i]].exact;
-    for (size_t k = 0; k < 2 * exact->count && result == ABBE_OK; k++, page++)
-      if (sees_refractors(pages->scene, exact->parallelogram[k / 2], k % 2 != 0))
-        result = fill_page(pages, page, error);
-  }
+  result = fill_pages(pages, error);
   pages->scene->gpu->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   abbe_gpu_book_lap(pages->scene->gpu, ABBE_PASS_PINHOLES);
   return result;
@@ -134,5 +204,6 @@ abbe_result abbe_pinhole_pages_run(abbe_pinhole_pages *pages, abbe_error *error)
 void abbe_pinhole_pages_set(const abbe_pinhole_pages *pages, GLuint program) {
   if (pages->scene == NULL) return;
   abbe_gpu_bind_array(pages->scene->gpu, program, "pinhole_pages", UNIT, pages->texture);
+  if (pages->scene->plan->page_charts) abbe_page_charts_bind(pages->scene->gpu, &pages->charts);
   if (pages->scene->plan->rough) abbe_pinhole_sky_set(pages->scene, &pages->sky, SKY_UNIT, program);
 }

@@ -3,7 +3,9 @@
 // mirrors and through refractors, until it is outside, where it comes from the surroundings, or at a receiver,
 // which is dark; and what it would have seen were nothing there is taken away. So light that is alike all around
 // changes nothing where nothing is absorbed, whatever the samples. A sample of area A weighs A cos cos / (d2 +
-// A / pi), which is exact for a disk around the texel's axis; near ones are taken by their parts.
+// A / pi), which is exact for a disk around the texel's axis; near ones are taken by their parts, far ones in
+// clusters (scenes/samples/sample_tree.h). Texels are taken from coarse to fine: one in the midst of others that
+// lie on a smooth line takes what lies between them.
 layout(local_size_x = 32, local_size_y = 16) in;
 #include "thread.glsl"
 #define COPIES_TABLES
@@ -11,14 +13,24 @@ layout(local_size_x = 32, local_size_y = 16) in;
 uniform vec4 refractor_bounds;
 uniform float share_limit;
 uniform mat3 rgb_from_xyz, xyz_from_rgb;
-const int PINHOLE_PARTS = 8;   // as in pinhole_samples.h
 const float NEAR_AREAS = 6.0;  // samples nearer than the root of so many times their area are taken by parts
 #include "receiver_hit.glsl"
 #include "pinholes.glsl"
 #include "pinhole_map.glsl"
+// rgb; the next node of the tree that a texel takes, 0: it has not begun, DONE: none.
 layout(rgba32f, binding = 0) uniform image2DArray pages;
-uniform int page, pinhole_count;
-uniform int first_pinhole, end_pinhole;
+const float DONE = -1.0;
+layout(std430, binding = BINDING_UNFINISHED) buffer Unfinished { uint unfinished; };
+uniform samplerBuffer pinhole_nodes;  // rows as gl/pinholes/pinhole_samples.h has them
+uniform int node_count;
+uniform int page, stride;  // texels are `stride` apart
+uniform ivec2 first;       // and the first is there
+uniform float cluster_share;  // of a hemisphere's light, that a cluster may send at the most; 0: there are none
+uniform float smooth_share;   // of its light, by how much three texels may be off a line
+uniform int most_shown;       // nodes that a thread takes at once
+#ifdef PINHOLE_CHARTS
+uniform samplerBuffer page_places;  // of texels of meshes' charts: place (w: 1, 0: there is none), normal
+#endif
 uniform float seen_off;  // m, that a ray may meet a sample's surface beside it
 
 struct Band {  // as in refraction.comp
@@ -119,12 +131,12 @@ vec3 carried(PathState w, Interface h, vec3 by_u, vec3 by_v) {
 #ifdef ROUGH
 // What a sample of a rough mirror shows: the surroundings by some of the lobe's ways, each as wide as the share
 // that it stands for, and lamps, whose lobe is as much wider as the sample is.
-vec3 rough_light(PathState w, Interface h, Pinhole s, int number, float scale, vec3 by_u, vec3 by_v) {
+vec3 rough_light(PathState w, Interface h, Pinhole s, int number, vec3 by_u, vec3 by_v) {
   vec3 sum = vec3(0), wider = vec3(0);
 #ifdef FOOTPRINTS
   // Of even slopes of that half width, by GGX's measure: their standard deviation times the root of two.
   RoughHit m = rough_hit(w, h);
-  float half_width = 0.8165 * scale * s.half_width, near = 0.5 * half_width / max(distance(w.p, h.hit.p), 1e-20);
+  float half_width = 0.8165 * s.half_width, near = 0.5 * half_width / max(distance(w.p, h.hit.p), 1e-20);
   vec2 along = abs(s.turn) * half_width;
   for (int k = 0; k < 2; k++) {
     vec3 axis = k == 0 ? m.x : m.y;
@@ -148,12 +160,12 @@ vec3 rough_light(PathState w, Interface h, Pinhole s, int number, float scale, v
 }
 #endif
 
-// What a sample of an area changes at p, where n is the receiver's side.
-vec3 changed(vec3 p, vec3 n, Pinhole s, int number, float area, float scale) {
+// What a sample changes at p, where n is the receiver's side.
+vec3 changed(vec3 p, vec3 n, Pinhole s, int number) {
   vec3 to = s.p - p;
   float far2 = dot(to, to), far = sqrt(far2);
   vec3 d = to / max(far, 1e-20);
-  float weight = area * max(dot(n, d), 0.0) * max(-dot(s.n, d), 0.0) / (far2 + area / PI);
+  float weight = s.area * max(dot(n, d), 0.0) * max(-dot(s.n, d), 0.0) / (far2 + s.area / PI);
   if (weight <= 0.0) return vec3(0);
   PathState w = PathState(p, d, 1.0, 0u, 0u, -1, -1, -1);
   Interface h;
@@ -165,55 +177,144 @@ vec3 changed(vec3 p, vec3 n, Pinhole s, int number, float area, float scale) {
 #ifdef FOOTPRINTS
   // Twice what half a spacing turns: samples meet in the middle.
   footprint(s, p, mirrored(p, s.p, s.n), by_u, by_v);
-  by_u *= 2.0 * scale;
-  by_v *= 2.0 * scale;
-  vec3 u = 2.0 * scale * s.half_width * s.u, v = 2.0 * scale * s.half_width * s.v;
+  by_u *= 2.0;
+  by_v *= 2.0;
+  vec3 u = 2.0 * s.half_width * s.u, v = 2.0 * s.half_width * s.v;
   wide_u = (u - dot(u, d) * d) / far;
   wide_v = (v - dot(v, d) * d) / far;
 #endif
 #ifdef ROUGH
   lobe_u = lobe_way(0, 0.618034 * float(number));
   lobe_width = 0.0;
-  vec3 light = is_rough(h.hit.refractor) ? rough_light(w, h, s, number, scale, by_u, by_v) : carried(w, h, by_u, by_v);
+  vec3 light = is_rough(h.hit.refractor) ? rough_light(w, h, s, number, by_u, by_v) : carried(w, h, by_u, by_v);
 #else
   vec3 light = carried(w, h, by_u, by_v);
 #endif
   return weight * (light - sky_over(d, wide_u, wide_v));
 }
 
-// A part of a sample: its own place and normal; it turns as the sample does.
-Pinhole part_of(Pinhole s, int i, int k, out float area) {
-  int at = 4 * pinhole_count + 2 * (i * PINHOLE_PARTS + k);
-  vec4 place = texelFetch(pinholes, at);
-  vec3 own = texelFetch(pinholes, at + 1).xyz;
-  area = place.w;
-  s.p = place.xyz;
-  s.n = dot(own, s.n) < 0.0 ? -own : own;
+struct Node {
+  vec3 p, n;
+  float area, radius, cone;
+  int next, of;  // of: the sample
+  bool cluster, leaf;
+};
+
+Node node_at(int i) {
+  vec4 place = texelFetch(pinhole_nodes, 3 * i), normal = texelFetch(pinhole_nodes, 3 * i + 1);
+  vec4 rest = texelFetch(pinhole_nodes, 3 * i + 2);
+  return Node(place.xyz, normal.xyz, place.w, normal.w, rest.x, int(rest.y), int(rest.z), rest.w > 0.0,
+              int(rest.y) == i + 1);
+}
+
+// Whether nothing below it sends p any light: all lies behind the receiver's plane, or faces away.
+bool is_hidden(Node k, vec3 n, vec3 to, float far) {
+  float sine = k.radius / max(far, 1e-20), cosine = sqrt(max(1.0 - sine * sine, 0.0));
+  float turn = sqrt(max(1.0 - k.cone * k.cone, 0.0));
+  float facing = -dot(k.n, to) / max(far, 1e-20);
+  bool narrow = sine < 1.0 && k.cone * cosine - turn * sine > 0.0;
+  return dot(n, to) + k.radius <= 0.0 || (narrow && facing < -(turn * cosine + k.cone * sine) - 1e-4);
+}
+
+// Whether p takes it for all that is below it.
+bool is_enough(Node k, vec3 n, vec3 to, float far) {
+  float gap = max(far - k.radius, 0.0), up = min(dot(n, to) + k.radius, gap);
+  bool faint = gap > 0.0 && k.area * up <= PI * cluster_share * gap * gap * gap;
+  return k.leaf || (k.cluster ? faint && cluster_share > 0.0 : far * far >= NEAR_AREAS * k.area);
+}
+
+// As a sample: it turns as its own does, and shows as much more or less as its area is.
+Pinhole pinhole_of(Node k, vec3 from) {
+  Pinhole s = pinhole_at(k.of, from);
+  s.half_width *= sqrt(k.area / max(s.area, 1e-30));
+  s.area = k.area;
+  s.p = k.p;
+  s.n = dot(k.n, s.n) < 0.0 ? -k.n : k.n;
   return s;
 }
 
+// Where a texel is and which way it faces; false: nowhere.
+bool place_of(ivec2 at, ivec2 size, out vec3 p, out vec3 n) {
+  float side = page % 2 == 0 ? 1.0 : -1.0;
+#ifdef PINHOLE_CHARTS
+  if (page / 2 >= RECEIVERS) {
+    int i = 2 * (((page / 2 - RECEIVERS) * size.y + at.y) * size.x + at.x);
+    vec4 place = texelFetch(page_places, i);
+    p = place.xyz;
+    n = side * texelFetch(page_places, i + 1).xyz;
+    return place.w > 0.0;
+  }
+#endif
+  Receiver r = receivers[min(page / 2, RECEIVER_ROOM - 1)];
+  vec2 t = (vec2(at) + 0.5) / vec2(size);
+  n = side * r.normal.xyz;
+  p = r.corner.xyz + from_page(page_axis(r.du.xyz, r.corner.xyz), t.x) * r.u.xyz +
+      from_page(page_axis(r.dv.xyz, r.corner.xyz), t.y) * r.v.xyz;
+  return true;
+}
+
+// Of four in a row the cubic's middle, and whether they lie on a line nearly: on no step either.
+bool lies_between(ivec2 at, ivec2 step, vec3 open, out vec3 middle) {
+  ivec2 size = imageSize(pages).xy, low = min(at - 3 * step, at + 3 * step), high = max(at - 3 * step, at + 3 * step);
+  bool held = all(greaterThanEqual(low, ivec2(0))) && all(lessThan(high, size));
+  vec3 a = imageLoad(pages, ivec3(at - 3 * step, page)).rgb, b = imageLoad(pages, ivec3(at - step, page)).rgb;
+  vec3 c = imageLoad(pages, ivec3(at + step, page)).rgb, d = imageLoad(pages, ivec3(at + 3 * step, page)).rgb;
+  vec3 bend = max(abs(a - 2.0 * b + c), abs(b - 2.0 * c + d)), most = 0.25 * (abs(a) + abs(b) + abs(c) + abs(d));
+  middle = (9.0 * (b + c) - a - d) / 16.0;
+  return held && all(lessThanEqual(bend, smooth_share * (most + open)));
+}
+
+// What is around over a hemisphere, in the mean.
+vec3 open_light() {
+  float top = log2(sky_side);
+  vec3 sum = textureLod(pinhole_sky, vec3(1, 0, 0), top).rgb + textureLod(pinhole_sky, vec3(-1, 0, 0), top).rgb;
+  sum += textureLod(pinhole_sky, vec3(0, 1, 0), top).rgb + textureLod(pinhole_sky, vec3(0, -1, 0), top).rgb;
+  sum += textureLod(pinhole_sky, vec3(0, 0, 1), top).rgb + textureLod(pinhole_sky, vec3(0, 0, -1), top).rgb;
+  return PI / 6.0 * sum;
+}
+
+// Whether others that are taken already tell it. first.x, first.y: half a stride off their rows, columns.
+bool is_between(ivec2 at, out vec3 light) {
+  vec3 other;
+  ivec2 along = first.x > 0 && first.y > 0 ? first : first.x > 0 ? ivec2(first.x, 0) : ivec2(0, first.y);
+  light = vec3(0);
+  if (first == ivec2(0)) return false;
+  vec3 open = open_light();
+  if (!lies_between(at, along, open, light)) return false;
+  if (first.x == 0 || first.y == 0) return true;
+  bool both = lies_between(at, ivec2(along.x, -along.y), open, other);
+  light = 0.5 * (light + other);
+  return both;
+}
+
+const int MOST_MET = 1024;  // nodes that a thread looks at at once
+
 void main() {
   copy_tables();
-  ivec2 at = ivec2(texel_number());
-  ivec2 size = imageSize(pages).xy;
-  Receiver r = receivers[page / 2];
-  vec3 n = page % 2 == 0 ? r.normal.xyz : -r.normal.xyz;
-  vec2 t = (vec2(at) + 0.5) / vec2(size);
-  vec3 p = r.corner.xyz + from_page(page_axis(r.du.xyz, r.corner.xyz), t.x) * r.u.xyz +
-           from_page(page_axis(r.dv.xyz, r.corner.xyz), t.y) * r.v.xyz;
+  ivec2 at = first + stride * ivec2(texel_number()), size = imageSize(pages).xy;
+  vec3 p = vec3(0), n = vec3(0, 0, 1), between;
   bool there = all(lessThan(at, size));
-  vec3 sum = first_pinhole > 0 && there ? imageLoad(pages, ivec3(at, page)).rgb : vec3(0);
-  for (int i = first_pinhole; i < end_pinhole && there; i++) {
-    Pinhole whole = pinhole_at(i, p);
-    vec3 to = whole.p - p;
-    bool near = dot(to, to) < NEAR_AREAS * whole.area;
-    int parts = near ? PINHOLE_PARTS : 1;
-    for (int k = 0; k < parts; k++) {
-      float area = whole.area;
-      Pinhole s = whole;
-      if (near) s = part_of(whole, i, k, area);
-      sum += changed(p, n, s, i, area, sqrt(area / whole.area));
+  there = there && place_of(at, size, p, n);
+  vec4 sum = there ? imageLoad(pages, ivec3(at, page)) : vec4(0, 0, 0, DONE);
+  if (there && sum.w == 0.0 && is_between(at, between)) sum = vec4(between, DONE);
+  int node = sum.w >= 0.0 ? int(sum.w) : node_count, met = 0, shown = 0;
+  while (node < node_count && met < MOST_MET && shown < most_shown) {
+    bool enough = false;
+    int number = node;
+    while (node < node_count && met < MOST_MET && !enough) {
+      Node k = node_at(node);
+      vec3 to = k.p - p;
+      float far = length(to);
+      bool hidden = is_hidden(k, n, to, far);
+      enough = !hidden && is_enough(k, n, to, far);
+      number = node;
+      node = hidden || enough ? k.next : node + 1;
+      met++;
     }
+    if (enough) sum.rgb += changed(p, n, pinhole_of(node_at(number), p), number);
+    shown++;
   }
-  if (there) imageStore(pages, ivec3(at, page), vec4(sum, 1));
+  sum.w = node < node_count ? float(node) : DONE;
+  if (there) imageStore(pages, ivec3(at, page), sum);
+  if (there && sum.w != DONE) atomicAdd(unfinished, 1u);
 }

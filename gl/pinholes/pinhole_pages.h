@@ -6,6 +6,7 @@
 #ifndef ABBE_GL_PINHOLES_PINHOLE_PAGES_H
 #define ABBE_GL_PINHOLES_PINHOLE_PAGES_H
 
+#include "gl/pinholes/page_charts.h"
 #include "gl/pinholes/pinhole_samples.h"
 #include "gl/pinholes/pinhole_sky.h"
 #include "gl/scene/shader_variant.h"
@@ -14,9 +15,11 @@ typedef struct abbe_pinhole_pages {
   const abbe_gpu_scene *scene; /* NULL: there are none */
   abbe_pinhole_samples samples;
   abbe_pinhole_sky sky;
-  size_t side, count; /* texels of a page; pages: two a parallelogram */
-  GLuint fill;        /* program */
-  GLuint texture;     /* irradiance, W/m2, working space; an array */
+  abbe_page_charts charts; /* where the plan has them */
+  size_t side, count;      /* texels of a page; pages: two a chart (gl/scene/receiver_charts.h) */
+  GLuint unfinished;       /* a list, of which only the length is kept: texels that ask for more */
+  GLuint fill;             /* program */
+  GLuint texture;          /* irradiance, W/m2, working space; an array */
 } abbe_pinhole_pages;
 
 /* Where the plan's transport is by pinholes. Errors of its parts; ABBE_GL, ABBE_NO_MEMORY. */

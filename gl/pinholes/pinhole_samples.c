@@ -3,18 +3,14 @@
 #include "gl/device/float4.h"
 #include "gl/scene/spectra/camera_bands.h"
 #include "scenes/geometry/vector.h"
+#include "scenes/samples/sample_tree.h"
 #include "scenes/samples/surface_curvature.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-  UNIT = 4,
-  ROWS = ABBE_PINHOLE_ROWS,
-  PART_ROWS = ABBE_PINHOLE_PART_ROWS,
-  PARTS = ABBE_PINHOLE_PARTS
-};
+enum { UNIT = 4, NODE_UNIT = 3, ROWS = ABBE_PINHOLE_ROWS, NODE_ROWS = ABBE_PINHOLE_NODE_ROWS };
 
 typedef float row[4];
 
@@ -47,10 +43,18 @@ abbe_result abbe_pinhole_samples_colours(const abbe_gpu_scene *scene, double (**
   return result;
 }
 
-/* Whether it is seen from both sides: open mirrors are. */
-static bool has_two_sides(const abbe_object *object) {
-  abbe_mesh_report report;
-  return abbe_mesh_check(&object->mesh, &report, NULL) == ABBE_OK && report.open_edges > 0;
+/* Whether each of the plan's surfaces is seen from both sides: open mirrors are. Whether any is. */
+static bool find_sheets(const abbe_gpu_scene *scene, bool *sheet) {
+  const abbe_plan *plan = scene->plan;
+  bool any = false;
+  for (size_t i = 0; i < plan->refractor_count; i++) {
+    const abbe_object *object = &scene->local->object[plan->refractor_object[i]];
+    abbe_mesh_report report;
+    sheet[i] = plan->mirror[i] && abbe_mesh_check(&object->mesh, &report, NULL) == ABBE_OK &&
+               report.open_edges > 0;
+    any = any || sheet[i];
+  }
+  return any;
 }
 
 /* From a ball's triangles onto the ball, which rays meet. */
@@ -77,48 +81,66 @@ static void store_sample(const abbe_surface_samples *s, const abbe_surface_curva
   abbe_float4_store(colour, c->curvature[1], out[3]);
 }
 
-/* The first candidates of each sample, which are as even as all are. */
-static void store_parts(const abbe_surface_samples *s, size_t *taken, row *out) {
-  for (size_t i = 0; i < s->candidate_count; i++) {
-    const size_t of = s->owner[i], k = taken[of];
-    if (k == PARTS) continue;
-    taken[of]++;
-    row *part = out + PART_ROWS * (of * PARTS + k);
-    abbe_float4_store(s->candidate[i].position, 0, part[0]);
-    abbe_float4_store(s->candidate[i].normal, 0, part[1]);
-  }
-  for (size_t i = 0; i < s->count; i++)
-    for (size_t k = 0; k < taken[i]; k++)
-      out[PART_ROWS * (i * PARTS + k)][3] = (float)(s->share[i] / (double)taken[i]);
+/* Whole numbers stand as floats, which count so far. Of a sheet that is seen from both sides no
+ * normal turns away; a cluster that holds some is told as if all were. */
+static void store_node(const abbe_sample_node *node, bool two_sides, row *out) {
+  abbe_float4_store(node->at.position, node->area, out[0]);
+  abbe_float4_store(node->at.normal, node->radius, out[1]);
+  out[2][0] = (float)(two_sides ? -1 : node->cone);
+  out[2][1] = (float)node->next;
+  out[2][2] = (float)node->sample;
+  out[2][3] = node->cluster ? 1 : 0;
+}
+
+static abbe_result upload_nodes(const abbe_gpu_scene *scene, const abbe_surface_samples *s,
+                                bool two_sides, abbe_pinhole_samples *out, abbe_error *error) {
+  abbe_sample_tree tree = {0};
+  abbe_result result = abbe_sample_tree_make(s, &tree, error);
+  if (result != ABBE_OK) return result;
+  row *rows = calloc(tree.count * NODE_ROWS + 1, sizeof *rows);
+  if (rows == NULL) result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for pinholes");
+  for (size_t i = 0; rows != NULL && i < tree.count; i++)
+    store_node(&tree.node[i], two_sides, rows + NODE_ROWS * i);
+  out->node_count = tree.count;
+  if (result == ABBE_OK)
+    result = abbe_gpu_make_buffer(scene->gpu, tree.count * NODE_ROWS * sizeof *rows, rows,
+                                  &out->nodes, error);
+  free(rows);
+  abbe_sample_tree_free(&tree);
+  return result;
+}
+
+static abbe_result upload_samples(const abbe_gpu_scene *scene, bool published,
+                                  const abbe_surface_samples *s, const bool *sheet,
+                                  abbe_pinhole_samples *out, abbe_error *error) {
+  row *rows = calloc(s->count * ROWS + 1, sizeof *rows);
+  abbe_surface_curvature *curvature = calloc(s->count + 1, sizeof *curvature);
+  double(*colour)[3] = NULL;
+  abbe_result result = rows != NULL && curvature != NULL
+                           ? abbe_surface_curvature_fit(s, curvature, error)
+                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for pinholes");
+  if (result == ABBE_OK) result = abbe_pinhole_samples_colours(scene, &colour, error);
+  for (size_t i = 0; result == ABBE_OK && i < s->count; i++)
+    store_sample(s, &curvature[i], i, published ? s->area / (double)s->count : s->share[i],
+                 sheet[s->sample[i].mesh], colour[s->sample[i].mesh], rows + ROWS * i);
+  if (result == ABBE_OK)
+    result =
+        abbe_gpu_make_buffer(scene->gpu, s->count * ROWS * sizeof *rows, rows, &out->rows, error);
+  free(rows);
+  free(curvature);
+  free(colour);
+  return result;
 }
 
 static abbe_result upload(const abbe_gpu_scene *scene, bool published,
                           const abbe_surface_samples *s, abbe_pinhole_samples *out,
                           abbe_error *error) {
-  const size_t parts = published ? 0 : s->count * PARTS, count = s->count * ROWS;
-  row *rows = calloc(count + parts * PART_ROWS + 1, sizeof *rows);
-  size_t *taken = calloc(s->count + 1, sizeof *taken);
-  abbe_surface_curvature *curvature = calloc(s->count + 1, sizeof *curvature);
-  double(*colour)[3] = NULL;
-  abbe_result result = rows != NULL && taken != NULL && curvature != NULL
-                           ? abbe_surface_curvature_fit(s, curvature, error)
-                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for pinholes");
-  if (result == ABBE_OK) result = abbe_pinhole_samples_colours(scene, &colour, error);
-  for (size_t i = 0; result == ABBE_OK && i < s->count; i++) {
-    const size_t mesh = s->sample[i].mesh;
-    const bool two = scene->plan->mirror[mesh] &&
-                     has_two_sides(&scene->local->object[scene->plan->refractor_object[mesh]]);
-    store_sample(s, &curvature[i], i, published ? s->area / (double)s->count : s->share[i], two,
-                 colour[mesh], rows + ROWS * i);
-  }
-  if (result == ABBE_OK && !published) store_parts(s, taken, rows + count);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_buffer(scene->gpu, (count + parts * PART_ROWS) * sizeof *rows, rows,
-                                  &out->rows, error);
-  free(rows);
-  free(taken);
-  free(curvature);
-  free(colour);
+  bool *sheet = calloc(scene->plan->refractor_count + 1, sizeof *sheet);
+  if (sheet == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for pinholes");
+  const bool any = find_sheets(scene, sheet);
+  abbe_result result = upload_samples(scene, published, s, sheet, out, error);
+  if (result == ABBE_OK && !published) result = upload_nodes(scene, s, any, out, error);
+  free(sheet);
   return result;
 }
 
@@ -161,10 +183,14 @@ abbe_result abbe_pinhole_samples_make(const abbe_gpu_scene *scene, bool publishe
 
 void abbe_pinhole_samples_free(abbe_gpu *gpu, abbe_pinhole_samples *samples) {
   abbe_gpu_drop_buffers(gpu, 1, &samples->rows);
+  abbe_gpu_drop_buffers(gpu, 1, &samples->nodes);
   *samples = (abbe_pinhole_samples){0};
 }
 
 void abbe_pinhole_samples_bind(const abbe_gpu_scene *scene, const abbe_pinhole_samples *samples,
                                GLuint program) {
   abbe_gpu_bind_texels(scene->gpu, program, "pinholes", UNIT, GL_RGBA32F, samples->rows);
+  if (samples->nodes != 0)
+    abbe_gpu_bind_texels(scene->gpu, program, "pinhole_nodes", NODE_UNIT, GL_RGBA32F,
+                         samples->nodes);
 }

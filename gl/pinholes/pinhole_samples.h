@@ -9,18 +9,19 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Rows of four floats: of each sample, and of each of its parts, which come after all samples. */
-enum { ABBE_PINHOLE_ROWS = 4, ABBE_PINHOLE_PART_ROWS = 2, ABBE_PINHOLE_PARTS = 8 };
+/* Rows of four floats: of each sample, and of each node of their tree (sample_tree.h). */
+enum { ABBE_PINHOLE_ROWS = 4, ABBE_PINHOLE_NODE_ROWS = 3 };
 
 typedef struct abbe_pinhole_samples {
-  GLuint rows;
-  size_t count;
+  GLuint rows, nodes; /* nodes: 0 as published */
+  size_t count, node_count;
   double area, spacing; /* of all surfaces, m2; root of a sample's mean share, m */
 } abbe_pinhole_samples;
 
 /* As the plan's request says, of all mirrors and refractors together. As published: each stands for
- * the same area, and has no parts. Else each stands for what is nearest to it, the two sides of a
- * sheet apart, and has parts for who is near. Errors of abbe_surface_samples_make; ABBE_GL. */
+ * the same area, and there is no tree. Else each stands for what is nearest to it, the two sides of
+ * a sheet apart, and a tree has clusters of them for who is far and parts for who is near. Errors
+ * of abbe_surface_samples_make; ABBE_GL. */
 abbe_result abbe_pinhole_samples_make(const abbe_gpu_scene *scene, bool published,
                                       abbe_pinhole_samples *out, abbe_error *error);
 void abbe_pinhole_samples_free(abbe_gpu *gpu, abbe_pinhole_samples *samples);
@@ -30,7 +31,8 @@ void abbe_pinhole_samples_free(abbe_gpu *gpu, abbe_pinhole_samples *samples);
 abbe_result abbe_pinhole_samples_colours(const abbe_gpu_scene *scene, double (**out)[3],
                                          abbe_error *error);
 
-/* Into the program that is in use: `pinholes`, at a unit below ABBE_GPU_TEXEL_UNITS. */
+/* Into the program that is in use: `pinholes` and `pinhole_nodes`, at units below
+ * ABBE_GPU_TEXEL_UNITS. */
 void abbe_pinhole_samples_bind(const abbe_gpu_scene *scene, const abbe_pinhole_samples *samples,
                                GLuint program);
 

@@ -65,15 +65,16 @@ static void list_environment(const abbe_scene *scene, abbe_plan *plan) {
     abbe_plan_add(plan, ABBE_CHOICE_ENVIRONMENT, "the camera sees it whole; %s",
                   pinholes ? "pinholes show all of it to receivers"
                            : "nothing in it stands out, so it lights receivers without shadows or "
-                             "caustics: where it is alike all around, clear objects and mirrors "
-                             "change nothing outside");
+                             "caustics (--transport pinhole: with): where it is alike all around, "
+                             "clear objects and mirrors change nothing outside");
   else
     abbe_plan_add(plan, ABBE_CHOICE_ENVIRONMENT,
                   "the camera sees it whole; %zu directional lights, sharp, stand for the %.0f %% "
                   "that stand out of it; %s",
                   scene->environment_lights, 100 * kept / scene->environment->luminance,
                   pinholes ? "pinholes show the rest to receivers"
-                           : "the rest lights receivers without shadows or caustics");
+                           : "the rest lights receivers without shadows or caustics "
+                             "(--transport pinhole: with)");
 }
 
 /* What a view draws of refractors for their back; `unmet`: why it draws none. */
@@ -154,7 +155,7 @@ static void list_pinholes(abbe_plan *plan) {
                 d->footprint == ABBE_FOOTPRINT_ON ? "by curvature" : "off",
                 abbe_profile_is_wand2003(d->profile)
                     ? "each pixel sees each, whatever is between"
-                    : "each receiver's map sees each, and what lies behind it");
+                    : "each receiver's map sees clusters of them and parts, and what lies behind");
 }
 
 static void list_absorption(abbe_plan *plan) {

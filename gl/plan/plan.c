@@ -49,6 +49,8 @@ static void combine(abbe_plan *plan) {
   const bool apart = caustics && plan->dispersive && plan->desc.wavelengths > 1;
   plan->draw_back = plan->layers;
   plan->tiles = caustics && !published && (plan->receiver_shadows || plan->outside_map_view);
+  plan->page_charts = plan->desc.transport == ABBE_TRANSPORT_PINHOLE && !published &&
+                      plan->receivers == ABBE_RECEIVER_BVH;
   plan->fills = !abbe_profile_is_wyman2006(plan->desc.profile) &&
                 plan->desc.fill != ABBE_FILL_NONE &&
                 ((apart && !published) || (published && caustics));

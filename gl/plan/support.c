@@ -39,13 +39,6 @@ abbe_result abbe_support_pinholes(const abbe_scene *scene, const abbe_plan *plan
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the transport 'pinhole' follows light through at least one mirror or "
                           "refractor and at most 32, and not through the model 'layers'");
-  for (size_t i = 0; i < plan->receiver_count; i++)
-    if (plan->receiver_model[i] != ABBE_RECEIVER_EXACT)
-      return abbe_error_set(error, ABBE_UNSUPPORTED,
-                            "the transport 'pinhole' lights rectangles and boxes; the receiver "
-                            "'%s' (line %zu) is a mesh: take the transport 'photons'",
-                            scene->object[plan->receiver_object[i]].name,
-                            scene->object[plan->receiver_object[i]].line);
   return ABBE_OK;
 }
 

@@ -20,7 +20,7 @@ abbe_result abbe_support_roughness(const abbe_scene *scene, const abbe_plan *pla
 abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 
 /* What the transport by pinholes follows, in wand2003 and in the default profile: an environment,
- * mirrors or refractors, receivers that are rectangles. ABBE_UNSUPPORTED. */
+ * and mirrors or refractors. ABBE_UNSUPPORTED. */
 abbe_result abbe_support_pinholes(const abbe_scene *scene, const abbe_plan *plan,
                                   abbe_error *error);
 /* ABBE_UNSUPPORTED for what a published method does not know, where it is asked for. */

@@ -138,7 +138,7 @@ void abbe_gpu_scene_begin(abbe_gpu *gpu, const abbe_scene *local, double unit,
 
 static abbe_result make_geometry(abbe_gpu_scene *scene, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  if (scene->plan->tiles)
+  if (scene->plan->tiles || scene->plan->page_charts)
     result = abbe_receiver_charts_make(scene->local, scene->plan, &scene->charts, error);
   if (result == ABBE_OK) result = abbe_gpu_bvh_make(scene, error);
   if (result == ABBE_OK) result = abbe_gpu_meshes_upload(scene, error);

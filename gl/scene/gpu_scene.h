@@ -35,7 +35,7 @@ typedef struct abbe_gpu_scene {
   double unit;             /* its lights are in so many W; the environment is in W */
   const abbe_plan *plan;
   const abbe_map_layout *map_layout; /* the plan's, in these coordinates; NULL: none is given */
-  abbe_receiver_charts charts;       /* where the plan has tiles */
+  abbe_receiver_charts charts;       /* where the plan has tiles, or pages of meshes */
 
   double min[3], max[3], size; /* bounds of all objects, m, and their diagonal */
   double refractor_centre[3], refractor_radius;

@@ -27,6 +27,7 @@ typedef struct abbe_shader_variant {
   size_t volume_pages; /* of a light, in place of cells */
   bool haze;           /* in the air, or around the eye */
   bool pinholes;       /* receivers have pages of what these show */
+  bool page_charts;    /* also those that are meshes */
   bool copies;         /* a software rasteriser: tables are copied first (copies.glsl) */
   /* the picture */
   bool aovs;

@@ -165,7 +165,7 @@ struct Shading {
   vec3 direct, caustic, fill;  // radiance towards the viewer, by origin
 };
 
-// side: chart_side, where there are TILES.
+// side: chart_side, where there are CHART_SIDES.
 Shading shade(vec3 p, vec3 n, int surface, vec2 uv, int side) {
   Shading s;
   s.direct = s.caustic = vec3(0);
@@ -187,7 +187,7 @@ Shading shade(vec3 p, vec3 n, int surface, vec2 uv, int side) {
   s.fill += reflection_of(surface, share, LIGHTS + 1) * soft_irradiance(n) / PI;
 #endif
 #ifdef PINHOLES
-  s.caustic += reflection_of(surface, share, LIGHTS + 1) * pinhole_irradiance(p, n, surface) / PI;
+  s.caustic += reflection_of(surface, share, LIGHTS + 1) * pinhole_irradiance(p, n, surface, side) / PI;
 #endif
   return s;
 }

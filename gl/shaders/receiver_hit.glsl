@@ -55,8 +55,8 @@ int receiver_part(int receiver) {
   return receiver;
 }
 
-#ifdef TILES
-// The side of a receiver's chart at which light of direction d arrives, as tiles are found by it.
+#ifdef CHART_SIDES
+// The side of a receiver's chart at which light of direction d arrives, as tiles and pages are found by it.
 int chart_side(int receiver, vec3 d) {
   int chart = receiver;
   vec3 n = receivers[min(receiver, RECEIVER_ROOM - 1)].normal.xyz;

@@ -65,13 +65,17 @@ void abbe_point_grid_add(abbe_point_grid *grid, const double at[3], size_t numbe
 
 void abbe_point_grid_visit(const abbe_point_grid *grid, const double at[3], abbe_point_visit visit,
                            void *user) {
+  /* Its own cell first, then those beside it, where most points that are near are. */
+  static const int8_t order[27] = {13, 4,  10, 12, 14, 16, 22, 1, 3, 5,  7,  9,  11, 15,
+                                   17, 19, 21, 23, 25, 0,  2,  6, 8, 18, 20, 24, 26};
   int64_t middle[3];
   cell_of(grid, at, middle);
-  for (int i = 0; i < 27; i++) {
+  for (int k = 0; k < 27; k++) {
+    const int i = order[k];
     const int64_t cell[3] = {middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1,
                              middle[2] + i / 9 - 1};
     const uint64_t hash = hash_of(cell);
-    for (uint32_t k = grid->head[hash & grid->mask]; k != UINT32_MAX; k = grid->next[k])
-      if (grid->key[k] == (uint32_t)(hash >> 32) && !visit(user, k)) return;
+    for (uint32_t n = grid->head[hash & grid->mask]; n != UINT32_MAX; n = grid->next[n])
+      if (grid->key[n] == (uint32_t)(hash >> 32) && !visit(user, n)) return;
   }
 }

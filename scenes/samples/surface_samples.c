@@ -161,14 +161,18 @@ static size_t remove_neighbours(const abbe_surface_samples *s, double radius, bo
 
 typedef struct in_cell {
   int64_t cell[4]; /* the last: the octant of the normal's largest side, where sides are apart */
-  uint32_t number;
+  bool taken;
 } in_cell;
 
-static int by_cell(const void *a, const void *b) {
-  const in_cell *x = a, *y = b;
-  for (int k = 0; k < 4; k++)
-    if (x->cell[k] != y->cell[k]) return x->cell[k] < y->cell[k] ? -1 : 1;
-  return (x->number > y->number) - (x->number < y->number);
+/* A slot of the cell, or a free one, in a table of mask + 1. */
+static in_cell *find_cell(in_cell *table, size_t mask, const int64_t cell[4]) {
+  uint64_t h = 0;
+  for (int k = 0; k < 4; k++) {
+    h = (h ^ (uint64_t)cell[k]) * 0x9e3779b97f4a7c15u;
+    h ^= h >> 29;
+  }
+  while (table[h & mask].taken && memcmp(table[h & mask].cell, cell, sizeof table->cell) != 0) h++;
+  return &table[h & mask];
 }
 
 /* Which of two sides a normal shows: its largest component's sign. */
@@ -182,22 +186,23 @@ static int64_t side_of(const double n[3]) {
 /* As above, of cubes of an edge; the first candidate of each. */
 static size_t take_cells(const abbe_surface_samples *s, double edge, bool sided, size_t most,
                          uint32_t *kept) {
-  in_cell *all = malloc((s->candidate_count + 1) * sizeof *all);
-  size_t count = 0;
-  if (all == NULL) return SIZE_MAX;
-  for (size_t i = 0; i < s->candidate_count; i++) {
+  size_t room = 16, count = 0;
+  while (room < 2 * most + 2) room *= 2;
+  in_cell *table = calloc(room, sizeof *table);
+  if (table == NULL) return SIZE_MAX;
+  for (size_t i = 0; i < s->candidate_count && count <= most; i++) {
     const abbe_surface_point *p = &s->candidate[i];
-    for (int k = 0; k < 3; k++) all[i].cell[k] = (int64_t)floor(p->position[k] / edge);
-    all[i].cell[3] = sided ? side_of(p->normal) : 0;
-    all[i].number = (uint32_t)i;
-  }
-  qsort(all, s->candidate_count, sizeof *all, by_cell);
-  for (size_t i = 0; i < s->candidate_count; i++) {
-    if (i > 0 && memcmp(all[i].cell, all[i - 1].cell, sizeof all[i].cell) == 0) continue;
-    if (count < most) kept[count] = all[i].number;
+    int64_t cell[4];
+    for (int k = 0; k < 3; k++) cell[k] = (int64_t)floor(p->position[k] / edge);
+    cell[3] = sided ? side_of(p->normal) : 0;
+    in_cell *slot = find_cell(table, room - 1, cell);
+    if (slot->taken) continue;
+    memcpy(slot->cell, cell, sizeof cell);
+    slot->taken = true;
+    if (count < most) kept[count] = (uint32_t)i;
     count++;
   }
-  free(all);
+  free(table);
   return count;
 }
 
@@ -250,6 +255,8 @@ static abbe_result keep(abbe_surface_samples *s, const abbe_surface_sampling *sa
     free(kept);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu samples of surfaces", most);
   }
+  /* the sides of a body are at least two, however far neighbours reach */
+  if (count > most) count = most;
   s->count = count;
   for (size_t i = 0; i < count; i++) s->sample[i] = s->candidate[kept[i]];
   free(kept);

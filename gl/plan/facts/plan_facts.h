@@ -114,13 +114,14 @@ typedef struct abbe_plan {
                        the outside; on multi-refractor paths a number of its own */
 
   /* What follows from the facts above. */
-  bool tiles;     /* light may land where its light's map cannot hold it: receivers have tiles */
-  bool fills;     /* light is laid between wavelengths */
-  bool edges;     /* some refractor has facets: light ends at edges, and splats are cut finer */
-  bool lengths;   /* hits keep the length of their path inside: it tells what is absorbed at any
-                     wavelength */
-  bool draw_back; /* views show the back of refractors, too */
-  bool textured;  /* some receiver has a texture */
+  bool tiles;       /* light may land where its light's map cannot hold it: receivers have tiles */
+  bool page_charts; /* pinholes light receivers that are meshes: by their charts */
+  bool fills;       /* light is laid between wavelengths */
+  bool edges;       /* some refractor has facets: light ends at edges, and splats are cut finer */
+  bool lengths;     /* hits keep the length of their path inside: it tells what is absorbed at any
+                       wavelength */
+  bool draw_back;   /* views show the back of refractors, too */
+  bool textured;    /* some receiver has a texture */
   bool receiver_colours; /* dispersed light may fall on receivers in colours: tables say what they
                             reflect of its bands */
 

@@ -96,6 +96,7 @@ static void fill_in_pinholes(abbe_render_desc *d) {
   if (d->pinholes == 0) d->pinholes = ABBE_PLAN_PINHOLES;
   if (d->strategy == ABBE_SAMPLE_STRATEGY_AUTO) d->strategy = ABBE_SAMPLE_STRATEGY_NEIGHBOUR;
   if (d->footprint == ABBE_FOOTPRINT_AUTO) d->footprint = ABBE_FOOTPRINT_ON;
+  if (d->clusters == 0 && !abbe_profile_is_wand2003(d->profile)) d->clusters = ABBE_PLAN_CLUSTERS;
 }
 
 void abbe_render_desc_take_pinholes(abbe_render_desc *desc) {
@@ -170,6 +171,7 @@ static abbe_result check_counts(const abbe_render_desc *d, abbe_error *error) {
       {"the number of the light's views", d->faces, 0, ABBE_RENDER_CUBE_FACES},
       {"the low pass of the map", d->low_pass, 0, ABBE_RENDER_MAX_LOW_PASS},
       {"the number of pinholes", d->pinholes, 0, ABBE_SURFACE_MAX_SAMPLES},
+      {"the number of clusters", d->clusters, 0, ABBE_RENDER_MAX_CLUSTERS},
       {"the number of a picture's frames", d->history, 0, ABBE_RENDER_MAX_HISTORY},
   };
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
@@ -253,13 +255,17 @@ static abbe_result check_pinholes(const abbe_render_desc *d, abbe_error *error) 
                           "the transport '%s' does not go with the profile '%s'",
                           abbe_transport_name(d->transport), name);
   const bool asked = d->pinholes > 0 || d->strategy != ABBE_SAMPLE_STRATEGY_AUTO ||
-                     d->footprint != ABBE_FOOTPRINT_AUTO;
+                     d->footprint != ABBE_FOOTPRINT_AUTO || d->clusters > 0;
+  if (d->clusters > 0 && abbe_profile_is_wand2003(d->profile))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "clusters of pinholes go with the default profile, not with '%s'", name);
   if ((int)d->strategy < 0 || d->strategy >= ABBE_SAMPLE_STRATEGY_COUNT || (int)d->footprint < 0 ||
       d->footprint >= ABBE_FOOTPRINT_COUNT || (asked && !pinholes))
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "a number of pinholes, a strategy for them and footprints go with the "
-                          "transport 'pinhole', not with '%s'",
-                          abbe_transport_name(d->transport));
+    return abbe_error_set(
+        error, ABBE_INVALID_ARGUMENT,
+        "a number of pinholes, a strategy for them, footprints and clusters go with the "
+        "transport 'pinhole', not with '%s'",
+        abbe_transport_name(d->transport));
   return ABBE_OK;
 }
 

@@ -124,6 +124,7 @@ typedef enum abbe_model {
 #define ABBE_RENDER_MAX_ADAPTIVE 8 /* a side */
 #define ABBE_RENDER_MAX_ENVIRONMENT_LIGHTS 16
 #define ABBE_RENDER_MAX_LIGHT_POINTS 16
+#define ABBE_RENDER_MAX_CLUSTERS 1000000
 #define ABBE_RENDER_MAX_HISTORY 4   /* frames */
 #define ABBE_RENDER_MAX_LOW_PASS 32 /* texels */
 #define ABBE_RENDER_CUBE_FACES 6
@@ -141,6 +142,7 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 #define ABBE_PLAN_ENVIRONMENT_LIGHTS 4
 #define ABBE_PLAN_LIGHT_POINTS 8
 #define ABBE_PLAN_PINHOLES 256
+#define ABBE_PLAN_CLUSTERS 50
 /* Exits that are followed at the most, and the share of its light below which a path ends, where
  * the request leaves them open. */
 #define ABBE_PLAN_EXITS 8
@@ -191,6 +193,10 @@ typedef struct abbe_render_desc {
   /* Of the transport by pinholes alone: samples of all surfaces together, at most
    * ABBE_SURFACE_MAX_SAMPLES, 0: 256; how they are chosen, AUTO: neighbour. */
   size_t pinholes;
+  /* and, of the default profile: the least number of clusters of samples that make a hemisphere's
+   * light, 1 to ABBE_RENDER_MAX_CLUSTERS, with which there are none; 0: 50. A texel amid others is
+   * taken from these where they are off a line by one cluster's light at the most. */
+  size_t clusters;
   abbe_sample_strategy strategy;
   abbe_footprint footprint;
   abbe_direction direction; /* of wyman2006; in its twin direct alone */

@@ -393,7 +393,8 @@ static const pair pairs[] = {
      {RUNS_OF(CHOICE_LIGHT_MAP, "environment 1", "the light may meet a refractor"),
       RUNS(CHOICE_ENVIRONMENT,
            "the camera sees it whole; 1 directional lights, sharp, stand for the 100 % that stand "
-           "out of it; the rest lights receivers without shadows or caustics"),
+           "out of it; the rest lights receivers without shadows or caustics (--transport pinhole: "
+           "with)"),
       END}},
     {"an eye that looks past the refractor",
      ball,

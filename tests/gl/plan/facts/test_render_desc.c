@@ -36,9 +36,12 @@ static void what_is_left_open_gets_its_default(void **state) {
   assert_true(d.direction == ABBE_DIRECTION_DIRECT && d.fill == ABBE_FILL_POINTS);
   d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_WAND2003});
   assert_true(d.transport == ABBE_TRANSPORT_PINHOLE && d.pinholes == 256 && d.supersample == 1);
+  assert_int_equal(d.clusters, 0);
   assert_true(d.strategy == ABBE_SAMPLE_STRATEGY_NEIGHBOUR && d.footprint == ABBE_FOOTPRINT_ON);
   d = resolve(&(abbe_render_desc){0});
-  assert_true(d.transport == ABBE_TRANSPORT_PHOTONS && d.pinholes == 0);
+  assert_true(d.transport == ABBE_TRANSPORT_PHOTONS && d.pinholes == 0 && d.clusters == 0);
+  d = resolve(&(abbe_render_desc){.transport = ABBE_TRANSPORT_PINHOLE});
+  assert_true(d.pinholes == 256 && d.clusters == 50);
   d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_THESIS_CIE});
   assert_true(d.photons == 512 && d.fill == ABBE_FILL_SMEAR && d.max_nm == 780);
 }
@@ -98,6 +101,9 @@ static void limits_are_kept(void **state) {
       {{.fill = ABBE_FILL_QUADS}, "'quads'"},
       {{.pinholes = 5}, "go with the transport 'pinhole'"},
       {{.footprint = ABBE_FOOTPRINT_OFF}, "not with 'photons'"},
+      {{.clusters = 100}, "and clusters go with"},
+      {{.profile = ABBE_PROFILE_WAND2003, .clusters = 100}, "clusters of pinholes"},
+      {{.transport = ABBE_TRANSPORT_PINHOLE, .clusters = 1000001}, "clusters is 1000001"},
       {{.strategy = ABBE_SAMPLE_STRATEGY_GRID}, "a strategy for them"},
       {{.transport = ABBE_TRANSPORT_PINHOLE, .pinholes = 4097}, "pinholes is 4097"},
       {{.transport = ABBE_TRANSPORT_COUNT}, "'unknown'"},

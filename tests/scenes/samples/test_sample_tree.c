@@ -1,0 +1,196 @@
+/* Trees of samples: what is in them, and what cuts through them make of the irradiance that a
+ * mirror square of even light gives, against its closed form and the sum over all samples. */
+#include "tests/check.h"
+
+#include "scenes/geometry/vector.h"
+#include "scenes/samples/sample_tree.h"
+#include "scenes/shapes/shape.h"
+
+#include <stdlib.h>
+
+static const double PI = 3.14159265358979323846;
+
+static void sample(const abbe_mesh *mesh, size_t count, abbe_sample_strategy strategy,
+                   abbe_surface_samples *out, abbe_sample_tree *tree) {
+  abbe_error error = {0};
+  const abbe_surface_sampling sampling = {count, strategy, 3, true, true};
+  assert_int_equal(abbe_surface_samples_make(&mesh, 1, &sampling, out, &error), ABBE_OK);
+  assert_int_equal(abbe_sample_tree_make(out, tree, &error), ABBE_OK);
+}
+
+static void assert_holds(const abbe_sample_node *node, const abbe_sample_node *below) {
+  double apart[3];
+  abbe_vector_subtract(below->at.position, node->at.position, apart);
+  assert_true(abbe_vector_length(apart) <= node->radius + 1e-12);
+  assert_true(abbe_vector_dot(below->at.normal, node->at.normal) >= node->cone - 1e-12);
+}
+
+/* What is right below a node sums to its area, and all that is below lies in its ball and cone. */
+static void check_node(const abbe_sample_tree *tree, size_t i) {
+  const abbe_sample_node *node = &tree->node[i];
+  double area = 0;
+  size_t children = 0;
+  for (size_t k = i + 1; k < node->next; k = tree->node[k].next, children++) {
+    assert_true(tree->node[k].next > k && tree->node[k].next <= node->next);
+    area += tree->node[k].area;
+    if (!node->cluster) assert_true(!tree->node[k].cluster && tree->node[k].sample == node->sample);
+  }
+  for (size_t k = i + 1; k < node->next; k++) assert_holds(node, &tree->node[k]);
+  assert_true(children == 0 || children == 2);
+  if (children == 2) assert_near(area, node->area, 1e-12 * node->area);
+}
+
+static void test_all_are_in_it_once(void **state) {
+  (void)state;
+  static const abbe_sample_strategy strategies[] = {
+      ABBE_SAMPLE_STRATEGY_RANDOM, ABBE_SAMPLE_STRATEGY_QUANTIZED, ABBE_SAMPLE_STRATEGY_NEIGHBOUR};
+  static const size_t counts[] = {1, 2, 90};
+  abbe_mesh ring = {0};
+  assert_int_equal(abbe_shape_ring(0.03, 0.008, 48, 24, &ring, NULL), ABBE_OK);
+  for (size_t k = 0; k < 9; k++) {
+    abbe_surface_samples s;
+    abbe_sample_tree tree;
+    sample(&ring, counts[k / 3], strategies[k % 3], &s, &tree);
+    size_t *met = calloc(s.count, sizeof *met);
+    double leaves = 0;
+    assert_int_equal(tree.node[0].next, tree.count);
+    for (size_t i = 0; i < tree.count; i++) {
+      check_node(&tree, i);
+      if (tree.node[i].next == i + 1) leaves += tree.node[i].area;
+    }
+    for (size_t i = 0; i < tree.count; i = tree.node[i].cluster ? i + 1 : tree.node[i].next) {
+      const abbe_sample_node *node = &tree.node[i];
+      if (node->cluster) continue;
+      met[node->sample]++;
+      assert_memory_equal(&node->at, &s.sample[node->sample], sizeof node->at);
+      assert_near(node->area, s.share[node->sample], 1e-15);
+    }
+    for (size_t i = 0; i < s.count; i++) assert_int_equal(met[i], 1);
+    assert_near(leaves, s.area, 1e-12);
+    free(met);
+    abbe_sample_tree_free(&tree);
+    abbe_surface_samples_free(&s);
+  }
+  abbe_mesh_free(&ring);
+}
+
+/* Clusters face one way: of a ball no node of less than a sixteenth holds two sides. */
+static void test_clusters_face_alike(void **state) {
+  (void)state;
+  abbe_mesh ball = {0};
+  abbe_surface_samples s;
+  abbe_sample_tree tree;
+  assert_int_equal(abbe_shape_sphere(0.02, 4, &ball, NULL), ABBE_OK);
+  sample(&ball, 256, ABBE_SAMPLE_STRATEGY_NEIGHBOUR, &s, &tree);
+  for (size_t i = 0; i < tree.count; i++)
+    if (tree.node[i].area < s.area / 15) assert_true(tree.node[i].cone > 0.3);
+  abbe_sample_tree_free(&tree);
+  abbe_surface_samples_free(&s);
+  abbe_mesh_free(&ball);
+}
+
+/* A square 2 a wide and parallel to the floor at a height, facing down. */
+static void make_roof(double a, double height, abbe_mesh *out) {
+  static const uint32_t face[2][3] = {{0, 2, 1}, {0, 3, 2}};
+  assert_int_equal(abbe_mesh_make(4, 2, false, out, NULL), ABBE_OK);
+  for (int i = 0; i < 4; i++) {
+    const double place[3] = {i == 1 || i == 2 ? a : -a, i > 1 ? a : -a, height},
+                 down[3] = {0, 0, -1};
+    memcpy(out->position[i], place, sizeof place);
+    memcpy(out->normal[i], down, sizeof down);
+  }
+  memcpy(out->face, face, sizeof face);
+}
+
+/* What a node gives a place x along the floor. */
+static double sent_by(const abbe_sample_node *node, double x) {
+  const double d[3] = {node->at.position[0] - x, node->at.position[1], node->at.position[2]};
+  const double d2 = abbe_vector_dot(d, d), up = d[2] / sqrt(d2);
+  return node->area * up * up / d2;
+}
+
+/* Nodes whose light is at most a share of a hemisphere's; share 0: the samples. bound: of the sum's
+ * difference to all samples. */
+static double cut(const abbe_sample_tree *tree, double x, double share, size_t *nodes,
+                  double *bound) {
+  double sum = 0;
+  *bound = 0;
+  *nodes = 0;
+  for (size_t i = 0; i < tree->count;) {
+    const abbe_sample_node *node = &tree->node[i];
+    const double d[3] = {node->at.position[0] - x, node->at.position[1], node->at.position[2]};
+    const double gap = fmax(abbe_vector_length(d) - node->radius, 0),
+                 most = node->area / (gap * gap);
+    if (node->cluster && !(most <= PI * share)) {
+      i++;
+      continue;
+    }
+    sum += sent_by(node, x);
+    if (node->cluster) *bound += most;
+    ++*nodes;
+    i = node->next;
+  }
+  return sum;
+}
+
+/* A quarter's corner straight above: 1/2 (X/sqrt(1+X2) atan(Y/sqrt(1+X2)) + ...) [Howell2021]; of a
+ * place x along an axis the square is a difference or sum of rectangles with a corner there. */
+static double from_corner(double a, double b, double h) {
+  const double x = a / h, y = b / h, p = sqrt(1 + x * x), q = sqrt(1 + y * y);
+  return 0.5 * (x / p * atan(y / p) + y / q * atan(x / q));
+}
+
+static void test_cuts(void **state) {
+  (void)state;
+  static const double places[] = {0, 0.1, 0.3, 1, 3};
+  const double a = 0.1, h = 0.15;
+  abbe_mesh roof = {0};
+  abbe_surface_samples s;
+  abbe_sample_tree tree;
+  make_roof(a, h, &roof);
+  sample(&roof, 256, ABBE_SAMPLE_STRATEGY_NEIGHBOUR, &s, &tree);
+  size_t before = SIZE_MAX;
+  for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
+    const double x = places[k];
+    const double right = 2 * (from_corner(x + a, a, h) - from_corner(x - a, a, h));
+    size_t all, few;
+    double none, bound, sum = 0;
+    for (size_t i = 0; i < tree.count; i = tree.node[i].cluster ? i + 1 : tree.node[i].next)
+      if (!tree.node[i].cluster) sum += sent_by(&tree.node[i], x);
+    const double whole = cut(&tree, x, 0, &all, &none);
+    const double clustered = cut(&tree, x, 1.0 / 200, &few, &bound);
+    print_message("at %.1f m: %.6f by %zu samples, %.6f by %zu nodes, %.6f; bound %.4f\n", x, whole,
+                  all, clustered, few, right, bound);
+    assert_true(whole == sum && none == 0);
+    assert_int_equal(all, s.count);
+    assert_true(fabs(clustered - whole) <= bound);
+    assert_near(clustered, right, PI / 200);
+    assert_near(whole, right, 0.01 * right);
+    assert_true(few <= before && few <= all);
+    before = few;
+  }
+  assert_true(before <= 2);
+  abbe_sample_tree_free(&tree);
+  abbe_surface_samples_free(&s);
+  abbe_mesh_free(&roof);
+}
+
+static void test_nothing(void **state) {
+  (void)state;
+  const abbe_surface_samples none = {0};
+  abbe_sample_tree tree;
+  assert_int_equal(abbe_sample_tree_make(&none, &tree, NULL), ABBE_OK);
+  assert_int_equal(tree.count, 0);
+  abbe_sample_tree_free(&tree);
+  abbe_sample_tree_free(NULL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_all_are_in_it_once),
+      cmocka_unit_test(test_clusters_face_alike),
+      cmocka_unit_test(test_cuts),
+      cmocka_unit_test(test_nothing),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
