@@ -1,34 +1,36 @@
-// What a line of light brings to the pixels that it crosses: of its length there what is scattered towards
-// the eye. A line covers one pixel of each column or row, whichever it has more of.
+// What a beam of light brings to a pixel: of its length there what is scattered towards the eye, and of that what
+// its light has there across.
 #include "common.glsl"
 #include "haze.glsl"
-in vec3 at;
-flat in vec3 power, end, way;
+#include "beam.glsl"
+uniform samplerBuffer beams;
+flat in int beam;
 uniform vec3 eye;
 uniform vec4 eye_view[6];
-uniform vec2 size;           // pixels
-uniform vec3 haze_around;    // as haze_air, of the medium that the eye is in
+uniform vec2 size;  // pixels
 uniform bool eye_in_air;
 layout(location = 0) out vec4 radiance;
 
 void main() {
-  vec3 from = at - eye;
-  float distance_m = length(from), first;
+  vec4 places = texelFetch(beams, beam), depths = texelFetch(beams, beam + 1), across = texelFetch(beams, beam + 2);
+  vec4 first = texelFetch(beams, beam + 3), last = texelFetch(beams, beam + 4), grows = texelFetch(beams, beam + 5);
+  vec2 along = places.zw - places.xy, from_first = gl_FragCoord.xy - places.xy;
+  float pixels = length(along), q = clamp(dot(from_first, along) / (pixels * pixels), 0.0, 1.0);
+  vec3 widths = mix(vec3(depths.z, across.xz), vec3(depths.w, across.yw), q);
+  float share = beam_share(widths, (along.x * from_first.y - along.y * from_first.x) / pixels);
+  // Depth is even along the segment, its inverse along the picture.
+  float z = 1.0 / mix(1.0 / depths.x, 1.0 / depths.y, q), length_m = distance(first.xyz, last.xyz);
+  vec3 at = mix(first.xyz, last.xyz, q * z / depths.y), way = (last.xyz - first.xyz) / length_m, from = at - eye;
+  float distance_m = length(from), unused;
   vec3 d = from / distance_m;
+  float metres = min(length_m / pixels * z * z / (depths.x * depths.y), distance_m);  // a pixel
   bool hazy = !eye_in_air || (all(greaterThan(at, haze_low)) && all(lessThan(at, haze_high)));
-  float seen_way = eye_in_air ? haze_way(eye, d, 0.0, distance_m, first) : distance_m;
-  float lost_way = distance(at, end);
-  if (eye_in_air) lost_way = haze_way(at, way, 0.0, lost_way, first);
-  vec3 forward = eye_view[3].xyz, right = eye_view[1].xyz, up = eye_view[2].xyz;
-  vec4 window = eye_view[4];
-  float z = dot(from, forward);
-  vec2 xy = vec2(dot(from, right), dot(from, up));
-  vec2 per_tangent = size / (window.yw - window.xz);
-  vec2 slope = (vec2(dot(way, right), dot(way, up)) * z - xy * dot(way, forward)) / (z * z) * per_tangent;
-  float length_m = 1.0 / max(max(abs(slope.x), abs(slope.y)), 1e-20);
-  length_m = min(length_m, distance_m);  // of a line towards the eye no more than is near
+  float seen_way = eye_in_air ? haze_way(eye, d, 0.0, distance_m, unused) : distance_m;
+  float lost_way = distance(at, last.xyz);
+  if (eye_in_air) lost_way = haze_way(at, way, 0.0, lost_way, unused);
+  vec2 per_tangent = size / (eye_view[4].yw - eye_view[4].xz);
   float cosine = z / distance_m, measure = cosine * cosine * cosine / (per_tangent.x * per_tangent.y);
-  float share = haze_around.x * haze_phase(haze_around.z, -dot(way, d)) * length_m /
-                (distance_m * distance_m * measure) * exp(haze_around.y * (lost_way - seen_way));
-  radiance = hazy ? vec4(power * share, 0) : vec4(0);
+  float scattered = share * metres * haze_phase(haze_g, -dot(way, d)) / (distance_m * distance_m * measure);
+  vec3 light_there = vec3(first.w, last.w, grows.w) * exp(grows.xyz * lost_way - haze_takes * seen_way);
+  radiance = hazy ? vec4(haze_scatters * light_there * scattered, 0) : vec4(0);
 }

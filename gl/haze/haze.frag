@@ -1,11 +1,10 @@
-// What haze leaves of what the eye sees, in alpha; IN_AIR: and the light that lamps send straight to it on
-// the eye's way, added to the lines of light.
+// The eye's way through haze, metres, in alpha; IN_AIR: and the light that lamps send straight to it on that way,
+// added to the beams of light.
 #include "refractor.glsl"
 #include "receiver.glsl"
 uniform sampler2D picture;  // w: distance from the eye, 0: nothing is there
 uniform vec4 eye_view[6];
 uniform vec2 size;  // pixels
-uniform vec3 haze_around;  // as haze_air, of the medium that the eye is in
 layout(location = 0) out vec4 radiance;
 
 #ifdef IN_AIR
@@ -50,18 +49,19 @@ vec3 lamp_light(int light, vec3 o, vec3 d, float from, float to) {
   vec2 part = kind == 1 ? cone_part(l, o, d, from, to) : vec2(from, to);
   bool some = part.x < part.y;
   if (!some) part = vec2(from, to);
-  float sum = 0.0;
+  vec3 sum = vec3(0);
   for (int k = 0; k < STEPS_ALONG; k++) {
     vec2 place = place_along(l, o, d, part, k);
     vec3 p = o + place.x * d, way;
     float distance_m;
     light_to(l, p, way, distance_m);
     float falloff = kind == 2 ? 1.0 : 1.0 / (distance_m * distance_m);
-    float left = exp(-haze_air.y * (place.x - from)) * haze_left(p, -way, 0.0, kind == 2 ? HAZE_FAR : distance_m);
+    float left = haze_left(p, -way, 0.0, kind == 2 ? HAZE_FAR : distance_m);
     float e = light_profile(l, way) * falloff * left * haze_phase(haze_air.z, -dot(way, d)) * place.y;
-    if (e > 0.0 && receiver_lit(light, p, way, distance_m)) sum += e * refractor_shadow(light, p, way, distance_m);
+    if (e > 0.0 && receiver_lit(light, p, way, distance_m))
+      sum += e * refractor_shadow(light, p, way, distance_m) * exp(-haze_takes * (place.x - from));
   }
-  return some ? l.white.rgb * (l.white.w * haze_air.x * sum) : vec3(0);
+  return some ? l.white.rgb * haze_scatters * (l.white.w * sum) : vec3(0);
 }
 
 #endif
@@ -77,5 +77,5 @@ void main() {
 #define SHINE_ON_WAY(i) rgb += lamp_light(i, o, d, from, from + way);
   OF_LIGHTS(SHINE_ON_WAY)
 #endif
-  radiance = vec4(way > 0.0 ? rgb : vec3(0), exp(-haze_around.y * way));
+  radiance = vec4(way > 0.0 ? rgb : vec3(0), way);
 }

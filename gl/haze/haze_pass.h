@@ -1,21 +1,21 @@
 /* haze_pass.h: haze over the finished picture: what it leaves of what the eye sees, the light that
- * lamps send straight to the eye's way, and lines of the light that refractors and mirrors throw.
+ * lamps send straight to the eye's way, and beams of the light that refractors and mirrors throw.
  * Scattered once, along the eye's own ray up to the first surface; nothing behind it. Internal to
  * gl/.
  */
 #ifndef ABBE_GL_HAZE_HAZE_PASS_H
 #define ABBE_GL_HAZE_HAZE_PASS_H
 
-#include "gl/caustics/caustics.h"
+#include "gl/beams/beam_list.h"
 #include "gl/eye/picture.h"
 
 /* Zeroed: there is no haze. */
 typedef struct abbe_haze_pass {
   abbe_picture *picture;
-  abbe_caustics *caustics;            /* NULL: no light meets a refractor */
-  GLuint over, shine, line, occluder; /* programs */
+  abbe_caustics *caustics; /* NULL: no light meets a refractor */
+  GLuint over, shine, draw_beams, occluder; /* programs */
   GLuint scattered, depth;            /* textures of the picture's pixels */
-  GLuint colours;                     /* buffer: [light views][wavelengths] x RGB of unit power */
+  abbe_beam_list beams;
 } abbe_haze_pass;
 
 /* Nothing where the plan has no haze. ABBE_GL, ABBE_NO_MEMORY, errors of abbe_weights_make_by. */

@@ -251,8 +251,11 @@ static void set_haze(const abbe_gpu_scene *scene, GLuint program) {
   gl->Uniform3f(gl->GetUniformLocation(program, "haze_high"), high[0], high[1], high[2]);
   gl->Uniform3f(gl->GetUniformLocation(program, "haze_air"), (GLfloat)h->scattering,
                 (GLfloat)(h->scattering + h->absorption), (GLfloat)h->g);
-  gl->Uniform3f(gl->GetUniformLocation(program, "haze_around"), (GLfloat)eye->scattering,
-                (GLfloat)(eye->scattering + eye->absorption), (GLfloat)eye->g);
+  gl->Uniform3f(gl->GetUniformLocation(program, "haze_scatters"), (GLfloat)eye->scatters[0],
+                (GLfloat)eye->scatters[1], (GLfloat)eye->scatters[2]);
+  gl->Uniform3f(gl->GetUniformLocation(program, "haze_takes"), (GLfloat)eye->takes[0],
+                (GLfloat)eye->takes[1], (GLfloat)eye->takes[2]);
+  abbe_gpu_set_float(scene->gpu, program, "haze_g", eye->g);
   abbe_gpu_set_int(scene->gpu, program, "eye_in_air", scene->plan->eye_in_air);
 }
 

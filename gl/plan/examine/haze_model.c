@@ -2,28 +2,88 @@
 
 #include "colorimetry/weights.h"
 
-/* Means over the plan's range, by the Y of the first light, or of the environment. */
-static abbe_plan_haze mean_of(const abbe_scene *scene, const abbe_plan *plan,
-                              const abbe_medium *m) {
-  enum { STEPS = 80 };
-  const double min = plan->desc.min_nm, step = (plan->desc.max_nm - min) / STEPS;
-  abbe_plan_haze out = {0};
-  if (m == NULL) return out;
-  abbe_weights_range range;
+#include <math.h>
+
+enum { STEPS = 80 };
+
+/* A medium, or a refractor with what is in it. */
+typedef struct region {
+  const abbe_medium *medium; /* NULL: clear */
+  const abbe_object *object; /* NULL: the air */
+} region;
+
+static double scattering_at(const region *r, double nm) {
+  return abbe_medium_scattering(r->medium, nm);
+}
+
+static double absorption_at(const region *r, double nm) {
+  return abbe_medium_absorption(r->medium, nm) +
+         (r->object != NULL ? abbe_material_attenuation(r->object->material, nm) : 0);
+}
+
+/* Half of its diagonal. */
+static double size_of(const region *r) {
+  const double *min = r->object != NULL ? r->object->min : r->medium->min;
+  const double *max = r->object != NULL ? r->object->max : r->medium->max;
+  double square = 0;
+  for (int k = 0; k < 3; k++) square += (max[k] - min[k]) * (max[k] - min[k]);
+  return 0.5 * sqrt(square);
+}
+
+/* Means by Y. */
+static void fill_means(const region *r, const abbe_weights_range *range, double step,
+                       abbe_plan_haze *out) {
   double total = 0;
-  abbe_weights_range_make_by(plan->desc.observer, abbe_scene_illuminant(scene), min,
-                             plan->desc.max_nm, &range);
   for (int i = 0; i < STEPS; i++) {
     double xyz[3];
-    abbe_weights_range_xyz(&range, min + i * step, min + (i + 1) * step, xyz);
-    const double weight = xyz[1] + 1e-9, at = min + (i + 0.5) * step;
-    out.scattering += weight * abbe_medium_scattering(m, at);
-    out.absorption += weight * abbe_medium_absorption(m, at);
+    const double from = range->min_nm + i * step, at = from + 0.5 * step;
+    abbe_weights_range_xyz(range, from, from + step, xyz);
+    const double weight = xyz[1] + 1e-9;
+    out->scattering += weight * scattering_at(r, at);
+    out->absorption += weight * absorption_at(r, at);
     total += weight;
   }
-  out.scattering /= total;
-  out.absorption /= total;
-  out.g = m->g;
+  out->scattering /= total;
+  out->absorption /= total;
+}
+
+/* Of each primary what it loses of white light on a usual way: as far as light goes, within the
+ * region. */
+static void fill_colours(const region *r, const abbe_weights_range *range, double step,
+                         abbe_rgb_space space, abbe_plan_haze *out) {
+  const double mean = out->scattering + out->absorption;
+  const double way = fmax(fmin(size_of(r), mean > 0 ? 1 / mean : INFINITY), 1e-9);
+  double matrix[9], white[3] = {0}, left[3] = {0}, scattered[3] = {0};
+  abbe_rgb_space_from_xyz(space, matrix);
+  for (int i = 0; i < STEPS; i++) {
+    double xyz[3], rgb[3];
+    const double from = range->min_nm + i * step, at = from + 0.5 * step;
+    const double scattering = scattering_at(r, at), takes = scattering + absorption_at(r, at);
+    abbe_weights_range_xyz(range, from, from + step, xyz);
+    abbe_rgb_space_apply(matrix, xyz, rgb);
+    for (int k = 0; k < 3; k++) {
+      white[k] += rgb[k];
+      scattered[k] += rgb[k] * scattering;
+      left[k] += rgb[k] * exp(-takes * way);
+    }
+  }
+  for (int k = 0; k < 3; k++) {
+    const bool told = white[k] > 0 && left[k] > 1e-6 * white[k];
+    out->scatters[k] = white[k] > 0 ? fmax(scattered[k] / white[k], 0) : out->scattering;
+    out->takes[k] = told ? fmax(-log(left[k] / white[k]) / way, 0) : mean;
+  }
+}
+
+/* Under the first light, or the environment. */
+static abbe_plan_haze haze_of(const abbe_scene *scene, const abbe_plan *plan, const region *r) {
+  const double min = plan->desc.min_nm, max = plan->desc.max_nm, step = (max - min) / STEPS;
+  abbe_plan_haze out = {0};
+  if (r->medium == NULL && r->object == NULL) return out;
+  abbe_weights_range range;
+  abbe_weights_range_make_by(plan->desc.observer, abbe_scene_illuminant(scene), min, max, &range);
+  fill_means(r, &range, step, &out);
+  fill_colours(r, &range, step, plan->desc.space, &out);
+  out.g = r->medium != NULL ? r->medium->g : 0;
   return out;
 }
 
@@ -32,8 +92,12 @@ void abbe_haze_model_choose(const abbe_scene *scene, abbe_plan *plan) {
   plan->hazy = abbe_scene_is_hazy(scene);
   if (!plan->hazy) return;
   plan->eye_in_air = around == NULL;
-  plan->air_haze = mean_of(scene, plan, scene->medium);
-  plan->eye_haze = plan->eye_in_air ? plan->air_haze : mean_of(scene, plan, around->medium);
+  const region air = {.medium = scene->medium};
+  plan->air_haze = haze_of(scene, plan, &air);
+  plan->eye_haze = plan->air_haze;
+  if (around == NULL) return;
+  const region eye = {.medium = around->medium, .object = around};
+  plan->eye_haze = haze_of(scene, plan, &eye);
 }
 
 void abbe_haze_model_note(const abbe_scene *scene, abbe_plan *plan) {
@@ -47,10 +111,10 @@ void abbe_haze_model_note(const abbe_scene *scene, abbe_plan *plan) {
     abbe_plan_note(plan, "light from refractors is seen in haze as far as it lands on a receiver");
   if (plan->surrounded)
     abbe_plan_note(plan, "haze scatters the environment's lights, and not the rest of it");
-  const abbe_object *around = abbe_scene_around_eye(scene);
-  const double min = plan->desc.min_nm, max = plan->desc.max_nm;
-  if (abbe_medium_is_coloured(scene->medium, min, max) ||
-      (around != NULL && abbe_medium_is_coloured(around->medium, min, max)))
-    abbe_plan_note(plan, "haze is as for its mean over wavelengths under the first light, on the "
-                         "eye's ray and in the air");
+  const bool coloured =
+      abbe_medium_is_coloured(scene->medium, plan->desc.min_nm, plan->desc.max_nm);
+  if (coloured || (!plan->eye_in_air && plan->tinting))
+    abbe_plan_note(plan,
+                   "haze is as for its mean over wavelengths under the first light: on the eye's "
+                   "ray for each of red, green and blue, on light's way in the air for all");
 }

@@ -49,9 +49,11 @@ typedef struct abbe_light_view {
                      those through which no light reaches a refractor; without a cube, all */
 } abbe_light_view;
 
-/* A medium that scatters, one number for all wavelengths: 1/m, and the mean cosine. */
+/* A medium that scatters: means over wavelengths, 1/m, and the mean cosine; of the red, green and
+ * blue of white light in the picture's space what is scattered, and what is scattered and absorbed. */
 typedef struct abbe_plan_haze {
   double scattering, absorption, g;
+  double scatters[3], takes[3];
 } abbe_plan_haze;
 
 typedef struct abbe_plan {

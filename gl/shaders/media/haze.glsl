@@ -3,6 +3,9 @@
 const float HAZE_FAR = 1e9;  // beyond every box, m
 uniform vec3 haze_low, haze_high;  // of the air's, m
 uniform vec3 haze_air;             // scattering and extinction, 1/m, and the mean cosine
+// Of the medium that the eye is in, of red, green and blue: scattering and extinction, 1/m; the mean cosine.
+uniform vec3 haze_scatters, haze_takes;
+uniform float haze_g;
 
 // Metres of the part [from, to] of the way o + t d in the air's haze; where it begins.
 float haze_way(vec3 o, vec3 d, float from, float to, out float first) {

@@ -1,0 +1,335 @@
+// Lists the beams of a batch of hits: the light of a photon on its way from its last interface to where it
+// lands, as wide as its neighbours on the same path stand apart, and as the wavelengths do between which it lies.
+// Wavelengths that part by less than shows are one beam; an interval of others is several, each in the colour of
+// its own part of the band. Beams are listed as they lie in the picture (beam.glsl); IN_WORLD: as they lie in a
+// refractor's medium, to be added to its grid.
+layout(local_size_x = 256) in;
+#include "common.glsl"
+#include "thread.glsl"
+#include "photons.glsl"
+#include "path_list.glsl"
+#include "haze.glsl"
+#include "beam.glsl"
+layout(std430, binding = BINDING_PHOTON_OF_CELL) readonly buffer Slots { uint slot[]; };
+layout(std430, binding = BINDING_SPLATS) buffer Beams {
+  uint beam_count, beam_groups[3];
+  vec4 beam[];
+};
+uniform samplerBuffer hits;          // [photons][slots][stride] of two (outgoing_segment.glsl)
+uniform usamplerBuffer signatures;   // 0: no hit; TINTING: and the length of the path inside
+uniform samplerBuffer beam_colours;  // [light views][intervals][COLOURS] of unit power, in the picture's space
+#ifdef TINTING
+uniform samplerBuffer band_attenuation;  // photon_absorption.glsl
+uniform int band_first;
+#endif
+uniform int light, stride, sample_count, sample_first;
+uniform ivec2 grid;
+uniform uint chunks, chunk;  // only photons of this chunk
+uniform uint most;           // beams that the list has room for
+uniform int medium;  // the refractor that they are in, where they are not in the air
+#ifdef IN_WORLD
+uniform float cell_m;  // of the grid
+const bool in_air = false;
+#else
+uniform vec3 eye;
+uniform vec4 eye_view[6];
+uniform vec2 size;  // pixels
+uniform bool eye_in_air;
+#define in_air eye_in_air
+#endif
+
+const int PARTS = 8, COLOURS = PARTS + 2;  // an interval's parts, and both its halves
+const float NARROW = 0.35;                 // of the photons' distance: what wavelengths may part by unseen
+
+// A path at a wavelength.
+struct Node {
+  uint path;   // signature; 0: no hit
+  vec3 from, to;
+  float light;  // W at its end, of unit power
+  float per_m;  // what the medium takes
+};
+
+Node no_node() { return Node(0u, vec3(0), vec3(0), 0.0, 0.0); }
+
+Node node_at(uint path, int i) {
+  int hit = int(path) * stride + i;
+  vec4 landed = texelFetch(hits, 2 * hit);
+  Node n;
+  uvec4 signature = texelFetch(signatures, hit);
+  n.path = landed.w > 0.0 ? signature.x : 0u;
+  n.from = texelFetch(hits, 2 * hit + 1).xyz;
+  n.to = landed.xyz;
+  n.light = landed.w;
+#ifdef TINTING
+  int halves = 4 * (band_first + (light * REFRACTORS + int(signature.x & 255u)) * counts.wavelengths + sample_first + i);
+  float path_m = uintBitsToFloat(signature.y);
+  n.light *= 0.5 * (dot(exp(-path_m * texelFetch(band_attenuation, halves)), texelFetch(band_attenuation, halves + 1)) +
+                    dot(exp(-path_m * texelFetch(band_attenuation, halves + 2)), texelFetch(band_attenuation, halves + 3)));
+#endif
+  n.per_m = in_air ? haze_air.y : spectra[medium * counts.wavelengths + sample_first + i].y;
+  return n;
+}
+
+// What two rays differ by, at both ends.
+struct Apart {
+  vec3 from, to;
+};
+
+// To the neighbour on the same path, as if the two started a cell apart; zero if there is none.
+Apart step_to(ivec2 cell, ivec2 to, vec2 start, int order, int i, Node n) {
+  ivec2 c = cell + to;
+  bool there = all(greaterThanEqual(c, ivec2(0))) && all(lessThan(c, grid));
+  uint at = slot[there ? c.y * grid.x + c.x : 0];
+  there = there && at != 0u;
+  uint other = there ? at - 1u : 0u;
+  int hit = int(other * uint(counts.slots) + uint(order)) * stride + i;
+  there = there && texelFetch(signatures, hit).x == n.path;
+  vec2 between = vec2(to) + unpackSnorm2x16(photon_at[other].offset) - start;
+  float part = there ? 1.0 / max(dot(between, vec2(to)), 0.25) : 0.0;
+  return Apart(part * (texelFetch(hits, 2 * hit + 1).xyz - n.from), part * (texelFetch(hits, 2 * hit).xyz - n.to));
+}
+
+bool is_none(Apart a) { return a.from == vec3(0) && a.to == vec3(0); }
+
+// A cell's side: the mean of the steps to both neighbours, where both are.
+Apart side_of(Apart next, Apart last, float extent) {
+  float share = is_none(next) || is_none(last) ? extent : 0.5 * extent;
+  return Apart(share * (next.from - last.from), share * (next.to - last.to));
+}
+
+struct Cell {
+  Apart u, v;
+};
+
+// A side without neighbours is as the other, square to it.
+Cell cell_of(Photon photon, int order, int i, Node n) {
+  ivec2 at = ivec2(photon.cell & 0xffffu, photon.cell >> 16);
+  vec2 start = unpackSnorm2x16(photon.offset), extent = unpackUnorm2x16(photon.extent);
+  Apart step[4];
+  for (int k = 0; k < 4; k++) {
+    int on = 1 - (k & 2);
+    step[k] = step_to(at, (k & 1) == 0 ? ivec2(on, 0) : ivec2(0, on), start, order, i, n);
+  }
+  Cell c = Cell(side_of(step[0], step[2], extent.x), side_of(step[1], step[3], extent.y));
+  vec3 way = normalize(n.to - n.from);
+  bool no_u = is_none(c.u), no_v = is_none(c.v);
+  if (no_u) c.u = Apart(cross(way, c.v.from), cross(way, c.v.to));
+  if (no_v) c.v = Apart(cross(way, c.u.from), cross(way, c.u.to));
+  return c;
+}
+
+// Light that goes along one segment.
+struct Stretch {
+  vec3 from, to;
+  Apart parts;       // of its spectrum
+  vec3 first, last;  // W at its ends
+};
+
+// What red, green and blue lose a metre, as far as they tell: negative parts of colours may cross zero.
+vec3 losses_of(Stretch w, float length_m) {
+  float whole = dot(w.first, vec3(1)) / dot(w.last, vec3(1));
+  vec3 lost;
+  for (int k = 0; k < 3; k++) {
+    bool told = w.first[k] * w.last[k] > 0.0;
+    lost[k] = log(max(told ? w.first[k] / w.last[k] : whole, 1.0)) / max(length_m, 1e-30);
+  }
+  return in_air ? vec3(haze_air.y) : lost;
+}
+
+#ifdef IN_WORLD
+// How far rays part, in what the grid does not tell.
+float parting(Node at, Apart a, Cell cell) {
+  float from = max(NARROW * max(length(cell.u.from), length(cell.v.from)), cell_m);
+  float to = max(NARROW * max(length(cell.u.to), length(cell.v.to)), cell_m);
+  return max(length(a.from) / from, length(a.to) / to);
+}
+
+// Its ends, and a cell's sides at both, each with a part of the light at its end and of what it loses.
+void list_beam(Stretch w, Cell cell) {
+  vec3 grows = losses_of(w, distance(w.from, w.to));
+  uint at = atomicAdd(beam_count, 1u);
+  if (at >= most) return;
+  at *= uint(BEAM_TEXELS);
+  beam[at] = vec4(w.from, w.last.r);
+  beam[at + 1u] = vec4(w.to, w.last.g);
+  beam[at + 2u] = vec4(cell.u.from, w.last.b);
+  beam[at + 3u] = vec4(cell.u.to, grows.r);
+  beam[at + 4u] = vec4(cell.v.from, grows.g);
+  beam[at + 5u] = vec4(cell.v.to, grows.b);
+}
+#else
+// A segment in the picture, as far as it is before the eye.
+struct Line {
+  bool seen;
+  vec3 from, to;
+  vec2 part;  // of the whole, where it begins and ends
+  vec2 place[2];
+  vec2 depth;
+  vec2 normal;   // across it
+  float offset;  // pixels from the picture's axis to it
+};
+
+vec2 per_tangent() { return size / (eye_view[4].yw - eye_view[4].xz); }
+
+vec2 beside_axis(vec3 p) { return vec2(dot(p, eye_view[1].xyz), dot(p, eye_view[2].xyz)); }
+
+Line line_of(vec3 from, vec3 to) {
+  Line l;
+  float near = eye_view[5].x, a = dot(from - eye, eye_view[3].xyz), b = dot(to - eye, eye_view[3].xyz);
+  float cut = clamp((near - a) / (b == a ? 1e-20 : b - a), 0.0, 1.0);
+  l.seen = max(a, b) > near && distance(from, to) > 0.0;
+  l.part = vec2(a < near ? cut : 0.0, b < near ? cut : 1.0);
+  l.from = mix(from, to, l.part.x);
+  l.to = mix(from, to, l.part.y);
+  l.depth = max(mix(vec2(a), vec2(b), l.part), vec2(near));
+  vec2 p = beside_axis(l.from - eye) / l.depth.x, q = beside_axis(l.to - eye) / l.depth.y;
+  vec2 along = (q - p) * per_tangent();
+  float pixels = length(along);
+  vec2 way = pixels > 1e-3 ? along / pixels : vec2(1, 0);
+  l.normal = vec2(-way.y, way.x);
+  l.offset = dot(l.normal, p * per_tangent());
+  l.place[0] = (p - eye_view[4].xz) * per_tangent();
+  l.place[1] = (q - eye_view[4].xz) * per_tangent();
+  // Towards the eye it is a pixel long.
+  vec2 lacking = 0.5 * max(1.0 - pixels, 0.0) * way;
+  l.place[0] -= lacking;
+  l.place[1] += lacking;
+  return l;
+}
+
+// Pixels across the line at both its ends.
+vec2 widths_of(Line l, Apart a) {
+  vec3 first = mix(a.from, a.to, l.part.x), last = mix(a.from, a.to, l.part.y);
+  vec2 way = l.normal * per_tangent();
+  return vec2(dot(way, beside_axis(first)) - l.offset * dot(first, eye_view[3].xyz),
+              dot(way, beside_axis(last)) - l.offset * dot(last, eye_view[3].xyz)) /
+         l.depth;
+}
+
+// How far rays part, in what is not seen.
+float parting(Node at, Apart a, Cell cell) {
+  Line l = line_of(at.from, at.to);
+  vec2 w = abs(widths_of(l, a)), u = abs(widths_of(l, cell.u)), v = abs(widths_of(l, cell.v));
+  vec2 unseen = max(NARROW * max(u, v), vec2(1));
+  return max(w.x / unseen.x, w.y / unseen.y);
+}
+
+void list_beam(Stretch w, Cell cell) {
+  Line line = line_of(w.from, w.to);
+  vec2 u = widths_of(line, cell.u), v = widths_of(line, cell.v), s = widths_of(line, w.parts);
+  float length_m = distance(w.from, w.to);
+  vec3 way = (w.to - w.from) / max(length_m, 1e-30);
+  vec3 grows = losses_of(w, length_m);
+  float hidden_m = (1.0 - line.part.y) * length_m, first;
+  if (eye_in_air) hidden_m = haze_way(line.to, way, 0.0, hidden_m, first);
+  vec3 light_there = w.last * exp(grows * hidden_m);
+  float reach = max(beam_reach(vec3(u.x, v.x, s.x)), beam_reach(vec3(u.y, v.y, s.y)));
+  vec2 low = min(line.place[0], line.place[1]) - reach, high = max(line.place[0], line.place[1]) + reach;
+  bool shown = line.seen && all(lessThan(low, size)) && all(greaterThan(high, vec2(0)));
+  if (!shown) return;
+  uint at = atomicAdd(beam_count, 1u);
+  if (at >= most) return;
+  at *= uint(BEAM_TEXELS);
+  beam[at] = vec4(line.place[0], line.place[1]);
+  beam[at + 1u] = vec4(line.depth, u);
+  beam[at + 2u] = vec4(v, s);
+  beam[at + 3u] = vec4(line.from, light_there.r);
+  beam[at + 4u] = vec4(line.to, light_there.g);
+  beam[at + 5u] = vec4(grows, light_there.b);
+}
+#endif
+
+vec3 colour_of(int interval, int part) {
+  int intervals = max(counts.wavelengths - 1, 1);
+  return texelFetch(beam_colours, (light * intervals + clamp(interval, 0, intervals - 1)) * COLOURS + part).rgb;
+}
+
+// Wavelengths that are one beam: where the first and the last go, the mean way, and their light.
+struct Run {
+  Node first, last;
+  vec3 from, to;
+  float weight;
+  vec3 light_first, light_last;
+};
+
+Run run_from(Node n) { return Run(n, n, vec3(0), vec3(0), 0.0, vec3(0), vec3(0)); }
+
+void add(inout Run r, Node a, Node b, vec3 colour) {
+  vec3 from = 0.5 * (a.from + b.from), to = 0.5 * (a.to + b.to);
+  float light_w = 0.5 * (a.light + b.light), grown = exp(0.5 * (a.per_m + b.per_m) * distance(from, to));
+  float weight = light_w * max(dot(colour, vec3(1)), 1e-9);
+  r.from += weight * from;
+  r.to += weight * to;
+  r.weight += weight;
+  r.light_last += light_w * colour;
+  r.light_first += light_w * grown * colour;
+  r.last = b;
+}
+
+Stretch way_of_run(Run r) {
+  float w = 1.0 / max(r.weight, 1e-30);
+  return Stretch(w * r.from, w * r.to, Apart(r.last.from - r.first.from, r.last.to - r.first.to), r.light_first,
+                   r.light_last);
+}
+
+// Part k of so many between two nodes.
+Stretch way_of_part(Node a, Node b, int interval, int k, int parts) {
+  float share = 1.0 / float(parts), t = (float(k) + 0.5) * share;
+  vec3 colour = vec3(0);
+  for (int i = k * PARTS / parts; i < (k + 1) * PARTS / parts; i++) colour += colour_of(interval, i);
+  Stretch w;
+  w.from = mix(a.from, b.from, t);
+  w.to = mix(a.to, b.to, t);
+  w.parts = Apart(share * (b.from - a.from), share * (b.to - a.to));
+  w.last = mix(a.light, b.light, t) * colour;
+  w.first = w.last * exp(mix(a.per_m, b.per_m, t) * distance(w.from, w.to));
+  return w;
+}
+
+// A power of two.
+int parts_for(float parted) { return min(1 << int(ceil(log2(max(parted, 1.0)))), PARTS); }
+
+void list_path(uint path, Photon photon) {
+  int order = int(path % uint(counts.slots));
+  Node a = no_node(), b;
+  Cell cell, before;
+  Run run = run_from(a), done;
+  for (int i = 0; i <= sample_count; i++) {
+    b = node_at(path, min(i, sample_count - 1));
+    if (i == sample_count) b = no_node();
+    bool joined = a.path != 0u && a.path == b.path, within = i > 0 && i < sample_count;
+    int interval = sample_first + i - 1, parts = 0;
+    float parted = joined ? parting(a, Apart(b.from - a.from, b.to - a.to), cell) : 0.0;
+    bool one = joined && parted <= 1.0;
+    bool ends = !one || parting(a, Apart(b.from - run.first.from, b.to - run.first.to), cell) > 1.0;
+    vec3 half_a = colour_of(interval, PARTS), half_b = colour_of(interval, PARTS + 1);
+    if (!joined && within && a.path != 0u) add(run, a, a, half_a);
+    done = run;
+    before = cell;
+    if (ends) run = run_from(one ? a : b);
+    if (one) add(run, a, b, half_a + half_b);
+    if (joined && !one) parts = parts_for(parted);
+    if (!joined && b.path != 0u) {
+      cell = cell_of(photon, order, i, b);
+      if (within) add(run, b, b, half_b);
+      if (counts.wavelengths == 1) add(run, b, b, half_a + half_b);
+    }
+    for (int k = ends && done.weight > 0.0 ? -1 : 0; k < parts; k++) {
+      Stretch w;
+      if (k < 0)
+        w = way_of_run(done);
+      else
+        w = way_of_part(a, b, interval, k, parts);
+      list_beam(w, before);
+    }
+    a = b;
+  }
+}
+
+void main() {
+  uint listed = thread_number();
+  if (listed >= path_count) return;
+  uint path = path_list[listed];
+  Photon photon = photon_at[path / uint(counts.slots)];
+  if (photon.cell * 2654435761u % chunks == chunk) list_path(path, photon);
+}

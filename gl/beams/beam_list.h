@@ -1,0 +1,36 @@
+/* beam_list.h: beams of the light that refractors and mirrors throw: a hit's light on its way from
+ * its last interface, as wide as neighbouring photons and wavelengths stand apart. Photons are
+ * followed once more; beams are listed as they lie in a picture, or in the world. It draws nothing.
+ * Internal to gl/.
+ */
+#ifndef ABBE_GL_BEAMS_BEAM_LIST_H
+#define ABBE_GL_BEAMS_BEAM_LIST_H
+
+#include "gl/caustics/caustics.h"
+#include "gl/scene/camera_view.h"
+
+typedef struct abbe_beam_list {
+  abbe_caustics *caustics;
+  const abbe_camera_view *camera; /* NULL: in the world */
+  size_t medium;                  /* the refractor that beams are in, where they are not in air */
+  double cell_m;                  /* in the world: what is less than this apart is one beam */
+  GLuint program;
+  GLuint colours; /* buffer: [light views][intervals][parts and halves] x RGB of unit power */
+  GLuint beams;   /* a list, of `room` */
+  size_t room, chunks; /* the photons are listed in so many chunks */
+} abbe_beam_list;
+
+/* Into the struct whose first four fields are set. ABBE_GL, ABBE_NO_MEMORY. */
+abbe_result abbe_beam_list_make(const abbe_shader_variant *variant, abbe_beam_list *list,
+                                abbe_error *error);
+void abbe_beam_list_free(abbe_beam_list *list);
+
+/* What is done with so many beams that are listed. */
+typedef abbe_result (*abbe_beams_use)(void *user, size_t beams, abbe_error *error);
+
+/* Follows the photons of all lights, and has their beams used, list after list. Light layers are
+ * drawn by then. ABBE_GL, ABBE_NO_MEMORY, ABBE_CANCELLED. */
+abbe_result abbe_beam_list_run(abbe_beam_list *list, abbe_beams_use use, void *user,
+                               abbe_error *error);
+
+#endif
