@@ -322,7 +322,8 @@ void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
   light = mix_medium(light, scene->medium);
   MIX(light, part[ABBE_PART_SPECTRA]);
   if (plan->desc.transport == ABBE_TRANSPORT_PINHOLE) MIX(light, part[ABBE_PART_SURFACES]);
-  if (plan->rough) light = mix_powers(light, scene, plan); /* samples show lamps, too */
+  /* samples show lamps, too, and beams are in their colours */
+  if (plan->rough || plan->hazy) light = mix_powers(light, scene, plan);
   part[ABBE_PART_LIGHT] = light;
   part[ABBE_PART_EYE] = mix_eye(light, scene, plan);
   part[ABBE_PART_POWERS] = mix_powers(3, scene, plan);

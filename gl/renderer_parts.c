@@ -83,6 +83,7 @@ static void free_eye(abbe_renderer *r) {
 static void free_light(abbe_renderer *r) {
   abbe_published_free(&r->published);
   abbe_pinhole_pages_free(&r->pinholes);
+  abbe_shaft_grid_free(&r->shafts);
   abbe_caustics_free(&r->caustics);
   abbe_volume_light_free(&r->volume);
   abbe_spectral_map_free(&r->map);
@@ -121,6 +122,8 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
                ? abbe_caustics_make(&r->views, &r->layers, &r->atlas, &r->map, &r->variant,
                                     &r->caustics, error)
                : abbe_spectral_map_make(&r->views, &r->atlas, &r->variant, &r->map, error);
+  if (result == ABBE_OK)
+    result = abbe_shaft_grid_make(&r->caustics, &r->variant, &r->shafts, error);
   if (result != ABBE_OK) return result;
   return abbe_pinhole_pages_make(&r->scene, &r->variant, &r->pinholes, error);
 }
@@ -132,7 +135,8 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   variant.receiver_colours = r->plan.receiver_colours;
   abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);
   r->lighting = (abbe_lighting){&r->scene, &r->views,  &r->layers, &r->atlas,
-                                &r->map,   &r->camera, &r->volume, &r->pinholes};
+                                &r->map,   &r->camera, &r->volume, &r->pinholes,
+                                &r->shafts};
   abbe_result result = abbe_receivers_pass_make(&r->lighting, &variant, &r->receivers, error);
   if (result == ABBE_OK)
     result = abbe_refraction_pass_make(&r->lighting, &r->faces, &r->receivers, &variant, &r->kept,
@@ -248,6 +252,7 @@ static abbe_result draw_light(abbe_renderer *r, abbe_error *error) {
   abbe_result result = abbe_light_layers_run(&r->layers, error);
   if (r->plan.caustics && goes_on(r, result))
     result = abbe_caustics_run(&r->caustics, &r->untimed_ms, error);
+  if (goes_on(r, result)) result = abbe_shaft_grid_run(&r->shafts, error);
   if (goes_on(r, result)) result = abbe_pinhole_pages_run(&r->pinholes, error);
   return result;
 }

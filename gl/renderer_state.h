@@ -48,6 +48,7 @@ struct abbe_renderer {
   abbe_adaptive_pass adaptive;
   abbe_picture picture;
   abbe_haze_pass haze;
+  abbe_shaft_grid shafts;
   bool seen; /* the picture is drawn */
 
   GLuint baseline;   /* what abbe_renderer_baseline draws into; 0 before */

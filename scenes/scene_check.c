@@ -210,14 +210,15 @@ static abbe_result check_inside(const abbe_scene *scene, abbe_error *error) {
                           path_of(scene), around->name, around->line, sizes);
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *o = &scene->object[i];
-    const bool clear = !refracts(o) || (o->material->attenuation == NULL &&
-                                        !abbe_material_is_uniaxial(o->material));
+    const bool absorbs = refracts(o) && o->material->attenuation != NULL && o->medium == NULL;
+    const bool clear = !refracts(o) || (!absorbs && !abbe_material_is_uniaxial(o->material));
     if (clear || !abbe_object_contains(o, scene->camera.eye)) continue;
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%s: the camera's eye is inside the refractor '%s' (line %zu) of the "
-                          "material '%s', which %s; an eye may be inside clear glass or water",
+                          "material '%s', which %s; an eye may be inside clear glass or water, or "
+                          "what has a medium",
                           path_of(scene), o->name, o->line, o->material->name,
-                          o->material->attenuation != NULL ? "absorbs light" : "is a crystal");
+                          absorbs ? "absorbs light" : "is a crystal");
   }
   return ABBE_OK;
 }

@@ -76,5 +76,6 @@
 #define UNIT_WARPS 14
 #define UNIT_ENVIRONMENT 15
 #define UNIT_ENVIRONMENT_CUBE 16
+#define UNIT_SHAFTS 17
 
 #endif

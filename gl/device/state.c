@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-_Static_assert(UNIT_ENVIRONMENT_CUBE < ABBE_GL_STATE_UNITS,
+_Static_assert(UNIT_SHAFTS < ABBE_GL_STATE_UNITS,
                "the last unit keeps a caller's sampler");
 
 static void set_enables(const abbe_gl *gl) {

@@ -9,7 +9,7 @@
 
 /* Units from 0 on whose sampler objects are taken away: a sampler would override what a texture
  * says of its own filter. No pass uses further units (bindings.h). */
-#define ABBE_GL_STATE_UNITS 17
+#define ABBE_GL_STATE_UNITS 18
 
 /* Of the current context: every enable and every setting of rasterising, testing, blending and
  * pixel transfer as GL begins with it, but rows of pixels without padding and cube maps read across

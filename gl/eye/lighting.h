@@ -6,6 +6,7 @@
 
 #include "gl/caustics/spectral_map.h"
 #include "gl/light/light_layers.h"
+#include "gl/beams/shaft_grid.h"
 #include "gl/light/receiver_atlas.h"
 #include "gl/pinholes/pinhole_pages.h"
 #include "gl/scene/camera_view.h"
@@ -20,6 +21,7 @@ typedef struct abbe_lighting {
   const abbe_camera_view *camera;
   const abbe_volume_light *volume;
   const abbe_pinhole_pages *pinholes;
+  const abbe_shaft_grid *shafts;
 } abbe_lighting;
 
 /* The program is in use, everything is bound, the camera is told. */

@@ -31,13 +31,17 @@ vec3 mirror_spectrum(int r) {
 }
 #endif
 
+#ifdef SHAFTS
+#include "shafts.glsl"
+#endif
+
 uniform uint eye_inside;  // refractors that the eye is in, which are clear
 
 #ifdef ROUGH
 #include "rough_lamps.glsl"
 #endif
 
-// What w shows, times its share. What is not followed shows what the rest has shown.
+// What w shows, which has met an interface, times its share. What is not followed shows what the rest has shown.
 vec3 shown(PathState w) {
   PathState pending[PENDING];
   for (int k = 0; k < PENDING; k++) {
@@ -54,13 +58,14 @@ vec3 shown(PathState w) {
     bool met = next_interface(w, h), receiver;
     float t_min = w.inside == 0u ? -touch * refractor_bounds.w : 0.0;
     vec3 radiance = seen(w.p, w.d, SPREAD_OF(w), t_min, met ? h.hit.t : 1e30, receiver);
-#ifdef ABSORBING
-#ifdef HAZE
-    bool fades = segment > 0 || eye_inside == 0u;  // around the eye haze.comp does
-#else
-    const bool fades = true;
+#ifdef SHAFTS
+    if (w.inside != 0u && medium_of(w.inside) == shaft_refractor && (met || receiver)) {
+      float n = medium_n(eye_inside) / medium_n(w.inside), per_m = refractor_spectrum(shaft_refractor).y;
+      lamps += n * n * w.share * shafts_along(w.p, w.d, receiver ? seen_at : h.hit.t, per_m);
+    }
 #endif
-    if (w.inside != 0u && met && fades)
+#ifdef ABSORBING
+    if (w.inside != 0u && met)
       w.share *= exp(-(receiver ? seen_at : h.hit.t) * refractor_spectrum(medium_of(w.inside)).y);
 #endif
     if (met && !receiver) {

@@ -41,6 +41,7 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
       .rough = p->rough,
       .cubes = p->cubes,
       .haze = p->hazy,
+      .shafts = p->shafts,
       .pinholes = p->desc.transport == ABBE_TRANSPORT_PINHOLE,
       .page_charts = p->page_charts,
       .pixel_threads = !p->multi_refractor_paths ? 1
@@ -157,6 +158,7 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "ROUGH", v->rough);
   print_flag(to, "CUBES", v->cubes);
   print_flag(to, "HAZE", v->haze);
+  print_flag(to, "SHAFTS", v->shafts);
   print_flag(to, "PINHOLES", v->pinholes);
   print_flag(to, "PINHOLE_CHARTS", v->page_charts);
   print_flag(to, "CHART_SIDES", v->page_charts || v->tiles > 0);

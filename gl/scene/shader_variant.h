@@ -26,6 +26,7 @@ typedef struct abbe_shader_variant {
   abbe_region_kind volume_region;
   size_t volume_pages; /* of a light, in place of cells */
   bool haze;           /* in the air, or around the eye */
+  bool shafts;         /* in a medium, for bent rays */
   bool pinholes;       /* receivers have pages of what these show */
   bool page_charts;    /* also those that are meshes */
   bool copies;         /* a software rasteriser: tables are copied first (copies.glsl) */

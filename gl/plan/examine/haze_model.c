@@ -87,6 +87,20 @@ static abbe_plan_haze haze_of(const abbe_scene *scene, const abbe_plan *plan, co
   return out;
 }
 
+/* The first refractor whose medium the camera may look into through its surface, or see mirrored in
+ * it: light comes there by photons alone. */
+static void choose_shafts(const abbe_scene *scene, abbe_plan *plan) {
+  if (!plan->caustics || !plan->camera_sees_refractor || !plan->multi_refractor_paths) return;
+  for (size_t i = 0; i < plan->refractor_count && !plan->shafts; i++) {
+    const region r = {.object = &scene->object[plan->refractor_object[i]],
+                      .medium = scene->object[plan->refractor_object[i]].medium};
+    if (r.medium == NULL || plan->mirror[i]) continue;
+    plan->shafts = true;
+    plan->shaft_refractor = i;
+    plan->shaft_haze = haze_of(scene, plan, &r);
+  }
+}
+
 void abbe_haze_model_choose(const abbe_scene *scene, abbe_plan *plan) {
   const abbe_object *around = abbe_scene_around_eye(scene);
   plan->hazy = abbe_scene_is_hazy(scene);
@@ -95,6 +109,7 @@ void abbe_haze_model_choose(const abbe_scene *scene, abbe_plan *plan) {
   const region air = {.medium = scene->medium};
   plan->air_haze = haze_of(scene, plan, &air);
   plan->eye_haze = plan->air_haze;
+  choose_shafts(scene, plan);
   if (around == NULL) return;
   const region eye = {.medium = around->medium, .object = around};
   plan->eye_haze = haze_of(scene, plan, &eye);
@@ -104,9 +119,16 @@ void abbe_haze_model_note(const abbe_scene *scene, abbe_plan *plan) {
   if (!plan->hazy) return;
   abbe_plan_add(plan, ABBE_PASS_EYE_HAZE, "%s scatters %.3g of light a metre towards the eye",
                 plan->eye_in_air ? "the air" : "what the eye is in", plan->eye_haze.scattering);
-  abbe_plan_note(plan,
-                 "haze scatters light once, and on the eye's own ray up to what it meets "
-                 "first: what is scattered behind a refractor or seen in a mirror is left out");
+  if (plan->shafts)
+    abbe_plan_add_about(plan, ABBE_PASS_SHAFTS, plan->refractor_object[plan->shaft_refractor],
+                        scene->object[plan->refractor_object[plan->shaft_refractor]].name,
+                        "the camera may see into its medium by bent and mirrored rays");
+  abbe_plan_note(plan, plan->shafts
+                           ? "haze scatters light once; seen in a mirror, or behind a refractor that "
+                             "is clear, it is left out"
+                           : "haze scatters light once, and on the eye's own ray up to what it meets "
+                             "first: what is scattered behind a refractor or seen in a mirror is "
+                             "left out");
   if (plan->caustics)
     abbe_plan_note(plan, "light from refractors is seen in haze as far as it lands on a receiver");
   if (plan->surrounded)

@@ -25,6 +25,7 @@ extern "C" {
   X(SPECTRAL_MAP, LIGHT, "light: spectral map", p->caustics)                                       \
   X(GAP_FILL, LIGHT, "light: gap fill", p->fills)                                                  \
   X(PINHOLES, LIGHT, "light: pinholes", has_pinholes(p))                                           \
+  X(SHAFTS, LIGHT, "light: shafts", p->shafts)                                                     \
   X(EYE_RECEIVERS, EYE, "eye: receivers", true)                                                    \
   X(EYE_FRONT, EYE, "eye: refractor front", p->camera_sees_refractor)                              \
   X(EYE_BACK, EYE, "eye: refractor back", p->camera_sees_refractor && p->draw_back)                \

@@ -97,6 +97,9 @@ typedef struct abbe_plan {
   bool hazy;                 /* a medium scatters, or absorbs in the air; then: */
   bool eye_in_air;
   abbe_plan_haze air_haze, eye_haze; /* of the air, and of what the eye is in */
+  bool shafts;                       /* the camera may see into a medium by a bent ray; then: */
+  size_t shaft_refractor;            /* that it fills, among the refractors */
+  abbe_plan_haze shaft_haze;
 
   /* The scene's lights, and after them the views that cubes have more than one of. */
   size_t light_view_count;
