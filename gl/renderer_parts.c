@@ -122,7 +122,7 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
                ? abbe_caustics_make(&r->views, &r->layers, &r->atlas, &r->map, &r->variant,
                                     &r->caustics, error)
                : abbe_spectral_map_make(&r->views, &r->atlas, &r->variant, &r->map, error);
-  if (result == ABBE_OK)
+  if (result == ABBE_OK && r->plan.shafts)
     result = abbe_shaft_grid_make(&r->caustics, &r->variant, &r->shafts, error);
   if (result != ABBE_OK) return result;
   return abbe_pinhole_pages_make(&r->scene, &r->variant, &r->pinholes, error);
@@ -134,9 +134,8 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   variant.textured = r->plan.textured;
   variant.receiver_colours = r->plan.receiver_colours;
   abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);
-  r->lighting = (abbe_lighting){&r->scene, &r->views,  &r->layers, &r->atlas,
-                                &r->map,   &r->camera, &r->volume, &r->pinholes,
-                                &r->shafts};
+  r->lighting = (abbe_lighting){&r->scene,  &r->views,  &r->layers,   &r->atlas, &r->map,
+                                &r->camera, &r->volume, &r->pinholes, &r->shafts};
   abbe_result result = abbe_receivers_pass_make(&r->lighting, &variant, &r->receivers, error);
   if (result == ABBE_OK)
     result = abbe_refraction_pass_make(&r->lighting, &r->faces, &r->receivers, &variant, &r->kept,

@@ -117,7 +117,8 @@ static void set_hits(abbe_beam_list *list, size_t first, size_t count) {
   abbe_gpu_set_int(gpu, program, "sample_first", (int)first);
   abbe_gpu_set_int(gpu, program, "sample_count", (int)count);
   if (!plan->lengths) return;
-  const size_t coarse = trace->spectra->nodes, rows = plan->light_view_count * plan->refractor_count;
+  const size_t coarse = trace->spectra->nodes,
+               rows = plan->light_view_count * plan->refractor_count;
   abbe_gpu_bind_texels(gpu, program, "band_attenuation", 3, GL_RGBA32F,
                        trace->spectra->attenuation);
   abbe_gpu_set_int(gpu, program, "band_first",
@@ -162,8 +163,8 @@ static void list_chunk(abbe_beam_list *list, size_t light, const abbe_hit_batch 
                          c->views->light[light].photon_count * scene->plan->hit_slots, 1);
 }
 
-/* A chunk, with room for all of it; of the first there may be more chunks than before. Waits for the
- * device. */
+/* A chunk, with room for all of it; of the first there may be more chunks than before. Waits for
+ * the device. */
 static abbe_result list_whole(abbe_beam_list *list, size_t light, const abbe_hit_batch *b,
                               size_t chunk, size_t *beams, abbe_error *error) {
   abbe_gpu *gpu = scene_of(list)->gpu;

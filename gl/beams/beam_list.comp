@@ -41,6 +41,9 @@ uniform bool eye_in_air;
 const int PARTS = 8, COLOURS = PARTS + 2;  // an interval's parts, and both its halves
 const float NARROW = 0.35;                 // of the photons' distance: what wavelengths may part by unseen
 
+const float SMALL_ANGLE = 0.12;            // rad, that a cell's side is seen under at the most
+const int MOST_SPLITS = 8;
+
 // A path at a wavelength.
 struct Node {
   uint path;   // signature; 0: no hit
@@ -137,6 +140,8 @@ vec3 losses_of(Stretch w, float length_m) {
 }
 
 #ifdef IN_WORLD
+int splits(Stretch w, Cell cell) { return 1; }
+
 // How far rays part, in what the grid does not tell.
 float parting(Node at, Apart a, Cell cell) {
   float from = max(NARROW * max(length(cell.u.from), length(cell.v.from)), cell_m);
@@ -214,6 +219,13 @@ float parting(Node at, Apart a, Cell cell) {
   return max(w.x / unseen.x, w.y / unseen.y);
 }
 
+// Into how many parts a side a cell is split: near the eye it is more than a width in the picture.
+int splits(Stretch w, Cell cell) {
+  Line l = line_of(w.from, w.to);
+  vec2 widest = max(abs(widths_of(l, cell.u)), abs(widths_of(l, cell.v)));
+  return clamp(int(ceil(max(widest.x, widest.y) / (SMALL_ANGLE * per_tangent().y))), 1, MOST_SPLITS);
+}
+
 void list_beam(Stretch w, Cell cell) {
   Line line = line_of(w.from, w.to);
   vec2 u = widths_of(line, cell.u), v = widths_of(line, cell.v), s = widths_of(line, w.parts);
@@ -238,6 +250,20 @@ void list_beam(Stretch w, Cell cell) {
   beam[at + 5u] = vec4(grows, light_there.b);
 }
 #endif
+
+Apart part_of(Apart a, float share) { return Apart(share * a.from, share * a.to); }
+
+void list_splits(Stretch w, Cell cell) {
+  int n = splits(w, cell);
+  float part = 1.0 / float(n);
+  Cell small = Cell(part_of(cell.u, part), part_of(cell.v, part));
+  for (int k = 0; k < n * n; k++) {
+    float u = float(k % n) - 0.5 * float(n - 1), v = float(k / n) - 0.5 * float(n - 1), share = part * part;
+    list_beam(Stretch(w.from + u * small.u.from + v * small.v.from, w.to + u * small.u.to + v * small.v.to, w.parts,
+                      share * w.first, share * w.last),
+              small);
+  }
+}
 
 vec3 colour_of(int interval, int part) {
   int intervals = max(counts.wavelengths - 1, 1);
@@ -320,7 +346,7 @@ void list_path(uint path, Photon photon) {
         w = way_of_run(done);
       else
         w = way_of_part(a, b, interval, k, parts);
-      list_beam(w, before);
+      list_splits(w, before);
     }
     a = b;
   }

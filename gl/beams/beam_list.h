@@ -15,8 +15,8 @@ typedef struct abbe_beam_list {
   size_t medium;                  /* the refractor that beams are in, where they are not in air */
   double cell_m;                  /* in the world: what is less than this apart is one beam */
   GLuint program;
-  GLuint colours; /* buffer: [light views][intervals][parts and halves] x RGB of unit power */
-  GLuint beams;   /* a list, of `room` */
+  GLuint colours;      /* buffer: [light views][intervals][parts and halves] x RGB of unit power */
+  GLuint beams;        /* a list, of `room` */
   size_t room, chunks; /* the photons are listed in so many chunks */
 } abbe_beam_list;
 

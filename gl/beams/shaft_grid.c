@@ -63,13 +63,10 @@ static abbe_result make_store(abbe_shaft_grid *grid, abbe_error *error) {
 abbe_result abbe_shaft_grid_make(abbe_caustics *caustics, const abbe_shader_variant *variant,
                                  abbe_shaft_grid *out, abbe_error *error) {
   const abbe_gpu_scene *scene = caustics->views->scene;
-  *out = (abbe_shaft_grid){0};
-  if (!scene->plan->shafts) return ABBE_OK;
-  out->scene = scene;
+  *out = (abbe_shaft_grid){.scene = scene};
   lay_out(out);
-  out->beams = (abbe_beam_list){.caustics = caustics,
-                                .medium = scene->plan->shaft_refractor,
-                                .cell_m = widest_cell(out)};
+  out->beams = (abbe_beam_list){
+      .caustics = caustics, .medium = scene->plan->shaft_refractor, .cell_m = widest_cell(out)};
   abbe_result result = abbe_beam_list_make(variant, &out->beams, error);
   if (result == ABBE_OK)
     result = abbe_gpu_compute(scene->gpu, "shaft_add.comp", NULL, &out->add, error);

@@ -18,7 +18,7 @@ typedef struct abbe_shaft_grid {
   double unit;            /* of sums, W m */
 } abbe_shaft_grid;
 
-/* ABBE_GL, ABBE_NO_MEMORY. */
+/* Of a plan that has shafts. ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_shaft_grid_make(abbe_caustics *caustics, const abbe_shader_variant *variant,
                                  abbe_shaft_grid *out, abbe_error *error);
 void abbe_shaft_grid_free(abbe_shaft_grid *grid);

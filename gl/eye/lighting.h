@@ -4,9 +4,9 @@
 #ifndef ABBE_GL_EYE_LIGHTING_H
 #define ABBE_GL_EYE_LIGHTING_H
 
+#include "gl/beams/shaft_grid.h"
 #include "gl/caustics/spectral_map.h"
 #include "gl/light/light_layers.h"
-#include "gl/beams/shaft_grid.h"
 #include "gl/light/receiver_atlas.h"
 #include "gl/pinholes/pinhole_pages.h"
 #include "gl/scene/camera_view.h"

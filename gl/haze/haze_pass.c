@@ -54,9 +54,8 @@ abbe_result abbe_haze_pass_make(abbe_picture *picture, abbe_caustics *caustics,
   if (result != ABBE_OK || out->caustics == NULL) return result;
   result = abbe_shader_variant_program(variant, gpu, beams, 2, NULL, &out->draw_beams, error);
   if (result == ABBE_OK) result = abbe_gpu_program(gpu, occluders, 2, NULL, &out->occluder, error);
-  out->beams = (abbe_beam_list){.caustics = caustics,
-                                .camera = lighting_of(out)->camera,
-                                .medium = around_eye(plan)};
+  out->beams = (abbe_beam_list){
+      .caustics = caustics, .camera = lighting_of(out)->camera, .medium = around_eye(plan)};
   return result == ABBE_OK ? abbe_beam_list_make(variant, &out->beams, error) : result;
 }
 
@@ -111,8 +110,8 @@ static abbe_result draw_listed(void *user, size_t beams, abbe_error *error) {
   abbe_lighting_use(lighting_of(pass), pass->draw_beams);
   abbe_gpu_bind_texels(scene->gpu, pass->draw_beams, "beams", BEAM_UNIT, GL_RGBA32F,
                        pass->beams.beams);
-  gl->Uniform2f(gl->GetUniformLocation(pass->draw_beams, "size"),
-                (GLfloat)scene->plan->desc.width, (GLfloat)scene->plan->desc.height);
+  gl->Uniform2f(gl->GetUniformLocation(pass->draw_beams, "size"), (GLfloat)scene->plan->desc.width,
+                (GLfloat)scene->plan->desc.height);
   gl->BindVertexArray(scene->gpu->empty_array);
   gl->Enable(GL_DEPTH_TEST);
   gl->DepthMask(GL_FALSE);

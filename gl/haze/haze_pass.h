@@ -12,9 +12,9 @@
 /* Zeroed: there is no haze. */
 typedef struct abbe_haze_pass {
   abbe_picture *picture;
-  abbe_caustics *caustics; /* NULL: no light meets a refractor */
+  abbe_caustics *caustics;                  /* NULL: no light meets a refractor */
   GLuint over, shine, draw_beams, occluder; /* programs */
-  GLuint scattered, depth;            /* textures of the picture's pixels */
+  GLuint scattered, depth;                  /* textures of the picture's pixels */
   abbe_beam_list beams;
 } abbe_haze_pass;
 

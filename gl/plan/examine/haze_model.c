@@ -123,14 +123,15 @@ void abbe_haze_model_note(const abbe_scene *scene, abbe_plan *plan) {
     abbe_plan_add_about(plan, ABBE_PASS_SHAFTS, plan->refractor_object[plan->shaft_refractor],
                         scene->object[plan->refractor_object[plan->shaft_refractor]].name,
                         "the camera may see into its medium by bent and mirrored rays");
-  abbe_plan_note(plan, plan->shafts
-                           ? "haze scatters light once; seen in a mirror, or behind a refractor that "
-                             "is clear, it is left out"
-                           : "haze scatters light once, and on the eye's own ray up to what it meets "
-                             "first: what is scattered behind a refractor or seen in a mirror is "
-                             "left out");
+  abbe_plan_note(
+      plan, plan->shafts ? "haze scatters light once; seen in a mirror, or behind a refractor that "
+                           "is clear, it is left out"
+                         : "haze scatters light once, and on the eye's own ray up to what it meets "
+                           "first: what is scattered behind a refractor or seen in a mirror is "
+                           "left out");
   if (plan->caustics)
-    abbe_plan_note(plan, "light from refractors is seen in haze as far as it lands on a receiver");
+    abbe_plan_note(plan, "light from refractors is seen in haze from its last interface as far as "
+                         "it lands on a receiver");
   if (plan->surrounded)
     abbe_plan_note(plan, "haze scatters the environment's lights, and not the rest of it");
   const bool coloured =

@@ -14,12 +14,12 @@ static const double index_of_water = 1.5, scattering = 0.8, g = 0.5, deep = 0.4;
   "camera: {" camera "}\n"                                                                         \
   "lights: [{name: sun, kind: directional, direction: [0, 0.5, -0.8660254], irradiance: 1}]\n"     \
   "objects:\n"                                                                                     \
-  "- {name: water, shape: water, size: [0.8, 0.8, 0.41], cells: 8, material: flat,\n"              \
+  "- {name: water, shape: water, size: [1.6, 1.6, 0.41], cells: 8, material: flat,\n"              \
   "   medium: {scattering: 0.8, g: 0.5}}\n"                                                        \
   "- {name: bottom, shape: rectangle, width: 4, height: 4, reflectance: 0,\n"                      \
   "   transform: [{translate: [0, 0, -0.4]}]}\n"                                                   \
   "- {name: side, shape: rectangle, width: 2, height: 0.56, reflectance: 0,\n"                     \
-  "   transform: [{rotate: {axis: [1, 0, 0], angle: 90}}, {translate: [0, -0.41, -0.22]}]}\n"
+  "   transform: [{rotate: {axis: [1, 0, 0], angle: 90}}, {translate: [0, -0.81, -0.22]}]}\n"
 
 static double green_of(const char *text) {
   abbe_scene scene;
@@ -54,28 +54,56 @@ static double passes(double outside) {
   return 1 - 0.5 * (rs * rs + rp * rp);
 }
 
-/* Radiance in the water on a way down from the surface, at that angle, in the plane of x: the sun's
- * light there, turned by the cosine. */
-static double scattered_on_way(double view) {
+/* Radiance in the water that is scattered along a unit way that runs from a depth for so many
+ * metres, its third component upwards. */
+static double scattered_along(const double d[3], double depth, double metres) {
   const double sun = pi / 6, way = inside_of(sun);
-  const double e = passes(sun) * cos(sun) / cos(way), turned = -cos(way) * cos(view);
-  const double slope = scattering * (1 + cos(view) / cos(way));
-  return e * scattering * abbe_medium_phase(g, turned) * -expm1(-slope * deep / cos(view)) / slope;
+  const double e = passes(sun) * cos(sun) / cos(way), turned = cos(way) * d[2] - sin(way) * d[1];
+  const double slope = scattering * (1 - d[2] / cos(way));
+  return e * scattering * abbe_medium_phase(g, turned) * exp(-scattering * depth / cos(way)) *
+         -expm1(-slope * metres) / slope;
 }
 
 /* By Snell's law and Fresnel's; radiance over the squared index stays. */
 static void from_above_through_flat_water(void **state) {
   (void)state;
   const double view = 25 * pi / 180;
-  const double exact = passes(view) * scattered_on_way(inside_of(view)) / pow(index_of_water, 2);
+  const double in = inside_of(view), d[3] = {-sin(in), 0, -cos(in)};
+  const double exact =
+      passes(view) * scattered_along(d, 0, deep / cos(in)) / pow(index_of_water, 2);
   const double drawn =
       green_of(BASIN("eye: [0.932615, 0, 2], target: [0, 0, 0], up: [0, 1, 0], fov: 2"));
+  print_message("from above: %.4f of the known light\n", drawn / exact);
   assert_near(drawn / exact, 1, 0.02);
+}
+
+/* Beyond the critical angle: what is scattered on the way up, and of what is mirrored that of the
+ * way down. The first is drawn as beams, the other told by the grid. */
+static void mirrored_in_its_surface(void **state) {
+  (void)state;
+  enum { SIDE = 40 };
+  const double view = 54 * pi / 180, half = tan(6 * pi / 180), high = 0.2;
+  double first = 0, second = 0;
+  for (int i = 0; i < SIDE * SIDE; i++) {
+    const double a = half * ((2 * (i % SIDE) + 1) / (double)SIDE - 1);
+    const double b = half * ((2 * (i / SIDE) + 1) / (double)SIDE - 1), l = sqrt(1 + a * a + b * b);
+    const double up[3] = {(sin(view) - a * cos(view)) / l, b / l, (cos(view) + a * sin(view)) / l};
+    const double down[3] = {up[0], up[1], -up[2]};
+    first += scattered_along(up, high, high / up[2]) / (SIDE * SIDE);
+    second +=
+        exp(-scattering * high / up[2]) * scattered_along(down, 0, deep / up[2]) / (SIDE * SIDE);
+  }
+  const double drawn = green_of(BASIN("eye: [-0.4, 0, -0.2], target: [-0.1247236, 0, 0], "
+                                      "up: [0, 1, 0], fov: 12, inside: true"));
+  print_message("mirrored: %.4f of the known light, of which %.3f on the way up\n",
+                drawn / (first + second), first / (first + second));
+  assert_near(drawn / (first + second), 1, 0.02);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(from_above_through_flat_water),
+      cmocka_unit_test(mirrored_in_its_surface),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -16,6 +16,10 @@ static void mist_is_a_fact(void **state) {
   assert_near(plan.air_haze.scattering, 2, 1e-9);
   assert_near(plan.air_haze.absorption, 0.5, 1e-9);
   assert_near(plan.eye_haze.g, 0.4, 0);
+  for (int k = 0; k < 3; k++) {
+    assert_near(plan.air_haze.scatters[k], 2, 1e-9);
+    assert_near(plan.air_haze.takes[k], 2.5, 1e-9);
+  }
   assert_true(abbe_plan_find(&plan, ABBE_PASS_EYE_HAZE, 0)->runs);
   assert_true(is_noted(&plan, "scatters light once"));
   assert_true(is_noted(&plan, "as far as it lands on a receiver"));
@@ -59,6 +63,24 @@ static void murky_glass_attenuates(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* Of white light red goes first; what is in the water is seen through its surface. */
+static void blue_water(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_plan plan;
+  load_file(ABBE_SOURCE_DIR "/scenes/water/shafts.yaml", &scene);
+  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+  const abbe_plan_haze *h = &plan.eye_haze;
+  assert_true(!plan.eye_in_air && h->absorption > 0.05 && h->absorption < 0.2);
+  assert_true(h->takes[0] > 1.5 * h->takes[2] && h->scatters[2] > h->scatters[0]);
+  assert_true(plan.shafts && plan.shaft_refractor == 0);
+  assert_memory_equal(&plan.shaft_haze, h, sizeof *h);
+  assert_true(abbe_plan_find(&plan, ABBE_PASS_SHAFTS, 0)->runs);
+  assert_true(is_noted(&plan, "mean over wavelengths"));
+  abbe_plan_free(&plan);
+  abbe_scene_free(&scene);
+}
+
 static void published_methods_refuse_it(void **state) {
   (void)state;
   abbe_render_desc desc = {.profile = ABBE_PROFILE_THESIS};
@@ -74,6 +96,7 @@ int main(void) {
       cmocka_unit_test(mist_is_a_fact),
       cmocka_unit_test(a_coloured_medium_is_its_mean),
       cmocka_unit_test(murky_glass_attenuates),
+      cmocka_unit_test(blue_water),
       cmocka_unit_test(published_methods_refuse_it),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
