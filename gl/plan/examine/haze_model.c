@@ -120,9 +120,9 @@ void abbe_haze_model_note(const abbe_scene *scene, abbe_plan *plan) {
   abbe_plan_add(plan, ABBE_PASS_EYE_HAZE, "%s scatters %.3g of light a metre towards the eye",
                 plan->eye_in_air ? "the air" : "what the eye is in", plan->eye_haze.scattering);
   if (plan->shafts)
-    abbe_plan_add_about(plan, ABBE_PASS_SHAFTS, plan->refractor_object[plan->shaft_refractor],
-                        scene->object[plan->refractor_object[plan->shaft_refractor]].name,
-                        "the camera may see into its medium by bent and mirrored rays");
+    abbe_plan_add(plan, ABBE_PASS_SHAFTS,
+                  "bent and mirrored rays of the camera may run through the medium of '%.40s'",
+                  scene->object[plan->refractor_object[plan->shaft_refractor]].name);
   abbe_plan_note(
       plan, plan->shafts ? "haze scatters light once; seen in a mirror, or behind a refractor that "
                            "is clear, it is left out"
