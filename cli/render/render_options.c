@@ -63,7 +63,9 @@ static const struct argp_option options[] = {
     {"upsample", OPTION_UPSAMPLE, "N", 0,
      "or a sample for N x N pixels, 1 to 4, and between samples: a draft (1)", 1},
     {"adaptive", OPTION_ADAPTIVE, "N", 0,
-     "N x N rays, 1 to 8, for a sample of a receiver where its light bends (4; thesis 1)", 1},
+     "N x N rays, 1 to 8, for a sample of a receiver where its light bends (4; thesis, and with "
+     "--upsample, 1)",
+     1},
     {"receiver-samples", OPTION_RECEIVER_SAMPLES, "N", 0,
      "samples of receivers a pixel side: as --samples, or 1 (as --samples; 1 of a volume with "
      "--adaptive above 1)",

@@ -193,6 +193,7 @@ static void list_eye(abbe_plan *plan) {
   else
     abbe_plan_add(plan, ABBE_PASS_EYE_ADAPTIVE, "%s",
                   abbe_profile_is_published(plan->desc.profile) ? knows_none(plan)
+                  : plan->desc.upsample > 1                     ? "none: samples are far apart"
                                                                 : "none, as asked");
   if (plan->camera_sees_refractor && plan->eye_exits > 1)
     abbe_plan_add(plan, ABBE_PASS_EYE_REFRACTION,

@@ -133,7 +133,8 @@ static void fill_in_defaults(size_t width, size_t height, abbe_render_desc *d) {
   if (d->supersample == 0) d->supersample = published || d->upsample > 1 ? 1 : ABBE_PLAN_SAMPLES;
   if (d->environment_lights == 0) d->environment_lights = ABBE_PLAN_ENVIRONMENT_LIGHTS;
   if (d->light_points == 0) d->light_points = ABBE_PLAN_LIGHT_POINTS;
-  if (d->adaptive == 0) d->adaptive = published ? 1 : ABBE_PLAN_ADAPTIVE;
+  /* Between far samples lies what their neighbours tell: rays over a sample's own area are no help. */
+  if (d->adaptive == 0) d->adaptive = published || d->upsample > 1 ? 1 : ABBE_PLAN_ADAPTIVE;
   if (d->fill == ABBE_FILL_AUTO)
     d->fill = thesis ? ABBE_FILL_SMEAR : published ? ABBE_FILL_NONE : ABBE_FILL_BRIDGE;
   if (d->energy_share == 0) d->energy_share = ABBE_PLAN_SHARE;

@@ -169,7 +169,7 @@ typedef struct abbe_render_desc {
   size_t supersample; /* 1 to 4 samples a pixel side; 0: 2 (thesis, and with upsample: 1) */
   size_t upsample;    /* or 1 to 4 pixels a sample side, and between samples; 0: 1 */
   /* rays a side for a sample of a receiver where its light bends, 1 to 8; 1: the sample alone; 0: 4
-   * (thesis: 1) */
+   * (thesis, and with upsample: 1) */
   size_t adaptive;
   /* samples of receivers a pixel side: as supersample, or 1 at a pixel's middle, refractors before
    * it having all of theirs; 0: 1 in a volume with adaptive rays, whose frames follow one another,

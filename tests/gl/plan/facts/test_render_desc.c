@@ -19,7 +19,7 @@ static void what_is_left_open_gets_its_default(void **state) {
   assert_true(d.wavelengths == 0 && d.exits == 0); /* the scene tells */
   assert_true(d.min_nm == 380 && d.max_nm == 780 && d.energy_share == 0.01);
   d = resolve(&(abbe_render_desc){.upsample = 3, .width = 7});
-  assert_true(d.supersample == 1 && d.width == 7);
+  assert_true(d.supersample == 1 && d.width == 7 && d.adaptive == 1);
   d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_THESIS});
   assert_true(d.photons == 512 && d.supersample == 1 && d.fill == ABBE_FILL_SMEAR);
   assert_true(d.max_nm == 680 && d.adaptive == 1);
