@@ -10,6 +10,9 @@ extern "C" {
  * machine's time. */
 double abbe_clock_seconds(void);
 
+/* Seconds that a processor has worked for the calling thread. */
+double abbe_clock_thread_seconds(void);
+
 /* Seconds since this process was started, to a hundredth, loading of its libraries included; where
  * the system does not tell, since some moment after. */
 double abbe_clock_process_seconds(void);

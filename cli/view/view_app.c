@@ -50,11 +50,13 @@ abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc
                              .ocio = desc->ocio,
                              .materials = desc->materials,
                              .volume = desc->volume_path,
+                             .wake = desc->wake,
                              .seen_s = -1,
                              .cancelled_s = -1};
   abbe_result result = abbe_view_state_begin(&app->state, desc->document, error);
   app->state.refine.last = desc->last;
   app->state.refine.single = desc->volume != NULL;
+  app->state.refine.ahead = desc->volume == NULL; /* else little is compiled */
   if (result == ABBE_OK) result = abbe_display_list(desc->ocio, &app->views, error);
   if (result == ABBE_OK) result = abbe_view_session_choose_view(app, 0, error);
   if (result == ABBE_OK) result = abbe_ui_make(error);
@@ -76,6 +78,7 @@ static void forget_files(abbe_view_session *app) {
 
 void abbe_view_app_end(abbe_view_session *app) {
   abbe_view_worker_free(app->worker);
+  abbe_view_ahead_free(&app->ahead);
   if (app->texture != 0) app->gl->DeleteTextures(1, &app->texture);
   abbe_ui_free();
   abbe_display_free(app->display);
@@ -130,29 +133,6 @@ static void replace(abbe_image *old, abbe_image *new) {
   *new = (abbe_image){0};
 }
 
-/* How far the rendered picture is from the traced one, and how sure that is, over the mean. The
- * errors of the three channels are taken as one. */
-static void compare(abbe_view_session *app) {
-  const abbe_image *a = &app->pictures.rendered, *b = &app->pictures.traced;
-  double mean = 0, off = 0, noise = 0;
-  size_t of_a[3], of_b[3], of_error[3];
-  app->against = app->noise = 0;
-  if (a->data == NULL || b->data == NULL || a->width != b->width || a->height != b->height) return;
-  if (!abbe_view_channels(a, "", of_a) || !abbe_view_channels(b, "", of_b) ||
-      !abbe_view_channels(b, "stderr", of_error))
-    return;
-  const size_t count = a->width * a->height;
-  for (size_t i = 0; i < count; i++) {
-    const double y = abbe_view_luminance(b, of_b, i);
-    mean += y;
-    off += pow(abbe_view_luminance(a, of_a, i) - y, 2);
-    noise += pow(abbe_view_luminance(b, of_error, i), 2);
-  }
-  if (!(mean > 0)) return;
-  app->against = sqrt(off / (double)count) / (mean / (double)count);
-  app->noise = sqrt(noise / (double)count) / (mean / (double)count);
-}
-
 static void take_rendered(abbe_view_session *app, abbe_view_result *result) {
   const bool mean = result->job.stage == ABBE_VIEW_MEAN;
   app->stage = result->job.stage;
@@ -196,6 +176,7 @@ static void take(abbe_view_session *app, abbe_view_result *result, double now_s)
   abbe_view_refine *refine = &app->state.refine;
   const bool moved = result->job.stage == ABBE_VIEW_MOVING;
   abbe_view_refine_end(refine, &result->job, result->outcome, result->ms, now_s);
+  if (result->outcome == ABBE_VIEW_UNCOMPILED) app->uncompiled = result->job;
   watch_files(app, result);
   if (result->news.outlined) abbe_view_state_learn(&app->state, &result->news.outline);
   if (result->outcome == ABBE_VIEW_REFUSED && result->job.serial == refine->serial)
@@ -215,7 +196,7 @@ static void take(abbe_view_session *app, abbe_view_result *result, double now_s)
     replace(&app->pictures.traced, &result->traced);
   } else
     take_rendered(app, result);
-  compare(app);
+  abbe_view_session_compare(app);
   app->stale = true;
 }
 
@@ -275,10 +256,24 @@ static void cancel_obsolete(abbe_view_session *app) {
   abbe_view_worker_cancel(app->worker);
 }
 
+/* What a stage waits for is compiled beside it. */
+static void compile_ahead(abbe_view_session *app) {
+  abbe_view_state *s = &app->state;
+  abbe_view_request request = {
+      .job = app->uncompiled, .width = s->width, .height = s->height, .reload = true};
+  if (abbe_view_ahead_take(&app->ahead)) abbe_view_refine_compiled(&s->refine, true);
+  if (!s->refine.compiling || !abbe_view_ahead_idle(&app->ahead)) return;
+  if (abbe_view_document_copy(abbe_view_history_now(&s->history), &request.document, NULL) !=
+          ABBE_OK ||
+      abbe_view_ahead_give(&app->ahead, app->materials, app->wake, &request, NULL) != ABBE_OK)
+    abbe_view_refine_compiled(&s->refine, false);
+}
+
 static void give(abbe_view_session *app, double now_s) {
   abbe_view_state *s = &app->state;
   abbe_view_request request = {.width = s->width, .height = s->height, .reload = app->reload};
   if (s->width == 0 || s->height == 0) return;
+  compile_ahead(app);
   if (!abbe_view_worker_idle(app->worker)) {
     cancel_obsolete(app);
     return;
@@ -480,7 +475,7 @@ double abbe_view_app_wait(abbe_view_session *app, double now_s) {
 
 bool abbe_view_app_rests(abbe_view_session *app, double now_s) {
   abbe_view_request request;
-  return abbe_view_worker_idle(app->worker) && !wants_map(app) && !wants_feed(app, &request) &&
-         !abbe_view_turn_wants(app, &request) &&
+  return abbe_view_worker_idle(app->worker) && abbe_view_ahead_idle(&app->ahead) &&
+         !wants_map(app) && !wants_feed(app, &request) && !abbe_view_turn_wants(app, &request) &&
          abbe_view_refine_wait(&app->state.refine, now_s) < 0;
 }

@@ -60,6 +60,8 @@ static void draw_head(abbe_view_session *app) {
   else
     snprintf(text, sizeof text, "%s", doing);
   abbe_ui_text(app->stage >= ABBE_VIEW_ACCURATE ? GREEN : DIM, text);
+  if (s->refine.compiling)
+    abbe_ui_text(DIM, "the next stage's shaders are compiled beside it, once on this machine");
   if (s->refusal[0] != '\0') abbe_ui_text(WARM, s->refusal);
   if (app->note[0] != '\0') abbe_ui_text(DIM, app->note);
 }

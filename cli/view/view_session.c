@@ -1,6 +1,7 @@
 #include "cli/view/view_session.h"
 
 #include "base/number.h"
+#include "cli/view/picture/view_show.h"
 #include "colorimetry/rgb_space.h"
 
 #include <math.h>
@@ -57,6 +58,27 @@ const abbe_view_feed *abbe_view_session_feed(const abbe_view_session *session) {
                         session->fed_pixel[0] == s->pixel[0] &&
                         session->fed_pixel[1] == s->pixel[1];
   return is_of_it ? session->feed : NULL;
+}
+
+void abbe_view_session_compare(abbe_view_session *session) {
+  const abbe_image *a = &session->pictures.rendered, *b = &session->pictures.traced;
+  double mean = 0, off = 0, noise = 0;
+  size_t of_a[3], of_b[3], of_error[3];
+  session->against = session->noise = 0;
+  if (a->data == NULL || b->data == NULL || a->width != b->width || a->height != b->height) return;
+  if (!abbe_view_channels(a, "", of_a) || !abbe_view_channels(b, "", of_b) ||
+      !abbe_view_channels(b, "stderr", of_error))
+    return;
+  const size_t count = a->width * a->height;
+  for (size_t i = 0; i < count; i++) {
+    const double y = abbe_view_luminance(b, of_b, i);
+    mean += y;
+    off += pow(abbe_view_luminance(a, of_a, i) - y, 2);
+    noise += pow(abbe_view_luminance(b, of_error, i), 2);
+  }
+  if (!(mean > 0)) return;
+  session->against = sqrt(off / (double)count) / (mean / (double)count);
+  session->noise = sqrt(noise / (double)count) / (mean / (double)count);
 }
 
 /* The largest of a spectrum, in standard errors. */

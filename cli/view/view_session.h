@@ -7,6 +7,7 @@
 
 #include "cli/view/picture/view_probe.h"
 #include "cli/view/view_ui.h"
+#include "cli/view/work/view_ahead.h"
 #include "cli/view/work/view_worker.h"
 #include "gl/device/api.h"
 
@@ -17,6 +18,8 @@
 typedef struct abbe_view_session {
   abbe_view_state state;
   abbe_view_worker *worker;
+  abbe_view_ahead ahead;
+  void (*wake)(void);
   const abbe_gl *gl;
   const char *keep, *ocio, *materials, *volume;
   abbe_display *display;
@@ -25,8 +28,9 @@ typedef struct abbe_view_session {
   char *scene[ABBE_VIEW_MOST_SCENES];
   size_t scene_count;
   abbe_view_job running;
-  bool looks;  /* that is no picture */
-  bool reload; /* at the next job */
+  abbe_view_job uncompiled; /* the one that waits for the compiler, or did last */
+  bool looks;               /* that is no picture */
+  bool reload;              /* at the next job */
   abbe_view_pictures pictures;
   abbe_view_result taken;     /* while it is looked at */
   abbe_view_result last;      /* of the last rendered picture: plan, statistics, settings */
@@ -77,6 +81,9 @@ bool abbe_view_session_value(const abbe_view_session *session, const char *name,
                              size_t size);
 /* What feeds the pixel that is picked, where that is known; else NULL. */
 const abbe_view_feed *abbe_view_session_feed(const abbe_view_session *session);
+/* How far the rendered picture is from the traced one, and how sure that is, over the mean. The
+ * errors of the three channels are taken as one. */
+void abbe_view_session_compare(abbe_view_session *session);
 /* FNV-1a of the bytes of the linear picture that stands. */
 unsigned long long abbe_view_session_hash(const abbe_view_session *session);
 

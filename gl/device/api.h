@@ -34,7 +34,9 @@ extern "C" {
   X(BLENDEQUATION, BlendEquation)                                                                  \
   X(BLENDFUNC, BlendFunc)                                                                          \
   X(BUFFERDATA, BufferData)                                                                        \
+  X(CLEARBUFFERSUBDATA, ClearBufferSubData)                                                        \
   X(CLIPCONTROL, ClipControl)                                                                      \
+  X(GETSTRINGI, GetStringi)                                                                        \
   X(COLORMASK, ColorMask)                                                                          \
   X(DEPTHRANGE, DepthRange)                                                                        \
   X(FRONTFACE, FrontFace)                                                                          \

@@ -1,15 +1,14 @@
 #include "gl/device/gpu.h"
 
 #include "base/clock.h"
-#include "gl/device/bindings.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 abbe_result abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *error) {
   out->gl = gl;
+  abbe_buffer_memory_begin(&out->memory, gl, out->software);
   gl->GenFramebuffers(1, &out->framebuffer);
   gl->GenVertexArrays(1, &out->empty_array);
   return abbe_gpu_compute(out, "list_groups.comp", NULL, &out->list_groups, error);
@@ -19,16 +18,22 @@ void abbe_gpu_free(abbe_gpu *gpu) {
   if (gpu->gl == NULL) return;
   gpu->gl->DeleteTextures(ABBE_GPU_TEXEL_UNITS, gpu->texels);
   abbe_gpu_store_free(&gpu->store, gpu->gl);
+  if (gpu->gl->Finish != NULL) { /* else the context may have its buffers still */
+    gpu->gl->Finish();
+    abbe_buffer_memory_free(&gpu->memory);
+  }
   gpu->gl->DeleteFramebuffers(1, &gpu->framebuffer);
   gpu->gl->DeleteVertexArrays(1, &gpu->empty_array);
   *gpu = (abbe_gpu){0};
 }
 
-static abbe_result allocate_buffer(const abbe_gl *gl, size_t size, const void *data, GLuint *out,
+static abbe_result allocate_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
                                    abbe_error *error) {
+  const abbe_gl *gl = gpu->gl;
   gl->GenBuffers(1, out);
+  const bool lent = data == NULL && abbe_buffer_memory_lend(&gpu->memory, gl, size, *out);
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *out);
-  gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)size, data, GL_DYNAMIC_COPY);
+  if (!lent) gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)size, data, GL_DYNAMIC_COPY);
   const abbe_result result = abbe_gl_check(gl, "the allocation of a buffer", error);
   if (result == ABBE_OK) return ABBE_OK;
   gl->DeleteBuffers(1, out);
@@ -50,10 +55,10 @@ abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, G
   }
   abbe_result result = abbe_gl_check(gl, "what came before a buffer was allocated", error);
   if (result != ABBE_OK) return result;
-  result = allocate_buffer(gl, room, size > 0 ? data : NULL, out, error);
+  result = allocate_buffer(gpu, room, size > 0 ? data : NULL, out, error);
   if (result == ABBE_NO_MEMORY) {
     abbe_gpu_make_way(gpu);
-    result = allocate_buffer(gl, room, size > 0 ? data : NULL, out, error);
+    result = allocate_buffer(gpu, room, size > 0 ? data : NULL, out, error);
   }
   if (result == ABBE_OK) result = abbe_gpu_store_add(&gpu->store, &key, *out, error);
   if (result == ABBE_OK) return ABBE_OK;
@@ -185,6 +190,7 @@ void abbe_gpu_drop_textures(abbe_gpu *gpu, size_t count, GLuint *texture) {
 
 void abbe_gpu_trim(abbe_gpu *gpu) {
   abbe_gpu_store_trim(&gpu->store, gpu->gl);
+  abbe_buffer_memory_sweep(&gpu->memory, gpu->gl, &gpu->store);
 }
 
 /* Texels hold their buffers. (Elsewhere they stay: Mesa's llvmpipe compiles what finds other texels
@@ -194,6 +200,7 @@ void abbe_gpu_make_way(abbe_gpu *gpu) {
   gpu->gl->DeleteTextures(ABBE_GPU_TEXEL_UNITS, gpu->texels);
   memset(gpu->texels, 0, sizeof gpu->texels);
   abbe_gpu_trim(gpu);
+  abbe_buffer_memory_shrink(&gpu->memory);
 }
 
 size_t abbe_gpu_program_count(const abbe_gpu *gpu) {
@@ -226,7 +233,8 @@ static char *program_text(const abbe_program_stage *stages, size_t count, const 
   return NULL;
 }
 
-/* A driver that knows the program takes a millisecond or so. The first one starts its compiler. */
+/* A driver that knows the program takes a millisecond or so of the processor's time, in which no
+ * other program of the machine counts. The first one starts its compiler. */
 static void tell_compiling(abbe_gpu *gpu, double ms) {
   static const double known_ms = 15;
   if (gpu->compiling == NULL || ms < known_ms || abbe_gpu_program_count(gpu) == 0) return;
@@ -244,9 +252,9 @@ abbe_result abbe_gpu_program(abbe_gpu *gpu, const abbe_program_stage *stages, si
   if (*out == 0 && !abbe_gpu_ask(gpu)) {
     result = abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
   } else if (*out == 0) {
-    const double start_ms = 1e3 * abbe_clock_seconds();
+    const double start_ms = 1e3 * abbe_clock_thread_seconds();
     result = abbe_program_make(gpu->gl, stages, count, defines, out, error);
-    tell_compiling(gpu, 1e3 * abbe_clock_seconds() - start_ms);
+    tell_compiling(gpu, 1e3 * abbe_clock_thread_seconds() - start_ms);
     if (result == ABBE_OK) result = abbe_gpu_store_add(&gpu->store, &key, *out, error);
     if (result != ABBE_OK) {
       gpu->gl->DeleteProgram(*out);
@@ -343,9 +351,21 @@ void abbe_gpu_bind_storage(abbe_gpu *gpu, GLuint binding, GLuint buffer) {
 
 void abbe_gpu_clear_buffer(abbe_gpu *gpu, GLuint buffer) {
   static const GLuint zero = 0;
-  gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
-  gpu->gl->ClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT,
-                           &zero);
+  enum { PIECE = 8 << 20 }; /* as much as is cleared in some milliseconds */
+  const abbe_gl *gl = gpu->gl;
+  const size_t bytes =
+      abbe_gpu_store_bytes_of(&gpu->store, ABBE_STORED_BUFFER, buffer) & ~(size_t)3;
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
+  if (gpu->progress == NULL || bytes <= PIECE) {
+    gl->ClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
+    return;
+  }
+  for (size_t at = 0; at < bytes && abbe_gpu_ask(gpu); at += PIECE) {
+    const size_t size = bytes - at < PIECE ? bytes - at : PIECE;
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer); /* whoever was asked may have drawn */
+    gl->ClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, (GLintptr)at, (GLsizeiptr)size,
+                           GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
+  }
 }
 
 void abbe_gpu_clear_list(abbe_gpu *gpu, GLuint list) {
@@ -391,96 +411,6 @@ abbe_result abbe_gpu_tell(abbe_gpu *gpu, double done, abbe_error *error) {
   gpu->done = done;
   if (abbe_gpu_ask(gpu)) return ABBE_OK;
   return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
-}
-
-/* What a part of the work takes where somebody watches, and how many groups, or rows of groups, the
- * first has. */
-static const double part_ms = 6;
-enum { FIRST_PART = 4, MOST_GROUPS = 65535 };
-
-/* The next part's size, after one of so many units of all took so long. By software one may take
- * far longer than those before it, so that a part has few; but no dispatch has more than some
- * hundred parts. A GPU runs a few units no faster than many. */
-static size_t next_part(const abbe_gpu *gpu, size_t units, size_t all, double ms) {
-  enum { FEW = 8, MOST_PARTS = 512 };
-  const double factor = fmin(fmax(part_ms / fmax(ms, 1e-3), 0.25), 2);
-  const double most = gpu->software ? fmax(FEW, (double)all / MOST_PARTS) : MOST_GROUPS;
-  return (size_t)fmin(fmax((double)units * factor, 1), fmin(most, MOST_GROUPS));
-}
-
-/* width: groups of a row, of which there are so many; 0: they are groups one after another. */
-static void dispatch_parts(abbe_gpu *gpu, GLuint program, size_t units, size_t width) {
-  const char *first = width > 0 ? "first_row" : "first_group";
-  const size_t step = width > 0 ? 16 : 1;
-  size_t part = FIRST_PART, at = 0;
-  gpu->gl->UseProgram(program);
-  while (at < units && abbe_gpu_ask(gpu)) {
-    const double start_ms = 1e3 * abbe_clock_seconds();
-    const size_t count = units - at < part ? units - at : part;
-    gpu->gl->UseProgram(program); /* whoever was asked may have drawn */
-    abbe_gpu_set_uint(gpu, program, first, at * step);
-    if (width > 0)
-      gpu->gl->DispatchCompute((GLuint)width, (GLuint)count, 1);
-    else
-      gpu->gl->DispatchCompute((GLuint)count, 1, 1);
-    gpu->gl->Finish();
-    at += count;
-    part = next_part(gpu, count, units, 1e3 * abbe_clock_seconds() - start_ms);
-  }
-  abbe_gpu_set_uint(gpu, program, first, 0);
-}
-
-void abbe_gpu_dispatch(abbe_gpu *gpu, GLuint program, size_t groups) {
-  const size_t rows = (groups + MOST_GROUPS - 1) / MOST_GROUPS;
-  if (gpu->progress != NULL)
-    dispatch_parts(gpu, program, groups, 0);
-  else if (groups > 0)
-    gpu->gl->DispatchCompute((GLuint)((groups + rows - 1) / rows), (GLuint)rows, 1);
-}
-
-/* One thread a texel; the shaders' groups are 32 x 16, large because a software rasteriser pays
- * for each. */
-void abbe_gpu_dispatch_2d(abbe_gpu *gpu, GLuint program, size_t width, size_t height) {
-  const size_t across = (width + 31) / 32, down = (height + 15) / 16;
-  if (gpu->progress != NULL)
-    dispatch_parts(gpu, program, down, across);
-  else
-    gpu->gl->DispatchCompute((GLuint)across, (GLuint)down, 1);
-}
-
-void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t first, size_t most,
-                            size_t threads) {
-  const abbe_gl *gl = gpu->gl;
-  if (gpu->progress != NULL) {
-    const size_t count = abbe_gpu_read_count(gpu, list), left = count > first ? count - first : 0;
-    const size_t elements = left < most ? left : most;
-    dispatch_parts(gpu, program, (elements * threads + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP, 0);
-  } else {
-    gl->UseProgram(gpu->list_groups);
-    abbe_gpu_set_uint(gpu, gpu->list_groups, "group_size", ABBE_GPU_GROUP);
-    abbe_gpu_set_uint(gpu, gpu->list_groups, "first", first);
-    abbe_gpu_set_uint(gpu, gpu->list_groups, "most", most);
-    abbe_gpu_set_uint(gpu, gpu->list_groups, "threads", threads);
-    abbe_gpu_bind_storage(gpu, BINDING_DISPATCH, list);
-    gl->DispatchCompute(1, 1, 1);
-    gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-    gl->UseProgram(program);
-    gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
-    gl->DispatchComputeIndirect(4);
-  }
-  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-}
-
-void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list) {
-  GLuint groups[2] = {0, 0};
-  if (gpu->progress == NULL) {
-    gpu->gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
-    gpu->gl->DispatchComputeIndirect(4);
-    return;
-  }
-  gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, list);
-  gpu->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 4, sizeof groups, groups);
-  dispatch_parts(gpu, program, (size_t)groups[0] * groups[1], 0);
 }
 
 void abbe_gpu_start_lap(abbe_gpu *gpu) {

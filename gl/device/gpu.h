@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "gl/device/api.h"
+#include "gl/device/buffer_memory.h"
 #include "gl/device/gpu_store.h"
 #include "gl/device/program.h"
 #include "gl/device/statistics.h"
@@ -32,6 +33,7 @@ typedef struct abbe_gpu {
   GLuint list_groups;                  /* program */
   GLuint texels[ABBE_GPU_TEXEL_UNITS]; /* textures that show buffers, one a unit */
   abbe_gpu_store store;
+  abbe_buffer_memory memory;   /* of large buffers in it */
   abbe_statistics *statistics; /* of the frame that runs, or NULL: no pass is waited for */
   double lap_start_ms;
   abbe_render_progress progress; /* of whoever watches; NULL: nobody does */

@@ -27,7 +27,8 @@ abbe_result abbe_gpu_store_add(abbe_gpu_store *store, const abbe_stored_key *key
   if (store->count == store->room) {
     const size_t room = 2 * store->room + 64;
     abbe_stored *grown = realloc(store->item, room * sizeof *grown);
-    if (grown == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to keep what is made");
+    if (grown == NULL)
+      return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to keep what is made");
     store->item = grown;
     store->room = room;
   }
@@ -71,6 +72,21 @@ size_t abbe_gpu_store_bytes(const abbe_gpu_store *store) {
   for (size_t i = 0; i < store->count; i++)
     if (store->item[i].used) bytes += store->item[i].key.bytes;
   return bytes;
+}
+
+static const abbe_stored *find(const abbe_gpu_store *store, abbe_stored_kind kind, GLuint name) {
+  for (size_t i = 0; i < store->count; i++)
+    if (store->item[i].key.kind == kind && store->item[i].name == name) return &store->item[i];
+  return NULL;
+}
+
+size_t abbe_gpu_store_bytes_of(const abbe_gpu_store *store, abbe_stored_kind kind, GLuint name) {
+  const abbe_stored *item = find(store, kind, name);
+  return item != NULL ? item->key.bytes : 0;
+}
+
+bool abbe_gpu_store_has(const abbe_gpu_store *store, abbe_stored_kind kind, GLuint name) {
+  return find(store, kind, name) != NULL;
 }
 
 size_t abbe_gpu_store_count(const abbe_gpu_store *store, abbe_stored_kind kind) {

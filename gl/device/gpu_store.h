@@ -52,6 +52,9 @@ void abbe_gpu_store_free(abbe_gpu_store *store, const abbe_gl *gl);
 
 /* Bytes of buffers and textures in use. */
 size_t abbe_gpu_store_bytes(const abbe_gpu_store *store);
+/* Bytes of what there is, in use or not; 0: the store does not know it. */
+size_t abbe_gpu_store_bytes_of(const abbe_gpu_store *store, abbe_stored_kind kind, GLuint name);
+bool abbe_gpu_store_has(const abbe_gpu_store *store, abbe_stored_kind kind, GLuint name);
 /* How many there are of a kind. */
 size_t abbe_gpu_store_count(const abbe_gpu_store *store, abbe_stored_kind kind);
 

@@ -6,7 +6,8 @@
  * finds; after
  * ABBE_VIEW_REST_S without a change the stages follow each other up to the last. A change makes any
  * stage but a moving one obsolete at once: a moving one is nearly done, and what it shows is newer
- * than what stands.
+ * than what stands. A stage that would have to wait for the compiler ends, and waits itself until
+ * that is done beside it.
  */
 #ifndef ABBE_CLI_VIEW_STATE_VIEW_REFINE_H
 #define ABBE_CLI_VIEW_STATE_VIEW_REFINE_H
@@ -49,12 +50,14 @@ typedef struct abbe_view_job {
   size_t light_step;     /* of a moving light */
   size_t eye_step;       /* of a moving picture */
   size_t pass;           /* traced: how many passes there are before it */
+  bool compiles;         /* itself what is not compiled; else it ends with ABBE_VIEW_UNCOMPILED */
 } abbe_view_job;
 
 typedef enum abbe_view_outcome {
   ABBE_VIEW_DONE,
   ABBE_VIEW_CANCELLED,
-  ABBE_VIEW_REFUSED /* the scene cannot be drawn so; nothing is tried until the next change */
+  ABBE_VIEW_UNCOMPILED, /* the driver does not know what it draws with */
+  ABBE_VIEW_REFUSED     /* the scene cannot be drawn so; nothing is tried until the next change */
 } abbe_view_outcome;
 
 typedef struct abbe_view_refine {
@@ -70,6 +73,9 @@ typedef struct abbe_view_refine {
   size_t drawn_light_step; /* of the light that is drawn */
   abbe_view_pace pace;     /* of moving pictures */
   bool camera_only;        /* all that has changed since the last picture */
+  bool ahead;              /* somebody compiles beside what is drawn: */
+  bool compiling;          /* they do, and no stage at rest begins; */
+  bool compiled;           /* they have, and the next one does itself what is left */
   bool refused;
 } abbe_view_refine;
 
@@ -83,6 +89,8 @@ bool abbe_view_refine_next(const abbe_view_refine *refine, double now_s, abbe_vi
 double abbe_view_refine_wait(const abbe_view_refine *refine, double now_s);
 /* Whether a job that is being done is to stop. */
 bool abbe_view_refine_cancels(const abbe_view_refine *refine, const abbe_view_job *job);
+/* Whoever compiles is done, or there is nobody. */
+void abbe_view_refine_compiled(abbe_view_refine *refine, bool ahead);
 /* What came of a job, and how long it took. */
 void abbe_view_refine_end(abbe_view_refine *refine, const abbe_view_job *job,
                           abbe_view_outcome outcome, double ms, double now_s);

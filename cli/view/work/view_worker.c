@@ -20,6 +20,7 @@ struct abbe_view_worker {
   void (*wake)(void);
   volatile int stop, quit;
   const abbe_caustic_volume *volume; /* or NULL */
+  bool uncompiled;                   /* of the request that is made, and it shall not compile */
   bool busy, done;
   abbe_view_request request;
   abbe_view_result result;
@@ -52,7 +53,12 @@ void abbe_view_result_free(abbe_view_result *result) {
 static bool goes_on(void *user, double done) {
   const abbe_view_worker *w = user;
   (void)done;
-  return !w->stop;
+  return !w->stop && !w->uncompiled;
+}
+
+static void stop_compiling(void *user) {
+  abbe_view_worker *w = user;
+  w->uncompiled = !w->request.job.compiles;
 }
 
 /* ---- settings ---- */
@@ -141,10 +147,12 @@ static void list_plan(const abbe_plan *plan, const abbe_statistics *s, abbe_view
   }
 }
 
-static abbe_result change(abbe_view_worker *w, const abbe_render_desc *desc, abbe_error *error) {
+static abbe_result change(abbe_view_worker *w, const abbe_render_desc *desc,
+                          abbe_render_progress progress, abbe_error *error) {
   abbe_render_desc watched = *desc;
-  watched.progress = goes_on;
+  watched.progress = progress;
   watched.progress_user = w;
+  watched.compiling = stop_compiling;
   const abbe_result result =
       w->renderer == NULL
           ? abbe_renderer_make(w->context, w->scene.now, &watched, &w->renderer, error)
@@ -161,9 +169,12 @@ static abbe_result draw(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
   const bool moving = q->job.stage == ABBE_VIEW_MOVING;
   find_front(w);
   const abbe_render_desc desc = request_of(w, q);
-  abbe_result result = change(w, &desc, error);
+  /* What moves is drawn in one go, for no change cancels it, and parts that are waited for take
+   * longer; but whoever closes the window does not wait for the compiler. */
+  const abbe_render_progress progress = moving && w->renderer != NULL ? NULL : goes_on;
+  abbe_result result = change(w, &desc, progress, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_frame(w->renderer, goes_on, w, moving ? NULL : &out->statistics, error);
+    result = abbe_renderer_frame(w->renderer, progress, w, moving ? NULL : &out->statistics, error);
   if (result == ABBE_OK) result = abbe_renderer_read(w->renderer, !moving, &out->picture, error);
   if (result != ABBE_OK) return result;
   const abbe_plan *plan = abbe_renderer_plan(w->renderer);
@@ -280,6 +291,7 @@ static abbe_result renew(abbe_view_worker *w, abbe_error *error) {
 static void work(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out) {
   const double start = abbe_clock_seconds();
   abbe_error error = {0};
+  w->uncompiled = false;
   abbe_result result = w->context != NULL ? ABBE_OK : renew(w, &error);
   *out = (abbe_view_result){.job = q->job, .turned = q->turns, .looked = q->asks || q->maps};
   if (result == ABBE_OK) result = make(w, q, out, &error);
@@ -291,9 +303,10 @@ static void work(abbe_view_worker *w, const abbe_view_request *q, abbe_view_resu
   }
   out->ended_s = abbe_clock_seconds();
   out->ms = 1e3 * (out->ended_s - start);
-  out->outcome = result == ABBE_OK          ? ABBE_VIEW_DONE
-                 : result == ABBE_CANCELLED ? ABBE_VIEW_CANCELLED
-                                            : ABBE_VIEW_REFUSED;
+  out->outcome = result == ABBE_OK                                       ? ABBE_VIEW_DONE
+                 : result == ABBE_CANCELLED && w->uncompiled && !w->stop ? ABBE_VIEW_UNCOMPILED
+                 : result == ABBE_CANCELLED                              ? ABBE_VIEW_CANCELLED
+                                                                         : ABBE_VIEW_REFUSED;
   if (out->outcome == ABBE_VIEW_REFUSED)
     snprintf(out->sentence, sizeof out->sentence, "%.1000s",
              error.text[0] != '\0' ? error.text : abbe_result_text(result));

@@ -162,6 +162,52 @@ static void test_what_is_refused_waits_for_a_change(void **state) {
   assert_false(idle(&r, 6.2));
 }
 
+/* What would wait for the compiler is left, whatever moves is drawn meanwhile, and what comes then
+ * waits for nothing. */
+static void test_a_stage_waits_for_its_compiler_beside_it(void **state) {
+  (void)state;
+  abbe_view_refine r = begun();
+  r.ahead = true;
+  assert_true(next(&r, 0).compiles); /* nothing stands yet */
+  draw(&r, 0, 20);
+  const abbe_view_job job = next(&r, 0);
+  assert_int_equal(job.stage, ABBE_VIEW_BALANCED);
+  assert_false(job.compiles);
+  abbe_view_refine_end(&r, &job, ABBE_VIEW_UNCOMPILED, 5, 1);
+  assert_true(r.compiling && idle(&r, 9) && abbe_view_refine_wait(&r, 9) < 0);
+  abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 10);
+  assert_int_equal(draw(&r, 20, 20).stage, ABBE_VIEW_MOVING);
+  assert_true(idle(&r, 21));
+  abbe_view_refine_compiled(&r, true);
+  assert_int_equal(next(&r, 21).stage, ABBE_VIEW_BALANCED);
+  assert_true(draw(&r, 21, 20).compiles);
+  assert_false(next(&r, 21).compiles);
+  /* of what is gone already nothing is compiled */
+  const abbe_view_job late = next(&r, 21);
+  abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, 22);
+  abbe_view_refine_end(&r, &late, ABBE_VIEW_UNCOMPILED, 5, 22);
+  assert_false(r.compiling);
+  abbe_view_refine_compiled(&r, false); /* nobody can: each stage does it itself */
+  draw(&r, 22, 20);
+  for (int i = 0; i < 3; i++) assert_true(draw(&r, 30, 20).compiles);
+}
+
+/* Light that was begun is not there, nor what it was to take the place of. */
+static void test_a_stage_that_ends_early_leaves_no_light(void **state) {
+  (void)state;
+  abbe_view_refine r = refined(ABBE_VIEW_BALANCED);
+  const abbe_view_job job = next(&r, 0);
+  assert_int_equal(job.light, ABBE_VIEW_ACCURATE);
+  abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 1);
+  abbe_view_refine_end(&r, &job, ABBE_VIEW_CANCELLED, 5, 1);
+  assert_int_equal(next(&r, 1).light, ABBE_VIEW_MOVING);
+  r = refined(ABBE_VIEW_ACCURATE);
+  const abbe_view_job mean = next(&r, 0);
+  abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 1);
+  abbe_view_refine_end(&r, &mean, ABBE_VIEW_CANCELLED, 5, 1);
+  assert_int_equal(next(&r, 1).light, ABBE_VIEW_ACCURATE); /* which it did not touch */
+}
+
 static void test_a_spectrum_is_traced_before_the_mean(void **state) {
   (void)state;
   abbe_view_refine r = refined(ABBE_VIEW_ACCURATE);
@@ -199,16 +245,19 @@ static void test_stages_end_where_they_are_wanted(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_stages_follow_each_other),
-                                     cmocka_unit_test(test_light_is_of_the_stage),
-                                     cmocka_unit_test(test_refining_waits_for_rest),
-                                     cmocka_unit_test(test_a_change_cancels_all_but_what_moves),
-                                     cmocka_unit_test(test_the_camera_keeps_the_light),
-                                     cmocka_unit_test(test_a_late_picture_brings_no_light),
-                                     cmocka_unit_test(test_slow_pictures_get_cheaper),
-                                     cmocka_unit_test(test_what_is_refused_waits_for_a_change),
-                                     cmocka_unit_test(test_a_picture_without_a_mean),
-                                     cmocka_unit_test(test_a_spectrum_is_traced_before_the_mean),
-                                     cmocka_unit_test(test_stages_end_where_they_are_wanted)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_stages_follow_each_other),
+      cmocka_unit_test(test_light_is_of_the_stage),
+      cmocka_unit_test(test_refining_waits_for_rest),
+      cmocka_unit_test(test_a_change_cancels_all_but_what_moves),
+      cmocka_unit_test(test_the_camera_keeps_the_light),
+      cmocka_unit_test(test_a_late_picture_brings_no_light),
+      cmocka_unit_test(test_slow_pictures_get_cheaper),
+      cmocka_unit_test(test_what_is_refused_waits_for_a_change),
+      cmocka_unit_test(test_a_picture_without_a_mean),
+      cmocka_unit_test(test_a_stage_waits_for_its_compiler_beside_it),
+      cmocka_unit_test(test_a_stage_that_ends_early_leaves_no_light),
+      cmocka_unit_test(test_a_spectrum_is_traced_before_the_mean),
+      cmocka_unit_test(test_stages_end_where_they_are_wanted)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,96 @@
+#include "gl/device/gpu.h"
+
+#include "base/clock.h"
+#include "gl/device/bindings.h"
+
+#include <math.h>
+
+/* What a part of the work takes where somebody watches, and how many groups, or rows of groups, the
+ * first has. */
+static const double part_ms = 6;
+enum { FIRST_PART = 4, MOST_GROUPS = 65535 };
+
+/* The next part's size, after one of so many units of all took so long. By software one may take
+ * far longer than those before it, so that a part has few; but no dispatch has more than some
+ * hundred parts. A GPU runs a few units no faster than many. */
+static size_t next_part(const abbe_gpu *gpu, size_t units, size_t all, double ms) {
+  enum { FEW = 8, MOST_PARTS = 512 };
+  const double factor = fmin(fmax(part_ms / fmax(ms, 1e-3), 0.25), 2);
+  const double most = gpu->software ? fmax(FEW, (double)all / MOST_PARTS) : MOST_GROUPS;
+  return (size_t)fmin(fmax((double)units * factor, 1), fmin(most, MOST_GROUPS));
+}
+
+/* width: groups of a row, of which there are so many; 0: they are groups one after another. */
+static void dispatch_parts(abbe_gpu *gpu, GLuint program, size_t units, size_t width) {
+  const char *first = width > 0 ? "first_row" : "first_group";
+  const size_t step = width > 0 ? 16 : 1;
+  size_t part = FIRST_PART, at = 0;
+  gpu->gl->UseProgram(program);
+  while (at < units && abbe_gpu_ask(gpu)) {
+    const double start_ms = 1e3 * abbe_clock_seconds();
+    const size_t count = units - at < part ? units - at : part;
+    gpu->gl->UseProgram(program); /* whoever was asked may have drawn */
+    abbe_gpu_set_uint(gpu, program, first, at * step);
+    if (width > 0)
+      gpu->gl->DispatchCompute((GLuint)width, (GLuint)count, 1);
+    else
+      gpu->gl->DispatchCompute((GLuint)count, 1, 1);
+    gpu->gl->Finish();
+    at += count;
+    part = next_part(gpu, count, units, 1e3 * abbe_clock_seconds() - start_ms);
+  }
+  abbe_gpu_set_uint(gpu, program, first, 0);
+}
+
+void abbe_gpu_dispatch(abbe_gpu *gpu, GLuint program, size_t groups) {
+  const size_t rows = (groups + MOST_GROUPS - 1) / MOST_GROUPS;
+  if (gpu->progress != NULL)
+    dispatch_parts(gpu, program, groups, 0);
+  else if (groups > 0)
+    gpu->gl->DispatchCompute((GLuint)((groups + rows - 1) / rows), (GLuint)rows, 1);
+}
+
+/* One thread a texel; the shaders' groups are 32 x 16, large because a software rasteriser pays
+ * for each. */
+void abbe_gpu_dispatch_2d(abbe_gpu *gpu, GLuint program, size_t width, size_t height) {
+  const size_t across = (width + 31) / 32, down = (height + 15) / 16;
+  if (gpu->progress != NULL)
+    dispatch_parts(gpu, program, down, across);
+  else
+    gpu->gl->DispatchCompute((GLuint)across, (GLuint)down, 1);
+}
+
+void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t first, size_t most,
+                            size_t threads) {
+  const abbe_gl *gl = gpu->gl;
+  if (gpu->progress != NULL) {
+    const size_t count = abbe_gpu_read_count(gpu, list), left = count > first ? count - first : 0;
+    const size_t elements = left < most ? left : most;
+    dispatch_parts(gpu, program, (elements * threads + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP, 0);
+  } else {
+    gl->UseProgram(gpu->list_groups);
+    abbe_gpu_set_uint(gpu, gpu->list_groups, "group_size", ABBE_GPU_GROUP);
+    abbe_gpu_set_uint(gpu, gpu->list_groups, "first", first);
+    abbe_gpu_set_uint(gpu, gpu->list_groups, "most", most);
+    abbe_gpu_set_uint(gpu, gpu->list_groups, "threads", threads);
+    abbe_gpu_bind_storage(gpu, BINDING_DISPATCH, list);
+    gl->DispatchCompute(1, 1, 1);
+    gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    gl->UseProgram(program);
+    gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
+    gl->DispatchComputeIndirect(4);
+  }
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list) {
+  GLuint groups[2] = {0, 0};
+  if (gpu->progress == NULL) {
+    gpu->gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
+    gpu->gl->DispatchComputeIndirect(4);
+    return;
+  }
+  gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, list);
+  gpu->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 4, sizeof groups, groups);
+  dispatch_parts(gpu, program, (size_t)groups[0] * groups[1], 0);
+}
