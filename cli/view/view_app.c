@@ -151,7 +151,11 @@ static void take_rendered(abbe_view_session *app, abbe_view_result *result) {
   }
   replace(&app->pictures.rendered, &result->picture);
   abbe_image_free(&app->pictures.layers);
-  if (result->job.stage == ABBE_VIEW_MOVING) return;
+  if (result->job.stage == ABBE_VIEW_MOVING) {
+    app->moved = result->job;
+    app->moving = result->desc;
+    return;
+  }
   /* what the mean takes the place of is kept for its layers */
   const abbe_image *from = &app->pictures.rendered;
   if (abbe_image_make(from->width, from->height, from->channels, (const char *const *)from->channel,

@@ -46,6 +46,23 @@ static void slide(abbe_view_session *app, const abbe_view_value *v, const char *
   abbe_view_state_set(&app->state, v->key, text, !began, now_s);
 }
 
+/* What the picture was made with, what of it is less while something moves, or what it waits for:
+ * one line, for widgets below it stay where they are. */
+static void draw_made(const abbe_view_session *app) {
+  const bool moving = app->stage == ABBE_VIEW_MOVING;
+  const abbe_render_desc *d = moving ? &app->moving : &app->last.desc;
+  char text[160] = " ", eye[64] = "";
+  if (moving && d->upsample > 1)
+    snprintf(eye, sizeof eye, "%zu x %zu pixels a sample; ", d->upsample, d->upsample);
+  if (app->state.refine.compiling)
+    snprintf(text, sizeof text, "shaders of the next stage are compiled");
+  else if (moving && app->moved.light != ABBE_VIEW_MOVING)
+    snprintf(text, sizeof text, "%slight is kept: %s", eye, abbe_view_stage_name(app->moved.light));
+  else if (d->photons > 0)
+    snprintf(text, sizeof text, "%s%zu photons a side", eye, d->photons);
+  abbe_ui_text(DIM, text);
+}
+
 static void draw_head(abbe_view_session *app) {
   const abbe_view_state *s = &app->state;
   char text[160];
@@ -60,8 +77,7 @@ static void draw_head(abbe_view_session *app) {
   else
     snprintf(text, sizeof text, "%s", doing);
   abbe_ui_text(app->stage >= ABBE_VIEW_ACCURATE ? GREEN : DIM, text);
-  if (s->refine.compiling)
-    abbe_ui_text(DIM, "the next stage's shaders are compiled beside it, once on this machine");
+  draw_made(app);
   if (s->refusal[0] != '\0') abbe_ui_text(WARM, s->refusal);
   if (app->note[0] != '\0') abbe_ui_text(DIM, app->note);
 }

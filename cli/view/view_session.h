@@ -35,6 +35,8 @@ typedef struct abbe_view_session {
   abbe_view_result taken;     /* while it is looked at */
   abbe_view_result last;      /* of the last rendered picture: plan, statistics, settings */
   abbe_view_stage stage;      /* of the picture that stands */
+  abbe_view_job moved;        /* of the last picture of the stage `moving`, */
+  abbe_render_desc moving;    /* and its settings */
   double promised, estimated; /* mean CIEDE2000 in the caustic; 0: not known */
   double against; /* root mean square of rendered less traced, over the mean; 0: not known */
   double noise;   /* of the traced picture alone, the same */

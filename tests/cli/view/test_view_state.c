@@ -73,6 +73,30 @@ static void test_what_can_be_held_is_found(void **state) {
   abbe_view_state_free(s);
 }
 
+/* Of a studio: its surroundings turn, and the angles of a cut are set. */
+static void test_a_studio_can_be_turned_and_its_stone_cut(void **state) {
+  (void)state;
+  char path[] = ABBE_SOURCE_DIR "/scenes/diamond-studio.yaml";
+  static abbe_view_state s;
+  memset(&s, 0, sizeof s);
+  const abbe_view_document document = {.path = path};
+  assert_int_equal(abbe_view_state_begin(&s, &document, NULL), ABBE_OK);
+  learn(&s);
+  const abbe_view_outline *o = &s.outline;
+  assert_true(o->surrounded);
+  assert_near(o->rotate.value, 0, 0);
+  assert_near(o->rotate.max - o->rotate.min, 360, 0);
+  assert_string_equal(o->object[0].value[1].label, "pavilion angle");
+  assert_near(o->object[0].value[1].value, 40.75, 0);
+  abbe_view_state_set(&s, o->rotate.key, "30", false, 1);
+  abbe_view_state_set(&s, o->object[0].value[1].key, "42", false, 2);
+  learn(&s); /* the scene takes both */
+  assert_near(s.outline.rotate.value, 30, 0);
+  assert_near(s.outline.object[0].value[1].value, 42, 0);
+  assert_true(s.outline.stone_count > 10); /* to choose from */
+  abbe_view_state_free(&s);
+}
+
 static void test_a_drag_turns_the_camera_in_one_step(void **state) {
   (void)state;
   abbe_view_state *s = begun();
@@ -249,15 +273,17 @@ static void test_a_window_without_room_takes_no_pointer(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_can_be_held_is_found),
-                                     cmocka_unit_test(test_a_drag_turns_the_camera_in_one_step),
-                                     cmocka_unit_test(test_other_buttons_pan_and_look),
-                                     cmocka_unit_test(test_handles_move_and_tilt_objects),
-                                     cmocka_unit_test(test_the_wheel_is_a_step),
-                                     cmocka_unit_test(test_the_sun_moves),
-                                     cmocka_unit_test(test_lights_move),
-                                     cmocka_unit_test(test_a_click_asks_for_a_spectrum),
-                                     cmocka_unit_test(test_edits_and_settings),
-                                     cmocka_unit_test(test_a_window_without_room_takes_no_pointer)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_what_can_be_held_is_found),
+      cmocka_unit_test(test_a_studio_can_be_turned_and_its_stone_cut),
+      cmocka_unit_test(test_a_drag_turns_the_camera_in_one_step),
+      cmocka_unit_test(test_other_buttons_pan_and_look),
+      cmocka_unit_test(test_handles_move_and_tilt_objects),
+      cmocka_unit_test(test_the_wheel_is_a_step),
+      cmocka_unit_test(test_the_sun_moves),
+      cmocka_unit_test(test_lights_move),
+      cmocka_unit_test(test_a_click_asks_for_a_spectrum),
+      cmocka_unit_test(test_edits_and_settings),
+      cmocka_unit_test(test_a_window_without_room_takes_no_pointer)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
