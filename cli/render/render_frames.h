@@ -15,7 +15,7 @@ extern const struct argp abbe_render_frames_argp;
 
 /* Draws and writes all frames of the request, with a bar: FILE-0001.exr and FILE-0001.png and so
  * on, and FILE.png of all, beside and renamed; of a part, its frames alone. statistics receives the
- * last frame's. The renderer holds the scene itself again then. ABBE_CANCELLED by Ctrl-C: the
+ * last frame's, and stays as it is where --resume leaves none to draw. The renderer holds the scene itself again then. ABBE_CANCELLED by Ctrl-C: the
  * frames so far are kept. */
 abbe_result abbe_render_frames_draw(const abbe_render_request *request, const abbe_scene *scene,
                                     const abbe_render_desc *desc, abbe_renderer *renderer,

@@ -155,6 +155,10 @@ abbe_result abbe_render_save_map(const request *q, abbe_renderer *renderer, abbe
 
 void abbe_render_summarise(const request *q, const abbe_statistics *s, double prepared_s) {
   if (q->quiet || q->json) return;
+  if (q->series.count > 0 && s->frame_ms == 0) {
+    fprintf(stderr, "no frame is left to draw: their files are there\n");
+    return;
+  }
   fprintf(stderr, "a frame of %.0f ms, prepared in %.1f s, %zu photons x %zu wavelengths",
           s->frame_ms, prepared_s, s->photons, s->wavelengths);
   const abbe_ledger *e = &s->energy;

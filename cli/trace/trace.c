@@ -172,6 +172,8 @@ static void check_parts(const request *q, struct argp_state *state) {
   const char *name = part ? "--passes" : "--merge";
   if (!q->merge && q->part_count > 0)
     argp_error(state, "one scene at a time: what is '%s'?", q->parts[0]);
+  if (q->merge && abbe_checkpoint_is(q->scene))
+    argp_error(state, "--merge: '%s' is a part; the scene stands before its parts", q->scene);
   if (q->merge && part) argp_error(state, "--passes traces a part, and --merge traces nothing");
   if (q->merge && q->part_count == 0)
     argp_error(state, "--merge: which parts? Name their checkpoints behind the scene");

@@ -11,7 +11,8 @@
 /* File: a line of magic, lines of text that say what the run is, an empty line, then counts,
  * ledger and sums as the machine keeps them, and a hash of all before it. */
 static const char magic[] = "abbe checkpoint 8\n";
-enum { HEAD = 4096 }; /* bytes that hold all the lines */
+/* Bytes that hold all the lines, and those of the magic that versions share. */
+enum { HEAD = 4096, SAME_MAGIC = 16 };
 
 /* ---- hash: FNV-1a, 64 bits ---- */
 
@@ -218,7 +219,7 @@ static abbe_result check_text(const abbe_tracer *t, const char *path, char *data
   char ours[ABBE_CHECKPOINT_TEXT];
   size_t head = strlen(magic);
   if (size < head || memcmp(data, magic, head) != 0) {
-    bool other = size > 16 && memcmp(data, magic, 16) == 0;
+    bool other = size > SAME_MAGIC && memcmp(data, magic, SAME_MAGIC) == 0;
     return abbe_error_set(error, ABBE_PARSE,
                           other ? "%s is a checkpoint of another version of abbe: start anew"
                                 : "%s is not a checkpoint of abbe trace",
@@ -230,6 +231,16 @@ static abbe_result check_text(const abbe_tracer *t, const char *path, char *data
   *numbers = (size_t)(end - data) + 2;
   describe(t, ours, sizeof ours);
   return say_difference(path, data + head, ours, error);
+}
+
+bool abbe_checkpoint_is(const char *path) {
+  char head[SAME_MAGIC];
+  FILE *file;
+  if (path == NULL || abbe_file_open(path, &file, NULL, NULL) != ABBE_OK) return false;
+  const bool is =
+      fread(head, 1, sizeof head, file) == sizeof head && memcmp(head, magic, sizeof head) == 0;
+  fclose(file);
+  return is;
 }
 
 /* What the file says of itself, before all of it is read: the file of another request may be much

@@ -11,6 +11,8 @@
 #include "base/error.h"
 #include "validation/tracer/tracer.h"
 
+#include <stdbool.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -30,6 +32,9 @@ abbe_result abbe_checkpoint_load(abbe_tracer *tracer, const char *path, abbe_err
  * which files, or a file that changed meanwhile; errors of abbe_checkpoint_load. */
 abbe_result abbe_checkpoint_merge(abbe_tracer *tracer, const char *const *path, size_t count,
                                   abbe_error *error);
+
+/* Whether the file begins as a checkpoint does, of whatever version. */
+bool abbe_checkpoint_is(const char *path);
 
 /* What a trace is, in lines of text: its request, a hash of its scene, the processor's
  * instructions. Traces of which they are alike add to one another. */

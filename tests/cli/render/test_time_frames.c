@@ -14,7 +14,8 @@ static const char pool[] =
     "[{translate: [0, 0, -0.05]}]}\n"
     "END\n";
 
-#define RENDER "\"$abbe\" render pool.yaml --size 16x16 --photons 16 --map 64 -q "
+#define LOUD "\"$abbe\" render pool.yaml --size 16x16 --photons 16 --map 64 "
+#define RENDER LOUD "-q "
 #define TRACE "\"$abbe\" trace pool.yaml --size 8x8 --spp 2 --photons 512 -q "
 
 static void frames_and_what_moves(void **state) {
@@ -34,6 +35,8 @@ static void frames_and_what_moves(void **state) {
            "kept.exr && " RENDER "--frames 2:5 --fps 4 --png t.png -o t.exr --resume && "
            "find . -name 't*.png' -newermt 2002-01-01 | sort && cmp kept.exr t-0002.exr");
   assert_string_equal(run_output, "./t-0003.png\n./t.png\n");
+  run_must(LOUD "--frames 2:5 --fps 4 --png t.png -o t.exr --resume && cmp kept.exr t-0002.exr");
+  assert_contains(run_errors, "no frame is left to draw");
   /* a series held against itself has no error, and what moves is not flicker */
   run_must("\"$abbe\" flicker t.exr --frames 2:5 --reference t.exr --json");
   assert_contains(run_output, "\"error\":\t0,");
