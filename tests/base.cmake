@@ -1,5 +1,6 @@
-foreach(name clock encoding error file html_text nearest number order report summary text_cursor
+foreach(name clock encoding error html_text nearest number order report summary text_cursor
         text_diff utf8 yaml yaml_edit yaml_quote)
   abbe_test(${name} cpu abbe_base)
 endforeach()
+abbe_test(file cpu WRAPPED abbe_base)
 target_link_options(test_file PRIVATE LINKER:--wrap=poll)

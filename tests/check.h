@@ -14,6 +14,14 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Whether faults of memory are looked for. The tests of label cpu run in release as well: there they
+ * hold laws over many cases, of which a few are enough to look for faults. */
+#ifdef __SANITIZE_ADDRESS__
+enum { SANITIZED = 1 };
+#else
+enum { SANITIZED = 0 };
+#endif
+
 /* |a - b| <= tolerance; a NaN on either side fails. */
 #define assert_near(a, b, tolerance) check_near(a, b, tolerance, #a, __FILE__, __LINE__)
 static inline void check_near(double a, double b, double tolerance, const char *what,

@@ -12,9 +12,9 @@ foreach(name malloc calloc realloc aligned_alloc strdup strndup realpath fopen f
   target_link_options(faults_memory INTERFACE LINKER:--wrap=${name})
 endforeach()
 
-abbe_test(no_memory_tables cpu faults_memory abbe_spectral abbe_base)
-abbe_test(no_memory_scenes cpu faults_memory abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
-abbe_test(no_memory_trace cpu faults_memory abbe_validation abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
+abbe_test(no_memory_tables cpu WRAPPED faults_memory abbe_spectral abbe_base)
+abbe_test(no_memory_scenes cpu WRAPPED faults_memory abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
+abbe_test(no_memory_trace cpu WRAPPED faults_memory abbe_validation abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 
 # The calls with which Abbe's own objects write files (faults/disk.h).
 add_library(faults_disk OBJECT faults/disk.c)
@@ -22,7 +22,7 @@ target_link_libraries(faults_disk PUBLIC abbe_build)
 foreach(name open linkat fdopen fchmod fsync fclose rename pwrite)
   target_link_options(faults_disk INTERFACE LINKER:--wrap=${name})
 endforeach()
-abbe_test(full_disk cpu faults_disk abbe_validation abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
+abbe_test(full_disk cpu WRAPPED faults_disk abbe_validation abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 abbe_label(cpu memory NAMES no_memory_tables no_memory_scenes no_memory_trace full_disk)
 
 # Kills the program, or starves it, at a chosen call (faults/preload.c).
@@ -38,8 +38,8 @@ endforeach()
 add_test(NAME killed_command_all COMMAND test_killed_command all)
 abbe_label(program long NAMES killed_command_all)
 
-abbe_test(gl_faults gl abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
-abbe_test(device_memory gl abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
+abbe_test(gl_faults gl WRAPPED abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
+abbe_test(device_memory gl WRAPPED abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 foreach(name gl_faults device_memory)
   target_link_options(test_${name} PRIVATE LINKER:--wrap=abbe_context_osmesa)
 endforeach()

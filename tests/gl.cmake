@@ -72,6 +72,6 @@ abbe_test(error_picture cpu ${gl_rooms})
 
 # For script/bench-changes.
 add_executable(bench_changes gl/bench_changes.c)
-target_link_libraries(bench_changes PRIVATE ${gl_rooms})
+abbe_link(bench_changes ${gl_rooms})
 add_test(NAME bench_changes COMMAND bench_changes --quick 16 ${PROJECT_SOURCE_DIR}/scenes/sphere)
 abbe_label(gl NAMES bench_changes)

@@ -59,25 +59,23 @@ void trace(PhotonRay photon, out Shares entry[5]) {
   PathState pending[PENDING];
   PathState w = PathState(o, d, 1.0, 0u, 0u, -1, -1, -1, d, false);
   for (int k = 0; k < PENDING; k++) pending[k] = PathState(o, d, 0.0, 0u, 0u, 0, -1, -1, d, false);
-  Interface h;
-  h.hit.t = 1e30;
-  bool going = photon.reached && next_interface(w, h);
-  uint owner = uint(h.hit.refractor), used = 0u;
+  uint owner = 0u, used = 0u;
   Ends e = Ends(0.0, 0.0, 0.0, 0.0);
-  float ended, dropped, absorbed;
-  if (going) {
-    entry[REACHED] = Shares(1.0);
-    branch(w, h, 0.0, pending, ended, dropped, absorbed);
-    e.trapped = ended + dropped;
-    e.absorbed = absorbed;
-    going = w.share > 0.0;
-  }
-  for (int segment = 0; going && segment < MOST_SEGMENTS; segment++) {
+  bool going = photon.reached;
+  // From the light to its first interface in a turn of the loop too: what is called twice is compiled twice.
+  for (int segment = -1; going && segment < MOST_SEGMENTS; segment++) {
+    bool arrives = segment < 0;
+    Interface h;
     h.hit.t = 1e30;
     bool met = next_interface(w, h);
+    if (arrives) {
+      owner = uint(h.hit.refractor);
+      entry[REACHED] = Shares(met ? 1.0 : 0.0);
+      w.share = met ? w.share : 0.0;
+    }
     // What leaves a refractor that touches a receiver lands there.
     float t_min = w.inside == 0u ? -touch * refractor_bounds.w : 0.0;
-    ReceiverHit to = meet_receiver(w.p, w.d, t_min, met ? h.hit.t : 1e30);
+    ReceiverHit to = meet_receiver(w.p, w.d, t_min, arrives ? -1e30 : met ? h.hit.t : 1e30);
 #ifdef ABSORBING
     if (w.inside != 0u && (met || to.state != NO_RECEIVER)) {
       float path_m = to.state != NO_RECEIVER ? distance(to.at, w.p) : h.hit.t;
@@ -87,6 +85,7 @@ void trace(PhotonRay photon, out Shares entry[5]) {
     }
 #endif
     if (to.state == NO_RECEIVER && met) {
+      float ended, dropped, absorbed;
       branch(w, h, 0.0, pending, ended, dropped, absorbed);
       e.trapped += ended + dropped;
       e.absorbed += absorbed;

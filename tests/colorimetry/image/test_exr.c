@@ -311,16 +311,16 @@ static void test_flipped_bits_anywhere(void **state) {
   write_image(&image);
   size_t size = 0;
   char *data = load(&size);
-  for (size_t at = 0; at < size; at += at < 500 ? 1 : 31)
-    for (int bit = 0; bit < 8; bit += 3) {
-      data[at] ^= (char)(1 << bit);
-      assert_int_equal(abbe_file_write(path, data, size, NULL), ABBE_OK);
-      data[at] ^= (char)(1 << bit);
-      abbe_image back = {0};
-      abbe_error error = {0};
-      if (abbe_exr_read(path, &back, &error) != ABBE_OK) assert_true(error.text[0] != '\0');
-      abbe_image_free(&back);
-    }
+  for (size_t at = 0; at < size; at += at < 500 ? 1 : 31) {
+    const char flipped = (char)(1 << at * 5 % 8);
+    data[at] ^= flipped;
+    assert_int_equal(abbe_file_write(path, data, size, NULL), ABBE_OK);
+    data[at] ^= flipped;
+    abbe_image back = {0};
+    abbe_error error = {0};
+    if (abbe_exr_read(path, &back, &error) != ABBE_OK) assert_true(error.text[0] != '\0');
+    abbe_image_free(&back);
+  }
   free(data);
   abbe_image_free(&image);
 }

@@ -143,7 +143,8 @@ static void keys_and_records_come_and_go(void **state) {
                    "-    # of the crown\n \n");
 }
 
-/* Whatever is done to a record of a shipped table, the others stay byte by byte. */
+/* Whatever is done to a record of a shipped table, the others stay byte by byte. All is done to the
+ * first records and the last, one thing to each of the others. */
 static void each_edit_stays_inside_its_record(void **state) {
   (void)state;
   const char *const paths[] = {ABBE_SOURCE_DIR "/spectral/materials/materials.yaml",
@@ -155,8 +156,9 @@ static void each_edit_stays_inside_its_record(void **state) {
     must(abbe_file_read(paths[file], 1 << 20, &before, &size, &error));
     must(abbe_material_table_parse(before, size, "t", &table, &error));
     for (size_t i = 0; i < table.count; i++)
-      for (int action = 0; action < 5; action++) {
+      for (size_t action = 0; action < 5; action++) {
         const abbe_material *m = &table.material[i];
+        if (i > 4 && i + 1 < table.count && i % 5 != action) continue;
         abbe_table_edit *edit = parse(before);
         if (action == 0) must(abbe_table_edit_set(edit, m->name, "warning", "\"# x\"", &error));
         if (action == 1) must(abbe_table_edit_set(edit, m->name, "coefficients", "[1.75]", &error));
@@ -310,7 +312,7 @@ static void check_random_table(int round) {
 
 static void random_tables_keep_their_other_records(void **state) {
   (void)state;
-  for (int round = 0; round < 1000; round++) check_random_table(round);
+  for (int round = 0; round < (SANITIZED ? 250 : 1000); round++) check_random_table(round);
 }
 
 static void refuses(const char *text, abbe_result code, const char *part,

@@ -15,6 +15,24 @@ static abbe_gem_tilts tilts_of(const judged *j, const abbe_gem_tilts_desc *desc)
 static const abbe_gem_tilts_desc few = {
     .head_rad = 15 * DEG, .steps = 2, .side = 16, .repeats = 6, .threads = 2};
 
+/* A brilliant of one index, and what few rays tell of it. */
+static judged brilliant;
+static abbe_gem_tilts brilliant_tilts;
+
+static int make_brilliant(void **state) {
+  (void)state;
+  brilliant = judged_plain(design_b, 2.417);
+  brilliant_tilts = tilts_of(&brilliant, &few);
+  return 0;
+}
+
+static int free_brilliant(void **state) {
+  (void)state;
+  abbe_gem_tilts_free(&brilliant_tilts);
+  judged_free(&brilliant);
+  return 0;
+}
+
 static double apart(abbe_gem_number a, abbe_gem_number b) {
   return fabs(a.value - b.value) / (hypot(a.error, b.error) + 1e-9);
 }
@@ -22,8 +40,8 @@ static double apart(abbe_gem_number a, abbe_gem_number b) {
 /* What is even at all tilts has no spread, and a plate without dispersion no fire. */
 static void curves_agree_with_views(void **state) {
   (void)state;
-  judged j = judged_plain(design_b, 2.417);
-  abbe_gem_tilts t = tilts_of(&j, &few);
+  const judged j = brilliant;
+  const abbe_gem_tilts t = brilliant_tilts;
   assert_int_equal(t.tilts, 5);
   assert_near(t.tilt_rad[0], -30 * DEG, 1e-12);
   assert_near(t.tilt_rad[2], 0, 1e-12);
@@ -44,14 +62,11 @@ static void curves_agree_with_views(void **state) {
     assert_true(t.curve[ABBE_GEM_TILT_COS][i].value <= t.curve[ABBE_GEM_TILT_ISO][i].value);
     assert_near(t.curve[ABBE_GEM_TILT_FIRE][i].value, 0, 0); /* of one wavelength */
   }
-  abbe_gem_tilts_free(&t);
-  judged_free(&j);
 }
 
 static void level_and_mirrored_tilts_are_the_same(void **state) {
   (void)state;
-  judged j = judged_plain(design_b, 2.417);
-  abbe_gem_tilts t = tilts_of(&j, &few);
+  const abbe_gem_tilts t = brilliant_tilts;
   for (int c = 0; c < ABBE_GEM_TILT_CURVE_COUNT; c++)
     for (size_t a = 0; a < ABBE_GEM_AXES; a++) {
       /* the same rays where it lies level, but for rounding in the axis */
@@ -59,8 +74,6 @@ static void level_and_mirrored_tilts_are_the_same(void **state) {
       for (size_t k = 0; k < 2; k++)
         assert_true(apart(t.curve[c][a * 5 + k], t.curve[c][a * 5 + 4 - k]) < 6);
     }
-  abbe_gem_tilts_free(&t);
-  judged_free(&j);
 }
 
 static abbe_material coloured(double dispersion) {
@@ -81,7 +94,9 @@ static void fire_comes_with_dispersion(void **state) {
   for (int i = 0; i < 3; i++) {
     const abbe_material m = coloured(dispersion[i]);
     judged j = judged_make(design_b, &m, 9);
-    abbe_gem_tilts t = tilts_of(&j, &few);
+    abbe_gem_tilts_desc desc = few;
+    desc.steps = 1;
+    abbe_gem_tilts t = tilts_of(&j, &desc);
     fire[i] = t.mean[ABBE_GEM_TILT_FIRE].value;
     assert_true(t.blinks.value > 0 && t.blinks.value < 1);
     assert_true(t.blinks.error > 0 && t.mean[ABBE_GEM_TILT_ISO].error > 0);
@@ -135,8 +150,10 @@ static void lamps_cover_what_their_sizes_say(void **state) {
 
 static void threads_change_nothing(void **state) {
   (void)state;
-  judged j = judged_plain(design_b, 2.417);
+  const judged j = brilliant;
   abbe_gem_tilts_desc desc = few;
+  desc.side = 8;
+  desc.repeats = 2;
   desc.threads = 1;
   abbe_gem_tilts one = tilts_of(&j, &desc);
   desc.threads = 5;
@@ -147,7 +164,6 @@ static void threads_change_nothing(void **state) {
     assert_memory_equal(one.curve[c], five.curve[c], 20 * sizeof *one.curve[c]);
   abbe_gem_tilts_free(&one);
   abbe_gem_tilts_free(&five);
-  judged_free(&j);
 }
 
 static bool give_up(void *user, double done) {
@@ -157,7 +173,7 @@ static bool give_up(void *user, double done) {
 
 static void work_can_be_given_up_and_wrong_requests_are_refused(void **state) {
   (void)state;
-  judged j = judged_plain(design_b, 2.417);
+  const judged j = brilliant;
   abbe_gem_tilts_desc desc = few;
   double done = 0;
   desc.progress = give_up;
@@ -172,7 +188,6 @@ static void work_can_be_given_up_and_wrong_requests_are_refused(void **state) {
   for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++)
     assert_int_equal(abbe_gem_tilts_make(&j.stone, &j.weights, &wrong[i], &t, &error),
                      ABBE_INVALID_ARGUMENT);
-  judged_free(&j);
 }
 
 int main(void) {
@@ -185,5 +200,5 @@ int main(void) {
       cmocka_unit_test(threads_change_nothing),
       cmocka_unit_test(work_can_be_given_up_and_wrong_requests_are_refused),
   };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, make_brilliant, free_brilliant);
 }

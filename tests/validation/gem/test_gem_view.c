@@ -206,7 +206,7 @@ static void errors_are_those_of_the_means(void **state) {
   judged j = judged_plain(design_b, 2.417);
   abbe_gem_view_desc desc = small;
   abbe_gem_view coarse = judged_view(&j, &desc);
-  desc.side = 200;
+  desc.side = 112;
   desc.repeats = 16;
   abbe_gem_view fine = judged_view(&j, &desc);
   static const abbe_gem_amount amount[] = {ABBE_GEM_ISO, ABBE_GEM_COS, ABBE_GEM_RETURN,
