@@ -2,6 +2,8 @@
 
 #include "gl/device/shader_files.h"
 
+#include <ctype.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -78,15 +80,86 @@ static abbe_result expand(source *s, const char *name, const char *text, abbe_er
   return result;
 }
 
+/* ---- definitions ---- */
+
+typedef struct definition {
+  const char *line, *name, *value;
+  size_t size, name_size; /* of the line, with its end */
+  bool wanted;
+} definition;
+
+enum { MAX_DEFINITIONS = 160 };
+
+static bool in_word(char c) {
+  return c == '_' || isalnum((unsigned char)c);
+}
+
+static definition read_definition(const char *line) {
+  static const char begin[] = "#define ";
+  definition d = {.line = line, .size = strcspn(line, "\n")};
+  d.size += line[d.size] == '\n';
+  d.wanted = strncmp(line, begin, sizeof begin - 1) != 0;
+  if (d.wanted) return d;
+  d.name = d.value = line + sizeof begin - 1;
+  while (in_word(*d.value)) d.value++;
+  d.name_size = (size_t)(d.value - d.name);
+  return d;
+}
+
+/* Those that the text mentions, and those that these mention. */
+static void want(definition *list, size_t count, const char *text, const char *end) {
+  while (text < end) {
+    const char *word = text;
+    while (text < end && in_word(*text)) text++;
+    const size_t size = (size_t)(text - word);
+    for (size_t i = 0; size > 0 && i < count; i++) {
+      definition *d = &list[i];
+      if (d->wanted || d->name_size != size || memcmp(d->name, word, size) != 0) continue;
+      d->wanted = true;
+      want(list, count, d->value, d->line + d->size);
+    }
+    if (size == 0) text++;
+  }
+}
+
+/* A driver knows what it has compiled by its text. So a program has only those definitions that it
+ * mentions, and is not compiled anew where others change. */
+static abbe_result append_definitions(source *s, const char *defines, const source *files,
+                                      abbe_error *error) {
+  definition list[MAX_DEFINITIONS];
+  size_t count = 0;
+  for (const char *at = defines; at != NULL && *at != '\0'; at += list[count++].size) {
+    if (count == MAX_DEFINITIONS)
+      return abbe_error_set(error, ABBE_GL, "a shader has more than %d definitions",
+                            MAX_DEFINITIONS);
+    list[count] = read_definition(at);
+  }
+  want(list, count, files->text, files->text + files->size);
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < count && result == ABBE_OK; i++)
+    if (list[i].wanted) result = append(s, list[i].line, list[i].size, error);
+  return result;
+}
+
+/* The text of one stage, of a file or given. */
+static abbe_result write_text(const char *file, const char *text, const char *defines, source *out,
+                              abbe_error *error) {
+  static const char version[] = "#version 450 core\n", bindings[] = "bindings.h";
+  source files = {.file = {bindings}, .files = 1};
+  abbe_result result = append(out, version, sizeof version - 1, error);
+  if (result == ABBE_OK) result = include_file(out, bindings, error);
+  if (result == ABBE_OK)
+    result = text != NULL ? expand(&files, file, text, error) : include_file(&files, file, error);
+  if (result == ABBE_OK) result = append_definitions(out, defines, &files, error);
+  if (result == ABBE_OK) result = append(out, files.text, files.size, error);
+  free(files.text);
+  return result;
+}
+
 static abbe_result compile(const abbe_gl *gl, GLenum type, const char *file, const char *text,
                            const char *defines, GLuint *out, abbe_error *error) {
-  static const char version[] = "#version 450 core\n";
   source s = {0};
-  abbe_result result = append(&s, version, sizeof version - 1, error);
-  if (result == ABBE_OK) result = include_file(&s, "bindings.h", error);
-  if (result == ABBE_OK && defines != NULL) result = append(&s, defines, strlen(defines), error);
-  if (result == ABBE_OK)
-    result = text != NULL ? expand(&s, file, text, error) : include_file(&s, file, error);
+  abbe_result result = write_text(file, text, defines, &s, error);
   if (result != ABBE_OK) {
     free(s.text);
     return result;
@@ -159,6 +232,18 @@ abbe_result abbe_program_make_compute_text(const abbe_gl *gl, const char *text, 
   ABBE_REQUIRE(gl && gl->CreateShader && text && out, error);
   abbe_program_stage stage = {GL_COMPUTE_SHADER, "text"};
   return make(gl, &stage, text, 1, defines, out, error);
+}
+
+abbe_result abbe_program_text(const char *file, const char *defines, char **out,
+                              abbe_error *error) {
+  ABBE_REQUIRE(file && out, error);
+  source s = {0};
+  const abbe_result result = write_text(file, NULL, defines, &s, error);
+  *out = s.text;
+  if (result == ABBE_OK) return ABBE_OK;
+  free(s.text);
+  *out = NULL;
+  return result;
 }
 
 const char *const *abbe_program_files(void) {

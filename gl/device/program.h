@@ -2,7 +2,7 @@
  *
  * The files are compiled into the library. `#include "name"` lines are expanded (once a file),
  * the version line and the caller's definitions come first, and the compiler's complaints name
- * file and line.
+ * file and line. Definitions that a stage does not mention are left out of its text.
  */
 #ifndef ABBE_GL_DEVICE_PROGRAM_H
 #define ABBE_GL_DEVICE_PROGRAM_H
@@ -35,6 +35,9 @@ abbe_result abbe_program_make_compute(const abbe_gl *gl, const char *file, const
  */
 abbe_result abbe_program_make_compute_text(const abbe_gl *gl, const char *text, const char *defines,
                                            GLuint *out, abbe_error *error);
+
+/* What the driver is given as a stage; malloc'd. ABBE_NOT_FOUND, ABBE_NO_MEMORY. */
+abbe_result abbe_program_text(const char *file, const char *defines, char **out, abbe_error *error);
 
 /* Names of all shader files, NULL-terminated: a test compiles each. */
 const char *const *abbe_program_files(void);

@@ -105,6 +105,7 @@ static const struct {
     {"abbe_program_make", "defines"},
     {"abbe_program_make_compute", "defines"},
     {"abbe_program_make_compute_text", "defines"},
+    {"abbe_program_text", "defines"},
     {"abbe_record_draft_open", "path"},
     {"abbe_render_desc_resolve", "desc"},
     {"abbe_renderer_frame", "user"},

@@ -4,6 +4,7 @@
 #include "gl/device/program.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Those of gl/: one that is added is compiled here, and counted. */
@@ -62,6 +63,34 @@ static void test_all_combinations(void **state) {
     compiles(lit, 2, defines);
     compiles(&refracted, 1, defines);
   }
+}
+
+static void must_differ(const char *a, const char *b, bool differ) {
+  char *text[2] = {NULL, NULL};
+  abbe_error error = {0};
+  assert_int_equal(abbe_program_text("light_fit.comp", a, &text[0], &error), ABBE_OK);
+  assert_int_equal(abbe_program_text("light_fit.comp", b, &text[1], &error), ABBE_OK);
+  assert_int_equal(strcmp(text[0], text[1]) != 0, differ);
+  free(text[0]);
+  free(text[1]);
+}
+
+/* A driver that knows a text compiles it no more: what a stage does not mention changes nothing. */
+static void test_definitions_that_do_not_matter(void **state) {
+  (void)state;
+  char defines[1024];
+  write_defines(63, defines, sizeof defines);
+  must_differ(defines, "", true);
+  must_differ("#define LIGHT_ROOM 2\n#define NOBODYS 1\n", "#define LIGHT_ROOM 2\n", false);
+  must_differ("#define LIGHT_ROOM 2\n#define LIGHT_ROO 1", "#define LIGHT_ROOM 2\n", false);
+  must_differ("#define LIGHT_ROOM 2\n", "#define LIGHT_ROOM 3\n", true);
+  must_differ("#define LIGHT_ROOM (MANY + 1)\n#define MANY 1\n",
+              "#define LIGHT_ROOM (MANY + 1)\n", true);
+  must_differ("#define NOBODYS LIGHT_ROOM\n#define LIGHT_ROOM 2\n", "#define LIGHT_ROOM 2\n", false);
+  char *text = (char *)"";
+  abbe_error error = {0};
+  assert_int_equal(abbe_program_text("nobody.comp", NULL, &text, &error), ABBE_NOT_FOUND);
+  assert_null(text);
 }
 
 static void test_every_compute_shader(void **state) {
@@ -125,6 +154,7 @@ static void test_complaints_name_the_file(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_definitions_that_do_not_matter),
       cmocka_unit_test(test_all_combinations), cmocka_unit_test(test_every_compute_shader),
       cmocka_unit_test(test_thesis_programs), cmocka_unit_test(test_complaints_name_the_file)};
   return cmocka_run_group_tests(tests, make_context, free_context);
