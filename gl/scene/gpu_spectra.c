@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 size_t abbe_gpu_spectra_room(size_t count) {
-  size_t room = 64;
+  size_t room = 2048; /* what a uniform block holds of the largest element */
   while (room < count) room *= 2;
   return room;
 }

@@ -34,7 +34,7 @@ static void counts_and_flags_are_told(void **state) {
                                  .pixel_threads = 8};
   char *text = text_of(&v, "#define MORE 1\n");
   assert_true(has(text, "#define LIGHTS 2"));
-  assert_true(has(text, "#define SPECTRUM_ROOM 64"));
+  assert_true(has(text, "#define SPECTRUM_ROOM 2048"));
   assert_true(has(text, "#define PLANE_ROOM 57"));
   assert_true(has(text, "#define CONVEX"));
   assert_true(has(text, "#define MANY_EXITS"));
