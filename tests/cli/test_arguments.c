@@ -49,6 +49,7 @@ static const struct named {
     {"plan", "volume", READS},
     {"volume", "", READS},
     {"volume", "output", WRITES},
+    {"volume", "vdb", WRITES},
     {"volume", "checkpoint", WRITES},
     {"volume", "materials", READS},
     {"weights", "illuminant", READS},

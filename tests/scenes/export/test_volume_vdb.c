@@ -1,0 +1,53 @@
+/* A caustic volume as an OpenVDB file, where the build has the library; a sentence where it has
+ * not; what is no grid is refused by both. */
+#include "tests/scenes/volume/volumes.h"
+
+#include "base/file.h"
+#include "scenes/export/volume_vdb.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+static const char path[] = "volume-vdb-test.vdb";
+static const double above[3] = {0, 0, 1};
+
+static void test_grids(void **state) {
+  (void)state;
+  const abbe_region_desc grid = {.kind = ABBE_REGION_GRID, .side = 6, .outer = 0.3};
+  abbe_caustic_volume v;
+  abbe_error error = {0};
+  make_volume(ABBE_VOLUME_VECTOR, grid, 12, false, &v);
+  const abbe_result result = abbe_volume_vdb_write(path, &v, above, &error);
+  if (result == ABBE_UNSUPPORTED) {
+    assert_contains(error.text, "libopenvdb-dev");
+    assert_int_not_equal(access(path, F_OK), 0);
+  } else { /* " BDV", the format's magic number */
+    char *bytes;
+    size_t size;
+    assert_int_equal(result, ABBE_OK);
+    assert_int_equal(abbe_file_read(path, 1 << 20, &bytes, &size, NULL), ABBE_OK);
+    assert_true(size > 6 * 6 * 6 * 36);
+    assert_memory_equal(bytes, " BDV", 4);
+    free(bytes);
+    unlink(path);
+  }
+  abbe_caustic_volume_free(&v);
+}
+
+static void test_others_are_refused(void **state) {
+  (void)state;
+  const abbe_region_desc shells = {
+      .kind = ABBE_REGION_GEODESIC, .levels = 1, .shells = 5, .inner = 0.1, .outer = 0.7};
+  abbe_caustic_volume v;
+  abbe_error error = {0};
+  make_volume(ABBE_VOLUME_VECTOR, shells, 1, false, &v);
+  assert_int_equal(abbe_volume_vdb_write(path, &v, above, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "--grid N");
+  abbe_caustic_volume_free(&v);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_grids),
+                                     cmocka_unit_test(test_others_are_refused)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
