@@ -8,12 +8,12 @@
 enum { BINS = 512, MOST_TEXELS = 64 };
 /* Of the points, that threads do side by side, each with maps of its own; no result depends on who
  * does which. FEWER: of them one in so many tells where the light falls. */
-enum { PARTS = 4, FEWER = 7 };
+enum { PARTS = 4, FEWER = 13 };
 
 /* A window leaves so much of a side's light out on each of its ends. */
 static const double left_out = 0.0025;
 /* The width of a ray on a receiver: so many times the distance between rays as they come in. */
-static const double widening = 1.5;
+static const double widening = 2.5;
 /* Parts of a ray are at most so many of half that width apart. */
 static const double part_width = 1;
 

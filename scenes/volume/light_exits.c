@@ -153,19 +153,34 @@ typedef struct candidate {
   unsigned facets;
 } candidate;
 
+/* All at once: a processor has instructions for several numbers. */
+static void read_halves(const uint16_t half[ABBE_EXIT_HALVES], float out[ABBE_EXIT_HALVES]) {
+  for (size_t k = 0; k < ABBE_EXIT_HALVES; k++) {
+    const uint32_t bits = (uint32_t)(half[k] & 0x7fff) << 13 | (uint32_t)(half[k] & 0x8000) << 16;
+    memcpy(&out[k], &bits, sizeof bits); /* exponents are 112 too small */
+    out[k] *= 0x1p112f;
+  }
+}
+
+static void scale_up(const float *from, double scale, double out[3]) {
+  for (int k = 0; k < 3; k++) out[k] = scale * (double)from[k];
+}
+
 /* far: of the aim, along the node's axes. */
 static void read_candidate(const abbe_light_exits *e, const double far[2], const uint16_t *half,
                            candidate *c) {
+  float value[ABBE_EXIT_HALVES];
   double step[2][3], turn[2][3];
-  unpack(half + ABBE_EXIT_PLACE, e->radius, c->place);
-  unpack(half + ABBE_EXIT_WAY, 1, c->way);
-  unpack(half + ABBE_EXIT_PLACE_BY_INDEX, e->radius, c->place_by);
-  unpack(half + ABBE_EXIT_WAY_BY_INDEX, 1, c->way_by);
-  c->carried = abbe_half_value(half[ABBE_EXIT_CARRIED]);
-  c->facets = (unsigned)fmax(abbe_half_value(half[ABBE_EXIT_FACETS]), 0);
+  read_halves(half, value);
+  scale_up(value + ABBE_EXIT_PLACE, e->radius, c->place);
+  scale_up(value + ABBE_EXIT_WAY, 1, c->way);
+  scale_up(value + ABBE_EXIT_PLACE_BY_INDEX, e->radius, c->place_by);
+  scale_up(value + ABBE_EXIT_WAY_BY_INDEX, 1, c->way_by);
+  c->carried = (double)value[ABBE_EXIT_CARRIED];
+  c->facets = value[ABBE_EXIT_FACETS] > 0 ? (unsigned)value[ABBE_EXIT_FACETS] : 0;
   for (int a = 0; a < 2; a++) {
-    unpack(half + ABBE_EXIT_PLACE_BY + 3 * a, e->radius * far[a], step[a]);
-    unpack(half + ABBE_EXIT_WAY_BY + 3 * a, far[a], turn[a]);
+    scale_up(value + ABBE_EXIT_PLACE_BY + 3 * a, e->radius * far[a], step[a]);
+    scale_up(value + ABBE_EXIT_WAY_BY + 3 * a, far[a], turn[a]);
   }
   for (int k = 0; k < 3; k++) {
     c->step[k] = step[0][k] + step[1][k];

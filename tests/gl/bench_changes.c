@@ -170,6 +170,7 @@ static int bench_sun(bench *b, char **argument) {
   must(abbe_scene_load(argument[2], NULL, &b->scene, &error), &error);
   b->desc.width = b->desc.height = (size_t)strtoul(argument[1], NULL, 10);
   b->desc.volume = &volume;
+  if (volume.kind == ABBE_VOLUME_PRINTED) b->desc.profile = ABBE_PROFILE_WYMAN2003;
   must(abbe_renderer_make(b->context, &b->scene, &b->desc, &b->renderer, &error), &error);
   must(abbe_renderer_frame(b->renderer, NULL, NULL, NULL, &error), &error);
   time_sun(b, argument[3], to);
