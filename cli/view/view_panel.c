@@ -283,7 +283,9 @@ static void draw_pixel(const abbe_view_session *app) {
   if (p->bands > 0)
     abbe_view_chart_spectrum(p);
   else
-    abbe_ui_text(DIM, "the tracer is on its way to its spectrum");
+    abbe_ui_text(DIM, s->refine.last == ABBE_VIEW_NONE || s->refine.last == ABBE_VIEW_TRACED
+                          ? "the tracer is on its way to its spectrum"
+                          : "no spectrum: nothing is traced (--last)");
   abbe_view_chart_colours(p);
 }
 
