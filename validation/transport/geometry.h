@@ -113,33 +113,15 @@ typedef struct abbe_hit {
   float ng[3]; /* unit, outwards, of the face */
 } abbe_hit;
 
-/* Where a ray that Embree found to hit (geometry, face, u, v) meets the surface. Spheres: the
- * point nearest to o + t d on the sphere. */
-static inline void abbe_geometry_place(const abbe_surface *s, uint32_t face, float u, float v,
-                                       const float o[3], const float d[3], float t, abbe_hit *hit) {
+/* The place (u, v) on a face of triangles. */
+static inline void abbe_geometry_place_on_face(const abbe_surface *s, uint32_t face, float u,
+                                               float v, abbe_hit *hit) {
+  const abbe_plane_face *f = &s->plane[face];
+  float p[4], n[4];
   hit->surface = s;
   hit->face = face;
   hit->u = u;
   hit->v = v;
-  if (s->sphere) {
-    float r[3], length = 0;
-    for (int k = 0; k < 3; k++) r[k] = (o[k] - s->centre[k]) + t * d[k];
-    length = sqrtf(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
-    for (int k = 0; k < 3; k++) {
-      hit->ng[k] = hit->n[k] = r[k] / length;
-      hit->p[k] = s->centre[k] + s->radius * hit->n[k];
-    }
-    return;
-  }
-  if (s->plane == NULL) {
-    for (int k = 0; k < 3; k++) {
-      hit->p[k] = o[k] + t * d[k];
-      hit->ng[k] = hit->n[k] = s->normal[0][k];
-    }
-    return;
-  }
-  const abbe_plane_face *f = &s->plane[face];
-  float p[4], n[4];
   for (int k = 0; k < 4; k++) p[k] = f->corner[k] + u * f->second[k] + v * f->third[k];
   for (int k = 0; k < 3; k++) {
     hit->p[k] = p[k];
@@ -152,6 +134,34 @@ static inline void abbe_geometry_place(const abbe_surface *s, uint32_t face, flo
   if (!(square > 0)) return;
   const float scale = 1 / sqrtf(square);
   for (int k = 0; k < 3; k++) hit->n[k] = n[k] * scale;
+}
+
+/* Where a ray that Embree found to hit (geometry, face, u, v) meets the surface. Spheres: the
+ * point nearest to o + t d on the sphere. */
+static inline void abbe_geometry_place(const abbe_surface *s, uint32_t face, float u, float v,
+                                       const float o[3], const float d[3], float t, abbe_hit *hit) {
+  if (s->plane != NULL) {
+    abbe_geometry_place_on_face(s, face, u, v, hit);
+    return;
+  }
+  hit->surface = s;
+  hit->face = face;
+  hit->u = u;
+  hit->v = v;
+  if (!s->sphere) {
+    for (int k = 0; k < 3; k++) {
+      hit->p[k] = o[k] + t * d[k];
+      hit->ng[k] = hit->n[k] = s->normal[0][k];
+    }
+    return;
+  }
+  float r[3], length = 0;
+  for (int k = 0; k < 3; k++) r[k] = (o[k] - s->centre[k]) + t * d[k];
+  length = sqrtf(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+  for (int k = 0; k < 3; k++) {
+    hit->ng[k] = hit->n[k] = r[k] / length;
+    hit->p[k] = s->centre[k] + s->radius * hit->n[k];
+  }
 }
 
 /* How far a ray starts off the face that it leaves, as a share of its coordinates. */

@@ -14,6 +14,8 @@
 #include "validation/walks/inner_walk.h"
 #include "validation/walks/scatter.h"
 
+#include <string.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -32,12 +34,31 @@ typedef struct abbe_light_path {
   uint8_t wave;          /* in a crystal: which of its two */
 } abbe_light_path;
 
-static inline abbe_light_stretch abbe_light_path_stretch(const abbe_light_path *s, const float o[3],
-                                                         const float d[3], float length) {
-  abbe_light_stretch out = {
-      {o[0], o[1], o[2]}, {d[0], d[1], d[2]},      length, s->flux, s->step, s->within, s->id,
-      s->steps,           abbe_media_of(s->inside)};
+/* Along the ray of lane k, which Embree has been through. */
+static inline abbe_light_stretch abbe_light_path_stretch(const abbe_light_path *s,
+                                                         const struct RTCRayHit16 *rays, size_t k) {
+  abbe_light_stretch out;
+  out.length = rays->ray.tfar[k];
+  out.flux = s->flux;
+  out.step = s->step;
+  out.within = s->within;
+  out.id = s->id;
+  out.steps = s->steps;
+  out.medium = abbe_media_of(s->inside);
+  abbe_ray_take(rays, k, out.o, out.d);
   return out;
+}
+
+/* As the photon starts. */
+static inline void abbe_light_path_start(const abbe_photon *p, abbe_light_path *out) {
+  memset(out, 0, sizeof *out);
+  out->id = p->id;
+  out->step = p->step;
+  out->within = p->within;
+  out->flux = out->full = p->flux;
+  out->y = p->y;
+  out->carried = 1;
+  for (int i = 0; i < ABBE_PHOTON_SPLITS; i++) out->chance[i] = 1;
 }
 
 /* The number that decides at a path's next interface. Neighbouring photons have neighbouring
@@ -67,10 +88,11 @@ static inline bool abbe_light_path_survives(const abbe_inner_rules *r, abbe_ligh
 
 /* What a haze takes on the way of that length: absorbed, or scattered off the path. */
 static inline bool abbe_light_path_fade(const abbe_inner_rules *r, const abbe_haze *haze,
-                                        abbe_light_path *s, const float o[3], const float d[3],
-                                        float length, abbe_light_ledger *ledger) {
+                                        abbe_light_path *s, const struct RTCRayHit16 *rays,
+                                        size_t k, abbe_light_ledger *ledger) {
   const int medium = abbe_media_of(s->inside);
-  float from = 0, to = length;
+  float o[3], d[3], from = 0, to = rays->ray.tfar[k];
+  abbe_ray_take(rays, k, o, d);
   if (!abbe_haze_clip(haze, medium, o, d, &from, &to)) return true;
   const float whole = abbe_haze_extinction(haze, medium, s->step, s->within);
   if (!(whole > 0)) return true;
@@ -86,21 +108,23 @@ static inline bool abbe_light_path_fade(const abbe_inner_rules *r, const abbe_ha
 /* Haze on the way from the light to what a path meets first; the ledger begins there. parallel:
  * from beyond everything. */
 static inline void abbe_light_path_begin(const abbe_haze *haze, abbe_light_path *s, bool parallel,
-                                         const float o[3], const float d[3], float length) {
+                                         const struct RTCRayHit16 *rays, size_t k) {
+  float o[3], d[3];
   if (!abbe_haze_is(haze)) return;
-  s->flux *= abbe_haze_left(haze, -1, o, d, parallel ? -INFINITY : 0, length, s->step, s->within);
+  abbe_ray_take(rays, k, o, d);
+  s->flux *= abbe_haze_left(haze, -1, o, d, parallel ? -INFINITY : 0, rays->ray.tfar[k], s->step,
+                            s->within);
   s->full = s->flux;
 }
 
 /* Absorption on the way, haze, and the roulette. */
 static inline bool abbe_light_path_absorb(const abbe_inner_rules *r, const abbe_media *media,
-                                          abbe_light_path *s, const float o[3], const float d[3],
-                                          float length, abbe_light_ledger *ledger) {
-  if (abbe_haze_is(&media->haze))
-    return abbe_light_path_fade(r, &media->haze, s, o, d, length, ledger);
+                                          abbe_light_path *s, const struct RTCRayHit16 *rays,
+                                          size_t k, abbe_light_ledger *ledger) {
+  if (abbe_haze_is(&media->haze)) return abbe_light_path_fade(r, &media->haze, s, rays, k, ledger);
   int medium = abbe_media_of(s->inside);
   if (medium < 0 || media->attenuation == NULL) return true;
-  float left = expf(-length * abbe_media_attenuation(media, medium, s->step, s->within));
+  float left = expf(-rays->ray.tfar[k] * abbe_media_attenuation(media, medium, s->step, s->within));
   ledger->absorbed += (double)(s->y * s->flux * (1 - left));
   s->flux *= left;
   s->carried *= left;

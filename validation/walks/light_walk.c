@@ -176,9 +176,10 @@ typedef struct run {
 static const float REFLECT = -1, TRANSMIT = 2;
 
 /* What a path meets at a refractor: normals, indices, media. */
-static void meet_interface(const abbe_light_walk *w, const abbe_light_path *s, const float d[3],
-                           packet *p, size_t k) {
+static void meet_interface(const abbe_light_walk *w, const abbe_light_path *s, packet *p,
+                           size_t k) {
   const abbe_hit *hit = &p->hit[k];
+  const float d[3] = {p->scatter.d[0][k], p->scatter.d[1][k], p->scatter.d[2][k]};
   const bool entering = abbe_scatter_meet(&p->scatter, k, hit, d);
   abbe_media_cross(s->inside, hit->surface->index, entering, &p->before[k], &p->after[k]);
   int from = abbe_media_of(p->before[k]), to = abbe_media_of(p->after[k]);
@@ -194,37 +195,33 @@ static void meet_interface(const abbe_light_walk *w, const abbe_light_path *s, c
  * it there. */
 static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, abbe_light_path *s) {
   packet *p = &r->packet;
-  bool first = s->steps == 0;
-  unsigned id = rays->hit.geomID[k];
-  float o[3] = {rays->ray.org_x[k], rays->ray.org_y[k], rays->ray.org_z[k]};
-  float d[3] = {rays->ray.dir_x[k], rays->ray.dir_y[k], rays->ray.dir_z[k]};
-  for (int i = 0; i < 3; i++) p->scatter.d[i][k] = d[i];
-  const float length = rays->ray.tfar[k];
-  const abbe_light_stretch stretch = abbe_light_path_stretch(s, o, d, length);
-  if (r->w->take != NULL && !first) r->w->take(r->w->watcher, &stretch);
+  const bool first = s->steps == 0;
+  const unsigned id = rays->hit.geomID[k];
+  if (r->w->take != NULL && !first) {
+    const abbe_light_stretch stretch = abbe_light_path_stretch(s, rays, k);
+    r->w->take(r->w->watcher, &stretch);
+  }
   if (id == RTC_INVALID_GEOMETRY_ID && (first || s->inside != 0)) return first ? NOT_COUNTED : LOST;
-  const bool left =
-      first || abbe_light_path_absorb(&r->rules, r->w->media, s, o, d, length, r->ledger);
+  const bool left = first || abbe_light_path_absorb(&r->rules, r->w->media, s, rays, k, r->ledger);
   if (id == RTC_INVALID_GEOMETRY_ID) return left ? MISSED : NOT_COUNTED;
-  if (first && r->w->g->surface[id].kind == ABBE_GEOMETRY_RECEIVERS) return NOT_COUNTED;
-  abbe_hit *hit = &p->hit[k];
-  abbe_geometry_place(&r->w->g->surface[id], rays->hit.primID[k], rays->hit.u[k], rays->hit.v[k], o,
-                      d, rays->ray.tfar[k], hit);
-  if (hit->surface->kind == ABBE_GEOMETRY_RECEIVERS) {
+  const abbe_surface *surface = &r->w->g->surface[id];
+  if (first && surface->kind == ABBE_GEOMETRY_RECEIVERS) return NOT_COUNTED;
+  abbe_ray_place(rays, k, surface, &p->hit[k]);
+  if (surface->kind == ABBE_GEOMETRY_RECEIVERS) {
     if (s->inside != 0) r->ledger->contact += (double)(s->y * s->flux);
     return left ? DEPOSITED : NOT_COUNTED;
   }
-  if (first) abbe_light_path_begin(&r->w->media->haze, s, r->parallel, o, d, length);
+  if (first) abbe_light_path_begin(&r->w->media->haze, s, r->parallel, rays, k);
   if (first) r->ledger->reached += (double)(s->y * s->flux);
-  if (hit->surface->kind == ABBE_GEOMETRY_MIRRORS) {
+  if (surface->kind == ABBE_GEOMETRY_MIRRORS) {
     if (!left) return NOT_COUNTED;
-    abbe_scatter_meet_mirror(&p->scatter, &p->mirroring, k, hit, d, r->w->mirrors, s->step,
+    abbe_scatter_meet_mirror(&p->scatter, &p->mirroring, k, &p->hit[k], r->w->mirrors, s->step,
                              s->within);
     return MIRRORED;
   }
   p->scatter.chance[k] = abbe_light_path_chance(&r->rules, s);
   bool too_long = ++s->steps >= ABBE_INNER_MAX_STEPS;
-  meet_interface(r->w, s, d, p, k);
+  meet_interface(r->w, s, p, k);
   return too_long ? LOST : left ? SCATTERS : NOT_COUNTED;
 }
 
@@ -401,6 +398,7 @@ static void scatter(run *r, const abbe_light_path *paths, size_t count) {
     mirrors = mirrors || r->packet.state[k] == MIRRORED;
     any = any || splits[k];
   }
+  if (mirrors) abbe_scatter_turn(s);
   if (scatters || mirrors) scatter_packet(r, paths, count);
   if (mirrors) abbe_scatter_mirror(s, &r->packet.mirroring);
   advance(r, paths, count, false);
@@ -448,14 +446,7 @@ static void begin(ray_batch *b, const abbe_photon *photon, size_t count) {
     const abbe_photon *p = &photon[i];
     if (!(p->flux > 0)) continue;
     abbe_ray_put(b->ray, b->count, p->o, p->d);
-    b->path[b->count++] = (abbe_light_path){.id = p->id,
-                                            .step = p->step,
-                                            .within = p->within,
-                                            .flux = p->flux,
-                                            .full = p->flux,
-                                            .y = p->y,
-                                            .carried = 1,
-                                            .chance = {1, 1}};
+    abbe_light_path_start(p, &b->path[b->count++]);
   }
 }
 
@@ -470,8 +461,12 @@ static void follow(run *r, size_t bounce) {
   for (size_t first = 0; first < b->count; first += LANES) {
     const size_t used = b->count - first < LANES ? b->count - first : LANES;
     abbe_light_path *paths = &b->path[first];
-    for (size_t k = 0; k < used; k++)
-      r->packet.state[k] = read_hit(r, &b->ray[first / LANES], k, &paths[k]);
+    const struct RTCRayHit16 *rays = &b->ray[first / LANES];
+    abbe_scatter *s = &r->packet.scatter;
+    memcpy(s->d[0], rays->ray.dir_x, sizeof s->d[0]);
+    memcpy(s->d[1], rays->ray.dir_y, sizeof s->d[1]);
+    memcpy(s->d[2], rays->ray.dir_z, sizeof s->d[2]);
+    for (size_t k = 0; k < used; k++) r->packet.state[k] = read_hit(r, rays, k, &paths[k]);
     scatter(r, paths, used);
   }
   leave_solid(r);

@@ -38,6 +38,29 @@ static inline void abbe_ray_put(struct RTCRayHit16 *packets, size_t i, const flo
   p->ray.dir_z[k] = d[2];
 }
 
+/* The ray of lane k. */
+static inline void abbe_ray_take(const struct RTCRayHit16 *p, size_t k, float o[3], float d[3]) {
+  o[0] = p->ray.org_x[k];
+  o[1] = p->ray.org_y[k];
+  o[2] = p->ray.org_z[k];
+  d[0] = p->ray.dir_x[k];
+  d[1] = p->ray.dir_y[k];
+  d[2] = p->ray.dir_z[k];
+}
+
+/* Where the ray of lane k, which Embree has been through, meets the surface. */
+static inline void abbe_ray_place(const struct RTCRayHit16 *p, size_t k, const abbe_surface *s,
+                                  abbe_hit *out) {
+  const uint32_t face = p->hit.primID[k];
+  float o[3], d[3];
+  if (s->plane != NULL) {
+    abbe_geometry_place_on_face(s, face, p->hit.u[k], p->hit.v[k], out);
+    return;
+  }
+  abbe_ray_take(p, k, o, d);
+  abbe_geometry_place(s, face, p->hit.u[k], p->hit.v[k], o, d, p->ray.tfar[k], out);
+}
+
 /* What tracing has written in a packet, as it was before. */
 static inline void abbe_ray_reset(struct RTCRayHit16 *p) {
   for (size_t k = 0; k < ABBE_RAY_LANES; k++) {

@@ -35,18 +35,21 @@ SIDE_BY_SIDE void abbe_scatter_packet(abbe_scatter *s) {
   }
 }
 
-void abbe_scatter_meet_mirror(abbe_scatter *s, abbe_mirroring *m, size_t k, const abbe_hit *hit,
-                              const float d[3], const abbe_mirrors *mirrors, uint32_t step,
-                              float within) {
-  const size_t mirror = hit->surface->index;
-  float nk[2] = {1, 1};
-  abbe_scatter_meet(s, k, hit, d);
-  s->eta[k] = 1;
-  s->chance[k] = -1;
-  if (!abbe_mirrors_is_grey(mirrors, mirror)) abbe_mirrors_nk(mirrors, mirror, step, within, nk);
-  m->n[k] = nk[0];
-  m->k[k] = nk[1];
-  m->grey[k] = mirrors->reflectance[mirror];
+SIDE_BY_SIDE void abbe_scatter_turn(abbe_scatter *s) {
+  for (size_t k = 0; k < ABBE_RAY_LANES; k++) {
+    float along = 0, shaded = 0;
+    for (int i = 0; i < 3; i++) {
+      along += s->d[i][k] * s->ng[i][k];
+      shaded += s->d[i][k] * s->n[i][k];
+    }
+    const float side = along < 0 ? 1.0f : -1.0f;
+    const int bent = (shaded < 0) == (along < 0);
+    for (int i = 0; i < 3; i++) {
+      const float n = bent ? s->n[i][k] : s->ng[i][k];
+      s->n[i][k] = side * n;
+      s->ng[i][k] *= side;
+    }
+  }
 }
 
 SIDE_BY_SIDE void abbe_scatter_mirror(const abbe_scatter *s, abbe_mirroring *m) {

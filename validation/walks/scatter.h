@@ -57,11 +57,31 @@ static inline bool abbe_scatter_meet(abbe_scatter *s, size_t k, const abbe_hit *
   return entering;
 }
 
-/* The same at a mirror, from either side, within step at the share `within` of it: of one index on
- * both sides, and all that goes on is reflected. */
-void abbe_scatter_meet_mirror(abbe_scatter *s, abbe_mirroring *m, size_t k, const abbe_hit *hit,
-                              const float d[3], const abbe_mirrors *mirrors, uint32_t step,
-                              float within);
+/* Lane k comes to a mirror, from either side, within step at the share `within` of it: of one index
+ * on both sides, and all that goes on is reflected. Its normals point outwards until they are
+ * turned. */
+static inline void abbe_scatter_meet_mirror(abbe_scatter *s, abbe_mirroring *m, size_t k,
+                                            const abbe_hit *hit, const abbe_mirrors *mirrors,
+                                            uint32_t step, float within) {
+  const size_t mirror = hit->surface->index;
+  float nk[2] = {1, 1};
+  for (int i = 0; i < 3; i++) {
+    s->n[i][k] = hit->n[i];
+    s->ng[i][k] = hit->ng[i];
+    s->p[i][k] = hit->p[i];
+  }
+  s->size[k] = hit->surface->sphere ? hit->surface->radius : 0;
+  s->eta[k] = 1;
+  s->chance[k] = -1;
+  if (!abbe_mirrors_is_grey(mirrors, mirror)) abbe_mirrors_nk(mirrors, mirror, step, within, nk);
+  m->n[k] = nk[0];
+  m->k[k] = nk[1];
+  m->grey[k] = mirrors->reflectance[mirror];
+}
+
+/* Turns the normals of all lanes to the side that the light comes from; those that point there
+ * stay. */
+void abbe_scatter_turn(abbe_scatter *s);
 
 #ifdef __cplusplus
 }
