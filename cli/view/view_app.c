@@ -49,7 +49,8 @@ abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc
                              .keep = desc->keep,
                              .ocio = desc->ocio,
                              .materials = desc->materials,
-                             .volume = desc->volume_path,
+                             .volume_path = desc->volume_path,
+                             .volume = desc->volume,
                              .wake = desc->wake,
                              .seen_s = -1,
                              .cancelled_s = -1};
@@ -269,7 +270,8 @@ static void compile_ahead(abbe_view_session *app) {
   if (!s->refine.compiling || !abbe_view_ahead_idle(&app->ahead)) return;
   if (abbe_view_document_copy(abbe_view_history_now(&s->history), &request.document, NULL) !=
           ABBE_OK ||
-      abbe_view_ahead_give(&app->ahead, app->materials, app->wake, &request, NULL) != ABBE_OK)
+      abbe_view_ahead_give(&app->ahead, app->materials, app->volume, app->wake, &request, NULL) !=
+          ABBE_OK)
     abbe_view_refine_compiled(&s->refine, false);
 }
 

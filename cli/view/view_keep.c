@@ -70,9 +70,9 @@ char *abbe_view_keep_command(const abbe_view_session *session) {
     fputs(" --materials ", out.stream);
     quote(out.stream, session->materials);
   }
-  if (session->volume != NULL) {
+  if (session->volume_path != NULL) {
     fputs(" --volume ", out.stream);
-    quote(out.stream, session->volume);
+    quote(out.stream, session->volume_path);
   }
   for (size_t i = 0; i < now->set_count; i++) {
     fputs(" --set ", out.stream);

@@ -21,7 +21,8 @@ typedef struct abbe_view_session {
   abbe_view_ahead ahead;
   void (*wake)(void);
   const abbe_gl *gl;
-  const char *keep, *ocio, *materials, *volume;
+  const char *keep, *ocio, *materials, *volume_path;
+  const abbe_caustic_volume *volume;
   abbe_display *display;
   char *views; /* lines "display / view" */
   size_t view; /* of these */

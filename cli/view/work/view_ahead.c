@@ -9,11 +9,12 @@ static size_t small(size_t side) {
   return side <= 32 ? side : power ? 32 : 48;
 }
 
-abbe_result abbe_view_ahead_give(abbe_view_ahead *ahead, const char *materials, void (*wake)(void),
+abbe_result abbe_view_ahead_give(abbe_view_ahead *ahead, const char *materials,
+                                 const abbe_caustic_volume *volume, void (*wake)(void),
                                  abbe_view_request *request, abbe_error *error) {
   abbe_result result = ABBE_OK;
   if (ahead->worker == NULL)
-    result = abbe_view_worker_make(materials, NULL, wake, &ahead->worker, error);
+    result = abbe_view_worker_make(materials, volume, wake, &ahead->worker, error);
   if (result != ABBE_OK) {
     abbe_view_document_free(&request->document);
     return result;

@@ -16,9 +16,10 @@ typedef struct abbe_view_ahead {
 } abbe_view_ahead;
 
 /* Takes over a request that ended with ABBE_VIEW_UNCOMPILED; only while idle. What it was given
- * `materials` and `wake` (may be NULL) are as of abbe_view_worker_make, whose errors these are; the
- * request is freed then. */
-abbe_result abbe_view_ahead_give(abbe_view_ahead *ahead, const char *materials, void (*wake)(void),
+ * `materials`, `volume` and `wake` (may be NULL) are as of abbe_view_worker_make, whose errors
+ * these are; the request is freed then. */
+abbe_result abbe_view_ahead_give(abbe_view_ahead *ahead, const char *materials,
+                                 const abbe_caustic_volume *volume, void (*wake)(void),
                                  abbe_view_request *request, abbe_error *error);
 bool abbe_view_ahead_idle(const abbe_view_ahead *ahead);
 /* Whether what was given is compiled now; true once. */
