@@ -143,7 +143,7 @@ static void keys_and_records_come_and_go(void **state) {
                    "-    # of the crown\n \n");
 }
 
-/* Whatever is done to a shipped record, the others stay byte by byte; all to the first and the last. */
+/* Whatever is done to a shipped record, the others stay; all is done to the first and last ones. */
 static void each_edit_stays_inside_its_record(void **state) {
   (void)state;
   const char *const paths[] = {ABBE_SOURCE_DIR "/spectral/materials/materials.yaml",
