@@ -1,33 +1,10 @@
 /* Haze in the renderer's pictures, against closed forms: a slab of mist in the sun, what is left of
  * what is behind it, a lamp in mist, and a shaft of sunlight under still water. */
-#include "tests/gl/frame.h"
+#include "tests/gl/haze/haze_picture.h"
 
 #include "scenes/medium/medium.h"
 
 static const double pi = 3.14159265358979323846;
-
-/* Mean of the green channel of a picture of 16 by 16 pixels, in Rec.709: of white light Y. */
-static double green_of(const char *text, size_t photons) {
-  abbe_scene scene;
-  abbe_image picture;
-  abbe_render_desc desc = {.width = 16,
-                           .height = 16,
-                           .photons = photons,
-                           .map_size = 64,
-                           .wavelengths = 3,
-                           .supersample = 1,
-                           .space = ABBE_RGB_SPACE_REC709};
-  load_text(text, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, &picture);
-  double sum = 0;
-  for (size_t i = 0; i < 256; i++) sum += (double)picture.data[i * picture.channels + 1] / 256;
-  abbe_image_free(&picture);
-  abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
-  return sum;
-}
 
 #define VIEW(more)                                                                                 \
   more "camera: {eye: [2.383508, 0, 2], target: [0, 0, 0], up: [0, 1, 0], fov: 1}\n"               \
