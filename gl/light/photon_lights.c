@@ -118,6 +118,15 @@ size_t abbe_photon_lights_photons(const abbe_gpu_scene *scene, size_t light) {
   return side > 0 ? side : 1;
 }
 
+/* A parallel view starts close to what it shows: farther off, places across it are rounded to parts
+ * of a photon's cell. */
+static void come_close(abbe_view *view) {
+  const double depth = view->far - view->near, way = view->near - 0.5 * depth;
+  for (int k = 0; k < 3; k++) view->origin[k] += way * view->forward[k];
+  view->near -= way;
+  view->far -= way;
+}
+
 /* Tight around the refractors for the photons; around all receivers for the map, which is fitted
  * to the photons' hits later where the request does not give it. */
 static void fit_views(abbe_photon_lights *views) {
@@ -132,6 +141,7 @@ static void fit_views(abbe_photon_lights *views) {
       fit_objects(views, views->scene->plan->receiver_object, views->scene->plan->receiver_count,
                   &state->near_view);
     abbe_view_pad(&state->near_view, 0.01);
+    if (state->near_view.orthographic) come_close(&state->near_view);
     if (abbe_photon_lights_is_face(views, i)) {
       abbe_photon_light_look(views->scene, i, &state->near_view);
       fit_face(views, i, &state->near_view);

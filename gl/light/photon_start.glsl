@@ -35,5 +35,7 @@ bool photon_start(vec2 uv, out vec3 o, out vec3 d, out Hit front, out float flux
 #ifdef FRONT_LAYER
   if (layers_front(uv, o, d, front)) reached = true;
 #endif
-  return reached && flux > 0.0 && receiver_lit(light, front.p, d, front.t);
+  // A parallel view begins close to the refractors, its light far beyond the scene.
+  float from_light = front.t + (int(l.position.w) == 2 ? scene_size : 0.0);
+  return reached && flux > 0.0 && receiver_lit(light, front.p, d, from_light);
 }

@@ -117,7 +117,7 @@ static void a_balls_light_is_smooth(void **state) {
   const double ripple = sqrt(fmax(square - mean * mean, 0));
   print_message("%.4f of the ball's light, %.4f off it, %.4f at the most\n", mean, ripple, worst);
   assert_near(mean, 1, 0.01);
-  assert_true(ripple < 0.03 && worst < 0.1);
+  assert_true(ripple < 0.015 && worst < 0.06);
   drop(&f);
 }
 
