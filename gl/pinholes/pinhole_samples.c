@@ -160,7 +160,8 @@ abbe_result abbe_pinhole_samples_make(const abbe_gpu_scene *scene, bool publishe
                                           .strategy = plan->desc.strategy,
                                           .seed = seed_of(&plan->desc),
                                           .sided = !published,
-                                          .even = !published};
+                                          .even = !published,
+                                          .on_surface = !published};
   const abbe_mesh **mesh = calloc(plan->refractor_count + 1, sizeof *mesh);
   abbe_surface_samples s;
   *out = (abbe_pinhole_samples){0};
@@ -170,7 +171,7 @@ abbe_result abbe_pinhole_samples_make(const abbe_gpu_scene *scene, bool publishe
   abbe_result result = abbe_surface_samples_make(mesh, plan->refractor_count, &sampling, &s, error);
   free(mesh);
   if (result != ABBE_OK) return result;
-  const bool moved = plan->desc.strategy == ABBE_SAMPLE_STRATEGY_QUANTIZED;
+  const bool moved = published && plan->desc.strategy == ABBE_SAMPLE_STRATEGY_QUANTIZED;
   for (size_t i = 0; i < s.candidate_count; i++) move_to_sphere(scene, &s.candidate[i]);
   for (size_t i = 0; i < s.count && !moved; i++) move_to_sphere(scene, &s.sample[i]);
   out->count = s.count;

@@ -162,6 +162,7 @@ static size_t remove_neighbours(const abbe_surface_samples *s, double radius, bo
 typedef struct in_cell {
   int64_t cell[4]; /* the last: the octant of the normal's largest side, where sides are apart */
   bool taken;
+  size_t number; /* of those that are kept */
 } in_cell;
 
 /* A slot of the cell, or a free one, in a table of mask + 1. */
@@ -183,9 +184,25 @@ static int64_t side_of(const double n[3]) {
   return n[k] < 0;
 }
 
-/* As above, of cubes of an edge; the first candidate of each. */
-static size_t take_cells(const abbe_surface_samples *s, double edge, bool sided, size_t most,
-                         uint32_t *kept) {
+static void cell_of(const abbe_surface_point *p, double edge, bool sided, int64_t cell[4]) {
+  for (int k = 0; k < 3; k++) cell[k] = (int64_t)floor(p->position[k] / edge);
+  cell[3] = sided ? side_of(p->normal) : 0;
+}
+
+static void middle_of_cell(const abbe_surface_point *p, double edge, double middle[3]) {
+  for (int k = 0; k < 3; k++) middle[k] = (floor(p->position[k] / edge) + 0.5) * edge;
+}
+
+static double from_middle(const abbe_surface_point *p, double edge) {
+  double middle[3];
+  middle_of_cell(p, edge, middle);
+  abbe_vector_subtract(p->position, middle, middle);
+  return abbe_vector_length(middle);
+}
+
+/* As above, of cubes of an edge; of each the first candidate, or that nearest to its middle. */
+static size_t take_some(const abbe_surface_samples *s, double edge, bool sided, bool middles,
+                        size_t most, uint32_t *kept) {
   size_t room = 16, count = 0;
   while (room < 2 * most + 2) room *= 2;
   in_cell *table = calloc(room, sizeof *table);
@@ -193,17 +210,24 @@ static size_t take_cells(const abbe_surface_samples *s, double edge, bool sided,
   for (size_t i = 0; i < s->candidate_count && count <= most; i++) {
     const abbe_surface_point *p = &s->candidate[i];
     int64_t cell[4];
-    for (int k = 0; k < 3; k++) cell[k] = (int64_t)floor(p->position[k] / edge);
-    cell[3] = sided ? side_of(p->normal) : 0;
+    cell_of(p, edge, sided, cell);
     in_cell *slot = find_cell(table, room - 1, cell);
-    if (slot->taken) continue;
+    const bool first = !slot->taken;
+    if (first) slot->number = count++;
     memcpy(slot->cell, cell, sizeof cell);
     slot->taken = true;
-    if (count < most) kept[count] = (uint32_t)i;
-    count++;
+    if (slot->number < most &&
+        (first || (middles && from_middle(p, edge) <
+                                  from_middle(&s->candidate[kept[slot->number]], edge))))
+      kept[slot->number] = (uint32_t)i;
   }
   free(table);
   return count;
+}
+
+static size_t take_cells(const abbe_surface_samples *s, double edge, bool sided, size_t most,
+                         uint32_t *kept) {
+  return take_some(s, edge, sided, false, most, kept);
 }
 
 /* ---- which are kept ---- */
@@ -236,9 +260,11 @@ static size_t keep_by_reach(abbe_surface_samples *s, const abbe_surface_sampling
 }
 
 static void quantize(abbe_surface_samples *s) {
-  for (size_t i = 0; i < s->count; i++)
-    for (int k = 0; k < 3; k++)
-      s->sample[i].position[k] = (floor(s->sample[i].position[k] / s->reach) + 0.5) * s->reach;
+  for (size_t i = 0; i < s->count; i++) {
+    double middle[3];
+    middle_of_cell(&s->sample[i], s->reach, middle);
+    memcpy(s->sample[i].position, middle, sizeof middle);
+  }
 }
 
 static abbe_result keep(abbe_surface_samples *s, const abbe_surface_sampling *sampling, size_t most,
@@ -251,6 +277,9 @@ static abbe_result keep(abbe_surface_samples *s, const abbe_surface_sampling *sa
   for (size_t i = 0; kept != NULL && i < most; i++) kept[i] = (uint32_t)i;
   if (kept != NULL && strategy != ABBE_SAMPLE_STRATEGY_RANDOM)
     count = keep_by_reach(s, sampling, most, cells ? take_cells : remove_neighbours, kept);
+  const bool quantized = strategy == ABBE_SAMPLE_STRATEGY_QUANTIZED;
+  if (quantized && sampling->on_surface && count != SIZE_MAX)
+    count = take_some(s, s->reach, sampling->sided, true, most, kept);
   if (count == SIZE_MAX) {
     free(kept);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu samples of surfaces", most);
@@ -261,7 +290,7 @@ static abbe_result keep(abbe_surface_samples *s, const abbe_surface_sampling *sa
   for (size_t i = 0; i < count; i++) s->sample[i] = s->candidate[kept[i]];
   free(kept);
   s->spacing = sqrt(s->area / (double)count);
-  if (strategy == ABBE_SAMPLE_STRATEGY_QUANTIZED) quantize(s);
+  if (quantized && !sampling->on_surface) quantize(s);
   return ABBE_OK;
 }
 

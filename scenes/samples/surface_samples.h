@@ -4,9 +4,9 @@
  * Candidates are many points, uniform by area, at random or evenly; of these a strategy keeps some.
  * random keeps the first ones. grid keeps one of each cube that holds any, so its density goes with
  * the cubes that a surface crosses: with the sum of the absolute components of its normal.
- * quantized keeps those and moves them to their cubes' middles. neighbour goes through the
- * candidates in their order and drops each that is nearer to a kept one than a radius. It knows no
- * light.
+ * quantized moves those to their cubes' middles, off the surface, or, where it is to stay on it,
+ * takes the candidate that is nearest to each middle. neighbour goes through the candidates in their
+ * order and drops each that is nearer to a kept one than a radius. It knows no light.
  */
 #ifndef ABBE_SCENES_SAMPLES_SURFACE_SAMPLES_H
 #define ABBE_SCENES_SAMPLES_SURFACE_SAMPLES_H
@@ -61,6 +61,7 @@ typedef struct abbe_surface_sampling {
                     sheet: no neighbour drops the other, no cube holds both */
   bool even; /* candidates follow an additive recurrence, which fills the surfaces evenly: shares
                 are then closer to the area that is nearest */
+  bool on_surface; /* quantized ones stay on it */
 } abbe_surface_sampling;
 
 /* Of all faces of the meshes together; faces without area are never met. ABBE_INVALID_ARGUMENT for

@@ -13,7 +13,7 @@ static const double PI = 3.14159265358979323846;
 static void sample(const abbe_mesh *mesh, size_t count, abbe_sample_strategy strategy,
                    abbe_surface_samples *out, abbe_sample_tree *tree) {
   abbe_error error = {0};
-  const abbe_surface_sampling sampling = {count, strategy, 3, true, true};
+  const abbe_surface_sampling sampling = {count, strategy, 3, true, true, true};
   assert_int_equal(abbe_surface_samples_make(&mesh, 1, &sampling, out, &error), ABBE_OK);
   assert_int_equal(abbe_sample_tree_make(out, tree, &error), ABBE_OK);
 }

@@ -9,7 +9,8 @@
 #include <stdlib.h>
 
 static abbe_surface_curvature *fit(const abbe_mesh *mesh, abbe_surface_samples *s) {
-  const abbe_surface_sampling sampling = {400, ABBE_SAMPLE_STRATEGY_NEIGHBOUR, 1, true, false};
+  const abbe_surface_sampling sampling = {
+      .count = 400, .strategy = ABBE_SAMPLE_STRATEGY_NEIGHBOUR, .seed = 1, .sided = true};
   assert_int_equal(abbe_surface_samples_make(&mesh, 1, &sampling, s, NULL), ABBE_OK);
   abbe_surface_curvature *out = calloc(s->count, sizeof *out);
   assert_int_equal(abbe_surface_curvature_fit(s, out, NULL), ABBE_OK);
