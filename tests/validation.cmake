@@ -67,7 +67,8 @@ foreach(name matched_physics picture_choice sweep_grid sweep_hash sweep_process 
     sweep_setting sweep_trace)
   abbe_test(${name} cpu abbe_sweep abbe_gl ${validation_rooms})
 endforeach()
-foreach(name ranked_sweep scaling_study sweep_measure sweep_page sweep_run transport_study)
+foreach(name ranked_sweep scaling_study sweep_measure sweep_page sweep_run node_errors pinhole_limits
+        transport_study transport_table)
   abbe_test(${name} gl abbe_sweep abbe_gl ${validation_rooms})
 endforeach()
 abbe_test(compare_command program ${validation_rooms} PkgConfig::CJSON)

@@ -9,6 +9,7 @@
 #include "validation/landing/estimator_study.h"
 #include "validation/sweep/ranks/ranked_sweep.h"
 #include "validation/sweep/scaling_study.h"
+#include "validation/sweep/studies/transport_table.h"
 #include "validation/sweep/sweep_page.h"
 #include "validation/sweep/sweep_setting.h"
 #include "validation/tradeoff/sweep_plot.h"
@@ -217,8 +218,8 @@ static abbe_result study_transports(const abbe_sweep_options *q, abbe_error *err
   if (result == ABBE_OK && refused > 0 && !q->quiet)
     fprintf(stderr, "note: %zu of %zu ways are left out; the first: %s\n", refused, count,
             why.text);
-  if (result == ABBE_OK) result = abbe_transport_study_save(study, q->work.table, error);
-  if (result == ABBE_OK) abbe_transport_study_print(study, stdout);
+  if (result == ABBE_OK) result = abbe_transport_table_save(study, q->work.table, error);
+  if (result == ABBE_OK) abbe_transport_table_print(study, stdout);
   abbe_context_free(context);
   abbe_sweep_reference_free(&reference);
   abbe_scene_free(&scene);

@@ -217,8 +217,8 @@ static size_t take_some(const abbe_surface_samples *s, double edge, bool sided, 
     memcpy(slot->cell, cell, sizeof cell);
     slot->taken = true;
     if (slot->number < most &&
-        (first || (middles && from_middle(p, edge) <
-                                  from_middle(&s->candidate[kept[slot->number]], edge))))
+        (first ||
+         (middles && from_middle(p, edge) < from_middle(&s->candidate[kept[slot->number]], edge))))
       kept[slot->number] = (uint32_t)i;
   }
   free(table);

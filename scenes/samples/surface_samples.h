@@ -5,8 +5,8 @@
  * random keeps the first ones. grid keeps one of each cube that holds any, so its density goes with
  * the cubes that a surface crosses: with the sum of the absolute components of its normal.
  * quantized moves those to their cubes' middles, off the surface, or, where it is to stay on it,
- * takes the candidate that is nearest to each middle. neighbour goes through the candidates in their
- * order and drops each that is nearer to a kept one than a radius. It knows no light.
+ * takes the candidate that is nearest to each middle. neighbour goes through the candidates in
+ * their order and drops each that is nearer to a kept one than a radius. It knows no light.
  */
 #ifndef ABBE_SCENES_SAMPLES_SURFACE_SAMPLES_H
 #define ABBE_SCENES_SAMPLES_SURFACE_SAMPLES_H

@@ -99,7 +99,8 @@ static void test_area_and_places(void **state) {
   abbe_mesh_free(&ball);
 }
 
-/* Cubes between 0 and a first plane, a second one, ...; how far a point is from its cube's middle. */
+/* Cubes between 0 and a first plane, a second one, ...; how far a point is from its cube's middle.
+ */
 static double beside_middle(const abbe_surface_point *p, double edge, double cube[3]) {
   double off[3];
   for (int k = 0; k < 3; k++) {

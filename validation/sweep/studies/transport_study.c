@@ -1,31 +1,26 @@
 #include "validation/sweep/studies/transport_study.h"
 
 #include "base/clock.h"
-#include "base/file.h"
-#include "base/number.h"
 #include "gl/accuracy/frame_times.h"
 #include "scenes/volume/volume_file.h"
 #include "validation/frames/frame_flicker.h"
+#include "validation/sweep/studies/node_errors.h"
+#include "validation/sweep/studies/pinhole_limits.h"
 #include "validation/tradeoff/pareto_front.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #define RAD (3.14159265358979323846 / 180)
 
-static const char *const columns[] = {
-#define NAME(code, column) column,
-    ABBE_TRANSPORT_NUMBERS(NAME)
-#undef NAME
-};
-
-/* ---- contestants ---- */
-
-static bool looks_up(const abbe_transport_contestant *c) {
+bool abbe_transport_looks_up(const abbe_transport_contestant *c) {
   return c->fill.passes > 0;
 }
+
+/* ---- contestants ---- */
 
 /* A light's way costs as many photons with many nodes as with few. */
 static abbe_transport_contestant volume_of(size_t nodes, abbe_region_desc region,
@@ -35,34 +30,42 @@ static abbe_transport_contestant volume_of(size_t nodes, abbe_region_desc region
       .fill = {.nodes = nodes, .region = region, .passes = 1, .photons = 162 * 20000 / nodes}};
 }
 
+/* Of each kind one that has nearly as many bytes as the method as printed, the last, has. */
 static size_t add_volumes(abbe_transport_contestant *out) {
   static const abbe_region_desc texels = {.kind = ABBE_REGION_OCTAHEDRAL, .shells = 24, .side = 32},
+                                fewer = {.kind = ABBE_REGION_OCTAHEDRAL, .shells = 22, .side = 32},
+                                few = {.kind = ABBE_REGION_OCTAHEDRAL, .shells = 19, .side = 32},
                                 triangles = {.kind = ABBE_REGION_GEODESIC,
                                              .shells = 24,
                                              .levels = 3},
-                                grid = {.kind = ABBE_REGION_GRID, .side = 32};
+                                few_triangles = {.kind = ABBE_REGION_GEODESIC,
+                                                 .shells = 15,
+                                                 .levels = 3},
+                                grid = {.kind = ABBE_REGION_GRID, .side = 27};
+  const size_t printed = 162 * 24 * 1280 * 3, modes[] = {8, 36, 81}, points[] = {16384, 32768};
   size_t n = 0;
   out[n++] = volume_of(42, grid, ABBE_VOLUME_LOOKUP_BLEND);
-  out[n++] = volume_of(42, triangles, ABBE_VOLUME_LOOKUP_BLEND);
-  out[n++] = volume_of(42, texels, ABBE_VOLUME_LOOKUP_BLEND);
+  out[n++] = volume_of(42, few_triangles, ABBE_VOLUME_LOOKUP_BLEND);
+  out[n++] = volume_of(42, few, ABBE_VOLUME_LOOKUP_BLEND);
   out[n++] = volume_of(162, texels, ABBE_VOLUME_LOOKUP_NEAREST);
   out[n++] = volume_of(162, texels, ABBE_VOLUME_LOOKUP_BLEND);
   out[n++] = volume_of(162, texels, ABBE_VOLUME_LOOKUP_TURN);
-  const size_t modes[] = {8, 36, 81};
-  const double tolerances[] = {0.02, 0.2};
   for (size_t i = 0; i < 2; i++, n++) {
     out[n] = volume_of(162, texels, ABBE_VOLUME_LOOKUP_BLEND);
     out[n].fill.joins = true;
-    out[n].fill.tolerance = tolerances[i];
+    out[n].fill.tolerance = 0.02;
+    if (i == 1) out[n].joined_bytes = printed;
   }
-  out[n] = volume_of(162, texels, ABBE_VOLUME_LOOKUP_AUTO);
+  out[n] = volume_of(162, fewer, ABBE_VOLUME_LOOKUP_AUTO);
   out[n++].fill.degree = 5;
   for (size_t i = 0; i < 3; i++, n++) {
-    out[n] = volume_of(162, texels, ABBE_VOLUME_LOOKUP_AUTO);
+    out[n] = volume_of(162, modes[i] == 36 ? fewer : texels, ABBE_VOLUME_LOOKUP_AUTO);
     out[n].fill.rank = modes[i];
   }
-  out[n] = volume_of(162, texels, ABBE_VOLUME_LOOKUP_AUTO);
-  out[n++].fill.exits = 16384;
+  for (size_t i = 0; i < 2; i++, n++) {
+    out[n] = volume_of(162, texels, ABBE_VOLUME_LOOKUP_AUTO);
+    out[n].fill.exits = points[i];
+  }
   out[n] = volume_of(162, triangles, ABBE_VOLUME_LOOKUP_AUTO);
   out[n].render.profile = ABBE_PROFILE_WYMAN2003;
   out[n++].fill.kind = ABBE_VOLUME_PRINTED;
@@ -97,6 +100,8 @@ size_t abbe_transport_study_contestants(const char *name, abbe_transport_contest
 typedef struct work {
   const abbe_sweep *sweep;
   const char *file;
+  abbe_node_errors nodes;
+  abbe_pinhole_limits limits;
   abbe_render_progress progress;
   void *user;
   double done, share; /* of all: before this contestant, and its own */
@@ -114,9 +119,38 @@ static double file_bytes(const char *path) {
   return size;
 }
 
+/* A copy of the volume, joined within a tolerance; *bytes of it. */
+static abbe_result join_copy(const abbe_caustic_volume *volume, double tolerance, uint16_t *value,
+                             size_t *bytes, abbe_error *error) {
+  abbe_caustic_volume copy = *volume;
+  copy.value = value;
+  memcpy(value, volume->value, abbe_caustic_volume_bytes(volume));
+  return abbe_caustic_volume_join(&copy, tolerance, bytes, error);
+}
+
+/* The tolerance is found by halving its logarithm. */
+static abbe_result join_within(abbe_caustic_volume *volume, size_t most, double *tolerance,
+                               size_t *bytes, abbe_error *error) {
+  enum { HALVINGS = 8 };
+  double low = log(1e-3), high = log(10);
+  uint16_t *value = malloc(abbe_caustic_volume_bytes(volume));
+  if (value == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a joined volume");
+  abbe_result result = ABBE_OK;
+  for (int i = 0; i < HALVINGS && result == ABBE_OK; i++) {
+    const double middle = 0.5 * (low + high);
+    result = join_copy(volume, exp(middle), value, bytes, error);
+    *(*bytes > most ? &low : &high) = middle;
+  }
+  *tolerance = exp(high);
+  if (result == ABBE_OK) result = abbe_caustic_volume_join(volume, *tolerance, bytes, error);
+  free(value);
+  return result;
+}
+
 static abbe_result fill(work *w, abbe_transport_row *row, abbe_caustic_volume *out,
                         abbe_error *error) {
   abbe_volume_fill_desc *d = &row->contestant.fill;
+  const size_t most = row->contestant.joined_bytes;
   abbe_volume_fill_statistics done;
   double *n = row->number;
   const abbe_scene *scene = w->sweep->scene;
@@ -125,7 +159,11 @@ static abbe_result fill(work *w, abbe_transport_row *row, abbe_caustic_volume *o
     d->object++;
   d->progress = go_on;
   d->user = w;
+  d->joins = d->joins && most == 0;
   abbe_result result = abbe_volume_fill(scene, d, out, &done, error);
+  if (result == ABBE_OK && most > 0)
+    result = join_within(out, most, &d->tolerance, &done.joint_bytes, error);
+  d->joins = d->joins || most > 0;
   if (result == ABBE_OK) result = abbe_volume_file_write(w->file, out, error);
   if (result != ABBE_OK) return result;
   n[ABBE_TRANSPORT_NODES_NUMBER] = (double)out->nodes.count;
@@ -153,6 +191,7 @@ static abbe_result time_still(const work *w, abbe_renderer *renderer, double *n,
   if (result != ABBE_OK) return result;
   n[ABBE_TRANSPORT_FRAME_MS_NUMBER] = times.median.frame_ms;
   n[ABBE_TRANSPORT_LOOKUP_MS_NUMBER] = times.median.frame_ms - alone;
+  n[ABBE_TRANSPORT_EYE_MS_NUMBER] = abbe_statistics_stage_ms(&times.median, ABBE_STAGE_EYE);
   n[ABBE_TRANSPORT_BYTES_GPU_NUMBER] = (double)times.median.device_bytes;
   return ABBE_OK;
 }
@@ -242,19 +281,42 @@ static abbe_result measure(work *w, abbe_transport_row *row, abbe_error *error) 
   desc.width = w->sweep->picture->width;
   desc.height = w->sweep->picture->height;
   if (desc.pinholes > 0) row->number[ABBE_TRANSPORT_SAMPLES_NUMBER] = (double)desc.pinholes;
-  if (looks_up(&row->contestant)) result = fill(w, row, &volume, error);
+  if (abbe_transport_looks_up(&row->contestant)) result = fill(w, row, &volume, error);
   if (volume.region.cells > 0) desc.volume = &volume;
   if (result == ABBE_OK)
     result = abbe_renderer_make(w->sweep->context, w->sweep->scene, &desc, &renderer, error);
   if (result == ABBE_OK) result = time_still(w, renderer, row->number, error);
   if (result == ABBE_OK) result = compare(w, renderer, row->number, error);
   if (result == ABBE_OK) result = move_light(w, &desc, renderer, row->number, error);
+  if (result == ABBE_OK && abbe_transport_looks_up(&row->contestant))
+    result = abbe_node_errors_measure(&w->nodes, w->sweep, &volume.nodes, &desc, renderer,
+                                      &row->number[ABBE_TRANSPORT_NODE_ERROR_NUMBER],
+                                      &row->number[ABBE_TRANSPORT_MID_ERROR_NUMBER], error);
   abbe_renderer_free(renderer);
+  if (result == ABBE_OK && desc.pinholes > 0)
+    result = abbe_pinhole_limits_measure(&w->limits, w->sweep->context, w->sweep->scene, &desc,
+                                         &row->number[ABBE_TRANSPORT_LIMIT_RMSE_NUMBER], error);
   abbe_caustic_volume_free(&volume);
   return result;
 }
 
 /* ---- all ---- */
+
+/* One more row, or one that is refused. */
+static abbe_result measure_next(work *w, const abbe_transport_contestant *contestant,
+                                abbe_transport_study *out, size_t *refused, abbe_error *first,
+                                abbe_error *error) {
+  abbe_transport_row *row = &out->row[out->count];
+  abbe_error own = {0};
+  if (!go_on(w, 0)) return abbe_error_set(error, ABBE_CANCELLED, "stopped");
+  *row = (abbe_transport_row){.contestant = *contestant};
+  const abbe_result result = measure(w, row, &own);
+  if (result == ABBE_OK) out->count++;
+  if (result == ABBE_CANCELLED || result == ABBE_NO_MEMORY || result == ABBE_IO)
+    return abbe_error_set(error, result, "%s", own.text);
+  if (result != ABBE_OK && (*refused)++ == 0) *first = own;
+  return ABBE_OK;
+}
 
 abbe_result abbe_transport_study_measure(const abbe_sweep *sweep,
                                          const abbe_transport_contestant *contestant, size_t count,
@@ -271,18 +333,15 @@ abbe_result abbe_transport_study_measure(const abbe_sweep *sweep,
                           "ways of light are compared with a traced picture, and there is none");
   snprintf(out->scene, sizeof out->scene, "%.255s", sweep->scene->path);
   w.share = 1 / (double)(count > 0 ? count : 1);
-  for (size_t i = 0; i < count && out->count < ABBE_TRANSPORT_STUDY_MOST; i++) {
-    abbe_transport_row *row = &out->row[out->count];
-    abbe_error own = {0};
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < count && out->count < ABBE_TRANSPORT_STUDY_MOST && result == ABBE_OK;
+       i++) {
     w.done = (double)i * w.share;
-    if (!go_on(&w, 0)) return abbe_error_set(error, ABBE_CANCELLED, "stopped");
-    *row = (abbe_transport_row){.contestant = contestant[i]};
-    const abbe_result result = measure(&w, row, &own);
-    if (result == ABBE_OK) out->count++;
-    if (result == ABBE_CANCELLED || result == ABBE_NO_MEMORY || result == ABBE_IO)
-      return abbe_error_set(error, result, "%s", own.text);
-    if (result != ABBE_OK && (*refused)++ == 0) first = own;
+    result = measure_next(&w, &contestant[i], out, refused, &first, error);
   }
+  abbe_node_errors_free(&w.nodes);
+  abbe_pinhole_limits_free(&w.limits);
+  if (result != ABBE_OK) return result;
   if (why != NULL) *why = first;
   if (out->count == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -302,9 +361,12 @@ void abbe_transport_study_judge(abbe_transport_study *s) {
     bytes[i] = n[ABBE_TRANSPORT_BYTES_MEMORY_NUMBER];
     off[i] = n[ABBE_TRANSPORT_CAUSTIC_DE_NUMBER];
     const abbe_transport_contestant *first = &s->row[0].contestant;
-    const double saved = looks_up(first) || first->render.pinholes > 0 ? 0 : time[0] - time[i];
+    const double saved =
+        abbe_transport_looks_up(first) || first->render.pinholes > 0 ? 0 : time[0] - time[i];
     n[ABBE_TRANSPORT_PAYS_AFTER_NUMBER] =
         saved > 0 ? ceil(1e3 * n[ABBE_TRANSPORT_PRECOMPUTE_S_NUMBER] / saved) : NAN;
+    const double none = s->row[0].number[ABBE_TRANSPORT_EYE_MS_NUMBER];
+    n[ABBE_TRANSPORT_OVER_NONE_NUMBER] = n[ABBE_TRANSPORT_FRAME_MS_NUMBER] / none - 1;
   }
   abbe_pareto_front_mark(time, off, s->count, on);
   for (size_t i = 0; i < s->count; i++) s->row[i].on_time = on[i];
@@ -312,7 +374,7 @@ void abbe_transport_study_judge(abbe_transport_study *s) {
   for (size_t i = 0; i < s->count; i++) s->row[i].on_bytes = on[i];
 }
 
-static bool same_but_samples(const abbe_render_desc *a, const abbe_render_desc *b) {
+bool abbe_transport_same_but_samples(const abbe_render_desc *a, const abbe_render_desc *b) {
   return a->profile == b->profile && a->transport == b->transport && a->strategy == b->strategy &&
          a->footprint == b->footprint;
 }
@@ -321,8 +383,9 @@ double abbe_transport_study_slope(const abbe_transport_study *s, size_t row) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (size_t i = 0; i < s->count; i++) {
     const double a = log(s->row[i].number[ABBE_TRANSPORT_SAMPLES_NUMBER]),
-                 b = log(s->row[i].number[ABBE_TRANSPORT_CAUSTIC_RMSE_NUMBER]);
-    if (!same_but_samples(&s->row[i].contestant.render, &s->row[row].contestant.render) ||
+                 b = log(s->row[i].number[ABBE_TRANSPORT_LIMIT_RMSE_NUMBER]);
+    if (!abbe_transport_same_but_samples(&s->row[i].contestant.render,
+                                         &s->row[row].contestant.render) ||
         !isfinite(a) || !isfinite(b))
       continue;
     n++;
@@ -333,110 +396,4 @@ double abbe_transport_study_slope(const abbe_transport_study *s, size_t row) {
   }
   const double spread = n * xx - x * x;
   return n >= 2 && spread > 1e-12 ? (n * xy - x * y) / spread : NAN;
-}
-
-/* ---- as text ---- */
-
-static const char *transport_of(const abbe_render_desc *d) {
-  if (d->profile != ABBE_PROFILE_DEFAULT) return abbe_profile_name(d->profile);
-  return abbe_transport_name(d->transport == ABBE_TRANSPORT_AUTO ? ABBE_TRANSPORT_PHOTONS
-                                                                 : d->transport);
-}
-
-static void region_of(const abbe_transport_contestant *c, char *out, size_t size) {
-  const abbe_region_desc *r = &c->fill.region;
-  *out = '\0';
-  if (!looks_up(c)) return;
-  if (c->fill.exits > 0)
-    snprintf(out, size, "rays %zu", c->fill.exits);
-  else if (r->kind == ABBE_REGION_GRID)
-    snprintf(out, size, "grid %zu", r->side);
-  else if (r->kind == ABBE_REGION_GEODESIC)
-    snprintf(out, size, "shells %zux%zu", r->shells, (size_t)20 << 2 * r->levels);
-  else
-    snprintf(out, size, "shells %zux%zux%zu", r->shells, r->side, r->side);
-  if (c->fill.joins)
-    abbe_number_format(out + strlen(out), size - strlen(out), " joined %g", c->fill.tolerance);
-}
-
-static const char *const lookups[] = {
-#define NAME(code, name) name,
-    ABBE_VOLUME_LOOKUPS(NAME)
-#undef NAME
-};
-static const char *const footprints[] = {
-#define NAME(code, name) name,
-    ABBE_FOOTPRINTS(NAME)
-#undef NAME
-};
-
-abbe_result abbe_transport_study_save(const abbe_transport_study *s, const char *path,
-                                      abbe_error *error) {
-  ABBE_REQUIRE(s && path, error);
-  abbe_file_writer writer = {0};
-  abbe_result result = abbe_file_writer_open(&writer, path, error);
-  if (result != ABBE_OK) return result;
-  FILE *to = writer.stream;
-  fprintf(to, "# scene: %s\ntransport,strategy,footprint,region,lookup", s->scene);
-  for (int k = 0; k < ABBE_TRANSPORT_NUMBER_COUNT; k++) fprintf(to, ",%s", columns[k]);
-  fprintf(to, ",front_time,front_bytes\n");
-  for (size_t i = 0; i < s->count; i++) {
-    const abbe_transport_row *row = &s->row[i];
-    const abbe_render_desc *d = &row->contestant.render;
-    char text[ABBE_NUMBER_TEXT_SIZE], region[64];
-    region_of(&row->contestant, region, sizeof region);
-    fprintf(to, "%s,%s,%s,%s,%s", transport_of(d),
-            d->pinholes > 0 ? abbe_sample_strategy_name(d->strategy) : "",
-            d->pinholes > 0 ? footprints[d->footprint] : "", region,
-            looks_up(&row->contestant) ? lookups[d->lookup] : "");
-    for (int k = 0; k < ABBE_TRANSPORT_NUMBER_COUNT; k++)
-      fprintf(to, ",%s", isfinite(row->number[k]) ? abbe_number_text(row->number[k], text) : "");
-    fprintf(to, ",%s,%s\n", row->on_time ? "yes" : "", row->on_bytes ? "yes" : "");
-  }
-  return abbe_file_writer_commit(&writer, error);
-}
-
-static void print_name(const abbe_transport_row *row, FILE *out) {
-  const abbe_transport_contestant *c = &row->contestant;
-  char region[64];
-  region_of(c, region, sizeof region);
-  fprintf(out, "| %s", transport_of(&c->render));
-  if (c->render.pinholes > 0)
-    fprintf(out, " %zu %s, footprint %s", c->render.pinholes,
-            abbe_sample_strategy_name(c->render.strategy), footprints[c->render.footprint]);
-  if (!looks_up(c)) return;
-  abbe_number_write(out, ", %g nodes, %s", row->number[ABBE_TRANSPORT_NODES_NUMBER], region);
-  if (c->fill.degree > 0) fprintf(out, ", harmonics to degree %zu", c->fill.degree);
-  if (c->fill.rank > 0) fprintf(out, ", %zu modes", c->fill.rank);
-  if (c->render.lookup != ABBE_VOLUME_LOOKUP_AUTO) fprintf(out, ", %s", lookups[c->render.lookup]);
-}
-
-void abbe_transport_study_print(const abbe_transport_study *s, FILE *out) {
-  static const abbe_transport_number shown[] = {
-      ABBE_TRANSPORT_PRECOMPUTE_S_NUMBER, ABBE_TRANSPORT_BYTES_MEMORY_NUMBER,
-      ABBE_TRANSPORT_BYTES_DISK_NUMBER,   ABBE_TRANSPORT_BYTES_GPU_NUMBER,
-      ABBE_TRANSPORT_MOVED_MS_NUMBER,     ABBE_TRANSPORT_CAUSTIC_DE_NUMBER,
-      ABBE_TRANSPORT_CAUSTIC_RMSE_NUMBER, ABBE_TRANSPORT_POP_NUMBER,
-      ABBE_TRANSPORT_PAYS_AFTER_NUMBER};
-  fprintf(out,
-          "| %s | precompute, s | bytes | on disk | on the device | moved light, ms | CIEDE2000 "
-          "| relative RMSE | pop | pays after | front of |\n"
-          "|---|---|---|---|---|---|---|---|---|---|---|\n",
-          s->scene);
-  for (size_t i = 0; i < s->count; i++) {
-    const abbe_transport_row *row = &s->row[i];
-    char text[ABBE_SWEEP_SHORT];
-    print_name(row, out);
-    for (size_t k = 0; k < sizeof shown / sizeof *shown; k++)
-      fprintf(out, " | %s", abbe_sweep_number_short(row->number[shown[k]], text));
-    fprintf(out, " |%s%s |\n", row->on_time ? " time" : "", row->on_bytes ? " bytes" : "");
-  }
-  for (size_t i = 0; i < s->count; i++) {
-    const double slope = abbe_transport_study_slope(s, i);
-    const abbe_render_desc *d = &s->row[i].contestant.render;
-    const bool first = i == 0 || !same_but_samples(d, &s->row[i - 1].contestant.render);
-    if (first && isfinite(slope))
-      abbe_number_write(out, "%s, %s, footprint %s: slope %.2f\n", transport_of(d),
-                        abbe_sample_strategy_name(d->strategy), footprints[d->footprint], slope);
-  }
 }

@@ -8,8 +8,6 @@
 #include "validation/sweep/sweep_measure.h"
 #include "validation/volume/volume_fill.h"
 
-#include <stdio.h>
-
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -31,13 +29,18 @@ extern "C" {
   X(BYTES_MEMORY, "bytes_memory")                                                                  \
   X(BYTES_DISK, "bytes_disk")                                                                      \
   X(BYTES_GPU, "bytes_gpu")                                                                        \
-  X(FRAME_MS, "frame_ms")   /* median; nothing has changed */                                      \
+  X(FRAME_MS, "frame_ms")   /* median; all passes are drawn anew */                                \
   X(LOOKUP_MS, "lookup_ms") /* of it, beyond that of surfaces alone */                             \
+  X(EYE_MS, "eye_ms")       /* of it, the camera's passes */                                       \
+  X(OVER_NONE, "over_none") /* frame_ms beyond the first row's eye_ms, as a share of that */       \
   X(MOVED_MS, "moved_ms")   /* median; the light has moved */                                      \
   X(CAUSTIC_DE, "caustic_de")                                                                      \
   X(CAUSTIC_DE_NOISE, "caustic_de_noise")                                                          \
   X(CAUSTIC_RMSE, "caustic_rmse")                                                                  \
   X(CAUSTIC_RMSE_NOISE, "caustic_rmse_noise")                                                      \
+  X(NODE_ERROR, "node_error") /* the worst with the light at nodes near the scene's */             \
+  X(MID_ERROR, "mid_error")   /* and midway between three (node_errors.h) */                       \
+  X(LIMIT_RMSE, "limit_rmse") /* to what far more samples show (pinhole_limits.h) */               \
   X(POP, "pop") /* largest change between pictures of the light's way, RMS of theirs */            \
   X(FLUX_DRIFT, "flux_drift") /* through shells: the largest less the least share */               \
   X(PAYS_AFTER, "pays_after") /* frames of moving light; empty: never */
@@ -54,7 +57,12 @@ typedef enum abbe_transport_number {
 typedef struct abbe_transport_contestant {
   abbe_render_desc render;
   abbe_volume_fill_desc fill;
+  size_t joined_bytes; /* above 0: cells are joined by the least tolerance, nearly, with which they
+                          take no more; the row's fill says which */
 } abbe_transport_contestant;
+
+/* Whether it looks up what was computed beforehand. */
+bool abbe_transport_looks_up(const abbe_transport_contestant *contestant);
 
 typedef struct abbe_transport_row {
   abbe_transport_contestant contestant;
@@ -81,19 +89,16 @@ abbe_result abbe_transport_study_measure(const abbe_sweep *sweep,
                                          void *user, abbe_transport_study *out, size_t *refused,
                                          abbe_error *why, abbe_error *error);
 
-/* Marks the fronts and finds after how many frames each volume pays beside the first row's photons;
- * abbe_transport_study_measure has done so. */
+/* Marks the fronts, and finds beside the first row's photons over_none, and after how many frames
+ * each volume pays; abbe_transport_study_measure has done so. */
 void abbe_transport_study_judge(abbe_transport_study *study);
 
-/* Slope of log caustic_rmse by log samples over the rows that differ from this one in samples
- * alone, by least squares; NaN with fewer than two. */
-double abbe_transport_study_slope(const abbe_transport_study *study, size_t row);
+/* Whether two are the same pinholes but for how many. */
+bool abbe_transport_same_but_samples(const abbe_render_desc *a, const abbe_render_desc *b);
 
-/* CSV: transport, strategy, footprint, region, lookup, the numbers, front_time, front_bytes. And a
- * Markdown table. */
-abbe_result abbe_transport_study_save(const abbe_transport_study *study, const char *path,
-                                      abbe_error *error);
-void abbe_transport_study_print(const abbe_transport_study *study, FILE *out);
+/* Slope of log limit_rmse by log samples over the rows that differ from this one in samples alone,
+ * by least squares; NaN with fewer than two. */
+double abbe_transport_study_slope(const abbe_transport_study *study, size_t row);
 
 #ifdef __cplusplus
 }
