@@ -59,7 +59,8 @@
 #define BINDING_SIGHTS 31
 #define BINDING_SIGHT_PIXELS 32
 
-/* Texels of pinholes' pages that ask for more of them. */
+/* Texels of pinholes' pages: those that are filled now, and those that ask for more. */
+#define BINDING_PAGE_TEXELS 34
 #define BINDING_UNFINISHED 33
 
 /* A list that becomes the size of a dispatch. */

@@ -144,7 +144,7 @@ bool area_light_seen(vec3 p, vec3 d, float t_min, float t_max, out vec3 radiance
 #ifdef ROUGH
 #define LOBE_STATE
 vec2 lobe_u;  // as in walk.glsl
-float lobe_width;
+float lobe_width, lobe_ways;
 #ifdef ENVIRONMENT
 #define TURNS_SKY
 #include "pinhole_sky.glsl"

@@ -46,6 +46,7 @@ vec3 band_light(int band, bool in_mirror, out float mirrored) {
     return in_mirror ? vec3(0) : xyz_from_rgb * rough_shown();
   }
   lobe_u = lobe_way(0, lobe_shift);
+  lobe_ways = float(LOBE_WAYS);
   lobe_width = 0.0;
 #endif
   PathState w = start, reflected = start;

@@ -107,6 +107,7 @@ float lobe_shift;  // of the pixel
 
 // The light of a rough mirror that is met first.
 vec3 rough_shown() {
+  lobe_ways = float(LOBE_WAYS);
   lobe_width = 0.0;
   vec3 sum = lobe_shows(start, first, vec2(0.5 * pixel_angle));
   for (int k = 0; k < LOBE_WAYS; k++) {

@@ -4,6 +4,8 @@
 #include "scenes/geometry/vector.h"
 #include "scenes/lights/environment_lights.h"
 
+#include <stdio.h>
+
 enum {
   UNIT = 5,
   PLACES_UNIT = 2,
@@ -13,11 +15,7 @@ enum {
   MOST_PAGES = 2048,     /* layers of an array, as OpenGL promises them */
   LEAST_CUBE = 16,
   MOST_CUBE = 512,
-  /* Nodes that a thread takes at once: it has so many turns of loops (refraction_walk.glsl), and
-   * needs more where paths branch, and where a sample has several ways. */
-  MIRRORS_AT_ONCE = 32,
-  AT_ONCE = 8,
-  ROUGH_AT_ONCE = 4,
+  GROUP = 32, /* threads of a group, so that few texels are shared out as well */
   STRIDE = 4,  /* of the texels that are taken first */
   SKY_UNIT = 4 /* for the camera; that of front and back layers, which there are none of then */
 };
@@ -57,12 +55,28 @@ static abbe_result check_count(const abbe_gpu_scene *scene, size_t pages, abbe_e
       scene->charts.count, MOST_PAGES / 2);
 }
 
+static abbe_result make_programs(abbe_pinhole_pages *pages, const abbe_shader_variant *variant,
+                                 abbe_error *error) {
+  const abbe_plan *plan = pages->scene->plan;
+  abbe_shader_variant follows = *variant;
+  follows.exits = plan->eye_exits;
+  char places[64] = "";
+  if (plan->page_charts)
+    snprintf(places, sizeof places, "#define PINHOLE_CHARTS\n#define RECEIVERS %zu\n",
+             plan->parallelogram_count);
+  abbe_result result = abbe_gpu_compute(pages->scene->gpu, "pinhole_select.comp", places,
+                                        &pages->select, error);
+  if (result != ABBE_OK) return result;
+  return abbe_shader_variant_compute(
+      &follows, pages->scene->gpu, "pinhole_pages.comp",
+      plan->desc.footprint == ABBE_FOOTPRINT_ON ? "#define FOOTPRINTS\n" : NULL, &pages->fill,
+      error);
+}
+
 abbe_result abbe_pinhole_pages_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
                                     abbe_pinhole_pages *out, abbe_error *error) {
   const abbe_render_desc *d = &scene->plan->desc;
   if (d->transport != ABBE_TRANSPORT_PINHOLE) return ABBE_OK;
-  abbe_shader_variant follows = *variant;
-  follows.exits = scene->plan->eye_exits;
   out->scene = scene;
   out->count =
       2 * (scene->plan->page_charts ? scene->charts.count : scene->plan->parallelogram_count);
@@ -75,13 +89,10 @@ abbe_result abbe_pinhole_pages_make(const abbe_gpu_scene *scene, const abbe_shad
   if (result == ABBE_OK)
     result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, out->side, out->side, out->count, true,
                                    &out->texture, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_buffer(scene->gpu, ABBE_GPU_LIST_HEADER, NULL, &out->unfinished, error);
-  if (result == ABBE_OK)
-    result = abbe_shader_variant_compute(
-        &follows, scene->gpu, "pinhole_pages.comp",
-        d->footprint == ABBE_FOOTPRINT_ON ? "#define FOOTPRINTS\n" : NULL, &out->fill, error);
-  return result;
+  for (int k = 0; k < 2 && result == ABBE_OK; k++)
+    result = abbe_gpu_make_buffer(scene->gpu, ABBE_GPU_LIST_HEADER + 4 * out->side * out->side,
+                                  NULL, &out->texels[k], error);
+  return result == ABBE_OK ? make_programs(out, variant, error) : result;
 }
 
 void abbe_pinhole_pages_free(abbe_pinhole_pages *pages) {
@@ -89,7 +100,7 @@ void abbe_pinhole_pages_free(abbe_pinhole_pages *pages) {
   abbe_pinhole_samples_free(pages->scene->gpu, &pages->samples);
   abbe_pinhole_sky_free(pages->scene->gpu, &pages->sky);
   abbe_page_charts_free(pages->scene->gpu, &pages->charts);
-  abbe_gpu_drop_buffers(pages->scene->gpu, 1, &pages->unfinished);
+  abbe_gpu_drop_buffers(pages->scene->gpu, 2, pages->texels);
   abbe_gpu_drop_textures(pages->scene->gpu, 1, &pages->texture);
   *pages = (abbe_pinhole_pages){0};
 }
@@ -103,35 +114,49 @@ static bool sees_refractors(const abbe_gpu_scene *scene, const double p[9], bool
   return (back ? -1 : 1) * abbe_vector_dot(n, to) > -scene->refractor_radius;
 }
 
-/* A part of a page's texels, until each has taken all that it asks for. */
-static abbe_result fill_texels(abbe_pinhole_pages *pages, size_t stride, const int first[2],
-                               abbe_error *error) {
+/* Lists those of a page's texels, `stride` apart, that no others tell, in texels[0]. */
+static void select_texels(abbe_pinhole_pages *pages, size_t page, size_t stride,
+                          const int first[2]) {
   abbe_gpu *gpu = pages->scene->gpu;
   const size_t across = (pages->side + stride - 1) / stride;
-  size_t left = 1;
-  abbe_gpu_set_int(gpu, pages->fill, "stride", (int)stride);
-  gpu->gl->Uniform2i(gpu->gl->GetUniformLocation(pages->fill, "first"), first[0], first[1]);
-  while (left > 0) {
-    abbe_gpu_clear_list(gpu, pages->unfinished);
-    abbe_gpu_bind_storage(gpu, BINDING_UNFINISHED, pages->unfinished);
-    abbe_gpu_dispatch_2d(gpu, pages->fill, across, across);
-    gpu->gl->MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-    left = abbe_gpu_read_count(gpu, pages->unfinished);
+  gpu->gl->UseProgram(pages->select);
+  abbe_gpu_set_int(gpu, pages->select, "page", (int)page);
+  abbe_gpu_set_int(gpu, pages->select, "stride", (int)stride);
+  gpu->gl->Uniform2i(gpu->gl->GetUniformLocation(pages->select, "first"), first[0], first[1]);
+  abbe_gpu_clear_list(gpu, pages->texels[0]);
+  abbe_gpu_bind_storage(gpu, BINDING_UNFINISHED, pages->texels[0]);
+  abbe_gpu_dispatch_2d(gpu, pages->select, across, across);
+}
+
+/* A part of a page's texels, until each has taken all that it asks for. */
+static abbe_result fill_texels(abbe_pinhole_pages *pages, size_t page, size_t stride,
+                               const int first[2], abbe_error *error) {
+  abbe_gpu *gpu = pages->scene->gpu;
+  select_texels(pages, page, stride, first);
+  gpu->gl->UseProgram(pages->fill);
+  abbe_gpu_set_int(gpu, pages->fill, "page", (int)page);
+  for (int now = 0;; now = 1 - now) {
+    gpu->gl->MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                           GL_BUFFER_UPDATE_BARRIER_BIT);
+    const size_t count = abbe_gpu_read_count(gpu, pages->texels[now]);
     if (gpu->progress != NULL && !abbe_gpu_ask(gpu))
       return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+    if (count == 0) return ABBE_OK;
+    abbe_gpu_clear_list(gpu, pages->texels[1 - now]);
+    abbe_gpu_bind_storage(gpu, BINDING_PAGE_TEXELS, pages->texels[now]);
+    abbe_gpu_bind_storage(gpu, BINDING_UNFINISHED, pages->texels[1 - now]);
+    abbe_gpu_dispatch(gpu, pages->fill, (count + GROUP - 1) / GROUP);
   }
-  return ABBE_OK;
 }
 
 /* Of a page's texels first some far apart, then those between, columns, rows and crossings. */
 static abbe_result fill_page(abbe_pinhole_pages *pages, size_t page, abbe_error *error) {
   static const int none[2] = {0, 0};
-  abbe_gpu_set_int(pages->scene->gpu, pages->fill, "page", (int)page);
-  abbe_result result = fill_texels(pages, STRIDE, none, error);
+  abbe_result result = fill_texels(pages, page, STRIDE, none, error);
   for (int stride = STRIDE; stride > 1; stride /= 2)
     for (int k = 1; k < 4 && result == ABBE_OK; k++) {
       const int first[2] = {k & 1 ? stride / 2 : 0, k & 2 ? stride / 2 : 0};
-      result = fill_texels(pages, (size_t)stride, first, error);
+      result = fill_texels(pages, page, (size_t)stride, first, error);
     }
   return result;
 }
@@ -164,29 +189,33 @@ static abbe_result clear(abbe_pinhole_pages *pages, abbe_error *error) {
   return result;
 }
 
+/* What both programs read, into that which is in use. */
+static void set_both(const abbe_pinhole_pages *pages, GLuint program) {
+  const abbe_gpu_scene *scene = pages->scene;
+  abbe_pinhole_sky_set(scene, &pages->sky, ABBE_PINHOLE_SKY_UNIT, program);
+  if (scene->plan->page_charts)
+    abbe_gpu_bind_texels(scene->gpu, program, "page_places", PLACES_UNIT, GL_RGBA32F,
+                         pages->charts.places);
+}
+
 static void begin(abbe_pinhole_pages *pages) {
   const abbe_gpu_scene *scene = pages->scene;
-  const abbe_gl *gl = scene->gpu->gl;
+  abbe_gpu *gpu = scene->gpu;
+  const size_t clusters = scene->plan->desc.clusters;
+  const double share = clusters == ABBE_RENDER_MAX_CLUSTERS ? 0 : 1 / (double)clusters;
   abbe_gpu_scene_bind(scene);
-  gl->UseProgram(pages->fill);
+  gpu->gl->UseProgram(pages->select);
+  set_both(pages, pages->select);
+  abbe_gpu_set_float(gpu, pages->select, "smooth_share", share);
+  gpu->gl->UseProgram(pages->fill);
   abbe_gpu_scene_set(scene, pages->fill);
+  set_both(pages, pages->fill);
   abbe_pinhole_samples_bind(scene, &pages->samples, pages->fill);
-  abbe_pinhole_sky_set(scene, &pages->sky, ABBE_PINHOLE_SKY_UNIT, pages->fill);
-  abbe_gpu_set_float(scene->gpu, pages->fill, "share_limit", scene->plan->eye_share);
-  abbe_gpu_set_float(scene->gpu, pages->fill, "seen_off", 1e-4 * scene->refractor_radius);
-  const double share = 1 / (double)scene->plan->desc.clusters;
-  const bool all = scene->plan->desc.clusters == ABBE_RENDER_MAX_CLUSTERS;
-  abbe_gpu_set_int(scene->gpu, pages->fill, "node_count", (int)pages->samples.node_count);
-  abbe_gpu_set_float(scene->gpu, pages->fill, "cluster_share", all ? 0 : share);
-  abbe_gpu_set_float(scene->gpu, pages->fill, "smooth_share", all ? 0 : share);
-  abbe_gpu_set_int(scene->gpu, pages->fill, "most_shown",
-                   scene->plan->rough                                          ? ROUGH_AT_ONCE
-                   : scene->plan->mirror_count == scene->plan->refractor_count ? MIRRORS_AT_ONCE
-                                                                               : AT_ONCE);
-  if (scene->plan->page_charts)
-    abbe_gpu_bind_texels(scene->gpu, pages->fill, "page_places", PLACES_UNIT, GL_RGBA32F,
-                         pages->charts.places);
-  gl->BindImageTexture(0, pages->texture, 0, GL_TRUE, 0, GL_READ_WRITE, GL_RGBA32F);
+  abbe_gpu_set_float(gpu, pages->fill, "share_limit", scene->plan->eye_share);
+  abbe_gpu_set_float(gpu, pages->fill, "seen_off", 1e-4 * scene->refractor_radius);
+  abbe_gpu_set_int(gpu, pages->fill, "node_count", (int)pages->samples.node_count);
+  abbe_gpu_set_float(gpu, pages->fill, "cluster_share", share);
+  gpu->gl->BindImageTexture(0, pages->texture, 0, GL_TRUE, 0, GL_READ_WRITE, GL_RGBA32F);
 }
 
 abbe_result abbe_pinhole_pages_run(abbe_pinhole_pages *pages, abbe_error *error) {

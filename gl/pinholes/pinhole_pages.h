@@ -17,8 +17,8 @@ typedef struct abbe_pinhole_pages {
   abbe_pinhole_sky sky;
   abbe_page_charts charts; /* where the plan has them */
   size_t side, count;      /* texels of a page; pages: two a chart (gl/scene/receiver_charts.h) */
-  GLuint unfinished;       /* a list, of which only the length is kept: texels that ask for more */
-  GLuint fill;             /* program */
+  GLuint texels[2];        /* lists: of a page's, those that are filled, and that ask for more */
+  GLuint select, fill;     /* programs */
   GLuint texture;          /* irradiance, W/m2, working space; an array */
 } abbe_pinhole_pages;
 

@@ -222,8 +222,8 @@ bool split(inout PathState w, Interface h, out PathState mirrored) {
 
 #ifdef ROUGH
 // Rough mirrors on paths of receivers and of the camera. A path goes on by one facet, which lobe_u chooses; of
-// lamps it shows what the lobe makes of their light (lobe_shows). Who includes this sets lobe_u and clears
-// lobe_width before a path, and takes LOBE_WAYS ways off a mirror.
+// lamps it shows what the lobe makes of their light (rough_lamps.glsl). Who includes this sets lobe_u and
+// lobe_ways and clears lobe_width before a path.
 
 const int LOBE_WAYS = 8;
 uniform vec4 rough_facets[REFRACTORS];  // roughness along the grooves and across, 0: smooth; 1: they run
@@ -234,6 +234,7 @@ uniform vec3 rough_centre[REFRACTORS];
 #define LOBE_STATE
 vec2 lobe_u;
 float lobe_width;  // root of the solid angle for which the path stands, rad; 0: it met no rough mirror
+float lobe_ways;   // that are taken off a mirror
 #endif
 
 bool is_rough(int r) { return rough_facets[r].x > 0.0; }
@@ -242,6 +243,9 @@ bool is_rough(int r) { return rough_facets[r].x > 0.0; }
 vec2 lobe_way(int k, float shift) {
   return fract(vec2(0.7548776662, 0.5698402910) * float(k) + vec2(0.5, 0.25) + vec2(shift, 0.6180339887 * shift));
 }
+
+// That of a number among all that ask.
+vec2 lobe_way_of(uint number) { return vec2(uvec2(3242174889u, 2447445414u) * number >> 8) * exp2(-24.0); }
 
 // Where light comes to a rough mirror: x along the grooves, y across; wo: back along it, in x, y and n.
 struct RoughHit {
@@ -273,7 +277,7 @@ float scatter_off(inout PathState w, Interface h) {
   w.share *= share * mirror_reflectance(mirror_spectrum(h.hit.refractor), min(dot(m.wo, facet), 1.0));
   w.d = keep_side(m.face_n, normalize(wi.x * m.x + wi.y * m.y + wi.z * m.n));
   w.facet = dot(w.d, h.face_n) < 0.0 ? -1 : 1;
-  lobe_width = max(lobe_width, min(inversesqrt(max(pdf, 1e-6) * float(LOBE_WAYS)), 1.0));
+  lobe_width = max(lobe_width, min(inversesqrt(max(pdf, 1e-6) * lobe_ways), 1.0));
   lobe_u = fract(lobe_u + vec2(0.7548776662, 0.5698402910));
   return before - w.share;
 }

@@ -25,7 +25,7 @@ void main() {
 #ifdef FOOTPRINTS
     vec3 by_u, by_v;
     footprint(s, world, r, by_u, by_v);
-    vec3 light = weight > 0.0 ? sky_over(r, by_u, by_v) : vec3(0);
+    vec3 light = weight > 0.0 ? sky_over(r, by_u, by_v, true) : vec3(0);
 #else
     vec3 light = weight > 0.0 ? sky_at(r, 0.0) : vec3(0);
 #endif
