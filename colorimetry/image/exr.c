@@ -1,6 +1,7 @@
+#include "colorimetry/image/exr.h"
+
 #include "base/file.h"
 #include "base/number.h"
-#include "colorimetry/image/exr.h"
 #include "colorimetry/image/exr_parts.h"
 
 #include <errno.h>
