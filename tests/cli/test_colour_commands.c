@@ -1,10 +1,5 @@
 /* The subcommands weights, display and info, as a person or a program runs them. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/check.h"
 
 #include "base/file.h"
 #include "colorimetry/image/exr.h"
@@ -13,11 +8,8 @@
 #include "colorimetry/weights.h"
 
 #include <cjson/cJSON.h>
-#include <math.h>
 #include <stdbool.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 

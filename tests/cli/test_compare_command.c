@@ -1,11 +1,9 @@
 /* `abbe compare` as people and programs meet it: numbers, sentences, exit codes, files. */
-#include "tests/cli/run_program.h"
+#include "tests/cli/run_json.h"
 
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/png_file.h"
 #include "scenes/view/map_layout.h"
-
-#include <cjson/cJSON.h>
 
 #define COMPARE "\"$abbe\" compare "
 
@@ -62,19 +60,11 @@ static double number(const cJSON *json, const char *region, const char *metric, 
   return cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(o, key));
 }
 
-static cJSON *compare_json(const char *line, int code) {
-  int got = run_line(line);
-  if (got != code) fail_msg("%s ends with %d: %s", line, got, run_errors);
-  cJSON *json = cJSON_Parse(run_output);
-  if (json == NULL) fail_msg("%s: no JSON in %s", line, run_output);
-  return json;
-}
-
 static void test_numbers(void **state) {
   (void)state;
   leave("ref.exr", picture(1, 0));
   leave("test.exr", picture(3, 0));
-  cJSON *json = compare_json(COMPARE "ref.exr test.exr --json", 0);
+  cJSON *json = run_json(COMPARE "ref.exr test.exr --json", 0);
   assert_near(number(json, "whole", "relative_rmse", "value"), sqrt(4.0 / 8), 1e-7);
   assert_near(number(json, "whole", "energy_ratio", "value"), 1.25, 1e-7);
   assert_near(number(json, "whole", "squared_relative", "value"), 0.5 / (1.01 * 1.01), 1e-6);
@@ -83,7 +73,7 @@ static void test_numbers(void **state) {
   assert_null(
       cJSON_GetObjectItemCaseSensitive(cJSON_GetObjectItemCaseSensitive(json, "regions"), "mask"));
   cJSON_Delete(json);
-  json = compare_json(COMPARE "ref.exr test.exr --json --scale best", 0);
+  json = run_json(COMPARE "ref.exr test.exr --json --scale best", 0);
   /* sum of ab over sum of a^2: (8 x 3 + 56) / (8 x 9 + 56) */
   assert_near(cJSON_GetNumberValue(cJSON_GetObjectItem(json, "scale")), 80.0 / 128, 1e-7);
   cJSON_Delete(json);
@@ -103,7 +93,7 @@ static void test_maps_of_two_sizes(void **state) {
       COMPARE "coarse.exr fine.exr --mask caustic --json --tolerance mask.relative_rmse=1e-6",
       COMPARE "fine.exr coarse.exr --mask caustic --json --tolerance energy_ratio=1e-6"};
   for (int i = 0; i < 2; i++) {
-    cJSON *json = compare_json(lines[i], 0);
+    cJSON *json = run_json(lines[i], 0);
     assert_near(number(json, "whole", "relative_rmse", "value"), 0, 1e-6);
     const cJSON *mask = cJSON_GetObjectItem(json, "mask");
     assert_near(cJSON_GetNumberValue(cJSON_GetObjectItem(mask, "pixels")), 8, 0);
@@ -127,11 +117,11 @@ static void test_a_traced_map_and_a_rendered_one(void **state) {
           "render \"$house\"/scenes/sphere.yaml -q -o r.exr --size 16x16 --aovs --photons 64 "
           "--save-map test.exr --map-like ref.exr"),
       0);
-  cJSON *json = compare_json(COMPARE "ref.exr test.exr --json --mask caustic", 0);
+  cJSON *json = run_json(COMPARE "ref.exr test.exr --json --mask caustic", 0);
   assert_near(number(json, "whole", "energy_ratio", "value"), 1, 0.05);
   assert_true(number(json, "mask", "relative_rmse", "noise") > 0);
   cJSON_Delete(json);
-  json = compare_json(COMPARE "t.exr r.exr --json --mask caustic", 0);
+  json = run_json(COMPARE "t.exr r.exr --json --mask caustic", 0);
   assert_near(number(json, "whole", "energy_ratio", "value"), 1, 0.05);
   assert_true(number(json, "whole", "z_mean_square", "value") > 0);
   cJSON_Delete(json);
@@ -149,7 +139,7 @@ static void test_tolerances(void **state) {
   assert_contains(run_errors, "test.exr: relative_rmse of the whole field is 0.7071");
   assert_contains(run_errors, "1 more");
   assert_contains(run_output, "relative RMSE"); /* the numbers are told all the same */
-  cJSON *json = compare_json(COMPARE "ref.exr test.exr --json --tolerance relative_rmse=0.1", 3);
+  cJSON *json = run_json(COMPARE "ref.exr test.exr --json --tolerance relative_rmse=0.1", 3);
   assert_true(cJSON_IsFalse(cJSON_GetObjectItem(json, "within_tolerance")));
   cJSON_Delete(json);
 }
@@ -199,7 +189,7 @@ static void test_masks_from_files(void **state) {
   static const char *const lines[] = {COMPARE "ref.exr test.exr --json --mask mask.png",
                                       COMPARE "ref.exr test.exr --json --mask mask.exr"};
   for (int i = 0; i < 2; i++) {
-    cJSON *json = compare_json(lines[i], 0);
+    cJSON *json = run_json(lines[i], 0);
     assert_near(number(json, "mask", "relative_rmse", "value"), 2, 1e-6);
     assert_near(number(json, "mask", "energy_ratio", "value"), 3, 1e-6);
     assert_near(number(json, "whole", "energy_ratio", "value"), 1.25, 1e-6);

@@ -1,9 +1,7 @@
 /* `abbe environment` as people and programs meet it: a scene, its picture, refusals. */
-#include "tests/cli/run_program.h"
+#include "tests/cli/run_json.h"
 
 #include "base/file.h"
-
-#include <cjson/cJSON.h>
 
 #define VIEW                                                                                       \
   "camera: {eye: [0, -1, 0.5], target: [0, 0, 0]}\n"                                               \
@@ -22,9 +20,7 @@ static double number(const cJSON *object, const char *key, int index) {
 
 /* A lamp at +x that is turned to +y, on a grey of 0.5. */
 static void check(const char *line) {
-  assert_int_equal(run_line(line), 0);
-  cJSON *json = cJSON_Parse(run_output);
-  assert_non_null(json);
+  cJSON *json = run_json(line, 0);
   assert_near(number(json, "irradiance_down", 0), 3.14159265 / 2, 2e-4);
   assert_near(number(json, "brightest", 1), 100.5, 0.1);
   assert_near(number(json, "brightest_azimuth", -1), 90, 1);
@@ -47,35 +43,27 @@ static void a_scene_and_its_picture(void **state) {
   assert_contains(run_output, "brightest 1 %");
 }
 
-/* The shipped pictures give the irradiances that scenes/environments/make-environments asks for: of the skies by
- * what is written there, of the studio by the scene whose it is. */
+/* The shipped pictures give the irradiances that scenes/environments/make-environments asks for: of
+ * the skies by what is written there, of the studio by the scene whose it is. */
 static void what_ships(void **state) {
   (void)state;
-  assert_int_equal(run_line("\"$abbe\" environment " ABBE_SOURCE_DIR
-                            "/scenes/environments/overcast-sky.exr --json"),
-                   0);
-  cJSON *json = cJSON_Parse(run_output);
+  cJSON *json = run_json(
+      "\"$abbe\" environment " ABBE_SOURCE_DIR "/scenes/environments/overcast-sky.exr --json", 0);
   assert_near(number(json, "irradiance_up", 1), 3, 1e-3);
   assert_near(number(json, "irradiance_down", 1), 0.25 * 3.14159265, 1e-3);
   cJSON_Delete(json);
-  assert_int_equal(run_line("\"$abbe\" environment " ABBE_SOURCE_DIR
-                            "/scenes/environments/clear-sky.exr --json"),
-                   0);
-  json = cJSON_Parse(run_output);
+  json = run_json(
+      "\"$abbe\" environment " ABBE_SOURCE_DIR "/scenes/environments/clear-sky.exr --json", 0);
   const double sine = 0.61566148;
   assert_near(number(json, "irradiance_up", 0), 0.4 + 3.1 * sine, 2e-3);
   assert_near(number(json, "irradiance_up", 2), 0.8 + 2.6 * sine, 2e-3);
   assert_near(number(json, "brightest_elevation", -1), 38, 1.5);
   cJSON_Delete(json);
-  assert_int_equal(
-      run_line("\"$abbe\" environment " ABBE_SOURCE_DIR "/scenes/diamond-studio.yaml --json"), 0);
-  json = cJSON_Parse(run_output);
+  json = run_json("\"$abbe\" environment " ABBE_SOURCE_DIR "/scenes/diamond-studio.yaml --json", 0);
   const double up = number(json, "irradiance_up", 0);
   cJSON_Delete(json);
-  assert_int_equal(
-      run_line("\"$abbe\" environment " ABBE_SOURCE_DIR "/scenes/environments/studio.exr --json"),
-      0);
-  json = cJSON_Parse(run_output);
+  json = run_json("\"$abbe\" environment " ABBE_SOURCE_DIR "/scenes/environments/studio.exr --json",
+                  0);
   assert_near(number(json, "irradiance_up", 0), up, 2e-3 * up);
   cJSON_Delete(json);
 }

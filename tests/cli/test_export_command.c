@@ -1,7 +1,5 @@
 /* `abbe export` as people and programs meet it: the file, what is said of materials, refusals. */
-#include "tests/cli/run_program.h"
-
-#include <cjson/cJSON.h>
+#include "tests/cli/run_json.h"
 
 static void test_a_scene_is_exported(void **state) {
   (void)state;
@@ -19,12 +17,10 @@ static void test_a_scene_is_exported(void **state) {
 
 static void test_materials_as_json(void **state) {
   (void)state;
-  assert_int_equal(run_line("\"$abbe\" export \"$house\"/scenes/sphere.yaml -o s.pov --json "
-                            "--photons 5000 --samples 15 && grep -q 'Photons = 5000' s.pov && "
-                            "grep -q 'Samples = 15' s.pov && rm s.pov"),
-                   0);
-  cJSON *json = cJSON_Parse(run_output);
-  assert_non_null(json);
+  cJSON *json = run_json("\"$abbe\" export \"$house\"/scenes/sphere.yaml -o s.pov --json "
+                         "--photons 5000 --samples 15 && grep -q 'Photons = 5000' s.pov && "
+                         "grep -q 'Samples = 15' s.pov && rm s.pov",
+                         0);
   const cJSON *list = cJSON_GetObjectItemCaseSensitive(json, "materials");
   assert_int_equal(cJSON_GetArraySize(list), 1);
   const cJSON *glass = cJSON_GetArrayItem(list, 0);

@@ -1,28 +1,9 @@
 /* `abbe gem` as people and programs meet it: what a design holds, sheets, conversions, other
  * angles, refusals that leave nothing behind. */
-#include "tests/cli/run_program.h"
-
-#include <cjson/cJSON.h>
+#include "tests/cli/run_json.h"
 
 #define GEM "\"$abbe\" gem "
 #define QUARTZ " \"$house\"/scenes/designs/brilliant-quartz.asc "
-
-static const cJSON *get(const cJSON *object, const char *key) {
-  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
-  if (item == NULL) fail_msg("there is no %s", key);
-  return item;
-}
-
-static double number(const cJSON *object, const char *key) {
-  return cJSON_GetNumberValue(get(object, key));
-}
-
-static cJSON *json_of(const char *line) {
-  if (run_line(line) != 0) fail_msg("%s", run_errors);
-  cJSON *json = cJSON_Parse(run_output);
-  assert_non_null(json);
-  return json;
-}
 
 static void a_design_is_described(void **state) {
   (void)state;
@@ -31,14 +12,14 @@ static void a_design_is_described(void **state) {
   assert_contains(run_output, "critical angle 40.37 degrees");
   assert_contains(run_output, "Meet A-A-B-B");
   assert_contains(run_output, "carats");
-  cJSON *json = json_of(GEM "info" QUARTZ "--json");
-  assert_near(number(get(json, "facets"), "girdle"), 16, 0);
-  assert_near(number(get(json, "ratios"), "L/W"), 1, 1e-9);
-  assert_near(number(get(json, "ratios"), "Vol/W^3"), 2.097983 / pow(2.039182, 3), 1e-6);
-  assert_int_equal(cJSON_GetArraySize(get(json, "tiers")), 7);
-  const cJSON *tier = cJSON_GetArrayItem(get(json, "tiers"), 2);
-  assert_near(number(tier, "angle_deg"), -43, 0);
-  assert_int_equal(cJSON_GetArraySize(get(tier, "facets")), 8);
+  cJSON *json = run_json(GEM "info" QUARTZ "--json", 0);
+  assert_near(json_number(json_item(json, "facets"), "girdle"), 16, 0);
+  assert_near(json_number(json_item(json, "ratios"), "L/W"), 1, 1e-9);
+  assert_near(json_number(json_item(json, "ratios"), "Vol/W^3"), 2.097983 / pow(2.039182, 3), 1e-6);
+  assert_int_equal(cJSON_GetArraySize(json_item(json, "tiers")), 7);
+  const cJSON *tier = cJSON_GetArrayItem(json_item(json, "tiers"), 2);
+  assert_near(json_number(tier, "angle_deg"), -43, 0);
+  assert_int_equal(cJSON_GetArraySize(json_item(tier, "facets")), 8);
   cJSON_Delete(json);
 }
 
@@ -59,19 +40,20 @@ static void there_and_back(void **state) {
 
 static void other_angles(void **state) {
   (void)state;
-  cJSON *json = json_of(GEM "retarget" QUARTZ "--index 1.768 -o s.asc --json");
-  const cJSON *pavilion = get(json, "pavilion");
-  assert_near(number(pavilion, "from_deg"), 43, 0);
-  assert_true(number(pavilion, "to_deg") > 40.5 && number(pavilion, "to_deg") < 41.5);
-  assert_near(number(pavilion, "tangent_ratio"), number(get(json, "crown"), "tangent_ratio"), 0);
+  cJSON *json = run_json(GEM "retarget" QUARTZ "--index 1.768 -o s.asc --json", 0);
+  const cJSON *pavilion = json_item(json, "pavilion");
+  assert_near(json_number(pavilion, "from_deg"), 43, 0);
+  assert_true(json_number(pavilion, "to_deg") > 40.5 && json_number(pavilion, "to_deg") < 41.5);
+  assert_near(json_number(pavilion, "tangent_ratio"),
+              json_number(json_item(json, "crown"), "tangent_ratio"), 0);
   cJSON_Delete(json);
-  json = json_of(GEM "info s.asc --json");
-  assert_near(number(json, "cut_for_index"), 1.768, 0);
-  assert_near(number(json, "corners"), 57, 0);
+  json = run_json(GEM "info s.asc --json", 0);
+  assert_near(json_number(json, "cut_for_index"), 1.768, 0);
+  assert_near(json_number(json, "corners"), 57, 0);
   cJSON_Delete(json);
-  json = json_of(GEM "retarget" QUARTZ "--pavilion 41 --json");
-  assert_near(number(get(json, "crown"), "tangent_ratio"), 1, 0);
-  assert_near(number(get(json, "pavilion"), "to_deg"), 41, 0);
+  json = run_json(GEM "retarget" QUARTZ "--pavilion 41 --json", 0);
+  assert_near(json_number(json_item(json, "crown"), "tangent_ratio"), 1, 0);
+  assert_near(json_number(json_item(json, "pavilion"), "to_deg"), 41, 0);
   cJSON_Delete(json);
   assert_int_equal(run_line("rm s.asc"), 0);
 }

@@ -1,33 +1,14 @@
 /* `abbe gem report` and `abbe gem optimise` as people and programs meet them. */
-#include "tests/cli/run_program.h"
-
-#include <cjson/cJSON.h>
+#include "tests/cli/run_json.h"
 
 #define GEM "\"$abbe\" gem "
 #define DIAMOND " \"$house\"/scenes/designs/brilliant-diamond.asc --quiet "
 #define SMALL " --material diamond --size 24 --wavelengths 5 "
 
-static const cJSON *get(const cJSON *object, const char *key) {
-  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
-  if (item == NULL) fail_msg("there is no %s", key);
-  return item;
-}
-
-static double number(const cJSON *object, const char *key) {
-  return cJSON_GetNumberValue(get(object, key));
-}
-
 static double value(const cJSON *object, const char *key) {
-  const cJSON *pair = get(object, key);
-  assert_true(number(pair, "error") >= 0);
-  return number(pair, "value");
-}
-
-static cJSON *json_of(const char *line) {
-  if (run_line(line) != 0) fail_msg("%s", run_errors);
-  cJSON *json = cJSON_Parse(run_output);
-  assert_non_null(json);
-  return json;
+  const cJSON *pair = json_item(object, key);
+  assert_true(json_number(pair, "error") >= 0);
+  return json_number(pair, "value");
 }
 
 static void shares_add_up(const cJSON *m) {
@@ -42,17 +23,17 @@ static void shares_add_up(const cJSON *m) {
 
 static void numbers_add_up(void **state) {
   (void)state;
-  cJSON *json = json_of(GEM "report" DIAMOND SMALL "--step 15 --json");
-  const cJSON *m = get(json, "measures"), *one;
+  cJSON *json = run_json(GEM "report" DIAMOND SMALL "--step 15 --json", 0);
+  const cJSON *m = json_item(json, "measures"), *one;
   shares_add_up(m);
   assert_near(value(m, "area_brilliant") + value(m, "area_window") + value(m, "area_extinct"), 1,
               1e-9);
-  assert_near(value(get(json, "return_xyz"), "Y"), value(m, "return"), 1e-4);
+  assert_near(value(json_item(json, "return_xyz"), "Y"), value(m, "return"), 1e-4);
   assert_true(value(m, "iso") > 0.85 && value(m, "fire") > 0.02);
-  assert_int_equal(cJSON_GetArraySize(get(json, "wavelengths")), 5);
-  cJSON_ArrayForEach(one, get(json, "wavelengths")) shares_add_up(one);
-  assert_int_equal(cJSON_GetArraySize(get(json, "tilts")), 4 * 5);
-  cJSON_ArrayForEach(one, get(json, "tilts")) {
+  assert_int_equal(cJSON_GetArraySize(json_item(json, "wavelengths")), 5);
+  cJSON_ArrayForEach(one, json_item(json, "wavelengths")) shares_add_up(one);
+  assert_int_equal(cJSON_GetArraySize(json_item(json, "tilts")), 4 * 5);
+  cJSON_ArrayForEach(one, json_item(json, "tilts")) {
     assert_true(value(one, "cos") <= value(one, "iso"));
     assert_near(value(one, "iso") + value(one, "leakage"), 1, 2e-4);
   }
@@ -63,9 +44,9 @@ static void numbers_add_up(void **state) {
     char line[300];
     snprintf(line, sizeof line, GEM "report" DIAMOND SMALL "--tilt 0 --json --head-shadow %d",
              head);
-    json = json_of(line);
-    const double back = value(get(json, "measures"), "return");
-    if (head == 0) assert_near(back, value(get(json, "measures"), "iso"), 1e-9);
+    json = run_json(line, 0);
+    const double back = value(json_item(json, "measures"), "return");
+    if (head == 0) assert_near(back, value(json_item(json, "measures"), "iso"), 1e-9);
     assert_true(back < before);
     before = back;
     cJSON_Delete(json);
@@ -91,19 +72,21 @@ static void pages_maps_and_tables(void **state) {
 
 static void the_best_is_written_and_is_as_good_as_said(void **state) {
   (void)state;
-  cJSON *json = json_of(GEM "optimise \"$house\"/scenes/designs/brilliant-quartz.asc --quiet "
-                            "--material quartz --grid 3x3 --pavilion 36:46 --size 24 -o b.asc "
-                            "--plot p.png --json");
-  const double best = number(get(json, "best"), "value");
-  assert_true(best >= number(get(json, "design"), "value") - 0.02);
-  assert_near(number(get(json, "best"), "pavilion_deg"), 41, 5.001);
-  assert_int_equal(cJSON_GetArraySize(get(json, "grid")), 9);
+  cJSON *json = run_json(GEM "optimise \"$house\"/scenes/designs/brilliant-quartz.asc --quiet "
+                             "--material quartz --grid 3x3 --pavilion 36:46 --size 24 -o b.asc "
+                             "--plot p.png --json",
+                         0);
+  const double best = json_number(json_item(json, "best"), "value");
+  assert_true(best >= json_number(json_item(json, "design"), "value") - 0.02);
+  assert_near(json_number(json_item(json, "best"), "pavilion_deg"), 41, 5.001);
+  assert_int_equal(cJSON_GetArraySize(json_item(json, "grid")), 9);
   cJSON_Delete(json);
-  json = json_of(GEM "report b.asc -q --material quartz --wavelengths 6 --size 24 --tilt 0 --json");
-  assert_near(value(get(json, "measures"), "iso"), best, 1e-4); /* the same rays */
+  json = run_json(GEM "report b.asc -q --material quartz --wavelengths 6 --size 24 --tilt 0 --json",
+                  0);
+  assert_near(value(json_item(json, "measures"), "iso"), best, 1e-4); /* the same rays */
   cJSON_Delete(json);
-  json = json_of(GEM "info b.asc --json");
-  assert_near(number(json, "corners"), 57, 0); /* all meets */
+  json = run_json(GEM "info b.asc --json", 0);
+  assert_near(json_number(json, "corners"), 57, 0); /* all meets */
   cJSON_Delete(json);
   assert_int_equal(run_line("rm b.asc p.png"), 0);
   assert_int_equal(run_left(), 0);

@@ -1,9 +1,7 @@
 /* `abbe outline` as people and programs meet it: one picture, two, a dark one, refusals. */
-#include "tests/cli/run_program.h"
+#include "tests/cli/run_json.h"
 
 #include "colorimetry/image/exr.h"
-
-#include <cjson/cJSON.h>
 
 enum { WIDE = 64, HIGH = 48 };
 
@@ -26,38 +24,31 @@ static void write_square(const char *name, int x, int y, float grey, bool apart)
   abbe_image_free(&image);
 }
 
-static double number(const cJSON *object, const char *key) {
-  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
-  return cJSON_IsNumber(item) ? item->valuedouble : NAN;
-}
-
 static void test_two_pictures_as_json(void **state) {
   (void)state;
   write_square("a.exr", 10, 20, 0.25f, true);
   write_square("b.exr", 14, 20, 0.5f, false);
   write_square("dark.exr", WIDE, HIGH, 0.5f, false);
-  assert_int_equal(run_line("\"$abbe\" outline a.exr b.exr --minus dark.exr --blur 0 --share 1 "
-                            "--json && rm b.exr dark.exr"),
-                   0);
-  cJSON *json = cJSON_Parse(run_output);
-  assert_non_null(json);
+  cJSON *json = run_json("\"$abbe\" outline a.exr b.exr --minus dark.exr --blur 0 --share 1 "
+                         "--json && rm b.exr dark.exr",
+                         0);
   const cJSON *pictures = cJSON_GetObjectItemCaseSensitive(json, "pictures");
   for (int i = 0; i < 2; i++) {
     const cJSON *picture = cJSON_GetArrayItem(pictures, i);
-    assert_near(number(picture, "inside"), 64, 0);
-    assert_near(number(picture, "light"), 64 * 0.0722, 0.01);
+    assert_near(json_number(picture, "inside"), 64, 0);
+    assert_near(json_number(picture, "light"), 64 * 0.0722, 0.01);
     const cJSON *blue = cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(picture, "hues"), 4);
     assert_string_equal(cJSON_GetObjectItemCaseSensitive(blue, "name")->valuestring, "blue");
-    assert_near(number(blue, "share"), 1, 1e-6);
-    assert_near(number(blue, "x"), 14 + 4 * i, 1e-6);
-    assert_near(number(blue, "y"), 24, 1e-6);
+    assert_near(json_number(blue, "share"), 1, 1e-6);
+    assert_near(json_number(blue, "x"), 14 + 4 * i, 1e-6);
+    assert_near(json_number(blue, "y"), 24, 1e-6);
   }
   const cJSON *both = cJSON_GetObjectItemCaseSensitive(json, "agreement");
-  assert_near(number(both, "light_ratio"), 1, 1e-6);
-  assert_near(number(both, "overlap"), 32.0 / 96, 1e-9);
+  assert_near(json_number(both, "light_ratio"), 1, 1e-6);
+  assert_near(json_number(both, "overlap"), 32.0 / 96, 1e-9);
   const cJSON *blue = cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(both, "hues"), 4);
-  assert_near(number(blue, "apart"), 4, 1e-6);
-  assert_near(number(blue, "overlap"), 0.5, 1e-6);
+  assert_near(json_number(blue, "apart"), 4, 1e-6);
+  assert_near(json_number(blue, "overlap"), 0.5, 1e-6);
   cJSON_Delete(json);
   assert_int_equal(run_line("\"$abbe\" outline a.exr && rm a.exr"), 0);
   assert_contains(run_output, "inside the outline, pixels");

@@ -1,9 +1,8 @@
 /* `abbe trace` as people and programs meet it: files, sentences, exit codes, stops and kills. */
-#include "tests/cli/run_program.h"
+#include "tests/cli/run_json.h"
 
 #include "colorimetry/image/exr.h"
 
-#include <cjson/cJSON.h>
 #include <signal.h>
 
 #define TRACE "\"$abbe\" trace "
@@ -67,22 +66,17 @@ static void test_outputs(void **state) {
   abbe_image_free(&image);
 }
 
-static double number(const cJSON *json, const char *key) {
-  return cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(json, key));
-}
-
 static void test_numbers(void **state) {
   (void)state;
-  check_run(TRACE BALL SMALL "--spp 3 --json", 0);
-  cJSON *json = cJSON_Parse(run_output);
-  assert_non_null(json);
-  assert_near(number(json, "passes"), 3, 0);
-  assert_near(number(json, "photons"), 3 * 4000, 0);
-  assert_true(number(json, "relative_error") > 0);
+  cJSON *json = run_json(TRACE BALL SMALL "--spp 3 --json", 0);
+  assert_near(json_number(json, "passes"), 3, 0);
+  assert_near(json_number(json, "photons"), 3 * 4000, 0);
+  assert_true(json_number(json, "relative_error") > 0);
   const cJSON *energy = cJSON_GetObjectItemCaseSensitive(json, "energy");
-  double sum = number(energy, "deposited") + number(energy, "absorbed") + number(energy, "missed") +
-               number(energy, "trapped") + number(energy, "lost");
-  assert_near(sum / number(energy, "reached"), 1, 1e-4);
+  double sum = json_number(energy, "deposited") + json_number(energy, "absorbed") +
+               json_number(energy, "missed") + json_number(energy, "trapped") +
+               json_number(energy, "lost");
+  assert_near(sum / json_number(energy, "reached"), 1, 1e-4);
   cJSON_Delete(json);
   assert_true(run_left() == 0);
 }
@@ -185,15 +179,11 @@ static void test_kill(void **state) {
 
 static void test_stops(void **state) {
   (void)state;
-  check_run(TRACE BALL SMALL "--until-error 0.9 -o a.exr --json", 0);
-  cJSON *json = cJSON_Parse(run_output);
-  assert_non_null(json);
-  assert_true(number(json, "relative_error") <= 0.9 && number(json, "passes") >= 4);
+  cJSON *json = run_json(TRACE BALL SMALL "--until-error 0.9 -o a.exr --json", 0);
+  assert_true(json_number(json, "relative_error") <= 0.9 && json_number(json, "passes") >= 4);
   cJSON_Delete(json);
-  check_run(TRACE BALL SMALL "--time 0.2 -o a.exr --json", 0);
-  json = cJSON_Parse(run_output);
-  assert_non_null(json);
-  assert_true(number(json, "passes") >= 2);
+  json = run_json(TRACE BALL SMALL "--time 0.2 -o a.exr --json", 0);
+  assert_true(json_number(json, "passes") >= 2);
   cJSON_Delete(json);
 }
 
@@ -357,14 +347,11 @@ static void test_wrong_parts(void **state) {
 int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, run_setup, run_teardown)
   const struct CMUnitTest tests[] = {
-      TEST(test_parts),         TEST(test_wrong_parts),
-      TEST(test_outputs),       TEST(test_numbers),
-      TEST(test_bands),         TEST(test_seeds_and_threads),
-      TEST(test_resume),        TEST(test_interrupt),
-      TEST(test_kill),          TEST(test_stops),
-      TEST(test_used_wrongly),  TEST(test_bad_scenes),
-      TEST(test_map_like),      TEST(test_map_sides),
-      TEST(test_a_small_stack),
+      TEST(test_parts),    TEST(test_wrong_parts),  TEST(test_outputs),
+      TEST(test_numbers),  TEST(test_bands),        TEST(test_seeds_and_threads),
+      TEST(test_resume),   TEST(test_interrupt),    TEST(test_kill),
+      TEST(test_stops),    TEST(test_used_wrongly), TEST(test_bad_scenes),
+      TEST(test_map_like), TEST(test_map_sides),    TEST(test_a_small_stack),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,5 @@
 /* The program's `validate`, as a person and as a program meet it. */
-#include "tests/cli/run_program.h"
-
-#include <cjson/cJSON.h>
+#include "tests/cli/run_json.h"
 
 static void a_group_as_text(void **state) {
   (void)state;
@@ -15,9 +13,7 @@ static void a_group_as_text(void **state) {
 
 static void a_group_as_json(void **state) {
   (void)state;
-  assert_int_equal(run_line("\"$abbe\" validate --only prism --json"), 0);
-  cJSON *json = cJSON_Parse(run_output);
-  assert_non_null(json);
+  cJSON *json = run_json("\"$abbe\" validate --only prism --json", 0);
   const cJSON *list = cJSON_GetObjectItem(json, "answers"), *row = cJSON_GetArrayItem(list, 1);
   assert_int_equal(cJSON_GetArraySize(list), 13);
   assert_int_equal(cJSON_GetObjectItem(json, "passed")->valueint, 13);

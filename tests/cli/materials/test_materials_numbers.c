@@ -1,28 +1,13 @@
 /* The verbs of `abbe materials` that are about numbers: list, show, nearest, check, fit, from. */
-#include "tests/cli/run_program.h"
+#include "tests/cli/run_json.h"
 
 #include "spectral/materials/material_table.h"
-
-#include <cjson/cJSON.h>
 
 static void answers(const char *line, int code, const char *part) {
   int actual = run_line(line);
   if (actual != code || strstr(run_output, part) == NULL)
     fail_msg("%s\nends with %d, not %d; '%s' is expected in:\n%s%s", line, actual, code, part,
              run_output, run_errors);
-}
-
-static cJSON *json_of(const char *line, int code) {
-  int actual = run_line(line);
-  if (actual != code) fail_msg("%s\nends with %d: %s", line, actual, run_errors);
-  cJSON *json = cJSON_Parse(run_output);
-  if (json == NULL) fail_msg("%s\nno JSON:\n%s", line, run_output);
-  return json;
-}
-
-static double number(const cJSON *json, const char *key) {
-  const cJSON *item = cJSON_GetObjectItemCaseSensitive(json, key);
-  return cJSON_IsNumber(item) ? item->valuedouble : NAN;
 }
 
 static const char *text(const cJSON *json, const char *key) {
@@ -60,9 +45,9 @@ static void lists_are_filtered_sorted_and_cut_into_columns(void **state) {
   answers("$abbe materials list --source peter1923 --columns name,p_gF,dp_gF", 0,
           "diamond  0.5629  +0.0121");
   answers("$abbe materials list --name nothing", 0, "none of");
-  cJSON *json = json_of("$abbe materials list --name diamond --json", 0);
+  cJSON *json = run_json("$abbe materials list --name diamond --json", 0);
   assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "materials")), 1);
-  assert_near(number(first(json, "materials"), "p_gF"), 0.5629, 5e-5);
+  assert_near(json_number(first(json, "materials"), "p_gF"), 0.5629, 5e-5);
   cJSON_Delete(json);
 }
 
@@ -75,15 +60,15 @@ static void show_tells_all_that_is_known(void **state) {
   assert_contains(run_output, "0.6045\n"); /* 1/m at 400 nm */
   answers("$abbe materials show bak4 --table thesis", 0,
           "wrong         the column A holds n_d instead of Cauchy's A");
-  cJSON *json = json_of("$abbe materials show bak4 --table thesis --json", 0);
+  cJSON *json = run_json("$abbe materials show bak4 --table thesis --json", 0);
   assert_string_equal(text(first(json, "findings"), "kind"), "a-is-n_d");
   cJSON_Delete(json);
-  json = json_of("$abbe materials show n-bk7 --json", 0);
+  json = run_json("$abbe materials show n-bk7 --json", 0);
   assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "findings")), 0);
-  assert_near(number(cJSON_GetObjectItem(json, "printed"), "n_d"), 1.5168, 0);
-  assert_near(number(json, "n_e"), 1.51872, 5e-6);
-  assert_near(number(first(json, "fits"), "residual_max"), number(first(json, "fits"), "max_error"),
-              1e-6);
+  assert_near(json_number(cJSON_GetObjectItem(json, "printed"), "n_d"), 1.5168, 0);
+  assert_near(json_number(json, "n_e"), 1.51872, 5e-6);
+  assert_near(json_number(first(json, "fits"), "residual_max"),
+              json_number(first(json, "fits"), "max_error"), 1e-6);
   cJSON_Delete(json);
 }
 
@@ -96,10 +81,10 @@ static void metals_are_told_by_n_and_k(void **state) {
   assert_null(strstr(run_output, "V_d"));
   assert_null(strstr(run_output, "nan"));
   assert_null(strstr(run_output, "Cauchy"));
-  cJSON *json = json_of("$abbe materials show gold --at 582.1 --json", 0);
+  cJSON *json = run_json("$abbe materials show gold --at 582.1 --json", 0);
   const cJSON *nk = cJSON_GetObjectItem(json, "nk"), *colour;
   assert_int_equal(cJSON_GetArraySize(nk), 4);
-  assert_near(number(cJSON_GetArrayItem(nk, 3), "reflectance"), 0.88236330895380525, 1e-12);
+  assert_near(json_number(cJSON_GetArrayItem(nk, 3), "reflectance"), 0.88236330895380525, 1e-12);
   colour = cJSON_GetObjectItem(json, "colour_rec709"); /* yellow */
   assert_true(cJSON_GetArrayItem(colour, 0)->valuedouble >
               cJSON_GetArrayItem(colour, 1)->valuedouble);
@@ -128,21 +113,21 @@ static void metals_are_told_by_n_and_k(void **state) {
 
 static void nearest_finds_by_numbers_curve_and_points(void **state) {
   (void)state;
-  cJSON *json = json_of("$abbe materials nearest --nd 1.517 --vd 64.2 --count 2 --json", 0);
+  cJSON *json = run_json("$abbe materials nearest --nd 1.517 --vd 64.2 --count 2 --json", 0);
   assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "nearest")), 2);
   assert_string_equal(text(first(json, "nearest"), "name"), "n-bk7");
   cJSON_Delete(json);
-  json = json_of("$abbe materials nearest --like bk7 --like-table thesis --json", 0);
+  json = run_json("$abbe materials nearest --like bk7 --like-table thesis --json", 0);
   assert_string_equal(text(first(json, "nearest"), "name"), "n-bk7");
   cJSON_Delete(json);
-  json = json_of("$abbe materials nearest --like sf11 --json", 0); /* not itself */
+  json = run_json("$abbe materials nearest --like sf11 --json", 0); /* not itself */
   assert_string_equal(text(first(json, "nearest"), "name"), "n-sf11");
   cJSON_Delete(json);
-  json = json_of("printf '0.4861,1.6321\\n0.5876,1.62\\n0.6563,1.6150\\n' >p.csv\n"
-                 "$abbe materials nearest --points p.csv --json",
-                 0);
+  json = run_json("printf '0.4861,1.6321\\n0.5876,1.62\\n0.6563,1.6150\\n' >p.csv\n"
+                  "$abbe materials nearest --points p.csv --json",
+                  0);
   assert_string_equal(text(first(json, "nearest"), "name"), "f2");
-  assert_true(number(first(json, "nearest"), "rms") < 1e-4);
+  assert_true(json_number(first(json, "nearest"), "rms") < 1e-4);
   cJSON_Delete(json);
   answers("$abbe materials nearest --like n-bk7 --range 500:2000", 0, "were skipped");
 }
@@ -151,9 +136,9 @@ static void nearest_finds_by_numbers_curve_and_points(void **state) {
 
 static void check_finds_the_four_wrong_rows_of_the_thesis(void **state) {
   (void)state;
-  cJSON *json = json_of("$abbe materials check --table thesis --json", 3);
-  assert_near(number(json, "wrong"), 4, 0);
-  assert_near(number(json, "doubtful"), 0, 0);
+  cJSON *json = run_json("$abbe materials check --table thesis --json", 3);
+  assert_near(json_number(json, "wrong"), 4, 0);
+  assert_near(json_number(json, "doubtful"), 0, 0);
   const cJSON *f;
   cJSON_ArrayForEach(f, cJSON_GetObjectItem(json, "findings")) {
     assert_string_equal(text(f, "kind"), "a-is-n_d");
@@ -192,7 +177,7 @@ static void notes_of_many_rows_are_one_line(void **state) {
   assert_true(strlen(run_output) < 200);
   answers("$abbe materials check --table n.yaml --all", 0, "g200 (line 201): note, not-visible");
   answers("$abbe materials check g7 --table n.yaml", 0, "its data reach from 400 to 700 nm");
-  cJSON *json = json_of("$abbe materials check --table n.yaml --json; rm n.yaml", 0);
+  cJSON *json = run_json("$abbe materials check --table n.yaml --json; rm n.yaml", 0);
   assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "findings")), 200);
   cJSON_Delete(json);
 }
@@ -215,18 +200,19 @@ static void fits_come_with_their_errors(void **state) {
   answers("$abbe materials fit n-bk7 --terms 3", 0, "largest error  0.000157 at 380 nm");
   assert_contains(run_output, "401 points from 380 to 780 nm");
   assert_contains(run_output, "covariance");
-  cJSON *json = json_of("$abbe materials fit n-sf11 --form sellmeier --range 400:700 --over "
-                        "380:780 --json",
-                        0);
+  cJSON *json = run_json("$abbe materials fit n-sf11 --form sellmeier --range 400:700 --over "
+                         "380:780 --json",
+                         0);
   assert_string_equal(text(json, "model"), "sellmeier2");
-  assert_true(number(json, "max_error") < 5e-5);
-  assert_true(number(cJSON_GetObjectItem(json, "over"), "max_error") > number(json, "max_error"));
+  assert_true(json_number(json, "max_error") < 5e-5);
+  assert_true(json_number(cJSON_GetObjectItem(json, "over"), "max_error") >
+              json_number(json, "max_error"));
   assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "covariance")), 5);
   assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "residuals")), 301);
   cJSON_Delete(json);
-  json = json_of("$abbe materials fit --formula 'sellmeier2 0 1.3, 0.01' --form sellmeier "
-                 "--terms 1 --json",
-                 0);
+  json = run_json("$abbe materials fit --formula 'sellmeier2 0 1.3, 0.01' --form sellmeier "
+                  "--terms 1 --json",
+                  0);
   const cJSON *c = cJSON_GetObjectItem(json, "coefficients");
   assert_near(cJSON_GetArrayItem(c, 1)->valuedouble, 1.3, 1e-9);
   assert_near(cJSON_GetArrayItem(c, 2)->valuedouble, 0.01, 1e-9);
@@ -287,10 +273,10 @@ static void two_numbers_make_a_record(void **state) {
     assert_contains(t.material[0].source, "a book; ");
     abbe_material_table_free(&t);
   }
-  cJSON *json = json_of("$abbe materials from --nd 2.417 --bg 0.044 --json", 0);
-  assert_near(number(json, "b_g"), 0.044, 1e-9);
-  assert_near(number(json, "rounding_error"), 1e-3, 5e-4);
-  assert_true(number(json, "largest_error") > number(json, "typical_error"));
+  cJSON *json = run_json("$abbe materials from --nd 2.417 --bg 0.044 --json", 0);
+  assert_near(json_number(json, "b_g"), 0.044, 1e-9);
+  assert_near(json_number(json, "rounding_error"), 1e-3, 5e-4);
+  assert_true(json_number(json, "largest_error") > json_number(json, "typical_error"));
   cJSON_Delete(json);
   /* what the check doubts is said, on the side */
   assert_int_equal(run_line("$abbe materials from --a 1.5690 --b 0.00531"), 0);

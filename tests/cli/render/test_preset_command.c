@@ -1,8 +1,6 @@
 /* Settings by name, by error and by time, as people ask for them: what is promised and what is met.
  */
-#include "tests/cli/run_program.h"
-
-#include <cjson/cJSON.h>
+#include "tests/cli/run_json.h"
 
 #define GEM "\"$abbe\" render \"$house\"/scenes/gem.yaml --size 24x24 "
 #define POINT(photons, light, error)                                                               \
@@ -15,29 +13,14 @@
   "  scenes: gem\\n  draft: 0\\n  balanced: 1\\n  accurate: 2\\n  front:\\n" POINT("16", "1", "8") \
       POINT("24", "10", "4") POINT("32", "1e7", "2") "' >p.yaml"
 
-static cJSON *promise_that_ends(const char *line, int right) {
-  int code = run_line(line);
-  if (code != right) fail_msg("%s ends with %d: %s", line, code, run_errors);
-  cJSON *json = cJSON_Parse(run_output);
-  assert_non_null(json);
-  return json;
-}
-
-static cJSON *promise_of(const char *line) {
-  return promise_that_ends(line, 0);
-}
-
 static const cJSON *item(const cJSON *json, const char *key) {
-  const cJSON *promise = cJSON_GetObjectItemCaseSensitive(json, "promise");
-  const cJSON *found = cJSON_GetObjectItemCaseSensitive(promise, key);
-  if (found == NULL) fail_msg("no '%s' in the promise", key);
-  return found;
+  return json_item(json_item(json, "promise"), key);
 }
 
 static void test_by_name(void **state) {
   (void)state;
   assert_int_equal(run_line(PRESETS), 0);
-  cJSON *json = promise_of(GEM "--presets p.yaml --preset balanced --json -q");
+  cJSON *json = run_json(GEM "--presets p.yaml --preset balanced --json -q", 0);
   assert_string_equal(cJSON_GetStringValue(item(json, "preset")), "balanced");
   assert_contains(cJSON_GetStringValue(item(json, "settings")), "24 photons, map 64");
   assert_near(cJSON_GetNumberValue(item(json, "error")), 4, 0);
@@ -48,21 +31,21 @@ static void test_by_name(void **state) {
   assert_near(cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(json, "wavelengths")), 3, 0);
   cJSON_Delete(json);
   /* Error bars tell it by an estimate, and say so. */
-  json = promise_of(GEM "--presets p.yaml --preset balanced --json -q --error-bars=2");
+  json = run_json(GEM "--presets p.yaml --preset balanced --json -q --error-bars=2", 0);
   assert_true(cJSON_GetNumberValue(item(json, "error_met")) > 0);
   assert_contains(cJSON_GetStringValue(item(json, "error_met_is")), "estimate");
   cJSON_Delete(json);
   /* One's own option stays, and the promise is void. */
-  json = promise_of(GEM "--presets p.yaml --preset draft --wavelengths 5 --json");
+  json = run_json(GEM "--presets p.yaml --preset draft --wavelengths 5 --json", 0);
   assert_near(cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(json, "wavelengths")), 5, 0);
   assert_true(cJSON_IsTrue(item(json, "overridden")));
   assert_contains(run_errors, "what it promises is void");
   cJSON_Delete(json);
   /* The shipped ones, and none at all. */
-  json = promise_of(GEM "--preset draft --json -q");
+  json = run_json(GEM "--preset draft --json -q", 0);
   assert_string_equal(cJSON_GetStringValue(item(json, "class")), "convex");
   cJSON_Delete(json);
-  json = promise_of(GEM "--photons 16 --map 64 --json -q");
+  json = run_json(GEM "--photons 16 --map 64 --json -q", 0);
   assert_null(cJSON_GetObjectItemCaseSensitive(json, "promise"));
   cJSON_Delete(json);
 }
@@ -70,11 +53,11 @@ static void test_by_name(void **state) {
 static void test_by_error_and_by_time(void **state) {
   (void)state;
   assert_int_equal(run_line(PRESETS), 0);
-  cJSON *json = promise_of(GEM "--presets p.yaml --max-error 5 --json -q");
+  cJSON *json = run_json(GEM "--presets p.yaml --max-error 5 --json -q", 0);
   assert_near(cJSON_GetNumberValue(item(json, "error")), 4, 0);
   assert_true(cJSON_IsTrue(item(json, "possible")));
   cJSON_Delete(json);
-  json = promise_that_ends(GEM "--presets p.yaml --max-error 1 --json --png a.png", 3);
+  json = run_json(GEM "--presets p.yaml --max-error 1 --json --png a.png", 3);
   assert_near(cJSON_GetNumberValue(item(json, "error")), 2, 0);
   assert_true(cJSON_IsFalse(item(json, "possible")));
   assert_contains(run_errors, "no settings are known to keep 1; these are the most accurate");
@@ -83,12 +66,12 @@ static void test_by_error_and_by_time(void **state) {
   assert_int_equal(run_line("test -s a.png && rm a.png"), 0);
   cJSON_Delete(json);
   /* The third would take ten million times the first's time. */
-  json = promise_of(GEM "--presets p.yaml --budget-ms 100000 --json -q");
+  json = run_json(GEM "--presets p.yaml --budget-ms 100000 --json -q", 0);
   assert_near(cJSON_GetNumberValue(item(json, "error")), 4, 0);
   assert_true(cJSON_IsTrue(item(json, "possible")));
   assert_true(cJSON_IsTrue(item(json, "budget_met")));
   cJSON_Delete(json);
-  json = promise_that_ends(GEM "--presets p.yaml --budget-ms 0.001 --json -q --png a.png", 3);
+  json = run_json(GEM "--presets p.yaml --budget-ms 0.001 --json -q --png a.png", 3);
   assert_true(cJSON_IsFalse(item(json, "possible")));
   assert_true(cJSON_IsFalse(item(json, "budget_met")));
   assert_contains(run_errors,
@@ -143,7 +126,7 @@ static void test_what_a_budget_tells(void **state) {
       {GEM "--presets q.yaml --budget-ms 1e6 --json --tool render", "by traced passes"},
   };
   for (size_t i = 0; i < sizeof told / sizeof *told; i++) {
-    cJSON *json = promise_of(told[i].line);
+    cJSON *json = run_json(told[i].line, 0);
     assert_true(cJSON_IsTrue(item(json, "checked")) && cJSON_IsTrue(item(json, "budget_met")));
     assert_contains(cJSON_GetStringValue(item(json, "error_met_is")), told[i].met);
     assert_contains(cJSON_GetStringValue(item(json, "error_is")), "told by");
@@ -154,13 +137,13 @@ static void test_what_a_budget_tells(void **state) {
     assert_contains(run_errors, "note: the error is about");
     cJSON_Delete(json);
   }
-  cJSON *json = promise_that_ends(GEM "--presets q.yaml --budget-ms 1 --json --tool render", 3);
+  cJSON *json = run_json(GEM "--presets q.yaml --budget-ms 1 --json --tool render", 3);
   assert_true(cJSON_IsFalse(item(json, "checked")) && cJSON_IsNull(item(json, "error_met")));
   assert_contains(cJSON_GetStringValue(item(json, "error_is")),
                   "expected (not checked: the budget left no time for it)");
   assert_contains(run_errors, "note: the error is 8, expected (not checked");
   cJSON_Delete(json);
-  json = promise_of(GEM "--presets q.yaml --preset draft --json --tool render");
+  json = run_json(GEM "--presets q.yaml --preset draft --json --tool render", 0);
   assert_contains(cJSON_GetStringValue(item(json, "error_is")), "no passes were traced for that");
   cJSON_Delete(json);
   assert_int_equal(run_line("rm q.yaml f.yaml"), 0);
@@ -169,7 +152,7 @@ static void test_what_a_budget_tells(void **state) {
 static void test_what_makes_the_picture(void **state) {
   (void)state;
   assert_int_equal(run_line(PICTURES), 0);
-  cJSON *json = promise_of(GEM "--presets q.yaml --max-error 12 --tool trace --json -o a.exr");
+  cJSON *json = run_json(GEM "--presets q.yaml --max-error 12 --tool trace --json -o a.exr", 0);
   assert_string_equal(cJSON_GetStringValue(item(json, "for")), "picture");
   assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "trace");
   assert_contains(cJSON_GetStringValue(item(json, "settings")), "4 passes of 4096 photons");
@@ -183,12 +166,12 @@ static void test_what_makes_the_picture(void **state) {
   assert_true(at_most > cJSON_GetNumberValue(item(json, "error_met")) && at_most <= 12);
   cJSON_Delete(json);
   /* Its own passes tell that the file promises too much: it goes on, or gives up and says so. */
-  json = promise_of(GEM "--presets q.yaml --max-error 6 --tool trace --json");
+  json = run_json(GEM "--presets q.yaml --max-error 6 --tool trace --json", 0);
   assert_true(cJSON_GetNumberValue(item(json, "passes")) > 4);
   assert_true(cJSON_GetNumberValue(item(json, "error_at_most")) <= 6);
   assert_contains(run_errors, "; 4 were too few for what is asked");
   cJSON_Delete(json);
-  json = promise_that_ends(GEM "--presets q.yaml --max-error 0.5 --tool trace --json", 3);
+  json = run_json(GEM "--presets q.yaml --max-error 0.5 --tool trace --json", 3);
   assert_true(cJSON_IsFalse(item(json, "error_kept")));
   assert_contains(run_errors, "half against half; expected were");
   assert_contains(run_errors, "that is more, for this scene's light is of another kind");
@@ -196,7 +179,7 @@ static void test_what_makes_the_picture(void **state) {
   cJSON_Delete(json);
   assert_int_equal(run_line("\"$abbe\" info a.exr && rm a.exr"), 0);
   assert_contains(run_output, "stderr.R");
-  json = promise_of(GEM "--presets q.yaml --max-error 30 --json --tool render -q");
+  json = run_json(GEM "--presets q.yaml --max-error 30 --json --tool render -q", 0);
   assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "render");
   assert_true(cJSON_IsFalse(item(json, "overridden")));
   assert_true(cJSON_IsTrue(item(json, "error_kept")));
@@ -209,7 +192,7 @@ static void test_what_makes_the_picture(void **state) {
       run_line("sed 's/error: 8, least: 0.5/error: 0.1, least: 0.1/; s/ms: 2,/ms: 9,/' "
                "q.yaml >r.yaml"),
       0);
-  json = promise_of(GEM "--presets r.yaml --max-error 3 --json -o a.exr");
+  json = run_json(GEM "--presets r.yaml --max-error 3 --json -o a.exr", 0);
   assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "render");
   assert_true(cJSON_IsTrue(item(json, "traced_instead")));
   assert_true(cJSON_IsTrue(item(json, "error_kept")));
@@ -217,21 +200,21 @@ static void test_what_makes_the_picture(void **state) {
   cJSON_Delete(json);
   assert_int_equal(run_line("\"$abbe\" info a.exr && rm a.exr"), 0);
   assert_contains(run_output, "stderr.R");
-  json = promise_that_ends(GEM "--presets r.yaml --max-error 3 --json --tool render", 3);
+  json = run_json(GEM "--presets r.yaml --max-error 3 --json --tool render", 3);
   assert_true(cJSON_IsFalse(item(json, "traced_instead")));
   assert_true(cJSON_IsFalse(item(json, "error_kept")));
   assert_contains(run_errors, "against which the picture is held; expected were 0.1");
   assert_contains(run_errors, "an error of 3 is not known to be kept");
   cJSON_Delete(json);
-  json = promise_of(GEM "--presets q.yaml --preset accurate --json --samples 1");
+  json = run_json(GEM "--presets q.yaml --preset accurate --json --samples 1", 0);
   assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "render");
   assert_contains(run_errors, "options of the renderer are given, so the tracer is not");
   cJSON_Delete(json);
-  json = promise_that_ends(GEM "--presets q.yaml --budget-ms 1 --json -q", 3);
+  json = run_json(GEM "--presets q.yaml --budget-ms 1 --json -q", 3);
   assert_true(cJSON_IsFalse(item(json, "budget_met")));
   assert_contains(run_errors, "the budget of 1 ms is not kept, for nothing faster is known");
   cJSON_Delete(json);
-  json = promise_of(GEM "--presets q.yaml --max-error 9 --for frame --json -q");
+  json = run_json(GEM "--presets q.yaml --max-error 9 --for frame --json -q", 0);
   assert_null(
       cJSON_GetObjectItemCaseSensitive(cJSON_GetObjectItemCaseSensitive(json, "promise"), "for"));
   cJSON_Delete(json);
@@ -261,7 +244,7 @@ static void test_presets_of_a_sweep(void **state) {
   assert_contains(
       run_output,
       "- class: convex\n  scenes: gem\n  margin: 1\n  time_margin: 1\n  margin_scenes: 0\n");
-  cJSON *json = promise_of(GEM "--presets p.yaml --preset draft --json -q");
+  cJSON *json = run_json(GEM "--presets p.yaml --preset draft --json -q", 0);
   assert_contains(cJSON_GetStringValue(item(json, "run")), "24x24; medians of 1 frames");
   cJSON_Delete(json);
   /* None of its settings is finer than the defaults. */

@@ -1,42 +1,36 @@
 /* `abbe render` and `abbe plan` as people and programs meet them: files, JSON, Ctrl-C. */
-#include "tests/cli/run_program.h"
+#include "tests/cli/run_json.h"
 
 #include "colorimetry/image/exr.h"
 
-#include <cjson/cJSON.h>
 #include <fcntl.h>
 #include <signal.h>
 
 #define SMALL " --size 32x24 --photons 32 --map 64"
 #define GEM "\"$abbe\" render \"$house\"/scenes/gem.yaml" SMALL
 
-static double number(const cJSON *object, const char *key) {
-  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
-  return cJSON_IsNumber(item) ? item->valuedouble : NAN;
-}
-
 static void assert_statistics(const char *text) {
   cJSON *json = cJSON_Parse(text);
   assert_non_null(json);
-  assert_true(number(json, "frame_ms") > 0);
-  assert_near(number(json, "wavelengths"), 7, 0);
-  double photons = number(json, "photons");
+  assert_true(json_number(json, "frame_ms") > 0);
+  assert_near(json_number(json, "wavelengths"), 7, 0);
+  double photons = json_number(json, "photons");
   assert_true(photons > 0 && photons <= 32 * 32);
   const cJSON *passes = cJSON_GetObjectItemCaseSensitive(json, "passes"), *pass;
   assert_true(cJSON_GetArraySize(passes) >= 4);
   cJSON_ArrayForEach(pass, passes) {
     assert_true(cJSON_IsString(cJSON_GetObjectItemCaseSensitive(pass, "name")));
-    assert_true(number(pass, "ms") >= 0);
+    assert_true(json_number(pass, "ms") >= 0);
   }
   const cJSON *energy = cJSON_GetObjectItemCaseSensitive(json, "energy");
   static const char *const parts[] = {"reflected", "absorbed", "trapped", "missed", "deposited"};
-  double sum = 0, reached = number(energy, "reached");
-  for (size_t i = 0; i < 5; i++) sum += number(energy, parts[i]);
-  sum -= number(energy, "interpolated");
+  double sum = 0, reached = json_number(energy, "reached");
+  for (size_t i = 0; i < 5; i++) sum += json_number(energy, parts[i]);
+  sum -= json_number(energy, "interpolated");
   assert_true(reached > 0);
   /* The balance that is promised, from the numbers as they are told. */
   assert_near(sum / reached, 1, 1e-4);
-  assert_true(number(energy, "imbalance") < 1e-4);
+  assert_true(json_number(energy, "imbalance") < 1e-4);
   cJSON_Delete(json);
 }
 
@@ -53,9 +47,7 @@ static void test_statistics_as_json(void **state) {
 
 static void test_the_plan_as_json(void **state) {
   (void)state;
-  assert_int_equal(run_line("\"$abbe\" plan \"$house\"/scenes/gem.yaml --json"), 0);
-  cJSON *json = cJSON_Parse(run_output);
-  assert_non_null(json);
+  cJSON *json = run_json("\"$abbe\" plan \"$house\"/scenes/gem.yaml --json", 0);
   const cJSON *plan = cJSON_GetObjectItemCaseSensitive(json, "plan"), *entry;
   assert_true(cJSON_GetArraySize(plan) > 10);
   cJSON_ArrayForEach(entry, plan) {
@@ -63,7 +55,7 @@ static void test_the_plan_as_json(void **state) {
     assert_true(cJSON_IsBool(cJSON_GetObjectItemCaseSensitive(entry, "runs")));
     assert_true(cJSON_IsString(cJSON_GetObjectItemCaseSensitive(entry, "reason")));
   }
-  assert_near(number(json, "wavelengths"), 7, 0);
+  assert_near(json_number(json, "wavelengths"), 7, 0);
   const cJSON *objects = cJSON_GetObjectItemCaseSensitive(json, "objects"), *gem = NULL, *one;
   cJSON_ArrayForEach(one, objects) {
     if (strcmp(cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(one, "name")), "gem") == 0)
@@ -146,16 +138,15 @@ static void test_error_bars(void **state) {
   char path[128];
   abbe_image image = {0};
   abbe_error error = {0};
-  assert_int_equal(
-      run_line(GEM " -o a.exr --error-bars=2 --error-png e.png --json && test -s e.png"), 0);
-  cJSON *json = cJSON_Parse(run_output);
+  cJSON *json =
+      run_json(GEM " -o a.exr --error-bars=2 --error-png e.png --json && test -s e.png", 0);
   const cJSON *bars = cJSON_GetObjectItemCaseSensitive(json, "error_bars");
   const cJSON *caustic = cJSON_GetObjectItemCaseSensitive(bars, "caustic");
-  assert_near(number(bars, "variants"), 2, 0);
-  assert_near(number(bars, "frames"), 3, 0);
-  assert_true(number(bars, "ms") > 0);
-  assert_true(number(caustic, "relative_rmse") > 0);
-  assert_true(number(caustic, "ciede2000_mean") > 0);
+  assert_near(json_number(bars, "variants"), 2, 0);
+  assert_near(json_number(bars, "frames"), 3, 0);
+  assert_true(json_number(bars, "ms") > 0);
+  assert_true(json_number(caustic, "relative_rmse") > 0);
+  assert_true(json_number(caustic, "ciede2000_mean") > 0);
   cJSON_Delete(json);
   snprintf(path, sizeof path, "%s/a.exr", run_folder);
   assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_OK);

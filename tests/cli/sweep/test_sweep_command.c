@@ -1,9 +1,7 @@
 /* `abbe sweep` as people meet it: rows, going on, stopping, the report, and what it refuses. */
-#include "tests/cli/run_program.h"
+#include "tests/cli/run_json.h"
 
 #include "validation/tradeoff/sweep_table.h"
-
-#include <cjson/cJSON.h>
 
 #define SWEEP                                                                                      \
   "\"$abbe\" sweep \"$house\"/scenes/gem.yaml -q --size 24x24 --frames 1 --spp 2 "                 \
@@ -56,20 +54,20 @@ static void test_rows_are_measured_once(void **state) {
 
 static void test_the_thesis_beside_it(void **state) {
   (void)state;
-  run_well(SWEEP "--profiles default,thesis,thesis-cie --wavelengths 7 --photons 32 --fill none "
-                 "-o s.csv --json");
-  cJSON *json = cJSON_Parse(run_output);
-  assert_non_null(json);
+  cJSON *json = run_json(
+      SWEEP "--profiles default,thesis,thesis-cie --wavelengths 7 --photons 32 --fill none "
+            "-o s.csv --json",
+      0);
   const cJSON *rows = cJSON_GetObjectItemCaseSensitive(json, "rows"), *row;
   assert_int_equal(cJSON_GetArraySize(rows), 3);
   row = cJSON_GetArrayItem(rows, 1);
   assert_string_equal(cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(row, "profile")),
                       "thesis");
   /* It knows no units, so it got its best factor; the default profile does and got none. */
-  assert_true(cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(row, "scale")) != 1);
+  assert_true(json_number(row, "scale") != 1);
   assert_true(cJSON_IsNull(cJSON_GetObjectItemCaseSensitive(row, "baseline_ms")));
   row = cJSON_GetArrayItem(rows, 0);
-  assert_near(cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(row, "scale")), 1, 0);
+  assert_near(json_number(row, "scale"), 1, 0);
   cJSON_Delete(json);
   /* Tables are shown again, with another error, and reported together. */
   run_well("cp s.csv t.csv && \"$abbe\" sweep s.csv t.csv --error map_rmse --report both.md");
@@ -94,12 +92,11 @@ static void test_the_error_is_decomposed(void **state) {
   assert_int_equal(run_line(SWEEP "--profiles default --wavelengths 7 --photons 16,32 -o s.csv"),
                    1);
   assert_contains(run_errors, "its rows were measured with the model 'caustic_de");
-  run_well(SWEEP "--profiles default --wavelengths 7 --photons 16,32 -o s.csv --decompose --json");
-  cJSON *json = cJSON_Parse(run_output);
+  cJSON *json = run_json(
+      SWEEP "--profiles default --wavelengths 7 --photons 16,32 -o s.csv --decompose --json", 0);
   const cJSON *parts_of = cJSON_GetObjectItemCaseSensitive(json, "decomposition");
   static const char *const parts[] = {"total", "model", "sampling_and_reconstruction"};
-  for (int i = 0; i < 3; i++)
-    assert_true(cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(parts_of, parts[i])) > 0);
+  for (int i = 0; i < 3; i++) assert_true(json_number(parts_of, parts[i]) > 0);
   cJSON_Delete(json);
   run_well("rm s.csv s-reference*.exr s-matched*.exr");
   assert_true(run_refuses("\"$abbe\" sweep a.yaml -o s.csv --decompose --physics matched", 2,
@@ -110,13 +107,13 @@ static void test_given_references(void **state) {
   (void)state;
   run_well("\"$abbe\" render \"$house\"/scenes/gem.yaml -q --size 24x24 --photons 32 --map 64 "
            "--aovs -o r.exr --save-map m.exr");
-  run_well("\"$abbe\" sweep \"$house\"/scenes/gem.yaml -q --frames 1 --reference r.exr "
-           "--reference-map m.exr --profiles default --photons 32 --map 64 -o s.csv --json");
-  cJSON *json = cJSON_Parse(run_output);
+  cJSON *json =
+      run_json("\"$abbe\" sweep \"$house\"/scenes/gem.yaml -q --frames 1 --reference r.exr "
+               "--reference-map m.exr --profiles default --photons 32 --map 64 -o s.csv --json",
+               0);
   const cJSON *row = cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(json, "rows"), 0);
   static const char *const none[] = {"map_rmse", "picture_de", "caustic_rmse"};
-  for (int i = 0; i < 3; i++)
-    assert_near(cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(row, none[i])), 0, 1e-6);
+  for (int i = 0; i < 3; i++) assert_near(json_number(row, none[i]), 0, 1e-6);
   cJSON_Delete(json);
   run_well("rm r.exr m.exr s.csv");
   assert_int_equal(run_left(), 0);
