@@ -111,21 +111,16 @@ static abbe_result write_light(const abbe_export_writing *w, size_t i, abbe_erro
 
 /* From the zenith down, and round from +x towards +y. */
 static void map_direction(double u, double v, double out[3]) {
-  const double phi = 2 * 3.14159265358979323846 * u, theta = 3.14159265358979323846 * v;
-  out[0] = cos(phi) * sin(theta);
-  out[1] = sin(phi) * sin(theta);
-  out[2] = cos(theta);
+  abbe_export_direction(u, v, out);
 }
 
 static abbe_result write_environment(const abbe_export_writing *w, abbe_error *error) {
-  const abbe_radiance_map *map = &w->scene->environment->map;
-  const size_t width = map->width < 2048 ? map->width : 2048;
   fprintf(w->file,
           "\nscene.lights.environment.type = infinite\n"
           "scene.lights.environment.file = \"%s-environment.exr\"\n"
           "scene.lights.environment.colorspace = nop\n",
           w->files->name);
-  return abbe_export_environment(w, width, width / 2, map_direction, error);
+  return abbe_export_panorama(w, map_direction, error);
 }
 
 static void write_glass(const abbe_export_writing *w, size_t i) {

@@ -60,18 +60,6 @@ static void write_table(const abbe_export_writing *w, const char *name, const ab
   fputs("      </spectrum>\n", w->file);
 }
 
-static double conductor_n(const abbe_material *m, double lambda_nm) {
-  double n, k;
-  abbe_export_nk(m, lambda_nm, &n, &k);
-  return n;
-}
-
-static double conductor_k(const abbe_material *m, double lambda_nm) {
-  double n, k;
-  abbe_export_nk(m, lambda_nm, &n, &k);
-  return k;
-}
-
 /* ---- meshes ---- */
 
 static void put_float(FILE *file, double value) {
@@ -220,23 +208,18 @@ static void write_light(const abbe_export_writing *w, const abbe_light *light) {
 
 /* Its map has +y at the top row and -z in the first column; the matrix turns y to Abbe's z. */
 static void map_direction(double u, double v, double out[3]) {
-  const double phi = 2 * 3.14159265358979323846 * u, theta = 3.14159265358979323846 * v;
-  out[0] = sin(phi) * sin(theta);
-  out[1] = cos(phi) * sin(theta);
-  out[2] = cos(theta);
+  abbe_export_direction(0.25 - u, v, out);
 }
 
 static abbe_result write_environment(const abbe_export_writing *w, abbe_error *error) {
   static const double x[3] = {1, 0, 0}, y[3] = {0, 0, 1}, z[3] = {0, -1, 0}, at[3] = {0, 0, 0};
-  const abbe_radiance_map *map = &w->scene->environment->map;
-  const size_t width = map->width < 2048 ? map->width : 2048;
   fprintf(w->file,
           "  <emitter type=\"envmap\">\n"
           "    <string name=\"filename\" value=\"%s-environment.exr\"/>\n",
           w->files->name);
   write_matrix(w, x, y, z, at);
   fputs("  </emitter>\n", w->file);
-  return abbe_export_environment(w, width, width / 2, map_direction, error);
+  return abbe_export_panorama(w, map_direction, error);
 }
 
 static void write_glass(const abbe_export_writing *w, const abbe_material *m) {
@@ -292,8 +275,8 @@ static void write_mirror(const abbe_export_writing *w, const abbe_object *o) {
                       "      <float name=\"alpha\" value=\"%.9g\"/>\n",
                       abbe_export_roughness(o));
   if (o->conductor != NULL) {
-    write_table(w, "eta", o->conductor, conductor_n);
-    write_table(w, "k", o->conductor, conductor_k);
+    write_table(w, "eta", o->conductor, abbe_export_conductor_n);
+    write_table(w, "k", o->conductor, abbe_export_conductor_k);
   } else {
     abbe_number_write(w->file,
                       "      <string name=\"material\" value=\"none\"/>\n"

@@ -31,18 +31,6 @@ static void put_table(FILE *file, const char *name, const abbe_material *m,
   fputs(" ]", file);
 }
 
-static double conductor_n(const abbe_material *m, double lambda_nm) {
-  double n, k;
-  abbe_export_nk(m, lambda_nm, &n, &k);
-  return n;
-}
-
-static double conductor_k(const abbe_material *m, double lambda_nm) {
-  double n, k;
-  abbe_export_nk(m, lambda_nm, &n, &k);
-  return k;
-}
-
 static void write_camera(const abbe_export_writing *w) {
   const abbe_camera *c = &w->scene->camera;
   const double aspect = (double)c->width / (double)c->height;
@@ -219,8 +207,8 @@ static abbe_result write_material(const abbe_export_writing *w, size_t i, const 
   } else if (o->conductor != NULL) {
     fputs("  Material \"conductor\"", w->file);
     put_roughness(w->file, o);
-    put_table(w->file, "eta", o->conductor, conductor_n);
-    put_table(w->file, "k", o->conductor, conductor_k);
+    put_table(w->file, "eta", o->conductor, abbe_export_conductor_n);
+    put_table(w->file, "k", o->conductor, abbe_export_conductor_k);
     fputc('\n', w->file);
   } else if (o->mirror) {
     fputs("  Material \"conductor\"", w->file);

@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define PI 3.14159265358979323846
+
 const char *abbe_export_name(char out[ABBE_EXPORT_NAME_SIZE], const char *prefix, size_t number,
                              const char *name) {
   size_t at = (size_t)snprintf(out, ABBE_EXPORT_NAME_SIZE, "%.8s%zu_", prefix, number);
@@ -153,7 +155,7 @@ abbe_result abbe_export_light_mesh(const abbe_light *light, abbe_mesh *out, abbe
   const abbe_result result = abbe_mesh_make(sides, sides - 2, false, out, error);
   if (result != ABBE_OK) return result;
   if (light->kind == ABBE_LIGHT_DISK) {
-    const double step = 2 * 3.14159265358979323846 / (double)sides;
+    const double step = 2 * PI / (double)sides;
     const double radius = light->radius * sqrt(step / sin(step));
     double a[3], b[3];
     abbe_export_basis(light->direction, a, b);
@@ -184,6 +186,18 @@ void abbe_export_attenuation_rgb(const abbe_material *material, double per_m[3])
 void abbe_export_nk(const abbe_material *conductor, double lambda_nm, double *n, double *k) {
   const double at = fmin(fmax(lambda_nm, conductor->min_nm), conductor->max_nm);
   if (abbe_material_nk(conductor, at, n, k, NULL) != ABBE_OK) *n = *k = 1;
+}
+
+double abbe_export_conductor_n(const abbe_material *conductor, double lambda_nm) {
+  double n, k;
+  abbe_export_nk(conductor, lambda_nm, &n, &k);
+  return n;
+}
+
+double abbe_export_conductor_k(const abbe_material *conductor, double lambda_nm) {
+  double n, k;
+  abbe_export_nk(conductor, lambda_nm, &n, &k);
+  return k;
 }
 
 double abbe_export_roughness(const abbe_object *mirror) {
@@ -239,6 +253,20 @@ abbe_result abbe_export_environment(const abbe_export_writing *w, size_t width, 
       picture.data[3 * i + (size_t)c] = (float)(white[c] * sum[c] / (FINE * FINE));
   }
   return abbe_export_files_add_picture(w->files, "-environment.exr", &picture, error);
+}
+
+abbe_result abbe_export_panorama(const abbe_export_writing *w,
+                                 void (*direction)(double u, double v, double out[3]),
+                                 abbe_error *error) {
+  const size_t of_map = w->scene->environment->map.width, width = of_map < 2048 ? of_map : 2048;
+  return abbe_export_environment(w, width, width / 2, direction, error);
+}
+
+void abbe_export_direction(double turns, double v, double out[3]) {
+  const double phi = 2 * PI * turns, theta = PI * v;
+  out[0] = cos(phi) * sin(theta);
+  out[1] = sin(phi) * sin(theta);
+  out[2] = cos(theta);
 }
 
 abbe_result abbe_export_texture(const abbe_export_writing *w, const abbe_object *object,

@@ -70,6 +70,9 @@ abbe_result abbe_export_light_mesh(const abbe_light *light, abbe_mesh *out, abbe
 void abbe_export_attenuation_rgb(const abbe_material *material, double per_m[3]);
 /* n and k of a conductor at the wavelength, held at the ends of the data. */
 void abbe_export_nk(const abbe_material *conductor, double lambda_nm, double *n, double *k);
+/* One of them. */
+double abbe_export_conductor_n(const abbe_material *conductor, double lambda_nm);
+double abbe_export_conductor_k(const abbe_material *conductor, double lambda_nm);
 /* What a mirror reflects of white light at normal incidence, linear Rec.709 within 0 to 1. */
 void abbe_export_mirror_rgb(const abbe_object *mirror, double rgb[3]);
 /* GGX's alpha of a mirror, alike along its grooves and across: the root of both's product; 0: it is
@@ -81,6 +84,13 @@ double abbe_export_roughness(const abbe_object *mirror);
 abbe_result abbe_export_environment(const abbe_export_writing *w, size_t width, size_t height,
                                     void (*direction)(double u, double v, double out[3]),
                                     abbe_error *error);
+/* The same, twice as wide as high and at most 2048 pixels wide. */
+abbe_result abbe_export_panorama(const abbe_export_writing *w,
+                                 void (*direction)(double u, double v, double out[3]),
+                                 abbe_error *error);
+/* The direction at so many turns from +x towards +y, and at v from the zenith, 0, to the nadir, 1.
+ */
+void abbe_export_direction(double turns, double v, double out[3]);
 /* Adds the receiver's texture times its reflectance as STEM-NAME.exr. */
 abbe_result abbe_export_texture(const abbe_export_writing *w, const abbe_object *object,
                                 const char *name, abbe_error *error);

@@ -1,15 +1,8 @@
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/check.h"
 
 #include "colorimetry/difference.h"
 #include "colorimetry/gamut.h"
 #include "colorimetry/rgb_space.h"
-
-#include <math.h>
 
 /* [Sharma2005, table 1]: Lab 1, Lab 2, difference, printed to four places. */
 static const double pairs[34][7] = {

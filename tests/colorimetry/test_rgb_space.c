@@ -1,13 +1,6 @@
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/check.h"
 
 #include "colorimetry/rgb_space.h"
-
-#include <math.h>
 
 /* As published, rounded to the places printed. */
 static const double xyz_to_rec709[9] = {3.2409699, -1.5373832, -0.4986108, -0.9692436, 1.8759675,

@@ -1,16 +1,8 @@
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/check.h"
 
 #include "colorimetry/difference.h"
 #include "colorimetry/observer.h"
 #include "colorimetry/weights.h"
-
-#include <math.h>
-#include <string.h>
 
 static abbe_weights make(size_t count, double min, double max, abbe_illuminant_kind kind,
                          abbe_rgb_space space) {
@@ -312,9 +304,9 @@ static void test_other_observers(void **state) {
   for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
     const abbe_illuminant light = {.kind = of[i].kind};
     abbe_weights weights;
-    assert_int_equal(abbe_weights_make_by(of[i].observer, &samples, &light, ABBE_RGB_SPACE_XYZ,
-                                          &weights, NULL),
-                     ABBE_OK);
+    assert_int_equal(
+        abbe_weights_make_by(of[i].observer, &samples, &light, ABBE_RGB_SPACE_XYZ, &weights, NULL),
+        ABBE_OK);
     const double all = weights.sum[0] + weights.sum[1] + weights.sum[2];
     assert_true(fabs(weights.sum[1] - 1) < 1e-12);
     for (int k = 0; k < 2; k++)
@@ -341,8 +333,10 @@ static void test_a_range_of_other_observers(void **state) {
     assert_true(fabs(white[1] - 1) < 1e-12);
     for (int k = 0; k < 3; k++) assert_true(fabs(sum[k] - white[k]) < 1e-11);
     abbe_weights_band_xyz(&light, 400, 700, 400, 700, xyz);
-    if (o == ABBE_OBSERVER_CIE_1931) assert_memory_equal(white, xyz, sizeof xyz);
-    else assert_true(fabs(white[2] - xyz[2]) > 1e-3);
+    if (o == ABBE_OBSERVER_CIE_1931)
+      assert_memory_equal(white, xyz, sizeof xyz);
+    else
+      assert_true(fabs(white[2] - xyz[2]) > 1e-3);
   }
 }
 

@@ -74,6 +74,25 @@ static inline void read_picture(abbe_renderer *renderer, bool aovs, abbe_image *
   assert_ok(abbe_renderer_read(renderer, aovs, out, &error), &error);
 }
 
+static inline void assert_finite(const abbe_image *image) {
+  for (size_t i = 0; i < image->width * image->height * image->channels; i++)
+    assert_true(isfinite(image->data[i]));
+}
+
+/* One frame of a scene that is given as text. */
+static inline abbe_statistics draw_text(const char *text, const abbe_render_desc *desc,
+                                        abbe_image *out) {
+  abbe_scene scene;
+  load_text(text, &scene);
+  abbe_renderer *renderer = make_renderer(&scene, desc);
+  const abbe_statistics statistics = draw_frame(renderer);
+  read_picture(renderer, false, out);
+  assert_finite(out);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+  return statistics;
+}
+
 static inline void read_map(abbe_renderer *renderer, size_t light, abbe_image *out) {
   abbe_error error = {0};
   assert_ok(abbe_renderer_read_map(renderer, light, true, out, &error), &error);
@@ -107,11 +126,6 @@ static inline double image_max(const abbe_image *image, size_t channel) {
   for (size_t i = 0; i < image->width * image->height; i++)
     most = fmax(most, (double)image->data[i * image->channels + channel]);
   return most;
-}
-
-static inline void assert_finite(const abbe_image *image) {
-  for (size_t i = 0; i < image->width * image->height * image->channels; i++)
-    assert_true(isfinite(image->data[i]));
 }
 
 #endif

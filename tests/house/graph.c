@@ -1,22 +1,8 @@
 #include "tests/house/graph.h"
 
-#include "tests/check.h"
+#include "tests/house/lists.h"
 
 #include <stdbool.h>
-#include <stdlib.h>
-
-static void *grown(void *list, size_t count, size_t size) {
-  if (count > 0 && (count & (count - 1)) != 0) return list;
-  void *larger = realloc(list, (count == 0 ? 1 : 2 * count) * size);
-  assert_non_null(larger);
-  return larger;
-}
-
-static char *copy_of(const char *text) {
-  char *copy = strdup(text);
-  assert_non_null(copy);
-  return copy;
-}
 
 void graph_free(graph *g) {
   for (size_t i = 0; i < g->count; i++) free(g->name[i]);

@@ -1,27 +1,12 @@
 #include "tests/house/sources.h"
 
-#include "tests/check.h"
+#include "tests/house/lists.h"
 
 #include <dirent.h>
-#include <stdlib.h>
 #include <sys/stat.h>
 
-static const char *const rooms[] = {"base", "spectral",   "colorimetry", "scenes",
-                                    "gl",   "validation", "cli/library", "cli", "tests"};
-
-static void *grown(void *list, size_t count, size_t size) {
-  /* doubled at each power of two */
-  if (count > 0 && (count & (count - 1)) != 0) return list;
-  void *larger = realloc(list, (count == 0 ? 1 : 2 * count) * size);
-  assert_non_null(larger);
-  return larger;
-}
-
-static char *copy_of(const char *text) {
-  char *copy = strdup(text);
-  assert_non_null(copy);
-  return copy;
-}
+static const char *const rooms[] = {"base",       "spectral",    "colorimetry", "scenes", "gl",
+                                    "validation", "cli/library", "cli",         "tests"};
 
 /* ---- paths ---- */
 

@@ -1,16 +1,9 @@
-#include "scenes/scene.h"
+#include "tests/check.h"
 
+#include "scenes/scene.h"
 #include "scenes/shapes/shape.h"
 
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static void profile_of_a_spot_falls_smoothly(void **state) {
   (void)state;

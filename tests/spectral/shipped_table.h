@@ -1,11 +1,26 @@
-/* shipped_table.h: the default table of materials, loaded once for a group of tests: pass
- * shipped_load and shipped_free to cmocka_run_group_tests. */
+/* shipped_table.h: tables of materials for tests. The default one is loaded once for a group of
+ * tests: pass shipped_load and shipped_free to cmocka_run_group_tests. */
 #ifndef ABBE_TESTS_SPECTRAL_SHIPPED_TABLE_H
 #define ABBE_TESTS_SPECTRAL_SHIPPED_TABLE_H
 
 #include "tests/check.h"
 
 #include "spectral/formats/material_table_load.h"
+
+static inline abbe_material_table load_table(const char *path) {
+  abbe_material_table table;
+  abbe_error error = {0};
+  if (abbe_material_table_load(path, &table, &error) != ABBE_OK) fail_msg("%s", error.text);
+  return table;
+}
+
+static inline const abbe_material *find_material(const abbe_material_table *table,
+                                                 const char *name) {
+  const abbe_material *m = NULL;
+  abbe_error error = {0};
+  if (abbe_material_table_find(table, name, &m, &error) != ABBE_OK) fail_msg("%s", error.text);
+  return m;
+}
 
 static abbe_material_table shipped;
 
@@ -29,10 +44,7 @@ static inline size_t shipped_glasses(void) {
 }
 
 static inline const abbe_material *shipped_material(const char *name) {
-  const abbe_material *m = NULL;
-  abbe_error error = {0};
-  if (abbe_material_table_find(&shipped, name, &m, &error) != ABBE_OK) fail_msg("%s", error.text);
-  return m;
+  return find_material(&shipped, name);
 }
 
 #endif

@@ -28,6 +28,13 @@ static inline void run_passes(abbe_tracer *tracer, size_t passes) {
     assert_int_equal(abbe_tracer_pass(tracer, NULL, NULL), ABBE_OK);
 }
 
+/* A progress function: counts its calls in an int, and ends the work at the first. */
+static inline bool stop_at_once(void *user, double done) {
+  assert_true(done >= 0 && done <= 1);
+  ++*(int *)user;
+  return false;
+}
+
 /* Sum of a channel over all pixels. */
 static inline double channel_sum(const abbe_image *image, const char *name) {
   size_t channel = abbe_image_find_channel(image, name);

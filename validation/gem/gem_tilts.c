@@ -210,15 +210,7 @@ static abbe_result check(const abbe_gem_stone *stone, const abbe_weights *weight
                           "are up to %g, 1 to %d, 1 to %d and 2 to %d",
                           d->most_rad, d->steps, d->side, d->repeats, 0.5 * PI, ABBE_GEM_MOST_STEPS,
                           ABBE_GEM_MOST_SIDE, REPEATS);
-  if (!(d->head_rad >= 0 && d->head_rad < 0.25 * PI))
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "a head's half angle of %g rad; it is at least 0 and below %g",
-                          d->head_rad, 0.25 * PI);
-  if (weights->count != stone->wavelengths || stone->plane_count == 0 || !(weights->sum[1] > 0))
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "a stone of %zu planes at %zu wavelengths, and weights of %zu",
-                          stone->plane_count, stone->wavelengths, weights->count);
-  return ABBE_OK;
+  return abbe_gem_view_check(stone, weights, d->head_rad, error);
 }
 
 abbe_result abbe_gem_tilts_make(const abbe_gem_stone *stone, const abbe_weights *weights,

@@ -105,22 +105,31 @@ static abbe_result trace(const work *w, size_t threads, abbe_error *error) {
   return made ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a view of a stone");
 }
 
+abbe_result abbe_gem_view_check(const abbe_gem_stone *stone, const abbe_weights *weights,
+                                double head_rad, abbe_error *error) {
+  ABBE_REQUIRE(stone && weights, error);
+  if (!(head_rad >= 0 && head_rad < 0.25 * PI))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a head's half angle of %g rad; it is at least 0 and below %g", head_rad,
+                          0.25 * PI);
+  if (weights->count != stone->wavelengths || stone->plane_count == 0 || !(weights->sum[1] > 0))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a stone of %zu planes at %zu wavelengths, and weights of %zu",
+                          stone->plane_count, stone->wavelengths, weights->count);
+  return ABBE_OK;
+}
+
 static abbe_result check(const abbe_gem_stone *stone, const abbe_weights *weights,
                          const abbe_gem_view_desc *d, abbe_error *error) {
   if (d->side > ABBE_GEM_MOST_SIDE || d->repeats == 1 || d->repeats > ABBE_GEM_MOST_REPEATS)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%zu pixels a side and %zu repeats; there are 1 to %d and 2 to %d",
                           d->side, d->repeats, ABBE_GEM_MOST_SIDE, ABBE_GEM_MOST_REPEATS);
-  if (!isfinite(d->axis_rad) || !isfinite(d->tilt_rad) ||
-      !(d->head_rad >= 0 && d->head_rad < 0.25 * PI))
+  if (!isfinite(d->axis_rad) || !isfinite(d->tilt_rad))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "a head's half angle of %g rad; it is at least 0 and below %g",
-                          d->head_rad, 0.25 * PI);
-  if (weights->count != stone->wavelengths || stone->plane_count == 0 || !(weights->sum[1] > 0))
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "a stone of %zu planes at %zu wavelengths, and weights of %zu",
-                          stone->plane_count, stone->wavelengths, weights->count);
-  return ABBE_OK;
+                          "a stone tilted by %g rad about an axis at %g rad; both are finite",
+                          d->tilt_rad, d->axis_rad);
+  return abbe_gem_view_check(stone, weights, d->head_rad, error);
 }
 
 static abbe_result allocate(abbe_gem_view *v, abbe_error *error) {

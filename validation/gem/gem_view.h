@@ -48,6 +48,10 @@ abbe_result abbe_gem_view_make(const abbe_gem_stone *stone, const abbe_weights *
                                abbe_error *error);
 /* Safe on a zeroed one. */
 void abbe_gem_view_free(abbe_gem_view *view);
+/* ABBE_INVALID_ARGUMENT for a head of a half angle outside [0, pi / 4), for a stone that is empty,
+ * for weights of another count than its wavelengths or that sum to no light. */
+abbe_result abbe_gem_view_check(const abbe_gem_stone *stone, const abbe_weights *weights,
+                                double head_rad, abbe_error *error);
 
 /* Mean over the silhouette, in white light. */
 abbe_gem_number abbe_gem_view_amount(const abbe_gem_view *view, abbe_gem_amount amount);

@@ -1,9 +1,4 @@
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/check.h"
 
 #include "base/file.h"
 #include "colorimetry/image/display_ocio.h"
@@ -11,10 +6,7 @@
 #include "colorimetry/observer.h"
 #include "colorimetry/rgb_space.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 static const char *const names[] = {"R", "G", "B", "caustic.R", "A"};

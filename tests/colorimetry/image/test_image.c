@@ -1,14 +1,6 @@
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/check.h"
 
 #include "colorimetry/image/image.h"
-
-#include <stdio.h>
-#include <string.h>
 
 static const char *const rgb[] = {"R", "G", "B"};
 

@@ -4,15 +4,21 @@
 
 enum { BANDS = 48 };
 
+/* The map of one frame, with so many bands. */
+static void make_bands(const abbe_scene *scene, size_t bands, abbe_image *map) {
+  abbe_error error = {0};
+  abbe_renderer *renderer = make_renderer(scene, &small_frame);
+  draw_frame(renderer);
+  assert_ok(abbe_renderer_read_map_bands(renderer, 0, bands, map, &error), &error);
+  abbe_renderer_free(renderer);
+}
+
 static void bands_add_up_to_the_colour(void **state) {
   (void)state;
   abbe_scene scene;
   abbe_image map;
-  abbe_error error = {0};
   load_shipped("gem", &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
-  draw_frame(renderer);
-  assert_ok(abbe_renderer_read_map_bands(renderer, 0, BANDS, &map, &error), &error);
+  make_bands(&scene, BANDS, &map);
   assert_int_equal(map.channels, 3 + BANDS);
   assert_string_equal(map.channel[3], "S0.384,166667nm");
   assert_string_equal(map.channel[3 + BANDS - 1], "S0.775,833333nm");
@@ -33,7 +39,6 @@ static void bands_add_up_to_the_colour(void **state) {
     assert_true(fabs(sum[c] / image_sum(&map, c) - 1) < 5e-4);
   }
   abbe_image_free(&map);
-  abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
 }
 
@@ -53,11 +58,8 @@ static void a_prism_sorts_the_bands(void **state) {
   (void)state;
   abbe_scene scene;
   abbe_image map;
-  abbe_error error = {0};
   load_shipped("prism", &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
-  draw_frame(renderer);
-  assert_ok(abbe_renderer_read_map_bands(renderer, 0, 8, &map, &error), &error);
+  make_bands(&scene, 8, &map);
   const double across = middle_of(&map, 10, 0) - middle_of(&map, 3, 0);
   const double along = middle_of(&map, 10, 1) - middle_of(&map, 3, 1);
   const int axis = fabs(along) > fabs(across);
@@ -66,7 +68,6 @@ static void a_prism_sorts_the_bands(void **state) {
   for (size_t i = 4; i < 11; i++)
     assert_true((middle_of(&map, i, axis) - middle_of(&map, i - 1, axis)) * way > 0);
   abbe_image_free(&map);
-  abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
 }
 

@@ -12,16 +12,9 @@ static const double PI = 3.14159265358979;
   "[{translate: [0, 20, -10]}]}\n"
 
 static abbe_statistics draw(const char *text, abbe_image *out) {
-  abbe_scene scene;
   abbe_render_desc desc = small_frame;
   desc.space = ABBE_RGB_SPACE_REC709;
-  load_text(text, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
-  const abbe_statistics statistics = draw_frame(renderer);
-  read_picture(renderer, false, out);
-  abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
-  return statistics;
+  return draw_text(text, &desc, out);
 }
 
 static double at(const abbe_image *p, size_t x, size_t y, size_t channel) {

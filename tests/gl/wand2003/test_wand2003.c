@@ -32,17 +32,6 @@ static abbe_render_desc request(size_t pinholes) {
                             .space = ABBE_RGB_SPACE_REC709};
 }
 
-static void draw(const char *text, const abbe_render_desc *desc, abbe_image *out) {
-  abbe_scene scene;
-  load_text(text, &scene);
-  abbe_renderer *renderer = make_renderer(&scene, desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, out);
-  assert_finite(out);
-  abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
-}
-
 /* Irradiance on the white floor at a pixel, of green. */
 static double at(const abbe_image *p, size_t x, size_t y) {
   return PI * (double)p->data[(y * p->width + x) * p->channels + 1];
@@ -67,8 +56,8 @@ static void test_one_pinhole(void **state) {
   abbe_render_desc desc = request(1);
   desc.strategy = ABBE_SAMPLE_STRATEGY_RANDOM;
   load_text(text, &scene);
-  draw(text, &desc, &picture);
-  draw(DOWN SOFT WHITE_FLOOR WALL("0"), &desc, &base);
+  draw_text(text, &desc, &picture);
+  draw_text(DOWN SOFT WHITE_FLOOR WALL("0"), &desc, &base);
   assert_near(at(&base, 3, 3), 0.5 * PI, 1e-3);
   const abbe_mesh *mesh = &scene.object[1].mesh;
   abbe_surface_samples s;
@@ -102,7 +91,7 @@ static void test_a_mirror_is_a_lamp_of_its_shape(void **state) {
       {0.3, -0.25, 0}, {0.3, 0.25, 0}, {0.3, 0.25, 0.3}, {0.3, -0.25, 0.3}};
   abbe_image picture;
   const abbe_render_desc desc = request(2048);
-  draw(DOWN SOFT WHITE_FLOOR WALL("0.8"), &desc, &picture);
+  draw_text(DOWN SOFT WHITE_FLOOR WALL("0.8"), &desc, &picture);
   double worst = 0;
   for (size_t y = 0; y < SIDE; y += 3)
     for (size_t x = 0; x < 44; x += 3) { /* 10 cm away and farther */
@@ -133,8 +122,8 @@ static void test_a_ball_sends_light_to_all_sides(void **state) {
   snprintf(bare, sizeof bare, DOWN "%s" WHITE_FLOOR WALL("0"), sky);
   load_text(text, &scene);
   const double all = 4 * PI * scene.environment->mean[1];
-  draw(text, &desc, &picture);
-  draw(bare, &desc, &without);
+  draw_text(text, &desc, &picture);
+  draw_text(bare, &desc, &without);
   for (size_t y = 4; y < SIDE; y += 8)
     for (size_t x = 2; x < 24; x += 3) {
       double p[3];
@@ -158,10 +147,11 @@ static void test_linear(void **state) {
   (void)state;
   abbe_image one, two;
   const abbe_render_desc desc = request(200);
-  draw(DOWN SPOT("12", "5") WHITE_FLOOR PIPE, &desc, &one);
-  draw(DOWN "environment: {size: 512, scale: 3, uniform: 0.2, spots: [{elevation: 55, azimuth: "
+  draw_text(DOWN SPOT("12", "5") WHITE_FLOOR PIPE, &desc, &one);
+  draw_text(DOWN
+            "environment: {size: 512, scale: 3, uniform: 0.2, spots: [{elevation: 55, azimuth: "
             "160, radiance: 5, sigma: 12}]}\n" WHITE_FLOOR PIPE,
-       &desc, &two);
+            &desc, &two);
   for (size_t i = 0; i < SIDE * SIDE * 3; i++)
     assert_near((double)two.data[i], 3 * (double)one.data[i], 2e-6 + 1e-5 * (double)two.data[i]);
   abbe_image_free(&one);
@@ -187,7 +177,7 @@ static void test_turned_together(void **state) {
              "environment: {size: 512, rotate: %d, uniform: 0.2, spots: [{elevation: 40, azimuth: "
              "120, radiance: 5, sigma: 15}]}\n" WHITE_FLOOR "%s",
              k == 0 ? 0 : -1, k == 0 ? 1 : 0, k == 0 ? 0 : 90, object);
-    draw(text[k], &desc, &picture[k]);
+    draw_text(text[k], &desc, &picture[k]);
   }
   for (size_t i = 1; i < SIDE * SIDE * 3; i += 3) {
     const double a = (double)picture[0].data[i], b = (double)picture[1].data[i];
@@ -202,10 +192,10 @@ static void test_turned_together(void **state) {
 static double footprint_matters(const char *text, const char *bare) {
   abbe_image on, off, base;
   abbe_render_desc desc = request(400);
-  draw(text, &desc, &on);
-  draw(bare, &desc, &base);
+  draw_text(text, &desc, &on);
+  draw_text(bare, &desc, &base);
   desc.footprint = ABBE_FOOTPRINT_OFF;
-  draw(text, &desc, &off);
+  draw_text(text, &desc, &off);
   double square = 0, sum = 0;
   for (size_t i = 1; i < SIDE * SIDE * 3; i += 3) {
     square += pow((double)(on.data[i] - off.data[i]), 2);
@@ -258,8 +248,8 @@ static void test_a_pipe_draws_a_nephroid(void **state) {
   abbe_render_desc desc = request(4096);
   snprintf(text, sizeof text, DOWN "%s" WHITE_FLOOR PIPE, sun);
   snprintf(bare, sizeof bare, DOWN "%s" WHITE_FLOOR WALL("0"), sun);
-  draw(text, &desc, &picture);
-  draw(bare, &desc, &base);
+  draw_text(text, &desc, &picture);
+  draw_text(bare, &desc, &base);
   const double radius = 0.3;
   double right[SIDE], worst = 0, most = 0, p[3];
   send_off_pipe(radius, 0.2, 35 * PI / 180, 0.9, right);

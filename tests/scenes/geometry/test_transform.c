@@ -1,13 +1,6 @@
+#include "tests/check.h"
+
 #include "scenes/geometry/transform.h"
-
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 #define PI 3.14159265358979323846
 

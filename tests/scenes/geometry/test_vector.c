@@ -1,11 +1,6 @@
+#include "tests/check.h"
+
 #include "scenes/geometry/vector.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 static void products(void **state) {
   (void)state;

@@ -1,16 +1,8 @@
-#include "scenes/mesh/mesh_charts.h"
+#include "tests/check.h"
 
 #include "scenes/geometry/vector.h"
+#include "scenes/mesh/mesh_charts.h"
 #include "scenes/shapes/shape.h"
-
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 /* Laws of every mesh: a face's corners lie in its chart's rectangle, and its normal within 60
  * degrees of the rectangle's. */

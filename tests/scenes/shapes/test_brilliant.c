@@ -1,18 +1,10 @@
-#include "scenes/shapes/brilliant.h"
-
-#include "scenes/shapes/convex.h"
+#include "tests/check.h"
 
 #include "scenes/geometry/vector.h"
+#include "scenes/shapes/brilliant.h"
+#include "scenes/shapes/convex.h"
 
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 #define DEGREES (180 / 3.14159265358979323846)
 

@@ -2,9 +2,8 @@
  * water comes or goes. */
 #include "scenes/shapes/water.h"
 
-#include "tests/check.h"
+#include "tests/scenes/shapes/closed_mesh.h"
 
-#include "scenes/geometry/vector.h"
 #include "scenes/shapes/convex.h"
 
 #define PI 3.14159265358979323846
@@ -16,35 +15,13 @@ static abbe_mesh make(const abbe_water *water) {
   return mesh;
 }
 
-static abbe_mesh_report check_closed(const abbe_mesh *mesh) {
-  abbe_mesh_report report;
-  assert_int_equal(abbe_mesh_check(mesh, &report, NULL), ABBE_OK);
-  assert_int_equal(report.open_edges, 0);
-  assert_int_equal(report.crowded_edges, 0);
-  assert_int_equal(report.flipped_edges, 0);
-  assert_int_equal(report.degenerate_faces, 0);
-  assert_int_equal(report.shells, 1);
-  for (size_t f = 0; f < mesh->face_count; f++) {
-    double n[3];
-    abbe_vector_triangle(mesh->position[mesh->face[f][0]], mesh->position[mesh->face[f][1]],
-                         mesh->position[mesh->face[f][2]], n);
-    abbe_vector_normalise(n);
-    for (int k = 0; k < 3; k++) {
-      const double *normal = mesh->normal[mesh->face[f][k]];
-      assert_true(fabs(abbe_vector_length(normal) - 1) < 1e-12);
-      assert_true(abbe_vector_dot(n, normal) > 0.9);
-    }
-  }
-  return report;
-}
-
 static void still_water_is_a_box(void **state) {
   (void)state;
   const abbe_water water = {.size = {0.4, 0.3, 0.2}};
   double plane[8][4];
   abbe_convex found;
   abbe_mesh mesh = make(&water);
-  const abbe_mesh_report report = check_closed(&mesh);
+  const abbe_mesh_report report = assert_closed(&mesh, 0.9);
   assert_near(report.volume, 0.4 * 0.3 * 0.2, 1e-15);
   assert_near(report.max[2], 0, 0);
   assert_near(report.min[2], -0.2, 0);
@@ -83,7 +60,7 @@ static void a_wave_goes_its_way(void **state) {
       .size = {0.5, 0.5, 0.08}, .cells = {64, 64}, .time = time, .wave_count = 1, .wave = &wave};
   abbe_mesh mesh = make(&water);
   const double speed = abbe_water_frequency(k, 0.08) / k;
-  check_closed(&mesh);
+  assert_closed(&mesh, 0.9);
   for (size_t v = 0; v < 65 * 65; v++) {
     const double *p = mesh.position[v], *n = mesh.normal[v];
     const double way = k * (cos(turn) * p[0] + sin(turn) * p[1] - speed * time) + phase;
@@ -122,7 +99,7 @@ static void a_drop_takes_no_water(void **state) {
   abbe_mesh_free(&mesh);
   for (int i = 1; i < 4; i++) {
     mesh = after(0.08 * i); /* before the fastest waves reach a wall */
-    const abbe_mesh_report report = check_closed(&mesh);
+    const abbe_mesh_report report = assert_closed(&mesh, 0.9);
     assert_near(report.volume, 0.1, 1e-3 * PI * radius * radius * drop.depth);
     assert_true(report.max[2] > 0.01 * drop.depth); /* it does go on */
     abbe_mesh_free(&mesh);
@@ -163,7 +140,7 @@ static void rain_falls(void **state) {
   abbe_mesh a = make(&water), b = make(&water);
   assert_int_equal(a.vertex_count, b.vertex_count);
   assert_memory_equal(a.position, b.position, a.vertex_count * sizeof *a.position);
-  check_closed(&a);
+  assert_closed(&a, 0.9);
   abbe_mesh_free(&b);
   water.time += 0.05;
   b = make(&water);

@@ -1,24 +1,9 @@
-#include "tests/check.h"
+#include "tests/spectral/shipped_table.h"
 
 #include "base/file.h"
 #include "spectral/dispersion/fit.h"
-#include "spectral/formats/material_table_load.h"
 
 #include <stdlib.h>
-
-static abbe_material_table load(const char *path) {
-  abbe_material_table table;
-  abbe_error error = {0};
-  if (abbe_material_table_load(path, &table, &error) != ABBE_OK) fail_msg("%s", error.text);
-  return table;
-}
-
-static const abbe_material *find(const abbe_material_table *table, const char *name) {
-  const abbe_material *m = NULL;
-  abbe_error error = {0};
-  if (abbe_material_table_find(table, name, &m, &error) != ABBE_OK) fail_msg("%s", error.text);
-  return m;
-}
 
 /* ---- the shipped tables ---- */
 
@@ -51,14 +36,15 @@ static void shipped_indices_are_the_published_ones(void **state) {
       {"fluorite", 1.43385, 5e-6, 95.0, 5e-2},
       {"yag", 1.8328, 5e-5, 52.6, 5e-2},
   };
-  abbe_material_table table = load("default");
+  abbe_material_table table = load_table("default");
   const size_t published = sizeof rows / sizeof rows[0];
   size_t metals = 0;
-  const size_t stones = (size_t)(find(&table, "air") - find(&table, "ruby")); /* test_stones.c */
+  const size_t stones =
+      (size_t)(find_material(&table, "air") - find_material(&table, "ruby")); /* test_stones.c */
   for (size_t i = 0; i < table.count; i++) metals += abbe_material_is_conductor(&table.material[i]);
   assert_int_equal(table.count, published + stones + 1 + metals); /* and air */
   for (size_t i = 0; i < published; i++) {
-    const abbe_material *m = find(&table, rows[i].name);
+    const abbe_material *m = find_material(&table, rows[i].name);
     abbe_dispersion_numbers d = abbe_dispersion_describe(&m->dispersion);
     assert_near(d.n_d, rows[i].n_d, rows[i].n_d_within);
     assert_near(d.v_d, rows[i].v_d, rows[i].v_d_within);
@@ -80,9 +66,9 @@ static void shipped_indices_hold_at_the_ends(void **state) {
       {"moissanite", 2.795213, 2.608101},     {"rutile", 3.117870, 2.524920},
       {"quartz", 1.560460, 1.538743},         {"pmma", 1.509101, 1.485111},
   };
-  abbe_material_table table = load(NULL);
+  abbe_material_table table = load_table(NULL);
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    const abbe_material *m = find(&table, rows[i].name);
+    const abbe_material *m = find_material(&table, rows[i].name);
     double n = 0;
     assert_int_equal(abbe_material_n(m, 380, &n, NULL), ABBE_OK);
     assert_near(n, rows[i].n_380, 5.1e-7);
@@ -107,9 +93,9 @@ static void shipped_extraordinary_indices_are_the_published_ones(void **state) {
       {"tourmaline-pink", 0, 0.02}, {"tourmaline-blue", 0, 0.02}, {"zircon", 0, -0.059},
       {"zircon-blue", 0, -0.059},
   };
-  abbe_material_table table = load("default");
+  abbe_material_table table = load_table("default");
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    const abbe_material *m = find(&table, rows[i].name);
+    const abbe_material *m = find_material(&table, rows[i].name);
     double n_o = 0, n_e = 0;
     assert_true(abbe_material_is_uniaxial(m));
     assert_int_equal(abbe_material_n(m, ABBE_LINE_D_NM, &n_o, NULL), ABBE_OK);
@@ -119,15 +105,15 @@ static void shipped_extraordinary_indices_are_the_published_ones(void **state) {
   }
   const char *const others[] = {"diamond", "spinel", "topaz", "peridot", "n-bk7", "gold", "air"};
   for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
-    assert_false(abbe_material_is_uniaxial(find(&table, others[i])));
+    assert_false(abbe_material_is_uniaxial(find_material(&table, others[i])));
   abbe_material_table_free(&table);
 }
 
 /* What the indices are relative to has the index 1, exactly and everywhere. */
 static void air_is_what_indices_are_relative_to(void **state) {
   (void)state;
-  abbe_material_table table = load("default");
-  const abbe_material *air = find(&table, "air");
+  abbe_material_table table = load_table("default");
+  const abbe_material *air = find_material(&table, "air");
   for (double l = 200; l <= 3000; l += 10) {
     double n = 0;
     assert_int_equal(abbe_material_n(air, l, &n, NULL), ABBE_OK);
@@ -152,7 +138,7 @@ static void shipped_metals_reflect_what_their_sources_say(void **state) {
       {"nickel", 582, 1.96, 3.80, 0.6621},          {"titanium", 582, 2.60, 3.58, 0.5965},
       {"mercury", 563.56, 1.62088, 4.7505, 0.7797},
   };
-  abbe_material_table table = load("default");
+  abbe_material_table table = load_table("default");
   size_t metals = 0;
   for (size_t i = 0; i < table.count; i++) {
     const abbe_material *m = &table.material[i];
@@ -166,8 +152,8 @@ static void shipped_metals_reflect_what_their_sources_say(void **state) {
   assert_int_equal(metals, sizeof rows / sizeof rows[0]);
   for (size_t i = 0; i < metals; i++) {
     double n = 0, k = 0;
-    assert_int_equal(abbe_material_nk(find(&table, rows[i].name), rows[i].nm, &n, &k, NULL),
-                     ABBE_OK);
+    assert_int_equal(
+        abbe_material_nk(find_material(&table, rows[i].name), rows[i].nm, &n, &k, NULL), ABBE_OK);
     assert_near(n, rows[i].n, 1e-12);
     assert_near(k, rows[i].k, 1e-12);
     assert_near(((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k), rows[i].reflected, 5e-5);
@@ -181,7 +167,7 @@ static bool varies(const abbe_material *m) {
 
 static void every_shipped_row_covers_the_spectrum_and_falls_with_wavelength(void **state) {
   (void)state;
-  abbe_material_table table = load("default");
+  abbe_material_table table = load_table("default");
   for (size_t i = 0; i < table.count; i++) {
     const abbe_material *m = &table.material[i];
     double before = INFINITY;
@@ -203,7 +189,7 @@ static void every_shipped_row_covers_the_spectrum_and_falls_with_wavelength(void
 
 static void every_recorded_fit_is_made_again(void **state) {
   (void)state;
-  abbe_material_table table = load("default");
+  abbe_material_table table = load_table("default");
   for (size_t i = 0; i < table.count; i++) {
     const abbe_material *m = &table.material[i];
     if (!varies(m) || abbe_material_is_conductor(m)) continue; /* it is its own fit */
@@ -240,7 +226,7 @@ static void every_source_is_in_the_bibliography(void **state) {
                    ABBE_OK);
   const char *const tables[] = {"default", "thesis"};
   for (int t = 0; t < 2; t++) {
-    abbe_material_table table = load(tables[t]);
+    abbe_material_table table = load_table(tables[t]);
     for (size_t i = 0; i < table.count; i++) {
       const char *source = table.material[i].source;
       size_t length = strcspn(source, "]") + 1;
@@ -266,17 +252,17 @@ static void the_thesis_is_kept_as_printed(void **state) {
               {"bak4", 1.5690, 0.00531, 0.0156},
               {"baf10", 1.6700, 0.00743, 0.0215}};
   const char *const now[] = {"fused-silica", "n-bk7", "k5", "n-bak4", "n-baf10"};
-  abbe_material_table thesis = load("thesis"), table = load("default");
+  abbe_material_table thesis = load_table("thesis"), table = load_table("default");
   assert_int_equal(thesis.count, 5);
   for (size_t i = 0; i < 5; i++) {
-    const abbe_material *m = find(&thesis, rows[i].name);
+    const abbe_material *m = find_material(&thesis, rows[i].name);
     assert_int_equal(m->dispersion.model, ABBE_DISPERSION_CAUCHY);
     assert_int_equal(m->dispersion.count, 2);
     assert_near(m->dispersion.c[0], rows[i].a, 0);
     assert_near(m->dispersion.c[1], rows[i].b, 0);
     assert_contains(m->warning, "Historical");
     double old = abbe_dispersion_describe(&m->dispersion).n_d;
-    double good = abbe_dispersion_describe(&find(&table, now[i])->dispersion).n_d;
+    double good = abbe_dispersion_describe(&find_material(&table, now[i])->dispersion).n_d;
     assert_near(old - good, rows[i].high_by, 1e-4);
   }
   abbe_material_table_free(&thesis);

@@ -1,33 +1,18 @@
-#include "tests/check.h"
+#include "tests/spectral/shipped_table.h"
 
 #include "base/file.h"
 #include "spectral/dispersion/fit.h"
-#include "spectral/formats/material_table_load.h"
 
 #include <stdlib.h>
-
-static abbe_material_table load(const char *path) {
-  abbe_material_table table;
-  abbe_error error = {0};
-  if (abbe_material_table_load(path, &table, &error) != ABBE_OK) fail_msg("%s", error.text);
-  return table;
-}
-
-static const abbe_material *find(const abbe_material_table *table, const char *name) {
-  const abbe_material *m = NULL;
-  abbe_error error = {0};
-  if (abbe_material_table_find(table, name, &m, &error) != ABBE_OK) fail_msg("%s", error.text);
-  return m;
-}
 
 /* ---- names ---- */
 
 static void names_are_found_in_any_case_or_suggested(void **state) {
   (void)state;
-  abbe_material_table table = load("default");
+  abbe_material_table table = load_table("default");
   const abbe_material *m = NULL;
   abbe_error error;
-  assert_string_equal(find(&table, "DIAMOND")->name, "diamond");
+  assert_string_equal(find_material(&table, "DIAMOND")->name, "diamond");
   assert_int_equal(abbe_material_table_find(&table, "diamnod", &m, &error), ABBE_NOT_FOUND);
   assert_contains(error.text, "'default' has no material 'diamnod'; did you mean 'diamond'?");
   assert_int_equal(abbe_material_table_find(&table, "kryptonite-glass", &m, &error),
@@ -393,7 +378,8 @@ static void the_documented_table_is_one(void **state) {
   *end = '\0';
   abbe_material_table t = parse(begin);
   assert_int_equal(t.count, 3);
-  assert_near(exp(-0.01 * abbe_material_attenuation(find(&t, "liqueur"), 464.2)), 0.08, 1e-12);
+  assert_near(exp(-0.01 * abbe_material_attenuation(find_material(&t, "liqueur"), 464.2)), 0.08,
+              1e-12);
   abbe_material_table_free(&t);
   free(text);
 }

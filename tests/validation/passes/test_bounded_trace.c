@@ -95,12 +95,6 @@ static void test_until_it_is_kept(void **state) {
   }
 }
 
-static bool say_no(void *user, double done) {
-  (void)done;
-  ++*(int *)user;
-  return false;
-}
-
 static void test_what_ends_it(void **state) {
   (void)state;
   int asked = 0;
@@ -108,7 +102,7 @@ static void test_what_ends_it(void **state) {
   abbe_bounded_trace t;
   abbe_error error = {0};
   abbe_bounded_trace_desc desc = describe(4, false, 1);
-  desc.progress = say_no;
+  desc.progress = stop_at_once;
   desc.user = &asked;
   assert_int_equal(abbe_bounded_trace_make(&scene, &desc, &picture, &t, &error), ABBE_CANCELLED);
   assert_int_equal(asked, 1);

@@ -133,19 +133,13 @@ static void test_a_bad_picture_is_soon_known(void **state) {
   abbe_image_free(&picture);
 }
 
-static bool say_no(void *user, double done) {
-  (void)done;
-  ++*(int *)user;
-  return false;
-}
-
 static void test_what_ends_it(void **state) {
   (void)state;
   int asked = 0;
   abbe_image traced, picture = make_picture(1), small;
   abbe_checked_picture out;
   abbe_error error = {0};
-  abbe_checked_picture_desc desc = {.trace = trace, .progress = say_no, .user = &asked};
+  abbe_checked_picture_desc desc = {.trace = trace, .progress = stop_at_once, .user = &asked};
   assert_int_equal(abbe_checked_picture_make(&scene, &desc, &picture, &traced, &out, &error),
                    ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "an error of 0 cannot be kept");

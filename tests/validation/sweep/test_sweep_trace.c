@@ -47,19 +47,13 @@ static void test_the_picture_is_the_tracers(void **state) {
   abbe_scene_free(&scene);
 }
 
-static bool say_no(void *user, double done) {
-  (void)done;
-  ++*(int *)user;
-  return false;
-}
-
 static void test_what_is_refused(void **state) {
   (void)state;
   abbe_scene scene = {0};
   abbe_error error = {0};
   int asked = 0;
   abbe_sweep_row row = row_of(16, 2);
-  abbe_sweep_trace_desc desc = {.width = 8, .height = 8, .progress = say_no, .user = &asked};
+  abbe_sweep_trace_desc desc = {.width = 8, .height = 8, .progress = stop_at_once, .user = &asked};
   load_text(SCENE, &scene);
   assert_int_equal(abbe_sweep_trace_measure(&scene, &desc, &row, NULL, &error), ABBE_CANCELLED);
   assert_int_equal(asked, 1);

@@ -1,14 +1,13 @@
 /* Rays that leave an object, found at nodes and interpolated between them, against Snell's law: a
  * prism's and a ball's stand where it puts them, for the sun and for a lamp nearby, and their flux
  * is all that came in. */
-#include "tests/validation/trace_scene.h"
+#include "tests/validation/volume/filled_volume.h"
 
 #include "colorimetry/weights.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/volume/exit_light.h"
 #include "scenes/volume/half.h"
 #include "spectral/optics.h"
-#include "validation/volume/volume_fill.h"
 
 #include <string.h>
 
@@ -21,14 +20,6 @@
 #define ORB(material)                                                                              \
   CAMERA SUN FLOOR "- {name: orb, shape: sphere, radius: 0.05, levels: 4, material: " material     \
                    ", transform: [{translate: [0, 0, 0.3]}]}\n"
-
-static void fill(const abbe_scene *scene, const abbe_volume_fill_desc *desc,
-                 abbe_caustic_volume *out, abbe_volume_fill_statistics *done) {
-  abbe_error error = {0};
-  const abbe_result result = abbe_volume_fill(scene, desc, out, done, &error);
-  if (result != ABBE_OK) print_error("%s\n", error.text);
-  assert_int_equal(result, ABBE_OK);
-}
 
 /* The index in a bin's middle, of the made-up glasses: 1.5, and 0.006 over the square of the
  * wavelength in micrometres where it is dispersive. */
@@ -185,7 +176,7 @@ static void test_a_prism_bends_as_snell_has_it(void **state) {
                                         .exits = 1200,
                                         .region = {.kind = ABBE_REGION_GRID, .side = 2},
                                         .threads = 2};
-    fill(&scene, &desc, &v, &done);
+    fill_volume(&scene, &desc, &v, &done);
     error[i] = middle_error(&scene, &v, apart * apart / 2, &ghosts[i]);
     print_message(
         "%zu nodes: off by %.2e rad, but for %.2g of it, by more than %.2e; %zu sequences, %.2g "
@@ -255,7 +246,7 @@ static void test_lamps_nearby_are_lamps_nearby(void **state) {
                                       .nodes = 162,
                                       .region = {.kind = ABBE_REGION_GRID, .side = 2},
                                       .threads = 2};
-  fill(&scene, &desc, &v, &done);
+  fill_volume(&scene, &desc, &v, &done);
   abbe_light light = {.kind = ABBE_LIGHT_POINT, .power = 1};
   abbe_volume_place place;
   assert_int_equal(abbe_volume_body_find(&v.body, &scene.object[1], &place, NULL), ABBE_OK);
@@ -302,8 +293,8 @@ static void test_cells_hold_what_photons_bring(void **state) {
                                             .photons = 1 << 15,
                                             .passes = 1,
                                             .threads = 2};
-  fill(&scene, &desc, &exits, &done);
-  fill(&scene, &by_photons, &values, &done);
+  fill_volume(&scene, &desc, &exits, &done);
+  fill_volume(&scene, &by_photons, &values, &done);
   const size_t count = 9 * exits.region.cells, node = 5;
   float *value = malloc(count * sizeof *value);
   assert_non_null(value);
@@ -348,7 +339,7 @@ static void test_threads_change_nothing(void **state) {
   for (size_t i = 0; i < 3; i++) {
     desc.threads = i == 0 ? 1 : 2;
     desc.seed = i == 2;
-    fill(&scene, &desc, &v[i], &done);
+    fill_volume(&scene, &desc, &v[i], &done);
     assert_true(done.carried > 0.5 && done.carried < 0.99); /* it absorbs */
   }
   assert_int_equal(v[0].exits.count, v[1].exits.count);
@@ -358,12 +349,6 @@ static void test_threads_change_nothing(void **state) {
                           v[0].exits.points * sizeof *v[0].exits.point);
   for (size_t i = 0; i < 3; i++) abbe_caustic_volume_free(&v[i]);
   abbe_scene_free(&scene);
-}
-
-static bool stop_at_once(void *user, double done) {
-  assert_true(done > 0 && done <= 1);
-  ++*(int *)user;
-  return false;
 }
 
 static void test_requests(void **state) {

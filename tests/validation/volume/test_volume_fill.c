@@ -1,11 +1,10 @@
 /* Volumes filled by photons against what is known: a plate's beams, a ball under the tracer, a beam
  * through nothing, flux that every shell has. */
-#include "tests/validation/trace_scene.h"
+#include "tests/validation/volume/filled_volume.h"
 
 #include "scenes/geometry/vector.h"
 #include "scenes/view/view.h"
 #include "scenes/volume/half.h"
-#include "validation/volume/volume_fill.h"
 
 #include <stdlib.h>
 
@@ -15,14 +14,6 @@
 #define ORB(material)                                                                              \
   CAMERA SUN FLOOR "- {name: orb, shape: sphere, radius: 0.05, levels: 4, material: " material     \
                    ", transform: [{translate: [0, 0, 0.2]}]}\n"
-
-static void fill(const abbe_scene *scene, const abbe_volume_fill_desc *desc,
-                 abbe_caustic_volume *out, abbe_volume_fill_statistics *done) {
-  abbe_error error = {0};
-  const abbe_result result = abbe_volume_fill(scene, desc, out, done, &error);
-  if (result != ABBE_OK) print_error("%s\n", error.text);
-  assert_int_equal(result, ABBE_OK);
-}
 
 static double value_at(const abbe_caustic_volume *v, size_t node, size_t cell, size_t channel) {
   return abbe_half_value(v->value[(node * v->region.cells + cell) * 9 + channel]);
@@ -42,7 +33,7 @@ static void test_a_plate_has_two_beams(void **state) {
                                       .photons = 1 << 16,
                                       .passes = 4,
                                       .threads = 2};
-  fill(&scene, &desc, &v, &done);
+  fill_volume(&scene, &desc, &v, &done);
   const double through = 2 * 1.5 / (1.5 * 1.5 + 1);
   size_t seen = 0;
   for (size_t cell = 0; cell < v.region.cells; cell++) {
@@ -79,7 +70,7 @@ static void test_index_one_is_a_beam(void **state) {
                                       .region = {.kind = ABBE_REGION_GRID, .side = 12},
                                       .photons = SANITIZED ? 1 << 13 : 1 << 15,
                                       .threads = 2};
-  fill(&scene, &desc, &v, &done);
+  fill_volume(&scene, &desc, &v, &done);
   size_t seen = 0;
   for (size_t node = 0; node < 12; node += 3)
     for (size_t cell = 0; cell < v.region.cells; cell++) {
@@ -163,7 +154,7 @@ static void test_a_ball_is_as_the_tracer_has_it(void **state) {
                                       .photons = BALL_PHOTONS,
                                       .passes = 8,
                                       .threads = 2};
-  fill(&scene, &desc, &v, &done);
+  fill_volume(&scene, &desc, &v, &done);
   const double half = v.region.desc.outer, cell = 2 * half / SIDE;
   for (size_t layer = 2; layer < LAYERS_END; layer++) { /* below the ball, past the focus */
     double sum[SIDE * SIDE] = {0}, square[SIDE * SIDE] = {0}, all = 0, both = 0;
@@ -198,7 +189,7 @@ static void test_shells_have_the_flux_of_the_ledger(void **state) {
       .photons = 1 << 14,
       .passes = 2,
       .threads = 2};
-  fill(&scene, &desc, &v, &done);
+  fill_volume(&scene, &desc, &v, &done);
   assert_near(done.outflow[0], 1, 0.01); /* radial parts in the cells' middles */
   assert_near(done.outflow[1], 1, 0.01);
   assert_true(done.ledger.absorbed > 0.01 * done.ledger.reached);
@@ -223,7 +214,7 @@ static void test_threads_change_nothing(void **state) {
   for (size_t i = 0; i < 3; i++) {
     desc.threads = i == 0 ? 1 : 2;
     desc.seed = i == 2;
-    fill(&scene, &desc, &v[i], &done);
+    fill_volume(&scene, &desc, &v[i], &done);
   }
   const size_t bytes = v[0].region.cells * 3 * sizeof *v[0].value;
   assert_memory_equal(v[0].value, v[1].value, bytes);
@@ -231,12 +222,6 @@ static void test_threads_change_nothing(void **state) {
   assert_near(v[0].byte, v[1].byte, 0);
   for (size_t i = 0; i < 3; i++) abbe_caustic_volume_free(&v[i]);
   abbe_scene_free(&scene);
-}
-
-static bool stop_at_once(void *user, double done) {
-  assert_true(done > 0 && done <= 1);
-  ++*(int *)user;
-  return false;
 }
 
 static void test_requests(void **state) {
@@ -275,7 +260,7 @@ static void test_requests(void **state) {
   desc.progress = NULL;
   desc.region = (abbe_region_desc){.kind = ABBE_REGION_GRID, .side = 8};
   desc.until_error = 0.05;
-  fill(&scene, &desc, &v, &done);
+  fill_volume(&scene, &desc, &v, &done);
   assert_true(done.error <= 0.05 && done.passes > 2);
   assert_int_equal(v.nodes.count, 1); /* a ball's */
   assert_near(v.region.desc.outer, 0.15, 1e-12);

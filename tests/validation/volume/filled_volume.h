@@ -1,0 +1,15 @@
+/* filled_volume.h: volumes filled in tests. */
+#ifndef ABBE_TESTS_VALIDATION_VOLUME_FILLED_VOLUME_H
+#define ABBE_TESTS_VALIDATION_VOLUME_FILLED_VOLUME_H
+
+#include "tests/validation/trace_scene.h"
+
+#include "validation/volume/volume_fill.h"
+
+static inline void fill_volume(const abbe_scene *scene, const abbe_volume_fill_desc *desc,
+                               abbe_caustic_volume *out, abbe_volume_fill_statistics *done) {
+  abbe_error error = {0};
+  if (abbe_volume_fill(scene, desc, out, done, &error) != ABBE_OK) fail_msg("%s", error.text);
+}
+
+#endif
