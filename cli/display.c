@@ -1,7 +1,7 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
-#include "cli/base/screen_options.h"
-#include "cli/base/spectral_options.h"
+#include "cli/options/screen_options.h"
+#include "cli/options/spectral_options.h"
 
 #include "colorimetry/image/avif_file.h"
 #include "colorimetry/image/exr.h"

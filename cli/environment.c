@@ -1,6 +1,6 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
-#include "cli/base/scene_input.h"
+#include "cli/options/scene_input.h"
 
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/screen_png.h"

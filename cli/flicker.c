@@ -1,6 +1,6 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
-#include "cli/base/frame_series.h"
+#include "cli/options/frame_series.h"
 
 #include "base/number.h"
 #include "colorimetry/image/exr.h"

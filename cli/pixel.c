@@ -1,6 +1,6 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
-#include "cli/base/spectral_options.h"
+#include "cli/options/spectral_options.h"
 
 #include "colorimetry/colour_description.h"
 #include "colorimetry/image/exr.h"
@@ -40,7 +40,8 @@ static void describe(const request *r, const abbe_pixel_probe *p, colours *out) 
     abbe_chromaticity_xy(white, d65);
   }
   abbe_colour_description_make(p->xyz, d65, p->space.observer, &out->of[0]);
-  abbe_colour_description_make(p->spectral_xyz, p->white_xy, r->spectral.view.observer, &out->of[1]);
+  abbe_colour_description_make(p->spectral_xyz, p->white_xy, r->spectral.view.observer,
+                               &out->of[1]);
 }
 
 static const char *unit_of(const abbe_pixel_probe *p) {
@@ -90,7 +91,8 @@ static void print_text(const request *r, const abbe_image *image, const abbe_pix
                                                        : "");
   if (c->has[0]) print_colour(&c->of[0]);
   if (c->has[1])
-    printf("\ncolour of the spectrum, %s, %s\n", abbe_observer_text(r->spectral.view.observer), unit_of(p));
+    printf("\ncolour of the spectrum, %s, %s\n", abbe_observer_text(r->spectral.view.observer),
+           unit_of(p));
   if (c->has[1]) print_colour(&c->of[1]);
   printf("\n%-24s %14s %14s\n", "channel", "value", "std. error");
   for (size_t i = 0; i < p->channels; i++) {
@@ -138,7 +140,8 @@ static abbe_result print_json(const request *r, const abbe_image *image, const a
   bool made = cJSON_AddStringToObject(root, "file", r->path) != NULL &&
               cJSON_AddItemToObject(root, "window", cJSON_CreateIntArray(window, 4)) &&
               cJSON_AddNumberToObject(root, "pixels", (double)p->pixels) != NULL &&
-              cJSON_AddStringToObject(root, "observer", abbe_observer_name(r->spectral.view.observer)) != NULL;
+              cJSON_AddStringToObject(root, "observer",
+                                      abbe_observer_name(r->spectral.view.observer)) != NULL;
   for (int i = 0; i < 2 && made; i++)
     if (c->has[i]) made = add_colour(root, sources[i], &c->of[i]);
   if (made && c->has[1])
@@ -156,10 +159,11 @@ static abbe_result print_json(const request *r, const abbe_image *image, const a
 static abbe_result plot(const request *r, const abbe_pixel_probe *p, abbe_error *error) {
   const abbe_spectral_channels *s = &p->spectrum;
   if (s->count == 0)
-    return abbe_error_set(error, ABBE_NOT_FOUND,
-                          "%s: it has no bands to plot; abbe render --bands N and abbe trace --bands "
-                          "N make pictures that have",
-                          r->path);
+    return abbe_error_set(
+        error, ABBE_NOT_FOUND,
+        "%s: it has no bands to plot; abbe render --bands N and abbe trace --bands "
+        "N make pictures that have",
+        r->path);
   double *value = calloc(3 * s->count, sizeof *value), *low = value, *high = value;
   if (value == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the plot");
   low += s->count;

@@ -1,8 +1,8 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
-#include "cli/base/scene_input.h"
-#include "cli/base/work_options.h"
+#include "cli/options/scene_input.h"
+#include "cli/options/work_options.h"
 
 #include "base/nearest.h"
 #include "scenes/export/vdb_bytes.h"

@@ -3,7 +3,7 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
-#include "cli/base/scene_input.h"
+#include "cli/options/scene_input.h"
 
 #include "colorimetry/image/exr.h"
 

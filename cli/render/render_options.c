@@ -2,7 +2,7 @@
 
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
-#include "cli/base/spectral_options.h"
+#include "cli/options/spectral_options.h"
 
 #include "scenes/volume/volume_file.h"
 

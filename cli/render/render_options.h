@@ -2,7 +2,7 @@
 #ifndef ABBE_CLI_RENDER_RENDER_OPTIONS_H
 #define ABBE_CLI_RENDER_RENDER_OPTIONS_H
 
-#include "cli/base/scene_input.h"
+#include "cli/options/scene_input.h"
 #include "gl/plan/plan.h"
 
 #include <argp.h>

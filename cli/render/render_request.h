@@ -3,10 +3,10 @@
 #define ABBE_CLI_RENDER_RENDER_REQUEST_H
 
 #include "cli/base/command.h"
-#include "cli/base/frame_series.h"
-#include "cli/base/map_options.h"
 #include "cli/base/rank_job.h"
-#include "cli/base/screen_options.h"
+#include "cli/options/frame_series.h"
+#include "cli/options/map_options.h"
+#include "cli/options/screen_options.h"
 #include "cli/render/error_options.h"
 #include "cli/render/preset_options.h"
 #include "cli/render/render_options.h"

@@ -2,7 +2,7 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
-#include "cli/base/scene_input.h"
+#include "cli/options/scene_input.h"
 #include "cli/sweep/sweep_options.h"
 #include "cli/sweep/sweep_report.h"
 

@@ -2,11 +2,11 @@
 #ifndef ABBE_CLI_TRACE_TRACE_REQUEST_H
 #define ABBE_CLI_TRACE_TRACE_REQUEST_H
 
-#include "cli/base/frame_series.h"
-#include "cli/base/map_options.h"
-#include "cli/base/scene_input.h"
-#include "cli/base/screen_options.h"
-#include "cli/base/work_options.h"
+#include "cli/options/frame_series.h"
+#include "cli/options/map_options.h"
+#include "cli/options/scene_input.h"
+#include "cli/options/screen_options.h"
+#include "cli/options/work_options.h"
 
 #include "validation/tracer/ranked_run.h"
 #include "validation/tracer/tracer.h"

@@ -1,7 +1,7 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
-#include "cli/base/scene_input.h"
 #include "cli/base/shipped.h"
+#include "cli/options/scene_input.h"
 #include "gl/plan/facts/render_desc.h"
 
 #ifdef ABBE_HAVE_VIEW

@@ -1,6 +1,7 @@
-/* spectral_options.h: --observer, --lit-by and --illuminant: how a spectral picture is looked at. */
-#ifndef ABBE_CLI_BASE_SPECTRAL_OPTIONS_H
-#define ABBE_CLI_BASE_SPECTRAL_OPTIONS_H
+/* spectral_options.h: --observer, --lit-by and --illuminant: how a spectral picture is looked at.
+ */
+#ifndef ABBE_CLI_OPTIONS_SPECTRAL_OPTIONS_H
+#define ABBE_CLI_OPTIONS_SPECTRAL_OPTIONS_H
 
 #include "colorimetry/spectral_picture/spectral_colour.h"
 

@@ -1,4 +1,4 @@
-#include "cli/base/frame_series.h"
+#include "cli/options/frame_series.h"
 
 #include "base/number.h"
 #include "colorimetry/image/animated_png.h"

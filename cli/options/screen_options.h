@@ -1,8 +1,8 @@
 /* screen_options.h: how a picture is shown, for every command that writes a PNG: --ocio, --display,
  * --view, --exposure, --gamut, --white and --bits.
  */
-#ifndef ABBE_CLI_BASE_SCREEN_OPTIONS_H
-#define ABBE_CLI_BASE_SCREEN_OPTIONS_H
+#ifndef ABBE_CLI_OPTIONS_SCREEN_OPTIONS_H
+#define ABBE_CLI_OPTIONS_SCREEN_OPTIONS_H
 
 #include "colorimetry/image/display_ocio.h"
 #include "colorimetry/image/screen_png.h"

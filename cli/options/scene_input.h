@@ -2,8 +2,8 @@
  * objects to people on stderr, in a table, and as JSON. It judges nothing; what was mended stands
  * with the objects.
  */
-#ifndef ABBE_CLI_BASE_SCENE_INPUT_H
-#define ABBE_CLI_BASE_SCENE_INPUT_H
+#ifndef ABBE_CLI_OPTIONS_SCENE_INPUT_H
+#define ABBE_CLI_OPTIONS_SCENE_INPUT_H
 
 #include "scenes/scene.h"
 

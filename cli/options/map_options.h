@@ -1,7 +1,7 @@
 /* map_options.h: what commands that make a receiver map ask of it: whose, where to, laid out how.
  */
-#ifndef ABBE_CLI_BASE_MAP_OPTIONS_H
-#define ABBE_CLI_BASE_MAP_OPTIONS_H
+#ifndef ABBE_CLI_OPTIONS_MAP_OPTIONS_H
+#define ABBE_CLI_OPTIONS_MAP_OPTIONS_H
 
 #include "scenes/scene.h"
 #include "scenes/view/map_layout.h"

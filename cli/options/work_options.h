@@ -1,8 +1,8 @@
 /* work_options.h: what commands that follow many rays are asked alike: which wavelengths, random
  * numbers and threads, and that they go on from a checkpoint.
  */
-#ifndef ABBE_CLI_BASE_WORK_OPTIONS_H
-#define ABBE_CLI_BASE_WORK_OPTIONS_H
+#ifndef ABBE_CLI_OPTIONS_WORK_OPTIONS_H
+#define ABBE_CLI_OPTIONS_WORK_OPTIONS_H
 
 #include <argp.h>
 #include <stdbool.h>

@@ -1,4 +1,4 @@
-#include "cli/base/scene_input.h"
+#include "cli/options/scene_input.h"
 
 #include "base/number.h"
 #include "cli/base/arguments.h"

@@ -1,12 +1,12 @@
 /* frame_series.h: pictures one after another: which frames, when each of them is, what moves in
  * them, what their files are called, and the PNG that moves. It draws nothing.
  */
-#ifndef ABBE_CLI_BASE_FRAME_SERIES_H
-#define ABBE_CLI_BASE_FRAME_SERIES_H
+#ifndef ABBE_CLI_OPTIONS_FRAME_SERIES_H
+#define ABBE_CLI_OPTIONS_FRAME_SERIES_H
 
 #include "base/error.h"
 #include "cli/base/command.h"
-#include "cli/base/scene_input.h"
+#include "cli/options/scene_input.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,4 +1,4 @@
-#include "cli/base/map_options.h"
+#include "cli/options/map_options.h"
 
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"

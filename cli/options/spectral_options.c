@@ -1,4 +1,4 @@
-#include "cli/base/spectral_options.h"
+#include "cli/options/spectral_options.h"
 
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"

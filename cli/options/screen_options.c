@@ -1,4 +1,4 @@
-#include "cli/base/screen_options.h"
+#include "cli/options/screen_options.h"
 
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
