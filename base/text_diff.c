@@ -145,7 +145,8 @@ abbe_result abbe_text_diff(const char *before, size_t before_size, const char *a
   size_t size = 0;
   FILE *stream = open_memstream(out, &size);
   bool good = stream != NULL && split(before, before_size, &a) && split(after, after_size, &b);
-  if (good && (before_size != after_size || memcmp(before, after, before_size) != 0)) {
+  if (good &&
+      (before_size != after_size || (before_size > 0 && memcmp(before, after, before_size) != 0))) {
     compare(a, b);
     fprintf(stream, "--- %s\n+++ %s\n", path, path);
     print_hunks(stream, a, b);

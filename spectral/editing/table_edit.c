@@ -79,7 +79,7 @@ abbe_result abbe_table_edit_open(const char *path, abbe_table_edit **out, abbe_e
 }
 
 abbe_result abbe_table_edit_make(const char *path, abbe_table_edit **out, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
+  ABBE_REQUIRE(path && out, error);
   static const char empty[] = "materials:\n";
   *out = NULL;
   if (access(path, F_OK) == 0)
@@ -141,8 +141,8 @@ abbe_result abbe_table_edit_set(abbe_table_edit *edit, const char *name, const c
   if (p.found) return abbe_yaml_edit_replace(&edit->yaml, p.parent, p.index, value, error);
   char *whole = nested(p.rest, value);
   if (whole == NULL) return no_memory(error, edit->yaml.name);
-  size_t after = p.in_record ? abbe_table_place_after(edit->yaml.yaml, p.parent, p.rest)
-                             : ABBE_YAML_EDIT_END;
+  size_t after =
+      p.in_record ? abbe_table_place_after(edit->yaml.yaml, p.parent, p.rest) : ABBE_YAML_EDIT_END;
   result = abbe_yaml_edit_insert_pair(&edit->yaml, p.parent, after, p.rest, whole, error);
   free(whole);
   return result;

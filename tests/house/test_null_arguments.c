@@ -1,10 +1,12 @@
 /* Every public function that returns a result, called wrongly: a pointer to nowhere is an assertion
  * in a debug build and ABBE_INVALID_ARGUMENT in all others; zeros are used or refused. */
+#define _DEFAULT_SOURCE /* MAP_ANONYMOUS, MADV_DONTNEED */
 #include "tests/check.h"
 #include "tests/null_arguments/null_arguments.h"
 
 #include <signal.h>
 #include <stdlib.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -139,7 +141,6 @@ static const struct {
     {"abbe_sweep_reference_load", "map"},
     {"abbe_sweep_table_mark", "profile"},
     {"abbe_sweep_trace_measure", "picture"},
-    {"abbe_table_edit_make", "path"},
     {"abbe_table_edit_open", "path"},
     {"abbe_table_fix_make", "known"},
     {"abbe_text_diff", "before"},
@@ -154,50 +155,97 @@ static const struct {
 /* Of zeros it makes all known answers. */
 static const char *const long_calls[] = {"abbe_known_answers_make"};
 
-enum { ROOM = 1 << 18, NONE = -2, ALL = -1, ENDED_BY_SIGNAL = 256 };
+enum { ROOM = 1 << 18, NONE = -2, ALL = -1, CRASHED = 256, MOST_TRIALS = 1 << 13 };
 static int null_at;
+static bool frees; /* the function called may free what it is given */
 static char *zeros;
 static FILE *sink;
 
+/* A function to be called with the pointer of that number NULL, or with none or all of them; its
+ * result, or CRASHED and the signal's number, 0 where the process left by itself. */
+typedef struct trial {
+  const null_call *call;
+  int at, result;
+} trial;
+
+/* Shared with the children that fill in the results. */
+static struct {
+  size_t count, under_way;
+  trial trial[MOST_TRIALS];
+} * board;
+
 void *null_pointer(int at, null_kind kind) {
   if (null_at == ALL || null_at == at || kind == NULL_HANDLE) return NULL;
-  return kind == NULL_FILE ? (void *)sink : zeros + (size_t)at * ROOM;
+  if (kind == NULL_FILE) return sink;
+  return frees ? calloc(1, ROOM) : zeros + (size_t)at * ROOM;
+}
+
+static bool is_free(const char *function) {
+  const size_t length = strlen(function);
+  return length > 5 && strcmp(function + length - 5, "_free") == 0;
+}
+
+static void *map(size_t size, int flags) {
+  void *memory = mmap(NULL, size, PROT_READ | PROT_WRITE, flags | MAP_ANONYMOUS, -1, 0);
+  return memory == MAP_FAILED ? NULL : memory;
 }
 
 static int setup(void **state) {
   (void)state;
-  zeros = calloc(NULL_PARAMETERS, ROOM);
+  zeros = map(NULL_PARAMETERS * ROOM, MAP_PRIVATE);
+  board = map(sizeof *board, MAP_SHARED);
   sink = fopen("/dev/null", "r+");
-  return zeros == NULL || sink == NULL;
+  return zeros == NULL || board == NULL || sink == NULL;
 }
 
 static int teardown(void **state) {
   (void)state;
-  free(zeros);
+  munmap(zeros, NULL_PARAMETERS * ROOM);
+  munmap(board, sizeof *board);
   return fclose(sink);
 }
 
-/* In a child of its own: its result, or ENDED_BY_SIGNAL and the signal's number. */
-static int run(const null_call *call, int at) {
-  int status = 0;
-  fflush(NULL);
-  pid_t child = fork();
-  assert_true(child >= 0);
-  if (child == 0) {
-    null_at = at;
-    if (freopen("/dev/null", "w", stderr) == NULL) _exit(200);
-    signal(SIGABRT, SIG_DFL);
-    signal(SIGSEGV, SIG_DFL);
+static void add_trial(const null_call *call, int at) {
+  assert_true(board->count < MOST_TRIALS);
+  board->trial[board->count++] = (trial){call, at, 0};
+}
+
+/* The trials from one on, until they end or one of them ends the process. */
+static void run_from(size_t first) {
+  if (freopen("/dev/null", "w", stderr) == NULL) _exit(200);
+  signal(SIGABRT, SIG_DFL);
+  signal(SIGSEGV, SIG_DFL);
+  for (size_t i = first; i < board->count; i++) {
+    trial *t = &board->trial[i];
+    board->under_way = i;
+    /* what the last call wrote is nothing but zeros again */
+    if (madvise(zeros, NULL_PARAMETERS * ROOM, MADV_DONTNEED) != 0) _exit(201);
+    null_at = t->at;
+    frees = is_free(t->call->name);
     alarm(600); /* for what hangs */
-    _exit((int)call->run());
+    t->result = (int)t->call->run();
   }
-  assert_int_equal(waitpid(child, &status, 0), child);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : ENDED_BY_SIGNAL + WTERMSIG(status);
+  board->under_way = board->count;
+  _exit(0);
+}
+
+/* All trials, in children: one, and another after each crash. */
+static void run_trials(void) {
+  for (size_t first = 0; first < board->count; first = board->under_way + 1) {
+    int status = 0;
+    fflush(NULL);
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) run_from(first);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    if (board->under_way < board->count)
+      board->trial[board->under_way].result =
+          CRASHED + (WIFSIGNALED(status) ? WTERMSIG(status) : 0);
+  }
 }
 
 static bool may_be_null(const char *function, const char *parameter) {
-  size_t length = strlen(function);
-  if (length > 5 && strcmp(function + length - 5, "_free") == 0) return true;
+  if (is_free(function)) return true;
   for (size_t i = 0; i < sizeof optional / sizeof *optional; i++)
     if (strcmp(optional[i].function, function) == 0 &&
         strcmp(optional[i].parameter, parameter) == 0)
@@ -214,9 +262,9 @@ static bool is_long(const char *function) {
 /* An assertion is no crash where there are any. */
 static bool is_a_crash(int result) {
 #ifdef NDEBUG
-  return result >= ENDED_BY_SIGNAL;
+  return result >= CRASHED;
 #else
-  return result >= ENDED_BY_SIGNAL && result != ENDED_BY_SIGNAL + SIGABRT;
+  return result >= CRASHED && result != CRASHED + SIGABRT;
 #endif
 }
 
@@ -224,46 +272,51 @@ static bool is_refused(int result) {
 #ifdef NDEBUG
   return result == ABBE_INVALID_ARGUMENT;
 #else
-  return result == ENDED_BY_SIGNAL + SIGABRT;
+  return result == CRASHED + SIGABRT;
 #endif
+}
+
+/* Whether a call with this pointer NULL, or with ALL of them, has to be refused. */
+static bool must_be_refused(const null_call *call, int at) {
+  for (int p = at == ALL ? 0 : at; p < (at == ALL ? call->count : at + 1); p++)
+    if (call->parameter[p][0] != '\0' && !may_be_null(call->name, call->parameter[p])) return true;
+  return false;
 }
 
 static void test_a_pointer_to_nowhere_is_refused(void **state) {
   (void)state;
-  size_t wrong = 0, pointers = 0;
+  size_t wrong = 0;
   assert_true(null_call_count > 200);
+  board->count = 0;
   for (size_t i = 0; i < null_call_count; i++) {
-    const null_call *call = &null_calls[i];
-    size_t required = 0;
-    for (int p = 0; p < call->count; p++) {
-      if (call->parameter[p][0] == '\0') continue;
-      const bool free_to = may_be_null(call->name, call->parameter[p]);
-      int result = run(call, p);
-      bool right = free_to ? !is_a_crash(result) : is_refused(result);
-      required += !free_to;
-      pointers++;
-      wrong += !right;
-      if (!right)
-        print_error("%s: with %s NULL it ends with %d\n", call->name, call->parameter[p], result);
-    }
-    int result = run(call, ALL);
-    if (required == 0 ? !is_a_crash(result) : is_refused(result)) continue;
-    wrong++;
-    print_error("%s: with all pointers NULL it ends with %d\n", call->name, result);
+    for (int p = 0; p < null_calls[i].count; p++)
+      if (null_calls[i].parameter[p][0] != '\0') add_trial(&null_calls[i], p);
+    add_trial(&null_calls[i], ALL);
   }
-  assert_true(pointers > 400);
+  assert_true(board->count > 600);
+  run_trials();
+  for (size_t i = 0; i < board->count; i++) {
+    const trial *t = &board->trial[i];
+    if (must_be_refused(t->call, t->at) ? is_refused(t->result) : !is_a_crash(t->result)) continue;
+    wrong++;
+    print_error("%s: with %s NULL it ends with %d\n", t->call->name,
+                t->at == ALL ? "all pointers" : t->call->parameter[t->at], t->result);
+  }
   assert_int_equal(wrong, 0);
 }
 
 static void test_zeros_are_used_or_refused(void **state) {
   (void)state;
   size_t wrong = 0;
-  for (size_t i = 0; i < null_call_count; i++) {
-    if (is_long(null_calls[i].name)) continue;
-    int result = run(&null_calls[i], NONE);
-    if (!is_a_crash(result)) continue;
+  board->count = 0;
+  for (size_t i = 0; i < null_call_count; i++)
+    if (!is_long(null_calls[i].name)) add_trial(&null_calls[i], NONE);
+  run_trials();
+  for (size_t i = 0; i < board->count; i++) {
+    if (!is_a_crash(board->trial[i].result)) continue;
     wrong++;
-    print_error("%s: of zeros it ends with %d\n", null_calls[i].name, result);
+    print_error("%s: of zeros it ends with %d\n", board->trial[i].call->name,
+                board->trial[i].result);
   }
   assert_int_equal(wrong, 0);
 }

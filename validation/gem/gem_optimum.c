@@ -41,13 +41,18 @@ static abbe_result judge(const work *w, const abbe_cut *cut, abbe_gem_number *ou
   return result;
 }
 
+static abbe_result check_pair(const abbe_gem_optimum *o, size_t i, abbe_error *error) {
+  if (i < o->crowns * o->pavilions) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "pair %zu of %zu", i,
+                        o->crowns * o->pavilions);
+}
+
 abbe_result abbe_gem_optimum_apply(const abbe_gem_optimum *o, abbe_cut *cut,
                                    const abbe_cut_polyhedron *polyhedron, size_t i,
                                    abbe_error *error) {
   ABBE_REQUIRE(o && cut && polyhedron, error);
-  if (i >= o->crowns * o->pavilions)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "pair %zu of %zu", i,
-                          o->crowns * o->pavilions);
+  const abbe_result result = check_pair(o, i, error);
+  if (result != ABBE_OK) return result;
   return abbe_cut_stretch_apply(
       cut, polyhedron, tan(o->crown_rad[i % o->crowns]) / tan(o->design_crown_rad),
       tan(o->pavilion_rad[i / o->crowns]) / tan(o->design_pavilion_rad), error);
@@ -161,7 +166,8 @@ abbe_result abbe_gem_optimum_judge(const abbe_cut *cut, const abbe_cut_polyhedro
   ABBE_REQUIRE(cut && polyhedron && material && wavelengths && weights && desc && optimum, error);
   const work w = {material, wavelengths, weights, desc};
   abbe_gem_number value;
-  const abbe_result result = try_pair(&w, cut, polyhedron, optimum, i, &value, error);
+  abbe_result result = check_pair(optimum, i, error);
+  if (result == ABBE_OK) result = try_pair(&w, cut, polyhedron, optimum, i, &value, error);
   if (result == ABBE_OK) abbe_gem_optimum_know(optimum, i, value);
   return result;
 }
