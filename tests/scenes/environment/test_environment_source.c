@@ -112,7 +112,7 @@ static void known_irradiances(void **state) {
 static void skies(void **state) {
   (void)state;
   double rgb[3];
-  for (int type = 1; type <= ABBE_SKY_TYPES; type++) {
+  for (int type = 1; type <= ABBE_SKY_TYPES; type += SANITIZED ? 7 : 1) {
     const abbe_environment_source s = {
         .kind = ABBE_SOURCE_SKY, .radiance = {2, 2, 2}, .sky = {type, {sin(1), 0, cos(1)}}};
     abbe_radiance_map map = map_of(1024, &s);

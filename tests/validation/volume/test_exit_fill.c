@@ -163,11 +163,12 @@ static double middle_error(const abbe_scene *scene, const abbe_caustic_volume *v
  * further off than half the square of the distance between nodes. */
 static void test_a_prism_bends_as_snell_has_it(void **state) {
   (void)state;
+  enum { LEVELS = SANITIZED ? 2 : 3 };
   static const size_t nodes[] = {42, 162, 642};
   abbe_scene scene = {0};
-  double error[3], ghosts[3];
+  double error[LEVELS], ghosts[LEVELS];
   load_text(WEDGE("crown"), &scene);
-  for (size_t i = 0; i < 3; i++) {
+  for (size_t i = 0; i < LEVELS; i++) {
     abbe_caustic_volume v;
     abbe_volume_fill_statistics done;
     const double apart = 1.107 / (double)(2 << i);
@@ -185,9 +186,9 @@ static void test_a_prism_bends_as_snell_has_it(void **state) {
     assert_near(done.carried, 1, 0.01);
     abbe_caustic_volume_free(&v);
   }
-  for (size_t i = 0; i < 3; i++) assert_true(ghosts[i] < (i == 0 ? 0.05 : 0.01));
-  assert_true(error[1] < error[0] / 4);
-  assert_true(error[2] < error[1] / 4 || error[2] < 5e-4); /* halves' own steps */
+  for (size_t i = 0; i < LEVELS; i++) assert_true(ghosts[i] < (i == 0 ? 0.05 : 0.01));
+  for (size_t i = 1; i < LEVELS; i++)
+    assert_true(error[i] < error[i - 1] / 4 || (i == 2 && error[i] < 5e-4)); /* halves' own steps */
   abbe_scene_free(&scene);
 }
 
