@@ -39,9 +39,20 @@ static abbe_render_desc request(abbe_transport transport, size_t pinholes) {
                             .space = ABBE_RGB_SPACE_REC709};
 }
 
+static void draw_by(const char *text, const abbe_render_desc *desc, abbe_image *out) {
+  abbe_scene scene;
+  load_text(text, &scene);
+  abbe_renderer *renderer = make_renderer(&scene, desc);
+  draw_frame(renderer);
+  read_picture(renderer, false, out);
+  assert_finite(out);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
 static void draw(const char *text, abbe_transport transport, size_t pinholes, abbe_image *out) {
   const abbe_render_desc desc = request(transport, pinholes);
-  draw_text(text, &desc, out);
+  draw_by(text, &desc, out);
 }
 
 static double at(const abbe_image *p, size_t x, size_t y) {
@@ -115,7 +126,7 @@ static void test_frames_have_other_samples(void **state) {
     abbe_render_desc desc = request(ABBE_TRANSPORT_PINHOLE, 16);
     desc.strategy = ABBE_SAMPLE_STRATEGY_RANDOM;
     desc.photon_shift[0] = (i + 0.5) / FRAMES - 0.5;
-    draw_text(DOWN SOFT WHITE_FLOOR WALL("0"), &desc, &picture);
+    draw_by(DOWN SOFT WHITE_FLOOR WALL("0"), &desc, &picture);
     for (size_t y = 0; y < SIDE; y += STEP)
       for (size_t x = 0; x < 34; x += STEP) {
         double p[3];
@@ -158,7 +169,7 @@ static void test_clusters(void **state) {
   for (int k = 0; k < 3; k++) {
     abbe_render_desc desc = request(ABBE_TRANSPORT_PINHOLE, 256);
     desc.clusters = clusters[k];
-    draw_text(DOWN SOFT WHITE_FLOOR WALL("0.25"), &desc, &picture[k]);
+    draw_by(DOWN SOFT WHITE_FLOOR WALL("0.25"), &desc, &picture[k]);
     for (size_t y = 0; y < SIDE; y++)
       for (size_t x = 0; x < 37; x++) {
         const double off = at(&picture[k], x, y) - at(&picture[0], x, y);
@@ -209,7 +220,7 @@ static void test_a_ball_is_lit(void **state) {
   abbe_image picture;
   abbe_render_desc desc = request(ABBE_TRANSPORT_PINHOLE, 400);
   desc.clusters = 200;
-  draw_text(text, &desc, &picture);
+  draw_by(text, &desc, &picture);
   double worst = 0, most = 0;
   size_t places = 0;
   for (size_t y = 0; y < SIDE; y++)
