@@ -219,7 +219,7 @@ static double polygon(const double (*corner)[3], size_t count, const double at[3
 /* Slope of the error's root mean square over many seeds, by the number of samples. */
 static double slope(const abbe_mesh *mesh, abbe_sample_strategy strategy, bool ours,
                     const double at[3], const double n[3], double right, double *last) {
-  enum { SIZES = 3, SEEDS = 32 };
+  enum { SIZES = 3, SEEDS = SANITIZED ? 1 : 32 };
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (int k = 0; k < SIZES; k++) {
     double square = 0, count = 0;
@@ -259,13 +259,14 @@ static void test_convergence_to_a_polygon(void **state) {
     print_message("%s%s: slope %.2f\n", abbe_sample_strategy_name(strategies[i]),
                   ours ? " by share" : "", by[ours][i]);
   }
+  abbe_mesh_free(&mirror);
+  if (SANITIZED) return; /* too few seeds tell no slope */
   /* Alike for all, samples at random take the root; a grid and neighbours are better of few. */
   assert_near(by[0][0], -0.5, 0.08);
   assert_true(last[0][1] < 0.5 * last[0][0] && last[0][3] < 0.5 * last[0][0]);
   /* By what is nearest to each, evenly, they are far better: a rim has its share and no more. */
   for (int i = 1; i < STRATEGIES; i++) assert_true(by[1][i] < -0.6);
   assert_true(last[1][2] < 0.2 * last[0][0] && last[1][3] < 0.2 * last[0][0]);
-  abbe_mesh_free(&mirror);
 }
 
 /* A disk of radius R, h above: pi R^2 / (R^2 + h^2). */

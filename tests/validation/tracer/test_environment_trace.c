@@ -99,7 +99,7 @@ static void a_convex_body_meets_pi_times_its_surface(void **state) {
     abbe_image picture;
     snprintf(text, sizeof text, CAMERA POINT_LIGHT FAR_SPECK "%s", cases[i].body);
     make(text, uniform, &f);
-    trace(&f, 1 << 18, 2, &picture);
+    trace(&f, SANITIZED ? 1 << 16 : 1 << 18, 2, &picture);
     abbe_trace_statistics s;
     abbe_tracer_statistics(f.tracer, &s);
     assert_near(s.ledger.reached / (PI * 2 * cases[i].surface), 1, 2e-3);
@@ -207,7 +207,7 @@ static void draw_stone(const char *angle, const double eye[3], radiance_of radia
   make(text, radiance, &f);
   memcpy(f.scene.camera.eye, eye, 3 * sizeof *eye);
   f.scene.camera.target[0] = f.scene.camera.target[1] = 0;
-  trace(&f, 4096, 24, out);
+  trace(&f, 4096, SANITIZED ? 6 : 24, out);
   drop(&f);
 }
 
@@ -260,7 +260,7 @@ static void the_ledger_closes(void **state) {
   (void)state;
   static const char *const names[] = {"metal-ring", "metal-ball",   "spoon",         "metals",
                                       "octahedra",  "glass-studio", "diamond-studio"};
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+  for (size_t i = 0; i < sizeof names / sizeof *names; i += SANITIZED ? 3 : 1) {
     abbe_scene scene;
     load_shipped(names[i], &scene);
     const abbe_trace_desc desc = {
