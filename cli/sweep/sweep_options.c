@@ -5,6 +5,7 @@
 
 #include "base/nearest.h"
 #include "gl/plan/plan.h"
+#include "validation/sweep/sweep_setting.h"
 #include "validation/tracer/tracer.h"
 
 #include <stdio.h>
@@ -30,6 +31,7 @@ enum {
   OPTION_MODEL,
   OPTION_SHARE,
   OPTION_HISTORY,
+  OPTION_POLYGONS,
   OPTION_FRAMES,
   OPTION_SIZE,
   OPTION_ERROR,
@@ -99,6 +101,10 @@ static const struct argp_option options[] = {
     {"model", OPTION_MODEL, "LIST", 0, "of transport: auto, layers, hierarchy, ...", 1},
     {"exits", OPTION_EXITS, "LIST", 0, "followed at the most", 1},
     {"share", OPTION_SHARE, "LIST", 0, "of their light below which paths end", 1},
+    {"polygons", OPTION_POLYGONS, "LIST", 0,
+     "of wyman2006's quads and triangles: plain,even,corners,culled,in-light, and sums such as "
+     "even+culled",
+     1},
     {"history", OPTION_HISTORY, "LIST", 0,
      "frames that a picture is made of, 1 to 4: the error after 1, 2, 4 and 8", 1},
     {"passes", OPTION_PASSES, "LIST", 0, "of the tracer, each of photons x photons photons", 1},
@@ -173,15 +179,18 @@ static const char *const backends[] = {ABBE_CONTEXT_BACKENDS(ABBE_NAME_OF)};
 
 static void take_name(const request *q, const char *option, const char *word, size_t at,
                       void *out) {
-  const bool profile = strcmp(option, "--profiles") == 0, model = strcmp(option, "--model") == 0;
+  const struct {
+    const char *option;
+    const char *const *names;
+    int count;
+  } lists[] = {{"--profiles", abbe_sweep_profiles, ABBE_SWEEP_PROFILE_COUNT},
+               {"--model", models, ABBE_MODEL_COUNT},
+               {"--polygons", abbe_sweep_polygons, ABBE_POLYGONS_ALL + 1},
+               {"--fill", fills, ABBE_FILL_COUNT}};
+  size_t i = 0;
+  while (strcmp(lists[i].option, option) != 0) i++;
   ((abbe_sweep_values *)out)->value[at] =
-      (size_t)abbe_command_choice(q->program, option, word,
-                                  profile ? abbe_sweep_profiles
-                                  : model ? models
-                                          : fills,
-                                  profile ? ABBE_SWEEP_PROFILE_COUNT
-                                  : model ? ABBE_MODEL_COUNT
-                                          : ABBE_FILL_COUNT);
+      (size_t)abbe_command_choice(q->program, option, word, lists[i].names, lists[i].count);
 }
 
 static void parse_error(request *q, const char *text, struct argp_state *state) {
@@ -217,10 +226,12 @@ static error_t parse_list(int key, const char *text, request *q) {
                {OPTION_PASSES, "--passes", &g->passes},
                {OPTION_PROFILES, "--profiles", &g->profiles},
                {OPTION_MODEL, "--model", &g->models},
+               {OPTION_POLYGONS, "--polygons", &g->polygons},
                {OPTION_FILL, "--fill", &g->fills}};
   for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
     if (lists[i].key != key) continue;
-    bool words = key == OPTION_PROFILES || key == OPTION_FILL || key == OPTION_MODEL;
+    bool words = key == OPTION_PROFILES || key == OPTION_FILL || key == OPTION_MODEL ||
+                 key == OPTION_POLYGONS;
     each_word(q, lists[i].option, text, &lists[i].values->count, words ? take_name : take_count,
               lists[i].values);
     q->listed = true;
@@ -449,6 +460,8 @@ const struct argp abbe_sweep_options_argp = {
     "  abbe sweep part-*.csv -o gem.csv\n"
     "  abbe sweep scenes/gem.yaml -o gem.csv --decompose --report gem.md\n"
     "  abbe sweep scenes/gem.yaml -o scaling.csv --scaling --plot scaling.png\n"
+    "  abbe sweep scenes/sphere.yaml -o kinds.csv --profiles wyman2006 --fill quads --polygons "
+    "plain,even,culled\n"
     "  abbe sweep scenes/sphere.yaml --estimators\n"
     "  abbe sweep prism.yaml -o prism.csv --grid volume --reference prism.exr\n"
     "  abbe sweep *.csv --write-presets presets.yaml\n",

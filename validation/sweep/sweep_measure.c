@@ -38,6 +38,9 @@ static abbe_result time_frames(const abbe_sweep *s, abbe_renderer *renderer,
   out->number[ABBE_SWEEP_FASTEST_MS] = times.fastest_ms;
   out->number[ABBE_SWEEP_LIGHT_MS] = abbe_statistics_stage_ms(&times.median, ABBE_STAGE_LIGHT);
   out->number[ABBE_SWEEP_EYE_MS] = abbe_statistics_stage_ms(&times.median, ABBE_STAGE_EYE);
+  out->number[ABBE_SWEEP_PHOTONS_HIT] = (double)times.median.photons;
+  out->number[ABBE_SWEEP_HIT_SHARE] = times.median.refractor_share;
+  if (times.median.polygon_layers > 0) out->number[ABBE_SWEEP_LAYERS] = times.median.polygon_layers;
   if (abbe_profile_is_published(abbe_renderer_plan(renderer)->desc.profile)) return ABBE_OK;
   return abbe_frame_times_baseline(renderer, 3, &out->number[ABBE_SWEEP_BASELINE_MS], error);
 }

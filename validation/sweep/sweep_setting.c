@@ -6,6 +6,32 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char *const abbe_sweep_polygons[] = {"plain",
+                                           "even",
+                                           "corners",
+                                           "even+corners",
+                                           "culled",
+                                           "even+culled",
+                                           "corners+culled",
+                                           "even+corners+culled",
+                                           "in-light",
+                                           "even+in-light",
+                                           "corners+in-light",
+                                           "even+corners+in-light",
+                                           "culled+in-light",
+                                           "even+culled+in-light",
+                                           "corners+culled+in-light",
+                                           "even+corners+culled+in-light"};
+
+/* Of a setting's words; ABBE_POLYGONS_ALL + 1: there is no such kind. */
+static unsigned polygons_of(const char *words) {
+  unsigned bits = 0;
+  while (bits <= ABBE_POLYGONS_ALL && *words != '\0' &&
+         strcmp(abbe_sweep_polygons[bits], words) != 0)
+    bits++;
+  return bits;
+}
+
 void abbe_sweep_setting_of_trace(size_t photons, size_t passes, bool filtered,
                                  abbe_sweep_setting *out) {
   *out = (abbe_sweep_setting){.photons = photons,
@@ -35,6 +61,8 @@ void abbe_sweep_setting_of(const abbe_render_desc *d, abbe_sweep_setting *out) {
     snprintf(out->profile, sizeof out->profile, "%s%zu", ABBE_SWEEP_PINHOLE, d->pinholes);
   else
     snprintf(out->profile, sizeof out->profile, "%s", abbe_profile_name(d->profile));
+  if (d->polygons > 0 && d->polygons <= ABBE_POLYGONS_ALL)
+    snprintf(out->polygons, sizeof out->polygons, "%s", abbe_sweep_polygons[d->polygons]);
   snprintf(out->fill, sizeof out->fill, "%s", abbe_fill_name(d->fill));
   snprintf(out->model, sizeof out->model, "%s", abbe_model_name(d->model));
 }
@@ -53,6 +81,7 @@ abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_rend
   ABBE_REQUIRE(setting && out, error);
   int profile = 0, fill = 0, model = 0;
   const size_t pinholes = pinholes_of(setting->profile);
+  const unsigned polygons = polygons_of(setting->polygons);
   while (pinholes == 0 && profile < ABBE_PROFILE_COUNT &&
          strcmp(abbe_profile_name((abbe_profile)profile), setting->profile) != 0)
     profile++;
@@ -62,6 +91,9 @@ abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_rend
          strcmp(abbe_model_name((abbe_model)model), setting->model) != 0)
     model++;
   *out = (abbe_render_desc){0};
+  if (polygons > ABBE_POLYGONS_ALL)
+    return abbe_error_set(error, ABBE_NOT_FOUND, "the renderer has no polygons '%s'",
+                          setting->polygons);
   if (profile == ABBE_PROFILE_COUNT || fill == ABBE_FILL_COUNT || model == ABBE_MODEL_COUNT)
     return abbe_error_set(error, ABBE_NOT_FOUND,
                           "the renderer has no profile '%s' with a fill '%s' and a model '%s'",
@@ -79,6 +111,7 @@ abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_rend
                          .model = (abbe_model)model,
                          .energy_share = setting->share,
                          .exits = setting->exits,
+                         .polygons = polygons,
                          .history = setting->history > 1 ? setting->history : 0};
   return ABBE_OK;
 }
@@ -88,7 +121,9 @@ void abbe_sweep_setting_describe(const abbe_sweep_setting *setting, char *out, s
   if (pinholes_of(setting->profile) == 0 &&
       abbe_sweep_setting_desc(setting, &desc, NULL) == ABBE_OK) {
     abbe_preset_describe(&desc, out, size);
-    const size_t used = strlen(out);
+    size_t used = strlen(out);
+    if (desc.polygons > 0) snprintf(out + used, size - used, ", polygons %s", setting->polygons);
+    used = strlen(out);
     if (abbe_sweep_setting_has_history(setting))
       snprintf(out + used, size - used, ", of %zu frames", setting->history);
   } else {

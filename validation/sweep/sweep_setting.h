@@ -9,6 +9,10 @@
 extern "C" {
 #endif
 
+/* Kinds of polygons by their bits (ABBE_POLYGONS): "plain", "even", "corners", "even+corners", ...
+ */
+extern const char *const abbe_sweep_polygons[ABBE_POLYGONS_ALL + 1];
+
 /* The setting of a resolved request, and the request of a setting (size and space left 0).
  * ABBE_NOT_FOUND for a profile, fill or model of an unknown name. */
 void abbe_sweep_setting_of(const abbe_render_desc *desc, abbe_sweep_setting *out);

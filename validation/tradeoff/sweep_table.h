@@ -18,6 +18,7 @@ extern "C" {
 
 #define ABBE_SWEEP_MAX_ROWS 4096
 #define ABBE_SWEEP_WORD 16
+#define ABBE_SWEEP_WORDS 32
 
 /* The contestants that the tracer is, beside the renderer's profiles: its picture as it comes, and
  * filtered. */
@@ -36,6 +37,8 @@ typedef struct abbe_sweep_setting {
   size_t exits;
   size_t passes;  /* of the tracer, each of photons x photons photons; 0: the renderer's setting */
   size_t history; /* frames that a picture is made of, where they follow one another; 1: its own */
+  char polygons[ABBE_SWEEP_WORDS]; /* of photons in image space, where they are of another kind than
+                                      its own: "even+culled"; else "" */
 } abbe_sweep_setting;
 
 /* X(code, column, text). Errors are against the reference; beside each stands what the reference's
@@ -50,6 +53,9 @@ typedef struct abbe_sweep_setting {
   X(BASELINE_MS, "baseline_ms", "surfaces alone, ms")        /* default profile */                 \
   X(WARM_MS, "warm_ms", "whole process, shaders cached, ms") /* median of processes */             \
   X(COLD_MS, "cold_ms", "whole process, no shader cached, ms")                                     \
+  X(PHOTONS_HIT, "photons_hit", "photons that meet refractors")          /* of all lights */       \
+  X(HIT_SHARE, "hit_share", "share of the first light's photons")        /* that do */             \
+  X(LAYERS, "polygon_layers", "polygons over a pixel, mean")             /* where there are */     \
   X(OWN_DE, "own_de", "caustic, mean CIEDE2000 by its own halves")       /* traced */              \
   X(AFTER_1, "after_1_de", "caustic, mean CIEDE2000 of the first frame") /* of a history, where */ \
   X(AFTER_2, "after_2_de", "of the second frame") /* the scene is at rest */                       \

@@ -62,6 +62,16 @@ static void test_grids_hold_each_setting_once(void **state) {
   assert_int_equal(expand(&scene, &thesis, 1, &list, &refused), 1);
   assert_string_equal(list[0].fill, "smear");
   free(list);
+  /* Kinds of polygons go with polygons alone. */
+  const abbe_sweep_grid polygons = {
+      .profiles = {1, {ABBE_PROFILE_WYMAN2006}},
+      .fills = {2, {ABBE_FILL_QUADS, ABBE_FILL_GATHER_LIGHT}},
+      .polygons = {3, {0, ABBE_POLYGONS_EVEN, ABBE_POLYGONS_EVEN | ABBE_POLYGONS_CULLED}}};
+  assert_int_equal(expand(&scene, &polygons, 1, &list, &refused), 4);
+  assert_int_equal(refused, 2);
+  assert_string_equal(list[0].polygons, "");
+  assert_string_equal(list[3].polygons, "even+culled");
+  free(list);
   /* Of the tracer only photons and passes make settings; without them it has some of its own. */
   abbe_sweep_grid traced = {
       .profiles = {2, {ABBE_SWEEP_PROFILE_TRACE, ABBE_SWEEP_PROFILE_TRACE_FILTER}},

@@ -36,6 +36,43 @@ static void test_there_and_back(void **state) {
   assert_near(setting.share, 0.01, 0);
 }
 
+/* Names are those of the bits that they sum, and lead back. */
+static void test_kinds_of_polygons(void **state) {
+  (void)state;
+#define NAME(code, name, bit) {name, bit},
+  static const struct {
+    const char *name;
+    unsigned bit;
+  } kinds[] = {ABBE_POLYGONS(NAME)};
+  for (unsigned bits = 0; bits <= ABBE_POLYGONS_ALL; bits++) {
+    char words[64] = "", text[200];
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+      if ((bits & kinds[i].bit) == 0) continue;
+      if (*words != '\0') strcat(words, "+");
+      strcat(words, kinds[i].name);
+    }
+    assert_string_equal(abbe_sweep_polygons[bits], bits > 0 ? words : "plain");
+    abbe_sweep_setting setting;
+    abbe_render_desc back, desc = {.profile = ABBE_PROFILE_WYMAN2006,
+                                   .wavelengths = 7,
+                                   .photons = 64,
+                                   .map_size = 64,
+                                   .supersample = 1,
+                                   .upsample = 1,
+                                   .fill = ABBE_FILL_QUADS,
+                                   .energy_share = 0.01,
+                                   .polygons = bits};
+    abbe_sweep_setting_of(&desc, &setting);
+    assert_string_equal(setting.polygons, words);
+    assert_int_equal(abbe_sweep_setting_desc(&setting, &back, NULL), ABBE_OK);
+    assert_memory_equal(&back, &desc, sizeof back);
+    abbe_sweep_setting_describe(&setting, text, sizeof text);
+    if (bits > 0) assert_contains(text, words);
+    snprintf(setting.polygons, sizeof setting.polygons, "round");
+    assert_int_equal(abbe_sweep_setting_desc(&setting, &back, NULL), ABBE_NOT_FOUND);
+  }
+}
+
 static void test_pinholes_are_contestants(void **state) {
   (void)state;
   abbe_sweep_setting setting;
@@ -74,7 +111,7 @@ static void test_unknown_names(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_there_and_back),
+      cmocka_unit_test(test_there_and_back), cmocka_unit_test(test_kinds_of_polygons),
       cmocka_unit_test(test_pinholes_are_contestants),
       cmocka_unit_test(test_unknown_names),
   };
