@@ -19,7 +19,7 @@ struct Footprint {
   vec2 across, skew;
   float narrow, wide;
   int level;
-  float next_share;
+  float to_next;  // how far that is from its level to the next, 0 to 1
 };
 
 // From the hit to that of the neighbouring photon on the same path, in texels, as far as if the
@@ -84,7 +84,7 @@ Footprint footprint_of(Photon photon, Reference r) {
   float fine = max(log2(least) + 1.25, 0.0), whole = min(floor(fine), float(counts.map_levels - 1));
   f.level = int(whole);
   bool shares = f.level > 0 && f.level + 1 < counts.map_levels;
-  f.next_share = shares ? clamp(2.0 * (fine - whole) - 1.0, 0.0, 1.0) : 0.0;
+  f.to_next = shares ? clamp(fine - whole, 0.0, 1.0) : 0.0;
   // A tear between neighbours is not a footprint: no farther than the texels can cover.
   float most_wide = 2.0 * exp2(whole) * float(MAX_ACROSS);
   f.wide = min(wide, most_wide);

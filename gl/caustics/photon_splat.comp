@@ -1,8 +1,7 @@
-// Adds listed splats to the map, part by part and each over four texels, which together get all of it, to the
-// last unit. Where light has edges a splat of few parts goes to the level below its own and lies there in rows:
-// then little of it lands beside the area that it lights. Y goes by what a box of the part's extent covers of them, so that parts
-// which lie side by side make an even light, whatever their distance; X and Z beside it by how far they lie
-// from it, however little.
+// Adds listed splats to the map, part by part. A part is a rectangle that gives each of the four texels at most
+// what of it lies there, so parts side by side make an even light, however they lie against the texels. All
+// of a splat is given, to the last unit. Where light has edges a splat of few parts goes to the level below its
+// own: then little of it lands beside the area that it lights. X and Z lie beside Y, however little.
 layout(local_size_x = 256) in;
 #include "splat_list.glsl"
 #include "wide_sum.glsl"
@@ -23,9 +22,8 @@ uint level_offset(int level) {
   return (texels - (texels >> (2 * level))) / 3u * 4u;
 }
 
-const float LEAST_EXTENT = 0.25;  // of a texel
-const int MOST_IN_LINE = 15, MOST_IN_ROWS = 60;
-const float MOST_WIDE = 0.84;  // of a texel: what lies turned is wider, and more than a texel leaves gaps
+const float LEAST_SIDE = 0.25;  // of a part, of a texel
+const int MOST_IN_ROWS = 60;
 const int MOST_PARTS = 16;  // of a splat in the level below its own, or it stays in its own
 
 void add(uint texel, int channel, uint v) {
@@ -59,7 +57,7 @@ ListedSplat splat_at(uint word) {
   s.skew = unpackHalf2x16(splat[word + 10u]);
   vec2 rest = unpackHalf2x16(splat[word + 11u]);
   s.beside = rest.x * vec2(-s.across.y, s.across.x) / max(length(s.across), 1e-20);
-  s.next_share = rest.y;
+  s.next_share = has_edges ? clamp(2.0 * rest.y - 1.0, 0.0, 1.0) : smoothstep(0.0, 1.0, rest.y);
   s.level = int(y_level & 7u);
   s.centre = vec2(splat[word] >> 5, y_level >> 5) / 32768.0;
   s.tile = (splat[word] & 31u) << 2 | y_level >> 3 & 3u;
@@ -79,15 +77,18 @@ struct Grid {
   float size;
 };
 
-Grid grid_of(int level, float narrow, float wide, float shifted) {
+// Parts whose bounds are no wider than a texel.
+Grid grid_of(int level, ListedSplat s) {
   Grid g;
   g.level = level;
   g.size = exp2(float(level));
-  float part = has_edges ? MOST_WIDE * g.size : g.size;
-  int most = has_edges ? MOST_IN_ROWS : MOST_IN_LINE;
-  g.beside = has_edges ? max(int(ceil(narrow / part)), 1) : 1;
-  g.across = clamp(int(ceil(wide / part)), 1, most);
-  g.along = clamp(int(ceil(shifted / g.size - 0.25)), 1, most);
+  float across = length(s.across);
+  vec2 axis = across > 0.0 ? abs(s.across) / across : vec2(1, 0);
+  float narrow = max(length(s.beside) / g.size, LEAST_SIDE), wide = (across + length(s.skew)) / g.size;
+  g.beside = min(int(ceil(narrow * (axis.x + axis.y))), MOST_IN_ROWS);
+  vec2 room = (1.0 - narrow / float(g.beside) * axis.yx) / max(axis, 1e-3);
+  g.across = clamp(int(ceil(wide / min(room.x, room.y))), 1, MOST_IN_ROWS);
+  g.along = clamp(int(ceil(max(abs(s.shift.x), abs(s.shift.y)) / g.size - 0.25)), 1, MOST_IN_ROWS);
   return g;
 }
 
@@ -116,17 +117,55 @@ vec3 given_upto(ListedSplat s, Grid g, Cell c) {
   return (c.beside + given_of_row(s, g, c)) / float(g.beside);
 }
 
-// Where the middle of the cell's Y lies. Y's parts share among texels what they cover of them.
-vec2 middle_of(ListedSplat s, Grid g, Cell c, vec2 off_y) {
+// A rectangle in texels of its level: its middle and halves of its sides. Its bounds are no wider than a
+// texel, so it covers four of them at the most.
+struct Part {
+  vec2 middle, across, beside;
+};
+
+// Of the cell's Y.
+Part part_of(ListedSplat s, Grid g, Cell c, vec2 off_y) {
   float at_part = (c.column + 0.5) / float(g.across) - 0.5, per_row = 1.0 / float(g.along);
-  vec2 beside = s.beside * ((c.beside + 0.5) / float(g.beside) - 0.5);
-  vec2 middle = s.centre + beside + s.across * at_part + s.skew * abs(at_part) +
-                s.shift * ((c.row + 0.5) * per_row - 0.5);
-  vec2 part = (s.across + sign(at_part) * s.skew) / float(g.across);
-  vec2 box = abs(s.beside) / float(g.beside) + abs(part) + abs(s.shift) * per_row;
-  vec2 extent = clamp(box / g.size, LEAST_EXTENT, 1.0);
-  vec2 exact = (middle + off_y) / g.size - 0.5, whole_texels = floor(exact);
-  return (whole_texels + clamp((exact - whole_texels - 0.5) / extent + 0.5, 0.0, 1.0) + 0.5) * g.size;
+  vec2 across = (s.across + sign(at_part) * s.skew) / float(g.across), shift = s.shift * per_row;
+  float wide = length(across);
+  vec2 axis = wide > 0.0 ? across / wide : vec2(1, 0), axis_beside = vec2(-axis.y, axis.x);
+  // What its light is shifted makes it longer and wider.
+  wide = max((wide + abs(dot(axis, shift))) / g.size, LEAST_SIDE);
+  float narrow = length(s.beside) / float(g.beside) + abs(dot(axis_beside, shift));
+  narrow = max(narrow / g.size, LEAST_SIDE);
+  vec2 bounds = wide * abs(axis) + narrow * abs(axis_beside);
+  float fits = min(1.0, 1.0 / max(bounds.x, bounds.y));
+  Part p;
+  p.middle = s.centre + off_y + s.beside * ((c.beside + 0.5) / float(g.beside) - 0.5) +
+             s.across * at_part + s.skew * abs(at_part) + s.shift * ((c.row + 0.5) * per_row - 0.5);
+  p.middle /= g.size;
+  p.across = 0.5 * fits * wide * axis;
+  p.beside = 0.5 * fits * narrow * axis_beside;
+  return p;
+}
+
+// Of a line's way from a to b, the mean of what lies below 0.
+float mean_below(float a, float b) {
+  vec2 below = min(vec2(a, b), vec2(0));
+  return 0.5 * (below.x + below.y) * (abs(below.x - below.y) + 1e-6) / (abs(a - b) + 1e-6);
+}
+
+// What an edge of an area adds to how much of that lies below 0 in x, in y, and in both (Green's theorem).
+vec3 below_edge(vec2 a, vec2 b) {
+  vec2 y = min(vec2(a.y, b.y), vec2(0));
+  float rise = b.y - a.y;
+  vec2 x = a.x + (y - a.y) * (abs(rise) < 1e-7 ? 0.0 : (b.x - a.x) / rise);
+  return vec3(rise * mean_below(a.x, b.x), (y.y - y.x) * vec2(0.5 * (x.x + x.y), mean_below(x.x, x.y)));
+}
+
+// Shares of the texels at and beside the corner that a part lies about: left and right below, then above.
+vec4 shares_of(Part p, vec2 corner) {
+  vec2 middle = p.middle - corner;
+  vec2 a = middle - p.across - p.beside, b = middle + p.across - p.beside;
+  vec2 c = middle + p.across + p.beside, d = middle - p.across + p.beside;
+  vec3 below = below_edge(a, b) + below_edge(b, c) + below_edge(c, d) + below_edge(d, a);
+  below /= 4.0 * length(p.across) * length(p.beside);
+  return vec4(below.z, below.y - below.z, below.x - below.z, 1.0 - below.x - below.y + below.z);
 }
 
 // Where in its texels a level takes light, and where it begins.
@@ -146,21 +185,22 @@ Target target_of(ListedSplat s, Grid g) {
   return t;
 }
 
-// Shares one of X, Y and Z among the four texels around its place, to the last unit.
-void add_around(Target t, ListedSplat s, float size, vec2 p, int channel, uint units) {
+// Shares one of X, Y and Z of a part among the texels that it covers, to the last unit.
+void add_part(Target t, ListedSplat s, float size, Part p, int channel, uint units) {
+  vec2 at = p.middle * size;
 #ifdef TILES
   // What would lie beyond a tile's edge, where the receiver ends, is folded back.
-  p = s.tile > 0u ? min(max(p, 2.0 * s.rect.xy - p), max(2.0 * s.rect.zw - p, s.rect.xy)) : p;
+  at = s.tile > 0u ? min(max(at, 2.0 * s.rect.xy - at), max(2.0 * s.rect.zw - at, s.rect.xy)) : at;
 #endif
-  vec2 at = clamp(p, t.low, t.high) / size - 0.5;
-  ivec2 base = ivec2(floor(at)), last = ivec2(t.side - 1);
-  vec2 f = at - vec2(base);
-  ivec2 lo = clamp(base, ivec2(0), last), hi = clamp(base + 1, ivec2(0), last);
+  p.middle = clamp(at, t.low, t.high) / size;
+  vec2 corner = floor(p.middle + 0.5);
+  vec4 share = float(units) * shares_of(p, corner);
+  ivec2 last = ivec2(t.side - 1), lo = clamp(ivec2(corner) - 1, ivec2(0), last);
+  ivec2 hi = clamp(ivec2(corner), ivec2(0), last);
   uint row_lo = t.first + uint(lo.y * t.side), row_hi = t.first + uint(hi.y * t.side);
-  float whole = float(units);
-  uint part_0 = min(uint(whole * ((1.0 - f.x) * (1.0 - f.y))), units);
-  uint part_1 = min(uint(whole * (f.x * (1.0 - f.y))), units - part_0);
-  uint part_2 = min(uint(whole * ((1.0 - f.x) * f.y)), units - part_0 - part_1);
+  uint part_0 = min(uint(max(share.x, 0.0)), units);
+  uint part_1 = min(uint(max(share.y, 0.0)), units - part_0);
+  uint part_2 = min(uint(max(share.z, 0.0)), units - part_0 - part_1);
   add(row_lo + uint(lo.x), channel, part_0);
   add(row_lo + uint(hi.x), channel, part_1);
   add(row_hi + uint(lo.x), channel, part_2);
@@ -171,12 +211,9 @@ void main() {
   uint listed = thread_number();
   if (listed >= min(splat_count, most)) return;
   ListedSplat s = splat_at(listed * SPLAT_WORDS);
-  float wide = length(s.across) + length(s.skew), shifted = max(abs(s.shift.x), abs(s.shift.y));
-  float narrow = length(s.beside);
-  Grid fine = grid_of(s.level, narrow, wide, shifted);
-  Grid finer = grid_of(max(s.level - 1, 0), narrow, wide, shifted);
+  Grid fine = grid_of(s.level, s), finer = grid_of(max(s.level - 1, 0), s);
   if (has_edges && parts_of(finer) <= MOST_PARTS) fine = finer;
-  Grid next = grid_of(fine.level + 1, narrow, wide, shifted);
+  Grid next = grid_of(fine.level + 1, s);
   int fine_count = parts_of(fine);
   int count = fine_count + (s.next_share > 0.0 ? parts_of(next) : 0);
   uvec3 given = uvec3(0);
@@ -194,9 +231,12 @@ void main() {
     float per_row = 1.0 / float(g.along);
     vec2 off[3] = s.off;
     for (int c = 0; c < 3; c++) off[c] -= (1.0 - per_row * per_row) * s.slope[c] * s.shift;
-    vec2 middle = middle_of(s, g, cell, off[1]);
+    Part part = part_of(s, g, cell, off[1]);
     Target target = target_of(s, g);
-    for (int c = 0; c < 3; c++)
-      add_around(target, s, g.size, middle + (off[c] - off[1]), c, here[c]);
+    for (int c = 0; c < 3; c++) {
+      Part shifted = part;
+      shifted.middle += (off[c] - off[1]) / g.size;
+      add_part(target, s, g.size, shifted, c, here[c]);
+    }
   }
 }

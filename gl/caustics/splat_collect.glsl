@@ -55,7 +55,7 @@ void list_splat(Splat s, Footprint f) {
   splat[word + 8u] = packHalf2x16(vec2(x.z, y.z));
   splat[word + 9u] = packHalf2x16(s.shift);
   splat[word + 10u] = packHalf2x16(f.skew);
-  splat[word + 11u] = packHalf2x16(vec2(f.narrow, f.next_share));
+  splat[word + 11u] = packHalf2x16(vec2(f.narrow, f.to_next));
 }
 
 // Adds light to the splat; lists it first where the light is of another, or all is `done`.

@@ -3,7 +3,7 @@
 // from edge to edge across the footprint (two halves), XYZ in map units, so that the list is what is
 // summed, and from that place to where X, Y and Z lie in the mean; the shift from one
 // colour to the next, and by how much more the footprint's second half is than its first; its width
-// beside that across, and the share of the next coarser level (two halves each, texels).
+// beside that across, and how far it is to the next coarser level, 0 to 1 (two halves each, texels).
 const uint SPLAT_WORDS = 12u;
 layout(std430, binding = BINDING_SPLATS) buffer SplatList {
   uint splat_count, splat_groups_x, splat_groups_y, splat_groups_z;

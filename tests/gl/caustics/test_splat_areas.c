@@ -163,7 +163,7 @@ static void test_side_by_side_they_are_even(void **state) {
     }
   }
   print_message("uneven by %g\n", worst);
-  if (!(worst < 0.1)) fail_msg("uneven by %g", worst);
+  if (!(worst < 1e-3)) fail_msg("uneven by %g", worst);
 }
 
 int main(void) {
