@@ -7,9 +7,13 @@
 
 enum { MAP_TEXELS = 4, LEAST_SIDE = 16 }; /* of the spectral map, a side, for one of a page */
 
+/* No more texels than rays start: finer ones would hold nothing more. */
 static size_t side_of(const abbe_plan *plan) {
-  const size_t side = plan->desc.map_size / MAP_TEXELS;
-  if (side < LEAST_SIDE) return LEAST_SIDE;
+  const abbe_light_exits *exits = &plan->desc.volume->exits;
+  const size_t most = plan->desc.map_size / MAP_TEXELS;
+  size_t side = LEAST_SIDE;
+  while (side * side < exits->points * exits->symmetry.count) side *= 2;
+  if (side > most) side = most < LEAST_SIDE ? LEAST_SIDE : most;
   return side < ABBE_EXIT_PAGES_MOST_SIDE ? side : ABBE_EXIT_PAGES_MOST_SIDE;
 }
 

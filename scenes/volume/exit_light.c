@@ -28,57 +28,7 @@ static abbe_result find_planes(const abbe_exit_light_desc *d, double (**out)[4],
   return ABBE_OK;
 }
 
-/* Whether something stands on the way from p along the unit vector d, up to a distance. */
-static bool is_hidden(const abbe_exit_light_desc *desc, const double p[3], const double d[3],
-                      double limit) {
-  for (size_t i = 0; i < desc->sheets; i++) {
-    const double *u = desc->sheet[i] + 3, *v = desc->sheet[i] + 6;
-    double n[3], from[3], at[3], du[3], dv[3];
-    abbe_vector_cross(u, v, n);
-    abbe_vector_subtract(desc->sheet[i], p, from);
-    const double t = abbe_vector_dot(n, from) / abbe_vector_dot(n, d);
-    if (!(t > 1e-9 * abbe_vector_length(from)) || !(t < limit)) continue;
-    for (int k = 0; k < 3; k++) at[k] = t * d[k] - from[k];
-    abbe_vector_cross(v, n, du);
-    abbe_vector_cross(n, u, dv);
-    const double square = abbe_vector_dot(n, n), x = abbe_vector_dot(at, du) / square,
-                 y = abbe_vector_dot(at, dv) / square;
-    if (x >= 0 && x <= 1 && y >= 0 && y <= 1) return true;
-  }
-  return false;
-}
-
-/* To a light that is far away, unit. */
-static bool look_along(const abbe_exit_light_desc *desc, double to_light[3]) {
-  for (int k = 0; k < 3; k++) to_light[k] = -desc->light->direction[k];
-  return abbe_vector_normalise(to_light);
-}
-
-/* From a place of the world to the light, unit, and the irradiance across the beam there of a power
- * of 1. */
-static double look_at_light(const abbe_exit_light_desc *desc, const double from[3],
-                            double to_light[3]) {
-  const abbe_light *light = desc->light;
-  double square = 1;
-  if (light->kind == ABBE_LIGHT_DIRECTIONAL) {
-    for (int k = 0; k < 3; k++) to_light[k] = -light->direction[k];
-  } else {
-    abbe_vector_subtract(light->position, from, to_light);
-    square = abbe_vector_dot(to_light, to_light);
-  }
-  if (!abbe_vector_normalise(to_light)) return 0;
-  const double away[3] = {-to_light[0], -to_light[1], -to_light[2]};
-  const bool far = light->kind == ABBE_LIGHT_DIRECTIONAL;
-  if (is_hidden(desc, from, to_light, far ? INFINITY : sqrt(square))) return 0;
-  return abbe_light_profile(light, away) / square;
-}
-
-/* The point in the world. */
-static void place_point(const abbe_volume_place *place, const double p[3], double out[3]) {
-  for (int i = 0; i < 3; i++) out[i] = place->centre[i] + abbe_vector_dot(&place->turn[3 * i], p);
-}
-
-/* What a light and a table are asked with. */
+/* What a light and a table are asked with; in the object's own coordinates. */
 typedef struct sight {
   const abbe_caustic_volume *volume;
   const abbe_exit_light_desc *desc;
@@ -86,6 +36,9 @@ typedef struct sight {
   void *user;
   const double (*plane)[4];
   size_t planes;
+  abbe_exit_sheet *sheet;
+  bool far; /* the light is, and `light` the direction to it; else its place */
+  double light[3];
   size_t first, step; /* of points: the first, and from one to the next */
 } sight;
 
@@ -93,36 +46,51 @@ static void turn(const double map[9], const double v[3], double out[3]) {
   for (int i = 0; i < 3; i++) out[i] = abbe_vector_dot(&map[3 * i], v);
 }
 
+static void find_light(const abbe_exit_light_desc *d, sight *s) {
+  double at[3];
+  s->far = d->light->kind == ABBE_LIGHT_DIRECTIONAL;
+  for (int k = 0; k < 3; k++)
+    at[k] = s->far ? -d->light->direction[k] : d->light->position[k] - d->place->centre[k];
+  turn_back(d->place->turn, at, s->light);
+  if (s->far) abbe_vector_normalise(s->light);
+}
+
+/* From a place to the light, unit, and the irradiance across the beam there of a power of 1. */
+static double look_at_light(const sight *s, const double from[3], double to_light[3]) {
+  double square = 1;
+  for (int k = 0; k < 3; k++) to_light[k] = s->far ? s->light[k] : s->light[k] - from[k];
+  if (!s->far) square = abbe_vector_dot(to_light, to_light);
+  if (!s->far && !abbe_vector_normalise(to_light)) return 0;
+  if (abbe_exit_sheets_hide(s->sheet, s->desc->sheets, from, to_light,
+                            s->far ? INFINITY : sqrt(square)))
+    return 0;
+  if (s->far) return 1;
+  double away[3];
+  turn(s->desc->place->turn, to_light, away);
+  for (int k = 0; k < 3; k++) away[k] = -away[k];
+  return abbe_light_profile(s->desc->light, away) / square;
+}
+
 /* The rays of the points that a map makes of the table's: for them the light stands where the map
  * brings it from, and their rays go where the map brings them. */
 static void send_image(const sight *s, const double map[9]) {
   const abbe_light_exits *e = &s->volume->exits;
-  const abbe_exit_light_desc *d = s->desc;
   const double part = e->area / (double)(e->points * e->symmetry.count);
-  const bool far = d->light->kind == ABBE_LIGHT_DIRECTIONAL;
-  double to_light[3], own[3], there[3];
+  double there[3];
   abbe_exit_aim aim = {0};
-  if (far) {
-    if (!look_along(d, to_light)) return;
-    turn_back(d->place->turn, to_light, own);
-    turn_back(map, own, there);
-    abbe_light_exits_aim(&s->volume->nodes, there, &aim);
-  }
+  turn_back(map, s->light, there);
+  if (s->far) abbe_light_exits_aim(&s->volume->nodes, there, &aim);
   for (size_t i = s->first; i < e->points; i += s->step) {
-    double p[3], n[3], image[3], world[3];
+    double p[3], n[3], image[3], to_light[3];
     size_t bin;
-    if (far && !abbe_light_exits_faces(e, i, there)) continue;
+    if (s->far && !abbe_light_exits_faces(e, i, there)) continue;
     abbe_light_exits_point(e, i, p, n, &bin);
     turn(map, p, image);
-    place_point(d->place, image, world);
-    const double strength = look_at_light(d, world, to_light);
-    if (!far) {
-      turn_back(d->place->turn, to_light, own);
-      turn_back(map, own, there);
-    }
+    const double strength = look_at_light(s, image, to_light);
+    if (!s->far) turn_back(map, to_light, there);
     const double flux = part * strength * abbe_vector_dot(n, there);
     if (!(flux > 0)) continue;
-    if (!far) abbe_light_exits_aim(&s->volume->nodes, there, &aim);
+    if (!s->far) abbe_light_exits_aim(&s->volume->nodes, there, &aim);
     abbe_exit_ray ray[3];
     const size_t count = abbe_light_exits_at(e, &aim, i, s->plane, s->planes, ray);
     for (size_t k = 0; k < count; k++) {
@@ -149,10 +117,24 @@ abbe_result abbe_exit_light_part(const abbe_caustic_volume *v, const abbe_exit_l
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the volume holds no exits");
   abbe_result result = find_planes(d, &plane, &planes, error);
   if (result != ABBE_OK) return result;
-  const sight s = {v, d, take, user, (const double(*)[4])plane, planes, part, parts};
-  for (size_t i = 0; i < e->symmetry.count; i++) send_image(&s, e->symmetry.map[i]);
+  sight s = {.volume = v,
+             .desc = d,
+             .take = take,
+             .user = user,
+             .plane = (const double(*)[4])plane,
+             .planes = planes,
+             .sheet = malloc((d->sheets + 1) * sizeof *s.sheet),
+             .first = part,
+             .step = parts};
+  if (s.sheet == NULL) result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for receivers");
+  for (size_t i = 0; result == ABBE_OK && i < d->sheets; i++)
+    abbe_exit_sheet_make(d->sheet[i], d->place, &s.sheet[i]);
+  find_light(d, &s);
+  for (size_t i = 0; result == ABBE_OK && i < e->symmetry.count; i++)
+    send_image(&s, e->symmetry.map[i]);
+  free(s.sheet);
   free(plane);
-  return ABBE_OK;
+  return result;
 }
 
 abbe_result abbe_exit_light_rays(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
@@ -167,14 +149,14 @@ enum { PLACES = 1024 };
 /* A ray that a clear object bends by its index stands for all wavelengths: it goes on as some, a
  * part of the light each. Others have their own alone. */
 struct abbe_exit_colours {
-  double own[ABBE_LIGHT_EXITS_BINS][3]; /* XYZ of a watt of a bin's points */
+  float own[ABBE_LIGHT_EXITS_BINS][4]; /* XYZ of a watt of a bin's points */
   double upto[ABBE_LIGHT_EXITS_BINS + 1];
   double sum[ABBE_LIGHT_EXITS_BINS + 1][3]; /* XYZ of all bins before */
   double index[ABBE_LIGHT_EXITS_BINS];
   bool known;           /* the index, and it spreads them */
   double place[PLACES]; /* index by the place among points */
-  double part[ABBE_EXIT_MOST_PARTS + 1][ABBE_EXIT_MOST_PARTS]
-             [3];     /* XYZ of a watt of each of so many */
+  float part[ABBE_EXIT_MOST_PARTS + 1][ABBE_EXIT_MOST_PARTS]
+            [4];      /* XYZ of a watt of each of so many */
   double least, most; /* index */
 };
 
@@ -193,11 +175,6 @@ static void colour_upto(const abbe_exit_colours *s, double x, double xyz[3]) {
     xyz[k] = s->sum[low][k] + part * (s->sum[low + 1][k] - s->sum[low][k]);
 }
 
-/* By the place x of 0 to 1 among points. */
-static double index_at(const abbe_exit_colours *s, double x) {
-  return s->place[(size_t)fmin(x * PLACES, PLACES - 1)];
-}
-
 static void make_places(abbe_exit_colours *s) {
   size_t bin = 0;
   for (size_t i = 0; i < PLACES; i++) {
@@ -209,7 +186,7 @@ static void make_places(abbe_exit_colours *s) {
     for (size_t i = 0; i < parts; i++) {
       colour_upto(s, ((double)i + 1) / (double)parts, after);
       for (int k = 0; k < 3; k++) {
-        s->part[parts][i][k] = after[k] - before[k];
+        s->part[parts][i][k] = (float)(after[k] - before[k]);
         before[k] = after[k];
       }
     }
@@ -242,7 +219,7 @@ static void fill_colours(const abbe_caustic_volume *v, const abbe_exit_light_des
     abbe_weights_range_xyz(&range, from, from + step, xyz);
     s->upto[i + 1] = s->upto[i] + chance[i];
     for (int k = 0; k < 3; k++) {
-      s->own[i][k] = xyz[k] / chance[i];
+      s->own[i][k] = (float)(xyz[k] / chance[i]);
       s->sum[i + 1][k] = s->sum[i][k] + xyz[k];
     }
     s->known = s->known && find_index(d->object, from + 0.5 * step, &s->index[i]);
@@ -272,19 +249,19 @@ void abbe_exit_colours_ends(const abbe_exit_colours *c, size_t bin, double end[2
 }
 
 size_t abbe_exit_colours_split(const abbe_exit_colours *c, size_t bin, size_t parts, uint32_t turn,
-                               abbe_exit_part out[ABBE_EXIT_MOST_PARTS]) {
+                               float step[ABBE_EXIT_MOST_PARTS], const float (**xyz)[4]) {
   if (!c->known) {
-    out[0].step = 0;
-    memcpy(out[0].xyz, c->own[bin], sizeof out[0].xyz);
+    step[0] = 0;
+    *xyz = &c->own[bin];
     return 1;
   }
   if (parts < 1) parts = 1;
   if (parts > ABBE_EXIT_MOST_PARTS) parts = ABBE_EXIT_MOST_PARTS;
   const double within = parts > 1 ? (double)(turn * 2654435769u) * 0x1p-32 : 0.5;
-  for (size_t i = 0; i < parts; i++) {
-    out[i].step = index_at(c, ((double)i + within) / (double)parts) - c->index[bin];
-    memcpy(out[i].xyz, c->part[parts][i], sizeof out[i].xyz);
-  }
+  const double apart = PLACES / (double)parts;
+  for (size_t i = 0; i < parts; i++)
+    step[i] = (float)(c->place[(size_t)(((double)i + within) * apart)] - c->index[bin]);
+  *xyz = c->part[parts];
   return parts;
 }
 
@@ -314,18 +291,20 @@ static void add_part(const deposit *d, const abbe_exit_ray *ray, const double xy
 static void add_ray(void *user, const abbe_exit_ray *ray, double flux, size_t bin) {
   static const double apart = 0.004; /* about rad */
   deposit *d = user;
-  abbe_exit_part part[ABBE_EXIT_MOST_PARTS];
+  float step[ABBE_EXIT_MOST_PARTS];
+  const float(*colour)[4];
   double end[2], xyz[3];
   abbe_exit_colours_ends(d->colours, bin, end);
   const double all = (end[1] - end[0]) * abbe_vector_length(ray->way_by);
   const size_t parts = abbe_exit_colours_split(
-      d->colours, bin, (size_t)fmin(ceil(all / apart), ABBE_EXIT_MOST_PARTS), d->turn++, part);
+      d->colours, bin, (size_t)fmin(ceil(all / apart), ABBE_EXIT_MOST_PARTS), d->turn++, step,
+      &colour);
   for (size_t i = 0; i < parts; i++) {
     abbe_exit_ray out = *ray;
     for (int k = 0; k < 3; k++) {
-      xyz[k] = flux * part[i].xyz[k];
-      out.place[k] += part[i].step * ray->place_by[k];
-      out.way[k] += part[i].step * ray->way_by[k];
+      xyz[k] = flux * (double)colour[i][k];
+      out.place[k] += (double)step[i] * ray->place_by[k];
+      out.way[k] += (double)step[i] * ray->way_by[k];
     }
     abbe_vector_normalise(out.way);
     add_part(d, &out, xyz);

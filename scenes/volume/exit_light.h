@@ -7,6 +7,7 @@
 
 #include "colorimetry/observer.h"
 #include "scenes/volume/caustic_volume.h"
+#include "scenes/volume/exit_sheets.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -51,15 +52,13 @@ void abbe_exit_colours_free(abbe_exit_colours *colours);
 /* How far the object's least and greatest index are from that of a bin; 0 for wavelengths alone. */
 void abbe_exit_colours_ends(const abbe_exit_colours *colours, size_t bin, double end[2]);
 
-#define ABBE_EXIT_MOST_PARTS 16
-typedef struct abbe_exit_part {
-  double step;   /* of the index, from that of the ray's bin */
-  double xyz[3]; /* of a watt of the ray, of light whose white has Y = 1 */
-} abbe_exit_part;
 /* A ray as so many parts of like chance, 1 to ABBE_EXIT_MOST_PARTS; returns how many: 1 for a
- * wavelength alone. turn: the ray's number, by which it has other wavelengths of each part. */
+ * wavelength alone. turn: the ray's number, by which it has other wavelengths of each part. step:
+ * of the index, from that of the ray's bin. xyz: [parts] the colours', XYZ and 0 of a watt of the
+ * ray, of light whose white has Y = 1. */
 size_t abbe_exit_colours_split(const abbe_exit_colours *colours, size_t bin, size_t parts,
-                               uint32_t turn, abbe_exit_part out[ABBE_EXIT_MOST_PARTS]);
+                               uint32_t turn, float step[ABBE_EXIT_MOST_PARTS],
+                               const float (**xyz)[4]);
 
 #ifdef __cplusplus
 }

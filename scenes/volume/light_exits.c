@@ -12,8 +12,8 @@
 static const double least_cosine = 1e-3;
 static const double least_weight = 1e-9; /* of a node */
 static const double least_part = 0.15;   /* of wavelengths' chances that is even */
-static const double most_apart = 0.1;    /* directions of rays that become one, about rad */
-static const double most_turn = 0.5;     /* that a ray alone is moved by, about rad */
+static const float most_apart = 0.1f;    /* directions of rays that become one, about rad */
+static const float most_turn = 0.5f;     /* that a ray alone is moved by, about rad */
 static const double on_surface = 2e-3;   /* in radii */
 
 /* ---- the table ---- */
@@ -144,12 +144,12 @@ void abbe_light_exits_point(const abbe_light_exits *e, size_t point, double plac
   *bin = at > 0 ? (size_t)fmin(at, ABBE_LIGHT_EXITS_BINS - 1) : 0;
 }
 
-/* An exit of a node, and how light from the aim's direction would change it. */
+/* An exit of a node for light from the aim's direction. */
 typedef struct candidate {
-  double weight, carried;
-  double place[3], way[3]; /* at the node */
-  double step[3], turn[3]; /* to where light from the aim goes, to first order */
-  double place_by[3], way_by[3];
+  float weight, carried;
+  float far[2];                  /* of the aim, along the node's axes */
+  float value[ABBE_EXIT_HALVES]; /* at the node */
+  float step[3], turn[3];        /* to where light from the aim goes, to first order */
   unsigned facets;
 } candidate;
 
@@ -162,29 +162,15 @@ static void read_halves(const uint16_t half[ABBE_EXIT_HALVES], float out[ABBE_EX
   }
 }
 
-static void scale_up(const float *from, double scale, double out[3]) {
-  for (int k = 0; k < 3; k++) out[k] = scale * (double)from[k];
-}
-
-/* far: of the aim, along the node's axes. */
-static void read_candidate(const abbe_light_exits *e, const double far[2], const uint16_t *half,
-                           candidate *c) {
-  float value[ABBE_EXIT_HALVES];
-  double step[2][3], turn[2][3];
-  read_halves(half, value);
-  scale_up(value + ABBE_EXIT_PLACE, e->radius, c->place);
-  scale_up(value + ABBE_EXIT_WAY, 1, c->way);
-  scale_up(value + ABBE_EXIT_PLACE_BY_INDEX, e->radius, c->place_by);
-  scale_up(value + ABBE_EXIT_WAY_BY_INDEX, 1, c->way_by);
-  c->carried = (double)value[ABBE_EXIT_CARRIED];
-  c->facets = value[ABBE_EXIT_FACETS] > 0 ? (unsigned)value[ABBE_EXIT_FACETS] : 0;
-  for (int a = 0; a < 2; a++) {
-    scale_up(value + ABBE_EXIT_PLACE_BY + 3 * a, e->radius * far[a], step[a]);
-    scale_up(value + ABBE_EXIT_WAY_BY + 3 * a, far[a], turn[a]);
-  }
+static void read_candidate(const double far[2], const uint16_t *half, candidate *c) {
+  float *v = c->value;
+  read_halves(half, v);
+  c->carried = v[ABBE_EXIT_CARRIED];
+  c->facets = v[ABBE_EXIT_FACETS] > 0 ? (unsigned)v[ABBE_EXIT_FACETS] : 0;
+  for (int a = 0; a < 2; a++) c->far[a] = (float)far[a];
   for (int k = 0; k < 3; k++) {
-    c->step[k] = step[0][k] + step[1][k];
-    c->turn[k] = turn[0][k] + turn[1][k];
+    c->step[k] = c->far[0] * v[ABBE_EXIT_PLACE_BY + k] + c->far[1] * v[ABBE_EXIT_PLACE_BY + 3 + k];
+    c->turn[k] = c->far[0] * v[ABBE_EXIT_WAY_BY + k] + c->far[1] * v[ABBE_EXIT_WAY_BY + 3 + k];
   }
 }
 
@@ -193,41 +179,49 @@ static void read_candidate(const abbe_light_exits *e, const double far[2], const
 static bool is_one(const candidate *c, size_t count) {
   for (size_t i = 0; i < count; i++) {
     if (c[i].facets == 0 || c[i].facets != c[0].facets || !(c[i].carried > 0)) return false;
-    double square = 0;
-    for (int k = 0; k < 3; k++)
-      square += pow(c[i].way[k] + c[i].turn[k] - c[0].way[k] - c[0].turn[k], 2);
+    float square = 0;
+    for (int k = 0; k < 3; k++) {
+      const float off = c[i].value[ABBE_EXIT_WAY + k] + c[i].turn[k] -
+                        c[0].value[ABBE_EXIT_WAY + k] - c[0].turn[k];
+      square += off * off;
+    }
     if (!(square < most_apart * most_apart)) return false;
   }
   return count > 0;
 }
 
-/* Nodes' values by weight err by half the second derivative one way, values moved to first order by
- * as much the other: half of both by the third alone. */
-static void join(const candidate *c, size_t count, abbe_exit_ray *ray) {
-  *ray = (abbe_exit_ray){.facets = c[0].facets};
-  const double part = count > 1 ? 0.5 : 1;
-  for (size_t i = 0; i < count; i++) {
-    ray->share += c[i].weight * c[i].carried;
-    for (int k = 0; k < 3; k++) {
-      ray->place[k] += c[i].weight * (c[i].place[k] + part * c[i].step[k]);
-      ray->way[k] += c[i].weight * (c[i].way[k] + part * c[i].turn[k]);
-      ray->place_by[k] += c[i].weight * c[i].place_by[k];
-      ray->way_by[k] += c[i].weight * c[i].way_by[k];
-    }
+/* A ray of that place and way, moved by so much of a step and a turn. */
+static void make_ray(const float *value, const float *step, const float *turn, float part,
+                     double radius, abbe_exit_ray *ray) {
+  for (int k = 0; k < 3; k++) {
+    ray->place[k] = radius * (double)(value[ABBE_EXIT_PLACE + k] + part * step[k]);
+    ray->way[k] = (double)(value[ABBE_EXIT_WAY + k] + part * turn[k]);
+    ray->place_by[k] = radius * (double)value[ABBE_EXIT_PLACE_BY_INDEX + k];
+    ray->way_by[k] = (double)value[ABBE_EXIT_WAY_BY_INDEX + k];
   }
   abbe_vector_normalise(ray->way);
 }
 
-static void move(const candidate *c, abbe_exit_ray *ray) {
-  const double turn = abbe_vector_length(c->turn);
-  const double part = turn > most_turn ? most_turn / turn : 1;
-  for (int k = 0; k < 3; k++) {
-    ray->place[k] = c->place[k] + part * c->step[k];
-    ray->way[k] = c->way[k] + part * c->turn[k];
-    ray->place_by[k] = c->place_by[k];
-    ray->way_by[k] = c->way_by[k];
+/* Nodes' values by weight err by half the second derivative one way, values moved to first order by
+ * as much the other: half of both by the third alone. */
+static void join(const candidate *c, size_t count, double radius, abbe_exit_ray *ray) {
+  float sum[ABBE_EXIT_HALVES] = {0}, step[3] = {0}, turn[3] = {0};
+  for (size_t i = 0; i < count; i++) {
+    for (size_t k = 0; k < ABBE_EXIT_HALVES; k++) sum[k] += c[i].weight * c[i].value[k];
+    for (int k = 0; k < 3; k++) {
+      step[k] += c[i].weight * c[i].step[k];
+      turn[k] += c[i].weight * c[i].turn[k];
+    }
   }
-  abbe_vector_normalise(ray->way);
+  make_ray(sum, step, turn, count > 1 ? 0.5f : 1, radius, ray);
+  ray->share = (double)sum[ABBE_EXIT_CARRIED];
+  ray->facets = c[0].facets;
+}
+
+static void move(const candidate *c, double radius, abbe_exit_ray *ray) {
+  const float square = c->turn[0] * c->turn[0] + c->turn[1] * c->turn[1] + c->turn[2] * c->turn[2];
+  const float part = square > most_turn * most_turn ? most_turn / sqrtf(square) : 1;
+  make_ray(c->value, c->step, c->turn, part, radius, ray);
   ray->facets = c->facets;
 }
 
@@ -239,20 +233,20 @@ static bool is_within(const double p[3], const double (*plane)[4], size_t planes
 
 /* Each for itself, of those that may be. */
 static size_t go_alone(const candidate *c, size_t count, const double (*plane)[4], size_t planes,
-                       double within, abbe_exit_ray ray[3]) {
+                       double radius, abbe_exit_ray ray[3]) {
   abbe_exit_ray all[3];
   bool may[3];
   double sum = 0;
   size_t used = 0;
   for (size_t i = 0; i < count; i++) {
-    move(&c[i], &all[i]);
-    may[i] = !(c[i].carried > 0) || is_within(all[i].place, plane, planes, within);
-    sum += may[i] ? c[i].weight : 0;
+    move(&c[i], radius, &all[i]);
+    may[i] = !(c[i].carried > 0) || is_within(all[i].place, plane, planes, on_surface * radius);
+    sum += may[i] ? (double)c[i].weight : 0;
   }
   for (size_t i = 0; i < count; i++) {
     if ((!may[i] && sum > 0) || !(c[i].carried > 0)) continue;
     ray[used] = all[i];
-    ray[used++].share = c[i].carried * c[i].weight / (sum > 0 ? sum : 1);
+    ray[used++].share = (double)(c[i].carried * c[i].weight) / (sum > 0 ? sum : 1);
   }
   return used;
 }
@@ -261,20 +255,19 @@ size_t abbe_light_exits_at(const abbe_light_exits *e, const abbe_exit_aim *aim, 
                            const double (*plane)[4], size_t planes, abbe_exit_ray ray[3]) {
   candidate c[3];
   size_t count = 0, asked = 0;
-  double sum = 0;
+  float sum = 0;
   for (size_t i = 0; i < aim->blend.count; i++) {
     const size_t node = aim->blend.node[i];
     if (!(aim->blend.weight[i] > least_weight)) continue;
     asked++;
     const uint32_t at = e->at[node * e->points + point];
     if (at == 0) continue; /* what faces away says nothing about light that comes from the front */
-    read_candidate(e, aim->far[i], e->exit[at - 1], &c[count]);
-    c[count].weight = aim->blend.weight[i];
+    read_candidate(aim->far[i], e->exit[at - 1], &c[count]);
+    c[count].weight = (float)aim->blend.weight[i];
     sum += c[count++].weight;
   }
   for (size_t i = 0; i < count; i++) c[i].weight /= sum;
-  if (count < asked || !is_one(c, count))
-    return go_alone(c, count, plane, planes, on_surface * e->radius, ray);
-  join(c, count, ray);
+  if (count < asked || !is_one(c, count)) return go_alone(c, count, plane, planes, e->radius, ray);
+  join(c, count, e->radius, ray);
   return 1;
 }
