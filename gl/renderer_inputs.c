@@ -19,11 +19,20 @@ static uint64_t mix(uint64_t h, const void *data, size_t size) {
 
 #define MIX(h, value) ((h) = mix((h), &(value), sizeof(value)))
 
+/* Four at a time, none of which waits for another: meshes are long. */
+static uint64_t mix_long(uint64_t h, const unsigned char *data, size_t size) {
+  const size_t quarter = size / 4 / sizeof h * sizeof h;
+  uint64_t part[4] = {h, h + 1, h + 2, h + 3};
+  for (size_t at = 0; at < quarter; at += sizeof h)
+    for (size_t k = 0; k < 4; k++) part[k] = mix(part[k], data + k * quarter + at, sizeof h);
+  return mix(mix(h, part, sizeof part), data + 4 * quarter, size - 4 * quarter);
+}
+
 static uint64_t mix_array(uint64_t h, const void *data, size_t count, size_t size) {
   const bool there = data != NULL;
   MIX(h, there);
   MIX(h, count);
-  return there ? mix(h, data, count * size) : h;
+  return there ? mix_long(h, data, count * size) : h;
 }
 
 static uint64_t mix_spectrum(uint64_t h, const abbe_spectrum *s) {
@@ -254,6 +263,8 @@ static uint64_t mix_light_plan(uint64_t h, const abbe_plan *plan) {
   MIX(h, d->strategy);
   MIX(h, d->footprint);
   h = mix_layout(h, d->map_layout, d->map_layout_light);
+  const bool coarse = d->coarse == ABBE_COARSE_ALL;
+  MIX(h, coarse);
   const bool facts[] = {plan->spheres,
                         plan->convex,
                         plan->layers,
@@ -278,6 +289,8 @@ static uint64_t mix_eye(uint64_t h, const abbe_scene *scene, const abbe_plan *pl
   MIX(h, d->height);
   MIX(h, d->supersample);
   MIX(h, d->upsample);
+  const bool coarse = d->coarse != ABBE_COARSE_NONE;
+  MIX(h, coarse);
   MIX(h, d->adaptive);
   MIX(h, d->receiver_samples);
   MIX(h, d->sample_shift);

@@ -227,8 +227,8 @@ static bool normal_of_largest_face(const abbe_mesh *mesh, double out[3]) {
     double n[3];
     abbe_vector_triangle(mesh->position[face[0]], mesh->position[face[1]], mesh->position[face[2]],
                          n);
-    if (!(abbe_vector_length(n) > most)) continue;
-    most = abbe_vector_length(n);
+    if (!(abbe_vector_dot(n, n) > most)) continue;
+    most = abbe_vector_dot(n, n);
     memcpy(out, n, sizeof n);
   }
   return most > 0 && abbe_vector_normalise(out);
@@ -240,8 +240,9 @@ static double width_along(const abbe_mesh *mesh, const double direction[3]) {
   for (size_t v = 0; v < mesh->vertex_count; v++) {
     double from[3];
     abbe_vector_subtract(mesh->position[v], mesh->position[0], from);
-    low = fmin(low, abbe_vector_dot(direction, from));
-    high = fmax(high, abbe_vector_dot(direction, from));
+    const double at = abbe_vector_dot(direction, from);
+    low = at < low ? at : low;
+    high = at > high ? at : high;
   }
   return high - low;
 }

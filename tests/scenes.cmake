@@ -1,5 +1,5 @@
 foreach(name transform disjoint_sets vector
-        mesh mesh_fix mesh_repair mesh_charts topology shells
+        mesh coarse_mesh mesh_fix mesh_repair mesh_charts topology shells
         convex shape brilliant brushing knot water scene_time
         cut cut_asc cut_diagram designs cut_file cut_gcs cut_gem cut_measures cut_polyhedron cut_stretch cut_text
         scene object_file object_motion refractor_tilt object_surface reflectance_file light_file scene_file mesh_files ply_strips

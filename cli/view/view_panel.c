@@ -52,8 +52,10 @@ static void draw_made(const abbe_view_session *app) {
   const bool moving = app->stage == ABBE_VIEW_MOVING;
   const abbe_render_desc *d = moving ? &app->moving : &app->last.desc;
   char text[160] = " ", eye[64] = "";
+  if (moving && d->coarse != ABBE_COARSE_NONE) snprintf(eye, sizeof eye, "fewer faces; ");
   if (moving && d->upsample > 1)
-    snprintf(eye, sizeof eye, "%zu x %zu pixels a sample; ", d->upsample, d->upsample);
+    snprintf(eye + strlen(eye), sizeof eye - strlen(eye), "%zu x %zu pixels a sample; ",
+             d->upsample, d->upsample);
   if (app->state.refine.compiling)
     snprintf(text, sizeof text, "shaders of the next stage are compiled");
   else if (moving && app->moved.light != ABBE_VIEW_MOVING)

@@ -206,6 +206,7 @@ abbe_result abbe_refraction_pass_draw(abbe_refraction_pass *pass, abbe_error *er
                                       .width = pass->lighting->camera->samples[0],
                                       .height = pass->lighting->camera->samples[1],
                                       .back = back != 0,
+                                      .coarse = scene_of(pass)->plan->desc.coarse != 0,
                                       .both = scene_of(pass)->plan->eye_inside != 0};
     result = abbe_refractor_faces_draw(pass->faces, &target, false, error);
     abbe_gpu_book_lap(gpu, back ? ABBE_PASS_EYE_BACK : ABBE_PASS_EYE_FRONT);

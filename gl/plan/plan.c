@@ -12,6 +12,7 @@
 #include "gl/plan/support.h"
 #include "scenes/lights/area_lights.h"
 #include "scenes/lights/environment_lights.h"
+#include "scenes/mesh/coarse_mesh.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -69,6 +70,14 @@ static void choose_transport(const abbe_scene *scene, const abbe_render_desc *de
     abbe_render_desc_take_pinholes(&plan->desc);
 }
 
+/* Views of fewer triangles, where some mesh has many. */
+static void choose_triangles(const abbe_scene *scene, abbe_plan *plan) {
+  bool many = false;
+  for (size_t k = 0; k < plan->refractor_count; k++)
+    many = many || abbe_coarse_mesh_serves(&scene->object[plan->refractor_object[k]].mesh);
+  if (!many) plan->desc.coarse = ABBE_COARSE_NONE;
+}
+
 static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
                              abbe_error *error) {
   choose_transport(scene, desc, out);
@@ -101,6 +110,7 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   abbe_haze_model_choose(scene, out);
   abbe_spectral_needs_count(out);
   abbe_path_limits_choose(scene, desc, out);
+  choose_triangles(scene, out);
   combine(out);
   out->receiver_colours = abbe_receiver_model_disperses(scene, out);
   abbe_pass_list_add(scene, out);

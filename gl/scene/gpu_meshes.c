@@ -1,5 +1,7 @@
 #include "gl/scene/gpu_scene.h"
 
+#include "scenes/mesh/coarse_mesh.h"
+
 #include <stdlib.h>
 
 /* The attributes of surface.vert, in the bound array from the bound buffer. */
@@ -51,6 +53,7 @@ static void free_mesh(const abbe_gl *gl, abbe_gpu_mesh *mesh) {
   gl->DeleteVertexArrays(1, &mesh->array);
   gl->DeleteBuffers(1, &mesh->vertices);
   gl->DeleteBuffers(1, &mesh->indices);
+  gl->DeleteBuffers(1, &mesh->coarse);
   *mesh = (abbe_gpu_mesh){0};
 }
 
@@ -76,6 +79,30 @@ void abbe_gpu_meshes_draw(const abbe_gpu_scene *scene, size_t object) {
   const abbe_gpu_mesh *mesh = &scene->mesh[object];
   scene->gpu->gl->BindVertexArray(mesh->array);
   scene->gpu->gl->DrawElements(GL_TRIANGLES, mesh->index_count, GL_UNSIGNED_INT, NULL);
+}
+
+/* Without memory for them there are none. */
+static void make_coarse(const abbe_mesh *mesh, const abbe_gl *gl, abbe_gpu_mesh *out) {
+  uint32_t(*face)[3] = NULL;
+  size_t count = 0;
+  out->coarse_known = true;
+  if (abbe_coarse_mesh_make(mesh, &face, &count, NULL) != ABBE_OK || count == 0) return;
+  gl->GenBuffers(1, &out->coarse);
+  gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, out->coarse);
+  gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)(count * sizeof *face), face, GL_STATIC_DRAW);
+  out->coarse_count = (GLsizei)(3 * count);
+  free(face);
+}
+
+void abbe_gpu_meshes_draw_coarse(const abbe_gpu_scene *scene, size_t object) {
+  const abbe_gl *gl = scene->gpu->gl;
+  abbe_gpu_mesh *mesh = &scene->mesh[object];
+  gl->BindVertexArray(mesh->array);
+  if (!mesh->coarse_known) make_coarse(&scene->local->object[object].mesh, gl, mesh);
+  gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh->coarse_count > 0 ? mesh->coarse : mesh->indices);
+  gl->DrawElements(GL_TRIANGLES, mesh->coarse_count > 0 ? mesh->coarse_count : mesh->index_count,
+                   GL_UNSIGNED_INT, NULL);
+  gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh->indices);
 }
 
 void abbe_gpu_meshes_free(abbe_gpu_scene *scene) {

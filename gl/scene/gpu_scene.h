@@ -21,6 +21,9 @@ enum { ABBE_GPU_BLOCK_BYTES = 65536 };
 typedef struct abbe_gpu_mesh {
   GLuint array, vertices, indices;
   GLsizei index_count;
+  GLuint coarse; /* indices of fewer triangles, once they were asked for; 0: there are none */
+  GLsizei coarse_count;
+  bool coarse_known;
 } abbe_gpu_mesh;
 
 /* A row of the shaders' block of shadows. */
@@ -87,6 +90,8 @@ void abbe_gpu_area_lights_set(const abbe_gpu_scene *scene, GLuint program);
 
 /* gpu_meshes.c */
 void abbe_gpu_meshes_draw(const abbe_gpu_scene *scene, size_t object);
+/* By fewer triangles where that saves half of them (scenes/mesh/coarse_mesh.h). */
+void abbe_gpu_meshes_draw_coarse(const abbe_gpu_scene *scene, size_t object);
 abbe_result abbe_gpu_meshes_upload(abbe_gpu_scene *scene, abbe_error *error);
 void abbe_gpu_meshes_free(abbe_gpu_scene *scene);
 

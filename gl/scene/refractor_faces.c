@@ -49,7 +49,10 @@ abbe_result abbe_refractor_faces_draw(const abbe_refractor_faces *faces,
     else
       gl->Enable(GL_CULL_FACE);
     abbe_gpu_set_uint(scene->gpu, faces->program, "owner", i + 1);
-    abbe_gpu_meshes_draw(scene, scene->plan->refractor_object[i]);
+    if (target->coarse)
+      abbe_gpu_meshes_draw_coarse(scene, scene->plan->refractor_object[i]);
+    else
+      abbe_gpu_meshes_draw(scene, scene->plan->refractor_object[i]);
   }
   gl->Disable(GL_CULL_FACE);
   return ABBE_OK;

@@ -21,7 +21,8 @@ typedef struct abbe_faces_target {
   size_t width, height;
   GLfloat distance; /* that is kept where nothing is drawn, m */
   bool back;
-  bool both; /* or front and back, the nearest */
+  bool both;   /* or front and back, the nearest */
+  bool coarse; /* of fewer triangles, where meshes have many */
 } abbe_faces_target;
 
 abbe_result abbe_refractor_faces_make(const abbe_gpu_scene *scene, abbe_refractor_faces *out,

@@ -36,33 +36,49 @@ void abbe_view_look(const double origin[3], const double forward[3], const doubl
   out->window[1] = out->window[3] = out->far = -INFINITY;
 }
 
-static double clamp(double x, double low, double high) {
-  return fmin(fmax(x, low), high);
+/* Of finite numbers; the library's own are calls, which a mesh's many vertices would pay for. */
+static double lesser(double a, double b) {
+  return a < b ? a : b;
+}
+
+static double greater(double a, double b) {
+  return a > b ? a : b;
+}
+
+/* A point beyond the limit still widens the window, towards its own side. Whether it does not lie
+ * beyond it. */
+static bool to_window(double *x, double *y, double *z) {
+  static const double limit = ABBE_VIEW_MAX_TANGENT;
+  const double far = greater(fabs(*x), fabs(*y));
+  const bool fits = *z > 0 && far <= limit * *z;
+  const double depth = fits ? *z : greater(*z, far / limit);
+  if (depth <= 0) {
+    *x = *y = *z = NAN;
+    return false;
+  }
+  *x = fits ? *x / depth : lesser(greater(*x / depth, -limit), limit);
+  *y = fits ? *y / depth : lesser(greater(*y / depth, -limit), limit);
+  *z = greater(*z, depth * 1e-3);
+  return fits;
 }
 
 bool abbe_view_fit(abbe_view *view, const double (*points)[3], size_t count) {
+  abbe_view v = *view;
   bool fits = true;
   for (size_t i = 0; i < count; i++) {
     double d[3];
-    for (int k = 0; k < 3; k++) d[k] = points[i][k] - view->origin[k];
-    double x = dot(d, view->right), y = dot(d, view->up), z = dot(d, view->forward);
-    if (!view->orthographic) {
-      double limit = ABBE_VIEW_MAX_TANGENT;
-      if (z <= 0 || fabs(x) > limit * z || fabs(y) > limit * z) fits = false;
-      /* A point behind still widens the window, towards its own side. */
-      double depth = fmax(z, fmax(fabs(x), fabs(y)) / limit);
-      if (depth <= 0) continue;
-      x = clamp(x / depth, -limit, limit);
-      y = clamp(y / depth, -limit, limit);
-      z = fmax(z, depth * 1e-3);
-    }
-    view->window[0] = fmin(view->window[0], x);
-    view->window[1] = fmax(view->window[1], x);
-    view->window[2] = fmin(view->window[2], y);
-    view->window[3] = fmax(view->window[3], y);
-    view->near = fmin(view->near, z);
-    view->far = fmax(view->far, z);
+    for (int k = 0; k < 3; k++) d[k] = points[i][k] - v.origin[k];
+    double x = dot(d, v.right), y = dot(d, v.up), z = dot(d, v.forward);
+    if (!v.orthographic) fits = to_window(&x, &y, &z) && fits;
+    /* not a number: it has no place, and the others stay */
+    v.window[0] = x < v.window[0] ? x : v.window[0];
+    v.window[1] = x > v.window[1] ? x : v.window[1];
+    v.window[2] = y < v.window[2] ? y : v.window[2];
+    v.window[3] = y > v.window[3] ? y : v.window[3];
+    v.near = z < v.near ? z : v.near;
+    v.far = z > v.far ? z : v.far;
   }
+  *view = v;
   return fits;
 }
 

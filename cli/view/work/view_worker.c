@@ -105,6 +105,7 @@ static abbe_render_desc request_of(const abbe_view_worker *w, const abbe_view_re
   abbe_render_desc desc = settings_of(w, job->light);
   desc.supersample = moving ? 1 : settings_of(w, job->stage).supersample;
   desc.upsample = moving ? job->eye_step + 1 : 0;
+  if (moving) desc.coarse = job->light == ABBE_VIEW_MOVING ? ABBE_COARSE_ALL : ABBE_COARSE_EYE;
   desc.adaptive = moving ? 1 : 0;
   /* light that moves is blended with the last frames'; what is better is of one frame */
   desc.volume = w->volume;

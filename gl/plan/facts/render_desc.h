@@ -116,6 +116,10 @@ typedef enum abbe_model {
       ABBE_MODEL_COUNT
 } abbe_model;
 
+/* Whose views of refractors, which tell what each shows of them and, by layers, what is behind,
+ * are drawn of fewer triangles where meshes have many: for pictures of what moves. */
+typedef enum abbe_coarse { ABBE_COARSE_NONE, ABBE_COARSE_EYE, ABBE_COARSE_ALL } abbe_coarse;
+
 #define ABBE_RENDER_MAX_SIDE 8192
 #define ABBE_RENDER_MAX_PHOTONS 4096 /* a side */
 #define ABBE_RENDER_MAX_MAP 4096     /* a side */
@@ -168,6 +172,7 @@ typedef struct abbe_render_desc {
   size_t map_size;    /* side of the spectral map; 0: 1024 (shah2007: 768, wyman2006: 512) */
   size_t supersample; /* 1 to 4 samples a pixel side; 0: 2 (thesis, and with upsample: 1) */
   size_t upsample;    /* or 1 to 4 pixels a sample side, and between samples; 0: 1 */
+  abbe_coarse coarse;
   /* rays a side for a sample of a receiver where its light bends, 1 to 8; 1: the sample alone; 0: 4
    * (thesis, and with upsample: 1) */
   size_t adaptive;

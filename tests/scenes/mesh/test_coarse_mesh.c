@@ -1,0 +1,135 @@
+/* Coarser meshes against what they must keep: the surface without holes, its sides apart. */
+#include "scenes/mesh/coarse_mesh.h"
+
+#include "scenes/geometry/vector.h"
+#include "scenes/shapes/shape.h"
+#include "tests/check.h"
+#include "tests/random.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct coarse {
+  abbe_mesh whole, few; /* few: the same vertices */
+} coarse;
+
+static void make_few(coarse *c) {
+  c->few = c->whole;
+  assert_int_equal(abbe_coarse_mesh_make(&c->whole, &c->few.face, &c->few.face_count, NULL),
+                   ABBE_OK);
+}
+
+static void drop(coarse *c) {
+  free(c->few.face);
+  abbe_mesh_free(&c->whole);
+}
+
+/* How many of the triangles a ray from the origin meets, and how far off the farthest is. */
+static size_t met_by(const abbe_mesh *mesh, bool inner, const double d[3], double *distance) {
+  size_t count = 0;
+  for (size_t f = 0; f < mesh->face_count; f++) {
+    const uint32_t *face = mesh->face[f];
+    double across[3], n[3];
+    bool inside = true;
+    if (inner != (face[0] >= mesh->vertex_count / 2)) continue;
+    for (int k = 0; k < 3 && inside; k++) {
+      abbe_vector_cross(mesh->position[face[k]], mesh->position[face[(k + 1) % 3]], across);
+      inside = abbe_vector_dot(across, d) * (inner ? -1 : 1) >= -1e-12;
+    }
+    if (!inside) continue;
+    count++;
+    abbe_vector_triangle(mesh->position[face[0]], mesh->position[face[1]], mesh->position[face[2]],
+                         n);
+    *distance = abbe_vector_dot(n, mesh->position[face[0]]) / abbe_vector_dot(n, d);
+  }
+  return count;
+}
+
+/* Rays from the middle of a sphere or shell meet each of its sides, where it was. */
+static void assert_all_around(const abbe_mesh *mesh, bool inner, double radius) {
+  enum { RAYS = 400 };
+  uint64_t random = 1;
+  for (int i = 0; i < RAYS; i++) {
+    double d[3], distance = 0;
+    for (int k = 0; k < 3; k++) d[k] = random_between(&random, -1, 1);
+    abbe_vector_normalise(d);
+    assert_true(met_by(mesh, inner, d, &distance) > 0);
+    assert_near(distance / radius, 1, 2.5e-3); /* edges of 2.5 cells are so far within */
+  }
+}
+
+/* No triangle lies folded over: its normal is that of its corners. */
+static void assert_upright(const abbe_mesh *mesh) {
+  for (size_t f = 0; f < mesh->face_count; f++) {
+    const uint32_t *face = mesh->face[f];
+    double n[3];
+    abbe_vector_triangle(mesh->position[face[0]], mesh->position[face[1]], mesh->position[face[2]],
+                         n);
+    assert_true(abbe_vector_dot(n, mesh->normal[face[0]]) > 0);
+  }
+}
+
+/* A shell whose wall is a tenth of a cell: its sides stay apart, and each is whole. */
+static void test_sides_of_a_thin_wall_stay_apart(void **state) {
+  (void)state;
+  coarse c;
+  static const double thin = 0.998;
+  abbe_mesh w, both;
+  assert_int_equal(abbe_shape_sphere(0.5, 6, &w, NULL), ABBE_OK); /* 81,920 faces */
+  assert_int_equal(abbe_mesh_make(2 * w.vertex_count, 2 * w.face_count, false, &both, NULL),
+                   ABBE_OK);
+  for (size_t v = 0; v < both.vertex_count; v++)
+    for (int k = 0; k < 3; k++) {
+      const size_t from = v % w.vertex_count;
+      const bool inner = v >= w.vertex_count;
+      both.position[v][k] = w.position[from][k] * (inner ? thin : 1);
+      both.normal[v][k] = w.normal[from][k] * (inner ? -1 : 1);
+    }
+  for (size_t f = 0; f < both.face_count; f++)
+    for (size_t k = 0; k < 3; k++) {
+      const bool inner = f >= w.face_count;
+      const size_t own = inner ? 2 - k : k, first = inner ? w.vertex_count : 0;
+      both.face[f][k] = (uint32_t)(w.face[f % w.face_count][own] + first);
+    }
+  abbe_mesh_free(&w);
+  c.whole = both;
+  make_few(&c);
+  assert_in_range(c.few.face_count, ABBE_COARSE_MESH_FACES / 2, 3 * ABBE_COARSE_MESH_FACES / 2);
+  for (size_t f = 0; f < c.few.face_count; f++) /* no face leads from one side to the other */
+    for (int k = 1; k < 3; k++)
+      assert_int_equal(c.few.face[f][k] < both.vertex_count / 2,
+                       c.few.face[f][0] < both.vertex_count / 2);
+  assert_upright(&c.few);
+  assert_all_around(&c.few, false, 0.5);
+  assert_all_around(&c.few, true, 0.5 * thin);
+  drop(&c);
+}
+
+/* Few faces, faces of their own vertices, and no face at all: left as they are. */
+static void test_what_is_no_smooth_large_mesh_is_left(void **state) {
+  (void)state;
+  coarse c;
+  assert_int_equal(abbe_shape_ring(0.08, 0.02, 64, 32, &c.whole, NULL), ABBE_OK);
+  make_few(&c);
+  assert_null(c.few.face);
+  drop(&c);
+  assert_int_equal(abbe_shape_sphere(0.5, 6, &c.whole, NULL), ABBE_OK);
+  assert_int_equal(abbe_mesh_compute_normals(&c.whole, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
+  make_few(&c);
+  assert_null(c.few.face);
+  drop(&c);
+  assert_int_equal(abbe_shape_sphere(0.5, 6, &c.whole, NULL), ABBE_OK);
+  for (size_t v = 0; v < c.whole.vertex_count; v++) memset(c.whole.position[v], 0, 24);
+  make_few(&c);
+  assert_null(c.few.face);
+  drop(&c);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_sides_of_a_thin_wall_stay_apart),
+      cmocka_unit_test(test_what_is_no_smooth_large_mesh_is_left),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
