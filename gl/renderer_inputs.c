@@ -329,10 +329,9 @@ void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
   uint64_t *part = out->part, light;
   part[ABBE_PART_GEOMETRY] = of_geometry(scene, plan);
   part[ABBE_PART_SURFACES] = of_surfaces(scene, plan);
-  part[ABBE_PART_SPECTRA] = of_spectra(scene, plan);
+  part[ABBE_PART_SPECTRA] = mix_medium(of_spectra(scene, plan), scene->medium);
   part[ABBE_PART_SHADOWS] = mix_places(part[ABBE_PART_GEOMETRY], scene, plan);
   light = mix_light_plan(mix_beams(part[ABBE_PART_SHADOWS], scene, plan), plan);
-  light = mix_medium(light, scene->medium);
   MIX(light, part[ABBE_PART_SPECTRA]);
   if (plan->desc.transport == ABBE_TRANSPORT_PINHOLE) MIX(light, part[ABBE_PART_SURFACES]);
   /* samples show lamps, too, and beams are in their colours */

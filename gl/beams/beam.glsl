@@ -2,7 +2,7 @@
 
 // Of a beam: its ends in pixels; their depths, and the widths at both ends of a cell along one axis of the grid,
 // along the other, and of its part of the spectrum, in pixels; the ends in the world, each with red or
-// green of the light, W at the end; by how much that grows a metre on the way back, 1/m, and blue.
+// green of what is scattered at the end, W/m; by how much that grows a metre on the way back, 1/m, and blue.
 const int BEAM_TEXELS = 6;
 
 // Light lies evenly over each of its widths and over a pixel: together they are taken for two, which have

@@ -150,7 +150,7 @@ static void list_chunk(abbe_beam_list *list, size_t light, const abbe_hit_batch 
   abbe_photon_lights_set_grid(c->views, program, light);
   set_hits(list, b->first, b->count);
   abbe_gpu_set_int(gpu, program, "light", (int)light);
-  abbe_gpu_set_int(gpu, program, "medium", (int)list->medium);
+  abbe_gpu_set_int(gpu, program, "medium", list->medium);
   abbe_gpu_set_float(gpu, program, "cell_m", list->cell_m);
   abbe_gpu_set_uint(gpu, program, "chunks", list->chunks);
   abbe_gpu_set_uint(gpu, program, "chunk", chunk);
@@ -195,7 +195,7 @@ static abbe_result run_light(abbe_beam_list *list, size_t light, abbe_beams_use 
   for (size_t known = 0; known < n && result == ABBE_OK; known = b.first + b.count) {
     b.first = known == 0 ? 0 : known - 1;
     b.count = n - b.first < most ? n - b.first : most;
-    abbe_trace_pass_batch(&c->trace, light, b.first, b.count, n);
+    abbe_trace_pass_ways(&c->trace, light, b.first, b.count);
     for (size_t chunk = 0; chunk < list->chunks && result == ABBE_OK && !gpu->stopped; chunk++) {
       size_t beams = 0;
       result = list_whole(list, light, &b, chunk, &beams, error);

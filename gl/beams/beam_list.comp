@@ -1,5 +1,5 @@
-// Lists the beams of a batch of hits: the light of a photon on its way from its last interface to where it
-// lands, as wide as its neighbours on the same path stand apart, and as the wavelengths do between which it lies.
+// Lists the beams of a batch of ways in one medium: the light of a photon there, as wide as its neighbours on the
+// same path stand apart, and as the wavelengths do between which it lies.
 // Wavelengths that part by less than shows are one beam; an interval of others is several, each in the colour of
 // its own part of the band. Beams are listed as they lie in the picture (beam.glsl); IN_WORLD: as they lie in a
 // refractor's medium, to be added to its grid.
@@ -26,16 +26,13 @@ uniform int light, stride, sample_count, sample_first;
 uniform ivec2 grid;
 uniform uint chunks, chunk;  // only photons of this chunk
 uniform uint most;           // beams that the list has room for
-uniform int medium;  // the refractor that they are in, where they are not in the air
+uniform int medium;          // the refractor that they are in; -1: the air
 #ifdef IN_WORLD
 uniform float cell_m;  // of the grid
-const bool in_air = false;
 #else
 uniform vec3 eye;
 uniform vec4 eye_view[6];
 uniform vec2 size;  // pixels
-uniform bool eye_in_air;
-#define in_air eye_in_air
 #endif
 
 const int PARTS = 8, COLOURS = PARTS + 2;  // an interval's parts, and both its halves
@@ -49,18 +46,19 @@ struct Node {
   uint path;   // signature; 0: no hit
   vec3 from, to;
   float light;  // W at its end, of unit power
-  float per_m;  // what the medium takes
+  float per_m, scatters;  // what the medium takes, and of that what it scatters
 };
 
-Node no_node() { return Node(0u, vec3(0), vec3(0), 0.0, 0.0); }
+Node no_node() { return Node(0u, vec3(0), vec3(0), 0.0, 0.0, 0.0); }
 
 Node node_at(uint path, int i) {
   int hit = int(path) * stride + i;
   vec4 landed = texelFetch(hits, 2 * hit);
   Node n;
   uvec4 signature = texelFetch(signatures, hit);
-  n.path = landed.w > 0.0 ? signature.x : 0u;
-  n.from = texelFetch(hits, 2 * hit + 1).xyz;
+  vec4 left = texelFetch(hits, 2 * hit + 1);
+  n.path = landed.w > 0.0 && int(left.w) == medium ? signature.x : 0u;
+  n.from = left.xyz;
   n.to = landed.xyz;
   n.light = landed.w;
 #ifdef TINTING
@@ -69,8 +67,15 @@ Node node_at(uint path, int i) {
   n.light *= 0.5 * (dot(exp(-path_m * texelFetch(band_attenuation, halves)), texelFetch(band_attenuation, halves + 1)) +
                     dot(exp(-path_m * texelFetch(band_attenuation, halves + 2)), texelFetch(band_attenuation, halves + 3)));
 #endif
-  n.per_m = in_air ? haze_air.y : spectra[medium * counts.wavelengths + sample_first + i].y;
+  vec4 spectrum = spectra[(medium < 0 ? REFRACTORS : medium) * counts.wavelengths + sample_first + i];
+  n.per_m = spectrum.y;
+  n.scatters = spectrum.z;
   return n;
+}
+
+// What it scatters, W/m, of what has gone so far from its start, in the medium.
+float scattered_after(Node n, float metres) {
+  return n.light * n.scatters * exp(min(n.per_m * (distance(n.from, n.to) - metres), 80.0));
 }
 
 // What two rays differ by, at both ends.
@@ -125,21 +130,33 @@ Cell cell_of(Photon photon, int order, int i, Node n) {
 struct Stretch {
   vec3 from, to;
   Apart parts;       // of its spectrum
-  vec3 first, last;  // W at its ends
+  vec2 metres;       // on light's way from the stretch's start to the eye, and what is scattered, W/m,
+  vec3 first, last;  // after these
 };
 
 // What red, green and blue lose a metre, as far as they tell: negative parts of colours may cross zero.
-vec3 losses_of(Stretch w, float length_m) {
+vec3 losses_of(Stretch w) {
   float whole = dot(w.first, vec3(1)) / dot(w.last, vec3(1));
   vec3 lost;
   for (int k = 0; k < 3; k++) {
     bool told = w.first[k] * w.last[k] > 0.0;
-    lost[k] = log(max(told ? w.first[k] / w.last[k] : whole, 1.0)) / max(length_m, 1e-30);
+    lost[k] = log(max(told ? w.first[k] / w.last[k] : whole, 1.0)) / max(w.metres.y - w.metres.x, 1e-30);
   }
-  return in_air ? vec3(haze_air.y) : lost;
+  return lost;
 }
 
+// At its end, by these.
+vec3 scattered_at_end(Stretch w, vec3 losses) {
+  return w.last * exp(min(losses * (w.metres.y - distance(w.from, w.to)), vec3(80)));
+}
+
+// The least and the most of the way that light has in the medium from the start of a photon's to the eye: by that the
+// losses of a mixture are told. In the grid it ends with the photon's own.
+vec2 metres_seen(Node n);
+
 #ifdef IN_WORLD
+vec2 metres_seen(Node n) { return vec2(0, max(distance(n.from, n.to), 1e-9)); }
+
 int splits(Stretch w, Cell cell) { return 1; }
 
 // How far rays part, in what the grid does not tell.
@@ -151,13 +168,13 @@ float parting(Node at, Apart a, Cell cell) {
 
 // Its ends, and a cell's sides at both, each with a part of the light at its end and of what it loses.
 void list_beam(Stretch w, Cell cell) {
-  vec3 grows = losses_of(w, distance(w.from, w.to));
+  vec3 grows = losses_of(w), last = scattered_at_end(w, grows);
   uint at = atomicAdd(beam_count, 1u);
   if (at >= most) return;
   at *= uint(BEAM_TEXELS);
-  beam[at] = vec4(w.from, w.last.r);
-  beam[at + 1u] = vec4(w.to, w.last.g);
-  beam[at + 2u] = vec4(cell.u.from, w.last.b);
+  beam[at] = vec4(w.from, last.r);
+  beam[at + 1u] = vec4(w.to, last.g);
+  beam[at + 2u] = vec4(cell.u.from, last.b);
   beam[at + 3u] = vec4(cell.u.to, grows.r);
   beam[at + 4u] = vec4(cell.v.from, grows.g);
   beam[at + 5u] = vec4(cell.v.to, grows.b);
@@ -173,6 +190,16 @@ struct Line {
   vec2 normal;   // across it
   float offset;  // pixels from the picture's axis to it
 };
+
+float metres_to_eye(vec3 p) {
+  float distance_m = distance(eye, p), first;
+  return medium < 0 ? haze_way(eye, (p - eye) / max(distance_m, 1e-30), 0.0, distance_m, first) : distance_m;
+}
+
+vec2 metres_seen(Node n) {
+  float a = metres_to_eye(n.from), b = distance(n.from, n.to) + metres_to_eye(n.to), most = max(max(a, b), 1e-9);
+  return vec2(min(min(a, b), 0.5 * most), most);
+}
 
 vec2 per_tangent() { return size / (eye_view[4].yw - eye_view[4].xz); }
 
@@ -230,11 +257,8 @@ void list_beam(Stretch w, Cell cell) {
   Line line = line_of(w.from, w.to);
   vec2 u = widths_of(line, cell.u), v = widths_of(line, cell.v), s = widths_of(line, w.parts);
   float length_m = distance(w.from, w.to);
-  vec3 way = (w.to - w.from) / max(length_m, 1e-30);
-  vec3 grows = losses_of(w, length_m);
-  float hidden_m = (1.0 - line.part.y) * length_m, first;
-  if (eye_in_air) hidden_m = haze_way(line.to, way, 0.0, hidden_m, first);
-  vec3 light_there = w.last * exp(grows * hidden_m);
+  vec3 grows = losses_of(w);
+  vec3 light_there = scattered_at_end(w, grows) * exp(grows * (1.0 - line.part.y) * length_m);
   float reach = max(beam_reach(vec3(u.x, v.x, s.x)), beam_reach(vec3(u.y, v.y, s.y)));
   vec2 low = min(line.place[0], line.place[1]) - reach, high = max(line.place[0], line.place[1]) + reach;
   bool shown = line.seen && all(lessThan(low, size)) && all(greaterThan(high, vec2(0)));
@@ -260,7 +284,7 @@ void list_splits(Stretch w, Cell cell) {
   for (int k = 0; k < n * n; k++) {
     float u = float(k % n) - 0.5 * float(n - 1), v = float(k / n) - 0.5 * float(n - 1), share = part * part;
     list_beam(Stretch(w.from + u * small.u.from + v * small.v.from, w.to + u * small.u.to + v * small.v.to, w.parts,
-                      share * w.first, share * w.last),
+                      w.metres, share * w.first, share * w.last),
               small);
   }
 }
@@ -275,27 +299,28 @@ struct Run {
   Node first, last;
   vec3 from, to;
   float weight;
+  vec2 metres;
   vec3 light_first, light_last;
 };
 
-Run run_from(Node n) { return Run(n, n, vec3(0), vec3(0), 0.0, vec3(0), vec3(0)); }
+Run run_from(Node n) { return Run(n, n, vec3(0), vec3(0), 0.0, metres_seen(n), vec3(0), vec3(0)); }
 
 void add(inout Run r, Node a, Node b, vec3 colour) {
   vec3 from = 0.5 * (a.from + b.from), to = 0.5 * (a.to + b.to);
-  float light_w = 0.5 * (a.light + b.light), grown = exp(0.5 * (a.per_m + b.per_m) * distance(from, to));
+  float light_w = 0.5 * (a.light + b.light);
   float weight = light_w * max(dot(colour, vec3(1)), 1e-9);
   r.from += weight * from;
   r.to += weight * to;
   r.weight += weight;
-  r.light_last += light_w * colour;
-  r.light_first += light_w * grown * colour;
+  r.light_first += 0.5 * (scattered_after(a, r.metres.x) + scattered_after(b, r.metres.x)) * colour;
+  r.light_last += 0.5 * (scattered_after(a, r.metres.y) + scattered_after(b, r.metres.y)) * colour;
   r.last = b;
 }
 
 Stretch way_of_run(Run r) {
   float w = 1.0 / max(r.weight, 1e-30);
-  return Stretch(w * r.from, w * r.to, Apart(r.last.from - r.first.from, r.last.to - r.first.to), r.light_first,
-                   r.light_last);
+  return Stretch(w * r.from, w * r.to, Apart(r.last.from - r.first.from, r.last.to - r.first.to), r.metres,
+                 r.light_first, r.light_last);
 }
 
 // Part k of so many between two nodes.
@@ -307,8 +332,9 @@ Stretch way_of_part(Node a, Node b, int interval, int k, int parts) {
   w.from = mix(a.from, b.from, t);
   w.to = mix(a.to, b.to, t);
   w.parts = Apart(share * (b.from - a.from), share * (b.to - a.to));
-  w.last = mix(a.light, b.light, t) * colour;
-  w.first = w.last * exp(mix(a.per_m, b.per_m, t) * distance(w.from, w.to));
+  w.metres = metres_seen(a);
+  w.first = mix(scattered_after(a, w.metres.x), scattered_after(b, w.metres.x), t) * colour;
+  w.last = mix(scattered_after(a, w.metres.y), scattered_after(b, w.metres.y), t) * colour;
   return w;
 }
 

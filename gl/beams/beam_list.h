@@ -1,7 +1,7 @@
-/* beam_list.h: beams of the light that refractors and mirrors throw: a hit's light on its way from
- * its last interface, as wide as neighbouring photons and wavelengths stand apart. Photons are
- * followed once more; beams are listed as they lie in a picture, or in the world. It draws nothing.
- * Internal to gl/.
+/* beam_list.h: beams of the light that refractors and mirrors throw: on its ways through a medium,
+ * from interface to interface and beyond, as wide as neighbouring photons and wavelengths stand
+ * apart. Photons are followed once more; beams are listed as they lie in a picture, or in the
+ * world. It draws nothing. Internal to gl/.
  */
 #ifndef ABBE_GL_BEAMS_BEAM_LIST_H
 #define ABBE_GL_BEAMS_BEAM_LIST_H
@@ -12,7 +12,7 @@
 typedef struct abbe_beam_list {
   abbe_caustics *caustics;
   const abbe_camera_view *camera; /* NULL: in the world */
-  size_t medium;                  /* the refractor that beams are in, where they are not in air */
+  int medium;                     /* the refractor that beams are in; -1: the air */
   double cell_m;                  /* in the world: what is less than this apart is one beam */
   GLuint program;
   GLuint colours;      /* buffer: [light views][intervals][parts and halves] x RGB of unit power */

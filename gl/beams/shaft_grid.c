@@ -39,14 +39,16 @@ static double widest_cell(const abbe_shaft_grid *grid) {
   return fmax(cell_of(grid, 0), fmax(cell_of(grid, 1), cell_of(grid, 2)));
 }
 
-/* All of the lights' power within their views, along a cell. */
+/* What a cell's length scatters of all the lights' power within their views. */
 static double most_of_a_cell(const abbe_shaft_grid *grid) {
   const abbe_photon_lights *views = grid->beams.caustics->views;
-  double power = 0;
+  double power = 0, scatters = 0;
+  for (int k = 0; k < ABBE_PLAN_HAZE_BANDS; k++)
+    scatters = fmax(scatters, plan_of(grid)->shaft_haze.scatters[k]);
   for (size_t i = 0; i < plan_of(grid)->light_view_count; i++)
     power += grid->scene->local->light[plan_of(grid)->light_view[i].light].power *
              abbe_view_area(&views->light[i].near_view);
-  return power * widest_cell(grid);
+  return power * scatters * widest_cell(grid);
 }
 
 static abbe_result make_store(abbe_shaft_grid *grid, abbe_error *error) {
@@ -65,8 +67,9 @@ abbe_result abbe_shaft_grid_make(abbe_caustics *caustics, const abbe_shader_vari
   const abbe_gpu_scene *scene = caustics->views->scene;
   *out = (abbe_shaft_grid){.scene = scene};
   lay_out(out);
-  out->beams = (abbe_beam_list){
-      .caustics = caustics, .medium = scene->plan->shaft_refractor, .cell_m = widest_cell(out)};
+  out->beams = (abbe_beam_list){.caustics = caustics,
+                                .medium = (int)scene->plan->shaft_refractor,
+                                .cell_m = widest_cell(out)};
   abbe_result result = abbe_beam_list_make(variant, &out->beams, error);
   if (result == ABBE_OK)
     result = abbe_gpu_compute(scene->gpu, "shaft_add.comp", NULL, &out->add, error);
@@ -144,7 +147,6 @@ void abbe_shaft_grid_set(const abbe_shaft_grid *grid, GLuint program) {
   abbe_gpu_bind_array(gpu, program, "shaft_light", UNIT_SHAFTS, grid->texture);
   set_vector(gpu, program, "shaft_low", grid->low);
   set_vector(gpu, program, "shaft_high", grid->high);
-  set_vector(gpu, program, "shaft_scatters", haze->scatters);
   abbe_gpu_set_float(gpu, program, "shaft_g", haze->g);
   abbe_gpu_set_int(gpu, program, "shaft_layers", (int)grid->cells[2]);
   abbe_gpu_set_int(gpu, program, "shaft_refractor", (int)plan_of(grid)->shaft_refractor);

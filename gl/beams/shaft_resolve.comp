@@ -1,11 +1,11 @@
-// The grid's sums as light that passes each cell, W/m2, in the layers of a texture; behind them its mean
+// The grid's sums as light that is scattered in each cell, W/m3, in the layers of a texture; behind them its mean
 // direction, by how much there is.
 layout(local_size_x = 32, local_size_y = 16) in;
 #include "thread.glsl"
 layout(std430, binding = BINDING_MAP_SUMS) readonly buffer Sums { int sum[]; };
 layout(rgba32f, binding = 0) writeonly uniform image2DArray light;
 uniform vec3 cells;  // along each axis
-uniform float unit;  // W/m2 that a unit comes to
+uniform float unit;  // W/m3 that a unit comes to
 
 void main() {
   ivec2 at = ivec2(texel_number());

@@ -24,13 +24,10 @@ void main() {
   float distance_m = length(from), unused;
   vec3 d = from / distance_m;
   float metres = min(length_m / pixels * z * z / (depths.x * depths.y), distance_m);  // a pixel
-  bool hazy = !eye_in_air || (all(greaterThan(at, haze_low)) && all(lessThan(at, haze_high)));
   float seen_way = eye_in_air ? haze_way(eye, d, 0.0, distance_m, unused) : distance_m;
-  float lost_way = distance(at, last.xyz);
-  if (eye_in_air) lost_way = haze_way(at, way, 0.0, lost_way, unused);
   vec2 per_tangent = size / (eye_view[4].yw - eye_view[4].xz);
   float cosine = z / distance_m, measure = cosine * cosine * cosine / (per_tangent.x * per_tangent.y);
   float scattered = share * metres * haze_phase(haze_g, -dot(way, d)) / (distance_m * distance_m * measure);
-  vec3 light_there = vec3(first.w, last.w, grows.w) * exp(grows.xyz * lost_way - haze_takes * seen_way);
-  radiance = hazy ? vec4(haze_scatters * light_there * scattered, 0) : vec4(0);
+  vec3 light_there = vec3(first.w, last.w, grows.w) * exp(grows.xyz * (distance(at, last.xyz) - seen_way));
+  radiance = vec4(light_there * scattered, 0);
 }

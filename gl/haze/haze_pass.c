@@ -23,10 +23,10 @@ static abbe_result make_targets(abbe_haze_pass *pass, abbe_error *error) {
   return result;
 }
 
-/* The first refractor that the eye is in. */
-static size_t around_eye(const abbe_plan *plan) {
-  size_t r = 0;
-  while (r + 1 < plan->refractor_count && (plan->eye_inside >> r & 1) == 0) r++;
+/* The refractor that the eye is in, the last of several; -1: the air. */
+static int around_eye(const abbe_plan *plan) {
+  int r = plan->eye_in_air ? -1 : (int)plan->refractor_count - 1;
+  while (r > 0 && (plan->eye_inside >> r & 1) == 0) r--;
   return r;
 }
 
@@ -46,7 +46,7 @@ abbe_result abbe_haze_pass_make(abbe_picture *picture, abbe_caustics *caustics,
   if (!plan->hazy) return ABBE_OK;
   *out = (abbe_haze_pass){.picture = picture, .caustics = plan->caustics ? caustics : NULL};
   abbe_gpu *gpu = scene_of(out)->gpu;
-  abbe_result result = abbe_gpu_program(gpu, overs, 2, NULL, &out->over, error);
+  abbe_result result = abbe_shader_variant_program(variant, gpu, overs, 2, NULL, &out->over, error);
   if (result == ABBE_OK) result = make_targets(out, error);
   if (result == ABBE_OK)
     result = abbe_shader_variant_program(

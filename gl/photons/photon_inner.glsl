@@ -17,16 +17,32 @@ void layers_hit(int r, vec3 p, vec3 d, out vec3 q, out vec3 n) {
 }
 #endif
 
+// What haze in the air leaves on the way to the refractor and from there along d from p.
+float outside_left(PhotonRay photon, vec3 p, vec3 d, ReceiverHit to) {
+#ifdef HAZE
+  return air_left(photon, photon.o, photon.d, photon.front.t, true) * air_left(photon, p, d, length_to(to, p), false);
+#else
+  return 1.0;
+#endif
+}
+
 // The mirror on the outside takes the slot behind the outgoing segments'; it is the same for all colours.
 // Returns the share that is lost.
 float mirror(PhotonRay photon, uint path, float reflected) {
   if (reflected <= 0.0) return 0.0;
   Hit front = photon.front;
-  ReceiverHit to = meet_receiver(front.p, reflect(photon.d, front.n), -touch * refractor_bounds.w, 1e30);
+  vec3 d = reflect(photon.d, front.n);
+  ReceiverHit to = meet_receiver(front.p, d, -touch * refractor_bounds.w, 1e30);
+  uint signature = signature_of(path * 17u + to.receiver, to, uint(front.refractor));
+  float left = outside_left(photon, front.p, d, to);
+#ifdef HAZE
+  if (keeps_ways) {
+    keep_air_way(photon, counts.exits, front.p, d, length_to(to, front.p), reflected * photon.flux * left, signature, 0.0);
+    return 0.0;
+  }
+#endif
   if (to.state < HELD) return reflected;
-  float left = air_left(photon, front.p, to.at);
-  keep_hit(photon, PhotonHit(counts.exits, to.place, reflected * photon.flux * left,
-                             signature_of(path * 17u + to.receiver, to, uint(front.refractor)), 0.0,
+  keep_hit(photon, PhotonHit(counts.exits, to.place, reflected * photon.flux * left, signature, 0.0,
                              vec4(front.p, interface_word(front.n, false, to.tile))));
   return reflected * (1.0 - left);
 }
@@ -34,10 +50,16 @@ float mirror(PhotonRay photon, uint path, float reflected) {
 // What leaves at interface `order`. Returns the share that is lost.
 float keep_outgoing(PhotonRay photon, Outgoing o, int order, uint path, float path_m) {
   ReceiverHit to = meet_receiver(o.p, o.d, -touch * refractor_bounds.w, 1e30);
+  uint signature = signature_of(path * 31u + to.receiver, to, uint(photon.front.refractor));
+  float left = outside_left(photon, o.p, o.d, to);
+#ifdef HAZE
+  if (keeps_ways) {
+    keep_air_way(photon, order, o.p, o.d, length_to(to, o.p), o.share * photon.flux * left, signature, path_m);
+    return 0.0;
+  }
+#endif
   if (to.state < HELD) return o.share;
-  float left = air_left(photon, o.p, to.at);
-  keep_hit(photon, PhotonHit(order, to.place, o.share * photon.flux * left,
-                             signature_of(path * 31u + to.receiver, to, uint(photon.front.refractor)), path_m,
+  keep_hit(photon, PhotonHit(order, to.place, o.share * photon.flux * left, signature, path_m,
                              vec4(o.p, interface_word(o.n, true, to.tile))));
   return o.share * (1.0 - left);
 }

@@ -1,6 +1,8 @@
 // The path of a photon's light of one wavelength: from the light through refractors to receivers.
 // Every outgoing segment that still carries energy is followed, one hit each. Who includes this gives
-// `light`, `share_limit` and keep_hit(ray, hit).
+// `light`, `share_limit` and keep_hit(ray, hit). HAZE: with `keeps_ways` hits are not where light lands, but
+// its ways through what scatters, from interface to interface and beyond; in place of interface_word()
+// stands the refractor in which a way is, -1: the air.
 
 #include "photon_absorption.glsl"
 
@@ -83,18 +85,21 @@ ReceiverHit meet_receiver(vec3 p, vec3 d, float t_min, float t_max) {
   return to;
 }
 
-// What haze in the air leaves of light on its way to its first interface, and behind the last.
-float air_left(PhotonRay photon, vec3 last, vec3 place) {
 #ifdef HAZE
-  bool parallel = int(pass_light.position.w) == 2;
-  vec3 along = place - last;
-  float length_m = length(along);
-  return haze_left(photon.o, photon.d, parallel ? -HAZE_FAR : 0.0, photon.front.t) *
-         haze_left(last, along / max(length_m, 1e-30), 0.0, length_m);
-#else
-  return 1.0;
-#endif
+uniform bool keeps_ways;
+
+// Extinction and scattering of the air, 1/m.
+vec2 air_haze(int i) { return spectra[REFRACTORS * counts.wavelengths + i].yz; }
+
+// What haze in the air leaves of light on its way, the first from a light or a later one.
+float air_left(PhotonRay photon, vec3 p, vec3 d, float length_m, bool first) {
+  bool from_afar = first && int(pass_light.position.w) == 2;
+  return haze_left(p, d, from_afar ? -HAZE_FAR : 0.0, length_m, air_haze(photon.wavelength).x);
 }
+#endif
+
+// How far off it is, where there is one.
+float length_to(ReceiverHit to, vec3 from) { return to.state == NO_RECEIVER ? 1e30 : distance(to.at, from); }
 
 // A hit's signature; `path` counts the receiver too.
 uint signature_of(uint path, ReceiverHit to, uint owner) {
@@ -104,6 +109,15 @@ uint signature_of(uint path, ReceiverHit to, uint owner) {
   return path << 8 | 0x80000000u | owner;
 #endif
 }
+
+#ifdef HAZE
+// The part of a way in the air, along d from p, that is in haze; flux: what is left at its end.
+void keep_air_way(PhotonRay photon, int slot, vec3 p, vec3 d, float length_m, float flux, uint signature, float path_m) {
+  float first, way_m = haze_way(p, d, 0.0, length_m, first);
+  if (way_m > 0.0 && air_haze(photon.wavelength).y > 0.0)
+    keep_hit(photon, PhotonHit(slot, p + (first + way_m) * d, flux, signature, path_m, vec4(p + first * d, -1.0)));
+}
+#endif
 
 #ifdef WALK
 #include "photon_walk.glsl"

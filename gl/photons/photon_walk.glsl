@@ -34,13 +34,14 @@ struct Ends {
 };
 
 void end_path(PhotonRay photon, PathState w, ReceiverHit to, uint owner, inout uint used, inout Ends e) {
+#ifdef HAZE
+  if (keeps_ways) return;
+#endif
   int slot = to.state >= HELD ? take_slot(w.path, used) : -1;
   if (slot >= 0) {
     bool last = w.transmitted && w.inside == 0u && w.refractor == int(owner);
     vec3 n = dot(w.interface_n, w.d) < 0.0 ? -w.interface_n : w.interface_n;
-    float left = air_left(photon, w.p, to.at);
-    e.absorbed += w.share * (1.0 - left);
-    keep_hit(photon, PhotonHit(slot, to.place, w.share * photon.flux * left,
+    keep_hit(photon, PhotonHit(slot, to.place, w.share * photon.flux,
                                signature_of(w.path * 31u + to.receiver, to, owner), 0.0,
                                vec4(w.p, interface_word(n, last, to.tile))));
   } else if (to.state >= HELD || (to.state == NO_RECEIVER && w.inside != 0u)) {
@@ -51,6 +52,22 @@ void end_path(PhotonRay photon, PathState w, ReceiverHit to, uint owner, inout u
     e.missed += w.share;
   }
 }
+
+#ifdef HAZE
+// w's way from an interface to what it meets next; ends: what that is, as a part of the way's signature.
+void keep_way(PhotonRay photon, PathState w, float length_m, uint ends, uint owner, inout uint used) {
+  bool in_air = w.inside == 0u;
+  if (!in_air && (length_m >= 1e30 || spectra[medium_of(w.inside) * counts.wavelengths + wavelength].z <= 0.0)) return;
+  uint path = w.path * 31u + ends;
+  int slot = take_slot(path, used);
+  uint signature = path << 8 | 0x80000000u | owner;
+  if (slot >= 0 && in_air)
+    keep_air_way(photon, slot, w.p, w.d, length_m, w.share * photon.flux, signature, 0.0);
+  else if (slot >= 0)
+    keep_hit(photon, PhotonHit(slot, w.p + length_m * w.d, w.share * photon.flux, signature, 0.0,
+                               vec4(w.p, float(medium_of(w.inside)))));
+}
+#endif
 
 void trace(PhotonRay photon, out Shares entry[5]) {
   for (int k = 0; k < 5; k++) entry[k] = Shares(0.0);
@@ -76,13 +93,22 @@ void trace(PhotonRay photon, out Shares entry[5]) {
     // What leaves a refractor that touches a receiver lands there.
     float t_min = w.inside == 0u ? -touch * refractor_bounds.w : 0.0;
     ReceiverHit to = meet_receiver(w.p, w.d, t_min, arrives ? -1e30 : met ? h.hit.t : 1e30);
+    float length_m = met ? min(length_to(to, w.p), h.hit.t) : length_to(to, w.p);
 #ifdef ABSORBING
-    if (w.inside != 0u && (met || to.state != NO_RECEIVER)) {
-      float path_m = to.state != NO_RECEIVER ? distance(to.at, w.p) : h.hit.t;
-      float left = exp(-path_m * refractor_spectrum(medium_of(w.inside)).y);
+    if (w.inside != 0u && length_m < 1e30) {
+      float left = exp(-length_m * refractor_spectrum(medium_of(w.inside)).y);
       e.absorbed += w.share * (1.0 - left);
       w.share *= left;
     }
+#endif
+#ifdef HAZE
+    if (w.inside == 0u) {
+      float left = air_left(photon, w.p, w.d, length_m, arrives);
+      e.absorbed += w.share * (1.0 - left);
+      w.share *= left;
+    }
+    if (keeps_ways && !arrives && w.share > 0.0)
+      keep_way(photon, w, length_m, to.state != NO_RECEIVER ? to.receiver : met ? uint(h.hit.refractor) * 7919u + 65537u : 0u, owner, used);
 #endif
     if (to.state == NO_RECEIVER && met) {
       float ended, dropped, absorbed;

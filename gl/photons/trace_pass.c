@@ -143,6 +143,7 @@ void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set s
   abbe_gpu_set_int(gpu, program, "sample_count", (int)count);
   abbe_gpu_set_int(gpu, program, "hit_stride", (int)hits->stride);
   abbe_gpu_set_int(gpu, program, "ledger_first", 0);
+  if (scene->plan->hazy) abbe_gpu_set_int(gpu, program, "keeps_ways", 0);
   abbe_gpu_set_float(gpu, program, "share_limit", scene->plan->desc.energy_share);
   abbe_gpu_set_int(gpu, program, "fits_tiles", pass->atlas->fits ? 1 : 0);
   if (scene->plan->lengths)
@@ -173,15 +174,25 @@ void abbe_trace_pass_end(abbe_trace_pass *pass, const abbe_hits *hits, size_t it
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-void abbe_trace_pass_batch(abbe_trace_pass *pass, size_t light, size_t first, size_t count,
-                           size_t ledger_first) {
+static void trace_batch(abbe_trace_pass *pass, size_t light, size_t first, size_t count,
+                        size_t ledger_first, bool ways) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const size_t photons = pass->start->views->light[light].photon_count;
   abbe_trace_pass_begin(pass, light, ABBE_TRACE_ALL, &pass->hits, count);
+  if (ways) abbe_gpu_set_int(gpu, pass->program, "keeps_ways", 1);
   abbe_gpu_set_int(gpu, pass->program, "sample_first", (int)first);
   abbe_gpu_set_int(gpu, pass->program, "ledger_first", (int)ledger_first);
   abbe_gpu_dispatch(gpu, pass->program, groups_of(photons * count));
   abbe_trace_pass_end(pass, &pass->hits, photons);
+}
+
+void abbe_trace_pass_batch(abbe_trace_pass *pass, size_t light, size_t first, size_t count,
+                           size_t ledger_first) {
+  trace_batch(pass, light, first, count, ledger_first, false);
+}
+
+void abbe_trace_pass_ways(abbe_trace_pass *pass, size_t light, size_t first, size_t count) {
+  trace_batch(pass, light, first, count, scene_of(pass)->plan->desc.wavelengths, true);
 }
 
 void abbe_trace_pass_coarse(abbe_trace_pass *pass, size_t light) {

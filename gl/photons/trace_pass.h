@@ -58,6 +58,9 @@ void abbe_hits_free(abbe_gpu *gpu, abbe_hits *hits);
  * in the ledger already. */
 void abbe_trace_pass_batch(abbe_trace_pass *pass, size_t light, size_t first, size_t count,
                            size_t ledger_first);
+/* The same, but for hits their ways through media that scatter (photon_path.glsl), and no ledger.
+ */
+void abbe_trace_pass_ways(abbe_trace_pass *pass, size_t light, size_t first, size_t count);
 void abbe_trace_pass_coarse(abbe_trace_pass *pass, size_t light);
 
 /* The program is in use, everything is bound and lists are cleared; what runs it then dispatches.
@@ -68,8 +71,9 @@ void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set s
 void abbe_trace_pass_end(abbe_trace_pass *pass, const abbe_hits *hits, size_t items);
 
 /* The hits of the last batch, from wavelength `first` on:
- * [photons][slots][stride] x 4 floats, place (on tiles: texels and number) and flux of unit power of
- * the light, zero where there is none, and their paths (may be NULL); malloc'd. Waits for the device.
+ * [photons][slots][stride] x 4 floats, place (on tiles: texels and number) and flux of unit power
+ * of the light, zero where there is none, and their paths (may be NULL); malloc'd. Waits for the
+ * device.
  */
 abbe_result abbe_trace_pass_read(abbe_trace_pass *pass, size_t light, size_t first, float **hits,
                                  GLuint **paths, abbe_error *error);

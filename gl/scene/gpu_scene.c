@@ -134,6 +134,7 @@ void abbe_gpu_scene_begin(abbe_gpu *gpu, const abbe_scene *local, double unit,
   store_matrix(matrix, out->rgb_from_xyz);
   abbe_rgb_space_to_xyz(abbe_gpu_scene_working_space(out), matrix);
   store_matrix(matrix, out->xyz_from_rgb);
+  abbe_gpu_haze_make(out);
 }
 
 static abbe_result make_geometry(abbe_gpu_scene *scene, abbe_error *error) {
@@ -237,28 +238,6 @@ static void set_rough(const abbe_gpu_scene *scene, GLuint program) {
   gl->Uniform3fv(gl->GetUniformLocation(program, "rough_centre"), n, centre[0]);
 }
 
-static void set_haze(const abbe_gpu_scene *scene, GLuint program) {
-  const abbe_gl *gl = scene->gpu->gl;
-  const abbe_medium *air = scene->local->medium;
-  const abbe_plan_haze *h = &scene->plan->air_haze, *eye = &scene->plan->eye_haze;
-  if (!scene->plan->hazy) return;
-  float low[3] = {0}, high[3] = {0};
-  for (int k = 0; k < 3 && air != NULL; k++) {
-    low[k] = (float)air->min[k];
-    high[k] = (float)air->max[k];
-  }
-  gl->Uniform3f(gl->GetUniformLocation(program, "haze_low"), low[0], low[1], low[2]);
-  gl->Uniform3f(gl->GetUniformLocation(program, "haze_high"), high[0], high[1], high[2]);
-  gl->Uniform3f(gl->GetUniformLocation(program, "haze_air"), (GLfloat)h->scattering,
-                (GLfloat)(h->scattering + h->absorption), (GLfloat)h->g);
-  gl->Uniform3f(gl->GetUniformLocation(program, "haze_scatters"), (GLfloat)eye->scatters[0],
-                (GLfloat)eye->scatters[1], (GLfloat)eye->scatters[2]);
-  gl->Uniform3f(gl->GetUniformLocation(program, "haze_takes"), (GLfloat)eye->takes[0],
-                (GLfloat)eye->takes[1], (GLfloat)eye->takes[2]);
-  abbe_gpu_set_float(scene->gpu, program, "haze_g", eye->g);
-  abbe_gpu_set_int(scene->gpu, program, "eye_in_air", scene->plan->eye_in_air);
-}
-
 void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program) {
   const abbe_gl *gl = scene->gpu->gl;
   abbe_gpu_bind_array(scene->gpu, program, "surface_texture", 1, scene->surface_texture);
@@ -282,7 +261,7 @@ void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program) {
     abbe_gpu_set_float(scene->gpu, program, "light_unit", scene->unit);
     abbe_gpu_set_float(scene->gpu, program, "environment_scale", 1 / scene->unit);
   }
-  set_haze(scene, program);
+  abbe_gpu_haze_set(scene, program);
   abbe_gpu_area_lights_set(scene, program);
   abbe_gpu_environment_set(scene->gpu, scene->local, &scene->environment, scene->unit, program);
 }

@@ -58,6 +58,9 @@ typedef struct abbe_gpu_scene {
   size_t *refractor_root;        /* [refractor_count] of its tree */
   size_t receiver_root;          /* of the tree of all receivers that are traversed */
   size_t bvh_depth;
+  /* [(light views + 1) x bands]: rgb of each light of unit power, last of the scene's illuminant */
+  float haze_white[(ABBE_SCENE_MAX_LIGHTS + 1) * ABBE_PLAN_HAZE_BANDS][3];
+
   abbe_gpu_shadow_row *shadow_row; /* all ranges, then all planes */
   size_t shadow_planes; /* 0: none, or more than a block holds: faces are asked one by one */
 } abbe_gpu_scene;
@@ -99,6 +102,10 @@ void abbe_gpu_meshes_free(abbe_gpu_scene *scene);
  * room: elements of a buffer that holds so many, so that tables of like size share programs. */
 size_t abbe_gpu_spectra_room(size_t count);
 abbe_result abbe_gpu_spectra_upload(abbe_gpu_scene *scene, abbe_error *error);
+
+/* gpu_haze.c: media by bands of the spectrum; make is a part of abbe_gpu_scene_begin. */
+void abbe_gpu_haze_make(abbe_gpu_scene *scene);
+void abbe_gpu_haze_set(const abbe_gpu_scene *scene, GLuint program);
 
 /* gpu_surfaces.c: textures, what every receiver reflects of every light, and the environment.
  * reflections: rows of the table of these, three a matrix; the plan's facts decide it. */

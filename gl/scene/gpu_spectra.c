@@ -12,16 +12,27 @@ size_t abbe_gpu_spectra_room(size_t count) {
 
 static abbe_result upload_spectra(abbe_gpu_scene *scene, abbe_error *error) {
   const abbe_spectral_tables *tables = &scene->tables;
-  const size_t count = scene->plan->refractor_count * tables->all.count;
-  const size_t room = abbe_gpu_spectra_room(count);
+  const size_t n = tables->all.count, count = scene->plan->refractor_count * n;
+  const size_t room = abbe_gpu_spectra_room(count + n);
   float(*spectrum)[4] = calloc(room, sizeof *spectrum);
   if (spectrum == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for spectra");
   for (size_t i = 0; i < count; i++) {
-    const bool mirror = scene->plan->mirror[i / tables->all.count];
+    const bool mirror = scene->plan->mirror[i / n];
+    const size_t object = scene->plan->refractor_object[i / n];
     spectrum[i][0] = (float)tables->index[i];
     spectrum[i][1] = (float)(mirror ? tables->mirror[i].factor : tables->attenuation[i]);
-    spectrum[i][2] = (float)tables->mirror[i].n;
+    spectrum[i][2] = (float)(mirror ? tables->mirror[i].n
+                                    : abbe_medium_scattering(scene->local->object[object].medium,
+                                                             tables->all.lambda_nm[i % n]));
     spectrum[i][3] = (float)tables->mirror[i].k;
+  }
+  for (size_t i = 0; i < n; i++) {
+    const double scattering =
+        abbe_medium_scattering(scene->local->medium, tables->all.lambda_nm[i]);
+    spectrum[count + i][0] = 1;
+    spectrum[count + i][1] = (float)(scattering + abbe_medium_absorption(scene->local->medium,
+                                                                         tables->all.lambda_nm[i]));
+    spectrum[count + i][2] = (float)scattering;
   }
   abbe_result result =
       abbe_gpu_make_buffer(scene->gpu, room * sizeof *spectrum, spectrum, &scene->spectra, error);

@@ -77,7 +77,7 @@ static bool too_large(size_t count, size_t element) {
 }
 
 static void print_tables(FILE *to, const abbe_shader_variant *v) {
-  const size_t spectra = abbe_gpu_spectra_room(v->refractors * v->wavelengths);
+  const size_t spectra = abbe_gpu_spectra_room((v->refractors + 1) * v->wavelengths);
   const size_t bands = abbe_gpu_spectra_room(v->refractors * ABBE_CAMERA_BAND_SETS * v->bands);
   const size_t reflections = abbe_gpu_spectra_room(v->reflections);
   print_count(to, "LIGHTS", v->lights);
@@ -158,6 +158,7 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "ROUGH", v->rough);
   print_flag(to, "CUBES", v->cubes);
   print_flag(to, "HAZE", v->haze);
+  if (v->haze) print_count(to, "HAZE_BANDS", ABBE_PLAN_HAZE_BANDS);
   print_flag(to, "SHAFTS", v->shafts);
   print_flag(to, "PINHOLES", v->pinholes);
   print_flag(to, "PINHOLE_CHARTS", v->page_charts);

@@ -51,7 +51,7 @@ layout(std430, binding = BINDING_SURFACES) readonly buffer Surfaces { Surface su
 #else
 layout(std140, binding = BINDING_SURFACES) uniform Surfaces { Surface surfaces[SURFACE_ROOM]; };
 #endif
-// n and attenuation (1/m) at [refractor * wavelengths + i]; of a mirror the n by which its light is laid, and
+// n, attenuation and of that what is scattered (1/m) at [refractor * wavelengths + i], last of the air; of a mirror the n by which its light is laid, and
 // from the second on what walk.glsl reflects by.
 #ifdef SPECTRA_IN_STORAGE
 layout(std430, binding = BINDING_SPECTRA) readonly buffer Spectra { vec4 spectra[]; };

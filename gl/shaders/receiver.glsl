@@ -96,9 +96,12 @@ void light_irradiance(int light, vec3 p, vec3 n, int side, out vec3 direct, out 
   if (facing > 0.0) {
     float e = l.white.w * light_profile(l, d) * facing * falloff;
 #ifdef HAZE
-    e *= haze_left(p, -d, 0.0, directional ? HAZE_FAR : distance_m);
+    float unused;
+    vec3 white = haze_light(light, haze_way(p, -d, 0.0, directional ? HAZE_FAR : distance_m, unused));
+#else
+    vec3 white = l.white.rgb;
 #endif
-    if (e > 0.0) direct = l.white.rgb * (e * refractor_shadow(light, p, d, distance_m));
+    if (e > 0.0) direct = white * (e * refractor_shadow(light, p, d, distance_m));
   }
 #ifdef CAUSTICS
   if (l.misc.w == 0.0) return;

@@ -99,6 +99,7 @@ static const char *wavelengths_reason(const abbe_plan *plan, bool asked) {
          : plan->dispersive                    ? "the index varies with wavelength"
          : plan->tinting                       ? "the attenuation varies with wavelength"
          : plan->colouring                     ? "a mirror's reflectance varies with wavelength"
+         : plan->tinted_air                    ? "haze in the air varies with wavelength"
          : plan->mirror_count == plan->refractor_count
              ? "mirrors reflect all wavelengths alike"
              : "all indices are constant, one geometry serves all";
@@ -108,10 +109,10 @@ void abbe_spectral_needs_count(abbe_plan *plan) {
   bool asked = plan->desc.wavelengths != 0;
   if (!asked)
     plan->desc.wavelengths =
-        !(plan->dispersive || plan->tinting || plan->colouring) ? 1
-        : plan->desc.profile == ABBE_PROFILE_WYMAN2006          ? 1
-        : plan->desc.profile == ABBE_PROFILE_SHAH2007           ? ABBE_PLAN_SHAH_COLOURS
-                                                                : ABBE_PLAN_WAVELENGTHS;
+        !(plan->dispersive || plan->tinting || plan->colouring || plan->tinted_air) ? 1
+        : plan->desc.profile == ABBE_PROFILE_WYMAN2006                              ? 1
+        : plan->desc.profile == ABBE_PROFILE_SHAH2007 ? ABBE_PLAN_SHAH_COLOURS
+                                                      : ABBE_PLAN_WAVELENGTHS;
   if (abbe_plan_no_refraction(plan) != NULL) plan->desc.wavelengths = 1;
   abbe_plan_add(plan, ABBE_CHOICE_WAVELENGTHS, "%zu from %g to %g nm: %s", plan->desc.wavelengths,
                 plan->desc.min_nm, plan->desc.max_nm, wavelengths_reason(plan, asked));

@@ -26,16 +26,20 @@ const char *abbe_plan_no_refraction(const abbe_plan *plan) {
                                       : "neither a light nor the eye meets a refractor";
 }
 
+double abbe_plan_haze_edge(const abbe_render_desc *desc, int k) {
+  return desc->min_nm + (desc->max_nm - desc->min_nm) * k / ABBE_PLAN_HAZE_BANDS;
+}
+
 size_t abbe_plan_least_wavelengths(const abbe_plan *plan) {
   /* What lies between these is followed from the interface where light leaves
    * (outgoing_segment.glsl). */
   static const size_t coarse = 4;
   const size_t n = plan->desc.wavelengths;
   /* Without lengths hits do not know what absorption changes between two wavelengths; nor do they
-   * what a mirror does. */
+   * what a mirror or the air does. */
   const bool apart = plan->fills && !abbe_profile_is_published(plan->desc.profile);
   const bool changes = plan->tinting || plan->colouring;
-  return apart && changes == plan->lengths && n > coarse ? coarse : n;
+  return apart && changes == plan->lengths && !plan->tinted_air && n > coarse ? coarse : n;
 }
 
 static bool has_lamp(const abbe_plan *p) {

@@ -49,12 +49,18 @@ typedef struct abbe_light_view {
                      those through which no light reaches a refractor; without a cube, all */
 } abbe_light_view;
 
-/* A medium that scatters: means over wavelengths, 1/m, and the mean cosine; of the red, green and
- * blue of white light in the picture's space what is scattered, and what is scattered and absorbed. */
+/* Bands of equal width, in which a medium counts as grey. */
+enum { ABBE_PLAN_HAZE_BANDS = 12 };
+
+/* A medium that scatters: means over wavelengths, 1/m, and the mean cosine; by band what is
+ * scattered, and what is scattered and absorbed. */
 typedef struct abbe_plan_haze {
   double scattering, absorption, g;
-  double scatters[3], takes[3];
+  double scatters[ABBE_PLAN_HAZE_BANDS], takes[ABBE_PLAN_HAZE_BANDS];
 } abbe_plan_haze;
+
+/* Where band k begins, nm. */
+double abbe_plan_haze_edge(const abbe_render_desc *desc, int k);
 
 typedef struct abbe_plan {
   abbe_render_desc desc; /* the request, with a value for each that it left to the plan */
@@ -112,6 +118,7 @@ typedef struct abbe_plan {
   bool absorbing;  /* its attenuation is above zero somewhere */
   bool tinting;    /* its attenuation varies */
   bool colouring;  /* of some mirror: its reflectance varies */
+  bool tinted_air; /* of the air: what it takes or scatters varies */
 
   size_t eye_exits; /* of the camera's rays, followed at the most */
   double eye_share; /* below this share of their light they end */

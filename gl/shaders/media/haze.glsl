@@ -2,10 +2,13 @@
 // in water its own is all around.
 const float HAZE_FAR = 1e9;  // beyond every box, m
 uniform vec3 haze_low, haze_high;  // of the air's, m
-uniform vec3 haze_air;             // scattering and extinction, 1/m, and the mean cosine
-// Of the medium that the eye is in, of red, green and blue: scattering and extinction, 1/m; the mean cosine.
-uniform vec3 haze_scatters, haze_takes;
+uniform float haze_air_g;          // mean cosine
+// Of the medium that the eye is in, which may be the air.
 uniform float haze_g;
+// By bands of the spectrum: what the air takes, what it scatters, and what the medium around the eye takes, 1/m;
+// rgb of each light of unit power in them, and last of the scene's illuminant.
+uniform vec4 haze_bands[HAZE_BANDS];
+uniform vec3 haze_white[(LIGHTS + 1) * HAZE_BANDS];
 
 // Metres of the part [from, to] of the way o + t d in the air's haze; where it begins.
 float haze_way(vec3 o, vec3 d, float from, float to, out float first) {
@@ -16,9 +19,35 @@ float haze_way(vec3 o, vec3 d, float from, float to, out float first) {
   return max(min(min(far.x, far.y), min(far.z, to)) - first, 0.0);
 }
 
-float haze_left(vec3 o, vec3 d, float from, float to) {
+// Of light of one wavelength, of which haze takes so much a metre.
+float haze_left(vec3 o, vec3 d, float from, float to, float per_m) {
   float first;
-  return exp(-haze_air.y * haze_way(o, d, from, to, first));
+  return exp(-per_m * haze_way(o, d, from, to, first));
+}
+
+// What so many metres of the air's haze leave of a light of unit power, rgb; and of that what is scattered there a metre.
+vec3 haze_light(int light, float metres) {
+  vec3 sum = vec3(0);
+  for (int k = 0; k < HAZE_BANDS; k++) sum += haze_white[light * HAZE_BANDS + k] * exp(-metres * haze_bands[k].x);
+  return sum;
+}
+
+vec3 haze_scattered(int light, float metres) {
+  vec3 sum = vec3(0);
+  for (int k = 0; k < HAZE_BANDS; k++)
+    sum += haze_white[light * HAZE_BANDS + k] * (haze_bands[k].y * exp(-metres * haze_bands[k].x));
+  return sum;
+}
+
+// What is left of white light that the eye sees through so many metres, of each of red, green and blue.
+vec3 haze_tint(float metres) {
+  vec3 left = vec3(0), all = vec3(0);
+  for (int k = 0; k < HAZE_BANDS; k++) {
+    vec3 white = haze_white[LIGHTS * HAZE_BANDS + k];
+    left += white * exp(-metres * haze_bands[k].z);
+    all += white;
+  }
+  return max(left, vec3(0)) / max(all, vec3(1e-9));
 }
 
 // A share a steradian, where light turns by the angle of that cosine [HenyeyGreenstein1941].

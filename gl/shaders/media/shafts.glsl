@@ -1,10 +1,9 @@
 // Light in the medium of a refractor, cell by cell (gl/beams/shaft_grid.h): what of it is scattered along a ray
 // that the camera's has become.
-uniform sampler2DArray shaft_light;  // W/m2; then its direction
+uniform sampler2DArray shaft_light;  // what is scattered, W/m3; then light's direction
 uniform vec3 shaft_low, shaft_high;  // m
 uniform int shaft_layers;
 uniform int shaft_refractor;
-uniform vec3 shaft_scatters;  // 1/m
 uniform float shaft_g;
 
 const int SHAFT_STEPS = 40;
@@ -25,5 +24,5 @@ vec3 shafts_along(vec3 p, vec3 d, float length_m, float per_m) {
     float turned = -dot(way, d) / max(length(way), 1e-30);
     sum += light * (haze_phase(shaft_g, turned) * exp(-per_m * t));
   }
-  return shaft_scatters * step_m * sum;
+  return step_m * sum;
 }

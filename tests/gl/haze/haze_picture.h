@@ -4,27 +4,34 @@
 
 #include "tests/gl/frame.h"
 
-/* Mean of the green channel of a picture of 16 by 16 pixels, in Rec.709: of white light Y. */
-static double green_of(const char *text, size_t photons) {
+/* Mean of each channel of a picture of 16 by 16 pixels. */
+static inline void mean_of(const char *text, const abbe_render_desc *asked, double out[3]) {
   abbe_scene scene;
   abbe_image picture;
-  abbe_render_desc desc = {.width = 16,
-                           .height = 16,
-                           .photons = photons,
-                           .map_size = 64,
-                           .wavelengths = 3,
-                           .supersample = 1,
-                           .space = ABBE_RGB_SPACE_REC709};
+  abbe_render_desc desc = *asked;
+  desc.width = desc.height = 16;
+  desc.supersample = 1;
+  desc.map_size = 64;
   load_text(text, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   draw_frame(renderer);
   read_picture(renderer, false, &picture);
-  double sum = 0;
-  for (size_t i = 0; i < 256; i++) sum += (double)picture.data[i * picture.channels + 1] / 256;
+  for (size_t k = 0; k < 3; k++) {
+    out[k] = 0;
+    for (size_t i = 0; i < 256; i++) out[k] += (double)picture.data[i * picture.channels + k] / 256;
+  }
   abbe_image_free(&picture);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
-  return sum;
+}
+
+/* The green one, in Rec.709: of white light Y. */
+static inline double green_of(const char *text, size_t photons) {
+  double rgb[3];
+  mean_of(text,
+          &(abbe_render_desc){.photons = photons, .wavelengths = 3, .space = ABBE_RGB_SPACE_REC709},
+          rgb);
+  return rgb[1];
 }
 
 #endif
