@@ -122,7 +122,7 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
                ? abbe_caustics_make(&r->views, &r->layers, &r->atlas, &r->map, &r->variant,
                                     &r->caustics, error)
                : abbe_spectral_map_make(&r->views, &r->atlas, &r->variant, &r->map, error);
-  if (result == ABBE_OK && r->plan.shafts)
+  if (result == ABBE_OK && r->plan.shaft_count > 0)
     result = abbe_shaft_grid_make(&r->caustics, &r->variant, &r->shafts, error);
   if (result != ABBE_OK) return result;
   return abbe_pinhole_pages_make(&r->scene, &r->variant, &r->pinholes, error);

@@ -184,32 +184,41 @@ static abbe_result list_whole(abbe_beam_list *list, size_t light, const abbe_hit
   return result;
 }
 
-/* All wavelengths in batches that share a node, so that each interval is in one of them. */
-static abbe_result run_light(abbe_beam_list *list, size_t light, abbe_beams_use use, void *user,
+/* Of the ways that are traced. */
+static abbe_result run_batch(const abbe_beam_use *to, size_t light, const abbe_hit_batch *b,
                              abbe_error *error) {
-  abbe_caustics *c = list->caustics;
-  abbe_gpu *gpu = scene_of(list)->gpu;
-  const size_t n = plan_of(list)->desc.wavelengths, most = c->trace.hits.stride;
+  abbe_gpu *gpu = scene_of(to->list)->gpu;
+  abbe_result result = ABBE_OK;
+  for (size_t k = 0; k < to->list->chunks && result == ABBE_OK && !gpu->stopped; k++) {
+    size_t beams = 0;
+    result = list_whole(to->list, light, b, k, &beams, error);
+    if (result == ABBE_OK && beams > 0) result = to->use(to->user, beams, error);
+  }
+  return result;
+}
+
+/* All wavelengths in batches that share a node, so that each interval is in one of them. */
+static abbe_result run_light(const abbe_beam_use *to, size_t count, size_t light,
+                             abbe_error *error) {
+  abbe_caustics *c = to->list->caustics;
+  abbe_gpu *gpu = scene_of(to->list)->gpu;
+  const size_t n = plan_of(to->list)->desc.wavelengths, most = c->trace.hits.stride;
   abbe_hit_batch b = {0};
   abbe_result result = abbe_photon_start_run(&c->start, light, error);
   for (size_t known = 0; known < n && result == ABBE_OK; known = b.first + b.count) {
     b.first = known == 0 ? 0 : known - 1;
     b.count = n - b.first < most ? n - b.first : most;
     abbe_trace_pass_ways(&c->trace, light, b.first, b.count);
-    for (size_t chunk = 0; chunk < list->chunks && result == ABBE_OK && !gpu->stopped; chunk++) {
-      size_t beams = 0;
-      result = list_whole(list, light, &b, chunk, &beams, error);
-      if (result == ABBE_OK && beams > 0) result = use(user, beams, error);
-    }
+    for (size_t i = 0; i < count && result == ABBE_OK; i++)
+      result = run_batch(&to[i], light, &b, error);
     if (result == ABBE_OK) result = abbe_gpu_tell(gpu, gpu->done, error);
   }
   return result;
 }
 
-abbe_result abbe_beam_list_run(abbe_beam_list *list, abbe_beams_use use, void *user,
-                               abbe_error *error) {
+abbe_result abbe_beam_list_run(const abbe_beam_use *to, size_t count, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < plan_of(list)->light_view_count && result == ABBE_OK; i++)
-    if (plan_of(list)->reaches[i]) result = run_light(list, i, use, user, error);
+  for (size_t i = 0; i < plan_of(to->list)->light_view_count && result == ABBE_OK; i++)
+    if (plan_of(to->list)->reaches[i]) result = run_light(to, count, i, error);
   return result;
 }

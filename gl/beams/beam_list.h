@@ -26,11 +26,15 @@ abbe_result abbe_beam_list_make(const abbe_shader_variant *variant, abbe_beam_li
 void abbe_beam_list_free(abbe_beam_list *list);
 
 /* What is done with so many beams that are listed. */
-typedef abbe_result (*abbe_beams_use)(void *user, size_t beams, abbe_error *error);
+typedef struct abbe_beam_use {
+  abbe_beam_list *list;
+  abbe_result (*use)(void *user, size_t beams, abbe_error *error);
+  void *user;
+} abbe_beam_use;
 
-/* Follows the photons of all lights, and has their beams used, list after list. Light layers are
- * drawn by then. ABBE_GL, ABBE_NO_MEMORY, ABBE_CANCELLED. */
-abbe_result abbe_beam_list_run(abbe_beam_list *list, abbe_beams_use use, void *user,
-                               abbe_error *error);
+/* Follows the photons of all lights once, for so many lists of the same caustics, and has their
+ * beams used, list after list. Light layers are drawn by then. ABBE_GL, ABBE_NO_MEMORY,
+ * ABBE_CANCELLED. */
+abbe_result abbe_beam_list_run(const abbe_beam_use *to, size_t count, abbe_error *error);
 
 #endif

@@ -119,8 +119,9 @@ uniform vec3 area_light_facing[AREA_LIGHTS];  // unit normal of the side that sh
 uniform vec3 area_light_edge[2 * AREA_LIGHTS]; // of a rectangle: half a side over its square
 uniform vec3 area_light_radiance[AREA_LIGHTS];
 
-// Whether the ray from p meets a disk or rectangle light before t_max, and what it shows: nothing from behind.
-bool area_light_seen(vec3 p, vec3 d, float t_min, float t_max, out vec3 radiance) {
+// Whether the ray from p meets a disk or rectangle light before t_max, which is then where; and what it shows: nothing
+// from behind.
+bool area_light_seen(vec3 p, vec3 d, float t_min, inout float t_max, out vec3 radiance) {
   bool seen = false;
   radiance = vec3(0);
   for (int i = 0; i < AREA_LIGHTS; i++) {
@@ -169,7 +170,9 @@ vec3 seen(vec3 p, vec3 d, Spread spread, float t_min, float t_max, out bool met)
   seen_at = t;
 #ifdef AREA_LIGHTS
   vec3 lamp;
-  if (!blurred && area_light_seen(p, d, t_min, met ? t : t_max, lamp)) {
+  float lamp_at = met ? t : t_max;
+  if (!blurred && area_light_seen(p, d, t_min, lamp_at, lamp)) {
+    seen_at = lamp_at;
     met = true;
     return lamp;
   }
@@ -209,6 +212,13 @@ void aim_at(ivec2 at) {
   sight_spread.turn_y = beside - sight;
 #endif
 }
+
+#ifdef SHAFTS
+#include "shafts.glsl"
+#endif
+#ifdef HAZE_BEYOND
+#include "haze_beyond.glsl"
+#endif
 
 #ifdef WALK
 #include "refraction_walk.glsl"

@@ -42,6 +42,18 @@ Spread spread_outside(InnerHit h, vec3 p, vec3 d, float n, inout Spread within) 
 }
 #endif
 
+// What is seen along a ray that leaves p on the refractor.
+vec3 seen_outside(vec3 p, vec3 d, Spread spread) {
+  bool met;
+  vec3 radiance = seen(p, d, spread, -touch * refractor_bounds.w, 1e30, met);
+#ifdef HAZE_BEYOND
+  float metres = haze_begun;
+  vec3 scattered = haze_beyond(p, d, met ? seen_at : HAZE_FAR, metres);
+  radiance = radiance * haze_behind(metres) + scattered;
+#endif
+  return radiance;
+}
+
 // The light of one band, from interface to interface. What is left when the path ends shows what the rest
 // has shown. Its loops have two ways out, with values of their own for what is used after them: of what the
 // last turn alone has made, lanes that took fewer turns may find another's (Mesa 22's llvmpipe).
@@ -55,7 +67,6 @@ vec3 through(Hit front, vec3 d, int band) {
   if (!refract_direction(d, front.n, 1.0 / n, ray.d)) return light;
   // Of what went in: where nearly all is mirrored, the rest is followed too.
   float limit = share_limit * ray.share, shown = 0.0, left = 0.0;
-  bool met;
   Spread within = spread_within(front, n), outside = within;
   for (int order = 0; order < counts.exits;) {
     Outgoing leaving = Outgoing(ray.p, vec3(0), ray.d, 0.0);
@@ -76,7 +87,7 @@ vec3 through(Hit front, vec3 d, int band) {
       if (!CHEAP_INTERFACES || shows || ray.share < limit) break;
     }
     if (shows) {
-      light += leaving.share * seen(leaving.p, leaving.d, outside, -touch * refractor_bounds.w, 1e30, met);
+      light += leaving.share * seen_outside(leaving.p, leaving.d, outside);
 #ifdef KEEPS_SIGHTS
       if (sight_waits) note_sight(leaving.share);
 #endif
@@ -108,4 +119,7 @@ void look(ivec2 at) {
   front.t = 1e30;
   found = exact_front(eye, sight, front) && front.refractor == refractor;
   if (refractors[refractor].info.x == MODEL_LAYERS) look_at_layer(at);
+#ifdef HAZE_BEYOND
+  begin_haze(eye, sight, front.t);
+#endif
 }

@@ -55,8 +55,7 @@ void main() {
     shown_by[i] = light;
 #endif
   }
-  bool met;
-  vec3 mirrored = seen(front.p, reflect(sight, front.n), spread_in_mirror(front), -touch * refractor_bounds.w, 1e30, met);
+  vec3 mirrored = seen_outside(front.p, reflect(sight, front.n), spread_in_mirror(front));
   sum += mirror * (xyz_from_rgb * mirrored);
 #ifdef KEEPS_SIGHTS
   sight_pixels[listed * SIGHT_WORDS + 8u] = sight_chain;

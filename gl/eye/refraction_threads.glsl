@@ -49,6 +49,10 @@ vec3 band_light(int band, bool in_mirror, out float mirrored) {
   lobe_ways = float(LOBE_WAYS);
   lobe_width = 0.0;
 #endif
+#ifdef HAZE_BEYOND
+  begin_haze(eye, sight, eye_inside == 0u ? first.hit.t : 0.0);
+  start.haze_m = haze_begun;
+#endif
   PathState w = start, reflected = start;
 #ifdef MIRRORS
   bool off_mirror = is_mirror(first.hit.refractor);

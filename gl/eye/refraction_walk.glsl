@@ -1,5 +1,11 @@
 // The eye's rays on multi-refractor paths (walk.glsl): what the branches show, by their shares.
 
+#ifdef HAZE_BEYOND
+#define KEEPS_HAZE
+#define NO_HAZE_YET , 0.0
+#else
+#define NO_HAZE_YET
+#endif
 #include "walk.glsl"
 
 // Of one band: the strongest paths come first. Mesa 22's llvmpipe ends every loop of a thread that has
@@ -31,10 +37,6 @@ vec3 mirror_spectrum(int r) {
 }
 #endif
 
-#ifdef SHAFTS
-#include "shafts.glsl"
-#endif
-
 uniform uint eye_inside;  // refractors that the eye is in, which are clear
 
 #ifdef ROUGH
@@ -58,11 +60,23 @@ vec3 shown(PathState w) {
     bool met = next_interface(w, h), receiver;
     float t_min = w.inside == 0u ? -touch * refractor_bounds.w : 0.0;
     vec3 radiance = seen(w.p, w.d, SPREAD_OF(w), t_min, met ? h.hit.t : 1e30, receiver);
+#if defined(SHAFTS) || defined(HAZE_BEYOND)
+    float way_m = receiver ? seen_at : met ? h.hit.t : HAZE_FAR;
+    vec3 scattered = vec3(0);
 #ifdef SHAFTS
-    if (w.inside != 0u && medium_of(w.inside) == shaft_refractor && (met || receiver)) {
-      float n = medium_n(eye_inside) / medium_n(w.inside), per_m = refractor_spectrum(shaft_refractor).y;
-      lamps += n * n * w.share * shafts_along(w.p, w.d, receiver ? seen_at : h.hit.t, per_m);
-    }
+    int shaft = w.inside == 0u ? -1 : shaft_of(medium_of(w.inside));
+    if (shaft >= 0 && way_m < HAZE_FAR)
+      scattered = shafts_along(shaft, w.p, w.d, way_m, vec3(refractor_spectrum(medium_of(w.inside)).y));
+#endif
+#ifdef HAZE_BEYOND
+    if (w.inside == 0u)
+      scattered = haze_beyond(w.p, w.d, way_m, w.haze_m);
+    else
+      scattered *= haze_behind(w.haze_m);
+    radiance *= haze_behind(w.haze_m);
+#endif
+    float step_n = medium_n(eye_inside) / medium_n(w.inside);
+    lamps += step_n * step_n * w.share * scattered;
 #endif
 #ifdef ABSORBING
     if (w.inside != 0u && met)
@@ -130,9 +144,9 @@ void begin_path(ivec2 at) {
   lobe_width = 0.0;
 #endif
 #ifdef KEEPS_SPREAD
-  start = PathState(eye, sight, 1.0, eye_inside, 0u, -1, -1, -1, sight_spread);
+  start = PathState(eye, sight, 1.0, eye_inside, 0u, -1, -1, -1, sight_spread NO_HAZE_YET);
 #else
-  start = PathState(eye, sight, 1.0, eye_inside, 0u, -1, -1, -1);
+  start = PathState(eye, sight, 1.0, eye_inside, 0u, -1, -1, -1 NO_HAZE_YET);
 #endif
 }
 

@@ -7,5 +7,5 @@ layout(location = 0) out vec4 over;
 
 void main() {
   vec4 at = texelFetch(scattered, ivec2(gl_FragCoord.xy), 0);
-  over = vec4(adds ? at.rgb : haze_tint(at.w), 1);
+  over = vec4(adds ? at.rgb : haze_eye_tint(at.w), 1);
 }

@@ -129,7 +129,8 @@ static abbe_result draw_listed(void *user, size_t beams, abbe_error *error) {
 static abbe_result draw_beams(abbe_haze_pass *pass, abbe_error *error) {
   draw_occluders(pass);
   const abbe_result result = abbe_light_layers_run(pass->caustics->layers, error);
-  return result == ABBE_OK ? abbe_beam_list_run(&pass->beams, draw_listed, pass, error) : result;
+  const abbe_beam_use draws = {&pass->beams, draw_listed, pass};
+  return result == ABBE_OK ? abbe_beam_list_run(&draws, 1, error) : result;
 }
 
 /* ---- the picture ---- */

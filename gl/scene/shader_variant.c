@@ -41,7 +41,8 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
       .rough = p->rough,
       .cubes = p->cubes,
       .haze = p->hazy,
-      .shafts = p->shafts,
+      .haze_beyond = p->haze_beyond,
+      .shafts = p->shaft_count,
       .pinholes = p->desc.transport == ABBE_TRANSPORT_PINHOLE,
       .page_charts = p->page_charts,
       .pixel_threads = !p->multi_refractor_paths ? 1
@@ -158,8 +159,9 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "ROUGH", v->rough);
   print_flag(to, "CUBES", v->cubes);
   print_flag(to, "HAZE", v->haze);
-  if (v->haze) print_count(to, "HAZE_BANDS", ABBE_PLAN_HAZE_BANDS);
-  print_flag(to, "SHAFTS", v->shafts);
+  print_count(to, "HAZE_BANDS", ABBE_PLAN_HAZE_BANDS);
+  print_flag(to, "HAZE_BEYOND", v->haze_beyond);
+  if (v->shafts > 0) print_count(to, "SHAFTS", v->shafts);
   print_flag(to, "PINHOLES", v->pinholes);
   print_flag(to, "PINHOLE_CHARTS", v->page_charts);
   print_flag(to, "CHART_SIDES", v->page_charts || v->tiles > 0);

@@ -26,7 +26,8 @@ typedef struct abbe_shader_variant {
   abbe_region_kind volume_region;
   size_t volume_pages; /* of a light, in place of cells */
   bool haze;           /* in the air, or around the eye */
-  bool shafts;         /* in a medium, for bent rays */
+  bool haze_beyond;    /* in the air, for bent rays of the camera */
+  size_t shafts;       /* media with light for these */
   bool pinholes;       /* receivers have pages of what these show */
   bool page_charts;    /* also those that are meshes */
   bool copies;         /* a software rasteriser: tables are copied first (copies.glsl) */

@@ -19,6 +19,9 @@ struct PathState {
 #ifdef KEEPS_SPREAD
   Spread spread;  // ray_spread.glsl, which comes before
 #endif
+#ifdef KEEPS_HAZE
+  float haze_m;  // metres of the air's haze so far
+#endif
 };
 
 struct Interface {

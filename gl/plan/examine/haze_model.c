@@ -2,6 +2,9 @@
 
 #include "colorimetry/weights.h"
 
+#include <math.h>
+#include <stdio.h>
+
 enum { STEPS = 80 };
 
 /* A medium, or a refractor with what is in it. */
@@ -57,17 +60,31 @@ static abbe_plan_haze haze_of(const abbe_scene *scene, const abbe_plan *plan, co
   return out;
 }
 
-/* The first refractor whose medium the camera may look into through its surface, or see mirrored in
- * it: light comes there by photons alone. */
+/* Of a medium that scatters; where the plan has no room it is counted. */
+static void add_shaft(abbe_plan *plan, int refractor, const abbe_plan_haze *haze) {
+  abbe_plan_shaft shaft = {.refractor = refractor, .g = haze->g};
+  for (int k = 0; k < ABBE_PLAN_HAZE_BANDS; k++)
+    shaft.scattering = fmax(shaft.scattering, haze->scatters[k]);
+  if (!(shaft.scattering > 0)) return;
+  if (plan->shaft_count < ABBE_PLAN_MOST_SHAFTS)
+    plan->shaft[plan->shaft_count++] = shaft;
+  else
+    plan->unseen_media++;
+}
+
+/* Media that the camera may look into through a surface, or see mirrored in one, and to which
+ * photons come: the air and those of refractors. */
 static void choose_shafts(const abbe_scene *scene, abbe_plan *plan) {
-  if (!plan->caustics || !plan->camera_sees_refractor || !plan->multi_refractor_paths) return;
-  for (size_t i = 0; i < plan->refractor_count && !plan->shafts; i++) {
-    const region r = {.object = &scene->object[plan->refractor_object[i]],
-                      .medium = scene->object[plan->refractor_object[i]].medium};
-    if (r.medium == NULL || plan->mirror[i]) continue;
-    plan->shafts = true;
-    plan->shaft_refractor = i;
-    plan->shaft_haze = haze_of(scene, plan, &r);
+  if (!plan->camera_sees_refractor) return;
+  plan->haze_beyond = scene->medium != NULL;
+  if (!plan->caustics) return;
+  add_shaft(plan, -1, &plan->air_haze);
+  for (size_t i = 0; i < plan->refractor_count && plan->multi_refractor_paths; i++) {
+    const abbe_object *object = &scene->object[plan->refractor_object[i]];
+    const region r = {.object = object, .medium = object->medium};
+    if (object->medium == NULL || plan->mirror[i]) continue;
+    const abbe_plan_haze haze = haze_of(scene, plan, &r);
+    add_shaft(plan, (int)i, &haze);
   }
 }
 
@@ -86,20 +103,38 @@ void abbe_haze_model_choose(const abbe_scene *scene, abbe_plan *plan) {
   plan->eye_haze = haze_of(scene, plan, &eye);
 }
 
+static void note_shafts(const abbe_scene *scene, abbe_plan *plan) {
+  const int first = plan->shaft[0].refractor;
+  char more[48] = "";
+  if (plan->shaft_count > 1) snprintf(more, sizeof more, " and %zu more", plan->shaft_count - 1);
+  if (first < 0)
+    abbe_plan_add(plan, ABBE_PASS_SHAFTS,
+                  "bent and mirrored rays of the camera may run through haze in the air%s", more);
+  else
+    abbe_plan_add(plan, ABBE_PASS_SHAFTS,
+                  "bent and mirrored rays of the camera may run through the medium of '%.40s'%s",
+                  scene->object[plan->refractor_object[first]].name, more);
+}
+
+static bool some_refractor_scatters(const abbe_scene *scene) {
+  bool some = false;
+  for (size_t i = 0; i < scene->object_count; i++) some = some || scene->object[i].medium != NULL;
+  return some;
+}
+
 void abbe_haze_model_note(const abbe_scene *scene, abbe_plan *plan) {
   if (!plan->hazy) return;
   abbe_plan_add(plan, ABBE_PASS_EYE_HAZE, "%s scatters %.3g of light a metre towards the eye",
                 plan->eye_in_air ? "the air" : "what the eye is in", plan->eye_haze.scattering);
-  if (plan->shafts)
-    abbe_plan_add(plan, ABBE_PASS_SHAFTS,
-                  "bent and mirrored rays of the camera may run through the medium of '%.40s'",
-                  scene->object[plan->refractor_object[plan->shaft_refractor]].name);
-  abbe_plan_note(
-      plan, plan->shafts ? "haze scatters light once; seen in a mirror, or behind a refractor that "
-                           "is clear, it is left out"
-                         : "haze scatters light once, and on the eye's own ray up to what it meets "
-                           "first: what is scattered behind a refractor or seen in a mirror is "
-                           "left out");
+  if (plan->shaft_count > 0) note_shafts(scene, plan);
+  abbe_plan_note(plan, "haze scatters light once");
+  if (plan->unseen_media > 0)
+    abbe_plan_note(plan,
+                   "light in media is seen by bent rays in %d of them; %zu more only take of it",
+                   ABBE_PLAN_MOST_SHAFTS, plan->unseen_media);
+  if (!plan->multi_refractor_paths && some_refractor_scatters(scene))
+    abbe_plan_note(plan, "media in refractors only take of light, where it is not followed from "
+                         "interface to interface");
   if (plan->surrounded)
     abbe_plan_note(plan, "haze scatters the environment's lights, and not the rest of it");
   if (plan->tinted_air || (!plan->eye_in_air && plan->tinting))

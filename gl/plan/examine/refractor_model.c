@@ -63,6 +63,7 @@ static const char *why_in_turn(const abbe_scene *scene, const abbe_plan *plan) {
       !abbe_mesh_is_convex(&only->mesh))
     return "the refractor is not convex";
   if (is_entered(scene, only)) return "a receiver may reach into the refractor";
+  if (only->medium != NULL) return "what is in the refractor scatters light";
   return NULL;
 }
 

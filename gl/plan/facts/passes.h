@@ -25,14 +25,14 @@ extern "C" {
   X(SPECTRAL_MAP, LIGHT, "light: spectral map", p->caustics)                                       \
   X(GAP_FILL, LIGHT, "light: gap fill", p->fills)                                                  \
   X(PINHOLES, LIGHT, "light: pinholes", has_pinholes(p))                                           \
-  X(SHAFTS, LIGHT, "light: shafts", p->shafts)                                                     \
+  X(SHAFTS, LIGHT, "light: shafts", p->shaft_count > 0)                                            \
   X(EYE_RECEIVERS, EYE, "eye: receivers", true)                                                    \
   X(EYE_FRONT, EYE, "eye: refractor front", p->camera_sees_refractor)                              \
   X(EYE_BACK, EYE, "eye: refractor back", p->camera_sees_refractor && p->draw_back)                \
   X(EYE_FRONT_AND_BACK, EYE, "eye: refractor layers", has_lamp(p) && p->camera_sees_refractor)     \
   X(EYE_ADAPTIVE, EYE, "eye: adaptive samples", p->desc.adaptive > 1)                              \
   X(EYE_REFRACTION, EYE, "eye: refraction", p->camera_sees_refractor)                              \
-  X(EYE_PICTURE, EYE, "eye: picture", p->desc.supersample > 1 || p->desc.upsample > 1)            \
+  X(EYE_PICTURE, EYE, "eye: picture", p->desc.supersample > 1 || p->desc.upsample > 1)             \
   X(EYE_HAZE, EYE, "eye: haze", p->hazy)
 
 /* X(id, text, condition): models and facts that passes rest on; i is the index of the scene's

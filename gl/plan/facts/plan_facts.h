@@ -59,6 +59,14 @@ typedef struct abbe_plan_haze {
   double scatters[ABBE_PLAN_HAZE_BANDS], takes[ABBE_PLAN_HAZE_BANDS];
 } abbe_plan_haze;
 
+/* A medium that bent and mirrored rays of the camera may run through. */
+typedef struct abbe_plan_shaft {
+  int refractor;        /* that it fills; -1: the air */
+  double scattering, g; /* in the band that scatters most, 1/m; the mean cosine */
+} abbe_plan_shaft;
+
+#define ABBE_PLAN_MOST_SHAFTS 8
+
 /* Where band k begins, nm. */
 double abbe_plan_haze_edge(const abbe_render_desc *desc, int k);
 
@@ -103,9 +111,10 @@ typedef struct abbe_plan {
   bool hazy;                 /* a medium scatters, or absorbs in the air; then: */
   bool eye_in_air;
   abbe_plan_haze air_haze, eye_haze; /* of the air, and of what the eye is in */
-  bool shafts;                       /* the camera may see into a medium by a bent ray; then: */
-  size_t shaft_refractor;            /* that it fills, among the refractors */
-  abbe_plan_haze shaft_haze;
+  bool haze_beyond;   /* the camera may see the air's haze by a bent or mirrored ray */
+  size_t shaft_count; /* media with light of photons that such rays may run through */
+  abbe_plan_shaft shaft[ABBE_PLAN_MOST_SHAFTS];
+  size_t unseen_media; /* more of them, of which the plan has no room */
 
   /* The scene's lights, and after them the views that cubes have more than one of. */
   size_t light_view_count;

@@ -39,16 +39,21 @@ vec3 haze_scattered(int light, float metres) {
   return sum;
 }
 
-// What is left of white light that the eye sees through so many metres, of each of red, green and blue.
-vec3 haze_tint(float metres) {
+// What is left of white light that is seen through so many metres, of each of red, green and blue: of the medium around
+// the eye, and of the air.
+vec3 haze_tint(float metres, bool of_eye) {
   vec3 left = vec3(0), all = vec3(0);
   for (int k = 0; k < HAZE_BANDS; k++) {
     vec3 white = haze_white[LIGHTS * HAZE_BANDS + k];
-    left += white * exp(-metres * haze_bands[k].z);
+    left += white * exp(-metres * (of_eye ? haze_bands[k].z : haze_bands[k].x));
     all += white;
   }
   return max(left, vec3(0)) / max(all, vec3(1e-9));
 }
+
+vec3 haze_eye_tint(float metres) { return haze_tint(metres, true); }
+
+vec3 haze_air_tint(float metres) { return haze_tint(metres, false); }
 
 // A share a steradian, where light turns by the angle of that cosine [HenyeyGreenstein1941].
 float haze_phase(float g, float cosine) {

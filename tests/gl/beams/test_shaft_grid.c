@@ -9,11 +9,12 @@ static const double index_of_water = 1.5, scattering = 0.8, g = 0.5, deep = 0.4;
 
 /* The sun at 30 degrees; black walls keep it from the sides, and what is seen behind the haze is
  * black. */
-#define BASIN(camera)                                                                              \
+#define BASIN(camera) BASIN_AMONG(camera, "")
+#define BASIN_AMONG(camera, others)                                                                \
   "materials: glass.yaml\n"                                                                        \
   "camera: {" camera "}\n"                                                                         \
   "lights: [{name: sun, kind: directional, direction: [0, 0.5, -0.8660254], irradiance: 1}]\n"     \
-  "objects:\n"                                                                                     \
+  "objects:\n" others                                                                              \
   "- {name: water, shape: water, size: [1.6, 1.6, 0.41], cells: 8, material: flat,\n"              \
   "   medium: {scattering: 0.8, g: 0.5}}\n"                                                        \
   "- {name: bottom, shape: rectangle, width: 4, height: 4, reflectance: 0,\n"                      \
@@ -53,6 +54,14 @@ static void from_above_through_flat_water(void **state) {
       green_of(BASIN("eye: [0.932615, 0, 2], target: [0, 0, 0], up: [0, 1, 0], fov: 2"), 96);
   print_message("from above: %.4f of the known light\n", drawn / exact);
   assert_near(drawn / exact, 1, 0.02);
+  /* beside another medium, which comes first */
+  const double beside =
+      green_of(BASIN_AMONG("eye: [0.932615, 0, 2], target: [0, 0, 0], up: [0, 1, 0], fov: 2",
+                           "- {name: jade, shape: box, size: [0.1, 0.1, 0.1], material: flat, "
+                           "medium: {scattering: 9}, transform: [{translate: [0.9, 0, 0]}]}\n"),
+               96);
+  print_message("beside another medium: %.4f of the known light\n", beside / exact);
+  assert_near(beside / exact, 1, 0.03);
 }
 
 /* Beyond the critical angle: what is scattered on the way up, and of what is mirrored that of the

@@ -19,8 +19,9 @@ static void write_defines(unsigned bits, char *out, size_t size) {
       "CONVEX",
       "LAYERS\n#define FRONT_LAYER",
       "MANY_EXITS\n#define AOVS\n#define INTERLEAVES",
-      "ABSORBING\n#define CAUSTICS",
-      "RECEIVER_SHADOWS\n#define TEXTURED\n#define RECEIVER_COLOURS\n#define SHADOW_PLANES 32\n#define TINTING",
+      "ABSORBING\n#define CAUSTICS\n#define HAZE\n#define HAZE_BEYOND\n#define SHAFTS 2",
+      "RECEIVER_SHADOWS\n#define TEXTURED\n#define RECEIVER_COLOURS\n#define SHADOW_PLANES "
+      "32\n#define TINTING",
       "HIERARCHY",
       "WALK"};
   int used = snprintf(
@@ -31,7 +32,8 @@ static void write_defines(unsigned bits, char *out, size_t size) {
       "PLANE_ROOM 9\n"
       "#define RECEIVER_ROOM 6\n#define SURFACE_ROOM 6\n#define SPECTRUM_ROOM 14\n"
       "#define BAND_ROOM 140\n#define BAND_SETS 5\n#define HIERARCHY_STACK 24\n#define STEPS 64\n"
-      "#define BRIDGE\n#define DOUBTS_BRIDGES\n#define BAND_TURNS 128\n#define BAND_RINGS 12\n");
+      "#define BRIDGE\n#define DOUBTS_BRIDGES\n#define BAND_TURNS 128\n#define BAND_RINGS 12\n"
+      "#define HAZE_BANDS 12\n");
   for (int i = 0; i < 8; i++)
     if (bits >> i & 1) used += snprintf(out + used, size - (size_t)used, "#define %s\n", names[i]);
 }
@@ -84,9 +86,10 @@ static void test_definitions_that_do_not_matter(void **state) {
   must_differ("#define LIGHT_ROOM 2\n#define NOBODYS 1\n", "#define LIGHT_ROOM 2\n", false);
   must_differ("#define LIGHT_ROOM 2\n#define LIGHT_ROO 1", "#define LIGHT_ROOM 2\n", false);
   must_differ("#define LIGHT_ROOM 2\n", "#define LIGHT_ROOM 3\n", true);
-  must_differ("#define LIGHT_ROOM (MANY + 1)\n#define MANY 1\n",
-              "#define LIGHT_ROOM (MANY + 1)\n", true);
-  must_differ("#define NOBODYS LIGHT_ROOM\n#define LIGHT_ROOM 2\n", "#define LIGHT_ROOM 2\n", false);
+  must_differ("#define LIGHT_ROOM (MANY + 1)\n#define MANY 1\n", "#define LIGHT_ROOM (MANY + 1)\n",
+              true);
+  must_differ("#define NOBODYS LIGHT_ROOM\n#define LIGHT_ROOM 2\n", "#define LIGHT_ROOM 2\n",
+              false);
   char *text = (char *)"";
   abbe_error error = {0};
   assert_int_equal(abbe_program_text("nobody.comp", NULL, &text, &error), ABBE_NOT_FOUND);

@@ -311,6 +311,117 @@ static void folds_sharpen_by_the_root(void **state) {
   for (int k = 0; k < 2; k++) assert_near(peak[k + 1] / peak[k], 2, 0.4); /* a quarter as wide */
 }
 
+/* A place on a fold of the ring's caustic, by the place of the wall at `turn` that sends light
+ * there; n: square to it, to its bright side, where light is A d^-1/2 and a rest at the distance d.
+ */
+typedef struct fold {
+  double at[2], n[2], strength, rest;
+} fold;
+
+static void find_fold(const abbe_catacaustic *c, double turn, size_t bounces, fold *out) {
+  const double wall[2] = {c->radius * cos(turn), c->radius * sin(turn)}, sun = c->elevation;
+  double d[2] = {1, 0}, p = INFINITY, along, e[2][2], far[2] = {2e-3, 8e-3};
+  for (int k = 0; k < 2 && !(sun > 0); k++) d[k] = wall[k] - c->lamp[k];
+  if (!(sun > 0)) p = hypot(d[0], d[1]);
+  for (int k = 0; k < 2 && !(sun > 0); k++) d[k] /= p;
+  const double cosine = d[0] * cos(turn) + d[1] * sin(turn); /* R1 */
+  along = 1 / (2 / (c->radius * cosine) - 1 / p);
+  out->n[0] = -(d[1] - 2 * cosine * sin(turn));
+  out->n[1] = d[0] - 2 * cosine * cos(turn);
+  out->at[0] = wall[0] + along * out->n[1];
+  out->at[1] = wall[1] - along * out->n[0];
+  for (int i = 0; i < 4; i++) {
+    const double off = (i < 2 ? 1 : -1) * far[i % 2] * c->radius;
+    const double q[2] = {out->at[0] + off * out->n[0], out->at[1] + off * out->n[1]};
+    e[i / 2][i % 2] = 0;
+    for (size_t b = 1; b <= bounces; b++)
+      e[i / 2][i % 2] += pow(0.9, (double)b) * abbe_catacaustic_irradiance(c, q, b, NULL);
+  }
+  const int side = e[0][0] > e[1][0] ? 0 : 1;
+  for (int k = 0; k < 2; k++) far[k] = 1 / sqrt(far[k] * c->radius);
+  for (int k = 0; k < 2; k++) out->n[k] *= side == 0 ? 1 : -1;
+  out->strength = (e[side][0] - e[side][1]) / (far[0] - far[1]);
+  out->rest = e[side][0] - out->strength * far[0];
+}
+
+/* The most light of a texel near a fold, and the variance of a texel's box along its normal, m2,
+ * times 12. */
+static double fold_peak(const floor_map *m, const fold *f, double *width2) {
+  double most = 0, nearest = INFINITY;
+  for (size_t i = 0; i < m->image.width * m->image.height; i++) {
+    const size_t x = i % m->image.width, y = i / m->image.width;
+    double at[3], area, light, side[2][3];
+    if (!texel_at(m, x, y, at, &area, &light)) continue;
+    const double to[2] = {at[0] - f->at[0], at[1] - f->at[1]};
+    const double off = to[0] * f->n[0] + to[1] * f->n[1],
+                 beside = to[1] * f->n[0] - to[0] * f->n[1];
+    if (fabs(off) > 4 * sqrt(area) || fabs(beside) > sqrt(area)) continue;
+    most = fmax(most, light);
+    if (hypot(off, beside) > nearest) continue;
+    nearest = hypot(off, beside);
+    *width2 = 0;
+    for (int k = 0; k < 2; k++) {
+      if (!floor_at(m, (double)x + 0.5 + 0.5 * (k == 0), (double)y + 0.5 + 0.5 * (k == 1), side[k]))
+        continue;
+      const double along = 2 * ((side[k][0] - at[0]) * f->n[0] + (side[k][1] - at[1]) * f->n[1]);
+      *width2 += along * along;
+    }
+  }
+  return most;
+}
+
+/* G2. The seven pixels' Gaussian of a fold A d^-1/2 peaks at 1.021 A sigma^-1/2, in the mean along
+ * it; a box of width w at 2 A w^-1/2, where its edge lies on the fold. */
+static void folds_have_their_peaks(void **state) {
+  (void)state;
+  enum { PLACES = 40 };
+  static const place of[2] = {{2, 0, {0.95, 0, 4}, {0}, 0}, {1, 45, {0}, {0}, 0}};
+  static const double origin[3] = {-0.5, 0, 0.5}, down[3] = {1, 0, -1}, up[3] = {0, 1, 0};
+  abbe_map_layout layout;
+  abbe_view view;
+  abbe_view_look(origin, down, up, true, &view);
+  for (int k = 0; k < 4; k++) view.window[k] = k % 2 ? 0.06 : -0.06;
+  view.near = 0.2;
+  view.far = 1.5;
+  abbe_map_layout_make(&view, &layout);
+  for (int kind = 0; kind < 2; kind++) {
+    const double r = RING_RADIUS, middle = (kind == 0 ? 120 : 45) * PI / 180;
+    abbe_catacaustic c = {
+        .radius = r, .height = r * of[kind].height, .elevation = of[kind].elevation * PI / 180};
+    abbe_render_desc desc = units;
+    char text[1024];
+    floor_map m;
+    double mean = 0, most = 0;
+    for (int k = 0; k < 3; k++) c.lamp[k] = r * of[kind].lamp[k];
+    desc.map_size = 512;
+    if (kind == 1) {
+      desc.profile = ABBE_PROFILE_DEFAULT;
+      desc.fill = ABBE_FILL_AUTO;
+      desc.photons = 512;
+      desc.map_layout = &layout;
+    }
+    ring_text(&of[kind], text, sizeof text);
+    make_floor_map(text, &desc, &m);
+    for (int i = 0; i < PLACES; i++) {
+      fold f;
+      double width2 = 0;
+      find_fold(&c, middle + 0.2 * (i + 0.5 - PLACES / 2) / PLACES, 1, &f);
+      const double peak = fold_peak(&m, &f, &width2);
+      const double factor = kind == 0 ? 1.021 / sqrt(1.408) : 2;
+      const double ratio = (peak - f.rest) / (factor * f.strength * pow(width2, -0.25));
+      mean += ratio / PLACES;
+      most = fmax(most, ratio);
+    }
+    print_message("%s: %.3f of a fold's peak in the mean, %.3f at the most\n",
+                  kind == 0 ? "gathered" : "texels", mean, most);
+    if (kind == 0)
+      assert_near(mean, 1, 0.05);
+    else
+      assert_near(most, 1, 0.1);
+    abbe_image_free(&m.image);
+  }
+}
+
 /* A mirror `at` m off its place, seen by what it sends to the floor alone. */
 static void load_moved(double at, double share, abbe_scene *out) {
   char text[1024];
@@ -452,6 +563,7 @@ int main(void) {
       cmocka_unit_test(a_ball_shines_alike_everywhere),
       cmocka_unit_test(a_ring_throws_its_caustics),
       cmocka_unit_test(folds_sharpen_by_the_root),
+      cmocka_unit_test(folds_have_their_peaks),
       cmocka_unit_test(motion_lags),
       cmocka_unit_test(noise_goes_by_four),
   };
