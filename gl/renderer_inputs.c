@@ -276,6 +276,8 @@ static uint64_t mix_light_plan(uint64_t h, const abbe_plan *plan) {
                         plan->receiver_shadows};
   MIX(h, facts);
   MIX(h, plan->hit_slots);
+  MIX(h, plan->haze_beyond);
+  MIX(h, plan->shaft_count);
   return h;
 }
 

@@ -115,18 +115,15 @@ static abbe_result add_listed(void *user, size_t beams, abbe_error *error) {
   abbe_gpu *gpu = v->grid->scene->gpu;
   const GLuint add = v->grid->add;
   const double cell[3] = {cell_of(v, 0), cell_of(v, 1), cell_of(v, 2)};
-  size_t layers = 0;
-  for (int k = 0; k < 3; k++) layers = v->cells[k] > layers ? v->cells[k] : layers;
   gpu->gl->UseProgram(add);
   set_cells(v, add);
   set_vector(gpu, add, "low", v->low);
   set_vector(gpu, add, "cell", cell);
   abbe_gpu_set_float(gpu, add, "unit", v->unit);
   abbe_gpu_set_uint(gpu, add, "most", v->beams.room);
-  abbe_gpu_set_int(gpu, add, "layers", (int)layers);
   abbe_gpu_bind_storage(gpu, BINDING_SPLATS, v->beams.beams);
   abbe_gpu_bind_storage(gpu, BINDING_MAP_SUMS, v->sums);
-  abbe_gpu_dispatch_list(gpu, add, v->beams.beams, 0, beams, layers);
+  abbe_gpu_dispatch_list(gpu, add, v->beams.beams, 0, beams, 1);
   return abbe_gl_check(gpu->gl, "the light of shafts", error);
 }
 

@@ -3,31 +3,27 @@
 #include "common.glsl"
 #include "haze.glsl"
 #include "beam.glsl"
-uniform samplerBuffer beams;
-flat in int beam;
+flat in vec4 places, last_light, depth_length, first_widths, last_widths, way_light, grows_light;
 uniform vec3 eye;
-uniform vec4 eye_view[6];
-uniform vec2 size;  // pixels
 uniform bool eye_in_air;
 layout(location = 0) out vec4 radiance;
 
 void main() {
-  vec4 places = texelFetch(beams, beam), depths = texelFetch(beams, beam + 1), across = texelFetch(beams, beam + 2);
-  vec4 first = texelFetch(beams, beam + 3), last = texelFetch(beams, beam + 4), grows = texelFetch(beams, beam + 5);
-  vec2 along = places.zw - places.xy, from_first = gl_FragCoord.xy - places.xy;
-  float pixels = length(along), q = clamp(dot(from_first, along) / (pixels * pixels), 0.0, 1.0);
-  vec3 widths = mix(vec3(depths.z, across.xz), vec3(depths.w, across.yw), q);
-  float share = beam_share(widths, (along.x * from_first.y - along.y * from_first.x) / pixels);
+  float pixels = depth_length.z, length_m = depth_length.w;
+  vec2 along = (places.zw - places.xy) / pixels, from_first = gl_FragCoord.xy - places.xy;
+  float q = clamp(dot(from_first, along) / pixels, 0.0, 1.0);
+  float share = beam_share(mix(first_widths.xyz, last_widths.xyz, q), along.x * from_first.y - along.y * from_first.x);
   // Depth is even along the segment, its inverse along the picture.
-  float z = 1.0 / mix(1.0 / depths.x, 1.0 / depths.y, q), length_m = distance(first.xyz, last.xyz);
-  vec3 at = mix(first.xyz, last.xyz, q * z / depths.y), way = (last.xyz - first.xyz) / length_m, from = at - eye;
+  float far = depth_length.x * depth_length.y, z = far / mix(depth_length.y, depth_length.x, q);
+  float to_end_m = length_m * (1.0 - q * z / depth_length.y);
+  vec3 from = last_light.xyz - to_end_m * way_light.xyz - eye;
   float distance_m = length(from), unused;
   vec3 d = from / distance_m;
-  float metres = min(length_m / pixels * z * z / (depths.x * depths.y), distance_m);  // a pixel
-  float seen_way = eye_in_air ? haze_way(eye, d, 0.0, distance_m, unused) : distance_m;
-  vec2 per_tangent = size / (eye_view[4].yw - eye_view[4].xz);
-  float cosine = z / distance_m, measure = cosine * cosine * cosine / (per_tangent.x * per_tangent.y);
-  float scattered = share * metres * haze_phase(haze_g, -dot(way, d)) / (distance_m * distance_m * measure);
-  vec3 light_there = vec3(first.w, last.w, grows.w) * exp(grows.xyz * (distance(at, last.xyz) - seen_way));
+  float metres = min(length_m / pixels * z * z / far, distance_m);  // a pixel
+  float seen_way = distance_m;
+  if (eye_in_air) seen_way = haze_way(eye, d, 0.0, distance_m, unused);
+  // The solid angle of a pixel goes by its cosine to the axis, z / distance, cubed.
+  float scattered = share * metres * haze_phase(haze_g, -dot(way_light.xyz, d)) * first_widths.w * distance_m / (z * z * z);
+  vec3 light_there = vec3(last_light.w, way_light.w, grows_light.w) * exp(grows_light.xyz * (to_end_m - seen_way));
   radiance = vec4(light_there * scattered, 0);
 }
