@@ -8,7 +8,7 @@
 #include <stdlib.h>
 
 enum { BEAM_BYTES = 96, FIRST_BEAMS = 1 << 16, MOST_BEAMS = 1 << 20 };
-enum { PARTS = 8, COLOURS = PARTS + 2 }; /* as in beam_list.comp */
+enum { PARTS = 8 }; /* as in beam_list.comp */
 
 static const abbe_gpu_scene *scene_of(const abbe_beam_list *list) {
   return list->caustics->views->scene;
@@ -30,24 +30,27 @@ static double end_of_part(double from_nm, double to_nm, size_t k) {
   return k == 0 ? from_nm : k == PARTS ? to_nm : 1 / sqrt(a + (b - a) * (double)k / PARTS);
 }
 
-/* What the parts and the halves of an interval add, of a light of unit power. */
+/* What the parts of an interval add. */
 static void fill_interval(const abbe_beam_list *list, const abbe_light *light,
                           const abbe_weights_range *range, const double ends_nm[2],
                           float (*out)[4]) {
-  double matrix[9], half[2][3] = {{0}};
+  double matrix[9];
   abbe_rgb_space_from_xyz(abbe_gpu_scene_working_space(scene_of(list)), matrix);
   for (size_t k = 0; k < PARTS; k++) {
     double xyz[3], rgb[3];
     abbe_weights_range_xyz(range, end_of_part(ends_nm[0], ends_nm[1], k),
                            end_of_part(ends_nm[0], ends_nm[1], k + 1), xyz);
     abbe_rgb_space_apply(matrix, xyz, rgb);
-    for (int c = 0; c < 3; c++) {
-      rgb[c] *= light->power;
-      half[2 * k / PARTS][c] += rgb[c];
-    }
+    for (int c = 0; c < 3; c++) rgb[c] *= light->power;
     abbe_float4_store(rgb, 0, out[k]);
   }
-  for (int k = 0; k < 2; k++) abbe_float4_store(half[k], 0, out[PARTS + k]);
+}
+
+/* Where an interval begins and ends; of one wavelength, all of the range. */
+static void ends_of(const abbe_beam_list *list, size_t interval, double nm[2]) {
+  const abbe_wavelengths *w = &scene_of(list)->tables.all;
+  nm[0] = w->count > 1 ? w->lambda_nm[interval] : w->edge_nm[0];
+  nm[1] = w->count > 1 ? w->lambda_nm[interval + 1] : w->edge_nm[w->count];
 }
 
 static void fill_light(const abbe_beam_list *list, size_t view, float (*out)[4]) {
@@ -58,19 +61,49 @@ static void fill_light(const abbe_beam_list *list, size_t view, float (*out)[4])
   abbe_weights_range_make_by(scene->plan->desc.observer, &light->illuminant, w->edge_nm[0],
                              w->edge_nm[w->count], &range);
   for (size_t i = 0; i < intervals_of(list); i++) {
-    const double one[2] = {w->edge_nm[0], w->edge_nm[w->count]};
-    fill_interval(list, light, &range, w->count > 1 ? w->lambda_nm + i : one, out + i * COLOURS);
+    double nm[2];
+    ends_of(list, i, nm);
+    fill_interval(list, light, &range, nm, out + i * PARTS);
+  }
+}
+
+/* Of a medium, the mean of three places in each part of an interval. */
+static void fill_haze(const abbe_beam_list *list, size_t interval, float (*out)[4]) {
+  const abbe_scene *scene = scene_of(list)->local;
+  const bool air = list->medium < 0;
+  const abbe_object *object =
+      air ? NULL : &scene->object[plan_of(list)->refractor_object[list->medium]];
+  const abbe_medium *medium = air ? scene->medium : object->medium;
+  double nm[2];
+  ends_of(list, interval, nm);
+  for (size_t k = 0; k < PARTS; k++) {
+    const double from = end_of_part(nm[0], nm[1], k), to = end_of_part(nm[0], nm[1], k + 1);
+    double sum[3] = {0};
+    for (int i = 0; i < 3; i++) {
+      const double at = from + (to - from) * (i + 0.5) / 3;
+      const double scattering = abbe_medium_scattering(medium, at);
+      const double absorption = air ? abbe_medium_absorption(medium, at)
+                                    : abbe_material_attenuation(object->material, at);
+      sum[0] += (scattering + absorption) / 3;
+      sum[1] += scattering / 3;
+    }
+    abbe_float4_store(sum, 0, out[k]);
   }
 }
 
 static abbe_result make_colours(abbe_beam_list *list, abbe_error *error) {
-  const size_t lights = plan_of(list)->light_view_count, n = intervals_of(list) * COLOURS;
-  float(*colour)[4] = calloc(lights * n + 1, sizeof *colour);
+  const size_t lights = plan_of(list)->light_view_count, n = intervals_of(list) * PARTS;
+  abbe_gpu *gpu = scene_of(list)->gpu;
+  float(*colour)[4] = calloc((lights + 1) * n, sizeof *colour);
   if (colour == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the colours of beams");
   for (size_t i = 0; i < lights; i++) fill_light(list, i, colour + i * n);
-  const abbe_result result = abbe_gpu_make_buffer(
-      scene_of(list)->gpu, (lights * n + 1) * sizeof *colour, colour, &list->colours, error);
+  for (size_t i = 0; i < intervals_of(list); i++)
+    fill_haze(list, i, colour + lights * n + i * PARTS);
+  abbe_result result =
+      abbe_gpu_make_buffer(gpu, (lights * n + 1) * sizeof *colour, colour, &list->colours, error);
+  if (result == ABBE_OK)
+    result = abbe_gpu_make_buffer(gpu, n * sizeof *colour, colour + lights * n, &list->haze, error);
   free(colour);
   return result;
 }
@@ -98,8 +131,8 @@ abbe_result abbe_beam_list_make(const abbe_shader_variant *variant, abbe_beam_li
 
 void abbe_beam_list_free(abbe_beam_list *list) {
   if (list->caustics == NULL) return;
-  GLuint buffers[] = {list->colours, list->beams};
-  abbe_gpu_drop_buffers(scene_of(list)->gpu, 2, buffers);
+  GLuint buffers[] = {list->colours, list->haze, list->beams};
+  abbe_gpu_drop_buffers(scene_of(list)->gpu, 3, buffers);
   *list = (abbe_beam_list){0};
 }
 
@@ -113,6 +146,7 @@ static void set_hits(abbe_beam_list *list, size_t first, size_t count) {
   abbe_gpu_bind_texels(gpu, program, "signatures", 1, plan->lengths ? GL_RG32UI : GL_R32UI,
                        hits->signatures);
   abbe_gpu_bind_texels(gpu, program, "beam_colours", 2, GL_RGBA32F, list->colours);
+  abbe_gpu_bind_texels(gpu, program, "beam_haze", 4, GL_RGBA32F, list->haze);
   abbe_gpu_set_int(gpu, program, "stride", (int)hits->stride);
   abbe_gpu_set_int(gpu, program, "sample_first", (int)first);
   abbe_gpu_set_int(gpu, program, "sample_count", (int)count);

@@ -17,7 +17,8 @@ layout(std430, binding = BINDING_SPLATS) buffer Beams {
 };
 uniform samplerBuffer hits;          // [photons][slots][stride] of two (outgoing_segment.glsl)
 uniform usamplerBuffer signatures;   // 0: no hit; TINTING: and the length of the path inside
-uniform samplerBuffer beam_colours;  // [light views][intervals][COLOURS] of unit power, in the picture's space
+uniform samplerBuffer beam_colours;  // [light views][intervals][PARTS] of unit power, in the picture's space
+uniform samplerBuffer beam_haze;     // [intervals][PARTS] what the medium takes there, and of that what it scatters, 1/m
 #ifdef TINTING
 uniform samplerBuffer band_attenuation;  // photon_absorption.glsl
 uniform int band_first;
@@ -35,7 +36,7 @@ uniform vec4 eye_view[6];
 uniform vec2 size;  // pixels
 #endif
 
-const int PARTS = 8, COLOURS = PARTS + 2;  // an interval's parts, and both its halves
+const int PARTS = 8;        // of an interval
 const float NARROW = 0.35;                 // of the photons' distance: what wavelengths may part by unseen
 
 const float SMALL_ANGLE = 0.12;            // rad, that a cell's side is seen under at the most
@@ -45,11 +46,10 @@ const int MOST_SPLITS = 8;
 struct Node {
   uint path;   // signature; 0: no hit
   vec3 from, to;
-  float light;  // W at its end, of unit power
-  float per_m, scatters;  // what the medium takes, and of that what it scatters
+  float light;  // W where it begins, of unit power
 };
 
-Node no_node() { return Node(0u, vec3(0), vec3(0), 0.0, 0.0, 0.0); }
+Node no_node() { return Node(0u, vec3(0), vec3(0), 0.0); }
 
 Node node_at(uint path, int i) {
   int hit = int(path) * stride + i;
@@ -60,22 +60,33 @@ Node node_at(uint path, int i) {
   n.path = landed.w > 0.0 && int(left.w) == medium ? signature.x : 0u;
   n.from = left.xyz;
   n.to = landed.xyz;
-  n.light = landed.w;
+  float per_m = spectra[(medium < 0 ? REFRACTORS : medium) * counts.wavelengths + sample_first + i].y;
+  n.light = landed.w * exp(min(per_m * distance(n.from, n.to), 80.0));
 #ifdef TINTING
   int halves = 4 * (band_first + (light * REFRACTORS + int(signature.x & 255u)) * counts.wavelengths + sample_first + i);
   float path_m = uintBitsToFloat(signature.y);
   n.light *= 0.5 * (dot(exp(-path_m * texelFetch(band_attenuation, halves)), texelFetch(band_attenuation, halves + 1)) +
                     dot(exp(-path_m * texelFetch(band_attenuation, halves + 2)), texelFetch(band_attenuation, halves + 3)));
 #endif
-  vec4 spectrum = spectra[(medium < 0 ? REFRACTORS : medium) * counts.wavelengths + sample_first + i];
-  n.per_m = spectrum.y;
-  n.scatters = spectrum.z;
   return n;
 }
 
-// What it scatters, W/m, of what has gone so far from its start, in the medium.
-float scattered_after(Node n, float metres) {
-  return n.light * n.scatters * exp(min(n.per_m * (distance(n.from, n.to) - metres), 80.0));
+int interval_of(int interval) { return clamp(interval, 0, max(counts.wavelengths - 2, 0)); }
+
+vec3 colour_of(int interval, int part) {
+  int intervals = max(counts.wavelengths - 1, 1);
+  return texelFetch(beam_colours, (light * intervals + interval_of(interval)) * PARTS + part).rgb;
+}
+
+// What is scattered, W/m, of the parts [from, to) of an interval between two nodes, after so many metres in the medium.
+vec3 scattered_after(Node a, Node b, int interval, int from, int to, float metres) {
+  vec3 sum = vec3(0);
+  for (int k = from; k < to; k++) {
+    vec2 haze = texelFetch(beam_haze, interval_of(interval) * PARTS + k).xy;
+    float light_w = mix(a.light, b.light, (float(k) + 0.5) / float(PARTS));
+    sum += colour_of(interval, k) * (light_w * haze.y * exp(-haze.x * metres));
+  }
+  return sum;
 }
 
 // What two rays differ by, at both ends.
@@ -289,11 +300,6 @@ void list_splits(Stretch w, Cell cell) {
   }
 }
 
-vec3 colour_of(int interval, int part) {
-  int intervals = max(counts.wavelengths - 1, 1);
-  return texelFetch(beam_colours, (light * intervals + clamp(interval, 0, intervals - 1)) * COLOURS + part).rgb;
-}
-
 // Wavelengths that are one beam: where the first and the last go, the mean way, and their light.
 struct Run {
   Node first, last;
@@ -305,15 +311,15 @@ struct Run {
 
 Run run_from(Node n) { return Run(n, n, vec3(0), vec3(0), 0.0, metres_seen(n), vec3(0), vec3(0)); }
 
-void add(inout Run r, Node a, Node b, vec3 colour) {
-  vec3 from = 0.5 * (a.from + b.from), to = 0.5 * (a.to + b.to);
-  float light_w = 0.5 * (a.light + b.light);
-  float weight = light_w * max(dot(colour, vec3(1)), 1e-9);
-  r.from += weight * from;
-  r.to += weight * to;
+// Parts of an interval between two nodes, or beside one.
+void add(inout Run r, Node a, Node b, int interval, int first, int end) {
+  vec3 light_first = scattered_after(a, b, interval, first, end, r.metres.x);
+  float weight = max(dot(light_first, vec3(1)), 1e-9 * (a.light + b.light));
+  r.from += weight * 0.5 * (a.from + b.from);
+  r.to += weight * 0.5 * (a.to + b.to);
   r.weight += weight;
-  r.light_first += 0.5 * (scattered_after(a, r.metres.x) + scattered_after(b, r.metres.x)) * colour;
-  r.light_last += 0.5 * (scattered_after(a, r.metres.y) + scattered_after(b, r.metres.y)) * colour;
+  r.light_first += light_first;
+  r.light_last += scattered_after(a, b, interval, first, end, r.metres.y);
   r.last = b;
 }
 
@@ -326,15 +332,14 @@ Stretch way_of_run(Run r) {
 // Part k of so many between two nodes.
 Stretch way_of_part(Node a, Node b, int interval, int k, int parts) {
   float share = 1.0 / float(parts), t = (float(k) + 0.5) * share;
-  vec3 colour = vec3(0);
-  for (int i = k * PARTS / parts; i < (k + 1) * PARTS / parts; i++) colour += colour_of(interval, i);
+  int first = k * PARTS / parts, end = (k + 1) * PARTS / parts;
   Stretch w;
   w.from = mix(a.from, b.from, t);
   w.to = mix(a.to, b.to, t);
   w.parts = Apart(share * (b.from - a.from), share * (b.to - a.to));
   w.metres = metres_seen(a);
-  w.first = mix(scattered_after(a, w.metres.x), scattered_after(b, w.metres.x), t) * colour;
-  w.last = mix(scattered_after(a, w.metres.y), scattered_after(b, w.metres.y), t) * colour;
+  w.first = scattered_after(a, b, interval, first, end, w.metres.x);
+  w.last = scattered_after(a, b, interval, first, end, w.metres.y);
   return w;
 }
 
@@ -354,17 +359,16 @@ void list_path(uint path, Photon photon) {
     float parted = joined ? parting(a, Apart(b.from - a.from, b.to - a.to), cell) : 0.0;
     bool one = joined && parted <= 1.0;
     bool ends = !one || parting(a, Apart(b.from - run.first.from, b.to - run.first.to), cell) > 1.0;
-    vec3 half_a = colour_of(interval, PARTS), half_b = colour_of(interval, PARTS + 1);
-    if (!joined && within && a.path != 0u) add(run, a, a, half_a);
+    if (!joined && within && a.path != 0u) add(run, a, a, interval, 0, PARTS / 2);
     done = run;
     before = cell;
     if (ends) run = run_from(one ? a : b);
-    if (one) add(run, a, b, half_a + half_b);
+    if (one) add(run, a, b, interval, 0, PARTS);
     if (joined && !one) parts = parts_for(parted);
     if (!joined && b.path != 0u) {
       cell = cell_of(photon, order, i, b);
-      if (within) add(run, b, b, half_b);
-      if (counts.wavelengths == 1) add(run, b, b, half_a + half_b);
+      bool alone = counts.wavelengths == 1;
+      if (within || alone) add(run, b, b, interval, alone ? 0 : PARTS / 2, PARTS);
     }
     for (int k = ends && done.weight > 0.0 ? -1 : 0; k < parts; k++) {
       Stretch w;

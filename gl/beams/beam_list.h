@@ -15,7 +15,8 @@ typedef struct abbe_beam_list {
   int medium;                     /* the refractor that beams are in; -1: the air */
   double cell_m;                  /* in the world: what is less than this apart is one beam */
   GLuint program;
-  GLuint colours;      /* buffer: [light views][intervals][parts and halves] x RGB of unit power */
+  GLuint colours;      /* buffer: [light views][intervals][parts] x RGB of unit power */
+  GLuint haze;         /* buffer: [intervals][parts] what the medium takes and scatters, 1/m */
   GLuint beams;        /* a list, of `room` */
   size_t room, chunks; /* the photons are listed in so many chunks */
 } abbe_beam_list;
