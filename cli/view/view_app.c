@@ -51,18 +51,18 @@ abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc
                              .materials = desc->materials,
                              .volume_path = desc->volume_path,
                              .volume = desc->volume,
-                             .wake = desc->wake,
-                             .seen_s = -1,
-                             .cancelled_s = -1};
+                             .seen_s = -1};
   abbe_result result = abbe_view_state_begin(&app->state, desc->document, error);
   app->state.refine.last = desc->last;
   app->state.refine.single = desc->volume != NULL;
-  app->state.refine.ahead = desc->volume == NULL; /* else little is compiled */
   if (result == ABBE_OK) result = abbe_display_list(desc->ocio, &app->views, error);
   if (result == ABBE_OK) result = abbe_view_session_choose_view(app, 0, error);
   if (result == ABBE_OK) result = abbe_ui_make(error);
-  if (result == ABBE_OK)
-    result = abbe_view_worker_make(desc->materials, desc->volume, desc->wake, &app->worker, error);
+  for (size_t i = 0; i < ABBE_VIEW_WORKERS && result == ABBE_OK; i++) {
+    app->desk[i].stopped_s = -1;
+    result = abbe_view_worker_make(desc->materials, desc->volume, desc->wake, &app->desk[i].worker,
+                                   error);
+  }
   if (result == ABBE_OK) list_scenes(app, desc->document->path);
   if (result != ABBE_OK) abbe_view_app_end(app);
   return result;
@@ -78,8 +78,13 @@ static void forget_files(abbe_view_session *app) {
 }
 
 void abbe_view_app_end(abbe_view_session *app) {
-  abbe_view_worker_free(app->worker);
-  abbe_view_ahead_free(&app->ahead);
+  for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++) { /* the second one ends while the first does */
+    if (app->desk[i].worker != NULL) abbe_view_worker_cancel(app->desk[i].worker);
+  }
+  for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++) {
+    abbe_view_worker_free(app->desk[i].worker);
+    app->desk[i].worker = NULL;
+  }
   if (app->texture != 0) app->gl->DeleteTextures(1, &app->texture);
   abbe_ui_free();
   abbe_display_free(app->display);
@@ -90,7 +95,6 @@ void abbe_view_app_end(abbe_view_session *app) {
   abbe_view_pictures_free(&app->pictures);
   abbe_view_result_free(&app->last);
   abbe_view_state_free(&app->state);
-  app->worker = NULL;
 }
 
 /* ---- files that change on disk ---- */
@@ -101,17 +105,25 @@ static long long changed_at(const char *path) {
   return (long long)status.st_mtim.tv_sec * 1000000000 + status.st_mtim.tv_nsec;
 }
 
+/* Of files that were known, the time stays: the other worker may have read them as they were. */
 static void watch_files(abbe_view_session *app, abbe_view_result *result) {
   abbe_view_scene_news *news = &result->news;
-  if (!news->outlined || news->file == NULL) return;
+  long long *changed = calloc(news->file_count + 1, sizeof *changed);
+  if (!news->outlined || news->file == NULL || changed == NULL) {
+    free(changed);
+    return;
+  }
+  for (size_t i = 0; i < news->file_count; i++) {
+    changed[i] = changed_at(news->file[i]);
+    for (size_t k = 0; k < app->file_count; k++)
+      if (strcmp(app->file[k], news->file[i]) == 0) changed[i] = app->changed[k];
+  }
   forget_files(app);
   app->file = news->file;
   app->file_count = news->file_count;
+  app->changed = changed;
   news->file = NULL;
   news->file_count = 0;
-  app->changed = calloc(app->file_count + 1, sizeof *app->changed);
-  for (size_t i = 0; app->changed != NULL && i < app->file_count; i++)
-    app->changed[i] = changed_at(app->file[i]);
 }
 
 static void look_at_files(abbe_view_session *app, double now_s) {
@@ -121,7 +133,7 @@ static void look_at_files(abbe_view_session *app, double now_s) {
     const long long at = changed_at(app->file[i]);
     if (at == app->changed[i] || at < 0) continue;
     app->changed[i] = at;
-    app->reload = true;
+    app->edition++;
     abbe_view_state_reload(&app->state, now_s);
   }
 }
@@ -168,32 +180,21 @@ static void take_rendered(abbe_view_session *app, abbe_view_result *result) {
   *result = (abbe_view_result){.job = app->last.job};
 }
 
-/* How long the oldest event that this picture shows, and none before it, has waited for it. */
-static void time_events(abbe_view_session *app, uint64_t shown, double now_s) {
-  if (shown <= app->pictured) return;
-  const double event_s = app->event_s[(app->pictured + 1) % ABBE_VIEW_TIMED];
-  if (shown - app->pictured < ABBE_VIEW_TIMED && event_s > 0)
-    app->latency_ms = 1e3 * (now_s - event_s);
-  while (app->pictured < shown) app->event_s[++app->pictured % ABBE_VIEW_TIMED] = 0;
-}
-
-static void take(abbe_view_session *app, abbe_view_result *result, double now_s) {
+static void take(abbe_view_session *app, size_t worker, abbe_view_result *result) {
   abbe_view_refine *refine = &app->state.refine;
   const bool moved = result->job.stage == ABBE_VIEW_MOVING;
-  abbe_view_refine_end(refine, &result->job, result->outcome, result->ms, now_s);
-  if (result->outcome == ABBE_VIEW_UNCOMPILED) app->uncompiled = result->job;
+  const bool shown = abbe_view_refine_end(refine, worker, result->outcome, result->ms);
   watch_files(app, result);
   if (result->news.outlined) abbe_view_state_learn(&app->state, &result->news.outline);
   if (result->outcome == ABBE_VIEW_REFUSED && result->job.serial == refine->serial)
     snprintf(app->state.refusal, sizeof app->state.refusal, "%s", result->sentence);
-  if (result->outcome != ABBE_VIEW_DONE) return;
+  if (!shown) return;
   const double pictured_s = abbe_clock_seconds();
   if (app->first_s == 0) app->first_s = abbe_clock_process_seconds();
   if (moved && app->seen_s < 0) app->frame_count = 0; /* after a rest */
   if (moved && app->seen_s > 0 && pictured_s - app->seen_s < 1)
     app->frames_ms[app->frame_count++ % 32] = 1e3 * (pictured_s - app->seen_s);
   app->seen_s = moved ? pictured_s : -1;
-  time_events(app, result->job.serial, pictured_s);
   if (result->job.stage == ABBE_VIEW_TRACED) {
     app->stage = ABBE_VIEW_TRACED;
     if (result->traced.data == NULL) return;
@@ -252,60 +253,96 @@ static void take_look(abbe_view_session *app, abbe_view_result *result) {
 }
 
 /* What is being done for an older state ends soon. */
-static void cancel_obsolete(abbe_view_session *app) {
+static void cancel_obsolete(abbe_view_session *app, size_t worker) {
   const abbe_view_refine *refine = &app->state.refine;
-  const bool obsolete = app->looks ? app->running.serial != refine->serial
-                                   : abbe_view_refine_cancels(refine, &app->running);
-  if (!obsolete) return;
-  if (app->cancelled_s < 0) app->cancelled_s = abbe_clock_seconds();
-  abbe_view_worker_cancel(app->worker);
+  abbe_view_desk *desk = &app->desk[worker];
+  const bool obsolete = desk->other ? desk->serial != refine->serial
+                                    : abbe_view_refine_cancels(refine, worker);
+  if (!obsolete || desk->stopped_s >= 0) return;
+  desk->stopped_s = abbe_clock_seconds();
+  abbe_view_worker_cancel(desk->worker);
 }
 
-/* What a stage waits for is compiled beside it. */
-static void compile_ahead(abbe_view_session *app) {
-  abbe_view_state *s = &app->state;
-  abbe_view_request request = {
-      .job = app->uncompiled, .width = s->width, .height = s->height, .reload = true};
-  if (abbe_view_ahead_take(&app->ahead)) abbe_view_refine_compiled(&s->refine, true);
-  if (!s->refine.compiling || !abbe_view_ahead_idle(&app->ahead)) return;
-  if (abbe_view_document_copy(abbe_view_history_now(&s->history), &request.document, NULL) !=
-          ABBE_OK ||
-      abbe_view_ahead_give(&app->ahead, app->materials, app->volume, app->wake, &request, NULL) !=
-          ABBE_OK)
-    abbe_view_refine_compiled(&s->refine, false);
+/* What a worker does beside all jobs; false: nothing. A look is into the last picture at rest, by
+ * the worker that has drawn it; the turntable is never the one's that shows. */
+static bool wants_other(const abbe_view_session *app, size_t worker, abbe_view_request *out) {
+  const abbe_view_refine *refine = &app->state.refine;
+  out->maps = worker == refine->made && wants_map(app);
+  out->asks = worker == refine->made && !out->maps && wants_feed(app, out);
+  return out->maps || out->asks ||
+         (worker != refine->made && worker != refine->shows && abbe_view_turn_wants(app, out));
 }
 
-static void give(abbe_view_session *app, double now_s) {
-  abbe_view_state *s = &app->state;
-  abbe_view_request request = {.width = s->width, .height = s->height, .reload = app->reload};
-  if (s->width == 0 || s->height == 0) return;
-  compile_ahead(app);
-  if (!abbe_view_worker_idle(app->worker)) {
-    cancel_obsolete(app);
-    return;
-  }
-  request.maps = wants_map(app);
-  request.asks = !request.maps && wants_feed(app, &request);
-  request.job.serial = s->refine.serial;
-  if (!request.maps && !request.asks && !abbe_view_turn_wants(app, &request) &&
-      !abbe_view_refine_next(&s->refine, now_s, &request.job))
-    return;
-  if (abbe_view_document_copy(abbe_view_history_now(&s->history), &request.document, NULL) !=
-      ABBE_OK)
-    return;
-  app->running = request.job;
-  app->looks = request.asks || request.maps;
-  if (request.asks) {
+static void note_look(abbe_view_session *app, const abbe_view_request *request) {
+  const abbe_view_state *s = &app->state;
+  if (request->asks) {
     app->fed_serial = s->refine.serial;
     memcpy(app->fed_pixel, s->pixel, sizeof app->fed_pixel);
     free(app->feed);
     app->feed = NULL;
-  } else if (request.maps) {
+  } else if (request->maps) {
     app->mapped_serial = s->refine.serial;
     app->mapped = lit_stage(&s->refine);
-  } else
-    app->reload = false;
-  abbe_view_worker_give(app->worker, &request);
+  }
+}
+
+static void give_one(abbe_view_session *app, size_t worker, double now_s) {
+  abbe_view_state *s = &app->state;
+  abbe_view_desk *desk = &app->desk[worker];
+  abbe_view_request request = {.width = s->width, .height = s->height, .edition = app->edition};
+  if (!abbe_view_worker_idle(desk->worker)) {
+    cancel_obsolete(app, worker);
+    return;
+  }
+  request.job.serial = s->refine.serial;
+  const bool other = wants_other(app, worker, &request);
+  if (!other && !abbe_view_refine_next(&s->refine, worker, now_s, &request.job)) return;
+  if (abbe_view_document_copy(abbe_view_history_now(&s->history), &request.document, NULL) !=
+      ABBE_OK)
+    return;
+  desk->serial = s->refine.serial;
+  desk->other = other;
+  if (!other) abbe_view_refine_take(&s->refine, worker, &request.job);
+  if (request.turns) abbe_view_refine_forget(&s->refine, worker);
+  note_look(app, &request);
+  abbe_view_worker_give(desk->worker, &request);
+}
+
+static void give(abbe_view_session *app, double now_s) {
+  if (app->state.width == 0 || app->state.height == 0) return;
+  for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++) give_one(app, i, now_s);
+}
+
+/* What the workers have made. */
+static void take_results(abbe_view_session *app) {
+  for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++) {
+    abbe_view_desk *desk = &app->desk[i];
+    if (!abbe_view_worker_take(desk->worker, &app->taken)) continue;
+    if (desk->stopped_s >= 0) app->stop_ms = 1e3 * fmax(0, app->taken.ended_s - desk->stopped_s);
+    desk->stopped_s = -1;
+    if (app->taken.turned)
+      abbe_view_turn_take(app, &app->taken);
+    else if (app->taken.looked)
+      take_look(app, &app->taken);
+    else
+      take(app, i, &app->taken);
+    abbe_view_result_free(&app->taken);
+  }
+}
+
+/* How long the oldest event that the picture in the window shows, and none before it, has waited
+ * for it; and so a change that ended a rest. */
+static void time_events(abbe_view_session *app) {
+  const uint64_t shown = app->state.refine.shown;
+  const double now_s = abbe_clock_seconds();
+  if (shown <= app->pictured) return;
+  const double event_s = app->event_s[(app->pictured + 1) % ABBE_VIEW_TIMED];
+  if (shown - app->pictured < ABBE_VIEW_TIMED && event_s > 0)
+    app->latency_ms = 1e3 * (now_s - event_s);
+  while (app->pictured < shown) app->event_s[++app->pictured % ABBE_VIEW_TIMED] = 0;
+  if (app->obsolete == 0 || shown < app->obsolete) return;
+  app->cancel_ms = 1e3 * (now_s - app->obsolete_s);
+  app->obsolete = 0;
 }
 
 /* ---- the picture in the window ---- */
@@ -342,6 +379,19 @@ static void upload(abbe_view_session *app) {
   free(pixels);
 }
 
+/* Changes up to now, by the pointer, from this one on. */
+static void note_events(abbe_view_session *app, uint64_t first) {
+  const abbe_view_refine *refine = &app->state.refine;
+  const double now_s = abbe_clock_seconds();
+  bool rested = app->stage > ABBE_VIEW_MOVING;
+  for (uint64_t k = first; k <= refine->serial; k++) app->event_s[k % ABBE_VIEW_TIMED] = now_s;
+  for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++)
+    rested = rested || (refine->hand[i].busy && i != refine->shows);
+  if (first > refine->serial || app->obsolete != 0 || !rested) return;
+  app->obsolete = first;
+  app->obsolete_s = now_s;
+}
+
 static void feed(abbe_view_session *app, const abbe_ui_input *input, double now_s) {
   abbe_view_state *s = &app->state;
   const abbe_ui_input *before = &app->input;
@@ -361,8 +411,7 @@ static void feed(abbe_view_session *app, const abbe_ui_input *input, double now_
   if (input->wheel != 0 && x < app->area[0] && !abbe_ui_has_pointer())
     abbe_view_state_wheel(s, input->wheel, now_s);
   abbe_view_state_tick(s, input->seconds, now_s);
-  for (uint64_t k = serial + 1; k <= s->refine.serial; k++)
-    app->event_s[k % ABBE_VIEW_TIMED] = abbe_clock_seconds();
+  note_events(app, serial + 1);
 }
 
 void abbe_view_app_key(abbe_view_session *app, int key, bool down, int modifiers, double now_s) {
@@ -443,18 +492,7 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
   abbe_view_state_resize(s, room ? (size_t)width : 0, room ? (size_t)height : 0, now_s);
   feed(app, input, now_s);
   look_at_files(app, now_s);
-  if (abbe_view_worker_take(app->worker, &app->taken)) {
-    if (app->cancelled_s >= 0)
-      app->cancel_ms = 1e3 * fmax(0, app->taken.ended_s - app->cancelled_s);
-    app->cancelled_s = -1;
-    if (app->taken.turned)
-      abbe_view_turn_take(app, &app->taken, now_s);
-    else if (app->taken.looked)
-      take_look(app, &app->taken);
-    else
-      take(app, &app->taken, now_s);
-    abbe_view_result_free(&app->taken);
-  }
+  take_results(app);
   give(app, now_s);
   if (s->picked) abbe_view_probe_make(&app->pictures, s->pixel, &app->probe);
   if (app->stale || app->drawn_exposure != s->exposure ||
@@ -468,20 +506,33 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
   abbe_view_panel_draw(app, now_s);
   abbe_ui_panel_end();
   abbe_ui_end();
+  time_events(app);
   give(app, now_s); /* what the panel has changed */
 }
 
 double abbe_view_app_wait(abbe_view_session *app, double now_s) {
   const abbe_view_state *s = &app->state;
+  abbe_view_job job;
+  if (s->width == 0 || s->height == 0) return LOOK_S;
   if (s->fly[0] != 0 || s->fly[1] != 0 || s->fly[2] != 0) return 0;
-  if (!abbe_view_worker_idle(app->worker)) return LOOK_S;
+  for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++)
+    if (abbe_view_worker_idle(app->desk[i].worker) &&
+        abbe_view_refine_next(&s->refine, i, now_s, &job))
+      return 0;
   const double wait = abbe_view_refine_wait(&s->refine, now_s);
-  return wait < 0 ? LOOK_S : fmin(LOOK_S, wait);
+  return wait <= 0 ? LOOK_S : fmin(LOOK_S, wait);
+}
+
+bool abbe_view_app_stopped(const abbe_view_session *app) {
+  for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++)
+    if (app->desk[i].stopped_s >= 0) return false;
+  return true;
 }
 
 bool abbe_view_app_rests(abbe_view_session *app, double now_s) {
   abbe_view_request request;
-  return abbe_view_worker_idle(app->worker) && abbe_view_ahead_idle(&app->ahead) &&
-         !wants_map(app) && !wants_feed(app, &request) && !abbe_view_turn_wants(app, &request) &&
+  for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++)
+    if (!abbe_view_worker_idle(app->desk[i].worker)) return false;
+  return !wants_map(app) && !wants_feed(app, &request) && !abbe_view_turn_wants(app, &request) &&
          abbe_view_refine_wait(&app->state.refine, now_s) < 0;
 }

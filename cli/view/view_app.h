@@ -33,6 +33,8 @@ void abbe_view_app_key(abbe_view_session *app, int key, bool down, int modifiers
 void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, double now_s);
 /* How long nothing will change by itself, s; below 0: until the next event. */
 double abbe_view_app_wait(abbe_view_session *app, double now_s);
+/* Nothing is being done that a change has made obsolete. */
+bool abbe_view_app_stopped(const abbe_view_session *app);
 /* Everything that was asked for is drawn. */
 bool abbe_view_app_rests(abbe_view_session *app, double now_s);
 

@@ -46,22 +46,32 @@ static void slide(abbe_view_session *app, const abbe_view_value *v, const char *
   abbe_view_state_set(&app->state, v->key, text, !began, now_s);
 }
 
-/* What the picture was made with, what of it is less while something moves, or what it waits for:
- * one line, for widgets below it stay where they are. */
+/* The stage that is made behind what is shown; NONE: none. */
+static abbe_view_stage coming(const abbe_view_refine *r) {
+  const abbe_view_hand *beside = &r->hand[1 - r->shows];
+  return beside->busy && beside->job.stage > ABBE_VIEW_MOVING && beside->job.serial == r->serial
+             ? beside->job.stage
+             : ABBE_VIEW_NONE;
+}
+
+/* What the picture was made with, what of it is less while something moves, and what is made
+ * meanwhile: one line, for widgets below it stay where they are. */
 static void draw_made(const abbe_view_session *app) {
   const bool moving = app->stage == ABBE_VIEW_MOVING;
   const abbe_render_desc *d = moving ? &app->moving : &app->last.desc;
+  const abbe_view_stage next = coming(&app->state.refine);
   char text[160] = " ", eye[64] = "";
   if (moving && d->coarse != ABBE_COARSE_NONE) snprintf(eye, sizeof eye, "fewer faces; ");
   if (moving && d->upsample > 1)
     snprintf(eye + strlen(eye), sizeof eye - strlen(eye), "%zu x %zu pixels a sample; ",
              d->upsample, d->upsample);
-  if (app->state.refine.compiling)
-    snprintf(text, sizeof text, "shaders of the next stage are compiled");
-  else if (moving && app->moved.light != ABBE_VIEW_MOVING)
+  if (moving && app->moved.light != ABBE_VIEW_MOVING)
     snprintf(text, sizeof text, "%slight is kept: %s", eye, abbe_view_stage_name(app->moved.light));
   else if (d->photons > 0)
     snprintf(text, sizeof text, "%s%zu photons a side", eye, d->photons);
+  const size_t length = strlen(text);
+  if (next != ABBE_VIEW_NONE && next != app->stage)
+    snprintf(text + length, sizeof text - length, "; %s is made", abbe_view_stage_name(next));
   abbe_ui_text(DIM, text);
 }
 

@@ -292,6 +292,7 @@ static bool has_come(script *s, const char *what) {
   const abbe_view_session *v = &s->hidden.session;
   const double now = abbe_clock_seconds();
   if (strcmp(what, "rest") == 0) return abbe_view_app_rests(&s->hidden.session, now);
+  if (strcmp(what, "stopped") == 0) return abbe_view_app_stopped(v);
   if (strcmp(what, "refusal") == 0) return v->state.refusal[0] != '\0';
   if (strcmp(what, "changed") == 0) return v->state.refine.serial != s->copied;
   if (strcmp(what, "turntable") == 0) return v->turned && v->turn_frame == 0;

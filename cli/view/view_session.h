@@ -7,7 +7,6 @@
 
 #include "cli/view/picture/view_probe.h"
 #include "cli/view/view_ui.h"
-#include "cli/view/work/view_ahead.h"
 #include "cli/view/work/view_worker.h"
 #include "gl/device/api.h"
 
@@ -15,11 +14,17 @@
 #define ABBE_VIEW_MOST_SCENES 64
 #define ABBE_VIEW_TIMED 256
 
+/* A worker, and what it was given. */
+typedef struct abbe_view_desk {
+  abbe_view_worker *worker;
+  uint64_t serial;  /* of what it does, */
+  bool other;       /* which is no job of cli/view/state/view_refine.h: a look, a turntable's frame */
+  double stopped_s; /* when it was told to stop; below 0: it was not */
+} abbe_view_desk;
+
 typedef struct abbe_view_session {
   abbe_view_state state;
-  abbe_view_worker *worker;
-  abbe_view_ahead ahead;
-  void (*wake)(void);
+  abbe_view_desk desk[ABBE_VIEW_WORKERS];
   const abbe_gl *gl;
   const char *keep, *ocio, *materials, *volume_path;
   const abbe_caustic_volume *volume;
@@ -28,10 +33,7 @@ typedef struct abbe_view_session {
   size_t view; /* of these */
   char *scene[ABBE_VIEW_MOST_SCENES];
   size_t scene_count;
-  abbe_view_job running;
-  abbe_view_job uncompiled; /* the one that waits for the compiler, or did last */
-  bool looks;               /* that is no picture */
-  bool reload;              /* at the next job */
+  size_t edition; /* of the files: how often they have changed */
   abbe_view_pictures pictures;
   abbe_view_result taken;     /* while it is looked at */
   abbe_view_result last;      /* of the last rendered picture: plan, statistics, settings */
@@ -61,8 +63,9 @@ typedef struct abbe_view_session {
   double event_s[ABBE_VIEW_TIMED]; /* of changes by pointer, by their number; 0: another change */
   uint64_t pictured;               /* the last change that a picture has shown, */
   double latency_ms;               /* and from the first one that it showed to it */
-  double cancelled_s, cancel_ms;   /* when a job was told to stop, below 0: none was; how long the
-                                      last one took to do so */
+  uint64_t obsolete;               /* the last change that ended a rest; 0: it is shown */
+  double obsolete_s, cancel_ms;    /* when it came; and how long until a picture showed it, */
+  double stop_ms;                  /* what was made for the one before took to stop; the last times */
   size_t turn_frame;               /* of the turntable, from 1; 0: it stands */
   uint64_t turn_serial;            /* what it turns */
   bool turned;                     /* the last one is whole */

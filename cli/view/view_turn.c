@@ -34,8 +34,7 @@ bool abbe_view_turn_wants(const abbe_view_session *session, abbe_view_request *o
       2 * 3.14159265358979323846 * (double)(session->turn_frame - 1) / ABBE_VIEW_TURN_FRAMES;
   out->job = (abbe_view_job){.stage = ABBE_VIEW_ACCURATE,
                              .light = ABBE_VIEW_ACCURATE,
-                             .serial = session->turn_serial,
-                             .compiles = true};
+                             .serial = session->turn_serial};
   return true;
 }
 
@@ -52,13 +51,7 @@ static abbe_result write_moving(const abbe_view_session *session, abbe_error *er
                                  error);
 }
 
-static void end(abbe_view_session *session, double now_s) {
-  session->turn_frame = 0;
-  /* what the renderer has drawn is not what is looked at */
-  abbe_view_refine_change(&session->state.refine, ABBE_VIEW_MOVED_CAMERA, now_s);
-}
-
-void abbe_view_turn_take(abbe_view_session *session, const abbe_view_result *result, double now_s) {
+void abbe_view_turn_take(abbe_view_session *session, const abbe_view_result *result) {
   char name[LONGEST];
   abbe_error error = {0};
   const size_t frame = session->turn_frame;
@@ -85,5 +78,5 @@ void abbe_view_turn_take(abbe_view_session *session, const abbe_view_result *res
              ABBE_VIEW_TURN_FRAMES);
   else
     snprintf(session->note, sizeof session->note, "%s", error.text);
-  end(session, now_s);
+  session->turn_frame = 0;
 }

@@ -14,6 +14,6 @@ abbe_result abbe_view_turn_begin(abbe_view_session *session, abbe_error *error);
 /* The next frame as a request; false where none is wanted. */
 bool abbe_view_turn_wants(const abbe_view_session *session, abbe_view_request *out);
 /* Keeps a frame that was asked for. */
-void abbe_view_turn_take(abbe_view_session *session, const abbe_view_result *result, double now_s);
+void abbe_view_turn_take(abbe_view_session *session, const abbe_view_result *result);
 
 #endif

@@ -1,13 +1,17 @@
-/* view_refine.h: what is drawn next: the cheapest picture while things move, ever better ones when
- * they rest.
+/* view_refine.h: what is drawn next, and by which of two workers: the cheapest picture while things
+ * move, ever better ones when they rest.
  *
  * A state machine: changes, times and finished jobs in, jobs out. It draws nothing, knows no scene
- * and no settings, only their order. Moving, a job takes the steps that cli/view/state/view_pace.h
- * finds; after
- * ABBE_VIEW_REST_S without a change the stages follow each other up to the last. A change makes any
- * stage but a moving one obsolete at once: a moving one is nearly done, and what it shows is newer
- * than what stands. A stage that would have to wait for the compiler ends, and waits itself until
- * that is done beside it.
+ * and no settings, only their order. One worker shows: it draws what moves, with the best light that
+ * it has, and at rest no more than what its light and programs are there for. The other one makes
+ * the next better stage, which may have to wait for the driver's compiler. When that one is the
+ * better to show, because its light is better and it has drawn moving pictures with it once, the two
+ * change their parts. So motion waits neither for the compiler nor for a stage.
+ *
+ * Moving, a job takes the steps that cli/view/state/view_pace.h finds; after ABBE_VIEW_REST_S
+ * without a change the stages follow each other up to the last. A change makes any stage but a
+ * moving one obsolete at once: a moving one is nearly done, and what it shows is newer than what
+ * stands.
  */
 #ifndef ABBE_CLI_VIEW_STATE_VIEW_REFINE_H
 #define ABBE_CLI_VIEW_STATE_VIEW_REFINE_H
@@ -39,8 +43,9 @@ const char *abbe_view_stage_name(abbe_view_stage stage);
 
 /* What a change leaves as it was. */
 typedef enum abbe_view_change {
-  ABBE_VIEW_MOVED_CAMERA, /* the light's passes hold */
-  ABBE_VIEW_CHANGED_SCENE /* nothing does */
+  ABBE_VIEW_MOVED_CAMERA,  /* the light's passes hold */
+  ABBE_VIEW_CHANGED_LIGHT, /* programs that draw do */
+  ABBE_VIEW_CHANGED_SCENE  /* nothing does */
 } abbe_view_change;
 
 typedef struct abbe_view_job {
@@ -50,15 +55,28 @@ typedef struct abbe_view_job {
   size_t light_step;     /* of a moving light */
   size_t eye_step;       /* of a moving picture */
   size_t pass;           /* traced: how many passes there are before it */
-  bool compiles;         /* itself what is not compiled; else it ends with ABBE_VIEW_UNCOMPILED */
+  bool warms;            /* moving pictures of all steps for their programs' sake: none is shown */
 } abbe_view_job;
 
 typedef enum abbe_view_outcome {
   ABBE_VIEW_DONE,
   ABBE_VIEW_CANCELLED,
-  ABBE_VIEW_UNCOMPILED, /* the driver does not know what it draws with */
-  ABBE_VIEW_REFUSED     /* the scene cannot be drawn so; nothing is tried until the next change */
+  ABBE_VIEW_LOST,   /* so, and what it had drawn before is lost */
+  ABBE_VIEW_REFUSED /* the scene cannot be drawn so; nothing is tried until the next change */
 } abbe_view_outcome;
+
+enum { ABBE_VIEW_WORKERS = 2 };
+
+typedef struct abbe_view_hand {
+  bool busy;
+  abbe_view_job job;     /* while it is busy */
+  abbe_view_stage light; /* that it holds for this scene; NONE: none */
+  size_t light_step;     /* of that */
+  /* for its programs: */
+  unsigned ready;        /* it has drawn moving pictures of all steps with such lights, a bit each, */
+  abbe_view_stage moved; /* and one of them with this light last; */
+  abbe_view_stage rests; /* and this stage with the light that it holds, whatever the camera */
+} abbe_view_hand;
 
 typedef struct abbe_view_refine {
   abbe_view_stage last;   /* wanted; NONE: TRACED */
@@ -66,33 +84,34 @@ typedef struct abbe_view_refine {
   bool single;            /* no picture could be another: there is no mean */
   bool held;              /* a button is down: it moves */
   uint64_t serial, shown; /* of the last change; of what the last picture shows */
+  uint64_t scene;         /* of the last change that left no light */
   double changed_s;
-  abbe_view_stage stage;   /* of the picture that shows serial; NONE: an older one stands */
-  size_t passes;           /* traced */
-  abbe_view_stage light;   /* whose light is drawn for this scene; NONE: none */
-  size_t drawn_light_step; /* of the light that is drawn */
-  abbe_view_pace pace;     /* of moving pictures */
-  bool camera_only;        /* all that has changed since the last picture */
-  bool ahead;              /* somebody compiles beside what is drawn: */
-  bool compiling;          /* they do, and no stage at rest begins; */
-  bool compiled;           /* they have, and the next one does itself what is left */
+  abbe_view_stage stage; /* of the picture that shows serial; NONE: an older one stands */
+  size_t passes;         /* traced */
+  abbe_view_pace pace;   /* of moving pictures */
   bool refused;
+  size_t shows; /* the worker that draws what moves */
+  size_t made;  /* the one that has drawn the last stage up to ACCURATE */
+  abbe_view_hand hand[ABBE_VIEW_WORKERS];
 } abbe_view_refine;
 
 void abbe_view_refine_begin(abbe_view_refine *refine);
 void abbe_view_refine_change(abbe_view_refine *refine, abbe_view_change change, double now_s);
 void abbe_view_refine_hold(abbe_view_refine *refine, bool held, double now_s);
 
-/* What to do next, where nothing is being done; false: nothing yet. */
-bool abbe_view_refine_next(const abbe_view_refine *refine, double now_s, abbe_view_job *out);
-/* When next may have another answer, s from now on; below 0: after the next event. */
+/* What a worker that is not busy does next; false: nothing yet. */
+bool abbe_view_refine_next(const abbe_view_refine *refine, size_t worker, double now_s,
+                           abbe_view_job *out);
+/* It has begun that. */
+void abbe_view_refine_take(abbe_view_refine *refine, size_t worker, const abbe_view_job *job);
+/* When next may have another answer for any worker, s from now on; below 0: after the next event. */
 double abbe_view_refine_wait(const abbe_view_refine *refine, double now_s);
-/* Whether a job that is being done is to stop. */
-bool abbe_view_refine_cancels(const abbe_view_refine *refine, const abbe_view_job *job);
-/* Whoever compiles is done, or there is nobody. */
-void abbe_view_refine_compiled(abbe_view_refine *refine, bool ahead);
-/* What came of a job, and how long it took. */
-void abbe_view_refine_end(abbe_view_refine *refine, const abbe_view_job *job,
-                          abbe_view_outcome outcome, double ms, double now_s);
+/* Whether what a worker does is to stop. */
+bool abbe_view_refine_cancels(const abbe_view_refine *refine, size_t worker);
+/* What came of its job, and how long it took. Whether its picture is to be shown. */
+bool abbe_view_refine_end(abbe_view_refine *refine, size_t worker, abbe_view_outcome outcome,
+                          double ms);
+/* A worker has drawn what was no job of these: what it holds is not known any more. */
+void abbe_view_refine_forget(abbe_view_refine *refine, size_t worker);
 
 #endif

@@ -80,12 +80,17 @@ static bool set(abbe_view_state *state, abbe_view_document *document, const char
   return false;
 }
 
+/* Another stone may be drawn by other programs; what only has moved, or is brighter, is not. */
+static abbe_view_change kind_of(const char *key) {
+  const char *dot = strrchr(key, '.');
+  if (strncmp(key, "camera.", 7) == 0) return ABBE_VIEW_MOVED_CAMERA;
+  return dot != NULL && strcmp(dot, ".material") == 0 ? ABBE_VIEW_CHANGED_SCENE
+                                                      : ABBE_VIEW_CHANGED_LIGHT;
+}
+
 void abbe_view_state_set(abbe_view_state *state, const char *key, const char *value, bool continued,
                          double now_s) {
-  if (set(state, edit(state, continued), key, value))
-    changed(state,
-            strncmp(key, "camera.", 7) == 0 ? ABBE_VIEW_MOVED_CAMERA : ABBE_VIEW_CHANGED_SCENE,
-            now_s);
+  if (set(state, edit(state, continued), key, value)) changed(state, kind_of(key), now_s);
 }
 
 void abbe_view_state_settings(abbe_view_state *state, size_t wavelengths, size_t photons,

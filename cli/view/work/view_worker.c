@@ -20,7 +20,6 @@ struct abbe_view_worker {
   void (*wake)(void);
   volatile int stop, quit;
   const abbe_caustic_volume *volume; /* or NULL */
-  bool uncompiled;                   /* of the request that is made, and it shall not compile */
   bool busy, done;
   abbe_view_request request;
   abbe_view_result result;
@@ -35,8 +34,8 @@ struct abbe_view_worker {
   bool fronted;
   abbe_view_scene scene;
   abbe_scene *drawn; /* the renderer looks at what it has drawn until it has the other */
-  abbe_result started;
-  abbe_error error;
+  size_t edition;    /* that the scene is read from */
+  bool lost;         /* the renderer has given up what it had, and nothing has come of it */
 };
 
 void abbe_view_result_free(abbe_view_result *result) {
@@ -53,12 +52,7 @@ void abbe_view_result_free(abbe_view_result *result) {
 static bool goes_on(void *user, double done) {
   const abbe_view_worker *w = user;
   (void)done;
-  return !w->stop && !w->uncompiled;
-}
-
-static void stop_compiling(void *user) {
-  abbe_view_worker *w = user;
-  w->uncompiled = !w->request.job.compiles;
+  return !w->stop;
 }
 
 /* ---- settings ---- */
@@ -153,12 +147,12 @@ static abbe_result change(abbe_view_worker *w, const abbe_render_desc *desc,
   abbe_render_desc watched = *desc;
   watched.progress = progress;
   watched.progress_user = w;
-  watched.compiling = stop_compiling;
   const abbe_result result =
       w->renderer == NULL
           ? abbe_renderer_make(w->context, w->scene.now, &watched, &w->renderer, error)
           : abbe_renderer_change(w->renderer, w->scene.now, &watched, error);
-  if (result != ABBE_OK) return result;
+  w->lost = result != ABBE_OK;
+  if (w->lost) return result;
   if (w->drawn != w->scene.now) abbe_view_scene_drop(w->drawn);
   w->drawn = w->scene.now;
   w->scene.relit = false;
@@ -172,7 +166,8 @@ static abbe_result draw(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
   const abbe_render_desc desc = request_of(w, q);
   /* What moves is drawn in one go, for no change cancels it, and parts that are waited for take
    * longer; but whoever closes the window does not wait for the compiler. */
-  const abbe_render_progress progress = moving && w->renderer != NULL ? NULL : goes_on;
+  const bool at_once = moving && !q->job.warms && w->renderer != NULL;
+  const abbe_render_progress progress = at_once ? NULL : goes_on;
   abbe_result result = change(w, &desc, progress, error);
   if (result == ABBE_OK)
     result = abbe_renderer_frame(w->renderer, progress, w, moving ? NULL : &out->statistics, error);
@@ -189,15 +184,28 @@ static abbe_result draw(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
   return ABBE_OK;
 }
 
-/* The mean of the picture that stands and of others that it could have been. */
+/* Moving pictures of all steps, the finest last: programs depend on whether a sample is more than a
+ * pixel, and llvmpipe's on whether the samples of a side are a power of two. */
+static abbe_result draw_steps(abbe_view_worker *w, const abbe_view_request *q,
+                              abbe_view_result *out, abbe_error *error) {
+  abbe_view_request step = *q;
+  abbe_result result = ABBE_OK;
+  for (size_t eye = 3; eye-- > 0 && result == ABBE_OK;) {
+    step.job.eye_step = eye;
+    abbe_image_free(&out->picture);
+    result = draw(w, &step, out, error);
+  }
+  return result;
+}
+
+/* The mean of the accurate picture and of others that it could have been. */
 static abbe_result draw_mean(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out,
                              abbe_error *error) {
   const abbe_error_bars_desc desc = {.of_mean = true, .aovs = true, .progress = goes_on, .user = w};
   abbe_view_request before = *q;
   before.job.stage = ABBE_VIEW_ACCURATE;
-  const abbe_result result = w->renderer != NULL ? ABBE_OK : draw(w, &before, out, error);
+  const abbe_result result = draw(w, &before, out, error);
   if (result != ABBE_OK) return result;
-  out->desc = abbe_renderer_plan(w->renderer)->desc;
   return abbe_error_bars_make(w->context, w->scene.now, w->renderer, &desc, &out->bars, error);
 }
 
@@ -253,8 +261,9 @@ static abbe_result take_scene(abbe_view_worker *w, const abbe_view_request *q,
   abbe_scene *before = s->now;
   const abbe_view_document *d = &q->document;
   if (s->now == NULL || strcmp(s->document.path, d->path) != 0) w->fronted = false;
-  const abbe_result result =
-      abbe_view_scene_take(s, d, q->reload, q->turns ? q->turn_rad : 0, &out->news, error);
+  const abbe_result result = abbe_view_scene_take(s, d, q->edition != w->edition,
+                                                  q->turns ? q->turn_rad : 0, &out->news, error);
+  w->edition = q->edition;
   if (s->now == before) return result;
   abbe_tracer_free(w->tracer);
   w->tracer = NULL;
@@ -274,6 +283,7 @@ static abbe_result make(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
   if (result != ABBE_OK) return result;
   return q->job.stage == ABBE_VIEW_TRACED ? trace(w, q, out, error)
          : q->job.stage == ABBE_VIEW_MEAN ? draw_mean(w, q, out, error)
+         : q->job.warms                   ? draw_steps(w, q, out, error)
                                           : draw(w, q, out, error);
 }
 
@@ -292,7 +302,7 @@ static abbe_result renew(abbe_view_worker *w, abbe_error *error) {
 static void work(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out) {
   const double start = abbe_clock_seconds();
   abbe_error error = {0};
-  w->uncompiled = false;
+  w->lost = false;
   abbe_result result = w->context != NULL ? ABBE_OK : renew(w, &error);
   *out = (abbe_view_result){.job = q->job, .turned = q->turns, .looked = q->asks || q->maps};
   if (result == ABBE_OK) result = make(w, q, out, &error);
@@ -304,10 +314,10 @@ static void work(abbe_view_worker *w, const abbe_view_request *q, abbe_view_resu
   }
   out->ended_s = abbe_clock_seconds();
   out->ms = 1e3 * (out->ended_s - start);
-  out->outcome = result == ABBE_OK                                       ? ABBE_VIEW_DONE
-                 : result == ABBE_CANCELLED && w->uncompiled && !w->stop ? ABBE_VIEW_UNCOMPILED
-                 : result == ABBE_CANCELLED                              ? ABBE_VIEW_CANCELLED
-                                                                         : ABBE_VIEW_REFUSED;
+  out->outcome = result == ABBE_OK                     ? ABBE_VIEW_DONE
+                 : result == ABBE_CANCELLED && w->lost ? ABBE_VIEW_LOST
+                 : result == ABBE_CANCELLED            ? ABBE_VIEW_CANCELLED
+                                                       : ABBE_VIEW_REFUSED;
   if (out->outcome == ABBE_VIEW_REFUSED)
     snprintf(out->sentence, sizeof out->sentence, "%.1000s",
              error.text[0] != '\0' ? error.text : abbe_result_text(result));
@@ -335,14 +345,7 @@ static void run(abbe_view_worker *w) {
 
 static void *begin(void *user) {
   abbe_view_worker *w = user;
-  const abbe_result result = abbe_context_make(ABBE_CONTEXT_EGL, &w->context, &w->error);
-  pthread_mutex_lock(&w->lock);
-  w->started = result;
-  w->done = true;
-  pthread_cond_broadcast(&w->signal);
-  while (w->done) pthread_cond_wait(&w->signal, &w->lock);
-  pthread_mutex_unlock(&w->lock);
-  if (result == ABBE_OK) run(w);
+  run(w);
   abbe_tracer_free(w->tracer);
   abbe_renderer_free(w->renderer);
   abbe_context_free(w->context);
@@ -363,18 +366,8 @@ abbe_result abbe_view_worker_make(const char *materials, const abbe_caustic_volu
   if (result == ABBE_OK && pthread_create(&w->thread, NULL, begin, w) != 0)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no thread for the viewer's pictures");
   if (result == ABBE_OK) {
-    pthread_mutex_lock(&w->lock);
-    while (!w->done) pthread_cond_wait(&w->signal, &w->lock);
-    result = w->started;
-    w->done = false;
-    pthread_cond_broadcast(&w->signal);
-    pthread_mutex_unlock(&w->lock);
-    if (result == ABBE_OK) {
-      *out = w;
-      return ABBE_OK;
-    }
-    abbe_error_set(error, result, "%s", w->error.text);
-    pthread_join(w->thread, NULL);
+    *out = w;
+    return ABBE_OK;
   }
   abbe_presets_free(&w->presets);
   free(w);

@@ -1,7 +1,7 @@
-/* view_worker.h: the thread that draws and traces: a job in, a picture out.
+/* view_worker.h: a thread that draws and traces: a job in, a picture out. The viewer has two.
  *
  * It has a context, a renderer and a tracer of its own, and loads the scene by itself, so that
- * whoever watches never waits. One job at a time; what it makes is handed over whole. It decides
+ * whoever watches never waits, nor another worker. One job at a time; what it makes is handed over whole. It decides
  * nothing: which job is next, and whether one is to stop, is cli/view/state/view_refine.h's
  * business.
  */
@@ -22,7 +22,7 @@
 typedef struct abbe_view_request {
   abbe_view_job job;
   abbe_view_document document; /* the request's own */
-  bool reload;                 /* the files anew */
+  size_t edition;              /* another one than of the last request: the files anew */
   size_t width, height;
   bool asks;                   /* no picture, but what feeds this place: */
   double point[3], radius, nm; /* its colour's wavelength */
@@ -65,9 +65,9 @@ void abbe_view_result_free(abbe_view_result *result);
 
 typedef struct abbe_view_worker abbe_view_worker;
 
-/* Starts the thread. volume (may be NULL): caustics are looked up in it, which stays where it is.
- * wake (may be NULL) is called on it whenever a result is there. ABBE_GL where
- * there is no EGL for it, ABBE_NO_MEMORY. */
+/* Starts the thread, which makes its context when it has a first picture to draw; where it cannot,
+ * that is refused. volume (may be NULL): caustics are looked up in it, which stays where it is. wake
+ * (may be NULL) is called on it whenever a result is there. ABBE_NO_MEMORY. */
 abbe_result abbe_view_worker_make(const char *materials, const abbe_caustic_volume *volume,
                                   void (*wake)(void), abbe_view_worker **out, abbe_error *error);
 /* Cancels what is being done and ends the thread. */

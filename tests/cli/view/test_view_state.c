@@ -184,16 +184,22 @@ static void test_the_wheel_is_a_step(void **state) {
 
 static void test_lights_move(void **state) {
   (void)state;
+  enum { READY = 1u << ABBE_VIEW_MOVING };
   abbe_view_state *s = begun();
   double xy[2];
   abbe_view_state_wheel(s, -6, 0.9);
   assert_int_equal(s->history.count, 2);
+  s->refine.hand[0].ready = READY;
   assert_true(abbe_view_camera_project(&s->camera, 512, 512, s->outline.light[0].position, xy));
   const abbe_view_handle handle = abbe_view_state_handle_at(s, xy[0] + 5, xy[1]);
   assert_int_equal(handle.kind, ABBE_VIEW_LIGHT_HANDLE);
   drag(s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0] - 30, xy[1], 0);
   assert_non_null(value(s, "lights.lamp.position"));
-  assert_int_equal(s->refine.light, ABBE_VIEW_NONE);
+  assert_int_equal(s->refine.scene, s->refine.serial); /* no light is of it, */
+  assert_int_equal(s->refine.hand[0].ready, READY);    /* but programs are */
+  abbe_view_state_set(s, "objects.gem.material", "diamond", false, 3);
+  assert_int_equal(s->refine.hand[0].ready, 0);
+  assert_true(abbe_view_state_undo(s, 4));
   learn(s);
   assert_true(s->outline.light[0].position[0] < -0.03);
   abbe_view_state_free(s);
