@@ -125,7 +125,7 @@ add_test(NAME reference_broken_wavelengths
           --broken prism --wavelengths 1)
 abbe_label(program NAMES reference_broken_exits reference_broken_wavelengths)
 
-foreach(name view_camera view_document view_feed view_pace view_refine view_scene view_sight view_state)
+foreach(name view_camera view_document view_feed view_files view_pace view_refine view_scene view_sight view_state)
   abbe_test(${name} cpu abbe_view_state abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 endforeach()
 abbe_test(view_command program abbe_colorimetry abbe_spectral abbe_base)
@@ -143,6 +143,8 @@ if(ABBE_VIEWER)
   add_test(NAME view_window COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/view/window
     $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
   abbe_label(program NAMES view_window)
+  abbe_test(view_worker gl abbe_view_work abbe_view_state abbe_gl abbe_validation abbe_scenes
+    abbe_colorimetry abbe_spectral abbe_base)
   set_tests_properties(view_window PROPERTIES SKIP_RETURN_CODE 77)
   add_test(NAME view_serve COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/view/serve
     $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR} $<IF:$<BOOL:${MICROHTTPD_FOUND}>,yes,no>)

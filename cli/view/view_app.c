@@ -12,7 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #define LOOK_S 0.5      /* how often files are looked at */
 #define FEED_PIXELS 2.0 /* photons so near to a pixel feed it */
@@ -68,15 +67,6 @@ abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc
   return result;
 }
 
-static void forget_files(abbe_view_session *app) {
-  for (size_t i = 0; i < app->file_count; i++) free(app->file[i]);
-  free(app->file);
-  free(app->changed);
-  app->file = NULL;
-  app->changed = NULL;
-  app->file_count = 0;
-}
-
 void abbe_view_app_end(abbe_view_session *app) {
   for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++) { /* the second one ends while the first does */
     if (app->desk[i].worker != NULL) abbe_view_worker_cancel(app->desk[i].worker);
@@ -90,52 +80,19 @@ void abbe_view_app_end(abbe_view_session *app) {
   abbe_display_free(app->display);
   for (size_t i = 0; i < app->scene_count; i++) free(app->scene[i]);
   free(app->views);
-  forget_files(app);
+  abbe_view_files_free(&app->files);
   free(app->feed);
   abbe_view_pictures_free(&app->pictures);
   abbe_view_result_free(&app->last);
   abbe_view_state_free(&app->state);
 }
 
-/* ---- files that change on disk ---- */
-
-static long long changed_at(const char *path) {
-  struct stat status;
-  if (stat(path, &status) != 0) return -1;
-  return (long long)status.st_mtim.tv_sec * 1000000000 + status.st_mtim.tv_nsec;
-}
-
-/* Of files that were known, the time stays: the other worker may have read them as they were. */
-static void watch_files(abbe_view_session *app, abbe_view_result *result) {
-  abbe_view_scene_news *news = &result->news;
-  long long *changed = calloc(news->file_count + 1, sizeof *changed);
-  if (!news->outlined || news->file == NULL || changed == NULL) {
-    free(changed);
-    return;
-  }
-  for (size_t i = 0; i < news->file_count; i++) {
-    changed[i] = changed_at(news->file[i]);
-    for (size_t k = 0; k < app->file_count; k++)
-      if (strcmp(app->file[k], news->file[i]) == 0) changed[i] = app->changed[k];
-  }
-  forget_files(app);
-  app->file = news->file;
-  app->file_count = news->file_count;
-  app->changed = changed;
-  news->file = NULL;
-  news->file_count = 0;
-}
-
 static void look_at_files(abbe_view_session *app, double now_s) {
-  if (now_s - app->looked_s < LOOK_S || app->changed == NULL) return;
+  if (now_s - app->looked_s < LOOK_S) return;
   app->looked_s = now_s;
-  for (size_t i = 0; i < app->file_count; i++) {
-    const long long at = changed_at(app->file[i]);
-    if (at == app->changed[i] || at < 0) continue;
-    app->changed[i] = at;
-    app->edition++;
-    abbe_view_state_reload(&app->state, now_s);
-  }
+  if (!abbe_view_files_changed(&app->files)) return;
+  app->edition++;
+  abbe_view_state_reload(&app->state, now_s);
 }
 
 /* ---- results ---- */
@@ -184,14 +141,18 @@ static void take(abbe_view_session *app, size_t worker, abbe_view_result *result
   abbe_view_refine *refine = &app->state.refine;
   const bool moved = result->job.stage == ABBE_VIEW_MOVING;
   const bool shown = abbe_view_refine_end(refine, worker, result->outcome, result->ms);
-  watch_files(app, result);
+  if (result->news.outlined) abbe_view_files_take(&app->files, &result->news);
   if (result->news.outlined) abbe_view_state_learn(&app->state, &result->news.outline);
   if (result->outcome == ABBE_VIEW_REFUSED && result->job.serial == refine->serial)
     snprintf(app->state.refusal, sizeof app->state.refusal, "%s", result->sentence);
   if (!shown) return;
   const double pictured_s = abbe_clock_seconds();
   if (app->first_s == 0) app->first_s = abbe_clock_process_seconds();
-  if (moved && app->seen_s < 0) app->frame_count = 0; /* after a rest */
+  if (moved && app->seen_s < 0) { /* after a rest */
+    app->frame_count = 0;
+    app->own_ms = 0;
+  }
+  if (moved) app->own_ms = fmax(app->own_ms, result->own_ms);
   if (moved && app->seen_s > 0 && pictured_s - app->seen_s < 1)
     app->frames_ms[app->frame_count++ % 32] = 1e3 * (pictured_s - app->seen_s);
   app->seen_s = moved ? pictured_s : -1;

@@ -2,8 +2,28 @@
 
 #include "base/clock.h"
 
+#include <math.h>
+#include <semaphore.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
+
+static sem_t called; /* by workers, which know no window */
+
+static void wake(void) {
+  sem_post(&called);
+}
+
+void abbe_view_hidden_sleep(abbe_view_hidden *h, double most_s) {
+  const double least_s = 0.002, wait_s = abbe_view_app_wait(&h->session, abbe_clock_seconds());
+  struct timespec until;
+  clock_gettime(CLOCK_REALTIME, &until);
+  const double nanoseconds = (double)until.tv_nsec + 1e9 * fmax(least_s, fmin(most_s, wait_s));
+  until.tv_sec += (time_t)(nanoseconds / 1e9);
+  until.tv_nsec = (long)fmod(nanoseconds, 1e9);
+  sem_timedwait(&called, &until);
+  while (sem_trywait(&called) == 0) continue;
+}
 
 void abbe_view_hidden_resize(abbe_view_hidden *h, size_t width, size_t height) {
   const abbe_gl *gl = h->gl;
@@ -52,15 +72,19 @@ unsigned char *abbe_view_hidden_read(abbe_view_hidden *h) {
 
 abbe_result abbe_view_hidden_begin(abbe_view_hidden *h, const abbe_view_app_desc *desc,
                                    size_t width, size_t height, abbe_error *error) {
+  abbe_view_app_desc own = *desc;
   h->input = (abbe_ui_input){.mouse = {-1, -1}};
+  if (own.wake == NULL) own.wake = wake;
   abbe_result result = abbe_context_make(ABBE_CONTEXT_EGL, &h->context, error);
   if (result != ABBE_OK) return result;
   h->gl = abbe_context_gl(h->context);
   h->last_s = abbe_clock_seconds();
   h->framebuffer = h->colour = 0;
   abbe_view_hidden_resize(h, width, height);
-  result = abbe_view_app_begin(&h->session, desc, h->context, error);
+  sem_init(&called, 0, 0);
+  result = abbe_view_app_begin(&h->session, &own, h->context, error);
   if (result == ABBE_OK) return ABBE_OK;
+  sem_destroy(&called);
   h->gl->DeleteFramebuffers(1, &h->framebuffer);
   h->gl->DeleteTextures(1, &h->colour);
   abbe_context_free(h->context);
@@ -69,6 +93,7 @@ abbe_result abbe_view_hidden_begin(abbe_view_hidden *h, const abbe_view_app_desc
 
 void abbe_view_hidden_end(abbe_view_hidden *h) {
   abbe_view_app_end(&h->session);
+  sem_destroy(&called);
   h->gl->DeleteFramebuffers(1, &h->framebuffer);
   h->gl->DeleteTextures(1, &h->colour);
   abbe_context_free(h->context);

@@ -15,7 +15,7 @@ typedef struct abbe_view_hidden {
   double last_s;
 } abbe_view_hidden;
 
-/* The pointer is outside at first. Errors of abbe_context_make and abbe_view_app_begin; there is
+/* There is one at a time. The pointer is outside at first. Errors of abbe_context_make and abbe_view_app_begin; there is
  * then nothing to end. */
 abbe_result abbe_view_hidden_begin(abbe_view_hidden *hidden, const abbe_view_app_desc *desc,
                                    size_t width, size_t height, abbe_error *error);
@@ -25,6 +25,9 @@ void abbe_view_hidden_end(abbe_view_hidden *hidden);
 void abbe_view_hidden_resize(abbe_view_hidden *hidden, size_t width, size_t height);
 /* One frame. */
 void abbe_view_hidden_frame(abbe_view_hidden *hidden);
+/* As a window does between frames: until a worker has made something, or something changes by
+ * itself, at most for so long, s. Only where the description says nobody else to be woken. */
+void abbe_view_hidden_sleep(abbe_view_hidden *hidden, double most_s);
 /* What it looks like: R, G, B a byte each, rows downward, malloc'd; NULL without memory. */
 unsigned char *abbe_view_hidden_read(abbe_view_hidden *hidden);
 

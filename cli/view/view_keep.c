@@ -101,7 +101,7 @@ static bool names_files(const abbe_view_session *session, const char *target) {
   const char *a = strrchr(path, '/'), *b = strrchr(target, '/');
   const size_t here = a != NULL ? (size_t)(a - path) : 0;
   const size_t there = b != NULL ? (size_t)(b - target) : 0;
-  return session->file_count > 1 && (here != there || strncmp(path, target, here) != 0);
+  return session->files.count > 1 && (here != there || strncmp(path, target, here) != 0);
 }
 
 static abbe_result keep_scene(const abbe_view_session *session, const char *target,
@@ -122,8 +122,8 @@ abbe_result abbe_view_keep_check(const abbe_view_session *session, const char *t
                                  abbe_error *error) {
   const char *scene = abbe_view_history_now(&session->state.history)->path;
   bool is_read = abbe_view_keep_same_file(scene, target);
-  for (size_t i = 0; i < session->file_count && !is_read; i++)
-    is_read = abbe_view_keep_same_file(session->file[i], target);
+  for (size_t i = 0; i < session->files.count && !is_read; i++)
+    is_read = abbe_view_keep_same_file(session->files.path[i], target);
   if (!is_read) return ABBE_OK;
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                         "%.300s is what the scene is read from and would be lost; nothing was "

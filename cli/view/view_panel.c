@@ -126,6 +126,7 @@ static void draw_scene(abbe_view_session *app, double now_s) {
   }
   if (abbe_ui_choose("scene", names, app->scene_count, &at)) {
     abbe_view_state_open(s, app->scene[at], now_s);
+    app->edition++; /* whoever has read it before does so again */
     return;
   }
   size_t refractors = 0;

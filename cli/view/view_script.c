@@ -15,7 +15,7 @@
 
 enum { MOST_WORDS = 16, MOST_REMEMBERED = 32, LONGEST = 4096 };
 #define PATIENCE_S 300.0 /* of processor time, for the machine may be busy */
-#define REST_FRAMES 400  /* in which nothing is left to do: files are looked at meanwhile */
+#define REST_S 1.0       /* in which nothing is left to do: files are looked at meanwhile */
 #define SCRIPT_MOST_BYTES ((size_t)1 << 20)
 
 typedef struct script {
@@ -312,19 +312,23 @@ static abbe_result do_wait(script *s, abbe_error *error) {
   double seconds;
   pump(s);
   if (abbe_number_read(what, &end, &seconds) && *end == '\0') {
-    for (; abbe_clock_seconds() - start < seconds; pump(s)) sleep_a_little();
+    for (double left = seconds; left > 0; left = start + seconds - abbe_clock_seconds()) {
+      abbe_view_hidden_sleep(&s->hidden, left);
+      pump(s);
+    }
     return ABBE_OK;
   }
   const clock_t begun = clock();
-  for (size_t rest = 0; !has_come(s, what); pump(s)) {
-    rest = abbe_view_app_rests(&s->hidden.session, abbe_clock_seconds()) ? rest + 1 : 0;
+  for (double busy_s = start; !has_come(s, what); pump(s)) {
+    const double now = abbe_clock_seconds();
+    if (!abbe_view_app_rests(&s->hidden.session, now)) busy_s = now;
     const bool late = (double)(clock() - begun) / CLOCKS_PER_SEC > PATIENCE_S;
-    if (late || rest > REST_FRAMES)
+    if (late || now - busy_s > REST_S)
       return fail(
           s, ABBE_TOLERANCE, error, "'%.60s' has not come%s; the stage is %s%s%.300s", what,
           late ? "" : ", and nothing is left to do", abbe_view_stage_name(s->hidden.session.stage),
           s->hidden.session.state.refusal[0] != '\0' ? ": " : "", s->hidden.session.state.refusal);
-    sleep_a_little();
+    abbe_view_hidden_sleep(&s->hidden, REST_S);
   }
   pump(s);
   return ABBE_OK;

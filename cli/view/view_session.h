@@ -7,6 +7,7 @@
 
 #include "cli/view/picture/view_probe.h"
 #include "cli/view/view_ui.h"
+#include "cli/view/work/view_files.h"
 #include "cli/view/work/view_worker.h"
 #include "gl/device/api.h"
 
@@ -60,6 +61,7 @@ typedef struct abbe_view_session {
   double first_s;         /* from the program's start to its first picture; 0: there is none */
   double seen_s, frames_ms[32]; /* times between pictures while something moves */
   size_t frame_count;
+  double own_ms; /* the most that a worker's own thread has worked for one of these */
   double event_s[ABBE_VIEW_TIMED]; /* of changes by pointer, by their number; 0: another change */
   uint64_t pictured;               /* the last change that a picture has shown, */
   double latency_ms;               /* and from the first one that it showed to it */
@@ -70,9 +72,7 @@ typedef struct abbe_view_session {
   uint64_t turn_serial;            /* what it turns */
   bool turned;                     /* the last one is whole */
   char note[1200];                 /* what was saved, or why not */
-  char **file;                     /* of the scene, and when they were changed last */
-  long long *changed;
-  size_t file_count;
+  abbe_view_files files; /* of the scene */
   double looked_s;
 } abbe_view_session;
 

@@ -300,7 +300,7 @@ static abbe_result renew(abbe_view_worker *w, abbe_error *error) {
 }
 
 static void work(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out) {
-  const double start = abbe_clock_seconds();
+  const double start = abbe_clock_seconds(), own_s = abbe_clock_thread_seconds();
   abbe_error error = {0};
   w->lost = false;
   abbe_result result = w->context != NULL ? ABBE_OK : renew(w, &error);
@@ -314,6 +314,7 @@ static void work(abbe_view_worker *w, const abbe_view_request *q, abbe_view_resu
   }
   out->ended_s = abbe_clock_seconds();
   out->ms = 1e3 * (out->ended_s - start);
+  out->own_ms = 1e3 * (abbe_clock_thread_seconds() - own_s);
   out->outcome = result == ABBE_OK                     ? ABBE_VIEW_DONE
                  : result == ABBE_CANCELLED && w->lost ? ABBE_VIEW_LOST
                  : result == ABBE_CANCELLED            ? ABBE_VIEW_CANCELLED

@@ -44,6 +44,7 @@ typedef struct abbe_view_result {
   char sentence[1024];
   size_t width, height;
   double ms, ended_s; /* how long it took; when it ended, by base/clock.h */
+  double own_ms;      /* processor time of the worker's own thread, where drivers compile */
   abbe_image picture; /* rendered: R, G, B, and at rest direct.* and caustic.* */
   abbe_image traced;  /* R, G, B, stderr.*, bands */
   abbe_view_scene_news news;

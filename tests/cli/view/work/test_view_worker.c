@@ -1,0 +1,127 @@
+/* What workers draw: one picture, whichever draws it and whatever it has drawn before, and of light
+ * that moves nothing of where it was. */
+#include "tests/check.h"
+
+#include "cli/view/work/view_worker.h"
+
+#include <math.h>
+#include <string.h>
+#include <time.h>
+
+enum { SIDE = 64 };
+
+static abbe_view_worker *made(void) {
+  abbe_view_worker *out = NULL;
+  abbe_error error = {0};
+  if (abbe_view_worker_make(NULL, NULL, NULL, &out, &error) != ABBE_OK) fail_msg("%s", error.text);
+  return out;
+}
+
+/* A stage of the gem with its lamp at that place, as few.txt of script/bench-view has it. */
+static void give(abbe_view_worker *w, abbe_view_stage stage, bool warms, double x) {
+  char path[] = ABBE_SOURCE_DIR "/scenes/gem.yaml", place[64];
+  const abbe_view_document few = {.path = path, .photons = 96, .map_size = 256, .wavelengths = 9};
+  abbe_view_request request = {.job = {.stage = stage, .light = stage, .warms = warms},
+                               .width = SIDE,
+                               .height = SIDE};
+  assert_int_equal(abbe_view_document_copy(&few, &request.document, NULL), ABBE_OK);
+  snprintf(place, sizeof place, "[%.3f, 0.03, 0.295]", x);
+  assert_int_equal(
+      abbe_view_document_set(&request.document, "lights.lamp.position", place, NULL), ABBE_OK);
+  abbe_view_worker_give(w, &request);
+}
+
+static abbe_view_result taken(abbe_view_worker *w) {
+  const struct timespec time = {.tv_nsec = 1000000};
+  abbe_view_result out = {0};
+  while (!abbe_view_worker_take(w, &out)) nanosleep(&time, NULL);
+  return out;
+}
+
+/* The picture; its first three channels are its colour. */
+static abbe_image draw(abbe_view_worker *w, abbe_view_stage stage, bool warms, double x) {
+  give(w, stage, warms, x);
+  abbe_view_result result = taken(w);
+  if (result.outcome != ABBE_VIEW_DONE) fail_msg("%s", result.sentence);
+  const abbe_image out = result.picture;
+  result.picture = (abbe_image){0};
+  abbe_view_result_free(&result);
+  return out;
+}
+
+static void leave(abbe_view_worker *w, abbe_view_stage stage, bool warms, double x) {
+  abbe_image image = draw(w, stage, warms, x);
+  abbe_image_free(&image);
+}
+
+static void test_whoever_draws_it_a_picture_is_the_same(void **state) {
+  (void)state;
+  abbe_view_worker *a = made(), *b = made();
+  leave(a, ABBE_VIEW_MOVING, false, 0);
+  leave(a, ABBE_VIEW_MOVING, false, 0.01);
+  abbe_image one = draw(a, ABBE_VIEW_BALANCED, false, 0.02);
+  leave(b, ABBE_VIEW_MOVING, true, -0.01);
+  give(b, ABBE_VIEW_BALANCED, false, 0.02); /* which is told to stop */
+  abbe_view_worker_cancel(b);
+  abbe_view_result result = taken(b);
+  assert_true(result.outcome == ABBE_VIEW_CANCELLED || result.outcome == ABBE_VIEW_LOST);
+  abbe_view_result_free(&result);
+  abbe_image other = draw(b, ABBE_VIEW_BALANCED, false, 0.02);
+  assert_int_equal(one.channels, other.channels);
+  assert_memory_equal(one.data, other.data,
+                      one.width * one.height * one.channels * sizeof *one.data);
+  abbe_image_free(&one);
+  abbe_image_free(&other);
+  abbe_view_worker_free(a);
+  abbe_view_worker_free(b);
+}
+
+static double luminance(const abbe_image *image, int x, int y) {
+  const float *v = &image->data[image->channels * ((size_t)y * SIDE + (size_t)x)];
+  return 0.27 * (double)v[0] + 0.67 * (double)v[1] + 0.06 * (double)v[2];
+}
+
+/* Light that the picture has where another one has none so bright within three pixels. */
+static double beyond(const abbe_image *image, const abbe_image *other) {
+  enum { NEAR = 3 };
+  double sum = 0;
+  for (int y = 0; y < SIDE; y++)
+    for (int x = 0; x < SIDE; x++) {
+      double most = 0;
+      for (int v = (int)fmax(0, y - NEAR); v <= (int)fmin(SIDE - 1, y + NEAR); v++)
+        for (int u = (int)fmax(0, x - NEAR); u <= (int)fmin(SIDE - 1, x + NEAR); u++)
+          most = fmax(most, luminance(other, u, v));
+      sum += fmax(0, luminance(image, x, y) - most);
+    }
+  return sum;
+}
+
+/* Frames that follow one another are blended (gl/caustics/map_history.h): each of these steps moves
+ * the caustic farther than what counts as near, and of the three before the last a mean without
+ * bounds would keep three quarters. */
+static void test_a_dragged_lamp_leaves_no_ghosts(void **state) {
+  (void)state;
+  abbe_view_worker *a = made(), *b = made();
+  abbe_image was[3], now;
+  leave(a, ABBE_VIEW_MOVING, false, -0.08);
+  for (int i = 0; i < 3; i++) was[i] = draw(a, ABBE_VIEW_MOVING, false, -0.05 + 0.03 * i);
+  abbe_image dragged = draw(a, ABBE_VIEW_MOVING, false, 0.04);
+  now = draw(b, ABBE_VIEW_MOVING, false, 0.04);
+  double mean = 0;
+  for (int i = 0; i < 3; i++) mean += 0.25 * beyond(&was[i], &now);
+  const double ghost = beyond(&dragged, &now);
+  print_message("ghosts %.4g of the light that has moved, %.4g\n", ghost / mean, mean);
+  assert_true(mean > 0 && ghost < 0.02 * mean);
+  for (int i = 0; i < 3; i++) abbe_image_free(&was[i]);
+  abbe_image_free(&now);
+  abbe_image_free(&dragged);
+  abbe_view_worker_free(a);
+  abbe_view_worker_free(b);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_whoever_draws_it_a_picture_is_the_same),
+      cmocka_unit_test(test_a_dragged_lamp_leaves_no_ghosts)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
