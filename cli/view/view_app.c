@@ -217,8 +217,8 @@ static void take_look(abbe_view_session *app, abbe_view_result *result) {
 static void cancel_obsolete(abbe_view_session *app, size_t worker) {
   const abbe_view_refine *refine = &app->state.refine;
   abbe_view_desk *desk = &app->desk[worker];
-  const bool obsolete = desk->other ? desk->serial != refine->serial
-                                    : abbe_view_refine_cancels(refine, worker);
+  const bool obsolete =
+      desk->other ? desk->serial != refine->serial : abbe_view_refine_cancels(refine, worker);
   if (!obsolete || desk->stopped_s >= 0) return;
   desk->stopped_s = abbe_clock_seconds();
   abbe_view_worker_cancel(desk->worker);

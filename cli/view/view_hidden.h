@@ -15,8 +15,8 @@ typedef struct abbe_view_hidden {
   double last_s;
 } abbe_view_hidden;
 
-/* There is one at a time. The pointer is outside at first. Errors of abbe_context_make and abbe_view_app_begin; there is
- * then nothing to end. */
+/* There is one at a time. The pointer is outside at first. Errors of abbe_context_make and
+ * abbe_view_app_begin; there is then nothing to end. */
 abbe_result abbe_view_hidden_begin(abbe_view_hidden *hidden, const abbe_view_app_desc *desc,
                                    size_t width, size_t height, abbe_error *error);
 void abbe_view_hidden_end(abbe_view_hidden *hidden);

@@ -18,8 +18,8 @@
 /* A worker, and what it was given. */
 typedef struct abbe_view_desk {
   abbe_view_worker *worker;
-  uint64_t serial;  /* of what it does, */
-  bool other;       /* which is no job of cli/view/state/view_refine.h: a look, a turntable's frame */
+  uint64_t serial; /* of what it does, */
+  bool other; /* which is no job of cli/view/state/view_refine.h: a look, a turntable's frame */
   double stopped_s; /* when it was told to stop; below 0: it was not */
 } abbe_view_desk;
 
@@ -67,11 +67,11 @@ typedef struct abbe_view_session {
   double latency_ms;               /* and from the first one that it showed to it */
   uint64_t obsolete;               /* the last change that ended a rest; 0: it is shown */
   double obsolete_s, cancel_ms;    /* when it came; and how long until a picture showed it, */
-  double stop_ms;                  /* what was made for the one before took to stop; the last times */
-  size_t turn_frame;               /* of the turntable, from 1; 0: it stands */
-  uint64_t turn_serial;            /* what it turns */
-  bool turned;                     /* the last one is whole */
-  char note[1200];                 /* what was saved, or why not */
+  double stop_ms;        /* what was made for the one before took to stop; the last times */
+  size_t turn_frame;     /* of the turntable, from 1; 0: it stands */
+  uint64_t turn_serial;  /* what it turns */
+  bool turned;           /* the last one is whole */
+  char note[1200];       /* what was saved, or why not */
   abbe_view_files files; /* of the scene */
   double looked_s;
 } abbe_view_session;

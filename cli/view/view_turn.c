@@ -32,9 +32,8 @@ bool abbe_view_turn_wants(const abbe_view_session *session, abbe_view_request *o
   out->turns = true;
   out->turn_rad =
       2 * 3.14159265358979323846 * (double)(session->turn_frame - 1) / ABBE_VIEW_TURN_FRAMES;
-  out->job = (abbe_view_job){.stage = ABBE_VIEW_ACCURATE,
-                             .light = ABBE_VIEW_ACCURATE,
-                             .serial = session->turn_serial};
+  out->job = (abbe_view_job){
+      .stage = ABBE_VIEW_ACCURATE, .light = ABBE_VIEW_ACCURATE, .serial = session->turn_serial};
   return true;
 }
 

@@ -76,8 +76,7 @@ static abbe_view_job job_of(const abbe_view_refine *refine, size_t worker, abbe_
   }
   if (job.light != ABBE_VIEW_MOVING) job.light_step = 0;
   /* coarser pictures have programs of their own */
-  if (stage == ABBE_VIEW_MOVING &&
-      (is_ready(hand, job.light) || refine->last == ABBE_VIEW_MOVING))
+  if (stage == ABBE_VIEW_MOVING && (is_ready(hand, job.light) || refine->last == ABBE_VIEW_MOVING))
     job.eye_step = refine->pace.eye_step;
   return job;
 }

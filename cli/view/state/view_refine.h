@@ -2,11 +2,11 @@
  * move, ever better ones when they rest.
  *
  * A state machine: changes, times and finished jobs in, jobs out. It draws nothing, knows no scene
- * and no settings, only their order. One worker shows: it draws what moves, with the best light that
- * it has, and at rest no more than what its light and programs are there for. The other one makes
- * the next better stage, which may have to wait for the driver's compiler. When that one is the
- * better to show, because its light is better and it has drawn moving pictures with it once, the two
- * change their parts. So motion waits neither for the compiler nor for a stage.
+ * and no settings, only their order. One worker shows: it draws what moves, with the best light
+ * that it has, and at rest no more than what its light and programs are there for. The other one
+ * makes the next better stage, which may have to wait for the driver's compiler. When that one is
+ * the better to show, because its light is better and it has drawn moving pictures with it once,
+ * the two change their parts. So motion waits neither for the compiler nor for a stage.
  *
  * Moving, a job takes the steps that cli/view/state/view_pace.h finds; after ABBE_VIEW_REST_S
  * without a change the stages follow each other up to the last. A change makes any stage but a
@@ -73,7 +73,7 @@ typedef struct abbe_view_hand {
   abbe_view_stage light; /* that it holds for this scene; NONE: none */
   size_t light_step;     /* of that */
   /* for its programs: */
-  unsigned ready;        /* it has drawn moving pictures of all steps with such lights, a bit each, */
+  unsigned ready; /* it has drawn moving pictures of all steps with such lights, a bit each, */
   abbe_view_stage moved; /* and one of them with this light last; */
   abbe_view_stage rests; /* and this stage with the light that it holds, whatever the camera */
 } abbe_view_hand;
@@ -104,7 +104,8 @@ bool abbe_view_refine_next(const abbe_view_refine *refine, size_t worker, double
                            abbe_view_job *out);
 /* It has begun that. */
 void abbe_view_refine_take(abbe_view_refine *refine, size_t worker, const abbe_view_job *job);
-/* When next may have another answer for any worker, s from now on; below 0: after the next event. */
+/* When next may have another answer for any worker, s from now on; below 0: after the next event.
+ */
 double abbe_view_refine_wait(const abbe_view_refine *refine, double now_s);
 /* Whether what a worker does is to stop. */
 bool abbe_view_refine_cancels(const abbe_view_refine *refine, size_t worker);

@@ -1,9 +1,9 @@
 /* view_worker.h: a thread that draws and traces: a job in, a picture out. The viewer has two.
  *
  * It has a context, a renderer and a tracer of its own, and loads the scene by itself, so that
- * whoever watches never waits, nor another worker. One job at a time; what it makes is handed over whole. It decides
- * nothing: which job is next, and whether one is to stop, is cli/view/state/view_refine.h's
- * business.
+ * whoever watches never waits, nor another worker. One job at a time; what it makes is handed over
+ * whole. It decides nothing: which job is next, and whether one is to stop, is
+ * cli/view/state/view_refine.h's business.
  */
 #ifndef ABBE_CLI_VIEW_WORK_VIEW_WORKER_H
 #define ABBE_CLI_VIEW_WORK_VIEW_WORKER_H
@@ -67,8 +67,8 @@ void abbe_view_result_free(abbe_view_result *result);
 typedef struct abbe_view_worker abbe_view_worker;
 
 /* Starts the thread, which makes its context when it has a first picture to draw; where it cannot,
- * that is refused. volume (may be NULL): caustics are looked up in it, which stays where it is. wake
- * (may be NULL) is called on it whenever a result is there. ABBE_NO_MEMORY. */
+ * that is refused. volume (may be NULL): caustics are looked up in it, which stays where it is.
+ * wake (may be NULL) is called on it whenever a result is there. ABBE_NO_MEMORY. */
 abbe_result abbe_view_worker_make(const char *materials, const abbe_caustic_volume *volume,
                                   void (*wake)(void), abbe_view_worker **out, abbe_error *error);
 /* Cancels what is being done and ends the thread. */

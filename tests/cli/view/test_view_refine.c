@@ -337,21 +337,20 @@ static void test_what_a_worker_holds_is_forgotten(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_stages_follow_each_other),
-      cmocka_unit_test(test_who_shows_and_who_makes),
-      cmocka_unit_test(test_motion_waits_for_nothing),
-      cmocka_unit_test(test_refining_waits_for_rest),
-      cmocka_unit_test(test_a_change_cancels_all_but_what_moves),
-      cmocka_unit_test(test_the_camera_keeps_the_light),
-      cmocka_unit_test(test_a_late_picture_brings_no_light),
-      cmocka_unit_test(test_slow_pictures_get_cheaper),
-      cmocka_unit_test(test_no_step_follows_from_the_compiler),
-      cmocka_unit_test(test_what_is_refused_waits_for_a_change),
-      cmocka_unit_test(test_a_picture_without_a_mean),
-      cmocka_unit_test(test_a_stage_that_ends_early_leaves_no_light),
-      cmocka_unit_test(test_a_spectrum_is_traced_before_the_mean),
-      cmocka_unit_test(test_what_a_worker_holds_is_forgotten),
-      cmocka_unit_test(test_stages_end_where_they_are_wanted)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_stages_follow_each_other),
+                                     cmocka_unit_test(test_who_shows_and_who_makes),
+                                     cmocka_unit_test(test_motion_waits_for_nothing),
+                                     cmocka_unit_test(test_refining_waits_for_rest),
+                                     cmocka_unit_test(test_a_change_cancels_all_but_what_moves),
+                                     cmocka_unit_test(test_the_camera_keeps_the_light),
+                                     cmocka_unit_test(test_a_late_picture_brings_no_light),
+                                     cmocka_unit_test(test_slow_pictures_get_cheaper),
+                                     cmocka_unit_test(test_no_step_follows_from_the_compiler),
+                                     cmocka_unit_test(test_what_is_refused_waits_for_a_change),
+                                     cmocka_unit_test(test_a_picture_without_a_mean),
+                                     cmocka_unit_test(test_a_stage_that_ends_early_leaves_no_light),
+                                     cmocka_unit_test(test_a_spectrum_is_traced_before_the_mean),
+                                     cmocka_unit_test(test_what_a_worker_holds_is_forgotten),
+                                     cmocka_unit_test(test_stages_end_where_they_are_wanted)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

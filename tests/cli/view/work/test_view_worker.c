@@ -21,13 +21,12 @@ static abbe_view_worker *made(void) {
 static void give(abbe_view_worker *w, abbe_view_stage stage, bool warms, double x) {
   char path[] = ABBE_SOURCE_DIR "/scenes/gem.yaml", place[64];
   const abbe_view_document few = {.path = path, .photons = 96, .map_size = 256, .wavelengths = 9};
-  abbe_view_request request = {.job = {.stage = stage, .light = stage, .warms = warms},
-                               .width = SIDE,
-                               .height = SIDE};
+  abbe_view_request request = {
+      .job = {.stage = stage, .light = stage, .warms = warms}, .width = SIDE, .height = SIDE};
   assert_int_equal(abbe_view_document_copy(&few, &request.document, NULL), ABBE_OK);
   snprintf(place, sizeof place, "[%.3f, 0.03, 0.295]", x);
-  assert_int_equal(
-      abbe_view_document_set(&request.document, "lights.lamp.position", place, NULL), ABBE_OK);
+  assert_int_equal(abbe_view_document_set(&request.document, "lights.lamp.position", place, NULL),
+                   ABBE_OK);
   abbe_view_worker_give(w, &request);
 }
 
@@ -120,8 +119,7 @@ static void test_a_dragged_lamp_leaves_no_ghosts(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_whoever_draws_it_a_picture_is_the_same),
-      cmocka_unit_test(test_a_dragged_lamp_leaves_no_ghosts)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_whoever_draws_it_a_picture_is_the_same),
+                                     cmocka_unit_test(test_a_dragged_lamp_leaves_no_ghosts)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
