@@ -1,10 +1,8 @@
-/* What workers draw: one picture, whichever draws it and whatever it has drawn before, and of light
- * that moves nothing of where it was. */
+/* What workers draw: one picture, whichever draws it and whatever it has drawn before. */
 #include "tests/check.h"
 
 #include "cli/view/work/view_worker.h"
 
-#include <math.h>
 #include <string.h>
 #include <time.h>
 
@@ -71,49 +69,6 @@ static void test_whoever_draws_it_a_picture_is_the_same(void **state) {
                       one.width * one.height * one.channels * sizeof *one.data);
   abbe_image_free(&one);
   abbe_image_free(&other);
-  abbe_view_worker_free(a);
-  abbe_view_worker_free(b);
-}
-
-static double luminance(const abbe_image *image, int x, int y) {
-  const float *v = &image->data[image->channels * ((size_t)y * SIDE + (size_t)x)];
-  return 0.27 * (double)v[0] + 0.67 * (double)v[1] + 0.06 * (double)v[2];
-}
-
-/* Light that the picture has where another one has none so bright within three pixels. */
-static double beyond(const abbe_image *image, const abbe_image *other) {
-  enum { NEAR = 3 };
-  double sum = 0;
-  for (int y = 0; y < SIDE; y++)
-    for (int x = 0; x < SIDE; x++) {
-      double most = 0;
-      for (int v = (int)fmax(0, y - NEAR); v <= (int)fmin(SIDE - 1, y + NEAR); v++)
-        for (int u = (int)fmax(0, x - NEAR); u <= (int)fmin(SIDE - 1, x + NEAR); u++)
-          most = fmax(most, luminance(other, u, v));
-      sum += fmax(0, luminance(image, x, y) - most);
-    }
-  return sum;
-}
-
-/* Frames that follow one another are blended (gl/caustics/map_history.h): each of these steps moves
- * the caustic farther than what counts as near, and of the three before the last a mean without
- * bounds would keep three quarters. */
-static void test_a_dragged_lamp_leaves_no_ghosts(void **state) {
-  (void)state;
-  abbe_view_worker *a = made(), *b = made();
-  abbe_image was[3], now;
-  leave(a, ABBE_VIEW_MOVING, false, -0.08);
-  for (int i = 0; i < 3; i++) was[i] = draw(a, ABBE_VIEW_MOVING, false, -0.05 + 0.03 * i);
-  abbe_image dragged = draw(a, ABBE_VIEW_MOVING, false, 0.04);
-  now = draw(b, ABBE_VIEW_MOVING, false, 0.04);
-  double mean = 0;
-  for (int i = 0; i < 3; i++) mean += 0.25 * beyond(&was[i], &now);
-  const double ghost = beyond(&dragged, &now);
-  print_message("ghosts %.4g of the light that has moved, %.4g\n", ghost / mean, mean);
-  assert_true(mean > 0 && ghost < 0.02 * mean);
-  for (int i = 0; i < 3; i++) abbe_image_free(&was[i]);
-  abbe_image_free(&now);
-  abbe_image_free(&dragged);
   abbe_view_worker_free(a);
   abbe_view_worker_free(b);
 }
