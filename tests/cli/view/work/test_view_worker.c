@@ -1,12 +1,14 @@
-/* What workers draw: one picture, whichever draws it and whatever it has drawn before. */
+/* What workers draw: one picture, whichever draws it and whatever it has drawn before, and of light
+ * that moves nothing of where it was. */
 #include "tests/check.h"
 
 #include "cli/view/work/view_worker.h"
 
+#include <math.h>
 #include <string.h>
 #include <time.h>
 
-enum { SIDE = 64 };
+enum { SIDE = 128 };
 
 static abbe_view_worker *made(void) {
   abbe_view_worker *out = NULL;
@@ -69,6 +71,57 @@ static void test_whoever_draws_it_a_picture_is_the_same(void **state) {
                       one.width * one.height * one.channels * sizeof *one.data);
   abbe_image_free(&one);
   abbe_image_free(&other);
+  abbe_view_worker_free(a);
+  abbe_view_worker_free(b);
+}
+
+static double luminance(const abbe_image *image, int x, int y) {
+  const float *v = &image->data[image->channels * ((size_t)y * SIDE + (size_t)x)];
+  return 0.27 * (double)v[0] + 0.67 * (double)v[1] + 0.06 * (double)v[2];
+}
+
+/* Light that the picture has where another one has none so bright within three pixels. */
+static double beyond(const abbe_image *image, const abbe_image *other) {
+  enum { NEAR = 3 };
+  double sum = 0;
+  for (int y = 0; y < SIDE; y++)
+    for (int x = 0; x < SIDE; x++) {
+      double most = 0;
+      for (int v = (int)fmax(0, y - NEAR); v <= (int)fmin(SIDE - 1, y + NEAR); v++)
+        for (int u = (int)fmax(0, x - NEAR); u <= (int)fmin(SIDE - 1, x + NEAR); u++)
+          most = fmax(most, luminance(other, u, v));
+      sum += fmax(0, luminance(image, x, y) - most);
+    }
+  return sum;
+}
+
+/* Frames that follow one another are blended, each texel within what the last frame has around it
+ * (gl/caustics/map_history.h), where a lamp moves as little as a hand does in a picture. A mean
+ * without these bounds leaves 9 % of the light where it was. The fifth frame's photons start where
+ * the first one's do, so without the frames before it both are the same. */
+static void test_a_dragged_lamp_leaves_no_ghosts(void **state) {
+  (void)state;
+  abbe_view_worker *a = made(), *b = made();
+  double was = 0, blended = 0, light = 0;
+  leave(a, ABBE_VIEW_MOVING, false, 0);
+  abbe_image now = draw(b, ABBE_VIEW_MOVING, false, 0.04);
+  for (int i = 1; i < 4; i++) {
+    abbe_image before = draw(a, ABBE_VIEW_MOVING, false, 0.01 * i);
+    was += 0.25 * beyond(&before, &now);
+    abbe_image_free(&before);
+  }
+  abbe_image dragged = draw(a, ABBE_VIEW_MOVING, false, 0.04);
+  for (int i = 0; i < SIDE * SIDE; i++) {
+    const double here = luminance(&now, i % SIDE, i / SIDE);
+    blended += fabs(luminance(&dragged, i % SIDE, i / SIDE) - here);
+    light += here;
+  }
+  const double ghosts = beyond(&dragged, &now);
+  print_message("%.4f of the light that has moved is where it was; blending moves %.4f of all\n",
+                ghosts / was, blended / light);
+  assert_true(was > 0.01 * light && blended > 0.01 * light && ghosts < 0.02 * was);
+  abbe_image_free(&now);
+  abbe_image_free(&dragged);
   abbe_view_worker_free(a);
   abbe_view_worker_free(b);
 }
