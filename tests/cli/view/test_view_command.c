@@ -12,7 +12,7 @@
  */
 static void the_story(void **state) {
   (void)state;
-  run_must(VIEW "--size 640x400 --keep story --script " SCRIPTS "story.txt > said");
+  run_must(VIEW "--size 532x256 --keep story --script " SCRIPTS "story.txt > said");
   /* the scene that was kept differs in what was changed, and draws the same picture */
   run_must("diff \"$house\"/scenes/gem.yaml story.yaml | grep -c '^>' > lines; grep -qx 4 lines");
   run_must("grep -q 'material: diamond' story.yaml && grep -q '# A cut stone' story.yaml");
