@@ -43,7 +43,7 @@ static abbe_image picture_by(abbe_model model, const abbe_scene *scene, size_t w
   desc.everything = everything;
   desc.exits = 8;
   desc.supersample = samples;
-  desc.width = desc.height = 96;
+  desc.width = desc.height = 64;
   abbe_image image;
   abbe_renderer *renderer = make_renderer(scene, &desc);
   draw_frame(renderer);
