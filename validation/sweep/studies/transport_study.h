@@ -31,8 +31,8 @@ extern "C" {
   X(BYTES_GPU, "bytes_gpu")                                                                        \
   X(FRAME_MS, "frame_ms")   /* median; all passes are drawn anew */                                \
   X(LOOKUP_MS, "lookup_ms") /* of it, beyond that of surfaces alone */                             \
-  X(EYE_MS, "eye_ms")       /* of it, the camera's passes */                                       \
-  X(OVER_NONE, "over_none") /* frame_ms beyond the first row's eye_ms, as a share of that */       \
+  X(NONE_MS, "none_ms")     /* the same frame, every lamp turned away from the object */           \
+  X(OVER_NONE, "over_none") /* frame_ms beyond that, as a share of it */                           \
   X(MOVED_MS, "moved_ms")   /* median; the light has moved */                                      \
   X(CAUSTIC_DE, "caustic_de")                                                                      \
   X(CAUSTIC_DE_NOISE, "caustic_de_noise")                                                          \
@@ -89,8 +89,8 @@ abbe_result abbe_transport_study_measure(const abbe_sweep *sweep,
                                          void *user, abbe_transport_study *out, size_t *refused,
                                          abbe_error *why, abbe_error *error);
 
-/* Marks the fronts, and finds beside the first row's photons over_none, and after how many frames
- * each volume pays; abbe_transport_study_measure has done so. */
+/* Marks the fronts, and finds over_none, and after how many frames each volume pays beside the
+ * first row's photons; abbe_transport_study_measure has done so. */
 void abbe_transport_study_judge(abbe_transport_study *study);
 
 /* Whether two are the same pinholes but for how many. */

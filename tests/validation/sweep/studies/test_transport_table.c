@@ -91,7 +91,7 @@ static void test_for_programs(void **state) {
   assert_contains(text, "# scene: prism.yaml\n"
                         "transport,strategy,footprint,region,lookup,samples,nodes,cells,order,rank,"
                         "photons_node,precompute_s,bytes_memory,bytes_disk,bytes_gpu,frame_ms,"
-                        "lookup_ms,eye_ms,over_none,moved_ms,caustic_de,caustic_de_noise,"
+                        "lookup_ms,none_ms,over_none,moved_ms,caustic_de,caustic_de_noise,"
                         "caustic_rmse,caustic_rmse_noise,node_error,mid_error,limit_rmse,pop,"
                         "flux_drift,pays_after,front_time,front_bytes\n");
   assert_contains(text, "\nvolume,,,grid 27,auto,,42,,,,,,900,,,,,,,,7,,,,0.5,0.75,,,,,,yes\n");
