@@ -77,6 +77,7 @@ void abbe_view_app_end(abbe_view_session *app) {
   }
   if (app->texture != 0) app->gl->DeleteTextures(1, &app->texture);
   abbe_ui_free();
+  abbe_display_table_free(app->table);
   abbe_display_free(app->display);
   for (size_t i = 0; i < app->scene_count; i++) free(app->scene[i]);
   free(app->views);
@@ -317,8 +318,11 @@ static void upload(abbe_view_session *app) {
   app->drawn = abbe_view_shown_of(&app->pictures, app->state.shown);
   app->drawn_exposure = app->state.exposure;
   app->stale = false;
-  if (abbe_view_show(&app->pictures, app->drawn, app->drawn_exposure, app->display, &pixels,
-                     &error) != ABBE_OK) {
+  const bool moving = app->stage == ABBE_VIEW_MOVING;
+  if (moving && app->table == NULL && app->texture != 0) /* the first picture is not kept waiting */
+    abbe_display_table_make(app->display, &app->table, NULL);
+  if (abbe_view_show(&app->pictures, app->drawn, app->drawn_exposure, app->display,
+                     moving ? app->table : NULL, &pixels, &error) != ABBE_OK) {
     snprintf(app->note, sizeof app->note, "%s", error.text);
     return;
   }

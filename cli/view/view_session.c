@@ -26,7 +26,9 @@ abbe_result abbe_view_session_choose_view(abbe_view_session *session, size_t vie
                                   .view = slash != NULL ? name : NULL};
   const abbe_result result = abbe_display_make(&desc, &made, error);
   if (result != ABBE_OK) return result;
+  abbe_display_table_free(session->table);
   abbe_display_free(session->display);
+  session->table = NULL;
   session->display = made;
   session->view = view;
   session->stale = true;

@@ -30,6 +30,7 @@ typedef struct abbe_view_session {
   const char *keep, *ocio, *materials, *volume_path;
   const abbe_caustic_volume *volume;
   abbe_display *display;
+  abbe_display_table *table; /* of it, once something has moved; else NULL */
   char *views; /* lines "display / view" */
   size_t view; /* of these */
   char *scene[ABBE_VIEW_MOST_SCENES];

@@ -67,7 +67,9 @@ static double mean_luminance(const abbe_image *image, const size_t channel[3]) {
 }
 
 static unsigned char byte_of(double value) {
-  return (unsigned char)(255 * fmin(1, fmax(0, value)) + 0.5);
+  const double seen =
+      value > 0 ? value < 1 ? value : 1 : 0; /* no calls, for each part of a pixel */
+  return (unsigned char)(255 * seen + 0.5);
 }
 
 static void put_colour(abbe_colour_map map, double t, unsigned char out[4]) {
@@ -152,7 +154,8 @@ static void show_false(const abbe_view_pictures *p, abbe_view_shown shown, unsig
 }
 
 abbe_result abbe_view_show(const abbe_view_pictures *p, abbe_view_shown shown, double exposure,
-                           const abbe_display *display, unsigned char **out, abbe_error *error) {
+                           const abbe_display *display, const abbe_display_table *table,
+                           unsigned char **out, abbe_error *error) {
   static const char *const names[] = {"R", "G", "B"};
   const size_t count = p->rendered.width * p->rendered.height;
   const double gain = exp2(exposure);
@@ -186,7 +189,9 @@ abbe_result abbe_view_show(const abbe_view_pictures *p, abbe_view_shown shown, d
   for (size_t i = 0; result == ABBE_OK && !maps && i < count; i++)
     for (size_t k = 0; k < 3; k++)
       screen.data[3 * i + k] = (float)(gain * (double)from->data[from->channels * i + channel[k]]);
-  if (result == ABBE_OK) result = abbe_display_apply(display, &screen, error);
+  if (result == ABBE_OK)
+    result = table != NULL ? abbe_display_table_apply(table, &screen, error)
+                           : abbe_display_apply(display, &screen, error);
   for (size_t i = 0; result == ABBE_OK && i < count; i++) {
     for (size_t k = 0; k < 3; k++) (*out)[4 * i + k] = byte_of((double)screen.data[3 * i + k]);
     (*out)[4 * i + 3] = 255;

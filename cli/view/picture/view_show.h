@@ -5,6 +5,7 @@
 
 #include "cli/view/state/view_state.h"
 #include "colorimetry/image/display_ocio.h"
+#include "colorimetry/image/display_table.h"
 #include "colorimetry/image/image.h"
 
 /* Of differences: that share of the mean Y of the traced picture is full red or blue. Of errors:
@@ -27,10 +28,11 @@ double abbe_view_luminance(const abbe_image *image, const size_t channel[3], siz
 /* Which of the pictures a wish comes to: the rendered one where that is not there. */
 abbe_view_shown abbe_view_shown_of(const abbe_view_pictures *pictures, abbe_view_shown wish);
 
-/* out: 4 bytes a pixel, rows downward, malloc'd. Pictures are in ACEScg. ABBE_NO_MEMORY; errors of
- * abbe_display_apply. */
+/* out: 4 bytes a pixel, rows downward, malloc'd. Pictures are in ACEScg. table: by the display's,
+ * which is quicker; may be NULL. ABBE_NO_MEMORY; errors of abbe_display_apply. */
 abbe_result abbe_view_show(const abbe_view_pictures *pictures, abbe_view_shown shown,
-                           double exposure, const abbe_display *display, unsigned char **out,
+                           double exposure, const abbe_display *display,
+                           const abbe_display_table *table, unsigned char **out,
                            abbe_error *error);
 
 #endif

@@ -3,8 +3,12 @@
 #include <math.h>
 #include <string.h>
 
-static const double roomy = 0.8 * ABBE_VIEW_MOVING_MS; /* for a finer picture */
-static const double alike = 1.15;                      /* no time is saved by that */
+static const double roomy = 0.8;  /* of the time, for a finer picture */
+static const double alike = 1.15; /* no time is saved by that */
+
+static double most_ms(bool lit) {
+  return lit ? ABBE_VIEW_MOVING_MS : ABBE_VIEW_TURNING_MS;
+}
 
 /* Fewer samples or photons by a step are this share of the work. */
 static double eye_share(size_t step) {
@@ -88,7 +92,7 @@ static double keep(abbe_view_pace *p, bool lit, const size_t now[2], double ms) 
   enum { FOR_SO_LONG = 24 };
   double *own = lit ? &p->lit_ms[now[0]][now[1]] : &p->kept_ms[now[1]];
   const double before = *own;
-  p->in_time = ms <= ABBE_VIEW_MOVING_MS ? p->in_time + 1 : 0;
+  p->in_time = ms <= most_ms(lit) ? p->in_time + 1 : 0;
   const bool other = before > 0 && (ms > 1.5 * before || ms < before / 1.5);
   if (other || p->in_time == FOR_SO_LONG) {
     memset(p->lit_ms, 0, sizeof p->lit_ms);
@@ -107,10 +111,10 @@ void abbe_view_pace_take(abbe_view_pace *p, size_t light_step, size_t eye_step, 
   if (p->strange) return;
   p->ms = ms;
   const double own = keep(p, lit, now, ms);
-  if (own <= ABBE_VIEW_MOVING_MS) {
-    if (find_finest(p, lit, now, own, roomy, next) && !is_finer(next, now))
+  if (own <= most_ms(lit)) {
+    if (find_finest(p, lit, now, own, roomy * most_ms(lit), next) && !is_finer(next, now))
       memcpy(next, now, sizeof next);
-  } else if (!find_finest(p, lit, now, own, ABBE_VIEW_MOVING_MS, next)) {
+  } else if (!find_finest(p, lit, now, own, most_ms(lit), next)) {
     find_finest(p, lit, now, own, alike * find_fastest(p, lit, now, own), next);
   }
   if (lit) p->light_step = next[0];

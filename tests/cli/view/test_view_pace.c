@@ -78,10 +78,18 @@ static void test_a_camera_that_moves(void **state) {
   abbe_view_pace p = {0};
   draw(&p, &m, false, 10);
   assert_int_equal(p.light_step, 0);
-  assert_int_equal(p.eye_step, 2);
+  assert_int_equal(p.eye_step, 3);
   static const machine fast = {2, 1000, 12};
   draw(&p, &fast, false, 3);
   assert_int_equal(p.eye_step, 0);
+  /* and it has more pictures a second than light that moves */
+  static const machine between = {2, 0, 40};
+  p = (abbe_view_pace){0};
+  draw(&p, &between, true, 10);
+  assert_int_equal(p.eye_step, 0);
+  p = (abbe_view_pace){0};
+  draw(&p, &between, false, 10);
+  assert_int_equal(p.eye_step, 1);
 }
 
 /* What else the machine does comes and goes. */

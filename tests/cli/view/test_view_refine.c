@@ -219,12 +219,12 @@ static void test_slow_pictures_get_cheaper(void **state) {
     const abbe_view_job job = next(&r, SHOWS, now);
     draw(&r, SHOWS, now, 400.0 / (double)((job.eye_step + 1) * (job.eye_step + 1)));
   }
-  assert_int_equal(r.pace.eye_step, 2); /* 100 is too long, 44 is not, and 100 is no way back */
-  assert_near(r.pace.ms, 400.0 / 9, 1e-9);
+  assert_int_equal(r.pace.eye_step, 3); /* 44 is too long, 25 is not, and 44 is no way back */
+  assert_near(r.pace.ms, 400.0 / 16, 1e-9);
   now += 1;
   assert_int_equal(next(&r, SHOWS, now).stage, ABBE_VIEW_ACCURATE);
   assert_int_equal(draw(&r, SHOWS, now, 3000).eye_step, 0); /* at rest it may take its time */
-  assert_int_equal(r.pace.eye_step, 2);
+  assert_int_equal(r.pace.eye_step, 3);
   for (int i = 0; i < 40; i++, now += 0.05) {
     abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_LIGHT, now);
     const abbe_view_job job = draw(&r, SHOWS, now, i < 6 ? 80 : 5);
