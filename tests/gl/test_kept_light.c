@@ -79,8 +79,52 @@ static void another_cone_is_followed_anew(void **state) {
   abbe_scene_free(&scene);
 }
 
+#define LARGE_RING                                                                                 \
+  "- {name: ring, shape: ring, major: 0.12, minor: 0.04, around: 256, across: 128, material: "     \
+  "crown, transform: [{translate: [0, 0, 0.1]}]}\n"
+
+static double sum_apart(const abbe_image *a, const abbe_image *b) {
+  double sum = 0;
+  for (size_t i = 0; i < a->width * a->height * a->channels; i++)
+    sum += fabs((double)a->data[i] - (b != NULL ? (double)b->data[i] : 0));
+  return sum;
+}
+
+/* Views of fewer triangles: the camera's alone leave the light as it is, and what they show is
+ * nearly the same; without them all is as before. */
+static void coarse_views_show_nearly_the_same(void **state) {
+  (void)state;
+  enum { NONE, EYE, ALL, AGAIN, COUNT };
+  static const abbe_coarse coarse[COUNT] = {ABBE_COARSE_NONE, ABBE_COARSE_EYE, ABBE_COARSE_ALL,
+                                            ABBE_COARSE_NONE};
+  abbe_scene scene = {0};
+  abbe_image picture[COUNT] = {{0}};
+  abbe_render_desc desc = tiny;
+  desc.model = ABBE_MODEL_LAYERS;
+  load_text(CAMERA POINT_LIGHT FLOOR LARGE_RING, &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  for (int i = 0; i < COUNT; i++) {
+    abbe_error error = {0};
+    desc.coarse = coarse[i];
+    assert_ok(abbe_renderer_change(renderer, &scene, &desc, &error), &error);
+    const abbe_statistics s = draw_frame(renderer);
+    assert_true(s.kept[ABBE_PASS_PHOTONS] == (i == EYE));
+    assert_false(s.kept[ABBE_PASS_EYE_RECEIVERS]);
+    read_picture(renderer, false, &picture[i]);
+  }
+  assert_same_pixels(&picture[AGAIN], &picture[NONE]);
+  for (int i = EYE; i <= ALL; i++) {
+    assert_true(sum_apart(&picture[i], &picture[NONE]) > 0);
+    assert_true(sum_apart(&picture[i], &picture[NONE]) < 0.03 * sum_apart(&picture[NONE], NULL));
+  }
+  for (int i = 0; i < COUNT; i++) abbe_image_free(&picture[i]);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(the_first_texture_keeps_photons),
-                                     cmocka_unit_test(another_cone_is_followed_anew)};
+                                     cmocka_unit_test(another_cone_is_followed_anew),
+                                     cmocka_unit_test(coarse_views_show_nearly_the_same)};
   return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -462,49 +462,6 @@ static void another_scene_is_a_change_too(void **state) {
   abbe_scene_free(&mesh);
 }
 
-#define LARGE_RING                                                                                 \
-  "- {name: ring, shape: ring, major: 0.12, minor: 0.04, around: 256, across: 128, material: "     \
-  "crown, transform: [{translate: [0, 0, 0.1]}]}\n"
-
-static double sum_apart(const abbe_image *a, const abbe_image *b) {
-  double sum = 0;
-  for (size_t i = 0; i < a->width * a->height * a->channels; i++)
-    sum += fabs((double)a->data[i] - (b != NULL ? (double)b->data[i] : 0));
-  return sum;
-}
-
-/* Views of fewer triangles: the camera's alone leave the light as it is, and what they show is
- * nearly the same; without them all is as before. */
-static void coarse_views_show_nearly_the_same(void **state) {
-  (void)state;
-  abbe_scene scene = {0};
-  abbe_image fine = {0}, coarse = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR LARGE_RING, &scene);
-  abbe_render_desc desc = tiny;
-  desc.model = ABBE_MODEL_LAYERS;
-  abbe_renderer *renderer = make_renderer(&scene, &desc);
-  draw_frame(renderer);
-  read_picture(renderer, false, &fine);
-  desc.coarse = ABBE_COARSE_EYE;
-  assert_int_equal(change(renderer, &scene, &desc), ABBE_OK);
-  abbe_statistics s = draw_frame(renderer);
-  assert_ran(&s, false, true);
-  read_picture(renderer, false, &coarse);
-  assert_true(sum_apart(&coarse, &fine) > 0);
-  assert_true(sum_apart(&coarse, &fine) < 0.03 * sum_apart(&fine, NULL));
-  desc.coarse = ABBE_COARSE_ALL;
-  assert_int_equal(change(renderer, &scene, &desc), ABBE_OK);
-  s = draw_frame(renderer);
-  assert_ran(&s, true, true);
-  desc.coarse = ABBE_COARSE_NONE;
-  assert_int_equal(change(renderer, &scene, &desc), ABBE_OK);
-  assert_as_made_anew(renderer, &scene, &desc, "coarse views");
-  abbe_image_free(&fine);
-  abbe_image_free(&coarse);
-  abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_change_runs_what_depends_on_it),
@@ -517,7 +474,6 @@ int main(void) {
       cmocka_unit_test(random_changes_of_a_solid),
       cmocka_unit_test(random_changes_of_meshes),
       cmocka_unit_test(another_scene_is_a_change_too),
-      cmocka_unit_test(coarse_views_show_nearly_the_same),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
 }
