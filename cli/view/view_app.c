@@ -148,12 +148,12 @@ static void take(abbe_view_session *app, size_t worker, abbe_view_result *result
     snprintf(app->state.refusal, sizeof app->state.refusal, "%s", result->sentence);
   if (!shown) return;
   const double pictured_s = abbe_clock_seconds();
-  if (app->first_s == 0) app->first_s = abbe_clock_process_seconds();
   if (moved && app->seen_s < 0) { /* after a rest */
     app->frame_count = 0;
     app->own_ms = 0;
   }
-  if (moved) app->own_ms = fmax(app->own_ms, result->own_ms);
+  if (moved && app->first_s > 0) app->own_ms = fmax(app->own_ms, result->own_ms);
+  if (app->first_s == 0) app->first_s = abbe_clock_process_seconds();
   if (moved && app->seen_s > 0 && pictured_s - app->seen_s < 1)
     app->frames_ms[app->frame_count++ % 32] = 1e3 * (pictured_s - app->seen_s);
   app->seen_s = moved ? pictured_s : -1;
@@ -296,8 +296,9 @@ static void take_results(abbe_view_session *app) {
  * for it; and so a change that ended a rest. */
 static void time_events(abbe_view_session *app) {
   const uint64_t shown = app->state.refine.shown;
-  const double now_s = abbe_clock_seconds();
   if (shown <= app->pictured) return;
+  app->gl->Finish();
+  const double now_s = abbe_clock_seconds();
   const double event_s = app->event_s[(app->pictured + 1) % ABBE_VIEW_TIMED];
   if (shown - app->pictured < ABBE_VIEW_TIMED && event_s > 0)
     app->latency_ms = 1e3 * (now_s - event_s);

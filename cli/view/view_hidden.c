@@ -49,6 +49,7 @@ void abbe_view_hidden_frame(abbe_view_hidden *h) {
   h->gl->Viewport(0, 0, (GLsizei)h->width, (GLsizei)h->height);
   h->gl->ClearBufferfv(GL_COLOR, 0, dark);
   abbe_view_app_frame(&h->session, &h->input, now);
+  h->gl->Finish(); /* as a window's swap: else frames pile up, and workers' pictures behind them */
   h->input.wheel = 0;
   h->input.text[0] = '\0';
 }
