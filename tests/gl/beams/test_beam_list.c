@@ -107,8 +107,7 @@ static void a_beam_in_coloured_mist(void **state) {
   double drawn[3], known[3];
   mean_of(BESIDE_MIST(COLOURED, ""), &in_colour, drawn);
   known_colour(beam_at, known);
-  /* seven wavelengths, of a haze that takes 6 to 9 of them a metre */
-  assert_colour("a beam in coloured mist", drawn, known, 0.015);
+  assert_colour("a beam in coloured mist", drawn, known, 0.006);
 }
 
 #define SLAB(more)                                                                                 \
