@@ -247,11 +247,20 @@ static bool goes_on(abbe_renderer *r, abbe_result result) {
   return result == ABBE_OK && abbe_gpu_ask(&r->gpu);
 }
 
+/* With the picture's beams, which are of the same photons. */
+static abbe_result draw_shafts(abbe_renderer *r, abbe_error *error) {
+  abbe_beam_use draws;
+  if (r->plan.shaft_count == 0) return ABBE_OK;
+  const bool shown = !r->seen && r->haze.caustics != NULL;
+  abbe_result result = shown ? abbe_haze_pass_begin(&r->haze, &draws, error) : ABBE_OK;
+  return result == ABBE_OK ? abbe_shaft_grid_run(&r->shafts, shown ? &draws : NULL, error) : result;
+}
+
 static abbe_result draw_light(abbe_renderer *r, abbe_error *error) {
   abbe_result result = abbe_light_layers_run(&r->layers, error);
   if (r->plan.caustics && goes_on(r, result))
     result = abbe_caustics_run(&r->caustics, &r->untimed_ms, error);
-  if (goes_on(r, result)) result = abbe_shaft_grid_run(&r->shafts, error);
+  if (goes_on(r, result)) result = draw_shafts(r, error);
   if (goes_on(r, result)) result = abbe_pinhole_pages_run(&r->pinholes, error);
   return result;
 }

@@ -141,11 +141,12 @@ static void resolve(const abbe_shaft_volume *v) {
   gpu->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
-abbe_result abbe_shaft_grid_run(abbe_shaft_grid *grid, abbe_error *error) {
+abbe_result abbe_shaft_grid_run(abbe_shaft_grid *grid, const abbe_beam_use *with,
+                                abbe_error *error) {
   if (grid->scene == NULL) return ABBE_OK;
   abbe_gpu *gpu = grid->scene->gpu;
   const size_t count = plan_of(grid)->shaft_count;
-  abbe_beam_use to[ABBE_PLAN_MOST_SHAFTS];
+  abbe_beam_use to[ABBE_PLAN_MOST_SHAFTS + 1];
   abbe_gpu_start_lap(gpu);
   for (size_t i = 0; i < count; i++) {
     abbe_shaft_volume *v = &grid->volume[i];
@@ -153,7 +154,8 @@ abbe_result abbe_shaft_grid_run(abbe_shaft_grid *grid, abbe_error *error) {
     abbe_gpu_clear_buffer(gpu, v->sums);
     to[i] = (abbe_beam_use){&v->beams, add_listed, v};
   }
-  const abbe_result result = abbe_beam_list_run(to, count, error);
+  if (with != NULL) to[count] = *with;
+  const abbe_result result = abbe_beam_list_run(to, count + (with != NULL ? 1 : 0), error);
   for (size_t i = 0; i < count && result == ABBE_OK && !gpu->stopped; i++)
     resolve(&grid->volume[i]);
   abbe_gpu_book_lap(gpu, ABBE_PASS_SHAFTS);

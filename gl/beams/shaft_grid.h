@@ -31,8 +31,9 @@ typedef struct abbe_shaft_grid {
 abbe_result abbe_shaft_grid_make(abbe_caustics *caustics, const abbe_shader_variant *variant,
                                  abbe_shaft_grid *out, abbe_error *error);
 void abbe_shaft_grid_free(abbe_shaft_grid *grid);
-/* Follows the photons once more. Light layers are drawn by then. */
-abbe_result abbe_shaft_grid_run(abbe_shaft_grid *grid, abbe_error *error);
+/* Follows the photons once more, also for `with` (NULL: none). Light layers are drawn by then. */
+abbe_result abbe_shaft_grid_run(abbe_shaft_grid *grid, const abbe_beam_use *with,
+                                abbe_error *error);
 /* For a program that is in use. */
 void abbe_shaft_grid_set(const abbe_shaft_grid *grid, GLuint program);
 

@@ -126,10 +126,19 @@ static abbe_result draw_listed(void *user, size_t beams, abbe_error *error) {
   return ABBE_OK;
 }
 
+abbe_result abbe_haze_pass_begin(abbe_haze_pass *pass, abbe_beam_use *draws, abbe_error *error) {
+  const abbe_result result = clear_target(pass, error);
+  if (result == ABBE_OK) draw_occluders(pass);
+  *draws = (abbe_beam_use){&pass->beams, draw_listed, pass};
+  pass->begun = true;
+  return result;
+}
+
+/* Where no other pass has done so for this picture. */
 static abbe_result draw_beams(abbe_haze_pass *pass, abbe_error *error) {
-  draw_occluders(pass);
-  const abbe_result result = abbe_light_layers_run(pass->caustics->layers, error);
-  const abbe_beam_use draws = {&pass->beams, draw_listed, pass};
+  abbe_beam_use draws;
+  abbe_result result = abbe_haze_pass_begin(pass, &draws, error);
+  if (result == ABBE_OK) result = abbe_light_layers_run(pass->caustics->layers, error);
   return result == ABBE_OK ? abbe_beam_list_run(&draws, 1, error) : result;
 }
 
@@ -186,8 +195,12 @@ abbe_result abbe_haze_pass_run(abbe_haze_pass *pass, abbe_error *error) {
   if (pass->picture == NULL) return ABBE_OK;
   abbe_gpu *gpu = scene_of(pass)->gpu;
   abbe_gpu_start_lap(gpu);
-  abbe_result result = clear_target(pass, error);
-  if (result == ABBE_OK && pass->caustics != NULL) result = draw_beams(pass, error);
+  abbe_result result = ABBE_OK;
+  if (pass->caustics == NULL)
+    result = clear_target(pass, error);
+  else if (!pass->begun)
+    result = draw_beams(pass, error);
+  pass->begun = false;
   if (result == ABBE_OK && !gpu->stopped) result = draw_shine(pass, error);
   if (result == ABBE_OK && !gpu->stopped) result = lay_over(pass, error);
   abbe_gpu_book_lap(gpu, ABBE_PASS_EYE_HAZE);

@@ -16,6 +16,7 @@ typedef struct abbe_haze_pass {
   GLuint over, shine, draw_beams, occluder; /* programs */
   GLuint scattered, depth;                  /* textures of the picture's pixels */
   abbe_beam_list beams;
+  bool begun; /* another pass has had beams drawn */
 } abbe_haze_pass;
 
 /* Nothing where the plan has no haze. ABBE_GL, ABBE_NO_MEMORY, errors of abbe_weights_make_by. */
@@ -24,7 +25,10 @@ abbe_result abbe_haze_pass_make(abbe_picture *picture, abbe_caustics *caustics,
                                 abbe_error *error);
 void abbe_haze_pass_free(abbe_haze_pass *pass);
 
-/* Follows the photons once more, for the picture that is drawn by then. */
+/* Of a pass with caustics: for who follows photons for beams anyway, before the picture is drawn;
+ * *draws is to be among what abbe_beam_list_run is given. ABBE_GL. */
+abbe_result abbe_haze_pass_begin(abbe_haze_pass *pass, abbe_beam_use *draws, abbe_error *error);
+/* Over the picture that is drawn by then. Follows the photons once more, where nobody has begun. */
 abbe_result abbe_haze_pass_run(abbe_haze_pass *pass, abbe_error *error);
 
 #endif
