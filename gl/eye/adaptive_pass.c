@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stdio.h>
 
+enum { LIST_ROWS = 4 }; /* of a thread of adaptive_list.comp */
+
 /* A bend below these is left alone: of the light around the sample, and of what a white receiver
  * shows of the lights, so that noise in the dark asks for nothing. */
 static const double bend_share = 0.2, least_white = 0.01;
@@ -71,7 +73,7 @@ static void list_samples(abbe_adaptive_pass *pass) {
   }
   abbe_gpu_set_float(gpu, pass->list, "bend_share", bend_share);
   abbe_gpu_set_float(gpu, pass->list, "least_bend", least_white * white_radiance(scene_of(pass)));
-  abbe_gpu_dispatch_2d(gpu, pass->list, samples[0], samples[1]);
+  abbe_gpu_dispatch_2d(gpu, pass->list, samples[0], (samples[1] + LIST_ROWS - 1) / LIST_ROWS);
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
                          GL_BUFFER_UPDATE_BARRIER_BIT);
 }
