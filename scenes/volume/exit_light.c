@@ -154,6 +154,7 @@ struct abbe_exit_colours {
   double sum[ABBE_LIGHT_EXITS_BINS + 1][3]; /* XYZ of all bins before */
   double index[ABBE_LIGHT_EXITS_BINS];
   bool known;           /* the index, and it spreads them */
+  double usual;         /* what a metal's rays carry, about; 0 of another object */
   double place[PLACES]; /* index by the place among points */
   float part[ABBE_EXIT_MOST_PARTS + 1][ABBE_EXIT_MOST_PARTS]
             [4];      /* XYZ of a watt of each of so many */
@@ -202,6 +203,20 @@ static bool find_index(const abbe_object *o, double lambda_nm, double *n) {
          abbe_material_n(o->material, lambda_nm, n, NULL) == ABBE_OK;
 }
 
+/* The mean of some exits. */
+static double usual_share(const abbe_light_exits *e) {
+  enum { ASKED = 512 };
+  const size_t step = e->count / ASKED + 1;
+  double sum = 0;
+  size_t lit = 0;
+  for (size_t i = 0; i < e->count; i += step) {
+    const double carried = abbe_half_value(e->exit[i][ABBE_EXIT_CARRIED]);
+    sum += carried;
+    lit += carried > 0;
+  }
+  return lit > 0 ? sum / (double)lit : 0;
+}
+
 /* A point stands for its bin with the bin's chance. */
 static void fill_colours(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
                          abbe_exit_colours *s) {
@@ -228,6 +243,7 @@ static void fill_colours(const abbe_caustic_volume *v, const abbe_exit_light_des
     s->most = fmax(s->most, s->index[i]);
   }
   if (s->known) make_places(s);
+  if (d->object->mirror && d->object->conductor != NULL) s->usual = usual_share(&v->exits);
 }
 
 abbe_result abbe_exit_colours_make(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
@@ -248,11 +264,25 @@ void abbe_exit_colours_ends(const abbe_exit_colours *c, size_t bin, double end[2
   end[1] = c->known ? c->most - c->index[bin] : 0;
 }
 
-size_t abbe_exit_colours_split(const abbe_exit_colours *c, size_t bin, size_t parts, uint32_t turn,
-                               float step[ABBE_EXIT_MOST_PARTS], const float (**xyz)[4]) {
+/* Where a metal's rays go does not depend on their wavelength, so that of all rays of a way those
+ * of one share together have the whole light's colour. What a ray has more or less than that share
+ * has its own. */
+static void mix_metal(const abbe_exit_colours *c, double carried, size_t bin, float xyz[4]) {
+  const float usual = (float)(c->usual / carried);
+  for (int k = 0; k < 3; k++)
+    xyz[k] = (1 - usual) * c->own[bin][k] + usual * (float)c->sum[ABBE_LIGHT_EXITS_BINS][k];
+  xyz[3] = 0;
+}
+
+size_t abbe_exit_colours_split(const abbe_exit_colours *c, const abbe_exit_ray *ray, size_t bin,
+                               size_t parts, uint32_t turn, float step[ABBE_EXIT_MOST_PARTS],
+                               float room[1][4], const float (**xyz)[4]) {
   if (!c->known) {
     step[0] = 0;
     *xyz = &c->own[bin];
+    if (!(c->usual > 0)) return 1;
+    mix_metal(c, ray->share / ray->weight, bin, room[0]);
+    *xyz = (const float(*)[4])room;
     return 1;
   }
   if (parts < 1) parts = 1;
@@ -292,13 +322,14 @@ static void add_ray(void *user, const abbe_exit_ray *ray, double flux, size_t bi
   static const double apart = 0.004; /* about rad */
   deposit *d = user;
   float step[ABBE_EXIT_MOST_PARTS];
+  float room[1][4];
   const float(*colour)[4];
   double end[2], xyz[3];
   abbe_exit_colours_ends(d->colours, bin, end);
   const double all = (end[1] - end[0]) * abbe_vector_length(ray->way_by);
   const size_t parts = abbe_exit_colours_split(
-      d->colours, bin, (size_t)fmin(ceil(all / apart), ABBE_EXIT_MOST_PARTS), d->turn++, step,
-      &colour);
+      d->colours, ray, bin, (size_t)fmin(ceil(all / apart), ABBE_EXIT_MOST_PARTS), d->turn++, step,
+      room, &colour);
   for (size_t i = 0; i < parts; i++) {
     abbe_exit_ray out = *ray;
     for (int k = 0; k < 3; k++) {

@@ -55,9 +55,11 @@ void abbe_exit_colours_ends(const abbe_exit_colours *colours, size_t bin, double
 /* A ray as so many parts of like chance, 1 to ABBE_EXIT_MOST_PARTS; returns how many: 1 for a
  * wavelength alone. turn: the ray's number, by which it has other wavelengths of each part. step:
  * of the index, from that of the ray's bin. xyz: [parts] the colours', XYZ and 0 of a watt of the
- * ray, of light whose white has Y = 1. */
-size_t abbe_exit_colours_split(const abbe_exit_colours *colours, size_t bin, size_t parts,
-                               uint32_t turn, float step[ABBE_EXIT_MOST_PARTS],
+ * ray, of light whose white has Y = 1; they may be below 0 where a metal's ray has less of its
+ * wavelength than the others. room: for one that no other ray has. */
+size_t abbe_exit_colours_split(const abbe_exit_colours *colours, const abbe_exit_ray *ray,
+                               size_t bin, size_t parts, uint32_t turn,
+                               float step[ABBE_EXIT_MOST_PARTS], float room[1][4],
                                const float (**xyz)[4]);
 
 #ifdef __cplusplus

@@ -124,11 +124,12 @@ static void catch_ray(void *user, const abbe_exit_ray *ray, double flux, size_t 
   catching *c = user;
   const landing *all = c->all;
   float step[ABBE_EXIT_MOST_PARTS] = {0};
+  float room[1][4];
   const float(*colour)[4];
   abbe_exit_landing at;
   abbe_exit_sheets_track(all->sheet, all->sheets, ray, c->track);
-  const size_t parts = abbe_exit_colours_split(all->colours, bin, count_parts(all, c->track, bin),
-                                               c->turn++, step, &colour);
+  const size_t parts = abbe_exit_colours_split(
+      all->colours, ray, bin, count_parts(all, c->track, bin), c->turn++, step, room, &colour);
   abbe_exit_sheets_meet(c->track, all->sheets, step, parts, &at);
   for (size_t i = 0; i < parts; i++) {
     if (at.page[i] < 0) continue;

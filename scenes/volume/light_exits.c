@@ -215,6 +215,7 @@ static void join(const candidate *c, size_t count, double radius, abbe_exit_ray 
   }
   make_ray(sum, step, turn, count > 1 ? 0.5f : 1, radius, ray);
   ray->share = (double)sum[ABBE_EXIT_CARRIED];
+  ray->weight = 1;
   ray->facets = c[0].facets;
 }
 
@@ -246,7 +247,9 @@ static size_t go_alone(const candidate *c, size_t count, const double (*plane)[4
   for (size_t i = 0; i < count; i++) {
     if ((!may[i] && sum > 0) || !(c[i].carried > 0)) continue;
     ray[used] = all[i];
-    ray[used++].share = (double)(c[i].carried * c[i].weight) / (sum > 0 ? sum : 1);
+    ray[used].weight = (double)c[i].weight / (sum > 0 ? sum : 1);
+    ray[used].share = ray[used].weight * (double)c[i].carried;
+    used++;
   }
   return used;
 }

@@ -96,6 +96,7 @@ typedef struct abbe_exit_ray {
   double place[3], way[3];       /* m from the object's centre; unit */
   double place_by[3], way_by[3]; /* their change with the object's index */
   double share;                  /* of the light that came in at the point */
+  double weight;                 /* of the way: share is so much of what goes it */
   unsigned facets;
 } abbe_exit_ray;
 

@@ -83,12 +83,15 @@ static void make_pages(const bench *b, const double (*sheets)[9], size_t count,
 static const double floor_below[9] = {-1, -1, 0, 2, 0, 0, 0, 2, 0};
 
 /* Half of the sun's light in the plate's shadow, and none beside it; all of it sums up, in the
- * sun's colour: of clear glass, and of a mirror of one reflectance. */
-static void check_beam(bool mirror) {
+ * sun's colour: of clear glass, of a mirror of one reflectance, and of a metal whose rays have
+ * their own wavelengths. */
+static void check_beam(bool mirror, bool metal) {
   bench b;
   abbe_exit_pages pages;
   make_bench(120, &b);
+  static const abbe_material any = {0};
   b.scene.object[1].mirror = mirror;
+  b.scene.object[1].conductor = metal ? &any : NULL;
   abbe_light *sun = &b.scene.light[0];
   const double *d = sun->direction;
   make_pages(&b, (const double(*)[9]) & floor_below, 1, sun, &pages);
@@ -105,14 +108,16 @@ static void check_beam(bool mirror) {
       assert_near(off[k], 0, 1e-6);
     }
   }
+  b.scene.object[1].conductor = NULL;
   abbe_exit_pages_free(&pages);
   free_bench(&b);
 }
 
 static void test_a_beam_on_a_floor(void **state) {
   (void)state;
-  check_beam(false);
-  check_beam(true);
+  check_beam(false, false);
+  check_beam(true, false);
+  check_beam(true, true);
 }
 
 /* A roof over half of the floor takes what is above it, on its upper side. */
