@@ -1,7 +1,7 @@
 #include "gl/volume/volume_light.h"
 
 #include "scenes/geometry/vector.h"
-#include "scenes/volume/exit_light.h"
+#include "scenes/volume/exits/exit_light.h"
 #include "scenes/volume/half.h"
 
 #include <math.h>

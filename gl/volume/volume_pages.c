@@ -1,6 +1,6 @@
 #include "gl/volume/volume_pages.h"
 
-#include "scenes/volume/exit_pages.h"
+#include "scenes/volume/exits/exit_pages.h"
 
 #include <stdlib.h>
 #include <string.h>

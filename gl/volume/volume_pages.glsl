@@ -1,4 +1,4 @@
-// Caustics of rays that leave an object, on maps of receivers (scenes/volume/exit_pages.h): for each light
+// Caustics of rays that leave an object, on maps of receivers (scenes/volume/exits/exit_pages.h): for each light
 // and each side of each parallelogram a layer of the whole and one of a window.
 uniform sampler2DArray volume_pages;
 uniform vec4 volume_window[VOLUME_PAGES * LIGHTS];

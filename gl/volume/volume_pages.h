@@ -1,5 +1,5 @@
 /* volume_pages.h: caustics of rays that leave an object as maps on receivers, on the device
- * (scenes/volume/exit_pages.h), where all receivers are parallelograms. Internal to gl/.
+ * (scenes/volume/exits/exit_pages.h), where all receivers are parallelograms. Internal to gl/.
  */
 #ifndef ABBE_GL_VOLUME_VOLUME_PAGES_H
 #define ABBE_GL_VOLUME_VOLUME_PAGES_H

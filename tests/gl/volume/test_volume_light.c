@@ -6,7 +6,7 @@
 #include "scenes/geometry/transform.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/object_motion.h"
-#include "scenes/volume/exit_pages.h"
+#include "scenes/volume/exits/exit_pages.h"
 #include "scenes/volume/half.h"
 #include "validation/volume/volume_fill.h"
 

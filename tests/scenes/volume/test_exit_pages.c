@@ -4,7 +4,7 @@
 
 #include "colorimetry/weights.h"
 #include "scenes/geometry/vector.h"
-#include "scenes/volume/exit_pages.h"
+#include "scenes/volume/exits/exit_pages.h"
 #include "scenes/volume/half.h"
 
 #define PLATE                                                                                      \

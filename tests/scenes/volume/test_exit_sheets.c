@@ -2,7 +2,7 @@
  * what hides the light, of an object that stands turned. */
 #include "tests/check.h"
 
-#include "scenes/volume/exit_sheets.h"
+#include "scenes/volume/exits/exit_sheets.h"
 
 #include <math.h>
 

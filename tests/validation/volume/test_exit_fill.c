@@ -5,7 +5,7 @@
 
 #include "colorimetry/weights.h"
 #include "scenes/geometry/vector.h"
-#include "scenes/volume/exit_light.h"
+#include "scenes/volume/exits/exit_light.h"
 #include "scenes/volume/half.h"
 #include "spectral/optics.h"
 

@@ -2,12 +2,12 @@
  * rays that leave the object (light_exits.h): values as a vector volume has them, of one block.
  *
  * Nothing is traced: what it asks is where the light and the object are. */
-#ifndef ABBE_SCENES_VOLUME_EXIT_LIGHT_H
-#define ABBE_SCENES_VOLUME_EXIT_LIGHT_H
+#ifndef ABBE_SCENES_VOLUME_EXITS_EXIT_LIGHT_H
+#define ABBE_SCENES_VOLUME_EXITS_EXIT_LIGHT_H
 
 #include "colorimetry/observer.h"
 #include "scenes/volume/caustic_volume.h"
-#include "scenes/volume/exit_sheets.h"
+#include "scenes/volume/exits/exit_sheets.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -1,4 +1,4 @@
-#include "scenes/volume/exit_sheets.h"
+#include "scenes/volume/exits/exit_sheets.h"
 
 #include "scenes/geometry/vector.h"
 

@@ -1,4 +1,4 @@
-#include "scenes/volume/exit_map.h"
+#include "scenes/volume/exits/exit_map.h"
 
 #include <math.h>
 #include <string.h>

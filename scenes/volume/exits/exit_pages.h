@@ -4,10 +4,10 @@
  * A ray ends at the first parallelogram that it meets, and they hide the light from the object. It
  * knows no other receivers.
  */
-#ifndef ABBE_SCENES_VOLUME_EXIT_PAGES_H
-#define ABBE_SCENES_VOLUME_EXIT_PAGES_H
+#ifndef ABBE_SCENES_VOLUME_EXITS_EXIT_PAGES_H
+#define ABBE_SCENES_VOLUME_EXITS_EXIT_PAGES_H
 
-#include "scenes/volume/exit_light.h"
+#include "scenes/volume/exits/exit_light.h"
 
 #ifdef __cplusplus
 extern "C" {

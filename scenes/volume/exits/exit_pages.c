@@ -1,8 +1,8 @@
-#include "scenes/volume/exit_pages.h"
+#include "scenes/volume/exits/exit_pages.h"
 
 #include "scenes/geometry/vector.h"
-#include "scenes/volume/exit_map.h"
-#include "scenes/volume/exit_sheets.h"
+#include "scenes/volume/exits/exit_map.h"
+#include "scenes/volume/exits/exit_sheets.h"
 
 #include <stdlib.h>
 #include <string.h>

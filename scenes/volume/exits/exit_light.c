@@ -1,4 +1,4 @@
-#include "scenes/volume/exit_light.h"
+#include "scenes/volume/exits/exit_light.h"
 
 #include "colorimetry/weights.h"
 #include "scenes/geometry/vector.h"

@@ -3,8 +3,8 @@
  *
  * It knows places and directions; what light rays carry it does not.
  */
-#ifndef ABBE_SCENES_VOLUME_EXIT_SHEETS_H
-#define ABBE_SCENES_VOLUME_EXIT_SHEETS_H
+#ifndef ABBE_SCENES_VOLUME_EXITS_EXIT_SHEETS_H
+#define ABBE_SCENES_VOLUME_EXITS_EXIT_SHEETS_H
 
 #include "scenes/volume/light_exits.h"
 #include "scenes/volume/volume_body.h"

@@ -1,8 +1,8 @@
 /* exit_map.h: a map that light is laid on at places, and what it is of tents of one width in place
  * of places. Of light it knows four channels. Internal to scenes/.
  */
-#ifndef ABBE_SCENES_VOLUME_EXIT_MAP_H
-#define ABBE_SCENES_VOLUME_EXIT_MAP_H
+#ifndef ABBE_SCENES_VOLUME_EXITS_EXIT_MAP_H
+#define ABBE_SCENES_VOLUME_EXITS_EXIT_MAP_H
 
 #include <stdbool.h>
 #include <stddef.h>
