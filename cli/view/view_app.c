@@ -7,7 +7,6 @@
 #include "cli/view/view_turn.h"
 #include "colorimetry/rgb_space.h"
 
-#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,30 +16,6 @@
 #define FEED_PIXELS 2.0 /* photons so near to a pixel feed it */
 
 /* ---- begin, end ---- */
-
-static int by_name(const void *a, const void *b) {
-  return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
-/* The scenes beside the one that is looked at. */
-static void list_scenes(abbe_view_session *app, const char *path) {
-  char folder[3072];
-  const char *slash = strrchr(path, '/');
-  snprintf(folder, sizeof folder, "%.*s", slash != NULL ? (int)(slash - path + 1) : 2,
-           slash != NULL ? path : "./");
-  DIR *dir = opendir(folder);
-  for (struct dirent *entry; dir != NULL && (entry = readdir(dir)) != NULL;) {
-    char name[4096];
-    const size_t length = strlen(entry->d_name);
-    if (length < 6 || strcmp(entry->d_name + length - 5, ".yaml") != 0) continue;
-    snprintf(name, sizeof name, "%s%s", slash != NULL ? folder : "", entry->d_name);
-    if (app->scene_count < ABBE_VIEW_MOST_SCENES &&
-        (app->scene[app->scene_count] = strdup(name)) != NULL)
-      app->scene_count++;
-  }
-  if (dir != NULL) closedir(dir);
-  qsort(app->scene, app->scene_count, sizeof *app->scene, by_name);
-}
 
 abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc *desc,
                                 abbe_context *context, abbe_error *error) {
@@ -62,7 +37,7 @@ abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc
     result = abbe_view_worker_make(desc->materials, desc->volume, desc->wake, &app->desk[i].worker,
                                    error);
   }
-  if (result == ABBE_OK) list_scenes(app, desc->document->path);
+  if (result == ABBE_OK) abbe_view_session_list_scenes(app, desc->document->path);
   if (result != ABBE_OK) abbe_view_app_end(app);
   return result;
 }

@@ -4,9 +4,34 @@
 #include "cli/view/picture/view_show.h"
 #include "colorimetry/rgb_space.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+static int by_name(const void *a, const void *b) {
+  return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+void abbe_view_session_list_scenes(abbe_view_session *session, const char *path) {
+  char folder[3072];
+  const char *slash = strrchr(path, '/');
+  snprintf(folder, sizeof folder, "%.*s", slash != NULL ? (int)(slash - path + 1) : 2,
+           slash != NULL ? path : "./");
+  DIR *dir = opendir(folder);
+  for (struct dirent *entry; dir != NULL && (entry = readdir(dir)) != NULL;) {
+    char name[4096];
+    const size_t length = strlen(entry->d_name);
+    if (length < 6 || strcmp(entry->d_name + length - 5, ".yaml") != 0) continue;
+    snprintf(name, sizeof name, "%s%s", slash != NULL ? folder : "", entry->d_name);
+    if (session->scene_count < ABBE_VIEW_MOST_SCENES &&
+        (session->scene[session->scene_count] = strdup(name)) != NULL)
+      session->scene_count++;
+  }
+  if (dir != NULL) closedir(dir);
+  qsort(session->scene, session->scene_count, sizeof *session->scene, by_name);
+}
 
 abbe_result abbe_view_session_choose_view(abbe_view_session *session, size_t view,
                                           abbe_error *error) {

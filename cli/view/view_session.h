@@ -77,6 +77,8 @@ typedef struct abbe_view_session {
   double looked_s;
 } abbe_view_session;
 
+/* Lists the scene files beside the one of that path, sorted: at most ABBE_VIEW_MOST_SCENES. */
+void abbe_view_session_list_scenes(abbe_view_session *session, const char *path);
 /* Another line of the list of displays and views; ABBE_COLOUR where it is broken. */
 abbe_result abbe_view_session_choose_view(abbe_view_session *session, size_t view,
                                           abbe_error *error);
