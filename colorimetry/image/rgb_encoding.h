@@ -24,6 +24,7 @@ bool abbe_rgb_encoding_is_srgb(const double xy[8], const double curve[5]);
 /* Whether it is known at all. */
 bool abbe_rgb_encoding_is_known(const double xy[8], const double curve[5]);
 
+/* Linear light of an encoded value, by the curve. */
 double abbe_rgb_encoding_light(const double curve[5], double value);
 
 /* The encoding of a display, from what it makes of rgb: of each probe the XYZ relative to its
