@@ -158,14 +158,20 @@ vec3 below_edge(vec2 a, vec2 b) {
   return vec3(rise * mean_below(a.x, b.x), (y.y - y.x) * vec2(0.5 * (x.x + x.y), mean_below(x.x, x.y)));
 }
 
-// Shares of the texels at and beside the corner that a part lies about: left and right below, then above.
-vec4 shares_of(Part p, vec2 corner) {
-  vec2 middle = p.middle - corner;
+// Where light is to lie so that its bilinear weights give the texels what a part covers of them to the right
+// and above; and how much more the one to the right and above gets.
+struct Place {
+  vec2 at;  // of the level's texels
+  float lean;
+};
+
+Place place_of(Part p) {
+  vec2 corner = floor(p.middle + 0.5), middle = p.middle - corner;
   vec2 a = middle - p.across - p.beside, b = middle + p.across - p.beside;
   vec2 c = middle + p.across + p.beside, d = middle - p.across + p.beside;
   vec3 below = below_edge(a, b) + below_edge(b, c) + below_edge(c, d) + below_edge(d, a);
-  below /= 4.0 * length(p.across) * length(p.beside);
-  return vec4(below.z, below.y - below.z, below.x - below.z, 1.0 - below.x - below.y + below.z);
+  below = clamp(below / (4.0 * length(p.across) * length(p.beside)), 0.0, 1.0);
+  return Place(corner + 0.5 - below.xy, below.z - below.x * below.y);
 }
 
 // Where in its texels a level takes light, and where it begins.
@@ -185,19 +191,19 @@ Target target_of(ListedSplat s, Grid g) {
   return t;
 }
 
-// Shares one of X, Y and Z of a part among the texels that it covers, to the last unit.
-void add_part(Target t, ListedSplat s, float size, Part p, int channel, uint units) {
-  vec2 at = p.middle * size;
+// Shares one of X, Y and Z among the four texels around its place, to the last unit.
+void add_around(Target t, ListedSplat s, float size, vec2 p, float lean, int channel, uint units) {
 #ifdef TILES
   // What would lie beyond a tile's edge, where the receiver ends, is folded back.
-  at = s.tile > 0u ? min(max(at, 2.0 * s.rect.xy - at), max(2.0 * s.rect.zw - at, s.rect.xy)) : at;
+  p = s.tile > 0u ? min(max(p, 2.0 * s.rect.xy - p), max(2.0 * s.rect.zw - p, s.rect.xy)) : p;
 #endif
-  p.middle = clamp(at, t.low, t.high) / size;
-  vec2 corner = floor(p.middle + 0.5);
-  vec4 share = float(units) * shares_of(p, corner);
-  ivec2 last = ivec2(t.side - 1), lo = clamp(ivec2(corner) - 1, ivec2(0), last);
-  ivec2 hi = clamp(ivec2(corner), ivec2(0), last);
+  vec2 at = clamp(p, t.low, t.high) / size - 0.5;
+  ivec2 base = ivec2(floor(at)), last = ivec2(t.side - 1);
+  vec2 f = at - vec2(base), g = 1.0 - f;
+  ivec2 lo = clamp(base, ivec2(0), last), hi = clamp(base + 1, ivec2(0), last);
   uint row_lo = t.first + uint(lo.y * t.side), row_hi = t.first + uint(hi.y * t.side);
+  lean = clamp(lean, -min(f.x * f.y, g.x * g.y), min(f.x * g.y, g.x * f.y));
+  vec3 share = float(units) * vec3(g.x * g.y + lean, f.x * g.y - lean, g.x * f.y - lean);
   uint part_0 = min(uint(max(share.x, 0.0)), units);
   uint part_1 = min(uint(max(share.y, 0.0)), units - part_0);
   uint part_2 = min(uint(max(share.z, 0.0)), units - part_0 - part_1);
@@ -231,12 +237,9 @@ void main() {
     float per_row = 1.0 / float(g.along);
     vec2 off[3] = s.off;
     for (int c = 0; c < 3; c++) off[c] -= (1.0 - per_row * per_row) * s.slope[c] * s.shift;
-    Part part = part_of(s, g, cell, off[1]);
+    Place y = place_of(part_of(s, g, cell, off[1]));
     Target target = target_of(s, g);
-    for (int c = 0; c < 3; c++) {
-      Part shifted = part;
-      shifted.middle += (off[c] - off[1]) / g.size;
-      add_part(target, s, g.size, shifted, c, here[c]);
-    }
+    for (int c = 0; c < 3; c++)
+      add_around(target, s, g.size, y.at * g.size + (off[c] - off[1]), y.lean, c, here[c]);
   }
 }
