@@ -72,7 +72,7 @@ static double blurred(const double share[ABBE_WARP_STEPS], int k, int width) {
 /* What few photons tell of the light in a step. Where steps differ no more than by chance they are
  * made alike, for at every change of texels' size light is a little off. */
 static double light_of(const double share[ABBE_WARP_STEPS], int k) {
-  static const double chance = 0.1, sure = 0.2;
+  static const double chance = 0.02, sure = 0.05;
   const double narrow = blurred(share, k, NARROW_BLUR), wide = blurred(share, k, WIDE_BLUR);
   const double apart = narrow + wide > 0 ? fabs(narrow - wide) / (narrow + wide) : 0;
   return wide + (narrow - wide) * fmin(fmax((apart - chance) / (sure - chance), 0), 1);
