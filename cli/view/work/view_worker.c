@@ -165,12 +165,13 @@ static abbe_result draw(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
   find_front(w);
   const abbe_render_desc desc = request_of(w, q);
   /* What moves is drawn in one go, for no change cancels it, and parts that are waited for take
-   * longer; but whoever closes the window does not wait for the compiler. */
-  const bool at_once = moving && !q->job.warms && w->renderer != NULL;
-  const abbe_render_progress progress = at_once ? NULL : goes_on;
-  abbe_result result = change(w, &desc, progress, error);
+   * longer, and other code of the driver's; so also for programs' sake. But whoever closes the
+   * window does not wait for the compiler. */
+  const bool made = w->renderer != NULL && !q->job.warms;
+  abbe_result result = change(w, &desc, moving && made ? NULL : goes_on, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_frame(w->renderer, progress, w, moving ? NULL : &out->statistics, error);
+    result = abbe_renderer_frame(w->renderer, moving ? NULL : goes_on, w,
+                                 moving ? NULL : &out->statistics, error);
   if (result == ABBE_OK) result = abbe_renderer_read(w->renderer, !moving, &out->picture, error);
   if (result != ABBE_OK) return result;
   const abbe_plan *plan = abbe_renderer_plan(w->renderer);
@@ -194,6 +195,8 @@ static abbe_result draw_steps(abbe_view_worker *w, const abbe_view_request *q,
     step.job.eye_step = eye;
     abbe_image_free(&out->picture);
     result = draw(w, &step, out, error);
+    if (result == ABBE_OK && w->stop)
+      result = abbe_error_set(error, ABBE_CANCELLED, "no more of them are wanted");
   }
   return result;
 }
