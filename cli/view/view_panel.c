@@ -55,7 +55,7 @@ static abbe_view_stage coming(const abbe_view_refine *r) {
 }
 
 /* What the picture was made with, what of it is less while something moves, and what is made
- * meanwhile: one line, for widgets below it stay where they are. */
+ * meanwhile: a line each, also where it is empty, for widgets below stay where they are. */
 static void draw_made(const abbe_view_session *app) {
   const bool moving = app->stage == ABBE_VIEW_MOVING;
   const abbe_render_desc *d = moving ? &app->moving : &app->last.desc;
@@ -63,15 +63,16 @@ static void draw_made(const abbe_view_session *app) {
   char text[160] = " ", eye[64] = "";
   if (moving && d->coarse != ABBE_COARSE_NONE) snprintf(eye, sizeof eye, "fewer faces; ");
   if (moving && d->upsample > 1)
-    snprintf(eye + strlen(eye), sizeof eye - strlen(eye), "%zu x %zu pixels a sample; ",
-             d->upsample, d->upsample);
+    snprintf(eye + strlen(eye), sizeof eye - strlen(eye), "%zu x %zu pixels; ", d->upsample,
+             d->upsample);
   if (moving && app->moved.light != ABBE_VIEW_MOVING)
     snprintf(text, sizeof text, "%slight is kept: %s", eye, abbe_view_stage_name(app->moved.light));
   else if (d->photons > 0)
     snprintf(text, sizeof text, "%s%zu photons a side", eye, d->photons);
-  const size_t length = strlen(text);
+  abbe_ui_text(DIM, text);
+  snprintf(text, sizeof text, " ");
   if (next != ABBE_VIEW_NONE && next != app->stage)
-    snprintf(text + length, sizeof text - length, "; %s is made", abbe_view_stage_name(next));
+    snprintf(text, sizeof text, "%s is made", abbe_view_stage_name(next));
   abbe_ui_text(DIM, text);
 }
 
