@@ -244,7 +244,7 @@ abbe_result abbe_renderer_change(abbe_renderer *r, const abbe_scene *scene,
 }
 
 void abbe_renderer_redraw(abbe_renderer *r) {
-  r->lit = r->seen = r->refraction.whole = false;
+  r->lit = r->seen = r->refraction.whole = r->pinholes.filled = false;
 }
 
 static void delete_none(GLsizei count, const GLuint *names) {

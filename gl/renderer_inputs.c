@@ -1,5 +1,7 @@
 #include "gl/renderer_inputs.h"
 
+#include "gl/pinholes/pinhole_samples.h"
+
 #include <string.h>
 
 /* Of a run of bytes: words are mixed in one after another, by a multiplication and a shift. */
@@ -326,6 +328,30 @@ static uint64_t of_sights(const abbe_scene *scene, const abbe_plan *plan, const 
   return mix_eye(h, scene, plan);
 }
 
+/* Programs know how many lights there are. */
+static uint64_t of_pages(const abbe_scene *scene, const abbe_plan *plan, const uint64_t *part) {
+  const abbe_render_desc *d = &plan->desc;
+  uint64_t h = 6;
+  MIX(h, part[ABBE_PART_GEOMETRY]);
+  MIX(h, part[ABBE_PART_SURFACES]);
+  MIX(h, part[ABBE_PART_SPECTRA]);
+  MIX(h, scene->environment_lights);
+  MIX(h, scene->light_count);
+  MIX(h, plan->light_view_count);
+  MIX(h, plan->eye_exits);
+  MIX(h, plan->eye_share);
+  MIX(h, d->transport);
+  MIX(h, d->map_size);
+  const uint64_t seed = abbe_pinhole_samples_seed(d);
+  MIX(h, seed);
+  MIX(h, d->pinholes);
+  MIX(h, d->clusters);
+  MIX(h, d->strategy);
+  MIX(h, d->footprint);
+  if (plan->rough) MIX(h, part[ABBE_PART_LIGHT]);
+  return h;
+}
+
 void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
                              abbe_renderer_inputs *out) {
   uint64_t *part = out->part, light;
@@ -342,6 +368,7 @@ void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
   part[ABBE_PART_EYE] = mix_eye(light, scene, plan);
   part[ABBE_PART_POWERS] = mix_powers(3, scene, plan);
   out->sights = of_sights(scene, plan, part);
+  out->pages = of_pages(scene, plan, part);
 }
 
 unsigned abbe_renderer_inputs_differ(const abbe_renderer_inputs *a, const abbe_renderer_inputs *b) {

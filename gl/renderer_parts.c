@@ -215,7 +215,11 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   if ((parts & (GEOMETRY | EYE)) == EYE && r->inputs.sights == inputs.sights)
     abbe_refraction_pass_leave(&r->refraction, &r->kept);
   if ((parts & LIGHT) != 0) abbe_published_take_frames(&r->published, &frames);
+  const bool pages_stay = parts != ALL && r->inputs.pages == inputs.pages;
+  const abbe_pinhole_pages pages = r->pinholes;
+  if (pages_stay) r->pinholes = (abbe_pinhole_pages){0};
   free_parts(r, parts);
+  if (pages_stay) r->pinholes = pages;
   if (parts == ALL && crowded) abbe_gpu_drop_programs(&r->gpu);
   take_plan(r, &plan);
   r->inputs = inputs;

@@ -5,6 +5,7 @@
 #include "scenes/lights/environment_lights.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 enum {
   UNIT = 5,
@@ -76,7 +77,7 @@ static abbe_result make_programs(abbe_pinhole_pages *pages, const abbe_shader_va
 abbe_result abbe_pinhole_pages_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
                                     abbe_pinhole_pages *out, abbe_error *error) {
   const abbe_render_desc *d = &scene->plan->desc;
-  if (d->transport != ABBE_TRANSPORT_PINHOLE) return ABBE_OK;
+  if (d->transport != ABBE_TRANSPORT_PINHOLE || out->scene != NULL) return ABBE_OK;
   out->scene = scene;
   out->count =
       2 * (scene->plan->page_charts ? scene->charts.count : scene->plan->parallelogram_count);
@@ -92,7 +93,10 @@ abbe_result abbe_pinhole_pages_make(const abbe_gpu_scene *scene, const abbe_shad
   for (int k = 0; k < 2 && result == ABBE_OK; k++)
     result = abbe_gpu_make_buffer(scene->gpu, ABBE_GPU_LIST_HEADER + 4 * out->side * out->side,
                                   NULL, &out->texels[k], error);
-  return result == ABBE_OK ? make_programs(out, variant, error) : result;
+  if (result != ABBE_OK) return result;
+  out->order = malloc(out->side * out->side * sizeof *out->order);
+  if (out->order == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for pages");
+  return make_programs(out, variant, error);
 }
 
 void abbe_pinhole_pages_free(abbe_pinhole_pages *pages) {
@@ -102,6 +106,7 @@ void abbe_pinhole_pages_free(abbe_pinhole_pages *pages) {
   abbe_page_charts_free(pages->scene->gpu, &pages->charts);
   abbe_gpu_drop_buffers(pages->scene->gpu, 2, pages->texels);
   abbe_gpu_drop_textures(pages->scene->gpu, 1, &pages->texture);
+  free(pages->order);
   *pages = (abbe_pinhole_pages){0};
 }
 
@@ -128,6 +133,22 @@ static void select_texels(abbe_pinhole_pages *pages, size_t page, size_t stride,
   abbe_gpu_dispatch_2d(gpu, pages->select, across, across);
 }
 
+static int by_place(const void *a, const void *b) {
+  const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+  return (x > y) - (x < y);
+}
+
+/* Threads list texels as they come. In order those that go together lie together, and are always
+ * the same: the last bit of what a rasteriser's lane samples hangs on its company. */
+static void sort_texels(abbe_pinhole_pages *pages, GLuint list, size_t count) {
+  const abbe_gl *gl = pages->scene->gpu->gl;
+  const GLsizeiptr bytes = (GLsizeiptr)(count * sizeof *pages->order);
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, list);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, ABBE_GPU_LIST_HEADER, bytes, pages->order);
+  qsort(pages->order, count, sizeof *pages->order, by_place);
+  gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, ABBE_GPU_LIST_HEADER, bytes, pages->order);
+}
+
 /* A part of a page's texels, until each has taken all that it asks for. */
 static abbe_result fill_texels(abbe_pinhole_pages *pages, size_t page, size_t stride,
                                const int first[2], abbe_error *error) {
@@ -142,6 +163,7 @@ static abbe_result fill_texels(abbe_pinhole_pages *pages, size_t page, size_t st
     if (gpu->progress != NULL && !abbe_gpu_ask(gpu))
       return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
     if (count == 0) return ABBE_OK;
+    sort_texels(pages, pages->texels[now], count);
     abbe_gpu_clear_list(gpu, pages->texels[1 - now]);
     abbe_gpu_bind_storage(gpu, BINDING_PAGE_TEXELS, pages->texels[now]);
     abbe_gpu_bind_storage(gpu, BINDING_UNFINISHED, pages->texels[1 - now]);
@@ -219,12 +241,13 @@ static void begin(abbe_pinhole_pages *pages) {
 }
 
 abbe_result abbe_pinhole_pages_run(abbe_pinhole_pages *pages, abbe_error *error) {
-  if (pages->scene == NULL) return ABBE_OK;
+  if (pages->scene == NULL || pages->filled) return ABBE_OK;
   abbe_gpu_start_lap(pages->scene->gpu);
   abbe_result result = clear(pages, error);
   if (result != ABBE_OK) return result;
   begin(pages);
   result = fill_pages(pages, error);
+  pages->filled = result == ABBE_OK && !pages->scene->gpu->stopped;
   pages->scene->gpu->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   abbe_gpu_book_lap(pages->scene->gpu, ABBE_PASS_PINHOLES);
   return result;

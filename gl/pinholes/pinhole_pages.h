@@ -11,6 +11,8 @@
 #include "gl/pinholes/pinhole_sky.h"
 #include "gl/scene/shader_variant.h"
 
+#include <stdint.h>
+
 typedef struct abbe_pinhole_pages {
   const abbe_gpu_scene *scene; /* NULL: there are none */
   abbe_pinhole_samples samples;
@@ -18,15 +20,18 @@ typedef struct abbe_pinhole_pages {
   abbe_page_charts charts; /* where the plan has them */
   size_t side, count;      /* texels of a page; pages: two a chart (gl/scene/receiver_charts.h) */
   GLuint texels[2];        /* lists: of a page's, those that are filled, and that ask for more */
+  uint32_t *order;         /* [side * side] room to sort one of them */
   GLuint select, fill;     /* programs */
+  bool filled;             /* they hold the light as it is now */
   GLuint texture;          /* irradiance, W/m2, working space; an array */
 } abbe_pinhole_pages;
 
-/* Where the plan's transport is by pinholes. Errors of its parts; ABBE_GL, ABBE_NO_MEMORY. */
+/* Where the plan's transport is by pinholes, and *out is zero: else they stay. Errors of its parts;
+ * ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_pinhole_pages_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
                                     abbe_pinhole_pages *out, abbe_error *error);
 void abbe_pinhole_pages_free(abbe_pinhole_pages *pages);
-/* All that may be lit. ABBE_GL, ABBE_CANCELLED. */
+/* All that may be lit, unless they are filled. ABBE_GL, ABBE_CANCELLED. */
 abbe_result abbe_pinhole_pages_run(abbe_pinhole_pages *pages, abbe_error *error);
 /* Into the program that is in use (pinhole_lookup.glsl). */
 void abbe_pinhole_pages_set(const abbe_pinhole_pages *pages, GLuint program);

@@ -144,11 +144,9 @@ static abbe_result upload(const abbe_gpu_scene *scene, bool published,
   return result;
 }
 
-/* Other ones for each place of the photons' grid, so that the mean of frames that shift it comes to
- * the mean of all samples. */
-static uint64_t seed_of(const abbe_render_desc *d) {
+uint64_t abbe_pinhole_samples_seed(const abbe_render_desc *d) {
   uint64_t seed = 0;
-  for (int k = 0; k < 2; k++)
+  for (int k = 0; k < 2 && d->history <= 1; k++)
     seed = seed * 0x9e3779b97f4a7c15u + (uint64_t)(int64_t)llrint(d->photon_shift[k] * 0x1p32);
   return seed;
 }
@@ -158,7 +156,7 @@ abbe_result abbe_pinhole_samples_make(const abbe_gpu_scene *scene, bool publishe
   const abbe_plan *plan = scene->plan;
   const abbe_surface_sampling sampling = {.count = plan->desc.pinholes,
                                           .strategy = plan->desc.strategy,
-                                          .seed = seed_of(&plan->desc),
+                                          .seed = abbe_pinhole_samples_seed(&plan->desc),
                                           .sided = !published,
                                           .even = !published,
                                           .on_surface = !published};

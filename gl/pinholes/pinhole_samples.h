@@ -18,6 +18,11 @@ typedef struct abbe_pinhole_samples {
   double area, spacing; /* of all surfaces, m2; root of a sample's mean share, m */
 } abbe_pinhole_samples;
 
+/* Other samples for each place of the photons' grid, so that the mean of frames that shift it comes
+ * to the mean of all samples. The same ones with a history, whose maps alone are such a mean: what
+ * stands still stays as it is. */
+uint64_t abbe_pinhole_samples_seed(const abbe_render_desc *request);
+
 /* As the plan's request says, of all mirrors and refractors together. As published: each stands for
  * the same area, and there is no tree. Else each stands for what is nearest to it, the two sides of
  * a sheet apart, and a tree has clusters of them for who is far and parts for who is near. Errors

@@ -270,13 +270,22 @@ abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan
   return ABBE_OK;
 }
 
+/* Whether lamps' light may come to a rough mirror by another surface: off rough ones samples and
+ * the camera follow it. */
+static bool smooth_besides_rough(const abbe_scene *scene, const abbe_plan *plan) {
+  size_t rough = 0;
+  for (size_t i = 0; i < plan->refractor_count; i++)
+    rough += abbe_brushing_is_rough(&scene->object[plan->refractor_object[i]].brushing) ? 1 : 0;
+  return scene->light_count > 0 && rough > 0 && rough < plan->refractor_count;
+}
+
 /* The scene's rule, that the later object wins, is not the renderer's. */
 void abbe_refractor_model_note(const abbe_scene *scene, abbe_plan *plan) {
   const abbe_object *first[2] = {NULL, NULL};
   size_t pairs = 0;
-  if (plan->rough)
-    abbe_plan_note(plan, "light of lamps that comes to a rough mirror through glass or off another "
-                         "mirror is left out");
+  if (smooth_besides_rough(scene, plan))
+    abbe_plan_note(plan, "light of lamps that comes to a rough mirror through glass or off a smooth "
+                         "mirror is left out, on receivers and as the camera sees it");
   if (plan->multi_refractor_paths) return;
   if (plan->refractor_count > 1)
     abbe_plan_note(plan, "light that leaves one refractor and meets another goes on unrefracted");

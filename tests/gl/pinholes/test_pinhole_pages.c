@@ -2,6 +2,8 @@
  * what a mirror absorbs and hides is what its shape tells; and what the pages hold agrees with
  * them. */
 #include "tests/gl/frame.h"
+
+#include "gl/pinholes/pinhole_samples.h"
 #include "validation/known/forms/closed_form.h"
 
 #include "scenes/geometry/vector.h"
@@ -20,6 +22,9 @@ static const double PI = 3.14159265358979323846;
 #define ROOF                                                                                       \
   "- {name: roof, shape: rectangle, width: 0.5, height: 0.5, mirror: 0.9, transform: "             \
   "[{translate: [0, 0, 0.3]}]}\n"
+#define ROUGH_WALL                                                                                 \
+  "- {name: wall, shape: rectangle, width: 0.3, height: 0.5, mirror: 0.9, roughness: 0.3"          \
+  ", transform: [{rotate: {axis: [0, 1, 0], angle: -90}}, {translate: [0.3, 0, 0.15]}]}\n"
 #define MIRROR_BALL(share)                                                                         \
   "- {name: mirror ball, shape: sphere, radius: 0.08, levels: 4, mirror: " share                   \
   ", transform: [{translate: [-0.2, 0.1, 0.1]}]}\n"
@@ -142,6 +147,57 @@ static void test_frames_have_other_samples(void **state) {
     for (size_t x = 0; x < 34; x += STEP) mean += sum[y][x] * sum[y][x];
   print_message("the mean of %d frames is off by %.3f of one\n", FRAMES, sqrt(mean / single));
   assert_true(single > 0 && mean < 0.5 * single);
+}
+
+#define LAMP                                                                                       \
+  "lights:\n- {name: lamp, kind: point, position: [-0.3, 0, 0.5], intensity: 0.1}\n"
+
+/* Pages of smooth mirrors know no lamps: they stay while one moves, and the picture is that of a
+ * renderer made anew. Rough ones show lamps. */
+static void test_pages_stay_while_a_lamp_moves(void **state) {
+  (void)state;
+  static const char *const walls[] = {DOWN SOFT LAMP WHITE_FLOOR WALL("0.5"),
+                                      DOWN SOFT LAMP WHITE_FLOOR ROUGH_WALL};
+  for (int rough = 0; rough < 2; rough++) {
+    abbe_scene scene;
+    abbe_image kept, anew;
+    abbe_error error = {0};
+    const abbe_render_desc desc = request(ABBE_TRANSPORT_PINHOLE, 8);
+    load_text(walls[rough], &scene);
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    scene.light[0].position[1] += 0.1;
+    assert_int_equal(abbe_renderer_change(renderer, &scene, &desc, &error), ABBE_OK);
+    const abbe_statistics s = draw_frame(renderer);
+    assert_true(abbe_statistics_ran(&s, ABBE_PASS_PHOTONS));
+    assert_int_equal(s.kept[ABBE_PASS_PINHOLES], !rough);
+    read_picture(renderer, false, &kept);
+    draw(walls[rough], ABBE_TRANSPORT_PINHOLE, 8, &anew); /* the lamp where it was */
+    assert_true(memcmp(kept.data, anew.data, SIDE * SIDE * 3 * sizeof *kept.data) != 0);
+    abbe_image_free(&anew);
+    abbe_renderer *other = make_renderer(&scene, &desc);
+    draw_frame(other);
+    read_picture(other, false, &anew);
+    assert_same_pixels(&kept, &anew);
+    abbe_renderer_redraw(renderer);
+    const abbe_statistics again = draw_frame(renderer);
+    assert_true(abbe_statistics_ran(&again, ABBE_PASS_PINHOLES));
+    abbe_image_free(&kept);
+    abbe_image_free(&anew);
+    abbe_renderer_free(renderer);
+    abbe_renderer_free(other);
+    abbe_scene_free(&scene);
+  }
+}
+
+/* With a history what stands still shows the same samples in each frame; without, others. */
+static void test_a_history_keeps_samples(void **state) {
+  (void)state;
+  abbe_render_desc a = request(ABBE_TRANSPORT_PINHOLE, 16), b = a;
+  b.photon_shift[0] = 0.25;
+  assert_true(abbe_pinhole_samples_seed(&a) != abbe_pinhole_samples_seed(&b));
+  a.history = b.history = 4;
+  assert_true(abbe_pinhole_samples_seed(&a) == abbe_pinhole_samples_seed(&b));
 }
 
 /* One that lies above shows the floor, which is dark: it hides all that it covers. */
@@ -352,6 +408,8 @@ int main(void) {
       cmocka_unit_test(test_furnace),
       cmocka_unit_test(test_a_mirror_absorbs),
       cmocka_unit_test(test_frames_have_other_samples),
+      cmocka_unit_test(test_pages_stay_while_a_lamp_moves),
+      cmocka_unit_test(test_a_history_keeps_samples),
       cmocka_unit_test(test_a_roof_hides),
       cmocka_unit_test(test_clusters),
       cmocka_unit_test(test_a_floor_of_triangles),
