@@ -299,6 +299,36 @@ static void test_a_coaxial_disk(void **state) {
   abbe_mesh_free(&disk);
 }
 
+/* What moves takes its samples along, so that light through them does not flicker; a grid's cubes
+ * stay where they are. */
+static void test_samples_move_along(void **state) {
+  (void)state;
+  static const double by[3] = {0.0078125, -0.03125, 0.00390625};
+  for (int k = 0; k < STRATEGIES; k++) {
+    abbe_mesh ring = {0};
+    abbe_surface_samples before = {0}, after = {0};
+    assert_int_equal(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, NULL), ABBE_OK);
+    take(&ring, 200, strategies[k], 5, true, &before);
+    for (size_t i = 0; i < ring.vertex_count; i++)
+      for (int c = 0; c < 3; c++) ring.position[i][c] += by[c];
+    take(&ring, 200, strategies[k], 5, true, &after);
+    size_t along = 0;
+    for (size_t i = 0; i < before.count && i < after.count; i++) {
+      double off[3];
+      abbe_vector_subtract(after.sample[i].position, before.sample[i].position, off);
+      abbe_vector_subtract(off, by, off);
+      along += abbe_vector_length(off) < 1e-12 ? 1 : 0;
+    }
+    const bool cubes = strategies[k] == ABBE_SAMPLE_STRATEGY_GRID ||
+                       strategies[k] == ABBE_SAMPLE_STRATEGY_QUANTIZED;
+    assert_true(cubes ? along < before.count / 2
+                      : along == before.count && after.count == before.count);
+    abbe_surface_samples_free(&before);
+    abbe_surface_samples_free(&after);
+    abbe_mesh_free(&ring);
+  }
+}
+
 static void test_wrong_requests(void **state) {
   (void)state;
   abbe_mesh nothing = {0};
@@ -324,6 +354,7 @@ int main(void) {
       cmocka_unit_test(test_density_by_normal),
       cmocka_unit_test(test_convergence_to_a_polygon),
       cmocka_unit_test(test_a_coaxial_disk),
+      cmocka_unit_test(test_samples_move_along),
       cmocka_unit_test(test_wrong_requests),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
