@@ -32,6 +32,7 @@ enum {
   OPTION_SHARE,
   OPTION_HISTORY,
   OPTION_POLYGONS,
+  OPTION_DIRECTION,
   OPTION_FRAMES,
   OPTION_SIZE,
   OPTION_ERROR,
@@ -105,6 +106,8 @@ static const struct argp_option options[] = {
      "of wyman2006's quads and triangles: plain,even,corners,culled,in-light, and sums such as "
      "even+culled",
      1},
+    {"direction", OPTION_DIRECTION, "LIST", 0,
+     "that wyman2006's photons take light from: own,mean,direct", 1},
     {"history", OPTION_HISTORY, "LIST", 0,
      "frames that a picture is made of, 1 to 4: the error after 1, 2, 4 and 8", 1},
     {"passes", OPTION_PASSES, "LIST", 0, "of the tracer, each of photons x photons photons", 1},
@@ -186,6 +189,7 @@ static void take_name(const request *q, const char *option, const char *word, si
   } lists[] = {{"--profiles", abbe_sweep_profiles, ABBE_SWEEP_PROFILE_COUNT},
                {"--model", models, ABBE_MODEL_COUNT},
                {"--polygons", abbe_sweep_polygons, ABBE_POLYGONS_ALL + 1},
+               {"--direction", abbe_sweep_directions, ABBE_DIRECTION_COUNT},
                {"--fill", fills, ABBE_FILL_COUNT}};
   size_t i = 0;
   while (strcmp(lists[i].option, option) != 0) i++;
@@ -227,11 +231,12 @@ static error_t parse_list(int key, const char *text, request *q) {
                {OPTION_PROFILES, "--profiles", &g->profiles},
                {OPTION_MODEL, "--model", &g->models},
                {OPTION_POLYGONS, "--polygons", &g->polygons},
+               {OPTION_DIRECTION, "--direction", &g->directions},
                {OPTION_FILL, "--fill", &g->fills}};
   for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
     if (lists[i].key != key) continue;
     bool words = key == OPTION_PROFILES || key == OPTION_FILL || key == OPTION_MODEL ||
-                 key == OPTION_POLYGONS;
+                 key == OPTION_POLYGONS || key == OPTION_DIRECTION;
     each_word(q, lists[i].option, text, &lists[i].values->count, words ? take_name : take_count,
               lists[i].values);
     q->listed = true;

@@ -145,6 +145,7 @@ static cJSON *describe_row(const abbe_sweep_row *row) {
   cJSON_AddNumberToObject(o, "passes", (double)s->passes);
   cJSON_AddNumberToObject(o, "history", (double)s->history);
   cJSON_AddStringToObject(o, "polygons", s->polygons);
+  cJSON_AddStringToObject(o, "direction", s->direction);
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++)
     add_number(o, abbe_sweep_number_name((abbe_sweep_number)i), row->number[i]);
   cJSON_AddBoolToObject(o, "front", row->front);

@@ -99,7 +99,8 @@ static abbe_result read_part(const reader *r, abbe_yaml_node node, abbe_sweep_gr
               {"passes", MOST_PASSES, NULL, &out->passes},
               {"fill", ABBE_FILL_COUNT, fill_names, &out->fills},
               {"model", ABBE_MODEL_COUNT, model_names, &out->models},
-              {"polygons", ABBE_POLYGONS_ALL + 1, abbe_sweep_polygons, &out->polygons}};
+              {"polygons", ABBE_POLYGONS_ALL + 1, abbe_sweep_polygons, &out->polygons},
+              {"direction", ABBE_DIRECTION_COUNT, abbe_sweep_directions, &out->directions}};
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof axes / sizeof *axes && result == ABBE_OK; i++)
     result = read_values(r, node, axes[i].key, axes[i].most, axes[i].names, axes[i].out);
@@ -253,8 +254,9 @@ static bool has_mesh(const abbe_scene *scene) {
 static abbe_result add_grid(expansion *e, const abbe_sweep_grid *g, abbe_error *error) {
   size_t shares = g->share_count > 0 ? g->share_count : 1, total = shares;
   const abbe_sweep_values *const axes[] = {
-      &g->profiles, &g->wavelengths, &g->photons, &g->map,    &g->samples, &g->upsample,
-      &g->exits,    &g->fills,       &g->models,  &g->passes, &g->history, &g->polygons};
+      &g->profiles, &g->wavelengths, &g->photons,   &g->map,    &g->samples,
+      &g->upsample, &g->exits,       &g->fills,     &g->models, &g->passes,
+      &g->history,  &g->polygons,    &g->directions};
   for (size_t i = 0; i < sizeof axes / sizeof *axes; i++) total *= length_of(axes[i]);
   abbe_result result = ABBE_OK;
   if (g->meshes && !has_mesh(e->scene)) return ABBE_OK;
@@ -271,6 +273,7 @@ static abbe_result add_grid(expansion *e, const abbe_sweep_grid *g, abbe_error *
     const size_t profile = take(&g->profiles, &counter), passes = take(&g->passes, &counter);
     const size_t history = take(&g->history, &counter);
     d.polygons = (unsigned)take(&g->polygons, &counter);
+    d.direction = (abbe_direction)take(&g->directions, &counter);
     d.history = history > 1 ? history : 0; /* which alone all profiles know */
     const bool by_pinholes = profile >= ABBE_SWEEP_PROFILE_PINHOLE;
     d.profile = by_pinholes ? ABBE_PROFILE_DEFAULT : (abbe_profile)profile;

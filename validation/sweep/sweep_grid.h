@@ -30,11 +30,12 @@ typedef struct abbe_sweep_values {
 typedef struct abbe_sweep_grid {
   abbe_sweep_values profiles; /* abbe_profile, or one of those below */
   abbe_sweep_values wavelengths, photons, map, samples, upsample, exits, history;
-  abbe_sweep_values passes;   /* of the tracer; of it, photons count too, and nothing else */
-  abbe_sweep_values fills;    /* abbe_fill */
-  abbe_sweep_values models;   /* abbe_model */
-  abbe_sweep_values polygons; /* bits of ABBE_POLYGONS */
-  bool meshes;                /* only where a refractor is a general mesh */
+  abbe_sweep_values passes;     /* of the tracer; of it, photons count too, and nothing else */
+  abbe_sweep_values fills;      /* abbe_fill */
+  abbe_sweep_values models;     /* abbe_model */
+  abbe_sweep_values polygons;   /* bits of ABBE_POLYGONS */
+  abbe_sweep_values directions; /* abbe_direction */
+  bool meshes;                  /* only where a refractor is a general mesh */
   size_t share_count;
   double share[ABBE_SWEEP_MAX_VALUES];
 } abbe_sweep_grid;

@@ -23,6 +23,10 @@ const char *const abbe_sweep_polygons[] = {"plain",
                                            "corners+culled+in-light",
                                            "even+corners+culled+in-light"};
 
+#define NAME(code, name) name,
+const char *const abbe_sweep_directions[] = {ABBE_DIRECTIONS(NAME)};
+#undef NAME
+
 /* Of a setting's words; ABBE_POLYGONS_ALL + 1: there is no such kind. */
 static unsigned polygons_of(const char *words) {
   unsigned bits = 0;
@@ -63,6 +67,8 @@ void abbe_sweep_setting_of(const abbe_render_desc *d, abbe_sweep_setting *out) {
     snprintf(out->profile, sizeof out->profile, "%s", abbe_profile_name(d->profile));
   if (d->polygons > 0 && d->polygons <= ABBE_POLYGONS_ALL)
     snprintf(out->polygons, sizeof out->polygons, "%s", abbe_sweep_polygons[d->polygons]);
+  if (d->direction != abbe_direction_of_profile(d->profile) && d->direction != ABBE_DIRECTION_AUTO)
+    snprintf(out->direction, sizeof out->direction, "%s", abbe_sweep_directions[d->direction]);
   snprintf(out->fill, sizeof out->fill, "%s", abbe_fill_name(d->fill));
   snprintf(out->model, sizeof out->model, "%s", abbe_model_name(d->model));
 }
@@ -79,7 +85,7 @@ static size_t pinholes_of(const char *profile) {
 abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_render_desc *out,
                                     abbe_error *error) {
   ABBE_REQUIRE(setting && out, error);
-  int profile = 0, fill = 0, model = 0;
+  int profile = 0, fill = 0, model = 0, direction = 0;
   const size_t pinholes = pinholes_of(setting->profile);
   const unsigned polygons = polygons_of(setting->polygons);
   while (pinholes == 0 && profile < ABBE_PROFILE_COUNT &&
@@ -90,7 +96,13 @@ abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_rend
   while (model < ABBE_MODEL_COUNT &&
          strcmp(abbe_model_name((abbe_model)model), setting->model) != 0)
     model++;
+  while (direction < ABBE_DIRECTION_COUNT && setting->direction[0] != '\0' &&
+         strcmp(abbe_sweep_directions[direction], setting->direction) != 0)
+    direction++;
   *out = (abbe_render_desc){0};
+  if (direction == ABBE_DIRECTION_COUNT)
+    return abbe_error_set(error, ABBE_NOT_FOUND, "the renderer has no direction '%s'",
+                          setting->direction);
   if (polygons > ABBE_POLYGONS_ALL)
     return abbe_error_set(error, ABBE_NOT_FOUND, "the renderer has no polygons '%s'",
                           setting->polygons);
@@ -112,6 +124,7 @@ abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_rend
                          .energy_share = setting->share,
                          .exits = setting->exits,
                          .polygons = polygons,
+                         .direction = (abbe_direction)direction,
                          .history = setting->history > 1 ? setting->history : 0};
   return ABBE_OK;
 }
@@ -123,6 +136,9 @@ void abbe_sweep_setting_describe(const abbe_sweep_setting *setting, char *out, s
     abbe_preset_describe(&desc, out, size);
     size_t used = strlen(out);
     if (desc.polygons > 0) snprintf(out + used, size - used, ", polygons %s", setting->polygons);
+    used = strlen(out);
+    if (desc.direction != ABBE_DIRECTION_AUTO)
+      snprintf(out + used, size - used, ", direction %s", setting->direction);
     used = strlen(out);
     if (abbe_sweep_setting_has_history(setting))
       snprintf(out + used, size - used, ", of %zu frames", setting->history);

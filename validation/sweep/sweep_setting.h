@@ -12,6 +12,7 @@ extern "C" {
 /* Kinds of polygons by their bits (ABBE_POLYGONS): "plain", "even", "corners", "even+corners", ...
  */
 extern const char *const abbe_sweep_polygons[ABBE_POLYGONS_ALL + 1];
+extern const char *const abbe_sweep_directions[ABBE_DIRECTION_COUNT]; /* abbe_direction's names */
 
 /* The setting of a resolved request, and the request of a setting (size and space left 0).
  * ABBE_NOT_FOUND for a profile, fill or model of an unknown name. */

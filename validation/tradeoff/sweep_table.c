@@ -31,8 +31,8 @@ static const char *const fact_names[] = {
 };
 
 static const char *const setting_columns[] = {
-    "profile", "wavelengths", "photons",  "map",    "samples", "fill",    "exits",
-    "share",   "model",       "upsample", "passes", "history", "polygons"};
+    "profile", "wavelengths", "photons",  "map",    "samples", "fill",     "exits",
+    "share",   "model",       "upsample", "passes", "history", "polygons", "direction"};
 enum {
   SETTING_COLUMNS = sizeof setting_columns / sizeof *setting_columns,
   COLUMNS = SETTING_COLUMNS + ABBE_SWEEP_NUMBER_COUNT + 1
@@ -92,7 +92,7 @@ bool abbe_sweep_setting_same(const abbe_sweep_setting *a, const abbe_sweep_setti
          a->photons == b->photons && a->map == b->map && a->samples == b->samples &&
          a->upsample == b->upsample && a->exits == b->exits && a->share == b->share &&
          a->passes == b->passes && a->history == b->history &&
-         strcmp(a->polygons, b->polygons) == 0;
+         strcmp(a->polygons, b->polygons) == 0 && strcmp(a->direction, b->direction) == 0;
 }
 
 void abbe_sweep_setting_label(const abbe_sweep_setting *s, char *out, size_t size) {
@@ -113,9 +113,10 @@ void abbe_sweep_setting_label(const abbe_sweep_setting *s, char *out, size_t siz
   else if (strncmp(s->profile, "wyman2006", 9) == 0)
     snprintf(fill, sizeof fill, " %s", s->fill);
   if (abbe_sweep_setting_has_history(s)) snprintf(history, sizeof history, " h%zu", s->history);
-  snprintf(out, size, "%s%sw%zu p%zu m%zu s%zu%s%s%s%s%s%s%s%s", plain ? "" : s->profile,
+  snprintf(out, size, "%s%sw%zu p%zu m%zu s%zu%s%s%s%s%s%s%s%s%s%s", plain ? "" : s->profile,
            plain ? "" : " ", s->wavelengths, s->photons, s->map, s->samples, upsample, fill, exits,
-           share, model, history, *s->polygons != '\0' ? " " : "", s->polygons);
+           share, model, history, *s->polygons != '\0' ? " " : "", s->polygons,
+           *s->direction != '\0' ? " " : "", s->direction);
 }
 
 /* The table */
@@ -305,9 +306,9 @@ bool abbe_sweep_model_read(const abbe_sweep_table *table, abbe_sweep_model *out)
 static void write_row(FILE *to, const abbe_sweep_row *row) {
   const abbe_sweep_setting *s = &row->setting;
   char text[ABBE_NUMBER_TEXT_SIZE];
-  fprintf(to, "%s,%zu,%zu,%zu,%zu,%s,%zu,%s,%s,%zu,%zu,%zu,%s", s->profile, s->wavelengths,
+  fprintf(to, "%s,%zu,%zu,%zu,%zu,%s,%zu,%s,%s,%zu,%zu,%zu,%s,%s", s->profile, s->wavelengths,
           s->photons, s->map, s->samples, s->fill, s->exits, abbe_number_text(s->share, text),
-          s->model, s->upsample, s->passes, s->history, s->polygons);
+          s->model, s->upsample, s->passes, s->history, s->polygons, s->direction);
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) {
     bool known = isfinite(row->number[i]);
     fprintf(to, ",%s", known ? abbe_number_text(row->number[i], text) : "");
@@ -392,19 +393,13 @@ static abbe_result read_count(const reader *r, size_t column, size_t *out, abbe_
   return ABBE_OK;
 }
 
-/* A word, or several, or none. */
-static abbe_result read_words(const reader *r, size_t column, char out[ABBE_SWEEP_WORDS],
-                              abbe_error *error) {
-  const size_t length = strlen(r->cell[column]);
-  if (length >= ABBE_SWEEP_WORDS) return wrong(r, column, "of at most 31 letters", error);
-  memcpy(out, r->cell[column], length + 1);
-  return ABBE_OK;
-}
-
-static abbe_result read_word(const reader *r, size_t column, char *out, abbe_error *error) {
-  size_t length = strlen(r->cell[column]);
-  if (length == 0 || length >= ABBE_SWEEP_WORD)
-    return wrong(r, column, "a word of 1 to 15 letters", error);
+/* One that is long enough for several words may be empty. */
+static abbe_result read_text(const reader *r, size_t column, size_t size, char *out,
+                             abbe_error *error) {
+  const size_t length = strlen(r->cell[column]), least = size == ABBE_SWEEP_WORD;
+  char wanted[48];
+  snprintf(wanted, sizeof wanted, "a word of %zu to %zu letters", least, size - 1);
+  if (length < least || length >= size) return wrong(r, column, wanted, error);
   memcpy(out, r->cell[column], length + 1);
   return ABBE_OK;
 }
@@ -417,11 +412,12 @@ static abbe_result read_row(const reader *r, abbe_sweep_row *row, abbe_error *er
                           r->line, r->cells, (int)COLUMNS);
   size_t *const counts[] = {NULL,       &s->wavelengths, &s->photons, &s->map, &s->samples,
                             NULL,       &s->exits,       NULL,        NULL,    &s->upsample,
-                            &s->passes, &s->history,     NULL};
-  abbe_result result = read_word(r, 0, s->profile, error);
-  if (result == ABBE_OK) result = read_word(r, 5, s->fill, error);
-  if (result == ABBE_OK) result = read_word(r, 8, s->model, error);
-  if (result == ABBE_OK) result = read_words(r, SETTING_COLUMNS - 1, s->polygons, error);
+                            &s->passes, &s->history,     NULL,        NULL};
+  abbe_result result = read_text(r, 0, sizeof s->profile, s->profile, error);
+  if (result == ABBE_OK) result = read_text(r, 5, sizeof s->fill, s->fill, error);
+  if (result == ABBE_OK) result = read_text(r, 8, sizeof s->model, s->model, error);
+  if (result == ABBE_OK) result = read_text(r, 12, sizeof s->polygons, s->polygons, error);
+  if (result == ABBE_OK) result = read_text(r, 13, sizeof s->direction, s->direction, error);
   if (result == ABBE_OK) result = read_number(r, 7, &s->share, error);
   if (result == ABBE_OK && !(s->share > 0)) result = wrong(r, 7, "a share above 0", error);
   for (size_t i = 0; i < SETTING_COLUMNS && result == ABBE_OK; i++)

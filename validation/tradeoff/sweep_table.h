@@ -39,6 +39,8 @@ typedef struct abbe_sweep_setting {
   size_t history; /* frames that a picture is made of, where they follow one another; 1: its own */
   char polygons[ABBE_SWEEP_WORDS]; /* of photons in image space, where they are of another kind than
                                       its own: "even+culled"; else "" */
+  char direction[ABBE_SWEEP_WORDS]; /* that photons in image space take light from, where it is
+                                       another than the profile's: "own"; else "" */
 } abbe_sweep_setting;
 
 /* X(code, column, text). Errors are against the reference; beside each stands what the reference's

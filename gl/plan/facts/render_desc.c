@@ -78,15 +78,18 @@ bool abbe_render_desc_in_light(const abbe_render_desc *d) {
          (d->fill == ABBE_FILL_GATHER_LIGHT || (d->polygons & ABBE_POLYGONS_IN_LIGHT) != 0);
 }
 
+abbe_direction abbe_direction_of_profile(abbe_profile profile) {
+  if (!abbe_profile_is_wyman2006(profile)) return ABBE_DIRECTION_AUTO;
+  return abbe_profile_is_printed(profile) ? ABBE_DIRECTION_MEAN : ABBE_DIRECTION_DIRECT;
+}
+
 static void fill_in_wyman(abbe_render_desc *d) {
   if (d->photons == 0) d->photons = WYMAN_PHOTONS;
   if (d->map_size == 0) d->map_size = WYMAN_MAP;
   if (d->fill == ABBE_FILL_AUTO) d->fill = ABBE_FILL_GATHER_LIGHT;
   if (d->fill == ABBE_FILL_NONE) d->fill = ABBE_FILL_POINTS;
   if (d->history == 0) d->history = 1;
-  if (d->direction == ABBE_DIRECTION_AUTO)
-    d->direction =
-        abbe_profile_is_printed(d->profile) ? ABBE_DIRECTION_MEAN : ABBE_DIRECTION_DIRECT;
+  if (d->direction == ABBE_DIRECTION_AUTO) d->direction = abbe_direction_of_profile(d->profile);
 }
 
 static void fill_in_pinholes(abbe_render_desc *d) {
@@ -133,7 +136,8 @@ static void fill_in_defaults(size_t width, size_t height, abbe_render_desc *d) {
   if (d->supersample == 0) d->supersample = published || d->upsample > 1 ? 1 : ABBE_PLAN_SAMPLES;
   if (d->environment_lights == 0) d->environment_lights = ABBE_PLAN_ENVIRONMENT_LIGHTS;
   if (d->light_points == 0) d->light_points = ABBE_PLAN_LIGHT_POINTS;
-  /* Between far samples lies what their neighbours tell: rays over a sample's own area are no help. */
+  /* Between far samples lies what their neighbours tell: rays over a sample's own area are no help.
+   */
   if (d->adaptive == 0) d->adaptive = published || d->upsample > 1 ? 1 : ABBE_PLAN_ADAPTIVE;
   if (d->fill == ABBE_FILL_AUTO)
     d->fill = thesis ? ABBE_FILL_SMEAR : published ? ABBE_FILL_NONE : ABBE_FILL_BRIDGE;

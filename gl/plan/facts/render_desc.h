@@ -67,6 +67,8 @@ typedef enum abbe_direction {
 #undef ABBE_DIRECTION_ENUM
       ABBE_DIRECTION_COUNT
 } abbe_direction;
+/* What AUTO is; AUTO where a profile takes none. */
+abbe_direction abbe_direction_of_profile(abbe_profile profile);
 
 /* What wyman2006 does otherwise with quads and triangles, bits of a request. even: as printed,
  * beams have the light of one photon of the field each, not that of their solid angle; corners:

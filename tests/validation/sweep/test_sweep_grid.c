@@ -72,6 +72,21 @@ static void test_grids_hold_each_setting_once(void **state) {
   assert_string_equal(list[0].polygons, "");
   assert_string_equal(list[3].polygons, "even+culled");
   free(list);
+  /* Directions go with wyman2006 as printed; the mean is its own. */
+  const abbe_sweep_grid directions = {
+      .profiles = {2, {ABBE_PROFILE_WYMAN2006, ABBE_PROFILE_DEFAULT}},
+      .directions = {
+          4,
+          {ABBE_DIRECTION_AUTO, ABBE_DIRECTION_OWN, ABBE_DIRECTION_MEAN, ABBE_DIRECTION_DIRECT}}};
+  assert_int_equal(expand(&scene, &directions, 1, &list, &refused), 4);
+  assert_int_equal(refused, 3);
+  size_t own = 0, direct = 0;
+  for (size_t i = 0; i < 4; i++) {
+    own += strcmp(list[i].direction, "own") == 0;
+    direct += strcmp(list[i].direction, "direct") == 0;
+  }
+  assert_true(own == 1 && direct == 1);
+  free(list);
   /* Of the tracer only photons and passes make settings; without them it has some of its own. */
   abbe_sweep_grid traced = {
       .profiles = {2, {ABBE_SWEEP_PROFILE_TRACE, ABBE_SWEEP_PROFILE_TRACE_FILTER}},

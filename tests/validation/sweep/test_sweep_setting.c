@@ -73,6 +73,35 @@ static void test_kinds_of_polygons(void **state) {
   }
 }
 
+static void test_directions(void **state) {
+  (void)state;
+  for (int k = 0; k < ABBE_DIRECTION_COUNT; k++) {
+    abbe_sweep_setting setting;
+    char text[200];
+    abbe_render_desc back, desc = {.profile = ABBE_PROFILE_WYMAN2006,
+                                   .wavelengths = 7,
+                                   .photons = 64,
+                                   .map_size = 64,
+                                   .supersample = 1,
+                                   .upsample = 1,
+                                   .fill = ABBE_FILL_QUADS,
+                                   .energy_share = 0.01,
+                                   .direction = (abbe_direction)k};
+    const bool other = k == ABBE_DIRECTION_OWN || k == ABBE_DIRECTION_DIRECT;
+    abbe_sweep_setting_of(&desc, &setting);
+    assert_string_equal(setting.direction, other ? abbe_sweep_directions[k] : "");
+    assert_int_equal(abbe_sweep_setting_desc(&setting, &back, NULL), ABBE_OK);
+    assert_int_equal(back.direction, other ? k : ABBE_DIRECTION_AUTO);
+    abbe_sweep_setting_describe(&setting, text, sizeof text);
+    if (other) assert_contains(text, abbe_sweep_directions[k]);
+  }
+  abbe_sweep_setting setting;
+  abbe_render_desc back;
+  abbe_sweep_setting_of(&(abbe_render_desc){.profile = ABBE_PROFILE_WYMAN2006}, &setting);
+  snprintf(setting.direction, sizeof setting.direction, "sideways");
+  assert_int_equal(abbe_sweep_setting_desc(&setting, &back, NULL), ABBE_NOT_FOUND);
+}
+
 static void test_pinholes_are_contestants(void **state) {
   (void)state;
   abbe_sweep_setting setting;
@@ -112,7 +141,7 @@ static void test_unknown_names(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_there_and_back), cmocka_unit_test(test_kinds_of_polygons),
-      cmocka_unit_test(test_pinholes_are_contestants),
+      cmocka_unit_test(test_directions),     cmocka_unit_test(test_pinholes_are_contestants),
       cmocka_unit_test(test_unknown_names),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

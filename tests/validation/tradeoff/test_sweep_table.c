@@ -99,6 +99,11 @@ static void test_settings_are_told_apart(void **state) {
   abbe_sweep_setting_label(&row.setting, text, sizeof text);
   assert_string_equal(text, "w7 p128 m512 s2 even+culled");
   *row.setting.polygons = '\0';
+  snprintf(row.setting.direction, sizeof row.setting.direction, "own");
+  assert_null(abbe_sweep_table_find(&table, &row.setting));
+  abbe_sweep_setting_label(&row.setting, text, sizeof text);
+  assert_string_equal(text, "w7 p128 m512 s2 own");
+  *row.setting.direction = '\0';
   row.setting.share = 0.02;
   assert_null(abbe_sweep_table_find(&table, &row.setting));
   abbe_sweep_setting_label(&row.setting, text, sizeof text);
@@ -220,13 +225,13 @@ static void test_broken_tables_are_named(void **state) {
       {"default,7,", "default,-7,", "is not a whole number"},
       {"default,7,", ",7,", "s.csv:3: profile '' is not a word"},
       {"default,7,", "a-profile-of-a-long-name,7,", "is not a word of 1 to 15 letters"},
-      {"auto,1,0,1,,10,", "auto,1,0,1,,ten,", "s.csv:3: frame_ms 'ten' is not a number"},
-      {"auto,1,0,1,,10,", "auto,1,0,1,,1e999,", "is not a number"},
-      {"auto,1,0,1,,10,", "auto,1,0,1,even+corners+culled+in-light+round,10,",
-       "is not of at most 31 letters"},
-      {"0.01,auto,1,0,1,,10,", "0,auto,1,0,1,,10,", "is not a share above 0"},
-      {"auto,1,0,1,,10,", "auto,1,0,1,,10,,", "the row has 59 cells, not 58"},
-      {"frame_ms", "frame_s", "column 14 is 'frame_s' where a sweep has 'frame_ms'"},
+      {"auto,1,0,1,,,10,", "auto,1,0,1,,,ten,", "s.csv:3: frame_ms 'ten' is not a number"},
+      {"auto,1,0,1,,,10,", "auto,1,0,1,,,1e999,", "is not a number"},
+      {"auto,1,0,1,,,10,", "auto,1,0,1,even+corners+culled+in-light+round,,10,",
+       "is not a word of 0 to 31 letters"},
+      {"0.01,auto,1,0,1,,,10,", "0,auto,1,0,1,,,10,", "is not a share above 0"},
+      {"auto,1,0,1,,,10,", "auto,1,0,1,,,10,,", "the row has 60 cells, not 59"},
+      {"frame_ms", "frame_s", "column 15 is 'frame_s' where a sweep has 'frame_ms'"},
       {"front\n", "front,more\n", "where a sweep has ''"},
   };
   char *text = text_of_one_row(), changed[8300];
