@@ -1,7 +1,8 @@
 // Adds listed splats to the map, part by part. A part is a rectangle that gives each of the four texels at most
 // what of it lies there, so parts side by side make an even light, however they lie against the texels. All
-// of a splat is given, to the last unit. Where light has edges a splat of few parts goes to the level below its
-// own: then little of it lands beside the area that it lights. X and Z lie beside Y, however little.
+// of a splat is given, to the last unit. Where light has edges parts lie by their bounds, and a splat of few parts
+// goes to the level below its own: then little of it lands beside the area that it lights. X and Z lie beside Y,
+// however little.
 layout(local_size_x = 256) in;
 #include "splat_list.glsl"
 #include "wide_sum.glsl"
@@ -24,6 +25,7 @@ uint level_offset(int level) {
 
 const float LEAST_SIDE = 0.25;  // of a part, of a texel
 const int MOST_IN_ROWS = 60;
+const float MOST_WIDE = 0.84;  // of a texel: what lies turned is wider, and more than a texel leaves gaps
 const int MOST_PARTS = 16;  // of a splat in the level below its own, or it stays in its own
 
 void add(uint texel, int channel, uint v) {
@@ -57,8 +59,12 @@ ListedSplat splat_at(uint word) {
   s.skew = unpackHalf2x16(splat[word + 10u]);
   vec2 rest = unpackHalf2x16(splat[word + 11u]);
   s.beside = rest.x * vec2(-s.across.y, s.across.x) / max(length(s.across), 1e-20);
-  s.next_share = has_edges ? clamp(2.0 * rest.y - 1.0, 0.0, 1.0) : smoothstep(0.0, 1.0, rest.y);
   s.level = int(y_level & 7u);
+  s.next_share = clamp(2.0 * rest.y - 1.0, 0.0, 1.0);
+  if (!has_edges && rest.y > 0.0) {  // over a whole level, and as coarse in the mean
+    s.level -= rest.y < 0.25 ? 1 : 0;
+    s.next_share = smoothstep(0.0, 1.0, fract(rest.y + 0.75));
+  }
   s.centre = vec2(splat[word] >> 5, y_level >> 5) / 32768.0;
   s.tile = (splat[word] & 31u) << 2 | y_level >> 3 & 3u;
   s.rect = vec4(0);
@@ -77,17 +83,18 @@ struct Grid {
   float size;
 };
 
-// Parts whose bounds are no wider than a texel.
+// Parts whose bounds are no wider than a texel; of light with edges, which lie by their bounds, hardly wider.
 Grid grid_of(int level, ListedSplat s) {
   Grid g;
   g.level = level;
   g.size = exp2(float(level));
-  float across = length(s.across);
-  vec2 axis = across > 0.0 ? abs(s.across) / across : vec2(1, 0);
-  float narrow = max(length(s.beside) / g.size, LEAST_SIDE), wide = (across + length(s.skew)) / g.size;
-  g.beside = min(int(ceil(narrow * (axis.x + axis.y))), MOST_IN_ROWS);
+  float across = length(s.across), wide = (across + length(s.skew)) / g.size, part = MOST_WIDE;
+  vec2 axis = across > 0.0 && !has_edges ? abs(s.across) / across : vec2(1, 0);
+  float narrow = max(length(s.beside) / g.size, LEAST_SIDE);
+  g.beside = clamp(int(ceil(has_edges ? narrow / part : narrow * (axis.x + axis.y))), 1, MOST_IN_ROWS);
   vec2 room = (1.0 - narrow / float(g.beside) * axis.yx) / max(axis, 1e-3);
-  g.across = clamp(int(ceil(wide / min(room.x, room.y))), 1, MOST_IN_ROWS);
+  part = has_edges ? part : min(room.x, room.y);
+  g.across = clamp(int(ceil(wide / part)), 1, MOST_IN_ROWS);
   g.along = clamp(int(ceil(max(abs(s.shift.x), abs(s.shift.y)) / g.size - 0.25)), 1, MOST_IN_ROWS);
   return g;
 }
@@ -123,24 +130,24 @@ struct Part {
   vec2 middle, across, beside;
 };
 
-// Of the cell's Y.
+// Of the cell's Y. Its sides, and longer and wider by what its light is shifted; where light has edges, its bounds:
+// a rectangle is not the image of a slanted cell, and thin ones side by side show that as stripes.
 Part part_of(ListedSplat s, Grid g, Cell c, vec2 off_y) {
   float at_part = (c.column + 0.5) / float(g.across) - 0.5, per_row = 1.0 / float(g.along);
-  vec2 across = (s.across + sign(at_part) * s.skew) / float(g.across), shift = s.shift * per_row;
+  vec2 across = (s.across + sign(at_part) * s.skew) / float(g.across) / g.size;
+  vec2 beside = s.beside / float(g.beside) / g.size, shift = s.shift * per_row / g.size;
   float wide = length(across);
   vec2 axis = wide > 0.0 ? across / wide : vec2(1, 0), axis_beside = vec2(-axis.y, axis.x);
-  // What its light is shifted makes it longer and wider.
-  wide = max((wide + abs(dot(axis, shift))) / g.size, LEAST_SIDE);
-  float narrow = length(s.beside) / float(g.beside) + abs(dot(axis_beside, shift));
-  narrow = max(narrow / g.size, LEAST_SIDE);
-  vec2 bounds = wide * abs(axis) + narrow * abs(axis_beside);
-  float fits = min(1.0, 1.0 / max(bounds.x, bounds.y));
+  vec2 sides = max(vec2(wide, length(beside)) + abs(vec2(dot(axis, shift), dot(axis_beside, shift))), LEAST_SIDE);
+  vec2 bounds = sides.x * abs(axis) + sides.y * abs(axis_beside);
+  sides *= min(1.0, 1.0 / max(bounds.x, bounds.y));
+  vec2 box = clamp(abs(beside) + abs(across) + abs(shift), LEAST_SIDE, 1.0);
   Part p;
   p.middle = s.centre + off_y + s.beside * ((c.beside + 0.5) / float(g.beside) - 0.5) +
              s.across * at_part + s.skew * abs(at_part) + s.shift * ((c.row + 0.5) * per_row - 0.5);
   p.middle /= g.size;
-  p.across = 0.5 * fits * wide * axis;
-  p.beside = 0.5 * fits * narrow * axis_beside;
+  p.across = 0.5 * (has_edges ? vec2(box.x, 0) : sides.x * axis);
+  p.beside = 0.5 * (has_edges ? vec2(0, box.y) : sides.y * axis_beside);
   return p;
 }
 
