@@ -37,6 +37,15 @@ static void test_there_and_back(void **state) {
 }
 
 /* Names are those of the bits that they sum, and lead back. */
+static const abbe_render_desc quads = {.profile = ABBE_PROFILE_WYMAN2006,
+                                       .wavelengths = 7,
+                                       .photons = 64,
+                                       .map_size = 64,
+                                       .supersample = 1,
+                                       .upsample = 1,
+                                       .fill = ABBE_FILL_QUADS,
+                                       .energy_share = 0.01};
+
 static void test_kinds_of_polygons(void **state) {
   (void)state;
 #define NAME(code, name, bit) {name, bit},
@@ -53,15 +62,8 @@ static void test_kinds_of_polygons(void **state) {
     }
     assert_string_equal(abbe_sweep_polygons[bits], bits > 0 ? words : "plain");
     abbe_sweep_setting setting;
-    abbe_render_desc back, desc = {.profile = ABBE_PROFILE_WYMAN2006,
-                                   .wavelengths = 7,
-                                   .photons = 64,
-                                   .map_size = 64,
-                                   .supersample = 1,
-                                   .upsample = 1,
-                                   .fill = ABBE_FILL_QUADS,
-                                   .energy_share = 0.01,
-                                   .polygons = bits};
+    abbe_render_desc back, desc = quads;
+    desc.polygons = bits;
     abbe_sweep_setting_of(&desc, &setting);
     assert_string_equal(setting.polygons, words);
     assert_int_equal(abbe_sweep_setting_desc(&setting, &back, NULL), ABBE_OK);
@@ -78,15 +80,8 @@ static void test_directions(void **state) {
   for (int k = 0; k < ABBE_DIRECTION_COUNT; k++) {
     abbe_sweep_setting setting;
     char text[200];
-    abbe_render_desc back, desc = {.profile = ABBE_PROFILE_WYMAN2006,
-                                   .wavelengths = 7,
-                                   .photons = 64,
-                                   .map_size = 64,
-                                   .supersample = 1,
-                                   .upsample = 1,
-                                   .fill = ABBE_FILL_QUADS,
-                                   .energy_share = 0.01,
-                                   .direction = (abbe_direction)k};
+    abbe_render_desc back, desc = quads;
+    desc.direction = (abbe_direction)k;
     const bool other = k == ABBE_DIRECTION_OWN || k == ABBE_DIRECTION_DIRECT;
     abbe_sweep_setting_of(&desc, &setting);
     assert_string_equal(setting.direction, other ? abbe_sweep_directions[k] : "");
