@@ -194,7 +194,8 @@ static void note_picture(const request *q) {
   if (q->picture_note != NULL) fprintf(stderr, "note: %s\n", q->picture_note);
   abbe_preset_options_note_picture(&q->picture);
   if (q->overridden)
-    fprintf(stderr, "note: options stand against that choice; what it promises is void\n");
+    fprintf(stderr, "note: options, or a mirror in the scene, stand against that choice; what it "
+                    "promises is void\n");
 }
 
 /* By the tracer, where it serves the request best. */
@@ -351,7 +352,7 @@ static abbe_result choose_picture(request *q, const abbe_scene *scene, abbe_erro
     q->picture_note = "options of the renderer are given, so the tracer is not considered";
   abbe_preset_point point = {0};
   result = abbe_sweep_setting_desc(&q->picture.point->setting, &point.desc, error);
-  if (result == ABBE_OK) q->overridden = !abbe_preset_apply(&point, &q->render.desc);
+  if (result == ABBE_OK) q->overridden = !abbe_preset_apply(&point, scene, &q->render.desc);
   /* They tell where the caustic is. */
   if (abbe_render_is_checked(q) || p->budget_ms > 0) q->render.desc.aovs = true;
   return result;

@@ -19,7 +19,7 @@ typedef struct abbe_render_request {
   abbe_preset_options preset;
   abbe_preset_choice choice;   /* of a frame's settings */
   abbe_picture_choice picture; /* or of what makes the picture; without a point: not asked for */
-  bool overridden;             /* a field of the request stands against the picture's choice */
+  bool overridden;             /* the request or the scene stands against the picture's choice */
   bool may_trace;              /* where the rendered picture does not keep its bound */
   const char *picture_note;    /* on how that was chosen, or NULL */
   abbe_error_options errors;

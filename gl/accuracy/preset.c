@@ -248,8 +248,11 @@ static bool take(size_t *mine, size_t preset) {
   return *mine == preset;
 }
 
-bool abbe_preset_apply(const abbe_preset_point *point, abbe_render_desc *d) {
+bool abbe_preset_apply(const abbe_preset_point *point, const abbe_scene *scene,
+                       abbe_render_desc *d) {
   const abbe_render_desc *p = &point->desc;
+  const bool fits =
+      p->model != ABBE_MODEL_LAYERS || scene == NULL || abbe_scene_mirror(scene) == NULL;
   bool same = take(&d->wavelengths, p->wavelengths);
   same = take(&d->photons, p->photons) && same;
   same = take(&d->map_size, p->map_size) && same;
@@ -257,10 +260,10 @@ bool abbe_preset_apply(const abbe_preset_point *point, abbe_render_desc *d) {
   same = take(&d->upsample, p->upsample) && same;
   same = take(&d->supersample, d->upsample > 1 ? 1 : p->supersample) && same;
   same = d->supersample == p->supersample && same;
-  same = take_exits(&d->exits, p) && same;
+  if (fits) same = take_exits(&d->exits, p) && same;
   if (d->fill == ABBE_FILL_AUTO) d->fill = p->fill;
   same = take_share(&d->energy_share, p->energy_share) && same;
-  if (d->model == ABBE_MODEL_AUTO) d->model = p->model;
+  if (fits && d->model == ABBE_MODEL_AUTO) d->model = p->model;
   return same && d->fill == p->fill && d->model == p->model && d->profile == ABBE_PROFILE_DEFAULT;
 }
 
@@ -284,7 +287,7 @@ abbe_result abbe_preset_calibrate(abbe_context *context, const abbe_scene *scene
                             .height = desc->height,
                             .space = desc->space,
                             .observer = desc->observer};
-  abbe_preset_apply(point, &quick);
+  abbe_preset_apply(point, scene, &quick);
   abbe_result result = abbe_renderer_make(context, scene, &quick, &renderer, error);
   if (result == ABBE_OK) result = abbe_frame_times_measure(renderer, &repeats, &times, error);
   abbe_renderer_free(renderer);

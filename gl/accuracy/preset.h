@@ -87,9 +87,12 @@ abbe_result abbe_presets_find(const abbe_presets *presets, const abbe_plan *plan
                               const abbe_preset_front **out, abbe_error *error);
 
 /* Fills the fields of desc that are 0 with the point's, but for exits and a share that plans have
- * by themselves: those are left to the scene's own. False where a field that was not 0 differs from
- * it: then what the point promises does not hold. */
-bool abbe_preset_apply(const abbe_preset_point *point, abbe_render_desc *desc);
+ * by themselves: those are left to the scene's own, and so is the model 'layers', which follows no
+ * light off mirrors, where the scene has one. False where this is so, or a field that was not 0
+ * differs from the point's: then what the point promises does not hold. scene may be NULL: of no
+ * mirrors. */
+bool abbe_preset_apply(const abbe_preset_point *point, const abbe_scene *scene,
+                       abbe_render_desc *desc);
 
 /* This machine's time for this scene and size over the run's, for the light's and the eye's
  * passes. */

@@ -65,7 +65,7 @@ abbe_result abbe_preset_choose(const abbe_preset_request *request, abbe_context 
   c.point = &c.front->point[point];
   c.promised_ms = abbe_preset_ms(c.point, &speed);
   c.unrest = c.timed ? speed.unrest : NAN;
-  c.overridden = !abbe_preset_apply(c.point, desc);
+  c.overridden = !abbe_preset_apply(c.point, scene, desc);
   *out = c;
   out->front = &out->presets.front[c.front - c.presets.front];
   return ABBE_OK;

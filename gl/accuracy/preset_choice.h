@@ -25,7 +25,7 @@ typedef struct abbe_preset_choice {
   const abbe_preset_front *front; /* NULL: nothing was asked for */
   const abbe_preset_point *point; /* of the front */
   bool kept;                      /* the bound can be kept, by the front */
-  bool overridden;    /* a field of the picture's request stands against it: it promises nothing */
+  bool overridden;    /* the picture's request or scene stands against it: it promises nothing */
   bool timed;         /* promised_ms is known */
   double promised_ms; /* on this machine */
   double unrest;      /* of the frames that told its speed (frame_times.h); NaN: none were drawn */

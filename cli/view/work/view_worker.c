@@ -83,7 +83,7 @@ static abbe_render_desc settings_of(const abbe_view_worker *w, abbe_view_stage s
   const abbe_preset_point *point = point_of(w, stage);
   abbe_render_desc desc = {0};
   if (point != NULL) {
-    abbe_preset_apply(point, &desc);
+    abbe_preset_apply(point, w->scene.now, &desc);
   } else if (stage <= ABBE_VIEW_MOVING) {
     desc = (abbe_render_desc){.wavelengths = 5, .photons = 64, .map_size = 256, .supersample = 1};
   } else if (stage >= ABBE_VIEW_ACCURATE) {

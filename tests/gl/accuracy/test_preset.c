@@ -170,39 +170,70 @@ static void test_what_the_caller_asks_for_stays(void **state) {
   assert_int_equal(load_presets(HEAD CLASS THREE, &presets, NULL), ABBE_OK);
   abbe_render_desc empty = {0}, own = {.wavelengths = 21}, equal = {.photons = 64};
   const abbe_preset_point *point = &presets.front[0].point[1];
-  assert_true(abbe_preset_apply(point, &empty));
+  assert_true(abbe_preset_apply(point, NULL, &empty));
   assert_int_equal(empty.photons, 64);
   assert_int_equal(empty.map_size, 512);
   assert_int_equal(empty.supersample, 1);
   assert_int_equal(empty.exits, 0); /* as many as a plan has by itself: left to it */
   assert_int_equal(empty.fill, ABBE_FILL_BRIDGE);
   assert_near(empty.energy_share, 0, 0); /* likewise: a gem's own is lower */
-  assert_false(abbe_preset_apply(point, &own));
+  assert_false(abbe_preset_apply(point, NULL, &own));
   assert_int_equal(own.wavelengths, 21);
   assert_int_equal(own.photons, 64);
-  assert_true(abbe_preset_apply(point, &equal));
+  assert_true(abbe_preset_apply(point, NULL, &equal));
   abbe_preset_point fewer = *point;
   abbe_render_desc some = {0}, other = {.exits = 3};
   fewer.desc.exits = 2;
-  assert_true(abbe_preset_apply(&fewer, &some));
+  assert_true(abbe_preset_apply(&fewer, NULL, &some));
   assert_int_equal(some.exits, 2);
-  assert_false(abbe_preset_apply(&fewer, &other));
+  assert_false(abbe_preset_apply(&fewer, NULL, &other));
   assert_int_equal(other.exits, 3);
   abbe_preset_point faint = *point;
   abbe_render_desc low = {0}, high = {.energy_share = 0.1};
   faint.desc.energy_share = 0.003;
-  assert_true(abbe_preset_apply(&faint, &low));
+  assert_true(abbe_preset_apply(&faint, NULL, &low));
   assert_near(low.energy_share, 0.003, 0);
-  assert_false(abbe_preset_apply(&faint, &high));
+  assert_false(abbe_preset_apply(&faint, NULL, &high));
   assert_near(high.energy_share, 0.1, 0);
   abbe_preset_point draft = *point;
   abbe_render_desc coarse = {0}, fine = {.supersample = 2};
   draft.desc.upsample = 2;
-  assert_true(abbe_preset_apply(&draft, &coarse));
+  assert_true(abbe_preset_apply(&draft, NULL, &coarse));
   assert_true(coarse.upsample == 2 && coarse.supersample == 1);
-  assert_false(abbe_preset_apply(&draft, &fine));
+  assert_false(abbe_preset_apply(&draft, NULL, &fine));
   assert_true(fine.upsample == 1 && fine.supersample == 2);
   abbe_presets_free(&presets);
+}
+
+/* The fastest points of meshes follow no light off mirrors; a scene with one is drawn all the same.
+ */
+static void test_mirrors_are_drawn_at_every_point(void **state) {
+  (void)state;
+  static const char text[] = CAMERA POINT_LIGHT FLOOR RING(
+      "crown") "- {name: glass, shape: rectangle, width: 1, height: 1, mirror: 0.9, "
+               "transform: [{translate: [0, 0, -1]}]}\n";
+  abbe_presets presets;
+  abbe_error error = {0};
+  abbe_scene scene = {0};
+  size_t layers = 0;
+  load_text(text, &scene);
+  assert_ok(abbe_presets_load(NULL, &presets, &error), &error);
+  for (size_t i = 0; i < presets.count; i++)
+    for (size_t k = 0; k < presets.front[i].count; k++) {
+      const abbe_preset_point *point = &presets.front[i].point[k];
+      const bool layered = point->desc.model == ABBE_MODEL_LAYERS;
+      abbe_render_desc desc = {0}, plain = {0};
+      abbe_plan plan;
+      assert_int_equal(abbe_preset_apply(point, &scene, &desc), !layered);
+      assert_true(abbe_preset_apply(point, NULL, &plain));
+      assert_int_equal(plain.model, point->desc.model);
+      assert_ok(abbe_plan_make(&scene, &desc, &plan, &error), &error);
+      abbe_plan_free(&plan);
+      layers += layered;
+    }
+  assert_true(layers > 0);
+  abbe_presets_free(&presets);
+  abbe_scene_free(&scene);
 }
 
 /* From between floor and ball: no receiver stands behind it. */
@@ -252,6 +283,7 @@ int main(void) {
       cmocka_unit_test(test_a_name_may_be_missing),
       cmocka_unit_test(test_choices),
       cmocka_unit_test(test_what_the_caller_asks_for_stays),
+      cmocka_unit_test(test_mirrors_are_drawn_at_every_point),
       cmocka_unit_test(test_classes_and_calibration),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
