@@ -96,20 +96,22 @@ static void draw_head(abbe_view_session *app) {
 }
 
 /* What it is made of, and its proportions. */
-static void draw_refractor(abbe_view_session *app, const abbe_view_object *object, bool one_of_many,
-                           double now_s) {
+static void draw_object(abbe_view_session *app, const abbe_view_object *object, bool one_of_many,
+                        double now_s) {
   abbe_view_state *s = &app->state;
   const abbe_view_outline *o = &s->outline;
   char key[ABBE_VIEW_KEY + 16], label[ABBE_VIEW_NAME + 16];
-  size_t stone = 0;
-  snprintf(key, sizeof key, "%s.material", object->key);
+  const size_t count = object->mirror ? o->metal_count : o->stone_count;
+  char *const *names = object->mirror ? o->metal : o->stone;
+  size_t at = 0;
+  snprintf(key, sizeof key, "%s.%s", object->key, object->mirror ? "mirror" : "material");
   const char *set = abbe_view_document_value(abbe_view_history_now(&s->history), key);
   const char *is = set != NULL ? set : object->material;
-  while (stone < o->stone_count && strcmp(o->stone[stone], is) != 0) stone++;
+  while (at < count && strcmp(names[at], is) != 0) at++;
   snprintf(label, sizeof label, "%s, of", object->name);
   abbe_ui_scope_begin(object->key);
-  if (abbe_ui_choose(label, (const char *const *)o->stone, o->stone_count, &stone))
-    abbe_view_state_set(s, key, o->stone[stone], false, now_s);
+  if (abbe_ui_choose(label, (const char *const *)names, count, &at))
+    abbe_view_state_set(s, key, names[at], false, now_s);
   for (size_t k = 0; k < object->value_count; k++)
     slide(app, &object->value[k], one_of_many ? object->name : "", false, now_s);
   abbe_ui_scope_end();
@@ -130,16 +132,16 @@ static void draw_scene(abbe_view_session *app, double now_s) {
     app->edition++; /* whoever has read it before does so again */
     return;
   }
-  size_t refractors = 0;
-  for (size_t i = 0; i < o->object_count; i++) refractors += o->object[i].material[0] != '\0';
+  size_t count = 0;
+  for (size_t i = 0; i < o->object_count; i++) count += o->object[i].bends;
   for (size_t i = 0; i < o->object_count; i++)
-    if (o->object[i].material[0] != '\0') draw_refractor(app, &o->object[i], refractors > 1, now_s);
+    if (o->object[i].bends) draw_object(app, &o->object[i], count > 1, now_s);
   for (size_t i = 0; i < o->light_count; i++) {
     abbe_ui_scope_begin(o->light[i].key);
     slide(app, &o->light[i].power, o->light[i].name, true, now_s);
     abbe_ui_scope_end();
   }
-  if (o->surrounded) slide(app, &o->rotate, "surroundings:", false, now_s);
+  if (o->surrounded) slide(app, &o->rotate, "", false, now_s);
   slide(app, &o->ambient, "", false, now_s);
 }
 

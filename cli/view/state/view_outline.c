@@ -176,8 +176,10 @@ static void make_object(abbe_yaml *yaml, abbe_yaml_node list, size_t i, const ab
   if (object == NULL || !read_transform(yaml, node, out)) return;
   key_of(yaml, "objects", list, i, out->key);
   snprintf(out->name, sizeof out->name, "%.79s", object->name);
-  if (object->material != NULL)
-    snprintf(out->material, sizeof out->material, "%.79s", object->material->name);
+  const abbe_material *material = object->mirror ? object->conductor : object->material;
+  out->mirror = object->mirror;
+  out->bends = object->mirror || material != NULL;
+  if (material != NULL) snprintf(out->material, sizeof out->material, "%.79s", material->name);
   for (int k = 0; k < 3; k++) {
     out->middle[k] = 0.5 * (object->min[k] + object->max[k]);
     half[k] = 0.5 * (object->max[k] - object->min[k]);
@@ -188,11 +190,14 @@ static void make_object(abbe_yaml *yaml, abbe_yaml_node list, size_t i, const ab
   outline->object_count++;
 }
 
-static bool read_stones(const abbe_material_table *table, abbe_view_outline *out) {
-  for (size_t i = 0; i < table->count && out->stone_count < ABBE_VIEW_MOST_STONES; i++) {
-    out->stone[out->stone_count] = strdup(table->material[i].name);
-    if (out->stone[out->stone_count] == NULL) return false;
-    out->stone_count++;
+static bool read_materials(const abbe_material_table *table, abbe_view_outline *out) {
+  for (size_t i = 0; i < table->count; i++) {
+    const bool metal = abbe_material_is_conductor(&table->material[i]);
+    size_t *count = metal ? &out->metal_count : &out->stone_count;
+    char **name = metal ? out->metal : out->stone;
+    if (*count == ABBE_VIEW_MOST_STONES) continue;
+    if ((name[*count] = strdup(table->material[i].name)) == NULL) return false;
+    ++*count;
   }
   return true;
 }
@@ -212,7 +217,7 @@ abbe_result abbe_view_outline_make(const abbe_scene *scene, const char *text, si
     if (out->object_count < ABBE_VIEW_MOST_OBJECTS) make_object(yaml, objects, i, scene, out);
   out->surrounded = scene->environment != NULL;
   out->rotate = (abbe_view_value){.key = "environment.rotate",
-                                  .label = "rotation",
+                                  .label = "surroundings",
                                   .unit = "\u00b0",
                                   .min = -180,
                                   .max = 180,
@@ -225,7 +230,7 @@ abbe_result abbe_view_outline_make(const abbe_scene *scene, const char *text, si
                                    .value = scene->ambient,
                                    .max = 2,
                                    .scale = 1};
-  if (!read_stones(&scene->table, out))
+  if (!read_materials(&scene->table, out))
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the names of materials");
   abbe_yaml_free(yaml);
   if (result != ABBE_OK) abbe_view_outline_free(out);
@@ -235,6 +240,7 @@ abbe_result abbe_view_outline_make(const abbe_scene *scene, const char *text, si
 void abbe_view_outline_free(abbe_view_outline *outline) {
   for (size_t i = 0; i < outline->object_count; i++) free(outline->object[i].before);
   for (size_t i = 0; i < outline->stone_count; i++) free(outline->stone[i]);
+  for (size_t i = 0; i < outline->metal_count; i++) free(outline->metal[i]);
   *outline = (abbe_view_outline){0};
 }
 

@@ -11,7 +11,7 @@
 
 #define ABBE_VIEW_MOST_OBJECTS 64 /* that can be taken hold of; more are left alone */
 #define ABBE_VIEW_MOST_VALUES 6   /* of a shape */
-#define ABBE_VIEW_MOST_STONES 512
+#define ABBE_VIEW_MOST_STONES 512 /* and as many metals */
 enum { ABBE_VIEW_NAME = 80, ABBE_VIEW_KEY = 128 };
 
 /* A number of the scene that a slider sets. */
@@ -33,9 +33,11 @@ typedef struct abbe_view_light {
 
 typedef struct abbe_view_object {
   char name[ABBE_VIEW_NAME], key[ABBE_VIEW_KEY]; /* "objects.gem" */
-  char material[ABBE_VIEW_NAME];                 /* "": not a refractor */
-  size_t scene_index;                            /* of the scene's object */
-  double middle[3], radius;                      /* of its bounds, m */
+  bool bends;                                    /* light: it is a refractor or a mirror */
+  bool mirror;
+  char material[ABBE_VIEW_NAME]; /* or metal; "": of none */
+  size_t scene_index;            /* of the scene's object */
+  double middle[3], radius;      /* of its bounds, m */
   /* How it was put there, as one line of YAML without brackets, but for a last `translate`; and
    * that. */
   char *before;
@@ -46,11 +48,12 @@ typedef struct abbe_view_object {
 
 typedef struct abbe_view_outline {
   abbe_camera camera; /* the scene's own */
-  size_t light_count, object_count, stone_count;
+  size_t light_count, object_count, stone_count, metal_count;
   abbe_view_light light[ABBE_SCENE_MAX_LIGHTS];
   abbe_view_object object[ABBE_VIEW_MOST_OBJECTS];
-  char *stone[ABBE_VIEW_MOST_STONES]; /* names of the scene's table of materials that are clear */
-  bool surrounded;                    /* an environment is there, with this value: */
+  /* names of the scene's table of materials: those that are clear, and metals */
+  char *stone[ABBE_VIEW_MOST_STONES], *metal[ABBE_VIEW_MOST_STONES];
+  bool surrounded; /* an environment is there, with this value: */
   abbe_view_value rotate;
   abbe_view_value ambient;
 } abbe_view_outline;

@@ -80,12 +80,14 @@ static bool set(abbe_view_state *state, abbe_view_document *document, const char
   return false;
 }
 
-/* Another stone may be drawn by other programs; what only has moved, or is brighter, is not. */
+/* Another stone or metal may be drawn by other programs; what only has moved, or is brighter, is
+ * not. */
 static abbe_view_change kind_of(const char *key) {
   const char *dot = strrchr(key, '.');
   if (strncmp(key, "camera.", 7) == 0) return ABBE_VIEW_MOVED_CAMERA;
-  return dot != NULL && strcmp(dot, ".material") == 0 ? ABBE_VIEW_CHANGED_SCENE
-                                                      : ABBE_VIEW_CHANGED_LIGHT;
+  return dot != NULL && (strcmp(dot, ".material") == 0 || strcmp(dot, ".mirror") == 0)
+             ? ABBE_VIEW_CHANGED_SCENE
+             : ABBE_VIEW_CHANGED_LIGHT;
 }
 
 void abbe_view_state_set(abbe_view_state *state, const char *key, const char *value, bool continued,
@@ -206,7 +208,7 @@ bool abbe_view_state_handle(const abbe_view_state *state, size_t i, abbe_view_ha
   for (size_t n = 0; n < o->light_count + o->object_count; n++) {
     const bool light = n < o->light_count;
     const size_t at = light ? n : n - o->light_count;
-    if (light ? !o->light[at].placed : o->object[at].material[0] == '\0') continue;
+    if (light ? !o->light[at].placed : !o->object[at].bends) continue;
     const double *point = light ? o->light[at].position : o->object[at].middle;
     *out = (abbe_view_handle){light ? ABBE_VIEW_LIGHT_HANDLE : ABBE_VIEW_OBJECT_HANDLE, at, {0, 0}};
     if (!abbe_view_camera_project(&state->camera, state->width, state->height, point, out->xy))

@@ -97,6 +97,36 @@ static void test_a_studio_can_be_turned_and_its_stone_cut(void **state) {
   abbe_view_state_free(&s);
 }
 
+/* A mirror is taken hold of as a stone is, and is of a metal, which no stone is. */
+static void test_mirrors_are_held_and_of_a_metal(void **state) {
+  (void)state;
+  char path[] = ABBE_SOURCE_DIR "/scenes/metals.yaml";
+  static abbe_view_state s;
+  double xy[2];
+  memset(&s, 0, sizeof s);
+  const abbe_view_document document = {.path = path};
+  assert_int_equal(abbe_view_state_begin(&s, &document, NULL), ABBE_OK);
+  abbe_view_state_resize(&s, 512, 512, 0);
+  learn(&s);
+  const abbe_view_object *ring = &s.outline.object[1];
+  assert_true(ring->mirror && ring->bends && !s.outline.object[0].bends);
+  assert_string_equal(ring->material, "gold");
+  assert_string_equal(ring->value[0].key, "objects.ring.major");
+  size_t gold = 0;
+  for (size_t i = 0; i < s.outline.metal_count; i++)
+    gold += strcmp(s.outline.metal[i], "gold") == 0;
+  for (size_t i = 0; i < s.outline.stone_count; i++)
+    assert_string_not_equal(s.outline.stone[i], "gold");
+  assert_int_equal(gold, 1);
+  assert_true(abbe_view_camera_project(&s.camera, 512, 512, ring->middle, xy));
+  drag(&s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0] + 20, xy[1], 0);
+  assert_non_null(value(&s, "objects.ring.transform"));
+  abbe_view_state_set(&s, "objects.ring.mirror", "copper", false, 2);
+  learn(&s);
+  assert_string_equal(s.outline.object[1].material, "copper");
+  abbe_view_state_free(&s);
+}
+
 static void test_a_drag_turns_the_camera_in_one_step(void **state) {
   (void)state;
   abbe_view_state *s = begun();
@@ -282,6 +312,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_what_can_be_held_is_found),
       cmocka_unit_test(test_a_studio_can_be_turned_and_its_stone_cut),
+      cmocka_unit_test(test_mirrors_are_held_and_of_a_metal),
       cmocka_unit_test(test_a_drag_turns_the_camera_in_one_step),
       cmocka_unit_test(test_other_buttons_pan_and_look),
       cmocka_unit_test(test_handles_move_and_tilt_objects),
