@@ -206,12 +206,11 @@ int abbe_command_view(int argc, char **argv) {
       parse,
       "SCENE.yaml",
       "Shows a scene in a window: turn it, change it, and see the light follow.\v"
-      "Left drag turns, middle drag or shift moves, the wheel goes nearer, right drag looks about "
-      "and\n"
-      "w a s d q e fly meanwhile. Drag a ring to move a lamp or a stone: shift upright, control "
-      "tilts.\n"
-      "Click for a pixel's spectrum. b: rendered or traced, v: their difference, + -: exposure,\n"
-      "control z and y: back and forth, control s: keep, t: turntable.\n\n"
+      "Left drag turns, middle drag or shift moves, the wheel goes nearer, right drag\n"
+      "looks about, and w a s d q e fly meanwhile. Drag a ring to move a lamp or a\n"
+      "stone: shift upright, control tilts. Click for a pixel's spectrum.\n"
+      "b: rendered or traced, v: their difference, + -: exposure, control z and y: back\n"
+      "and forth, control s: keep, t: turntable.\n\n"
       "Examples:\n"
       "  abbe view scenes/gem.yaml\n"
       "  abbe view scenes/gem.yaml --set objects.gem.material=diamond --size 1200x800\n"

@@ -34,6 +34,15 @@ abbe_result abbe_view_document_copy(const abbe_view_document *document, abbe_vie
   return whole ? ABBE_OK : no_memory(error);
 }
 
+abbe_result abbe_view_document_open(abbe_view_document *document, const char *path,
+                                    abbe_error *error) {
+  char *own = strdup(path);
+  if (own == NULL) return no_memory(error);
+  abbe_view_document_free(document);
+  document->path = own;
+  return ABBE_OK;
+}
+
 /* Whether the change is of that key. */
 static bool is_of(const char *set, const char *key) {
   const size_t length = strlen(key);

@@ -28,6 +28,11 @@ abbe_result abbe_view_document_copy(const abbe_view_document *document, abbe_vie
                                     abbe_error *error);
 void abbe_view_document_free(abbe_view_document *document);
 
+/* Becomes that file as it is, with settings as stages have them. ABBE_NO_MEMORY; the document is
+ * then as it was. */
+abbe_result abbe_view_document_open(abbe_view_document *document, const char *path,
+                                    abbe_error *error);
+
 /* The value of a key becomes this one; the last change stands last. ABBE_INVALID_ARGUMENT for one
  * change too many; the document is then as it was. */
 abbe_result abbe_view_document_set(abbe_view_document *document, const char *key, const char *value,

@@ -105,17 +105,21 @@ void abbe_view_state_settings(abbe_view_state *state, size_t wavelengths, size_t
   changed(state, ABBE_VIEW_CHANGED_SCENE, now_s);
 }
 
+/* What was known of the scene file before is of no use. */
+static void leave_scene(abbe_view_state *state) {
+  abbe_view_outline_free(&state->outline);
+  state->picked = false;
+}
+
 void abbe_view_state_open(abbe_view_state *state, const char *path, double now_s) {
-  char name[4096];
-  const abbe_view_document other = {.path = name};
+  abbe_view_document *document = edit(state, false);
   abbe_error error = {0};
-  snprintf(name, sizeof name, "%s", path);
-  if (abbe_view_history_begin(&state->history, &other, &error) != ABBE_OK) {
+  if (document == NULL) return;
+  if (abbe_view_document_open(document, path, &error) != ABBE_OK) {
     refuse(state, &error);
     return;
   }
-  abbe_view_outline_free(&state->outline);
-  state->picked = false;
+  leave_scene(state);
   changed(state, ABBE_VIEW_CHANGED_SCENE, now_s);
 }
 
@@ -128,6 +132,7 @@ static bool step(abbe_view_state *state, bool (*go)(abbe_view_history *), double
   if (!go(&state->history)) return false;
   const abbe_view_document *after = abbe_view_history_now(&state->history);
   const bool camera = abbe_view_document_compare(before, after) == ABBE_VIEW_CAMERA;
+  if (strcmp(before->path, after->path) != 0) leave_scene(state);
   find_camera(state);
   changed(state, camera ? ABBE_VIEW_MOVED_CAMERA : ABBE_VIEW_CHANGED_SCENE, now_s);
   return true;
@@ -168,9 +173,10 @@ static void take_camera(abbe_view_state *state, const abbe_camera *camera, doubl
 static void lead(abbe_view_state *state, double dx, double dy, double now_s) {
   abbe_camera c = state->camera;
   const double x = dx / (double)state->height, y = dy / (double)state->height;
-  if (state->down[ABBE_VIEW_LEFT])
+  const bool pans = state->down[ABBE_VIEW_LEFT] && (state->modifiers & ABBE_VIEW_SHIFT) != 0;
+  if (state->down[ABBE_VIEW_LEFT] && !pans)
     abbe_view_camera_orbit(&c, -TURN_RAD_PER_PICTURE * x, TURN_RAD_PER_PICTURE * y);
-  else if (state->down[ABBE_VIEW_MIDDLE])
+  else if (state->down[ABBE_VIEW_MIDDLE] || pans)
     abbe_view_camera_pan(&c, -x, y);
   else
     abbe_view_camera_look(&c, c.fov_y_rad * x, -c.fov_y_rad * y);

@@ -3,9 +3,9 @@
  *
  * Pointers are in pixels of the picture, from its upper left corner; times in s, ever growing. It
  * draws nothing and reads no files. The left button turns the camera around its target, on a handle
- * it moves the light or the object; a click asks for a pixel's spectrum. The middle button pans,
- * the right one looks about, and while it is down w, a, s, d, q and e fly. Shift makes a handle
- * move upright, control tilts an object.
+ * it moves the light or the object; a click asks for a pixel's spectrum. The middle button, or
+ * the left one with shift, pans, the right one looks about, and while it is down w, a, s, d, q and
+ * e fly. Shift makes a handle move upright, control tilts an object.
  */
 #ifndef ABBE_CLI_VIEW_STATE_VIEW_STATE_H
 #define ABBE_CLI_VIEW_STATE_VIEW_STATE_H
@@ -101,7 +101,7 @@ void abbe_view_state_set(abbe_view_state *state, const char *key, const char *va
 /* Wavelengths, photons and the map's side; 0: by the stage. */
 void abbe_view_state_settings(abbe_view_state *state, size_t wavelengths, size_t photons,
                               size_t map_size, bool continued, double now_s);
-/* Another scene file, or the same once more as it is now on disk. */
+/* Another scene file, as a step; or the same once more as it is now on disk. */
 void abbe_view_state_open(abbe_view_state *state, const char *path, double now_s);
 void abbe_view_state_reload(abbe_view_state *state, double now_s);
 bool abbe_view_state_undo(abbe_view_state *state, double now_s);

@@ -155,6 +155,10 @@ static void test_other_buttons_pan_and_look(void **state) {
   drag(s, ABBE_VIEW_MIDDLE, 40, 400, 140, 400, 0);
   assert_true(s->camera.eye[0] < before.eye[0] && s->camera.target[0] < before.target[0]);
   const abbe_camera panned = s->camera;
+  assert_true(abbe_view_state_undo(s, 2)); /* so also without a middle button */
+  drag(s, ABBE_VIEW_LEFT, 40, 400, 140, 400, ABBE_VIEW_SHIFT);
+  assert_memory_equal(s->camera.eye, panned.eye, sizeof panned.eye);
+  assert_memory_equal(s->camera.target, panned.target, sizeof panned.target);
   drag(s, ABBE_VIEW_RIGHT, 40, 400, 140, 400, 0);
   assert_memory_equal(s->camera.eye, panned.eye, sizeof panned.eye);
   assert_true(s->camera.target[0] > panned.target[0]);
@@ -264,6 +268,32 @@ static void test_the_sun_moves(void **state) {
   abbe_view_state_free(&s);
 }
 
+/* Whoever picks another scene by mistake has lost nothing. */
+static void test_another_scene_is_a_step(void **state) {
+  (void)state;
+  abbe_view_state *s = begun();
+  const abbe_camera gems = s->camera;
+  abbe_view_state_set(s, "objects.gem.material", "diamond", false, 1);
+  abbe_view_state_settings(s, 9, 128, 0, false, 2);
+  s->picked = true;
+  abbe_view_state_open(s, ABBE_SOURCE_DIR "/scenes/sphere.yaml", 3);
+  assert_false(s->picked);
+  assert_int_equal(s->outline.object_count, 0);
+  assert_null(value(s, "objects.gem.material"));
+  assert_int_equal(abbe_view_history_now(&s->history)->photons, 0);
+  learn(s);
+  assert_string_equal(s->outline.object[0].material, "fused-silica");
+  const uint64_t serial = s->refine.serial;
+  assert_true(abbe_view_state_undo(s, 4));
+  assert_int_equal(s->refine.scene, serial + 1); /* no light is of it */
+  assert_int_equal(s->outline.object_count, 0);
+  assert_int_equal(abbe_view_history_now(&s->history)->photons, 128);
+  learn(s);
+  assert_string_equal(s->outline.object[0].material, "diamond");
+  assert_memory_equal(s->camera.eye, gems.eye, sizeof gems.eye);
+  abbe_view_state_free(s);
+}
+
 static void test_a_click_asks_for_a_spectrum(void **state) {
   (void)state;
   abbe_view_state *s = begun();
@@ -319,6 +349,7 @@ int main(void) {
       cmocka_unit_test(test_the_wheel_is_a_step),
       cmocka_unit_test(test_the_sun_moves),
       cmocka_unit_test(test_lights_move),
+      cmocka_unit_test(test_another_scene_is_a_step),
       cmocka_unit_test(test_a_click_asks_for_a_spectrum),
       cmocka_unit_test(test_edits_and_settings),
       cmocka_unit_test(test_a_window_without_room_takes_no_pointer)};
