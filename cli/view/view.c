@@ -140,9 +140,15 @@ static abbe_result begin(const view_options *o, const char *path, abbe_view_docu
   return result;
 }
 
-/* What is kept would be the scene or what it is made of. */
+/* A name that is none, or what is kept would be the scene or what it is made of. */
 static abbe_result check_keep(const char *keep, const abbe_scene *scene, abbe_error *error) {
   static const char *const endings[] = {"exr", "png", "yaml"};
+  const size_t length = strlen(keep);
+  if (length == 0 || keep[length - 1] == '/' || length > ABBE_VIEW_KEEP_LONGEST)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "--keep '%.60s' names no files; give a name such as out/gem, of at most "
+                          "%d bytes",
+                          keep, ABBE_VIEW_KEEP_LONGEST);
   for (size_t i = 0; i < abbe_scene_file_count(scene); i++)
     for (size_t k = 0; k < 3; k++) {
       char target[PATH_MAX];
@@ -158,19 +164,16 @@ static abbe_result check_keep(const char *keep, const abbe_scene *scene, abbe_er
 }
 
 static abbe_result view(const view_options *o, abbe_error *error) {
-  char shipped[2 * PATH_MAX], keep[PATH_MAX];
+  char shipped[2 * PATH_MAX];
   abbe_view_document document;
   abbe_scene scene = {0};
   const char *path = abbe_shipped_find(o->scene, shipped, sizeof shipped);
-  const char *name = abbe_file_name(path), *dot = strrchr(name, '.');
-  snprintf(keep, sizeof keep, "%.*s-view", dot != NULL ? (int)(dot - name) : (int)strlen(name),
-           name);
   abbe_caustic_volume volume = {0};
   const abbe_view_app_desc desc = {.document = &document,
                                    .volume_path = o->volume,
                                    .volume = o->volume != NULL ? &volume : NULL,
                                    .materials = o->materials,
-                                   .keep = o->keep != NULL ? o->keep : keep,
+                                   .keep = o->keep,
                                    .ocio = o->ocio,
                                    .last = (abbe_view_stage)o->last};
   abbe_result result = begin(o, path, &document, error);
@@ -178,7 +181,7 @@ static abbe_result view(const view_options *o, abbe_error *error) {
   if (result == ABBE_OK)
     result =
         abbe_scene_input_load_with(o->program, o->scene, o->materials, &o->changes, &scene, error);
-  if (result == ABBE_OK) result = check_keep(desc.keep, &scene, error);
+  if (result == ABBE_OK && o->keep != NULL) result = check_keep(o->keep, &scene, error);
   if (result == ABBE_OK && o->volume != NULL)
     result = abbe_volume_file_read(o->volume, &volume, error);
   abbe_scene_free(&scene);

@@ -13,7 +13,7 @@
 typedef struct abbe_view_app_desc {
   const abbe_view_document *document;
   const char *materials;             /* or NULL */
-  const char *keep;                  /* what saved files are called, without an ending */
+  const char *keep;                  /* what saved files are called, without an ending; or NULL */
   const char *ocio;                  /* configuration, or NULL */
   const char *volume_path;           /* or NULL; what it holds: */
   const abbe_caustic_volume *volume; /* that caustics are looked up in, for as long as it runs */

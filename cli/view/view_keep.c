@@ -2,7 +2,9 @@
 
 #include "base/file.h"
 #include "base/number.h"
+#include "cli/view/picture/view_show.h"
 #include "colorimetry/image/exr.h"
+#include "colorimetry/image/png_file.h"
 #include "colorimetry/image/screen_png.h"
 #include "scenes/import/scene_file.h"
 
@@ -45,6 +47,43 @@ abbe_result abbe_view_keep_rests(const abbe_view_session *session, abbe_error *e
     return ABBE_OK;
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                         "a picture is kept once it has come to rest; wait a moment");
+}
+
+void abbe_view_keep_name(const abbe_view_session *session, const char *ending, char *out,
+                         size_t size) {
+  const char *name = abbe_file_name(abbe_view_history_now(&session->state.history)->path);
+  const char *dot = strrchr(name, '.');
+  if (session->keep != NULL)
+    snprintf(out, size, "%.*s%s", ABBE_VIEW_KEEP_LONGEST, session->keep, ending);
+  else
+    snprintf(out, size, "%.*s-view%s", dot != NULL ? (int)(dot - name) : (int)strlen(name), name,
+             ending);
+}
+
+/* Beside what is kept, and shown alike. */
+static void write_outputs(const abbe_view_session *session, FILE *out) {
+  char name[1100], stops[ABBE_NUMBER_TEXT_SIZE + 16];
+  abbe_view_names names;
+  const abbe_display_desc d = abbe_view_session_display(session, session->view, &names);
+  const struct {
+    const char *option, *text;
+  } texts[] = {{" --ocio ", d.config},
+               {" --display ", session->view > 0 ? d.display : NULL},
+               {" --view ", session->view > 0 ? d.view : NULL}};
+  abbe_view_keep_name(session, "-again.exr", name, sizeof name);
+  fputs(" -o ", out);
+  quote(out, name);
+  abbe_view_keep_name(session, "-again.png", name, sizeof name);
+  fputs(" --png ", out);
+  quote(out, name);
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    if (texts[i].text == NULL) continue;
+    fputs(texts[i].option, out);
+    quote(out, texts[i].text);
+  }
+  if (session->state.exposure == 0) return;
+  abbe_number_format(stops, sizeof stops, " --exposure %.9g", session->state.exposure);
+  fputs(stops, out);
 }
 
 char *abbe_view_keep_command(const abbe_view_session *session) {
@@ -91,6 +130,7 @@ char *abbe_view_keep_command(const abbe_view_session *session) {
   if (d->model != ABBE_MODEL_AUTO) fprintf(out.stream, " --model %s", abbe_model_name(d->model));
   if (session->stage == ABBE_VIEW_MEAN || session->stage == ABBE_VIEW_TRACED)
     if (session->pictures.error.data != NULL) fputs(" --mean", out.stream);
+  write_outputs(session, out.stream);
   fclose(out.stream);
   return out.text;
 }
@@ -117,11 +157,13 @@ static abbe_result keep_scene(const abbe_view_session *session, const char *targ
   return result;
 }
 
-/* Neither the scene nor what it is made of is written over. */
+/* Neither a scene that a step leads to nor what this one is made of is written over. */
 abbe_result abbe_view_keep_check(const abbe_view_session *session, const char *target,
                                  abbe_error *error) {
-  const char *scene = abbe_view_history_now(&session->state.history)->path;
-  bool is_read = abbe_view_keep_same_file(scene, target);
+  const abbe_view_history *history = &session->state.history;
+  bool is_read = false;
+  for (size_t i = 0; i < history->count && !is_read; i++)
+    is_read = abbe_view_keep_same_file(history->entry[i].path, target);
   for (size_t i = 0; i < session->files.count && !is_read; i++)
     is_read = abbe_view_keep_same_file(session->files.path[i], target);
   if (!is_read) return ABBE_OK;
@@ -140,38 +182,62 @@ bool abbe_view_keep_same_file(const char *a, const char *b) {
 
 abbe_result abbe_view_keep_png(const abbe_view_session *session, const abbe_image *image,
                                const char *path, abbe_error *error) {
-  char display[128] = "", view[128] = "";
-  const char *line = session->views;
-  for (size_t i = 0; i < session->view && line != NULL; i++)
-    if ((line = strchr(line, '\n')) != NULL) line++;
-  const char *slash = line != NULL ? strstr(line, " / ") : NULL;
-  if (slash != NULL) {
-    snprintf(display, sizeof display, "%.*s", (int)(slash - line), line);
-    snprintf(view, sizeof view, "%.*s", (int)strcspn(slash + 3, "\n"), slash + 3);
-  }
-  const abbe_screen_png_desc desc = {.display = {.config = session->ocio,
-                                                 .display = slash != NULL ? display : NULL,
-                                                 .view = slash != NULL ? view : NULL,
-                                                 .exposure = session->state.exposure}};
+  abbe_view_names names;
+  abbe_screen_png_desc desc = {.display =
+                                   abbe_view_session_display(session, session->view, &names)};
+  desc.display.exposure = session->state.exposure;
   const abbe_result result = abbe_view_keep_check(session, path, error);
   return result == ABBE_OK ? abbe_screen_png_write(path, image, &desc, error) : result;
 }
 
+/* What is looked at instead of the rendered picture. */
+static abbe_result keep_shown(const abbe_view_session *session, const char *path,
+                              abbe_error *error) {
+  static const char *const names[] = {"R", "G", "B"};
+  const abbe_image *rendered = &session->pictures.rendered;
+  abbe_image screen = {0};
+  unsigned char *pixels = NULL;
+  abbe_result result =
+      abbe_view_show(&session->pictures, session->state.shown, session->state.exposure,
+                     session->display, NULL, &pixels, error);
+  if (result == ABBE_OK)
+    result = abbe_image_make(rendered->width, rendered->height, 3, names, &screen, error);
+  for (size_t i = 0; result == ABBE_OK && i < screen.width * screen.height; i++)
+    for (size_t c = 0; c < 3; c++) screen.data[3 * i + c] = (float)pixels[4 * i + c] / 255;
+  if (result == ABBE_OK) result = abbe_png_write(path, &screen, 8, error);
+  abbe_image_free(&screen);
+  free(pixels);
+  return result;
+}
+
+/* For whoever wants to repeat it: the panel's text cannot be copied. */
+static void print_command(const abbe_view_session *session) {
+  char *command = abbe_view_keep_command(session);
+  if (command != NULL) printf("%s\n", command);
+  fflush(stdout);
+  free(command);
+}
+
 abbe_result abbe_view_keep(abbe_view_session *session, abbe_error *error) {
   const abbe_image *image = &session->pictures.rendered;
+  const bool rendered =
+      abbe_view_shown_of(&session->pictures, session->state.shown) == ABBE_VIEW_RENDERED_PICTURE;
   char exr[1024], png[1024], yaml[1024];
-  snprintf(exr, sizeof exr, "%.1000s.exr", session->keep);
-  snprintf(png, sizeof png, "%.1000s.png", session->keep);
-  snprintf(yaml, sizeof yaml, "%.1000s.yaml", session->keep);
+  abbe_view_keep_name(session, ".exr", exr, sizeof exr);
+  abbe_view_keep_name(session, ".png", png, sizeof png);
+  abbe_view_keep_name(session, ".yaml", yaml, sizeof yaml);
   const bool scene = !names_files(session, yaml);
   abbe_result result = abbe_view_keep_rests(session, error);
   if (result == ABBE_OK) result = abbe_view_keep_check(session, exr, error);
   if (result == ABBE_OK) result = abbe_view_keep_check(session, png, error);
   if (result == ABBE_OK) result = abbe_view_keep_check(session, yaml, error);
   if (result == ABBE_OK) result = abbe_exr_write(exr, image, error);
-  if (result == ABBE_OK) result = abbe_view_keep_png(session, image, png, error);
+  if (result == ABBE_OK)
+    result =
+        rendered ? abbe_view_keep_png(session, image, png, error) : keep_shown(session, png, error);
   if (result == ABBE_OK && scene) result = keep_scene(session, yaml, error);
   if (result != ABBE_OK) return result;
+  print_command(session);
   if (scene)
     snprintf(session->note, sizeof session->note, "kept %.300s, %.300s, %.300s", exr, png, yaml);
   else

@@ -5,11 +5,17 @@
 
 #include "cli/view/view_session.h"
 
+#define ABBE_VIEW_KEEP_LONGEST 1000 /* bytes of a name, without an ending */
+
+/* What kept files are called, with that ending: as was said, or the scene's name and -view. */
+void abbe_view_keep_name(const abbe_view_session *session, const char *ending, char *out,
+                         size_t size);
 /* Whether the picture that stands is that of the last change, at rest; else ABBE_INVALID_ARGUMENT.
  */
 abbe_result abbe_view_keep_rests(const abbe_view_session *session, abbe_error *error);
-/* Writes KEEP.exr, KEEP.png and KEEP.yaml, and says so in the session's note. The scene is written
- * beside the files that it names or not at all. Errors of abbe_view_keep_rests;
+/* Writes the rendered picture as NAME.exr, what is looked at as NAME.png, and NAME.yaml, says so in
+ * the session's note, and the command on standard output. The scene is written beside the files
+ * that it names or not at all. Errors of abbe_view_keep_rests;
  * ABBE_INVALID_ARGUMENT where one of the three is a file that the scene is read from; errors of
  * files. */
 abbe_result abbe_view_keep(abbe_view_session *session, abbe_error *error);
@@ -23,7 +29,7 @@ abbe_result abbe_view_keep_check(const abbe_view_session *session, const char *t
 /* Whether two names are of one file that is there, by links too, or are the same name. */
 bool abbe_view_keep_same_file(const char *a, const char *b);
 
-/* `abbe render …` that draws the picture that stands, without names of outputs; malloc'd, NULL
+/* `abbe render …` that draws the picture that stands into NAME-again.exr and .png; malloc'd, NULL
  * where it is not at rest, and without memory. */
 char *abbe_view_keep_command(const abbe_view_session *session);
 

@@ -33,22 +33,25 @@ void abbe_view_session_list_scenes(abbe_view_session *session, const char *path)
   qsort(session->scene, session->scene_count, sizeof *session->scene, by_name);
 }
 
-abbe_result abbe_view_session_choose_view(abbe_view_session *session, size_t view,
-                                          abbe_error *error) {
-  char display[128] = "", name[128] = "";
+abbe_display_desc abbe_view_session_display(const abbe_view_session *session, size_t view,
+                                            abbe_view_names *names) {
   const char *line = session->views;
   for (size_t i = 0; i < view && line != NULL; i++)
     if ((line = strchr(line, '\n')) != NULL) line++;
   const char *slash = line != NULL ? strstr(line, " / ") : NULL;
-  if (slash != NULL) {
-    snprintf(display, sizeof display, "%.*s", (int)(slash - line), line);
-    snprintf(name, sizeof name, "%.*s", (int)strcspn(slash + 3, "\n"), slash + 3);
-  }
+  if (slash == NULL) return (abbe_display_desc){.config = session->ocio};
+  snprintf(names->display, sizeof names->display, "%.*s", (int)(slash - line), line);
+  snprintf(names->view, sizeof names->view, "%.*s", (int)strcspn(slash + 3, "\n"), slash + 3);
+  return (abbe_display_desc){
+      .config = session->ocio, .display = names->display, .view = names->view};
+}
+
+abbe_result abbe_view_session_choose_view(abbe_view_session *session, size_t view,
+                                          abbe_error *error) {
+  abbe_view_names names;
   abbe_display *made = NULL;
-  const abbe_display_desc desc = {.config = session->ocio,
-                                  .source_space = abbe_rgb_space_ocio_name(ABBE_RGB_SPACE_ACESCG),
-                                  .display = slash != NULL ? display : NULL,
-                                  .view = slash != NULL ? name : NULL};
+  abbe_display_desc desc = abbe_view_session_display(session, view, &names);
+  desc.source_space = abbe_rgb_space_ocio_name(ABBE_RGB_SPACE_ACESCG);
   const abbe_result result = abbe_display_make(&desc, &made, error);
   if (result != ABBE_OK) return result;
   abbe_display_table_free(session->table);

@@ -31,8 +31,8 @@ typedef struct abbe_view_session {
   const abbe_caustic_volume *volume;
   abbe_display *display;
   abbe_display_table *table; /* of it, once something has moved; else NULL */
-  char *views; /* lines "display / view" */
-  size_t view; /* of these */
+  char *views;               /* lines "display / view" */
+  size_t view;               /* of these */
   char *scene[ABBE_VIEW_MOST_SCENES];
   size_t scene_count;
   size_t edition; /* of the files: how often they have changed */
@@ -79,6 +79,12 @@ typedef struct abbe_view_session {
 
 /* Lists the scene files beside the one of that path, sorted: at most ABBE_VIEW_MOST_SCENES. */
 void abbe_view_session_list_scenes(abbe_view_session *session, const char *path);
+/* A line of the list of displays and views, as a display without a source; the texts are names'. */
+typedef struct abbe_view_names {
+  char display[128], view[128];
+} abbe_view_names;
+abbe_display_desc abbe_view_session_display(const abbe_view_session *session, size_t view,
+                                            abbe_view_names *names);
 /* Another line of the list of displays and views; ABBE_COLOUR where it is broken. */
 abbe_result abbe_view_session_choose_view(abbe_view_session *session, size_t view,
                                           abbe_error *error);

@@ -8,10 +8,9 @@
 enum { LONGEST = 1100 };
 
 static void name_of(const abbe_view_session *session, size_t frame, char out[LONGEST]) {
-  if (frame > 0)
-    snprintf(out, LONGEST, "%.1000s-turn-%04zu.png", session->keep, frame);
-  else
-    snprintf(out, LONGEST, "%.1000s-turn.png", session->keep);
+  char ending[48] = "-turn.png";
+  if (frame > 0) snprintf(ending, sizeof ending, "-turn-%04zu.png", frame);
+  abbe_view_keep_name(session, ending, out, LONGEST);
 }
 
 abbe_result abbe_view_turn_begin(abbe_view_session *session, abbe_error *error) {

@@ -18,9 +18,12 @@ static void the_story(void **state) {
   run_must("grep -q 'material: diamond' story.yaml && grep -q '# A cut stone' story.yaml");
   run_must("sed -n 's/^command abbe/\"$abbe\"/p' said > again.sh");
   run_must("grep -q -e '--set objects.gem.material=diamond' again.sh");
-  run_must("echo \"$(cat again.sh) --gl egl -q -o again.exr\" > again.sh && . ./again.sh");
-  run_must("\"$abbe\" compare again.exr story.exr --tolerance relative_rmse=1e-6");
-  run_must("rm said lines again.sh again.exr story.exr story.yaml *.png");
+  run_must("echo \"$(cat again.sh) --gl egl -q\" > again.sh && . ./again.sh");
+  run_must("\"$abbe\" compare story-again.exr story.exr --tolerance relative_rmse=1e-6");
+  run_must("cmp story-again.png story.png");
+  /* keeping has said the same command */
+  run_must("sed -n 's/^command //p' said > lines && grep -q -x -F -f lines said");
+  run_must("rm said lines again.sh story-again.exr story.exr story.yaml *.png");
   assert_int_equal(run_left(), 0);
 }
 
@@ -38,12 +41,15 @@ static void what_is_wrong_is_said_and_the_picture_stays(void **state) {
 
 static void what_is_shown_beside_the_picture(void **state) {
   (void)state;
-  run_must(VIEW "--last accurate --size 640x300 --script " SCRIPTS "shown.txt");
+  run_must(VIEW "--last accurate --size 640x300 --script " SCRIPTS "shown.txt > said");
   /* pictures of which no two are alike */
   run_must("test $(cat caustic.png luminance.png distance.png map.png | wc -c) -gt 8000");
   run_must("test $(md5sum caustic.png luminance.png distance.png map.png bright.png | cut -c1-32 | "
            "sort -u | wc -l) = 5");
-  run_must("rm *.png");
+  /* what is kept is what was looked at: luminance, distances */
+  run_must("! cmp -s kept.png kept-distance.png && test -s gem-view.exr");
+  run_must("grep -q -e \"--display sRGB --view Plain --exposure 1\" said");
+  run_must("rm *.png gem-view.exr gem-view.yaml said");
   assert_int_equal(run_left(), 0);
 }
 
@@ -87,8 +93,8 @@ static void caustics_are_looked_up(void **state) {
       "a.txt > said");
   run_must("sed -n 's/^command abbe/\"$abbe\"/p' said > again.sh");
   run_must("grep -q -e '--volume .*--set .lights.sun.direction' again.sh");
-  run_must("echo \"$(cat again.sh) --gl egl -q -o again.exr\" > again.sh && . ./again.sh");
-  run_must("\"$abbe\" compare again.exr a.exr --tolerance relative_rmse=1e-6");
+  run_must("echo \"$(cat again.sh) --gl egl -q\" > again.sh && . ./again.sh");
+  run_must("\"$abbe\" compare a-again.exr a.exr --tolerance relative_rmse=1e-6");
   run_must("rm ball.yaml a* said v.exr");
   assert_int_equal(run_left(), 0);
   assert_true(
@@ -106,15 +112,21 @@ static void what_is_read_is_not_written_over(void **state) {
   assert_contains(run_errors, "--keep scenes/gem would write over scenes/gem.yaml");
   assert_int_equal(run_line("\"$abbe\" view scenes/gem.yaml --keep ./link --script /dev/null"), 2);
   assert_contains(run_errors, "choose another name");
-  /* another scene than at the start, picked in the panel */
+  assert_int_equal(run_line("\"$abbe\" view scenes/gem.yaml --keep scenes/ --script /dev/null"), 2);
+  assert_contains(run_errors, "names no files");
+  /* another scene than at the start, picked in the panel, is kept under its own name; back at the
+   * first one that would be written over */
   run_must("printf '%s\\n' 'wait balanced' 'choose scene other-view.yaml' 'wait balanced' "
-           "'slide exposure 0.6' 'key control+s' 'assert note contains lost' > a.txt");
+           "'slide exposure 0.6' 'key control+s' 'assert note contains other-view-view.exr' "
+           "'key control+z' 'wait balanced' 'assert scene = other.yaml' 'key control+s' "
+           "'assert note contains lost' 'key control+y' 'wait balanced' "
+           "'assert scene = other-view.yaml' > a.txt");
   run_must("cp before.yaml other.yaml; \"$abbe\" view other.yaml " FEW
            "--last balanced --size 420x600 "
            "--script a.txt");
   run_must("cmp before.yaml other-view.yaml && cmp before.yaml scenes/gem.yaml");
   run_must("test ! -e other-view.exr && test ! -e scenes/gem.exr");
-  run_must("rm -r scenes *.yaml a.txt");
+  run_must("rm -r scenes *.yaml a.txt other-view-view.exr other-view-view.png");
   assert_int_equal(run_left(), 0);
 }
 
