@@ -139,6 +139,16 @@ static bool read_transform(abbe_yaml *yaml, abbe_yaml_node node, abbe_view_objec
   return (out->before = strdup(text)) != NULL;
 }
 
+/* A value stays on its slider: angles and shares by wider ends, lengths of another scale than usual
+ * by ends about them. */
+static void hold_value(abbe_view_value *v) {
+  const bool length = v->scale != 1 && v->value > 0;
+  if (v->value >= v->min && v->value <= v->max) return;
+  const double decade = length ? pow(10, ceil(log10(v->value))) : 0;
+  v->min = length ? decade / 100 : fmin(v->min, v->value);
+  v->max = length ? 2 * decade : fmax(v->max, v->value);
+}
+
 static void read_values(abbe_yaml *yaml, abbe_yaml_node node, abbe_view_object *out) {
   const char *shape = abbe_yaml_text(yaml, abbe_yaml_get(yaml, node, "shape"));
   for (size_t i = 0; shape != NULL && i < sizeof values / sizeof *values; i++) {
@@ -152,6 +162,7 @@ static void read_values(abbe_yaml *yaml, abbe_yaml_node node, abbe_view_object *
                            .scale = values[i].scale};
     join(out->key, values[i].key, v->key);
     number_of(yaml, node, values[i].key, &v->value);
+    hold_value(v);
   }
 }
 
@@ -257,4 +268,23 @@ bool abbe_view_outline_transform(const abbe_view_object *object, double tilt_rad
                          object->before[0] != '\0' || tilt[0] != '\0' ? ", " : "", translate[0],
                          translate[1], translate[2]);
   return n > 0 && (size_t)n < size;
+}
+
+void abbe_view_outline_place(abbe_view_object *object, const char *transform) {
+  static const char word[] = "{translate: [";
+  const char *last = NULL, *end;
+  double to[3];
+  for (const char *at = transform; (at = strstr(at, word)) != NULL; at++) last = at;
+  if (transform[0] != '[' || last == NULL) return;
+  end = last + sizeof word - 1;
+  for (int k = 0; k < 3; k++)
+    if (!abbe_number_read(end, &end, &to[k]) || *end++ != (k < 2 ? ',' : ']')) return;
+  if (strcmp(end, "}]") != 0) return;
+  const size_t length = last > transform + 2 ? (size_t)(last - transform) - 3 : 0;
+  char *before = strndup(transform + 1, length);
+  if (before == NULL) return;
+  free(object->before);
+  object->before = before;
+  for (int k = 0; k < 3; k++) object->middle[k] += to[k] - object->translate[k];
+  memcpy(object->translate, to, sizeof to);
 }

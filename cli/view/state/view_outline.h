@@ -70,5 +70,7 @@ void abbe_view_outline_free(abbe_view_outline *outline);
 bool abbe_view_outline_transform(const abbe_view_object *object, double tilt_rad,
                                  const double axis[3], const double translate[3], char *out,
                                  size_t size);
+/* The object stands as a value of abbe_view_outline_transform says, until it is learnt anew. */
+void abbe_view_outline_place(abbe_view_object *object, const char *transform);
 
 #endif

@@ -24,7 +24,8 @@ void abbe_view_state_free(abbe_view_state *state) {
 
 /* ---- changes ---- */
 
-static void to_camera(const char *text, double out[3]) {
+/* "[x, y, z]"; else out stays. */
+static void read_point(const char *text, double out[3]) {
   double v[3];
   for (int k = 0; k < 3; k++) {
     if (text == NULL || (*text != '[' && *text != ',')) return;
@@ -37,8 +38,8 @@ static void to_camera(const char *text, double out[3]) {
 static void find_camera(abbe_view_state *state) {
   const abbe_view_document *now = abbe_view_history_now(&state->history);
   state->camera = state->outline.camera;
-  to_camera(abbe_view_document_value(now, "camera.eye"), state->camera.eye);
-  to_camera(abbe_view_document_value(now, "camera.target"), state->camera.target);
+  read_point(abbe_view_document_value(now, "camera.eye"), state->camera.eye);
+  read_point(abbe_view_document_value(now, "camera.target"), state->camera.target);
 }
 
 void abbe_view_state_learn(abbe_view_state *state, abbe_view_outline *outline) {
@@ -293,6 +294,29 @@ static void pull(abbe_view_state *state, double now_s) {
   set_object(state, object, 0, point, point, now_s);
 }
 
+/* What was pulled stands where it was left also before a job has said so: whoever takes hold of it
+ * again at once goes on from there. */
+static void settle(abbe_view_state *state) {
+  const abbe_view_document *now = abbe_view_history_now(&state->history);
+  abbe_view_outline *o = &state->outline;
+  const size_t i = state->held.index;
+  char key[ABBE_VIEW_KEY + 16];
+  if (state->held.kind == ABBE_VIEW_OBJECT_HANDLE && i < o->object_count) {
+    snprintf(key, sizeof key, "%s.transform", o->object[i].key);
+    const char *value = abbe_view_document_value(now, key);
+    if (value != NULL) abbe_view_outline_place(&o->object[i], value);
+  }
+  if (state->held.kind != ABBE_VIEW_LIGHT_HANDLE || i >= o->light_count) return;
+  abbe_view_light *light = &o->light[i];
+  const bool sun = light->kind == ABBE_LIGHT_DIRECTIONAL;
+  double point[3];
+  for (int k = 0; k < 3; k++) point[k] = (sun ? light->aim[k] : 0) - light->position[k];
+  for (int k = 0; k < 3 && !sun; k++) point[k] = light->position[k];
+  snprintf(key, sizeof key, "%s.%s", light->key, sun ? "direction" : "position");
+  read_point(abbe_view_document_value(now, key), point);
+  for (int k = 0; k < 3; k++) light->position[k] = sun ? light->aim[k] - point[k] : point[k];
+}
+
 /* ---- pointer and keys ---- */
 
 void abbe_view_state_press(abbe_view_state *state, abbe_view_button button, double x, double y,
@@ -337,6 +361,7 @@ void abbe_view_state_release(abbe_view_state *state, abbe_view_button button, do
   const bool clicked = state->down[button] && !state->dragged && button == ABBE_VIEW_LEFT;
   state->down[button] = false;
   if (any_down(state)) return;
+  if (state->dragged) settle(state);
   state->continued = false;
   state->held = (abbe_view_handle){0};
   memset(state->fly, 0, sizeof state->fly);

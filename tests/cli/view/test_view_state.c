@@ -93,7 +93,14 @@ static void test_a_studio_can_be_turned_and_its_stone_cut(void **state) {
   learn(&s); /* the scene takes both */
   assert_near(s.outline.rotate.value, 30, 0);
   assert_near(s.outline.object[0].value[1].value, 42, 0);
-  assert_true(s.outline.stone_count > 10); /* to choose from */
+  assert_true(s.outline.stone_count > 10);                            /* to choose from */
+  abbe_view_state_set(&s, o->object[0].value[0].key, "18", false, 3); /* beyond its slider's end */
+  abbe_view_state_set(&s, o->object[0].value[3].key, "2e-4", false, 4);
+  learn(&s);
+  assert_near(s.outline.object[0].value[0].min, 18, 0);
+  const abbe_view_value *diameter = &s.outline.object[0].value[3];
+  assert_string_equal(diameter->label, "diameter");
+  assert_true(diameter->min < 1e-4 && diameter->max > 2e-4 && diameter->max < 0.01);
   abbe_view_state_free(&s);
 }
 
@@ -199,6 +206,37 @@ static void test_handles_move_and_tilt_objects(void **state) {
   abbe_view_state_free(s);
 }
 
+/* Whoever takes hold again before the scene is read again goes on from where it was left. */
+static void test_what_was_pulled_stands_at_once(void **state) {
+  (void)state;
+  abbe_view_state *s = begun();
+  const abbe_view_object *gem_of = &s->outline.object[0];
+  double xy[2], middle[3];
+  assert_true(abbe_view_camera_project(&s->camera, 512, 512, gem_of->middle, xy));
+  drag(s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0] + 60, xy[1], 0);
+  memcpy(middle, gem_of->middle, sizeof middle);
+  assert_true(abbe_view_camera_project(&s->camera, 512, 512, middle, xy));
+  drag(s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0], xy[1] + 80, ABBE_VIEW_CONTROL);
+  assert_contains(gem_of->before, "angle: 5}}, {rotate");
+  drag(s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0], xy[1] - 40, ABBE_VIEW_SHIFT);
+  assert_near(gem_of->middle[0], middle[0], 1e-6);
+  assert_true(gem_of->middle[2] > middle[2] + 0.01);
+  const abbe_view_object guessed = *gem_of;
+  const double placed[3] = {guessed.middle[0], guessed.middle[1], guessed.middle[2]};
+  learn(s); /* and there it is, tilted */
+  assert_near(s->outline.object[0].translate[2], guessed.translate[2], 1e-6);
+  assert_contains(s->outline.object[0].before, "angle: 5}}, {rotate");
+  for (int k = 0; k < 3; k++) assert_near(s->outline.object[0].middle[k], placed[k], 0.01);
+  abbe_view_state_wheel(s, -6, 9);
+  assert_true(abbe_view_camera_project(&s->camera, 512, 512, s->outline.light[0].position, xy));
+  drag(s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0] - 30, xy[1], 0);
+  const double lamp = s->outline.light[0].position[0];
+  assert_true(lamp < -0.03);
+  learn(s);
+  assert_near(s->outline.light[0].position[0], lamp, 1e-6);
+  abbe_view_state_free(s);
+}
+
 /* Turns of the wheel that follow each other are one step, apart from what was changed before. */
 static void test_the_wheel_is_a_step(void **state) {
   (void)state;
@@ -259,6 +297,9 @@ static void test_the_sun_moves(void **state) {
   assert_true(abbe_view_camera_project(&s.camera, 512, 512, before.position, xy));
   assert_int_equal(abbe_view_state_handle_at(&s, xy[0], xy[1]).kind, ABBE_VIEW_LIGHT_HANDLE);
   drag(&s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0] + 60, xy[1], 0);
+  double there[2]; /* its handle is where it was let go of */
+  assert_true(abbe_view_camera_project(&s.camera, 512, 512, s.outline.light[0].position, there));
+  assert_near(there[0], xy[0] + 60, 0.5);
   assert_non_null(value(&s, "lights.sun.direction"));
   assert_null(value(&s, "lights.sun.position"));
   learn(&s);
@@ -346,6 +387,7 @@ int main(void) {
       cmocka_unit_test(test_a_drag_turns_the_camera_in_one_step),
       cmocka_unit_test(test_other_buttons_pan_and_look),
       cmocka_unit_test(test_handles_move_and_tilt_objects),
+      cmocka_unit_test(test_what_was_pulled_stands_at_once),
       cmocka_unit_test(test_the_wheel_is_a_step),
       cmocka_unit_test(test_the_sun_moves),
       cmocka_unit_test(test_lights_move),
