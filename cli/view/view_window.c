@@ -4,6 +4,7 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,18 +26,21 @@ static int modifiers_of(int mods) {
          ((mods & GLFW_MOD_CONTROL) != 0 ? ABBE_VIEW_CONTROL : 0);
 }
 
+/* By what is written on the key: in other layouts z is where y is in the first. */
+static int character_of(int key, int code) {
+  const char *name = glfwGetKeyName(key, code);
+  if (name == NULL || name[0] == '\0' || name[1] != '\0') return 0;
+  return name[0] == '=' ? '+' : tolower((unsigned char)name[0]);
+}
+
 static void on_key(GLFWwindow *handle, int key, int code, int action, int mods) {
   window *w = glfwGetWindowUserPointer(handle);
-  (void)code;
   const bool down = action != GLFW_RELEASE;
   if (key == GLFW_KEY_ENTER) w->input.enter = down;
   if (key == GLFW_KEY_BACKSPACE) w->input.backspace = down;
   if (key == GLFW_KEY_ESCAPE) w->input.escape = down;
   if (abbe_ui_has_keys()) return;
-  int character = 0;
-  if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z) character = 'a' + key - GLFW_KEY_A;
-  if (key == GLFW_KEY_KP_ADD || key == GLFW_KEY_EQUAL) character = '+';
-  if (key == GLFW_KEY_KP_SUBTRACT || key == GLFW_KEY_MINUS) character = '-';
+  const int character = character_of(key, code);
   if (character != 0)
     abbe_view_app_key(&w->session, character, down, modifiers_of(mods), abbe_clock_seconds());
 }
