@@ -8,10 +8,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { MOST_EVENTS = 64 };
+
+/* Of the pointer: it has moved there, or a button has changed there. */
+typedef struct pointer_event {
+  double at[2];
+  int button; /* of the input; below 0: none */
+  bool down;
+} pointer_event;
+
 typedef struct window {
   GLFWwindow *handle;
   abbe_view_session session;
   abbe_ui_input input;
+  pointer_event event[MOST_EVENTS]; /* [events] that no frame has seen yet */
+  size_t events;
 } window;
 
 static abbe_result fail(const char *what, abbe_error *error) {
@@ -55,13 +66,37 @@ static void wake(void) {
   glfwPostEmptyEvent();
 }
 
-/* A click shorter than a frame is not lost: it is down for one. */
+/* Moves without a button in between are one; there is always room for that. */
+static void push(window *w, const pointer_event *e) {
+  pointer_event *last = w->events > 0 ? &w->event[w->events - 1] : NULL;
+  if (e->button < 0 && last != NULL && last->button < 0)
+    *last = *e;
+  else if (w->events + (e->button < 0) < MOST_EVENTS)
+    w->event[w->events++] = *e;
+}
+
+static void on_move(GLFWwindow *handle, double x, double y) {
+  push(glfwGetWindowUserPointer(handle), &(pointer_event){.at = {x, y}, .button = -1});
+}
+
+static void on_button(GLFWwindow *handle, int button, int action, int mods) {
+  window *w = glfwGetWindowUserPointer(handle);
+  const double *at = w->events > 0 ? w->event[w->events - 1].at : w->input.mouse;
+  pointer_event e = {.at = {at[0], at[1]}, .button = button, .down = action == GLFW_PRESS};
+  (void)mods;
+  if (button < 3) push(w, &e); /* left, right, middle, as the input has them */
+}
+
+/* One event a frame: a click that is shorter is down for one, and a widget knows in the frame
+ * before that the pointer is on it. */
 static void read_pointer(window *w) {
-  static const int buttons[] = {GLFW_MOUSE_BUTTON_LEFT, GLFW_MOUSE_BUTTON_RIGHT,
-                                GLFW_MOUSE_BUTTON_MIDDLE};
   GLFWwindow *h = w->handle;
-  glfwGetCursorPos(h, &w->input.mouse[0], &w->input.mouse[1]);
-  for (int i = 0; i < 3; i++) w->input.button[i] = glfwGetMouseButton(h, buttons[i]) == GLFW_PRESS;
+  if (w->events > 0) {
+    const pointer_event e = w->event[0];
+    memcpy(w->input.mouse, e.at, sizeof e.at);
+    if (e.button >= 0) w->input.button[e.button] = e.down;
+    memmove(w->event, w->event + 1, --w->events * sizeof e);
+  }
   w->input.shift = glfwGetKey(h, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS ||
                    glfwGetKey(h, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
   w->input.control = glfwGetKey(h, GLFW_KEY_LEFT_CONTROL) == GLFW_PRESS ||
@@ -91,7 +126,7 @@ static void loop(window *w, const abbe_gl *gl) {
     w->input.wheel = 0;
     w->input.text[0] = '\0';
     const double wait = seen ? abbe_view_app_wait(&w->session, abbe_clock_seconds()) : 1;
-    if (wait > 0)
+    if (wait > 0 && w->events == 0)
       glfwWaitEventsTimeout(wait);
     else
       glfwPollEvents();
@@ -124,6 +159,9 @@ abbe_result abbe_view_window_run(const abbe_view_app_desc *desc, size_t width, s
     glfwSetWindowUserPointer(w->handle, w);
     glfwSetKeyCallback(w->handle, on_key);
     glfwSetScrollCallback(w->handle, on_wheel);
+    glfwSetCursorPosCallback(w->handle, on_move);
+    glfwSetMouseButtonCallback(w->handle, on_button);
+    glfwGetCursorPos(w->handle, &w->input.mouse[0], &w->input.mouse[1]);
     loop(w, abbe_context_gl(context));
     abbe_view_app_end(&w->session);
   }
