@@ -257,7 +257,7 @@ static void draw_feed(const abbe_view_session *app) {
   const abbe_view_outline *o = &app->state.outline;
   if (feed == NULL) return;
   if (feed->on_refractor && !feed->sight.lands) {
-    abbe_ui_text(DIM, "what is seen here through a refractor is no receiver");
+    abbe_ui_text(DIM, "what is seen here through a refractor or in a mirror is no receiver");
     return;
   }
   if (feed->on_refractor)

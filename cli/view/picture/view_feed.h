@@ -1,9 +1,9 @@
 /* view_feed.h: where the light of a place has come in: the photons that light it, the cells of
- * refractors through which they went first, and the facets that these belong to.
+ * refractors or mirrors that they met first, and the facets that these belong to.
  *
  * It takes photons' hits as the renderer has them (gl/renderer.h). A photon lights what lies
  * between its hit and its neighbours', and between its hits at two wavelengths, as the map has it.
- * Each one's ray is followed from its light to the first refractor. What happened inside is not in
+ * Each one's ray is followed from its light to the first of them. What happened inside is not in
  * a hit, so the facets are those of the entry alone.
  */
 #ifndef ABBE_CLI_VIEW_PICTURE_VIEW_FEED_H
@@ -16,7 +16,7 @@
 enum { ABBE_VIEW_FEED_RAYS = 192, ABBE_VIEW_FEED_FACETS = 6, ABBE_VIEW_FEED_EDGES = 240 };
 
 typedef struct abbe_view_ray_in {
-  double entry[3], light[3]; /* on the refractor; where the ray began */
+  double entry[3], light[3]; /* on the refractor or mirror; where the ray began */
   double share;              /* of the flux of all photons that were found */
   size_t facet;              /* of those below; their count: of a lesser one */
 } abbe_view_ray_in;
@@ -32,7 +32,7 @@ typedef struct abbe_view_feed {
   bool on_refractor;       /* the place that was asked for lies on one, where no photon lands: */
   abbe_view_sight sight;   /* through it to the point */
   size_t photons;          /* that light it, at any wavelength */
-  size_t ray_count;        /* of these, the strongest that meet a refractor */
+  size_t ray_count;        /* of these, the strongest that meet one */
   abbe_view_ray_in ray[ABBE_VIEW_FEED_RAYS];
   size_t facet_count; /* the strongest */
   abbe_view_facet facet[ABBE_VIEW_FEED_FACETS];

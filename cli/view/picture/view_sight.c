@@ -24,12 +24,13 @@ static double distance_to(const double origin[3], const double direction[3], con
 }
 
 void abbe_view_meet(const abbe_scene *scene, const double origin[3], const double direction[3],
-                    double from, bool refractors, abbe_view_met *out) {
+                    double from, bool bending, abbe_view_met *out) {
   *out = (abbe_view_met){.distance = INFINITY};
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *object = &scene->object[i];
     const abbe_mesh *m = &object->mesh;
-    for (size_t f = 0; (object->material != NULL || !refractors) && f < m->face_count; f++) {
+    const bool may = !bending || abbe_object_kind_of(object) != ABBE_OBJECT_RECEIVER;
+    for (size_t f = 0; may && f < m->face_count; f++) {
       const uint32_t *at = m->face[f];
       const double d = distance_to(origin, direction, m->position[at[0]], m->position[at[1]],
                                    m->position[at[2]]);

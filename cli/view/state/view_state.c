@@ -3,6 +3,7 @@
 #include "base/number.h"
 #include "cli/view/state/view_camera.h"
 #include "scenes/geometry/vector.h"
+#include "scenes/import/scene_value.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -157,12 +158,21 @@ void abbe_view_state_resize(abbe_view_state *state, size_t width, size_t height,
 
 /* ---- camera ---- */
 
+/* Where a scene may have its camera, so that what is kept can be opened; and it looks somewhere. */
+static bool is_camera(const abbe_camera *c) {
+  double to[3], most = 0;
+  abbe_vector_subtract(c->target, c->eye, to);
+  for (int k = 0; k < 3; k++) most = fmax(most, fmax(fabs(c->eye[k]), fabs(c->target[k])));
+  return most <= ABBE_SCENE_FAR && abbe_vector_length(to) > 1e-6 * most;
+}
+
 /* The camera as it is led, with what can be written of it. */
 static void take_camera(abbe_view_state *state, const abbe_camera *camera, double now_s) {
   abbe_camera c = *camera;
   char eye[96], target[96];
   abbe_view_document_point(c.eye, eye, sizeof eye);
   abbe_view_document_point(c.target, target, sizeof target);
+  if (!is_camera(&c)) return;
   abbe_view_document *document = edit(state, state->continued);
   if (!set(state, document, "camera.eye", eye) || !set(state, document, "camera.target", target))
     return;

@@ -251,6 +251,15 @@ static void test_the_wheel_is_a_step(void **state) {
   assert_int_equal(s->history.at, before + 2);
   assert_true(abbe_view_state_undo(s, 4) && abbe_view_state_undo(s, 4));
   assert_string_equal(abbe_view_document_value(abbe_view_history_now(&s->history), "ambient"), "1");
+  /* no farther and no nearer than a scene may have its camera */
+  for (int i = 0; i < 30; i++) abbe_view_state_wheel(s, -20, 5 + 0.1 * i);
+  assert_true(fabs(s->camera.eye[1]) < 1e6 && fabs(s->camera.eye[1]) > 1e3);
+  learn(s);
+  for (int i = 0; i < 60; i++) abbe_view_state_wheel(s, 20, 20 + 0.1 * i);
+  assert_memory_not_equal(s->camera.eye, s->camera.target, sizeof s->camera.eye);
+  const double nearest = s->camera.eye[1];
+  abbe_view_state_wheel(s, -20, 40);
+  assert_true(s->camera.eye[1] < nearest); /* and away from there again */
   abbe_view_state_free(s);
 }
 

@@ -56,13 +56,14 @@ static void shine(float *at, unsigned *cell, abbe_view_hits *out, double tilt) {
     }
 }
 
-static void test_light_from_above_comes_through_the_top(void **state) {
-  (void)state;
+static void from_above(bool mirror) {
   static float at[4 * GRID * GRID];
   static unsigned cell[GRID * GRID];
   static abbe_view_feed feed;
   abbe_object object[2] = {{0}};
   make_cube(&object[1]);
+  object[1].mirror = mirror;
+  if (mirror) object[1].material = NULL;
   const abbe_scene scene = {.object_count = 2, .object = object};
   abbe_view_hits hits;
   abbe_error error = {0};
@@ -89,6 +90,16 @@ static void test_light_from_above_comes_through_the_top(void **state) {
   for (size_t i = 0; i < 4; i++)
     for (int k = 0; k < 2; k++) assert_near(feed.edge[i][k][2], 1, 0);
   abbe_mesh_free(&object[1].mesh);
+}
+
+static void test_light_from_above_comes_through_the_top(void **state) {
+  (void)state;
+  from_above(false);
+}
+
+static void test_light_comes_off_a_mirror_alike(void **state) {
+  (void)state;
+  from_above(true);
 }
 
 /* Aslant, of the beam's height one part meets the top and one the side, as the sines say. */
@@ -274,6 +285,7 @@ static void test_what_is_seen_may_be_the_refractor(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_light_from_above_comes_through_the_top),
+                                     cmocka_unit_test(test_light_comes_off_a_mirror_alike),
                                      cmocka_unit_test(test_two_facets_share_as_they_are_seen),
                                      cmocka_unit_test(test_nothing_lands_or_nothing_is_met),
                                      cmocka_unit_test(test_light_lies_between_neighbours),
