@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { MOST_DISPLAYS = 512 }; /* and views of theirs, that are listed */
+
 #define DIM 0x858b95
 #define BRIGHT 0xe8eaee
 #define WARM 0xffb86b
@@ -100,18 +102,21 @@ static void draw_object(abbe_view_session *app, const abbe_view_object *object, 
                         double now_s) {
   abbe_view_state *s = &app->state;
   const abbe_view_outline *o = &s->outline;
-  char key[ABBE_VIEW_KEY + 16], label[ABBE_VIEW_NAME + 16];
+  char key[ABBE_VIEW_KEY + 16], label[ABBE_VIEW_NAME + 16], name[512];
   const size_t count = object->mirror ? o->metal_count : o->stone_count;
   char *const *names = object->mirror ? o->metal : o->stone;
   size_t at = 0;
   snprintf(key, sizeof key, "%s.%s", object->key, object->mirror ? "mirror" : "material");
   const char *set = abbe_view_document_value(abbe_view_history_now(&s->history), key);
   const char *is = set != NULL ? set : object->material;
-  while (at < count && strcmp(names[at], is) != 0) at++;
+  while (at < count && strcmp(names[at], is) != 0 &&
+         !(abbe_view_document_name(names[at], name, sizeof name) && strcmp(name, is) == 0))
+    at++;
   snprintf(label, sizeof label, "%s, of", object->name);
   abbe_ui_scope_begin(object->key);
-  if (abbe_ui_choose(label, (const char *const *)names, count, &at))
-    abbe_view_state_set(s, key, names[at], false, now_s);
+  if (abbe_ui_choose(label, (const char *const *)names, count, &at) &&
+      abbe_view_document_name(names[at], name, sizeof name))
+    abbe_view_state_set(s, key, name, false, now_s);
   for (size_t k = 0; k < object->value_count; k++)
     slide(app, &object->value[k], one_of_many ? object->name : "", false, now_s);
   abbe_ui_scope_end();
@@ -152,7 +157,7 @@ static void draw_view(abbe_view_session *app) {
 #undef ABBE_VIEW_NAME_OF
   };
   abbe_view_state *s = &app->state;
-  const char *names[32];
+  const char *names[MOST_DISPLAYS];
   char *views = app->views != NULL ? strdup(app->views) : NULL;
   size_t count = 0, at = s->shown, view = app->view;
   if (abbe_ui_choose("shown", shown, ABBE_VIEW_SHOWN_COUNT, &at)) s->shown = (abbe_view_shown)at;
@@ -167,7 +172,7 @@ static void draw_view(abbe_view_session *app) {
   if (app->drawn == ABBE_VIEW_DISTANCE_PICTURE)
     abbe_ui_text(DIM, "from the nearest to the farthest that is seen");
   if (app->drawn != s->shown) abbe_ui_text(DIM, "not there yet: the rendered picture stands");
-  for (char *line = views; line != NULL && *line != '\0' && count < 32;) {
+  for (char *line = views; line != NULL && *line != '\0' && count < MOST_DISPLAYS;) {
     char *end = strchr(line, '\n');
     if (end != NULL) *end = '\0';
     names[count++] = line;
