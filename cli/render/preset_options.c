@@ -230,8 +230,9 @@ void abbe_preset_options_note(const abbe_preset_choice *c) {
   fprintf(stderr, "\n");
   note_unrest(c->unrest);
   if (c->overridden)
-    fprintf(stderr, "note: options, or a mirror in the scene, stand against that choice; what it "
-                    "promises is void\n");
+    fprintf(stderr,
+            "note: options, or a mirror or an eye in glass, stand against that choice; what it "
+            "promises is void\n");
   if (!c->kept && q->max_error > 0)
     fprintf(stderr, "note: no settings are known to keep %g; these are the most accurate\n",
             q->max_error);

@@ -194,8 +194,9 @@ static void note_picture(const request *q) {
   if (q->picture_note != NULL) fprintf(stderr, "note: %s\n", q->picture_note);
   abbe_preset_options_note_picture(&q->picture);
   if (q->overridden)
-    fprintf(stderr, "note: options, or a mirror in the scene, stand against that choice; what it "
-                    "promises is void\n");
+    fprintf(stderr,
+            "note: options, or a mirror or an eye in glass, stand against that choice; what it "
+            "promises is void\n");
 }
 
 /* By the tracer, where it serves the request best. */

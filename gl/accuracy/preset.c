@@ -248,11 +248,15 @@ static bool take(size_t *mine, size_t preset) {
   return *mine == preset;
 }
 
+/* As far as the scene alone tells. */
+static bool may_have_layers(const abbe_scene *scene) {
+  return abbe_scene_mirror(scene) == NULL && !scene->camera.inside;
+}
+
 bool abbe_preset_apply(const abbe_preset_point *point, const abbe_scene *scene,
                        abbe_render_desc *d) {
   const abbe_render_desc *p = &point->desc;
-  const bool fits =
-      p->model != ABBE_MODEL_LAYERS || scene == NULL || abbe_scene_mirror(scene) == NULL;
+  const bool fits = p->model != ABBE_MODEL_LAYERS || scene == NULL || may_have_layers(scene);
   bool same = take(&d->wavelengths, p->wavelengths);
   same = take(&d->photons, p->photons) && same;
   same = take(&d->map_size, p->map_size) && same;

@@ -88,9 +88,9 @@ abbe_result abbe_presets_find(const abbe_presets *presets, const abbe_plan *plan
 
 /* Fills the fields of desc that are 0 with the point's, but for exits and a share that plans have
  * by themselves: those are left to the scene's own, and so is the model 'layers', which follows no
- * light off mirrors, where the scene has one. False where this is so, or a field that was not 0
- * differs from the point's: then what the point promises does not hold. scene may be NULL: of no
- * mirrors. */
+ * light off mirrors and is not seen from inside a refractor, where the scene has a mirror, or a
+ * camera that may be inside. False where this is so, or a field that was not 0 differs from the
+ * point's: then what the point promises does not hold. scene may be NULL: of neither. */
 bool abbe_preset_apply(const abbe_preset_point *point, const abbe_scene *scene,
                        abbe_render_desc *desc);
 

@@ -217,6 +217,7 @@ static void test_mirrors_are_drawn_at_every_point(void **state) {
   abbe_scene scene = {0};
   size_t layers = 0;
   load_text(text, &scene);
+  const abbe_scene inside = {.camera.inside = true};
   assert_ok(abbe_presets_load(NULL, &presets, &error), &error);
   for (size_t i = 0; i < presets.count; i++)
     for (size_t k = 0; k < presets.front[i].count; k++) {
@@ -230,6 +231,9 @@ static void test_mirrors_are_drawn_at_every_point(void **state) {
       assert_ok(abbe_plan_make(&scene, &desc, &plan, &error), &error);
       abbe_plan_free(&plan);
       layers += layered;
+      desc = (abbe_render_desc){0}; /* and none from inside of glass */
+      assert_int_equal(abbe_preset_apply(point, &inside, &desc), !layered);
+      assert_int_not_equal(desc.model, ABBE_MODEL_LAYERS);
     }
   assert_true(layers > 0);
   abbe_presets_free(&presets);
