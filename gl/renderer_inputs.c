@@ -1,41 +1,11 @@
 #include "gl/renderer_inputs.h"
 
+#include "base/digest.h"
 #include "gl/pinholes/pinhole_samples.h"
 
 #include <string.h>
 
-/* Of a run of bytes: words are mixed in one after another, by a multiplication and a shift. */
-static uint64_t mix(uint64_t h, const void *data, size_t size) {
-  const unsigned char *at = data;
-  for (; size > 0;) {
-    uint64_t word = 0;
-    const size_t n = size < sizeof word ? size : sizeof word;
-    memcpy(&word, at, n);
-    h = (h ^ word) * 0x9e3779b97f4a7c15u;
-    h ^= h >> 29;
-    at += n;
-    size -= n;
-  }
-  return h;
-}
-
-#define MIX(h, value) ((h) = mix((h), &(value), sizeof(value)))
-
-/* Four at a time, none of which waits for another: meshes are long. */
-static uint64_t mix_long(uint64_t h, const unsigned char *data, size_t size) {
-  const size_t quarter = size / 4 / sizeof h * sizeof h;
-  uint64_t part[4] = {h, h + 1, h + 2, h + 3};
-  for (size_t at = 0; at < quarter; at += sizeof h)
-    for (size_t k = 0; k < 4; k++) part[k] = mix(part[k], data + k * quarter + at, sizeof h);
-  return mix(mix(h, part, sizeof part), data + 4 * quarter, size - 4 * quarter);
-}
-
-static uint64_t mix_array(uint64_t h, const void *data, size_t count, size_t size) {
-  const bool there = data != NULL;
-  MIX(h, there);
-  MIX(h, count);
-  return there ? mix_long(h, data, count * size) : h;
-}
+#define MIX(h, value) ((h) = abbe_digest((h), &(value), sizeof(value)))
 
 static uint64_t mix_spectrum(uint64_t h, const abbe_spectrum *s) {
   const bool there = s != NULL;
@@ -44,14 +14,14 @@ static uint64_t mix_spectrum(uint64_t h, const abbe_spectrum *s) {
   const size_t count = abbe_spectrum_count(s);
   const abbe_interpolation interpolation = abbe_spectrum_interpolation(s);
   MIX(h, interpolation);
-  h = mix_array(h, abbe_spectrum_lambda_nm(s), count, sizeof(double));
-  return mix_array(h, abbe_spectrum_value(s), count, sizeof(double));
+  h = abbe_digest_array(h, abbe_spectrum_lambda_nm(s), count, sizeof(double));
+  return abbe_digest_array(h, abbe_spectrum_value(s), count, sizeof(double));
 }
 
 static uint64_t mix_material(uint64_t h, const abbe_material *m) {
   MIX(h, m->dispersion.model);
   MIX(h, m->dispersion.count);
-  h = mix(h, m->dispersion.c, sizeof m->dispersion.c);
+  h = abbe_digest(h, m->dispersion.c, sizeof m->dispersion.c);
   h = mix_spectrum(h, m->dispersion.table);
   MIX(h, m->min_nm);
   MIX(h, m->max_nm);
@@ -74,15 +44,15 @@ static uint64_t mix_medium(uint64_t h, const abbe_medium *m) {
 static uint64_t mix_shape(uint64_t h, const abbe_object *o) {
   const abbe_mesh *m = &o->mesh;
   const abbe_exact *e = &o->exact;
-  h = mix_array(h, m->position, m->vertex_count, sizeof *m->position);
-  h = mix_array(h, m->normal, m->vertex_count, sizeof *m->normal);
-  h = mix_array(h, m->uv, m->vertex_count, sizeof *m->uv);
-  h = mix_array(h, m->face, m->face_count, sizeof *m->face);
+  h = abbe_digest_array(h, m->position, m->vertex_count, sizeof *m->position);
+  h = abbe_digest_array(h, m->normal, m->vertex_count, sizeof *m->normal);
+  h = abbe_digest_array(h, m->uv, m->vertex_count, sizeof *m->uv);
+  h = abbe_digest_array(h, m->face, m->face_count, sizeof *m->face);
   MIX(h, e->kind);
   MIX(h, e->centre);
   MIX(h, e->radius);
-  h = mix_array(h, e->plane, e->count, sizeof *e->plane);
-  h = mix_array(h, e->parallelogram, e->count, sizeof *e->parallelogram);
+  h = abbe_digest_array(h, e->plane, e->count, sizeof *e->plane);
+  h = abbe_digest_array(h, e->parallelogram, e->count, sizeof *e->parallelogram);
   MIX(h, o->min);
   MIX(h, o->max);
   return h;
@@ -99,8 +69,9 @@ static uint64_t of_geometry(const abbe_scene *scene, const abbe_plan *plan) {
     MIX(h, first);
     MIX(h, kind);
   }
-  h = mix_array(h, plan->model, plan->refractor_count, sizeof *plan->model);
-  h = mix_array(h, plan->receiver_model, plan->receiver_count, sizeof *plan->receiver_model);
+  h = abbe_digest_array(h, plan->model, plan->refractor_count, sizeof *plan->model);
+  h = abbe_digest_array(h, plan->receiver_model, plan->receiver_count,
+                        sizeof *plan->receiver_model);
   MIX(h, plan->desc.profile);
   MIX(h, plan->receivers);
   MIX(h, plan->bvh);
@@ -117,10 +88,9 @@ static uint64_t mix_environment(uint64_t h, const abbe_environment *e, const abb
   MIX(h, plan->desc.min_nm);
   MIX(h, plan->desc.max_nm);
   MIX(h, e->to_map);
-  MIX(h, e->map.width);
+  MIX(h, e->map_digest);
   MIX(h, e->illuminant.kind);
-  h = mix_spectrum(h, e->illuminant.spectrum);
-  return mix_array(h, e->map.rgb, 3 * e->map.width * e->map.height, sizeof *e->map.rgb);
+  return mix_spectrum(h, e->illuminant.spectrum);
 }
 
 static uint64_t mix_illuminants(uint64_t h, const abbe_scene *scene, const abbe_plan *plan) {
@@ -144,7 +114,7 @@ static uint64_t of_surfaces(const abbe_scene *scene, const abbe_plan *plan) {
   MIX(h, plan->receiver_colours);
   h = mix_illuminants(h, scene, plan);
   h = mix_environment(h, scene->environment, plan);
-  h = mix_array(h, scene->soft_light, scene->soft_light != NULL, sizeof *scene->soft_light);
+  h = abbe_digest_array(h, scene->soft_light, scene->soft_light != NULL, sizeof *scene->soft_light);
   for (size_t i = 0; i < plan->receiver_count; i++) {
     const abbe_object *o = &scene->object[plan->receiver_object[i]];
     const size_t texels = o->texture.width * o->texture.height * o->texture.channels;
@@ -153,7 +123,7 @@ static uint64_t of_surfaces(const abbe_scene *scene, const abbe_plan *plan) {
     MIX(h, o->texture_repeat);
     MIX(h, o->texture.width);
     MIX(h, o->texture.height);
-    h = mix_array(h, o->texture.data, texels, sizeof *o->texture.data);
+    h = abbe_digest_array(h, o->texture.data, texels, sizeof *o->texture.data);
   }
   return h;
 }
@@ -265,7 +235,7 @@ static uint64_t mix_light_plan(uint64_t h, const abbe_plan *plan) {
   MIX(h, d->strategy);
   MIX(h, d->footprint);
   h = mix_layout(h, d->map_layout, d->map_layout_light);
-  const bool coarse = d->coarse == ABBE_COARSE_ALL;
+  const bool coarse = plan->fewer_triangles == ABBE_COARSE_ALL;
   MIX(h, coarse);
   const bool facts[] = {plan->spheres,
                         plan->convex,
@@ -293,7 +263,7 @@ static uint64_t mix_eye(uint64_t h, const abbe_scene *scene, const abbe_plan *pl
   MIX(h, d->height);
   MIX(h, d->supersample);
   MIX(h, d->upsample);
-  const bool coarse = d->coarse != ABBE_COARSE_NONE;
+  const bool coarse[2] = {d->coarse != ABBE_COARSE_NONE, plan->fewer_triangles != ABBE_COARSE_NONE};
   MIX(h, coarse);
   MIX(h, d->adaptive);
   MIX(h, d->receiver_samples);

@@ -131,6 +131,8 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
 static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   abbe_shader_variant variant = r->variant;
   variant.aovs = r->plan.desc.aovs;
+  variant.eye_bands =
+      r->plan.desc.coarse == ABBE_COARSE_NONE ? r->plan.desc.wavelengths : ABBE_COARSE_WAVELENGTHS;
   variant.textured = r->plan.textured;
   variant.receiver_colours = r->plan.receiver_colours;
   abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);
@@ -176,14 +178,15 @@ static abbe_result end_watch(abbe_renderer *r, abbe_result result, abbe_error *e
 }
 
 /* The scene with lights for its environment, and its plan. */
-static abbe_result plan_scene(const abbe_scene *scene, const abbe_render_desc *desc,
-                              abbe_scene *surrounded, abbe_plan *plan, abbe_error *error) {
+static abbe_result plan_scene(const abbe_renderer *r, const abbe_scene *scene,
+                              const abbe_render_desc *desc, abbe_scene *surrounded, abbe_plan *plan,
+                              abbe_error *error) {
   *surrounded = (abbe_scene){0};
   abbe_result result = ABBE_OK;
   const bool other = abbe_plan_surrounds(scene);
-  if (other) result = abbe_plan_surround(scene, desc, surrounded, error);
+  if (other) result = abbe_plan_surround(scene, desc, &r->surrounded, surrounded, error);
   if (result != ABBE_OK) return result;
-  result = abbe_plan_make(other ? surrounded : scene, desc, plan, error);
+  result = abbe_plan_make_after(&r->plan, other ? surrounded : scene, desc, plan, error);
   if (result != ABBE_OK) abbe_environment_lights_drop(surrounded);
   return result;
 }
@@ -200,7 +203,7 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   abbe_renderer_inputs inputs;
   abbe_plan plan;
   abbe_scene surrounded;
-  abbe_result result = plan_scene(scene, desc, &surrounded, &plan, error);
+  abbe_result result = plan_scene(r, scene, desc, &surrounded, &plan, error);
   if (result != ABBE_OK) return result;
   abbe_environment_lights_drop(&r->surrounded);
   r->surrounded = surrounded;

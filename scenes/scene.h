@@ -127,6 +127,7 @@ typedef struct abbe_scene {
                                       (environment_lights.h); 0 in a scene as it is loaded */
   abbe_irradiance_map *soft_light; /* what they leave of it, as irradiance without shadows, in its
                                       RGB; NULL in a scene as it is loaded */
+  uint64_t surrounded_by;          /* a digest of what both were found from; 0: nothing was */
   abbe_environment *environment;   /* owned; NULL: dark surroundings */
   abbe_medium *medium;             /* of the air, owned, or NULL: it is clear */
   size_t object_count;

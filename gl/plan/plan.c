@@ -70,12 +70,12 @@ static void choose_transport(const abbe_scene *scene, const abbe_render_desc *de
     abbe_render_desc_take_pinholes(&plan->desc);
 }
 
-/* Views of fewer triangles, where some mesh has many. */
+/* Views of fewer triangles, where they are asked for and some mesh has many. */
 static void choose_triangles(const abbe_scene *scene, abbe_plan *plan) {
   bool many = false;
   for (size_t k = 0; k < plan->refractor_count; k++)
     many = many || abbe_coarse_mesh_serves(&scene->object[plan->refractor_object[k]].mesh);
-  if (!many) plan->desc.coarse = ABBE_COARSE_NONE;
+  plan->fewer_triangles = many ? plan->desc.coarse : ABBE_COARSE_NONE;
 }
 
 static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
@@ -126,7 +126,7 @@ bool abbe_plan_surrounds(const abbe_scene *scene) {
 }
 
 abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *desc,
-                               abbe_scene *out, abbe_error *error) {
+                               const abbe_scene *before, abbe_scene *out, abbe_error *error) {
   ABBE_REQUIRE(scene && out, error);
   abbe_render_desc d;
   abbe_result result =
@@ -141,21 +141,28 @@ abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *
   if (result != ABBE_OK) return result;
   const abbe_environment_lights_desc lights = {
       .count = others, .min_nm = d.min_nm, .max_nm = d.max_nm, .observer = d.observer};
-  result = abbe_environment_lights_add(&pointed, &lights, out, error);
+  result = abbe_environment_lights_add(&pointed, &lights, before, out, error);
   free(pointed.light);
   return result;
 }
 
 abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
                            abbe_error *error) {
-  ABBE_REQUIRE(scene && out, error);
+  static const abbe_plan none = {0};
+  return abbe_plan_make_after(&none, scene, desc, out, error);
+}
+
+abbe_result abbe_plan_make_after(const abbe_plan *before, const abbe_scene *scene,
+                                 const abbe_render_desc *desc, abbe_plan *out, abbe_error *error) {
+  ABBE_REQUIRE(before && scene && out, error);
   memset(out, 0, sizeof *out);
+  out->inside = before->inside;
   abbe_result result =
       abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &out->desc, error);
   if (result != ABBE_OK) return result;
   if (!abbe_plan_surrounds(scene)) return make_plan(scene, desc, out, error);
   abbe_scene surrounded;
-  result = abbe_plan_surround(scene, desc, &surrounded, error);
+  result = abbe_plan_surround(scene, desc, NULL, &surrounded, error);
   if (result != ABBE_OK) return result;
   result = make_plan(&surrounded, desc, out, error);
   abbe_environment_lights_drop(&surrounded);

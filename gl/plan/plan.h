@@ -16,20 +16,24 @@
 extern "C" {
 #endif
 
-/* Whether the renderer takes the scene with other lights than it has: it has surroundings, or a light
- * with a size, and no lights for them yet. */
+/* Whether the renderer takes the scene with other lights than it has: it has surroundings, or a
+ * light with a size, and no lights for them yet. */
 bool abbe_plan_surrounds(const abbe_scene *scene);
 /* The scene with points for its lights that have a size, and with directional lights for its
- * environment, as the renderer takes it (scenes/lights/area_lights.h, scenes/environment_lights.h): for who
- * looks up the plan's lights. abbe_environment_lights_drop frees it. */
+ * environment, as the renderer takes it (scenes/lights/area_lights.h, scenes/environment_lights.h):
+ * for who looks up the plan's lights. before: an earlier such copy that it may take lights over
+ * from, or NULL. abbe_environment_lights_drop frees it. */
 abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *desc,
-                               abbe_scene *out, abbe_error *error);
+                               const abbe_scene *before, abbe_scene *out, abbe_error *error);
 
 /* Of a scene as it is loaded, or with lights for its environment already.
  * ABBE_INVALID_ARGUMENT for a request outside its limits, ABBE_OUT_OF_RANGE for an index that is
  * not known over the range, ABBE_UNSUPPORTED for what is not modelled. desc may be NULL. */
 abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
                            abbe_error *error);
+/* The same plan, in less time where an earlier one was made of such a scene. */
+abbe_result abbe_plan_make_after(const abbe_plan *before, const abbe_scene *scene,
+                                 const abbe_render_desc *desc, abbe_plan *out, abbe_error *error);
 
 #ifdef __cplusplus
 }

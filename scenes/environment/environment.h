@@ -19,6 +19,7 @@
 #include "scenes/environment/radiance_map.h"
 
 #include <stddef.h>
+#include <stdint.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -34,6 +35,7 @@ typedef struct abbe_environment {
   abbe_illuminant illuminant;
   char *illuminant_path; /* the file that it is of, or NULL */
 
+  uint64_t map_digest;     /* of the map's texels (base/digest.h) */
   double mean[3];          /* of the radiance, over the sphere */
   double luminance;        /* integral over the sphere of Rec.709's luminance of the RGB, > 0 */
   abbe_alias_table texels; /* drawn by luminance x solid angle */

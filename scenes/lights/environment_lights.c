@@ -1,5 +1,6 @@
 #include "scenes/lights/environment_lights.h"
 
+#include "base/digest.h"
 #include "colorimetry/upsampling.h"
 #include "scenes/geometry/vector.h"
 
@@ -299,8 +300,66 @@ static abbe_result add_all(search *s, const abbe_environment_lights_desc *d, abb
   return result;
 }
 
+static abbe_result find_all(const abbe_environment *environment,
+                            const abbe_environment_lights_desc *desc, size_t count, abbe_scene *out,
+                            abbe_error *error) {
+  search s;
+  abbe_result result = look_for_lamps(environment, count, &s, error);
+  if (result != ABBE_OK) return result;
+  result = add_all(&s, desc, out, error);
+  drop_search(&s);
+  return result;
+}
+
+static uint64_t digest_of(const abbe_environment *e, const abbe_environment_lights_desc *desc,
+                          size_t count) {
+  const abbe_spectrum *spectrum = e->illuminant.spectrum;
+  const double range[2] = {desc->min_nm, desc->max_nm};
+  const int kinds[2] = {(int)desc->observer, (int)e->illuminant.kind};
+  uint64_t h = abbe_digest(e->map_digest, &count, sizeof count);
+  h = abbe_digest(h, range, sizeof range);
+  h = abbe_digest(h, kinds, sizeof kinds);
+  h = abbe_digest(h, e->to_map, sizeof e->to_map);
+  if (spectrum != NULL) {
+    const size_t n = abbe_spectrum_count(spectrum);
+    const int interpolation = (int)abbe_spectrum_interpolation(spectrum);
+    h = abbe_digest(h, &interpolation, sizeof interpolation);
+    h = abbe_digest_array(h, abbe_spectrum_lambda_nm(spectrum), n, sizeof(double));
+    h = abbe_digest_array(h, abbe_spectrum_value(spectrum), n, sizeof(double));
+  }
+  return h != 0 ? h : 1;
+}
+
+static abbe_result copy_light(const abbe_light *from, abbe_light *out, abbe_error *error) {
+  const abbe_spectrum *spectrum = from->illuminant.spectrum;
+  *out = *from;
+  out->illuminant.spectrum = NULL;
+  out->name = strdup(from->name);
+  if (out->name == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a light");
+  return spectrum == NULL
+             ? ABBE_OK
+             : abbe_spectrum_make(abbe_spectrum_lambda_nm(spectrum), abbe_spectrum_value(spectrum),
+                                  abbe_spectrum_count(spectrum),
+                                  abbe_spectrum_interpolation(spectrum), &out->illuminant.spectrum,
+                                  error);
+}
+
+/* As they were found for an earlier copy. */
+static abbe_result take_all(const abbe_scene *before, abbe_scene *out, abbe_error *error) {
+  const size_t count = before->environment_lights;
+  abbe_result result = ABBE_OK;
+  *out->soft_light = *before->soft_light;
+  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
+    result = copy_light(&before->light[before->light_count - count + i],
+                        &out->light[out->light_count++], error);
+    out->environment_lights++;
+  }
+  return result;
+}
+
 abbe_result abbe_environment_lights_add(const abbe_scene *scene,
-                                        const abbe_environment_lights_desc *desc, abbe_scene *out,
+                                        const abbe_environment_lights_desc *desc,
+                                        const abbe_scene *before, abbe_scene *out,
                                         abbe_error *error) {
   ABBE_REQUIRE(scene && desc && out, error);
   size_t count = desc->count;
@@ -314,16 +373,16 @@ abbe_result abbe_environment_lights_add(const abbe_scene *scene,
   }
   if (own > 0) memcpy(out->light, scene->light, own * sizeof *out->light);
   if (scene->environment == NULL) return ABBE_OK;
-  search s = {0};
+  out->surrounded_by = digest_of(scene->environment, desc, count);
   out->soft_light = malloc(sizeof *out->soft_light);
   abbe_result result =
       out->soft_light != NULL
-          ? look_for_lamps(scene->environment, count, &s, error)
+          ? ABBE_OK
           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the environment's lights");
-  if (result == ABBE_OK) {
-    result = add_all(&s, desc, out, error);
-    drop_search(&s);
-  }
+  if (result == ABBE_OK)
+    result = before != NULL && before->surrounded_by == out->surrounded_by
+                 ? take_all(before, out, error)
+                 : find_all(scene->environment, desc, count, out, error);
   if (result != ABBE_OK) abbe_environment_lights_drop(out);
   return result;
 }

@@ -21,18 +21,20 @@ extern "C" {
 #endif
 
 typedef struct abbe_environment_lights_desc {
-  size_t count;          /* at the most */
-  double min_nm, max_nm; /* of their spectra */
+  size_t count;           /* at the most */
+  double min_nm, max_nm;  /* of their spectra */
   abbe_observer observer; /* to whom a light of one watt is as bright as any other */
 } abbe_environment_lights_desc;
 
 /* A copy of the scene that owns nothing of it but its array of lights and its soft light: after the
  * scene's own come at most `count` of its environment, none where nothing stands out, named
  * "environment 1" and so on, brightest first, as many as ABBE_SCENE_MAX_LIGHTS has room for;
- * out->environment_lights says how many. A scene without an environment is copied as it is. ABBE_NO_MEMORY,
- * and errors of abbe_upsampling_make_by. */
+ * out->environment_lights says how many. A scene without an environment is copied as it is. before,
+ * if not NULL, is an earlier such copy: what was found for such an environment is taken from it.
+ * ABBE_NO_MEMORY, and errors of abbe_upsampling_make_by. */
 abbe_result abbe_environment_lights_add(const abbe_scene *scene,
-                                        const abbe_environment_lights_desc *desc, abbe_scene *out,
+                                        const abbe_environment_lights_desc *desc,
+                                        const abbe_scene *before, abbe_scene *out,
                                         abbe_error *error);
 /* What the `count` brightest of its lights leave of an environment, as radiance: a map as large as
  * its own, in which the texels of their lamps are cut down to where these begin to stand out. With

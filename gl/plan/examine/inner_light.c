@@ -1,5 +1,6 @@
 #include "gl/plan/examine/inner_light.h"
 
+#include "base/digest.h"
 #include "gl/plan/examine/material_range.h"
 #include "gl/plan/examine/reach.h"
 #include "scenes/geometry/vector.h"
@@ -161,10 +162,38 @@ static bool is_little(const abbe_inner_light *inside, size_t exits) {
   return inside->kept[exits] + inside->faint[exits] <= ABBE_INNER_LIGHT_MOST;
 }
 
-double abbe_inner_light_plan(const abbe_scene *scene, const abbe_render_desc *asked,
-                             abbe_plan *plan) {
-  const bool share_is_open = asked == NULL || asked->energy_share == 0;
-  const bool exits_are_open = asked == NULL || asked->exits == 0;
+/* Of all that it is found from. */
+static uint64_t digest_of(const abbe_scene *scene, const abbe_plan *plan, bool share_is_open,
+                          bool exits_are_open) {
+  const abbe_object *object = &scene->object[plan->refractor_object[0]];
+  const bool open[3] = {share_is_open, exits_are_open, plan->camera_sees_refractor};
+  abbe_material_range range = {0};
+  abbe_material_range_make(object->material, plan->desc.min_nm, plan->desc.max_nm, &range, NULL);
+  const double inputs[3] = {range.middle_n, range.middle_per_m, plan->desc.energy_share};
+  uint64_t h = abbe_digest(plan->desc.exits, open, sizeof open);
+  h = abbe_digest(h, inputs, sizeof inputs);
+  h = abbe_digest_array(h, object->exact.plane, object->exact.count, sizeof *object->exact.plane);
+  h = abbe_digest_array(h, object->mesh.position, object->mesh.vertex_count,
+                        sizeof *object->mesh.position);
+  bool met = false;
+  for (size_t i = 0; i < scene->light_count; i++) {
+    const abbe_light *light = &scene->light[i];
+    if (!abbe_reach_light(light, object)) continue;
+    const int kind = (int)light->kind;
+    const double cone[2] = {light->cone_rad, light->soft_rad};
+    h = abbe_digest(h, &kind, sizeof kind);
+    h = abbe_digest(h, cone, sizeof cone);
+    h = abbe_digest(h, light->position, sizeof light->position);
+    h = abbe_digest(h, light->direction, sizeof light->direction);
+    met = true;
+  }
+  if (!met) h = abbe_digest(h, scene->camera.eye, sizeof scene->camera.eye);
+  return h != 0 ? h : 1;
+}
+
+/* Returns what is still inside. */
+static double look_inside(const abbe_scene *scene, bool share_is_open, bool exits_are_open,
+                          abbe_plan *plan) {
   abbe_inner_light inside, lower;
   follow_all(scene, plan, &inside);
   if (exits_are_open)
@@ -182,4 +211,20 @@ double abbe_inner_light_plan(const abbe_scene *scene, const abbe_render_desc *as
     }
   }
   return inside.kept[plan->desc.exits] + inside.faint[plan->desc.exits];
+}
+
+double abbe_inner_light_plan(const abbe_scene *scene, const abbe_render_desc *asked,
+                             abbe_plan *plan) {
+  const bool share_is_open = asked == NULL || asked->energy_share == 0;
+  const bool exits_are_open = asked == NULL || asked->exits == 0;
+  const uint64_t of = digest_of(scene, plan, share_is_open, exits_are_open);
+  abbe_plan_inside *inside = &plan->inside;
+  if (inside->of == of) {
+    plan->desc.exits = inside->exits;
+    plan->desc.energy_share = inside->energy_share;
+    return inside->left;
+  }
+  const double left = look_inside(scene, share_is_open, exits_are_open, plan);
+  *inside = (abbe_plan_inside){of, plan->desc.exits, plan->desc.energy_share, left};
+  return left;
 }

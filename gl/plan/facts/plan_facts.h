@@ -12,6 +12,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -58,6 +59,14 @@ typedef struct abbe_plan_haze {
   double scattering, absorption, g;
   double scatters[ABBE_PLAN_HAZE_BANDS], takes[ABBE_PLAN_HAZE_BANDS];
 } abbe_plan_haze;
+
+/* What keeps light inside the plan's one convex solid (gl/plan/examine/inner_light.h): exits, the
+ * share at which paths end, and what is inside still then. */
+typedef struct abbe_plan_inside {
+  uint64_t of; /* a digest of what it was found from; 0: it was not looked for */
+  size_t exits;
+  double energy_share, left;
+} abbe_plan_inside;
 
 /* A medium that bent and mirrored rays of the camera may run through. */
 typedef struct abbe_plan_shaft {
@@ -129,6 +138,7 @@ typedef struct abbe_plan {
   bool colouring;  /* of some mirror: its reflectance varies */
   bool tinted_air; /* of the air: what it takes or scatters varies */
 
+  abbe_plan_inside inside;
   size_t eye_exits; /* of the camera's rays, followed at the most */
   double eye_share; /* below this share of their light they end */
   size_t hit_slots; /* hits of a photon at a wavelength, at the most: its exits, and the mirror on
@@ -142,7 +152,8 @@ typedef struct abbe_plan {
   bool lengths;     /* hits keep the length of their path inside: it tells what is absorbed at any
                        wavelength */
   bool draw_back;   /* views show the back of refractors, too */
-  bool textured;    /* some receiver has a texture */
+  abbe_coarse fewer_triangles; /* for whose sake some mesh is drawn by fewer */
+  bool textured;               /* some receiver has a texture */
   bool receiver_colours; /* dispersed light may fall on receivers in colours: tables say what they
                             reflect of its bands */
 

@@ -14,7 +14,7 @@ static void add(const char *environment, size_t count, abbe_scene *scene, abbe_s
   snprintf(text, sizeof text, PLAIN "environment: %s\n", environment);
   load_text(text, scene);
   const abbe_environment_lights_desc desc = {.count = count, .min_nm = 380, .max_nm = 780};
-  if (abbe_environment_lights_add(scene, &desc, out, &error) != ABBE_OK)
+  if (abbe_environment_lights_add(scene, &desc, NULL, out, &error) != ABBE_OK)
     fail_msg("%s", error.text);
 }
 
@@ -187,7 +187,7 @@ static void own_lights_stay_and_leave_room(void **state) {
   strcat(text, "]}\n");
   abbe_environment_lights_desc desc = {.count = 99, .min_nm = 380, .max_nm = 780};
   load_text(text, &scene);
-  assert_int_equal(abbe_environment_lights_add(&scene, &desc, &lit, NULL), ABBE_OK);
+  assert_int_equal(abbe_environment_lights_add(&scene, &desc, NULL, &lit, NULL), ABBE_OK);
   assert_int_equal(lit.light_count, ABBE_SCENE_MAX_LIGHTS);
   assert_int_equal(lit.environment_lights, ABBE_SCENE_MAX_LIGHTS - 1);
   assert_string_equal(lit.light[0].name, "lamp");
@@ -195,10 +195,39 @@ static void own_lights_stay_and_leave_room(void **state) {
   drop(&scene, &lit);
   load_text(CAMERA POINT_LIGHT FLOOR, &scene);
   desc.count = 4;
-  assert_int_equal(abbe_environment_lights_add(&scene, &desc, &lit, NULL), ABBE_OK);
+  assert_int_equal(abbe_environment_lights_add(&scene, &desc, NULL, &lit, NULL), ABBE_OK);
   assert_int_equal(lit.light_count, 1);
   assert_int_equal(lit.environment_lights, 0);
   drop(&scene, &lit);
+}
+
+/* What an earlier copy has is what would be found, and only of the same surroundings. */
+static void an_earlier_copy_is_taken_over(void **state) {
+  (void)state;
+  abbe_scene scene, first, again, turned;
+  add(STUDIO, 2, &scene, &first);
+  const abbe_environment_lights_desc desc = {.count = 2, .min_nm = 380, .max_nm = 780};
+  first.light[0].power *= 3; /* to see who was there */
+  assert_int_equal(abbe_environment_lights_add(&scene, &desc, &first, &again, NULL), ABBE_OK);
+  assert_int_equal(again.light_count, first.light_count);
+  assert_int_equal(again.environment_lights, first.environment_lights);
+  assert_memory_equal(again.soft_light, first.soft_light, sizeof *first.soft_light);
+  for (size_t i = 0; i < again.light_count; i++) {
+    const abbe_light *a = &again.light[i], *b = &first.light[i];
+    assert_string_equal(a->name, b->name);
+    assert_true(a->name != b->name && a->power == b->power && a->kind == b->kind);
+    assert_memory_equal(a->direction, b->direction, sizeof a->direction);
+    for (double nm = 400; nm < 700; nm += 50)
+      assert_true(abbe_illuminant_power(&a->illuminant, nm) ==
+                  abbe_illuminant_power(&b->illuminant, nm));
+  }
+  abbe_environment_turn(1, NULL, 0, scene.environment->to_map);
+  assert_int_equal(abbe_environment_lights_add(&scene, &desc, &first, &turned, NULL), ABBE_OK);
+  assert_near(turned.light[0].power / (first.light[0].power / 3), 1, 1e-12);
+  assert_true(turned.light[0].direction[0] != first.light[0].direction[0]);
+  abbe_environment_lights_drop(&again);
+  abbe_environment_lights_drop(&turned);
+  drop(&scene, &first);
 }
 
 int main(void) {
@@ -210,6 +239,7 @@ int main(void) {
                                      cmocka_unit_test(the_sun_stands_out_of_its_sky),
                                      cmocka_unit_test(colours_are_the_lights_own),
                                      cmocka_unit_test(a_lamp_at_the_zenith_is_no_brighter),
-                                     cmocka_unit_test(own_lights_stay_and_leave_room)};
+                                     cmocka_unit_test(own_lights_stay_and_leave_room),
+                                     cmocka_unit_test(an_earlier_copy_is_taken_over)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

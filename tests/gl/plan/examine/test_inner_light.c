@@ -173,6 +173,27 @@ static void a_gem_takes_as_many_exits_as_carry_light(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* An earlier plan's light is that of the same stone and lamps, and of no others. */
+static void an_earlier_plan_is_taken_over(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_plan first, again, moved;
+  load_shipped("gem", &scene);
+  assert_int_equal(abbe_plan_make(&scene, NULL, &first, NULL), ABBE_OK);
+  first.inside.exits++; /* to see who was there */
+  scene.camera.eye[0] += 0.01;
+  assert_int_equal(abbe_plan_make_after(&first, &scene, NULL, &again, NULL), ABBE_OK);
+  assert_int_equal(again.desc.exits, first.desc.exits + 1);
+  assert_near(again.desc.energy_share, first.desc.energy_share, 0);
+  scene.light[0].position[0] += 1e-9;
+  assert_int_equal(abbe_plan_make_after(&first, &scene, NULL, &moved, NULL), ABBE_OK);
+  assert_int_equal(moved.desc.exits, first.desc.exits);
+  abbe_plan_free(&first);
+  abbe_plan_free(&again);
+  abbe_plan_free(&moved);
+  abbe_scene_free(&scene);
+}
+
 #define STONE                                                                                      \
   "- {name: stone, shape: gem, sides: 6, girdle: 0.1, table: 0.06, crown: 0.03, pavilion: 0.05, "  \
   "transform: [{rotate: {axis: [1, 0, 0], angle: 5}}, {translate: [0, 0, 0.2]}], material: "       \
@@ -216,6 +237,7 @@ int main(void) {
       cmocka_unit_test(diamond_keeps_more_than_crown),
       cmocka_unit_test(exits_are_as_few_as_do),
       cmocka_unit_test(a_gem_takes_as_many_exits_as_carry_light),
+      cmocka_unit_test(an_earlier_plan_is_taken_over),
       cmocka_unit_test(the_ledger_says_the_same),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);

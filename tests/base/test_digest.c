@@ -1,0 +1,45 @@
+/* A number of bytes: each of them counts, and where they are, and how many. */
+#include "tests/check.h"
+
+#include "base/digest.h"
+
+#include <string.h>
+
+typedef uint64_t (*digest)(uint64_t h, const void *data, size_t size);
+
+static void each_byte_and_its_place_count(void **state) {
+  (void)state;
+  static const digest kinds[] = {abbe_digest, abbe_digest_long};
+  for (size_t kind = 0; kind < 2; kind++)
+    for (size_t size = 0; size < 80; size++) {
+      unsigned char bytes[80] = {0};
+      const uint64_t zeros = kinds[kind](1, bytes, size);
+      assert_true(zeros == kinds[kind](1, bytes, size));
+      assert_true(size == 0 || zeros != kinds[kind](2, bytes, size));
+      for (size_t i = 0; i < size; i++) {
+        uint64_t other;
+        bytes[i] = 1;
+        other = kinds[kind](1, bytes, size);
+        assert_true(other != zeros);
+        bytes[i] = 0;
+        if (i + 1 == size) continue;
+        bytes[i + 1] = 1;
+        assert_true(other != kinds[kind](1, bytes, size));
+        bytes[i + 1] = 0;
+      }
+    }
+}
+
+static void arrays_differ_by_their_count(void **state) {
+  (void)state;
+  static const double zeros[4] = {0};
+  const uint64_t two = abbe_digest_array(1, zeros, 2, sizeof *zeros);
+  assert_true(two != abbe_digest_array(1, zeros, 3, sizeof *zeros));
+  assert_true(abbe_digest_array(1, zeros, 0, 8) != abbe_digest_array(1, NULL, 0, 8));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(each_byte_and_its_place_count),
+                                     cmocka_unit_test(arrays_differ_by_their_count)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
