@@ -204,8 +204,10 @@ static abbe_result find_texture(abbe_renderer *r, abbe_renderer_picture *out, ab
   if (result != ABBE_OK) return result;
   out->texture =
       is_published(r) ? abbe_published_picture(&r->published) : abbe_picture_texture(&r->picture);
-  out->width = r->plan.desc.width;
-  out->height = r->plan.desc.height;
+  size_t size[2] = {r->plan.desc.width, r->plan.desc.height};
+  if (!is_published(r)) abbe_picture_size(&r->picture, size);
+  out->width = size[0];
+  out->height = size[1];
   out->scale = is_published(r) ? 1 : r->local.unit;
   out->space = space_of(r) == ABBE_RGB_SPACE_XYZ ? ABBE_RGB_SPACE_ACESCG : space_of(r);
   r->gpu.gl->MemoryBarrier(GL_ALL_BARRIER_BITS);

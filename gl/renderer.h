@@ -78,14 +78,16 @@ abbe_result abbe_renderer_baseline(abbe_renderer *renderer, double *ms, abbe_err
 
 /* The picture: R, G, B (X, Y, Z in that space); with AOVs (which the request must have
  * asked for) also direct.*, caustic.* (radiance of
- * the receivers that the eye sees straight) and Z (distance from the eye, m; 0: nothing).
+ * the receivers that the eye sees straight) and Z (distance from the eye, m; 0: nothing). A coarse
+ * picture has a pixel for each of its samples, the last of which may stand for pixels beyond it.
  * ABBE_INVALID_ARGUMENT before a whole frame was drawn; so of maps. */
 abbe_result abbe_renderer_read(abbe_renderer *renderer, bool aovs, abbe_image *out,
                                abbe_error *error);
 
 /* The picture where it was drawn. */
 typedef struct abbe_renderer_picture {
-  GLuint texture; /* GL_TEXTURE_2D of one level, GL_RGBA32F, rows upward */
+  GLuint texture; /* GL_TEXTURE_2D of one level, GL_RGBA32F, rows upward; of a coarse one it may be
+                     larger than the picture */
   size_t width, height;
   /* R, G, B times this are those of abbe_renderer_read: 1, or a power of two where the scene's
    * light would leave the range of floats. A is the distance from the eye in m, 0 where nothing is

@@ -12,8 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LOOK_S 0.5      /* how often files are looked at */
-#define FEED_PIXELS 2.0 /* photons so near to a pixel feed it */
+#define LOOK_S 0.5       /* how often files are looked at */
+#define FEED_PIXELS 2.0  /* photons so near to a pixel feed it */
+#define MOST_GAP_MS 25.0 /* between moving pictures that follow each other */
 
 /* ---- begin, end ---- */
 
@@ -97,7 +98,11 @@ static void take_rendered(abbe_view_session *app, abbe_view_result *result) {
   }
   replace(&app->pictures.rendered, &result->picture);
   abbe_image_free(&app->pictures.layers);
+  app->pictures.coarse = 0;
   if (result->job.stage == ABBE_VIEW_MOVING) {
+    app->pictures.coarse = result->desc.upsample;
+    app->pictures.beyond =
+        result->desc.upsample * app->pictures.rendered.height - result->desc.height;
     app->moved = result->job;
     app->moving = result->desc;
     return;
@@ -116,7 +121,10 @@ static void take_rendered(abbe_view_session *app, abbe_view_result *result) {
 static void take(abbe_view_session *app, size_t worker, abbe_view_result *result) {
   abbe_view_refine *refine = &app->state.refine;
   const bool moved = result->job.stage == ABBE_VIEW_MOVING;
-  const bool shown = abbe_view_refine_end(refine, worker, result->outcome, result->ms);
+  /* what counts is how often they come: with the wait until the next one was asked for */
+  const double waited_ms = moved ? app->desk[worker].waited_ms : 0;
+  const bool shown = abbe_view_refine_end(refine, worker, result->outcome, result->ms + waited_ms);
+  app->desk[worker].ended_s = moved ? result->ended_s : -1;
   if (result->news.outlined) abbe_view_files_take(&app->files, &result->news);
   if (result->news.outlined) abbe_view_state_learn(&app->state, &result->news.outline);
   if (result->outcome == ABBE_VIEW_REFUSED && result->job.serial == refine->serial)
@@ -241,6 +249,8 @@ static void give_one(abbe_view_session *app, size_t worker, double now_s) {
   desk->other = other;
   if (!other) abbe_view_refine_take(&s->refine, worker, &request.job);
   if (request.turns) abbe_view_refine_forget(&s->refine, worker);
+  desk->waited_ms = 1e3 * (abbe_clock_seconds() - desk->ended_s);
+  if (!(desk->ended_s > 0 && desk->waited_ms < MOST_GAP_MS)) desk->waited_ms = 0;
   note_look(app, &request);
   abbe_view_worker_give(desk->worker, &request);
 }
@@ -313,6 +323,10 @@ static void upload(abbe_view_session *app) {
     app->texture_width = image->width;
     app->texture_height = image->height;
   }
+  const bool coarse = app->pictures.coarse > 1 && app->drawn != ABBE_VIEW_TRACED_PICTURE;
+  app->texture_coarse = coarse ? app->pictures.coarse : 1;
+  app->texture_of[0] = coarse ? app->moving.width : image->width;
+  app->texture_of[1] = coarse ? app->moving.height : image->height;
   gl->BindTexture(GL_TEXTURE_2D, app->texture);
   gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
   gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)image->width, (GLsizei)image->height, GL_RGBA,
@@ -423,6 +437,15 @@ static void draw_handles(const abbe_view_session *app) {
   abbe_ui_circle(x, y, 6.5, 0x40000000, 1);
 }
 
+/* Of a coarse picture without what lies beyond its edges. */
+static void show_texture(const abbe_view_session *app, double width, double height) {
+  const double side = app->texture_coarse > 1 ? (double)app->texture_coarse : 1;
+  const double part[2] = {
+      fmin(1, (double)app->texture_of[0] / (side * (double)app->texture_width)),
+      fmin(1, (double)app->texture_of[1] / (side * (double)app->texture_height))};
+  abbe_ui_image(app->texture, 0, 0, width, height, part);
+}
+
 void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, double now_s) {
   abbe_view_state *s = &app->state;
   const double panel = fmin(ABBE_VIEW_PANEL_WIDTH, input->width);
@@ -441,14 +464,15 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
     upload(app);
   app->input = *input;
   abbe_ui_begin(input);
-  if (app->texture != 0) abbe_ui_image(app->texture, 0, 0, width, height);
+  if (app->texture != 0) show_texture(app, width, height);
   if (room) draw_handles(app);
   abbe_ui_panel_begin("Abbe", width, 0, panel, input->height);
   abbe_view_panel_draw(app, now_s);
   abbe_ui_panel_end();
   abbe_ui_end();
   time_events(app);
-  give(app, now_s); /* what the panel has changed */
+  take_results(app); /* whoever has drawn meanwhile goes on at once; */
+  give(app, now_s);  /* and what the panel has changed */
 }
 
 double abbe_view_app_wait(abbe_view_session *app, double now_s) {

@@ -63,7 +63,8 @@ static void draw_made(const abbe_view_session *app) {
   const abbe_render_desc *d = moving ? &app->moving : &app->last.desc;
   const abbe_view_stage next = coming(&app->state.refine);
   char text[160] = " ", eye[64] = "";
-  if (moving && d->coarse != ABBE_COARSE_NONE) snprintf(eye, sizeof eye, "fewer faces; ");
+  if (moving && d->wavelengths > ABBE_COARSE_WAVELENGTHS)
+    snprintf(eye, sizeof eye, "%d wavelengths; ", ABBE_COARSE_WAVELENGTHS);
   if (moving && d->upsample > 1)
     snprintf(eye + strlen(eye), sizeof eye - strlen(eye), "%zu x %zu pixels; ", d->upsample,
              d->upsample);

@@ -89,6 +89,9 @@ static bool find_handle(const script *s, const char *name, double xy[2]) {
  * ":LEFT:TOP:RIGHT:BOTTOM" behind, in that part of it. */
 static bool find_hue(const script *s, const char *text, double xy[2]) {
   const abbe_image *image = &s->hidden.session.pictures.rendered;
+  const abbe_view_pictures *shown = &s->hidden.session.pictures;
+  const double side = shown->coarse > 1 ? (double)shown->coarse : 1;
+  const double beyond = shown->coarse > 1 ? (double)shown->beyond : 0;
   const abbe_view_pictures pictures = {.rendered = *image};
   double is[6] = {0, 0, 0, 0, INFINITY, INFINITY}, best = 0;
   for (int k = 0; k < 6; k++) {
@@ -99,7 +102,7 @@ static bool find_hue(const script *s, const char *text, double xy[2]) {
   for (size_t y = 0; image->data != NULL && y < image->height; y++)
     for (size_t x = 0; x < image->width; x++) {
       abbe_view_probe probe;
-      const double at[2] = {(double)x + 0.5, (double)y + 0.5};
+      const double at[2] = {side * ((double)x + 0.5), side * ((double)y + 0.5) - beyond};
       const float *v = &image->data[image->channels * (y * image->width + x)];
       if (at[0] < is[2] || at[1] < is[3] || at[0] > is[4] || at[1] > is[5]) continue;
       if (!(fmaxf(v[0], fmaxf(v[1], v[2])) > 1.5F * fminf(v[0], fminf(v[1], v[2])))) continue;
@@ -205,7 +208,7 @@ static void glide(script *s, const double from[2], const double to[2], double se
   for (double t = 0; t < 1;) {
     t = fmin(1, (abbe_clock_seconds() - start) / seconds);
     point(s, (const double[2]){from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])});
-    sleep_a_little();
+    abbe_view_hidden_sleep(&s->hidden, 0.005);
   }
 }
 

@@ -21,6 +21,8 @@ typedef struct abbe_view_desk {
   uint64_t serial; /* of what it does, */
   bool other; /* which is no job of cli/view/state/view_refine.h: a look, a turntable's frame */
   double stopped_s; /* when it was told to stop; below 0: it was not */
+  double ended_s;   /* when it had drawn its last moving picture, */
+  double waited_ms; /* and how long it had waited for the next one to be wanted */
 } abbe_view_desk;
 
 typedef struct abbe_view_session {
@@ -48,6 +50,8 @@ typedef struct abbe_view_session {
   size_t passes;  /* behind the traced picture */
   unsigned texture;
   size_t texture_width, texture_height;
+  size_t texture_coarse; /* pixels a side that a texel stands for, */
+  size_t texture_of[2];  /* and of the picture, across and down */
   bool stale;            /* the texture */
   abbe_view_shown drawn; /* what it shows */
   double drawn_exposure;

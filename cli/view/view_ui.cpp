@@ -263,9 +263,10 @@ double abbe_ui_panel_width(void) {
   return ImGui::GetContentRegionAvail().x;
 }
 
-void abbe_ui_image(unsigned texture, double x, double y, double width, double height) {
+void abbe_ui_image(unsigned texture, double x, double y, double width, double height,
+                   const double part[2]) {
   list()->AddImage(reinterpret_cast<ImTextureID>(static_cast<size_t>(texture)), at(x, y),
-                   at(x + width, y + height));
+                   at(x + width, y + height), at(0, 1 - part[1]), at(part[0], 1));
 }
 
 void abbe_ui_line(double x0, double y0, double x1, double y1, abbe_ui_colour colour, double width) {

@@ -132,6 +132,10 @@ static bool look_up(const abbe_display_table *t, float rgb[3]) {
     rest[k] = place - (float)node;
     at += (size_t)node * stride[k];
   }
+  if (rest[0] + rest[1] + rest[2] == 0) { /* black, where nothing is */
+    memcpy(rgb, t->node[at], 3 * sizeof *rgb);
+    return true;
+  }
   if (t->node[at][3] > most_off) return false;
   for (int i = 0; i < 3; i++) { /* the greatest first */
     const int a = i == 1 ? 1 : 0, b = a + 1;

@@ -17,13 +17,16 @@ layout(rgba32f, binding = 1) writeonly uniform image2D direct;
 layout(rgba32f, binding = 2) writeonly uniform image2D caustic;
 #endif
 uniform vec4 eye_view[6];
+uniform vec2 receiver_samples;  // across and up
 uniform int side;
 
 View own_eye_view;
+vec2 own_samples;
 
 void copy_all() {
   copy_tables();
   copy_surroundings();
+  own_samples = read_now(receiver_samples);
   own_eye_view = View(read_now(eye_view[0]), read_now(eye_view[1]), read_now(eye_view[2]), read_now(eye_view[3]),
                       read_now(eye_view[4]), read_now(eye_view[5]));
 }
@@ -56,7 +59,7 @@ const float MOST_PEAK = 4.0;
 
 // The mean of rays x rays; peaked: it is of too few.
 Shading mean_light(ivec2 at, int rays, out bool peaked) {
-  vec2 area = 1.0 / vec2(rays * imageSize(radiance));
+  vec2 area = 1.0 / (float(rays) * own_samples);
   Shading sum = Shading(vec3(0), vec3(0), vec3(0));
   vec3 most = vec3(0);
   for (int i = 0; i < rays * rays; i++) {

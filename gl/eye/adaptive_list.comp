@@ -9,6 +9,7 @@ layout(std430, binding = BINDING_ADAPTIVE_SAMPLES) buffer SampleList {
   uint samples[];  // x | y << 16
 };
 uniform sampler2DArray eye_receivers;  // distance in w; 0: nothing
+uniform vec2 receiver_samples;         // across and up
 #ifdef REFRACTORS_SEEN
 uniform usampler2D eye_owner;
 uniform sampler2DArray eye_layers;
@@ -45,7 +46,7 @@ vec3 row_sum(Row r) { return max(r.left, vec3(0)) + max(r.middle, vec3(0)) + max
 
 void main() {
   const int ROWS = 4;
-  ivec2 size = textureSize(eye_receivers, 0).xy, first = ivec2(texel_number()) * ivec2(1, ROWS);
+  ivec2 size = ivec2(receiver_samples), first = ivec2(texel_number()) * ivec2(1, ROWS);
   if (any(greaterThanEqual(first, size))) return;
   Row below = read_row(first - ivec2(0, 1), size), row = read_row(first, size);
   for (int y = first.y; y < first.y + ROWS; y++) {

@@ -21,7 +21,7 @@ abbe_result abbe_adaptive_pass_make(const abbe_receivers_pass *receivers,
                                     abbe_error *error) {
   *out = (abbe_adaptive_pass){.receivers = receivers, .refraction = refraction};
   const abbe_plan *plan = scene_of(out)->plan;
-  const size_t *samples = receivers->lighting->camera->receiver_samples;
+  const size_t *samples = receivers->lighting->camera->receiver_room;
   abbe_gpu *gpu = scene_of(out)->gpu;
   if (!abbe_plan_runs(plan, ABBE_PASS_EYE_ADAPTIVE, 0)) return ABBE_OK;
   abbe_result result = abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 4 * samples[0] * samples[1],
@@ -66,6 +66,8 @@ static void list_samples(abbe_adaptive_pass *pass) {
   abbe_gpu_clear_list(gpu, pass->samples);
   abbe_gpu_bind_storage(gpu, BINDING_ADAPTIVE_SAMPLES, pass->samples);
   gpu->gl->UseProgram(pass->list);
+  gpu->gl->Uniform2f(gpu->gl->GetUniformLocation(pass->list, "receiver_samples"),
+                     (GLfloat)samples[0], (GLfloat)samples[1]);
   abbe_gpu_bind_array(gpu, pass->list, "eye_receivers", 4, pass->receivers->colour);
   if (pass->refraction->layers != 0) {
     abbe_gpu_bind_array(gpu, pass->list, "eye_layers", 5, pass->refraction->layers);

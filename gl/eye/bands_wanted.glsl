@@ -68,7 +68,7 @@ vec3 shown_by[COARSE_BANDS];
 #endif
 
 // Those that the pixel takes: `count` from `base` on, of the coarsest level that has as many as are
-// wanted, or of level 0. REFINES: at most COARSE_BANDS, for which they are joined further.
+// wanted, or of level 0, and at most counts.eye_bands. REFINES: at most COARSE_BANDS, for which they are joined further.
 void choose_bands(out int base, out int count) {
   base = first_band(refractor);
   count = counts.wavelengths;
@@ -86,6 +86,8 @@ void choose_bands(out int base, out int count) {
     coarsen(coarser, base, count);
     joined += coarser ? 1 : 0;
   }
+#else
+  for (int k = 0; k < counts.band_levels - 1; k++) coarsen(count > counts.eye_bands, base, count);
 #endif
 }
 

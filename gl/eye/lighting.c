@@ -10,6 +10,11 @@ static void set_camera(const abbe_lighting *lighting, GLuint program) {
   abbe_view_pack(view, packed);
   gl->UniformMatrix4fv(gl->GetUniformLocation(program, "view_projection"), 1, GL_FALSE, clip);
   gl->Uniform3f(gl->GetUniformLocation(program, "eye"), packed[0], packed[1], packed[2]);
+  gl->Uniform2f(gl->GetUniformLocation(program, "eye_samples"),
+                (GLfloat)lighting->camera->samples[0], (GLfloat)lighting->camera->samples[1]);
+  gl->Uniform2f(gl->GetUniformLocation(program, "receiver_samples"),
+                (GLfloat)lighting->camera->receiver_samples[0],
+                (GLfloat)lighting->camera->receiver_samples[1]);
   GLint packed_view = gl->GetUniformLocation(program, "eye_view");
   if (packed_view >= 0) gl->Uniform4fv(packed_view, 6, packed);
 }

@@ -4,9 +4,24 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const abbe_render_desc *desc_of(const abbe_picture *picture) {
   return &picture->receivers->lighting->scene->plan->desc;
+}
+
+/* From samples to more pixels. */
+static bool enlarges(const abbe_picture *picture) {
+  const abbe_render_desc *desc = desc_of(picture);
+  return desc->upsample > 1 && desc->coarse == ABBE_COARSE_NONE;
+}
+
+void abbe_picture_size(const abbe_picture *picture, size_t out[2]) {
+  const abbe_render_desc *desc = desc_of(picture);
+  const bool as_sampled = desc->coarse != ABBE_COARSE_NONE && desc->supersample == 1;
+  const size_t *samples = picture->receivers->lighting->camera->samples;
+  out[0] = as_sampled ? samples[0] : desc->width;
+  out[1] = as_sampled ? samples[1] : desc->height;
 }
 
 abbe_result abbe_picture_make(const abbe_receivers_pass *receivers,
@@ -16,7 +31,7 @@ abbe_result abbe_picture_make(const abbe_receivers_pass *receivers,
   out->receivers = receivers;
   out->refraction = refraction;
   const abbe_render_desc *desc = desc_of(out);
-  if (desc->supersample == 1 && desc->upsample == 1) return ABBE_OK;
+  if (desc->supersample == 1 && !enlarges(out)) return ABBE_OK;
   if (desc->receiver_samples < desc->supersample)
     return refraction->merged != 0
                ? abbe_gpu_compute(gpu, "eye_merge.comp", NULL, &out->program, error)
@@ -26,7 +41,7 @@ abbe_result abbe_picture_make(const abbe_receivers_pass *receivers,
   /* Drawn, not computed: a software rasteriser stores pixel by pixel what is no target. */
   const abbe_program_stage stages[] = {
       {GL_VERTEX_SHADER, "screen.vert"},
-      {GL_FRAGMENT_SHADER, desc->upsample > 1 ? "eye_enlarge.frag" : "eye_resolve.frag"}};
+      {GL_FRAGMENT_SHADER, enlarges(out) ? "eye_enlarge.frag" : "eye_resolve.frag"}};
   return result == ABBE_OK ? abbe_gpu_program(gpu, stages, 2, "", &out->program, error) : result;
 }
 
@@ -156,6 +171,12 @@ void abbe_picture_to_xyz(abbe_image *image, size_t first) {
   }
 }
 
+/* Rows of a target, next to each other. */
+static void close_up(float *data, size_t width, size_t height, size_t room) {
+  for (size_t y = 1; y < height && room != width; y++)
+    memmove(data + 4 * width * y, data + 4 * room * y, 4 * width * sizeof *data);
+}
+
 static void read_pixels(const abbe_picture *picture, size_t channels, float *data,
                         abbe_image *out) {
   const abbe_gl *gl = picture->receivers->lighting->scene->gpu->gl;
@@ -163,6 +184,8 @@ static void read_pixels(const abbe_picture *picture, size_t channels, float *dat
   const GLenum target = resolved ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY;
   gl->BindTexture(target, resolved ? picture->pixels : picture->receivers->colour);
   gl->GetTexImage(target, 0, GL_RGBA, GL_FLOAT, data);
+  if (!resolved)
+    close_up(data, out->width, out->height, picture->receivers->lighting->camera->receiver_room[0]);
   abbe_picture_copy_flipped(data, 0, out, 0, channels, 1);
 }
 
@@ -170,9 +193,12 @@ static void read_pixels(const abbe_picture *picture, size_t channels, float *dat
 static void read_layer(const abbe_picture *picture, GLuint texture, float *data, size_t to,
                        abbe_image *out) {
   const abbe_gl *gl = picture->receivers->lighting->scene->gpu->gl;
+  const abbe_camera_view *camera = picture->receivers->lighting->camera;
   gl->BindTexture(GL_TEXTURE_2D, texture);
   gl->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, data);
-  if (desc_of(picture)->upsample > 1)
+  close_up(data, camera->receiver_samples[0], camera->receiver_samples[1],
+           camera->receiver_room[0]);
+  if (enlarges(picture))
     copy_enlarged(picture, data, out, to, 3);
   else
     abbe_picture_copy_flipped(data, 0, out, to, 3, desc_of(picture)->receiver_samples);
@@ -187,11 +213,14 @@ abbe_result abbe_picture_read(const abbe_picture *picture, bool aovs, double uni
   const abbe_render_desc *desc = desc_of(picture);
   const bool as_xyz = desc->space == ABBE_RGB_SPACE_XYZ;
   aovs = aovs && desc->aovs;
+  const size_t *room = picture->receivers->lighting->camera->receiver_room;
+  size_t size[2];
+  abbe_picture_size(picture, size);
   abbe_result result =
-      abbe_image_make(desc->width, desc->height, aovs ? 10 : 3, as_xyz ? xyz : rgb, out, error);
+      abbe_image_make(size[0], size[1], aovs ? 10 : 3, as_xyz ? xyz : rgb, out, error);
   if (result != ABBE_OK) return result;
-  const size_t side = aovs ? desc->receiver_samples : 1;
-  float *data = malloc(out->width * out->height * side * side * 4 * sizeof *data);
+  const size_t pixels = out->width * out->height, texels = room[0] * room[1];
+  float *data = malloc((pixels > texels ? pixels : texels) * 4 * sizeof *data);
   if (data == NULL) {
     abbe_image_free(out);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the picture");

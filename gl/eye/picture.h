@@ -24,7 +24,10 @@ abbe_result abbe_picture_make(const abbe_receivers_pass *receivers,
 void abbe_picture_free(abbe_picture *picture);
 abbe_result abbe_picture_run(abbe_picture *picture, abbe_error *error);
 
-/* The picture as a 2D texture, rows upward, in the space of the passes; the picture keeps it. */
+/* Its size, across and up: that of the request, or of its samples where it is coarse. */
+void abbe_picture_size(const abbe_picture *picture, size_t out[2]);
+/* The picture as a 2D texture, rows upward, in the space of the passes; the picture keeps it. It
+ * may be wider and higher. */
 GLuint abbe_picture_texture(abbe_picture *picture);
 
 /* Channels as abbe_renderer_read, in the plan's space; all but distances times `unit`. */

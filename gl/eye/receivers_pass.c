@@ -105,10 +105,7 @@ static void draw_lit_parts(abbe_receivers_pass *pass, int bottom, int top) {
 static void draw_surroundings(abbe_receivers_pass *pass) {
   const abbe_gpu_scene *scene = pass->lighting->scene;
   const abbe_gl *gl = scene->gpu->gl;
-  const size_t *samples = pass->lighting->camera->receiver_samples;
   abbe_lighting_use(pass->lighting, pass->surroundings);
-  gl->Uniform2f(gl->GetUniformLocation(pass->surroundings, "samples"), (GLfloat)samples[0],
-                (GLfloat)samples[1]);
   gl->BindVertexArray(scene->gpu->empty_array);
   gl->DrawArrays(GL_TRIANGLES, 0, 3);
 }
@@ -171,8 +168,8 @@ abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error
 static abbe_result make_targets(abbe_receivers_pass *pass, abbe_error *error) {
   const abbe_gpu_scene *scene = pass->lighting->scene;
   const abbe_render_desc *desc = &scene->plan->desc;
-  const size_t w = pass->lighting->camera->receiver_samples[0],
-               h = pass->lighting->camera->receiver_samples[1];
+  const size_t w = pass->lighting->camera->receiver_room[0],
+               h = pass->lighting->camera->receiver_room[1];
   GLint most = 0;
   scene->gpu->gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
   if (w > (size_t)most || h > (size_t)most)

@@ -49,6 +49,7 @@ layout(rgba32f, binding = 0) writeonly uniform image2D picture;  // rgb, distanc
 uniform sampler2DArray eye_layers;    // 0: front, 1: back; normal, distance
 uniform usampler2D eye_owner;         // refractor + 1
 uniform vec4 eye_view[6];
+uniform vec2 eye_samples;              // across and up
 uniform uint pixel_first, pixel_end;  // those of the list that are looked at
 
 // gl/scene/spectra/camera_bands.h: the wavelengths grouped, and grouped again by twos: level 0 holds every
@@ -70,6 +71,7 @@ uniform float pixel_angle;  // rad
 // As in receiver.glsl.
 vec4 own_eye_view[6];
 vec3 own_eye;
+vec2 own_eye_samples;
 float own_share_limit, own_pixel_angle;
 mat3 own_xyz_from_rgb;
 
@@ -78,6 +80,7 @@ void copy_all() {
   copy_surroundings();
   for (int i = 0; i < 6; i++) own_eye_view[i] = read_now(eye_view[i]);
   own_eye = read_now(eye);
+  own_eye_samples = read_now(eye_samples);
   own_share_limit = read_now(share_limit);
   own_pixel_angle = read_now(pixel_angle);
   own_xyz_from_rgb = read_now(xyz_from_rgb);
@@ -85,6 +88,7 @@ void copy_all() {
 
 #define eye_view own_eye_view
 #define eye own_eye
+#define eye_samples own_eye_samples
 #define share_limit own_share_limit
 #define pixel_angle own_pixel_angle
 #define xyz_from_rgb own_xyz_from_rgb
@@ -200,15 +204,14 @@ void look(ivec2 at);
 
 void aim_at(ivec2 at) {
   vec3 o, beside;
-  vec2 size = vec2(textureSize(eye_owner, 0));
   refractor = int(texelFetch(eye_owner, at, 0).x) - 1;
   band_set = band_set_of(at);
-  view_ray(camera_view(), (vec2(at) + 0.5) / size, o, sight);
+  view_ray(camera_view(), (vec2(at) + 0.5) / eye_samples, o, sight);
   sight_spread = no_spread();
 #ifdef KEEPS_SPREAD
-  view_ray(camera_view(), (vec2(at) + vec2(1.5, 0.5)) / size, o, beside);
+  view_ray(camera_view(), (vec2(at) + vec2(1.5, 0.5)) / eye_samples, o, beside);
   sight_spread.turn_x = beside - sight;
-  view_ray(camera_view(), (vec2(at) + vec2(0.5, 1.5)) / size, o, beside);
+  view_ray(camera_view(), (vec2(at) + vec2(0.5, 1.5)) / eye_samples, o, beside);
   sight_spread.turn_y = beside - sight;
 #endif
 }

@@ -12,6 +12,7 @@ layout(std430, binding = BINDING_PIXELS) buffer PixelList {
   uint pixel[];  // x | y << 16
 };
 uniform usampler2D eye_owner;
+uniform vec2 eye_samples;  // across and up
 uniform sampler2DArray eye_layers;
 
 #ifdef PIXEL_SIDE
@@ -22,10 +23,12 @@ layout(std430, binding = BINDING_MERGED_PIXELS) buffer MergedList {
 layout(rgba32f, binding = 0) writeonly uniform image2D colour;  // of samples
 uniform vec4 eye_view[6];
 
+vec2 own_eye_samples;
+
 bool shows_refractor(View eye, ivec2 at) {
   if (texelFetch(eye_owner, at, 0).x == 0u) return false;
   vec3 o, d;
-  view_ray(eye, (vec2(at) + 0.5) / vec2(textureSize(eye_owner, 0)), o, d);
+  view_ray(eye, (vec2(at) + 0.5) / own_eye_samples, o, d);
   float front = texelFetch(eye_layers, ivec3(at, 0), 0).w;
   return !receiver_between(o, d, 0.0, front - touch * refractor_bounds.w);
 }
@@ -33,9 +36,10 @@ bool shows_refractor(View eye, ivec2 at) {
 void main() {
   copy_tables();
   copy_surroundings();
+  own_eye_samples = read_now(eye_samples);
   View eye = View(eye_view[0], eye_view[1], eye_view[2], eye_view[3], eye_view[4], eye_view[5]);
   ivec2 at = ivec2(texel_number());
-  if (any(greaterThanEqual(PIXEL_SIDE * at, textureSize(eye_owner, 0)))) return;
+  if (any(greaterThanEqual(vec2(PIXEL_SIDE * at), own_eye_samples))) return;
   bool some = false;
   for (int k = 0; k < PIXEL_SIDE * PIXEL_SIDE; k++) {
     ivec2 place = PIXEL_SIDE * at + ivec2(k % PIXEL_SIDE, k / PIXEL_SIDE);
@@ -53,7 +57,7 @@ uniform sampler2DArray eye_receivers;  // distance in w; 0: nothing
 
 void main() {
   ivec2 at = ivec2(texel_number());
-  if (any(greaterThanEqual(at, textureSize(eye_owner, 0)))) return;
+  if (any(greaterThanEqual(vec2(at), eye_samples))) return;
   float behind = texelFetch(eye_receivers, ivec3(at, 0), 0).w;
   float front = texelFetch(eye_layers, ivec3(at, 0), 0).w;
   if (texelFetch(eye_owner, at, 0).x == 0u || (behind > 0.0 && behind < front)) return;

@@ -25,7 +25,7 @@ static bool resolves(const abbe_refraction_pass *pass) {
 
 static bool refines(const abbe_refraction_pass *pass) {
   const abbe_render_desc *desc = &scene_of(pass)->plan->desc;
-  return desc->wavelengths >= FINE_FROM && !desc->everything;
+  return desc->wavelengths >= FINE_FROM && !desc->everything && desc->coarse == ABBE_COARSE_NONE;
 }
 
 /* Where a band's path is dear, the samples of a pixel share its bands among them: half the time for
@@ -97,7 +97,7 @@ static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_v
 static abbe_result make_targets(abbe_refraction_pass *pass, abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const abbe_plan *plan = scene_of(pass)->plan;
-  const size_t w = pass->lighting->camera->samples[0], h = pass->lighting->camera->samples[1];
+  const size_t w = pass->lighting->camera->room[0], h = pass->lighting->camera->room[1];
   const size_t room = w * h < REFINE_ROOM ? w * h : REFINE_ROOM;
   abbe_result result = ABBE_OK;
   if (resolves(pass))
@@ -206,7 +206,8 @@ abbe_result abbe_refraction_pass_draw(abbe_refraction_pass *pass, abbe_error *er
                                       .width = pass->lighting->camera->samples[0],
                                       .height = pass->lighting->camera->samples[1],
                                       .back = back != 0,
-                                      .coarse = scene_of(pass)->plan->desc.coarse != 0,
+                                      .coarse =
+                                          scene_of(pass)->plan->fewer_triangles != ABBE_COARSE_NONE,
                                       .both = scene_of(pass)->plan->eye_inside != 0};
     result = abbe_refractor_faces_draw(pass->faces, &target, false, error);
     abbe_gpu_book_lap(gpu, back ? ABBE_PASS_EYE_BACK : ABBE_PASS_EYE_FRONT);
@@ -226,6 +227,8 @@ static void list_pixels(abbe_refraction_pass *pass) {
   }
   abbe_gpu_bind_storage(gpu, BINDING_PIXELS, pass->pixels);
   gpu->gl->UseProgram(pass->list);
+  gpu->gl->Uniform2f(gpu->gl->GetUniformLocation(pass->list, "eye_samples"), (GLfloat)samples[0],
+                     (GLfloat)samples[1]);
   abbe_gpu_bind_array(gpu, pass->list, "eye_layers", 4, pass->layers);
   abbe_gpu_bind_array(gpu, pass->list, "eye_receivers", 5, pass->receivers->colour);
   abbe_gpu_bind_texture(gpu, pass->list, "eye_owner", 6, pass->owner);

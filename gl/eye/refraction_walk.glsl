@@ -14,7 +14,7 @@
 #ifdef REFINES
 #define BANDS_AT_ONCE COARSE_BANDS
 #else
-#define BANDS_AT_ONCE counts.wavelengths
+#define BANDS_AT_ONCE counts.eye_bands
 #endif
 int most_segments() {
 #ifdef ROUGH

@@ -12,9 +12,19 @@ static const abbe_gpu_scene *scene_of(const abbe_haze_pass *pass) {
 
 /* ---- make ---- */
 
+/* Texels of targets, of which as many as the picture has are drawn. */
+static void room_of(const abbe_haze_pass *pass, size_t out[2]) {
+  const abbe_camera_view *camera = lighting_of(pass)->camera;
+  abbe_picture_size(pass->picture, out);
+  for (int k = 0; k < 2; k++)
+    out[k] = pass->picture->pixels != 0 ? out[k] : camera->receiver_room[k];
+}
+
 static abbe_result make_targets(abbe_haze_pass *pass, abbe_error *error) {
   const abbe_gpu_scene *scene = scene_of(pass);
-  const size_t w = scene->plan->desc.width, h = scene->plan->desc.height;
+  size_t room[2];
+  room_of(pass, room);
+  const size_t w = room[0], h = room[1];
   abbe_result result =
       abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, w, h, 0, false, &pass->scattered, error);
   if (result == ABBE_OK)
@@ -72,9 +82,17 @@ void abbe_haze_pass_free(abbe_haze_pass *pass) {
 
 static abbe_result set_target(abbe_haze_pass *pass, abbe_error *error) {
   static const int flat = -1;
-  const abbe_gpu_scene *scene = scene_of(pass);
-  return abbe_gpu_set_target(scene->gpu, &pass->scattered, &flat, 1, pass->depth,
-                             scene->plan->desc.width, scene->plan->desc.height, error);
+  size_t size[2];
+  abbe_picture_size(pass->picture, size);
+  return abbe_gpu_set_target(scene_of(pass)->gpu, &pass->scattered, &flat, 1, pass->depth, size[0],
+                             size[1], error);
+}
+
+static void set_size(const abbe_haze_pass *pass, GLuint program) {
+  const abbe_gl *gl = scene_of(pass)->gpu->gl;
+  size_t size[2];
+  abbe_picture_size(pass->picture, size);
+  gl->Uniform2f(gl->GetUniformLocation(program, "size"), (GLfloat)size[0], (GLfloat)size[1]);
 }
 
 static abbe_result clear_target(abbe_haze_pass *pass, abbe_error *error) {
@@ -110,8 +128,7 @@ static abbe_result draw_listed(void *user, size_t beams, abbe_error *error) {
   abbe_lighting_use(lighting_of(pass), pass->draw_beams);
   abbe_gpu_bind_texels(scene->gpu, pass->draw_beams, "beams", BEAM_UNIT, GL_RGBA32F,
                        pass->beams.beams);
-  gl->Uniform2f(gl->GetUniformLocation(pass->draw_beams, "size"), (GLfloat)scene->plan->desc.width,
-                (GLfloat)scene->plan->desc.height);
+  set_size(pass, pass->draw_beams);
   gl->BindVertexArray(scene->gpu->empty_array);
   gl->Enable(GL_DEPTH_TEST);
   gl->DepthMask(GL_FALSE);
@@ -153,8 +170,7 @@ static abbe_result draw_shine(abbe_haze_pass *pass, abbe_error *error) {
   abbe_lighting_use(lighting_of(pass), pass->shine);
   abbe_gpu_bind_texture(scene->gpu, pass->shine, "picture", PICTURE_UNIT,
                         abbe_picture_texture(pass->picture));
-  gl->Uniform2f(gl->GetUniformLocation(pass->shine, "size"), (GLfloat)scene->plan->desc.width,
-                (GLfloat)scene->plan->desc.height);
+  set_size(pass, pass->shine);
   gl->BindVertexArray(scene->gpu->empty_array);
   gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   gl->Enable(GL_BLEND);
@@ -172,8 +188,10 @@ static abbe_result lay_over(abbe_haze_pass *pass, abbe_error *error) {
   const abbe_picture *picture = pass->picture;
   const int layer = picture->pixels != 0 ? -1 : 0; /* of a texture, or of an array */
   const GLuint pixels = picture->pixels != 0 ? picture->pixels : picture->receivers->colour;
-  const abbe_result result = abbe_gpu_set_target(
-      scene->gpu, &pixels, &layer, 1, 0, scene->plan->desc.width, scene->plan->desc.height, error);
+  size_t size[2];
+  abbe_picture_size(picture, size);
+  const abbe_result result =
+      abbe_gpu_set_target(scene->gpu, &pixels, &layer, 1, 0, size[0], size[1], error);
   if (result != ABBE_OK) return result;
   abbe_lighting_use(lighting_of(pass), pass->over);
   abbe_gpu_bind_texture(scene->gpu, pass->over, "scattered", PICTURE_UNIT, pass->scattered);

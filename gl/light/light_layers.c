@@ -66,7 +66,7 @@ abbe_result abbe_light_layers_draw(abbe_light_layers *layers, size_t light, abbe
                                       .height = layers->side,
                                       .distance = all ? 1 : 0,
                                       .back = back != 0,
-                                      .coarse = plan->desc.coarse == ABBE_COARSE_ALL};
+                                      .coarse = plan->fewer_triangles == ABBE_COARSE_ALL};
     abbe_gpu_start_lap(gpu);
     result = abbe_refractor_faces_draw(layers->faces, &target, all, error);
     abbe_gpu_book_lap(gpu, back ? ABBE_PASS_LIGHT_BACK : ABBE_PASS_LIGHT_FRONT);

@@ -3,6 +3,13 @@
 #include <math.h>
 #include <string.h>
 
+/* Mesa's llvmpipe compiles shaders anew for textures whose sides become powers of two, or are so no
+ * longer: those of pictures that follow each other in other sizes never are. */
+static size_t room_for(size_t samples, bool coarse) {
+  while (coarse && (samples & (samples - 1)) == 0) samples++;
+  return samples;
+}
+
 void abbe_camera_view_fit(const abbe_scene *scene, const abbe_render_desc *desc,
                           abbe_camera_view *out) {
   const size_t pixels[2] = {desc->width, desc->height};
@@ -12,6 +19,9 @@ void abbe_camera_view_fit(const abbe_scene *scene, const abbe_render_desc *desc,
     out->samples[axis] = (pixels[axis] * desc->supersample + desc->upsample - 1) / desc->upsample;
     out->receiver_samples[axis] =
         desc->receiver_samples == 1 && desc->supersample > 1 ? pixels[axis] : out->samples[axis];
+    const bool coarse = desc->coarse != ABBE_COARSE_NONE;
+    out->room[axis] = room_for(out->samples[axis], coarse);
+    out->receiver_room[axis] = room_for(out->receiver_samples[axis], coarse);
   }
   for (int k = 0; k < 3; k++) forward[k] = camera->target[k] - camera->eye[k];
   abbe_view_look(camera->eye, forward, camera->up, false, &out->view);

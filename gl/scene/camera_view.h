@@ -12,7 +12,8 @@
 typedef struct abbe_camera_view {
   abbe_view view;    /* whole samples, the last of which may stand for pixels beyond the picture */
   size_t samples[2]; /* across and up; they cover the picture, and less than one of them more */
-  size_t receiver_samples[2]; /* the same of receivers */
+  size_t receiver_samples[2];       /* the same of receivers */
+  size_t room[2], receiver_room[2]; /* texels of their targets: as many, or some more */
 } abbe_camera_view;
 
 void abbe_camera_view_fit(const abbe_scene *scene, const abbe_render_desc *desc,

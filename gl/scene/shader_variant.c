@@ -205,6 +205,7 @@ static void set_counts(const abbe_shader_variant *v, const abbe_gl *gl, GLuint p
       {"counts.wavelengths", v->wavelengths},
       {"counts.bands", v->bands},
       {"counts.band_levels", v->band_levels},
+      {"counts.eye_bands", v->eye_bands},
       {"counts.exits", v->exits},
       {"counts.slots", v->slots},
       {"counts.hit_stride", v->hit_stride},

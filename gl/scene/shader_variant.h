@@ -33,6 +33,7 @@ typedef struct abbe_shader_variant {
   bool copies;         /* a software rasteriser: tables are copied first (copies.glsl) */
   /* the picture */
   bool aovs;
+  size_t eye_bands;     /* of a pixel at the most, where they are not refined */
   size_t pixel_threads; /* threads of a pixel (refraction_threads.glsl) */
   /* the map */
   bool wide;

@@ -67,6 +67,7 @@ vec4 own_shadow_plane[SHADOW_PLANES];
 
 // Uniforms by themselves cost as much, and a plain copy of one is taken for another name of it. This is none.
 float read_now(float x) { return max(x, x); }
+vec2 read_now(vec2 x) { return max(x, x); }
 vec3 read_now(vec3 x) { return max(x, x); }
 vec4 read_now(vec4 x) { return max(x, x); }
 mat3 read_now(mat3 m) { return mat3(read_now(m[0]), read_now(m[1]), read_now(m[2])); }

@@ -5,6 +5,7 @@
 struct Counts {
   int wavelengths;
   int bands, band_levels;  // of a refractor: bands of all levels together, and levels (bands_wanted.glsl)
+  int eye_bands;           // of these, that a pixel takes at the most
   int exits;               // interfaces that a path inside a refractor meets at the most
   int slots;               // hits that a photon has room for at a wavelength
   int hit_stride;          // wavelengths for which a photon's hits have room
@@ -23,6 +24,7 @@ int read_count(int x) { return max(x, x); }
 
 void copy_counts() {
   own_counts = Counts(read_count(counts.wavelengths), read_count(counts.bands), read_count(counts.band_levels),
+                      read_count(counts.eye_bands),
                       read_count(counts.exits), read_count(counts.slots), read_count(counts.hit_stride),
                       read_count(counts.nodes), read_count(counts.map_levels), read_count(counts.tile_blocks),
                       read_count(counts.chart_sides), read_count(counts.receiver_root));

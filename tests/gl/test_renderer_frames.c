@@ -69,11 +69,13 @@ static void test_the_baseline_leaves_the_picture(void **state) {
 }
 
 /* One sample for 2 x 2 pixels is a picture of half the size, and between its pixels what lies
- * between them; where sides are odd the last sample stands for what is left. */
+ * between them, or, of what moves, left to who shows it; where sides are odd the last sample stands
+ * for what is left. */
 static void test_fewer_samples_than_pixels(void **state) {
   (void)state;
+  enum { KINDS = 5 };
   abbe_scene scene = {0};
-  abbe_image coarse = {0}, half = {0}, odd = {0}, fine = {0};
+  abbe_image coarse = {0}, half = {0}, odd = {0}, fine = {0}, moving = {0};
   load_shipped("sphere", &scene);
   abbe_render_desc desc = {.width = 64,
                            .height = 48,
@@ -82,14 +84,16 @@ static void test_fewer_samples_than_pixels(void **state) {
                            .wavelengths = 3,
                            .aovs = true,
                            .upsample = 2};
-  abbe_image *const out[] = {&coarse, &half, &odd, &fine};
-  const size_t sizes[][2] = {{64, 48}, {32, 24}, {63, 47}, {63, 47}}, up[] = {2, 1, 2, 1};
-  for (size_t i = 0; i < 4; i++) {
+  abbe_image *const out[KINDS] = {&coarse, &half, &odd, &fine, &moving};
+  const size_t sizes[KINDS][2] = {{64, 48}, {32, 24}, {63, 47}, {63, 47}, {64, 48}},
+               up[KINDS] = {2, 1, 2, 1, 2};
+  for (size_t i = 0; i < KINDS; i++) {
     desc.width = sizes[i][0];
     desc.height = sizes[i][1];
     desc.upsample = up[i];
     desc.supersample = i == 3 ? 4 : 1;
     desc.adaptive = i == 1 ? 1 : 0; /* as with upsample */
+    desc.coarse = i == 4 ? ABBE_COARSE_EYE : ABBE_COARSE_NONE;
     abbe_renderer *renderer = make_renderer(&scene, &desc);
     draw_frame(renderer);
     read_picture(renderer, true, out[i]);
@@ -112,11 +116,12 @@ static void test_fewer_samples_than_pixels(void **state) {
         worst = fmax(worst, fabs(sum - (double)coarse.data[(y * 64 + x) * coarse.channels + c]) /
                                 fmax(fabs(sum), 1e-3));
       }
+  assert_same_pixels(&moving, &half);
   const double mean = image_sum(&odd, 1) / image_sum(&fine, 1);
   print_message("off by %.2g at the most, odd sides %.4f of the light\n", worst, mean);
   assert_true(worst < 1e-5);
   assert_true(fabs(mean - 1) < 0.01);
-  for (size_t i = 0; i < 4; i++) abbe_image_free(out[i]);
+  for (size_t i = 0; i < KINDS; i++) abbe_image_free(out[i]);
   abbe_scene_free(&scene);
 }
 

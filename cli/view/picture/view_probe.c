@@ -42,11 +42,13 @@ void abbe_view_probe_make(const abbe_view_pictures *p, const size_t pixel[2],
   const abbe_image *image = p->traced.data != NULL ? &p->traced : &p->rendered;
   double matrix[9], rgb[3];
   *out = (abbe_view_probe){.traced = p->traced.data != NULL};
+  const size_t side = out->traced || p->coarse == 0 ? 1 : p->coarse;
+  const size_t x = pixel[0] / side, y = (pixel[1] + (side > 1 ? p->beyond : 0)) / side;
   size_t channel[3];
-  if (image->data == NULL || !abbe_view_channels(image, "", channel) || pixel[0] >= image->width ||
-      pixel[1] >= image->height)
+  if (image->data == NULL || !abbe_view_channels(image, "", channel) || x >= image->width ||
+      y >= image->height)
     return;
-  const size_t at = pixel[1] * image->width + pixel[0];
+  const size_t at = y * image->width + x;
   for (size_t k = 0; k < 3; k++) rgb[k] = (double)image->data[at * image->channels + channel[k]];
   abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
   abbe_rgb_space_apply(matrix, rgb, out->xyz);

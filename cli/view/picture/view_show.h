@@ -16,7 +16,9 @@
 /* Zeroed images are not there yet. */
 typedef struct abbe_view_pictures {
   abbe_image rendered, layers, error, traced; /* layers: direct.*, caustic.* of the same size */
-  abbe_image map;                             /* X, Y, Z of a light's texels */
+  size_t coarse;  /* pixels a side that one of rendered stands for, while things move; 0: one */
+  size_t beyond;  /* pixels by which it is higher than the picture then, above it */
+  abbe_image map; /* X, Y, Z of a light's texels */
 } abbe_view_pictures;
 void abbe_view_pictures_free(abbe_view_pictures *pictures);
 
@@ -32,7 +34,6 @@ abbe_view_shown abbe_view_shown_of(const abbe_view_pictures *pictures, abbe_view
  * which is quicker; may be NULL. ABBE_NO_MEMORY; errors of abbe_display_apply. */
 abbe_result abbe_view_show(const abbe_view_pictures *pictures, abbe_view_shown shown,
                            double exposure, const abbe_display *display,
-                           const abbe_display_table *table, unsigned char **out,
-                           abbe_error *error);
+                           const abbe_display_table *table, unsigned char **out, abbe_error *error);
 
 #endif

@@ -11,11 +11,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#define ABBE_VIEW_MOVING_MS 50.0 /* of a picture and what it takes to make it, 20 a second */
-#define ABBE_VIEW_TURNING_MS                                                                       \
-  32.0                        /* where its light is kept: 30 a second, with the way to the screen */
-#define ABBE_VIEW_EYE_STEPS 4 /* 0: a sample a pixel, then one for 2 x 2, 3 x 3, 4 x 4 */
-#define ABBE_VIEW_LIGHT_STEPS 4 /* 0: the draft's photons, then half as many each */
+#define ABBE_VIEW_MOVING_MS 49.0  /* from one picture to the next where light moves, 20 a second */
+#define ABBE_VIEW_TURNING_MS 31.0 /* where its light is kept, 30 a second */
+#define ABBE_VIEW_EYE_STEPS 4     /* 0: a sample a pixel, then one for 2 x 2, 3 x 3, 4 x 4 */
+#define ABBE_VIEW_LIGHT_STEPS 4   /* 0: the draft's photons, then half as many each */
 
 /* Zeroed: nothing is known. */
 typedef struct abbe_view_pace {

@@ -59,7 +59,7 @@ static abbe_view_stage stage_after(const abbe_view_refine *refine) {
   return refine->stage == ABBE_VIEW_TRACED ? ABBE_VIEW_NONE : (abbe_view_stage)(refine->stage + 1);
 }
 
-/* Whether it knows all programs of what moves in such light. */
+/* Whether it knows the programs of what moves in such light. */
 static bool is_ready(const abbe_view_hand *hand, abbe_view_stage light) {
   return (hand->ready >> light & 1) != 0;
 }
@@ -75,9 +75,7 @@ static abbe_view_job job_of(const abbe_view_refine *refine, size_t worker, abbe_
     job.light_step = hand->light_step;
   }
   if (job.light != ABBE_VIEW_MOVING) job.light_step = 0;
-  /* coarser pictures have programs of their own */
-  if (stage == ABBE_VIEW_MOVING && (is_ready(hand, job.light) || refine->last == ABBE_VIEW_MOVING))
-    job.eye_step = refine->pace.eye_step;
+  if (stage == ABBE_VIEW_MOVING) job.eye_step = refine->pace.eye_step;
   return job;
 }
 
@@ -156,7 +154,7 @@ static void learn(abbe_view_refine *refine, abbe_view_hand *hand) {
     hand->rests = job->stage;
     refine->made = (size_t)(hand - refine->hand);
   }
-  if (job->warms) hand->ready |= 1u << job->light;
+  if (job->stage == ABBE_VIEW_MOVING) hand->ready |= 1u << job->light;
 }
 
 /* The one with the better light, or with the programs of what moves where neither is better. */

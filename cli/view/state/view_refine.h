@@ -55,7 +55,7 @@ typedef struct abbe_view_job {
   size_t light_step;     /* of a moving light */
   size_t eye_step;       /* of a moving picture */
   size_t pass;           /* traced: how many passes there are before it */
-  bool warms;            /* moving pictures of all steps for their programs' sake: none is shown */
+  bool warms;            /* a moving picture for its programs' sake, which is not shown */
 } abbe_view_job;
 
 typedef enum abbe_view_outcome {
@@ -73,8 +73,8 @@ typedef struct abbe_view_hand {
   abbe_view_stage light; /* that it holds for this scene; NONE: none */
   size_t light_step;     /* of that */
   /* for its programs: */
-  unsigned ready; /* it has drawn moving pictures of all steps with such lights, a bit each, */
-  abbe_view_stage moved; /* and one of them with this light last; */
+  unsigned ready;        /* it has drawn moving pictures with such lights, a bit each, */
+  abbe_view_stage moved; /* with this one last; */
   abbe_view_stage rests; /* and this stage with the light that it holds, whatever the camera */
 } abbe_view_hand;
 
@@ -109,7 +109,8 @@ void abbe_view_refine_take(abbe_view_refine *refine, size_t worker, const abbe_v
 double abbe_view_refine_wait(const abbe_view_refine *refine, double now_s);
 /* Whether what a worker does is to stop. */
 bool abbe_view_refine_cancels(const abbe_view_refine *refine, size_t worker);
-/* What came of its job, and how long it took. Whether its picture is to be shown. */
+/* What came of its job, and how long it took since the picture before, where that moved too.
+ * Whether its picture is to be shown. */
 bool abbe_view_refine_end(abbe_view_refine *refine, size_t worker, abbe_view_outcome outcome,
                           double ms);
 /* A worker has drawn what was no job of these: what it holds is not known any more. */

@@ -185,22 +185,6 @@ static abbe_result draw(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
   return ABBE_OK;
 }
 
-/* Moving pictures of all steps, the finest last: programs depend on whether a sample is more than a
- * pixel, and llvmpipe's on whether the samples of a side are a power of two. */
-static abbe_result draw_steps(abbe_view_worker *w, const abbe_view_request *q,
-                              abbe_view_result *out, abbe_error *error) {
-  abbe_view_request step = *q;
-  abbe_result result = ABBE_OK;
-  for (size_t eye = 3; eye-- > 0 && result == ABBE_OK;) {
-    step.job.eye_step = eye;
-    abbe_image_free(&out->picture);
-    result = draw(w, &step, out, error);
-    if (result == ABBE_OK && w->stop)
-      result = abbe_error_set(error, ABBE_CANCELLED, "no more of them are wanted");
-  }
-  return result;
-}
-
 /* The mean of the accurate picture and of others that it could have been. */
 static abbe_result draw_mean(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out,
                              abbe_error *error) {
@@ -286,7 +270,6 @@ static abbe_result make(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
   if (result != ABBE_OK) return result;
   return q->job.stage == ABBE_VIEW_TRACED ? trace(w, q, out, error)
          : q->job.stage == ABBE_VIEW_MEAN ? draw_mean(w, q, out, error)
-         : q->job.warms                   ? draw_steps(w, q, out, error)
                                           : draw(w, q, out, error);
 }
 

@@ -32,7 +32,8 @@ extern "C" {
   X(EYE_FRONT_AND_BACK, EYE, "eye: refractor layers", has_lamp(p) && p->camera_sees_refractor)     \
   X(EYE_ADAPTIVE, EYE, "eye: adaptive samples", p->desc.adaptive > 1)                              \
   X(EYE_REFRACTION, EYE, "eye: refraction", p->camera_sees_refractor)                              \
-  X(EYE_PICTURE, EYE, "eye: picture", p->desc.supersample > 1 || p->desc.upsample > 1)             \
+  X(EYE_PICTURE, EYE, "eye: picture",                                                              \
+    p->desc.supersample > 1 || (p->desc.upsample > 1 && p->desc.coarse == ABBE_COARSE_NONE))       \
   X(EYE_HAZE, EYE, "eye: haze", p->hazy)
 
 /* X(id, text, condition): models and facts that passes rest on; i is the index of the scene's

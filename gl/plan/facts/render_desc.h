@@ -118,9 +118,13 @@ typedef enum abbe_model {
       ABBE_MODEL_COUNT
 } abbe_model;
 
-/* Whose views of refractors, which tell what each shows of them and, by layers, what is behind,
- * are drawn of fewer triangles where meshes have many: for pictures of what moves. */
+/* For pictures of what moves, and for whose sake they are coarser: nobody's, the camera's, or
+ * light's too. Views of refractors, which tell what each shows of them and, by layers, what is
+ * behind, are drawn of fewer triangles where meshes have many. The camera takes at most
+ * ABBE_COARSE_WAVELENGTHS of a pixel, and programs are the same for any `upsample`, so that
+ * pictures of more or fewer samples follow each other without a pause. */
 typedef enum abbe_coarse { ABBE_COARSE_NONE, ABBE_COARSE_EYE, ABBE_COARSE_ALL } abbe_coarse;
+#define ABBE_COARSE_WAVELENGTHS 7
 
 #define ABBE_RENDER_MAX_SIDE 8192
 #define ABBE_RENDER_MAX_PHOTONS 4096 /* a side */

@@ -35,14 +35,16 @@ static void test_the_time_is_kept_where_it_can_be(void **state) {
       for (size_t e = 0; e < PARTS; e++) {
         const machine m = {parts[f], parts[l], parts[e]};
         abbe_view_pace p = {0};
-        const bool can =
-            time_of(&m, ABBE_VIEW_LIGHT_STEPS - 1, ABBE_VIEW_EYE_STEPS - 1, true) <= 50;
+        const bool can = time_of(&m, ABBE_VIEW_LIGHT_STEPS - 1, ABBE_VIEW_EYE_STEPS - 1, true) <=
+                         ABBE_VIEW_MOVING_MS;
         draw(&p, &m, true, 20);
         const double ms = time_of(&m, p.light_step, p.eye_step, true);
-        if (can && ms > 50) fail_msg("%g + %g + %g: %g ms", m.fixed, m.light, m.eye, ms);
-        if (time_of(&m, 0, 0, true) <= 50) assert_int_equal(p.light_step + p.eye_step, 0);
+        if (can && ms > ABBE_VIEW_MOVING_MS)
+          fail_msg("%g + %g + %g: %g ms", m.fixed, m.light, m.eye, ms);
+        if (time_of(&m, 0, 0, true) <= ABBE_VIEW_MOVING_MS)
+          assert_int_equal(p.light_step + p.eye_step, 0);
         int late = 0; /* finer ones are tried now and then */
-        for (int i = 0; i < 48; i++) late += draw(&p, &m, true, 1) > 50;
+        for (int i = 0; i < 48; i++) late += draw(&p, &m, true, 1) > ABBE_VIEW_MOVING_MS;
         if (can && late > 6) fail_msg("%g + %g + %g: %d late", m.fixed, m.light, m.eye, late);
       }
 }
@@ -101,7 +103,7 @@ static void test_times_that_change(void **state) {
   assert_int_equal(p.light_step + p.eye_step, 0);
   for (int turn = 0; turn < 3; turn++) {
     draw(&p, &busy, true, 6);
-    assert_true(time_of(&busy, p.light_step, p.eye_step, true) <= 50);
+    assert_true(time_of(&busy, p.light_step, p.eye_step, true) <= ABBE_VIEW_MOVING_MS);
     draw(&p, &quiet, true, 6);
     assert_int_equal(p.light_step + p.eye_step, 0);
   }

@@ -82,7 +82,8 @@ static void test_colours_are_nearly_those_of_the_transform(void **state) {
 static void test_colours_beyond_it_are_exact(void **state) {
   (void)state;
   static const float beyond[][3] = {
-      {-0.01F, 0.2F, 0.5F}, {70, 1, 1}, {1e30F, 1, 0}, {0.1F, 0.1F, INFINITY}, {NAN, 0.5F, 0.5F}};
+      {-0.01F, 0.2F, 0.5F},   {70, 1, 1},        {1e30F, 1, 0},
+      {0.1F, 0.1F, INFINITY}, {NAN, 0.5F, 0.5F}, {0, 0, 0}}; /* the last one is its own node */
   abbe_display *display = NULL;
   abbe_image image, exact, quick;
   make_display(NULL, NULL, &display);

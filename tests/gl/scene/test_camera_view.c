@@ -39,6 +39,27 @@ static void the_last_sample_may_stand_out(void **state) {
   }
 }
 
+/* Targets of pictures that follow each other in other sizes are all of one kind to a driver. */
+static void targets_of_coarse_pictures_are_no_power_of_two(void **state) {
+  (void)state;
+  static const size_t heights[] = {1, 2, 64, 100, 255};
+  abbe_render_desc desc = {.width = 512, .supersample = 1};
+  for (size_t i = 0; i < sizeof heights / sizeof *heights; i++)
+    for (desc.upsample = 1; desc.upsample <= 4; desc.upsample++)
+      for (int coarse = ABBE_COARSE_NONE; coarse <= ABBE_COARSE_EYE; coarse++) {
+        abbe_camera_view camera;
+        desc.height = heights[i];
+        desc.coarse = (abbe_coarse)coarse;
+        fit(&desc, acos(0), &camera);
+        for (int axis = 0; axis < 2; axis++) {
+          const size_t samples = camera.samples[axis], room = camera.room[axis];
+          assert_int_equal(camera.receiver_room[axis], room);
+          assert_in_range(room, samples, samples + (coarse ? samples < 2 ? 2 : 1 : 0));
+          assert_true(coarse == ABBE_COARSE_NONE || (room & (room - 1)) != 0);
+        }
+      }
+}
+
 /* By a part of a sample, of which two make a pixel; nothing else moves. */
 static void a_shift_moves_the_window(void **state) {
   (void)state;
@@ -54,8 +75,10 @@ static void a_shift_moves_the_window(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(the_window_is_the_field_of_view),
-                                     cmocka_unit_test(the_last_sample_may_stand_out),
-                                     cmocka_unit_test(a_shift_moves_the_window)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_window_is_the_field_of_view),
+      cmocka_unit_test(the_last_sample_may_stand_out),
+      cmocka_unit_test(targets_of_coarse_pictures_are_no_power_of_two),
+      cmocka_unit_test(a_shift_moves_the_window)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
