@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* Words are mixed in one after another, by a multiplication and a shift. */
-uint64_t abbe_digest(uint64_t h, const void *data, size_t size) {
+static inline uint64_t mix(uint64_t h, const void *data, size_t size) {
   const unsigned char *at = data;
   for (; size > 0;) {
     uint64_t word = 0;
@@ -18,15 +18,18 @@ uint64_t abbe_digest(uint64_t h, const void *data, size_t size) {
   return h;
 }
 
+uint64_t abbe_digest(uint64_t h, const void *data, size_t size) {
+  return mix(h, data, size);
+}
+
 /* Four at a time, none of which waits for another. */
 uint64_t abbe_digest_long(uint64_t h, const void *data, size_t size) {
   const unsigned char *bytes = data;
   const size_t quarter = size / 4 / sizeof h * sizeof h;
   uint64_t part[4] = {h, h + 1, h + 2, h + 3};
   for (size_t at = 0; at < quarter; at += sizeof h)
-    for (size_t k = 0; k < 4; k++)
-      part[k] = abbe_digest(part[k], bytes + k * quarter + at, sizeof h);
-  return abbe_digest(abbe_digest(h, part, sizeof part), bytes + 4 * quarter, size - 4 * quarter);
+    for (size_t k = 0; k < 4; k++) part[k] = mix(part[k], bytes + k * quarter + at, sizeof h);
+  return mix(mix(h, part, sizeof part), bytes + 4 * quarter, size - 4 * quarter);
 }
 
 uint64_t abbe_digest_array(uint64_t h, const void *data, size_t count, size_t size) {

@@ -180,8 +180,12 @@ bool abbe_view_refine_end(abbe_view_refine *refine, size_t worker, abbe_view_out
     return false;
   }
   /* the first one may have compiled, which does not last */
-  if (job->stage == ABBE_VIEW_MOVING && !job->warms && hand->moved == job->light)
-    abbe_view_pace_take(&refine->pace, job->light_step, job->eye_step, lit, ms);
+  if (job->stage == ABBE_VIEW_MOVING && !job->warms) {
+    if (hand->moved == job->light)
+      abbe_view_pace_take(&refine->pace, job->light_step, job->eye_step, lit, ms);
+    else if (refine->pace.ms == 0) /* nothing is known: what is too coarse is not so for long */
+      refine->pace.eye_step = 1;
+  }
   if (job->stage == ABBE_VIEW_MOVING) hand->moved = job->light;
   /* light of an older scene is no light for this one */
   if (is_of_scene && job->stage != ABBE_VIEW_TRACED)
