@@ -1,6 +1,6 @@
 #include "gl/renderer_inputs.h"
 
-#include "base/digest.h"
+#include "scenes/digest.h"
 #include "gl/pinholes/pinhole_samples.h"
 
 #include <string.h>

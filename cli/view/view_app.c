@@ -305,7 +305,7 @@ static void upload(abbe_view_session *app) {
   app->drawn_exposure = app->state.exposure;
   app->stale = false;
   const bool moving = app->stage == ABBE_VIEW_MOVING;
-  if (moving && app->table == NULL && app->texture != 0) /* the first picture is not kept waiting */
+  if (app->table == NULL && app->texture != 0) /* the first picture is not kept waiting */
     abbe_display_table_make(app->display, &app->table, NULL);
   if (abbe_view_show(&app->pictures, app->drawn, app->drawn_exposure, app->display,
                      moving ? app->table : NULL, &pixels, &error) != ABBE_OK) {
@@ -323,10 +323,9 @@ static void upload(abbe_view_session *app) {
     app->texture_width = image->width;
     app->texture_height = image->height;
   }
-  const bool coarse = app->pictures.coarse > 1 && app->drawn != ABBE_VIEW_TRACED_PICTURE;
-  app->texture_coarse = coarse ? app->pictures.coarse : 1;
-  app->texture_of[0] = coarse ? app->moving.width : image->width;
-  app->texture_of[1] = coarse ? app->moving.height : image->height;
+  const double side = (double)fmax(1, (double)app->pictures.coarse);
+  app->texture_part[0] = side > 1 ? (double)app->moving.width / (side * (double)image->width) : 1;
+  app->texture_part[1] = side > 1 ? (double)app->moving.height / (side * (double)image->height) : 1;
   gl->BindTexture(GL_TEXTURE_2D, app->texture);
   gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
   gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)image->width, (GLsizei)image->height, GL_RGBA,
@@ -437,15 +436,6 @@ static void draw_handles(const abbe_view_session *app) {
   abbe_ui_circle(x, y, 6.5, 0x40000000, 1);
 }
 
-/* Of a coarse picture without what lies beyond its edges. */
-static void show_texture(const abbe_view_session *app, double width, double height) {
-  const double side = app->texture_coarse > 1 ? (double)app->texture_coarse : 1;
-  const double part[2] = {
-      fmin(1, (double)app->texture_of[0] / (side * (double)app->texture_width)),
-      fmin(1, (double)app->texture_of[1] / (side * (double)app->texture_height))};
-  abbe_ui_image(app->texture, 0, 0, width, height, part);
-}
-
 void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, double now_s) {
   abbe_view_state *s = &app->state;
   const double panel = fmin(ABBE_VIEW_PANEL_WIDTH, input->width);
@@ -464,7 +454,7 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
     upload(app);
   app->input = *input;
   abbe_ui_begin(input);
-  if (app->texture != 0) show_texture(app, width, height);
+  if (app->texture != 0) abbe_ui_image(app->texture, 0, 0, width, height, app->texture_part);
   if (room) draw_handles(app);
   abbe_ui_panel_begin("Abbe", width, 0, panel, input->height);
   abbe_view_panel_draw(app, now_s);

@@ -50,10 +50,9 @@ typedef struct abbe_view_session {
   size_t passes;  /* behind the traced picture */
   unsigned texture;
   size_t texture_width, texture_height;
-  size_t texture_coarse; /* pixels a side that a texel stands for, */
-  size_t texture_of[2];  /* and of the picture, across and down */
-  bool stale;            /* the texture */
-  abbe_view_shown drawn; /* what it shows */
+  double texture_part[2]; /* of it, across and up, that is the picture */
+  bool stale;             /* the texture */
+  abbe_view_shown drawn;  /* what it shows */
   double drawn_exposure;
   abbe_view_probe probe;
   abbe_view_feed *feed; /* of the pixel; NULL: not known */

@@ -1,6 +1,6 @@
 #include "scenes/environment/environment.h"
 
-#include "base/digest.h"
+#include "scenes/digest.h"
 #include "scenes/geometry/transform.h"
 #include "scenes/geometry/vector.h"
 

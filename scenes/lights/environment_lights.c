@@ -1,6 +1,6 @@
 #include "scenes/lights/environment_lights.h"
 
-#include "base/digest.h"
+#include "scenes/digest.h"
 #include "colorimetry/upsampling.h"
 #include "scenes/geometry/vector.h"
 

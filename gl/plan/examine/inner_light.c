@@ -1,6 +1,6 @@
 #include "gl/plan/examine/inner_light.h"
 
-#include "base/digest.h"
+#include "scenes/digest.h"
 #include "gl/plan/examine/material_range.h"
 #include "gl/plan/examine/reach.h"
 #include "scenes/geometry/vector.h"

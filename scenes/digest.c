@@ -1,4 +1,4 @@
-#include "base/digest.h"
+#include "scenes/digest.h"
 
 #include <stdbool.h>
 #include <string.h>
