@@ -1,7 +1,7 @@
 #include "gl/renderer_inputs.h"
 
-#include "scenes/digest.h"
 #include "gl/pinholes/pinhole_samples.h"
+#include "scenes/geometry/digest.h"
 
 #include <string.h>
 

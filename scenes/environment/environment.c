@@ -1,6 +1,6 @@
 #include "scenes/environment/environment.h"
 
-#include "scenes/digest.h"
+#include "scenes/geometry/digest.h"
 #include "scenes/geometry/transform.h"
 #include "scenes/geometry/vector.h"
 

@@ -35,7 +35,7 @@ typedef struct abbe_environment {
   abbe_illuminant illuminant;
   char *illuminant_path; /* the file that it is of, or NULL */
 
-  uint64_t map_digest;     /* of the map's texels (scenes/digest.h) */
+  uint64_t map_digest;     /* of the map's texels (scenes/geometry/digest.h) */
   double mean[3];          /* of the radiance, over the sphere */
   double luminance;        /* integral over the sphere of Rec.709's luminance of the RGB, > 0 */
   abbe_alias_table texels; /* drawn by luminance x solid angle */

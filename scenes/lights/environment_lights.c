@@ -1,7 +1,7 @@
 #include "scenes/lights/environment_lights.h"
 
-#include "scenes/digest.h"
 #include "colorimetry/upsampling.h"
+#include "scenes/geometry/digest.h"
 #include "scenes/geometry/vector.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 #include "gl/plan/examine/inner_light.h"
 
-#include "scenes/digest.h"
 #include "gl/plan/examine/material_range.h"
 #include "gl/plan/examine/reach.h"
+#include "scenes/geometry/digest.h"
 #include "scenes/geometry/vector.h"
 #include "spectral/optics.h"
 

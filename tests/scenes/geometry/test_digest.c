@@ -1,7 +1,7 @@
 /* A number of bytes: each of them counts, and where they are, and how many. */
 #include "tests/check.h"
 
-#include "scenes/digest.h"
+#include "scenes/geometry/digest.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* digest.h: a number that tells whether parts of a scene have changed. Not for who may forge them.
  */
-#ifndef ABBE_SCENES_DIGEST_H
-#define ABBE_SCENES_DIGEST_H
+#ifndef ABBE_SCENES_GEOMETRY_DIGEST_H
+#define ABBE_SCENES_GEOMETRY_DIGEST_H
 
 #include <stdbool.h>
 #include <stddef.h>
