@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/number.h"
+#include "base/yaml/yaml_quote.h"
 #include "cli/view/view_chart.h"
 #include "cli/view/view_keep.h"
 #include "cli/view/view_turn.h"
@@ -103,21 +104,22 @@ static void draw_object(abbe_view_session *app, const abbe_view_object *object, 
                         double now_s) {
   abbe_view_state *s = &app->state;
   const abbe_view_outline *o = &s->outline;
-  char key[ABBE_VIEW_KEY + 16], label[ABBE_VIEW_NAME + 16], name[512];
+  char key[ABBE_VIEW_KEY + 16], label[ABBE_VIEW_NAME + 16], *value = NULL;
   const size_t count = object->mirror ? o->metal_count : o->stone_count;
   char *const *names = object->mirror ? o->metal : o->stone;
   size_t at = 0;
   snprintf(key, sizeof key, "%s.%s", object->key, object->mirror ? "mirror" : "material");
   const char *set = abbe_view_document_value(abbe_view_history_now(&s->history), key);
   const char *is = set != NULL ? set : object->material;
-  while (at < count && strcmp(names[at], is) != 0 &&
-         !(abbe_view_document_name(names[at], name, sizeof name) && strcmp(name, is) == 0))
-    at++;
+  while (at < count && strcmp(names[at], is) != 0) at++;
+  if (at == count) /* in quotes */
+    for (at = 0; at < count && strcmp(names[at], object->material) != 0;) at++;
   snprintf(label, sizeof label, "%s, of", object->name);
   abbe_ui_scope_begin(object->key);
   if (abbe_ui_choose(label, (const char *const *)names, count, &at) &&
-      abbe_view_document_name(names[at], name, sizeof name))
-    abbe_view_state_set(s, key, name, false, now_s);
+      abbe_yaml_quote_make(names[at], &value, NULL) == ABBE_OK)
+    abbe_view_state_set(s, key, value, false, now_s);
+  free(value);
   for (size_t k = 0; k < object->value_count; k++)
     slide(app, &object->value[k], one_of_many ? object->name : "", false, now_s);
   abbe_ui_scope_end();

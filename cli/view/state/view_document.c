@@ -77,23 +77,6 @@ const char *abbe_view_document_value(const abbe_view_document *document, const c
   return NULL;
 }
 
-bool abbe_view_document_name(const char *name, char *out, size_t size) {
-  static const char plain[] =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.+()-";
-  size_t used = 0;
-  if (name[0] != '-' && strspn(name, plain) == strlen(name))
-    return snprintf(out, size, "%s", name) < (int)size;
-  if (2 * strlen(name) + 3 > size) return false;
-  out[used++] = '\'';
-  for (; *name != '\0'; name++) {
-    if (*name == '\'') out[used++] = '\'';
-    out[used++] = *name;
-  }
-  out[used++] = '\'';
-  out[used] = '\0';
-  return true;
-}
-
 void abbe_view_document_point(double point[3], char *out, size_t size) {
   abbe_number_format(out, size, "[%.6g, %.6g, %.6g]", point[0], point[1], point[2]);
   for (int k = 0; k < 3; k++) {

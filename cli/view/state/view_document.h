@@ -40,9 +40,6 @@ abbe_result abbe_view_document_set(abbe_view_document *document, const char *key
 /* What a key was set to, or NULL. */
 const char *abbe_view_document_value(const abbe_view_document *document, const char *key);
 
-/* A name as a value of YAML: in quotes where it would be something else. False: it has no room. */
-bool abbe_view_document_name(const char *name, char *out, size_t size);
-
 /* "[x, y, z]" with six digits, which read back as *numbers are then. */
 void abbe_view_document_point(double point[3], char *out, size_t size);
 

@@ -56,19 +56,6 @@ static void test_points_are_what_is_written(void **state) {
   assert_true(p[0] == 0.333333 && p[1] == -6.66667e-08 && p[2] == 123457);
 }
 
-static void test_names_are_values(void **state) {
-  (void)state;
-  static const char *const as[][2] = {
-      {"n-bk7", "n-bk7"}, {"Al2O3_(o)", "Al2O3_(o)"}, {"glass: no 2 # x", "'glass: no 2 # x'"},
-      {"[a]", "'[a]'"},   {"- a", "'- a'"},           {"Abbe's", "'Abbe''s'"}};
-  char text[40];
-  for (size_t i = 0; i < sizeof as / sizeof *as; i++) {
-    assert_true(abbe_view_document_name(as[i][0], text, sizeof text));
-    assert_string_equal(text, as[i][1]);
-  }
-  assert_false(abbe_view_document_name("a name without any room", text, sizeof text));
-}
-
 static void test_what_differs(void **state) {
   (void)state;
   abbe_view_document a = gem(), b = gem();
@@ -161,7 +148,6 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_key_has_one_value),
                                      cmocka_unit_test(test_one_change_too_many_is_refused),
                                      cmocka_unit_test(test_points_are_what_is_written),
-                                     cmocka_unit_test(test_names_are_values),
                                      cmocka_unit_test(test_what_differs),
                                      cmocka_unit_test(test_there_and_back),
                                      cmocka_unit_test(test_the_oldest_steps_are_forgotten)};
