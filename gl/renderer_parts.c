@@ -131,8 +131,10 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
 static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   abbe_shader_variant variant = r->variant;
   variant.aovs = r->plan.desc.aovs;
-  variant.eye_bands =
-      r->plan.desc.coarse == ABBE_COARSE_NONE ? r->plan.desc.wavelengths : ABBE_COARSE_WAVELENGTHS;
+  variant.eye_bands = abbe_render_desc_eye_wavelengths(&r->plan.desc);
+  /* three or four wavelengths and the mirror, or twice as many in turn */
+  if (r->plan.desc.coarse != ABBE_COARSE_NONE && variant.pixel_threads > 4)
+    variant.pixel_threads = 4;
   variant.textured = r->plan.textured;
   variant.receiver_colours = r->plan.receiver_colours;
   abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);

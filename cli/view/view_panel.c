@@ -64,8 +64,8 @@ static void draw_made(const abbe_view_session *app) {
   const abbe_render_desc *d = moving ? &app->moving : &app->last.desc;
   const abbe_view_stage next = coming(&app->state.refine);
   char text[160] = " ", eye[64] = "";
-  if (moving && d->wavelengths > ABBE_COARSE_WAVELENGTHS)
-    snprintf(eye, sizeof eye, "%d wavelengths; ", ABBE_COARSE_WAVELENGTHS);
+  const size_t followed = abbe_render_desc_eye_wavelengths(d);
+  if (moving && d->wavelengths > followed) snprintf(eye, sizeof eye, "%zu wavelengths; ", followed);
   if (moving && d->upsample > 1)
     snprintf(eye + strlen(eye), sizeof eye - strlen(eye), "%zu x %zu pixels; ", d->upsample,
              d->upsample);

@@ -2,6 +2,7 @@
 
 #include "gl/device/bindings.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -58,6 +59,19 @@ static bool keeps_sights(const abbe_refraction_pass *pass) {
          plan->parallelogram_count <= MOST_SHEETS;
 }
 
+/* Of a path, followed at the most, and the share of its light below which it ends. */
+static size_t exits_of(const abbe_refraction_pass *pass) {
+  const abbe_plan *plan = scene_of(pass)->plan;
+  const bool fewer = plan->desc.coarse != ABBE_COARSE_NONE && plan->eye_exits > ABBE_COARSE_EXITS;
+  return fewer ? ABBE_COARSE_EXITS : plan->eye_exits;
+}
+
+static double share_of(const abbe_refraction_pass *pass) {
+  const abbe_plan *plan = scene_of(pass)->plan;
+  return plan->desc.coarse != ABBE_COARSE_NONE ? fmax(plan->eye_share, ABBE_COARSE_SHARE)
+                                               : plan->eye_share;
+}
+
 static abbe_result make_list(abbe_refraction_pass *pass, const abbe_shader_variant *variant,
                              abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
@@ -74,7 +88,7 @@ static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_v
   abbe_gpu *gpu = scene_of(pass)->gpu;
   char facts[128], refined[128];
   abbe_shader_variant camera = *variant;
-  camera.exits = scene_of(pass)->plan->eye_exits;
+  camera.exits = exits_of(pass);
   const char *shares = shares_spectrum(pass) ? "#define SHARES_SPECTRUM\n" : "";
   if (refines(pass))
     snprintf(facts, sizeof facts, "%s#define REFINES\n#define COARSE_BANDS %d\n", shares,
@@ -245,7 +259,7 @@ static void use(abbe_refraction_pass *pass, GLuint program) {
   abbe_lighting_use(pass->lighting, program);
   abbe_gpu_bind_array(gpu, program, "eye_layers", 4, pass->layers);
   abbe_gpu_bind_texture(gpu, program, "eye_owner", 6, pass->owner);
-  abbe_gpu_set_float(gpu, program, "share_limit", scene_of(pass)->plan->eye_share);
+  abbe_gpu_set_float(gpu, program, "share_limit", share_of(pass));
   abbe_gpu_set_float(gpu, program, "pixel_angle", angle);
   if (scene_of(pass)->plan->multi_refractor_paths)
     abbe_gpu_set_uint(gpu, program, "eye_inside", scene_of(pass)->plan->eye_inside);

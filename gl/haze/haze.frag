@@ -8,7 +8,8 @@ uniform vec2 size;  // pixels
 layout(location = 0) out vec4 radiance;
 
 #ifdef IN_AIR
-const int STEPS_ALONG = 48;
+uniform int steps_along;
+#define STEPS_ALONG steps_along
 #include "lamp_haze.glsl"
 #endif
 

@@ -1,6 +1,7 @@
 #include "gl/haze/haze_pass.h"
 
-enum { PICTURE_UNIT = 6, BEAM_UNIT = 0 }; /* that nothing of the scene is at */
+enum { STEPS_ALONG = 48, COARSE_STEPS = 12 }; /* on the eye's way through haze */
+enum { PICTURE_UNIT = 6, BEAM_UNIT = 0 };     /* that nothing of the scene is at */
 
 static const abbe_lighting *lighting_of(const abbe_haze_pass *pass) {
   return pass->picture->receivers->lighting;
@@ -54,7 +55,9 @@ abbe_result abbe_haze_pass_make(abbe_picture *picture, abbe_caustics *caustics,
   const abbe_plan *plan = picture->receivers->lighting->scene->plan;
   *out = (abbe_haze_pass){0};
   if (!plan->hazy) return ABBE_OK;
-  *out = (abbe_haze_pass){.picture = picture, .caustics = plan->caustics ? caustics : NULL};
+  /* beams are of all photons anew, in each picture: what moves is not kept waiting for them */
+  const bool beams_too = plan->caustics && plan->desc.coarse == ABBE_COARSE_NONE;
+  *out = (abbe_haze_pass){.picture = picture, .caustics = beams_too ? caustics : NULL};
   abbe_gpu *gpu = scene_of(out)->gpu;
   abbe_result result = abbe_shader_variant_program(variant, gpu, overs, 2, NULL, &out->over, error);
   if (result == ABBE_OK) result = make_targets(out, error);
@@ -171,6 +174,8 @@ static abbe_result draw_shine(abbe_haze_pass *pass, abbe_error *error) {
   abbe_gpu_bind_texture(scene->gpu, pass->shine, "picture", PICTURE_UNIT,
                         abbe_picture_texture(pass->picture));
   set_size(pass, pass->shine);
+  abbe_gpu_set_int(scene->gpu, pass->shine, "steps_along",
+                   scene->plan->desc.coarse == ABBE_COARSE_NONE ? STEPS_ALONG : COARSE_STEPS);
   gl->BindVertexArray(scene->gpu->empty_array);
   gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   gl->Enable(GL_BLEND);

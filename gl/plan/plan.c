@@ -157,6 +157,7 @@ abbe_result abbe_plan_make_after(const abbe_plan *before, const abbe_scene *scen
   ABBE_REQUIRE(before && scene && out, error);
   memset(out, 0, sizeof *out);
   out->inside = before->inside;
+  out->shape = before->shape;
   abbe_result result =
       abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &out->desc, error);
   if (result != ABBE_OK) return result;

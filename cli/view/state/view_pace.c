@@ -19,6 +19,11 @@ static double light_share(size_t step) {
   return 1 / (double)(1u << step);
 }
 
+/* Those that come into question. */
+static size_t lights_of(const abbe_view_pace *p, bool lit) {
+  return !lit ? 1 : p->lights > 0 ? p->lights : ABBE_VIEW_LIGHT_STEPS;
+}
+
 static double known(const abbe_view_pace *p, bool lit, size_t light, size_t eye) {
   return lit ? p->lit_ms[light][eye] : p->kept_ms[eye];
 }
@@ -62,7 +67,7 @@ static double expected(const abbe_view_pace *p, bool lit, const size_t now[2], d
  * sharp is what is looked at. False: none is. */
 static bool find_finest(const abbe_view_pace *p, bool lit, const size_t now[2], double ms,
                         double most, size_t out[2]) {
-  const size_t lights = lit ? ABBE_VIEW_LIGHT_STEPS : 1;
+  const size_t lights = lights_of(p, lit);
   for (size_t eye = 0; eye < ABBE_VIEW_EYE_STEPS; eye++)
     for (size_t light = 0; light < lights; light++) {
       if (expected(p, lit, now, ms, light, eye) > most) continue;
@@ -74,7 +79,7 @@ static bool find_finest(const abbe_view_pace *p, bool lit, const size_t now[2], 
 }
 
 static double find_fastest(const abbe_view_pace *p, bool lit, const size_t now[2], double ms) {
-  const size_t lights = lit ? ABBE_VIEW_LIGHT_STEPS : 1;
+  const size_t lights = lights_of(p, lit);
   double least = INFINITY;
   for (size_t eye = 0; eye < ABBE_VIEW_EYE_STEPS; eye++)
     for (size_t light = 0; light < lights; light++)

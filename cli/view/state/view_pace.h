@@ -19,9 +19,10 @@
 /* Zeroed: nothing is known. */
 typedef struct abbe_view_pace {
   size_t light_step, eye_step; /* to be tried next */
-  double ms;                   /* of the last picture that counts; 0: there is none */
-  size_t in_time;              /* pictures in turn that kept the time */
-  bool strange;                /* the last one does not: nothing follows from one alone */
+  size_t lights;  /* steps of the light that can be drawn, the finest first; 0: all can */
+  double ms;      /* of the last picture that counts; 0: there is none */
+  size_t in_time; /* pictures in turn that kept the time */
+  bool strange;   /* the last one does not: nothing follows from one alone */
   /* of pictures whose light was drawn, and of those whose light was kept; 0: not known */
   double lit_ms[ABBE_VIEW_LIGHT_STEPS][ABBE_VIEW_EYE_STEPS], kept_ms[ABBE_VIEW_EYE_STEPS];
 } abbe_view_pace;

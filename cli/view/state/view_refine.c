@@ -29,6 +29,7 @@ void abbe_view_refine_change(abbe_view_refine *refine, abbe_view_change change, 
     refine->hand[i].ready = 0;
     refine->hand[i].moved = ABBE_VIEW_NONE;
   }
+  if (change == ABBE_VIEW_CHANGED_SCENE) refine->pace.lights = 0;
   refine->changed_s = now_s;
   refine->stage = ABBE_VIEW_NONE;
   refine->passes = 0;
@@ -174,7 +175,13 @@ bool abbe_view_refine_end(abbe_view_refine *refine, size_t worker, abbe_view_out
   const bool lit = job->stage != ABBE_VIEW_TRACED &&
                    (hand->light != job->light || hand->light_step != job->light_step);
   hand->busy = false;
-  if (outcome == ABBE_VIEW_REFUSED && current) refine->refused = true;
+  /* of fewer photons it may be refused where it is not of all */
+  const bool too_few = job->stage == ABBE_VIEW_MOVING && job->light_step > 0;
+  if (outcome == ABBE_VIEW_REFUSED && too_few) {
+    refine->pace.lights = job->light_step;
+    refine->pace.light_step = job->light_step - 1;
+  }
+  if (outcome == ABBE_VIEW_REFUSED && current && !too_few) refine->refused = true;
   if (outcome != ABBE_VIEW_DONE) {
     if (outcome != ABBE_VIEW_CANCELLED || lit) abbe_view_refine_forget(refine, worker);
     return false;

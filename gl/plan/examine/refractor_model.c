@@ -3,6 +3,7 @@
 #include "gl/plan/examine/material_range.h"
 #include "gl/plan/examine/reach.h"
 #include "gl/plan/examine/spectral_needs.h"
+#include "scenes/geometry/digest.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -39,8 +40,15 @@ static bool is_entered(const abbe_scene *scene, const abbe_object *refractor) {
   return false;
 }
 
+static bool is_convex(const abbe_mesh *mesh, abbe_plan_shape *known) {
+  uint64_t of = abbe_digest_array(1, mesh->face, mesh->face_count, sizeof *mesh->face);
+  of = abbe_digest_array(of, mesh->position, mesh->vertex_count, sizeof *mesh->position);
+  if (known->of != of || of == 0) *known = (abbe_plan_shape){of, abbe_mesh_is_convex(mesh)};
+  return known->convex;
+}
+
 /* Why light that has left a refractor may meet one again, or a receiver within; NULL: it cannot. */
-static const char *why_in_turn(const abbe_scene *scene, const abbe_plan *plan) {
+static const char *why_in_turn(const abbe_scene *scene, abbe_plan *plan) {
   const abbe_object *only = NULL;
   size_t refractors = 0;
   for (size_t i = 0; i < scene->object_count; i++) {
@@ -60,7 +68,7 @@ static const char *why_in_turn(const abbe_scene *scene, const abbe_plan *plan) {
   if (scene->camera.inside && abbe_scene_around_eye(scene) != NULL)
     return "the eye is inside a refractor";
   if (only->exact.kind != ABBE_EXACT_SPHERE && only->exact.kind != ABBE_EXACT_CONVEX &&
-      !abbe_mesh_is_convex(&only->mesh))
+      !is_convex(&only->mesh, &plan->shape))
     return "the refractor is not convex";
   if (is_entered(scene, only)) return "a receiver may reach into the refractor";
   if (only->medium != NULL) return "what is in the refractor scatters light";
@@ -284,8 +292,9 @@ void abbe_refractor_model_note(const abbe_scene *scene, abbe_plan *plan) {
   const abbe_object *first[2] = {NULL, NULL};
   size_t pairs = 0;
   if (smooth_besides_rough(scene, plan))
-    abbe_plan_note(plan, "light of lamps that comes to a rough mirror through glass or off a smooth "
-                         "mirror is left out, on receivers and as the camera sees it");
+    abbe_plan_note(plan,
+                   "light of lamps that comes to a rough mirror through glass or off a smooth "
+                   "mirror is left out, on receivers and as the camera sees it");
   if (plan->multi_refractor_paths) return;
   if (plan->refractor_count > 1)
     abbe_plan_note(plan, "light that leaves one refractor and meets another goes on unrefracted");

@@ -68,6 +68,12 @@ typedef struct abbe_plan_inside {
   double energy_share, left;
 } abbe_plan_inside;
 
+/* Whether the one refractor's mesh is convex, which is much to be looked at. */
+typedef struct abbe_plan_shape {
+  uint64_t of; /* a digest of the mesh; 0: it was not looked for */
+  bool convex;
+} abbe_plan_shape;
+
 /* A medium that bent and mirrored rays of the camera may run through. */
 typedef struct abbe_plan_shaft {
   int refractor;        /* that it fills; -1: the air */
@@ -139,6 +145,7 @@ typedef struct abbe_plan {
   bool tinted_air; /* of the air: what it takes or scatters varies */
 
   abbe_plan_inside inside;
+  abbe_plan_shape shape;
   size_t eye_exits; /* of the camera's rays, followed at the most */
   double eye_share; /* below this share of their light they end */
   size_t hit_slots; /* hits of a photon at a wavelength, at the most: its exits, and the mirror on

@@ -102,6 +102,11 @@ static void fill_in_pinholes(abbe_render_desc *d) {
   if (d->clusters == 0 && !abbe_profile_is_wand2003(d->profile)) d->clusters = ABBE_PLAN_CLUSTERS;
 }
 
+size_t abbe_render_desc_eye_wavelengths(const abbe_render_desc *desc) {
+  const size_t most = desc->upsample > 2 ? 4 : 7;
+  return desc->coarse != ABBE_COARSE_NONE && desc->wavelengths > most ? most : desc->wavelengths;
+}
+
 void abbe_render_desc_take_pinholes(abbe_render_desc *desc) {
   desc->transport = ABBE_TRANSPORT_PINHOLE;
   fill_in_pinholes(desc);

@@ -120,11 +120,14 @@ typedef enum abbe_model {
 
 /* For pictures of what moves, and for whose sake they are coarser: nobody's, the camera's, or
  * light's too. Views of refractors, which tell what each shows of them and, by layers, what is
- * behind, are drawn of fewer triangles where meshes have many. The camera takes at most
- * ABBE_COARSE_WAVELENGTHS of a pixel, and programs are the same for any `upsample`, so that
- * pictures of more or fewer samples follow each other without a pause. */
+ * behind, are drawn of fewer triangles where meshes have many. The camera takes fewer wavelengths
+ * of a pixel, and its paths end after ABBE_COARSE_EXITS exits or below ABBE_COARSE_SHARE of their
+ * light. Beams of refracted light in haze are left out, but for those in media that have a grid of
+ * it. Programs are the same for any `upsample`, so that pictures of more or fewer samples follow
+ * each other without a pause. */
 typedef enum abbe_coarse { ABBE_COARSE_NONE, ABBE_COARSE_EYE, ABBE_COARSE_ALL } abbe_coarse;
-#define ABBE_COARSE_WAVELENGTHS 7
+#define ABBE_COARSE_EXITS 8
+#define ABBE_COARSE_SHARE 0.05
 
 #define ABBE_RENDER_MAX_SIDE 8192
 #define ABBE_RENDER_MAX_PHOTONS 4096 /* a side */
@@ -249,6 +252,10 @@ typedef struct abbe_render_desc {
    * seconds, the first time on a machine. May be NULL. */
   void (*compiling)(void *user);
 } abbe_render_desc;
+
+/* Wavelengths that the camera takes of a pixel at the most, of a request that is resolved: of a
+ * coarse one 7, or 4 where a sample stands for 3 x 3 pixels or more. */
+size_t abbe_render_desc_eye_wavelengths(const abbe_render_desc *desc);
 
 /* A resolved request, by the transport of pinholes from now on. */
 void abbe_render_desc_take_pinholes(abbe_render_desc *desc);

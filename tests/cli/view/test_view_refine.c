@@ -296,6 +296,25 @@ static void test_a_spectrum_is_traced_before_the_mean(void **state) {
 }
 
 /* Without a mean the tracer follows, or nothing. */
+/* Light that is refused of fewer photons is drawn of more, until the scene is another. */
+static void test_photons_are_not_too_few(void **state) {
+  (void)state;
+  abbe_view_refine r = begun();
+  draw(&r, SHOWS, 0, 20);
+  r.pace.light_step = 2;
+  abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_LIGHT, 1);
+  const size_t worker = begin(&r, SHOWS, 1);
+  assert_int_equal(r.hand[worker].job.light_step, 2);
+  assert_false(abbe_view_refine_end(&r, worker, ABBE_VIEW_REFUSED, 5));
+  assert_false(r.refused);
+  for (int i = 0; i < 5; i++) {
+    assert_true(draw(&r, SHOWS, 2 + i, 400).light_step < 2); /* however slow it is */
+    abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_LIGHT, 2.5 + i);
+  }
+  abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, 10);
+  assert_int_equal(r.pace.lights, 0);
+}
+
 static void test_a_picture_without_a_mean(void **state) {
   (void)state;
   abbe_view_refine r = refined(ABBE_VIEW_ACCURATE);
@@ -341,6 +360,7 @@ int main(void) {
                                      cmocka_unit_test(test_slow_pictures_get_cheaper),
                                      cmocka_unit_test(test_no_step_follows_from_the_compiler),
                                      cmocka_unit_test(test_what_is_refused_waits_for_a_change),
+                                     cmocka_unit_test(test_photons_are_not_too_few),
                                      cmocka_unit_test(test_a_picture_without_a_mean),
                                      cmocka_unit_test(test_a_stage_that_ends_early_leaves_no_light),
                                      cmocka_unit_test(test_a_spectrum_is_traced_before_the_mean),
