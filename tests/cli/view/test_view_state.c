@@ -104,17 +104,22 @@ static void test_a_studio_can_be_turned_and_its_stone_cut(void **state) {
   abbe_view_state_free(&s);
 }
 
+/* That file in a window of 512 x 512, learnt. */
+static void begin_with(abbe_view_state *s, char *path) {
+  const abbe_view_document document = {.path = path};
+  memset(s, 0, sizeof *s);
+  assert_int_equal(abbe_view_state_begin(s, &document, NULL), ABBE_OK);
+  abbe_view_state_resize(s, 512, 512, 0);
+  learn(s);
+}
+
 /* A mirror is taken hold of as a stone is, and is of a metal, which no stone is. */
 static void test_mirrors_are_held_and_of_a_metal(void **state) {
   (void)state;
   char path[] = ABBE_SOURCE_DIR "/scenes/metals.yaml";
   static abbe_view_state s;
   double xy[2];
-  memset(&s, 0, sizeof s);
-  const abbe_view_document document = {.path = path};
-  assert_int_equal(abbe_view_state_begin(&s, &document, NULL), ABBE_OK);
-  abbe_view_state_resize(&s, 512, 512, 0);
-  learn(&s);
+  begin_with(&s, path);
   const abbe_view_object *ring = &s.outline.object[1];
   assert_true(ring->mirror && ring->bends && !s.outline.object[0].bends);
   assert_string_equal(ring->material, "gold");
@@ -292,11 +297,7 @@ static void test_the_sun_moves(void **state) {
   static abbe_view_state s;
   char path[] = ABBE_SOURCE_DIR "/docs/examples/ball.yaml";
   double xy[2];
-  memset(&s, 0, sizeof s);
-  const abbe_view_document document = {.path = path};
-  assert_int_equal(abbe_view_state_begin(&s, &document, NULL), ABBE_OK);
-  abbe_view_state_resize(&s, 512, 512, 0);
-  learn(&s);
+  begin_with(&s, path);
   const abbe_view_light before = s.outline.light[0];
   assert_true(before.placed);
   static const double slopes[3] = {-0.5, 0.2, 1}; /* of [0.5, -0.2, -1], from there to the middle */
