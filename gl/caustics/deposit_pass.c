@@ -100,6 +100,7 @@ static void list_splats(abbe_deposit_pass *pass, size_t light, const abbe_hit_ba
   abbe_receiver_atlas_bind(trace->atlas);
   abbe_photon_start_bind(trace->start);
   abbe_photon_ledger_bind(trace->ledger);
+  abbe_gpu_forget_samplers(gpu);
   gpu->gl->UseProgram(program);
   set_batch(pass, program, light, b, chunk);
   abbe_gpu_clear_list(gpu, pass->splats);

@@ -85,6 +85,7 @@ static void resolve_layer(abbe_spectral_map *map, size_t light, size_t layer, si
   abbe_gpu_scene_bind(scene_of(map));
   abbe_photon_lights_bind(map->views);
   abbe_receiver_atlas_bind(map->atlas);
+  abbe_gpu_forget_samplers(scene_of(map)->gpu);
   use(map, map->resolve, "coarser_map", light, layer);
   abbe_gpu_set_uint(gpu, map->resolve, "map_texels", map->views->map_texels);
   abbe_gpu_set_int(gpu, map->resolve, "levels", (int)map->views->map_levels);

@@ -11,7 +11,10 @@ abbe_result abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *error) {
   abbe_buffer_memory_begin(&out->memory, gl, out->software);
   gl->GenFramebuffers(1, &out->framebuffer);
   gl->GenVertexArrays(1, &out->empty_array);
-  return abbe_gpu_compute(out, "list_groups.comp", NULL, &out->list_groups, error);
+  const abbe_result result =
+      abbe_gpu_compute(out, "list_groups.comp", NULL, &out->list_groups, error);
+  if (result != ABBE_OK || !out->software) return result;
+  return abbe_gpu_compute(out, "sampler_states.comp", NULL, &out->sampler_states, error);
 }
 
 void abbe_gpu_free(abbe_gpu *gpu) {
@@ -210,7 +213,8 @@ size_t abbe_gpu_program_count(const abbe_gpu *gpu) {
 void abbe_gpu_drop_programs(abbe_gpu *gpu) {
   for (size_t i = 0; i < gpu->store.count; i++) {
     abbe_stored *item = &gpu->store.item[i];
-    if (item->key.kind == ABBE_STORED_PROGRAM && item->name != gpu->list_groups) item->used = false;
+    const bool own = item->name == gpu->list_groups || item->name == gpu->sampler_states;
+    if (item->key.kind == ABBE_STORED_PROGRAM && !own) item->used = false;
   }
   abbe_gpu_trim(gpu);
 }

@@ -31,6 +31,7 @@ typedef struct abbe_gpu {
   bool software; /* what runs the shaders is a processor; whoever makes the struct says so */
   GLuint framebuffer, empty_array;
   GLuint list_groups;                  /* program */
+  GLuint sampler_states;               /* program; none where a GPU runs them */
   GLuint texels[ABBE_GPU_TEXEL_UNITS]; /* textures that show buffers, one a unit */
   abbe_gpu_store store;
   abbe_buffer_memory memory;   /* of large buffers in it */
@@ -139,6 +140,11 @@ void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t f
                             size_t threads);
 /* The groups that stand in the list's words 1 to 3, as another program has written them. */
 void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list);
+
+/* Before a program that reads buffers as texels. Such a sampler has no filter of its own: Mesa leaves
+ * there that of the texture which another program had at its place, and llvmpipe compiles a program
+ * once more for each that it finds. This puts one and the same there. No program is in use then. */
+void abbe_gpu_forget_samplers(abbe_gpu *gpu);
 
 /* The clock of passes, in a frame with statistics: a lap starts; what was done since is booked to a
  * pass, and the next lap starts. Several laps of one pass add up. */

@@ -94,3 +94,11 @@ void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list) {
   gpu->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 4, sizeof groups, groups);
   dispatch_parts(gpu, program, (size_t)groups[0] * groups[1], 0);
 }
+
+void abbe_gpu_forget_samplers(abbe_gpu *gpu) {
+  if (gpu->sampler_states == 0) return;
+  gpu->gl->UseProgram(gpu->sampler_states);
+  gpu->gl->ActiveTexture(GL_TEXTURE0);
+  gpu->gl->BindTexture(GL_TEXTURE_2D, 0);
+  gpu->gl->DispatchCompute(1, 1, 1);
+}

@@ -103,6 +103,7 @@ static void use(const abbe_photon_lights *views, const abbe_light_layers *layers
                 size_t light) {
   abbe_gpu_scene_bind(views->scene);
   abbe_photon_lights_bind(views);
+  abbe_gpu_forget_samplers(views->scene->gpu);
   views->scene->gpu->gl->UseProgram(program);
   abbe_gpu_scene_set(views->scene, program);
   abbe_light_layers_set(layers, program);

@@ -132,6 +132,7 @@ void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set s
   abbe_receiver_atlas_bind(pass->atlas);
   abbe_photon_start_bind(pass->start);
   abbe_photon_ledger_bind(pass->ledger);
+  abbe_gpu_forget_samplers(gpu);
   gpu->gl->UseProgram(program);
   abbe_gpu_scene_set(scene, program);
   abbe_light_layers_set(pass->start->layers, program);
