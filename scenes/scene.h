@@ -113,6 +113,9 @@ typedef struct abbe_object {
   abbe_brushing brushing;         /* mirror: how rough it is */
   char *mesh_path;                /* NULL or the file that the mesh is of */
   char *mesh_others;              /* and those that it names, as abbe_mesh_load has them */
+  double cut_deg[2];              /* shape: cut: the design's own angles of the crown's and the
+                                     pavilion's main facets; 0: there are none, or of a crown that
+                                     follows the pavilion */
   char *fixes;                    /* what was fixed, and what is not whole still, or NULL */
 } abbe_object;
 

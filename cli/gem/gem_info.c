@@ -16,6 +16,22 @@ static double critical_deg(double n) {
   return low;
 }
 
+/* Those with main facets, by which a side is made steeper or flatter. */
+static const abbe_cut_side sides[] = {ABBE_CUT_CROWN, ABBE_CUT_PAVILION};
+
+static void print_main_angles(const abbe_gem_input *in) {
+  const char *before = "  main       ";
+  for (int i = 0; i < 2; i++) {
+    const size_t tier = abbe_cut_stretch_main(&in->cut, &in->stone, sides[i]);
+    if (tier == in->cut.tier_count) continue;
+    const char *name = abbe_cut_facet_name(&in->cut, in->cut.tier[tier].first);
+    printf("%s%s %.2f degrees%s%s", before, abbe_cut_side_name(sides[i]),
+           fabs(in->cut.tier[tier].angle_deg), name[0] != '\0' ? ", facets " : "", name);
+    before = "; ";
+  }
+  if (before[0] == ';') printf("\n");
+}
+
 static void print_stone(const abbe_gem_input *in) {
   const abbe_cut_measures *m = &in->measures;
   const double density = abbe_gem_input_density(in), w = m->width;
@@ -33,6 +49,7 @@ static void print_stone(const abbe_gem_input *in) {
   if (in->material != NULL)
     printf("  material   %s: n_d %.4f, critical angle %.2f degrees\n", in->material->name, in->n,
            critical_deg(in->n));
+  print_main_angles(in);
   printf("  ratios     L/W %.3f   T/W %.3f   C/W %.3f   P/W %.3f   H/W %.3f   Vol/W^3 %.3f\n",
          m->length / w, m->table / w, m->side[ABBE_CUT_CROWN] / w, m->side[ABBE_CUT_PAVILION] / w,
          m->height / w, m->volume / pow(w, 3));
@@ -83,6 +100,11 @@ static abbe_result print_json(const abbe_gem_input *in, abbe_error *error) {
     if (density > 0)
       cJSON_AddNumberToObject(root, "carats",
                               abbe_cut_measures_carats(&in->measures, in->width_m, density));
+  }
+  cJSON *mains = cJSON_AddObjectToObject(root, "main_deg");
+  for (int i = 0; i < 2; i++) {
+    const double deg = abbe_cut_stretch_main_deg(cut, &in->stone, sides[i]);
+    if (deg > 0) cJSON_AddNumberToObject(mains, abbe_cut_side_name(sides[i]), deg);
   }
   cJSON *tiers = cJSON_AddArrayToObject(root, "tiers");
   for (size_t t = 0; t < cut->tier_count; t++) {

@@ -331,15 +331,14 @@ static abbe_result find_angles(request *q, abbe_error *error) {
   double *range[2] = {q->crown, q->pavilion};
   for (int i = 0; i < 2; i++) {
     const abbe_cut_side side = i == 0 ? ABBE_CUT_CROWN : ABBE_CUT_PAVILION;
-    const size_t tier = abbe_cut_stretch_main(&in->cut, &in->stone, side);
+    const double angle = abbe_cut_stretch_main_deg(&in->cut, &in->stone, side);
     const double about = i == 0 ? 8 : 4;
     if (range[i][1] > 0) continue;
-    if (tier == in->cut.tier_count)
+    if (!(angle > 0))
       return abbe_error_set(error, ABBE_GEOMETRY,
                             "%s: the design has no slanted facets on its %s, whose angle could "
                             "change",
                             in->path, i == 0 ? "crown" : "pavilion");
-    const double angle = fabs(in->cut.tier[tier].angle_deg);
     range[i][0] = fmax(angle - about, 1);
     range[i][1] = fmin(angle + about, 89);
   }

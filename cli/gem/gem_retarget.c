@@ -74,9 +74,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 }
 
 static double main_angle(const abbe_gem_input *in, abbe_cut_side which, bool *is_there) {
-  const size_t t = abbe_cut_stretch_main(&in->cut, &in->stone, which);
-  *is_there = t < in->cut.tier_count;
-  return *is_there ? fabs(in->cut.tier[t].angle_deg) : 0;
+  const double deg = abbe_cut_stretch_main_deg(&in->cut, &in->stone, which);
+  *is_there = deg > 0;
+  return deg;
 }
 
 static abbe_result choose_angles(request *q, abbe_error *error) {

@@ -59,6 +59,12 @@ size_t abbe_cut_stretch_main(const abbe_cut *cut, const abbe_cut_polyhedron *p,
   return best;
 }
 
+double abbe_cut_stretch_main_deg(const abbe_cut *cut, const abbe_cut_polyhedron *p,
+                                 abbe_cut_side side) {
+  const size_t tier = abbe_cut_stretch_main(cut, p, side);
+  return tier < cut->tier_count ? fabs(cut->tier[tier].angle_deg) : 0;
+}
+
 double abbe_cut_stretch_factor(double from_deg, double to_deg) {
   return tan(fabs(to_deg) / DEGREES) / tan(fabs(from_deg) / DEGREES);
 }
@@ -99,15 +105,25 @@ static bool is_a_factor(double k) {
   return k >= 1 / ABBE_CUT_STRETCH_MOST && k <= ABBE_CUT_STRETCH_MOST;
 }
 
+static bool is_bound(const abbe_cut_measures *m) {
+  const double level = 1e-6;
+  return m->shared > 0 && m->shared_high - m->shared_low > level * m->width;
+}
+
+bool abbe_cut_stretch_bound(const abbe_cut *cut, const abbe_cut_polyhedron *p) {
+  abbe_cut_measures m;
+  abbe_cut_measures_make(cut, p, &m);
+  return is_bound(&m);
+}
+
 static abbe_result check(const abbe_cut_measures *m, double crown, double pavilion,
                          abbe_error *error) {
-  const double level = 1e-6, same = 1e-9;
+  const double same = 1e-9;
   if (!is_a_factor(crown) || !is_a_factor(pavilion))
     return abbe_error_set(error, ABBE_OUT_OF_RANGE,
                           "tangents can become %g to %g times what they were, and not %g and %g",
                           1 / ABBE_CUT_STRETCH_MOST, ABBE_CUT_STRETCH_MOST, crown, pavilion);
-  if (m->shared > 0 && fabs(crown - pavilion) > same * crown &&
-      m->shared_high - m->shared_low > level * m->width)
+  if (is_bound(m) && fabs(crown - pavilion) > same * crown)
     return abbe_error_set(
         error, ABBE_UNSUPPORTED,
         "crown and pavilion meet where there is no girdle, and not at one height: "
@@ -141,4 +157,34 @@ abbe_result abbe_cut_stretch_apply(abbe_cut *cut, const abbe_cut_polyhedron *p, 
   free(facet);
   free(tier);
   return result;
+}
+
+/* Of the side whose main angle becomes that; 0: it stays. */
+static abbe_result factor_of(const abbe_cut *cut, const abbe_cut_polyhedron *p, abbe_cut_side side,
+                             double to_deg, double *out, abbe_error *error) {
+  *out = 1;
+  if (to_deg == 0) return ABBE_OK;
+  if (!(to_deg > 0 && to_deg < 90))
+    return abbe_error_set(error, ABBE_OUT_OF_RANGE,
+                          "the %s's main angle is between 0 and 90 degrees, and not %g",
+                          abbe_cut_side_name(side), to_deg);
+  const double from_deg = abbe_cut_stretch_main_deg(cut, p, side);
+  if (!(from_deg > 0))
+    return abbe_error_set(error, ABBE_NOT_FOUND, "the %s has no slanted facet",
+                          abbe_cut_side_name(side));
+  *out = abbe_cut_stretch_factor(from_deg, to_deg);
+  return ABBE_OK;
+}
+
+abbe_result abbe_cut_stretch_to(abbe_cut *cut, const abbe_cut_polyhedron *p, double crown_deg,
+                                double pavilion_deg, abbe_error *error) {
+  double crown, pavilion;
+  ABBE_REQUIRE(cut && p, error);
+  abbe_result result = factor_of(cut, p, ABBE_CUT_CROWN, crown_deg, &crown, error);
+  if (result == ABBE_OK)
+    result = factor_of(cut, p, ABBE_CUT_PAVILION, pavilion_deg, &pavilion, error);
+  if (result == ABBE_OK && (crown_deg == 0) != (pavilion_deg == 0) &&
+      abbe_cut_stretch_bound(cut, p))
+    crown = pavilion = crown_deg == 0 ? pavilion : crown;
+  return result == ABBE_OK ? abbe_cut_stretch_apply(cut, p, crown, pavilion, error) : result;
 }

@@ -34,15 +34,27 @@ double abbe_cut_stretch_angle(double main_deg, double from, double to);
  * cut->tier_count where there is none. */
 size_t abbe_cut_stretch_main(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
                              abbe_cut_side side);
+/* That tier's angle, degrees above 0 on either side; 0 where there is none. */
+double abbe_cut_stretch_main_deg(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
+                                 abbe_cut_side side);
 /* The factor that brings an angle to another, both between 0 and 90 degrees either way. */
 double abbe_cut_stretch_factor(double from_deg, double to_deg);
 
+/* Whether crown and pavilion meet without a girdle between them, and not at one height: both can
+ * only be stretched by one factor. */
+bool abbe_cut_stretch_bound(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron);
+
 /* Moves the planes; names, indices and texts stay. ABBE_OUT_OF_RANGE for factors out of range and
- * where a plane would come to the other side of the centre, ABBE_UNSUPPORTED where crown and
- * pavilion meet without a girdle between them, not level, and the factors differ. The cut is as it
- * was then. */
+ * where a plane would come to the other side of the centre, ABBE_UNSUPPORTED where the sides are
+ * bound and the factors differ. The cut is as it was then. */
 abbe_result abbe_cut_stretch_apply(abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
                                    double crown, double pavilion, abbe_error *error);
+
+/* The same by the main tiers' new angles, degrees between 0 and 90; 0: that side stays, or follows
+ * the other where they are bound. Also
+ * ABBE_OUT_OF_RANGE for other angles, ABBE_NOT_FOUND for a side without a main tier. */
+abbe_result abbe_cut_stretch_to(abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
+                                double crown_deg, double pavilion_deg, abbe_error *error);
 
 #ifdef __cplusplus
 }

@@ -1,6 +1,7 @@
 /* The surface of an object: one of the shapes, or the mesh of a file. */
 #include "scenes/cuts/cut_file.h"
 #include "scenes/cuts/cut_polyhedron.h"
+#include "scenes/cuts/cut_stretch.h"
 #include "scenes/import/gltf_material.h"
 #include "scenes/import/object_reading.h"
 #include "scenes/import/scene_value.h"
@@ -169,38 +170,74 @@ static abbe_result read_lathe(const abbe_object_reading *r, abbe_mesh *out, abbe
   return result;
 }
 
+typedef struct cut_reading {
+  double width, weld;
+  double to_deg[2]; /* of the main facets on crown and pavilion; 0: as the design has them */
+} cut_reading;
+
+/* The stone at other angles. */
+static abbe_result stretch(const cut_reading *q, abbe_cut *cut, abbe_cut_polyhedron *stone,
+                           abbe_error *error) {
+  abbe_cut_polyhedron own = *stone;
+  *stone = (abbe_cut_polyhedron){0};
+  abbe_result result = abbe_cut_stretch_to(cut, &own, q->to_deg[0], q->to_deg[1], error);
+  if (result == ABBE_OK) result = abbe_cut_polyhedron_make(cut, q->weld, stone, error);
+  abbe_cut_polyhedron_free(&own);
+  return result;
+}
+
 /* The planes of a design as wide as it is to be: the smaller extent of its outline. */
-static abbe_result make_cut(const char *path, double width, double weld, abbe_mesh *out,
+static abbe_result make_cut(const char *path, const cut_reading *q, abbe_object *object,
                             abbe_error *error) {
   abbe_cut cut = {0};
   abbe_cut_polyhedron stone = {0};
   abbe_result result = abbe_cut_file_read(path, &cut, NULL, error);
-  if (result == ABBE_OK) result = abbe_cut_polyhedron_make(&cut, weld, &stone, error);
+  if (result == ABBE_OK) result = abbe_cut_polyhedron_make(&cut, q->weld, &stone, error);
+  if (result == ABBE_OK) {
+    if (!abbe_cut_stretch_bound(&cut, &stone)) /* else the pavilion's moves both */
+      object->cut_deg[0] = abbe_cut_stretch_main_deg(&cut, &stone, ABBE_CUT_CROWN);
+    object->cut_deg[1] = abbe_cut_stretch_main_deg(&cut, &stone, ABBE_CUT_PAVILION);
+    if (q->to_deg[0] > 0 || q->to_deg[1] > 0) result = stretch(q, &cut, &stone, error);
+  }
   if (result == ABBE_OK) {
     const double own = fmin(stone.max[0] - stone.min[0], stone.max[1] - stone.min[1]);
-    result = abbe_cut_polyhedron_mesh(&cut, &stone, width / own, out, error);
+    result = abbe_cut_polyhedron_mesh(&cut, &stone, q->width / own, &object->mesh, error);
   }
   abbe_cut_polyhedron_free(&stone);
   abbe_cut_free(&cut);
   return result;
 }
 
-static abbe_result read_cut(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
-  double width = 0, weld = ABBE_CUT_WELD;
+/* The angle of a side's main facets. */
+static abbe_result read_cut_angle(const abbe_object_reading *r, const char *key, double *out,
+                                  abbe_error *error) {
+  const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, key);
+  if (node.id == 0) return ABBE_OK;
+  const abbe_result result = abbe_yaml_number(r->yaml, node, key, -360, 360, out, error);
+  if (result != ABBE_OK || (*out > 0 && *out < 90)) return result;
+  return abbe_yaml_fail(r->yaml, node, error,
+                        "'%s' is the angle of that side's main facets, between 0 and 90 degrees",
+                        key);
+}
+
+static abbe_result read_cut(const abbe_object_reading *r, abbe_object *object, abbe_error *error) {
+  cut_reading q = {.weld = ABBE_CUT_WELD};
   char *name = NULL, *path = NULL;
   abbe_yaml_node ignored;
   abbe_result result = abbe_yaml_require(r->yaml, r->node, "file", &ignored, error);
   if (result == ABBE_OK) result = abbe_yaml_get_string(r->yaml, r->node, "file", &name, error);
-  if (result == ABBE_OK) result = need_length(r, "width", &width, error);
-  if (result == ABBE_OK && !(width > 0))
+  if (result == ABBE_OK) result = need_length(r, "width", &q.width, error);
+  if (result == ABBE_OK && !(q.width > 0))
     result = abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, r->node, "width"), error,
                             "'width' is the stone's, in metres, above 0");
   if (result == ABBE_OK)
     result =
-        abbe_yaml_get_number(r->yaml, r->node, "weld", 1e-12, ABBE_CUT_MOST_WELD, &weld, error);
+        abbe_yaml_get_number(r->yaml, r->node, "weld", 1e-12, ABBE_CUT_MOST_WELD, &q.weld, error);
+  if (result == ABBE_OK) result = read_cut_angle(r, "crown", &q.to_deg[0], error);
+  if (result == ABBE_OK) result = read_cut_angle(r, "pavilion", &q.to_deg[1], error);
   if (result == ABBE_OK && (path = abbe_scene_value_path(r->folder, name)) == NULL)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
-  if (result == ABBE_OK) result = make_cut(path, width, weld, out, error);
+  if (result == ABBE_OK) result = make_cut(path, &q, object, error);
   free(path);
   free(name);
   return result;
@@ -290,7 +327,7 @@ abbe_result abbe_object_read_surface(abbe_object_reading *r, abbe_object *object
     result = read_lathe(r, out, error);
     break;
   case ABBE_OBJECT_CUT:
-    result = read_cut(r, out, error);
+    result = read_cut(r, object, error);
     break;
   case ABBE_OBJECT_WATER:
     result = abbe_object_read_water(r, out, error);

@@ -11,11 +11,14 @@ static void a_design_is_described(void **state) {
   assert_contains(run_output, "57 + 16 girdle: 33 crown, 24 pavilion; 57 corners, 128 edges");
   assert_contains(run_output, "critical angle 40.37 degrees");
   assert_contains(run_output, "Meet A-A-B-B");
+  assert_contains(run_output, "main       crown 42.00 degrees, facets B; pavilion 43.00 degrees");
   assert_contains(run_output, "carats");
   cJSON *json = run_json(GEM "info" QUARTZ "--json", 0);
   assert_near(json_number(json_item(json, "facets"), "girdle"), 16, 0);
   assert_near(json_number(json_item(json, "ratios"), "L/W"), 1, 1e-9);
   assert_near(json_number(json_item(json, "ratios"), "Vol/W^3"), 2.097983 / pow(2.039182, 3), 1e-6);
+  assert_near(json_number(json_item(json, "main_deg"), "crown"), 42, 0);
+  assert_near(json_number(json_item(json, "main_deg"), "pavilion"), 43, 0);
   assert_int_equal(cJSON_GetArraySize(json_item(json, "tiers")), 7);
   const cJSON *tier = cJSON_GetArrayItem(json_item(json, "tiers"), 2);
   assert_near(json_number(tier, "angle_deg"), -43, 0);

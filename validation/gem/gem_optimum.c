@@ -105,14 +105,14 @@ static double *spread(double from, double to, size_t count) {
 static abbe_result make_grid(const abbe_cut *cut, const abbe_cut_polyhedron *p,
                              const abbe_gem_optimum_desc *d, abbe_gem_optimum *out,
                              abbe_error *error) {
-  const size_t crown = abbe_cut_stretch_main(cut, p, ABBE_CUT_CROWN);
-  const size_t pavilion = abbe_cut_stretch_main(cut, p, ABBE_CUT_PAVILION);
-  if (crown == cut->tier_count || pavilion == cut->tier_count)
+  const double crown_deg = abbe_cut_stretch_main_deg(cut, p, ABBE_CUT_CROWN);
+  const double pavilion_deg = abbe_cut_stretch_main_deg(cut, p, ABBE_CUT_PAVILION);
+  if (!(crown_deg > 0 && pavilion_deg > 0))
     return abbe_error_set(error, ABBE_GEOMETRY,
                           "the design has no slanted facets on its %s, whose angle could change",
-                          crown == cut->tier_count ? "crown" : "pavilion");
-  out->design_crown_rad = fabs(cut->tier[crown].angle_deg) * PI / 180;
-  out->design_pavilion_rad = fabs(cut->tier[pavilion].angle_deg) * PI / 180;
+                          crown_deg > 0 ? "pavilion" : "crown");
+  out->design_crown_rad = crown_deg * PI / 180;
+  out->design_pavilion_rad = pavilion_deg * PI / 180;
   out->crowns = d->crowns;
   out->pavilions = d->pavilions;
   out->crown_rad = spread(d->crown_from_rad, d->crown_to_rad, d->crowns);

@@ -4,6 +4,7 @@
 #include "base/yaml/yaml.h"
 #include "scenes/geometry/vector.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,6 +23,8 @@ static const struct {
     {"brilliant", "pavilion", "pavilion angle", "\u00b0", 1, 40.75, 35, 50},
     {"brilliant", "table", "table, of diameter", "", 1, 0.56, 0.4, 0.75},
     {"brilliant", "diameter", "diameter", "mm", 1e3, 0, 0.001, 0.1},
+    {"cut", "crown", "crown angle", "\u00b0", 1, 0, 0, 0}, /* ends and start are the design's */
+    {"cut", "pavilion", "pavilion angle", "\u00b0", 1, 0, 0, 0},
     {"cut", "width", "width", "mm", 1e3, 0, 0.001, 0.1},
     {"sphere", "radius", "radius", "mm", 1e3, 0, 0.001, 0.2},
     {"ring", "major", "major radius", "mm", 1e3, 0, 0.005, 0.2},
@@ -149,17 +152,29 @@ static void hold_value(abbe_view_value *v) {
   v->max = length ? 2 * decade : fmax(v->max, v->value);
 }
 
-static void read_values(abbe_yaml *yaml, abbe_yaml_node node, abbe_view_object *out) {
+/* The design's own angle, and its tangent halved and doubled. False where the side has none. */
+static bool start_angle(const abbe_object *object, const char *key, abbe_view_value *v) {
+  const double turn = 180 / 3.14159265358979323846;
+  v->value = object->cut_deg[strcmp(key, "crown") == 0 ? 0 : 1];
+  v->min = atan(0.5 * tan(v->value / turn)) * turn;
+  v->max = atan(2 * tan(v->value / turn)) * turn;
+  return v->value > 0;
+}
+
+static void read_values(abbe_yaml *yaml, abbe_yaml_node node, const abbe_object *object,
+                        abbe_view_object *out) {
   const char *shape = abbe_yaml_text(yaml, abbe_yaml_get(yaml, node, "shape"));
   for (size_t i = 0; shape != NULL && i < sizeof values / sizeof *values; i++) {
     if (strcmp(values[i].shape, shape) != 0 || out->value_count == ABBE_VIEW_MOST_VALUES) continue;
-    abbe_view_value *v = &out->value[out->value_count++];
+    abbe_view_value *v = &out->value[out->value_count];
     *v = (abbe_view_value){.label = values[i].label,
                            .unit = values[i].unit,
                            .value = values[i].initial,
                            .min = values[i].min,
                            .max = values[i].max,
                            .scale = values[i].scale};
+    if (v->max == 0 && !start_angle(object, values[i].key, v)) continue;
+    out->value_count++;
     join(out->key, values[i].key, v->key);
     number_of(yaml, node, values[i].key, &v->value);
     hold_value(v);
@@ -197,7 +212,7 @@ static void make_object(abbe_yaml *yaml, abbe_yaml_node list, size_t i, const ab
   }
   out->radius = abbe_vector_length(half);
   out->scene_index = (size_t)(object - scene->object);
-  read_values(yaml, node, out);
+  read_values(yaml, node, object, out);
   outline->object_count++;
 }
 

@@ -39,6 +39,21 @@ static void what_is_wrong_is_said_and_the_picture_stays(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
+/* Its sliders begin at its own angles; the same angles are set for other commands. */
+static void a_design_is_recut(void **state) {
+  (void)state;
+  run_must("cp \"$house\"/scenes/designs/step-square.asc . && sed 's/shape: gem/shape: cut/; "
+           "s/girdle:.*/file: step-square.asc/; s/table:.*/width: 0.05/; /sides:/d; /crown:/d; "
+           "/pavilion:/d' \"$house\"/scenes/gem.yaml > cut.yaml");
+  run_must("\"$abbe\" view cut.yaml --last moving --size 420x300 --script " SCRIPTS "recut.txt");
+  run_must("! cmp -s recut.png own.png && rm *.png");
+  run_must("\"$abbe\" plan cut.yaml --set objects.gem.crown=38 -q > /dev/null");
+  assert_true(run_refuses("\"$abbe\" plan cut.yaml --set objects.gem.crown=95", 1,
+                          "between 0 and 90 degrees"));
+  run_must("rm cut.yaml step-square.asc");
+  assert_int_equal(run_left(), 0);
+}
+
 static void what_is_shown_beside_the_picture(void **state) {
   (void)state;
   run_must(VIEW "--last accurate --size 640x300 --script " SCRIPTS "shown.txt > said");
@@ -188,6 +203,7 @@ int main(void) {
 #ifdef ABBE_HAVE_VIEW
       cmocka_unit_test(the_story),
       cmocka_unit_test(what_is_wrong_is_said_and_the_picture_stays),
+      cmocka_unit_test(a_design_is_recut),
       cmocka_unit_test(what_is_shown_beside_the_picture),
       cmocka_unit_test(a_turntable),
       cmocka_unit_test(a_lost_context_is_made_good),

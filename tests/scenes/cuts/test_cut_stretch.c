@@ -85,6 +85,59 @@ static void mains(void **state) {
   abbe_cut_free(&cut);
 }
 
+static void angles_of(const abbe_cut *cut, const abbe_cut_polyhedron *p, double crown,
+                      double pavilion) {
+  assert_near(abbe_cut_stretch_main_deg(cut, p, ABBE_CUT_CROWN), crown, 1e-9);
+  assert_near(abbe_cut_stretch_main_deg(cut, p, ABBE_CUT_PAVILION), pavilion, 1e-9);
+}
+
+/* To main angles, either side alone, and back: as it was. */
+static void there_and_back(void **state) {
+  (void)state;
+  static const double way[][4] = {/* to, and what it is then */
+                                  {35, 0, 35, 43},
+                                  {0, 40, 35, 40},
+                                  {50, 45, 50, 45},
+                                  {42, 43, 42, 43}};
+  abbe_cut cut = design_parse(design_a), before = design_parse(design_a);
+  for (size_t i = 0; i < sizeof way / sizeof *way; i++) {
+    abbe_cut_polyhedron p = stone_of(&cut);
+    assert_int_equal(abbe_cut_stretch_to(&cut, &p, way[i][0], way[i][1], NULL), ABBE_OK);
+    angles_of(&cut, &p, way[i][2], way[i][3]);
+    abbe_cut_polyhedron_free(&p);
+  }
+  for (size_t i = 0; i < cut.facet_count; i++) {
+    for (int k = 0; k < 3; k++) assert_near(cut.facet[i].n[k], before.facet[i].n[k], 1e-9);
+    assert_near(cut.facet[i].d, before.facet[i].d, 1e-9);
+  }
+  abbe_cut_free(&cut);
+  abbe_cut_free(&before);
+}
+
+static void angles_that_are_none(void **state) {
+  (void)state;
+  static const double wrong[] = {-1, 90, 120, NAN};
+  abbe_error error = {0};
+  abbe_cut cut = design_parse(design_a);
+  abbe_cut_polyhedron p = stone_of(&cut);
+  for (size_t i = 0; i < 4; i++) {
+    assert_int_equal(abbe_cut_stretch_to(&cut, &p, wrong[i], 0, &error), ABBE_OUT_OF_RANGE);
+    assert_contains(error.text, "crown's main angle is between 0 and 90");
+    assert_int_equal(abbe_cut_stretch_to(&cut, &p, 40, wrong[i], &error), ABBE_OUT_OF_RANGE);
+    assert_contains(error.text, "pavilion's");
+  }
+  angles_of(&cut, &p, 42, 43);
+  abbe_cut_polyhedron_free(&p);
+  abbe_cut_free(&cut);
+  cut = design_parse("g 96 0\na 90 1 96 24 48 72\na 0 0.5 96\na -60 0.5 96 24 48 72\n");
+  p = stone_of(&cut);
+  angles_of(&cut, &p, 0, 60);
+  assert_int_equal(abbe_cut_stretch_to(&cut, &p, 40, 0, &error), ABBE_NOT_FOUND);
+  assert_contains(error.text, "the crown has no slanted facet");
+  abbe_cut_polyhedron_free(&p);
+  abbe_cut_free(&cut);
+}
+
 /* Quartz: the critical angle is 40.37 degrees; and a ray that comes straight down onto 43 degrees
  * meets the facet opposite at 180 - 129 = 51. */
 static void the_window(void **state) {
@@ -128,7 +181,8 @@ static void what_is_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(meets_are_kept),  cmocka_unit_test(heights_are_stretched),
-      cmocka_unit_test(mains),           cmocka_unit_test(the_window),
+      cmocka_unit_test(mains),           cmocka_unit_test(there_and_back),
+      cmocka_unit_test(the_window),      cmocka_unit_test(angles_that_are_none),
       cmocka_unit_test(what_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,20 +1,14 @@
 #include "scenes/import/object_file.h"
 #include "scenes/import/scene_value.h"
+
+#include "scenes/cuts/cut_file.h"
+#include "scenes/cuts/cut_gcs.h"
+#include "scenes/geometry/vector.h"
 #include "spectral/formats/material_table_load.h"
 
-#include "scenes/geometry/vector.h"
+#include "tests/check.h"
 
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 static abbe_material_table table;
 
@@ -44,6 +38,23 @@ static abbe_scene read(const char *text) {
   return scene;
 }
 
+/* In a sentence that has those words and the line. */
+static void refuses(const char *object, const char *says) {
+  abbe_scene one = {.object = calloc(1, sizeof *one.object)};
+  abbe_error error = {0};
+  abbe_yaml *yaml;
+  char text[512];
+  snprintf(text, sizeof text, "\n%s", object);
+  assert_int_equal(abbe_yaml_parse(text, strlen(text), "text", &yaml, &error), ABBE_OK);
+  assert_int_not_equal(abbe_object_read(yaml, abbe_yaml_root(yaml), ABBE_SOURCE_DIR "/tests/bad/",
+                                        &table, one.object, 1, &one.object_count, &error),
+                       ABBE_OK);
+  if (strstr(error.text, says) == NULL || strstr(error.text, "text:2:") == NULL)
+    fail_msg("%s", error.text);
+  abbe_yaml_free(yaml);
+  abbe_scene_free(&one);
+}
+
 /* Designs that ship keep their planes, and are as wide as they are asked to be. */
 static void cuts_are_solids_of_their_planes(void **state) {
   (void)state;
@@ -71,6 +82,116 @@ static void cuts_are_solids_of_their_planes(void **state) {
   }
 }
 
+#define STONE "{shape: cut, width: 0.01, material: water, file: "
+
+static abbe_scene read_stone(const char *file, const char *keys) {
+  char text[512];
+  snprintf(text, sizeof text, STONE "'%s'%s}", file, keys);
+  return read(text);
+}
+
+/* Whether the stone has the plane that another one's becomes where tangents grow by k. */
+static bool has_plane(const abbe_exact *stone, const double plane[4], double k) {
+  double n[3] = {plane[0], plane[1], plane[2] / k}, off[3];
+  assert_true(abbe_vector_normalise(n));
+  for (size_t i = 0; i < stone->count; i++) {
+    abbe_vector_subtract(stone->plane[i], n, off);
+    if (abbe_vector_length(off) < 1e-9) return true;
+  }
+  return false;
+}
+
+/* Every facet's tangent is as many times what it was as the main facets' is, its azimuth and the
+ * outline stay, and no corner lies outside any plane. */
+static void recut(const char *file, const char *keys, double crown, double pavilion) {
+  abbe_scene own = read_stone(file, ""), other = read_stone(file, keys);
+  const abbe_object *a = &own.object[0], *b = &other.object[0];
+  const double upright = 1e-6;
+  assert_int_equal(b->exact.kind, ABBE_EXACT_CONVEX);
+  assert_int_equal(a->exact.count, b->exact.count);
+  for (size_t i = 0; i < a->exact.count; i++) {
+    const double *p = a->exact.plane[i], *q = b->exact.plane[i];
+    const double k = fabs(p[2]) < upright ? 1 : p[2] > 0 ? crown : pavilion;
+    if (!has_plane(&b->exact, p, k)) fail_msg("%s%s: plane %zu of %g", file, keys, i, p[2]);
+    for (size_t v = 0; v < b->mesh.vertex_count; v++)
+      assert_true(abbe_vector_dot(q, b->mesh.position[v]) <= q[3] + 1e-9 * 0.01);
+  }
+  for (int k = 0; k < 2; k++) {
+    assert_near(b->min[k], a->min[k], 1e-12);
+    assert_near(b->max[k], a->max[k], 1e-12);
+    assert_near(b->cut_deg[k], a->cut_deg[k], 0); /* the design's, not what it is cut at */
+  }
+  abbe_scene_free(&own);
+  abbe_scene_free(&other);
+}
+
+static void write_gcs(const char *path) {
+  abbe_cut cut;
+  abbe_cut_polyhedron stone;
+  assert_int_equal(
+      abbe_cut_file_read(ABBE_SOURCE_DIR "/scenes/designs/emerald.asc", &cut, NULL, NULL), ABBE_OK);
+  assert_int_equal(abbe_cut_polyhedron_make(&cut, 0, &stone, NULL), ABBE_OK);
+  FILE *to = fopen(path, "w");
+  assert_non_null(to);
+  assert_int_equal(abbe_cut_gcs_write(&cut, &stone, to, NULL, NULL), ABBE_OK);
+  fclose(to);
+  abbe_cut_polyhedron_free(&stone);
+  abbe_cut_free(&cut);
+}
+
+static void cuts_are_cut_at_other_angles(void **state) {
+  (void)state;
+  const double turn = 3.14159265358979323846 / 180;
+  const char *const quartz = "../../scenes/designs/brilliant-quartz.asc";
+  char folder[] = "/tmp/abbe-test-design-XXXXXX", path[64], keys[120];
+  abbe_scene scene = read_stone(quartz, "");
+  assert_near(scene.object[0].cut_deg[0], 42, 0);
+  assert_near(scene.object[0].cut_deg[1], 43, 0);
+  abbe_scene_free(&scene);
+  recut(quartz, ", crown: 36", tan(36 * turn) / tan(42 * turn), 1);
+  recut(quartz, ", pavilion: 40.5", 1, tan(40.5 * turn) / tan(43 * turn));
+  recut(quartz, ", crown: 55, pavilion: 60", tan(55 * turn) / tan(42 * turn),
+        tan(60 * turn) / tan(43 * turn));
+  recut(quartz, ", crown: 42, pavilion: 43", 1, 1);
+  /* its crown and pavilion meet between the girdle's facets: one angle moves both */
+  const char *const barion = "../../scenes/designs/barion.asc";
+  const double both = tan(38 * turn) / tan(41 * turn);
+  scene = read_stone(barion, "");
+  assert_near(scene.object[0].cut_deg[0], 0, 0);
+  assert_near(scene.object[0].cut_deg[1], 41, 0);
+  abbe_scene_free(&scene);
+  recut(barion, ", pavilion: 38", both, both);
+  assert_non_null(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/emerald.gcs", folder);
+  write_gcs(path);
+  scene = read_stone(path, "");
+  const double own[] = {scene.object[0].cut_deg[0], scene.object[0].cut_deg[1]};
+  assert_true(own[0] > 20 && own[0] < 70 && own[1] > 20 && own[1] < 70);
+  abbe_scene_free(&scene);
+  snprintf(keys, sizeof keys, ", crown: %.9f, pavilion: %.9f", own[0] - 4, own[1] + 3);
+  recut(path, keys, tan((own[0] - 4) * turn) / tan(own[0] * turn),
+        tan((own[1] + 3) * turn) / tan(own[1] * turn));
+  assert_int_equal(remove(path), 0);
+  assert_int_equal(remove(folder), 0);
+}
+
+static void angles_that_no_stone_has(void **state) {
+  (void)state;
+  static const char *const wrong[][2] = {
+      {", crown: 90", "'crown' is the angle of that side's main facets, between 0 and 90"},
+      {", pavilion: 0", "'pavilion' is the angle"},
+      {", pavilion: -41", "'pavilion' is the angle"},
+      {", crown: steep", "crown: steep"},
+      {", crown: 89.9", "tangents can become"}};
+  char text[512];
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    snprintf(text, sizeof text, STONE "../../scenes/designs/brilliant-quartz.asc%s}", wrong[i][0]);
+    refuses(text, wrong[i][1]);
+  }
+  refuses(STONE "../../scenes/designs/rose.asc, pavilion: 40}", "pavilion has no slanted facet");
+  refuses(STONE "../../scenes/designs/barion.asc, crown: 30, pavilion: 40}", "same tangent ratio");
+}
+
 /* With its defaults; refusals name the line. */
 static void knots_are_read(void **state) {
   (void)state;
@@ -85,20 +206,10 @@ static void knots_are_read(void **state) {
   assert_int_equal(scene.object[0].mesh.face_count, 2 * 90 * 12);
   abbe_scene_free(&scene);
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-    abbe_scene one = {.object = calloc(1, sizeof *one.object)};
-    abbe_error error = {0};
-    abbe_yaml *yaml;
     char text[256];
-    snprintf(text, sizeof text, "\n{shape: knot, major: 0.05, minor: 0.025, %s, reflectance: 0.5}",
+    snprintf(text, sizeof text, "{shape: knot, major: 0.05, minor: 0.025, %s, reflectance: 0.5}",
              bad[i].keys);
-    assert_int_equal(abbe_yaml_parse(text, strlen(text), "text", &yaml, &error), ABBE_OK);
-    assert_int_not_equal(abbe_object_read(yaml, abbe_yaml_root(yaml), "", &table, one.object, 1,
-                                          &one.object_count, &error),
-                         ABBE_OK);
-    if (strstr(error.text, bad[i].says) == NULL || strstr(error.text, "text:2:") == NULL)
-      fail_msg("%s", error.text);
-    abbe_yaml_free(yaml);
-    abbe_scene_free(&one);
+    refuses(text, bad[i].says);
   }
 }
 
@@ -316,6 +427,8 @@ static void paths_follow_the_folder(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(cuts_are_solids_of_their_planes),
+      cmocka_unit_test(cuts_are_cut_at_other_angles),
+      cmocka_unit_test(angles_that_no_stone_has),
       cmocka_unit_test(knots_are_read),
       cmocka_unit_test(a_sphere_stays_one_under_similarities_only),
       cmocka_unit_test(crystals_have_an_optic_axis),
