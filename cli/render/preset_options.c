@@ -181,6 +181,13 @@ void abbe_preset_options_describe_picture(const abbe_picture_choice *c, double m
   if (q->budget_ms > 0) cJSON_AddBoolToObject(p, "budget_met", ms <= q->budget_ms);
 }
 
+void abbe_preset_options_note_overridden(bool overridden) {
+  if (overridden)
+    fprintf(stderr,
+            "note: options, or a mirror or an eye in glass, stand against that choice; what it "
+            "promises is void\n");
+}
+
 void abbe_preset_options_note_picture(const abbe_picture_choice *c) {
   char text[300];
   if (c->point == NULL) return;
@@ -229,10 +236,7 @@ void abbe_preset_options_note(const abbe_preset_choice *c) {
   if (c->timed) fprintf(stderr, "; %.0f ms are promised", c->promised_ms);
   fprintf(stderr, "\n");
   note_unrest(c->unrest);
-  if (c->overridden)
-    fprintf(stderr,
-            "note: options, or a mirror or an eye in glass, stand against that choice; what it "
-            "promises is void\n");
+  abbe_preset_options_note_overridden(c->overridden);
   if (!c->kept && q->max_error > 0)
     fprintf(stderr, "note: no settings are known to keep %g; these are the most accurate\n",
             q->max_error);

@@ -193,10 +193,7 @@ static void print_notes(const abbe_scene *scene, const abbe_plan *plan) {
 static void note_picture(const request *q) {
   if (q->picture_note != NULL) fprintf(stderr, "note: %s\n", q->picture_note);
   abbe_preset_options_note_picture(&q->picture);
-  if (q->overridden)
-    fprintf(stderr,
-            "note: options, or a mirror or an eye in glass, stand against that choice; what it "
-            "promises is void\n");
+  abbe_preset_options_note_overridden(q->overridden);
 }
 
 /* By the tracer, where it serves the request best. */
