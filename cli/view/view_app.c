@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "cli/view/state/view_camera.h"
 #include "cli/view/view_keep.h"
+#include "cli/view/view_marks.h"
 #include "cli/view/view_panel.h"
 #include "cli/view/view_turn.h"
 #include "colorimetry/rgb_space.h"
@@ -123,13 +124,16 @@ static void take(abbe_view_session *app, size_t worker, abbe_view_result *result
   const bool moved = result->job.stage == ABBE_VIEW_MOVING;
   /* what counts is how often they come: with the wait until the next one was asked for */
   const double waited_ms = moved ? app->desk[worker].waited_ms : 0;
+  const bool newest = result->job.serial == refine->serial;
   const bool shown = abbe_view_refine_end(refine, worker, result->outcome, result->ms + waited_ms);
   app->desk[worker].ended_s = moved ? result->ended_s : -1;
   if (result->news.outlined) abbe_view_files_take(&app->files, &result->news);
-  if (result->news.outlined) abbe_view_state_learn(&app->state, &result->news.outline);
-  if (result->outcome == ABBE_VIEW_REFUSED && result->job.serial == refine->serial)
+  if (result->news.outlined) abbe_view_state_learn(&app->state, &result->news.outline, newest);
+  if (result->outcome == ABBE_VIEW_REFUSED && newest)
     snprintf(app->state.refusal, sizeof app->state.refusal, "%s", result->sentence);
   if (!shown) return;
+  const abbe_camera *led = &app->desk[worker].camera; /* unknown before the first picture */
+  abbe_view_state_picture(&app->state, newest || led->fov_y_rad == 0 ? &app->state.camera : led);
   const double pictured_s = abbe_clock_seconds();
   if (moved && app->seen_s < 0) { /* after a rest */
     app->frame_count = 0;
@@ -247,6 +251,7 @@ static void give_one(abbe_view_session *app, size_t worker, double now_s) {
     return;
   desk->serial = s->refine.serial;
   desk->other = other;
+  desk->camera = s->camera;
   if (!other) abbe_view_refine_take(&s->refine, worker, &request.job);
   if (request.turns) abbe_view_refine_forget(&s->refine, worker);
   desk->waited_ms = 1e3 * (abbe_clock_seconds() - desk->ended_s);
@@ -383,59 +388,6 @@ void abbe_view_app_key(abbe_view_session *app, int key, bool down, int modifiers
   abbe_view_state_key(&app->state, key, down, modifiers, now_s);
 }
 
-static bool show_line(const abbe_view_state *s, const double a[3], const double b[3],
-                      abbe_ui_colour colour, double wide) {
-  double p[2], q[2];
-  if (!abbe_view_camera_project(&s->camera, s->width, s->height, a, p) ||
-      !abbe_view_camera_project(&s->camera, s->width, s->height, b, q))
-    return false;
-  abbe_ui_line(p[0], p[1], q[0], q[1], colour, wide);
-  return true;
-}
-
-/* The facets through which the pixel's light has come in, the cells of these, and the straight ends
- * of some ways: from the lamp, and from where they entered to the pixel. */
-static void draw_feed(const abbe_view_session *app) {
-  const abbe_view_state *s = &app->state;
-  const abbe_view_feed *feed = abbe_view_session_feed(app);
-  if (feed == NULL) return;
-  const size_t every = feed->ray_count / 12 + 1;
-  for (size_t i = 0; i + 1 < feed->sight.count; i++)
-    show_line(s, feed->sight.place[i], feed->sight.place[i + 1], 0x30e0a0ff, 1.5);
-  for (size_t i = 0; i < feed->ray_count; i += every) {
-    show_line(s, feed->ray[i].light, feed->ray[i].entry, 0xa0ffe9b0, 1);
-    show_line(s, feed->ray[i].entry, feed->point, 0xc0ffffff, 1);
-  }
-  for (size_t i = 0; i < feed->edge_count; i++)
-    show_line(s, feed->edge[i][0], feed->edge[i][1], 0x307fe3b0, 1.5);
-  for (size_t i = 0; i < feed->ray_count; i++) {
-    double p[2];
-    if (abbe_view_camera_project(&s->camera, s->width, s->height, feed->ray[i].entry, p))
-      abbe_ui_box(p[0] - 1, p[1] - 1, p[0] + 1, p[1] + 1, 0x20ffe08a);
-  }
-}
-
-static void draw_handles(const abbe_view_session *app) {
-  const abbe_view_state *s = &app->state;
-  abbe_view_handle handle;
-  for (size_t i = 0; abbe_view_state_handle(s, i, &handle); i++) {
-    const bool light = handle.kind == ABBE_VIEW_LIGHT_HANDLE;
-    const bool near = hypot(handle.xy[0] - app->input.mouse[0],
-                            handle.xy[1] - app->input.mouse[1]) < ABBE_VIEW_HANDLE_PIXELS;
-    const abbe_ui_colour colour = light ? 0x30ffd98a : 0x509fc4ff;
-    abbe_ui_circle(handle.xy[0], handle.xy[1], near ? 8 : 6, colour, near ? 2.5 : 1.5);
-    if (near)
-      abbe_ui_label(handle.xy[0] + 13, handle.xy[1] - 8, colour,
-                    light ? s->outline.light[handle.index].name
-                          : s->outline.object[handle.index].name);
-  }
-  if (!s->picked) return;
-  draw_feed(app);
-  const double x = (double)s->pixel[0] + 0.5, y = (double)s->pixel[1] + 0.5;
-  abbe_ui_circle(x, y, 5, 0x00ffffff, 1.5);
-  abbe_ui_circle(x, y, 6.5, 0x40000000, 1);
-}
-
 void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, double now_s) {
   abbe_view_state *s = &app->state;
   const double panel = fmin(ABBE_VIEW_PANEL_WIDTH, input->width);
@@ -455,7 +407,7 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
   app->input = *input;
   abbe_ui_begin(input);
   if (app->texture != 0) abbe_ui_image(app->texture, 0, 0, width, height, app->texture_part);
-  if (room) draw_handles(app);
+  if (room) abbe_view_marks_draw(app);
   abbe_ui_panel_begin("Abbe", width, 0, panel, input->height);
   abbe_view_panel_draw(app, now_s);
   abbe_ui_panel_end();

@@ -20,9 +20,10 @@ typedef struct abbe_view_desk {
   abbe_view_worker *worker;
   uint64_t serial; /* of what it does, */
   bool other; /* which is no job of cli/view/state/view_refine.h: a look, a turntable's frame */
-  double stopped_s; /* when it was told to stop; below 0: it was not */
-  double ended_s;   /* when it had drawn its last moving picture, */
-  double waited_ms; /* and how long it had waited for the next one to be wanted */
+  abbe_camera camera; /* as it was led to then */
+  double stopped_s;   /* when it was told to stop; below 0: it was not */
+  double ended_s;     /* when it had drawn its last moving picture, */
+  double waited_ms;   /* and how long it had waited for the next one to be wanted */
 } abbe_view_desk;
 
 typedef struct abbe_view_session {
@@ -80,7 +81,7 @@ typedef struct abbe_view_session {
   double looked_s;
 } abbe_view_session;
 
-/* Lists the scene files beside the one of that path, sorted: at most ABBE_VIEW_MOST_SCENES. */
+/* Lists the scenes beside the one of that path, sorted: at most ABBE_VIEW_MOST_SCENES. */
 void abbe_view_session_list_scenes(abbe_view_session *session, const char *path);
 /* A line of the list of displays and views, as a display without a source; the texts are names'. */
 typedef struct abbe_view_names {

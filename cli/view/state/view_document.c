@@ -87,6 +87,16 @@ void abbe_view_document_point(double point[3], char *out, size_t size) {
   }
 }
 
+bool abbe_view_document_read(const char *text, double out[3]) {
+  double v[3];
+  for (int k = 0; k < 3; k++) {
+    if (text == NULL || (*text != '[' && *text != ',')) return false;
+    if (!abbe_number_read(text + 1, &text, &v[k])) return false;
+  }
+  memcpy(out, v, sizeof v);
+  return true;
+}
+
 static bool is_camera(const char *set) {
   return strncmp(set, "camera.", 7) == 0;
 }

@@ -42,6 +42,8 @@ const char *abbe_view_document_value(const abbe_view_document *document, const c
 
 /* "[x, y, z]" with six digits, which read back as *numbers are then. */
 void abbe_view_document_point(double point[3], char *out, size_t size);
+/* Reads such a text, which may be NULL; false where it is none: out stays. */
+bool abbe_view_document_read(const char *text, double out[3]);
 
 /* What differs between two: this and nothing that stands below it. */
 typedef enum abbe_view_difference {

@@ -264,7 +264,10 @@ abbe_result abbe_view_outline_make(const abbe_scene *scene, const char *text, si
 }
 
 void abbe_view_outline_free(abbe_view_outline *outline) {
-  for (size_t i = 0; i < outline->object_count; i++) free(outline->object[i].before);
+  for (size_t i = 0; i < outline->object_count; i++) {
+    free(outline->object[i].before);
+    free(outline->object[i].own_before);
+  }
   for (size_t i = 0; i < outline->stone_count; i++) free(outline->stone[i]);
   for (size_t i = 0; i < outline->metal_count; i++) free(outline->metal[i]);
   *outline = (abbe_view_outline){0};
@@ -285,21 +288,110 @@ bool abbe_view_outline_transform(const abbe_view_object *object, double tilt_rad
   return n > 0 && (size_t)n < size;
 }
 
-void abbe_view_outline_place(abbe_view_object *object, const char *transform) {
+/* As a value of abbe_view_outline_transform says; false for another. */
+static bool place(abbe_view_object *object, const char *transform) {
   static const char word[] = "{translate: [";
   const char *last = NULL, *end;
   double to[3];
   for (const char *at = transform; (at = strstr(at, word)) != NULL; at++) last = at;
-  if (transform[0] != '[' || last == NULL) return;
+  if (transform[0] != '[' || last == NULL) return false;
   end = last + sizeof word - 1;
   for (int k = 0; k < 3; k++)
-    if (!abbe_number_read(end, &end, &to[k]) || *end++ != (k < 2 ? ',' : ']')) return;
-  if (strcmp(end, "}]") != 0) return;
+    if (!abbe_number_read(end, &end, &to[k]) || *end++ != (k < 2 ? ',' : ']')) return false;
+  if (strcmp(end, "}]") != 0) return false;
   const size_t length = last > transform + 2 ? (size_t)(last - transform) - 3 : 0;
   char *before = strndup(transform + 1, length);
-  if (before == NULL) return;
+  if (before == NULL) return false;
   free(object->before);
   object->before = before;
   for (int k = 0; k < 3; k++) object->middle[k] += to[k] - object->translate[k];
   memcpy(object->translate, to, sizeof to);
+  return true;
+}
+
+static void place_own(abbe_view_object *object) {
+  char *before = object->own_before != NULL ? strdup(object->own_before) : NULL;
+  if (before == NULL) return;
+  free(object->before);
+  object->before = before;
+  memcpy(object->translate, object->own_translate, sizeof object->translate);
+  memcpy(object->middle, object->own_middle, sizeof object->middle);
+}
+
+/* A sun that shines so already stays where it is on its way. */
+static bool place_light(abbe_view_light *light, const char *value) {
+  double point[3], across[3], to[3];
+  if (!abbe_view_document_read(value, point)) return false;
+  if (light->kind == ABBE_LIGHT_DIRECTIONAL) {
+    abbe_vector_subtract(light->aim, light->position, to);
+    abbe_vector_cross(to, point, across);
+    const double lengths = abbe_vector_length(to) * abbe_vector_length(point);
+    if (abbe_vector_length(across) <= 1e-5 * lengths) return true;
+    for (int k = 0; k < 3; k++) point[k] = light->aim[k] - point[k];
+  }
+  memcpy(light->position, point, sizeof point);
+  return true;
+}
+
+/* What the document says of where it stands, or NULL. */
+static const char *place_of_light(const abbe_view_light *light, const abbe_view_document *d) {
+  char key[ABBE_VIEW_KEY + 16];
+  const bool sun = light->kind == ABBE_LIGHT_DIRECTIONAL;
+  snprintf(key, sizeof key, "%s.%s", light->key, sun ? "direction" : "position");
+  return abbe_view_document_value(d, key);
+}
+
+static const char *place_of_object(const abbe_view_object *object, const abbe_view_document *d) {
+  char key[ABBE_VIEW_KEY + 16];
+  snprintf(key, sizeof key, "%s.transform", object->key);
+  return abbe_view_document_value(d, key);
+}
+
+static void own_light(abbe_view_light *light, const abbe_view_document *document,
+                      const abbe_view_outline *before) {
+  light->owned = document != NULL && place_of_light(light, document) == NULL;
+  if (light->owned) memcpy(light->own, light->position, sizeof light->own);
+  for (size_t i = 0; !light->owned && i < before->light_count; i++) {
+    const abbe_view_light *was = &before->light[i];
+    if (strcmp(was->key, light->key) != 0 || !was->owned) continue;
+    light->owned = true;
+    memcpy(light->own, was->own, sizeof light->own);
+  }
+}
+
+static void own_object(abbe_view_object *object, const abbe_view_document *document,
+                       abbe_view_outline *before) {
+  if (document != NULL && place_of_object(object, document) == NULL) {
+    object->own_before = strdup(object->before);
+    memcpy(object->own_translate, object->translate, sizeof object->own_translate);
+    memcpy(object->own_middle, object->middle, sizeof object->own_middle);
+  }
+  for (size_t i = 0; object->own_before == NULL && i < before->object_count; i++) {
+    abbe_view_object *was = &before->object[i];
+    if (strcmp(was->key, object->key) != 0 || was->own_before == NULL) continue;
+    object->own_before = was->own_before;
+    was->own_before = NULL;
+    memcpy(object->own_translate, was->own_translate, sizeof object->own_translate);
+    memcpy(object->own_middle, was->own_middle, sizeof object->own_middle);
+  }
+}
+
+void abbe_view_outline_own(abbe_view_outline *outline, const abbe_view_document *document,
+                           abbe_view_outline *before) {
+  for (size_t i = 0; i < outline->light_count; i++) own_light(&outline->light[i], document, before);
+  for (size_t i = 0; i < outline->object_count; i++)
+    own_object(&outline->object[i], document, before);
+}
+
+void abbe_view_outline_stand(abbe_view_outline *outline, const abbe_view_document *document) {
+  for (size_t i = 0; i < outline->light_count; i++) {
+    abbe_view_light *light = &outline->light[i];
+    if (place_light(light, place_of_light(light, document)) || !light->owned) continue;
+    memcpy(light->position, light->own, sizeof light->position);
+  }
+  for (size_t i = 0; i < outline->object_count; i++) {
+    abbe_view_object *object = &outline->object[i];
+    const char *value = place_of_object(object, document);
+    if (value == NULL || !place(object, value)) place_own(object);
+  }
 }

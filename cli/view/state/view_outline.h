@@ -2,11 +2,12 @@
  * the keys under which their values are set.
  *
  * It is made of the scene and of the text that it was read from: of the one come places and names,
- * of the other keys, and how an object was put where it is. It changes nothing.
+ * of the other keys, and how an object was put where it is. It changes nothing of these.
  */
 #ifndef ABBE_CLI_VIEW_STATE_VIEW_OUTLINE_H
 #define ABBE_CLI_VIEW_STATE_VIEW_OUTLINE_H
 
+#include "cli/view/state/view_document.h"
 #include "scenes/scene.h"
 
 #define ABBE_VIEW_MOST_OBJECTS 64 /* that can be taken hold of; more are left alone */
@@ -28,6 +29,8 @@ typedef struct abbe_view_light {
   bool placed;        /* it has a position or a direction, which may be set */
   double position[3]; /* of a directional light on the way to it from `aim` */
   double aim[3];      /* the middle of what the camera sees */
+  bool owned;         /* where it stands by the file alone is known: */
+  double own[3];
   abbe_view_value power;
 } abbe_view_light;
 
@@ -42,6 +45,8 @@ typedef struct abbe_view_object {
    * that. */
   char *before;
   double translate[3];
+  char *own_before; /* so by the file alone; NULL: not known */
+  double own_translate[3], own_middle[3];
   size_t value_count;
   abbe_view_value value[ABBE_VIEW_MOST_VALUES];
 } abbe_view_object;
@@ -70,7 +75,13 @@ void abbe_view_outline_free(abbe_view_outline *outline);
 bool abbe_view_outline_transform(const abbe_view_object *object, double tilt_rad,
                                  const double axis[3], const double translate[3], char *out,
                                  size_t size);
-/* The object stands as a value of abbe_view_outline_transform says, until it is learnt anew. */
-void abbe_view_outline_place(abbe_view_object *object, const char *transform);
+/* Where things stand by the file alone: the outline is of the document (NULL: of another one),
+ * which may not have moved them; else as the outline before had it, whose it was. */
+void abbe_view_outline_own(abbe_view_outline *outline, const abbe_view_document *document,
+                           abbe_view_outline *before);
+/* Lights and objects stand as another document of the same file says, as far as that is known: by
+ * values of abbe_view_outline_transform, lights' positions, or the file. Until it is learnt anew.
+ */
+void abbe_view_outline_stand(abbe_view_outline *outline, const abbe_view_document *document);
 
 #endif

@@ -25,33 +25,49 @@ void abbe_view_state_free(abbe_view_state *state) {
 
 /* ---- changes ---- */
 
-/* "[x, y, z]"; else out stays. */
-static void read_point(const char *text, double out[3]) {
-  double v[3];
-  for (int k = 0; k < 3; k++) {
-    if (text == NULL || (*text != '[' && *text != ',')) return;
-    if (!abbe_number_read(text + 1, &text, &v[k])) return;
-  }
-  memcpy(out, v, sizeof v);
-}
-
 /* The scene's own camera, with what it was led to. */
 static void find_camera(abbe_view_state *state) {
   const abbe_view_document *now = abbe_view_history_now(&state->history);
   state->camera = state->outline.camera;
-  read_point(abbe_view_document_value(now, "camera.eye"), state->camera.eye);
-  read_point(abbe_view_document_value(now, "camera.target"), state->camera.target);
+  abbe_view_document_read(abbe_view_document_value(now, "camera.eye"), state->camera.eye);
+  abbe_view_document_read(abbe_view_document_value(now, "camera.target"), state->camera.target);
 }
 
-void abbe_view_state_learn(abbe_view_state *state, abbe_view_outline *outline) {
-  if (state->held.kind != ABBE_VIEW_NO_HANDLE && state->dragged) { /* what is held was there */
+/* Where the light or the object stands; NULL: there is none. */
+static const double *place_of(const abbe_view_outline *o, const abbe_view_handle *handle) {
+  const bool light = handle->kind == ABBE_VIEW_LIGHT_HANDLE;
+  if (handle->index >= (light ? o->light_count : o->object_count)) return NULL;
+  return light ? o->light[handle->index].position : o->object[handle->index].middle;
+}
+
+/* What is held is pulled from here. */
+static void take_hold(abbe_view_state *state) {
+  const double *place = place_of(&state->outline, &state->held);
+  if (place == NULL) return;
+  memcpy(state->held_point, place, sizeof state->held_point);
+  memcpy(state->pulled, place, sizeof state->pulled);
+}
+
+void abbe_view_state_learn(abbe_view_state *state, abbe_view_outline *outline, bool newest) {
+  const abbe_view_document *now = abbe_view_history_now(&state->history);
+  const bool held = state->held.kind != ABBE_VIEW_NO_HANDLE;
+  if (held && state->dragged) { /* what is held was there; it is seen here */
+    const double *place = place_of(outline, &state->held);
+    if (place != NULL) memcpy(state->pulled, place, sizeof state->pulled);
     abbe_view_outline_free(outline);
     return;
   }
+  abbe_view_outline_own(outline, newest ? now : NULL, &state->outline);
   abbe_view_outline_free(&state->outline);
   state->outline = *outline;
   *outline = (abbe_view_outline){0};
+  if (!newest) abbe_view_outline_stand(&state->outline, now);
   find_camera(state);
+  if (held) take_hold(state);
+}
+
+void abbe_view_state_picture(abbe_view_state *state, const abbe_camera *camera) {
+  state->pictured = *camera;
 }
 
 static void refuse(abbe_view_state *state, const abbe_error *error) {
@@ -135,6 +151,7 @@ static bool step(abbe_view_state *state, bool (*go)(abbe_view_history *), double
   const abbe_view_document *after = abbe_view_history_now(&state->history);
   const bool camera = abbe_view_document_compare(before, after) == ABBE_VIEW_CAMERA;
   if (strcmp(before->path, after->path) != 0) leave_scene(state);
+  abbe_view_outline_stand(&state->outline, after);
   find_camera(state);
   changed(state, camera ? ABBE_VIEW_MOVED_CAMERA : ABBE_VIEW_CHANGED_SCENE, now_s);
   return true;
@@ -221,14 +238,17 @@ void abbe_view_state_tick(abbe_view_state *state, double seconds, double now_s) 
 
 bool abbe_view_state_handle(const abbe_view_state *state, size_t i, abbe_view_handle *out) {
   const abbe_view_outline *o = &state->outline;
+  const abbe_view_handle *held = &state->held;
   size_t k = 0;
+  if (!(state->pictured.fov_y_rad > 0)) return false; /* there is no picture */
   for (size_t n = 0; n < o->light_count + o->object_count; n++) {
     const bool light = n < o->light_count;
     const size_t at = light ? n : n - o->light_count;
     if (light ? !o->light[at].placed : !o->object[at].bends) continue;
-    const double *point = light ? o->light[at].position : o->object[at].middle;
     *out = (abbe_view_handle){light ? ABBE_VIEW_LIGHT_HANDLE : ABBE_VIEW_OBJECT_HANDLE, at, {0, 0}};
-    if (!abbe_view_camera_project(&state->camera, state->width, state->height, point, out->xy))
+    const bool pulled = state->dragged && held->kind == out->kind && held->index == at;
+    if (!abbe_view_camera_project(&state->pictured, state->width, state->height,
+                                  pulled ? state->pulled : place_of(o, out), out->xy))
       continue;
     if (out->xy[0] < 0 || out->xy[1] < 0 || out->xy[0] > (double)state->width ||
         out->xy[1] > (double)state->height)
@@ -304,29 +324,6 @@ static void pull(abbe_view_state *state, double now_s) {
   set_object(state, object, 0, point, point, now_s);
 }
 
-/* What was pulled stands where it was left also before a job has said so: whoever takes hold of it
- * again at once goes on from there. */
-static void settle(abbe_view_state *state) {
-  const abbe_view_document *now = abbe_view_history_now(&state->history);
-  abbe_view_outline *o = &state->outline;
-  const size_t i = state->held.index;
-  char key[ABBE_VIEW_KEY + 16];
-  if (state->held.kind == ABBE_VIEW_OBJECT_HANDLE && i < o->object_count) {
-    snprintf(key, sizeof key, "%s.transform", o->object[i].key);
-    const char *value = abbe_view_document_value(now, key);
-    if (value != NULL) abbe_view_outline_place(&o->object[i], value);
-  }
-  if (state->held.kind != ABBE_VIEW_LIGHT_HANDLE || i >= o->light_count) return;
-  abbe_view_light *light = &o->light[i];
-  const bool sun = light->kind == ABBE_LIGHT_DIRECTIONAL;
-  double point[3];
-  for (int k = 0; k < 3; k++) point[k] = (sun ? light->aim[k] : 0) - light->position[k];
-  for (int k = 0; k < 3 && !sun; k++) point[k] = light->position[k];
-  snprintf(key, sizeof key, "%s.%s", light->key, sun ? "direction" : "position");
-  read_point(abbe_view_document_value(now, key), point);
-  for (int k = 0; k < 3; k++) light->position[k] = sun ? light->aim[k] - point[k] : point[k];
-}
-
 /* ---- pointer and keys ---- */
 
 void abbe_view_state_press(abbe_view_state *state, abbe_view_button button, double x, double y,
@@ -340,12 +337,7 @@ void abbe_view_state_press(abbe_view_state *state, abbe_view_button button, doub
   state->modifiers = modifiers;
   state->held = (abbe_view_handle){0};
   if (button == ABBE_VIEW_LEFT) state->held = abbe_view_state_handle_at(state, x, y);
-  if (state->held.kind == ABBE_VIEW_LIGHT_HANDLE)
-    memcpy(state->held_point, state->outline.light[state->held.index].position,
-           sizeof state->held_point);
-  if (state->held.kind == ABBE_VIEW_OBJECT_HANDLE)
-    memcpy(state->held_point, state->outline.object[state->held.index].middle,
-           sizeof state->held_point);
+  if (state->held.kind != ABBE_VIEW_NO_HANDLE) take_hold(state);
   abbe_view_refine_hold(&state->refine, true, now_s);
 }
 
@@ -371,7 +363,9 @@ void abbe_view_state_release(abbe_view_state *state, abbe_view_button button, do
   const bool clicked = state->down[button] && !state->dragged && button == ABBE_VIEW_LEFT;
   state->down[button] = false;
   if (any_down(state)) return;
-  if (state->dragged) settle(state);
+  /* what was pulled stands where it was left also before a job has said so */
+  if (state->dragged)
+    abbe_view_outline_stand(&state->outline, abbe_view_history_now(&state->history));
   state->continued = false;
   state->held = (abbe_view_handle){0};
   memset(state->fly, 0, sizeof state->fly);

@@ -59,7 +59,8 @@ typedef struct abbe_view_state {
   abbe_view_history history;
   abbe_view_refine refine;
   abbe_view_outline outline; /* zeroed before the first picture */
-  abbe_camera camera;        /* as it is led */
+  abbe_camera camera;        /* as it is led, */
+  abbe_camera pictured;      /* and that of the picture that stands; zeroed: there is none */
   size_t width, height;      /* of the picture, pixels */
   bool down[ABBE_VIEW_BUTTON_COUNT];
   double from[2], at[2];   /* of the pointer: where a button went down; now */
@@ -67,9 +68,10 @@ typedef struct abbe_view_state {
   uint64_t turned;         /* the change that was the wheel's last turn */
   int modifiers;
   abbe_view_handle held;
-  double held_point[3];
-  double fly[3]; /* right, up, forward: -1, 0 or 1 */
-  bool picked;   /* a pixel is: */
+  double held_point[3]; /* where it stood when it was taken, */
+  double pulled[3];     /* and stands in the last scene that was learnt since */
+  double fly[3];        /* right, up, forward: -1, 0 or 1 */
+  bool picked;          /* a pixel is: */
   size_t pixel[2];
   abbe_view_shown shown;
   double exposure;    /* stops */
@@ -81,8 +83,11 @@ abbe_result abbe_view_state_begin(abbe_view_state *state, const abbe_view_docume
                                   abbe_error *error);
 void abbe_view_state_free(abbe_view_state *state);
 
-/* The scene as a job has found it; the outline is taken over, or freed while something is held. */
-void abbe_view_state_learn(abbe_view_state *state, abbe_view_outline *outline);
+/* The scene as a job has found it, which may be that of an older change than the newest; the
+ * outline is taken over, or freed while something is pulled. */
+void abbe_view_state_learn(abbe_view_state *state, abbe_view_outline *outline, bool newest);
+/* A picture with that camera stands now. */
+void abbe_view_state_picture(abbe_view_state *state, const abbe_camera *camera);
 
 void abbe_view_state_press(abbe_view_state *state, abbe_view_button button, double x, double y,
                            int modifiers, double now_s);
@@ -110,7 +115,7 @@ void abbe_view_state_resize(abbe_view_state *state, size_t width, size_t height,
 
 /* The handle under a place, or one of kind NO_HANDLE. */
 abbe_view_handle abbe_view_state_handle_at(const abbe_view_state *state, double x, double y);
-/* Handle `i` of those in the picture; false past the last. */
+/* Handle `i` of those in the picture that stands; false past the last. */
 bool abbe_view_state_handle(const abbe_view_state *state, size_t i, abbe_view_handle *out);
 
 #endif
