@@ -192,7 +192,8 @@ static void draw_view(abbe_view_session *app) {
 /* A setting that the stage has unless it is given. */
 static bool slide_setting(const char *label, size_t *given, size_t planned, double min, double max,
                           bool *began) {
-  double value = (double)(*given > 0 ? *given : planned > 0 ? planned : (size_t)min);
+  double value = (double)(*given > 0 ? *given : planned);
+  if (!(value > 0)) return false; /* nothing takes it */
   if (!abbe_ui_slider(label, &value, min, max, *given > 0 ? "%.0f" : "%.0f  (as planned)", true,
                       began))
     return false;

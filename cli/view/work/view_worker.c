@@ -177,6 +177,7 @@ static abbe_result draw(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
   const abbe_plan *plan = abbe_renderer_plan(w->renderer);
   const abbe_preset_point *point = point_of(w, q->job.stage);
   out->desc = plan->desc;
+  if (!plan->caustics) out->desc.photons = out->desc.map_size = 0;
   out->asked = desc;
   out->counted = !moving;
   if (!moving) list_plan(plan, &out->statistics, out);

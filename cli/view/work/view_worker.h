@@ -49,7 +49,7 @@ typedef struct abbe_view_result {
   abbe_image traced;  /* R, G, B, stderr.*, bands */
   abbe_view_scene_news news;
   abbe_render_desc asked; /* of a rendered picture; the rest was left to the plan: */
-  abbe_render_desc desc;  /* as the plan has it */
+  abbe_render_desc desc;  /* as the plan has it; photons and map_size 0: none are followed */
   size_t line_count;
   abbe_view_line *line; /* of the plan */
   bool counted;         /* the statistics are there */
