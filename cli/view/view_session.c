@@ -1,8 +1,10 @@
 #include "cli/view/view_session.h"
 
 #include "base/number.h"
+#include "base/yaml/yaml.h"
 #include "cli/view/picture/view_show.h"
 #include "colorimetry/rgb_space.h"
+#include "scenes/import/scene_file.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -12,6 +14,22 @@
 
 static int by_name(const void *a, const void *b) {
   return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+/* By its objects, which tables of materials and sweeps' grids have not. What cannot be read is
+ * listed too: whoever chooses it is told why. */
+static bool is_scene(const char *path) {
+  const abbe_scene_options as_it_is = {0};
+  char *text = NULL;
+  size_t size = 0;
+  abbe_yaml *yaml = NULL;
+  bool is = true;
+  if (abbe_scene_text(path, &as_it_is, &text, &size, NULL) == ABBE_OK &&
+      abbe_yaml_parse(text, size, path, &yaml, NULL) == ABBE_OK)
+    is = abbe_yaml_get(yaml, abbe_yaml_root(yaml), "objects").id != 0;
+  abbe_yaml_free(yaml);
+  free(text);
+  return is;
 }
 
 void abbe_view_session_list_scenes(abbe_view_session *session, const char *path) {
@@ -25,6 +43,7 @@ void abbe_view_session_list_scenes(abbe_view_session *session, const char *path)
     const size_t length = strlen(entry->d_name);
     if (length < 6 || strcmp(entry->d_name + length - 5, ".yaml") != 0) continue;
     snprintf(name, sizeof name, "%s%s", slash != NULL ? folder : "", entry->d_name);
+    if (!is_scene(name)) continue;
     if (session->scene_count < ABBE_VIEW_MOST_SCENES &&
         (session->scene[session->scene_count] = strdup(name)) != NULL)
       session->scene_count++;

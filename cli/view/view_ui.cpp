@@ -34,6 +34,18 @@ ImVec2 at(double x, double y) {
   return ImVec2(static_cast<float>(x), static_cast<float>(y));
 }
 
+/* A label that is seen as a whole, and an id: Dear ImGui hides what stands behind "##", and takes
+ * what stands behind "###" alone for the id. Between them is a space that has no width. */
+std::string whole(const char *label) {
+  const bool there = ImGui::GetFont()->FindGlyphNoFallback(0x200b) != nullptr;
+  std::string out;
+  for (; *label != '\0'; label++) {
+    if (*label == '#' && !out.empty() && out.back() == '#') out += there ? "\u200b" : " ";
+    out += *label;
+  }
+  return out;
+}
+
 /* Keeps where the last widget is. */
 void note(const char *label) {
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
@@ -167,7 +179,7 @@ void abbe_ui_panel_end(void) {
 }
 
 bool abbe_ui_section(const char *label, bool open) {
-  const bool is_open = ImGui::CollapsingHeader(label, open ? ImGuiTreeNodeFlags_DefaultOpen
+  const bool is_open = ImGui::CollapsingHeader(whole(label).c_str(), open ? ImGuiTreeNodeFlags_DefaultOpen
                                                            : ImGuiTreeNodeFlags_None);
   note(label);
   return is_open;
@@ -191,7 +203,7 @@ void abbe_ui_pair(const char *name, const char *value) {
 }
 
 void abbe_ui_scope_begin(const char *id) {
-  ImGui::PushID(id);
+  ImGui::PushID(whole(id).c_str());
 }
 
 void abbe_ui_scope_end(void) {
@@ -207,7 +219,7 @@ void abbe_ui_beside(void) {
 }
 
 bool abbe_ui_button(const char *label) {
-  const bool pressed = ImGui::Button(label);
+  const bool pressed = ImGui::Button(whole(label).c_str());
   note(label);
   return pressed;
 }
@@ -216,8 +228,8 @@ bool abbe_ui_slider(const char *label, double *value, double min, double max, co
                     bool logarithmic, bool *began) {
   const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat |
                                  (logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
-  const bool changed =
-      ImGui::SliderScalar(label, ImGuiDataType_Double, value, &min, &max, format, flags);
+  const bool changed = ImGui::SliderScalar(whole(label).c_str(), ImGuiDataType_Double, value, &min,
+                                           &max, format, flags);
   note(label);
   places[label].width = ImGui::CalcItemWidth(); /* without the label */
   if (began != nullptr) *began = ImGui::IsItemActivated();
@@ -226,15 +238,18 @@ bool abbe_ui_slider(const char *label, double *value, double min, double max, co
 
 bool abbe_ui_choose(const char *label, const char *const *names, size_t count, size_t *index) {
   bool chosen = false;
+  const std::string now = whole(*index < count ? names[*index] : "");
   const bool open =
-      ImGui::BeginCombo(label, *index < count ? names[*index] : "", ImGuiComboFlags_HeightLarge);
+      ImGui::BeginCombo(whole(label).c_str(), now.c_str(), ImGuiComboFlags_HeightLarge);
   if (!open) note(label);
   if (!open) return false;
   for (size_t i = 0; i < count; i++) {
-    if (ImGui::Selectable(names[i], i == *index)) {
+    ImGui::PushID(static_cast<int>(i));
+    if (ImGui::Selectable(whole(names[i]).c_str(), i == *index)) {
       *index = i;
       chosen = true;
     }
+    ImGui::PopID();
     note(names[i]);
   }
   ImGui::EndCombo();
@@ -252,7 +267,7 @@ void abbe_ui_tooltip(const char *text) {
 
 bool abbe_ui_place(const char *label, double width, double height, double *x, double *y) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  ImGui::InvisibleButton(label, at(width, height));
+  ImGui::InvisibleButton(whole(label).c_str(), at(width, height));
   note(label);
   *x = corner.x;
   *y = corner.y;
