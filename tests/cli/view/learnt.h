@@ -1,0 +1,77 @@
+/* learnt.h: a viewer's state with a scene that is learnt as from a job, and hands on it. */
+#ifndef ABBE_TESTS_CLI_VIEW_LEARNT_H
+#define ABBE_TESTS_CLI_VIEW_LEARNT_H
+
+#include "tests/check.h"
+
+#include "cli/view/state/view_camera.h"
+#include "cli/view/state/view_state.h"
+#include "scenes/import/scene_file.h"
+
+#include <stdlib.h>
+
+static const char gem[] = ABBE_SOURCE_DIR "/scenes/gem.yaml";
+
+static inline void see(abbe_view_state *s) {
+  abbe_view_state_picture(s, &s->camera);
+}
+
+/* What the document's changes make of the scene, learnt as from a job. */
+static inline void find(const abbe_view_state *s, abbe_view_outline *out) {
+  const abbe_view_document *now = abbe_view_history_now(&s->history);
+  const abbe_scene_options options = {.set = (const char *const *)now->set,
+                                      .set_count = now->set_count};
+  abbe_scene scene;
+  abbe_error error = {0};
+  char *text;
+  size_t size;
+  if (abbe_scene_load(now->path, &options, &scene, &error) != ABBE_OK) fail_msg("%s", error.text);
+  assert_int_equal(abbe_scene_text(now->path, &options, &text, &size, NULL), ABBE_OK);
+  assert_int_equal(abbe_view_outline_make(&scene, text, size, out, NULL), ABBE_OK);
+  out->camera = scene.camera;
+  free(text);
+  abbe_scene_free(&scene);
+}
+
+static inline void learn(abbe_view_state *s) {
+  static abbe_view_outline outline;
+  find(s, &outline);
+  abbe_view_state_learn(s, &outline, true);
+  see(s);
+}
+
+/* The gem in a picture of 512 x 512. */
+static inline abbe_view_state *begun(void) {
+  static abbe_view_state s;
+  char path[sizeof gem];
+  memset(&s, 0, sizeof s);
+  strcpy(path, gem);
+  const abbe_view_document document = {.path = path};
+  assert_int_equal(abbe_view_state_begin(&s, &document, NULL), ABBE_OK);
+  abbe_view_state_resize(&s, 512, 512, 0);
+  learn(&s);
+  return &s;
+}
+
+static inline const char *value(const abbe_view_state *s, const char *key) {
+  return abbe_view_document_value(abbe_view_history_now(&s->history), key);
+}
+
+static inline void drag(abbe_view_state *s, abbe_view_button button, double x0, double y0,
+                        double x1, double y1, int modifiers) {
+  abbe_view_state_press(s, button, x0, y0, modifiers, 1);
+  for (int i = 1; i <= 4; i++)
+    abbe_view_state_move(s, x0 + i * (x1 - x0) / 4, y0 + i * (y1 - y0) / 4, 1 + 0.05 * i);
+  abbe_view_state_release(s, button, 1.3);
+}
+
+/* That file in a window of 512 x 512, learnt. */
+static inline void begin_with(abbe_view_state *s, char *path) {
+  const abbe_view_document document = {.path = path};
+  memset(s, 0, sizeof *s);
+  assert_int_equal(abbe_view_state_begin(s, &document, NULL), ABBE_OK);
+  abbe_view_state_resize(s, 512, 512, 0);
+  learn(s);
+}
+
+#endif

@@ -1,0 +1,186 @@
+/* What can be taken hold of, and where it stands by the changes of a document. */
+#include "tests/cli/view/learnt.h"
+
+static void test_what_can_be_held_is_found(void **state) {
+  (void)state;
+  abbe_view_state *s = begun();
+  const abbe_view_outline *o = &s->outline;
+  assert_int_equal(o->light_count, 1);
+  assert_string_equal(o->light[0].key, "lights.lamp");
+  assert_string_equal(o->light[0].power.key, "lights.lamp.intensity");
+  assert_near(o->light[0].power.value, 0.265, 1e-12);
+  assert_int_equal(o->object_count, 6);
+  assert_string_equal(o->object[0].key, "objects.gem");
+  assert_string_equal(o->object[0].material, "n-sf11");
+  assert_string_equal(o->object[1].material, "");
+  assert_near(o->object[0].translate[2], 0.15, 1e-12);
+  assert_string_equal(o->object[0].before, "{rotate: {axis: [0, 0, 1], angle: 12}}, "
+                                           "{rotate: {axis: [1, 0, 0], angle: 5}}");
+  assert_string_equal(o->object[0].value[0].key, "objects.gem.crown");
+  assert_near(o->object[0].value[0].value, 0.013, 1e-12);
+  abbe_view_state_free(s);
+}
+
+/* Of a studio: its surroundings turn, and the angles of a cut are set. */
+static void test_a_studio_can_be_turned_and_its_stone_cut(void **state) {
+  (void)state;
+  char path[] = ABBE_SOURCE_DIR "/scenes/diamond-studio.yaml";
+  static abbe_view_state s;
+  memset(&s, 0, sizeof s);
+  const abbe_view_document document = {.path = path};
+  assert_int_equal(abbe_view_state_begin(&s, &document, NULL), ABBE_OK);
+  learn(&s);
+  const abbe_view_outline *o = &s.outline;
+  assert_true(o->surrounded);
+  assert_near(o->rotate.value, 0, 0);
+  assert_near(o->rotate.max - o->rotate.min, 360, 0);
+  assert_string_equal(o->object[0].value[1].label, "pavilion angle");
+  assert_near(o->object[0].value[1].value, 40.75, 0);
+  abbe_view_state_set(&s, o->rotate.key, "30", false, 1);
+  abbe_view_state_set(&s, o->object[0].value[1].key, "42", false, 2);
+  learn(&s); /* the scene takes both */
+  assert_near(s.outline.rotate.value, 30, 0);
+  assert_near(s.outline.object[0].value[1].value, 42, 0);
+  assert_true(s.outline.stone_count > 10);                            /* to choose from */
+  abbe_view_state_set(&s, o->object[0].value[0].key, "18", false, 3); /* beyond its slider's end */
+  abbe_view_state_set(&s, o->object[0].value[3].key, "2e-4", false, 4);
+  learn(&s);
+  assert_near(s.outline.object[0].value[0].min, 18, 0);
+  const abbe_view_value *diameter = &s.outline.object[0].value[3];
+  assert_string_equal(diameter->label, "diameter");
+  assert_true(diameter->min < 1e-4 && diameter->max > 2e-4 && diameter->max < 0.01);
+  abbe_view_state_free(&s);
+}
+
+/* Of a design its own angles are where the sliders begin, and their ends stay while it is recut. */
+static void test_a_design_begins_with_its_own_angles(void **state) {
+  (void)state;
+  const double turn = 3.14159265358979323846 / 180;
+  char path[] = ABBE_SOURCE_DIR "/scenes/stone.yaml";
+  static abbe_view_state s;
+  memset(&s, 0, sizeof s);
+  const abbe_view_document document = {.path = path};
+  assert_int_equal(abbe_view_state_begin(&s, &document, NULL), ABBE_OK);
+  learn(&s);
+  const abbe_view_object *stone = &s.outline.object[0];
+  assert_int_equal(stone->value_count, 3);
+  assert_string_equal(stone->value[0].key, "objects.stone.crown");
+  assert_string_equal(stone->value[1].label, "pavilion angle");
+  assert_near(stone->value[0].value, 42, 0);
+  assert_near(stone->value[1].value, 43, 0);
+  assert_near(tan(stone->value[0].max * turn), 2 * tan(42 * turn), 1e-12);
+  abbe_view_state_set(&s, "objects.stone.crown", "38", false, 1);
+  learn(&s);
+  assert_near(stone->value[0].value, 38, 0);
+  assert_near(tan(stone->value[0].min * turn), 0.5 * tan(42 * turn), 1e-12);
+  assert_near(stone->value[1].value, 43, 0);
+  abbe_view_state_undo(&s, 2);
+  learn(&s);
+  assert_near(stone->value[0].value, 42, 0);
+  abbe_view_state_free(&s);
+}
+
+/* Whoever takes hold again before the scene is read again goes on from where it was left. */
+static void test_what_was_pulled_stands_at_once(void **state) {
+  (void)state;
+  abbe_view_state *s = begun();
+  const abbe_view_object *gem_of = &s->outline.object[0];
+  double xy[2], middle[3];
+  assert_true(abbe_view_camera_project(&s->camera, 512, 512, gem_of->middle, xy));
+  drag(s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0] + 60, xy[1], 0);
+  memcpy(middle, gem_of->middle, sizeof middle);
+  assert_true(abbe_view_camera_project(&s->camera, 512, 512, middle, xy));
+  drag(s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0], xy[1] + 80, ABBE_VIEW_CONTROL);
+  assert_contains(gem_of->before, "angle: 5}}, {rotate");
+  drag(s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0], xy[1] - 40, ABBE_VIEW_SHIFT);
+  assert_near(gem_of->middle[0], middle[0], 1e-6);
+  assert_true(gem_of->middle[2] > middle[2] + 0.01);
+  const abbe_view_object guessed = *gem_of;
+  const double placed[3] = {guessed.middle[0], guessed.middle[1], guessed.middle[2]};
+  learn(s); /* and there it is, tilted */
+  assert_near(s->outline.object[0].translate[2], guessed.translate[2], 1e-6);
+  assert_contains(s->outline.object[0].before, "angle: 5}}, {rotate");
+  for (int k = 0; k < 3; k++) assert_near(s->outline.object[0].middle[k], placed[k], 0.01);
+  abbe_view_state_wheel(s, -6, 9);
+  see(s);
+  assert_true(abbe_view_camera_project(&s->camera, 512, 512, s->outline.light[0].position, xy));
+  drag(s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0] - 30, xy[1], 0);
+  const double lamp = s->outline.light[0].position[0];
+  assert_true(lamp < -0.03);
+  learn(s);
+  assert_near(s->outline.light[0].position[0], lamp, 1e-6);
+  abbe_view_state_free(s);
+}
+
+/* Back and forth, and taken hold of before the scene is read again: from where the document has it.
+ */
+static void test_what_was_undone_stands_at_once(void **state) {
+  (void)state;
+  abbe_view_state *s = begun();
+  double lamp[2], stone[2], moved[2][3];
+  const abbe_view_outline *o = &s->outline;
+  abbe_view_state_wheel(s, -6, 0.5);
+  see(s);
+  assert_true(abbe_view_camera_project(&s->camera, 512, 512, o->light[0].position, lamp));
+  assert_true(abbe_view_camera_project(&s->camera, 512, 512, o->object[0].middle, stone));
+  const double own[2][3] = {
+      {o->light[0].position[0], o->light[0].position[1], o->light[0].position[2]},
+      {o->object[0].middle[0], o->object[0].middle[1], o->object[0].middle[2]}};
+  char before[256];
+  snprintf(before, sizeof before, "%s", o->object[0].before);
+  drag(s, ABBE_VIEW_LEFT, lamp[0], lamp[1], lamp[0] - 30, lamp[1], 0);
+  learn(s);
+  memcpy(moved[0], o->light[0].position, sizeof moved[0]);
+  drag(s, ABBE_VIEW_LEFT, stone[0], stone[1], stone[0], stone[1] + 80, ABBE_VIEW_CONTROL);
+  drag(s, ABBE_VIEW_LEFT, stone[0], stone[1], stone[0] + 60, stone[1], 0);
+  learn(s);
+  memcpy(moved[1], o->object[0].middle, sizeof moved[1]);
+  assert_true(moved[0][0] < own[0][0] - 0.01 && moved[1][0] > own[1][0] + 0.01);
+  for (int i = 0; i < 3; i++) assert_true(abbe_view_state_undo(s, 2));
+  assert_memory_equal(o->light[0].position, own[0], sizeof own[0]);
+  assert_memory_equal(o->object[0].middle, own[1], sizeof own[1]);
+  assert_string_equal(o->object[0].before, before);
+  drag(s, ABBE_VIEW_LEFT, lamp[0], lamp[1], lamp[0] - 30, lamp[1], 0); /* the same once more */
+  for (int k = 0; k < 3; k++) assert_near(o->light[0].position[k], moved[0][k], 1e-6);
+  drag(s, ABBE_VIEW_LEFT, stone[0], stone[1], stone[0] + 60, stone[1], 0);
+  assert_true(o->object[0].middle[0] > own[1][0] + 0.01);
+  assert_true(abbe_view_state_undo(s, 3));
+  assert_memory_equal(o->object[0].middle, own[1], sizeof own[1]);
+  assert_true(abbe_view_state_redo(s, 4));
+  assert_true(o->object[0].middle[0] > own[1][0] + 0.01);
+  abbe_view_state_free(s);
+}
+
+/* What a job has found of an older change is no place for what was undone since. */
+static void test_an_older_scene_moves_nothing_back(void **state) {
+  (void)state;
+  abbe_view_state *s = begun();
+  static abbe_view_outline older;
+  double lamp[2], own[3];
+  const abbe_view_outline *o = &s->outline;
+  abbe_view_state_wheel(s, -6, 0.5);
+  see(s);
+  memcpy(own, o->light[0].position, sizeof own);
+  assert_true(abbe_view_camera_project(&s->camera, 512, 512, own, lamp));
+  drag(s, ABBE_VIEW_LEFT, lamp[0], lamp[1], lamp[0] - 30, lamp[1], 0);
+  assert_true(o->light[0].position[0] < own[0] - 0.01);
+  find(s, &older);
+  assert_true(abbe_view_state_undo(s, 2));
+  abbe_view_state_learn(s, &older, false);
+  assert_memory_equal(o->light[0].position, own, sizeof own);
+  learn(s);
+  assert_true(abbe_view_state_redo(s, 3));
+  assert_true(o->light[0].position[0] < own[0] - 0.01);
+  abbe_view_state_free(s);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_what_can_be_held_is_found),
+      cmocka_unit_test(test_a_studio_can_be_turned_and_its_stone_cut),
+      cmocka_unit_test(test_a_design_begins_with_its_own_angles),
+      cmocka_unit_test(test_what_was_pulled_stands_at_once),
+      cmocka_unit_test(test_what_was_undone_stands_at_once),
+      cmocka_unit_test(test_an_older_scene_moves_nothing_back)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
