@@ -54,7 +54,7 @@ void abbe_view_app_end(abbe_view_session *app) {
   }
   if (app->texture != 0) app->gl->DeleteTextures(1, &app->texture);
   abbe_ui_free();
-  abbe_display_table_free(app->table);
+  abbe_view_table_free(app->table);
   abbe_display_free(app->display);
   for (size_t i = 0; i < app->scene_count; i++) free(app->scene[i]);
   free(app->views);
@@ -310,13 +310,13 @@ static void upload(abbe_view_session *app) {
   app->drawn_exposure = app->state.exposure;
   app->stale = false;
   const bool moving = app->stage == ABBE_VIEW_MOVING;
-  if (app->table == NULL && app->texture != 0) /* the first picture is not kept waiting */
-    abbe_display_table_make(app->display, &app->table, NULL);
   if (abbe_view_show(&app->pictures, app->drawn, app->drawn_exposure, app->display,
-                     moving ? app->table : NULL, &pixels, &error) != ABBE_OK) {
+                     moving ? abbe_view_table_get(app->table) : NULL, &pixels, &error) != ABBE_OK) {
     snprintf(app->note, sizeof app->note, "%s", error.text);
     return;
   }
+  /* the first picture is not kept waiting, and no other one */
+  if (app->table == NULL) app->table = abbe_view_table_begin(app->display);
   if (app->texture == 0 || app->texture_width != image->width ||
       app->texture_height != image->height) {
     if (app->texture != 0) gl->DeleteTextures(1, &app->texture);

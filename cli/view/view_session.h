@@ -6,6 +6,7 @@
 #define ABBE_CLI_VIEW_VIEW_SESSION_H
 
 #include "cli/view/picture/view_probe.h"
+#include "cli/view/picture/view_table.h"
 #include "cli/view/view_ui.h"
 #include "cli/view/work/view_files.h"
 #include "cli/view/work/view_worker.h"
@@ -33,7 +34,7 @@ typedef struct abbe_view_session {
   const char *keep, *ocio, *materials, *volume_path;
   const abbe_caustic_volume *volume;
   abbe_display *display;
-  abbe_display_table *table; /* of it, once something has moved; else NULL */
+  abbe_view_table *table;    /* of it, from the first picture on; or NULL */
   char *views;               /* lines "display / view" */
   size_t view;               /* of these */
   char *scene[ABBE_VIEW_MOST_SCENES];
