@@ -126,11 +126,15 @@ static abbe_result add_landed(abbe_view_feed *feed, const abbe_view_hits *h, siz
   return ABBE_OK;
 }
 
+static bool is_wanted(const volatile int *stop) {
+  return stop == NULL || !*stop;
+}
+
 abbe_result abbe_view_feed_add(abbe_view_feed *feed, const abbe_view_hits *h, abbe_error *error) {
   const size_t each = h->slots * h->samples;
   uint32_t *photon_of = NULL;
   abbe_result result = index_cells(h, &photon_of, error);
-  for (size_t i = 0; i < h->count && result == ABBE_OK && (h->stop == NULL || !*h->stop); i++) {
+  for (size_t i = 0; i < h->count && result == ABBE_OK && is_wanted(h->stop); i++) {
     double flux = 0;
     for (size_t hit = i * each; hit < (i + 1) * each; hit++)
       if (lights(feed, h, photon_of, i, hit)) flux += (double)h->at[4 * hit + 3];
@@ -247,10 +251,10 @@ bool abbe_view_feed_look(abbe_view_feed *feed, const abbe_scene *scene, double n
   return true;
 }
 
-void abbe_view_feed_end(abbe_view_feed *feed, const abbe_scene *scene) {
+void abbe_view_feed_end(abbe_view_feed *feed, const abbe_scene *scene, const volatile int *stop) {
   abbe_view_met of[ABBE_VIEW_FEED_RAYS];
   if (feed->photons > 0) qsort(feed->landed, feed->photons, sizeof *feed->landed, by_flux);
-  for (size_t i = 0; i < feed->photons && i < ABBE_VIEW_FEED_RAYS; i++) {
+  for (size_t i = 0; i < feed->photons && i < ABBE_VIEW_FEED_RAYS && is_wanted(stop); i++) {
     const landed *l = &feed->landed[i];
     abbe_view_met best;
     abbe_view_meet(scene, l->origin, l->direction, 0, true, &best);
@@ -263,6 +267,7 @@ void abbe_view_feed_end(abbe_view_feed *feed, const abbe_scene *scene) {
   }
   free(feed->landed);
   feed->landed = NULL;
-  if (feed->ray_count > 0) sort_facets(feed, scene, of);
-  for (size_t i = 0; i < feed->facet_count; i++) outline(feed, scene, &feed->facet[i]);
+  if (feed->ray_count > 0 && is_wanted(stop)) sort_facets(feed, scene, of);
+  for (size_t i = 0; i < feed->facet_count && is_wanted(stop); i++)
+    outline(feed, scene, &feed->facet[i]);
 }

@@ -67,8 +67,9 @@ abbe_result abbe_view_look_feed(abbe_renderer *renderer, const abbe_scene *scene
     if (result == ABBE_OK && out->photons == 0)
       result = add_lights(renderer, nm, true, stop, out, error);
   }
-  abbe_view_feed_end(out, scene);
-  return result;
+  abbe_view_feed_end(out, scene, stop);
+  if (result != ABBE_OK || !*stop) return result;
+  return abbe_error_set(error, ABBE_CANCELLED, "the look was cancelled");
 }
 
 abbe_result abbe_view_look_map(abbe_renderer *renderer, abbe_image *out, abbe_error *error) {

@@ -70,7 +70,7 @@ static void from_above(bool mirror) {
   shine(at, cell, &hits, 0);
   abbe_view_feed_begin((const double[3]){4, 7, -3}, 1.1, &feed); /* that cell and four around */
   assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
-  abbe_view_feed_end(&feed, &scene);
+  abbe_view_feed_end(&feed, &scene, NULL);
   assert_int_equal(feed.photons, 5);
   assert_int_equal(feed.ray_count, 5);
   double whole = 0;
@@ -116,7 +116,7 @@ static void test_two_facets_share_as_they_are_seen(void **state) {
   shine(at, cell, &hits, 1);
   abbe_view_feed_begin((const double[3]){7.5, 7.5, -3}, 7.6, &feed); /* 178 cells, all alike */
   assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
-  abbe_view_feed_end(&feed, &scene);
+  abbe_view_feed_end(&feed, &scene, NULL);
   assert_true(feed.photons > 150 && feed.photons < ABBE_VIEW_FEED_RAYS);
   assert_int_equal(feed.ray_count, feed.photons);
   assert_int_equal(feed.facet_count, 2); /* at 45 degrees they are seen alike */
@@ -143,7 +143,7 @@ static void test_nothing_lands_or_nothing_is_met(void **state) {
   shine(at, cell, &hits, 0);
   abbe_view_feed_begin((const double[3]){4, 7, 5}, 1.1, &feed);
   assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
-  abbe_view_feed_end(&feed, &scene);
+  abbe_view_feed_end(&feed, &scene, NULL);
   assert_int_equal(feed.photons + feed.ray_count + feed.facet_count + feed.edge_count, 0);
   const volatile int stop = 1;
   hits.stop = &stop;
@@ -152,9 +152,32 @@ static void test_nothing_lands_or_nothing_is_met(void **state) {
   assert_int_equal(feed.photons, 0);
   hits.stop = NULL;
   assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
-  abbe_view_feed_end(&feed, &scene);
+  abbe_view_feed_end(&feed, &scene, NULL);
   assert_int_equal(feed.photons, 5);
   assert_int_equal(feed.ray_count + feed.facet_count, 0);
+}
+
+/* Rays are followed until it is told to stop. */
+static void test_a_look_is_given_up(void **state) {
+  (void)state;
+  static float at[4 * GRID * GRID];
+  static unsigned cell[GRID * GRID];
+  static abbe_view_feed feed;
+  abbe_object object = {0};
+  make_cube(&object);
+  const abbe_scene scene = {.object_count = 1, .object = &object};
+  abbe_view_hits hits;
+  abbe_error error = {0};
+  shine(at, cell, &hits, 0);
+  for (int stop = 0; stop < 2; stop++) {
+    const volatile int told = stop;
+    abbe_view_feed_begin((const double[3]){4, 7, -3}, 1.1, &feed);
+    assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
+    abbe_view_feed_end(&feed, &scene, &told);
+    assert_int_equal(feed.ray_count, stop ? 0 : 5);
+    assert_int_equal(feed.facet_count, stop ? 0 : 1);
+  }
+  abbe_mesh_free(&object.mesh);
 }
 
 static size_t count_lights(const abbe_view_hits *hits, const double point[3], double radius) {
@@ -163,7 +186,7 @@ static size_t count_lights(const abbe_view_hits *hits, const double point[3], do
   abbe_error error = {0};
   abbe_view_feed_begin(point, radius, &feed);
   assert_ok(abbe_view_feed_add(&feed, hits, &error), &error);
-  abbe_view_feed_end(&feed, &nothing);
+  abbe_view_feed_end(&feed, &nothing, NULL);
   return feed.photons;
 }
 
@@ -224,7 +247,7 @@ static void test_light_lies_between_wavelengths(void **state) {
   assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
   assert_int_equal(feed.photons, 1);
   assert_near(feed.flux, 3, 1e-12);
-  abbe_view_feed_end(&feed, &(const abbe_scene){0});
+  abbe_view_feed_end(&feed, &(const abbe_scene){0}, NULL);
 }
 
 /* A grid that is coarser one way than the other: rays go through the middles of its own cells. */
@@ -242,7 +265,7 @@ static void test_cells_of_an_oblong_grid(void **state) {
   hits.grid[1] = 2 * GRID;
   abbe_view_feed_begin((const double[3]){8, 15, -3}, 0.5, &feed);
   assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
-  abbe_view_feed_end(&feed, &scene);
+  abbe_view_feed_end(&feed, &scene, NULL);
   assert_int_equal(feed.ray_count, 1);
   const double right = fabs(feed.ray[0].entry[0]), above = fabs(feed.ray[0].entry[1]);
   assert_near(right, 1.6 * (8.5 / GRID - 0.5), 1e-9);
@@ -288,6 +311,7 @@ int main(void) {
                                      cmocka_unit_test(test_light_comes_off_a_mirror_alike),
                                      cmocka_unit_test(test_two_facets_share_as_they_are_seen),
                                      cmocka_unit_test(test_nothing_lands_or_nothing_is_met),
+      cmocka_unit_test(test_a_look_is_given_up),
                                      cmocka_unit_test(test_light_lies_between_neighbours),
                                      cmocka_unit_test(test_light_lies_between_wavelengths),
                                      cmocka_unit_test(test_cells_of_an_oblong_grid),
