@@ -89,9 +89,18 @@ static abbe_view_stage stage_at_hand(const abbe_view_refine *refine) {
              : ABBE_VIEW_NONE;
 }
 
+/* The other worker, which has shown until now, draws the change as it moves. */
+static bool is_being_shown(const abbe_view_refine *refine) {
+  const abbe_view_hand *other = &refine->hand[1 - refine->shows];
+  return other->busy && other->job.stage == ABBE_VIEW_MOVING && !other->job.warms &&
+         other->job.serial == refine->serial;
+}
+
+/* A change is seen as it moves first, however late: a stage takes longer. */
 static bool next_shown(const abbe_view_refine *refine, bool resting, abbe_view_job *out) {
-  const abbe_view_stage at_rest = resting ? stage_at_hand(refine) : ABBE_VIEW_NONE;
-  if (at_rest == ABBE_VIEW_NONE && refine->stage != ABBE_VIEW_NONE) return false;
+  const bool seen = refine->stage != ABBE_VIEW_NONE;
+  const abbe_view_stage at_rest = resting && seen ? stage_at_hand(refine) : ABBE_VIEW_NONE;
+  if (at_rest == ABBE_VIEW_NONE && (seen || is_being_shown(refine))) return false;
   *out = job_of(refine, refine->shows, at_rest != ABBE_VIEW_NONE ? at_rest : ABBE_VIEW_MOVING);
   return true;
 }

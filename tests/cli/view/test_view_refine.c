@@ -185,12 +185,33 @@ static void test_the_camera_keeps_the_light(void **state) {
   assert_int_equal(draw(&r, SHOWS, 5.1, 20).light, ABBE_VIEW_MOVING);
   r = refined(ABBE_VIEW_ACCURATE);
   abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 6);
+  draw(&r, SHOWS, 6, 20);
   const size_t worker = begin(&r, SHOWS, 7);
   assert_int_equal(r.hand[worker].job.stage, ABBE_VIEW_ACCURATE);
   abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 7);
   assert_true(abbe_view_refine_cancels(&r, worker));
   assert_false(abbe_view_refine_end(&r, worker, ABBE_VIEW_CANCELLED, 5));
   assert_int_equal(draw(&r, SHOWS, 7, 20).light, ABBE_VIEW_ACCURATE);
+}
+
+/* Whoever was kept from it draws the change as it moves first, and once. */
+static void test_a_change_is_seen_before_its_stages(void **state) {
+  (void)state;
+  abbe_view_refine r = refined(ABBE_VIEW_ACCURATE);
+  abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 1);
+  assert_int_equal(draw(&r, SHOWS, 9, 20).stage, ABBE_VIEW_MOVING);
+  assert_int_equal(draw(&r, SHOWS, 9, 20).stage, ABBE_VIEW_ACCURATE);
+  r = refined(ABBE_VIEW_MOVING);
+  draw(&r, BESIDE, 0, 20);
+  const size_t warming = begin(&r, BESIDE, 0), shows = r.shows;
+  assert_true(r.hand[warming].job.warms);
+  abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 1);
+  begin(&r, SHOWS, 1);
+  abbe_view_refine_end(&r, warming, ABBE_VIEW_DONE, 20); /* it shows from now on */
+  assert_int_equal(r.shows, warming);
+  assert_true(idle(&r, SHOWS, 1.1) && idle(&r, SHOWS, 9));
+  assert_true(abbe_view_refine_end(&r, shows, ABBE_VIEW_DONE, 900));
+  assert_int_equal(next(&r, SHOWS, 9).stage, ABBE_VIEW_BALANCED);
 }
 
 /* A light that was drawn for a scene that is gone counts for nothing. */
@@ -356,6 +377,7 @@ int main(void) {
                                      cmocka_unit_test(test_refining_waits_for_rest),
                                      cmocka_unit_test(test_a_change_cancels_all_but_what_moves),
                                      cmocka_unit_test(test_the_camera_keeps_the_light),
+                                     cmocka_unit_test(test_a_change_is_seen_before_its_stages),
                                      cmocka_unit_test(test_a_late_picture_brings_no_light),
                                      cmocka_unit_test(test_slow_pictures_get_cheaper),
                                      cmocka_unit_test(test_no_step_follows_from_the_compiler),
