@@ -34,9 +34,9 @@ typedef struct abbe_view_session {
   const char *keep, *ocio, *materials, *volume_path;
   const abbe_caustic_volume *volume;
   abbe_display *display;
-  abbe_view_table *table;    /* of it, from the first picture on; or NULL */
-  char *views;               /* lines "display / view" */
-  size_t view;               /* of these */
+  abbe_view_table *table; /* of it, from the first picture on; or NULL */
+  char *views;            /* lines "display / view" */
+  size_t view;            /* of these */
   char *scene[ABBE_VIEW_MOST_SCENES];
   size_t scene_count;
   size_t edition; /* of the files: how often they have changed */

@@ -9,6 +9,7 @@
 
 /* COST: of a step down the tree, in triangles met. */
 enum { BINS = 16, LEAF = 4, SURE_LEAF = 1, COST = 1, HALVING_DEPTH = 28 };
+enum { PART = 1 << 16 }; /* looks at triangles between two questions whether it goes on */
 
 typedef struct box {
   double min[3], max[3];
@@ -20,22 +21,34 @@ typedef struct builder {
   uint32_t *order;
   abbe_bvh_node *node;
   size_t node_count, depth;
+  const abbe_bvh_watch *watch;
+  size_t looks; /* at triangles, since it was asked */
+  bool stopped;
 } builder;
 
 static const box nothing = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
 
+/* Of finite numbers and infinities, without a call. */
+static double least(double a, double b) {
+  return a < b ? a : b;
+}
+
+static double most(double a, double b) {
+  return a > b ? a : b;
+}
+
 static void grow(box *b, const double p[3]) {
   for (int k = 0; k < 3; k++) {
-    b->min[k] = fmin(b->min[k], p[k]);
-    b->max[k] = fmax(b->max[k], p[k]);
+    b->min[k] = least(b->min[k], p[k]);
+    b->max[k] = most(b->max[k], p[k]);
   }
 }
 
 /* other: may hold nothing */
 static void join(box *b, const box *other) {
   for (int k = 0; k < 3; k++) {
-    b->min[k] = fmin(b->min[k], other->min[k]);
-    b->max[k] = fmax(b->max[k], other->max[k]);
+    b->min[k] = least(b->min[k], other->min[k]);
+    b->max[k] = most(b->max[k], other->max[k]);
   }
 }
 
@@ -117,8 +130,18 @@ static size_t part(builder *b, size_t first, size_t count, const split *s, const
   return i - first;
 }
 
+/* Before so many triangles are looked at. */
+static bool goes_on(builder *b, size_t count) {
+  b->looks += count;
+  if (b->watch == NULL || b->watch->goes_on == NULL || b->looks < PART) return true;
+  b->looks = 0;
+  b->stopped = b->stopped || !b->watch->goes_on(b->watch->user);
+  return !b->stopped;
+}
+
 static void build(builder *b, size_t node, size_t first, size_t count, size_t depth) {
   box bounds = nothing, middles = nothing;
+  if (b->stopped || !goes_on(b, count)) return;
   for (size_t i = first; i < first + count; i++) {
     join(&bounds, &b->bounds[b->order[i]]);
     grow(&middles, b->middle[b->order[i]]);
@@ -126,7 +149,9 @@ static void build(builder *b, size_t node, size_t first, size_t count, size_t de
   set_box(&b->node[node], &bounds);
   split best = {-1, 0, INFINITY};
   if (count > SURE_LEAF && depth < HALVING_DEPTH)
-    for (int axis = 0; axis < 3; axis++) try_axis(b, first, count, axis, &middles, &best);
+    for (int axis = 0; axis < 3 && goes_on(b, count); axis++)
+      try_axis(b, first, count, axis, &middles, &best);
+  if (b->stopped) return;
   double whole = area(&bounds);
   bool worth = best.axis >= 0 && COST * whole + best.cost < whole * (double)count;
   if (count <= LEAF && !worth) {
@@ -145,8 +170,8 @@ static void build(builder *b, size_t node, size_t first, size_t count, size_t de
   build(b, child + 1, first + left, count - left, depth + 1);
 }
 
-abbe_result abbe_bvh_make(const double (*triangle)[9], size_t count, abbe_bvh *out,
-                          abbe_error *error) {
+abbe_result abbe_bvh_make(const double (*triangle)[9], size_t count, const abbe_bvh_watch *watch,
+                          abbe_bvh *out, abbe_error *error) {
   ABBE_REQUIRE((triangle || count == 0) && out, error);
   *out = (abbe_bvh){0};
   if (count == 0)
@@ -174,10 +199,15 @@ abbe_result abbe_bvh_make(const double (*triangle)[9], size_t count, abbe_bvh *o
                  .middle = (const double(*)[3])middle,
                  .order = h.triangle,
                  .node = h.node,
-                 .node_count = 1};
+                 .node_count = 1,
+                 .watch = watch};
     build(&b, 0, 0, count, 0);
     h.node_count = b.node_count;
     h.depth = b.depth;
+    if (b.stopped) {
+      abbe_bvh_free(&h);
+      result = abbe_error_set(error, ABBE_CANCELLED, "the making of a BVH was cancelled");
+    }
     *out = h;
   }
   free(bounds);

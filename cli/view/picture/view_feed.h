@@ -61,8 +61,8 @@ bool abbe_view_feed_look(abbe_view_feed *feed, const abbe_scene *scene, double n
 /* Once for each light and batch of its wavelengths; a batch begins with the last wavelength of the
  * one before it. ABBE_NO_MEMORY. */
 abbe_result abbe_view_feed_add(abbe_view_feed *feed, const abbe_view_hits *hits, abbe_error *error);
-/* Follows what was added; nothing is to be freed then. *stop other than 0 leaves the rest out, after
- * a ray or a facet at most; stop may be NULL. */
+/* Follows what was added; nothing is to be freed then. *stop other than 0 leaves the rest out,
+ * after a ray or a facet at most; stop may be NULL. */
 void abbe_view_feed_end(abbe_view_feed *feed, const abbe_scene *scene, const volatile int *stop);
 
 #endif

@@ -18,7 +18,8 @@ typedef struct soup {
 
 static void finish(soup *s) {
   assert_non_null(s->triangle);
-  assert_int_equal(abbe_bvh_make((const double(*)[9])s->triangle, s->count, &s->h, NULL), ABBE_OK);
+  assert_int_equal(abbe_bvh_make((const double(*)[9])s->triangle, s->count, NULL, &s->h, NULL),
+                   ABBE_OK);
 }
 
 static void drop(soup *s) {
@@ -168,7 +169,41 @@ static void equal_triangles_end_in_leaves(void **state) {
   finish(&s);
   assert_true(s.h.depth <= ABBE_BVH_MAX_DEPTH);
   drop(&s);
-  assert_int_equal(abbe_bvh_make(NULL, 0, &s.h, NULL), ABBE_GEOMETRY);
+  assert_int_equal(abbe_bvh_make(NULL, 0, NULL, &s.h, NULL), ABBE_GEOMETRY);
+}
+
+/* Asked so many times before it goes on no more. */
+typedef struct patience {
+  size_t asked, most;
+} patience;
+
+static bool goes_on(void *user) {
+  patience *p = user;
+  return p->asked++ < p->most;
+}
+
+/* Whoever stops it is not asked again, whenever that is; who does not changes nothing. */
+static void it_ends_when_it_is_told_to(void **state) {
+  (void)state;
+  soup s;
+  make_soup(100000, 1, &s);
+  patience p = {.most = SIZE_MAX};
+  const abbe_bvh_watch watch = {goes_on, &p};
+  abbe_bvh h;
+  const double(*triangle)[9] = (const double(*)[9])s.triangle;
+  assert_int_equal(abbe_bvh_make(triangle, s.count, &watch, &h, NULL), ABBE_OK);
+  assert_int_equal(h.node_count, s.h.node_count);
+  assert_memory_equal(h.node, s.h.node, h.node_count * sizeof *h.node);
+  abbe_bvh_free(&h);
+  const size_t all = p.asked;
+  assert_true(all > 16); /* of some levels' sweeps */
+  for (size_t most = 0; most < all; most += 1 + all / 5) {
+    p = (patience){.most = most};
+    assert_int_equal(abbe_bvh_make(triangle, s.count, &watch, &h, NULL), ABBE_CANCELLED);
+    assert_int_equal(p.asked, most + 1);
+    assert_null(h.node);
+  }
+  drop(&s);
 }
 
 static float float_of(uint32_t bits) {
@@ -328,6 +363,7 @@ int main(void) {
       cmocka_unit_test(boxes_hold_their_triangles),
       cmocka_unit_test(boxes_are_tight),
       cmocka_unit_test(equal_triangles_end_in_leaves),
+      cmocka_unit_test(it_ends_when_it_is_told_to),
       cmocka_unit_test(packed_nodes_leave_nothing_out),
       cmocka_unit_test(the_shaders_find_the_same),
       cmocka_unit_test(parts_end_where_normals_break),

@@ -311,7 +311,7 @@ int main(void) {
                                      cmocka_unit_test(test_light_comes_off_a_mirror_alike),
                                      cmocka_unit_test(test_two_facets_share_as_they_are_seen),
                                      cmocka_unit_test(test_nothing_lands_or_nothing_is_met),
-      cmocka_unit_test(test_a_look_is_given_up),
+                                     cmocka_unit_test(test_a_look_is_given_up),
                                      cmocka_unit_test(test_light_lies_between_neighbours),
                                      cmocka_unit_test(test_light_lies_between_wavelengths),
                                      cmocka_unit_test(test_cells_of_an_oblong_grid),
