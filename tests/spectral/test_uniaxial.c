@@ -168,7 +168,7 @@ static void an_axis_across_the_plane_of_incidence(void **state) {
         const double eta = inside ? index[mode] : 1 / index[mode];
         bool beyond;
         const double t = abbe_optics_cos_refracted(c, eta, &beyond);
-        const double r = mode == E ? (eta * c - t) / (eta * c + t) : (c - eta * t) / (c + eta * t);
+        const double r = mode == (int)E ? (eta * c - t) / (eta * c + t) : (c - eta * t) / (c + eta * t);
         const double share = beyond ? 1 : r * r;
         if (inside) {
           abbe_uniaxial_meet(&m, &air, up, (abbe_uniaxial_mode)mode, in, &s);
@@ -204,8 +204,8 @@ static void crossed_polarisers_are_dark_where_the_axis_is_along_one(void **state
     for (int mode = 0; mode < 2; mode++) {
       const double inside =
           s * enter[O].transmitted[mode].amplitude[0] + p * enter[E].transmitted[mode].amplitude[0];
-      const double n = mode == O ? n_o : n_e;
-      assert_near(fabs(inside), 2 / (1 + n) * (mode == O ? field[1] : field[0]), 1e-14);
+      const double n = mode == (int)O ? n_o : n_e;
+      assert_near(fabs(inside), 2 / (1 + n) * (mode == (int)O ? field[1] : field[0]), 1e-14);
       abbe_uniaxial_split leave;
       abbe_uniaxial_meet(&m, &air, up, (abbe_uniaxial_mode)mode, enter[O].transmitted[mode].ray,
                          &leave);
