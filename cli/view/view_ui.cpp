@@ -252,6 +252,7 @@ bool abbe_ui_choose(const char *label, const char *const *names, size_t count, s
     ImGui::PopID();
     note(names[i]);
   }
+  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) ImGui::CloseCurrentPopup();
   ImGui::EndCombo();
   return chosen;
 }
