@@ -70,7 +70,7 @@ static void draw_made(const abbe_view_session *app) {
     snprintf(eye + strlen(eye), sizeof eye - strlen(eye), "%zu x %zu pixels; ", d->upsample,
              d->upsample);
   if (moving && app->moved.light != ABBE_VIEW_MOVING)
-    snprintf(text, sizeof text, "%slight is kept: %s", eye, abbe_view_stage_name(app->moved.light));
+    snprintf(text, sizeof text, "%s%s light", eye, abbe_view_stage_name(app->moved.light));
   else if (d->photons > 0)
     snprintf(text, sizeof text, "%s%zu photons a side", eye, d->photons);
   abbe_ui_text(DIM, text);

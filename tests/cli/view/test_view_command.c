@@ -32,6 +32,8 @@ static void what_is_wrong_is_said_and_the_picture_stays(void **state) {
   run_must("cp \"$house\"/scenes/sphere.yaml scene.yaml; cp scene.yaml good.yaml");
   run_must("sed 's/radius:/radios:/' good.yaml > broken.yaml");
   run_must("sed 's/^ambient:.*/ambient: 1.5/' good.yaml > bright.yaml");
+  run_must(
+      "sed '/- name: ball/,/material:/d' good.yaml > empty.yaml && ! grep -q radius: empty.yaml");
   run_must("sed \"s/name: ball/name: 'ball, of##x'/\" good.yaml > renamed.yaml");
   run_must("\"$abbe\" view scene.yaml " FEW "--last balanced --size 500x200 --script " SCRIPTS
            "faults.txt");
