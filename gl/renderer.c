@@ -60,6 +60,7 @@ static abbe_result make_renderer(abbe_context *context, const abbe_scene *scene,
   abbe_renderer *r = calloc(1, sizeof *r);
   if (r == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a renderer");
   r->context = context;
+  r->lacking = (1u << ABBE_PART_COUNT) - 1;
   r->gpu.software = strstr(abbe_context_description(context), "llvmpipe") != NULL;
   abbe_result result = abbe_gpu_make(abbe_context_gl(context), &r->gpu, error);
   if (result == ABBE_OK) result = change_watched(r, scene, desc, error);
@@ -69,6 +70,10 @@ static abbe_result make_renderer(abbe_context *context, const abbe_scene *scene,
   }
   *out = r;
   return ABBE_OK;
+}
+
+bool abbe_renderer_is_lit(const abbe_renderer *r) {
+  return r->lit;
 }
 
 const abbe_plan *abbe_renderer_plan(const abbe_renderer *r) {

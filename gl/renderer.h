@@ -54,7 +54,8 @@ void abbe_renderer_free(abbe_renderer *renderer);
  * handed over again, or the renderer is freed. Errors as of abbe_renderer_make. Where the scene
  * cannot be planned the renderer stays as it was; a caller that has edited the scene in place puts
  * it back, or changes on, before it draws. After another failure it draws nothing until a change
- * succeeds. */
+ * succeeds, and has what that change did not ask to be made anew. ABBE_CANCELLED by the request's
+ * progress and by the thread's watch (base/watch.h). */
 abbe_result abbe_renderer_change(abbe_renderer *renderer, const abbe_scene *scene,
                                  const abbe_render_desc *desc, abbe_error *error);
 
@@ -62,6 +63,9 @@ abbe_result abbe_renderer_change(abbe_renderer *renderer, const abbe_scene *scen
 void abbe_renderer_redraw(abbe_renderer *renderer);
 
 const abbe_plan *abbe_renderer_plan(const abbe_renderer *renderer);
+/* Whether the light of the scene that was last taken over is drawn: the next frame is the camera's
+ * alone, unless a change asks for more. */
+bool abbe_renderer_is_lit(const abbe_renderer *renderer);
 
 /* One frame: the passes whose result is not there yet, none where nothing has changed since the
  * last one. With statistics every pass is finished and timed by itself; without, none is waited for

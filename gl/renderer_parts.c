@@ -22,7 +22,7 @@ static bool is_published(const abbe_renderer *r) {
 }
 
 abbe_result abbe_renderer_parts_check(const abbe_renderer *r, abbe_error *error) {
-  if (r->made) return ABBE_OK;
+  if (r->lacking == 0) return ABBE_OK;
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                         "the renderer's last change or frame failed, so there is nothing to draw; "
                         "abbe_renderer_change comes first");
@@ -211,7 +211,8 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   r->surrounded = surrounded;
   if (r->surrounded.light != NULL) scene = &r->surrounded;
   abbe_renderer_inputs_of(scene, &plan, &inputs);
-  unsigned parts = r->made ? abbe_renderer_inputs_differ(&r->inputs, &inputs) : ALL;
+  unsigned parts = r->lacking;
+  if (parts != ALL) parts |= abbe_renderer_inputs_differ(&r->inputs, &inputs);
   if (abbe_profile_is_published(plan.desc.profile) && parts != 0 && !looks_alone(r, &plan, parts))
     parts = ALL; /* its tables hold all */
   const bool crowded = abbe_gpu_program_count(&r->gpu) > ABBE_GPU_MOST_PROGRAMS;
@@ -232,12 +233,11 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   abbe_gpu_watch(&r->gpu, plan.desc.progress, plan.desc.progress_user);
   r->gpu.compiling = plan.desc.compiling;
   result = end_watch(r, make_parts(r, scene, parts, error), error);
-  r->made = result == ABBE_OK;
-  if (r->made) abbe_published_give_frames(&r->published, &frames);
+  r->lacking = result == ABBE_OK ? 0 : parts; /* the others are as they were */
+  if (r->lacking == 0) abbe_published_give_frames(&r->published, &frames);
   abbe_gpu_drop_textures(&r->gpu, ABBE_WYMAN_KEPT, frames.sums);
   abbe_refraction_kept_free(&r->gpu, &r->kept);
-  if (!r->made) free_parts(r, ALL);
-  if (!r->made) r->lit = r->seen = false;
+  free_parts(r, r->lacking);
   abbe_gpu_trim(&r->gpu);
   return result;
 }
@@ -342,8 +342,8 @@ abbe_result abbe_renderer_parts_draw(abbe_renderer *r, abbe_render_progress prog
   r->gpu.gl->Finish();
   result = end_watch(r, result, error);
   r->seen = result == ABBE_OK;
-  r->made = result == ABBE_OK || result == ABBE_CANCELLED; /* else lists may be without room */
-  abbe_gpu_trim(&r->gpu);                                  /* what was outgrown */
+  if (result != ABBE_OK && result != ABBE_CANCELLED) r->lacking = ALL; /* lists without room, say */
+  abbe_gpu_trim(&r->gpu);                                              /* what was outgrown */
   if (statistics != NULL && result == ABBE_OK) summarise(r, start_ms, statistics);
   r->gpu.statistics = NULL;
   return result;

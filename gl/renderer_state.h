@@ -22,7 +22,7 @@ struct abbe_renderer {
   abbe_map_layout given, local_given; /* the request's layout; the same there */
   abbe_plan plan;
   abbe_renderer_inputs inputs; /* what the parts below were made from */
-  bool made;                   /* they are all there */
+  unsigned lacking;            /* of these, a bit each: are not there */
   abbe_gpu_scene scene;
   abbe_shader_variant variant;
 

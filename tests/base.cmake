@@ -1,5 +1,5 @@
 foreach(name clock encoding error html_text nearest number order report summary text_cursor
-        text_diff utf8 yaml yaml_edit yaml_quote)
+        text_diff utf8 watch yaml yaml_edit yaml_quote)
   abbe_test(${name} cpu abbe_base)
 endforeach()
 abbe_test(file cpu WRAPPED abbe_base)

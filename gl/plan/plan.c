@@ -1,5 +1,6 @@
 #include "gl/plan/plan.h"
 
+#include "base/watch.h"
 #include "gl/plan/examine/haze_model.h"
 #include "gl/plan/examine/light_views.h"
 #include "gl/plan/examine/path_limits.h"
@@ -88,6 +89,7 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   if (result == ABBE_OK) result = abbe_support_roughness(scene, out, error);
   if (result == ABBE_OK) result = make_lists(scene, out, error);
   if (result == ABBE_OK) result = abbe_refractor_model_choose(scene, out, error);
+  if (result == ABBE_OK) result = abbe_watch_check(error);
   if (result == ABBE_OK) abbe_receiver_model_choose(scene, out);
   if (result == ABBE_OK) result = abbe_support_haze(scene, out, error);
   if (result == ABBE_OK) result = abbe_support_published(scene, out, error);
@@ -97,6 +99,7 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   if (result == ABBE_OK) result = abbe_light_views_choose(scene, out, error);
   if (result == ABBE_OK) result = abbe_support_volume(scene, out, error);
   if (result == ABBE_OK) result = abbe_precision_check(scene, out, error);
+  if (result == ABBE_OK) result = abbe_watch_check(error);
   if (result != ABBE_OK) {
     abbe_plan_free(out);
     return result;
@@ -110,6 +113,11 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   abbe_haze_model_choose(scene, out);
   abbe_spectral_needs_count(out);
   abbe_path_limits_choose(scene, desc, out);
+  result = abbe_watch_check(error); /* it may not have followed all light */
+  if (result != ABBE_OK) {
+    abbe_plan_free(out);
+    return result;
+  }
   choose_triangles(scene, out);
   combine(out);
   out->receiver_colours = abbe_receiver_model_disperses(scene, out);

@@ -105,14 +105,9 @@ static bool gather(grove *g, double (*triangle)[9]) {
   return true;
 }
 
-static bool goes_on(void *user) {
-  return abbe_gpu_ask(user);
-}
-
 static abbe_result grow(abbe_gpu_scene *scene, grove *g, forest *f, size_t *root,
                         abbe_error *error) {
   const size_t faces = g->face_first[g->mesh_count];
-  const abbe_bvh_watch watch = {goes_on, scene->gpu};
   abbe_bvh h = {0};
   double(*triangle)[9] = calloc(faces + 1, sizeof *triangle);
   g->part = calloc(faces + 1, sizeof *g->part);
@@ -120,7 +115,7 @@ static abbe_result grow(abbe_gpu_scene *scene, grove *g, forest *f, size_t *root
   abbe_result result =
       triangle == NULL || g->part == NULL || g->owner == NULL || !gather(g, triangle)
           ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy")
-          : abbe_bvh_make((const double(*)[9])triangle, faces, &watch, &h, error);
+          : abbe_bvh_make((const double(*)[9])triangle, faces, &h, error);
   if (result == ABBE_OK) result = plant(g, (const double(*)[9])triangle, &h, f, root, error);
   if (h.depth > scene->bvh_depth) scene->bvh_depth = h.depth;
   abbe_bvh_free(&h);

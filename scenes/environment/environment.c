@@ -1,5 +1,6 @@
 #include "scenes/environment/environment.h"
 
+#include "base/watch.h"
 #include "scenes/geometry/digest.h"
 #include "scenes/geometry/transform.h"
 #include "scenes/geometry/vector.h"
@@ -69,13 +70,16 @@ abbe_result abbe_environment_prepare(abbe_environment *environment, abbe_error *
   made.level_count = 0;
   made.texels = (abbe_alias_table){0};
   abbe_result result = check_texels(&made.map, error);
+  if (result == ABBE_OK) result = abbe_watch_check(error);
   if (result == ABBE_OK) result = make_table(&made.map, &made.luminance, &made.texels, error);
   made.map_digest = abbe_digest_array(made.map.width, made.map.rgb,
                                       3 * made.map.width * made.map.height, sizeof *made.map.rgb);
   abbe_radiance_map_mean(&made.map, made.mean);
   const abbe_radiance_map *last = &made.map;
   while (result == ABBE_OK && last->height >= 4 && made.level_count < ABBE_ENVIRONMENT_MAX_LEVELS) {
-    result = abbe_radiance_map_halve(last, &made.level[made.level_count], error);
+    result = abbe_watch_check(error);
+    if (result == ABBE_OK)
+      result = abbe_radiance_map_halve(last, &made.level[made.level_count], error);
     if (result == ABBE_OK) last = &made.level[made.level_count++];
   }
   if (result == ABBE_OK) {

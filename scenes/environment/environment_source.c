@@ -1,5 +1,6 @@
 #include "scenes/environment/environment_source.h"
 
+#include "base/watch.h"
 #include "scenes/geometry/vector.h"
 
 #include <stdbool.h>
@@ -190,7 +191,8 @@ static void gather(const gathering *g, const profile *p) {
     count = (size_t)fmin(half / PI * (double)columns + 3, (double)columns);
     first = (size_t)(from < 0 ? from + (double)columns : from);
   }
-  for (size_t row = top; row < bottom; row++) gather_row(g, p, row, first, count);
+  for (size_t row = top; row < bottom && abbe_watch_goes_on(); row++)
+    gather_row(g, p, row, first, count);
 }
 
 /* The map's texels from what was gathered; a source whose integral is known is scaled to it. */
@@ -231,7 +233,8 @@ static abbe_result add_profile(const abbe_environment_source *s, abbe_radiance_m
   if (g.light && g.solid) {
     gather_solid(&g);
     gather(&g, &p);
-    result = deposit(&g, s, map, error);
+    result = abbe_watch_check(error);
+    if (result == ABBE_OK) result = deposit(&g, s, map, error);
   } else {
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a map of %zu x %zu texels",
                             map->width, map->height);

@@ -1,6 +1,7 @@
 #include "scenes/import/scene_file.h"
 
 #include "base/file.h"
+#include "base/watch.h"
 #include "base/yaml/yaml.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/import/environment_file.h"
@@ -71,6 +72,8 @@ static abbe_result read_objects(abbe_yaml *yaml, abbe_yaml_node root, const char
     /* one for each entry that is to come stays free */
     const size_t first = out->object_count, room = ABBE_SCENE_MAX_OBJECTS - first - (count - 1 - i);
     size_t made = 0;
+    result = abbe_watch_check(error);
+    if (result != ABBE_OK) break;
     result =
         abbe_object_read(yaml, item, folder, &out->table, &out->object[first], room, &made, error);
     out->object_count += made;
@@ -190,6 +193,7 @@ static abbe_result read_document(abbe_yaml *yaml, const char *path,
                                                             "%s: no memory for its path", path);
   free(folder);
   abbe_yaml_free(yaml);
+  if (result == ABBE_OK) result = abbe_watch_check(error); /* whatever was given up */
   if (result != ABBE_OK) abbe_scene_free(out);
   return result;
 }

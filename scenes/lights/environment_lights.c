@@ -1,5 +1,6 @@
 #include "scenes/lights/environment_lights.h"
 
+#include "base/watch.h"
 #include "colorimetry/upsampling.h"
 #include "scenes/geometry/digest.h"
 #include "scenes/geometry/vector.h"
@@ -125,7 +126,8 @@ static void find_lamps(search *s, double above) {
   const double least = LEAST_SHARE * s->environment->luminance;
   memset(s->place, 1, BINS);
   for (size_t i = 0; i < BINS; i++) s->cuts[i].lamp = MOST_LAMPS;
-  for (bool wide = true; wide; above = above > 0 ? 2 * above : s->environment->luminance * 1e-3) {
+  for (bool wide = true; wide && abbe_watch_goes_on();
+       above = above > 0 ? 2 * above : s->environment->luminance * 1e-3) {
     wide = false;
     fill(s, above);
     for (size_t first = 0; first < BINS; first++) {
@@ -294,10 +296,12 @@ static abbe_result add_all(search *s, const abbe_environment_lights_desc *d, abb
     out->environment_lights++;
     out->light_count++;
   }
+  if (result == ABBE_OK) result = abbe_watch_check(error);
+  if (result != ABBE_OK) return result;
   memset(s->place, 1, BINS);
   fill(s, 0);
   find_soft(s, out->soft_light);
-  return result;
+  return ABBE_OK;
 }
 
 static abbe_result find_all(const abbe_environment *environment,
@@ -306,7 +310,8 @@ static abbe_result find_all(const abbe_environment *environment,
   search s;
   abbe_result result = look_for_lamps(environment, count, &s, error);
   if (result != ABBE_OK) return result;
-  result = add_all(&s, desc, out, error);
+  result = abbe_watch_check(error);
+  if (result == ABBE_OK) result = add_all(&s, desc, out, error);
   drop_search(&s);
   return result;
 }

@@ -31,7 +31,7 @@ typedef struct abbe_environment_lights_desc {
  * "environment 1" and so on, brightest first, as many as ABBE_SCENE_MAX_LIGHTS has room for;
  * out->environment_lights says how many. A scene without an environment is copied as it is. before,
  * if not NULL, is an earlier such copy: what was found for such an environment is taken from it.
- * ABBE_NO_MEMORY, and errors of abbe_upsampling_make_by. */
+ * ABBE_NO_MEMORY, ABBE_CANCELLED, and errors of abbe_upsampling_make_by. */
 abbe_result abbe_environment_lights_add(const abbe_scene *scene,
                                         const abbe_environment_lights_desc *desc,
                                         const abbe_scene *before, abbe_scene *out,

@@ -1,5 +1,6 @@
 #include "scenes/mesh/bvh.h"
 
+#include "base/watch.h"
 #include "scenes/geometry/disjoint_sets.h"
 #include "scenes/geometry/vector.h"
 
@@ -21,7 +22,6 @@ typedef struct builder {
   uint32_t *order;
   abbe_bvh_node *node;
   size_t node_count, depth;
-  const abbe_bvh_watch *watch;
   size_t looks; /* at triangles, since it was asked */
   bool stopped;
 } builder;
@@ -133,15 +133,15 @@ static size_t part(builder *b, size_t first, size_t count, const split *s, const
 /* Before so many triangles are looked at. */
 static bool goes_on(builder *b, size_t count) {
   b->looks += count;
-  if (b->watch == NULL || b->watch->goes_on == NULL || b->looks < PART) return true;
+  if (b->looks < PART) return !b->stopped;
   b->looks = 0;
-  b->stopped = b->stopped || !b->watch->goes_on(b->watch->user);
+  b->stopped = !abbe_watch_goes_on();
   return !b->stopped;
 }
 
 static void build(builder *b, size_t node, size_t first, size_t count, size_t depth) {
   box bounds = nothing, middles = nothing;
-  if (b->stopped || !goes_on(b, count)) return;
+  if (!goes_on(b, count)) return;
   for (size_t i = first; i < first + count; i++) {
     join(&bounds, &b->bounds[b->order[i]]);
     grow(&middles, b->middle[b->order[i]]);
@@ -170,8 +170,8 @@ static void build(builder *b, size_t node, size_t first, size_t count, size_t de
   build(b, child + 1, first + left, count - left, depth + 1);
 }
 
-abbe_result abbe_bvh_make(const double (*triangle)[9], size_t count, const abbe_bvh_watch *watch,
-                          abbe_bvh *out, abbe_error *error) {
+abbe_result abbe_bvh_make(const double (*triangle)[9], size_t count, abbe_bvh *out,
+                          abbe_error *error) {
   ABBE_REQUIRE((triangle || count == 0) && out, error);
   *out = (abbe_bvh){0};
   if (count == 0)
@@ -199,14 +199,13 @@ abbe_result abbe_bvh_make(const double (*triangle)[9], size_t count, const abbe_
                  .middle = (const double(*)[3])middle,
                  .order = h.triangle,
                  .node = h.node,
-                 .node_count = 1,
-                 .watch = watch};
+                 .node_count = 1};
     build(&b, 0, 0, count, 0);
     h.node_count = b.node_count;
     h.depth = b.depth;
     if (b.stopped) {
       abbe_bvh_free(&h);
-      result = abbe_error_set(error, ABBE_CANCELLED, "the making of a BVH was cancelled");
+      result = abbe_watch_check(error);
     }
     *out = h;
   }

@@ -36,16 +36,10 @@ typedef struct abbe_bvh {
   size_t depth;       /* inner nodes on the longest way down: what a traversal stacks at the most */
 } abbe_bvh;
 
-/* Who waits for it, asked each some milliseconds; false: no more. Zeroed: nobody. */
-typedef struct abbe_bvh_watch {
-  bool (*goes_on)(void *user);
-  void *user;
-} abbe_bvh_watch;
-
-/* triangle[i]: three corners, metres; finite. watch may be NULL. ABBE_GEOMETRY without triangles,
- * ABBE_CANCELLED, ABBE_NO_MEMORY; *out is then zeroed. */
-abbe_result abbe_bvh_make(const double (*triangle)[9], size_t count, const abbe_bvh_watch *watch,
-                          abbe_bvh *out, abbe_error *error);
+/* triangle[i]: three corners, metres; finite. ABBE_GEOMETRY without triangles, ABBE_CANCELLED by
+ * the thread's watch (base/watch.h), ABBE_NO_MEMORY; *out is then zeroed. */
+abbe_result abbe_bvh_make(const double (*triangle)[9], size_t count, abbe_bvh *out,
+                          abbe_error *error);
 void abbe_bvh_free(abbe_bvh *bvh);
 
 typedef struct abbe_bvh_hit {

@@ -1,4 +1,5 @@
 /* Normals: one a face, one a point, or one for each smooth part around a point. */
+#include "base/watch.h"
 #include "scenes/geometry/disjoint_sets.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/mesh/mesh.h"
@@ -256,6 +257,8 @@ void abbe_mesh_fair_normal(const double normal[3], const double face[3], double 
 abbe_result abbe_mesh_compute_normals(abbe_mesh *mesh, abbe_mesh_normals normals,
                                       abbe_error *error) {
   ABBE_REQUIRE(mesh, error);
+  const abbe_result wanted = abbe_watch_check(error);
+  if (wanted != ABBE_OK) return wanted;
   mesh->given_normals = false;
   return normals == ABBE_NORMALS_FLAT     ? face_normals(mesh, error)
          : normals == ABBE_NORMALS_SMOOTH ? smooth_normals(mesh, error)

@@ -1,4 +1,5 @@
 /* Faces of shells that go through one another, or lie on one another. */
+#include "base/watch.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/mesh/bvh.h"
 #include "scenes/mesh/shell_search.h"
@@ -125,7 +126,7 @@ static void meet_faces(abbe_shell_search *s, uint32_t f, uint32_t g) {
     add_crossing(s, s->t->shell[f], s->t->shell[g], place);
 }
 
-enum { WORK_OF_A_PAIR = 4 };
+enum { WORK_OF_A_PAIR = 4, ASKED = 1 << 14 };
 
 /* Whether faces of the shells, NONE where there are several, may be such that are looked for. */
 static bool are_looked_for(const abbe_shell_search *s, uint32_t a, uint32_t b) {
@@ -147,7 +148,7 @@ static void meet_leaves(abbe_shell_search *s, const abbe_shell_tree *t, abbe_she
 static void meet_parts(abbe_shell_search *s, const abbe_shell_tree *t, abbe_shell_part a,
                        abbe_shell_part b) {
   const size_t faces_a = a.last - a.first, faces_b = b.last - b.first;
-  s->work++;
+  if (++s->work % ASKED == 0 && !abbe_watch_goes_on()) s->work = s->most_work;
   if (abbe_shell_search_gives_up(s) || !are_looked_for(s, t->shell[a.node], t->shell[b.node]) ||
       !abbe_shell_boxes_meet(&t->node[a.node], &t->node[b.node]))
     return;

@@ -1,6 +1,8 @@
 /* The tree of boxes over the faces of shells. */
 #include "scenes/mesh/shell_search.h"
 
+#include "base/watch.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -39,9 +41,12 @@ static void halve(const abbe_shell_tree *t, size_t first, size_t last, size_t ha
 }
 
 /* shell: of each face */
+enum { ASKED = 4096 }; /* over so many faces it is asked whether they are wanted */
+
 static void grow(abbe_shell_tree *t, const uint32_t *shell, size_t node, size_t first,
                  size_t last) {
   abbe_shell_box *b = &t->node[node];
+  if (last - first >= ASKED && !abbe_watch_goes_on()) return;
   *b = t->of_face[t->face[first]];
   t->shell[node] = shell[t->face[first]];
   for (size_t i = first + 1; i < last; i++) {

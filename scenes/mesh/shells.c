@@ -1,5 +1,6 @@
 #include "scenes/mesh/shells.h"
 
+#include "base/watch.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/mesh/bvh.h"
 #include "scenes/mesh/shell_search.h"
@@ -152,13 +153,15 @@ static abbe_result find_lie(abbe_shell_search *s, abbe_error *error) {
   bool room = abbe_shell_tree_make(s, &t);
   s->most_work = MOST_WORK + MOST_WORK_A_FACE * (uint64_t)s->t->face_count;
   /* a surface too intricate to be searched for crossings of its own is taken to have none more */
-  if (room) abbe_shell_find_crossings(s, &t, true);
-  if (room && s->out->count > 1) {
+  if (room && abbe_watch_goes_on()) abbe_shell_find_crossings(s, &t, true);
+  if (room && s->out->count > 1 && abbe_watch_goes_on()) {
     abbe_shell_find_crossings(s, &t, false);
     abbe_shell_sort_crossings(s->out);
     if (!abbe_shell_search_gives_up(s)) room = abbe_shell_find_nesting(s, &t);
   }
   abbe_shell_tree_free(&t);
+  const abbe_result wanted = abbe_watch_check(error);
+  if (wanted != ABBE_OK) return wanted;
   if (!room || s->no_memory)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the parts of a mesh");
   if (s->out->count > 1 && abbe_shell_search_gives_up(s))

@@ -1,5 +1,6 @@
 #include "scenes/mesh/topology.h"
 
+#include "base/watch.h"
 #include "scenes/geometry/disjoint_sets.h"
 #include "scenes/geometry/vector.h"
 
@@ -335,6 +336,7 @@ abbe_result abbe_topology_make(const abbe_mesh *mesh, abbe_topology *out, abbe_e
   ABBE_REQUIRE(mesh && out, error);
   memset(out, 0, sizeof *out);
   abbe_result result = check_input(mesh, error);
+  if (result == ABBE_OK) result = abbe_watch_check(error);
   if (result != ABBE_OK) return result;
   const size_t vertices = mesh->vertex_count + 1, faces = mesh->face_count + 1;
   out->face_count = mesh->face_count;

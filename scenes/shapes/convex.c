@@ -1,6 +1,7 @@
 #include "scenes/shapes/convex.h"
 
 #include "base/number.h"
+#include "base/watch.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/mesh/mesh_parts.h"
 #include "scenes/mesh/topology.h"
@@ -95,11 +96,14 @@ static bool gather_planes(search *s) {
   return s->count >= 4;
 }
 
+enum { ASKED = 1024 }; /* vertices */
+
 /* By how much a vertex lies in front of a plane at the most, m, and which. */
 static double deepest_dent(const search *s, double place[3]) {
   double most = 0;
   for (size_t v = 0; v < s->mesh->vertex_count; v++) {
     double p[3];
+    if (v % ASKED == 0 && !abbe_watch_goes_on()) break;
     abbe_vector_subtract(s->mesh->position[v], s->centre, p);
     for (size_t i = 0; i < s->count; i++) {
       const double front = abbe_vector_dot(s->plane[i].n, p) - s->plane[i].d;
@@ -182,6 +186,8 @@ static void order_faces(search *s, size_t step) {
  * what rounding left. */
 static abbe_result attempt(search *s, double tolerance, bool first, bool skin, abbe_convex *out,
                            abbe_error *error) {
+  const abbe_result wanted = abbe_watch_check(error);
+  if (wanted != ABBE_OK) return wanted;
   s->tolerance = tolerance * s->size;
   s->thin = skin ? 0 : 2 * s->tolerance;
   out->verdict = ABBE_CONVEX_MANY;

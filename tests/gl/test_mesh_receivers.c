@@ -76,9 +76,8 @@ static void make_receivers(receivers *r) {
   for (int k = 0; k < FLATS; k++) make_flat(k, r);
   assert_int_equal(abbe_shape_ring(0.2, 0.06, 48, 24, &r->mesh, NULL), ABBE_OK);
   r->triangle = abbe_bvh_triangles(&r->mesh);
-  assert_int_equal(
-      abbe_bvh_make((const double(*)[9])r->triangle, r->mesh.face_count, NULL, &r->h, NULL),
-      ABBE_OK);
+  assert_int_equal(abbe_bvh_make((const double(*)[9])r->triangle, r->mesh.face_count, &r->h, NULL),
+                   ABBE_OK);
   upload_receivers(r);
 }
 

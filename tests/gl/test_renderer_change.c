@@ -2,6 +2,7 @@
  * passes than the change asks for. */
 #include "tests/gl/frame.h"
 
+#include "base/watch.h"
 #include "gl/renderer_state.h"
 #include "scenes/geometry/transform.h"
 #include "scenes/object_motion.h"
@@ -249,6 +250,7 @@ static void a_cancelled_renderer_goes_on(void **state) {
   watched.progress_user = &left;
   scene.light[0].position[0] += 0.02;
   assert_int_equal(change(renderer, &scene, &watched), ABBE_CANCELLED);
+  assert_false(abbe_renderer_is_lit(renderer));
   double ms;
   abbe_renderer_hits hits;
   assert_int_equal(abbe_renderer_frame(renderer, NULL, NULL, NULL, &error), ABBE_INVALID_ARGUMENT);
@@ -262,6 +264,62 @@ static void a_cancelled_renderer_goes_on(void **state) {
 }
 
 /* Units of work, counted: what is dispatched, drawn and compiled. */
+/* What the camera's passes alone ask for, cancelled, leaves the light as it is. */
+static void a_cancelled_view_keeps_the_light(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_error error = {0};
+  int left = 1;
+  load_text(GLASS_SCENE, &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &tiny);
+  draw_frame(renderer);
+  abbe_render_desc other = tiny;
+  other.aovs = true;
+  other.progress = stop_at;
+  other.progress_user = &left;
+  assert_int_equal(change(renderer, &scene, &other), ABBE_CANCELLED);
+  assert_true(abbe_renderer_is_lit(renderer));
+  assert_int_equal(abbe_renderer_frame(renderer, NULL, NULL, NULL, &error), ABBE_INVALID_ARGUMENT);
+  other.progress = NULL;
+  assert_int_equal(change(renderer, &scene, &other), ABBE_OK);
+  const abbe_statistics s = draw_frame(renderer);
+  assert_ran(&s, false, true);
+  abbe_renderer_redraw(renderer);
+  assert_as_made_anew(renderer, &scene, &other, "a cancelled view");
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+/* The thread's watch is heard by what comes before the first program: planning, and trees. */
+static bool watch_at(void *user) {
+  return stop_at(user, 0);
+}
+
+static void a_watch_ends_a_change(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_result result = ABBE_CANCELLED;
+  int calls = 0;
+  load_text(MESH_SCENE, &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &tiny);
+  draw_frame(renderer);
+  scene.light[0].position[0] += 0.02;
+  for (int most = 1; result == ABBE_CANCELLED; most++) {
+    int left = most;
+    abbe_watch watch = {watch_at, &left, false};
+    abbe_watch_set(&watch);
+    result = change(renderer, &scene, &tiny);
+    abbe_watch_set(NULL);
+    assert_true(result == ABBE_OK || left == 0); /* and asked no more */
+    calls = most - left;
+  }
+  assert_int_equal(result, ABBE_OK);
+  assert_true(calls >= 3);
+  assert_as_made_anew(renderer, &scene, &tiny, "a watched change");
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
 static struct {
   abbe_gl real;
   int units, most, left; /* since somebody was asked last; the most; calls until they stop it */
@@ -470,6 +528,8 @@ int main(void) {
       cmocka_unit_test(a_watched_frame_is_the_same),
       cmocka_unit_test(a_refused_change_changes_nothing),
       cmocka_unit_test(a_cancelled_renderer_goes_on),
+      cmocka_unit_test(a_cancelled_view_keeps_the_light),
+      cmocka_unit_test(a_watch_ends_a_change),
       cmocka_unit_test(a_cancel_is_heard_soon),
       cmocka_unit_test(random_changes_of_a_solid),
       cmocka_unit_test(random_changes_of_meshes),

@@ -44,7 +44,6 @@ static const struct {
     {"abbe_file_open", "size"},
     {"abbe_file_write", "data"},
     {"abbe_bvh_make", "triangle"},
-    {"abbe_bvh_make", "watch"},
     {"abbe_import_batch_run", "report"},
     {"abbe_import_load", "report"},
     {"abbe_import_load", "options"},

@@ -48,7 +48,7 @@ static abbe_result make_receivers(const abbe_scene *scene, abbe_landing_rays *ou
   for (size_t i = 0; i < scene->object_count; i++)
     if (abbe_object_kind_of(&scene->object[i]) == ABBE_OBJECT_RECEIVER)
       add_triangles(&scene->object[i].mesh, out->triangle, &count);
-  return abbe_bvh_make((const double(*)[9])out->triangle, count, NULL, &out->receivers, error);
+  return abbe_bvh_make((const double(*)[9])out->triangle, count, &out->receivers, error);
 }
 
 static abbe_result make_solids(const abbe_scene *scene, double lambda_nm, solids *out,
@@ -70,7 +70,7 @@ static abbe_result make_solids(const abbe_scene *scene, double lambda_nm, solids
     add_triangles(&o->mesh, out->triangle, &count);
   }
   out->first[scene->object_count] = count;
-  return abbe_bvh_make((const double(*)[9])out->triangle, count, NULL, &out->bvh, error);
+  return abbe_bvh_make((const double(*)[9])out->triangle, count, &out->bvh, error);
 }
 
 /* The object of a hit, its face, and the interpolated normal there. */

@@ -1,6 +1,7 @@
 #include "cli/view/work/view_worker.h"
 
 #include "base/clock.h"
+#include "base/watch.h"
 #include "cli/view/picture/view_look.h"
 #include "cli/view/work/view_scene.h"
 #include "gl/accuracy/preset.h"
@@ -55,18 +56,26 @@ static bool goes_on(void *user, double done) {
   return !w->stop;
 }
 
+/* By the thread's watch. */
+static bool is_wanted(void *user) {
+  return goes_on(user, 0);
+}
+
 /* ---- settings ---- */
 
-/* What the presets have for such a scene, once for each scene. */
-static void find_front(abbe_view_worker *w) {
+/* What the presets have for such a scene, once for each scene. ABBE_CANCELLED. */
+static abbe_result find_front(abbe_view_worker *w, abbe_error *error) {
   abbe_plan plan;
   const abbe_preset_front *front;
-  if (w->fronted) return;
+  if (w->fronted) return ABBE_OK;
   w->front.count = 0;
+  const abbe_result result = abbe_plan_make(w->scene.now, NULL, &plan, error);
+  if (result == ABBE_CANCELLED) return result;
   w->fronted = true;
-  if (abbe_plan_make(w->scene.now, NULL, &plan, NULL) != ABBE_OK) return;
+  if (result != ABBE_OK) return ABBE_OK; /* what draws it says why */
   if (abbe_presets_find(&w->presets, &plan, &front, NULL) == ABBE_OK) w->front = *front;
   abbe_plan_free(&plan);
+  return ABBE_OK;
 }
 
 static const abbe_preset_point *point_of(const abbe_view_worker *w, abbe_view_stage stage) {
@@ -151,8 +160,8 @@ static abbe_result change(abbe_view_worker *w, const abbe_render_desc *desc,
       w->renderer == NULL
           ? abbe_renderer_make(w->context, w->scene.now, &watched, &w->renderer, error)
           : abbe_renderer_change(w->renderer, w->scene.now, &watched, error);
-  w->lost = result != ABBE_OK;
-  if (w->lost) return result;
+  w->lost = result != ABBE_OK && !(w->renderer != NULL && abbe_renderer_is_lit(w->renderer));
+  if (result != ABBE_OK) return result;
   if (w->drawn != w->scene.now) abbe_view_scene_drop(w->drawn);
   w->drawn = w->scene.now;
   w->scene.relit = false;
@@ -162,13 +171,14 @@ static abbe_result change(abbe_view_worker *w, const abbe_render_desc *desc,
 static abbe_result draw(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out,
                         abbe_error *error) {
   const bool moving = q->job.stage == ABBE_VIEW_MOVING;
-  find_front(w);
+  abbe_result result = find_front(w, error);
+  if (result != ABBE_OK) return result;
   const abbe_render_desc desc = request_of(w, q);
   /* What moves is drawn in one go, for no change cancels it, and parts that are waited for take
    * longer, and other code of the driver's; so also for programs' sake. But whoever closes the
    * window does not wait for the compiler. */
   const bool made = w->renderer != NULL && !q->job.warms;
-  abbe_result result = change(w, &desc, moving && made ? NULL : goes_on, error);
+  result = change(w, &desc, moving && made ? NULL : goes_on, error);
   if (result == ABBE_OK)
     result = abbe_renderer_frame(w->renderer, moving ? NULL : goes_on, w,
                                  moving ? NULL : &out->statistics, error);
@@ -289,6 +299,8 @@ static abbe_result renew(abbe_view_worker *w, abbe_error *error) {
 static void work(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out) {
   const double start = abbe_clock_seconds(), own_s = abbe_clock_thread_seconds();
   abbe_error error = {0};
+  abbe_watch watch = {.goes_on = is_wanted, .user = w};
+  abbe_watch_set(&watch);
   w->lost = false;
   abbe_result result = w->context != NULL ? ABBE_OK : renew(w, &error);
   *out = (abbe_view_result){.job = q->job, .turned = q->turns, .looked = q->asks || q->maps};
@@ -299,6 +311,8 @@ static void work(abbe_view_worker *w, const abbe_view_request *q, abbe_view_resu
     *out = (abbe_view_result){.job = q->job, .turned = q->turns, .looked = q->asks || q->maps};
     if (result == ABBE_OK) result = make(w, q, out, &error);
   }
+  abbe_watch_set(NULL);
+  if (watch.over) result = ABBE_CANCELLED; /* whatever came of it */
   out->ended_s = abbe_clock_seconds();
   out->ms = 1e3 * (out->ended_s - start);
   out->own_ms = 1e3 * (abbe_clock_thread_seconds() - own_s);

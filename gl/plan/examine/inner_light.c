@@ -1,5 +1,6 @@
 #include "gl/plan/examine/inner_light.h"
 
+#include "base/watch.h"
 #include "gl/plan/examine/material_range.h"
 #include "gl/plan/examine/reach.h"
 #include "scenes/geometry/digest.h"
@@ -131,7 +132,7 @@ static void follow_all(const abbe_scene *scene, const abbe_plan *plan, abbe_inne
     return;
   for (int k = 0; k < 3; k++) centre[k] = 0.5 * (object->min[k] + object->max[k]);
   abbe_vector_subtract(object->max, object->min, size);
-  for (size_t i = 0; i <= scene->light_count; i++) {
+  for (size_t i = 0; i <= scene->light_count && abbe_watch_goes_on(); i++) {
     const abbe_light *light = i < scene->light_count ? &scene->light[i] : NULL;
     if (light != NULL ? !abbe_reach_light(light, object) : met || !plan->camera_sees_refractor)
       continue;

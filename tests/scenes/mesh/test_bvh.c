@@ -1,6 +1,7 @@
 /* The BVH against every triangle in turn: in double precision, and as the shaders have it. */
 #include "tests/gl/glsl.h"
 
+#include "base/watch.h"
 #include "gl/scene/bvh_nodes.h"
 #include "scenes/mesh/bvh.h"
 #include "scenes/shapes/shape.h"
@@ -18,8 +19,7 @@ typedef struct soup {
 
 static void finish(soup *s) {
   assert_non_null(s->triangle);
-  assert_int_equal(abbe_bvh_make((const double(*)[9])s->triangle, s->count, NULL, &s->h, NULL),
-                   ABBE_OK);
+  assert_int_equal(abbe_bvh_make((const double(*)[9])s->triangle, s->count, &s->h, NULL), ABBE_OK);
 }
 
 static void drop(soup *s) {
@@ -169,7 +169,7 @@ static void equal_triangles_end_in_leaves(void **state) {
   finish(&s);
   assert_true(s.h.depth <= ABBE_BVH_MAX_DEPTH);
   drop(&s);
-  assert_int_equal(abbe_bvh_make(NULL, 0, NULL, &s.h, NULL), ABBE_GEOMETRY);
+  assert_int_equal(abbe_bvh_make(NULL, 0, &s.h, NULL), ABBE_GEOMETRY);
 }
 
 /* Asked so many times before it goes on no more. */
@@ -188,10 +188,11 @@ static void it_ends_when_it_is_told_to(void **state) {
   soup s;
   make_soup(100000, 1, &s);
   patience p = {.most = SIZE_MAX};
-  const abbe_bvh_watch watch = {goes_on, &p};
+  abbe_watch watch = {goes_on, &p, false};
   abbe_bvh h;
   const double(*triangle)[9] = (const double(*)[9])s.triangle;
-  assert_int_equal(abbe_bvh_make(triangle, s.count, &watch, &h, NULL), ABBE_OK);
+  abbe_watch_set(&watch);
+  assert_int_equal(abbe_bvh_make(triangle, s.count, &h, NULL), ABBE_OK);
   assert_int_equal(h.node_count, s.h.node_count);
   assert_memory_equal(h.node, s.h.node, h.node_count * sizeof *h.node);
   abbe_bvh_free(&h);
@@ -199,10 +200,12 @@ static void it_ends_when_it_is_told_to(void **state) {
   assert_true(all > 16); /* of some levels' sweeps */
   for (size_t most = 0; most < all; most += 1 + all / 5) {
     p = (patience){.most = most};
-    assert_int_equal(abbe_bvh_make(triangle, s.count, &watch, &h, NULL), ABBE_CANCELLED);
+    watch.over = false;
+    assert_int_equal(abbe_bvh_make(triangle, s.count, &h, NULL), ABBE_CANCELLED);
     assert_int_equal(p.asked, most + 1);
     assert_null(h.node);
   }
+  abbe_watch_set(NULL);
   drop(&s);
 }
 

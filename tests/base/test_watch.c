@@ -1,0 +1,58 @@
+/* A watch is its thread's own, and over for good. */
+#include "tests/check.h"
+
+#include "base/watch.h"
+
+#include <pthread.h>
+
+typedef struct patience {
+  int asked, most;
+} patience;
+
+static bool goes_on(void *user) {
+  patience *p = user;
+  return p->asked++ < p->most;
+}
+
+static void test_it_is_over_for_good(void **state) {
+  (void)state;
+  patience p = {.most = 2};
+  abbe_watch watch = {goes_on, &p, false};
+  abbe_error error = {0};
+  assert_true(abbe_watch_goes_on());
+  abbe_watch_set(&watch);
+  assert_true(abbe_watch_goes_on());
+  assert_int_equal(abbe_watch_check(&error), ABBE_OK);
+  assert_int_equal(abbe_watch_check(&error), ABBE_CANCELLED);
+  p.most = 9;
+  assert_false(abbe_watch_goes_on());
+  assert_int_equal(p.asked, 3);
+  abbe_watch_set(NULL);
+  assert_true(abbe_watch_goes_on());
+  assert_int_equal(p.asked, 3);
+}
+
+static void *ask(void *user) {
+  *(bool *)user = abbe_watch_goes_on();
+  return NULL;
+}
+
+static void test_another_thread_has_none(void **state) {
+  (void)state;
+  patience p = {.most = 0};
+  abbe_watch watch = {goes_on, &p, false};
+  pthread_t thread;
+  bool wanted = false;
+  abbe_watch_set(&watch);
+  assert_int_equal(pthread_create(&thread, NULL, ask, &wanted), 0);
+  pthread_join(thread, NULL);
+  assert_true(wanted);
+  assert_false(abbe_watch_goes_on());
+  abbe_watch_set(NULL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_it_is_over_for_good),
+                                     cmocka_unit_test(test_another_thread_has_none)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
