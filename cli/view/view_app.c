@@ -125,7 +125,8 @@ static void take(abbe_view_session *app, size_t worker, abbe_view_result *result
   /* what counts is how often they come: with the wait until the next one was asked for */
   const double waited_ms = moved ? app->desk[worker].waited_ms : 0;
   const bool newest = result->job.serial == refine->serial;
-  const bool shown = abbe_view_refine_end(refine, worker, result->outcome, result->ms + waited_ms);
+  const bool shown =
+      abbe_view_refine_end(refine, worker, result->outcome, result->ms + waited_ms, result->own_ms);
   app->desk[worker].ended_s = moved ? result->ended_s : -1;
   if (result->news.outlined) abbe_view_files_take(&app->files, &result->news);
   if (result->news.outlined) abbe_view_state_learn(&app->state, &result->news.outline, newest);

@@ -130,6 +130,10 @@ abbe_result abbe_gpu_tell(abbe_gpu *gpu, double done, abbe_error *error);
 /* Asks them, where there are any; whether they go on. */
 bool abbe_gpu_ask(abbe_gpu *gpu);
 
+/* How many units of work the next part has where somebody watches, at least 1, after one of so many
+ * has taken so long. */
+size_t abbe_gpu_next_part(size_t units, double ms);
+
 /* Of the program that is in use, whose shader takes its number from thread.glsl: so many groups of
  * ABBE_GPU_GROUP threads; one thread a texel, in groups of 32 x 16. */
 void abbe_gpu_dispatch(abbe_gpu *gpu, GLuint program, size_t groups);
@@ -141,9 +145,10 @@ void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t f
 /* The groups that stand in the list's words 1 to 3, as another program has written them. */
 void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list);
 
-/* Before a program that reads buffers as texels. Such a sampler has no filter of its own: Mesa leaves
- * there that of the texture which another program had at its place, and llvmpipe compiles a program
- * once more for each that it finds. This puts one and the same there. No program is in use then. */
+/* Before a program that reads buffers as texels. Such a sampler has no filter of its own: Mesa
+ * leaves there that of the texture which another program had at its place, and llvmpipe compiles a
+ * program once more for each that it finds. This puts one and the same there. No program is in use
+ * then. */
 void abbe_gpu_forget_samplers(abbe_gpu *gpu);
 
 /* The clock of passes, in a frame with statistics: a lap starts; what was done since is booked to a

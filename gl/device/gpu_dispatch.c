@@ -10,14 +10,17 @@
 static const double part_ms = 6;
 enum { FIRST_PART = 4, MOST_GROUPS = 65535 };
 
+size_t abbe_gpu_next_part(size_t units, double ms) {
+  return (size_t)fmax((double)units * fmin(fmax(part_ms / fmax(ms, 1e-3), 0.25), 2), 1);
+}
+
 /* The next part's size, after one of so many units of all took so long. By software one may take
  * far longer than those before it, so that a part has few; but no dispatch has more than some
  * hundred parts. A GPU runs a few units no faster than many. */
 static size_t next_part(const abbe_gpu *gpu, size_t units, size_t all, double ms) {
   enum { FEW = 8, MOST_PARTS = 512 };
-  const double factor = fmin(fmax(part_ms / fmax(ms, 1e-3), 0.25), 2);
   const double most = gpu->software ? fmax(FEW, (double)all / MOST_PARTS) : MOST_GROUPS;
-  return (size_t)fmin(fmax((double)units * factor, 1), fmin(most, MOST_GROUPS));
+  return (size_t)fmin((double)abbe_gpu_next_part(units, ms), fmin(most, MOST_GROUPS));
 }
 
 /* width: groups of a row, of which there are so many; 0: they are groups one after another. */

@@ -1,5 +1,6 @@
 #include "gl/eye/receivers_pass.h"
 
+#include "base/clock.h"
 #include "gl/plan/examine/lit_window.h"
 
 #include <stdlib.h>
@@ -86,17 +87,20 @@ static void draw_receiver(abbe_receivers_pass *pass, GLuint program, size_t rece
   abbe_gpu_meshes_draw(scene, scene->plan->receiver_object[receiver]);
 }
 
-/* Over what is drawn unlit. Of equal depths the first receiver has won there, and so it does here.
- */
-static void draw_lit_parts(abbe_receivers_pass *pass, int bottom, int top) {
+/* Over what is drawn unlit, within left, right, bottom and top. Of equal depths the first receiver
+ * has won there, and so it does here. */
+static void draw_lit_parts(abbe_receivers_pass *pass, const int within[4]) {
   const abbe_gl *gl = pass->lighting->scene->gpu->gl;
   abbe_lighting_use(pass->lighting, pass->lit);
   gl->DepthFunc(GL_EQUAL);
   for (size_t i = pass->part_count; i-- > 0;) {
     const int *rect = pass->part[i].rect;
-    const int low = rect[1] > bottom ? rect[1] : bottom, high = rect[3] < top ? rect[3] : top;
-    if (low >= high) continue;
-    gl->Scissor(rect[0], low, rect[2] - rect[0], high - low);
+    const int left = rect[0] > within[0] ? rect[0] : within[0];
+    const int right = rect[2] < within[1] ? rect[2] : within[1];
+    const int low = rect[1] > within[2] ? rect[1] : within[2];
+    const int high = rect[3] < within[3] ? rect[3] : within[3];
+    if (left >= right || low >= high) continue;
+    gl->Scissor(left, low, right - left, high - low);
     draw_receiver(pass, pass->lit, pass->part[i].receiver);
   }
   gl->DepthFunc(GL_LESS);
@@ -110,27 +114,51 @@ static void draw_surroundings(abbe_receivers_pass *pass) {
   gl->DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-static void draw_rows(abbe_receivers_pass *pass, int bottom, int top) {
+static void draw_within(abbe_receivers_pass *pass, const int within[4]) {
   const abbe_gpu_scene *scene = pass->lighting->scene;
   const GLuint whole = pass->unlit != 0 ? pass->unlit : pass->lit;
   abbe_lighting_use(pass->lighting, whole);
-  scene->gpu->gl->Scissor(0, bottom, (GLsizei)pass->lighting->camera->receiver_samples[0],
-                          top - bottom);
+  scene->gpu->gl->Scissor(within[0], within[2], within[1] - within[0], within[3] - within[2]);
   for (size_t i = 0; i < scene->plan->receiver_count; i++) draw_receiver(pass, whole, i);
-  if (pass->unlit != 0) draw_lit_parts(pass, bottom, top);
+  if (pass->unlit != 0) draw_lit_parts(pass, within);
 }
 
-/* All at once, or a few rows of tiles at a time where somebody watches. */
+/* Tiles of the rasteriser's from number `at` on, row by row: some of a row, or whole rows. How many
+ * they are. */
+enum { TILE = 64, MOST_PARTS = 64 };
+
+static size_t tiles_from(const size_t size[2], size_t at, size_t most, int within[4]) {
+  const size_t across = (size[0] + TILE - 1) / TILE, down = (size[1] + TILE - 1) / TILE;
+  const size_t row = at / across, column = at % across;
+  const size_t whole = column == 0 ? most / across : 0;
+  const size_t rows = whole > down - row ? down - row : whole > 0 ? whole : 1;
+  const size_t columns = whole > 0 ? across : most < across - column ? most : across - column;
+  const size_t right = TILE * (column + columns), top = TILE * (row + rows);
+  within[0] = (int)(TILE * column);
+  within[1] = (int)(right < size[0] ? right : size[0]);
+  within[2] = (int)(TILE * row);
+  within[3] = (int)(top < size[1] ? top : size[1]);
+  return rows * columns;
+}
+
+/* All at once, or some tiles at a time where somebody watches. */
 static void draw_receivers(abbe_receivers_pass *pass) {
-  enum { BAND_SAMPLES = 1 << 16, TILE = 64 };
   abbe_gpu *gpu = pass->lighting->scene->gpu;
-  const size_t w = pass->lighting->camera->receiver_samples[0],
-               h = pass->lighting->camera->receiver_samples[1];
-  const size_t band = gpu->progress != NULL ? (BAND_SAMPLES / w / TILE + 1) * TILE : h;
+  const size_t *size = pass->lighting->camera->receiver_samples;
+  const size_t all = ((size[0] + TILE - 1) / TILE) * ((size[1] + TILE - 1) / TILE);
+  const size_t least = (all + MOST_PARTS - 1) / MOST_PARTS; /* all vertices are run for each */
+  size_t part = gpu->progress != NULL ? 2 * least : all;
   gpu->gl->Enable(GL_SCISSOR_TEST);
-  for (size_t at = 0; at < h && abbe_gpu_ask(gpu); at += band) {
-    draw_rows(pass, (int)at, (int)(at + band < h ? at + band : h));
-    if (gpu->progress != NULL) gpu->gl->Finish();
+  for (size_t at = 0; at < all && abbe_gpu_ask(gpu);) {
+    const double start_ms = 1e3 * abbe_clock_seconds();
+    int within[4];
+    const size_t count = tiles_from(size, at, part, within);
+    draw_within(pass, within);
+    at += count;
+    if (gpu->progress == NULL) continue;
+    gpu->gl->Finish();
+    part = abbe_gpu_next_part(count, 1e3 * abbe_clock_seconds() - start_ms);
+    if (part < least) part = least;
   }
   gpu->gl->Disable(GL_SCISSOR_TEST);
 }

@@ -1,5 +1,6 @@
 #include "gl/scene/gpu_scene.h"
 
+#include "base/watch.h"
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"
 #include "gl/scene/bvh_nodes.h"
@@ -116,6 +117,7 @@ static abbe_result grow(abbe_gpu_scene *scene, grove *g, forest *f, size_t *root
       triangle == NULL || g->part == NULL || g->owner == NULL || !gather(g, triangle)
           ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy")
           : abbe_bvh_make((const double(*)[9])triangle, faces, &h, error);
+  if (result == ABBE_OK) result = abbe_watch_check(error);
   if (result == ABBE_OK) result = plant(g, (const double(*)[9])triangle, &h, f, root, error);
   if (h.depth > scene->bvh_depth) scene->bvh_depth = h.depth;
   abbe_bvh_free(&h);

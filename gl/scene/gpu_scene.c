@@ -1,5 +1,6 @@
 #include "gl/scene/gpu_scene.h"
 
+#include "base/watch.h"
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"
 #include "gl/scene/spectra/camera_bands.h"
@@ -150,10 +151,12 @@ static abbe_result make_geometry(abbe_gpu_scene *scene, abbe_error *error) {
 abbe_result abbe_gpu_scene_make(abbe_gpu_scene *scene, unsigned parts, abbe_error *error) {
   abbe_result result = ABBE_OK;
   if (parts & ABBE_SCENE_GEOMETRY) result = make_geometry(scene, error);
+  if (result == ABBE_OK) result = abbe_watch_check(error);
   if (result == ABBE_OK && (parts & ABBE_SCENE_SHADOWS) != 0)
     result = abbe_gpu_shadows_make(scene, error);
   if (result == ABBE_OK && (parts & ABBE_SCENE_SURFACES) != 0)
     result = abbe_gpu_surfaces_upload(scene, error);
+  if (result == ABBE_OK) result = abbe_watch_check(error);
   if (result == ABBE_OK && (parts & ABBE_SCENE_SPECTRA) != 0)
     result = abbe_spectral_tables_make(scene->local, scene->plan, &scene->tables, error);
   if (result == ABBE_OK && (parts & ABBE_SCENE_SPECTRA) != 0)

@@ -1,5 +1,6 @@
 #include "scenes/environment/radiance_cube.h"
 
+#include "base/watch.h"
 #include "scenes/geometry/vector.h"
 
 #include <math.h>
@@ -82,8 +83,13 @@ abbe_result abbe_radiance_cube_make(const abbe_radiance_map *map, size_t side,
     }
     out->level[out->level_count++] = level;
   }
-  for (size_t i = 0; i < 6 * side * side; i++)
+  for (size_t i = 0; i < 6 * side * side && (i % side > 0 || abbe_watch_goes_on()); i++)
     look_up(map, side, i / (side * side), i % side, i / side % side, out->level[0] + 3 * i);
+  const abbe_result wanted = abbe_watch_check(error);
+  if (wanted != ABBE_OK) {
+    abbe_radiance_cube_free(out);
+    return wanted;
+  }
   for (size_t k = 1; k < out->level_count; k++)
     join(out->level[k - 1], side >> (k - 1), out->level[k]);
   return ABBE_OK;

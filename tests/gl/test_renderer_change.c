@@ -184,6 +184,8 @@ static void a_watched_frame_is_the_same(void **state) {
   load_text(GLASS_SCENE, &scene);
   abbe_render_desc desc = tiny;
   desc.wavelengths = 12;
+  desc.width = 200; /* some tiles of the rasteriser's */
+  desc.height = 140;
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   draw_frame(renderer);
   read_picture(renderer, false, &alone);

@@ -108,6 +108,13 @@ static double keep(abbe_view_pace *p, bool lit, const size_t now[2], double ms) 
   return *own;
 }
 
+void abbe_view_pace_guess(abbe_view_pace *p, double drawn_ms) {
+  p->eye_step = 1; /* what is too coarse is not so for long */
+  while (p->eye_step + 1 < ABBE_VIEW_EYE_STEPS &&
+         drawn_ms * eye_share(p->eye_step) > roomy * ABBE_VIEW_TURNING_MS)
+    p->eye_step++;
+}
+
 void abbe_view_pace_take(abbe_view_pace *p, size_t light_step, size_t eye_step, bool lit,
                          double ms) {
   const size_t now[2] = {lit ? light_step : 0, eye_step};

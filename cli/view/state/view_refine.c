@@ -177,7 +177,7 @@ static void choose_who_shows(abbe_view_refine *refine) {
 }
 
 bool abbe_view_refine_end(abbe_view_refine *refine, size_t worker, abbe_view_outcome outcome,
-                          double ms) {
+                          double ms, double own_ms) {
   abbe_view_hand *hand = &refine->hand[worker];
   const abbe_view_job *job = &hand->job;
   const bool current = job->serial == refine->serial, is_of_scene = job->serial >= refine->scene;
@@ -199,8 +199,8 @@ bool abbe_view_refine_end(abbe_view_refine *refine, size_t worker, abbe_view_out
   if (job->stage == ABBE_VIEW_MOVING && !job->warms) {
     if (hand->moved == job->light)
       abbe_view_pace_take(&refine->pace, job->light_step, job->eye_step, lit, ms);
-    else if (refine->pace.ms == 0) /* nothing is known: what is too coarse is not so for long */
-      refine->pace.eye_step = 1;
+    else if (refine->pace.ms == 0)
+      abbe_view_pace_guess(&refine->pace, ms - own_ms);
   }
   if (job->stage == ABBE_VIEW_MOVING) hand->moved = job->light;
   /* light of an older scene is no light for this one */

@@ -109,10 +109,12 @@ void abbe_view_refine_take(abbe_view_refine *refine, size_t worker, const abbe_v
 double abbe_view_refine_wait(const abbe_view_refine *refine, double now_s);
 /* Whether what a worker does is to stop. */
 bool abbe_view_refine_cancels(const abbe_view_refine *refine, size_t worker);
-/* What came of its job, and how long it took since the picture before, where that moved too.
- * Whether its picture is to be shown. */
+/* What came of its job, and how long it took since the picture before, where that moved too; and of
+ * that the worker's own thread, which reads, plans and compiles. Whether its picture is to be
+ * shown.
+ */
 bool abbe_view_refine_end(abbe_view_refine *refine, size_t worker, abbe_view_outcome outcome,
-                          double ms);
+                          double ms, double own_ms);
 /* A worker has drawn what was no job of these: what it holds is not known any more. */
 void abbe_view_refine_forget(abbe_view_refine *refine, size_t worker);
 

@@ -33,7 +33,7 @@ static size_t begin(abbe_view_refine *r, size_t who, double now) {
 static abbe_view_job draw(abbe_view_refine *r, size_t who, double now, double ms) {
   const size_t worker = begin(r, who, now);
   const abbe_view_job job = r->hand[worker].job;
-  assert_int_equal(abbe_view_refine_end(r, worker, ABBE_VIEW_DONE, ms), !job.warms);
+  assert_int_equal(abbe_view_refine_end(r, worker, ABBE_VIEW_DONE, ms, ms), !job.warms);
   return job;
 }
 
@@ -102,7 +102,7 @@ static void test_who_shows_and_who_makes(void **state) {
   abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 1);
   assert_false(abbe_view_refine_cancels(&r, warming)); /* which is wanted the more now */
   assert_int_equal(draw(&r, SHOWS, 1, 20).light, ABBE_VIEW_MOVING);
-  assert_false(abbe_view_refine_end(&r, warming, ABBE_VIEW_DONE, 20));
+  assert_false(abbe_view_refine_end(&r, warming, ABBE_VIEW_DONE, 20, 20));
   assert_int_equal(r.shows, 1);
   abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 1.1);
   assert_int_equal(draw(&r, SHOWS, 1.1, 20).light, ABBE_VIEW_BALANCED);
@@ -128,7 +128,7 @@ static void test_motion_waits_for_nothing(void **state) {
     assert_int_equal(job.light, i < 2 ? ABBE_VIEW_BALANCED : ABBE_VIEW_MOVING);
   }
   /* what comes too late is not shown, and no light for this scene */
-  assert_false(abbe_view_refine_end(&r, worker, ABBE_VIEW_DONE, 3000));
+  assert_false(abbe_view_refine_end(&r, worker, ABBE_VIEW_DONE, 3000, 3000));
   assert_int_equal(r.stage, ABBE_VIEW_MOVING);
   assert_int_equal(draw(&r, BESIDE, 9, 20).stage, ABBE_VIEW_BALANCED);
 }
@@ -158,7 +158,7 @@ static void test_a_change_cancels_all_but_what_moves(void **state) {
     assert_false(abbe_view_refine_cancels(&r, worker));
     abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 1);
     assert_int_equal(abbe_view_refine_cancels(&r, worker), stage != ABBE_VIEW_MOVING);
-    assert_false(abbe_view_refine_end(&r, worker, ABBE_VIEW_CANCELLED, 5));
+    assert_false(abbe_view_refine_end(&r, worker, ABBE_VIEW_CANCELLED, 5, 5));
     assert_int_equal(r.stage, ABBE_VIEW_NONE);
     assert_int_equal(next(&r, SHOWS, 1).stage, ABBE_VIEW_MOVING);
   }
@@ -190,7 +190,7 @@ static void test_the_camera_keeps_the_light(void **state) {
   assert_int_equal(r.hand[worker].job.stage, ABBE_VIEW_ACCURATE);
   abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 7);
   assert_true(abbe_view_refine_cancels(&r, worker));
-  assert_false(abbe_view_refine_end(&r, worker, ABBE_VIEW_CANCELLED, 5));
+  assert_false(abbe_view_refine_end(&r, worker, ABBE_VIEW_CANCELLED, 5, 5));
   assert_int_equal(draw(&r, SHOWS, 7, 20).light, ABBE_VIEW_ACCURATE);
 }
 
@@ -207,10 +207,10 @@ static void test_a_change_is_seen_before_its_stages(void **state) {
   assert_true(r.hand[warming].job.warms);
   abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 1);
   begin(&r, SHOWS, 1);
-  abbe_view_refine_end(&r, warming, ABBE_VIEW_DONE, 20); /* it shows from now on */
+  abbe_view_refine_end(&r, warming, ABBE_VIEW_DONE, 20, 20); /* it shows from now on */
   assert_int_equal(r.shows, warming);
   assert_true(idle(&r, SHOWS, 1.1) && idle(&r, SHOWS, 9));
-  assert_true(abbe_view_refine_end(&r, shows, ABBE_VIEW_DONE, 900));
+  assert_true(abbe_view_refine_end(&r, shows, ABBE_VIEW_DONE, 900, 900));
   assert_int_equal(next(&r, SHOWS, 9).stage, ABBE_VIEW_BALANCED);
 }
 
@@ -221,7 +221,8 @@ static void test_a_late_picture_brings_no_light(void **state) {
   abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 1);
   const size_t worker = begin(&r, SHOWS, 1);
   abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_LIGHT, 1.01);
-  assert_true(abbe_view_refine_end(&r, worker, ABBE_VIEW_DONE, 20)); /* newer than what stands */
+  assert_true(
+      abbe_view_refine_end(&r, worker, ABBE_VIEW_DONE, 20, 20)); /* newer than what stands */
   assert_int_equal(r.hand[worker].light, ABBE_VIEW_NONE);
   assert_int_equal(next(&r, SHOWS, 1.02).light, ABBE_VIEW_MOVING);
 }
@@ -268,18 +269,33 @@ static void test_no_step_follows_from_the_compiler(void **state) {
   assert_true(draw(&r, SHOWS, 2, 2).eye_step > 1); /* of the same programs */
 }
 
+/* Of the first picture what was not its worker's own work was drawing. */
+static void test_the_first_step_follows_from_the_drawing(void **state) {
+  (void)state;
+  static const struct {
+    double drawn_ms;
+    size_t eye_step;
+  } cases[] = {{20, 1}, {100, 1}, {110, 2}, {300, 3}, {2000, 3}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    abbe_view_refine r = begun();
+    begin(&r, SHOWS, 0);
+    abbe_view_refine_end(&r, 0, ABBE_VIEW_DONE, 3000 + cases[i].drawn_ms, 3000);
+    assert_int_equal(r.pace.eye_step, cases[i].eye_step);
+  }
+}
+
 static void test_what_is_refused_waits_for_a_change(void **state) {
   (void)state;
   abbe_view_refine r = refined(ABBE_VIEW_BALANCED);
   abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, 1);
   const size_t worker = begin(&r, SHOWS, 1);
-  assert_false(abbe_view_refine_end(&r, worker, ABBE_VIEW_REFUSED, 5));
+  assert_false(abbe_view_refine_end(&r, worker, ABBE_VIEW_REFUSED, 5, 5));
   assert_true(idle(&r, SHOWS, 5) && idle(&r, BESIDE, 5));
   abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, 6);
   begin(&r, SHOWS, 6);
   assert_int_equal(r.hand[worker].job.stage, ABBE_VIEW_MOVING);
   abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, 6.1);
-  abbe_view_refine_end(&r, worker, ABBE_VIEW_REFUSED, 5); /* of what is gone already */
+  abbe_view_refine_end(&r, worker, ABBE_VIEW_REFUSED, 5, 5); /* of what is gone already */
   assert_false(idle(&r, SHOWS, 6.2));
 }
 
@@ -298,7 +314,7 @@ static void test_a_stage_that_ends_early_leaves_no_light(void **state) {
     const size_t worker = begin(&r, BESIDE, 0);
     const abbe_view_stage before = r.hand[worker].light, shown = r.hand[r.shows].light;
     abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 1);
-    abbe_view_refine_end(&r, worker, cases[i].outcome, 5);
+    abbe_view_refine_end(&r, worker, cases[i].outcome, 5, 5);
     assert_int_equal(r.hand[worker].light, cases[i].keeps ? before : ABBE_VIEW_NONE);
     assert_int_equal(next(&r, SHOWS, 1).light, shown); /* which is another one's */
   }
@@ -311,7 +327,7 @@ static void test_a_spectrum_is_traced_before_the_mean(void **state) {
   assert_int_equal(r.hand[worker].job.stage, ABBE_VIEW_MEAN);
   r.spectrum = true;
   assert_true(abbe_view_refine_cancels(&r, worker));
-  abbe_view_refine_end(&r, worker, ABBE_VIEW_CANCELLED, 5);
+  abbe_view_refine_end(&r, worker, ABBE_VIEW_CANCELLED, 5, 5);
   assert_int_equal(draw(&r, BESIDE, 0, 20).stage, ABBE_VIEW_TRACED);
   assert_int_equal(draw(&r, BESIDE, 0, 20).pass, 1);
 }
@@ -326,7 +342,7 @@ static void test_photons_are_not_too_few(void **state) {
   abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_LIGHT, 1);
   const size_t worker = begin(&r, SHOWS, 1);
   assert_int_equal(r.hand[worker].job.light_step, 2);
-  assert_false(abbe_view_refine_end(&r, worker, ABBE_VIEW_REFUSED, 5));
+  assert_false(abbe_view_refine_end(&r, worker, ABBE_VIEW_REFUSED, 5, 5));
   assert_false(r.refused);
   for (int i = 0; i < 5; i++) {
     assert_true(draw(&r, SHOWS, 2 + i, 400).light_step < 2); /* however slow it is */
@@ -381,6 +397,7 @@ int main(void) {
                                      cmocka_unit_test(test_a_late_picture_brings_no_light),
                                      cmocka_unit_test(test_slow_pictures_get_cheaper),
                                      cmocka_unit_test(test_no_step_follows_from_the_compiler),
+                                     cmocka_unit_test(test_the_first_step_follows_from_the_drawing),
                                      cmocka_unit_test(test_what_is_refused_waits_for_a_change),
                                      cmocka_unit_test(test_photons_are_not_too_few),
                                      cmocka_unit_test(test_a_picture_without_a_mean),
