@@ -55,7 +55,7 @@ void abbe_renderer_free(abbe_renderer *renderer);
  * cannot be planned the renderer stays as it was; a caller that has edited the scene in place puts
  * it back, or changes on, before it draws. After another failure it draws nothing until a change
  * succeeds, and has what that change did not ask to be made anew. ABBE_CANCELLED by the request's
- * progress and by the thread's watch (base/watch.h). */
+ * progress and by the thread's watch (base/thread/watch.h). */
 abbe_result abbe_renderer_change(abbe_renderer *renderer, const abbe_scene *scene,
                                  const abbe_render_desc *desc, abbe_error *error);
 

@@ -1,6 +1,6 @@
 #include "gl/plan/plan.h"
 
-#include "base/watch.h"
+#include "base/thread/watch.h"
 #include "gl/plan/examine/haze_model.h"
 #include "gl/plan/examine/light_views.h"
 #include "gl/plan/examine/path_limits.h"

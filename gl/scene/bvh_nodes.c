@@ -1,19 +1,28 @@
 #include "gl/scene/bvh_nodes.h"
 
+#include "base/thread/watch.h"
 #include "scenes/geometry/vector.h"
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The grid is a little wider than the tree, and boxes than what they hold by MARGIN cells: more
  * than what a ray that starts at the tree loses by rounding. */
+enum { ASKED = 4096 }; /* over so many triangles it is asked whether the tree is wanted */
 enum { TREE_TEXELS = 2, NODE_TEXELS = 3, GRID_LOW = 200, GRID_CELLS = 65000, CONE_UNIT = 32767 };
 static const double MARGIN = 0.0625;
 
+/* A triangle's unit normal as floats know it, to an angle of `unsure`; below 0: it has none at all.
+ */
+typedef struct facing {
+  double n[3], unsure;
+} facing;
+
 typedef struct packer {
   const abbe_bvh *h;
-  const double (*triangle)[9];
+  facing *facing; /* of each triangle, in the tree's order */
   size_t first_texel, first_triangle, texels;
   double low[3], cell[3];
   uint32_t (*out)[4];
@@ -53,39 +62,39 @@ static void pack_box(const packer *p, const abbe_bvh_node *n, uint32_t out[4]) {
   }
 }
 
-/* A triangle's unit normal as floats know it, to an angle of `unsure`; false: none at all. */
-static bool face_normal(const double t[9], double n[3], double *unsure) {
-  double e1[3], e2[3];
+static facing facing_of(const double t[9]) {
+  facing out = {.unsure = -1};
+  double e1[3], e2[3], *n = out.n;
   abbe_vector_subtract(t + 3, t, e1);
   abbe_vector_subtract(t + 6, t, e2);
   abbe_vector_cross(e1, e2, n);
   double length = sqrt(abbe_vector_dot(n, n));
   double edges = sqrt(abbe_vector_dot(e1, e1) * abbe_vector_dot(e2, e2));
-  if (!(length > 16 * (double)FLT_EPSILON * edges)) return false;
+  if (!(length > 16 * (double)FLT_EPSILON * edges)) return out;
   for (int k = 0; k < 3; k++) n[k] /= length;
-  *unsure = asin(fmin(8 * (double)FLT_EPSILON * edges / length, 1));
-  return true;
+  out.unsure = asin(fmin(8 * (double)FLT_EPSILON * edges / length, 1));
+  return out;
 }
 
-/* The cone of the normals of so many triangles. */
+/* The cone of the normals of so many triangles; one that is wider than this leaves nothing out. */
 static void pack_cone(const packer *p, size_t first, size_t count, uint32_t out[2]) {
-  double axis[3] = {0, 0, 0}, n[3], unsure, widest = 0;
+  static const double too_wide = 1.5;
+  double axis[3] = {0, 0, 0}, widest = 0;
   bool all = true;
-  for (size_t i = first; i < first + count; i++) {
-    all = all && face_normal(p->triangle[p->h->triangle[i]], n, &unsure);
-    for (int k = 0; k < 3; k++) axis[k] += all ? n[k] : 0;
+  for (size_t i = first; i < first + count && all; i++) {
+    all = p->facing[i].unsure >= 0;
+    for (int k = 0; k < 3; k++) axis[k] += all ? p->facing[i].n[k] : 0;
   }
   double length = sqrt(abbe_vector_dot(axis, axis)), snorm[3] = {0, 0, 0}, sine = CONE_UNIT;
   if (all && length > 0) {
     for (int k = 0; k < 3; k++) snorm[k] = round(axis[k] / length * CONE_UNIT);
     length = sqrt(abbe_vector_dot(snorm, snorm));
-    for (size_t i = first; i < first + count; i++) {
-      face_normal(p->triangle[p->h->triangle[i]], n, &unsure);
-      double cosine = abbe_vector_dot(snorm, n) / length;
-      widest = fmax(widest, acos(fmin(fmax(cosine, -1), 1)) + unsure);
+    for (size_t i = first; i < first + count && widest < too_wide; i++) {
+      double cosine = abbe_vector_dot(snorm, p->facing[i].n) / length;
+      widest = fmax(widest, acos(fmin(fmax(cosine, -1), 1)) + p->facing[i].unsure);
     }
     /* one more for what the shader's dot product loses */
-    if (widest < 1.5) sine = fmin(ceil(length * sin(widest)) + 1, CONE_UNIT);
+    if (widest < too_wide) sine = fmin(ceil(length * sin(widest)) + 1, CONE_UNIT);
   }
   if (sine >= CONE_UNIT) snorm[0] = snorm[1] = snorm[2] = 0;
   uint16_t word[4];
@@ -113,6 +122,7 @@ static int32_t pack(packer *p, const abbe_bvh_node *n) {
   for (size_t k = 0; k < 2; k++) {
     const abbe_bvh_node *child = p->h->node + n->first + k;
     size_t first, count = count_below(p->h, child, &first);
+    if (count >= ASKED && !abbe_watch_goes_on()) return 0;
     pack_box(p, child, p->out[at + k]);
     pack_cone(p, first, count, p->out[at + 2] + 2 * k);
     p->out[at + k][3] = (uint32_t)pack(p, child);
@@ -120,15 +130,19 @@ static int32_t pack(packer *p, const abbe_bvh_node *n) {
   return (int32_t)(p->first_texel + at);
 }
 
-void abbe_bvh_nodes_pack(const abbe_bvh *h, const double (*triangle)[9],
-                               size_t first_texel, size_t first_triangle, uint32_t (*out)[4]) {
+abbe_result abbe_bvh_nodes_pack(const abbe_bvh *h, const double (*triangle)[9], size_t first_texel,
+                                size_t first_triangle, uint32_t (*out)[4], abbe_error *error) {
   packer p = {.h = h,
-              .triangle = triangle,
+              .facing = malloc((h->triangle_count + 1) * sizeof *p.facing),
               .first_texel = first_texel,
               .first_triangle = first_triangle,
               .texels = TREE_TEXELS,
               .out = out};
+  if (p.facing == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy");
+  for (size_t i = 0; i < h->triangle_count; i++) p.facing[i] = facing_of(triangle[h->triangle[i]]);
   lay_grid(&p);
   out[1][3] = 0;
   out[0][3] = (uint32_t)pack(&p, h->node);
+  free(p.facing);
+  return abbe_watch_check(error);
 }

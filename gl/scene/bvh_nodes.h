@@ -23,13 +23,15 @@ size_t abbe_bvh_nodes_count(const abbe_bvh *bvh);
  * the buffer that the shaders read, the triangles, in the hierarchy's order, the first_triangle'th
  * and following; those end below 2^28, texels below 2^31. The root is first_texel.
  *
- * Tree: lowest grid point in x, y, z and, as bits, what the root leads to; width of a grid cell in x,
- * y, z. Inner node: for each of two children, its box (low | high << 16 a word, in x, y, z) and what
- * it leads to; then its cone twice, axis and sine of the half angle, snorm16: x | y << 16, z |
+ * Tree: lowest grid point in x, y, z and, as bits, what the root leads to; width of a grid cell in
+ * x, y, z. Inner node: for each of two children, its box (low | high << 16 a word, in x, y, z) and
+ * what it leads to; then its cone twice, axis and sine of the half angle, snorm16: x | y << 16, z |
  * sine << 16; a sine of one leaves nothing out. Leads to: an inner node's first texel, or the
- * complement of a leaf's first triangle << 3 | count. */
-void abbe_bvh_nodes_pack(const abbe_bvh *hierarchy, const double (*triangle)[9],
-                               size_t first_texel, size_t first_triangle, uint32_t (*out)[4]);
+ * complement of a leaf's first triangle << 3 | count. ABBE_NO_MEMORY, ABBE_CANCELLED by the
+ * thread's watch. */
+abbe_result abbe_bvh_nodes_pack(const abbe_bvh *hierarchy, const double (*triangle)[9],
+                                size_t first_texel, size_t first_triangle, uint32_t (*out)[4],
+                                abbe_error *error);
 
 #ifdef __cplusplus
 }

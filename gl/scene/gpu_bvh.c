@@ -1,6 +1,6 @@
 #include "gl/scene/gpu_scene.h"
 
-#include "base/watch.h"
+#include "base/thread/watch.h"
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"
 #include "gl/scene/bvh_nodes.h"
@@ -78,7 +78,9 @@ static abbe_result plant(const grove *g, const double (*triangle)[9], const abbe
   if (!make_room(f, texels, h->triangle_count))
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy");
   *root = f->texel_count;
-  abbe_bvh_nodes_pack(h, triangle, f->texel_count, f->triangle_count, f->texel + f->texel_count);
+  const abbe_result result = abbe_bvh_nodes_pack(h, triangle, f->texel_count, f->triangle_count,
+                                                 f->texel + f->texel_count, error);
+  if (result != ABBE_OK) return result;
   for (size_t i = 0; i < h->triangle_count; i++)
     store_triangle(g, h->triangle[i], &f->triangle[f->triangle_count + i],
                    &f->corners[f->triangle_count + i]);

@@ -1,6 +1,6 @@
 #include "gl/scene/gpu_scene.h"
 
-#include "base/watch.h"
+#include "base/thread/watch.h"
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"
 #include "gl/scene/spectra/camera_bands.h"

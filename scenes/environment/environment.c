@@ -1,6 +1,6 @@
 #include "scenes/environment/environment.h"
 
-#include "base/watch.h"
+#include "base/thread/watch.h"
 #include "scenes/geometry/digest.h"
 #include "scenes/geometry/transform.h"
 #include "scenes/geometry/vector.h"

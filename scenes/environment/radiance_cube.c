@@ -1,6 +1,6 @@
 #include "scenes/environment/radiance_cube.h"
 
-#include "base/watch.h"
+#include "base/thread/watch.h"
 #include "scenes/geometry/vector.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 #include "scenes/import/scene_file.h"
 
 #include "base/file.h"
-#include "base/watch.h"
+#include "base/thread/watch.h"
 #include "base/yaml/yaml.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/import/environment_file.h"

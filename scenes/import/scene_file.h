@@ -19,8 +19,8 @@ typedef struct abbe_scene_options {
 } abbe_scene_options;
 
 /* Loads, tessellates, checks and fixes. Paths in the file are relative to it. Errors name file,
- * line, key and value; ABBE_CANCELLED by the thread's watch (base/watch.h). On failure *out is
- * zeroed. options may be NULL. */
+ * line, key and value; ABBE_CANCELLED by the thread's watch (base/thread/watch.h). On failure *out
+ * is zeroed. options may be NULL. */
 abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options, abbe_scene *out,
                             abbe_error *error);
 /* Of a scene that abbe_scene_load has made: its lights, ambient light and background as they are

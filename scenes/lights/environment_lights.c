@@ -1,6 +1,6 @@
 #include "scenes/lights/environment_lights.h"
 
-#include "base/watch.h"
+#include "base/thread/watch.h"
 #include "colorimetry/upsampling.h"
 #include "scenes/geometry/digest.h"
 #include "scenes/geometry/vector.h"

@@ -37,7 +37,7 @@ typedef struct abbe_bvh {
 } abbe_bvh;
 
 /* triangle[i]: three corners, metres; finite. ABBE_GEOMETRY without triangles, ABBE_CANCELLED by
- * the thread's watch (base/watch.h), ABBE_NO_MEMORY; *out is then zeroed. */
+ * the thread's watch (base/thread/watch.h), ABBE_NO_MEMORY; *out is then zeroed. */
 abbe_result abbe_bvh_make(const double (*triangle)[9], size_t count, abbe_bvh *out,
                           abbe_error *error);
 void abbe_bvh_free(abbe_bvh *bvh);

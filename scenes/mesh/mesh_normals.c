@@ -1,5 +1,5 @@
 /* Normals: one a face, one a point, or one for each smooth part around a point. */
-#include "base/watch.h"
+#include "base/thread/watch.h"
 #include "scenes/geometry/disjoint_sets.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/mesh/mesh.h"

@@ -1,5 +1,5 @@
 /* Faces of shells that go through one another, or lie on one another. */
-#include "base/watch.h"
+#include "base/thread/watch.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/mesh/bvh.h"
 #include "scenes/mesh/shell_search.h"

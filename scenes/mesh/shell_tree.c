@@ -1,7 +1,7 @@
 /* The tree of boxes over the faces of shells. */
 #include "scenes/mesh/shell_search.h"
 
-#include "base/watch.h"
+#include "base/thread/watch.h"
 
 #include <math.h>
 #include <stdlib.h>

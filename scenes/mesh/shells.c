@@ -1,6 +1,6 @@
 #include "scenes/mesh/shells.h"
 
-#include "base/watch.h"
+#include "base/thread/watch.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/mesh/bvh.h"
 #include "scenes/mesh/shell_search.h"

@@ -1,6 +1,6 @@
 #include "scenes/mesh/topology.h"
 
-#include "base/watch.h"
+#include "base/thread/watch.h"
 #include "scenes/geometry/disjoint_sets.h"
 #include "scenes/geometry/vector.h"
 

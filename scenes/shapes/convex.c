@@ -1,7 +1,7 @@
 #include "scenes/shapes/convex.h"
 
 #include "base/number.h"
-#include "base/watch.h"
+#include "base/thread/watch.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/mesh/mesh_parts.h"
 #include "scenes/mesh/topology.h"

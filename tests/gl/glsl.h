@@ -51,7 +51,7 @@ static inline void glsl_hierarchy(const abbe_gl *gl, const abbe_bvh *h,
                                   const double (*triangle)[9]) {
   const size_t count = abbe_bvh_nodes_count(h);
   uint32_t(*texel)[4] = calloc(count, sizeof *texel);
-  abbe_bvh_nodes_pack(h, triangle, 0, 0, texel);
+  assert_int_equal(abbe_bvh_nodes_pack(h, triangle, 0, 0, texel, NULL), ABBE_OK);
   glsl_texels(gl, 7, GL_RGBA32UI, count * sizeof *texel, texel);
   free(texel);
 }

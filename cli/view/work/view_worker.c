@@ -1,7 +1,7 @@
 #include "cli/view/work/view_worker.h"
 
 #include "base/clock.h"
-#include "base/watch.h"
+#include "base/thread/watch.h"
 #include "cli/view/picture/view_look.h"
 #include "cli/view/work/view_scene.h"
 #include "gl/accuracy/preset.h"

@@ -1,6 +1,6 @@
 #include "gl/plan/examine/inner_light.h"
 
-#include "base/watch.h"
+#include "base/thread/watch.h"
 #include "gl/plan/examine/material_range.h"
 #include "gl/plan/examine/reach.h"
 #include "scenes/geometry/digest.h"

@@ -1,7 +1,6 @@
 #include "scenes/import/scene_file.h"
 
 #include "base/file.h"
-#include "base/watch.h"
 #include "scenes/geometry/vector.h"
 #include "spectral/optics.h"
 
@@ -466,45 +465,6 @@ static void texts_differ_where_something_was_set(void **state) {
   assert_null(changed);
 }
 
-/* Asked so many times before it goes on no more. */
-typedef struct patience {
-  size_t asked, most;
-} patience;
-
-static bool goes_on(void *user) {
-  patience *p = user;
-  return p->asked++ < p->most;
-}
-
-/* Whoever stops it is not asked again, whenever that is, and there is no scene. */
-static void reading_ends_when_it_is_told_to(void **state) {
-  (void)state;
-  static const struct {
-    const char *name;
-    size_t least; /* questions: of a large mesh, of surroundings and a cut stone */
-  } scenes[] = {{"bunny", 60}, {"stone", 60}};
-  for (size_t i = 0; i < 2; i++) {
-    char path[512];
-    abbe_scene scene;
-    abbe_result result = ABBE_CANCELLED;
-    patience p = {0};
-    snprintf(path, sizeof path, "%s/scenes/%s.yaml", ABBE_SOURCE_DIR, scenes[i].name);
-    for (size_t most = 0; result == ABBE_CANCELLED; most = 4 * most + 3) {
-      abbe_watch watch = {goes_on, &p, false};
-      p = (patience){.most = most};
-      abbe_watch_set(&watch);
-      result = abbe_scene_load(path, NULL, &scene, NULL);
-      abbe_watch_set(NULL);
-      if (result != ABBE_CANCELLED) break;
-      assert_int_equal(p.asked, most + 1);
-      assert_true(scene.object == NULL && scene.environment == NULL);
-    }
-    assert_int_equal(result, ABBE_OK);
-    if (p.asked < scenes[i].least) fail_msg("%s: asked %zu times", scenes[i].name, p.asked);
-    abbe_scene_free(&scene);
-  }
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_shipped_scene_loads),
@@ -520,7 +480,6 @@ int main(void) {
       cmocka_unit_test(the_documented_scene_loads),
       cmocka_unit_test(a_missing_file_is_named),
       cmocka_unit_test(text_is_read_like_a_file),
-      cmocka_unit_test(reading_ends_when_it_is_told_to),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,7 @@
 /* The BVH against every triangle in turn: in double precision, and as the shaders have it. */
 #include "tests/gl/glsl.h"
 
-#include "base/watch.h"
+#include "base/thread/watch.h"
 #include "gl/scene/bvh_nodes.h"
 #include "scenes/mesh/bvh.h"
 #include "scenes/shapes/shape.h"
@@ -205,7 +205,13 @@ static void it_ends_when_it_is_told_to(void **state) {
     assert_int_equal(p.asked, most + 1);
     assert_null(h.node);
   }
+  uint32_t(*texel)[4] = calloc(abbe_bvh_nodes_count(&s.h), sizeof *texel);
+  p = (patience){.most = 1}; /* of the nodes' cones */
+  watch.over = false;
+  assert_int_equal(abbe_bvh_nodes_pack(&s.h, triangle, 0, 0, texel, NULL), ABBE_CANCELLED);
+  assert_int_equal(p.asked, 2);
   abbe_watch_set(NULL);
+  free(texel);
   drop(&s);
 }
 
@@ -255,7 +261,9 @@ static void packed_nodes_leave_nothing_out(void **state) {
     uint64_t random = 3;
     size_t left_out = 0, seen = 0;
     uint32_t(*texel)[4] = calloc(abbe_bvh_nodes_count(&s[which].h), sizeof *texel);
-    abbe_bvh_nodes_pack(&s[which].h, (const double(*)[9])s[which].triangle, 0, 0, texel);
+    assert_int_equal(
+        abbe_bvh_nodes_pack(&s[which].h, (const double(*)[9])s[which].triangle, 0, 0, texel, NULL),
+        ABBE_OK);
     for (int i = 0; i < 20; i++) {
       double o[3], d[3];
       random_ray(&s[which], &random, o, d);

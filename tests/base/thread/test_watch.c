@@ -1,7 +1,7 @@
 /* A watch is its thread's own, and over for good. */
 #include "tests/check.h"
 
-#include "base/watch.h"
+#include "base/thread/watch.h"
 
 #include <pthread.h>
 

@@ -5,8 +5,8 @@
  * milliseconds ask it now and then, and end with ABBE_CANCELLED where it is over. Of other threads
  * it knows nothing, those of a parallel loop included; nobody watches at first.
  */
-#ifndef ABBE_BASE_WATCH_H
-#define ABBE_BASE_WATCH_H
+#ifndef ABBE_BASE_THREAD_WATCH_H
+#define ABBE_BASE_THREAD_WATCH_H
 
 #include "base/error.h"
 

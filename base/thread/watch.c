@@ -1,4 +1,4 @@
-#include "base/watch.h"
+#include "base/thread/watch.h"
 
 #include <stddef.h>
 
