@@ -132,6 +132,7 @@ static int32_t pack(packer *p, const abbe_bvh_node *n) {
 
 abbe_result abbe_bvh_nodes_pack(const abbe_bvh *h, const double (*triangle)[9], size_t first_texel,
                                 size_t first_triangle, uint32_t (*out)[4], abbe_error *error) {
+  ABBE_REQUIRE(h && h->node_count > 0 && triangle && out, error);
   packer p = {.h = h,
               .facing = malloc((h->triangle_count + 1) * sizeof *p.facing),
               .first_texel = first_texel,
