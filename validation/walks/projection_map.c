@@ -1,5 +1,6 @@
 #include "validation/walks/projection_map.h"
 
+#include "base/thread/watch.h"
 #include "scenes/geometry/vector.h"
 #include "validation/transport/random.h"
 #include "validation/transport/side_by_side.h"
@@ -178,6 +179,8 @@ static void cover_triangle(const cover_list *list, const double *const corner[3]
   cover_triangle(list, (const double *const[3]){middle, b, c}, splits - 1);
 }
 
+enum { ASKED = 256 }; /* faces or cells between two questions whether they are wanted */
+
 static void cover_surface(const abbe_geometry *g, const abbe_surface *s, const cover_list *list) {
   if (s->sphere) {
     double centre[3] = {(double)s->centre[0], (double)s->centre[1], (double)s->centre[2]};
@@ -185,7 +188,7 @@ static void cover_surface(const abbe_geometry *g, const abbe_surface *s, const c
     return;
   }
   size_t faces = g->scene->object[s->object].mesh.face_count;
-  for (size_t i = 0; i < faces; i++) {
+  for (size_t i = 0; i < faces && (i % ASKED != 0 || abbe_watch_goes_on()); i++) {
     double corner[3][3];
     for (int c = 0; c < 3; c++)
       for (int k = 0; k < 3; k++) corner[c][k] = (double)s->position[s->face[i][c]][k];
@@ -329,7 +332,7 @@ static abbe_result keep_cells(const abbe_geometry *g, const marks *m, abbe_proje
     }
   qsort(a->cell, a->count, sizeof *a->cell, by_curve);
   double total = 0;
-  for (size_t i = 0; i < a->count; i++) {
+  for (size_t i = 0; i < a->count && (i % ASKED != 0 || abbe_watch_goes_on()); i++) {
     double flux, share = try_cell(g, a, &a->cell[i], (uint32_t)i, &flux);
     a->cell[i].share = (float)share;
     a->reach += flux;
@@ -400,7 +403,8 @@ abbe_result abbe_projection_map_make(const abbe_geometry *geometry, size_t light
   cover_list list = {.map = &a, .take = take_extent, .user = &extent, .fine = 0.02};
   cover_all(geometry, &list);
   *out = a;
-  if (!(extent > 0)) return ABBE_OK;
+  const abbe_result wanted = abbe_watch_check(error);
+  if (wanted != ABBE_OK || !(extent > 0)) return wanted;
   if (!a.parallel) extent = fmin(extent, 2);
   /* a cone that is narrower than the refractors makes the smaller plane */
   double cone = 2 * sin(0.5 * l->cone_rad) * 1.0001;
@@ -419,6 +423,7 @@ abbe_result abbe_projection_map_make(const abbe_geometry *geometry, size_t light
   list = (cover_list){.map = &a, .take = take_marks, .user = m, .fine = 2 * m->step};
   cover_all(geometry, &list);
   abbe_result result = keep_cells(geometry, m, &a, error);
+  if (result == ABBE_OK) result = abbe_watch_check(error);
   free(m);
   if (result != ABBE_OK) abbe_projection_map_free(&a);
   *out = a;

@@ -45,7 +45,8 @@ typedef struct abbe_projection_map {
   abbe_projection_map_cell *cell; /* [count] along a Z-order curve: neighbours stay together */
 } abbe_projection_map;
 
-/* Of one of the scene's lights, which outlives it. ABBE_NO_MEMORY. */
+/* Of one of the scene's lights, which outlives it. ABBE_NO_MEMORY, ABBE_CANCELLED by the thread's
+ * watch (base/thread/watch.h). */
 abbe_result abbe_projection_map_make(const abbe_geometry *geometry, size_t light,
                                      abbe_projection_map *out, abbe_error *error);
 void abbe_projection_map_free(abbe_projection_map *map);

@@ -1,5 +1,6 @@
 #include "tests/scenes/scene_text.h"
 
+#include "base/thread/watch.h"
 #include "scenes/geometry/vector.h"
 #include "tests/random.h"
 #include "validation/walks/projection_map.h"
@@ -355,6 +356,41 @@ static void neighbours_stay_together(void **state) {
   drop(&f);
 }
 
+/* Asked so many times before it goes on no more. */
+typedef struct patience {
+  size_t asked, most;
+} patience;
+
+static bool goes_on(void *user) {
+  patience *p = user;
+  return p->asked++ < p->most;
+}
+
+static void it_ends_when_it_is_told_to(void **state) {
+  (void)state;
+  fixture f;
+  abbe_projection_map map;
+  abbe_result result = ABBE_CANCELLED;
+  patience p;
+  make(CAMERA FAR_POINT FLOOR COARSE_RING, &f);
+  for (size_t most = 0; result == ABBE_CANCELLED; most = 2 * most + 1) {
+    abbe_watch watch = {goes_on, &p, false};
+    p = (patience){.most = most};
+    abbe_watch_set(&watch);
+    result = abbe_projection_map_make(&f.geometry, 0, &map, NULL);
+    abbe_watch_set(NULL);
+    if (result != ABBE_CANCELLED) break;
+    assert_int_equal(p.asked, most + 1);
+    assert_null(map.cell);
+  }
+  assert_int_equal(result, ABBE_OK);
+  assert_true(p.asked > 20);
+  assert_int_equal(map.count, f.aim.count);
+  assert_memory_equal(map.cell, f.aim.cell, map.count * sizeof *map.cell);
+  abbe_projection_map_free(&map);
+  drop(&f);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(whatever_meets_a_refractor_is_in_a_cell),
@@ -366,6 +402,7 @@ int main(void) {
       cmocka_unit_test(hidden_cells_keep_a_share),
       cmocka_unit_test(lights_that_miss),
       cmocka_unit_test(neighbours_stay_together),
+      cmocka_unit_test(it_ends_when_it_is_told_to),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
