@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 struct abbe_view_worker {
   pthread_t thread;
@@ -340,6 +341,7 @@ static void run(abbe_view_worker *w) {
     abbe_view_document_free(&w->request.document);
     w->result = w->made;
     w->done = true;
+    pthread_cond_broadcast(&w->signal);
     if (w->wake != NULL) w->wake();
   }
   pthread_mutex_unlock(&w->lock);
@@ -412,6 +414,17 @@ void abbe_view_worker_give(abbe_view_worker *w, abbe_view_request *request) {
 
 void abbe_view_worker_cancel(abbe_view_worker *w) {
   w->stop = 1;
+}
+
+void abbe_view_worker_wait(abbe_view_worker *w, double seconds) {
+  struct timespec until;
+  clock_gettime(CLOCK_REALTIME, &until);
+  const double nanoseconds = (double)until.tv_nsec + 1e9 * seconds;
+  until.tv_sec += (time_t)(nanoseconds / 1e9);
+  until.tv_nsec = (long)fmod(nanoseconds, 1e9);
+  pthread_mutex_lock(&w->lock);
+  while (w->busy && !w->done && pthread_cond_timedwait(&w->signal, &w->lock, &until) == 0) continue;
+  pthread_mutex_unlock(&w->lock);
 }
 
 bool abbe_view_worker_take(abbe_view_worker *w, abbe_view_result *out) {

@@ -80,6 +80,8 @@ bool abbe_view_worker_idle(abbe_view_worker *worker);
 void abbe_view_worker_give(abbe_view_worker *worker, abbe_view_request *request);
 /* What is being done ends soon, with ABBE_VIEW_CANCELLED. */
 void abbe_view_worker_cancel(abbe_view_worker *worker);
+/* Waits until what was given is done, at most so long. */
+void abbe_view_worker_wait(abbe_view_worker *worker, double seconds);
 /* The result, once; the caller frees it. False: none yet. */
 bool abbe_view_worker_take(abbe_view_worker *worker, abbe_view_result *out);
 

@@ -6,7 +6,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
 enum { SIDE = 128 };
 
@@ -31,9 +30,9 @@ static void give(abbe_view_worker *w, abbe_view_stage stage, bool warms, double 
 }
 
 static abbe_view_result taken(abbe_view_worker *w) {
-  const struct timespec time = {.tv_nsec = 1000000};
   abbe_view_result out = {0};
-  while (!abbe_view_worker_take(w, &out)) nanosleep(&time, NULL);
+  while (!abbe_view_worker_take(w, &out)) abbe_view_worker_wait(w, 60);
+  abbe_view_worker_wait(w, 60); /* for nothing */
   return out;
 }
 
