@@ -17,6 +17,8 @@ enum {
   ALL = (1 << ABBE_PART_COUNT) - 1
 };
 
+enum { COARSE_SHAFT_STEPS = 12 };
+
 static bool is_published(const abbe_renderer *r) {
   return abbe_profile_is_published(r->plan.desc.profile);
 }
@@ -132,9 +134,9 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   abbe_shader_variant variant = r->variant;
   variant.aovs = r->plan.desc.aovs;
   variant.eye_bands = abbe_render_desc_eye_wavelengths(&r->plan.desc);
-  /* three or four wavelengths and the mirror, or twice as many in turn */
-  if (r->plan.desc.coarse != ABBE_COARSE_NONE && variant.pixel_threads > 4)
-    variant.pixel_threads = 4;
+  const bool coarse = r->plan.desc.coarse != ABBE_COARSE_NONE;
+  if (coarse && variant.pixel_threads > 2) variant.pixel_threads = 2; /* for few bands */
+  if (coarse) variant.shaft_steps = COARSE_SHAFT_STEPS;
   variant.textured = r->plan.textured;
   variant.receiver_colours = r->plan.receiver_colours;
   abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);

@@ -67,12 +67,25 @@ int level = 0, joined = 0;
 vec3 shown_by[COARSE_BANDS];
 #endif
 
+#ifdef LEAST_BANDS
+// In pictures of what moves: half as many, but of facets, which show bands apart; of mirrors two.
+float coarse_wanted(float wanted) {
+#ifdef MIRRORS
+  if (is_mirror(refractor)) return 2.0;
+#endif
+  return refractors[refractor].info.x == MODEL_CONVEX ? wanted : 0.5 * wanted;
+}
+#endif
+
 // Those that the pixel takes: `count` from `base` on, of the coarsest level that has as many as are
 // wanted, or of level 0, and at most counts.eye_bands. REFINES: at most COARSE_BANDS, for which they are joined further.
 void choose_bands(out int base, out int count) {
   base = first_band(refractor);
   count = counts.wavelengths;
   float wanted = wanted_bands(front, sight, base, base + counts.wavelengths - 1);
+#ifdef LEAST_BANDS
+  wanted = max(coarse_wanted(wanted), float(LEAST_BANDS));
+#endif
   for (int k = 0; k < counts.band_levels - 1; k++) {
     bool coarser = float((count + 1) / 2) >= wanted;
     coarsen(coarser, base, count);

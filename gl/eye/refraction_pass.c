@@ -24,6 +24,16 @@ static bool resolves(const abbe_refraction_pass *pass) {
   return scene_of(pass)->plan->desc.supersample > 1;
 }
 
+/* For a picture of what moves. */
+static bool is_coarse(const abbe_refraction_pass *pass) {
+  return scene_of(pass)->plan->desc.coarse != ABBE_COARSE_NONE;
+}
+
+/* Of a pixel of what moves, so that coloured glass has its colours. */
+static int least_bands(const abbe_plan *plan) {
+  return !plan->tinting ? 1 : plan->hazy ? 2 : 4;
+}
+
 static bool refines(const abbe_refraction_pass *pass) {
   const abbe_render_desc *desc = &scene_of(pass)->plan->desc;
   return desc->wavelengths >= FINE_FROM && !desc->everything && desc->coarse == ABBE_COARSE_NONE;
@@ -62,14 +72,13 @@ static bool keeps_sights(const abbe_refraction_pass *pass) {
 /* Of a path, followed at the most, and the share of its light below which it ends. */
 static size_t exits_of(const abbe_refraction_pass *pass) {
   const abbe_plan *plan = scene_of(pass)->plan;
-  const bool fewer = plan->desc.coarse != ABBE_COARSE_NONE && plan->eye_exits > ABBE_COARSE_EXITS;
+  const bool fewer = is_coarse(pass) && plan->eye_exits > ABBE_COARSE_EXITS;
   return fewer ? ABBE_COARSE_EXITS : plan->eye_exits;
 }
 
 static double share_of(const abbe_refraction_pass *pass) {
   const abbe_plan *plan = scene_of(pass)->plan;
-  return plan->desc.coarse != ABBE_COARSE_NONE ? fmax(plan->eye_share, ABBE_COARSE_SHARE)
-                                               : plan->eye_share;
+  return is_coarse(pass) ? fmax(plan->eye_share, ABBE_COARSE_SHARE) : plan->eye_share;
 }
 
 static abbe_result make_list(abbe_refraction_pass *pass, const abbe_shader_variant *variant,
@@ -97,6 +106,9 @@ static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_v
     snprintf(facts, sizeof facts, "%s%s%s", shares,
              interleaves(pass) ? "#define INTERLEAVES\n" : "",
              pass->keeps ? "#define KEEPS_SIGHTS\n" : "");
+  if (is_coarse(pass))
+    snprintf(facts, sizeof facts, "#define FIRST_BY_LAYER\n#define LEAST_BANDS %d\n",
+             least_bands(scene_of(pass)->plan));
   snprintf(refined, sizeof refined, "%s#define REFINED\n", shares);
   abbe_result result =
       abbe_shader_variant_compute(&camera, gpu, "refraction.comp", facts, &pass->refract, error);

@@ -150,10 +150,27 @@ void begin_path(ivec2 at) {
 #endif
 }
 
+#if defined(FIRST_BY_LAYER) && !defined(KEEPS_SPREAD)
+// As its front layer has it, which may be drawn of fewer triangles; it lies near enough for light that is followed
+// into a refractor, and not for light off a mirror, which would meet the same faces again.
+bool is_told_by_layer(ivec2 at) {
+  if (refractors[refractor].info.x != MODEL_HIERARCHY || is_mirror(refractor)) return false;
+  vec4 layer = texelFetch(eye_layers, ivec3(at, 0), 0);
+  first.hit = Hit(eye + layer.w * sight, normalize(layer.xyz), layer.w, refractor, -1);
+  first.face_n = first.hit.n;
+  return true;
+}
+#else
+bool is_told_by_layer(ivec2 at) { return false; }
+#endif
+
 void look(ivec2 at) {
   begin_path(at);
-  first.hit.t = 1e30;
-  found = next_interface(start, first);
+  found = is_told_by_layer(at);
+  if (!found) {
+    first.hit.t = 1e30;
+    found = next_interface(start, first);
+  }
   front = first.hit;
   if (found) refractor = front.refractor;
 }

@@ -13,6 +13,10 @@ uniform int steps_along;
 #include "lamp_haze.glsl"
 #endif
 
+#ifdef SHAFTS_AROUND
+#include "shafts.glsl"
+#endif
+
 void main() {
   vec3 o, d, rgb = vec3(0);
   view_ray(View(eye_view[0], eye_view[1], eye_view[2], eye_view[3], eye_view[4], eye_view[5]),
@@ -23,6 +27,10 @@ void main() {
   way = haze_way(o, d, 0.0, way, from);
 #define SHINE_ON_WAY(i) rgb += lamp_light(i, o, d, from, from + way, 0.0);
   OF_LIGHTS(SHINE_ON_WAY)
+#endif
+#ifdef SHAFTS_AROUND
+  vec3 left = haze_eye_tint(way), per_m = -log(max(left, vec3(1e-30))) / max(way, 1e-30);
+  if (way > 0.0 && way < HAZE_FAR) rgb += shafts_along(shaft_of(SHAFTS_AROUND), o + from * d, d, way, per_m);
 #endif
   radiance = vec4(way > 0.0 ? rgb : vec3(0), way);
 }

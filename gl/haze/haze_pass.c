@@ -1,5 +1,8 @@
 #include "gl/haze/haze_pass.h"
 
+#include <stdio.h>
+#include <string.h>
+
 enum { STEPS_ALONG = 48, COARSE_STEPS = 12 }; /* on the eye's way through haze */
 enum { PICTURE_UNIT = 6, BEAM_UNIT = 0 };     /* that nothing of the scene is at */
 
@@ -41,13 +44,34 @@ static int around_eye(const abbe_plan *plan) {
   return r;
 }
 
+static bool has_shafts(const abbe_plan *plan, int medium) {
+  bool found = false;
+  for (size_t i = 0; i < plan->shaft_count; i++)
+    found = found || plan->shaft[i].refractor == medium;
+  return found;
+}
+
+/* Where no beams are drawn the grid of them shows them, if there is one around the eye. */
+static abbe_result make_shine(abbe_haze_pass *pass, const abbe_shader_variant *variant,
+                              abbe_error *error) {
+  static const abbe_program_stage stages[] = {{GL_VERTEX_SHADER, "screen.vert"},
+                                              {GL_FRAGMENT_SHADER, "haze.frag"}};
+  const abbe_plan *plan = scene_of(pass)->plan;
+  const int medium = around_eye(plan);
+  const bool by_grid = pass->caustics == NULL && has_shafts(plan, medium);
+  char facts[64] = "", shafts[40];
+  if (plan->eye_in_air) strcpy(facts, "#define IN_AIR\n");
+  snprintf(shafts, sizeof shafts, "#define SHAFTS_AROUND %d\n", medium);
+  if (by_grid) strcat(facts, shafts);
+  return abbe_shader_variant_program(variant, scene_of(pass)->gpu, stages, 2, facts, &pass->shine,
+                                     error);
+}
+
 abbe_result abbe_haze_pass_make(abbe_picture *picture, abbe_caustics *caustics,
                                 const abbe_shader_variant *variant, abbe_haze_pass *out,
                                 abbe_error *error) {
   static const abbe_program_stage beams[] = {{GL_VERTEX_SHADER, "beam.vert"},
                                              {GL_FRAGMENT_SHADER, "beam.frag"}};
-  static const abbe_program_stage shines[] = {{GL_VERTEX_SHADER, "screen.vert"},
-                                              {GL_FRAGMENT_SHADER, "haze.frag"}};
   static const abbe_program_stage overs[] = {{GL_VERTEX_SHADER, "screen.vert"},
                                              {GL_FRAGMENT_SHADER, "haze_over.frag"}};
   static const abbe_program_stage occluders[] = {{GL_VERTEX_SHADER, "surface.vert"},
@@ -61,9 +85,7 @@ abbe_result abbe_haze_pass_make(abbe_picture *picture, abbe_caustics *caustics,
   abbe_gpu *gpu = scene_of(out)->gpu;
   abbe_result result = abbe_shader_variant_program(variant, gpu, overs, 2, NULL, &out->over, error);
   if (result == ABBE_OK) result = make_targets(out, error);
-  if (result == ABBE_OK)
-    result = abbe_shader_variant_program(
-        variant, gpu, shines, 2, plan->eye_in_air ? "#define IN_AIR\n" : NULL, &out->shine, error);
+  if (result == ABBE_OK) result = make_shine(out, variant, error);
   if (result != ABBE_OK || out->caustics == NULL) return result;
   result = abbe_shader_variant_program(variant, gpu, beams, 2, NULL, &out->draw_beams, error);
   if (result == ABBE_OK) result = abbe_gpu_program(gpu, occluders, 2, NULL, &out->occluder, error);

@@ -6,6 +6,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* On a way of the camera through the grid of a medium. */
+enum { SHAFT_STEPS = 40 };
+
 void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *out) {
   const abbe_plan *p = scene->plan;
   *out = (abbe_shader_variant){
@@ -43,6 +46,7 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
       .haze = p->hazy,
       .haze_beyond = p->haze_beyond,
       .shafts = p->shaft_count,
+      .shaft_steps = SHAFT_STEPS,
       .pinholes = p->desc.transport == ABBE_TRANSPORT_PINHOLE,
       .page_charts = p->page_charts,
       .pixel_threads = !p->multi_refractor_paths ? 1
@@ -162,6 +166,7 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_count(to, "HAZE_BANDS", ABBE_PLAN_HAZE_BANDS);
   print_flag(to, "HAZE_BEYOND", v->haze_beyond);
   if (v->shafts > 0) print_count(to, "SHAFTS", v->shafts);
+  if (v->shafts > 0) print_count(to, "SHAFT_STEPS", v->shaft_steps);
   print_flag(to, "PINHOLES", v->pinholes);
   print_flag(to, "PINHOLE_CHARTS", v->page_charts);
   print_flag(to, "CHART_SIDES", v->page_charts || v->tiles > 0);

@@ -27,7 +27,8 @@ typedef struct abbe_shader_variant {
   size_t volume_pages; /* of a light, in place of cells */
   bool haze;           /* in the air, or around the eye */
   bool haze_beyond;    /* in the air, for bent rays of the camera */
-  size_t shafts;       /* media with light for these */
+  size_t shafts;       /* media with light for these, */
+  size_t shaft_steps;  /* and steps of a way through it */
   bool pinholes;       /* receivers have pages of what these show */
   bool page_charts;    /* also those that are meshes */
   bool copies;         /* a software rasteriser: tables are copied first (copies.glsl) */

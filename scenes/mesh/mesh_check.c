@@ -209,17 +209,44 @@ static bool ray_hits(const double p[3], const double d[3], const double a[3], co
   return abbe_vector_dot(v, q) / determinant > 0.0;
 }
 
+/* On which sides of two planes through the ray each vertex lies; bits. */
+enum { BEFORE_FIRST = 1, BEHIND_FIRST = 2, BEFORE_SECOND = 4, BEHIND_SECOND = 8 };
+
+static void find_sides(const abbe_mesh *mesh, const double p[3], const double d[3],
+                       unsigned char *side) {
+  const double first[3] = {d[1], -d[0], 0};
+  double second[3];
+  abbe_vector_cross(d, first, second);
+  const double at[2] = {abbe_vector_dot(first, p), abbe_vector_dot(second, p)};
+  for (size_t v = 0; v < mesh->vertex_count; v++) {
+    const double a = abbe_vector_dot(first, mesh->position[v]) - at[0];
+    const double b = abbe_vector_dot(second, mesh->position[v]) - at[1];
+    side[v] = (unsigned char)((a > 0) * BEFORE_FIRST + (a < 0) * BEHIND_FIRST +
+                              (b > 0) * BEFORE_SECOND + (b < 0) * BEHIND_SECOND);
+  }
+}
+
+/* side: of the mesh's vertices, room for them; NULL: every face is looked at. */
+static bool odd_hits(const abbe_mesh *mesh, const double p[3], const double d[3],
+                     unsigned char *side) {
+  size_t hits = 0;
+  if (side != NULL) find_sides(mesh, p, d, side);
+  for (size_t f = 0; f < mesh->face_count; f++) {
+    const uint32_t *v = mesh->face[f];
+    if (side != NULL && (side[v[0]] & side[v[1]] & side[v[2]]) != 0) continue;
+    hits += ray_hits(p, d, mesh->position[v[0]], mesh->position[v[1]], mesh->position[v[2]]);
+  }
+  return hits % 2 != 0;
+}
+
 bool abbe_mesh_contains(const abbe_mesh *mesh, const double point[3]) {
   /* three odd directions vote, so that a ray through an edge cannot decide alone */
   static const double direction[3][3] = {
       {0.5391, 0.7283, 0.4231}, {-0.8127, 0.3119, 0.4921}, {0.2713, -0.5881, -0.7619}};
-  int votes = 0;
-  for (int i = 0; i < 3; i++) {
-    size_t hits = 0;
-    for (size_t f = 0; f < mesh->face_count; f++)
-      hits += ray_hits(point, direction[i], mesh->position[mesh->face[f][0]],
-                       mesh->position[mesh->face[f][1]], mesh->position[mesh->face[f][2]]);
-    votes += hits % 2;
-  }
-  return votes >= 2;
+  unsigned char *side = malloc(mesh->vertex_count + 1);
+  const bool first = odd_hits(mesh, point, direction[0], side);
+  const bool second = odd_hits(mesh, point, direction[1], side);
+  const bool inside = first == second ? first : odd_hits(mesh, point, direction[2], side);
+  free(side);
+  return inside;
 }

@@ -1,13 +1,11 @@
 // Light in media, cell by cell (gl/beams/shaft_grid.h): what of it is scattered along a ray that the camera's has
-// become.
+// become, in SHAFT_STEPS steps.
 uniform sampler2DArray shaft_light;  // what is scattered, W/m3; then light's direction
 // Of each medium: its box, m; the share of the texture's width and height that it has, its first layer and cells
 // upwards; the refractor, or -1: the air, and the mean cosine.
 uniform vec3 shaft_low[SHAFTS], shaft_high[SHAFTS];
 uniform vec4 shaft_place[SHAFTS];
 uniform vec4 shaft_medium[SHAFTS];
-
-const int SHAFT_STEPS = 40;
 
 // A refractor's, or the air's; -1: there is none.
 int shaft_of(int refractor) {

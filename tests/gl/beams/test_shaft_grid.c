@@ -65,7 +65,8 @@ static void from_above_through_flat_water(void **state) {
 }
 
 /* Beyond the critical angle: what is scattered on the way up, and of what is mirrored that of the
- * way down. The first is drawn as beams, the other told by the grid. */
+ * way down. The first is drawn as beams, the other told by the grid. In pictures of what moves
+ * the grid tells both. */
 static void mirrored_in_its_surface(void **state) {
   (void)state;
   enum { SIDE = 40 };
@@ -80,12 +81,14 @@ static void mirrored_in_its_surface(void **state) {
     second +=
         exp(-scattering * high / up[2]) * scattered_along(down, 0, deep / up[2]) / (SIDE * SIDE);
   }
-  const double drawn = green_of(BASIN("eye: [-0.4, 0, -0.2], target: [-0.1247236, 0, 0], "
-                                      "up: [0, 1, 0], fov: 12, inside: true"),
-                                96);
+  static const char basin[] = BASIN("eye: [-0.4, 0, -0.2], target: [-0.1247236, 0, 0], "
+                                    "up: [0, 1, 0], fov: 12, inside: true");
+  const double drawn = green_of(basin, 96), coarse = green_as(basin, 96, ABBE_COARSE_EYE);
   print_message("mirrored: %.4f of the known light, of which %.3f on the way up\n",
                 drawn / (first + second), first / (first + second));
   assert_near(drawn / (first + second), 1, 0.02);
+  print_message("of what moves: %.4f\n", coarse / (first + second));
+  assert_near(coarse / (first + second), 1, 0.03);
 }
 
 int main(void) {

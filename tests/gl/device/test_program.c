@@ -19,11 +19,12 @@ static void write_defines(unsigned bits, char *out, size_t size) {
       "CONVEX",
       "LAYERS\n#define FRONT_LAYER",
       "MANY_EXITS\n#define AOVS\n#define INTERLEAVES",
-      "ABSORBING\n#define CAUSTICS\n#define HAZE\n#define HAZE_BEYOND\n#define SHAFTS 2",
+      "ABSORBING\n#define CAUSTICS\n#define HAZE\n#define HAZE_BEYOND\n#define SHAFTS 2\n#define "
+      "SHAFT_STEPS 40",
       "RECEIVER_SHADOWS\n#define TEXTURED\n#define RECEIVER_COLOURS\n#define SHADOW_PLANES "
       "32\n#define TINTING",
       "HIERARCHY",
-      "WALK"};
+      "WALK\n#define FIRST_BY_LAYER\n#define LEAST_BANDS 2"};
   int used = snprintf(
       out, size,
       "#define LIGHTS 2\n#define REFRACTORS 2\n#define RECEIVERS 6\n"

@@ -26,12 +26,18 @@ static inline void mean_of(const char *text, const abbe_render_desc *asked, doub
 }
 
 /* The green one, in Rec.709: of white light Y. */
-static inline double green_of(const char *text, size_t photons) {
+static inline double green_as(const char *text, size_t photons, abbe_coarse coarse) {
   double rgb[3];
-  mean_of(text,
-          &(abbe_render_desc){.photons = photons, .wavelengths = 3, .space = ABBE_RGB_SPACE_REC709},
-          rgb);
+  mean_of(
+      text,
+      &(abbe_render_desc){
+          .photons = photons, .wavelengths = 3, .space = ABBE_RGB_SPACE_REC709, .coarse = coarse},
+      rgb);
   return rgb[1];
+}
+
+static inline double green_of(const char *text, size_t photons) {
+  return green_as(text, photons, ABBE_COARSE_NONE);
 }
 
 #endif

@@ -39,6 +39,20 @@ static void check_counts_what_is_wrong(void **state) {
   abbe_mesh_free(&m);
 }
 
+/* Of a unit sphere, whose faces lie within a hundredth of it; many rays pass close by its edges. */
+static void points_within_a_sphere_are_inside(void **state) {
+  (void)state;
+  abbe_mesh m = test_sphere(4);
+  for (int i = 0; i < 400; i++) {
+    const double z = (i + 0.5) / 200 - 1, turn = 2.399963 * i, r = sqrt(1 - z * z);
+    const double away = i % 2 == 0 ? 0.985 : 1.001;
+    const double p[3] = {away * r * cos(turn), away * r * sin(turn), away * z};
+    assert_true(abbe_mesh_contains(&m, p) == (i % 2 == 0));
+  }
+  assert_true(abbe_mesh_contains(&m, (const double[3]){0, 0, 0}));
+  abbe_mesh_free(&m);
+}
+
 static void subdivision_keeps_a_mesh_closed_and_smooth(void **state) {
   (void)state;
   abbe_mesh m;
@@ -279,6 +293,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(make_checks_sizes),
       cmocka_unit_test(check_counts_what_is_wrong),
+      cmocka_unit_test(points_within_a_sphere_are_inside),
       cmocka_unit_test(subdivision_keeps_a_mesh_closed_and_smooth),
       cmocka_unit_test(subdividing_an_octahedron_weights_the_limit_right),
       cmocka_unit_test(transforms_mirror_and_keep_outwards),
