@@ -11,7 +11,9 @@
 #include <cmocka.h>
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Whether faults of memory are looked for. The tests of label cpu run in release as well: there they
@@ -21,6 +23,12 @@ enum { SANITIZED = 1 };
 #else
 enum { SANITIZED = 0 };
 #endif
+
+/* Whether a law is held to all its cases, as script/test --long does; else to those that differ most,
+ * for each of the others compiles shaders of its own. */
+static inline bool all_cases(void) {
+  return getenv("ABBE_ALL_CASES") != NULL;
+}
 
 /* |a - b| <= tolerance; a NaN on either side fails. */
 #define assert_near(a, b, tolerance) check_near(a, b, tolerance, #a, __FILE__, __LINE__)

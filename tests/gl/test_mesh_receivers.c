@@ -232,7 +232,7 @@ static void triangles_do_as_parallelograms_do(void **state) {
   (void)state;
   static const char *const texts[] = {CAMERA POINT_LIGHT TEXTURED_FLOOR CRATE HILL BALL("crown"),
                                       CAMERA SUN TEXTURED_FLOOR CRATE HILL RING("flat")};
-  for (int i = 0; i < 2; i++) {
+  for (int i = all_cases() ? 0 : 1; i < 2; i++) {
     abbe_scene scene = {0};
     abbe_map_layout layout;
     abbe_render_desc desc = small_frame;

@@ -156,7 +156,9 @@ static void motion_lags(void **state) {
       if (pass == 0) {
         load_moved(0.003 * k - 0.01, 0, &dark[k]);
         load_moved(0.003 * k - 0.01, 0.8, &scene[k]);
-        abbe_renderer *other = make_renderer(&dark[k], &desc);
+        abbe_render_desc few = desc; /* a mirror that mirrors nothing sends no light */
+        few.photons = 8;
+        abbe_renderer *other = make_renderer(&dark[k], &few);
         draw_frame(other);
         read_picture(other, false, &black[k]);
         abbe_renderer_free(other);
