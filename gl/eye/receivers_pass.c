@@ -163,6 +163,19 @@ static void draw_receivers(abbe_receivers_pass *pass) {
   gpu->gl->Disable(GL_SCISSOR_TEST);
 }
 
+/* A ray a sample, in place of all triangles. */
+static void follow_rays(abbe_receivers_pass *pass) {
+  abbe_gpu *gpu = pass->lighting->scene->gpu;
+  const GLuint picture[3] = {pass->colour, pass->direct, pass->caustic};
+  const size_t *samples = pass->lighting->camera->receiver_samples;
+  abbe_lighting_use(pass->lighting, pass->rays);
+  for (GLuint k = 0; k < (pass->lighting->scene->plan->desc.aovs ? 3u : 1u); k++)
+    gpu->gl->BindImageTexture(k, picture[k], 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  abbe_gpu_dispatch_2d(gpu, pass->rays, samples[0], samples[1]);
+  gpu->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                         GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
 abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error) {
   const abbe_gpu_scene *scene = pass->lighting->scene;
   const abbe_gl *gl = scene->gpu->gl;
@@ -187,8 +200,12 @@ abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error
                                  pass->depth, w, h, error);
     if (result != ABBE_OK) return result;
   }
-  gl->Enable(GL_DEPTH_TEST);
-  draw_receivers(pass);
+  if (pass->rays != 0) {
+    follow_rays(pass);
+  } else {
+    gl->Enable(GL_DEPTH_TEST);
+    draw_receivers(pass);
+  }
   abbe_gpu_book_lap(scene->gpu, ABBE_PASS_EYE_RECEIVERS);
   return ABBE_OK;
 }
@@ -217,18 +234,32 @@ static abbe_result make_targets(abbe_receivers_pass *pass, abbe_error *error) {
   return result;
 }
 
+/* Of a picture of what moves, where triangles are so many that to draw them takes longer. */
+static bool takes_rays(const abbe_gpu_scene *scene) {
+  enum { MANY_FACES = 8000 };
+  const abbe_plan *plan = scene->plan;
+  size_t faces = 0;
+  for (size_t i = 0; i < plan->receiver_count; i++)
+    faces += scene->local->object[plan->receiver_object[i]].mesh.face_count;
+  return plan->desc.coarse != ABBE_COARSE_NONE && plan->receivers == ABBE_RECEIVER_BVH &&
+         faces >= MANY_FACES;
+}
+
 abbe_result abbe_receivers_pass_make(const abbe_lighting *lighting,
                                      const abbe_shader_variant *variant, abbe_receivers_pass *out,
                                      abbe_error *error) {
   out->lighting = lighting;
   abbe_result result = make_targets(out, error);
-  if (result == ABBE_OK)
+  if (result == ABBE_OK && takes_rays(lighting->scene))
+    result = abbe_shader_variant_compute(variant, lighting->scene->gpu, "receiver_rays.comp", NULL,
+                                         &out->rays, error);
+  else if (result == ABBE_OK)
     result = abbe_shader_variant_program(variant, lighting->scene->gpu, stages, 2, NULL, &out->lit,
                                          error);
   if (result == ABBE_OK && variant->environment)
     result = abbe_shader_variant_program(variant, lighting->scene->gpu, behind, 2, NULL,
                                          &out->surroundings, error);
-  return result == ABBE_OK ? make_unlit(out, variant, error) : result;
+  return result == ABBE_OK && out->rays == 0 ? make_unlit(out, variant, error) : result;
 }
 
 void abbe_receivers_pass_free(abbe_receivers_pass *pass) {

@@ -19,6 +19,7 @@ typedef struct abbe_receivers_pass {
   const abbe_lighting *lighting;
   GLuint surroundings;            /* program; 0: nothing is around the scene */
   GLuint lit, unlit;              /* programs; unlit: 0 where most of the picture may be lit */
+  GLuint rays;                    /* program in place of both; 0: they are drawn */
   GLuint colour, direct, caustic; /* an array of one layer: radiance, distance; by request */
   GLuint depth;
   abbe_lit_part *part;

@@ -122,9 +122,39 @@ static void coarse_views_show_nearly_the_same(void **state) {
   abbe_scene_free(&scene);
 }
 
+#define RING_IN_COLOUR                                                                             \
+  "- {name: ring, shape: ring, major: 0.12, minor: 0.04, around: 128, across: 64, reflectance: "   \
+  "[0.8, 0.5, 0.3], transform: [{translate: [0, 0, 0.1]}]}\n"
+
+/* Of receivers of many triangles, too, which rays meet then that are drawn else: but for edges. */
+static void rays_show_receivers_as_they_are_drawn(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image picture[2] = {{0}};
+  abbe_render_desc desc = tiny;
+  desc.supersample = desc.adaptive = 1;
+  desc.aovs = true;
+  load_text(CAMERA POINT_LIGHT FLOOR BRICK("crown") RING_IN_COLOUR, &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  for (int i = 0; i < 2; i++) {
+    abbe_error error = {0};
+    desc.coarse = i == 0 ? ABBE_COARSE_NONE : ABBE_COARSE_EYE;
+    assert_ok(abbe_renderer_change(renderer, &scene, &desc, &error), &error);
+    draw_frame(renderer);
+    read_picture(renderer, true, &picture[i]);
+  }
+  print_message("apart by %.5f\n",
+                sum_apart(&picture[1], &picture[0]) / sum_apart(&picture[0], NULL));
+  assert_true(sum_apart(&picture[1], &picture[0]) < 0.01 * sum_apart(&picture[0], NULL));
+  for (int i = 0; i < 2; i++) abbe_image_free(&picture[i]);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(the_first_texture_keeps_photons),
                                      cmocka_unit_test(another_cone_is_followed_anew),
-                                     cmocka_unit_test(coarse_views_show_nearly_the_same)};
+                                     cmocka_unit_test(coarse_views_show_nearly_the_same),
+                                     cmocka_unit_test(rays_show_receivers_as_they_are_drawn)};
   return cmocka_run_group_tests(tests, make_context, free_context);
 }

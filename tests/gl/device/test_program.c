@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Those of gl/: one that is added is compiled here, and counted. */
-enum { COMPUTE_SHADERS = 25 };
+enum { COMPUTE_SHADERS = 26 };
 
 /* Bits: spheres, convex, layers, what no model asks for (many exits, further channels, shared
  * bands), absorbing (and caustics), shadows (and textures, and lengths kept of paths inside),
