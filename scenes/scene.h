@@ -111,7 +111,7 @@ typedef struct abbe_object {
   const abbe_material *conductor; /* mirror: of its n and k, owned by the scene's table, or NULL: */
   double mirror_reflectance;      /* 0 to 1, at all angles and wavelengths */
   abbe_brushing brushing;         /* mirror: how rough it is */
-  char *mesh_path;                /* NULL or the file that the mesh is of */
+  char *mesh_path;                /* NULL or the file that the mesh or the design is of */
   char *mesh_others;              /* and those that it names, as abbe_mesh_load has them */
   double cut_deg[2];              /* shape: cut: the design's own angles of the crown's and the
                                      pavilion's main facets; 0: there are none, or of a crown that

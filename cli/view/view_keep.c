@@ -8,6 +8,7 @@
 #include "colorimetry/image/screen_png.h"
 #include "scenes/import/scene_file.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -135,13 +136,20 @@ char *abbe_view_keep_command(const abbe_view_session *session) {
   return out.text;
 }
 
+/* out: room for PATH_MAX */
+static const char *folder_of(const char *path, char *out) {
+  const char *slash = strrchr(path, '/');
+  if (slash == NULL) return ".";
+  snprintf(out, PATH_MAX, "%.*s", (int)(slash - path + 1), path);
+  return out;
+}
+
 /* Whether the scene names files that it would not find from the other's folder. */
 static bool names_files(const abbe_view_session *session, const char *target) {
   const char *path = abbe_view_history_now(&session->state.history)->path;
-  const char *a = strrchr(path, '/'), *b = strrchr(target, '/');
-  const size_t here = a != NULL ? (size_t)(a - path) : 0;
-  const size_t there = b != NULL ? (size_t)(b - target) : 0;
-  return session->files.count > 1 && (here != there || strncmp(path, target, here) != 0);
+  char here[PATH_MAX], there[PATH_MAX];
+  return session->files.count > 1 &&
+         !abbe_view_keep_same_file(folder_of(path, here), folder_of(target, there));
 }
 
 static abbe_result keep_scene(const abbe_view_session *session, const char *target,

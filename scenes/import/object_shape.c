@@ -222,7 +222,7 @@ static abbe_result read_cut_angle(const abbe_object_reading *r, const char *key,
 
 static abbe_result read_cut(const abbe_object_reading *r, abbe_object *object, abbe_error *error) {
   cut_reading q = {.weld = ABBE_CUT_WELD};
-  char *name = NULL, *path = NULL;
+  char *name = NULL;
   abbe_yaml_node ignored;
   abbe_result result = abbe_yaml_require(r->yaml, r->node, "file", &ignored, error);
   if (result == ABBE_OK) result = abbe_yaml_get_string(r->yaml, r->node, "file", &name, error);
@@ -235,10 +235,9 @@ static abbe_result read_cut(const abbe_object_reading *r, abbe_object *object, a
         abbe_yaml_get_number(r->yaml, r->node, "weld", 1e-12, ABBE_CUT_MOST_WELD, &q.weld, error);
   if (result == ABBE_OK) result = read_cut_angle(r, "crown", &q.to_deg[0], error);
   if (result == ABBE_OK) result = read_cut_angle(r, "pavilion", &q.to_deg[1], error);
-  if (result == ABBE_OK && (path = abbe_scene_value_path(r->folder, name)) == NULL)
+  if (result == ABBE_OK && (object->mesh_path = abbe_scene_value_path(r->folder, name)) == NULL)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
-  if (result == ABBE_OK) result = make_cut(path, &q, object, error);
-  free(path);
+  if (result == ABBE_OK) result = make_cut(object->mesh_path, &q, object, error);
   free(name);
   return result;
 }

@@ -44,6 +44,26 @@ static void what_is_wrong_is_said_and_the_picture_stays(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
+/* The design is one of the scene's files: it is read again when it changes, and the scene is kept
+ * where it finds it, however that folder is written. */
+static void a_design_is_a_file_of_the_scene(void **state) {
+  (void)state;
+  run_must("mkdir in out && cp \"$house\"/scenes/designs/step-square.asc in/a.asc && "
+           "cp \"$house\"/scenes/designs/princess.asc in/b.asc && "
+           "sed 's/shape: gem/shape: cut/; s/girdle:.*/file: a.asc/; s/table:.*/width: 0.05/; "
+           "/sides:/d; /crown:/d; /pavilion:/d' \"$house\"/scenes/gem.yaml > in/cut.yaml");
+  run_must("printf '%s\\n' 'wait balanced' 'key control+s' 'say note' 'remember hash first' "
+           "'copy in/b.asc in/a.asc' 'wait changed' 'wait balanced' 'assert hash != $first' "
+           "> a.txt");
+  run_must("\"$abbe\" view in/cut.yaml " FEW "--last balanced --size 420x64 --keep \"$PWD/in/kept\" "
+           "--script a.txt && cmp in/cut.yaml in/kept.yaml");
+  run_must("printf '%s\\n' 'wait balanced' 'key control+s' 'assert note contains own' > a.txt");
+  run_must("\"$abbe\" view in/cut.yaml " FEW "--last balanced --size 420x64 --keep out/kept "
+           "--script a.txt && ! test -e out/kept.yaml && test -e out/kept.exr");
+  run_must("rm -r in out a.txt");
+  assert_int_equal(run_left(), 0);
+}
+
 /* Its sliders begin at its own angles; the same angles are set for other commands. */
 static void a_design_is_recut(void **state) {
   (void)state;
@@ -215,6 +235,7 @@ int main(void) {
       cmocka_unit_test(the_story),
       cmocka_unit_test(what_is_wrong_is_said_and_the_picture_stays),
       cmocka_unit_test(a_design_is_recut),
+      cmocka_unit_test(a_design_is_a_file_of_the_scene),
       cmocka_unit_test(what_is_shown_beside_the_picture),
       cmocka_unit_test(a_turntable),
       cmocka_unit_test(a_lost_context_is_made_good),

@@ -78,6 +78,12 @@ static void cuts_are_solids_of_their_planes(void **state) {
                 1e-12);
     if (cuts[i].height > 0)
       assert_true(fabs((stone->max[2] - stone->min[2]) / 0.01 - cuts[i].height) < 1e-6);
+    bool listed = false; /* among what the scene is read from */
+    for (size_t k = 0; k < abbe_scene_file_count(&scene); k++) {
+      const char *file = abbe_scene_file(&scene, k);
+      listed = listed || (file != NULL && strstr(file, cuts[i].design) != NULL);
+    }
+    assert_true(listed);
     abbe_scene_free(&scene);
   }
 }
