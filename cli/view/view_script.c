@@ -158,17 +158,28 @@ static void set_button(script *s, int button, bool down) {
   pump(s);
 }
 
-/* Button and keys beside it, by the words from `from` on. */
-static int held_of(script *s, size_t from) {
-  int button = ABBE_VIEW_LEFT;
-  s->hidden.input.shift = s->hidden.input.control = false;
+/* Button and keys beside it, by the words from `from` on; where seconds is not NULL also for how
+ * long, at most a minute, else 0. */
+static abbe_result read_held(script *s, size_t from, int *button, double *seconds,
+                             abbe_error *error) {
+  const char *end;
+  *button = 0;
   for (size_t i = from; i < s->words; i++) {
-    if (strcmp(s->word[i], "right") == 0) button = 1;
-    if (strcmp(s->word[i], "middle") == 0) button = 2;
-    if (strcmp(s->word[i], "shift") == 0) s->hidden.input.shift = true;
-    if (strcmp(s->word[i], "control") == 0) s->hidden.input.control = true;
+    const char *word = s->word[i];
+    const bool right = strcmp(word, "right") == 0, shift = strcmp(word, "shift") == 0;
+    if (right || strcmp(word, "middle") == 0)
+      *button = right ? 1 : 2;
+    else if (shift || strcmp(word, "control") == 0)
+      *(shift ? &s->hidden.input.shift : &s->hidden.input.control) = true;
+    else if (seconds == NULL || strcmp(word, "for") != 0)
+      return fail(s, ABBE_PARSE, error, "'%.60s' is none of right middle shift control%s", word,
+                  seconds != NULL ? " for" : "");
+    else if (++i == s->words || !abbe_number_read(s->word[i], &end, seconds) || *end != '\0' ||
+             !(*seconds > 0))
+      return fail(s, ABBE_PARSE, error, "for how many seconds?");
   }
-  return button == 1 ? 1 : button == 2 ? 2 : 0;
+  if (seconds != NULL) *seconds = fmin(*seconds, 60);
+  return ABBE_OK;
 }
 
 static void press_at(script *s, const double xy[2], int button) {
@@ -180,8 +191,10 @@ static void press_at(script *s, const double xy[2], int button) {
 
 static abbe_result do_click(script *s, abbe_error *error) {
   double xy[2];
-  const abbe_result result = aim(s, 1, xy, error);
-  if (result == ABBE_OK) press_at(s, xy, held_of(s, 2));
+  int button;
+  abbe_result result = aim(s, 1, xy, error);
+  if (result == ABBE_OK) result = read_held(s, 2, &button, NULL, error);
+  if (result == ABBE_OK) press_at(s, xy, button);
   s->hidden.input.shift = s->hidden.input.control = false;
   pump(s);
   return result;
@@ -191,15 +204,6 @@ static abbe_result do_click(script *s, abbe_error *error) {
 static void sleep_a_little(void) {
   const struct timespec time = {.tv_nsec = 5000000};
   nanosleep(&time, NULL);
-}
-
-/* "for SECONDS" among the words: how long; 0: not said. */
-static double time_of(const script *s) {
-  double seconds = 0;
-  const char *end;
-  for (size_t i = 3; i + 1 < s->words; i++)
-    if (strcmp(s->word[i], "for") == 0) abbe_number_read(s->word[i + 1], &end, &seconds);
-  return seconds > 0 ? fmin(seconds, 60) : 0;
 }
 
 /* Without a pause: every frame has another place. */
@@ -215,12 +219,12 @@ static void glide(script *s, const double from[2], const double to[2], double se
 /* As a hand does it: some places on the way, each for a moment, or evenly for so long. */
 static abbe_result do_drag(script *s, abbe_error *error) {
   enum { PLACES = 12 };
-  double from[2], to[2];
-  const double seconds = time_of(s);
+  double from[2], to[2], seconds = 0;
+  int button;
   abbe_result result = aim(s, 1, from, error);
   if (result == ABBE_OK) result = aim(s, 2, to, error);
+  if (result == ABBE_OK) result = read_held(s, 3, &button, &seconds, error);
   if (result != ABBE_OK) return result;
-  const int button = held_of(s, 3);
   point(s, from);
   pump(s);
   set_button(s, button, true);
@@ -291,6 +295,22 @@ static abbe_result do_key(script *s, abbe_error *error) {
 
 /* ---- waiting and asserting ---- */
 
+static int stage_of(const char *name) {
+  int stage = 0;
+  while (stage < ABBE_VIEW_STAGE_COUNT &&
+         strcmp(name, abbe_view_stage_name((abbe_view_stage)stage)) != 0)
+    stage++;
+  return stage;
+}
+
+static bool is_awaited(const char *what) {
+  static const char *const others[] = {"rest",      "stopped", "refusal", "changed",
+                                       "turntable", "feed",    "spectrum"};
+  bool is = stage_of(what) < ABBE_VIEW_STAGE_COUNT;
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++) is = is || !strcmp(what, others[i]);
+  return is;
+}
+
 static bool has_come(script *s, const char *what) {
   const abbe_view_session *v = &s->hidden.session;
   const double now = abbe_clock_seconds();
@@ -301,12 +321,9 @@ static bool has_come(script *s, const char *what) {
   if (strcmp(what, "turntable") == 0) return v->turned && v->turn_frame == 0;
   if (strcmp(what, "feed") == 0) return abbe_view_session_feed(v) != NULL;
   if (strcmp(what, "spectrum") == 0) return v->probe.bands > 0;
-  if (v->state.refine.stage == ABBE_VIEW_NONE) return false;
-  for (int stage = 0; stage < ABBE_VIEW_STAGE_COUNT; stage++)
-    if (strcmp(what, abbe_view_stage_name((abbe_view_stage)stage)) == 0)
-      return (int)v->stage >= stage && (int)v->state.refine.stage >= stage &&
-             (stage != ABBE_VIEW_TRACED || v->passes > 0);
-  return false;
+  const int stage = stage_of(what);
+  return v->state.refine.stage != ABBE_VIEW_NONE && (int)v->stage >= stage &&
+         (int)v->state.refine.stage >= stage && (stage != ABBE_VIEW_TRACED || v->passes > 0);
 }
 
 static abbe_result do_wait(script *s, abbe_error *error) {
@@ -314,13 +331,15 @@ static abbe_result do_wait(script *s, abbe_error *error) {
   const double start = abbe_clock_seconds();
   double seconds;
   pump(s);
-  if (abbe_number_read(what, &end, &seconds) && *end == '\0') {
+  if (abbe_number_read(what, &end, &seconds) && *end == '\0' && seconds >= 0) {
     for (double left = seconds; left > 0; left = start + seconds - abbe_clock_seconds()) {
       abbe_view_hidden_sleep(&s->hidden, left);
       pump(s);
     }
     return ABBE_OK;
   }
+  if (!is_awaited(what))
+    return fail(s, ABBE_PARSE, error, "'%.60s' is no stage, nor else what can come", what);
   const clock_t begun = clock();
   for (double busy_s = start; !has_come(s, what); pump(s)) {
     const double now = abbe_clock_seconds();

@@ -55,7 +55,8 @@ static void a_design_is_a_file_of_the_scene(void **state) {
   run_must("printf '%s\\n' 'wait balanced' 'key control+s' 'say note' 'remember hash first' "
            "'copy in/b.asc in/a.asc' 'wait changed' 'wait balanced' 'assert hash != $first' "
            "> a.txt");
-  run_must("\"$abbe\" view in/cut.yaml " FEW "--last balanced --size 420x64 --keep \"$PWD/in/kept\" "
+  run_must("\"$abbe\" view in/cut.yaml " FEW
+           "--last balanced --size 420x64 --keep \"$PWD/in/kept\" "
            "--script a.txt && cmp in/cut.yaml in/kept.yaml");
   run_must("printf '%s\\n' 'wait balanced' 'key control+s' 'assert note contains own' > a.txt");
   run_must("\"$abbe\" view in/cut.yaml " FEW "--last balanced --size 420x64 --keep out/kept "
@@ -185,6 +186,11 @@ static void scripts_that_do_not_hold(void **state) {
                {"\n\nwhistle", "a.txt:3: whistle: is no command", 1},
                {"assert nothing = 1", "there is no value 'nothing'", 1},
                {"wait mean", "'mean' has not come, and nothing is left to do", 3},
+               {"wait forever", "'forever' is no stage", 1},
+               {"wait -1", "'-1' is no stage", 1},
+               {"drag 5,5 6,6 shfit", "'shfit' is none of", 1},
+               {"click 5,5 for 1", "'for' is none of", 1},
+               {"drag 5,5 6,6 for ever", "for how many seconds", 1},
                {"click nowhere", "there is no 'nowhere' in sight", 1},
                {"assert stage like none", "'like' is none of", 1},
                {"size 0x5", "WxH", 1},
