@@ -85,34 +85,15 @@ static bool find_handle(const script *s, const char *name, double xy[2]) {
 }
 
 /* "FROM:TO", nm: where the rendered picture has most colour of a dominant wavelength in between;
- * with
- * ":LEFT:TOP:RIGHT:BOTTOM" behind, in that part of it. */
+ * with ":LEFT:TOP:RIGHT:BOTTOM" behind, in that part of it. */
 static bool find_hue(const script *s, const char *text, double xy[2]) {
-  const abbe_image *image = &s->hidden.session.pictures.rendered;
-  const abbe_view_pictures *shown = &s->hidden.session.pictures;
-  const double side = shown->coarse > 1 ? (double)shown->coarse : 1;
-  const double beyond = shown->coarse > 1 ? (double)shown->beyond : 0;
-  const abbe_view_pictures pictures = {.rendered = *image};
-  double is[6] = {0, 0, 0, 0, INFINITY, INFINITY}, best = 0;
+  double is[6] = {0, 0, 0, 0, INFINITY, INFINITY};
   for (int k = 0; k < 6; k++) {
     if (!abbe_number_read(text, &text, &is[k]) || (*text != ':' && *text != '\0')) return false;
     if (*text == '\0' && k == 1) break;
     if (*text == ':') text++;
   }
-  for (size_t y = 0; image->data != NULL && y < image->height; y++)
-    for (size_t x = 0; x < image->width; x++) {
-      abbe_view_probe probe;
-      const double at[2] = {side * ((double)x + 0.5), side * ((double)y + 0.5) - beyond};
-      const float *v = &image->data[image->channels * (y * image->width + x)];
-      if (at[0] < is[2] || at[1] < is[3] || at[0] > is[4] || at[1] > is[5]) continue;
-      if (!(fmaxf(v[0], fmaxf(v[1], v[2])) > 1.5F * fminf(v[0], fminf(v[1], v[2])))) continue;
-      abbe_view_probe_make(&pictures, (const size_t[2]){x, y}, &probe);
-      if (probe.dominant_nm < is[0] || probe.dominant_nm > is[1]) continue;
-      if (probe.purity * probe.xyz[1] <= best) continue;
-      best = probe.purity * probe.xyz[1];
-      memcpy(xy, at, sizeof at);
-    }
-  return best > 0;
+  return abbe_view_probe_find_hue(&s->hidden.session.pictures, is, is + 2, xy);
 }
 
 /* "X,Y", a handle, a hue or the label of a widget. */

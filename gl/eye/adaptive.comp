@@ -17,7 +17,6 @@ layout(rgba32f, binding = 1) writeonly uniform image2D direct;
 layout(rgba32f, binding = 2) writeonly uniform image2D caustic;
 #endif
 uniform int side;
-#include "receiver_ray.glsl"
 
 // So many times their mean may be what one of the rays shows.
 const float MOST_PEAK = 4.0;

@@ -12,7 +12,6 @@ layout(rgba32f, binding = 0) writeonly uniform image2D radiance;  // w: distance
 layout(rgba32f, binding = 1) writeonly uniform image2D direct;
 layout(rgba32f, binding = 2) writeonly uniform image2D caustic;
 #endif
-#include "receiver_ray.glsl"
 
 void main() {
   copy_all();

@@ -61,3 +61,27 @@ void abbe_view_probe_make(const abbe_view_pictures *p, const size_t pixel[2],
   abbe_chromaticity_uv_of_xy(out->xy, out->uv);
   find_dominant(out);
 }
+
+bool abbe_view_probe_find_hue(const abbe_view_pictures *pictures, const double nm[2],
+                              const double part[4], double xy[2]) {
+  const abbe_image *image = &pictures->rendered;
+  const abbe_view_pictures rendered = {.rendered = *image};
+  const double side = pictures->coarse > 1 ? (double)pictures->coarse : 1;
+  const double beyond = pictures->coarse > 1 ? (double)pictures->beyond : 0;
+  double best = 0;
+  for (size_t y = 0; image->data != NULL && y < image->height; y++)
+    for (size_t x = 0; x < image->width; x++) {
+      abbe_view_probe probe;
+      const double at[2] = {side * ((double)x + 0.5), side * ((double)y + 0.5) - beyond};
+      const float *v = &image->data[image->channels * (y * image->width + x)];
+      if (at[0] < part[0] || at[1] < part[1] || at[0] > part[2] || at[1] > part[3]) continue;
+      if (!(fmaxf(v[0], fmaxf(v[1], v[2])) > 1.5F * fminf(v[0], fminf(v[1], v[2])))) continue;
+      abbe_view_probe_make(&rendered, (const size_t[2]){x, y}, &probe);
+      if (probe.dominant_nm < nm[0] || probe.dominant_nm > nm[1]) continue;
+      if (probe.purity * probe.xyz[1] <= best) continue;
+      best = probe.purity * probe.xyz[1];
+      xy[0] = at[0];
+      xy[1] = at[1];
+    }
+  return best > 0;
+}

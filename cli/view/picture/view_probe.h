@@ -24,5 +24,9 @@ typedef struct abbe_view_probe {
 
 void abbe_view_probe_make(const abbe_view_pictures *pictures, const size_t pixel[2],
                           abbe_view_probe *out);
+/* Where the rendered picture has most colour of a dominant wavelength from nm[0] to nm[1], in its
+ * part of left, top, right and bottom, pixels of the window. false: nowhere. */
+bool abbe_view_probe_find_hue(const abbe_view_pictures *pictures, const double nm[2],
+                              const double part[4], double xy[2]);
 
 #endif
