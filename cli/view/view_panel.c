@@ -272,7 +272,8 @@ static void draw_feed(const abbe_view_session *app) {
   if (feed->on_refractor)
     pair("seen through", "%zu faces, at %.0f nm", feed->sight.count - 1, feed->sight.nm);
   if (feed->ray_count == 0) {
-    abbe_ui_text(DIM, "none of the photons through refractors and off mirrors is found to land here");
+    abbe_ui_text(DIM,
+                 "none of the photons through refractors and off mirrors is found to land here");
     return;
   }
   pair("fed by", "%zu photons, through", feed->photons);
