@@ -78,7 +78,8 @@ static size_t exits_of(const abbe_refraction_pass *pass) {
 
 static double share_of(const abbe_refraction_pass *pass) {
   const abbe_plan *plan = scene_of(pass)->plan;
-  return is_coarse(pass) ? fmax(plan->eye_share, ABBE_COARSE_SHARE) : plan->eye_share;
+  const double least = plan->multi_refractor_paths ? ABBE_COARSE_MESH_SHARE : ABBE_COARSE_SHARE;
+  return is_coarse(pass) ? fmax(plan->eye_share, least) : plan->eye_share;
 }
 
 static abbe_result make_list(abbe_refraction_pass *pass, const abbe_shader_variant *variant,

@@ -128,6 +128,7 @@ typedef enum abbe_model {
 typedef enum abbe_coarse { ABBE_COARSE_NONE, ABBE_COARSE_EYE, ABBE_COARSE_ALL } abbe_coarse;
 #define ABBE_COARSE_EXITS 8
 #define ABBE_COARSE_SHARE 0.05
+#define ABBE_COARSE_MESH_SHARE 0.1 /* that where refractors are followed in turn */
 
 #define ABBE_RENDER_MAX_SIDE 8192
 #define ABBE_RENDER_MAX_PHOTONS 4096 /* a side */
