@@ -1,23 +1,13 @@
 /* A watch is its thread's own, and over for good. */
 #include "tests/check.h"
-
-#include "base/thread/watch.h"
+#include "tests/patience.h"
 
 #include <pthread.h>
-
-typedef struct patience {
-  int asked, most;
-} patience;
-
-static bool goes_on(void *user) {
-  patience *p = user;
-  return p->asked++ < p->most;
-}
 
 static void test_it_is_over_for_good(void **state) {
   (void)state;
   patience p = {.most = 2};
-  abbe_watch watch = {goes_on, &p, false};
+  abbe_watch watch = {patience_lasts, &p, false};
   abbe_error error = {0};
   assert_true(abbe_watch_goes_on());
   abbe_watch_set(&watch);
@@ -40,7 +30,7 @@ static void *ask(void *user) {
 static void test_another_thread_has_none(void **state) {
   (void)state;
   patience p = {.most = 0};
-  abbe_watch watch = {goes_on, &p, false};
+  abbe_watch watch = {patience_lasts, &p, false};
   pthread_t thread;
   bool wanted = false;
   abbe_watch_set(&watch);

@@ -1,20 +1,10 @@
 /* Scenes that nobody wants any more while they are read. */
 #include "tests/check.h"
+#include "tests/patience.h"
 
-#include "base/thread/watch.h"
 #include "scenes/import/scene_file.h"
 
 #include <stdio.h>
-
-/* Asked so many times before it goes on no more. */
-typedef struct patience {
-  size_t asked, most;
-} patience;
-
-static bool goes_on(void *user) {
-  patience *p = user;
-  return p->asked++ < p->most;
-}
 
 /* Whoever stops it is not asked again, whenever that is, and there is no scene. */
 static void reading_ends_when_it_is_told_to(void **state) {
@@ -30,7 +20,7 @@ static void reading_ends_when_it_is_told_to(void **state) {
     patience p = {0};
     snprintf(path, sizeof path, "%s/scenes/%s.yaml", ABBE_SOURCE_DIR, scenes[i].name);
     for (size_t most = 0; result == ABBE_CANCELLED; most = 4 * most + 3) {
-      abbe_watch watch = {goes_on, &p, false};
+      abbe_watch watch = {patience_lasts, &p, false};
       p = (patience){.most = most};
       abbe_watch_set(&watch);
       result = abbe_scene_load(path, NULL, &scene, NULL);

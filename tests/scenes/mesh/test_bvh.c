@@ -1,10 +1,10 @@
 /* The BVH against every triangle in turn: in double precision, and as the shaders have it. */
 #include "tests/gl/glsl.h"
 
-#include "base/thread/watch.h"
 #include "gl/scene/bvh_nodes.h"
 #include "scenes/mesh/bvh.h"
 #include "scenes/shapes/shape.h"
+#include "tests/patience.h"
 #include "tests/random.h"
 
 #include <stdlib.h>
@@ -172,23 +172,13 @@ static void equal_triangles_end_in_leaves(void **state) {
   assert_int_equal(abbe_bvh_make(NULL, 0, &s.h, NULL), ABBE_GEOMETRY);
 }
 
-/* Asked so many times before it goes on no more. */
-typedef struct patience {
-  size_t asked, most;
-} patience;
-
-static bool goes_on(void *user) {
-  patience *p = user;
-  return p->asked++ < p->most;
-}
-
 /* Whoever stops it is not asked again, whenever that is; who does not changes nothing. */
 static void it_ends_when_it_is_told_to(void **state) {
   (void)state;
   soup s;
   make_soup(100000, 1, &s);
   patience p = {.most = SIZE_MAX};
-  abbe_watch watch = {goes_on, &p, false};
+  abbe_watch watch = {patience_lasts, &p, false};
   abbe_bvh h;
   const double(*triangle)[9] = (const double(*)[9])s.triangle;
   abbe_watch_set(&watch);

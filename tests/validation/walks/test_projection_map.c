@@ -1,7 +1,7 @@
 #include "tests/scenes/scene_text.h"
 
-#include "base/thread/watch.h"
 #include "scenes/geometry/vector.h"
+#include "tests/patience.h"
 #include "tests/random.h"
 #include "validation/walks/projection_map.h"
 
@@ -356,16 +356,6 @@ static void neighbours_stay_together(void **state) {
   drop(&f);
 }
 
-/* Asked so many times before it goes on no more. */
-typedef struct patience {
-  size_t asked, most;
-} patience;
-
-static bool goes_on(void *user) {
-  patience *p = user;
-  return p->asked++ < p->most;
-}
-
 static void it_ends_when_it_is_told_to(void **state) {
   (void)state;
   fixture f;
@@ -374,7 +364,7 @@ static void it_ends_when_it_is_told_to(void **state) {
   patience p;
   make(CAMERA FAR_POINT FLOOR COARSE_RING, &f);
   for (size_t most = 0; result == ABBE_CANCELLED; most = 2 * most + 1) {
-    abbe_watch watch = {goes_on, &p, false};
+    abbe_watch watch = {patience_lasts, &p, false};
     p = (patience){.most = most};
     abbe_watch_set(&watch);
     result = abbe_projection_map_make(&f.geometry, 0, &map, NULL);
