@@ -344,8 +344,11 @@ abbe_result abbe_renderer_parts_draw(abbe_renderer *r, abbe_render_progress prog
   r->gpu.gl->Finish();
   result = end_watch(r, result, error);
   r->seen = result == ABBE_OK;
-  if (result != ABBE_OK && result != ABBE_CANCELLED) r->lacking = ALL; /* lists without room, say */
-  abbe_gpu_trim(&r->gpu);                                              /* what was outgrown */
+  if (result != ABBE_OK && result != ABBE_CANCELLED) { /* lists without room, say */
+    r->lacking = ALL;
+    r->lit = false;
+  }
+  abbe_gpu_trim(&r->gpu); /* what was outgrown */
   if (statistics != NULL && result == ABBE_OK) summarise(r, start_ms, statistics);
   r->gpu.statistics = NULL;
   return result;
