@@ -31,10 +31,8 @@ typedef struct script {
   size_t remembered_count;
 } script;
 
-static abbe_result fail(const script *s, abbe_result result, abbe_error *error, const char *format,
-                        ...) __attribute__((format(printf, 4, 5)));
-static abbe_result fail(const script *s, abbe_result result, abbe_error *error, const char *format,
-                        ...) {
+__attribute__((format(printf, 4, 5))) static abbe_result
+fail(const script *s, abbe_result result, abbe_error *error, const char *format, ...) {
   char prefix[1024];
   va_list arguments;
   snprintf(prefix, sizeof prefix, "%.700s:%zu: %.60s: ", s->path, s->line,
@@ -122,8 +120,12 @@ static bool find(script *s, const char *text, double xy[2]) {
 static abbe_result aim(script *s, size_t word, double xy[2], abbe_error *error) {
   if (word >= s->words)
     return fail(s, ABBE_PARSE, error, "where? Give X,Y, a label, handle:NAME or hue:FROM:TO");
-  if (find(s, s->word[word], xy)) return ABBE_OK;
-  return fail(s, ABBE_NOT_FOUND, error, "there is no '%.60s' in sight", s->word[word]);
+  if (!find(s, s->word[word], xy))
+    return fail(s, ABBE_NOT_FOUND, error, "there is no '%.60s' in sight", s->word[word]);
+  const double width = (double)s->hidden.width, height = (double)s->hidden.height;
+  if (word != 1 || (xy[0] >= 0 && xy[0] < width && xy[1] >= 0 && xy[1] < height))
+    return ABBE_OK; /* a drag may end outside, as a hand's does */
+  return fail(s, ABBE_OUT_OF_RANGE, error, "'%.60s' lies outside of the window", s->word[word]);
 }
 
 /* ---- pointer ---- */

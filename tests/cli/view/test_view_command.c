@@ -192,6 +192,8 @@ static void scripts_that_do_not_hold(void **state) {
                {"click 5,5 for 1", "'for' is none of", 1},
                {"drag 5,5 6,6 for ever", "for how many seconds", 1},
                {"click nowhere", "there is no 'nowhere' in sight", 1},
+               {"click 360,5", "'360,5' lies outside of the window", 1},
+               {"wheel -1,5 1", "'-1,5' lies outside of the window", 1},
                {"assert stage like none", "'like' is none of", 1},
                {"size 0x5", "WxH", 1},
                {"key control+s", "", 0}};
