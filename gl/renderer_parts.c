@@ -295,8 +295,8 @@ static abbe_result run_passes(abbe_renderer *r, abbe_error *error) {
     r->lit = result == ABBE_OK;
   } else {
     if (!r->lit) result = draw_light(r, error);
-    r->lit =
-        r->lit || (result == ABBE_OK && !r->gpu.stopped && abbe_map_history_settled(&r->history));
+    r->lit = r->lit || (result == ABBE_OK && !r->gpu.stopped &&
+                        (r->plan.desc.history_of_changes || abbe_map_history_settled(&r->history)));
     if (result == ABBE_OK && !r->seen && !r->gpu.stopped) result = draw_eye(r, error);
   }
   return result != ABBE_OK ? result : abbe_gl_check(r->gpu.gl, "the frame's passes", error);

@@ -16,7 +16,7 @@
 #define LOOK_S 0.5       /* how often files are looked at */
 #define FEED_PIXELS 2.0  /* photons so near to a pixel feed it */
 #define MOST_GAP_MS 25.0 /* between moving pictures that follow each other */
-#define WAIT_S 0.03      /* for a moving picture, before the window is drawn with an older one */
+#define WAIT_S 0.1       /* for a moving picture, before the window is drawn with an older one */
 
 /* ---- begin, end ---- */
 
@@ -267,15 +267,6 @@ static void give(abbe_view_session *app, double now_s) {
   for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++) give_one(app, i, now_s);
 }
 
-/* A moving picture that is nearly there is waited for: drawing the window meanwhile would only take
- * the processor from it. */
-static void await_moving(abbe_view_session *app) {
-  const abbe_view_refine *refine = &app->state.refine;
-  const abbe_view_hand *hand = &refine->hand[refine->shows];
-  if (app->first_s > 0 && hand->busy && hand->job.stage == ABBE_VIEW_MOVING && !hand->job.warms)
-    abbe_view_worker_wait(app->desk[refine->shows].worker, WAIT_S);
-}
-
 /* What the workers have made. */
 static void take_results(abbe_view_session *app) {
   for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++) {
@@ -290,6 +281,27 @@ static void take_results(abbe_view_session *app) {
     else
       take(app, i, &app->taken);
     abbe_view_result_free(&app->taken);
+  }
+}
+
+/* Whoever shows draws what moves, or ends what it did to do so. */
+static bool is_moving(const abbe_view_session *app) {
+  const size_t shows = app->state.refine.shows;
+  const abbe_view_hand *hand = &app->state.refine.hand[shows];
+  return app->first_s > 0 && hand->busy &&
+         (app->desk[shows].stopped_s >= 0 ||
+          (hand->job.stage == ABBE_VIEW_MOVING && !hand->job.warms));
+}
+
+/* A moving picture that is nearly there is waited for: drawing the window meanwhile would only take
+ * the processor from it. */
+static void await_moving(abbe_view_session *app, double now_s) {
+  const double until_s = abbe_clock_seconds() + WAIT_S;
+  while (!app->stale && is_moving(app) && abbe_clock_seconds() < until_s) {
+    abbe_view_worker_wait(app->desk[app->state.refine.shows].worker,
+                          until_s - abbe_clock_seconds());
+    take_results(app);
+    if (!app->stale) give(app, now_s);
   }
 }
 
@@ -411,8 +423,7 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
   look_at_files(app, now_s);
   take_results(app);
   give(app, now_s);
-  await_moving(app);
-  take_results(app);
+  await_moving(app, now_s);
   if (s->picked) abbe_view_probe_make(&app->pictures, s->pixel, &app->probe);
   if (app->stale || app->drawn_exposure != s->exposure ||
       app->drawn != abbe_view_shown_of(&app->pictures, s->shown))

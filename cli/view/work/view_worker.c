@@ -115,6 +115,7 @@ static abbe_render_desc request_of(const abbe_view_worker *w, const abbe_view_re
   desc.volume = w->volume;
   desc.history =
       moving && job->light == ABBE_VIEW_MOVING && w->volume == NULL ? ABBE_RENDER_MAX_HISTORY : 0;
+  desc.history_of_changes = true; /* the first turn of a camera does not follow photons again */
   desc.aovs = true; /* in motion too: without them other programs would have to be compiled */
   desc.width = q->width;
   desc.height = q->height;

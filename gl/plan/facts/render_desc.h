@@ -222,6 +222,8 @@ typedef struct abbe_render_desc {
    * default profile takes a still scene's next frames until the picture is the mean of so many, and
    * where the scene has changed since no texel of its map leaves what this frame has around it. */
   size_t history;
+  /* Not so: light that stays is drawn once, and next frames of it come where it has changed. */
+  bool history_of_changes;
   abbe_transport transport;
   /* Of the transport 'volume', which it lives as long as; of the profile wyman2003 a printed one.
    * lookup AUTO: abbe_caustic_volume_resolve; wyman2003: turned. */

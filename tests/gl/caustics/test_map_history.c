@@ -100,6 +100,53 @@ static void test_a_still_scene_comes_to_the_mean(void **state) {
   abbe_scene_free(&scene);
 }
 
+static abbe_statistics change_and_draw(abbe_renderer *renderer, const abbe_scene *scene,
+                                       const abbe_render_desc *like, abbe_image *out) {
+  abbe_error error = {0};
+  assert_ok(abbe_renderer_change(renderer, scene, like, &error), &error);
+  const abbe_statistics s = draw_frame(renderer);
+  abbe_image_free(out);
+  read_map(renderer, 0, out);
+  return s;
+}
+
+/* Frames that follow changes alone: what stays is drawn once, whichever way the camera turns; what
+ * has moved is as with a history that goes on. */
+static void test_what_stays_is_drawn_once(void **state) {
+  (void)state;
+  abbe_scene scene[2] = {{0}};
+  abbe_map_layout layout;
+  abbe_image map[2] = {{0}}, kept = {0};
+  for (int k = 0; k < 2; k++) load_brick(0.1 + 0.01 * k, &scene[k]);
+  lay_out(&scene[0], &layout);
+  abbe_render_desc given = desc;
+  given.map_layout = &layout;
+  abbe_render_desc once = given;
+  once.history_of_changes = true;
+  abbe_renderer *renderer[2] = {make_renderer(&scene[0], &given), make_renderer(&scene[0], &once)};
+  for (int k = 0; k < 2; k++) {
+    draw_frame(renderer[k]);
+    read_map(renderer[k], 0, &map[k]);
+  }
+  assert_same_pixels(&map[0], &map[1]);
+  scene[0].camera.eye[0] += 0.01;
+  abbe_statistics s = change_and_draw(renderer[1], &scene[0], &once, &kept);
+  assert_true(s.kept[ABBE_PASS_SPECTRAL_MAP] && s.kept[ABBE_PASS_PHOTONS]);
+  assert_same_pixels(&map[1], &kept);
+  for (int k = 0; k < 2; k++) {
+    s = change_and_draw(renderer[k], &scene[1], k == 0 ? &given : &once, &map[k]);
+    assert_false(s.kept[ABBE_PASS_PHOTONS]);
+  }
+  assert_same_pixels(&map[0], &map[1]);
+  assert_true(apart(&map[1], &kept) > 0.01);
+  for (int k = 0; k < 2; k++) {
+    abbe_renderer_free(renderer[k]);
+    abbe_image_free(&map[k]);
+    abbe_scene_free(&scene[k]);
+  }
+  abbe_image_free(&kept);
+}
+
 /* The least and the most of a texel and the eight around it. */
 static void nearby(const abbe_image *map, size_t i, double *least, double *most) {
   const int channel = (int)(i % 3), x = (int)(i / 3 % SIDE), y = (int)(i / 3 / SIDE);
@@ -239,6 +286,7 @@ static void test_what_moves_flickers_less(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_still_scene_comes_to_the_mean),
+                                     cmocka_unit_test(test_what_stays_is_drawn_once),
                                      cmocka_unit_test(test_nothing_is_left_after_a_jump),
                                      cmocka_unit_test(test_what_moves_flickers_less)};
   return cmocka_run_group_tests(tests, make_context, free_context);
