@@ -100,8 +100,7 @@ const char *abbe_scene_file(const abbe_scene *scene, size_t index) {
 
 bool abbe_scene_is_hazy(const abbe_scene *scene) {
   bool hazy = scene->medium != NULL;
-  for (size_t i = 0; i < scene->object_count; i++)
-    hazy = hazy || scene->object[i].medium != NULL;
+  for (size_t i = 0; i < scene->object_count; i++) hazy = hazy || scene->object[i].medium != NULL;
   return hazy;
 }
 
@@ -203,8 +202,22 @@ static double from_triangle(const double p[3], const double *const corner[3]) {
   return fabs(abbe_vector_dot(to, n)) / length;
 }
 
+/* Whether some side of the triangle's bounds is so far off. */
+static bool is_beyond(const double p[3], const double *const corner[3], double least) {
+  for (int k = 0; k < 3; k++) {
+    const double a = corner[0][k] - p[k], b = corner[1][k] - p[k], c = corner[2][k] - p[k];
+    if ((a > least && b > least && c > least) || (a < -least && b < -least && c < -least))
+      return true;
+  }
+  return false;
+}
+
 double abbe_object_distance(const abbe_object *object, const double point[3]) {
-  double least = INFINITY;
+  return abbe_object_distance_within(object, point, INFINITY);
+}
+
+double abbe_object_distance_within(const abbe_object *object, const double point[3], double most) {
+  double least = most;
   if (object->exact.kind == ABBE_EXACT_SPHERE) {
     double to[3];
     abbe_vector_subtract(point, object->exact.centre, to);
@@ -214,7 +227,7 @@ double abbe_object_distance(const abbe_object *object, const double point[3]) {
     const uint32_t *face = object->mesh.face[i];
     const double *corner[3] = {object->mesh.position[face[0]], object->mesh.position[face[1]],
                                object->mesh.position[face[2]]};
-    least = fmin(least, from_triangle(point, corner));
+    if (!is_beyond(point, corner, least)) least = fmin(least, from_triangle(point, corner));
   }
   return least;
 }

@@ -200,6 +200,8 @@ const abbe_object *abbe_scene_around_eye(const abbe_scene *scene);
 
 /* From a point to the object's surface, m; to a sphere's exact one, negative inside it. */
 double abbe_object_distance(const abbe_object *object, const double point[3]);
+/* The same where it is below `most`, m, >= 0; else something from there on. It is found sooner. */
+double abbe_object_distance_within(const abbe_object *object, const double point[3], double most);
 /* Its least width, m, among those of its bounds, across its largest face and, of a convex solid,
  * across each face. */
 double abbe_object_thickness(const abbe_object *object);

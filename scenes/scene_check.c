@@ -114,7 +114,7 @@ static const abbe_object *surface_at(const abbe_scene *scene, const double p[3],
     bool near = abbe_object_kind_of(object) != ABBE_OBJECT_RECEIVER;
     for (int k = 0; k < 3; k++)
       near = near && p[k] > object->min[k] - gap && p[k] < object->max[k] + gap;
-    if (near && fabs(abbe_object_distance(object, p)) < gap) return object;
+    if (near && fabs(abbe_object_distance_within(object, p, gap)) < gap) return object;
   }
   return NULL;
 }

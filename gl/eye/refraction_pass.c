@@ -29,9 +29,11 @@ static bool is_coarse(const abbe_refraction_pass *pass) {
   return scene_of(pass)->plan->desc.coarse != ABBE_COARSE_NONE;
 }
 
-/* Of a pixel of what moves, so that coloured glass has its colours. */
+/* Of a pixel of what moves, so that coloured glass has its colours; who looks out of water sees
+ * none. */
 static int least_bands(const abbe_plan *plan) {
-  return !plan->tinting ? 1 : plan->hazy ? 2 : 4;
+  const bool outward = plan->eye_inside != 0 && plan->refractor_count == 1;
+  return !plan->tinting || outward ? 1 : plan->hazy ? 2 : 4;
 }
 
 static bool refines(const abbe_refraction_pass *pass) {
@@ -108,7 +110,7 @@ static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_v
              interleaves(pass) ? "#define INTERLEAVES\n" : "",
              pass->keeps ? "#define KEEPS_SIGHTS\n" : "");
   if (is_coarse(pass))
-    snprintf(facts, sizeof facts, "#define FIRST_BY_LAYER\n#define LEAST_BANDS %d\n",
+    snprintf(facts, sizeof facts, "#define COARSE_EYE\n#define LEAST_BANDS %d\n",
              least_bands(scene_of(pass)->plan));
   snprintf(refined, sizeof refined, "%s#define REFINED\n", shares);
   abbe_result result =

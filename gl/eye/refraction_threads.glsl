@@ -66,6 +66,12 @@ vec3 band_light(int band, bool in_mirror, out float mirrored) {
   if (off_mirror) w = off;
 #endif
   mirrored = reflected.share;
+#ifdef COARSE_EYE
+  if (eye_inside != 0u && mirrored < share_limit) {  // what is mirrored back is taken for what the rest shows
+    w.share += mirrored;
+    mirrored = 0.0;
+  }
+#endif
   reflected.share = mirrored > 0.0 ? 1.0 : 0.0;
   if (in_mirror) w = reflected;  // of no share, off a mirror
   return xyz_from_rgb * shown(w);

@@ -56,10 +56,16 @@ vec3 shown(PathState w) {
   int most = most_segments();
   for (int segment = 0; going && segment < most; segment++) {
     Interface h;
-    h.hit.t = 1e30;
-    bool met = next_interface(w, h), receiver;
     float t_min = w.inside == 0u ? -touch * refractor_bounds.w : 0.0;
+    h.hit.t = 1e30;
+#ifdef COARSE_EYE
+    parallelogram_hit(w.p, w.d, t_min, 1e30, h.hit.t);  // a search is dear: none behind what is told cheaply
+#endif
+    bool met = next_interface(w, h), receiver;
     vec3 radiance = seen(w.p, w.d, SPREAD_OF(w), t_min, met ? h.hit.t : 1e30, receiver);
+#ifdef COARSE_EYE
+    met = met || receiver;
+#endif
 #if defined(SHAFTS) || defined(HAZE_BEYOND)
     float way_m = receiver ? seen_at : met ? h.hit.t : HAZE_FAR;
     vec3 scattered = vec3(0);
@@ -150,7 +156,7 @@ void begin_path(ivec2 at) {
 #endif
 }
 
-#if defined(FIRST_BY_LAYER) && !defined(KEEPS_SPREAD)
+#if defined(COARSE_EYE) && !defined(KEEPS_SPREAD)
 // As its front layer has it, which may be drawn of fewer triangles; it lies near enough for light that is followed
 // into a refractor, and not for light off a mirror, which would meet the same faces again.
 bool is_told_by_layer(ivec2 at) {

@@ -209,44 +209,62 @@ static bool ray_hits(const double p[3], const double d[3], const double a[3], co
   return abbe_vector_dot(v, q) / determinant > 0.0;
 }
 
-/* On which sides of two planes through the ray each vertex lies; bits. */
+/* Rays from p along three directions, of which odd ones decide. */
+enum { RAYS = 3, RAY_BITS = 4 };
+
+/* On which sides of two planes through a ray a point lies; bits. */
 enum { BEFORE_FIRST = 1, BEHIND_FIRST = 2, BEFORE_SECOND = 4, BEHIND_SECOND = 8 };
 
-static void find_sides(const abbe_mesh *mesh, const double p[3], const double d[3],
-                       unsigned char *side) {
-  const double first[3] = {d[1], -d[0], 0};
-  double second[3];
-  abbe_vector_cross(d, first, second);
-  const double at[2] = {abbe_vector_dot(first, p), abbe_vector_dot(second, p)};
-  for (size_t v = 0; v < mesh->vertex_count; v++) {
-    const double a = abbe_vector_dot(first, mesh->position[v]) - at[0];
-    const double b = abbe_vector_dot(second, mesh->position[v]) - at[1];
-    side[v] = (unsigned char)((a > 0) * BEFORE_FIRST + (a < 0) * BEHIND_FIRST +
-                              (b > 0) * BEFORE_SECOND + (b < 0) * BEHIND_SECOND);
-  }
+typedef struct ray_planes {
+  double first[3], second[3], at[2];
+} ray_planes;
+
+static ray_planes planes_of(const double p[3], const double d[3]) {
+  ray_planes r = {.first = {d[1], -d[0], 0}};
+  abbe_vector_cross(d, r.first, r.second);
+  r.at[0] = abbe_vector_dot(r.first, p);
+  r.at[1] = abbe_vector_dot(r.second, p);
+  return r;
 }
 
-/* side: of the mesh's vertices, room for them; NULL: every face is looked at. */
-static bool odd_hits(const abbe_mesh *mesh, const double p[3], const double d[3],
-                     unsigned char *side) {
-  size_t hits = 0;
-  if (side != NULL) find_sides(mesh, p, d, side);
+static unsigned side_of(const ray_planes *r, const double p[3]) {
+  const double a = abbe_vector_dot(r->first, p) - r->at[0];
+  const double b = abbe_vector_dot(r->second, p) - r->at[1];
+  return (unsigned)((a > 0) * BEFORE_FIRST + (a < 0) * BEHIND_FIRST + (b > 0) * BEFORE_SECOND +
+                    (b < 0) * BEHIND_SECOND);
+}
+
+/* Rays from..to-1 at once, a bit each: whether its hits are odd. side: of the mesh's vertices, room
+ * for them; NULL: every face is looked at. */
+static unsigned odd_hits(const abbe_mesh *mesh, const double p[3], const double (*d)[3],
+                         unsigned from, unsigned to, uint16_t *side) {
+  unsigned odd = 0;
+  ray_planes planes[RAYS];
+  for (unsigned k = from; k < to; k++) planes[k] = planes_of(p, d[k]);
+  for (size_t v = 0; side != NULL && v < mesh->vertex_count; v++) {
+    unsigned bits = 0;
+    for (unsigned k = from; k < to; k++)
+      bits |= side_of(&planes[k], mesh->position[v]) << (RAY_BITS * k);
+    side[v] = (uint16_t)bits;
+  }
   for (size_t f = 0; f < mesh->face_count; f++) {
     const uint32_t *v = mesh->face[f];
-    if (side != NULL && (side[v[0]] & side[v[1]] & side[v[2]]) != 0) continue;
-    hits += ray_hits(p, d, mesh->position[v[0]], mesh->position[v[1]], mesh->position[v[2]]);
+    const unsigned beside = side != NULL ? side[v[0]] & side[v[1]] & side[v[2]] : 0;
+    for (unsigned k = from; k < to; k++)
+      if ((beside >> (RAY_BITS * k) & 15) == 0 &&
+          ray_hits(p, d[k], mesh->position[v[0]], mesh->position[v[1]], mesh->position[v[2]]))
+        odd ^= 1u << k;
   }
-  return hits % 2 != 0;
+  return odd;
 }
 
 bool abbe_mesh_contains(const abbe_mesh *mesh, const double point[3]) {
   /* three odd directions vote, so that a ray through an edge cannot decide alone */
-  static const double direction[3][3] = {
+  static const double direction[RAYS][3] = {
       {0.5391, 0.7283, 0.4231}, {-0.8127, 0.3119, 0.4921}, {0.2713, -0.5881, -0.7619}};
-  unsigned char *side = malloc(mesh->vertex_count + 1);
-  const bool first = odd_hits(mesh, point, direction[0], side);
-  const bool second = odd_hits(mesh, point, direction[1], side);
-  const bool inside = first == second ? first : odd_hits(mesh, point, direction[2], side);
+  uint16_t *side = malloc((mesh->vertex_count + 1) * sizeof *side);
+  unsigned odd = odd_hits(mesh, point, direction, 0, 2, side);
+  if (odd == 1 || odd == 2) odd = 3 * odd_hits(mesh, point, direction, 2, 3, side);
   free(side);
-  return inside;
+  return odd != 0;
 }

@@ -206,6 +206,25 @@ static void no_part_of_a_disk_is_in_glass(void **state) {
   abbe_mesh_free(&object[1].mesh);
 }
 
+/* Of a box of 2 x 4 x 6 m; below a limit the same, at or beyond it no less. */
+static void distances_end_where_they_are_not_asked(void **state) {
+  (void)state;
+  static const struct {
+    double at[3], away;
+  } rows[] = {{{0, 0, 0}, 1}, {{0.75, 1, 1}, 0.25}, {{4, 0, 0}, 3}, {{4, 6, 2}, 5}};
+  const double size[3] = {2, 4, 6};
+  abbe_object box = {0};
+  assert_int_equal(abbe_shape_box(size, &box.mesh, NULL), ABBE_OK);
+  abbe_object_bound(&box);
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    const double *p = rows[i].at, away = rows[i].away;
+    assert_near(abbe_object_distance(&box, p), away, 1e-12);
+    assert_near(abbe_object_distance_within(&box, p, 1.01 * away), away, 1e-12);
+    assert_true(abbe_object_distance_within(&box, p, 0.5 * away) >= 0.5 * away);
+  }
+  abbe_mesh_free(&box.mesh);
+}
+
 static void lights_are_found_by_name_or_number(void **state) {
   (void)state;
   abbe_light light[4] = {{.name = "lamp"}, {.name = "1"}, {.name = "sun"}, {.name = "sun"}};
@@ -240,6 +259,7 @@ int main(void) {
       cmocka_unit_test(bounds_choose_what_is_asked),
       cmocka_unit_test(mirrors_are_a_kind_of_their_own),
       cmocka_unit_test(lights_are_found_by_name_or_number),
+      cmocka_unit_test(distances_end_where_they_are_not_asked),
       cmocka_unit_test(a_receiver_larger_than_the_view_is_in_view),
       cmocka_unit_test(freeing_nothing_is_safe),
   };

@@ -74,7 +74,7 @@ static void add_shaft(abbe_plan *plan, int refractor, const abbe_plan_haze *haze
 
 /* Media that the camera may look into through a surface, or see mirrored in one, and to which
  * photons come: the air and those of refractors. */
-static void choose_shafts(const abbe_scene *scene, abbe_plan *plan) {
+static void choose_shafts(const abbe_scene *scene, const abbe_object *around, abbe_plan *plan) {
   if (!plan->camera_sees_refractor) return;
   plan->haze_beyond = scene->medium != NULL;
   if (!plan->caustics) return;
@@ -83,7 +83,7 @@ static void choose_shafts(const abbe_scene *scene, abbe_plan *plan) {
     const abbe_object *object = &scene->object[plan->refractor_object[i]];
     const region r = {.object = object, .medium = object->medium};
     if (object->medium == NULL || plan->mirror[i]) continue;
-    const abbe_plan_haze haze = haze_of(scene, plan, &r);
+    const abbe_plan_haze haze = object == around ? plan->eye_haze : haze_of(scene, plan, &r);
     add_shaft(plan, (int)i, &haze);
   }
 }
@@ -97,10 +97,9 @@ void abbe_haze_model_choose(const abbe_scene *scene, abbe_plan *plan) {
   const region air = {.medium = scene->medium};
   plan->air_haze = haze_of(scene, plan, &air);
   plan->eye_haze = plan->air_haze;
-  choose_shafts(scene, plan);
-  if (around == NULL) return;
-  const region eye = {.medium = around->medium, .object = around};
-  plan->eye_haze = haze_of(scene, plan, &eye);
+  if (around != NULL)
+    plan->eye_haze = haze_of(scene, plan, &(region){.medium = around->medium, .object = around});
+  choose_shafts(scene, around, plan);
 }
 
 static void note_shafts(const abbe_scene *scene, abbe_plan *plan) {

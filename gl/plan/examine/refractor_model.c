@@ -228,8 +228,9 @@ static void list_in_turn(abbe_plan *plan, const char *why) {
 }
 
 static abbe_result check_eye(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
-  const abbe_object *around = scene->camera.inside ? abbe_scene_around_eye(scene) : NULL;
-  if (around == NULL || plan->multi_refractor_paths) return ABBE_OK;
+  if (!scene->camera.inside || plan->multi_refractor_paths) return ABBE_OK;
+  const abbe_object *around = abbe_scene_around_eye(scene);
+  if (around == NULL) return ABBE_OK;
   return abbe_error_set(error, ABBE_UNSUPPORTED,
                         "the eye is inside the refractor '%s' (line %zu), from where neither "
                         "published profiles nor the model 'layers' nor a scene of more than %d "
