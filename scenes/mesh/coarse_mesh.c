@@ -1,5 +1,6 @@
 #include "scenes/mesh/coarse_mesh.h"
 
+#include "scenes/geometry/digest.h"
 #include "scenes/geometry/vector.h"
 
 #include <math.h>
@@ -20,12 +21,14 @@ typedef struct groups {
   size_t room;  /* a power of two, more than there are vertices */
   group *table; /* [room] */
   uint32_t *of; /* [vertices]: where its group is in the table */
+  bool *seam;   /* [vertices]: another one stands at the same place; these stay as they are */
 } groups;
 
-/* A closed smooth mesh has half as many vertices as faces; each seam in it has some more. */
+/* A closed smooth mesh has half as many vertices as faces; each seam in it, as along the rim of
+ * water, has some more. */
 bool abbe_coarse_mesh_serves(const abbe_mesh *mesh) {
   return mesh->face_count >= 2 * ABBE_COARSE_MESH_FACES &&
-         2 * mesh->vertex_count <= mesh->face_count + mesh->face_count / 50;
+         2 * mesh->vertex_count <= mesh->face_count + mesh->face_count / 8;
 }
 
 static double area_of(const abbe_mesh *mesh) {
@@ -50,8 +53,6 @@ static bool make_cells(const abbe_mesh *mesh, groups *g) {
       g->min[k] = mesh->position[v][k] < g->min[k] ? mesh->position[v][k] : g->min[k];
   }
   g->cell = sqrt(cells * area_of(mesh) / (ABBE_COARSE_MESH_FACES / 2));
-  for (g->room = 1; g->room < 2 * mesh->vertex_count;) g->room *= 2;
-  g->mesh = mesh;
   return g->cell > 0 && isfinite(g->cell);
 }
 
@@ -65,7 +66,7 @@ static uint64_t key_of(const groups *g, const double p[3]) {
   return key << 1;
 }
 
-static uint32_t find(groups *g, uint64_t key, size_t vertex) {
+static uint32_t find(const groups *g, uint64_t key, size_t vertex) {
   const uint64_t mixed = key * 0x9e3779b97f4a7c15u;
   size_t at = (size_t)(mixed ^ mixed >> 32) & (g->room - 1);
   while (g->table[at].key != 0 && g->table[at].key != key) at = (at + 1) & (g->room - 1);
@@ -73,16 +74,40 @@ static uint32_t find(groups *g, uint64_t key, size_t vertex) {
   return (uint32_t)at;
 }
 
-/* Of its cell; what looks the other way than the cell's first vertex is another side of a wall. */
-static uint32_t group_of(groups *g, size_t vertex) {
+static bool is_same_place(const double a[3], const double b[3]) {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+/* Merged with others, one side of a seam would part from the other. */
+static void find_seams(groups *g) {
   const abbe_mesh *mesh = g->mesh;
+  memset(g->table, 0, g->room * sizeof *g->table);
+  for (size_t v = 0; v < mesh->vertex_count; v++) {
+    double p[3];
+    for (int k = 0; k < 3; k++) p[k] = mesh->position[v][k] + 0.0; /* one zero */
+    size_t at = (size_t)abbe_digest(1, p, sizeof p) & (g->room - 1);
+    while (g->table[at].key != 0 && !is_same_place(mesh->position[g->table[at].vertex], p))
+      at = (at + 1) & (g->room - 1);
+    g->seam[v] = g->table[at].key != 0;
+    if (g->seam[v])
+      g->seam[g->table[at].vertex] = true;
+    else
+      g->table[at] = (group){.key = 1, .vertex = (uint32_t)v};
+  }
+}
+
+/* Of its cell; what looks the other way than the cell's first vertex is another side of a wall. */
+static uint32_t group_of(const groups *g, size_t vertex) {
+  const abbe_mesh *mesh = g->mesh;
+  if (g->seam[vertex]) return find(g, (uint64_t)1 << 62 | vertex, vertex);
   const uint64_t key = key_of(g, mesh->position[vertex]);
   const uint32_t at = find(g, key, vertex);
   const bool other = abbe_vector_dot(mesh->normal[g->table[at].vertex], mesh->normal[vertex]) < 0;
   return other ? find(g, key | 1, vertex) : at;
 }
 
-static void gather(groups *g) {
+static void gather(const groups *g) {
+  memset(g->table, 0, g->room * sizeof *g->table);
   for (size_t v = 0; v < g->mesh->vertex_count; v++) {
     g->of[v] = group_of(g, v);
     group *own = &g->table[g->of[v]];
@@ -124,23 +149,37 @@ static size_t join_faces(const groups *g, uint32_t (*out)[3]) {
   return count;
 }
 
+/* Where large faces are beside small ones, by smaller cells. */
+static size_t merge(groups *g, uint32_t (*face)[3]) {
+  enum { TRIES = 4 };
+  size_t count = 0;
+  find_seams(g);
+  for (int i = 0; i < TRIES && 3 * count < 2 * ABBE_COARSE_MESH_FACES; i++) {
+    gather(g);
+    count = join_faces(g, face);
+    g->cell *= sqrt((double)count / ABBE_COARSE_MESH_FACES);
+    if (count == 0) break;
+  }
+  return count;
+}
+
 abbe_result abbe_coarse_mesh_make(const abbe_mesh *mesh, uint32_t (**face)[3], size_t *count,
                                   abbe_error *error) {
   ABBE_REQUIRE(mesh && face && count, error);
-  groups g = {0};
+  groups g = {.mesh = mesh, .room = 1};
   *face = NULL;
   *count = 0;
   if (!abbe_coarse_mesh_serves(mesh) || !make_cells(mesh, &g)) return ABBE_OK;
-  g.table = calloc(g.room, sizeof *g.table);
+  while (g.room < 2 * mesh->vertex_count) g.room *= 2;
+  g.table = malloc(g.room * sizeof *g.table);
   g.of = malloc(mesh->vertex_count * sizeof *g.of);
+  g.seam = malloc(mesh->vertex_count * sizeof *g.seam);
   *face = malloc(mesh->face_count * sizeof **face);
-  const bool room = g.table != NULL && g.of != NULL && *face != NULL;
-  if (room) {
-    gather(&g);
-    *count = join_faces(&g, *face);
-  }
+  const bool room = g.table != NULL && g.of != NULL && g.seam != NULL && *face != NULL;
+  if (room) *count = merge(&g, *face);
   free(g.table);
   free(g.of);
+  free(g.seam);
   if (!room || 2 * *count > mesh->face_count) {
     free(*face);
     *face = NULL;

@@ -3,6 +3,7 @@
 
 #include "scenes/geometry/vector.h"
 #include "scenes/shapes/shape.h"
+#include "scenes/shapes/water.h"
 #include "tests/check.h"
 #include "tests/random.h"
 
@@ -106,6 +107,57 @@ static void test_sides_of_a_thin_wall_stay_apart(void **state) {
   drop(&c);
 }
 
+/* How far off the mesh is on a way from p; INFINITY: it is not met. */
+static double distance_along(const abbe_mesh *mesh, const double p[3], const double d[3]) {
+  double least = INFINITY;
+  for (size_t f = 0; f < mesh->face_count; f++) {
+    const uint32_t *face = mesh->face[f];
+    double corner[3][3], n[3], across[3];
+    int side[2] = {0, 0};
+    for (int k = 0; k < 3; k++) abbe_vector_subtract(mesh->position[face[k]], p, corner[k]);
+    for (int k = 0; k < 3; k++) {
+      abbe_vector_cross(corner[k], corner[(k + 1) % 3], across);
+      side[abbe_vector_dot(across, d) < 0]++;
+    }
+    abbe_vector_triangle(corner[0], corner[1], corner[2], n);
+    const double t = abbe_vector_dot(n, corner[0]) / abbe_vector_dot(n, d);
+    if ((side[0] == 3 || side[1] == 3) && t > 0) least = fmin(least, t);
+  }
+  return least;
+}
+
+/* Water, whose rim has vertices of the top and of the walls: ways out of its middle, and such that
+ * pass close by the rim, meet it where they did. */
+static void test_seams_stay_closed(void **state) {
+  (void)state;
+  enum { RAYS = 300 };
+  const abbe_water_wave wave = {0.01, 0.5, 0.3, 0};
+  const abbe_water water = {
+      .size = {2, 1.5, 0.6}, .cells = {240, 200}, .wave_count = 1, .wave = &wave};
+  const double middle[3] = {0, 0, -0.3};
+  uint64_t random = 3;
+  coarse c;
+  assert_int_equal(abbe_water_make(&water, &c.whole, NULL), ABBE_OK);
+  make_few(&c);
+  assert_non_null(c.few.face);
+  assert_in_range(c.few.face_count, ABBE_COARSE_MESH_FACES / 2, 3 * ABBE_COARSE_MESH_FACES / 2);
+  assert_upright(&c.few);
+  for (int i = 0; i < RAYS; i++) {
+    double d[3];
+    for (int k = 0; k < 3; k++) d[k] = random_between(&random, -1, 1);
+    if (i % 2 == 0) { /* to the rim of the top's shorter sides */
+      d[0] = i % 4 == 0 ? 1 : -1;
+      d[1] *= 0.75;
+      d[2] = 0.3 + 0.01 * cos(2 * 3.14159265 / 0.5 * (d[0] * cos(0.3) + d[1] * sin(0.3))) +
+             random_between(&random, -1e-3, 1e-3);
+    }
+    abbe_vector_normalise(d);
+    const double few = distance_along(&c.few, middle, d), all = distance_along(&c.whole, middle, d);
+    assert_near(few / all, 1, 0.02);
+  }
+  drop(&c);
+}
+
 /* Few faces, faces of their own vertices, and no face at all: left as they are. */
 static void test_what_is_no_smooth_large_mesh_is_left(void **state) {
   (void)state;
@@ -129,6 +181,7 @@ static void test_what_is_no_smooth_large_mesh_is_left(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_sides_of_a_thin_wall_stay_apart),
+      cmocka_unit_test(test_seams_stay_closed),
       cmocka_unit_test(test_what_is_no_smooth_large_mesh_is_left),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
