@@ -30,13 +30,12 @@ void abbe_gpu_free(abbe_gpu *gpu) {
   *gpu = (abbe_gpu){0};
 }
 
-static abbe_result allocate_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
-                                   abbe_error *error) {
+static abbe_result allocate_buffer(abbe_gpu *gpu, size_t size, GLuint *out, abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
   gl->GenBuffers(1, out);
-  const bool lent = data == NULL && abbe_buffer_memory_lend(&gpu->memory, gl, size, *out);
+  const bool lent = abbe_buffer_memory_lend(&gpu->memory, gl, size, *out);
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *out);
-  if (!lent) gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)size, data, GL_DYNAMIC_COPY);
+  if (!lent) gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)size, NULL, GL_DYNAMIC_COPY);
   const abbe_result result = abbe_gl_check(gl, "the allocation of a buffer", error);
   if (result == ABBE_OK) return ABBE_OK;
   gl->DeleteBuffers(1, out);
@@ -47,26 +46,28 @@ static abbe_result allocate_buffer(abbe_gpu *gpu, size_t size, const void *data,
 abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
                                  abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
-  const size_t room = size > 0 ? size : 16; /* a bound buffer may not be empty */
+  const size_t room = abbe_gpu_store_room(size);
   const abbe_stored_key key = {.kind = ABBE_STORED_BUFFER, .bytes = room};
+  abbe_result result = ABBE_OK;
   *out = abbe_gpu_store_take(&gpu->store, &key);
   if (*out != 0) {
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *out);
-    if (data != NULL && size > 0)
-      gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, data);
-    return ABBE_OK;
+  } else {
+    result = abbe_gl_check(gl, "what came before a buffer was allocated", error);
+    if (result != ABBE_OK) return result;
+    result = allocate_buffer(gpu, room, out, error);
+    if (result == ABBE_NO_MEMORY) {
+      abbe_gpu_make_way(gpu);
+      result = allocate_buffer(gpu, room, out, error);
+    }
+    if (result == ABBE_OK) result = abbe_gpu_store_add(&gpu->store, &key, *out, error);
   }
-  abbe_result result = abbe_gl_check(gl, "what came before a buffer was allocated", error);
-  if (result != ABBE_OK) return result;
-  result = allocate_buffer(gpu, room, size > 0 ? data : NULL, out, error);
-  if (result == ABBE_NO_MEMORY) {
-    abbe_gpu_make_way(gpu);
-    result = allocate_buffer(gpu, room, size > 0 ? data : NULL, out, error);
+  if (result != ABBE_OK) {
+    gl->DeleteBuffers(1, out);
+    *out = 0;
+  } else if (data != NULL && size > 0) {
+    gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, data);
   }
-  if (result == ABBE_OK) result = abbe_gpu_store_add(&gpu->store, &key, *out, error);
-  if (result == ABBE_OK) return ABBE_OK;
-  gl->DeleteBuffers(1, out);
-  *out = 0;
   return result;
 }
 

@@ -1,5 +1,6 @@
 #include "gl/device/gpu_store.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,6 +9,17 @@ static bool same(const abbe_stored_key *a, const abbe_stored_key *b) {
   if (a->kind == ABBE_STORED_PROGRAM) return strcmp(a->text, b->text) == 0;
   return a->format == b->format && a->bytes == b->bytes && a->width == b->width &&
          a->height == b->height && a->layers == b->layers && a->levels == b->levels;
+}
+
+size_t abbe_gpu_store_room(size_t bytes) {
+  enum { LARGE = 1 << 20, STEPS = 16, MORE = 256 };
+  size_t power = LARGE;
+  while (power <= bytes / 2) power *= 2;
+  const size_t step = bytes >= LARGE ? power / STEPS : 4;
+  if (bytes > SIZE_MAX - step - 2 * MORE) return bytes;
+  size_t room = (bytes + step - 1) / step * step;
+  while ((room & (room - 1)) == 0 || (room >> 8 & 255) == 0) room += MORE;
+  return room;
 }
 
 GLuint abbe_gpu_store_take(abbe_gpu_store *store, const abbe_stored_key *key) {

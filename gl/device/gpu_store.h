@@ -37,6 +37,12 @@ typedef struct abbe_gpu_store {
   size_t count, room;
 } abbe_gpu_store;
 
+/* Bytes to make a buffer with where so many are asked for: large ones in steps of a sixteenth, so
+ * that what changes a little takes up what was put back. And Mesa's llvmpipe compiles a program
+ * once more for texels of a power of two bytes, and for those whose bits 8 to 15 are none; no room
+ * is either. */
+size_t abbe_gpu_store_room(size_t bytes);
+
 /* Something that was made so and is not in use, which then is; 0: there is none. A program may be
  * in use several times. */
 GLuint abbe_gpu_store_take(abbe_gpu_store *store, const abbe_stored_key *key);

@@ -56,6 +56,26 @@ static void what_is_alike_is_taken_up_once(void **state) {
   abbe_gpu_store_free(&store, &gl);
 }
 
+/* No room is a power of two or has nothing in bits 8 to 15; large ones are shared, and not much is
+ * wasted. */
+static void rooms_are_of_one_kind(void **state) {
+  (void)state;
+  size_t kinds = 0, last = 0;
+  for (size_t size = 0; size < (size_t)1 << 28; size += 1 + size / 300) {
+    const size_t room = abbe_gpu_store_room(size);
+    assert_true(room >= size && room <= size + size / 16 + 768 && room % 4 == 0);
+    assert_true((room & (room - 1)) != 0 && (room >> 8 & 255) != 0);
+    kinds += size >= 1 << 20 && room != last;
+    last = room;
+  }
+  assert_in_range(kinds, 8 * 16, 8 * 16 + 1);
+  for (int bit = 0; bit < 28; bit++) {
+    const size_t room = abbe_gpu_store_room((size_t)1 << bit);
+    assert_true((room & (room - 1)) != 0 && (room >> 8 & 255) != 0);
+  }
+  assert_int_equal(abbe_gpu_store_room(SIZE_MAX), SIZE_MAX); /* which nobody has */
+}
+
 static void programs_are_shared_by_their_text(void **state) {
   (void)state;
   abbe_gpu_store store = {0};
@@ -92,6 +112,7 @@ static void only_what_is_not_in_use_is_deleted(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(what_is_alike_is_taken_up_once),
+      cmocka_unit_test(rooms_are_of_one_kind),
       cmocka_unit_test(programs_are_shared_by_their_text),
       cmocka_unit_test(only_what_is_not_in_use_is_deleted),
   };
