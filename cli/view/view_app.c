@@ -23,6 +23,7 @@
 abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc *desc,
                                 abbe_context *context, abbe_error *error) {
   *app = (abbe_view_session){.gl = abbe_context_gl(context),
+                             .screen = {.gl = abbe_context_gl(context)},
                              .keep = desc->keep,
                              .ocio = desc->ocio,
                              .materials = desc->materials,
@@ -53,7 +54,7 @@ void abbe_view_app_end(abbe_view_session *app) {
     abbe_view_worker_free(app->desk[i].worker);
     app->desk[i].worker = NULL;
   }
-  if (app->texture != 0) app->gl->DeleteTextures(1, &app->texture);
+  abbe_view_screen_free(&app->screen);
   abbe_ui_free();
   abbe_view_table_free(app->table);
   abbe_display_free(app->display);
@@ -325,7 +326,6 @@ static void time_events(abbe_view_session *app) {
 
 static void upload(abbe_view_session *app) {
   const abbe_image *image = &app->pictures.rendered;
-  const abbe_gl *gl = app->gl;
   unsigned char *pixels = NULL;
   abbe_error error = {0};
   if (image->data == NULL) return;
@@ -340,24 +340,11 @@ static void upload(abbe_view_session *app) {
   }
   /* the first picture is not kept waiting, and no other one */
   if (app->table == NULL) app->table = abbe_view_table_begin(app->display);
-  if (app->texture == 0 || app->texture_width != image->width ||
-      app->texture_height != image->height) {
-    if (app->texture != 0) gl->DeleteTextures(1, &app->texture);
-    gl->GenTextures(1, &app->texture);
-    gl->BindTexture(GL_TEXTURE_2D, app->texture);
-    gl->TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA8, (GLsizei)image->width, (GLsizei)image->height);
-    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    app->texture_width = image->width;
-    app->texture_height = image->height;
-  }
-  const double side = (double)fmax(1, (double)app->pictures.coarse);
-  app->texture_part[0] = side > 1 ? (double)app->moving.width / (side * (double)image->width) : 1;
-  app->texture_part[1] = side > 1 ? (double)app->moving.height / (side * (double)image->height) : 1;
-  gl->BindTexture(GL_TEXTURE_2D, app->texture);
-  gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)image->width, (GLsizei)image->height, GL_RGBA,
-                    GL_UNSIGNED_BYTE, pixels);
+  const bool coarse = app->pictures.coarse > 1;
+  const size_t seen[2] = {coarse ? app->moving.width : image->width,
+                          coarse ? app->moving.height : image->height};
+  abbe_view_screen_take(&app->screen, pixels, image->width, image->height,
+                        coarse ? app->pictures.coarse : 1, seen);
   free(pixels);
 }
 
@@ -413,6 +400,7 @@ void abbe_view_app_key(abbe_view_session *app, int key, bool down, int modifiers
 
 void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, double now_s) {
   abbe_view_state *s = &app->state;
+  static const float dark[4] = {0.086F, 0.094F, 0.11F, 1};
   const double panel = fmin(ABBE_VIEW_PANEL_WIDTH, input->width);
   const double width = floor(input->width - panel), height = floor(input->height);
   const bool room = width >= 16 && height >= 16; /* else there is no picture to be drawn */
@@ -429,8 +417,9 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
       app->drawn != abbe_view_shown_of(&app->pictures, s->shown))
     upload(app);
   app->input = *input;
+  app->gl->ClearBufferfv(GL_COLOR, 0, dark);
+  if (room) abbe_view_screen_draw(&app->screen, (size_t)width, (size_t)height);
   abbe_ui_begin(input);
-  if (app->texture != 0) abbe_ui_image(app->texture, 0, 0, width, height, app->texture_part);
   if (room) abbe_view_marks_draw(app);
   abbe_ui_panel_begin("Abbe", width, 0, panel, input->height);
   abbe_view_panel_draw(app, now_s);

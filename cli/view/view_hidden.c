@@ -39,7 +39,6 @@ void abbe_view_hidden_resize(abbe_view_hidden *h, size_t width, size_t height) {
 }
 
 void abbe_view_hidden_frame(abbe_view_hidden *h) {
-  static const float dark[4] = {0.05F, 0.055F, 0.063F, 1};
   const double now = abbe_clock_seconds();
   h->input.width = (double)h->width;
   h->input.height = (double)h->height;
@@ -47,7 +46,6 @@ void abbe_view_hidden_frame(abbe_view_hidden *h) {
   h->last_s = now;
   h->gl->BindFramebuffer(GL_FRAMEBUFFER, h->framebuffer);
   h->gl->Viewport(0, 0, (GLsizei)h->width, (GLsizei)h->height);
-  h->gl->ClearBufferfv(GL_COLOR, 0, dark);
   abbe_view_app_frame(&h->session, &h->input, now);
   h->gl->Finish(); /* as a window's swap: else frames pile up, and workers' pictures behind them */
   h->input.wheel = 0;

@@ -39,6 +39,7 @@ static void draw_feed(const abbe_view_session *app) {
 void abbe_view_marks_draw(const abbe_view_session *app) {
   const abbe_view_state *s = &app->state;
   abbe_view_handle handle;
+  abbe_ui_clip(app->area[0], app->area[1]);
   for (size_t i = 0; abbe_view_state_handle(s, i, &handle); i++) {
     const bool light = handle.kind == ABBE_VIEW_LIGHT_HANDLE;
     const bool near = hypot(handle.xy[0] - app->input.mouse[0],

@@ -6,11 +6,11 @@
 #define ABBE_CLI_VIEW_VIEW_SESSION_H
 
 #include "cli/view/picture/view_probe.h"
+#include "cli/view/picture/view_screen.h"
 #include "cli/view/picture/view_table.h"
 #include "cli/view/view_ui.h"
 #include "cli/view/work/view_files.h"
 #include "cli/view/work/view_worker.h"
-#include "gl/device/api.h"
 
 #define ABBE_VIEW_PANEL_WIDTH 340
 #define ABBE_VIEW_MOST_SCENES 64
@@ -50,11 +50,9 @@ typedef struct abbe_view_session {
   double against; /* root mean square of rendered less traced, over the mean; 0: not known */
   double noise;   /* of the traced picture alone, the same */
   size_t passes;  /* behind the traced picture */
-  unsigned texture;
-  size_t texture_width, texture_height;
-  double texture_part[2]; /* of it, across and up, that is the picture */
-  bool stale;             /* the texture */
-  abbe_view_shown drawn;  /* what it shows */
+  abbe_view_screen screen;
+  bool stale;            /* the screen */
+  abbe_view_shown drawn; /* what it shows */
   double drawn_exposure;
   abbe_view_probe probe;
   abbe_view_feed *feed; /* of the pixel; NULL: not known */

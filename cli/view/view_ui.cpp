@@ -167,7 +167,7 @@ void abbe_ui_panel_begin(const char *name, double x, double y, double width, dou
   ImGui::Begin(name, nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus);
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoBackground);
   ImGui::PushItemWidth(ImGui::GetWindowWidth() * 0.56F);
   in_panel = true;
 }
@@ -279,10 +279,8 @@ double abbe_ui_panel_width(void) {
   return ImGui::GetContentRegionAvail().x;
 }
 
-void abbe_ui_image(unsigned texture, double x, double y, double width, double height,
-                   const double part[2]) {
-  list()->AddImage(reinterpret_cast<ImTextureID>(static_cast<size_t>(texture)), at(x, y),
-                   at(x + width, y + height), at(0, 1 - part[1]), at(part[0], 1));
+void abbe_ui_clip(double width, double height) {
+  list()->PushClipRect(at(0, 0), at(width, height));
 }
 
 void abbe_ui_line(double x0, double y0, double x1, double y1, abbe_ui_colour colour, double width) {

@@ -40,6 +40,7 @@ void abbe_ui_end(void);
 bool abbe_ui_has_pointer(void);
 bool abbe_ui_has_keys(void);
 
+/* Its background is what is there. */
 void abbe_ui_panel_begin(const char *name, double x, double y, double width, double height);
 void abbe_ui_panel_end(void);
 /* Whether the section is open; it is at first if `open`. */
@@ -62,9 +63,8 @@ void abbe_ui_tooltip(const char *text);
 /* An empty place of the panel for a drawing; false where it is out of sight. */
 bool abbe_ui_place(const char *label, double width, double height, double *x, double *y);
 /* Lines and texts: over the panel that is open, else under all panels. */
-/* part: of the texture, to the right and up from its left lower corner, 0 to 1. */
-void abbe_ui_image(unsigned texture, double x, double y, double width, double height,
-                   const double part[2]);
+/* None goes farther than this to the right and down until the panel begins. */
+void abbe_ui_clip(double width, double height);
 void abbe_ui_line(double x0, double y0, double x1, double y1, abbe_ui_colour colour, double width);
 void abbe_ui_circle(double x, double y, double radius, abbe_ui_colour colour, double width);
 void abbe_ui_box(double x0, double y0, double x1, double y1, abbe_ui_colour colour);

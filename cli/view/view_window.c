@@ -104,7 +104,6 @@ static void read_pointer(window *w) {
 }
 
 static void loop(window *w, const abbe_gl *gl) {
-  static const float dark[4] = {0.05F, 0.055F, 0.063F, 1};
   double last = abbe_clock_seconds();
   while (!glfwWindowShouldClose(w->handle)) {
     int width, height;
@@ -119,7 +118,6 @@ static void loop(window *w, const abbe_gl *gl) {
       w->input.height = height;
       gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
       gl->Viewport(0, 0, width, height);
-      gl->ClearBufferfv(GL_COLOR, 0, dark);
       abbe_view_app_frame(&w->session, &w->input, now);
       glfwSwapBuffers(w->handle);
     }

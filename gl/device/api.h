@@ -32,6 +32,7 @@ extern "C" {
   X(BINDTEXTURE, BindTexture)                                                                      \
   X(BINDVERTEXARRAY, BindVertexArray)                                                              \
   X(BLENDEQUATION, BlendEquation)                                                                  \
+  X(BLITFRAMEBUFFER, BlitFramebuffer)                                                              \
   X(BLENDFUNC, BlendFunc)                                                                          \
   X(BUFFERDATA, BufferData)                                                                        \
   X(CLEARBUFFERSUBDATA, ClearBufferSubData)                                                        \

@@ -6,10 +6,6 @@
 static const double roomy = 0.82; /* of the time, for a finer picture */
 static const double alike = 1.15; /* no time is saved by that */
 
-static double most_ms(bool lit) {
-  return lit ? ABBE_VIEW_MOVING_MS : ABBE_VIEW_TURNING_MS;
-}
-
 /* Fewer samples or photons by a step are this share of the work. */
 static double eye_share(size_t step) {
   return 1 / (double)((step + 1) * (step + 1));
@@ -17,6 +13,10 @@ static double eye_share(size_t step) {
 
 static double light_share(size_t step) {
   return 1 / (double)(1u << step);
+}
+
+static double work_of(bool lit, size_t light, size_t eye) {
+  return lit ? 0.5 * (light_share(light) + eye_share(eye)) : eye_share(eye);
 }
 
 /* Those that come into question. */
@@ -47,13 +47,34 @@ static double by_share(bool lit, const size_t now[2], double ms, size_t light, s
   return ms * 0.5 * (light_share(light) / light_share(now[0]) + eye_times);
 }
 
+/* By the two pictures that differ most: time is linear in the share of all work. Infinite: there
+ * are no two. */
+static double by_work(const abbe_view_pace *p, bool lit, size_t light, size_t eye) {
+  double least = INFINITY, most = 0, least_ms = 0, most_ms = 0;
+  for (size_t e = 0; e < ABBE_VIEW_EYE_STEPS; e++)
+    for (size_t l = 0; l < (lit ? ABBE_VIEW_LIGHT_STEPS : 1); l++) {
+      const double ms = known(p, lit, l, e), work = work_of(lit, l, e);
+      if (ms > 0 && work < least) {
+        least = work;
+        least_ms = ms;
+      }
+      if (ms > 0 && work > most) {
+        most = work;
+        most_ms = ms;
+      }
+    }
+  if (!(most > least)) return INFINITY;
+  return least_ms + (most_ms - least_ms) * (work_of(lit, light, eye) - least) / (most - least);
+}
+
 /* What a picture took last, or a guess, which lies between those of coarser and finer ones. */
 static double expected(const abbe_view_pace *p, bool lit, const size_t now[2], double ms,
                        size_t light, size_t eye) {
   double guess = known(p, lit, light, eye);
   if (guess > 0) return guess;
   if (lit) guess = by_light(p, light, eye);
-  if (!(guess > 0)) guess = by_share(lit, now, ms, light, eye);
+  if (!(guess > 0))
+    guess = fmin(by_work(p, lit, light, eye), by_share(lit, now, ms, light, eye));
   for (size_t e = 0; e < ABBE_VIEW_EYE_STEPS; e++)
     for (size_t l = 0; l < (lit ? ABBE_VIEW_LIGHT_STEPS : 1); l++) {
       const double other = known(p, lit, l, e);
@@ -97,7 +118,7 @@ static double keep(abbe_view_pace *p, bool lit, const size_t now[2], double ms) 
   enum { FOR_SO_LONG = 24 };
   double *own = lit ? &p->lit_ms[now[0]][now[1]] : &p->kept_ms[now[1]];
   const double before = *own;
-  p->in_time = ms <= most_ms(lit) ? p->in_time + 1 : 0;
+  p->in_time = ms <= ABBE_VIEW_MOVING_MS ? p->in_time + 1 : 0;
   const bool other = before > 0 && (ms > 1.5 * before || ms < before / 1.5);
   if (other || p->in_time == FOR_SO_LONG) {
     memset(p->lit_ms, 0, sizeof p->lit_ms);
@@ -111,7 +132,7 @@ static double keep(abbe_view_pace *p, bool lit, const size_t now[2], double ms) 
 void abbe_view_pace_guess(abbe_view_pace *p, double drawn_ms) {
   p->eye_step = 1; /* what is too coarse is not so for long */
   while (p->eye_step + 1 < ABBE_VIEW_EYE_STEPS &&
-         drawn_ms * eye_share(p->eye_step) > roomy * ABBE_VIEW_TURNING_MS)
+         drawn_ms * eye_share(p->eye_step) > roomy * ABBE_VIEW_MOVING_MS)
     p->eye_step++;
 }
 
@@ -123,10 +144,10 @@ void abbe_view_pace_take(abbe_view_pace *p, size_t light_step, size_t eye_step, 
   if (p->strange) return;
   p->ms = ms;
   const double own = keep(p, lit, now, ms);
-  if (own <= most_ms(lit)) {
-    if (find_finest(p, lit, now, own, roomy * most_ms(lit), next) && !is_finer(next, now))
+  if (own <= ABBE_VIEW_MOVING_MS) {
+    if (find_finest(p, lit, now, own, roomy * ABBE_VIEW_MOVING_MS, next) && !is_finer(next, now))
       memcpy(next, now, sizeof next);
-  } else if (!find_finest(p, lit, now, own, most_ms(lit), next)) {
+  } else if (!find_finest(p, lit, now, own, ABBE_VIEW_MOVING_MS, next)) {
     find_finest(p, lit, now, own, alike * find_fastest(p, lit, now, own), next);
   }
   if (lit) p->light_step = next[0];

@@ -11,10 +11,11 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#define ABBE_VIEW_MOVING_MS 49.0  /* from one picture to the next where light moves, 20 a second */
-#define ABBE_VIEW_TURNING_MS 31.0 /* where its light is kept, 30 a second */
-#define ABBE_VIEW_EYE_STEPS 4     /* 0: a sample a pixel, then one for 2 x 2, 3 x 3, 4 x 4 */
-#define ABBE_VIEW_LIGHT_STEPS 4   /* 0: the draft's photons, then half as many each */
+/* From one picture to the next. An event waits for the one in the making and for its own, so no
+ * longer than 60 ms. */
+#define ABBE_VIEW_MOVING_MS 29.0
+#define ABBE_VIEW_EYE_STEPS 4   /* 0: a sample a pixel, then one for 2 x 2, 3 x 3, 4 x 4 */
+#define ABBE_VIEW_LIGHT_STEPS 4 /* 0: the draft's photons, then half as many each */
 
 /* Zeroed: nothing is known. */
 typedef struct abbe_view_pace {

@@ -163,11 +163,13 @@ static bool is_little(const abbe_inner_light *inside, size_t exits) {
   return inside->kept[exits] + inside->faint[exits] <= ABBE_INNER_LIGHT_MOST;
 }
 
-/* Of all that it is found from. */
+/* Of all that it is found from; for pictures of light that moves not of where it stands: what was
+ * found before serves. */
 static uint64_t digest_of(const abbe_scene *scene, const abbe_plan *plan, bool share_is_open,
                           bool exits_are_open) {
   const abbe_object *object = &scene->object[plan->refractor_object[0]];
-  const bool open[3] = {share_is_open, exits_are_open, plan->camera_sees_refractor};
+  const bool open[4] = {share_is_open, exits_are_open, plan->camera_sees_refractor,
+                        plan->desc.coarse == ABBE_COARSE_ALL};
   abbe_material_range range = {0};
   abbe_material_range_make(object->material, plan->desc.min_nm, plan->desc.max_nm, &range, NULL);
   const double inputs[3] = {range.middle_n, range.middle_per_m, plan->desc.energy_share};
@@ -182,11 +184,12 @@ static uint64_t digest_of(const abbe_scene *scene, const abbe_plan *plan, bool s
     if (!abbe_reach_light(light, object)) continue;
     const int kind = (int)light->kind;
     const double cone[2] = {light->cone_rad, light->soft_rad};
+    met = true;
     h = abbe_digest(h, &kind, sizeof kind);
     h = abbe_digest(h, cone, sizeof cone);
+    if (plan->desc.coarse == ABBE_COARSE_ALL) continue;
     h = abbe_digest(h, light->position, sizeof light->position);
     h = abbe_digest(h, light->direction, sizeof light->direction);
-    met = true;
   }
   if (!met) h = abbe_digest(h, scene->camera.eye, sizeof scene->camera.eye);
   return h != 0 ? h : 1;

@@ -275,7 +275,7 @@ static void test_the_first_step_follows_from_the_drawing(void **state) {
   static const struct {
     double drawn_ms;
     size_t eye_step;
-  } cases[] = {{20, 1}, {100, 1}, {110, 2}, {300, 3}, {2000, 3}};
+  } cases[] = {{20, 1}, {94, 1}, {97, 2}, {300, 3}, {2000, 3}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     abbe_view_refine r = begun();
     begin(&r, SHOWS, 0);

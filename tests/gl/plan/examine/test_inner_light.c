@@ -194,6 +194,31 @@ static void an_earlier_plan_is_taken_over(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* But while light moves it is that of where lamps stood, and of the same stone. */
+static void an_earlier_plan_serves_light_that_moves(void **state) {
+  (void)state;
+  const abbe_render_desc coarse = {.coarse = ABBE_COARSE_ALL};
+  abbe_scene scene = {0};
+  abbe_plan first, moved, rests, other;
+  load_shipped("gem", &scene);
+  assert_int_equal(abbe_plan_make(&scene, &coarse, &first, NULL), ABBE_OK);
+  first.inside.exits++;
+  scene.light[0].position[0] += 1e-9;
+  assert_int_equal(abbe_plan_make_after(&first, &scene, &coarse, &moved, NULL), ABBE_OK);
+  assert_int_equal(moved.desc.exits, first.desc.exits + 1);
+  assert_int_equal(abbe_plan_make_after(&first, &scene, NULL, &rests, NULL), ABBE_OK);
+  assert_int_equal(rests.desc.exits, first.desc.exits);
+  for (size_t i = 0; i < scene.object_count; i++)
+    if (scene.object[i].exact.kind == ABBE_EXACT_CONVEX) scene.object[i].exact.plane[0][3] *= 1 - 1e-9;
+  assert_int_equal(abbe_plan_make_after(&first, &scene, &coarse, &other, NULL), ABBE_OK);
+  assert_int_equal(other.desc.exits, first.desc.exits);
+  abbe_plan_free(&first);
+  abbe_plan_free(&moved);
+  abbe_plan_free(&rests);
+  abbe_plan_free(&other);
+  abbe_scene_free(&scene);
+}
+
 #define STONE                                                                                      \
   "- {name: stone, shape: gem, sides: 6, girdle: 0.1, table: 0.06, crown: 0.03, pavilion: 0.05, "  \
   "transform: [{rotate: {axis: [1, 0, 0], angle: 5}}, {translate: [0, 0, 0.2]}], material: "       \
@@ -238,6 +263,7 @@ int main(void) {
       cmocka_unit_test(exits_are_as_few_as_do),
       cmocka_unit_test(a_gem_takes_as_many_exits_as_carry_light),
       cmocka_unit_test(an_earlier_plan_is_taken_over),
+      cmocka_unit_test(an_earlier_plan_serves_light_that_moves),
       cmocka_unit_test(the_ledger_says_the_same),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
