@@ -36,6 +36,7 @@ abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc
   if (result == ABBE_OK) result = abbe_display_list(desc->ocio, &app->views, error);
   if (result == ABBE_OK) result = abbe_view_session_choose_view(app, 0, error);
   if (result == ABBE_OK) result = abbe_ui_make(error);
+  if (result == ABBE_OK) result = abbe_view_painter_make(desc->wake, &app->painter, error);
   for (size_t i = 0; i < ABBE_VIEW_WORKERS && result == ABBE_OK; i++) {
     app->desk[i].stopped_s = -1;
     result = abbe_view_worker_make(desc->materials, desc->volume, desc->wake, &app->desk[i].worker,
@@ -54,6 +55,7 @@ void abbe_view_app_end(abbe_view_session *app) {
     abbe_view_worker_free(app->desk[i].worker);
     app->desk[i].worker = NULL;
   }
+  abbe_view_painter_free(app->painter);
   abbe_view_screen_free(&app->screen);
   abbe_ui_free();
   abbe_view_table_free(app->table);
@@ -137,6 +139,7 @@ static void take(abbe_view_session *app, size_t worker, abbe_view_result *result
   if (!shown) return;
   const abbe_camera *led = &app->desk[worker].camera; /* unknown before the first picture */
   abbe_view_state_picture(&app->state, newest || led->fov_y_rad == 0 ? &app->state.camera : led);
+  abbe_view_painter_stop(app->painter); /* of pictures that go now */
   const double pictured_s = abbe_clock_seconds();
   if (moved && app->seen_s < 0) { /* after a rest */
     app->frame_count = 0;
@@ -195,6 +198,7 @@ static bool wants_map(const abbe_view_session *app) {
 
 static void take_look(abbe_view_session *app, abbe_view_result *result) {
   if (result->map.data != NULL) {
+    abbe_view_painter_stop(app->painter);
     replace(&app->pictures.map, &result->map);
     app->stale = true;
   }
@@ -294,15 +298,21 @@ static bool is_moving(const abbe_view_session *app) {
           (hand->job.stage == ABBE_VIEW_MOVING && !hand->job.warms));
 }
 
+/* A moving picture is there that the screen does not show. */
+static bool has_moved(const abbe_view_session *app) {
+  return app->stale && app->stage == ABBE_VIEW_MOVING;
+}
+
 /* A moving picture that is nearly there is waited for: drawing the window meanwhile would only take
  * the processor from it. */
 static void await_moving(abbe_view_session *app, double now_s) {
   const double until_s = abbe_clock_seconds() + WAIT_S;
-  while (!app->stale && is_moving(app) && abbe_clock_seconds() < until_s) {
+  if (is_moving(app)) abbe_view_painter_stop(app->painter);
+  while (!has_moved(app) && is_moving(app) && abbe_clock_seconds() < until_s) {
     abbe_view_worker_wait(app->desk[app->state.refine.shows].worker,
                           until_s - abbe_clock_seconds());
     take_results(app);
-    if (!app->stale) give(app, now_s);
+    if (!has_moved(app)) give(app, now_s);
   }
 }
 
@@ -324,28 +334,65 @@ static void time_events(abbe_view_session *app) {
 
 /* ---- the picture in the window ---- */
 
-static void upload(abbe_view_session *app) {
+/* What the screen does not show yet of that which it is to show. */
+static bool is_stale(const abbe_view_session *app) {
+  const abbe_view_state *s = &app->state;
+  return app->pictures.rendered.data != NULL &&
+         (app->stale || app->drawn_exposure != s->exposure ||
+          app->drawn != abbe_view_shown_of(&app->pictures, s->shown));
+}
+
+static abbe_view_painting painting_of(const abbe_view_session *app) {
+  return (abbe_view_painting){.pictures = &app->pictures,
+                              .shown = abbe_view_shown_of(&app->pictures, app->state.shown),
+                              .exposure = app->state.exposure,
+                              .display = app->display};
+}
+
+/* To the screen, or why there is nothing; pixels are freed. */
+static void put(abbe_view_session *app, const abbe_view_painting *what, unsigned char *pixels,
+                abbe_result result, const abbe_error *error) {
   const abbe_image *image = &app->pictures.rendered;
-  unsigned char *pixels = NULL;
-  abbe_error error = {0};
-  if (image->data == NULL) return;
-  app->drawn = abbe_view_shown_of(&app->pictures, app->state.shown);
-  app->drawn_exposure = app->state.exposure;
-  app->stale = false;
-  const bool moving = app->stage == ABBE_VIEW_MOVING;
-  if (abbe_view_show(&app->pictures, app->drawn, app->drawn_exposure, app->display,
-                     moving ? abbe_view_table_get(app->table) : NULL, &pixels, &error) != ABBE_OK) {
-    snprintf(app->note, sizeof app->note, "%s", error.text);
-    return;
-  }
-  /* the first picture is not kept waiting, and no other one */
-  if (app->table == NULL) app->table = abbe_view_table_begin(app->display);
   const bool coarse = app->pictures.coarse > 1;
   const size_t seen[2] = {coarse ? app->moving.width : image->width,
                           coarse ? app->moving.height : image->height};
-  abbe_view_screen_take(&app->screen, pixels, image->width, image->height,
-                        coarse ? app->pictures.coarse : 1, seen);
+  app->drawn = what->shown;
+  app->drawn_exposure = what->exposure;
+  app->stale = false;
+  if (result == ABBE_OK)
+    abbe_view_screen_take(&app->screen, pixels, image->width, image->height,
+                          coarse ? app->pictures.coarse : 1, seen);
+  else
+    snprintf(app->note, sizeof app->note, "%s", error->text);
   free(pixels);
+  /* the first picture is not kept waiting, and no other one */
+  if (app->table == NULL) app->table = abbe_view_table_begin(app->display);
+}
+
+/* What moves is brought to the screen at once. */
+static void show_moving(abbe_view_session *app) {
+  const abbe_view_painting what = painting_of(app);
+  unsigned char *pixels = NULL;
+  abbe_error error = {0};
+  const abbe_result result = abbe_view_show(what.pictures, what.shown, what.exposure, what.display,
+                                            abbe_view_table_get(app->table), &pixels, &error);
+  put(app, &what, pixels, result, &error);
+}
+
+/* What rests is painted meanwhile, unless a change has come. */
+static void show_rest(abbe_view_session *app) {
+  const abbe_view_painting now = painting_of(app);
+  const abbe_view_painting *has = abbe_view_painter_has(app->painter);
+  const bool other = has != NULL && (has->shown != now.shown || has->exposure != now.exposure);
+  unsigned char *pixels = NULL;
+  abbe_result result = ABBE_OK;
+  abbe_error error = {0};
+  if (other || is_moving(app)) abbe_view_painter_stop(app->painter);
+  has = abbe_view_painter_has(app->painter);
+  if (has == NULL && !is_moving(app))
+    abbe_view_painter_give(app->painter, &now);
+  else if (has != NULL && abbe_view_painter_take(app->painter, &pixels, &result, &error))
+    put(app, &now, pixels, result, &error);
 }
 
 /* Changes up to now, by the pointer, from this one on. */
@@ -413,9 +460,8 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
   give(app, now_s);
   await_moving(app, now_s);
   if (s->picked) abbe_view_probe_make(&app->pictures, s->pixel, &app->probe);
-  if (app->stale || app->drawn_exposure != s->exposure ||
-      app->drawn != abbe_view_shown_of(&app->pictures, s->shown))
-    upload(app);
+  if (is_stale(app) && app->stage == ABBE_VIEW_MOVING) show_moving(app);
+  if (is_stale(app)) show_rest(app);
   app->input = *input;
   app->gl->ClearBufferfv(GL_COLOR, 0, dark);
   if (room) abbe_view_screen_draw(&app->screen, (size_t)width, (size_t)height);
@@ -449,8 +495,13 @@ bool abbe_view_app_stopped(const abbe_view_session *app) {
   return true;
 }
 
+bool abbe_view_app_painted(const abbe_view_session *app) {
+  return !is_stale(app);
+}
+
 bool abbe_view_app_rests(abbe_view_session *app, double now_s) {
   abbe_view_request request;
+  if (is_stale(app)) return false;
   for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++)
     if (!abbe_view_worker_idle(app->desk[i].worker)) return false;
   return !wants_map(app) && !wants_feed(app, &request) && !abbe_view_turn_wants(app, &request) &&

@@ -35,6 +35,8 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
 double abbe_view_app_wait(abbe_view_session *app, double now_s);
 /* Nothing is being done that a change has made obsolete. */
 bool abbe_view_app_stopped(const abbe_view_session *app);
+/* The window shows the picture that stands. */
+bool abbe_view_app_painted(const abbe_view_session *app);
 /* Everything that was asked for is drawn. */
 bool abbe_view_app_rests(abbe_view_session *app, double now_s);
 

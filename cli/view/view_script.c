@@ -47,10 +47,17 @@ static void pump(script *s) {
   abbe_view_hidden_frame(&s->hidden);
 }
 
+/* The processor is others' meanwhile. */
+static void sleep_a_little(void) {
+  const struct timespec time = {.tv_nsec = 5000000};
+  nanosleep(&time, NULL);
+}
+
 static abbe_result shoot(script *s, const char *path, abbe_error *error) {
   static const char *const names[] = {"R", "G", "B"};
   abbe_image image;
   pump(s);
+  for (; !abbe_view_app_painted(&s->hidden.session); pump(s)) sleep_a_little();
   unsigned char *pixels = abbe_view_hidden_read(&s->hidden);
   abbe_result result =
       pixels != NULL ? abbe_image_make(s->hidden.width, s->hidden.height, 3, names, &image, error)
@@ -181,12 +188,6 @@ static abbe_result do_click(script *s, abbe_error *error) {
   s->hidden.input.shift = s->hidden.input.control = false;
   pump(s);
   return result;
-}
-
-/* The processor is the worker's meanwhile. */
-static void sleep_a_little(void) {
-  const struct timespec time = {.tv_nsec = 5000000};
-  nanosleep(&time, NULL);
 }
 
 /* Without a pause: every frame has another place. */

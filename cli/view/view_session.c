@@ -73,6 +73,7 @@ abbe_result abbe_view_session_choose_view(abbe_view_session *session, size_t vie
   desc.source_space = abbe_rgb_space_ocio_name(ABBE_RGB_SPACE_ACESCG);
   const abbe_result result = abbe_display_make(&desc, &made, error);
   if (result != ABBE_OK) return result;
+  abbe_view_painter_stop(session->painter);
   abbe_view_table_free(session->table);
   abbe_display_free(session->display);
   session->table = NULL;

@@ -5,6 +5,7 @@
 #ifndef ABBE_CLI_VIEW_VIEW_SESSION_H
 #define ABBE_CLI_VIEW_VIEW_SESSION_H
 
+#include "cli/view/picture/view_painter.h"
 #include "cli/view/picture/view_probe.h"
 #include "cli/view/picture/view_screen.h"
 #include "cli/view/picture/view_table.h"
@@ -50,6 +51,7 @@ typedef struct abbe_view_session {
   double against; /* root mean square of rendered less traced, over the mean; 0: not known */
   double noise;   /* of the traced picture alone, the same */
   size_t passes;  /* behind the traced picture */
+  abbe_view_painter *painter; /* of what rests */
   abbe_view_screen screen;
   bool stale;            /* the screen */
   abbe_view_shown drawn; /* what it shows */

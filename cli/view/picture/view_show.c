@@ -1,5 +1,6 @@
 #include "cli/view/picture/view_show.h"
 
+#include "base/thread/watch.h"
 #include "colorimetry/image/colour_map.h"
 #include "colorimetry/rgb_space.h"
 
@@ -153,13 +154,52 @@ static void show_false(const abbe_view_pictures *p, abbe_view_shown shown, unsig
   }
 }
 
+/* Some rows, of three channels, to the screen's bytes. */
+static abbe_result show_rows(const abbe_image *from, const size_t channel[3], double gain,
+                             const abbe_display *display, const abbe_display_table *table,
+                             size_t first, abbe_image *rows, unsigned char *out,
+                             abbe_error *error) {
+  const size_t count = rows->width * rows->height, before = first * rows->width;
+  const float *data = from->data + from->channels * before;
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < 3; k++)
+      rows->data[3 * i + k] = (float)(gain * (double)data[from->channels * i + channel[k]]);
+  const abbe_result result = table != NULL ? abbe_display_table_apply(table, rows, error)
+                                           : abbe_display_apply(display, rows, error);
+  if (result != ABBE_OK) return result;
+  for (size_t i = 0; i < count; i++) {
+    for (size_t k = 0; k < 3; k++)
+      out[4 * (before + i) + k] = byte_of((double)rows->data[3 * i + k]);
+    out[4 * (before + i) + 3] = 255;
+  }
+  return ABBE_OK;
+}
+
+/* Part by part, and between them it may be given up. */
+static abbe_result show_colours(const abbe_image *from, const size_t channel[3], double gain,
+                                const abbe_display *display, const abbe_display_table *table,
+                                unsigned char *out, abbe_error *error) {
+  static const char *const names[] = {"R", "G", "B"};
+  enum { ROWS = 16 };
+  abbe_image rows = {0};
+  abbe_result result = abbe_image_make(from->width, from->height < ROWS ? from->height : ROWS, 3,
+                                       names, &rows, error);
+  for (size_t y = 0; result == ABBE_OK && y < from->height; y += rows.height) {
+    if (from->height - y < rows.height) rows.height = from->height - y;
+    result = abbe_watch_check(error);
+    if (result == ABBE_OK)
+      result = show_rows(from, channel, gain, display, table, y, &rows, out, error);
+  }
+  abbe_image_free(&rows);
+  return result;
+}
+
 abbe_result abbe_view_show(const abbe_view_pictures *p, abbe_view_shown shown, double exposure,
                            const abbe_display *display, const abbe_display_table *table,
                            unsigned char **out, abbe_error *error) {
   static const char *const names[] = {"R", "G", "B"};
   const size_t count = p->rendered.width * p->rendered.height;
   const double gain = exp2(exposure);
-  abbe_image screen = {0};
   *out = calloc(count + 1, 4);
   if (*out == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to show the picture");
   shown = abbe_view_shown_of(p, shown);
@@ -180,23 +220,18 @@ abbe_result abbe_view_show(const abbe_view_pictures *p, abbe_view_shown shown, d
   const abbe_image *from = shown == ABBE_VIEW_TRACED_PICTURE ? &p->traced
                            : layer[0] != '\0'                ? &p->layers
                                                              : &p->rendered;
-  size_t channel[3];
-  abbe_result result = abbe_view_channels(from, layer, channel)
-                           ? abbe_image_make(from->width, from->height, 3, names, &screen, error)
-                           : abbe_error_set(error, ABBE_NOT_FOUND, "the picture has no such layer");
+  size_t channel[3] = {0, 1, 2};
+  abbe_image map = {0};
   const bool maps = shown == ABBE_VIEW_MAP_PICTURE;
-  if (result == ABBE_OK && maps) fill_map(&p->map, gain, &screen);
-  for (size_t i = 0; result == ABBE_OK && !maps && i < count; i++)
-    for (size_t k = 0; k < 3; k++)
-      screen.data[3 * i + k] = (float)(gain * (double)from->data[from->channels * i + channel[k]]);
+  abbe_result result =
+      maps ? abbe_image_make(from->width, from->height, 3, names, &map, error)
+      : abbe_view_channels(from, layer, channel)
+          ? ABBE_OK
+          : abbe_error_set(error, ABBE_NOT_FOUND, "the picture has no such layer");
+  if (result == ABBE_OK && maps) fill_map(&p->map, gain, &map);
   if (result == ABBE_OK)
-    result = table != NULL ? abbe_display_table_apply(table, &screen, error)
-                           : abbe_display_apply(display, &screen, error);
-  for (size_t i = 0; result == ABBE_OK && i < count; i++) {
-    for (size_t k = 0; k < 3; k++) (*out)[4 * i + k] = byte_of((double)screen.data[3 * i + k]);
-    (*out)[4 * i + 3] = 255;
-  }
-  abbe_image_free(&screen);
+    result = show_colours(maps ? &map : from, channel, maps ? 1 : gain, display, table, *out, error);
+  abbe_image_free(&map);
   if (result == ABBE_OK) return ABBE_OK;
   free(*out);
   *out = NULL;

@@ -31,7 +31,8 @@ double abbe_view_luminance(const abbe_image *image, const size_t channel[3], siz
 abbe_view_shown abbe_view_shown_of(const abbe_view_pictures *pictures, abbe_view_shown wish);
 
 /* out: 4 bytes a pixel, rows downward, malloc'd. Pictures are in ACEScg. table: by the display's,
- * which is quicker; may be NULL. ABBE_NO_MEMORY; errors of abbe_display_apply. */
+ * which is quicker; may be NULL. ABBE_NO_MEMORY; ABBE_CANCELLED by the thread's watch; errors of
+ * abbe_display_apply. */
 abbe_result abbe_view_show(const abbe_view_pictures *pictures, abbe_view_shown shown,
                            double exposure, const abbe_display *display,
                            const abbe_display_table *table, unsigned char **out, abbe_error *error);
