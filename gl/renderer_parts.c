@@ -135,7 +135,8 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   variant.aovs = r->plan.desc.aovs;
   variant.eye_bands = abbe_render_desc_eye_wavelengths(&r->plan.desc);
   const bool coarse = r->plan.desc.coarse != ABBE_COARSE_NONE;
-  if (coarse && variant.pixel_threads > 2) variant.pixel_threads = 2; /* for few bands */
+  const size_t threads = r->plan.bvh ? 1 : 2; /* for few bands */
+  if (coarse && variant.pixel_threads > threads) variant.pixel_threads = threads;
   if (coarse) variant.shaft_steps = COARSE_SHAFT_STEPS;
   variant.textured = r->plan.textured;
   variant.receiver_colours = r->plan.receiver_colours;

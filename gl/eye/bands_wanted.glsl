@@ -68,8 +68,12 @@ vec3 shown_by[COARSE_BANDS];
 #endif
 
 #ifdef LEAST_BANDS
-// In pictures of what moves: half as many, but of facets, which show bands apart; of mirrors two.
+// In pictures of what moves: half as many, but of facets, which show bands apart; of mirrors two, and of what is seen
+// from inside one.
 float coarse_wanted(float wanted) {
+#ifdef WALK
+  if ((eye_inside >> uint(refractor) & 1u) != 0u) return 1.0;
+#endif
 #ifdef MIRRORS
   if (is_mirror(refractor)) return 2.0;
 #endif

@@ -1,6 +1,19 @@
 // The eye's rays on multi-refractor paths, by PIXEL_THREADS threads a pixel: so each band's are followed
 // as far however many bands there are.
 
+#if PIXEL_THREADS == 1
+#define JOIN
+#else
+#define JOIN barrier();
+#endif
+
+// llvmpipe goes through what no lane wants, too: of one band both ways on are followed as one path's.
+#ifdef COARSE_EYE
+bool goes_both_ways(int count) { return count == 1; }
+#else
+bool goes_both_ways(int count) { return false; }
+#endif
+
 const int PIXELS = int(gl_WorkGroupSize.x) / PIXEL_THREADS;
 
 shared vec3 path_sum[PIXELS * PIXEL_THREADS];
@@ -37,8 +50,8 @@ int pixel_thread = int(gl_LocalInvocationID.x) % PIXEL_THREADS;
 #endif
 
 // XYZ of what a band shows through the first interface, or off a mirror; or in_mirror: of what it shows
-// reflected by an interface; mirrored: the share that is.
-vec3 band_light(int band, bool in_mirror, out float mirrored) {
+// reflected by an interface; mirrored: the share that is. both: of what it shows either way, and nothing is mirrored.
+vec3 band_light(int band, bool in_mirror, bool both, out float mirrored) {
   band_of_refractor = band - first_band(refractor);
 #ifdef ROUGH
   if (is_rough(first.hit.refractor)) {
@@ -69,12 +82,16 @@ vec3 band_light(int band, bool in_mirror, out float mirrored) {
 #ifdef COARSE_EYE
   if (eye_inside != 0u && mirrored < share_limit) {  // what is mirrored back is taken for what the rest shows
     w.share += mirrored;
-    mirrored = 0.0;
+    mirrored = reflected.share = 0.0;
   }
 #endif
-  reflected.share = mirrored > 0.0 ? 1.0 : 0.0;
+  if (!both) reflected.share = mirrored > 0.0 ? 1.0 : 0.0;
   if (in_mirror) w = reflected;  // of no share, off a mirror
-  return xyz_from_rgb * shown(w);
+  if (both)
+    mirrored = 0.0;
+  else
+    reflected.share = 0.0;
+  return xyz_from_rgb * shown(w, reflected);
 }
 
 #ifdef REFINED
@@ -91,7 +108,7 @@ void main() {
     wanted_level(entry.y, base, count);
     give_task(base, count);
   }
-  barrier();
+  JOIN
   take_task(at, base, count);
 #else
   look(at);
@@ -105,11 +122,11 @@ void main() {
     for (int before = k >> joined; before > 0; before--) rest &= rest - 1u;
     int i = (findLSB(rest) << joined) + (k & ((1 << joined) - 1));
     float mirrored;
-    vec3 light = band_light(base + min(i, count - 1), false, mirrored);
+    vec3 light = band_light(base + min(i, count - 1), false, false, mirrored);
     sum += i < count ? light * bands[base + i].weight_n.xyz : vec3(0);
   }
   path_sum[place * PIXEL_THREADS + pixel_thread] = sum;
-  barrier();
+  JOIN
   if (pixel_thread > 0 || !there) return;
   vec3 all = vec3(0);
   for (int k = 0; k < PIXEL_THREADS; k++) all += path_sum[place * PIXEL_THREADS + k];
@@ -133,7 +150,7 @@ void main() {
     choose_bands(base, count);
     give_task(base, count);
   }
-  barrier();
+  JOIN
   take_task(pixel_of(where), base, count);
 #else
   look(pixel_of(where));
@@ -145,7 +162,9 @@ void main() {
   vec3 sum = vec3(0), mirror = vec3(0);
   int taken_first = first_taken(pixel_of(where), count), taken_by = taken_step(count);
   int taken = (count - taken_first + taken_by - 1) / taken_by;  // and the mirror
-  for (int k = there ? pixel_thread : taken + 1; k <= taken; k += PIXEL_THREADS) {
+  bool both = goes_both_ways(count);
+  int last = both ? taken - 1 : taken;
+  for (int k = there ? pixel_thread : taken + 1; k <= last; k += PIXEL_THREADS) {
     bool in_mirror = k == taken;
     int i = in_mirror ? count / 2 : taken_first + k * taken_by, band = base + i;
     float mirrored;
@@ -153,7 +172,7 @@ void main() {
     sight_chain = in_mirror ? 0u : own_chain;
     uint before = sight_chain;
 #endif
-    vec3 light = band_light(band, in_mirror, mirrored);
+    vec3 light = band_light(band, in_mirror, both, mirrored);
     vec3 weight = in_mirror ? vec3(0) : band_weight(base, i, count);
 #ifdef KEEPS_SIGHTS
     weigh_sights(before, sight_tail * (in_mirror ? vec3(1) : weight));
@@ -162,7 +181,7 @@ void main() {
 #endif
     mirror += mirrored * weight;
     sum += light * weight;
-    if (in_mirror) in_the_mirror[place] = light;
+    if (in_mirror || both) in_the_mirror[place] = light;
 #ifdef REFINES
     if (!in_mirror) path_shown[place * COARSE_BANDS + i] = light;
 #endif
@@ -172,7 +191,7 @@ void main() {
 #endif
   path_sum[place * PIXEL_THREADS + pixel_thread] = sum;
   path_mirror[place * PIXEL_THREADS + pixel_thread] = mirror;
-  barrier();
+  JOIN
   if (pixel_thread > 0 || !there) return;
   vec3 all = vec3(0), all_mirror = vec3(0);
   for (int k = 0; k < PIXEL_THREADS; k++) {

@@ -43,13 +43,15 @@ uniform uint eye_inside;  // refractors that the eye is in, which are clear
 #include "rough_lamps.glsl"
 #endif
 
-// What w shows, which has met an interface, times its share. What is not followed shows what the rest has shown.
-vec3 shown(PathState w) {
+// What w and `other` show, which have met an interface, times their shares. What is not followed shows what the rest has
+// shown.
+vec3 shown(PathState w, PathState other) {
   PathState pending[PENDING];
   for (int k = 0; k < PENDING; k++) {
-    pending[k] = w;
-    pending[k].share = 0.0;
+    pending[k] = other;
+    pending[k].share = k == 0 ? other.share : 0.0;
   }
+  if (w.share <= 0.0) w = take_pending(pending);
   vec3 light = vec3(0), lamps = vec3(0);
   float seen_share = 0.0, left = 0.0;  // left: share of what is not followed
   bool going = w.share > 0.0;
@@ -135,7 +137,9 @@ vec3 rough_shown() {
     lobe_width = 0.0;
     PathState way = start;
     reflect_off(way, first);
-    sum += shown(way) / float(LOBE_WAYS);
+    PathState none = way;
+    none.share = 0.0;
+    sum += shown(way, none) / float(LOBE_WAYS);
   }
   return sum;
 }

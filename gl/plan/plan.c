@@ -88,6 +88,7 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   abbe_result result = abbe_support_mirrors(scene, out, error);
   if (result == ABBE_OK) result = abbe_support_roughness(scene, out, error);
   if (result == ABBE_OK) result = make_lists(scene, out, error);
+  out->around_eye = abbe_scene_around_eye(scene);
   if (result == ABBE_OK) result = abbe_refractor_model_choose(scene, out, error);
   if (result == ABBE_OK) result = abbe_watch_check(error);
   if (result == ABBE_OK) abbe_receiver_model_choose(scene, out);
@@ -123,6 +124,7 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   out->receiver_colours = abbe_receiver_model_disperses(scene, out);
   abbe_pass_list_add(scene, out);
   abbe_haze_model_note(scene, out);
+  out->around_eye = NULL; /* the plan may outlive the scene */
   abbe_refractor_model_note(scene, out);
   abbe_spectral_needs_note(scene, out);
   if (out->desc.everything) abbe_no_culling_apply(scene, desc, out);

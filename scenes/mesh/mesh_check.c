@@ -209,9 +209,6 @@ static bool ray_hits(const double p[3], const double d[3], const double a[3], co
   return abbe_vector_dot(v, q) / determinant > 0.0;
 }
 
-/* Rays from p along three directions, of which odd ones decide. */
-enum { RAYS = 3, RAY_BITS = 4 };
-
 /* On which sides of two planes through a ray a point lies; bits. */
 enum { BEFORE_FIRST = 1, BEHIND_FIRST = 2, BEFORE_SECOND = 4, BEHIND_SECOND = 8 };
 
@@ -234,23 +231,22 @@ static unsigned side_of(const ray_planes *r, const double p[3]) {
                     (b < 0) * BEHIND_SECOND);
 }
 
-/* Rays from..to-1 at once, a bit each: whether its hits are odd. side: of the mesh's vertices, room
- * for them; NULL: every face is looked at. */
-static unsigned odd_hits(const abbe_mesh *mesh, const double p[3], const double (*d)[3],
-                         unsigned from, unsigned to, uint16_t *side) {
+enum { RAYS = 2, RAY_BITS = 4 };
+
+/* Of rays from p along two directions at once, a bit each: whether its hits are odd. side: of the
+ * mesh's vertices, room for them; NULL: every face is looked at. */
+static unsigned odd_hits(const abbe_mesh *mesh, const double p[3], const double *const d[RAYS],
+                         unsigned char *side) {
+  const ray_planes planes[RAYS] = {planes_of(p, d[0]), planes_of(p, d[1])};
   unsigned odd = 0;
-  ray_planes planes[RAYS];
-  for (unsigned k = from; k < to; k++) planes[k] = planes_of(p, d[k]);
-  for (size_t v = 0; side != NULL && v < mesh->vertex_count; v++) {
-    unsigned bits = 0;
-    for (unsigned k = from; k < to; k++)
-      bits |= side_of(&planes[k], mesh->position[v]) << (RAY_BITS * k);
-    side[v] = (uint16_t)bits;
-  }
+  for (size_t v = 0; side != NULL && v < mesh->vertex_count; v++)
+    side[v] = (unsigned char)(side_of(&planes[0], mesh->position[v]) |
+                              side_of(&planes[1], mesh->position[v]) << RAY_BITS);
   for (size_t f = 0; f < mesh->face_count; f++) {
     const uint32_t *v = mesh->face[f];
     const unsigned beside = side != NULL ? side[v[0]] & side[v[1]] & side[v[2]] : 0;
-    for (unsigned k = from; k < to; k++)
+    if ((beside & 15) != 0 && beside >> RAY_BITS != 0) continue;
+    for (unsigned k = 0; k < RAYS; k++)
       if ((beside >> (RAY_BITS * k) & 15) == 0 &&
           ray_hits(p, d[k], mesh->position[v[0]], mesh->position[v[1]], mesh->position[v[2]]))
         odd ^= 1u << k;
@@ -260,11 +256,13 @@ static unsigned odd_hits(const abbe_mesh *mesh, const double p[3], const double 
 
 bool abbe_mesh_contains(const abbe_mesh *mesh, const double point[3]) {
   /* three odd directions vote, so that a ray through an edge cannot decide alone */
-  static const double direction[RAYS][3] = {
+  static const double direction[3][3] = {
       {0.5391, 0.7283, 0.4231}, {-0.8127, 0.3119, 0.4921}, {0.2713, -0.5881, -0.7619}};
-  uint16_t *side = malloc((mesh->vertex_count + 1) * sizeof *side);
-  unsigned odd = odd_hits(mesh, point, direction, 0, 2, side);
-  if (odd == 1 || odd == 2) odd = 3 * odd_hits(mesh, point, direction, 2, 3, side);
+  const double *const two[RAYS] = {direction[0], direction[1]};
+  const double *const third[RAYS] = {direction[2], direction[2]};
+  unsigned char *side = malloc(mesh->vertex_count + 1);
+  unsigned odd = odd_hits(mesh, point, two, side);
+  if (odd == 1 || odd == 2) odd = odd_hits(mesh, point, third, side);
   free(side);
   return odd != 0;
 }

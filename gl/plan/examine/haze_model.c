@@ -89,7 +89,7 @@ static void choose_shafts(const abbe_scene *scene, const abbe_object *around, ab
 }
 
 void abbe_haze_model_choose(const abbe_scene *scene, abbe_plan *plan) {
-  const abbe_object *around = abbe_scene_around_eye(scene);
+  const abbe_object *around = plan->around_eye;
   plan->hazy = abbe_scene_is_hazy(scene);
   if (!plan->hazy) return;
   plan->tinted_air = abbe_medium_is_coloured(scene->medium, plan->desc.min_nm, plan->desc.max_nm);

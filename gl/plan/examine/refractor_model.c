@@ -65,8 +65,7 @@ static const char *why_in_turn(const abbe_scene *scene, abbe_plan *plan) {
   if (plan->desc.transport == ABBE_TRANSPORT_PINHOLE)
     return "light of all around is followed from every receiver";
   if (refractors > 1) return "there is more than one refractor";
-  if (scene->camera.inside && abbe_scene_around_eye(scene) != NULL)
-    return "the eye is inside a refractor";
+  if (scene->camera.inside && plan->around_eye != NULL) return "the eye is inside a refractor";
   if (only->exact.kind != ABBE_EXACT_SPHERE && only->exact.kind != ABBE_EXACT_CONVEX &&
       !is_convex(&only->mesh, &plan->shape))
     return "the refractor is not convex";
@@ -184,8 +183,9 @@ static abbe_result add_refractor(const abbe_scene *scene, size_t i, abbe_plan *p
                   abbe_medium_is_coloured(object->medium, plan->desc.min_nm, plan->desc.max_nm);
   if (result == ABBE_OK) result = check_asked(object, plan, error);
   if (result != ABBE_OK) return result;
-  if (scene->camera.inside && plan->refractor_count < MAX_FOLLOWED &&
-      abbe_object_contains(object, scene->camera.eye))
+  const bool may = scene->camera.inside && plan->around_eye != NULL;
+  if (may && plan->refractor_count < MAX_FOLLOWED &&
+      (object == plan->around_eye || abbe_object_contains(object, scene->camera.eye)))
     plan->eye_inside |= 1u << plan->refractor_count;
   add(scene, plan, i, false, model_of(object, plan));
   write_reason(object, plan, reason, sizeof reason);
@@ -228,9 +228,8 @@ static void list_in_turn(abbe_plan *plan, const char *why) {
 }
 
 static abbe_result check_eye(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
-  if (!scene->camera.inside || plan->multi_refractor_paths) return ABBE_OK;
-  const abbe_object *around = abbe_scene_around_eye(scene);
-  if (around == NULL) return ABBE_OK;
+  const abbe_object *around = scene->camera.inside ? plan->around_eye : NULL;
+  if (around == NULL || plan->multi_refractor_paths) return ABBE_OK;
   return abbe_error_set(error, ABBE_UNSUPPORTED,
                         "the eye is inside the refractor '%s' (line %zu), from where neither "
                         "published profiles nor the model 'layers' nor a scene of more than %d "

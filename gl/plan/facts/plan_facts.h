@@ -110,9 +110,11 @@ typedef struct abbe_plan {
   bool reaches[ABBE_SCENE_MAX_LIGHTS]; /* the light may meet a refractor: it has a map */
   bool caustics;                       /* some light may meet one */
   bool volume;                         /* one may, and its caustics are looked up: no photons */
-  size_t volume_pages;        /* in maps on receivers: two a parallelogram; 0: in cells around it */
-  unsigned eye_inside;        /* bit r: the eye is inside refractor r */
-  bool camera_sees_refractor; /* the camera may */
+  size_t volume_pages; /* in maps on receivers: two a parallelogram; 0: in cells around it */
+  const abbe_object *around_eye; /* the scene's first refractor that the eye is inside of; NULL:
+                                    none; while the plan is made */
+  unsigned eye_inside;           /* bit r: the eye is inside refractor r */
+  bool camera_sees_refractor;    /* the camera may */
   /* Light is followed from interface to interface of all refractors: what leaves one may meet one
    * again, or a receiver inside; or one is a mirror; or the BVH was asked for. Without this no
    * model is the BVH. */
