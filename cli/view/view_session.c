@@ -112,7 +112,7 @@ const abbe_view_feed *abbe_view_session_feed(const abbe_view_session *session) {
 
 void abbe_view_session_compare(abbe_view_session *session) {
   const abbe_image *a = &session->pictures.rendered, *b = &session->pictures.traced;
-  double mean = 0, off = 0, noise = 0;
+  double mean = 0, off = 0, noise = 0, weight[3];
   size_t of_a[3], of_b[3], of_error[3];
   session->against = session->noise = 0;
   if (a->data == NULL || b->data == NULL || a->width != b->width || a->height != b->height) return;
@@ -120,11 +120,12 @@ void abbe_view_session_compare(abbe_view_session *session) {
       !abbe_view_channels(b, "stderr", of_error))
     return;
   const size_t count = a->width * a->height;
+  abbe_view_luminance_weights(weight); /* once: the window waits for this */
   for (size_t i = 0; i < count; i++) {
-    const double y = abbe_view_luminance(b, of_b, i);
+    const double y = abbe_view_luminance(weight, b, of_b, i);
     mean += y;
-    off += pow(abbe_view_luminance(a, of_a, i) - y, 2);
-    noise += pow(abbe_view_luminance(b, of_error, i), 2);
+    off += pow(abbe_view_luminance(weight, a, of_a, i) - y, 2);
+    noise += pow(abbe_view_luminance(weight, b, of_error, i), 2);
   }
   if (!(mean > 0)) return;
   session->against = sqrt(off / (double)count) / (mean / (double)count);

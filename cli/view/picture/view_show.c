@@ -52,18 +52,25 @@ bool abbe_view_channels(const abbe_image *image, const char *prefix, size_t chan
   return true;
 }
 
-double abbe_view_luminance(const abbe_image *image, const size_t channel[3], size_t pixel) {
-  double matrix[9], y = 0;
+void abbe_view_luminance_weights(double weight[3]) {
+  double matrix[9];
   abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
+  for (int k = 0; k < 3; k++) weight[k] = matrix[3 + k];
+}
+
+double abbe_view_luminance(const double weight[3], const abbe_image *image, const size_t channel[3],
+                           size_t pixel) {
+  double y = 0;
   for (size_t k = 0; k < 3; k++)
-    y += matrix[3 + k] * (double)image->data[pixel * image->channels + channel[k]];
+    y += weight[k] * (double)image->data[pixel * image->channels + channel[k]];
   return y;
 }
 
 static double mean_luminance(const abbe_image *image, const size_t channel[3]) {
-  double sum = 0;
+  double sum = 0, weight[3];
   const size_t count = image->width * image->height;
-  for (size_t i = 0; i < count; i++) sum += abbe_view_luminance(image, channel, i);
+  abbe_view_luminance_weights(weight);
+  for (size_t i = 0; i < count; i++) sum += abbe_view_luminance(weight, image, channel, i);
   return sum / (double)count;
 }
 
@@ -83,9 +90,11 @@ static void put_colour(abbe_colour_map map, double t, unsigned char out[4]) {
 /* Of the rendered picture, a decade for each third, up to what the exposure has as white. */
 static void show_luminance(const abbe_view_pictures *p, double gain, unsigned char *out) {
   size_t channel[3];
+  double weight[3];
   if (!abbe_view_channels(&p->rendered, "", channel)) return;
+  abbe_view_luminance_weights(weight);
   for (size_t i = 0; i < p->rendered.width * p->rendered.height; i++) {
-    const double y = gain * abbe_view_luminance(&p->rendered, channel, i);
+    const double y = gain * abbe_view_luminance(weight, &p->rendered, channel, i);
     put_colour(ABBE_COLOUR_MAP_AMOUNT, 1 + log10(fmax(1e-30, y)) / 3, out + 4 * i);
   }
 }
@@ -138,16 +147,18 @@ static void show_false(const abbe_view_pictures *p, abbe_view_shown shown, unsig
   const bool difference = shown == ABBE_VIEW_DIFFERENCE_PICTURE;
   const abbe_image *second = difference ? &p->traced : &p->error;
   size_t a[3], b[3];
+  double weight[3];
+  abbe_view_luminance_weights(weight);
   if (!abbe_view_channels(first, "", a) ||
       !abbe_view_channels(second, difference ? "" : "stderr", b))
     return;
   const double mean =
       fmax(1e-30, difference ? mean_luminance(second, b) : mean_luminance(first, a));
   for (size_t i = 0; i < first->width * first->height; i++) {
-    const double y = abbe_view_luminance(second, b, i);
+    const double y = abbe_view_luminance(weight, second, b, i);
     double t;
     if (difference)
-      t = 0.5 + 0.5 * (abbe_view_luminance(first, a, i) - y) / (ABBE_VIEW_FULL_DIFFERENCE * mean);
+      t = 0.5 + 0.5 * (abbe_view_luminance(weight, first, a, i) - y) / (ABBE_VIEW_FULL_DIFFERENCE * mean);
     else
       t = log10(fmax(1e-30, fabs(y)) / (ABBE_VIEW_LEAST_ERROR * mean)) / 3;
     put_colour(difference ? ABBE_COLOUR_MAP_DIFFERENCE : ABBE_COLOUR_MAP_AMOUNT, t, out + 4 * i);

@@ -24,8 +24,10 @@ void abbe_view_pictures_free(abbe_view_pictures *pictures);
 
 /* Where PREFIX.R, PREFIX.G and PREFIX.B are ("": R, G, B); false where they are not. */
 bool abbe_view_channels(const abbe_image *image, const char *prefix, size_t channel[3]);
-/* Y of a pixel in ACEScg. */
-double abbe_view_luminance(const abbe_image *image, const size_t channel[3], size_t pixel);
+/* How much of R, G and B is in Y, in ACEScg; and the Y of a pixel by that. */
+void abbe_view_luminance_weights(double weight[3]);
+double abbe_view_luminance(const double weight[3], const abbe_image *image, const size_t channel[3],
+                           size_t pixel);
 
 /* Which of the pictures a wish comes to: the rendered one where that is not there. */
 abbe_view_shown abbe_view_shown_of(const abbe_view_pictures *pictures, abbe_view_shown wish);
