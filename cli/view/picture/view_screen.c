@@ -32,8 +32,10 @@ void abbe_view_screen_take(abbe_view_screen *s, const unsigned char *pixels, siz
                          GL_UNSIGNED_BYTE, pixels + 4 * width * y);
 }
 
-void abbe_view_screen_draw(const abbe_view_screen *s, size_t width, size_t height) {
-  if (s->texture == 0) return;
+void abbe_view_screen_draw(abbe_view_screen *s, size_t width, size_t height) {
+  static const unsigned char dark[4] = {22, 24, 28, 255};
+  static const size_t pixel[2] = {1, 1};
+  if (s->texture == 0) abbe_view_screen_take(s, dark, 1, 1, 2, pixel);
   const GLint w = (GLint)s->width, h = (GLint)s->height, side = (GLint)s->side;
   const GLint below = (GLint)height - (GLint)s->seen[1];
   s->gl->BindFramebuffer(GL_READ_FRAMEBUFFER, s->framebuffer);

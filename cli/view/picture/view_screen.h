@@ -22,7 +22,8 @@ void abbe_view_screen_free(abbe_view_screen *screen);
 void abbe_view_screen_take(abbe_view_screen *screen, const unsigned char *pixels, size_t width,
                            size_t height, size_t side, const size_t seen[2]);
 /* Into the left upper corner of a window of that height, no farther across than that width. It is
- * copied there, for to draw it as a widget takes a software rasteriser twice as long. */
-void abbe_view_screen_draw(const abbe_view_screen *screen, size_t width, size_t height);
+ * copied there, for to draw it as a widget takes a software rasteriser twice as long. Before there
+ * is a picture it is a dark pixel, enlarged, so that the driver has compiled that by then. */
+void abbe_view_screen_draw(abbe_view_screen *screen, size_t width, size_t height);
 
 #endif
