@@ -186,9 +186,9 @@ static void sums_are_pictures(void **state) {
     const char *name;
     size_t bands;
     double limit;
-  } scenes[] = {{"prism", 20, 0.06}, {"gem", 10, 0.08}, {"sphere", 10, 0.05}};
+  } scenes[] = {{"gem", 10, 0.08}, {"prism", 20, 0.06}, {"sphere", 10, 0.05}};
   const abbe_illuminant d65 = {0};
-  for (size_t i = 0; i < (all_cases() ? 3 : 2); i++) {
+  for (size_t i = 0; i < (all_cases() ? 3 : 1); i++) {
     abbe_scene scene;
     abbe_image bands, sum, picture;
     load_shipped(scenes[i].name, &scene);

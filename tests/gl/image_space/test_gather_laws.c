@@ -137,7 +137,7 @@ static void folds_sharpen_by_the_root(void **state) {
     floor_map m;
     desc.profile = ABBE_PROFILE_DEFAULT;
     desc.fill = ABBE_FILL_AUTO;
-    desc.map_size = (size_t)128 << (2 * k);
+    desc.map_size = (size_t)64 << (2 * k);
     desc.photons = 512;
     desc.map_layout = &layout;
     make_floor_map(text, &desc, &m);
