@@ -240,8 +240,7 @@ static void random_changes_of_a_solid(void **state) {
   walk_at_random(GLASS_SCENE, 1, 20, true);
 }
 
-/* Each size of a buffer has llvmpipe compile the shaders of meshes again, for seconds; what depends
- * on sizes is the solid's walk. */
+/* Fewer than a solid's: the shaders of meshes take llvmpipe seconds to compile. */
 static void random_changes_of_meshes(void **state) {
   (void)state;
   walk_at_random(MESH_SCENE, 2, 8, false);
