@@ -2,6 +2,7 @@
 
 #include "base/yaml/yaml.h"
 #include "gl/accuracy/frame_times.h"
+#include "gl/plan/examine/reach.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -248,9 +249,15 @@ static bool take(size_t *mine, size_t preset) {
   return *mine == preset;
 }
 
-/* As far as the scene alone tells. */
+/* Layers show nothing that stands in a refractor, nor what it scatters, nor mirrors. */
 static bool may_have_layers(const abbe_scene *scene) {
-  return abbe_scene_mirror(scene) == NULL && !scene->camera.inside;
+  bool may = abbe_scene_mirror(scene) == NULL && !scene->camera.inside;
+  for (size_t i = 0; i < scene->object_count && may; i++) {
+    const abbe_object *o = &scene->object[i];
+    const bool refracts = abbe_object_kind_of(o) == ABBE_OBJECT_REFRACTOR;
+    may = !refracts || (o->medium == NULL && !abbe_reach_is_entered(scene, o));
+  }
+  return may;
 }
 
 bool abbe_preset_apply(const abbe_preset_point *point, const abbe_scene *scene,

@@ -145,3 +145,11 @@ bool abbe_reach_into(const abbe_object *receiver, const abbe_object *refractor) 
     if (reaches_into(exact->parallelogram[k], refractor)) return true;
   return false;
 }
+
+bool abbe_reach_is_entered(const abbe_scene *scene, const abbe_object *refractor) {
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (abbe_object_kind_of(&scene->object[i]) == ABBE_OBJECT_RECEIVER &&
+        abbe_reach_into(&scene->object[i], refractor))
+      return true;
+  return false;
+}

@@ -32,8 +32,9 @@ bool abbe_reach_eye(const abbe_camera *camera, size_t width, size_t height,
 /* Whether two refractors may overlap. */
 bool abbe_reach_overlap(const abbe_object *a, const abbe_object *b);
 
-/* Whether a receiver may reach into a refractor. */
+/* Whether a receiver may reach into a refractor; whether some of the scene's may. */
 bool abbe_reach_into(const abbe_object *receiver, const abbe_object *refractor);
+bool abbe_reach_is_entered(const abbe_scene *scene, const abbe_object *refractor);
 
 /* Signed distance of a point from the plane of a parallelogram (corner, edges u and v), m. */
 double abbe_reach_side(const double parallelogram[9], const double at[3]);

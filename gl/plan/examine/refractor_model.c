@@ -31,15 +31,6 @@ static bool is_invisible(const abbe_scene *scene, const abbe_object *object,
   return true;
 }
 
-/* Whether a receiver may reach into it. */
-static bool is_entered(const abbe_scene *scene, const abbe_object *refractor) {
-  for (size_t i = 0; i < scene->object_count; i++)
-    if (abbe_object_kind_of(&scene->object[i]) == ABBE_OBJECT_RECEIVER &&
-        abbe_reach_into(&scene->object[i], refractor))
-      return true;
-  return false;
-}
-
 static bool is_convex(const abbe_mesh *mesh, abbe_plan_shape *known) {
   uint64_t of = abbe_digest_array(1, mesh->face, mesh->face_count, sizeof *mesh->face);
   of = abbe_digest_array(of, mesh->position, mesh->vertex_count, sizeof *mesh->position);
@@ -69,7 +60,7 @@ static const char *why_in_turn(const abbe_scene *scene, abbe_plan *plan) {
   if (only->exact.kind != ABBE_EXACT_SPHERE && only->exact.kind != ABBE_EXACT_CONVEX &&
       !is_convex(&only->mesh, &plan->shape))
     return "the refractor is not convex";
-  if (is_entered(scene, only)) return "a receiver may reach into the refractor";
+  if (abbe_reach_is_entered(scene, only)) return "a receiver may reach into the refractor";
   if (only->medium != NULL) return "what is in the refractor scatters light";
   return NULL;
 }

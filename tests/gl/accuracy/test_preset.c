@@ -205,39 +205,54 @@ static void test_what_the_caller_asks_for_stays(void **state) {
   abbe_presets_free(&presets);
 }
 
-/* The fastest points of meshes follow no light off mirrors; a scene with one is drawn all the same.
- */
-static void test_mirrors_are_drawn_at_every_point(void **state) {
+/* The fastest points of meshes follow no light off mirrors, show nothing that stands in a refractor
+ * or that it scatters, and are seen from outside alone; others are drawn all the same. */
+static void test_layers_are_left_where_they_show_too_little(void **state) {
   (void)state;
-  static const char text[] = CAMERA POINT_LIGHT FLOOR RING(
-      "crown") "- {name: glass, shape: rectangle, width: 1, height: 1, mirror: 0.9, "
-               "transform: [{translate: [0, 0, -1]}]}\n";
+#define SEA(more, deep)                                                                            \
+  CAMERA POINT_LIGHT                                                                               \
+      "objects:\n- {name: sea, shape: water, size: [1, 1, 0.3], cells: 4, material: crown" more    \
+      ", waves: [{amplitude: 0.01, wavelength: 1}]}\n"                                             \
+      "- {name: sand, shape: rectangle, width: 1, height: 1, reflectance: 0.5, "                   \
+      "transform: [{translate: [0, 0, " deep "]}]}\n"
+  static const char *const texts[] = {
+      CAMERA POINT_LIGHT FLOOR RING("crown"),
+      CAMERA POINT_LIGHT FLOOR RING(
+          "crown") "- {name: glass, shape: rectangle, width: 1, height: 1, mirror: 0.9, "
+                   "transform: [{translate: [0, 0, -1]}]}\n",
+      SEA("", "-0.2"), SEA("", "-0.5"), SEA(", medium: {scattering: 1}", "-0.5")};
+  static const bool may[] = {true, false, false, true, false};
   abbe_presets presets;
   abbe_error error = {0};
-  abbe_scene scene = {0};
   size_t layers = 0;
-  load_text(text, &scene);
   const abbe_scene inside = {.camera.inside = true};
   assert_ok(abbe_presets_load(NULL, &presets, &error), &error);
-  for (size_t i = 0; i < presets.count; i++)
-    for (size_t k = 0; k < presets.front[i].count; k++) {
-      const abbe_preset_point *point = &presets.front[i].point[k];
-      const bool layered = point->desc.model == ABBE_MODEL_LAYERS;
-      abbe_render_desc desc = {0}, plain = {0};
-      abbe_plan plan;
-      assert_int_equal(abbe_preset_apply(point, &scene, &desc), !layered);
-      assert_true(abbe_preset_apply(point, NULL, &plain));
-      assert_int_equal(plain.model, point->desc.model);
-      assert_ok(abbe_plan_make(&scene, &desc, &plan, &error), &error);
-      abbe_plan_free(&plan);
-      layers += layered;
-      desc = (abbe_render_desc){0}; /* and none from inside of glass */
-      assert_int_equal(abbe_preset_apply(point, &inside, &desc), !layered);
-      assert_int_not_equal(desc.model, ABBE_MODEL_LAYERS);
-    }
+  for (size_t t = 0; t < sizeof texts / sizeof *texts; t++) {
+    abbe_scene scene = {0};
+    load_text(texts[t], &scene);
+    for (size_t i = 0; i < presets.count; i++)
+      for (size_t k = 0; k < presets.front[i].count; k++) {
+        const abbe_preset_point *point = &presets.front[i].point[k];
+        const bool layered = point->desc.model == ABBE_MODEL_LAYERS;
+        abbe_render_desc desc = {0}, plain = {0};
+        abbe_plan plan;
+        assert_int_equal(abbe_preset_apply(point, &scene, &desc), !layered || may[t]);
+        assert_int_equal(desc.model == ABBE_MODEL_LAYERS, layered && may[t]);
+        assert_true(abbe_preset_apply(point, NULL, &plain));
+        assert_int_equal(plain.model, point->desc.model);
+        if (t < 2) {
+          assert_ok(abbe_plan_make(&scene, &desc, &plan, &error), &error);
+          abbe_plan_free(&plan);
+        }
+        layers += layered;
+        desc = (abbe_render_desc){0}; /* and none from inside of glass */
+        assert_int_equal(abbe_preset_apply(point, &inside, &desc), !layered);
+        assert_int_not_equal(desc.model, ABBE_MODEL_LAYERS);
+      }
+    abbe_scene_free(&scene);
+  }
   assert_true(layers > 0);
   abbe_presets_free(&presets);
-  abbe_scene_free(&scene);
 }
 
 /* From between floor and ball: no receiver stands behind it. */
@@ -287,7 +302,7 @@ int main(void) {
       cmocka_unit_test(test_a_name_may_be_missing),
       cmocka_unit_test(test_choices),
       cmocka_unit_test(test_what_the_caller_asks_for_stays),
-      cmocka_unit_test(test_mirrors_are_drawn_at_every_point),
+      cmocka_unit_test(test_layers_are_left_where_they_show_too_little),
       cmocka_unit_test(test_classes_and_calibration),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
