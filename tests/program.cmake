@@ -146,6 +146,8 @@ if(ABBE_VIEWER)
   abbe_label(program NAMES view_window)
   abbe_test(view_worker gl abbe_view_work abbe_view_state abbe_gl abbe_validation abbe_scenes
     abbe_colorimetry abbe_spectral abbe_base)
+  abbe_test(view_look gl abbe_view_work abbe_view_state abbe_gl abbe_validation abbe_scenes
+    abbe_colorimetry abbe_spectral abbe_base)
   set_tests_properties(view_window PROPERTIES SKIP_RETURN_CODE 77)
   add_test(NAME view_serve COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/view/serve
     $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR} $<IF:$<BOOL:${MICROHTTPD_FOUND}>,yes,no>)

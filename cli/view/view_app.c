@@ -161,6 +161,19 @@ static void take(abbe_view_session *app, size_t worker, abbe_view_result *result
   app->stale = true;
 }
 
+/* Whether more than a hundredth of lamps' light there is a caustic. */
+static bool shows_caustic(const abbe_image *layers, const float *pixel) {
+  static const char *const names[2][3] = {{"direct.R", "direct.G", "direct.B"},
+                                          {"caustic.R", "caustic.G", "caustic.B"}};
+  double sum[2] = {0};
+  for (int i = 0; i < 2; i++)
+    for (int k = 0; k < 3; k++) {
+      const size_t at = abbe_image_find_channel(layers, names[i][k]);
+      if (at != (size_t)-1) sum[i] += fabs((double)pixel[at]);
+    }
+  return sum[1] > 0.01 * sum[0];
+}
+
 /* Where the picked pixel's light has come in is asked for once for each picture at rest. */
 static bool wants_feed(const abbe_view_session *app, abbe_view_request *out) {
   const abbe_view_state *s = &app->state;
@@ -172,8 +185,10 @@ static bool wants_feed(const abbe_view_session *app, abbe_view_request *out) {
       layers->width != s->width || layers->height != s->height || s->pixel[0] >= s->width ||
       s->pixel[1] >= s->height)
     return false;
-  const double distance =
-      (double)layers->data[layers->channels * (s->pixel[1] * layers->width + s->pixel[0]) + z];
+  const float *pixel =
+      layers->data + layers->channels * (s->pixel[1] * layers->width + s->pixel[0]);
+  const double distance = (double)pixel[z];
+  out->lit = shows_caustic(layers, pixel);
   const double xy[2] = {(double)s->pixel[0] + 0.5, (double)s->pixel[1] + 0.5};
   abbe_view_camera_point(&s->camera, s->width, s->height, xy, distance, out->point);
   abbe_view_probe probe;

@@ -72,6 +72,41 @@ abbe_result abbe_view_look_feed(abbe_renderer *renderer, const abbe_scene *scene
   return abbe_error_set(error, ABBE_CANCELLED, "the look was cancelled");
 }
 
+/* For photons alone: the smallest picture. */
+static abbe_render_desc desc_of(const abbe_renderer *renderer, volatile int *stop) {
+  abbe_render_desc desc = abbe_renderer_plan(renderer)->desc;
+  desc.width = desc.height = 16;
+  desc.supersample = desc.receiver_samples = desc.adaptive = 1;
+  desc.upsample = 0;
+  desc.history = 0;
+  desc.aovs = false;
+  desc.coarse = ABBE_COARSE_NONE;
+  desc.progress = goes_on;
+  desc.progress_user = (void *)stop;
+  return desc;
+}
+
+abbe_result abbe_view_look_closer(abbe_context *context, const abbe_renderer *renderer,
+                                  const abbe_scene *scene, const double point[3], double radius,
+                                  double nm, volatile int *stop, abbe_view_feed *out,
+                                  abbe_error *error) {
+  abbe_render_desc desc = desc_of(renderer, stop);
+  abbe_renderer *closer = NULL;
+  abbe_result result = ABBE_OK;
+  abbe_view_feed_begin(point, radius, out);
+  for (desc.photons *= 2; desc.photons <= ABBE_VIEW_LOOK_PHOTONS && result == ABBE_OK;
+       desc.photons *= 2) {
+    if (desc.map_size < 2 * desc.photons) desc.map_size = 2 * desc.photons; /* keeps all cells */
+    result = closer == NULL ? abbe_renderer_make(context, scene, &desc, &closer, error)
+                            : abbe_renderer_change(closer, scene, &desc, error);
+    if (result == ABBE_OK)
+      result = abbe_view_look_feed(closer, scene, point, radius, nm, stop, out, error);
+    if (out->photons > 0) break;
+  }
+  abbe_renderer_free(closer);
+  return result;
+}
+
 abbe_result abbe_view_look_map(abbe_renderer *renderer, abbe_image *out, abbe_error *error) {
   const abbe_plan *plan = abbe_renderer_plan(renderer);
   *out = (abbe_image){0};

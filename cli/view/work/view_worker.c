@@ -250,8 +250,13 @@ static abbe_result look(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
   if (q->maps) return abbe_view_look_map(w->renderer, &out->map, error);
   out->feed = malloc(sizeof *out->feed);
   if (out->feed == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for photons");
-  return abbe_view_look_feed(w->renderer, w->scene.now, q->point, q->radius, q->nm, &w->stop,
-                             out->feed, error);
+  abbe_view_feed *feed = out->feed;
+  const abbe_result result = abbe_view_look_feed(w->renderer, w->scene.now, q->point, q->radius,
+                                                 q->nm, &w->stop, feed, error);
+  const bool may = feed->on_refractor ? feed->sight.lands : q->lit; /* a caustic be there */
+  if (result != ABBE_OK || feed->photons > 0 || !may) return result;
+  return abbe_view_look_closer(w->context, w->renderer, w->scene.now, q->point, q->radius, q->nm,
+                               &w->stop, feed, error);
 }
 
 /* What the request is of; a tracer and a front are of one scene. */

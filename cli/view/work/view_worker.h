@@ -26,6 +26,8 @@ typedef struct abbe_view_request {
   size_t width, height;
   bool asks;                   /* no picture, but what feeds this place: */
   double point[3], radius, nm; /* its colour's wavelength */
+  bool lit;                    /* the picture shows a caustic there: photons are looked for until
+                                  some are found */
   bool maps;                   /* no picture, but the spectral map */
   bool turns;                  /* the picture, seen from elsewhere: */
   double turn_rad;

@@ -1,0 +1,64 @@
+/* A place that a caustic lights is fed by photons, however few the picture has. */
+#include "tests/gl/frame.h"
+
+#include "cli/view/picture/view_look.h"
+
+/* The sun through a brick, half a metre wide, over a floor. */
+static const char text[] =
+    "materials: glass.yaml\n"
+    "camera: {eye: [0, -2, 1.5], target: [0, 0, 0]}\n"
+    "lights: [{name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1}]\n"
+    "objects:\n"
+    "- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5}\n"
+    "- {name: brick, shape: box, size: [0.5, 0.5, 0.2], material: crown,\n"
+    "   transform: [{translate: [0, 0, 0.3]}]}\n";
+
+static void a_caustic_is_fed_however_few_photons_there_are(void **state) {
+  (void)state;
+  static const double place[3] = {0.11, 0.07, 0};
+  const double radius = 2e-4; /* of 48 pixels, a hundredth of a metre */
+  static const size_t photons[] = {8, 20};
+  static abbe_view_feed feed;
+  volatile int stop = 0;
+  abbe_error error = {0};
+  abbe_scene scene = {0};
+  load_text(text, &scene);
+  for (size_t i = 0; i < sizeof photons / sizeof *photons; i++) {
+    const abbe_render_desc desc = {
+        .width = 16, .height = 16, .photons = photons[i], .wavelengths = 3, .map_size = 64};
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    assert_ok(abbe_view_look_feed(renderer, &scene, place, radius, 550, &stop, &feed, &error),
+              &error);
+    assert_int_equal(feed.photons, 0); /* they land too far from each other */
+    assert_ok(
+        abbe_view_look_closer(context, renderer, &scene, place, radius, 550, &stop, &feed, &error),
+        &error);
+    assert_true(feed.photons > 0 && feed.facet_count == 1);
+    assert_int_equal(feed.facet[0].object, 1);
+    assert_near(feed.facet[0].normal[2], 1, 1e-9);
+    assert_near(feed.ray[0].entry[0], place[0], 0.01);
+    assert_int_equal(abbe_renderer_plan(renderer)->desc.photons, photons[i]);
+    stop = 1;
+    assert_int_equal(
+        abbe_view_look_closer(context, renderer, &scene, place, radius, 550, &stop, &feed, &error),
+        ABBE_CANCELLED);
+    stop = 0;
+    abbe_renderer_free(renderer);
+  }
+  const abbe_render_desc many = {.width = 16, .height = 16, .photons = 513};
+  abbe_renderer *renderer = make_renderer(&scene, &many);
+  assert_ok(
+      abbe_view_look_closer(context, renderer, &scene, place, radius, 550, &stop, &feed, &error),
+      &error);
+  assert_int_equal(feed.photons, 0); /* there are no more to follow */
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_caustic_is_fed_however_few_photons_there_are),
+  };
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}
