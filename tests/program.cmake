@@ -146,6 +146,8 @@ if(ABBE_VIEWER)
   abbe_label(program NAMES view_window)
   abbe_test(view_worker gl abbe_view_work abbe_view_state abbe_gl abbe_validation abbe_scenes
     abbe_colorimetry abbe_spectral abbe_base)
+  abbe_test(view_spot program abbe_view_work abbe_view_state abbe_gl abbe_validation abbe_scenes
+    abbe_colorimetry abbe_spectral abbe_base)
   abbe_test(view_look gl abbe_view_work abbe_view_state abbe_gl abbe_validation abbe_scenes
     abbe_colorimetry abbe_spectral abbe_base)
   set_tests_properties(view_window PROPERTIES SKIP_RETURN_CODE 77)

@@ -161,19 +161,6 @@ static void take(abbe_view_session *app, size_t worker, abbe_view_result *result
   app->stale = true;
 }
 
-/* Whether more than a hundredth of lamps' light there is a caustic. */
-static bool shows_caustic(const abbe_image *layers, const float *pixel) {
-  static const char *const names[2][3] = {{"direct.R", "direct.G", "direct.B"},
-                                          {"caustic.R", "caustic.G", "caustic.B"}};
-  double sum[2] = {0};
-  for (int i = 0; i < 2; i++)
-    for (int k = 0; k < 3; k++) {
-      const size_t at = abbe_image_find_channel(layers, names[i][k]);
-      if (at != (size_t)-1) sum[i] += fabs((double)pixel[at]);
-    }
-  return sum[1] > 0.01 * sum[0];
-}
-
 /* Where the picked pixel's light has come in is asked for once for each picture at rest. */
 static bool wants_feed(const abbe_view_session *app, abbe_view_request *out) {
   const abbe_view_state *s = &app->state;
@@ -188,7 +175,7 @@ static bool wants_feed(const abbe_view_session *app, abbe_view_request *out) {
   const float *pixel =
       layers->data + layers->channels * (s->pixel[1] * layers->width + s->pixel[0]);
   const double distance = (double)pixel[z];
-  out->lit = shows_caustic(layers, pixel);
+  out->lit = abbe_view_probe_shows_caustic(layers, pixel);
   const double xy[2] = {(double)s->pixel[0] + 0.5, (double)s->pixel[1] + 0.5};
   abbe_view_camera_point(&s->camera, s->width, s->height, xy, distance, out->point);
   abbe_view_probe probe;
@@ -197,6 +184,21 @@ static bool wants_feed(const abbe_view_session *app, abbe_view_request *out) {
   /* as wide as some pixels */
   out->radius = FEED_PIXELS * distance * 2 * tan(0.5 * s->camera.fov_y_rad) / (double)s->height;
   return distance > 0;
+}
+
+static bool is_spot(const abbe_view_session *app) {
+  const abbe_view_state *s = &app->state;
+  return s->picked && app->spot_serial == s->refine.serial && app->spot_pixel[0] == s->pixel[0] &&
+         app->spot_pixel[1] == s->pixel[1];
+}
+
+/* The picked pixel's spectrum, before a whole picture is traced. */
+static bool wants_spot(const abbe_view_session *app, abbe_view_request *out) {
+  const abbe_view_state *s = &app->state;
+  const bool traces = s->refine.last == ABBE_VIEW_NONE || s->refine.last == ABBE_VIEW_TRACED;
+  memcpy(out->pixel, s->pixel, sizeof out->pixel);
+  return s->picked && traces && !is_spot(app) && s->refine.stage >= ABBE_VIEW_BALANCED &&
+         app->pictures.traced.data == NULL;
 }
 
 /* Of the stage whose light is drawn. */
@@ -217,6 +219,7 @@ static void take_look(abbe_view_session *app, abbe_view_result *result) {
     replace(&app->pictures.map, &result->map);
     app->stale = true;
   }
+  if (result->spot.bands > 0) app->spot = result->spot;
   if (result->feed == NULL) return;
   free(app->feed);
   app->feed = result->feed;
@@ -240,7 +243,8 @@ static bool wants_other(const abbe_view_session *app, size_t worker, abbe_view_r
   const abbe_view_refine *refine = &app->state.refine;
   out->maps = worker == refine->made && wants_map(app);
   out->asks = worker == refine->made && !out->maps && wants_feed(app, out);
-  return out->maps || out->asks ||
+  out->tells = worker == refine->made && !out->maps && !out->asks && wants_spot(app, out);
+  return out->maps || out->asks || out->tells ||
          (worker != refine->made && worker != refine->shows && abbe_view_turn_wants(app, out));
 }
 
@@ -251,6 +255,10 @@ static void note_look(abbe_view_session *app, const abbe_view_request *request) 
     memcpy(app->fed_pixel, s->pixel, sizeof app->fed_pixel);
     free(app->feed);
     app->feed = NULL;
+  } else if (request->tells) {
+    app->spot_serial = s->refine.serial;
+    memcpy(app->spot_pixel, s->pixel, sizeof app->spot_pixel);
+    app->spot.bands = 0;
   } else if (request->maps) {
     app->mapped_serial = s->refine.serial;
     app->mapped = lit_stage(&s->refine);
@@ -475,6 +483,7 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
   give(app, now_s);
   await_moving(app, now_s);
   if (s->picked) abbe_view_probe_make(&app->pictures, s->pixel, &app->probe);
+  if (is_spot(app)) abbe_view_probe_take_spot(&app->probe, &app->spot);
   if (is_stale(app) && app->stage == ABBE_VIEW_MOVING) show_moving(app);
   if (is_stale(app)) show_rest(app);
   app->input = *input;
@@ -519,6 +528,7 @@ bool abbe_view_app_rests(abbe_view_session *app, double now_s) {
   if (is_stale(app)) return false;
   for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++)
     if (!abbe_view_worker_idle(app->desk[i].worker)) return false;
-  return !wants_map(app) && !wants_feed(app, &request) && !abbe_view_turn_wants(app, &request) &&
+  return !wants_map(app) && !wants_feed(app, &request) && !wants_spot(app, &request) &&
+         !abbe_view_turn_wants(app, &request) &&
          abbe_view_refine_wait(&app->state.refine, now_s) < 0;
 }

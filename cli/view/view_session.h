@@ -60,6 +60,9 @@ typedef struct abbe_view_session {
   abbe_view_feed *feed; /* of the pixel; NULL: not known */
   uint64_t fed_serial;  /* of what was asked for last, and its pixel */
   size_t fed_pixel[2];
+  abbe_view_spot spot;  /* of the pixel, until the traced picture tells; */
+  uint64_t spot_serial; /* of what was asked for last, and its pixel */
+  size_t spot_pixel[2];
   uint64_t mapped_serial; /* of what the map was asked for last, */
   abbe_view_stage mapped; /* and at which stage */
   abbe_ui_input input;    /* of the frame before */

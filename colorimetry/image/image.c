@@ -208,3 +208,12 @@ void abbe_image_band_name(double middle_nm, char *out, size_t size) {
     if (*c == '.') *c = ',';
   snprintf(out, size, "S0.%snm", number);
 }
+
+bool abbe_image_band_middle(const char *channel, double *middle_nm) {
+  char *comma, *end;
+  if (strncmp(channel, "S0.", 3) != 0) return false;
+  const double whole = (double)strtol(channel + 3, &comma, 10);
+  if (comma == channel + 3 || *comma != ',') return false;
+  *middle_nm = whole + (double)strtol(comma + 1, &end, 10) / 1e6;
+  return end == comma + 7 && strcmp(end, "nm") == 0;
+}

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -71,9 +72,9 @@ abbe_result abbe_image_set_attribute(abbe_image *image, const char *name, const 
 /* The text of an attribute, or NULL. */
 const char *abbe_image_attribute_text(const abbe_image *image, const char *name);
 
-/* Adds another picture's channels behind the image's own, and its attributes where the image has none
- * of their names. ABBE_INVALID_ARGUMENT, the image untouched, where the sizes differ, where they have
- * a channel in common, and for too many channels. */
+/* Adds another picture's channels behind the image's own, and its attributes where the image has
+ * none of their names. ABBE_INVALID_ARGUMENT, the image untouched, where the sizes differ, where
+ * they have a channel in common, and for too many channels. */
 abbe_result abbe_image_append(abbe_image *image, const abbe_image *other, abbe_error *error);
 
 /* Index of the named channel, or (size_t)-1. */
@@ -82,6 +83,8 @@ size_t abbe_image_find_channel(const abbe_image *image, const char *name);
 /* The channel of a band of wavelengths, by the one in its middle: "S0.550,000000nm" [Fichet2021].
  */
 void abbe_image_band_name(double middle_nm, char *out, size_t size);
+/* The middle of the band, nm, that a channel of such a name is of; false: of none. */
+bool abbe_image_band_middle(const char *channel, double *middle_nm);
 
 #ifdef __cplusplus
 }

@@ -23,13 +23,9 @@ static void read_bands(const abbe_image *image, size_t at, abbe_view_probe *out)
   for (size_t c = 0; c < image->channels && out->bands < ABBE_VIEW_PROBE_BANDS; c++) {
     const char *name = image->channel[c];
     char error_name[64];
-    if (strncmp(name, "S0.", 3) != 0) continue;
+    if (!abbe_image_band_middle(name, &out->nm[out->bands])) continue;
     snprintf(error_name, sizeof error_name, "stderr.%.50s", name);
     const size_t e = abbe_image_find_channel(image, error_name);
-    const double whole = (double)strtol(name + 3, NULL, 10);
-    const char *comma = strchr(name, ',');
-    const double part = comma != NULL ? (double)strtol(comma + 1, NULL, 10) / 1e6 : 0;
-    out->nm[out->bands] = whole + part;
     out->radiance[out->bands] = (double)image->data[at * image->channels + c];
     out->stderr_of[out->bands] =
         e != (size_t)-1 ? (double)image->data[at * image->channels + e] : 0;
@@ -60,6 +56,26 @@ void abbe_view_probe_make(const abbe_view_pictures *p, const size_t pixel[2],
   out->xy[1] = out->xyz[1] / sum;
   abbe_chromaticity_uv_of_xy(out->xy, out->uv);
   find_dominant(out);
+}
+
+void abbe_view_probe_take_spot(abbe_view_probe *probe, const abbe_view_spot *spot) {
+  if (probe->bands > 0) return;
+  probe->bands = spot->bands;
+  memcpy(probe->nm, spot->nm, sizeof spot->nm);
+  memcpy(probe->radiance, spot->radiance, sizeof spot->radiance);
+  memcpy(probe->stderr_of, spot->stderr_of, sizeof spot->stderr_of);
+}
+
+bool abbe_view_probe_shows_caustic(const abbe_image *layers, const float *pixel) {
+  static const char *const names[2][3] = {{"direct.R", "direct.G", "direct.B"},
+                                          {"caustic.R", "caustic.G", "caustic.B"}};
+  double sum[2] = {0};
+  for (int i = 0; i < 2; i++)
+    for (int k = 0; k < 3; k++) {
+      const size_t at = abbe_image_find_channel(layers, names[i][k]);
+      if (at != (size_t)-1) sum[i] += fabs((double)pixel[at]);
+    }
+  return sum[1] > 0.01 * sum[0];
 }
 
 bool abbe_view_probe_find_hue(const abbe_view_pictures *pictures, const double nm[2],

@@ -51,6 +51,8 @@ void abbe_view_result_free(abbe_view_result *result) {
   *result = (abbe_view_result){0};
 }
 
+static const double spot_s = 4; /* for a pixel's spectrum */
+
 static bool goes_on(void *user, double done) {
   const abbe_view_worker *w = user;
   (void)done;
@@ -259,6 +261,11 @@ static abbe_result look(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
                                &w->stop, feed, error);
 }
 
+/* Whether no picture is asked for. */
+static bool looks(const abbe_view_request *q) {
+  return q->asks || q->maps || q->tells;
+}
+
 /* What the request is of; a tracer and a front are of one scene. */
 static abbe_result take_scene(abbe_view_worker *w, const abbe_view_request *q,
                               abbe_view_result *out, abbe_error *error) {
@@ -282,10 +289,13 @@ static abbe_result make(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
                             .width = q->width,
                             .height = q->height,
                             .turned = q->turns,
-                            .looked = q->asks || q->maps};
+                            .looked = looks(q)};
   if (q->asks || q->maps) return look(w, q, out, error);
   const abbe_result result = take_scene(w, q, out, error);
   if (result != ABBE_OK) return result;
+  if (q->tells)
+    return abbe_view_spot_trace(w->scene.now, q->width, q->height, q->pixel, spot_s, &w->stop,
+                                &out->spot, error);
   return q->job.stage == ABBE_VIEW_TRACED ? trace(w, q, out, error)
          : q->job.stage == ABBE_VIEW_MEAN ? draw_mean(w, q, out, error)
                                           : draw(w, q, out, error);
@@ -310,12 +320,12 @@ static void work(abbe_view_worker *w, const abbe_view_request *q, abbe_view_resu
   abbe_watch_set(&watch);
   w->lost = false;
   abbe_result result = w->context != NULL ? ABBE_OK : renew(w, &error);
-  *out = (abbe_view_result){.job = q->job, .turned = q->turns, .looked = q->asks || q->maps};
+  *out = (abbe_view_result){.job = q->job, .turned = q->turns, .looked = looks(q)};
   if (result == ABBE_OK) result = make(w, q, out, &error);
   if (result == ABBE_GL && w->context != NULL) { /* once */
     abbe_view_result_free(out);
     result = renew(w, &error);
-    *out = (abbe_view_result){.job = q->job, .turned = q->turns, .looked = q->asks || q->maps};
+    *out = (abbe_view_result){.job = q->job, .turned = q->turns, .looked = looks(q)};
     if (result == ABBE_OK) result = make(w, q, out, &error);
   }
   abbe_watch_set(NULL);

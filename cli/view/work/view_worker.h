@@ -9,6 +9,7 @@
 #define ABBE_CLI_VIEW_WORK_VIEW_WORKER_H
 
 #include "cli/view/picture/view_feed.h"
+#include "cli/view/picture/view_spot.h"
 #include "cli/view/state/view_state.h"
 #include "cli/view/work/view_scene.h"
 #include "colorimetry/image/image.h"
@@ -29,7 +30,9 @@ typedef struct abbe_view_request {
   bool lit;                    /* the picture shows a caustic there: photons are looked for until
                                   some are found */
   bool maps;                   /* no picture, but the spectral map */
-  bool turns;                  /* the picture, seen from elsewhere: */
+  bool tells;                  /* no picture, but the spectrum of this pixel */
+  size_t pixel[2];
+  bool turns; /* the picture, seen from elsewhere: */
   double turn_rad;
 } abbe_view_request;
 
@@ -62,6 +65,7 @@ typedef struct abbe_view_result {
   bool turned;          /* of the turntable */
   bool looked;          /* for one of these alone: */
   abbe_image map;       /* zeroed: there is none */
+  abbe_view_spot spot;  /* of the pixel that was asked for */
   abbe_view_feed *feed; /* NULL: the last picture drawn is not of this scene any more */
 } abbe_view_result;
 void abbe_view_result_free(abbe_view_result *result);

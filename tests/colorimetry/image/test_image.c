@@ -144,8 +144,24 @@ static void test_append(void **state) {
   abbe_image_free(&image);
 }
 
+static void bands_are_known_by_their_channels(void **state) {
+  (void)state;
+  static const char *const others[] = {
+      "R", "S0.", "S0.nm", "S0.550nm", "S0.550,00nm", "stderr.S0.550,000000nm", "S0.550,000000nm2"};
+  char name[64];
+  double middle = 0;
+  for (double nm = 385; nm < 780; nm += 26.34375) {
+    abbe_image_band_name(nm, name, sizeof name);
+    assert_true(abbe_image_band_middle(name, &middle));
+    assert_near(middle, nm, 1e-6);
+  }
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    assert_false(abbe_image_band_middle(others[i], &middle));
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_make_is_black_and_named),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(bands_are_known_by_their_channels),
+                                     cmocka_unit_test(test_make_is_black_and_named),
                                      cmocka_unit_test(test_sizes_are_checked_first),
                                      cmocka_unit_test(test_what_unfolds),
                                      cmocka_unit_test(test_attributes_have_a_limit),

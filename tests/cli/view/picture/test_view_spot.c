@@ -1,0 +1,58 @@
+/* A pixel's spectrum alone, against what a lamp gives a floor there. */
+#include "tests/check.h"
+#include "tests/scenes/scene_text.h"
+
+#include "cli/view/picture/view_spot.h"
+#include "cli/view/state/view_camera.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* A lamp near to the floor, so that each pixel has its own light. */
+static const char text[] =
+    "materials: glass.yaml\n"
+    "camera: {eye: [0.4, -1.5, 1.2], target: [0, 0.1, 0], fov: 40}\n"
+    "lights: [{name: lamp, kind: point, position: [0.2, 0.1, 0.3], intensity: 2, illuminant: E}]\n"
+    "objects:\n"
+    "- {name: floor, shape: rectangle, width: 4, height: 4, reflectance: 0.5}\n"
+    "- {name: brick, shape: box, size: [0.1, 0.1, 0.1], material: crown,\n"
+    "   transform: [{translate: [-1.5, 1.5, 0.1]}]}\n";
+
+static void a_pixel_has_the_light_of_its_place(void **state) {
+  (void)state;
+  enum { WIDTH = 160, HEIGHT = 120 };
+  static const size_t pixels[][2] = {{12, 100}, {131, 30}};
+  const volatile int stop = 1;
+  static abbe_view_spot spot;
+  abbe_error error = {0};
+  abbe_scene scene = {0};
+  load_text(text, &scene);
+  for (size_t i = 0; i < sizeof pixels / sizeof *pixels; i++) {
+    const double xy[2] = {(double)pixels[i][0] + 0.5, (double)pixels[i][1] + 0.5};
+    double p[3], to[3], total = 0;
+    abbe_view_camera_point(&scene.camera, WIDTH, HEIGHT, xy, 1, p);
+    const double *eye = scene.camera.eye, down = eye[2] / (eye[2] - p[2]);
+    for (int k = 0; k < 3; k++)
+      to[k] = scene.light[0].position[k] - (eye[k] + down * (p[k] - eye[k]));
+    const double square = to[0] * to[0] + to[1] * to[1] + to[2] * to[2];
+    const double known = 0.5 / pi * 2 * to[2] / sqrt(square) / square;
+    if (abbe_view_spot_trace(&scene, WIDTH, HEIGHT, pixels[i], 0, NULL, &spot, &error) != ABBE_OK)
+      fail_msg("%s", error.text);
+    assert_int_equal(spot.bands, ABBE_VIEW_SPOT_BANDS);
+    assert_true(spot.passes == 4);
+    for (size_t k = 0; k < spot.bands; k++) {
+      total += spot.radiance[k] * 400 / ABBE_VIEW_SPOT_BANDS;
+      assert_near(spot.nm[k], 380 + 400 * (0.5 + (double)k) / ABBE_VIEW_SPOT_BANDS, 1e-6);
+    }
+    print_message("%.4f of the known light\n", total / known);
+    assert_near(total / known, 1, 0.01);
+  }
+  assert_int_equal(abbe_view_spot_trace(&scene, WIDTH, HEIGHT, pixels[0], 0, &stop, &spot, &error),
+                   ABBE_CANCELLED);
+  assert_int_equal(spot.bands, 0);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_pixel_has_the_light_of_its_place)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
