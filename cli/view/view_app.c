@@ -1,7 +1,7 @@
 #include "cli/view/view_app.h"
 
 #include "base/clock.h"
-#include "cli/view/state/view_camera.h"
+#include "cli/view/view_asks.h"
 #include "cli/view/view_keep.h"
 #include "cli/view/view_marks.h"
 #include "cli/view/view_panel.h"
@@ -14,7 +14,6 @@
 #include <string.h>
 
 #define LOOK_S 0.5       /* how often files are looked at */
-#define FEED_PIXELS 2.0  /* photons so near to a pixel feed it */
 #define MOST_GAP_MS 25.0 /* between moving pictures that follow each other */
 #define WAIT_S 0.1       /* for a moving picture, before the window is drawn with an older one */
 
@@ -161,71 +160,6 @@ static void take(abbe_view_session *app, size_t worker, abbe_view_result *result
   app->stale = true;
 }
 
-/* Where the picked pixel's light has come in is asked for once for each picture at rest. */
-static bool wants_feed(const abbe_view_session *app, abbe_view_request *out) {
-  const abbe_view_state *s = &app->state;
-  const abbe_image *layers = &app->pictures.layers;
-  const size_t z = layers->data != NULL ? abbe_image_find_channel(layers, "Z") : (size_t)-1;
-  const bool was_asked = app->fed_serial == s->refine.serial && app->fed_pixel[0] == s->pixel[0] &&
-                         app->fed_pixel[1] == s->pixel[1];
-  if (!s->picked || was_asked || s->refine.stage < ABBE_VIEW_BALANCED || z == (size_t)-1 ||
-      layers->width != s->width || layers->height != s->height || s->pixel[0] >= s->width ||
-      s->pixel[1] >= s->height)
-    return false;
-  const float *pixel =
-      layers->data + layers->channels * (s->pixel[1] * layers->width + s->pixel[0]);
-  const double distance = (double)pixel[z];
-  out->lit = abbe_view_probe_shows_caustic(layers, pixel);
-  const double xy[2] = {(double)s->pixel[0] + 0.5, (double)s->pixel[1] + 0.5};
-  abbe_view_camera_point(&s->camera, s->width, s->height, xy, distance, out->point);
-  abbe_view_probe probe;
-  abbe_view_probe_make(&app->pictures, s->pixel, &probe);
-  out->nm = probe.dominant_nm > 0 ? probe.dominant_nm : 550;
-  /* as wide as some pixels */
-  out->radius = FEED_PIXELS * distance * 2 * tan(0.5 * s->camera.fov_y_rad) / (double)s->height;
-  return distance > 0;
-}
-
-static bool is_spot(const abbe_view_session *app) {
-  const abbe_view_state *s = &app->state;
-  return s->picked && app->spot_serial == s->refine.serial && app->spot_pixel[0] == s->pixel[0] &&
-         app->spot_pixel[1] == s->pixel[1];
-}
-
-/* The picked pixel's spectrum, before a whole picture is traced. */
-static bool wants_spot(const abbe_view_session *app, abbe_view_request *out) {
-  const abbe_view_state *s = &app->state;
-  const bool traces = s->refine.last == ABBE_VIEW_NONE || s->refine.last == ABBE_VIEW_TRACED;
-  memcpy(out->pixel, s->pixel, sizeof out->pixel);
-  return s->picked && traces && !is_spot(app) && s->refine.stage >= ABBE_VIEW_BALANCED &&
-         app->pictures.traced.data == NULL;
-}
-
-/* Of the stage whose light is drawn. */
-static abbe_view_stage lit_stage(const abbe_view_refine *r) {
-  return r->stage > ABBE_VIEW_ACCURATE ? ABBE_VIEW_ACCURATE : r->stage;
-}
-
-/* The map is asked for while it is looked at, once for each stage. */
-static bool wants_map(const abbe_view_session *app) {
-  const abbe_view_refine *r = &app->state.refine;
-  return app->state.shown == ABBE_VIEW_MAP_PICTURE && r->stage >= ABBE_VIEW_BALANCED &&
-         (app->mapped_serial != r->serial || app->mapped != lit_stage(r));
-}
-
-static void take_look(abbe_view_session *app, abbe_view_result *result) {
-  if (result->map.data != NULL) {
-    abbe_view_painter_stop(app->painter);
-    replace(&app->pictures.map, &result->map);
-    app->stale = true;
-  }
-  if (result->spot.bands > 0) app->spot = result->spot;
-  if (result->feed == NULL) return;
-  free(app->feed);
-  app->feed = result->feed;
-  result->feed = NULL;
-}
-
 /* What is being done for an older state ends soon. */
 static void cancel_obsolete(abbe_view_session *app, size_t worker) {
   const abbe_view_refine *refine = &app->state.refine;
@@ -237,32 +171,12 @@ static void cancel_obsolete(abbe_view_session *app, size_t worker) {
   abbe_view_worker_cancel(desk->worker);
 }
 
-/* What a worker does beside all jobs; false: nothing. A look is into the last picture at rest, by
- * the worker that has drawn it; the turntable is never the one's that shows. */
+/* What a worker does beside all jobs; false: nothing. Asked is whoever has drawn the last picture
+ * at rest; the turntable is never the one's that shows. */
 static bool wants_other(const abbe_view_session *app, size_t worker, abbe_view_request *out) {
   const abbe_view_refine *refine = &app->state.refine;
-  out->maps = worker == refine->made && wants_map(app);
-  out->asks = worker == refine->made && !out->maps && wants_feed(app, out);
-  out->tells = worker == refine->made && !out->maps && !out->asks && wants_spot(app, out);
-  return out->maps || out->asks || out->tells ||
+  return (worker == refine->made && abbe_view_asks_want(app, out)) ||
          (worker != refine->made && worker != refine->shows && abbe_view_turn_wants(app, out));
-}
-
-static void note_look(abbe_view_session *app, const abbe_view_request *request) {
-  const abbe_view_state *s = &app->state;
-  if (request->asks) {
-    app->fed_serial = s->refine.serial;
-    memcpy(app->fed_pixel, s->pixel, sizeof app->fed_pixel);
-    free(app->feed);
-    app->feed = NULL;
-  } else if (request->tells) {
-    app->spot_serial = s->refine.serial;
-    memcpy(app->spot_pixel, s->pixel, sizeof app->spot_pixel);
-    app->spot.bands = 0;
-  } else if (request->maps) {
-    app->mapped_serial = s->refine.serial;
-    app->mapped = lit_stage(&s->refine);
-  }
 }
 
 static void give_one(abbe_view_session *app, size_t worker, double now_s) {
@@ -286,7 +200,7 @@ static void give_one(abbe_view_session *app, size_t worker, double now_s) {
   if (request.turns) abbe_view_refine_forget(&s->refine, worker);
   desk->waited_ms = 1e3 * (abbe_clock_seconds() - desk->ended_s);
   if (!(desk->ended_s > 0 && desk->waited_ms < MOST_GAP_MS)) desk->waited_ms = 0;
-  note_look(app, &request);
+  abbe_view_asks_note(app, &request);
   abbe_view_worker_give(desk->worker, &request);
 }
 
@@ -305,7 +219,7 @@ static void take_results(abbe_view_session *app) {
     if (app->taken.turned)
       abbe_view_turn_take(app, &app->taken);
     else if (app->taken.looked)
-      take_look(app, &app->taken);
+      abbe_view_asks_take(app, &app->taken);
     else
       take(app, i, &app->taken);
     abbe_view_result_free(&app->taken);
@@ -483,7 +397,7 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
   give(app, now_s);
   await_moving(app, now_s);
   if (s->picked) abbe_view_probe_make(&app->pictures, s->pixel, &app->probe);
-  if (is_spot(app)) abbe_view_probe_take_spot(&app->probe, &app->spot);
+  if (abbe_view_asks_has_spot(app)) abbe_view_probe_take_spot(&app->probe, &app->spot);
   if (is_stale(app) && app->stage == ABBE_VIEW_MOVING) show_moving(app);
   if (is_stale(app)) show_rest(app);
   app->input = *input;
@@ -528,7 +442,6 @@ bool abbe_view_app_rests(abbe_view_session *app, double now_s) {
   if (is_stale(app)) return false;
   for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++)
     if (!abbe_view_worker_idle(app->desk[i].worker)) return false;
-  return !wants_map(app) && !wants_feed(app, &request) && !wants_spot(app, &request) &&
-         !abbe_view_turn_wants(app, &request) &&
+  return !abbe_view_asks_want(app, &request) && !abbe_view_turn_wants(app, &request) &&
          abbe_view_refine_wait(&app->state.refine, now_s) < 0;
 }

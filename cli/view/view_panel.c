@@ -3,9 +3,9 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/yaml/yaml_quote.h"
-#include "cli/view/view_chart.h"
 #include "cli/view/view_keep.h"
 #include "cli/view/view_turn.h"
+#include "cli/view/widgets/view_chart.h"
 
 #include <math.h>
 #include <stdarg.h>

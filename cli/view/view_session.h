@@ -9,7 +9,7 @@
 #include "cli/view/picture/view_probe.h"
 #include "cli/view/picture/view_screen.h"
 #include "cli/view/picture/view_table.h"
-#include "cli/view/view_ui.h"
+#include "cli/view/widgets/view_ui.h"
 #include "cli/view/work/view_files.h"
 #include "cli/view/work/view_worker.h"
 

@@ -24,7 +24,7 @@ static const struct {
 
 /* The exceptions: the sweep compares both pictures; C++ stays in the bridges. */
 static const char *const exception_files = "validation/sweep/", *const exception_room = "gl";
-static const char *const bridges[] = {"cli/view/view_ui.cpp",
+static const char *const bridges[] = {"cli/view/widgets/view_ui.cpp",
                                       "colorimetry/image/display_ocio.cpp",
                                       "scenes/export/vdb_bytes.cpp",
                                       "scenes/geometry/transform.cpp",

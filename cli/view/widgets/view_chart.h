@@ -1,6 +1,6 @@
 /* view_chart.h: a pixel's spectrum with its standard errors, and its colour among the gamuts. */
-#ifndef ABBE_CLI_VIEW_VIEW_CHART_H
-#define ABBE_CLI_VIEW_VIEW_CHART_H
+#ifndef ABBE_CLI_VIEW_WIDGETS_VIEW_CHART_H
+#define ABBE_CLI_VIEW_WIDGETS_VIEW_CHART_H
 
 #include "cli/view/picture/view_probe.h"
 

@@ -1,4 +1,4 @@
-#include "cli/view/view_ui.h"
+#include "cli/view/widgets/view_ui.h"
 
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>

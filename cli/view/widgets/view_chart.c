@@ -1,7 +1,7 @@
-#include "cli/view/view_chart.h"
+#include "cli/view/widgets/view_chart.h"
 
 #include "base/number.h"
-#include "cli/view/view_ui.h"
+#include "cli/view/widgets/view_ui.h"
 #include "colorimetry/chromaticity.h"
 #include "colorimetry/rgb_space.h"
 

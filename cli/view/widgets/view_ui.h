@@ -4,8 +4,8 @@
  * Pixels run from the upper left corner. Whoever makes a window or a framebuffer hands events in.
  * Texts are UTF-8. Every widget is known by its label, so that scripts find it.
  */
-#ifndef ABBE_CLI_VIEW_VIEW_UI_H
-#define ABBE_CLI_VIEW_VIEW_UI_H
+#ifndef ABBE_CLI_VIEW_WIDGETS_VIEW_UI_H
+#define ABBE_CLI_VIEW_WIDGETS_VIEW_UI_H
 
 #include "base/error.h"
 
