@@ -410,8 +410,6 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
   abbe_ui_panel_end();
   abbe_ui_end();
   time_events(app);
-  take_results(app); /* whoever has drawn meanwhile goes on at once; */
-  give(app, now_s);  /* and what the panel has changed */
 }
 
 double abbe_view_app_wait(abbe_view_session *app, double now_s) {

@@ -15,7 +15,7 @@ static void wake(void) {
 }
 
 void abbe_view_hidden_sleep(abbe_view_hidden *h, double most_s) {
-  const double least_s = 0.002, wait_s = abbe_view_app_wait(&h->session, abbe_clock_seconds());
+  const double least_s = 0.0005, wait_s = abbe_view_app_wait(&h->session, abbe_clock_seconds());
   struct timespec until;
   clock_gettime(CLOCK_REALTIME, &until);
   const double nanoseconds = (double)until.tv_nsec + 1e9 * fmax(least_s, fmin(most_s, wait_s));
