@@ -38,9 +38,10 @@ typedef struct abbe_gpu_store {
 } abbe_gpu_store;
 
 /* Bytes to make a buffer with where so many are asked for: large ones in steps of a sixteenth, so
- * that what changes a little takes up what was put back. And Mesa's llvmpipe compiles a program
- * once more for texels of a power of two bytes, and for those whose bits 8 to 15 are none; no room
- * is either. */
+ * that what changes a little takes up what was put back. And no power of two, nor with nothing in
+ * the second byte: Mesa 22's llvmpipe takes that byte for levels of a texture, and a power of two
+ * for a fact of its own, and compiles what reads texels again where another buffer differs in
+ * either. */
 size_t abbe_gpu_store_room(size_t bytes);
 
 /* Something that was made so and is not in use, which then is; 0: there is none. A program may be

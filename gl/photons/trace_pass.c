@@ -76,23 +76,14 @@ abbe_result abbe_trace_pass_make_room(abbe_trace_pass *pass, abbe_error *error) 
                         abbe_photon_signature_bytes(pass->spectra), &pass->hits, error);
 }
 
-/* Mesa 22's llvmpipe takes the second byte of a size for levels of a texture, and a power of two
- * for a fact of its own: it compiles what reads texels again where another buffer differs in
- * either. */
-static size_t padded(size_t size) {
-  return (size & (size - 1)) == 0 || (size >> 8 & 255) == 0 ? size + 256 : size;
-}
-
 abbe_result abbe_hits_make(abbe_gpu *gpu, size_t items, size_t slots, size_t stride,
                            size_t signature_bytes, abbe_hits *out, abbe_error *error) {
   const size_t paths = items * slots;
   out->stride = stride;
   const size_t hits = paths * stride;
-  abbe_result result =
-      abbe_gpu_make_buffer(gpu, padded(hits * ABBE_HIT_BYTES), NULL, &out->hits, error);
+  abbe_result result = abbe_gpu_make_buffer(gpu, hits * ABBE_HIT_BYTES, NULL, &out->hits, error);
   if (result == ABBE_OK)
-    result =
-        abbe_gpu_make_buffer(gpu, padded(hits * signature_bytes), NULL, &out->signatures, error);
+    result = abbe_gpu_make_buffer(gpu, hits * signature_bytes, NULL, &out->signatures, error);
   if (result == ABBE_OK) result = abbe_gpu_make_buffer(gpu, paths * 4, NULL, &out->marks, error);
   if (result == ABBE_OK)
     result = abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + paths * 4, NULL, &out->paths, error);
