@@ -138,7 +138,6 @@ static void take(abbe_view_session *app, size_t worker, abbe_view_result *result
   if (!shown) return;
   const abbe_camera *led = &app->desk[worker].camera; /* unknown before the first picture */
   abbe_view_state_picture(&app->state, newest || led->fov_y_rad == 0 ? &app->state.camera : led);
-  abbe_view_painter_stop(app->painter); /* of pictures that go now */
   const double pictured_s = abbe_clock_seconds();
   if (moved && app->seen_s < 0) { /* after a rest */
     app->frame_count = 0;
@@ -153,20 +152,30 @@ static void take(abbe_view_session *app, size_t worker, abbe_view_result *result
     app->stage = ABBE_VIEW_TRACED;
     if (result->traced.data == NULL) return;
     app->passes = result->passes;
+    abbe_view_painter_stop(app->painter); /* of a picture that goes now */
     replace(&app->pictures.traced, &result->traced);
-  } else
+  } else {
+    abbe_view_painter_stop(app->painter);
     take_rendered(app, result);
+  }
   abbe_view_session_compare(app);
   app->stale = true;
 }
 
-/* What is being done for an older state ends soon. */
+/* What a busy worker does is for an older state or of another pixel, and it was not told to stop.
+ */
+static bool is_obsolete(const abbe_view_session *app, size_t worker) {
+  const abbe_view_state *s = &app->state;
+  const abbe_view_desk *desk = &app->desk[worker];
+  if (desk->stopped_s >= 0) return false;
+  if (!desk->other) return abbe_view_refine_cancels(&s->refine, worker);
+  return desk->serial != s->refine.serial ||
+         (desk->asked && (desk->pixel[0] != s->pixel[0] || desk->pixel[1] != s->pixel[1]));
+}
+
 static void cancel_obsolete(abbe_view_session *app, size_t worker) {
-  const abbe_view_refine *refine = &app->state.refine;
   abbe_view_desk *desk = &app->desk[worker];
-  const bool obsolete =
-      desk->other ? desk->serial != refine->serial : abbe_view_refine_cancels(refine, worker);
-  if (!obsolete || desk->stopped_s >= 0) return;
+  if (!is_obsolete(app, worker)) return;
   desk->stopped_s = abbe_clock_seconds();
   abbe_view_worker_cancel(desk->worker);
 }
@@ -182,7 +191,10 @@ static bool wants_other(const abbe_view_session *app, size_t worker, abbe_view_r
 static void give_one(abbe_view_session *app, size_t worker, double now_s) {
   abbe_view_state *s = &app->state;
   abbe_view_desk *desk = &app->desk[worker];
-  abbe_view_request request = {.width = s->width, .height = s->height, .edition = app->edition};
+  abbe_view_request request = {.width = s->width,
+                               .height = s->height,
+                               .edition = app->edition,
+                               .pixel = {s->pixel[0], s->pixel[1]}};
   if (!abbe_view_worker_idle(desk->worker)) {
     cancel_obsolete(app, worker);
     return;
@@ -195,6 +207,8 @@ static void give_one(abbe_view_session *app, size_t worker, double now_s) {
     return;
   desk->serial = s->refine.serial;
   desk->other = other;
+  desk->asked = request.asks || request.tells;
+  memcpy(desk->pixel, s->pixel, sizeof desk->pixel);
   desk->camera = s->camera;
   if (!other) abbe_view_refine_take(&s->refine, worker, &request.job);
   if (request.turns) abbe_view_refine_forget(&s->refine, worker);
@@ -230,9 +244,9 @@ static void take_results(abbe_view_session *app) {
 static bool is_moving(const abbe_view_session *app) {
   const size_t shows = app->state.refine.shows;
   const abbe_view_hand *hand = &app->state.refine.hand[shows];
-  return app->first_s > 0 && hand->busy &&
+  return app->first_s > 0 &&
          (app->desk[shows].stopped_s >= 0 ||
-          (hand->job.stage == ABBE_VIEW_MOVING && !hand->job.warms));
+          (hand->busy && hand->job.stage == ABBE_VIEW_MOVING && !hand->job.warms));
 }
 
 /* A moving picture is there that the screen does not show. */
@@ -397,7 +411,7 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
   give(app, now_s);
   await_moving(app, now_s);
   if (s->picked) abbe_view_probe_make(&app->pictures, s->pixel, &app->probe);
-  if (abbe_view_asks_has_spot(app)) abbe_view_probe_take_spot(&app->probe, &app->spot);
+  if (abbe_view_asks_has_spot(app)) abbe_view_probe_take_spot(&app->probe, app->passes, &app->spot);
   if (is_stale(app) && app->stage == ABBE_VIEW_MOVING) show_moving(app);
   if (is_stale(app)) show_rest(app);
   app->input = *input;
@@ -415,11 +429,13 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
 double abbe_view_app_wait(abbe_view_session *app, double now_s) {
   const abbe_view_state *s = &app->state;
   abbe_view_job job;
+  abbe_view_request request;
   if (s->width == 0 || s->height == 0) return LOOK_S;
   if (s->fly[0] != 0 || s->fly[1] != 0 || s->fly[2] != 0) return 0;
   for (size_t i = 0; i < ABBE_VIEW_WORKERS; i++)
-    if (abbe_view_worker_idle(app->desk[i].worker) &&
-        abbe_view_refine_next(&s->refine, i, now_s, &job))
+    if (abbe_view_worker_idle(app->desk[i].worker)
+            ? abbe_view_refine_next(&s->refine, i, now_s, &job) || wants_other(app, i, &request)
+            : is_obsolete(app, i))
       return 0;
   const double wait = abbe_view_refine_wait(&s->refine, now_s);
   return wait <= 0 ? LOOK_S : fmin(LOOK_S, wait);

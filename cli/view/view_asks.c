@@ -40,10 +40,9 @@ bool abbe_view_asks_has_spot(const abbe_view_session *app) {
 }
 
 /* The picked pixel's spectrum, before a whole picture is traced. */
-static bool wants_spot(const abbe_view_session *app, abbe_view_request *out) {
+static bool wants_spot(const abbe_view_session *app) {
   const abbe_view_state *s = &app->state;
   const bool traces = s->refine.last == ABBE_VIEW_NONE || s->refine.last == ABBE_VIEW_TRACED;
-  memcpy(out->pixel, s->pixel, sizeof out->pixel);
   return s->picked && traces && !abbe_view_asks_has_spot(app) &&
          s->refine.stage >= ABBE_VIEW_BALANCED && app->pictures.traced.data == NULL;
 }
@@ -63,7 +62,7 @@ static bool wants_map(const abbe_view_session *app) {
 bool abbe_view_asks_want(const abbe_view_session *app, abbe_view_request *out) {
   out->maps = wants_map(app);
   out->asks = !out->maps && wants_feed(app, out);
-  out->tells = !out->maps && !out->asks && wants_spot(app, out);
+  out->tells = !out->maps && !out->asks && wants_spot(app);
   return out->maps || out->asks || out->tells;
 }
 
@@ -84,6 +83,15 @@ void abbe_view_asks_note(abbe_view_session *app, const abbe_view_request *reques
   }
 }
 
+/* What was noted last. If it was cancelled it may be asked for again. */
+static bool is_answer(const abbe_view_result *result, uint64_t *serial, const size_t pixel[2]) {
+  if (result->job.serial != *serial || result->pixel[0] != pixel[0] || result->pixel[1] != pixel[1])
+    return false;
+  if (result->outcome == ABBE_VIEW_CANCELLED || result->outcome == ABBE_VIEW_LOST)
+    *serial = UINT64_MAX;
+  return result->outcome == ABBE_VIEW_DONE;
+}
+
 void abbe_view_asks_take(abbe_view_session *app, abbe_view_result *result) {
   if (result->map.data != NULL) {
     abbe_view_painter_stop(app->painter);
@@ -92,8 +100,9 @@ void abbe_view_asks_take(abbe_view_session *app, abbe_view_result *result) {
     result->map = (abbe_image){0};
     app->stale = true;
   }
-  if (result->spot.bands > 0) app->spot = result->spot;
-  if (result->feed == NULL) return;
+  if (result->tells && is_answer(result, &app->spot_serial, app->spot_pixel))
+    app->spot = result->spot;
+  if (!result->asks || !is_answer(result, &app->fed_serial, app->fed_pixel)) return;
   free(app->feed);
   app->feed = result->feed;
   result->feed = NULL;

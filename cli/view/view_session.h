@@ -22,6 +22,8 @@ typedef struct abbe_view_desk {
   abbe_view_worker *worker;
   uint64_t serial; /* of what it does, */
   bool other; /* which is no job of cli/view/state/view_refine.h: a look, a turntable's frame */
+  bool asked; /* of this pixel: */
+  size_t pixel[2];
   abbe_camera camera; /* as it was led to then */
   double stopped_s;   /* when it was told to stop; below 0: it was not */
   double ended_s;     /* when it had drawn its last moving picture, */

@@ -68,3 +68,25 @@ void abbe_pass_sums_clear(abbe_tracer *t) {
     if (span[i].count > 0) memset(span[i].sum, 0, span[i].count * sizeof *span[i].sum);
   abbe_pass_counts_set(t, &(abbe_pass_counts){.step = 1});
 }
+
+/* ---- passes ---- */
+
+abbe_result abbe_tracer_begin_at(abbe_tracer *t, size_t pass, size_t step, abbe_error *error) {
+  ABBE_REQUIRE(t, error);
+  const size_t most = ABBE_WHOLE_SUM_MOST_PASSES;
+  if (t->pass > t->first || pass >= most || step == 0 || step > most)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a trace cannot begin at pass %zu, in steps of %zu%s", pass, step,
+                          t->pass > t->first ? ", once it has begun" : "");
+  t->first = t->pass = pass;
+  t->step = step;
+  return ABBE_OK;
+}
+
+size_t abbe_tracer_first_pass(const abbe_tracer *tracer) {
+  return tracer->first;
+}
+
+size_t abbe_tracer_step(const abbe_tracer *tracer) {
+  return tracer->step;
+}

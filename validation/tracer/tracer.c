@@ -32,6 +32,11 @@ static abbe_result check_count(const char *what, size_t value, size_t most, abbe
                         value, most);
 }
 
+/* Of the picture that photons are followed and gathered for. */
+static size_t pixels_of(const abbe_trace_desc *d) {
+  return d->whole_pixels > 0 ? d->whole_pixels : d->width * d->height;
+}
+
 static abbe_result resolve(const abbe_scene *scene, abbe_trace_desc *d, abbe_error *error) {
   if (d->width == 0) d->width = scene->camera.width;
   if (d->height == 0) d->height = scene->camera.height;
@@ -47,6 +52,10 @@ static abbe_result resolve(const abbe_scene *scene, abbe_trace_desc *d, abbe_err
     result = check_count("photons", d->photons, ABBE_TRACER_MAX_PHOTONS, error);
   if (result == ABBE_OK)
     result = check_count("threads", d->threads, ABBE_TRACER_MAX_THREADS, error);
+  if (result == ABBE_OK)
+    result = check_count("whole picture", d->whole_pixels,
+                         (size_t)ABBE_TRACER_MAX_SIDE * ABBE_TRACER_MAX_SIDE, error);
+  if (result == ABBE_OK) result = check_count("pixel", d->pixel_sides, ABBE_TRACER_MAX_SIDE, error);
   if (result != ABBE_OK) return result;
   const bool dark = scene->light_count == 0 && scene->environment == NULL;
   if (dark || scene->object_count == 0)
@@ -74,8 +83,7 @@ static abbe_result resolve(const abbe_scene *scene, abbe_trace_desc *d, abbe_err
   }
   if (d->photons == 0) {
     d->photons = 1u << 20;
-    if (!d->no_picture && 4 * d->width * d->height > d->photons)
-      d->photons = 4 * d->width * d->height;
+    if (!d->no_picture && 4 * pixels_of(d) > d->photons) d->photons = 4 * pixels_of(d);
     if (d->photons > ABBE_TRACER_MAX_PHOTONS) d->photons = ABBE_TRACER_MAX_PHOTONS;
   }
   if (d->threads == 0) d->threads = (size_t)omp_get_num_procs();
@@ -192,15 +200,21 @@ static abbe_result make_sums(abbe_tracer *t, abbe_error *error) {
   return result;
 }
 
+/* Pixels a side of one of the picture that photons are gathered for. */
+static float pixel_sides(const abbe_trace_desc *d) {
+  return d->pixel_sides > 0 ? (float)d->pixel_sides : 1;
+}
+
 /* Four pixels of the receivers as far away as the refractors, or less where a pixel has more than
  * four photons: as many are in reach then. */
 static float first_radius(const abbe_tracer *t) {
   float eye[3], far = 0;
-  double pixels = (double)(t->desc.width * t->desc.height);
+  double pixels = (double)pixels_of(&t->desc);
   double sides = fmin(4, 8 * sqrt(pixels / (double)t->desc.photons));
   abbe_geometry_to_frame(&t->geometry, t->scene->camera.eye, eye);
   for (int k = 0; k < 3; k++) far += eye[k] * eye[k];
-  return (float)sides * 2 * t->camera.half_height / (float)t->desc.height * sqrtf(far);
+  return (float)sides * 2 * t->camera.half_height / (float)t->desc.height * pixel_sides(&t->desc) *
+         sqrtf(far);
 }
 
 /* Four pixels as far away as the eye sees, or less where a pixel has many photons, which are spread
@@ -208,10 +222,11 @@ static float first_radius(const abbe_tracer *t) {
  * straight, by a quarter of the radius. */
 static void choose_shafts(abbe_tracer *t) {
   if (!abbe_haze_is(&t->media.haze)) return;
-  const double pixels = (double)(t->desc.width * t->desc.height);
+  const double pixels = (double)pixels_of(&t->desc);
   const double sides = fmin(4, 6 * pow(pixels / (double)t->desc.photons, 0.25));
   const float depth = abbe_eye_samples_depth(&t->geometry, &t->camera);
-  t->shaft_radius = (float)sides * 2 * t->camera.half_height / (float)t->desc.height * depth;
+  t->shaft_radius = (float)sides * 2 * t->camera.half_height / (float)t->desc.height *
+                    pixel_sides(&t->desc) * depth;
   t->eye.shaft_near = 0.25f * depth;
 }
 
@@ -458,28 +473,8 @@ abbe_result abbe_tracer_pass(abbe_tracer *t, const volatile int *stop, abbe_erro
   return ABBE_OK;
 }
 
-abbe_result abbe_tracer_begin_at(abbe_tracer *t, size_t pass, size_t step, abbe_error *error) {
-  ABBE_REQUIRE(t, error);
-  const size_t most = ABBE_WHOLE_SUM_MOST_PASSES;
-  if (t->pass > t->first || pass >= most || step == 0 || step > most)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "a trace cannot begin at pass %zu, in steps of %zu%s", pass, step,
-                          t->pass > t->first ? ", once it has begun" : "");
-  t->first = t->pass = pass;
-  t->step = step;
-  return ABBE_OK;
-}
-
 size_t abbe_tracer_passes(const abbe_tracer *t) {
   return (t->pass - t->first) / t->step;
-}
-
-size_t abbe_tracer_first_pass(const abbe_tracer *tracer) {
-  return tracer->first;
-}
-
-size_t abbe_tracer_step(const abbe_tracer *tracer) {
-  return tracer->step;
 }
 
 void abbe_tracer_statistics(const abbe_tracer *t, abbe_trace_statistics *out) {

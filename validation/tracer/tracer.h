@@ -47,6 +47,9 @@ typedef struct abbe_trace_desc {
   abbe_rgb_space space;          /* of the picture */
   abbe_observer observer;        /* whose XYZ its colours and the map's are */
   size_t photons;                /* a pass; 0: 2^20, or four a pixel where that is more */
+  /* Where all is one pixel of a larger picture: how many pixels that one has, and how many a side
+   * this one. Photons are followed and gathered as for that one. 0: it is a picture of its own. */
+  size_t whole_pixels, pixel_sides;
   uint32_t seed;
   size_t threads; /* 0: all cores */
   /* Other than 0: the tracer's making, or the reading of what it has traced, ends soon with

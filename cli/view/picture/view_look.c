@@ -93,7 +93,6 @@ abbe_result abbe_view_look_closer(abbe_context *context, const abbe_renderer *re
   abbe_render_desc desc = desc_of(renderer, stop);
   abbe_renderer *closer = NULL;
   abbe_result result = ABBE_OK;
-  abbe_view_feed_begin(point, radius, out);
   for (desc.photons *= 2; desc.photons <= ABBE_VIEW_LOOK_PHOTONS && result == ABBE_OK;
        desc.photons *= 2) {
     if (desc.map_size < 2 * desc.photons) desc.map_size = 2 * desc.photons; /* keeps all cells */

@@ -15,7 +15,8 @@ abbe_result abbe_view_look_feed(abbe_renderer *renderer, const abbe_scene *scene
                                 abbe_view_feed *out, abbe_error *error);
 /* The same of twice as many photons a side as the renderer follows, and twice as many again until
  * some are found or there are more than ABBE_VIEW_LOOK_PHOTONS: between a few that land far apart
- * nothing is known. A renderer of its own follows them; the other stays as it is. Errors of
+ * nothing is known. *out is what abbe_view_look_feed has found, and stays so where there are no
+ * more to follow. A renderer of its own follows them; the other stays as it is. Errors of
  * abbe_renderer_make, too. */
 enum { ABBE_VIEW_LOOK_PHOTONS = 1024 };
 abbe_result abbe_view_look_closer(abbe_context *context, const abbe_renderer *renderer,

@@ -58,8 +58,8 @@ void abbe_view_probe_make(const abbe_view_pictures *p, const size_t pixel[2],
   find_dominant(out);
 }
 
-void abbe_view_probe_take_spot(abbe_view_probe *probe, const abbe_view_spot *spot) {
-  if (probe->bands > 0) return;
+void abbe_view_probe_take_spot(abbe_view_probe *probe, size_t passes, const abbe_view_spot *spot) {
+  if (spot->bands == 0 || (probe->bands > 0 && passes >= spot->passes)) return;
   probe->bands = spot->bands;
   memcpy(probe->nm, spot->nm, sizeof spot->nm);
   memcpy(probe->radiance, spot->radiance, sizeof spot->radiance);

@@ -25,8 +25,8 @@ typedef struct abbe_view_probe {
 
 void abbe_view_probe_make(const abbe_view_pictures *pictures, const size_t pixel[2],
                           abbe_view_probe *out);
-/* Its spectrum is the spot's, where it has none of its own. */
-void abbe_view_probe_take_spot(abbe_view_probe *probe, const abbe_view_spot *spot);
+/* Its spectrum is the spot's, where it has none of its own, or one of a picture of fewer passes. */
+void abbe_view_probe_take_spot(abbe_view_probe *probe, size_t passes, const abbe_view_spot *spot);
 /* Whether more than a hundredth of lamps' light is a caustic at a pixel of the picture's layers. */
 bool abbe_view_probe_shows_caustic(const abbe_image *layers, const float *pixel);
 /* Where the rendered picture has most colour of a dominant wavelength from nm[0] to nm[1], in its

@@ -40,8 +40,7 @@ void abbe_view_screen_draw(abbe_view_screen *s, size_t width, size_t height) {
   const GLint below = (GLint)height - (GLint)s->seen[1];
   s->gl->BindFramebuffer(GL_READ_FRAMEBUFFER, s->framebuffer);
   s->gl->Enable(GL_SCISSOR_TEST);
-  s->gl->Scissor(0, below, (GLsizei)(s->seen[0] < width ? s->seen[0] : width),
-                 (GLsizei)s->seen[1]);
+  s->gl->Scissor(0, below, (GLsizei)(s->seen[0] < width ? s->seen[0] : width), (GLsizei)s->seen[1]);
   s->gl->BlitFramebuffer(0, 0, w, h, 0, below, side * w, below + side * h, GL_COLOR_BUFFER_BIT,
                          side > 1 ? GL_LINEAR : GL_NEAREST);
   s->gl->Disable(GL_SCISSOR_TEST);

@@ -158,7 +158,8 @@ static void show_false(const abbe_view_pictures *p, abbe_view_shown shown, unsig
     const double y = abbe_view_luminance(weight, second, b, i);
     double t;
     if (difference)
-      t = 0.5 + 0.5 * (abbe_view_luminance(weight, first, a, i) - y) / (ABBE_VIEW_FULL_DIFFERENCE * mean);
+      t = 0.5 +
+          0.5 * (abbe_view_luminance(weight, first, a, i) - y) / (ABBE_VIEW_FULL_DIFFERENCE * mean);
     else
       t = log10(fmax(1e-30, fabs(y)) / (ABBE_VIEW_LEAST_ERROR * mean)) / 3;
     put_colour(difference ? ABBE_COLOUR_MAP_DIFFERENCE : ABBE_COLOUR_MAP_AMOUNT, t, out + 4 * i);
@@ -234,14 +235,14 @@ abbe_result abbe_view_show(const abbe_view_pictures *p, abbe_view_shown shown, d
   size_t channel[3] = {0, 1, 2};
   abbe_image map = {0};
   const bool maps = shown == ABBE_VIEW_MAP_PICTURE;
-  abbe_result result =
-      maps ? abbe_image_make(from->width, from->height, 3, names, &map, error)
-      : abbe_view_channels(from, layer, channel)
-          ? ABBE_OK
-          : abbe_error_set(error, ABBE_NOT_FOUND, "the picture has no such layer");
+  abbe_result result = maps ? abbe_image_make(from->width, from->height, 3, names, &map, error)
+                       : abbe_view_channels(from, layer, channel)
+                           ? ABBE_OK
+                           : abbe_error_set(error, ABBE_NOT_FOUND, "the picture has no such layer");
   if (result == ABBE_OK && maps) fill_map(&p->map, gain, &map);
   if (result == ABBE_OK)
-    result = show_colours(maps ? &map : from, channel, maps ? 1 : gain, display, table, *out, error);
+    result =
+        show_colours(maps ? &map : from, channel, maps ? 1 : gain, display, table, *out, error);
   abbe_image_free(&map);
   if (result == ABBE_OK) return ABBE_OK;
   free(*out);

@@ -63,8 +63,13 @@ abbe_result abbe_view_spot_trace(const abbe_scene *scene, size_t width, size_t h
                                  const size_t pixel[2], double seconds, const volatile int *stop,
                                  abbe_view_spot *out, abbe_error *error) {
   const double start_s = abbe_clock_seconds();
-  const abbe_trace_desc desc = {
-      .no_map = true, .width = SIDE, .height = SIDE, .bands = ABBE_VIEW_SPOT_BANDS, .stop = stop};
+  const abbe_trace_desc desc = {.no_map = true,
+                                .width = SIDE,
+                                .height = SIDE,
+                                .whole_pixels = width * height,
+                                .pixel_sides = SIDE,
+                                .bands = ABBE_VIEW_SPOT_BANDS,
+                                .stop = stop};
   double before[ABBE_VIEW_SPOT_BANDS] = {0}, squares[ABBE_VIEW_SPOT_BANDS] = {0};
   abbe_tracer *tracer = NULL;
   abbe_scene seen = *scene;

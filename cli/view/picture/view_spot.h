@@ -1,7 +1,7 @@
 /* view_spot.h: a pixel's spectrum by the reference tracer, long before a whole picture has one.
  *
- * A camera looks at nothing but the pixel, with many samples; the photons of each pass are those
- * of a picture.
+ * A camera looks at nothing but the pixel, with many samples; the photons of each pass are as many
+ * as a picture has, and are gathered as widely.
  */
 #ifndef ABBE_CLI_VIEW_PICTURE_VIEW_SPOT_H
 #define ABBE_CLI_VIEW_PICTURE_VIEW_SPOT_H

@@ -48,7 +48,7 @@ static double by_share(bool lit, const size_t now[2], double ms, size_t light, s
 }
 
 /* By the two pictures that differ most: time is linear in the share of all work. Infinite: there
- * are no two. */
+ * are no two, or none from which a time follows. */
 static double by_work(const abbe_view_pace *p, bool lit, size_t light, size_t eye) {
   double least = INFINITY, most = 0, least_ms = 0, most_ms = 0;
   for (size_t e = 0; e < ABBE_VIEW_EYE_STEPS; e++)
@@ -63,8 +63,10 @@ static double by_work(const abbe_view_pace *p, bool lit, size_t light, size_t ey
         most_ms = ms;
       }
     }
-  if (!(most > least)) return INFINITY;
-  return least_ms + (most_ms - least_ms) * (work_of(lit, light, eye) - least) / (most - least);
+  if (!(most > least) || !(most_ms > least_ms)) return INFINITY;
+  const double ms =
+      least_ms + (most_ms - least_ms) * (work_of(lit, light, eye) - least) / (most - least);
+  return ms > 0 ? ms : INFINITY;
 }
 
 /* What a picture took last, or a guess, which lies between those of coarser and finer ones. */
@@ -73,8 +75,7 @@ static double expected(const abbe_view_pace *p, bool lit, const size_t now[2], d
   double guess = known(p, lit, light, eye);
   if (guess > 0) return guess;
   if (lit) guess = by_light(p, light, eye);
-  if (!(guess > 0))
-    guess = fmin(by_work(p, lit, light, eye), by_share(lit, now, ms, light, eye));
+  if (!(guess > 0)) guess = fmin(by_work(p, lit, light, eye), by_share(lit, now, ms, light, eye));
   for (size_t e = 0; e < ABBE_VIEW_EYE_STEPS; e++)
     for (size_t l = 0; l < (lit ? ABBE_VIEW_LIGHT_STEPS : 1); l++) {
       const double other = known(p, lit, l, e);

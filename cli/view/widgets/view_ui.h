@@ -62,9 +62,9 @@ void abbe_ui_tooltip(const char *text);
 
 /* An empty place of the panel for a drawing; false where it is out of sight. */
 bool abbe_ui_place(const char *label, double width, double height, double *x, double *y);
-/* Lines and texts: over the panel that is open, else under all panels. */
-/* None goes farther than this to the right and down until the panel begins. */
+/* Lines and texts go no farther than this to the right and down until the panel begins. */
 void abbe_ui_clip(double width, double height);
+/* Lines and texts: over the panel that is open, else under all panels. */
 void abbe_ui_line(double x0, double y0, double x1, double y1, abbe_ui_colour colour, double width);
 void abbe_ui_circle(double x, double y, double radius, abbe_ui_colour colour, double width);
 void abbe_ui_box(double x0, double y0, double x1, double y1, abbe_ui_colour colour);

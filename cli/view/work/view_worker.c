@@ -283,13 +283,21 @@ static abbe_result take_scene(abbe_view_worker *w, const abbe_view_request *q,
   return result;
 }
 
+/* Of a request of which nothing is made yet. */
+static void begin_result(const abbe_view_request *q, abbe_view_result *out) {
+  memset(out, 0, sizeof *out);
+  out->job = q->job;
+  out->width = q->width;
+  out->height = q->height;
+  out->turned = q->turns;
+  out->looked = looks(q);
+  out->asks = q->asks;
+  out->tells = q->tells;
+  memcpy(out->pixel, q->pixel, sizeof out->pixel);
+}
+
 static abbe_result make(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out,
                         abbe_error *error) {
-  *out = (abbe_view_result){.job = q->job,
-                            .width = q->width,
-                            .height = q->height,
-                            .turned = q->turns,
-                            .looked = looks(q)};
   if (q->asks || q->maps) return look(w, q, out, error);
   const abbe_result result = take_scene(w, q, out, error);
   if (result != ABBE_OK) return result;
@@ -320,12 +328,12 @@ static void work(abbe_view_worker *w, const abbe_view_request *q, abbe_view_resu
   abbe_watch_set(&watch);
   w->lost = false;
   abbe_result result = w->context != NULL ? ABBE_OK : renew(w, &error);
-  *out = (abbe_view_result){.job = q->job, .turned = q->turns, .looked = looks(q)};
+  begin_result(q, out);
   if (result == ABBE_OK) result = make(w, q, out, &error);
   if (result == ABBE_GL && w->context != NULL) { /* once */
     abbe_view_result_free(out);
     result = renew(w, &error);
-    *out = (abbe_view_result){.job = q->job, .turned = q->turns, .looked = looks(q)};
+    begin_result(q, out);
     if (result == ABBE_OK) result = make(w, q, out, &error);
   }
   abbe_watch_set(NULL);

@@ -31,8 +31,8 @@ typedef struct abbe_view_request {
                                   some are found */
   bool maps;                   /* no picture, but the spectral map */
   bool tells;                  /* no picture, but the spectrum of this pixel */
-  size_t pixel[2];
-  bool turns; /* the picture, seen from elsewhere: */
+  size_t pixel[2];             /* the picked one, of which is asked and told */
+  bool turns;                  /* the picture, seen from elsewhere: */
   double turn_rad;
 } abbe_view_request;
 
@@ -63,7 +63,9 @@ typedef struct abbe_view_result {
   abbe_error_bars bars; /* of the stage `mean`; its pictures too */
   size_t passes;        /* traced */
   bool turned;          /* of the turntable */
-  bool looked;          /* for one of these alone: */
+  bool looked;          /* for one of these alone */
+  bool asks, tells;     /* what feeds this pixel, its spectrum */
+  size_t pixel[2];
   abbe_image map;       /* zeroed: there is none */
   abbe_view_spot spot;  /* of the pixel that was asked for */
   abbe_view_feed *feed; /* NULL: the last picture drawn is not of this scene any more */

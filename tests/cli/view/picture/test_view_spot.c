@@ -2,6 +2,7 @@
 #include "tests/check.h"
 #include "tests/scenes/scene_text.h"
 
+#include "cli/view/picture/view_probe.h"
 #include "cli/view/picture/view_spot.h"
 #include "cli/view/state/view_camera.h"
 
@@ -52,7 +53,63 @@ static void a_pixel_has_the_light_of_its_place(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* The sun through a plate onto a floor, seen through the same plate: the plate lets
+ * (1 - R) / (1 + R) pass each time, for each polarisation. */
+static const char plate[] =
+    "materials: glass.yaml\n"
+    "camera: {eye: [0, -2, 3], target: [0, 0, 0.3], fov: 40}\n"
+    "lights: [{name: sun, kind: directional, direction: [0, 0, -1], irradiance: 2, illuminant: "
+    "E}]\n"
+    "objects:\n"
+    "- {name: floor, shape: rectangle, width: 8, height: 8, reflectance: 0.5}\n"
+    "- {name: plate, shape: box, size: [2, 2, 0.1], material: crown,\n"
+    "   transform: [{translate: [0, 0, 0.3]}]}\n";
+
+static double passes(double n, double angle) {
+  const double c = cos(angle), in = sqrt(1 - sin(angle) * sin(angle) / (n * n));
+  const double s = (c - n * in) / (c + n * in), p = (n * c - in) / (n * c + in);
+  return 0.5 * ((1 - s * s) / (1 + s * s) + (1 - p * p) / (1 + p * p));
+}
+
+static void a_caustic_behind_glass_has_all_bands(void **state) {
+  (void)state;
+  enum { WIDTH = 512, HEIGHT = 512 };
+  static const size_t pixel[2] = {256, 256};
+  static abbe_view_spot spot;
+  abbe_error error = {0};
+  abbe_scene scene = {0};
+  double total = 0;
+  load_text(plate, &scene);
+  const double angle = atan2(2, 2.7), known = 0.5 / pi * 2 * passes(1.52, 0) * passes(1.52, angle);
+  if (abbe_view_spot_trace(&scene, WIDTH, HEIGHT, pixel, 0, NULL, &spot, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  for (size_t k = 0; k < spot.bands; k++) {
+    total += spot.radiance[k] * 400 / ABBE_VIEW_SPOT_BANDS;
+    assert_true(spot.radiance[k] > 0 && spot.stderr_of[k] > 0);
+  }
+  print_message("%.4f of the known light\n", total / known);
+  assert_near(total / known, 1, 0.1); /* some 2000 photons, of which each thread has its part */
+  abbe_scene_free(&scene);
+}
+
+static void the_spectrum_of_more_passes_is_told(void **state) {
+  (void)state;
+  static abbe_view_probe probe, own = {.bands = 3};
+  static abbe_view_spot none, spot = {.passes = 4, .bands = 2, .radiance = {5, 6}};
+  abbe_view_probe_take_spot(&probe, 0, &none);
+  assert_int_equal(probe.bands, 0);
+  abbe_view_probe_take_spot(&probe, 0, &spot);
+  assert_true(probe.bands == 2 && probe.radiance[1] == 6);
+  probe = own;
+  abbe_view_probe_take_spot(&probe, 4, &spot);
+  assert_int_equal(probe.bands, 3);
+  abbe_view_probe_take_spot(&probe, 3, &spot);
+  assert_int_equal(probe.bands, 2);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_pixel_has_the_light_of_its_place)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_pixel_has_the_light_of_its_place),
+                                     cmocka_unit_test(a_caustic_behind_glass_has_all_bands),
+                                     cmocka_unit_test(the_spectrum_of_more_passes_is_told)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
