@@ -1,10 +1,17 @@
 // The eye's rays on multi-refractor paths, by PIXEL_THREADS threads a pixel: so each band's are followed
 // as far however many bands there are.
 
+// Where a pixel has one thread that has what is its own: all of a group's would not fit.
 #if PIXEL_THREADS == 1
 #define JOIN
+#define SHARED
+#define OF_PIXELS(n) (n)
+#define OF_PIXEL 0
 #else
 #define JOIN barrier();
+#define SHARED shared
+#define OF_PIXELS(n) (PIXELS * (n))
+#define OF_PIXEL place
 #endif
 
 // llvmpipe goes through what no lane wants, too: of one band both ways on are followed as one path's.
@@ -16,29 +23,29 @@ bool goes_both_ways(int count) { return false; }
 
 const int PIXELS = int(gl_WorkGroupSize.x) / PIXEL_THREADS;
 
-shared vec3 path_sum[PIXELS * PIXEL_THREADS];
+SHARED vec3 path_sum[OF_PIXELS(PIXEL_THREADS)];
 
 #ifdef HIERARCHY
 // A search is dear: a pixel's first thread finds out for all what its ray meets first. The first threads
 // of all pixels come first, then the second ones: where few bands are wanted, whole lanes are done early.
 int place = int(gl_LocalInvocationID.x) % PIXELS, pixel_thread = int(gl_LocalInvocationID.x) / PIXELS;
 
-shared ivec4 task[PIXELS];  // refractor, first band, how many, and whether something is met
-shared Interface task_first[PIXELS];
+SHARED ivec4 task[OF_PIXELS(1)];  // refractor, first band, how many, and whether something is met
+SHARED Interface task_first[OF_PIXELS(1)];
 
 void give_task(int base, int count) {
-  task[place] = ivec4(refractor, base, count, found ? 1 : 0);
-  task_first[place] = first;
+  task[OF_PIXEL] = ivec4(refractor, base, count, found ? 1 : 0);
+  task_first[OF_PIXEL] = first;
 }
 
 void take_task(ivec2 at, out int base, out int count) {
   begin_path(at);
-  refractor = task[place].x;
-  base = task[place].y;
+  refractor = task[OF_PIXEL].x;
+  base = task[OF_PIXEL].y;
   band_set = base / counts.bands - refractor * BAND_SETS;
-  count = task[place].z;
-  found = task[place].w != 0;
-  first = task_first[place];
+  count = task[OF_PIXEL].z;
+  found = task[OF_PIXEL].w != 0;
+  first = task_first[OF_PIXEL];
   front = first.hit;
 }
 #else
@@ -125,17 +132,17 @@ void main() {
     vec3 light = band_light(base + min(i, count - 1), false, false, mirrored);
     sum += i < count ? light * bands[base + i].weight_n.xyz : vec3(0);
   }
-  path_sum[place * PIXEL_THREADS + pixel_thread] = sum;
+  path_sum[OF_PIXEL * PIXEL_THREADS + pixel_thread] = sum;
   JOIN
   if (pixel_thread > 0 || !there) return;
   vec3 all = vec3(0);
-  for (int k = 0; k < PIXEL_THREADS; k++) all += path_sum[place * PIXEL_THREADS + k];
+  for (int k = 0; k < PIXEL_THREADS; k++) all += path_sum[OF_PIXEL * PIXEL_THREADS + k];
   add_to_picture(at, all);
 }
 #else
-shared vec3 path_mirror[PIXELS * PIXEL_THREADS], in_the_mirror[PIXELS];
+SHARED vec3 path_mirror[OF_PIXELS(PIXEL_THREADS)], in_the_mirror[OF_PIXELS(1)];
 #ifdef REFINES
-shared vec3 path_shown[PIXELS * COARSE_BANDS];
+SHARED vec3 path_shown[OF_PIXELS(COARSE_BANDS)];
 #endif
 
 void main() {
@@ -181,31 +188,31 @@ void main() {
 #endif
     mirror += mirrored * weight;
     sum += light * weight;
-    if (in_mirror || both) in_the_mirror[place] = light;
+    if (in_mirror || both) in_the_mirror[OF_PIXEL] = light;
 #ifdef REFINES
-    if (!in_mirror) path_shown[place * COARSE_BANDS + i] = light;
+    if (!in_mirror) path_shown[OF_PIXEL * COARSE_BANDS + i] = light;
 #endif
   }
 #ifdef KEEPS_SIGHTS
   if (there) sight_pixels[listed * SIGHT_WORDS + 8u + uint(pixel_thread)] = own_chain;
 #endif
-  path_sum[place * PIXEL_THREADS + pixel_thread] = sum;
-  path_mirror[place * PIXEL_THREADS + pixel_thread] = mirror;
+  path_sum[OF_PIXEL * PIXEL_THREADS + pixel_thread] = sum;
+  path_mirror[OF_PIXEL * PIXEL_THREADS + pixel_thread] = mirror;
   JOIN
   if (pixel_thread > 0 || !there) return;
   vec3 all = vec3(0), all_mirror = vec3(0);
   for (int k = 0; k < PIXEL_THREADS; k++) {
-    all += path_sum[place * PIXEL_THREADS + k];
-    all_mirror += path_mirror[place * PIXEL_THREADS + k];
+    all += path_sum[OF_PIXEL * PIXEL_THREADS + k];
+    all_mirror += path_mirror[OF_PIXEL * PIXEL_THREADS + k];
   }
 #ifdef REFINES
   for (int i = 0; i < COARSE_BANDS; i++)
-    shown_by[i] = i < count ? path_shown[place * COARSE_BANDS + i] : vec3(0);
+    shown_by[i] = i < count ? path_shown[OF_PIXEL * COARSE_BANDS + i] : vec3(0);
 #endif
 #ifdef KEEPS_SIGHTS
-  keep_pixel(listed, all + all_mirror * in_the_mirror[place], all_mirror);
+  keep_pixel(listed, all + all_mirror * in_the_mirror[OF_PIXEL], all_mirror);
 #else
-  write_pixel(where, base, count, all + all_mirror * in_the_mirror[place]);
+  write_pixel(where, base, count, all + all_mirror * in_the_mirror[OF_PIXEL]);
 #endif
 }
 #endif
