@@ -238,6 +238,26 @@ static void test_nothing_is_read_before_a_frame(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* One thread a pixel follows what the camera sees there, so a group has many pixels; what they
+ * share is no more than a device has, beside mirrors too. */
+static void test_programs_of_what_moves_link(void **state) {
+  (void)state;
+  static const char *const names[] = {"metal-ring", "metals", "octahedra"};
+  const abbe_render_desc desc = {.width = 32,
+                                 .height = 32,
+                                 .photons = 16,
+                                 .map_size = 32,
+                                 .upsample = 2,
+                                 .coarse = ABBE_COARSE_ALL};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    abbe_scene scene = {0};
+    load_shipped(names[i], &scene);
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    abbe_renderer_free(renderer);
+    abbe_scene_free(&scene);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_a_frame_can_be_stopped_and_drawn_again),
@@ -246,6 +266,7 @@ int main(void) {
       cmocka_unit_test(test_a_map_takes_a_given_layout),
       cmocka_unit_test(test_what_is_not_there_is_refused),
       cmocka_unit_test(test_nothing_is_read_before_a_frame),
+      cmocka_unit_test(test_programs_of_what_moves_link),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
 }
