@@ -202,7 +202,7 @@ static double from_triangle(const double p[3], const double *const corner[3]) {
   return fabs(abbe_vector_dot(to, n)) / length;
 }
 
-/* Whether some side of the triangle's bounds is so far off. */
+/* Whether all corners lie farther than `least` from p on one side of it, along some axis. */
 static bool is_beyond(const double p[3], const double *const corner[3], double least) {
   for (int k = 0; k < 3; k++) {
     const double a = corner[0][k] - p[k], b = corner[1][k] - p[k], c = corner[2][k] - p[k];
