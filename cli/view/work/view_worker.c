@@ -4,7 +4,7 @@
 #include "base/thread/watch.h"
 #include "cli/view/picture/view_look.h"
 #include "cli/view/work/view_scene.h"
-#include "gl/accuracy/preset.h"
+#include "cli/view/work/view_settings.h"
 #include "gl/renderer.h"
 #include "validation/tracer/tracer.h"
 
@@ -81,53 +81,11 @@ static abbe_result find_front(abbe_view_worker *w, abbe_error *error) {
   return ABBE_OK;
 }
 
-static const abbe_preset_point *point_of(const abbe_view_worker *w, abbe_view_stage stage) {
-  const abbe_preset_name name = stage <= ABBE_VIEW_MOVING     ? ABBE_PRESET_DRAFT
-                                : stage == ABBE_VIEW_BALANCED ? ABBE_PRESET_BALANCED
-                                                              : ABBE_PRESET_ACCURATE;
-  const size_t at = w->front.count > 0 ? w->front.named[name] : 0;
-  return at < w->front.count ? &w->front.point[at] : NULL;
-}
-
-/* A stage's settings; where no sweep has measured such scenes, the plan's own and what is coarser
- * and finer than these. */
-static abbe_render_desc settings_of(const abbe_view_worker *w, abbe_view_stage stage) {
-  const abbe_preset_point *point = point_of(w, stage);
-  abbe_render_desc desc = {0};
-  if (point != NULL) {
-    abbe_preset_apply(point, w->scene.now, &desc);
-  } else if (stage <= ABBE_VIEW_MOVING) {
-    desc = (abbe_render_desc){.wavelengths = 5, .photons = 64, .map_size = 256, .supersample = 1};
-  } else if (stage >= ABBE_VIEW_ACCURATE) {
-    desc = (abbe_render_desc){.wavelengths = 21, .photons = 512, .supersample = 2};
-  }
-  return desc;
-}
-
 static abbe_render_desc request_of(const abbe_view_worker *w, const abbe_view_request *q) {
-  static const double fewer[ABBE_VIEW_LIGHT_STEPS] = {1, 0.7, 0.5, 0.35};
-  const abbe_view_job *job = &q->job;
-  const bool moving = job->stage == ABBE_VIEW_MOVING;
-  abbe_render_desc desc = settings_of(w, job->light);
-  desc.supersample = moving ? 1 : settings_of(w, job->stage).supersample;
-  desc.upsample = moving ? job->eye_step + 1 : 0;
-  if (moving) desc.coarse = job->light == ABBE_VIEW_MOVING ? ABBE_COARSE_ALL : ABBE_COARSE_EYE;
-  desc.adaptive = moving ? 1 : 0;
-  /* light that moves is blended with the last frames'; what is better is of one frame */
-  desc.volume = w->volume;
-  desc.history =
-      moving && job->light == ABBE_VIEW_MOVING && w->volume == NULL ? ABBE_RENDER_MAX_HISTORY : 0;
-  desc.history_of_changes = true; /* the first turn of a camera does not follow photons again */
-  desc.aovs = true; /* in motion too: without them other programs would have to be compiled */
+  abbe_render_desc desc =
+      abbe_view_settings_of(&w->front, w->scene.now, &q->job, &q->document, w->volume);
   desc.width = q->width;
   desc.height = q->height;
-  if (moving && job->light == ABBE_VIEW_MOVING && desc.photons > 0)
-    desc.photons = (size_t)fmax(8, (double)desc.photons * fewer[job->light_step]);
-  if (job->light != ABBE_VIEW_MOVING || !moving) {
-    if (q->document.wavelengths > 0) desc.wavelengths = q->document.wavelengths;
-    if (q->document.photons > 0) desc.photons = q->document.photons;
-    if (q->document.map_size > 0) desc.map_size = q->document.map_size;
-  }
   return desc;
 }
 
@@ -189,7 +147,7 @@ static abbe_result draw(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
   if (result == ABBE_OK) result = abbe_renderer_read(w->renderer, !moving, &out->picture, error);
   if (result != ABBE_OK) return result;
   const abbe_plan *plan = abbe_renderer_plan(w->renderer);
-  const abbe_preset_point *point = point_of(w, q->job.stage);
+  const abbe_preset_point *point = abbe_view_settings_point(&w->front, q->job.stage);
   out->desc = plan->desc;
   if (!plan->caustics) out->desc.photons = out->desc.map_size = 0;
   out->asked = desc;

@@ -1,0 +1,74 @@
+/* What stages ask of the renderer: the presets of their names, and what keeps up with a hand. */
+#include "tests/check.h"
+
+#include "cli/view/work/view_settings.h"
+
+static abbe_preset_point points[] = {{.desc = {.wavelengths = 5, .photons = 100, .supersample = 1}},
+                                     {.desc = {.wavelengths = 9, .photons = 200, .supersample = 1}},
+                                     {.desc = {.wavelengths = 31, .photons = 400, .supersample = 2}}};
+static const abbe_preset_front measured = {.named = {0, 1, 2}, .count = 3, .point = points};
+static const abbe_preset_front unknown = {0};
+
+static abbe_render_desc ask(const abbe_preset_front *front, abbe_view_job job) {
+  const abbe_view_document none = {0};
+  return abbe_view_settings_of(front, NULL, &job, &none, NULL);
+}
+
+static void test_a_stage_takes_the_preset_of_its_name(void **state) {
+  (void)state;
+  const abbe_render_desc balanced = ask(
+      &measured, (abbe_view_job){.stage = ABBE_VIEW_BALANCED, .light = ABBE_VIEW_BALANCED});
+  const abbe_render_desc accurate = ask(
+      &measured, (abbe_view_job){.stage = ABBE_VIEW_ACCURATE, .light = ABBE_VIEW_ACCURATE});
+  assert_int_equal(balanced.wavelengths, 9);
+  assert_int_equal(balanced.photons, 200);
+  assert_int_equal(accurate.wavelengths, 31);
+  assert_int_equal(accurate.supersample, 2);
+  assert_int_equal(accurate.coarse, ABBE_COARSE_NONE);
+  assert_null(abbe_view_settings_point(&unknown, ABBE_VIEW_ACCURATE));
+  assert_ptr_equal(abbe_view_settings_point(&measured, ABBE_VIEW_MOVING), &points[0]);
+}
+
+/* A camera that moves leaves light as good as it is; light that moves is coarser itself. */
+static void test_what_moves_is_coarser(void **state) {
+  (void)state;
+  const abbe_render_desc camera =
+      ask(&measured, (abbe_view_job){
+                         .stage = ABBE_VIEW_MOVING, .light = ABBE_VIEW_ACCURATE, .eye_step = 2});
+  const abbe_render_desc light =
+      ask(&measured, (abbe_view_job){
+                         .stage = ABBE_VIEW_MOVING, .light = ABBE_VIEW_MOVING, .light_step = 2});
+  assert_int_equal(camera.photons, 400);
+  assert_int_equal(camera.wavelengths, 31);
+  assert_int_equal(camera.supersample, 1);
+  assert_int_equal(camera.upsample, 3);
+  assert_int_equal(camera.coarse, ABBE_COARSE_EYE);
+  assert_int_equal(camera.history, 0);
+  assert_int_equal(light.photons, 50);
+  assert_int_equal(light.coarse, ABBE_COARSE_ALL);
+  assert_int_equal(light.history, ABBE_RENDER_MAX_HISTORY);
+}
+
+/* Sliders hold for what rests, not for light that moves. */
+static void test_a_documents_settings_hold_at_rest(void **state) {
+  (void)state;
+  const abbe_view_document few = {.wavelengths = 13, .photons = 77, .map_size = 333};
+  const abbe_view_job rest = {.stage = ABBE_VIEW_BALANCED, .light = ABBE_VIEW_BALANCED};
+  const abbe_view_job moves = {.stage = ABBE_VIEW_MOVING, .light = ABBE_VIEW_MOVING};
+  const abbe_render_desc a = abbe_view_settings_of(&unknown, NULL, &rest, &few, NULL);
+  const abbe_render_desc b = abbe_view_settings_of(&unknown, NULL, &moves, &few, NULL);
+  assert_int_equal(a.wavelengths, 13);
+  assert_int_equal(a.photons, 77);
+  assert_int_equal(a.map_size, 333);
+  assert_int_not_equal(b.wavelengths, 13);
+  assert_int_not_equal(b.photons, 77);
+  assert_int_not_equal(b.map_size, 333);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_stage_takes_the_preset_of_its_name),
+      cmocka_unit_test(test_what_moves_is_coarser),
+      cmocka_unit_test(test_a_documents_settings_hold_at_rest)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
