@@ -95,6 +95,8 @@ typedef struct abbe_object {
   abbe_mesh mesh; /* world space */
   abbe_exact exact;
   double min[3], max[3];         /* bounds */
+  double fitted;                 /* what `fit` scaled it by about the origin, after `transform`; 1 */
+  double centring[3];            /* by which `centre` moved it then, m; 0 */
   const abbe_material *material; /* refractor: of the scene's table or its own; else NULL */
   double axis[3];                /* of a uniaxial crystal: unit, its optic axis in the world; of
                                     other materials of no meaning */

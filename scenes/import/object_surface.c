@@ -38,11 +38,13 @@ static void bound_vertices(const abbe_mesh *mesh, const double matrix[16], doubl
   }
 }
 
-/* The matrix with the size and the place that are asked for of all parts together. */
-static abbe_result fit_matrix(const abbe_object_surface *s, const abbe_object *part, size_t count,
+/* The matrix with the size and the place that are asked for of all parts together, which keep what
+ * they took. */
+static abbe_result fit_matrix(const abbe_object_surface *s, abbe_object *part, size_t count,
                               double out[16], abbe_error *error) {
   double min[3], max[3], step[16], scale;
   memcpy(out, s->matrix, 16 * sizeof *out);
+  for (size_t i = 0; i < count; i++) part[i].fitted = 1;
   if (s->fit == 0 && !s->centred) return ABBE_OK;
   for (int k = 0; k < 3; k++) min[k] = INFINITY, max[k] = -INFINITY;
   for (size_t i = 0; i < count; i++) bound_vertices(&part[i].mesh, out, min, max);
@@ -58,6 +60,7 @@ static abbe_result fit_matrix(const abbe_object_surface *s, const abbe_object *p
     const double factor = s->fit / longest, factors[3] = {factor, factor, factor};
     abbe_transform_scale(factors, step);
     abbe_transform_multiply(step, out, out);
+    for (size_t i = 0; i < count; i++) part[i].fitted = factor;
     for (int k = 0; k < 3; k++) min[k] *= factor, max[k] *= factor;
   }
   if (s->centred) {
@@ -65,6 +68,7 @@ static abbe_result fit_matrix(const abbe_object_surface *s, const abbe_object *p
     for (int k = 0; k < 3; k++) offset[k] = s->centre[k] - 0.5 * (min[k] + max[k]);
     abbe_transform_translate(offset, step);
     abbe_transform_multiply(step, out, out);
+    for (size_t i = 0; i < count; i++) memcpy(part[i].centring, offset, sizeof offset);
   }
   return ABBE_OK;
 }

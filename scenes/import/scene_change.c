@@ -64,18 +64,21 @@ static abbe_result no_child(const abbe_yaml_edit *edit, abbe_yaml_node parent, c
                         nearest ? nearest : "", nearest ? "'?" : "");
 }
 
+/* Without a value the key goes. */
 static abbe_result set(abbe_yaml_edit *edit, const char *path, const char *value,
                        abbe_error *error) {
   abbe_yaml_node at = abbe_yaml_root(edit->yaml);
   for (const char *step = path;;) {
     size_t index = 0, used = 0;
     if (!find_child(edit->yaml, at, step, &index, &used)) {
-      const bool last = strchr(step, '.') == NULL && *step != '\0';
+      const bool last = strchr(step, '.') == NULL && *step != '\0' && *value != '\0';
       if (!last || !abbe_yaml_is_mapping(edit->yaml, at))
         return no_child(edit, at, path, step, error);
       return abbe_yaml_edit_insert_pair(edit, at, ABBE_YAML_EDIT_END, step, value, error);
     }
-    if (step[used] == '\0') return abbe_yaml_edit_replace(edit, at, index, value, error);
+    if (step[used] == '\0')
+      return *value != '\0' ? abbe_yaml_edit_replace(edit, at, index, value, error)
+                            : abbe_yaml_edit_remove(edit, at, index, error);
     if (abbe_yaml_edit_is_alias(edit, at, index))
       return abbe_error_set(error, ABBE_UNSUPPORTED,
                             "%s: '%.120s': '%.*s' is shared with other places of the file by an "
@@ -89,7 +92,7 @@ static abbe_result set(abbe_yaml_edit *edit, const char *path, const char *value
 abbe_result abbe_scene_change_set(abbe_yaml_edit *edit, const char *assignment, abbe_error *error) {
   const char *equals = strchr(assignment, '=');
   char path[LONGEST];
-  if (equals == NULL || equals == assignment || equals[1] == '\0' ||
+  if (equals == NULL || equals == assignment ||
       (size_t)(equals - assignment) >= sizeof path)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "'%.80s' sets nothing; write KEY=VALUE, such as camera.fov=30 or "

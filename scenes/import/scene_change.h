@@ -12,7 +12,7 @@ extern "C" {
 
 /* "PATH=VALUE": PATH is keys with dots between them, and for an item of a list its number from 0 or
  * its 'name' (lights.lamp.intensity); VALUE is one line of YAML. The last key may be a new one.
- * ABBE_INVALID_ARGUMENT for a path that leads nowhere, with the nearest key or name. */
+ * "PATH=": what is there is taken out, as if it had never stood there. ABBE_INVALID_ARGUMENT for a path that leads nowhere, with the nearest key or name. */
 abbe_result abbe_scene_change_set(abbe_yaml_edit *edit, const char *assignment, abbe_error *error);
 
 /* "STONE": what all refractors are made of, which must be one material; or "NAME=STONE": what is

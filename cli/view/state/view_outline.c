@@ -30,7 +30,18 @@ static const struct {
     {"ring", "major", "major radius", "mm", 1e3, 0, 0.005, 0.2},
     {"ring", "minor", "minor radius", "mm", 1e3, 0, 0.001, 0.05},
     {"prism", "apex", "apex angle", "\u00b0", 1, 60, 10, 90},
+    {NULL, "fit", "longest side", "mm", 1e3, 0, 0.001, 0.1}, /* of whatever has one */
 };
+
+/* Values that set nothing but a size, which is that of `fit` where there is one. */
+static const char *const sizes[] = {"diameter", "width", "radius"};
+
+static bool is_shown(const char *shape, const char *value_of, const char *key, bool fitted) {
+  if (value_of == NULL) return fitted;
+  bool size = false;
+  for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) size = size || !strcmp(key, sizes[i]);
+  return shape != NULL && strcmp(value_of, shape) == 0 && !(fitted && size);
+}
 
 static void number_of(abbe_yaml *yaml, abbe_yaml_node node, const char *key, double *out) {
   abbe_yaml_get_number(yaml, node, key, -1e30, 1e30, out, NULL);
@@ -122,13 +133,34 @@ static bool flow(abbe_yaml *yaml, abbe_yaml_node node, char *out, size_t size) {
   return true;
 }
 
+/* The steps that `fit` and `centre` are, behind `used` bytes of text: the middle of what is fitted
+ * comes to the origin, from where `translate` moves it to its place. False where they do not fit. */
+static bool add_fit(const abbe_object *object, size_t used, char *text, size_t size,
+                    abbe_view_object *out) {
+  char scale[48] = "";
+  double back[3];
+  for (int k = 0; k < 3; k++) {
+    out->translate[k] = out->middle[k];
+    back[k] = object->centring[k] - out->middle[k];
+  }
+  if (out->fitted) abbe_number_format(scale, sizeof scale, "{scale: %.12g}, ", object->fitted);
+  const int n = abbe_number_format(text + used, size - used,
+                                   "%s%s{translate: [%.12g, %.12g, %.12g]}", used > 0 ? ", " : "",
+                                   scale, back[0], back[1], back[2]);
+  return n > 0 && (size_t)n < size - used;
+}
+
 /* How the object was put there; false where it cannot be said in a line, or memory lacks. */
-static bool read_transform(abbe_yaml *yaml, abbe_yaml_node node, abbe_view_object *out) {
+static bool read_transform(abbe_yaml *yaml, abbe_yaml_node node, const abbe_object *object,
+                           abbe_view_object *out) {
   const abbe_yaml_node list = abbe_yaml_get(yaml, node, "transform");
   char text[LONGEST_TRANSFORM] = "";
   size_t count = abbe_yaml_count(yaml, list), used = 0;
   const abbe_yaml_node last = count > 0 ? abbe_yaml_item(yaml, list, count - 1) : list;
-  if (count > 0 && abbe_yaml_get(yaml, last, "translate").id != 0) {
+  out->fitted = abbe_yaml_get(yaml, node, "fit").id != 0;
+  out->centred = abbe_yaml_get(yaml, node, "centre").id != 0;
+  const bool keys = out->fitted || out->centred;
+  if (count > 0 && !keys && abbe_yaml_get(yaml, last, "translate").id != 0) {
     abbe_yaml_get_numbers(yaml, last, "translate", 3, -1e30, 1e30, out->translate, NULL);
     count--;
   }
@@ -139,6 +171,7 @@ static bool read_transform(abbe_yaml *yaml, abbe_yaml_node node, abbe_view_objec
       return false;
     used += strlen(text + used);
   }
+  if (keys && !add_fit(object, used, text, sizeof text, out)) return false;
   return (out->before = strdup(text)) != NULL;
 }
 
@@ -164,8 +197,10 @@ static bool start_angle(const abbe_object *object, const char *key, abbe_view_va
 static void read_values(abbe_yaml *yaml, abbe_yaml_node node, const abbe_object *object,
                         abbe_view_object *out) {
   const char *shape = abbe_yaml_text(yaml, abbe_yaml_get(yaml, node, "shape"));
-  for (size_t i = 0; shape != NULL && i < sizeof values / sizeof *values; i++) {
-    if (strcmp(values[i].shape, shape) != 0 || out->value_count == ABBE_VIEW_MOST_VALUES) continue;
+  for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+    if (!is_shown(shape, values[i].shape, values[i].key, out->fitted) ||
+        out->value_count == ABBE_VIEW_MOST_VALUES)
+      continue;
     abbe_view_value *v = &out->value[out->value_count];
     *v = (abbe_view_value){.label = values[i].label,
                            .unit = values[i].unit,
@@ -199,17 +234,18 @@ static void make_object(abbe_yaml *yaml, abbe_yaml_node list, size_t i, const ab
   abbe_view_object *out = &outline->object[outline->object_count];
   double half[3];
   *out = (abbe_view_object){0};
-  if (object == NULL || !read_transform(yaml, node, out)) return;
+  if (object == NULL) return;
+  for (int k = 0; k < 3; k++) {
+    out->middle[k] = 0.5 * (object->min[k] + object->max[k]);
+    half[k] = 0.5 * (object->max[k] - object->min[k]);
+  }
+  if (!read_transform(yaml, node, object, out)) return;
   key_of(yaml, "objects", list, i, out->key);
   snprintf(out->name, sizeof out->name, "%.79s", object->name);
   const abbe_material *material = object->mirror ? object->conductor : object->material;
   out->mirror = object->mirror;
   out->bends = object->mirror || material != NULL;
   if (material != NULL) snprintf(out->material, sizeof out->material, "%.79s", material->name);
-  for (int k = 0; k < 3; k++) {
-    out->middle[k] = 0.5 * (object->min[k] + object->max[k]);
-    half[k] = 0.5 * (object->max[k] - object->min[k]);
-  }
   out->radius = abbe_vector_length(half);
   out->scene_index = (size_t)(object - scene->object);
   read_values(yaml, node, object, out);

@@ -42,9 +42,11 @@ typedef struct abbe_view_object {
   size_t scene_index;            /* of the scene's object */
   double middle[3], radius;      /* of its bounds, m */
   /* How it was put there, as one line of YAML without brackets, but for a last `translate`; and
-   * that. */
+   * that. Where the file fits or centres it, which would undo other steps, these are steps too, and
+   * whoever sets the transform takes the keys out. */
   char *before;
   double translate[3];
+  bool fitted, centred;
   char *own_before; /* so by the file alone; NULL: not known */
   double own_translate[3], own_middle[3];
   size_t value_count;

@@ -275,8 +275,18 @@ static void set_object(abbe_view_state *state, const abbe_view_object *object, d
   char key[ABBE_VIEW_KEY + 16], value[2048];
   snprintf(key, sizeof key, "%s.transform", object->key);
   if (!abbe_view_outline_transform(object, tilt_rad, axis, translate, value, sizeof value)) return;
-  abbe_view_state_set(state, key, value, state->continued, now_s);
+  abbe_view_document *document = edit(state, state->continued);
+  if (!set(state, document, key, value)) return;
+  const struct {
+    bool there;
+    const char *name;
+  } others[] = {{object->fitted, "fit"}, {object->centred, "centre"}};
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+    snprintf(key, sizeof key, "%s.%s", object->key, others[i].name);
+    if (others[i].there && !set(state, document, key, "")) return;
+  }
   state->continued = true;
+  changed(state, ABBE_VIEW_CHANGED_LIGHT, now_s);
 }
 
 /* Tilts about the view's own axes: what is dragged up turns away. `before` stays what it was when

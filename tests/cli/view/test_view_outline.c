@@ -1,6 +1,8 @@
 /* What can be taken hold of, and where it stands by the changes of a document. */
 #include "tests/cli/view/learnt.h"
 
+#include <unistd.h>
+
 static void test_what_can_be_held_is_found(void **state) {
   (void)state;
   abbe_view_state *s = begun();
@@ -151,6 +153,91 @@ static void test_what_was_undone_stands_at_once(void **state) {
   abbe_view_state_free(s);
 }
 
+/* One brick, put where it is in four ways: by steps alone, by `fit`, by `centre`, by both. */
+static const char *const brick[] = {
+    "shape: box, size: [0.02, 0.01, 0.006], transform: [{translate: [0.005, 0, 0.1]}]",
+    "shape: box, size: [20, 10, 6], fit: 0.02, transform: [{translate: [5, 0, 100]}]",
+    "shape: box, size: [0.02, 0.01, 0.006], centre: [0.005, 0, 0.1], "
+    "transform: [{translate: [0, 3, 0]}]",
+    "shape: box, size: [20, 10, 6], transform: [{translate: [700, 0, 0]}], fit: 0.02, "
+    "centre: [0.005, 0, 0.1]"};
+enum { BRICKS = sizeof brick / sizeof *brick };
+
+static void begin_with_object(abbe_view_state *s, const char *text) {
+  char path[] = "view_outline_XXXXXX";
+  const int file = mkstemp(path);
+  assert_true(file >= 0);
+  dprintf(file,
+          "camera: {eye: [0, -0.5, 0.3], target: [0, 0, 0.1], size: [32, 32]}\n"
+          "environment: {uniform: 1}\nobjects:\n- {name: it, %s, material: n-bk7}\n"
+          "- {name: floor, shape: rectangle, width: 1, height: 1, reflectance: 0.5}\n",
+          text);
+  close(file);
+  begin_with(s, path);
+}
+
+static void end_with_object(abbe_view_state *s) {
+  unlink(abbe_view_history_now(&s->history)->path);
+  abbe_view_state_free(s);
+}
+
+/* Six digits are written. */
+static void assert_same_bounds(const abbe_view_state *a, const abbe_view_state *b) {
+  const abbe_view_object *one = &a->outline.object[0], *other = &b->outline.object[0];
+  for (int k = 0; k < 3; k++) assert_near(one->middle[k], other->middle[k], 1e-6);
+  assert_near(one->radius, other->radius, 1e-8);
+}
+
+/* The pointer leads them alike; a tilt leaves their size. */
+static void test_what_is_fitted_or_centred_is_led_as_all(void **state) {
+  (void)state;
+  static abbe_view_state s[BRICKS];
+  const double own[3] = {0.005, 0, 0.1};
+  const abbe_view_object *first = &s[0].outline.object[0];
+  double xy[2];
+  for (int i = 0; i < BRICKS; i++) begin_with_object(&s[i], brick[i]);
+  assert_true(abbe_view_camera_project(&s->camera, 512, 512, own, xy));
+  for (int i = 0; i < BRICKS; i++) {
+    const abbe_view_object *it = &s[i].outline.object[0];
+    drag(&s[i], ABBE_VIEW_LEFT, xy[0], xy[1], xy[0] + 60, xy[1], 0);
+    const double at_once = it->middle[0];
+    learn(&s[i]);
+    assert_true(it->middle[0] > own[0] + 0.01);
+    assert_near(it->middle[0], at_once, 1e-6);
+    assert_same_bounds(&s[i], &s[0]);
+  }
+  const double flat = first->radius;
+  assert_true(abbe_view_camera_project(&s->camera, 512, 512, first->middle, xy));
+  for (int i = 0; i < BRICKS; i++) {
+    drag(&s[i], ABBE_VIEW_LEFT, xy[0], xy[1], xy[0], xy[1] + 80, ABBE_VIEW_CONTROL);
+    learn(&s[i]);
+    assert_true(fabs(first->radius - flat) > 1e-4);
+    assert_same_bounds(&s[i], &s[0]);
+    assert_int_equal(s[i].history.count, 3);
+  }
+  for (int i = 0; i < BRICKS; i++) {
+    for (int k = 0; k < 2; k++) assert_true(abbe_view_state_undo(&s[i], 2));
+    learn(&s[i]);
+    for (int k = 0; k < 3; k++) assert_near(s[i].outline.object[0].middle[k], own[k], 1e-9);
+    end_with_object(&s[i]);
+  }
+}
+
+/* Of what is fitted the radius sets nothing, and `fit` the size. */
+static void test_what_is_fitted_is_sized_by_its_longest_side(void **state) {
+  (void)state;
+  static abbe_view_state s;
+  begin_with_object(&s, "shape: sphere, radius: 7, levels: 1, fit: 0.02");
+  const abbe_view_object *ball = &s.outline.object[0];
+  assert_int_equal(ball->value_count, 1);
+  assert_string_equal(ball->value[0].key, "objects.it.fit");
+  assert_near(ball->value[0].value, 0.02, 0);
+  abbe_view_state_set(&s, ball->value[0].key, "0.03", false, 1);
+  learn(&s);
+  assert_near(ball->radius, 0.015 * sqrt(3), 1e-9);
+  end_with_object(&s);
+}
+
 /* What a job has found of an older change is no place for what was undone since. */
 static void test_an_older_scene_moves_nothing_back(void **state) {
   (void)state;
@@ -181,6 +268,8 @@ int main(void) {
       cmocka_unit_test(test_a_design_begins_with_its_own_angles),
       cmocka_unit_test(test_what_was_pulled_stands_at_once),
       cmocka_unit_test(test_what_was_undone_stands_at_once),
+      cmocka_unit_test(test_what_is_fitted_or_centred_is_led_as_all),
+      cmocka_unit_test(test_what_is_fitted_is_sized_by_its_longest_side),
       cmocka_unit_test(test_an_older_scene_moves_nothing_back)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

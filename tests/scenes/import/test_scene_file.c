@@ -205,6 +205,9 @@ static void values_are_set_by_their_path(void **state) {
   assert_int_equal(load_set(NULL, "background=0.25", &scene, &error), ABBE_OK); /* a new key */
   assert_true(scene.background == 0.25);
   abbe_scene_free(&scene);
+  assert_int_equal(load_set(NULL, "camera.fov=", &scene, &error), ABBE_OK); /* the default's */
+  assert_true(fabs(scene.camera.fov_y_rad - PI / 4) < 1e-12);
+  abbe_scene_free(&scene);
   static const struct {
     const char *set, *says;
   } bad[] = {{"lights.lamp.intensity=-1", "'intensity: -1'"},
@@ -214,7 +217,8 @@ static void values_are_set_by_their_path(void **state) {
              {"object.gem.table=0.02", "there is no 'object'; did you mean 'objects'?"},
              {"objects.77.table=0.02", "there is no '77'"},
              {"camera.fov.x=1", "in what is one value"},
-             {"camera.fov=", "write KEY=VALUE"},
+             {"camera.fow=", "did you mean 'fov'"},
+             {"camera.eye=", "'eye'"},
              {"camera", "write KEY=VALUE"},
              {"=3", "write KEY=VALUE"}};
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
