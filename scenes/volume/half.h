@@ -7,6 +7,7 @@
 #define ABBE_SCENES_VOLUME_HALF_H
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -40,6 +41,11 @@ static inline uint16_t abbe_half_of_float(float x) {
   }
   bits = (bits & 0x7fffffffu) - (112u << 23);
   return sign | (uint16_t)((bits + 0xfffu + (bits >> 13 & 1)) >> 13);
+}
+
+/* Neither infinite nor NaN. */
+static inline bool abbe_half_is_finite(uint16_t half) {
+  return (half & 0x7c00) != 0x7c00;
 }
 
 static inline double abbe_half_value(uint16_t half) {

@@ -1,25 +1,17 @@
-/* Checkpoints of a trace. Input: a byte of choices, then edits of a whole checkpoint, four bytes
- * each: where (two, from the end if the choice 1 is set), what to do (0 flips bits, 1 cuts there, 2
- * repeats from there), and the bits. Choice 2 hashes the file anew, so that what is behind the hash
- * is met as well; choice 4 takes the input itself as the file.
- */
+/* Checkpoints of a trace. Input: choices and edits of a whole one (edits.h). */
+#include "tests/fuzz/edits.h"
 #include "tests/fuzz/memory_file.h"
 
 #include "scenes/import/scene_file.h"
 #include "validation/tracer/checkpoint.h"
 #include "validation/tracer/tracer.h"
 
-#include <string.h>
-
 const char *const fuzz_words[] = {"\x02\x10", "\x03\x08", "abbe checkpoint 8\n", "\n\n", "scene ",
                                   "physics ", NULL};
 
-enum { MOST = 1 << 16 };
-
 static abbe_scene scene;
 static abbe_tracer *tracer;
-static uint8_t whole[MOST], file[2 * MOST];
-static size_t whole_size;
+static edited kept;
 
 static const char text[] =
     "materials: table.yaml\n"
@@ -39,58 +31,25 @@ static void prepare(void) {
   FUZZ_PROMISE(abbe_tracer_make(&scene, &desc, &tracer, &error) == ABBE_OK);
   FUZZ_PROMISE(abbe_tracer_pass(tracer, NULL, &error) == ABBE_OK);
   FUZZ_PROMISE(abbe_checkpoint_save(tracer, path, &error) == ABBE_OK);
-  FILE *from = fopen(path, "rb");
-  FUZZ_PROMISE(from != NULL);
-  whole_size = fread(whole, 1, sizeof whole, from);
-  fclose(from);
-  unlink(path);
-  FUZZ_PROMISE(whole_size > 100 && whole_size < MOST);
-}
-
-static size_t edit(const uint8_t *data, size_t size, int from_end) {
-  size_t length = whole_size;
-  memcpy(file, whole, length);
-  for (; size >= 4 && length > 0; data += 4, size -= 4) {
-    size_t at = ((size_t)data[0] | (size_t)data[1] << 8) % length;
-    if (from_end) at = length - 1 - at;
-    if (data[2] % 4 == 1) length = at;
-    if (data[2] % 4 == 2 && length + (length - at) <= MOST) {
-      memcpy(file + length, file + at, length - at);
-      length += length - at;
-    }
-    if (data[2] % 4 == 0 || data[2] % 4 == 3) file[at] ^= data[3];
-  }
-  return length;
-}
-
-static void hash_anew(size_t length) {
-  uint64_t h = 14695981039346656037u;
-  if (length < sizeof h) return;
-  for (size_t i = 0; i < length - sizeof h; i++) h = (h ^ file[i]) * 1099511628211u;
-  memcpy(file + length - sizeof h, &h, sizeof h);
+  edits_begin(&kept, path);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   if (tracer == NULL) prepare();
   if (size == 0) return 0;
-  const unsigned choices = data[0];
-  size_t length = size - 1;
-  if ((choices & 4) != 0 && length <= MOST)
-    memcpy(file, data + 1, length);
-  else
-    length = edit(data + 1, size - 1, choices & 1);
-  if (choices & 2) hash_anew(length);
+  edits_make(&kept, data, size);
   abbe_error error = {0};
   const size_t passes = abbe_tracer_passes(tracer);
-  if (abbe_checkpoint_load(tracer, memory_file(file, length), &error) != ABBE_OK) {
+  if (abbe_checkpoint_load(tracer, memory_file(kept.file, kept.size), &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0' && abbe_tracer_passes(tracer) == passes);
     return 0;
   }
-  FUZZ_PROMISE((choices & 2) != 0 || (length == whole_size && memcmp(file, whole, length) == 0));
+  FUZZ_PROMISE((data[0] & 2) != 0 || !edits_changed(&kept));
   abbe_image image;
   FUZZ_PROMISE(abbe_tracer_picture(tracer, &image, &error) == ABBE_OK);
   abbe_image_free(&image);
   abbe_tracer_pass(tracer, NULL, &error); /* there may be no pass behind the file's */
-  FUZZ_PROMISE(abbe_checkpoint_load(tracer, memory_file(whole, whole_size), &error) == ABBE_OK);
+  FUZZ_PROMISE(abbe_checkpoint_load(tracer, memory_file(kept.whole, kept.whole_size), &error) ==
+               ABBE_OK);
   return 0;
 }

@@ -199,6 +199,7 @@ static void fill_exit(const fill *f, size_t node, size_t point, uint16_t *half, 
   double axis[2][3], place[3], place_by[3], way_by[3];
   abbe_exit_end end;
   *found = 0;
+  memset(half, 0, sizeof(abbe_exit_halves));
   follow(f, p, to_light, &end);
   if (!(end.carried > 0)) return;
   to_body(f, end.place, place);
@@ -218,11 +219,17 @@ static void fill_exit(const fill *f, size_t node, size_t point, uint16_t *half, 
   *found = end.facets != 0 ? end.facets : 1;
 }
 
+/* Where the key is, or belongs. A place is free, for there are more than sequences may be. */
+static size_t place_of(const sequences *s, uint32_t key) {
+  size_t at = key % TABLE;
+  while (s->number[at] != 0 && s->key[at] != key) at = (at + 1) % TABLE;
+  return at;
+}
+
 /* The key's number, given to it where it is new; 0 where there are too many. */
 static unsigned number_of(sequences *s, uint32_t key) {
-  size_t at = key % TABLE;
-  for (; s->number[at] != 0; at = (at + 1) % TABLE)
-    if (s->key[at] == key) return s->number[at];
+  const size_t at = place_of(s, key);
+  if (s->number[at] != 0) return s->number[at];
   if (s->count >= ABBE_EXIT_MOST_FACETS) return 0;
   s->key[at] = key;
   s->number[at] = (uint16_t)++s->count;
@@ -264,6 +271,52 @@ static uint64_t key_of(const fill *f) {
   return abbe_volume_key(h, &v->nodes.count, sizeof v->nodes.count);
 }
 
+/* Whether each number up to the count stands once, where its key leads. */
+static bool sequences_hold(const sequences *s) {
+  bool seen[ABBE_EXIT_MOST_FACETS + 1] = {false};
+  size_t used = 0;
+  if (s->count > ABBE_EXIT_MOST_FACETS) return false;
+  for (size_t at = 0; at < TABLE; at++) {
+    const unsigned number = s->number[at];
+    if (number == 0) continue;
+    if (number > s->count || seen[number]) return false;
+    seen[number] = true;
+    used++;
+  }
+  if (used != s->count) return false;
+  for (size_t at = 0; at < TABLE; at++)
+    if (s->number[at] != 0 && place_of(s, s->key[at]) != at) return false;
+  return true;
+}
+
+static bool exit_holds(const fill *f, const uint16_t *half) {
+  for (int k = 0; k < ABBE_EXIT_HALVES; k++)
+    if (!abbe_half_is_finite(half[k])) return false;
+  const double facets = abbe_half_value(half[ABBE_EXIT_FACETS]);
+  return abbe_half_value(half[ABBE_EXIT_CARRIED]) >= 0 && facets >= 0 &&
+         facets <= (double)f->sequences->count && !(facets < floor(facets)) &&
+         !(facets > floor(facets));
+}
+
+/* Whether so many nodes can have left that. What others left is made anew. */
+static bool holds(const void *user, size_t nodes) {
+  const fill *f = user;
+  const abbe_light_exits *e = &f->volume->exits;
+  const abbe_exit_fill_statistics *s = f->statistics;
+  uint64_t rays = 0;
+  double carried = 0;
+  size_t done = 0;
+  for (size_t i = 0; i < nodes * e->points; i++) done = e->at[i] > done ? e->at[i] : done;
+  if (!sequences_hold(f->sequences) || !(s->alone >= 0 && s->alone <= (double)done)) return false;
+  for (size_t i = 0; i < done; i++) {
+    if (!exit_holds(f, e->exit[i])) return false;
+    const double share = abbe_half_value(e->exit[i][ABBE_EXIT_CARRIED]);
+    rays += share > 0 ? 4 : 1;
+    carried += share;
+  }
+  return s->rays == rays && memcmp(&s->carried, &carried, sizeof carried) == 0;
+}
+
 static abbe_result fill_nodes(fill *f, abbe_error *error) {
   const abbe_exit_fill_desc *d = f->desc;
   abbe_light_exits *e = &f->volume->exits;
@@ -275,7 +328,11 @@ static abbe_result fill_nodes(fill *f, abbe_error *error) {
                                  .part = {{e->exit, e->count * sizeof *e->exit},
                                           {f->sequences, sizeof *f->sequences},
                                           {f->statistics, sizeof *f->statistics}},
-                                 .parts = 3};
+                                 .parts = 3,
+                                 .nodes = f->volume->nodes.count,
+                                 .holds = holds,
+                                 .user = f,
+                                 .stop = d->stop};
   abbe_result result = abbe_volume_keeping_begin(&keeping, &node, error);
   for (; result == ABBE_OK && node < f->volume->nodes.count; node++) {
     const abbe_exit_fill_statistics before = *f->statistics;

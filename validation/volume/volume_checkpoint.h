@@ -33,11 +33,12 @@ uint64_t abbe_volume_key(uint64_t h, const void *data, size_t size);
 abbe_result abbe_volume_checkpoint_save(const char *path, uint64_t key, uint64_t nodes,
                                         const abbe_kept_bytes *part, size_t parts,
                                         abbe_error *error);
-/* ABBE_PARSE for a file that is no such checkpoint, or broken; ABBE_INVALID_ARGUMENT for that of
- * another object or request; ABBE_IO, ABBE_NO_MEMORY. On failure nothing is changed. */
+/* What the parts hold is taken as it is. stop: other than 0 stops; or NULL. ABBE_PARSE for a file
+ * that is no such checkpoint, or broken; ABBE_INVALID_ARGUMENT for that of another object or
+ * request; ABBE_CANCELLED, ABBE_IO, ABBE_NO_MEMORY. On failure nothing is changed. */
 abbe_result abbe_volume_checkpoint_load(const char *path, uint64_t key, uint64_t *nodes,
                                         const abbe_kept_bytes *part, size_t parts,
-                                        abbe_error *error);
+                                        const volatile int *stop, abbe_error *error);
 
 /* A fill that keeps a checkpoint. */
 typedef struct abbe_volume_keeping {
@@ -47,10 +48,16 @@ typedef struct abbe_volume_keeping {
   uint64_t key;
   abbe_kept_bytes part[4];
   size_t parts;
+  size_t nodes; /* in all */
+  /* Whether so many nodes can have left what the parts hold, which a forged file's need not be. */
+  bool (*holds)(const void *user, size_t nodes);
+  const void *user;
+  const volatile int *stop; /* other than 0 stops; or NULL */
   double saved_s; /* by abbe_clock_seconds */
 } abbe_volume_keeping;
 
-/* *node: the first that is not done yet. Errors of abbe_volume_checkpoint_load. */
+/* *node: the first that is not done yet. Errors of abbe_volume_checkpoint_load, ABBE_PARSE also
+ * where nodes or parts do not hold; the parts are of no use then. */
 abbe_result abbe_volume_keeping_begin(abbe_volume_keeping *keeping, size_t *node,
                                       abbe_error *error);
 /* After whole nodes, of which `nodes` are done; now: whenever the last was saved. */

@@ -406,6 +406,29 @@ static uint64_t key_of(const fill *f) {
   return abbe_volume_key(h, f->colour, f->sampling.steps * sizeof *f->colour);
 }
 
+/* Whether so many nodes can have left that. What others left is made anew. */
+static bool holds(const void *user, size_t nodes) {
+  const fill *f = user;
+  const abbe_caustic_volume *v = f->volume;
+  const abbe_volume_fill_statistics *s = f->statistics;
+  const bool printed = v->kind == ABBE_VOLUME_PRINTED;
+  const size_t most = f->desc.until_error > 0 ? ABBE_VOLUME_FILL_MOST_PASSES : f->desc.passes;
+  const size_t values = nodes * v->region.cells * abbe_caustic_volume_channels(v);
+  double sum = s->error + s->outflow[0] + s->outflow[1] + v->byte;
+  for (size_t i = 0; i < sizeof s->ledger / sizeof(double); i++) sum += (&s->ledger.reached)[i];
+  if (!isfinite(sum) || s->error < 0 || v->byte < 0 || (printed && nodes > 0 && !(v->byte > 0)) ||
+      s->passes < nodes * f->desc.passes || s->passes > nodes * most ||
+      s->photons != s->passes * f->desc.photons)
+    return false;
+  for (size_t i = 0; i < values; i++) {
+    const double x = abbe_half_value(v->value[i]);
+    if (!abbe_half_is_finite(v->value[i]) ||
+        (printed && !(x >= 0 && x <= 255 && !(x > floor(x)))))
+      return false;
+  }
+  return true;
+}
+
 static abbe_result fill_nodes(fill *f, abbe_error *error) {
   const abbe_volume_fill_desc *d = &f->desc;
   abbe_caustic_volume *v = f->volume;
@@ -418,7 +441,11 @@ static abbe_result fill_nodes(fill *f, abbe_error *error) {
                                  .part = {{v->value, values * sizeof *v->value},
                                           {&v->byte, sizeof v->byte},
                                           {f->statistics, sizeof *f->statistics}},
-                                 .parts = 3};
+                                 .parts = 3,
+                                 .nodes = v->nodes.count,
+                                 .holds = holds,
+                                 .user = f,
+                                 .stop = d->stop};
   abbe_result result = abbe_volume_keeping_begin(&keeping, &node, error);
   for (; result == ABBE_OK && node < v->nodes.count; node++) {
     const abbe_volume_fill_statistics before = *f->statistics;

@@ -18,18 +18,18 @@ static void test_bytes_come_back(void **state) {
   uint64_t nodes = 0;
   abbe_error error = {0};
   assert_int_equal(abbe_volume_checkpoint_save(path, 77, 12, from, 2, &error), ABBE_OK);
-  assert_int_equal(abbe_volume_checkpoint_load(path, 78, &nodes, to, 2, &error),
+  assert_int_equal(abbe_volume_checkpoint_load(path, 78, &nodes, to, 2, NULL, &error),
                    ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, path);
-  assert_int_equal(abbe_volume_checkpoint_load(path, 77, &nodes, to, 1, &error),
+  assert_int_equal(abbe_volume_checkpoint_load(path, 77, &nodes, to, 1, NULL, &error),
                    ABBE_INVALID_ARGUMENT);
   assert_near(back[0], 0, 0);
-  assert_int_equal(abbe_volume_checkpoint_load(path, 77, &nodes, to, 2, &error), ABBE_OK);
+  assert_int_equal(abbe_volume_checkpoint_load(path, 77, &nodes, to, 2, NULL, &error), ABBE_OK);
   assert_int_equal(nodes, 12);
   assert_memory_equal(back, numbers, sizeof back);
   assert_string_equal(read, "node");
   unlink(path);
-  assert_int_equal(abbe_volume_checkpoint_load(path, 77, &nodes, to, 2, &error), ABBE_IO);
+  assert_int_equal(abbe_volume_checkpoint_load(path, 77, &nodes, to, 2, NULL, &error), ABBE_IO);
 }
 
 static void test_broken_files_are_told(void **state) {
@@ -43,16 +43,27 @@ static void test_broken_files_are_told(void **state) {
   assert_int_equal(abbe_file_read(path, 1 << 20, &data, &size, NULL), ABBE_OK);
   for (size_t cut = 0; cut < size; cut += 7) {
     assert_int_equal(abbe_file_write(path, data, cut, NULL), ABBE_OK);
-    assert_int_equal(abbe_volume_checkpoint_load(path, 1, &nodes, &part, 1, NULL), ABBE_PARSE);
+    assert_int_equal(abbe_volume_checkpoint_load(path, 1, &nodes, &part, 1, NULL, NULL), ABBE_PARSE);
   }
   for (size_t i = 0; i < size; i += 5) {
     data[i] ^= 1;
     assert_int_equal(abbe_file_write(path, data, size, NULL), ABBE_OK);
-    assert_int_equal(abbe_volume_checkpoint_load(path, 1, &nodes, &part, 1, NULL), ABBE_PARSE);
+    assert_int_equal(abbe_volume_checkpoint_load(path, 1, &nodes, &part, 1, NULL, NULL), ABBE_PARSE);
     data[i] ^= 1;
   }
   free(data);
   unlink(path);
+}
+
+/* Of 12 nodes around the brick: values, or rays. */
+static abbe_volume_fill_desc request(bool exits) {
+  return (abbe_volume_fill_desc){.object = 1,
+                                 .nodes = 12,
+                                 .exits = exits ? 200 : 0,
+                                 .region = {.kind = ABBE_REGION_GRID, .side = 4},
+                                 .photons = 2000,
+                                 .passes = 2,
+                                 .threads = 2};
 }
 
 static bool stop_halfway(void *user, double done) {
@@ -69,13 +80,7 @@ static void test_fills_go_on_to_the_same_bits(void **state) {
     abbe_caustic_volume whole, part;
     abbe_volume_fill_statistics once, twice;
     abbe_error error = {0};
-    abbe_volume_fill_desc d = {.object = 1,
-                               .nodes = 12,
-                               .exits = exits ? 200 : 0,
-                               .region = {.kind = ABBE_REGION_GRID, .side = 4},
-                               .photons = 2000,
-                               .passes = 2,
-                               .threads = 2};
+    abbe_volume_fill_desc d = request(exits);
     assert_int_equal(abbe_volume_fill(&scene, &d, &whole, &once, &error), ABBE_OK);
     d.checkpoint = path;
     d.checkpoint_s = 1000;
@@ -102,11 +107,93 @@ static void test_fills_go_on_to_the_same_bits(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* ---- files with a right hash that no fill has written ---- */
+
+enum { HEAD = 32, TAIL = 8, NODES = 24 };
+/* From the file's end: what follows the exits are numbers of sequences, their count, and rays,
+ * carried, alone, sequences and maps. */
+enum { STATISTICS = TAIL + 40, COUNT = STATISTICS + 8, NUMBERS = COUNT + 2 * 8192 };
+
+static void write_forged(char *data, size_t size) {
+  const uint64_t h = abbe_volume_key(ABBE_VOLUME_KEY, data, size - TAIL);
+  memcpy(data + size - TAIL, &h, sizeof h);
+  assert_int_equal(abbe_file_write(path, data, size, NULL), ABBE_OK);
+}
+
+static void assert_refused(const abbe_scene *scene, const abbe_volume_fill_desc *d) {
+  abbe_caustic_volume volume;
+  abbe_volume_fill_statistics statistics;
+  abbe_error error = {0};
+  assert_int_equal(abbe_volume_fill(scene, d, &volume, &statistics, &error), ABBE_PARSE);
+  assert_contains(error.text, "is damaged: start anew without --resume");
+}
+
+/* Bytes `from_end` of the file's end become these; the file is refused, and whole again. */
+static void forge(const abbe_scene *scene, const abbe_volume_fill_desc *d, char *data, size_t size,
+                  size_t from_end, const void *bytes, size_t count) {
+  char *kept = malloc(size);
+  memcpy(kept, data, size);
+  memcpy(data + size - from_end, bytes, count);
+  write_forged(data, size);
+  assert_refused(scene, d);
+  memcpy(data, kept, size);
+  free(kept);
+}
+
+static void test_forged_files_are_refused(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  load_text(CAMERA SUN FLOOR BRICK("crown"), &scene);
+  for (int exits = 0; exits < 2; exits++) {
+    abbe_caustic_volume whole, part;
+    abbe_volume_fill_statistics once, twice;
+    abbe_volume_fill_desc d = request(exits);
+    char *data;
+    size_t size;
+    assert_int_equal(abbe_volume_fill(&scene, &d, &whole, &once, NULL), ABBE_OK);
+    d.checkpoint = path;
+    d.checkpoint_s = 1000;
+    d.progress = stop_halfway;
+    assert_int_equal(abbe_volume_fill(&scene, &d, &part, &twice, NULL), ABBE_CANCELLED);
+    d.progress = NULL;
+    d.resume = true;
+    assert_int_equal(abbe_file_read(path, 1 << 24, &data, &size, NULL), ABBE_OK);
+    const uint64_t nodes[] = {0, 6, 12, 13, UINT64_MAX}; /* there are 5 */
+    for (int i = 0; i < 5; i++)
+      forge(&scene, &d, data, size, size - NODES, &nodes[i], sizeof nodes[i]);
+    const uint16_t infinite = 0x7c00, negative = 0xbc00;
+    forge(&scene, &d, data, size, size - HEAD, &infinite, sizeof infinite);
+    if (exits) {
+      uint16_t full[8192];
+      for (int i = 0; i < 8192; i++) full[i] = (uint16_t)(1 + i % 2047);
+      forge(&scene, &d, data, size, NUMBERS, full, sizeof full);
+      const uint64_t many = 4000, rays = 3;
+      forge(&scene, &d, data, size, COUNT, &many, sizeof many);
+      forge(&scene, &d, data, size, STATISTICS, &rays, sizeof rays);
+      forge(&scene, &d, data, size, size - HEAD - 2 * ABBE_EXIT_FACETS, &negative, sizeof negative);
+    }
+    /* what is there of the last node, which is not done, is of no matter */
+    const size_t bytes = exits ? whole.exits.count * sizeof *whole.exits.exit
+                               : 12 * 64 * 9 * sizeof *whole.value;
+    memset(data + HEAD + bytes - 16, 0x55, 16);
+    write_forged(data, size);
+    assert_int_equal(abbe_volume_fill(&scene, &d, &part, &twice, NULL), ABBE_OK);
+    assert_memory_equal(exits ? (void *)whole.exits.exit : whole.value,
+                        exits ? (void *)part.exits.exit : part.value, bytes);
+    free(data);
+    unlink(path);
+    abbe_caustic_volume_free(&whole);
+    abbe_caustic_volume_free(&part);
+  }
+  abbe_scene_free(&scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_bytes_come_back),
       cmocka_unit_test(test_broken_files_are_told),
       cmocka_unit_test(test_fills_go_on_to_the_same_bits),
+      cmocka_unit_test(test_forged_files_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,67 @@
+/* Checkpoints of a caustic volume of rays, which hold a table of sequences of facets. Input: choices
+ * and edits of a whole one (edits.h).
+ */
+#include "tests/fuzz/edits.h"
+#include "tests/fuzz/memory_file.h"
+
+#include "scenes/import/scene_file.h"
+#include "validation/volume/volume_fill.h"
+
+const char *const fuzz_words[] = {"\x02\x10", "\x03\x30", "\x03\x38", "abbe volume 1\n",
+                                  "\x03\x40\x40\x00\x01", NULL};
+
+static const char place[] = "fuzz_volume_checkpoint.whole";
+static abbe_scene scene;
+static edited kept;
+static abbe_volume_fill_desc desc = {.object = 1,
+                                     .nodes = 12,
+                                     .exits = 8,
+                                     .asymmetric = true,
+                                     .region = {.kind = ABBE_REGION_GRID, .side = 2},
+                                     .threads = 1,
+                                     .checkpoint = place,
+                                     .checkpoint_s = 1000};
+
+static const char text[] =
+    "materials: table.yaml\n"
+    "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05], size: [3, 2]}\n"
+    "lights:\n- {name: lamp, kind: point, position: [0.05, 0.03, 0.6], intensity: 1}\n"
+    "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5}\n"
+    "- {name: brick, shape: box, size: [0.1, 0.08, 0.06], transform: [{translate: [0, 0, 0.2]}],\n"
+    "   material: crown}\n";
+
+static bool stop_halfway(void *user, double done) {
+  (void)user;
+  return done < 0.5;
+}
+
+static void prepare(void) {
+  abbe_error error = {0};
+  abbe_caustic_volume volume;
+  abbe_volume_fill_statistics statistics;
+  FUZZ_PROMISE(abbe_scene_parse(text, sizeof text - 1, ABBE_SOURCE_DIR "/tests/fuzz/parts/f.yaml",
+                                NULL, &scene, &error) == ABBE_OK);
+  desc.progress = stop_halfway;
+  FUZZ_PROMISE(abbe_volume_fill(&scene, &desc, &volume, &statistics, &error) == ABBE_CANCELLED);
+  desc.progress = NULL;
+  desc.resume = true;
+  edits_begin(&kept, place);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+  if (kept.whole_size == 0) prepare();
+  if (size == 0) return 0;
+  abbe_error error = {0};
+  abbe_caustic_volume volume;
+  abbe_volume_fill_statistics statistics;
+  edits_make(&kept, data, size);
+  desc.checkpoint = memory_file(kept.file, kept.size);
+  if (abbe_volume_fill(&scene, &desc, &volume, &statistics, &error) != ABBE_OK) {
+    FUZZ_PROMISE(error.text[0] != '\0');
+    return 0;
+  }
+  FUZZ_PROMISE((data[0] & 2) != 0 || !edits_changed(&kept));
+  FUZZ_PROMISE(statistics.sequences <= ABBE_EXIT_MOST_FACETS);
+  abbe_caustic_volume_free(&volume);
+  return 0;
+}
