@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/number.h"
+#include "scenes/import/mesh/gltf_data.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/wavelengths.h"
 
@@ -12,70 +13,12 @@
 #include <string.h>
 #include <strings.h>
 
-/* ---- the file's JSON ---- */
-
-static uint32_t word(const unsigned char *at) {
-  return (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
-}
-
-/* Where the JSON is in the file that was opened, and how long: of a .glb, its first chunk. */
-static abbe_result find_json(const char *path, FILE *file, size_t *length, abbe_error *error) {
-  const char *dot = strrchr(path, '.');
-  unsigned char head[20];
-  if (dot == NULL || strcasecmp(dot, ".glb") != 0) return ABBE_OK;
-  if (fread(head, 1, sizeof head, file) != sizeof head || memcmp(head, "glTF", 4) != 0 ||
-      word(head + 4) != 2 || memcmp(head + 16, "JSON", 4) != 0)
-    return abbe_error_set(
-        error, ABBE_PARSE,
-        "%s: it is no binary glTF of version 2, which begins with 'glTF', 2 and a "
-        "chunk of JSON",
-        path);
-  if (word(head + 12) > *length - sizeof head)
-    return abbe_error_set(error, ABBE_PARSE,
-                          "%s: its JSON is to have %u bytes, more than the file has", path,
-                          word(head + 12));
-  *length = word(head + 12);
-  return ABBE_OK;
-}
-
-static abbe_result read_json(const char *path, cJSON **out, abbe_error *error) {
-  FILE *file;
-  size_t length = 0;
-  char *text = NULL;
-  abbe_result result = abbe_file_open(path, &file, &length, error);
-  if (result != ABBE_OK) return result;
-  result = find_json(path, file, &length, error);
-  if (result == ABBE_OK && length > ABBE_GLTF_MOST_JSON)
-    result = abbe_error_set(error, ABBE_UNSUPPORTED, "%s: its JSON has %zu bytes, the limit is %zu",
-                            path, length, ABBE_GLTF_MOST_JSON);
-  if (result == ABBE_OK && (text = malloc(length + 1)) == NULL)
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the JSON of a mesh");
-  if (result == ABBE_OK && fread(text, 1, length, file) != length)
-    result = abbe_error_set(error, ABBE_IO, "%s: it cannot be read to its end", path);
-  fclose(file);
-  if (result == ABBE_OK) {
-    *out = cJSON_ParseWithLength(text, length);
-    if (!cJSON_IsObject(*out)) {
-      cJSON_Delete(*out);
-      *out = NULL;
-      result = abbe_error_set(error, ABBE_PARSE, "%s: its JSON is not well formed", path);
-    }
-  }
-  free(text);
-  return result;
-}
-
 /* ---- one material ---- */
 
 typedef struct reading {
   const char *path, *name;
   abbe_error *error;
 } reading;
-
-static const cJSON *extension(const cJSON *material, const char *name) {
-  return cJSON_GetObjectItemCaseSensitive(cJSON_GetObjectItemCaseSensitive(material, "extensions"),
-                                          name);
-}
 
 static abbe_result get(const reading *r, const cJSON *from, const char *key, double least,
                        double most, double *out) {
@@ -95,7 +38,7 @@ static abbe_result get(const reading *r, const cJSON *from, const char *key, dou
 
 static bool transmits(const cJSON *material) {
   const cJSON *factor = cJSON_GetObjectItemCaseSensitive(
-      extension(material, "KHR_materials_transmission"), "transmissionFactor");
+      abbe_gltf_extension(material, "KHR_materials_transmission"), "transmissionFactor");
   return cJSON_IsNumber(factor) && factor->valuedouble > 0;
 }
 
@@ -105,9 +48,10 @@ static double per_um2(double lambda_nm) {
 
 static abbe_result read_index(const reading *r, const cJSON *material, abbe_material *out) {
   double n_d = 1.5, dispersion = 0; /* the extensions' defaults */
-  abbe_result result = get(r, extension(material, "KHR_materials_ior"), "ior", 0, 100, &n_d);
+  abbe_result result =
+      get(r, abbe_gltf_extension(material, "KHR_materials_ior"), "ior", 0, 100, &n_d);
   if (result == ABBE_OK)
-    result = get(r, extension(material, "KHR_materials_dispersion"), "dispersion", 0,
+    result = get(r, abbe_gltf_extension(material, "KHR_materials_dispersion"), "dispersion", 0,
                  ABBE_GLTF_MOST_DISPERSION, &dispersion);
   if (result != ABBE_OK) return result;
   if (!(n_d >= 1))
@@ -129,7 +73,7 @@ static abbe_result read_index(const reading *r, const cJSON *material, abbe_mate
 }
 
 static abbe_result read_volume(const reading *r, const cJSON *material, abbe_material *out) {
-  const cJSON *volume = extension(material, "KHR_materials_volume");
+  const cJSON *volume = abbe_gltf_extension(material, "KHR_materials_volume");
   const cJSON *colour = cJSON_GetObjectItemCaseSensitive(volume, "attenuationColor");
   double thickness = 0, distance = INFINITY, left[3] = {1, 1, 1};
   abbe_result result = get(r, volume, "thicknessFactor", 0, 1e12, &thickness);
@@ -162,7 +106,7 @@ static void read_warning(const cJSON *material, char *text, size_t size) {
   const cJSON *tint = cJSON_GetObjectItemCaseSensitive(surface, "baseColorFactor");
   const cJSON *rough = cJSON_GetObjectItemCaseSensitive(surface, "roughnessFactor");
   const cJSON *share = cJSON_GetObjectItemCaseSensitive(
-      extension(material, "KHR_materials_transmission"), "transmissionFactor");
+      abbe_gltf_extension(material, "KHR_materials_transmission"), "transmissionFactor");
   bool tinted = cJSON_GetObjectItemCaseSensitive(surface, "baseColorTexture") != NULL;
   for (int c = 0; c < 3 && c < cJSON_GetArraySize(tint); c++)
     tinted = tinted || cJSON_GetArrayItem(tint, c)->valuedouble != 1;
@@ -247,15 +191,19 @@ abbe_result abbe_gltf_material_load(const char *path, const char *part, abbe_mat
   ABBE_REQUIRE(path && out && name, error);
   const char *dot = strrchr(path, '.');
   const cJSON *material = NULL;
-  cJSON *root = NULL;
+  abbe_gltf_json json = {0};
+  char *data = NULL;
+  size_t size = 0;
   memset(out, 0, sizeof *out);
   *name = NULL;
   if (dot == NULL || (strcasecmp(dot, ".glb") != 0 && strcasecmp(dot, ".gltf") != 0))
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%s: a material is read with meshes of .gltf and .glb files alone", path);
-  abbe_result result = read_json(path, &root, error);
+  abbe_result result = abbe_file_read(path, ABBE_MESH_FILES_MOST, &data, &size, error);
+  if (result == ABBE_OK) result = abbe_gltf_json_parse(path, data, size, &json, error);
+  free(data);
   if (result != ABBE_OK) return result;
-  const cJSON *materials = cJSON_GetObjectItemCaseSensitive(root, "materials");
+  const cJSON *materials = cJSON_GetObjectItemCaseSensitive(json.root, "materials");
   reading r = {path, "", error};
   result = choose(&r, materials, part, &material);
   if (result == ABBE_OK) {
@@ -267,7 +215,7 @@ abbe_result abbe_gltf_material_load(const char *path, const char *part, abbe_mat
     *name = strdup(name_of(material));
     if (*name == NULL) result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a name");
   }
-  cJSON_Delete(root);
+  cJSON_Delete(json.root);
   if (result != ABBE_OK) abbe_material_free(out);
   return result;
 }

@@ -1,4 +1,4 @@
-/* gltf_material.h: a stone's material as a glTF file has it, by cJSON: assimp knows no dispersion.
+/* gltf_material.h: a stone's material as a glTF file has it, by cJSON.
  *
  * KHR_materials_ior and KHR_materials_dispersion give Cauchy's two terms through n_d and V_d
  * [glTFDispersion], KHR_materials_volume the attenuation by a colour. What Abbe does not model of
@@ -14,7 +14,6 @@
 extern "C" {
 #endif
 
-#define ABBE_GLTF_MOST_JSON ((size_t)64 << 20) /* bytes */
 #define ABBE_GLTF_MOST_DISPERSION 1e3
 
 /* The material called part, or, where part is NULL, the only one that transmits light, of a .gltf

@@ -1,4 +1,4 @@
-/* mesh.h: triangle meshes: loading through assimp, checking, fixing, subdividing.
+/* mesh.h: triangle meshes: loading, checking, fixing, subdividing.
  *
  * Refractors must be closed, consistently oriented (normals outwards) and free of degenerate
  * faces; abbe_mesh_check says what is wrong and abbe_mesh_fix fixes what is safe to fix.
@@ -44,8 +44,8 @@ abbe_result abbe_mesh_make(size_t vertices, size_t faces, bool with_uv, abbe_mes
 void abbe_mesh_free(abbe_mesh *mesh);
 
 /* Loads OBJ, PLY, STL or glTF; all its meshes as one. An STL's normals are those of its faces and
- * not taken. ABBE_PARSE with assimp's reason, ABBE_GEOMETRY for coordinates that are not finite or
- * a file without triangles. *others (may be NULL) gets the paths of the files that it names and
+ * not taken. ABBE_PARSE with the line or element that is wrong, ABBE_UNSUPPORTED with the name of
+ * what is not read, ABBE_GEOMETRY for coordinates that are not finite or a file without faces. *others (may be NULL) gets the paths of the files that it names and
  * that were read with it, such as a glTF's buffers: malloc'd, each ends with a zero, an empty one
  * is behind the last; NULL where there are none. */
 abbe_result abbe_mesh_load(const char *path, abbe_mesh_normals normals, abbe_mesh *out,

@@ -1,7 +1,6 @@
-#include "tests/check.h"
+#include "tests/scenes/import/mesh/meshes.h"
 
 #include "scenes/geometry/vector.h"
-#include "scenes/mesh/ply_strips.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -18,17 +17,8 @@ static const int strip[] = {0, 2, 1, 3, 0, 2, -1, 1, 0, 0, 0};
 enum { LENGTH = 6, CORNERS = 4 };
 static const double corner[CORNERS][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
-static abbe_error error;
-
 static abbe_result parse(const char *data, size_t size, abbe_mesh *out) {
-  char *whole = malloc(size + 1); /* so that a sanitizer sees what is read past the end */
-  assert_non_null(whole);
-  memcpy(whole, data, size);
-  whole[size] = '\0';
-  error.text[0] = '\0';
-  const abbe_result result = abbe_ply_read_strips(whole, size, "t.ply", out, &error);
-  free(whole);
-  return result;
+  return test_read(abbe_ply_read, "t.ply", NULL, data, size, out);
 }
 
 static void assert_is_the_tetrahedron(abbe_mesh *m) {
@@ -130,6 +120,94 @@ static void strips_alternate_and_begin_anew(void **state) {
   }
 }
 
+#define FACES(more)                                                                                \
+  "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"                  \
+  "property float z\nelement face 1\nproperty list uchar int vertex_index\n" more                  \
+  "end_header\n0 0 0\n1 0 0\n0 1 0\n"
+
+#define BODY "0 0 0\n1 0 0\n0 2 0\n0 0 3\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"
+#define FACE_LIST "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+
+/* What programs put around vertices and faces. */
+static void texts_of_faces_are_read(void **state) {
+  (void)state;
+  static const char *const texts[] = {
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+      "property float z\n" FACE_LIST "0 0 0 9 9\n1 0 0\n0 2\n0 7\n0 0 3\n3 0 2 1 0 0 0\n3 0 1 3\n"
+      "3 0 3 2\n3 1 2 3 8 8",
+      "ply\nformat ascii 1.0\nelement vertex 4\ncomment Points\nproperty float x\n"
+      "comment y follows\nproperty float y\nproperty float z\n" FACE_LIST BODY,
+      "ply\nformat ascii 1.0\nelement camera 1\nproperty float focal\nelement vertex 4\n"
+      "property float x\nproperty float y\nproperty float z\n" FACE_LIST "35\n" BODY,
+      "ply\nformat ascii 1.0\nobj_info a\nelement face 4\nproperty uchar red\n"
+      "property list uchar int vertex_index\nelement vertex 4\nproperty double z\n"
+      "property double x\nproperty double y\nend_header\n1 3 0 2 1\n1 3 0 1 3\n1 3 0 3 2\n"
+      "1 3 1 2 3\n0 0 0\n0 1 0\n0 0 2\n3 0 0\n",
+      "ply\rformat ascii 1.0\relement vertex 4\rproperty float x\rproperty float y\r"
+      "property float z\relement face 4\rproperty list uchar int vertex_index\rend_header\r"
+      "0 0 0\r1 0 0\r0 2 0\r0 0 3\r3 0 2 1\r3 0 1 3\r3 0 3 2\r3 1 2 3\r",
+  };
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    abbe_mesh m;
+    if (parse(texts[i], strlen(texts[i]), &m) != ABBE_OK) fail_msg("%s", error.text);
+    assert_tetrahedron(&m, 1, 0, 0);
+  }
+}
+
+/* The ending of the header's lines is that of its first: the body may begin with either byte. */
+static void a_body_may_begin_with_the_end_of_a_line(void **state) {
+  (void)state;
+  static const char *const endings[] = {"\n", "\r\n", "\r"};
+  static const char *const lines[] = {"ply",
+                                      "format binary_little_endian 1.0",
+                                      "element vertex 3",
+                                      "property uchar x",
+                                      "property uchar y",
+                                      "property uchar z",
+                                      "element face 1",
+                                      "property list uchar uchar vertex_index",
+                                      "end_header"};
+  for (int e = 0; e < 3; e++)
+    for (unsigned char first = '\n'; first <= '\r'; first++) {
+      abbe_mesh m;
+      char data[512] = "";
+      const unsigned char body[] = {first, 0, 0, 1, 0, 0, 0, 1, 0, 3, 0, 1, 2};
+      for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+        strcat(data, lines[i]);
+        strcat(data, endings[e]);
+      }
+      const size_t head = strlen(data);
+      /* after a lone return, a line feed is the body's own */
+      memcpy(data + head, body, sizeof body);
+      if (parse(data, head + sizeof body, &m) != ABBE_OK) fail_msg("%s", error.text);
+      assert_near(m.position[0][0], first, 0);
+      abbe_mesh_free(&m);
+    }
+}
+
+static void vertices_and_corners_have_uv_and_normals(void **state) {
+  (void)state;
+  static const char vertices[] =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+      "property float s\nproperty float t\nelement face 1\n"
+      "property list uchar int vertex_indices\nend_header\n"
+      "0 0 0 0 0 1 0.5 0.25\n1 0 0 0 0 2 1 0\n0 1 0 0 0 3 0 1\n3 0 1 2\n";
+  static const char corners[] =
+      FACES("property list uchar float texcoord\n") "3 0 1 2 6 0.5 0.25 1 0 0 1\n";
+  for (int i = 0; i < 2; i++) {
+    abbe_mesh m;
+    const char *text = i == 0 ? vertices : corners;
+    if (parse(text, strlen(text), &m) != ABBE_OK) fail_msg("%s", error.text);
+    assert_true(m.given_normals == (i == 0));
+    if (i == 0) assert_near(m.normal[m.face[0][2]][2], 3, 0);
+    assert_near(m.uv[m.face[0][0]][0], 0.5, 0);
+    assert_near(m.uv[m.face[0][0]][1], 0.25, 0);
+    assert_near(m.uv[m.face[0][2]][1], 1, 0);
+    abbe_mesh_free(&m);
+  }
+}
+
 static void what_is_wrong_is_said(void **state) {
   (void)state;
   static const struct {
@@ -137,13 +215,23 @@ static void what_is_wrong_is_said(void **state) {
     abbe_result result;
   } files[] = {
       {PLAIN "3 0 1 5\n", "none of the file's 5", ABBE_GEOMETRY},
-      {PLAIN "3 0 1 -2\n", "none of the file's 5", ABBE_GEOMETRY},
-      {PLAIN "3 0 0 1\n", "have no triangles", ABBE_GEOMETRY},
+      {PLAIN "3 0 1 -2\n", "'tristrips' 1 names a vertex by what is no whole number",
+       ABBE_GEOMETRY},
+      {PLAIN "3 0 1 1.5\n", "no whole number", ABBE_GEOMETRY},
+      {PLAIN "3 0 0 1\n", "no faces were read from it", ABBE_GEOMETRY},
+      {PLAIN "3 0 1 2\n7\n", "it goes on with '7", ABBE_PARSE},
+      {FACES("") "3 0 1 5\n", "face 1 names vertex 5", ABBE_GEOMETRY},
+      {FACES("") "3 0 1 -1\n", "no whole number", ABBE_GEOMETRY},
+      {FACES("property list uchar float texcoord\n") "3 0 1 2 4 0 0 1 1\n",
+       "another number of texture coordinates", ABBE_PARSE},
+      {"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nend_header\n0\n1\nnan\n",
+       "in element 'vertex' 3 of 3", ABBE_PARSE},
+      {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n", "no end_header", ABBE_PARSE},
       {PLAIN "4 0 1 2\n", "it ends", ABBE_PARSE},
       {PLAIN "-1 0 1 2\n", "it ends", ABBE_PARSE},
       {PLAIN "3 0 1 x\n", "something else than a number", ABBE_PARSE},
       {"ply\nformat ascii 1.0\nelement vertex 9000000000\nproperty float x\nend_header\n0\n",
-       "it ends", ABBE_PARSE},
+       "line 3 announces 9000000000 elements 'vertex'", ABBE_PARSE},
       {"ply\nformat ascii 1.0\nproperty float x\nend_header\n", "line 3", ABBE_PARSE},
       {"ply\nformat ebcdic 1.0\nend_header\n", "line 2", ABBE_PARSE},
       {"ply\nformat ascii 1.0\nelement tristrips 1\nproperty list float int i\nend_header\n",
@@ -155,7 +243,7 @@ static void what_is_wrong_is_said(void **state) {
        "line 5", ABBE_PARSE},
       {"ply\nformat ascii 1.0\nelement vertex 18446744073709551615\nelement tristrips 1\n"
        "property list int int i\nend_header\n3 0 1 2\n",
-       "it ends", ABBE_PARSE},
+       "line 3 announces", ABBE_PARSE},
   };
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
     abbe_mesh m;
@@ -187,6 +275,9 @@ int main(void) {
       cmocka_unit_test(text_is_read),
       cmocka_unit_test(both_orders_are_read_and_no_part_of_them),
       cmocka_unit_test(strips_alternate_and_begin_anew),
+      cmocka_unit_test(texts_of_faces_are_read),
+      cmocka_unit_test(a_body_may_begin_with_the_end_of_a_line),
+      cmocka_unit_test(vertices_and_corners_have_uv_and_normals),
       cmocka_unit_test(what_is_wrong_is_said),
       cmocka_unit_test(a_mesh_is_loaded_from_them),
   };

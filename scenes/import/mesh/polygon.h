@@ -1,0 +1,33 @@
+/* polygon.h: cuts the polygons of mesh files into triangles.
+ *
+ * A polygon's corners lie in a plane or near one, in order around it. It may be concave, have
+ * corners in line, and pass points twice, as where a bridge leads to a hole. Whether corners turn
+ * left or right is decided exactly. No corners are added. Internal to scenes/.
+ */
+#ifndef ABBE_SCENES_IMPORT_MESH_POLYGON_H
+#define ABBE_SCENES_IMPORT_MESH_POLYGON_H
+
+#include "base/error.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Times that a corner may be looked at while a polygon is cut. */
+#define ABBE_POLYGON_MOST_WORK 4e9
+
+/* Cuts it into count - 2 triangles (count >= 3), which run around as it does: triangle[i] are
+ * indices into corner. Of a polygon that does not cross itself, seen along the axis that is nearest
+ * its normal, they lie inside and not over one another; those of one that does cross itself, or
+ * has no area, are any. Longer polygons than four corners get the triangles of Delaunay.
+ * ABBE_UNSUPPORTED where it takes more than ABBE_POLYGON_MOST_WORK, ABBE_NO_MEMORY. */
+abbe_result abbe_polygon_cut(const double (*corner)[3], size_t count, uint32_t (*triangle)[3],
+                             abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,106 @@
+#include "tests/scenes/import/mesh/meshes.h"
+
+#define POINTS "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\n"
+
+static void tetrahedra_are_read(void **state) {
+  (void)state;
+  static const char *const texts[] = {
+      POINTS "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n",
+      "# made up\r\nmtllib no.mtl\r\no a\r\nv 0 0 0\r\nv 1 0 0 # x\r\nv 0 2 0\r\nv 0 0 3\r\ng b\r\n"
+      "s 1\r\nf -4 -2 -3\r\nf -4 -3 -1\r\nf -4 -1 -2\r\nf -3 -2 -1",
+      "  v\t0 0 \\\n 0\nv 1. 0e0 -0 0.5 0.5 1\nv 0 2.0 0 1\n\n\nvt 0.5\nv 0 0 +3\n"
+      "f 1/1 3/1 \\\r\n 2/1\nf 1/1/ 2/ 4\nf 1// 4 3\nfo 2 3 4\nl 1 2\np 3\nf 1 2\nf 3\n",
+  };
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    abbe_mesh m;
+    if (test_read(abbe_obj_read, "t.obj", NULL, texts[i], strlen(texts[i]), &m) != ABBE_OK)
+      fail_msg("%s", error.text);
+    assert_false(m.given_normals);
+    assert_tetrahedron(&m, 1, 0, 0);
+  }
+}
+
+static void corners_have_their_own_uv_and_normals(void **state) {
+  (void)state;
+  static const char text[] = POINTS "vt 0.25 0.75\nvt 1 0 0\nvn 0 0 1\nvn 0 0 -2\n"
+                                    "f 1/1/1 2/2/2 3/-1/-2\nf 4//1 2/1/2 1/2/1\n";
+  abbe_mesh m;
+  if (test_read(abbe_obj_read, "t.obj", NULL, text, strlen(text), &m) != ABBE_OK)
+    fail_msg("%s", error.text);
+  assert_true(m.given_normals);
+  assert_int_equal(m.face_count, 2);
+  static const double uv[6][2] = {{0.25, 0.75}, {1, 0}, {1, 0}, {0, 0}, {0.25, 0.75}, {1, 0}};
+  static const double z[6] = {1, -2, 1, 1, -2, 1};
+  for (size_t i = 0; i < 6; i++) {
+    const uint32_t v = m.face[i / 3][i % 3];
+    assert_near(m.uv[v][0], uv[i][0], 0);
+    assert_near(m.uv[v][1], uv[i][1], 0);
+    assert_near(m.normal[v][2], z[i], 0);
+  }
+  abbe_mesh_free(&m);
+}
+
+/* Programs write faces whose texture coordinates and normals they leave out. */
+static void what_is_not_there_is_not_taken(void **state) {
+  (void)state;
+  static const char text[] = POINTS "f 1/1/1 3/2/1 2/3/1\nf 1/1/9 2 4\nf 1 4 3\nf 2 3 4\n";
+  abbe_mesh m;
+  if (test_read(abbe_obj_read, "t.obj", NULL, text, strlen(text), &m) != ABBE_OK)
+    fail_msg("%s", error.text);
+  assert_false(m.given_normals);
+  assert_null(m.uv);
+  assert_tetrahedron(&m, 1, 0, 0);
+}
+
+static void a_material_s_faces_are_read_alone(void **state) {
+  (void)state;
+  static const char text[] =
+      POINTS "f 1 2 3\nusemtl clear glass \nf 1 2 3 4\nusemtl clear\nf 1 2 3\n";
+  abbe_mesh m;
+  assert_int_equal(test_read(abbe_obj_read, "t.obj", "clear glass", text, strlen(text), &m),
+                   ABBE_OK);
+  assert_int_equal(m.face_count, 2);
+  abbe_mesh_free(&m);
+  assert_int_equal(test_read(abbe_obj_read, "t.obj", "stone", text, strlen(text), &m),
+                   ABBE_GEOMETRY);
+  assert_contains(error.text, "no triangle is of a material called 'stone'");
+}
+
+static void what_is_wrong_is_said(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *words;
+    abbe_result code;
+  } files[] = {
+      {POINTS "f 1 2 3\nf 1 2 5\n",
+       "face 2 names vertex 4, counted from 0, that is none of the file's 4", ABBE_GEOMETRY},
+      {POINTS "f 1 2 0\n", "line 5: a face's corner", ABBE_PARSE},
+      {POINTS "f 1 2 -5\n", "line 5: a face's corner", ABBE_PARSE},
+      {POINTS "\nf 1 2 x\n", "line 6: a face's corner", ABBE_PARSE},
+      {POINTS "f 1 2 3.5\n", "line 5: a face's corner", ABBE_PARSE},
+      {POINTS "f 1 2 99999999999999999999\n", "line 5: a face's corner", ABBE_PARSE},
+      {"v 0 0\nf 1 1 1\n", "line 1: a vertex", ABBE_PARSE},
+      {"v 0 0 \\\n nan\nf 1 1 1\n", "line 2: a vertex", ABBE_PARSE},
+      {"v 0 0 1e999\nf 1 1 1\n", "coordinates must be finite", ABBE_GEOMETRY},
+      {"v 0 0 1,5\nf 1 1 1\n", "line 1: a vertex", ABBE_PARSE},
+      {POINTS "vn 0 1\n", "line 5: a normal", ABBE_PARSE},
+      {POINTS "vt\n", "line 5: a texture coordinate", ABBE_PARSE},
+      {POINTS "l 1 2\n", "no faces were read from it", ABBE_GEOMETRY},
+      {"", "no faces were read from it", ABBE_GEOMETRY},
+      {POINTS "f 1 2 3\nsurf 0 1 0 1 1 2 3 4\n", "line 6: 'surf' is a free-form surface",
+       ABBE_UNSUPPORTED},
+  };
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++)
+    assert_refused(abbe_obj_read, "t.obj", files[i].text, files[i].code, files[i].words);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(tetrahedra_are_read),
+      cmocka_unit_test(corners_have_their_own_uv_and_normals),
+      cmocka_unit_test(what_is_not_there_is_not_taken),
+      cmocka_unit_test(a_material_s_faces_are_read_alone),
+      cmocka_unit_test(what_is_wrong_is_said),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
