@@ -161,6 +161,21 @@ bool abbe_light_has_size(const abbe_light *light) {
   return light->kind == ABBE_LIGHT_DISK || light->kind == ABBE_LIGHT_RECTANGLE;
 }
 
+void abbe_scene_hold_lights(const abbe_scene *scene, double min[3], double max[3]) {
+  for (size_t i = 0; i < scene->light_count; i++) {
+    const abbe_light *l = &scene->light[i];
+    const double *middle = l->points > 0 ? l->centre : l->position;
+    if (!abbe_light_has_size(l)) continue;
+    for (int k = 0; k < 3; k++) {
+      const double across = sqrt(fmax(1 - l->direction[k] * l->direction[k], 0));
+      const double half = l->kind == ABBE_LIGHT_DISK ? l->radius * across
+                                                     : fabs(l->edge[0][k]) + fabs(l->edge[1][k]);
+      min[k] = fmin(min[k], middle[k] - half);
+      max[k] = fmax(max[k], middle[k] + half);
+    }
+  }
+}
+
 double abbe_light_area(const abbe_light *light) {
   if (light->kind == ABBE_LIGHT_DISK) return 3.14159265358979323846 * light->radius * light->radius;
   if (light->kind != ABBE_LIGHT_RECTANGLE) return 0;

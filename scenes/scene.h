@@ -217,6 +217,8 @@ abbe_result abbe_scene_find_light(const abbe_scene *scene, const char *text, siz
  * area times radiance. */
 bool abbe_light_has_size(const abbe_light *light);
 double abbe_light_area(const abbe_light *light);
+/* Grows bounds until they hold every light that has a size. */
+void abbe_scene_hold_lights(const abbe_scene *scene, double min[3], double max[3]);
 
 /* Relative intensity of the light along the unit direction away from it, in [0, 1]; of a disk or a
  * rectangle, seen from afar: the cosine to its normal, 0 behind. */

@@ -62,6 +62,13 @@ Shading ray_light(vec2 uv, vec2 area, out bool met, out float t) {
   Sighting at;
   view_ray(own_eye_view, uv, o, d);
   met = receiver_seen(o, d, 0.0, 1e30, t, at);
+#ifdef AREA_LIGHTS
+  vec3 lamp;
+  if (area_light_seen(o, d, 0.0, t, lamp)) {
+    met = true;
+    return Shading(lamp, vec3(0), vec3(0));
+  }
+#endif
   if (!met) return Shading(vec3(0), vec3(0), surroundings(d));
 #ifdef RECEIVER_HIERARCHY
   vec3 n = face_n;

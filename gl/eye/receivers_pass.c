@@ -7,6 +7,8 @@
 
 static const abbe_program_stage stages[] = {{GL_VERTEX_SHADER, "surface.vert"},
                                             {GL_FRAGMENT_SHADER, "receivers.frag"}};
+static const abbe_program_stage area_lights[] = {{GL_VERTEX_SHADER, "area_lights.vert"},
+                                                 {GL_FRAGMENT_SHADER, "area_lights.frag"}};
 static const abbe_program_stage behind[] = {{GL_VERTEX_SHADER, "screen.vert"},
                                             {GL_FRAGMENT_SHADER, "surroundings.frag"}};
 
@@ -163,6 +165,15 @@ static void draw_receivers(abbe_receivers_pass *pass) {
   gpu->gl->Disable(GL_SCISSOR_TEST);
 }
 
+/* Before or behind what is drawn. */
+static void draw_area_lights(abbe_receivers_pass *pass) {
+  const abbe_gpu_scene *scene = pass->lighting->scene;
+  const abbe_gl *gl = scene->gpu->gl;
+  abbe_lighting_use(pass->lighting, pass->area_lights);
+  gl->BindVertexArray(scene->gpu->empty_array);
+  gl->DrawArrays(GL_TRIANGLES, 0, 6 * (GLsizei)abbe_gpu_area_lights_count(scene));
+}
+
 /* A ray a sample, in place of all triangles. */
 static void follow_rays(abbe_receivers_pass *pass) {
   abbe_gpu *gpu = pass->lighting->scene->gpu;
@@ -205,6 +216,7 @@ abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error
   } else {
     gl->Enable(GL_DEPTH_TEST);
     draw_receivers(pass);
+    if (pass->area_lights != 0) draw_area_lights(pass);
   }
   abbe_gpu_book_lap(scene->gpu, ABBE_PASS_EYE_RECEIVERS);
   return ABBE_OK;
@@ -256,6 +268,9 @@ abbe_result abbe_receivers_pass_make(const abbe_lighting *lighting,
   else if (result == ABBE_OK)
     result = abbe_shader_variant_program(variant, lighting->scene->gpu, stages, 2, NULL, &out->lit,
                                          error);
+  if (result == ABBE_OK && variant->area_lights > 0 && out->rays == 0)
+    result = abbe_shader_variant_program(variant, lighting->scene->gpu, area_lights, 2, NULL,
+                                         &out->area_lights, error);
   if (result == ABBE_OK && variant->environment)
     result = abbe_shader_variant_program(variant, lighting->scene->gpu, behind, 2, NULL,
                                          &out->surroundings, error);

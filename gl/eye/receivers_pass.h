@@ -20,6 +20,7 @@ typedef struct abbe_receivers_pass {
   GLuint surroundings;            /* program; 0: nothing is around the scene */
   GLuint lit, unlit;              /* programs; unlit: 0 where most of the picture may be lit */
   GLuint rays;                    /* program in place of both; 0: they are drawn */
+  GLuint area_lights;             /* program; 0: there are none, or rays meet them */
   GLuint colour, direct, caustic; /* an array of one layer: radiance, distance; by request */
   GLuint depth;
   abbe_lit_part *part;

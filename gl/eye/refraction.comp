@@ -117,35 +117,6 @@ View camera_view() {
   return View(eye_view[0], eye_view[1], eye_view[2], eye_view[3], eye_view[4], eye_view[5]);
 }
 
-#ifdef AREA_LIGHTS
-uniform vec4 area_light_place[AREA_LIGHTS];   // centre; radius of a disk, 0 of a rectangle
-uniform vec3 area_light_facing[AREA_LIGHTS];  // unit normal of the side that shines
-uniform vec3 area_light_edge[2 * AREA_LIGHTS]; // of a rectangle: half a side over its square
-uniform vec3 area_light_radiance[AREA_LIGHTS];
-
-// Whether the ray from p meets a disk or rectangle light before t_max, which is then where; and what it shows: nothing
-// from behind.
-bool area_light_seen(vec3 p, vec3 d, float t_min, inout float t_max, out vec3 radiance) {
-  bool seen = false;
-  radiance = vec3(0);
-  for (int i = 0; i < AREA_LIGHTS; i++) {
-    float facing = dot(d, area_light_facing[i]);
-    vec3 to = area_light_place[i].xyz - p;
-    float t = dot(to, area_light_facing[i]) / (facing == 0.0 ? 1e-30 : facing);
-    vec3 off = t * d - to;
-    float radius = area_light_place[i].w;
-    bool within = radius > 0.0 ? dot(off, off) <= radius * radius
-                               : max(abs(dot(off, area_light_edge[2 * i])),
-                                     abs(dot(off, area_light_edge[2 * i + 1]))) <= 1.0;
-    bool here = t > t_min && t < t_max && within;
-    seen = seen || here;
-    t_max = here ? t : t_max;
-    radiance = here ? (facing < 0.0 ? area_light_radiance[i] : vec3(0)) : radiance;
-  }
-  return seen;
-}
-#endif
-
 #ifdef ROUGH
 #define LOBE_STATE
 vec2 lobe_u;  // as in walk.glsl

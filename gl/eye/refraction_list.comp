@@ -30,7 +30,8 @@ bool shows_refractor(View eye, ivec2 at) {
   vec3 o, d;
   view_ray(eye, (vec2(at) + 0.5) / own_eye_samples, o, d);
   float front = texelFetch(eye_layers, ivec3(at, 0), 0).w;
-  return !receiver_between(o, d, 0.0, front - touch * refractor_bounds.w);
+  float limit = front - touch * refractor_bounds.w;
+  return !receiver_between(o, d, 0.0, limit) && !area_light_between(o, d, 0.0, limit, -1);
 }
 
 void main() {

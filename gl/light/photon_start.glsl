@@ -37,5 +37,6 @@ bool photon_start(vec2 uv, out vec3 o, out vec3 d, out Hit front, out float flux
 #endif
   // A parallel view begins close to the refractors, its light far beyond the scene.
   float from_light = front.t + (int(l.position.w) == 2 ? scene_size : 0.0);
-  return reached && flux > 0.0 && receiver_lit(light, front.p, d, from_light);
+  return reached && flux > 0.0 && receiver_lit(light, front.p, d, from_light) &&
+         area_lights_lit(light, front.p, d, from_light);
 }

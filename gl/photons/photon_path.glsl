@@ -64,6 +64,14 @@ ReceiverHit meet_receiver(vec3 p, vec3 d, float t_min, float t_max) {
   vec3 uvz;
   float t;
   int r = receiver_hit(p, d, t_min, t_max, t);
+#ifdef AREA_LIGHTS
+  vec3 unused;
+  if (area_light_seen(p, d, t_min, t, unused)) {
+    to.state = NOT_HELD;
+    to.at = to.place = p + t * d;
+    return to;
+  }
+#endif
   if (r < 0) return to;
   to.at = to.place = p + t * d;
   to.receiver = uint(receiver_part(r)) + 1u;

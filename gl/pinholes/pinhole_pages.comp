@@ -218,6 +218,14 @@ vec3 go_on(vec3 p, inout bool going) {
   float reach = at.hit.t, far = distance(p, pinhole.p), t_min = ray.inside == 0u ? 1e-4 * refractor_bounds.w : 0.0;
   bool met = next_interface(ray, at);
   bool dark = receiver_between(ray.p, ray.d, t_min, met ? at.hit.t : reach);
+#ifdef AREA_LIGHTS
+#ifdef ROUGH
+  int own = asks ? area_light_of(min(lamp, LIGHT_ROOM - 1)) : -1;
+#else
+  const int own = -1;
+#endif
+  dark = dark || area_light_between(ray.p, ray.d, t_min, met ? at.hit.t : reach * (1.0 - 2e-5), own);
+#endif
   bool turns = !asks && met && !dark && (!first || abs(at.hit.t - far) <= seen_off + 1e-4 * far);
   turns = turns && segment < (first || !is_mirror(of) ? MOST_SEGMENTS : MOST_MIRRORED);
   bool begins = first && turns, ends = !asks && !first && !turns;

@@ -37,7 +37,8 @@ vec3 lobe_shows(PathState w, Interface h, vec2 wider) {
     Interface between;
     between.hit.t = l.distance_m;
     if (l.e <= 0.0 || next_interface(l.ray, between) ||
-        receiver_between(l.ray.p, l.ray.d, 1e-4 * refractor_bounds.w, l.distance_m))
+        receiver_between(l.ray.p, l.ray.d, 1e-4 * refractor_bounds.w, l.distance_m) ||
+        !area_lights_lit(i, l.ray.p, -l.ray.d, l.distance_m))
       continue;
     sum += l.shown;
   }

@@ -49,8 +49,8 @@ static void list_sizes(const abbe_scene *scene, abbe_plan *plan) {
     abbe_plan_add(plan, ABBE_CHOICE_LIGHT_SIZE, "none");
   else
     abbe_plan_add(plan, ABBE_CHOICE_LIGHT_SIZE,
-                  "a %s, '%.40s' first: %zu points stand for each, with as many sharp shadows; the "
-                  "camera sees it in refractors alone",
+                  "a %s, '%.40s' first: %zu points stand for each, with as many sharp shadows; where "
+                  "nothing hides it receivers have its light in closed form",
                   disk->kind == ABBE_LIGHT_DISK ? "disk" : "rectangle", disk->name, disk->points);
 }
 

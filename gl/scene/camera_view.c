@@ -10,6 +10,17 @@ static size_t room_for(size_t samples, bool coarse) {
   return samples;
 }
 
+/* A light with a size is seen. */
+static void fit_light(const abbe_light *light, abbe_view *view) {
+  if (!abbe_light_has_size(light)) return;
+  const abbe_scene alone = {.light = (abbe_light *)light, .light_count = 1};
+  double end[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+  double corner[8][3];
+  abbe_scene_hold_lights(&alone, end[0], end[1]);
+  for (int k = 0; k < 24; k++) corner[k / 3][k % 3] = end[k / 3 >> k % 3 & 1][k % 3];
+  abbe_view_fit(view, (const double(*)[3])corner, 8);
+}
+
 void abbe_camera_view_fit(const abbe_scene *scene, const abbe_render_desc *desc,
                           abbe_camera_view *out) {
   const size_t pixels[2] = {desc->width, desc->height};
@@ -32,6 +43,7 @@ void abbe_camera_view_fit(const abbe_scene *scene, const abbe_render_desc *desc,
       corner[k / 3][k % 3] = (k / 3 >> k % 3) & 1 ? o->max[k % 3] : o->min[k % 3];
     abbe_view_fit(&out->view, (const double(*)[3])corner, 8);
   }
+  for (size_t i = 0; i < scene->light_count; i++) fit_light(&scene->light[i], &out->view);
   abbe_view_pad(&out->view, 0.01);
   double y = tan(0.5 * camera->fov_y_rad);
   double x = y * (double)desc->width / (double)desc->height;

@@ -87,8 +87,10 @@ void abbe_gpu_scene_bind(const abbe_gpu_scene *scene);
 /* The scene's uniforms and textures, into the program that is in use. */
 void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program);
 
-/* gpu_area_lights.c: disks and rectangles, as the camera's paths see them. */
+/* gpu_area_lights.c: disks and rectangles, as rays meet them; of: the number from 1 of the one that
+ * a light is a point of, 0: none. */
 size_t abbe_gpu_area_lights_count(const abbe_gpu_scene *scene);
+size_t abbe_gpu_area_lights_of(const abbe_gpu_scene *scene, size_t light);
 void abbe_gpu_area_lights_set(const abbe_gpu_scene *scene, GLuint program);
 
 /* gpu_meshes.c */

@@ -13,7 +13,8 @@ struct Light {
   vec4 white;      // rgb of unit power; w: power, W/sr or W/m2
   vec4 misc;       // cosine where the soft edge starts; flux of one map unit, of unit power; photons by window area;
                    // whether it meets a refractor
-  vec4 cube;       // faces of the cube around it whose light this is, a bit each
+  vec4 cube;       // faces of the cube around it whose light this is, a bit each; number from 1 of the light with a
+                   // size that it is a point of, or 0
 };
 
 struct Refractor {

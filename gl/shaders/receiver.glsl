@@ -57,6 +57,7 @@ vec3 caustic_colour(vec3 xyz) { return rgb_from_xyz * xyz; }
 #endif
 
 #include "receiver_hit.glsl"
+#include "area_irradiance.glsl"
 #include "receiver_shadow.glsl"
 #include "caustic_lookup.glsl"
 #ifdef VOLUME_PAGES
@@ -93,15 +94,23 @@ void light_irradiance(int light, vec3 p, vec3 n, int side, out vec3 direct, out 
   if (!receiver_lit(light, p, d, distance_m)) return;
   bool directional = int(l.position.w) == 2;
   float falloff = directional ? 1.0 : 1.0 / (distance_m * distance_m);
-  if (facing > 0.0) {
-    float e = l.white.w * light_profile(l, d) * facing * falloff;
+  float e = l.white.w * light_profile(l, d) * facing * falloff;
+  bool seen = facing > 0.0;
+#ifdef AREA_LIGHTS
+  int area_light = area_light_of(light);
+  float share = area_light < 0 ? 1.0 : area_shares[area_light];
+  e = share < 0.0 ? -share * l.white.w : e * share;
+  seen = seen || share < 0.0;
+#endif
+  if (seen) {
 #ifdef HAZE
     float unused;
     vec3 white = haze_light(light, haze_way(p, -d, 0.0, directional ? HAZE_FAR : distance_m, unused));
 #else
     vec3 white = l.white.rgb;
 #endif
-    if (e > 0.0) direct = white * (e * refractor_shadow(light, p, d, distance_m));
+    if (e > 0.0 && (facing <= 0.0 || area_lights_lit(light, p, d, distance_m)))
+      direct = white * (e * (facing > 0.0 ? refractor_shadow(light, p, d, distance_m) : 1.0));
   }
 #ifdef CAUSTICS
   if (l.misc.w == 0.0) return;
@@ -174,6 +183,9 @@ Shading shade(vec3 p, vec3 n, int surface, vec2 uv, int side) {
   s.direct = s.caustic = vec3(0);
   vec3 share = texture_share(surface, uv);
 #ifndef UNLIT
+#ifdef AREA_LIGHTS
+  set_area_shares(p, n);
+#endif
   vec3 direct, caustic;
 #define SHINE(i)                                             \
   {                                                          \

@@ -1,6 +1,8 @@
 // Receivers that rays meet, exactly and from anywhere: parallelograms, and RECEIVER_HIERARCHY: triangles
 // of all others.
 
+#include "area_lights.glsl"
+
 void meet_parallelogram(int i, Receiver r, vec3 o, vec3 d, float t_min, inout float t, inout int found) {
   float s = dot(r.normal.xyz, r.corner.xyz - o) / dot(r.normal.xyz, d);
   vec3 x = o + s * d - r.corner.xyz;

@@ -140,11 +140,13 @@ vec3 volume_irradiance(int light, vec3 p, vec3 n) {
     flux += (volume_weight[k] * reach * reach) *
             (transpose(volume_turn[k]) * volume_flux(volume_block(k), volume_turn[k] * (q * reach)));
   }
-#ifdef RECEIVER_SHADOWS
   // What stands on the way that most of it comes.
   float bright = length(flux[1]), far = length(q);
-  if (bright > 0.0 && receiver_between(p, -flux[1] / bright, 1e-4 * far, far)) return vec3(0);
+  vec3 towards = -flux[1] / max(bright, 1e-30);
+#ifdef RECEIVER_SHADOWS
+  if (bright > 0.0 && receiver_between(p, towards, 1e-4 * far, far)) return vec3(0);
 #endif
+  if (bright > 0.0 && area_light_between(p, towards, 0.0, far, -1)) return vec3(0);
   return max(-(n * flux), vec3(0)) * volume_strength[light];
 }
 #endif

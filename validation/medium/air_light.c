@@ -97,7 +97,7 @@ static float sun(const abbe_air_ray *r, const abbe_light *light, float u, uint32
   const float share = scattered(r, t, to, INFINITY, x) / density;
   if (!(share > 0)) return 0;
   ++*rays;
-  return abbe_geometry_occluded(r->geometry, ABBE_GEOMETRY_OBJECTS, x, to, INFINITY)
+  return abbe_geometry_occluded(r->geometry, ABBE_GEOMETRY_ALL, x, to, INFINITY)
              ? 0
              : share * (float)light->power;
 }
@@ -110,7 +110,9 @@ float abbe_air_light_lamp(const abbe_air_ray *r, size_t index, const float u[3],
   float power = abbe_lamp_place(g, light, u + 1, lamp);
   if (light->kind == ABBE_LIGHT_SPOT && !clip_to_cone(r, light, &from, &end)) return 0;
   const float t = place_about(r, lamp, from, end, u[0], &density);
-  for (int k = 0; k < 3; k++) to[k] = lamp[k] - (r->o[k] + t * r->d[k]);
+  for (int k = 0; k < 3; k++) x[k] = r->o[k] + t * r->d[k];
+  abbe_lamp_clear(light, x, lamp);
+  for (int k = 0; k < 3; k++) to[k] = lamp[k] - x[k];
   const float distance = sqrtf(dot(to, to));
   double away[3];
   for (int k = 0; k < 3; k++) {
@@ -123,7 +125,7 @@ float abbe_air_light_lamp(const abbe_air_ray *r, size_t index, const float u[3],
   if (!(power > 0)) return 0;
   power *= scattered(r, t, to, distance, x) / density;
   ++*rays;
-  return abbe_geometry_occluded(g, ABBE_GEOMETRY_OBJECTS, x, to, distance) ? 0 : power;
+  return abbe_geometry_occluded(g, ABBE_GEOMETRY_ALL, x, to, distance) ? 0 : power;
 }
 
 /* ---- surroundings ---- */
@@ -156,7 +158,7 @@ void abbe_air_light_surroundings(const abbe_air_ray *r, const abbe_environment_l
     const float phase = abbe_haze_phase(r->haze, -1, dot(to[i], r->d));
     const float share = scattered(r, t, to[i], INFINITY, x) / (density * (pdf[i] + phase));
     ++*rays;
-    if (abbe_geometry_occluded(r->geometry, ABBE_GEOMETRY_OBJECTS, x, to[i], INFINITY)) continue;
+    if (abbe_geometry_occluded(r->geometry, ABBE_GEOMETRY_ALL, x, to[i], INFINITY)) continue;
     for (int k = 0; k < 3; k++) rgb[k] += share * radiance[i][k];
   }
 }

@@ -32,7 +32,7 @@ static void aim_at_eye(abbe_shaft_photons *s, const float o[3], const float d[3]
   r->dir_z[k] = d[2];
   r->tnear[k] = 0;
   r->tfar[k] = distance;
-  r->mask[k] = ABBE_GEOMETRY_OBJECTS;
+  r->mask[k] = ABBE_GEOMETRY_ALL;
   r->flags[k] = 0;
 }
 

@@ -79,7 +79,7 @@ static bool prepare_splat(const abbe_tracer *t, const abbe_photon_hit *l, struct
   packet->dir_z[k] = d[2];
   packet->tnear[k] = 0;
   packet->tfar[k] = distance;
-  packet->mask[k] = ABBE_GEOMETRY_OBJECTS;
+  packet->mask[k] = ABBE_GEOMETRY_ALL;
   packet->flags[k] = 0;
   return true;
 }

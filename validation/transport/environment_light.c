@@ -62,6 +62,7 @@ static void set_balls(const abbe_geometry *g, abbe_environment_light *e) {
     e->area += 3.14159265358979 * pow((double)ball[3] * g->unit, 2);
   }
   abbe_scene_bounds(g->scene, true, true, min, max);
+  abbe_scene_hold_lights(g->scene, min, max);
   for (int k = 0; k < 3; k++)
     far += pow(fmax(fabs(min[k] - g->origin[k]), fabs(max[k] - g->origin[k])) / g->unit, 2);
   e->far = (float)(1.01 * sqrt(far));

@@ -1,4 +1,4 @@
-/* lamp_place.h: a place on a lamp, drawn evenly over its area.
+/* lamp_place.h: a place on a lamp, drawn evenly over its area, and kept clear of its surface.
  *
  * Internal to validation/: it is not installed.
  */
@@ -31,6 +31,17 @@ static inline float abbe_lamp_place(const abbe_geometry *g, const abbe_light *li
     power *= (float)abbe_light_area(light);
   }
   return power;
+}
+
+/* A place on a lamp, moved off it to the side that shines, by more than rays between there and
+ * `from` are rounded and start off a face at `from`: they do not meet the lamp itself. A light
+ * without size is left where it is. */
+static inline void abbe_lamp_clear(const abbe_light *light, const float from[3], float place[3]) {
+  float size = 0;
+  if (!abbe_light_has_size(light)) return;
+  for (int k = 0; k < 3; k++) size = fmaxf(size, fmaxf(fabsf(place[k]), fabsf(from[k])));
+  for (int k = 0; k < 3; k++)
+    place[k] += 4 * ABBE_GEOMETRY_OFFSET * size * (float)light->direction[k];
 }
 
 #ifdef __cplusplus

@@ -8,7 +8,7 @@ static bool shows_refractor(const abbe_geometry *g, const abbe_trace_camera *c, 
   float d[3];
   abbe_hit hit;
   abbe_trace_camera_ray(c, (float)x + 0.5f, (float)y + 0.5f, d);
-  return abbe_geometry_hit(g, ABBE_GEOMETRY_OBJECTS, c->eye, d, INFINITY, &hit) &&
+  return abbe_geometry_hit(g, ABBE_GEOMETRY_ALL, c->eye, d, INFINITY, &hit) &&
          (hit.surface->kind & ABBE_GEOMETRY_SPECULAR) != 0;
 }
 
@@ -49,7 +49,7 @@ float abbe_eye_samples_depth(const abbe_geometry *g, const abbe_trace_camera *c)
     const float x = ((float)(i % PLACES) + 0.5f) / PLACES,
                 y = ((float)(i / PLACES) + 0.5f) / PLACES;
     abbe_trace_camera_ray(c, x * (float)c->width, y * (float)c->height, d);
-    if (!abbe_geometry_hit(g, ABBE_GEOMETRY_OBJECTS, c->eye, d, INFINITY, &hit)) continue;
+    if (!abbe_geometry_hit(g, ABBE_GEOMETRY_ALL, c->eye, d, INFINITY, &hit)) continue;
     for (int k = 0; k < 3; k++) sum += (hit.p[k] - c->eye[k]) * d[k];
     count++;
   }

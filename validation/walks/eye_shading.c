@@ -148,6 +148,7 @@ static float irradiance(const abbe_eye_context *c, const abbe_eye_path *p, const
   for (int k = 0; k < 3; k++) d[k] = -(float)light->direction[k];
   if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
     power = abbe_lamp_place(g, light, random, from);
+    abbe_lamp_clear(light, hit->p, from);
     for (int k = 0; k < 3; k++) d[k] = from[k] - hit->p[k];
     limit = sqrtf(abbe_eye_dot(d, d));
     for (int k = 0; k < 3; k++) d[k] /= limit;
@@ -161,7 +162,7 @@ static float irradiance(const abbe_eye_context *c, const abbe_eye_path *p, const
   if (!(e > 0)) return 0;
   abbe_geometry_leave(hit, d, o);
   c->out->rays++;
-  unsigned mask = ABBE_GEOMETRY_OBJECTS;
+  unsigned mask = ABBE_GEOMETRY_ALL;
   return abbe_geometry_occluded(g, mask, o, d, limit) ? 0 : e * left_of(c, p, o, d, limit);
 }
 
@@ -173,7 +174,7 @@ static float sees_out(const abbe_eye_context *c, const abbe_eye_path *p, const a
   if (!(abbe_eye_dot(n, d) > 0)) return 0;
   abbe_geometry_leave(hit, d, o);
   c->out->rays++;
-  unsigned mask = ABBE_GEOMETRY_OBJECTS;
+  unsigned mask = ABBE_GEOMETRY_ALL;
   const bool hidden = abbe_geometry_occluded(c->w->geometry, mask, o, d, INFINITY);
   return hidden ? 0 : left_of(c, p, o, d, INFINITY);
 }

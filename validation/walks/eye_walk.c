@@ -13,8 +13,6 @@ static const uint32_t golden[3] = {3518319155u, 2882110345u, 2360945575u};
 
 /* ---- paths ---- */
 
-enum { ALL_KINDS = ABBE_GEOMETRY_OBJECTS | ABBE_GEOMETRY_LAMPS };
-
 /* From inside a solid: where the path leaves it. */
 static bool leave_solid(const abbe_geometry *g, const abbe_eye_path *p, abbe_hit *hit,
                         float *length) {
@@ -29,7 +27,8 @@ static bool leave_solid(const abbe_geometry *g, const abbe_eye_path *p, abbe_hit
 static bool trace(const abbe_eye_context *c, const abbe_eye_path *p, abbe_hit *hit, float *length) {
   c->out->rays++;
   if (leave_solid(c->w->geometry, p, hit, length)) return true;
-  if (!abbe_geometry_hit(c->w->geometry, ALL_KINDS, p->o, p->d, INFINITY, hit)) return false;
+  if (!abbe_geometry_hit(c->w->geometry, ABBE_GEOMETRY_ALL, p->o, p->d, INFINITY, hit))
+    return false;
   float square = 0;
   for (int k = 0; k < 3; k++) square += (hit->p[k] - p->o[k]) * (hit->p[k] - p->o[k]);
   *length = sqrtf(square);

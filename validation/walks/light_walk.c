@@ -206,6 +206,10 @@ static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, abb
   if (id == RTC_INVALID_GEOMETRY_ID) return left ? MISSED : NOT_COUNTED;
   const abbe_surface *surface = &r->w->g->surface[id];
   if (first && surface->kind == ABBE_GEOMETRY_RECEIVERS) return NOT_COUNTED;
+  if (surface->kind == ABBE_GEOMETRY_LAMPS) {
+    if (!first && left) r->ledger->absorbed += (double)(s->y * s->flux);
+    return NOT_COUNTED;
+  }
   abbe_ray_place(rays, k, surface, &p->hit[k]);
   if (surface->kind == ABBE_GEOMETRY_RECEIVERS) {
     if (s->inside != 0) r->ledger->contact += (double)(s->y * s->flux);

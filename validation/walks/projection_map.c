@@ -2,6 +2,7 @@
 
 #include "base/thread/watch.h"
 #include "scenes/geometry/vector.h"
+#include "validation/transport/lamp_place.h"
 #include "validation/transport/random.h"
 #include "validation/transport/side_by_side.h"
 
@@ -71,6 +72,7 @@ float abbe_projection_map_ray(const abbe_projection_map *a, const abbe_projectio
     float off[3];
     disk_place(a, disk, off);
     for (int k = 0; k < 3; k++) o[k] += off[k];
+    abbe_lamp_clear(a->light, o, o);
     flux *= fmaxf(d[0] * a->facing[0] + d[1] * a->facing[1] + d[2] * a->facing[2], 0);
   }
   return flux;
@@ -273,7 +275,7 @@ static double try_cell(const abbe_geometry *g, const abbe_projection_map *a,
     r[1] = ((float)(i / 4) + r[1]) / 2;
     double f = (double)abbe_projection_map_ray(a, cell, r, r + 2, o, d);
     abbe_hit hit;
-    unsigned mask = ABBE_GEOMETRY_OBJECTS;
+    unsigned mask = ABBE_GEOMETRY_ALL;
     bool met = f > 0 && abbe_geometry_hit(g, mask, o, d, INFINITY, &hit) &&
                (hit.surface->kind & ABBE_GEOMETRY_SPECULAR) != 0;
     *flux += f / TRIALS;
@@ -366,6 +368,7 @@ static void look(const abbe_geometry *g, abbe_projection_map *a) {
   if (a->parallel) {
     /* the plane stands before everything that may be in the light's way */
     abbe_scene_bounds(g->scene, true, true, min, max);
+    abbe_scene_hold_lights(g->scene, min, max);
     for (int k = 0; k < 3; k++) {
       middle[k] = light->direction[k];
       far += pow(fmax(fabs(min[k] - g->origin[k]), fabs(max[k] - g->origin[k])) / g->unit, 2);

@@ -22,7 +22,7 @@ extern "C" {
 /* What all rays of the packets have in common; they are zeroed before. */
 static inline void abbe_ray_prepare(struct RTCRayHit16 *packets, size_t count) {
   for (size_t i = 0; i < count; i++)
-    for (size_t k = 0; k < ABBE_RAY_LANES; k++) packets[i].ray.mask[k] = ABBE_GEOMETRY_OBJECTS;
+    for (size_t k = 0; k < ABBE_RAY_LANES; k++) packets[i].ray.mask[k] = ABBE_GEOMETRY_ALL;
 }
 
 /* Ray i to be traced, of prepared packets: lane i % ABBE_RAY_LANES of its packet. */

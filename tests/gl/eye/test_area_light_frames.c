@@ -1,0 +1,205 @@
+/* Lights with a size in pictures: what they light in closed form, and that they are opaque, black
+ * behind, wherever light comes from and whatever shows them, to renderer and tracer alike. */
+#include "tests/gl/frame.h"
+
+#include "validation/tracer/tracer.h"
+
+#define PI 3.14159265358979323846
+
+static double mean_of(const abbe_image *image, const char *name) {
+  const size_t channel = abbe_image_find_channel(image, name);
+  assert_true(channel < image->channels);
+  return image_sum(image, channel) / (double)(image->width * image->height);
+}
+
+/* Mean Y of the picture, as the renderer draws it. */
+static double drawn(const char *text) {
+  const abbe_render_desc desc = {.width = 8,
+                                 .height = 8,
+                                 .supersample = 1,
+                                 .photons = 128,
+                                 .map_size = 128,
+                                 .light_points = 4,
+                                 .space = ABBE_RGB_SPACE_XYZ};
+  abbe_image picture = {0};
+  draw_text(text, &desc, &picture);
+  const double seen = mean_of(&picture, "Y");
+  abbe_image_free(&picture);
+  return seen;
+}
+
+static double traced(const char *text) {
+  const abbe_trace_desc desc = {.width = 8,
+                                .height = 8,
+                                .no_map = true,
+                                .photons = 1 << 14,
+                                .threads = 1,
+                                .space = ABBE_RGB_SPACE_XYZ};
+  abbe_scene scene = {0};
+  abbe_tracer *tracer = NULL;
+  abbe_image picture = {0};
+  abbe_error error = {0};
+  load_text(text, &scene);
+  assert_ok(abbe_tracer_make(&scene, &desc, &tracer, &error), &error);
+  for (int i = 0; i < 8; i++) assert_ok(abbe_tracer_pass(tracer, NULL, &error), &error);
+  assert_ok(abbe_tracer_picture(tracer, &picture, &error), &error);
+  const double seen = mean_of(&picture, "Y");
+  abbe_image_free(&picture);
+  abbe_tracer_free(tracer);
+  abbe_scene_free(&scene);
+  return seen;
+}
+
+/* ---- what they light ---- */
+
+typedef struct lit {
+  double width, height; /* of a rectangle; a disk: its radius, 0 */
+  double above, aside;  /* of its middle over the floor, m, and along x from what is seen */
+  bool wall;            /* what is seen faces +x */
+} lit;
+
+/* Of unit radiance on what is seen, over pi: by so many even parts of the light a side. */
+static double irradiance(const lit *l) {
+  enum { PARTS = 600 };
+  const double across = l->height > 0 ? l->width : 2 * l->width;
+  const double along = l->height > 0 ? l->height : 2 * l->width;
+  double sum = 0;
+  for (int i = 0; i < PARTS * PARTS; i++) {
+    const double u = (i % PARTS + 0.5) / PARTS - 0.5, v = (i / PARTS + 0.5) / PARTS - 0.5;
+    const double x = l->aside + across * u, y = along * v;
+    const double square = x * x + y * y + l->above * l->above;
+    if (l->height == 0 && u * u + v * v > 0.25) continue;
+    sum += fmax(l->wall ? x : l->above, 0) * l->above / (square * square);
+  }
+  return sum * across * along / ((double)PARTS * PARTS * PI);
+}
+
+static double lit_by_points(const lit *l) {
+  char size[64], text[1024];
+  snprintf(size, sizeof size,
+           l->height > 0 ? "kind: rectangle, width: %g, height: %g" : "kind: disk, radius: %g",
+           l->width, l->height);
+  snprintf(text, sizeof text,
+           "materials: glass.yaml\n"
+           "camera: {eye: [%.9g, 0, %.9g], target: [0, 0, 0], up: [0, 1, 0], fov: 0.1}\n"
+           "lights: [{name: panel, %s, position: [%.9g, 0, %.9g], direction: [0, 0, -1], radiance: "
+           "1}]\nobjects:\n- {name: floor, shape: rectangle, width: 9, height: 9, reflectance: 1, "
+           "transform: [{rotate: {axis: [0, 1, 0], angle: %d}}]}\n",
+           l->wall ? 0.4 * l->above : 0.1 * l->above, l->wall ? 0.1 * l->above : 0.4 * l->above,
+           size, l->aside, l->above, l->wall ? 90 : 0);
+  return drawn(text);
+}
+
+static void they_light_by_closed_forms(void **state) {
+  (void)state;
+  static const lit places[] = {
+      {1.6, 1.6, 0.5, 0, false},   {1.6, 1.6, 0.1, 0, false},  {1.6, 1.6, 3, 0, false},
+      {1.6, 1.6, 0.5, 1.1, false}, {2, 0.05, 0.1, 0.3, false}, {0.8, 0, 0.5, 0, false},
+      {0.8, 0, 0.1, 0.5, false},   {0.8, 0, 0.5, 1.2, false},  {0.8, 0, 30, 2, false},
+      {1.6, 1.6, 0.5, 1.1, true},  {1.6, 1.6, 0.3, 0.2, true}, {1.6, 1.6, 0.3, -0.7, true},
+      {0.8, 0, 0.3, 0.2, true},    {0.8, 0, 0.3, -0.7, true},  {0.8, 0, 0.3, 0.81, true},
+  };
+  for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+    const double known = irradiance(&places[i]), seen = lit_by_points(&places[i]);
+    print_message("place %zu: %.5f of %.5f\n", i, seen, known);
+    assert_near(seen / known, 1, 2e-3);
+  }
+}
+
+/* ---- what they hide, and what shows them ---- */
+
+#define SEEN_FROM(eye, target)                                                                     \
+  "materials: glass.yaml\ncamera: {eye: " eye ", target: " target ", up: [0, 1, 0], fov: 1}\n"
+#define PANEL                                                                                      \
+  "- {name: panel, kind: rectangle, position: [0, 0, 0.3], direction: [0, 0, -1], width: 0.3, "    \
+  "height: 0.3, radiance: 2}\n"
+#define DISK                                                                                       \
+  "- {name: disk, kind: disk, position: [0, 0, 0.6], direction: [0, 0, 1], radius: 0.3, "          \
+  "radiance: 3}\n"
+#define NOON "- {name: noon, kind: directional, direction: [0, 0, -1], irradiance: 3.14159265}\n"
+#define LAMP "- {name: lamp, kind: point, position: [0, 0, 0.9], intensity: 1}\n"
+#define WHITE "objects:\n- {name: floor, shape: rectangle, width: 3, height: 3, reflectance: 1}\n"
+#define NEAR                                                                                       \
+  "- {name: near, kind: rectangle, position: [0, 0, 1.99], direction: [0, 0, -1], width: 0.1, "    \
+  "height: 0.1, radiance: 2}\n"
+#define ROUGH                                                                                      \
+  "- {name: rough, shape: rectangle, width: 0.2, height: 0.2, mirror: 0.5, roughness: 0.1, "       \
+  "transform: [{translate: [0, 0, 0.01]}]}\n"
+#define MIST "medium: {scattering: 0.5, box: [[-0.2, -0.2, 0.1], [0.2, 0.2, 0.5]]}\n"
+#define WALL                                                                                       \
+  "- {name: wall, shape: box, size: [0.01, 0.2, 0.2], reflectance: 0, transform: [{translate: "    \
+  "[-0.21, 0, 0.3]}]}\n"
+#define ROOF                                                                                       \
+  "- {name: roof, shape: rectangle, width: 1, height: 1, reflectance: 1, transform: [{translate: " \
+  "[0, 0, 2]}]}\n"
+#define PANE                                                                                       \
+  "- {name: pane, shape: box, size: [0.6, 0.6, 0.01], material: air, transform: [{translate: [0, " \
+  "0, 1]}]}\n"
+#define MIRROR(z)                                                                                  \
+  "- {name: mirror, shape: rectangle, width: 0.4, height: 0.4, mirror: 0.5, transform: "           \
+  "[{translate: [0, 0, " z "]}]}\n"
+#define GLASS_BALL(z)                                                                              \
+  "- {name: ball, shape: sphere, radius: 0.05, levels: 4, material: flat, transform: "             \
+  "[{translate: [0, 0, " z "]}]}\n"
+
+typedef struct view {
+  const char *what, *text;
+  double known;  /* Y */
+  double within; /* of the traced one, as a share */
+} view;
+
+static void they_are_opaque(void **state) {
+  (void)state;
+  static const lit under = {0.3, 0.3, 0.3, 0, false};
+  const double own = 2 * irradiance(&under);
+  const view views[] = {
+      {"its back", SEEN_FROM("[0, 0, 2]", "[0, 0, 0]") "lights:\n" PANEL NOON WHITE, 0, 0},
+      {"its front", SEEN_FROM("[0, 0, 0.1]", "[0, 0, 1]") "lights:\n" PANEL WHITE ROOF, 2, 1e-4},
+      {"a disk's back", SEEN_FROM("[0, 0, 0.2]", "[0, 0, 1]") "lights:\n" DISK WHITE ROOF, 0, 0},
+      {"a disk's front", SEEN_FROM("[0, 0, 2]", "[0, 0, 0]") "lights:\n" DISK NOON WHITE, 3, 1e-4},
+      {"beside a disk", SEEN_FROM("[0.29, 0.29, 2]", "[0.29, 0.29, 0]") "lights:\n" DISK NOON WHITE,
+       1, 1e-4},
+      {"the sun behind it", SEEN_FROM("[0.02, 0, 0.1]", "[0, 0, 0]") "lights:\n" PANEL NOON WHITE,
+       own, 0.03},
+      {"the sun behind a disk",
+       SEEN_FROM("[0.02, 0, 0.1]", "[0, 0, 0]") "lights:\n" DISK NOON WHITE, 0, 0},
+      {"a lamp behind it", SEEN_FROM("[0.02, 0, 0.1]", "[0, 0, 0]") "lights:\n" PANEL LAMP WHITE,
+       own, 0.03},
+      {"one behind another",
+       SEEN_FROM("[0.02, 0, 0.4]", "[0, 0, 0.5]") "lights:\n" PANEL DISK WHITE ROOF, 0, 0},
+      {"its back in clear glass",
+       SEEN_FROM("[0, 0, 2]", "[0, 0, 0]") "lights:\n" PANEL NOON WHITE PANE, 0, 0},
+      {"its back in a mirror",
+       SEEN_FROM("[0.1, 0, 0.7]", "[0.05, 0, 1]") "lights:\n" PANEL NOON WHITE ROOF MIRROR("1"), 0,
+       0},
+      {"its front in a mirror",
+       SEEN_FROM("[0.08, 0, 0.2]", "[0.04, 0, 0.1]") "lights:\n" PANEL NOON WHITE MIRROR("0.1"), 1,
+       1e-4},
+      {"the sun through a ball behind it",
+       SEEN_FROM("[0.02, 0, 0.1]", "[0, 0, 0]") "lights:\n" PANEL NOON WHITE GLASS_BALL("0.5"), own,
+       0.03},
+      {"a ball behind a disk",
+       SEEN_FROM("[0.02, 0, 0.1]", "[0, 0, 0]") "lights:\n" DISK NOON WHITE GLASS_BALL("0.2"), 0,
+       0},
+      {"close to the eye", SEEN_FROM("[0, 0, 2]", "[0, 0, 0]") "lights:\n" NEAR NOON WHITE, 0, 0},
+      {"mist behind a disk",
+       SEEN_FROM("[0.2, 0, 0.3]", "[-0.2, 0, 0.3]") MIST "lights:\n" DISK NOON WHITE WALL, 0, 0},
+      {"a lamp behind a disk in a rough mirror",
+       SEEN_FROM("[0.02, 0, 0.4]", "[0, 0, 0]") "lights:\n" DISK LAMP WHITE ROUGH, 0, 0},
+  };
+  for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
+    const view *v = &views[i];
+    const double renderer = drawn(v->text), tracer = traced(v->text);
+    print_message("%s: %.5f drawn, %.5f traced, of %.5f\n", v->what, renderer, tracer, v->known);
+    assert_near(renderer, v->known, 2e-3 * v->known);
+    assert_near(tracer, v->known, v->within * v->known);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(they_light_by_closed_forms),
+      cmocka_unit_test(they_are_opaque),
+  };
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}
