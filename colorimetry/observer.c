@@ -10,13 +10,16 @@ static double sign(double x) {
 }
 
 /* Rise a step at knot i, limited so that the cubic never leaves its knots' values [Steffen1990];
- * at the ends the rise of the only neighbouring interval. */
+ * at the ends that of the parabola through three knots, between flat and twice the last rise. */
 static double slope(const abbe_observer_table *t, int i, int component) {
-  double left = i > 0 ? t->xyz[i][component] - t->xyz[i - 1][component] : 0;
-  double right = i < t->count - 1 ? t->xyz[i + 1][component] - t->xyz[i][component] : 0;
-  if (i == 0) return right;
-  if (i == t->count - 1) return left;
-  double mean = (left + right) / 2;
+  const int at = i == 0 ? 1 : i == t->count - 1 ? i - 1 : i;
+  const double left = t->xyz[at][component] - t->xyz[at - 1][component];
+  const double right = t->xyz[at + 1][component] - t->xyz[at][component];
+  const double mean = (left + right) / 2;
+  if (i != at) {
+    const double outer = i < at ? left : right, end = 2 * outer - mean;
+    return sign(outer) * fmin(fmax(sign(outer) * end, 0), 2 * fabs(outer));
+  }
   return (sign(left) + sign(right)) * fmin(fmin(fabs(left), fabs(right)), fabs(mean) / 2);
 }
 

@@ -78,6 +78,17 @@ static void test_between_knots(void **state) {
   }
 }
 
+/* By hand from the table's first three rows: the end's slope is that of the parabola through them,
+ * 1.5 s1 - 0.5 s2 [Steffen1990]. */
+static void test_between_the_first_knots(void **state) {
+  (void)state;
+  const double x[3] = {0.0001299, 0.0002321, 0.0004149};
+  const double first = x[1] - x[0], mean = (x[2] - x[0]) / 2, end = 1.5 * first - 0.5 * (x[2] - x[1]);
+  double xyz[3];
+  abbe_observer_xyz(362.5, xyz);
+  assert_near(xyz[0], (x[0] + x[1]) / 2 + (end - mean) / 8, 1e-18);
+}
+
 /* The sums of the CIE's 1 nm table; interpolating every fifth value comes within 2 in 10^4. */
 static void test_near_the_1_nm_table(void **state) {
   (void)state;
@@ -107,6 +118,7 @@ int main(void) {
                                      cmocka_unit_test(test_observers_of_2015),
                                      cmocka_unit_test(test_names),
                                      cmocka_unit_test(test_between_knots),
+                                     cmocka_unit_test(test_between_the_first_knots),
                                      cmocka_unit_test(test_near_the_1_nm_table),
                                      cmocka_unit_test(test_zero_outside)};
   return cmocka_run_group_tests(tests, NULL, NULL);

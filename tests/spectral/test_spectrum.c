@@ -18,6 +18,12 @@ static abbe_spectrum *make(const double *l, const double *v, size_t count,
   return spectrum;
 }
 
+static double bk7(double nm) {
+  const double l = nm * nm / 1e6;
+  return sqrt(1 + 1.03961212 * l / (l - 0.00600069867) + 0.231792344 * l / (l - 0.0200179144) +
+              1.01046945 * l / (l - 103.560653));
+}
+
 static void every_method_passes_through_its_points(void **state) {
   (void)state;
   const double l[] = {400, 450, 470, 600, 700}, v[] = {1, 5, -2, 0, 3};
@@ -57,6 +63,48 @@ static void methods_differ_as_they_should(void **state) {
   abbe_spectrum_free(linear);
   abbe_spectrum_free(monotone);
   abbe_spectrum_free(spline);
+}
+
+/* The curve of a parabola that rises in every interval is that parabola, to both ends. */
+static void monotone_is_exact_for_a_parabola(void **state) {
+  (void)state;
+  const double l[] = {400, 450, 520, 600, 710};
+  double v[5], reversed[5];
+  for (int i = 0; i < 5; i++) v[i] = (l[i] - 200) * (l[i] - 200) / 1e4;
+  for (int i = 0; i < 5; i++) reversed[i] = (l[i] - 900) * (l[i] - 900) / 1e4;
+  abbe_spectrum *rising = make(l, v, 5, ABBE_INTERPOLATION_MONOTONE);
+  abbe_spectrum *falling = make(l, reversed, 5, ABBE_INTERPOLATION_MONOTONE);
+  for (double x = 400; x <= 710; x += 2.5) {
+    assert_near(abbe_spectrum_at(rising, x), (x - 200) * (x - 200) / 1e4, 1e-13);
+    assert_near(abbe_spectrum_at(falling, x), (x - 900) * (x - 900) / 1e4, 1e-13);
+  }
+  assert_near(abbe_spectrum_integral(rising, 410, 700), (125e6 - 9261e3) / 3e4, 1e-9);
+  abbe_spectrum_free(rising);
+  abbe_spectrum_free(falling);
+}
+
+/* At an end the parabola's slope is held between 0 and twice the outer secant [Steffen1990]. */
+static void slopes_at_the_ends_of_a_monotone_curve_are_limited(void **state) {
+  (void)state;
+  const double l[] = {400, 500, 600};
+  abbe_spectrum *flat = make(l, (double[]){0, 1, 10}, 3, ABBE_INTERPOLATION_MONOTONE);
+  abbe_spectrum *steep = make(l, (double[]){0, 1, -9}, 3, ABBE_INTERPOLATION_MONOTONE);
+  assert_near(abbe_spectrum_at(flat, 450), 0.25, 1e-14);  /* slopes 0 and 2 a step */
+  assert_near(abbe_spectrum_at(steep, 450), 0.75, 1e-14); /* slopes 2 and 0 a step */
+  abbe_spectrum_free(flat);
+  abbe_spectrum_free(steep);
+}
+
+/* N-BK7 by Schott's formula [Schott2014] at 400 to 700 nm in steps of 30. */
+static void monotone_follows_a_glass_in_its_first_interval(void **state) {
+  (void)state;
+  double l[11], v[11], worst = 0;
+  for (int i = 0; i < 11; i++) l[i] = 400 + 30 * i;
+  for (int i = 0; i < 11; i++) v[i] = bk7(l[i]);
+  abbe_spectrum *s = make(l, v, 11, ABBE_INTERPOLATION_MONOTONE);
+  for (double x = 400; x < 430; x++) worst = fmax(worst, fabs(abbe_spectrum_at(s, x) - bk7(x)));
+  assert_true(worst < 1.6e-5);
+  abbe_spectrum_free(s);
 }
 
 static void one_and_two_points_work_with_every_method(void **state) {
@@ -172,6 +220,9 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_method_passes_through_its_points),
       cmocka_unit_test(methods_differ_as_they_should),
+      cmocka_unit_test(monotone_is_exact_for_a_parabola),
+      cmocka_unit_test(slopes_at_the_ends_of_a_monotone_curve_are_limited),
+      cmocka_unit_test(monotone_follows_a_glass_in_its_first_interval),
       cmocka_unit_test(one_and_two_points_work_with_every_method),
       cmocka_unit_test(integrals_are_exact),
       cmocka_unit_test(integrals_agree_with_sums_and_add_up),
