@@ -19,6 +19,7 @@ typedef enum loss {
   FITS,
   EXTRAORDINARY,
   EXTRAPOLATE,
+  EXPANSION,
   INTERPOLATION,
   REWRITTEN,
   SOURCE,
@@ -33,6 +34,7 @@ static const abbe_summary_row losses[LOSSES] = {
     [FITS] = {ABBE_NOTE_LOST, "AGF has no place for recorded fits"},
     [EXTRAORDINARY] = {ABBE_NOTE_LOST, "AGF has one index a glass: the ordinary one"},
     [EXTRAPOLATE] = {ABBE_NOTE_LOST, "AGF cannot allow use outside the range"},
+    [EXPANSION] = {ABBE_NOTE_LOST, "AGF has no place for the temperatures of expansions"},
     [INTERPOLATION] = {ABBE_NOTE_LOST, "AGF does not say how attenuation runs between points"},
     [REWRITTEN] = {ABBE_NOTE_CHANGED, "the formula is written as another one with the same n"},
     [SOURCE] = {ABBE_NOTE_CHANGED, "the source stands in the GC line"},
@@ -249,6 +251,11 @@ static void count_losses(const abbe_material *m, abbe_summary *t) {
   if (m->fit[0].terms > 0 || m->fit[1].terms > 0) abbe_summary_add(t, FITS, m->name);
   if (abbe_material_is_uniaxial(m)) abbe_summary_add(t, EXTRAORDINARY, m->name);
   if (m->extrapolate) abbe_summary_add(t, EXTRAPOLATE, m->name);
+  for (int i = 0; i < 2; i++)
+    if (m->catalogue.expansion_range_k[2 * i + 1] > 0) {
+      abbe_summary_add(t, EXPANSION, m->name);
+      break;
+    }
   abbe_summary_add(t, SOURCE, m->name);
 }
 

@@ -133,7 +133,7 @@ static void write_numbers(const char *key, const double *value, size_t count, FI
 
 static void write_catalogue(const abbe_material_catalogue *c, FILE *to) {
   bool something = c->code != NULL || c->status != NULL || c->melt_frequency != 0 ||
-                   any(c->expansion_per_k, 2) || c->dpgf != 0 || any(c->thermal, 6) ||
+                   any(c->expansion_per_k, 2) || any(c->expansion_range_k, 4) || c->dpgf != 0 || any(c->thermal, 6) ||
                    c->rating_count > 0;
   if (!something) return;
   fputs("    catalogue:\n", to);
@@ -147,6 +147,8 @@ static void write_catalogue(const abbe_material_catalogue *c, FILE *to) {
   write_text("      status", c->status, to);
   if (c->melt_frequency != 0) write_number("      melt_frequency", c->melt_frequency, to);
   if (any(c->expansion_per_k, 2)) write_numbers("expansion_per_k", c->expansion_per_k, 2, to);
+  if (any(c->expansion_range_k, 4))
+    write_numbers("expansion_range_k", c->expansion_range_k, 4, to);
   if (c->dpgf != 0) write_number("      dpgf", c->dpgf, to);
   if (any(c->thermal, 6)) write_numbers("thermal", c->thermal, 6, to);
   if (c->rating_count == 6) write_numbers("ratings", c->ratings, 6, to);

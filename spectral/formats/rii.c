@@ -16,9 +16,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_BYTES = 16 << 20, MAX_TEXT = 2000 };
+enum { MAX_BYTES = 16 << 20, MAX_TEXT = 2000, HERZBERGER_TERMS = 6 };
 
-static const double ZERO_CELSIUS_K = 273.15;
+static const double ZERO_CELSIUS_K = 273.15, HIGH_EXPANSION_K = 450;
 
 typedef struct reader {
   abbe_yaml *yaml;
@@ -75,15 +75,10 @@ static bool number_at(reader *r, abbe_yaml_node mapping, const char *key, double
 
 /* ---- formulas ---- */
 
-static const struct {
-  abbe_dispersion_model model;
-  size_t least; /* shorter lists are filled up with zeros */
-} formulas[] = {
-    {ABBE_DISPERSION_SELLMEIER, 1},  {ABBE_DISPERSION_SELLMEIER2, 1},
-    {ABBE_DISPERSION_POLYNOMIAL, 1}, {ABBE_DISPERSION_RII4, 1},
-    {ABBE_DISPERSION_POWERS, 1},     {ABBE_DISPERSION_RII6, 1},
-    {ABBE_DISPERSION_HERZBERGER, 6}, {ABBE_DISPERSION_RII8, 4},
-    {ABBE_DISPERSION_RII9, 6},
+static const abbe_dispersion_model formulas[] = {
+    ABBE_DISPERSION_SELLMEIER,  ABBE_DISPERSION_SELLMEIER2, ABBE_DISPERSION_POLYNOMIAL,
+    ABBE_DISPERSION_RII4,       ABBE_DISPERSION_POWERS,     ABBE_DISPERSION_RII6,
+    ABBE_DISPERSION_HERZBERGER, ABBE_DISPERSION_RII8,       ABBE_DISPERSION_RII9,
 };
 
 /* Powers -2, -4, … are Cauchy's form; no powers at all, a constant. */
@@ -124,10 +119,11 @@ static abbe_result read_formula(reader *r, abbe_yaml_node entry, int number) {
     return abbe_yaml_fail(r->yaml, node.id != 0 ? node : entry, r->error,
                           "a formula wants its 'coefficients', 1 to %d numbers",
                           ABBE_DISPERSION_MAX_COEFFICIENTS);
-  *d = (abbe_dispersion){.model = formulas[number - 1].model, .count = (size_t)count};
+  *d = (abbe_dispersion){.model = formulas[number - 1], .count = (size_t)count};
   memcpy(d->c, c, sizeof c);
-  if (d->count < formulas[number - 1].least) d->count = formulas[number - 1].least;
-  if (number == 4 && (d->count > 1 && d->count < 9 && d->count != 5)) d->count = 9;
+  /* each of its coefficients is a whole term; elsewhere what lacks would cut a term in two */
+  if (d->model == ABBE_DISPERSION_HERZBERGER && d->count < HERZBERGER_TERMS)
+    d->count = HERZBERGER_TERMS;
   abbe_error why;
   if (abbe_dispersion_check(d, &why) != ABBE_OK)
     return abbe_yaml_fail(r->yaml, node, r->error, "formula %d: %s", number, why.text);
@@ -352,6 +348,25 @@ static void read_ratings(reader *r, abbe_yaml_node node) {
   }
 }
 
+/* In the order of the file; a lone one of high temperatures is the second. */
+static void read_expansion(reader *r, abbe_yaml_node node, size_t item) {
+  abbe_material_catalogue *c = &r->m->catalogue;
+  const double value = value_of(r, node, item);
+  const bool list = abbe_yaml_is_sequence(r->yaml, node);
+  const bool lone = !list || abbe_yaml_count(r->yaml, node) == 1;
+  double kelvin[2] = {0};
+  if (value == 0) return;
+  if (list) node = abbe_yaml_item(r->yaml, node, item);
+  const bool ranged =
+      numbers_at(r, abbe_yaml_get(r->yaml, node, "temperature_range"), kelvin, 2) == 2 &&
+      kelvin[0] >= 0 && kelvin[0] < kelvin[1];
+  const size_t at = lone && ranged && kelvin[1] > HIGH_EXPANSION_K ? 1 : item;
+  c->expansion_per_k[at] = value;
+  const double *usual = abbe_material_expansion_range_k + 2 * at;
+  if (ranged && (kelvin[0] != usual[0] || kelvin[1] != usual[1]))
+    memcpy(c->expansion_range_k + 2 * at, kelvin, sizeof kelvin);
+}
+
 static void read_thermal(reader *r, abbe_yaml_node list) {
   abbe_material_catalogue *c = &r->m->catalogue;
   if (!abbe_yaml_is_sequence(r->yaml, list) || abbe_yaml_count(r->yaml, list) == 0) return;
@@ -382,8 +397,8 @@ static abbe_result read_properties(reader *r, abbe_yaml_node root) {
   if (number_at(r, node, "dPgF", &dpgf)) c->dpgf = dpgf;
   double density = value_of(r, abbe_yaml_get(r->yaml, node, "density"), 0);
   c->density_g_cm3 = abbe_number_tidy(fmax(density, 0) / 1000);
-  abbe_yaml_node expansion = abbe_yaml_get(r->yaml, node, "thermal_expansion");
-  for (size_t i = 0; i < 2; i++) c->expansion_per_k[i] = value_of(r, expansion, i);
+  for (size_t i = 0; i < 2; i++)
+    read_expansion(r, abbe_yaml_get(r->yaml, node, "thermal_expansion"), i);
   read_thermal(r, abbe_yaml_get(r->yaml, node, "thermal_dispersion"));
   read_ratings(r, abbe_yaml_get(r->yaml, node, "resistance"));
   if (abbe_material_catalogue_bound(c) > 0)

@@ -101,10 +101,15 @@ static bool any(const double *value, size_t count) {
 }
 
 static void write_expansion(const abbe_material_catalogue *c, FILE *to) {
-  static const char *const kelvin[] = {"243 343", "373 573"};
   fputs("    thermal_expansion:\n", to);
   for (int i = 0; i < 2; i++) {
-    fprintf(to, "      - temperature_range: %s\n        value:", kelvin[i]);
+    const double *said = c->expansion_range_k + 2 * i;
+    const double *kelvin = said[1] > 0 ? said : abbe_material_expansion_range_k + 2 * i;
+    if (c->expansion_per_k[i] == 0) continue;
+    fputs("      - temperature_range:", to);
+    put(to, kelvin[0]);
+    put(to, kelvin[1]);
+    fputs("\n        value:", to);
     put(to, c->expansion_per_k[i]);
     fputc('\n', to);
   }

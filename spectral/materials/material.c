@@ -23,6 +23,8 @@ void abbe_material_free(abbe_material *material) {
 
 /* ---- whether a table may hold it ---- */
 
+const double abbe_material_expansion_range_k[4] = {243, 343, 373, 573};
+
 /* 1 where the value was none from low to high, and is now `otherwise`. */
 static size_t bound(double *value, double low, double high, double otherwise) {
   if (*value >= low && *value <= high) return 0;
@@ -36,6 +38,7 @@ size_t abbe_material_catalogue_bound(abbe_material_catalogue *c) {
                  bound(&c->density_g_cm3, 0, ABBE_MATERIAL_DENSITY_MOST, 0) +
                  bound(&c->dpgf, -ABBE_MATERIAL_DPGF_MOST, ABBE_MATERIAL_DPGF_MOST, 0);
   for (int i = 0; i < 2; i++) count += bound(&c->expansion_per_k[i], -most, most, 0);
+  for (int i = 0; i < 4; i++) count += bound(&c->expansion_range_k[i], 0, most, 0);
   for (int i = 0; i < 6; i++) count += bound(&c->thermal[i], -most, most, 0);
   for (int i = 0; i < 6; i++) count += bound(&c->ratings[i], -most, most, -1);
   return count;

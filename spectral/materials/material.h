@@ -39,13 +39,18 @@ typedef struct abbe_material_catalogue {
   char *status;              /* standard, preferred, obsolete, special or melt */
   double melt_frequency;     /* 1 (most often molten) to 5 */
   double density_g_cm3;      /* up to ABBE_MATERIAL_DENSITY_MOST; a record's own key in tables */
-  double expansion_per_k[2]; /* linear, -30 to 70 C and 100 to 300 C, 1/K */
+  double expansion_per_k[2]; /* linear, 1/K; at lower and at higher temperatures */
+  double expansion_range_k[4]; /* from, to of the first, from, to of the second, K; 0, 0: that of
+                                  abbe_material_expansion_range_k */
   double dpgf;               /* deviation of the partial dispersion P_gF from the normal line */
   double thermal[6];         /* dn/dT: D0, D1, D2, E0, E1, lambda_tk (um); about temperature_c */
   size_t rating_count;       /* 0 or 6 */
   double ratings[6];         /* relative cost, then resistance: climate, stain, acid, alkali,
                                 phosphate; -1 where it is not known */
 } abbe_material_catalogue;
+
+/* What makers' catalogues state expansions over: -30 to 70 C and 100 to 300 C, in K. */
+extern const double abbe_material_expansion_range_k[4];
 
 typedef struct abbe_material {
   char *name;        /* unique in its table, as on the command line */

@@ -181,6 +181,8 @@ static abbe_result read_catalogue(abbe_record_reading *r) {
                                   &c->melt_frequency, r->error);
   if (result == ABBE_OK) result = read_numbers(r, where, "expansion_per_k", 2, c->expansion_per_k);
   if (result == ABBE_OK)
+    result = read_numbers(r, where, "expansion_range_k", 4, c->expansion_range_k);
+  if (result == ABBE_OK)
     result = abbe_yaml_get_number(r->yaml, where, "dpgf", -ABBE_MATERIAL_DPGF_MOST,
                                   ABBE_MATERIAL_DPGF_MOST, &c->dpgf, r->error);
   if (result == ABBE_OK) result = read_numbers(r, where, "thermal", 6, c->thermal);

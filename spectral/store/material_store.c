@@ -245,6 +245,7 @@ static abbe_result read_fit(reader *r, abbe_store_column column, size_t terms,
 static abbe_result read_catalogue(reader *r) {
   abbe_material_catalogue *c = &r->material->catalogue;
   const double most = ABBE_MATERIAL_CATALOGUE_MOST, dpgf = ABBE_MATERIAL_DPGF_MOST;
+  double expansion[6] = {0}; /* the two, and their ranges */
   size_t count;
   abbe_result result = read_text(r, ABBE_STORE_code, &c->code);
   if (result == ABBE_OK) result = read_text(r, ABBE_STORE_status, &c->status);
@@ -255,7 +256,9 @@ static abbe_result read_catalogue(reader *r) {
     result =
         read_number(r, ABBE_STORE_density_g_cm3, 0, ABBE_MATERIAL_DENSITY_MOST, &c->density_g_cm3);
   if (result == ABBE_OK)
-    result = read_numbers(r, ABBE_STORE_expansion_per_k, 2, 2, most, c->expansion_per_k, &count);
+    result = read_numbers(r, ABBE_STORE_expansion_per_k, 2, 6, most, expansion, &count);
+  memcpy(c->expansion_per_k, expansion, sizeof c->expansion_per_k);
+  memcpy(c->expansion_range_k, expansion + 2, sizeof c->expansion_range_k);
   if (result == ABBE_OK) result = read_number(r, ABBE_STORE_dpgf, -dpgf, dpgf, &c->dpgf);
   if (result == ABBE_OK)
     result = read_numbers(r, ABBE_STORE_thermal, 6, 6, most, c->thermal, &count);

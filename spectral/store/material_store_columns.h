@@ -40,7 +40,7 @@ enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 2, ABBE_STORE_M
   X(status, "TEXT")                                                                                \
   X(melt_frequency, "REAL")                                                                        \
   X(density_g_cm3, "REAL")                                                                         \
-  X(expansion_per_k, "BLOB")                                                                       \
+  X(expansion_per_k, "BLOB") /* the two, or these and from, to, from, to in K */                                                                       \
   X(dpgf, "REAL")                                                                                  \
   X(thermal, "BLOB")                                                                               \
   X(ratings, "BLOB")                                                                               \

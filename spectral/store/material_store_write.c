@@ -83,12 +83,21 @@ static int bind_fit(sqlite3_stmt *q, abbe_store_column column, const abbe_materi
   return bind_numbers(q, column, value, fit->terms + 3);
 }
 
+static int bind_expansion(sqlite3_stmt *q, const abbe_material_catalogue *c) {
+  double value[6];
+  bool ranged = false;
+  for (int i = 0; i < 4; i++) ranged = ranged || c->expansion_range_k[i] != 0;
+  memcpy(value, c->expansion_per_k, sizeof c->expansion_per_k);
+  memcpy(value + 2, c->expansion_range_k, sizeof c->expansion_range_k);
+  return bind_said(q, ABBE_STORE_expansion_per_k, value, ranged ? 6 : 2);
+}
+
 static int bind_catalogue(sqlite3_stmt *q, const abbe_material_catalogue *c) {
   int code = bind_text(q, ABBE_STORE_code, c->code);
   if (code == SQLITE_OK) code = bind_text(q, ABBE_STORE_status, c->status);
   if (code == SQLITE_OK) code = bind_number(q, ABBE_STORE_melt_frequency, c->melt_frequency);
   if (code == SQLITE_OK) code = bind_number(q, ABBE_STORE_density_g_cm3, c->density_g_cm3);
-  if (code == SQLITE_OK) code = bind_said(q, ABBE_STORE_expansion_per_k, c->expansion_per_k, 2);
+  if (code == SQLITE_OK) code = bind_expansion(q, c);
   if (code == SQLITE_OK) code = bind_number(q, ABBE_STORE_dpgf, c->dpgf);
   if (code == SQLITE_OK) code = bind_said(q, ABBE_STORE_thermal, c->thermal, 6);
   if (code == SQLITE_OK) code = bind_numbers(q, ABBE_STORE_ratings, c->ratings, c->rating_count);

@@ -136,6 +136,9 @@ static inline void random_catalogue(abbe_material_catalogue *c) {
     c->rating_count = 6;
     for (int i = 0; i < 6; i++) c->ratings[i] = rand() % 6 - 1;
     c->ratings[rand() % 6] = 2.3;
+    c->expansion_per_k[1] = 8.3e-6;
+    c->expansion_range_k[2] = 293;
+    c->expansion_range_k[3] = 573;
   }
 }
 

@@ -55,7 +55,8 @@ static inline bool same_catalogue(const abbe_material_catalogue *a,
                                   const abbe_material_catalogue *b) {
   return same_text(a->code, b->code) && same_text(a->status, b->status) &&
          a->melt_frequency == b->melt_frequency && a->density_g_cm3 == b->density_g_cm3 &&
-         same_numbers(a->expansion_per_k, b->expansion_per_k, 2, 0) && a->dpgf == b->dpgf &&
+         same_numbers(a->expansion_per_k, b->expansion_per_k, 2, 0) &&
+         same_numbers(a->expansion_range_k, b->expansion_range_k, 4, 0) && a->dpgf == b->dpgf &&
          same_numbers(a->thermal, b->thermal, 6, 0) && a->rating_count == b->rating_count &&
          same_numbers(a->ratings, b->ratings, a->rating_count, 0);
 }

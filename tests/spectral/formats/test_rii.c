@@ -62,6 +62,8 @@ static void a_makers_glass_is_read_whole(void **state) {
   assert_string_equal(m.catalogue.status, "standard");
   assert_near(m.catalogue.density_g_cm3, 2.51, 0);
   assert_near(m.catalogue.expansion_per_k[1], 8.3e-6, 0);
+  assert_true(m.catalogue.expansion_range_k[0] == 0 && m.catalogue.expansion_range_k[1] == 0);
+  assert_true(m.catalogue.expansion_range_k[2] == 293 && m.catalogue.expansion_range_k[3] == 573);
   assert_near(m.catalogue.thermal[0], 1.86e-6, 0);
   assert_near(m.catalogue.dpgf, -0.0009, 0);
   assert_near(m.catalogue.ratings[5], 2.3, 0);
@@ -212,6 +214,21 @@ static void what_holds_no_index_is_refused(void **state) {
           "1 to 32 numbers");
   refuses("DATA:\n- {type: formula 2, coefficients: 0 1 0.16, wavelength_range: 0.3 2}\n",
           ABBE_SCHEMA, "no real index at 300 nm");
+  refuses("DATA:\n- {type: formula 4, wavelength_range: 46.5 999.9,\n"
+          "   coefficients: 0 6.1 2 44.5 2 -4100 0 44.5}\n",
+          ABBE_SCHEMA, "formula 4: the model rii4 wants 1, 5, 9, or 9 and further pairs");
+  refuses("DATA:\n- {type: formula 4, wavelength_range: 0.4 1, coefficients: 2 0.1}\n", ABBE_SCHEMA,
+          "not 2");
+  refuses("DATA:\n- {type: formula 4, wavelength_range: 0.4 1,\n"
+          "   coefficients: 2 0.1 0 0.08 1 0 0 0 1 0.1}\n",
+          ABBE_SCHEMA, "not 10");
+  refuses("DATA:\n- {type: formula 8, wavelength_range: 0.4 1, coefficients: 0.4 0.1 0.07}\n",
+          ABBE_SCHEMA, "the model rii8 wants 4");
+  refuses("DATA:\n- {type: formula 9, wavelength_range: 0.3 1, coefficients: 2.5 0.02 0.03 0.02 "
+          "1.5}\n",
+          ABBE_SCHEMA, "the model rii9 wants 6");
+  refuses("DATA:\n- {type: formula 7, wavelength_range: 2 3, coefficients: 3 0 0 0 0 0 0}\n",
+          ABBE_SCHEMA, "the model herzberger wants 6");
   refuses("DATA:\n- {type: tabulated n}\n", ABBE_SCHEMA, "wants its 'data', 2 numbers a line");
   refuses("DATA:\n- {type: tabulated n, data: nothing}\n", ABBE_SCHEMA, "no usable line");
   refuses("DATA:\n- 3\n", ABBE_SCHEMA, "wants a 'type'");
