@@ -1,6 +1,7 @@
 #include "cli/base/command.h"
 
 #include "base/file.h"
+#include "base/json/json_text.h"
 #include "base/nearest.h"
 #include "base/utf8.h"
 
@@ -79,7 +80,7 @@ int abbe_command_choice(const char *program, const char *option, const char *tex
 
 /* cJSON copies the bytes of strings as they are, but for those below U+0020. */
 char *abbe_command_json_text(const struct cJSON *json) {
-  char *raw = json == NULL ? NULL : cJSON_Print(json);
+  char *raw = json == NULL ? NULL : abbe_json_text(json, true);
   const size_t length = raw == NULL ? 0 : strlen(raw), size = 3 * length + 2;
   char *text = raw == NULL ? NULL : malloc(size);
   if (text != NULL) strcpy(text + abbe_utf8_printable(raw, length, true, text, size), "\n");

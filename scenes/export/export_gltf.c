@@ -3,6 +3,7 @@
 #include "scenes/export/export_writing.h"
 
 #include "base/file.h"
+#include "base/json/json_text.h"
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/weights.h"
 #include "scenes/geometry/vector.h"
@@ -451,7 +452,7 @@ abbe_result abbe_export_gltf(const abbe_export_writing *w, abbe_error *error) {
                 .images = cJSON_CreateArray(),
                 .bytes = memory};
   abbe_result result = build(&b, error);
-  char *json = result == ABBE_OK ? cJSON_PrintUnformatted(b.root) : NULL;
+  char *json = result == ABBE_OK ? abbe_json_text(b.root, false) : NULL;
   const bool whole = fclose(memory) == 0;
   cJSON_Delete(b.root);
   if (result == ABBE_OK && (json == NULL || !whole || size != b.size))
