@@ -119,6 +119,20 @@ class Scenes(unittest.TestCase):
         numpy.testing.assert_array_equal(scene.render(**SMALL).rgb, lit)
         self.assertGreater(lit.sum(), plain.sum())
 
+    def test_values_from_numpy(self):
+        camera = {"camera.eye": numpy.array([0.1, -0.5, 0.4]), "camera.fov": numpy.float32(31),
+                  "ambient": numpy.array(0.5)}
+        scene = abbe.Scene("scenes/sphere.yaml", set=camera)
+        self.assertEqual(scene.camera["eye"], (0.1, -0.5, 0.4))
+        self.assertAlmostEqual(scene.camera["fov"], 31, places=5)
+        scene.change({"camera.eye": numpy.array([0, -1, 1])})
+        self.assertEqual(scene.camera["eye"], (0, -1, 1))
+        size = numpy.array([48, 40])
+        picture = scene.render(**{**SMALL, "width": size[0], "height": size[1:]})
+        self.assertEqual(picture.shape, (40, 48, 3))
+        with self.assertRaisesRegex(TypeError, "width"):
+            scene.render(**{**SMALL, "width": size})
+
     def test_a_map_on_the_same_texels(self):
         scene = abbe.Scene("scenes/sphere.yaml")
         scene.render(**SMALL)
@@ -155,6 +169,19 @@ class Scenes(unittest.TestCase):
             scene.look(fov=180)
         with self.assertRaises(abbe.Error):
             scene.map()
+        for name, wrong in (("path", lambda: abbe.Scene(None)), ("path", lambda: abbe.load(None)),
+                            ("ambient", lambda: scene.change({"ambient": None})),
+                            ("material", lambda: abbe.gem_report("a.asc", None)),
+                            ("path", lambda: abbe.Scene(3)),
+                            ("metric", lambda: abbe.compare(numpy.zeros((2, 2, 3)),
+                                                            numpy.zeros((2, 2, 3)))[None])):
+            with self.assertRaisesRegex(TypeError, name):
+                wrong()
+        for wrong in (lambda: abbe.Scene("scenes/sphere.yaml\0x"),
+                      lambda: abbe.Materials()["diamond\0x"],
+                      lambda: scene.change({"ambient": "0.5\0x"})):
+            with self.assertRaisesRegex(ValueError, "NUL"):
+                wrong()
 
 
 class Gems(unittest.TestCase):

@@ -98,9 +98,23 @@ def _load():
 _library = _load()
 
 
-def encode(text):
-    """A text or path as C has it; None stays None."""
-    return None if text is None else os.fsencode(text)
+def encode(text, name):
+    """A text or path as C has it; None stays None. name: the argument's, for errors."""
+    if text is None:
+        return None
+    if not isinstance(text, (str, bytes, os.PathLike)):
+        raise TypeError(f"{name} is a text or a path, not {text!r}")
+    encoded = os.fsencode(text)
+    if b"\0" in encoded:
+        raise ValueError(f"{name} is {text!r}; a text has no NUL")
+    return encoded
+
+
+def required(text, name):
+    """encode() of what may not be None."""
+    if text is None:
+        raise TypeError(f"{name} is None; a text or a path is needed")
+    return encode(text, name)
 
 
 def decode(text):
@@ -127,25 +141,36 @@ def version():
     return plain("version")().decode()
 
 
-def texts(values):
+def texts(values, name):
     """char *[] and its count."""
-    encoded = [encode(value) for value in values]
+    encoded = [required(value, name) for value in values]
     return (c_char_p * max(len(encoded), 1))(*encoded), c_size_t(len(encoded))
 
 
-def _value_text(value):
+def unpacked(value):
+    """Python's own numbers and lists of numpy's."""
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def _value_text(key, value):
+    value = unpacked(value)
     if isinstance(value, bool):
         return "1" if value else "0"
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value)
-    number = float(value)
+    if isinstance(value, list) and len(value) == 1:
+        value = value[0]
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{key} is a number or a text, not {value!r}") from None
     return str(int(number)) if number.is_integer() and abs(number) < 2**53 else repr(number)
 
 
 def settings(values):
     """A request as texts KEY=VALUE; None: not said."""
-    return texts(f"{key}={_value_text(value)}" for key, value in values.items()
-                 if value is not None)
+    return texts((f"{key}={_value_text(key, value)}" for key, value in values.items()
+                  if value is not None), "a setting")
 
 
 class Handle:

@@ -2,7 +2,7 @@
 from collections import namedtuple
 from ctypes import byref, c_double, c_void_p
 
-from ._native import Handle, call, decode, encode, plain, settings
+from ._native import Handle, call, decode, encode, plain, required, settings
 from .picture import Picture
 
 Value = namedtuple("Value", "value noise limit verdict")
@@ -42,9 +42,9 @@ class Comparison(Handle):
         """(value, noise, limit, verdict); NaN stands for what is not known."""
         masked = self.masked if masked is None else masked
         numbers = [c_double() for _ in range(3)]
-        call("comparison_value", self._pointer, encode(metric), masked,
+        call("comparison_value", self._pointer, required(metric, "metric"), masked,
              *(byref(number) for number in numbers))
-        verdict = plain("comparison_verdict")(self._pointer, encode(metric), masked)
+        verdict = plain("comparison_verdict")(self._pointer, required(metric, "metric"), masked)
         return Value(*(number.value for number in numbers), decode(verdict))
 
     def __getitem__(self, metric):
@@ -57,7 +57,8 @@ class Comparison(Handle):
 
     def plot(self, path, range=0, title=None):
         """Where the test is brighter (red) or darker (blue), as .png or .svg."""
-        call("comparison_draw", self._pointer, encode(path), float(range), encode(title))
+        call("comparison_draw", self._pointer, required(path, "path"), float(range),
+             encode(title, "title"))
 
 
 def _picture(value):

@@ -3,7 +3,7 @@ import math
 from collections import namedtuple
 from ctypes import byref, c_double, c_void_p
 
-from ._native import Handle, Watch, call, decode, encode, plain, settings
+from ._native import Handle, Watch, call, decode, plain, required, settings
 from .picture import of_pointer
 
 Number = namedtuple("Number", "value error text")
@@ -24,8 +24,8 @@ class GemReport(Handle):
             how["width_m"] = how.pop("width")
         pointer = c_void_p()
         with Watch(progress) as function:
-            call("gem_report_make", encode(path), encode(material), *settings(how), function,
-                 None, byref(pointer))
+            call("gem_report_make", required(path, "path"), required(material, "material"),
+                 *settings(how), function, None, byref(pointer))
         self._pointer = pointer
         self._numbers, index = {}, 0
         while (name := plain("gem_report_name")(pointer, index)) is not None:

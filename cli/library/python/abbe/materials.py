@@ -3,7 +3,7 @@ from ctypes import POINTER, byref, c_double, c_size_t, c_void_p
 
 import numpy
 
-from ._native import Handle, call, decode, encode, plain
+from ._native import Handle, call, decode, encode, plain, required
 
 _doubles = POINTER(c_double)
 
@@ -17,7 +17,7 @@ class Materials(Handle):
     def __init__(self, table="default"):
         super().__init__(None)
         pointer = c_void_p()
-        call("materials_load", encode(table), byref(pointer))
+        call("materials_load", encode(table, "table"), byref(pointer))
         self._pointer = pointer
 
     def __len__(self):
@@ -28,7 +28,7 @@ class Materials(Handle):
 
     def __getitem__(self, name):
         index = c_size_t()
-        call("materials_find", self._pointer, encode(name), byref(index))
+        call("materials_find", self._pointer, required(name, "name"), byref(index))
         return Material(self, index.value)
 
 
@@ -85,6 +85,7 @@ class Material:
 def weights(count=7, range=(380, 780), illuminant="D65", space="xyz"):
     """(wavelengths [count] in nm, weights [count, 3]): what each sample adds to a colour."""
     nm, weight = numpy.empty(count), numpy.empty((count, 3))
-    call("weights_fill", encode(illuminant), encode(space), range[0], range[1], count,
+    call("weights_fill", required(illuminant, "illuminant"), required(space, "space"), range[0],
+         range[1], count,
          nm.ctypes.data_as(_doubles), weight.ctypes.data_as(_doubles))
     return nm, weight

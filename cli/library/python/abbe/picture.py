@@ -4,7 +4,7 @@ from ctypes import POINTER, addressof, byref, c_float, c_void_p
 
 import numpy
 
-from ._native import Handle, call, decode, encode, plain, settings, texts
+from ._native import Handle, call, decode, plain, required, settings, texts
 
 
 class Picture(Handle):
@@ -33,7 +33,7 @@ class Picture(Handle):
             raise ValueError(f"{count} channels want as many names: channels=[…]")
         data = numpy.ascontiguousarray(array, dtype=numpy.float32)
         pointer = c_void_p()
-        call("picture_make", width, height, count, texts(channels)[0],
+        call("picture_make", width, height, count, texts(channels, "channels")[0],
              data.ctypes.data_as(POINTER(c_float)), byref(pointer))
         self._pointer = pointer
         if space is not None:
@@ -93,13 +93,13 @@ class Picture(Handle):
         return out
 
     def __getitem__(self, name):
-        text = plain("picture_attribute")(self._pointer, encode(name))
+        text = plain("picture_attribute")(self._pointer, required(name, "name"))
         if text is None:
             raise KeyError(name)
         return decode(text)
 
     def __setitem__(self, name, text):
-        call("picture_set_attribute", self._pointer, encode(name), encode(text))
+        call("picture_set_attribute", self._pointer, required(name, "name"), required(text, name))
 
     def save(self, path, **how):
         """As OpenEXR; as PNG where the path ends so, through OpenColorIO: with exposure (stops),
@@ -107,9 +107,9 @@ class Picture(Handle):
         if not str(path).lower().endswith(".png"):
             if how:
                 raise TypeError("an OpenEXR file takes no settings: " + ", ".join(how))
-            call("picture_save", self._pointer, encode(path))
+            call("picture_save", self._pointer, required(path, "path"))
             return
-        call("picture_save_png", self._pointer, encode(path), *settings(how))
+        call("picture_save_png", self._pointer, required(path, "path"), *settings(how))
 
 
 def of_pointer(pointer):
@@ -120,5 +120,5 @@ def of_pointer(pointer):
 def load(path):
     """A picture from an OpenEXR or PNG file."""
     pointer = c_void_p()
-    call("picture_load", encode(path), byref(pointer))
+    call("picture_load", required(path, "path"), byref(pointer))
     return of_pointer(pointer)

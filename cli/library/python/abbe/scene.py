@@ -2,7 +2,8 @@
 import math
 from ctypes import byref, c_double, c_size_t, c_void_p
 
-from ._native import Handle, Progress, Watch, call, encode, plain, settings, texts
+from ._native import (Handle, Progress, Watch, call, encode, plain, required, settings, texts,
+                      unpacked)
 from .picture import of_pointer
 
 
@@ -15,12 +16,19 @@ def _three(values):
     return (c_double * 3)(*values)
 
 
-def _value(value):
+def _value(key, value):
+    value = unpacked(value)
+    if value is None:
+        raise TypeError(f"'{key}' is None; a value of the scene file is needed")
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(_value(one) for one in value) + "]"
+        return "[" + ", ".join(_value(key, one) for one in value) + "]"
     return str(value)
+
+
+def _changes(values):
+    return texts((f"{key}={_value(key, value)}" for key, value in values.items()), "a value of set")
 
 
 class Scene(Handle):
@@ -35,15 +43,13 @@ class Scene(Handle):
     def __init__(self, path, materials=None, stone=None, set=None):
         super().__init__(None)
         pointer = c_void_p()
-        call("scene_open", encode(path), encode(materials), encode(stone),
-             *texts(f"{key}={_value(value)}" for key, value in (set or {}).items()),
-             byref(pointer))
+        call("scene_open", required(path, "path"), encode(materials, "materials"),
+             encode(stone, "stone"), *_changes(set or {}), byref(pointer))
         self._pointer = pointer
 
     def change(self, set):
         """Other values of the file: change({"lights.lamp.intensity": 2})."""
-        call("scene_change", self._pointer,
-             *texts(f"{key}={_value(value)}" for key, value in set.items()))
+        call("scene_change", self._pointer, *_changes(set))
 
     def look(self, eye=None, target=None, up=None, fov=None):
         """Moves the camera: m, and degrees from bottom to top; None: as it is."""
@@ -70,7 +76,7 @@ class Scene(Handle):
     def map(self, light=None, bands=0):
         """Where a light's flux landed in the last rendered picture, W a texel."""
         pointer = c_void_p()
-        call("scene_map", self._pointer, encode(light), c_size_t(bands), byref(pointer))
+        call("scene_map", self._pointer, encode(light, "light"), c_size_t(bands), byref(pointer))
         return of_pointer(pointer)
 
     def trace(self, progress=None, **how):
