@@ -73,6 +73,30 @@ static abbe_result fail_read(const stream *s, exr_result_t rv, abbe_error *error
                         reason(s, rv));
 }
 
+/* The codec's number in the header; -1 where none is found. */
+static int find_codec(const stream *s) {
+  static const char key[] = "compression\0compression\0\1\0\0"; /* and the size's last byte, 0 */
+  enum { HEAD = 1 << 17 }; /* a thousand channels and the attributes before */
+  unsigned char *head = malloc(HEAD);
+  const ssize_t size = head == NULL ? 0 : pread(s->fd, head, HEAD, 0);
+  int codec = -1;
+  for (ssize_t i = 0; codec < 0 && i + (ssize_t)sizeof key < size; i++)
+    if (memcmp(head + i, key, sizeof key) == 0) codec = head[i + (ssize_t)sizeof key];
+  free(head);
+  return codec;
+}
+
+/* The library takes a codec that is younger than itself for ZIP. */
+static abbe_result check_codec(const stream *s, abbe_error *error) {
+  enum { FIRST_UNKNOWN = 10, HTJ2K_32 = 11 };
+  const int codec = find_codec(s);
+  if (codec < FIRST_UNKNOWN) return ABBE_OK;
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "%s: %s compression (number %d) cannot be read; ZIP, PIZ and the others of "
+                        "OpenEXR 3.1 can",
+                        s->path, codec <= HTJ2K_32 ? "HTJ2K" : "an unknown", codec);
+}
+
 typedef struct layout {
   exr_storage_t storage;
   exr_compression_t compression;
@@ -386,10 +410,12 @@ static abbe_result read_stream(stream *s, abbe_image *image, abbe_error *error) 
   setup.max_image_width = setup.max_image_height = ABBE_IMAGE_MAX_SIDE;
   setup.max_tile_width = setup.max_tile_height = ABBE_IMAGE_MAX_SIDE;
   setup.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
+  abbe_result result = check_codec(s, error);
+  if (result != ABBE_OK) return result;
   exr_context_t context = NULL;
   exr_result_t rv = exr_start_read(&context, s->path, &setup);
   if (rv != 0) return fail_read(s, rv, error);
-  abbe_result result = read_image(context, s, image, error);
+  result = read_image(context, s, image, error);
   exr_finish(&context);
   return result;
 }

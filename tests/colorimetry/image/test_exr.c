@@ -1,3 +1,4 @@
+#define _GNU_SOURCE /* memmem */
 #include "tests/check.h"
 
 #include "base/file.h"
@@ -398,6 +399,37 @@ static void test_deep_is_unsupported(void **state) {
 }
 
 /* The reference implementation's own tool accepts the file and sees what was written. */
+/* Codecs that are younger than the library are refused by their names. */
+static void test_younger_codecs(void **state) {
+  (void)state;
+  static const char key[] = "compression\0compression\0\1\0\0"; /* and the size's last byte */
+  static const struct {
+    char number;
+    const char *says;
+  } codecs[] = {{10, "HTJ2K compression (number 10)"},
+                {11, "HTJ2K compression (number 11)"},
+                {12, "an unknown compression (number 12)"}};
+  static const char *const names[] = {"R", "G", "B"};
+  abbe_image image = {0};
+  char *data = NULL;
+  size_t size = 0;
+  assert_int_equal(abbe_image_make(4, 4, 3, names, &image, NULL), ABBE_OK);
+  write_image(&image);
+  abbe_image_free(&image);
+  assert_int_equal(abbe_file_read(path, 1 << 20, &data, &size, NULL), ABBE_OK);
+  char *at = memmem(data, size, key, sizeof key);
+  assert_non_null(at);
+  for (size_t i = 0; i < sizeof codecs / sizeof *codecs; i++) {
+    abbe_error error = {0};
+    at[sizeof key] = codecs[i].number;
+    assert_int_equal(abbe_file_write(path, data, size, NULL), ABBE_OK);
+    assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_UNSUPPORTED);
+    assert_contains(error.text, codecs[i].says);
+  }
+  free(data);
+  unlink(path);
+}
+
 static void test_exrheader_agrees(void **state) {
   (void)state;
   if (system("command -v exrheader > /dev/null") != 0)
@@ -440,6 +472,7 @@ int main(void) {
                                      cmocka_unit_test(test_not_pictures),
                                      cmocka_unit_test(test_too_many_attributes),
                                      cmocka_unit_test(test_deep_is_unsupported),
+                                     cmocka_unit_test(test_younger_codecs),
                                      cmocka_unit_test(test_exrheader_agrees)};
   return cmocka_run_group_tests(tests, NULL, leave);
 }
