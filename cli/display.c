@@ -29,15 +29,23 @@ static abbe_result list_views(const request *r, abbe_error *error) {
 }
 
 static abbe_result show_spectrum(const request *r, const abbe_image *image, abbe_error *error) {
-  const abbe_relight_desc desc = {
-      .layer = r->layer, .view = r->spectral.view, .space = ABBE_RGB_SPACE_XYZ, .relative = true};
+  abbe_image_odd odd = {0};
+  const abbe_relight_desc desc = {.layer = r->layer,
+                                  .view = r->spectral.view,
+                                  .space = ABBE_RGB_SPACE_XYZ,
+                                  .relative = true,
+                                  .odd = &odd};
   abbe_image xyz = {0};
   if (r->source != NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: --source names the space of R, G, B; here the colours are of the "
                           "spectrum, in XYZ",
                           r->in);
+  abbe_spectral_options_note_unread(image, r->layer, r->in);
   abbe_result result = abbe_relight_make(image, r->in, &desc, &xyz, error);
+  odd.nan = 0; /* the picture's own note says it */
+  if (result == ABBE_OK)
+    abbe_command_note_odd(r->in, &odd, "counted as the brightest finite band, or as 65504");
   if (result == ABBE_OK)
     fprintf(stderr, "note: the colour of the spectrum, %s; 1 is white %s\n",
             abbe_observer_text(desc.view.observer), abbe_image_attribute_text(&xyz, "abbe:unit"));
@@ -83,7 +91,7 @@ static const struct argp_option options[] = {
      "in false colours",
      0},
     {"source", KEY_SOURCE, "SPACE", 0,
-     "the picture's colour space; without it, what the file says, else scene_linear", 0},
+     "the picture's colour space; without it, what the file says, else linear Rec.709", 0},
     {"list", KEY_LIST, NULL, 0, "list the displays and their views", 0},
     {0}};
 

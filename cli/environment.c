@@ -140,6 +140,7 @@ static abbe_result say_of_scene(const request *r, abbe_error *error) {
   abbe_result result = abbe_scene_input_load(r->program, r->input, NULL, &scene, error);
   if (result == ABBE_OK && scene.environment == NULL)
     result = abbe_error_set(error, ABBE_NOT_FOUND, "%s: the scene has no 'environment'", r->input);
+  if (result == ABBE_OK) abbe_scene_input_note(&scene);
   if (result == ABBE_OK) result = say(r, scene.environment, error);
   abbe_scene_free(&scene);
   return result;
@@ -150,6 +151,7 @@ static abbe_result say_of_picture(const request *r, abbe_error *error) {
   abbe_environment_turn(0, NULL, 0, e.to_map);
   abbe_result result =
       abbe_environment_picture_read(r->input, ABBE_LAYOUT_BY_ASPECT, &e.map, error);
+  if (result == ABBE_OK && e.map.space_assumed) abbe_command_note_space(r->input);
   if (result == ABBE_OK) result = abbe_environment_prepare(&e, error);
   if (result == ABBE_OK) result = say(r, &e, error);
   abbe_environment_free(&e);

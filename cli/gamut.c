@@ -64,6 +64,8 @@ static abbe_result print_json(const request *r, const abbe_image *image, const a
               cJSON_AddNumberToObject(root, "width", (double)c->width) != NULL &&
               cJSON_AddNumberToObject(root, "height", (double)c->height) != NULL &&
               cJSON_AddNumberToObject(root, "lit", (double)c->lit) != NULL &&
+              cJSON_AddNumberToObject(root, "infinite", (double)c->odd.infinite) != NULL &&
+              cJSON_AddNumberToObject(root, "nan", (double)c->odd.nan) != NULL &&
               cJSON_AddNumberToObject(root, "outside", (double)c->outside) != NULL &&
               cJSON_AddNumberToObject(root, "share_outside", share_outside(c)) != NULL &&
               cJSON_AddNumberToObject(root, "light_outside", c->light_outside) != NULL &&
@@ -80,6 +82,8 @@ static abbe_result print_json(const request *r, const abbe_image *image, const a
 static abbe_result report(const request *r, const abbe_image *image, abbe_error *error) {
   abbe_gamut_check check = {0};
   abbe_result result = abbe_gamut_check_make(image, r->path, r->gamut, &check, error);
+  if (result == ABBE_OK && check.space.assumed) abbe_command_note_space(r->path);
+  if (result == ABBE_OK) abbe_command_note_odd(r->path, &check.odd, "left out");
   if (result == ABBE_OK && r->overlay != NULL)
     result = abbe_gamut_check_overlay(&check, r->overlay, error);
   if (result == ABBE_OK && r->diagram != NULL)

@@ -201,6 +201,7 @@ static abbe_result probe(const request *r, const abbe_image *image, const abbe_s
   colours c;
   abbe_result result = abbe_pixel_probe_make(image, r->layer, r->path, r->window, view, &p, error);
   if (result != ABBE_OK) return result;
+  if (p.has_colour && p.space.assumed) abbe_command_note_space(r->path);
   describe(r, &p, &c);
   if (r->plot != NULL) result = plot(r, &p, error);
   if (result == ABBE_OK && r->json)
@@ -215,6 +216,7 @@ static abbe_result run(request *r, abbe_error *error) {
   abbe_image image = {0};
   abbe_result result = abbe_spectral_options_load(&r->spectral, error);
   if (result == ABBE_OK) result = abbe_exr_read(r->path, &image, error);
+  if (result == ABBE_OK) abbe_spectral_options_note_unread(&image, r->layer, r->path);
   if (result == ABBE_OK) result = probe(r, &image, &r->spectral.view, error);
   abbe_image_free(&image);
   abbe_spectral_options_free(&r->spectral);

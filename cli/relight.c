@@ -19,8 +19,14 @@ typedef struct request {
 static abbe_result relight(const request *r, const abbe_image *image, abbe_error *error) {
   abbe_image out = {0};
   abbe_relight_desc desc = r->desc;
+  abbe_image_odd odd = {0};
   desc.view = r->spectral.view;
+  desc.odd = &odd;
+  abbe_spectral_options_note_unread(image, desc.layer, r->in);
   abbe_result result = abbe_relight_make(image, r->in, &desc, &out, error);
+  if (r->png != NULL) odd.nan = 0; /* the PNG's note says it */
+  if (result == ABBE_OK)
+    abbe_command_note_odd(r->in, &odd, "counted as the brightest finite band, or as 65504");
   if (result == ABBE_OK && r->spectral.illuminant != NULL)
     result = abbe_image_set_attribute(&out, "abbe:illuminant", r->spectral.illuminant, error);
   if (result == ABBE_OK && r->exr != NULL) result = abbe_exr_write(r->exr, &out, error);

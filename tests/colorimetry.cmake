@@ -1,5 +1,5 @@
-foreach(name atlas axis chart chromaticity colour_map colour_temperature difference display_ocio display_table exr false_colours gamut gamut_check gamut_map illuminant image material_chart text_plot observer oklab png_file screen_png sheet
-        pixel_probe radiance_file relight rgb_encoding rgb_space spectral_channels spectral_colour upsampling weights band_reflection colour_checker reflected_light)
+foreach(name atlas axis chart chromaticity colour_map colour_temperature difference display_ocio display_sources display_table exr false_colours gamut gamut_check gamut_map illuminant image material_chart text_plot observer oklab png_file screen_png sheet
+        pixel_probe radiance_file relight rgb_encoding rgb_space spectral_channels spectral_colour spectral_unit upsampling weights band_reflection colour_checker reflected_light)
   abbe_test(${name} cpu abbe_colorimetry abbe_spectral abbe_base)
 endforeach()
 target_link_libraries(test_rgb_encoding PRIVATE PkgConfig::LCMS)

@@ -4,6 +4,7 @@
 #include "base/json/json_text.h"
 #include "base/nearest.h"
 #include "base/utf8.h"
+#include "colorimetry/image/image.h"
 
 #include <cjson/cJSON.h>
 #include <errno.h>
@@ -76,6 +77,17 @@ int abbe_command_choice(const char *program, const char *option, const char *tex
   for (int i = 0; i < count; i++) fprintf(stderr, "%s %s", i > 0 ? "," : "", names[i]);
   fprintf(stderr, "\n");
   wrong_use(program);
+}
+
+void abbe_command_note_space(const char *name) {
+  fprintf(stderr, "note: %s does not say its colour space; linear Rec.709 is taken\n", name);
+}
+
+void abbe_command_note_odd(const char *name, const struct abbe_image_odd *odd, const char *how) {
+  if (odd->infinite > 0)
+    fprintf(stderr, "note: %s: %zu pixels are infinite, %s\n", name, odd->infinite, how);
+  if (odd->nan > 0)
+    fprintf(stderr, "note: %s: %zu pixels are not a number (NaN)\n", name, odd->nan);
 }
 
 /* cJSON copies the bytes of strings as they are, but for those below U+0020. */

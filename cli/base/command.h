@@ -12,6 +12,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+struct abbe_image_odd;
 struct cJSON;
 
 enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_TOLERANCE = 3 };
@@ -90,6 +91,12 @@ bool abbe_command_part_has(const abbe_command_part *part, size_t piece);
 /* Opens and discards each of the files (NULL: none), so that a target that cannot be written is
  * found out before the work, not after it. */
 abbe_result abbe_command_check_targets(const char *const *paths, size_t count, abbe_error *error);
+
+/* Notes on stderr about a picture of that name: that it does not say its space, and Rec.709 is
+ * taken; and how many of its pixels are infinite, and what is done with them, or not numbers, where
+ * any are. */
+void abbe_command_note_space(const char *name);
+void abbe_command_note_odd(const char *name, const struct abbe_image_odd *odd, const char *how);
 
 /* json as text that ends with a newline, always valid UTF-8 whatever strings it was given
  * (malloc'd, the caller frees); NULL for want of memory or where json is NULL. */

@@ -92,6 +92,8 @@ abbe_result abbe_scene_input_at(const abbe_scene *scene, const char *materials,
 }
 
 void abbe_scene_input_note(const abbe_scene *scene) {
+  const abbe_environment *around = scene->environment;
+  if (around != NULL && around->map.space_assumed) abbe_command_note_space(around->path);
   for (size_t i = 0; i < scene->object_count; i++)
     if (scene->object[i].fixes != NULL)
       fprintf(stderr, "note: object '%s': %s\n", scene->object[i].name, scene->object[i].fixes);

@@ -118,7 +118,12 @@ abbe_result abbe_screen_options_check(const abbe_screen_options *o, abbe_rgb_spa
 abbe_result abbe_screen_options_write(const abbe_screen_options *o, const char *path,
                                       const abbe_image *image, const char *layer, const char *name,
                                       abbe_error *error) {
+  abbe_screen_png_notes notes = {0};
   const abbe_screen_png_desc desc = {
-      .display = o->display, .layer = layer, .name = name, .bits = o->bits};
-  return abbe_screen_png_write(path, image, &desc, error);
+      .display = o->display, .layer = layer, .name = name, .bits = o->bits, .notes = &notes};
+  const abbe_result result = abbe_screen_png_write(path, image, &desc, error);
+  if (name == NULL) name = "the picture";
+  if (notes.space_assumed) abbe_command_note_space(name);
+  abbe_command_note_odd(name, &notes.odd, "shown as the brightest light there is");
+  return result;
 }

@@ -61,3 +61,16 @@ void abbe_spectral_options_free(abbe_spectral_options *o) {
   abbe_illuminant_free(&o->from);
   abbe_illuminant_free(&o->to);
 }
+
+void abbe_spectral_options_note_unread(const abbe_image *image, const char *layer,
+                                       const char *name) {
+  static const char *const what[ABBE_SPECTRAL_UNREAD_COUNT] = {
+      "of polarised light", "of re-radiation, which is not applied",
+      "named as bands are not: S0.550nm is right"};
+  abbe_spectral_unread unread;
+  abbe_spectral_channels_find_unread(image, layer, &unread);
+  for (int k = 0; k < ABBE_SPECTRAL_UNREAD_COUNT; k++)
+    if (unread.count[k] > 0)
+      fprintf(stderr, "note: %s: left out are %zu channels %s, such as %s\n", name, unread.count[k],
+              what[k], unread.first[k]);
+}

@@ -31,4 +31,8 @@ abbe_observer abbe_spectral_options_observer(const char *program, const char *te
 abbe_result abbe_spectral_options_load(abbe_spectral_options *options, abbe_error *error);
 void abbe_spectral_options_free(abbe_spectral_options *options);
 
+/* Says on stderr which of the picture's channels are of a spectrum and are left out. */
+void abbe_spectral_options_note_unread(const abbe_image *image, const char *layer,
+                                       const char *name);
+
 #endif

@@ -27,13 +27,16 @@ struct abbe_display {
   OCIO::ConstCPUProcessorRcPtr processor;
   double xy[8], curve[5];
   int transfer;
-  bool adjusts; /* by way of XYZ: to_xyz, white, map, processor */
-  OCIO::ConstCPUProcessorRcPtr to_xyz;
-  double white[9];
+  bool adjusts; /* on the way: to_linear, adjustment, map, processor */
+  OCIO::ConstCPUProcessorRcPtr to_linear;
+  double adjustment[9]; /* exposure, and in XYZ the white */
   abbe_gamut_map map;
 };
 
 namespace {
+
+/* More light overflows in some views, or on its way there. */
+const float MOST_SHOWN = 0x1p60F, MOST_READ = 0x1p100F;
 
 /* OpenColorIO reads the numbers of a configuration by the thread's locale. */
 struct plain_numbers {
@@ -108,6 +111,33 @@ void check_version(const char *path) {
   throw OCIO::Exception(text);
 }
 
+/* All names of a kind, "a, b, c". */
+template <typename Name> std::string listed(int count, Name name) {
+  std::string list;
+  for (int i = 0; i < count; i++) list += std::string(i == 0 ? "" : ", ") + name(i);
+  return list;
+}
+
+template <typename Name> bool has(const char *wanted, int count, Name name) {
+  for (int i = 0; i < count; i++)
+    if (std::strcmp(name(i), wanted) == 0) return true;
+  return false;
+}
+
+/* OpenColorIO refuses a file whose active displays name one that is not there, as Filmic's do. */
+OCIO::ConstConfigRcPtr without_unknown_displays(const OCIO::ConstConfigRcPtr &config) {
+  OCIO::ConfigRcPtr known = config->createEditableCopy();
+  std::istringstream active(config->getActiveDisplays());
+  std::string list, name;
+  while (std::getline(active >> std::ws, name, ','))
+    if (has(name.c_str(), config->getNumDisplaysAll(),
+            [&](int i) { return config->getDisplayAll(i); }))
+      list += (list.empty() ? "" : ", ") + name;
+  if (!list.empty()) known->setActiveDisplays(list.c_str());
+  known->validate();
+  return known;
+}
+
 OCIO::ConstConfigRcPtr load(const char *path) {
   OCIO::ConstConfigRcPtr config;
   if (config_path(path) != nullptr) {
@@ -119,41 +149,7 @@ OCIO::ConstConfigRcPtr load(const char *path) {
                                         abbe_embedded_config_ocio_size));
     config = OCIO::Config::CreateFromStream(text);
   }
-  config->validate();
-  return config;
-}
-
-std::string known_displays(const OCIO::ConstConfigRcPtr &config) {
-  std::string list;
-  for (int i = 0; i < config->getNumDisplays(); i++)
-    list += std::string(i == 0 ? "" : ", ") + config->getDisplay(i);
-  return list;
-}
-
-std::string known_views(const OCIO::ConstConfigRcPtr &config, const char *display) {
-  std::string list;
-  for (int i = 0; i < config->getNumViews(display); i++)
-    list += std::string(i == 0 ? "" : ", ") + config->getView(display, i);
-  return list;
-}
-
-std::string known_spaces(const OCIO::ConstConfigRcPtr &config) {
-  std::string list;
-  for (int i = 0; i < config->getNumColorSpaces(); i++)
-    list += std::string(i == 0 ? "" : ", ") + config->getColorSpaceNameByIndex(i);
-  return list;
-}
-
-bool has_display(const OCIO::ConstConfigRcPtr &config, const char *display) {
-  for (int i = 0; i < config->getNumDisplays(); i++)
-    if (std::strcmp(config->getDisplay(i), display) == 0) return true;
-  return false;
-}
-
-bool has_view(const OCIO::ConstConfigRcPtr &config, const char *display, const char *view) {
-  for (int i = 0; i < config->getNumViews(display); i++)
-    if (std::strcmp(config->getView(display, i), view) == 0) return true;
-  return false;
+  return without_unknown_displays(config);
 }
 
 abbe_result unknown(const char *config, const char *kind, const char *name,
@@ -162,30 +158,112 @@ abbe_result unknown(const char *config, const char *kind, const char *name,
                         known.c_str());
 }
 
-/* Exposure scales scene-linear light; without it the picture goes to the display in one step. */
-OCIO::GroupTransformRcPtr display_transform(const char *source, const char *display,
-                                            const char *view, double exposure) {
-  OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
-  if (exposure != 0) {
-    OCIO::ColorSpaceTransformRcPtr linear = OCIO::ColorSpaceTransform::Create();
-    linear->setSrc(source);
-    linear->setDst(OCIO::ROLE_SCENE_LINEAR);
-    group->appendTransform(linear);
-    const double scale = std::exp2(exposure);
-    const double diagonal[4] = {scale, scale, scale, 1};
-    double matrix[16], offset[4];
-    OCIO::MatrixTransform::Scale(matrix, offset, diagonal);
-    OCIO::MatrixTransformRcPtr expose = OCIO::MatrixTransform::Create();
-    expose->setMatrix(matrix);
-    group->appendTransform(expose);
-    source = OCIO::ROLE_SCENE_LINEAR;
+/* A linear, scene-referred space of a configuration and what its numbers are: the way between
+ * Abbe's spaces and those of the configuration. */
+struct anchor {
+  std::string space; /* empty: none is known */
+  double to_xyz[9];  /* row-major, to XYZ relative to D65 */
+};
+
+/* The roles that spaces are exchanged by, then names that tell the primaries;
+ * ABBE_RGB_SPACE_COUNT: AP0. */
+const struct {
+  const char *name;
+  abbe_rgb_space space;
+} known_anchors[] = {
+    {"aces_interchange", ABBE_RGB_SPACE_COUNT}, {"cie_xyz_d65_interchange", ABBE_RGB_SPACE_XYZ},
+    {"ACES2065-1", ABBE_RGB_SPACE_COUNT},       {"ACES - ACES2065-1", ABBE_RGB_SPACE_COUNT},
+    {"ACEScg", ABBE_RGB_SPACE_ACESCG},          {"Linear Rec.709 (sRGB)", ABBE_RGB_SPACE_REC709},
+    {"Linear Rec.709", ABBE_RGB_SPACE_REC709},  {"Linear BT.709", ABBE_RGB_SPACE_REC709},
+    {"lin_rec709", ABBE_RGB_SPACE_REC709}};
+
+bool is_scene_colour(const OCIO::ConstConfigRcPtr &config, const char *name) {
+  OCIO::ConstColorSpaceRcPtr space = config->getColorSpace(name);
+  return space && !space->isData() && space->getReferenceSpaceType() == OCIO::REFERENCE_SPACE_SCENE;
+}
+
+/* Whether the role scene_linear is linear Rec.709: sRGB, by that name, is then its curve alone (or
+ * the power 2.2 that some write for it), a channel at a time. */
+bool is_scene_linear_rec709(const OCIO::ConstConfigRcPtr &config) {
+  const float light[12] = {0.5F, 0.2F, 0.2F, 0.2F, 0.5F, 0.2F, 0.2F, 0.2F, 0.5F, 0.7F, 0.7F, 0.7F};
+  for (const char *texture : {"sRGB - Texture", "sRGB OETF", "sRGB"}) {
+    if (!is_scene_colour(config, texture)) continue;
+    float probe[12];
+    bool same = is_scene_colour(config, OCIO::ROLE_SCENE_LINEAR);
+    std::memcpy(probe, light, sizeof probe);
+    OCIO::PackedImageDesc pixels(probe, 4, 1, 3);
+    if (same)
+      config->getProcessor(OCIO::ROLE_SCENE_LINEAR, texture)
+          ->getDefaultCPUProcessor()
+          ->apply(pixels);
+    for (int i = 0; same && i < 12; i++) {
+      const double x = light[i], curve = 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+      const double off =
+          std::fmin(std::fabs(probe[i] - curve), std::fabs(probe[i] - std::pow(x, 1 / 2.2)));
+      same = off < 2e-3;
+    }
+    return same;
   }
+  return false;
+}
+
+anchor find_anchor(const OCIO::ConstConfigRcPtr &config) {
+  static const double ap0_xy[8] = {0.7347, 0.2653, 0, 1, 0.0001, -0.077, 0.32168, 0.33767};
+  anchor found = {};
+  for (const auto &known : known_anchors) {
+    if (!is_scene_colour(config, known.name)) continue;
+    found.space = known.name;
+    if (known.space == ABBE_RGB_SPACE_COUNT)
+      abbe_rgb_space_chromaticities_to_xyz(ap0_xy, found.to_xyz, nullptr);
+    else
+      abbe_rgb_space_to_xyz(known.space, found.to_xyz);
+    return found;
+  }
+  if (is_scene_linear_rec709(config)) found.space = OCIO::ROLE_SCENE_LINEAR;
+  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, found.to_xyz);
+  return found;
+}
+
+OCIO::MatrixTransformRcPtr matrix_transform(const double matrix[9],
+                                            OCIO::TransformDirection direction) {
+  double wide[16] = {};
+  for (int i = 0; i < 9; i++) wide[i / 3 * 4 + i % 3] = matrix[i];
+  wide[15] = 1;
+  OCIO::MatrixTransformRcPtr transform = OCIO::MatrixTransform::Create();
+  transform->setMatrix(wide);
+  transform->setDirection(direction);
+  return transform;
+}
+
+OCIO::ColorSpaceTransformRcPtr space_transform(const char *from, const char *to) {
+  OCIO::ColorSpaceTransformRcPtr transform = OCIO::ColorSpaceTransform::Create();
+  transform->setSrc(from);
+  transform->setDst(to);
+  return transform;
+}
+
+/* Where pictures are: a space of the configuration, or one of Abbe's that it does not have. */
+struct source_space {
+  std::string name; /* in the configuration; empty: to_xyz */
+  double to_xyz[9];
+};
+
+/* From the pictures to a space of the configuration, which is returned. */
+const char *enter(const source_space &source, const anchor &door,
+                  const OCIO::GroupTransformRcPtr &group) {
+  if (!source.name.empty()) return source.name.c_str();
+  group->appendTransform(matrix_transform(source.to_xyz, OCIO::TRANSFORM_DIR_FORWARD));
+  group->appendTransform(matrix_transform(door.to_xyz, OCIO::TRANSFORM_DIR_INVERSE));
+  return door.space.c_str();
+}
+
+void append_display(const OCIO::GroupTransformRcPtr &group, const char *source, const char *display,
+                    const char *view) {
   OCIO::DisplayViewTransformRcPtr show = OCIO::DisplayViewTransform::Create();
   show->setSrc(source);
   show->setDisplay(display);
   show->setView(view);
   group->appendTransform(show);
-  return group;
 }
 
 /* From the view's colour space to CIE XYZ, by the roles that OCIO has for it. */
@@ -229,46 +307,72 @@ void find_encoding(const OCIO::ConstConfigRcPtr &config, const std::string &disp
   if (named(display, "Display P3")) abbe_rgb_encoding_display_p3(out->xy, out->curve);
 }
 
-/* To XYZ relative to D65, or back, from the role that the ACES spaces are exchanged by. */
-OCIO::BuiltinTransformRcPtr aces_to_xyz(OCIO::TransformDirection direction) {
-  OCIO::BuiltinTransformRcPtr transform = OCIO::BuiltinTransform::Create();
-  transform->setStyle("UTILITY - ACES-AP0_to_CIE-XYZ-D65_BFD");
-  transform->setDirection(direction);
-  return transform;
-}
-
 /* White and gamut are matters of XYZ, between the picture's space and the view. */
 abbe_result adjust(const OCIO::ConstConfigRcPtr &config, const abbe_display_desc *desc,
-                   const char *source, const OCIO::GroupTransformRcPtr &show, abbe_display *out,
-                   abbe_error *error) {
+                   const source_space &source, const anchor &door, const char *display,
+                   const char *view, abbe_display *out, abbe_error *error) {
   static const double d65[2] = {0.3127, 0.3290};
   const char *name = config_name(desc->config);
   const bool balanced = desc->white[0] != 0 || desc->white[1] != 0;
   const bool mapped = desc->gamut != ABBE_GAMUT_MAP_NONE;
-  if (!config->hasRole("aces_interchange"))
-    return abbe_error_set(
-        error, ABBE_COLOUR,
-        "%s: it has no role aces_interchange, without which neither a white nor a "
-        "gamut map can be applied",
-        name);
+  if (door.space.empty())
+    return abbe_error_set(error, ABBE_COLOUR,
+                          "%s: it has no role aces_interchange, nor another space that is known, "
+                          "without which neither a white nor a gamut map can be applied",
+                          name);
   if (mapped && out->xy[7] == 0)
     return abbe_error_set(error, ABBE_COLOUR,
                           "%s: it does not tell the display's primaries, so no gamut map fits it",
                           name);
   OCIO::GroupTransformRcPtr before = OCIO::GroupTransform::Create();
-  OCIO::ColorSpaceTransformRcPtr to_aces = OCIO::ColorSpaceTransform::Create();
-  to_aces->setSrc(source);
-  to_aces->setDst("aces_interchange");
-  before->appendTransform(to_aces);
-  before->appendTransform(aces_to_xyz(OCIO::TRANSFORM_DIR_FORWARD));
+  if (source.name.empty()) {
+    before->appendTransform(matrix_transform(source.to_xyz, OCIO::TRANSFORM_DIR_FORWARD));
+  } else {
+    before->appendTransform(space_transform(source.name.c_str(), door.space.c_str()));
+    before->appendTransform(matrix_transform(door.to_xyz, OCIO::TRANSFORM_DIR_FORWARD));
+  }
   OCIO::GroupTransformRcPtr after = OCIO::GroupTransform::Create();
-  after->appendTransform(aces_to_xyz(OCIO::TRANSFORM_DIR_INVERSE));
-  after->appendTransform(show);
-  out->to_xyz = config->getProcessor(before)->getDefaultCPUProcessor();
+  after->appendTransform(matrix_transform(door.to_xyz, OCIO::TRANSFORM_DIR_INVERSE));
+  append_display(after, door.space.c_str(), display, view);
+  out->to_linear = config->getProcessor(before)->getDefaultCPUProcessor();
   out->processor = config->getProcessor(after)->getDefaultCPUProcessor();
-  out->adjusts = true;
-  abbe_rgb_space_adapt(balanced ? desc->white : d65, d65, out->white);
+  abbe_rgb_space_adapt(balanced ? desc->white : d65, d65, out->adjustment);
   return mapped ? abbe_gamut_map_make(desc->gamut, out->xy, &out->map, error) : ABBE_OK;
+}
+
+/* The picture goes to the display in one step, or by scene-linear light where that is exposed:
+ * OpenColorIO takes the small numbers of a dark exposure's matrix for none. */
+void show_plainly(const OCIO::ConstConfigRcPtr &config, const source_space &source,
+                  const anchor &door, const char *display, const char *view, abbe_display *out) {
+  OCIO::GroupTransformRcPtr before = OCIO::GroupTransform::Create();
+  OCIO::GroupTransformRcPtr after = out->adjusts ? OCIO::GroupTransform::Create() : before;
+  const char *from = enter(source, door, before);
+  if (out->adjusts) {
+    before->appendTransform(space_transform(from, OCIO::ROLE_SCENE_LINEAR));
+    out->to_linear = config->getProcessor(before)->getDefaultCPUProcessor();
+    from = OCIO::ROLE_SCENE_LINEAR;
+  }
+  append_display(after, from, display, view);
+  out->processor = config->getProcessor(after)->getDefaultCPUProcessor();
+  for (int i = 0; i < 9; i += 4) out->adjustment[i] = 1;
+}
+
+/* A name of the configuration goes before one of Abbe's, which the anchor reaches. */
+abbe_result find_source(const OCIO::ConstConfigRcPtr &config, const abbe_display_desc *desc,
+                        const anchor &door, source_space *out, abbe_error *error) {
+  const char *name = desc->source_space != nullptr ? desc->source_space : OCIO::ROLE_SCENE_LINEAR;
+  for (int s = 0; s < ABBE_RGB_SPACE_COUNT && !config->getColorSpace(name); s++) {
+    const abbe_rgb_space space = static_cast<abbe_rgb_space>(s);
+    if (door.space.empty() || std::strcmp(name, abbe_rgb_space_ocio_name(space)) != 0) continue;
+    abbe_rgb_space_to_xyz(space, out->to_xyz);
+    return ABBE_OK;
+  }
+  out->name = name;
+  if (config->getColorSpace(name)) return ABBE_OK;
+  return unknown(config_name(desc->config), "colour space", name,
+                 listed(config->getNumColorSpaces(),
+                        [&](int i) { return config->getColorSpaceNameByIndex(i); }),
+                 error);
 }
 
 abbe_result make(const abbe_display_desc *desc, abbe_display **out, abbe_error *error) {
@@ -276,26 +380,30 @@ abbe_result make(const abbe_display_desc *desc, abbe_display **out, abbe_error *
   OCIO::ConstConfigRcPtr config = load(desc->config);
   const std::string display =
       desc->display != nullptr ? desc->display : config->getDefaultDisplay();
-  if (!has_display(config, display.c_str()))
-    return unknown(name, "display", display.c_str(), known_displays(config), error);
+  const auto display_name = [&](int i) { return config->getDisplay(i); };
+  if (!has(display.c_str(), config->getNumDisplays(), display_name))
+    return unknown(name, "display", display.c_str(), listed(config->getNumDisplays(), display_name),
+                   error);
   const std::string view =
       desc->view != nullptr ? desc->view : config->getDefaultView(display.c_str());
-  if (!has_view(config, display.c_str(), view.c_str()))
-    return unknown(name, "view", view.c_str(), known_views(config, display.c_str()), error);
-  const char *source = desc->source_space != nullptr ? desc->source_space : OCIO::ROLE_SCENE_LINEAR;
-  if (config->getColorSpace(source) == nullptr)
-    return unknown(name, "colour space", source, known_spaces(config), error);
-  const bool adjusts = desc->white[0] != 0 || desc->white[1] != 0 || desc->gamut != 0;
-  OCIO::GroupTransformRcPtr show = display_transform(adjusts ? "aces_interchange" : source,
-                                                     display.c_str(), view.c_str(), desc->exposure);
+  const auto view_name = [&](int i) { return config->getView(display.c_str(), i); };
+  const int views = config->getNumViews(display.c_str());
+  if (!has(view.c_str(), views, view_name))
+    return unknown(name, "view", view.c_str(), listed(views, view_name), error);
+  const anchor door = find_anchor(config);
+  source_space source;
+  abbe_result result = find_source(config, desc, door, &source, error);
+  if (result != ABBE_OK) return result;
   abbe_display made = {};
+  const bool by_xyz = desc->white[0] != 0 || desc->white[1] != 0 || desc->gamut != 0;
+  made.adjusts = by_xyz || desc->exposure != 0;
   find_encoding(config, display, view.c_str(), &made);
-  if (adjusts) {
-    const abbe_result result = adjust(config, desc, source, show, &made, error);
-    if (result != ABBE_OK) return result;
-  } else {
-    made.processor = config->getProcessor(show)->getDefaultCPUProcessor();
-  }
+  if (by_xyz)
+    result = adjust(config, desc, source, door, display.c_str(), view.c_str(), &made, error);
+  else
+    show_plainly(config, source, door, display.c_str(), view.c_str(), &made);
+  if (result != ABBE_OK) return result;
+  for (double &number : made.adjustment) number *= std::exp2(desc->exposure);
   *out = new abbe_display(made);
   return ABBE_OK;
 }
@@ -326,13 +434,22 @@ void abbe_display_free(abbe_display *display) {
   delete display;
 }
 
+/* Infinite light is the brightest that there is, and what is no number is none. */
+static void hold_pixels(abbe_image *image, float most) {
+  for (size_t i = 0; i < image->width * image->height; i++)
+    for (size_t c = 0; c < 3; c++) {
+      float *value = image->data + i * image->channels + c;
+      *value = std::isnan(*value) ? 0 : std::fmin(std::fmax(*value, -most), most);
+    }
+}
+
 static void adjust_pixels(const abbe_display *display, abbe_image *image) {
   for (size_t i = 0; i < image->width * image->height; i++) {
     float *pixel = image->data + i * image->channels;
-    double xyz[3] = {pixel[0], pixel[1], pixel[2]};
-    abbe_rgb_space_apply(display->white, xyz, xyz);
-    abbe_gamut_map_apply(&display->map, xyz);
-    for (int c = 0; c < 3; c++) pixel[c] = static_cast<float>(xyz[c]);
+    double v[3] = {pixel[0], pixel[1], pixel[2]};
+    abbe_rgb_space_apply(display->adjustment, v, v);
+    abbe_gamut_map_apply(&display->map, v);
+    for (int c = 0; c < 3; c++) pixel[c] = static_cast<float>(v[c]);
   }
 }
 
@@ -348,9 +465,11 @@ abbe_result abbe_display_apply(const abbe_display *display, abbe_image *image, a
                                  static_cast<long>(image->height), 3, OCIO::BIT_DEPTH_F32,
                                  sizeof(float), pixel, pixel * static_cast<long>(image->width));
     if (display->adjusts) {
-      display->to_xyz->apply(pixels);
+      hold_pixels(image, MOST_READ);
+      display->to_linear->apply(pixels);
       adjust_pixels(display, image);
     }
+    hold_pixels(image, MOST_SHOWN);
     display->processor->apply(pixels);
     image->transfer = display->transfer;
     std::memcpy(image->xy, display->xy, sizeof image->xy);

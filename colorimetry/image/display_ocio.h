@@ -24,7 +24,8 @@ typedef struct abbe_display abbe_display;
 /* Zeroed: the configuration as found, its default display and view, exposure 0. */
 typedef struct abbe_display_desc {
   const char *config;        /* path of a configuration; NULL: $OCIO, else the shipped one */
-  const char *source_space;  /* colour space of the pictures; NULL: role scene_linear */
+  const char *source_space;  /* colour space of the pictures: one of the configuration, or what
+                                abbe_rgb_space_ocio_name calls it; NULL: role scene_linear */
   const char *display;       /* NULL: the default */
   const char *view;          /* NULL: the display's default view */
   double exposure;           /* stops */
@@ -33,7 +34,10 @@ typedef struct abbe_display_desc {
                                view; 0: as the view does it */
 } abbe_display_desc;
 
-/* ABBE_COLOUR with OCIO's reason and, for an unknown display, view or space, the known ones; for a
+/* A space of Abbe's that the configuration has no name for is reached by its roles aces_interchange
+ * or cie_xyz_d65_interchange, else by a name that tells its primaries, else where its sRGB shows
+ * that its role scene_linear is Rec.709.
+ * ABBE_COLOUR with OCIO's reason and, for an unknown display, view or space, the known ones; for a
  * configuration of a version that the library does not know, with both versions; for a gamut map
  * where the display's primaries are not known. ABBE_INVALID_ARGUMENT for a white that is none. */
 abbe_result abbe_display_make(const abbe_display_desc *desc, abbe_display **out, abbe_error *error);
@@ -42,7 +46,9 @@ void abbe_display_free(abbe_display *display);
 /* Replaces the first three channels of the image by display-encoded values, and the image's xy and
  * curve by what they mean: found from the configuration where it says how the view's colour space
  * relates to CIE XYZ (interchange roles), else by the name of a display "sRGB" or "Display P3";
- * zeros where that is not known and where the view's numbers are no colours ("Raw"). */
+ * zeros where that is not known and where the view's numbers are no colours ("Raw"). Infinite
+ * components count as the brightest light that no view overflows at, 2^60 after exposure, and NaN
+ * as 0. */
 abbe_result abbe_display_apply(const abbe_display *display, abbe_image *image, abbe_error *error);
 
 /* One line a display and view, malloc'd, newline separated ("sRGB / Plain"); caller frees. */

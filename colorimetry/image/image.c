@@ -2,6 +2,7 @@
 
 #include "base/number.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -145,6 +146,21 @@ abbe_result abbe_image_set_attribute(abbe_image *image, const char *name, const 
 const char *abbe_image_attribute_text(const abbe_image *image, const char *name) {
   const abbe_image_attribute *known = find_attribute(image, name);
   return known == NULL ? NULL : known->text;
+}
+
+void abbe_image_count_odd(const abbe_image *image, const size_t *channel, size_t count,
+                          abbe_image_odd *out) {
+  *out = (abbe_image_odd){0};
+  for (size_t p = 0; p < image->width * image->height; p++) {
+    bool infinite = false, nan = false;
+    for (size_t c = 0; c < count; c++) {
+      const float value = image->data[p * image->channels + channel[c]];
+      infinite = infinite || isinf(value);
+      nan = nan || isnan(value);
+    }
+    out->infinite += infinite;
+    out->nan += nan && !infinite;
+  }
 }
 
 size_t abbe_image_find_channel(const abbe_image *image, const char *name) {

@@ -77,6 +77,15 @@ const char *abbe_image_attribute_text(const abbe_image *image, const char *name)
  * they have a channel in common, and for too many channels. */
 abbe_result abbe_image_append(abbe_image *image, const abbe_image *other, abbe_error *error);
 
+/* Pixels with a sample that is infinite, and others with one that is not a number. */
+typedef struct abbe_image_odd {
+  size_t infinite, nan;
+} abbe_image_odd;
+
+/* Counts those of the given channels. */
+void abbe_image_count_odd(const abbe_image *image, const size_t *channel, size_t count,
+                          abbe_image_odd *out);
+
 /* Index of the named channel, or (size_t)-1. */
 size_t abbe_image_find_channel(const abbe_image *image, const char *name);
 

@@ -30,6 +30,10 @@ abbe_result abbe_picture_space_find(const abbe_image *image, bool is_xyz, const 
   for (int s = 0; out->space == ABBE_RGB_SPACE_COUNT && word && s < ABBE_RGB_SPACE_COUNT; s++)
     if (strcasecmp(word, abbe_rgb_space_name((abbe_rgb_space)s)) == 0)
       out->space = (abbe_rgb_space)s;
+  if (word != NULL && out->space == ABBE_RGB_SPACE_COUNT)
+    return abbe_error_set(error, ABBE_COLOUR,
+                          "%s: its attribute abbe:space is '%.60s', not acescg, rec709 or xyz",
+                          name, word);
   if (out->space == ABBE_RGB_SPACE_COUNT && is_stated(image->xy)) {
     abbe_error why = {0};
     out->space = abbe_rgb_space_of_chromaticities(image->xy);

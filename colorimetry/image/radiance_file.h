@@ -2,8 +2,8 @@
  * mantissas [RadianceFormats].
  *
  * Reads RGBE and XYZE pixels, flat, in the old run-length coding and in the new one, lines in any
- * of the eight directions. Mantissas are whole steps, not the middles of steps, as most programs
- * read and write them. It writes none.
+ * of the eight directions. Mantissas are whole steps, as most programs read them; Radiance's own
+ * library takes the middles of steps (docs/colour.md). It writes none.
  */
 #ifndef ABBE_COLORIMETRY_IMAGE_RADIANCE_FILE_H
 #define ABBE_COLORIMETRY_IMAGE_RADIANCE_FILE_H

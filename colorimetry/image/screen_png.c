@@ -1,14 +1,13 @@
 #include "colorimetry/image/screen_png.h"
 
 #include "colorimetry/image/avif_file.h"
+#include "colorimetry/image/picture_space.h"
 #include "colorimetry/image/png_file.h"
-#include "colorimetry/rgb_space.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 /* The names that pictures go by, in order of preference; a lone Y is a grey. */
 static const char *const triples[][3] = {{"R", "G", "B"}, {"X", "Y", "Z"}, {"Y", "Y", "Y"}};
@@ -57,59 +56,33 @@ static abbe_result pick_channels(const abbe_screen_png_desc *d, const abbe_image
   return ABBE_OK;
 }
 
-static const struct {
-  double xy[8];
-  const char *ocio_name;
-} other_spaces[] = {
-    {{0.7347, 0.2653, 0.0, 1.0, 0.0001, -0.0770, 0.32168, 0.33767}, "ACES2065-1"},
-};
-
-static bool same_xy(const double a[8], const double b[8]) {
-  for (int i = 0; i < 8; i++)
-    if (!(fabs(a[i] - b[i]) < 1e-3)) return false;
-  return true;
-}
-
-static bool is_stated(const double xy[8]) {
-  for (int i = 0; i < 8; i++)
-    if (xy[i] != 0) return true;
-  return false;
-}
-
-static const char *space_of_chromaticities(const double xy[8]) {
-  for (int s = 0; s < ABBE_RGB_SPACE_COUNT; s++) {
-    double known[8];
-    abbe_rgb_space_chromaticities((abbe_rgb_space)s, known);
-    if (same_xy(xy, known)) return abbe_rgb_space_ocio_name((abbe_rgb_space)s);
+/* In the picture's own space where the configuration may have it; of other primaries the pixels
+ * become XYZ. Light is held where floats take it. */
+static void enter_space(const abbe_picture_space *from, abbe_image *picked, const char **space) {
+  const double most = 1e15;
+  const bool known = from->space != ABBE_RGB_SPACE_COUNT;
+  *space = abbe_rgb_space_ocio_name(known ? from->space : ABBE_RGB_SPACE_XYZ);
+  for (size_t i = 0; !known && i < picked->width * picked->height; i++) {
+    float *pixel = picked->data + 3 * i;
+    double v[3];
+    for (int k = 0; k < 3; k++) v[k] = fmin(fmax((double)pixel[k], -most), most);
+    abbe_rgb_space_apply(from->to_xyz, v, v);
+    for (int k = 0; k < 3; k++) pixel[k] = isnan(pixel[k]) ? NAN : (float)v[k];
   }
-  return same_xy(xy, other_spaces[0].xy) ? other_spaces[0].ocio_name : NULL;
 }
 
-/* What the command line says, else the file's own word, else its channels' names, else its
- * chromaticities; NULL (the configuration's scene_linear) where it is silent. */
+/* What the command line says, else what every reader of the picture takes it for. */
 static abbe_result find_source(const abbe_screen_png_desc *d, const abbe_image *image, int triple,
-                               const char **space, abbe_error *error) {
+                               abbe_image *picked, const char **space, abbe_error *error) {
+  abbe_picture_space found;
   *space = d->display.source_space;
   if (*space != NULL) return ABBE_OK;
-  const char *word = abbe_image_attribute_text(image, "abbe:space");
-  for (int s = 0; word != NULL && s < ABBE_RGB_SPACE_COUNT; s++)
-    if (strcasecmp(word, abbe_rgb_space_name((abbe_rgb_space)s)) == 0) {
-      *space = abbe_rgb_space_ocio_name((abbe_rgb_space)s);
-      return ABBE_OK;
-    }
-  if (word != NULL)
-    return abbe_error_set(error, ABBE_COLOUR,
-                          "%s: its attribute abbe:space is '%.60s', not acescg, rec709 or xyz; "
-                          "--source names the space",
-                          name_of(d), word);
-  if (triple == TRIPLE_XYZ) *space = abbe_rgb_space_ocio_name(ABBE_RGB_SPACE_XYZ);
-  if (*space != NULL || !is_stated(image->xy)) return ABBE_OK;
-  *space = space_of_chromaticities(image->xy);
-  if (*space != NULL) return ABBE_OK;
-  return abbe_error_set(error, ABBE_COLOUR,
-                        "%s: its chromaticities, red (%g, %g) to white (%g, %g), are of no known "
-                        "space; --source names the space",
-                        name_of(d), image->xy[0], image->xy[1], image->xy[6], image->xy[7]);
+  const abbe_result result =
+      abbe_picture_space_find(image, triple == TRIPLE_XYZ, name_of(d), &found, error);
+  if (result != ABBE_OK) return result;
+  enter_space(&found, picked, space);
+  if (d->notes != NULL) d->notes->space_assumed = found.assumed && triple == TRIPLE_RGB;
+  return ABBE_OK;
 }
 
 abbe_result abbe_screen_png_write(const char *path, const abbe_image *image,
@@ -120,7 +93,11 @@ abbe_result abbe_screen_png_write(const char *path, const abbe_image *image,
   abbe_display_desc desc = d->display;
   int triple = 0;
   abbe_result result = pick_channels(d, image, &picked, &triple, error);
-  if (result == ABBE_OK) result = find_source(d, image, triple, &desc.source_space, error);
+  if (result == ABBE_OK && d->notes != NULL) {
+    *d->notes = (abbe_screen_png_notes){0};
+    abbe_image_count_odd(&picked, (const size_t[]){0, 1, 2}, 3, &d->notes->odd);
+  }
+  if (result == ABBE_OK) result = find_source(d, image, triple, &picked, &desc.source_space, error);
   if (result == ABBE_OK) result = abbe_display_make(&desc, &transform, error);
   if (result == ABBE_OK) result = abbe_display_apply(transform, &picked, error);
   if (result == ABBE_OK && abbe_avif_is_meant(path))

@@ -12,6 +12,12 @@
 extern "C" {
 #endif
 
+/* What there is to say of a picture that was shown. */
+typedef struct abbe_screen_png_notes {
+  bool space_assumed; /* its R, G, B are of no stated space, and Rec.709's were taken */
+  abbe_image_odd odd; /* of the channels that are shown */
+} abbe_screen_png_notes;
+
 /* Zeroed: the picture's own channels in the space that it states, the default view, 8 bits. */
 typedef struct abbe_screen_png_desc {
   abbe_display_desc display; /* its source_space NULL: what the picture says */
@@ -19,12 +25,13 @@ typedef struct abbe_screen_png_desc {
   const char *name;          /* of the picture, for sentences; NULL: "the picture" */
   int bits;                  /* of a PNG 8 or 16, 0: 8, for an HDR display 16; of an AVIF 10 or 12,
                                 0: 10 */
+  abbe_screen_png_notes *notes; /* filled; may be NULL */
 } abbe_screen_png_desc;
 
-/* As an AVIF where path ends with .avif (avif_file.h). Shows R, G, B, else X, Y, Z, else Y. The space is what the picture's attribute abbe:space names,
- * else what its channels' names mean, else its chromaticities, else the configuration's role
- * scene_linear. ABBE_NOT_FOUND without such channels, ABBE_COLOUR for a space that is not known;
- * errors of abbe_display_make, abbe_display_apply, abbe_png_write and abbe_avif_write. */
+/* As an AVIF where path ends with .avif (avif_file.h). Shows R, G, B, else X, Y, Z, else Y, in the
+ * space that abbe_picture_space_find says. ABBE_NOT_FOUND without such channels; errors of
+ * abbe_picture_space_find, abbe_display_make, abbe_display_apply, abbe_png_write and
+ * abbe_avif_write. */
 abbe_result abbe_screen_png_write(const char *path, const abbe_image *image,
                                   const abbe_screen_png_desc *desc, abbe_error *error);
 

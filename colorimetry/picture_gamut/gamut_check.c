@@ -36,6 +36,7 @@ static abbe_result take_picture(const abbe_image *image, const char *name, abbe_
                           name);
   abbe_result result = abbe_picture_space_find(image, is_xyz, name, &out->space, error);
   if (result != ABBE_OK) return result;
+  abbe_image_count_odd(image, at, 3, &out->odd);
   const size_t pixels = image->width * image->height;
   out->width = image->width;
   out->height = image->height;

@@ -27,6 +27,7 @@ typedef struct abbe_gamut_check {
   size_t width, height;
   size_t lit;           /* pixels that are finite and of Y above 0 */
   size_t outside;       /* of these */
+  abbe_image_odd odd;   /* pixels that are not finite */
   double light_outside; /* their share of all lit pixels' Y */
   double excess_mean;   /* of the pixels outside; 0: none is */
   double excess_greatest;

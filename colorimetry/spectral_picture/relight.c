@@ -2,6 +2,7 @@
 
 #include "colorimetry/observer_integral.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -54,7 +55,7 @@ static double even_y(const abbe_spectral_channels *c, abbe_observer observer) {
 static const char *unit_of(const abbe_spectral_channels *c, const abbe_relight_desc *d) {
   if (c->kind == ABBE_SPECTRAL_REFLECTIVE) return "of a perfect white under the illuminant";
   if (d->view.from != NULL) return "radiance, W/(m2 sr)";
-  return d->relative ? "of an even 1 W/(m2 sr nm)" : "luminance, cd/m2";
+  return d->relative ? "of an even 1 W/(m2 sr nm)" : abbe_spectral_quantity_text(c->unit.quantity);
 }
 
 static abbe_result make_image(const abbe_image *image, const abbe_spectral_channels *c,
@@ -82,15 +83,30 @@ static abbe_result make_image(const abbe_image *image, const abbe_spectral_chann
   return result;
 }
 
+/* What an infinite band counts as, for infinities of several signs make no colour. */
+static double brightest(const abbe_image *image, const abbe_spectral_channels *c) {
+  double most = 65504; /* the greatest half */
+  for (size_t p = 0; p < image->width * image->height; p++)
+    for (size_t i = 0; i < c->count; i++) {
+      const double value = fabs((double)image->data[p * image->channels + c->channel[i]]);
+      if (isfinite(value)) most = fmax(most, value);
+    }
+  return most;
+}
+
 static void fill(const abbe_image *image, const abbe_spectral_channels *c,
                  const double (*weight)[3], const double *factor, const double matrix[9],
                  abbe_image *out) {
+  const double most = brightest(image, c);
   for (size_t p = 0; p < image->width * image->height; p++) {
     const float *from = image->data + p * image->channels;
     float *to = out->data + p * out->channels;
     double sum[3] = {0};
     for (size_t i = 0; i < c->count; i++)
-      for (int k = 0; k < 3; k++) sum[k] += weight[i][k] * (double)from[c->channel[i]];
+      for (int k = 0; k < 3; k++) {
+        const double value = (double)from[c->channel[i]];
+        sum[k] += weight[i][k] * (isinf(value) ? copysign(most, value) : value);
+      }
     abbe_rgb_space_apply(matrix, sum, sum);
     for (int k = 0; k < 3; k++) to[k] = (float)sum[k];
     for (size_t i = 0; i + 3 < out->channels; i++)
@@ -150,6 +166,8 @@ abbe_result abbe_relight_make(const abbe_image *image, const char *name,
   *out = (abbe_image){0};
   abbe_spectral_channels c = {0};
   abbe_result result = abbe_spectral_channels_find(image, desc->layer, name, &c, error);
+  if (result == ABBE_OK && desc->odd != NULL)
+    abbe_image_count_odd(image, c.channel, c.count, desc->odd);
   if (result == ABBE_OK && c.count == 0)
     result = abbe_error_set(error, ABBE_NOT_FOUND,
                             "%s: it has no bands%s%s%s such as S0.550,000000nm; abbe render "

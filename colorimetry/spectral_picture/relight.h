@@ -25,12 +25,14 @@ typedef struct abbe_relight_desc {
   /* where the light is not known: light of 1 W/(m2 sr nm) at all wavelengths has Y = 1, instead of
    * lm */
   bool relative;
+  abbe_image_odd *odd; /* filled, of the bands; may be NULL */
 } abbe_relight_desc;
 
 /* The picture's colours as channels R, G, B (X, Y, Z), with the space's chromaticities, windows and
  * the attributes abbe:space, abbe:observer and abbe:unit. RGB of an observer other than that of
- * 1931 is its XYZ through the space's matrix. `name` is what errors call the picture.
- * ABBE_NOT_FOUND where it has no bands; errors of abbe_spectral_channels_find and
+ * 1931 is its XYZ through the space's matrix. An infinite band counts as the brightest finite one
+ * of the picture, and as 65504, the greatest half, at least. `name` is what errors call the
+ * picture. ABBE_NOT_FOUND where it has no bands; errors of abbe_spectral_channels_find and
  * abbe_spectral_colour_weights. */
 abbe_result abbe_relight_make(const abbe_image *image, const char *name,
                               const abbe_relight_desc *desc, abbe_image *out, abbe_error *error);

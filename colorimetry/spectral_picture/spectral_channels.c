@@ -3,16 +3,10 @@
 #include "base/number.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const struct {
-  const char *text;
-  int exponent;
-} prefixes[] = {{"", 0},   {"Y", 24}, {"Z", 21},  {"E", 18},  {"P", 15},  {"T", 12},  {"G", 9},
-                {"M", 6},  {"k", 3},  {"h", 2},   {"da", 1},  {"d", -1},  {"c", -2},  {"m", -3},
-                {"u", -6}, {"n", -9}, {"p", -12}, {"f", -15}, {"a", -18}, {"z", -21}, {"y", -24}};
 
 /* "550,000000nm" or "5,45E14Hz" as nm; not above 0 where it is none. */
 static double parse_place(const char *text) {
@@ -34,14 +28,12 @@ static double parse_place(const char *text) {
   const char *rest;
   double value = 0;
   if (!abbe_number_read(number, &rest, &value) || *rest != '\0') return 0;
-  for (size_t i = 0; i < sizeof prefixes / sizeof *prefixes; i++) {
-    const size_t n = strlen(prefixes[i].text);
-    if (strncmp(text + end, prefixes[i].text, n) != 0) continue;
-    const char *unit = text + end + n;
-    if (strcmp(unit, "m") == 0) return value * pow(10, prefixes[i].exponent + 9);
-    if (strcmp(unit, "Hz") == 0) return light_nm_s / (value * pow(10, prefixes[i].exponent));
-  }
-  return 0;
+  const char *unit = text + end;
+  const bool hertz = length - end >= 2 && strcmp(text + length - 2, "Hz") == 0;
+  int exponent = 0;
+  if (!hertz && (length == end || text[length - 1] != 'm')) return 0;
+  if (!abbe_spectral_prefix(unit, length - end - (hertz ? 2 : 1), &exponent)) return 0;
+  return hertz ? light_nm_s / (value * pow(10, exponent)) : value * pow(10, exponent + 9);
 }
 
 abbe_spectral_kind abbe_spectral_channel_parse(const char *name, double *lambda_nm) {
@@ -143,7 +135,49 @@ abbe_result abbe_spectral_channels_find(const abbe_image *image, const char *lay
   abbe_result result = check(image, list, count, name, error);
   if (result == ABBE_OK) result = fill(image, list, count, name, out, error);
   if (result == ABBE_OK) out->kind = kind;
+  const bool emissive = kind == ABBE_SPECTRAL_EMISSIVE;
+  const char *unit = emissive ? abbe_image_attribute_text(image, "emissiveUnits") : NULL;
+  if (result == ABBE_OK) result = abbe_spectral_unit_read(unit, name, &out->unit, error);
+  if (result != ABBE_OK) abbe_spectral_channels_free(out);
   return result;
+}
+
+/* "w420nm" and the like: letters, then a wavelength in nm of what the eye may see. */
+static bool is_named_otherwise(const char *name) {
+  const size_t letters = strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_");
+  const size_t length = strlen(name);
+  if (length - letters < 3 || length - letters > 12) return false;
+  if (strcmp(name + length - 2, "nm") != 0) return false;
+  const double nm = parse_place(name + letters);
+  return nm >= 100 && nm <= 10000;
+}
+
+static bool is_reradiation(const char *name) {
+  const char *second = strncmp(name, "T.", 2) == 0 ? strchr(name + 2, '.') : NULL;
+  char first[64];
+  if (second == NULL || (size_t)(second - name - 2) >= sizeof first) return false;
+  snprintf(first, sizeof first, "%.*s", (int)(second - name - 2), name + 2);
+  return parse_place(first) > 0 && parse_place(second + 1) > 0;
+}
+
+static bool is_polarised(const char *name) {
+  return name[0] == 'S' && name[1] >= '1' && name[1] <= '3' && name[2] == '.' &&
+         parse_place(name + 3) > 0;
+}
+
+void abbe_spectral_channels_find_unread(const abbe_image *image, const char *layer,
+                                        abbe_spectral_unread *out) {
+  static bool (*const is[ABBE_SPECTRAL_UNREAD_COUNT])(const char *name) = {
+      is_polarised, is_reradiation, is_named_otherwise};
+  *out = (abbe_spectral_unread){0};
+  for (size_t c = 0; c < image->channels; c++) {
+    const char *name = within(image->channel[c], layer);
+    for (int k = 0; name != NULL && k < ABBE_SPECTRAL_UNREAD_COUNT; k++) {
+      if (!is[k](name)) continue;
+      if (out->count[k]++ == 0) out->first[k] = image->channel[c];
+      break;
+    }
+  }
 }
 
 void abbe_spectral_channels_free(abbe_spectral_channels *c) {

@@ -10,6 +10,7 @@
 #define ABBE_COLORIMETRY_SPECTRAL_PICTURE_SPECTRAL_CHANNELS_H
 
 #include "colorimetry/image/image.h"
+#include "colorimetry/spectral_picture/spectral_unit.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -35,14 +36,33 @@ typedef struct abbe_spectral_channels {
   size_t *channel;   /* [count] in the image */
   size_t *error;     /* [count] the channel of its standard error, "stderr." before the name, or
                         (size_t)-1 */
+  abbe_spectral_unit
+      unit; /* of emissive samples, by the attribute emissiveUnits; else of factor 1 */
 } abbe_spectral_channels;
 
 /* The emissive samples of a picture, else the reflective ones, else none (count 0, ABBE_OK).
  * `layer` names the layer that they are in, NULL: in none. `name` is what errors call the picture.
- * ABBE_INVALID_ARGUMENT for two channels of one wavelength. */
+ * ABBE_INVALID_ARGUMENT for two channels of one wavelength, ABBE_UNSUPPORTED for a unit that is
+ * none of light. */
 abbe_result abbe_spectral_channels_find(const abbe_image *image, const char *layer,
                                         const char *name, abbe_spectral_channels *out,
                                         abbe_error *error);
+/* Channels that are of a spectrum and are not read: S1 to S3 of polarised light, re-radiation
+ * ("T.400nm.500nm"), and what bands are called elsewhere ("w420nm"). */
+typedef enum abbe_spectral_unread_kind {
+  ABBE_SPECTRAL_UNREAD_POLARISED,
+  ABBE_SPECTRAL_UNREAD_RERADIATION,
+  ABBE_SPECTRAL_UNREAD_NAMED,
+  ABBE_SPECTRAL_UNREAD_COUNT
+} abbe_spectral_unread_kind;
+
+typedef struct abbe_spectral_unread {
+  size_t count[ABBE_SPECTRAL_UNREAD_COUNT];
+  const char *first[ABBE_SPECTRAL_UNREAD_COUNT]; /* one of their names, the image's; NULL */
+} abbe_spectral_unread;
+
+void abbe_spectral_channels_find_unread(const abbe_image *image, const char *layer,
+                                        abbe_spectral_unread *out);
 void abbe_spectral_channels_free(abbe_spectral_channels *channels);
 
 #ifdef __cplusplus

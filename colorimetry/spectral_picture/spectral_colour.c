@@ -73,6 +73,7 @@ abbe_result abbe_spectral_colour_weights(const abbe_spectral_channels *c,
       const double mean = abbe_observer_integral_power(view->from, from, to) / (to - from) / power;
       factor = mean > 0 ? factor / mean : 0;
     }
+    if (!reflective) factor *= c->unit.factor;
     for (int k = 0; k < 3; k++) weight[i][k] *= factor;
   }
   return ABBE_OK;

@@ -25,7 +25,8 @@ typedef struct abbe_spectral_view {
   const abbe_illuminant *to;   /* to look at it under; NULL: as it is, a reflectance under D65 */
 } abbe_spectral_view;
 
-/* What a unit of each band adds to X, Y and Z: weight[channels->count].
+/* What a unit of each band adds to X, Y and Z, whatever unit the picture states:
+ * weight[channels->count].
  *
  * Emissive, `from` not known: each band is even within itself, and XYZ is in lm (of a radiance in
  * W/(m2 sr nm): cd/m2). `from` known: within a band light has its shape, and XYZ is in the unit of

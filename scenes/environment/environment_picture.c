@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "colorimetry/image/exr.h"
+#include "colorimetry/image/picture_space.h"
 #include "colorimetry/image/radiance_file.h"
 #include "colorimetry/rgb_space.h"
 #include "scenes/geometry/vector.h"
@@ -16,14 +17,15 @@ enum { CUBE_PARTS = 4, CUBE_MAX_SIDE = 8192 };
 
 /* --- the file --- */
 
-static abbe_result read_image(const char *path, abbe_image *out, abbe_error *error) {
+static abbe_result read_image(const char *path, abbe_image *out, bool *is_exr, abbe_error *error) {
   FILE *stream = NULL;
   char head[4] = {0};
   const abbe_result result = abbe_file_open(path, &stream, NULL, error);
   if (result != ABBE_OK) return result;
   const size_t size = fread(head, 1, sizeof head, stream);
   fclose(stream);
-  if (size == 4 && memcmp(head, "\x76\x2f\x31\x01", 4) == 0) return abbe_exr_read(path, out, error);
+  *is_exr = size == 4 && memcmp(head, "\x76\x2f\x31\x01", 4) == 0;
+  if (*is_exr) return abbe_exr_read(path, out, error);
   if (size >= 2 && memcmp(head, "#?", 2) == 0) return abbe_radiance_read(path, out, error);
   return abbe_error_set(error, ABBE_UNSUPPORTED,
                         "%s: it is neither an OpenEXR nor a Radiance picture; surroundings are of "
@@ -41,26 +43,20 @@ static bool find_channels(const abbe_image *image, const char *const names[3], s
 
 /* Row-major matrix to Rec.709 from the picture's own channels. */
 static abbe_result colours_of(const char *path, const abbe_image *image, size_t channel[3],
-                              double matrix[9], abbe_error *error) {
-  double from_xyz[9], to_xyz[9];
-  bool stated = false;
-  for (int i = 0; i < 8; i++) stated = stated || image->xy[i] != 0;
-  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
-  if (find_channels(image, (const char *const[3]){"R", "G", "B"}, channel)) {
-    const abbe_result result =
-        stated ? abbe_rgb_space_chromaticities_to_xyz(image->xy, to_xyz, error) : ABBE_OK;
-    if (result != ABBE_OK)
-      return abbe_error_set(error, ABBE_SCHEMA, "%s: its chromaticities span no colour space",
-                            path);
-  } else if (find_channels(image, (const char *const[3]){"X", "Y", "Z"}, channel)) {
-    abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_XYZ, to_xyz);
-  } else if (!find_channels(image, (const char *const[3]){"Y", "Y", "Y"}, channel)) {
+                              double matrix[9], bool *assumed, abbe_error *error) {
+  const bool rgb = find_channels(image, (const char *const[3]){"R", "G", "B"}, channel);
+  const bool xyz = !rgb && find_channels(image, (const char *const[3]){"X", "Y", "Z"}, channel);
+  abbe_picture_space space;
+  double from_xyz[9];
+  if (!rgb && !xyz && !find_channels(image, (const char *const[3]){"Y", "Y", "Y"}, channel))
     return abbe_error_set(error, ABBE_NOT_FOUND,
                           "%s: it has no channels R, G and B, or X, Y and Z, or Y", path);
-  }
+  const abbe_result result = abbe_picture_space_find(image, xyz, path, &space, error);
+  if (result != ABBE_OK) return result;
+  *assumed = rgb && space.assumed;
   abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, from_xyz);
   for (int i = 0; i < 3; i++) {
-    double column[3] = {to_xyz[i], to_xyz[3 + i], to_xyz[6 + i]};
+    double column[3] = {space.to_xyz[i], space.to_xyz[3 + i], space.to_xyz[6 + i]};
     abbe_rgb_space_apply(from_xyz, column, column);
     for (int k = 0; k < 3; k++) matrix[3 * k + i] = column[k];
   }
@@ -68,11 +64,13 @@ static abbe_result colours_of(const char *path, const abbe_image *image, size_t 
 }
 
 /* The picture's pixels as Rec.709, three floats each, in place of its channels. */
-static abbe_result convert(const char *path, abbe_image *image, abbe_error *error) {
+static abbe_result convert(const char *path, abbe_image *image, bool *assumed, abbe_error *error) {
   size_t channel[3];
   double matrix[9];
-  const abbe_result result = colours_of(path, image, channel, matrix, error);
+  const abbe_result result = colours_of(path, image, channel, matrix, assumed, error);
   if (result != ABBE_OK) return result;
+  abbe_image_odd odd;
+  abbe_image_count_odd(image, channel, 3, &odd);
   bool same = true;
   for (int i = 0; i < 9; i++) same = same && fabs(matrix[i] - (i % 4 == 0)) < 1e-12;
   /* each pixel is read before it is written: 3 k is never beyond channels k, unless grey */
@@ -89,8 +87,9 @@ static abbe_result convert(const char *path, abbe_image *image, abbe_error *erro
       const abbe_result bad = abbe_error_set(
           error, ABBE_SCHEMA,
           "%s: the pixel at column %zu, row %zu is %g in the channel %s; radiance is finite and "
-          "not negative",
-          path, i % image->width, i / image->width, rgb[k], image->channel[channel[k]]);
+          "not negative (of all pixels %zu are infinite and %zu not a number)",
+          path, i % image->width, i / image->width, rgb[k], image->channel[channel[k]],
+          odd.infinite, odd.nan);
       if (to != image->data) free(to);
       return bad;
     }
@@ -228,12 +227,15 @@ abbe_result abbe_environment_picture_read(const char *path, abbe_environment_lay
   ABBE_REQUIRE(path && out, error);
   *out = (abbe_radiance_map){0};
   abbe_image image = {0};
-  abbe_result result = read_image(path, &image, error);
+  bool is_exr = false;
+  abbe_result result = read_image(path, &image, &is_exr, error);
   if (result == ABBE_OK) result = check_layout(path, &image, &layout, error);
-  if (result == ABBE_OK) result = convert(path, &image, error);
+  bool assumed = false;
+  if (result == ABBE_OK) result = convert(path, &image, &assumed, error);
   if (result == ABBE_OK)
     result = layout == ABBE_LAYOUT_CUBE ? from_cube(&image, out, error)
                                         : from_latlong(&image, out, error);
+  if (result == ABBE_OK) out->space_assumed = assumed && is_exr;
   abbe_image_free(&image);
   return result;
 }

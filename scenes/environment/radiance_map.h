@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -24,6 +25,7 @@ extern "C" {
 typedef struct abbe_radiance_map {
   size_t width, height; /* width = 2 height */
   float *rgb;           /* [height][width][3], finite, >= 0 */
+  bool space_assumed;   /* the OpenEXR file that it is of does not say its space */
 } abbe_radiance_map;
 
 /* A black map. ABBE_INVALID_ARGUMENT for a width that is odd or outside

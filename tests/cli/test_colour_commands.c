@@ -182,9 +182,56 @@ static void test_display_source(void **state) {
   make_picture(NULL, "rgb", rgbz);
   must(1, "'rgb'", arguments);
   abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_REC709, xy);
-  xy[0] = 0.7;
+  xy[0] = 0.7; /* of no space that has a name: grey stays grey */
   make_picture(xy, NULL, rgbz);
-  must(1, "--source", arguments);
+  show("--view Plain", rgb);
+  assert_true(fabs(rgb[0] - rgb[1]) < 1e-3);
+  for (int i = 0; i < 4; i++) xy[2 * i] = xy[2 * i + 1] = 0.1 + 0.1 * i;
+  make_picture(xy, NULL, rgbz);
+  must(1, exr, arguments);
+}
+
+/* A file that does not say its space is Rec.709 to every command, and each says so; and says how
+ * many pixels are not finite. */
+static void test_one_meaning_of_the_numbers(void **state) {
+  (void)state;
+  static const char *const commands[] = {"display %s -o %s", "gamut %s --overlay %s",
+                                         "pixel %s 2,1"};
+  double silent[3], said[3], xy[8];
+  char line[300];
+  abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_REC709, xy);
+  make_picture(xy, NULL, rgbz);
+  show("--view Plain --exposure 1", said);
+  for (int c = 0; c < 3; c++) {
+    snprintf(line, sizeof line, commands[c], exr, png);
+    assert_int_equal(run(line), 0);
+    assert_null(strstr(output, "note"));
+  }
+  make_picture(NULL, NULL, rgbz);
+  show("--view Plain --exposure 1", silent);
+  for (int k = 0; k < 3; k++) assert_near(silent[k], said[k], 1e-4);
+  for (int c = 0; c < 3; c++) {
+    snprintf(line, sizeof line, commands[c], exr, png);
+    must(0, "does not say its colour space; linear Rec.709 is taken", line);
+  }
+  abbe_image image = {0};
+  assert_int_equal(abbe_image_make(8, 4, 3, rgbz, &image, NULL), ABBE_OK);
+  for (int i = 0; i < 96; i++) image.data[i] = 1;
+  assert_int_equal(abbe_exr_write(exr, &image, NULL), ABBE_OK);
+  snprintf(line, sizeof line, "environment %s", exr);
+  must(0, "does not say its colour space", line);
+  for (int i = 0; i < 96; i++) image.data[i] = i < 9 ? INFINITY : i < 12 ? NAN : 1;
+  memcpy(image.xy, xy, sizeof xy);
+  assert_int_equal(abbe_exr_write(exr, &image, NULL), ABBE_OK);
+  must(1, "3 are infinite and 1 not a number", line);
+  for (int c = 0; c < 2; c++) {
+    snprintf(line, sizeof line, commands[c], exr, png);
+    must(0, ": 3 pixels are infinite, ", line);
+    must(0, ": 1 pixels are not a number (NaN)", line);
+  }
+  show("--view Looking --exposure -20", said);
+  for (int k = 0; k < 3; k++) assert_true(said[k] > 0.99);
+  abbe_image_free(&image);
 }
 
 static bool holds(const char *word) {
@@ -340,6 +387,7 @@ int main(void) {
                                      cmocka_unit_test(test_display_source),
                                      cmocka_unit_test(test_display_says_its_colour),
                                      cmocka_unit_test(test_gamut),
+                                     cmocka_unit_test(test_one_meaning_of_the_numbers),
                                      cmocka_unit_test(test_display_fails),
                                      cmocka_unit_test(test_info),
                                      cmocka_unit_test(test_a_full_disk)};

@@ -118,6 +118,7 @@ static const struct {
     {"abbe_rii_parse", "report"},
     {"abbe_rii_parse", "name"},
     {"abbe_rii_write", "report"},
+    {"abbe_spectral_unit_read", "text"},
     {"abbe_route_follow", "vertex"},
     {"abbe_scaling_study_measure", "user"},
     {"abbe_transport_study_measure", "user"},

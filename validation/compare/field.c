@@ -101,6 +101,11 @@ static abbe_result take_colour(const abbe_image *image, const char *name, abbe_f
 
 /* Bands */
 
+static void scale(float *value, size_t count, double factor) {
+  for (size_t i = 0; value != NULL && factor != 1 && i < count; i++)
+    value[i] = (float)((double)value[i] * factor);
+}
+
 static abbe_result take_bands(const abbe_image *image, const char *name, abbe_field *f,
                               abbe_error *error) {
   abbe_spectral_channels list = {0};
@@ -108,6 +113,7 @@ static abbe_result take_bands(const abbe_image *image, const char *name, abbe_fi
   abbe_result result = abbe_spectral_channels_find(image, NULL, name, &list, error);
   const size_t count = list.count;
   for (size_t i = 0; i < count; i++) names[i] = image->channel[list.channel[i]];
+  const double unit = list.unit.factor;
   f->lambda_nm = list.lambda_nm;
   list.lambda_nm = NULL;
   abbe_spectral_channels_free(&list);
@@ -115,7 +121,10 @@ static abbe_result take_bands(const abbe_image *image, const char *name, abbe_fi
   result = take(image, "", names, count, name, &f->bands.value, error);
   if (result == ABBE_OK)
     result = take(image, "stderr.", names, count, name, &f->bands.error, error);
-  drop_unknown(&f->bands.error, count * image->width * image->height);
+  const size_t samples = count * image->width * image->height;
+  drop_unknown(&f->bands.error, samples);
+  scale(f->bands.value, samples, unit);
+  scale(f->bands.error, samples, unit);
   f->bands.channels = f->bands.value == NULL ? 0 : count;
   return result;
 }

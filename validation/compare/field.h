@@ -35,7 +35,7 @@ const char *abbe_field_kind_name(abbe_field_kind kind);
 /* Interleaved samples of every pixel, row 0 at the top. */
 typedef struct abbe_field_samples {
   size_t channels; /* 0: there are none */
-  float *value;    /* [height][width][channels], in the file's unit */
+  float *value;    /* [height][width][channels], in the file's unit; bands in W, m and sr */
   float *error;    /* the same, standard error of the mean; NULL where the file has none */
 } abbe_field_samples;
 

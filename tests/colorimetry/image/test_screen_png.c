@@ -8,11 +8,16 @@
 #include <unistd.h>
 
 static char path[64];
+static const char *source; /* what --source says */
+static abbe_screen_png_notes notes;
 
 /* A pixel of `rgb` in the space (ABBE_RGB_SPACE_COUNT: none is stated), as that PNG shows it. */
 static void show(const char *const *channel, size_t channels, const float *value,
                  const char *attribute, const double *xy, const char *layer, float out[3]) {
-  const abbe_screen_png_desc desc = {.display.view = "Plain", .layer = layer, .bits = 16};
+  const abbe_screen_png_desc desc = {.display = {.view = "Plain", .source_space = source},
+                                     .layer = layer,
+                                     .bits = 16,
+                                     .notes = &notes};
   abbe_image image = {0}, shown = {0};
   abbe_error error = {0};
   assert_int_equal(abbe_image_make(1, 1, channels, channel, &image, NULL), ABBE_OK);
@@ -44,10 +49,61 @@ static void test_a_space_by_word_by_channels_and_by_chromaticities(void **state)
   show(rgb, 3, rec709, "rec709", NULL, NULL, got[0]);
   show(rgb, 3, rec709, NULL, xy, NULL, got[1]);
   show(xyz, 3, in_xyz, NULL, NULL, NULL, got[2]);
-  show(rgb, 3, ap1, NULL, NULL, NULL, got[3]); /* nothing is stated: the role scene_linear */
+  show(rgb, 3, rec709, NULL, NULL, NULL, got[3]); /* nothing is stated, as OpenEXR has it */
   for (int i = 0; i < 4; i++)
     for (int k = 0; k < 3; k++) assert_near((double)got[i][k], (double)want[k], 2e-4);
   assert_true(want[1] > want[0] && want[0] > want[2]);
+}
+
+/* Colours of other primaries are shown as the same colour in Rec.709 is, with a note where nothing
+ * is stated; by the name of the space too. */
+static void test_other_primaries(void **state) {
+  (void)state;
+  static const char *const rgb[] = {"R", "G", "B"};
+  static const struct {
+    double xy[8];
+    const char *name;
+  } spaces[] = {{{0.680, 0.320, 0.265, 0.690, 0.150, 0.060, 0.3127, 0.3290}, "Linear P3-D65"},
+                {{0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290}, "Linear Rec.2020"},
+                {{0.64, 0.33, 0.21, 0.71, 0.15, 0.06, 0.3127, 0.3290}, "lin_adobergb_scene"},
+                {{0.7347, 0.2653, 0, 1, 0.0001, -0.077, 0.32168, 0.33767}, "ACES2065-1"},
+                {{0.5, 0.3, 0.2, 0.7, 0.1, 0.1, 0.3, 0.3}, NULL}};
+  static const float value[] = {0.3f, 0.4f, 0.2f};
+  for (size_t i = 0; i < sizeof spaces / sizeof spaces[0]; i++) {
+    double to_xyz[9], from_xyz[9], v[3] = {0.3, 0.4, 0.2};
+    float want[3], got[3];
+    assert_int_equal(abbe_rgb_space_chromaticities_to_xyz(spaces[i].xy, to_xyz, NULL), ABBE_OK);
+    abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, from_xyz);
+    abbe_rgb_space_apply(to_xyz, v, v);
+    abbe_rgb_space_apply(from_xyz, v, v);
+    const float rec709[] = {(float)v[0], (float)v[1], (float)v[2]};
+    show(rgb, 3, rec709, "rec709", NULL, NULL, want);
+    show(rgb, 3, value, NULL, spaces[i].xy, NULL, got);
+    for (int k = 0; k < 3; k++) assert_near((double)got[k], (double)want[k], 2e-4);
+    if (spaces[i].name == NULL) continue;
+    source = spaces[i].name;
+    show(rgb, 3, value, NULL, NULL, NULL, got);
+    source = NULL;
+    for (int k = 0; k < 3; k++) assert_near((double)got[k], (double)want[k], 2e-4);
+  }
+}
+
+static void test_notes(void **state) {
+  (void)state;
+  static const char *const rgb[] = {"R", "G", "B", "Z"}, *const y[] = {"Y"};
+  static const float value[] = {INFINITY, 1, NAN, INFINITY}, nan[] = {1, 1, NAN, 1};
+  float got[3];
+  show(rgb, 4, value, NULL, NULL, NULL, got);
+  assert_true(notes.space_assumed && notes.odd.infinite == 1 && notes.odd.nan == 0);
+  assert_true(got[0] > 0.99f && got[2] < 0.01f);
+  show(rgb, 4, nan, "rec709", NULL, NULL, got);
+  assert_true(!notes.space_assumed && notes.odd.infinite == 0 && notes.odd.nan == 1);
+  show(y, 1, nan, NULL, NULL, NULL, got);
+  assert_true(!notes.space_assumed && notes.odd.nan == 0); /* a grey is one in every space */
+  /* infinite red of other primaries is red */
+  show(rgb, 3, (const float[]){INFINITY, 0, 0}, NULL,
+       (const double[]){0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.3290}, NULL, got);
+  assert_true(got[0] > 0.99f && got[1] < 0.01f && got[2] < 0.01f);
 }
 
 static void test_layers_and_greys(void **state) {
@@ -78,10 +134,10 @@ static void test_what_cannot_be_shown_is_refused(void **state) {
   assert_contains(error.text, "it has: U, V, R");
   abbe_image_free(&image);
   assert_int_equal(abbe_image_make(1, 1, 3, rgb, &image, NULL), ABBE_OK);
-  const double odd[] = {0.5, 0.3, 0.2, 0.7, 0.1, 0.1, 0.3, 0.3};
-  memcpy(image.xy, odd, sizeof image.xy);
-  assert_int_equal(abbe_screen_png_write(path, &image, &desc, &error), ABBE_COLOUR);
-  assert_contains(error.text, "of no known space");
+  const double line[] = {0.1, 0.1, 0.2, 0.2, 0.3, 0.3, 0.3, 0.3};
+  memcpy(image.xy, line, sizeof image.xy);
+  assert_int_equal(abbe_screen_png_write(path, &image, &desc, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "it.exr: ");
   abbe_image_set_attribute(&image, "abbe:space", "p3", NULL);
   assert_int_equal(abbe_screen_png_write(path, &image, &desc, &error), ABBE_COLOUR);
   assert_contains(error.text, "abbe:space is 'p3'");
@@ -92,6 +148,8 @@ static void test_what_cannot_be_shown_is_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_a_space_by_word_by_channels_and_by_chromaticities),
+      cmocka_unit_test(test_other_primaries),
+      cmocka_unit_test(test_notes),
       cmocka_unit_test(test_layers_and_greys),
       cmocka_unit_test(test_what_cannot_be_shown_is_refused),
   };

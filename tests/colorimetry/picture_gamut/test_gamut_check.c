@@ -54,6 +54,19 @@ static void test_known_pixels(void **state) {
   abbe_image_free(&image);
 }
 
+static void test_what_is_not_finite_is_counted(void **state) {
+  (void)state;
+  abbe_image image = picture();
+  abbe_gamut_check c;
+  image.data[0] = INFINITY;
+  image.data[4] = NAN;
+  assert_int_equal(abbe_gamut_check_make(&image, "it", ABBE_GAMUT_REC709, &c, NULL), ABBE_OK);
+  assert_true(c.odd.infinite == 1 && c.odd.nan == 1);
+  assert_int_equal(c.lit, 1);
+  abbe_gamut_check_free(&c);
+  abbe_image_free(&image);
+}
+
 static void test_pictures_of_it(void **state) {
   (void)state;
   static const char png[] = "/tmp/abbe_test_overlay.png", svg[] = "/tmp/abbe_test_diagram.svg";
@@ -97,8 +110,8 @@ static void test_nothing(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_known_pixels),
-                                     cmocka_unit_test(test_pictures_of_it),
-                                     cmocka_unit_test(test_nothing)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_known_pixels), cmocka_unit_test(test_what_is_not_finite_is_counted),
+      cmocka_unit_test(test_pictures_of_it), cmocka_unit_test(test_nothing)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

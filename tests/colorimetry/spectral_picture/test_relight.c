@@ -97,6 +97,55 @@ static void test_a_reflectance_under_another_light(void **state) {
   abbe_image_free(&emitted);
 }
 
+/* 683 lm/W and the integral of ybar: an even radiance of 1 mW/(m2 sr nm), and its thousandth of a
+ * watt, are the same luminance; an irradiance is in lux. */
+static void test_units(void **state) {
+  (void)state;
+  static const struct {
+    const char *unit, *says;
+    float value;
+  } cases[] = {{"W.m^-2.sr^-1.nm^-1", "luminance, cd/m2", 1e-3f},
+               {"mW.m^-2.sr^-1.nm^-1", "luminance, cd/m2", 1},
+               {"W.m^-2", "illuminance, lx", 1e-3f}};
+  const abbe_relight_desc desc = {.space = ABBE_RGB_SPACE_XYZ};
+  for (int i = 0; i < 3; i++) {
+    abbe_image image, xyz;
+    make("S0.", &image);
+    for (size_t b = 0; b < 2 * BANDS; b++) image.data[b] = cases[i].value;
+    abbe_image_set_attribute(&image, "emissiveUnits", cases[i].unit, NULL);
+    assert_int_equal(abbe_relight_make(&image, "it", &desc, &xyz, NULL), ABBE_OK);
+    assert_near((double)xyz.data[1], 0.683 * 106.856, 0.03); /* the CIE's sum over 360 to 830 nm */
+    assert_string_equal(abbe_image_attribute_text(&xyz, "abbe:unit"), cases[i].says);
+    abbe_image_free(&xyz);
+    abbe_image_free(&image);
+  }
+}
+
+/* An infinite band is as bright as the brightest half, or as the brightest band that there is, and
+ * does not take the others away; what is not a number stays so. */
+static void test_infinite_bands(void **state) {
+  (void)state;
+  abbe_image image, xyz;
+  abbe_image_odd odd;
+  const abbe_relight_desc desc = {.space = ABBE_RGB_SPACE_ACESCG, .odd = &odd};
+  double bright[3];
+  make("S0.", &image);
+  image.data[40] = 65504;
+  assert_int_equal(abbe_relight_make(&image, "it", &desc, &xyz, NULL), ABBE_OK);
+  for (int k = 0; k < 3; k++) bright[k] = (double)xyz.data[k];
+  abbe_image_free(&xyz);
+  image.data[40] = INFINITY;
+  image.data[BANDS] = NAN;
+  assert_int_equal(abbe_relight_make(&image, "it", &desc, &xyz, NULL), ABBE_OK);
+  for (int k = 0; k < 3; k++) {
+    assert_near((double)xyz.data[k], bright[k], 1e-6 * fabs(bright[k]));
+    assert_true(isnan(xyz.data[3 + k]));
+  }
+  assert_true(odd.infinite == 1 && odd.nan == 1);
+  abbe_image_free(&xyz);
+  abbe_image_free(&image);
+}
+
 /* Bands that are kept are those that a lamp of the other illuminant makes; and looked at again, as
  * made with that one, they have the same colour. */
 static void test_bands_are_kept(void **state) {
@@ -148,10 +197,11 @@ static void test_what_is_refused_and_what_is_needed(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_equal_energy_of_each_observer),
-      cmocka_unit_test(test_a_reflectance_under_another_light),
-      cmocka_unit_test(test_bands_are_kept),
-      cmocka_unit_test(test_what_is_refused_and_what_is_needed)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_units),
+                                     cmocka_unit_test(test_infinite_bands),
+                                     cmocka_unit_test(test_equal_energy_of_each_observer),
+                                     cmocka_unit_test(test_a_reflectance_under_another_light),
+                                     cmocka_unit_test(test_bands_are_kept),
+                                     cmocka_unit_test(test_what_is_refused_and_what_is_needed)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -93,9 +93,54 @@ static void test_twice_the_same(void **state) {
   abbe_image_free(&image);
 }
 
+static void test_what_is_not_read(void **state) {
+  (void)state;
+  static const char *const names[] = {
+      "S0.500nm", "S0.600nm",  "S1.500nm", "S3.600nm", "T.400nm.500nm",
+      "T.500nm",  "w420nm",    "w720nm",   "R",        "a.S2.500nm",
+      "S4.500nm", "T.x.500nm", "nm",       "m",        "1"};
+  abbe_image image;
+  abbe_spectral_unread unread;
+  make(names, 15, &image);
+  abbe_spectral_channels_find_unread(&image, NULL, &unread);
+  static const size_t count[ABBE_SPECTRAL_UNREAD_COUNT] = {2, 1, 2};
+  static const char *const first[] = {"S1.500nm", "T.400nm.500nm", "w420nm"};
+  for (int k = 0; k < ABBE_SPECTRAL_UNREAD_COUNT; k++) {
+    assert_int_equal(unread.count[k], count[k]);
+    assert_string_equal(unread.first[k], first[k]);
+  }
+  abbe_spectral_channels_find_unread(&image, "a", &unread);
+  assert_int_equal(unread.count[ABBE_SPECTRAL_UNREAD_POLARISED], 1);
+  abbe_image_free(&image);
+}
+
+static void test_the_unit(void **state) {
+  (void)state;
+  static const char *const names[] = {"S0.500nm", "S0.600nm"};
+  abbe_image image;
+  abbe_spectral_channels c;
+  abbe_error error = {0};
+  make(names, 2, &image);
+  assert_int_equal(abbe_spectral_channels_find(&image, NULL, "it", &c, NULL), ABBE_OK);
+  assert_true(c.unit.factor == 1 && c.unit.quantity == ABBE_SPECTRAL_RADIANCE);
+  abbe_spectral_channels_free(&c);
+  abbe_image_set_attribute(&image, "emissiveUnits", "mW.m^-2", NULL);
+  assert_int_equal(abbe_spectral_channels_find(&image, NULL, "it", &c, NULL), ABBE_OK);
+  assert_near(c.unit.factor, 1e-3, 1e-18);
+  assert_int_equal(c.unit.quantity, ABBE_SPECTRAL_IRRADIANCE);
+  abbe_spectral_channels_free(&c);
+  abbe_image_set_attribute(&image, "emissiveUnits", "photons", NULL);
+  assert_int_equal(abbe_spectral_channels_find(&image, NULL, "it", &c, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "it: its emissiveUnits are 'photons'");
+  abbe_image_free(&image);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_names), cmocka_unit_test(test_bands_meet_midway),
-      cmocka_unit_test(test_layers_and_reflectances), cmocka_unit_test(test_twice_the_same)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_is_not_read),
+                                     cmocka_unit_test(test_the_unit),
+                                     cmocka_unit_test(test_names),
+                                     cmocka_unit_test(test_bands_meet_midway),
+                                     cmocka_unit_test(test_layers_and_reflectances),
+                                     cmocka_unit_test(test_twice_the_same)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -82,6 +82,29 @@ static void what_rec709_cannot_hold_is_clipped(void **state) {
   abbe_radiance_map_free(&map);
 }
 
+/* abbe:space is taken as every other reader takes it, before the chromaticities; a file that says
+ * nothing is Rec.709, and is known to say nothing. */
+static void the_space_that_a_file_says(void **state) {
+  (void)state;
+  abbe_radiance_map map[3];
+  abbe_error error = {0};
+  for (int i = 0; i < 3; i++) {
+    abbe_image image = picture(4, 2, rgb_names);
+    for (size_t k = 0; k < 24; k++) image.data[k] = 0.25f + 0.25f * (k % 3 == 1);
+    if (i == 0) abbe_image_set_attribute(&image, "abbe:space", "acescg", NULL);
+    if (i == 1) abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_ACESCG, image.xy);
+    assert_int_equal(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map[i], NULL), ABBE_OK);
+  }
+  for (int k = 0; k < 3; k++) assert_near(map[0].rgb[k], map[1].rgb[k], 1e-6);
+  assert_true(map[2].rgb[0] == 0.25f && fabsf(map[0].rgb[0] - 0.25f) > 0.02f);
+  assert_true(map[2].space_assumed && !map[0].space_assumed && !map[1].space_assumed);
+  for (int i = 0; i < 3; i++) abbe_radiance_map_free(&map[i]);
+  abbe_image image = picture(4, 2, rgb_names);
+  for (size_t k = 0; k < 24; k++) image.data[k] = k < 6 ? INFINITY : 1;
+  assert_int_equal(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map[0], &error), ABBE_SCHEMA);
+  assert_contains(error.text, "2 are infinite and 0 not a number");
+}
+
 static void grey_pictures(void **state) {
   (void)state;
   static const char *const names[] = {"Y"};
@@ -206,6 +229,7 @@ int main(void) {
       cmocka_unit_test(latlong_pictures),
       cmocka_unit_test(colours_are_converted),
       cmocka_unit_test(what_rec709_cannot_hold_is_clipped),
+      cmocka_unit_test(the_space_that_a_file_says),
       cmocka_unit_test(grey_pictures),
       cmocka_unit_test(cubes),
       cmocka_unit_test(what_is_refused),
