@@ -113,12 +113,8 @@ abbe_result abbe_gem_input_load(abbe_gem_input *in, abbe_error *error) {
   if (found != in->path && !in->quiet)
     fprintf(stderr, "note: %s is not here; %s is taken\n", in->path, found);
   abbe_arguments_add(in->program, ABBE_ARGUMENT_READS, "the design", found);
-  abbe_result result = abbe_cut_file_read(found, &in->cut, &in->report, error);
-  if (result == ABBE_OK) {
-    abbe_error inner = {0};
-    result = abbe_cut_polyhedron_make(&in->cut, in->weld, &in->stone, &inner);
-    if (result != ABBE_OK) abbe_error_set(error, result, "%s: %s", found, inner.text);
-  }
+  abbe_result result =
+      abbe_cut_file_read_stone(found, in->weld, &in->cut, &in->stone, &in->report, error);
   if (result == ABBE_OK) abbe_cut_measures_make(&in->cut, &in->stone, &in->measures);
   if (result == ABBE_OK) result = find_material(in, error);
   if (!in->quiet) print_notes(in);

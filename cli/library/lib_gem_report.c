@@ -80,8 +80,8 @@ static abbe_result prepare(const request *q, const char *path, const char *mater
   const abbe_illuminant d65 = {0};
   char place[2 * PATH_MAX];
   const char *found = abbe_library_shipped_find(path, place, sizeof place);
-  abbe_result result = abbe_cut_file_read(found, &w->cut, NULL, error);
-  if (result == ABBE_OK) result = abbe_cut_polyhedron_make(&w->cut, q->weld, &w->polyhedron, error);
+  abbe_result result =
+      abbe_cut_file_read_stone(found, q->weld, &w->cut, &w->polyhedron, NULL, error);
   if (result == ABBE_OK) result = abbe_material_table_load(q->table, &w->table, error);
   if (result == ABBE_OK)
     result = abbe_material_table_find(&w->table, material, &w->material, error);

@@ -57,6 +57,12 @@ static bool is_number(const char *word, double *value) {
   return abbe_number_read(word, &end, value) && *end == '\0' && isfinite(*value);
 }
 
+static bool begins_number(const char *at) {
+  if (*at == '-' || *at == '+') at++;
+  if (*at == '.') at++;
+  return isdigit((unsigned char)*at);
+}
+
 /* NaN, an infinity, or a number that is as good as one. */
 static bool is_no_number(const char *word) {
   static const char *const names[] = {"nan", "inf", "infinity"};
@@ -199,8 +205,9 @@ static abbe_result read_words(reading *r, char *at, abbe_error *error) {
       result = read_name(r, &at, error);
     else if (is_number(word, &index))
       result = add_index(r, index, error);
-    else if (is_no_number(word))
-      result = FAIL(r, ABBE_SCHEMA, "'%.40s' is no index of a gear", word);
+    else if (is_no_number(word) || begins_number(word))
+      result = FAIL(r, ABBE_SCHEMA,
+                    "'%.40s' is no index of a gear, which is a number such as 3 or 3.5", word);
     else
       NOTE(r, ABBE_NOTE_SKIPPED, "'%.40s' is neither an index nor a name behind 'n'", word);
   }
@@ -229,12 +236,6 @@ static abbe_result read_tier(reading *r, char *at, abbe_error *error) {
 }
 
 /* ---- the file ---- */
-
-static bool begins_number(const char *at) {
-  if (*at == '-' || *at == '+') at++;
-  if (*at == '.') at++;
-  return isdigit((unsigned char)*at);
-}
 
 static bool is_word(const char *at, char letter) {
   return *at == letter && (at[1] == ' ' || at[1] == '\t' || at[1] == '\0');

@@ -35,3 +35,15 @@ abbe_result abbe_cut_file_read(const char *path, abbe_cut *out, abbe_report *rep
                         "(GemCad) or .gcs (Gem Cut Studio)",
                         path);
 }
+
+abbe_result abbe_cut_file_read_stone(const char *path, double weld, abbe_cut *cut,
+                                     abbe_cut_polyhedron *stone, abbe_report *report,
+                                     abbe_error *error) {
+  ABBE_REQUIRE(path && cut && stone, error);
+  abbe_error why;
+  memset(stone, 0, sizeof *stone);
+  abbe_result result = abbe_cut_file_read(path, cut, report, error);
+  if (result != ABBE_OK) return result;
+  result = abbe_cut_polyhedron_make(cut, weld, stone, &why);
+  return result == ABBE_OK ? result : abbe_error_set(error, result, "%s: %s", path, why.text);
+}

@@ -5,6 +5,7 @@
 
 #include "base/report.h"
 #include "scenes/cuts/cut.h"
+#include "scenes/cuts/cut_polyhedron.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -16,6 +17,12 @@ extern "C" {
  * ABBE_UNSUPPORTED for another ending; ABBE_IO, and errors of the kind's own. */
 abbe_result abbe_cut_file_read(const char *path, abbe_cut *out, abbe_report *report,
                                abbe_error *error);
+
+/* The same with its stone, whose corners nearer than the share weld of half its width are one: where
+ * the planes make none, the error names the file. Both outputs are to be freed. */
+abbe_result abbe_cut_file_read_stone(const char *path, double weld, abbe_cut *cut,
+                                     abbe_cut_polyhedron *stone, abbe_report *report,
+                                     abbe_error *error);
 
 #ifdef __cplusplus
 }

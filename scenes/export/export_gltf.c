@@ -252,10 +252,17 @@ static double efficacy(const abbe_illuminant *illuminant) {
   return LUMENS * range.white_y / watts;
 }
 
-static void add_glow(building *b, const abbe_light *light, const char *name, const double rgb[3]) {
+/* A light's colour, from 0 to 1 as the format wants it, and what its strength is multiplied by. */
+static double light_colour(const abbe_light *light, double colour[3]) {
+  abbe_export_light_rgb(&light->illuminant, colour);
+  const double most = fmax(fmax(colour[0], colour[1]), colour[2]);
+  for (int c = 0; c < 3; c++) colour[c] /= most;
+  return most;
+}
+
+static void add_glow(building *b, const abbe_light *light, const char *name) {
   static const double black[3] = {0};
-  double colour[3], most = fmax(fmax(rgb[0], rgb[1]), rgb[2]);
-  for (int c = 0; c < 3; c++) colour[c] = rgb[c] / most;
+  double colour[3], most = light_colour(light, colour);
   cJSON *material = begin_material(b, name, black, 0, 1);
   add_numbers(material, "emissiveFactor", colour, 3);
   cJSON *extensions = cJSON_AddObjectToObject(material, "extensions");
@@ -267,13 +274,12 @@ static void add_glow(building *b, const abbe_light *light, const char *name, con
 static abbe_result add_light(building *b, size_t i, abbe_error *error) {
   const abbe_light *light = &b->w->scene->light[i];
   char name[ABBE_EXPORT_NAME_SIZE];
-  double rgb[3], x[3], y[3], back[3] = {0, 0, 1};
+  double colour[3], x[3], y[3], back[3] = {0, 0, 1};
   abbe_export_name(name, "l", i, light->name);
-  abbe_export_light_rgb(&light->illuminant, rgb);
   if (abbe_light_has_size(light)) {
     abbe_mesh mesh = {0};
     const abbe_result result = abbe_export_light_mesh(light, &mesh, error);
-    add_glow(b, light, name, rgb);
+    add_glow(b, light, name);
     if (result == ABBE_OK)
       add_mesh(b, name, &mesh, NULL, (size_t)cJSON_GetArraySize(b->materials) - 1);
     abbe_mesh_free(&mesh);
@@ -285,8 +291,9 @@ static abbe_result add_light(building *b, size_t i, abbe_error *error) {
                           light->kind == ABBE_LIGHT_POINT  ? "point"
                           : light->kind == ABBE_LIGHT_SPOT ? "spot"
                                                            : "directional");
-  add_numbers(item, "color", rgb, 3);
-  cJSON_AddNumberToObject(item, "intensity", light->power * efficacy(&light->illuminant));
+  const double most = light_colour(light, colour);
+  add_numbers(item, "color", colour, 3);
+  cJSON_AddNumberToObject(item, "intensity", most * light->power * efficacy(&light->illuminant));
   if (light->kind == ABBE_LIGHT_SPOT) {
     cJSON *spot = cJSON_AddObjectToObject(item, "spot");
     const double inner = fmax(light->cone_rad - light->soft_rad, 0);

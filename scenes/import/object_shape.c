@@ -191,8 +191,7 @@ static abbe_result make_cut(const char *path, const cut_reading *q, abbe_object 
                             abbe_error *error) {
   abbe_cut cut = {0};
   abbe_cut_polyhedron stone = {0};
-  abbe_result result = abbe_cut_file_read(path, &cut, NULL, error);
-  if (result == ABBE_OK) result = abbe_cut_polyhedron_make(&cut, q->weld, &stone, error);
+  abbe_result result = abbe_cut_file_read_stone(path, q->weld, &cut, &stone, NULL, error);
   if (result == ABBE_OK) {
     if (!abbe_cut_stretch_bound(&cut, &stone)) /* else the pavilion's moves both */
       object->cut_deg[0] = abbe_cut_stretch_main_deg(&cut, &stone, ABBE_CUT_CROWN);

@@ -94,7 +94,7 @@ static void test_bands(void **state) {
     abbe_image_free(&image);
   }
   if (run_line("command -v exrinfo") != 0) return;
-  check_run("exrinfo -v a.exr", 0);
+  run_line("exrinfo -v a.exr"); /* its status is random in OpenEXR 3.1.5 */
   assert_contains(run_output, "S0.430,000000nm");
   assert_contains(run_output, "emissiveUnits");
 }

@@ -29,6 +29,7 @@ static const struct {
     {"abbe_cut_asc_parse", "report"},
     {"abbe_cut_asc_write", "report"},
     {"abbe_cut_file_read", "report"},
+    {"abbe_cut_file_read_stone", "report"},
     {"abbe_cut_gcs_parse", "report"},
     {"abbe_cut_gcs_write", "report"},
     {"abbe_cut_gem_parse", "report"},

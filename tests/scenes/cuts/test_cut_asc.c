@@ -100,6 +100,8 @@ static void bad_files_are_refused_with_the_line(void **state) {
   refuse("g 96 0\na 45 1 96 -Inf\n", "x.asc:2: '-Inf' is no index");
   refuse("g 96 0\na 45 1 96\nnan\n", "x.asc:3: 'nan' is no index");
   refuse("g 96 0\na 45 1 1e999\n", "x.asc:2: '1e999' is no index");
+  refuse("g 96 0\na 45 1 96\n3,5 24\n", "x.asc:3: '3,5' is no index");
+  refuse("g 96 0\na 45 1 3 1/2\n", "x.asc:2: '1/2' is no index");
   refuse("g 96 0\na 45 1 1e7\n", "x.asc:2: 1e+07 is no index");
   refuse("g 96 0\na 45 1 96 24 48\n", "3 facets enclose nothing");
   abbe_cut cut;

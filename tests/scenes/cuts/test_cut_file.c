@@ -32,10 +32,37 @@ static void others_are_refused(void **state) {
   assert_int_equal(abbe_cut_file_read("/dev/zero.gem", &cut, NULL, &error), ABBE_IO);
 }
 
+/* Planes that close no stone, however well they are written. */
+static void an_open_design_is_named(void **state) {
+  (void)state;
+  char folder[] = "/tmp/abbe_cut_XXXXXX", path[64];
+  const char open[] = "g 96 0\na 90 1 96 24 48 72\n",
+             box[] = "g 96 0\na 90 1 96 24 48 72\na 0 1\na -0 1\n";
+  abbe_cut cut;
+  abbe_cut_polyhedron stone;
+  abbe_error error;
+  assert_non_null(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/open.asc", folder);
+  assert_int_equal(abbe_file_write(path, open, strlen(open), NULL), ABBE_OK);
+  assert_int_equal(abbe_cut_file_read_stone(path, 1e-6, &cut, &stone, NULL, &error), ABBE_GEOMETRY);
+  assert_contains(error.text, path);
+  assert_contains(error.text, "leave the stone open");
+  abbe_cut_polyhedron_free(&stone);
+  abbe_cut_free(&cut);
+  assert_int_equal(abbe_file_write(path, box, strlen(box), NULL), ABBE_OK);
+  assert_int_equal(abbe_cut_file_read_stone(path, 1e-6, &cut, &stone, NULL, &error), ABBE_OK);
+  assert_int_equal(stone.face_count, 6);
+  abbe_cut_polyhedron_free(&stone);
+  abbe_cut_free(&cut);
+  unlink(path);
+  rmdir(folder);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_ending_says_the_kind),
       cmocka_unit_test(others_are_refused),
+      cmocka_unit_test(an_open_design_is_named),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -104,6 +104,28 @@ static void test_lights_keep_their_power(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* The format's validator refuses components of colours beyond 1: the largest is 1. */
+static void test_colours_in_gltf(void **state) {
+  (void)state;
+  abbe_scene scene;
+  load_text(CAMERA LIGHTS FLOOR BALL("murk") BRICK("flat"), &scene);
+  char *text = written(&scene, ABBE_SCENE_EXPORT_GLTF);
+  const char *const keys[] = {"color", "emissiveFactor"};
+  int count[2] = {0};
+  for (int k = 0; k < 2; k++)
+    for (const char *at = strstr(text, keys[k]); at != NULL; at = strstr(at + 1, keys[k])) {
+      double rgb[3];
+      numbers_after(at, ":", rgb, 3);
+      assert_near(fmax(fmax(rgb[0], rgb[1]), rgb[2]), 1, 0);
+      assert_true(fmin(fmin(rgb[0], rgb[1]), rgb[2]) >= 0);
+      count[k]++;
+    }
+  assert_int_equal(count[0], 3);
+  assert_int_equal(count[1], 2);
+  done(text);
+  abbe_scene_free(&scene);
+}
+
 /* An equal-energy lamp in glTF: 683 lm/W times the mean of V over 380 to 780 nm, 0.2672 (the
  * integral of V is 106.86 nm). In Mitsuba its film's Y, the integral of ybar times the values over
  * 106.75, is the power. */
@@ -115,8 +137,11 @@ static void test_photometric_and_film_units(void **state) {
                    "illuminant: E}\n" FLOOR BALL("flat"),
             &scene);
   char *text = written(&scene, ABBE_SCENE_EXPORT_GLTF);
+  double rgb[3];
+  numbers_after(text, "\"color\":", rgb, 3);
   numbers_after(text, "\"intensity\":", v, 1);
-  assert_near(v[0], 2 * 683.0 * 106.86 / 400, 0.5);
+  const double luminance = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+  assert_near(luminance * v[0], 2 * 683.0 * 106.86 / 400, 0.5);
   done(text);
   text = written(&scene, ABBE_SCENE_EXPORT_MITSUBA);
   const char *values = strstr(strstr(text, "<emitter type=\"point\""), "name=\"values\"");
@@ -367,6 +392,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_the_index_in_the_file_has_the_stated_error),
       cmocka_unit_test(test_lights_keep_their_power),
+      cmocka_unit_test(test_colours_in_gltf),
       cmocka_unit_test(test_photometric_and_film_units),
       cmocka_unit_test(test_losses_are_said),
       cmocka_unit_test(test_reflectances_are_read_back),
