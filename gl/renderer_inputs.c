@@ -1,6 +1,7 @@
 #include "gl/renderer_inputs.h"
 
 #include "gl/pinholes/pinhole_samples.h"
+#include "gl/scene/spectra/camera_bands.h"
 #include "scenes/geometry/digest.h"
 
 #include <string.h>
@@ -153,6 +154,9 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
   MIX(h, d->max_nm);
   MIX(h, plan->caustics);
   MIX(h, plan->lengths);
+  MIX(h, plan->band_parts);
+  const bool interleaved = abbe_camera_bands_interleave(plan);
+  MIX(h, interleaved);
   MIX(h, plan->fills);
   MIX(h, plan->dispersive);
   MIX(h, plan->absorbing);

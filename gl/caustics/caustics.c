@@ -140,6 +140,7 @@ static abbe_shader_variant photon_variant(const abbe_caustics *c,
   v.bridge = plan->fills;
   v.doubts_bridges = plan->layers || plan->bvh;
   v.keeps_lengths = plan->lengths;
+  v.band_parts = false;
   return v;
 }
 

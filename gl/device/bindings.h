@@ -78,5 +78,6 @@
 #define UNIT_ENVIRONMENT 15
 #define UNIT_ENVIRONMENT_CUBE 16
 #define UNIT_SHAFTS 17
+#define UNIT_BAND_PARTS 18
 
 #endif

@@ -67,7 +67,7 @@ int level = 0, joined = 0;
 vec3 shown_by[COARSE_BANDS];
 #endif
 
-#ifdef LEAST_BANDS
+#ifdef COARSE_EYE
 // In pictures of what moves: half as many, but of facets, which show bands apart; of mirrors two, and of what is seen
 // from inside one.
 float coarse_wanted(float wanted) {
@@ -87,8 +87,11 @@ void choose_bands(out int base, out int count) {
   base = first_band(refractor);
   count = counts.wavelengths;
   float wanted = wanted_bands(front, sight, base, base + counts.wavelengths - 1);
-#ifdef LEAST_BANDS
-  wanted = max(coarse_wanted(wanted), float(LEAST_BANDS));
+#ifdef COARSE_EYE
+  wanted = coarse_wanted(wanted);
+#endif
+#ifdef BAND_PARTS
+  wanted = max(wanted, 3.0);  // twenty-four parts have the colour of two stones
 #endif
   for (int k = 0; k < counts.band_levels - 1; k++) {
     bool coarser = float((count + 1) / 2) >= wanted;
@@ -109,36 +112,12 @@ void choose_bands(out int base, out int count) {
 }
 
 // INTERLEAVES: the samples of a pixel share its bands, where these are more than two. Each sample takes
-// every second band, its neighbours those between. A band that is left out gives half of its weight to each
-// of the two beside it, or all of it to the one where it is the first or the last.
+// every second band, its neighbours those between, of whose light each band has a share (camera_bands.h).
 #ifdef INTERLEAVES
 int taken_step(int count) { return count > 2 ? 2 : 1; }
 int first_taken(ivec2 at, int count) { return count > 2 ? (at.x ^ at.y) & 1 : 0; }
-
-// A mirror's bands reflect each its own share.
-#ifdef MIRRORS
-float reflects_for(int band, int other) {
-  return is_mirror(refractor) ? bands[other].attenuation.x / max(bands[band].attenuation.x, 1e-6) : 1.0;
-}
-#else
-float reflects_for(int band, int other) { return 1.0; }
-#endif
-
-vec3 part_for(int band, int other, bool ends) {
-  return (ends ? 1.0 : 0.5) * reflects_for(band, other) * bands[other].weight_n.xyz;
-}
-
-vec3 band_weight(int base, int i, int count) {
-  int band = base + i;
-  vec3 weight = bands[band].weight_n.xyz;
-  if (count <= 2) return weight;
-  if (i > 0) weight += part_for(band, band - 1, i == 1);
-  if (i + 1 < count) weight += part_for(band, band + 1, i + 2 == count);
-  return weight;
-}
 #else
 int taken_step(int count) { return 1; }
 int first_taken(ivec2 at, int count) { return 0; }
-vec3 band_weight(int base, int i, int count) { return bands[base + i].weight_n.xyz; }
 #endif
 #endif

@@ -52,17 +52,6 @@ uniform vec4 eye_view[6];
 uniform vec2 eye_samples;              // across and up
 uniform uint pixel_first, pixel_end;  // those of the list that are looked at
 
-// gl/scene/spectra/camera_bands.h: the wavelengths grouped, and grouped again by twos: level 0 holds every
-// one, level k every 2^k as one. Levels one after another, in sets.
-struct Band {
-  vec4 weight_n;     // XYZ, n
-  vec4 attenuation;  // 1/m in x; of a mirror: reflectance at normal incidence, then as mirror_spectrum()
-};
-#ifdef BANDS_IN_STORAGE
-layout(std430, binding = BINDING_BANDS) readonly buffer Bands { Band bands[]; };
-#else
-layout(std140, binding = BINDING_BANDS) uniform Bands { Band bands[BAND_ROOM]; };
-#endif
 uniform vec3 eye;
 uniform float share_limit;
 uniform mat3 xyz_from_rgb;
@@ -94,7 +83,15 @@ void copy_all() {
 #define xyz_from_rgb own_xyz_from_rgb
 
 int refractor;  // that this thread's pixel shows
-int band_set;   // that it takes
+
+#include "optical_depth.glsl"
+#ifdef WALK
+#ifdef HAZE_BEYOND
+#define KEEPS_HAZE
+#endif
+#include "walk.glsl"
+#endif
+#include "camera_bands.glsl"
 
 // SHARES_SPECTRUM: the samples of a pixel share the spectrum, each with wavelengths of its own. Neighbours
 // take places far from each other.
@@ -106,8 +103,6 @@ int band_set_of(ivec2 at) {
   return 0;
 #endif
 }
-
-int first_band(int r) { return (r * BAND_SETS + band_set) * counts.bands; }
 
 ivec2 pixel_of(uint listed) {
   return ivec2(listed & 0xffffu, listed >> 16);
@@ -218,6 +213,10 @@ void keep_pixel(uint listed, vec3 sum, vec3 mirror) {
   sight_pixels[word + 3u] = floatBitsToUint(found ? front.t : 0.0);
 }
 #endif
+#ifdef REFINES
+vec3 by_weight(int base, int i) { return shown_by[i] / max(bands[base + i].weight_n.xyz, 1e-12); }
+#endif
+
 // XYZ that all of the pixel's bands show.
 void write_pixel(uint where, int base, int count, vec3 sum) {
 #ifdef REFINES
@@ -228,10 +227,11 @@ void write_pixel(uint where, int base, int count, vec3 sum) {
   for (int i = 0; i < COARSE_BANDS; i++) {
     bool there = i < count && joined > 0 && found;
     vec3 light = shown_by[i], weight = bands[base + min(i, count - 1)].weight_n.xyz;
-    vec3 before = abs(light - shown_by[max(i - 1, 0)]), after = abs(light - shown_by[min(i + 1, count - 1)]);
-    bool wrong = there && dot(max(before, after), weight) > most;
+    vec3 before = abs(light - weight * by_weight(base, max(i - 1, 0)));
+    vec3 after = abs(light - weight * by_weight(base, min(i + 1, count - 1)));
+    bool wrong = there && dot(max(before, after), vec3(1)) > most;
     asked |= wrong ? 1u << uint(i) : 0u;
-    left -= wrong ? light * weight : vec3(0);
+    left -= wrong ? light : vec3(0);
   }
   sum = left;
   if (asked != 0u)

@@ -54,11 +54,17 @@ vec3 seen_outside(vec3 p, vec3 d, Spread spread) {
   return radiance;
 }
 
-// The light of one band, from interface to interface. What is left when the path ends shows what the rest
+// XYZ of what the band that is taken shows, from interface to interface. What is left when the path ends shows what the rest
 // has shown. Its loops have two ways out, with values of their own for what is used after them: of what the
 // last turn alone has made, lanes that took fewer turns may find another's (Mesa 22's llvmpipe).
-vec3 through(Hit front, vec3 d, int band) {
-  float n = bands[band].weight_n.w, attenuation = bands[band].attenuation.x;
+vec3 through(Hit front, vec3 d) {
+  vec2 spectrum = refractor_spectrum(refractor);
+  float n = spectrum.x, per_m = spectrum.y, path_m = 0.0;
+#ifdef BAND_PARTS
+  Depth besides = attenuation_of(refractor);  // of each part, 1/m, besides the least of all
+  per_m = least_of(besides);
+  besides -= per_m;
+#endif
   InnerRay ray = InnerRay(front.p, d, front.facet, 1.0 - fresnel(-dot(d, front.n), 1.0 / n));
   vec3 light = vec3(0);
 #ifdef KEEPS_SIGHTS
@@ -74,7 +80,8 @@ vec3 through(Hit front, vec3 d, int band) {
     while (order < counts.exits) {
       InnerHit h = next_inner_hit(refractor, ray);
 #ifdef ABSORBING
-      ray.share *= exp(-attenuation * distance(h.p, ray.p));
+      path_m += distance(h.p, ray.p);
+      ray.share *= exp(-per_m * distance(h.p, ray.p));
 #endif
 #ifdef KEEPS_SPREAD
       outside = spread_outside(h, ray.p, ray.d, n, within);
@@ -87,9 +94,14 @@ vec3 through(Hit front, vec3 d, int band) {
       if (!CHEAP_INTERFACES || shows || ray.share < limit) break;
     }
     if (shows) {
-      light += leaving.share * seen_outside(leaving.p, leaving.d, outside);
+#ifdef BAND_PARTS
+      vec3 weight = leaving.share * band_left(path_m * besides);
+#else
+      vec3 weight = leaving.share * band_weight;
+#endif
+      light += weight * (xyz_from_rgb * seen_outside(leaving.p, leaving.d, outside));
 #ifdef KEEPS_SIGHTS
-      if (sight_waits) note_sight(leaving.share);
+      if (sight_waits) note_sight(weight);
 #endif
       shown += leaving.share;
     }

@@ -1,14 +1,15 @@
 #include "gl/eye/refraction_pass.h"
 
 #include "gl/device/bindings.h"
+#include "gl/scene/spectra/camera_bands.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a pixel, traced first; from FINE_FROM wavelengths on, where they are more. */
-enum { COARSE_BANDS = 7, FINE_FROM = 9 };
+/* Of a pixel, traced first, where they are more. */
+enum { COARSE_BANDS = 7 };
 /* Pixels at a time whose bands may ask for all their samples. */
 enum { REFINE_ROOM = 1 << 20 };
 /* As sights.glsl has them: bytes of a place, words of a pixel before its chains; and what their
@@ -29,31 +30,19 @@ static bool is_coarse(const abbe_refraction_pass *pass) {
   return scene_of(pass)->plan->desc.coarse != ABBE_COARSE_NONE;
 }
 
-/* Of a pixel of what moves, so that coloured glass has its colours; who looks out of water sees
- * none. */
-static int least_bands(const abbe_plan *plan) {
-  const bool outward = plan->eye_inside != 0 && plan->refractor_count == 1;
-  return !plan->tinting || outward ? 1 : plan->hazy ? 2 : 4;
-}
-
 static bool refines(const abbe_refraction_pass *pass) {
-  const abbe_render_desc *desc = &scene_of(pass)->plan->desc;
-  return desc->wavelengths >= FINE_FROM && !desc->everything && desc->coarse == ABBE_COARSE_NONE;
-}
-
-/* Where a band's path is dear, the samples of a pixel share its bands among them: half the time for
- * the same error. Facets are cheap and show bands apart: there it would cost 5 % in CIEDE2000. */
-static bool interleaves(const abbe_refraction_pass *pass) {
-  const abbe_plan *plan = scene_of(pass)->plan;
-  const bool dear = plan->multi_refractor_paths || plan->layers;
-  return dear && plan->desc.supersample > 1 && !plan->desc.everything;
+  return abbe_camera_bands_refine(scene_of(pass)->plan) && !is_coarse(pass);
 }
 
 /* Samples of a pixel whose glass spreads light by colour share the spectrum: four of them have four
  * times as many wavelengths between them. */
 static bool shares_spectrum(const abbe_refraction_pass *pass) {
   const abbe_render_desc *desc = &scene_of(pass)->plan->desc;
-  return desc->supersample > 1 && desc->wavelengths > 1;
+  return desc->supersample > 1 && desc->wavelengths > 1 && !is_coarse(pass);
+}
+
+static bool interleaves(const abbe_refraction_pass *pass) {
+  return shares_spectrum(pass) && abbe_camera_bands_interleave(scene_of(pass)->plan);
 }
 
 /* Pixels a side for a sample of receivers; 1: both have as many. */
@@ -110,8 +99,7 @@ static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_v
              interleaves(pass) ? "#define INTERLEAVES\n" : "",
              pass->keeps ? "#define KEEPS_SIGHTS\n" : "");
   if (is_coarse(pass))
-    snprintf(facts, sizeof facts, "#define COARSE_EYE\n#define LEAST_BANDS %d\n",
-             least_bands(scene_of(pass)->plan));
+    snprintf(facts, sizeof facts, "#define COARSE_EYE\n");
   snprintf(refined, sizeof refined, "%s#define REFINED\n", shares);
   abbe_result result =
       abbe_shader_variant_compute(&camera, gpu, "refraction.comp", facts, &pass->refract, error);

@@ -2,8 +2,9 @@
 
 // XYZ of what a band shows through the first interface; the share that is mirrored there.
 vec3 band_light(int band, out float mirrored) {
+  take_band(band_set, band - first_band(refractor));
   mirrored = fresnel(-dot(sight, front.n), 1.0 / bands[band].weight_n.w);
-  return xyz_from_rgb * through(front, sight, band);
+  return through(front, sight);
 }
 
 #ifdef REFINED
@@ -22,7 +23,7 @@ void main() {
     int band = findLSB(wanted), end = min((band + 1) << joined, count);
     for (int i = band << joined; i < end; i++) {
       float mirrored;
-      sum += band_light(base + i, mirrored) * bands[base + i].weight_n.xyz;
+      sum += band_light(base + i, mirrored);
     }
     wanted &= wanted - 1u;
   }
@@ -45,12 +46,12 @@ void main() {
 #ifdef KEEPS_SIGHTS
     uint before = sight_chain;
 #endif
-    vec3 light = band_light(base + i, mirrored), weight = band_weight(base, i, count);
+    vec3 light = band_light(base + i, mirrored);
 #ifdef KEEPS_SIGHTS
-    weigh_sights(before, sight_tail * weight);
+    weigh_sights(before, sight_tail);
 #endif
-    mirror += mirrored * weight;
-    sum += light * weight;
+    mirror += mirrored * bands[base + i].weight_n.xyz;
+    sum += light;
 #ifdef REFINES
     shown_by[i] = light;
 #endif
@@ -60,7 +61,7 @@ void main() {
 #ifdef KEEPS_SIGHTS
   sight_pixels[listed * SIGHT_WORDS + 8u] = sight_chain;
   sight_chain = 0u;
-  if (sight_waits) note_sight(1.0);
+  if (sight_waits) note_sight(vec3(1));
   sight_pixels[listed * SIGHT_WORDS + 7u] = sight_chain;
   keep_pixel(listed, sum, mirror);
 #else

@@ -57,13 +57,13 @@ int pixel_thread = int(gl_LocalInvocationID.x) % PIXEL_THREADS;
 #endif
 
 // XYZ of what a band shows through the first interface, or off a mirror; or in_mirror: of what it shows
-// reflected by an interface; mirrored: the share that is. both: of what it shows either way, and nothing is mirrored.
+// reflected by an interface, by unit share; mirrored: the share that is. both: of what it shows either way, and nothing is mirrored.
 vec3 band_light(int band, bool in_mirror, bool both, out float mirrored) {
-  band_of_refractor = band - first_band(refractor);
+  take_band(band_set, band - first_band(refractor));
 #ifdef ROUGH
   if (is_rough(first.hit.refractor)) {
     mirrored = 0.0;
-    return in_mirror ? vec3(0) : xyz_from_rgb * rough_shown();
+    return in_mirror ? vec3(0) : rough_shown();
   }
   lobe_u = lobe_way(0, lobe_shift);
   lobe_ways = float(LOBE_WAYS);
@@ -98,7 +98,7 @@ vec3 band_light(int band, bool in_mirror, bool both, out float mirrored) {
     mirrored = 0.0;
   else
     reflected.share = 0.0;
-  return xyz_from_rgb * shown(w, reflected);
+  return shown(w, reflected);
 }
 
 #ifdef REFINED
@@ -130,7 +130,7 @@ void main() {
     int i = (findLSB(rest) << joined) + (k & ((1 << joined) - 1));
     float mirrored;
     vec3 light = band_light(base + min(i, count - 1), false, false, mirrored);
-    sum += i < count ? light * bands[base + i].weight_n.xyz : vec3(0);
+    sum += i < count ? light : vec3(0);
   }
   path_sum[OF_PIXEL * PIXEL_THREADS + pixel_thread] = sum;
   JOIN
@@ -173,21 +173,22 @@ void main() {
   int last = both ? taken - 1 : taken;
   for (int k = there ? pixel_thread : taken + 1; k <= last; k += PIXEL_THREADS) {
     bool in_mirror = k == taken;
-    int i = in_mirror ? count / 2 : taken_first + k * taken_by, band = base + i;
+    // What is mirrored is alike for all wavelengths: their joined band shows it.
+    int i = taken_first + k * taken_by, band = in_mirror ? first_band(refractor) + counts.bands - 1 : base + i;
     float mirrored;
 #ifdef KEEPS_SIGHTS
     sight_chain = in_mirror ? 0u : own_chain;
     uint before = sight_chain;
 #endif
     vec3 light = band_light(band, in_mirror, both, mirrored);
-    vec3 weight = in_mirror ? vec3(0) : band_weight(base, i, count);
+    vec3 weight = in_mirror ? vec3(0) : bands[band].weight_n.xyz;
 #ifdef KEEPS_SIGHTS
-    weigh_sights(before, sight_tail * (in_mirror ? vec3(1) : weight));
+    weigh_sights(before, sight_tail);
     if (in_mirror) sight_pixels[listed * SIGHT_WORDS + 7u] = sight_chain;
     own_chain = in_mirror ? own_chain : sight_chain;
 #endif
     mirror += mirrored * weight;
-    sum += light * weight;
+    sum += in_mirror ? vec3(0) : light;
     if (in_mirror || both) in_the_mirror[OF_PIXEL] = light;
 #ifdef REFINES
     if (!in_mirror) path_shown[OF_PIXEL * COARSE_BANDS + i] = light;

@@ -1,13 +1,5 @@
 // The eye's rays on multi-refractor paths (walk.glsl): what the branches show, by their shares.
 
-#ifdef HAZE_BEYOND
-#define KEEPS_HAZE
-#define NO_HAZE_YET , 0.0
-#else
-#define NO_HAZE_YET
-#endif
-#include "walk.glsl"
-
 // Of one band: the strongest paths come first. Mesa 22's llvmpipe ends every loop of a thread that has
 // been through 65535 turns of any loops; a stretch takes one for each plane and some for the hierarchy,
 // and a thread takes every PIXEL_THREADS-th band (refraction_threads.glsl).
@@ -24,26 +16,13 @@ int most_segments() {
 #endif
 }
 
-int band_of_refractor;  // that is followed, among one refractor's
-
-vec2 refractor_spectrum(int r) {
-  Band band = bands[first_band(r) + band_of_refractor];
-  return vec2(band.weight_n.w, band.attenuation.x);
-}
-
-#ifdef MIRRORS
-vec3 mirror_spectrum(int r) {
-  return bands[first_band(r) + band_of_refractor].attenuation.yzw;
-}
-#endif
-
 uniform uint eye_inside;  // refractors that the eye is in, which are clear
 
 #ifdef ROUGH
 #include "rough_lamps.glsl"
 #endif
 
-// What w and `other` show, which have met an interface, times their shares. What is not followed shows what the rest has
+// XYZ of what w and `other` show, which have met an interface, in the band that is taken. What is not followed shows what the rest has
 // shown.
 vec3 shown(PathState w, PathState other) {
   PathState pending[PENDING];
@@ -84,16 +63,15 @@ vec3 shown(PathState w, PathState other) {
     radiance *= haze_behind(w.haze_m);
 #endif
     float step_n = medium_n(eye_inside) / medium_n(w.inside);
-    lamps += step_n * step_n * w.share * scattered;
+    lamps += step_n * step_n * in_band(w, scattered);
 #endif
 #ifdef ABSORBING
-    if (w.inside != 0u && met)
-      w.share *= exp(-(receiver ? seen_at : h.hit.t) * refractor_spectrum(medium_of(w.inside)).y);
+    if (w.inside != 0u && met) absorb_inside(w, receiver ? seen_at : h.hit.t);
 #endif
     if (met && !receiver) {
       float ended, dropped, absorbed;
 #ifdef ROUGH
-      if (is_rough(h.hit.refractor)) lamps += w.share * lobe_shows(w, h, vec2(0.5 * lobe_width));
+      if (is_rough(h.hit.refractor)) lamps += lobe_shows(w, h, vec2(0.5 * lobe_width));
 #endif
       branch(w, h, 0.5 * share_limit, pending, ended, dropped, absorbed);
       left += ended;
@@ -101,9 +79,9 @@ vec3 shown(PathState w, PathState other) {
     } else {
       // radiance over the squared index is the same on both sides of an interface
       float n = medium_n(eye_inside) / (receiver ? medium_n(w.inside) : 1.0);
-      light += n * n * w.share * radiance;
+      light += n * n * in_band(w, radiance);
 #ifdef KEEPS_SIGHTS
-      if (sight_waits) note_sight(n * n * w.share);
+      if (sight_waits) note_sight(n * n * left_of(w));
 #endif
       seen_share += w.share;
       w.share = 0.0;
@@ -153,10 +131,10 @@ void begin_path(ivec2 at) {
   lobe_u = lobe_way(0, lobe_shift);
   lobe_width = 0.0;
 #endif
+  start = path_from(eye, sight);
+  start.inside = eye_inside;
 #ifdef KEEPS_SPREAD
-  start = PathState(eye, sight, 1.0, eye_inside, 0u, -1, -1, -1, sight_spread NO_HAZE_YET);
-#else
-  start = PathState(eye, sight, 1.0, eye_inside, 0u, -1, -1, -1 NO_HAZE_YET);
+  start.spread = sight_spread;
 #endif
 }
 

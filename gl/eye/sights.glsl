@@ -23,24 +23,25 @@ bool sight_waits;    // seen() has found a receiver: there
 int waiting_sheet;
 vec2 waiting_uv;
 
-void note_sight(float share) {
+// weight: of X, Y and Z.
+void note_sight(vec3 weight) {
   uint i = atomicAdd(sight_count, 1u);
   if (i >= sight_room) return;
   uint word = SIGHT * i;
   sights[word] = floatBitsToUint(waiting_uv.x);
   sights[word + 1u] = floatBitsToUint(waiting_uv.y);
-  sights[word + 2u] = sights[word + 3u] = sights[word + 4u] = floatBitsToUint(share);
+  for (int k = 0; k < 3; k++) sights[word + 2u + uint(k)] = floatBitsToUint(weight[k]);
   sights[word + 5u] = sight_chain | uint(waiting_sheet) << 24;
   sight_chain = i + 1u;
 }
 
 // Those that were noted after `from`.
-void weigh_sights(uint from, vec3 weight) {
+void weigh_sights(uint from, float factor) {
   uint i = sight_chain;
   while (i != from) {
     uint word = SIGHT * (i - 1u);
     for (int k = 0; k < 3; k++)
-      sights[word + 2u + uint(k)] = floatBitsToUint(uintBitsToFloat(sights[word + 2u + uint(k)]) * weight[k]);
+      sights[word + 2u + uint(k)] = floatBitsToUint(uintBitsToFloat(sights[word + 2u + uint(k)]) * factor);
     i = sights[word + 5u] & SIGHT_NEXT;
   }
 }

@@ -74,8 +74,11 @@ void trace(PhotonRay photon, out Shares entry[5]) {
   wavelength = photon.wavelength;
   vec3 o = photon.o, d = photon.d;
   PathState pending[PENDING];
-  PathState w = PathState(o, d, 1.0, 0u, 0u, -1, -1, -1, d, false);
-  for (int k = 0; k < PENDING; k++) pending[k] = PathState(o, d, 0.0, 0u, 0u, 0, -1, -1, d, false);
+  PathState w = path_from(o, d);
+  for (int k = 0; k < PENDING; k++) {
+    pending[k] = w;
+    pending[k].share = 0.0;
+  }
   uint owner = 0u, used = 0u;
   Ends e = Ends(0.0, 0.0, 0.0, 0.0);
   bool going = photon.reached;
@@ -96,9 +99,9 @@ void trace(PhotonRay photon, out Shares entry[5]) {
     float length_m = met ? min(length_to(to, w.p), h.hit.t) : length_to(to, w.p);
 #ifdef ABSORBING
     if (w.inside != 0u && length_m < 1e30) {
-      float left = exp(-length_m * refractor_spectrum(medium_of(w.inside)).y);
-      e.absorbed += w.share * (1.0 - left);
-      w.share *= left;
+      float before = w.share;
+      absorb_inside(w, length_m);
+      e.absorbed += before - w.share;
     }
 #endif
 #ifdef HAZE

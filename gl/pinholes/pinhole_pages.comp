@@ -24,30 +24,11 @@ layout(std430, binding = BINDING_PAGE_TEXELS) readonly buffer Texels {
 };
 uniform float seen_off;  // m, that a ray may meet a sample's surface beside it
 
-struct Band {  // as in refraction.comp
-  vec4 weight_n;
-  vec4 attenuation;
-};
-#ifdef BANDS_IN_STORAGE
-layout(std430, binding = BINDING_BANDS) readonly buffer Bands { Band bands[]; };
-#else
-layout(std140, binding = BINDING_BANDS) uniform Bands { Band bands[BAND_ROOM]; };
-#endif
+#include "walk.glsl"
+#include "camera_bands.glsl"
 
 // All wavelengths as one.
-int joined_band(int r) { return (r * BAND_SETS + 1) * counts.bands - 1; }
-
-vec2 refractor_spectrum(int r);
-#include "walk.glsl"
-
-vec2 refractor_spectrum(int r) {
-  Band band = bands[joined_band(r)];
-  return vec2(band.weight_n.w, band.attenuation.x);
-}
-
-#ifdef MIRRORS
-vec3 mirror_spectrum(int r) { return bands[joined_band(r)].attenuation.yzw; }
-#endif
+void take_joined_band() { take_band(0, counts.bands - 1); }
 
 #ifdef ROUGH
 uniform float scene_size;
@@ -91,7 +72,7 @@ const float FANNED_OUT = 0.35;
 Pinhole pinhole;
 int node_of;
 float weight;       // of its light
-vec3 total;         // of its ways, rgb
+vec3 total;         // of its ways, XYZ
 vec3 by_u, by_v;    // by how much a path's last direction differs over it
 
 // The path that goes on from there.
@@ -131,7 +112,7 @@ void begin_pinhole(vec3 p, vec3 n, int number) {
   float far2 = dot(to, to);
   vec3 d = to / max(sqrt(far2), 1e-20);
   weight = pinhole.area * max(dot(n, d), 0.0) * max(-dot(pinhole.n, d), 0.0) / (far2 + pinhole.area / PI);
-  w = PathState(p, d, 1.0, 0u, 0u, -1, -1, -1);
+  w = path_from(p, d);
   segment = way = 0;
   ways = 1;
   total = vec3(0);
@@ -231,7 +212,7 @@ vec3 go_on(vec3 p, inout bool going) {
   bool begins = first && turns, ends = !asks && !first && !turns;
   if (!asks) h = at;
 #ifdef ABSORBING
-  if (!asks && w.inside != 0u && met) w.share *= exp(-h.hit.t * refractor_spectrum(medium_of(w.inside)).y);
+  if (!asks && w.inside != 0u && met) absorb_inside(w, h.hit.t);
 #endif
 
   // What is around, where the path ends, or where it would have if nothing were there.
@@ -248,7 +229,7 @@ vec3 go_on(vec3 p, inout bool going) {
   vec3 sky = sky_over(w.d, widened(a, u, wide), widened(b, cross(w.d, u), wide), begins || (ends && !dark));
   if (begins) change = -weight * sky;
   if (ends) {
-    light += dark ? vec3(0) : w.share * sky;
+    light += dark ? vec3(0) : in_band(w, sky);
     followed += w.share;
     w.share = 0.0;
     w = take_pending(pending);
@@ -258,9 +239,9 @@ vec3 go_on(vec3 p, inout bool going) {
   bool rough = turns && is_rough(h.hit.refractor);
   if (begins && rough) begin_rough(far);
   if (asks && !met && !dark) {
-    vec3 shown = light_unit * to_lamp.shown;
+    vec3 shown = in_band(to_lamp.ray, light_unit * to_lamp.shown);
     total += first ? shown : vec3(0);
-    lamps += first ? vec3(0) : w.share * shown;
+    lamps += first ? vec3(0) : shown;
   }
   if (asks || rough) find_lamp(asks ? lamp + 1 : 0);
   turns = (turns || asks) && lamp == LIGHTS;
@@ -272,7 +253,7 @@ vec3 go_on(vec3 p, inout bool going) {
   if (over && !first) {
     end_way();
     way++;
-    change += way == ways ? weight * (rgb_from_xyz * (bands[joined_band(of)].weight_n.xyz * (xyz_from_rgb * total))) : vec3(0);
+    change += way == ways ? weight * (rgb_from_xyz * total) : vec3(0);
 #ifdef ROUGH
     if (way < ways) {
       w = w_first;
@@ -296,6 +277,7 @@ vec3 go_on(vec3 p, inout bool going) {
 
 void main() {
   copy_tables();
+  take_joined_band();
   bool there = thread_number() < texel_count;
   uint place = there ? texels[thread_number()] : 0u;
   ivec2 at = ivec2(place & 0xffffu, place >> 16);

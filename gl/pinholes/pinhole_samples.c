@@ -20,24 +20,26 @@ abbe_result abbe_pinhole_samples_colours(const abbe_gpu_scene *scene, double (**
                                          abbe_error *error) {
   const size_t count = scene->plan->refractor_count, set = scene->band_count;
   abbe_camera_band *band = calloc(count * ABBE_CAMERA_BAND_SETS * set + 1, sizeof *band);
+  float(*texel)[4] = calloc(abbe_camera_bands_texels(scene->plan) + 1, sizeof *texel);
   double(*colour)[3] = calloc(count + 1, sizeof *colour), from_xyz[9], white[3];
-  abbe_result result = band != NULL && colour != NULL
+  abbe_result result = band != NULL && texel != NULL && colour != NULL
                            ? ABBE_OK
                            : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
   if (result == ABBE_OK)
-    result = abbe_camera_bands_fill(scene->local, scene->plan, &scene->tables, band, error);
+    result = abbe_camera_bands_fill(scene->local, scene->plan, &scene->tables, band, texel, error);
   abbe_rgb_space_from_xyz(abbe_gpu_scene_working_space(scene), from_xyz);
   abbe_rgb_space_apply(from_xyz, scene->tables.camera.sum, white);
   for (size_t i = 0; result == ABBE_OK && i < count; i++) {
-    /* the band of all wavelengths */
-    const abbe_camera_band *all = &band[i * ABBE_CAMERA_BAND_SETS * set + set - 1];
-    double xyz[3];
-    for (int k = 0; k < 3; k++)
-      xyz[k] = scene->tables.camera.sum[k] * (double)all->weight_n[k] * (double)all->attenuation[0];
+    double xyz[3] = {1, 1, 1};
+    if (scene->plan->mirror[i])
+      abbe_camera_bands_reflected(scene->plan, (const abbe_camera_band *)band,
+                                  (const float(*)[4])texel, i, xyz);
+    for (int k = 0; k < 3; k++) xyz[k] *= scene->tables.camera.sum[k];
     abbe_rgb_space_apply(from_xyz, xyz, colour[i]);
     for (int k = 0; k < 3; k++) colour[i][k] = scene->plan->mirror[i] ? colour[i][k] / white[k] : 1;
   }
   free(band);
+  free(texel);
   if (result != ABBE_OK) free(colour);
   *out = result == ABBE_OK ? colour : NULL;
   return result;

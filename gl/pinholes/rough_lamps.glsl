@@ -1,8 +1,8 @@
 // A lamp as a rough mirror shows it where nothing is between.
 struct LampRay {
-  PathState ray;  // to the lamp
+  PathState ray;  // to the lamp, with what the mirror leaves of its light
   float distance_m, e;  // e: that of its white, in the lights' units; 0: nothing
-  vec3 shown;           // radiance, for all of the path's light
+  vec3 shown;           // radiance, of what the mirror reflects of it
 };
 
 // Where w comes to the mirror. facets: how far the slopes of its facets, or of the path, are spread.
@@ -20,13 +20,12 @@ LampRay lobe_shows_lamp(int i, RoughHit m, vec2 facets, PathState w, Interface h
   w.d = to;
   w.refractor = h.hit.refractor;
   w.facet = dot(to, h.face_n) < 0.0 ? -1 : 1;
-  vec3 shown = l.white.rgb * (e * mirror_reflectance(mirror_spectrum(h.hit.refractor), cosine));
-  return LampRay(w, distance_m, e, e > 0.0 ? shown : vec3(0));
+  absorb_at_mirror(w, h.hit.refractor, cosine);
+  return LampRay(w, distance_m, e, e > 0.0 ? l.white.rgb * e : vec3(0));
 }
 
 #ifndef ASKS_FOR_LAMPS
-// What a rough mirror shows of lamps that it sees straight: rgb radiance in the lights' units, for all of the
-// path's light. wider: by how much each facet's slopes are spread besides, along the grooves and across, as by
+// What a rough mirror shows of lamps that it sees straight: XYZ of what the band has of it, in the lights' units. wider: by how much each facet's slopes are spread besides, along the grooves and across, as by
 // what the path stands for.
 vec3 lobe_shows(PathState w, Interface h, vec2 wider) {
   RoughHit m = rough_hit(w, h);
@@ -40,7 +39,7 @@ vec3 lobe_shows(PathState w, Interface h, vec2 wider) {
         receiver_between(l.ray.p, l.ray.d, 1e-4 * refractor_bounds.w, l.distance_m) ||
         !area_lights_lit(i, l.ray.p, -l.ray.d, l.distance_m))
       continue;
-    sum += l.shown;
+    sum += in_band(l.ray, l.shown);
   }
   return sum;
 }

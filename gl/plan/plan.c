@@ -57,6 +57,7 @@ static void combine(abbe_plan *plan) {
                 plan->desc.fill != ABBE_FILL_NONE &&
                 ((apart && !published) || (published && caustics));
   plan->edges = caustics && !published && plan->facets;
+  plan->band_parts = (plan->tinting || plan->colouring) && !published;
   plan->lengths = caustics && plan->tinting && !plan->multi_refractor_paths && !published;
 }
 

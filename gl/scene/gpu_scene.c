@@ -192,6 +192,8 @@ void abbe_gpu_scene_free(abbe_gpu_scene *scene, unsigned parts) {
   if (parts & ABBE_SCENE_SPECTRA) {
     abbe_gpu_drop_buffers(scene->gpu, 1, &scene->spectra);
     abbe_gpu_drop_buffers(scene->gpu, 1, &scene->bands);
+    abbe_gpu_drop_buffers(scene->gpu, 1, &scene->band_parts);
+    abbe_gpu_drop_textures(scene->gpu, 1, &scene->band_parts_texture);
     abbe_spectral_tables_free(&scene->tables);
   }
 }
@@ -212,10 +214,17 @@ void abbe_gpu_scene_bind(const abbe_gpu_scene *scene) {
     gl->BindBufferBase(GL_UNIFORM_BUFFER, tables[i].binding, tables[i].buffer);
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, tables[i].binding, tables[i].buffer);
   }
-  for (GLenum k = 0; k < 3; k++) {
-    if (scene->bvh_texture[k] == 0) continue;
-    gl->ActiveTexture(GL_TEXTURE0 + UNIT_BVH_NODES + k);
-    gl->BindTexture(GL_TEXTURE_BUFFER, scene->bvh_texture[k]);
+  const struct {
+    GLenum unit;
+    GLuint texture;
+  } texels[] = {{UNIT_BVH_NODES, scene->bvh_texture[0]},
+                {UNIT_BVH_TRIANGLES, scene->bvh_texture[1]},
+                {UNIT_BVH_CORNERS, scene->bvh_texture[2]},
+                {UNIT_BAND_PARTS, scene->band_parts_texture}};
+  for (size_t i = 0; i < sizeof texels / sizeof *texels; i++) {
+    if (texels[i].texture == 0) continue;
+    gl->ActiveTexture(GL_TEXTURE0 + texels[i].unit);
+    gl->BindTexture(GL_TEXTURE_BUFFER, texels[i].texture);
   }
 }
 

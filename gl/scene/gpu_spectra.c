@@ -1,5 +1,6 @@
 #include "gl/scene/gpu_scene.h"
 
+#include "gl/device/bindings.h"
 #include "gl/scene/spectra/camera_bands.h"
 
 #include <stdlib.h>
@@ -43,13 +44,22 @@ static abbe_result upload_spectra(abbe_gpu_scene *scene, abbe_error *error) {
 static abbe_result upload_bands(abbe_gpu_scene *scene, abbe_error *error) {
   const size_t count = scene->plan->refractor_count * ABBE_CAMERA_BAND_SETS * scene->band_count;
   const size_t room = abbe_gpu_spectra_room(count);
+  const size_t texels = abbe_camera_bands_texels(scene->plan);
   abbe_camera_band *band = calloc(room, sizeof *band);
-  if (band == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
-  abbe_result result =
-      abbe_camera_bands_fill(scene->local, scene->plan, &scene->tables, band, error);
+  float(*texel)[4] = calloc(texels + 1, sizeof *texel);
+  abbe_result result = band != NULL && texel != NULL
+                           ? ABBE_OK
+                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
+  if (result == ABBE_OK)
+    result = abbe_camera_bands_fill(scene->local, scene->plan, &scene->tables, band, texel, error);
   if (result == ABBE_OK)
     result = abbe_gpu_make_buffer(scene->gpu, room * sizeof *band, band, &scene->bands, error);
+  if (result == ABBE_OK && texels > 0)
+    result = abbe_gpu_make_texels(scene->gpu, GL_RGBA32F, texels * sizeof *texel, texel,
+                                  UNIT_BAND_PARTS, &scene->band_parts, &scene->band_parts_texture,
+                                  error);
   free(band);
+  free(texel);
   return result;
 }
 

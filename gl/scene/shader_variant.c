@@ -35,6 +35,7 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
       .one_shadow = p->light_view_count * p->refractor_count == 1,
       .receiver_shadows = p->receiver_shadows,
       .absorbing = p->absorbing,
+      .band_parts = p->band_parts,
       .textured = p->textured,
       .receiver_colours = p->receiver_colours,
       .environment = scene->environment.texture != 0,
@@ -139,6 +140,7 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "HIERARCHY", v->hierarchy);
   print_flag(to, "RECEIVER_HIERARCHY", v->receiver_hierarchy);
   print_flag(to, "ABSORBING", v->absorbing);
+  print_flag(to, "BAND_PARTS", v->band_parts);
   print_flag(to, "TEXTURED", v->textured);
   if (v->receiver_colours) {
     print_count(to, "RECEIVER_COLOURS", 1);

@@ -19,7 +19,7 @@ typedef struct abbe_shader_variant {
   size_t exits, slots;
   size_t bvh_stack, receiver_root, shadow_planes;
   bool spheres, convex, layers, hierarchy, receiver_hierarchy, one_convex, one_shadow;
-  bool receiver_shadows, absorbing, textured, receiver_colours, environment, caustics, walk,
+  bool receiver_shadows, absorbing, band_parts, textured, receiver_colours, environment, caustics, walk,
       mirrors, rough, cubes;
   bool volume; /* caustics are looked up in the plan's, of that kind */
   abbe_volume_kind volume_kind;

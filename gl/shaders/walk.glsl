@@ -2,12 +2,16 @@
 // known by its own model, reflected and refracted at each. Where refractors overlap the one listed
 // last is there. Who includes this gives refractor_spectrum(r): n and attenuation (1/m) of refractor
 // r at the wavelength that is followed. MIRRORS: some of them are mirrors, which reflect on both sides and
-// which no path is ever in; mirror_spectrum(r) gives what they reflect by. ROUGH: some of those are rough;
+// which no path is ever in; mirror_spectrum(r) gives what they reflect by. BAND_PARTS: attenuation_of(r) gives
+// attenuation, 1/m, of the parts of the band that is followed, or of a mirror their factors. ROUGH: some of those are rough;
 // photons (KEEPS_INTERFACE) end there, and other paths go on by their lobe.
+
+#include "optical_depth.glsl"
+#define FOLLOWS_PATHS
 
 struct PathState {
   vec3 p, d;
-  float share;    // of the light that it began with
+  float share;    // of the light that it began with; BAND_PARTS: at the most, of any part of the band
   uint inside;    // bit r: within refractor r
   uint path;      // what it met and did so far, as one number
   int interfaces;  // met since the first; -1: none yet
@@ -22,6 +26,9 @@ struct PathState {
 #ifdef KEEPS_HAZE
   float haze_m;  // metres of the air's haze so far
 #endif
+#ifdef BAND_PARTS
+  Depth depth;  // of each part, besides what `share` has of it
+#endif
 };
 
 struct Interface {
@@ -31,6 +38,30 @@ struct Interface {
   mat3 bend;    // how the normal turns along the face, 1/m
 #endif
 };
+
+// Of share 1, in free space.
+PathState path_from(vec3 p, vec3 d) {
+  PathState w;
+  w.p = p;
+  w.d = d;
+  w.share = 1.0;
+  w.inside = w.path = 0u;
+  w.interfaces = w.refractor = w.facet = -1;
+#ifdef KEEPS_INTERFACE
+  w.interface_n = d;
+  w.transmitted = false;
+#endif
+#ifdef KEEPS_SPREAD
+  w.spread = no_spread();
+#endif
+#ifdef KEEPS_HAZE
+  w.haze_m = 0.0;
+#endif
+#ifdef BAND_PARTS
+  w.depth = Depth(0.0);
+#endif
+  return w;
+}
 
 const int PENDING = 4;  // branches that wait, the strongest
 
@@ -42,9 +73,8 @@ vec3 mirror_spectrum(int r);
 bool is_mirror(int r) { return refractors[r].info.z < 0; }
 
 // spectrum: a factor of what is absorbed, then a metal's n and k; k below 0: all but the factor is reflected.
-float mirror_reflectance(vec3 spectrum, float cos_i) {
-  float metal = spectrum.z < 0.0 ? 0.0 : fresnel_conductor(cos_i, spectrum.y, spectrum.z);
-  return max(1.0 - spectrum.x * (1.0 - metal), 0.0);
+float metal_reflectance(vec3 spectrum, float cos_i) {
+  return spectrum.z < 0.0 ? 0.0 : fresnel_conductor(cos_i, spectrum.y, spectrum.z);
 }
 #else
 const bool NO_MIRROR = false;
@@ -54,6 +84,37 @@ const bool NO_MIRROR = false;
 int medium_of(uint inside) {
   return findMSB(inside);
 }
+
+#ifdef BAND_PARTS
+Depth attenuation_of(int r);
+
+void attenuate(inout PathState w, Depth depth) {
+  float least = least_of(depth);
+  w.share *= exp(-least);
+  w.depth += depth - least;
+}
+#endif
+
+// So many metres inside a refractor.
+void absorb_inside(inout PathState w, float metres) {
+#ifdef BAND_PARTS
+  attenuate(w, metres * attenuation_of(medium_of(w.inside)));
+#else
+  w.share *= exp(-metres * refractor_spectrum(medium_of(w.inside)).y);
+#endif
+}
+
+#ifdef MIRRORS
+void absorb_at_mirror(inout PathState w, int r, float cos_i) {
+  vec3 spectrum = mirror_spectrum(r);
+  float metal = metal_reflectance(spectrum, cos_i);
+#ifdef BAND_PARTS
+  attenuate(w, mirror_depth(attenuation_of(r), metal));
+#else
+  w.share *= max(1.0 - spectrum.x * (1.0 - metal), 0.0);
+#endif
+}
+#endif
 
 // Of refractors of one material the first; -1: air.
 int stuff_of(uint inside) {
@@ -277,7 +338,8 @@ float scatter_off(inout PathState w, Interface h) {
   float before = w.share;
   float share = facets_sample(m.facets, m.wo, lobe_u, facet, wi);
   float pdf = facets_pdf(m.facets, m.wo, wi);
-  w.share *= share * mirror_reflectance(mirror_spectrum(h.hit.refractor), min(dot(m.wo, facet), 1.0));
+  w.share *= share;
+  absorb_at_mirror(w, h.hit.refractor, min(dot(m.wo, facet), 1.0));
   w.d = keep_side(m.face_n, normalize(wi.x * m.x + wi.y * m.y + wi.z * m.n));
   w.facet = dot(w.d, h.face_n) < 0.0 ? -1 : 1;
   lobe_width = max(lobe_width, min(inversesqrt(max(pdf, 1e-6) * lobe_ways), 1.0));
@@ -305,7 +367,7 @@ float reflect_off(inout PathState w, Interface h) {
   const bool rough = false;
 #endif
   if (!rough) {
-    w.share *= mirror_reflectance(mirror_spectrum(r), -dot(w.d, n));
+    absorb_at_mirror(w, r, -dot(w.d, n));
 #ifdef KEEPS_SPREAD
     w.spread = spread_mirrored(spread_at(w.spread, w.d, h.hit.t, face_n), w.d, n, side * h.bend);
 #endif

@@ -36,14 +36,14 @@ static double attenuation_of(const passage *p, double from, double to, double *y
 }
 
 static void fill_half(const passage *p, size_t parts, double from, double to, abbe_band_half *out) {
-  double y[ABBE_BAND_PARTS] = {0}, total = 0;
+  double y[ABBE_HALF_PARTS] = {0}, total = 0;
   for (size_t k = 0; k < parts; k++) {
     const double a = from + (to - from) * (double)k / (double)parts;
     const double b = from + (to - from) * (double)(k + 1) / (double)parts;
     out->attenuation[k] = (float)fmin(attenuation_of(p, a, b, &y[k]), ABBE_BAND_MOST_PER_M);
     total += y[k];
   }
-  for (size_t k = 0; k < ABBE_BAND_PARTS; k++) {
+  for (size_t k = 0; k < ABBE_HALF_PARTS; k++) {
     if (k >= parts) out->attenuation[k] = out->attenuation[0];
     out->share[k] = (float)(total > 0 ? y[k] / total : k < parts ? 1.0 / (double)parts : 0);
   }
@@ -51,7 +51,7 @@ static void fill_half(const passage *p, size_t parts, double from, double to, ab
 
 /* Of few wavelengths halves are wide: as wide as the parts of more. */
 static size_t parts_of(const abbe_wavelengths *w) {
-  return w->count <= FEW_NODES ? ABBE_BAND_PARTS : 1;
+  return w->count <= FEW_NODES ? ABBE_HALF_PARTS : 1;
 }
 
 static void fill_node(const passage *p, const abbe_wavelengths *w, size_t i, abbe_node_bands *out) {

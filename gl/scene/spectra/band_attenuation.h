@@ -8,12 +8,12 @@
 #include "gl/plan/facts/plan_facts.h"
 #include "spectral/wavelengths.h"
 
-enum { ABBE_BAND_PARTS = 4 };
+enum { ABBE_HALF_PARTS = 4 };
 
 /* Float copies of what the shaders read as texels (photon_absorption.glsl). */
 typedef struct abbe_band_half {
-  float attenuation[ABBE_BAND_PARTS]; /* 1/m */
-  float share[ABBE_BAND_PARTS];       /* of the half's Y */
+  float attenuation[ABBE_HALF_PARTS]; /* 1/m */
+  float share[ABBE_HALF_PARTS];       /* of the half's Y */
 } abbe_band_half;
 
 typedef struct abbe_node_bands {

@@ -1,7 +1,16 @@
 #include "gl/scene/spectra/camera_bands.h"
 
+#include "gl/scene/spectra/band_parts.h"
+
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* From so many wavelengths on bands are joined first. */
+enum { REFINED_FROM = 9 };
+
+/* Of a step, nm: attenuation hardly varies in it. */
+#define STEP_NM 2.5
 
 size_t abbe_camera_bands_count(size_t wavelengths, size_t *levels) {
   size_t count = wavelengths;
@@ -10,130 +19,288 @@ size_t abbe_camera_bands_count(size_t wavelengths, size_t *levels) {
   return count;
 }
 
-/* A pair of bands as one: weights add, index and attenuation are means by brightness. */
-static void join_bands(const abbe_camera_band *a, const abbe_camera_band *b,
-                       abbe_camera_band *out) {
-  double wa = 1e-9, wb = 1e-9;
-  for (int c = 0; c < 3; c++) {
-    wa += fabs(a->weight_n[c]);
-    wb += fabs(b->weight_n[c]);
-    out->weight_n[c] = a->weight_n[c] + b->weight_n[c];
-  }
-  out->weight_n[3] = (float)((wa * a->weight_n[3] + wb * b->weight_n[3]) / (wa + wb));
-  out->attenuation[0] = (float)((wa * a->attenuation[0] + wb * b->attenuation[0]) / (wa + wb));
+size_t abbe_camera_bands_texels(const abbe_plan *plan) {
+  size_t levels;
+  const size_t all =
+      ABBE_CAMERA_BAND_SETS * abbe_camera_bands_count(plan->desc.wavelengths, &levels);
+  return plan->band_parts
+             ? all * (plan->refractor_count * ABBE_PART_TEXELS + ABBE_PART_LIGHT_TEXELS)
+             : 0;
 }
 
-static void join_levels(size_t count, abbe_camera_band *band) {
-  for (; count > 1; band += count, count = (count + 1) / 2)
-    for (size_t i = 0; i < (count + 1) / 2; i++) {
-      band[count + i] = band[2 * i];
-      if (2 * i + 1 < count) join_bands(&band[2 * i], &band[2 * i + 1], &band[count + i]);
-    }
+bool abbe_camera_bands_refine(const abbe_plan *plan) {
+  return plan->desc.wavelengths >= REFINED_FROM && !plan->desc.everything;
+}
+
+/* Where a band's path is dear: half the time for the same error. Facets are cheap and show bands
+ * apart: there it would cost 5 % in CIEDE2000. */
+bool abbe_camera_bands_interleave(const abbe_plan *plan) {
+  const bool dear = plan->multi_refractor_paths || plan->layers;
+  return dear && !plan->desc.everything && !abbe_camera_bands_refine(plan);
+}
+
+/* A set of bands while it is made; a set's own wavelengths, where its bands begin and end, and
+ * their steps: those of band i begin at step[i]. */
+typedef struct band_set {
+  const abbe_plan *plan;
+  const abbe_spectral_tables *tables;
+  double *lambda_nm, *edge_nm; /* [wavelengths], [wavelengths + 1] */
+  double (*weight)[3];         /* [wavelengths] X, Y, Z, each of a sum of 1 */
+  size_t *step;                /* [wavelengths + 1] */
+  abbe_band_steps steps;
+  double *share;       /* [steps] of a band that is made */
+  unsigned char *part; /* [steps] */
+} band_set;
+
+static size_t steps_of(const band_set *s, size_t i) {
+  return (size_t)fmax(ceil((s->edge_nm[i + 1] - s->edge_nm[i]) / STEP_NM), 1);
+}
+
+/* Set 0 has the plan's bands. Those of a share meet midway between its own wavelengths, and end
+ * where the range ends. */
+static void place(band_set *s, int set) {
+  const abbe_wavelengths *w = &s->tables->all;
+  s->edge_nm[0] = w->edge_nm[0];
+  for (size_t i = 0; i < w->count; i++) {
+    const double width = w->edge_nm[i + 1] - w->edge_nm[i];
+    s->lambda_nm[i] =
+        set == 0 ? w->lambda_nm[i] : w->edge_nm[i] + (set - 0.5) / ABBE_CAMERA_BAND_SHARES * width;
+    if (i > 0)
+      s->edge_nm[i] = set == 0 ? w->edge_nm[i] : 0.5 * (s->lambda_nm[i - 1] + s->lambda_nm[i]);
+  }
+  s->edge_nm[w->count] = w->edge_nm[w->count];
 }
 
 /* Weights by their white; a white without X, say, is shared evenly. */
-static void weigh(const double xyz[3], const double white[3], size_t count, float out[4]) {
-  for (int c = 0; c < 3; c++)
-    out[c] = (float)(white[c] > 0 ? xyz[c] / white[c] : 1.0 / (double)count);
+static double of_white(double xyz, double white, size_t count) {
+  return white > 0 ? xyz / white : 1.0 / (double)count;
 }
 
-static void fill_first(const abbe_spectral_tables *tables, size_t refractor,
-                       abbe_camera_band *band) {
-  const abbe_weights *xyz = &tables->camera;
-  for (size_t i = 0; i < xyz->count; i++) {
-    weigh(xyz->weight[i], xyz->sum, xyz->count, band[i].weight_n);
-    band[i].weight_n[3] = (float)tables->index[refractor * xyz->count + i];
-    band[i].attenuation[0] = (float)tables->attenuation[refractor * xyz->count + i];
+static abbe_result begin(const abbe_scene *scene, const abbe_weights_range *light, int set,
+                         band_set *s, abbe_error *error) {
+  const size_t count = s->tables->all.count;
+  const double *white = s->tables->camera.sum;
+  s->lambda_nm = calloc(count + 1, sizeof *s->lambda_nm);
+  s->edge_nm = calloc(count + 1, sizeof *s->edge_nm);
+  s->weight = calloc(count + 1, sizeof *s->weight);
+  s->step = calloc(count + 1, sizeof *s->step);
+  if (s->lambda_nm == NULL || s->edge_nm == NULL || s->weight == NULL || s->step == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
+  place(s, set);
+  for (size_t i = 0; i < count; i++) {
+    double xyz[3];
+    abbe_weights_range_xyz(light, s->edge_nm[i], s->edge_nm[i + 1], xyz);
+    for (int c = 0; c < 3; c++) s->weight[i][c] = of_white(xyz[c], white[c], count);
+    s->step[i + 1] = s->step[i] + steps_of(s, i);
   }
-  join_levels(xyz->count, band);
+  if (!s->plan->band_parts) return ABBE_OK;
+  s->share = calloc(s->step[count] + 1, sizeof *s->share);
+  s->part = calloc(s->step[count] + 1, sizeof *s->part);
+  if (s->share == NULL || s->part == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
+  abbe_result result = abbe_band_steps_make(scene, s->plan, s->step[count], &s->steps, error);
+  for (size_t i = 0; i < count && result == ABBE_OK; i++)
+    result = abbe_band_steps_fill(&s->steps, scene, s->plan, light, s->step[i], s->step[i + 1],
+                                  s->edge_nm[i], s->edge_nm[i + 1], error);
+  for (size_t i = 0; i < s->step[count]; i++)
+    for (int c = 0; c < 3; c++)
+      s->steps.xyz[i][c] = of_white(s->steps.xyz[i][c], white[c], s->step[count]);
+  return result;
 }
 
-/* Where a share's wavelength stands in the plan's band. */
-static double place_of(const abbe_wavelengths *w, size_t i, int share) {
-  return w->edge_nm[i] +
-         (share + 0.5) / ABBE_CAMERA_BAND_SHARES * (w->edge_nm[i + 1] - w->edge_nm[i]);
+static void end(band_set *s) {
+  free(s->lambda_nm);
+  free(s->edge_nm);
+  free(s->weight);
+  free(s->step);
+  free(s->share);
+  free(s->part);
+  abbe_band_steps_free(&s->steps);
 }
 
-/* Bands meet midway between the share's own wavelengths, and end where the range ends. */
-static abbe_result fill_share(const abbe_spectral_tables *tables, const abbe_weights_range *light,
-                              const abbe_object *object, int share, abbe_camera_band *band,
-                              abbe_error *error) {
-  const abbe_wavelengths *w = &tables->all;
-  double from = w->edge_nm[0];
-  for (size_t i = 0; i < w->count; i++) {
-    const double at = place_of(w, i, share);
-    const double to =
-        i + 1 < w->count ? 0.5 * (at + place_of(w, i + 1, share)) : w->edge_nm[w->count];
-    double xyz[3], n;
-    const abbe_result result = abbe_material_n(object->material, at, &n, error);
+/* A band of a level: the wavelengths that it has of its own, and with what of its neighbours. */
+typedef struct level_band {
+  size_t i, count, joined; /* band i of so many, each of so many wavelengths */
+  bool interleaved;
+} level_band;
+
+/* How much of the level's band k belongs to it. */
+static double share_of(const level_band *b, size_t k) {
+  if (k == b->i) return 1;
+  if (!b->interleaved || b->count <= 2 || (k + 1 != b->i && k != b->i + 1)) return 0;
+  return k == 0 || k + 1 == b->count ? 1 : 0.5;
+}
+
+/* The level's bands that it has something of: from the return to *last. */
+static size_t bands_of(const level_band *b, size_t *last) {
+  const bool beside = b->interleaved && b->count > 2;
+  *last = beside && b->i + 1 < b->count ? b->i + 1 : b->i;
+  return beside && b->i > 0 ? b->i - 1 : b->i;
+}
+
+static size_t least(size_t a, size_t b) {
+  return a < b ? a : b;
+}
+
+static void weigh(const band_set *s, const level_band *b, float weight_n[4]) {
+  double sum[3] = {0, 0, 0};
+  size_t last, first = bands_of(b, &last);
+  for (size_t k = first; k <= last; k++)
+    for (size_t i = k * b->joined; i < least((k + 1) * b->joined, s->tables->all.count); i++)
+      for (int c = 0; c < 3; c++) sum[c] += share_of(b, k) * s->weight[i][c];
+  for (int c = 0; c < 3; c++) weight_n[c] = (float)sum[c];
+}
+
+/* Means by brightness over the band's own wavelengths: index, n and k of a metal. */
+static abbe_result join_indices(const band_set *s, const abbe_scene *scene, const level_band *b,
+                                size_t r, abbe_camera_band *out, abbe_error *error) {
+  const abbe_object *object = &scene->object[s->plan->refractor_object[r]];
+  const abbe_spectral_tables *t = s->tables;
+  double all = 0, n = 0, metal_n = 0, metal_k = 0;
+  for (size_t i = b->i * b->joined; i < least((b->i + 1) * b->joined, t->all.count); i++) {
+    const abbe_mirror_node *node = &t->mirror[r * t->all.count + i];
+    double weight = 1e-9, index = 1;
+    abbe_result result = ABBE_OK;
+    for (int c = 0; c < 3; c++) weight += s->weight[i][c];
+    if (!s->plan->mirror[r])
+      result = abbe_material_n(object->material, s->lambda_nm[i], &index, error);
     if (result != ABBE_OK) return result;
-    abbe_weights_range_xyz(light, from, to, xyz);
-    weigh(xyz, tables->camera.sum, w->count, band[i].weight_n);
-    band[i].weight_n[3] = (float)n;
-    band[i].attenuation[0] = (float)(abbe_material_attenuation(object->material, at) +
-                                     abbe_medium_scattering(object->medium, at));
-    from = to;
+    all += weight;
+    n += weight * index;
+    metal_n += weight * node->n;
+    metal_k += weight * node->k;
   }
-  join_levels(w->count, band);
+  out->weight_n[3] = (float)(n / all);
+  out->surface[2] = (float)(metal_n / all);
+  out->surface[3] = (float)(metal_k / all);
   return ABBE_OK;
 }
 
-static void store_mirror(const abbe_mirror_band *from, abbe_camera_band *out) {
-  for (int c = 0; c < 3; c++) out->weight_n[c] = (float)from->weight[c];
-  out->weight_n[3] = 1;
-  out->attenuation[0] = (float)from->straight;
-  out->attenuation[1] = (float)from->factor;
-  out->attenuation[2] = (float)from->n;
-  out->attenuation[3] = (float)from->k;
+/* Of a depth by the usual path, or by one reflection: attenuation, or the factor that makes it so.
+ */
+static double surface_of(const band_set *s, size_t r, const abbe_camera_band *band, double depth) {
+  if (!s->plan->mirror[r]) return depth / s->steps.path_m[r];
+  return abbe_mirror_factor((double)band->surface[2], (double)band->surface[3], exp(-depth));
 }
 
-static abbe_result fill_mirror(const abbe_object *mirror, const abbe_mirror_node *node,
-                               const abbe_spectral_tables *tables, const abbe_weights_range *light,
-                               abbe_camera_band *band, abbe_error *error) {
-  const abbe_wavelengths *w = &tables->all;
-  size_t count = w->count;
-  abbe_mirror_band *of = calloc(count + 1, sizeof *of);
-  abbe_result result =
-      of != NULL ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
-  for (size_t i = 0; i < count && result == ABBE_OK; i++)
-    result = abbe_mirror_band_make(mirror, light, tables->camera.sum, w->edge_nm[i],
-                                   w->edge_nm[i + 1], &node[i], &of[i], error);
-  for (size_t i = 0; i < count && result == ABBE_OK; i++) store_mirror(&of[i], &band[i]);
-  for (; count > 1 && result == ABBE_OK; count = (count + 1) / 2) {
-    band += count;
-    for (size_t i = 0; i < (count + 1) / 2; i++) {
-      of[i] = of[2 * i];
-      if (2 * i + 1 < count) {
-        const abbe_mirror_band a = of[2 * i];
-        abbe_mirror_band_join(&a, &of[2 * i + 1], &of[i]);
-      }
-      store_mirror(&of[i], &band[i]);
+/* Without parts all wavelengths are attenuated alike. */
+static double even_surface(const band_set *s, const abbe_scene *scene, size_t r) {
+  const abbe_object *object = &scene->object[s->plan->refractor_object[r]];
+  if (s->plan->mirror[r]) return 1 - object->mirror_reflectance;
+  return abbe_material_attenuation(object->material, s->lambda_nm[0]) +
+         abbe_medium_scattering(object->medium, s->lambda_nm[0]);
+}
+
+/* The parts of a band: texels of its surfaces, `apart` from one to the next, and of its light. */
+static void fill_parts(band_set *s, const level_band *b, abbe_camera_band *band, size_t apart,
+                       float (*texel)[4], float (*light)[4]) {
+  size_t last, first = bands_of(b, &last);
+  const size_t count = s->tables->all.count;
+  const size_t from = s->step[least(first * b->joined, count)];
+  const size_t to = s->step[least((last + 1) * b->joined, count)];
+  for (size_t k = first; k <= last; k++)
+    for (size_t i = s->step[least(k * b->joined, count)];
+         i < s->step[least((k + 1) * b->joined, count)]; i++)
+      s->share[i - from] = share_of(b, k);
+  const abbe_band_share whole = {from, to, s->share, NULL, 0};
+  abbe_band_parts_split(&s->steps, &whole, s->part);
+  for (size_t r = 0; r < s->steps.surfaces; r++)
+    band[r * apart].surface[s->plan->mirror[r] ? 1 : 0] =
+        (float)surface_of(s, r, &band[r * apart], abbe_band_share_depth(&s->steps, &whole, r));
+  for (unsigned p = 0; p < ABBE_BAND_PARTS; p++) {
+    const abbe_band_share one = {from, to, s->share, s->part, p};
+    double xyz[3];
+    abbe_band_share_xyz(&s->steps, &one, xyz);
+    for (unsigned c = 0; c < 3; c++) light[2 * c + p / 4][p % 4] = (float)xyz[c];
+    for (size_t r = 0; r < s->steps.surfaces; r++) {
+      const double depth = abbe_band_share_depth(&s->steps, &one, r);
+      const abbe_band_share *of = depth < 0 ? &whole : &one;
+      texel[ABBE_PART_TEXELS * r * apart + p / 4][p % 4] =
+          (float)surface_of(s, r, &band[r * apart], abbe_band_share_depth(&s->steps, of, r));
     }
   }
-  free(of);
+}
+
+/* Where a set's bands are written: of the first surface, and from one to the next. */
+typedef struct band_place {
+  abbe_camera_band *band;
+  size_t apart;
+  float (*texel)[4], (*light)[4]; /* NULL: no parts */
+} band_place;
+
+static abbe_result fill_level(band_set *s, const abbe_scene *scene, level_band level,
+                              const band_place *to, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  for (; level.i < level.count && result == ABBE_OK; level.i++) {
+    abbe_camera_band *band = to->band + level.i;
+    for (size_t r = 0; r < s->plan->refractor_count && result == ABBE_OK; r++) {
+      weigh(s, &level, band[r * to->apart].weight_n);
+      result = join_indices(s, scene, &level, r, &band[r * to->apart], error);
+      band[r * to->apart].surface[s->plan->mirror[r] ? 1 : 0] = (float)even_surface(s, scene, r);
+    }
+    if (result == ABBE_OK && to->texel != NULL)
+      fill_parts(s, &level, band, to->apart, to->texel + ABBE_PART_TEXELS * level.i,
+                 to->light + ABBE_PART_LIGHT_TEXELS * level.i);
+  }
+  return result;
+}
+
+static abbe_result fill_set(band_set *s, const abbe_scene *scene, bool shares, band_place to,
+                            abbe_error *error) {
+  level_band level = {.count = s->tables->all.count,
+                      .joined = 1,
+                      .interleaved = shares && abbe_camera_bands_interleave(s->plan)};
+  abbe_result result = fill_level(s, scene, level, &to, error);
+  while (level.count > 1 && result == ABBE_OK) {
+    to.band += level.count;
+    if (to.texel != NULL) to.texel += ABBE_PART_TEXELS * level.count;
+    if (to.texel != NULL) to.light += ABBE_PART_LIGHT_TEXELS * level.count;
+    level.count = (level.count + 1) / 2;
+    level.joined *= 2;
+    result = fill_level(s, scene, level, &to, error);
+  }
   return result;
 }
 
 abbe_result abbe_camera_bands_fill(const abbe_scene *scene, const abbe_plan *plan,
                                    const abbe_spectral_tables *tables, abbe_camera_band *out,
-                                   abbe_error *error) {
+                                   float (*texel)[4], abbe_error *error) {
   const abbe_wavelengths *w = &tables->all;
   size_t levels;
   const size_t count = abbe_camera_bands_count(w->count, &levels);
+  const size_t apart = ABBE_CAMERA_BAND_SETS * count;
   abbe_weights_range light;
   abbe_weights_range_make_by(plan->desc.observer, abbe_scene_illuminant(scene), w->edge_nm[0],
                              w->edge_nm[w->count], &light);
   abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < plan->refractor_count; i++) {
-    const abbe_object *object = &scene->object[plan->refractor_object[i]];
-    for (int set = 0; set < ABBE_CAMERA_BAND_SETS && result == ABBE_OK; set++, out += count) {
-      if (plan->mirror[i])
-        result = fill_mirror(object, tables->mirror + i * w->count, tables, &light, out, error);
-      else if (set == 0)
-        fill_first(tables, i, out);
-      else
-        result = fill_share(tables, &light, object, set - 1, out, error);
+  for (int set = 0; set < ABBE_CAMERA_BAND_SETS && result == ABBE_OK; set++) {
+    band_set s = {.plan = plan, .tables = tables};
+    band_place to = {.band = out + (size_t)set * count, .apart = apart};
+    if (plan->band_parts) {
+      to.texel = texel + ABBE_PART_TEXELS * (size_t)set * count;
+      to.light = texel + ABBE_PART_TEXELS * plan->refractor_count * apart +
+                 ABBE_PART_LIGHT_TEXELS * (size_t)set * count;
     }
+    result = begin(scene, &light, set, &s, error);
+    if (result == ABBE_OK) result = fill_set(&s, scene, set > 0, to, error);
+    end(&s);
   }
   return result;
+}
+
+void abbe_camera_bands_reflected(const abbe_plan *plan, const abbe_camera_band *band,
+                                 const float (*texel)[4], size_t r, double xyz[3]) {
+  size_t levels;
+  const size_t count = abbe_camera_bands_count(plan->desc.wavelengths, &levels);
+  const size_t apart = ABBE_CAMERA_BAND_SETS * count, at = r * apart + count - 1;
+  const double n = (double)band[at].surface[2], k = (double)band[at].surface[3];
+  const float(*factor)[4] = texel + ABBE_PART_TEXELS * at;
+  const float(*light)[4] = texel + ABBE_PART_TEXELS * plan->refractor_count * apart +
+                           ABBE_PART_LIGHT_TEXELS * (count - 1);
+  for (unsigned c = 0; c < 3; c++) {
+    xyz[c] = plan->band_parts ? 0 : abbe_mirror_reflected(n, k, (double)band[at].surface[1]);
+    for (unsigned p = 0; p < ABBE_BAND_PARTS && plan->band_parts; p++)
+      xyz[c] += (double)light[2 * c + p / 4][p % 4] *
+                abbe_mirror_reflected(n, k, (double)factor[p / 4][p % 4]);
+  }
 }

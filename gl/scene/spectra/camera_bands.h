@@ -1,10 +1,12 @@
 /* camera_bands.h: the bands of wavelengths that the camera's rays are followed for, of every
- * refractor, as float copies of the shaders' struct (refraction.comp). Internal to gl/.
+ * refractor and mirror, as float copies of what the shaders read (refraction.comp). Internal to
+ * gl/.
  *
  * A set has a band for each wavelength, then these joined by twos, and so on to one. The first set
  * is of the plan's wavelengths. The others are for the samples of a pixel, which share the
  * spectrum: their wavelengths stand at one quarter after the other of the plan's bands, so that
- * four samples together have four times as many. Each set by itself makes white of white.
+ * four samples together have four times as many. Each set by itself makes white of white. Where
+ * attenuation or reflectance varies by wavelength each band has parts (band_parts.h).
  */
 #ifndef ABBE_GL_SCENE_SPECTRA_CAMERA_BANDS_H
 #define ABBE_GL_SCENE_SPECTRA_CAMERA_BANDS_H
@@ -18,18 +20,37 @@ extern "C" {
 enum { ABBE_CAMERA_BAND_SHARES = 4, ABBE_CAMERA_BAND_SETS = 1 + ABBE_CAMERA_BAND_SHARES };
 
 typedef struct abbe_camera_band {
-  float weight_n[4];    /* X, Y, Z, each of a sum of 1 over a level; mean index */
-  float attenuation[4]; /* 1/m; of a mirror: reflectance at normal incidence, factor, n, k */
+  float weight_n[4]; /* X, Y, Z, each of a sum of 1 over a level; mean index */
+  float surface[4];  /* attenuation, 1/m; then of a mirror: factor, n, k, as of a node */
 } abbe_camera_band;
+
+/* Texels of a band's parts: of a refractor their attenuation, 1/m, of a mirror their factors; and
+ * of their light X, Y and Z, two each. */
+enum { ABBE_PART_TEXELS = 2, ABBE_PART_LIGHT_TEXELS = 6 };
 
 /* Bands of a set for so many wavelengths, all levels together; *levels: so many. */
 size_t abbe_camera_bands_count(size_t wavelengths, size_t *levels);
+/* Texels of all parts; 0 where the plan asks for none. */
+size_t abbe_camera_bands_texels(const abbe_plan *plan);
 
-/* out: [refractors][ABBE_CAMERA_BAND_SETS][abbe_camera_bands_count], zeroed. Errors of
- * abbe_spectral_tables_make. */
+/* So many wavelengths that bands are joined first, and come back where they differ. */
+bool abbe_camera_bands_refine(const abbe_plan *plan);
+/* Whether each sample that shares the spectrum takes every second band of a level of more than two,
+ * and its neighbours those between: of the sets of such samples a band then has half of the light
+ * of each beside it besides its own, all of the first's and the last's. */
+bool abbe_camera_bands_interleave(const abbe_plan *plan);
+
+/* out: [refractors][ABBE_CAMERA_BAND_SETS][abbe_camera_bands_count]; texel, zeroed: as many as
+ * abbe_camera_bands_texels says, of [refractors][sets][count][ABBE_PART_TEXELS], then of
+ * [sets][count][ABBE_PART_LIGHT_TEXELS]. Errors of abbe_spectral_tables_make. */
 abbe_result abbe_camera_bands_fill(const abbe_scene *scene, const abbe_plan *plan,
                                    const abbe_spectral_tables *tables, abbe_camera_band *out,
-                                   abbe_error *error);
+                                   float (*texel)[4], abbe_error *error);
+
+/* X, Y and Z of white, each of 1, that mirror r reflects at normal incidence, of what fill has
+ * made. */
+void abbe_camera_bands_reflected(const abbe_plan *plan, const abbe_camera_band *band,
+                                 const float (*texel)[4], size_t r, double xyz[3]);
 
 #ifdef __cplusplus
 }

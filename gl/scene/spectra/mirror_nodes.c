@@ -19,8 +19,17 @@ static double taken_by(double n, double k) {
   return k < 0 ? 1 : 1 - abbe_optics_fresnel_conductor(1, n, k);
 }
 
+double abbe_mirror_factor(double n, double k, double reflected) {
+  const double taken = taken_by(n, k);
+  return taken > 0 ? (1 - reflected) / taken : 1;
+}
+
+double abbe_mirror_reflected(double n, double k, double factor) {
+  return fmax(1 - factor * taken_by(n, k), 0);
+}
+
 double abbe_mirror_node_straight(const abbe_mirror_node *node) {
-  return fmax(1 - node->factor * taken_by(node->n, node->k), 0);
+  return abbe_mirror_reflected(node->n, node->k, node->factor);
 }
 
 /* A system of three diagonals, of least squares, within 0 and 1: by turns, each corner where it
@@ -104,58 +113,6 @@ abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelen
   }
   free(room);
   return ABBE_OK;
-}
-
-/* By what of the band's light the mirror reflects, of each of X, Y and Z; and of it all. */
-static void settle(const double reflected[3], const double all[3], abbe_mirror_band *out) {
-  const double taken = taken_by(out->n, out->k), sum = all[0] + all[1] + all[2];
-  const double mean = all[1] > 1e-9 * sum ? reflected[1] / all[1]
-                      : sum > 0           ? (reflected[0] + reflected[1] + reflected[2]) / sum
-                                          : 1 - taken;
-  out->factor = taken > 0 ? (1 - mean) / taken : 1;
-  out->straight = mean;
-  for (int c = 0; c < 3; c++) out->weight[c] = mean > 0 ? reflected[c] / mean : all[c];
-}
-
-abbe_result abbe_mirror_band_make(const abbe_object *mirror, const abbe_weights_range *light,
-                                  const double white[3], double from_nm, double to_nm,
-                                  const abbe_mirror_node *node, abbe_mirror_band *out,
-                                  abbe_error *error) {
-  ABBE_REQUIRE(mirror && light && white && node && out, error);
-  double all[3] = {0}, reflected[3] = {0};
-  for (int i = 0; i < PARTS; i++) {
-    const double a = from_nm + (to_nm - from_nm) * i / PARTS, b = a + (to_nm - from_nm) / PARTS;
-    double n = 0, k = 0, straight = mirror->mirror_reflectance, xyz[3];
-    if (mirror->conductor != NULL) {
-      abbe_result result = abbe_material_nk(mirror->conductor, 0.5 * (a + b), &n, &k, error);
-      if (result != ABBE_OK) return result;
-      straight = abbe_optics_fresnel_conductor(1, n, k);
-    }
-    abbe_weights_range_xyz(light, a, b, xyz);
-    for (int c = 0; c < 3; c++) {
-      const double part = white[c] > 0 ? xyz[c] / white[c] : 0;
-      all[c] += part;
-      reflected[c] += straight * part;
-    }
-  }
-  *out = (abbe_mirror_band){.n = node->n, .k = node->k};
-  settle(reflected, all, out);
-  return ABBE_OK;
-}
-
-void abbe_mirror_band_join(const abbe_mirror_band *a, const abbe_mirror_band *b,
-                           abbe_mirror_band *out) {
-  double all[3], reflected[3], wa = 1e-9, wb = 1e-9;
-  for (int c = 0; c < 3; c++) {
-    wa += a->weight[c];
-    wb += b->weight[c];
-    all[c] = a->weight[c] + b->weight[c]; /* of Y, what the band's light is */
-    reflected[c] = a->straight * a->weight[c] + b->straight * b->weight[c];
-  }
-  const double share = wa / (wa + wb);
-  *out = (abbe_mirror_band){.n = share * a->n + (1 - share) * b->n,
-                            .k = share * a->k + (1 - share) * b->k};
-  settle(reflected, all, out);
 }
 
 const abbe_material *abbe_mirror_nodes_laid_by(const abbe_scene *scene, const abbe_plan *plan,

@@ -27,31 +27,16 @@ typedef struct abbe_mirror_node {
 /* At normal incidence, 0 to 1. */
 double abbe_mirror_node_straight(const abbe_mirror_node *node);
 
+/* The factor with which n + i k reflects so much at normal incidence. */
+double abbe_mirror_factor(double n, double k, double reflected);
+/* What that factor reflects. */
+double abbe_mirror_reflected(double n, double k, double factor);
+
 /* out[w->count] of the mirror, at the wavelengths w, for that light over their range.
  * ABBE_OUT_OF_RANGE where its metal is not known there, ABBE_NO_MEMORY. */
 abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelengths *w,
                                    const abbe_weights_range *light, abbe_mirror_node *out,
                                    abbe_error *error);
-
-/* A band of wavelengths as the camera sees it in a mirror. */
-typedef struct abbe_mirror_band {
-  double n, k, factor; /* as of a node */
-  double straight;     /* what the three reflect at normal incidence, of Y */
-  /* X, Y and Z of the band's light, weighed so that this times `straight` is what the mirror
-   * reflects of it, each by itself */
-  double weight[3];
-} abbe_mirror_band;
-
-/* Of the wavelengths from_nm to to_nm of the light, by the node that stands for them; `weight` is
- * of the light of the range with each of X, Y and Z over that of all, white. ABBE_OUT_OF_RANGE as
- * above. */
-abbe_result abbe_mirror_band_make(const abbe_object *mirror, const abbe_weights_range *light,
-                                  const double white[3], double from_nm, double to_nm,
-                                  const abbe_mirror_node *node, abbe_mirror_band *out,
-                                  abbe_error *error);
-/* Two as one: n and k by brightness. */
-void abbe_mirror_band_join(const abbe_mirror_band *a, const abbe_mirror_band *b,
-                           abbe_mirror_band *out);
 
 /* The material whose index tells how far along from node to node light is laid that first met
  * refractor i of the plan: its own; of a mirror, which sends all wavelengths the same way, that of

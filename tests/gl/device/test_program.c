@@ -24,7 +24,7 @@ static void write_defines(unsigned bits, char *out, size_t size) {
       "RECEIVER_SHADOWS\n#define TEXTURED\n#define RECEIVER_COLOURS\n#define SHADOW_PLANES "
       "32\n#define TINTING",
       "HIERARCHY",
-      "WALK\n#define COARSE_EYE\n#define LEAST_BANDS 2"};
+      "WALK\n#define COARSE_EYE"};
   int used = snprintf(
       out, size,
       "#define LIGHTS 2\n#define REFRACTORS 2\n#define RECEIVERS 6\n"

@@ -1,0 +1,175 @@
+#include "gl/scene/spectra/band_parts.h"
+
+#include "spectral/optics.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static double usual_path(const abbe_object *object) {
+  double square = 0;
+  for (int x = 0; x < 3; x++) square += pow(object->max[x] - object->min[x], 2);
+  return fmax(0.5 * sqrt(square), 1e-12);
+}
+
+abbe_result abbe_band_steps_make(const abbe_scene *scene, const abbe_plan *plan, size_t count,
+                                 abbe_band_steps *out, abbe_error *error) {
+  const size_t surfaces = plan->refractor_count;
+  *out = (abbe_band_steps){.count = count,
+                           .surfaces = surfaces,
+                           .xyz = calloc(count + 1, sizeof *out->xyz),
+                           .depth = calloc(surfaces * count + 1, sizeof *out->depth),
+                           .path_m = calloc(surfaces + 1, sizeof *out->path_m),
+                           .mean = calloc(surfaces + 1, sizeof *out->mean)};
+  if (out->xyz == NULL || out->depth == NULL || out->path_m == NULL || out->mean == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
+  for (size_t r = 0; r < surfaces; r++)
+    out->path_m[r] = plan->mirror[r] ? 0 : usual_path(&scene->object[plan->refractor_object[r]]);
+  return ABBE_OK;
+}
+
+void abbe_band_steps_free(abbe_band_steps *steps) {
+  free(steps->xyz);
+  free(steps->depth);
+  free(steps->path_m);
+  free(steps->mean);
+  *steps = (abbe_band_steps){0};
+}
+
+static abbe_result depth_of(const abbe_object *object, bool mirror, double path_m, double lambda_nm,
+                            double *out, abbe_error *error) {
+  double n = 0, k = 0, reflected = object->mirror_reflectance;
+  abbe_result result = ABBE_OK;
+  if (!mirror) {
+    *out = path_m * (abbe_material_attenuation(object->material, lambda_nm) +
+                     abbe_medium_scattering(object->medium, lambda_nm));
+  } else {
+    if (object->conductor != NULL)
+      result = abbe_material_nk(object->conductor, lambda_nm, &n, &k, error);
+    if (object->conductor != NULL) reflected = abbe_optics_fresnel_conductor(1, n, k);
+    *out = -log(fmax(reflected, 1e-300));
+  }
+  *out = fmin(*out, ABBE_BAND_MOST_DEPTH);
+  return result;
+}
+
+abbe_result abbe_band_steps_fill(abbe_band_steps *steps, const abbe_scene *scene,
+                                 const abbe_plan *plan, const abbe_weights_range *light,
+                                 size_t first, size_t end, double from_nm, double to_nm,
+                                 abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  for (size_t i = first; i < end; i++) {
+    const double step = (to_nm - from_nm) / (double)(end - first);
+    const double a = from_nm + step * (double)(i - first);
+    abbe_weights_range_xyz(light, a, a + step, steps->xyz[i]);
+    for (size_t r = 0; r < steps->surfaces && result == ABBE_OK; r++)
+      result =
+          depth_of(&scene->object[plan->refractor_object[r]], plan->mirror[r], steps->path_m[r],
+                   a + 0.5 * step, &steps->depth[r * steps->count + i], error);
+  }
+  return result;
+}
+
+/* What a step weighs: of light that nobody sees a trace, so that it is somewhere, too. */
+static double weight_of(const abbe_band_steps *s, const abbe_band_share *band, size_t i) {
+  const double *xyz = s->xyz[band->first + i];
+  if (band->part != NULL && band->part[i] != band->only) return 0;
+  return band->share[i] * (xyz[0] + xyz[1] + xyz[2] + 1e-9);
+}
+
+/* A measure that is even for what differs in what is left: between 0 and 1. */
+static double taken_at(const abbe_band_steps *s, size_t surface, size_t step) {
+  const double depth = s->depth[surface * s->count + step];
+  return depth / (1 + depth);
+}
+
+/* Sums of weight, of weight times the measure, and of its squares; the weighted variance. */
+static double variance_of(const abbe_band_steps *s, const abbe_band_share *band, size_t surface,
+                          double *mean) {
+  double all = 0, sum = 0, squares = 0;
+  for (size_t i = 0; i < band->end - band->first; i++) {
+    const double w = weight_of(s, band, i), t = taken_at(s, surface, band->first + i);
+    all += w;
+    sum += w * t;
+    squares += w * t * t;
+  }
+  *mean = all > 0 ? sum / all : 0;
+  return all > 0 ? squares - sum * *mean : 0;
+}
+
+/* Of one surface, the mean of a part's steps; -1: it has none. */
+static double mean_of(const abbe_band_steps *s, const abbe_band_share *band, size_t surface) {
+  double mean;
+  return variance_of(s, band, surface, &mean) > 0 || mean > 0 ? mean : -1;
+}
+
+/* Each step to the part that is nearest to it, again and again [Lloyd1982]. */
+static void settle(const abbe_band_steps *s, const abbe_band_share *band, unsigned parts,
+                   unsigned char *part) {
+  enum { TURNS = 6 };
+  for (int turn = 0; turn < TURNS; turn++) {
+    for (size_t r = 0; r < s->surfaces; r++)
+      for (unsigned p = 0; p < parts; p++) {
+        const abbe_band_share one = {band->first, band->end, band->share, part, p};
+        s->mean[r][p] = mean_of(s, &one, r);
+      }
+    for (size_t i = 0; i < band->end - band->first; i++) {
+      double nearest = INFINITY;
+      for (unsigned p = 0; p < parts; p++) {
+        double square = 0;
+        for (size_t r = 0; r < s->surfaces; r++)
+          square += pow(taken_at(s, r, band->first + i) - s->mean[r][p], 2);
+        if (!(square < nearest)) continue;
+        nearest = square;
+        part[i] = (unsigned char)p;
+      }
+    }
+  }
+}
+
+void abbe_band_parts_split(const abbe_band_steps *steps, const abbe_band_share *band,
+                           unsigned char *part) {
+  const size_t count = band->end - band->first;
+  for (size_t i = 0; i < count; i++) part[i] = 0;
+  for (unsigned parts = 1; parts < ABBE_BAND_PARTS; parts++) {
+    double most = 1e-15, border = 0;
+    size_t surface = steps->surfaces;
+    unsigned widest = 0;
+    for (unsigned p = 0; p < parts; p++)
+      for (size_t r = 0; r < steps->surfaces; r++) {
+        const abbe_band_share one = {band->first, band->end, band->share, part, p};
+        double mean;
+        const double variance = variance_of(steps, &one, r, &mean);
+        if (!(variance > most)) continue;
+        most = variance;
+        border = mean;
+        surface = r;
+        widest = p;
+      }
+    if (surface == steps->surfaces) return; /* no part is uneven */
+    for (size_t i = 0; i < count; i++)
+      if (part[i] == widest && taken_at(steps, surface, band->first + i) > border)
+        part[i] = (unsigned char)parts;
+    settle(steps, band, parts + 1, part);
+  }
+}
+
+void abbe_band_share_xyz(const abbe_band_steps *steps, const abbe_band_share *band, double xyz[3]) {
+  for (int c = 0; c < 3; c++) xyz[c] = 0;
+  for (size_t i = 0; i < band->end - band->first; i++)
+    if (band->part == NULL || band->part[i] == band->only)
+      for (int c = 0; c < 3; c++) xyz[c] += band->share[i] * steps->xyz[band->first + i][c];
+}
+
+double abbe_band_share_depth(const abbe_band_steps *steps, const abbe_band_share *band,
+                             size_t surface) {
+  const double *depth = steps->depth + surface * steps->count + band->first;
+  double least = INFINITY, left = 0, all = 0;
+  for (size_t i = 0; i < band->end - band->first; i++)
+    if (weight_of(steps, band, i) > 0) least = fmin(least, depth[i]);
+  for (size_t i = 0; i < band->end - band->first; i++) {
+    const double w = weight_of(steps, band, i);
+    all += w;
+    left += w > 0 ? w * exp(-(depth[i] - least)) : 0;
+  }
+  return all > 0 ? least - log(left / all) : -1;
+}

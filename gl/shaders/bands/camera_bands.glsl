@@ -1,0 +1,70 @@
+// The wavelengths of the camera's rays, grouped, and grouped again by twos (gl/scene/spectra/camera_bands.h): level 0
+// holds every one, level k every 2^k as one. Levels one after another, in sets. Who includes this has `xyz_from_rgb`.
+struct Band {
+  vec4 weight_n;  // XYZ, n
+  vec4 surface;   // attenuation, 1/m; then of a mirror as mirror_spectrum()
+};
+#ifdef BANDS_IN_STORAGE
+layout(std430, binding = BINDING_BANDS) readonly buffer Bands { Band bands[]; };
+#else
+layout(std140, binding = BINDING_BANDS) uniform Bands { Band bands[BAND_ROOM]; };
+#endif
+
+int band_set;  // that is taken
+int band_at;   // the band of it that is followed
+int first_band(int r) { return (r * BAND_SETS + band_set) * counts.bands; }
+
+#ifdef BAND_PARTS
+// Two texels a band and refractor, of each part: attenuation, 1/m, or a mirror's factors; then six a band: X, Y and Z.
+layout(binding = UNIT_BAND_PARTS) uniform samplerBuffer band_parts;
+Depth part_x, part_y, part_z;
+
+Depth parts_at(int texel) { return Depth(texelFetch(band_parts, texel), texelFetch(band_parts, texel + 1)); }
+
+Depth attenuation_of(int r) { return parts_at(2 * (first_band(r) + band_at)); }
+
+void take_band(int set, int at) {
+  band_set = set;
+  band_at = at;
+  int light = 2 * REFRACTORS * BAND_SETS * counts.bands + 6 * (set * counts.bands + at);
+  part_x = parts_at(light);
+  part_y = parts_at(light + 2);
+  part_z = parts_at(light + 4);
+}
+
+// Weights of X, Y and Z of what is left of the band.
+vec3 band_left(Depth depth) {
+  Depth left = left_after(depth);
+  return vec3(sum_of(part_x, left), sum_of(part_y, left), sum_of(part_z, left));
+}
+#else
+vec3 band_weight;
+
+void take_band(int set, int at) {
+  band_set = set;
+  band_at = at;
+  band_weight = bands[set * counts.bands + at].weight_n.xyz;  // every refractor's are the same
+}
+#endif
+
+vec2 refractor_spectrum(int r) {
+  Band band = bands[first_band(r) + band_at];
+  return vec2(band.weight_n.w, band.surface.x);
+}
+
+#ifdef FOLLOWS_PATHS
+#ifdef MIRRORS
+vec3 mirror_spectrum(int r) { return bands[first_band(r) + band_at].surface.yzw; }
+#endif
+
+vec3 left_of(PathState w) {
+#ifdef BAND_PARTS
+  return w.share * band_left(w.depth);
+#else
+  return w.share * band_weight;
+#endif
+}
+
+// XYZ of what the path has of an rgb radiance.
+vec3 in_band(PathState w, vec3 radiance) { return left_of(w) * (xyz_from_rgb * radiance); }
+#endif
