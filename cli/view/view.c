@@ -15,6 +15,9 @@
 
 #include <argp.h>
 #include <limits.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -163,6 +166,14 @@ static abbe_result check_keep(const char *keep, const abbe_scene *scene, abbe_er
   return ABBE_OK;
 }
 
+/* Pictures of a large window go back to the system when it is small again, and do not stay as holes
+ * of the heap. */
+static void return_pictures(void) {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 1 << 22);
+#endif
+}
+
 static abbe_result view(const view_options *o, abbe_error *error) {
   char shipped[2 * PATH_MAX];
   abbe_view_document document;
@@ -176,6 +187,7 @@ static abbe_result view(const view_options *o, abbe_error *error) {
                                    .keep = o->keep,
                                    .ocio = o->ocio,
                                    .last = (abbe_view_stage)o->last};
+  return_pictures();
   abbe_result result = begin(o, path, &document, error);
   /* what is wrong with the file is said before there is a window */
   if (result == ABBE_OK)

@@ -3,9 +3,12 @@
 #ifdef ABBE_HAVE_SERVE
 
 #include "base/clock.h"
-#include "cli/view/view_events.h"
+#include "cli/view/state/view_events.h"
+#include "cli/view/view_guard.h"
+#include "cli/view/view_hidden.h"
 
 #include <arpa/inet.h>
+#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <microhttpd.h>
@@ -17,8 +20,11 @@
 #include <string.h>
 #include <sys/random.h>
 #include <time.h>
+#include <unistd.h>
 
-enum { MOST_EVENTS = 4096, MOST_BYTES = 65536, TOKEN_BYTES = 16, LONGEST_WAIT_S = 1 };
+enum { MOST_BYTES = 65536, TOKEN_BYTES = 16, LONGEST_WAIT_S = 1 };
+#define LOOK_S 0.1      /* how often the keeper looks */
+#define LAST_S 0.6      /* for an end in order; then the process ends whatever it does */
 
 extern const unsigned char abbe_embedded_view_page[];
 extern const size_t abbe_embedded_view_page_size;
@@ -28,11 +34,11 @@ typedef struct server {
   unsigned char *pixels;   /* of the last picture */
   size_t width, height;
   char token[2 * TOKEN_BYTES + 1];
+  abbe_view_guard guard;
   pthread_mutex_t lock; /* of what follows: */
   pthread_cond_t called, drawn;
-  bool woken;
-  abbe_view_event event[MOST_EVENTS];
-  size_t events;
+  bool woken, ended;
+  abbe_view_events events;
   unsigned char *png;
   size_t png_size;
   unsigned long frame; /* its number; 0: none yet */
@@ -71,6 +77,9 @@ static void wait_for(pthread_cond_t *signal, pthread_mutex_t *lock, double secon
 
 /* ---- requests, on threads of the library's ---- */
 
+/* In a frame's place: the connection goes. */
+#define CLOSES ((unsigned long)-1)
+
 static enum MHD_Result reply(struct MHD_Connection *c, unsigned code, const char *type,
                              const void *data, size_t size, unsigned long frame) {
   static const char policy[] = "default-src 'none'; script-src 'unsafe-inline'; style-src "
@@ -85,7 +94,10 @@ static enum MHD_Result reply(struct MHD_Connection *c, unsigned code, const char
   MHD_add_response_header(r, "Referrer-Policy", "no-referrer");
   MHD_add_response_header(r, "X-Content-Type-Options", "nosniff");
   snprintf(number, sizeof number, "%lu", frame);
-  if (frame > 0) MHD_add_response_header(r, "X-Abbe-Frame", number);
+  if (frame == CLOSES)
+    MHD_add_response_header(r, MHD_HTTP_HEADER_CONNECTION, "close");
+  else if (frame > 0)
+    MHD_add_response_header(r, "X-Abbe-Frame", number);
   const enum MHD_Result result = MHD_queue_response(c, code, r);
   MHD_destroy_response(r);
   return result;
@@ -121,28 +133,44 @@ static enum MHD_Result send_picture(server *s, struct MHD_Connection *c) {
 
 /* All of the lines, or none. */
 static enum MHD_Result take_events(server *s, struct MHD_Connection *c, body *b) {
-  abbe_view_event *event = malloc(MOST_EVENTS * sizeof *event);
+  abbe_view_events *own = calloc(1, sizeof *own);
+  abbe_view_event event;
   abbe_error error = {0};
-  size_t count = 0;
   bool full = false;
-  abbe_result result = event != NULL ? ABBE_OK : ABBE_NO_MEMORY;
+  abbe_result result = own != NULL ? ABBE_OK : ABBE_NO_MEMORY;
   for (char *rest = b->text, *line; result == ABBE_OK && !full;) {
     if ((line = strtok_r(rest, "\n", &rest)) == NULL) break;
-    full = count == MOST_EVENTS;
-    if (!full) result = abbe_view_event_read(line, &event[count++], &error);
+    result = abbe_view_event_read(line, &event, &error);
+    full = result == ABBE_OK && !abbe_view_events_add(own, &event);
   }
   pthread_mutex_lock(&s->lock);
-  full = full || s->events + count > MOST_EVENTS;
+  full = full || (own != NULL && s->events.count + own->count > ABBE_VIEW_MOST_EVENTS);
   if (result == ABBE_OK && !full) {
-    memcpy(s->event + s->events, event, count * sizeof *event);
-    s->events += count;
+    while (abbe_view_events_take(own, &event)) abbe_view_events_add(&s->events, &event);
     pthread_cond_signal(&s->called);
   }
   pthread_mutex_unlock(&s->lock);
-  free(event);
+  free(own);
   if (result != ABBE_OK) return say(c, MHD_HTTP_BAD_REQUEST, error.text);
   if (full) return say(c, MHD_HTTP_SERVICE_UNAVAILABLE, "too many events wait");
   return say(c, MHD_HTTP_NO_CONTENT, "");
+}
+
+/* Whoever has no token, or asks in another's name: said at once, and the connection goes. */
+static enum MHD_Result refuse(struct MHD_Connection *c, const char *why) {
+  return reply(c, MHD_HTTP_FORBIDDEN, "text/plain; charset=utf-8", why, strlen(why), CLOSES);
+}
+
+/* Once the head of a request is there. */
+static const char *why_refused(const server *s, struct MHD_Connection *c) {
+  const char *host = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_HOST);
+  const char *origin = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_ORIGIN);
+  if (!abbe_view_guard_is_host(host))
+    return "the Host is another machine's; ask 127.0.0.1 or localhost";
+  if (!abbe_view_guard_is_origin(origin, host)) return "the request is another page's, by its Origin";
+  if (!has_token(s, c))
+    return "the token is missing or another; the viewer has printed the whole address";
+  return NULL;
 }
 
 static enum MHD_Result answer(void *user, struct MHD_Connection *c, const char *url,
@@ -152,6 +180,11 @@ static enum MHD_Result answer(void *user, struct MHD_Connection *c, const char *
   body *b = *own;
   (void)version;
   if (b == NULL) {
+    const char *why = why_refused(s, c);
+    if (why != NULL) return refuse(c, why);
+    const union MHD_ConnectionInfo *info =
+        MHD_get_connection_info(c, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+    if (info != NULL) abbe_view_guard_trust(&s->guard, info->socket_context);
     *own = calloc(1, sizeof *b);
     return *own != NULL ? MHD_YES : MHD_NO;
   }
@@ -164,10 +197,6 @@ static enum MHD_Result answer(void *user, struct MHD_Connection *c, const char *
   }
   const bool gets = strcmp(method, "GET") == 0, posts = strcmp(method, "POST") == 0;
   const bool page = strcmp(url, "/") == 0, events = strcmp(url, "/events") == 0;
-  if (!has_token(s, c))
-    return say(c, MHD_HTTP_FORBIDDEN,
-               "the token is missing or another; the viewer has printed "
-               "the whole address");
   if (!page && !events && strcmp(url, "/picture") != 0)
     return say(c, MHD_HTTP_NOT_FOUND, "there are /, /picture and /events");
   if (events ? !posts : !gets)
@@ -180,6 +209,19 @@ static enum MHD_Result answer(void *user, struct MHD_Connection *c, const char *
   return send_picture(s, c);
 }
 
+/* Connections come and go. */
+static void note_connection(void *user, struct MHD_Connection *c, void **context,
+                            enum MHD_ConnectionNotificationCode code) {
+  server *s = user;
+  if (code == MHD_CONNECTION_NOTIFY_STARTED) {
+    const union MHD_ConnectionInfo *info =
+        MHD_get_connection_info(c, MHD_CONNECTION_INFO_CONNECTION_FD);
+    *context = info != NULL ? abbe_view_guard_enter(&s->guard, info->connect_fd) : NULL;
+  } else {
+    abbe_view_guard_leave(&s->guard, *context);
+  }
+}
+
 static void end_request(void *user, struct MHD_Connection *c, void **own,
                         enum MHD_RequestTerminationCode why) {
   (void)user;
@@ -190,6 +232,50 @@ static void end_request(void *user, struct MHD_Connection *c, void **own,
 }
 
 /* ---- the window ---- */
+
+static void apply_key(const abbe_view_event *e, abbe_view_hidden *h) {
+  const int modifiers = (e->shift ? ABBE_VIEW_SHIFT : 0) | (e->control ? ABBE_VIEW_CONTROL : 0);
+  abbe_ui_input *in = &h->input;
+  if (strcmp(e->key, "Enter") == 0) in->enter = e->down;
+  if (strcmp(e->key, "Backspace") == 0) in->backspace = e->down;
+  if (strcmp(e->key, "Escape") == 0) in->escape = e->down;
+  if (e->key[1] != '\0') return;
+  if (abbe_ui_has_keys()) {
+    if (e->down && !e->control) memcpy(in->text, e->key, sizeof e->key);
+    return;
+  }
+  abbe_view_app_key(&h->session, tolower((unsigned char)e->key[0]), e->down, modifiers,
+                    abbe_clock_seconds());
+}
+
+/* Gives it to the window and draws what the next one must find drawn. */
+static void apply(const abbe_view_event *e, abbe_view_hidden *h) {
+  abbe_ui_input *in = &h->input;
+  switch (e->kind) {
+  case ABBE_VIEW_EVENT_MOVE:
+    in->mouse[0] = e->x;
+    in->mouse[1] = e->y;
+    return;
+  case ABBE_VIEW_EVENT_SIZE:
+    abbe_view_hidden_resize(h, (size_t)e->x, (size_t)e->y);
+    return;
+  case ABBE_VIEW_EVENT_WHEEL:
+    in->wheel += e->x;
+    break;
+  case ABBE_VIEW_EVENT_KEY:
+    apply_key(e, h);
+    break;
+  case ABBE_VIEW_EVENT_BUTTON:
+    /* widgets learn in one frame what is under the pointer, and in the next what it does there */
+    abbe_view_hidden_frame(h);
+    abbe_view_hidden_frame(h);
+    in->button[e->button] = e->down;
+    in->shift = e->shift;
+    in->control = e->control;
+    break;
+  }
+  abbe_view_hidden_frame(h);
+}
 
 /* Hands the window's picture out, where it is another than the last. */
 static void publish(server *s) {
@@ -225,24 +311,56 @@ static void publish(server *s) {
   pthread_mutex_unlock(&s->lock);
 }
 
+static bool take_event(server *s, abbe_view_event *out) {
+  pthread_mutex_lock(&s->lock);
+  const bool there = abbe_view_events_take(&s->events, out);
+  pthread_mutex_unlock(&s->lock);
+  return there;
+}
+
 static void loop(server *s) {
-  static abbe_view_event event[MOST_EVENTS];
   while (!stopped) {
     const double least = 0.01; /* where something always moves */
+    abbe_view_event event;
     pthread_mutex_lock(&s->lock);
-    const size_t count = s->events;
-    memcpy(event, s->event, count * sizeof *event);
-    s->events = 0;
+    const size_t count = s->events.count; /* those that come meanwhile see a picture first */
     s->woken = false;
     pthread_mutex_unlock(&s->lock);
-    for (size_t i = 0; i < count; i++) abbe_view_event_apply(&event[i], &s->hidden);
+    for (size_t i = 0; i < count && !stopped && take_event(s, &event); i++)
+      apply(&event, &s->hidden);
+    if (stopped) return;
     abbe_view_hidden_frame(&s->hidden);
     publish(s);
     const double wait = abbe_view_app_wait(&s->hidden.session, abbe_clock_seconds());
     pthread_mutex_lock(&s->lock);
-    if (s->events == 0 && !s->woken) wait_for(&s->called, &s->lock, fmax(least, wait));
+    if (s->events.count == 0 && !s->woken && !stopped)
+      wait_for(&s->called, &s->lock, fmax(least, wait));
     pthread_mutex_unlock(&s->lock);
   }
+}
+
+/* A thread beside all: has the guard look at the connections, and ends the process where it does not
+ * end by itself, for a driver that compiles cannot be stopped. Files are whole at any time. */
+static void *keep(void *user) {
+  server *s = user;
+  double since = -1;
+  pthread_mutex_lock(&s->lock);
+  while (!s->ended) {
+    const double now = abbe_clock_seconds();
+    if (stopped && since < 0) {
+      since = now;
+      pthread_cond_broadcast(&s->called);
+      pthread_cond_broadcast(&s->drawn);
+    }
+    if (since >= 0 && now - since > LAST_S) _exit(0);
+    pthread_mutex_unlock(&s->lock);
+    abbe_view_guard_look(&s->guard, now);
+    const struct timespec pause = {.tv_nsec = (long)(1e9 * LOOK_S)};
+    nanosleep(&pause, NULL);
+    pthread_mutex_lock(&s->lock);
+  }
+  pthread_mutex_unlock(&s->lock);
+  return NULL;
 }
 
 static abbe_result make_token(char *out, abbe_error *error) {
@@ -258,8 +376,10 @@ static abbe_result start(server *s, unsigned port, struct MHD_Daemon **out, abbe
   place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   *out = MHD_start_daemon(MHD_USE_THREAD_PER_CONNECTION | MHD_USE_INTERNAL_POLLING_THREAD,
                           (uint16_t)port, NULL, NULL, answer, s, MHD_OPTION_SOCK_ADDR, &place,
-                          MHD_OPTION_CONNECTION_LIMIT, 16U, MHD_OPTION_CONNECTION_TIMEOUT, 30U,
-                          MHD_OPTION_NOTIFY_COMPLETED, end_request, NULL, MHD_OPTION_END);
+                          MHD_OPTION_CONNECTION_LIMIT, (unsigned)ABBE_VIEW_GUARD_MOST,
+                          MHD_OPTION_CONNECTION_TIMEOUT, 30U, MHD_OPTION_NOTIFY_CONNECTION,
+                          note_connection, s, MHD_OPTION_NOTIFY_COMPLETED, end_request, NULL,
+                          MHD_OPTION_END);
   if (*out == NULL)
     return abbe_error_set(
         error, ABBE_IO,
@@ -272,24 +392,36 @@ static abbe_result start(server *s, unsigned port, struct MHD_Daemon **out, abbe
   return ABBE_OK;
 }
 
-static abbe_result serve(server *s, unsigned port, const abbe_view_app_desc *desc, size_t width,
-                         size_t height, abbe_error *error) {
+/* The window, once the page is served. */
+static abbe_result show(server *s, const abbe_view_app_desc *desc, size_t width, size_t height,
+                        abbe_error *error) {
   const struct sigaction action = {.sa_handler = stop};
-  struct MHD_Daemon *daemon = NULL;
   abbe_view_app_desc own = *desc;
   own.wake = wake;
-  abbe_result result = make_token(s->token, error);
-  if (result == ABBE_OK) result = start(s, port, &daemon, error);
-  if (result != ABBE_OK) return result;
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
   sigaction(SIGHUP, &action, NULL);
-  result = abbe_view_hidden_begin(&s->hidden, &own, width, height, error);
-  if (result == ABBE_OK) {
-    loop(s);
-    abbe_view_hidden_end(&s->hidden);
-  }
-  MHD_stop_daemon(daemon);
+  const abbe_result result = abbe_view_hidden_begin(&s->hidden, &own, width, height, error);
+  if (result != ABBE_OK) return result;
+  loop(s);
+  abbe_view_hidden_end(&s->hidden);
+  return ABBE_OK;
+}
+
+static abbe_result serve(server *s, unsigned port, const abbe_view_app_desc *desc, size_t width,
+                         size_t height, abbe_error *error) {
+  struct MHD_Daemon *daemon = NULL;
+  pthread_t keeper;
+  if (pthread_create(&keeper, NULL, keep, s) != 0)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no thread for the page's connections");
+  abbe_result result = make_token(s->token, error);
+  if (result == ABBE_OK) result = start(s, port, &daemon, error);
+  if (result == ABBE_OK) result = show(s, desc, width, height, error);
+  if (daemon != NULL) MHD_stop_daemon(daemon);
+  pthread_mutex_lock(&s->lock);
+  s->ended = true;
+  pthread_mutex_unlock(&s->lock);
+  pthread_join(keeper, NULL);
   return result;
 }
 
@@ -297,6 +429,7 @@ abbe_result abbe_view_serve_run(unsigned port, const abbe_view_app_desc *desc, s
                                 size_t height, abbe_error *error) {
   server *s = calloc(1, sizeof *s);
   if (s == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the viewer");
+  abbe_view_guard_begin(&s->guard);
   pthread_mutex_init(&s->lock, NULL);
   pthread_cond_init(&s->called, NULL);
   pthread_cond_init(&s->drawn, NULL);
@@ -305,6 +438,7 @@ abbe_result abbe_view_serve_run(unsigned port, const abbe_view_app_desc *desc, s
   pthread_cond_destroy(&s->drawn);
   pthread_cond_destroy(&s->called);
   pthread_mutex_destroy(&s->lock);
+  abbe_view_guard_end(&s->guard);
   free(s->pixels);
   free(s->png);
   free(s);

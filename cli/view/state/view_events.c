@@ -1,9 +1,8 @@
-#include "cli/view/view_events.h"
+#include "cli/view/state/view_events.h"
 
-#include "base/clock.h"
 #include "base/number.h"
 
-#include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -32,7 +31,7 @@ static bool read_words(char *const word[MOST_WORDS], size_t words, abbe_view_eve
   }
   if (strcmp(word[0], "wheel") == 0) {
     e->kind = ABBE_VIEW_EVENT_WHEEL;
-    return number(word[1], -100, 100, &e->x);
+    return number(word[1], -ABBE_VIEW_EVENT_MOST_CLICKS, ABBE_VIEW_EVENT_MOST_CLICKS, &e->x);
   }
   if (strcmp(word[0], "down") == 0 || strcmp(word[0], "up") == 0) {
     e->kind = ABBE_VIEW_EVENT_BUTTON;
@@ -61,45 +60,45 @@ abbe_result abbe_view_event_read(char *line, abbe_view_event *out, abbe_error *e
                         whole);
 }
 
-static void apply_key(const abbe_view_event *e, abbe_view_hidden *h) {
-  const int modifiers = (e->shift ? ABBE_VIEW_SHIFT : 0) | (e->control ? ABBE_VIEW_CONTROL : 0);
-  abbe_ui_input *in = &h->input;
-  if (strcmp(e->key, "Enter") == 0) in->enter = e->down;
-  if (strcmp(e->key, "Backspace") == 0) in->backspace = e->down;
-  if (strcmp(e->key, "Escape") == 0) in->escape = e->down;
-  if (e->key[1] != '\0') return;
-  if (abbe_ui_has_keys()) {
-    if (e->down && !e->control) memcpy(in->text, e->key, sizeof e->key);
-    return;
-  }
-  abbe_view_app_key(&h->session, tolower((unsigned char)e->key[0]), e->down, modifiers,
-                    abbe_clock_seconds());
+/* ---- the queue ---- */
+
+static abbe_view_event *last_of(abbe_view_events *q, size_t before) {
+  return before < q->count ? &q->event[q->first + q->count - 1 - before] : NULL;
 }
 
-void abbe_view_event_apply(const abbe_view_event *e, abbe_view_hidden *h) {
-  abbe_ui_input *in = &h->input;
-  switch (e->kind) {
-  case ABBE_VIEW_EVENT_MOVE:
-    in->mouse[0] = e->x;
-    in->mouse[1] = e->y;
-    return;
-  case ABBE_VIEW_EVENT_SIZE:
-    abbe_view_hidden_resize(h, (size_t)e->x, (size_t)e->y);
-    return;
-  case ABBE_VIEW_EVENT_WHEEL:
-    in->wheel += e->x;
-    break;
-  case ABBE_VIEW_EVENT_KEY:
-    apply_key(e, h);
-    break;
-  case ABBE_VIEW_EVENT_BUTTON:
-    /* widgets learn in one frame what is under the pointer, and in the next what it does there */
-    abbe_view_hidden_frame(h);
-    abbe_view_hidden_frame(h);
-    in->button[e->button] = e->down;
-    in->shift = e->shift;
-    in->control = e->control;
-    break;
+/* What waits makes the event one of it. */
+static bool merge(abbe_view_events *q, const abbe_view_event *e) {
+  abbe_view_event *last = last_of(q, 0), *other = last_of(q, 1);
+  if (last == NULL) return false;
+  if (last->kind == e->kind &&
+      (e->kind == ABBE_VIEW_EVENT_MOVE || e->kind == ABBE_VIEW_EVENT_SIZE)) {
+    *last = *e;
+    return true;
   }
-  abbe_view_hidden_frame(h);
+  if (last->kind != ABBE_VIEW_EVENT_WHEEL) return false;
+  if (e->kind == ABBE_VIEW_EVENT_WHEEL) {
+    last->x = fmax(-ABBE_VIEW_EVENT_MOST_CLICKS, fmin(last->x + e->x, ABBE_VIEW_EVENT_MOST_CLICKS));
+    return true;
+  }
+  /* pages say where the pointer is before each turn of the wheel */
+  return e->kind == ABBE_VIEW_EVENT_MOVE && other != NULL && other->kind == ABBE_VIEW_EVENT_MOVE &&
+         !(fabs(other->x - e->x) > 0) && !(fabs(other->y - e->y) > 0);
+}
+
+bool abbe_view_events_add(abbe_view_events *q, const abbe_view_event *e) {
+  if (merge(q, e)) return true;
+  if (q->count == ABBE_VIEW_MOST_EVENTS) return false;
+  if (q->first + q->count == ABBE_VIEW_MOST_EVENTS) {
+    memmove(q->event, q->event + q->first, q->count * sizeof *q->event);
+    q->first = 0;
+  }
+  q->event[q->first + q->count++] = *e;
+  return true;
+}
+
+bool abbe_view_events_take(abbe_view_events *q, abbe_view_event *out) {
+  if (q->count == 0) return false;
+  *out = q->event[q->first++];
+  if (--q->count == 0) q->first = 0;
+  return true;
 }
