@@ -364,6 +364,14 @@ void abbe_file_writer_discard(abbe_file_writer *writer) {
   writer_clear(writer);
 }
 
+abbe_result abbe_file_writer_end(abbe_file_writer *writer, abbe_result result, abbe_error *error) {
+  ABBE_REQUIRE(writer, error);
+  if (result == ABBE_OK || (writer->stream != NULL && ferror(writer->stream)))
+    return abbe_file_writer_commit(writer, error);
+  abbe_file_writer_discard(writer);
+  return result;
+}
+
 abbe_result abbe_file_write(const char *path, const void *data, size_t size, abbe_error *error) {
   ABBE_REQUIRE(path && (data || size == 0), error);
   abbe_file_writer writer;

@@ -66,12 +66,14 @@ add_test(NAME thesis_pictures
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/thesis_pictures $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
 abbe_label(program NAMES thesis_pictures)
 
+add_test(NAME full_disk_command
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/full_disk $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
 add_test(NAME killed_parts
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/killed_parts $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
 add_test(NAME distributed_page
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
     docs/distributed.md)
-abbe_label(program NAMES killed_parts distributed_page)
+abbe_label(program NAMES full_disk_command killed_parts distributed_page)
 if(ABBE_MPI)
   add_test(NAME ranks
     COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/ranks $<TARGET_FILE:abbe> $<TARGET_FILE:abbe-mpi>

@@ -34,7 +34,5 @@ abbe_result abbe_gem_output_write(const char *path, const abbe_cut *cut,
            : gem ? abbe_cut_gem_write(cut, stone, writer.stream, report, error)
            : gcs ? abbe_cut_gcs_write(cut, stone, writer.stream, report, error)
                  : abbe_cut_solid_write(cut, stone, scale, material, solid, writer.stream, error);
-  if (result == ABBE_OK) return abbe_file_writer_commit(&writer, error);
-  abbe_file_writer_discard(&writer);
-  return result;
+  return abbe_file_writer_end(&writer, result, error);
 }

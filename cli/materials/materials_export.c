@@ -217,9 +217,7 @@ static abbe_result save(const request *r, const abbe_material_table *chosen, abb
   abbe_file_writer writer = {0};
   abbe_result result = abbe_file_writer_open(&writer, r->output, error);
   if (result == ABBE_OK) result = write_to(r, chosen, writer.stream, report, error);
-  if (result == ABBE_OK) return abbe_file_writer_commit(&writer, error);
-  abbe_file_writer_discard(&writer);
-  return result;
+  return abbe_file_writer_end(&writer, result, error);
 }
 
 static abbe_result tell(const request *r, size_t count, const abbe_report *report,

@@ -145,9 +145,7 @@ static abbe_result save(const request *r, const abbe_material_table *table, abbe
     result = abbe_material_store_is_name(r->output)
                  ? abbe_material_store_write(table, writer.stream, error)
                  : abbe_material_table_write(table, writer.stream, error);
-  if (result == ABBE_OK) return abbe_file_writer_commit(&writer, error);
-  abbe_file_writer_discard(&writer);
-  return result;
+  return abbe_file_writer_end(&writer, result, error);
 }
 
 static abbe_result tell(const request *r, const abbe_material_table *table,

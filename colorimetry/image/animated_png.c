@@ -158,7 +158,5 @@ abbe_result abbe_animated_png_write(const char *path, const char *const *frame, 
   if (result != ABBE_OK) return result;
   writing w = {.to = writer.stream};
   result = put_frames(&w, frame, count, per_second, error);
-  if (result == ABBE_OK) return abbe_file_writer_commit(&writer, error);
-  abbe_file_writer_discard(&writer);
-  return result;
+  return abbe_file_writer_end(&writer, result, error);
 }

@@ -188,7 +188,7 @@ static abbe_result write_file(const char *path, const abbe_image *image, storage
   abbe_result code = t.io_errno != 0               ? ABBE_IO
                      : rv == EXR_ERR_OUT_OF_MEMORY ? ABBE_NO_MEMORY
                                                    : ABBE_INVALID_ARGUMENT;
-  return abbe_error_set(error, code, "%s: it cannot be written: %s", path,
+  return abbe_error_set(error, code, "%s: could not be written and is as it was: %s", path,
                         t.io_errno != 0 ? strerror(t.io_errno) : exr_get_default_error_message(rv));
 }
 

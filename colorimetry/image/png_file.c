@@ -154,7 +154,7 @@ abbe_result abbe_png_write(const char *path, const abbe_image *image, int bits, 
   abbe_file_writer_discard(&writer);
   if (result != ABBE_OK) return result;
   return abbe_error_set(error, j.no_memory ? ABBE_NO_MEMORY : ABBE_IO,
-                        "%s: it cannot be written: %s", path,
+                        "%s: could not be written and is as it was: %s", path,
                         j.no_memory ? "there is no memory for a row" : j.message);
 }
 

@@ -18,9 +18,10 @@ struct abbe_sheet {
   cairo_t *cr;
 };
 
+/* What does not reach the file shows in ferror when it is committed, with the reason. */
 static cairo_status_t write_bytes(void *closure, const unsigned char *data, unsigned int length) {
-  return fwrite(data, 1, length, closure) == length ? CAIRO_STATUS_SUCCESS
-                                                    : CAIRO_STATUS_WRITE_ERROR;
+  fwrite(data, 1, length, closure);
+  return CAIRO_STATUS_SUCCESS;
 }
 
 static abbe_result state_of(cairo_status_t status, abbe_error *error) {
@@ -145,7 +146,7 @@ abbe_result abbe_sheet_finish(abbe_sheet *sheet, abbe_error *error) {
   cairo_surface_finish(sheet->surface); /* the file is written here */
   if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(sheet->surface);
   abbe_result result = state_of(status, error);
-  if (result == ABBE_OK) result = abbe_file_writer_commit(&sheet->writer, error);
+  result = abbe_file_writer_end(&sheet->writer, result, error);
   abbe_sheet_free(sheet);
   return result;
 }

@@ -437,9 +437,10 @@ static bool ends_with(const char *path, const char *ending) {
   return length > tail && strcasecmp(path + length - tail, ending) == 0;
 }
 
+/* What does not reach the file shows in ferror when it is committed, with the reason. */
 static cairo_status_t write_bytes(void *closure, const unsigned char *data, unsigned int length) {
-  return fwrite(data, 1, length, closure) == length ? CAIRO_STATUS_SUCCESS
-                                                    : CAIRO_STATUS_WRITE_ERROR;
+  fwrite(data, 1, length, closure);
+  return CAIRO_STATUS_SUCCESS;
 }
 
 static cairo_surface_t *make_surface(const char *path, double height, FILE *to) {
@@ -484,7 +485,5 @@ abbe_result abbe_cut_diagram_write(const char *path, const abbe_cut *cut,
   abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;
   result = write_sheet(&s, path, writer.stream, error);
-  if (result == ABBE_OK) return abbe_file_writer_commit(&writer, error);
-  abbe_file_writer_discard(&writer);
-  return result;
+  return abbe_file_writer_end(&writer, result, error);
 }

@@ -357,7 +357,5 @@ abbe_result abbe_pov_file_write(const char *path, const abbe_scene *scene,
   const writing w = {writer.stream, scene, &o, abbe_pov_file_scale(scene),
                      abbe_scene_bounds(scene, true, false, min, max)};
   result = write_scene(&w, error);
-  if (result == ABBE_OK) return abbe_file_writer_commit(&writer, error);
-  abbe_file_writer_discard(&writer);
-  return result;
+  return abbe_file_writer_end(&writer, result, error);
 }

@@ -75,11 +75,9 @@ static abbe_result write_all(const char *path, const abbe_export_writing *asked,
     result = targets[w.target].write(&w, error);
     if (result == ABBE_OK) result = spare_scene(w.scene, &files, error);
     if (result == ABBE_OK) result = abbe_export_files_write(&files, error);
-    if (result == ABBE_OK) {
-      result = abbe_file_writer_commit(&writer, error);
-      if (result != ABBE_OK) abbe_export_files_undo(&files);
-    }
-    abbe_file_writer_discard(&writer);
+    const bool others = result == ABBE_OK;
+    result = abbe_file_writer_end(&writer, result, error);
+    if (result != ABBE_OK && others) abbe_export_files_undo(&files);
   }
   abbe_export_files_free(&files);
   return result;

@@ -14,6 +14,7 @@
 #include "spectral/editing/table_edit.h"
 #include "validation/tracer/checkpoint.h"
 #include "validation/tradeoff/sweep_table.h"
+#include "validation/volume/volume_checkpoint.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -76,6 +77,12 @@ static abbe_result write_checkpoint(const char *path, abbe_error *error) {
   return abbe_checkpoint_save(tracer, path, error);
 }
 
+static abbe_result write_volume_checkpoint(const char *path, abbe_error *error) {
+  static double values[1200];
+  const abbe_kept_bytes part = {values, sizeof values};
+  return abbe_volume_checkpoint_save(path, 7, 3, &part, 1, error);
+}
+
 static abbe_result write_pov(const char *path, abbe_error *error) {
   return abbe_pov_file_write(path, &scene, NULL, error);
 }
@@ -101,6 +108,7 @@ static const target targets[] = {
     {"chart.png", write_chart, NULL, NULL},
     {"sweep.csv", write_sweep, NULL, NULL},
     {"trace.checkpoint", write_checkpoint, NULL, NULL},
+    {"volume.checkpoint", write_volume_checkpoint, NULL, NULL},
     {"scene.pov", write_pov, NULL, NULL},
     {"table.yaml", edit_table, table, NULL},
 };

@@ -310,9 +310,5 @@ abbe_result abbe_sweep_page_write(abbe_context *context, const char *path,
     p.turn = turn_of(tables, i);
     result = write_sweep(&p, &tables[i], error);
   }
-  if (result == ABBE_OK)
-    result = abbe_file_writer_commit(&writer, error);
-  else
-    abbe_file_writer_discard(&writer);
-  return result;
+  return abbe_file_writer_end(&writer, result, error);
 }

@@ -365,7 +365,5 @@ abbe_result abbe_sweep_presets_write(const char *path, const abbe_sweep_table *t
   if (result == ABBE_OK) result = abbe_file_writer_open(&writer, path, error);
   if (result == ABBE_OK)
     result = write_all(writer.stream, tables, names, count, number, is_fine, error);
-  if (result == ABBE_OK) return abbe_file_writer_commit(&writer, error);
-  abbe_file_writer_discard(&writer);
-  return result;
+  return abbe_file_writer_end(&writer, result, error);
 }
