@@ -40,6 +40,7 @@ enum {
   OPTION_CHECKPOINT,
   OPTION_PASSES,
   OPTION_MERGE,
+  OPTION_INCOMPLETE,
   OPTION_STATS,
   OPTION_JSON,
   OPTION_RATES,
@@ -83,9 +84,10 @@ static const struct argp_option options[] = {
     {"checkpoint", OPTION_CHECKPOINT, "FILE", ABBE_ARGUMENT_WRITES,
      "keep it there, also when all is done (OUTPUT.checkpoint, until all is done)", 2},
     {"passes", OPTION_PASSES, "A:B", 0,
-     "passes A to B - 1 of the whole alone, into --checkpoint FILE, and no other file", 2},
+     "passes A to B - 1 of the whole, of --spp N, alone, into --checkpoint FILE, and no other file", 2},
     {"merge", OPTION_MERGE, NULL, 0,
      "trace nothing: put parts together, the checkpoints named behind the scene", 2},
+    {"incomplete", OPTION_INCOMPLETE, NULL, 0, "merge also where passes are missing", 2},
     {"rates", OPTION_RATES, NULL, 0, "rays a second, beside Embree's own rate on the same rays", 2},
     {0}};
 
@@ -124,6 +126,9 @@ static error_t parse_work(int key, char *text, request *q) {
     return 0;
   case OPTION_MERGE:
     q->merge = true;
+    return 0;
+  case OPTION_INCOMPLETE:
+    q->incomplete = true;
     return 0;
   case OPTION_MOVE:
     abbe_frame_series_take_move(&q->series, &q->changes, text);
@@ -181,9 +186,15 @@ static void check_parts(const request *q, struct argp_state *state) {
     argp_error(state, "--passes needs a file for its part: --checkpoint FILE");
   if (q->ranks != NULL && (part || q->merge || q->rates))
     argp_error(state, "--passes, --merge and --rates are for one process: abbe trace");
+  if (q->incomplete && !q->merge) argp_error(state, "--incomplete goes with --merge");
   if (!part && !q->merge) return;
-  if (q->passes > 0 || q->seconds > 0 || q->until > 0)
-    argp_error(state, "%s has its own number of passes: no --spp, --time or --until-error", name);
+  if (q->seconds > 0 || q->until > 0)
+    argp_error(state, "%s has its own number of passes: no --time or --until-error", name);
+  if (part && q->passes > 0 && q->passes < q->part_end)
+    argp_error(state, "--passes ends with pass %zu, and the whole has %zu, by --spp",
+               q->part_end - 1, q->passes);
+  if (q->incomplete && q->checkpoint != NULL)
+    argp_error(state, "--incomplete goes without --checkpoint: what lacks passes is no part");
   if (q->rates || (q->merge && q->work.resume))
     argp_error(state, "%s goes without --%s", name, q->rates ? "rates" : "resume");
 }
@@ -318,13 +329,17 @@ static abbe_result resume(const request *q, abbe_tracer *tracer, abbe_error *err
 static abbe_result trace(request *q, abbe_tracer *tracer, abbe_error *error) {
   const bool part = q->part_end > 0;
   const abbe_trace_run_desc run = {.passes = q->passes,
+                                   .whole = q->whole,
                                    .seconds = q->seconds,
                                    .error = q->until,
                                    .checkpoint = q->checkpoint_path,
                                    .checkpoint_s = q->work.every_s};
-  abbe_result result = q->merge ? abbe_checkpoint_merge(tracer, q->parts, q->part_count, error)
-                                : resume(q, tracer, error);
+  abbe_checkpoint_merging how = {.whole = q->whole, .incomplete = q->incomplete};
+  abbe_result result = q->merge
+                           ? abbe_checkpoint_merge(tracer, q->parts, q->part_count, &how, error)
+                           : resume(q, tracer, error);
   if (result != ABBE_OK) return result;
+  if (how.lacks[0] != '\0') fprintf(stderr, "note: %s\n", how.lacks);
   if (!q->merge) result = abbe_trace_passes(q, &run, tracer, error);
   bool stopped = result == ABBE_CANCELLED;
   if (result != ABBE_OK && !stopped) return result;
@@ -408,7 +423,7 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
       "  abbe trace scenes/bunny.yaml -o bunny.exr --time 600 --resume\n"
       "  abbe trace scenes/water/pool.yaml --frames 0:24 --png pool.png --spp 8 --filter\n"
       "  abbe trace scenes/gem.yaml -o matched.exr --physics matched\n"
-      "  abbe trace scenes/gem.yaml -o gem.exr --passes 8:16 --checkpoint part-1.ck\n"
+      "  abbe trace scenes/gem.yaml -o gem.exr --spp 64 --passes 8:16 --checkpoint part-1.ck\n"
       "  abbe trace scenes/gem.yaml -o gem.exr --merge part-*.ck\n",
       children,
       NULL,
@@ -431,8 +446,12 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
   q.desc.max_nm = q.work.max_nm;
   q.desc.seed = q.work.seed;
   q.desc.threads = q.work.threads;
+  const bool open_end = q.seconds > 0 || q.until > 0;
+  q.whole = q.passes > 0 ? q.passes : q.part_end > 0 ? q.part_end : 0;
   if (q.part_end > 0) q.passes = q.part_end - q.part_first;
-  if (q.passes == 0) q.passes = q.seconds > 0 || q.until > 0 ? MOST_PASSES : DEFAULT_PASSES;
+  if (q.passes == 0) q.passes = open_end ? MOST_PASSES : DEFAULT_PASSES;
+  if (q.whole == 0 && !q.merge && !open_end) q.whole = q.passes;
+  if (open_end) q.whole = 0; /* where it ends is not known */
   abbe_scene scene = {0};
   abbe_result result = check_targets(&q, &error);
   if (result == ABBE_OK) result = name_checkpoint(&q, &error);

@@ -41,6 +41,7 @@ static abbe_result resume_rank(const abbe_trace_request *q, abbe_tracer *tracer,
 /* All ranks end alike, unless one fails alone. The files go once the results are there. */
 static abbe_result trace_ranks(abbe_trace_request *q, abbe_tracer *tracer, abbe_error *error) {
   const abbe_trace_run_desc run = {.passes = q->passes,
+                                   .whole = q->whole,
                                    .seconds = q->seconds,
                                    .error = q->until,
                                    .checkpoint = q->checkpoint_path,

@@ -338,7 +338,18 @@ static void test_wrong_parts(void **state) {
   refuse_parts("--passes 3:3 --checkpoint q.ck", 2, "are no passes");
   refuse_parts("--passes 3 --checkpoint q.ck", 2, "are no passes");
   refuse_parts("--passes 0:1 --passes 3 --checkpoint q.ck", 2, "are no passes");
-  refuse_parts("--passes 0:1 --spp 3 --checkpoint q.ck", 2, "--spp");
+  refuse_parts("--passes 2:4 --spp 3 --checkpoint q.ck", 2, "--spp");
+  refuse_parts("--passes 0:1 --checkpoint q.ck --incomplete", 2, "--merge");
+  refuse_parts("--merge q0.ck --checkpoint q.ck --incomplete", 2, "is no part");
+  /* the last part is missing */
+  check_run(TRACE BALL SMALL "--spp 3 --passes 0:1 --checkpoint r0.ck", 0);
+  check_run(TRACE BALL SMALL "--spp 3 --passes 1:2 --checkpoint r1.ck", 0);
+  refuse_parts("-o c.exr --merge r0.ck r1.ck", 1,
+               "pass 2 is missing: there are to be 3, as r0.ck says; trace them, or take what is there "
+               "with --incomplete");
+  refuse_parts("-o c.exr --spp 2 --merge q0.ck", 1, "pass 1 is missing: there are to be 2, as is");
+  check_run(TRACE BALL SMALL "-o c.exr --merge r0.ck r1.ck --incomplete", 0);
+  assert_contains(run_errors, "note: pass 2 is missing");
   refuse_parts("--passes 0:1 --merge q0.ck --checkpoint q.ck", 2, "--merge");
   refuse_parts("--passes 0:1 --checkpoint q3.ck --resume", 1, "from 3 on, not all from 0");
   assert_true(!there("c.exr") && !there("q.ck"));

@@ -34,6 +34,7 @@ static const struct {
     {"abbe_cut_gcs_write", "report"},
     {"abbe_cut_gem_parse", "report"},
     {"abbe_cut_gem_write", "report"},
+    {"abbe_checkpoint_merge", "how"},
     {"abbe_difference_picture_write", "title"},
     {"abbe_environment_lights_add", "before"},
     {"abbe_fit_dispersion", "max_error"},

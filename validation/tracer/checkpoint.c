@@ -10,7 +10,7 @@
 
 /* File: a line of magic, lines of text that say what the run is, an empty line, then counts,
  * ledger and sums as the machine keeps them, and a hash of all before it. */
-static const char magic[] = "abbe checkpoint 8\n";
+static const char magic[] = "abbe checkpoint 9\n";
 /* Bytes that hold all the lines, and those of the magic that versions share. */
 enum { HEAD = 4096, SAME_MAGIC = 16 };
 
@@ -306,6 +306,7 @@ static void add_part(abbe_tracer *t, const char *numbers, const abbe_pass_counts
   abbe_pass_counts_set(t, &(abbe_pass_counts){.first = all->first,
                                               .end = all->end,
                                               .step = all->step,
+                                              .whole = all->whole,
                                               .photons = present.photons + c.photons,
                                               .light_rays = present.light_rays + c.light_rays,
                                               .eye_rays = present.eye_rays + c.eye_rays,
@@ -344,6 +345,9 @@ typedef struct parts {
   abbe_pass_counts *counts; /* of each */
   uint32_t *owner;          /* [ABBE_WHOLE_SUM_MOST_PASSES] */
   size_t end;               /* behind the last pass that somebody has */
+  size_t whole;             /* passes that there are to be, */
+  const char *teller;       /* by whose word; NULL: it is asked for */
+  size_t passes;            /* that there are */
 } parts;
 
 /* Passes from and to, both included, in words. */
@@ -378,20 +382,33 @@ static abbe_result own(parts *p, size_t part, abbe_error *error) {
   return ABBE_OK;
 }
 
-static abbe_result find_gap(const parts *p, abbe_error *error) {
-  size_t from = 0, to;
+/* Passes from and to are missing, of the p->whole that there are to be. */
+static void say_gap(const parts *p, size_t from, size_t to, char *out, size_t size) {
   char text[64];
-  while (from < p->end && p->owner[from] > 0) from++;
-  if (from == p->end) return ABBE_OK;
-  for (to = from; p->owner[to + 1] == 0;) to++;
-  const char *next = p->path[p->owner[to + 1] - 1];
+  const char *next = to + 1 < p->end ? p->path[p->owner[to + 1] - 1] : NULL;
   passes_text(from, to, text, sizeof text);
-  if (from == 0)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "%s %s missing: the first part that is there begins with pass %zu, in %s",
-                          text, be(from, to), to + 1, next);
-  return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s %s missing, between %s and %s", text,
-                        be(from, to), p->path[p->owner[from - 1] - 1], next);
+  if (next == NULL)
+    snprintf(out, size, "%s %s missing: there are to be %zu, as %s%s", text, be(from, to), p->whole,
+             p->teller != NULL ? p->teller : "is asked for", p->teller != NULL ? " says" : "");
+  else if (from == 0)
+    snprintf(out, size,
+             "%s %s missing: the first part that is there begins with pass %zu, in %s", text,
+             be(from, to), to + 1, next);
+  else
+    snprintf(out, size, "%s %s missing, between %s and %s", text, be(from, to),
+             p->path[p->owner[from - 1] - 1], next);
+}
+
+/* Counts the passes that are there, and says the first that are not. */
+static void find_gap(parts *p, char *out, size_t size) {
+  size_t from = p->whole, to = p->whole;
+  for (size_t i = 0; i < p->whole; i++) {
+    p->passes += p->owner[i] > 0;
+    if (p->owner[i] == 0 && from == p->whole) from = to = i;
+    if (p->owner[i] == 0 && i == to + 1) to = i;
+  }
+  out[0] = '\0';
+  if (from < p->whole) say_gap(p, from, to, out, size);
 }
 
 static abbe_result find_parts(const abbe_tracer *t, parts *p, size_t count, abbe_error *error) {
@@ -404,14 +421,19 @@ static abbe_result find_parts(const abbe_tracer *t, parts *p, size_t count, abbe
                             p->path[i]);
     result = own(p, i, error);
     if (result != ABBE_OK) return result;
+    if (c->whole > p->whole) {
+      p->whole = (size_t)c->whole;
+      p->teller = p->path[i];
+    }
   }
-  return find_gap(p, error);
+  if (p->end > p->whole) p->whole = p->end;
+  return ABBE_OK;
 }
 
 /* A part whose trace goes on elsewhere may have been written anew since its head was read. */
 static abbe_result add_parts(abbe_tracer *t, const parts *p, size_t count, abbe_error *error) {
   for (size_t i = 0; i < count; i++) {
-    const abbe_pass_counts all = {.end = p->end, .step = 1};
+    const abbe_pass_counts all = {.end = p->passes, .step = 1, .whole = p->whole};
     char *data = NULL;
     size_t numbers = 0;
     abbe_result result = read_whole(t, p->path[i], &data, &numbers, error);
@@ -429,17 +451,24 @@ static abbe_result add_parts(abbe_tracer *t, const parts *p, size_t count, abbe_
 }
 
 abbe_result abbe_checkpoint_merge(abbe_tracer *t, const char *const *path, size_t count,
-                                  abbe_error *error) {
+                                  abbe_checkpoint_merging *how, abbe_error *error) {
   ABBE_REQUIRE(t && path, error);
   if (count == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there are no parts to merge");
+  char lacks[sizeof how->lacks] = "";
   parts p = {.path = path,
+             .whole = how != NULL ? how->whole : 0,
              .counts = calloc(count, sizeof *p.counts),
              .owner = calloc(ABBE_WHOLE_SUM_MOST_PASSES, sizeof *p.owner)};
   abbe_result result =
       p.counts != NULL && p.owner != NULL
           ? find_parts(t, &p, count, error)
           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu parts", count);
+  if (result == ABBE_OK) find_gap(&p, lacks, sizeof lacks);
+  if (how != NULL) memcpy(how->lacks, lacks, sizeof lacks);
+  if (lacks[0] != '\0' && !(how != NULL && how->incomplete))
+    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "%s; trace them, or take what is there with --incomplete", lacks);
   if (result == ABBE_OK) {
     abbe_pass_sums_clear(t);
     result = add_parts(t, &p, count, error);

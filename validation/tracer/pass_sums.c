@@ -25,6 +25,7 @@ void abbe_pass_counts_get(const abbe_tracer *t, abbe_pass_counts *out) {
   *out = (abbe_pass_counts){.first = t->first,
                             .end = t->pass,
                             .step = t->step,
+                            .whole = t->whole,
                             .photons = s.photons,
                             .light_rays = s.light_rays,
                             .eye_rays = s.eye_rays,
@@ -36,6 +37,7 @@ void abbe_pass_counts_set(abbe_tracer *t, const abbe_pass_counts *c) {
   t->first = (size_t)c->first;
   t->pass = (size_t)c->end;
   t->step = (size_t)c->step;
+  t->whole = (size_t)c->whole;
   t->picture.passes = t->map.passes = abbe_tracer_passes(t);
   s->photons = c->photons;
   s->light_rays = c->light_rays;
@@ -48,7 +50,7 @@ void abbe_pass_counts_set(abbe_tracer *t, const abbe_pass_counts *c) {
 
 bool abbe_pass_counts_hold(const abbe_pass_counts *c) {
   const uint64_t most = ABBE_WHOLE_SUM_MOST_PASSES;
-  return c->step >= 1 && c->step <= most && c->first <= c->end && c->first <= most &&
+  return c->whole <= most && c->step >= 1 && c->step <= most && c->first <= c->end && c->first <= most &&
          c->end < most + c->step && (c->end - c->first) % c->step == 0;
 }
 

@@ -110,6 +110,7 @@ static void put_together(const work *w, size_t end) {
     if (span[i].count > 0) w->ranks->sum(span[i].sum, span[i].count);
   if (w->ranks->rank > 0) return;
   abbe_pass_counts_set(w->tracer, &(abbe_pass_counts){.end = end,
+                                                      .whole = c.whole,
                                                       .step = 1,
                                                       .photons = (uint64_t)rays[0],
                                                       .light_rays = (uint64_t)rays[1],
@@ -233,6 +234,7 @@ abbe_result abbe_ranked_run(const abbe_ranks *ranks, abbe_tracer *tracer,
                             const abbe_trace_run_desc *desc, abbe_error *error) {
   ABBE_REQUIRE(ranks && ranks->sum && ranks->most && tracer && desc, error);
   const double now = abbe_clock_seconds();
+  tracer->whole = desc->whole;
   const size_t most = desc->passes > 0 ? desc->passes : ABBE_WHOLE_SUM_MOST_PASSES;
   work w = {ranks, tracer, desc, now, now, (double)most};
   return run_rounds(&w, most, error);

@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "validation/tracer/checkpoint.h"
+#include "validation/tracer/tracer_state.h"
 
 #include <math.h>
 #include <time.h>
@@ -31,6 +32,7 @@ abbe_result abbe_trace_keep(const abbe_tracer *tracer, const abbe_trace_run_desc
 abbe_result abbe_trace_run(abbe_tracer *tracer, const abbe_trace_run_desc *d, abbe_error *error) {
   ABBE_REQUIRE(tracer && d, error);
   double start = abbe_clock_seconds(), saved = start, estimate = INFINITY;
+  tracer->whole = d->whole;
   for (;;) {
     size_t passes = abbe_tracer_passes(tracer);
     double spent = abbe_clock_seconds() - start;

@@ -55,6 +55,7 @@ struct abbe_tracer {
   bool eye_gathers;         /* some pixel may show a receiver through or in a refractor */
   float radius;             /* of the first gather, frame */
   size_t first, pass, step; /* the first in the sums, the next one, and from one to the next */
+  size_t whole;             /* passes of all parts together, as far as they were asked for; or 0 */
   double reach;             /* W that photons stand for, at the scale of the ledger's units */
   abbe_whole_sum ledger[ABBE_TRACER_LEDGER]; /* over passes */
   uint64_t other_rays; /* of the walks: trials, and from before a checkpoint was taken up */

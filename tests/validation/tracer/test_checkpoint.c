@@ -1,6 +1,7 @@
 #include "tests/validation/trace_scene.h"
 
 #include "validation/tracer/checkpoint.h"
+#include "validation/tracer/trace_run.h"
 
 #include <unistd.h>
 
@@ -312,9 +313,9 @@ static void what_is_no_checkpoint_is_told(void **state) {
   } files[] = {{"", "not a checkpoint"},
                {"description: a scene\n", "not a checkpoint"},
                {"abbe checkpoint 1\nscene 1\n\n", "another version"},
-               {"abbe checkpoint 8\n", "broken"},
-               {"abbe checkpoint 8\nscene 0123", "broken"},
-               {"abbe checkpoint 8\n\n\n", "start anew"}};
+               {"abbe checkpoint 9\n", "broken"},
+               {"abbe checkpoint 9\nscene 0123", "broken"},
+               {"abbe checkpoint 9\n\n\n", "start anew"}};
   abbe_error error;
   abbe_tracer *tracer = make_tracer(&scene, &small);
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
@@ -365,7 +366,7 @@ static void any_split_gives_the_bits_of_one_run(void **state) {
     for (int k = 0; k < PARTS; k++) paths[k] = file[order[i][k]];
     abbe_tracer *merged = make_tracer(&scene, &desc);
     abbe_error error = {0};
-    if (abbe_checkpoint_merge(merged, paths, PARTS, &error) != ABBE_OK) fail_msg("%s", error.text);
+    if (abbe_checkpoint_merge(merged, paths, PARTS, NULL, &error) != ABBE_OK) fail_msg("%s", error.text);
     check_same(whole, merged);
     if (i == 2) {
       run_passes(whole, 1);
@@ -382,7 +383,7 @@ static void check_unmerged(const char *const *paths, size_t count, abbe_result w
                            const char *part) {
   abbe_error error = {0};
   abbe_tracer *tracer = make_tracer(&scene, &small);
-  abbe_result result = abbe_checkpoint_merge(tracer, paths, count, &error);
+  abbe_result result = abbe_checkpoint_merge(tracer, paths, count, NULL, &error);
   if (result != why) print_error("%d: %s\n", result, error.text);
   assert_int_equal(result, why);
   assert_contains(error.text, part);
@@ -421,6 +422,58 @@ static void gaps_and_overlaps_are_named(void **state) {
   for (int k = 0; k < PARTS; k++) unlink(file[k]);
 }
 
+/* The passes first to done - 1 of a part that was asked for those to end - 1, of a whole. */
+static void save_asked(size_t first, size_t done, size_t whole, const char *file) {
+  abbe_tracer *tracer = make_tracer(&scene, &small);
+  const abbe_trace_run_desc run = {.passes = done - first, .whole = whole, .checkpoint = file};
+  assert_int_equal(abbe_tracer_begin_at(tracer, first, 1, NULL), ABBE_OK);
+  assert_int_equal(abbe_trace_run(tracer, &run, NULL), ABBE_OK);
+  assert_int_equal(abbe_trace_keep(tracer, &run, NULL), ABBE_OK);
+  abbe_tracer_free(tracer);
+}
+
+/* The last part, and what a part that was killed had not done, are missed as any other; and what is
+ * there is the mean of its own passes. */
+static void what_was_asked_for_is_missed(void **state) {
+  (void)state;
+  char file[3][ROOM];
+  const char *paths[3];
+  for (int k = 0; k < 3; k++) {
+    snprintf(file[k], ROOM, "%s/asked-%d.ck", folder, k);
+    paths[k] = file[k];
+  }
+  save_asked(0, 2, 8, file[0]);
+  save_asked(2, 4, 8, file[1]);
+  save_asked(4, 6, 8, file[2]);
+  check_unmerged(paths, 3, ABBE_INVALID_ARGUMENT, "passes 6 to 7 are missing: there are to be 8, as");
+  check_unmerged(paths, 3, ABBE_INVALID_ARGUMENT, "asked-0.ck says; trace them");
+  save_asked(0, 6, 40, file[0]);
+  check_unmerged(paths, 1, ABBE_INVALID_ARGUMENT, "passes 6 to 39 are missing");
+  save_asked(0, 2, 4, file[0]);
+  save_asked(3, 4, 4, file[1]);
+  check_unmerged(paths, 2, ABBE_INVALID_ARGUMENT, "pass 2 is missing, between");
+  save_asked(0, 2, 0, file[0]);
+  abbe_checkpoint_merging how = {.whole = 3};
+  abbe_tracer *tracer = make_tracer(&scene, &small), *other = make_tracer(&scene, &small);
+  abbe_error error = {0};
+  assert_int_equal(abbe_checkpoint_merge(tracer, paths, 1, &how, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "pass 2 is missing: there are to be 3, as is asked for");
+  how.incomplete = true;
+  assert_int_equal(abbe_checkpoint_merge(tracer, paths, 1, &how, &error), ABBE_OK);
+  assert_contains(how.lacks, "pass 2 is missing");
+  run_passes(other, 2);
+  check_same(tracer, other);
+  how = (abbe_checkpoint_merging){.incomplete = true}; /* a hole in the middle: three passes */
+  assert_int_equal(abbe_checkpoint_merge(tracer, paths, 2, &how, &error), ABBE_OK);
+  assert_int_equal(abbe_tracer_passes(tracer), 3);
+  how = (abbe_checkpoint_merging){.whole = 2};
+  assert_int_equal(abbe_checkpoint_merge(tracer, paths, 1, &how, &error), ABBE_OK);
+  assert_string_equal(how.lacks, "");
+  abbe_tracer_free(tracer);
+  abbe_tracer_free(other);
+  for (int k = 0; k < 3; k++) unlink(file[k]);
+}
+
 static void a_trace_begins_once(void **state) {
   (void)state;
   abbe_tracer *tracer = make_tracer(&scene, &small);
@@ -446,6 +499,7 @@ int main(void) {
       cmocka_unit_test(what_is_no_checkpoint_is_told),
       cmocka_unit_test(any_split_gives_the_bits_of_one_run),
       cmocka_unit_test(gaps_and_overlaps_are_named),
+      cmocka_unit_test(what_was_asked_for_is_missed),
       cmocka_unit_test(a_trace_begins_once),
   };
   return cmocka_run_group_tests(tests, setup, teardown);

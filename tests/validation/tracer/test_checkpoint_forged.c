@@ -106,7 +106,7 @@ static void other_instructions_are_told(void **state) {
   assert_contains(error.text, "instructions z");
   assert_contains(error.text, ours);
   const char *const paths[] = {path};
-  assert_int_equal(abbe_checkpoint_merge(tracer, paths, 1, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_checkpoint_merge(tracer, paths, 1, NULL, &error), ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "put parts together");
   free(data);
   abbe_tracer_free(tracer);

@@ -232,9 +232,9 @@ static void ranks_that_were_stopped_go_on(void **state) {
     abbe_error error = {0};
     abbe_tracer *merged = make_tracer(&scene, &small);
     const char *const paths[] = {file[2], file[0], file[1]};
-    assert_int_equal(abbe_checkpoint_merge(merged, paths, 2, &error), ABBE_INVALID_ARGUMENT);
+    assert_int_equal(abbe_checkpoint_merge(merged, paths, 2, NULL, &error), ABBE_INVALID_ARGUMENT);
     assert_contains(error.text, "pass 1 is missing");
-    assert_int_equal(abbe_checkpoint_merge(merged, paths, RANKS, NULL), ABBE_OK);
+    assert_int_equal(abbe_checkpoint_merge(merged, paths, RANKS, NULL, NULL), ABBE_OK);
     check_same(whole, merged);
     abbe_tracer_free(merged);
     for (size_t r = 0; r < RANKS; r++) unlink(file[r]);
