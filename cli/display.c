@@ -61,6 +61,10 @@ static abbe_result show_numbers(const request *r, const abbe_image *image, abbe_
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: '%s' is no colour and is shown in false colours, without %s", r->in,
                           r->layer, given);
+  const size_t channel = abbe_image_find_channel(image, r->layer);
+  abbe_image_odd odd = {0};
+  if (channel != (size_t)-1) abbe_image_count_odd(image, &channel, 1, &odd);
+  abbe_command_note_odd(r->in, &odd, "drawn as the scale's end");
   return abbe_false_colours_write(r->out, image, r->layer, r->in, error);
 }
 

@@ -229,6 +229,8 @@ static void test_one_meaning_of_the_numbers(void **state) {
     must(0, ": 3 pixels are infinite, ", line);
     must(0, ": 1 pixels are not a number (NaN)", line);
   }
+  snprintf(line, sizeof line, "display %s -o %s --layer G", exr, png);
+  must(0, ": 3 pixels are infinite, drawn as the scale's end", line);
   show("--view Looking --exposure -20", said);
   for (int k = 0; k < 3; k++) assert_true(said[k] > 0.99);
   abbe_image_free(&image);

@@ -26,6 +26,13 @@ static void note_files(abbe_compare_notes *out, const abbe_file_comparison *r) {
       note(out,
            "%.150s does not say its colour space; Rec.709 primaries are assumed, as OpenEXR does",
            r->path[side]);
+  for (int side = 0; side < 2; side++)
+    if (r->field[side].unread > 0)
+      note(
+          out,
+          "left out are %zu channels of a spectrum in %.150s: of polarised light, re-radiation, or "
+          "not named as bands are",
+          r->field[side].unread, r->path[side]);
   for (int k = 0; k < 2; k++) {
     const char *a = abbe_file_comparison_attribute(r, 0, keys[k]),
                *b = abbe_file_comparison_attribute(r, 1, keys[k]);

@@ -114,6 +114,9 @@ static abbe_result take_bands(const abbe_image *image, const char *name, abbe_fi
   const size_t count = list.count;
   for (size_t i = 0; i < count; i++) names[i] = image->channel[list.channel[i]];
   const double unit = list.unit.factor;
+  abbe_spectral_unread unread;
+  abbe_spectral_channels_find_unread(image, NULL, &unread);
+  for (int k = 0; k < ABBE_SPECTRAL_UNREAD_COUNT; k++) f->unread += unread.count[k];
   f->lambda_nm = list.lambda_nm;
   list.lambda_nm = NULL;
   abbe_spectral_channels_free(&list);

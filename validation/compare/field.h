@@ -51,6 +51,7 @@ typedef struct abbe_field {
   bool space_assumed;        /* the file does not say its space; Rec.709 was taken */
   abbe_field_samples bands;
   double *lambda_nm;          /* [bands.channels] ascending */
+  size_t unread;              /* channels of a spectrum that are none of these bands */
   abbe_field_samples caustic; /* 0 or 3 channels, in the colour's space, without errors */
   size_t passes;              /* independent estimates behind the errors; 0: not told */
   abbe_image header;          /* the file's attributes and its display window; no pixels */

@@ -90,6 +90,24 @@ static void test_layers_by_name(void **state) {
   abbe_image_free(&image);
 }
 
+/* Bands are compared in one unit, whatever the file's is; what is not read of a spectrum counts. */
+static void test_units_of_bands(void **state) {
+  (void)state;
+  static const char *const names[] = {"S0.500nm",        "S0.600nm", "stderr.S0.500nm",
+                                      "stderr.S0.600nm", "S1.500nm", "w500nm"};
+  abbe_image image = image_of(1, 1, 6, names);
+  set(&image, "emissiveUnits", "mW.m^-2.sr^-1.nm^-1");
+  abbe_field f = field_of(&image);
+  const double bands[2] = {1e-3, 2e-3}, errors[2] = {3e-3, 4e-3};
+  for (int i = 0; i < 2; i++) {
+    assert_near((double)f.bands.value[i], bands[i], 1e-9);
+    assert_near((double)f.bands.error[i], errors[i], 1e-9);
+  }
+  assert_int_equal(f.unread, 2);
+  abbe_field_free(&f);
+  abbe_image_free(&image);
+}
+
 static void test_errors_that_are_not_known(void **state) {
   (void)state;
   static const char *const names[] = {"X", "Y", "Z", "stderr.X", "stderr.Y", "stderr.Z"};
@@ -314,6 +332,7 @@ static void test_from_a_file(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_layers_by_name),
+                                     cmocka_unit_test(test_units_of_bands),
                                      cmocka_unit_test(test_errors_that_are_not_known),
                                      cmocka_unit_test(test_spaces),
                                      cmocka_unit_test(test_what_cannot_be_compared),
