@@ -45,7 +45,8 @@ static const struct argp_option options[] = {
     {"step", KEY_STEP, "DEGREES", 0, "of the tilt; without it, 2", 0},
     {"range", KEY_RANGE, "FROM:TO", 0, "wavelengths, nm; without it, 380:780", 0},
     {"wavelengths", KEY_WAVELENGTHS, "N", 0, "how many; without it, 16", 0},
-    {"size", KEY_SIZE, "PIXELS", 0, "a side of the maps; without it, 96", 0},
+    {"size", KEY_SIZE, "PIXELS", 0,
+     "a side of the maps, eight times that of each tilt; without it, 96", 0},
     {"repeats", KEY_REPEATS, "N", 0, "rays in a pixel, 3 to 64; without it, 4", 0},
     {"threads", KEY_THREADS, "N", 0, "without it, all; results do not depend on it", 0},
     {0}};

@@ -98,9 +98,11 @@ static abbe_result put_tilt_page(abbe_sheet *s, const abbe_gem_tilts *t, abbe_er
   abbe_result result = ABBE_OK;
   abbe_sheet_turn(s);
   abbe_sheet_text(s, MARGIN, MARGIN + 10, 14, true, false, 0, "Rocked before the eye");
-  for (int i = 0; i < CHARTS && result == ABBE_OK; i++)
+  for (int i = 0; i < CHARTS && result == ABBE_OK; i++) {
+    if (chart[i].curve == ABBE_GEM_TILT_FIRE && !t->has_fire) continue;
     result = put_tilts(s, t, chart[i].curve, chart[i].label, MARGIN + 24 + i * height, height - 8,
                        error);
+  }
   return result;
 }
 

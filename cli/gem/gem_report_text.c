@@ -59,6 +59,10 @@ void abbe_gem_report_print(const abbe_gem_report_facts *f) {
 
 /* ---- for programs ---- */
 
+static bool is_shown(const abbe_gem_tilts *t, int curve) {
+  return curve != ABBE_GEM_TILT_FIRE || t->has_fire;
+}
+
 void abbe_gem_report_print_csv(const abbe_gem_report_facts *f) {
   const abbe_gem_judgement *j = f->judgement;
   abbe_gem_judgement_row row[ABBE_GEM_JUDGEMENT_MOST_ROWS];
@@ -76,7 +80,7 @@ void abbe_gem_report_print_csv(const abbe_gem_report_facts *f) {
     }
   if (!j->has_tilts) return;
   for (int c = 0; c < ABBE_GEM_TILT_CURVE_COUNT; c++)
-    for (size_t i = 0; i < ABBE_GEM_AXES * j->tilts.tilts; i++)
+    for (size_t i = 0; is_shown(&j->tilts, c) && i < ABBE_GEM_AXES * j->tilts.tilts; i++)
       printf("%s,%.6g,%.6g,,%.9g,%.3g\n", abbe_gem_tilt_curve_name((abbe_gem_tilt_curve)c),
              j->tilts.axis_rad[i / j->tilts.tilts] * 180 / PI,
              j->tilts.tilt_rad[i % j->tilts.tilts] * 180 / PI, j->tilts.curve[c][i].value,
@@ -109,7 +113,8 @@ static void add_tilts(cJSON *root, const abbe_gem_tilts *t) {
     cJSON_AddNumberToObject(one, "axis_deg", t->axis_rad[i / t->tilts] * 180 / PI);
     cJSON_AddNumberToObject(one, "tilt_deg", t->tilt_rad[i % t->tilts] * 180 / PI);
     for (int c = 0; c < ABBE_GEM_TILT_CURVE_COUNT; c++)
-      add_number(one, abbe_gem_tilt_curve_name((abbe_gem_tilt_curve)c), t->curve[c][i]);
+      if (is_shown(t, c))
+        add_number(one, abbe_gem_tilt_curve_name((abbe_gem_tilt_curve)c), t->curve[c][i]);
     cJSON_AddItemToArray(list, one);
   }
 }

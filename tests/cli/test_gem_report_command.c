@@ -38,6 +38,16 @@ static void numbers_add_up(void **state) {
     assert_near(value(one, "iso") + value(one, "leakage"), 1, 2e-4);
   }
   cJSON_Delete(json);
+  /* One wavelength has no fire: neither a number, nor a curve, nor a chart. */
+  json = run_json(GEM "report" DIAMOND SMALL "--step 15 --wavelengths 1 --json", 0);
+  assert_null(cJSON_GetObjectItem(json_item(json, "measures"), "fire"));
+  cJSON_ArrayForEach(one, json_item(json, "tilts")) assert_null(cJSON_GetObjectItem(one, "fire"));
+  cJSON_Delete(json);
+  assert_int_equal(
+      run_line(GEM "report" DIAMOND SMALL
+                   "--step 15 --wavelengths 1 --csv -o one.pdf > one.csv && grep -q ^iso one.csv"),
+      0);
+  assert_int_equal(run_line("! grep -q ^fire one.csv && rm one.csv one.pdf"), 0);
   /* Without a head all that comes from above is returned; a wider one takes more. */
   double before = 1;
   for (int head = 0; head <= 30; head += 10) {

@@ -15,6 +15,12 @@ static abbe_gem_number colour(const abbe_gem_view *v, int c) {
   return abbe_gem_number_ratio(sum, v->met, v->repeats);
 }
 
+/* There are many tilts: an eighth of the view's side each. */
+static size_t tilts_side(size_t side) {
+  enum { LEAST = 4 };
+  return side / 8 > LEAST ? side / 8 : LEAST;
+}
+
 abbe_result abbe_gem_judgement_make(const abbe_gem_stone *stone, const abbe_weights *weights,
                                     const abbe_gem_judgement_desc *desc, abbe_gem_judgement *out,
                                     abbe_error *error) {
@@ -32,6 +38,7 @@ abbe_result abbe_gem_judgement_make(const abbe_gem_stone *stone, const abbe_weig
     abbe_gem_tilts_desc rocked = desc->rocked;
     rocked.head_rad = desc->view.head_rad;
     rocked.threads = desc->view.threads;
+    if (rocked.side == 0) rocked.side = tilts_side(out->view.side);
     result = abbe_gem_tilts_make(stone, weights, &rocked, &out->tilts, error);
     out->has_tilts = result == ABBE_OK;
   }
@@ -60,8 +67,9 @@ size_t abbe_gem_judgement_rows(const abbe_gem_judgement *j,
                                           t->mean[ABBE_GEM_TILT_ISO], true};
   row[count++] =
       (abbe_gem_judgement_row){"tilt_spread", "its standard deviation over tilts", t->spread, true};
-  row[count++] = (abbe_gem_judgement_row){"fire", "fire: coloured pixels under small lamps",
-                                          t->mean[ABBE_GEM_TILT_FIRE], true};
+  if (t->has_fire)
+    row[count++] = (abbe_gem_judgement_row){"fire", "fire: coloured pixels under small lamps",
+                                            t->mean[ABBE_GEM_TILT_FIRE], true};
   row[count++] = (abbe_gem_judgement_row){
       "scintillation", "scintillation: pixels that blink, a step", t->blinks, true};
   return count;

@@ -12,7 +12,7 @@ extern "C" {
 typedef struct abbe_gem_judgement_desc {
   abbe_gem_view_desc view;
   bool tilts;                 /* else only from where the view is */
-  abbe_gem_tilts_desc rocked; /* its head and threads are the view's */
+  abbe_gem_tilts_desc rocked; /* its head and threads are the view's; side 0: an eighth of that's */
 } abbe_gem_judgement_desc;
 
 typedef struct abbe_gem_judgement {

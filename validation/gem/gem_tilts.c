@@ -110,20 +110,24 @@ static void add_blinks(const work *w, const frame *a, const frame *b, double cha
     }
 }
 
-/* Each frame counts alike, whatever the silhouette's area. */
+/* Each frame counts alike, whatever the silhouette's area. The spread has products of different
+ * repeats alone: what their own scatter adds is left out. */
 static double mean_of(const frame *f, size_t frames, int c, size_t repeats, size_t without,
                       double *spread) {
   double mean = 0, square = 0;
   for (size_t i = 0; i < frames; i++) {
-    double sum = 0, met = 0;
+    double sum = 0, met = 0, values = 0, squares = 0, count = 0;
     for (size_t r = 0; r < repeats; r++) {
-      if (r == without) continue;
+      if (r == without || !(f[i].met[r] > 0)) continue;
+      const double value = f[i].sum[c][r] / f[i].met[r];
       sum += f[i].sum[c][r];
       met += f[i].met[r];
+      values += value;
+      squares += value * value;
+      count++;
     }
-    const double value = met > 0 ? sum / met : 0;
-    mean += value / (double)frames;
-    square += value * value / (double)frames;
+    mean += met > 0 ? sum / met / (double)frames : 0;
+    if (count > 1) square += (values * values - squares) / (count * (count - 1) * (double)frames);
   }
   *spread = sqrt(fmax(square - mean * mean, 0));
   return mean;
@@ -229,6 +233,7 @@ abbe_result abbe_gem_tilts_make(const abbe_gem_stone *stone, const abbe_weights 
   const double most = desc->most_rad > 0 ? desc->most_rad : PI / 6;
   out->tilts = 2 * steps + 1;
   out->step_rad = most / (double)steps;
+  out->has_fire = stone->wavelengths > 1;
   frame *f = NULL;
   unsigned char *states = NULL;
   result = allocate(&w, out, &f, &states, error);

@@ -66,6 +66,7 @@ typedef struct abbe_gem_tilts {
   abbe_gem_number spread; /* of ISO: standard deviation over the tilts of all axes */
   abbe_gem_number blinks; /* scintillation: share of pixels, a step, that become lit or dark */
   double step_rad;
+  bool has_fire; /* of one wavelength there is none to measure, and FIRE is 0 everywhere */
 } abbe_gem_tilts;
 
 /* ABBE_INVALID_ARGUMENT for what is outside its range, ABBE_GEOMETRY where no ray met the stone at

@@ -59,9 +59,9 @@ abbe_gem_number abbe_gem_view_amount(const abbe_gem_view *view, abbe_gem_amount 
 abbe_gem_number abbe_gem_view_at(const abbe_gem_view *view, abbe_gem_amount amount,
                                  size_t wavelength);
 
-/* Shares of the silhouette's area, by which part of its light is the greatest: what returns, what
- * leaks (a window), or what comes from the head and is absorbed or left (extinction). They add up
- * to 1. */
+/* Shares of the silhouette's area, by which part of a place's light is the greatest: what returns,
+ * what leaks (a window), or what comes from the head and is absorbed or left (extinction). They add
+ * up to 1. Places are rays, and not pixels: so these do not depend on the grid. */
 typedef struct abbe_gem_areas {
   abbe_gem_number brilliant, window, extinct;
 } abbe_gem_areas;
@@ -69,9 +69,8 @@ typedef struct abbe_gem_areas {
 /* ABBE_NO_MEMORY. */
 abbe_result abbe_gem_view_areas(const abbe_gem_view *view, abbe_gem_areas *out, abbe_error *error);
 
-/* Standard deviation over the silhouette's pixels of the light return, over its mean
- * [Peli1990]. What the samples' own noise adds is left out: products of different repeats alone
- * count. */
+/* Standard deviation of the light return over the places of the silhouette, over its mean
+ * [Peli1990]; of rays, and not of pixels, as the areas. */
 abbe_gem_number abbe_gem_view_contrast(const abbe_gem_view *view);
 
 #ifdef __cplusplus
