@@ -168,14 +168,23 @@ abbe_result abbe_estimator_study_make(const abbe_scene *scene, size_t side, size
   return ABBE_OK;
 }
 
+/* All points of one kind of light have the same rays. */
+static size_t rays_of(const abbe_estimator_study *study, bool reflected) {
+  for (size_t i = 0; i < study->count; i++)
+    if (study->point[i].reflected == reflected) return study->point[i].rays;
+  return 0;
+}
+
 void abbe_estimator_study_print(const abbe_estimator_study *study, FILE *to) {
   fprintf(to,
-          "a texture of %zu x %zu places, a ray for each of %zu x %zu cells; %zu rays land where "
-          "the light does not see\n\n"
+          "a texture of %zu x %zu places, %zu x %zu cells of what the light sees of refractors and "
+          "mirrors; %zu rays are refracted, %zu reflected, and %zu more land where the light does "
+          "not see\n\n"
           "| light | estimator | iterations | lookups | ns a ray | median, texels | 95 %% | worst "
           "| lost | "
           "rate (law) |\n|---|---|---|---|---|---|---|---|---|---|\n",
-          study->side, study->side, study->grid, study->grid, study->hidden);
+          study->side, study->side, study->grid, study->grid, rays_of(study, false),
+          rays_of(study, true), study->hidden);
   for (size_t i = 0; i < study->count; i++) {
     const abbe_estimator_point *p = &study->point[i];
     fprintf(to, "| %s | %s%s | %zu", p->reflected ? "reflected" : "refracted",

@@ -127,7 +127,8 @@ static bool leave(const abbe_scene *scene, const solids *s, double size, double 
   return !abbe_bvh_trace(&s->bvh, triangle, o, d, 0, off, INFINITY, &hit);
 }
 
-static void make_view(const abbe_scene *scene, size_t index, abbe_view *view) {
+/* Around all objects, or around those alone that light leaves. */
+static void make_view(const abbe_scene *scene, size_t index, bool all, abbe_view *view) {
   static const double up[3] = {0, 1, 0};
   const abbe_light *light = &scene->light[index];
   const bool sun = light->kind == ABBE_LIGHT_DIRECTIONAL;
@@ -143,8 +144,9 @@ static void make_view(const abbe_scene *scene, size_t index, abbe_view *view) {
   if (abbe_vector_length(forward) == 0) forward[2] = -1;
   abbe_view_look(origin, forward, up, sun, view);
   for (size_t i = 0; i < scene->object_count; i++)
-    abbe_view_fit(view, (const double(*)[3])scene->object[i].mesh.position,
-                  scene->object[i].mesh.vertex_count);
+    if (all || abbe_object_kind_of(&scene->object[i]) != ABBE_OBJECT_RECEIVER)
+      abbe_view_fit(view, (const double(*)[3])scene->object[i].mesh.position,
+                    scene->object[i].mesh.vertex_count);
   abbe_view_pad(view, 0.01);
   for (int axis = 0; axis < 2; axis++) {
     double *w = &view->window[2 * axis];
@@ -228,7 +230,8 @@ static bool land(const abbe_landing_rays *r, double size, abbe_landing_ray *ray,
   return true;
 }
 
-static void follow(const abbe_scene *scene, const solids *s, size_t grid, abbe_landing_rays *r) {
+static void follow(const abbe_scene *scene, const solids *s, const abbe_view *aim, size_t grid,
+                   abbe_landing_rays *r) {
   double min[3], max[3], size = 0;
   abbe_scene_bounds(scene, true, true, min, max);
   for (int k = 0; k < 3; k++) size = fmax(size, max[k] - min[k]);
@@ -238,7 +241,7 @@ static void follow(const abbe_scene *scene, const solids *s, size_t grid, abbe_l
     abbe_landing_ray ray;
     abbe_bvh_hit hit, before;
     bool seen;
-    abbe_view_ray(&r->view, uv, ray.origin, ray.direction);
+    abbe_view_ray(aim, uv, ray.origin, ray.direction);
     if (!abbe_bvh_trace(&s->bvh, (const double(*)[9])s->triangle, ray.origin, ray.direction, 0, 0,
                         INFINITY, &hit))
       continue;
@@ -283,7 +286,9 @@ abbe_result abbe_landing_rays_make(const abbe_scene *scene, size_t light, double
   *out = (abbe_landing_rays){.side = side};
   abbe_result result = check(scene, light, side, grid, error);
   if (result != ABBE_OK) return result;
-  make_view(scene, light, &out->view);
+  abbe_view aim;
+  make_view(scene, light, true, &out->view);
+  make_view(scene, light, false, &aim);
   out->place = calloc(side * side, sizeof *out->place);
   out->seen = calloc(side * side, sizeof *out->seen);
   out->ray = calloc(grid * grid, sizeof *out->ray);
@@ -293,7 +298,7 @@ abbe_result abbe_landing_rays_make(const abbe_scene *scene, size_t light, double
   if (result == ABBE_OK) result = make_solids(scene, lambda_nm, &s, error);
   if (result == ABBE_OK) {
     see_places(out);
-    follow(scene, &s, grid, out);
+    follow(scene, &s, &aim, grid, out);
   } else {
     abbe_landing_rays_free(out);
   }

@@ -40,7 +40,7 @@ typedef struct abbe_landing_rays {
 } abbe_landing_rays;
 
 /* Of light `light` of the scene, at lambda_nm: a texture of side x side places (1 to 4096), a ray
- * for each of grid x grid cells (1 to 4096) of the light's view that shows a refractor or a mirror.
+ * for each of grid x grid cells (1 to 4096) of what the light sees of refractors and mirrors.
  * ABBE_UNSUPPORTED for a light with a size, and without refractors and mirrors or receivers;
  * ABBE_INVALID_ARGUMENT, ABBE_OUT_OF_RANGE of a material, ABBE_NO_MEMORY. */
 abbe_result abbe_landing_rays_make(const abbe_scene *scene, size_t light, double lambda_nm,

@@ -26,6 +26,9 @@ static void test_a_ball_over_a_floor(void **state) {
   (void)state;
   static abbe_estimator_study s;
   study(CAMERA POINT_LIGHT FLOOR BALL("crown"), &s);
+  /* a disk in a square, less what total reflection and the padding take of it */
+  const double share = (double)find(&s, ABBE_ESTIMATOR_SHAH, false, 1)->rays / (64 * 64);
+  assert_true(share > 0.7 && share < 0.786);
   /* measured rates are the law's */
   for (int kind = ABBE_ESTIMATOR_SHAH; kind <= ABBE_ESTIMATOR_AXIS; kind++) {
     const abbe_estimator_point *p = find(&s, (abbe_estimator)kind, false, 1);
