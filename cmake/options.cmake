@@ -31,7 +31,8 @@ target_compile_options(abbe_build INTERFACE
 if(ABBE_SANITIZE)
   target_compile_options(abbe_build INTERFACE
     -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
-    -Wno-format-truncation) # which needs the ranges of numbers, and those -O2
+    # GCC's goes by the ranges of numbers, which it follows from -O2 on
+    $<$<C_COMPILER_ID:GNU>:-Wno-format-truncation>)
   target_link_options(abbe_build INTERFACE -fsanitize=address,undefined)
 endif()
 
