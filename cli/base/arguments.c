@@ -149,7 +149,23 @@ static bool is_stream(const char *program, unsigned flags, const char *called, c
   wrong_use(program);
 }
 
+static struct {
+  abbe_argument argument[ABBE_ARGUMENT_MOST];
+  size_t count;
+} given;
+
+const abbe_argument *abbe_arguments_given(size_t index) {
+  return index < given.count ? &given.argument[index] : NULL;
+}
+
+static void note_given(const struct argp_option *option, const char *value) {
+  if (given.count < ABBE_ARGUMENT_MOST)
+    given.argument[given.count++] = (abbe_argument){option->name, value != NULL ? value : "",
+                                                    (unsigned)option->flags};
+}
+
 static void take_value(const char *program, option_list *list, size_t i, const char *value) {
+  note_given(list->option[i], value);
   static const unsigned once = ABBE_ARGUMENT_ONCE | ABBE_ARGUMENT_READS | ABBE_ARGUMENT_WRITES;
   static char called[MAX_OPTIONS][40];
   const unsigned flags = (unsigned)list->option[i]->flags;
@@ -172,6 +188,7 @@ static bool take_letters(const char *program, option_list *list, const char *let
   for (; *letters != '\0'; letters++) {
     size_t i = 0;
     while (i < list->count && list->option[i]->key != *letters) i++;
+    if (i < list->count && list->option[i]->arg == NULL) note_given(list->option[i], NULL);
     if (i == list->count || list->option[i]->arg == NULL) continue;
     bool own = letters[1] != '\0', optional = !takes_next(list->option[i]);
     take_value(program, list, i, own ? letters + 1 : optional ? NULL : next);

@@ -30,6 +30,15 @@ void abbe_arguments_parse(const struct argp *argp, unsigned flags, int argc, cha
  * likewise. A path that is NULL or empty is none. */
 void abbe_arguments_add(const char *program, unsigned flags, const char *what, const char *path);
 
+/* An option as it was given: its whole name and value, "" for none. */
+enum { ABBE_ARGUMENT_MOST = 320 };
+typedef struct abbe_argument {
+  const char *name, *value;
+  unsigned flags;
+} abbe_argument;
+/* In the order in which they were given, at most ABBE_ARGUMENT_MOST; NULL behind the last. */
+const abbe_argument *abbe_arguments_given(size_t index);
+
 /* For the parser of a command about one file, what is no option: takes ARGP_KEY_ARG, and
  * ARGP_KEY_END, at which there must be one; ARGP_ERR_UNKNOWN for other keys. */
 error_t abbe_arguments_one_file(int key, char *text, const char **path, struct argp_state *state);

@@ -1,7 +1,9 @@
 #include "cli/options/frame_series.h"
 
 #include "base/number.h"
+#include "cli/options/frame_record.h"
 #include "colorimetry/image/animated_png.h"
+#include "colorimetry/image/png_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -95,11 +97,45 @@ abbe_result abbe_frame_series_name(const char *path, size_t number, char **out, 
   return ABBE_OK;
 }
 
+abbe_result abbe_frame_series_record(abbe_frame_series *s, const abbe_scene *scene,
+                                     abbe_error *error) {
+  /* which frames there are is no matter, unless what moves goes by it; nor is the pace of turning */
+  const char *without = s->around ? "fps" : s->moves == 0 ? "frames" : NULL;
+  return abbe_frame_record_make(scene, without, &s->made, error);
+}
+
+void abbe_frame_series_free(abbe_frame_series *s) {
+  free(s->made);
+  s->made = NULL;
+}
+
+abbe_result abbe_frame_series_mark(const abbe_frame_series *s, size_t i, abbe_image *image,
+                                   abbe_error *error) {
+  char *text = abbe_frame_record_of(s->made, s->first + i);
+  if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a frame's record");
+  const abbe_result result = abbe_image_set_attribute(image, ABBE_PNG_TEXT, text, error);
+  free(text);
+  return result;
+}
+
+/* Whether the file was made by this request; else that is said. */
+static bool is_own(const abbe_frame_series *s, const char *name, size_t number) {
+  char *theirs = abbe_frame_record_read(name), *ours = abbe_frame_record_of(s->made, number);
+  char text[500];
+  const bool own = ours != NULL && abbe_frame_record_is_like(theirs, ours, text, sizeof text);
+  if (ours != NULL && !own)
+    fprintf(stderr, "note: %s was made with %s: it is drawn anew\n", name, text);
+  free(theirs);
+  free(ours);
+  return own;
+}
+
 /* What is there is whole: files are renamed when they are. */
-static bool is_there(const char *path, size_t number) {
+static bool is_there(const abbe_frame_series *s, const char *path, size_t number) {
   char *name = NULL;
-  const bool there = abbe_frame_series_name(path, number, &name, NULL) == ABBE_OK &&
-                     (name == NULL || access(name, F_OK) == 0);
+  const bool there =
+      abbe_frame_series_name(path, number, &name, NULL) == ABBE_OK &&
+      (name == NULL || (access(name, F_OK) == 0 && is_own(s, name, number)));
   free(name);
   return there;
 }
@@ -107,11 +143,27 @@ static bool is_there(const char *path, size_t number) {
 bool abbe_frame_series_draws(const abbe_frame_series *s, size_t i, const char *exr,
                              const char *png) {
   if (!abbe_command_part_has(&s->part, i)) return false;
-  return !s->resume || !is_there(exr, s->first + i) || !is_there(png, s->first + i);
+  return !s->resume || !is_there(s, exr, s->first + i) || !is_there(s, png, s->first + i);
 }
 
 double abbe_frame_series_time(const abbe_frame_series *s, double scene_time, size_t i) {
   return scene_time + (double)(s->first + i) / rate(s);
+}
+
+/* Frames that carry records carry those of one request. */
+static abbe_result check_records(const char *const *path, size_t count, abbe_error *error) {
+  char *first = count > 0 ? abbe_frame_record_read(path[0]) : NULL, text[500];
+  abbe_result result = ABBE_OK;
+  for (size_t i = 1; first != NULL && i < count && result == ABBE_OK; i++) {
+    char *own = abbe_frame_record_read(path[i]);
+    if (own != NULL && !abbe_frame_record_is_like(own, first, text, sizeof text))
+      result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                              "%s was made with %s, as %s was: draw what differs anew, with --resume",
+                              path[i], text, path[0]);
+    free(own);
+  }
+  free(first);
+  return result;
 }
 
 abbe_result abbe_frame_series_merge(const abbe_frame_series *s, const char *path,
@@ -122,6 +174,7 @@ abbe_result abbe_frame_series_merge(const abbe_frame_series *s, const char *path
                   : ABBE_OK;
   for (size_t i = 0; i < s->count && result == ABBE_OK; i++)
     result = abbe_frame_series_name(path, s->first + i, &png[i], error);
+  if (result == ABBE_OK) result = check_records((const char *const *)png, s->count, error);
   if (result == ABBE_OK)
     result = abbe_animated_png_write(path, (const char *const *)png, s->count, rate(s), error);
   for (size_t i = 0; png != NULL && i < s->count; i++) free(png[i]);

@@ -21,7 +21,8 @@ typedef struct abbe_frame_series {
   double per_second;   /* 0: 25 */
   abbe_command_part part;
   bool merge;  /* frames that are there, and draw none */
-  bool resume; /* draw those alone that are not there */
+  bool resume; /* draw those alone that are not there, or that another run has made */
+  char *made;  /* what this run's frames have in common (frame_record.h) */
   size_t moves;
   char move_first[ABBE_FRAME_SERIES_MOVES][ABBE_FRAME_SERIES_MOVE_TEXT]; /* "KEY=A" */
   const char *move_last[ABBE_FRAME_SERIES_MOVES];                        /* "B" */
@@ -50,8 +51,17 @@ abbe_result abbe_frame_series_scene(const abbe_frame_series *series, const abbe_
                                     const char *materials, const abbe_scene_input_changes *changes,
                                     size_t i, abbe_scene *out, abbe_error *error);
 
+/* Sets series->made, which abbe_frame_series_free frees. ABBE_NO_MEMORY. */
+abbe_result abbe_frame_series_record(abbe_frame_series *series, const abbe_scene *scene,
+                                     abbe_error *error);
+void abbe_frame_series_free(abbe_frame_series *series);
+/* The picture of frame i carries what has made it. */
+abbe_result abbe_frame_series_mark(const abbe_frame_series *series, size_t i, abbe_image *image,
+                                   abbe_error *error);
+
 /* Whether frame i of the count is this process's to draw: of its part, and, where that is asked
- * for, with a file that is not there yet. exr and png as below, or NULL. */
+ * for, with a file that is not there yet or was made by another request, which is said on stderr.
+ * exr and png as below, or NULL. */
 bool abbe_frame_series_draws(const abbe_frame_series *series, size_t i, const char *exr,
                              const char *png);
 
@@ -61,8 +71,8 @@ double abbe_frame_series_time(const abbe_frame_series *series, double scene_time
 /* "stone.png" is "stone-0001.png" for the number 1; malloc'd, NULL without a path. */
 abbe_result abbe_frame_series_name(const char *path, size_t number, char **out, abbe_error *error);
 
-/* path, a PNG that moves, of the series' numbered files beside it. Errors of
- * abbe_animated_png_write. */
+/* path, a PNG that moves, of the series' numbered files beside it. ABBE_INVALID_ARGUMENT where they
+ * carry records of several requests; errors of abbe_animated_png_write. */
 abbe_result abbe_frame_series_merge(const abbe_frame_series *series, const char *path,
                                     abbe_error *error);
 

@@ -378,6 +378,8 @@ static abbe_result choose_and_draw(request *q, const abbe_scene *scene, abbe_err
 static abbe_result draw_together(request *q, const abbe_scene *scene, abbe_result before,
                                  abbe_error *error) {
   before = abbe_rank_job_agree(q->job, before, error);
+  if (before == ABBE_OK && q->series.count > 0)
+    before = abbe_frame_series_record(&q->series, scene, error);
   if (before != ABBE_OK || q->job == NULL)
     return before == ABBE_OK ? choose_and_draw(q, scene, error) : before;
   q->series.part = abbe_rank_job_part(q->job);
@@ -454,6 +456,7 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
   if (result == ABBE_OK)
     result = abbe_map_options_resolve(&q.map, &scene, q.render.desc.map_size == 0, &error);
   result = draw_together(&q, &scene, result, &error);
+  abbe_frame_series_free(&q.series);
   abbe_scene_free(&scene);
   abbe_caustic_volume_free(&q.render.volume);
   if (abbe_rank_job_is_silent(job) && result == ABBE_CANCELLED) return ABBE_EXIT_FAILED;

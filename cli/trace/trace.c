@@ -460,8 +460,11 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
   if (result == ABBE_OK && !q.quiet) abbe_scene_input_note(&scene);
   result = abbe_rank_job_agree(job, result, &error);
   q.series.resume = q.work.resume;
+  if (result == ABBE_OK && q.series.count > 0)
+    result = abbe_frame_series_record(&q.series, &scene, &error);
   if (result == ABBE_OK)
     result = q.series.count > 0 ? trace_frames(&q, job, &scene, &error) : run(&q, &scene, &error);
+  abbe_frame_series_free(&q.series);
   free(q.checkpoint_path);
   free(q.parts);
   abbe_scene_free(&scene);

@@ -72,6 +72,7 @@ static abbe_result trace_frame(const abbe_trace_request *q, const abbe_scene *sc
   abbe_scene moved = {0};
   char *name[2] = {NULL, NULL};
   own.checkpoint_path = NULL;
+  own.frame = i;
   abbe_result result = name_files(&own, q->series.first + i, name, error);
   if (result == ABBE_OK)
     result =

@@ -80,6 +80,8 @@ abbe_result abbe_trace_write(abbe_trace_request *q, const abbe_tracer *tracer, a
   if (!part && (q->exr != NULL || q->png != NULL)) {
     result = abbe_tracer_picture(tracer, &image, error);
     if (result == ABBE_OK) result = filter(q, abbe_tracer_passes(tracer), &image, error);
+    if (result == ABBE_OK && q->series.count > 0)
+      result = abbe_frame_series_mark(&q->series, q->frame, &image, error);
     if (result == ABBE_OK && q->exr != NULL) result = write_exr(q, q->exr, &image, error);
     if (result == ABBE_OK && q->png != NULL) result = abbe_screen_options_write(&q->screen, q->png, &image, NULL, NULL, error);
     abbe_image_free(&image);

@@ -114,7 +114,7 @@ static abbe_result put_frame(writing *w, png_frame *f, bool first, size_t count,
       pixels = true;
       if (!first) put_u32(sequence, w->sequence++);
       put_chunk(w->to, first ? "IDAT" : "fdAT", sequence, first ? 0 : 4, c.body, c.length);
-    } else if (first && !pixels) {
+    } else if (first && !pixels && !is(&c, "tEXt")) {
       char type[5] = {0};
       memcpy(type, c.type, 4);
       put_chunk(w->to, type, c.body, c.length, NULL, 0);

@@ -99,6 +99,17 @@ static void write_encoding(const job *j, const abbe_image *image) {
                  (png_uint_32)j->icc_size);
 }
 
+static void write_text(const job *j, const abbe_image *image) {
+  static char key[] = ABBE_PNG_TEXT;
+  const char *value = abbe_image_attribute_text(image, ABBE_PNG_TEXT);
+  if (value == NULL) return;
+  png_text text = {.compression = PNG_TEXT_COMPRESSION_NONE,
+                   .key = key,
+                   .text = (png_charp)(uintptr_t)value,
+                   .text_length = strlen(value)};
+  png_set_text(j->png, j->info, &text, 1);
+}
+
 static bool write_rows(job *j, const abbe_image *image) {
   if (setjmp(png_jmpbuf(j->png))) return false;
   png_set_write_fn(j->png, j, write_bytes, flush_bytes);
@@ -107,6 +118,7 @@ static bool write_rows(job *j, const abbe_image *image) {
                j->samples == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   write_encoding(j, image);
+  write_text(j, image);
   png_write_info(j->png, j->info);
   for (size_t y = 0; y < image->height; y++) {
     fill_row(image, y, j);
@@ -329,6 +341,45 @@ abbe_result abbe_png_read(const char *path, abbe_image *out, abbe_error *error) 
   if (result != ABBE_OK) return result;
   job j = {.path = path, .file = file};
   result = read_image(&j, (double)size, out, error);
+  fclose(file);
+  return result;
+}
+
+/* ---- its text ---- */
+
+/* Chunks up to the pixels, of whatever kind; lengths are the file's own and are not allocated. */
+static abbe_result find_text(const char *path, FILE *file, char **out, abbe_error *error) {
+  static const unsigned char signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  enum { MOST_TEXT = 1 << 16, MOST_CHUNKS = 256 };
+  const size_t key = sizeof ABBE_PNG_TEXT;
+  unsigned char head[8];
+  if (fread(head, sizeof head, 1, file) != 1 || memcmp(head, signature, sizeof head) != 0)
+    return abbe_error_set(error, ABBE_PARSE, "%s: it is no PNG", path);
+  for (int i = 0; i < MOST_CHUNKS && fread(head, sizeof head, 1, file) == 1; i++) {
+    const uint32_t length = png_get_uint_32(head);
+    if (memcmp(head + 4, "IDAT", 4) == 0) break;
+    char *text = NULL;
+    if (memcmp(head + 4, "tEXt", 4) == 0 && length >= key && length <= MOST_TEXT)
+      text = calloc(1, length + 1);
+    if (text != NULL) {
+      const bool own = fread(text, length, 1, file) == 1 && memcmp(text, ABBE_PNG_TEXT, key) == 0;
+      if (own) *out = strdup(text + key);
+      free(text);
+      if (own || fseek(file, 4, SEEK_CUR) != 0) break;
+    } else if (length > INT32_MAX || fseek(file, (long)length + 4, SEEK_CUR) != 0) {
+      break;
+    }
+  }
+  return ABBE_OK;
+}
+
+abbe_result abbe_png_read_text(const char *path, char **out, abbe_error *error) {
+  ABBE_REQUIRE(path && out, error);
+  FILE *file;
+  *out = NULL;
+  abbe_result result = abbe_file_open(path, &file, NULL, error);
+  if (result != ABBE_OK) return result;
+  result = find_text(path, file, out, error);
   fclose(file);
   return result;
 }

@@ -100,6 +100,9 @@ abbe_result abbe_screen_png_write(const char *path, const abbe_image *image,
   if (result == ABBE_OK) result = find_source(d, image, triple, &picked, &desc.source_space, error);
   if (result == ABBE_OK) result = abbe_display_make(&desc, &transform, error);
   if (result == ABBE_OK) result = abbe_display_apply(transform, &picked, error);
+  const char *made = abbe_image_attribute_text(image, ABBE_PNG_TEXT);
+  if (result == ABBE_OK && made != NULL)
+    result = abbe_image_set_attribute(&picked, ABBE_PNG_TEXT, made, error);
   if (result == ABBE_OK && abbe_avif_is_meant(path))
     result = abbe_avif_write(path, &picked, d->bits != 0 ? d->bits : 10, error);
   else if (result == ABBE_OK)

@@ -350,6 +350,7 @@ static void test_wrong_parts(void **state) {
   refuse_parts("-o c.exr --spp 2 --merge q0.ck", 1, "pass 1 is missing: there are to be 2, as is");
   check_run(TRACE BALL SMALL "-o c.exr --merge r0.ck r1.ck --incomplete", 0);
   assert_contains(run_errors, "note: pass 2 is missing");
+  check_run("rm c.exr", 0);
   refuse_parts("--passes 0:1 --merge q0.ck --checkpoint q.ck", 2, "--merge");
   refuse_parts("--passes 0:1 --checkpoint q3.ck --resume", 1, "from 3 on, not all from 0");
   assert_true(!there("c.exr") && !there("q.ck"));

@@ -48,6 +48,37 @@ static void frames_and_what_moves(void **state) {
   run_must("rm t* one.exr kept.exr");
 }
 
+/* Frames of another size, seed or scene are not kept, which is said; those of the same request are,
+ * whatever part or number of threads has made them. */
+static void what_made_a_frame_is_known(void **state) {
+  (void)state;
+#define SEEDED "\"$abbe\" trace pool.yaml --spp 1 --photons 512 -q --frames 0:2 -o s.exr "
+  run_must(pool);
+  run_must(SEEDED "--size 8x8 --seed 1 && cp s-0001.exr one.exr");
+  run_must(SEEDED "--size=8x8 --seed 1 --resume --threads 1 --part 1/2 && cmp one.exr s-0001.exr");
+  assert_string_equal(run_errors, "");
+  run_must(SEEDED "--size 8x8 --seed 2 --resume");
+  assert_contains(run_errors, "note: s-0000.exr was made with 'seed 1', and not 'seed 2'");
+  assert_contains(run_errors, "note: s-0001.exr was made with");
+  assert_int_not_equal(run_line("cmp one.exr s-0001.exr"), 0);
+  run_must(SEEDED "--size 8x8 --seed 1 --resume && cmp one.exr s-0001.exr");
+  run_must("sed -i 's/0.8/0.4/' pool.yaml && " SEEDED "--size 8x8 --seed 1 --resume");
+  assert_contains(run_errors, "note: s-0000.exr was made with 'scene of digest ");
+#undef SEEDED
+#define SIZED "\"$abbe\" render pool.yaml --photons 16 --map 64 -q --png z.png "
+  run_must(SIZED "--frames 0:2 --size 16x16 && " SIZED "--frames 0:3 --size 16x16 --resume");
+  assert_string_equal(run_errors, "");
+  run_must(SIZED "--frames 0:3 --size 24x16 --resume");
+  assert_contains(run_errors, "note: z-0000.png was made with 'size 16x16', and not 'size 24x16'");
+  run_must(SIZED "--frames 0:3 --size 24x16 --resume && " SIZED "--frames 0:3 --merge");
+  assert_string_equal(run_errors, "");
+  run_must(SIZED "--frames 0:1 --size 24x16 --range 400:700");
+  assert_int_equal(run_line(SIZED "--frames 0:3 --merge"), 2);
+  assert_contains(run_errors, "z-0001.png was made with");
+#undef SIZED
+  run_must("rm s-* one.exr z*");
+}
+
 /* What moves is halfway on the middle frame, and where it begins and ends on the others. */
 static void what_is_moved(void **state) {
   (void)state;
@@ -110,6 +141,7 @@ static void what_is_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(frames_and_what_moves),  cmocka_unit_test(what_is_moved),
+      cmocka_unit_test(what_made_a_frame_is_known),
       cmocka_unit_test(parts_are_put_together), cmocka_unit_test(traced_frames),
       cmocka_unit_test(what_is_refused),
   };
