@@ -62,8 +62,9 @@ abbe_result abbe_file_writer_commit(abbe_file_writer *writer, abbe_error *error)
 /* Closes and removes the temporary file; the target is as it was. Safe on a zeroed writer. */
 void abbe_file_writer_discard(abbe_file_writer *writer);
 
-/* Commits what was written with `result`, which is returned; after an error the target is as it was.
- * Where the stream has failed that is what is said, by the target's name and the system's reason. */
+/* Commits what was written with `result`, which is returned; after an error the target is as it
+ * was. Where the stream has failed that is what is said, by the target's name and the system's
+ * reason. */
 abbe_result abbe_file_writer_end(abbe_file_writer *writer, abbe_result result, abbe_error *error);
 
 /* open + write + commit of size bytes. */

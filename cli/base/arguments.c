@@ -160,8 +160,8 @@ const abbe_argument *abbe_arguments_given(size_t index) {
 
 static void note_given(const struct argp_option *option, const char *value) {
   if (given.count < ABBE_ARGUMENT_MOST)
-    given.argument[given.count++] = (abbe_argument){option->name, value != NULL ? value : "",
-                                                    (unsigned)option->flags};
+    given.argument[given.count++] =
+        (abbe_argument){option->name, value != NULL ? value : "", (unsigned)option->flags};
 }
 
 static void take_value(const char *program, option_list *list, size_t i, const char *value) {

@@ -10,8 +10,8 @@
 #include <string.h>
 
 /* Options that change no pixel of a frame, or say where files go. */
-static const char *const neutral[] = {"quiet",  "json",    "part",  "resume",          "merge",
-                                      "threads", "checkpoint-every"};
+static const char *const neutral[] = {
+    "quiet", "json", "part", "resume", "merge", "threads", "checkpoint-every"};
 
 /* FNV-1a. */
 static uint64_t hash(uint64_t h, const void *data, size_t size) {
@@ -32,8 +32,8 @@ static uint64_t hash_file(uint64_t h, const char *path) {
 }
 
 static bool is_left_out(const abbe_argument *a, const char *without) {
-  bool out = (a->flags & ABBE_ARGUMENT_WRITES) != 0 ||
-             (without != NULL && strcmp(a->name, without) == 0);
+  bool out =
+      (a->flags & ABBE_ARGUMENT_WRITES) != 0 || (without != NULL && strcmp(a->name, without) == 0);
   for (size_t i = 0; i < sizeof neutral / sizeof *neutral; i++)
     out = out || strcmp(a->name, neutral[i]) == 0;
   return out;

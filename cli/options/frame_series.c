@@ -99,7 +99,8 @@ abbe_result abbe_frame_series_name(const char *path, size_t number, char **out, 
 
 abbe_result abbe_frame_series_record(abbe_frame_series *s, const abbe_scene *scene,
                                      abbe_error *error) {
-  /* which frames there are is no matter, unless what moves goes by it; nor is the pace of turning */
+  /* which frames there are is no matter, unless what moves goes by it; nor is the pace of turning
+   */
   const char *without = s->around ? "fps" : s->moves == 0 ? "frames" : NULL;
   return abbe_frame_record_make(scene, without, &s->made, error);
 }
@@ -133,9 +134,8 @@ static bool is_own(const abbe_frame_series *s, const char *name, size_t number) 
 /* What is there is whole: files are renamed when they are. */
 static bool is_there(const abbe_frame_series *s, const char *path, size_t number) {
   char *name = NULL;
-  const bool there =
-      abbe_frame_series_name(path, number, &name, NULL) == ABBE_OK &&
-      (name == NULL || (access(name, F_OK) == 0 && is_own(s, name, number)));
+  const bool there = abbe_frame_series_name(path, number, &name, NULL) == ABBE_OK &&
+                     (name == NULL || (access(name, F_OK) == 0 && is_own(s, name, number)));
   free(name);
   return there;
 }
@@ -157,9 +157,10 @@ static abbe_result check_records(const char *const *path, size_t count, abbe_err
   for (size_t i = 1; first != NULL && i < count && result == ABBE_OK; i++) {
     char *own = abbe_frame_record_read(path[i]);
     if (own != NULL && !abbe_frame_record_is_like(own, first, text, sizeof text))
-      result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                              "%s was made with %s, as %s was: draw what differs anew, with --resume",
-                              path[i], text, path[0]);
+      result =
+          abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                         "%s was made with %s, as %s was: draw what differs anew, with --resume",
+                         path[i], text, path[0]);
     free(own);
   }
   free(first);

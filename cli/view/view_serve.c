@@ -23,8 +23,8 @@
 #include <unistd.h>
 
 enum { MOST_BYTES = 65536, TOKEN_BYTES = 16, LONGEST_WAIT_S = 1 };
-#define LOOK_S 0.1      /* how often the keeper looks */
-#define LAST_S 0.6      /* for an end in order; then the process ends whatever it does */
+#define LOOK_S 0.1 /* how often the keeper looks */
+#define LAST_S 0.6 /* for an end in order; then the process ends whatever it does */
 
 extern const unsigned char abbe_embedded_view_page[];
 extern const size_t abbe_embedded_view_page_size;
@@ -167,7 +167,8 @@ static const char *why_refused(const server *s, struct MHD_Connection *c) {
   const char *origin = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_ORIGIN);
   if (!abbe_view_guard_is_host(host))
     return "the Host is another machine's; ask 127.0.0.1 or localhost";
-  if (!abbe_view_guard_is_origin(origin, host)) return "the request is another page's, by its Origin";
+  if (!abbe_view_guard_is_origin(origin, host))
+    return "the request is another page's, by its Origin";
   if (!has_token(s, c))
     return "the token is missing or another; the viewer has printed the whole address";
   return NULL;
@@ -339,8 +340,8 @@ static void loop(server *s) {
   }
 }
 
-/* A thread beside all: has the guard look at the connections, and ends the process where it does not
- * end by itself, for a driver that compiles cannot be stopped. Files are whole at any time. */
+/* A thread beside all: has the guard look at the connections, and ends the process where it does
+ * not end by itself, for a driver that compiles cannot be stopped. Files are whole at any time. */
 static void *keep(void *user) {
   server *s = user;
   double since = -1;

@@ -12,8 +12,9 @@ extern "C" {
  * encoded for the display, with bits = 8 or 16. Not-a-number is written as 0. Beside and renamed.
  * The file says what image->xy and image->curve say of them: sRGB by its chunk (with gAMA and cHRM
  * for old readers), another encoding by an ICC profile, PQ and HLG (image->transfer) by cICP,
- * nothing where they are not known. Of the image's attributes it has ABBE_PNG_TEXT. ABBE_INVALID_ARGUMENT for PQ and HLG in 8 bits, whose steps
- * would be seen, and for primaries that cICP has no code for. */
+ * nothing where they are not known. Of the image's attributes it has ABBE_PNG_TEXT.
+ * ABBE_INVALID_ARGUMENT for PQ and HLG in 8 bits, whose steps would be seen, and for primaries that
+ * cICP has no code for. */
 abbe_result abbe_png_write(const char *path, const abbe_image *image, int bits, abbe_error *error);
 #define ABBE_PNG_TEXT "abbe:made" /* as a tEXt chunk */
 /* What a PNG carries as ABBE_PNG_TEXT, malloc'd; NULL where it carries none before its pixels, or

@@ -1,4 +1,5 @@
-/* edits.h: a whole file with a hash at its end, FNV-1a of all before it, and what inputs make of it.
+/* edits.h: a whole file with a hash at its end, FNV-1a of all before it, and what inputs make of
+ * it.
  *
  * Input: a byte of choices, then edits of four bytes each: where (two, from the end if the choice 1
  * is set), what to do (0 flips bits, 1 cuts there, 2 repeats from there), and the bits. Choice 2

@@ -1,5 +1,5 @@
-/* Checkpoints of a caustic volume of rays, which hold a table of sequences of facets. Input: choices
- * and edits of a whole one (edits.h).
+/* Checkpoints of a caustic volume of rays, which hold a table of sequences of facets. Input:
+ * choices and edits of a whole one (edits.h).
  */
 #include "tests/fuzz/edits.h"
 #include "tests/fuzz/memory_file.h"
@@ -7,8 +7,8 @@
 #include "scenes/import/scene_file.h"
 #include "validation/volume/volume_fill.h"
 
-const char *const fuzz_words[] = {"\x02\x10", "\x03\x30", "\x03\x38", "abbe volume 1\n",
-                                  "\x03\x40\x40\x00\x01", NULL};
+const char *const fuzz_words[] = {
+    "\x02\x10", "\x03\x30", "\x03\x38", "abbe volume 1\n", "\x03\x40\x40\x00\x01", NULL};
 
 static const char place[] = "fuzz_volume_checkpoint.whole";
 static abbe_scene scene;

@@ -391,9 +391,8 @@ static void say_gap(const parts *p, size_t from, size_t to, char *out, size_t si
     snprintf(out, size, "%s %s missing: there are to be %zu, as %s%s", text, be(from, to), p->whole,
              p->teller != NULL ? p->teller : "is asked for", p->teller != NULL ? " says" : "");
   else if (from == 0)
-    snprintf(out, size,
-             "%s %s missing: the first part that is there begins with pass %zu, in %s", text,
-             be(from, to), to + 1, next);
+    snprintf(out, size, "%s %s missing: the first part that is there begins with pass %zu, in %s",
+             text, be(from, to), to + 1, next);
   else
     snprintf(out, size, "%s %s missing, between %s and %s", text, be(from, to),
              p->path[p->owner[from - 1] - 1], next);

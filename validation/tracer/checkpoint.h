@@ -33,10 +33,10 @@ typedef struct abbe_checkpoint_merging {
 } abbe_checkpoint_merging;
 
 /* Puts the passes of all the files together, which may stand in any order: they must begin at pass
- * 0 and leave none out, and none may be in two files. how may be NULL. *tracer is made from the same
- * scene and request; what it holds is replaced. It is as it was where a head is refused, and empty
- * after other errors. ABBE_INVALID_ARGUMENT names the passes that are missing or twice there, and in
- * which files, or a file that changed meanwhile; errors of abbe_checkpoint_load. */
+ * 0 and leave none out, and none may be in two files. how may be NULL. *tracer is made from the
+ * same scene and request; what it holds is replaced. It is as it was where a head is refused, and
+ * empty after other errors. ABBE_INVALID_ARGUMENT names the passes that are missing or twice there,
+ * and in which files, or a file that changed meanwhile; errors of abbe_checkpoint_load. */
 abbe_result abbe_checkpoint_merge(abbe_tracer *tracer, const char *const *path, size_t count,
                                   abbe_checkpoint_merging *how, abbe_error *error);
 

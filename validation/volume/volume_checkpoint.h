@@ -53,7 +53,7 @@ typedef struct abbe_volume_keeping {
   bool (*holds)(const void *user, size_t nodes);
   const void *user;
   const volatile int *stop; /* other than 0 stops; or NULL */
-  double saved_s; /* by abbe_clock_seconds */
+  double saved_s;           /* by abbe_clock_seconds */
 } abbe_volume_keeping;
 
 /* *node: the first that is not done yet. Errors of abbe_volume_checkpoint_load, ABBE_PARSE also

@@ -422,8 +422,7 @@ static bool holds(const void *user, size_t nodes) {
     return false;
   for (size_t i = 0; i < values; i++) {
     const double x = abbe_half_value(v->value[i]);
-    if (!abbe_half_is_finite(v->value[i]) ||
-        (printed && !(x >= 0 && x <= 255 && !(x > floor(x)))))
+    if (!abbe_half_is_finite(v->value[i]) || (printed && !(x >= 0 && x <= 255 && !(x > floor(x)))))
       return false;
   }
   return true;

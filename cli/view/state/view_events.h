@@ -1,5 +1,5 @@
-/* view_events.h: what a page's pointer and keys do, as lines of text, and a queue of it in which what
- * follows takes the place of what nobody would see.
+/* view_events.h: what a page's pointer and keys do, as lines of text, and a queue of it in which
+ * what follows takes the place of what nobody would see.
  */
 #ifndef ABBE_CLI_VIEW_STATE_VIEW_EVENTS_H
 #define ABBE_CLI_VIEW_STATE_VIEW_EVENTS_H
@@ -9,9 +9,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#define ABBE_VIEW_EVENT_MOST_PIXELS 4096 /* of a window's side */
+#define ABBE_VIEW_EVENT_MOST_PIXELS 4096  /* of a window's side */
 #define ABBE_VIEW_EVENT_MOST_CLICKS 100.0 /* of a wheel */
-enum { ABBE_VIEW_MOST_EVENTS = 4096 };   /* that wait */
+enum { ABBE_VIEW_MOST_EVENTS = 4096 };    /* that wait */
 
 typedef enum abbe_view_event_kind {
   ABBE_VIEW_EVENT_MOVE,
@@ -39,8 +39,8 @@ typedef struct abbe_view_events {
   size_t first, count;
 } abbe_view_events;
 
-/* Puts the event behind the others. Of moves, and of sizes, that follow each other the last is kept,
- * turns of the wheel at one place are added up. False where the queue is full. */
+/* Puts the event behind the others. Of moves, and of sizes, that follow each other the last is
+ * kept, turns of the wheel at one place are added up. False where the queue is full. */
 bool abbe_view_events_add(abbe_view_events *events, const abbe_view_event *event);
 /* Takes the eldest; false where there is none. */
 bool abbe_view_events_take(abbe_view_events *events, abbe_view_event *out);

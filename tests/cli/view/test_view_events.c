@@ -46,10 +46,11 @@ static void test_what_nobody_would_see_is_left_out(void **state) {
   static const struct {
     abbe_view_event_kind kind;
     double x;
-  } kept[] = {{ABBE_VIEW_EVENT_MOVE, 999}, {ABBE_VIEW_EVENT_BUTTON, 0}, {ABBE_VIEW_EVENT_MOVE, 6},
-              {ABBE_VIEW_EVENT_BUTTON, 0}, {ABBE_VIEW_EVENT_MOVE, 6},   {ABBE_VIEW_EVENT_WHEEL, 100},
-              {ABBE_VIEW_EVENT_MOVE, 9},   {ABBE_VIEW_EVENT_WHEEL, -1}, {ABBE_VIEW_EVENT_SIZE, 49},
-              {ABBE_VIEW_EVENT_KEY, 0},    {ABBE_VIEW_EVENT_KEY, 0}};
+  } kept[] = {
+      {ABBE_VIEW_EVENT_MOVE, 999}, {ABBE_VIEW_EVENT_BUTTON, 0}, {ABBE_VIEW_EVENT_MOVE, 6},
+      {ABBE_VIEW_EVENT_BUTTON, 0}, {ABBE_VIEW_EVENT_MOVE, 6},   {ABBE_VIEW_EVENT_WHEEL, 100},
+      {ABBE_VIEW_EVENT_MOVE, 9},   {ABBE_VIEW_EVENT_WHEEL, -1}, {ABBE_VIEW_EVENT_SIZE, 49},
+      {ABBE_VIEW_EVENT_KEY, 0},    {ABBE_VIEW_EVENT_KEY, 0}};
   assert_int_equal(q.count, sizeof kept / sizeof *kept);
   for (size_t i = 0; i < sizeof kept / sizeof *kept; i++) {
     assert_true(abbe_view_events_take(&q, &e));

@@ -43,12 +43,14 @@ static void test_broken_files_are_told(void **state) {
   assert_int_equal(abbe_file_read(path, 1 << 20, &data, &size, NULL), ABBE_OK);
   for (size_t cut = 0; cut < size; cut += 7) {
     assert_int_equal(abbe_file_write(path, data, cut, NULL), ABBE_OK);
-    assert_int_equal(abbe_volume_checkpoint_load(path, 1, &nodes, &part, 1, NULL, NULL), ABBE_PARSE);
+    assert_int_equal(abbe_volume_checkpoint_load(path, 1, &nodes, &part, 1, NULL, NULL),
+                     ABBE_PARSE);
   }
   for (size_t i = 0; i < size; i += 5) {
     data[i] ^= 1;
     assert_int_equal(abbe_file_write(path, data, size, NULL), ABBE_OK);
-    assert_int_equal(abbe_volume_checkpoint_load(path, 1, &nodes, &part, 1, NULL, NULL), ABBE_PARSE);
+    assert_int_equal(abbe_volume_checkpoint_load(path, 1, &nodes, &part, 1, NULL, NULL),
+                     ABBE_PARSE);
     data[i] ^= 1;
   }
   free(data);
@@ -173,8 +175,8 @@ static void test_forged_files_are_refused(void **state) {
       forge(&scene, &d, data, size, size - HEAD - 2 * ABBE_EXIT_FACETS, &negative, sizeof negative);
     }
     /* what is there of the last node, which is not done, is of no matter */
-    const size_t bytes = exits ? whole.exits.count * sizeof *whole.exits.exit
-                               : 12 * 64 * 9 * sizeof *whole.value;
+    const size_t bytes =
+        exits ? whole.exits.count * sizeof *whole.exits.exit : 12 * 64 * 9 * sizeof *whole.value;
     memset(data + HEAD + bytes - 16, 0x55, 16);
     write_forged(data, size);
     assert_int_equal(abbe_volume_fill(&scene, &d, &part, &twice, NULL), ABBE_OK);
