@@ -113,9 +113,11 @@ View camera_view() {
 }
 
 #ifdef ROUGH
+#ifndef LOBE_STATE
 #define LOBE_STATE
 vec2 lobe_u;  // as in walk.glsl
 float lobe_width, lobe_ways;
+#endif
 #ifdef ENVIRONMENT
 #define TURNS_SKY
 #include "pinhole_sky.glsl"
