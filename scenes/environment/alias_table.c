@@ -6,9 +6,10 @@
 
 /* Splits the entries into those below the mean, from the front of the list, and those at or above
  * it, from its end; then fills up each of the first from one of the second. */
-static void fill(const double *weight, double mean, size_t heaviest, double *left, uint32_t *list,
+static void fill(const double *weight, double mean, size_t heaviest, uint32_t *list,
                  abbe_alias_table *out) {
   const size_t count = out->count;
+  double *left = out->keep; /* an entry's share, until it is final */
   size_t low = 0, high = count;
   for (size_t i = 0; i < count; i++) {
     left[i] = weight[i] / mean;
@@ -16,7 +17,6 @@ static void fill(const double *weight, double mean, size_t heaviest, double *lef
   }
   while (low > 0 && high < count) {
     const uint32_t small = list[--low], large = list[high];
-    out->keep[small] = (float)left[small];
     out->other[small] = large;
     left[large] -= 1 - left[small];
     if (left[large] < 1) {
@@ -53,16 +53,14 @@ abbe_result abbe_alias_table_make(const double *weight, size_t count, abbe_alias
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "there is nothing to draw from: weights want to be finite, at least 0 "
                           "and not all 0");
-  double *left = malloc(count * sizeof *left);
   uint32_t *list = malloc(count * sizeof *list);
   abbe_alias_table table = {count, malloc(count * sizeof *table.keep),
                             malloc(count * sizeof *table.other)};
-  const bool room = left && list && table.keep && table.other;
+  const bool room = list && table.keep && table.other;
   if (room)
-    fill(weight, mean, heaviest, left, list, &table);
+    fill(weight, mean, heaviest, list, &table);
   else
     abbe_alias_table_free(&table);
-  free(left);
   free(list);
   if (!room)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a table of %zu entries", count);
@@ -81,5 +79,5 @@ size_t abbe_alias_table_draw(const abbe_alias_table *table, double u) {
   const double at = u * (double)table->count;
   size_t i = (size_t)at;
   if (i >= table->count) i = table->count - 1;
-  return at - (double)i < (double)table->keep[i] ? i : table->other[i];
+  return at - (double)i < table->keep[i] ? i : table->other[i];
 }

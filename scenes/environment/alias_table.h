@@ -14,7 +14,7 @@ extern "C" {
 /* An entry of equal width is kept by its own index up to `keep`, and goes to `other` above. */
 typedef struct abbe_alias_table {
   size_t count;
-  float *keep;     /* [count], 0 to 1 */
+  double *keep;    /* [count], 0 to 1: of a bright entry among many only its last bits tell */
   uint32_t *other; /* [count] */
 } abbe_alias_table;
 
@@ -24,7 +24,8 @@ abbe_result abbe_alias_table_make(const double *weight, size_t count, abbe_alias
                                   abbe_error *error);
 void abbe_alias_table_free(abbe_alias_table *table);
 
-/* The entry of u in [0, 1). */
+/* The entry of u in [0, 1), which has all bits of a double: each entry's chance is then right to
+ * 2^-52. Fewer bits leave few values of the fraction that decides, and so wrong chances. */
 size_t abbe_alias_table_draw(const abbe_alias_table *table, double u);
 
 #ifdef __cplusplus

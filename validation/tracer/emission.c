@@ -93,8 +93,7 @@ SIDE_BY_SIDE static void place(uint32_t light, uint32_t pass, uint32_t seed, uin
   for (uint32_t k = 0; k < LANES; k++) {
     b->rays.x[k] += (float)even_bits(z[k]) * 0x1p-16f;
     b->rays.y[k] += (float)even_bits(z[k] >> 1) * 0x1p-16f;
-    b->step[k] = abbe_spectral_sampling_step(abbe_random_float((b->first + k) * golden + shift),
-                                             &b->within[k]);
+    b->step[k] = abbe_spectral_sampling_step((b->first + k) * golden + shift, &b->within[k]);
   }
 }
 
@@ -174,11 +173,12 @@ static void start_outside(const abbe_emission *e, uint32_t j, const uint32_t shi
   static const uint32_t golden[7] = {3915259345u, 3569120481u, 3253582939u, 2965941329u,
                                      2703729436u, 2464699080u, 2246800835u};
   const abbe_environment_light *light = &e->t->environment;
-  double u[7];
+  double u[6];
   float rgb[3];
-  for (int k = 1; k < 7; k++) u[k] = (double)abbe_random_float(j * golden[k] + shift[k]);
-  u[0] = (double)(j * golden[0] + shift[0]) * 0x1p-32; /* all bits, for texels may be many */
-  p->step = abbe_spectral_sampling_step((float)u[6], &p->within);
+  for (int k = 0; k < 6; k++)
+    u[k] = k % 3 == 0 ? abbe_random_double(j * golden[k] + shift[k], shift[7])
+                      : (double)abbe_random_float(j * golden[k] + shift[k]);
+  p->step = abbe_spectral_sampling_step(j * golden[6] + shift[6], &p->within);
   abbe_environment_light_ray(light, u, p->o, p->d, rgb);
   const float *lift = light->lift[p->step];
   p->flux = (lift[0] * rgb[0] + lift[1] * rgb[1] + lift[2] * rgb[2]) / (float)e->count;

@@ -155,26 +155,23 @@ static size_t balls_on(const abbe_environment_light *e, const float p[3], const 
   return count;
 }
 
-/* The ball of the share u of all disks' area; *u is then the place within its share. */
-static size_t choose_ball(const abbe_environment_light *e, float *u) {
-  float sum = 0, below = 0;
-  for (size_t i = 0; i < e->ball_count; i++) sum += e->ball[i][3] * e->ball[i][3];
-  for (size_t i = 0;; i++) {
-    const float share = e->ball[i][3] * e->ball[i][3] / sum;
-    if (i + 1 == e->ball_count || *u < below + share) {
-      *u = fminf(fmaxf((*u - below) / share, 0), 0x1.fffffep-1f);
-      return i;
-    }
-    below += share;
+/* The ball of the share u of all disks' area. */
+static size_t choose_ball(const abbe_environment_light *e, double u) {
+  double sum = 0, below = 0;
+  for (size_t i = 0; i < e->ball_count; i++) sum += pow((double)e->ball[i][3], 2);
+  for (size_t i = 0; i + 1 < e->ball_count; i++) {
+    below += pow((double)e->ball[i][3], 2);
+    if (u * sum < below) return i;
   }
+  return e->ball_count - 1;
 }
 
 void abbe_environment_light_ray(const abbe_environment_light *e, const double u[6], float o[3],
                                 float d[3], float rgb[3]) {
-  float towards[3], pdf, x[3], y[3], place = (float)u[3], p[3];
+  float towards[3], pdf, x[3], y[3], p[3];
   abbe_environment_light_sample(e, u, towards, &pdf, rgb);
   for (int k = 0; k < 3; k++) d[k] = -towards[k];
-  const float *ball = e->ball[choose_ball(e, &place)];
+  const float *ball = e->ball[choose_ball(e, u[3])];
   const float r = ball[3] * sqrtf((float)u[4]), angle = 6.28318531f * (float)u[5];
   abbe_geometry_across(d, x, y);
   for (int k = 0; k < 3; k++) p[k] = ball[k] + r * (cosf(angle) * x[k] + sinf(angle) * y[k]);

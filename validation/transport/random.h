@@ -46,11 +46,17 @@ static inline void abbe_random4(uint32_t a, uint32_t b, uint32_t c, uint32_t d, 
   for (int k = 0; k < 4; k++) out[k] = abbe_random_float(bits[k]);
 }
 
-/* x + shift modulo 1, for x >= 0 and shift in [0, 1): never 1. */
-static inline float abbe_random_shift(float x, float shift) {
-  float y = x + shift;
-  y -= (float)(int32_t)y;
-  return y < 1 ? y : 0;
+/* The 53 high bits of high and low, one behind the other, as a number in [0, 1): for what is drawn
+ * from many entries, whose fractions need bits of their own. */
+static inline double abbe_random_double(uint32_t high, uint32_t low) {
+  return (double)(((uint64_t)high << 32 | low) >> 11) * 0x1p-53;
+}
+
+/* The place of bits, a fraction of 2^32, in part i of `count` equal parts of the whole. Numbers are
+ * shifted and shared out as whole ones: a float's sum drops its last bit where it passes 1, and may
+ * round to the next part. */
+static inline uint32_t abbe_random_part(uint32_t bits, uint32_t i, uint32_t count) {
+  return (uint32_t)(((uint64_t)i << 32 | bits) / count);
 }
 
 #ifdef __cplusplus

@@ -49,12 +49,11 @@ void abbe_spectral_sampling_free(abbe_spectral_sampling *s);
 void abbe_spectral_sampling_colours(const abbe_spectral_sampling *s, abbe_rgb_space space,
                                     float (*rgb)[3]);
 
-/* The step of a uniform number x in [0, 1), and the place within it in [0, 1). */
-static inline uint32_t abbe_spectral_sampling_step(float x, float *within) {
-  float at = x * (float)ABBE_SPECTRAL_SAMPLING_STEPS;
-  uint32_t k = (uint32_t)at;
-  *within = at - (float)k;
-  return k;
+/* The step of 32 uniform bits, a fraction of 2^32, and the place within it in [0, 1). */
+static inline uint32_t abbe_spectral_sampling_step(uint32_t bits, float *within) {
+  const uint32_t size = (uint32_t)(0x1p32 / ABBE_SPECTRAL_SAMPLING_STEPS);
+  *within = (float)(bits % size) * (float)(1.0 / size);
+  return bits / size;
 }
 
 /* The wavelength at a place within a step, nm. */

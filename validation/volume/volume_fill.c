@@ -219,15 +219,15 @@ static void make_beam(const fill *f, const double to_light[3], size_t node, size
  * every pass [Roberts2018]. */
 static void start(const fill *f, const beam *b, uint32_t j, abbe_photon *p) {
   static const uint32_t golden[3] = {3915259345u, 3569120481u, 3253582939u};
-  double u[3], world[3];
-  for (int k = 0; k < 3; k++) u[k] = (double)(j * golden[k] + b->shift[k]) * 0x1p-32;
+  double u[2], world[3];
+  for (int k = 0; k < 2; k++) u[k] = (double)(j * golden[k] + b->shift[k]) * 0x1p-32;
   const double r = b->radius * sqrt(u[0]), a = 2 * PI * u[1];
   for (int k = 0; k < 3; k++)
     world[k] = f->lone.place.centre[k] + r * (cos(a) * b->x[k] + sin(a) * b->y[k]) -
                2 * b->radius * b->way[k];
   abbe_geometry_to_frame(&f->lone.geometry, world, p->o);
   for (int k = 0; k < 3; k++) p->d[k] = (float)b->way[k];
-  p->step = abbe_spectral_sampling_step(fminf((float)u[2], 0x1.fffffep-1f), &p->within);
+  p->step = abbe_spectral_sampling_step(j * golden[2] + b->shift[2], &p->within);
   p->flux = (float)(PI * b->radius * b->radius / (double)f->desc.photons);
   p->y = f->sampling.xyz[p->step][1];
   p->id = j;

@@ -210,15 +210,14 @@ static void surrounding_light(const abbe_eye_context *c, const abbe_eye_path *p,
   static const uint32_t golden[5] = {3785032107u, 3335640777u, 2939605023u, 2590590015u,
                                      2283013049u};
   const uint32_t count = straight ? STRAIGHT_SAMPLES : 1;
-  float random[8];
+  uint32_t shift[8];
   double u[5];
-  abbe_eye_random4(c, ~p->id ^ 0x736b79u, p->steps, random);
-  abbe_eye_random4(c, ~p->id ^ 0x68656d69u, p->steps, random + 4);
+  abbe_eye_random_bits(c, ~p->id ^ 0x736b79u, p->steps, shift);
+  abbe_eye_random_bits(c, ~p->id ^ 0x68656d69u, p->steps, shift + 4);
   memset(out, 0, 3 * sizeof *out);
   for (uint32_t i = 0; i < count; i++) {
-    for (int k = 0; k < 5; k++)
-      u[k] = (double)abbe_random_shift(abbe_random_float(i * golden[k]), random[k]);
-    u[0] += 0x1p-24 * (double)random[5]; /* as texels may be many */
+    u[0] = abbe_random_double(i * golden[0] + shift[0], shift[5]);
+    for (int k = 1; k < 5; k++) u[k] = (double)abbe_random_float(i * golden[k] + shift[k]);
     sample_surroundings(c, p, hit, n, u, out);
   }
   for (int k = 0; k < 3; k++) out[k] /= (float)count;
@@ -272,22 +271,21 @@ static void add_air_light(const abbe_eye_context *c, const abbe_eye_path *p,
   const uint32_t count = straight ? STRAIGHT_SAMPLES : 1;
   for (uint32_t i = 0; i < count; i++) {
     const uint32_t salt = 0x68617a65u + i;
-    float u[4], v[4];
+    uint32_t bits[8];
+    float u[4];
     for (size_t l = 0; l < scene->light_count; l++) {
-      abbe_eye_random4(c, ~p->id ^ salt, (uint32_t)(p->steps * ABBE_SCENE_MAX_LIGHTS + l), u);
-      u[0] = (u[0] + (float)i) / (float)count;
+      abbe_eye_random_bits(c, ~p->id ^ salt, (uint32_t)(p->steps * ABBE_SCENE_MAX_LIGHTS + l),
+                           bits);
+      bits[0] = abbe_random_part(bits[0], i, count);
+      for (int k = 0; k < 4; k++) u[k] = abbe_random_float(bits[k]);
       const float radiance = abbe_air_light_lamp(ray, l, u, &c->out->rays);
       if (radiance > 0) add_light(c, p, l, radiance / (float)count, NULL);
     }
     if (c->w->environment->environment == NULL) continue;
-    abbe_eye_random4(c, ~p->id ^ salt ^ 0x736b79u, p->steps, u);
-    abbe_eye_random4(c, ~p->id ^ salt ^ 0x68656d69u, p->steps, v);
-    const double all[6] = {(double)u[0] + 0x1p-24 * (double)v[3],
-                           (double)u[1],
-                           (double)u[2],
-                           (double)u[3],
-                           (double)v[0],
-                           (double)v[1]};
+    abbe_eye_random_bits(c, ~p->id ^ salt ^ 0x736b79u, p->steps, bits);
+    abbe_eye_random_bits(c, ~p->id ^ salt ^ 0x68656d69u, p->steps, bits + 4);
+    double all[6] = {abbe_random_double(bits[0], bits[7])};
+    for (int k = 1; k < 6; k++) all[k] = (double)abbe_random_float(bits[k]);
     float rgb[3];
     abbe_air_light_surroundings(ray, c->w->environment, all, rgb, &c->out->rays);
     add_environment(c, p, rgb, 1 / (float)count, NULL);
@@ -373,10 +371,11 @@ static void gloss_of_surroundings(const abbe_eye_context *c, const abbe_eye_path
                                   const abbe_hit *hit, const float n[3],
                                   const abbe_rough_hit *rough) {
   const abbe_environment_light *e = c->w->environment;
-  float random[4], d[3], rgb[3], pdf, lobe_pdf, cos_h;
-  abbe_eye_random4(c, ~p->id ^ 0x676c6f73u, p->steps, random);
-  const double u[3] = {(double)random[0] + 0x1p-24 * (double)random[3], (double)random[1],
-                       (double)random[2]};
+  uint32_t bits[4];
+  float d[3], rgb[3], pdf, lobe_pdf, cos_h;
+  abbe_eye_random_bits(c, ~p->id ^ 0x676c6f73u, p->steps, bits);
+  const double u[3] = {abbe_random_double(bits[0], bits[3]), (double)abbe_random_float(bits[1]),
+                       (double)abbe_random_float(bits[2])};
   abbe_environment_light_sample(e, u, d, &pdf, rgb);
   const float f = abbe_mirrors_lobe(rough, d, &lobe_pdf, &cos_h);
   const float seen = f > 0 ? sees_out(c, p, hit, n, d) : 0;

@@ -41,9 +41,16 @@ static inline float abbe_eye_dot(const float a[3], const float b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+static inline void abbe_eye_random_bits(const abbe_eye_context *c, uint32_t a, uint32_t b,
+                                        uint32_t out[4]) {
+  abbe_random_bits(c->pixel, c->pass, a, (c->w->seed ^ 0x657965u) + b * 0x9e3779b1u, out);
+}
+
 static inline void abbe_eye_random4(const abbe_eye_context *c, uint32_t a, uint32_t b,
                                     float out[4]) {
-  abbe_random4(c->pixel, c->pass, a, (c->w->seed ^ 0x657965u) + b * 0x9e3779b1u, out);
+  uint32_t bits[4];
+  abbe_eye_random_bits(c, a, b, bits);
+  for (int k = 0; k < 4; k++) out[k] = abbe_random_float(bits[k]);
 }
 
 /* What ends a path goes into the sample: a receiver, a lamp, or nothing at all. straight: the eye's

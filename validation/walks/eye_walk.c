@@ -35,10 +35,11 @@ static bool trace(const abbe_eye_context *c, const abbe_eye_path *p, abbe_hit *h
   return true;
 }
 
-static void disperse(abbe_eye_path *p, float random) {
+/* wave: a fraction of 2^32 of the spectrum. */
+static void disperse(abbe_eye_path *p, uint32_t wave) {
   if (p->dispersed) return;
   p->dispersed = true;
-  p->step = abbe_spectral_sampling_step(random, &p->within);
+  p->step = abbe_spectral_sampling_step(wave, &p->within);
 }
 
 typedef struct crossing {
@@ -129,10 +130,10 @@ static bool is_coloured_haze(const abbe_eye_context *c, const abbe_eye_path *p) 
 
 /* Absorption along the way in the medium; the whole spectrum's goes by wavelength, so the path
  * takes one. */
-static void absorb(const abbe_eye_context *c, abbe_eye_path *p, float length, float random) {
+static void absorb(const abbe_eye_context *c, abbe_eye_path *p, float length, uint32_t wave) {
   int medium = abbe_media_of(p->inside);
   if (medium < 0 || c->w->media->attenuation == NULL) return;
-  disperse(p, random);
+  disperse(p, wave);
   p->share *= expf(-length * abbe_media_attenuation(c->w->media, medium, p->step, p->within));
 }
 
@@ -256,14 +257,16 @@ static bool is_coloured_mirror(const abbe_eye_context *c, const abbe_hit *hit) {
 /* To the next interface that is one; false where the path ends. */
 static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p) {
   abbe_hit hit;
+  uint32_t bits[4];
   float length = 0, random[4];
   bool met = trace(c, p, &hit, &length);
-  abbe_eye_random4(c, p->id, p->steps, random);
+  abbe_eye_random_bits(c, p->id, p->steps, bits);
+  for (int k = 0; k < 4; k++) random[k] = abbe_random_float(bits[k]);
   if (abbe_haze_is(&c->w->media->haze)) {
-    if (is_coloured_haze(c, p)) disperse(p, random[1]);
+    if (is_coloured_haze(c, p)) disperse(p, bits[1]);
     abbe_eye_haze(c, p, met ? length : INFINITY, false);
   } else if (met) {
-    absorb(c, p, length, random[1]);
+    absorb(c, p, length, bits[1]);
   }
   if (p->share < b->least) {
     if (!(random[2] * b->least < p->share)) return false;
@@ -274,7 +277,7 @@ static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p
     return false;
   }
   if (hit.surface->kind == ABBE_GEOMETRY_MIRRORS) {
-    if (is_coloured_mirror(c, &hit)) disperse(p, random[1]);
+    if (is_coloured_mirror(c, &hit)) disperse(p, bits[1]);
     mirror_on(c, p, &hit);
     return p->share > 0;
   }
@@ -286,7 +289,7 @@ static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p
     abbe_geometry_leave(&hit, p->d, p->o);
     return true;
   }
-  if (disperses(c, &x)) disperse(p, random[1]);
+  if (disperses(c, &x)) disperse(p, bits[1]);
   if (x.crystal) return scatter_waves(c, b, p, &hit, &x, random);
   return scatter(c, b, p, &hit, &x, random[0]);
 }
@@ -304,13 +307,13 @@ static void follow(const abbe_eye_context *c, const abbe_eye_path *first) {
 /* The mirror image on the outside: the whole spectrum, tinted by Fresnel's law; bands need single
  * wavelengths. */
 static void follow_mirror(const abbe_eye_context *c, const abbe_eye_path *first,
-                          const abbe_hit *hit, const crossing *x, float random) {
+                          const abbe_hit *hit, const crossing *x, uint32_t wave) {
   const abbe_eye_walk *w = c->w;
   abbe_eye_path p = *first;
   p.id++;
   float eta, cos_t;
   if (w->bands->count > 0 || p.dispersed) {
-    disperse(&p, random);
+    disperse(&p, wave);
     p.share *= reflectance_at(c, x, p.step, p.within, &eta, &cos_t);
   } else {
     float sum[3] = {0};
@@ -352,14 +355,14 @@ static void follow_waves(const abbe_eye_context *c, const abbe_eye_path *first, 
 }
 
 static void follow_through(const abbe_eye_context *c, const abbe_eye_path *first,
-                           const abbe_hit *hit, const crossing *x, float random) {
+                           const abbe_hit *hit, const crossing *x, uint32_t wave) {
   const bool takes = disperses(c, x) || c->w->media->attenuation != NULL;
   const uint32_t count = takes && !first->dispersed ? HEROES : 1;
   for (uint32_t i = 0; i < count; i++) {
     abbe_eye_path p = *first;
     p.id += 2 + i;
     p.share /= (float)count;
-    if (takes) disperse(&p, ((float)i + random) / (float)count);
+    if (takes) disperse(&p, abbe_random_part(wave, i, count));
     if (x->crystal) {
       follow_waves(c, &p, hit, x);
       continue;
@@ -375,7 +378,7 @@ static void follow_through(const abbe_eye_context *c, const abbe_eye_path *first
 
 /* What the eye sees straight in a mirror: wavelengths of their own where it has a colour. */
 static void follow_off(const abbe_eye_context *c, const abbe_eye_path *first, const abbe_hit *hit,
-                       float random) {
+                       uint32_t wave) {
   const bool takes = is_coloured_mirror(c, hit);
   const bool spreads = abbe_mirrors_is_rough(c->w->mirrors, hit->surface->index);
   const uint32_t count = spreads || (takes && !first->dispersed) ? HEROES : 1;
@@ -383,7 +386,7 @@ static void follow_off(const abbe_eye_context *c, const abbe_eye_path *first, co
     abbe_eye_path p = *first;
     p.id += 2 + i;
     p.share /= (float)count;
-    if (takes) disperse(&p, ((float)i + random) / (float)count);
+    if (takes) disperse(&p, abbe_random_part(wave, i, count));
     mirror_on(c, &p, hit);
     if (p.share > 0) follow(c, &p);
   }
@@ -396,14 +399,9 @@ static void add_first(const abbe_eye_context *c, const abbe_eye_path *p, const a
   c->out->depth += p->share * length;
 }
 
-/* Number i of a sequence of multiples of a golden ratio, shifted. */
-static float place(uint32_t i, uint32_t ratio, float shift) {
-  return abbe_random_shift(abbe_random_float(i * ratio), shift);
-}
-
 /* On from what the eye's ray meets first. */
 static void walk_on(const abbe_eye_context *c, abbe_eye_path *p, bool met, const abbe_hit *first,
-                    float wave) {
+                    uint32_t wave) {
   abbe_hit hit = *first;
   if (!met || (hit.surface->kind & ABBE_GEOMETRY_SPECULAR) == 0) {
     abbe_eye_arrive(c, p, met, &hit, true);
@@ -427,9 +425,10 @@ static void walk_on(const abbe_eye_context *c, abbe_eye_path *p, bool met, const
   follow_through(c, p, &hit, &at, wave);
 }
 
-/* One of the pixel's samples: a path from the eye through the place (x, y) on the film. wave, from
- * 0 to 1, chooses wavelengths, of their own where haze around the eye has a colour. */
-static void walk_sample(const abbe_eye_context *c, abbe_eye_path *p, float x, float y, float wave) {
+/* One of the pixel's samples: a path from the eye through the place (x, y) on the film. wave, a
+ * fraction of 2^32, chooses wavelengths, of their own where haze around the eye has a colour. */
+static void walk_sample(const abbe_eye_context *c, abbe_eye_path *p, float x, float y,
+                        uint32_t wave) {
   abbe_hit hit = {0};
   float length = 0;
   abbe_trace_camera_ray(c->w->camera, x, y, p->d);
@@ -440,7 +439,7 @@ static void walk_sample(const abbe_eye_context *c, abbe_eye_path *p, float x, fl
     abbe_eye_path own = *p;
     own.id += i << 24;
     own.share /= (float)count;
-    if (count > 1) disperse(&own, ((float)i + wave) / (float)count);
+    if (count > 1) disperse(&own, abbe_random_part(wave, i, count));
     abbe_eye_haze(c, &own, met ? length : INFINITY, true);
     walk_on(c, &own, met, &hit, wave);
   }
@@ -461,10 +460,11 @@ void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
                          abbe_eye_sample *out) {
   abbe_eye_context c = {.w = w, .pixel = (uint32_t)pixel, .pass = pass, .out = out};
   uint32_t count = w->samples != NULL ? w->samples[pixel] : 1;
-  float shift[4], column = (float)(pixel % w->camera->width);
+  uint32_t shift[4];
+  float column = (float)(pixel % w->camera->width);
   float row = (float)(pixel / w->camera->width);
   clear(w, out);
-  abbe_eye_random4(&c, 0, 0, shift);
+  abbe_eye_random_bits(&c, 0, 0, shift);
   for (uint32_t i = 0; i < count; i++) {
     abbe_eye_path p = {.share = 1 / (float)count,
                        .branch = 1,
@@ -473,7 +473,8 @@ void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
                        .carried = 1,
                        .id = i * IDS};
     memcpy(p.o, w->camera->eye, sizeof p.o);
-    walk_sample(&c, &p, column + place(i, golden[0], shift[0]), row + place(i, golden[1], shift[1]),
-                place(i, golden[2], shift[2]));
+    /* multiples of golden ratios, shifted */
+    walk_sample(&c, &p, column + abbe_random_float(i * golden[0] + shift[0]),
+                row + abbe_random_float(i * golden[1] + shift[1]), i * golden[2] + shift[2]);
   }
 }

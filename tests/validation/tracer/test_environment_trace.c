@@ -2,6 +2,7 @@
 #include "tests/validation/trace_scene.h"
 
 #include "colorimetry/upsampling.h"
+#include "validation/transport/environment_light.h"
 
 #define SPECK                                                                                      \
   "objects:\n- {name: speck, shape: rectangle, width: 0.05, height: 0.05, reflectance: 0.5}\n"
@@ -27,9 +28,9 @@ static double half_sky(const double d[3]) {
   return d[0] > 0 ? 3 : 0.5;
 }
 
-static abbe_environment *surround(radiance_of radiance) {
+static abbe_environment *surround(radiance_of radiance, size_t width) {
   abbe_environment *e = calloc(1, sizeof *e);
-  assert_int_equal(abbe_radiance_map_make(256, &e->map, NULL), ABBE_OK);
+  assert_int_equal(abbe_radiance_map_make(width, &e->map, NULL), ABBE_OK);
   for (size_t y = 0; y < e->map.height; y++)
     for (size_t x = 0; x < e->map.width; x++) {
       double d[3];
@@ -50,11 +51,15 @@ typedef struct fixture {
   abbe_tracer *tracer;
 } fixture;
 
-static void make(const char *text, radiance_of radiance, fixture *f) {
+static void make_fine(const char *text, radiance_of radiance, size_t width, fixture *f) {
   load_text(text, &f->scene);
   f->lamps = f->scene.light_count;
   f->scene.light_count = 0;
-  f->scene.environment = surround(radiance);
+  f->scene.environment = surround(radiance, width);
+}
+
+static void make(const char *text, radiance_of radiance, fixture *f) {
+  make_fine(text, radiance, 256, f);
 }
 
 static void trace(fixture *f, size_t photons, size_t passes, abbe_image *picture) {
@@ -106,6 +111,42 @@ static void a_convex_body_meets_pi_times_its_surface(void **state) {
     abbe_image_free(&picture);
     drop(&f);
   }
+}
+
+/* A photon goes to a body by its share of all their area, however small that is. */
+static void photons_find_a_grain_beside_a_boulder(void **state) {
+  (void)state;
+  static const double radius = 1e-4;
+  fixture f = {0};
+  make(CAMERA POINT_LIGHT FAR_SPECK
+       "- {name: boulder, shape: sphere, radius: 1, mirror: 1}\n"
+       "- {name: grain, shape: sphere, radius: 1e-4, mirror: 1, transform: [{translate: [3, 0, 0]}]}\n",
+       uniform, &f);
+  const abbe_spectral_sampling_desc spectrum = {.min_nm = 380, .max_nm = 780, .uniform = 0.15};
+  const abbe_bands none = {0};
+  abbe_geometry geometry;
+  abbe_spectral_sampling sampling;
+  abbe_environment_light light;
+  assert_int_equal(abbe_geometry_make(&f.scene, &geometry, NULL), ABBE_OK);
+  assert_int_equal(abbe_spectral_sampling_make(&f.scene, &spectrum, &sampling, NULL), ABBE_OK);
+  assert_int_equal(abbe_environment_light_make(&geometry, &sampling, &none, ABBE_RGB_SPACE_ACESCG,
+                                               &light, NULL),
+                   ABBE_OK);
+  const double grain[3] = {3, 0, 0}, share = radius * radius / (1 + radius * radius);
+  float centre[3];
+  abbe_geometry_to_frame(&geometry, grain, centre);
+  for (int i = -20; i <= 20; i++) { /* the boulder's share comes first */
+    const double u[6] = {0.3, 0.4, 0.5, 1 - share * (1 - (i + 0.5) * 0.04), 0.5, 0.5};
+    float o[3], d[3], rgb[3], along = 0, off = 0;
+    abbe_environment_light_ray(&light, u, o, d, rgb);
+    for (int k = 0; k < 3; k++) along += (centre[k] - o[k]) * d[k];
+    for (int k = 0; k < 3; k++) off += powf(centre[k] - o[k] - along * d[k], 2);
+    assert_true((sqrtf(off) * (float)geometry.unit < 1.1e-4f) == (u[3] >= 1 - share));
+  }
+  abbe_environment_light_free(&light);
+  abbe_spectral_sampling_free(&sampling);
+  abbe_geometry_free(&geometry);
+  drop(&f);
 }
 
 /* Through clear glass every ray ends in the same light: no pixel shows the glass. */
@@ -160,6 +201,40 @@ static void an_open_floor_has_its_irradiance(void **state) {
   check_floor(uniform, 2 * PI);
   check_floor(cosine_dome, 2 * PI / 3);
   check_floor(half_sky, 0.5 * PI * (3 + 0.5));
+}
+
+/* However many texels are drawn from, the light on an open floor is theirs: within four standard
+ * errors of its mean, as the passes tell them. `abbe validate` has as many as a map may have. */
+static void light_does_not_depend_on_how_many_texels_there_are(void **state) {
+  (void)state;
+  enum { PASSES = 64 };
+  static const size_t widths[] = {64, 1024, 2048};
+  for (size_t w = 0; w < (SANITIZED ? 2 : 3); w++) {
+    fixture f;
+    double sum = 0, square = 0, before = 0;
+    make_fine(CAMERA POINT_LIGHT FLOOR, uniform, widths[w], &f);
+    const abbe_trace_desc desc = {
+        .no_map = true, .width = 48, .height = 48, .photons = 256, .threads = 2};
+    f.tracer = make_tracer(&f.scene, &desc);
+    for (size_t p = 1; p <= PASSES; p++) {
+      abbe_image picture;
+      double so_far = 0;
+      run_passes(f.tracer, 1);
+      assert_int_equal(abbe_tracer_picture(f.tracer, &picture, NULL), ABBE_OK);
+      for (size_t y = 24; y < 48; y++)
+        for (size_t x = 0; x < 48; x++) so_far += luminance(&picture, x, y) / (24 * 48);
+      abbe_image_free(&picture);
+      const double one = (double)p * so_far - before;
+      before = (double)p * so_far;
+      sum += one / PASSES;
+      square += one * one / PASSES;
+    }
+    const double error = sqrt((square - sum * sum) / (PASSES - 1));
+    print_message("%zu texels: %.5f of the light, standard error %.5f\n", widths[w], sum, error);
+    assert_true(error < 1e-3);
+    assert_near(sum, 1, 4 * error + 1e-4);
+    drop(&f);
+  }
 }
 
 /* What a clear ball takes from the speck below it, it brings back: as much light falls on it. */
@@ -283,9 +358,11 @@ static void the_ledger_closes(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_convex_body_meets_pi_times_its_surface),
+                                     cmocka_unit_test(photons_find_a_grain_beside_a_boulder),
                                      cmocka_unit_test(clear_glass_is_not_seen_in_uniform_light),
                                      cmocka_unit_test(a_whole_mirror_is_not_seen_in_uniform_light),
                                      cmocka_unit_test(an_open_floor_has_its_irradiance),
+                                     cmocka_unit_test(light_does_not_depend_on_how_many_texels_there_are),
                                      cmocka_unit_test(a_clear_ball_takes_nothing_away),
                                      cmocka_unit_test(turning_all_changes_nothing),
                                      cmocka_unit_test(light_is_linear),

@@ -115,17 +115,40 @@ static void numbers_stay_below_one(void **state) {
   assert_true(abbe_random_float(0) == 0);
   assert_true(abbe_random_float(0xffffffffu) < 1);
   assert_true(abbe_random_float(0x80000000u) == 0.5f);
-  float last = nextafterf(1, 0);
-  const float x[] = {0, 0x1p-149f, 0x1p-25f, 0.5f, last, 1, 3.25f, 1e6f, 16777216};
-  const float shift[] = {0, 0x1p-149f, 0x1p-25f, 0.5f, 1 - 0x1p-24f, last};
-  for (size_t i = 0; i < sizeof x / sizeof *x; i++)
-    for (size_t j = 0; j < sizeof shift / sizeof *shift; j++) {
-      float y = abbe_random_shift(x[i], shift[j]);
-      assert_true(y >= 0 && y < 1);
-      double exact = (double)x[i] + (double)shift[j], away = fabs((double)y - fmod(exact, 1));
-      /* on a circle, to what single precision keeps of the sum */
-      assert_true(fmin(away, 1 - away) <= fmax(exact, 1) * 0x1p-24);
+  assert_true(abbe_random_double(0, 0x7ff) == 0);
+  assert_true(abbe_random_double(0xffffffffu, 0xffffffffu) == 1 - 0x1p-53);
+  assert_true(abbe_random_double(0x80000000u, 0x800) == 0.5 + 0x1p-53);
+}
+
+/* Parts of the range lie side by side, and the last place of one is below the first of the next. */
+static void parts_do_not_overlap(void **state) {
+  (void)state;
+  for (uint32_t count = 1; count <= 7; count++)
+    for (uint32_t i = 0; i < count; i++) {
+      const uint32_t first = abbe_random_part(0, i, count);
+      const uint32_t last = abbe_random_part(0xffffffffu, i, count);
+      const double width = 0x1p32 / count;
+      assert_near((double)first, i * width, 1);
+      assert_near((double)last, (i + 1) * width, 1);
+      if (i + 1 < count) assert_true(last <= abbe_random_part(0, i + 1, count));
+      if (i + 1 == count) assert_int_equal(last, 0xffffffffu);
     }
+}
+
+/* Drawn from many entries by one number, its fraction decides: of 2^25 entries it is as uniform as
+ * of few, also where a lattice is shifted. */
+static void fractions_of_many_entries_are_uniform(void **state) {
+  (void)state;
+  for (int log = 6; log <= 25; log++) {
+    double seen[BINS] = {0};
+    for (uint32_t i = 0; i < COUNT; i++) {
+      uint32_t bits[4];
+      abbe_random_bits(i, (uint32_t)log, 7, 7, bits);
+      const double at = abbe_random_double((i % 4) * 3785032107u + bits[0], bits[1]) * exp2(log);
+      seen[(int)((at - floor(at)) * BINS)]++;
+    }
+    check_chi_square(seen, BINS, COUNT);
+  }
 }
 
 int main(void) {
@@ -137,6 +160,8 @@ int main(void) {
       cmocka_unit_test(two_counters_at_once),
       cmocka_unit_test(the_same_counters_give_the_same_numbers),
       cmocka_unit_test(numbers_stay_below_one),
+      cmocka_unit_test(parts_do_not_overlap),
+      cmocka_unit_test(fractions_of_many_entries_are_uniform),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -131,13 +131,13 @@ static void a_number_finds_its_step_and_wavelength(void **state) {
   abbe_scene scene;
   abbe_spectral_sampling s;
   make(&scene, 380, 780, 0.15, &s);
-  const float x[] = {0, 0x1p-24f, 0.25f, 0.7071f, 1 - 0x1p-24f};
+  const uint32_t x[] = {0, 1, 0x40000000u, 0xb504f333u, 0xffffffffu};
   double last = 0;
   for (size_t i = 0; i < sizeof x / sizeof *x; i++) {
     float within;
     uint32_t k = abbe_spectral_sampling_step(x[i], &within);
     assert_true(k < STEPS && within >= 0 && within < 1);
-    assert_near(((double)k + (double)within) / STEPS, (double)x[i], 0);
+    assert_near(((double)k + (double)within) / STEPS, (double)x[i] * 0x1p-32, 0);
     double lambda = abbe_spectral_sampling_lambda(&s, k, within);
     assert_true(lambda >= 380 && lambda < 780 && lambda > last);
     last = lambda;
