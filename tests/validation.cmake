@@ -1,7 +1,7 @@
 set(validation_rooms abbe_validation abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 foreach(name
     accumulator
-    bands
+    bands band_trace
     camera
     catacaustic wave_caustic
     checkpoint checkpoint_forged

@@ -98,7 +98,8 @@ static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
   const abbe_spectral_sampling_desc spectrum = {.observer = d->observer,
                                                 .min_nm = d->min_nm,
                                                 .max_nm = d->max_nm,
-                                                .uniform = d->bands > 0 ? 0.5 : 0.15};
+                                                .uniform = d->bands > 0 ? 0.5 : 0.15,
+                                                .bands = d->bands};
   abbe_result result = abbe_geometry_make(t->scene, &t->geometry, error);
   if (result == ABBE_OK)
     result = abbe_spectral_sampling_make(t->scene, &spectrum, &t->sampling, error);

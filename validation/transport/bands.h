@@ -22,11 +22,12 @@ typedef struct abbe_bands {
   size_t count; /* 0: none */
   double width_nm;
   double *middle_nm; /* [count] */
-  uint16_t *of_step; /* [steps] the band of a sampling step: of its middle */
+  uint16_t *of_step; /* [steps] the band that a sampling step lies in */
   float *power;      /* [lights][count] power of the light in the band, per watt and nm */
 } abbe_bands;
 
-/* count bands over the sampling's range. ABBE_INVALID_ARGUMENT beyond ABBE_BANDS_MAX. */
+/* count bands over the range of a sampling that was made for as many. ABBE_INVALID_ARGUMENT beyond
+ * ABBE_BANDS_MAX. */
 abbe_result abbe_bands_make(const abbe_spectral_sampling *sampling, size_t count, abbe_bands *out,
                             abbe_error *error);
 void abbe_bands_free(abbe_bands *bands);

@@ -51,17 +51,54 @@ static abbe_result visible_density(const abbe_scene *scene, const abbe_spectral_
   return ABBE_OK;
 }
 
-static void invert(const double *density, double min_nm, double max_nm, abbe_spectral_sampling *s) {
-  double below = 0;
-  size_t bin = 0;
-  s->lambda_nm[0] = min_nm;
-  s->lambda_nm[s->steps] = max_nm;
-  for (size_t k = 1; k < s->steps; k++) {
-    double wanted = (double)k / (double)s->steps;
+/* Sum of the density below a place in bins. */
+static double share_below(const double *density, double place) {
+  const size_t whole = place < FINE ? (size_t)place : FINE - 1;
+  double sum = 0;
+  for (size_t i = 0; i < whole; i++) sum += density[i];
+  return sum + (place - (double)whole) * density[whole];
+}
+
+/* Cuts the part of the range between two places in bins into steps of equal shares. */
+static void cut(const double *density, const double place[2], size_t first, size_t end,
+                double min_nm, double max_nm, abbe_spectral_sampling *s) {
+  const double from = share_below(density, place[0]), to = share_below(density, place[1]);
+  size_t bin = (size_t)place[0];
+  double below = share_below(density, (double)bin);
+  s->lambda_nm[first] = min_nm + (max_nm - min_nm) * place[0] / FINE;
+  for (size_t k = first + 1; k < end; k++) {
+    const double wanted = from + (to - from) * (double)(k - first) / (double)(end - first);
     while (bin + 1 < FINE && below + density[bin] < wanted) below += density[bin++];
-    double share = fmin(fmax((wanted - below) / density[bin], 0), 1);
+    const double share = fmin(fmax((wanted - below) / density[bin], 0), 1);
     s->lambda_nm[k] = min_nm + (max_nm - min_nm) * ((double)bin + share) / FINE;
   }
+}
+
+/* Each band has as many steps as are nearest to its share, at least one. */
+static void invert(const double *density, double min_nm, double max_nm, size_t bands,
+                   abbe_spectral_sampling *s) {
+  size_t first = 0;
+  for (size_t band = 0; band < bands; band++) {
+    const double place[2] = {FINE * (double)band / (double)bands,
+                             FINE * (double)(band + 1) / (double)bands};
+    const double wanted = share_below(density, place[1]) * (double)s->steps;
+    const size_t most = s->steps - (bands - 1 - band);
+    size_t end = band + 1 < bands ? (size_t)lround(wanted) : s->steps;
+    if (end > most) end = most;
+    if (end <= first) end = first + 1;
+    cut(density, place, first, end, min_nm, max_nm, s);
+    first = end;
+  }
+  s->lambda_nm[s->steps] = max_nm;
+}
+
+/* The light's power from one wavelength to another; a table's corner may lie between them. */
+static double power_between(const abbe_illuminant *illuminant, double from, double to) {
+  enum { PARTS = 8 };
+  double sum = 0;
+  for (int i = 0; i < PARTS; i++)
+    sum += abbe_illuminant_power(illuminant, from + (to - from) * (i + 0.5) / PARTS);
+  return sum * (to - from) / PARTS;
 }
 
 static abbe_result fill_colours(const abbe_scene *scene, abbe_spectral_sampling *s,
@@ -76,8 +113,7 @@ static abbe_result fill_colours(const abbe_scene *scene, abbe_spectral_sampling 
     double power = 0;
     memcpy(s->white[l], weights.sum, sizeof s->white[l]);
     for (size_t k = 0; k < s->steps; k++) {
-      double from = s->lambda_nm[k], to = s->lambda_nm[k + 1];
-      double watts = abbe_illuminant_power(illuminant, 0.5 * (from + to)) * (to - from);
+      const double watts = power_between(illuminant, s->lambda_nm[k], s->lambda_nm[k + 1]);
       power += watts;
       s->power[l * s->steps + k] = (float)watts;
       for (int c = 0; c < 3; c++)
@@ -95,11 +131,15 @@ abbe_result abbe_spectral_sampling_make(const abbe_scene *scene,
                                         abbe_spectral_sampling *out, abbe_error *error) {
   ABBE_REQUIRE(scene && desc && out, error);
   const double min_nm = desc->min_nm, max_nm = desc->max_nm, uniform = desc->uniform;
+  const size_t bands = desc->bands > 0 ? desc->bands : 1;
   *out = (abbe_spectral_sampling){0};
   if (!(min_nm > 0 && min_nm < max_nm && isfinite(max_nm)) || !(uniform >= 0.01 && uniform <= 1))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a range of wavelengths rises from above 0, as 380:780 does: not %g:%g",
                           min_nm, max_nm);
+  if (bands > ABBE_SPECTRAL_SAMPLING_STEPS / 16)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%zu bands are too many: at most %u", bands,
+                          ABBE_SPECTRAL_SAMPLING_STEPS / 16);
   abbe_spectral_sampling s = {.observer = desc->observer,
                               .steps = ABBE_SPECTRAL_SAMPLING_STEPS,
                               .lights = lights_of(scene)};
@@ -114,7 +154,7 @@ abbe_result abbe_spectral_sampling_make(const abbe_scene *scene,
   if (result == ABBE_OK) result = visible_density(scene, desc, density, error);
   if (result == ABBE_OK) {
     for (size_t i = 0; i < FINE; i++) density[i] = (1 - uniform) * density[i] + uniform / FINE;
-    invert(density, min_nm, max_nm, &s);
+    invert(density, min_nm, max_nm, bands, &s);
     result = fill_colours(scene, &s, error);
   }
   free(density);

@@ -3,7 +3,8 @@
  * A path has one wavelength, drawn from a density that follows what the eye sees of the lights,
  * mixed with a uniform one so that no part of the range starves. The density is constant over each
  * of `steps` intervals of equal probability; a path carries the mean colour of its interval, so
- * the mean over all paths is the light's white exactly.
+ * the mean over all paths is the light's white exactly. Where bands are asked for, every edge of a
+ * band is an edge of steps: each band has a whole number of them.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_SPECTRAL_SAMPLING_H
 #define ABBE_VALIDATION_TRANSPORT_SPECTRAL_SAMPLING_H
@@ -37,6 +38,7 @@ typedef struct abbe_spectral_sampling_desc {
   abbe_observer observer;
   double min_nm, max_nm;
   double uniform; /* part of the density, 0.01 to 1 */
+  size_t bands;   /* of equal width over the range, up to a sixteenth of the steps; 0: none */
 } abbe_spectral_sampling_desc;
 
 /* For the scene's lights. ABBE_INVALID_ARGUMENT where a light is dark there, or invisible. */

@@ -1,0 +1,80 @@
+/* Bands of the tracer: exact however many there are, within their own standard errors. */
+#include "tests/validation/trace_scene.h"
+
+#include <stdio.h>
+
+#define EVEN_SUN                                                                                   \
+  "lights:\n- {name: sun, kind: directional, direction: [0, 0, -1], irradiance: 3.14159265, "      \
+  "illuminant: E}\n"
+
+static double band_at(const abbe_image *image, const char *prefix, double middle, size_t pixel) {
+  char name[64], channel[128];
+  abbe_image_band_name(middle, name, sizeof name);
+  snprintf(channel, sizeof channel, "%s%s", prefix, name);
+  const size_t at = abbe_image_find_channel(image, channel);
+  assert_true(at < image->channels);
+  return (double)image->data[pixel * image->channels + at];
+}
+
+/* A grey floor in even light: half of 1 W/(m2 sr), over 400 nm. */
+static void a_lit_floor_is_even(void **state) {
+  (void)state;
+  static const size_t counts[] = {1, 20, 80, 160, 256};
+  abbe_scene scene;
+  load_text(CAMERA EVEN_SUN FLOOR, &scene);
+  for (size_t c = 0; c < 5; c++) {
+    const abbe_trace_desc desc = {
+        .no_map = true, .width = 3, .height = 3, .photons = 256, .threads = 1, .bands = counts[c]};
+    abbe_tracer *tracer = make_tracer(&scene, &desc);
+    abbe_image picture;
+    run_passes(tracer, 2);
+    assert_int_equal(abbe_tracer_picture(tracer, &picture, NULL), ABBE_OK);
+    for (size_t i = 0; i < counts[c]; i++) {
+      const double middle = 380 + 400 * ((double)i + 0.5) / (double)counts[c];
+      assert_near(band_at(&picture, "", middle, 4), 0.00125, 1e-5 * 0.00125);
+    }
+    abbe_image_free(&picture);
+    abbe_tracer_free(tracer);
+  }
+  abbe_scene_free(&scene);
+}
+
+/* All that photons bring through a ball without dispersion. Its mean over bands is what each has,
+ * and no band is farther off than errors of so many bands may be. */
+static void photons_are_even(void **state) {
+  (void)state;
+  enum { BANDS = 160, PASSES = 48 };
+  abbe_scene scene;
+  load_text(CAMERA EVEN_SUN FLOOR BALL("flat"), &scene);
+  const abbe_trace_desc desc = {.no_picture = true,
+                                .map_width = 1,
+                                .photons = 1 << 14,
+                                .threads = 1,
+                                .bands = BANDS};
+  abbe_tracer *tracer = make_tracer(&scene, &desc);
+  abbe_image map;
+  double mean = 0, squares = 0, greatest = 0;
+  run_passes(tracer, PASSES);
+  assert_int_equal(abbe_tracer_map(tracer, &map, NULL), ABBE_OK);
+  for (size_t i = 0; i < BANDS; i++) mean += band_at(&map, "", 381.25 + 2.5 * (double)i, 0) / BANDS;
+  for (size_t i = 0; i < BANDS; i++) {
+    const double middle = 381.25 + 2.5 * (double)i, error = band_at(&map, "stderr.", middle, 0);
+    const double z = (band_at(&map, "", middle, 0) - mean) / error;
+    assert_true(error < 0.02 * mean);
+    squares += z * z / BANDS;
+    greatest = fmax(greatest, fabs(z));
+  }
+  print_message("%d bands: mean of z^2 %.2f, greatest |z| %.2f\n", BANDS, squares, greatest);
+  assert_true(squares < 1.5 && greatest < 5);
+  abbe_image_free(&map);
+  abbe_tracer_free(tracer);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_lit_floor_is_even),
+      cmocka_unit_test(photons_are_even),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
