@@ -125,6 +125,11 @@ void abbe_trace_summarise(const abbe_trace_request *q, const abbe_tracer *tracer
       fprintf(stderr, ", %.2f %% trapped, which is not modelled", whole * s.ledger.trapped);
   }
   fprintf(stderr, "\n");
+  if (!q->desc.no_picture && s.faintest < ABBE_TRACER_FAINTEST)
+    fprintf(stderr,
+            "note: the dimmest of the scene's lights has %.1g of the brightest's radiance; light below "
+            "%.1g of that is lost in the sums\n",
+            s.faintest, ABBE_TRACER_FAINTEST);
   if (s.cuts > 0)
     fprintf(stderr, "note: %llu contributions were too bright to be kept whole\n",
             (unsigned long long)s.cuts);

@@ -6,7 +6,7 @@
 #include "validation/tracer/checkpoint.h"
 #include "validation/tracer/tracer.h"
 
-const char *const fuzz_words[] = {"\x02\x10", "\x03\x08", "abbe checkpoint 9\n", "\n\n", "scene ",
+const char *const fuzz_words[] = {"\x02\x10", "\x03\x08", "abbe checkpoint 10\n", "\n\n", "scene ",
                                   "physics ", NULL};
 
 static abbe_scene scene;

@@ -1,9 +1,13 @@
 /* accumulator.h: sums over passes, and the standard error of their mean.
  *
- * Within a pass values are added as whole numbers of a small unit, by each thread for itself;
- * whole numbers have the same sum in any order, so the result does not depend on how the work was
- * shared out. So are the sums over passes (whole_sum.h). Passes are independent of each other, so
- * their spread tells the error of the mean.
+ * Within a pass values are added as whole numbers, by each thread for itself; whole numbers have
+ * the same sum in any order, so the result does not depend on how the work was shared out. So are
+ * the sums over passes (whole_sum.h). Passes are independent of each other, so their spread tells
+ * the error of the mean.
+ *
+ * A single unit would take all that is dim away beside what is bright. There are two, 2^32 apart: a
+ * number goes by its own size to the one that keeps all its bits, or, below 2^24 of the finer ones,
+ * to the nearest of these.
  */
 #ifndef ABBE_VALIDATION_TRACER_ACCUMULATOR_H
 #define ABBE_VALIDATION_TRACER_ACCUMULATOR_H
@@ -11,6 +15,7 @@
 #include "base/error.h"
 #include "validation/tracer/whole_sum.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -23,38 +28,57 @@ typedef struct abbe_accumulator {
   size_t values; /* elements times channels */
   size_t threads;
   size_t passes; /* ended so far */
-  double unit;   /* value of a whole number 1 */
-  double per_unit;
-  double limit;           /* largest magnitude that one addition keeps */
-  int64_t **adding;       /* [threads][values] the pass that is under way */
+  double unit;   /* value of a whole number 1: 2^-93 of the power of two that is at least `most` */
+  double per_unit[2]; /* of the finer and the coarser unit */
+  double coarse;      /* smallest magnitude that the coarser one takes */
+  double limit;       /* largest magnitude that one addition keeps */
+  int64_t **adding[2];    /* [threads][values] the pass that is under way, in each unit */
   uint64_t *cut;          /* [threads] additions beyond the limit, cut to it */
-  abbe_whole_sum *sum;    /* [values] over passes, by abbe_whole_sum_add_sample */
-  abbe_whole_sum *square; /* [values] likewise */
+  abbe_whole_sum *sum;    /* [values] over passes */
+  abbe_whole_sum *square; /* [values][2] by abbe_whole_sum_add_product */
 } abbe_accumulator;
 
+#define ABBE_ACCUMULATOR_APART 32 /* bits from one unit to the other */
+
 /* Sums of a pass up to `most` in magnitude are held; ABBE_INVALID_ARGUMENT unless it is positive
- * and finite, ABBE_NO_MEMORY. */
+ * and from 1e-100 to 1e100, ABBE_NO_MEMORY. */
 abbe_result abbe_accumulator_make(size_t values, size_t threads, double most, abbe_accumulator *out,
                                   abbe_error *error);
 void abbe_accumulator_free(abbe_accumulator *a);
 
-/* What is not a number adds nothing; sums beyond what a pass holds are cut. */
-static inline void abbe_accumulator_add(abbe_accumulator *a, size_t thread, size_t value, float x) {
+/* x, cut to the limit and counted where it is beyond it, 0 of what is not a number; in units, which
+ * *coarse tells. */
+static inline int64_t abbe_accumulator_quantise(const abbe_accumulator *a, float x, uint64_t *cut,
+                                                bool *coarse) {
   double y = (double)x;
-  if (!(y <= a->limit && y >= -a->limit)) {
-    a->cut[thread]++;
+  if (!(fabs(y) <= a->limit)) {
+    ++*cut;
     y = y > 0 ? a->limit : y < 0 ? -a->limit : 0;
   }
-  int64_t whole = (int64_t)(y * a->per_unit), *sum = &a->adding[thread][value];
-  if (!__builtin_add_overflow(*sum, whole, sum)) return;
-  a->cut[thread]++;
-  *sum = whole > 0 ? INT64_MAX : INT64_MIN;
+  *coarse = fabs(y) >= a->coarse;
+  return lrint(y * a->per_unit[*coarse]);
+}
+
+/* Where a sum and what comes to it are more than 63 bits hold: the finer one's carry is the
+ * coarser's, which is cut. */
+void abbe_accumulator_carry(abbe_accumulator *a, size_t thread, size_t value, bool coarse,
+                            int64_t more);
+
+/* What is not a number adds nothing; sums beyond what a pass holds are cut. */
+static inline void abbe_accumulator_add(abbe_accumulator *a, size_t thread, size_t value, float x) {
+  bool coarse;
+  const int64_t whole = abbe_accumulator_quantise(a, x, &a->cut[thread], &coarse);
+  int64_t *sum = &a->adding[coarse][thread][value], all;
+  if (__builtin_add_overflow(*sum, whole, &all))
+    abbe_accumulator_carry(a, thread, value, coarse, whole);
+  else
+    *sum = all;
 }
 
 /* Ends the pass: its sums become one sample of every value. */
 void abbe_accumulator_end_pass(abbe_accumulator *a);
 /* Sum of a value in the pass that is under way, in units. */
-int64_t abbe_accumulator_adding(const abbe_accumulator *a, size_t value);
+abbe_whole_sum abbe_accumulator_adding(const abbe_accumulator *a, size_t value);
 /* Forgets the pass that is under way. */
 void abbe_accumulator_drop_pass(abbe_accumulator *a);
 

@@ -10,7 +10,7 @@
 
 /* File: a line of magic, lines of text that say what the run is, an empty line, then counts,
  * ledger and sums as the machine keeps them, and a hash of all before it. */
-static const char magic[] = "abbe checkpoint 9\n";
+static const char magic[] = "abbe checkpoint 10\n";
 /* Bytes that hold all the lines, and those of the magic that versions share. */
 enum { HEAD = 4096, SAME_MAGIC = 16 };
 
@@ -150,7 +150,7 @@ static void describe(const abbe_tracer *t, char *out, size_t size) {
 
 static size_t numbers_size(const abbe_tracer *t) {
   const size_t sums = ABBE_TRACER_LEDGER + t->guides.pixels * ABBE_GUIDE_VALUES +
-                      2 * (t->picture.values + t->map.values);
+                      3 * (t->picture.values + t->map.values);
   return sizeof(abbe_pass_counts) + sums * sizeof(abbe_whole_sum);
 }
 

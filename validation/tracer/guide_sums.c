@@ -38,24 +38,33 @@ static double unit_of(const abbe_guide_sums *g, size_t mean) {
   return mean < ABBE_GUIDE_ALBEDO ? g->unit : plain_unit;
 }
 
+/* What the picture's sums make of a colour. */
+static abbe_whole_sum colour_of(const abbe_accumulator *picture, float x) {
+  uint64_t cut = 0; /* which the picture has counted */
+  bool coarse;
+  const int64_t whole = abbe_accumulator_quantise(picture, x, &cut, &coarse);
+  return (abbe_whole_sum)whole * ((abbe_whole_sum)1 << (coarse ? ABBE_ACCUMULATOR_APART : 0));
+}
+
 /* rgb: the picture's, in its units. */
-static void end_pixel(const float *adding, const abbe_accumulator *picture, const int64_t rgb[3],
-                      abbe_whole_sum *sum) {
-  int64_t x[ABBE_GUIDE_MEANS];
+static void end_pixel(const float *adding, const abbe_accumulator *picture,
+                      const abbe_whole_sum rgb[3], abbe_whole_sum *sum) {
+  abbe_whole_sum x[ABBE_GUIDE_MEANS];
   for (size_t k = 0; k < ADDED; k++)
     x[ABBE_GUIDE_EYE + k] =
-        k < 3 ? abbe_whole_sum_quantise((double)adding[k], picture->per_unit, picture->limit)
+        k < 3 ? colour_of(picture, adding[k])
               : abbe_whole_sum_quantise((double)adding[k], 1 / plain_unit, plain_limit);
-  for (size_t k = 0; k < 3; k++)
-    if (__builtin_sub_overflow(rgb[k], x[ABBE_GUIDE_EYE + k], &x[k])) x[k] = rgb[k];
-  for (size_t k = 0; k < ABBE_GUIDE_MEANS; k++)
-    abbe_whole_sum_add_sample(x[k], &sum[k], &sum[ABBE_GUIDE_SQUARES + k]);
+  for (size_t k = 0; k < 3; k++) x[k] = rgb[k] - x[ABBE_GUIDE_EYE + k];
+  for (size_t k = 0; k < ABBE_GUIDE_MEANS; k++) {
+    sum[k] += x[k];
+    abbe_whole_sum_add_product(x[k], x[k], &sum[ABBE_GUIDE_SQUARES + 2 * k]);
+  }
   for (size_t part = 0; part < 2; part++) {
-    const int64_t *c = x + 3 * part;
-    abbe_whole_sum *product = sum + ABBE_GUIDE_PRODUCTS + 3 * part;
-    product[0] += abbe_whole_sum_product(c[0], c[1]);
-    product[1] += abbe_whole_sum_product(c[0], c[2]);
-    product[2] += abbe_whole_sum_product(c[1], c[2]);
+    const abbe_whole_sum *c = x + 3 * part;
+    abbe_whole_sum *product = sum + ABBE_GUIDE_PRODUCTS + 6 * part;
+    abbe_whole_sum_add_product(c[0], c[1], product);
+    abbe_whole_sum_add_product(c[0], c[2], product + 2);
+    abbe_whole_sum_add_product(c[1], c[2], product + 4);
   }
 }
 
@@ -63,7 +72,7 @@ void abbe_guide_sums_end_pass(abbe_guide_sums *g, const abbe_accumulator *pictur
                               size_t channels) {
 #pragma omp parallel for num_threads((int)picture->threads)
   for (size_t i = 0; i < g->pixels; i++) {
-    int64_t rgb[3];
+    abbe_whole_sum rgb[3];
     for (size_t k = 0; k < 3; k++) rgb[k] = abbe_accumulator_adding(picture, i * channels + k);
     end_pixel(g->adding + i * ADDED, picture, rgb, g->sum + i * ABBE_GUIDE_VALUES);
   }
@@ -71,20 +80,20 @@ void abbe_guide_sums_end_pass(abbe_guide_sums *g, const abbe_accumulator *pictur
 
 /* In units. */
 static double of_means(double product, abbe_whole_sum a, abbe_whole_sum b, size_t passes) {
-  const double n = (double)passes, x = abbe_whole_sum_of_values(a), y = abbe_whole_sum_of_values(b);
+  const double n = (double)passes, x = (double)a, y = (double)b;
   return (product / n - x / n * (y / n)) / (n - 1);
 }
 
 double abbe_guide_sums_mean(const abbe_guide_sums *g, size_t passes, size_t pixel, size_t mean) {
   const abbe_whole_sum sum = g->sum[pixel * ABBE_GUIDE_VALUES + mean];
-  return unit_of(g, mean) * abbe_whole_sum_of_values(sum) / (double)passes;
+  return unit_of(g, mean) * (double)sum / (double)passes;
 }
 
 double abbe_guide_sums_variance(const abbe_guide_sums *g, size_t passes, size_t pixel,
                                 size_t mean) {
   const abbe_whole_sum *sum = g->sum + pixel * ABBE_GUIDE_VALUES;
   const double unit = unit_of(g, mean);
-  const double square = abbe_whole_sum_of_squares(sum[mean], sum[ABBE_GUIDE_SQUARES + mean]);
+  const double square = abbe_whole_sum_of_products(&sum[ABBE_GUIDE_SQUARES + 2 * mean]);
   return unit * unit * fmax(of_means(square, sum[mean], sum[mean], passes), 0);
 }
 
@@ -93,6 +102,6 @@ double abbe_guide_sums_covariance(const abbe_guide_sums *g, size_t passes, size_
   static const size_t first[3] = {0, 0, 1}, second[3] = {1, 2, 2};
   const abbe_whole_sum *sum = g->sum + pixel * ABBE_GUIDE_VALUES, *part = sum + 3 * (product / 3);
   return g->unit * g->unit *
-         of_means(abbe_whole_sum_of_products(sum[ABBE_GUIDE_PRODUCTS + product]),
+         of_means(abbe_whole_sum_of_products(&sum[ABBE_GUIDE_PRODUCTS + 2 * product]),
                   part[first[product % 3]], part[second[product % 3]], passes);
 }

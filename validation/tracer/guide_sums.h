@@ -21,9 +21,9 @@ enum {
   ABBE_GUIDE_NORMAL = 9,
   ABBE_GUIDE_DEPTH = 12,
   ABBE_GUIDE_MEANS = 13,
-  ABBE_GUIDE_SQUARES = 13,  /* of each mean */
-  ABBE_GUIDE_PRODUCTS = 26, /* RG, RB, GB of the photons, then of the eye */
-  ABBE_GUIDE_VALUES = 32
+  ABBE_GUIDE_SQUARES = 13,  /* of each mean; of two digits, as the products are */
+  ABBE_GUIDE_PRODUCTS = 39, /* RG, RB, GB of the photons, then of the eye */
+  ABBE_GUIDE_VALUES = 51
 };
 
 /* A zeroed one is of no pixels. */

@@ -307,12 +307,30 @@ abbe_result abbe_tracer_light_pass(abbe_tracer *t, const volatile int *stop, siz
   return result;
 }
 
+static bool reflects(const abbe_object *o) {
+  const double *r = o->reflectance;
+  return o->spectrum != NULL || r[0] > 0 || r[1] > 0 || r[2] > 0;
+}
+
+/* Whether photons of the light can show: in a map what they fall on, in a picture what reflects or
+ * scatters them. */
+static bool asks_for(const abbe_tracer *t, size_t light) {
+  const abbe_geometry *g = &t->geometry;
+  if (!t->desc.no_picture && abbe_haze_is(&t->media.haze)) return true;
+  for (size_t i = 0; i < g->scene->object_count; i++)
+    if (g->surface[i].kind == ABBE_GEOMETRY_RECEIVERS &&
+        (abbe_tracer_maps(t, light) || (!t->desc.no_picture && reflects(&g->scene->object[i]))))
+      return true;
+  return false;
+}
+
 /* W of the light that its photons stand for, before anything is met. */
 static double reach_of(const abbe_tracer *t, size_t light) {
+  if (!asks_for(t, light)) return 0;
   if (light < t->scene->light_count)
     return t->projection[light].count > 0 ? t->projection[light].reach : 0;
   const abbe_environment *environment = t->environment.environment;
-  return t->desc.no_picture ? 0 : environment->luminance * t->environment.area;
+  return environment->luminance * t->environment.area;
 }
 
 abbe_result abbe_tracer_share_photons(abbe_tracer *t, abbe_error *error) {
@@ -353,6 +371,14 @@ static size_t land_trial(const abbe_tracer *t, const abbe_emission *e, abbe_phot
   return landed;
 }
 
+/* Of so many photons, where of the trial's so many landed: fewer where hardly any does. */
+static size_t asked_for(size_t photons, size_t landed) {
+  enum { ENOUGH = 16 };
+  if (landed >= ENOUGH || photons <= SPLIT_TRIALS) return photons;
+  const size_t share = photons / ENOUGH * landed;
+  return share > SPLIT_TRIALS ? share : SPLIT_TRIALS;
+}
+
 abbe_result abbe_tracer_choose_splits(abbe_tracer *t, abbe_error *error) {
   abbe_photon_hit *hit = malloc(SPLIT_TRIALS * sizeof *hit);
   abbe_result result =
@@ -362,7 +388,10 @@ abbe_result abbe_tracer_choose_splits(abbe_tracer *t, abbe_error *error) {
     abbe_emission e;
     result = abbe_emission_make(t, l, SPLIT_TRIALS, 0, t->desc.seed, &e, error);
     uint64_t before = abbe_tracer_walk_rays(t);
-    if (result == ABBE_OK) t->splits[l] = abbe_path_splitting_best(hit, land_trial(t, &e, hit));
+    const size_t landed = result == ABBE_OK ? land_trial(t, &e, hit) : 0;
+    t->splits[l] = abbe_path_splitting_best(hit, landed);
+    if (!abbe_tracer_maps(t, l) && !abbe_haze_is(&t->media.haze))
+      t->photons[l] = asked_for(t->photons[l], landed);
     t->photon_rays +=
         (double)t->photons[l] * (double)(abbe_tracer_walk_rays(t) - before) / SPLIT_TRIALS;
     abbe_emission_free(&e);

@@ -4,18 +4,17 @@
 
 #include <string.h>
 
-/* The most that a pass adds to any sum: a product of two numbers of 63 bits less the bits that are
- * dropped; a value with room for them takes less. */
-static const int bits_a_pass = 126 - ABBE_WHOLE_SUM_DROPPED_BITS;
+/* The most that a pass adds to any sum: a sample, or a digit of a product, which may be a few times that. */
+static const int bits_a_pass = ABBE_WHOLE_SUM_BITS + 2;
 
 void abbe_pass_sums_spans(abbe_tracer *t, abbe_sum_span out[ABBE_PASS_SUMS_PARTS]) {
   const abbe_sum_span spans[ABBE_PASS_SUMS_PARTS] = {
       {t->ledger, ABBE_TRACER_LEDGER},
       {t->picture.sum, t->picture.values},
-      {t->picture.square, t->picture.values},
+      {t->picture.square, 2 * t->picture.values},
       {t->guides.sum, t->guides.pixels * ABBE_GUIDE_VALUES},
       {t->map.sum, t->map.values},
-      {t->map.square, t->map.values}};
+      {t->map.square, 2 * t->map.values}};
   memcpy(out, spans, sizeof spans);
 }
 

@@ -4,6 +4,7 @@
 #include "spectral/wavelengths.h"
 #include "validation/tracer/layout_fit.h"
 #include "validation/tracer/light_pass.h"
+#include "validation/transport/light_range.h"
 #include "validation/walks/eye_samples.h"
 
 #include <omp.h>
@@ -152,7 +153,7 @@ static abbe_result check_memory(const abbe_tracer *t, abbe_error *error) {
   if (!d->no_picture)
     values += (double)(d->width * d->height) * (double)(ABBE_TRACER_BANDS + t->bands.count);
   if (!d->no_map) values += (double)(d->map_width * d->map_height) * (double)(3 + t->bands.count);
-  double needed = values * (8 * (double)d->threads + 2 * sizeof(abbe_whole_sum));
+  double needed = values * (16 * (double)d->threads + 3 * sizeof(abbe_whole_sum));
   if (d->guides)
     needed += (double)(d->width * d->height) * (sizeof(abbe_whole_sum) * ABBE_GUIDE_VALUES + 40);
   if (!(pages > 0) || !(page > 0) || needed < pages * page) return ABBE_OK;
@@ -163,32 +164,17 @@ static abbe_result check_memory(const abbe_tracer *t, abbe_error *error) {
       d->width, d->height, t->bands.count, d->threads, needed * 0x1p-30, pages * page * 0x1p-30);
 }
 
-/* Radiance of a white receiver in the middle of the scene, for the range of the sums. */
-static double usual_radiance(const abbe_tracer *t) {
-  double most = fmax(t->scene->ambient, t->scene->background);
-  if (t->scene->environment != NULL) most = fmax(most, t->scene->environment->luminance);
-  for (size_t l = 0; l < t->scene->light_count; l++) {
-    const abbe_light *light = &t->scene->light[l];
-    double square = 1, power = light->power;
-    if (light->kind == ABBE_LIGHT_DISK) power *= 3.14159 * light->radius * light->radius;
-    if (light->kind == ABBE_LIGHT_RECTANGLE) power *= abbe_light_area(light);
-    if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
-      square = 0;
-      for (int k = 0; k < 3; k++) square += pow(light->position[k] - t->geometry.origin[k], 2);
-    }
-    most = fmax(most, power / fmax(square, 1e-6 * t->geometry.unit * t->geometry.unit));
-  }
-  return most > 0 ? most : 1;
-}
-
 static abbe_result make_sums(abbe_tracer *t, abbe_error *error) {
   const abbe_trace_desc *d = &t->desc;
   abbe_result result = check_memory(t, error);
   if (result == ABBE_OK && !d->no_picture) {
+    abbe_light_range range;
+    abbe_light_range_find(&t->geometry, &range);
+    t->statistics.faintest = range.least / range.greatest;
     t->picture_channels = ABBE_TRACER_BANDS + t->bands.count;
-    /* sums hold values 2^28 times the usual, to 2^-33 of it */
+    /* sums hold values 2^28 times the usual, to 2^-65 of it */
     result = abbe_accumulator_make(d->width * d->height * t->picture_channels, d->threads,
-                                   usual_radiance(t) * 0x1p28, &t->picture, error);
+                                   range.greatest * 0x1p28, &t->picture, error);
   }
   if (result == ABBE_OK && d->guides)
     result = abbe_guide_sums_make(d->width * d->height, t->picture.unit, &t->guides, error);
@@ -231,13 +217,15 @@ static void choose_shafts(abbe_tracer *t) {
   t->eye.shaft_near = 0.25f * depth;
 }
 
+/* Where few photons are followed the pass is the eye's. */
 static abbe_result choose_samples(abbe_tracer *t, abbe_error *error) {
+  const double photons = (double)t->desc.photons;
+  const double rays = fmax(eye_share * t->photon_rays, photons - t->photon_rays);
   t->samples = malloc(t->desc.width * t->desc.height);
   if (t->samples == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu x %zu pixels", t->desc.width,
                           t->desc.height);
-  abbe_eye_samples_share(&t->geometry, &t->camera, eye_share * t->photon_rays, t->desc.threads,
-                         t->samples);
+  abbe_eye_samples_share(&t->geometry, &t->camera, rays, t->desc.threads, t->samples);
   t->eye.samples = t->samples;
   t->radius = first_radius(t);
   choose_shafts(t);
@@ -254,8 +242,9 @@ static abbe_media_set around_eye(const abbe_geometry *g) {
 
 /* The eye needs photons around where some ray that met a refractor lands. */
 static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
-  t->eye_gathers =
+  const bool shows =
       !t->desc.no_picture && t->geometry.refractor_count + t->geometry.mirror_count > 0;
+  t->eye_gathers = shows && t->reach > 0;
   t->eye = (abbe_eye_walk){.geometry = &t->geometry,
                            .media = &t->media,
                            .mirrors = &t->mirrors,
@@ -274,7 +263,7 @@ static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
     t->eye.physics.orders = t->desc.physics.eye_orders;
     t->eye.physics.energy_share = t->desc.physics.eye_share;
   }
-  if (!t->eye_gathers) return ABBE_OK;
+  if (!shows) return ABBE_OK;
   for (size_t l = 0; l < t->sampling.lights; l++)
     t->landed_room += abbe_tracer_most_hits(t, l, t->photons[l]);
   t->landed = malloc((t->landed_room + 1) * sizeof *t->landed);

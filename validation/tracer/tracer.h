@@ -30,6 +30,7 @@ extern "C" {
 #endif
 
 #define ABBE_TRACER_MAX_SIDE 8192
+#define ABBE_TRACER_FAINTEST 0x1p-44
 #define ABBE_TRACER_MAX_PHOTONS 67108864u /* a pass */
 #define ABBE_TRACER_MAX_THREADS 256
 
@@ -67,6 +68,9 @@ typedef struct abbe_trace_statistics {
   abbe_light_ledger ledger;          /* W, mean over passes */
   uint64_t cuts;                     /* contributions too large to be kept whole */
   double radius;                     /* m, of the last gather; 0: none */
+  double faintest; /* of a picture: the brightness of the dimmest of the scene's lights that is not
+                      dark, of the brightest's; below ABBE_TRACER_FAINTEST its light may be lost in
+                      the sums */
 } abbe_trace_statistics;
 
 /* ABBE_INVALID_ARGUMENT for a request outside the limits, ABBE_OUT_OF_RANGE for an index that is

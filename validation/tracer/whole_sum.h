@@ -6,44 +6,36 @@
 #ifndef ABBE_VALIDATION_TRACER_WHOLE_SUM_H
 #define ABBE_VALIDATION_TRACER_WHOLE_SUM_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
-/* Passes of one picture: so many products of 63 bits each way, less the bits that are dropped, fit
- * into 127. */
-#define ABBE_WHOLE_SUM_MOST_PASSES (1u << 20)
-#define ABBE_WHOLE_SUM_DROPPED_BITS 20
+#define ABBE_WHOLE_SUM_MOST_PASSES (1u << 20) /* of one picture */
+/* A sample is a whole number of no more bits than these, and a sign. A product of two has two digits
+ * of as many bits, which are summed apart. So many samples and digits fit into 127 bits. */
+#define ABBE_WHOLE_SUM_BITS 104
 
 __extension__ typedef __int128 abbe_whole_sum;
+__extension__ typedef unsigned __int128 abbe_whole_size;
 
-/* a times b, in units of 2^ABBE_WHOLE_SUM_DROPPED_BITS, rounded downwards. */
-static inline abbe_whole_sum abbe_whole_sum_product(int64_t a, int64_t b) {
-  return ((abbe_whole_sum)a * b) >> ABBE_WHOLE_SUM_DROPPED_BITS;
+/* Adds the product of two samples to a sum of two digits, with no bit dropped. */
+static inline void abbe_whole_sum_add_product(abbe_whole_sum a, abbe_whole_sum b,
+                                              abbe_whole_sum sum[2]) {
+  enum { HALF = ABBE_WHOLE_SUM_BITS / 2 };
+  const uint64_t mask = ((uint64_t)1 << HALF) - 1;
+  const abbe_whole_size x = (abbe_whole_size)(a < 0 ? -a : a), y = (abbe_whole_size)(b < 0 ? -b : b);
+  const uint64_t x0 = (uint64_t)x & mask, x1 = (uint64_t)(x >> HALF);
+  const uint64_t y0 = (uint64_t)y & mask, y1 = (uint64_t)(y >> HALF);
+  const abbe_whole_size cross = (abbe_whole_size)x0 * y1 + (abbe_whole_size)x1 * y0;
+  const abbe_whole_sum low = (abbe_whole_sum)((abbe_whole_size)x0 * y0 + ((cross & mask) << HALF));
+  const abbe_whole_sum high = (abbe_whole_sum)((abbe_whole_size)x1 * y1 + (cross >> HALF));
+  const bool negative = (a < 0) != (b < 0);
+  sum[0] += negative ? -low : low;
+  sum[1] += negative ? -high : high;
 }
 
-/* What a sum of such products stands for, in the product of both factors' units. */
-static inline double abbe_whole_sum_of_products(abbe_whole_sum sum) {
-  return (double)sum * (double)(1 << ABBE_WHOLE_SUM_DROPPED_BITS);
-}
-
-/* Sums of a value and of its square, with no bit dropped: what the square's drops is summed in the
- * lowest bits of the value's, which need as many less. Both are added up as they are. */
-#define ABBE_WHOLE_SUM_REST_BITS 40
-
-static inline void abbe_whole_sum_add_sample(int64_t x, abbe_whole_sum *sum,
-                                             abbe_whole_sum *square) {
-  const abbe_whole_sum whole = (abbe_whole_sum)x * x;
-  const int64_t rest = (int64_t)(whole & ((1 << ABBE_WHOLE_SUM_DROPPED_BITS) - 1));
-  *sum += (abbe_whole_sum)x * ((int64_t)1 << ABBE_WHOLE_SUM_REST_BITS) + rest;
-  *square += whole >> ABBE_WHOLE_SUM_DROPPED_BITS;
-}
-
-/* In the value's units, and in their square. */
-static inline double abbe_whole_sum_of_values(abbe_whole_sum sum) {
-  return (double)(sum >> ABBE_WHOLE_SUM_REST_BITS);
-}
-static inline double abbe_whole_sum_of_squares(abbe_whole_sum sum, abbe_whole_sum square) {
-  const int64_t rest = (int64_t)(sum & (((int64_t)1 << ABBE_WHOLE_SUM_REST_BITS) - 1));
-  return abbe_whole_sum_of_products(square) + (double)rest;
+/* What a sum of products stands for, in the product of both factors' units. */
+static inline double abbe_whole_sum_of_products(const abbe_whole_sum sum[2]) {
+  return (double)sum[1] * 0x1p104 + (double)sum[0];
 }
 
 /* x in units of 1 / per_unit, towards 0; at most as large as `limit` times per_unit; 0 of what is

@@ -104,7 +104,7 @@ static void a_convex_body_meets_pi_times_its_surface(void **state) {
     abbe_image picture;
     snprintf(text, sizeof text, CAMERA POINT_LIGHT FAR_SPECK "%s", cases[i].body);
     make(text, uniform, &f);
-    trace(&f, SANITIZED ? 1 << 16 : 1 << 18, 2, &picture);
+    trace(&f, 1 << 14, SANITIZED ? 8 : 32, &picture);
     abbe_trace_statistics s;
     abbe_tracer_statistics(f.tracer, &s);
     assert_near(s.ledger.reached / (PI * 2 * cases[i].surface), 1, 2e-3);
@@ -237,6 +237,87 @@ static void light_does_not_depend_on_how_many_texels_there_are(void **state) {
   }
 }
 
+static double beam;
+
+static double from_below(const double d[3]) {
+  return d[2] < -0.99 ? beam : 0;
+}
+
+/* A floor in ambient light above a light that reaches no pixel, however bright that is. */
+static void what_is_not_seen_takes_nothing_away(void **state) {
+  (void)state;
+  for (int power = 0; power <= 12; power += 3) {
+    fixture f;
+    abbe_image picture;
+    beam = pow(10, power);
+    make_fine("materials: glass.yaml\nambient: 0.15\ncamera: {eye: [0, 0, 1], target: [0, 0, 0], "
+              "up: [0, 1, 0], fov: 20}\n" POINT_LIGHT FLOOR,
+              from_below, 64, &f);
+    trace(&f, 256, 2, &picture);
+    for (size_t x = 0; x < 48; x++) {
+      assert_near(luminance(&picture, x, 20), 0.15 * 0.5 / PI, 1e-6);
+      assert_near(channel(&picture, "stderr.G", x, 20), 0, 1e-6);
+    }
+    abbe_image_free(&picture);
+    drop(&f);
+  }
+}
+
+/* What no sums can hold together is told. */
+static void lights_too_far_apart_are_told(void **state) {
+  (void)state;
+  fixture f;
+  abbe_image picture;
+  abbe_trace_statistics s;
+  beam = 1e12;
+  make_fine("materials: glass.yaml\nambient: 1e-9\ncamera: {eye: [0, 0, 1], target: [0, 0, 0], up: "
+            "[0, 1, 0]}\n" POINT_LIGHT FLOOR,
+            from_below, 64, &f);
+  trace(&f, 256, 1, &picture);
+  abbe_tracer_statistics(f.tracer, &s);
+  assert_true(s.faintest < ABBE_TRACER_FAINTEST);
+  assert_near(s.faintest * f.scene.environment->luminance / 1e-9, 1, 1e-12);
+  abbe_image_free(&picture);
+  drop(&f);
+}
+
+/* A stone over a black table is seen, and no photon is followed for it; few are where a table lies
+ * far off, and all where they fall on one that reflects a little. */
+static void photons_are_for_what_shows_them(void **state) {
+  (void)state;
+  static const struct {
+    const char *reflectance, *place;
+    uint64_t least, most;
+  } cases[] = {{"0", "0, 0, 0", 0, 0},
+               {"0.5", "0, 40, -18", 1, 100000},
+               {"0.001", "0, 0, 0", 999990, 1000000}};
+  for (size_t i = 0; i < 3; i++) {
+    char text[2048];
+    fixture f;
+    abbe_image picture;
+    snprintf(text, sizeof text,
+             CAMERA POINT_LIGHT "objects:\n- {name: stone, shape: brilliant, diameter: 0.3, "
+                                "transform: [{translate: [0, 0, 0.2]}], material: crown}\n"
+                                "- {name: table, shape: rectangle, width: 1, height: 1, reflectance: "
+                                "%s, transform: [{translate: [%s]}]}\n",
+             cases[i].reflectance, cases[i].place);
+    make(text, uniform, &f);
+    trace(&f, 500000, 2, &picture);
+    abbe_trace_statistics s;
+    abbe_tracer_statistics(f.tracer, &s);
+    print_message("%llu photons of 1000000\n", (unsigned long long)s.photons);
+    assert_true(s.photons >= cases[i].least && s.photons <= cases[i].most);
+    if (i == 1) {
+      double sum = 0;
+      for (size_t y = 0; y < 48; y++)
+        for (size_t x = 0; x < 48; x++) sum += luminance(&picture, x, y) / (48 * 48);
+      assert_near(sum, 2, 5e-3);
+    }
+    abbe_image_free(&picture);
+    drop(&f);
+  }
+}
+
 /* What a clear ball takes from the speck below it, it brings back: as much light falls on it. */
 static void a_clear_ball_takes_nothing_away(void **state) {
   (void)state;
@@ -363,6 +444,9 @@ int main(void) {
                                      cmocka_unit_test(a_whole_mirror_is_not_seen_in_uniform_light),
                                      cmocka_unit_test(an_open_floor_has_its_irradiance),
                                      cmocka_unit_test(light_does_not_depend_on_how_many_texels_there_are),
+                                     cmocka_unit_test(what_is_not_seen_takes_nothing_away),
+                                     cmocka_unit_test(lights_too_far_apart_are_told),
+                                     cmocka_unit_test(photons_are_for_what_shows_them),
                                      cmocka_unit_test(a_clear_ball_takes_nothing_away),
                                      cmocka_unit_test(turning_all_changes_nothing),
                                      cmocka_unit_test(light_is_linear),
