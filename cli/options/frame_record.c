@@ -68,7 +68,7 @@ abbe_result abbe_frame_record_make(const abbe_scene *scene, const char *without,
   uint64_t h = 14695981039346656037u;
   FILE *to = open_memstream(out, &size);
   if (to == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for frames' records");
-  fprintf(to, "%s\n", argp_program_version);
+  fprintf(to, "abbe %s\n", ABBE_VERSION);
   write_options(to, without);
   for (size_t i = 0; i < abbe_scene_file_count(scene); i++)
     h = hash_file(h, abbe_scene_file(scene, i));
