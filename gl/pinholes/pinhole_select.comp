@@ -25,7 +25,7 @@ vec3 open_light() {
   vec3 sum = textureLod(pinhole_sky, vec3(1, 0, 0), top).rgb + textureLod(pinhole_sky, vec3(-1, 0, 0), top).rgb;
   sum += textureLod(pinhole_sky, vec3(0, 1, 0), top).rgb + textureLod(pinhole_sky, vec3(0, -1, 0), top).rgb;
   sum += textureLod(pinhole_sky, vec3(0, 0, 1), top).rgb + textureLod(pinhole_sky, vec3(0, 0, -1), top).rgb;
-  return acos(-1.0) / 6.0 * sum;
+  return 0.5235987756 * sum;
 }
 
 // Whether others that are taken already tell it. first.x, first.y: half a stride off their rows, columns.

@@ -4,8 +4,8 @@
 layout(std140, binding = BINDING_SOFT_LIGHT) uniform SoftLight { vec4 soft_light[SOFT_ROWS * SOFT_COLUMNS]; };
 
 vec3 soft_irradiance(vec3 n) {
-  float y = acos(clamp(n.z, -1.0, 1.0)) / PI * float(SOFT_ROWS - 1);
-  float x = fract(atan(n.y, n.x) / (2.0 * PI)) * float(SOFT_COLUMNS);
+  vec2 angles = sphere_angles(n) / PI;
+  float y = angles.y * float(SOFT_ROWS - 1), x = fract(0.5 * angles.x) * float(SOFT_COLUMNS);
   int row = min(int(y), SOFT_ROWS - 2), column = min(int(x), SOFT_COLUMNS - 1);
   int at = row * SOFT_COLUMNS + column, next = row * SOFT_COLUMNS + (column + 1) % SOFT_COLUMNS;
   vec2 part = vec2(x - float(column), y - float(row));

@@ -7,8 +7,8 @@ uniform mat3 environment_from_world;
 uniform float environment_scale;  // from W/(m2 sr) to the scene's own units
 
 vec3 environment_at(vec3 e) {
-  vec2 uv = vec2(0.5 - atan(e.y, e.x) / (2.0 * PI), acos(clamp(e.z, -1.0, 1.0)) / PI);
-  return textureLod(environment, uv, 0.0).rgb;
+  vec2 at = sphere_angles(e) / PI;
+  return textureLod(environment, vec2(0.5 - 0.5 * at.x, at.y), 0.0).rgb;
 }
 #endif
 

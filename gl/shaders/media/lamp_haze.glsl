@@ -29,7 +29,7 @@ vec2 place_along(Light l, vec3 o, vec3 d, vec2 part, int k) {
     return vec2(mix(part.x, part.y, u), (part.y - part.x) / float(STEPS_ALONG));
   vec3 v = l.position.xyz - o;
   float middle = dot(v, d), height = max(length(v - middle * d), 1e-6 * (1.0 + abs(middle)));
-  float a = atan((part.x - middle) / height), b = atan((part.y - middle) / height);
+  float a = angle_of(part.x - middle, height), b = angle_of(part.y - middle, height);
   float off = height * tan(mix(a, b, u));
   return vec2(middle + off, (b - a) * (height * height + off * off) / (height * float(STEPS_ALONG)));
 }

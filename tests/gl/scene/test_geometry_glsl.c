@@ -413,11 +413,36 @@ static void spots_fade(void **state) {
   assert_true(worst < 4);
 }
 
+/* Longitude and angle from the zenith, to far below a texel of a map of 8192 (7.7e-4 rad): all around,
+ * on the axes, and close to them and to the poles. */
+static void directions_have_angles(void **state) {
+  (void)state;
+  double worst = 0;
+  uint64_t random = 11;
+  for (int i = 0; i < RAYS; i++) {
+    double d[3];
+    unit_vector(&random, d);
+    for (int k = 0; k < 3; k++)
+      if (i / 4 % 4 == k + 1) d[k] *= i % 2 ? pow(10, -random_between(&random, 0, 7)) : 0;
+    const double length = sqrt(dot(d, d));
+    for (int k = 0; k < 3; k++) inputs[i][k] = (float)(d[k] / length);
+  }
+  run("vec4 f(vec4 a, vec4 b) { return vec4(sphere_angles(a.xyz), 0, 0); }\n");
+  for (int i = 0; i < RAYS; i++) {
+    const double x = inputs[i][0], y = inputs[i][1], z = inputs[i][2], across = hypot(x, y);
+    const double around = remainder((double)outputs[i][0] - atan2(y, x), 2 * acos(-1));
+    worst = fmax(worst, fmax(fabs(around), fabs((double)outputs[i][1] - atan2(across, z))));
+  }
+  print_message("sphere_angles: %.2g eps rad\n", worst / eps);
+  assert_true(worst < 6 * eps);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(spheres_are_met),   cmocka_unit_test(solids_are_met),
       cmocka_unit_test(receivers_are_met), cmocka_unit_test(views_project),
       cmocka_unit_test(maps_are_warped),   cmocka_unit_test(spots_fade),
+      cmocka_unit_test(directions_have_angles),
   };
   return cmocka_run_group_tests(tests, make_gl, free_context);
 }

@@ -14,7 +14,7 @@ static const char source[] =
     "#define ENVIRONMENT\n"
     "const float PI = 3.14159265;\n"
     "const vec3 background = vec3(0);\n"
-    "#include \"surroundings.glsl\"\n"
+    "#include \"view.glsl\"\n#include \"surroundings.glsl\"\n"
     "vec4 f(vec4 a, vec4 b) {\n"
     "  vec3 across = cross(a.xyz, b.xyz);\n"
     "  return vec4(surroundings_over(a.xyz, a.w * b.xyz, b.w * across), 1);\n"
