@@ -78,6 +78,7 @@ static void free_eye(abbe_renderer *r) {
   r->adaptive = (abbe_adaptive_pass){0};
   r->refraction = (abbe_refraction_pass){0};
   r->receivers = (abbe_receivers_pass){0};
+  abbe_seen_meshes_free(&r->meshes);
   abbe_gpu_drop_textures(&r->gpu, 1, &r->baseline);
   r->seen = false;
 }
@@ -142,8 +143,10 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   variant.receiver_colours = r->plan.receiver_colours;
   abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);
   r->lighting = (abbe_lighting){&r->scene,  &r->views,  &r->layers,   &r->atlas, &r->map,
-                                &r->camera, &r->volume, &r->pinholes, &r->shafts};
-  abbe_result result = abbe_receivers_pass_make(&r->lighting, &variant, &r->receivers, error);
+                                &r->camera, &r->volume, &r->pinholes, &r->shafts, &r->meshes};
+  abbe_result result = abbe_seen_meshes_make(&r->scene, &r->camera.view, &r->meshes, error);
+  if (result == ABBE_OK)
+    result = abbe_receivers_pass_make(&r->lighting, &variant, &r->receivers, error);
   if (result == ABBE_OK)
     result = abbe_refraction_pass_make(&r->lighting, &r->faces, &r->receivers, &variant, &r->kept,
                                        &r->refraction, error);
@@ -357,7 +360,7 @@ abbe_result abbe_renderer_parts_draw(abbe_renderer *r, abbe_render_progress prog
 
 abbe_result abbe_renderer_parts_baseline(abbe_renderer *r, double *ms, abbe_error *error) {
   static const int first = 0;
-  static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
+  static const GLfloat nothing[4] = {0, 0, 0, 0};
   const size_t *samples = r->camera.receiver_samples;
   const abbe_gl *gl = r->gpu.gl;
   abbe_result result = abbe_renderer_parts_check(r, error);
@@ -372,13 +375,13 @@ abbe_result abbe_renderer_parts_baseline(abbe_renderer *r, double *ms, abbe_erro
   gl->Finish();
   const double start_ms = 1e3 * abbe_clock_seconds();
   abbe_refractor_faces_use(&r->faces, &r->camera.view);
-  gl->Enable(GL_DEPTH_TEST);
   result = abbe_gpu_set_target(&r->gpu, &r->baseline, &first, 1, r->receivers.depth, samples[0],
                                samples[1], error);
   if (result != ABBE_OK) return result;
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
-  gl->ClearBufferfv(GL_DEPTH, 0, &far);
-  for (size_t i = 0; i < r->scene.local->object_count; i++) abbe_gpu_meshes_draw(&r->scene, i);
+  abbe_gpu_begin_depths(&r->gpu, true);
+  for (size_t i = 0; i < r->scene.local->object_count; i++) abbe_seen_meshes_draw(&r->meshes, i);
+  abbe_gpu_end_depths(&r->gpu);
   gl->Finish();
   *ms = 1e3 * abbe_clock_seconds() - start_ms;
   return abbe_gl_check(gl, "the drawing of surfaces", error);

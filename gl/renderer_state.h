@@ -13,6 +13,7 @@
 #include "gl/renderer.h"
 #include "gl/renderer_inputs.h"
 #include "gl/scene/local_scene.h"
+#include "gl/scene/seen/seen_meshes.h"
 
 struct abbe_renderer {
   abbe_context *context;
@@ -41,6 +42,7 @@ struct abbe_renderer {
 
   /* eye */
   abbe_camera_view camera;
+  abbe_seen_meshes meshes;
   abbe_lighting lighting;
   abbe_receivers_pass receivers;
   abbe_refraction_pass refraction;

@@ -1,5 +1,5 @@
 set(gl_rooms abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
-foreach(name bindings camera_view buffer_memory gpu_store light_cube light_views local_scene material_range
+foreach(name bindings camera_view cut_mesh buffer_memory gpu_store light_cube light_views local_scene material_range
     band_colours camera_bands mirror_nodes mirror_plan passes plan plan_facts precision reach receiver_charts receiver_model refractor_model render_desc
     renderer_inputs haze_model
     shader_variant spectral_needs spectral_tables statistics support)
@@ -69,6 +69,7 @@ abbe_test(band_picture gl abbe_validation ${gl_rooms})
 abbe_test(area_light_frames gl abbe_validation ${gl_rooms})
 abbe_test(adaptive_pass gl ${gl_rooms})
 abbe_test(surroundings gl ${gl_rooms})
+abbe_test(far_ground gl ${gl_rooms})
 abbe_test(ray_spread gl ${gl_rooms})
 abbe_test(gpu_environment gl ${gl_rooms})
 abbe_test(error_bars gl abbe_validation ${gl_rooms})

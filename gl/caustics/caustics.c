@@ -42,6 +42,7 @@ static bool next_batch(const abbe_caustics *c, abbe_hit_batch *b) {
 typedef struct map_fits {
   abbe_map_fit *whole, *kept; /* NULL: there is none */
   abbe_map_layout layout;     /* of that */
+  abbe_view lit;              /* of the whole the part that is lit, where its bins are too wide */
   abbe_tile_light **beside;
 } map_fits;
 
@@ -73,12 +74,12 @@ static void free_fits(abbe_caustics *c, map_fits *fits) {
 }
 
 /* Hits of all wavelengths, each once, into the fits of the map, and of the tiles. */
-static abbe_result sort_hits(abbe_caustics *c, size_t light, map_fits *fits, abbe_error *error) {
+static abbe_result sort_hits(abbe_caustics *c, size_t light, bool tiles, map_fits *fits,
+                             abbe_error *error) {
   const size_t n = plan_of(c)->desc.wavelengths, most = c->trace.hits.stride;
   const size_t count = abbe_trace_pass_hit_count(&c->trace, light);
   abbe_map_fit *fit = fits->whole;
   abbe_result result = abbe_photon_start_run(&c->start, light, error);
-  fit->view = &c->views->light[light].map.view;
   if (fits->kept != NULL) fits->kept->view = &fits->layout.view;
   for (size_t first = 0; first < n && result == ABBE_OK; first += most) {
     float *hit = NULL;
@@ -89,12 +90,38 @@ static abbe_result sort_hits(abbe_caustics *c, size_t light, map_fits *fits, abb
     if (result == ABBE_OK)
       result = abbe_trace_pass_read(&c->trace, light, first, &hit, &path, error);
     if (result == ABBE_OK) abbe_map_fit_add(fit, c->atlas, hit, path, count);
-    if (result == ABBE_OK && fits->kept != NULL)
+    if (result == ABBE_OK && fits->kept != NULL && tiles)
       abbe_map_fit_add(fits->kept, c->atlas, hit, path, count);
-    if (result == ABBE_OK && fit->part > 0)
+    if (result == ABBE_OK && fit->part > 0 && tiles)
       result = abbe_receiver_atlas_sort(c->atlas, hit, path, count, fit->part, fits->beside, error);
     free(hit);
     free(path);
+  }
+  return result;
+}
+
+/* Whether bins of the window are so wide that they would tell nothing of light as wide as the
+ * refractors. */
+static bool is_too_wide(const abbe_caustics *c, size_t light, const abbe_view *view) {
+  const double *near = c->views->light[light].near_view.window, *w = view->window;
+  bool wide = false;
+  for (int k = 0; k < 4; k += 2)
+    wide = wide || (w[k + 1] - w[k]) / ABBE_FIT_BINS > (near[k + 1] - near[k]) / ABBE_WARP_STEPS;
+  return wide;
+}
+
+/* Receivers may reach so far that the window has to be found by parts of parts. */
+static abbe_result sort_closer(abbe_caustics *c, size_t light, map_fits *fits, abbe_map_layout *map,
+                               abbe_error *error) {
+  enum { MOST_TURNS = 3 };
+  abbe_result result = ABBE_OK;
+  for (int turn = 0; turn < MOST_TURNS && result == ABBE_OK && is_too_wide(c, light, &map->view);
+       turn++) {
+    if (!(fits->whole->total > 0)) break;
+    abbe_map_fit_layout(fits->whole, 0.02, map);
+    fits->lit = map->view;
+    *fits->whole = (abbe_map_fit){.view = &fits->lit};
+    result = sort_hits(c, light, false, fits, error);
   }
   return result;
 }
@@ -115,7 +142,12 @@ static abbe_result fit_map(abbe_caustics *c, size_t light, abbe_error *error) {
     abbe_photon_lights_whole_map(c->views, light, map);
     abbe_photon_lights_upload(c->views);
   }
-  if (result == ABBE_OK) result = sort_hits(c, light, &fits, error);
+  if (result == ABBE_OK) {
+    fits.whole->view = &map->view;
+    result = sort_hits(c, light, true, &fits, error);
+  }
+  const double total = result == ABBE_OK ? fits.whole->total : 0;
+  if (result == ABBE_OK && !given) result = sort_closer(c, light, &fits, map, error);
   if (given)
     *map = layout;
   else if (result == ABBE_OK && fits.kept != NULL && abbe_map_fit_serves(fits.kept))
@@ -123,7 +155,7 @@ static abbe_result fit_map(abbe_caustics *c, size_t light, abbe_error *error) {
   else if (result == ABBE_OK)
     abbe_map_fit_layout(fits.whole, room_around(c), map);
   if (result == ABBE_OK)
-    result = abbe_receiver_atlas_choose(c->atlas, light, fits.beside, fits.whole->total, error);
+    result = abbe_receiver_atlas_choose(c->atlas, light, fits.beside, total, error);
   free_fits(c, &fits);
   return result;
 }

@@ -299,6 +299,20 @@ abbe_result abbe_gpu_set_target(abbe_gpu *gpu, const GLuint *colour, const int *
                         width, height);
 }
 
+void abbe_gpu_begin_depths(abbe_gpu *gpu, bool clears) {
+  static const GLfloat farthest = 0;
+  gpu->gl->ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  gpu->gl->DepthFunc(GL_GREATER);
+  gpu->gl->Enable(GL_DEPTH_TEST);
+  if (clears) gpu->gl->ClearBufferfv(GL_DEPTH, 0, &farthest);
+}
+
+void abbe_gpu_end_depths(abbe_gpu *gpu) {
+  gpu->gl->Disable(GL_DEPTH_TEST);
+  gpu->gl->DepthFunc(GL_LESS);
+  gpu->gl->ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+}
+
 abbe_result abbe_gpu_make_texels(abbe_gpu *gpu, GLenum format, size_t size, const void *data,
                                  int unit, GLuint *buffer, GLuint *texture, abbe_error *error) {
   const abbe_gl *gl = gpu->gl;

@@ -97,6 +97,11 @@ abbe_result abbe_gpu_make_texels(abbe_gpu *gpu, GLenum format, size_t size, cons
 abbe_result abbe_gpu_set_target(abbe_gpu *gpu, const GLuint *colour, const int *layer, size_t count,
                                 GLuint depth, size_t width, size_t height, abbe_error *error);
 
+/* Depths of abbe_view_reversed_matrix, of which the greatest is nearest, or their opposite again, as
+ * outside of these two. The target's are cleared where nothing is drawn. */
+void abbe_gpu_begin_depths(abbe_gpu *gpu, bool clears);
+void abbe_gpu_end_depths(abbe_gpu *gpu);
+
 /* Into the program that is in use; a name that it does not have is left out. */
 void abbe_gpu_set_int(abbe_gpu *gpu, GLuint program, const char *name, int value);
 void abbe_gpu_set_uint(abbe_gpu *gpu, GLuint program, const char *name, size_t value);

@@ -5,7 +5,7 @@ static void set_camera(const abbe_lighting *lighting, GLuint program) {
   const abbe_view *view = &lighting->camera->view;
   double matrix[16];
   float clip[16], packed[24];
-  abbe_view_matrix(view, matrix);
+  abbe_view_reversed_matrix(view, matrix);
   for (int k = 0; k < 16; k++) clip[k] = (float)matrix[k];
   abbe_view_pack(view, packed);
   gl->UniformMatrix4fv(gl->GetUniformLocation(program, "view_projection"), 1, GL_FALSE, clip);

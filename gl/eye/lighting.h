@@ -10,6 +10,7 @@
 #include "gl/light/receiver_atlas.h"
 #include "gl/pinholes/pinhole_pages.h"
 #include "gl/scene/camera_view.h"
+#include "gl/scene/seen/seen_meshes.h"
 #include "gl/volume/volume_light.h"
 
 typedef struct abbe_lighting {
@@ -22,6 +23,7 @@ typedef struct abbe_lighting {
   const abbe_volume_light *volume;
   const abbe_pinhole_pages *pinholes;
   const abbe_shaft_grid *shafts;
+  const abbe_seen_meshes *meshes; /* the camera's */
 } abbe_lighting;
 
 /* The program is in use, everything is bound, the camera is told. */

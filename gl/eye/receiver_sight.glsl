@@ -3,7 +3,7 @@
 struct Sighting {
   vec3 p, n;  // n faces the viewer
   int surface;
-  vec2 uv;
+  vec2 uv, place;  // place: of a parallelogram, as off_anchor() says
   int side;  // chart_side, where there are CHART_SIDES
   int sheet;  // of a parallelogram: twice its number, and 1 where it is seen from behind
 };
@@ -19,9 +19,12 @@ bool receiver_seen(vec3 o, vec3 d, float t_min, float t_max, out float t, out Si
 #endif
   vec3 n = rc.normal.xyz;
   s.p = o + t * d;
-  s.uv = vec2(dot(s.p - rc.corner.xyz, rc.du.xyz), dot(s.p - rc.corner.xyz, rc.dv.xyz));
+  // Onto its plane, which the ray's length has rounded it off.
+  if (r < RECEIVERS) s.p += (rc.normal.w - dot(n, s.p)) * n;
+  s.place = off_anchor(rc, s.p);
+  s.uv = s.place + vec2(rc.du.w, rc.dv.w);
   s.n = dot(n, d) > 0.0 ? -n : n;
-  s.surface = int(rc.corner.w);
+  s.surface = int(rc.anchor.w);
   s.side = 0;
   s.sheet = 2 * r + (dot(n, d) > 0.0 ? 1 : 0);
 #ifdef RECEIVER_HIERARCHY

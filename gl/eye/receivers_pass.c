@@ -84,9 +84,13 @@ static abbe_result make_unlit(abbe_receivers_pass *pass, const abbe_shader_varia
 static void draw_receiver(abbe_receivers_pass *pass, GLuint program, size_t receiver) {
   const abbe_gpu_scene *scene = pass->lighting->scene;
   abbe_gpu_set_int(scene->gpu, program, "surface", (int)receiver);
-  if (scene->charts.face_first != NULL)
-    abbe_gpu_set_int(scene->gpu, program, "face_first", (int)scene->charts.face_first[receiver]);
-  abbe_gpu_meshes_draw(scene, scene->plan->receiver_object[receiver]);
+  const GLint numbers = scene->gpu->gl->GetUniformLocation(program, "face_first");
+  const size_t object = scene->plan->receiver_object[receiver];
+  if (scene->charts.face_first != NULL && numbers >= 0)
+    abbe_seen_meshes_draw_numbered(pass->lighting->meshes, object, numbers,
+                                   scene->charts.face_first[receiver]);
+  else
+    abbe_seen_meshes_draw(pass->lighting->meshes, object);
 }
 
 /* Over what is drawn unlit, within left, right, bottom and top. Of equal depths the first receiver
@@ -105,7 +109,7 @@ static void draw_lit_parts(abbe_receivers_pass *pass, const int within[4]) {
     gl->Scissor(left, low, right - left, high - low);
     draw_receiver(pass, pass->lit, pass->part[i].receiver);
   }
-  gl->DepthFunc(GL_LESS);
+  gl->DepthFunc(GL_GREATER);
 }
 
 static void draw_surroundings(abbe_receivers_pass *pass) {
@@ -194,7 +198,7 @@ abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error
                h = pass->lighting->camera->receiver_samples[1];
   GLuint target[3] = {pass->colour, pass->direct, pass->caustic};
   static const int flat[3] = {0, -1, -1};
-  static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
+  static const GLfloat nothing[4] = {0, 0, 0, 0};
   abbe_gpu_start_lap(scene->gpu);
   abbe_result result = abbe_gpu_set_target(scene->gpu, target, flat, scene->plan->desc.aovs ? 3 : 1,
                                            pass->depth, w, h, error);
@@ -202,7 +206,6 @@ abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error
   GLfloat b = (GLfloat)scene->local->background, background[4] = {b, b, b, 0};
   gl->ClearBufferfv(GL_COLOR, 0, background);
   for (GLint k = 1; k < 3 && scene->plan->desc.aovs; k++) gl->ClearBufferfv(GL_COLOR, k, nothing);
-  gl->ClearBufferfv(GL_DEPTH, 0, &far);
   if (pass->surroundings != 0) {
     result = abbe_gpu_set_target(scene->gpu, target, flat, 1, 0, w, h, error);
     if (result != ABBE_OK) return result;
@@ -214,9 +217,10 @@ abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error
   if (pass->rays != 0) {
     follow_rays(pass);
   } else {
-    gl->Enable(GL_DEPTH_TEST);
+    abbe_gpu_begin_depths(scene->gpu, true);
     draw_receivers(pass);
     if (pass->area_lights != 0) draw_area_lights(pass);
+    abbe_gpu_end_depths(scene->gpu);
   }
   abbe_gpu_book_lap(scene->gpu, ABBE_PASS_EYE_RECEIVERS);
   return ABBE_OK;

@@ -156,7 +156,7 @@ vec3 seen(vec3 p, vec3 d, Spread spread, float t_min, float t_max, out bool met)
 #ifdef KEEPS_SIGHTS
   sight_waits = true;
   waiting_sheet = at.sheet;
-  waiting_uv = at.uv;
+  waiting_place = at.place;
   return vec3(0);
 #endif
   Shading s = shade(at.p, at.n, at.surface, at.uv, at.side);

@@ -225,7 +225,8 @@ abbe_result abbe_refraction_pass_draw(abbe_refraction_pass *pass, abbe_error *er
                                       .back = back != 0,
                                       .coarse =
                                           scene_of(pass)->plan->fewer_triangles != ABBE_COARSE_NONE,
-                                      .both = scene_of(pass)->plan->eye_inside != 0};
+                                      .both = scene_of(pass)->plan->eye_inside != 0,
+                                      .meshes = pass->lighting->meshes};
     result = abbe_refractor_faces_draw(pass->faces, &target, false, error);
     abbe_gpu_book_lap(gpu, back ? ABBE_PASS_EYE_BACK : ABBE_PASS_EYE_FRONT);
   }

@@ -24,15 +24,15 @@ vec3 chain_light(uint first) {
   uint i = first;
   while (i != 0u) {
     uint word = SIGHT * (i - 1u), last = sights[word + 5u];
-    vec2 uv = uintBitsToFloat(uvec2(sights[word], sights[word + 1u]));
+    vec2 place = uintBitsToFloat(uvec2(sights[word], sights[word + 1u]));
     vec3 weight = uintBitsToFloat(uvec3(sights[word + 2u], sights[word + 3u], sights[word + 4u]));
     int sheet = int(last >> 24);
     Receiver r = RECEIVER(0);
 #define CHOOSE(k) choose_sheet(k, RECEIVER(k), sheet >> 1, r);
     OF_RECEIVERS(CHOOSE)
-    vec3 p = r.corner.xyz + uv.x * r.u.xyz + uv.y * r.v.xyz;
+    vec3 p = r.anchor.xyz + place.x * r.u.xyz + place.y * r.v.xyz;
     vec3 n = (sheet & 1) != 0 ? -r.normal.xyz : r.normal.xyz;
-    Shading s = shade(p, n, int(r.corner.w), uv, 0);
+    Shading s = shade(p, n, int(r.anchor.w), place + vec2(r.du.w, r.dv.w), 0);
     sum += weight * (own_xyz_from_rgb * (s.direct + s.caustic + s.fill));
     i = last & SIGHT_NEXT;
   }

@@ -2,7 +2,7 @@
 // stays as it is while the camera, the refractors and the receivers do, whatever lights do. Those of a
 // thread are a chain.
 
-const uint SIGHT = 6u;  // words: u, v; weight of X, Y and Z; and the chain's next one + 1, with the sheet above it
+const uint SIGHT = 6u;  // words: place as off_anchor() says; weight of X, Y and Z; and the chain's next one + 1, with the sheet above it
 const uint SIGHT_NEXT = 0xffffffu;
 // Of a pixel: XYZ of what is no receiver, and its distance; XYZ of the share that is mirrored at the front, and
 // the chain of what that shows; a chain of each thread.
@@ -21,15 +21,15 @@ uint sight_chain;    // the last of this thread + 1
 float sight_tail;    // what a path has left shows what the rest of it has shown: so many times that
 bool sight_waits;    // seen() has found a receiver: there
 int waiting_sheet;
-vec2 waiting_uv;
+vec2 waiting_place;
 
 // weight: of X, Y and Z.
 void note_sight(vec3 weight) {
   uint i = atomicAdd(sight_count, 1u);
   if (i >= sight_room) return;
   uint word = SIGHT * i;
-  sights[word] = floatBitsToUint(waiting_uv.x);
-  sights[word + 1u] = floatBitsToUint(waiting_uv.y);
+  sights[word] = floatBitsToUint(waiting_place.x);
+  sights[word + 1u] = floatBitsToUint(waiting_place.y);
   for (int k = 0; k < 3; k++) sights[word + 2u + uint(k)] = floatBitsToUint(weight[k]);
   sights[word + 5u] = sight_chain | uint(waiting_sheet) << 24;
   sight_chain = i + 1u;

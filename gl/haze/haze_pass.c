@@ -121,12 +121,11 @@ static void set_size(const abbe_haze_pass *pass, GLuint program) {
 }
 
 static abbe_result clear_target(abbe_haze_pass *pass, abbe_error *error) {
-  static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
+  static const GLfloat nothing[4] = {0, 0, 0, 0};
   const abbe_gl *gl = scene_of(pass)->gpu->gl;
   const abbe_result result = set_target(pass, error);
   if (result != ABBE_OK) return result;
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
-  gl->ClearBufferfv(GL_DEPTH, 0, &far);
   return ABBE_OK;
 }
 
@@ -138,9 +137,10 @@ static void draw_occluders(abbe_haze_pass *pass) {
   const abbe_gl *gl = scene->gpu->gl;
   abbe_lighting_use(lighting_of(pass), pass->occluder);
   gl->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  gl->Enable(GL_DEPTH_TEST);
-  for (size_t i = 0; i < scene->local->object_count; i++) abbe_gpu_meshes_draw(scene, i);
-  gl->Disable(GL_DEPTH_TEST);
+  abbe_gpu_begin_depths(scene->gpu, true);
+  for (size_t i = 0; i < scene->local->object_count; i++)
+    abbe_seen_meshes_draw(lighting_of(pass)->meshes, i);
+  abbe_gpu_end_depths(scene->gpu);
   gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
@@ -155,7 +155,7 @@ static abbe_result draw_listed(void *user, size_t beams, abbe_error *error) {
                        pass->beams.beams);
   set_size(pass, pass->draw_beams);
   gl->BindVertexArray(scene->gpu->empty_array);
-  gl->Enable(GL_DEPTH_TEST);
+  abbe_gpu_begin_depths(scene->gpu, false);
   gl->DepthMask(GL_FALSE);
   gl->Enable(GL_BLEND);
   gl->BlendFunc(GL_ONE, GL_ONE);
@@ -164,7 +164,7 @@ static abbe_result draw_listed(void *user, size_t beams, abbe_error *error) {
   gl->BlendFunc(GL_ONE, GL_ZERO);
   gl->Disable(GL_BLEND);
   gl->DepthMask(GL_TRUE);
-  gl->Disable(GL_DEPTH_TEST);
+  abbe_gpu_end_depths(scene->gpu);
   return ABBE_OK;
 }
 

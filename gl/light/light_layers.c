@@ -40,7 +40,7 @@ void abbe_light_layers_free(abbe_light_layers *layers) {
 
 static abbe_drawn_view key_of(const abbe_view *view) {
   abbe_drawn_view key;
-  abbe_view_matrix(view, key.matrix);
+  abbe_view_reversed_matrix(view, key.matrix);
   memcpy(key.from, view->origin, sizeof key.from);
   memcpy(key.forward, view->forward, sizeof key.forward);
   return key;

@@ -5,7 +5,7 @@
 #define ABBE_GL_LIGHT_LIGHT_LAYERS_H
 
 #include "gl/light/photon_lights.h"
-#include "gl/scene/refractor_faces.h"
+#include "gl/scene/seen/refractor_faces.h"
 #include "scenes/scene.h"
 
 /* What tells a view from another one. */

@@ -30,12 +30,15 @@ void abbe_photon_light_look(const abbe_gpu_scene *scene, size_t index, abbe_view
     abbe_light_cube_look(light->position, scene->plan->light_view[index].face, view);
     return;
   }
-  double origin[3], forward[3];
+  double origin[3], forward[3], back = scene->size;
+  /* From farther off, floats would round places across a parallel view to its size. */
+  if (scene->plan->refractor_count > 0 && !abbe_profile_is_published(scene->plan->desc.profile))
+    back = fmin(back, 64 * scene->refractor_radius);
   for (int k = 0; k < 3; k++) {
     double centre = scene->plan->refractor_count > 0 ? scene->refractor_centre[k]
                                                      : 0.5 * (scene->min[k] + scene->max[k]);
     bool directional = light->kind == ABBE_LIGHT_DIRECTIONAL;
-    origin[k] = directional ? centre - light->direction[k] * scene->size : light->position[k];
+    origin[k] = directional ? centre - light->direction[k] * back : light->position[k];
     forward[k] = directional ? light->direction[k] : centre - light->position[k];
   }
   double length2 = 0;

@@ -36,7 +36,7 @@ bool photon_start(vec2 uv, out vec3 o, out vec3 d, out Hit front, out float flux
   if (layers_front(uv, o, d, front)) reached = true;
 #endif
   // A parallel view begins close to the refractors, its light far beyond the scene.
-  float from_light = front.t + (int(l.position.w) == 2 ? scene_size : 0.0);
-  return reached && flux > 0.0 && receiver_lit(light, front.p, d, from_light) &&
+  float from_light = int(l.position.w) == 2 ? 1e30 : front.t;
+  return reached && flux > 0.0 && receiver_lit(light, front.p, front.n, d, from_light) &&
          area_lights_lit(light, front.p, d, from_light);
 }

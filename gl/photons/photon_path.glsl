@@ -79,7 +79,7 @@ ReceiverHit meet_receiver(vec3 p, vec3 d, float t_min, float t_max) {
   float distance_m;
   light_to(l, to.at, from, distance_m);
   bool held =
-      project(l.map_view, to.at, uvz) && inside(uvz.xy) && receiver_lit(light, to.at, from, distance_m);
+      project(l.map_view, to.at, uvz) && inside(uvz.xy) && receiver_lit(light, to.at, receiver_normal(r), from, distance_m);
   to.state = held ? HELD : NOT_HELD;
 #ifdef TILES
   int side = chart_side(r, d);

@@ -56,8 +56,8 @@ void place_of(ivec2 at, ivec2 size, out vec3 p, out vec3 n) {
   Receiver r = receivers[min(page / 2, RECEIVER_ROOM - 1)];
   vec2 t = (vec2(at) + 0.5) / vec2(size);
   n = side * r.normal.xyz;
-  p = r.corner.xyz + from_page(page_axis(r.du.xyz, r.corner.xyz), t.x) * r.u.xyz +
-      from_page(page_axis(r.dv.xyz, r.corner.xyz), t.y) * r.v.xyz;
+  p = r.anchor.xyz + (from_page(page_axis(r.du, r.anchor.xyz), t.x) - r.du.w) * r.u.xyz +
+      (from_page(page_axis(r.dv, r.anchor.xyz), t.y) - r.dv.w) * r.v.xyz;
 }
 
 // Loops of a thread may turn only so often (refraction_walk.glsl): after so many rays it begins no other sample.

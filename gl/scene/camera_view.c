@@ -10,15 +10,47 @@ static size_t room_for(size_t samples, bool coarse) {
   return samples;
 }
 
-/* A light with a size is seen. */
-static void fit_light(const abbe_light *light, abbe_view *view) {
-  if (!abbe_light_has_size(light)) return;
+/* Bounds of a light that is seen: one with a size. */
+static bool bound_light(const abbe_light *light, double min[3], double max[3]) {
   const abbe_scene alone = {.light = (abbe_light *)light, .light_count = 1};
-  double end[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+  for (int k = 0; k < 3; k++) {
+    min[k] = INFINITY;
+    max[k] = -INFINITY;
+  }
+  if (abbe_light_has_size(light)) abbe_scene_hold_lights(&alone, min, max);
+  return min[0] <= max[0];
+}
+
+static void fit_box(const double min[3], const double max[3], abbe_view *view) {
   double corner[8][3];
-  abbe_scene_hold_lights(&alone, end[0], end[1]);
-  for (int k = 0; k < 24; k++) corner[k / 3][k % 3] = end[k / 3 >> k % 3 & 1][k % 3];
+  for (int k = 0; k < 24; k++) corner[k / 3][k % 3] = (k / 3 >> k % 3 & 1 ? max : min)[k % 3];
   abbe_view_fit(view, (const double(*)[3])corner, 8);
+}
+
+static double distance_to_box(const double p[3], const double min[3], const double max[3]) {
+  double square = 0;
+  for (int k = 0; k < 3; k++) square += pow(fmax(fmax(min[k] - p[k], p[k] - max[k]), 0), 2);
+  return sqrt(square);
+}
+
+/* From a place to an object, or to its bounds where that lies outside of them, m. */
+static double distance_to(const double p[3], const abbe_object *o) {
+  const double gap = distance_to_box(p, o->min, o->max);
+  return gap > 0 ? gap : fabs(abbe_object_distance(o, p));
+}
+
+/* Before all that is there, which reversed depths tell apart however far the scene reaches. Those of the
+ * published methods do not. */
+static void come_near(const abbe_scene *scene, const abbe_render_desc *desc, abbe_view *view) {
+  static const double least = 1e-7;
+  double gap = INFINITY, min[3], max[3];
+  if (abbe_profile_is_published(desc->profile)) return;
+  for (size_t i = 0; i < scene->object_count; i++)
+    gap = fmin(gap, distance_to(scene->camera.eye, &scene->object[i]));
+  for (size_t i = 0; i < scene->light_count; i++)
+    if (bound_light(&scene->light[i], min, max))
+      gap = fmin(gap, distance_to_box(scene->camera.eye, min, max));
+  view->near = fmin(view->near, fmax(0.25 * gap, least * view->far));
 }
 
 void abbe_camera_view_fit(const abbe_scene *scene, const abbe_render_desc *desc,
@@ -36,15 +68,14 @@ void abbe_camera_view_fit(const abbe_scene *scene, const abbe_render_desc *desc,
   }
   for (int k = 0; k < 3; k++) forward[k] = camera->target[k] - camera->eye[k];
   abbe_view_look(camera->eye, forward, camera->up, false, &out->view);
-  for (size_t i = 0; i < scene->object_count; i++) {
-    const abbe_object *o = &scene->object[i];
-    double corner[8][3];
-    for (int k = 0; k < 24; k++)
-      corner[k / 3][k % 3] = (k / 3 >> k % 3) & 1 ? o->max[k % 3] : o->min[k % 3];
-    abbe_view_fit(&out->view, (const double(*)[3])corner, 8);
+  for (size_t i = 0; i < scene->object_count; i++)
+    fit_box(scene->object[i].min, scene->object[i].max, &out->view);
+  for (size_t i = 0; i < scene->light_count; i++) {
+    double min[3], max[3];
+    if (bound_light(&scene->light[i], min, max)) fit_box(min, max, &out->view);
   }
-  for (size_t i = 0; i < scene->light_count; i++) fit_light(&scene->light[i], &out->view);
   abbe_view_pad(&out->view, 0.01);
+  come_near(scene, desc, &out->view);
   double y = tan(0.5 * camera->fov_y_rad);
   double x = y * (double)desc->width / (double)desc->height;
   /* Whole samples, the last of which may stand for pixels beyond the picture. */

@@ -17,8 +17,8 @@ static void point_to_vertices(const abbe_gpu_scene *scene) {
   }
 }
 
-static abbe_result upload_mesh(abbe_gpu_scene *scene, const abbe_mesh *mesh, abbe_gpu_mesh *out,
-                               abbe_error *error) {
+abbe_result abbe_gpu_mesh_upload(const abbe_gpu_scene *scene, const abbe_mesh *mesh,
+                                 abbe_gpu_mesh *out, abbe_error *error) {
   const abbe_gl *gl = scene->gpu->gl;
   size_t size = mesh->vertex_count * 8 * sizeof(float);
   float *vertices = malloc(size > 0 ? size : 1);
@@ -44,12 +44,12 @@ static abbe_result upload_mesh(abbe_gpu_scene *scene, const abbe_mesh *mesh, abb
   gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)index_size, mesh->face, GL_STATIC_DRAW);
   point_to_vertices(scene);
   out->index_count = (GLsizei)(3 * mesh->face_count);
-  const abbe_result result = abbe_gl_check(gl, "the upload of a mesh", error);
-  if (result == ABBE_OK) scene->mesh_bytes += size + index_size;
-  return result;
+  out->bytes = size + index_size;
+  return abbe_gl_check(gl, "the upload of a mesh", error);
 }
 
-static void free_mesh(const abbe_gl *gl, abbe_gpu_mesh *mesh) {
+void abbe_gpu_mesh_free(const abbe_gpu_scene *scene, abbe_gpu_mesh *mesh) {
+  const abbe_gl *gl = scene->gpu->gl;
   gl->DeleteVertexArrays(1, &mesh->array);
   gl->DeleteBuffers(1, &mesh->vertices);
   gl->DeleteBuffers(1, &mesh->indices);
@@ -65,12 +65,13 @@ abbe_result abbe_gpu_meshes_upload(abbe_gpu_scene *scene, abbe_error *error) {
       abbe_gl_check(scene->gpu->gl, "what came before meshes were uploaded", error);
   for (size_t i = 0; i < scene->local->object_count && result == ABBE_OK; i++) {
     const abbe_mesh *mesh = &scene->local->object[i].mesh;
-    result = upload_mesh(scene, mesh, &scene->mesh[i], error);
+    result = abbe_gpu_mesh_upload(scene, mesh, &scene->mesh[i], error);
     if (result == ABBE_NO_MEMORY) {
-      free_mesh(scene->gpu->gl, &scene->mesh[i]);
+      abbe_gpu_mesh_free(scene, &scene->mesh[i]);
       abbe_gpu_make_way(scene->gpu);
-      result = upload_mesh(scene, mesh, &scene->mesh[i], error);
+      result = abbe_gpu_mesh_upload(scene, mesh, &scene->mesh[i], error);
     }
+    if (result == ABBE_OK) scene->mesh_bytes += scene->mesh[i].bytes;
   }
   return result;
 }
@@ -106,7 +107,7 @@ void abbe_gpu_meshes_draw_coarse(const abbe_gpu_scene *scene, size_t object) {
 }
 
 void abbe_gpu_meshes_free(abbe_gpu_scene *scene) {
-  for (size_t i = 0; i < scene->mesh_count; i++) free_mesh(scene->gpu->gl, &scene->mesh[i]);
+  for (size_t i = 0; i < scene->mesh_count; i++) abbe_gpu_mesh_free(scene, &scene->mesh[i]);
   free(scene->mesh);
   scene->mesh = NULL;
   scene->mesh_count = scene->mesh_bytes = 0;

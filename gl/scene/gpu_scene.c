@@ -17,7 +17,7 @@ typedef struct gpu_refractor {
 } gpu_refractor;
 
 typedef struct gpu_receiver {
-  float corner[4], u[4], v[4], normal[4], du[4], dv[4];
+  float anchor[4], u[4], v[4], normal[4], du[4], dv[4];
 } gpu_receiver;
 
 /* Refractors and the planes of the convex ones. */
@@ -66,10 +66,22 @@ static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
   return result;
 }
 
-static void store_parallelogram(const double p[9], size_t surface, gpu_receiver *out) {
+/* A parallelogram is known from the place of it that is nearest to the refractors: floats know what lies
+ * there best, however far it reaches. Of dual edges du, dv. */
+static void find_anchor(const double p[9], const double du[3], const double dv[3],
+                        const double near[3], double uv[2], double at[3]) {
+  double from[3];
+  abbe_vector_subtract(near, p, from);
+  uv[0] = fmin(fmax(abbe_vector_dot(from, du), 0), 1);
+  uv[1] = fmin(fmax(abbe_vector_dot(from, dv), 0), 1);
+  for (int k = 0; k < 3; k++) at[k] = p[k] + uv[0] * p[3 + k] + uv[1] * p[6 + k];
+}
+
+static void store_parallelogram(const double p[9], size_t surface, const double near[3],
+                                gpu_receiver *out) {
   const double *u = p + 3, *v = p + 6;
   double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-  double area2 = abbe_vector_dot(n, n), du[3], dv[3];
+  double area2 = abbe_vector_dot(n, n), du[3], dv[3], uv[2], anchor[3];
   /* Dual edges within the plane: du = (v x n) / |n|^2, dv = (n x u) / |n|^2. */
   for (int k = 0; k < 3; k++) {
     int a = (k + 1) % 3, b = (k + 2) % 3;
@@ -77,12 +89,13 @@ static void store_parallelogram(const double p[9], size_t surface, gpu_receiver 
     dv[k] = (n[a] * u[b] - n[b] * u[a]) / area2;
   }
   for (int k = 0; k < 3; k++) n[k] /= sqrt(area2);
-  abbe_float4_store(p, (double)surface, out->corner);
+  find_anchor(p, du, dv, near, uv, anchor);
+  abbe_float4_store(anchor, (double)surface, out->anchor);
   abbe_float4_store(u, 0, out->u);
   abbe_float4_store(v, 0, out->v);
-  abbe_float4_store(n, 0, out->normal);
-  abbe_float4_store(du, 0, out->du);
-  abbe_float4_store(dv, 0, out->dv);
+  abbe_float4_store(n, abbe_vector_dot(n, p), out->normal);
+  abbe_float4_store(du, uv[0], out->du);
+  abbe_float4_store(dv, uv[1], out->dv);
 }
 
 static abbe_result upload_receivers(abbe_gpu_scene *scene, abbe_error *error) {
@@ -93,7 +106,7 @@ static abbe_result upload_receivers(abbe_gpu_scene *scene, abbe_error *error) {
     if (scene->plan->receiver_model[i] != ABBE_RECEIVER_EXACT) continue;
     const abbe_exact *exact = &scene->local->object[scene->plan->receiver_object[i]].exact;
     for (size_t k = 0; k < exact->count && next < count; k++)
-      store_parallelogram(exact->parallelogram[k], i, &receiver[next++]);
+      store_parallelogram(exact->parallelogram[k], i, scene->refractor_centre, &receiver[next++]);
   }
   abbe_result result = abbe_gpu_make_buffer(scene->gpu, count * sizeof *receiver, receiver,
                                             &scene->receivers, error);

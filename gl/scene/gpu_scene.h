@@ -21,6 +21,7 @@ enum { ABBE_GPU_BLOCK_BYTES = 65536 };
 typedef struct abbe_gpu_mesh {
   GLuint array, vertices, indices;
   GLsizei index_count;
+  size_t bytes; /* of vertices and indices */
   GLuint coarse; /* indices of fewer triangles, once they were asked for; 0: there are none */
   GLsizei coarse_count;
   bool coarse_known;
@@ -99,6 +100,10 @@ void abbe_gpu_meshes_draw(const abbe_gpu_scene *scene, size_t object);
 /* By fewer triangles where that saves half of them (scenes/mesh/coarse_mesh.h). */
 void abbe_gpu_meshes_draw_coarse(const abbe_gpu_scene *scene, size_t object);
 abbe_result abbe_gpu_meshes_upload(abbe_gpu_scene *scene, abbe_error *error);
+/* Of one by itself. */
+abbe_result abbe_gpu_mesh_upload(const abbe_gpu_scene *scene, const abbe_mesh *mesh,
+                                 abbe_gpu_mesh *out, abbe_error *error);
+void abbe_gpu_mesh_free(const abbe_gpu_scene *scene, abbe_gpu_mesh *mesh);
 void abbe_gpu_meshes_free(abbe_gpu_scene *scene);
 
 /* gpu_spectra.c: n, attenuation and bands of every refractor at all wavelengths, from the tables.

@@ -23,10 +23,14 @@ struct Refractor {
                 // same material
 };
 
-struct Receiver {  // a parallelogram
-  vec4 corner, u, v, normal;  // corner.w: surface
-  vec4 du, dv;                // dual edges: dot(x - corner, du) is the u coordinate
+struct Receiver {  // a parallelogram, known from a place of it, the anchor
+  vec4 anchor, u, v, normal;  // anchor.w: surface; normal.w: dot(normal, x) in its plane
+  vec4 du, dv;                // dual edges and the anchor's own coordinates: u is dot(x - anchor, du) + du.w
 };
+
+// How far x is from the anchor in parts of both edges, and its coordinates, from 0 to 1.
+vec2 off_anchor(Receiver r, vec3 x) { return vec2(dot(x - r.anchor.xyz, r.du.xyz), dot(x - r.anchor.xyz, r.dv.xyz)); }
+vec2 receiver_uv(Receiver r, vec3 x) { return off_anchor(r, x) + vec2(r.du.w, r.dv.w); }
 
 struct Surface {
   vec4 texture_info; // layer or -1, repeat u, repeat v

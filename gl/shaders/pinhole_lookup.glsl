@@ -22,16 +22,15 @@ vec3 pinhole_irradiance(vec3 p, vec3 n, int surface, int side) {
 #else
 // How far a place is from a parallelogram, in parts of its edges.
 float off_receiver(Receiver r, vec3 p, out vec2 uv) {
-  vec3 from = p - r.corner.xyz;
-  uv = vec2(dot(from, r.du.xyz), dot(from, r.dv.xyz));
+  uv = receiver_uv(r, p);
   vec2 over = max(abs(uv - 0.5) - 0.5, vec2(0));
-  return over.x + over.y + abs(dot(from, r.normal.xyz)) * (length(r.du.xyz) + length(r.dv.xyz));
+  return over.x + over.y + abs(dot(r.normal.xyz, p) - r.normal.w) * (length(r.du.xyz) + length(r.dv.xyz));
 }
 
 void nearer_page(int i, Receiver r, vec3 p, vec3 n, int surface, inout float least, inout vec3 place) {
   vec2 uv;
-  float off = off_receiver(r, p, uv) + (int(r.corner.w) == surface ? 0.0 : 1e20);
-  vec2 at = vec2(to_page(page_axis(r.du.xyz, r.corner.xyz), uv.x), to_page(page_axis(r.dv.xyz, r.corner.xyz), uv.y));
+  float off = off_receiver(r, p, uv) + (int(r.anchor.w) == surface ? 0.0 : 1e20);
+  vec2 at = vec2(to_page(page_axis(r.du, r.anchor.xyz), uv.x), to_page(page_axis(r.dv, r.anchor.xyz), uv.y));
   bool nearer = off < least;
   place = nearer ? vec3(at, 2 * i + (dot(n, r.normal.xyz) > 0.0 ? 0 : 1)) : place;
   least = nearer ? off : least;

@@ -2,8 +2,8 @@
 // front of it, and grow with the distance beyond.
 
 // Of one axis: the bounds' middle, and their half width, in parts of the edge.
-vec2 page_axis(vec3 dual, vec3 corner) {
-  float middle = dot(refractor_bounds.xyz - corner, dual), wide = refractor_bounds.w * length(dual);
+vec2 page_axis(vec4 dual, vec3 anchor) {
+  float middle = dot(refractor_bounds.xyz - anchor, dual.xyz) + dual.w, wide = refractor_bounds.w * length(dual.xyz);
   return vec2(middle, max(wide, 1e-4));
 }
 

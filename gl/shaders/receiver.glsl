@@ -91,7 +91,11 @@ void light_irradiance(int light, vec3 p, vec3 n, int side, out vec3 direct, out 
 #elif defined(VOLUME)
   caustic = caustic_colour(volume_irradiance(light, p, n));
 #endif
-  if (!receiver_lit(light, p, d, distance_m)) return;
+#ifdef RECEIVER_HIERARCHY
+  if (!receiver_lit(light, p, face_n, d, distance_m)) return;
+#else
+  if (!receiver_lit(light, p, n, d, distance_m)) return;
+#endif
   bool directional = int(l.position.w) == 2;
   float falloff = directional ? 1.0 : 1.0 / (distance_m * distance_m);
   float e = l.white.w * light_profile(l, d) * facing * falloff;

@@ -4,9 +4,8 @@
 #include "area_lights.glsl"
 
 void meet_parallelogram(int i, Receiver r, vec3 o, vec3 d, float t_min, inout float t, inout int found) {
-  float s = dot(r.normal.xyz, r.corner.xyz - o) / dot(r.normal.xyz, d);
-  vec3 x = o + s * d - r.corner.xyz;
-  vec2 uv = vec2(dot(x, r.du.xyz), dot(x, r.dv.xyz));
+  float s = (r.normal.w - dot(r.normal.xyz, o)) / dot(r.normal.xyz, d);
+  vec2 uv = receiver_uv(r, o + s * d);
   // A ray within the plane gives no number, and every comparison with it is false.
   bool hit = s > t_min && s < t && min(uv.x, uv.y) >= 0.0 && max(uv.x, uv.y) <= 1.0;
   t = hit ? s : t;
@@ -57,20 +56,27 @@ int receiver_part(int receiver) {
   return receiver;
 }
 
-#ifdef CHART_SIDES
-// The side of a receiver's chart at which light of direction d arrives, as tiles and pages are found by it.
-int chart_side(int receiver, vec3 d) {
-  int chart = receiver;
+// Of its plane, as its edges turn.
+vec3 receiver_normal(int receiver) {
   vec3 n = receivers[min(receiver, RECEIVER_ROOM - 1)].normal.xyz;
 #ifdef RECEIVER_HIERARCHY
   if (receiver >= RECEIVERS) {
     int i = 3 * (receiver - RECEIVERS);
-    vec4 e2 = hierarchy_triangle(i + 2);
-    n = cross(hierarchy_triangle(i + 1).xyz, e2.xyz);
-    chart = floatBitsToInt(e2.w);
+    n = cross(hierarchy_triangle(i + 1).xyz, hierarchy_triangle(i + 2).xyz);
+    n /= max(length(n), 1e-37);
   }
 #endif
-  return 2 * chart + (dot(n, d) > 0.0 ? 1 : 0);
+  return n;
+}
+
+#ifdef CHART_SIDES
+// The side of a receiver's chart at which light of direction d arrives, as tiles and pages are found by it.
+int chart_side(int receiver, vec3 d) {
+  int chart = receiver;
+#ifdef RECEIVER_HIERARCHY
+  if (receiver >= RECEIVERS) chart = floatBitsToInt(hierarchy_triangle(3 * (receiver - RECEIVERS) + 2).w);
+#endif
+  return 2 * chart + (dot(receiver_normal(receiver), d) > 0.0 ? 1 : 0);
 }
 #endif
 

@@ -1,10 +1,10 @@
 // What stands between a light and a place on a receiver.
 
-// Light's direction of travel to p and its distance (directional: far beyond the scene).
+// Light's direction of travel to p and its distance (directional: farther than anything).
 void light_to(Light l, vec3 p, out vec3 d, out float distance_m) {
   if (int(l.position.w) == 2) {
     d = l.direction.xyz;
-    distance_m = 4.0 * scene_size;
+    distance_m = 1e30;
   } else {
     d = p - l.position.xyz;
     distance_m = length(d);
@@ -12,12 +12,19 @@ void light_to(Light l, vec3 p, out vec3 d, out float distance_m) {
   }
 }
 
-// No other receiver stands between the light and p.
-bool receiver_lit(int light, vec3 p, vec3 d, float distance_m) {
+// Where rays to light that travels along d begin: off the surface at p, of normal n, on the light's side, by more than
+// floats may be off it, however far away the light is.
+vec3 off_surface(vec3 p, vec3 n, vec3 d) {
+  float gap = 8e-6 * (abs(p.x) + abs(p.y) + abs(p.z));
+  return p + (dot(n, d) < 0.0 ? gap : -gap) * n;
+}
+
+// No other receiver stands between the light and p on a surface of normal n; in the air n is 0.
+bool receiver_lit(int light, vec3 p, vec3 n, vec3 d, float distance_m) {
 #ifndef RECEIVER_SHADOWS
   return true;
 #else
-  return !receiver_between(p - distance_m * d, d, 0.0, distance_m * (1.0 - 2e-5));
+  return !receiver_between(off_surface(p, n, d), -d, 0.0, distance_m * (1.0 - 2e-5));
 #endif
 }
 
@@ -41,16 +48,18 @@ bool convex_shadow(int light, int refractor, vec3 p) {
 // A refractor with an exact surface stands between the light and p, or around p.
 bool exact_shadow(int light, vec3 p, vec3 d, float distance_m) {
   Hit h;
-  h.t = distance_m;
+  // The ray begins close before all refractors: from farther away it would miss them by its rounding.
+  h.t = min(distance_m, max(dot(p - refractor_bounds.xyz, d) + 1.01 * refractor_bounds.w, 0.0));
+  vec3 from = p - h.t * d;
 #ifndef SHADOW_PLANES
-  return exact_front(p - distance_m * d, d, h);
+  return exact_front(from, d, h);
 #else
   bool hidden = false;
   for (int r = 0; r < REFRACTORS; r++) {
     hidden = convex_shadow(light, r, p) || hidden;
 #ifdef SPHERES
     if (refractors[r].info.x == MODEL_SPHERE)
-      hidden = sphere_front(refractors[r].sphere, p - distance_m * d, d, h) || hidden;
+      hidden = sphere_front(refractors[r].sphere, from, d, h) || hidden;
 #endif
   }
   return hidden;

@@ -5,10 +5,9 @@ uniform vec4 volume_window[VOLUME_PAGES * LIGHTS];
 
 // How far a place is from a parallelogram, in parts of its edges.
 float volume_off(Receiver r, vec3 p, out vec2 uv) {
-  vec3 from = p - r.corner.xyz;
-  uv = vec2(dot(from, r.du.xyz), dot(from, r.dv.xyz));
+  uv = receiver_uv(r, p);
   vec2 over = max(abs(uv - 0.5) - 0.5, vec2(0));
-  return over.x + over.y + abs(dot(from, r.normal.xyz)) * (length(r.du.xyz) + length(r.dv.xyz));
+  return over.x + over.y + abs(dot(r.normal.xyz, p) - r.normal.w) * (length(r.du.xyz) + length(r.dv.xyz));
 }
 
 // area: of what p stands for, in parts of the parallelogram.

@@ -118,6 +118,15 @@ void abbe_view_matrix(const abbe_view *view, double out[16]) {
   abbe_transform_multiply(clip, look, out);
 }
 
+void abbe_view_reversed_matrix(const abbe_view *view, double out[16]) {
+  abbe_view_matrix(view, out);
+  for (int column = 0; column < 4; column++) {
+    double *depth = &out[4 * column + 2];
+    const double last = column == 3 ? view->near : 0;
+    *depth = view->orthographic ? 0.5 * (out[4 * column + 3] - *depth) : last;
+  }
+}
+
 bool abbe_view_project(const abbe_view *view, const double p[3], double uvz[3]) {
   double d[3];
   for (int k = 0; k < 3; k++) d[k] = p[k] - view->origin[k];

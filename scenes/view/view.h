@@ -42,6 +42,11 @@ void abbe_view_square(abbe_view *view);
 /* Column-major world-to-clip matrix. */
 void abbe_view_matrix(const abbe_view *view, double out[16]);
 
+/* The same with depths for a buffer of floats, from 1 at near to 0 at infinity (perspective, where far
+ * does not matter) or at far: a float tells depths apart to 2^-23 of them at any distance, however
+ * close near is. */
+void abbe_view_reversed_matrix(const abbe_view *view, double out[16]);
+
 /* uv in [0, 1] inside the window, and the distance along the ray (perspective) or along forward.
  * False behind the origin. */
 bool abbe_view_project(const abbe_view *view, const double p[3], double uvz[3]);

@@ -15,6 +15,12 @@
 #define WIDE                                                                                       \
   "- {name: plain, shape: rectangle, width: 100000, height: 100000, reflectance: 0.5, transform: " \
   "[PLACE]}\n"
+#define CARD                                                                                       \
+  "- {name: card, shape: rectangle, width: 0.3, height: 0.3, reflectance: 0.9, transform: "        \
+  "[{translate: [0, 0, 1e-3]}, PLACE]}\n"
+#define MIRROR_BALL                                                                                \
+  "- {name: ball, shape: sphere, radius: 0.08, levels: 4, mirror: 0.9, transform: "                \
+  "[{translate: [0, 0, 0.2]}, PLACE]}\n"
 #define PLATE(thickness)                                                                           \
   "- {name: plate, shape: box, size: [0.2, 0.2, " thickness "], material: glass, transform: "      \
   "[{translate: [0, 0, 0.2]}, PLACE]}\n"
@@ -242,9 +248,19 @@ const extreme extremes[] = {
      .scene = {.b = 0.01, .objects = WIDE EXTREME_BALL}},
     {.group = "scale",
      .name = "a ball over a floor 1e5 units wide, under a sun",
-     .scene = {.light = SUN(0.1, 0.2, -1), .objects = WIDE EXTREME_BALL},
+     .scene = {.light = SUN(0.1, 0.2, -1), .objects = WIDE EXTREME_BALL}},
+    {.group = "scale",
+     .name = "a ball over a card 1e-3 above a floor 1e5 units wide",
+     .scene = {.light = SUN(0.1, 0.2, -1), .objects = WIDE CARD EXTREME_BALL}},
+    {.group = "scale",
+     .name = "a mirror ball over a floor 1e5 units wide, close to the camera",
+     .scene = {.objects = WIDE MIRROR_BALL, .eye = {0, -0.2, 0.25}, .target = {0, 0, 0.2}}},
+    {.group = "scale",
+     .name = "two balls 1e5 units apart, under a sun",
+     .scene = {.light = SUN(0.1, 0.2, -1), .objects = WIDE EXTREME_BALL BEAD("1e5", "0.08")},
+     .desc = {.photons = 3},
      .refused = ABBE_UNSUPPORTED,
-     .reason = "make the receivers smaller"},
+     .reason = "move them nearer together"},
     {.group = "scale",
      .name = "a ball that fills the view",
      .scene = {.b = 0.01, .eye = {0, -0.081, 0.2}, .target = {0, 0, 0.2}}},

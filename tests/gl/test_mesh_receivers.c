@@ -34,6 +34,7 @@ static void make_flat(int k, receivers *r) {
     for (int c = 0; c < 3; c++)
       r->flat[k][i][c] = (float)(row[i][c] / (i < 3 ? 1 : i == 3 ? sqrt(area2) : area2));
   r->flat[k][0][3] = (float)k;
+  r->flat[k][3][3] = (float)(abbe_vector_dot(n, corner) / sqrt(area2));
   for (int c = 0; c < 3; c++) {
     double *a = r->tiles[2 * k], *b = r->tiles[2 * k + 1];
     a[c] = corner[c];

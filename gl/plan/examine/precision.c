@@ -13,9 +13,10 @@ static const double most_radii = 65536, most_thicknesses = 1048576;
 
 static abbe_result check_distance(const abbe_scene *scene, const abbe_light *light,
                                   const abbe_object *object, abbe_error *error) {
+  /* Parallel light is followed from close before all refractors. */
   bool sun = light->kind == ABBE_LIGHT_DIRECTIONAL;
   double min[3], max[3], apart[3], half[3], size[3];
-  abbe_scene_bounds(scene, true, true, min, max);
+  abbe_scene_bounds(scene, true, false, min, max);
   for (int k = 0; k < 3; k++) {
     apart[k] = 0.5 * (object->min[k] + object->max[k]) - light->position[k];
     half[k] = 0.5 * (object->max[k] - object->min[k]);
@@ -28,9 +29,9 @@ static abbe_result check_distance(const abbe_scene *scene, const abbe_light *lig
   if (distance > most_radii * radius && sun)
     return abbe_error_set(
         error, ABBE_UNSUPPORTED,
-        "the scene is %.3g m wide and its refractor '%s' %.3g m: single precision "
-        "loses the refractor's shape in it; make the receivers smaller",
-        distance, object->name, 2 * radius);
+        "the refractors reach over %.3g m, and '%s' is %.3g m wide: single precision loses its shape "
+        "in the light '%s' of them all; move them nearer together",
+        distance, object->name, 2 * radius, light->name);
   if (distance > most_radii * radius)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the light '%s' is %.3g m from the refractor '%s', which is %.3g m wide: "

@@ -1,6 +1,7 @@
 #include "gl/plan/examine/receiver_model.h"
 
 #include "gl/plan/examine/reach.h"
+#include "scenes/geometry/vector.h"
 
 #include <math.h>
 
@@ -43,9 +44,10 @@ void abbe_receiver_model_choose(const abbe_scene *scene, abbe_plan *plan) {
 }
 
 /* Whether the parallelogram's plane has everything on one side of it: all other corners, those of
- * the refractors' bounds, and the places that light comes from. */
-static bool bounds_all(const abbe_scene *scene, const abbe_plan *plan, const double p[9],
-                       double tolerance) {
+ * the refractors' bounds, and the places that light comes from. To 1e-6 of its own size: what is larger
+ * may lie close to what is small. */
+static bool bounds_all(const abbe_scene *scene, const abbe_plan *plan, const double p[9]) {
+  const double tolerance = 1e-6 * (abbe_vector_length(p + 3) + abbe_vector_length(p + 6));
   double low = 0, high = 0;
   for (size_t i = 0; i < plan->receiver_count; i++) {
     const abbe_exact *exact = &scene->object[plan->receiver_object[i]].exact;
@@ -82,14 +84,11 @@ static bool bounds_all(const abbe_scene *scene, const abbe_plan *plan, const dou
 }
 
 void abbe_receiver_model_shadows(const abbe_scene *scene, abbe_plan *plan) {
-  double min[3], max[3], size = 0;
-  abbe_scene_bounds(scene, true, true, min, max);
-  for (int k = 0; k < 3; k++) size = fmax(size, max[k] - min[k]);
   plan->receiver_shadows = plan->receivers != ABBE_RECEIVER_EXACT;
   for (size_t i = 0; i < plan->receiver_count && !plan->receiver_shadows; i++) {
     const abbe_exact *exact = &scene->object[plan->receiver_object[i]].exact;
     for (size_t k = 0; k < exact->count && !plan->receiver_shadows; k++)
-      plan->receiver_shadows = !bounds_all(scene, plan, exact->parallelogram[k], 1e-6 * size);
+      plan->receiver_shadows = !bounds_all(scene, plan, exact->parallelogram[k]);
   }
   abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_SHADOWS,
                 plan->receiver_shadows ? "a receiver may stand between a light and another"

@@ -51,7 +51,7 @@ vec3 lamp_light(int light, vec3 o, vec3 d, float from, float to, float more_m) {
     float falloff = kind == 2 ? 1.0 : 1.0 / (distance_m * distance_m);
     float e = light_profile(l, way) * falloff * haze_phase(haze_air_g, -dot(way, d)) * place.y, first;
     float lit_m = haze_way(p, -way, 0.0, kind == 2 ? HAZE_FAR : distance_m, first);
-    if (e > 0.0 && receiver_lit(light, p, way, distance_m) && area_lights_lit(light, p, way, distance_m))
+    if (e > 0.0 && receiver_lit(light, p, vec3(0), way, distance_m) && area_lights_lit(light, p, way, distance_m))
       sum += e * refractor_shadow(light, p, way, distance_m) * haze_scattered(light, lit_m + place.x - from + more_m);
   }
   return some ? l.white.w * sum : vec3(0);

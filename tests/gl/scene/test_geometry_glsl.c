@@ -235,6 +235,7 @@ static void receivers_are_met(void **state) {
       block[4][k] = (float)(u[k] / (2 * r));
       block[5][k] = (float)(v[k] / (2 * r));
     }
+    block[3][3] = (float)(0.1 * r);
     aim(r);
     GLuint buffer = glsl_block(gl, BINDING_RECEIVERS, sizeof block, block);
     run("vec4 f(vec4 a, vec4 b) {\n"
@@ -248,7 +249,7 @@ static void receivers_are_met(void **state) {
         m[k] = block[3][k];
         from[k] = block[0][k] - o[k];
       }
-      double slope = dot(m, d), t = dot(m, from) / slope;
+      double slope = dot(m, d), t = ((double)block[3][3] - dot(m, o)) / slope;
       double unit = eps * sqrt(dot(o, o)) / fabs(slope);
       for (int k = 0; k < 3; k++) x[k] = t * d[k] - from[k];
       for (int axis = 0; axis < 2; axis++) {

@@ -44,14 +44,23 @@ static void a_light_too_far_away_is_directional(void **state) {
   assert_contains(error.text, "a directional light of 1 W/m2");
 }
 
+#define OTHER_BALL(x)                                                                              \
+  "- {name: other, shape: sphere, radius: 0.08, levels: 4, transform: [{translate: [" x            \
+  ", 0, 0.2]}], material: flat}\n"
+
 static void a_refractor_lost_in_its_scene_is_told(void **state) {
   (void)state;
   abbe_error error = {0};
+  /* However far its receivers reach; 65536 times 0.08 m is 5243 m. */
   assert_int_equal(check(CAMERA SUN "objects:\n- {name: plain, shape: rectangle, width: 100000, "
                                     "height: 100000, reflectance: 0.5}\n" BALL("flat"),
                          0, &error),
+                   ABBE_OK);
+  assert_int_equal(check(CAMERA SUN FLOOR BALL("flat") OTHER_BALL("5000"), 1, &error), ABBE_OK);
+  assert_int_equal(check(CAMERA SUN FLOOR BALL("flat") OTHER_BALL("5300"), 1, &error),
                    ABBE_UNSUPPORTED);
-  assert_contains(error.text, "make the receivers smaller");
+  assert_contains(error.text, "the refractors reach over 5.3e+03 m, and 'ball' is 0.16 m wide");
+  assert_contains(error.text, "move them nearer together");
 }
 
 #define PANE(thick)                                                                                \

@@ -1,4 +1,4 @@
-#include "gl/scene/refractor_faces.h"
+#include "gl/scene/seen/refractor_faces.h"
 
 abbe_result abbe_refractor_faces_make(const abbe_gpu_scene *scene, abbe_refractor_faces *out,
                                       abbe_error *error) {
@@ -13,7 +13,7 @@ void abbe_refractor_faces_use(const abbe_refractor_faces *faces, const abbe_view
   const GLuint program = faces->program;
   double matrix[16];
   float clip[16];
-  abbe_view_matrix(view, matrix);
+  abbe_view_reversed_matrix(view, matrix);
   for (int k = 0; k < 16; k++) clip[k] = (float)matrix[k];
   gl->UseProgram(program);
   gl->UniformMatrix4fv(gl->GetUniformLocation(program, "view_projection"), 1, GL_FALSE, clip);
@@ -26,7 +26,6 @@ void abbe_refractor_faces_use(const abbe_refractor_faces *faces, const abbe_view
 abbe_result abbe_refractor_faces_draw(const abbe_refractor_faces *faces,
                                       const abbe_faces_target *target, bool clear_alone,
                                       abbe_error *error) {
-  static const GLfloat far = 1;
   static const GLuint nobody[4] = {0, 0, 0, 0};
   const abbe_gpu_scene *scene = faces->scene;
   const abbe_gl *gl = scene->gpu->gl;
@@ -39,9 +38,8 @@ abbe_result abbe_refractor_faces_draw(const abbe_refractor_faces *faces,
   if (result != ABBE_OK) return result;
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
   if (owners) gl->ClearBufferuiv(GL_COLOR, 1, nobody);
-  gl->ClearBufferfv(GL_DEPTH, 0, &far);
   if (clear_alone) return ABBE_OK;
-  gl->Enable(GL_DEPTH_TEST);
+  abbe_gpu_begin_depths(scene->gpu, true);
   gl->CullFace(target->back ? GL_FRONT : GL_BACK);
   for (size_t i = 0; i < scene->plan->refractor_count; i++) {
     if (scene->plan->mirror[i] || target->both)
@@ -49,11 +47,15 @@ abbe_result abbe_refractor_faces_draw(const abbe_refractor_faces *faces,
     else
       gl->Enable(GL_CULL_FACE);
     abbe_gpu_set_uint(scene->gpu, faces->program, "owner", i + 1);
-    if (target->coarse)
-      abbe_gpu_meshes_draw_coarse(scene, scene->plan->refractor_object[i]);
+    const size_t object = scene->plan->refractor_object[i];
+    if (target->meshes != NULL && abbe_seen_meshes_is_cut(target->meshes, object))
+      abbe_seen_meshes_draw(target->meshes, object);
+    else if (target->coarse)
+      abbe_gpu_meshes_draw_coarse(scene, object);
     else
-      abbe_gpu_meshes_draw(scene, scene->plan->refractor_object[i]);
+      abbe_gpu_meshes_draw(scene, object);
   }
   gl->Disable(GL_CULL_FACE);
+  abbe_gpu_end_depths(scene->gpu);
   return ABBE_OK;
 }

@@ -1,10 +1,11 @@
 /* refractor_faces.h: draws the front or the back faces of all refractors, as a view shows them:
  * normal and distance, and which refractor. Internal to gl/.
  */
-#ifndef ABBE_GL_SCENE_REFRACTOR_FACES_H
-#define ABBE_GL_SCENE_REFRACTOR_FACES_H
+#ifndef ABBE_GL_SCENE_SEEN_REFRACTOR_FACES_H
+#define ABBE_GL_SCENE_SEEN_REFRACTOR_FACES_H
 
 #include "gl/scene/gpu_scene.h"
+#include "gl/scene/seen/seen_meshes.h"
 #include "scenes/view/view.h"
 
 #include <stdbool.h>
@@ -22,6 +23,7 @@ typedef struct abbe_faces_target {
   GLfloat distance; /* that is kept where nothing is drawn, m */
   bool back;
   bool both;   /* or front and back, the nearest */
+  const abbe_seen_meshes *meshes; /* as the camera sees them; NULL: the scene's */
   bool coarse; /* of fewer triangles, where meshes have many */
 } abbe_faces_target;
 
