@@ -121,7 +121,6 @@ abbe_result abbe_beam_list_make(const abbe_shader_variant *variant, abbe_beam_li
   abbe_shader_variant photons = *variant;
   list->chunks = 1;
   photons.hit_stride = list->caustics->trace.hits.stride;
-  photons.keeps_lengths = plan_of(list)->lengths;
   abbe_result result = abbe_shader_variant_compute(
       &photons, scene_of(list)->gpu, "beam_list.comp",
       list->camera == NULL ? "#define IN_WORLD\n" : NULL, &list->program, error);
@@ -143,20 +142,13 @@ static void set_hits(abbe_beam_list *list, size_t first, size_t count) {
   const GLuint program = list->program;
   const abbe_hits *hits = &trace->hits;
   abbe_gpu_bind_texels(gpu, program, "hits", 0, GL_RGBA32F, hits->hits);
-  abbe_gpu_bind_texels(gpu, program, "signatures", 1, plan->lengths ? GL_RG32UI : GL_R32UI,
+  abbe_gpu_bind_texels(gpu, program, "signatures", 1, plan->depths ? GL_RGBA32UI : GL_R32UI,
                        hits->signatures);
   abbe_gpu_bind_texels(gpu, program, "beam_colours", 2, GL_RGBA32F, list->colours);
   abbe_gpu_bind_texels(gpu, program, "beam_haze", 4, GL_RGBA32F, list->haze);
   abbe_gpu_set_int(gpu, program, "stride", (int)hits->stride);
   abbe_gpu_set_int(gpu, program, "sample_first", (int)first);
   abbe_gpu_set_int(gpu, program, "sample_count", (int)count);
-  if (!plan->lengths) return;
-  const size_t coarse = trace->spectra->nodes,
-               rows = plan->light_view_count * plan->refractor_count;
-  abbe_gpu_bind_texels(gpu, program, "band_attenuation", 3, GL_RGBA32F,
-                       trace->spectra->attenuation);
-  abbe_gpu_set_int(gpu, program, "band_first",
-                   (int)(coarse < plan->desc.wavelengths ? rows * coarse : 0));
 }
 
 static void set_camera(const abbe_beam_list *list) {

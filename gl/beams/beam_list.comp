@@ -10,19 +10,16 @@ layout(local_size_x = 256) in;
 #include "path_list.glsl"
 #include "haze.glsl"
 #include "beam.glsl"
+#include "packed_depth.glsl"
 layout(std430, binding = BINDING_PHOTON_OF_CELL) readonly buffer Slots { uint slot[]; };
 layout(std430, binding = BINDING_SPLATS) buffer Beams {
   uint beam_count, beam_groups[3];
   vec4 beam[];
 };
 uniform samplerBuffer hits;          // [photons][slots][stride] of two (outgoing_segment.glsl)
-uniform usamplerBuffer signatures;   // 0: no hit; TINTING: and the length of the path inside
+uniform usamplerBuffer signatures;   // 0: no hit; BAND_PARTS: and its optical depths
 uniform samplerBuffer beam_colours;  // [light views][intervals][PARTS] of unit power, in the picture's space
 uniform samplerBuffer beam_haze;     // [intervals][PARTS] what the medium takes there, and of that what it scatters, 1/m
-#ifdef TINTING
-uniform samplerBuffer band_attenuation;  // photon_absorption.glsl
-uniform int band_first;
-#endif
 uniform int light, stride, sample_count, sample_first;
 uniform ivec2 grid;
 uniform uint chunks, chunk;  // only photons of this chunk
@@ -46,10 +43,22 @@ const int MOST_SPLITS = 8;
 struct Node {
   uint path;   // signature; 0: no hit
   vec3 from, to;
-  float light;  // W where it begins, of unit power
+  float light;  // W where it begins, of unit power; BAND_PARTS: without what is absorbed before
+#ifdef BAND_PARTS
+  vec4 below, above;  // what of it is left where it ends in its medium, or begins in the air, in the parts of its band
+#endif
 };
 
-Node no_node() { return Node(0u, vec3(0), vec3(0), 0.0); }
+Node no_node() {
+  Node n;
+  n.path = 0u;
+  n.from = n.to = vec3(0);
+  n.light = 0.0;
+#ifdef BAND_PARTS
+  n.below = n.above = vec4(0);
+#endif
+  return n;
+}
 
 Node node_at(uint path, int i) {
   int hit = int(path) * stride + i;
@@ -61,12 +70,13 @@ Node node_at(uint path, int i) {
   n.from = left.xyz;
   n.to = landed.xyz;
   float per_m = spectra[(medium < 0 ? REFRACTORS : medium) * counts.wavelengths + sample_first + i].y;
-  n.light = landed.w * exp(min(per_m * distance(n.from, n.to), 80.0));
-#ifdef TINTING
-  int halves = 4 * (band_first + (light * REFRACTORS + int(signature.x & 255u)) * counts.wavelengths + sample_first + i);
-  float path_m = uintBitsToFloat(signature.y);
-  n.light *= 0.5 * (dot(exp(-path_m * texelFetch(band_attenuation, halves)), texelFetch(band_attenuation, halves + 1)) +
-                    dot(exp(-path_m * texelFetch(band_attenuation, halves + 2)), texelFetch(band_attenuation, halves + 3)));
+  float grows = exp(min(per_m * distance(n.from, n.to), 80.0));
+#ifdef BAND_PARTS
+  n.light = landed.w * (medium < 0 ? grows : 1.0);
+  n.below = exp(-depth_below(signature.yzw));
+  n.above = exp(-depth_above(signature.yzw));
+#else
+  n.light = landed.w * grows;
 #endif
   return n;
 }
@@ -78,12 +88,23 @@ vec3 colour_of(int interval, int part) {
   return texelFetch(beam_colours, (light * intervals + interval_of(interval)) * PARTS + part).rgb;
 }
 
+// Of the light of an interval's part what is left where it begins, in a medium that takes so much of it.
+float left_in(Node a, Node b, int k, float per_m) {
+#ifdef BAND_PARTS
+  float grows = medium < 0 ? 1.0 : exp(min(per_m * distance(a.from, a.to), 80.0));
+  float left = counts.wavelengths == 1 ? a.below[k / 2] : k < PARTS / 2 ? a.above[k] : b.below[k - PARTS / 2];
+  return min(left * grows, 1.0);
+#else
+  return 1.0;
+#endif
+}
+
 // What is scattered, W/m, of the parts [from, to) of an interval between two nodes, after so many metres in the medium.
 vec3 scattered_after(Node a, Node b, int interval, int from, int to, float metres) {
   vec3 sum = vec3(0);
   for (int k = from; k < to; k++) {
     vec2 haze = texelFetch(beam_haze, interval_of(interval) * PARTS + k).xy;
-    float light_w = mix(a.light, b.light, (float(k) + 0.5) / float(PARTS));
+    float light_w = mix(a.light, b.light, (float(k) + 0.5) / float(PARTS)) * left_in(a, b, k, haze.x);
     sum += colour_of(interval, k) * (light_w * haze.y * exp(-haze.x * metres));
   }
   return sum;

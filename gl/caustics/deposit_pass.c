@@ -64,15 +64,18 @@ static void set_batch(const abbe_deposit_pass *pass, GLuint program, size_t ligh
   abbe_gpu_set_uint(gpu, program, "chunks", pass->chunks);
   abbe_gpu_set_uint(gpu, program, "chunk", chunk);
   abbe_gpu_set_uint(gpu, program, "most", pass->splat_room);
-  if (plan->lengths)
-    abbe_gpu_set_int(gpu, program, "band_first", (int)(fine ? rows * spectra->nodes : 0));
+  const size_t nodes = fine ? plan->desc.wavelengths : spectra->nodes;
+  const size_t before = fine ? abbe_band_attenuation_texels(plan, spectra->nodes) : 0;
+  if (plan->depths)
+    abbe_gpu_set_int(gpu, program, "share_first",
+                     (int)(before + 2 * nodes * plan->refractor_count));
 }
 
 static void bind_hits(const abbe_deposit_pass *pass, GLuint program, bool fine) {
   const abbe_photon_spectra *spectra = pass->trace->spectra;
   abbe_gpu *gpu = spectra->scene->gpu;
-  const bool lengths = spectra->scene->plan->lengths;
-  const GLenum signature = lengths ? GL_RG32UI : GL_R32UI;
+  const bool depths = spectra->scene->plan->depths;
+  const GLenum signature = depths ? GL_RGBA32UI : GL_R32UI;
   const abbe_hits *hits = &pass->trace->hits, *nodes = fine ? &pass->refine->hits : hits;
   abbe_gpu_bind_texels(gpu, program, "hits", 0, GL_RGBA32F, hits->hits);
   abbe_gpu_bind_texels(gpu, program, "signatures", 1, signature, hits->signatures);
@@ -80,7 +83,7 @@ static void bind_hits(const abbe_deposit_pass *pass, GLuint program, bool fine) 
   abbe_gpu_bind_texels(gpu, program, "node_hits", 3, GL_RGBA32F, nodes->hits);
   abbe_gpu_bind_texels(gpu, program, "node_signatures", 4, signature, nodes->signatures);
   abbe_gpu_set_int(gpu, program, "fine_nodes", fine ? (int)pass->refine->fine_nodes : 0);
-  if (lengths)
+  if (depths)
     abbe_gpu_bind_texels(gpu, program, "band_attenuation", 5, GL_RGBA32F, spectra->attenuation);
 }
 

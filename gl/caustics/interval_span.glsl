@@ -32,7 +32,7 @@ struct Trail {
   vec4 curve;     // second differences
   bool owes;      // a's half of the interval before is not laid yet: on that row, with so much left
   int owed_row;
-  float owed_left;
+  Left owed_left;
 };
 
 struct Span {
@@ -44,15 +44,14 @@ struct Span {
   Fan fan;
   float per_index;
   int owed_row, row;
-  float owed_left;
-  Left left;
+  Left owed_left, left;
   float index_b;
   vec3 half_xyz;           // up to the interval's middle
   int owed, parts, steps;  // parts of the half that is owed and of this light, which takes so many steps
 };
 
 Trail trail_from(Node a, int row) {
-  return Trail(a, a, false, vec2(0), 0.0, vec4(0), false, row, 1.0);
+  return Trail(a, a, false, vec2(0), 0.0, vec4(0), false, row, left_at_nodes(a, a, 0));
 }
 
 // Paths through a mesh may be alike and yet part: a long move is a spectrum's where the light moves on
@@ -80,7 +79,7 @@ void divide(inout Span s, Trail t, bool taken, float moved, float size) {
   float moved_along = s.bridges ? moved : s.follows ? t.moved : 0.0;
   s.steps = s.bridges || ends ? STEPS : STEPS / 2;
   s.parts = taken && s.a.flux > 0.0 ? parts_of(moved_along, size, s.left.parts, s.steps) : 0;
-  s.owed = t.owes ? parts_of(s.bridges ? moved : 0.0, size, s.left.parts, STEPS / 2) : 0;
+  s.owed = t.owes ? parts_of(s.bridges ? moved : 0.0, size, s.owed_left.parts, STEPS / 2) : 0;
 }
 
 Span span_of(inout Trail t, Path path, Interval i, Node b, float size) {
@@ -88,7 +87,7 @@ Span span_of(inout Trail t, Path path, Interval i, Node b, float size) {
   s.z = t.z;
   s.a = t.a;
   s.b = b;
-  s.left = left_at_nodes(t.a, b, path.signature, i.number);
+  s.left = left_at_nodes(t.a, b, i.number);
   vec2 step = b.at - t.a.at;
   float moved = max(abs(step.x), abs(step.y));
   bool one_path = BRIDGES && t.a.path != 0u && t.a.path == b.path;
@@ -119,7 +118,7 @@ Span span_of(inout Trail t, Path path, Interval i, Node b, float size) {
 
   t.owes = i.taken && !s.bridges && b.path != 0u;
   t.owed_row = i.row;
-  t.owed_left = s.left.b;
+  t.owed_left = s.left;
   t.followed = one_path;
   t.curve = s.curve;
   t.moved = moved;

@@ -4,33 +4,22 @@
 
 // [table_first + (light * REFRACTORS + refractor) * (nodes + 1) + i] * (STEPS + 1) + k,
 // INTERVAL_TEXELS each: XYZ of the interval from node i up to step k, and how far along (0 to 1) that
-// is; then those three times how far along their light is, and the index there; TINTING: then X, Y and
-// Z times their attenuation, 1/m.
+// is; then those three times how far along their light is, and the index there.
 uniform samplerBuffer interval_sums;
-#ifdef TINTING
-const bool TINTS = true;
-const int INTERVAL_TEXELS = 3;
-#else
-const bool TINTS = false;
 const int INTERVAL_TEXELS = 2;
-#endif
 
 // Of an interval from its beginning on.
 struct Sums {
-  vec3 xyz, moment, attenuation;
+  vec3 xyz, moment;
   float along, index;
 };
 
-Sums no_sums() { return Sums(vec3(0), vec3(0), vec3(0), 0.0, 0.0); }
+Sums no_sums() { return Sums(vec3(0), vec3(0), 0.0, 0.0); }
 
 Sums sums_at(int row, int step) {
   int at = row + INTERVAL_TEXELS * step;
   vec4 xyz_along = texelFetch(interval_sums, at), moment_index = texelFetch(interval_sums, at + 1);
-  Sums s = Sums(xyz_along.xyz, moment_index.xyz, vec3(0), xyz_along.w, moment_index.w);
-#ifdef TINTING
-  s.attenuation = texelFetch(interval_sums, at + 2).xyz;
-#endif
-  return s;
+  return Sums(xyz_along.xyz, moment_index.xyz, xyz_along.w, moment_index.w);
 }
 
 // The first row of the refractor that a path met first.

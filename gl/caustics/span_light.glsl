@@ -37,7 +37,7 @@ vec2 said_of(Span s, Part p, Sums before, Sums upto) {
   float first_half = min(upto.xyz.y, s.half_xyz.y) - min(before.xyz.y, s.half_xyz.y);
   float share_a = p.owed ? p.xyz.y : first_half;
   vec2 said = vec2(s.a.flux * share_a, s.bridges ? s.b.flux * (p.xyz.y - share_a) : 0.0);
-  return vec2(said.x + said.y, dot(said, vec2(p.owed ? s.owed_left : s.left.a, s.left.b)));
+  return vec2(said.x + said.y, dot(said, vec2(p.owed ? s.owed_left.b : s.left.a, s.left.b)));
 }
 
 // Before it is absorbed.
@@ -72,12 +72,11 @@ Glint light_of(Span s, Part p, Sums upto, inout Front front) {
   return g;
 }
 
-// As the mean over the part attenuates each of the three.
-vec3 left_of(Span s, Part p, Sums before, Sums upto) {
-  if (!TINTS) return vec3(1);
-  vec3 per_m = abs(upto.attenuation - before.attenuation) / max(p.xyz, vec3(1e-30));
-  float path_m = s.bridges ? mix(s.from.path_m, s.to.path_m, clamp(p.along, 0.0, 1.0)) : s.a.path_m;
-  return exp(-path_m * per_m);
+// Of part k what its path leaves: of the half that is owed, from the interval's end on.
+float left_of(Span s, bool owed, int k) {
+  float step = 1.0 / float(STEPS);
+  if (owed) return left_between(s.owed_left, step * float(last_step(s, k)), k > 0 ? step * float(last_step(s, k - 1)) : 1.0);
+  return left_between(s.left, k > s.owed ? step * float(last_step(s, k - 1)) : 0.0, step * float(last_step(s, k)));
 }
 
 // By how much more than the nodes' own, W: light leaves the last interfaces, and is absorbed (both may be
@@ -98,10 +97,10 @@ void lay(Span s, bool last, Footprint f, inout Splat collected, inout vec3 entry
     Part p = part_of(s, k < s.owed, front.sums, upto);
     vec2 said = said_of(s, p, front.sums, upto);
     Glint g = light_of(s, p, upto, front);
-    vec3 left = left_of(s, p, front.sums, upto);
+    float left = left_of(s, k < s.owed, k);
     front.sums = upto;
     bool lands = (p.along >= 0.0 && p.along <= 1.0) || on_the_map(g.at, g.tile);
-    if (!done) entry += entry_of(said, g.flux.y, left.y, lands);
+    if (!done) entry += entry_of(said, g.flux.y, left, lands);
     g.flux *= left;
     collect(g, lands, done, f, collected);
   }

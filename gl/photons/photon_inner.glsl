@@ -37,31 +37,67 @@ float mirror(PhotonRay photon, uint path, float reflected) {
   float left = outside_left(photon, front.p, d, to);
 #ifdef HAZE
   if (keeps_ways) {
-    keep_air_way(photon, counts.exits, front.p, d, length_to(to, front.p), reflected * photon.flux * left, signature, 0.0);
+    keep_air_way(photon, front.p, d, length_to(to, front.p),
+                 clear_hit(counts.exits, vec3(0), reflected * photon.flux * left, signature, vec4(0)));
     return 0.0;
   }
 #endif
   if (to.state < HELD) return reflected;
-  keep_hit(photon, PhotonHit(counts.exits, to.place, reflected * photon.flux * left, signature, 0.0,
+  keep_hit(photon, clear_hit(counts.exits, to.place, reflected * photon.flux * left, signature,
                              vec4(front.p, interface_word(front.n, false, to.tile))));
   return reflected * (1.0 - left);
 }
 
+// What a path inside has passed.
+struct Inside {
+#ifdef BAND_PARTS
+  Depth depth;
+#endif
+  Shares left;  // of its light
+};
+
 // What leaves at interface `order`. Returns the share that is lost.
-float keep_outgoing(PhotonRay photon, Outgoing o, int order, uint path, float path_m) {
+float keep_outgoing(PhotonRay photon, Outgoing o, int order, uint path, Inside inside) {
   ReceiverHit to = meet_receiver(o.p, o.d, -touch * refractor_bounds.w, 1e30);
   uint signature = signature_of(path * 31u + to.receiver, to, uint(photon.front.refractor));
   float left = outside_left(photon, o.p, o.d, to);
+  PhotonHit hit = clear_hit(order, to.place, o.share * photon.flux * left, signature,
+                            vec4(o.p, interface_word(o.n, true, to.tile)));
+#ifdef BAND_PARTS
+  hit.depth = inside.depth;
+#endif
 #ifdef HAZE
   if (keeps_ways) {
-    keep_air_way(photon, order, o.p, o.d, length_to(to, o.p), o.share * photon.flux * left, signature, path_m);
+    keep_air_way(photon, o.p, o.d, length_to(to, o.p), hit);
     return 0.0;
   }
 #endif
   if (to.state < HELD) return o.share;
-  keep_hit(photon, PhotonHit(order, to.place, o.share * photon.flux * left, signature, path_m,
-                             vec4(o.p, interface_word(o.n, true, to.tile))));
+  keep_hit(photon, hit);
   return o.share * (1.0 - left);
+}
+
+// What so many metres inside take of light, of which so much was left before, in shares of what it began with.
+Shares absorb(float metres, int r, float per_m, inout InnerRay ray, inout Inside inside) {
+#ifdef BAND_PARTS
+  Shares before = inside.left;
+  inside.depth += metres * attenuation_of(r);
+  inside.left = left_of(inside.depth);
+  return ray.share * (before - inside.left);
+#else
+  float before = ray.share;
+  ray.share *= exp(-per_m * metres);
+  return before - ray.share;
+#endif
+}
+
+// Of the part that passes most.
+float most_left(InnerRay ray, Inside inside) {
+#ifdef BAND_PARTS
+  return ray.share * exp(-least_of(inside.depth));
+#else
+  return ray.share;
+#endif
 }
 
 // Each hit is handed on with its slot; `entry` takes the shares of the light that go elsewhere. Loops have
@@ -78,22 +114,25 @@ void trace(PhotonRay photon, out Shares entry[5]) {
   entry[REFLECTED] = Shares(mirror(photon, path, reflected));
   InnerRay ray = InnerRay(front.p, photon.d, front.facet, 1.0 - reflected);
   if (!refract_direction(photon.d, front.n, 1.0 / n, ray.d)) return;
-  float path_m = 0.0;
-  Shares left = Shares(1.0);
+  Inside inside;
+  inside.left = Shares(1.0);
+#ifdef BAND_PARTS
+  inside.depth = Depth(0.0);
+#endif
   for (int order = 0; order < counts.exits;) {
     Outgoing leaving = Outgoing(ray.p, vec3(0), ray.d, 0.0);
     bool ends = false;
     while (order < counts.exits) {
       InnerHit h = next_inner_hit(r, ray);
-      entry[ABSORBED] += absorb(distance(h.p, ray.p), per_m, ray.share, path_m, left);
+      entry[ABSORBED] += absorb(distance(h.p, ray.p), r, per_m, ray, inside);
       path = path * 31u + uint(h.facet) + 1u;
       leaving = leave(h, n, ray);
-      ends = left_at_node(ray.share, per_m, path_m) < share_limit;
+      ends = most_left(ray, inside) < share_limit;
       order++;
       if (!GO_ON || leaving.share > 0.0 || ends) break;
     }
-    if (leaving.share > 0.0) entry[MISSED] += keep_outgoing(photon, leaving, order - 1, path, path_m) * left;
+    if (leaving.share > 0.0) entry[MISSED] += keep_outgoing(photon, leaving, order - 1, path, inside) * inside.left;
     if (ends) break;
   }
-  entry[TRAPPED] += ray.share * left;
+  entry[TRAPPED] += ray.share * inside.left;
 }

@@ -4,7 +4,7 @@
 // its ways through what scatters, from interface to interface and beyond; in place of interface_word()
 // stands the refractor in which a way is, -1: the air.
 
-#include "photon_absorption.glsl"
+#include "photon_depth.glsl"
 
 const int REACHED = 0, REFLECTED = 1, ABSORBED = 2, TRAPPED = 3, MISSED = 4;
 
@@ -21,11 +21,26 @@ struct PhotonRay {
 struct PhotonHit {
   int slot;
   vec3 place;
-  float flux;  // W, without what is absorbed where hits keep the length of their path inside
+  float flux;  // W; BAND_PARTS: without what is absorbed
   uint signature;
-  float path_m;  // that length
   vec4 interface_at;  // as in outgoing_segment.glsl
+#ifdef BAND_PARTS
+  Depth depth;
+#endif
 };
+
+PhotonHit clear_hit(int slot, vec3 place, float flux, uint signature, vec4 interface_at) {
+  PhotonHit hit;
+  hit.slot = slot;
+  hit.place = place;
+  hit.flux = flux;
+  hit.signature = signature;
+  hit.interface_at = interface_at;
+#ifdef BAND_PARTS
+  hit.depth = Depth(0.0);
+#endif
+  return hit;
+}
 
 void keep_hit(PhotonRay ray, PhotonHit hit);
 
@@ -119,11 +134,13 @@ uint signature_of(uint path, ReceiverHit to, uint owner) {
 }
 
 #ifdef HAZE
-// The part of a way in the air, along d from p, that is in haze; flux: what is left at its end.
-void keep_air_way(PhotonRay photon, int slot, vec3 p, vec3 d, float length_m, float flux, uint signature, float path_m) {
+// The part of a way in the air, along d from p, that is in haze; hit: its slot, signature and depths, and the flux that
+// is left at its end.
+void keep_air_way(PhotonRay photon, vec3 p, vec3 d, float length_m, PhotonHit hit) {
   float first, way_m = haze_way(p, d, 0.0, length_m, first);
-  if (way_m > 0.0 && air_haze(photon.wavelength).y > 0.0)
-    keep_hit(photon, PhotonHit(slot, p + (first + way_m) * d, flux, signature, path_m, vec4(p + first * d, -1.0)));
+  hit.place = p + (first + way_m) * d;
+  hit.interface_at = vec4(p + first * d, -1.0);
+  if (way_m > 0.0 && air_haze(photon.wavelength).y > 0.0) keep_hit(photon, hit);
 }
 #endif
 

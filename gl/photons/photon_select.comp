@@ -13,8 +13,8 @@ layout(local_size_x = 256) in;
 layout(std430, binding = BINDING_WANTS) buffer Wants { uint want[]; };  // a bit an interval
 layout(std430, binding = BINDING_PHOTON_OF_CELL) readonly buffer Slots { uint slot[]; };
 layout(std430, binding = BINDING_HITS) readonly buffer Hits { vec4 hits[]; };
-#ifdef TINTING
-layout(std430, binding = BINDING_SIGNATURES) readonly buffer Signatures { uvec2 signature[]; };  // length inside in y
+#ifdef BAND_PARTS
+layout(std430, binding = BINDING_SIGNATURES) readonly buffer Signatures { uvec4 signature[]; };  // packed_depth.glsl
 #define SIGNATURE(i) signature[i].x
 #else
 layout(std430, binding = BINDING_SIGNATURES) readonly buffer Signatures { uint signature[]; };
@@ -36,6 +36,7 @@ const float MOST_WRONG = 0.05;
 const float OFF_CURVE = 0.1, OFF_LINE = 0.25, OFF_ALONE = 2e-3;
 
 #include "optics.glsl"
+#include "packed_depth.glsl"
 #define FOLLOWS_SEGMENTS
 #include "outgoing_segment.glsl"
 #include "map_position.glsl"
@@ -47,8 +48,8 @@ struct Sample {
   float flux, index;
   int tile;
   Segment left;
-#ifdef TINTING
-  float path_m, per_m;
+#ifdef BAND_PARTS
+  vec4 below, above;  // optical depth in the parts of its band
 #endif
 };
 
@@ -63,9 +64,9 @@ Sample sample_at(uint first, int node) {
   s.index = spectrum.x;
   s.left = segment_of(to, interface_at, spectrum.x);
   s.flux = s.path != 0u ? s.left.arrives : 0.0;
-#ifdef TINTING
-  s.path_m = uintBitsToFloat(signature[at].y);
-  s.per_m = spectrum.y;
+#ifdef BAND_PARTS
+  s.below = depth_below(signature[at].yzw);
+  s.above = depth_above(signature[at].yzw);
 #endif
   return s;
 }
@@ -126,13 +127,13 @@ float misplaced(Sample before, Sample a, Sample b, Sample after, bool has_before
 float wrong_between(Sample a, Sample b, float misplaced_by, float size, float photon_flux,
                     float weight) {
   float flux_a = a.flux, flux_b = b.flux, left = 1.0;
-#ifdef TINTING
-  // What is left at both ends, and, to tell what changes, of the same glass.
-  left = 0.5 * (exp(-a.per_m * a.path_m) + exp(-b.per_m * b.path_m));
+#ifdef BAND_PARTS
+  // What is left at both ends, and, to tell what changes, at the edge between their bands.
+  left = 0.125 * (dot(exp(-a.above), vec4(1)) + dot(exp(-b.below), vec4(1)));
 #endif
   float most = left * max(flux_a, flux_b) / photon_flux * weight;
-#ifdef TINTING
-  flux_b *= exp(-0.5 * (a.per_m + b.per_m) * (b.path_m - a.path_m));
+#ifdef BAND_PARTS
+  flux_b *= exp(1.5 * (a.above.w - b.below.x) - 0.5 * (a.above.z - b.below.y));
 #endif
   float change = (flux_a - flux_b) / max(max(flux_a, flux_b), 1e-30);
   float changed = a.path == b.path ? 0.125 * change * change : 0.0;

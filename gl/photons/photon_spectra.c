@@ -39,9 +39,10 @@ static abbe_result upload_intervals(abbe_photon_spectra *spectra, const float (*
 static abbe_result upload_attenuation(abbe_photon_spectra *spectra, abbe_error *error) {
   const abbe_plan *plan = spectra->scene->plan;
   const abbe_spectral_tables *t = &spectra->scene->tables;
-  const size_t a_node = plan->light_view_count * plan->refractor_count * sizeof *t->bands;
   if (t->bands == NULL) return ABBE_OK;
-  return upload(spectra, t->bands, a_node * t->coarse.count, a_node * t->all.count,
+  return upload(spectra, t->bands,
+                abbe_band_attenuation_texels(plan, t->coarse.count) * sizeof *t->bands,
+                abbe_band_attenuation_texels(plan, t->all.count) * sizeof *t->bands,
                 &spectra->attenuation, error);
 }
 
@@ -84,22 +85,26 @@ abbe_result abbe_photon_spectra_take_all(abbe_photon_spectra *spectra, abbe_erro
 }
 
 size_t abbe_photon_signature_bytes(const abbe_photon_spectra *spectra) {
-  return spectra->scene->plan->lengths ? 8 : 4;
+  return spectra->scene->plan->depths ? 16 : 4;
 }
 
-void abbe_photon_attenuate(const abbe_photon_spectra *spectra, size_t first, size_t stride,
-                           size_t count, float *hit, GLuint *signature) {
-  const abbe_spectral_tables *t = &spectra->scene->tables;
-  if (!spectra->scene->plan->lengths) return;
+/* Part k of a hit's optical depths (photon_depth.glsl). */
+static double depth_of(const GLuint *packed, unsigned k) {
+  const unsigned bit = 12 * k, word = bit / 32, shift = bit % 32;
+  GLuint q = packed[word] >> shift;
+  if (shift > 20) q |= packed[word + 1] << (32 - shift);
+  const double root = (double)(q & 4095u) / 4095;
+  return ABBE_PHOTON_MOST_DEPTH * root * root;
+}
+
+void abbe_photon_attenuate(const abbe_photon_spectra *spectra, size_t count, float *hit,
+                           GLuint *signature) {
+  enum { BELOW = ABBE_HALF_PARTS - 1, ABOVE = ABBE_HALF_PARTS }; /* the parts beside the node */
+  if (!spectra->scene->plan->depths) return;
   for (size_t i = 0; i < count; i++) {
-    const GLuint path = signature[2 * i], refractor = path & 255u;
-    const size_t node = first + i % stride;
-    float path_m = 0;
-    memcpy(&path_m, &signature[2 * i + 1], sizeof path_m);
-    signature[i] = path;
-    if (path == 0 || refractor >= spectra->scene->plan->refractor_count || node >= t->all.count)
-      continue;
-    const double per_m = t->attenuation[refractor * t->all.count + node];
-    hit[4 * i + 3] *= (float)exp(-per_m * (double)path_m);
+    const GLuint *packed = &signature[4 * i + 1];
+    const double depth = 0.5 * (depth_of(packed, BELOW) + depth_of(packed, ABOVE));
+    hit[4 * i + 3] *= (float)exp(-depth);
+    signature[i] = signature[4 * i];
   }
 }

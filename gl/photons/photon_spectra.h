@@ -29,11 +29,14 @@ abbe_result abbe_photon_spectra_take_all(abbe_photon_spectra *spectra, abbe_erro
 /* Whether some photons take more wavelengths than others. */
 bool abbe_photon_spectra_refines(const abbe_photon_spectra *spectra);
 
-/* Bytes of a hit's signature, with the length of its path where it is kept. */
+/* Optical depth of a part of a band, at the most that a hit keeps. */
+#define ABBE_PHOTON_MOST_DEPTH 64.0
+
+/* Bytes of a hit's signature, with the optical depths of its path where they are kept. */
 size_t abbe_photon_signature_bytes(const abbe_photon_spectra *spectra);
-/* Of a batch of so many hits, `stride` wavelengths from `first` on side by side, as read: takes off
- * what is absorbed at their wavelengths, and leaves paths alone in `signature`. */
-void abbe_photon_attenuate(const abbe_photon_spectra *spectra, size_t first, size_t stride,
-                           size_t count, float *hit, GLuint *signature);
+/* Of so many hits, as read: takes off what is absorbed beside their wavelengths, and leaves paths
+ * alone in `signature`. */
+void abbe_photon_attenuate(const abbe_photon_spectra *spectra, size_t count, float *hit,
+                           GLuint *signature);
 
 #endif

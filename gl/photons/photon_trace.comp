@@ -17,9 +17,9 @@ layout(local_size_x = 256) in;
 // interface_word(). While tiles are chosen: chart coordinates, and the chart's side.
 layout(std430, binding = BINDING_HITS) writeonly buffer Hits { vec4 hits[]; };
 // Receiver, facets along the path and whether on a tile, equal for paths that vary continuously;
-// refractor in the low eight bits; 0: no hit. TINTING: and the length of its path inside, m.
-#ifdef TINTING
-layout(std430, binding = BINDING_SIGNATURES) writeonly buffer Signatures { uvec2 signature[]; };
+// refractor in the low eight bits; 0: no hit. BAND_PARTS: and its optical depths (packed_depth.glsl).
+#ifdef BAND_PARTS
+layout(std430, binding = BINDING_SIGNATURES) writeonly buffer Signatures { uvec4 signature[]; };
 #else
 layout(std430, binding = BINDING_SIGNATURES) writeonly buffer Signatures { uint signature[]; };
 #endif
@@ -55,8 +55,8 @@ void keep_hit(PhotonRay photon, PhotonHit hit) {
   hits[HIT_TEXELS * index] = vec4(hit.place, hit.flux);
   hits[HIT_TEXELS * index + 1u] = hit.interface_at;
   path_mark[path] = 1u;
-#ifdef TINTING
-  signature[index] = uvec2(hit.signature, floatBitsToUint(hit.path_m));
+#ifdef BAND_PARTS
+  signature[index] = uvec4(hit.signature, pack_depth(hit.depth));
 #else
   signature[index] = hit.signature;
 #endif
@@ -105,15 +105,17 @@ PhotonRay ray_of(Task t) {
   return ray;
 }
 
-#ifdef TINTING
+#ifdef BAND_PARTS
 // Of the band of an interval's end, one half lies in the interval. In place of the other stands the half of
 // the coarse band that covered the interval, which enter() takes back.
-void load_attenuation(Task t, PhotonRay ray) {
-  int row = light * REFRACTORS + (ray.reached ? ray.front.refractor : 0);
-  int node = set == COARSE ? row * counts.nodes + t.sample_number : all_bands(row) + t.wavelength;
-  int coarse = row * counts.nodes + t.interval;
-  load_halves(t.wavelength == t.low ? 2 * coarse + 1 : 2 * node,
-              t.wavelength == t.high ? 2 * (coarse + 1) : 2 * node + 1);
+void load_attenuation(Task t) {
+  bool coarse = set == COARSE, at_low = t.wavelength == t.low, at_high = t.wavelength == t.high;
+  int node = coarse ? t.sample_number : t.wavelength;
+  below_texel = at_low ? half_texel(true, t.interval, 1) : half_texel(coarse, node, 0);
+  above_texel = at_high ? half_texel(true, t.interval + 1, 0) : half_texel(coarse, node, 1);
+  int below = at_low ? share_texel(true, t.interval, 1) : share_texel(coarse, node, 0);
+  int above = at_high ? share_texel(true, t.interval + 1, 0) : share_texel(coarse, node, 1);
+  part_of_half = Depth(texelFetch(band_attenuation, below), texelFetch(band_attenuation, above));
 }
 #endif
 
@@ -145,8 +147,8 @@ void main() {
   Task task = task_of(thread_number());
   if (task.there) {
     PhotonRay ray = ray_of(task);
-#ifdef TINTING
-    load_attenuation(task, ray);
+#ifdef BAND_PARTS
+    load_attenuation(task);
 #endif
     Shares entry[5];
     trace(ray, entry);

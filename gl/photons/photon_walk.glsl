@@ -30,8 +30,27 @@ int take_slot(uint path, inout uint used) {
 
 // What a path that ends comes to, in shares of the light.
 struct Ends {
-  float reflected, absorbed, trapped, missed;
+  Shares reflected, absorbed, trapped, missed;
 };
+
+// What is left of the path's own light, for every share of it.
+Shares left_of(PathState w) {
+#ifdef BAND_PARTS
+  return left_of(w.depth);
+#else
+  return 1.0;
+#endif
+}
+
+// What a path hands on. The flux is that before it is absorbed where its depths go with it.
+PhotonHit hit_of(PhotonRay photon, PathState w, int slot, vec3 place, uint signature, vec4 interface_at) {
+  PhotonHit hit = clear_hit(slot, place, w.share * photon.flux, signature, interface_at);
+#ifdef BAND_PARTS
+  hit.flux *= exp(min(w.least_depth, 80.0));
+  hit.depth = w.depth + w.least_depth;
+#endif
+  return hit;
+}
 
 void end_path(PhotonRay photon, PathState w, ReceiverHit to, uint owner, inout uint used, inout Ends e) {
 #ifdef HAZE
@@ -41,15 +60,14 @@ void end_path(PhotonRay photon, PathState w, ReceiverHit to, uint owner, inout u
   if (slot >= 0) {
     bool last = w.transmitted && w.inside == 0u && w.refractor == int(owner);
     vec3 n = dot(w.interface_n, w.d) < 0.0 ? -w.interface_n : w.interface_n;
-    keep_hit(photon, PhotonHit(slot, to.place, w.share * photon.flux,
-                               signature_of(w.path * 31u + to.receiver, to, owner), 0.0,
-                               vec4(w.p, interface_word(n, last, to.tile))));
+    keep_hit(photon, hit_of(photon, w, slot, to.place, signature_of(w.path * 31u + to.receiver, to, owner),
+                            vec4(w.p, interface_word(n, last, to.tile))));
   } else if (to.state >= HELD || (to.state == NO_RECEIVER && w.inside != 0u)) {
-    e.trapped += w.share;
+    e.trapped += w.share * left_of(w);
   } else if (w.interfaces == 0 && w.inside == 0u) {
-    e.reflected += w.share;
+    e.reflected += w.share * left_of(w);
   } else {
-    e.missed += w.share;
+    e.missed += w.share * left_of(w);
   }
 }
 
@@ -61,11 +79,11 @@ void keep_way(PhotonRay photon, PathState w, float length_m, uint ends, uint own
   uint path = w.path * 31u + ends;
   int slot = take_slot(path, used);
   uint signature = path << 8 | 0x80000000u | owner;
+  PhotonHit hit = hit_of(photon, w, slot, w.p + length_m * w.d, signature, vec4(w.p, float(medium_of(w.inside))));
   if (slot >= 0 && in_air)
-    keep_air_way(photon, slot, w.p, w.d, length_m, w.share * photon.flux, signature, 0.0);
+    keep_air_way(photon, w.p, w.d, length_m, hit);
   else if (slot >= 0)
-    keep_hit(photon, PhotonHit(slot, w.p + length_m * w.d, w.share * photon.flux, signature, 0.0,
-                               vec4(w.p, float(medium_of(w.inside)))));
+    keep_hit(photon, hit);
 }
 #endif
 
@@ -80,7 +98,7 @@ void trace(PhotonRay photon, out Shares entry[5]) {
     pending[k].share = 0.0;
   }
   uint owner = 0u, used = 0u;
-  Ends e = Ends(0.0, 0.0, 0.0, 0.0);
+  Ends e = Ends(Shares(0.0), Shares(0.0), Shares(0.0), Shares(0.0));
   bool going = photon.reached;
   // From the light to its first interface in a turn of the loop too: what is called twice is compiled twice.
   for (int segment = -1; going && segment < MOST_SEGMENTS; segment++) {
@@ -99,15 +117,15 @@ void trace(PhotonRay photon, out Shares entry[5]) {
     float length_m = met ? min(length_to(to, w.p), h.hit.t) : length_to(to, w.p);
 #ifdef ABSORBING
     if (w.inside != 0u && length_m < 1e30) {
-      float before = w.share;
+      Shares before = w.share * left_of(w);
       absorb_inside(w, length_m);
-      e.absorbed += before - w.share;
+      e.absorbed += before - w.share * left_of(w);
     }
 #endif
 #ifdef HAZE
     if (w.inside == 0u) {
       float left = air_left(photon, w.p, w.d, length_m, arrives);
-      e.absorbed += w.share * (1.0 - left);
+      e.absorbed += w.share * (1.0 - left) * left_of(w);
       w.share *= left;
     }
     if (keeps_ways && !arrives && w.share > 0.0)
@@ -115,9 +133,10 @@ void trace(PhotonRay photon, out Shares entry[5]) {
 #endif
     if (to.state == NO_RECEIVER && met) {
       float ended, dropped, absorbed;
+      Shares left = left_of(w), before = w.share * left;
       branch(w, h, 0.0, pending, ended, dropped, absorbed);
-      e.trapped += ended + dropped;
-      e.absorbed += absorbed;
+      e.trapped += (ended + dropped) * left;
+      if (is_mirror(h.hit.refractor)) e.absorbed += before - w.share * left_of(w);
     } else {
       end_path(photon, w, to, owner, used, e);
       w.share = 0.0;
@@ -126,11 +145,11 @@ void trace(PhotonRay photon, out Shares entry[5]) {
     going = w.share > 0.0;
   }
   if (going) {
-    e.trapped += w.share;
-    for (int k = 0; k < PENDING; k++) e.trapped += pending[k].share;
+    e.trapped += w.share * left_of(w);
+    for (int k = 0; k < PENDING; k++) e.trapped += pending[k].share * left_of(pending[k]);
   }
-  entry[REFLECTED] = Shares(e.reflected);
-  entry[ABSORBED] = Shares(e.absorbed);
-  entry[TRAPPED] = Shares(e.trapped);
-  entry[MISSED] = Shares(e.missed);
+  entry[REFLECTED] = e.reflected;
+  entry[ABSORBED] = e.absorbed;
+  entry[TRAPPED] = e.trapped;
+  entry[MISSED] = e.missed;
 }

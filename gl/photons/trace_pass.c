@@ -138,7 +138,7 @@ void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set s
   if (scene->plan->hazy) abbe_gpu_set_int(gpu, program, "keeps_ways", 0);
   abbe_gpu_set_float(gpu, program, "share_limit", scene->plan->desc.energy_share);
   abbe_gpu_set_int(gpu, program, "fits_tiles", pass->atlas->fits ? 1 : 0);
-  if (scene->plan->lengths)
+  if (scene->plan->depths)
     abbe_gpu_bind_texels(gpu, program, "band_attenuation", 5, GL_RGBA32F,
                          pass->spectra->attenuation);
   abbe_gpu_clear_buffer(gpu, hits->signatures);
@@ -205,8 +205,8 @@ typedef struct reading {
   GLuint *signature, *path;
 } reading;
 
-static void read_some(const abbe_trace_pass *pass, size_t light, size_t first, size_t at,
-                      size_t count, const reading *r) {
+static void read_some(const abbe_trace_pass *pass, size_t light, size_t at, size_t count,
+                      const reading *r) {
   const abbe_gl *gl = scene_of(pass)->gpu->gl;
   const size_t bytes = abbe_photon_signature_bytes(pass->spectra);
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, pass->hits.hits);
@@ -217,15 +217,15 @@ static void read_some(const abbe_trace_pass *pass, size_t light, size_t first, s
                        (GLsizeiptr)(count * bytes), r->signature);
   abbe_receiver_atlas_place(pass->atlas, light, r->raw, r->signature, bytes / sizeof *r->signature,
                             count);
-  abbe_photon_attenuate(pass->spectra, first, pass->hits.stride, count, r->raw, r->signature);
+  abbe_photon_attenuate(pass->spectra, count, r->raw, r->signature);
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < 4 && r->signature[i] == 0; k++) r->raw[4 * i + k] = 0;
   memcpy(r->hit + 4 * at, r->raw, 4 * count * sizeof *r->hit);
   memcpy(r->path + at, r->signature, count * sizeof *r->path);
 }
 
-abbe_result abbe_trace_pass_read(abbe_trace_pass *pass, size_t light, size_t first, float **hits,
-                                 GLuint **paths, abbe_error *error) {
+abbe_result abbe_trace_pass_read(abbe_trace_pass *pass, size_t light, float **hits, GLuint **paths,
+                                 abbe_error *error) {
   enum { AT_ONCE = 1 << 16 };
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const size_t count = abbe_trace_pass_hit_count(pass, light);
@@ -238,7 +238,7 @@ abbe_result abbe_trace_pass_read(abbe_trace_pass *pass, size_t light, size_t fir
   abbe_result result =
       whole ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu hits", count);
   for (size_t at = 0; at < count && result == ABBE_OK; at += step) {
-    read_some(pass, light, first, at, count - at < step ? count - at : step, &r);
+    read_some(pass, light, at, count - at < step ? count - at : step, &r);
     result = abbe_gpu_tell(gpu, gpu->done, error);
   }
   if (result == ABBE_OK) result = abbe_gl_check(gpu->gl, "the reading of hits", error);

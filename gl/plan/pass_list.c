@@ -48,10 +48,11 @@ static void list_sizes(const abbe_scene *scene, abbe_plan *plan) {
   if (disk == NULL)
     abbe_plan_add(plan, ABBE_CHOICE_LIGHT_SIZE, "none");
   else
-    abbe_plan_add(plan, ABBE_CHOICE_LIGHT_SIZE,
-                  "a %s, '%.40s' first: %zu points stand for each, with as many sharp shadows; where "
-                  "nothing hides it receivers have its light in closed form",
-                  disk->kind == ABBE_LIGHT_DISK ? "disk" : "rectangle", disk->name, disk->points);
+    abbe_plan_add(
+        plan, ABBE_CHOICE_LIGHT_SIZE,
+        "a %s, '%.40s' first: %zu points stand for each, with as many sharp shadows; where "
+        "nothing hides it receivers have its light in closed form",
+        disk->kind == ABBE_LIGHT_DISK ? "disk" : "rectangle", disk->name, disk->points);
 }
 
 static void list_environment(const abbe_scene *scene, abbe_plan *plan) {
@@ -160,11 +161,14 @@ static void list_pinholes(abbe_plan *plan) {
 
 static void list_absorption(abbe_plan *plan) {
   const char *none = abbe_plan_no_refraction(plan);
-  abbe_plan_add(plan, ABBE_CHOICE_ABSORPTION, "%s",
-                none != NULL    ? none
-                : plan->lengths ? "a material attenuates by wavelength: hits keep the length inside"
-                : plan->absorbing ? "a material attenuates; path lengths are kept"
-                                  : "every material is clear");
+  abbe_plan_add(
+      plan, ABBE_CHOICE_ABSORPTION, "%s",
+      none != NULL ? none
+      : plan->band_parts
+          ? "paths keep their optical depth in eight parts of each band of wavelengths: it "
+            "asks for no more of these"
+      : plan->absorbing ? "a material attenuates; path lengths are kept"
+                        : "every material is clear");
 }
 
 static void list_picture(abbe_plan *plan) {

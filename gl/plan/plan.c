@@ -58,7 +58,7 @@ static void combine(abbe_plan *plan) {
                 ((apart && !published) || (published && caustics));
   plan->edges = caustics && !published && plan->facets;
   plan->band_parts = (plan->tinting || plan->colouring) && !published;
-  plan->lengths = caustics && plan->tinting && !plan->multi_refractor_paths && !published;
+  plan->depths = caustics && plan->band_parts;
 }
 
 /* Light goes on from rough mirrors through samples of them alone. */

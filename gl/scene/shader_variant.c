@@ -184,7 +184,6 @@ static void print_photons(FILE *to, const abbe_shader_variant *v) {
   print_count(to, "STEPS", v->steps);
   print_flag(to, "BRIDGE", v->bridge);
   print_flag(to, "DOUBTS_BRIDGES", v->doubts_bridges);
-  print_flag(to, "TINTING", v->keeps_lengths);
 }
 
 char *abbe_shader_variant_text(const abbe_shader_variant *variant, const char *more) {

@@ -42,7 +42,7 @@ typedef struct abbe_shader_variant {
   size_t tiles, tile_blocks, chart_sides; /* tiles: room for those of a light; 0: none has any */
   /* photons; hit_stride 0: the program follows none */
   size_t hit_stride, steps, nodes;
-  bool bridge, doubts_bridges, keeps_lengths;
+  bool bridge, doubts_bridges;
 } abbe_shader_variant;
 
 void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *out);

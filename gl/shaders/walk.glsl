@@ -28,6 +28,9 @@ struct PathState {
 #endif
 #ifdef BAND_PARTS
   Depth depth;  // of each part, besides what `share` has of it
+#ifdef KEEPS_INTERFACE
+  float least_depth;  // what that has
+#endif
 #endif
 };
 
@@ -59,6 +62,9 @@ PathState path_from(vec3 p, vec3 d) {
 #endif
 #ifdef BAND_PARTS
   w.depth = Depth(0.0);
+#ifdef KEEPS_INTERFACE
+  w.least_depth = 0.0;
+#endif
 #endif
   return w;
 }
@@ -92,6 +98,9 @@ void attenuate(inout PathState w, Depth depth) {
   float least = least_of(depth);
   w.share *= exp(-least);
   w.depth += depth - least;
+#ifdef KEEPS_INTERFACE
+  w.least_depth += least;
+#endif
 }
 #endif
 

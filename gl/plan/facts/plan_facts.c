@@ -35,11 +35,9 @@ size_t abbe_plan_least_wavelengths(const abbe_plan *plan) {
    * (outgoing_segment.glsl). */
   static const size_t coarse = 4;
   const size_t n = plan->desc.wavelengths;
-  /* Without lengths hits do not know what absorption changes between two wavelengths; nor do they
-   * what a mirror or the air does. */
+  /* Hits do not know what the air changes between two wavelengths. */
   const bool apart = plan->fills && !abbe_profile_is_published(plan->desc.profile);
-  const bool changes = plan->tinting || plan->colouring;
-  return apart && changes == plan->lengths && !plan->tinted_air && n > coarse ? coarse : n;
+  return apart && !plan->tinted_air && n > coarse ? coarse : n;
 }
 
 static bool has_lamp(const abbe_plan *p) {

@@ -1,80 +1,93 @@
 #include "gl/scene/spectra/band_attenuation.h"
 
-#include "colorimetry/weights.h"
+#include "gl/scene/spectra/band_parts.h"
 
 #include <math.h>
+#include <stdlib.h>
 
-enum { STEPS = 12, FEW_NODES = 16 };
+/* Of a step, nm, and the least of a part. */
+#define STEP_NM 2.5
+enum { LEAST_STEPS = 2, NODE_PARTS = 2 * ABBE_HALF_PARTS };
 
-/* Light through a material. */
-typedef struct passage {
-  const abbe_weights_range *light;
-  const abbe_object *object;
-  double path_m; /* usual inside */
-} passage;
-
-/* What attenuates as the part does over the usual path, the light's X + Y + Z together: a mean of
- * attenuations would take too much from light of a long path. And the part's Y. */
-static double attenuation_of(const passage *p, double from, double to, double *y) {
-  double weight[STEPS], per_m[STEPS], total = 0, left = 0, least = INFINITY;
-  *y = 0;
-  for (int k = 0; k < STEPS; k++) {
-    const double a = from + (to - from) * k / STEPS, b = from + (to - from) * (k + 1) / STEPS;
-    double xyz[3];
-    abbe_weights_range_xyz(p->light, a, b, xyz);
-    weight[k] = xyz[0] + xyz[1] + xyz[2];
-    per_m[k] = abbe_material_attenuation(p->object->material, 0.5 * (a + b)) +
-               abbe_medium_scattering(p->object->medium, 0.5 * (a + b));
-    total += weight[k];
-    *y += xyz[1];
-  }
-  for (int k = 0; k < STEPS; k++)
-    if (total == 0 || weight[k] > 0) least = fmin(least, per_m[k]);
-  for (int k = 0; k < STEPS; k++)
-    left += (total > 0 ? weight[k] / total : 1.0 / STEPS) * exp(-p->path_m * (per_m[k] - least));
-  return least - log(left) / p->path_m;
+size_t abbe_band_attenuation_texels(const abbe_plan *plan, size_t nodes) {
+  return 2 * nodes * (plan->refractor_count + plan->light_view_count);
 }
 
-static void fill_half(const passage *p, size_t parts, double from, double to, abbe_band_half *out) {
-  double y[ABBE_HALF_PARTS] = {0}, total = 0;
-  for (size_t k = 0; k < parts; k++) {
-    const double a = from + (to - from) * (double)k / (double)parts;
-    const double b = from + (to - from) * (double)(k + 1) / (double)parts;
-    out->attenuation[k] = (float)fmin(attenuation_of(p, a, b, &y[k]), ABBE_BAND_MOST_PER_M);
-    total += y[k];
-  }
-  for (size_t k = 0; k < ABBE_HALF_PARTS; k++) {
-    if (k >= parts) out->attenuation[k] = out->attenuation[0];
-    out->share[k] = (float)(total > 0 ? y[k] / total : k < parts ? 1.0 / (double)parts : 0);
-  }
+/* Where part k of node i begins and ends: of one node, both halves are the whole band. */
+static void place(const abbe_wavelengths *w, size_t i, size_t k, double range[2]) {
+  const bool one = w->count == 1, above = k >= ABBE_HALF_PARTS;
+  const double from = above && !one ? w->lambda_nm[i] : w->edge_nm[i];
+  const double to = above || one ? w->edge_nm[i + 1] : w->lambda_nm[i];
+  const double step = (to - from) / ABBE_HALF_PARTS;
+  range[0] = from + step * (double)(k % ABBE_HALF_PARTS);
+  range[1] = range[0] + step;
 }
 
-/* Of few wavelengths halves are wide: as wide as the parts of more. */
-static size_t parts_of(const abbe_wavelengths *w) {
-  return w->count <= FEW_NODES ? ABBE_HALF_PARTS : 1;
-}
-
-static void fill_node(const passage *p, const abbe_wavelengths *w, size_t i, abbe_node_bands *out) {
-  const size_t parts = parts_of(w);
-  const bool one = w->count == 1; /* its band is laid as one half */
-  const double node = w->lambda_nm[i], above = w->edge_nm[i + 1];
-  fill_half(p, parts, w->edge_nm[i], one ? above : node, &out->below);
-  fill_half(p, parts, one ? w->edge_nm[i] : node, above, &out->above);
-}
-
-abbe_node_bands *abbe_band_attenuation_fill(const abbe_scene *scene, const abbe_plan *plan,
-                                            const abbe_wavelengths *w, abbe_node_bands *out) {
-  for (size_t light = 0; light < plan->light_view_count; light++) {
-    abbe_weights_range range;
-    abbe_weights_range_make_by(plan->desc.observer, &scene->light[light].illuminant,
-                               w->edge_nm[0], w->edge_nm[w->count], &range);
-    for (size_t k = 0; k < plan->refractor_count; k++) {
-      const abbe_object *object = &scene->object[plan->refractor_object[k]];
-      double square = 0;
-      for (int x = 0; x < 3; x++) square += pow(object->max[x] - object->min[x], 2);
-      const passage p = {&range, object, fmax(0.5 * sqrt(square), 1e-12)};
-      for (size_t i = 0; i < w->count; i++) fill_node(&p, w, i, out++);
+static void fill_shares(const abbe_weights_range *light, const abbe_wavelengths *w, size_t i,
+                        float (*out)[4]) {
+  for (size_t half = 0; half < 2; half++) {
+    double y[ABBE_HALF_PARTS], total = 0;
+    for (size_t k = 0; k < ABBE_HALF_PARTS; k++) {
+      double range[2], xyz[3];
+      place(w, i, half * ABBE_HALF_PARTS + k, range);
+      abbe_weights_range_xyz(light, range[0], range[1], xyz);
+      total += y[k] = xyz[1];
     }
+    for (size_t k = 0; k < ABBE_HALF_PARTS; k++)
+      out[half][k] = (float)(total > 0 ? y[k] / total : 1.0 / ABBE_HALF_PARTS);
   }
-  return out;
+}
+
+/* What a surface takes of a part, that of a node: attenuation, 1/m, or the factor of a mirror. */
+static abbe_result surface_of(const abbe_scene *scene, const abbe_plan *plan, size_t r,
+                              const abbe_band_steps *steps, double node_nm, float *out,
+                              abbe_error *error) {
+  const abbe_object *object = &scene->object[plan->refractor_object[r]];
+  const abbe_band_share part = {0, steps->count, NULL, NULL, 0};
+  const double depth = abbe_band_share_depth(steps, &part, r);
+  double n = 0, k = -1;
+  abbe_result result = ABBE_OK;
+  if (plan->mirror[r] && object->conductor != NULL)
+    result = abbe_material_nk(object->conductor, node_nm, &n, &k, error);
+  *out =
+      (float)(plan->mirror[r] ? abbe_mirror_factor(n, k, exp(-depth)) : depth / steps->path_m[r]);
+  return result;
+}
+
+/* The steps of a part serve all of them in turn. */
+static abbe_result fill_node(const abbe_scene *scene, const abbe_plan *plan,
+                             const abbe_wavelengths *w, size_t i, const abbe_weights_range *light,
+                             abbe_band_steps *steps, float (*out)[4], abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  for (size_t k = 0; k < NODE_PARTS && result == ABBE_OK; k++) {
+    double range[2];
+    place(w, i, k, range);
+    result =
+        abbe_band_steps_fill(steps, scene, plan, light, 0, steps->count, range[0], range[1], error);
+    for (size_t r = 0; r < plan->refractor_count && result == ABBE_OK; r++)
+      result = surface_of(scene, plan, r, steps, w->lambda_nm[i],
+                          &out[2 * r + k / ABBE_HALF_PARTS][k % ABBE_HALF_PARTS], error);
+  }
+  return result;
+}
+
+abbe_result abbe_band_attenuation_fill(const abbe_scene *scene, const abbe_plan *plan,
+                                       const abbe_wavelengths *w, float (*out)[4],
+                                       abbe_error *error) {
+  const double part_nm = (w->edge_nm[w->count] - w->edge_nm[0]) / (double)(w->count * NODE_PARTS);
+  const size_t count = (size_t)fmax(ceil(part_nm / STEP_NM), LEAST_STEPS);
+  abbe_weights_range light;
+  abbe_band_steps steps;
+  abbe_weights_range_make_by(plan->desc.observer, abbe_scene_illuminant(scene), w->edge_nm[0],
+                             w->edge_nm[w->count], &light);
+  abbe_result result = abbe_band_steps_make(scene, plan, count, &steps, error);
+  for (size_t i = 0; i < w->count && result == ABBE_OK; i++, out += 2 * plan->refractor_count)
+    result = fill_node(scene, plan, w, i, &light, &steps, out, error);
+  abbe_band_steps_free(&steps);
+  for (size_t k = 0; k < plan->light_view_count && result == ABBE_OK; k++) {
+    abbe_weights_range_make_by(plan->desc.observer, &scene->light[k].illuminant, w->edge_nm[0],
+                               w->edge_nm[w->count], &light);
+    for (size_t i = 0; i < w->count; i++, out += 2) fill_shares(&light, w, i, out);
+  }
+  return result;
 }

@@ -1,14 +1,27 @@
 #include "gl/scene/spectra/band_parts.h"
 
+#include "scenes/geometry/vector.h"
 #include "spectral/optics.h"
 
 #include <math.h>
 #include <stdlib.h>
 
+/* Somewhat more than the mean chord of a solid, four times its volume over its surface by Cauchy,
+ * for light is reflected inside; a plate has short paths, however wide it is. */
 static double usual_path(const abbe_object *object) {
-  double square = 0;
-  for (int x = 0; x < 3; x++) square += pow(object->max[x] - object->min[x], 2);
-  return fmax(0.5 * sqrt(square), 1e-12);
+  const abbe_mesh *mesh = &object->mesh;
+  double volume = 0, area = 0;
+  for (size_t i = 0; i < mesh->face_count; i++) {
+    double from[3], to[3], across[3];
+    const double *corner = mesh->position[mesh->face[i][0]];
+    abbe_vector_subtract(mesh->position[mesh->face[i][1]], corner, from);
+    abbe_vector_subtract(mesh->position[mesh->face[i][2]], corner, to);
+    abbe_vector_cross(from, to, across);
+    area += 0.5 * sqrt(abbe_vector_dot(across, across));
+    abbe_vector_subtract(corner, object->min, from);
+    volume += abbe_vector_dot(from, across) / 6;
+  }
+  return fmax(area > 0 ? 1.3 * 4 * fabs(volume) / area : 0, 1e-12);
 }
 
 abbe_result abbe_band_steps_make(const abbe_scene *scene, const abbe_plan *plan, size_t count,
@@ -69,11 +82,15 @@ abbe_result abbe_band_steps_fill(abbe_band_steps *steps, const abbe_scene *scene
   return result;
 }
 
+static double share_at(const abbe_band_share *band, size_t i) {
+  return band->share != NULL ? band->share[i] : 1;
+}
+
 /* What a step weighs: of light that nobody sees a trace, so that it is somewhere, too. */
 static double weight_of(const abbe_band_steps *s, const abbe_band_share *band, size_t i) {
   const double *xyz = s->xyz[band->first + i];
   if (band->part != NULL && band->part[i] != band->only) return 0;
-  return band->share[i] * (xyz[0] + xyz[1] + xyz[2] + 1e-9);
+  return share_at(band, i) * (xyz[0] + xyz[1] + xyz[2] + 1e-9);
 }
 
 /* A measure that is even for what differs in what is left: between 0 and 1. */
@@ -157,7 +174,7 @@ void abbe_band_share_xyz(const abbe_band_steps *steps, const abbe_band_share *ba
   for (int c = 0; c < 3; c++) xyz[c] = 0;
   for (size_t i = 0; i < band->end - band->first; i++)
     if (band->part == NULL || band->part[i] == band->only)
-      for (int c = 0; c < 3; c++) xyz[c] += band->share[i] * steps->xyz[band->first + i][c];
+      for (int c = 0; c < 3; c++) xyz[c] += share_at(band, i) * steps->xyz[band->first + i][c];
 }
 
 double abbe_band_share_depth(const abbe_band_steps *steps, const abbe_band_share *band,

@@ -41,7 +41,7 @@ abbe_result abbe_band_steps_fill(abbe_band_steps *steps, const abbe_scene *scene
 /* Some steps, each with the share of its light that counts: a band, or a part of one. */
 typedef struct abbe_band_share {
   size_t first, end;
-  const double *share;       /* [end - first], 0 or more */
+  const double *share;       /* [end - first], 0 or more; NULL: all of each */
   const unsigned char *part; /* [end - first] of each step, or NULL */
   unsigned only;             /* the part that counts, where there are parts */
 } abbe_band_share;

@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* From so many wavelengths on bands are joined first. */
-enum { REFINED_FROM = 9 };
+/* From so many wavelengths on bands are joined first; where bands have parts, from so many on
+ * samples take every second one: half of fewer has too few parts. */
+enum { REFINED_FROM = 9, PARTED_FROM = 6 };
 
 /* Of a step, nm: attenuation hardly varies in it. */
 #define STEP_NM 2.5
@@ -36,7 +37,8 @@ bool abbe_camera_bands_refine(const abbe_plan *plan) {
  * apart: there it would cost 5 % in CIEDE2000. */
 bool abbe_camera_bands_interleave(const abbe_plan *plan) {
   const bool dear = plan->multi_refractor_paths || plan->layers;
-  return dear && !plan->desc.everything && !abbe_camera_bands_refine(plan);
+  const bool few = plan->band_parts && plan->desc.wavelengths < PARTED_FROM;
+  return dear && !few && !plan->desc.everything && !abbe_camera_bands_refine(plan);
 }
 
 /* A set of bands while it is made; a set's own wavelengths, where its bands begin and end, and

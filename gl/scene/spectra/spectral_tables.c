@@ -103,8 +103,8 @@ static abbe_result weigh_lights(const abbe_scene *scene, const abbe_plan *plan,
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for weights");
   for (size_t i = 0; i < lights; i++) {
     abbe_weights_range range; /* both sets have the same ends */
-    abbe_weights_range_make_by(plan->desc.observer, &scene->light[i].illuminant,
-                               t->all.edge_nm[0], t->all.edge_nm[n], &range);
+    abbe_weights_range_make_by(plan->desc.observer, &scene->light[i].illuminant, t->all.edge_nm[0],
+                               t->all.edge_nm[n], &range);
     weigh_halves(&range, &t->all, n, 0, t->sample_weight + i * n);
     weigh_halves(&range, &t->coarse, n, 2, t->sample_weight + i * n);
     weigh_intervals(&range, &t->coarse, t->interval_weight + i * (t->coarse.count - 1));
@@ -128,14 +128,17 @@ abbe_result abbe_spectral_tables_intervals(const abbe_spectral_tables *t, const 
 
 static abbe_result fill_bands(const abbe_scene *scene, const abbe_plan *plan,
                               abbe_spectral_tables *t, abbe_error *error) {
-  if (!plan->lengths) return ABBE_OK;
+  if (!plan->depths) return ABBE_OK;
   const bool refines = t->coarse.count < t->all.count;
   const size_t nodes = t->coarse.count + (refines ? t->all.count : 0);
-  t->bands = calloc(plan->light_view_count * plan->refractor_count * nodes + 1, sizeof *t->bands);
+  t->bands = calloc(abbe_band_attenuation_texels(plan, nodes) + 1, sizeof *t->bands);
   if (t->bands == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for attenuation");
-  abbe_node_bands *rest = abbe_band_attenuation_fill(scene, plan, &t->coarse, t->bands);
-  if (refines) abbe_band_attenuation_fill(scene, plan, &t->all, rest);
-  return ABBE_OK;
+  abbe_result result = abbe_band_attenuation_fill(scene, plan, &t->coarse, t->bands, error);
+  if (refines && result == ABBE_OK)
+    result = abbe_band_attenuation_fill(
+        scene, plan, &t->all, t->bands + abbe_band_attenuation_texels(plan, t->coarse.count),
+        error);
+  return result;
 }
 
 abbe_result abbe_spectral_tables_make(const abbe_scene *scene, const abbe_plan *plan,
@@ -151,7 +154,8 @@ abbe_result abbe_spectral_tables_make(const abbe_scene *scene, const abbe_plan *
   if (result == ABBE_OK)
     result = abbe_weights_make_by(desc->observer, &t->all, abbe_scene_illuminant(scene),
                                   ABBE_RGB_SPACE_XYZ, &t->camera, error);
-  if (result != ABBE_OK || !plan->caustics || abbe_profile_is_published(desc->profile)) return result;
+  if (result != ABBE_OK || !plan->caustics || abbe_profile_is_published(desc->profile))
+    return result;
   result = weigh_lights(scene, plan, t, error);
   if (result == ABBE_OK)
     result = abbe_spectral_tables_intervals(t, scene, plan, 0, 0, &t->intervals, error);

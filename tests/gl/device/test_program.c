@@ -22,7 +22,7 @@ static void write_defines(unsigned bits, char *out, size_t size) {
       "ABSORBING\n#define CAUSTICS\n#define HAZE\n#define HAZE_BEYOND\n#define SHAFTS 2\n#define "
       "SHAFT_STEPS 40",
       "RECEIVER_SHADOWS\n#define TEXTURED\n#define RECEIVER_COLOURS\n#define SHADOW_PLANES "
-      "32\n#define TINTING",
+      "32\n#define BAND_PARTS",
       "HIERARCHY",
       "WALK\n#define COARSE_EYE"};
   int used = snprintf(

@@ -21,7 +21,8 @@ static const struct {
       RUNS(CHOICE_INNER_REFLECTIONS, "followed until less than 0.005 of the light is left, 20 "
                                      "exits at most; 0.4 % of it is still inside then"),
       IN_ROWS,
-      RUNS(CHOICE_ABSORPTION, "a material attenuates by wavelength: hits keep the length inside"),
+      RUNS(CHOICE_ABSORPTION,
+           "paths keep their optical depth in eight parts of each band of wavelengths"),
       GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"prism",
      {RUNS_OF(CHOICE_REFRACTOR_MODEL, "prism",

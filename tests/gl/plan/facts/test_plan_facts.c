@@ -76,28 +76,26 @@ static void what_there_is_no_room_for_is_left_out(void **state) {
   abbe_plan_free(NULL);
 }
 
-/* Four wavelengths are enough to begin with where light is laid between them and nothing tints, or
- * where photon hits keep the length that tells it. */
+/* Four wavelengths are enough to begin with where light is laid between them, unless the air takes
+ * of it by wavelength, which hits do not keep. */
 static void least_wavelengths_are_few_where_light_is_bridged(void **state) {
   (void)state;
   static abbe_plan plan;
   static const struct {
     size_t wavelengths, least;
-    bool fills, tinting, lengths;
+    bool fills, tinted_air;
     abbe_profile profile;
   } rows[] = {
-      {7, 4, true, false, false, ABBE_PROFILE_DEFAULT},
-      {7, 4, true, true, true, 0},
-      {7, 7, true, true, false, 0},
-      {7, 7, false, false, false, 0},
-      {3, 3, true, false, false, 0},
-      {7, 7, true, false, false, 1},
+      {7, 4, true, false, ABBE_PROFILE_DEFAULT},
+      {7, 7, true, true, 0},
+      {7, 7, false, false, 0},
+      {3, 3, true, false, 0},
+      {7, 7, true, false, 1},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     plan = (abbe_plan){.desc = {.wavelengths = rows[i].wavelengths, .profile = rows[i].profile},
                        .fills = rows[i].fills,
-                       .tinting = rows[i].tinting,
-                       .lengths = rows[i].lengths};
+                       .tinted_air = rows[i].tinted_air};
     assert_int_equal(abbe_plan_least_wavelengths(&plan), rows[i].least);
   }
 }

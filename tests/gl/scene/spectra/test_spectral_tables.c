@@ -44,8 +44,8 @@ static void check_materials(const fixture *f) {
 
 /* Y (channel 1) or a band of all intervals of the first light and refractor. */
 static double sum_of(const fixture *f, const float (*row)[4], size_t nodes, int channel) {
-  const size_t an_interval = abbe_interval_sums_texels(&f->plan) * (f->tables.steps + 1);
-  const size_t last = an_interval - abbe_interval_sums_texels(&f->plan);
+  const size_t an_interval = ABBE_INTERVAL_TEXELS * (f->tables.steps + 1);
+  const size_t last = an_interval - ABBE_INTERVAL_TEXELS;
   double sum = 0;
   for (size_t i = 0; i <= nodes; i++) sum += (double)row[i * an_interval + last][channel];
   return sum;

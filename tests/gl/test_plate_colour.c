@@ -1,0 +1,134 @@
+/* The colour of a coloured plate before a white background, straight on, against the integral of
+ * Fresnel's and Beer and Lambert's laws over the spectrum: alone, and beside what makes the
+ * renderer follow light from interface to interface. */
+#include "tests/gl/frame.h"
+
+#include "colorimetry/chromaticity.h"
+#include "colorimetry/difference.h"
+#include "colorimetry/weights.h"
+
+enum { FINE = 1000, SIDE = 8 };
+
+static const char BESIDE_GLASS[] =
+    "- {name: ball, shape: sphere, radius: 0.01, centre: [0.5, 0, 0], material: n-bk7}\n";
+static const char BESIDE_GOLD[] =
+    "- {name: ball, shape: sphere, radius: 0.01, centre: [0.5, 0, 0], mirror: gold}\n";
+
+static void load_plate(const char *stone, double thickness_m, const char *beside,
+                       abbe_scene *scene) {
+  char text[1024];
+  snprintf(text, sizeof text,
+           "camera: {eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 1}\nbackground: 1\n"
+           "lights:\n"
+           "- {name: aside, kind: spot, position: [3, 3, 1], target: [4, 4, 0], cone: 5,\n"
+           "   intensity: 1}\n"
+           "objects:\n"
+           "- {name: plate, shape: box, size: [0.2, 0.2, %g], material: %s}\n%s"
+           "- {name: corner, shape: rectangle, width: 0.002, height: 0.002, reflectance: 0.5,\n"
+           "   transform: [{translate: [0.016, 0.016, -1]}]}\n",
+           thickness_m, stone, beside);
+  load_text(text, scene);
+}
+
+/* What of the light goes on to the background, through the plate or back off its faces. */
+static double seen_at(const abbe_material *stone, double thickness_m, double lambda_nm) {
+  double n;
+  assert_int_equal(abbe_material_n(stone, lambda_nm, &n, NULL), ABBE_OK);
+  const double r = pow((n - 1) / (n + 1), 2);
+  const double e = exp(-thickness_m * abbe_material_attenuation(stone, lambda_nm));
+  return r + (1 - r) * (1 - r) * e * (1 + r * e) / (1 - r * r * e * e);
+}
+
+/* X, Y and Z, each of 1 in the light. */
+static void integrate(const abbe_scene *scene, double thickness_m, double out[3], double white[3]) {
+  abbe_weights_range range;
+  abbe_weights_range_make(abbe_scene_illuminant(scene), 380, 780, &range);
+  double sum[3] = {0};
+  for (int c = 0; c < 3; c++) white[c] = 0;
+  for (int i = 0; i < FINE; i++) {
+    const double from = 380 + 400.0 * i / FINE, to = 380 + 400.0 * (i + 1) / FINE;
+    double xyz[3];
+    abbe_weights_range_xyz(&range, from, to, xyz);
+    for (int c = 0; c < 3; c++) {
+      white[c] += xyz[c];
+      sum[c] += xyz[c] * seen_at(scene->object[0].material, thickness_m, 0.5 * (from + to));
+    }
+  }
+  for (int c = 0; c < 3; c++) out[c] = sum[c] / white[c];
+}
+
+static double dominant_of(const double xyz[3], const double white[3]) {
+  double xy[2], white_xy[2];
+  abbe_dominant dominant;
+  assert_true(abbe_chromaticity_xy(xyz, xy) && abbe_chromaticity_xy(white, white_xy));
+  assert_true(abbe_chromaticity_dominant(xy, white_xy, ABBE_OBSERVER_CIE_1931, &dominant));
+  return dominant.lambda_nm;
+}
+
+/* coarse: as while something moves; paths then end below a twentieth of their light. */
+static void hold(const char *stone, double thickness_m, const char *beside, size_t wavelengths,
+                 size_t samples, abbe_coarse coarse) {
+  abbe_render_desc desc = {.width = SIDE,
+                           .height = SIDE,
+                           .wavelengths = wavelengths,
+                           .supersample = samples,
+                           .coarse = coarse,
+                           .space = ABBE_RGB_SPACE_XYZ};
+  abbe_scene scene;
+  abbe_image image;
+  double wanted[3], white[3], got[3] = {0}, lab[2][3];
+  load_plate(stone, thickness_m, beside, &scene);
+  integrate(&scene, thickness_m, wanted, white);
+  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  draw_frame(renderer);
+  read_picture(renderer, false, &image);
+  for (size_t y = 2; y < SIDE - 2; y++) /* a receiver is in a corner */
+    for (size_t x = 2; x < SIDE - 2; x++)
+      for (size_t c = 0; c < 3; c++)
+        got[c] +=
+            (double)image.data[(y * SIDE + x) * image.channels + c] / ((SIDE - 4) * (SIDE - 4));
+  for (int c = 0; c < 3; c++) wanted[c] *= white[c];
+  abbe_difference_lab(got, white, lab[0]);
+  abbe_difference_lab(wanted, white, lab[1]);
+  print_message("%s, %g mm: %.1f nm, %.1f by the closed form; %.2f CIEDE2000\n", stone,
+                1e3 * thickness_m, dominant_of(got, white), dominant_of(wanted, white),
+                abbe_difference_ciede2000(lab[0], lab[1]));
+  assert_near(dominant_of(got, white), dominant_of(wanted, white),
+              coarse == ABBE_COARSE_NONE ? 2 : 6);
+  assert_true(abbe_difference_ciede2000(lab[0], lab[1]) < (coarse == ABBE_COARSE_NONE ? 1 : 1.5));
+  abbe_image_free(&image);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+static void a_plate_alone_has_its_colour(void **state) {
+  (void)state;
+  hold("ruby", 0.006, "", 4, 2, ABBE_COARSE_NONE);
+  hold("emerald", 0.02, "", 4, 2, ABBE_COARSE_NONE);
+}
+
+static void a_plate_beside_glass_has_its_colour(void **state) {
+  (void)state;
+  hold("ruby", 0.006, BESIDE_GLASS, 4, 2, ABBE_COARSE_NONE);
+  hold("ruby", 0.003, BESIDE_GLASS, 7, 2, ABBE_COARSE_NONE);
+  hold("emerald", 0.006, BESIDE_GLASS, 7, 2, ABBE_COARSE_NONE);
+}
+
+static void a_plate_beside_a_mirror_has_its_colour(void **state) {
+  (void)state;
+  hold("ruby", 0.006, BESIDE_GOLD, 4, 2, ABBE_COARSE_NONE);
+}
+
+static void a_plate_has_its_colour_while_it_moves(void **state) {
+  (void)state;
+  hold("ruby", 0.006, "", 4, 1, ABBE_COARSE_ALL);
+  hold("emerald", 0.006, "", 4, 1, ABBE_COARSE_ALL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_plate_alone_has_its_colour),
+                                     cmocka_unit_test(a_plate_beside_glass_has_its_colour),
+                                     cmocka_unit_test(a_plate_beside_a_mirror_has_its_colour),
+                                     cmocka_unit_test(a_plate_has_its_colour_while_it_moves)};
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}
