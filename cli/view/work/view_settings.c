@@ -28,8 +28,7 @@ static abbe_render_desc of_stage(const abbe_preset_front *front, const abbe_scen
 }
 
 abbe_render_desc abbe_view_settings_of(const abbe_preset_front *front, const abbe_scene *scene,
-                                       const abbe_view_job *job,
-                                       const abbe_view_document *document,
+                                       const abbe_view_job *job, const abbe_view_document *document,
                                        const abbe_caustic_volume *volume) {
   static const double fewer[ABBE_VIEW_LIGHT_STEPS] = {1, 0.7, 0.5, 0.35};
   const bool moving = job->stage == ABBE_VIEW_MOVING;

@@ -14,12 +14,11 @@
 const abbe_preset_point *abbe_view_settings_point(const abbe_preset_front *front,
                                                   abbe_view_stage stage);
 
-/* The request of a job. Without a preset, the plan's own settings and what is coarser and finer than
- * these. document: its wavelengths, photons and texels hold but where light moves. volume (may be
- * NULL): caustics are looked up in it, which lives as long as the request. */
+/* The request of a job. Without a preset, the plan's own settings and what is coarser and finer
+ * than these. document: its wavelengths, photons and texels hold but where light moves. volume (may
+ * be NULL): caustics are looked up in it, which lives as long as the request. */
 abbe_render_desc abbe_view_settings_of(const abbe_preset_front *front, const abbe_scene *scene,
-                                       const abbe_view_job *job,
-                                       const abbe_view_document *document,
+                                       const abbe_view_job *job, const abbe_view_document *document,
                                        const abbe_caustic_volume *volume);
 
 #endif

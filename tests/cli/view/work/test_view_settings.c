@@ -3,9 +3,10 @@
 
 #include "cli/view/work/view_settings.h"
 
-static abbe_preset_point points[] = {{.desc = {.wavelengths = 5, .photons = 100, .supersample = 1}},
-                                     {.desc = {.wavelengths = 9, .photons = 200, .supersample = 1}},
-                                     {.desc = {.wavelengths = 31, .photons = 400, .supersample = 2}}};
+static abbe_preset_point points[] = {
+    {.desc = {.wavelengths = 5, .photons = 100, .supersample = 1}},
+    {.desc = {.wavelengths = 9, .photons = 200, .supersample = 1}},
+    {.desc = {.wavelengths = 31, .photons = 400, .supersample = 2}}};
 static const abbe_preset_front measured = {.named = {0, 1, 2}, .count = 3, .point = points};
 static const abbe_preset_front unknown = {0};
 
@@ -16,10 +17,10 @@ static abbe_render_desc ask(const abbe_preset_front *front, abbe_view_job job) {
 
 static void test_a_stage_takes_the_preset_of_its_name(void **state) {
   (void)state;
-  const abbe_render_desc balanced = ask(
-      &measured, (abbe_view_job){.stage = ABBE_VIEW_BALANCED, .light = ABBE_VIEW_BALANCED});
-  const abbe_render_desc accurate = ask(
-      &measured, (abbe_view_job){.stage = ABBE_VIEW_ACCURATE, .light = ABBE_VIEW_ACCURATE});
+  const abbe_render_desc balanced =
+      ask(&measured, (abbe_view_job){.stage = ABBE_VIEW_BALANCED, .light = ABBE_VIEW_BALANCED});
+  const abbe_render_desc accurate =
+      ask(&measured, (abbe_view_job){.stage = ABBE_VIEW_ACCURATE, .light = ABBE_VIEW_ACCURATE});
   assert_int_equal(balanced.wavelengths, 9);
   assert_int_equal(balanced.photons, 200);
   assert_int_equal(accurate.wavelengths, 31);
@@ -33,11 +34,11 @@ static void test_a_stage_takes_the_preset_of_its_name(void **state) {
 static void test_what_moves_is_coarser(void **state) {
   (void)state;
   const abbe_render_desc camera =
-      ask(&measured, (abbe_view_job){
-                         .stage = ABBE_VIEW_MOVING, .light = ABBE_VIEW_ACCURATE, .eye_step = 2});
+      ask(&measured,
+          (abbe_view_job){.stage = ABBE_VIEW_MOVING, .light = ABBE_VIEW_ACCURATE, .eye_step = 2});
   const abbe_render_desc light =
-      ask(&measured, (abbe_view_job){
-                         .stage = ABBE_VIEW_MOVING, .light = ABBE_VIEW_MOVING, .light_step = 2});
+      ask(&measured,
+          (abbe_view_job){.stage = ABBE_VIEW_MOVING, .light = ABBE_VIEW_MOVING, .light_step = 2});
   assert_int_equal(camera.photons, 400);
   assert_int_equal(camera.wavelengths, 31);
   assert_int_equal(camera.supersample, 1);
@@ -66,9 +67,8 @@ static void test_a_documents_settings_hold_at_rest(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_stage_takes_the_preset_of_its_name),
-      cmocka_unit_test(test_what_moves_is_coarser),
-      cmocka_unit_test(test_a_documents_settings_hold_at_rest)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_stage_takes_the_preset_of_its_name),
+                                     cmocka_unit_test(test_what_moves_is_coarser),
+                                     cmocka_unit_test(test_a_documents_settings_hold_at_rest)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
