@@ -107,7 +107,7 @@ static void list_splats(abbe_deposit_pass *pass, size_t light, const abbe_hit_ba
   gpu->gl->UseProgram(program);
   set_batch(pass, program, light, b, chunk);
   abbe_gpu_clear_list(gpu, pass->splats);
-  abbe_gpu_bind_storage(gpu, BINDING_PAIRS, pass->refine->pairs);
+  abbe_gpu_bind_storage(gpu, BINDING_PAIRS, fine ? pass->refine->pairs : paths);
   abbe_gpu_bind_storage(gpu, BINDING_WANTS, pass->refine->wants);
   abbe_gpu_bind_storage(gpu, BINDING_SPLATS, pass->splats);
   abbe_gpu_bind_storage(gpu, BINDING_PATHS, paths);

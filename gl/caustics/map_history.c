@@ -117,7 +117,8 @@ void abbe_map_history_blend(abbe_map_history *h, GLuint map, size_t light, size_
   abbe_gpu_set_int(h->gpu, h->program, "fresh", (int)h->fresh);
   gl->BindImageTexture(0, map, 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
   abbe_gpu_dispatch_2d(h->gpu, h->program, h->side, rows);
-  gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+  gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT |
+                         GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
 void abbe_map_history_next(abbe_map_history *h) {

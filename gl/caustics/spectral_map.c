@@ -76,7 +76,8 @@ static void write_level(abbe_spectral_map *map, GLuint program, size_t level, si
   abbe_gpu_set_int(gpu, program, "level", (int)level);
   gpu->gl->BindImageTexture(0, map->texture, (GLint)level, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
   abbe_gpu_dispatch_2d(gpu, program, scene_of(map)->plan->desc.map_size >> level, rows >> level);
-  gpu->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+  gpu->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT |
+                         GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
 /* Coarse to fine: each level takes over what the coarser ones hold; so many rows of a layer. */

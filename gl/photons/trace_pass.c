@@ -148,6 +148,8 @@ void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set s
   abbe_gpu_bind_storage(gpu, BINDING_HITS, hits->hits);
   abbe_gpu_bind_storage(gpu, BINDING_SIGNATURES, hits->signatures);
   abbe_gpu_bind_storage(gpu, BINDING_PATH_MARKS, hits->marks);
+  /* Declared, and read of refined photons alone, whose pass binds their list. */
+  abbe_gpu_bind_storage(gpu, BINDING_PAIRS, hits->paths);
 }
 
 static size_t groups_of(size_t threads) {
@@ -163,7 +165,8 @@ void abbe_trace_pass_end(abbe_trace_pass *pass, const abbe_hits *hits, size_t it
   abbe_gpu_set_uint(gpu, pass->list_paths, "items", items);
   abbe_gpu_bind_storage(gpu, BINDING_PATHS, hits->paths);
   abbe_gpu_dispatch(gpu, pass->list_paths, groups_of(paths));
-  gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
+                          GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 static void trace_batch(abbe_trace_pass *pass, size_t light, size_t first, size_t count,
