@@ -9,12 +9,7 @@
 
 void abbe_shaft_photons_flush(abbe_shaft_photons *s) {
   if (s->waiting == 0) return;
-  struct RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  _Alignas(64) int valid[ABBE_SHAFT_LANES];
-  for (size_t k = 0; k < ABBE_SHAFT_LANES; k++) valid[k] = k < s->waiting ? -1 : 0;
-  rtcOccluded16(valid, s->geometry->embree, &context, &s->packet);
+  abbe_embree_occluded_16(s->geometry->embree, &s->packet, s->waiting);
   for (size_t k = 0; k < s->waiting; k++)
     if (!(s->packet.tfar[k] < 0)) s->add(s->user, &s->splat[k]);
   s->rays += s->waiting;

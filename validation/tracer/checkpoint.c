@@ -143,7 +143,7 @@ static void describe(const abbe_tracer *t, char *out, size_t size) {
       abbe_rgb_space_name(d->space), usual ? "" : ", observer ",
       usual ? "" : abbe_observer_name(d->observer), d->photons, (unsigned)d->seed,
       (unsigned long long)hash_scene(t), (unsigned long long)hash_layout(t),
-      abbe_geometry_instructions(&t->geometry));
+      t->geometry.instructions);
 }
 
 /* ---- the numbers ---- */
@@ -194,8 +194,8 @@ static abbe_result refuse(const char *path, const char *theirs, int n, const cha
           ? "%s belongs to another scene, or to another state of this one (%.*s, not %.*s): start "
             "anew without --resume"
       : strncmp(theirs, "instructions ", 13) == 0
-          ? "%s was made with other instructions of a processor (%.*s, here %.*s), whose last bits "
-            "differ: go on with it, and put parts together, where it was made"
+          ? "%s was made with other instructions of a processor or another Embree (%.*s, here %.*s), "
+            "whose last bits differ: go on with it, and put parts together, where it was made"
           : "%s was made with '%.*s', this run asks for '%.*s': ask for the same, or start anew "
             "without --resume";
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT, text, path, n, theirs, m, ours);

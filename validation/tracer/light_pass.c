@@ -129,12 +129,7 @@ static void add_shaft(void *user, const abbe_shaft_splat *p) {
 static uint64_t flush_splats(const sink *s, struct RTCRay16 *packet, const splat *splats,
                              size_t count) {
   if (count == 0) return 0;
-  struct RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  _Alignas(64) int valid[16];
-  for (size_t k = 0; k < 16; k++) valid[k] = k < count ? -1 : 0;
-  rtcOccluded16(valid, s->t->geometry.embree, &context, packet);
+  abbe_embree_occluded_16(s->t->geometry.embree, packet, count);
   for (size_t k = 0; k < count; k++)
     if (!(packet->tfar[k] < 0)) add_splat(s, &splats[k]);
   return count;

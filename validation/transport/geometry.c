@@ -2,6 +2,7 @@
 
 #include "scenes/geometry/vector.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -289,18 +290,24 @@ static bool add_objects(abbe_geometry *g) {
 }
 
 /* Rays by sixteen take AVX-512, and by eight AVX, whose bits are those of SSE, or AVX2. */
-const char *abbe_geometry_instructions(const abbe_geometry *g) {
+static const char *processor_instructions(RTCDevice device) {
 #ifdef __x86_64__
-  if (rtcGetDeviceProperty(g->device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0)
+  if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0)
     return "avx512";
-  return rtcGetDeviceProperty(g->device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0 &&
+  return rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0 &&
                  __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")
              ? "avx2"
              : "sse";
 #else
-  (void)g;
+  (void)device;
   return "other";
 #endif
+}
+
+static void describe_arithmetic(abbe_geometry *g) {
+  const long version = (long)rtcGetDeviceProperty(g->device, RTC_DEVICE_PROPERTY_VERSION);
+  snprintf(g->instructions, sizeof g->instructions, "%s, Embree %ld.%ld.%ld",
+           processor_instructions(g->device), version / 10000, version / 100 % 100, version % 100);
 }
 
 /* One thread builds the hierarchy: its shape, and so the winner of a tie at an edge, is the same
@@ -315,6 +322,7 @@ abbe_result abbe_geometry_make(const abbe_scene *scene, abbe_geometry *out, abbe
   if (result == ABBE_OK) {
     g.device = rtcNewDevice("threads=1,set_affinity=0,ignore_config_files=1");
     if (g.device != NULL) g.embree = rtcNewScene(g.device);
+    if (g.device != NULL) describe_arithmetic(&g);
     bool made = g.embree != NULL;
     if (made) {
       rtcSetSceneFlags(g.embree, RTC_SCENE_FLAG_ROBUST);
@@ -370,12 +378,10 @@ static struct RTCRay ray_of(unsigned mask, const float o[3], const float d[3], f
 
 bool abbe_geometry_hit(const abbe_geometry *g, unsigned mask, const float o[3], const float d[3],
                        float limit, abbe_hit *hit) {
-  struct RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   struct RTCRayHit r = {.ray = ray_of(mask, o, d, limit)};
   r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(g->embree, &context, &r);
+  abbe_embree_intersect(g->embree, &r);
   if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   abbe_geometry_place(&g->surface[r.hit.geomID], r.hit.primID, r.hit.u, r.hit.v, o, d, r.ray.tfar,
                       hit);
@@ -384,9 +390,7 @@ bool abbe_geometry_hit(const abbe_geometry *g, unsigned mask, const float o[3], 
 
 bool abbe_geometry_occluded(const abbe_geometry *g, unsigned mask, const float o[3],
                             const float d[3], float limit) {
-  struct RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   struct RTCRay r = ray_of(mask, o, d, limit);
-  rtcOccluded1(g->embree, &context, &r);
+  abbe_embree_occluded(g->embree, &r);
   return r.tfar < 0;
 }

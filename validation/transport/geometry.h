@@ -11,9 +11,9 @@
 
 #include "base/error.h"
 #include "scenes/scene.h"
+#include "validation/transport/embree.h"
 #include "validation/transport/solid.h"
 
-#include <embree3/rtcore.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -73,6 +73,9 @@ typedef struct abbe_geometry {
   abbe_solid *solid;          /* [refractor_count] */
   RTCDevice device;
   RTCScene embree;
+  /* On what the last bits of a trace depend: the instructions that Embree takes of this processor
+   * ("avx512", "avx2", "sse", "other"), and Embree's version: "avx2, Embree 3.13.5". */
+  char instructions[48];
 } abbe_geometry;
 
 /* ABBE_UNSUPPORTED for more than 64 refractors, or for one thinner than eight times what a ray
@@ -80,11 +83,6 @@ typedef struct abbe_geometry {
  * has none. */
 abbe_result abbe_geometry_make(const abbe_scene *scene, abbe_geometry *out, abbe_error *error);
 void abbe_geometry_free(abbe_geometry *geometry);
-/* Which instructions of this processor Embree takes, whose last bits differ: "avx512", "avx2",
- * "sse", or "other". It is asked of Embree, which may be built without those that a processor has.
- */
-const char *abbe_geometry_instructions(const abbe_geometry *g);
-
 void abbe_geometry_to_frame(const abbe_geometry *g, const double world[3], float frame[3]);
 void abbe_geometry_to_world(const abbe_geometry *g, const float frame[3], double world[3]);
 

@@ -66,9 +66,8 @@ uint64_t abbe_lone_object_key(const abbe_lone_object *lone, const abbe_media *me
   const abbe_mesh *mesh = &lone->object.mesh;
   const double ball[4] = {(double)s->radius, (double)s->centre[0], (double)s->centre[1],
                           (double)s->centre[2]};
-  const char *instructions = abbe_geometry_instructions(g);
   h = materials_key(media, mirrors, h);
-  h = abbe_volume_key(h, instructions, strlen(instructions));
+  h = abbe_volume_key(h, g->instructions, strlen(g->instructions));
   h = abbe_volume_key(h, g->origin, sizeof g->origin);
   h = abbe_volume_key(h, &g->unit, sizeof g->unit);
   h = abbe_volume_key(h, &s->kind, sizeof s->kind);

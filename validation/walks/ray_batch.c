@@ -23,24 +23,6 @@ void abbe_ray_record_keep_shadow(abbe_ray_record *r, const struct RTCRay16 *pack
   for (size_t k = 0; k < LANES; k++) to->flags[k] = k < lanes ? KEPT : 0;
 }
 
-static void occlude_packet(RTCScene scene, struct RTCRay16 *packet, size_t lanes) {
-  struct RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  _Alignas(64) int valid[LANES];
-  for (size_t k = 0; k < LANES; k++) valid[k] = k < lanes ? -1 : 0;
-  rtcOccluded16(valid, scene, &context, packet);
-}
-
-static void trace_packet(RTCScene scene, struct RTCRayHit16 *packet, size_t lanes, bool coherent) {
-  struct RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  _Alignas(64) int valid[LANES];
-  for (size_t k = 0; k < LANES; k++) valid[k] = k < lanes ? -1 : 0;
-  rtcIntersect16(valid, scene, &context, packet);
-}
-
 void abbe_ray_batch_trace(struct RTCRayHit16 *packets, size_t count, bool coherent, RTCScene scene,
                           abbe_ray_record *record) {
   for (size_t first = 0; first < count; first += LANES) {
@@ -48,14 +30,14 @@ void abbe_ray_batch_trace(struct RTCRayHit16 *packets, size_t count, bool cohere
     abbe_ray_reset(&packets[first / LANES]);
     if (record->packet != NULL)
       abbe_ray_record_keep(record, &packets[first / LANES], lanes, coherent);
-    trace_packet(scene, &packets[first / LANES], lanes, coherent);
+    abbe_embree_intersect_16(scene, &packets[first / LANES], lanes, coherent);
   }
 }
 
 void abbe_ray_batch_occlude(struct RTCRay16 *packet, size_t lanes, RTCScene scene,
                             abbe_ray_record *record) {
   if (record->packet != NULL) abbe_ray_record_keep_shadow(record, packet, lanes);
-  occlude_packet(scene, packet, lanes);
+  abbe_embree_occluded_16(scene, packet, lanes);
 }
 
 void abbe_ray_record_make(size_t packets, abbe_ray_record *out) {
@@ -90,12 +72,12 @@ bool abbe_ray_record_replay(abbe_ray_record *r, RTCScene scene, double *seconds,
     struct RTCRayHit16 *packet = &r->packet[i];
     const bool coherent = (packet->ray.flags[0] & KEPT_COHERENT) != 0;
     const size_t lanes = lanes_kept(packet->ray.flags);
-    trace_packet(scene, packet, lanes, coherent);
+    abbe_embree_intersect_16(scene, packet, lanes, coherent);
     *rays += lanes;
   }
   for (size_t i = 0; i < r->shadows; i++) {
     const size_t lanes = lanes_kept(r->shadow[i].flags);
-    occlude_packet(scene, &r->shadow[i], lanes);
+    abbe_embree_occluded_16(scene, &r->shadow[i], lanes);
     *rays += lanes;
   }
   *seconds = abbe_clock_seconds() - start_s;
