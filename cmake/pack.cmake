@@ -23,7 +23,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_MAIN_PACKAGE_NAME abbe)
 # Loaded when a context is wanted, so that no linker tells of it.
-set(CPACK_DEBIAN_MAIN_PACKAGE_DEPENDS "libosmesa6")
+set(CPACK_DEBIAN_MAIN_PACKAGE_DEPENDS "libegl-mesa0 | libosmesa6")
 set(CPACK_DEBIAN_MAIN_PACKAGE_RECOMMENDS "python3-numpy")
 if(ABBE_MPI)
   list(APPEND CPACK_COMPONENTS_ALL mpi)

@@ -7,7 +7,7 @@
 
 typedef struct request {
   abbe_render_desc desc;
-  int profile, fill, model, transport, strategy, footprint, space, observer, gl;
+  int profile, fill, model, transport, strategy, footprint, space, observer, backend;
 } request;
 
 #define NAME_OF_2(code, name) name,
@@ -52,7 +52,7 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
       ABBE_LIB_CHOICE("footprint", &q->footprint, footprints),
       ABBE_LIB_CHOICE("space", &q->space, spaces),
       ABBE_LIB_CHOICE("observer", &q->observer, observers),
-      ABBE_LIB_CHOICE("gl", &q->gl, backends),
+      ABBE_LIB_CHOICE("backend", &q->backend, backends),
       ABBE_LIB_FLAG("aovs", &d->aovs)};
   abbe_result result = abbe_library_settings_read("render", known, sizeof known / sizeof *known,
                                                   settings, count, error);
@@ -71,7 +71,7 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
 static abbe_result prepare(abbe_lib_scene *s, const request *q, abbe_error *error) {
   abbe_result result = ABBE_OK;
   if (s->context == NULL)
-    result = abbe_context_make((abbe_context_backend)q->gl, &s->context, error);
+    result = abbe_context_make((abbe_context_backend)q->backend, &s->context, error);
   if (result != ABBE_OK) return result;
   result = s->renderer == NULL
                ? abbe_renderer_make(s->context, s->now, &q->desc, &s->renderer, error)

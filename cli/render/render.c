@@ -25,7 +25,7 @@ enum {
   OPTION_UNFILLED,
   OPTION_BANDS,
   OPTION_STATS,
-  OPTION_GL,
+  OPTION_BACKEND,
   OPTION_FRAMES,
   OPTION_JSON,
   OPTION_MOVE
@@ -49,7 +49,7 @@ static const struct argp_option options[] = {
      "and FILE.png that moves",
      0},
     ABBE_FRAME_SERIES_MOVE(OPTION_MOVE, 0),
-    {"gl", OPTION_GL, "NAME", 0, "osmesa (CPU) or egl (osmesa)", 0},
+    {"backend", OPTION_BACKEND, "NAME", 0, "cpu, gpu, or auto: a GPU where there is one (auto)", 0},
     {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
     {0}};
 
@@ -67,7 +67,9 @@ static void check_ranks(const request *q, struct argp_state *state) {
 }
 
 static error_t parse(int key, char *text, struct argp_state *state) {
-  static const char *const backends[] = {"osmesa", "egl"};
+#define NAME_OF(code, name) name,
+  static const char *const backends[] = {ABBE_CONTEXT_BACKENDS(NAME_OF)};
+#undef NAME_OF
   request *q = state->input;
   const char *p = q->render.program;
   switch (key) {
@@ -112,8 +114,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_MOVE:
     abbe_frame_series_take_move(&q->series, &q->render.changes, text);
     return 0;
-  case OPTION_GL:
-    q->backend = (abbe_context_backend)abbe_command_choice(p, "--gl", text, backends, 2);
+  case OPTION_BACKEND:
+    q->backend = (abbe_context_backend)abbe_command_choice(p, "--backend", text, backends,
+                                                           ABBE_CONTEXT_BACKEND_COUNT);
     return 0;
   case 'q':
     q->quiet = true;

@@ -48,7 +48,7 @@ enum {
   OPTION_DECOMPOSE,
   OPTION_TRACE_ONLY,
   OPTION_MATERIALS,
-  OPTION_GL,
+  OPTION_BACKEND,
   OPTION_LIST,
   OPTION_PART,
   OPTION_JSON
@@ -115,7 +115,7 @@ static const struct argp_option options[] = {
     {"processes", OPTION_PROCESSES, NULL, 0,
      "time whole processes too: warm ones, and cold ones of each contestant's front", 1},
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
-    {"gl", OPTION_GL, "NAME", 0, "osmesa (CPU) or egl (osmesa)", 1},
+    {"backend", OPTION_BACKEND, "NAME", 0, "cpu, gpu, or auto: a GPU where there is one (auto)", 1},
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS, "a table instead of the scene's",
      1},
     {"list", OPTION_LIST, NULL, 0, "only say which settings the grid has", 1},
@@ -334,14 +334,14 @@ static void finish(request *q, struct argp_state *state) {
   if (q->scaling && (q->listed || q->grid != NULL || q->traced || q->report != NULL || q->json ||
                      w->traced.width != w->traced.height || q->list_only))
     argp_error(state,
-               "--scaling times frames: it goes with -o, --plot, --frames, --gl, --materials "
+               "--scaling times frames: it goes with -o, --plot, --frames, --backend, --materials "
                "and a square --size alone");
   if (abbe_sweep_options_compares_transports(q) &&
       (w->reference == NULL || q->traced || q->report != NULL || q->json || q->plot != NULL ||
        q->list_only || q->part.parts > 0 || w->reference_map != NULL || q->processes))
     argp_error(state,
                "--grid %s draws beside a traced picture: it goes with -o, --reference FILE.exr, "
-               "--frames, --gl and --materials alone",
+               "--frames, --backend and --materials alone",
                q->grid);
   bool named = w->reference != NULL || w->reference_map != NULL;
   if (named && q->traced)
@@ -420,8 +420,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     abbe_command_size(q->program, "--size", text, ABBE_RENDER_MAX_SIDE, &w->traced.width,
                       &w->traced.height);
     return 0;
-  case OPTION_GL:
-    q->backend = (abbe_context_backend)abbe_command_choice(q->program, "--gl", text, backends,
+  case OPTION_BACKEND:
+    q->backend = (abbe_context_backend)abbe_command_choice(q->program, "--backend", text, backends,
                                                            ABBE_CONTEXT_BACKEND_COUNT);
     return 0;
   case OPTION_MATERIALS:

@@ -74,7 +74,7 @@ abbe_result abbe_view_hidden_begin(abbe_view_hidden *h, const abbe_view_app_desc
   abbe_view_app_desc own = *desc;
   h->input = (abbe_ui_input){.mouse = {-1, -1}};
   if (own.wake == NULL) own.wake = wake;
-  abbe_result result = abbe_context_make(ABBE_CONTEXT_EGL, &h->context, error);
+  abbe_result result = abbe_context_make(ABBE_CONTEXT_AUTO, &h->context, error);
   if (result != ABBE_OK) return result;
   h->gl = abbe_context_gl(h->context);
   h->last_s = abbe_clock_seconds();

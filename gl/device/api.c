@@ -12,8 +12,8 @@ abbe_result abbe_gl_load(abbe_gl_lookup lookup, abbe_gl *out, abbe_error *error)
   function = lookup("gl" #name);                                                                   \
   if (function == NULL)                                                                            \
     return abbe_error_set(error, ABBE_GL,                                                          \
-                          "this OpenGL has no gl" #name "; Abbe needs OpenGL 4.5: try "            \
-                          "another --gl, osmesa or egl, or a newer driver");                       \
+                          "this OpenGL has no gl" #name "; Abbe needs OpenGL 4.5: use a newer "    \
+                          "driver, or another --backend");                                         \
   memcpy(&out->name, &function, sizeof function);
   ABBE_GL_FUNCTIONS(ABBE_GL_LOAD)
 #undef ABBE_GL_LOAD

@@ -66,6 +66,8 @@
 /* A list that becomes the size of a dispatch. */
 #define BINDING_DISPATCH 26
 
+#define BINDING_COUNT 35
+
 /* Texture units that keep what they show; passes bind theirs below and say so. */
 #define UNIT_BVH_NODES 7
 #define UNIT_BVH_TRIANGLES 8

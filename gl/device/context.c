@@ -1,5 +1,6 @@
 #include "gl/device/context.h"
 
+#include "gl/device/bindings.h"
 #include "gl/device/context_backend.h"
 
 #include <stdio.h>
@@ -23,8 +24,10 @@ const char *abbe_context_backend_name(abbe_context_backend backend) {
   return (int)backend >= 0 && backend < ABBE_CONTEXT_BACKEND_COUNT ? names[backend] : "unknown";
 }
 
-static const char *const remedies[] = {"use --gl egl, or a newer driver",
-                                       "use --gl osmesa, or a newer driver"};
+static const char *const remedies[] = {
+    [ABBE_CONTEXT_CPU] = "use a newer Mesa, or --backend gpu",
+    [ABBE_CONTEXT_GPU] = "use a newer driver, or --backend cpu",
+};
 static const char adopted_remedy[] = "have a context of 4.5 or later current when it is adopted";
 
 /* A name that a driver does not tell. */
@@ -51,7 +54,9 @@ static abbe_result check_limits(const abbe_context *context, abbe_error *error) 
     const char *what;
   } limits[] = {
       {GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, 16, "storage buffers in a compute shader"},
-      {GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, 16, "places for storage buffers"},
+      {GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, BINDING_COUNT, "places for storage buffers"},
+      {GL_MAX_UNIFORM_BUFFER_BINDINGS, BINDING_COUNT, "places for uniform buffers"},
+      {GL_MAX_UNIFORM_BLOCK_SIZE, 1 << 16, "bytes in a uniform buffer"},
       {GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, 512, "invocations in a compute group"},
       {GL_MAX_COLOR_ATTACHMENTS, 8, "colour attachments"},
       {GL_MAX_TEXTURE_SIZE, 4096, "texels a side of a texture"},
@@ -80,19 +85,53 @@ static abbe_result finish(abbe_context *context, abbe_gl_lookup lookup, abbe_res
   return result;
 }
 
+/* One context of CPU or GPU: EGL's device of that number, or OSMesa's. */
+static abbe_result make_one(abbe_context_backend kind, bool osmesa, size_t device,
+                            abbe_context **out, abbe_error *error) {
+  abbe_context *context = calloc(1, sizeof *context);
+  if (context == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a GL context");
+  context->name = names[kind];
+  context->remedy = remedies[kind];
+  const abbe_result result =
+      osmesa ? abbe_context_osmesa(&context->native, error)
+             : abbe_context_egl(kind == ABBE_CONTEXT_CPU, device, &context->native, error);
+  return finish(context, context->native.lookup, result, out, error);
+}
+
+/* EGL's devices in turn, then OSMesa for the CPU; the error is of the last that is there. */
+static abbe_result make_of_kind(abbe_context_backend kind, abbe_context **out, abbe_error *error) {
+  abbe_error last = {0};
+  abbe_result result = ABBE_UNSUPPORTED;
+  bool osmesa = false, more = true;
+  for (size_t device = 0; more; device++) {
+    const abbe_result one = make_one(kind, osmesa, device, out, &last);
+    if (one == ABBE_OK) return ABBE_OK;
+    if (one != ABBE_UNSUPPORTED) {
+      result = one;
+      if (error != NULL) *error = last;
+    }
+    more = !osmesa && (one != ABBE_UNSUPPORTED || kind == ABBE_CONTEXT_CPU);
+    osmesa = one == ABBE_UNSUPPORTED;
+  }
+  if (result != ABBE_UNSUPPORTED) return result;
+  if (kind == ABBE_CONTEXT_GPU)
+    return abbe_error_set(error, ABBE_GL,
+                          "there is no GPU with an EGL driver; install its driver, or use "
+                          "--backend cpu");
+  return abbe_error_set(error, ABBE_GL,
+                        "there is no OpenGL for the CPU: neither EGL's software device nor OSMesa "
+                        "is found; install Mesa's EGL (Debian's libegl-mesa0), or use --backend "
+                        "gpu");
+}
+
 abbe_result abbe_context_make(abbe_context_backend backend, abbe_context **out, abbe_error *error) {
   ABBE_REQUIRE(out, error);
   *out = NULL;
   if ((int)backend < 0 || backend >= ABBE_CONTEXT_BACKEND_COUNT)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no GL back end %d", (int)backend);
-  abbe_context *context = calloc(1, sizeof *context);
-  if (context == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a GL context");
-  context->name = names[backend];
-  context->remedy = remedies[backend];
-  const abbe_result result = backend == ABBE_CONTEXT_EGL
-                                 ? abbe_context_egl(&context->native, error)
-                                 : abbe_context_osmesa(&context->native, error);
-  return finish(context, context->native.lookup, result, out, error);
+  if (backend == ABBE_CONTEXT_AUTO && make_of_kind(ABBE_CONTEXT_GPU, out, NULL) == ABBE_OK)
+    return ABBE_OK;
+  return make_of_kind(backend == ABBE_CONTEXT_AUTO ? ABBE_CONTEXT_CPU : backend, out, error);
 }
 
 abbe_result abbe_context_adopt(const abbe_context_host *host, abbe_context **out,

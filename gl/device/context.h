@@ -1,10 +1,11 @@
-/* context.h: an OpenGL 4.5 context: one of Abbe's own off screen, by OSMesa or by EGL, or one that
- * the caller owns.
+/* context.h: an OpenGL 4.5 context: one of Abbe's own off screen, on the CPU or on a GPU, or one
+ * that the caller owns.
  *
  * A process may have many. OpenGL knows one current context a thread, and a context is current on
  * one thread at a time: what draws makes its own current first (abbe_context_make_current) and
- * leaves it so. Nothing is drawn to a window: every pass renders to textures. OSMesa draws on the
- * CPU; EGL without a surface drives a GPU where there is one.
+ * leaves it so. Nothing is drawn to a window: every pass renders to textures. Abbe's own contexts
+ * are EGL's without a surface: EGL lists its devices, of which one is Mesa's rasteriser on the CPU.
+ * Where EGL has no such device, OSMesa is the CPU's.
  */
 #ifndef ABBE_GL_DEVICE_CONTEXT_H
 #define ABBE_GL_DEVICE_CONTEXT_H
@@ -19,9 +20,9 @@ extern "C" {
 #endif
 
 /* X(code, name on the command line) */
-#define ABBE_CONTEXT_BACKENDS(X) X(OSMESA, "osmesa") X(EGL, "egl")
+#define ABBE_CONTEXT_BACKENDS(X) X(AUTO, "auto") X(CPU, "cpu") X(GPU, "gpu")
 
-/* Zero is OSMesa, which every machine has. */
+/* AUTO is the GPU where one gives a context that suffices, and else the CPU. */
 typedef enum abbe_context_backend {
 #define ABBE_CONTEXT_ENUM(code, name) ABBE_CONTEXT_##code,
   ABBE_CONTEXT_BACKENDS(ABBE_CONTEXT_ENUM)
@@ -31,9 +32,9 @@ typedef enum abbe_context_backend {
 
 typedef struct abbe_context abbe_context;
 
-/* Makes a context and makes it current. ABBE_GL says what is missing and what to do;
- * ABBE_UNSUPPORTED for EGL in a build without its headers. EGL's display stays open until the
- * process ends: contexts of others may live on it. */
+/* Makes a context and makes it current. Every device of the kind that is asked for is tried in
+ * EGL's order. ABBE_GL names the last driver that was tried, what it lacks and what to do. EGL's
+ * display stays open until the process ends: contexts of others may live on it. */
 abbe_result abbe_context_make(abbe_context_backend backend, abbe_context **out, abbe_error *error);
 
 /* A context of the caller's. */
@@ -62,7 +63,7 @@ void abbe_context_free(abbe_context *context);
 abbe_result abbe_context_make_current(abbe_context *context, abbe_error *error);
 
 const abbe_gl *abbe_context_gl(const abbe_context *context);
-/* "osmesa: llvmpipe (LLVM 15…), OpenGL 4.5 …", also "egl: …" and "adopted: …"; owned by the
+/* "cpu: llvmpipe (LLVM 15…), OpenGL 4.5 …", also "gpu: …" and "adopted: …"; owned by the
  * context. */
 const char *abbe_context_description(const abbe_context *context);
 const char *abbe_context_backend_name(abbe_context_backend backend);

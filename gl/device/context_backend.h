@@ -5,6 +5,7 @@
 #include "gl/device/api.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 
 typedef struct abbe_context_native {
   void *handle[4]; /* the back end's own */
@@ -14,7 +15,11 @@ typedef struct abbe_context_native {
   void (*destroy)(struct abbe_context_native *native);
 } abbe_context_native;
 
+/* ABBE_UNSUPPORTED where the library is not there. */
 abbe_result abbe_context_osmesa(abbe_context_native *out, abbe_error *error);
-abbe_result abbe_context_egl(abbe_context_native *out, abbe_error *error);
+/* The device of that number among EGL's of this kind, software or not; ABBE_UNSUPPORTED beyond the
+ * last. */
+abbe_result abbe_context_egl(bool software, size_t device, abbe_context_native *out,
+                             abbe_error *error);
 
 #endif

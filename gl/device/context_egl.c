@@ -6,6 +6,14 @@
 #include <EGL/eglext.h>
 #include <string.h>
 
+static const char *kind_of(bool software) {
+  return software ? "software" : "GPU";
+}
+
+static const char *other_than(bool software) {
+  return software ? "--backend gpu" : "--backend cpu";
+}
+
 /* Binds nothing, then the context: EGL passes over a bind of what it takes for current, which an
  * OSMesa context of the same Mesa may have replaced without EGL's knowledge. The thread's API is
  * the caller's. */
@@ -32,75 +40,86 @@ static void destroy(abbe_context_native *native) {
   eglDestroyContext(display, (EGLContext)native->handle[1]);
 }
 
-/* A device's own display first (a GPU without a window system), then Mesa's surfaceless one, then
- * whatever the default is; the first that initialises is taken. */
-static EGLDisplay open_display(void) {
+/* EGL's device of that number among the software ones or the others; NULL beyond the last. */
+static EGLDeviceEXT find_device(bool software, size_t number) {
   PFNEGLQUERYDEVICESEXTPROC query =
       (PFNEGLQUERYDEVICESEXTPROC)eglGetProcAddress("eglQueryDevicesEXT");
-  PFNEGLGETPLATFORMDISPLAYEXTPROC platform =
-      (PFNEGLGETPLATFORMDISPLAYEXTPROC)eglGetProcAddress("eglGetPlatformDisplayEXT");
-  EGLDeviceEXT devices[16];
+  PFNEGLQUERYDEVICESTRINGEXTPROC describe =
+      (PFNEGLQUERYDEVICESTRINGEXTPROC)eglGetProcAddress("eglQueryDeviceStringEXT");
+  enum { MOST = 64 };
+  EGLDeviceEXT devices[MOST];
   EGLint count = 0;
-  if (platform != NULL && query != NULL && query(16, devices, &count))
-    for (EGLint i = 0; i < count; i++) {
-      EGLDisplay display = platform(EGL_PLATFORM_DEVICE_EXT, devices[i], NULL);
-      if (display != EGL_NO_DISPLAY && eglInitialize(display, NULL, NULL)) return display;
-    }
-  if (platform != NULL) {
-    EGLDisplay display = platform(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
-    if (display != EGL_NO_DISPLAY && eglInitialize(display, NULL, NULL)) return display;
+  if (query == NULL || describe == NULL || !query(MOST, devices, &count)) return NULL;
+  for (EGLint i = 0; i < count; i++) {
+    const char *extensions = describe(devices[i], EGL_EXTENSIONS);
+    const bool is_software =
+        extensions != NULL && strstr(extensions, "EGL_MESA_device_software") != NULL;
+    if (is_software == software && number-- == 0) return devices[i];
   }
-  EGLDisplay display = eglGetDisplay(EGL_DEFAULT_DISPLAY);
-  if (display != EGL_NO_DISPLAY && eglInitialize(display, NULL, NULL)) return display;
-  return EGL_NO_DISPLAY;
+  return NULL;
 }
 
-abbe_result abbe_context_egl(abbe_context_native *out, abbe_error *error) {
+static EGLDisplay open_display(EGLDeviceEXT device) {
+  PFNEGLGETPLATFORMDISPLAYEXTPROC platform =
+      (PFNEGLGETPLATFORMDISPLAYEXTPROC)eglGetProcAddress("eglGetPlatformDisplayEXT");
+  if (platform == NULL) return EGL_NO_DISPLAY;
+  EGLDisplay display = platform(EGL_PLATFORM_DEVICE_EXT, device, NULL);
+  const bool opened = display != EGL_NO_DISPLAY && eglInitialize(display, NULL, NULL);
+  return opened ? display : EGL_NO_DISPLAY;
+}
+
+abbe_result abbe_context_egl(bool software, size_t device, abbe_context_native *out,
+                             abbe_error *error) {
+  static const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
+                                  EGL_NONE};
+  static const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                      4,
+                                      EGL_CONTEXT_MINOR_VERSION,
+                                      5,
+                                      EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                      EGL_NONE};
   out->handle[0] = EGL_NO_DISPLAY;
   out->lookup = (abbe_gl_lookup)eglGetProcAddress;
   out->make_current = make_current;
   out->destroy = destroy;
-  EGLDisplay display = open_display();
+  const EGLDeviceEXT found = find_device(software, device);
+  if (found == NULL)
+    return abbe_error_set(error, ABBE_UNSUPPORTED, "EGL has no %s device", kind_of(software));
+  EGLDisplay display = open_display(found);
   if (display == EGL_NO_DISPLAY)
-    return abbe_error_set(error, ABBE_GL,
-                          "EGL finds no display; install a GL driver with EGL or "
-                          "use --gl osmesa");
+    return abbe_error_set(error, ABBE_GL, "EGL's %s device does not open (EGL error 0x%x); use %s",
+                          kind_of(software), (unsigned)eglGetError(), other_than(software));
   out->handle[0] = display;
-  const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
-  const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                               4,
-                               EGL_CONTEXT_MINOR_VERSION,
-                               5,
-                               EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                               EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                               EGL_NONE};
   EGLConfig config = NULL;
   EGLContext context = EGL_NO_CONTEXT;
-  EGLint found = 0;
+  EGLint configs = 0;
   const EGLenum api = eglQueryAPI();
   eglBindAPI(EGL_OPENGL_API);
-  if (eglChooseConfig(display, wanted, &config, 1, &found) && found > 0)
+  if (eglChooseConfig(display, wanted, &config, 1, &configs) && configs > 0)
     context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
   eglBindAPI(api);
-  if (found == 0)
-    return abbe_error_set(error, ABBE_GL, "EGL has no configuration for OpenGL; use --gl osmesa");
+  const char *driver = eglQueryString(display, EGL_VENDOR);
+  if (driver == NULL) driver = "unnamed";
   if (context == EGL_NO_CONTEXT)
-    return abbe_error_set(error, ABBE_GL, "EGL gives no OpenGL 4.5 core context; use --gl osmesa");
+    return abbe_error_set(error, ABBE_GL,
+                          "EGL's %s device (%s) gives no OpenGL 4.5 core context; use %s",
+                          kind_of(software), driver, other_than(software));
   out->handle[1] = context;
   if (!make_current(out))
     return abbe_error_set(error, ABBE_GL,
-                          "EGL's context cannot be made current without a "
-                          "surface; use --gl osmesa");
+                          "the context of EGL's %s device (%s) cannot be made current without a "
+                          "surface; use %s",
+                          kind_of(software), driver, other_than(software));
   return ABBE_OK;
 }
 
 #else
 
-abbe_result abbe_context_egl(abbe_context_native *out, abbe_error *error) {
-  (void)out;
-  return abbe_error_set(error, ABBE_UNSUPPORTED,
-                        "this build has no EGL; install libegl-dev and build again, or use "
-                        "--gl osmesa");
+abbe_result abbe_context_egl(bool software, size_t device, abbe_context_native *out,
+                             abbe_error *error) {
+  (void)software, (void)device, (void)out;
+  return abbe_error_set(error, ABBE_UNSUPPORTED, "this build has no EGL");
 }
 
 #endif

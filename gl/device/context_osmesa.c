@@ -1,5 +1,7 @@
 #include "gl/device/context_backend.h"
 
+#ifdef ABBE_HAVE_OSMESA
+
 #include <GL/osmesa.h>
 #include <dlfcn.h>
 #include <pthread.h>
@@ -50,9 +52,7 @@ static abbe_result need_mesa(abbe_error *error) {
   const bool loaded = mesa.loaded;
   pthread_mutex_unlock(&loading);
   if (loaded) return ABBE_OK;
-  return abbe_error_set(error, ABBE_GL,
-                        "%s is not found; install OSMesa (Debian's libosmesa6) or try --gl egl",
-                        mesa.lacks);
+  return abbe_error_set(error, ABBE_UNSUPPORTED, "%s is not found", mesa.lacks);
 }
 
 static abbe_gl_function lookup(const char *name) {
@@ -98,10 +98,20 @@ abbe_result abbe_context_osmesa(abbe_context_native *out, abbe_error *error) {
   OSMesaContext context = mesa.create(attributes, NULL);
   if (context == NULL)
     return abbe_error_set(error, ABBE_GL,
-                          "OSMesa gives no OpenGL 4.5 core context; use Mesa 22 "
-                          "or try --gl egl");
+                          "OSMesa gives no OpenGL 4.5 core context; use a newer Mesa, or "
+                          "--backend gpu");
   out->handle[0] = context;
   if (!make_current(out))
-    return abbe_error_set(error, ABBE_GL, "OSMesa's context cannot be made current; try --gl egl");
+    return abbe_error_set(error, ABBE_GL,
+                          "OSMesa's context cannot be made current; use --backend gpu");
   return ABBE_OK;
 }
+
+#else
+
+abbe_result abbe_context_osmesa(abbe_context_native *out, abbe_error *error) {
+  (void)out;
+  return abbe_error_set(error, ABBE_UNSUPPORTED, "this build has no OSMesa");
+}
+
+#endif

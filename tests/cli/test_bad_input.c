@@ -225,7 +225,7 @@ static void test_wrong_use(void **state) {
       {GEM " --profile tesis" TO, "did you mean 'thesis'?"},
       {GEM " --fill smea" TO, "did you mean 'smear'?"},
       {GEM " --space srgb" TO, "acescg, rec709, xyz"},
-      {GEM " --gl vulkan" TO, "osmesa, egl"},
+      {GEM " --backend vulkan" TO, "auto, cpu, gpu"},
   };
   refuse_all(rows, sizeof rows / sizeof *rows, 2);
 }

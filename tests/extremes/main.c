@@ -19,7 +19,7 @@ static void run(void *user, const extreme *e) {
 int main(int count, char **argument) {
   state s = {NULL, extreme_report_make(count, argument)};
   abbe_error error = {0};
-  if (abbe_context_make(ABBE_CONTEXT_OSMESA, &s.context, &error) != ABBE_OK) {
+  if (abbe_context_make(ABBE_CONTEXT_CPU, &s.context, &error) != ABBE_OK) {
     fprintf(stderr, "%s\n", error.text);
     return 1;
   }

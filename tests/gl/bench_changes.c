@@ -166,7 +166,7 @@ static int bench_sun(bench *b, char **argument) {
   abbe_caustic_volume volume;
   abbe_error error;
   must(abbe_volume_file_read(argument[0], &volume, &error), &error);
-  must(abbe_context_make(ABBE_CONTEXT_OSMESA, &b->context, &error), &error);
+  must(abbe_context_make(ABBE_CONTEXT_CPU, &b->context, &error), &error);
   must(abbe_scene_load(argument[2], NULL, &b->scene, &error), &error);
   b->desc.width = b->desc.height = (size_t)strtoul(argument[1], NULL, 10);
   b->desc.volume = &volume;
@@ -204,7 +204,7 @@ int main(int argc, char **argv) {
                     "       bench_changes --sun VOLUME SIZE SCENE.yaml NAME\n");
     return 2;
   }
-  must(abbe_context_make(ABBE_CONTEXT_OSMESA, &b.context, &error), &error);
+  must(abbe_context_make(ABBE_CONTEXT_CPU, &b.context, &error), &error);
   b.desc.width = b.desc.height = (size_t)strtoul(argv[1], NULL, 10);
   b.desc.supersample = 1;
   printf("%zu x %zu, one sample a pixel, %s; ms\n\n", b.desc.width, b.desc.height,

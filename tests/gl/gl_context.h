@@ -11,7 +11,7 @@ static abbe_context *context;
 static inline int make_context(void **state) {
   abbe_error error = {0};
   (void)state;
-  if (abbe_context_make(ABBE_CONTEXT_OSMESA, &context, &error) == ABBE_OK) return 0;
+  if (abbe_context_make(ABBE_CONTEXT_CPU, &context, &error) == ABBE_OK) return 0;
   print_error("%s\n", error.text);
   return 1;
 }

@@ -14,7 +14,7 @@ static abbe_context *context;
 
 static int setup(void **state) {
   (void)state;
-  return abbe_context_make(ABBE_CONTEXT_OSMESA, &context, NULL) == ABBE_OK ? 0 : -1;
+  return abbe_context_make(ABBE_CONTEXT_CPU, &context, NULL) == ABBE_OK ? 0 : -1;
 }
 
 static int teardown(void **state) {
@@ -211,7 +211,7 @@ static void sums_are_pictures(void **state) {
   }
 }
 
-static bool stop(void *user, double done) {
+static bool stop_now(void *user, double done) {
   double *least = user;
   *least = fmin(*least, done);
   return done < 0.5;
@@ -235,7 +235,7 @@ static void refusals_and_cancelling(void **state) {
       ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "thesis");
   assert_int_equal(
-      abbe_band_picture_make(context, &scene, &frame, 4, stop, &least, &bands, &error),
+      abbe_band_picture_make(context, &scene, &frame, 4, stop_now, &least, &bands, &error),
       ABBE_CANCELLED);
   assert_true(least < 0.5 && bands.data == NULL);
   abbe_scene_free(&scene);

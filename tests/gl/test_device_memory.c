@@ -104,10 +104,13 @@ static abbe_gl_function lookup(const char *name) {
   return real_lookup(name);
 }
 
-abbe_result __real_abbe_context_osmesa(abbe_context_native *out, abbe_error *error);
-abbe_result __wrap_abbe_context_osmesa(abbe_context_native *out, abbe_error *error);
-abbe_result __wrap_abbe_context_osmesa(abbe_context_native *out, abbe_error *error) {
-  abbe_result result = __real_abbe_context_osmesa(out, error);
+abbe_result __real_abbe_context_egl(bool software, size_t device, abbe_context_native *out,
+                                    abbe_error *error);
+abbe_result __wrap_abbe_context_egl(bool software, size_t device, abbe_context_native *out,
+                                    abbe_error *error);
+abbe_result __wrap_abbe_context_egl(bool software, size_t device, abbe_context_native *out,
+                                    abbe_error *error) {
+  abbe_result result = __real_abbe_context_egl(software, device, out, error);
   real_lookup = out->lookup;
   if (result == ABBE_OK) result = abbe_gl_load(real_lookup, &real, error);
   out->lookup = lookup;

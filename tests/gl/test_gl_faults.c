@@ -14,6 +14,8 @@ static const char *hidden; /* a function that is not there */
 static GLenum lowered;     /* a limit that is `low` */
 static GLint low;
 static bool refused, mute, breaks; /* no context; no strings; shaders do not compile */
+static bool as_gpu, first_fails;   /* of EGL's devices */
+static size_t tried;
 static abbe_gl_lookup real_lookup;
 static PFNGLGETINTEGERVPROC real_integer;
 static PFNGLGETSHADERIVPROC real_shader;
@@ -50,31 +52,46 @@ static abbe_gl_function lookup(const char *name) {
   return found;
 }
 
-abbe_result __real_abbe_context_osmesa(abbe_context_native *out, abbe_error *error);
-abbe_result __wrap_abbe_context_osmesa(abbe_context_native *out, abbe_error *error);
-abbe_result __wrap_abbe_context_osmesa(abbe_context_native *out, abbe_error *error) {
-  if (refused) return abbe_error_set(error, ABBE_GL, "OSMesa gives no context; try --gl egl");
-  const abbe_result result = __real_abbe_context_osmesa(out, error);
+abbe_result __real_abbe_context_egl(bool software, size_t device, abbe_context_native *out,
+                                    abbe_error *error);
+abbe_result __wrap_abbe_context_egl(bool software, size_t device, abbe_context_native *out,
+                                    abbe_error *error);
+/* The CPU's device is there once as itself, or as two of a GPU's. */
+abbe_result __wrap_abbe_context_egl(bool software, size_t device, abbe_context_native *out,
+                                    abbe_error *error) {
+  if (software != !as_gpu || device > (as_gpu ? 1 : 0))
+    return abbe_error_set(error, ABBE_UNSUPPORTED, "there is no other device");
+  tried++;
+  if (refused || (first_fails && device == 0))
+    return abbe_error_set(error, ABBE_GL, "EGL gives no context; use --backend gpu");
+  const abbe_result result = __real_abbe_context_egl(true, 0, out, error);
   real_lookup = out->lookup;
   out->lookup = lookup;
   return result;
+}
+
+abbe_result __wrap_abbe_context_osmesa(abbe_context_native *out, abbe_error *error);
+abbe_result __wrap_abbe_context_osmesa(abbe_context_native *out, abbe_error *error) {
+  (void)out;
+  return abbe_error_set(error, ABBE_UNSUPPORTED, "there is no OSMesa");
 }
 
 static int reset(void **state) {
   (void)state;
   hidden = NULL;
   lowered = 0;
-  refused = mute = breaks = false;
+  refused = mute = breaks = as_gpu = first_fails = false;
+  tried = 0;
   return 0;
 }
 
 static void assert_refused(const char *part) {
   abbe_context *context = NULL;
   abbe_error error = {0};
-  assert_int_equal(abbe_context_make(ABBE_CONTEXT_OSMESA, &context, &error), ABBE_GL);
+  assert_int_equal(abbe_context_make(ABBE_CONTEXT_CPU, &context, &error), ABBE_GL);
   assert_null(context);
   assert_contains(error.text, part);
-  assert_contains(error.text, "egl");
+  assert_contains(error.text, "--backend");
 }
 
 static void test_no_context(void **state) {
@@ -109,6 +126,8 @@ static void test_versions_and_limits(void **state) {
       {GL_MINOR_VERSION, 4, "OpenGL 4.4; Abbe needs 4.5"},
       {GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, 8, "8 storage buffers in a compute shader"},
       {GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, 8, "8 places for storage buffers"},
+      {GL_MAX_UNIFORM_BUFFER_BINDINGS, 8, "8 places for uniform buffers"},
+      {GL_MAX_UNIFORM_BLOCK_SIZE, 16384, "16384 bytes in a uniform buffer"},
       {GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, 256, "256 invocations in a compute group"},
       {GL_MAX_COLOR_ATTACHMENTS, 4, "4 colour attachments"},
       {GL_MAX_TEXTURE_SIZE, 1024, "1024 texels a side"},
@@ -121,11 +140,39 @@ static void test_versions_and_limits(void **state) {
   }
 }
 
+static void make_described(abbe_context_backend backend, const char *name) {
+  abbe_context *context = NULL;
+  abbe_error error = {0};
+  assert_int_equal(abbe_context_make(backend, &context, &error), ABBE_OK);
+  assert_int_equal(strncmp(abbe_context_description(context), name, strlen(name)), 0);
+  abbe_context_free(context);
+}
+
+/* A GPU is taken where one works, whichever it is; the CPU where none does. */
+static void test_the_device_that_works_is_taken(void **state) {
+  (void)state;
+  abbe_context *context = NULL;
+  abbe_error error = {0};
+  make_described(ABBE_CONTEXT_AUTO, "cpu: ");
+  assert_int_equal(abbe_context_make(ABBE_CONTEXT_GPU, &context, &error), ABBE_GL);
+  assert_contains(error.text, "no GPU");
+  assert_contains(error.text, "--backend cpu");
+  as_gpu = true;
+  make_described(ABBE_CONTEXT_AUTO, "gpu: ");
+  first_fails = true;
+  tried = 0;
+  make_described(ABBE_CONTEXT_GPU, "gpu: ");
+  assert_int_equal(tried, 2);
+  assert_int_equal(abbe_context_make(ABBE_CONTEXT_CPU, &context, &error), ABBE_GL);
+  assert_contains(error.text, "no OpenGL for the CPU");
+  assert_contains(error.text, "--backend gpu");
+}
+
 static void test_a_driver_without_a_name(void **state) {
   (void)state;
   abbe_context *context = NULL;
   mute = true;
-  assert_int_equal(abbe_context_make(ABBE_CONTEXT_OSMESA, &context, NULL), ABBE_OK);
+  assert_int_equal(abbe_context_make(ABBE_CONTEXT_CPU, &context, NULL), ABBE_OK);
   assert_contains(abbe_context_description(context), "unnamed");
   abbe_context_free(context);
 }
@@ -138,7 +185,7 @@ static void test_shaders_that_do_not_compile(void **state) {
   abbe_error error = {0};
   const abbe_render_desc desc = {.width = 8, .height = 8, .photons = 8, .map_size = 32};
   breaks = true;
-  assert_int_equal(abbe_context_make(ABBE_CONTEXT_OSMESA, &context, NULL), ABBE_OK);
+  assert_int_equal(abbe_context_make(ABBE_CONTEXT_CPU, &context, NULL), ABBE_OK);
   assert_int_equal(abbe_scene_load(ABBE_SOURCE_DIR "/scenes/gem.yaml", NULL, &scene, NULL),
                    ABBE_OK);
   assert_int_equal(abbe_renderer_make(context, &scene, &desc, &renderer, &error), ABBE_GL);
@@ -153,6 +200,7 @@ int main(void) {
       cmocka_unit_test_setup(test_no_context, reset),
       cmocka_unit_test_setup(test_every_function_missing, reset),
       cmocka_unit_test_setup(test_versions_and_limits, reset),
+      cmocka_unit_test_setup(test_the_device_that_works_is_taken, reset),
       cmocka_unit_test_setup(test_a_driver_without_a_name, reset),
       cmocka_unit_test_setup(test_shaders_that_do_not_compile, reset)};
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,7 +1,7 @@
 /* What a renderer's caller gets: frames that can be stopped, pictures, maps, and refusals. */
 #include "tests/gl/frame.h"
 
-static bool stop(void *user, double done) {
+static bool stop_now(void *user, double done) {
   assert_true(done >= 0 && done <= 1);
   ++*(int *)user;
   return false;
@@ -33,7 +33,7 @@ static void test_a_frame_can_be_stopped_and_drawn_again(void **state) {
   draw_frame(renderer);
   read_picture(renderer, false, &before);
   abbe_renderer_redraw(renderer);
-  assert_int_equal(abbe_renderer_frame(renderer, stop, &calls, NULL, &error), ABBE_CANCELLED);
+  assert_int_equal(abbe_renderer_frame(renderer, stop_now, &calls, NULL, &error), ABBE_CANCELLED);
   assert_int_equal(calls, 1);
   assert_ok(abbe_renderer_frame(renderer, count_calls, &last, NULL, &error), &error);
   assert_near(last, 1, 0);
@@ -232,7 +232,7 @@ static void test_nothing_is_read_before_a_frame(void **state) {
     abbe_image_free(&image);
     /* Nor what a frame that was stopped has left. */
     abbe_renderer_redraw(renderer);
-    assert_int_equal(abbe_renderer_frame(renderer, stop, &calls, NULL, &error), ABBE_CANCELLED);
+    assert_int_equal(abbe_renderer_frame(renderer, stop_now, &calls, NULL, &error), ABBE_CANCELLED);
   }
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);

@@ -13,7 +13,7 @@ int main(int argc, char **argv) {
   const abbe_display_desc plain = {0};
   const abbe_render_desc desc = {.width = 32, .height = 32, .photons = 32, .map_size = 64};
   abbe_result result = abbe_scene_load(argc > 1 ? argv[1] : "", NULL, &scene, &error);
-  if (result == ABBE_OK) result = abbe_context_make(ABBE_CONTEXT_OSMESA, &context, &error);
+  if (result == ABBE_OK) result = abbe_context_make(ABBE_CONTEXT_CPU, &context, &error);
   if (result == ABBE_OK) result = abbe_renderer_make(context, &scene, &desc, &renderer, &error);
   if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, NULL, &error);
   if (result == ABBE_OK) result = abbe_display_make(&plain, &display, &error);

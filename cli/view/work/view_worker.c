@@ -276,7 +276,7 @@ static abbe_result renew(abbe_view_worker *w, abbe_error *error) {
   w->renderer = NULL;
   w->context = NULL;
   w->drawn = NULL;
-  return abbe_context_make(ABBE_CONTEXT_EGL, &w->context, error);
+  return abbe_context_make(ABBE_CONTEXT_AUTO, &w->context, error);
 }
 
 static void work(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out) {

@@ -282,7 +282,7 @@ static void test_the_layer_is_what_compare_reads(void **state) {
   abbe_scene_free(&scene);
 }
 
-static bool stop(void *user, double done) {
+static bool stop_now(void *user, double done) {
   int *calls = user;
   assert_true(done >= 0 && done <= 1);
   return ++*calls < 4;
@@ -295,7 +295,7 @@ static void test_what_is_refused(void **state) {
   abbe_error error = {0};
   int calls = 0;
   abbe_error_bars_desc one = {.variants = 1}, many = {.variants = 65};
-  abbe_error_bars_desc stopped = {.progress = stop, .user = &calls};
+  abbe_error_bars_desc stopped = {.progress = stop_now, .user = &calls};
   load_shipped("sphere", &scene);
   abbe_renderer *renderer = make_renderer(&scene, &small_frame);
   draw_frame(renderer);

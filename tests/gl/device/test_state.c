@@ -4,7 +4,7 @@
 
 #include "gl/device/state.h"
 
-#include <GL/osmesa.h>
+#include <EGL/egl.h>
 
 /* OpenGL beyond what Abbe itself calls: X(pointer type's middle, name without gl). */
 #define MORE(X)                                                                                    \
@@ -105,7 +105,7 @@ static int make_things(void **state) {
   if (make_context(state) != 0) return 1;
   gl = abbe_context_gl(context);
 #define LOAD(type, name)                                                                           \
-  name = (PFNGL##type##PROC)(abbe_gl_function)OSMesaGetProcAddress("gl" #name);
+  name = (PFNGL##type##PROC)(abbe_gl_function)eglGetProcAddress("gl" #name);
   MORE(LOAD)
   GenSamplers(1, &sampler);
   SamplerParameteri(sampler, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);

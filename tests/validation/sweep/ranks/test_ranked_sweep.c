@@ -77,7 +77,7 @@ static void leave_a_row(const asked *a, double time_ms) {
 static abbe_result work(const abbe_ranks *ranks, void *user) {
   asked *a = user;
   abbe_context *own = NULL;
-  abbe_result result = abbe_context_make(ABBE_CONTEXT_OSMESA, &own, &a->error);
+  abbe_result result = abbe_context_make(ABBE_CONTEXT_CPU, &own, &a->error);
   if (result != ABBE_OK) return result;
   result = ranks == NULL ? abbe_sweep_run(own, &a->scene, &a->q, &a->out, &a->error)
                          : abbe_ranked_sweep(ranks, own, &a->scene, &a->q, &a->out, &a->error);
