@@ -69,7 +69,7 @@ static exr_result_t write_unit(exr_context_t context, double unit) {
 static exr_result_t write_header(exr_context_t context, const abbe_image *image, storage as) {
   int part = 0;
   exr_result_t rv = exr_set_longname_support(context, 1);
-  if (rv == 0) rv = exr_add_part(context, "", EXR_STORAGE_SCANLINE, &part);
+  if (rv == 0) rv = exr_add_part(context, NULL, EXR_STORAGE_SCANLINE, &part);
   if (rv == 0)
     rv = exr_initialize_required_attr_simple(context, 0, (int32_t)image->width,
                                              (int32_t)image->height, EXR_COMPRESSION_ZIP);

@@ -34,10 +34,55 @@ ImVec2 at(double x, double y) {
   return ImVec2(static_cast<float>(x), static_cast<float>(y));
 }
 
+/* Dear ImGui 1.86 takes the state of keys, 1.89 and later take events. */
+#if IMGUI_VERSION_NUM >= 18900
+void give_input(ImGuiIO &io, const abbe_ui_input &input) {
+  io.ConfigInputTrickleEventQueue = false; /* all of a frame's input counts in that frame */
+  io.AddKeyEvent(ImGuiMod_Shift, input.shift);
+  io.AddKeyEvent(ImGuiMod_Ctrl, input.control);
+  io.AddKeyEvent(ImGuiKey_Enter, input.enter);
+  io.AddKeyEvent(ImGuiKey_Backspace, input.backspace);
+  io.AddKeyEvent(ImGuiKey_Escape, input.escape);
+  io.AddMousePosEvent(static_cast<float>(input.mouse[0]), static_cast<float>(input.mouse[1]));
+  for (int i = 0; i < 3; i++) io.AddMouseButtonEvent(i, input.button[i]);
+  io.AddMouseWheelEvent(0, static_cast<float>(input.wheel));
+}
+
+bool escape_is_pressed() {
+  return ImGui::IsKeyPressed(ImGuiKey_Escape);
+}
+#else
+void give_input(ImGuiIO &io, const abbe_ui_input &input) {
+  io.KeyShift = input.shift;
+  io.KeyCtrl = input.control;
+  io.KeyMap[ImGuiKey_Enter] = 1;
+  io.KeyMap[ImGuiKey_Backspace] = 2;
+  io.KeyMap[ImGuiKey_Escape] = 3;
+  io.KeysDown[1] = input.enter;
+  io.KeysDown[2] = input.backspace;
+  io.KeysDown[3] = input.escape;
+  io.MousePos = at(input.mouse[0], input.mouse[1]);
+  for (int i = 0; i < 3; i++) io.MouseDown[i] = input.button[i];
+  io.MouseWheel = static_cast<float>(input.wheel);
+}
+
+bool escape_is_pressed() {
+  return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+}
+#endif
+
+bool font_has(ImWchar character) {
+#if IMGUI_VERSION_NUM >= 19200
+  return ImGui::GetFont()->IsGlyphInFont(character);
+#else
+  return ImGui::GetFont()->FindGlyphNoFallback(character) != nullptr;
+#endif
+}
+
 /* A label that is seen as a whole, and an id: Dear ImGui hides what stands behind "##", and takes
  * what stands behind "###" alone for the id. Between them is a space that has no width. */
 std::string whole(const char *label) {
-  const bool there = ImGui::GetFont()->FindGlyphNoFallback(0x200b) != nullptr;
+  const bool there = font_has(0x200b);
   std::string out;
   for (; *label != '\0'; label++) {
     if (*label == '#' && !out.empty() && out.back() == '#') out += there ? "\u200b" : " ";
@@ -132,17 +177,7 @@ void abbe_ui_begin(const abbe_ui_input *input) {
   ImGuiIO &io = ImGui::GetIO();
   io.DisplaySize = at(input->width, input->height);
   io.DeltaTime = input->seconds > 1e-4 ? static_cast<float>(input->seconds) : 1e-4F;
-  io.MousePos = at(input->mouse[0], input->mouse[1]);
-  for (int i = 0; i < 3; i++) io.MouseDown[i] = input->button[i];
-  io.MouseWheel = static_cast<float>(input->wheel);
-  io.KeyShift = input->shift;
-  io.KeyCtrl = input->control;
-  io.KeyMap[ImGuiKey_Enter] = 1;
-  io.KeyMap[ImGuiKey_Backspace] = 2;
-  io.KeyMap[ImGuiKey_Escape] = 3;
-  io.KeysDown[1] = input->enter;
-  io.KeysDown[2] = input->backspace;
-  io.KeysDown[3] = input->escape;
+  give_input(io, *input);
   io.AddInputCharactersUTF8(input->text);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui::NewFrame();
@@ -252,7 +287,7 @@ bool abbe_ui_choose(const char *label, const char *const *names, size_t count, s
     ImGui::PopID();
     note(names[i]);
   }
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) ImGui::CloseCurrentPopup();
+  if (escape_is_pressed()) ImGui::CloseCurrentPopup();
   ImGui::EndCombo();
   return chosen;
 }

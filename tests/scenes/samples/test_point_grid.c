@@ -17,7 +17,7 @@ static bool count(void *user, size_t number) {
   return true;
 }
 
-static bool stop(void *user, size_t number) {
+static bool stop_now(void *user, size_t number) {
   (void)number;
   ++*(int *)user;
   return false;
@@ -50,7 +50,7 @@ static void test_all_near_ones_are_found(void **state) {
     }
   }
   int seen = 0;
-  abbe_point_grid_visit(&grid, at[0], stop, &seen);
+  abbe_point_grid_visit(&grid, at[0], stop_now, &seen);
   assert_int_equal(seen, 1);
   abbe_point_grid_free(&grid);
 }
