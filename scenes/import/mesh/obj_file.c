@@ -1,4 +1,5 @@
 /* Wavefront OBJ: polygons by points, texture coordinates and normals; materials by their names. */
+#include "base/file.h"
 #include "base/number.h"
 #include "scenes/import/mesh/mesh_reading.h"
 
@@ -106,15 +107,31 @@ static abbe_result read_face(reading *r) {
                                               : abbe_mesh_reading_no_memory(r->to, r->error);
 }
 
-/* The rest of the line, without blanks around it. */
-static void read_material(reading *r) {
+/* The rest of the line, without blanks around it; its length. */
+static size_t rest_of_line(reading *r) {
   skip_blanks(r);
-  const char *from = r->at, *to = from;
+  const char *to = r->at;
   while (to < r->end && *to != '\n' && *to != '\r') to++;
-  while (to > from && (to[-1] == ' ' || to[-1] == '\t')) to--;
+  while (to > r->at && (to[-1] == ' ' || to[-1] == '\t')) to--;
+  return (size_t)(to - r->at);
+}
+
+static void read_material(reading *r) {
+  const size_t length = rest_of_line(r);
   const char *name = r->to->material;
-  r->wanted = name == NULL ||
-              (strlen(name) == (size_t)(to - from) && memcmp(name, from, (size_t)(to - from)) == 0);
+  r->wanted = name == NULL || (strlen(name) == length && memcmp(name, r->at, length) == 0);
+}
+
+/* The file of materials is not read, but it is the mesh's: nothing is written over it. */
+static abbe_result note_materials(reading *r) {
+  abbe_mesh_list *others = &r->to->others;
+  const char *path = r->to->path;
+  const size_t length = rest_of_line(r), folder = (size_t)(abbe_file_name(path) - path);
+  if (length == 0) return ABBE_OK;
+  if ((folder == 0 || abbe_mesh_list_add(others, folder, 1, path)) &&
+      abbe_mesh_list_add(others, length, 1, r->at) && abbe_mesh_list_add(others, 1, 1, ""))
+    return ABBE_OK;
+  return abbe_mesh_reading_no_memory(r->to, r->error);
 }
 
 static bool is_word(const char *from, size_t length, const char *word) {
@@ -134,6 +151,7 @@ static abbe_result read_line(reading *r) {
   if (is_word(word, n, "vt"))
     return read_vector(r, &r->to->uv, 1, 2, "a texture coordinate ('vt') is two numbers");
   if (is_word(word, n, "f") || is_word(word, n, "fo")) return read_face(r);
+  if (is_word(word, n, "mtllib")) return note_materials(r);
   if (is_word(word, n, "usemtl")) read_material(r);
   for (size_t i = 0; i < sizeof surfaces / sizeof *surfaces; i++)
     if (is_word(word, n, surfaces[i]))
