@@ -83,7 +83,7 @@ int main(int count, char **argument) {
     fputs("pair_table [STONE COMPANY TRANSPORT STAGE | --trace]\n", stderr);
     return 2;
   }
-  if (abbe_context_make(ABBE_CONTEXT_OSMESA, &context, &error) != ABBE_OK) fail(&error);
+  if (abbe_context_make(ABBE_CONTEXT_CPU, &context, &error) != ABBE_OK) fail(&error);
   puts(
       "| stone | company | transport | stage | where | traced | drawn | within | light | within |\n"
       "|---|---|---|---|---|---|---|---|---|---|");
