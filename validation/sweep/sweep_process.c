@@ -64,7 +64,7 @@ static void add_render(command *c, const abbe_sweep_process_desc *d, const abbe_
     add(c, abbe_number_text(s->share, c->own[c->count]));
   }
   if (d->backend != NULL) {
-    add(c, "--gl");
+    add(c, "--backend");
     add(c, d->backend);
   }
 }
