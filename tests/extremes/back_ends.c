@@ -1,5 +1,5 @@
-/* The same map and picture on EGL's software device and on OSMesa. Ends with 77 where one of them is
- * missing. */
+/* The same map and picture on EGL's software device and on OSMesa. Ends with 77 where one of them
+ * is missing. */
 #include "gl/device/context_backend.h"
 #include "tests/extremes/laws.h"
 
@@ -18,8 +18,8 @@ static bool make_current(void *user) {
 static bool draw(bool osmesa, const extreme *e, extreme_frame *out) {
   abbe_context *context = NULL;
   abbe_error error = {0};
-  abbe_result result = osmesa ? abbe_context_osmesa(&native, &error)
-                              : abbe_context_egl(true, 0, &native, &error);
+  abbe_result result =
+      osmesa ? abbe_context_osmesa(&native, &error) : abbe_context_egl(true, 0, &native, &error);
   const abbe_context_host host = {native.lookup, make_current, NULL};
   if (result == ABBE_OK) result = abbe_context_adopt(&host, &context, &error);
   if (result == ABBE_OK) result = extreme_frame_make(context, e, out, &error);
@@ -55,8 +55,8 @@ static bool same(const char *name, const extreme *e) {
 
 static bool there_is(bool osmesa) {
   abbe_error error = {0};
-  const abbe_result result = osmesa ? abbe_context_osmesa(&native, &error)
-                                    : abbe_context_egl(true, 0, &native, &error);
+  const abbe_result result =
+      osmesa ? abbe_context_osmesa(&native, &error) : abbe_context_egl(true, 0, &native, &error);
   if (native.destroy != NULL) native.destroy(&native);
   native = (abbe_context_native){0};
   if (result != ABBE_OK) printf("skipped: %s\n", error.text);
