@@ -46,9 +46,12 @@
   "- {name: ball, shape: sphere, radius: 0.08, levels: 4, transform: [{translate: [0, 0, 0.05]}]," \
   " material: " material "}\n"
 
+#define OPTICAL_DEPTHS                                                                             \
+  RUNS(CHOICE_ABSORPTION,                                                                          \
+       "paths keep their optical depth in eight parts of each band of wavelengths")
+
 /* What each has in common, and differs from in one fact. */
 static const char ball[] = CAMERA POINT_LIGHT FLOOR BALL("crown");
-
 static const char flat[] = CAMERA POINT_LIGHT FLOOR BALL("flat");
 static const char cube[] = CAMERA POINT_LIGHT FLOOR CUBE("crown");
 static const char stone[] = CAMERA POINT_LIGHT FLOOR STONE("dense");
@@ -108,7 +111,6 @@ typedef struct pair {
 
 static const row ball_rows[] = {
     BALL_ROWS(RESTS(CHOICE_RECEIVER_MAPS, "the lights' maps hold all receivers"), GREY) END};
-
 static const pair pairs[] = {
     {"no refractor",
      ball,
@@ -173,8 +175,7 @@ static const pair pairs[] = {
      ball,
      CAMERA POINT_LIGHT FLOOR BALL("murk"),
      {0},
-     {RUNS(CHOICE_ABSORPTION,
-           "paths keep their optical depth in eight parts of each band of wavelengths"),
+     {OPTICAL_DEPTHS,
       END}},
     {"a material that absorbs outside the range alone",
      ball,
@@ -188,8 +189,7 @@ static const pair pairs[] = {
      {COUNTS(7, 8, 9),
       RUNS(CHOICE_WAVELENGTHS, "7 from 380 to 780 nm: the attenuation varies with wavelength"),
       RUNS(PASS_PHOTONS, "7 wavelengths through the refractors"),
-      RUNS(CHOICE_ABSORPTION,
-           "paths keep their optical depth in eight parts of each band of wavelengths"),
+      OPTICAL_DEPTHS,
       END}},
     {"a constant index, and an attenuation that is constant",
      flat,
@@ -442,8 +442,7 @@ static const pair pairs[] = {
      {.wavelengths = 21},
      {COUNTS(21, 8, 9), RUNS(CHOICE_WAVELENGTHS, "21 from 380 to 780 nm: as asked"),
       RUNS(PASS_PHOTONS, "4 to 21 wavelengths, as each photon's hits ask"),
-      RUNS(CHOICE_ABSORPTION,
-           "paths keep their optical depth in eight parts of each band of wavelengths"),
+      OPTICAL_DEPTHS,
       END}},
     {"many wavelengths of a glass that tints, from wall to wall of a mesh",
      ball,
@@ -453,8 +452,7 @@ static const pair pairs[] = {
       RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
       RUNS(CHOICE_WAVELENGTHS, "21 from 380 to 780 nm: as asked"),
       RUNS(PASS_PHOTONS, "4 to 21 wavelengths, as each photon's hits ask"),
-      RUNS(CHOICE_ABSORPTION,
-           "paths keep their optical depth in eight parts of each band of wavelengths"),
+      OPTICAL_DEPTHS,
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"many wavelengths of a clear glass",

@@ -3,7 +3,7 @@
  * is recorded, with what each program declares. A frame is drawn three times, for buffers are used
  * again. With --long also the programs that a GPU takes. */
 #include "tests/gl/frame.h"
-#include "tests/gl/recorded_gl.h"
+#include "tests/gl/device/recorded_gl.h"
 
 static void draw_three(const char *file) {
   abbe_scene scene = {0};

@@ -2,8 +2,8 @@
  * has written and is used in another way without that way's barrier is printed and counted. For a
  * program that is linked with --wrap=abbe_gl_load, and has one context at a time.
  */
-#ifndef ABBE_TESTS_GL_RECORDED_GL_H
-#define ABBE_TESTS_GL_RECORDED_GL_H
+#ifndef ABBE_TESTS_GL_DEVICE_RECORDED_GL_H
+#define ABBE_TESTS_GL_DEVICE_RECORDED_GL_H
 
 #include "tests/check.h"
 
