@@ -97,7 +97,6 @@ typedef struct pair {
       RUNS(PASS_EYE_REFRACTION, "until less than 0.005 of its light is left, 256 exits at most"),  \
       RUNS(PASS_EYE_PICTURE, "2 x 2 samples a pixel"), RESTS(CHOICE_TEXTURES, "none"), colours,    \
       RESTS(CHOICE_LIGHT_SIZE, "none"), RESTS(CHOICE_ENVIRONMENT, "none"),
-
 #define UNLIT                                                                                      \
   RESTS(CHOICE_RECEIVER_MAPS, "no light meets a refractor"),                                       \
       RESTS(PASS_LIGHT_FRONT, "no light meets a refractor"),                                       \
@@ -108,7 +107,6 @@ typedef struct pair {
 #define SHADOWED                                                                                   \
   RUNS(CHOICE_RECEIVER_SHADOWS, "a receiver may stand between a light and another"),               \
       RUNS(CHOICE_RECEIVER_MAPS, "a receiver may hide from a light where its light lands")
-
 static const row ball_rows[] = {
     BALL_ROWS(RESTS(CHOICE_RECEIVER_MAPS, "the lights' maps hold all receivers"), GREY) END};
 static const pair pairs[] = {
