@@ -1,5 +1,5 @@
 /* frame_record.h: what made a frame, in lines of text that its files carry: so that a series that
- * is gone on with, or put together, has no frames of another size, seed, scene or program among it.
+ * is resumed or merged has no frames of another size, seed, scene or program among it.
  */
 #ifndef ABBE_CLI_OPTIONS_FRAME_RECORD_H
 #define ABBE_CLI_OPTIONS_FRAME_RECORD_H

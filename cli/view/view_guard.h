@@ -29,7 +29,7 @@ typedef struct abbe_view_guard {
 void abbe_view_guard_begin(abbe_view_guard *guard);
 void abbe_view_guard_end(abbe_view_guard *guard);
 
-/* A connection is there; the eldest of one stranger too many is shut down. NULL: there are more
+/* A connection is there; the oldest of one stranger too many is shut down. NULL: there are more
  * than there can be, and this one is. */
 abbe_view_connection *abbe_view_guard_enter(abbe_view_guard *guard, int socket);
 /* It has shown the token. connection may be NULL, here and below. */

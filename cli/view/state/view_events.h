@@ -42,7 +42,7 @@ typedef struct abbe_view_events {
 /* Puts the event behind the others. Of moves, and of sizes, that follow each other the last is
  * kept, turns of the wheel at one place are added up. False where the queue is full. */
 bool abbe_view_events_add(abbe_view_events *events, const abbe_view_event *event);
-/* Takes the eldest; false where there is none. */
+/* Takes the oldest; false where there is none. */
 bool abbe_view_events_take(abbe_view_events *events, abbe_view_event *out);
 
 #endif
