@@ -119,12 +119,12 @@ static void fill_vertices(const abbe_mesh_reading *r, const features *has, abbe_
 
 /* Faces of the polygon whose first corner is that; place has room for its corners. */
 static abbe_result cut(const abbe_mesh_reading *r, const features *has, size_t first, size_t sides,
-                       double (*place)[3], uint32_t (*face)[3], abbe_error *error) {
+                       double (*place)[3], uint32_t (*face)[3], double *work, abbe_error *error) {
   const double(*point)[3] = r->point.item;
   const abbe_mesh_corner *corner = (const abbe_mesh_corner *)r->corner.item + first;
   for (size_t k = 0; k < sides && sides > 3; k++)
     memcpy(place[k], point[corner[k].point], sizeof *place);
-  const abbe_result result = abbe_polygon_cut((const double(*)[3])place, sides, face, error);
+  const abbe_result result = abbe_polygon_cut((const double(*)[3])place, sides, face, work, error);
   for (size_t t = 0; t + 2 < sides && result == ABBE_OK; t++)
     for (int k = 0; k < 3; k++)
       face[t][k] = has->split ? (uint32_t)first + face[t][k] : corner[face[t][k]].point;
@@ -137,9 +137,10 @@ static abbe_result cut_all(const abbe_mesh_reading *r, const features *has, size
   double(*place)[3] = malloc(longest * sizeof *place);
   abbe_result result = place == NULL ? abbe_mesh_reading_no_memory(r, error) : ABBE_OK;
   size_t first = 0, face = 0;
+  double work = ABBE_POLYGON_WORK + ABBE_POLYGON_WORK_A_CORNER * (double)r->corner.count;
   for (size_t f = 0; f < r->sides.count && result == ABBE_OK; f++) {
     abbe_error why;
-    result = cut(r, has, first, sides[f], place, out->face + face, &why);
+    result = cut(r, has, first, sides[f], place, out->face + face, &work, &why);
     if (result != ABBE_OK)
       abbe_error_set(error, result, "%s: face %zu: %s", r->path, f + 1, why.text);
     first += sides[f];

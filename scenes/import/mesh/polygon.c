@@ -10,6 +10,10 @@
 
 enum { NONE = UINT32_MAX };
 
+/* What it takes to try a corner, and to try an edge near it, in looks. */
+#define TRY_CORNER 32
+#define TRY_EDGE 32
+
 /* ---- which way three points turn ---- */
 
 typedef const double *point; /* two coordinates, of 1 at the most */
@@ -68,7 +72,7 @@ typedef struct cutting {
   size_t concave_count, left;
   uint32_t (*triangle)[3], (*beside)[3]; /* beside[t][k]: across the edge from corner k */
   size_t triangles;
-  double work;
+  double work; /* that is left */
 } cutting;
 
 /* The longest component of twice the area, whose axis is left out; the rest goes into at, largest
@@ -139,8 +143,9 @@ static bool is_free(cutting *c, uint32_t i) {
   for (size_t n = first_concave(c, fmin(a[0], fmin(b[0], d[0])));
        n < c->concave_count && c->concave[n].x <= right; n++) {
     const uint32_t at = c->concave[n].corner;
-    c->work++;
+    c->work--;
     if (c->concave[n].y < low || c->concave[n].y > high || c->next[at] == at) continue;
+    c->work -= 2 * TRY_EDGE;
     for (int end = 0; end < 2; end++) {
       const uint32_t from = end == 0 ? c->previous[at] : at, to = c->next[from];
       if (from != before && from != i && enters(a, b, d, c->at[from], c->at[to])) return false;
@@ -193,7 +198,8 @@ static bool clip_all(cutting *c) {
   size_t waited = 0, listed = c->left;
   demand least = EAR;
   for (; c->left > 3; at = c->next[at]) {
-    if (c->work > ABBE_POLYGON_MOST_WORK) return false;
+    c->work -= TRY_CORNER;
+    if (c->work < 0) return false;
     if (may_go(c, at, least)) {
       /* its neighbours are next */
       const uint32_t before = c->previous[at];
@@ -302,8 +308,8 @@ static bool begin(cutting *c, const double (*corner)[3], size_t count) {
 }
 
 abbe_result abbe_polygon_cut(const double (*corner)[3], size_t count, uint32_t (*triangle)[3],
-                             abbe_error *error) {
-  cutting c = {.triangle = triangle};
+                             double *work, abbe_error *error) {
+  cutting c = {.triangle = triangle, .work = *work};
   if (count == 3) {
     memcpy(triangle[0], (uint32_t[3]){0, 1, 2}, sizeof triangle[0]);
     return ABBE_OK;
@@ -313,11 +319,13 @@ abbe_result abbe_polygon_cut(const double (*corner)[3], size_t count, uint32_t (
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a polygon of %zu corners", count);
   else if (!clip_all(&c))
     result = abbe_error_set(error, ABBE_UNSUPPORTED,
-                            "a polygon of %zu corners, many of them concave, takes too long to be "
-                            "cut into triangles; divide it where the mesh was made",
+                            "with it, of %zu corners, the polygons take too long to be cut into "
+                            "triangles: too many corners are concave or in line; divide them where "
+                            "the mesh was made",
                             count);
   else if (count > 4)
     flip_all(&c, corner);
+  *work = c.work;
   free(c.at);
   free(c.next);
   free(c.concave);

@@ -16,16 +16,19 @@
 extern "C" {
 #endif
 
-/* Times that a corner may be looked at while a polygon is cut. */
-#define ABBE_POLYGON_MOST_WORK 4e9
+/* What all polygons of a file may take together, counted in looks at a corner, each of some
+ * nanoseconds: so much, and so much more for each of their corners. */
+#define ABBE_POLYGON_WORK 4e9
+#define ABBE_POLYGON_WORK_A_CORNER 200.0
 
 /* Cuts it into count - 2 triangles (count >= 3), which run around as it does: triangle[i] are
  * indices into corner. Of a polygon that does not cross itself, seen along the axis that is nearest
  * its normal, they lie inside and not over one another; those of one that does cross itself, or
  * has no area, are any. Longer polygons than four corners get the triangles of Delaunay.
- * ABBE_UNSUPPORTED where it takes more than ABBE_POLYGON_MOST_WORK, ABBE_NO_MEMORY. */
+ * *work is what it may take, and then what is left of that. ABBE_UNSUPPORTED where it takes more,
+ * ABBE_NO_MEMORY. */
 abbe_result abbe_polygon_cut(const double (*corner)[3], size_t count, uint32_t (*triangle)[3],
-                             abbe_error *error);
+                             double *work, abbe_error *error);
 
 #ifdef __cplusplus
 }
