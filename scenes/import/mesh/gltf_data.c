@@ -161,6 +161,9 @@ static abbe_result load(abbe_gltf *g, size_t index) {
     result = load_file(g, uri, b);
   b->bytes = b->owned;
   g->loaded += b->size;
+  if (result == ABBE_OK && g->loaded > ABBE_MESH_FILES_MOST)
+    return abbe_gltf_fail(g, ABBE_UNSUPPORTED, "it and its buffers have more than %zu bytes",
+                          ABBE_MESH_FILES_MOST);
   return result;
 }
 

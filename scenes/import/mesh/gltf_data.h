@@ -21,10 +21,11 @@ extern "C" {
 
 /* Numbers that a file's accessors, instances and nodes may make, all together: so many, and so many
  * times the bytes of its files; and those of accessors that have no bytes, but say how long they
- * are. */
+ * are. Each primitive of a node counts as some. */
 #define ABBE_GLTF_VALUES ((size_t)1 << 27)
 #define ABBE_GLTF_VALUES_A_BYTE 4
 #define ABBE_GLTF_VALUES_OF_NOTHING ((size_t)1 << 22)
+#define ABBE_GLTF_VALUES_A_PRIMITIVE 32
 
 typedef struct abbe_gltf_list {
   const cJSON **item;

@@ -52,12 +52,14 @@ static bool has_weight(const cJSON *weights) {
 }
 
 /* A node's own weights go before its mesh's. */
-static abbe_result check_morphs(const abbe_gltf *g, const cJSON *node, const cJSON *mesh,
+static abbe_result check_morphs(abbe_gltf *g, const cJSON *node, const cJSON *mesh,
                                 const cJSON *primitive) {
   const cJSON *own = cJSON_GetObjectItemCaseSensitive(node, "weights");
   const cJSON *weights = own ? own : cJSON_GetObjectItemCaseSensitive(mesh, "weights");
-  if (cJSON_GetObjectItemCaseSensitive(primitive, "targets") == NULL || !has_weight(weights))
-    return ABBE_OK;
+  if (cJSON_GetObjectItemCaseSensitive(primitive, "targets") == NULL) return ABBE_OK;
+  /* many nodes and primitives may ask for one long list */
+  const abbe_result result = abbe_gltf_charge(g, (size_t)cJSON_GetArraySize(weights), 1);
+  if (result != ABBE_OK || !has_weight(weights)) return result;
   return abbe_gltf_fail(g, ABBE_UNSUPPORTED,
                         "a mesh is morphed (its 'targets' have 'weights' that are not 0), which is "
                         "not read; apply them where the mesh was made");
@@ -293,13 +295,14 @@ static abbe_result add_mesh(abbe_gltf *g, const cJSON *node, const cJSON *mesh,
     enum { TRIANGLES = 4, FAN = 6 };
     primitive p = {0};
     bool wanted = false;
+    if (result == ABBE_OK) result = abbe_gltf_charge(g, 1, ABBE_GLTF_VALUES_A_PRIMITIVE);
     if (result == ABBE_OK)
       result = abbe_gltf_whole(g, item, "mode", "a primitive", TRIANGLES, &p.mode);
     if (result == ABBE_OK) result = is_wanted(g, item, &wanted);
     if (result != ABBE_OK || p.mode < TRIANGLES || p.mode > FAN || !wanted) continue;
     result = check_morphs(g, node, mesh, item);
     if (result == ABBE_OK) result = read_primitive(g, item, &p);
-    for (size_t i = 0; i < in.count && result == ABBE_OK; i++) {
+    for (size_t i = 0; i < in.count && p.indices >= 3 && result == ABBE_OK; i++) {
       double own[16];
       instance_matrix(&in, i, matrix, own);
       result = add_primitive(g, &p, own);

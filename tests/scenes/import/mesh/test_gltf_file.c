@@ -380,6 +380,32 @@ static void cut_files_are_refused(void **state) {
     assert_int_not_equal(test_read(abbe_gltf_read, "t.glb", NULL, data, size - cut, &m), ABBE_OK);
 }
 
+/* A file of some kilobytes whose lists are gone through once for each of its nodes: primitives that
+ * have no triangles, and weights. */
+static void work_has_an_end(void **state) {
+  (void)state;
+  static const struct {
+    const char *more, *item; /* in the list that grows */
+    int nodes, items;
+  } files[] = {
+      {"\"primitives\":[{\"mode\":0}", ",{}", 2200, 2200},
+      {"\"primitives\":[{\"targets\":[]}],\"weights\":[0", ",0", 12000, 12000},
+  };
+  static char text[400000];
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+    abbe_mesh m;
+    char *at = text;
+    at += sprintf(at, "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{%s", files[i].more);
+    for (int k = 0; k < files[i].items; k++) at += sprintf(at, "%s", files[i].item);
+    at += sprintf(at, "]}],\"nodes\":[{}");
+    for (int k = 0; k < files[i].nodes; k++) at += sprintf(at, ",{\"mesh\":0}");
+    sprintf(at, "]}");
+    assert_int_equal(test_read(abbe_gltf_read, "t.gltf", NULL, text, strlen(text), &m),
+                     ABBE_UNSUPPORTED);
+    assert_contains(error.text, "make more than the");
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(numbers_are_read_of_every_kind),
@@ -391,6 +417,7 @@ int main(void) {
       cmocka_unit_test(names_of_buffers_are_decoded),
       cmocka_unit_test(what_is_not_read_is_named),
       cmocka_unit_test(cut_files_are_refused),
+      cmocka_unit_test(work_has_an_end),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
