@@ -39,6 +39,9 @@ typedef struct reading {
   abbe_mesh_reading *to;
   const char *at, *end;
   encoding encoding;
+  size_t corners, first_uv, uvs; /* of the face that is read: its corners, and its own list of uv */
+  size_t vertex_uv;              /* the first vertex's */
+  bool vertex_uvs;               /* vertices have some */
   size_t elements;
   element element[MOST_ELEMENTS];
 } reading;
@@ -264,6 +267,7 @@ static trouble read_corners(reading *r, number_kind kind, size_t count) {
     if (why != FINE) return why;
     if (!add_corner(r, index)) return NO_MEMORY;
   }
+  r->corners = count;
   return abbe_mesh_reading_end_polygon(r->to) ? FINE : NO_MEMORY;
 }
 
@@ -289,18 +293,25 @@ static trouble read_strip(reading *r, number_kind kind, size_t count) {
   return FINE;
 }
 
-/* Texture coordinates of the corners that were read last. */
+/* They may stand before the corners as well as behind them. */
 static trouble read_corner_uvs(reading *r, number_kind kind, size_t count) {
-  const uint32_t *sides = r->to->sides.item;
-  const size_t corners = r->to->sides.count > 0 ? sides[r->to->sides.count - 1] : 0;
-  abbe_mesh_corner *corner = r->to->corner.item;
-  if (count != 0 && count != 2 * corners) return NO_UVS;
-  for (size_t i = 0; i < count / 2; i++) {
+  r->first_uv = r->to->uv.count;
+  r->uvs = count / 2;
+  if (count % 2 != 0) return NO_UVS;
+  for (size_t i = 0; i < r->uvs; i++) {
     double uv[2];
     if (!read_number(r, kind, &uv[0]) || !read_number(r, kind, &uv[1])) return ENDS;
-    corner[r->to->corner.count - corners + i].uv = (uint32_t)r->to->uv.count;
     if (!abbe_mesh_list_add(&r->to->uv, 1, sizeof uv, uv)) return NO_MEMORY;
   }
+  return FINE;
+}
+
+/* Of fewer than three corners a face has none. */
+static trouble give_uvs(reading *r) {
+  if (r->uvs != 0 && r->uvs != r->corners) return NO_UVS;
+  abbe_mesh_corner *corner = r->to->corner.item;
+  for (size_t i = 0; i < r->uvs && r->corners >= 3; i++)
+    corner[r->to->corner.count - r->corners + i].uv = (uint32_t)(r->first_uv + i);
   return FINE;
 }
 
@@ -338,13 +349,19 @@ static trouble read_element(reading *r, const element *e, size_t *instance) {
   const bool is_vertex = strcmp(e->name, "vertex") == 0;
   trouble why = FINE;
   *instance = 1;
+  if (is_vertex) {
+    r->vertex_uvs = has(e, UV);
+    r->vertex_uv = r->to->uv.count;
+  }
   /* a byte at the least for each of its values; what has none says nothing */
   if (e->properties == 0 && e->count > 0) return ENDS;
   if (e->properties > 0 && e->count > (size_t)(r->end - r->at) / e->properties) return ENDS;
   for (*instance = 0; *instance < e->count && why == FINE; ++*instance) {
     double vertex[8] = {0};
+    r->corners = r->uvs = 0;
     for (size_t p = 0; p < e->properties && why == FINE; p++)
       why = read_property(r, &e->property[p], vertex);
+    if (why == FINE) why = give_uvs(r);
     if (why == FINE && is_vertex && !add_vertex(r, e, vertex)) why = NO_MEMORY;
     /* some programs write more behind an element than they announce */
     while (r->encoding == TEXT && r->at < r->end && *r->at != '\n' && *r->at != '\r') r->at++;
@@ -377,8 +394,8 @@ static void share(reading *r) {
   const size_t points = r->to->point.count;
   for (size_t i = 0; i < r->to->corner.count; i++) {
     if (r->to->normal.count == points && points > 0) corner[i].normal = corner[i].point;
-    if (r->to->uv.count == points && points > 0 && corner[i].uv == ABBE_MESH_READING_NONE)
-      corner[i].uv = corner[i].point;
+    if (r->vertex_uvs && corner[i].point < points && corner[i].uv == ABBE_MESH_READING_NONE)
+      corner[i].uv = (uint32_t)(r->vertex_uv + corner[i].point);
   }
 }
 

@@ -208,6 +208,36 @@ static void vertices_and_corners_have_uv_and_normals(void **state) {
   }
 }
 
+/* Lists of texture coordinates are their own face's: one before the corners, one of a face of two
+ * corners, and none where as many others are as vertices. */
+static void texture_coordinates_stay_with_their_face(void **state) {
+  (void)state;
+#define VERTICES(count)                                                                            \
+  "ply\nformat ascii 1.0\nelement vertex " count                                                   \
+  "\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n"
+  static const char before[] =
+      VERTICES("3") "property list uchar float texcoord\nproperty list uchar int vertex_indices\n"
+                    "end_header\n0 0 0\n1 0 0\n0 1 0\n"
+                    "6 0.5 0.25 1 0 0 1 3 0 1 2\n4 9 9 9 9 2 0 1\n";
+  static const char none[] =
+      VERTICES("4") "property list uchar int vertex_indices\nproperty list uchar float texcoord\n"
+                    "end_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+                    "4 1 2 3 0 8 0 0 1 0 1 1 0 1\n3 1 2 3 0\n";
+  abbe_mesh m;
+  if (parse(before, strlen(before), &m) != ABBE_OK) fail_msg("%s", error.text);
+  assert_int_equal(m.face_count, 1);
+  assert_near(m.uv[m.face[0][0]][0], 0.5, 0);
+  assert_near(m.uv[m.face[0][1]][0], 1, 0);
+  assert_near(m.uv[m.face[0][2]][1], 1, 0);
+  abbe_mesh_free(&m);
+  if (parse(none, strlen(none), &m) != ABBE_OK) fail_msg("%s", error.text);
+  assert_int_equal(m.face_count, 3);
+  assert_near(m.uv[m.face[0][1]][0], 1, 0);
+  for (int k = 0; k < 3; k++)
+    for (int c = 0; c < 2; c++) assert_near(m.uv[m.face[2][k]][c], 0, 0);
+  abbe_mesh_free(&m);
+}
+
 static void what_is_wrong_is_said(void **state) {
   (void)state;
   static const struct {
@@ -278,6 +308,7 @@ int main(void) {
       cmocka_unit_test(texts_of_faces_are_read),
       cmocka_unit_test(a_body_may_begin_with_the_end_of_a_line),
       cmocka_unit_test(vertices_and_corners_have_uv_and_normals),
+      cmocka_unit_test(texture_coordinates_stay_with_their_face),
       cmocka_unit_test(what_is_wrong_is_said),
       cmocka_unit_test(a_mesh_is_loaded_from_them),
   };
