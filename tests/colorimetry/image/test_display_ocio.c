@@ -314,6 +314,10 @@ static void test_broken_configurations(void **state) {
   assert_int_equal(unsetenv("OCIO"), 0);
   must_fail(&(abbe_display_desc){.config = "/no/such.ocio"}, ABBE_COLOUR, "/no/such.ocio");
   unlink(path);
+  /* a name that leaves no room in the message for a reason */
+  char endless[1500] = "/no/";
+  memset(endless + 4, 'x', sizeof endless - 5);
+  must_fail(&(abbe_display_desc){.config = endless}, ABBE_COLOUR, "/no/xxx");
 }
 
 /* The shipped file also loads by its path, with $OCIO pointing at it. */
