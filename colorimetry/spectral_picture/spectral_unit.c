@@ -1,6 +1,7 @@
 #include "colorimetry/spectral_picture/spectral_unit.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const struct {
@@ -50,10 +51,12 @@ static bool read_factor(const char **text, bool below, int power[UNITS], int *te
   return true;
 }
 
+/* Factors of what light has are far below the power of ten that a double ends at. */
 static bool read_factors(const char *text, int power[UNITS], int *ten) {
+  enum { MOST_TEN = 250 };
   bool below = false;
   while (*text != '\0') {
-    if (!read_factor(&text, below, power, ten)) return false;
+    if (!read_factor(&text, below, power, ten) || abs(*ten) > MOST_TEN) return false;
     text += strspn(text, " ");
     below = *text == '/';
     if (*text == '.' || *text == '*' || *text == '/') text++;

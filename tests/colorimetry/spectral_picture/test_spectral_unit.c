@@ -33,10 +33,13 @@ static void units_are_read(void **state) {
 
 static void what_is_no_unit_of_light_is_refused(void **state) {
   (void)state;
-  static const char *const wrong[] = {"",      "photons.m^-2", "m^-2.sr^-1", "W^2.m^-2",
-                                      "W.m^2", "W.m^-2.sr^-2", "lm.m^-2",    "W.m^-2.Hz^-1",
-                                      "W.m^-", "W.m^",         "xW.m^-2",    "W m^-2 (sr)",
-                                      "J.s^-1"};
+  static const char *const wrong[] = {"",           "photons.m^-2",
+                                      "m^-2.sr^-1", "W^2.m^-2",
+                                      "W.m^2",      "W.m^-2.sr^-2",
+                                      "lm.m^-2",    "W.m^-2.Hz^-1",
+                                      "W.m^-",      "W.m^",
+                                      "xW.m^-2",    "W m^-2 (sr)",
+                                      "J.s^-1",     "W.Ym^9.m^-9.Ym^9.m^-9.m^-2"};
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
     abbe_spectral_unit unit;
     abbe_error error = {0};
