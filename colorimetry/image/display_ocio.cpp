@@ -76,12 +76,8 @@ void check_file(const char *path) {
   abbe_error error = {};
   std::FILE *file = nullptr;
   if (std::strncmp(path, "ocio://", 7) == 0) return;
-  if (abbe_file_open(path, &file, nullptr, &error) != ABBE_OK) {
-    const std::string text = error.text, name = std::string(path) + ": ";
-    /* a long name leaves no room for more */
-    throw OCIO::Exception(text.compare(0, name.size(), name) == 0 ? &error.text[name.size()]
-                                                                  : "it cannot be opened");
-  }
+  if (abbe_file_open(path, &file, nullptr, &error) != ABBE_OK) /* its words are behind "PATH: " */
+    throw OCIO::Exception(error.text + strnlen(error.text, std::strlen(path) + 2));
   std::fclose(file);
 }
 
