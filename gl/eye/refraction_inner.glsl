@@ -54,25 +54,32 @@ vec3 seen_outside(vec3 p, vec3 d, Spread spread) {
   return radiance;
 }
 
-// XYZ of what the band that is taken shows, from interface to interface. What is left when the path ends shows what the rest
-// has shown. Its loops have two ways out, with values of their own for what is used after them: of what the
-// last turn alone has made, lanes that took fewer turns may find another's (Mesa 22's llvmpipe).
+// XYZ of what the band that is taken shows, from interface to interface. What is left when the path ends shows what
+// the rest has shown, in its own colour: what is still inside goes on by as much as there was for each showing. Its
+// loops have two ways out, with values of their own for what is used after them: of what the last turn alone has
+// made, lanes that took fewer turns may find another's (Mesa 22's llvmpipe).
 vec3 through(Hit front, vec3 d) {
   vec2 spectrum = refractor_spectrum(refractor);
-  float n = spectrum.x, per_m = spectrum.y, path_m = 0.0;
+  float n = spectrum.x, path_m = 0.0;
 #ifdef BAND_PARTS
-  Depth besides = attenuation_of(refractor);  // of each part, 1/m, besides the least of all
-  per_m = least_of(besides);
-  besides -= per_m;
+  Depth per_m = attenuation_of(refractor);
+  float least_per_m = least_of(per_m);
+#define WEIGHT_AFTER(metres) band_left((metres) * per_m)
+#else
+  float per_m = spectrum.y, least_per_m = per_m;
+#define WEIGHT_AFTER(metres) (exp(-per_m * (metres)) * band_weight)
 #endif
   InnerRay ray = InnerRay(front.p, d, front.facet, 1.0 - fresnel(-dot(d, front.n), 1.0 / n));
   vec3 light = vec3(0);
 #ifdef KEEPS_SIGHTS
-  sight_tail = 0.0;
+  sight_tail = vec3(0);
 #endif
   if (!refract_direction(d, front.n, 1.0 / n, ray.d)) return light;
-  // Of what went in: where nearly all is mirrored, the rest is followed too.
-  float limit = share_limit * ray.share, shown = 0.0, left = 0.0;
+  // Of what went in: where nearly all is mirrored, the rest is followed too; and of what is there when it first shows
+  // something, for dark bands have their part in the colour.
+  float limit = share_limit * ray.share, showings = 0.0;
+  float left = 0.0, left_m = 0.0;  // share of what is left, and times its way inside
+  vec3 shown = vec3(0);
   Spread within = spread_within(front, n), outside = within;
   for (int order = 0; order < counts.exits;) {
     Outgoing leaving = Outgoing(ray.p, vec3(0), ray.d, 0.0);
@@ -81,33 +88,32 @@ vec3 through(Hit front, vec3 d) {
       InnerHit h = next_inner_hit(refractor, ray);
 #ifdef ABSORBING
       path_m += distance(h.p, ray.p);
-      ray.share *= exp(-per_m * distance(h.p, ray.p));
+      limit *= showings > 0.0 ? exp(least_per_m * distance(h.p, ray.p)) : 1.0;
 #endif
 #ifdef KEEPS_SPREAD
       outside = spread_outside(h, ray.p, ray.d, n, within);
 #endif
       leaving = leave(h, n, ray);
       shows = leaving.share > 0.5 * limit;
-      left += shows ? 0.0 : leaving.share;
+      showings += shows ? 1.0 : 0.0;
       order++;
-      left += ray.share < limit || order == counts.exits ? ray.share : 0.0;
+      float further = ray.share < limit || order == counts.exits ? ray.share : 0.0;
+      float given_up = shows ? 0.0 : leaving.share;
+      left += given_up + further;
+      left_m += given_up * path_m + further * (path_m + path_m / max(showings, 1.0));
       if (!CHEAP_INTERFACES || shows || ray.share < limit) break;
     }
     if (shows) {
-#ifdef BAND_PARTS
-      vec3 weight = leaving.share * band_left(path_m * besides);
-#else
-      vec3 weight = leaving.share * band_weight;
-#endif
+      vec3 weight = leaving.share * WEIGHT_AFTER(path_m);
       light += weight * (xyz_from_rgb * seen_outside(leaving.p, leaving.d, outside));
 #ifdef KEEPS_SIGHTS
       if (sight_waits) note_sight(weight);
 #endif
-      shown += leaving.share;
+      shown += weight;
     }
     if (ray.share < limit) break;
   }
-  float tail = shown > 0.0 ? 1.0 + left / shown : 0.0;
+  vec3 tail = tail_of(shown, left * WEIGHT_AFTER(left_m / max(left, 1e-30)));
 #ifdef KEEPS_SIGHTS
   sight_tail = tail;
 #endif

@@ -22,8 +22,8 @@ uniform uint eye_inside;  // refractors that the eye is in, which are clear
 #include "rough_lamps.glsl"
 #endif
 
-// XYZ of what w and `other` show, which have met an interface, in the band that is taken. What is not followed shows what the rest has
-// shown.
+// XYZ of what w and `other` show, which have met an interface, in the band that is taken. What is not
+// followed shows what the rest has shown, in its own colour: inside, it goes on by as much as it came.
 vec3 shown(PathState w, PathState other) {
   PathState pending[PENDING];
   for (int k = 0; k < PENDING; k++) {
@@ -32,7 +32,7 @@ vec3 shown(PathState w, PathState other) {
   }
   if (w.share <= 0.0) w = take_pending(pending);
   vec3 light = vec3(0), lamps = vec3(0);
-  float seen_share = 0.0, left = 0.0;  // left: share of what is not followed
+  vec3 seen_weight = vec3(0), left = vec3(0);  // left: of what is not followed
   bool going = w.share > 0.0;
   int most = most_segments();
   for (int segment = 0; going && segment < most; segment++) {
@@ -73,9 +73,9 @@ vec3 shown(PathState w, PathState other) {
 #ifdef ROUGH
       if (is_rough(h.hit.refractor)) lamps += lobe_shows(w, h, vec2(0.5 * lobe_width));
 #endif
+      vec3 rest = left_further(w, h);
       branch(w, h, 0.5 * share_limit, pending, ended, dropped, absorbed);
-      left += ended;
-      left += dropped;
+      left += (ended + dropped) * rest;
     } else {
       // radiance over the squared index is the same on both sides of an interface
       float n = medium_n(eye_inside) / (receiver ? medium_n(w.inside) : 1.0);
@@ -83,16 +83,17 @@ vec3 shown(PathState w, PathState other) {
 #ifdef KEEPS_SIGHTS
       if (sight_waits) note_sight(n * n * left_of(w));
 #endif
-      seen_share += w.share;
+      seen_weight += left_of(w);
       w.share = 0.0;
     }
     if (w.share <= 0.0) w = take_pending(pending);
     going = w.share > 0.0;
-    bool last = segment == most - 1;
-    left += last ? w.share : 0.0;
-    for (int k = 0; k < PENDING; k++) left += last ? pending[k].share : 0.0;
+    if (segment == most - 1) {
+      left += left_of(w);
+      for (int k = 0; k < PENDING; k++) left += left_of(pending[k]);
+    }
   }
-  float tail = seen_share > 0.0 ? 1.0 + left / seen_share : 0.0;
+  vec3 tail = tail_of(seen_weight, left);
 #ifdef KEEPS_SIGHTS
   sight_tail = tail;
 #endif

@@ -18,7 +18,7 @@ layout(std430, binding = BINDING_SIGHT_PIXELS) SIGHTS_ACCESS buffer SightPixels 
 uniform uint sight_room;
 
 uint sight_chain;    // the last of this thread + 1
-float sight_tail;    // what a path has left shows what the rest of it has shown: so many times that
+vec3 sight_tail;    // what a path has left shows what the rest of it has shown: so many times that
 bool sight_waits;    // seen() has found a receiver: there
 int waiting_sheet;
 vec2 waiting_place;
@@ -36,12 +36,12 @@ void note_sight(vec3 weight) {
 }
 
 // Those that were noted after `from`.
-void weigh_sights(uint from, float factor) {
+void weigh_sights(uint from, vec3 factor) {
   uint i = sight_chain;
   while (i != from) {
     uint word = SIGHT * (i - 1u);
     for (int k = 0; k < 3; k++)
-      sights[word + 2u + uint(k)] = floatBitsToUint(uintBitsToFloat(sights[word + 2u + uint(k)]) * factor);
+      sights[word + 2u + uint(k)] = floatBitsToUint(uintBitsToFloat(sights[word + 2u + uint(k)]) * factor[k]);
     i = sights[word + 5u] & SIGHT_NEXT;
   }
 }

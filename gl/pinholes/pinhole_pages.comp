@@ -80,7 +80,7 @@ PathState w;
 Interface h;                // where it is met last
 PathState pending[PENDING];
 int segment;                // that comes next
-float followed, left;       // shares: that came to an end, and that were given up
+vec3 followed, left;        // weights: of what came to an end, and of what was given up
 vec3 light, lamps;          // of all ends, and of lamps that rough mirrors show
 int of;                     // refractor of its first interface
 int ways, way;
@@ -96,8 +96,7 @@ void begin_way() {
     pending[k] = w;
     pending[k].share = 0.0;
   }
-  followed = left = 0.0;
-  light = lamps = vec3(0);
+  followed = left = light = lamps = vec3(0);
 #ifdef ROUGH
   lobe_u = lobe_way_of(uint(node_of * LOBE_WAYS + way));
   lobe_ways = float(ways);
@@ -121,9 +120,9 @@ void begin_pinhole(vec3 p, vec3 n, int number) {
 
 // What the way has shown, and what is left of it as if it had.
 void end_way() {
-  for (int k = 0; k < PENDING; k++) left += pending[k].share;
-  left += w.share;
-  light *= followed > 0.0 ? 1.0 + left / followed : 0.0;
+  for (int k = 0; k < PENDING; k++) left += left_of(pending[k]);
+  left += left_of(w);
+  light *= tail_of(followed, left);
   total += (light + lamps) / float(ways);
 }
 
@@ -230,7 +229,7 @@ vec3 go_on(vec3 p, inout bool going) {
   if (begins) change = -weight * sky;
   if (ends) {
     light += dark ? vec3(0) : in_band(w, sky);
-    followed += w.share;
+    followed += left_of(w);
     w.share = 0.0;
     w = take_pending(pending);
   }
@@ -266,8 +265,9 @@ vec3 go_on(vec3 p, inout bool going) {
   }
   if (turns) {
     float ended, dropped, absorbed;
+    vec3 rest = left_further(w, h);
     branch(w, h, 0.5 * share_limit, pending, ended, dropped, absorbed);
-    left += ended + dropped;
+    left += (ended + dropped) * rest;
     segment++;
     if (w.share <= 0.0) w = take_pending(pending);
   }

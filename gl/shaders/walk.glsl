@@ -11,7 +11,7 @@
 
 struct PathState {
   vec3 p, d;
-  float share;    // of the light that it began with; BAND_PARTS: at the most, of any part of the band
+  float share;    // of the light that it began with; BAND_PARTS: besides what `depth` has
   uint inside;    // bit r: within refractor r
   uint path;      // what it met and did so far, as one number
   int interfaces;  // met since the first; -1: none yet
@@ -27,9 +27,9 @@ struct PathState {
   float haze_m;  // metres of the air's haze so far
 #endif
 #ifdef BAND_PARTS
-  Depth depth;  // of each part, besides what `share` has of it
+  Depth depth;  // of each part
 #ifdef KEEPS_INTERFACE
-  float least_depth;  // what that has
+  float least_depth;  // of all parts, which `share` has, and `depth` not
 #endif
 #endif
 };
@@ -94,12 +94,16 @@ int medium_of(uint inside) {
 #ifdef BAND_PARTS
 Depth attenuation_of(int r);
 
+// A photon's path ends where all parts of its band are absorbed. The camera's follows what dark bands have, for they
+// have their part in the colour.
 void attenuate(inout PathState w, Depth depth) {
+#ifdef KEEPS_INTERFACE
   float least = least_of(depth);
   w.share *= exp(-least);
   w.depth += depth - least;
-#ifdef KEEPS_INTERFACE
   w.least_depth += least;
+#else
+  w.depth += depth;
 #endif
 }
 #endif

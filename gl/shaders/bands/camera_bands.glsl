@@ -52,6 +52,9 @@ vec2 refractor_spectrum(int r) {
   return vec2(band.weight_n.w, band.surface.x);
 }
 
+// What a path shows in all, of what it has shown: by the weights of that and of what is left, which shows the same.
+vec3 tail_of(vec3 shown, vec3 left) { return 1.0 + left / max(shown, 1e-30); }
+
 #ifdef FOLLOWS_PATHS
 #ifdef MIRRORS
 vec3 mirror_spectrum(int r) { return bands[first_band(r) + band_at].surface.yzw; }
@@ -63,6 +66,15 @@ vec3 left_of(PathState w) {
 #else
   return w.share * band_weight;
 #endif
+}
+
+// Of what ends at the interface that it comes to, by share: inside, that would have gone on by as much as it came.
+vec3 left_further(PathState w, Interface h) {
+  w.share = 1.0;
+#ifdef ABSORBING
+  if (w.inside != 0u) absorb_inside(w, h.hit.t);
+#endif
+  return left_of(w);
 }
 
 // XYZ of what the path has of an rgb radiance.
