@@ -55,7 +55,7 @@ vec3 seen_outside(vec3 p, vec3 d, Spread spread) {
 }
 
 // XYZ of what the band that is taken shows, from interface to interface. What is left when the path ends shows what
-// the rest has shown, in its own colour: what is still inside goes on by as much as there was for each showing. Its
+// the rest has shown, in its own colour: what is still inside goes on by as much as from interface to interface. Its
 // loops have two ways out, with values of their own for what is used after them: of what the last turn alone has
 // made, lanes that took fewer turns may find another's (Mesa 22's llvmpipe).
 vec3 through(Hit front, vec3 d) {
@@ -77,7 +77,7 @@ vec3 through(Hit front, vec3 d) {
   if (!refract_direction(d, front.n, 1.0 / n, ray.d)) return light;
   // Of what went in: where nearly all is mirrored, the rest is followed too; and of what is there when it first shows
   // something, for dark bands have their part in the colour.
-  float limit = share_limit * ray.share, showings = 0.0;
+  float limit = share_limit * ray.share;
   float left = 0.0, left_m = 0.0;  // share of what is left, and times its way inside
   vec3 shown = vec3(0);
   Spread within = spread_within(front, n), outside = within;
@@ -88,19 +88,18 @@ vec3 through(Hit front, vec3 d) {
       InnerHit h = next_inner_hit(refractor, ray);
 #ifdef ABSORBING
       path_m += distance(h.p, ray.p);
-      limit *= showings > 0.0 ? exp(least_per_m * distance(h.p, ray.p)) : 1.0;
+      limit *= shown != vec3(0) ? exp(least_per_m * distance(h.p, ray.p)) : 1.0;
 #endif
 #ifdef KEEPS_SPREAD
       outside = spread_outside(h, ray.p, ray.d, n, within);
 #endif
       leaving = leave(h, n, ray);
       shows = leaving.share > 0.5 * limit;
-      showings += shows ? 1.0 : 0.0;
       order++;
       float further = ray.share < limit || order == counts.exits ? ray.share : 0.0;
       float given_up = shows ? 0.0 : leaving.share;
       left += given_up + further;
-      left_m += given_up * path_m + further * (path_m + path_m / max(showings, 1.0));
+      left_m += given_up * path_m + further * (path_m + path_m / float(order));
       if (!CHEAP_INTERFACES || shows || ray.share < limit) break;
     }
     if (shows) {
