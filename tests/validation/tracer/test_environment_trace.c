@@ -104,7 +104,7 @@ static void a_convex_body_meets_pi_times_its_surface(void **state) {
     abbe_image picture;
     snprintf(text, sizeof text, CAMERA POINT_LIGHT FAR_SPECK "%s", cases[i].body);
     make(text, uniform, &f);
-    trace(&f, 1 << 14, SANITIZED ? 8 : 32, &picture);
+    trace(&f, 1 << 14, 32, &picture);
     abbe_trace_statistics s;
     abbe_tracer_statistics(f.tracer, &s);
     assert_near(s.ledger.reached / (PI * 2 * cases[i].surface), 1, 2e-3);
