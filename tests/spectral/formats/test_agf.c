@@ -3,7 +3,6 @@
 #include "spectral/formats/agf.h"
 
 #include <stdlib.h>
-#include <time.h>
 
 static abbe_report report;
 
@@ -260,7 +259,7 @@ static void what_is_no_catalogue_is_refused(void **state) {
 }
 
 /* A thousand glasses with 33 transmittances each, as a maker's catalogue has. */
-static void a_catalogue_is_read_fast(void **state) {
+static void a_whole_catalogue_is_read(void **state) {
   (void)state;
   enum { GLASSES = 1000, EACH = 2200 };
   char *text = malloc(GLASSES * EACH);
@@ -272,13 +271,9 @@ static void a_catalogue_is_read_fast(void **state) {
     for (int k = 0; k < 33; k++)
       used += (size_t)sprintf(text + used, "IT %.5E 9.95000E-001 1.00000E+001\n", 0.3 + 0.05 * k);
   }
-  clock_t start = clock();
   abbe_material_table t = parse(text);
-  double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
   assert_int_equal(t.count, GLASSES);
   assert_int_equal(report.count, 0);
-  print_message("%d glasses, %zu bytes, in %.3f s\n", GLASSES, used, seconds);
-  assert_true(seconds < 5); /* 0.1 in release; sanitizers and a busy machine take longer */
   abbe_material_table_free(&t);
   free(text);
 }
@@ -301,7 +296,7 @@ int main(void) {
       cmocka_unit_test(numbers_beyond_a_table_are_left_out),
       cmocka_unit_test(one_bad_glass_does_not_stop_the_rest),
       cmocka_unit_test(what_is_no_catalogue_is_refused),
-      cmocka_unit_test(a_catalogue_is_read_fast),
+      cmocka_unit_test(a_whole_catalogue_is_read),
   };
   return cmocka_run_group_tests(tests, NULL, end);
 }
