@@ -46,3 +46,17 @@ endforeach()
 target_link_options(test_gl_faults PRIVATE LINKER:--wrap=abbe_context_osmesa)
 abbe_test(barriers gl WRAPPED abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 target_link_options(test_barriers PRIVATE LINKER:--wrap=abbe_gl_load)
+
+# The text of every shader, and what the reference compiler of GLSL says of it.
+add_executable(shader_texts gl/device/shader_texts.c)
+target_link_libraries(shader_texts PRIVATE abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
+target_link_options(shader_texts PRIVATE LINKER:--wrap=abbe_gl_load LINKER:--wrap=abbe_program_make)
+find_program(ABBE_GLSLANG glslangValidator)
+if(ABBE_GLSLANG)
+  foreach(name glslang glslang_all)
+    add_test(NAME ${name} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/gl/device/glslang
+             $<TARGET_FILE:shader_texts> ${ABBE_GLSLANG} ${name})
+  endforeach()
+  abbe_label(gl NAMES glslang)
+  abbe_label(gl long NAMES glslang_all)
+endif()

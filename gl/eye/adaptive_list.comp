@@ -1,6 +1,7 @@
 // Lists the samples of receivers in which light may vary more than one sample can tell: it bends there, from
 // one side over the sample to the other. A sample next to one that shows a refractor is left alone; where
 // one stands for PIXEL_SIDE x PIXEL_SIDE of refractors, one before which these all show some.
+// PIXEL_SIDE is 0 where the camera sees no refractor.
 // A thread has a column of ROWS, of which it keeps what it has read.
 layout(local_size_x = 32, local_size_y = 16) in;
 #include "thread.glsl"
@@ -10,7 +11,7 @@ layout(std430, binding = BINDING_ADAPTIVE_SAMPLES) buffer SampleList {
 };
 uniform sampler2DArray eye_receivers;  // distance in w; 0: nothing
 uniform vec2 receiver_samples;         // across and up
-#ifdef REFRACTORS_SEEN
+#if PIXEL_SIDE > 0
 uniform usampler2D eye_owner;
 uniform sampler2DArray eye_layers;
 #endif
@@ -23,7 +24,7 @@ struct Row {  // three samples side by side
   bool refractor;
 };
 
-#ifdef REFRACTORS_SEEN
+#if PIXEL_SIDE > 0
 bool shows_refractor(ivec2 at, float behind) {
   float front = texelFetch(eye_layers, ivec3(at, 0), 0).w;
   return texelFetch(eye_owner, at, 0).x != 0u && !(behind > 0.0 && behind < front);
@@ -35,7 +36,7 @@ Row read_row(ivec2 at, ivec2 size) {
   vec4 a = texelFetch(eye_receivers, ivec3(left, y, 0), 0), b = texelFetch(eye_receivers, ivec3(at.x, y, 0), 0),
        c = texelFetch(eye_receivers, ivec3(right, y, 0), 0);
   Row row = Row(a.rgb, b.rgb, c.rgb, b.w, false);
-#if defined(REFRACTORS_SEEN) && PIXEL_SIDE == 1
+#if PIXEL_SIDE == 1
   row.refractor = shows_refractor(ivec2(left, y), a.w) || shows_refractor(ivec2(at.x, y), b.w) ||
                   shows_refractor(ivec2(right, y), c.w);
 #endif
@@ -55,7 +56,7 @@ void main() {
     vec3 bend = max(max(abs(below.left + above.right - twice), abs(below.middle + above.middle - twice)),
                     max(abs(below.right + above.left - twice), abs(row.left + row.right - twice)));
     bool wanted = y < size.y && any(greaterThan(bend, bend_share / 9.0 * sum + least_bend));
-#if defined(REFRACTORS_SEEN) && PIXEL_SIDE > 1
+#if PIXEL_SIDE > 1
     bool all = wanted;
     // Few ask for it: a loop whose length is not known is not unrolled, and ends where none does.
     for (int k = wanted ? 0 : PIXEL_SIDE * PIXEL_SIDE; all && k < PIXEL_SIDE * PIXEL_SIDE; k++)

@@ -27,12 +27,13 @@ abbe_result abbe_adaptive_pass_make(const abbe_receivers_pass *receivers,
   abbe_result result = abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 4 * samples[0] * samples[1],
                                             NULL, &out->samples, error);
   const bool fewer = plan->desc.receiver_samples < plan->desc.supersample;
-  char seen[96] = "";
-  if (plan->camera_sees_refractor)
-    snprintf(seen, sizeof seen, "#define REFRACTORS_SEEN\n#define PIXEL_SIDE %zu\n",
-             fewer ? plan->desc.supersample : 1);
+  char side[48];
+  snprintf(side, sizeof side, "#define PIXEL_SIDE %zu\n",
+           !plan->camera_sees_refractor ? 0
+           : fewer                      ? plan->desc.supersample
+                                        : 1);
   if (result == ABBE_OK)
-    result = abbe_gpu_compute(gpu, "adaptive_list.comp", seen, &out->list, error);
+    result = abbe_gpu_compute(gpu, "adaptive_list.comp", side, &out->list, error);
   if (result == ABBE_OK)
     result =
         abbe_shader_variant_compute(variant, gpu, "adaptive.comp", NULL, &out->resample, error);
