@@ -104,15 +104,22 @@ typedef struct abbe_gl {
 #define ABBE_GL_FIELD(type, name) PFNGL##type##PROC name;
   ABBE_GL_FUNCTIONS(ABBE_GL_FIELD)
 #undef ABBE_GL_FIELD
+  const char *description; /* the context's, for messages; NULL: not known */
 } abbe_gl;
 
 typedef void (*abbe_gl_function)(void);
 typedef abbe_gl_function (*abbe_gl_lookup)(const char *name);
 
-/* Fills the table by the context's look-up. ABBE_GL names the first function that is missing. */
+/* Fills the table by the context's look-up, as far as it has the functions. ABBE_GL names the first
+ * that is missing. */
 abbe_result abbe_gl_load(abbe_gl_lookup lookup, abbe_gl *out, abbe_error *error);
 
-/* ABBE_GL with `where` and the error's name if the context holds an error; clears it. */
+/* Clears the errors that the context holds: one flag a kind, of which there are eight; a lost context
+ * has no end of them. */
+void abbe_gl_clear_errors(const abbe_gl *gl);
+
+/* ABBE_GL with `where` and the error's name if the context holds an error; clears it. Of a lost
+ * device it names the driver. */
 abbe_result abbe_gl_check(const abbe_gl *gl, const char *where, abbe_error *error);
 
 #ifdef __cplusplus

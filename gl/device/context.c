@@ -9,7 +9,7 @@
 struct abbe_context {
   abbe_context_native native; /* of an own one; zero of an adopted one */
   abbe_context_host host;     /* of an adopted one */
-  const char *name, *remedy;
+  const char *name;
   abbe_gl gl;
   char description[256];
 };
@@ -25,25 +25,34 @@ const char *abbe_context_backend_name(abbe_context_backend backend) {
 }
 
 static const char *const remedies[] = {
-    [ABBE_CONTEXT_CPU] = "use a newer Mesa, or --backend gpu",
-    [ABBE_CONTEXT_GPU] = "use a newer driver, or --backend cpu",
+    [ABBE_CONTEXT_AUTO] = "--backend cpu needs Mesa's llvmpipe, 20.3 or later (Debian's "
+                          "libegl-mesa0; GALLIUM_DRIVER unset)",
+    [ABBE_CONTEXT_CPU] = "--backend cpu needs Mesa's llvmpipe, 20.3 or later (Debian's "
+                         "libegl-mesa0; GALLIUM_DRIVER unset)",
+    [ABBE_CONTEXT_GPU] = "install a newer driver, or use --backend cpu",
 };
-static const char adopted_remedy[] = "have a context of 4.5 or later current when it is adopted";
 
-/* A name that a driver does not tell. */
-static const char *told(const GLubyte *text) {
-  return text != NULL ? (const char *)text : "unnamed";
-}
-
+/* Takes down what the driver says of itself; a context so bare that it cannot is not judged here.
+ */
 static abbe_result check_version(abbe_context *context, abbe_error *error) {
   GLint major = 0, minor = 0;
-  context->gl.GetIntegerv(GL_MAJOR_VERSION, &major);
-  context->gl.GetIntegerv(GL_MINOR_VERSION, &minor);
+  const char *driver = NULL, *version = NULL;
+  const abbe_gl *gl = &context->gl;
+  if (gl->GetString != NULL) {
+    driver = (const char *)gl->GetString(GL_RENDERER);
+    version = (const char *)gl->GetString(GL_VERSION);
+  }
+  if (driver == NULL) driver = "unnamed";
   snprintf(context->description, sizeof context->description, "%s: %s, OpenGL %s", context->name,
-           told(context->gl.GetString(GL_RENDERER)), told(context->gl.GetString(GL_VERSION)));
+           driver, version != NULL ? version : "unnamed");
+  context->gl.description = context->description;
+  if (gl->GetIntegerv == NULL) return ABBE_OK;
+  gl->GetIntegerv(GL_MAJOR_VERSION, &major);
+  gl->GetIntegerv(GL_MINOR_VERSION, &minor);
+  if (major == 0 && version != NULL) sscanf(version, "%d.%d", &major, &minor); /* before 3.0 */
   if (major * 10 + minor >= 45) return ABBE_OK;
-  return abbe_error_set(error, ABBE_GL, "%s offers OpenGL %d.%d; Abbe needs 4.5: %s", context->name,
-                        major, minor, context->remedy);
+  return abbe_error_set(error, ABBE_GL, "%s: %s offers OpenGL %d.%d; Abbe needs 4.5", context->name,
+                        driver, major, minor);
 }
 
 /* What the passes take for granted beyond, or as much as, OpenGL 4.5 promises. */
@@ -65,19 +74,25 @@ static abbe_result check_limits(const abbe_context *context, abbe_error *error) 
     GLint there = 0;
     context->gl.GetIntegerv(limits[i].limit, &there);
     if (there < limits[i].least)
-      return abbe_error_set(error, ABBE_GL, "%s has %d %s; Abbe needs %d: %s", context->description,
-                            there, limits[i].what, limits[i].least, context->remedy);
+      return abbe_error_set(error, ABBE_GL, "%s has %d %s; Abbe needs %d", context->description,
+                            there, limits[i].what, limits[i].least);
   }
   return ABBE_OK;
 }
 
-/* Loads and checks the context, which is current where the result says so; *out is it, or nothing.
- */
+static abbe_result check(abbe_context *context, abbe_gl_lookup lookup, abbe_error *error) {
+  abbe_error missing = {0};
+  const abbe_result loaded = abbe_gl_load(lookup, &context->gl, &missing);
+  const abbe_result result = check_version(context, error);
+  if (result != ABBE_OK) return result;
+  if (loaded == ABBE_OK) return check_limits(context, error);
+  return abbe_error_set(error, loaded, "%s: %s", context->description, missing.text);
+}
+
+/* Checks the context, which is current where the result says so; *out is it, or nothing. */
 static abbe_result finish(abbe_context *context, abbe_gl_lookup lookup, abbe_result result,
                           abbe_context **out, abbe_error *error) {
-  if (result == ABBE_OK) result = abbe_gl_load(lookup, &context->gl, error);
-  if (result == ABBE_OK) result = check_version(context, error);
-  if (result == ABBE_OK) result = check_limits(context, error);
+  if (result == ABBE_OK) result = check(context, lookup, error);
   if (result == ABBE_OK)
     *out = context;
   else
@@ -91,37 +106,33 @@ static abbe_result make_one(abbe_context_backend kind, bool osmesa, size_t devic
   abbe_context *context = calloc(1, sizeof *context);
   if (context == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a GL context");
   context->name = names[kind];
-  context->remedy = remedies[kind];
   const abbe_result result =
       osmesa ? abbe_context_osmesa(&context->native, error)
              : abbe_context_egl(kind == ABBE_CONTEXT_CPU, device, &context->native, error);
   return finish(context, context->native.lookup, result, out, error);
 }
 
-/* EGL's devices in turn, then OSMesa for the CPU; the error is of the last that is there. */
+/* EGL's devices in turn, then OSMesa for the CPU; the error is of the last that is there, without
+ * what to do, and ABBE_UNSUPPORTED where none is. */
 static abbe_result make_of_kind(abbe_context_backend kind, abbe_context **out, abbe_error *error) {
   abbe_error last = {0};
-  abbe_result result = ABBE_UNSUPPORTED;
+  abbe_result result =
+      abbe_error_set(error, ABBE_UNSUPPORTED,
+                     kind == ABBE_CONTEXT_GPU ? "there is no GPU with an EGL driver"
+                                              : "there is no OpenGL for the CPU, neither EGL's "
+                                                "software device nor OSMesa");
   bool osmesa = false, more = true;
   for (size_t device = 0; more; device++) {
     const abbe_result one = make_one(kind, osmesa, device, out, &last);
     if (one == ABBE_OK) return ABBE_OK;
     if (one != ABBE_UNSUPPORTED) {
       result = one;
-      if (error != NULL) *error = last;
+      *error = last;
     }
     more = !osmesa && (one != ABBE_UNSUPPORTED || kind == ABBE_CONTEXT_CPU);
     osmesa = one == ABBE_UNSUPPORTED;
   }
-  if (result != ABBE_UNSUPPORTED) return result;
-  if (kind == ABBE_CONTEXT_GPU)
-    return abbe_error_set(error, ABBE_GL,
-                          "there is no GPU with an EGL driver; install its driver, or use "
-                          "--backend cpu");
-  return abbe_error_set(error, ABBE_GL,
-                        "there is no OpenGL for the CPU: neither EGL's software device nor OSMesa "
-                        "is found; install Mesa's EGL (Debian's libegl-mesa0), or use --backend "
-                        "gpu");
+  return result;
 }
 
 abbe_result abbe_context_make(abbe_context_backend backend, abbe_context **out, abbe_error *error) {
@@ -129,9 +140,16 @@ abbe_result abbe_context_make(abbe_context_backend backend, abbe_context **out, 
   *out = NULL;
   if ((int)backend < 0 || backend >= ABBE_CONTEXT_BACKEND_COUNT)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no GL back end %d", (int)backend);
-  if (backend == ABBE_CONTEXT_AUTO && make_of_kind(ABBE_CONTEXT_GPU, out, NULL) == ABBE_OK)
-    return ABBE_OK;
-  return make_of_kind(backend == ABBE_CONTEXT_AUTO ? ABBE_CONTEXT_CPU : backend, out, error);
+  abbe_error gpu = {0}, cpu = {0};
+  abbe_result result = ABBE_UNSUPPORTED;
+  if (backend != ABBE_CONTEXT_CPU) result = make_of_kind(ABBE_CONTEXT_GPU, out, &gpu);
+  const bool tell_gpu = backend == ABBE_CONTEXT_GPU || result != ABBE_UNSUPPORTED;
+  if (result != ABBE_OK && backend != ABBE_CONTEXT_GPU)
+    result = make_of_kind(ABBE_CONTEXT_CPU, out, &cpu);
+  if (result == ABBE_OK) return ABBE_OK;
+  return abbe_error_set(error, result == ABBE_UNSUPPORTED ? ABBE_GL : result, "%s%s%s; %s",
+                        tell_gpu ? gpu.text : "", tell_gpu && cpu.text[0] != '\0' ? "; " : "",
+                        cpu.text, remedies[backend]);
 }
 
 abbe_result abbe_context_adopt(const abbe_context_host *host, abbe_context **out,
@@ -145,9 +163,15 @@ abbe_result abbe_context_adopt(const abbe_context_host *host, abbe_context **out
   if (context == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a GL context");
   context->host = *host;
   context->name = "adopted";
-  context->remedy = adopted_remedy;
-  const abbe_result result = abbe_context_make_current(context, error);
-  return finish(context, host->lookup, result, out, error);
+  abbe_error cause = {0};
+  abbe_result result = abbe_context_make_current(context, error);
+  if (result != ABBE_OK) return finish(context, NULL, result, out, error);
+  result = finish(context, host->lookup, ABBE_OK, out, &cause);
+  return result == ABBE_OK ? ABBE_OK
+                           : abbe_error_set(error, result,
+                                            "%s: have a context of 4.5 or later "
+                                            "current when it is adopted",
+                                            cause.text);
 }
 
 void abbe_context_free(abbe_context *context) {

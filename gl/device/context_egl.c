@@ -10,8 +10,8 @@ static const char *kind_of(bool software) {
   return software ? "software" : "GPU";
 }
 
-static const char *other_than(bool software) {
-  return software ? "--backend gpu" : "--backend cpu";
+static bool has(const char *extensions, const char *name) {
+  return extensions != NULL && strstr(extensions, name) != NULL;
 }
 
 /* Binds nothing, then the context: EGL passes over a bind of what it takes for current, which an
@@ -40,8 +40,9 @@ static void destroy(abbe_context_native *native) {
   eglDestroyContext(display, (EGLContext)native->handle[1]);
 }
 
-/* EGL's device of that number among the software ones or the others; NULL beyond the last. */
-static EGLDeviceEXT find_device(bool software, size_t number) {
+/* EGL's device of that number among the software ones or the others; NULL beyond the last. *name is
+ * the file of a device that has one. */
+static EGLDeviceEXT find_device(bool software, size_t number, const char **name) {
   PFNEGLQUERYDEVICESEXTPROC query =
       (PFNEGLQUERYDEVICESEXTPROC)eglGetProcAddress("eglQueryDevicesEXT");
   PFNEGLQUERYDEVICESTRINGEXTPROC describe =
@@ -52,9 +53,11 @@ static EGLDeviceEXT find_device(bool software, size_t number) {
   if (query == NULL || describe == NULL || !query(MOST, devices, &count)) return NULL;
   for (EGLint i = 0; i < count; i++) {
     const char *extensions = describe(devices[i], EGL_EXTENSIONS);
-    const bool is_software =
-        extensions != NULL && strstr(extensions, "EGL_MESA_device_software") != NULL;
-    if (is_software == software && number-- == 0) return devices[i];
+    if (has(extensions, "EGL_MESA_device_software") != software || number-- > 0) continue;
+    if (has(extensions, "EGL_EXT_device_drm"))
+      *name = describe(devices[i], EGL_DRM_DEVICE_FILE_EXT);
+    if (*name == NULL) *name = "of no file";
+    return devices[i];
   }
   return NULL;
 }
@@ -68,28 +71,41 @@ static EGLDisplay open_display(EGLDeviceEXT device) {
   return opened ? display : EGL_NO_DISPLAY;
 }
 
-abbe_result abbe_context_egl(bool software, size_t device, abbe_context_native *out,
-                             abbe_error *error) {
-  static const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
-                                  EGL_NONE};
-  static const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+/* A context of 4.5 that tells of a lost device instead of ending the process, else one that does
+ * not, else whatever the driver offers, which says by itself what it lacks. */
+static EGLContext create(EGLDisplay display, EGLConfig config) {
+  static const EGLint attributes[] = {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                      EGL_LOSE_CONTEXT_ON_RESET,
+                                      EGL_CONTEXT_MAJOR_VERSION,
                                       4,
                                       EGL_CONTEXT_MINOR_VERSION,
                                       5,
                                       EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                       EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                       EGL_NONE};
+  static const EGLint skipped[] = {0, 2, 8}; /* of the attributes */
+  EGLContext context = EGL_NO_CONTEXT;
+  for (size_t i = 0; i < 3 && context == EGL_NO_CONTEXT; i++)
+    context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes + skipped[i]);
+  return context;
+}
+
+abbe_result abbe_context_egl(bool software, size_t device, abbe_context_native *out,
+                             abbe_error *error) {
+  static const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
+                                  EGL_NONE};
+  const char *name = NULL;
   out->handle[0] = EGL_NO_DISPLAY;
   out->lookup = (abbe_gl_lookup)eglGetProcAddress;
   out->make_current = make_current;
   out->destroy = destroy;
-  const EGLDeviceEXT found = find_device(software, device);
+  const EGLDeviceEXT found = find_device(software, device, &name);
   if (found == NULL)
     return abbe_error_set(error, ABBE_UNSUPPORTED, "EGL has no %s device", kind_of(software));
   EGLDisplay display = open_display(found);
   if (display == EGL_NO_DISPLAY)
-    return abbe_error_set(error, ABBE_GL, "EGL's %s device does not open (EGL error 0x%x); use %s",
-                          kind_of(software), (unsigned)eglGetError(), other_than(software));
+    return abbe_error_set(error, ABBE_GL, "EGL's %s device (%s) does not open (EGL error 0x%x)",
+                          kind_of(software), name, (unsigned)eglGetError());
   out->handle[0] = display;
   EGLConfig config = NULL;
   EGLContext context = EGL_NO_CONTEXT;
@@ -97,20 +113,19 @@ abbe_result abbe_context_egl(bool software, size_t device, abbe_context_native *
   const EGLenum api = eglQueryAPI();
   eglBindAPI(EGL_OPENGL_API);
   if (eglChooseConfig(display, wanted, &config, 1, &configs) && configs > 0)
-    context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
+    context = create(display, config);
   eglBindAPI(api);
   const char *driver = eglQueryString(display, EGL_VENDOR);
   if (driver == NULL) driver = "unnamed";
   if (context == EGL_NO_CONTEXT)
-    return abbe_error_set(error, ABBE_GL,
-                          "EGL's %s device (%s) gives no OpenGL 4.5 core context; use %s",
-                          kind_of(software), driver, other_than(software));
+    return abbe_error_set(error, ABBE_GL, "EGL's %s device (%s, driver %s) gives no OpenGL context",
+                          kind_of(software), name, driver);
   out->handle[1] = context;
   if (!make_current(out))
     return abbe_error_set(error, ABBE_GL,
-                          "the context of EGL's %s device (%s) cannot be made current without a "
-                          "surface; use %s",
-                          kind_of(software), driver, other_than(software));
+                          "the context of EGL's %s device (%s, driver %s) cannot be made current "
+                          "without a surface",
+                          kind_of(software), name, driver);
   return ABBE_OK;
 }
 

@@ -78,14 +78,15 @@ static void destroy(abbe_context_native *native) {
 }
 
 abbe_result abbe_context_osmesa(abbe_context_native *out, abbe_error *error) {
-  const int attributes[] = {OSMESA_FORMAT,
-                            OSMESA_RGBA,
-                            OSMESA_PROFILE,
+  enum { ANY_VERSION = 6 }; /* the attributes from there on */
+  const int attributes[] = {OSMESA_PROFILE,
                             OSMESA_CORE_PROFILE,
                             OSMESA_CONTEXT_MAJOR_VERSION,
                             4,
                             OSMESA_CONTEXT_MINOR_VERSION,
                             5,
+                            OSMESA_FORMAT,
+                            OSMESA_RGBA,
                             0,
                             0};
   abbe_result result = need_mesa(error);
@@ -95,15 +96,13 @@ abbe_result abbe_context_osmesa(abbe_context_native *out, abbe_error *error) {
   out->destroy = destroy;
   out->handle[1] = malloc(BUFFER_SIDE * BUFFER_SIDE * 4);
   if (out->handle[1] == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for OSMesa");
+  /* Where there is no 4.5, whatever there is says by itself what it lacks. */
   OSMesaContext context = mesa.create(attributes, NULL);
-  if (context == NULL)
-    return abbe_error_set(error, ABBE_GL,
-                          "OSMesa gives no OpenGL 4.5 core context; use a newer Mesa, or "
-                          "--backend gpu");
+  if (context == NULL) context = mesa.create(attributes + ANY_VERSION, NULL);
+  if (context == NULL) return abbe_error_set(error, ABBE_GL, "OSMesa gives no OpenGL context");
   out->handle[0] = context;
   if (!make_current(out))
-    return abbe_error_set(error, ABBE_GL,
-                          "OSMesa's context cannot be made current; use --backend gpu");
+    return abbe_error_set(error, ABBE_GL, "OSMesa's context cannot be made current");
   return ABBE_OK;
 }
 

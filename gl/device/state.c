@@ -4,8 +4,7 @@
 
 #include <stddef.h>
 
-_Static_assert(UNIT_SHAFTS < ABBE_GL_STATE_UNITS,
-               "the last unit keeps a caller's sampler");
+_Static_assert(UNIT_SHAFTS < ABBE_GL_STATE_UNITS, "the last unit keeps a caller's sampler");
 
 static void set_enables(const abbe_gl *gl) {
   static const GLenum off[] = {
@@ -76,8 +75,7 @@ static void set_all(const abbe_gl *gl, GLint alignment) {
 }
 
 void abbe_gl_state_begin(const abbe_gl *gl) {
-  /* One flag a kind of error, of which there are eight; a lost context has no end of them. */
-  for (int i = 0; i < 8 && gl->GetError() != GL_NO_ERROR; i++) continue;
+  abbe_gl_clear_errors(gl);
   set_all(gl, 1);
   gl->Enable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
 }

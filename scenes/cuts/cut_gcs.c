@@ -30,7 +30,11 @@ typedef struct reading {
 } reading;
 
 static size_t line_of(const reading *r) {
+#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9
+  return (size_t)XML_GetCurrentLineNumber64(r->parser);
+#else
   return (size_t)XML_GetCurrentLineNumber(r->parser);
+#endif
 }
 
 /* The first failure holds; the parser goes no further. */

@@ -15,10 +15,12 @@ static GLenum lowered;     /* a limit that is `low` */
 static GLint low;
 static bool refused, mute, breaks; /* no context; no strings; shaders do not compile */
 static bool as_gpu, first_fails;   /* of EGL's devices */
+static bool gone;                  /* the device */
 static size_t tried;
 static abbe_gl_lookup real_lookup;
 static PFNGLGETINTEGERVPROC real_integer;
 static PFNGLGETSHADERIVPROC real_shader;
+static PFNGLGETERRORPROC real_error;
 
 static void integer(GLenum name, GLint *out) {
   if (name == lowered && lowered != 0)
@@ -37,12 +39,21 @@ static void broken_shader(GLuint shader, GLenum name, GLint *out) {
   if (name == GL_COMPILE_STATUS) *out = GL_FALSE;
 }
 
+/* A lost device's error is there again as soon as it is taken. */
+static GLenum lost_error(void) {
+  return gone ? GL_CONTEXT_LOST : real_error();
+}
+
 static abbe_gl_function lookup(const char *name) {
   abbe_gl_function found = real_lookup(name);
   if (hidden != NULL && strcmp(name, hidden) == 0) return NULL;
   if (strcmp(name, "glGetIntegerv") == 0) {
     real_integer = (PFNGLGETINTEGERVPROC)found;
     return (abbe_gl_function)integer;
+  }
+  if (strcmp(name, "glGetError") == 0) {
+    real_error = (PFNGLGETERRORPROC)found;
+    return (abbe_gl_function)lost_error;
   }
   if (mute && strcmp(name, "glGetString") == 0) return (abbe_gl_function)no_string;
   if (breaks && strcmp(name, "glGetShaderiv") == 0) {
@@ -63,7 +74,7 @@ abbe_result __wrap_abbe_context_egl(bool software, size_t device, abbe_context_n
     return abbe_error_set(error, ABBE_UNSUPPORTED, "there is no other device");
   tried++;
   if (refused || (first_fails && device == 0))
-    return abbe_error_set(error, ABBE_GL, "EGL gives no context; use --backend gpu");
+    return abbe_error_set(error, ABBE_GL, "EGL gives no context");
   const abbe_result result = __real_abbe_context_egl(true, 0, out, error);
   real_lookup = out->lookup;
   out->lookup = lookup;
@@ -80,7 +91,7 @@ static int reset(void **state) {
   (void)state;
   hidden = NULL;
   lowered = 0;
-  refused = mute = breaks = as_gpu = first_fails = false;
+  refused = mute = breaks = as_gpu = first_fails = gone = false;
   tried = 0;
   return 0;
 }
@@ -165,7 +176,19 @@ static void test_the_device_that_works_is_taken(void **state) {
   assert_int_equal(tried, 2);
   assert_int_equal(abbe_context_make(ABBE_CONTEXT_CPU, &context, &error), ABBE_GL);
   assert_contains(error.text, "no OpenGL for the CPU");
-  assert_contains(error.text, "--backend gpu");
+  assert_contains(error.text, "llvmpipe");
+}
+
+/* Where neither works the causes are told together, and neither sends the user to the other. */
+static void test_two_causes_are_one_sentence(void **state) {
+  (void)state;
+  abbe_context *context = NULL;
+  abbe_error error = {0};
+  as_gpu = refused = true;
+  assert_int_equal(abbe_context_make(ABBE_CONTEXT_AUTO, &context, &error), ABBE_GL);
+  assert_contains(error.text, "EGL gives no context; there is no OpenGL for the CPU");
+  assert_contains(error.text, "--backend cpu needs Mesa's llvmpipe");
+  assert_null(strstr(error.text, "--backend gpu"));
 }
 
 static void test_a_driver_without_a_name(void **state) {
@@ -177,21 +200,48 @@ static void test_a_driver_without_a_name(void **state) {
   abbe_context_free(context);
 }
 
+static void make_gem(abbe_context **context, abbe_renderer **renderer, abbe_result expected,
+                     abbe_error *error) {
+  abbe_scene scene = {0};
+  const abbe_render_desc desc = {.width = 8, .height = 8, .photons = 8, .map_size = 32};
+  assert_int_equal(abbe_context_make(ABBE_CONTEXT_CPU, context, NULL), ABBE_OK);
+  assert_int_equal(abbe_scene_load(ABBE_SOURCE_DIR "/scenes/gem.yaml", NULL, &scene, NULL),
+                   ABBE_OK);
+  assert_int_equal(abbe_renderer_make(*context, &scene, &desc, renderer, error), expected);
+  abbe_scene_free(&scene);
+}
+
 static void test_shaders_that_do_not_compile(void **state) {
   (void)state;
   abbe_context *context = NULL;
   abbe_renderer *renderer = NULL;
-  abbe_scene scene = {0};
   abbe_error error = {0};
-  const abbe_render_desc desc = {.width = 8, .height = 8, .photons = 8, .map_size = 32};
   breaks = true;
-  assert_int_equal(abbe_context_make(ABBE_CONTEXT_CPU, &context, NULL), ABBE_OK);
-  assert_int_equal(abbe_scene_load(ABBE_SOURCE_DIR "/scenes/gem.yaml", NULL, &scene, NULL),
-                   ABBE_OK);
-  assert_int_equal(abbe_renderer_make(context, &scene, &desc, &renderer, &error), ABBE_GL);
+  make_gem(&context, &renderer, ABBE_GL, &error);
   assert_null(renderer);
   assert_contains(error.text, "does not compile");
-  abbe_scene_free(&scene);
+  abbe_context_free(context);
+}
+
+static bool lose(void *user, double done) {
+  (void)user;
+  (void)done;
+  gone = true;
+  return true;
+}
+
+/* The frame ends with the driver's name and a way out, and what is freed then is freed. */
+static void test_a_device_lost_in_a_frame(void **state) {
+  (void)state;
+  abbe_context *context = NULL;
+  abbe_renderer *renderer = NULL;
+  abbe_error error = {0};
+  make_gem(&context, &renderer, ABBE_OK, &error);
+  assert_int_equal(abbe_renderer_frame(renderer, lose, NULL, NULL, &error), ABBE_GL);
+  assert_contains(error.text, "device was lost in");
+  assert_contains(error.text, "(cpu: llvmpipe");
+  assert_contains(error.text, "--backend cpu");
+  abbe_renderer_free(renderer);
   abbe_context_free(context);
 }
 
@@ -201,7 +251,9 @@ int main(void) {
       cmocka_unit_test_setup(test_every_function_missing, reset),
       cmocka_unit_test_setup(test_versions_and_limits, reset),
       cmocka_unit_test_setup(test_the_device_that_works_is_taken, reset),
+      cmocka_unit_test_setup(test_two_causes_are_one_sentence, reset),
       cmocka_unit_test_setup(test_a_driver_without_a_name, reset),
-      cmocka_unit_test_setup(test_shaders_that_do_not_compile, reset)};
+      cmocka_unit_test_setup(test_shaders_that_do_not_compile, reset),
+      cmocka_unit_test_setup(test_a_device_lost_in_a_frame, reset)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -97,7 +97,7 @@ static abbe_gl_function host_lookup(const char *name) {
 }
 
 static abbe_gl_function empty_lookup(const char *name) {
-  return strcmp(name, "glFinish") == 0 ? NULL : nothing;
+  return strcmp(name, "glFinish") == 0 ? NULL : host_lookup(name);
 }
 
 static bool host_make_current(void *user) {
@@ -122,9 +122,10 @@ static void test_a_host_is_adopted_or_told_why_not(void **state) {
   abbe_context *context = NULL;
   abbe_error error = {0};
   assert_not_adopted(&(abbe_context_host){0}, ABBE_INVALID_ARGUMENT, "lookup");
-  assert_not_adopted(&(abbe_context_host){.lookup = empty_lookup}, ABBE_GL, "has no glFinish;");
+  assert_not_adopted(&(abbe_context_host){.lookup = empty_lookup}, ABBE_GL,
+                     "a made-up one, OpenGL 4.6: this OpenGL has no glFinish;");
   major_of_host = 3;
-  assert_not_adopted(&host, ABBE_GL, "adopted offers OpenGL 3.6; Abbe needs 4.5");
+  assert_not_adopted(&host, ABBE_GL, "adopted: a made-up one offers OpenGL 3.6; Abbe needs 4.5");
   major_of_host = 4;
   limit_of_host = 4;
   assert_not_adopted(&host, ABBE_GL, "adopted: a made-up one, OpenGL 4.6 has 4 storage buffers");
