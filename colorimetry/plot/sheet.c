@@ -46,6 +46,8 @@ abbe_result abbe_sheet_make(const char *path, abbe_sheet **out, abbe_error *erro
   }
   sheet->surface = cairo_pdf_surface_create_for_stream(write_bytes, sheet->writer.stream,
                                                        ABBE_SHEET_A4_WIDTH, ABBE_SHEET_A4_HEIGHT);
+  /* From 1.5 on newer versions of cairo pack a file's structure, which then no text tool reads. */
+  cairo_pdf_surface_restrict_to_version(sheet->surface, CAIRO_PDF_VERSION_1_4);
   sheet->cr = cairo_create(sheet->surface);
   result = state_of(cairo_status(sheet->cr), error);
   if (result == ABBE_OK)

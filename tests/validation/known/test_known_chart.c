@@ -1,6 +1,7 @@
 /* The chart of known answers: what is in it, and what is refused. */
 #include "tests/check.h"
 #include "tests/fontconfig.h"
+#include "tests/svg.h"
 
 #include "base/file.h"
 #include "validation/known/known_chart.h"
@@ -31,12 +32,11 @@ enum { MOST = 32, LEGEND = 850 }; /* marks of the legend stand right of that */
 /* The marks of the data, from left to right. */
 static size_t find_marks(const char *text, mark *out) {
   size_t count = 0;
-  for (const char *at = text; (at = strstr(at, "fill:rgb(")) != NULL; at++) {
-    double red, green, blue, x0, y0, c[6];
-    if (sscanf(
-            at,
-            "fill:rgb(%lf%%,%lf%%,%lf%%);fill-opacity:1;\" d=\"M %lf %lf C %lf %lf %lf %lf %lf %lf",
-            &red, &green, &blue, &x0, &y0, &c[0], &c[1], &c[2], &c[3], &c[4], &c[5]) != 11)
+  for (const char *at = text; (at = svg_path(at)) != NULL; at++) {
+    double red, x0, y0, c[6];
+    if (sscanf(svg_value(at, "fill"), "rgb(%lf%%", &red) != 1 ||
+        sscanf(svg_value(at, "d"), "M %lf %lf C %lf %lf %lf %lf %lf %lf", &x0, &y0, &c[0], &c[1],
+               &c[2], &c[3], &c[4], &c[5]) != 8)
       continue;
     mark m = {0.5 * (x0 + c[4]), y0, red};
     if (m.x > LEGEND) continue;
