@@ -71,6 +71,24 @@ bool abbe_number_read(const char *text, const char **end, double *value) {
   return true;
 }
 
+bool abbe_number_read_length(const char *text, const char **end, double *metres) {
+  /* a quotient is the decimal's own double (6.5 mm is 0.0065), a product need not be */
+  static const struct {
+    const char *name;
+    double metres, parts;
+  } units[] = {{"um", 1, 1e6}, {"mm", 1, 1e3},    {"cm", 1, 1e2},
+               {"m", 1, 1},    {"in", 0.0254, 1}, {"ft", 0.3048, 1}};
+  if (!abbe_number_read(text, end, metres)) return false;
+  const char *unit = *end + strspn(*end, " ");
+  const size_t length = strspn(unit, "abcdefghijklmnopqrstuvwxyz");
+  for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+    if (length != strlen(units[i].name) || strncmp(unit, units[i].name, length) != 0) continue;
+    *metres = *metres * units[i].metres / units[i].parts;
+    *end = unit + length;
+  }
+  return true;
+}
+
 int abbe_number_format_list(char *out, size_t size, const char *format, va_list arguments) {
   locale_t host = abbe_number_enter();
   const int length = vsnprintf(out, size, format, arguments);

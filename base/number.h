@@ -2,8 +2,8 @@
  *
  * Files and messages write 1.5 with a point whatever the host program's locale says: whatever
  * prints or reads numbers with a decimal point goes through here (tests/base/test_locale holds the
- * library to it). Written numbers are the shortest that read back as the same double. It knows no
- * units.
+ * library to it). Written numbers are the shortest that read back as the same double. Of units
+ * it knows those of length.
  */
 #ifndef ABBE_BASE_NUMBER_H
 #define ABBE_BASE_NUMBER_H
@@ -32,6 +32,11 @@ double abbe_number_tidy(double value);
  * into *value; *end points past it. False, and *end == text, where none begins there. Hexadecimal
  * numbers, infinities and NaN are not numbers here; one too large for a double is infinite. */
 bool abbe_number_read(const char *text, const char **end, double *value);
+
+/* Likewise a length, in metres: a number and, blanks between them or not, one of the units
+ * ABBE_LENGTH_UNITS behind it. */
+bool abbe_number_read_length(const char *text, const char **end, double *metres);
+#define ABBE_LENGTH_UNITS "um, mm, cm, m, in, ft"
 
 /* snprintf, vsnprintf and fprintf with a decimal point. */
 #if defined(__GNUC__)

@@ -45,6 +45,7 @@ static const struct argp_option options[] = {
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
      "a table instead of the scene's: default, thesis or a file", 0},
     ABBE_SCENE_INPUT_OPTIONS(0),
+    ABBE_SCENE_INPUT_STUDIO_OPTIONS(0),
     {"json", OPTION_JSON, NULL, 0, "what became of each material, on standard output", 0},
     {"quiet", 'q', NULL, 0, "no summary", 0},
     {0}};
@@ -104,8 +105,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     q->quiet = true;
     return 0;
   case ARGP_KEY_ARG:
-    if (q->scene != NULL) argp_error(state, "one scene at a time: '%s' and '%s'", q->scene, text);
-    q->scene = text;
+    abbe_scene_input_take_file(&q->changes, &q->scene, text, state);
     return 0;
   case ARGP_KEY_END:
     if (q->scene == NULL) argp_error(state, "which scene? Give a file such as scenes/gem.yaml");

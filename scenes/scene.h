@@ -94,9 +94,9 @@ typedef struct abbe_object {
   size_t line;    /* in the scene file */
   abbe_mesh mesh; /* world space */
   abbe_exact exact;
-  double min[3], max[3];         /* bounds */
-  double fitted;                 /* what `fit` scaled it by about the origin, after `transform`; 1 */
-  double centring[3];            /* by which `centre` moved it then, m; 0 */
+  double min[3], max[3]; /* bounds */
+  double fitted;         /* what `fit` scaled it by about the origin, after `transform`; 1 */
+  double centring[3];    /* by which `centre` moved it then, m; 0 */
   const abbe_material *material; /* refractor: of the scene's table or its own; else NULL */
   double axis[3];                /* of a uniaxial crystal: unit, its optic axis in the world; of
                                     other materials of no meaning */
@@ -179,7 +179,8 @@ const char *abbe_scene_file(const abbe_scene *scene, size_t index);
  * precision does not tell on which side. */
 #define ABBE_SCENE_LEAST_GAP 0x1p-20
 
-/* Refuses what cannot be rendered, by name: neither light nor environment, no receiver, a light (a
+/* Refuses what cannot be rendered, by name: neither light nor environment, no receiver without
+ * surroundings, a light (a
  * disk: any part of it) inside a refractor or on its surface, the camera on one, inside one where
  * it does not say that it may be, or inside one that absorbs light or is a crystal, a light's
  * position or the camera on a mirror, no receiver and no mirror in the camera's view. Called by the

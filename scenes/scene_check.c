@@ -281,14 +281,15 @@ abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error) {
     receivers += kind == ABBE_OBJECT_RECEIVER;
     seen = seen || object_in_view(&scene->object[i], &scene->camera);
   }
-  if (receivers == 0)
+  if (receivers == 0 && scene->environment == NULL)
     return abbe_error_set(error, ABBE_SCHEMA,
                           "%s: the scene has no receiver, so light has nowhere to fall; give at "
-                          "least one object a 'reflectance' in place of a 'material'",
+                          "least one object a 'reflectance' in place of a 'material', or the scene "
+                          "surroundings under 'environment', which are seen themselves",
                           path_of(scene));
   const abbe_result result = check_places(scene, error);
   if (result != ABBE_OK) return result;
-  if (!seen)
+  if (!seen && scene->environment == NULL)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%s: no receiver is in the camera's view, so no caustic could be seen; "
                           "turn the camera towards one of the %zu receivers",

@@ -156,6 +156,22 @@ abbe_yaml_node abbe_yaml_get(abbe_yaml *yaml, abbe_yaml_node mapping, const char
   return (abbe_yaml_node){0};
 }
 
+abbe_result abbe_yaml_refuse_near(const abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
+                                  abbe_error *error) {
+  ABBE_REQUIRE(yaml && key, error);
+  const abbe_yaml_part *n = abbe_yaml_at(yaml, mapping);
+  for (size_t i = 0; n != NULL && n->kind == ABBE_YAML_MAPPING && i + 1 < n->count; i += 2) {
+    const abbe_yaml_node other = {n->child[i]};
+    const char *text = abbe_yaml_at(yaml, other)->text;
+    if (!abbe_yaml_at(yaml, other)->asked && abbe_nearest_word(text, &key, 1) != NULL)
+      return abbe_yaml_fail(yaml, other, error,
+                            "the key '%s' is missing here, and '%.60s' is no key; did you mean "
+                            "'%s'?",
+                            key, text, key);
+  }
+  return ABBE_OK;
+}
+
 abbe_result abbe_yaml_require(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                               abbe_yaml_node *out, abbe_error *error) {
   ABBE_REQUIRE(yaml && key && out, error);
@@ -163,16 +179,10 @@ abbe_result abbe_yaml_require(abbe_yaml *yaml, abbe_yaml_node mapping, const cha
     return abbe_yaml_fail(yaml, mapping, error, "a mapping with the key '%s' is wanted here", key);
   *out = abbe_yaml_get(yaml, mapping, key);
   if (out->id != 0) return ABBE_OK;
-  /* Most often the key is there, mistyped. */
-  const abbe_yaml_part *n = abbe_yaml_at(yaml, mapping);
-  for (size_t i = 0; i + 1 < n->count; i += 2) {
-    abbe_yaml_node other = {n->child[i]};
-    const char *text = abbe_yaml_at(yaml, other)->text;
-    if (!abbe_yaml_at(yaml, other)->asked && abbe_nearest_word(text, &key, 1) != NULL)
-      return abbe_yaml_fail(yaml, other, error, "the key '%s' is missing here; is '%.60s' meant?",
-                            key, text);
-  }
-  return abbe_yaml_fail(yaml, mapping, error, "the key '%s' is missing here", key);
+  const abbe_result result = abbe_yaml_refuse_near(yaml, mapping, key, error);
+  return result != ABBE_OK
+             ? result
+             : abbe_yaml_fail(yaml, mapping, error, "the key '%s' is missing here", key);
 }
 
 abbe_result abbe_yaml_check_keys(const abbe_yaml *yaml, abbe_yaml_node mapping, const char *what,

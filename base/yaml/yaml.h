@@ -56,6 +56,10 @@ abbe_yaml_node abbe_yaml_get(abbe_yaml *yaml, abbe_yaml_node mapping, const char
 abbe_result abbe_yaml_require(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                               abbe_yaml_node *out, abbe_error *error);
 
+/* ABBE_SCHEMA where a key that no getter asked for is nearly called `key`, which is missing. */
+abbe_result abbe_yaml_refuse_near(const abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
+                                  abbe_error *error);
+
 /* Typed optional getters: an absent key leaves *out as it is (its default). Numbers must be
  * finite and in [min, max]; `exclusive` bounds are the caller's own checks. */
 abbe_result abbe_yaml_get_number(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
@@ -85,6 +89,16 @@ abbe_result abbe_yaml_get_list(abbe_yaml *yaml, abbe_yaml_node mapping, const ch
 /* A scalar node as a finite number in [min, max]. */
 abbe_result abbe_yaml_number(const abbe_yaml *yaml, abbe_yaml_node node, const char *what,
                              double min, double max, double *out, abbe_error *error);
+
+/* The same of lengths, in metres, which may have their unit behind them: 6.5mm, 0.2 in
+ * (base/number.h). */
+abbe_result abbe_yaml_length(const abbe_yaml *yaml, abbe_yaml_node node, const char *what,
+                             double min, double max, double *out, abbe_error *error);
+abbe_result abbe_yaml_get_length(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
+                                 double min, double max, double *out, abbe_error *error);
+abbe_result abbe_yaml_get_lengths(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
+                                  size_t count, double min, double max, double *out,
+                                  abbe_error *error);
 
 /* ABBE_SCHEMA for the first key of mapping that no getter asked for, with the nearest known. */
 abbe_result abbe_yaml_check_keys(const abbe_yaml *yaml, abbe_yaml_node mapping, const char *what,

@@ -228,13 +228,28 @@ static abbe_result take_event(builder *b, const yaml_event_t *event) {
   }
 }
 
-static abbe_result not_well_formed(builder *b, const yaml_parser_t *parser) {
+/* Whether that line, counted from 0, begins with a tab among its blanks. */
+static bool begins_with_tab(const char *text, size_t size, size_t line) {
+  const char *at = text, *end = text + size;
+  for (; line > 0 && at != NULL; line--) {
+    at = memchr(at, '\n', (size_t)(end - at));
+    if (at != NULL) at++;
+  }
+  while (at != NULL && at < end && *at == ' ') at++;
+  return at != NULL && at < end && *at == '\t';
+}
+
+static abbe_result not_well_formed(builder *b, const yaml_parser_t *parser, const char *text,
+                                   size_t size) {
   const char *problem = parser->problem != NULL ? parser->problem : "not YAML";
   if (parser->error == YAML_MEMORY_ERROR) return abbe_yaml_no_memory(b->yaml, b->error);
   if (parser->error == YAML_READER_ERROR)
     return abbe_yaml_fail_at(b->yaml, 0, ABBE_PARSE, b->error,
                              "is not well-formed YAML: %s at byte %zu", problem,
                              parser->problem_offset);
+  if (begins_with_tab(text, size, parser->problem_mark.line))
+    return abbe_yaml_fail_at(b->yaml, parser->problem_mark.line + 1, ABBE_PARSE, b->error,
+                             "the line begins with a tab; YAML indents by blanks");
   return abbe_yaml_fail_at(b->yaml, parser->problem_mark.line + 1, ABBE_PARSE, b->error,
                            "is not well-formed YAML: %s%s%s", problem, parser->context ? " " : "",
                            parser->context ? parser->context : "");
@@ -248,7 +263,7 @@ static abbe_result build(builder *b, const char *text, size_t size) {
   for (bool end = false; !end && result == ABBE_OK;) {
     yaml_event_t event;
     if (!yaml_parser_parse(&parser, &event)) {
-      result = not_well_formed(b, &parser);
+      result = not_well_formed(b, &parser, text, size);
       break;
     }
     result = take_event(b, &event);

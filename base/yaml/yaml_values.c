@@ -24,28 +24,54 @@ static bool parse_number(const char *text, double *value) {
   return abbe_number_read(text, &end, value) && *end == '\0' && isfinite(*value);
 }
 
+static bool parse_length(const char *text, double *value) {
+  const char *end;
+  return abbe_number_read_length(text, &end, value) && *end == '\0' && isfinite(*value);
+}
+
+static abbe_result read_number(const abbe_yaml *yaml, abbe_yaml_node which, const char *what,
+                               bool length, double min, double max, double *out,
+                               abbe_error *error) {
+  const abbe_yaml_part *n = abbe_yaml_at(yaml, which);
+  if (n == NULL || n->kind != ABBE_YAML_SCALAR || n->quoted)
+    return abbe_yaml_fail(yaml, which, error, "'%s' wants a %s, not %s", what,
+                          length ? "length" : "number", kind_name(yaml, which));
+  double value = 0;
+  if (!(length ? parse_length : parse_number)(n->text, &value))
+    return abbe_yaml_fail(yaml, which, error, "'%s: %.60s' is not a finite number%s", what, n->text,
+                          length ? ", of metres or with its unit behind it (" ABBE_LENGTH_UNITS ")"
+                                 : "");
+  if (value < min || value > max)
+    return abbe_yaml_fail(yaml, which, error, "'%s: %.60s' is not in the range from %g to %g%s",
+                          what, n->text, min, max, length ? " m" : "");
+  *out = value;
+  return ABBE_OK;
+}
+
 abbe_result abbe_yaml_number(const abbe_yaml *yaml, abbe_yaml_node which, const char *what,
                              double min, double max, double *out, abbe_error *error) {
   ABBE_REQUIRE(yaml && what && out, error);
-  const abbe_yaml_part *n = abbe_yaml_at(yaml, which);
-  if (n == NULL || n->kind != ABBE_YAML_SCALAR || n->quoted)
-    return abbe_yaml_fail(yaml, which, error, "'%s' wants a number, not %s", what,
-                          kind_name(yaml, which));
-  double value = 0;
-  if (!parse_number(n->text, &value))
-    return abbe_yaml_fail(yaml, which, error, "'%s: %.60s' is not a finite number", what, n->text);
-  if (value < min || value > max)
-    return abbe_yaml_fail(yaml, which, error, "'%s: %.60s' is not in the range from %g to %g", what,
-                          n->text, min, max);
-  *out = value;
-  return ABBE_OK;
+  return read_number(yaml, which, what, false, min, max, out, error);
+}
+
+abbe_result abbe_yaml_length(const abbe_yaml *yaml, abbe_yaml_node which, const char *what,
+                             double min, double max, double *out, abbe_error *error) {
+  ABBE_REQUIRE(yaml && what && out, error);
+  return read_number(yaml, which, what, true, min, max, out, error);
 }
 
 abbe_result abbe_yaml_get_number(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                  double min, double max, double *out, abbe_error *error) {
   ABBE_REQUIRE(yaml && key && out, error);
   abbe_yaml_node value = abbe_yaml_get(yaml, mapping, key);
-  return value.id == 0 ? ABBE_OK : abbe_yaml_number(yaml, value, key, min, max, out, error);
+  return value.id == 0 ? ABBE_OK : read_number(yaml, value, key, false, min, max, out, error);
+}
+
+abbe_result abbe_yaml_get_length(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
+                                 double min, double max, double *out, abbe_error *error) {
+  ABBE_REQUIRE(yaml && key && out, error);
+  abbe_yaml_node value = abbe_yaml_get(yaml, mapping, key);
+  return value.id == 0 ? ABBE_OK : read_number(yaml, value, key, true, min, max, out, error);
 }
 
 abbe_result abbe_yaml_get_count(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
@@ -146,15 +172,14 @@ abbe_result abbe_yaml_get_choice(abbe_yaml *yaml, abbe_yaml_node mapping, const 
                         list);
 }
 
-abbe_result abbe_yaml_get_numbers(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
-                                  size_t count, double min, double max, double *out,
-                                  abbe_error *error) {
-  ABBE_REQUIRE(yaml && key && out, error);
+static abbe_result read_numbers(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
+                                bool length, size_t count, double min, double max, double *out,
+                                abbe_error *error) {
   abbe_yaml_node list = abbe_yaml_get(yaml, mapping, key);
   if (list.id == 0) return ABBE_OK;
   if (!abbe_yaml_is_sequence(yaml, list))
-    return abbe_yaml_fail(yaml, list, error, "'%s' wants a list of %zu numbers, not %s", key, count,
-                          kind_name(yaml, list));
+    return abbe_yaml_fail(yaml, list, error, "'%s' wants a list of %zu %s, not %s", key, count,
+                          length ? "lengths" : "numbers", kind_name(yaml, list));
   if (abbe_yaml_count(yaml, list) != count)
     return abbe_yaml_fail(yaml, list, error, "'%s' wants %zu numbers, not %zu", key, count,
                           abbe_yaml_count(yaml, list));
@@ -162,12 +187,26 @@ abbe_result abbe_yaml_get_numbers(abbe_yaml *yaml, abbe_yaml_node mapping, const
   double value = 0;
   for (size_t i = 0; i < count; i++) {
     abbe_yaml_node item = abbe_yaml_item(yaml, list, i);
-    abbe_result result = abbe_yaml_number(yaml, item, key, min, max, &value, error);
+    abbe_result result = read_number(yaml, item, key, length, min, max, &value, error);
     if (result != ABBE_OK) return result;
   }
   for (size_t i = 0; i < count; i++)
-    abbe_yaml_number(yaml, abbe_yaml_item(yaml, list, i), key, min, max, &out[i], error);
+    read_number(yaml, abbe_yaml_item(yaml, list, i), key, length, min, max, &out[i], error);
   return ABBE_OK;
+}
+
+abbe_result abbe_yaml_get_numbers(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
+                                  size_t count, double min, double max, double *out,
+                                  abbe_error *error) {
+  ABBE_REQUIRE(yaml && key && out, error);
+  return read_numbers(yaml, mapping, key, false, count, min, max, out, error);
+}
+
+abbe_result abbe_yaml_get_lengths(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
+                                  size_t count, double min, double max, double *out,
+                                  abbe_error *error) {
+  ABBE_REQUIRE(yaml && key && out, error);
+  return read_numbers(yaml, mapping, key, true, count, min, max, out, error);
 }
 
 abbe_result abbe_yaml_get_list(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/json/json_text.h"
 #include "base/nearest.h"
+#include "base/number.h"
 #include "base/utf8.h"
 #include "colorimetry/image/image.h"
 
@@ -34,6 +35,26 @@ double abbe_command_number(const char *program, const char *option, const char *
   double value = strtod(text, &end);
   if (end == text || *end != '\0' || !isfinite(value) || value < min || value > max) {
     fprintf(stderr, "%s: %s '%s' is not a number from %g to %g\n", program, option, text, min, max);
+    wrong_use(program);
+  }
+  return value;
+}
+
+double abbe_command_length(const char *program, const char *option, const char *text, double min_m,
+                           double max_m) {
+  const char *end;
+  double value = 0;
+  bool read = abbe_number_read(text, &end, &value);
+  if (read && *end == '\0')
+    value /= 1e3;
+  else
+    read = abbe_number_read_length(text, &end, &value) && *end == '\0';
+  if (!read || !(value >= min_m && value <= max_m)) {
+    fprintf(
+        stderr,
+        "%s: %s '%s' is not a length from %gmm to %gm: write it with its unit, such as 6.5mm or "
+        "0.2in (" ABBE_LENGTH_UNITS "); a bare number is of mm\n",
+        program, option, text, 1e3 * min_m, max_m);
     wrong_use(program);
   }
   return value;
@@ -146,9 +167,9 @@ int abbe_command_end(const char *program, abbe_result result, abbe_error *error)
 
 const char *abbe_command_target(const char *program, const char *option, const char *text,
                                 const char *ending) {
-  static const char *const known[] = {".exr",  ".png", ".jpg",  ".jpeg", ".svg", ".tif",
-                                      ".tiff", ".bmp", ".gif",  ".avif", ".hdr",  ".pfm", ".webp",
-                                      ".json", ".csv", ".yaml", ".pov"};
+  static const char *const known[] = {".exr",  ".png",  ".jpg", ".jpeg", ".svg", ".tif",
+                                      ".tiff", ".bmp",  ".gif", ".avif", ".hdr", ".pfm",
+                                      ".webp", ".json", ".csv", ".yaml", ".pov"};
   const char *dot = strrchr(text, '.');
   if (dot == NULL || strcasecmp(dot, ending) == 0) return text;
   for (size_t i = 0; i < sizeof known / sizeof *known; i++) {

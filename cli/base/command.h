@@ -34,7 +34,7 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
   X(flicker, "say how a series of frames errs over time: flicker and ghosts")                      \
   X(outline, "say where a caustic's light and hues fall, and how far two pictures agree")          \
   X(pixel, "say what a picture has at a pixel: spectrum, XYZ, wavelength, colour temperature")     \
-  X(relight, "show a spectral picture to another observer, or under another illuminant")              \
+  X(relight, "show a spectral picture to another observer, or under another illuminant")           \
   X(gamut, "say what of a picture a display's gamut cannot hold, and what mapping it costs")       \
   X(atlas, "show the spectral colours, what bands make of them, and what displays can show")       \
   X(info, "say what an EXR holds: size, channels, space, settings, statistics")                    \
@@ -60,6 +60,9 @@ int abbe_command_fail(const char *program, const abbe_error *error);
  * the option, and ends the program with ABBE_EXIT_USAGE. */
 double abbe_command_number(const char *program, const char *option, const char *text, double min,
                            double max);
+/* The same for a length with its unit or, a bare number, in millimetres; in metres. */
+double abbe_command_length(const char *program, const char *option, const char *text, double min_m,
+                           double max_m);
 /* The same for whole numbers. */
 unsigned long abbe_command_count(const char *program, const char *option, const char *text,
                                  unsigned long min, unsigned long max);

@@ -29,7 +29,8 @@ static const struct argp_option options[] = {
      "of which the stone is; without it, the index that the design says", 0},
     {"table", OPTION_TABLE, "FILE", ABBE_ARGUMENT_READS,
      "of materials: a file, default or thesis (default)", 0},
-    {"width", OPTION_WIDTH, "MM", 0, "of the stone, its smaller extent, in millimetres", 0},
+    {"width", OPTION_WIDTH, "LENGTH", 0,
+     "of the stone, its smaller extent, such as 6.5mm or 0.2in; a bare number is of mm", 0},
     {"density", OPTION_DENSITY, "G/CM3", 0, "where the material's record has none", 0},
     {"weld", OPTION_WELD, "SHARE", 0,
      "corners nearer than this share of half the width are one (1e-6); 1e-4 closes meets that were "
@@ -49,7 +50,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     in->table_path = text;
     return 0;
   case OPTION_WIDTH:
-    in->width_m = 1e-3 * abbe_command_number(in->program, "--width", text, 1e-3, 1e6);
+    in->width_m = abbe_command_length(in->program, "--width", text, 1e-6, 1e3);
     return 0;
   case OPTION_DENSITY:
     in->density_g_cm3 = abbe_command_number(in->program, "--density", text, 0.1, 50);

@@ -1,9 +1,11 @@
 #include "cli/options/scene_input.h"
 
+#include "base/file.h"
 #include "base/number.h"
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/shipped.h"
+#include "scenes/check/scene_doubts.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/refractor_tilt.h"
 
@@ -25,6 +27,84 @@ static void take_tilt(abbe_scene_input_changes *changes, const char *text, const
                           : 0;
 }
 
+/* Keys of scenes whose values name files. */
+static bool names_file(const char *key, size_t length) {
+  static const char *const keys[] = {"file", "mesh", "texture", "spectrum"};
+  while (length > 0 && memchr(key, '.', length) != NULL) length--, key++;
+  for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
+    if (length == strlen(keys[i]) && strncmp(key, keys[i], length) == 0) return true;
+  return false;
+}
+
+/* A file that is there from where the user stands is meant, and by its whole path, for in a scene
+ * names count from the scene's folder. */
+static const char *find_from_here(const char *set) {
+  static char *kept[ABBE_SCENE_INPUT_MOST];
+  static size_t count;
+  const char *equals = strchr(set, '=');
+  char whole[PATH_MAX];
+  if (equals == NULL || !names_file(set, (size_t)(equals - set)) || equals[1] == '/' ||
+      count == ABBE_SCENE_INPUT_MOST || realpath(equals + 1, whole) == NULL)
+    return set;
+  const size_t size = (size_t)(equals - set) + strlen(whole) + 4;
+  char *text = malloc(size);
+  if (text == NULL) return set;
+  snprintf(text, size, "%.*s='%s'", (int)(equals - set), set, whole);
+  return kept[count++] = text;
+}
+
+static void take_studio(abbe_scene_input_changes *changes, int key, const char *text,
+                        const char *program) {
+#define LOOK_NAME(name) #name,
+#define WITH_NAME(code, name) #name,
+  static const char *const looks[] = {ABBE_STUDIO_LOOKS(LOOK_NAME)};
+  static const char *const withs[] = {ABBE_STUDIO_WITHS(WITH_NAME)};
+#undef LOOK_NAME
+#undef WITH_NAME
+  abbe_studio *studio = &changes->studio;
+  if (key == ABBE_SCENE_INPUT_SAVE) {
+    changes->save = abbe_command_target(program, "--save-scene", text, ".yaml");
+    return;
+  }
+  changes->look = key == ABBE_SCENE_INPUT_LOOK   ? "--look"
+                  : key == ABBE_SCENE_INPUT_WITH ? "--with"
+                                                 : "--width";
+  if (key == ABBE_SCENE_INPUT_LOOK)
+    studio->look = (abbe_studio_look)abbe_command_choice(program, "--look", text, looks,
+                                                         ABBE_STUDIO_LOOK_COUNT);
+  else if (key == ABBE_SCENE_INPUT_WITH)
+    studio->with = (abbe_studio_with)abbe_command_choice(program, "--with", text, withs,
+                                                         ABBE_STUDIO_WITH_COUNT);
+  else
+    studio->width_m = abbe_command_length(program, "--width", text, 1e-6, 1e3);
+}
+
+void abbe_scene_input_take_file(abbe_scene_input_changes *changes, const char **scene,
+                                const char *text, struct argp_state *state) {
+  abbe_studio *studio = &changes->studio;
+  if (*scene == NULL) {
+    *scene = text;
+    return;
+  }
+  if (!abbe_studio_is_stone(*scene) || !abbe_studio_is_stone(text))
+    argp_error(state,
+               "one scene at a time: '%s' and '%s' (several stones' files, such as .asc or "
+               ".stl, stand side by side)",
+               *scene, text);
+  if (studio->more_count + 1 >= ABBE_STUDIO_MOST_STONES)
+    argp_error(state, "at most %d stones stand on one table", ABBE_STUDIO_MOST_STONES);
+  changes->more[studio->more_count++] = text;
+}
+
+const char *abbe_scene_input_picture(const char *program, const char *scene) {
+  static char path[NAME_MAX + 8];
+  if (!abbe_studio_is_stone(scene)) return NULL;
+  const char *name = abbe_file_name(scene);
+  snprintf(path, sizeof path, "%.*s.png", (int)(strrchr(name, '.') - name), name);
+  abbe_arguments_add(program, ABBE_ARGUMENT_WRITES, "the picture", path);
+  return path;
+}
+
 error_t abbe_scene_input_take(abbe_scene_input_changes *changes, int key, const char *text,
                               const char *program) {
   if (key == ABBE_SCENE_INPUT_MATERIAL)
@@ -34,10 +114,12 @@ error_t abbe_scene_input_take(abbe_scene_input_changes *changes, int key, const 
   else if (key == ABBE_SCENE_INPUT_AT) {
     changes->timed = true;
     changes->time = abbe_command_number(program, "--at", text, -1e6, 1e6);
-  } else if (key != ABBE_SCENE_INPUT_SET)
+  } else if (key >= ABBE_SCENE_INPUT_LOOK && key <= ABBE_SCENE_INPUT_SAVE)
+    take_studio(changes, key, text, program);
+  else if (key != ABBE_SCENE_INPUT_SET)
     return ARGP_ERR_UNKNOWN;
   else if (changes->set_count < ABBE_SCENE_INPUT_MOST)
-    changes->set[changes->set_count++] = text;
+    changes->set[changes->set_count++] = find_from_here(text);
   else {
     fprintf(stderr, "%s: no more than %d --set; write the values into the scene\n", program,
             ABBE_SCENE_INPUT_MOST);
@@ -52,10 +134,40 @@ abbe_result abbe_scene_input_load(const char *program, const char *path, const c
   return abbe_scene_input_load_with(program, path, materials, &none, out, error);
 }
 
+/* Options of a studio are for stones' files. */
+static void check_studio(const char *program, const char *path,
+                         const abbe_scene_input_changes *changes) {
+  const char *option = changes->save != NULL ? "--save-scene" : changes->look;
+  if (option == NULL || abbe_studio_is_stone(path)) return;
+  fprintf(stderr,
+          "%s: %s is for a stone's file (.asc, .gem, .gcs, .stl, .obj, .ply, .gltf, .glb); '%s' is "
+          "a scene, whose own values --set changes\n",
+          program, option, path);
+  exit(ABBE_EXIT_USAGE);
+}
+
+/* The scene as it would stand in that file's folder. */
+static abbe_result save(const char *path, abbe_studio *studio, abbe_scene_options options,
+                        const char *to, abbe_error *error) {
+  char folder[PATH_MAX], *text = NULL;
+  size_t size = 0;
+  const char *slash = strrchr(to, '/');
+  snprintf(folder, sizeof folder, "%.*s", slash != NULL ? (int)(slash - to) + 1 : 0, to);
+  studio->folder = folder;
+  options.studio = studio;
+  abbe_result result = abbe_scene_text(path, &options, &text, &size, error);
+  studio->folder = NULL;
+  if (result == ABBE_OK) result = abbe_file_write(to, text, size, error);
+  free(text);
+  return result;
+}
+
 /* With the changes in it. */
 static abbe_result load(const char *path, const char *materials,
                         const abbe_scene_input_changes *changes, abbe_scene *out,
                         abbe_error *error) {
+  abbe_studio studio = changes->studio;
+  studio.more = changes->more;
   const char *set[ABBE_SCENE_INPUT_MOST + 1];
   char time[64];
   memcpy(set, changes->set, sizeof changes->set);
@@ -64,8 +176,11 @@ static abbe_result load(const char *path, const char *materials,
   const abbe_scene_options options = {.materials = materials,
                                       .stone = changes->stone,
                                       .set = set,
-                                      .set_count = changes->set_count + changes->timed};
-  const abbe_result result = abbe_scene_load(path, &options, out, error);
+                                      .set_count = changes->set_count + changes->timed,
+                                      .studio = &studio};
+  abbe_result result = abbe_scene_load(path, &options, out, error);
+  if (result == ABBE_OK && changes->save != NULL)
+    result = save(path, &studio, options, changes->save, error);
   if (result != ABBE_OK || changes->tilt_deg == 0) return result;
   return abbe_refractors_tilt(out, changes->tilt_deg * RAD, changes->axis_deg * RAD, error);
 }
@@ -76,6 +191,7 @@ abbe_result abbe_scene_input_load_with(const char *program, const char *path, co
   char shipped[2 * PATH_MAX];
   const char *found = abbe_shipped_find(path, shipped, sizeof shipped);
   if (found != path) fprintf(stderr, "note: %s is not here; %s is taken\n", path, found);
+  check_studio(program, found, changes);
   const abbe_result result = load(found, materials, changes, out, error);
   for (size_t i = 0; result == ABBE_OK && i < abbe_scene_file_count(out); i++)
     abbe_arguments_add(program, ABBE_ARGUMENT_READS, "the scene's file", abbe_scene_file(out, i));
@@ -93,10 +209,14 @@ abbe_result abbe_scene_input_at(const abbe_scene *scene, const char *materials,
 
 void abbe_scene_input_note(const abbe_scene *scene) {
   const abbe_environment *around = scene->environment;
+  if (abbe_studio_is_stone(scene->path)) fprintf(stderr, "%s\n", scene->description);
   if (around != NULL && around->map.space_assumed) abbe_command_note_space(around->path);
   for (size_t i = 0; i < scene->object_count; i++)
     if (scene->object[i].fixes != NULL)
       fprintf(stderr, "note: object '%s': %s\n", scene->object[i].name, scene->object[i].fixes);
+  abbe_scene_doubts doubts;
+  abbe_scene_doubt(scene, &doubts);
+  for (size_t i = 0; i < doubts.count; i++) fprintf(stderr, "warning: %s\n", doubts.text[i]);
 }
 
 static const char *roughened(const abbe_brushing *b, char *text, size_t size) {

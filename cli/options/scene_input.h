@@ -5,7 +5,9 @@
 #ifndef ABBE_CLI_OPTIONS_SCENE_INPUT_H
 #define ABBE_CLI_OPTIONS_SCENE_INPUT_H
 
+#include "cli/base/arguments.h"
 #include "scenes/scene.h"
+#include "scenes/studio/studio.h"
 
 #include <argp.h>
 
@@ -13,9 +15,13 @@ struct cJSON;
 
 enum { ABBE_SCENE_INPUT_MOST = 64 };
 
-/* What --material, --set, --tilt and --at ask of the scene. */
+/* What --material, --set, --tilt and --at ask of the scene; and of the one that is made of a
+ * stone's file (scenes/studio/studio.h) --look, --with, --width and --save-scene. */
 typedef struct abbe_scene_input_changes {
-  const char *stone; /* NULL: as the scene says */
+  abbe_studio studio;
+  const char *more[ABBE_STUDIO_MOST_STONES]; /* the studio's */
+  const char *look, *save;                   /* as given; NULL: not */
+  const char *stone;                         /* NULL: as the scene says */
   const char *set[ABBE_SCENE_INPUT_MOST];
   size_t set_count;
   double tilt_deg, axis_deg; /* of the refractors (scenes/refractor_tilt.h) */
@@ -28,8 +34,36 @@ enum {
   ABBE_SCENE_INPUT_MATERIAL = 0x7f00,
   ABBE_SCENE_INPUT_SET,
   ABBE_SCENE_INPUT_TILT,
-  ABBE_SCENE_INPUT_AT
+  ABBE_SCENE_INPUT_AT,
+  ABBE_SCENE_INPUT_LOOK,
+  ABBE_SCENE_INPUT_WITH,
+  ABBE_SCENE_INPUT_WIDTH,
+  ABBE_SCENE_INPUT_SAVE
 };
+#define ABBE_SCENE_INPUT_STUDIO_OPTIONS(group)                                                     \
+  {"look",                                                                                         \
+   ABBE_SCENE_INPUT_LOOK,                                                                          \
+   "NAME",                                                                                         \
+   0,                                                                                              \
+   "of a stone's file: white, black, velvet, daylight, darkfield, lightbox, dispersion (white)",   \
+   group},                                                                                         \
+      {"with",                                                                                     \
+       ABBE_SCENE_INPUT_WITH,                                                                      \
+       "WHAT",                                                                                     \
+       0,                                                                                          \
+       "what a stone's file is shown with: table, ring, none (table)",                             \
+       group},                                                                                     \
+      {"width",                                                                                    \
+       ABBE_SCENE_INPUT_WIDTH,                                                                     \
+       "LENGTH",                                                                                   \
+       0,                                                                                          \
+       "of a stone's file, its smaller extent, such as 6.5mm or 0.2in; a bare number is of mm "    \
+       "(as its file has it, else 6.5mm)",                                                         \
+       group},                                                                                     \
+  {                                                                                                \
+    "save-scene", ABBE_SCENE_INPUT_SAVE, "FILE.yaml", ABBE_ARGUMENT_WRITES,                        \
+        "write the scene that is made of a stone's file, to be edited", group                      \
+  }
 #define ABBE_SCENE_INPUT_OPTIONS(group)                                                            \
   {"material",                                                                                     \
    ABBE_SCENE_INPUT_MATERIAL,                                                                      \
@@ -61,6 +95,14 @@ enum {
 error_t abbe_scene_input_take(abbe_scene_input_changes *changes, int key, const char *text,
                               const char *program);
 
+/* Takes ARGP_KEY_ARG: the scene, or a stone's file, behind which more of these may follow. */
+void abbe_scene_input_take_file(abbe_scene_input_changes *changes, const char **scene,
+                                const char *text, struct argp_state *state);
+
+/* The PNG of a stone's file for which no other is named: the stone's name, in this folder, held to
+ * the rules of what is written (cli/base/arguments.h). NULL for a scene. */
+const char *abbe_scene_input_picture(const char *program, const char *scene);
+
 /* abbe_scene_input_load of the scene with those changes in it. */
 abbe_result abbe_scene_input_load_with(const char *program, const char *path, const char *materials,
                                        const abbe_scene_input_changes *changes, abbe_scene *out,
@@ -77,7 +119,7 @@ abbe_result abbe_scene_input_at(const abbe_scene *scene, const char *materials,
 abbe_result abbe_scene_input_load(const char *program, const char *path, const char *materials,
                                   abbe_scene *out, abbe_error *error);
 
-/* To stderr: what was mended, and what is not whole still. */
+/* To stderr: what was mended, what is not whole still, and what is hardly meant. */
 void abbe_scene_input_note(const abbe_scene *scene);
 
 /* To stdout: each object with its size and place. */

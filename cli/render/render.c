@@ -124,6 +124,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case ARGP_KEY_END:
     if (q->exr == NULL && q->png == NULL && q->stats == NULL && q->map.save == NULL && !q->json &&
         q->errors.png == NULL)
+      q->png = abbe_scene_input_picture(p, q->render.scene);
+    if (q->exr == NULL && q->png == NULL && q->stats == NULL && q->map.save == NULL && !q->json &&
+        q->errors.png == NULL)
       argp_error(state, "where to? Give -o FILE.exr, --png FILE.png or both");
     abbe_screen_options_end(&q->screen, q->png, state);
     if (q->bands > 0 && q->map.save == NULL && q->exr == NULL)

@@ -144,6 +144,7 @@ static const struct argp_option options[] = {
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
      "a table instead of the scene's: default, thesis or a file", 1},
     ABBE_SCENE_INPUT_OPTIONS(1),
+    ABBE_SCENE_INPUT_STUDIO_OPTIONS(1),
     {0}};
 
 #define ABBE_NAME_OF_2(code, name) name,
@@ -306,18 +307,21 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     o->materials = text;
     return 0;
   case ARGP_KEY_ARG:
-    if (o->scene != NULL) argp_error(state, "one scene at a time: '%s' and '%s'", o->scene, text);
-    o->scene = text;
+    abbe_scene_input_take_file(&o->changes, &o->scene, text, state);
     return 0;
   case ARGP_KEY_END:
-    if (o->scene == NULL) argp_error(state, "which scene? Give a file such as scenes/gem.yaml");
+    if (o->scene == NULL)
+      argp_error(
+          state,
+          "which scene? Give a file such as scenes/gem.yaml, or a stone's such as round.asc");
     return 0;
   default:
     return abbe_scene_input_take(&o->changes, key, text, p);
   }
 }
 
-const struct argp abbe_render_options_argp = {options, parse, "SCENE.yaml", NULL, NULL, NULL, NULL};
+const struct argp abbe_render_options_argp = {
+    options, parse, "SCENE.yaml\nSTONE.asc...", NULL, NULL, NULL, NULL};
 
 abbe_result abbe_render_options_load_volume(abbe_render_options *request, abbe_error *error) {
   if (request->volume_path == NULL) return ABBE_OK;

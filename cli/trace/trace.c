@@ -77,6 +77,7 @@ static const struct argp_option options[] = {
      "take noise off the picture, by non-local means; what was traced is kept as raw.*", 1},
     {"half", OPTION_HALF, NULL, 0, "files in half precision: 11 bits, and half the size", 1},
     ABBE_SCENE_INPUT_OPTIONS(1),
+    ABBE_SCENE_INPUT_STUDIO_OPTIONS(1),
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
      "a table instead of the scene's: default, thesis or a file", 1},
     ABBE_FRAME_SERIES_MOVE(OPTION_MOVE, 5),
@@ -242,8 +243,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     q->rates = true;
     return 0;
   case ARGP_KEY_ARG:
-    if (q->scene == NULL)
-      q->scene = text;
+    if (q->scene == NULL || abbe_studio_is_stone(text))
+      abbe_scene_input_take_file(&q->changes, &q->scene, text, state);
     else
       q->parts[q->part_count++] = text;
     return 0;
@@ -251,6 +252,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     if (q->scene == NULL) argp_error(state, "which scene? Try scenes/sphere.yaml");
     check_parts(q, state);
     abbe_trace_frames_check(q, state);
+    if (q->part_end == 0 && q->exr == NULL && q->png == NULL && q->map.save == NULL &&
+        q->stats == NULL && !q->json && !q->rates && !q->merge)
+      q->png = abbe_scene_input_picture(q->program, q->scene);
     if (q->part_end == 0 && q->exr == NULL && q->png == NULL && q->map.save == NULL &&
         q->stats == NULL && !q->json && !q->rates && !(q->merge && q->checkpoint != NULL))
       argp_error(state, "where to? Give -o FILE.exr, --save-map FILE.exr or both");
@@ -414,7 +418,7 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
   static const struct argp argp = {
       options,
       parse,
-      "SCENE.yaml\nSCENE.yaml --merge PART...",
+      "SCENE.yaml\nSTONE.asc...\nSCENE.yaml --merge PART...",
       "Traces what light really does in a scene, with standard errors: the reference.\v"
       "Examples:\n"
       "  abbe trace scenes/sphere.yaml -o sphere.exr --png sphere.png\n"

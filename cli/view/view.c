@@ -33,7 +33,8 @@ enum {
   OPTION_VOLUME,
   OPTION_WAVELENGTHS,
   OPTION_PHOTONS,
-  OPTION_MAP
+  OPTION_MAP,
+  OPTION_MATERIAL
 };
 
 typedef struct view_options {
@@ -55,6 +56,8 @@ static const struct argp_option options[] = {
      "a table instead of the scene's: default, thesis or a file", 1},
     {"set", ABBE_SCENE_INPUT_SET, "KEY=VALUE", 0,
      "another value in the scene to begin with, such as camera.fov=30; may be repeated", 1},
+    ABBE_SCENE_INPUT_STUDIO_OPTIONS(1),
+    {"material", OPTION_MATERIAL, "STONE", 0, "of which a stone's file is", 1},
     {"volume", OPTION_VOLUME, "FILE.exr", ABBE_ARGUMENT_READS,
      "look caustics up in what abbe volume has made, wherever lights and the object are dragged",
      1},
@@ -102,6 +105,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_MATERIALS:
     o->materials = text;
     return 0;
+  case OPTION_MATERIAL:
+    o->changes.studio.material = text;
+    return 0;
   case OPTION_VOLUME:
     o->volume = text;
     return 0;
@@ -109,11 +115,16 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     o->ocio = text;
     return 0;
   case ARGP_KEY_ARG:
-    if (o->scene != NULL) argp_error(state, "one scene at a time: '%s' and '%s'", o->scene, text);
-    o->scene = text;
+    abbe_scene_input_take_file(&o->changes, &o->scene, text, state);
     return 0;
   case ARGP_KEY_END:
-    if (o->scene == NULL) argp_error(state, "which scene? Give a file such as scenes/gem.yaml");
+    if (o->scene == NULL)
+      argp_error(
+          state,
+          "which scene? Give a file such as scenes/gem.yaml, or a stone's such as round.asc");
+    if (o->changes.studio.material != NULL && !abbe_studio_is_stone(o->scene))
+      argp_error(state, "--material is for a stone's file; of a scene's object NAME it is --set "
+                        "objects.NAME.material=STONE");
     if (o->script != NULL && o->port >= 0)
       argp_error(state, "--script or --serve, not both lead one viewer");
     return 0;
@@ -124,11 +135,14 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 
 #ifdef ABBE_HAVE_VIEW
 /* The document to begin with; its texts are the command line's. */
-static abbe_result begin(const view_options *o, const char *path, abbe_view_document *out,
-                         abbe_error *error) {
+static abbe_result begin(const view_options *o, const char *path, const abbe_studio *studio,
+                         abbe_view_document *out, abbe_error *error) {
   char *own = strdup(path);
-  *out = (abbe_view_document){
-      .path = own, .wavelengths = o->wavelengths, .photons = o->photons, .map_size = o->map_size};
+  *out = (abbe_view_document){.path = own,
+                              .studio = studio,
+                              .wavelengths = o->wavelengths,
+                              .photons = o->photons,
+                              .map_size = o->map_size};
   abbe_result result =
       own != NULL ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
   for (size_t i = 0; i < o->changes.set_count && result == ABBE_OK; i++) {
@@ -179,6 +193,8 @@ static abbe_result view(const view_options *o, abbe_error *error) {
   abbe_view_document document;
   abbe_scene scene = {0};
   const char *path = abbe_shipped_find(o->scene, shipped, sizeof shipped);
+  abbe_studio studio = o->changes.studio;
+  studio.more = o->changes.more;
   abbe_caustic_volume volume = {0};
   const abbe_view_app_desc desc = {.document = &document,
                                    .volume_path = o->volume,
@@ -188,7 +204,7 @@ static abbe_result view(const view_options *o, abbe_error *error) {
                                    .ocio = o->ocio,
                                    .last = (abbe_view_stage)o->last};
   return_pictures();
-  abbe_result result = begin(o, path, &document, error);
+  abbe_result result = begin(o, path, &studio, &document, error);
   /* what is wrong with the file is said before there is a window */
   if (result == ABBE_OK)
     result =
@@ -219,7 +235,7 @@ int abbe_command_view(int argc, char **argv) {
   static const struct argp argp = {
       options,
       parse,
-      "SCENE.yaml",
+      "SCENE.yaml\nSTONE.asc...",
       "Shows a scene in a window: turn it, change it, and see the light follow.\v"
       "Left drag turns, middle drag or shift moves, the wheel goes nearer, right drag\n"
       "looks about, and w a s d q e fly meanwhile. Drag a ring to move a lamp or a\n"

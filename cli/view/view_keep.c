@@ -155,8 +155,8 @@ static bool names_files(const abbe_view_session *session, const char *target) {
 static abbe_result keep_scene(const abbe_view_session *session, const char *target,
                               abbe_error *error) {
   const abbe_view_document *now = abbe_view_history_now(&session->state.history);
-  const abbe_scene_options options = {.set = (const char *const *)now->set,
-                                      .set_count = now->set_count};
+  const abbe_scene_options options = {
+      .set = (const char *const *)now->set, .set_count = now->set_count, .studio = now->studio};
   char *text = NULL;
   size_t size = 0;
   abbe_result result = abbe_scene_text(now->path, &options, &text, &size, error);

@@ -65,7 +65,7 @@ static abbe_result read_radius(abbe_yaml *yaml, abbe_yaml_node node, abbe_light 
   abbe_yaml_node value;
   abbe_result result = abbe_yaml_require(yaml, node, "radius", &value, error);
   if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, node, "radius", 0, ABBE_SCENE_FAR, &out->radius, error);
+    result = abbe_yaml_get_length(yaml, node, "radius", 0, ABBE_SCENE_FAR, &out->radius, error);
   if (result == ABBE_OK && !(out->radius > 0.0))
     result =
         abbe_yaml_fail(yaml, value, error,
@@ -78,7 +78,7 @@ static abbe_result read_side(abbe_yaml *yaml, abbe_yaml_node node, const char *k
   abbe_yaml_node value;
   abbe_result result = abbe_yaml_require(yaml, node, key, &value, error);
   if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, node, key, 0, ABBE_SCENE_FAR, out, error);
+    result = abbe_yaml_get_length(yaml, node, key, 0, ABBE_SCENE_FAR, out, error);
   if (result == ABBE_OK && !(*out > 0.0))
     result = abbe_yaml_fail(yaml, value, error, "'%s' is zero; a rectangle has an area", key);
   return result;

@@ -353,6 +353,11 @@ static abbe_result read_substance(const abbe_object_reading *r, const abbe_mater
   const bool receives = abbe_yaml_get(r->yaml, r->node, "reflectance").id ||
                         abbe_yaml_get(r->yaml, r->node, "texture").id;
   const int found = (material.id != 0) + (mirror.id != 0) + receives;
+  static const char *const keys[] = {"material", "mirror", "reflectance", "texture"};
+  for (int i = 0; i < 4 && found == 0; i++) {
+    const abbe_result mistyped = abbe_yaml_refuse_near(r->yaml, r->node, keys[i], error);
+    if (mistyped != ABBE_OK) return mistyped;
+  }
   if (found != 1)
     return abbe_yaml_fail(
         r->yaml, r->node, error,
@@ -382,20 +387,37 @@ static abbe_mesh_normals normals_of(const abbe_object_reading *r) {
                                                                         : ABBE_NORMALS_AUTO;
 }
 
+/* A size above 0, m; 0 without the key. */
+static abbe_result read_extent(const abbe_object_reading *r, const char *key, const char *what,
+                               double *out, abbe_error *error) {
+  const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, key);
+  const abbe_result result =
+      abbe_yaml_get_length(r->yaml, r->node, key, 0, ABBE_SCENE_FAR, out, error);
+  if (result != ABBE_OK || node.id == 0 || *out > 0) return result;
+  return abbe_yaml_fail(r->yaml, node, error, "'%s' is %s, in metres, above 0", key, what);
+}
+
 static abbe_result read_size_and_place(const abbe_object_reading *r, abbe_object_surface *s,
                                        abbe_error *error) {
-  const abbe_yaml_node fit = abbe_yaml_get(r->yaml, r->node, "fit");
-  s->centred = abbe_yaml_get(r->yaml, r->node, "centre").id != 0;
+  const abbe_yaml_node stand = abbe_yaml_get(r->yaml, r->node, "stand");
+  const bool centre = abbe_yaml_get(r->yaml, r->node, "centre").id != 0;
+  s->stands = stand.id != 0;
+  s->centred = centre || s->stands;
+  if (centre && s->stands)
+    return abbe_yaml_fail(r->yaml, stand, error,
+                          "'stand' places the underside, 'centre' the middle: one of the two");
   abbe_result result =
-      abbe_yaml_get_number(r->yaml, r->node, "fit", 0, ABBE_SCENE_FAR, &s->fit, error);
-  if (result == ABBE_OK && fit.id && !(s->fit > 0))
-    result = abbe_yaml_fail(r->yaml, fit, error,
-                            "'fit' is the longest side that the object is to have, in metres, "
-                            "above 0");
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_numbers(r->yaml, r->node, "centre", 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR,
-                                   s->centre, error);
-  return result;
+      read_extent(r, "fit", "the longest side that the object is to have", &s->fit, error);
+  if (result == ABBE_OK && r->form == ABBE_OBJECT_MESH)
+    result =
+        read_extent(r, "width", "the smaller side of the object along x and y", &s->width, error);
+  if (result == ABBE_OK && s->width > 0 && s->fit > 0)
+    return abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, r->node, "fit"), error,
+                          "'fit' and 'width' both give the mesh its size: one of the two");
+  return result != ABBE_OK
+             ? result
+             : abbe_yaml_get_lengths(r->yaml, r->node, s->stands ? "stand" : "centre", 3,
+                                     -ABBE_SCENE_FAR, ABBE_SCENE_FAR, s->centre, error);
 }
 
 /* What changes a mesh into a solid says nothing of shapes, which are solids, or of what receives

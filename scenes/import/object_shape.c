@@ -2,7 +2,7 @@
 #include "scenes/cuts/cut_file.h"
 #include "scenes/cuts/cut_polyhedron.h"
 #include "scenes/cuts/cut_stretch.h"
-#include "scenes/import/gltf_material.h"
+#include "scenes/import/mesh/gltf_material.h"
 #include "scenes/import/object_reading.h"
 #include "scenes/import/scene_value.h"
 #include "scenes/shapes/brilliant.h"
@@ -22,7 +22,7 @@ static abbe_result need_length(const abbe_object_reading *r, const char *key, do
                                abbe_error *error) {
   abbe_yaml_node ignored;
   const abbe_result result = abbe_yaml_require(r->yaml, r->node, key, &ignored, error);
-  return result == ABBE_OK ? abbe_yaml_get_number(r->yaml, r->node, key, -ABBE_SCENE_FAR,
+  return result == ABBE_OK ? abbe_yaml_get_length(r->yaml, r->node, key, -ABBE_SCENE_FAR,
                                                   ABBE_SCENE_FAR, out, error)
                            : result;
 }
@@ -139,7 +139,7 @@ static abbe_result read_profile(const abbe_object_reading *r, double (**out)[2],
     if (!abbe_yaml_is_sequence(r->yaml, point) || abbe_yaml_count(r->yaml, point) != 2)
       result = abbe_yaml_fail(r->yaml, point, error, "a point of 'profile' is two numbers [r, z]");
     for (size_t k = 0; k < 2 && result == ABBE_OK; k++)
-      result = abbe_yaml_number(r->yaml, abbe_yaml_item(r->yaml, point, k), "profile",
+      result = abbe_yaml_length(r->yaml, abbe_yaml_item(r->yaml, point, k), "profile",
                                 -ABBE_SCENE_FAR, ABBE_SCENE_FAR, &profile[i][k], error);
   }
   if (result == ABBE_OK)
@@ -291,6 +291,11 @@ abbe_result abbe_object_read_surface(abbe_object_reading *r, abbe_object *object
   abbe_mesh *out = &object->mesh;
   const abbe_yaml_node shape = abbe_yaml_get(r->yaml, r->node, "shape");
   const abbe_yaml_node mesh = abbe_yaml_get(r->yaml, r->node, "mesh");
+  if (shape.id == 0 && mesh.id == 0) {
+    abbe_result mistyped = abbe_yaml_refuse_near(r->yaml, r->node, "shape", error);
+    if (mistyped == ABBE_OK) mistyped = abbe_yaml_refuse_near(r->yaml, r->node, "mesh", error);
+    if (mistyped != ABBE_OK) return mistyped;
+  }
   if ((shape.id != 0) == (mesh.id != 0))
     return abbe_yaml_fail(r->yaml, r->node, error,
                           "an object has either a 'shape' or a 'mesh' file; this one has %s",

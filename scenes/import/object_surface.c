@@ -45,7 +45,7 @@ static abbe_result fit_matrix(const abbe_object_surface *s, abbe_object *part, s
   double min[3], max[3], step[16], scale;
   memcpy(out, s->matrix, 16 * sizeof *out);
   for (size_t i = 0; i < count; i++) part[i].fitted = 1;
-  if (s->fit == 0 && !s->centred) return ABBE_OK;
+  if (s->fit == 0 && s->width == 0 && !s->centred) return ABBE_OK;
   for (int k = 0; k < 3; k++) min[k] = INFINITY, max[k] = -INFINITY;
   for (size_t i = 0; i < count; i++) bound_vertices(&part[i].mesh, out, min, max);
   if (s->radius > 0 && is_similarity(out, &scale))
@@ -53,11 +53,14 @@ static abbe_result fit_matrix(const abbe_object_surface *s, abbe_object *part, s
       min[k] = out[12 + k] - scale * s->radius;
       max[k] = out[12 + k] + scale * s->radius;
     }
-  const double longest = fmax(fmax(max[0] - min[0], max[1] - min[1]), max[2] - min[2]);
-  if (s->fit > 0) {
-    if (!(longest > 0) || !isfinite(longest))
+  const double across[2] = {max[0] - min[0], max[1] - min[1]};
+  const double own =
+      s->width > 0 ? fmin(across[0], across[1]) : fmax(fmax(across[0], across[1]), max[2] - min[2]);
+  if (s->fit > 0 || s->width > 0) {
+    if (!(own > 0) || !isfinite(own))
       return abbe_error_set(error, ABBE_GEOMETRY, "an object of no size cannot be fitted to one");
-    const double factor = s->fit / longest, factors[3] = {factor, factor, factor};
+    const double factor = (s->width > 0 ? s->width : s->fit) / own,
+                 factors[3] = {factor, factor, factor};
     abbe_transform_scale(factors, step);
     abbe_transform_multiply(step, out, out);
     for (size_t i = 0; i < count; i++) part[i].fitted = factor;
@@ -65,7 +68,8 @@ static abbe_result fit_matrix(const abbe_object_surface *s, abbe_object *part, s
   }
   if (s->centred) {
     double offset[3];
-    for (int k = 0; k < 3; k++) offset[k] = s->centre[k] - 0.5 * (min[k] + max[k]);
+    for (int k = 0; k < 3; k++)
+      offset[k] = s->centre[k] - (s->stands && k == 2 ? min[k] : 0.5 * (min[k] + max[k]));
     abbe_transform_translate(offset, step);
     abbe_transform_multiply(step, out, out);
     for (size_t i = 0; i < count; i++) memcpy(part[i].centring, offset, sizeof offset);

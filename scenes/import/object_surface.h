@@ -26,8 +26,9 @@ typedef struct abbe_object_surface {
   bool repair;
   double flatten; /* share of its size by which it is made a convex solid of planes, or 0 */
   double fit;     /* the longest side of its bounds, m, or 0: as it is */
-  bool centred;
-  double centre[3]; /* where the middle of its bounds comes to stand */
+  double width;   /* the smaller of their sides along x and y, m, or 0 */
+  bool centred, stands;
+  double centre[3]; /* where the middle of its bounds comes to stand, or of their lower side */
 } abbe_object_surface;
 
 /* From out->mesh, in its own coordinates, and out's material and name, all the rest. Shells that

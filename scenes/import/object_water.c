@@ -5,12 +5,12 @@
 
 #include <stdlib.h>
 
-static abbe_result need_number(abbe_yaml *yaml, abbe_yaml_node node, const char *key, double *out,
+static abbe_result need_length(abbe_yaml *yaml, abbe_yaml_node node, const char *key, double *out,
                                abbe_error *error) {
   abbe_yaml_node ignored;
   const abbe_result result = abbe_yaml_require(yaml, node, key, &ignored, error);
   return result == ABBE_OK
-             ? abbe_yaml_get_number(yaml, node, key, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out, error)
+             ? abbe_yaml_get_length(yaml, node, key, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out, error)
              : result;
 }
 
@@ -34,8 +34,8 @@ static abbe_result list_of(const abbe_object_reading *r, const char *key, size_t
 static abbe_result read_wave(abbe_yaml *yaml, abbe_yaml_node node, abbe_water_wave *out,
                              abbe_error *error) {
   double direction = 0, phase = 0;
-  abbe_result result = need_number(yaml, node, "amplitude", &out->amplitude, error);
-  if (result == ABBE_OK) result = need_number(yaml, node, "wavelength", &out->wavelength, error);
+  abbe_result result = need_length(yaml, node, "amplitude", &out->amplitude, error);
+  if (result == ABBE_OK) result = need_length(yaml, node, "wavelength", &out->wavelength, error);
   if (result == ABBE_OK)
     result = abbe_yaml_get_number(yaml, node, "direction", -3600, 3600, &direction, error);
   if (result == ABBE_OK)
@@ -51,12 +51,12 @@ static abbe_result read_drop(abbe_yaml *yaml, abbe_yaml_node node, abbe_water_dr
   abbe_result result = abbe_yaml_require(yaml, node, "at", &ignored, error);
   if (result == ABBE_OK)
     result =
-        abbe_yaml_get_numbers(yaml, node, "at", 2, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out->at, error);
+        abbe_yaml_get_lengths(yaml, node, "at", 2, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out->at, error);
   if (result == ABBE_OK)
     result = abbe_yaml_get_number(yaml, node, "time", -ABBE_SCENE_FAR, ABBE_SCENE_FAR, &out->time,
                                   error);
-  if (result == ABBE_OK) result = need_number(yaml, node, "depth", &out->depth, error);
-  if (result == ABBE_OK) result = need_number(yaml, node, "radius", &out->radius, error);
+  if (result == ABBE_OK) result = need_length(yaml, node, "depth", &out->depth, error);
+  if (result == ABBE_OK) result = need_length(yaml, node, "radius", &out->radius, error);
   return result == ABBE_OK ? abbe_yaml_check_keys(yaml, node, "a drop", error) : result;
 }
 
@@ -67,12 +67,16 @@ static abbe_result read_rain(const abbe_object_reading *r, abbe_water_rain *out,
   if (node.id == 0) return ABBE_OK;
   if (!abbe_yaml_is_mapping(r->yaml, node))
     return abbe_yaml_fail(r->yaml, node, error, "'rain' must be a mapping (key: value)");
-  abbe_result result = need_number(r->yaml, node, "every", &out->every, error);
+  abbe_yaml_node ignored;
+  abbe_result result = abbe_yaml_require(r->yaml, node, "every", &ignored, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_number(r->yaml, node, "every", -ABBE_SCENE_FAR, ABBE_SCENE_FAR,
+                                  &out->every, error);
   if (result == ABBE_OK && !(out->every > 0))
     result = abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, node, "every"), error,
                             "'every' is the time between two drops, in seconds, above 0");
-  if (result == ABBE_OK) result = need_number(r->yaml, node, "depth", &out->depth, error);
-  if (result == ABBE_OK) result = need_number(r->yaml, node, "radius", &out->radius, error);
+  if (result == ABBE_OK) result = need_length(r->yaml, node, "depth", &out->depth, error);
+  if (result == ABBE_OK) result = need_length(r->yaml, node, "radius", &out->radius, error);
   if (result == ABBE_OK)
     result = abbe_yaml_get_count(r->yaml, node, "seed", 0, UINT32_MAX, &seed, error);
   out->seed = (uint32_t)seed;

@@ -92,8 +92,7 @@ static abbe_result set(abbe_yaml_edit *edit, const char *path, const char *value
 abbe_result abbe_scene_change_set(abbe_yaml_edit *edit, const char *assignment, abbe_error *error) {
   const char *equals = strchr(assignment, '=');
   char path[LONGEST];
-  if (equals == NULL || equals == assignment ||
-      (size_t)(equals - assignment) >= sizeof path)
+  if (equals == NULL || equals == assignment || (size_t)(equals - assignment) >= sizeof path)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "'%.80s' sets nothing; write KEY=VALUE, such as camera.fov=30 or "
                           "lights.lamp.intensity=2",
@@ -236,7 +235,7 @@ static abbe_result read_keyframe(abbe_yaml *yaml, abbe_yaml_node node, keyframe 
     return abbe_yaml_fail(yaml, value, error, "a keyframe's value is a number or 1 to %d numbers",
                           MOST_NUMBERS);
   for (size_t k = 0; k < (list ? out->count : 1) && result == ABBE_OK; k++)
-    result = abbe_yaml_number(yaml, list ? abbe_yaml_item(yaml, value, k) : value, "keyframes",
+    result = abbe_yaml_length(yaml, list ? abbe_yaml_item(yaml, value, k) : value, "keyframes",
                               -1e12, 1e12, &out->value[k], error);
   return result;
 }

@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/thread/watch.h"
 #include "base/yaml/yaml.h"
-#include "scenes/geometry/vector.h"
+#include "scenes/import/camera_file.h"
 #include "scenes/import/environment_file.h"
 #include "scenes/import/light_file.h"
 #include "scenes/import/object_file.h"
@@ -17,43 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define RADIANS (3.14159265358979323846 / 180.0)
 #define SCENE_MOST_BYTES ((size_t)16 << 20) /* as of every YAML file */
-
-/* --- camera --- */
-
-static abbe_result read_camera(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera *out,
-                               abbe_error *error) {
-  abbe_yaml_node node;
-  double fov = 45.0, size[2] = {512, 512}, view[3], side[3];
-  memcpy(out->up, (const double[3]){0.0, 0.0, 1.0}, sizeof out->up);
-  abbe_result result = abbe_yaml_require(yaml, root, "camera", &node, error);
-  if (result == ABBE_OK) result = abbe_scene_value_point(yaml, node, "eye", out->eye, error);
-  if (result == ABBE_OK) result = abbe_scene_value_point(yaml, node, "target", out->target, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_yaml_get_numbers(yaml, node, "up", 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out->up, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "fov", 0.1, 170, &fov, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_numbers(yaml, node, "size", 2, 1, ABBE_IMAGE_MAX_SIDE, size, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_bool(yaml, node, "inside", &out->inside, error);
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "the camera", error);
-  if (result != ABBE_OK) return result;
-  out->fov_y_rad = fov * RADIANS;
-  out->width = (size_t)size[0];
-  out->height = (size_t)size[1];
-  if ((double)out->width != size[0] || (double)out->height != size[1])
-    return abbe_yaml_fail(yaml, node, error, "'size' wants two whole numbers of pixels");
-  abbe_vector_subtract(out->target, out->eye, view);
-  if (!(abbe_vector_length(view) > 0.0))
-    return abbe_yaml_fail(yaml, node, error, "the camera's 'eye' and 'target' are the same point");
-  abbe_vector_cross(view, out->up, side);
-  if (!(abbe_vector_length(side) > 1e-9 * abbe_vector_length(view) * abbe_vector_length(out->up)))
-    return abbe_yaml_fail(yaml, node, error,
-                          "the camera's 'up' points along its view (or is zero); any other "
-                          "direction will do");
-  return ABBE_OK;
-}
 
 /* --- objects --- */
 
@@ -155,7 +119,7 @@ static abbe_result read_scene(abbe_yaml *yaml, const char *folder,
   abbe_result result = abbe_yaml_get_string(yaml, root, "description", &out->description, error);
   if (result == ABBE_OK) result = read_brightness(yaml, root, out, error);
   if (result == ABBE_OK) result = abbe_scene_value_time(yaml, &out->time, error);
-  if (result == ABBE_OK) result = read_camera(yaml, root, &out->camera, error);
+  if (result == ABBE_OK) result = abbe_camera_read(yaml, root, &out->camera, error);
   if (result == ABBE_OK) result = abbe_medium_file_read(yaml, root, true, &out->medium, error);
   if (result == ABBE_OK)
     result = abbe_lights_read(yaml, root, folder, &out->light, &out->light_count, error);
@@ -167,6 +131,7 @@ static abbe_result read_scene(abbe_yaml *yaml, const char *folder,
   if (result == ABBE_OK) result = read_environment(yaml, root, folder, out, error);
   if (result == ABBE_OK) result = read_table(yaml, root, folder, options, out, error);
   if (result == ABBE_OK) result = read_objects(yaml, root, folder, out, error);
+  if (result == ABBE_OK) result = abbe_camera_frame(yaml, root, out, error);
   return result == ABBE_OK ? abbe_scene_check(out, error) : result;
 }
 
@@ -203,7 +168,9 @@ static abbe_result change_text(const char *text, size_t size, const char *name,
                                const abbe_scene_options *options, abbe_yaml_edit *out,
                                abbe_error *error) {
   abbe_result result = abbe_yaml_edit_make(text, size, name, out, error);
-  if (result == ABBE_OK && options && options->stone)
+  /* all stones of a studio are of it already */
+  if (result == ABBE_OK && options && options->stone &&
+      !(abbe_studio_is_stone(name) && strchr(options->stone, '=') == NULL))
     result = abbe_scene_change_material(out, options->stone, error);
   for (size_t i = 0; options && i < options->set_count && result == ABBE_OK; i++)
     result = abbe_scene_change_set(out, options->set[i], error);
@@ -238,11 +205,30 @@ static abbe_result parse_document(const char *text, size_t size, const char *nam
   return parse_changed(text, size, name, options, true, out, error);
 }
 
+/* The file's text, or the scene that is made for a stone's file. */
+static abbe_result read_text(const char *path, const abbe_scene_options *options, char **text,
+                             size_t *size, abbe_error *error) {
+  if (!abbe_studio_is_stone(path))
+    return abbe_file_read_text(path, SCENE_MOST_BYTES, text, size, error);
+  abbe_studio studio = {0};
+  if (options && options->studio) studio = *options->studio;
+  if (options && options->materials) studio.table = options->materials;
+  if (options && options->stone && strchr(options->stone, '=') == NULL)
+    studio.material = options->stone;
+  char *folder = folder_of(path);
+  const abbe_result result =
+      folder != NULL ? abbe_studio_scene(path, &studio, studio.folder ? studio.folder : folder,
+                                         text, size, error)
+                     : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
+  free(folder);
+  return result;
+}
+
 static abbe_result load_document(const char *path, const abbe_scene_options *options,
                                  abbe_yaml **out, abbe_error *error) {
   char *text = NULL;
   size_t size = 0;
-  abbe_result result = abbe_file_read_text(path, SCENE_MOST_BYTES, &text, &size, error);
+  abbe_result result = read_text(path, options, &text, &size, error);
   if (result == ABBE_OK) result = parse_document(text, size, path, options, out, error);
   free(text);
   return result;
@@ -327,7 +313,7 @@ abbe_result abbe_scene_text(const char *path, const abbe_scene_options *options,
   size_t bytes = 0;
   *out = NULL;
   *size = 0;
-  abbe_result result = abbe_file_read_text(path, SCENE_MOST_BYTES, &text, &bytes, error);
+  abbe_result result = read_text(path, options, &text, &bytes, error);
   if (result == ABBE_OK) result = change_text(text, bytes, path, options, &edit, error);
   free(text);
   if (result == ABBE_OK) {

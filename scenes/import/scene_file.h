@@ -3,6 +3,7 @@
 #define ABBE_SCENES_IMPORT_SCENE_FILE_H
 
 #include "scenes/scene.h"
+#include "scenes/studio/studio.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -14,13 +15,15 @@ typedef struct abbe_scene_options {
   const char *const *set; /* set_count of "PATH=VALUE": keys with dots between them, of a list's
                              item its number from 0 or its name, and one line of YAML; in order */
   size_t set_count;
-  const char *stone; /* "STONE", what all refractors are made of instead of one material; or
-                        "NAME=STONE", of a material or an object; before set; NULL: as it is */
+  const char *stone;         /* "STONE", what all refractors are made of instead of one material; or
+                                "NAME=STONE", of a material or an object; before set; NULL: as it is */
+  const abbe_studio *studio; /* how a stone's file is shown (scenes/studio); NULL: by default */
 } abbe_scene_options;
 
-/* Loads, tessellates, checks and fixes. Paths in the file are relative to it. Errors name file,
- * line, key and value; ABBE_CANCELLED by the thread's watch (base/thread/watch.h). On failure *out
- * is zeroed. options may be NULL. */
+/* Loads, tessellates, checks and fixes. A stone's file in the place of a scene's is shown as
+ * scenes/studio has it; its scene stands in the stone's folder. Paths in the file are relative to
+ * it. Errors name file, line, key and value; ABBE_CANCELLED by the thread's watch
+ * (base/thread/watch.h). On failure *out is zeroed. options may be NULL. */
 abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options, abbe_scene *out,
                             abbe_error *error);
 /* Of a scene that abbe_scene_load has made: its lights, ambient light and background as they are

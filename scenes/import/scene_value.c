@@ -28,7 +28,7 @@ abbe_result abbe_scene_value_point(abbe_yaml *yaml, abbe_yaml_node mapping, cons
   ABBE_REQUIRE(yaml && key && out, error);
   abbe_yaml_node ignored;
   const abbe_result result = abbe_yaml_require(yaml, mapping, key, &ignored, error);
-  return result == ABBE_OK ? abbe_yaml_get_numbers(yaml, mapping, key, 3, -ABBE_SCENE_FAR,
+  return result == ABBE_OK ? abbe_yaml_get_lengths(yaml, mapping, key, 3, -ABBE_SCENE_FAR,
                                                    ABBE_SCENE_FAR, out, error)
                            : result;
 }

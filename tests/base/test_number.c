@@ -41,6 +41,28 @@ static void only_decimal_numbers_are_read(void **state) {
   assert_true(abbe_number_read("1e999", &end, &value) && isinf(value));
 }
 
+static void lengths_have_units(void **state) {
+  (void)state;
+  static const struct {
+    const char *text;
+    double metres;
+    const char *rest;
+  } read[] = {{"6.5mm", 0.0065, ""},   {"6.5 mm", 0.0065, ""}, {"-3cm", -0.03, ""},
+              {"0.2 in", 0.00508, ""}, {"2ft", 0.6096, ""},    {"7um", 7e-6, ""},
+              {"1.5 m", 1.5, ""},      {"0.25", 0.25, ""},     {"1e-3m, 2", 1e-3, ", 2"},
+              {"3 mn", 3, " mn"},      {"3 mmm", 3, " mmm"},   {"4 inches", 4, " inches"}};
+  for (size_t i = 0; i < sizeof read / sizeof *read; i++) {
+    const char *end;
+    double metres = 0;
+    assert_true(abbe_number_read_length(read[i].text, &end, &metres));
+    assert_near(metres, read[i].metres, 0);
+    assert_string_equal(end, read[i].rest);
+  }
+  const char *end;
+  double metres;
+  assert_false(abbe_number_read_length("mm", &end, &metres));
+}
+
 /* Where the host has a locale with a decimal comma, it is without effect, and left as it was. */
 static void the_hosts_locale_is_without_effect(void **state) {
   (void)state;
@@ -63,6 +85,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(written_numbers_are_short_and_read_back),
       cmocka_unit_test(only_decimal_numbers_are_read),
+      cmocka_unit_test(lengths_have_units),
       cmocka_unit_test(the_hosts_locale_is_without_effect),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

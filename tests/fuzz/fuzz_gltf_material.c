@@ -3,7 +3,7 @@
 #include "tests/fuzz/keeps.h"
 #include "tests/fuzz/memory_file.h"
 
-#include "scenes/import/gltf_material.h"
+#include "scenes/import/mesh/gltf_material.h"
 
 #include <errno.h>
 

@@ -129,6 +129,7 @@ static const struct {
     {"abbe_scene_load_lights", "options"},
     {"abbe_scene_parse", "options"},
     {"abbe_scene_text", "options"},
+    {"abbe_studio_scene", "studio"},
     {"abbe_shader_write", "report"},
     {"abbe_shadow_planes_make", "plane"},
     {"abbe_picture_front_load", "path"},

@@ -58,11 +58,11 @@ static abbe_result resolve(const abbe_scene *scene, abbe_trace_desc *d, abbe_err
                          (size_t)ABBE_TRACER_MAX_SIDE * ABBE_TRACER_MAX_SIDE, error);
   if (result == ABBE_OK) result = check_count("pixel", d->pixel_sides, ABBE_TRACER_MAX_SIDE, error);
   if (result != ABBE_OK) return result;
-  const bool dark = scene->light_count == 0 && scene->environment == NULL;
-  if (dark || scene->object_count == 0)
+  const bool empty = scene->object_count == 0;
+  if (scene->environment == NULL && (scene->light_count == 0 || empty))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is nothing to trace: %s",
-                          dark ? "the scene has no light and no environment"
-                               : "the scene has no object");
+                          empty ? "the scene has no object and no environment"
+                                : "the scene has no light and no environment");
   if (!d->no_map && scene->light_count == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a map is of one light, and the scene has none but its environment: ask "

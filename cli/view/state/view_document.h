@@ -9,6 +9,7 @@
 #define ABBE_CLI_VIEW_STATE_VIEW_DOCUMENT_H
 
 #include "base/error.h"
+#include "scenes/studio/studio.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -17,7 +18,8 @@
 #define ABBE_VIEW_MOST_STEPS 256 /* back */
 
 typedef struct abbe_view_document {
-  char *path; /* of the scene file */
+  char *path;                /* of the scene file, or of a stone's: */
+  const abbe_studio *studio; /* how that is shown; borrowed, and NULL of a scene */
   size_t set_count;
   char *set[ABBE_VIEW_MOST_CHANGES];     /* "KEY=VALUE" */
   size_t wavelengths, photons, map_size; /* 0: as the stage has them */

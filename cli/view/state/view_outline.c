@@ -44,7 +44,7 @@ static bool is_shown(const char *shape, const char *value_of, const char *key, b
 }
 
 static void number_of(abbe_yaml *yaml, abbe_yaml_node node, const char *key, double *out) {
-  abbe_yaml_get_number(yaml, node, key, -1e30, 1e30, out, NULL);
+  abbe_yaml_get_length(yaml, node, key, -1e30, 1e30, out, NULL);
 }
 
 /* "KIND.NAME" where the name is the item's own, else "KIND.NUMBER". */
@@ -134,7 +134,8 @@ static bool flow(abbe_yaml *yaml, abbe_yaml_node node, char *out, size_t size) {
 }
 
 /* The steps that `fit` and `centre` are, behind `used` bytes of text: the middle of what is fitted
- * comes to the origin, from where `translate` moves it to its place. False where they do not fit. */
+ * comes to the origin, from where `translate` moves it to its place. False where they do not fit.
+ */
 static bool add_fit(const abbe_object *object, size_t used, char *text, size_t size,
                     abbe_view_object *out) {
   char scale[48] = "";
@@ -143,10 +144,11 @@ static bool add_fit(const abbe_object *object, size_t used, char *text, size_t s
     out->translate[k] = out->middle[k];
     back[k] = object->centring[k] - out->middle[k];
   }
-  if (out->fitted) abbe_number_format(scale, sizeof scale, "{scale: %.12g}, ", object->fitted);
-  const int n = abbe_number_format(text + used, size - used,
-                                   "%s%s{translate: [%.12g, %.12g, %.12g]}", used > 0 ? ", " : "",
-                                   scale, back[0], back[1], back[2]);
+  if (out->fitted || out->sized)
+    abbe_number_format(scale, sizeof scale, "{scale: %.12g}, ", object->fitted);
+  const int n =
+      abbe_number_format(text + used, size - used, "%s%s{translate: [%.12g, %.12g, %.12g]}",
+                         used > 0 ? ", " : "", scale, back[0], back[1], back[2]);
   return n > 0 && (size_t)n < size - used;
 }
 
@@ -159,9 +161,12 @@ static bool read_transform(abbe_yaml *yaml, abbe_yaml_node node, const abbe_obje
   const abbe_yaml_node last = count > 0 ? abbe_yaml_item(yaml, list, count - 1) : list;
   out->fitted = abbe_yaml_get(yaml, node, "fit").id != 0;
   out->centred = abbe_yaml_get(yaml, node, "centre").id != 0;
-  const bool keys = out->fitted || out->centred;
+  out->stands = abbe_yaml_get(yaml, node, "stand").id != 0;
+  out->sized =
+      abbe_yaml_get(yaml, node, "mesh").id != 0 && abbe_yaml_get(yaml, node, "width").id != 0;
+  const bool keys = out->fitted || out->sized || out->centred || out->stands;
   if (count > 0 && !keys && abbe_yaml_get(yaml, last, "translate").id != 0) {
-    abbe_yaml_get_numbers(yaml, last, "translate", 3, -1e30, 1e30, out->translate, NULL);
+    abbe_yaml_get_lengths(yaml, last, "translate", 3, -1e30, 1e30, out->translate, NULL);
     count--;
   }
   for (size_t i = 0; i < count; i++) {

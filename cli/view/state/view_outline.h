@@ -46,7 +46,7 @@ typedef struct abbe_view_object {
    * whoever sets the transform takes the keys out. */
   char *before;
   double translate[3];
-  bool fitted, centred;
+  bool fitted, centred, stands, sized;
   char *own_before; /* so by the file alone; NULL: not known */
   double own_translate[3], own_middle[3];
   size_t value_count;

@@ -280,7 +280,10 @@ static void set_object(abbe_view_state *state, const abbe_view_object *object, d
   const struct {
     bool there;
     const char *name;
-  } others[] = {{object->fitted, "fit"}, {object->centred, "centre"}};
+  } others[] = {{object->fitted, "fit"},
+                {object->sized, "width"},
+                {object->centred, "centre"},
+                {object->stands, "stand"}};
   for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
     snprintf(key, sizeof key, "%s.%s", object->key, others[i].name);
     if (others[i].there && !set(state, document, key, "")) return;

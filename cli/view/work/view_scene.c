@@ -49,7 +49,7 @@ static void place_camera(abbe_view_scene *s, const abbe_view_document *document,
 /* The document's changes but for the camera's place; `set` has room for all. */
 static abbe_scene_options options_of(const abbe_view_scene *s, const abbe_view_document *d,
                                      const char *set[ABBE_VIEW_MOST_CHANGES]) {
-  abbe_scene_options options = {.materials = s->materials, .set = set};
+  abbe_scene_options options = {.materials = s->materials, .set = set, .studio = d->studio};
   for (size_t i = 0; i < d->set_count; i++)
     if (!is_place(d->set[i])) set[options.set_count++] = d->set[i];
   return options;
@@ -58,7 +58,8 @@ static abbe_scene_options options_of(const abbe_view_scene *s, const abbe_view_d
 /* With the camera as the file has it. */
 static abbe_result tell(abbe_view_scene *s, abbe_view_scene_news *out, abbe_error *error) {
   const abbe_view_document *d = &s->document;
-  const abbe_scene_options all = {.set = (const char *const *)d->set, .set_count = d->set_count};
+  const abbe_scene_options all = {
+      .set = (const char *const *)d->set, .set_count = d->set_count, .studio = d->studio};
   char *text = NULL;
   size_t size = 0;
   s->now->camera = s->own;

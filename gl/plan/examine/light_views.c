@@ -5,9 +5,10 @@
 
 void abbe_light_views_reach(const abbe_scene *scene, abbe_plan *plan) {
   bool thesis = abbe_profile_is_published(plan->desc.profile);
+  const bool lands = plan->receiver_count > 0 || abbe_scene_is_hazy(scene);
   for (size_t k = 0; k < plan->refractor_count; k++) {
     const abbe_object *object = &scene->object[plan->refractor_object[k]];
-    for (size_t i = 0; i < scene->light_count; i++)
+    for (size_t i = 0; i < scene->light_count && lands; i++)
       if (thesis || abbe_reach_light(&scene->light[i], object))
         plan->caustics = plan->reaches[i] = true;
     if (thesis || abbe_reach_eye(&scene->camera, plan->desc.width, plan->desc.height, object))

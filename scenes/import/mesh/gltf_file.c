@@ -349,13 +349,15 @@ static void mark_children(const abbe_gltf *g, bool *below) {
   }
 }
 
+/* Of glTF y is up, here z. */
 static abbe_result walk_scene(abbe_gltf *g, bool *visited, bool *below) {
+  static const double y_up[16] = {1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1};
   const cJSON *scenes = cJSON_GetObjectItemCaseSensitive(g->json.root, "scenes"), *item;
   double matrix[16];
   size_t which;
   abbe_result result = abbe_gltf_whole(g, g->json.root, "scene", "the file", 0, &which);
   const cJSON *scene = which <= INT32_MAX ? cJSON_GetArrayItem(scenes, (int)which) : NULL;
-  abbe_transform_identity(matrix);
+  memcpy(matrix, y_up, sizeof matrix);
   if (result == ABBE_OK && scene == NULL && (which > 0 || scenes != NULL))
     return abbe_gltf_fail(g, ABBE_SCHEMA, "'scene' of the file is %zu, and it has %d of them",
                           which, cJSON_GetArraySize(scenes));

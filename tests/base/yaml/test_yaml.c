@@ -18,10 +18,26 @@ static void test_a_mistyped_key_is_named_where_one_is_missing(void **state) {
   abbe_yaml_node node;
   abbe_error e = {0};
   assert_int_equal(abbe_yaml_require(y, abbe_yaml_root(y), "intensity", &node, &e), ABBE_SCHEMA);
-  assert_contains(e.text, "t.yaml:2: the key 'intensity' is missing here; is 'intensitty' meant?");
+  assert_contains(e.text,
+                  "t.yaml:2: the key 'intensity' is missing here, and 'intensitty' is no key; did "
+                  "you mean 'intensity'?");
   assert_int_equal(abbe_yaml_require(y, abbe_yaml_root(y), "colour", &node, &e), ABBE_SCHEMA);
   assert_contains(e.text, "the key 'colour' is missing here");
   abbe_yaml_free(y);
+}
+
+static void test_a_tab_names_itself(void **state) {
+  (void)state;
+  static const char *const texts[] = {"a:\n\tb: 1\n", "a:\n  b: 1\n  \tc: 2\n", "a: 1\n\tb: 2\n"};
+  static const char *const lines[] = {"t.yaml:2: ", "t.yaml:3: ", "t.yaml:2: "};
+  for (int i = 0; i < 3; i++) {
+    abbe_yaml *yaml = NULL;
+    abbe_error error = {0};
+    assert_int_equal(abbe_yaml_parse(texts[i], strlen(texts[i]), "t.yaml", &yaml, &error),
+                     ABBE_PARSE);
+    assert_contains(error.text, lines[i]);
+    assert_contains(error.text, "begins with a tab; YAML indents by blanks");
+  }
 }
 
 static void refuses_bytes(const char *text, size_t size, abbe_result code, const char *part) {
@@ -105,6 +121,31 @@ static void refuses_number(const char *text, const char *part) {
   assert_contains(error.text, "t.yaml:2: ");
   assert_contains(error.text, part);
   assert_near(x, 5, 0);
+  abbe_yaml_free(y);
+}
+
+static void lengths_take_units(void **state) {
+  (void)state;
+  abbe_yaml *y = parse("a: 6.5mm\nb: 0.2 in\nc: [1cm, -2 mm, 0.5]\nd: 3 mn\ne: 4km\nf: 1.5m\n");
+  const abbe_yaml_node root = abbe_yaml_root(y);
+  abbe_error error;
+  double x = 7, v[3];
+  assert_int_equal(abbe_yaml_get_length(y, root, "a", 0, 1, &x, NULL), ABBE_OK);
+  assert_near(x, 0.0065, 0);
+  assert_int_equal(abbe_yaml_get_length(y, root, "b", 0, 1, &x, NULL), ABBE_OK);
+  assert_near(x, 0.00508, 0);
+  assert_int_equal(abbe_yaml_get_lengths(y, root, "c", 3, -1, 1, v, NULL), ABBE_OK);
+  assert_true(v[0] == 0.01 && v[1] == -0.002 && v[2] == 0.5);
+  x = 7;
+  assert_int_equal(abbe_yaml_get_length(y, root, "d", 0, 9, &x, &error), ABBE_SCHEMA);
+  assert_contains(error.text, "'d: 3 mn' is not a finite number, of metres or with its unit behind "
+                              "it (um, mm, cm, m, in, ft)");
+  assert_int_equal(abbe_yaml_get_length(y, root, "e", 0, 9, &x, &error), ABBE_SCHEMA);
+  assert_int_equal(abbe_yaml_get_length(y, root, "f", 0, 1, &x, &error), ABBE_SCHEMA);
+  assert_contains(error.text, "'f: 1.5m' is not in the range from 0 to 1 m");
+  assert_int_equal(abbe_yaml_get_number(y, root, "a", 0, 9, &x, &error), ABBE_SCHEMA);
+  assert_contains(error.text, "'a: 6.5mm' is not a finite number");
+  assert_near(x, 7, 0);
   abbe_yaml_free(y);
 }
 
@@ -301,7 +342,9 @@ static void values_know_their_bytes(void **state) {
   (void)state;
   spans("a: 1 # one\nb: 2\n", "a", "1");
   spans("# \u00b5\u2026\na: \u00e9 # \u00e9\nb: 2\n", "b", "2");
-  spans("\xEF\xBB\xBF" "a: 1\r\nb: '2'\r\n", "b", "'2'");
+  spans("\xEF\xBB\xBF"
+        "a: 1\r\nb: '2'\r\n",
+        "b", "'2'");
   spans("a: [1, # one\n  2 ]\nb: 2", "a", "[1, # one\n  2 ]");
   spans("a:\n  - 1\n  - {c: 2} # two\n\n# b follows\nb: 2\n", "a", "- 1\n  - {c: 2}");
   spans("a: >-\n  two\n  lines\n\n\nb: 2\n", "a", ">-\n  two\n  lines");
@@ -318,8 +361,10 @@ static void values_know_their_bytes(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_a_mistyped_key_is_named_where_one_is_missing),
+      cmocka_unit_test(test_a_tab_names_itself),
       cmocka_unit_test(a_document_is_walked),
       cmocka_unit_test(typed_values_are_read_and_defaults_kept),
+      cmocka_unit_test(lengths_take_units),
       cmocka_unit_test(numbers_are_finite_plain_and_in_range),
       cmocka_unit_test(other_types_are_refused_too),
       cmocka_unit_test(unknown_keys_get_the_nearest_known),

@@ -63,6 +63,25 @@ static void a_size_and_a_place_are_taken_from_the_bounds(void **state) {
   abbe_scene_free(&scene);
 }
 
+static void a_width_is_the_smaller_side_and_a_foot_the_lowest(void **state) {
+  (void)state;
+  const test_box box = {{10, 20, 30}, {14, 22, 31}, false};
+  abbe_object_surface s = request();
+  s.width = 0.006;
+  s.centred = s.stands = true;
+  s.centre[0] = 0.1;
+  s.centre[2] = 0.5;
+  abbe_scene scene = place(test_boxes(&box, 1), &s, true);
+  const abbe_object *o = &scene.object[0];
+  const double min[] = {0.094, -0.003, 0.5}, max[] = {0.106, 0.003, 0.503};
+  for (int k = 0; k < 3; k++) {
+    assert_near(o->min[k], min[k], 1e-15);
+    assert_near(o->max[k], max[k], 1e-15);
+  }
+  assert_near(o->fitted, 0.003, 1e-18);
+  abbe_scene_free(&scene);
+}
+
 /* The size that is asked for is the solid's, without the sheet that hangs on it. */
 static void what_is_dropped_has_no_size(void **state) {
   (void)state;
@@ -279,6 +298,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(triangles_of_a_rough_solid_lie_in_its_planes),
       cmocka_unit_test(a_size_and_a_place_are_taken_from_the_bounds),
+      cmocka_unit_test(a_width_is_the_smaller_side_and_a_foot_the_lowest),
       cmocka_unit_test(what_is_dropped_has_no_size),
       cmocka_unit_test(a_ball_is_fitted_as_a_ball),
       cmocka_unit_test(what_has_no_size_cannot_be_fitted),

@@ -101,16 +101,48 @@ static size_t make(const wish *w, char *out) {
   return whole;
 }
 
+/* With y up, as the file has it. */
+static abbe_result read_turned(const char *path, const void *data, size_t size, abbe_mesh *out) {
+  const abbe_result result = test_read(abbe_gltf_read, path, NULL, data, size, out);
+  for (size_t v = 0; result == ABBE_OK && v < out->vertex_count; v++) {
+    double *const turned[] = {out->position[v], out->normal[v]};
+    for (int i = 0; i < 2; i++) {
+      const double y = turned[i][1];
+      turned[i][1] = turned[i][2];
+      turned[i][2] = -y;
+    }
+  }
+  return result;
+}
+
 static abbe_result read_wish(const wish *w, abbe_mesh *out) {
   static char data[8192];
   const size_t size = make(w, data);
-  return test_read(abbe_gltf_read, w->binary ? "t.glb" : "t.gltf", NULL, data, size, out);
+  return read_turned(w->binary ? "t.glb" : "t.gltf", data, size, out);
 }
 
 static void assert_reads(const wish *w, double size, double shift, double tolerance) {
   abbe_mesh m;
   if (read_wish(w, &m) != ABBE_OK) fail_msg("%s", error.text);
   assert_tetrahedron(&m, size, shift, tolerance);
+}
+
+/* The tetrahedron is 1 wide, 2 high along glTF's y and 3 deep. */
+static void meshes_stand(void **state) {
+  (void)state;
+  static char data[8192];
+  abbe_mesh m;
+  abbe_mesh_report r;
+  const size_t size = make(&(wish){.type = FLOAT}, data);
+  assert_int_equal(test_read(abbe_gltf_read, "t.gltf", NULL, data, size, &m), ABBE_OK);
+  assert_int_equal(abbe_mesh_check(&m, &r, NULL), ABBE_OK);
+  assert_near(r.volume, 1, 1e-12); /* not mirrored */
+  static const double min[] = {0, -3, 0}, max[] = {1, 0, 2};
+  for (int k = 0; k < 3; k++) {
+    assert_near(r.min[k], min[k], 0);
+    assert_near(r.max[k], max[k], 0);
+  }
+  abbe_mesh_free(&m);
 }
 
 static void numbers_are_read_of_every_kind(void **state) {
@@ -233,8 +265,7 @@ static void sparse_numbers_are_read(void **state) {
   assert_true(sparse != NULL && end != NULL);
   memmove(sparse, sparse + 1, (size_t)(end - sparse) - 1);
   end[-1] = '}';
-  if (test_read(abbe_gltf_read, "t.gltf", NULL, data, size, &m) != ABBE_OK)
-    fail_msg("%s", error.text);
+  if (read_turned("t.gltf", data, size, &m) != ABBE_OK) fail_msg("%s", error.text);
   assert_int_equal(abbe_mesh_check(&m, &r, NULL), ABBE_OK);
   assert_near(r.volume, 2, 1e-12);
   abbe_mesh_free(&m);
@@ -252,15 +283,14 @@ static void compressed_meshes_are_refused(void **state) {
   char *view = strstr(data, "\"bufferView\":1,");
   assert_non_null(view);
   memset(view, ' ', 15);
-  assert_int_equal(test_read(abbe_gltf_read, "t.gltf", NULL, data, size, &m), ABBE_UNSUPPORTED);
+  assert_int_equal(read_turned("t.gltf", data, size, &m), ABBE_UNSUPPORTED);
   assert_contains(error.text, "compressed by KHR_draco_mesh_compression");
   const size_t whole = make(&(wish){.binary = false}, data);
   data[whole] = '\0';
   char *uri = strstr(data, ",\"uri\"");
   assert_non_null(uri);
   strcpy(uri, ",\"extensions\":{\"EXT_meshopt_compression\":{\"fallback\":true}}}]}");
-  assert_int_equal(test_read(abbe_gltf_read, "t.gltf", NULL, data, strlen(data), &m),
-                   ABBE_UNSUPPORTED);
+  assert_int_equal(read_turned("t.gltf", data, strlen(data), &m), ABBE_UNSUPPORTED);
   assert_contains(error.text, "meshopt_compression");
 }
 
@@ -287,8 +317,7 @@ static void strips_and_fans_are_read(void **state) {
     char *first = strstr(data, "\"indices\":0,"); /* one key of the name alone */
     assert_non_null(first);
     memset(first, ' ', 12);
-    if (test_read(abbe_gltf_read, "t.gltf", NULL, data, size, &m) != ABBE_OK)
-      fail_msg("%s", error.text);
+    if (read_turned("t.gltf", data, size, &m) != ABBE_OK) fail_msg("%s", error.text);
     assert_int_equal(abbe_mesh_check(&m, &r, NULL), ABBE_OK);
     assert_int_equal(r.flipped_edges + r.crowded_edges, 0);
     assert_int_equal(m.face_count, mode == 5 ? 4 : 3);
@@ -377,7 +406,7 @@ static void cut_files_are_refused(void **state) {
   abbe_mesh m;
   const size_t size = make(&(wish){.binary = true}, data);
   for (size_t cut = 1; cut < size; cut += cut < 200 ? 1 : 13)
-    assert_int_not_equal(test_read(abbe_gltf_read, "t.glb", NULL, data, size - cut, &m), ABBE_OK);
+    assert_int_not_equal(read_turned("t.glb", data, size - cut, &m), ABBE_OK);
 }
 
 /* A file of some kilobytes whose lists are gone through once for each of its nodes: primitives that
@@ -400,14 +429,14 @@ static void work_has_an_end(void **state) {
     at += sprintf(at, "]}],\"nodes\":[{}");
     for (int k = 0; k < files[i].nodes; k++) at += sprintf(at, ",{\"mesh\":0}");
     sprintf(at, "]}");
-    assert_int_equal(test_read(abbe_gltf_read, "t.gltf", NULL, text, strlen(text), &m),
-                     ABBE_UNSUPPORTED);
+    assert_int_equal(read_turned("t.gltf", text, strlen(text), &m), ABBE_UNSUPPORTED);
     assert_contains(error.text, "make more than the");
   }
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(meshes_stand),
       cmocka_unit_test(numbers_are_read_of_every_kind),
       cmocka_unit_test(nodes_place_meshes),
       cmocka_unit_test(instances_are_read),

@@ -4,8 +4,8 @@
  * [glTFDispersion], KHR_materials_volume the attenuation by a colour. What Abbe does not model of
  * it (a tint, roughness, textures) is in the record's warning. It reads no meshes.
  */
-#ifndef ABBE_SCENES_IMPORT_GLTF_MATERIAL_H
-#define ABBE_SCENES_IMPORT_GLTF_MATERIAL_H
+#ifndef ABBE_SCENES_IMPORT_MESH_GLTF_MATERIAL_H
+#define ABBE_SCENES_IMPORT_MESH_GLTF_MATERIAL_H
 
 #include "base/error.h"
 #include "spectral/materials/material.h"

@@ -1,4 +1,4 @@
-#include "scenes/import/gltf_material.h"
+#include "scenes/import/mesh/gltf_material.h"
 
 #include "base/file.h"
 #include "base/number.h"

@@ -2,7 +2,7 @@
  * numbers, and files that say what they may not say. */
 #include "tests/scenes/export/export_text.h"
 
-#include "scenes/import/gltf_material.h"
+#include "scenes/import/mesh/gltf_material.h"
 #include "spectral/materials/material_numbers.h"
 
 #define FILE_NAME "/tmp/abbe-test-material.gltf"
@@ -158,8 +158,7 @@ static void test_what_is_exported_is_read_again(void **state) {
   snprintf(path, sizeof path, "%s/again.yaml", folder);
   snprintf(text, sizeof text, "%s",
            "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR
-           "- {name: ball, mesh: it.glb, material: from-file, transform: [{rotate: {axis: [1, 0, "
-           "0], angle: 90}}]}\n");
+           "- {name: ball, mesh: it.glb, material: from-file}\n");
   assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
   if (abbe_scene_load(path, NULL, &again, &error) != ABBE_OK) fail_msg("%s", error.text);
   const abbe_object *ball = &again.object[1];

@@ -1,0 +1,191 @@
+#include "scenes/import/camera_file.h"
+
+#include "base/nearest.h"
+#include "scenes/geometry/vector.h"
+#include "scenes/import/scene_value.h"
+
+#include <math.h>
+#include <string.h>
+
+#define RADIANS (3.14159265358979323846 / 180.0)
+
+static abbe_result read_size(abbe_yaml *yaml, abbe_yaml_node node, abbe_camera *out,
+                             abbe_error *error) {
+  double size[2] = {512, 512};
+  const abbe_result result =
+      abbe_yaml_get_numbers(yaml, node, "size", 2, 1, ABBE_IMAGE_MAX_SIDE, size, error);
+  if (result != ABBE_OK) return result;
+  out->width = (size_t)size[0];
+  out->height = (size_t)size[1];
+  if ((double)out->width != size[0] || (double)out->height != size[1])
+    return abbe_yaml_fail(yaml, node, error, "'size' wants two whole numbers of pixels");
+  return ABBE_OK;
+}
+
+/* From where 'frame' looks: the unit vector from its objects to the eye. */
+static abbe_result read_side(abbe_yaml *yaml, abbe_yaml_node node, double out[3],
+                             abbe_error *error) {
+  double up = 60, around = -90;
+  abbe_result result = abbe_yaml_get_number(yaml, node, "elevation", -89.9, 89.9, &up, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_number(yaml, node, "azimuth", -3600, 3600, &around, error);
+  out[0] = cos(up * RADIANS) * cos(around * RADIANS);
+  out[1] = cos(up * RADIANS) * sin(around * RADIANS);
+  out[2] = sin(up * RADIANS);
+  return result;
+}
+
+static abbe_result read_frame(abbe_yaml *yaml, abbe_yaml_node node, abbe_error *error) {
+  double fill = 0.7, side[3];
+  const bool framed = abbe_yaml_get(yaml, node, "frame").id != 0;
+  abbe_result result = read_side(yaml, node, side, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "fill", 0.01, 1, &fill, error);
+  static const char *const own[] = {"elevation", "azimuth", "fill"};
+  for (int i = 0; i < 3 && result == ABBE_OK && !framed; i++)
+    if (abbe_yaml_get(yaml, node, own[i]).id != 0)
+      return abbe_yaml_fail(yaml, abbe_yaml_get(yaml, node, own[i]), error,
+                            "'%s' goes with 'frame: [NAME, ...]', the objects that are to fill the "
+                            "picture; a camera of an 'eye' and a 'target' has none",
+                            own[i]);
+  return result;
+}
+
+abbe_result abbe_camera_read(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera *out,
+                             abbe_error *error) {
+  abbe_yaml_node node;
+  double fov = 45.0;
+  static const char *const places[] = {"eye", "target"};
+  double *place[] = {out->eye, out->target};
+  memcpy(out->up, (const double[3]){0.0, 0.0, 1.0}, sizeof out->up);
+  abbe_result result = abbe_yaml_require(yaml, root, "camera", &node, error);
+  if (result != ABBE_OK) return result;
+  const bool framed = abbe_yaml_get(yaml, node, "frame").id != 0;
+  for (int i = 0; i < 2 && result == ABBE_OK; i++)
+    if (!framed || abbe_yaml_get(yaml, node, places[i]).id != 0)
+      result = abbe_scene_value_point(yaml, node, places[i], place[i], error);
+  if (result == ABBE_OK)
+    result =
+        abbe_yaml_get_numbers(yaml, node, "up", 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out->up, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "fov", 0.1, 170, &fov, error);
+  out->fov_y_rad = fov * RADIANS;
+  if (result == ABBE_OK) result = read_size(yaml, node, out, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_bool(yaml, node, "inside", &out->inside, error);
+  if (result == ABBE_OK) result = read_frame(yaml, node, error);
+  return result == ABBE_OK ? abbe_yaml_check_keys(yaml, node, "the camera", error) : result;
+}
+
+/* ---- frame ---- */
+
+/* Whether the object is the one of that name, or a part of it. */
+static bool is_called(const abbe_object *object, const char *name) {
+  const size_t length = strlen(name);
+  return strncmp(object->name, name, length) == 0 &&
+         (object->name[length] == '\0' || strncmp(object->name + length, " (part ", 7) == 0);
+}
+
+static abbe_result mark(const abbe_yaml *yaml, abbe_yaml_node node, const abbe_scene *scene,
+                        bool framed[ABBE_SCENE_MAX_OBJECTS], abbe_error *error) {
+  const char *name = abbe_yaml_text(yaml, node), *names[ABBE_SCENE_MAX_OBJECTS];
+  bool found = false;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    names[i] = scene->object[i].name;
+    if (name == NULL || !is_called(&scene->object[i], name)) continue;
+    framed[i] = found = true;
+  }
+  if (found) return ABBE_OK;
+  const char *near = name != NULL ? abbe_nearest_word(name, names, scene->object_count) : NULL;
+  return abbe_yaml_fail(
+      yaml, node, error, "'frame' wants names of objects, and none is called '%.60s'%s%.60s%s",
+      name != NULL ? name : "", near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+}
+
+static abbe_result mark_all(abbe_yaml *yaml, abbe_yaml_node frame, const abbe_scene *scene,
+                            bool framed[ABBE_SCENE_MAX_OBJECTS], abbe_error *error) {
+  if (!abbe_yaml_is_sequence(yaml, frame)) return mark(yaml, frame, scene, framed, error);
+  abbe_result result = abbe_yaml_count(yaml, frame) > 0
+                           ? ABBE_OK
+                           : abbe_yaml_fail(yaml, frame, error, "'frame' names no object");
+  for (size_t i = 0; i < abbe_yaml_count(yaml, frame) && result == ABBE_OK; i++)
+    result = mark(yaml, abbe_yaml_item(yaml, frame, i), scene, framed, error);
+  return result;
+}
+
+/* The camera's directions: right, up, and back, towards the eye. */
+typedef struct axes {
+  double of[3][3];
+} axes;
+
+/* How far the eye must be for all to lie within the tangents; *aside: how far their middle, as it
+ * is seen from there, lies to the right and up. */
+static double distance(const abbe_scene *scene, const bool *framed, const double target[3],
+                       const axes *a, const double tangent[2], double aside[2]) {
+  double far = 0, least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t i = 0; i < scene->object_count; i++)
+      for (size_t v = 0; framed[i] && v < scene->object[i].mesh.vertex_count; v++) {
+        double from[3], p[3];
+        abbe_vector_subtract(scene->object[i].mesh.position[v], target, from);
+        for (int k = 0; k < 3; k++) p[k] = abbe_vector_dot(from, a->of[k]);
+        for (int k = 0; k < 2; k++) {
+          if (pass == 0) far = fmax(far, p[2] + fabs(p[k]) / tangent[k]);
+          if (pass == 0 || !(far > p[2])) continue;
+          least[k] = fmin(least[k], p[k] / (far - p[2]));
+          most[k] = fmax(most[k], p[k] / (far - p[2]));
+        }
+      }
+  for (int k = 0; k < 2; k++) aside[k] = 0.5 * (least[k] + most[k]) * far;
+  return far;
+}
+
+static abbe_result frame(abbe_yaml *yaml, abbe_yaml_node node, const abbe_scene *scene,
+                         abbe_camera *out, abbe_error *error) {
+  bool framed[ABBE_SCENE_MAX_OBJECTS] = {false};
+  const bool targeted = abbe_yaml_get(yaml, node, "target").id != 0;
+  double fill = 0.7, far = 0, aside[2], min[3], max[3];
+  axes a;
+  abbe_result result = mark_all(yaml, abbe_yaml_get(yaml, node, "frame"), scene, framed, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "fill", 0.01, 1, &fill, error);
+  if (result == ABBE_OK) result = read_side(yaml, node, a.of[2], error);
+  if (result != ABBE_OK) return result;
+  for (int k = 0; k < 3; k++) {
+    min[k] = INFINITY, max[k] = -INFINITY;
+    for (size_t i = 0; i < scene->object_count; i++)
+      if (framed[i]) {
+        min[k] = fmin(min[k], scene->object[i].min[k]);
+        max[k] = fmax(max[k], scene->object[i].max[k]);
+      }
+    if (!targeted) out->target[k] = 0.5 * (min[k] + max[k]);
+  }
+  if (abbe_yaml_get(yaml, node, "eye").id != 0) return ABBE_OK;
+  abbe_vector_cross(out->up, a.of[2], a.of[0]);
+  if (!abbe_vector_normalise(a.of[0])) return ABBE_OK; /* looks along up: it is refused */
+  abbe_vector_cross(a.of[2], a.of[0], a.of[1]);
+  const double high = fill * tan(0.5 * out->fov_y_rad);
+  const double tangent[2] = {high * (double)out->width / (double)out->height, high};
+  for (int turn = 0; turn < 8; turn++) {
+    far = distance(scene, framed, out->target, &a, tangent, aside);
+    for (int k = 0; k < 3 && !targeted; k++)
+      out->target[k] += aside[0] * a.of[0][k] + aside[1] * a.of[1][k];
+  }
+  for (int k = 0; k < 3; k++) out->eye[k] = out->target[k] + far * a.of[2][k];
+  return ABBE_OK;
+}
+
+abbe_result abbe_camera_frame(abbe_yaml *yaml, abbe_yaml_node root, abbe_scene *scene,
+                              abbe_error *error) {
+  const abbe_yaml_node node = abbe_yaml_get(yaml, root, "camera");
+  abbe_camera *c = &scene->camera;
+  double view[3], side[3];
+  abbe_result result =
+      abbe_yaml_get(yaml, node, "frame").id != 0 ? frame(yaml, node, scene, c, error) : ABBE_OK;
+  if (result != ABBE_OK) return result;
+  abbe_vector_subtract(c->target, c->eye, view);
+  if (!(abbe_vector_length(view) > 0.0))
+    return abbe_yaml_fail(yaml, node, error, "the camera's 'eye' and 'target' are the same point");
+  abbe_vector_cross(view, c->up, side);
+  if (!(abbe_vector_length(side) > 1e-9 * abbe_vector_length(view) * abbe_vector_length(c->up)))
+    return abbe_yaml_fail(yaml, node, error,
+                          "the camera's 'up' points along its view (or is zero); any other "
+                          "direction will do");
+  return ABBE_OK;
+}

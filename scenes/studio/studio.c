@@ -1,0 +1,313 @@
+#include "scenes/studio/studio.h"
+
+#include "base/file.h"
+#include "base/number.h"
+#include "base/yaml/yaml_edit.h"
+#include "base/yaml/yaml_quote.h"
+#include "scenes/studio/studio_stone.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LOOK(name)                                                                                 \
+  extern const unsigned char abbe_embedded_look_##name[];                                          \
+  extern const size_t abbe_embedded_look_##name##_size;
+ABBE_STUDIO_LOOKS(LOOK)
+#undef LOOK
+
+/* Between the outlines of stones in a row, of the larger of them. */
+#define GAP 0.35
+/* Of stones that are wider together than that, m, the looks are made larger. */
+#define ROOM_M 0.025
+/* The band of a ring, m: the radius of its circle, and of its wire. */
+#define BAND_M 0.0093
+#define WIRE_M 0.0009
+
+typedef struct building {
+  const abbe_studio *studio;
+  const char *folder;
+  abbe_studio_stone *stone;
+  size_t count, columns, rows;
+  double pitch[2]; /* m, from stone to stone along x and y */
+  double high;     /* m, how far above the table they stand */
+  abbe_yaml_edit edit;
+} building;
+
+/* ---- the text ---- */
+
+static size_t pair_of(const building *b, abbe_yaml_node mapping, const char *key) {
+  for (size_t i = 0; i < abbe_yaml_count(b->edit.yaml, mapping); i++)
+    if (strcmp(abbe_yaml_text(b->edit.yaml, abbe_yaml_key(b->edit.yaml, mapping, i)), key) == 0)
+      return i;
+  return SIZE_MAX;
+}
+
+static abbe_yaml_node value_of(const building *b, const char *key) {
+  return abbe_yaml_get(b->edit.yaml, abbe_yaml_root(b->edit.yaml), key);
+}
+
+/* The value of a key that the mapping has or gets. */
+static abbe_result put(building *b, abbe_yaml_node mapping, const char *key, const char *value,
+                       abbe_error *error) {
+  const size_t at = pair_of(b, mapping, key);
+  return at == SIZE_MAX
+             ? abbe_yaml_edit_insert_pair(&b->edit, mapping, ABBE_YAML_EDIT_END, key, value, error)
+             : abbe_yaml_edit_replace(&b->edit, mapping, at, value, error);
+}
+
+static abbe_result append(building *b, const char *item, abbe_error *error) {
+  const abbe_yaml_node root = abbe_yaml_root(b->edit.yaml);
+  return abbe_yaml_edit_append(&b->edit, root, pair_of(b, root, "objects"), item, error);
+}
+
+static abbe_yaml_node object_called(const building *b, const char *name, size_t *index) {
+  const abbe_yaml_node list = value_of(b, "objects");
+  for (*index = 0; *index < abbe_yaml_count(b->edit.yaml, list); ++*index) {
+    const abbe_yaml_node item = abbe_yaml_item(b->edit.yaml, list, *index);
+    const char *own = abbe_yaml_text(b->edit.yaml, abbe_yaml_get(b->edit.yaml, item, "name"));
+    if (own != NULL && strcmp(own, name) == 0) return item;
+  }
+  return (abbe_yaml_node){0};
+}
+
+static abbe_result take_out(building *b, const char *name, abbe_error *error) {
+  size_t index;
+  if (object_called(b, name, &index).id == 0) return ABBE_OK;
+  return abbe_yaml_edit_remove(&b->edit, value_of(b, "objects"), index, error);
+}
+
+/* ---- the stones ---- */
+
+/* The file as the scene's folder has it, quoted; malloc'd. */
+static abbe_result name_file(const building *b, const char *path, char **out, abbe_error *error) {
+  char whole[PATH_MAX], folder[PATH_MAX];
+  const char *name = abbe_file_name(path);
+  const bool found = realpath(path, whole) != NULL;
+  const bool beside = realpath(b->folder[0] != '\0' ? b->folder : ".", folder) != NULL && found &&
+                      strncmp(whole, folder, strlen(folder)) == 0 &&
+                      strcmp(whole + strlen(folder) + (strcmp(folder, "/") != 0), name) == 0;
+  return abbe_yaml_quote_make(beside || !found ? name : whole, out, error);
+}
+
+static void name_stone(const building *b, size_t i, char out[32]) {
+  snprintf(out, 32, b->count > 1 ? "stone %zu" : "stone", i + 1);
+}
+
+static abbe_result add_stone(building *b, size_t i, abbe_error *error) {
+  const abbe_studio_stone *s = &b->stone[i];
+  char *file = NULL, *material = NULL, name[32];
+  const double x = ((double)(i % b->columns) - 0.5 * (double)(b->columns - 1)) * b->pitch[0];
+  const double y = (0.5 * (double)(b->rows - 1) - (double)(i / b->columns)) * b->pitch[1];
+  abbe_result result = name_file(b, s->path, &file, error);
+  if (result == ABBE_OK) result = abbe_yaml_quote_make(s->material, &material, error);
+  if (result == ABBE_OK) {
+    const size_t size = strlen(file) + strlen(material) + 256;
+    char *item = malloc(size);
+    name_stone(b, i, name);
+    if (item == NULL) result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a scene");
+    if (item != NULL)
+      abbe_number_format(item, size,
+                         "name: %s\n%s%s\nwidth: %.6gmm\nstand: [%.6g, %.6g, %.6g]\nmaterial: %s\n",
+                         name, s->design ? "shape: cut\nfile: " : "mesh: ", file, 1e3 * s->width, x,
+                         y, b->high, material);
+    if (item != NULL) result = append(b, item, error);
+    free(item);
+  }
+  free(file);
+  free(material);
+  return result;
+}
+
+/* ---- the ring ---- */
+
+/* A plain band that stands upright, and a cup that holds the stone by its girdle. */
+static abbe_result add_ring(building *b, abbe_error *error) {
+  const abbe_studio_stone *s = &b->stone[0];
+  const double w = 0.5 * hypot(s->size[0], s->size[1]), r = fmax(BAND_M, s->width);
+  const double wire = WIRE_M * r / BAND_M, top = 2 * (r + wire);
+  const double girdle = s->girdle * s->size[2];
+  char item[640];
+  b->high = top + 0.1 * s->size[2];
+  abbe_number_format(item, sizeof item,
+                     "name: band\nshape: ring\nmajor: %.6gmm\nminor: %.6gmm\nmirror: gold\n"
+                     "transform:\n- rotate: {axis: [1, 0, 0], angle: 90}\nstand: [0, 0, 0]\n",
+                     1e3 * r, 1e3 * wire);
+  abbe_result result = append(b, item, error);
+  if (result != ABBE_OK) return result;
+  const double x = s->size[0] / hypot(s->size[0], s->size[1]) * sqrt(2);
+  const double y = s->size[1] / hypot(s->size[0], s->size[1]) * sqrt(2);
+  const double rim = w / sqrt(2);
+  abbe_number_format(
+      item, sizeof item,
+      "name: cup\nshape: lathe\naround: 128\nmirror: gold\nprofile:\n"
+      "- [%.6gmm, %.6gmm]\n- [%.6gmm, %.6gmm]\n- [%.6gmm, %.6gmm]\n- [%.6gmm, %.6gmm]\n"
+      "- [%.6gmm, %.6gmm]\ntransform:\n- scale: [%.6g, %.6g, 1]\n- translate: [0, 0, %.6g]\n",
+      300 * rim, -50 * s->size[2], 1e3 * 1.12 * rim, 1e3 * (girdle - 0.1 * s->size[2]),
+      1e3 * 1.12 * rim, 1e3 * (girdle + 0.03 * s->size[2]), 1e3 * 1.04 * rim,
+      1e3 * (girdle + 0.03 * s->size[2]), 1e3 * 1.04 * rim, 1e3 * (girdle - 0.1 * s->size[2]), x, y,
+      b->high);
+  return append(b, item, error);
+}
+
+/* ---- all of it ---- */
+
+/* Two or three side by side, more in rows. */
+static void arrange(building *b) {
+  b->columns = b->count <= 3 ? b->count : (size_t)ceil(sqrt((double)b->count));
+  b->rows = (b->count + b->columns - 1) / b->columns;
+  for (int k = 0; k < 2; k++)
+    for (size_t i = 0; i < b->count; i++)
+      b->pitch[k] = fmax(b->pitch[k], (1 + GAP) * b->stone[i].size[k]);
+}
+
+static abbe_result set_camera(building *b, abbe_error *error) {
+  const size_t room = b->count * 16 + 32;
+  char *names = malloc(room), size[64];
+  if (names == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a scene");
+  size_t used = (size_t)snprintf(names, room, "[");
+  for (size_t i = 0; i < b->count; i++) {
+    char name[32];
+    name_stone(b, i, name);
+    used += (size_t)snprintf(names + used, room - used, "%s%s", i > 0 ? ", " : "", name);
+  }
+  snprintf(names + used, room - used, "]");
+  abbe_result result = put(b, value_of(b, "camera"), "frame", names, error);
+  free(names);
+  if (b->studio->with == ABBE_STUDIO_WITH_RING && result == ABBE_OK)
+    result = put(b, value_of(b, "camera"), "fill", "0.45", error); /* with some of the band */
+  if (b->count == 1) return result;
+  /* as many pixels a stone as in a picture of its own, up to three of these across */
+  const double across = (double)b->columns * b->pitch[0], down = (double)b->rows * b->pitch[1];
+  const double side = 512 * fmin((double)b->columns, 3);
+  abbe_number_format(size, sizeof size, "[%.0f, %.0f]", side,
+                     fmax(256, fmin(side, side * down / across)));
+  if (result == ABBE_OK) result = put(b, value_of(b, "camera"), "fill", "0.85", error);
+  return result == ABBE_OK ? put(b, value_of(b, "camera"), "size", size, error) : result;
+}
+
+/* What the mapping has under a key, a number or a list, times the factor. */
+static abbe_result scale(building *b, abbe_yaml_node (*of)(const building *b, size_t i), size_t i,
+                         const char *key, size_t count, double factor, abbe_error *error) {
+  double v[3];
+  char *text = NULL;
+  if (pair_of(b, of(b, i), key) == SIZE_MAX) return ABBE_OK;
+  abbe_result result =
+      count == 1 ? abbe_yaml_get_length(b->edit.yaml, of(b, i), key, 0, HUGE_VAL, v, error)
+                 : abbe_yaml_get_lengths(b->edit.yaml, of(b, i), key, count, -HUGE_VAL, HUGE_VAL, v,
+                                         error);
+  for (size_t k = 0; k < count; k++) v[k] *= factor;
+  if (result == ABBE_OK) result = abbe_yaml_edit_list(v, count, &text, error);
+  if (result == ABBE_OK && count == 1) text[strlen(text) - 1] = '\0'; /* no brackets */
+  if (result == ABBE_OK) result = put(b, of(b, i), key, text + (count == 1), error);
+  free(text);
+  return result;
+}
+
+static abbe_yaml_node light_of(const building *b, size_t i) {
+  return abbe_yaml_item(b->edit.yaml, value_of(b, "lights"), i);
+}
+
+static abbe_yaml_node table_of(const building *b, size_t i) {
+  (void)i;
+  size_t index;
+  return object_called(b, "table", &index);
+}
+
+/* Table and lamps are as large beside large stones as beside small ones. */
+static abbe_result set_size(building *b, abbe_error *error) {
+  const double across = fmax((double)b->columns * b->pitch[0], (double)b->rows * b->pitch[1]);
+  const double factor = fmax(across, b->high) / ROOM_M;
+  if (factor <= 1) return ABBE_OK;
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < abbe_yaml_count(b->edit.yaml, value_of(b, "lights")); i++) {
+    if (result == ABBE_OK) result = scale(b, light_of, i, "position", 3, factor, error);
+    if (result == ABBE_OK) result = scale(b, light_of, i, "radius", 1, factor, error);
+    if (result == ABBE_OK) result = scale(b, light_of, i, "intensity", 1, factor * factor, error);
+  }
+  if (result != ABBE_OK || b->studio->with == ABBE_STUDIO_WITH_NONE) return result;
+  result = scale(b, table_of, 0, "width", 1, factor, error);
+  return result == ABBE_OK ? scale(b, table_of, 0, "height", 1, factor, error) : result;
+}
+
+static abbe_result describe(building *b, abbe_error *error) {
+  static const char *const looks[] = {
+#define NAME(name) #name,
+      ABBE_STUDIO_LOOKS(NAME)
+#undef NAME
+  };
+  const abbe_studio_stone *s = &b->stone[0];
+  char text[1024], *quoted = NULL;
+  const size_t used =
+      (size_t)abbe_number_format(text, sizeof text, "%.200s as %.120s, %.3g mm wide",
+                                 abbe_file_name(s->path), s->material, 1e3 * s->width);
+  snprintf(text + used, sizeof text - used, "%s%.250s%s; look: %s", s->note[0] ? " (" : "", s->note,
+           s->note[0] ? ")" : "", looks[b->studio->look]);
+  abbe_result result = abbe_yaml_quote_make(text, &quoted, error);
+  if (result == ABBE_OK)
+    result = put(b, abbe_yaml_root(b->edit.yaml), "description", quoted, error);
+  free(quoted);
+  return result;
+}
+
+static abbe_result compose(building *b, abbe_error *error) {
+  const abbe_studio_with with = b->studio->with;
+  arrange(b);
+  abbe_result result = with == ABBE_STUDIO_WITH_RING ? add_ring(b, error) : ABBE_OK;
+  for (size_t i = 0; i < b->count && result == ABBE_OK; i++) result = add_stone(b, i, error);
+  /* the look's own goes last, for a list keeps its last item; `stone` is the first of that name */
+  if (result == ABBE_OK) result = take_out(b, "stone", error);
+  if (result == ABBE_OK && with == ABBE_STUDIO_WITH_NONE) result = take_out(b, "table", error);
+  if (result == ABBE_OK) result = set_size(b, error);
+  if (result == ABBE_OK) result = set_camera(b, error);
+  return result == ABBE_OK ? describe(b, error) : result;
+}
+
+static abbe_result read_stones(building *b, const char *path, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < b->count && result == ABBE_OK; i++)
+    result = abbe_studio_stone_read(i == 0 ? path : b->studio->more[i - 1], b->studio, &b->stone[i],
+                                    error);
+  return result;
+}
+
+abbe_result abbe_studio_scene(const char *path, const abbe_studio *studio, const char *folder,
+                              char **out, size_t *size, abbe_error *error) {
+  ABBE_REQUIRE(path && folder && out && size, error);
+  static const struct {
+    const char *text;
+    const size_t *size;
+  } looks[] = {
+#define LOOK(name) {(const char *)abbe_embedded_look_##name, &abbe_embedded_look_##name##_size},
+      ABBE_STUDIO_LOOKS(LOOK)
+#undef LOOK
+  };
+  const abbe_studio plain = {0};
+  building b = {.studio = studio ? studio : &plain, .folder = folder};
+  *out = NULL;
+  *size = 0;
+  b.count = 1 + b.studio->more_count;
+  if (b.count > ABBE_STUDIO_MOST_STONES)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%zu stones; at most %d stand on one table",
+                          b.count, ABBE_STUDIO_MOST_STONES);
+  if (b.count > 1 && b.studio->with == ABBE_STUDIO_WITH_RING)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a ring holds one stone, not %zu", b.count);
+  b.stone = calloc(b.count, sizeof *b.stone);
+  abbe_result result = b.stone != NULL
+                           ? read_stones(&b, path, error)
+                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for stones");
+  if (result == ABBE_OK)
+    result = abbe_yaml_edit_make(looks[b.studio->look].text, *looks[b.studio->look].size, path,
+                                 &b.edit, error);
+  if (result == ABBE_OK) result = compose(&b, error);
+  if (result == ABBE_OK) {
+    *out = b.edit.text;
+    *size = b.edit.size;
+    b.edit.text = NULL;
+  }
+  abbe_yaml_edit_free(&b.edit);
+  free(b.stone);
+  return result;
+}

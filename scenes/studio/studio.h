@@ -1,0 +1,69 @@
+/* studio.h: the scene that is made where the file of a stone stands in the place of a scene's.
+ *
+ * A design (.asc, .gem, .gcs) or a mesh (.stl, .obj, .ply, .gltf, .glb), or several in rows, stand
+ * on a table under one of the looks (scenes/looks), which are scenes that have a table and a stone
+ * of their own. What is made is the text of a scene file, that the reader of scenes reads as any
+ * other.
+ */
+#ifndef ABBE_SCENES_STUDIO_STUDIO_H
+#define ABBE_SCENES_STUDIO_STUDIO_H
+
+#include "base/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* X(name): scenes/looks/NAME.yaml. The first is the default. */
+#define ABBE_STUDIO_LOOKS(X)                                                                       \
+  X(white) X(black) X(velvet) X(daylight) X(darkfield) X(lightbox) X(dispersion)
+/* X(code, name): what a stone is shown with. The first is the default. */
+#define ABBE_STUDIO_WITHS(X) X(TABLE, table) X(RING, ring) X(NONE, none)
+
+typedef enum abbe_studio_look {
+#define ABBE_STUDIO_LOOK_ENUM(name) ABBE_STUDIO_LOOK_##name,
+  ABBE_STUDIO_LOOKS(ABBE_STUDIO_LOOK_ENUM)
+#undef ABBE_STUDIO_LOOK_ENUM
+      ABBE_STUDIO_LOOK_COUNT
+} abbe_studio_look;
+
+typedef enum abbe_studio_with {
+#define ABBE_STUDIO_WITH_ENUM(code, name) ABBE_STUDIO_WITH_##code,
+  ABBE_STUDIO_WITHS(ABBE_STUDIO_WITH_ENUM)
+#undef ABBE_STUDIO_WITH_ENUM
+      ABBE_STUDIO_WITH_COUNT
+} abbe_studio_with;
+
+enum { ABBE_STUDIO_MOST_STONES = 64 };
+#define ABBE_STUDIO_WIDTH_M 0.0065 /* of a design, or a mesh that cannot be meant as it is */
+
+/* Zeroed: one stone, the default look, on a table. */
+typedef struct abbe_studio {
+  abbe_studio_look look;
+  abbe_studio_with with;
+  double width_m; /* the smaller extent of each stone's outline; 0: as its file has it */
+  const char
+      *material;      /* of all stones; NULL: what the file says, or what its index is nearest to */
+  const char *folder; /* where the scene is to stand, with its slash; NULL: where it is read from */
+  const char *table;  /* of materials: a path, "default", "thesis"; NULL: default */
+  const char *const *more; /* [more_count], further stones' files */
+  size_t more_count;
+} abbe_studio;
+
+/* Whether a path ends like a stone's file. */
+bool abbe_studio_is_stone(const char *path);
+
+/* The scene of the stone at path and those behind it; studio may be NULL. Files in `folder` (which
+ * ends with a slash, or "") are named as from there, others by their whole path. *out is malloc'd
+ * and ended by a zero byte that *size does not count. Errors of the files' readers; ABBE_NOT_FOUND
+ * for a material that the table lacks. */
+abbe_result abbe_studio_scene(const char *path, const abbe_studio *studio, const char *folder,
+                              char **out, size_t *size, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,218 @@
+#include "tests/check.h"
+
+#include "base/file.h"
+#include "scenes/import/scene_file.h"
+#include "scenes/studio/studio_stone.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#define QUARTZ ABBE_SOURCE_DIR "/scenes/designs/brilliant-quartz.asc"
+#define OVAL ABBE_SOURCE_DIR "/scenes/designs/oval.asc"
+
+static void load(const char *path, const abbe_studio *studio, abbe_scene *out) {
+  abbe_error error = {0};
+  const abbe_scene_options options = {.studio = studio};
+  if (abbe_scene_load(path, &options, out, &error) != ABBE_OK) fail_msg("%s", error.text);
+}
+
+static const abbe_object *called(const abbe_scene *scene, const char *name) {
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (strcmp(scene->object[i].name, name) == 0) return &scene->object[i];
+  return NULL;
+}
+
+static void put(const char *path, const char *text) {
+  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
+}
+
+/* A box of 4 x 6 x 2 of the file's units. */
+static void put_box(const char *path, double unit) {
+  FILE *f = fopen(path, "w");
+  assert_non_null(f);
+  for (int i = 0; i < 8; i++)
+    fprintf(f, "v %g %g %g\n", (i & 1 ? 4 : 0) * unit, (i & 2 ? 6 : 0) * unit,
+            (i & 4 ? 2 : 0) * unit);
+  fprintf(f, "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+  fclose(f);
+}
+
+static void every_look_shows_a_stone(void **state) {
+  (void)state;
+  for (int look = 0; look < ABBE_STUDIO_LOOK_COUNT; look++)
+    for (int with = 0; with < ABBE_STUDIO_WITH_COUNT; with++) {
+      const abbe_studio studio = {.look = (abbe_studio_look)look, .with = (abbe_studio_with)with};
+      abbe_scene scene;
+      load(QUARTZ, &studio, &scene);
+      const abbe_object *stone = called(&scene, "stone"), *table = called(&scene, "table");
+      assert_non_null(stone);
+      assert_string_equal(stone->material->name, "quartz");
+      assert_near(fmin(stone->max[0] - stone->min[0], stone->max[1] - stone->min[1]), 0.0065,
+                  1e-12);
+      assert_int_equal(table != NULL, with != ABBE_STUDIO_WITH_NONE);
+      if (with == ABBE_STUDIO_WITH_TABLE) assert_near(stone->min[2], 0, 1e-15);
+      if (with == ABBE_STUDIO_WITH_RING) assert_true(stone->min[2] > 0.01);
+      assert_int_equal(called(&scene, "band") != NULL, with == ABBE_STUDIO_WITH_RING);
+      abbe_scene_free(&scene);
+    }
+}
+
+static void width_and_stone_are_the_users(void **state) {
+  (void)state;
+  const abbe_studio studio = {.width_m = 0.012, .material = "ruby"};
+  abbe_scene scene;
+  load(OVAL, &studio, &scene);
+  const abbe_object *stone = called(&scene, "stone");
+  assert_near(stone->max[0] - stone->min[0], 0.012, 1e-12);
+  assert_string_equal(stone->material->name, "ruby");
+  abbe_scene_free(&scene);
+}
+
+/* Between any two is a gap, and all are in the picture. */
+static void several_stand_side_by_side(void **state) {
+  (void)state;
+  const char *const more[] = {OVAL, QUARTZ, OVAL, QUARTZ};
+  for (size_t count = 1; count <= 4; count++) {
+    const abbe_studio studio = {.more = more, .more_count = count};
+    abbe_scene scene;
+    load(QUARTZ, &studio, &scene);
+    const abbe_object *stone[5];
+    for (size_t i = 0; i <= count; i++) {
+      char name[32];
+      snprintf(name, sizeof name, "stone %zu", i + 1);
+      stone[i] = called(&scene, name);
+      assert_non_null(stone[i]);
+      assert_near(stone[i]->min[2], 0, 1e-15);
+      for (size_t k = 0; k < i; k++)
+        assert_true(stone[k]->max[0] < stone[i]->min[0] || stone[i]->max[0] < stone[k]->min[0] ||
+                    stone[k]->max[1] < stone[i]->min[1] || stone[i]->max[1] < stone[k]->min[1]);
+    }
+    assert_true(scene.camera.width > 512);
+    abbe_scene_free(&scene);
+  }
+}
+
+static void a_mesh_has_its_files_size(void **state) {
+  (void)state;
+  static const struct {
+    const char *path;
+    double unit, width;
+    const char *note;
+  } boxes[] = {{"/tmp/abbe-test-studio.obj", 1, 0.004, "wide; look"},
+               {"/tmp/abbe-test-studio.obj", 1000, ABBE_STUDIO_WIDTH_M, "--width says which"}};
+  for (int i = 0; i < 2; i++) {
+    abbe_scene scene;
+    put_box(boxes[i].path, boxes[i].unit);
+    load(boxes[i].path, &(abbe_studio){.material = "topaz"}, &scene);
+    const abbe_object *stone = called(&scene, "stone");
+    assert_near(stone->max[0] - stone->min[0], boxes[i].width, 1e-12);
+    assert_near(stone->max[1] - stone->min[1], 1.5 * boxes[i].width, 1e-12);
+    assert_near(stone->min[2], 0, 1e-15);
+    assert_non_null(strstr(scene.description, boxes[i].note));
+    abbe_scene_free(&scene);
+    unlink(boxes[i].path);
+  }
+}
+
+/* What is made for another folder is the same scene there. */
+static void a_saved_scene_is_the_same(void **state) {
+  (void)state;
+  static const char path[] = "/tmp/abbe-test-studio.yaml";
+  const abbe_studio studio = {.folder = "/tmp/", .look = ABBE_STUDIO_LOOK_velvet};
+  const abbe_scene_options options = {.studio = &studio};
+  char *text;
+  size_t size;
+  abbe_scene made, saved;
+  assert_int_equal(abbe_scene_text(OVAL, &options, &text, &size, NULL), ABBE_OK);
+  put(path, text);
+  free(text);
+  load(OVAL, &studio, &made);
+  load(path, NULL, &saved);
+  assert_string_equal(made.description, saved.description);
+  assert_memory_equal(&made.camera, &saved.camera, sizeof made.camera);
+  assert_int_equal(made.object_count, saved.object_count);
+  const abbe_mesh *a = &called(&made, "stone")->mesh, *b = &called(&saved, "stone")->mesh;
+  assert_int_equal(a->vertex_count, b->vertex_count);
+  assert_memory_equal(a->position, b->position, a->vertex_count * sizeof *a->position);
+  abbe_scene_free(&made);
+  abbe_scene_free(&saved);
+  unlink(path);
+}
+
+/* Lamps that stand about a small stone stand about a large one as well. */
+static void lamps_grow_with_the_stones(void **state) {
+  (void)state;
+  static const abbe_studio_look looks[] = {ABBE_STUDIO_LOOK_white, ABBE_STUDIO_LOOK_dispersion};
+  for (int i = 0; i < 2; i++) {
+    abbe_scene small, large;
+    load(QUARTZ, &(abbe_studio){.look = looks[i]}, &small);
+    load(QUARTZ, &(abbe_studio){.look = looks[i], .width_m = 0.2}, &large);
+    const abbe_light *a = &small.light[0], *b = &large.light[0];
+    const double factor = b->position[2] / a->position[2];
+    assert_true(factor > 5);
+    for (int k = 0; k < 3; k++) assert_near(b->position[k], factor * a->position[k], 1e-9);
+    assert_near(b->radius, factor * a->radius, 1e-9);
+    /* the same light on the stone: of a disk by its radiance, of a point by W/sr */
+    assert_near(b->power, a->kind == ABBE_LIGHT_POINT ? factor * factor * a->power : a->power,
+                1e-9 * b->power);
+    abbe_scene_free(&small);
+    abbe_scene_free(&large);
+  }
+}
+
+static void an_index_finds_a_stone(void **state) {
+  (void)state;
+  static abbe_material rows[] = {{.name = (char *)"glass"},
+                                 {.name = (char *)"clear"},
+                                 {.name = (char *)"tinted"},
+                                 {.name = (char *)"tinted as clear"}};
+  static const double index[] = {1.62, 1.613, 1.7, 1.613};
+  static char tint; /* that there is one is all that is asked */
+  for (size_t i = 0; i < 4; i++) {
+    rows[i].dispersion.model = ABBE_DISPERSION_CONSTANT;
+    rows[i].dispersion.count = 1;
+    rows[i].dispersion.c[0] = index[i];
+    rows[i].min_nm = 300;
+    rows[i].max_nm = 900;
+    if (i > 0) rows[i].catalogue.density_g_cm3 = 3;
+    if (i > 1) rows[i].attenuation = (abbe_spectrum *)(void *)&tint;
+  }
+  const abbe_material_table table = {.count = 4, .material = rows};
+  assert_ptr_equal(abbe_studio_nearest(&table, 1.62), &rows[1]);  /* a glass is no stone */
+  assert_ptr_equal(abbe_studio_nearest(&table, 1.695), &rows[2]); /* no clear one is near */
+  assert_ptr_equal(abbe_studio_nearest(&table, 1.66), &rows[1]);  /* none is near */
+}
+
+static void what_is_wrong_is_said(void **state) {
+  (void)state;
+  static const char *const more[] = {OVAL};
+  const struct {
+    const char *path;
+    abbe_studio studio;
+    abbe_result code;
+    const char *words;
+  } bad[] = {{"/no/such.asc", {0}, ABBE_IO, "/no/such.asc"},
+             {QUARTZ,
+              {.with = ABBE_STUDIO_WITH_RING, .more = more, .more_count = 1},
+              ABBE_INVALID_ARGUMENT,
+              "a ring holds one stone, not 2"},
+             {QUARTZ, {.material = "rubi"}, ABBE_NOT_FOUND, "did you mean 'ruby'"}};
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    abbe_error error = {0};
+    abbe_scene scene;
+    const abbe_scene_options options = {.studio = &bad[i].studio};
+    assert_int_equal(abbe_scene_load(bad[i].path, &options, &scene, &error), bad[i].code);
+    assert_contains(error.text, bad[i].words);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_look_shows_a_stone),   cmocka_unit_test(width_and_stone_are_the_users),
+      cmocka_unit_test(several_stand_side_by_side), cmocka_unit_test(a_mesh_has_its_files_size),
+      cmocka_unit_test(a_saved_scene_is_the_same),  cmocka_unit_test(lamps_grow_with_the_stones),
+      cmocka_unit_test(an_index_finds_a_stone),     cmocka_unit_test(what_is_wrong_is_said),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
