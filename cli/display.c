@@ -4,7 +4,7 @@
 #include "cli/options/spectral_options.h"
 
 #include "colorimetry/image/avif_file.h"
-#include "colorimetry/image/exr.h"
+#include "colorimetry/image/image.h"
 #include "colorimetry/plot/false_colours.h"
 #include "colorimetry/spectral_picture/relight.h"
 
@@ -147,6 +147,7 @@ static const struct argp parser = {
            "  abbe display gem.exr -o gem.png --view Plain --exposure 1.5 --bits 16\n"
            "  abbe display gem.exr -o caustic.png --layer caustic\n"
            "  abbe display bands.exr -o band.png --layer 550nm\n"
+           "  abbe display parts.exr#rgba -o rgba.png\n"
            "  abbe display gem.exr -o error.png --layer stderr\n"
            "  abbe display bands.exr -o evening.png --lit-by D65 --illuminant A\n"
            "  abbe display lamp.exr -o lamp.png --white 2856 --gamut white\n"
@@ -162,7 +163,7 @@ int abbe_command_display(int argc, char **argv) {
   if (r.list) return abbe_command_end(r.program, list_views(&r, &error), &error);
   abbe_image image = {0};
   abbe_result result = abbe_spectral_options_load(&r.spectral, &error);
-  if (result == ABBE_OK) result = abbe_exr_read(r.in, &image, &error);
+  if (result == ABBE_OK) result = abbe_command_read_picture(r.in, &image, &error);
   if (result == ABBE_OK) result = display(&r, &image, &error);
   abbe_image_free(&image);
   abbe_spectral_options_free(&r.spectral);

@@ -1,7 +1,7 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 
-#include "colorimetry/image/exr.h"
+#include "colorimetry/image/image.h"
 #include "colorimetry/picture_gamut/gamut_check.h"
 
 #include <argp.h>
@@ -150,7 +150,7 @@ int abbe_command_gamut(int argc, char **argv) {
   abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &r);
   abbe_error error = {0};
   abbe_image image = {0};
-  abbe_result result = abbe_exr_read(r.path, &image, &error);
+  abbe_result result = abbe_command_read_picture(r.path, &image, &error);
   if (result == ABBE_OK) result = report(&r, &image, &error);
   abbe_image_free(&image);
   return abbe_command_end(r.program, result, &error);

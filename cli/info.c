@@ -2,7 +2,7 @@
 #include "cli/base/command.h"
 
 #include "base/utf8.h"
-#include "colorimetry/image/exr.h"
+#include "colorimetry/image/image.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>
@@ -83,6 +83,7 @@ static void print_attribute(const abbe_image_attribute *attribute) {
 static void print_text(const request *r, const abbe_image *image) {
   printf("%s: %zu x %zu pixels, %zu channels\n", r->path, image->width, image->height,
          image->channels);
+  if (image->part[0] != '\0') printf("part            %s\n", image->part);
   print_windows(image);
   const double *xy = image->xy;
   if (has_chromaticities(image))
@@ -120,12 +121,14 @@ static bool add_window(cJSON *root, const char *name, abbe_image_window w) {
 static bool add_header(cJSON *root, const request *r, const abbe_image *image) {
   cJSON *xy =
       has_chromaticities(image) ? cJSON_CreateDoubleArray(image->xy, 8) : cJSON_CreateNull();
-  bool made = cJSON_AddStringToObject(root, "file", r->path) != NULL &&
-              cJSON_AddNumberToObject(root, "width", (double)image->width) != NULL &&
-              cJSON_AddNumberToObject(root, "height", (double)image->height) != NULL &&
-              add_window(root, "display_window", image->display_window) &&
-              add_window(root, "data_window", image->data_window) &&
-              cJSON_AddItemToObject(root, "chromaticities", xy);
+  bool made =
+      cJSON_AddStringToObject(root, "file", r->path) != NULL &&
+      cJSON_AddNumberToObject(root, "width", (double)image->width) != NULL &&
+      cJSON_AddNumberToObject(root, "height", (double)image->height) != NULL &&
+      (image->part[0] == '\0' || cJSON_AddStringToObject(root, "part", image->part) != NULL) &&
+      add_window(root, "display_window", image->display_window) &&
+      add_window(root, "data_window", image->data_window) &&
+      cJSON_AddItemToObject(root, "chromaticities", xy);
   cJSON *attributes = cJSON_AddObjectToObject(root, "attributes");
   for (size_t i = 0; made && i < image->attribute_count; i++)
     made = cJSON_AddStringToObject(attributes, image->attribute[i].name,
@@ -177,7 +180,7 @@ int abbe_command_info(int argc, char **argv) {
   abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &r);
   abbe_image image = {0};
   abbe_error error = {0};
-  abbe_result result = abbe_exr_read(r.path, &image, &error);
+  abbe_result result = abbe_command_read_picture(r.path, &image, &error);
   if (result == ABBE_OK && r.json)
     result = print_json(&r, &image, &error);
   else if (result == ABBE_OK)

@@ -3,7 +3,7 @@
 #include "cli/options/spectral_options.h"
 
 #include "colorimetry/colour_description.h"
-#include "colorimetry/image/exr.h"
+#include "colorimetry/image/image.h"
 #include "colorimetry/plot/chart.h"
 #include "colorimetry/spectral_picture/pixel_probe.h"
 #include "colorimetry/weights.h"
@@ -215,7 +215,7 @@ static abbe_result probe(const request *r, const abbe_image *image, const abbe_s
 static abbe_result run(request *r, abbe_error *error) {
   abbe_image image = {0};
   abbe_result result = abbe_spectral_options_load(&r->spectral, error);
-  if (result == ABBE_OK) result = abbe_exr_read(r->path, &image, error);
+  if (result == ABBE_OK) result = abbe_command_read_picture(r->path, &image, error);
   if (result == ABBE_OK) abbe_spectral_options_note_unread(&image, r->layer, r->path);
   if (result == ABBE_OK) result = probe(r, &image, &r->spectral.view, error);
   abbe_image_free(&image);

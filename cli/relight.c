@@ -122,7 +122,7 @@ int abbe_command_relight(int argc, char **argv) {
   if (result == ABBE_OK && r.png != NULL)
     result = abbe_screen_options_check(&r.screen, r.desc.space, &error);
   if (result == ABBE_OK) result = abbe_spectral_options_load(&r.spectral, &error);
-  if (result == ABBE_OK) result = abbe_exr_read(r.in, &image, &error);
+  if (result == ABBE_OK) result = abbe_command_read_picture(r.in, &image, &error);
   if (result == ABBE_OK) result = relight(&r, &image, &error);
   abbe_image_free(&image);
   abbe_spectral_options_free(&r.spectral);

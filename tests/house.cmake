@@ -56,7 +56,7 @@ target_sources(test_headers PRIVATE house/sources.c ${checks}
   ${CMAKE_CURRENT_BINARY_DIR}/headers/all.cpp)
 target_compile_definitions(test_headers PRIVATE
   ABBE_ALONE_LIST="${CMAKE_CURRENT_BINARY_DIR}/headers/alone.txt")
-target_include_directories(test_headers PRIVATE
+target_include_directories(test_headers SYSTEM PRIVATE
   $<TARGET_PROPERTY:abbe_gl,INTERFACE_INCLUDE_DIRECTORIES>)
 
 # Every function of the headers that returns a result, called with NULL and with zeros.

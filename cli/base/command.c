@@ -5,7 +5,7 @@
 #include "base/nearest.h"
 #include "base/number.h"
 #include "base/utf8.h"
-#include "colorimetry/image/image.h"
+#include "colorimetry/image/exr.h"
 
 #include <cjson/cJSON.h>
 #include <errno.h>
@@ -109,6 +109,18 @@ void abbe_command_note_odd(const char *name, const struct abbe_image_odd *odd, c
     fprintf(stderr, "note: %s: %zu pixels are infinite, %s\n", name, odd->infinite, how);
   if (odd->nan > 0)
     fprintf(stderr, "note: %s: %zu pixels are not a number (NaN)\n", name, odd->nan);
+}
+
+void abbe_command_note_part(const char *name, const struct abbe_image *image) {
+  if (image->part[0] == '\0') return;
+  fprintf(stderr, "note: %s: its part %s is read; FILE#NAME or FILE#NUMBER is another\n", name,
+          image->part);
+}
+
+abbe_result abbe_command_read_picture(const char *path, struct abbe_image *out, abbe_error *error) {
+  const abbe_result result = abbe_exr_read(path, out, error);
+  if (result == ABBE_OK) abbe_command_note_part(path, out);
+  return result;
 }
 
 /* cJSON copies the bytes of strings as they are, but for those below U+0020. */

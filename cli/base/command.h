@@ -12,6 +12,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+struct abbe_image;
 struct abbe_image_odd;
 struct cJSON;
 
@@ -100,6 +101,11 @@ abbe_result abbe_command_check_targets(const char *const *paths, size_t count, a
  * any are. */
 void abbe_command_note_space(const char *name);
 void abbe_command_note_odd(const char *name, const struct abbe_image_odd *odd, const char *how);
+
+/* The same about which of a file's several parts the picture is (colorimetry/image/exr.h). */
+void abbe_command_note_part(const char *name, const struct abbe_image *image);
+/* Reads an OpenEXR picture with that note. Errors of abbe_exr_read. */
+abbe_result abbe_command_read_picture(const char *path, struct abbe_image *out, abbe_error *error);
 
 /* json as text that ends with a newline, always valid UTF-8 whatever strings it was given
  * (malloc'd, the caller frees); NULL for want of memory or where json is NULL. */

@@ -1,9 +1,9 @@
 /* exr.h: images as OpenEXR files, through OpenEXR's C core API.
  *
  * Writes one scan-line part, float32 or half, ZIP compressed, named layers as channel-name
- * prefixes, chromaticities and text attributes in the header. Reads any single-part scan-line or
- * tiled flat file that the library can decode (the full-resolution level; float, half and whole
- * numbers become float32). A picture is its display window: pixels for which the file has no data
+ * prefixes, chromaticities and text attributes in the header. Reads any scan-line or tiled flat
+ * part that the library can decode (the full-resolution level; float, half and whole numbers become
+ * float32). A picture is its display window: pixels for which the file has no data
  * are 0, data outside it are left out. Sizes are checked before allocating.
  */
 #ifndef ABBE_COLORIMETRY_IMAGE_EXR_H
@@ -31,10 +31,12 @@ abbe_result abbe_exr_write_half(const char *path, const abbe_image *image, abbe_
  * abbe_image_check_expansion. */
 #define ABBE_EXR_FREE_BYTES ((size_t)1 << 30)
 
-/* Reads path. ABBE_PARSE for a broken or truncated file, and for an abbe:stored_unit that is no
- * power of two; ABBE_UNSUPPORTED for deep data, several parts, subsampled channels, DWA
- * compression, which OpenEXR 3.1's C core cannot decode, and pixels that are too many for the file.
- */
+/* Reads path: of several parts the first with R, G and B or X, Y and Z, else with Y, else that is
+ * flat; or FILE#PART, a part by its name or by its number, from 1. ABBE_NOT_FOUND where there is no
+ * such part; ABBE_PARSE for a broken or truncated file, and for an abbe:stored_unit that is no power
+ * of two; ABBE_UNSUPPORTED for deep data, subsampled channels, tiles of PIZ above 16384 pixels a side,
+ * pixels that are too many for the file, and compression that the OpenEXR that runs cannot decode
+ * (DWA before 3.1.8, HTJ2K before 3.4.0), with the version that can. */
 abbe_result abbe_exr_read(const char *path, abbe_image *out, abbe_error *error);
 
 #ifdef __cplusplus

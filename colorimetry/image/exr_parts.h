@@ -1,10 +1,49 @@
-/* exr_parts.h: what reading and writing OpenEXR files share. Internal to colorimetry/. */
+/* exr_parts.h: what reading and writing OpenEXR files share, and which part of a file is read.
+ * Internal to colorimetry/. */
 #ifndef ABBE_COLORIMETRY_IMAGE_EXR_PARTS_H
 #define ABBE_COLORIMETRY_IMAGE_EXR_PARTS_H
+
+#include "colorimetry/image/image.h"
+
+#include <openexr.h>
 
 /* The texts that are the file's own: whether it is in scan lines or tiles, and what a stored 1
  * stands for. */
 #define ABBE_EXR_STORAGE_NAME "type"
 #define ABBE_EXR_UNIT_NAME "abbe:stored_unit"
+
+/* What a context reads from, and the first thing that the library complained of. */
+typedef struct abbe_exr_stream {
+  const char *path; /* as given, also of one part */
+  const char *part; /* its name or number, as given; NULL: that which has the picture */
+  int fd;
+  int64_t size;
+  int io_errno; /* of a failed system call; 0: the bytes themselves are at fault */
+  char message[512];
+} abbe_exr_stream;
+
+/* Of the part that is read. */
+typedef struct abbe_exr_layout {
+  int part, parts;
+  const char *name; /* of the part; NULL: it has none */
+  exr_storage_t storage;
+  exr_compression_t compression;
+  exr_attr_box2i_t data, display; /* the windows */
+  const exr_attr_chlist_t *channels;
+} abbe_exr_layout;
+
+int64_t abbe_exr_width(exr_attr_box2i_t window);
+int64_t abbe_exr_height(exr_attr_box2i_t window);
+
+/* What the library refuses, with its own words. */
+abbe_result abbe_exr_fail(const abbe_exr_stream *s, exr_result_t rv, abbe_error *error);
+
+/* The same of a file that it does not open: a codec that is too young for it is named. */
+abbe_result abbe_exr_fail_open(const abbe_exr_stream *s, exr_result_t rv, abbe_error *error);
+
+/* Finds the part, and checks that it can be read and held. ABBE_NOT_FOUND for a part that is not
+ * there; else as abbe_exr_read. */
+abbe_result abbe_exr_layout_find(exr_context_t context, const abbe_exr_stream *s,
+                                 abbe_exr_layout *out, abbe_error *error);
 
 #endif

@@ -42,6 +42,7 @@ typedef struct abbe_image {
   abbe_image_window display_window; /* where the pixels lie; (0, 0) is the first of one made here */
   abbe_image_window
       data_window; /* what the file it comes from had values for; elsewhere they are 0 */
+  char part[40];   /* of a file of several parts, the one that it is: "2 'depth' of 3"; else "" */
   size_t attribute_count;
   abbe_image_attribute *attribute; /* text for the file's header */
 } abbe_image;

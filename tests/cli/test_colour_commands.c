@@ -46,6 +46,37 @@ static double number(const cJSON *object, const char *key, int index) {
   return cJSON_GetNumberValue(index < 0 ? item : cJSON_GetArrayItem(item, index));
 }
 
+/* Which part of a file is read is said, and each can be named. */
+static void test_parts(void **state) {
+  (void)state;
+  static const char *const depth[] = {"Z"}, *const colours[] = {"R", "G", "B"};
+  char command[400], parts[80];
+  for (int i = 0; i < 2; i++) {
+    abbe_image image = {0};
+    abbe_error error = {0};
+    assert_int_equal(abbe_image_make(4, 4, i == 0 ? 1 : 3, i == 0 ? depth : colours, &image, NULL),
+                     ABBE_OK);
+    for (size_t k = 0; k < 16 * image.channels; k++) image.data[k] = 1;
+    assert_int_equal(abbe_exr_write(i == 0 ? other : exr, &image, &error), ABBE_OK);
+    abbe_image_free(&image);
+  }
+  snprintf(parts, sizeof parts, "%s.parts.exr", exr);
+  snprintf(command, sizeof command, "exrmultipart -combine -i %s %s -o %s > /dev/null", other, exr,
+           parts);
+  assert_int_equal(system(command), 0);
+  snprintf(command, sizeof command, "info %s", parts);
+  must(0, "note:", command);
+  assert_contains(output, "its part 2");
+  assert_contains(output, "3 channels");
+  snprintf(command, sizeof command, "compare %s '%s#2'", parts, parts);
+  must(0, "of 2 is read", command);
+  snprintf(command, sizeof command, "info '%s#1'", parts);
+  must(0, "1 channels", command);
+  snprintf(command, sizeof command, "display '%s#3' -o %s", parts, png);
+  must(1, "it has no part '3'; there are 1 ", command);
+  unlink(parts);
+}
+
 static void test_weights_json(void **state) {
   (void)state;
   cJSON *json = run_json("weights --count 7 --range 380:780 --illuminant D65 --space xyz --json");
@@ -383,7 +414,8 @@ int main(void) {
   snprintf(png, sizeof png, "/tmp/abbe_test_command_%ld.png", id);
   snprintf(other, sizeof other, "/tmp/abbe_test_command_%ld.txt", id);
   unsetenv("OCIO");
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_weights_json),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_parts),
+                                     cmocka_unit_test(test_weights_json),
                                      cmocka_unit_test(test_weights_of_every_kind),
                                      cmocka_unit_test(test_weights_thesis),
                                      cmocka_unit_test(test_weights_used_wrongly),

@@ -164,6 +164,7 @@ static abbe_result fill(const abbe_image *image, const char *name, abbe_field *f
   f->height = image->height;
   f->passes = find_passes(image);
   f->header.display_window = image->display_window;
+  memcpy(f->header.part, image->part, sizeof f->header.part);
   abbe_result result = copy_attributes(image, f, error);
   if (result == ABBE_OK) result = take_colour(image, name, f, error);
   if (result == ABBE_OK) result = take_bands(image, name, f, error);

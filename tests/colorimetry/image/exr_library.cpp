@@ -3,10 +3,15 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputFile.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
 #include <ImfThreading.h>
 #include <ImfTiledOutputFile.h>
+#include <ImfTiledOutputPart.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -44,8 +49,10 @@ void unbox(const Box2i &b, int window[4]) {
   std::memcpy(window, corner, sizeof corner);
 }
 
-/* A gradient with steps, so that lossy codecs have something to do, and no two channels alike. */
+/* A gradient with steps, so that lossy codecs have something to do, and no two channels alike; of
+ * channel -1 the same everywhere. */
 double value(int channel, int x, int y) {
+  if (channel < 0) return 0.5;
   return (channel + 1) * 0.75 + x * 0.013 - y * 0.029 + ((x / 5 + y / 3 + channel) % 4) * 2.5;
 }
 
@@ -85,47 +92,90 @@ Imf::Slice slice(Imf::PixelType type, char *first, int width, int bytes, int sam
                     sampling, sampling);
 }
 
-void write(const char *path, const exr_library_file *f) {
-  const Box2i window = box(f->data_window);
-  Imf::Header header(box(f->display_window), window);
-  header.compression() = Imf::Compression(f->codec);
-  header.lineOrder() = Imf::LineOrder(f->line_order);
+/* What a file or part of one needs before it is written. */
+struct content {
+  Imf::Header header;
   std::vector<plane> planes;
   Imf::FrameBuffer frame;
-  for (int c = 0; c < f->channels; c++) {
-    const int sampling = f->sampling > 1 && c == f->channels - 1 ? f->sampling : 1;
-    header.channels().insert(
-        f->name[c], Imf::Channel(Imf::PixelType(f->type[c]), sampling, sampling, c % 2 == 1));
-    planes.push_back(fill(f->type[c], c, sampling, window));
-    plane &p = planes.back();
-    frame.insert(f->name[c], slice(Imf::PixelType(f->type[c]), p.bytes.data(), p.width,
-                                   p.bytes_per_element, sampling, window));
+
+  explicit content(const exr_library_file &f) : header(box(f.display_window), box(f.data_window)) {
+    const Box2i window = box(f.data_window);
+    header.compression() = Imf::Compression(f.codec);
+    header.lineOrder() = Imf::LineOrder(f.line_order);
+    if (f.tile[0] > 0)
+      header.setTileDescription(
+          Imf::TileDescription(unsigned(f.tile[0]), unsigned(f.tile[1]),
+                               f.levels ? Imf::MIPMAP_LEVELS : Imf::ONE_LEVEL));
+    if (f.part != nullptr) {
+      header.setName(f.part);
+      header.setType(f.tile[0] > 0 ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
+    }
+    for (int c = 0; c < f.channels; c++) {
+      const int sampling = f.sampling > 1 && c == f.channels - 1 ? f.sampling : 1;
+      header.channels().insert(
+          f.name[c], Imf::Channel(Imf::PixelType(f.type[c]), sampling, sampling, c % 2 == 1));
+      planes.push_back(fill(f.type[c], f.flat ? -1 : c, sampling, window));
+      plane &p = planes.back();
+      frame.insert(f.name[c], slice(Imf::PixelType(f.type[c]), p.bytes.data(), p.width,
+                                    p.bytes_per_element, sampling, window));
+    }
   }
-  if (f->tile[0] == 0) {
-    Imf::OutputFile file(path, header);
-    file.setFrameBuffer(frame);
-    file.writePixels(window.max.y - window.min.y + 1);
-    return;
-  }
-  header.setTileDescription(Imf::TileDescription(unsigned(f->tile[0]), unsigned(f->tile[1]),
-                                                 f->levels ? Imf::MIPMAP_LEVELS : Imf::ONE_LEVEL));
-  Imf::TiledOutputFile file(path, header);
-  file.setFrameBuffer(frame); /* each lesser level shows the corner of the full one: no matter */
+};
+
+template <typename File> void write_lines(File &file, const content &c) {
+  file.setFrameBuffer(c.frame);
+  file.writePixels(c.header.dataWindow().max.y - c.header.dataWindow().min.y + 1);
+}
+
+/* Each lesser level shows the corner of the full one: no matter. */
+template <typename File> void write_tiles(File &file, const content &c) {
+  file.setFrameBuffer(c.frame);
   for (int level = 0; level < file.numLevels(); level++)
     file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
+}
+
+void write(const char *path, const exr_library_file *f, int parts) {
+  std::vector<content> contents;
+  std::vector<Imf::Header> headers;
+  for (int i = 0; i < parts; i++) contents.emplace_back(f[i]);
+  for (const content &c : contents) headers.push_back(c.header);
+  if (parts == 1 && f->tile[0] == 0) {
+    Imf::OutputFile file(path, headers[0]);
+    write_lines(file, contents[0]);
+  } else if (parts == 1) {
+    Imf::TiledOutputFile file(path, headers[0]);
+    write_tiles(file, contents[0]);
+  } else {
+    Imf::MultiPartOutputFile file(path, headers.data(), parts);
+    for (int i = 0; i < parts; i++)
+      if (f[i].tile[0] == 0) {
+        Imf::OutputPart part(file, i);
+        write_lines(part, contents[size_t(i)]);
+      } else {
+        Imf::TiledOutputPart part(file, i);
+        write_tiles(part, contents[size_t(i)]);
+      }
+  }
 }
 
 } // namespace
 
 bool exr_library_write(const char *path, const exr_library_file *f, char *why, size_t size) {
-  return guarded(why, size, [=] { write(path, f); });
+  return guarded(why, size, [=] { write(path, f, 1); });
 }
 
-bool exr_library_read(const char *path, const char *const *name, int count, int data_window[4],
-                      int display_window[4], float **out, char *why, size_t size) {
+bool exr_library_write_parts(const char *path, const exr_library_file *f, int parts, char *why,
+                             size_t size) {
+  return guarded(why, size, [=] { write(path, f, parts); });
+}
+
+bool exr_library_read(const char *path, int part, const char *const *name, int count,
+                      int data_window[4], int display_window[4], float **out, char *why,
+                      size_t size) {
   *out = nullptr;
   return guarded(why, size, [=] {
-    Imf::InputFile file(path);
+    Imf::MultiPartInputFile parts(path);
+    Imf::InputPart file(parts, part);
     const Box2i window = file.header().dataWindow();
     unbox(window, data_window);
     unbox(file.header().displayWindow(), display_window);

@@ -22,17 +22,25 @@ typedef struct exr_library_file {
   int type[EXR_LIBRARY_MAX_CHANNELS]; /* 0 whole numbers, 1 half, 2 float */
   int sampling;                       /* of the last channel, both ways; 0: 1 */
   int codec, line_order;
-  int tile[2]; /* 0: in scan lines */
-  bool levels; /* a mipmap of tiles */
+  int tile[2];      /* 0: in scan lines */
+  bool levels;      /* a mipmap of tiles */
+  bool flat;        /* one and the same value everywhere */
+  const char *part; /* its name, of a file of several parts */
 } exr_library_file;
 
 /* Writes f to path, filled with values that differ from sample to sample. On failure false, and
  * why[size] says the reason. */
 bool exr_library_write(const char *path, const exr_library_file *f, char *why, size_t size);
 
-/* Reads channels as floats: out is malloc'd, a plane of the data window's size for each name. */
-bool exr_library_read(const char *path, const char *const *name, int count, int data_window[4],
-                      int display_window[4], float **out, char *why, size_t size);
+/* The same of a file of several parts, at least 2. */
+bool exr_library_write_parts(const char *path, const exr_library_file *f, int parts, char *why,
+                             size_t size);
+
+/* Reads channels of a part, of which the first is 0, as floats: out is malloc'd, a plane of the
+ * data window's size for each name. */
+bool exr_library_read(const char *path, int part, const char *const *name, int count,
+                      int data_window[4], int display_window[4], float **out, char *why,
+                      size_t size);
 
 #ifdef __cplusplus
 }

@@ -398,7 +398,6 @@ static void test_deep_is_unsupported(void **state) {
   assert_non_null(strstr(error.text, "deep"));
 }
 
-/* The reference implementation's own tool accepts the file and sees what was written. */
 /* Codecs that are younger than the library are refused by their names. */
 static void test_younger_codecs(void **state) {
   (void)state;
@@ -406,8 +405,8 @@ static void test_younger_codecs(void **state) {
   static const struct {
     char number;
     const char *says;
-  } codecs[] = {{10, "HTJ2K compression (number 10)"},
-                {11, "HTJ2K compression (number 11)"},
+  } codecs[] = {{10, "HTJ2K compression is read with OpenEXR 3.4.0 or later"},
+                {11, "HTJ2K compression is read with OpenEXR 3.4.0 or later"},
                 {12, "an unknown compression (number 12)"}};
   static const char *const names[] = {"R", "G", "B"};
   abbe_image image = {0};
@@ -419,7 +418,11 @@ static void test_younger_codecs(void **state) {
   assert_int_equal(abbe_file_read(path, 1 << 20, &data, &size, NULL), ABBE_OK);
   char *at = memmem(data, size, key, sizeof key);
   assert_non_null(at);
-  for (size_t i = 0; i < sizeof codecs / sizeof *codecs; i++) {
+  int major, minor, patch;
+  const char *extra = NULL;
+  exr_get_library_version(&major, &minor, &patch, &extra);
+  const bool knows = major > 3 || (major == 3 && minor >= 4); /* HTJ2K */
+  for (size_t i = knows ? 2 : 0; i < sizeof codecs / sizeof *codecs; i++) {
     abbe_error error = {0};
     at[sizeof key] = codecs[i].number;
     assert_int_equal(abbe_file_write(path, data, size, NULL), ABBE_OK);
@@ -430,6 +433,7 @@ static void test_younger_codecs(void **state) {
   unlink(path);
 }
 
+/* The reference implementation's own tool accepts the file and sees what was written. */
 static void test_exrheader_agrees(void **state) {
   (void)state;
   if (system("command -v exrheader > /dev/null") != 0)

@@ -1,8 +1,10 @@
+#define _GNU_SOURCE /* memmem */
 /* OpenEXR files of every make, read by Abbe and by OpenEXR's own C++ library, and the other way. */
 #include "tests/check.h"
 #include "tests/colorimetry/image/exr_library.h"
 #include "tests/random.h"
 
+#include "base/file.h"
 #include "colorimetry/image/exr.h"
 
 #include <openexr.h>
@@ -27,11 +29,12 @@ static bool same(float a, float b) {
 }
 
 /* Every pixel of the picture, by place: what the file's data hold there, else 0. */
-static void compare(const abbe_image *image, const char *const *name, int count, const char *what) {
+static void compare_part(const abbe_image *image, int part, const char *const *name, int count,
+                         const char *what) {
   int data[4], shown[4];
   float *value = NULL;
   char why[300];
-  if (!exr_library_read(path, name, count, data, shown, &value, why, sizeof why))
+  if (!exr_library_read(path, part, name, count, data, shown, &value, why, sizeof why))
     fail_msg("%s: %s", what, why);
   const int width = shown[2] - shown[0] + 1, height = shown[3] - shown[1] + 1;
   const int line = data[2] - data[0] + 1, lines = data[3] - data[1] + 1;
@@ -50,6 +53,10 @@ static void compare(const abbe_image *image, const char *const *name, int count,
     }
   }
   free(value);
+}
+
+static void compare(const abbe_image *image, const char *const *name, int count, const char *what) {
+  compare_part(image, 0, name, count, what);
 }
 
 static void read_and_compare(const exr_library_file *f) {
@@ -113,23 +120,142 @@ static void test_tiles(void **state) {
     read_all((exr_library_file){.codec = codec, .tile = {16, 10}, .levels = codec % 2 == 0});
 }
 
-/* What OpenEXR's C core cannot decode is refused, not guessed. */
+static bool library_is(int major, int minor, int patch) {
+  int here[3];
+  const char *extra = NULL;
+  exr_get_library_version(&here[0], &here[1], &here[2], &extra);
+  return (here[0] * 100 + here[1]) * 100 + here[2] >= (major * 100 + minor) * 100 + patch;
+}
+
+static void refused(const exr_library_file *f, const char *word) {
+  char why[300];
+  if (!exr_library_write(path, f, why, sizeof why)) fail_msg("%s", why);
+  abbe_image image = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, word);
+  assert_null(image.data);
+}
+
+static exr_library_file coloured(int codec, int side) {
+  exr_library_file f = {.channels = 3, .type = {1, 1, 1}, .name = {"B", "G", "R"}, .codec = codec};
+  f.data_window[2] = f.display_window[2] = f.data_window[3] = f.display_window[3] = side - 1;
+  return f;
+}
+
 static void test_what_is_refused(void **state) {
   (void)state;
-  exr_library_file f = {.channels = 3, .type = {1, 1, 1}, .name = {"B", "G", "R"}};
-  f.data_window[2] = f.display_window[2] = f.data_window[3] = f.display_window[3] = 63;
-  static const char *const word[] = {"DWA", "DWA", "subsampled"};
-  char why[300];
-  for (int i = 0; i < 3; i++) {
-    f.codec = i == 2 ? EXR_COMPRESSION_ZIP : EXR_COMPRESSION_DWAA + i;
-    f.sampling = i == 2 ? 2 : 1;
-    if (!exr_library_write(path, &f, why, sizeof why)) fail_msg("%s", why);
-    abbe_image image = {0};
-    abbe_error error = {0};
-    assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_UNSUPPORTED);
-    assert_contains(error.text, word[i]);
-    assert_null(image.data);
+  exr_library_file f = coloured(EXR_COMPRESSION_ZIP, 64);
+  f.sampling = 2;
+  refused(&f, "subsampled");
+  f = coloured(EXR_COMPRESSION_PIZ, 1);
+  f.tile[0] = 16385;
+  f.tile[1] = 1;
+  refused(&f, "16385 x 1 pixels; up to 16384 a side");
+}
+
+/* What the OpenEXR that is here decodes is read, however small the file of a flat picture; else the
+ * version is named that does. */
+static void test_younger_codecs(void **state) {
+  (void)state;
+  enum { HTJ2K = 10, HTJ2K_32 = 11 };
+  for (int codec = EXR_COMPRESSION_DWAA; codec <= HTJ2K_32; codec++) {
+    exr_library_file f = coloured(codec, 64), flat = coloured(codec, 3000);
+    flat.flat = true;
+    const bool dwa = codec < HTJ2K;
+    if (dwa ? library_is(3, 1, 8) : library_is(3, 4, 0)) {
+      read_and_compare(&f);
+      read_and_compare(&flat);
+    } else if (dwa) {
+      refused(&f, codec == EXR_COMPRESSION_DWAA ? "DWAA compression is read with OpenEXR 3.1.8"
+                                                : "DWAB compression is read with OpenEXR 3.1.8");
+    }
   }
+}
+
+enum { PARTS = 4 };
+static const exr_library_file parts[PARTS] = {
+    {.part = "depth", .channels = 1, .name = {"Z"}, .type = {2}, .codec = EXR_COMPRESSION_ZIPS},
+    {.part = "grey", .channels = 1, .name = {"Y"}, .type = {2}, .codec = EXR_COMPRESSION_PIZ},
+    {.part = "rgb left", .channels = 3, .name = {"B", "G", "R"}, .type = {1, 1, 1}, .tile = {8, 8}},
+    {.part = "rgb right", .channels = 3, .name = {"B", "G", "R"}, .type = {1, 1, 1}}};
+
+static void write_parts(int count) {
+  exr_library_file f[PARTS];
+  char why[300];
+  for (int i = 0; i < count; i++) {
+    f[i] = parts[i];
+    f[i].data_window[2] = 20 + i;
+    f[i].data_window[3] = 30 - i;
+    f[i].display_window[2] = f[i].display_window[3] = 29;
+  }
+  if (!exr_library_write_parts(path, f, count, why, sizeof why)) fail_msg("%s", why);
+}
+
+/* mark: "" or "#PART". */
+static void reads_part(const char *mark, int part, const char *says) {
+  char name[200];
+  abbe_image image = {0};
+  abbe_error error = {0};
+  snprintf(name, sizeof name, "%s%s", path, mark);
+  if (abbe_exr_read(name, &image, &error) != ABBE_OK) fail_msg("%s", error.text);
+  assert_string_equal(image.part, says);
+  assert_int_equal(image.channels, parts[part].channels);
+  compare_part(&image, part, parts[part].name, parts[part].channels, name);
+  abbe_image_free(&image);
+}
+
+static void test_parts(void **state) {
+  (void)state;
+  write_parts(PARTS);
+  reads_part("", 2, "3 'rgb left' of 4"); /* the first with colours */
+  reads_part("#depth", 0, "1 'depth' of 4");
+  reads_part("#2", 1, "2 'grey' of 4");
+  reads_part("#rgb right", 3, "4 'rgb right' of 4");
+  write_parts(2);
+  reads_part("", 1, "2 'grey' of 2");
+  abbe_image image = {0};
+  abbe_error error = {0};
+  char name[200];
+  static const char *const none[] = {"#rgb left", "#3", "#0", "#"};
+  for (int i = 0; i < 4; i++) {
+    snprintf(name, sizeof name, "%s%s", path, none[i]);
+    assert_int_equal(abbe_exr_read(name, &image, &error), ABBE_NOT_FOUND);
+    assert_contains(error.text, "there are 1 'depth', 2 'grey'");
+  }
+  read_and_compare(&(exr_library_file){.channels = 1, .name = {"Y"}, .type = {2}});
+  snprintf(name, sizeof name, "%s#1", path);
+  assert_int_equal(abbe_exr_read(name, &image, &error), ABBE_OK);
+  assert_string_equal(image.part, "");
+  abbe_image_free(&image);
+  /* a file of that very name is itself */
+  assert_int_equal(rename(path, name), 0);
+  assert_int_equal(abbe_exr_read(name, &image, &error), ABBE_OK);
+  abbe_image_free(&image);
+  unlink(name);
+}
+
+/* Each part has a codec of its own. */
+static void test_a_codec_of_one_part(void **state) {
+  (void)state;
+  static const char key[] = "compression\0compression\0\1\0\0"; /* and the size's last byte */
+  char *data = NULL;
+  size_t size = 0;
+  abbe_image image = {0};
+  abbe_error error = {0};
+  write_parts(PARTS);
+  assert_int_equal(abbe_file_read(path, 1 << 20, &data, &size, NULL), ABBE_OK);
+  char *at = data;
+  for (int i = 0; i < 3; i++) {
+    at = memmem(at, size - (size_t)(at - data), key, sizeof key);
+    assert_non_null(at);
+    at += sizeof key;
+  }
+  *at = 99;
+  assert_int_equal(abbe_file_write(path, data, size, NULL), ABBE_OK);
+  assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "an unknown compression (number 99)");
+  free(data);
 }
 
 /* What a small file may unfold into is bounded, whichever window says it. */
@@ -283,6 +409,9 @@ int main(void) {
                                      cmocka_unit_test(test_windows),
                                      cmocka_unit_test(test_tiles),
                                      cmocka_unit_test(test_what_is_refused),
+                                     cmocka_unit_test(test_younger_codecs),
+                                     cmocka_unit_test(test_parts),
+                                     cmocka_unit_test(test_a_codec_of_one_part),
                                      cmocka_unit_test(test_what_unfolds_is_refused),
                                      cmocka_unit_test(test_every_half),
                                      cmocka_unit_test(test_what_abbe_writes),

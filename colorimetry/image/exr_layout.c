@@ -1,0 +1,242 @@
+#include "colorimetry/image/exr.h"
+#include "colorimetry/image/exr_parts.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+int64_t abbe_exr_width(exr_attr_box2i_t window) {
+  return (int64_t)window.max.x - window.min.x + 1;
+}
+
+int64_t abbe_exr_height(exr_attr_box2i_t window) {
+  return (int64_t)window.max.y - window.min.y + 1;
+}
+
+abbe_result abbe_exr_fail(const abbe_exr_stream *s, exr_result_t rv, abbe_error *error) {
+  const char *reason = s->io_errno != 0 ? strerror(s->io_errno)
+                       : s->message[0]  ? s->message
+                                        : exr_get_default_error_message(rv);
+  abbe_result code = s->io_errno != 0                        ? ABBE_IO
+                     : rv == EXR_ERR_OUT_OF_MEMORY           ? ABBE_NO_MEMORY
+                     : rv == EXR_ERR_FEATURE_NOT_IMPLEMENTED ? ABBE_UNSUPPORTED
+                                                             : ABBE_PARSE;
+  return abbe_error_set(error, code, "%s: it cannot be read as OpenEXR: %s", s->path, reason);
+}
+
+/* ---- codecs ---- */
+
+/* By the header's number: its name; the version of OpenEXR whose C library decodes it, 3.1.8 being
+ * 30108; and how many bytes of floats one of the file's can hold at the most. Deflate packs 1032 to
+ * 1, the others of its kind less, and halves become floats; what packs by frequencies has no such
+ * bound. */
+typedef struct codec {
+  const char *name;
+  int version;
+  double best;
+} codec;
+
+enum { NO_VERSION = INT32_MAX };
+
+static codec codec_of(int number) {
+  enum { HTJ2K = 10, HTJ2K_32 = 11, PACKS = 4096 };
+  switch (number) {
+  case EXR_COMPRESSION_DWAA:
+    return (codec){"DWAA", 30108, INFINITY};
+  case EXR_COMPRESSION_DWAB:
+    return (codec){"DWAB", 30108, INFINITY};
+  case HTJ2K:
+  case HTJ2K_32:
+    return (codec){"HTJ2K", 30400, INFINITY};
+  default:
+    return (codec){"an unknown", number > HTJ2K_32 ? NO_VERSION : 0, PACKS};
+  }
+}
+
+/* The codec's number in the part's header; -1 where none is found. */
+static int find_codec(const abbe_exr_stream *s, int part) {
+  static const char key[] = "compression\0compression\0\1\0\0"; /* and the size's last byte, 0 */
+  enum { HEAD = 1 << 17 }; /* a thousand channels and the attributes before */
+  unsigned char *head = malloc(HEAD);
+  const ssize_t size = head == NULL ? 0 : pread(s->fd, head, HEAD, 0);
+  int found = -1;
+  for (ssize_t i = 0; part >= 0 && i + (ssize_t)sizeof key < size; i++)
+    if (memcmp(head + i, key, sizeof key) == 0 && part-- == 0)
+      found = head[i + (ssize_t)sizeof key];
+  free(head);
+  return found;
+}
+
+/* The library may take a codec that is younger than itself for ZIP. */
+static abbe_result check_codec(const abbe_exr_stream *s, int number, abbe_error *error) {
+  const codec c = codec_of(number);
+  int major = 0, minor = 0, patch = 0;
+  const char *extra = NULL;
+  exr_get_library_version(&major, &minor, &patch, &extra);
+  if (major * 10000 + minor * 100 + patch >= c.version) return ABBE_OK;
+  if (c.version == NO_VERSION)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%s: %s compression (number %d) cannot be read; ZIP and PIZ can", s->path,
+                          c.name, number);
+  return abbe_error_set(
+      error, ABBE_UNSUPPORTED,
+      "%s: %s compression is read with OpenEXR %d.%d.%d or later, and this one is "
+      "%d.%d.%d; ZIP and PIZ can be read",
+      s->path, c.name, c.version / 10000, c.version / 100 % 100, c.version % 100, major, minor,
+      patch);
+}
+
+abbe_result abbe_exr_fail_open(const abbe_exr_stream *s, exr_result_t rv, abbe_error *error) {
+  int number = 0;
+  for (int part = 0; s->io_errno == 0 && number >= 0; part++) {
+    number = find_codec(s, part);
+    const abbe_result result = check_codec(s, number, error);
+    if (result != ABBE_OK) return result;
+  }
+  return abbe_exr_fail(s, rv, error);
+}
+
+/* ---- what can be read, and held ---- */
+
+static abbe_result unsupported(const abbe_exr_stream *s, const char *what, abbe_error *error) {
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "%s: %s; a flat picture, all channels at full resolution, can", s->path,
+                        what);
+}
+
+static bool is_flat(exr_storage_t storage) {
+  return storage == EXR_STORAGE_SCANLINE || storage == EXR_STORAGE_TILED;
+}
+
+/* OpenEXR's decoder of PIZ counts the bits of a chunk by an int. */
+static abbe_result check_tiles(exr_context_t context, const abbe_exr_stream *s,
+                               const abbe_exr_layout *l, abbe_error *error) {
+  enum { MOST = 16384 };
+  uint32_t w = 0, h = 0;
+  exr_tile_level_mode_t levels;
+  exr_tile_round_mode_t rounding;
+  if (l->storage != EXR_STORAGE_TILED || l->compression != EXR_COMPRESSION_PIZ) return ABBE_OK;
+  const exr_result_t rv = exr_get_tile_descriptor(context, l->part, &w, &h, &levels, &rounding);
+  if (rv != 0) return abbe_exr_fail(s, rv, error);
+  if (w <= MOST && h <= MOST) return ABBE_OK;
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "%s: its tiles of PIZ have %u x %u pixels; up to %d a side can be read",
+                        s->path, (unsigned)w, (unsigned)h, MOST);
+}
+
+static abbe_result check_channels(const abbe_exr_stream *s, const abbe_exr_layout *l,
+                                  abbe_error *error) {
+  if (!is_flat(l->storage)) return unsupported(s, "deep data cannot be read", error);
+  if (l->channels->num_channels < 1 || l->channels->num_channels > ABBE_IMAGE_MAX_CHANNELS)
+    return abbe_error_set(error, ABBE_PARSE, "%s: it has %d channels; 1 to %d can be read", s->path,
+                          l->channels->num_channels, ABBE_IMAGE_MAX_CHANNELS);
+  for (int i = 0; i < l->channels->num_channels; i++)
+    if (l->channels->entries[i].x_sampling != 1 || l->channels->entries[i].y_sampling != 1)
+      return unsupported(s, "subsampled channels cannot be read", error);
+  return ABBE_OK;
+}
+
+/* No more data than the file's bytes can hold at the codec's best, and no window that is wider than
+ * a picture may be. */
+static bool can_be_held(const abbe_exr_stream *s, const abbe_exr_layout *l) {
+  double bytes = (double)abbe_exr_width(l->data) * (double)abbe_exr_height(l->data) *
+                 l->channels->num_channels * sizeof(float);
+  const exr_attr_box2i_t window[] = {l->data, l->display};
+  for (int i = 0; i < 2; i++)
+    if (abbe_exr_width(window[i]) < 1 || abbe_exr_width(window[i]) > ABBE_IMAGE_MAX_SIDE ||
+        abbe_exr_height(window[i]) < 1 || abbe_exr_height(window[i]) > ABBE_IMAGE_MAX_SIDE)
+      return false;
+  return bytes <= codec_of((int)l->compression).best * (double)s->size;
+}
+
+static abbe_result check_layout(const abbe_exr_stream *s, const abbe_exr_layout *l,
+                                abbe_error *error) {
+  abbe_result result = check_channels(s, l, error);
+  if (result != ABBE_OK) return result;
+  if (!can_be_held(s, l))
+    return abbe_error_set(
+        error, ABBE_PARSE,
+        "%s: its header promises %lld x %lld pixels of data, %lld x %lld to be "
+        "shown and %d channels, which its %lld bytes cannot hold or which is over "
+        "%d a side",
+        s->path, (long long)abbe_exr_width(l->data), (long long)abbe_exr_height(l->data),
+        (long long)abbe_exr_width(l->display), (long long)abbe_exr_height(l->display),
+        l->channels->num_channels, (long long)s->size, ABBE_IMAGE_MAX_SIDE);
+  const exr_attr_box2i_t window[] = {l->data, l->display};
+  for (int i = 0; result == ABBE_OK && i < 2; i++)
+    result = abbe_image_check_expansion(
+        s->path, (size_t)abbe_exr_width(window[i]), (size_t)abbe_exr_height(window[i]),
+        (size_t)l->channels->num_channels, (size_t)s->size, ABBE_EXR_FREE_BYTES, error);
+  return result;
+}
+
+/* ---- parts ---- */
+
+static exr_result_t read_part(exr_context_t context, int part, abbe_exr_layout *l) {
+  l->part = part;
+  l->name = NULL;
+  exr_get_name(context, part, &l->name); /* a file of one part may have none */
+  exr_result_t rv = exr_get_storage(context, part, &l->storage);
+  if (rv == 0) rv = exr_get_compression(context, part, &l->compression);
+  if (rv == 0) rv = exr_get_data_window(context, part, &l->data);
+  if (rv == 0) rv = exr_get_display_window(context, part, &l->display);
+  if (rv == 0) rv = exr_get_channels(context, part, &l->channels);
+  return rv;
+}
+
+/* 3 where it has colours, 2 where it has one channel of luminance, 1 where it is flat. */
+static int picture_rank(const abbe_exr_layout *l) {
+  static const char names[] = "RGBXYZ";
+  unsigned found = 0;
+  for (int i = 0; i < l->channels->num_channels; i++) {
+    const char *name = l->channels->entries[i].name.str;
+    const char *at = name[0] != '\0' && name[1] == '\0' ? strchr(names, name[0]) : NULL;
+    if (at != NULL) found |= 1u << (at - names);
+  }
+  if (!is_flat(l->storage)) return 0;
+  return (found & 7) == 7 || (found & 56) == 56 ? 3 : (found & 16) != 0 ? 2 : 1;
+}
+
+static bool is_wanted(const abbe_exr_layout *l, const char *part) {
+  char number[16];
+  snprintf(number, sizeof number, "%d", l->part + 1);
+  return strcmp(part, number) == 0 || (l->name != NULL && strcmp(part, l->name) == 0);
+}
+
+static abbe_result no_such_part(exr_context_t context, const abbe_exr_stream *s, int parts,
+                                abbe_error *error) {
+  char list[400] = "";
+  size_t used = 0;
+  for (int i = 0; i < parts && used < sizeof list - 1; i++) {
+    const char *name = NULL;
+    exr_get_name(context, i, &name);
+    const int more = snprintf(list + used, sizeof list - used, "%s%d%s%.60s%s", i == 0 ? "" : ", ",
+                              i + 1, name ? " '" : "", name ? name : "", name ? "'" : "");
+    used += more > 0 ? (size_t)more : 0;
+  }
+  return abbe_error_set(error, ABBE_NOT_FOUND, "%s: it has no part '%.60s'; there %s %s", s->path,
+                        s->part, parts == 1 ? "is" : "are", list);
+}
+
+abbe_result abbe_exr_layout_find(exr_context_t context, const abbe_exr_stream *s,
+                                 abbe_exr_layout *out, abbe_error *error) {
+  abbe_exr_layout l = {0};
+  int best = -1;
+  exr_result_t rv = exr_get_count(context, &l.parts);
+  for (int i = 0; rv == 0 && i < l.parts; i++) {
+    rv = read_part(context, i, &l);
+    if (rv != 0) break;
+    const int rank = s->part == NULL ? picture_rank(&l) : is_wanted(&l, s->part) ? 1 : -1;
+    if (rank <= best) continue;
+    best = rank;
+    *out = l;
+  }
+  if (rv != 0) return abbe_exr_fail(s, rv, error);
+  if (best < 0) return no_such_part(context, s, l.parts, error);
+  abbe_result result = check_codec(s, find_codec(s, out->part), error);
+  if (result == ABBE_OK) result = check_tiles(context, s, out, error);
+  return result == ABBE_OK ? check_layout(s, out, error) : result;
+}
