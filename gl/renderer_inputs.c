@@ -153,7 +153,7 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
   MIX(h, d->min_nm);
   MIX(h, d->max_nm);
   MIX(h, plan->caustics);
-  MIX(h, plan->depths);
+  MIX(h, plan->tints);
   MIX(h, plan->band_parts);
   const bool interleaved = abbe_camera_bands_interleave(plan);
   MIX(h, interleaved);

@@ -118,9 +118,6 @@ foreach(scene sphere ring gem bunny glass prism rainbow metal-ring metals octahe
     COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR} ${scene})
   abbe_label(program NAMES reference_${scene})
 endforeach()
-# Known to be wrong: metals leave 0.6 and 0.8 % too little of their caustics' light, where 0.47 and
-# 0.69 % are allowed, since photons keep depths in parts of bands. It fails once they are right.
-set_tests_properties(reference_metal-ring reference_metals PROPERTIES WILL_FAIL TRUE)
 # Tolerances that catch nothing are none.
 add_test(NAME reference_broken_exits
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}

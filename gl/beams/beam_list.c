@@ -3,6 +3,7 @@
 #include "colorimetry/weights.h"
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"
+#include "gl/plan/examine/tints.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -91,6 +92,36 @@ static void fill_haze(const abbe_beam_list *list, size_t interval, float (*out)[
   }
 }
 
+/* What a refractor takes of the parts of all intervals. */
+static void fill_tint(const abbe_beam_list *list, size_t refractor, float *out) {
+  for (size_t i = 0; i < intervals_of(list); i++) {
+    double nm[2];
+    ends_of(list, i, nm);
+    for (size_t k = 0; k < PARTS; k++) {
+      const double from = end_of_part(nm[0], nm[1], k), to = end_of_part(nm[0], nm[1], k + 1);
+      double sum = 0;
+      for (int j = 0; j < 3; j++)
+        sum += abbe_tint_attenuation(scene_of(list)->local, plan_of(list), refractor,
+                                     from + (to - from) * (j + 0.5) / 3) /
+               3;
+      *out++ = (float)sum;
+    }
+  }
+}
+
+static abbe_result make_tints(abbe_beam_list *list, abbe_error *error) {
+  const size_t refractors = plan_of(list)->refractor_count, each = intervals_of(list) * PARTS;
+  if (plan_of(list)->tints == 0) return ABBE_OK;
+  float *tint = calloc(refractors * each, sizeof *tint);
+  if (tint == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the colours of beams");
+  for (size_t r = 0; r < refractors; r++) fill_tint(list, r, tint + r * each);
+  abbe_result result = abbe_gpu_make_buffer(scene_of(list)->gpu, refractors * each * sizeof *tint,
+                                            tint, &list->tints, error);
+  free(tint);
+  return result;
+}
+
 static abbe_result make_colours(abbe_beam_list *list, abbe_error *error) {
   const size_t lights = plan_of(list)->light_view_count, n = intervals_of(list) * PARTS;
   abbe_gpu *gpu = scene_of(list)->gpu;
@@ -125,13 +156,14 @@ abbe_result abbe_beam_list_make(const abbe_shader_variant *variant, abbe_beam_li
       &photons, scene_of(list)->gpu, "beam_list.comp",
       list->camera == NULL ? "#define IN_WORLD\n" : NULL, &list->program, error);
   if (result == ABBE_OK) result = make_colours(list, error);
+  if (result == ABBE_OK) result = make_tints(list, error);
   return result == ABBE_OK ? make_room(list, FIRST_BEAMS, error) : result;
 }
 
 void abbe_beam_list_free(abbe_beam_list *list) {
   if (list->caustics == NULL) return;
-  GLuint buffers[] = {list->colours, list->haze, list->beams};
-  abbe_gpu_drop_buffers(scene_of(list)->gpu, 3, buffers);
+  GLuint buffers[] = {list->colours, list->haze, list->tints, list->beams};
+  abbe_gpu_drop_buffers(scene_of(list)->gpu, 4, buffers);
   *list = (abbe_beam_list){0};
 }
 
@@ -142,10 +174,16 @@ static void set_hits(abbe_beam_list *list, size_t first, size_t count) {
   const GLuint program = list->program;
   const abbe_hits *hits = &trace->hits;
   abbe_gpu_bind_texels(gpu, program, "hits", 0, GL_RGBA32F, hits->hits);
-  abbe_gpu_bind_texels(gpu, program, "signatures", 1, plan->depths ? GL_RGBA32UI : GL_R32UI,
+  abbe_gpu_bind_texels(gpu, program, "signatures", 1, abbe_photon_signature_format(plan),
                        hits->signatures);
   abbe_gpu_bind_texels(gpu, program, "beam_colours", 2, GL_RGBA32F, list->colours);
   abbe_gpu_bind_texels(gpu, program, "beam_haze", 4, GL_RGBA32F, list->haze);
+  if (plan->tints > 0) {
+    abbe_gpu_bind_texels(gpu, program, "beam_tints", 3, GL_R32F, list->tints);
+    abbe_gpu_set_int(
+        gpu, program, "medium_tint",
+        list->medium < 0 ? -1 : abbe_tint_of(scene_of(list)->local, plan, (size_t)list->medium));
+  }
   abbe_gpu_set_int(gpu, program, "stride", (int)hits->stride);
   abbe_gpu_set_int(gpu, program, "sample_first", (int)first);
   abbe_gpu_set_int(gpu, program, "sample_count", (int)count);

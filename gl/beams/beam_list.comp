@@ -10,16 +10,20 @@ layout(local_size_x = 256) in;
 #include "path_list.glsl"
 #include "haze.glsl"
 #include "beam.glsl"
-#include "packed_depth.glsl"
+#include "tints.glsl"
 layout(std430, binding = BINDING_PHOTON_OF_CELL) readonly buffer Slots { uint slot[]; };
 layout(std430, binding = BINDING_SPLATS) buffer Beams {
   uint beam_count, beam_groups[3];
   vec4 beam[];
 };
 uniform samplerBuffer hits;          // [photons][slots][stride] of two (outgoing_segment.glsl)
-uniform usamplerBuffer signatures;   // 0: no hit; BAND_PARTS: and its optical depths
+uniform usamplerBuffer signatures;   // 0: no hit; TINTS: and those
 uniform samplerBuffer beam_colours;  // [light views][intervals][PARTS] of unit power, in the picture's space
 uniform samplerBuffer beam_haze;     // [intervals][PARTS] what the medium takes there, and of that what it scatters, 1/m
+#ifdef TINTS
+uniform samplerBuffer beam_tints;  // [refractors][intervals][PARTS] by amount
+uniform int medium_tint;           // the medium's; -1: it has none
+#endif
 uniform int light, stride, sample_count, sample_first;
 uniform ivec2 grid;
 uniform uint chunks, chunk;  // only photons of this chunk
@@ -43,9 +47,9 @@ const int MOST_SPLITS = 8;
 struct Node {
   uint path;   // signature; 0: no hit
   vec3 from, to;
-  float light;  // W where it begins, of unit power; BAND_PARTS: without what is absorbed before
-#ifdef BAND_PARTS
-  vec4 below, above;  // what of it is left where it ends in its medium, or begins in the air, in the parts of its band
+  float light;  // W where it begins, of unit power; TINTS: without what these absorbed before
+#ifdef TINTS
+  Tints tints;  // that it has passed where it ends in its medium, or begins in the air
 #endif
 };
 
@@ -54,8 +58,8 @@ Node no_node() {
   n.path = 0u;
   n.from = n.to = vec3(0);
   n.light = 0.0;
-#ifdef BAND_PARTS
-  n.below = n.above = vec4(0);
+#ifdef TINTS
+  n.tints = no_tints();
 #endif
   return n;
 }
@@ -71,10 +75,9 @@ Node node_at(uint path, int i) {
   n.to = landed.xyz;
   float per_m = spectra[(medium < 0 ? REFRACTORS : medium) * counts.wavelengths + sample_first + i].y;
   float grows = exp(min(per_m * distance(n.from, n.to), 80.0));
-#ifdef BAND_PARTS
-  n.light = landed.w * (medium < 0 ? grows : 1.0);
-  n.below = exp(-depth_below(signature.yzw));
-  n.above = exp(-depth_above(signature.yzw));
+#ifdef TINTS
+  n.tints = tints_of(signature);
+  n.light = landed.w * (medium < 0 || !has_tint(n.tints, medium_tint) ? grows : 1.0);
 #else
   n.light = landed.w * grows;
 #endif
@@ -89,11 +92,14 @@ vec3 colour_of(int interval, int part) {
 }
 
 // Of the light of an interval's part what is left where it begins, in a medium that takes so much of it.
-float left_in(Node a, Node b, int k, float per_m) {
-#ifdef BAND_PARTS
-  float grows = medium < 0 ? 1.0 : exp(min(per_m * distance(a.from, a.to), 80.0));
-  float left = counts.wavelengths == 1 ? a.below[k / 2] : k < PARTS / 2 ? a.above[k] : b.below[k - PARTS / 2];
-  return min(left * grows, 1.0);
+float left_in(Node a, Node b, int interval, int k, float per_m) {
+#ifdef TINTS
+  bool own = medium >= 0 && has_tint(a.tints, medium_tint);
+  float depth = own ? -per_m * distance(a.from, a.to) : 0.0;
+  Tints t = tints_between(a.tints, b.tints, (float(k) + 0.5) / float(PARTS));
+  for (int i = 0; i < TINTS; i++)
+    depth += t.amount[i] * texelFetch(beam_tints, (t.of[i] * max(counts.wavelengths - 1, 1) + interval_of(interval)) * PARTS + k).x;
+  return exp(-max(depth, 0.0));
 #else
   return 1.0;
 #endif
@@ -104,7 +110,7 @@ vec3 scattered_after(Node a, Node b, int interval, int from, int to, float metre
   vec3 sum = vec3(0);
   for (int k = from; k < to; k++) {
     vec2 haze = texelFetch(beam_haze, interval_of(interval) * PARTS + k).xy;
-    float light_w = mix(a.light, b.light, (float(k) + 0.5) / float(PARTS)) * left_in(a, b, k, haze.x);
+    float light_w = mix(a.light, b.light, (float(k) + 0.5) / float(PARTS)) * left_in(a, b, interval, k, haze.x);
     sum += colour_of(interval, k) * (light_w * haze.y * exp(-haze.x * metres));
   }
   return sum;

@@ -17,6 +17,7 @@ typedef struct abbe_beam_list {
   GLuint program;
   GLuint colours;      /* buffer: [light views][intervals][parts] x RGB of unit power */
   GLuint haze;         /* buffer: [intervals][parts] what the medium takes and scatters, 1/m */
+  GLuint tints;        /* buffer: [refractors][intervals][parts] what these take, by amount */
   GLuint beams;        /* a list, of `room` */
   size_t room, chunks; /* the photons are listed in so many chunks */
 } abbe_beam_list;

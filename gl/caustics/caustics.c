@@ -88,7 +88,7 @@ static abbe_result sort_hits(abbe_caustics *c, size_t light, bool tiles, map_fit
     abbe_trace_pass_batch(&c->trace, light, first, n - first < most ? n - first : most, n);
     result = abbe_gpu_tell(gpu, gpu->done, error); /* reading takes its time */
     if (result == ABBE_OK)
-      result = abbe_trace_pass_read(&c->trace, light, &hit, &path, error);
+      result = abbe_trace_pass_read(&c->trace, light, first, &hit, &path, error);
     if (result == ABBE_OK) abbe_map_fit_add(fit, c->atlas, hit, path, count);
     if (result == ABBE_OK && fits->kept != NULL && tiles)
       abbe_map_fit_add(fits->kept, c->atlas, hit, path, count);
@@ -430,7 +430,7 @@ abbe_result abbe_caustics_read_hits(abbe_caustics *c, size_t light, size_t first
   if (result != ABBE_OK) return result;
   *count = c->views->light[light].photon_count;
   abbe_trace_pass_batch(&c->trace, light, first, n - first < most ? n - first : most, n);
-  result = abbe_trace_pass_read(&c->trace, light, at, path, error);
+  result = abbe_trace_pass_read(&c->trace, light, first, at, path, error);
   if (result != ABBE_OK) return result;
   place_hits(c, light, origin, *at, *path);
   return read_cells(c, *count, cell, error);

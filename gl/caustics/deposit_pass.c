@@ -2,7 +2,7 @@
 
 #include "gl/device/bindings.h"
 
-enum { SPLAT_BYTES = 48, LEAST_SPLATS = 1 << 12, FIRST_SPLATS = 5 << 17, MAX_SPLATS = 4 << 20 };
+enum { SPLAT_BYTES = 48, LEAST_SPLATS = 1 << 12, FIRST_SPLATS = 1 << 20, MAX_SPLATS = 4 << 20 };
 enum { SPLATS_A_HIT = 4 }; /* as room is made for at first; the first frame makes more */
 
 static const abbe_gpu_scene *scene_of(const abbe_deposit_pass *pass) {
@@ -64,18 +64,16 @@ static void set_batch(const abbe_deposit_pass *pass, GLuint program, size_t ligh
   abbe_gpu_set_uint(gpu, program, "chunks", pass->chunks);
   abbe_gpu_set_uint(gpu, program, "chunk", chunk);
   abbe_gpu_set_uint(gpu, program, "most", pass->splat_room);
-  const size_t nodes = fine ? plan->desc.wavelengths : spectra->nodes;
-  const size_t before = fine ? abbe_band_attenuation_texels(plan, spectra->nodes) : 0;
-  if (plan->depths)
-    abbe_gpu_set_int(gpu, program, "share_first",
-                     (int)(before + 2 * nodes * plan->refractor_count));
+  if (plan->tints > 0)
+    abbe_gpu_set_int(gpu, program, "tints_first",
+                     fine ? (int)(spectra->nodes * plan->refractor_count * ABBE_TINT_TEXELS) : 0);
 }
 
 static void bind_hits(const abbe_deposit_pass *pass, GLuint program, bool fine) {
   const abbe_photon_spectra *spectra = pass->trace->spectra;
   abbe_gpu *gpu = spectra->scene->gpu;
-  const bool depths = spectra->scene->plan->depths;
-  const GLenum signature = depths ? GL_RGBA32UI : GL_R32UI;
+  const abbe_plan *plan = spectra->scene->plan;
+  const GLenum signature = abbe_photon_signature_format(plan);
   const abbe_hits *hits = &pass->trace->hits, *nodes = fine ? &pass->refine->hits : hits;
   abbe_gpu_bind_texels(gpu, program, "hits", 0, GL_RGBA32F, hits->hits);
   abbe_gpu_bind_texels(gpu, program, "signatures", 1, signature, hits->signatures);
@@ -83,8 +81,7 @@ static void bind_hits(const abbe_deposit_pass *pass, GLuint program, bool fine) 
   abbe_gpu_bind_texels(gpu, program, "node_hits", 3, GL_RGBA32F, nodes->hits);
   abbe_gpu_bind_texels(gpu, program, "node_signatures", 4, signature, nodes->signatures);
   abbe_gpu_set_int(gpu, program, "fine_nodes", fine ? (int)pass->refine->fine_nodes : 0);
-  if (depths)
-    abbe_gpu_bind_texels(gpu, program, "band_attenuation", 5, GL_RGBA32F, spectra->attenuation);
+  if (plan->tints > 0) abbe_gpu_bind_texels(gpu, program, "tints", 5, GL_RGBA32F, spectra->tints);
 }
 
 /* Lists the batch's splats, those of one chunk of the photons. */

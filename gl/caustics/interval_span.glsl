@@ -43,7 +43,7 @@ struct Span {
   vec4 curve;
   Fan fan;
   float per_index;
-  int owed_row, row;
+  int owed_row, row, first;  // of rows, the refractor whose they are
   Left owed_left, left;
   float index_b;
   vec3 half_xyz;           // up to the interval's middle
@@ -112,6 +112,7 @@ Span span_of(inout Trail t, Path path, Interval i, Node b, float size) {
   s.owed_row = t.owed_row;
   s.owed_left = t.owed_left;
   s.row = i.row;
+  s.first = int(path.signature & 255u);
   s.index_b = i.index_b;
   s.half_xyz = sums_at(i.row, STEPS / 2).xyz;
   divide(s, t, i.taken, moved, size);

@@ -4,9 +4,14 @@
 
 // [table_first + (light * REFRACTORS + refractor) * (nodes + 1) + i] * (STEPS + 1) + k,
 // INTERVAL_TEXELS each: XYZ of the interval from node i up to step k, and how far along (0 to 1) that
-// is; then those three times how far along their light is, and the index there.
+// is; then those three times how far along their light is, and the index there; TINTS: then X, Y and Z times
+// what the refractor takes of them by amount.
 uniform samplerBuffer interval_sums;
+#ifdef TINTS
+const int INTERVAL_TEXELS = 3;
+#else
 const int INTERVAL_TEXELS = 2;
+#endif
 
 // Of an interval from its beginning on.
 struct Sums {

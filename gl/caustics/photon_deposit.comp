@@ -23,7 +23,7 @@ layout(local_size_x = 256) in;
 layout(std430, binding = BINDING_PHOTON_OF_CELL) readonly buffer Slots { uint slot[]; };
 // As textures: a software rasteriser fetches a texel in one load, and storage number by number.
 uniform samplerBuffer hits;     // HIT_TEXELS each
-uniform usamplerBuffer signatures;  // 0: none; BAND_PARTS: and its optical depths (packed_depth.glsl)
+uniform usamplerBuffer signatures;  // 0: none; TINTS: and those
 // The same of the intervals on the list; of the coarse set again where that is laid.
 uniform samplerBuffer node_hits;
 uniform usamplerBuffer node_signatures;
@@ -63,7 +63,7 @@ struct Path {
 #include "photon_footprint.glsl"
 #include "splat_collect.glsl"
 #include "interval_table.glsl"
-#include "packed_depth.glsl"
+#include "tints.glsl"
 #include "path_node.glsl"
 #include "interval_span.glsl"
 #include "span_light.glsl"

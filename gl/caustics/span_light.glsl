@@ -4,6 +4,9 @@
 struct Front {
   Sums sums;
   vec2 at;
+#ifdef TINTS
+  vec3 taken[TINTS];  // of that light, by amount of each
+#endif
 };
 
 struct Part {
@@ -72,11 +75,41 @@ Glint light_of(Span s, Part p, Sums upto, inout Front front) {
   return g;
 }
 
-// Of part k what its path leaves: of the half that is owed, from the interval's end on.
-float left_of(Span s, bool owed, int k) {
-  float step = 1.0 / float(STEPS);
-  if (owed) return left_between(s.owed_left, step * float(last_step(s, k)), k > 0 ? step * float(last_step(s, k - 1)) : 1.0);
-  return left_between(s.left, k > s.owed ? step * float(last_step(s, k - 1)) : 0.0, step * float(last_step(s, k)));
+#ifdef TINTS
+// Of a row up to a step what a tint of the span's first path takes, by amount. A table's rows go by the refractor that
+// a path met first.
+vec3 taken_at(Span s, int k, int row, int step) {
+  int rows = (s.a.tints.of[k] - s.first) * (nodes + 1) * (STEPS + 1);
+  return texelFetch(interval_sums, row + INTERVAL_TEXELS * (rows + step) + 2).xyz;
+}
+#endif
+
+Front front_at(Span s, int row, int step) {
+  Front f;
+  f.at = s.a.at;
+  f.sums = no_sums();
+  if (step > 0) f.sums = sums_at(row, step);
+#ifdef TINTS
+  for (int k = 0; k < TINTS; k++) f.taken[k] = step > 0 ? taken_at(s, k, row, step) : vec3(0);
+#endif
+  return f;
+}
+
+// Of a part up to there, of X, Y and Z each, what its path leaves: as their means are attenuated.
+vec3 left_of(Span s, Part p, int row, int step, inout Front front) {
+#ifdef TINTS
+  vec3 depth = vec3(0);
+  Tints t = s.a.tints;
+  if (s.bridges) t = tints_between(t, s.b.tints, clamp(p.along, 0.0, 1.0));
+  for (int k = 0; k < TINTS; k++) {
+    vec3 upto = taken_at(s, k, row, step);
+    depth += t.amount[k] * abs(upto - front.taken[k]);
+    front.taken[k] = upto;
+  }
+  return exp(-depth / max(p.xyz, vec3(1e-30)));
+#else
+  return vec3(1);
+#endif
 }
 
 // By how much more than the nodes' own, W: light leaves the last interfaces, and is absorbed (both may be
@@ -88,19 +121,20 @@ vec3 entry_of(vec2 said, float flux, float left, bool lands) {
 
 // last: after what is owed nothing follows, and what is collected is listed.
 void lay(Span s, bool last, Footprint f, inout Splat collected, inout vec3 entry) {
-  Front front = Front(sums_at(s.owed_row, STEPS), s.a.at);
+  Front front = front_at(s, s.owed_row, STEPS);
   int count = s.owed + s.parts + (last ? 1 : 0);
   for (int k = 0; k < count; k++) {
     bool done = last && k == s.owed;
-    if (k == s.owed) front = Front(no_sums(), s.a.at);  // the row's first step has nothing before it
-    Sums upto = sums_at(k < s.owed ? s.owed_row : s.row, last_step(s, k));
+    if (k == s.owed) front = front_at(s, s.row, 0);  // the row's first step has nothing before it
+    int row = k < s.owed ? s.owed_row : s.row, step = last_step(s, k);
+    Sums upto = sums_at(row, step);
     Part p = part_of(s, k < s.owed, front.sums, upto);
     vec2 said = said_of(s, p, front.sums, upto);
     Glint g = light_of(s, p, upto, front);
-    float left = left_of(s, k < s.owed, k);
+    vec3 left = left_of(s, p, row, step, front);
     front.sums = upto;
     bool lands = (p.along >= 0.0 && p.along <= 1.0) || on_the_map(g.at, g.tile);
-    if (!done) entry += entry_of(said, g.flux.y, left, lands);
+    if (!done) entry += entry_of(said, g.flux.y, left.y, lands);
     g.flux *= left;
     collect(g, lands, done, f, collected);
   }

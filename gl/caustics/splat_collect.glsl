@@ -43,6 +43,7 @@ void list_splat(Splat s, Footprint f) {
   vec3 x = s.x / max(s.flux, vec3(1e-30)) - s.middle.x, y = s.y / max(s.flux, vec3(1e-30)) - s.middle.y;
   uvec2 place = packed_place(s.from + s.middle, s.tile, f.level);
   uvec3 units = uvec3(s.flux / pass_light.misc.y + 0.5);
+  if (units == uvec3(0)) return;
   uint word = min(atomicAdd(splat_count, 1u), most) * SPLAT_WORDS;
   splat[word] = place.x;
   splat[word + 1u] = place.y;

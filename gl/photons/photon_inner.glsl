@@ -50,8 +50,9 @@ float mirror(PhotonRay photon, uint path, float reflected) {
 
 // What a path inside has passed.
 struct Inside {
-#ifdef BAND_PARTS
-  Depth depth;
+#ifdef TINTS
+  float metres;
+  Attenuation attenuation;
 #endif
   Shares left;  // of its light
 };
@@ -63,8 +64,8 @@ float keep_outgoing(PhotonRay photon, Outgoing o, int order, uint path, Inside i
   float left = outside_left(photon, o.p, o.d, to);
   PhotonHit hit = clear_hit(order, to.place, o.share * photon.flux * left, signature,
                             vec4(o.p, interface_word(o.n, true, to.tile)));
-#ifdef BAND_PARTS
-  hit.depth = inside.depth;
+#ifdef TINTS
+  add_tint(hit.tints, inside.attenuation.tint, inside.metres);
 #endif
 #ifdef HAZE
   if (keeps_ways) {
@@ -78,23 +79,24 @@ float keep_outgoing(PhotonRay photon, Outgoing o, int order, uint path, Inside i
 }
 
 // What so many metres inside take of light, of which so much was left before, in shares of what it began with.
-Shares absorb(float metres, int r, float per_m, inout InnerRay ray, inout Inside inside) {
-#ifdef BAND_PARTS
-  Shares before = inside.left;
-  inside.depth += metres * attenuation_of(r);
-  inside.left = left_of(inside.depth);
-  return ray.share * (before - inside.left);
-#else
+Shares absorb(float metres, float per_m, inout InnerRay ray, inout Inside inside) {
+#ifdef TINTS
+  if (inside.attenuation.tint >= 0) {
+    Shares before = inside.left;
+    inside.metres += metres;
+    inside.left = left_after(inside.metres * inside.attenuation.parts);
+    return ray.share * (before - inside.left);
+  }
+#endif
   float before = ray.share;
   ray.share *= exp(-per_m * metres);
-  return before - ray.share;
-#endif
+  return Shares(before - ray.share);
 }
 
-// Of the part that passes most.
+// Of the half that passes most.
 float most_left(InnerRay ray, Inside inside) {
-#ifdef BAND_PARTS
-  return ray.share * exp(-least_of(inside.depth));
+#ifdef TINTS
+  return ray.share * max(inside.left.x, inside.left.y);
 #else
   return ray.share;
 #endif
@@ -116,15 +118,16 @@ void trace(PhotonRay photon, out Shares entry[5]) {
   if (!refract_direction(photon.d, front.n, 1.0 / n, ray.d)) return;
   Inside inside;
   inside.left = Shares(1.0);
-#ifdef BAND_PARTS
-  inside.depth = Depth(0.0);
+#ifdef TINTS
+  inside.metres = 0.0;
+  inside.attenuation = attenuation_of(r);
 #endif
   for (int order = 0; order < counts.exits;) {
     Outgoing leaving = Outgoing(ray.p, vec3(0), ray.d, 0.0);
     bool ends = false;
     while (order < counts.exits) {
       InnerHit h = next_inner_hit(r, ray);
-      entry[ABSORBED] += absorb(distance(h.p, ray.p), r, per_m, ray, inside);
+      entry[ABSORBED] += absorb(distance(h.p, ray.p), per_m, ray, inside);
       path = path * 31u + uint(h.facet) + 1u;
       leaving = leave(h, n, ray);
       ends = most_left(ray, inside) < share_limit;

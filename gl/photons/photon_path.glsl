@@ -4,7 +4,7 @@
 // its ways through what scatters, from interface to interface and beyond; in place of interface_word()
 // stands the refractor in which a way is, -1: the air.
 
-#include "photon_depth.glsl"
+#include "photon_tints.glsl"
 
 const int REACHED = 0, REFLECTED = 1, ABSORBED = 2, TRAPPED = 3, MISSED = 4;
 
@@ -21,11 +21,11 @@ struct PhotonRay {
 struct PhotonHit {
   int slot;
   vec3 place;
-  float flux;  // W; BAND_PARTS: without what is absorbed
+  float flux;  // W; TINTS: without what these absorb
   uint signature;
   vec4 interface_at;  // as in outgoing_segment.glsl
-#ifdef BAND_PARTS
-  Depth depth;
+#ifdef TINTS
+  Tints tints;
 #endif
 };
 
@@ -36,8 +36,8 @@ PhotonHit clear_hit(int slot, vec3 place, float flux, uint signature, vec4 inter
   hit.flux = flux;
   hit.signature = signature;
   hit.interface_at = interface_at;
-#ifdef BAND_PARTS
-  hit.depth = Depth(0.0);
+#ifdef TINTS
+  hit.tints = no_tints();
 #endif
   return hit;
 }

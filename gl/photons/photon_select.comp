@@ -13,13 +13,9 @@ layout(local_size_x = 256) in;
 layout(std430, binding = BINDING_WANTS) buffer Wants { uint want[]; };  // a bit an interval
 layout(std430, binding = BINDING_PHOTON_OF_CELL) readonly buffer Slots { uint slot[]; };
 layout(std430, binding = BINDING_HITS) readonly buffer Hits { vec4 hits[]; };
-#ifdef BAND_PARTS
-layout(std430, binding = BINDING_SIGNATURES) readonly buffer Signatures { uvec4 signature[]; };  // packed_depth.glsl
+#include "tints.glsl"
+layout(std430, binding = BINDING_SIGNATURES) readonly buffer Signatures { Signature signature[]; };
 #define SIGNATURE(i) signature[i].x
-#else
-layout(std430, binding = BINDING_SIGNATURES) readonly buffer Signatures { uint signature[]; };
-#define SIGNATURE(i) signature[i]
-#endif
 
 #include "pass_light.glsl"
 uniform ivec2 grid;
@@ -36,7 +32,6 @@ const float MOST_WRONG = 0.05;
 const float OFF_CURVE = 0.1, OFF_LINE = 0.25, OFF_ALONE = 2e-3;
 
 #include "optics.glsl"
-#include "packed_depth.glsl"
 #define FOLLOWS_SEGMENTS
 #include "outgoing_segment.glsl"
 #include "map_position.glsl"
@@ -48,8 +43,9 @@ struct Sample {
   float flux, index;
   int tile;
   Segment left;
-#ifdef BAND_PARTS
-  vec4 below, above;  // optical depth in the parts of its band
+#ifdef TINTS
+  Tints tints;
+  int node;
 #endif
 };
 
@@ -64,9 +60,9 @@ Sample sample_at(uint first, int node) {
   s.index = spectrum.x;
   s.left = segment_of(to, interface_at, spectrum.x);
   s.flux = s.path != 0u ? s.left.arrives : 0.0;
-#ifdef BAND_PARTS
-  s.below = depth_below(signature[at].yzw);
-  s.above = depth_above(signature[at].yzw);
+#ifdef TINTS
+  s.tints = tints_of(wide_signature(signature[at]));
+  s.node = node;
 #endif
   return s;
 }
@@ -123,17 +119,24 @@ float misplaced(Sample before, Sample a, Sample b, Sample after, bool has_before
   return 0.25 * max(moves_a, moves_b);
 }
 
+#ifdef TINTS
+float larger_of(vec2 v) { return abs(v.x) > abs(v.y) ? v.x : v.y; }
+#endif
+
 // Of the photon's light, what may lie wrong between a and b.
 float wrong_between(Sample a, Sample b, float misplaced_by, float size, float photon_flux,
                     float weight) {
   float flux_a = a.flux, flux_b = b.flux, left = 1.0;
-#ifdef BAND_PARTS
-  // What is left at both ends, and, to tell what changes, at the edge between their bands.
-  left = 0.125 * (dot(exp(-a.above), vec4(1)) + dot(exp(-b.below), vec4(1)));
+#ifdef TINTS
+  // What is left of the halves between them, and, to tell what changes, of the same way through what tints.
+  int at_a = TINT_TEXELS * REFRACTORS * a.node, at_b = TINT_TEXELS * REFRACTORS * b.node;
+  vec2 above = depth_of(a.tints, at_a, true), below = depth_of(b.tints, at_b, false);
+  left = 0.5 * (left_after(above) + left_after(below));
 #endif
   float most = left * max(flux_a, flux_b) / photon_flux * weight;
-#ifdef BAND_PARTS
-  flux_b *= exp(1.5 * (a.above.w - b.below.x) - 0.5 * (a.above.z - b.below.y));
+#ifdef TINTS
+  vec2 at_first = above - depth_of(b.tints, at_a, true), at_last = depth_of(a.tints, at_b, false) - below;
+  flux_b *= exp(0.5 * (larger_of(at_first) + larger_of(at_last)));
 #endif
   float change = (flux_a - flux_b) / max(max(flux_a, flux_b), 1e-30);
   float changed = a.path == b.path ? 0.125 * change * change : 0.0;

@@ -36,14 +36,12 @@ static abbe_result upload_intervals(abbe_photon_spectra *spectra, const float (*
                 &spectra->intervals, error);
 }
 
-static abbe_result upload_attenuation(abbe_photon_spectra *spectra, abbe_error *error) {
-  const abbe_plan *plan = spectra->scene->plan;
+static abbe_result upload_tints(abbe_photon_spectra *spectra, abbe_error *error) {
   const abbe_spectral_tables *t = &spectra->scene->tables;
-  if (t->bands == NULL) return ABBE_OK;
-  return upload(spectra, t->bands,
-                abbe_band_attenuation_texels(plan, t->coarse.count) * sizeof *t->bands,
-                abbe_band_attenuation_texels(plan, t->all.count) * sizeof *t->bands,
-                &spectra->attenuation, error);
+  const size_t a_node = spectra->scene->plan->refractor_count * sizeof *t->tints;
+  if (t->tints == NULL) return ABBE_OK;
+  return upload(spectra, t->tints, t->coarse.count * a_node, t->all.count * a_node, &spectra->tints,
+                error);
 }
 
 abbe_result abbe_photon_spectra_weigh(abbe_photon_spectra *spectra, size_t bands, size_t first,
@@ -65,7 +63,7 @@ abbe_result abbe_photon_spectra_make(const abbe_gpu_scene *scene, abbe_photon_sp
   out->scene = scene;
   out->nodes = t->coarse.count;
   abbe_result result = abbe_photon_spectra_weigh(out, 0, 0, error);
-  if (result == ABBE_OK) result = upload_attenuation(out, error);
+  if (result == ABBE_OK) result = upload_tints(out, error);
   const size_t size = scene->plan->light_view_count * t->all.count * sizeof *t->sample_weight;
   if (result == ABBE_OK)
     result = abbe_gpu_make_buffer(scene->gpu, size, t->sample_weight, &out->sample_weights, error);
@@ -74,37 +72,51 @@ abbe_result abbe_photon_spectra_make(const abbe_gpu_scene *scene, abbe_photon_sp
 
 void abbe_photon_spectra_free(abbe_photon_spectra *spectra) {
   if (spectra->scene == NULL) return;
-  GLuint buffers[] = {spectra->intervals, spectra->attenuation, spectra->sample_weights};
+  GLuint buffers[] = {spectra->intervals, spectra->tints, spectra->sample_weights};
   abbe_gpu_drop_buffers(spectra->scene->gpu, sizeof buffers / sizeof *buffers, buffers);
 }
 
 abbe_result abbe_photon_spectra_take_all(abbe_photon_spectra *spectra, abbe_error *error) {
   spectra->nodes = spectra->scene->tables.all.count;
   abbe_result result = abbe_photon_spectra_weigh(spectra, 0, 0, error);
-  return result == ABBE_OK ? upload_attenuation(spectra, error) : result;
+  return result == ABBE_OK ? upload_tints(spectra, error) : result;
 }
 
-size_t abbe_photon_signature_bytes(const abbe_photon_spectra *spectra) {
-  return spectra->scene->plan->depths ? 16 : 4;
+size_t abbe_photon_signature_bytes(const abbe_plan *plan) {
+  return plan->tints == 0 ? 4 : plan->tints == 1 ? 8 : 16;
 }
 
-/* Part k of a hit's optical depths (photon_depth.glsl). */
-static double depth_of(const GLuint *packed, unsigned k) {
-  const unsigned bit = 12 * k, word = bit / 32, shift = bit % 32;
-  GLuint q = packed[word] >> shift;
-  if (shift > 20) q |= packed[word + 1] << (32 - shift);
-  const double root = (double)(q & 4095u) / 4095;
-  return ABBE_PHOTON_MOST_DEPTH * root * root;
+GLenum abbe_photon_signature_format(const abbe_plan *plan) {
+  return plan->tints == 0 ? GL_R32UI : plan->tints == 1 ? GL_RG32UI : GL_RGBA32UI;
 }
 
-void abbe_photon_attenuate(const abbe_photon_spectra *spectra, size_t count, float *hit,
-                           GLuint *signature) {
-  enum { BELOW = ABBE_HALF_PARTS - 1, ABOVE = ABBE_HALF_PARTS }; /* the parts beside the node */
-  if (!spectra->scene->plan->depths) return;
+/* Optical depth of a hit's tints at a node, by its words (tints.glsl). */
+static double depth_of(const abbe_photon_spectra *spectra, size_t node, const GLuint *word) {
+  const abbe_plan *plan = spectra->scene->plan;
+  const abbe_spectral_tables *t = &spectra->scene->tables;
+  const size_t before = t->coarse.count < t->all.count ? t->coarse.count : 0;
+  double depth = 0;
+  for (size_t k = 0; k < plan->tints; k++) {
+    const size_t r = word[k] & 255u;
+    const GLuint bits = (word[k] & ~255u) >> 1;
+    float amount = 0;
+    memcpy(&amount, &bits, sizeof amount);
+    if (r >= plan->refractor_count) continue;
+    const float *part = t->tints[(before + node) * plan->refractor_count + r][0];
+    depth += (double)amount * 0.5 * ((double)part[1] + (double)part[2]); /* beside the node */
+  }
+  return depth;
+}
+
+void abbe_photon_attenuate(const abbe_photon_spectra *spectra, size_t first, size_t stride,
+                           size_t count, float *hit, GLuint *signature) {
+  const size_t words = abbe_photon_signature_bytes(spectra->scene->plan) / sizeof *signature;
+  if (words == 1) return;
   for (size_t i = 0; i < count; i++) {
-    const GLuint *packed = &signature[4 * i + 1];
-    const double depth = 0.5 * (depth_of(packed, BELOW) + depth_of(packed, ABOVE));
-    hit[4 * i + 3] *= (float)exp(-depth);
-    signature[i] = signature[4 * i];
+    const GLuint *of = &signature[words * i];
+    const size_t node = first + i % stride;
+    if (of[0] != 0 && node < spectra->scene->tables.all.count)
+      hit[4 * i + 3] *= (float)exp(-depth_of(spectra, node, of + 1));
+    signature[i] = of[0];
   }
 }

@@ -13,7 +13,7 @@
 typedef struct abbe_photon_spectra {
   const abbe_gpu_scene *scene;
   size_t nodes; /* wavelengths of the coarse set; all of them where none are refined */
-  GLuint intervals, attenuation, sample_weights;
+  GLuint intervals, tints, sample_weights;
 } abbe_photon_spectra;
 
 abbe_result abbe_photon_spectra_make(const abbe_gpu_scene *scene, abbe_photon_spectra *out,
@@ -29,14 +29,12 @@ abbe_result abbe_photon_spectra_take_all(abbe_photon_spectra *spectra, abbe_erro
 /* Whether some photons take more wavelengths than others. */
 bool abbe_photon_spectra_refines(const abbe_photon_spectra *spectra);
 
-/* Optical depth of a part of a band, at the most that a hit keeps. */
-#define ABBE_PHOTON_MOST_DEPTH 64.0
-
-/* Bytes of a hit's signature, with the optical depths of its path where they are kept. */
-size_t abbe_photon_signature_bytes(const abbe_photon_spectra *spectra);
-/* Of so many hits, as read: takes off what is absorbed beside their wavelengths, and leaves paths
- * alone in `signature`. */
-void abbe_photon_attenuate(const abbe_photon_spectra *spectra, size_t count, float *hit,
-                           GLuint *signature);
+/* Of a hit's signature and tints: bytes, and the format of a texture of them. */
+size_t abbe_photon_signature_bytes(const abbe_plan *plan);
+GLenum abbe_photon_signature_format(const abbe_plan *plan);
+/* Of so many hits, as read, of which each path has `stride` from wavelength `first` on: takes off
+ * what is absorbed beside these, and leaves paths alone in `signature`. */
+void abbe_photon_attenuate(const abbe_photon_spectra *spectra, size_t first, size_t stride,
+                           size_t count, float *hit, GLuint *signature);
 
 #endif

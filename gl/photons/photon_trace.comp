@@ -10,6 +10,7 @@ layout(local_size_x = 256) in;
 #include "photons.glsl"
 #include "photon_nodes.glsl"
 #include "pair_list.glsl"
+#include "tints.glsl"
 
 // [((item * slots + slot) * hit_stride + sample) * HIT_TEXELS], item: the photon, or where its interval
 // stands on the list of refined ones; sample: its wavelength in this batch, the coarse set or the interval.
@@ -17,12 +18,8 @@ layout(local_size_x = 256) in;
 // interface_word(). While tiles are chosen: chart coordinates, and the chart's side.
 layout(std430, binding = BINDING_HITS) writeonly buffer Hits { vec4 hits[]; };
 // Receiver, facets along the path and whether on a tile, equal for paths that vary continuously;
-// refractor in the low eight bits; 0: no hit. BAND_PARTS: and its optical depths (packed_depth.glsl).
-#ifdef BAND_PARTS
-layout(std430, binding = BINDING_SIGNATURES) writeonly buffer Signatures { uvec4 signature[]; };
-#else
-layout(std430, binding = BINDING_SIGNATURES) writeonly buffer Signatures { uint signature[]; };
-#endif
+// refractor in the low eight bits; 0: no hit. TINTS: and those (tints.glsl).
+layout(std430, binding = BINDING_SIGNATURES) writeonly buffer Signatures { Signature signature[]; };
 // Y weight of the samples at [light * wavelengths + i]: of the parts of their bands below and above
 // the node, then those in the coarse set.
 layout(std430, binding = BINDING_SAMPLE_WEIGHTS) readonly buffer SampleWeights { vec4 sample_weight[]; };
@@ -55,8 +52,8 @@ void keep_hit(PhotonRay photon, PhotonHit hit) {
   hits[HIT_TEXELS * index] = vec4(hit.place, hit.flux);
   hits[HIT_TEXELS * index + 1u] = hit.interface_at;
   path_mark[path] = 1u;
-#ifdef BAND_PARTS
-  signature[index] = uvec4(hit.signature, pack_depth(hit.depth));
+#ifdef TINTS
+  signature[index] = pack_signature(hit.signature, hit.tints);
 #else
   signature[index] = hit.signature;
 #endif
@@ -105,17 +102,16 @@ PhotonRay ray_of(Task t) {
   return ray;
 }
 
-#ifdef BAND_PARTS
+#ifdef TINTS
 // Of the band of an interval's end, one half lies in the interval. In place of the other stands the half of
 // the coarse band that covered the interval, which enter() takes back.
 void load_attenuation(Task t) {
-  bool coarse = set == COARSE, at_low = t.wavelength == t.low, at_high = t.wavelength == t.high;
-  int node = coarse ? t.sample_number : t.wavelength;
-  below_texel = at_low ? half_texel(true, t.interval, 1) : half_texel(coarse, node, 0);
-  above_texel = at_high ? half_texel(true, t.interval + 1, 0) : half_texel(coarse, node, 1);
-  int below = at_low ? share_texel(true, t.interval, 1) : share_texel(coarse, node, 0);
-  int above = at_high ? share_texel(true, t.interval + 1, 0) : share_texel(coarse, node, 1);
-  part_of_half = Depth(texelFetch(band_attenuation, below), texelFetch(band_attenuation, above));
+  bool at_low = t.wavelength == t.low, at_high = t.wavelength == t.high;
+  int all = counts.nodes == counts.wavelengths ? 0 : counts.nodes, node = set == COARSE ? t.sample_number : all + t.wavelength;
+  below_texel = TINT_TEXELS * REFRACTORS * (at_low ? t.interval : node);
+  above_texel = TINT_TEXELS * REFRACTORS * (at_high ? t.interval + 1 : node);
+  below_is_above = at_low;
+  above_is_below = at_high;
 }
 #endif
 
@@ -147,7 +143,7 @@ void main() {
   Task task = task_of(thread_number());
   if (task.there) {
     PhotonRay ray = ray_of(task);
-#ifdef BAND_PARTS
+#ifdef TINTS
     load_attenuation(task);
 #endif
     Shares entry[5];

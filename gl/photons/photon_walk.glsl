@@ -35,19 +35,19 @@ struct Ends {
 
 // What is left of the path's own light, for every share of it.
 Shares left_of(PathState w) {
-#ifdef BAND_PARTS
-  return left_of(w.depth);
+#ifdef TINTS
+  return left_after(w.passed.depth);
 #else
   return 1.0;
 #endif
 }
 
-// What a path hands on. The flux is that before it is absorbed where its depths go with it.
+// What a path hands on. The flux is that before tints take theirs.
 PhotonHit hit_of(PhotonRay photon, PathState w, int slot, vec3 place, uint signature, vec4 interface_at) {
   PhotonHit hit = clear_hit(slot, place, w.share * photon.flux, signature, interface_at);
-#ifdef BAND_PARTS
+#ifdef TINTS
   hit.flux *= exp(min(w.least_depth, 80.0));
-  hit.depth = w.depth + w.least_depth;
+  hit.tints = w.passed.tints;
 #endif
   return hit;
 }

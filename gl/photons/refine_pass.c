@@ -21,7 +21,8 @@ abbe_result abbe_refine_pass_make(abbe_trace_pass *trace, abbe_refine_pass *out,
   out->trace = trace;
   if (!abbe_photon_spectra_refines(trace->spectra)) return ABBE_OK;
   out->fine_nodes = widest_interval(trace->spectra) + 1;
-  const size_t hit_bytes = ABBE_HIT_BYTES + abbe_photon_signature_bytes(trace->spectra);
+  const size_t hit_bytes =
+      ABBE_HIT_BYTES + abbe_photon_signature_bytes(trace->spectra->scene->plan);
   const size_t hits = trace->spectra->scene->plan->hit_slots * out->fine_nodes;
   out->most_pairs = MAX_FINE_BYTES / hit_bytes / hits;
   if (out->most_pairs < LEAST_PAIRS) out->most_pairs = LEAST_PAIRS;
@@ -60,7 +61,7 @@ static abbe_result make_pairs(abbe_refine_pass *pass, size_t pairs, abbe_error *
   if (result == ABBE_OK)
     result =
         abbe_hits_make(spectra->scene->gpu, room, spectra->scene->plan->hit_slots, pass->fine_nodes,
-                       abbe_photon_signature_bytes(spectra), &pass->hits, error);
+                       abbe_photon_signature_bytes(spectra->scene->plan), &pass->hits, error);
   return result;
 }
 
@@ -102,6 +103,8 @@ static void select_pairs(abbe_refine_pass *pass, size_t light) {
   abbe_gpu_set_uint(gpu, program, "most_pairs", pass->asked_room);
   abbe_gpu_bind_storage(gpu, BINDING_HITS, trace->hits.hits);
   abbe_gpu_bind_storage(gpu, BINDING_SIGNATURES, trace->hits.signatures);
+  if (scene->plan->tints > 0)
+    abbe_gpu_bind_texels(gpu, program, "tints", 5, GL_RGBA32F, trace->spectra->tints);
   abbe_gpu_bind_storage(gpu, BINDING_WANTS, pass->wants);
   abbe_gpu_bind_storage(gpu, BINDING_PAIRS, pass->asked);
   abbe_gpu_bind_storage(gpu, BINDING_PATHS, trace->hits.paths);

@@ -16,7 +16,7 @@ static size_t most_hits(const abbe_trace_pass *pass) {
   GLint texels = 0;
   scene_of(pass)->gpu->gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
   const size_t most =
-      MOST_HIT_BYTES / (ABBE_HIT_BYTES + abbe_photon_signature_bytes(pass->spectra));
+      MOST_HIT_BYTES / (ABBE_HIT_BYTES + abbe_photon_signature_bytes(scene_of(pass)->plan));
   const size_t held = (size_t)texels * 16 / ABBE_HIT_BYTES; /* of four floats a texel */
   return most < held ? most : held;
 }
@@ -38,7 +38,7 @@ static size_t choose_samples(const abbe_trace_pass *pass, size_t room) {
   const size_t usual = ABBE_PLAN_EXITS + 1;
   const size_t slots =
       !plan->multi_refractor_paths && plan->hit_slots > usual ? usual : plan->hit_slots;
-  const size_t a_hit = ABBE_HIT_BYTES + abbe_photon_signature_bytes(pass->spectra);
+  const size_t a_hit = ABBE_HIT_BYTES + abbe_photon_signature_bytes(scene_of(pass)->plan);
   size_t samples = MAX_HIT_BYTES / a_hit / (pass->most_photons * slots);
   if (samples > room / a_sample) samples = room / a_sample;
   return samples < 2 ? 2 : samples > MOST_SAMPLES ? MOST_SAMPLES : samples;
@@ -73,7 +73,7 @@ abbe_result abbe_trace_pass_make_room(abbe_trace_pass *pass, abbe_error *error) 
   pass->most_photons = most_photons(pass);
   abbe_hits_free(gpu, &pass->hits);
   return abbe_hits_make(gpu, pass->most_photons, scene_of(pass)->plan->hit_slots, stride,
-                        abbe_photon_signature_bytes(pass->spectra), &pass->hits, error);
+                        abbe_photon_signature_bytes(scene_of(pass)->plan), &pass->hits, error);
 }
 
 abbe_result abbe_hits_make(abbe_gpu *gpu, size_t items, size_t slots, size_t stride,
@@ -138,9 +138,8 @@ void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set s
   if (scene->plan->hazy) abbe_gpu_set_int(gpu, program, "keeps_ways", 0);
   abbe_gpu_set_float(gpu, program, "share_limit", scene->plan->desc.energy_share);
   abbe_gpu_set_int(gpu, program, "fits_tiles", pass->atlas->fits ? 1 : 0);
-  if (scene->plan->depths)
-    abbe_gpu_bind_texels(gpu, program, "band_attenuation", 5, GL_RGBA32F,
-                         pass->spectra->attenuation);
+  if (scene->plan->tints > 0)
+    abbe_gpu_bind_texels(gpu, program, "tints", 5, GL_RGBA32F, pass->spectra->tints);
   abbe_gpu_clear_buffer(gpu, hits->signatures);
   abbe_gpu_clear_buffer(gpu, hits->marks);
   abbe_gpu_clear_list(gpu, hits->paths);
@@ -166,7 +165,7 @@ void abbe_trace_pass_end(abbe_trace_pass *pass, const abbe_hits *hits, size_t it
   abbe_gpu_bind_storage(gpu, BINDING_PATHS, hits->paths);
   abbe_gpu_dispatch(gpu, pass->list_paths, groups_of(paths));
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
-                          GL_TEXTURE_FETCH_BARRIER_BIT);
+                         GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 static void trace_batch(abbe_trace_pass *pass, size_t light, size_t first, size_t count,
@@ -208,10 +207,10 @@ typedef struct reading {
   GLuint *signature, *path;
 } reading;
 
-static void read_some(const abbe_trace_pass *pass, size_t light, size_t at, size_t count,
-                      const reading *r) {
+static void read_some(const abbe_trace_pass *pass, size_t light, size_t first, size_t at,
+                      size_t count, const reading *r) {
   const abbe_gl *gl = scene_of(pass)->gpu->gl;
-  const size_t bytes = abbe_photon_signature_bytes(pass->spectra);
+  const size_t bytes = abbe_photon_signature_bytes(scene_of(pass)->plan);
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, pass->hits.hits);
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(at * ABBE_HIT_BYTES),
                        (GLsizeiptr)(count * ABBE_HIT_BYTES), r->raw);
@@ -220,28 +219,28 @@ static void read_some(const abbe_trace_pass *pass, size_t light, size_t at, size
                        (GLsizeiptr)(count * bytes), r->signature);
   abbe_receiver_atlas_place(pass->atlas, light, r->raw, r->signature, bytes / sizeof *r->signature,
                             count);
-  abbe_photon_attenuate(pass->spectra, count, r->raw, r->signature);
+  abbe_photon_attenuate(pass->spectra, first, pass->hits.stride, count, r->raw, r->signature);
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < 4 && r->signature[i] == 0; k++) r->raw[4 * i + k] = 0;
   memcpy(r->hit + 4 * at, r->raw, 4 * count * sizeof *r->hit);
   memcpy(r->path + at, r->signature, count * sizeof *r->path);
 }
 
-abbe_result abbe_trace_pass_read(abbe_trace_pass *pass, size_t light, float **hits, GLuint **paths,
-                                 abbe_error *error) {
+abbe_result abbe_trace_pass_read(abbe_trace_pass *pass, size_t light, size_t first, float **hits,
+                                 GLuint **paths, abbe_error *error) {
   enum { AT_ONCE = 1 << 16 };
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const size_t count = abbe_trace_pass_hit_count(pass, light);
   const size_t step = AT_ONCE / pass->hits.stride * pass->hits.stride;
   const reading r = {.raw = malloc(step * ABBE_HIT_BYTES),
                      .hit = malloc(4 * count * sizeof *r.hit + 1),
-                     .signature = malloc(step * abbe_photon_signature_bytes(pass->spectra)),
+                     .signature = malloc(step * abbe_photon_signature_bytes(scene_of(pass)->plan)),
                      .path = malloc(count * sizeof *r.path + 1)};
   const bool whole = r.raw != NULL && r.hit != NULL && r.signature != NULL && r.path != NULL;
   abbe_result result =
       whole ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu hits", count);
   for (size_t at = 0; at < count && result == ABBE_OK; at += step) {
-    read_some(pass, light, at, count - at < step ? count - at : step, &r);
+    read_some(pass, light, first, at, count - at < step ? count - at : step, &r);
     result = abbe_gpu_tell(gpu, gpu->done, error);
   }
   if (result == ABBE_OK) result = abbe_gl_check(gpu->gl, "the reading of hits", error);

@@ -70,13 +70,13 @@ void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set s
 /* Lists the paths of so many photons or intervals that hit anywhere. */
 void abbe_trace_pass_end(abbe_trace_pass *pass, const abbe_hits *hits, size_t items);
 
-/* The hits of the last batch:
+/* The hits of the last batch, from wavelength `first` on:
  * [photons][slots][stride] x 4 floats, place (on tiles: texels and number) and flux of unit power
  * of the light, zero where there is none, and their paths (may be NULL); malloc'd. Waits for the
  * device.
  */
-abbe_result abbe_trace_pass_read(abbe_trace_pass *pass, size_t light, float **hits, GLuint **paths,
-                                 abbe_error *error);
+abbe_result abbe_trace_pass_read(abbe_trace_pass *pass, size_t light, size_t first, float **hits,
+                                 GLuint **paths, abbe_error *error);
 size_t abbe_trace_pass_hit_count(const abbe_trace_pass *pass, size_t light);
 
 #endif

@@ -165,8 +165,8 @@ static void list_absorption(abbe_plan *plan) {
       plan, ABBE_CHOICE_ABSORPTION, "%s",
       none != NULL ? none
       : plan->band_parts
-          ? "paths keep their optical depth in eight parts of each band of wavelengths: it "
-            "asks for no more of these"
+          ? "paths keep how much they pass of what tints, photons' by material and the camera's in "
+            "eight parts of each band of wavelengths: it asks for no more of these"
       : plan->absorbing ? "a material attenuates; path lengths are kept"
                         : "every material is clear");
 }

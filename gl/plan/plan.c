@@ -8,6 +8,7 @@
 #include "gl/plan/examine/receiver_model.h"
 #include "gl/plan/examine/refractor_model.h"
 #include "gl/plan/examine/spectral_needs.h"
+#include "gl/plan/examine/tints.h"
 #include "gl/plan/no_culling.h"
 #include "gl/plan/pass_list.h"
 #include "gl/plan/support.h"
@@ -58,7 +59,6 @@ static void combine(abbe_plan *plan) {
                 ((apart && !published) || (published && caustics));
   plan->edges = caustics && !published && plan->facets;
   plan->band_parts = (plan->tinting || plan->colouring) && !published;
-  plan->depths = caustics && plan->band_parts;
 }
 
 /* Light goes on from rough mirrors through samples of them alone. */
@@ -122,6 +122,7 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   }
   choose_triangles(scene, out);
   combine(out);
+  out->tints = out->caustics && out->band_parts ? abbe_tint_count(scene, out) : 0;
   out->receiver_colours = abbe_receiver_model_disperses(scene, out);
   abbe_pass_list_add(scene, out);
   abbe_haze_model_note(scene, out);

@@ -36,6 +36,7 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
       .receiver_shadows = p->receiver_shadows,
       .absorbing = p->absorbing,
       .band_parts = p->band_parts,
+      .tints = p->tints,
       .textured = p->textured,
       .receiver_colours = p->receiver_colours,
       .environment = scene->environment.texture != 0,
@@ -141,6 +142,7 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "RECEIVER_HIERARCHY", v->receiver_hierarchy);
   print_flag(to, "ABSORBING", v->absorbing);
   print_flag(to, "BAND_PARTS", v->band_parts);
+  if (v->tints > 0) print_count(to, "TINTS", v->tints);
   print_flag(to, "TEXTURED", v->textured);
   if (v->receiver_colours) {
     print_count(to, "RECEIVER_COLOURS", 1);

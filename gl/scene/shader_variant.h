@@ -16,7 +16,7 @@ typedef struct abbe_shader_variant {
   /* the scene */
   size_t lights, area_lights, refractors, receivers, surfaces, reflections, planes;
   size_t wavelengths, bands, band_levels;
-  size_t exits, slots;
+  size_t exits, slots, tints;
   size_t bvh_stack, receiver_root, shadow_planes;
   bool spheres, convex, layers, hierarchy, receiver_hierarchy, one_convex, one_shadow;
   bool receiver_shadows, absorbing, band_parts, textured, receiver_colours, environment, caustics, walk,

@@ -3,15 +3,21 @@
 // last is there. Who includes this gives refractor_spectrum(r): n and attenuation (1/m) of refractor
 // r at the wavelength that is followed. MIRRORS: some of them are mirrors, which reflect on both sides and
 // which no path is ever in; mirror_spectrum(r) gives what they reflect by. BAND_PARTS: attenuation_of(r) gives
-// attenuation, 1/m, of the parts of the band that is followed, or of a mirror their factors. ROUGH: some of those are rough;
-// photons (KEEPS_INTERFACE) end there, and other paths go on by their lobe.
+// attenuation, 1/m, of the parts of the band that is followed, or of a mirror their factors; to photons
+// (KEEPS_INTERFACE) what photon_tints.glsl says. ROUGH: some of those are rough; photons end there, and other paths go
+// on by their lobe.
 
+#if defined(TINTS) && defined(KEEPS_INTERFACE)
+#define KEEPS_TINTS
+#elif defined(BAND_PARTS) && !defined(KEEPS_INTERFACE)
+#define KEEPS_PARTS
 #include "optical_depth.glsl"
+#endif
 #define FOLLOWS_PATHS
 
 struct PathState {
   vec3 p, d;
-  float share;    // of the light that it began with; BAND_PARTS: besides what `depth` has
+  float share;    // of the light that it began with; BAND_PARTS: besides what `depth` has, or `passed`
   uint inside;    // bit r: within refractor r
   uint path;      // what it met and did so far, as one number
   int interfaces;  // met since the first; -1: none yet
@@ -26,11 +32,12 @@ struct PathState {
 #ifdef KEEPS_HAZE
   float haze_m;  // metres of the air's haze so far
 #endif
-#ifdef BAND_PARTS
-  Depth depth;  // of each part
-#ifdef KEEPS_INTERFACE
-  float least_depth;  // of all parts, which `share` has, and `depth` not
+#ifdef KEEPS_TINTS
+  Passed passed;
+  float least_depth;  // of tints, in all of the band, which `share` has, and not the depth of `passed`
 #endif
+#ifdef KEEPS_PARTS
+  Depth depth;  // of each part
 #endif
 };
 
@@ -60,11 +67,12 @@ PathState path_from(vec3 p, vec3 d) {
 #ifdef KEEPS_HAZE
   w.haze_m = 0.0;
 #endif
-#ifdef BAND_PARTS
-  w.depth = Depth(0.0);
-#ifdef KEEPS_INTERFACE
+#ifdef KEEPS_TINTS
+  w.passed = none_passed();
   w.least_depth = 0.0;
 #endif
+#ifdef KEEPS_PARTS
+  w.depth = Depth(0.0);
 #endif
   return w;
 }
@@ -91,29 +99,32 @@ int medium_of(uint inside) {
   return findMSB(inside);
 }
 
-#ifdef BAND_PARTS
-Depth attenuation_of(int r);
-
-// A photon's path ends where all parts of its band are absorbed. The camera's follows what dark bands have, for they
-// have their part in the colour.
-void attenuate(inout PathState w, Depth depth) {
-#ifdef KEEPS_INTERFACE
-  float least = least_of(depth);
+#ifdef KEEPS_TINTS
+// So much of refractor or mirror r. A path ends where all of its band is absorbed.
+void pass_by(inout PathState w, int r, float amount) {
+  Attenuation attenuation = attenuation_of(r);
+  bool kept = add_tint(w.passed.tints, attenuation.tint, amount);
+  float least = amount * (kept ? attenuation.least : 0.5 * (attenuation.parts.y + attenuation.parts.z));
   w.share *= exp(-least);
-  w.depth += depth - least;
-  w.least_depth += least;
-#else
-  w.depth += depth;
-#endif
+  w.least_depth += kept ? least : 0.0;
+  w.passed.depth += kept ? amount * attenuation.parts - least : vec4(0);
 }
+#endif
+
+#ifdef KEEPS_PARTS
+// The camera's path follows what dark bands have, for they have their part in the colour.
+Depth attenuation_of(int r);
 #endif
 
 // So many metres inside a refractor.
 void absorb_inside(inout PathState w, float metres) {
-#ifdef BAND_PARTS
-  attenuate(w, metres * attenuation_of(medium_of(w.inside)));
+  int r = medium_of(w.inside);
+#if defined(KEEPS_TINTS)
+  pass_by(w, r, metres);
+#elif defined(KEEPS_PARTS)
+  w.depth += metres * attenuation_of(r);
 #else
-  w.share *= exp(-metres * refractor_spectrum(medium_of(w.inside)).y);
+  w.share *= exp(-metres * refractor_spectrum(r).y);
 #endif
 }
 
@@ -121,8 +132,11 @@ void absorb_inside(inout PathState w, float metres) {
 void absorb_at_mirror(inout PathState w, int r, float cos_i) {
   vec3 spectrum = mirror_spectrum(r);
   float metal = metal_reflectance(spectrum, cos_i);
-#ifdef BAND_PARTS
-  attenuate(w, mirror_depth(attenuation_of(r), metal));
+#if defined(KEEPS_TINTS)
+  float straight = metal_reflectance(spectrum, 1.0);
+  pass_by(w, r, straight > 0.0 && straight < 1.0 ? log(max(metal, 1e-30)) / log(straight) : 1.0);
+#elif defined(KEEPS_PARTS)
+  w.depth += mirror_depth(attenuation_of(r), metal);
 #else
   w.share *= max(1.0 - spectrum.x * (1.0 - metal), 0.0);
 #endif

@@ -158,7 +158,7 @@ typedef struct abbe_plan {
   bool page_charts; /* pinholes light receivers that are meshes: by their charts */
   bool fills;       /* light is laid between wavelengths */
   bool edges;       /* some refractor has facets: light ends at edges, and splats are cut finer */
-  bool depths;      /* hits keep the optical depth of their path in parts of their band */
+  size_t tints;     /* of so many stuffs hits keep how much their path passed (examine/tints.h) */
   bool band_parts; /* attenuation or reflectance varies: bands have parts that are attenuated alike */
   bool draw_back;   /* views show the back of refractors, too */
   abbe_coarse fewer_triangles; /* for whose sake some mesh is drawn by fewer */

@@ -6,9 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Somewhat more than the mean chord of a solid, four times its volume over its surface by Cauchy,
- * for light is reflected inside; a plate has short paths, however wide it is. */
-static double usual_path(const abbe_object *object) {
+double abbe_usual_path(const abbe_object *object) {
   const abbe_mesh *mesh = &object->mesh;
   double volume = 0, area = 0;
   for (size_t i = 0; i < mesh->face_count; i++) {
@@ -36,7 +34,8 @@ abbe_result abbe_band_steps_make(const abbe_scene *scene, const abbe_plan *plan,
   if (out->xyz == NULL || out->depth == NULL || out->path_m == NULL || out->mean == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
   for (size_t r = 0; r < surfaces; r++)
-    out->path_m[r] = plan->mirror[r] ? 0 : usual_path(&scene->object[plan->refractor_object[r]]);
+    out->path_m[r] =
+        plan->mirror[r] ? 0 : abbe_usual_path(&scene->object[plan->refractor_object[r]]);
   return ABBE_OK;
 }
 

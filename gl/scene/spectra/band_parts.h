@@ -14,6 +14,11 @@
 
 enum { ABBE_BAND_PARTS = 8 };
 
+/* A usual path of light inside, m: somewhat more than the mean chord of a solid, four times its
+ * volume over its surface by Cauchy, for light is reflected inside; a plate has short paths,
+ * however wide it is. */
+double abbe_usual_path(const abbe_object *object);
+
 /* Optical depth of what is opaque: its exponential is 0 in floats, and sums of it stay finite. */
 #define ABBE_BAND_MOST_DEPTH 1e4
 

@@ -2,13 +2,18 @@
 
 #include "colorimetry/weights.h"
 #include "gl/device/float4.h"
+#include "gl/plan/examine/tints.h"
 #include "gl/scene/spectra/mirror_nodes.h"
 
 #include <math.h>
 
+size_t abbe_interval_sums_texels(const abbe_plan *plan) {
+  return plan->tints > 0 ? 3 : 2;
+}
+
 size_t abbe_interval_sums_size(const abbe_plan *plan, size_t steps, size_t nodes) {
   const size_t rows = plan->light_view_count * plan->refractor_count * (nodes + 1);
-  return rows * ABBE_INTERVAL_TEXELS * (steps + 1);
+  return rows * abbe_interval_sums_texels(plan) * (steps + 1);
 }
 
 /* A part of a light's spectrum: X, Y, Z, or its share in each of three bands, and the middle of
@@ -33,11 +38,12 @@ static void weigh_part(const abbe_interval_sums *of, const abbe_weights_range *r
   }
 }
 
-/* One interval from node b = i down to node a = i - 1, step by step. Where the index stays, the
- * place along is by wavelength; so it is without a material. */
+/* One interval of refractor r from node b = i down to node a = i - 1, step by step. Where the index
+ * stays, the place along is by wavelength; so it is without a material. */
 static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *w,
-                          const abbe_weights_range *range, const abbe_material *material, size_t i,
-                          float (*out)[4]) {
+                          const abbe_weights_range *range, size_t r, size_t i, float (*out)[4]) {
+  const abbe_material *material = abbe_mirror_nodes_laid_by(of->scene, of->plan, r);
+  const size_t texels = abbe_interval_sums_texels(of->plan);
   double min = w->edge_nm[0], max = w->edge_nm[w->count];
   double a = i > 0 ? w->lambda_nm[i - 1] : w->edge_nm[0];
   double b = i < w->count ? w->lambda_nm[i] : w->edge_nm[w->count];
@@ -46,12 +52,13 @@ static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *
     a = edge = i == 0 ? min : max;
     b = max;
   }
-  double n_a = 1, n_b = 1, sum[3] = {0, 0, 0}, moment[3] = {0, 0, 0}, before = b;
+  double n_a = 1, n_b = 1, sum[3] = {0, 0, 0}, moment[3] = {0, 0, 0}, taken[3] = {0, 0, 0},
+         before = b;
   if (material != NULL) {
     abbe_material_n(material, a, &n_a, NULL);
     abbe_material_n(material, b, &n_b, NULL);
   }
-  for (size_t k = 0; k <= of->steps; k++, out += ABBE_INTERVAL_TEXELS) {
+  for (size_t k = 0; k <= of->steps; k++, out += texels) {
     size_t half = of->steps / 2;
     double lambda_nm = k <= half ? b + (edge - b) * (double)k / (double)half
                                  : edge + (a - edge) * (double)(k - half) / (double)half;
@@ -67,9 +74,12 @@ static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *
     for (int c = 0; c < 3; c++) {
       sum[c] += part.light[c];
       moment[c] += part.light[c] * t[1 + c];
+      if (of->plan->tints > 0)
+        taken[c] += part.light[c] * abbe_tint_attenuation(of->scene, of->plan, r, at[1 + c]);
     }
     abbe_float4_store(sum, t[0], out[0]);
     abbe_float4_store(moment, n[0], out[1]);
+    if (of->plan->tints > 0) abbe_float4_store(taken, 0, out[2]);
     before = lambda_nm;
   }
 }
@@ -77,14 +87,14 @@ static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *
 float (*abbe_interval_sums_fill(const abbe_interval_sums *of, const abbe_wavelengths *w,
                                 float (*out)[4]))[4] {
   const abbe_plan *plan = of->plan;
-  const size_t an_interval = ABBE_INTERVAL_TEXELS * (of->steps + 1);
+  const size_t an_interval = abbe_interval_sums_texels(plan) * (of->steps + 1);
   for (size_t light = 0; light < plan->light_view_count; light++) {
     abbe_weights_range range;
     abbe_weights_range_make_by(plan->desc.observer, &of->scene->light[light].illuminant,
                                w->edge_nm[0], w->edge_nm[w->count], &range);
     for (size_t k = 0; k < plan->refractor_count; k++)
       for (size_t i = 0; i <= w->count; i++, out += an_interval)
-        fill_interval(of, w, &range, abbe_mirror_nodes_laid_by(of->scene, plan, k), i, out);
+        fill_interval(of, w, &range, k, i, out);
   }
   return out;
 }

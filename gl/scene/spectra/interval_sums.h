@@ -18,8 +18,8 @@ typedef struct abbe_interval_sums {
 } abbe_interval_sums;
 
 /* Of a step: XYZ up to it and how far along the index has moved; the sums of XYZ times that, and
- * the index. */
-enum { ABBE_INTERVAL_TEXELS = 2 };
+ * the index; where hits keep tints, XYZ times the refractor's attenuation, by amount. */
+size_t abbe_interval_sums_texels(const abbe_plan *plan);
 /* Texels of all lights and refractors for a sampling of so many nodes. */
 size_t abbe_interval_sums_size(const abbe_plan *plan, size_t steps, size_t nodes);
 

@@ -126,19 +126,17 @@ abbe_result abbe_spectral_tables_intervals(const abbe_spectral_tables *t, const 
   return ABBE_OK;
 }
 
-static abbe_result fill_bands(const abbe_scene *scene, const abbe_plan *plan,
+static abbe_result fill_tints(const abbe_scene *scene, const abbe_plan *plan,
                               abbe_spectral_tables *t, abbe_error *error) {
-  if (!plan->depths) return ABBE_OK;
+  if (plan->tints == 0) return ABBE_OK;
   const bool refines = t->coarse.count < t->all.count;
-  const size_t nodes = t->coarse.count + (refines ? t->all.count : 0);
-  t->bands = calloc(abbe_band_attenuation_texels(plan, nodes) + 1, sizeof *t->bands);
-  if (t->bands == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for attenuation");
-  abbe_result result = abbe_band_attenuation_fill(scene, plan, &t->coarse, t->bands, error);
-  if (refines && result == ABBE_OK)
-    result = abbe_band_attenuation_fill(
-        scene, plan, &t->all, t->bands + abbe_band_attenuation_texels(plan, t->coarse.count),
-        error);
-  return result;
+  const size_t coarse = t->coarse.count * plan->refractor_count;
+  t->tints =
+      calloc(coarse + (refines ? t->all.count * plan->refractor_count : 0), sizeof *t->tints);
+  if (t->tints == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for attenuation");
+  abbe_tint_nodes_fill(scene, plan, &t->coarse, t->tints);
+  if (refines) abbe_tint_nodes_fill(scene, plan, &t->all, t->tints + coarse);
+  return ABBE_OK;
 }
 
 abbe_result abbe_spectral_tables_make(const abbe_scene *scene, const abbe_plan *plan,
@@ -159,7 +157,7 @@ abbe_result abbe_spectral_tables_make(const abbe_scene *scene, const abbe_plan *
   result = weigh_lights(scene, plan, t, error);
   if (result == ABBE_OK)
     result = abbe_spectral_tables_intervals(t, scene, plan, 0, 0, &t->intervals, error);
-  return result == ABBE_OK ? fill_bands(scene, plan, t, error) : result;
+  return result == ABBE_OK ? fill_tints(scene, plan, t, error) : result;
 }
 
 void abbe_spectral_tables_free(abbe_spectral_tables *t) {
@@ -171,7 +169,7 @@ void abbe_spectral_tables_free(abbe_spectral_tables *t) {
   free(t->attenuation_550);
   free(t->mirror);
   free(t->intervals);
-  free(t->bands);
+  free(t->tints);
   free(t->sample_weight);
   free(t->interval_weight);
   *t = (abbe_spectral_tables){0};

@@ -11,8 +11,8 @@
 
 #include "colorimetry/weights.h"
 #include "gl/plan/facts/plan_facts.h"
-#include "gl/scene/spectra/band_attenuation.h"
 #include "gl/scene/spectra/mirror_nodes.h"
+#include "gl/scene/spectra/tint_nodes.h"
 #include "spectral/wavelengths.h"
 
 #include <stddef.h>
@@ -28,9 +28,9 @@ typedef struct abbe_spectral_tables {
 
   /* Of photons, where the plan has caustics; else NULL. First by the coarse set, then by all, where
    * that is more. */
-  size_t steps;          /* of an interval */
-  float (*intervals)[4]; /* interval_sums.h: X, Y, Z */
-  float (*bands)[4];     /* band_attenuation.h; NULL where hits keep no depths */
+  size_t steps;                        /* of an interval */
+  float (*intervals)[4];               /* interval_sums.h: X, Y, Z */
+  float (*tints)[ABBE_TINT_TEXELS][4]; /* tint_nodes.h; NULL where hits keep none */
   /* [light views][all]: Y of the band below and above the node, by all and by the coarse set */
   float (*sample_weight)[4];
   float *interval_weight; /* [light views][coarse - 1]: shares of X + Y + Z, of mean 1 */

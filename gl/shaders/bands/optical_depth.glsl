@@ -1,4 +1,4 @@
-// BAND_PARTS: attenuation or reflectance varies by wavelength. A path then keeps its optical depth in each part of
+// BAND_PARTS: attenuation or reflectance varies by wavelength. A path of the camera then keeps its optical depth in each part of
 // its band of wavelengths (band_parts.h), so that of the band its mean transmittance is left at any length, and not
 // that at one wavelength.
 #ifdef BAND_PARTS

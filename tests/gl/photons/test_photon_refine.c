@@ -50,23 +50,20 @@ static void absorption_is_that_of_all_wavelengths(void **state) {
   abbe_map_layout layout = {0}; /* and with it the photons' grid: all trace the same */
   const abbe_ledger all = draw("gem", 61, ABBE_FILL_NONE, &layout, NULL);
   assert_true(all.absorbed > 0.05 * all.reached);
-  bool right = true;
   for (size_t i = 0; i < 2; i++) {
     const abbe_ledger some = draw("gem", counts[i], ABBE_FILL_BRIDGE, &layout, NULL);
     print_message("absorbed: %.4f %% of 61, %.4f %% of %zu\n", 100 * all.absorbed / all.reached,
                   100 * some.absorbed / some.reached, counts[i]);
     assert_near(some.absorbed / some.reached, all.absorbed / all.reached, 0.001);
-    /* So is what lies in the map, but for the long paths that are given up or not: what the ledger
-     * keeps as interpolated corrects the few wavelengths' own sum, and adds no light. */
-    const double lies = (some.deposited + some.trapped) / some.reached,
-                 should = (all.deposited + all.trapped) / all.reached;
-    print_message("deposited or trapped: %.4f %% of 61, %.4f %% of %zu, %.4f interpolated\n",
-                  100 * should, 100 * lies, counts[i], 100 * some.interpolated / some.reached);
-    right = right && fabs(lies - should) <= 4e-4;
+    /* So is what lies in the map: what the ledger keeps as interpolated corrects the few
+     * wavelengths' own sum, and adds no light. Few follow long paths a little less far. */
+    print_message("deposited: %.4f %% of 61, %.4f %% of %zu, %.4f interpolated; trapped %.4f, %.4f\n",
+                  100 * all.deposited / all.reached, 100 * some.deposited / some.reached, counts[i],
+                  100 * some.interpolated / some.reached, 100 * all.trapped / all.reached,
+                  100 * some.trapped / some.reached);
+    assert_near(some.deposited / some.reached, all.deposited / all.reached, 5e-4);
+    assert_near(some.trapped / some.reached, all.trapped / all.reached, 1e-3);
   }
-  /* Known to be wrong, by 0.0014 and 0.0017: between coarse wavelengths a part of a band has one
-   * attenuation. It fails once it is right. */
-  assert_false(right);
 }
 
 enum { BANDS = 16, FINE_STEPS = 64 };
@@ -99,7 +96,6 @@ static void a_pane_leaves_what_the_law_says(void **state) {
   look_aside(&scene);
   const abbe_illuminant *light = &scene.light[0].illuminant;
   double sum[3] = {0}, white[3] = {0}, band[BANDS] = {0};
-  bool right = true;
   for (size_t k = 0; k < BANDS * FINE_STEPS; k++) {
     const double width = 400.0 / (BANDS * FINE_STEPS), from = 380 + width * (double)k;
     const double left = passed(scene.object[1].material, from + 0.5 * width, thickness);
@@ -118,22 +114,17 @@ static void a_pane_leaves_what_the_law_says(void **state) {
     desc.energy_share = 1e-6;
     abbe_renderer *renderer = make_renderer(&scene, &desc);
     const abbe_ledger l = draw_frame(renderer).energy;
-    right = right && fabs(l.deposited / l.reached - sum[1] / white[1]) <= 1e-3;
-    assert_true(abbe_ledger_imbalance(&l) < 1e-4);
-    right = right && abbe_ledger_imbalance(&l) < 1e-5;
+    assert_near(l.deposited / l.reached, sum[1] / white[1], 1e-3);
+    assert_true(abbe_ledger_imbalance(&l) < 1e-5);
     assert_ok(abbe_renderer_read_map_bands(renderer, 0, BANDS, &map, &error), &error);
     const double reached = image_sum(&map, 1) / (l.deposited / l.reached);
     for (size_t c = 0; c < 3; c++)
-      right = right && fabs(image_sum(&map, c) / reached - sum[c] / white[1]) <= 2e-3;
+      assert_near(image_sum(&map, c) / reached, sum[c] / white[1], 2e-3);
     for (size_t k = 0; k < BANDS; k++)
-      right = right && fabs(image_sum(&map, 3 + k) / reached - band[k] / white[1]) <=
-                           0.02 * band[k] / white[1];
+      assert_near(image_sum(&map, 3 + k) / reached, band[k] / white[1], 0.02 * band[k] / white[1]);
     abbe_image_free(&map);
     abbe_renderer_free(renderer);
   }
-  /* Known to be wrong: hits keep optical depths in twelve bits, which leaves 2e-5 in the ledger,
-   * and a band of even power is 3 % off at the violet end. It fails once it is right. */
-  assert_false(right);
   abbe_scene_free(&scene);
 }
 

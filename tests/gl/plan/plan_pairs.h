@@ -46,9 +46,7 @@
   "- {name: ball, shape: sphere, radius: 0.08, levels: 4, transform: [{translate: [0, 0, 0.05]}]," \
   " material: " material "}\n"
 
-#define OPTICAL_DEPTHS                                                                             \
-  RUNS(CHOICE_ABSORPTION,                                                                          \
-       "paths keep their optical depth in eight parts of each band of wavelengths")
+#define OPTICAL_DEPTHS RUNS(CHOICE_ABSORPTION, "paths keep how much they pass of what tints")
 
 /* What each has in common, and differs from in one fact. */
 static const char ball[] = CAMERA POINT_LIGHT FLOOR BALL("crown");
@@ -173,8 +171,7 @@ static const pair pairs[] = {
      ball,
      CAMERA POINT_LIGHT FLOOR BALL("murk"),
      {0},
-     {OPTICAL_DEPTHS,
-      END}},
+     {OPTICAL_DEPTHS, END}},
     {"a material that absorbs outside the range alone",
      ball,
      CAMERA POINT_LIGHT FLOOR BALL("murk"),
@@ -186,9 +183,7 @@ static const pair pairs[] = {
      {0},
      {COUNTS(7, 8, 9),
       RUNS(CHOICE_WAVELENGTHS, "7 from 380 to 780 nm: the attenuation varies with wavelength"),
-      RUNS(PASS_PHOTONS, "7 wavelengths through the refractors"),
-      OPTICAL_DEPTHS,
-      END}},
+      RUNS(PASS_PHOTONS, "7 wavelengths through the refractors"), OPTICAL_DEPTHS, END}},
     {"a constant index, and an attenuation that is constant",
      flat,
      CAMERA POINT_LIGHT FLOOR BALL("grey"),
@@ -439,9 +434,7 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT FLOOR BALL("murk"),
      {.wavelengths = 21},
      {COUNTS(21, 8, 9), RUNS(CHOICE_WAVELENGTHS, "21 from 380 to 780 nm: as asked"),
-      RUNS(PASS_PHOTONS, "4 to 21 wavelengths, as each photon's hits ask"),
-      OPTICAL_DEPTHS,
-      END}},
+      RUNS(PASS_PHOTONS, "4 to 21 wavelengths, as each photon's hits ask"), OPTICAL_DEPTHS, END}},
     {"many wavelengths of a glass that tints, from wall to wall of a mesh",
      ball,
      CAMERA POINT_LIGHT FLOOR RING("murk"),
@@ -449,8 +442,7 @@ static const pair pairs[] = {
      {COUNTS(21, 8, 16), RUNS_OF(CHOICE_REFRACTOR_MODEL, "ring", "triangle hierarchy"),
       RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
       RUNS(CHOICE_WAVELENGTHS, "21 from 380 to 780 nm: as asked"),
-      RUNS(PASS_PHOTONS, "4 to 21 wavelengths, as each photon's hits ask"),
-      OPTICAL_DEPTHS,
+      RUNS(PASS_PHOTONS, "4 to 21 wavelengths, as each photon's hits ask"), OPTICAL_DEPTHS,
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"many wavelengths of a clear glass",

@@ -20,9 +20,7 @@ static const struct {
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "gem", "convex planes: the object is a convex faceted solid"),
       RUNS(CHOICE_INNER_REFLECTIONS, "followed until less than 0.005 of the light is left, 20 "
                                      "exits at most; 0.4 % of it is still inside then"),
-      IN_ROWS,
-      RUNS(CHOICE_ABSORPTION,
-           "paths keep their optical depth in eight parts of each band of wavelengths"),
+      IN_ROWS, RUNS(CHOICE_ABSORPTION, "paths keep how much they pass of what tints"),
       GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"prism",
      {RUNS_OF(CHOICE_REFRACTOR_MODEL, "prism",

@@ -44,8 +44,8 @@ static void check_materials(const fixture *f) {
 
 /* Y (channel 1) or a band of all intervals of the first light and refractor. */
 static double sum_of(const fixture *f, const float (*row)[4], size_t nodes, int channel) {
-  const size_t an_interval = ABBE_INTERVAL_TEXELS * (f->tables.steps + 1);
-  const size_t last = an_interval - ABBE_INTERVAL_TEXELS;
+  const size_t an_interval = abbe_interval_sums_texels(&f->plan) * (f->tables.steps + 1);
+  const size_t last = an_interval - abbe_interval_sums_texels(&f->plan);
   double sum = 0;
   for (size_t i = 0; i <= nodes; i++) sum += (double)row[i * an_interval + last][channel];
   return sum;
@@ -62,7 +62,7 @@ static void every_sampling_holds_all_of_the_light(void **state) {
   const abbe_spectral_tables *t = &f.tables;
   const size_t coarse = t->coarse.count;
   double all_y = 0, coarse_y = 0, mean = 0;
-  assert_true(coarse < NODES && t->bands != NULL);
+  assert_true(coarse < NODES && t->tints != NULL);
   check_materials(&f);
   for (size_t i = 0; i < NODES; i++) {
     all_y += (double)t->sample_weight[i][0] + (double)t->sample_weight[i][1];
