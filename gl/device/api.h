@@ -40,6 +40,7 @@ extern "C" {
   X(GETSTRINGI, GetStringi)                                                                        \
   X(COLORMASK, ColorMask)                                                                          \
   X(DEPTHRANGE, DepthRange)                                                                        \
+  X(FLUSH, Flush)                                                                                  \
   X(FRONTFACE, FrontFace)                                                                          \
   X(HINT, Hint)                                                                                    \
   X(POLYGONMODE, PolygonMode)                                                                      \

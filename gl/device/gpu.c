@@ -2,12 +2,15 @@
 
 #include "base/clock.h"
 
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 abbe_result abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *error) {
+  enum { MOST_GROUPS = 4096 }; /* a million threads, or two */
   out->gl = gl;
+  out->most_groups = out->software ? SIZE_MAX : MOST_GROUPS;
   abbe_buffer_memory_begin(&out->memory, gl, out->software);
   gl->GenFramebuffers(1, &out->framebuffer);
   gl->GenVertexArrays(1, &out->empty_array);

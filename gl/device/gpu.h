@@ -29,6 +29,8 @@
 typedef struct abbe_gpu {
   const abbe_gl *gl;
   bool software; /* what runs the shaders is a processor; whoever makes the struct says so */
+  /* of a dispatch, where a GPU runs it: its driver may end one that takes seconds */
+  size_t most_groups;
   GLuint framebuffer, empty_array;
   GLuint list_groups;                  /* program */
   GLuint sampler_states;               /* program; none where a GPU runs them */
@@ -147,8 +149,9 @@ void abbe_gpu_dispatch_2d(abbe_gpu *gpu, GLuint program, size_t width, size_t he
  * the program is set up by then. */
 void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t first, size_t most,
                             size_t threads);
-/* The groups that stand in the list's words 1 to 3, as another program has written them. */
-void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list);
+/* The groups that stand in the list's words 1 to 3, as another program has written them for at most
+ * so many elements, with a thread each. */
+void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list, size_t most);
 
 /* Before a program that reads buffers as texels. Such a sampler has no filter of its own: Mesa
  * leaves there that of the texture which another program had at its place, and llvmpipe compiles a

@@ -23,11 +23,13 @@ static size_t next_part(const abbe_gpu *gpu, size_t units, size_t all, double ms
   return (size_t)fmin((double)abbe_gpu_next_part(units, ms), fmin(most, MOST_GROUPS));
 }
 
-/* width: groups of a row, of which there are so many; 0: they are groups one after another. */
+/* width: groups of a row, of which there are so many; 0: they are groups one after another. Where
+ * nobody watches, parts have as many as a dispatch may. */
 static void dispatch_parts(abbe_gpu *gpu, GLuint program, size_t units, size_t width) {
   const char *first = width > 0 ? "first_row" : "first_group";
-  const size_t step = width > 0 ? 16 : 1;
-  size_t part = FIRST_PART, at = 0;
+  const size_t step = width > 0 ? 16 : 1, most = gpu->most_groups / (width > 0 ? width : 1);
+  const bool watched = gpu->progress != NULL;
+  size_t part = watched ? FIRST_PART : most > 0 ? most : 1, at = 0;
   gpu->gl->UseProgram(program);
   while (at < units && abbe_gpu_ask(gpu)) {
     const double start_ms = 1e3 * abbe_clock_seconds();
@@ -38,16 +40,20 @@ static void dispatch_parts(abbe_gpu *gpu, GLuint program, size_t units, size_t w
       gpu->gl->DispatchCompute((GLuint)width, (GLuint)count, 1);
     else
       gpu->gl->DispatchCompute((GLuint)count, 1, 1);
-    gpu->gl->Finish();
     at += count;
-    part = next_part(gpu, count, units, 1e3 * abbe_clock_seconds() - start_ms);
+    if (watched) {
+      gpu->gl->Finish();
+      part = next_part(gpu, count, units, 1e3 * abbe_clock_seconds() - start_ms);
+    } else {
+      gpu->gl->Flush();
+    }
   }
   abbe_gpu_set_uint(gpu, program, first, 0);
 }
 
 void abbe_gpu_dispatch(abbe_gpu *gpu, GLuint program, size_t groups) {
   const size_t rows = (groups + MOST_GROUPS - 1) / MOST_GROUPS;
-  if (gpu->progress != NULL)
+  if (gpu->progress != NULL || groups > gpu->most_groups)
     dispatch_parts(gpu, program, groups, 0);
   else if (groups > 0)
     gpu->gl->DispatchCompute((GLuint)((groups + rows - 1) / rows), (GLuint)rows, 1);
@@ -57,10 +63,34 @@ void abbe_gpu_dispatch(abbe_gpu *gpu, GLuint program, size_t groups) {
  * for each. */
 void abbe_gpu_dispatch_2d(abbe_gpu *gpu, GLuint program, size_t width, size_t height) {
   const size_t across = (width + 31) / 32, down = (height + 15) / 16;
-  if (gpu->progress != NULL)
+  if (gpu->progress != NULL || across * down > gpu->most_groups)
     dispatch_parts(gpu, program, down, across);
   else
     gpu->gl->DispatchCompute((GLuint)across, (GLuint)down, 1);
+}
+
+/* As many groups as the device counts by itself. */
+static void dispatch_listed(abbe_gpu *gpu, GLuint program, GLuint list, size_t first, size_t most,
+                            size_t threads) {
+  const abbe_gl *gl = gpu->gl;
+  gl->UseProgram(gpu->list_groups);
+  abbe_gpu_set_uint(gpu, gpu->list_groups, "group_size", ABBE_GPU_GROUP);
+  abbe_gpu_set_uint(gpu, gpu->list_groups, "first", first);
+  abbe_gpu_set_uint(gpu, gpu->list_groups, "most", most);
+  abbe_gpu_set_uint(gpu, gpu->list_groups, "threads", threads);
+  abbe_gpu_bind_storage(gpu, BINDING_DISPATCH, list);
+  gl->DispatchCompute(1, 1, 1);
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  gl->UseProgram(program);
+  gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
+  gl->DispatchComputeIndirect(4);
+}
+
+/* Elements of a list whose threads are whole groups, as many as a dispatch may have; at most all.
+ */
+static size_t elements_of_part(const abbe_gpu *gpu, size_t most, size_t threads) {
+  const size_t blocks = gpu->most_groups / threads;
+  return blocks > most / ABBE_GPU_GROUP ? most : (blocks > 0 ? blocks : 1) * ABBE_GPU_GROUP;
 }
 
 void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t first, size_t most,
@@ -71,24 +101,24 @@ void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t f
     const size_t elements = left < most ? left : most;
     dispatch_parts(gpu, program, (elements * threads + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP, 0);
   } else {
-    gl->UseProgram(gpu->list_groups);
-    abbe_gpu_set_uint(gpu, gpu->list_groups, "group_size", ABBE_GPU_GROUP);
-    abbe_gpu_set_uint(gpu, gpu->list_groups, "first", first);
-    abbe_gpu_set_uint(gpu, gpu->list_groups, "most", most);
-    abbe_gpu_set_uint(gpu, gpu->list_groups, "threads", threads);
-    abbe_gpu_bind_storage(gpu, BINDING_DISPATCH, list);
-    gl->DispatchCompute(1, 1, 1);
-    gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-    gl->UseProgram(program);
-    gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
-    gl->DispatchComputeIndirect(4);
+    const size_t step = elements_of_part(gpu, most, threads);
+    for (size_t at = 0; at < most; at += step) {
+      const size_t count = most - at < step ? most - at : step;
+      if (at > 0) {
+        gl->Flush();
+        gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+        abbe_gpu_set_uint(gpu, program, "first_group", at * threads / ABBE_GPU_GROUP);
+      }
+      dispatch_listed(gpu, program, list, first + at, count, threads);
+    }
+    if (step < most) abbe_gpu_set_uint(gpu, program, "first_group", 0);
   }
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list) {
+void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list, size_t most) {
   GLuint groups[2] = {0, 0};
-  if (gpu->progress == NULL) {
+  if (gpu->progress == NULL && most / ABBE_GPU_GROUP < gpu->most_groups) {
     gpu->gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
     gpu->gl->DispatchComputeIndirect(4);
     return;

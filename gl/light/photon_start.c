@@ -55,7 +55,7 @@ static void list_level(abbe_photon_cells *cells, const size_t grid[2], int level
     const size_t groups = (across * down + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
     abbe_gpu_dispatch(cells->gpu, cells->place, groups);
   } else {
-    abbe_gpu_dispatch_counted(cells->gpu, cells->place, cells->list[level - 1]);
+    abbe_gpu_dispatch_counted(cells->gpu, cells->place, cells->list[level - 1], across * down);
   }
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -132,7 +132,8 @@ abbe_result abbe_photon_start_run(abbe_photon_start *start, size_t light, abbe_e
   abbe_photon_start_bind(start);
   abbe_photon_lights_set_grid(start->views, start->cover, light);
   abbe_gpu_bind_storage(gpu, BINDING_CELLS, lit);
-  abbe_gpu_dispatch_counted(gpu, start->cover, lit);
+  const size_t *cells = start->views->light[light].cells;
+  abbe_gpu_dispatch_counted(gpu, start->cover, lit, cells[0] * cells[1]);
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   result = abbe_gl_check(gpu->gl, "the start of photons", error);
   return result == ABBE_OK ? abbe_gpu_tell(gpu, gpu->done, error) : result;
