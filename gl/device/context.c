@@ -29,7 +29,7 @@ static const char *const remedies[] = {
                           "libegl-mesa0; GALLIUM_DRIVER unset)",
     [ABBE_CONTEXT_CPU] = "--backend cpu needs Mesa's llvmpipe, 20.3 or later (Debian's "
                          "libegl-mesa0; GALLIUM_DRIVER unset)",
-    [ABBE_CONTEXT_GPU] = "install a newer driver, or use --backend cpu",
+    [ABBE_CONTEXT_GPU] = "install its newest driver, or use --backend cpu",
 };
 
 /* Takes down what the driver says of itself; a context so bare that it cannot is not judged here.

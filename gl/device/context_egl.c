@@ -6,10 +6,6 @@
 #include <EGL/eglext.h>
 #include <string.h>
 
-static const char *kind_of(bool software) {
-  return software ? "software" : "GPU";
-}
-
 static bool has(const char *extensions, const char *name) {
   return extensions != NULL && strstr(extensions, name) != NULL;
 }
@@ -41,7 +37,7 @@ static void destroy(abbe_context_native *native) {
 }
 
 /* EGL's device of that number among the software ones or the others; NULL beyond the last. *name is
- * the file of a device that has one. */
+ * for messages: the file of a device that has one. */
 static EGLDeviceEXT find_device(bool software, size_t number, const char **name) {
   PFNEGLQUERYDEVICESEXTPROC query =
       (PFNEGLQUERYDEVICESEXTPROC)eglGetProcAddress("eglQueryDevicesEXT");
@@ -56,7 +52,7 @@ static EGLDeviceEXT find_device(bool software, size_t number, const char **name)
     if (has(extensions, "EGL_MESA_device_software") != software || number-- > 0) continue;
     if (has(extensions, "EGL_EXT_device_drm"))
       *name = describe(devices[i], EGL_DRM_DEVICE_FILE_EXT);
-    if (*name == NULL) *name = "of no file";
+    if (*name == NULL) *name = software ? "software" : "a GPU without a name";
     return devices[i];
   }
   return NULL;
@@ -101,11 +97,12 @@ abbe_result abbe_context_egl(bool software, size_t device, abbe_context_native *
   out->destroy = destroy;
   const EGLDeviceEXT found = find_device(software, device, &name);
   if (found == NULL)
-    return abbe_error_set(error, ABBE_UNSUPPORTED, "EGL has no %s device", kind_of(software));
+    return abbe_error_set(error, ABBE_UNSUPPORTED, "EGL has no %s device",
+                          software ? "software" : "other");
   EGLDisplay display = open_display(found);
   if (display == EGL_NO_DISPLAY)
-    return abbe_error_set(error, ABBE_GL, "EGL's %s device (%s) does not open (EGL error 0x%x)",
-                          kind_of(software), name, (unsigned)eglGetError());
+    return abbe_error_set(error, ABBE_GL, "EGL's device (%s) does not open (EGL error 0x%x)", name,
+                          (unsigned)eglGetError());
   out->handle[0] = display;
   EGLConfig config = NULL;
   EGLContext context = EGL_NO_CONTEXT;
@@ -118,14 +115,14 @@ abbe_result abbe_context_egl(bool software, size_t device, abbe_context_native *
   const char *driver = eglQueryString(display, EGL_VENDOR);
   if (driver == NULL) driver = "unnamed";
   if (context == EGL_NO_CONTEXT)
-    return abbe_error_set(error, ABBE_GL, "EGL's %s device (%s, driver %s) gives no OpenGL context",
-                          kind_of(software), name, driver);
+    return abbe_error_set(error, ABBE_GL, "EGL's device (%s, driver %s) gives no OpenGL context",
+                          name, driver);
   out->handle[1] = context;
   if (!make_current(out))
     return abbe_error_set(error, ABBE_GL,
-                          "the context of EGL's %s device (%s, driver %s) cannot be made current "
+                          "the context of EGL's device (%s, driver %s) cannot be made current "
                           "without a surface",
-                          kind_of(software), name, driver);
+                          name, driver);
   return ABBE_OK;
 }
 

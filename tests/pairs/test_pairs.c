@@ -42,7 +42,7 @@ static void test_few_cases_hold_all_pairs(void **state) {
   /* Of 3, 6, 4 and 3 levels there are 93 pairs. */
   assert_int_equal(pairs, 93 - pair_refusal_count);
   assert_int_equal(missing, 0);
-  assert_in_range(count, 18, COVER_MOST);
+  assert_int_in_range(count, 18, COVER_MOST);
   for (size_t i = 0; i < count; i++) assert_true(pair_can(&row[i]));
   /* Each row holds what none before it does. */
   cover_count(pair_levels, pair_can, row, count - 1, &pairs, &missing);

@@ -24,7 +24,7 @@ static double height(const char *options) {
 static void a_stone_is_tilted(void **state) {
   (void)state;
   const double level = height("");
-  assert_in_range((int)(1e6 * level), 5000, 6500);
+  assert_int_in_range((int)(1e6 * level), 5000, 6500);
   assert_near(height("--tilt 0"), level, 0);
   assert_near(height("--tilt 180"), level, 1e-9);
   assert_true(height("--tilt 90") > 0.00799 && height("--tilt -90,45") > 0.00799);

@@ -84,7 +84,7 @@ static void an_axis_shows_its_values(void **state) {
         a = abbe_axis_make(log ? far[i] : -far[k], far[k], 0.1, log, false);
         assert_true(a.min < a.max && isfinite(a.max - a.min) && (!log || a.min > 0));
         assert_true(abbe_axis_ticks(&a, 5, tick, &exponent) <= ABBE_AXIS_MAX_TICKS);
-        assert_in_range(exponent + 400, 0, 800);
+        assert_int_in_range(exponent + 400, 0, 800);
       }
   a = abbe_axis_make(INFINITY, -INFINITY, 0.1, true, false);
   assert_true(0 < a.min && a.min < a.max && isfinite(a.max));

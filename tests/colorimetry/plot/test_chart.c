@@ -81,7 +81,7 @@ static void check_steps(const double *x, const double *y, bool log, bool reverse
     while (from < image.width && find(&image, from, from + 1).count == 0) from++;
     for (at = from; at < image.width && find(&image, at, at + 1).count > 0;) at++;
     s[i] = find(&image, from, at);
-    assert_in_range(s[i].count, 24, 44); /* of a dot of radius 3.2 */
+    assert_int_in_range(s[i].count, 24, 44); /* of a dot of radius 3.2 */
   }
   double down = reversed ? -1 : 1;
   assert_near(s[1].x - s[0].x, s[2].x - s[1].x, 0.6);
@@ -176,7 +176,7 @@ static void a_grid_runs_row_by_row(void **state) {
         abbe_png_read(path[0], &image, &error) != ABBE_OK)
       fail_msg("%s", error.text);
     at[i] = find(&image, 0, image.width);
-    assert_in_range(at[i].count, 24, 44);
+    assert_int_in_range(at[i].count, 24, 44);
     abbe_image_free(&image);
   }
   for (size_t i = 0; i < 6; i++) {

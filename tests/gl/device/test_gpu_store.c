@@ -68,7 +68,7 @@ static void rooms_are_of_one_kind(void **state) {
     kinds += size >= 1 << 20 && room != last;
     last = room;
   }
-  assert_in_range(kinds, 8 * 16, 8 * 16 + 1);
+  assert_int_in_range(kinds, 8 * 16, 8 * 16 + 1);
   for (int bit = 0; bit < 28; bit++) {
     const size_t room = abbe_gpu_store_room((size_t)1 << bit);
     assert_true((room & (room - 1)) != 0 && (room >> 8 & 255) != 0);

@@ -54,7 +54,7 @@ static void targets_of_coarse_pictures_are_no_power_of_two(void **state) {
         for (int axis = 0; axis < 2; axis++) {
           const size_t samples = camera.samples[axis], room = camera.room[axis];
           assert_int_equal(camera.receiver_room[axis], room);
-          assert_in_range(room, samples, samples + (coarse ? samples < 2 ? 2 : 1 : 0));
+          assert_int_in_range(room, samples, samples + (coarse ? samples < 2 ? 2 : 1 : 0));
           assert_true(coarse == ABBE_COARSE_NONE || (room & (room - 1)) != 0);
         }
       }

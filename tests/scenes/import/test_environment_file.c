@@ -271,7 +271,7 @@ static void what_is_documented_loads(void **state) {
     double rgb[3];
     load_text(scene_text, &scene);
     abbe_environment_irradiance(scene.environment, up, rgb);
-    assert_in_range(found, 0, 2);
+    assert_int_in_range(found, 0, 2);
     assert_near(rgb[1], grounds[found], tolerance[found]);
     abbe_scene_free(&scene);
   }

@@ -85,7 +85,7 @@ static void a_box_cuts_lines(void **state) {
       assert_int_equal(inside, some && t > from && t < to);
     }
   }
-  assert_in_range(met, 20, 380);
+  assert_int_in_range(met, 20, 380);
 }
 
 int main(void) {

@@ -43,7 +43,7 @@ static void a_cone_cuts_lines(void **state) {
       assert_int_equal(off > 0, some && t > from && t < to);
     }
   }
-  assert_in_range(met, 500, 2900);
+  assert_int_in_range(met, 500, 2900);
 }
 
 enum { STEPS = 4, PARTS = 4000 };

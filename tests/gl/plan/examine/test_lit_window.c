@@ -82,10 +82,10 @@ static void square_on_the_axis(void **state) {
   assert_true(abbe_lit_window_cone(&lamp, &light));
   /* 0.1 of 1 on either side of the middle, and the rounding and two pixels more. */
   assert_true(abbe_lit_window(&light, &eye, square, 200, 100, rect));
-  assert_in_range(rect[0], 87, 88);
-  assert_in_range(rect[1], 42, 43);
-  assert_in_range(rect[2], 112, 113);
-  assert_in_range(rect[3], 57, 58);
+  assert_int_in_range(rect[0], 87, 88);
+  assert_int_in_range(rect[1], 42, 43);
+  assert_int_in_range(rect[2], 112, 113);
+  assert_int_in_range(rect[3], 57, 58);
   assert_false(abbe_lit_window(&light, &eye, behind, 200, 100, rect));
   lamp.cone_rad = 1.3;
   assert_false(abbe_lit_window_cone(&lamp, &light));
