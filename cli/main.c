@@ -30,13 +30,13 @@ enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 static void help(FILE *out) {
   fprintf(out,
           "abbe %s: spectral dispersion caustics\n\n"
-          "usage: abbe COMMAND [OPTION…] [FILE…]\n\n",
+          "usage: abbe COMMAND [OPTION…] [FILE…]\n\n"
+          "First steps:\n" ABBE_FIRST_STEPS "\nCommands:\n",
           ABBE_VERSION);
   for (int i = 0; i < COMMAND_COUNT; i++)
-    fprintf(out, "  %-10s %s\n", commands[i].name, commands[i].summary);
-  fprintf(out, "  %-10s %s\n\n", "help", "this page, or a command's own: abbe help render");
-  fprintf(out, "First steps:\n" ABBE_FIRST_STEPS
-               "\nExit codes: 0 done, 1 failed, 2 used wrongly, 3 out of tolerance.\n");
+    fprintf(out, "  %-11s %s\n", commands[i].name, commands[i].summary);
+  fprintf(out, "  %-11s %s\n\n", "help", "this page, or a command's own: abbe help render");
+  fprintf(out, "Exit codes: 0 done, 1 failed, 2 used wrongly, 3 out of tolerance.\n");
 }
 
 /* What a page of help or a version says goes to stdout too, past all commands. */

@@ -285,6 +285,7 @@ static uint64_t mix_powers(uint64_t h, const abbe_scene *scene, const abbe_plan 
   for (size_t i = 0; i < scene->light_count; i++) MIX(h, scene->light[i].power);
   MIX(h, scene->ambient); /* the unit of power goes by the greatest of all */
   MIX(h, scene->background);
+  MIX(h, scene->transparent);
   MIX(h, plan->desc.space);
   MIX(h, plan->desc.observer); /* whose white a light has */
   return h;

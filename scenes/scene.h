@@ -140,6 +140,8 @@ typedef struct abbe_scene {
   abbe_material_table table;
   double ambient;    /* W/m2: uniform irradiance on every receiver, unshadowed by definition */
   double background; /* W/(m2 sr): radiance seen where nothing is hit */
+  bool transparent; /* the camera sees nothing behind the objects: a picture to be laid over another
+                       (view/coverage.h); what they refract and reflect stays */
 } abbe_scene;
 
 static inline abbe_object_kind abbe_object_kind_of(const abbe_object *object) {

@@ -35,6 +35,7 @@ abbe_label(program long NAMES slits_all)
 foreach(name
     arguments
     bad_input
+    newcomers
     export_command
     materials_change_command
     materials_edit_command

@@ -167,8 +167,8 @@ abbe_result abbe_yaml_get_choice(abbe_yaml *yaml, abbe_yaml_node mapping, const 
     return abbe_yaml_fail(yaml, which, error, "'%s' wants one word of %s, not %s", key, list,
                           kind_name(yaml, which));
   const char *near = abbe_nearest_word(text, names, (size_t)count);
-  return abbe_yaml_fail(yaml, which, error, "'%s: %.60s' is not known%s%s%s; it is one of %s", key,
-                        text, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "",
+  return abbe_yaml_fail(yaml, which, error, "'%s: %.60s' is not known; %s%s%s is one of %s", key,
+                        text, near ? "did you mean '" : "", near ? near : "", near ? "'? It" : "it",
                         list);
 }
 

@@ -209,6 +209,19 @@ static bool take_option(const char *program, option_list *list, const char *word
   return separate;
 }
 
+/* A shell puts the user's folder for the ~ that begins a word, and leaves "--out=~/a" as it is. */
+static char *expand_home(const char *program, char *word) {
+  static char *kept[MAX_OPTIONS]; /* to the program's end */
+  static size_t count;
+  const char *at = strstr(word, "=~/"), *home = getenv("HOME");
+  if (at == NULL || home == NULL || count == MAX_OPTIONS) return word;
+  const size_t size = strlen(word) + strlen(home) + 1;
+  char *whole = malloc(size);
+  if (whole == NULL) no_memory(program);
+  snprintf(whole, size, "%.*s=%s%s", (int)(at - word), word, home, at + 2);
+  return kept[count++] = whole;
+}
+
 void abbe_arguments_parse(const struct argp *argp, unsigned flags, int argc, char **argv,
                           void *input) {
   static const struct argp_option own[] = {{"help", '?', NULL, 0, NULL, 0},
@@ -222,6 +235,7 @@ void abbe_arguments_parse(const struct argp *argp, unsigned flags, int argc, cha
   collect(argp, &list);
   collect(&always, &list);
   abbe_arguments_add(argv[0], ABBE_ARGUMENT_READS, "$OCIO", getenv("OCIO"));
+  for (int i = 1; i < argc; i++) argv[i] = expand_home(argv[0], argv[i]);
   for (int i = 1; i < argc; i++) {
     const char *word = argv[i];
     if (!only_arguments && strcmp(word, "--") == 0)

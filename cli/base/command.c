@@ -94,7 +94,7 @@ int abbe_command_choice(const char *program, const char *option, const char *tex
   const char *near = abbe_nearest_word(text, names, (size_t)count);
   fprintf(stderr, "%s: %s '%s' is not known; ", program, option, text);
   if (near != NULL) fprintf(stderr, "did you mean '%s'? ", near);
-  fprintf(stderr, "it is one of");
+  fprintf(stderr, near != NULL ? "It is one of" : "it is one of");
   for (int i = 0; i < count; i++) fprintf(stderr, "%s %s", i > 0 ? "," : "", names[i]);
   fprintf(stderr, "\n");
   wrong_use(program);

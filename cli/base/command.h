@@ -49,9 +49,12 @@ ABBE_COMMANDS(ABBE_COMMAND_DECLARE)
 
 /* What the program's own help and manual page begin with. */
 #define ABBE_FIRST_STEPS                                                                           \
-  "  abbe render scenes/gem.yaml -o gem.exr --png gem.png\n"                                       \
-  "  abbe plan scenes/gem.yaml\n"                                                                  \
-  "  abbe materials show diamond --at 587.5618\n"
+  "  abbe render round.asc --material ruby   a picture of a stone: round.png\n"                    \
+  "  abbe view round.asc                     the stone in a window, to be turned and changed\n"    \
+  "  abbe gem report round.asc -o round.pdf  how well it is cut\n"                                 \
+  "\n"                                                                                             \
+  "  round.asc is a design (.asc, .gem, .gcs) or, but for the report, a mesh (.stl, .obj, .ply,\n" \
+  "  .glb); a scene of your own is a .yaml: abbe render scenes/gem.yaml --png gem.png\n"
 
 /* Prints "PROGRAM: sentence" to stderr (its general text where the sentence is empty); returns
  * the exit code that goes with the result. */

@@ -99,8 +99,6 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     state->child_inputs[0] = &q->stone.in;
     return 0;
   case ARGP_KEY_END:
-    if (q->stone.in.material_name == NULL)
-      argp_error(state, "of which stone? Give --material NAME; 'abbe materials list' has them");
     if (q->stone.in.json && q->csv) argp_error(state, "--json and --csv: one of them");
     return 0;
   default:

@@ -16,13 +16,15 @@ typedef struct abbe_gem_stone_input {
   double from_nm, to_nm; /* 0: 380 and 780 */
   size_t count;          /* of wavelengths */
   double width_m;        /* from here on: filled by load */
+  abbe_material own;     /* of the design's index, where no material is given */
   abbe_wavelengths wavelengths;
   abbe_weights weights; /* under D65, in XYZ */
   abbe_gem_stone stone;
 } abbe_gem_stone_input;
 
-/* abbe_gem_input_load, and the stone; ABBE_NOT_FOUND without a material. A note on stderr, unless
- * quiet, where its index is continued beyond its data. */
+/* abbe_gem_input_load, and the stone. Without a material it has the design's index at all
+ * wavelengths; ABBE_NOT_FOUND where that has none. Notes on stderr, unless quiet, of this and where
+ * an index is continued beyond its data. */
 abbe_result abbe_gem_stone_input_load(abbe_gem_stone_input *input, abbe_error *error);
 /* Safe on a zeroed one. */
 void abbe_gem_stone_input_free(abbe_gem_stone_input *input);

@@ -1,6 +1,7 @@
 #include "cli/options/scene_input.h"
 
 #include "base/file.h"
+#include "base/nearest.h"
 #include "base/number.h"
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
@@ -8,12 +9,16 @@
 #include "scenes/check/scene_doubts.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/refractor_tilt.h"
+#include "scenes/view/coverage.h"
 
 #include <cjson/cJSON.h>
+#include <dirent.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
+#include <unistd.h>
 
 static const double RAD = 3.14159265358979323846 / 180;
 
@@ -79,10 +84,24 @@ static void take_studio(abbe_scene_input_changes *changes, int key, const char *
     studio->width_m = abbe_command_length(program, "--width", text, 1e-6, 1e3);
 }
 
+/* Files that people try, and what to do with them. */
+static void refuse_foreign(const char *path, struct argp_state *state) {
+  static const char *const endings[] = {".step", ".stp", ".3dm", ".blend", ".fbx",  ".dxf", ".iges",
+                                        ".dae",  ".jpg", ".png", ".jpeg",  ".webp", ".mtl", ".zip"};
+  const char *dot = strrchr(abbe_file_name(path), '.');
+  for (size_t i = 0; dot != NULL && i < sizeof endings / sizeof *endings; i++)
+    if (strcasecmp(dot, endings[i]) == 0)
+      argp_error(state,
+                 "'%s' is neither a scene (.yaml) nor a stone's file (.asc, .gem, .gcs, .stl, "
+                 ".obj, .ply, .gltf, .glb)%s",
+                 path, i < 8 ? "; let the program that made it export one of these" : "");
+}
+
 void abbe_scene_input_take_file(abbe_scene_input_changes *changes, const char **scene,
                                 const char *text, struct argp_state *state) {
   abbe_studio *studio = &changes->studio;
   if (*scene == NULL) {
+    refuse_foreign(text, state);
     *scene = text;
     return;
   }
@@ -116,6 +135,8 @@ error_t abbe_scene_input_take(abbe_scene_input_changes *changes, int key, const 
     changes->time = abbe_command_number(program, "--at", text, -1e6, 1e6);
   } else if (key >= ABBE_SCENE_INPUT_LOOK && key <= ABBE_SCENE_INPUT_SAVE)
     take_studio(changes, key, text, program);
+  else if (key == ABBE_SCENE_INPUT_ALPHA)
+    changes->alpha = true;
   else if (key != ABBE_SCENE_INPUT_SET)
     return ARGP_ERR_UNKNOWN;
   else if (changes->set_count < ABBE_SCENE_INPUT_MOST)
@@ -181,8 +202,29 @@ static abbe_result load(const char *path, const char *materials,
   abbe_result result = abbe_scene_load(path, &options, out, error);
   if (result == ABBE_OK && changes->save != NULL)
     result = save(path, &studio, options, changes->save, error);
+  if (result == ABBE_OK) out->transparent = changes->alpha;
   if (result != ABBE_OK || changes->tilt_deg == 0) return result;
   return abbe_refractors_tilt(out, changes->tilt_deg * RAD, changes->axis_deg * RAD, error);
+}
+
+/* To the sentence on a file that is not there, the name beside it that is nearest. */
+static void add_nearest(const char *path, abbe_error *error) {
+  enum { MOST = 1000 };
+  char folder[PATH_MAX], *names[MOST];
+  const char *name = abbe_file_name(path);
+  size_t count = 0;
+  snprintf(folder, sizeof folder, "%.*s", name > path ? (int)(name - path) : 1,
+           name > path ? path : ".");
+  DIR *dir = access(path, F_OK) != 0 ? opendir(folder) : NULL;
+  for (struct dirent *e; dir != NULL && count < MOST && (e = readdir(dir)) != NULL;)
+    if ((names[count] = strdup(e->d_name)) != NULL) count++;
+  if (dir != NULL) closedir(dir);
+  const char *near = abbe_nearest_word(name, (const char *const *)names, count);
+  const size_t used = strlen(error->text);
+  if (near != NULL)
+    snprintf(error->text + used, sizeof error->text - used, "; did you mean '%.*s%s'?",
+             (int)(name - path), path, near);
+  for (size_t i = 0; i < count; i++) free(names[i]);
 }
 
 abbe_result abbe_scene_input_load_with(const char *program, const char *path, const char *materials,
@@ -193,6 +235,7 @@ abbe_result abbe_scene_input_load_with(const char *program, const char *path, co
   if (found != path) fprintf(stderr, "note: %s is not here; %s is taken\n", path, found);
   check_studio(program, found, changes);
   const abbe_result result = load(found, materials, changes, out, error);
+  if (result == ABBE_IO) add_nearest(found, error);
   for (size_t i = 0; result == ABBE_OK && i < abbe_scene_file_count(out); i++)
     abbe_arguments_add(program, ABBE_ARGUMENT_READS, "the scene's file", abbe_scene_file(out, i));
   return result;
@@ -205,6 +248,16 @@ abbe_result abbe_scene_input_at(const abbe_scene *scene, const char *materials,
   timed.timed = true;
   timed.time = time;
   return load(scene->path, materials, &timed, out, error);
+}
+
+abbe_result abbe_scene_input_add_alpha(const abbe_scene *scene, size_t samples, abbe_image *picture,
+                                       abbe_error *error) {
+  abbe_image alpha;
+  abbe_result result =
+      abbe_coverage_make(scene, picture->width, picture->height, samples, &alpha, error);
+  if (result == ABBE_OK) result = abbe_image_append(picture, &alpha, error);
+  abbe_image_free(&alpha);
+  return result;
 }
 
 void abbe_scene_input_note(const abbe_scene *scene) {

@@ -21,7 +21,8 @@ typedef struct abbe_scene_input_changes {
   abbe_studio studio;
   const char *more[ABBE_STUDIO_MOST_STONES]; /* the studio's */
   const char *look, *save;                   /* as given; NULL: not */
-  const char *stone;                         /* NULL: as the scene says */
+  bool alpha;
+  const char *stone; /* NULL: as the scene says */
   const char *set[ABBE_SCENE_INPUT_MOST];
   size_t set_count;
   double tilt_deg, axis_deg; /* of the refractors (scenes/refractor_tilt.h) */
@@ -38,8 +39,16 @@ enum {
   ABBE_SCENE_INPUT_LOOK,
   ABBE_SCENE_INPUT_WITH,
   ABBE_SCENE_INPUT_WIDTH,
-  ABBE_SCENE_INPUT_SAVE
+  ABBE_SCENE_INPUT_SAVE,
+  ABBE_SCENE_INPUT_ALPHA
 };
+#define ABBE_SCENE_INPUT_ALPHA_OPTION(group)                                                       \
+  {                                                                                                \
+    "alpha", ABBE_SCENE_INPUT_ALPHA, NULL, 0,                                                      \
+        "nothing behind the objects, and how much of each pixel they cover as alpha: "             \
+        "premultiplied in the EXR (channel A), straight in the PNG",                               \
+        group                                                                                      \
+  }
 #define ABBE_SCENE_INPUT_STUDIO_OPTIONS(group)                                                     \
   {"look",                                                                                         \
    ABBE_SCENE_INPUT_LOOK,                                                                          \
@@ -118,6 +127,11 @@ abbe_result abbe_scene_input_at(const abbe_scene *scene, const char *materials,
  * program with ABBE_EXIT_USAGE where a file of the scene is one that is to be written. */
 abbe_result abbe_scene_input_load(const char *program, const char *path, const char *materials,
                                   abbe_scene *out, abbe_error *error);
+
+enum { ABBE_SCENE_INPUT_ALPHA_SAMPLES = 8 }; /* of a traced picture */
+/* Appends channel A to a picture of the scene, of whose pixels so many samples a side are taken. */
+abbe_result abbe_scene_input_add_alpha(const abbe_scene *scene, size_t samples, abbe_image *picture,
+                                       abbe_error *error);
 
 /* To stderr: what was mended, what is not whole still, and what is hardly meant. */
 void abbe_scene_input_note(const abbe_scene *scene);

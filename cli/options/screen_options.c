@@ -6,6 +6,7 @@
 #include "colorimetry/colour_temperature.h"
 #include "colorimetry/image/avif_file.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -18,6 +19,9 @@ enum {
   OPTION_WHITE,
   OPTION_BITS
 };
+
+/* Of a picture; a white table in the light is no fault. */
+#define MOST_WHITE 0.2
 
 static const struct argp_option options[] = {
     {"ocio", OPTION_OCIO, "FILE", ABBE_ARGUMENT_READS,
@@ -119,11 +123,21 @@ abbe_result abbe_screen_options_write(const abbe_screen_options *o, const char *
                                       const abbe_image *image, const char *layer, const char *name,
                                       abbe_error *error) {
   abbe_screen_png_notes notes = {0};
-  const abbe_screen_png_desc desc = {
-      .display = o->display, .layer = layer, .name = name, .bits = o->bits, .notes = &notes};
+  const abbe_screen_png_desc desc = {.display = o->display,
+                                     .layer = layer,
+                                     .name = name,
+                                     .bits = o->bits,
+                                     .alpha = o->alpha,
+                                     .notes = &notes};
   const abbe_result result = abbe_screen_png_write(path, image, &desc, error);
   if (name == NULL) name = "the picture";
   if (notes.space_assumed) abbe_command_note_space(name);
+  if (notes.white > MOST_WHITE)
+    fprintf(
+        stderr,
+        "warning: %.0f %% of the picture is over-exposed: white without detail; --exposure %.1f "
+        "shows it\n",
+        100 * notes.white, fmin(notes.stops, o->display.exposure - 0.5));
   abbe_command_note_odd(name, &notes.odd, "shown as the brightest light there is");
   return result;
 }

@@ -16,6 +16,7 @@ typedef struct abbe_screen_options {
   const char *given; /* one of them, as it was given: a picture must be shown */
   abbe_display_desc display;
   int bits;
+  bool alpha; /* the picture has channel A, for the PNG */
 } abbe_screen_options;
 
 /* An argp child; its input is an abbe_screen_options. */

@@ -128,7 +128,11 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     if (q->exr == NULL && q->png == NULL && q->stats == NULL && q->map.save == NULL && !q->json &&
         q->errors.png == NULL)
       argp_error(state, "where to? Give -o FILE.exr, --png FILE.png or both");
+    q->screen.alpha = q->render.changes.alpha;
     abbe_screen_options_end(&q->screen, q->png, state);
+    if (q->screen.alpha && (q->series.count > 0 || q->bands > 0))
+      argp_error(state, "--alpha is of one picture: it goes without --turntable, --frames A:B and "
+                        "--bands");
     if (q->bands > 0 && q->map.save == NULL && q->exr == NULL)
       argp_error(state, "--bands are those of -o FILE.exr and --save-map FILE.exr: give one");
     if (q->series.count > 0 && (q->map.save != NULL || q->frames > 0 || q->errors.asked ||
@@ -209,6 +213,8 @@ static abbe_result trace(request *q, const abbe_scene *scene, abbe_error *error)
   if (!q->quiet) abbe_scene_input_note(scene);
   if (!q->quiet) note_picture(q);
   abbe_result result = abbe_traced_picture_make(&q->picture, scene, &desc, &image, error);
+  if (result == ABBE_OK && q->screen.alpha)
+    result = abbe_scene_input_add_alpha(scene, ABBE_SCENE_INPUT_ALPHA_SAMPLES, &image, error);
   if (result == ABBE_OK && q->exr != NULL) result = abbe_exr_write(q->exr, &image, error);
   if (result == ABBE_OK && q->png != NULL) result = abbe_render_write_png(q, &image, error);
   if (result == ABBE_OK) result = abbe_render_check_in_time(q, scene, &image, error);
@@ -234,6 +240,9 @@ static abbe_result write_picture(request *q, const abbe_scene *scene, abbe_conte
   if (result == ABBE_OK)
     result = abbe_error_options_work(&q->errors, context, scene, renderer, q->quiet, &image, bars,
                                      error);
+  if (result == ABBE_OK && q->screen.alpha)
+    result = abbe_scene_input_add_alpha(scene, abbe_renderer_plan(renderer)->desc.supersample,
+                                        &image, error);
   if (result == ABBE_OK && q->exr != NULL && q->bands > 0)
     result = abbe_render_add_bands(q, scene, context, &image, error);
   if (result == ABBE_OK && q->exr != NULL) result = abbe_exr_write(q->exr, &image, error);

@@ -145,6 +145,7 @@ static const struct argp_option options[] = {
      "a table instead of the scene's: default, thesis or a file", 1},
     ABBE_SCENE_INPUT_OPTIONS(1),
     ABBE_SCENE_INPUT_STUDIO_OPTIONS(1),
+    ABBE_SCENE_INPUT_ALPHA_OPTION(1),
     {0}};
 
 #define ABBE_NAME_OF_2(code, name) name,

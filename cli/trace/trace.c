@@ -78,6 +78,7 @@ static const struct argp_option options[] = {
     {"half", OPTION_HALF, NULL, 0, "files in half precision: 11 bits, and half the size", 1},
     ABBE_SCENE_INPUT_OPTIONS(1),
     ABBE_SCENE_INPUT_STUDIO_OPTIONS(1),
+    ABBE_SCENE_INPUT_ALPHA_OPTION(1),
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
      "a table instead of the scene's: default, thesis or a file", 1},
     ABBE_FRAME_SERIES_MOVE(OPTION_MOVE, 5),
@@ -260,7 +261,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
       argp_error(state, "where to? Give -o FILE.exr, --save-map FILE.exr or both");
     if (q->filter && q->part_end == 0 && ((q->exr == NULL && q->png == NULL) || q->passes == 1))
       argp_error(state, "--filter needs a picture (-o, --png) of two passes or more (--spp 2)");
+    q->screen.alpha = q->changes.alpha;
     abbe_screen_options_end(&q->screen, q->png, state);
+    if (q->screen.alpha && q->series.count > 0)
+      argp_error(state, "--alpha is of one picture: it goes without --frames");
     return 0;
   default:
     return parse_work(key, text, q);
@@ -372,6 +376,7 @@ static abbe_result trace(request *q, abbe_tracer *tracer, abbe_error *error) {
 
 static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
   abbe_tracer *tracer = NULL;
+  q->traced = scene;
   abbe_result result = abbe_map_options_resolve(&q->map, scene, false, error);
   if (result != ABBE_OK) return result;
   q->desc.map_light = q->map.light_index;

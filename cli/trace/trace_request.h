@@ -31,7 +31,8 @@ typedef struct abbe_trace_request {
   double filter_seconds; /* spent */
   abbe_screen_options screen;
   char *checkpoint_path;
-  size_t frame; /* of the series, while it is traced */
+  const abbe_scene *traced; /* while it is */
+  size_t frame;             /* of the series, while it is traced */
 } abbe_trace_request;
 
 #endif

@@ -80,10 +80,13 @@ abbe_result abbe_trace_write(abbe_trace_request *q, const abbe_tracer *tracer, a
   if (!part && (q->exr != NULL || q->png != NULL)) {
     result = abbe_tracer_picture(tracer, &image, error);
     if (result == ABBE_OK) result = filter(q, abbe_tracer_passes(tracer), &image, error);
+    if (result == ABBE_OK && q->screen.alpha)
+      result = abbe_scene_input_add_alpha(q->traced, ABBE_SCENE_INPUT_ALPHA_SAMPLES, &image, error);
     if (result == ABBE_OK && q->series.count > 0)
       result = abbe_frame_series_mark(&q->series, q->frame, &image, error);
     if (result == ABBE_OK && q->exr != NULL) result = write_exr(q, q->exr, &image, error);
-    if (result == ABBE_OK && q->png != NULL) result = abbe_screen_options_write(&q->screen, q->png, &image, NULL, NULL, error);
+    if (result == ABBE_OK && q->png != NULL)
+      result = abbe_screen_options_write(&q->screen, q->png, &image, NULL, NULL, error);
     abbe_image_free(&image);
   }
   if (result == ABBE_OK && !part && q->map.save != NULL) {
@@ -126,10 +129,11 @@ void abbe_trace_summarise(const abbe_trace_request *q, const abbe_tracer *tracer
   }
   fprintf(stderr, "\n");
   if (!q->desc.no_picture && s.faintest < ABBE_TRACER_FAINTEST)
-    fprintf(stderr,
-            "note: the dimmest of the scene's lights has %.1g of the brightest's radiance; light below "
-            "%.1g of that is lost in the sums\n",
-            s.faintest, ABBE_TRACER_FAINTEST);
+    fprintf(
+        stderr,
+        "note: the dimmest of the scene's lights has %.1g of the brightest's radiance; light below "
+        "%.1g of that is lost in the sums\n",
+        s.faintest, ABBE_TRACER_FAINTEST);
   if (s.cuts > 0)
     fprintf(stderr, "note: %llu contributions were too bright to be kept whole\n",
             (unsigned long long)s.cuts);

@@ -115,8 +115,10 @@ static bool write_rows(job *j, const abbe_image *image) {
   png_set_write_fn(j->png, j, write_bytes, flush_bytes);
   png_set_user_limits(j->png, ABBE_IMAGE_MAX_SIDE, ABBE_IMAGE_MAX_SIDE);
   png_set_IHDR(j->png, j->info, (png_uint_32)image->width, (png_uint_32)image->height, j->bits,
-               j->samples == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+               j->samples == 4   ? PNG_COLOR_TYPE_RGB_ALPHA
+               : j->samples == 3 ? PNG_COLOR_TYPE_RGB
+                                 : PNG_COLOR_TYPE_GRAY,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   write_encoding(j, image);
   write_text(j, image);
   png_write_info(j->png, j->info);
@@ -152,10 +154,11 @@ abbe_result abbe_png_write(const char *path, const abbe_image *image, int bits, 
                           "%s: PQ and HLG are written with 16 bits, for the primaries of Rec.709, "
                           "Rec.2020 or P3",
                           path);
-  job j = {.path = path, .bits = bits, .samples = image->channels >= 3 ? 3 : 1};
+  job j = {.path = path, .bits = bits, .samples = image->channels < 3 ? 1 : 3};
+  if (image->channels > 3 && strcmp(image->channel[3], "A") == 0) j.samples = 4;
   abbe_file_writer writer = {0};
   abbe_result result = ABBE_OK;
-  if (j.samples == 3 && abbe_rgb_encoding_is_known(image->xy, image->curve) &&
+  if (j.samples >= 3 && abbe_rgb_encoding_is_known(image->xy, image->curve) &&
       !abbe_rgb_encoding_is_srgb(image->xy, image->curve))
     result = abbe_rgb_encoding_profile(image->xy, image->curve, &j.icc, &j.icc_size, error);
   if (result == ABBE_OK) result = abbe_file_writer_open(&writer, path, error);

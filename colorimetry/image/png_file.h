@@ -8,7 +8,8 @@
 extern "C" {
 #endif
 
-/* Writes the first three channels (or one, as grey), values clamped to [0, 1] and already
+/* Writes the first three channels (or one, as grey), and a fourth that is called A as alpha,
+ * straight and linear; values clamped to [0, 1] and already
  * encoded for the display, with bits = 8 or 16. Not-a-number is written as 0. Beside and renamed.
  * The file says what image->xy and image->curve say of them: sRGB by its chunk (with gAMA and cHRM
  * for old readers), another encoding by an ICC profile, PQ and HLG (image->transfer) by cICP,

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The names that pictures go by, in order of preference; a lone Y is a grey. */
@@ -56,6 +57,31 @@ static abbe_result pick_channels(const abbe_screen_png_desc *d, const abbe_image
   return ABBE_OK;
 }
 
+/* Channel A of the picture, or none. */
+static const float *alpha_of(const abbe_screen_png_desc *d, const abbe_image *image) {
+  const size_t at = d->alpha ? abbe_image_find_channel(image, "A") : (size_t)-1;
+  return at != (size_t)-1 ? image->data + at : NULL;
+}
+
+static void divide(const float *alpha, size_t stride, abbe_image *picked) {
+  for (size_t i = 0; i < picked->width * picked->height; i++)
+    for (int k = 0; k < 3 && alpha[i * stride] > 0; k++)
+      picked->data[3 * i + k] /= alpha[i * stride];
+}
+
+/* A fourth channel, of alpha. */
+static abbe_result add_alpha(const float *alpha, size_t stride, abbe_image *picked,
+                             abbe_error *error) {
+  static const char *const name[] = {"A"};
+  abbe_image own;
+  abbe_result result = abbe_image_make(picked->width, picked->height, 1, name, &own, error);
+  for (size_t i = 0; result == ABBE_OK && i < own.width * own.height; i++)
+    own.data[i] = alpha[i * stride];
+  if (result == ABBE_OK) result = abbe_image_append(picked, &own, error);
+  abbe_image_free(&own);
+  return result;
+}
+
 /* In the picture's own space where the configuration may have it; of other primaries the pixels
  * become XYZ. Light is held where floats take it. */
 static void enter_space(const abbe_picture_space *from, abbe_image *picked, const char **space) {
@@ -85,6 +111,39 @@ static abbe_result find_source(const abbe_screen_png_desc *d, const abbe_image *
   return ABBE_OK;
 }
 
+static int by_size(const void *a, const void *b) {
+  const float x = *(const float *)a, y = *(const float *)b;
+  return (x > y) - (x < y);
+}
+
+/* By the greatest channels of pixels all over the picture. */
+static double find_stops(const abbe_image *picked) {
+  enum { MOST = 4096 };
+  static const double bright = 0.8, share = 0.9;
+  float most[MOST];
+  const size_t pixels = picked->width * picked->height, step = pixels / MOST + 1;
+  size_t count = 0;
+  for (size_t i = 0; i < pixels; i += step) {
+    const float *p = picked->data + 3 * i;
+    most[count++] = fmaxf(p[0], fmaxf(p[1], p[2]));
+  }
+  qsort(most, count, sizeof *most, by_size);
+  const double value = (double)most[(size_t)(share * (double)(count - 1))];
+  return value > 0 ? log2(bright / value) : 0;
+}
+
+/* A pixel is white where 8 bits have all three channels at their end. */
+static double share_of_white(const abbe_image *shown) {
+  const float end = 254.5f / 255;
+  const size_t pixels = shown->width * shown->height;
+  size_t count = 0;
+  for (size_t i = 0; i < pixels; i++) {
+    const float *p = shown->data + 3 * i;
+    count += p[0] >= end && p[1] >= end && p[2] >= end;
+  }
+  return (double)count / (double)pixels;
+}
+
 abbe_result abbe_screen_png_write(const char *path, const abbe_image *image,
                                   const abbe_screen_png_desc *d, abbe_error *error) {
   ABBE_REQUIRE(path && image && d, error);
@@ -97,17 +156,26 @@ abbe_result abbe_screen_png_write(const char *path, const abbe_image *image,
     *d->notes = (abbe_screen_png_notes){0};
     abbe_image_count_odd(&picked, (const size_t[]){0, 1, 2}, 3, &d->notes->odd);
   }
+  if (result == ABBE_OK && d->notes != NULL) d->notes->stops = find_stops(&picked);
   if (result == ABBE_OK) result = find_source(d, image, triple, &picked, &desc.source_space, error);
+  const float *alpha = alpha_of(d, image);
+  if (result == ABBE_OK && alpha != NULL) divide(alpha, image->channels, &picked);
   if (result == ABBE_OK) result = abbe_display_make(&desc, &transform, error);
   if (result == ABBE_OK) result = abbe_display_apply(transform, &picked, error);
+  if (result == ABBE_OK && d->notes != NULL) d->notes->white = share_of_white(&picked);
+  if (result == ABBE_OK && alpha != NULL)
+    result = add_alpha(alpha, image->channels, &picked, error);
   const char *made = abbe_image_attribute_text(image, ABBE_PNG_TEXT);
   if (result == ABBE_OK && made != NULL)
     result = abbe_image_set_attribute(&picked, ABBE_PNG_TEXT, made, error);
   if (result == ABBE_OK && abbe_avif_is_meant(path))
     result = abbe_avif_write(path, &picked, d->bits != 0 ? d->bits : 10, error);
   else if (result == ABBE_OK)
-    result = abbe_png_write(
-        path, &picked, d->bits != 0 ? d->bits : picked.transfer != 0 ? 16 : 8, error);
+    result = abbe_png_write(path, &picked,
+                            d->bits != 0           ? d->bits
+                            : picked.transfer != 0 ? 16
+                                                   : 8,
+                            error);
   abbe_display_free(transform);
   abbe_image_free(&picked);
   return result;

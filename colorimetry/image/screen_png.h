@@ -16,12 +16,16 @@ extern "C" {
 typedef struct abbe_screen_png_notes {
   bool space_assumed; /* its R, G, B are of no stated space, and Rec.709's were taken */
   abbe_image_odd odd; /* of the channels that are shown */
+  double white;       /* the share of its pixels that are the display's white, without detail */
+  double stops;       /* by which more exposure a tenth of its pixels would be brighter than 0.8 */
 } abbe_screen_png_notes;
 
 /* Zeroed: the picture's own channels in the space that it states, the default view, 8 bits. */
 typedef struct abbe_screen_png_desc {
   abbe_display_desc display; /* its source_space NULL: what the picture says */
   const char *layer;         /* channels LAYER.R, LAYER.G, LAYER.B; NULL: R, G, B */
+  bool alpha;                /* its channel A goes into the PNG, straight, as PNG has it: colours
+                                are those before they were multiplied by it */
   const char *name;          /* of the picture, for sentences; NULL: "the picture" */
   int bits;                  /* of a PNG 8 or 16, 0: 8, for an HDR display 16; of an AVIF 10 or 12,
                                 0: 10 */

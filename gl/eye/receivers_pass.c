@@ -203,10 +203,12 @@ abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error
   abbe_result result = abbe_gpu_set_target(scene->gpu, target, flat, scene->plan->desc.aovs ? 3 : 1,
                                            pass->depth, w, h, error);
   if (result != ABBE_OK) return result;
-  GLfloat b = (GLfloat)scene->local->background, background[4] = {b, b, b, 0};
+  const bool behind_seen = !scene->local->transparent;
+  const GLfloat b = behind_seen ? (GLfloat)scene->local->background : 0;
+  const GLfloat background[4] = {b, b, b, 0};
   gl->ClearBufferfv(GL_COLOR, 0, background);
   for (GLint k = 1; k < 3 && scene->plan->desc.aovs; k++) gl->ClearBufferfv(GL_COLOR, k, nothing);
-  if (pass->surroundings != 0) {
+  if (pass->surroundings != 0 && behind_seen) {
     result = abbe_gpu_set_target(scene->gpu, target, flat, 1, 0, w, h, error);
     if (result != ABBE_OK) return result;
     draw_surroundings(pass);

@@ -26,6 +26,9 @@ abbe_result abbe_cut_file_read(const char *path, abbe_cut *out, abbe_report *rep
     size_t size;
     if (strcasecmp(ending, kinds[i].ending) != 0) continue;
     abbe_result result = abbe_file_read(path, ABBE_CUT_MAX_FILE, &data, &size, error);
+    if (result == ABBE_OK && strcasecmp(ending, ".gem") == 0 && strncmp(data, "GemCad ", 7) == 0)
+      result = abbe_error_set(
+          error, ABBE_PARSE, "%s: it is GemCad's text, whose name ends with .asc; rename it", path);
     if (result == ABBE_OK) result = kinds[i].parse(data, size, path, out, report, error);
     free(data);
     return result;

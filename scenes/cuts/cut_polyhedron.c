@@ -83,7 +83,32 @@ static abbe_result gather(work *w, abbe_cut_polyhedron *out, abbe_error *error) 
 
 /* ---- where they meet ---- */
 
-static abbe_result open_stone(abbe_error *error) {
+/* Whether the stone reaches for ever into the unit direction: no facet lies across it. */
+static bool is_open(const abbe_cut *cut, const double direction[3]) {
+  for (size_t i = 0; i < cut->facet_count; i++)
+    if (abbe_vector_dot(cut->facet[i].n, direction) > 1e-9) return false;
+  return true;
+}
+
+/* On which side, as a cutter looks for it. */
+static abbe_result open_stone(const abbe_cut *cut, abbe_error *error) {
+  const double up[3] = {0, 0, 1}, down[3] = {0, 0, -1};
+  if (is_open(cut, up))
+    return abbe_error_set(error, ABBE_GEOMETRY,
+                          "the planes leave the stone open on top: the crown lacks facets, or a "
+                          "table (angle 0)");
+  if (is_open(cut, down))
+    return abbe_error_set(error, ABBE_GEOMETRY,
+                          "the planes leave the stone open below: the pavilion lacks facets "
+                          "(angles below 0)");
+  for (int i = 0; i < 360; i++) {
+    const double a = i * (3.14159265358979323846 / 180), aside[3] = {cos(a), sin(a), 0};
+    if (is_open(cut, aside))
+      return abbe_error_set(error, ABBE_GEOMETRY,
+                            "the planes leave the stone open at the side, about index %.0f: facets "
+                            "are missing there",
+                            abbe_cut_index(cut, aside));
+  }
   return abbe_error_set(error, ABBE_GEOMETRY,
                         "the planes leave the stone open; facets are missing on one side of it");
 }
@@ -103,7 +128,7 @@ static abbe_result take_meets(work *w, qhT *qh, abbe_error *error) {
   if (!w->meet || !w->plane || !w->set) return no_memory(error);
   size_t m = 0;
   FORALLfacets {
-    if (!(facet->offset < open)) return open_stone(error);
+    if (!(facet->offset < open)) return open_stone(w->cut, error);
     meet *at = &w->meet[m];
     w->set[m] = (uint32_t)m;
     for (int k = 0; k < 3; k++) at->at[k] = -facet->normal[k] / facet->offset;
@@ -119,7 +144,7 @@ static abbe_result find_meets(work *w, abbe_error *error) {
   char *said = NULL;
   size_t said_size = 0;
   int whole, pieces, code;
-  if (w->planes < 4) return open_stone(error);
+  if (w->planes < 4) return open_stone(w->cut, error);
   FILE *messages = open_memstream(&said, &said_size);
   qhT *qh = calloc(1, sizeof *qh);
   abbe_result result = messages && qh ? ABBE_OK : no_memory(error);
@@ -132,7 +157,7 @@ static abbe_result find_meets(work *w, abbe_error *error) {
     else if (code == qh_ERRmem)
       result = no_memory(error);
     else if (code == qh_ERRsingular || code == qh_ERRinput)
-      result = open_stone(error);
+      result = open_stone(w->cut, error);
     else
       result = abbe_error_set(error, ABBE_GEOMETRY,
                               "the planes are too nearly alike to tell where they meet");

@@ -13,6 +13,7 @@
 #include "scenes/medium/medium_file.h"
 #include "spectral/formats/material_table_load.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -168,9 +169,7 @@ static abbe_result change_text(const char *text, size_t size, const char *name,
                                const abbe_scene_options *options, abbe_yaml_edit *out,
                                abbe_error *error) {
   abbe_result result = abbe_yaml_edit_make(text, size, name, out, error);
-  /* all stones of a studio are of it already */
-  if (result == ABBE_OK && options && options->stone &&
-      !(abbe_studio_is_stone(name) && strchr(options->stone, '=') == NULL))
+  if (result == ABBE_OK && options && options->stone)
     result = abbe_scene_change_material(out, options->stone, error);
   for (size_t i = 0; options && i < options->set_count && result == ABBE_OK; i++)
     result = abbe_scene_change_set(out, options->set[i], error);
@@ -226,10 +225,12 @@ static abbe_result read_text(const char *path, const abbe_scene_options *options
 
 static abbe_result load_document(const char *path, const abbe_scene_options *options,
                                  abbe_yaml **out, abbe_error *error) {
-  char *text = NULL;
+  char *text = NULL, name[PATH_MAX];
   size_t size = 0;
+  /* lines are those of the scene that is made of a stone's file */
+  snprintf(name, sizeof name, "%s%s", path, abbe_studio_is_stone(path) ? "'s scene" : "");
   abbe_result result = read_text(path, options, &text, &size, error);
-  if (result == ABBE_OK) result = parse_document(text, size, path, options, out, error);
+  if (result == ABBE_OK) result = parse_document(text, size, name, options, out, error);
   free(text);
   return result;
 }

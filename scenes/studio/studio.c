@@ -5,6 +5,7 @@
 #include "base/yaml/yaml_edit.h"
 #include "base/yaml/yaml_quote.h"
 #include "scenes/studio/studio_stone.h"
+#include "spectral/formats/material_table_load.h"
 
 #include <limits.h>
 #include <math.h>
@@ -265,6 +266,23 @@ static abbe_result compose(building *b, abbe_error *error) {
   return result == ABBE_OK ? describe(b, error) : result;
 }
 
+/* What is asked for by name is looked up before it stands in a scene, whose lines nobody knows. */
+static abbe_result check_material(const building *b, abbe_error *error) {
+  const char *name = b->studio->material;
+  abbe_material_table table = {0};
+  const abbe_material *found;
+  if (name == NULL) return ABBE_OK;
+  abbe_result result = abbe_material_table_load_named(b->studio->table, &name, 1, &table, error);
+  if (result == ABBE_OK) result = abbe_material_table_find(&table, name, &found, error);
+  if (result == ABBE_OK && abbe_material_is_conductor(found))
+    result = abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "'%s' is a metal; a stone is of something that light passes, such as "
+                            "ruby ('abbe materials list')",
+                            name);
+  abbe_material_table_free(&table);
+  return result;
+}
+
 static abbe_result read_stones(building *b, const char *path, abbe_error *error) {
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < b->count && result == ABBE_OK; i++)
@@ -296,8 +314,9 @@ abbe_result abbe_studio_scene(const char *path, const abbe_studio *studio, const
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a ring holds one stone, not %zu", b.count);
   b.stone = calloc(b.count, sizeof *b.stone);
   abbe_result result = b.stone != NULL
-                           ? read_stones(&b, path, error)
+                           ? check_material(&b, error)
                            : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for stones");
+  if (result == ABBE_OK) result = read_stones(&b, path, error);
   if (result == ABBE_OK)
     result = abbe_yaml_edit_make(looks[b.studio->look].text, *looks[b.studio->look].size, path,
                                  &b.edit, error);

@@ -115,7 +115,7 @@ static abbe_result read_mesh(const struct kind *kind, const abbe_studio *studio,
     }
   abbe_mesh_free(&mesh);
   const double own = fmin(max[0] - min[0], max[1] - min[1]);
-  if (!(own > 0))
+  if (!(own > 0) || !(max[2] > min[2]))
     return abbe_error_set(error, ABBE_GEOMETRY, "%s: it is flat; a stone has a volume", out->path);
   out->girdle = 0.6;
   out->width = studio->width_m > 0 ? studio->width_m : own * kind->unit_m;

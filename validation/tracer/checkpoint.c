@@ -77,6 +77,7 @@ static uint64_t hash_scene(const abbe_tracer *t) {
   h = hash_doubles(h, s->camera.up, 3);
   const double loose[] = {s->camera.fov_y_rad, s->ambient, s->background};
   h = hash_doubles(h, loose, 3);
+  if (s->transparent) h = hash(h, &s->transparent, sizeof s->transparent);
   for (size_t i = 0; i < s->light_count; i++) h = hash_light(h, &s->light[i]);
   if (s->environment != NULL) {
     const abbe_radiance_map *m = &s->environment->map;
@@ -194,7 +195,8 @@ static abbe_result refuse(const char *path, const char *theirs, int n, const cha
           ? "%s belongs to another scene, or to another state of this one (%.*s, not %.*s): start "
             "anew without --resume"
       : strncmp(theirs, "instructions ", 13) == 0
-          ? "%s was made with other instructions of a processor or another Embree (%.*s, here %.*s), "
+          ? "%s was made with other instructions of a processor or another Embree (%.*s, here "
+            "%.*s), "
             "whose last bits differ: go on with it, and put parts together, where it was made"
           : "%s was made with '%.*s', this run asks for '%.*s': ask for the same, or start anew "
             "without --resume";

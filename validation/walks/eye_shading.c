@@ -426,6 +426,7 @@ void abbe_eye_arrive(const abbe_eye_context *c, const abbe_eye_path *path, bool 
   const abbe_eye_path *p = &own;
   own.share *= spread(c, path, received);
   if (!met) {
+    if (straight && scene->transparent) return;
     if (scene->background > 0) add_white(c, p, (float)scene->background, NULL);
     if (c->w->environment->environment == NULL) return;
     float rgb[3];

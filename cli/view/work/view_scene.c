@@ -84,8 +84,15 @@ static abbe_result adopt(abbe_view_scene *s, abbe_view_document *document,
   return tell(s, out, error);
 }
 
-static abbe_result load(abbe_view_scene *s, const abbe_view_document *d, abbe_view_scene_news *out,
-                        abbe_error *error) {
+/* A camera that the file frames stays where it is while the objects in it are changed. */
+static void keep_place(const abbe_camera *own, abbe_camera *now) {
+  memcpy(now->eye, own->eye, sizeof now->eye);
+  memcpy(now->target, own->target, sizeof now->target);
+}
+
+static abbe_result load(abbe_view_scene *s, const abbe_view_document *d, bool reload,
+                        abbe_view_scene_news *out, abbe_error *error) {
+  const bool same = !reload && s->document.path != NULL && strcmp(s->document.path, d->path) == 0;
   const char *set[ABBE_VIEW_MOST_CHANGES];
   const abbe_scene_options options = options_of(s, d, set);
   abbe_view_document kept;
@@ -97,6 +104,7 @@ static abbe_result load(abbe_view_scene *s, const abbe_view_document *d, abbe_vi
     abbe_view_scene_drop(scene);
     return result;
   }
+  if (same) keep_place(&s->own, &scene->camera);
   s->now = scene;
   s->own = scene->camera;
   return adopt(s, &kept, out, error);
@@ -125,7 +133,7 @@ abbe_result abbe_view_scene_take(abbe_view_scene *s, const abbe_view_document *d
                                               ? ABBE_VIEW_CHANGED
                                               : abbe_view_document_compare(&s->document, document);
   if (difference == ABBE_VIEW_CHANGED) {
-    const abbe_result result = load(s, document, out, error);
+    const abbe_result result = load(s, document, reload, out, error);
     if (result != ABBE_OK) return result;
   }
   place_camera(s, document, turn_rad);

@@ -1,10 +1,13 @@
 /* Pictures for a screen: which channels are shown, and in which space they are taken to be. */
 #include "tests/check.h"
 
+#include "base/file.h"
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/image/screen_png.h"
 #include "colorimetry/rgb_space.h"
 
+#include <png.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 static char path[64];
@@ -122,6 +125,38 @@ static void test_layers_and_greys(void **state) {
   assert_near((double)got[0], (double)got[2], 2e-4);
 }
 
+/* Half of a pixel is covered by a grey of 0.6: the file has the grey, and half. */
+static void test_alpha_is_straight(void **state) {
+  (void)state;
+  static const char *const channels[] = {"R", "G", "B", "A"};
+  static const float pixels[] = {0.3f, 0.3f, 0.3f, 0.5f, 0, 0, 0, 0}, whole[] = {0.6f, 0.6f, 0.6f};
+  const abbe_screen_png_desc desc = {.display = {.view = "Plain"}, .alpha = true, .bits = 8};
+  abbe_image image = {0};
+  float shown[3];
+  unsigned char *data;
+  size_t size;
+  assert_int_equal(abbe_image_make(2, 1, 4, channels, &image, NULL), ABBE_OK);
+  memcpy(image.data, pixels, sizeof pixels);
+  abbe_image_set_attribute(&image, "abbe:space", "rec709", NULL);
+  assert_int_equal(abbe_screen_png_write(path, &image, &desc, NULL), ABBE_OK);
+  assert_int_equal(abbe_file_read(path, 1 << 16, (char **)&data, &size, NULL), ABBE_OK);
+  assert_int_equal(data[25], 6); /* IHDR's colour type: RGB and alpha */
+  free(data);
+  png_image png = {.version = PNG_IMAGE_VERSION};
+  unsigned char rgba[8];
+  assert_true(png_image_begin_read_from_file(&png, path));
+  png.format = PNG_FORMAT_RGBA;
+  assert_true(png_image_finish_read(&png, NULL, rgba, 0, NULL));
+  show(channels, 3, whole, "rec709", NULL, NULL, shown);
+  assert_int_equal(rgba[3], 128);
+  for (int k = 0; k < 3; k++) {
+    assert_near(rgba[k] / 255.0, (double)shown[k], 0.5 / 255 + 1e-6);
+    assert_int_equal(rgba[4 + k], 0);
+  }
+  assert_int_equal(rgba[7], 0);
+  abbe_image_free(&image);
+}
+
 static void test_what_cannot_be_shown_is_refused(void **state) {
   (void)state;
   static const char *const names[] = {"U", "V", "R"}, *const rgb[] = {"R", "G", "B"};
@@ -151,6 +186,7 @@ int main(void) {
       cmocka_unit_test(test_other_primaries),
       cmocka_unit_test(test_notes),
       cmocka_unit_test(test_layers_and_greys),
+      cmocka_unit_test(test_alpha_is_straight),
       cmocka_unit_test(test_what_cannot_be_shown_is_refused),
   };
   snprintf(path, sizeof path, "/tmp/abbe_test_screen_png_%ld.png", (long)getpid());

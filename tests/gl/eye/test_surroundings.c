@@ -1,6 +1,8 @@
 /* What is around a scene: seen straight, through glass, and as light on receivers. */
 #include "tests/gl/frame.h"
 
+#include "scenes/view/coverage.h"
+
 static const double PI = 3.14159265358979;
 
 /* The floor is far out of the way. */
@@ -171,6 +173,39 @@ static void light_is_linear(void **state) {
   abbe_image_free(&thrice);
 }
 
+/* In uniform light clear glass is as bright as what it hides: a transparent picture of it is that
+ * light times what it covers. */
+static void a_transparent_picture_is_premultiplied(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_image picture, alpha;
+  abbe_render_desc desc = small_frame;
+  desc.space = ABBE_RGB_SPACE_REC709;
+  desc.supersample = 2;
+  load_text("materials: glass.yaml\ncamera: {frame: [stone], fov: 30}\nobjects:\n"
+            "- {name: stone, shape: brilliant, diameter: 0.3, material: crown}\n"
+            "environment: {uniform: 2}\nbackground: 0.5\n",
+            &scene);
+  scene.transparent = true;
+  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  draw_frame(renderer);
+  read_picture(renderer, false, &picture);
+  assert_int_equal(abbe_coverage_make(&scene, 64, 64, 2, &alpha, NULL), ABBE_OK);
+  size_t off = 0, partly = 0;
+  for (size_t i = 0; i < 64 * 64; i++) {
+    const double a = (double)alpha.data[i], seen = (double)picture.data[3 * i + 1];
+    off += fabs(seen - 2.5 * a) > 0.02;
+    partly += a > 0 && a < 1;
+    if (!(a > 0)) assert_near(seen, 0, 0);
+  }
+  assert_true(partly > 50); /* rims */
+  assert_true(off < 20);
+  abbe_image_free(&alpha);
+  abbe_image_free(&picture);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
 static void the_ledger_closes(void **state) {
   (void)state;
   abbe_image picture;
@@ -191,6 +226,7 @@ int main(void) {
                                      cmocka_unit_test(nothing_is_seen_in_a_furnace),
                                      cmocka_unit_test(turning_all_changes_nothing),
                                      cmocka_unit_test(light_is_linear),
+                                     cmocka_unit_test(a_transparent_picture_is_premultiplied),
                                      cmocka_unit_test(the_ledger_closes)};
   return cmocka_run_group_tests(tests, make_context, free_context);
 }

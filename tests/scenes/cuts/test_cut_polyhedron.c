@@ -98,6 +98,24 @@ static void refuse(const abbe_cut *cut, double weld, abbe_result code, const cha
   assert_null(p.fate);
 }
 
+/* A cutter is told where to look. */
+static void the_open_side_is_named(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *words;
+  } designs[] = {{"g 96 0\na 90 1 96 24 48 72\na -0 1\n", "open on top: the crown lacks facets"},
+                 {"g 96 0\na 90 1 96 24 48 72\na 0 1\n", "open below: the pavilion lacks facets"},
+                 {"g 96 0\na 90 1 96 24 72\na 0 1\na -0 1\n", "at the side, about index 48"}};
+  for (size_t i = 0; i < sizeof designs / sizeof *designs; i++) {
+    abbe_cut cut = design_parse(designs[i].text);
+    abbe_cut_polyhedron p;
+    abbe_error error = {0};
+    assert_int_equal(abbe_cut_polyhedron_make(&cut, 0, &p, &error), ABBE_GEOMETRY);
+    assert_contains(error.text, designs[i].words);
+    abbe_cut_free(&cut);
+  }
+}
+
 static void open_stones_are_refused(void **state) {
   (void)state;
   abbe_cut cut = design_parse(design_c_open);
@@ -183,6 +201,7 @@ int main(void) {
       cmocka_unit_test(bounds_are_known_and_not_mirrored),
       cmocka_unit_test(corners_that_nearly_meet_are_one),
       cmocka_unit_test(open_stones_are_refused),
+      cmocka_unit_test(the_open_side_is_named),
       cmocka_unit_test(doubles_are_told),
       cmocka_unit_test(every_face_lies_in_its_plane),
       cmocka_unit_test(triangles_are_a_closed_convex_solid),

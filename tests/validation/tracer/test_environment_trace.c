@@ -2,6 +2,7 @@
 #include "tests/validation/trace_scene.h"
 
 #include "colorimetry/upsampling.h"
+#include "scenes/view/coverage.h"
 #include "validation/transport/environment_light.h"
 
 #define SPECK                                                                                      \
@@ -118,9 +119,9 @@ static void photons_find_a_grain_beside_a_boulder(void **state) {
   (void)state;
   static const double radius = 1e-4;
   fixture f = {0};
-  make(CAMERA POINT_LIGHT FAR_SPECK
-       "- {name: boulder, shape: sphere, radius: 1, mirror: 1}\n"
-       "- {name: grain, shape: sphere, radius: 1e-4, mirror: 1, transform: [{translate: [3, 0, 0]}]}\n",
+  make(CAMERA POINT_LIGHT FAR_SPECK "- {name: boulder, shape: sphere, radius: 1, mirror: 1}\n"
+                                    "- {name: grain, shape: sphere, radius: 1e-4, mirror: 1, "
+                                    "transform: [{translate: [3, 0, 0]}]}\n",
        uniform, &f);
   const abbe_spectral_sampling_desc spectrum = {.min_nm = 380, .max_nm = 780, .uniform = 0.15};
   const abbe_bands none = {0};
@@ -129,9 +130,9 @@ static void photons_find_a_grain_beside_a_boulder(void **state) {
   abbe_environment_light light;
   assert_int_equal(abbe_geometry_make(&f.scene, &geometry, NULL), ABBE_OK);
   assert_int_equal(abbe_spectral_sampling_make(&f.scene, &spectrum, &sampling, NULL), ABBE_OK);
-  assert_int_equal(abbe_environment_light_make(&geometry, &sampling, &none, ABBE_RGB_SPACE_ACESCG,
-                                               &light, NULL),
-                   ABBE_OK);
+  assert_int_equal(
+      abbe_environment_light_make(&geometry, &sampling, &none, ABBE_RGB_SPACE_ACESCG, &light, NULL),
+      ABBE_OK);
   const double grain[3] = {3, 0, 0}, share = radius * radius / (1 + radius * radius);
   float centre[3];
   abbe_geometry_to_frame(&geometry, grain, centre);
@@ -164,6 +165,34 @@ static void clear_glass_is_not_seen_in_uniform_light(void **state) {
   assert_near(sum / (48 * 48) / 2, 1, 2e-3);
   /* where only sky shows it is exact */
   assert_near(luminance(&picture, 1, 1), 2, 1e-3);
+  abbe_image_free(&picture);
+  drop(&f);
+}
+
+/* What it covers alone is in a transparent picture, and what is behind it through it. */
+static void a_transparent_picture_is_premultiplied(void **state) {
+  (void)state;
+  fixture f;
+  abbe_image picture, alpha;
+  make("materials: glass.yaml\ncamera: {frame: [stone], fov: 30}\n" POINT_LIGHT "objects:\n"
+       "- {name: grain, shape: rectangle, width: 0.01, height: 0.01, reflectance: 0.5,\n"
+       "   centre: [0, 2.5, -4.33]}\n"
+       "- {name: stone, shape: brilliant, diameter: 0.3, material: crown}\n",
+       uniform, &f);
+  f.scene.transparent = true;
+  trace(&f, 1024, 16, &picture);
+  assert_int_equal(abbe_coverage_make(&f.scene, 48, 48, 8, &alpha, NULL), ABBE_OK);
+  double sum = 0, covered = 0;
+  for (size_t y = 0; y < 48; y++)
+    for (size_t x = 0; x < 48; x++) {
+      const double a = (double)alpha.data[y * 48 + x];
+      sum += luminance(&picture, x, y);
+      covered += a;
+    }
+  assert_near(luminance(&picture, 1, 1), 0, 0);
+  assert_true(covered > 100);
+  assert_near(sum / covered / 2, 1, 1e-2);
+  abbe_image_free(&alpha);
   abbe_image_free(&picture);
   drop(&f);
 }
@@ -296,10 +325,11 @@ static void photons_are_for_what_shows_them(void **state) {
     fixture f;
     abbe_image picture;
     snprintf(text, sizeof text,
-             CAMERA POINT_LIGHT "objects:\n- {name: stone, shape: brilliant, diameter: 0.3, "
-                                "transform: [{translate: [0, 0, 0.2]}], material: crown}\n"
-                                "- {name: table, shape: rectangle, width: 1, height: 1, reflectance: "
-                                "%s, transform: [{translate: [%s]}]}\n",
+             CAMERA POINT_LIGHT
+             "objects:\n- {name: stone, shape: brilliant, diameter: 0.3, "
+             "transform: [{translate: [0, 0, 0.2]}], material: crown}\n"
+             "- {name: table, shape: rectangle, width: 1, height: 1, reflectance: "
+             "%s, transform: [{translate: [%s]}]}\n",
              cases[i].reflectance, cases[i].place);
     make(text, uniform, &f);
     trace(&f, 500000, 2, &picture);
@@ -438,18 +468,20 @@ static void the_ledger_closes(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_convex_body_meets_pi_times_its_surface),
-                                     cmocka_unit_test(photons_find_a_grain_beside_a_boulder),
-                                     cmocka_unit_test(clear_glass_is_not_seen_in_uniform_light),
-                                     cmocka_unit_test(a_whole_mirror_is_not_seen_in_uniform_light),
-                                     cmocka_unit_test(an_open_floor_has_its_irradiance),
-                                     cmocka_unit_test(light_does_not_depend_on_how_many_texels_there_are),
-                                     cmocka_unit_test(what_is_not_seen_takes_nothing_away),
-                                     cmocka_unit_test(lights_too_far_apart_are_told),
-                                     cmocka_unit_test(photons_are_for_what_shows_them),
-                                     cmocka_unit_test(a_clear_ball_takes_nothing_away),
-                                     cmocka_unit_test(turning_all_changes_nothing),
-                                     cmocka_unit_test(light_is_linear),
-                                     cmocka_unit_test(the_ledger_closes)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_convex_body_meets_pi_times_its_surface),
+      cmocka_unit_test(photons_find_a_grain_beside_a_boulder),
+      cmocka_unit_test(clear_glass_is_not_seen_in_uniform_light),
+      cmocka_unit_test(a_transparent_picture_is_premultiplied),
+      cmocka_unit_test(a_whole_mirror_is_not_seen_in_uniform_light),
+      cmocka_unit_test(an_open_floor_has_its_irradiance),
+      cmocka_unit_test(light_does_not_depend_on_how_many_texels_there_are),
+      cmocka_unit_test(what_is_not_seen_takes_nothing_away),
+      cmocka_unit_test(lights_too_far_apart_are_told),
+      cmocka_unit_test(photons_are_for_what_shows_them),
+      cmocka_unit_test(a_clear_ball_takes_nothing_away),
+      cmocka_unit_test(turning_all_changes_nothing),
+      cmocka_unit_test(light_is_linear),
+      cmocka_unit_test(the_ledger_closes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
