@@ -116,7 +116,7 @@ endforeach()
 # What ships: scenes with their meshes and textures, material tables, the OCIO configuration.
 file(GLOB scene_files CONFIGURE_DEPENDS scenes/*.yaml scenes/*.ply scenes/*.obj scenes/*.png)
 install(FILES ${scene_files} DESTINATION ${share}/scenes)
-install(DIRECTORY scenes/designs scenes/environments scenes/meshes scenes/mist scenes/papers scenes/pinholes scenes/water DESTINATION ${share}/scenes
+install(DIRECTORY scenes/designs scenes/environments scenes/looks scenes/meshes scenes/mist scenes/papers scenes/pinholes scenes/water DESTINATION ${share}/scenes
   FILES_MATCHING PATTERN "*.asc" PATTERN "*.yaml" PATTERN "*.exr" PATTERN "*.obj" PATTERN "*.ply")
 install(FILES spectral/materials/materials.yaml spectral/materials/thesis.yaml DESTINATION ${share}/materials)
 install(FILES colorimetry/image/config.ocio DESTINATION ${share}/ocio)

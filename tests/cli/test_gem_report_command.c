@@ -102,6 +102,14 @@ static void the_best_is_written_and_is_as_good_as_said(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
+static void a_design_brings_its_index(void **state) {
+  (void)state;
+  cJSON *json = run_json(GEM "report" DIAMOND "--size 24 --wavelengths 5 --tilt 0 --json", 0);
+  assert_string_equal(json_item(json, "material")->valuestring, "index 2.417");
+  shares_add_up(json_item(json, "measures"));
+  cJSON_Delete(json);
+}
+
 static void what_is_refused(void **state) {
   (void)state;
   static const struct {
@@ -109,7 +117,9 @@ static void what_is_refused(void **state) {
     int code;
   } wrong[] = {
       {GEM "report", "which design?", 2},
-      {GEM "report" DIAMOND, "--material NAME", 2},
+      {"sed '/^I /d' \"$house\"/scenes/designs/brilliant-diamond.asc >no.asc; " GEM
+       "report no.asc; code=$?; rm no.asc; exit $code",
+       "no.asc says no index; give --material NAME", 1},
       {GEM "report" DIAMOND SMALL "--json --csv", "one of them", 2},
       {GEM "report" DIAMOND SMALL "--head-shadow 45", "--head-shadow", 2},
       {GEM "report" DIAMOND SMALL "-o r.png", ".pdf", 2},
@@ -129,6 +139,7 @@ int main(void) {
       cmocka_unit_test(numbers_add_up),
       cmocka_unit_test(pages_maps_and_tables),
       cmocka_unit_test(the_best_is_written_and_is_as_good_as_said),
+      cmocka_unit_test(a_design_brings_its_index),
       cmocka_unit_test(what_is_refused),
   };
   return cmocka_run_group_tests(tests, run_setup, run_teardown);

@@ -57,6 +57,13 @@ static void every_shipped_scene_loads(void **state) {
       {"rainbow", 20480, ABBE_EXACT_SPHERE, 0},
       {"diamond", 110, ABBE_EXACT_CONVEX, 73},
       {"diamond-studio", 110, ABBE_EXACT_CONVEX, 73},
+      {"looks/white", 110, ABBE_EXACT_CONVEX, 73},
+      {"looks/black", 110, ABBE_EXACT_CONVEX, 73},
+      {"looks/velvet", 110, ABBE_EXACT_CONVEX, 73},
+      {"looks/daylight", 110, ABBE_EXACT_CONVEX, 73},
+      {"looks/darkfield", 110, ABBE_EXACT_CONVEX, 73},
+      {"looks/lightbox", 110, ABBE_EXACT_CONVEX, 73},
+      {"looks/dispersion", 110, ABBE_EXACT_CONVEX, 73},
   };
   for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
     abbe_scene scene = load(scenes[i].name);
