@@ -25,12 +25,11 @@ uniform uint eye_inside;  // refractors that the eye is in, which are clear
 // XYZ of what w and `other` show, which have met an interface, in the band that is taken. What is not
 // followed shows what the rest has shown, in its own colour: inside, it goes on by as much as it came.
 vec3 shown(PathState w, PathState other) {
-  PathState pending[PENDING];
   for (int k = 0; k < PENDING; k++) {
     pending[k] = other;
     pending[k].share = k == 0 ? other.share : 0.0;
   }
-  if (w.share <= 0.0) w = take_pending(pending);
+  if (w.share <= 0.0) w = take_pending();
   vec3 light = vec3(0), lamps = vec3(0);
   vec3 seen_weight = vec3(0), left = vec3(0);  // left: of what is not followed
   bool going = w.share > 0.0;
@@ -74,7 +73,7 @@ vec3 shown(PathState w, PathState other) {
       if (is_rough(h.hit.refractor)) lamps += lobe_shows(w, h, vec2(0.5 * lobe_width));
 #endif
       vec3 rest = left_further(w, h);
-      branch(w, h, 0.5 * share_limit, pending, ended, dropped, absorbed);
+      branch(w, h, 0.5 * share_limit, ended, dropped, absorbed);
       left += (ended + dropped) * rest;
     } else {
       // radiance over the squared index is the same on both sides of an interface
@@ -86,7 +85,7 @@ vec3 shown(PathState w, PathState other) {
       seen_weight += left_of(w);
       w.share = 0.0;
     }
-    if (w.share <= 0.0) w = take_pending(pending);
+    if (w.share <= 0.0) w = take_pending();
     going = w.share > 0.0;
     if (segment == most - 1) {
       left += left_of(w);

@@ -91,7 +91,6 @@ void trace(PhotonRay photon, out Shares entry[5]) {
   for (int k = 0; k < 5; k++) entry[k] = Shares(0.0);
   wavelength = photon.wavelength;
   vec3 o = photon.o, d = photon.d;
-  PathState pending[PENDING];
   PathState w = path_from(o, d);
   for (int k = 0; k < PENDING; k++) {
     pending[k] = w;
@@ -134,14 +133,14 @@ void trace(PhotonRay photon, out Shares entry[5]) {
     if (to.state == NO_RECEIVER && met) {
       float ended, dropped, absorbed;
       Shares left = left_of(w), before = w.share * left;
-      branch(w, h, 0.0, pending, ended, dropped, absorbed);
+      branch(w, h, 0.0, ended, dropped, absorbed);
       e.trapped += (ended + dropped) * left;
       if (is_mirror(h.hit.refractor)) e.absorbed += before - w.share * left_of(w);
     } else {
       end_path(photon, w, to, owner, used, e);
       w.share = 0.0;
     }
-    if (w.share <= 0.0) w = take_pending(pending);
+    if (w.share <= 0.0) w = take_pending();
     going = w.share > 0.0;
   }
   if (going) {

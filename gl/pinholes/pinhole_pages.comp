@@ -78,7 +78,6 @@ vec3 by_u, by_v;    // by how much a path's last direction differs over it
 // The path that goes on from there.
 PathState w;
 Interface h;                // where it is met last
-PathState pending[PENDING];
 int segment;                // that comes next
 vec3 followed, left;        // weights: of what came to an end, and of what was given up
 vec3 light, lamps;          // of all ends, and of lamps that rough mirrors show
@@ -231,7 +230,7 @@ vec3 go_on(vec3 p, inout bool going) {
     light += dark ? vec3(0) : in_band(w, sky);
     followed += left_of(w);
     w.share = 0.0;
-    w = take_pending(pending);
+    w = take_pending();
   }
 
 #ifdef ROUGH
@@ -266,10 +265,10 @@ vec3 go_on(vec3 p, inout bool going) {
   if (turns) {
     float ended, dropped, absorbed;
     vec3 rest = left_further(w, h);
-    branch(w, h, 0.5 * share_limit, pending, ended, dropped, absorbed);
+    branch(w, h, 0.5 * share_limit, ended, dropped, absorbed);
     left += (ended + dropped) * rest;
     segment++;
-    if (w.share <= 0.0) w = take_pending(pending);
+    if (w.share <= 0.0) w = take_pending();
   }
   going = turns || !over;
   return change;

@@ -123,6 +123,7 @@ static void print_each(FILE *to, const char *name, size_t count, size_t most) {
 
 static void print_copies(FILE *to, const abbe_shader_variant *v) {
   if (!v->copies) return;
+  print_flag(to, "SOFTWARE", true);
   print_each(to, "LIGHT", v->lights, MOST_COPIED_LIGHTS);
   print_each(to, "RECEIVER", v->receivers, MOST_COPIED_RECEIVERS);
   print_each(to, "PLANE", v->one_convex && !v->walk ? v->planes : 0, MOST_COPIES);

@@ -412,9 +412,13 @@ float reflect_off(inout PathState w, Interface h) {
 }
 #endif
 
+// Of one path, whose functions these are. A processor's lanes index for themselves at a price; what a GPU
+// indexes by no constant stays out of its registers, which four paths would fill.
+PathState pending[PENDING];
+
 // Keeps a branch for later, in the place of the weakest where there is none free; returns the share
 // that is given up.
-float keep_pending(PathState w, inout PathState pending[PENDING]) {
+float keep_pending(PathState w) {
   int weakest = 0;
   float least = pending[0].share;
   for (int k = 1; k < PENDING; k++) {
@@ -423,14 +427,19 @@ float keep_pending(PathState w, inout PathState pending[PENDING]) {
     weakest = weaker ? k : weakest;
   }
   if (w.share <= least) return w.share;
+#ifdef SOFTWARE
   for (int k = 0; k < PENDING; k++)
     if (k == weakest) pending[k] = w;
+#else
+  pending[weakest] = w;
+#endif
   return least;
 }
 
 // The strongest branch that waits; share 0: none does.
-PathState take_pending(inout PathState pending[PENDING]) {
+PathState take_pending() {
   int strongest = 0;
+#ifdef SOFTWARE
   PathState w = pending[0];
   for (int k = 1; k < PENDING; k++) {
     bool stronger = pending[k].share > w.share;
@@ -439,6 +448,11 @@ PathState take_pending(inout PathState pending[PENDING]) {
   }
   for (int k = 0; k < PENDING; k++)
     if (k == strongest) pending[k].share = 0.0;
+#else
+  for (int k = 1; k < PENDING; k++) strongest = pending[k].share > pending[strongest].share ? k : strongest;
+  PathState w = pending[strongest];
+  pending[strongest].share = 0.0;
+#endif
   return w;
 }
 
@@ -451,8 +465,7 @@ bool reflects_on(PathState mirrored) {
 // At an interface: the stronger branch is left in w, the other waits, and of both only what carries
 // `least`. Of what is not followed: the share that ends here, the one that gives its place up, and what a
 // mirror absorbs. A mirror has one branch, which goes on whatever it carries.
-void branch(inout PathState w, Interface h, float least, inout PathState pending[PENDING], out float ended,
-            out float dropped, out float absorbed) {
+void branch(inout PathState w, Interface h, float least, out float ended, out float dropped, out float absorbed) {
   PathState mirrored;
   ended = dropped = absorbed = 0.0;
 #ifdef MIRRORS
@@ -471,5 +484,5 @@ void branch(inout PathState w, Interface h, float least, inout PathState pending
     weaker = w;
     w = mirrored;
   }
-  dropped = keep_pending(weaker, pending);
+  dropped = keep_pending(weaker);
 }

@@ -1,4 +1,5 @@
-/* Times what follows a change of a renderer, for script/bench-changes: no test. */
+/* Times what follows a change of a renderer, for script/bench-changes and script/bench-gpu: no
+ * test. */
 #include "base/clock.h"
 #include "gl/renderer.h"
 #include "scenes/geometry/transform.h"
@@ -46,7 +47,12 @@ static void change_power(bench *b, int k) {
 }
 
 static void change_light(bench *b, int k) {
+  double *d = b->scene.light[0].direction;
   b->scene.light[0].position[0] += k % 2 == 0 ? 0.002 : -0.002;
+  if (b->scene.light[0].kind != ABBE_LIGHT_DIRECTIONAL) return;
+  d[0] += k % 2 == 0 ? 0.002 : -0.002;
+  const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  for (int i = 0; i < 3; i++) d[i] /= length;
 }
 
 static void change_object(bench *b, int k) {
@@ -66,6 +72,11 @@ static void change_material(bench *b, int k) {
     b->scene.table.material[i].dispersion.c[0] += k % 2 == 0 ? 1e-3 : -1e-3;
 }
 
+static void draw(abbe_renderer *renderer) {
+  abbe_error error;
+  must(abbe_renderer_frame(renderer, NULL, NULL, NULL, &error), &error);
+}
+
 /* The median of what the change and its frame take. */
 static double time_change(bench *b, void (*change)(bench *, int)) {
   double ms[MAX_REPEATS];
@@ -74,7 +85,7 @@ static double time_change(bench *b, void (*change)(bench *, int)) {
     change(b, k + 2);
     const double start = now_ms();
     must(abbe_renderer_change(b->renderer, &b->scene, &b->desc, &error), &error);
-    must(abbe_renderer_frame(b->renderer, NULL, NULL, NULL, &error), &error);
+    draw(b->renderer);
     if (k >= 0) ms[k] = now_ms() - start;
   }
   qsort(ms, (size_t)b->repeats, sizeof *ms, ascending);
@@ -86,7 +97,7 @@ static double time_anew(bench *b) {
   abbe_error error;
   const double start = now_ms();
   must(abbe_renderer_make(b->context, &b->scene, &b->desc, &anew, &error), &error);
-  must(abbe_renderer_frame(anew, NULL, NULL, NULL, &error), &error);
+  draw(anew);
   const double ms = now_ms() - start;
   abbe_renderer_free(anew);
   return ms;
@@ -181,52 +192,77 @@ static int bench_sun(bench *b, char **argument) {
   return 0;
 }
 
+/* The camera's and the light's frames and those made anew, ms, a line a scene; -: no light. */
+static void time_frames(bench *b, const char *name) {
+  printf("%s\t%.4g", name, time_change(b, change_camera));
+  if (b->scene.light_count > 0)
+    printf("\t%.4g", time_change(b, change_light));
+  else
+    printf("\t-");
+  printf("\t%.4g\n", time_anew(b));
+}
+
+static void time_all(bench *b, const char *name) {
+  void (*const changes[])(bench *, int) = {change_camera, change_power, change_light, change_object,
+                                           change_material};
+  double between, after;
+  printf("| %s", name);
+  for (size_t k = 0; k < sizeof changes / sizeof *changes; k++)
+    printf(" | %.0f", time_change(b, changes[k]));
+  time_cancel(b, &between, &after);
+  printf(" | %.0f | %.0f | %.0f |\n", time_anew(b), between, after);
+}
+
+/* frames: those alone. WIDTHxHEIGHT pixels; a single number is both. */
+static void time_scenes(bench *b, bool frames, const char *size, char **names, int count) {
+  abbe_error error;
+  char *end = NULL;
+  b->desc.width = b->desc.height = (size_t)strtoul(size, &end, 10);
+  if (*end == 'x') b->desc.height = (size_t)strtoul(end + 1, NULL, 10);
+  b->desc.supersample = 1;
+  if (!frames)
+    printf("%zu x %zu, one sample a pixel, %s; ms\n\n"
+           "| scene | camera | power | light | object | material | made anew | between questions | "
+           "after a no |\n|---|---|---|---|---|---|---|---|---|\n",
+           b->desc.width, b->desc.height, abbe_context_description(b->context));
+  for (int i = 0; i < count; i++) {
+    char path[4096];
+    snprintf(path, sizeof path, "%s.yaml", names[i]);
+    must(abbe_scene_load(path, NULL, &b->scene, &error), &error);
+    must(abbe_renderer_make(b->context, &b->scene, &b->desc, &b->renderer, &error), &error);
+    draw(b->renderer);
+    (frames ? time_frames : time_all)(b, names[i]);
+    fflush(stdout);
+    abbe_renderer_free(b->renderer);
+    abbe_scene_free(&b->scene);
+  }
+}
+
 int main(int argc, char **argv) {
-  static const struct {
-    const char *name;
-    void (*change)(bench *, int);
-  } changes[] = {{"camera", change_camera},
-                 {"power", change_power},
-                 {"light", change_light},
-                 {"object", change_object},
-                 {"material", change_material}};
   bench b = {.repeats = MAX_REPEATS};
+  abbe_context_backend backend = ABBE_CONTEXT_CPU;
+  bool frames = false;
   abbe_error error;
   if (argc == 6 && strcmp(argv[1], "--sun") == 0) return bench_sun(&b, argv + 2);
-  if (argc > 1 && strcmp(argv[1], "--quick") == 0) { /* few photons, once: to see that it works */
-    b.repeats = 1;
-    b.desc.photons = 16;
-    b.desc.map_size = 64;
-    argc--, argv++;
+  for (; argc > 1 && strncmp(argv[1], "--", 2) == 0; argc--, argv++) {
+    if (strcmp(argv[1], "--quick") == 0) { /* few photons, once: to see that it works */
+      b.repeats = 1;
+      b.desc.photons = 16;
+      b.desc.map_size = 64;
+    }
+    if (strcmp(argv[1], "--frames") == 0) frames = true;
+    if (strcmp(argv[1], "--gpu") == 0) backend = ABBE_CONTEXT_GPU;
+    if (strncmp(argv[1], "--photons=", 10) == 0)
+      b.desc.photons = (size_t)strtoul(argv[1] + 10, NULL, 10);
   }
   if (argc < 3) {
-    fprintf(stderr, "Usage: bench_changes [--quick] SIZE SCENE…\n"
+    fprintf(stderr, "Usage: bench_changes [--quick] [--frames] [--gpu] [--photons=N] "
+                    "SIZE|WIDTHxHEIGHT SCENE…\n"
                     "       bench_changes --sun VOLUME SIZE SCENE.yaml NAME\n");
     return 2;
   }
-  must(abbe_context_make(ABBE_CONTEXT_CPU, &b.context, &error), &error);
-  b.desc.width = b.desc.height = (size_t)strtoul(argv[1], NULL, 10);
-  b.desc.supersample = 1;
-  printf("%zu x %zu, one sample a pixel, %s; ms\n\n", b.desc.width, b.desc.height,
-         abbe_context_description(b.context));
-  printf("| scene | camera | power | light | object | material | made anew | between questions | "
-         "after a no |\n|---|---|---|---|---|---|---|---|---|\n");
-  for (int i = 2; i < argc; i++) {
-    char path[4096];
-    snprintf(path, sizeof path, "%s.yaml", argv[i]);
-    must(abbe_scene_load(path, NULL, &b.scene, &error), &error);
-    must(abbe_renderer_make(b.context, &b.scene, &b.desc, &b.renderer, &error), &error);
-    must(abbe_renderer_frame(b.renderer, NULL, NULL, NULL, &error), &error);
-    printf("| %s", argv[i]);
-    for (size_t k = 0; k < sizeof changes / sizeof *changes; k++)
-      printf(" | %.0f", time_change(&b, changes[k].change));
-    double between, after;
-    time_cancel(&b, &between, &after);
-    printf(" | %.0f | %.0f | %.0f |\n", time_anew(&b), between, after);
-    fflush(stdout);
-    abbe_renderer_free(b.renderer);
-    abbe_scene_free(&b.scene);
-  }
+  must(abbe_context_make(backend, &b.context, &error), &error);
+  time_scenes(&b, frames, argv[1], argv + 2, argc - 2);
   abbe_context_free(b.context);
   return 0;
 }

@@ -1,8 +1,9 @@
-/* shader_texts FOLDER SCENE.yaml...: the text of every stage of every program that these scenes
- * reach, each once, as FOLDER/NUMBER-FILE (photon_trace.comp is 12-photon_trace.comp): by the
- * published methods and the transports, at rest and in motion, on a processor and on a GPU. Prints
- * how many frames it has drawn and how many texts there are. Nothing is compiled and nothing runs
- * on the device: programs are left empty, and what is read from buffers is zero. */
+/* shader_texts [--gpu] FOLDER SCENE.yaml...: the text of every stage of every program that these
+ * scenes reach, each once, as FOLDER/NUMBER-FILE (photon_trace.comp is 12-photon_trace.comp): by
+ * the published methods and the transports, at rest and in motion, on a processor and on a GPU, or
+ * on a GPU alone. Prints how many frames it has drawn and how many texts there are. Nothing is
+ * compiled and nothing runs on the device: programs are left empty, and what is read from buffers
+ * is zero. */
 #include "gl/device/context.h"
 #include "gl/device/gpu.h"
 #include "gl/renderer.h"
@@ -152,15 +153,16 @@ static size_t draw_all(abbe_context *context, const char *path) {
 
 int main(int argc, char **argv) {
   size_t frames = 0;
-  if (argc < 3) fail("used wrongly", "shader_texts FOLDER SCENE.yaml...");
-  folder = argv[1];
-  for (int gpu = 0; gpu < 2; gpu++) {
+  const int alone = argc > 1 && strcmp(argv[1], "--gpu") == 0;
+  if (argc < 3 + alone) fail("used wrongly", "shader_texts [--gpu] FOLDER SCENE.yaml...");
+  folder = argv[1 + alone];
+  for (int gpu = alone; gpu < 2; gpu++) {
     abbe_context *context = NULL;
     abbe_error error = {0};
     as_gpu = gpu == 1;
     if (abbe_context_make(ABBE_CONTEXT_CPU, &context, &error) != ABBE_OK)
       fail("OpenGL", error.text);
-    for (int i = 2; i < argc; i++) frames += draw_all(context, argv[i]);
+    for (int i = 2 + alone; i < argc; i++) frames += draw_all(context, argv[i]);
     abbe_context_free(context);
   }
   printf("%zu frames, %zu texts\n", frames, text_count);

@@ -68,9 +68,11 @@ static void copies_are_told_where_they_are_made(void **state) {
   abbe_shader_variant v = {.lights = 1, .receivers = 3, .planes = 2, .one_convex = true};
   char *text = text_of(&v, NULL);
   assert_null(strstr(text, "EACH_"));
+  assert_null(strstr(text, "SOFTWARE"));
   free(text);
   v.copies = true;
   text = text_of(&v, NULL);
+  assert_true(has(text, "#define SOFTWARE"));
   assert_true(has(text, "#define EACH_LIGHT(DO) DO(0)"));
   assert_true(has(text, "#define EACH_RECEIVER(DO) DO(0) DO(1) DO(2)"));
   assert_true(has(text, "#define EACH_PLANE(DO) DO(0) DO(1)"));
