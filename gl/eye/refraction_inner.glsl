@@ -104,9 +104,9 @@ vec3 through(Hit front, vec3 d) {
     }
     if (shows) {
       vec3 weight = leaving.share * WEIGHT_AFTER(path_m);
-      light += weight * (xyz_from_rgb * seen_outside(leaving.p, leaving.d, outside));
+      light += weight * (colour_from_rgb * seen_outside(leaving.p, leaving.d, outside));
 #ifdef KEEPS_SIGHTS
-      if (sight_waits) note_sight(weight);
+      if (sight_waits) note_sight(weight, band_of_all_sets());
 #endif
       shown += weight;
     }

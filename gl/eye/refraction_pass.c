@@ -14,7 +14,7 @@ enum { COARSE_BANDS = 7 };
 enum { REFINE_ROOM = 1 << 20 };
 /* As sights.glsl has them: bytes of a place, words of a pixel before its chains; and what their
  * numbers and a buffer hold. */
-enum { SIGHT_BYTES = 24, SIGHT_HEAD = 8, MOST_SIGHTS = 5592000, MOST_SHEETS = 127 };
+enum { SIGHT_BYTES = 28, SIGHT_HEAD = 8, MOST_SIGHTS = 4793000, MOST_SHEETS = 127 };
 
 static const abbe_gpu_scene *scene_of(const abbe_refraction_pass *pass) {
   return pass->lighting->scene;

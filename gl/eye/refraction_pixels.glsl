@@ -61,7 +61,7 @@ void main() {
 #ifdef KEEPS_SIGHTS
   sight_pixels[listed * SIGHT_WORDS + 8u] = sight_chain;
   sight_chain = 0u;
-  if (sight_waits) note_sight(vec3(1));
+  if (sight_waits) note_sight(vec3(1), -1);
   sight_pixels[listed * SIGHT_WORDS + 7u] = sight_chain;
   keep_pixel(listed, sum, mirror);
 #else

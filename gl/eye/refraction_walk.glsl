@@ -80,7 +80,7 @@ vec3 shown(PathState w, PathState other) {
       float n = medium_n(eye_inside) / (receiver ? medium_n(w.inside) : 1.0);
       light += n * n * in_band(w, radiance);
 #ifdef KEEPS_SIGHTS
-      if (sight_waits) note_sight(n * n * left_of(w));
+      if (sight_waits) note_sight(n * n * left_of(w), band_of_all_sets());
 #endif
       seen_weight += left_of(w);
       w.share = 0.0;

@@ -6,6 +6,7 @@ layout(local_size_x = 256) in;
 #include "receiver.glsl"
 #define SIGHTS_ACCESS readonly
 #include "sights.glsl"
+#include "band_colours.glsl"
 layout(std430, binding = BINDING_PIXELS) readonly buffer PixelList {
   uint pixel_count, pixel_groups[3];
   uint pixel[];  // x | y << 16
@@ -33,7 +34,9 @@ vec3 chain_light(uint first) {
     vec3 p = r.anchor.xyz + place.x * r.u.xyz + place.y * r.v.xyz;
     vec3 n = (sheet & 1) != 0 ? -r.normal.xyz : r.normal.xyz;
     Shading s = shade(p, n, int(r.anchor.w), place + vec2(r.du.w, r.dv.w), 0);
-    sum += weight * (own_xyz_from_rgb * (s.direct + s.caustic + s.fill));
+    int band = int(sights[word + 6u]) - 1;
+    vec3 xyz = own_xyz_from_rgb * (s.direct + s.caustic + s.fill);
+    sum += weight * (band < 0 ? xyz : band_colour(band) * xyz);
     i = last & SIGHT_NEXT;
   }
   return sum;

@@ -2,7 +2,9 @@
 // stays as it is while the camera, the refractors and the receivers do, whatever lights do. Those of a
 // thread are a chain.
 
-const uint SIGHT = 6u;  // words: place as off_anchor() says; weight of X, Y and Z; and the chain's next one + 1, with the sheet above it
+// Words: place as off_anchor() says; weight of X, Y and Z; the chain's next one + 1, with the sheet above it; and the band
+// that shows it + 1 (camera_bands.glsl), 0: all.
+const uint SIGHT = 7u;
 const uint SIGHT_NEXT = 0xffffffu;
 // Of a pixel: XYZ of what is no receiver, and its distance; XYZ of the share that is mirrored at the front, and
 // the chain of what that shows; a chain of each thread.
@@ -23,8 +25,8 @@ bool sight_waits;    // seen() has found a receiver: there
 int waiting_sheet;
 vec2 waiting_place;
 
-// weight: of X, Y and Z.
-void note_sight(vec3 weight) {
+// weight: of X, Y and Z; of a band of all sets', -1: of all.
+void note_sight(vec3 weight, int band) {
   uint i = atomicAdd(sight_count, 1u);
   if (i >= sight_room) return;
   uint word = SIGHT * i;
@@ -32,6 +34,7 @@ void note_sight(vec3 weight) {
   sights[word + 1u] = floatBitsToUint(waiting_place.y);
   for (int k = 0; k < 3; k++) sights[word + 2u + uint(k)] = floatBitsToUint(weight[k]);
   sights[word + 5u] = sight_chain | uint(waiting_sheet) << 24;
+  sights[word + 6u] = uint(band + 1);
   sight_chain = i + 1u;
 }
 

@@ -51,7 +51,7 @@ typedef struct abbe_gpu_scene {
   size_t mesh_bytes; /* of their vertices and faces */
   GLuint refractors, planes, receivers, surfaces, reflections, spectra, bands, shadows;
   GLuint surface_texture;
-  GLuint band_parts, band_parts_texture; /* of camera_bands.h; 0: bands have none */
+  GLuint band_texels, band_texels_texture; /* of camera_bands.h */
   GLuint band_reflections; /* 0: no dispersed light falls on receivers in colours */
   abbe_gpu_environment environment;
   size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */

@@ -54,10 +54,10 @@ static abbe_result upload_bands(abbe_gpu_scene *scene, abbe_error *error) {
     result = abbe_camera_bands_fill(scene->local, scene->plan, &scene->tables, band, texel, error);
   if (result == ABBE_OK)
     result = abbe_gpu_make_buffer(scene->gpu, room * sizeof *band, band, &scene->bands, error);
-  if (result == ABBE_OK && texels > 0)
-    result = abbe_gpu_make_texels(scene->gpu, GL_RGBA32F, texels * sizeof *texel, texel,
-                                  UNIT_BAND_PARTS, &scene->band_parts, &scene->band_parts_texture,
-                                  error);
+  if (result == ABBE_OK)
+    result = abbe_gpu_make_texels(scene->gpu, GL_RGBA32F, (texels + 1) * sizeof *texel, texel,
+                                  UNIT_BAND_TEXELS, &scene->band_texels,
+                                  &scene->band_texels_texture, error);
   free(band);
   free(texel);
   return result;

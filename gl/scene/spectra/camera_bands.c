@@ -1,5 +1,7 @@
 #include "gl/scene/spectra/camera_bands.h"
 
+#include "colorimetry/matrix3.h"
+#include "colorimetry/upsampling.h"
 #include "gl/scene/spectra/band_parts.h"
 
 #include <math.h>
@@ -24,9 +26,8 @@ size_t abbe_camera_bands_texels(const abbe_plan *plan) {
   size_t levels;
   const size_t all =
       ABBE_CAMERA_BAND_SETS * abbe_camera_bands_count(plan->desc.wavelengths, &levels);
-  return plan->band_parts
-             ? all * (plan->refractor_count * ABBE_PART_TEXELS + ABBE_PART_LIGHT_TEXELS)
-             : 0;
+  const size_t parts = plan->refractor_count * ABBE_PART_TEXELS + ABBE_PART_LIGHT_TEXELS;
+  return all * (ABBE_BAND_COLOUR_TEXELS + (plan->band_parts ? parts : 0));
 }
 
 bool abbe_camera_bands_refine(const abbe_plan *plan) {
@@ -48,7 +49,10 @@ typedef struct band_set {
   const abbe_spectral_tables *tables;
   double *lambda_nm, *edge_nm; /* [wavelengths], [wavelengths + 1] */
   double (*weight)[3];         /* [wavelengths] X, Y, Z, each of a sum of 1 */
-  size_t *step;                /* [wavelengths + 1] */
+  double (*colour)[9];         /* [wavelengths] XYZ of a colour's RGB */
+  double rgb_from_xyz[9];
+  bool lifts;   /* else colours are not told apart */
+  size_t *step; /* [wavelengths + 1] */
   abbe_band_steps steps;
   double *share;       /* [steps] of a band that is made */
   unsigned char *part; /* [steps] */
@@ -78,6 +82,19 @@ static double of_white(double xyz, double white, size_t count) {
   return white > 0 ? xyz / white : 1.0 / (double)count;
 }
 
+/* What bands have of a colour in RGB, and RGB of XYZ. Of light that makes too few colours all bands
+ * show the light's own. */
+static void lift(const abbe_scene *scene, band_set *s) {
+  abbe_upsampling all;
+  const abbe_wavelengths *w = &s->tables->all;
+  s->lifts = abbe_upsampling_make_by(s->plan->desc.observer, abbe_scene_illuminant(scene),
+                                     w->edge_nm[0], w->edge_nm[w->count], &all, NULL) == ABBE_OK;
+  if (!s->lifts) return;
+  abbe_matrix3_invert(all.to_xyz, s->rgb_from_xyz);
+  for (size_t i = 0; i < w->count; i++)
+    abbe_upsampling_band(&all, ABBE_RGB_SPACE_XYZ, s->edge_nm[i], s->edge_nm[i + 1], s->colour[i]);
+}
+
 static abbe_result begin(const abbe_scene *scene, const abbe_weights_range *light, int set,
                          band_set *s, abbe_error *error) {
   const size_t count = s->tables->all.count;
@@ -86,7 +103,9 @@ static abbe_result begin(const abbe_scene *scene, const abbe_weights_range *ligh
   s->edge_nm = calloc(count + 1, sizeof *s->edge_nm);
   s->weight = calloc(count + 1, sizeof *s->weight);
   s->step = calloc(count + 1, sizeof *s->step);
-  if (s->lambda_nm == NULL || s->edge_nm == NULL || s->weight == NULL || s->step == NULL)
+  s->colour = calloc(count + 1, sizeof *s->colour);
+  if (s->lambda_nm == NULL || s->edge_nm == NULL || s->weight == NULL || s->step == NULL ||
+      s->colour == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
   place(s, set);
   for (size_t i = 0; i < count; i++) {
@@ -95,6 +114,7 @@ static abbe_result begin(const abbe_scene *scene, const abbe_weights_range *ligh
     for (int c = 0; c < 3; c++) s->weight[i][c] = of_white(xyz[c], white[c], count);
     s->step[i + 1] = s->step[i] + steps_of(s, i);
   }
+  lift(scene, s);
   if (!s->plan->band_parts) return ABBE_OK;
   s->share = calloc(s->step[count] + 1, sizeof *s->share);
   s->part = calloc(s->step[count] + 1, sizeof *s->part);
@@ -114,6 +134,7 @@ static void end(band_set *s) {
   free(s->lambda_nm);
   free(s->edge_nm);
   free(s->weight);
+  free(s->colour);
   free(s->step);
   free(s->share);
   free(s->part);
@@ -151,6 +172,23 @@ static void weigh(const band_set *s, const level_band *b, float weight_n[4]) {
     for (size_t i = k * b->joined; i < least((k + 1) * b->joined, s->tables->all.count); i++)
       for (int c = 0; c < 3; c++) sum[c] += share_of(b, k) * s->weight[i][c];
   for (int c = 0; c < 3; c++) weight_n[c] = (float)sum[c];
+}
+
+/* Columns of the matrix from XYZ to the band's, by its weight. */
+static void fill_colour(const band_set *s, const level_band *b, const float weight[4],
+                        float (*out)[4]) {
+  double sum[9] = {0}, of_xyz[9];
+  size_t last, first = bands_of(b, &last);
+  for (size_t k = first; k <= last; k++)
+    for (size_t i = k * b->joined; i < least((k + 1) * b->joined, s->tables->all.count); i++)
+      for (int n = 0; n < 9; n++) sum[n] += share_of(b, k) * s->colour[i][n];
+  abbe_matrix3_multiply(sum, s->rgb_from_xyz, of_xyz);
+  for (int row = 0; row < 3; row++)
+    for (int column = 0; column < 3; column++) {
+      const bool told = s->lifts && weight[row] > 1e-9F;
+      out[column][row] =
+          told ? (float)(of_xyz[3 * row + column] / (double)weight[row]) : row == column;
+    }
 }
 
 /* Means by brightness over the band's own wavelengths: index, n and k of a metal. */
@@ -227,6 +265,7 @@ static void fill_parts(band_set *s, const level_band *b, abbe_camera_band *band,
 typedef struct band_place {
   abbe_camera_band *band;
   size_t apart;
+  float (*colour)[4];
   float (*texel)[4], (*light)[4]; /* NULL: no parts */
 } band_place;
 
@@ -240,6 +279,7 @@ static abbe_result fill_level(band_set *s, const abbe_scene *scene, level_band l
       result = join_indices(s, scene, &level, r, &band[r * to->apart], error);
       band[r * to->apart].surface[s->plan->mirror[r] ? 1 : 0] = (float)even_surface(s, scene, r);
     }
+    fill_colour(s, &level, band->weight_n, to->colour + ABBE_BAND_COLOUR_TEXELS * level.i);
     if (result == ABBE_OK && to->texel != NULL)
       fill_parts(s, &level, band, to->apart, to->texel + ABBE_PART_TEXELS * level.i,
                  to->light + ABBE_PART_LIGHT_TEXELS * level.i);
@@ -255,6 +295,7 @@ static abbe_result fill_set(band_set *s, const abbe_scene *scene, bool shares, b
   abbe_result result = fill_level(s, scene, level, &to, error);
   while (level.count > 1 && result == ABBE_OK) {
     to.band += level.count;
+    to.colour += ABBE_BAND_COLOUR_TEXELS * level.count;
     if (to.texel != NULL) to.texel += ABBE_PART_TEXELS * level.count;
     if (to.texel != NULL) to.light += ABBE_PART_LIGHT_TEXELS * level.count;
     level.count = (level.count + 1) / 2;
@@ -277,10 +318,13 @@ abbe_result abbe_camera_bands_fill(const abbe_scene *scene, const abbe_plan *pla
   abbe_result result = ABBE_OK;
   for (int set = 0; set < ABBE_CAMERA_BAND_SETS && result == ABBE_OK; set++) {
     band_set s = {.plan = plan, .tables = tables};
-    band_place to = {.band = out + (size_t)set * count, .apart = apart};
+    band_place to = {.band = out + (size_t)set * count,
+                     .apart = apart,
+                     .colour = texel + ABBE_BAND_COLOUR_TEXELS * (size_t)set * count};
     if (plan->band_parts) {
-      to.texel = texel + ABBE_PART_TEXELS * (size_t)set * count;
-      to.light = texel + ABBE_PART_TEXELS * plan->refractor_count * apart +
+      float(*const parts)[4] = texel + ABBE_BAND_COLOUR_TEXELS * apart;
+      to.texel = parts + ABBE_PART_TEXELS * (size_t)set * count;
+      to.light = parts + ABBE_PART_TEXELS * plan->refractor_count * apart +
                  ABBE_PART_LIGHT_TEXELS * (size_t)set * count;
     }
     result = begin(scene, &light, set, &s, error);
@@ -296,8 +340,9 @@ void abbe_camera_bands_reflected(const abbe_plan *plan, const abbe_camera_band *
   const size_t count = abbe_camera_bands_count(plan->desc.wavelengths, &levels);
   const size_t apart = ABBE_CAMERA_BAND_SETS * count, at = r * apart + count - 1;
   const double n = (double)band[at].surface[2], k = (double)band[at].surface[3];
-  const float(*factor)[4] = texel + ABBE_PART_TEXELS * at;
-  const float(*light)[4] = texel + ABBE_PART_TEXELS * plan->refractor_count * apart +
+  const float(*parts)[4] = texel + ABBE_BAND_COLOUR_TEXELS * apart;
+  const float(*factor)[4] = parts + ABBE_PART_TEXELS * at;
+  const float(*light)[4] = parts + ABBE_PART_TEXELS * plan->refractor_count * apart +
                            ABBE_PART_LIGHT_TEXELS * (count - 1);
   for (unsigned c = 0; c < 3; c++) {
     xyz[c] = plan->band_parts ? 0 : abbe_mirror_reflected(n, k, (double)band[at].surface[1]);

@@ -24,13 +24,17 @@ typedef struct abbe_camera_band {
   float surface[4];  /* attenuation, 1/m; then of a mirror: factor, n, k, as of a node */
 } abbe_camera_band;
 
+/* Texels of a band's colour: the columns of a matrix that makes of XYZ what of it the band has, by
+ * the band's own X, Y and Z; what is seen is lifted to all wavelengths by upsampling.h. All of a
+ * level's bands together have what is seen, and of white each has its weight. */
+enum { ABBE_BAND_COLOUR_TEXELS = 3 };
 /* Texels of a band's parts: of a refractor their attenuation, 1/m, of a mirror their factors; and
  * of their light X, Y and Z, two each. */
 enum { ABBE_PART_TEXELS = 2, ABBE_PART_LIGHT_TEXELS = 6 };
 
 /* Bands of a set for so many wavelengths, all levels together; *levels: so many. */
 size_t abbe_camera_bands_count(size_t wavelengths, size_t *levels);
-/* Texels of all parts; 0 where the plan asks for none. */
+/* Texels of all colours, and of all parts where the plan asks for these. */
 size_t abbe_camera_bands_texels(const abbe_plan *plan);
 
 /* So many wavelengths that bands are joined first, and come back where they differ. */
@@ -41,8 +45,9 @@ bool abbe_camera_bands_refine(const abbe_plan *plan);
 bool abbe_camera_bands_interleave(const abbe_plan *plan);
 
 /* out: [refractors][ABBE_CAMERA_BAND_SETS][abbe_camera_bands_count]; texel, zeroed: as many as
- * abbe_camera_bands_texels says, of [refractors][sets][count][ABBE_PART_TEXELS], then of
- * [sets][count][ABBE_PART_LIGHT_TEXELS]. Errors of abbe_spectral_tables_make. */
+ * abbe_camera_bands_texels says, of [sets][count][ABBE_BAND_COLOUR_TEXELS], then of
+ * [refractors][sets][count][ABBE_PART_TEXELS] and of [sets][count][ABBE_PART_LIGHT_TEXELS]. Errors
+ * of abbe_spectral_tables_make. */
 abbe_result abbe_camera_bands_fill(const abbe_scene *scene, const abbe_plan *plan,
                                    const abbe_spectral_tables *tables, abbe_camera_band *out,
                                    float (*texel)[4], abbe_error *error);

@@ -10,22 +10,29 @@ layout(std430, binding = BINDING_BANDS) readonly buffer Bands { Band bands[]; };
 layout(std140, binding = BINDING_BANDS) uniform Bands { Band bands[BAND_ROOM]; };
 #endif
 
+#include "band_colours.glsl"
+
 int band_set;  // that is taken
 int band_at;   // the band of it that is followed
+int band_of_all_sets() { return band_set * counts.bands + band_at; }
 int first_band(int r) { return (r * BAND_SETS + band_set) * counts.bands; }
 
+mat3 colour_from_rgb;  // of the band that is taken
+
 #ifdef BAND_PARTS
-// Two texels a band and refractor, of each part: attenuation, 1/m, or a mirror's factors; then six a band: X, Y and Z.
-layout(binding = UNIT_BAND_PARTS) uniform samplerBuffer band_parts;
 Depth part_x, part_y, part_z;
 
-Depth parts_at(int texel) { return Depth(texelFetch(band_parts, texel), texelFetch(band_parts, texel + 1)); }
+Depth parts_at(int texel) {
+  int at = 3 * BAND_SETS * counts.bands + texel;
+  return Depth(texelFetch(band_texels, at), texelFetch(band_texels, at + 1));
+}
 
 Depth attenuation_of(int r) { return parts_at(2 * (first_band(r) + band_at)); }
 
 void take_band(int set, int at) {
   band_set = set;
   band_at = at;
+  colour_from_rgb = band_colour(band_of_all_sets()) * xyz_from_rgb;
   int light = 2 * REFRACTORS * BAND_SETS * counts.bands + 6 * (set * counts.bands + at);
   part_x = parts_at(light);
   part_y = parts_at(light + 2);
@@ -43,6 +50,7 @@ vec3 band_weight;
 void take_band(int set, int at) {
   band_set = set;
   band_at = at;
+  colour_from_rgb = band_colour(band_of_all_sets()) * xyz_from_rgb;
   band_weight = bands[set * counts.bands + at].weight_n.xyz;  // every refractor's are the same
 }
 #endif
@@ -78,5 +86,5 @@ vec3 left_further(PathState w, Interface h) {
 }
 
 // XYZ of what the path has of an rgb radiance.
-vec3 in_band(PathState w, vec3 radiance) { return left_of(w) * (xyz_from_rgb * radiance); }
+vec3 in_band(PathState w, vec3 radiance) { return left_of(w) * (colour_from_rgb * radiance); }
 #endif

@@ -59,13 +59,14 @@ typedef struct passage {
 /* As the shaders sum it (camera_bands.glsl): band i of a set, X, Y and Z of a white of 1 each. */
 static void add_band(const fixture *f, size_t set, size_t i, const passage *p, double xyz[3]) {
   const size_t at = set * f->count + i, apart = SETS * f->count;
-  const float(*light)[4] = (const float(*)[4])f->texel + ABBE_PART_TEXELS * f->surfaces * apart +
-                           ABBE_PART_LIGHT_TEXELS * at;
+  const float(*parts)[4] = (const float(*)[4])f->texel + ABBE_BAND_COLOUR_TEXELS * apart;
+  const float(*light)[4] =
+      parts + ABBE_PART_TEXELS * f->surfaces * apart + ABBE_PART_LIGHT_TEXELS * at;
   for (size_t part = 0; part < 8; part++) {
     double left = 1;
     for (size_t r = 0; r < f->surfaces; r++) {
       const abbe_camera_band *band = &f->band[r * apart + at];
-      const double by = (double)f->texel[ABBE_PART_TEXELS * (r * apart + at) + part / 4][part % 4];
+      const double by = (double)parts[ABBE_PART_TEXELS * (r * apart + at) + part / 4][part % 4];
       const double metal = !f->plan.mirror[r] || band->surface[3] < 0
                                ? 0
                                : abbe_optics_fresnel_conductor(1, (double)band->surface[2],
@@ -102,9 +103,9 @@ static void integrate(const fixture *f, const passage *p, double xyz[3]) {
   }
 }
 
-/* Every level of every set, in CIEDE2000 against the integral, under the light's white; and dominant
- * wavelengths, where there is one. Fewer than seven bands of a sample have too few parts for two
- * materials. */
+/* Every level of every set, in CIEDE2000 against the integral, under the light's white; and
+ * dominant wavelengths, where there is one. Fewer than seven bands of a sample have too few parts
+ * for two materials. */
 static void hold(const fixture *f, const passage *p, const char *what, double *worst) {
   const bool two = p->by[0] > 0 && p->by[1] > 0;
   const double *white = f->tables.camera.sum;

@@ -1,6 +1,7 @@
 /* The wavelengths of the camera's rays: white stays white, and samples of a pixel take others. */
 #include "tests/gl/plan/planned.h"
 
+#include "colorimetry/upsampling.h"
 #include "gl/scene/spectra/camera_bands.h"
 
 enum { NODES = 7, COUNT = NODES + 4 + 2 + 1, SETS = ABBE_CAMERA_BAND_SETS };
@@ -10,7 +11,8 @@ typedef struct fixture {
   abbe_plan plan;
   abbe_spectral_tables tables;
   abbe_camera_band band[2][SETS][COUNT];
-  float texel[2 * SETS * COUNT * ABBE_PART_TEXELS + SETS * COUNT * ABBE_PART_LIGHT_TEXELS][4];
+  float texel[SETS * COUNT *
+              (ABBE_BAND_COLOUR_TEXELS + 2 * ABBE_PART_TEXELS + ABBE_PART_LIGHT_TEXELS)][4];
 } fixture;
 
 static void make(const char *text, fixture *f) {
@@ -23,9 +25,9 @@ static void make(const char *text, fixture *f) {
   load_text(text, &f->scene);
   plan_scene(&f->scene, &desc, &f->plan);
   assert_int_equal(abbe_spectral_tables_make(&f->scene, &f->plan, &f->tables, NULL), ABBE_OK);
-  assert_int_equal(abbe_camera_bands_fill(&f->scene, &f->plan, &f->tables, f->band[0][0], f->texel,
-                                          NULL),
-                   ABBE_OK);
+  assert_int_equal(
+      abbe_camera_bands_fill(&f->scene, &f->plan, &f->tables, f->band[0][0], f->texel, NULL),
+      ABBE_OK);
 }
 
 static void done(fixture *f) {
@@ -54,6 +56,43 @@ static void every_level_of_every_set_is_white(void **state) {
           assert_near(sum[1], halves ? 1 : 0, 1e-6);
         }
     }
+  done(&f);
+}
+
+/* Of a red, seen by every band, what its own spectrum has there (upsampling.h), summed finely; of
+ * the bands of a level together the red itself. */
+static void a_colour_has_a_spectrum_of_its_own(void **state) {
+  (void)state;
+  static const double red[3] = {0.7, 0.1, 0.05};
+  fixture f;
+  make(CAMERA POINT_LIGHT FLOOR BALL("crown"), &f);
+  abbe_upsampling lift;
+  abbe_weights_range light;
+  double xyz[3] = {0}, all[3] = {0};
+  const abbe_illuminant *illuminant = abbe_scene_illuminant(&f.scene);
+  assert_int_equal(abbe_upsampling_make(illuminant, 400, 700, &lift, NULL), ABBE_OK);
+  abbe_weights_range_make(illuminant, 400, 700, &light);
+  for (int c = 0; c < 3; c++)
+    for (int k = 0; k < 3; k++) xyz[c] += lift.to_xyz[3 * c + k] * red[k];
+  for (size_t i = 0; i < NODES; i++) {
+    const double from = i == 0 ? 400 : 375 + 50 * (double)i,
+                 to = i == NODES - 1 ? 700 : 425 + 50 * (double)i;
+    double should[3] = {0};
+    for (double at = from; at < to; at += 0.5) {
+      double step[3];
+      abbe_weights_range_xyz(&light, at, at + 0.5, step);
+      for (int c = 0; c < 3; c++) should[c] += step[c] * abbe_upsampling_at(&lift, red, at + 0.25);
+    }
+    for (int c = 0; c < 3; c++) {
+      double shown = 0;
+      for (int k = 0; k < 3; k++)
+        shown += (double)f.texel[ABBE_BAND_COLOUR_TEXELS * i + (size_t)k][c] * xyz[k];
+      shown *= (double)f.band[0][0][i].weight_n[c];
+      all[c] += shown;
+      assert_near(shown, should[c], 1e-4 * xyz[c]);
+    }
+  }
+  for (int c = 0; c < 3; c++) assert_near(all[c], xyz[c], 1e-5 * xyz[c]);
   done(&f);
 }
 
@@ -106,6 +145,7 @@ static void together_they_tell_a_spectrum_better(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_level_of_every_set_is_white),
+      cmocka_unit_test(a_colour_has_a_spectrum_of_its_own),
       cmocka_unit_test(shares_stand_a_quarter_apart),
       cmocka_unit_test(together_they_tell_a_spectrum_better),
   };
