@@ -1,3 +1,4 @@
+#define _XOPEN_SOURCE 700 /* realpath */
 #include "scenes/studio/studio.h"
 
 #include "base/file.h"
