@@ -1,3 +1,4 @@
+#define _XOPEN_SOURCE 700 /* realpath */
 #include "cli/options/scene_input.h"
 
 #include "base/file.h"
