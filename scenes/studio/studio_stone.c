@@ -42,18 +42,32 @@ bool abbe_studio_is_stone(const char *path) {
   return path != NULL && kind_of(path) != NULL;
 }
 
+/* Stones of the shipped table that designs are made for; of colours the usual one of its kind. */
+static const char *const clear[] = {"quartz", "topaz",          "spinel",  "sapphire",   "yag",
+                                    "zircon", "cubic-zirconia", "diamond", "moissanite", NULL};
+static const char *const tinted[] = {"emerald",   "tourmaline-green", "peridot",   "tanzanite",
+                                     "tsavorite", "spessartine",      "demantoid", NULL};
+
+/* Of those names in the table; *off: how far its index is. */
+static const abbe_material *nearest_of(const abbe_material_table *table, const char *const *names,
+                                       double n, double *off) {
+  const abbe_material *best = NULL, *m;
+  double own;
+  *off = INFINITY;
+  for (; *names != NULL; names++)
+    if (abbe_material_table_find(table, *names, &m, NULL) == ABBE_OK &&
+        abbe_material_n(m, ABBE_LINE_D_NM, &own, NULL) == ABBE_OK && fabs(own - n) < *off) {
+      *off = fabs(own - n);
+      best = m;
+    }
+  return best;
+}
+
 const abbe_material *abbe_studio_nearest(const abbe_material_table *table, double n) {
-  const abbe_material *best[2] = {NULL, NULL}; /* clear, any */
-  double off[2] = {INFINITY, INFINITY}, own;
-  for (size_t i = 0; i < table->count; i++) {
-    const abbe_material *m = &table->material[i];
-    if (!(m->catalogue.density_g_cm3 > 0) || abbe_material_is_conductor(m) ||
-        abbe_material_n(m, ABBE_LINE_D_NM, &own, NULL) != ABBE_OK)
-      continue;
-    for (int k = m->attenuation != NULL; k < 2; k++)
-      if (fabs(own - n) < off[k]) off[k] = fabs(own - n), best[k] = m;
-  }
-  return off[0] > NEAR && off[1] <= NEAR ? best[1] : best[0];
+  double off[2];
+  const abbe_material *best = nearest_of(table, clear, n, &off[0]);
+  const abbe_material *other = nearest_of(table, tinted, n, &off[1]);
+  return off[0] > NEAR && off[1] <= NEAR ? other : best;
 }
 
 /* What a design's index is nearest to. */

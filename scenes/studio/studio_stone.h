@@ -25,8 +25,8 @@ abbe_result abbe_studio_stone_read(const char *path, const abbe_studio *studio,
                                    abbe_studio_stone *out, abbe_error *error);
 
 /* The clear stone of the table whose index at the d line is nearest to n, if by 0.015 or less; else
- * any stone so near, else the nearest clear one. Stones are what has a density and is no metal;
- * NULL where there are none. */
+ * a coloured stone so near, else the nearest clear one. Stones are those that designs are made for,
+ * by their names in the shipped table; NULL where the table has none. */
 const abbe_material *abbe_studio_nearest(const abbe_material_table *table, double n);
 
 #ifdef __cplusplus

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/studio/studio_stone.h"
+#include "spectral/formats/material_table_load.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -163,25 +164,20 @@ static void lamps_grow_with_the_stones(void **state) {
 
 static void an_index_finds_a_stone(void **state) {
   (void)state;
-  static abbe_material rows[] = {{.name = (char *)"glass"},
-                                 {.name = (char *)"clear"},
-                                 {.name = (char *)"tinted"},
-                                 {.name = (char *)"tinted as clear"}};
-  static const double index[] = {1.62, 1.613, 1.7, 1.613};
-  static char tint; /* that there is one is all that is asked */
-  for (size_t i = 0; i < 4; i++) {
-    rows[i].dispersion.model = ABBE_DISPERSION_CONSTANT;
-    rows[i].dispersion.count = 1;
-    rows[i].dispersion.c[0] = index[i];
-    rows[i].min_nm = 300;
-    rows[i].max_nm = 900;
-    if (i > 0) rows[i].catalogue.density_g_cm3 = 3;
-    if (i > 1) rows[i].attenuation = (abbe_spectrum *)(void *)&tint;
-  }
-  const abbe_material_table table = {.count = 4, .material = rows};
-  assert_ptr_equal(abbe_studio_nearest(&table, 1.62), &rows[1]);  /* a glass is no stone */
-  assert_ptr_equal(abbe_studio_nearest(&table, 1.695), &rows[2]); /* no clear one is near */
-  assert_ptr_equal(abbe_studio_nearest(&table, 1.66), &rows[1]);  /* none is near */
+  static const struct {
+    double n;
+    const char *name;
+  } stones[] = {
+      {1.54, "quartz"},   {1.577, "emerald"}, /* no clear stone is near, and no glass */
+      {1.62, "topaz"},    {1.66, "peridot"},  {1.76, "sapphire"}, {2.15, "cubic-zirconia"},
+      {2.417, "diamond"}, {1.1, "quartz"},    {3, "moissanite"}};
+  abbe_material_table table;
+  const abbe_material_table none = {0};
+  assert_int_equal(abbe_material_table_load(NULL, &table, NULL), ABBE_OK);
+  for (size_t i = 0; i < sizeof stones / sizeof *stones; i++)
+    assert_string_equal(abbe_studio_nearest(&table, stones[i].n)->name, stones[i].name);
+  assert_null(abbe_studio_nearest(&none, 1.54));
+  abbe_material_table_free(&table);
 }
 
 static void what_is_wrong_is_said(void **state) {
