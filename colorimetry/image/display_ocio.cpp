@@ -81,11 +81,15 @@ void check_file(const char *path) {
   std::fclose(file);
 }
 
-/* The file's own word for its version; 0 where it has none. */
-void read_version(const char *path, int *major, int *minor) {
+/* The file's own word for its version; 0 where it has none. A built-in one's is in its name, and
+ * the first are those of 2.2. */
+void read_version(const char *path, bool built_in, int *major, int *minor) {
   char line[256];
   *major = *minor = 0;
-  std::FILE *file = std::fopen(path, "r");
+  const char *named = built_in ? std::strstr(path, "ocio-v") : nullptr;
+  if (named != nullptr) std::sscanf(named, "ocio-v%d.%d", major, minor);
+  if (built_in && *major * 100 + *minor < 202) *major = *minor = 2;
+  std::FILE *file = built_in ? nullptr : std::fopen(path, "r");
   while (file != nullptr && std::fgets(line, sizeof line, file) != nullptr)
     if (std::sscanf(line, "ocio_profile_version: %d.%d", major, minor) > 0) break;
   if (file != nullptr) std::fclose(file);
@@ -94,20 +98,15 @@ void read_version(const char *path, int *major, int *minor) {
 /* What a younger OpenColorIO could load is refused with what the one that is here knows. */
 void check_version(const char *path) {
   const int here = OCIO::GetVersionHex(), major_here = here >> 24, minor_here = here >> 16 & 0xff;
-  const std::string library = std::string("the OpenColorIO here is ") + OCIO::GetVersion();
-  if (std::strncmp(path, "ocio://", 7) == 0) {
-    if (major_here > 2 || (major_here == 2 && minor_here >= 2)) return;
-    throw OCIO::Exception(
-        ("it names a configuration that is built into OpenColorIO 2.2 and later; " + library)
-            .c_str());
-  }
+  const bool built_in = std::strncmp(path, "ocio://", 7) == 0;
   int major, minor;
-  read_version(path, &major, &minor);
-  if (major < major_here || (major == major_here && minor <= minor_here)) return;
   char text[200];
-  std::snprintf(text, sizeof text,
-                "it is a configuration of version %d.%d; %.80s, which reads up to %d.%d", major,
-                minor, library.c_str(), major_here, minor_here);
+  read_version(path, built_in, &major, &minor);
+  if (major < major_here || (major == major_here && minor <= minor_here)) return;
+  std::snprintf(text, sizeof text, "it %s %d.%d%s; the OpenColorIO here is %.20s",
+                built_in ? "names a configuration that is built into OpenColorIO"
+                         : "is a configuration of version",
+                major, minor, built_in ? " and later" : "", OCIO::GetVersion());
   throw OCIO::Exception(text);
 }
 

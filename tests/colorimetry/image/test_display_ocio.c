@@ -182,6 +182,8 @@ static void test_versions(void **state) {
   must_fail(&(abbe_display_desc){.config = path}, ABBE_COLOUR,
             "is a configuration of version 2.99; the OpenColorIO here is 2.");
   unlink(path);
+  must_fail(&(abbe_display_desc){.config = "ocio://cg-config-v9.0.0_aces-v3.0_ocio-v2.99"},
+            ABBE_COLOUR, "built into OpenColorIO 2.99 and later; the OpenColorIO here is 2.");
   abbe_display *display = NULL;
   abbe_error error = {0};
   const abbe_display_desc built_in = {.config = "ocio://cg-config-v1.0.0_aces-v1.3_ocio-v2.1",
