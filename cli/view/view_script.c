@@ -297,8 +297,7 @@ static bool is_awaited(const char *what) {
 
 static bool has_come(script *s, const char *what) {
   const abbe_view_session *v = &s->hidden.session;
-  const double now = abbe_clock_seconds();
-  if (strcmp(what, "rest") == 0) return abbe_view_app_rests(&s->hidden.session, now);
+  if (!strcmp(what, "rest")) return abbe_view_app_rests(&s->hidden.session, abbe_clock_seconds());
   if (strcmp(what, "stopped") == 0) return abbe_view_app_stopped(v);
   if (strcmp(what, "refusal") == 0) return v->state.refusal[0] != '\0';
   if (strcmp(what, "changed") == 0) return v->state.refine.serial != s->copied;
@@ -312,8 +311,7 @@ static bool has_come(script *s, const char *what) {
 
 static abbe_result do_wait(script *s, abbe_error *error) {
   const char *what = s->words > 1 ? s->word[1] : "rest", *end;
-  const double start = abbe_clock_seconds();
-  double seconds;
+  double seconds, start = abbe_clock_seconds();
   pump(s);
   if (abbe_number_read(what, &end, &seconds) && *end == '\0' && seconds >= 0) {
     for (double left = seconds; left > 0; left = start + seconds - abbe_clock_seconds()) {
@@ -324,6 +322,8 @@ static abbe_result do_wait(script *s, abbe_error *error) {
   }
   if (!is_awaited(what))
     return fail(s, ABBE_PARSE, error, "'%.60s' is no stage, nor else what can come", what);
+  if (stage_of(what) < ABBE_VIEW_STAGE_COUNT && s->hidden.session.state.width == 0)
+    return fail(s, ABBE_OUT_OF_RANGE, error, "no room for a picture; --size makes the window wide");
   const clock_t begun = clock();
   for (double busy_s = start; !has_come(s, what); pump(s)) {
     const double now = abbe_clock_seconds();

@@ -206,6 +206,10 @@ static void scripts_that_do_not_hold(void **state) {
     if (code != cases[i].code) fail_msg("'%s' ends with %d: %s", line, code, run_errors);
     assert_contains(run_errors, cases[i].sentence);
   }
+  run_must("echo wait balanced > a.txt");
+  assert_int_equal(
+      run_line("\"$abbe\" view \"$house\"/scenes/sphere.yaml --size 256x200 --script a.txt"), 1);
+  assert_contains(run_errors, "no room for a picture; --size makes the window wide");
   run_must("rm a.txt");
   assert_int_equal(run_left(), 0);
 }
