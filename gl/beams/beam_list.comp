@@ -97,8 +97,10 @@ float left_in(Node a, Node b, int interval, int k, float per_m) {
   bool own = medium >= 0 && has_tint(a.tints, medium_tint);
   float depth = own ? -per_m * distance(a.from, a.to) : 0.0;
   Tints t = tints_between(a.tints, b.tints, (float(k) + 0.5) / float(PARTS));
-  for (int i = 0; i < TINTS; i++)
-    depth += t.amount[i] * texelFetch(beam_tints, (t.of[i] * max(counts.wavelengths - 1, 1) + interval_of(interval)) * PARTS + k).x;
+  for (int i = 0; i < TINTS; i++) {
+    int row = t.of[i] * max(counts.wavelengths - 1, 1) + interval_of(interval);
+    depth += t.amount[i] * texelFetch(beam_tints, row * PARTS + k).x;
+  }
   return exp(-max(depth, 0.0));
 #else
   return 1.0;

@@ -41,7 +41,7 @@ uniform int tints_first;  // of these hits' set
 
 // Light is laid in parts whose optical depth ranges by no more.
 const float EVEN = 0.25;
-const int MOST_PARTS = 16;
+const float MOST_PARTS = 16.0;
 
 // Nothing is left of what is less.
 const float LEAST_LEFT = 1e-4;
@@ -56,7 +56,8 @@ Left left_at_nodes(Node a, Node b, int interval) {
   int at_b = tints_first + TINT_TEXELS * REFRACTORS * max(interval - 1, 0);
   vec2 depth_a = depth_of(a.tints, at_a, false), depth_b = depth_of(b.tints, at_b, true);
   float uneven = max(unevenness(a, depth_a, at_a), unevenness(b, depth_b, at_b));
-  return Left(left_after(depth_a), left_after(depth_b), min(1 << int(ceil(log2(max(2.0 * uneven / EVEN, 1.0)))), MOST_PARTS));
+  float needed = clamp(2.0 * uneven / EVEN, 1.0, MOST_PARTS);
+  return Left(left_after(depth_a), left_after(depth_b), 1 << int(ceil(log2(needed))));
 }
 
 #else

@@ -107,7 +107,8 @@ PhotonRay ray_of(Task t) {
 // the coarse band that covered the interval, which enter() takes back.
 void load_attenuation(Task t) {
   bool at_low = t.wavelength == t.low, at_high = t.wavelength == t.high;
-  int all = counts.nodes == counts.wavelengths ? 0 : counts.nodes, node = set == COARSE ? t.sample_number : all + t.wavelength;
+  int all = counts.nodes == counts.wavelengths ? 0 : counts.nodes;
+  int node = set == COARSE ? t.sample_number : all + t.wavelength;
   below_texel = TINT_TEXELS * REFRACTORS * (at_low ? t.interval : node);
   above_texel = TINT_TEXELS * REFRACTORS * (at_high ? t.interval + 1 : node);
   below_is_above = at_low;

@@ -1,6 +1,6 @@
-// BAND_PARTS: attenuation or reflectance varies by wavelength. A path of the camera then keeps its optical depth in each part of
-// its band of wavelengths (band_parts.h), so that of the band its mean transmittance is left at any length, and not
-// that at one wavelength.
+// BAND_PARTS: attenuation or reflectance varies by wavelength. A path of the camera then keeps its optical depth in each
+// part of its band of wavelengths (band_parts.h), so that of the band its mean transmittance is left at any length, and
+// not that at one wavelength.
 #ifdef BAND_PARTS
 #define Depth mat2x4
 

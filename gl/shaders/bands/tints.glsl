@@ -1,5 +1,5 @@
 // TINTS: what takes light by wavelength tints it. A photon's path keeps how much of each stuff it passed, of so many
-// stuffs, and so does its hit: attenuation at all wavelengths follows (gl/scene/spectra/tints.h).
+// stuffs, and so does its hit: attenuation at all wavelengths follows (gl/plan/examine/tints.h).
 #ifdef TINTS
 struct Tints {
   float amount[TINTS];
@@ -66,11 +66,11 @@ Tints tints_between(Tints a, Tints b, float t) {
 
 bool has_tint(Tints t, int of) {
   bool has = false;
-  for (int k = 0; k < TINTS; k++) has = has || t.of[k] == of;
+  for (int k = 0; k < TINTS; k++) has = has || (t.amount[k] > 0.0 && t.of[k] == of);  // an empty one is the first's
   return has;
 }
 
-// Of what tints: two texels each at [node][refractor] from `first`. Attenuation of two parts of a band below its node,
+// Of what tints: two texels each at [node][refractor] (tint_nodes.h). Attenuation of two parts of a band below its node,
 // and of two above it, each of a half's brightness; then by how much it differs within a half, and whose tint it is.
 uniform samplerBuffer tints;
 const int TINT_TEXELS = 2;
