@@ -38,7 +38,7 @@ endforeach()
 add_test(NAME killed_command_all COMMAND test_killed_command all)
 abbe_label(program long NAMES killed_command_all)
 
-abbe_test(gl_faults gl WRAPPED abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
+abbe_test(gl_faults gl WRAPPED abbe_own_context abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 abbe_test(device_memory gl WRAPPED abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 foreach(name gl_faults device_memory)
   target_link_options(test_${name} PRIVATE LINKER:--wrap=abbe_context_egl)

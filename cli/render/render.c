@@ -2,6 +2,7 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
+#include "cli/options/own_context.h"
 #include "cli/options/scene_input.h"
 #include "cli/options/screen_options.h"
 #include "cli/render/render_check.h"
@@ -379,7 +380,7 @@ static abbe_result choose_and_draw(request *q, const abbe_scene *scene, abbe_err
   const bool chosen = q->picture.point != NULL;
   if (result == ABBE_OK && chosen && q->picture.point->tool != ABBE_PICTURE_RENDER)
     return trace(q, scene, error);
-  if (result == ABBE_OK) result = abbe_context_make(q->backend, &context, error);
+  if (result == ABBE_OK) result = abbe_own_context_make(q->backend, q->quiet, &context, error);
   if (result == ABBE_OK && !chosen)
     result =
         abbe_preset_choose(&q->preset.request, context, scene, &q->render.desc, &q->choice, error);

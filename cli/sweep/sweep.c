@@ -2,6 +2,7 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
+#include "cli/options/own_context.h"
 #include "cli/options/scene_input.h"
 #include "cli/sweep/sweep_options.h"
 #include "cli/sweep/sweep_report.h"
@@ -119,7 +120,7 @@ static abbe_result measure(const abbe_sweep_options *q, const abbe_scene *scene,
   work.user = &b;
   work.stop = abbe_progress_stopped();
   abbe_result result = before == ABBE_OK ? claim_references(q, error) : before;
-  if (result == ABBE_OK) result = abbe_context_make(q->backend, &context, error);
+  if (result == ABBE_OK) result = abbe_own_context_make(q->backend, q->quiet, &context, error);
   result = abbe_rank_job_agree(q->job, result, error);
   if (result == ABBE_OK)
     result = q->job != NULL ? abbe_ranked_sweep(&q->job->ranks, context, scene, &work, out, error)
@@ -152,7 +153,7 @@ static abbe_result study_scaling(const abbe_sweep_options *q, abbe_error *error)
   abbe_scaling_study study;
   abbe_progress progress;
   abbe_result result = abbe_scene_input_load(q->program, q->scene, q->materials, &scene, error);
-  if (result == ABBE_OK) result = abbe_context_make(q->backend, &context, error);
+  if (result == ABBE_OK) result = abbe_own_context_make(q->backend, q->quiet, &context, error);
   if (result == ABBE_OK) {
     const size_t width = q->work.traced.width;
     const abbe_sweep sweep = {.context = context, .scene = &scene, .frames = q->work.frames};
@@ -204,7 +205,7 @@ static abbe_result study_transports(const abbe_sweep_options *q, abbe_error *err
                     : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the study");
   if (result == ABBE_OK)
     result = abbe_sweep_reference_load(&scene, q->work.reference, NULL, &reference, &light, error);
-  if (result == ABBE_OK) result = abbe_context_make(q->backend, &context, error);
+  if (result == ABBE_OK) result = abbe_own_context_make(q->backend, q->quiet, &context, error);
   if (result == ABBE_OK) {
     const abbe_sweep sweep = {.context = context,
                               .scene = &scene,
@@ -279,7 +280,7 @@ static abbe_result write_page(const abbe_sweep_options *q, const abbe_sweep_tabl
       abbe_sweep_page_picture(q->report, tables, i, k, own);
       abbe_arguments_add(q->program, ABBE_ARGUMENT_WRITES, "the report's picture", own);
     }
-  abbe_result result = abbe_context_make(q->backend, &context, error);
+  abbe_result result = abbe_own_context_make(q->backend, q->quiet, &context, error);
   if (result == ABBE_OK)
     result = abbe_sweep_page_write(context, q->report, tables, count, q->work.time, q->work.error,
                                    error);

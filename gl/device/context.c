@@ -12,6 +12,7 @@ struct abbe_context {
   const char *name;
   abbe_gl gl;
   char description[256];
+  abbe_error refused_gpu; /* zero: there is none */
 };
 
 static const char *const names[] = {
@@ -146,7 +147,10 @@ abbe_result abbe_context_make(abbe_context_backend backend, abbe_context **out, 
   const bool tell_gpu = backend == ABBE_CONTEXT_GPU || result != ABBE_UNSUPPORTED;
   if (result != ABBE_OK && backend != ABBE_CONTEXT_GPU)
     result = make_of_kind(ABBE_CONTEXT_CPU, out, &cpu);
-  if (result == ABBE_OK) return ABBE_OK;
+  if (result == ABBE_OK) {
+    if (tell_gpu) (*out)->refused_gpu = gpu;
+    return ABBE_OK;
+  }
   return abbe_error_set(error, result == ABBE_UNSUPPORTED ? ABBE_GL : result, "%s%s%s; %s",
                         tell_gpu ? gpu.text : "", tell_gpu && cpu.text[0] != '\0' ? "; " : "",
                         cpu.text, remedies[backend]);
@@ -198,4 +202,7 @@ const abbe_gl *abbe_context_gl(const abbe_context *context) {
 }
 const char *abbe_context_description(const abbe_context *context) {
   return context->description;
+}
+const char *abbe_context_refused_gpu(const abbe_context *context) {
+  return context->refused_gpu.text;
 }

@@ -3,18 +3,21 @@
  * behind. */
 #include "tests/check.h"
 
+#include "cli/options/own_context.h"
 #include "gl/device/context.h"
 #include "gl/device/context_backend.h"
 #include "gl/renderer.h"
 #include "scenes/import/scene_file.h"
 
 #include <stdlib.h>
+#include <unistd.h>
 
 static const char *hidden; /* a function that is not there */
 static GLenum lowered;     /* a limit that is `low` */
 static GLint low;
 static bool refused, mute, breaks; /* no context; no strings; shaders do not compile */
 static bool as_gpu, first_fails;   /* of EGL's devices */
+static bool bad_gpu;               /* another one, which opens for nobody */
 static bool gone;                  /* the device */
 static size_t tried;
 static abbe_gl_lookup real_lookup;
@@ -70,6 +73,8 @@ abbe_result __wrap_abbe_context_egl(bool software, size_t device, abbe_context_n
 /* The CPU's device is there once as itself, or as two of a GPU's. */
 abbe_result __wrap_abbe_context_egl(bool software, size_t device, abbe_context_native *out,
                                     abbe_error *error) {
+  if (bad_gpu && !software && device == 0)
+    return abbe_error_set(error, ABBE_GL, "EGL's device (a bad one) does not open");
   if (software != !as_gpu || device > (as_gpu ? 1 : 0))
     return abbe_error_set(error, ABBE_UNSUPPORTED, "there is no other device");
   tried++;
@@ -91,7 +96,7 @@ static int reset(void **state) {
   (void)state;
   hidden = NULL;
   lowered = 0;
-  refused = mute = breaks = as_gpu = first_fails = gone = false;
+  refused = mute = breaks = as_gpu = first_fails = bad_gpu = gone = false;
   tried = 0;
   return 0;
 }
@@ -191,6 +196,41 @@ static void test_two_causes_are_one_sentence(void **state) {
   assert_null(strstr(error.text, "--backend gpu"));
 }
 
+/* What a command says on stderr while it makes its context. */
+static void make_and_read(bool quiet, char *said, size_t size) {
+  abbe_context *context = NULL;
+  abbe_error error = {0};
+  FILE *file = tmpfile();
+  const int kept = dup(STDERR_FILENO);
+  assert_non_null(file);
+  dup2(fileno(file), STDERR_FILENO);
+  const abbe_result result = abbe_own_context_make(ABBE_CONTEXT_AUTO, quiet, &context, &error);
+  dup2(kept, STDERR_FILENO);
+  close(kept);
+  assert_int_equal(result, ABBE_OK);
+  abbe_context_free(context);
+  rewind(file);
+  said[fread(said, 1, size - 1, file)] = '\0';
+  fclose(file);
+}
+
+/* Why the CPU draws is told once, and only where there is a GPU. */
+static void test_a_gpu_that_is_not_taken_is_told_of_once(void **state) {
+  (void)state;
+  char said[512];
+  make_and_read(false, said, sizeof said);
+  assert_string_equal(said, "");
+  bad_gpu = true;
+  make_and_read(true, said, sizeof said);
+  assert_string_equal(said, "");
+  make_and_read(false, said, sizeof said);
+  assert_string_equal(said,
+                      "note: the GPU is not used, and the CPU draws: EGL's device (a bad one) "
+                      "does not open\n");
+  make_and_read(false, said, sizeof said);
+  assert_string_equal(said, "");
+}
+
 static void test_a_driver_without_a_name(void **state) {
   (void)state;
   abbe_context *context = NULL;
@@ -252,6 +292,7 @@ int main(void) {
       cmocka_unit_test_setup(test_versions_and_limits, reset),
       cmocka_unit_test_setup(test_the_device_that_works_is_taken, reset),
       cmocka_unit_test_setup(test_two_causes_are_one_sentence, reset),
+      cmocka_unit_test_setup(test_a_gpu_that_is_not_taken_is_told_of_once, reset),
       cmocka_unit_test_setup(test_a_driver_without_a_name, reset),
       cmocka_unit_test_setup(test_shaders_that_do_not_compile, reset),
       cmocka_unit_test_setup(test_a_device_lost_in_a_frame, reset)};

@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/thread/watch.h"
+#include "cli/options/own_context.h"
 #include "cli/view/picture/view_look.h"
 #include "cli/view/work/view_scene.h"
 #include "cli/view/work/view_settings.h"
@@ -276,7 +277,7 @@ static abbe_result renew(abbe_view_worker *w, abbe_error *error) {
   w->renderer = NULL;
   w->context = NULL;
   w->drawn = NULL;
-  return abbe_context_make(ABBE_CONTEXT_AUTO, &w->context, error);
+  return abbe_own_context_make(ABBE_CONTEXT_AUTO, false, &w->context, error);
 }
 
 static void work(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out) {
