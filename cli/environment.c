@@ -152,6 +152,7 @@ static abbe_result say_of_picture(const request *r, abbe_error *error) {
   abbe_result result =
       abbe_environment_picture_read(r->input, ABBE_LAYOUT_BY_ASPECT, &e.map, error);
   if (result == ABBE_OK && e.map.space_assumed) abbe_command_note_space(r->input);
+  if (result == ABBE_OK) abbe_command_note_part(r->input, e.map.part);
   if (result == ABBE_OK) result = abbe_environment_prepare(&e, error);
   if (result == ABBE_OK) result = say(r, &e, error);
   abbe_environment_free(&e);

@@ -56,11 +56,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
-static abbe_result read_numbered(const char *path, size_t number, abbe_image *out,
+/* Which part of a file a frame is, is told of the first. */
+static abbe_result read_numbered(const request *q, const char *path, size_t i, abbe_image *out,
                                  abbe_error *error) {
   char *name = NULL;
-  abbe_result result = abbe_frame_series_name(path, number, &name, error);
-  if (result == ABBE_OK && name != NULL) result = abbe_exr_read(name, out, error);
+  abbe_result result = abbe_frame_series_name(path, q->series.first + i, &name, error);
+  if (result == ABBE_OK && name != NULL)
+    result = (i == 0 ? abbe_command_read_picture : abbe_exr_read)(name, out, error);
   free(name);
   return result;
 }
@@ -68,9 +70,8 @@ static abbe_result read_numbered(const char *path, size_t number, abbe_image *ou
 static abbe_result add_frame(const request *q, size_t i, abbe_frame_flicker *flicker,
                              abbe_frame_error *out, abbe_error *error) {
   abbe_image frame = {0}, reference = {0};
-  abbe_result result = read_numbered(q->path, q->series.first + i, &frame, error);
-  if (result == ABBE_OK)
-    result = read_numbered(q->reference, q->series.first + i, &reference, error);
+  abbe_result result = read_numbered(q, q->path, i, &frame, error);
+  if (result == ABBE_OK) result = read_numbered(q, q->reference, i, &reference, error);
   if (result == ABBE_OK)
     result = abbe_frame_flicker_add(flicker, &frame, q->reference != NULL ? &reference : NULL, out,
                                     error);

@@ -141,13 +141,16 @@ int abbe_command_outline(int argc, char **argv) {
   abbe_error error = {0};
   abbe_outline outline[2] = {{0}};
   abbe_outline_agreement agreement = {0};
-  abbe_image place[2] = {{0}};
+  abbe_image place[2][2] = {{{0}}};
   abbe_result result = ABBE_OK;
-  for (int i = 0; i < q.files && result == ABBE_OK; i++)
-    result = abbe_outline_load(q.file[i], i == q.files - 1 ? q.minus : NULL, &q.outline,
-                               &outline[i], &place[i], &error);
+  for (int i = 0; i < q.files && result == ABBE_OK; i++) {
+    const char *minus = i == q.files - 1 ? q.minus : NULL;
+    result = abbe_outline_load(q.file[i], minus, &q.outline, &outline[i], place[i], &error);
+    if (result == ABBE_OK) abbe_command_note_part(q.file[i], place[i][0].part);
+    if (result == ABBE_OK && minus != NULL) abbe_command_note_part(minus, place[i][1].part);
+  }
   if (result == ABBE_OK && q.files == 2)
-    result = abbe_image_check_place(&place[0], q.file[0], &place[1], q.file[1], &error);
+    result = abbe_image_check_place(place[0], q.file[0], place[1], q.file[1], &error);
   if (result == ABBE_OK && q.files == 2)
     result = abbe_outline_compare(&outline[0], &outline[1], &agreement, &error);
   if (result == ABBE_OK && q.json) result = print_json(&q, outline, &agreement, &error);

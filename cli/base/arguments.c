@@ -3,6 +3,7 @@
 #include "base/nearest.h"
 #include "cli/base/command.h"
 #include "cli/base/option_tables.h"
+#include "colorimetry/image/exr.h"
 #include "spectral/materials/material_table.h"
 
 #include <libgen.h>
@@ -87,11 +88,13 @@ void abbe_arguments_add(const char *program, unsigned flags, const char *what, c
     named.room = room;
   }
   named_file *own = &named.file[named.count];
-  *own = (named_file){flags, what, strdup(path)};
+  const bool written = flags & ABBE_ARGUMENT_WRITES;
+  *own =
+      (named_file){flags, what, written ? strdup(path) : strndup(path, abbe_exr_file_length(path))};
   if (own->path == NULL) no_memory(program);
   for (size_t i = 0; i < named.count; i++)
-    if (((flags | named.file[i].flags) & ABBE_ARGUMENT_WRITES) &&
-        is_same_file(path, named.file[i].path, program))
+    if ((written || (named.file[i].flags & ABBE_ARGUMENT_WRITES)) &&
+        is_same_file(own->path, named.file[i].path, program))
       refuse_overwriting(program, &named.file[i], own);
   named.count++;
 }

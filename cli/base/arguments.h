@@ -3,7 +3,8 @@
  * An option that is not there, or that lacks the last letter of one, is refused with the name that
  * was meant. A file that is named twice for one option is refused, for one would be ignored. And no
  * output may be an input or another output: not the same file by device and inode, nor, where there
- * is none yet, the same name in the same folder. "-" is the name of no output.
+ * is none yet, the same name in the same folder; FILE#PART that is read is FILE. "-" is the name of
+ * no output.
  */
 #ifndef ABBE_CLI_BASE_ARGUMENTS_H
 #define ABBE_CLI_BASE_ARGUMENTS_H

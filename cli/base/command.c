@@ -111,15 +111,15 @@ void abbe_command_note_odd(const char *name, const struct abbe_image_odd *odd, c
     fprintf(stderr, "note: %s: %zu pixels are not a number (NaN)\n", name, odd->nan);
 }
 
-void abbe_command_note_part(const char *name, const struct abbe_image *image) {
-  if (image->part[0] == '\0') return;
+void abbe_command_note_part(const char *name, const char *part) {
+  if (part[0] == '\0') return;
   fprintf(stderr, "note: %s: its part %s is read; FILE#NAME or FILE#NUMBER is another\n", name,
-          image->part);
+          part);
 }
 
 abbe_result abbe_command_read_picture(const char *path, struct abbe_image *out, abbe_error *error) {
   const abbe_result result = abbe_exr_read(path, out, error);
-  if (result == ABBE_OK) abbe_command_note_part(path, out);
+  if (result == ABBE_OK) abbe_command_note_part(path, out->part);
   return result;
 }
 

@@ -105,8 +105,8 @@ abbe_result abbe_command_check_targets(const char *const *paths, size_t count, a
 void abbe_command_note_space(const char *name);
 void abbe_command_note_odd(const char *name, const struct abbe_image_odd *odd, const char *how);
 
-/* The same about which of a file's several parts the picture is (colorimetry/image/exr.h). */
-void abbe_command_note_part(const char *name, const struct abbe_image *image);
+/* The same about which of a file's several parts the picture is: an abbe_image's `part`. */
+void abbe_command_note_part(const char *name, const char *part);
 /* Reads an OpenEXR picture with that note. Errors of abbe_exr_read. */
 abbe_result abbe_command_read_picture(const char *path, struct abbe_image *out, abbe_error *error);
 

@@ -2,7 +2,6 @@
 
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
-#include "colorimetry/image/exr.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -52,7 +51,7 @@ static abbe_result find_named(const abbe_map_options *o, const abbe_scene *scene
 static abbe_result read_like(abbe_map_options *o, const abbe_scene *scene, bool sized,
                              abbe_error *error) {
   abbe_image map = {0};
-  abbe_result result = abbe_exr_read(o->like, &map, error);
+  abbe_result result = abbe_command_read_picture(o->like, &map, error);
   if (result == ABBE_OK) result = abbe_map_layout_read(&map, o->like, &o->layout, error);
   if (result == ABBE_OK && sized && map.width != map.height)
     result = abbe_error_set(error, ABBE_UNSUPPORTED,

@@ -265,6 +265,8 @@ void abbe_scene_input_note(const abbe_scene *scene) {
   const abbe_environment *around = scene->environment;
   if (abbe_studio_is_stone(scene->path)) fprintf(stderr, "%s\n", scene->description);
   if (around != NULL && around->map.space_assumed) abbe_command_note_space(around->path);
+  if (around != NULL && around->path != NULL)
+    abbe_command_note_part(around->path, around->map.part);
   for (size_t i = 0; i < scene->object_count; i++)
     if (scene->object[i].fixes != NULL)
       fprintf(stderr, "note: object '%s': %s\n", scene->object[i].name, scene->object[i].fixes);

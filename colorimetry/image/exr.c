@@ -269,16 +269,20 @@ static abbe_result read_image(exr_context_t context, const abbe_exr_stream *s, a
   return rv == 0 ? ABBE_OK : abbe_exr_fail(s, rv, error);
 }
 
-/* FILE#PART is a part of FILE, unless there is a file of that whole name. */
+size_t abbe_exr_file_length(const char *path) {
+  const char *mark = access(path, F_OK) == 0 ? NULL : strrchr(path, '#');
+  return mark != NULL ? (size_t)(mark - path) : strlen(path);
+}
+
 static abbe_result open_stream(abbe_exr_stream *s, FILE **file, abbe_error *error) {
   size_t size = 0;
-  const char *mark = access(s->path, F_OK) == 0 ? NULL : strrchr(s->path, '#');
-  char *name = mark != NULL ? strndup(s->path, (size_t)(mark - s->path)) : strdup(s->path);
+  const size_t length = abbe_exr_file_length(s->path);
+  char *name = strndup(s->path, length);
   if (name == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", s->path);
   abbe_result result = abbe_file_open(name, file, &size, error);
   free(name);
   if (result != ABBE_OK) return result;
-  s->part = mark != NULL ? mark + 1 : NULL;
+  s->part = s->path[length] == '#' ? s->path + length + 1 : NULL;
   s->fd = fileno(*file);
   s->size = (off_t)size;
   return ABBE_OK;

@@ -22,9 +22,9 @@ abbe_result abbe_exr_write(const char *path, const abbe_image *image, abbe_error
 
 /* The same in half precision: 11 bits, from 6e-5 to 65504, and fixed steps of 6e-8 below that.
  * Nothing overflows: where the greatest finite magnitude is outside [1, 65504], all values are
- * divided by the power of two that brings it into [2^14, 2^15), and the text attribute "abbe:stored_unit"
- * holds that power; abbe_exr_read multiplies by it again. Other programs see the quotients.
- * Infinities and NaN stay what they are. */
+ * divided by the power of two that brings it into [2^14, 2^15), and the text attribute
+ * "abbe:stored_unit" holds that power; abbe_exr_read multiplies by it again. Other programs see the
+ * quotients. Infinities and NaN stay what they are. */
 abbe_result abbe_exr_write_half(const char *path, const abbe_image *image, abbe_error *error);
 
 /* Pixels of so many bytes are read from however small a file; above, see
@@ -33,11 +33,15 @@ abbe_result abbe_exr_write_half(const char *path, const abbe_image *image, abbe_
 
 /* Reads path: of several parts the first with R, G and B or X, Y and Z, else with Y, else that is
  * flat; or FILE#PART, a part by its name or by its number, from 1. ABBE_NOT_FOUND where there is no
- * such part; ABBE_PARSE for a broken or truncated file, and for an abbe:stored_unit that is no power
- * of two; ABBE_UNSUPPORTED for deep data, subsampled channels, tiles of PIZ above 16384 pixels a side,
- * pixels that are too many for the file, and compression that the OpenEXR that runs cannot decode
- * (DWA before 3.1.8, HTJ2K before 3.4.0), with the version that can. */
+ * such part; ABBE_PARSE for a broken or truncated file, and for an abbe:stored_unit that is no
+ * power of two; ABBE_UNSUPPORTED for deep data, subsampled channels, tiles of PIZ above 16384
+ * pixels a side, pixels that are too many for the file, and compression that the OpenEXR that runs
+ * cannot decode (DWA before 3.1.8, HTJ2K before 3.4.0), with the version that can. */
 abbe_result abbe_exr_read(const char *path, abbe_image *out, abbe_error *error);
+
+/* How many bytes of path name the file: those before the last '#' where there is no file of the
+ * whole name, else all. */
+size_t abbe_exr_file_length(const char *path);
 
 #ifdef __cplusplus
 }

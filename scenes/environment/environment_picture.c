@@ -20,7 +20,10 @@ enum { CUBE_PARTS = 4, CUBE_MAX_SIDE = 8192 };
 static abbe_result read_image(const char *path, abbe_image *out, bool *is_exr, abbe_error *error) {
   FILE *stream = NULL;
   char head[4] = {0};
-  const abbe_result result = abbe_file_open(path, &stream, NULL, error);
+  char *name = strndup(path, abbe_exr_file_length(path));
+  if (name == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for it", path);
+  const abbe_result result = abbe_file_open(name, &stream, NULL, error);
+  free(name);
   if (result != ABBE_OK) return result;
   const size_t size = fread(head, 1, sizeof head, stream);
   fclose(stream);
@@ -235,7 +238,10 @@ abbe_result abbe_environment_picture_read(const char *path, abbe_environment_lay
   if (result == ABBE_OK)
     result = layout == ABBE_LAYOUT_CUBE ? from_cube(&image, out, error)
                                         : from_latlong(&image, out, error);
-  if (result == ABBE_OK) out->space_assumed = assumed && is_exr;
+  if (result == ABBE_OK) {
+    out->space_assumed = assumed && is_exr;
+    memcpy(out->part, image.part, sizeof out->part);
+  }
   abbe_image_free(&image);
   return result;
 }

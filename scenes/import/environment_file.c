@@ -1,5 +1,6 @@
 #include "scenes/import/environment_file.h"
 
+#include "colorimetry/image/exr.h"
 #include "colorimetry/upsampling.h"
 #include "scenes/environment/environment_picture.h"
 #include "scenes/geometry/vector.h"
@@ -70,6 +71,7 @@ static abbe_result read_picture(abbe_yaml *yaml, abbe_yaml_node node, const char
                                                        &out->map, error)
                        : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
     if (result != ABBE_OK) abbe_scene_value_locate(yaml, file, result, error);
+    if (out->path != NULL) out->path[abbe_exr_file_length(out->path)] = '\0';
   }
   free(name);
   return result;

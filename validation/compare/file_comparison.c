@@ -16,8 +16,9 @@ static bool ends_with_png(const char *path) {
          tolower((unsigned char)path[n - 2]) == 'n' && tolower((unsigned char)path[n - 1]) == 'g';
 }
 
-static abbe_result load_mask(const abbe_file_comparison_desc *q, const abbe_field *reference,
-                             abbe_mask *mask, abbe_error *error) {
+static abbe_result load_mask(const abbe_file_comparison_desc *q, abbe_file_comparison *w,
+                             abbe_error *error) {
+  const abbe_field *reference = &w->field[0];
   abbe_image image = {0};
   abbe_error why = {0};
   const bool png = ends_with_png(q->mask);
@@ -31,18 +32,19 @@ static abbe_result load_mask(const abbe_file_comparison_desc *q, const abbe_fiel
                        image.width, image.height, reference->width, reference->height);
   else if (!png) /* a PNG says of no place where it lies */
     result = abbe_image_check_place(&image, q->mask, &reference->header, q->path[0], error);
-  if (result == ABBE_OK && abbe_mask_make_drawn(&image, mask, &why) != ABBE_OK)
+  if (result == ABBE_OK && abbe_mask_make_drawn(&image, &w->mask, &why) != ABBE_OK)
     result = abbe_error_set(error, why.code, "%s: %.400s", q->mask, why.text);
+  memcpy(w->mask_part, image.part, sizeof w->mask_part);
   abbe_image_free(&image);
   return result;
 }
 
-static abbe_result find_mask(const abbe_file_comparison_desc *q, const abbe_field *reference,
-                             abbe_mask *mask, abbe_error *error) {
+static abbe_result find_mask(const abbe_file_comparison_desc *q, abbe_file_comparison *w,
+                             abbe_error *error) {
   if (q->mask == NULL) return ABBE_OK;
   if (strcmp(q->mask, "caustic") == 0)
-    return abbe_mask_make_caustic(reference, q->path[0], q->mask_share, mask, error);
-  return load_mask(q, reference, mask, error);
+    return abbe_mask_make_caustic(&w->field[0], q->path[0], q->mask_share, &w->mask, error);
+  return load_mask(q, w, error);
 }
 
 static abbe_result compare(const abbe_file_comparison_desc *q, abbe_file_comparison *w,
@@ -55,7 +57,7 @@ static abbe_result compare(const abbe_file_comparison_desc *q, abbe_file_compari
   }
   if (result == ABBE_OK)
     result = abbe_field_align(&w->field[0], q->path[0], &w->field[1], q->path[1], error);
-  if (result == ABBE_OK) result = find_mask(q, &w->field[0], &w->mask, error);
+  if (result == ABBE_OK) result = find_mask(q, w, error);
   abbe_compare_options options = q->options;
   if (q->mask != NULL) options.mask = &w->mask;
   abbe_error why = {0};

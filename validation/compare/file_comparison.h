@@ -22,6 +22,7 @@ typedef struct abbe_file_comparison {
   abbe_field field[2];
   size_t size[2][2];     /* width and height as read */
   const char *mask_name; /* NULL: none */
+  char mask_part[40];    /* of the file that it was drawn in, as abbe_image has it */
   double mask_share;     /* of the caustic's light; 0: the mask was drawn */
   abbe_mask mask;
   abbe_comparison comparison;

@@ -4,6 +4,7 @@
 #include "validation/compare/field.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Adds factor times the field's caustic, or its colour where it has none apart, in Rec.709. */
 static abbe_result add_picture(const abbe_field *field, const char *name, double factor,
@@ -26,7 +27,7 @@ static abbe_result add_picture(const abbe_field *field, const char *name, double
 
 abbe_result abbe_outline_load(const char *path, const char *minus,
                               const abbe_outline_options *options, abbe_outline *out,
-                              abbe_image *place, abbe_error *error) {
+                              abbe_image place[2], abbe_error *error) {
   ABBE_REQUIRE(path && options && out && place, error);
   abbe_field field = {0}, dark = {0};
   double(*rgb)[3] = NULL;
@@ -39,7 +40,11 @@ abbe_result abbe_outline_load(const char *path, const char *minus,
                             path, field.width, field.height, minus, dark.width, dark.height);
   if (result == ABBE_OK && minus != NULL)
     result = abbe_image_check_place(&field.header, path, &dark.header, minus, error);
-  place->display_window = field.header.display_window;
+  for (int i = 0; i < 2; i++) {
+    const abbe_image *header = i == 0 ? &field.header : &dark.header;
+    place[i] = (abbe_image){.display_window = header->display_window};
+    memcpy(place[i].part, header->part, sizeof header->part);
+  }
   if (result == ABBE_OK) {
     rgb = calloc(field.width * field.height, sizeof *rgb);
     if (rgb == NULL)

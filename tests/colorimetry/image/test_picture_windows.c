@@ -97,8 +97,58 @@ static void test_display(void **state) {
   abbe_image_free(&image);
 }
 
+/* A depth and the colours, 32 x 16, as parts of one file. */
+static void write_parts(const char *name) {
+  exr_library_file f[2] = {
+      {.part = "depth", .channels = 1, .name = {"Z"}, .type = {2}},
+      {.part = "rgba", .channels = 3, .name = {"B", "G", "R"}, .type = {2, 2, 2}}};
+  char path[128], why[300];
+  for (int i = 0; i < 2; i++) {
+    memcpy(f[i].data_window, (const int[]){0, 0, 7, 15}, sizeof f[i].data_window);
+    memcpy(f[i].display_window, (const int[]){0, 0, 31, 15}, sizeof f[i].display_window);
+  }
+  snprintf(path, sizeof path, "%s/%s", run_folder, name);
+  if (!exr_library_write_parts(path, f, 2, why, sizeof why)) fail_msg("%s: %s", name, why);
+}
+
+/* Whoever reads a picture says which part of its file that is, and writes over no part of it. */
+static void test_parts(void **state) {
+  (void)state;
+  static const char *const lines[] = {"$abbe outline parts.exr",
+                                      "$abbe outline plain.exr --minus parts.exr",
+                                      "$abbe compare plain.exr plain.exr --mask parts.exr",
+                                      "$abbe environment parts.exr",
+                                      "$abbe environment 'parts.exr#2'",
+                                      "$abbe environment scene.yaml",
+                                      "$abbe environment second.yaml"};
+  static const char *const over[] = {
+      "$abbe display 'parts.exr#2' -o parts.exr", "$abbe environment 'parts.exr#2' -o ./parts.exr",
+      "$abbe compare plain.exr 'parts.exr#rgba' --difference parts.exr"};
+  write_parts("parts.exr");
+  write_picture("plain.exr", (const int[]){0, 0, 31, 15}, (const int[]){0, 0, 31, 15});
+  assert_int_equal(run_line("for i in '' '#rgba'; do printf 'camera: {eye: [0, -1, 0], target: [0, "
+                            "0, 0]}\\nobjects:\\n- {shape: rectangle, width: 1, height: 1, "
+                            "reflectance: 0.5}\\nenvironment: {file: \"parts.exr%s\"}\\n' \"$i\" "
+                            ">scene$i.yaml; done; mv 'scene#rgba.yaml' second.yaml; cp parts.exr "
+                            "parts-0000.exr; cp plain.exr parts-0001.exr"),
+                   0);
+  for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+    ends_with(0, lines[i]);
+    assert_contains(run_errors, "its part 2 'rgba' of 2 is read");
+  }
+  ends_with(0, "$abbe flicker parts.exr --frames 0:2");
+  assert_contains(run_errors, "parts-0000.exr: its part 2 'rgba' of 2 is read");
+  ends_with(1, "$abbe environment 'parts.exr#1'");
+  assert_contains(run_errors, "no channels R, G and B");
+  for (size_t i = 0; i < sizeof over / sizeof *over; i++) {
+    ends_with(2, over[i]);
+    assert_contains(run_errors, "would be written over");
+  }
+  assert_int_equal(run_line("cmp parts.exr parts-0000.exr"), 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_info), cmocka_unit_test(test_compare),
-                                     cmocka_unit_test(test_display)};
+                                     cmocka_unit_test(test_display), cmocka_unit_test(test_parts)};
   return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }
