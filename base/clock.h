@@ -2,10 +2,6 @@
 #ifndef ABBE_BASE_CLOCK_H
 #define ABBE_BASE_CLOCK_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Seconds since some moment before the program began: they only ever grow, whoever sets the
  * machine's time. */
 double abbe_clock_seconds(void);
@@ -17,7 +13,4 @@ double abbe_clock_thread_seconds(void);
  * the system does not tell, since some moment after. */
 double abbe_clock_process_seconds(void);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

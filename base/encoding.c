@@ -87,7 +87,6 @@ static bool unwanted(uint32_t code) {
 
 abbe_result abbe_encoding_decode(const char *bytes, size_t size, char **text, size_t *length,
                                  abbe_error *error) {
-  ABBE_REQUIRE(bytes && text && length, error);
   const unsigned char *c = (const unsigned char *)bytes;
   char *out = size < SIZE_MAX / 3 ? malloc(3 * size + 1) : NULL;
   if (out == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu bytes", size);

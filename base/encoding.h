@@ -11,10 +11,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The text of size bytes as UTF-8 in *text (malloc'd, zero at its end, *length without it): no
  * byte-order mark, lines end with '\n', control characters other than newline and tab become
  * spaces, what cannot be decoded becomes U+FFFD. A byte-order mark decides; without one, text whose
@@ -27,7 +23,4 @@ abbe_result abbe_encoding_decode(const char *bytes, size_t size, char **text, si
  * Such files hold zeros or many control characters in their first 4096 bytes. */
 bool abbe_encoding_is_binary(const char *bytes, size_t size);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

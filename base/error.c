@@ -18,7 +18,6 @@ const char *abbe_result_text(abbe_result result) {
 
 abbe_result abbe_error_set_list(abbe_error *error, abbe_result code, const char *prefix,
                                 const char *format, va_list arguments) {
-  ABBE_REQUIRE(prefix && format, error);
   if (error == NULL) return code;
   char raw[sizeof error->text]; /* the arguments may be the error's own text */
   int used = snprintf(raw, sizeof raw, "%s", prefix);

@@ -7,7 +7,6 @@
 #ifndef ABBE_BASE_ERROR_H
 #define ABBE_BASE_ERROR_H
 
-#include <assert.h>
 #include <stdarg.h>
 
 #ifdef __cplusplus
@@ -58,17 +57,6 @@ abbe_result abbe_error_set(abbe_error *error, abbe_result code, const char *form
 /* The same for a function with arguments of its own; prefix ("" for none) comes first. */
 abbe_result abbe_error_set_list(abbe_error *error, abbe_result code, const char *prefix,
                                 const char *format, va_list arguments);
-
-/* What a function of the library wants of its caller, first of all: pointers that lead somewhere.
- * Where the condition does not hold, a debug build stops at the assertion, and every other build
- * returns ABBE_INVALID_ARGUMENT from the function. */
-#define ABBE_REQUIRE(condition, error)                                                             \
-  do {                                                                                             \
-    assert(condition);                                                                             \
-    if (!(condition))                                                                              \
-      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,                                          \
-                            "%s was called without what it needs: %s", __func__, #condition);      \
-  } while (0)
 
 #ifdef __cplusplus
 }

@@ -61,7 +61,6 @@ static int open_to_read(const char *path, bool pipes, struct stat *status, abbe_
 }
 
 abbe_result abbe_file_open(const char *path, FILE **stream, size_t *size, abbe_error *error) {
-  ABBE_REQUIRE(path && stream, error);
   struct stat status;
   *stream = NULL;
   const int fd = open_to_read(path, false, &status, error);
@@ -133,7 +132,6 @@ static const size_t first_guess = 4096;
 
 abbe_result abbe_file_read(const char *path, size_t max_size, char **data, size_t *size,
                            abbe_error *error) {
-  ABBE_REQUIRE(path && data && size, error);
   if (max_size > largest) max_size = largest;
   struct stat status;
   const int fd = open_to_read(path, true, &status, error);
@@ -153,7 +151,6 @@ abbe_result abbe_file_read(const char *path, size_t max_size, char **data, size_
 
 abbe_result abbe_file_read_text(const char *path, size_t max_size, char **data, size_t *size,
                                 abbe_error *error) {
-  ABBE_REQUIRE(path && data && size, error);
   abbe_result result = abbe_file_read(path, max_size, data, size, error);
   if (result != ABBE_OK || !abbe_encoding_is_binary(*data, *size)) return result;
   free(*data);
@@ -167,7 +164,6 @@ abbe_result abbe_file_read_text(const char *path, size_t max_size, char **data, 
 }
 
 abbe_result abbe_file_read_input(size_t max_size, char **data, size_t *size, abbe_error *error) {
-  ABBE_REQUIRE(data && size, error);
   if (max_size > largest) max_size = largest;
   return read_all(STDIN_FILENO, "standard input", max_size,
                   first_guess < max_size ? first_guess : max_size, data, size, error);
@@ -268,7 +264,6 @@ static void writer_clear(abbe_file_writer *writer) {
 }
 
 abbe_result abbe_file_writer_open(abbe_file_writer *writer, const char *path, abbe_error *error) {
-  ABBE_REQUIRE(writer && path, error);
   *writer = (abbe_file_writer){0};
   struct stat status;
   bool exists = false;
@@ -339,7 +334,6 @@ static int finish_stream(abbe_file_writer *writer) {
 }
 
 abbe_result abbe_file_writer_commit(abbe_file_writer *writer, abbe_error *error) {
-  ABBE_REQUIRE(writer, error);
   if (writer->stream == NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no open file to commit");
   int number = finish_stream(writer);
@@ -365,7 +359,6 @@ void abbe_file_writer_discard(abbe_file_writer *writer) {
 }
 
 abbe_result abbe_file_writer_end(abbe_file_writer *writer, abbe_result result, abbe_error *error) {
-  ABBE_REQUIRE(writer, error);
   if (result == ABBE_OK || (writer->stream != NULL && ferror(writer->stream)))
     return abbe_file_writer_commit(writer, error);
   abbe_file_writer_discard(writer);
@@ -373,7 +366,6 @@ abbe_result abbe_file_writer_end(abbe_file_writer *writer, abbe_result result, a
 }
 
 abbe_result abbe_file_write(const char *path, const void *data, size_t size, abbe_error *error) {
-  ABBE_REQUIRE(path && (data || size == 0), error);
   abbe_file_writer writer;
   abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;

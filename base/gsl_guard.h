@@ -8,14 +8,7 @@
 #ifndef ABBE_BASE_GSL_GUARD_H
 #define ABBE_BASE_GSL_GUARD_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 void abbe_gsl_guard_enter(void);
 void abbe_gsl_guard_leave(void);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

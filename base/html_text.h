@@ -8,17 +8,10 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The text of html in UTF-8, malloc'd, at most max bytes and cut between letters; NULL where there
  * is no memory. A '<' that begins no tag stays. */
 char *abbe_html_text(const char *html, size_t max);
 /* Its inverse: '&', '<' and '>' as entities; malloc'd, NULL where there is no memory. */
 char *abbe_html_escape(const char *text);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

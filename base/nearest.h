@@ -4,16 +4,9 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The candidate nearest to word by case-insensitive edit distance (with transpositions), or NULL
  * where none is near enough to be meant: up to a third of the longer word may differ; of a short
  * one up to two letters, if more than half of it is left, or one. */
 const char *abbe_nearest_word(const char *word, const char *const *candidates, size_t count);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

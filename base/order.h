@@ -2,10 +2,6 @@
 #ifndef ABBE_BASE_ORDER_H
 #define ABBE_BASE_ORDER_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Of two doubles. */
 static inline int abbe_order_ascending(const void *a, const void *b) {
   const double x = *(const double *)a, y = *(const double *)b;
@@ -26,7 +22,4 @@ static inline int abbe_order_descending_floats(const void *a, const void *b) {
   return abbe_order_ascending_floats(b, a);
 }
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -9,10 +9,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, word): from harmless to severe. */
 #define ABBE_NOTE_KINDS(X)                                                                         \
   X(CHANGED, "changed") /* the same material, written in another way */                            \
@@ -59,7 +55,4 @@ void abbe_report_add(abbe_report *report, abbe_note_kind kind, size_t line, cons
 
 const char *abbe_note_kind_word(abbe_note_kind kind);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

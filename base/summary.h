@@ -10,10 +10,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_SUMMARY_MAX_ROWS = 16 };
 
 typedef struct abbe_summary_row {
@@ -34,7 +30,4 @@ void abbe_summary_add(abbe_summary *summary, size_t row, const char *name);
 void abbe_summary_report(const abbe_summary *summary, const abbe_summary_row *rows, size_t count,
                          abbe_report *report);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -9,10 +9,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_text_cursor {
   const char *text; /* the caller's */
   size_t size;      /* bytes */
@@ -25,7 +21,4 @@ abbe_text_cursor abbe_text_cursor_make(const char *text, size_t size);
 /* Moves to the character of that index; its first byte, or size where the text is shorter. */
 size_t abbe_text_cursor_byte(abbe_text_cursor *cursor, size_t index);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

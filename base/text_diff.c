@@ -139,7 +139,6 @@ static void print_hunks(FILE *out, lines a, lines b) {
 
 abbe_result abbe_text_diff(const char *before, size_t before_size, const char *after,
                            size_t after_size, const char *path, char **out, abbe_error *error) {
-  ABBE_REQUIRE((before || before_size == 0) && (after || after_size == 0) && path && out, error);
   *out = NULL;
   lines a = {0}, b = {0};
   size_t size = 0;

@@ -10,16 +10,9 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The diff from before to after under the name `path`, into *out (malloc'd, ended by a zero byte;
  * the caller frees); "" where the texts are the same. ABBE_NO_MEMORY. */
 abbe_result abbe_text_diff(const char *before, size_t before_size, const char *after,
                            size_t after_size, const char *path, char **out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

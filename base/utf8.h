@@ -9,10 +9,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* What stands for that which cannot be decoded or shown. */
 #define ABBE_UTF8_REPLACEMENT 0xfffd
 
@@ -36,7 +32,4 @@ size_t abbe_utf8_letter(const char *text);
 /* Cuts text at its end, where its last letter is incomplete. */
 void abbe_utf8_trim(char *text);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

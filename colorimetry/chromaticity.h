@@ -12,10 +12,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* x, y of XYZ [CIE15]; false (xy untouched) where X + Y + Z or Y is not above 0 or anything is not
  * finite. */
 bool abbe_chromaticity_xy(const double xyz[3], double xy[2]);
@@ -44,7 +40,4 @@ typedef struct abbe_dominant {
 bool abbe_chromaticity_dominant(const double xy[2], const double white[2], abbe_observer observer,
                                 abbe_dominant *out);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

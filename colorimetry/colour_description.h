@@ -6,10 +6,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* What there is none of is NaN. */
 typedef struct abbe_colour_description {
   double xyz[3];
@@ -23,7 +19,4 @@ typedef struct abbe_colour_description {
 void abbe_colour_description_make(const double xyz[3], const double white_xy[2],
                                   abbe_observer observer, abbe_colour_description *out);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

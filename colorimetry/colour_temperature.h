@@ -10,10 +10,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_COLOUR_TEMPERATURE_MIN 1000.0 /* K */
 #define ABBE_COLOUR_TEMPERATURE_MAX 1e6
 /* Beyond this distance from the locus a correlated colour temperature has no meaning [CIE15]. */
@@ -39,7 +35,4 @@ bool abbe_colour_temperature_read_white(const char *text, double xy[2]);
  * ABBE_COLOUR_TEMPERATURE_MAX_DUV. */
 bool abbe_colour_temperature_find(const double xy[2], double *kelvin, double *duv);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

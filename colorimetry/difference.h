@@ -4,10 +4,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* CIE L*a*b* of xyz relative to the white. [CIE15] */
 void abbe_difference_lab(const double xyz[3], const double white[3], double lab[3]);
 /* CIEDE2000 between two Lab colours, kL = kC = kH = 1. [Sharma2005] */
@@ -34,7 +30,4 @@ double abbe_difference_itp(const double ictcp1[3], const double ictcp2[3]);
  * what is dark has no chromaticity. */
 bool abbe_difference_uv(const double xyz[3], double uv[2]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

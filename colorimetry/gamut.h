@@ -7,10 +7,6 @@
 #ifndef ABBE_COLORIMETRY_GAMUT_H
 #define ABBE_COLORIMETRY_GAMUT_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name on the command line, text) */
 #define ABBE_GAMUTS(X)                                                                             \
   X(REC709, "rec709", "Rec.709 (sRGB)") /* [BT709] */                                              \
@@ -40,7 +36,4 @@ void abbe_gamut_from_xyz(abbe_gamut gamut, double matrix[9]);
  * component is above 0 but one is below. */
 double abbe_gamut_excess(const double rgb[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

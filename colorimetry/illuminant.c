@@ -253,7 +253,6 @@ static const char *nearest(const char *name) {
 
 abbe_result abbe_illuminant_make(const char *name_or_path, abbe_illuminant *out,
                                  abbe_error *error) {
-  ABBE_REQUIRE(name_or_path && out, error);
   *out = (abbe_illuminant){0};
   const int kind = find_kind(name_or_path);
   if (kind >= 0) {

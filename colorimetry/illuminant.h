@@ -16,10 +16,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_ILLUMINANT_KINDS(X) X(D65) X(D50) X(A) X(E) X(TABULATED)
 
 typedef enum abbe_illuminant_kind {
@@ -64,7 +60,4 @@ bool abbe_illuminant_is_name(const char *name);
 /* The lights that have names of their own, one by one: NULL beyond the last. */
 const char *abbe_illuminant_listed(size_t index);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -8,10 +8,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_illuminant_table {
   const char *name;
   double first_nm; /* then every ABBE_ILLUMINANT_TABLE_STEP_NM */
@@ -28,7 +24,4 @@ extern const abbe_illuminant_table abbe_illuminant_tables[ABBE_ILLUMINANT_TABLE_
 #define ABBE_ILLUMINANT_DAYLIGHT_COUNT 54
 extern const double *const abbe_illuminant_daylight[3];
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -9,10 +9,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name, text). Those of 1931 and 1964 go from 360 to 830 nm [CIE15]; those of 2015, which
  * are the XYZ of the cone fundamentals of 2006, from 390 to 830 nm [CIE170-2]. */
 #define ABBE_OBSERVERS(X)                                                                          \
@@ -44,7 +40,4 @@ const char *abbe_observer_text(abbe_observer observer);
  * ABBE_OBSERVER_COUNT. */
 abbe_observer abbe_observer_find(const char *name);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

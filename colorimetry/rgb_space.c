@@ -118,7 +118,6 @@ static double gamut(const double xy[8]) {
 
 abbe_result abbe_rgb_space_chromaticities_to_xyz(const double xy[8], double matrix[9],
                                                  abbe_error *error) {
-  ABBE_REQUIRE(xy && matrix, error);
   abbe_rgb_space known = abbe_rgb_space_of_chromaticities(xy);
   if (known != ABBE_RGB_SPACE_COUNT) {
     abbe_rgb_space_to_xyz(known, matrix);

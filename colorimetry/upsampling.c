@@ -87,7 +87,6 @@ static double least_of(const abbe_upsampling *u) {
 
 abbe_result abbe_upsampling_make(const abbe_illuminant *illuminant, double min_nm, double max_nm,
                                  abbe_upsampling *out, abbe_error *error) {
-  ABBE_REQUIRE(illuminant && out, error);
   *out = (abbe_upsampling){0};
   abbe_upsampling u = {.illuminant = illuminant, .min_nm = min_nm, .max_nm = max_nm};
   double from_xyz[9], to_xyz[9], own[3];
@@ -116,7 +115,6 @@ abbe_result abbe_upsampling_make(const abbe_illuminant *illuminant, double min_n
 abbe_result abbe_upsampling_make_by(abbe_observer observer, const abbe_illuminant *illuminant,
                                     double min_nm, double max_nm, abbe_upsampling *out,
                                     abbe_error *error) {
-  ABBE_REQUIRE(illuminant && out, error);
   abbe_upsampling u;
   abbe_result result = abbe_upsampling_make(illuminant, min_nm, max_nm, &u, error);
   *out = (abbe_upsampling){0};

@@ -24,10 +24,6 @@
 #include "colorimetry/rgb_space.h"
 #include "spectral/wavelengths.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The three functions at lambda_nm, each in [0, 1], their sum 1 to rounding; beyond 380 to 780 nm
  * they stay what they are at the end. For red, green and blue, in this order. */
 void abbe_upsampling_basis(double lambda_nm, double basis[3]);
@@ -75,7 +71,4 @@ void abbe_upsampling_matrices(const abbe_upsampling *upsampling,
                               const abbe_wavelengths *wavelengths, abbe_rgb_space space,
                               double (*matrix)[9]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

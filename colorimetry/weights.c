@@ -3,6 +3,7 @@
 #include "colorimetry/observer.h"
 #include "colorimetry/observer_integral.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -69,7 +70,7 @@ static void sum_weights(abbe_weights *weights) {
 abbe_result abbe_weights_make_by(abbe_observer observer, const abbe_wavelengths *wavelengths,
                                  const abbe_illuminant *illuminant, abbe_rgb_space space,
                                  abbe_weights *out, abbe_error *error) {
-  ABBE_REQUIRE(wavelengths && wavelengths->count > 0 && illuminant && out, error);
+  assert(wavelengths->count > 0);
   *out = (abbe_weights){0};
   abbe_weights weights = {.count = wavelengths->count};
   weights.weight = calloc(weights.count, sizeof *weights.weight);
@@ -104,7 +105,6 @@ abbe_result abbe_weights_make_by(abbe_observer observer, const abbe_wavelengths 
 abbe_result abbe_weights_make(const abbe_wavelengths *wavelengths,
                               const abbe_illuminant *illuminant, abbe_rgb_space space,
                               abbe_weights *out, abbe_error *error) {
-  ABBE_REQUIRE(wavelengths && illuminant && out, error);
   return abbe_weights_make_by(ABBE_OBSERVER_CIE_1931, wavelengths, illuminant, space, out, error);
 }
 

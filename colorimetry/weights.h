@@ -15,10 +15,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_weights {
   size_t count;
   double (*weight)[3]; /* [count], in the space that was asked for */
@@ -84,7 +80,4 @@ extern const double abbe_weights_thesis_rgb[ABBE_WEIGHTS_THESIS_COUNT][3];
 /* Table 2 as printed, 0 to 255. */
 extern const double abbe_weights_thesis_table2[ABBE_WEIGHTS_THESIS_COUNT][3];
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -108,7 +108,6 @@ static abbe_result lift_object(abbe_object *object, const double basis[3], abbe_
 abbe_result abbe_band_scene_make(const abbe_scene *scene, const double range_nm[2],
                                  const double band_nm[2], abbe_scene *out, double *unit,
                                  abbe_error *error) {
-  ABBE_REQUIRE(scene && range_nm && band_nm && out && unit, error);
   static const abbe_illuminant even = {.kind = ABBE_ILLUMINANT_E};
   if (scene->light_count == 0 || !(band_nm[0] < band_nm[1]))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -267,7 +266,6 @@ abbe_result abbe_band_picture_make(abbe_context *context, const abbe_scene *scen
                                    const abbe_render_desc *desc, size_t bands,
                                    abbe_render_progress progress, void *user, abbe_image *out,
                                    abbe_error *error) {
-  ABBE_REQUIRE(context && scene && out, error);
   *out = (abbe_image){0};
   work w = {.context = context,
             .scene = scene,

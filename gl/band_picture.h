@@ -12,10 +12,6 @@
 
 #include "gl/renderer.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* desc as of abbe_renderer_make; its range is shared out to so many bands (1 to
  * ABBE_RENDER_MAX_BANDS) of equal width, its wavelengths too: at least two a band, where it has more
  * than one. progress may be NULL. Channels "S0.550,000000nm" and so on, the mean spectral radiance
@@ -35,7 +31,4 @@ abbe_result abbe_band_scene_make(const abbe_scene *scene, const double range_nm[
                                  abbe_error *error);
 void abbe_band_scene_free(abbe_scene *scene);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

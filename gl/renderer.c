@@ -235,7 +235,6 @@ static abbe_result leave(abbe_context *context, abbe_result result) {
 abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
                                const abbe_render_desc *desc, abbe_renderer **out,
                                abbe_error *error) {
-  ABBE_REQUIRE(context && scene && out, error);
   *out = NULL;
   const abbe_result result = enter(context, error);
   if (result != ABBE_OK) return result;
@@ -244,7 +243,6 @@ abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
 
 abbe_result abbe_renderer_change(abbe_renderer *r, const abbe_scene *scene,
                                  const abbe_render_desc *desc, abbe_error *error) {
-  ABBE_REQUIRE(r && scene, error);
   const abbe_result result = enter(r->context, error);
   if (result != ABBE_OK) return result;
   return leave(r->context, change_watched(r, scene, desc, error));
@@ -281,7 +279,6 @@ void abbe_renderer_free(abbe_renderer *r) {
 
 abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress, void *user,
                                 abbe_statistics *statistics, abbe_error *error) {
-  ABBE_REQUIRE(r, error);
   abbe_error lost = {0};
   watched w = {r->context, progress, user, ABBE_OK, &lost, NULL};
   abbe_result result = enter(r->context, error);
@@ -292,20 +289,17 @@ abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress,
 }
 
 abbe_result abbe_renderer_baseline(abbe_renderer *r, double *ms, abbe_error *error) {
-  ABBE_REQUIRE(r && ms, error);
   const abbe_result result = enter(r->context, error);
   return result == ABBE_OK ? leave(r->context, abbe_renderer_parts_baseline(r, ms, error)) : result;
 }
 
 abbe_result abbe_renderer_texture(abbe_renderer *r, abbe_renderer_picture *out, abbe_error *error) {
-  ABBE_REQUIRE(r && out, error);
   *out = (abbe_renderer_picture){0};
   const abbe_result result = enter(r->context, error);
   return result == ABBE_OK ? leave(r->context, find_texture(r, out, error)) : result;
 }
 
 abbe_result abbe_renderer_read(abbe_renderer *r, bool aovs, abbe_image *out, abbe_error *error) {
-  ABBE_REQUIRE(r && out, error);
   *out = (abbe_image){0};
   const abbe_result result = enter(r->context, error);
   return result == ABBE_OK ? leave(r->context, read_picture(r, aovs, out, error)) : result;
@@ -313,7 +307,6 @@ abbe_result abbe_renderer_read(abbe_renderer *r, bool aovs, abbe_image *out, abb
 
 abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, abbe_image *out,
                                    abbe_error *error) {
-  ABBE_REQUIRE(r && out, error);
   *out = (abbe_image){0};
   const abbe_result result = enter(r->context, error);
   return result == ABBE_OK ? leave(r->context, read_map(r, light, filled, out, error)) : result;
@@ -321,7 +314,6 @@ abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, 
 
 abbe_result abbe_renderer_read_map_bands(abbe_renderer *r, size_t light, size_t bands,
                                          abbe_image *out, abbe_error *error) {
-  ABBE_REQUIRE(r && out, error);
   *out = (abbe_image){0};
   const abbe_result result = enter(r->context, error);
   if (result != ABBE_OK) return result;
@@ -331,7 +323,6 @@ abbe_result abbe_renderer_read_map_bands(abbe_renderer *r, size_t light, size_t 
 abbe_result abbe_renderer_read_hits(abbe_renderer *r, size_t light, size_t first,
                                     abbe_render_progress progress, void *user,
                                     abbe_renderer_hits *out, abbe_error *error) {
-  ABBE_REQUIRE(r && out, error);
   *out = (abbe_renderer_hits){0};
   abbe_error lost = {0};
   watched w = {r->context, progress, user, ABBE_OK, &lost, NULL};

@@ -32,10 +32,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_renderer abbe_renderer;
 
 /* Plans, uploads the scene, compiles what the plan asks for and fits the light's views. desc may
@@ -147,7 +143,4 @@ abbe_result abbe_renderer_read_hits(abbe_renderer *renderer, size_t light, size_
                                     abbe_renderer_hits *out, abbe_error *error);
 void abbe_renderer_hits_free(abbe_renderer_hits *hits);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

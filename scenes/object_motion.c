@@ -43,7 +43,6 @@ static void move_exact(abbe_exact *e, const double m[16], double scale) {
 }
 
 abbe_result abbe_object_move(abbe_object *object, const double matrix[16], abbe_error *error) {
-  ABBE_REQUIRE(object && matrix, error);
   double scale;
   if (!is_motion(matrix, &scale))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

@@ -33,7 +33,6 @@ static void turn_about(const double middle[3], double rad, const double axis[3],
 
 abbe_result abbe_refractors_tilt(abbe_scene *scene, double tilt_rad, double axis_rad,
                                  abbe_error *error) {
-  ABBE_REQUIRE(scene, error);
   const double axis[3] = {cos(axis_rad), sin(axis_rad), 0};
   double middle[3], matrix[16];
   if (!isfinite(tilt_rad) || !isfinite(axis_rad))

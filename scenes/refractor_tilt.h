@@ -6,10 +6,6 @@
 
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* By tilt_rad, right-handed, about the horizontal axis of azimuth axis_rad (from +x towards +y)
  * through the middle of the bounds of all refractors. abbe_scene_check follows.
  * ABBE_INVALID_ARGUMENT where there is no refractor, or an angle is not finite; the scene is as it
@@ -17,7 +13,4 @@ extern "C" {
 abbe_result abbe_refractors_tilt(abbe_scene *scene, double tilt_rad, double axis_rad,
                                  abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

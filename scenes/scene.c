@@ -138,7 +138,6 @@ static void list_lights(const abbe_scene *scene, char *out, size_t size) {
 
 abbe_result abbe_scene_find_light(const abbe_scene *scene, const char *text, size_t *index,
                                   abbe_error *error) {
-  ABBE_REQUIRE(scene && text && index, error);
   size_t found = 0;
   char names[512], *end;
   for (size_t i = 0; i < scene->light_count; i++)

@@ -24,10 +24,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_SCENE_MAX_LIGHTS 16
 #define ABBE_SCENE_MAX_OBJECTS 1024
 #define ABBE_SCENE_MAX_PLANES 256 /* of one convex refractor */
@@ -227,7 +223,4 @@ void abbe_scene_hold_lights(const abbe_scene *scene, double min[3], double max[3
  * rectangle, seen from afar: the cosine to its normal, 0 behind. */
 double abbe_light_profile(const abbe_light *light, const double direction[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -267,7 +267,6 @@ static abbe_result check_places(const abbe_scene *scene, abbe_error *error) {
 }
 
 abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error) {
-  ABBE_REQUIRE(scene, error);
   if (scene->light_count == 0 && scene->environment == NULL)
     return abbe_error_set(error, ABBE_SCHEMA,
                           "%s: the scene has no light; give it at least one under 'lights', or "

@@ -9,10 +9,6 @@
 #ifndef ABBE_SPECTRAL_MICROFACETS_H
 #define ABBE_SPECTRAL_MICROFACETS_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Roughness along x and y, 0.001 to 1: GGX's alpha, not a root of it. Where both are alike, half of
  * the surface is tilted by less than its arc tangent. */
 typedef struct abbe_microfacets {
@@ -42,7 +38,4 @@ double abbe_microfacets_sample(const abbe_microfacets *m, const double wo[3], co
  * below the surface with it. */
 double abbe_microfacets_pdf(const abbe_microfacets *m, const double wo[3], const double wi[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

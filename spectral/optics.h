@@ -11,10 +11,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Cosine of the angle of refraction for cos_i in [0, 1] and eta = n_i / n_t > 0. Returns 0 and
  * sets *total to true at and beyond the critical angle (total may be NULL). [BornWolf1999] */
 double abbe_optics_cos_refracted(double cos_i, double eta, bool *total);
@@ -47,7 +43,4 @@ double abbe_optics_critical_angle(double n_i, double n_t);
  * surroundings; returns false where no ray passes symmetrically (n sin(apex/2) > 1). */
 bool abbe_optics_minimum_deviation(double apex_rad, double n, double *deviation_rad);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

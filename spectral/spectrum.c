@@ -131,7 +131,6 @@ static bool usable(abbe_spectrum *spectrum) {
 abbe_result abbe_spectrum_make(const double *lambda_nm, const double *value, size_t count,
                                abbe_interpolation interpolation, abbe_spectrum **out,
                                abbe_error *error) {
-  ABBE_REQUIRE(lambda_nm && value && out, error);
   *out = NULL;
   abbe_result result = check(lambda_nm, value, count, error);
   if (result != ABBE_OK) return result;

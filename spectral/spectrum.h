@@ -10,10 +10,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef enum abbe_interpolation {
   ABBE_INTERPOLATION_LINEAR,
   ABBE_INTERPOLATION_MONOTONE, /* Steffen's method: no overshoot [Steffen1990] */
@@ -54,7 +50,4 @@ const double *abbe_spectrum_value(const abbe_spectrum *spectrum);
 /* The interpolation that was asked for. */
 abbe_interpolation abbe_spectrum_interpolation(const abbe_spectrum *spectrum);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

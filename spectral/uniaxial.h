@@ -15,10 +15,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Both indices alike: isotropic. */
 typedef struct abbe_uniaxial {
   double n_o, n_e; /* principal indices, above 0 */
@@ -75,7 +71,4 @@ void abbe_uniaxial_meet_unpolarised(const abbe_uniaxial *from, const abbe_uniaxi
                                     const double n[3], const double ray[3],
                                     abbe_uniaxial_split *out);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

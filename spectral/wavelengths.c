@@ -25,7 +25,6 @@ static double node(size_t i, size_t count, double min_nm, double max_nm) {
 
 abbe_result abbe_wavelengths_make(size_t count, double min_nm, double max_nm, abbe_wavelengths *out,
                                   abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   *out = (abbe_wavelengths){0};
   abbe_result result = check(count, min_nm, max_nm, error);
   if (result != ABBE_OK) return result;

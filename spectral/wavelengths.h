@@ -11,10 +11,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_WAVELENGTH_MIN_NM 380.0 /* default range, inclusive */
 #define ABBE_WAVELENGTH_MAX_NM 780.0
 #define ABBE_WAVELENGTHS_MAX_COUNT 4096
@@ -32,7 +28,4 @@ abbe_result abbe_wavelengths_make(size_t count, double min_nm, double max_nm,
 /* Frees the arrays and zeroes the struct; safe on a zeroed one. */
 void abbe_wavelengths_free(abbe_wavelengths *wavelengths);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

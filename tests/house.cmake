@@ -20,16 +20,14 @@ endforeach()
 abbe_test(number_places cpu abbe_base)
 
 # Each header stands alone in C17: it is what its own source reads first, or else a file here includes
-# it and no more. One file in C++17 includes all of them, each twice.
+# it and no more. One file in C++17 includes the API's headers, each twice.
 file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/base/*.h ${PROJECT_SOURCE_DIR}/spectral/*.h
   ${PROJECT_SOURCE_DIR}/colorimetry/*.h ${PROJECT_SOURCE_DIR}/scenes/*.h
   ${PROJECT_SOURCE_DIR}/gl/*.h ${PROJECT_SOURCE_DIR}/validation/*.h
-  ${PROJECT_SOURCE_DIR}/cli/library/*.h)
+  ${PROJECT_SOURCE_DIR}/library/*.h)
 set(alone "")
-set(all "")
 foreach(header ${headers})
-  string(APPEND all "#include \"${header}\"\n")
   string(REGEX REPLACE "h$" "c" source ${PROJECT_SOURCE_DIR}/${header})
   set(directive "")
   if(EXISTS ${source})
@@ -48,6 +46,10 @@ typedef int alone_@symbol@; // no file may be empty
 ")
   list(APPEND checks ${CMAKE_CURRENT_BINARY_DIR}/headers/${symbol}.c)
 endforeach()
+set(all "")
+foreach(header ${api})
+  string(APPEND all "#include \"${header}\"\n")
+endforeach()
 file(CONFIGURE OUTPUT headers/all.cpp @ONLY CONTENT "@all@@all@")
 string(REPLACE ";" "\n" alone "${alone}\n")
 file(CONFIGURE OUTPUT headers/alone.txt @ONLY CONTENT "@alone@")
@@ -59,11 +61,11 @@ target_compile_definitions(test_headers PRIVATE
 target_include_directories(test_headers SYSTEM PRIVATE
   $<TARGET_PROPERTY:abbe_gl,INTERFACE_INCLUDE_DIRECTORIES>)
 
-# Every function of the headers that returns a result, called with NULL and with zeros.
-list(TRANSFORM headers PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE header_files)
+# Every function of the API that returns a result, called with NULL and with zeros.
+list(TRANSFORM api PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE header_files)
 set(calls ${CMAKE_CURRENT_BINARY_DIR}/null_calls.c)
 add_custom_command(OUTPUT ${calls}
-  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/null_arguments/generate ${calls} ${headers}
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/null_arguments/generate ${calls} ${api}
   WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
   DEPENDS ${header_files} ${CMAKE_CURRENT_SOURCE_DIR}/null_arguments/generate
   VERBATIM)

@@ -4,7 +4,7 @@ add_test(NAME install
           ${CMAKE_C_COMPILER} ${CMAKE_CXX_COMPILER})
 if(ABBE_HARDEN AND NOT ABBE_SANITIZE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
   add_test(NAME hardened COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/hardened $<TARGET_FILE:abbe>
-           $<TARGET_FILE:abbe_archive> $<TARGET_FILE:abbe_shared>)
+           $<TARGET_FILE:abbe_shared>)
   abbe_label(program NAMES hardened)
 endif()
 add_test(NAME pages COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/install/pages ${CMAKE_COMMAND}

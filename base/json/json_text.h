@@ -8,17 +8,10 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct cJSON;
 
 /* json as text, in lines or on one (cJSON_free frees it): each number is the shortest decimal of its
  * double, null where it is not finite. NULL where json is NULL and for want of memory. */
 char *abbe_json_text(const struct cJSON *json, bool lines);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -12,10 +12,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_watch {
   bool (*goes_on)(void *user);
   void *user;
@@ -29,7 +25,4 @@ bool abbe_watch_goes_on(void);
 /* The same: ABBE_OK or ABBE_CANCELLED. */
 abbe_result abbe_watch_check(abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -47,7 +47,6 @@ abbe_result abbe_yaml_fail_at(const abbe_yaml *yaml, size_t line, abbe_result co
 
 abbe_result abbe_yaml_fail(const abbe_yaml *yaml, abbe_yaml_node where, abbe_error *error,
                            const char *format, ...) {
-  ABBE_REQUIRE(yaml && format, error);
   va_list args;
   va_start(args, format);
   complain(yaml, abbe_yaml_line(yaml, where), ABBE_SCHEMA, error, format, args);
@@ -158,7 +157,6 @@ abbe_yaml_node abbe_yaml_get(abbe_yaml *yaml, abbe_yaml_node mapping, const char
 
 abbe_result abbe_yaml_refuse_near(const abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                   abbe_error *error) {
-  ABBE_REQUIRE(yaml && key, error);
   const abbe_yaml_part *n = abbe_yaml_at(yaml, mapping);
   for (size_t i = 0; n != NULL && n->kind == ABBE_YAML_MAPPING && i + 1 < n->count; i += 2) {
     const abbe_yaml_node other = {n->child[i]};
@@ -174,7 +172,6 @@ abbe_result abbe_yaml_refuse_near(const abbe_yaml *yaml, abbe_yaml_node mapping,
 
 abbe_result abbe_yaml_require(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                               abbe_yaml_node *out, abbe_error *error) {
-  ABBE_REQUIRE(yaml && key && out, error);
   if (!abbe_yaml_is_mapping(yaml, mapping))
     return abbe_yaml_fail(yaml, mapping, error, "a mapping with the key '%s' is wanted here", key);
   *out = abbe_yaml_get(yaml, mapping, key);
@@ -187,7 +184,6 @@ abbe_result abbe_yaml_require(abbe_yaml *yaml, abbe_yaml_node mapping, const cha
 
 abbe_result abbe_yaml_check_keys(const abbe_yaml *yaml, abbe_yaml_node mapping, const char *what,
                                  abbe_error *error) {
-  ABBE_REQUIRE(yaml && what, error);
   const abbe_yaml_part *n = abbe_yaml_at(yaml, mapping);
   if (n == NULL || n->kind != ABBE_YAML_MAPPING)
     return abbe_yaml_fail(yaml, mapping, error, "%s must be a mapping (key: value)", what);

@@ -14,10 +14,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_yaml abbe_yaml; /* a document */
 typedef struct abbe_yaml_node {
   int id;
@@ -112,7 +108,4 @@ abbe_result
 abbe_yaml_fail(const abbe_yaml *yaml, abbe_yaml_node node, abbe_error *error, const char *format,
                ...);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

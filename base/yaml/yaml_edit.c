@@ -102,7 +102,6 @@ static abbe_result check_line(const char *value, const char *what, abbe_error *e
 
 abbe_result abbe_yaml_edit_replace(abbe_yaml_edit *e, abbe_yaml_node parent, size_t index,
                                    const char *value, abbe_error *error) {
-  ABBE_REQUIRE(e && value, error);
   abbe_yaml_node old = child_of(e, parent, index);
   if (old.id == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: has no value number %zu here", e->name,
@@ -138,7 +137,6 @@ abbe_result abbe_yaml_edit_replace(abbe_yaml_edit *e, abbe_yaml_node parent, siz
 
 abbe_result abbe_yaml_edit_insert_pair(abbe_yaml_edit *e, abbe_yaml_node mapping, size_t after,
                                        const char *key, const char *value, abbe_error *error) {
-  ABBE_REQUIRE(e && key && value, error);
   abbe_result result = check_line(value, key, error);
   if (result != ABBE_OK) return result;
   size_t count = abbe_yaml_count(e->yaml, mapping);
@@ -230,7 +228,6 @@ static abbe_yaml_bytes pair_extent(const abbe_yaml_edit *e, abbe_yaml_node mappi
 
 abbe_result abbe_yaml_edit_remove(abbe_yaml_edit *e, abbe_yaml_node parent, size_t index,
                                   abbe_error *error) {
-  ABBE_REQUIRE(e, error);
   size_t count = abbe_yaml_count(e->yaml, parent);
   if (count < 2 || index >= count)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -256,7 +253,6 @@ abbe_result abbe_yaml_edit_remove(abbe_yaml_edit *e, abbe_yaml_node parent, size
 /* ---- numbers ---- */
 
 abbe_result abbe_yaml_edit_list(const double *value, size_t count, char **out, abbe_error *error) {
-  ABBE_REQUIRE((value || count == 0) && out, error);
   size_t size = (ABBE_NUMBER_TEXT_SIZE + 2) * count + 3, used = 0;
   char *made = *out = malloc(size), number[ABBE_NUMBER_TEXT_SIZE];
   if (made == NULL)

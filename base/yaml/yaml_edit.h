@@ -16,10 +16,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_YAML_EDIT_END SIZE_MAX
 
 /* A text under change. All three are the edit's; after each change the document is a new one, and
@@ -66,7 +62,4 @@ abbe_result abbe_yaml_edit_item(const abbe_yaml_edit *edit, abbe_yaml_node seque
 /* count finite numbers as "[a, b, …]", each with the fewest digits that read back the same. */
 abbe_result abbe_yaml_edit_list(const double *value, size_t count, char **out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

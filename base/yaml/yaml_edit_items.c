@@ -32,7 +32,6 @@ static char *moved(const char *text, size_t from, size_t to, size_t column, size
 
 abbe_result abbe_yaml_edit_item(const abbe_yaml_edit *e, abbe_yaml_node sequence, size_t index,
                                 char **out, abbe_error *error) {
-  ABBE_REQUIRE(e && out, error);
   abbe_yaml_node item = abbe_yaml_item(e->yaml, sequence, index);
   abbe_yaml_bytes own = abbe_yaml_edit_span_of(e, item);
   size_t to = own.to, column = abbe_yaml_edit_column_of(e, own.from);
@@ -118,7 +117,6 @@ static abbe_result append_block(abbe_yaml_edit *e, abbe_yaml_node mapping, size_
 
 abbe_result abbe_yaml_edit_append(abbe_yaml_edit *e, abbe_yaml_node mapping, size_t index,
                                   const char *item, abbe_error *error) {
-  ABBE_REQUIRE(e && item, error);
   abbe_yaml_edit given;
   abbe_result result = abbe_yaml_edit_make(item, strlen(item), "the new record", &given, error);
   if (result != ABBE_OK) return result;

@@ -11,7 +11,6 @@ abbe_result abbe_yaml_edit_no_memory(const abbe_yaml_edit *e, abbe_error *error)
 
 abbe_result abbe_yaml_edit_make(const char *text, size_t size, const char *name,
                                 abbe_yaml_edit *out, abbe_error *error) {
-  ABBE_REQUIRE(text && name && out, error);
   *out = (abbe_yaml_edit){0};
   if (size >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0))
     return abbe_error_set(error, ABBE_UNSUPPORTED,

@@ -9,10 +9,6 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The bytes [from, to) of the text. */
 typedef struct abbe_yaml_bytes {
   size_t from, to;
@@ -53,7 +49,4 @@ abbe_result abbe_yaml_edit_splice_value(abbe_yaml_edit *e, abbe_yaml_bytes where
 /* Closes a memory stream: its text, or NULL where memory ran out. */
 char *abbe_yaml_edit_closed(FILE *stream, char **text);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

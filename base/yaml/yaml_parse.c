@@ -278,7 +278,6 @@ static abbe_result build(builder *b, const char *text, size_t size) {
 
 abbe_result abbe_yaml_parse(const char *text, size_t size, const char *name, abbe_yaml **out,
                             abbe_error *error) {
-  ABBE_REQUIRE(text && name && out, error);
   *out = NULL;
   abbe_yaml *yaml = calloc(1, sizeof *yaml);
   if (yaml != NULL) yaml->name = strdup(name);
@@ -302,7 +301,6 @@ abbe_result abbe_yaml_parse(const char *text, size_t size, const char *name, abb
 }
 
 abbe_result abbe_yaml_load(const char *path, abbe_yaml **out, abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   *out = NULL;
   char *text = NULL;
   size_t size = 0;

@@ -69,7 +69,6 @@ void abbe_yaml_quote_write(const char *text, FILE *to) {
 }
 
 abbe_result abbe_yaml_quote_make(const char *text, char **out, abbe_error *error) {
-  ABBE_REQUIRE(text && out, error);
   size_t size = 0;
   *out = NULL;
   FILE *to = open_memstream(out, &size);

@@ -11,16 +11,9 @@
 
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* To the stream, whose own error state tells of failure. */
 void abbe_yaml_quote_write(const char *text, FILE *to);
 /* *out is malloc'd, NULL on failure. ABBE_NO_MEMORY. */
 abbe_result abbe_yaml_quote_make(const char *text, char **out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

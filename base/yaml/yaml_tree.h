@@ -8,10 +8,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_YAML_MAX_ANCHORS = 1024 };
 
 typedef enum abbe_yaml_kind {
@@ -59,7 +55,4 @@ abbe_yaml_fail_at(const abbe_yaml *yaml, size_t line, abbe_result code, abbe_err
                   const char *format, ...);
 abbe_result abbe_yaml_no_memory(const abbe_yaml *yaml, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -50,33 +50,28 @@ static abbe_result read_number(const abbe_yaml *yaml, abbe_yaml_node which, cons
 
 abbe_result abbe_yaml_number(const abbe_yaml *yaml, abbe_yaml_node which, const char *what,
                              double min, double max, double *out, abbe_error *error) {
-  ABBE_REQUIRE(yaml && what && out, error);
   return read_number(yaml, which, what, false, min, max, out, error);
 }
 
 abbe_result abbe_yaml_length(const abbe_yaml *yaml, abbe_yaml_node which, const char *what,
                              double min, double max, double *out, abbe_error *error) {
-  ABBE_REQUIRE(yaml && what && out, error);
   return read_number(yaml, which, what, true, min, max, out, error);
 }
 
 abbe_result abbe_yaml_get_number(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                  double min, double max, double *out, abbe_error *error) {
-  ABBE_REQUIRE(yaml && key && out, error);
   abbe_yaml_node value = abbe_yaml_get(yaml, mapping, key);
   return value.id == 0 ? ABBE_OK : read_number(yaml, value, key, false, min, max, out, error);
 }
 
 abbe_result abbe_yaml_get_length(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                  double min, double max, double *out, abbe_error *error) {
-  ABBE_REQUIRE(yaml && key && out, error);
   abbe_yaml_node value = abbe_yaml_get(yaml, mapping, key);
   return value.id == 0 ? ABBE_OK : read_number(yaml, value, key, true, min, max, out, error);
 }
 
 abbe_result abbe_yaml_get_count(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                 size_t min, size_t max, size_t *out, abbe_error *error) {
-  ABBE_REQUIRE(yaml && key && out, error);
   abbe_yaml_node which = abbe_yaml_get(yaml, mapping, key);
   if (which.id == 0) return ABBE_OK;
   const abbe_yaml_part *n = abbe_yaml_at(yaml, which);
@@ -95,7 +90,6 @@ abbe_result abbe_yaml_get_count(abbe_yaml *yaml, abbe_yaml_node mapping, const c
 
 abbe_result abbe_yaml_get_bool(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key, bool *out,
                                abbe_error *error) {
-  ABBE_REQUIRE(yaml && key && out, error);
   abbe_yaml_node which = abbe_yaml_get(yaml, mapping, key);
   if (which.id == 0) return ABBE_OK;
   const abbe_yaml_part *n = abbe_yaml_at(yaml, which);
@@ -112,7 +106,6 @@ abbe_result abbe_yaml_get_bool(abbe_yaml *yaml, abbe_yaml_node mapping, const ch
 
 abbe_result abbe_yaml_get_string(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                  char **out, abbe_error *error) {
-  ABBE_REQUIRE(yaml && key && out, error);
   abbe_yaml_node which = abbe_yaml_get(yaml, mapping, key);
   if (which.id == 0) return ABBE_OK;
   const abbe_yaml_part *n = abbe_yaml_at(yaml, which);
@@ -148,7 +141,6 @@ abbe_result abbe_yaml_get_name(abbe_yaml *yaml, abbe_yaml_node mapping, const ch
 
 abbe_result abbe_yaml_get_choice(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                  const char *const *names, int *out, abbe_error *error) {
-  ABBE_REQUIRE(yaml && key && names && out, error);
   abbe_yaml_node which = abbe_yaml_get(yaml, mapping, key);
   if (which.id == 0) return ABBE_OK;
   const char *text = abbe_yaml_text(yaml, which);
@@ -198,20 +190,17 @@ static abbe_result read_numbers(abbe_yaml *yaml, abbe_yaml_node mapping, const c
 abbe_result abbe_yaml_get_numbers(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                   size_t count, double min, double max, double *out,
                                   abbe_error *error) {
-  ABBE_REQUIRE(yaml && key && out, error);
   return read_numbers(yaml, mapping, key, false, count, min, max, out, error);
 }
 
 abbe_result abbe_yaml_get_lengths(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                   size_t count, double min, double max, double *out,
                                   abbe_error *error) {
-  ABBE_REQUIRE(yaml && key && out, error);
   return read_numbers(yaml, mapping, key, true, count, min, max, out, error);
 }
 
 abbe_result abbe_yaml_get_list(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                size_t max_count, double **out, size_t *count, abbe_error *error) {
-  ABBE_REQUIRE(yaml && key && out && count, error);
   *out = NULL;
   *count = 0;
   abbe_yaml_node list = abbe_yaml_get(yaml, mapping, key);

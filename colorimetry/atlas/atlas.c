@@ -9,6 +9,7 @@
 #include "colorimetry/rgb_space.h"
 #include "spectral/wavelengths.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -85,7 +86,6 @@ static abbe_result fill_row(const abbe_atlas *atlas, const abbe_illuminant *ligh
 }
 
 abbe_result abbe_atlas_make(const abbe_atlas_desc *desc, abbe_atlas *out, abbe_error *error) {
-  ABBE_REQUIRE(desc && out, error);
   static const abbe_illuminant d65 = {0};
   const bool whole = desc->min_nm == 0 && desc->max_nm == 0;
   *out = (abbe_atlas){.observer = desc->observer,
@@ -134,7 +134,7 @@ static void paint(const abbe_gamut_map *map, const double xyz[3], float pixel[3]
 }
 
 abbe_result abbe_atlas_picture(const abbe_atlas *atlas, const char *path, abbe_error *error) {
-  ABBE_REQUIRE(atlas && atlas->row && path, error);
+  assert(atlas->row);
   static const char *const names[] = {"R", "G", "B"};
   enum { STRIP = 60, GAP = 4, WIDE = 3 };
   const size_t height = 2 * STRIP + GAP;
@@ -163,7 +163,7 @@ static double height_of(const abbe_atlas_row *row, int line) {
 }
 
 abbe_result abbe_atlas_plot(const abbe_atlas *atlas, const char *path, abbe_error *error) {
-  ABBE_REQUIRE(atlas && atlas->row && path, error);
+  assert(atlas->row);
   double *nm = calloc(atlas->count, (LINES + 1) * sizeof *nm);
   if (nm == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the plot");
   abbe_chart_series series[LINES];

@@ -12,10 +12,6 @@
 #include "colorimetry/illuminant.h"
 #include "colorimetry/observer.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_atlas_desc {
   abbe_observer observer;            /* the CIE's of 1931 */
   const abbe_illuminant *illuminant; /* of the light whose bands are summed; NULL: D65 */
@@ -52,7 +48,4 @@ abbe_result abbe_atlas_picture(const abbe_atlas *atlas, const char *path, abbe_e
 /* Differences over wavelength, as a .png or .svg: of the bands, and of each gamut. */
 abbe_result abbe_atlas_plot(const abbe_atlas *atlas, const char *path, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -6,15 +6,8 @@
 #ifndef ABBE_COLORIMETRY_GAMUT_OKLAB_H
 #define ABBE_COLORIMETRY_GAMUT_OKLAB_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* L (1: white), a, b of xyz, and back. */
 void abbe_oklab_of_xyz(const double xyz[3], double lab[3]);
 void abbe_oklab_to_xyz(const double lab[3], double xyz[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -148,7 +148,6 @@ static abbe_result put_frames(writing *w, const char *const *paths, size_t count
 
 abbe_result abbe_animated_png_write(const char *path, const char *const *frame, size_t count,
                                     double per_second, abbe_error *error) {
-  ABBE_REQUIRE(path && frame, error);
   abbe_file_writer writer;
   if (count < 1 || count > MOST_FRAMES || !(per_second >= 0.1 && per_second <= 1000))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

@@ -10,10 +10,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_ANIMATED_PNG_MAX_FRAME ((size_t)1 << 30) /* bytes of a frame's file */
 
 /* Writes path, beside and renamed, from the files frame[count], 1 to 1e6, at so many frames a
@@ -22,7 +18,4 @@ extern "C" {
 abbe_result abbe_animated_png_write(const char *path, const char *const *frame, size_t count,
                                     double per_second, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

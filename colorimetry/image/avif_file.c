@@ -115,7 +115,6 @@ static abbe_result check(const char *path, const abbe_image *image, int bits, ab
 
 abbe_result abbe_avif_write(const char *path, const abbe_image *image, int bits,
                             abbe_error *error) {
-  ABBE_REQUIRE(path && image, error);
   abbe_result result = check(path, image, bits, error);
   if (result != ABBE_OK) return result;
   avifImage *out = avifImageCreate((uint32_t)image->width, (uint32_t)image->height, (uint32_t)bits,
@@ -137,7 +136,6 @@ bool abbe_avif_is_there(void) {
 
 abbe_result abbe_avif_write(const char *path, const abbe_image *image, int bits,
                             abbe_error *error) {
-  ABBE_REQUIRE(path && image, error);
   (void)bits;
   return abbe_error_set(error, ABBE_UNSUPPORTED,
                         "%s: this abbe was built without libavif; a .png can be written", path);

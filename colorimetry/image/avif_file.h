@@ -11,10 +11,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Whether this build has libavif. */
 bool abbe_avif_is_there(void);
 
@@ -29,7 +25,4 @@ bool abbe_avif_is_meant(const char *path);
  * code; ABBE_IO where it cannot be written or encoded. */
 abbe_result abbe_avif_write(const char *path, const abbe_image *image, int bits, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

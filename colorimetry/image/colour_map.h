@@ -7,10 +7,6 @@
 #ifndef ABBE_COLORIMETRY_IMAGE_COLOUR_MAP_H
 #define ABBE_COLORIMETRY_IMAGE_COLOUR_MAP_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef enum abbe_colour_map {
   ABBE_COLOUR_MAP_AMOUNT,    /* 0 black, 1 white */
   ABBE_COLOUR_MAP_DIFFERENCE /* 0 blue, 0.5 light grey, 1 red */
@@ -20,7 +16,4 @@ typedef enum abbe_colour_map {
  * neither map has. */
 void abbe_colour_map_at(abbe_colour_map map, double t, double rgb[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

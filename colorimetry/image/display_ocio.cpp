@@ -411,7 +411,6 @@ abbe_result make(const abbe_display_desc *desc, abbe_display **out, abbe_error *
 
 abbe_result abbe_display_make(const abbe_display_desc *desc, abbe_display **out,
                               abbe_error *error) {
-  ABBE_REQUIRE(desc && out, error);
   *out = nullptr;
   if (!std::isfinite(desc->exposure) || std::fabs(desc->exposure) > ABBE_DISPLAY_MAX_EXPOSURE)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -453,7 +452,6 @@ static void adjust_pixels(const abbe_display *display, abbe_image *image) {
 }
 
 abbe_result abbe_display_apply(const abbe_display *display, abbe_image *image, abbe_error *error) {
-  ABBE_REQUIRE(display && image, error);
   if (image->data == nullptr || image->channels < 3)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "an image of %zu channels cannot be displayed; three are needed",
@@ -478,7 +476,6 @@ abbe_result abbe_display_apply(const abbe_display *display, abbe_image *image, a
 }
 
 abbe_result abbe_display_list(const char *config_file, char **out, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   *out = nullptr;
   return guarded(config_name(config_file), error, [=] {
     OCIO::ConstConfigRcPtr config = load(config_file);

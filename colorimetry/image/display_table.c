@@ -1,5 +1,6 @@
 #include "colorimetry/image/display_table.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -92,7 +93,6 @@ static void find_errors(abbe_display_table *t, float (*middle)[3]) {
 
 abbe_result abbe_display_table_make(const abbe_display *display, abbe_display_table **out,
                                     abbe_error *error) {
-  ABBE_REQUIRE(display && out, error);
   const size_t count = (size_t)NODES * NODES * NODES;
   abbe_display_table *table = malloc(sizeof *table);
   float(*rgb)[3] = malloc(count * sizeof *rgb);
@@ -159,7 +159,7 @@ static bool look_up(const abbe_display_table *t, float rgb[3]) {
 
 abbe_result abbe_display_table_apply(const abbe_display_table *table, abbe_image *image,
                                      abbe_error *error) {
-  ABBE_REQUIRE(table && image && image->data && image->channels == 3, error);
+  assert(image->data && image->channels == 3);
   const size_t count = image->width * image->height;
   float(*rgb)[3] = (float(*)[3])image->data;
   size_t *beyond = malloc((count + 1) * sizeof *beyond), left = 0;

@@ -11,10 +11,6 @@
 
 #include "colorimetry/image/display_ocio.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_display_table abbe_display_table;
 
 /* Of the display, which it looks at as long as it lives. ABBE_NO_MEMORY, errors of
@@ -28,7 +24,4 @@ void abbe_display_table_free(abbe_display_table *table);
 abbe_result abbe_display_table_apply(const abbe_display_table *table, abbe_image *image,
                                      abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -306,7 +306,6 @@ static abbe_result read_stream(abbe_exr_stream *s, abbe_image *image, abbe_error
 }
 
 abbe_result abbe_exr_read(const char *path, abbe_image *out, abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   *out = (abbe_image){0};
   abbe_exr_stream s = {.path = path, .fd = -1};
   FILE *file = NULL;

@@ -11,10 +11,6 @@
 
 #include "colorimetry/image/image.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Writes image to path (beside and renamed). ABBE_IO names the path and the reason;
  * ABBE_INVALID_ARGUMENT for two channels of one name and for an attribute whose name OpenEXR keeps
  * for itself ("channels", "compression", …). */
@@ -43,7 +39,4 @@ abbe_result abbe_exr_read(const char *path, abbe_image *out, abbe_error *error);
  * whole name, else all. */
 size_t abbe_exr_file_length(const char *path);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

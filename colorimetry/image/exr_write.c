@@ -193,7 +193,6 @@ static abbe_result write_file(const char *path, const abbe_image *image, storage
 }
 
 abbe_result abbe_exr_write(const char *path, const abbe_image *image, abbe_error *error) {
-  ABBE_REQUIRE(path && image, error);
   abbe_result result = check_image(path, image, error);
   if (result != ABBE_OK) return result;
   return write_file(path, image, (storage){.type = EXR_PIXEL_FLOAT, .unit = 1}, error);
@@ -212,7 +211,6 @@ static double half_unit(const float *value, size_t count) {
 }
 
 abbe_result abbe_exr_write_half(const char *path, const abbe_image *image, abbe_error *error) {
-  ABBE_REQUIRE(path && image, error);
   abbe_result result = check_image(path, image, error);
   if (result != ABBE_OK) return result;
   size_t count = image->width * image->height * image->channels;

@@ -36,7 +36,6 @@ static abbe_result check_size(size_t width, size_t height, size_t channels,
 
 abbe_result abbe_image_make(size_t width, size_t height, size_t channels, const char *const *names,
                             abbe_image *out, abbe_error *error) {
-  ABBE_REQUIRE(names && out, error);
   *out = (abbe_image){0};
   abbe_result result = check_size(width, height, channels, names, error);
   if (result != ABBE_OK) return result;
@@ -76,7 +75,6 @@ void abbe_image_free(abbe_image *image) {
 abbe_result abbe_image_check_expansion(const char *path, size_t width, size_t height,
                                        size_t channels, size_t file_bytes, size_t free_bytes,
                                        abbe_error *error) {
-  ABBE_REQUIRE(path, error);
   const double bytes = (double)width * (double)height * (double)channels * sizeof(float);
   const double mebibyte = 1 << 20;
   if (bytes <= (double)free_bytes || bytes <= ABBE_IMAGE_MAX_EXPANSION * (double)file_bytes)
@@ -90,7 +88,6 @@ abbe_result abbe_image_check_expansion(const char *path, size_t width, size_t he
 
 abbe_result abbe_image_check_place(const abbe_image *a, const char *name_a, const abbe_image *b,
                                    const char *name_b, abbe_error *error) {
-  ABBE_REQUIRE(a && name_a && b && name_b, error);
   const abbe_image_window v = a->display_window, w = b->display_window;
   if (v.x0 == w.x0 && v.y0 == w.y0) return ABBE_OK;
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -123,7 +120,6 @@ static bool append_attribute(abbe_image *image, const char *name, char *text) {
 
 abbe_result abbe_image_set_attribute(abbe_image *image, const char *name, const char *text,
                                      abbe_error *error) {
-  ABBE_REQUIRE(image && name && text, error);
   if (name == NULL || name[0] == '\0' || text == NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "an attribute of an image needs a name and a text");
@@ -183,7 +179,6 @@ static abbe_result check_append(const abbe_image *image, const abbe_image *other
 }
 
 abbe_result abbe_image_append(abbe_image *image, const abbe_image *other, abbe_error *error) {
-  ABBE_REQUIRE(image && other, error);
   const size_t first = image->channels, more = other->channels, all = first + more;
   abbe_image both = {0};
   abbe_result result = check_append(image, other, error);

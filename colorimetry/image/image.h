@@ -12,10 +12,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_IMAGE_MAX_SIDE 32768
 #define ABBE_IMAGE_MAX_CHANNELS 1024
 #define ABBE_IMAGE_MAX_ATTRIBUTES 4096
@@ -96,7 +92,4 @@ void abbe_image_band_name(double middle_nm, char *out, size_t size);
 /* The middle of the band, nm, that a channel of such a name is of; false: of none. */
 bool abbe_image_band_middle(const char *channel, double *middle_nm);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -22,7 +22,6 @@ static abbe_result find_observer(const abbe_image *image, const char *name, abbe
 
 abbe_result abbe_picture_space_find(const abbe_image *image, bool is_xyz, const char *name,
                                     abbe_picture_space *out, abbe_error *error) {
-  ABBE_REQUIRE(image && name && out, error);
   *out = (abbe_picture_space){.space = is_xyz ? ABBE_RGB_SPACE_XYZ : ABBE_RGB_SPACE_COUNT};
   const abbe_result result = find_observer(image, name, &out->observer, error);
   if (result != ABBE_OK) return result;

@@ -8,10 +8,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_picture_space {
   abbe_observer observer; /* whose XYZ it is: the attribute abbe:observer; 1931 without */
   abbe_rgb_space space; /* ABBE_RGB_SPACE_COUNT: of other chromaticities */
@@ -27,7 +23,4 @@ typedef struct abbe_picture_space {
 abbe_result abbe_picture_space_find(const abbe_image *image, bool is_xyz, const char *name,
                                     abbe_picture_space *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -142,7 +142,6 @@ static bool write_image(job *j, const abbe_image *image) {
 }
 
 abbe_result abbe_png_write(const char *path, const abbe_image *image, int bits, abbe_error *error) {
-  ABBE_REQUIRE(path && image, error);
   if (bits != 8 && bits != 16)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: a PNG of %d bits cannot be written; 8 or 16 can", path, bits);
@@ -336,7 +335,6 @@ static abbe_result read_image(job *j, double file_size, abbe_image *out, abbe_er
 }
 
 abbe_result abbe_png_read(const char *path, abbe_image *out, abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   *out = (abbe_image){0};
   FILE *file;
   size_t size = 0;
@@ -377,7 +375,6 @@ static abbe_result find_text(const char *path, FILE *file, char **out, abbe_erro
 }
 
 abbe_result abbe_png_read_text(const char *path, char **out, abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   FILE *file;
   *out = NULL;
   abbe_result result = abbe_file_open(path, &file, NULL, error);

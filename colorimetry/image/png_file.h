@@ -4,10 +4,6 @@
 
 #include "colorimetry/image/image.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Writes the first three channels (or one, as grey), and a fourth that is called A as alpha,
  * straight and linear; values clamped to [0, 1] and already
  * encoded for the display, with bits = 8 or 16. Not-a-number is written as 0. Beside and renamed.
@@ -34,7 +30,4 @@ abbe_result abbe_png_read_text(const char *path, char **out, abbe_error *error);
  * display's RGB, ABBE_COLOUR for a profile that cannot be used. */
 abbe_result abbe_png_read(const char *path, abbe_image *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -244,7 +244,6 @@ static abbe_result read_pixels(reader *r, abbe_image *out, abbe_error *error) {
 }
 
 abbe_result abbe_radiance_read(const char *path, abbe_image *out, abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   memset(out, 0, sizeof *out);
   char *data = NULL;
   reader r = {.path = path, .divisor = {1, 1, 1}};

@@ -10,10 +10,6 @@
 
 #include "colorimetry/image/image.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_RADIANCE_MAX_BYTES ((size_t)1 << 30) /* of the file */
 /* Pixels of so many bytes are read from however small a file; above, see
  * abbe_image_check_expansion. */
@@ -27,7 +23,4 @@ extern "C" {
  * FORMAT and for pixels that are too many for the file. */
 abbe_result abbe_radiance_read(const char *path, abbe_image *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

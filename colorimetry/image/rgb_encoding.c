@@ -185,7 +185,6 @@ static void fix_date(unsigned char *icc) {
 
 abbe_result abbe_rgb_encoding_profile(const double xy[8], const double curve[5], void **icc,
                                       size_t *size, abbe_error *error) {
-  ABBE_REQUIRE(xy && curve && icc && size, error);
   *icc = NULL;
   *size = 0;
   cmsHPROFILE profile = abbe_rgb_encoding_is_known(xy, curve) ? make_profile(xy, curve) : NULL;
@@ -222,7 +221,6 @@ static double srgb_of(double light) {
 }
 
 abbe_result abbe_rgb_encoding_to_srgb(abbe_image *image, const char *name, abbe_error *error) {
-  ABBE_REQUIRE(image && name, error);
   double to_xyz[9], from_xyz[9];
   abbe_error why = {0};
   if (image->channels != 3 || !abbe_rgb_encoding_is_known(image->xy, image->curve) ||
@@ -245,7 +243,6 @@ abbe_result abbe_rgb_encoding_to_srgb(abbe_image *image, const char *name, abbe_
 
 abbe_result abbe_rgb_encoding_profile_to_srgb(abbe_image *image, const void *icc, size_t size,
                                               const char *name, abbe_error *error) {
-  ABBE_REQUIRE(image && icc && name, error);
   const cmsUInt32Number one = FLOAT_SH(1) | CHANNELS_SH(1) | EXTRA_SH(2) | BYTES_SH(4);
   cmsHPROFILE from = size <= UINT32_MAX ? cmsOpenProfileFromMem(icc, (cmsUInt32Number)size) : NULL;
   cmsHPROFILE to = cmsCreate_sRGBProfile();

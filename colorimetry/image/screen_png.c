@@ -146,7 +146,6 @@ static double share_of_white(const abbe_image *shown) {
 
 abbe_result abbe_screen_png_write(const char *path, const abbe_image *image,
                                   const abbe_screen_png_desc *d, abbe_error *error) {
-  ABBE_REQUIRE(path && image && d, error);
   abbe_image picked = {0};
   abbe_display *transform = NULL;
   abbe_display_desc desc = d->display;

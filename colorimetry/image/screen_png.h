@@ -8,10 +8,6 @@
 
 #include "colorimetry/image/display_ocio.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* What there is to say of a picture that was shown. */
 typedef struct abbe_screen_png_notes {
   bool space_assumed; /* its R, G, B are of no stated space, and Rec.709's were taken */
@@ -39,7 +35,4 @@ typedef struct abbe_screen_png_desc {
 abbe_result abbe_screen_png_write(const char *path, const abbe_image *image,
                                   const abbe_screen_png_desc *desc, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -7,6 +7,7 @@
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/image/rgb_encoding.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -154,7 +155,6 @@ static abbe_result find_costs(abbe_gamut_check *out, abbe_error *error) {
 
 abbe_result abbe_gamut_check_make(const abbe_image *image, const char *name, abbe_gamut gamut,
                                   abbe_gamut_check *out, abbe_error *error) {
-  ABBE_REQUIRE(image && name && out, error);
   *out = (abbe_gamut_check){.gamut = gamut};
   if ((unsigned)gamut >= ABBE_GAMUT_COUNT)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: there is no gamut number %d", name,
@@ -180,7 +180,7 @@ void abbe_gamut_check_free(abbe_gamut_check *check) {
 
 abbe_result abbe_gamut_check_overlay(const abbe_gamut_check *check, const char *path,
                                      abbe_error *error) {
-  ABBE_REQUIRE(check && check->xyz && check->excess && path, error);
+  assert(check->xyz && check->excess);
   static const char *const names[] = {"R", "G", "B"};
   abbe_image image = {0};
   abbe_result result = abbe_image_make(check->width, check->height, 3, names, &image, error);

@@ -8,10 +8,6 @@
 #include "colorimetry/gamut/gamut_map.h"
 #include "colorimetry/image/picture_space.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Excess (abbe_gamut_excess) up to which a colour counts as inside: half a step of 10 bits. */
 #define ABBE_GAMUT_CHECK_SLACK 5e-4
 
@@ -53,7 +49,4 @@ abbe_result abbe_gamut_check_overlay(const abbe_gamut_check *check, const char *
 abbe_result abbe_gamut_check_diagram(const abbe_gamut_check *check, const char *path,
                                      const char *title, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -8,10 +8,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_AXIS_MAX_TICKS = 128 };
 
 typedef struct abbe_axis {
@@ -43,7 +39,4 @@ size_t abbe_axis_ticks(const abbe_axis *axis, size_t wanted,
 /* "10" with the exponent raised, as UTF-8. */
 const char *abbe_axis_power(int exponent, char text[40]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

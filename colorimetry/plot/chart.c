@@ -136,7 +136,6 @@ static abbe_result check_grid(const char *path, const grid *g, abbe_error *error
 
 abbe_result abbe_chart_write_grid(const char *path, const abbe_chart *charts, size_t count,
                                   size_t columns, size_t width, size_t height, abbe_error *error) {
-  ABBE_REQUIRE(path && charts, error);
   grid g = {.count = count,
             .columns = columns,
             .width = width == 0 ? 960 : width,

@@ -16,10 +16,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_CHART_MAX_SIDE 16384
 #define ABBE_CHART_COLOURS 8 /* [OkabeIto2008]; further series repeat them, dashed */
 
@@ -90,7 +86,4 @@ abbe_result abbe_chart_write(const char *path, const abbe_chart *charts, size_t 
 abbe_result abbe_chart_write_grid(const char *path, const abbe_chart *charts, size_t count,
                                   size_t columns, size_t width, size_t height, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

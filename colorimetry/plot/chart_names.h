@@ -5,16 +5,9 @@
 
 #include "colorimetry/plot/chart_panel.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* No name covers a point or another name, of whatever series; the last series' come first. */
 void abbe_chart_draw_names(abbe_chart_panel *panel);
 /* The labels of the series and of the shaded ranges, where they hide least of the data. */
 void abbe_chart_draw_legend(abbe_chart_panel *panel);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

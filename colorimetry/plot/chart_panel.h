@@ -7,10 +7,6 @@
 #include "colorimetry/plot/axis.h"
 #include "colorimetry/plot/chart.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct _cairo;
 
 typedef struct abbe_chart_panel {
@@ -35,7 +31,4 @@ void abbe_chart_panel_measure(abbe_chart_panel *panel, double *left, double *rig
 /* Draws it between top and bottom, left and right. */
 void abbe_chart_panel_draw(abbe_chart_panel *panel);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

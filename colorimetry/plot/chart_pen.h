@@ -4,10 +4,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct _cairo;
 
 void abbe_chart_set_font(struct _cairo *cr, double size, bool bold);
@@ -24,7 +20,4 @@ void abbe_chart_draw_line(struct _cairo *cr, double x0, double y0, double x1, do
 /* Where a line one pixel wide fills one row or column of pixels. */
 double abbe_chart_sharp(double at);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

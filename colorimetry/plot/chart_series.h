@@ -5,10 +5,6 @@
 
 #include "colorimetry/plot/chart_panel.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Where a value lies in the picture; NaN where its axis has no place for it. */
 double abbe_chart_panel_x(const abbe_chart_panel *p, double value);
 double abbe_chart_panel_y(const abbe_chart_panel *p, double value);
@@ -22,7 +18,4 @@ double abbe_chart_shade_grey(const abbe_chart *c, size_t index);
 void abbe_chart_draw_series(abbe_chart_panel *p, size_t index);
 void abbe_chart_draw_shades(abbe_chart_panel *p);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -6,6 +6,7 @@
 #include "colorimetry/plot/chart.h"
 #include "colorimetry/spectral_picture/spectral_channels.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -93,7 +94,6 @@ static abbe_result errors_of_y(const abbe_image *image, const source *of, const 
 abbe_result abbe_false_colours_values(const abbe_image *image, const char *layer, const char *name,
                                       float **values, char *title, size_t title_size,
                                       bool *is_error, abbe_error *error) {
-  ABBE_REQUIRE(image && layer && name && values && title && is_error, error);
   source of;
   abbe_result result = ABBE_OK;
   *values = NULL;
@@ -153,7 +153,7 @@ static void scale(const float *sorted, size_t count, bool is_error, abbe_chart_f
 
 abbe_result abbe_false_colours_draw(const char *path, const abbe_false_colours_desc *d,
                                     float *value, abbe_error *error) {
-  ABBE_REQUIRE(path && d && d->title && d->label && value, error);
+  assert(d->title && d->label);
   const size_t width = d->width, height = d->height, pixels = width * height;
   float *sorted = malloc(pixels * sizeof *sorted);
   if (sorted == NULL)
@@ -176,7 +176,6 @@ abbe_result abbe_false_colours_draw(const char *path, const abbe_false_colours_d
 
 abbe_result abbe_false_colours_write(const char *path, const abbe_image *image, const char *layer,
                                      const char *name, abbe_error *error) {
-  ABBE_REQUIRE(path && image && layer && name, error);
   float *value;
   char label[400], title[400];
   bool is_error;

@@ -10,10 +10,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Whether what a layer's name means is shown in false colours: a channel of that name ("depth.Z",
  * "S0.550,000000nm", "stderr.R"); a wavelength ("550nm") that a band of the picture holds; a layer
  * of standard errors ("stderr", "stderr.NAME"), whose R, G, B are no colour. */
@@ -45,7 +41,4 @@ abbe_result abbe_false_colours_values(const abbe_image *image, const char *layer
                                       float **values, char *title, size_t title_size,
                                       bool *is_error, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -253,7 +253,6 @@ static abbe_result write_sheet(const char *path, sheet *s, abbe_error *error) {
 
 abbe_result abbe_material_chart_write(const char *path, const abbe_material_chart *chart,
                                       abbe_error *error) {
-  ABBE_REQUIRE(path && chart, error);
   if (chart->count < 1 || chart->count > ABBE_MATERIAL_CHART_MAX)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%zu materials in one chart; 1 to %d fit",
                           chart->count, ABBE_MATERIAL_CHART_MAX);
@@ -352,7 +351,6 @@ static bool is_marked(const abbe_material_map *map, const abbe_material *m) {
 
 abbe_result abbe_material_map_write(const char *path, const abbe_material_map *map,
                                     size_t *left_out, abbe_error *error) {
-  ABBE_REQUIRE(path && map, error);
   if (map->table_count < 1 || map->table_count > ABBE_MATERIAL_MAP_MAX_TABLES)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%zu tables in one map; 1 to %d fit",
                           map->table_count, ABBE_MATERIAL_MAP_MAX_TABLES);

@@ -13,10 +13,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_MATERIAL_CHART_MAX = 64, ABBE_MATERIAL_MAP_MAX_TABLES = 8 };
 
 /* Zero but for the materials: 380 to 780 nm, curves alone. */
@@ -50,7 +46,4 @@ typedef struct abbe_material_map {
 abbe_result abbe_material_map_write(const char *path, const abbe_material_map *map,
                                     size_t *left_out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -4,6 +4,7 @@
 #include "colorimetry/plot/chart_panel.h"
 #include "colorimetry/plot/chart_pen.h"
 
+#include <assert.h>
 #include <cairo-pdf.h>
 #include <cairo.h>
 #include <math.h>
@@ -31,7 +32,6 @@ static abbe_result state_of(cairo_status_t status, abbe_error *error) {
 }
 
 abbe_result abbe_sheet_make(const char *path, abbe_sheet **out, abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   *out = NULL;
   const size_t length = strlen(path);
   if (length < 5 || strcasecmp(path + length - 4, ".pdf") != 0)
@@ -84,7 +84,7 @@ static uint32_t byte_of(float value) {
 
 abbe_result abbe_sheet_picture(abbe_sheet *s, double x, double y, double width, double height,
                                const abbe_image *image, abbe_error *error) {
-  ABBE_REQUIRE(s && image && image->data, error);
+  assert(image->data);
   if (image->channels < 3)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a picture of %zu channels; it takes 3",
                           image->channels);
@@ -114,7 +114,6 @@ abbe_result abbe_sheet_picture(abbe_sheet *s, double x, double y, double width, 
 
 abbe_result abbe_sheet_chart(abbe_sheet *s, double x, double y, double width, double height,
                              double scale, const abbe_chart *chart, abbe_error *error) {
-  ABBE_REQUIRE(s && chart, error);
   abbe_chart_panel panel;
   if (!(scale > 0))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a chart at %g times its size", scale);
@@ -142,7 +141,6 @@ void abbe_sheet_turn(abbe_sheet *sheet) {
 }
 
 abbe_result abbe_sheet_finish(abbe_sheet *sheet, abbe_error *error) {
-  ABBE_REQUIRE(sheet, error);
   cairo_show_page(sheet->cr);
   cairo_status_t status = cairo_status(sheet->cr);
   cairo_surface_finish(sheet->surface); /* the file is written here */

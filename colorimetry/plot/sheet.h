@@ -13,10 +13,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_SHEET_A4_WIDTH 595.276
 #define ABBE_SHEET_A4_HEIGHT 841.89
 
@@ -44,7 +40,4 @@ abbe_result abbe_sheet_finish(abbe_sheet *sheet, abbe_error *error);
 /* Frees it without a file. Safe on NULL. */
 void abbe_sheet_free(abbe_sheet *sheet);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

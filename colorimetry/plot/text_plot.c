@@ -6,7 +6,6 @@
 
 abbe_result abbe_text_plot_make(size_t columns, size_t rows, abbe_axis x, abbe_axis y,
                                 abbe_text_plot *out, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   *out = (abbe_text_plot){0};
   if (columns < 1 || rows < 1 || columns > ABBE_TEXT_PLOT_MAX_SIDE ||
       rows > ABBE_TEXT_PLOT_MAX_SIDE)

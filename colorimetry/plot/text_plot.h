@@ -13,10 +13,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_TEXT_PLOT_MAX_SIDE = 1024 };
 
 typedef struct abbe_text_plot {
@@ -44,7 +40,4 @@ const char *abbe_text_plot_cell(const abbe_text_plot *plot, size_t column, size_
                                 char text[4]);
 unsigned char abbe_text_plot_curve(const abbe_text_plot *plot, size_t column, size_t row);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -173,7 +173,6 @@ static void find_matrix(work *w, const abbe_spectrum *measured, const double rgb
 abbe_result abbe_band_reflection_fill(const abbe_reflected_light *light,
                                       const abbe_spectrum *measured, const double rgb[3],
                                       float (*cell)[4], abbe_error *error) {
-  ABBE_REQUIRE(light && rgb && cell, error);
   work w = {.light = light, .steps = abbe_reflected_light_steps(light)};
   w.all = calloc(w.steps + 1, sizeof *w.all);
   w.kept = calloc(w.steps + 1, sizeof *w.kept);

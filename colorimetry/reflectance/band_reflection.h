@@ -15,10 +15,6 @@
 
 #include "colorimetry/reflectance/reflected_light.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Directions by |x| + |y| = 1 from the white, counter-clockwise from +x: a fourth of them a
  * quadrant. Rings from the white, 0, to the locus, ABBE_BAND_REFLECTION_RINGS. */
 #define ABBE_BAND_REFLECTION_TURNS 128
@@ -36,7 +32,4 @@ abbe_result abbe_band_reflection_fill(const abbe_reflected_light *light,
 void abbe_band_reflection_apply(const float (*cell)[4], const double white[3], const double xyz[3],
                                 double out[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

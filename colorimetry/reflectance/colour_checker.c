@@ -187,7 +187,6 @@ const char *abbe_colour_checker_name(size_t patch) {
 }
 
 abbe_result abbe_colour_checker_make(const char *name, abbe_spectrum **out, abbe_error *error) {
-  ABBE_REQUIRE(name && out, error);
   double nm[POINTS];
   *out = NULL;
   for (int i = 0; i < POINTS; i++) nm[i] = FIRST_NM + STEP_NM * i;

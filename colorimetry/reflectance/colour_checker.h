@@ -11,10 +11,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_COLOUR_CHECKER_COUNT 24
 
 /* "dark skin" … "cyan", "white", "neutral 8", "neutral 6.5", "neutral 5", "neutral 3.5", "black",
@@ -25,7 +21,4 @@ const char *abbe_colour_checker_name(size_t patch);
  * abbe_spectrum_free. ABBE_NOT_FOUND names the nearest; ABBE_NO_MEMORY. */
 abbe_result abbe_colour_checker_make(const char *name, abbe_spectrum **out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -45,7 +45,6 @@ static void find_lift(abbe_reflected_light *light) {
 abbe_result abbe_reflected_light_make_by(abbe_observer observer, const abbe_illuminant *illuminant,
                                          double min_nm, double max_nm, abbe_reflected_light **out,
                                          abbe_error *error) {
-  ABBE_REQUIRE(illuminant && out, error);
   enum { LEAST = 16, MOST = 470 }; /* the eye sees 470 nm */
   *out = NULL;
   if (!(min_nm > 0 && min_nm < max_nm && isfinite(max_nm)))
@@ -79,7 +78,6 @@ abbe_result abbe_reflected_light_make_by(abbe_observer observer, const abbe_illu
 abbe_result abbe_reflected_light_make(const abbe_illuminant *illuminant, double min_nm,
                                       double max_nm, abbe_reflected_light **out,
                                       abbe_error *error) {
-  ABBE_REQUIRE(illuminant && out, error);
   return abbe_reflected_light_make_by(ABBE_OBSERVER_CIE_1931, illuminant, min_nm, max_nm, out,
                                       error);
 }

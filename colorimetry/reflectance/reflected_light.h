@@ -18,10 +18,6 @@
 #include "colorimetry/observer.h"
 #include "spectral/spectrum.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Reflectance of each channel at lambda_nm. measured is NULL for Rec.709; else its ends hold beyond
  * its table, and the other two channels are 0. */
 void abbe_reflectance_channels(const abbe_spectrum *measured, double lambda_nm, double out[3]);
@@ -57,7 +53,4 @@ void abbe_reflected_light_xyz(const abbe_reflected_light *light, const abbe_spec
 void abbe_reflected_light_matrices(const abbe_reflected_light *light, const abbe_spectrum *measured,
                                    double matrix[3][9]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

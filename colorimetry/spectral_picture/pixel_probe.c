@@ -123,7 +123,6 @@ static abbe_result fill(const abbe_image *image, const char *layer, const char *
 abbe_result abbe_pixel_probe_make(const abbe_image *image, const char *layer, const char *name,
                                   abbe_image_window window, const abbe_spectral_view *view,
                                   abbe_pixel_probe *out, abbe_error *error) {
-  ABBE_REQUIRE(image && name && view && out, error);
   *out = (abbe_pixel_probe){0};
   if (image->data == NULL || image->channels == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: the picture is empty", name);

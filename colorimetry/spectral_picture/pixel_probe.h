@@ -11,10 +11,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* NaN stands for what is not known. */
 typedef struct abbe_pixel_probe {
   abbe_image_window window; /* in the plane that pixels are counted in, both ends included */
@@ -42,7 +38,4 @@ abbe_result abbe_pixel_probe_make(const abbe_image *image, const char *layer, co
                                   abbe_pixel_probe *out, abbe_error *error);
 void abbe_pixel_probe_free(abbe_pixel_probe *probe);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

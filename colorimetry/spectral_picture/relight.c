@@ -9,11 +9,13 @@
 
 enum { NAME = 40 };
 
-abbe_result abbe_relight_factors(const abbe_spectral_channels *c, const abbe_spectral_view *view,
-                                 double *factor, abbe_error *error) {
-  ABBE_REQUIRE(c && view && factor, error);
+/* What each of an emissive picture's bands is multiplied by for another illuminant, of lights of
+ * the same watts over the bands' range: factor[channels->count], 0 where `from` is dark. 1
+ * throughout without view->to and for reflectances. */
+static void find_factors(const abbe_spectral_channels *c, const abbe_spectral_view *view,
+                         double *factor) {
   for (size_t i = 0; i < c->count; i++) factor[i] = 1;
-  if (c->kind != ABBE_SPECTRAL_EMISSIVE || view->from == NULL || view->to == NULL) return ABBE_OK;
+  if (c->kind != ABBE_SPECTRAL_EMISSIVE || view->from == NULL || view->to == NULL) return;
   const double low = c->edge_nm[0], high = c->edge_nm[c->count];
   const double all_from = abbe_observer_integral_power(view->from, low, high),
                all_to = abbe_observer_integral_power(view->to, low, high);
@@ -24,7 +26,6 @@ abbe_result abbe_relight_factors(const abbe_spectral_channels *c, const abbe_spe
         abbe_observer_integral_power(view->to, c->edge_nm[i], c->edge_nm[i + 1]) / all_to;
     factor[i] = from > 0 ? to / from : 0;
   }
-  return ABBE_OK;
 }
 
 static bool has(const abbe_image *image, const char *layer, const char *channel) {
@@ -145,9 +146,9 @@ static abbe_result relight(const abbe_image *image, const char *name,
                            abbe_error *error) {
   double matrix[9];
   abbe_result result = abbe_spectral_colour_weights(c, &d->view, name, weight, error);
-  if (result == ABBE_OK) result = abbe_relight_factors(c, &d->view, factor, error);
   if (result == ABBE_OK) result = make_image(image, c, d, out, error);
   if (result != ABBE_OK) return result;
+  find_factors(c, &d->view, factor);
   abbe_rgb_space_from_xyz(d->space, matrix);
   const bool unknown = c->kind == ABBE_SPECTRAL_EMISSIVE && d->view.from == NULL;
   if (unknown && d->relative) {
@@ -162,7 +163,6 @@ static abbe_result relight(const abbe_image *image, const char *name,
 
 abbe_result abbe_relight_make(const abbe_image *image, const char *name,
                               const abbe_relight_desc *desc, abbe_image *out, abbe_error *error) {
-  ABBE_REQUIRE(image && name && desc && out, error);
   *out = (abbe_image){0};
   abbe_spectral_channels c = {0};
   abbe_result result = abbe_spectral_channels_find(image, desc->layer, name, &c, error);

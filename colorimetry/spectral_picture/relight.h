@@ -12,10 +12,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Zeroed: the bands outside of layers, as the observer of 1931 sees them, ACEScg. */
 typedef struct abbe_relight_desc {
   const char *layer; /* the bands' own, as spectral_channels.h; NULL: none */
@@ -41,13 +37,4 @@ abbe_result abbe_relight_make(const abbe_image *image, const char *name,
  * Y. */
 bool abbe_relight_is_needed(const abbe_image *image, const char *layer);
 
-/* What each of an emissive picture's bands is multiplied by for another illuminant, of lights of
- * the same watts over the bands' range: factor[channels->count], 0 where `from` is dark. 1
- * throughout without view->to and for reflectances. */
-abbe_result abbe_relight_factors(const abbe_spectral_channels *channels,
-                                 const abbe_spectral_view *view, double *factor, abbe_error *error);
-
-#ifdef __cplusplus
-}
-#endif
 #endif

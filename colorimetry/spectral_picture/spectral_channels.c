@@ -122,7 +122,6 @@ static abbe_result fill(const abbe_image *image, const sample *list, size_t coun
 abbe_result abbe_spectral_channels_find(const abbe_image *image, const char *layer,
                                         const char *name, abbe_spectral_channels *out,
                                         abbe_error *error) {
-  ABBE_REQUIRE(image && name && out, error);
   *out = (abbe_spectral_channels){0};
   sample list[ABBE_IMAGE_MAX_CHANNELS + 1];
   abbe_spectral_kind kind = ABBE_SPECTRAL_EMISSIVE;

@@ -12,10 +12,6 @@
 #include "colorimetry/image/image.h"
 #include "colorimetry/spectral_picture/spectral_unit.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef enum abbe_spectral_kind {
   ABBE_SPECTRAL_NONE,
   ABBE_SPECTRAL_EMISSIVE,  /* S0 */
@@ -65,7 +61,4 @@ void abbe_spectral_channels_find_unread(const abbe_image *image, const char *lay
                                         abbe_spectral_unread *out);
 void abbe_spectral_channels_free(abbe_spectral_channels *channels);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -51,7 +51,6 @@ static abbe_result check(const abbe_spectral_channels *c, const abbe_spectral_vi
 abbe_result abbe_spectral_colour_weights(const abbe_spectral_channels *c,
                                          const abbe_spectral_view *view, const char *name,
                                          double (*weight)[3], abbe_error *error) {
-  ABBE_REQUIRE(c && view && name && weight, error);
   abbe_result result = check(c, view, name, error);
   if (result != ABBE_OK) return result;
   const bool reflective = c->kind == ABBE_SPECTRAL_REFLECTIVE;
@@ -82,7 +81,6 @@ abbe_result abbe_spectral_colour_weights(const abbe_spectral_channels *c,
 abbe_result abbe_spectral_colour_image(const abbe_image *image, const abbe_spectral_channels *c,
                                        const double (*weight)[3], abbe_image *out,
                                        abbe_error *error) {
-  ABBE_REQUIRE(image && c && weight && out, error);
   static const char *const xyz[3] = {"X", "Y", "Z"};
   abbe_result result = abbe_image_make(image->width, image->height, 3, xyz, out, error);
   if (result != ABBE_OK) return result;

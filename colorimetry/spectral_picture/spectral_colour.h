@@ -11,10 +11,6 @@
 #include "colorimetry/observer.h"
 #include "colorimetry/spectral_picture/spectral_channels.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* lm/W at 540 THz, the definition of the candela; in use for every observer here. */
 #define ABBE_SPECTRAL_COLOUR_KM 683.0
 
@@ -50,7 +46,4 @@ abbe_result abbe_spectral_colour_image(const abbe_image *image,
                                        const double (*weight)[3], abbe_image *out,
                                        abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -67,7 +67,6 @@ static bool read_factors(const char *text, int power[UNITS], int *ten) {
 
 abbe_result abbe_spectral_unit_read(const char *text, const char *name, abbe_spectral_unit *out,
                                     abbe_error *error) {
-  ABBE_REQUIRE(name && out, error);
   int power[UNITS] = {0}, ten = 0;
   *out = (abbe_spectral_unit){.quantity = ABBE_SPECTRAL_RADIANCE, .factor = 1};
   if (text == NULL) return ABBE_OK;

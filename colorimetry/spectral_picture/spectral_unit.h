@@ -11,10 +11,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef enum abbe_spectral_quantity {
   ABBE_SPECTRAL_RADIANCE,   /* W/(m2 sr nm) */
   ABBE_SPECTRAL_IRRADIANCE, /* W/(m2 nm) */
@@ -40,7 +36,4 @@ const char *abbe_spectral_quantity_text(abbe_spectral_quantity quantity);
 /* The power of ten of an SI prefix of so many letters ("" is one); false: there is none. */
 bool abbe_spectral_prefix(const char *text, size_t length, int *exponent);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -5,6 +5,7 @@
 #include "colorimetry/difference.h"
 #include "colorimetry/rgb_space.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -337,7 +338,6 @@ static abbe_result begin(work *w, abbe_renderer *renderer, size_t variants, abbe
 abbe_result abbe_error_bars_make(abbe_context *context, const abbe_scene *scene,
                                  abbe_renderer *renderer, const abbe_error_bars_desc *desc,
                                  abbe_error_bars *out, abbe_error *error) {
-  ABBE_REQUIRE(context && scene && renderer && out, error);
   static const abbe_error_bars_desc defaults = {0};
   *out = (abbe_error_bars){0};
   if (desc == NULL) desc = &defaults;
@@ -383,6 +383,6 @@ void abbe_error_bars_free(abbe_error_bars *bars) {
 
 abbe_result abbe_error_bars_attach(const abbe_error_bars *bars, abbe_image *picture,
                                    abbe_error *error) {
-  ABBE_REQUIRE(bars && bars->error.data && picture && picture->data, error);
+  assert(bars->error.data && picture->data);
   return abbe_image_append(picture, &bars->error, error);
 }

@@ -25,10 +25,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_ERROR_BARS_VARIANTS 4 /* by default */
 #define ABBE_ERROR_BARS_MAX_VARIANTS 64
 
@@ -83,7 +79,4 @@ void abbe_error_bars_variant(const abbe_render_desc *desc, const abbe_map_layout
 abbe_result abbe_error_bars_attach(const abbe_error_bars *bars, abbe_image *picture,
                                    abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -3,6 +3,7 @@
 #include "colorimetry/image/picture_space.h"
 #include "colorimetry/plot/false_colours.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -16,7 +17,7 @@ static void errors_of_y(const abbe_error_bars *bars, const double to_xyz[9], flo
 
 abbe_result abbe_error_picture_write(const char *path, const abbe_error_bars *bars,
                                      abbe_error *error) {
-  ABBE_REQUIRE(path && bars && bars->error.data, error);
+  assert(bars->error.data);
   const abbe_false_colours_desc desc = {.width = bars->error.width,
                                         .height = bars->error.height,
                                         .is_error = true,

@@ -8,16 +8,9 @@
 
 #include "gl/accuracy/error_bars.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* To path, a .png or .svg. The scale is logarithmic and ends at the 1, 2 or 5 times a power of ten
  * that 99.9 % of the errors stay under. ABBE_NO_MEMORY; errors of abbe_chart_write. */
 abbe_result abbe_error_picture_write(const char *path, const abbe_error_bars *bars,
                                      abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -17,7 +17,6 @@ static int by_time(const void *a, const void *b) {
 
 abbe_result abbe_frame_times_measure(abbe_renderer *renderer, const abbe_frame_times_desc *desc,
                                      abbe_frame_times *out, abbe_error *error) {
-  ABBE_REQUIRE(renderer && desc && out, error);
   size_t count = desc->frames > 0 ? desc->frames : DEFAULT_FRAMES;
   if (count > ABBE_FRAME_TIMES_MAX) count = ABBE_FRAME_TIMES_MAX;
   double spent_ms = 0;
@@ -53,7 +52,6 @@ void abbe_frame_times_say_unrest(double unrest, const char *before, char *out, s
 
 abbe_result abbe_frame_times_baseline(abbe_renderer *renderer, size_t count, double *ms,
                                       abbe_error *error) {
-  ABBE_REQUIRE(renderer && ms, error);
   double all[MAX_TIMES];
   if (count < 1 || count > MAX_TIMES) count = count < 1 ? 1 : MAX_TIMES;
   for (size_t i = 0; i < count; i++) {
@@ -88,7 +86,6 @@ static abbe_scene move_camera(const abbe_scene *scene) {
 abbe_result abbe_frame_times_camera(abbe_renderer *renderer, const abbe_scene *scene,
                                     const abbe_render_desc *desc, size_t count, double *ms,
                                     abbe_error *error) {
-  ABBE_REQUIRE(renderer && scene && desc && ms, error);
   const abbe_scene moved = move_camera(scene);
   double all[MAX_TIMES], unused;
   if (count < 1 || count > MAX_TIMES) count = count < 1 ? 1 : MAX_TIMES;

@@ -5,10 +5,6 @@
 
 #include "gl/renderer.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_FRAME_TIMES_MAX 1000
 /* On a quiet machine the median of repeats takes at most that much longer than the fastest, as a
  * share of it. */
@@ -49,7 +45,4 @@ abbe_result abbe_frame_times_camera(abbe_renderer *renderer, const abbe_scene *s
                                     const abbe_render_desc *desc, size_t count, double *ms,
                                     abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -190,7 +190,6 @@ const char *abbe_presets_shipped(size_t *size) {
 }
 
 abbe_result abbe_presets_load(const char *path, abbe_presets *out, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   reader r = {.error = error};
   *out = (abbe_presets){0};
   size_t size;
@@ -214,7 +213,6 @@ void abbe_presets_free(abbe_presets *presets) {
 
 abbe_result abbe_presets_find(const abbe_presets *presets, const abbe_plan *plan,
                               const abbe_preset_front **out, abbe_error *error) {
-  ABBE_REQUIRE(presets && plan && out, error);
   abbe_preset_class of = abbe_preset_class_of(plan);
   for (size_t i = 0; i < presets->count; i++) {
     if (presets->front[i].of != of) continue;
@@ -288,7 +286,6 @@ bool abbe_preset_is_fine(const abbe_render_desc *d) {
 abbe_result abbe_preset_calibrate(abbe_context *context, const abbe_scene *scene,
                                   const abbe_preset_front *front, const abbe_render_desc *desc,
                                   abbe_preset_speed *out, abbe_error *error) {
-  ABBE_REQUIRE(context && scene && front && desc && out, error);
   static const double least_ms = 0.01; /* a part too short to tell a speed by */
   const abbe_preset_point *point = &front->point[0];
   abbe_renderer *renderer = NULL;

@@ -12,10 +12,6 @@
 #include "gl/device/context.h"
 #include "gl/plan/plan.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_PRESETS(X) X(DRAFT, "draft") X(BALANCED, "balanced") X(ACCURATE, "accurate")
 typedef enum abbe_preset_name {
 #define ABBE_PRESET_ENUM(code, name) ABBE_PRESET_##code,
@@ -115,7 +111,4 @@ size_t abbe_preset_for_error(const abbe_preset_front *front, double max_error, b
 size_t abbe_preset_for_time(const abbe_preset_front *front, const abbe_preset_speed *speed,
                             double ms, bool *kept);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

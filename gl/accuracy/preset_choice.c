@@ -40,7 +40,6 @@ static abbe_result find_front(const abbe_scene *scene, const abbe_render_desc *d
 abbe_result abbe_preset_choose(const abbe_preset_request *request, abbe_context *context,
                                const abbe_scene *scene, abbe_render_desc *desc,
                                abbe_preset_choice *out, abbe_error *error) {
-  ABBE_REQUIRE(request && context && scene && desc && out, error);
   const abbe_preset_request *q = request;
   abbe_preset_choice c = {.request = *q, .kept = true, .timed = q->timed || q->budget_ms > 0};
   abbe_preset_speed speed = {0};
@@ -79,7 +78,6 @@ void abbe_preset_choice_free(abbe_preset_choice *choice) {
 
 abbe_result abbe_preset_choice_check(const abbe_preset_choice *choice, double frame_ms,
                                      abbe_error *error) {
-  ABBE_REQUIRE(choice, error);
   const abbe_preset_request *q = &choice->request;
   if (choice->point == NULL) return ABBE_OK;
   if (q->budget_ms > 0 && frame_ms > q->budget_ms) {

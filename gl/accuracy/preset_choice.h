@@ -6,10 +6,6 @@
 
 #include "gl/accuracy/preset.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* One of name, max_error and budget_ms; of none nothing is chosen. */
 typedef struct abbe_preset_request {
   const char *name; /* of a preset, or NULL */
@@ -49,7 +45,4 @@ abbe_result abbe_preset_choice_check(const abbe_preset_choice *choice, double fr
  * the profile first where it is not the default one. */
 void abbe_preset_describe(const abbe_render_desc *desc, char *out, size_t size);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -266,7 +266,7 @@ abbe_result abbe_caustics_make(abbe_photon_lights *views, abbe_light_layers *lay
   if (result == ABBE_OK) result = abbe_photon_ledger_make(views, &c->ledger, error);
   if (result == ABBE_OK)
     result = abbe_trace_pass_make(&c->start, &c->spectra, atlas, &c->ledger, &c->trace, error);
-  if (result == ABBE_OK) result = abbe_refine_pass_make(&c->trace, &c->refine, error);
+  if (result == ABBE_OK) abbe_refine_pass_make(&c->trace, &c->refine);
   if (result == ABBE_OK) result = abbe_receiver_atlas_make(views, variant, atlas, error);
   if (result == ABBE_OK) result = start_fit(c, error);
   if (result == ABBE_OK) result = fit_maps(c, variant, error);

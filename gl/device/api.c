@@ -1,10 +1,10 @@
 #include "gl/device/api.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
 abbe_result abbe_gl_load(abbe_gl_lookup lookup, abbe_gl *out, abbe_error *error) {
-  ABBE_REQUIRE(lookup && out, error);
   abbe_gl_function function;
   const char *missing = NULL;
   /* A pointer to a function travels as bytes: C has no cast between the two kinds that every
@@ -45,7 +45,7 @@ void abbe_gl_clear_errors(const abbe_gl *gl) {
 }
 
 abbe_result abbe_gl_check(const abbe_gl *gl, const char *where, abbe_error *error) {
-  ABBE_REQUIRE(gl && gl->GetError && where, error);
+  assert(gl->GetError);
   GLenum first = gl->GetError();
   if (first == GL_NO_ERROR) return ABBE_OK;
   abbe_gl_clear_errors(gl);

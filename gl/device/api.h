@@ -10,10 +10,6 @@
 
 #include <GL/glcorearb.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(pointer type's middle, name without gl) */
 #define ABBE_GL_FUNCTIONS(X)                                                                       \
   X(ACTIVETEXTURE, ActiveTexture)                                                                  \
@@ -123,7 +119,4 @@ void abbe_gl_clear_errors(const abbe_gl *gl);
  * device it names the driver. */
 abbe_result abbe_gl_check(const abbe_gl *gl, const char *where, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

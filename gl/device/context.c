@@ -137,7 +137,6 @@ static abbe_result make_of_kind(abbe_context_backend kind, abbe_context **out, a
 }
 
 abbe_result abbe_context_make(abbe_context_backend backend, abbe_context **out, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   *out = NULL;
   if ((int)backend < 0 || backend >= ABBE_CONTEXT_BACKEND_COUNT)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no GL back end %d", (int)backend);
@@ -158,7 +157,6 @@ abbe_result abbe_context_make(abbe_context_backend backend, abbe_context **out, 
 
 abbe_result abbe_context_adopt(const abbe_context_host *host, abbe_context **out,
                                abbe_error *error) {
-  ABBE_REQUIRE(host && out, error);
   *out = NULL;
   if (host->lookup == NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -185,7 +183,6 @@ void abbe_context_free(abbe_context *context) {
 }
 
 abbe_result abbe_context_make_current(abbe_context *context, abbe_error *error) {
-  ABBE_REQUIRE(context, error);
   bool current = true;
   if (context->native.make_current != NULL)
     current = context->native.make_current(&context->native);

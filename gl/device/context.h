@@ -15,10 +15,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name on the command line) */
 #define ABBE_CONTEXT_BACKENDS(X) X(AUTO, "auto") X(CPU, "cpu") X(GPU, "gpu")
 
@@ -71,7 +67,4 @@ const char *abbe_context_description(const abbe_context *context);
 const char *abbe_context_refused_gpu(const abbe_context *context);
 const char *abbe_context_backend_name(abbe_context_backend backend);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -34,7 +34,6 @@ GLuint abbe_gpu_store_take(abbe_gpu_store *store, const abbe_stored_key *key) {
 
 abbe_result abbe_gpu_store_add(abbe_gpu_store *store, const abbe_stored_key *key, GLuint name,
                                abbe_error *error) {
-  ABBE_REQUIRE(store && key, error);
   abbe_stored item = {.key = *key, .name = name, .used = true};
   if (store->count == store->room) {
     const size_t room = 2 * store->room + 64;

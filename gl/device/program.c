@@ -2,6 +2,7 @@
 
 #include "gl/device/shader_files.h"
 
+#include <assert.h>
 #include <ctype.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -216,27 +217,26 @@ static abbe_result make(const abbe_gl *gl, const abbe_program_stage *stages, con
 
 abbe_result abbe_program_make(const abbe_gl *gl, const abbe_program_stage *stages, size_t count,
                               const char *defines, GLuint *out, abbe_error *error) {
-  ABBE_REQUIRE(gl && gl->CreateShader && stages && out, error);
+  assert(gl->CreateShader);
   return make(gl, stages, NULL, count, defines, out, error);
 }
 
 abbe_result abbe_program_make_compute(const abbe_gl *gl, const char *file, const char *defines,
                                       GLuint *out, abbe_error *error) {
-  ABBE_REQUIRE(gl && gl->CreateShader && file && out, error);
+  assert(gl->CreateShader);
   abbe_program_stage stage = {GL_COMPUTE_SHADER, file};
   return make(gl, &stage, NULL, 1, defines, out, error);
 }
 
 abbe_result abbe_program_make_compute_text(const abbe_gl *gl, const char *text, const char *defines,
                                            GLuint *out, abbe_error *error) {
-  ABBE_REQUIRE(gl && gl->CreateShader && text && out, error);
+  assert(gl->CreateShader);
   abbe_program_stage stage = {GL_COMPUTE_SHADER, "text"};
   return make(gl, &stage, text, 1, defines, out, error);
 }
 
 abbe_result abbe_program_text(const char *file, const char *defines, char **out,
                               abbe_error *error) {
-  ABBE_REQUIRE(file && out, error);
   source s = {0};
   const abbe_result result = write_text(file, NULL, defines, &s, error);
   *out = s.text;

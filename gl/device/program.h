@@ -12,10 +12,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_program_stage {
   GLenum type;      /* GL_VERTEX_SHADER, … */
   const char *file; /* "photon_trace.comp" */
@@ -42,7 +38,4 @@ abbe_result abbe_program_text(const char *file, const char *defines, char **out,
 /* Names of all shader files, NULL-terminated: a test compiles each. */
 const char *const *abbe_program_files(void);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -7,10 +7,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Light that reached refractors, and what became of it, in W of the lights' power. Each wavelength
  * counts by its share of the light's Y. What is deposited is summed from the finished map and
  * tiles, all else while photons are traced and laid: so the balance is a check and no identity. */
@@ -57,7 +53,4 @@ bool abbe_statistics_ran(const abbe_statistics *s, abbe_pass pass);
 /* Sum over the passes of a stage: the lights' or the camera's. */
 double abbe_statistics_stage_ms(const abbe_statistics *s, abbe_pass_stage stage);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

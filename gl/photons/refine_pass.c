@@ -15,18 +15,15 @@ static size_t widest_interval(const abbe_photon_spectra *spectra) {
   return most;
 }
 
-abbe_result abbe_refine_pass_make(abbe_trace_pass *trace, abbe_refine_pass *out,
-                                  abbe_error *error) {
-  ABBE_REQUIRE(trace && out, error);
+void abbe_refine_pass_make(abbe_trace_pass *trace, abbe_refine_pass *out) {
   out->trace = trace;
-  if (!abbe_photon_spectra_refines(trace->spectra)) return ABBE_OK;
+  if (!abbe_photon_spectra_refines(trace->spectra)) return;
   out->fine_nodes = widest_interval(trace->spectra) + 1;
   const size_t hit_bytes =
       ABBE_HIT_BYTES + abbe_photon_signature_bytes(trace->spectra->scene->plan);
   const size_t hits = trace->spectra->scene->plan->hit_slots * out->fine_nodes;
   out->most_pairs = MAX_FINE_BYTES / hit_bytes / hits;
   if (out->most_pairs < LEAST_PAIRS) out->most_pairs = LEAST_PAIRS;
-  return ABBE_OK;
 }
 
 static abbe_result make_list(abbe_gpu *gpu, size_t pairs, GLuint *list, abbe_error *error) {

@@ -22,7 +22,7 @@ typedef struct abbe_refine_pass {
 
 /* After abbe_trace_pass_make, which may decide that every photon takes all wavelengths: then there
  * is nothing to refine. */
-abbe_result abbe_refine_pass_make(abbe_trace_pass *trace, abbe_refine_pass *out, abbe_error *error);
+void abbe_refine_pass_make(abbe_trace_pass *trace, abbe_refine_pass *out);
 /* For the photons that the trace has room for now. */
 abbe_result abbe_refine_pass_make_room(abbe_refine_pass *pass, abbe_error *error);
 void abbe_refine_pass_free(abbe_refine_pass *pass);

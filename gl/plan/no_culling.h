@@ -10,14 +10,7 @@
 #include "gl/plan/facts/plan_facts.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* asked: the request as it came; what it says itself stays. */
 void abbe_no_culling_apply(const abbe_scene *scene, const abbe_render_desc *asked, abbe_plan *plan);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -8,14 +8,7 @@
 #include "gl/plan/facts/plan_facts.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Adds maps, passes and what stands between them in the order in which they run. */
 void abbe_pass_list_add(const abbe_scene *scene, abbe_plan *plan);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

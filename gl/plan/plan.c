@@ -139,7 +139,6 @@ bool abbe_plan_surrounds(const abbe_scene *scene) {
 
 abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *desc,
                                const abbe_scene *before, abbe_scene *out, abbe_error *error) {
-  ABBE_REQUIRE(scene && out, error);
   abbe_render_desc d;
   abbe_result result =
       abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &d, error);
@@ -166,7 +165,6 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
 
 abbe_result abbe_plan_make_after(const abbe_plan *before, const abbe_scene *scene,
                                  const abbe_render_desc *desc, abbe_plan *out, abbe_error *error) {
-  ABBE_REQUIRE(before && scene && out, error);
   memset(out, 0, sizeof *out);
   out->inside = before->inside;
   out->shape = before->shape;

@@ -12,10 +12,6 @@
 #include "gl/plan/facts/render_desc.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Whether the renderer takes the scene with other lights than it has: it has surroundings, or a
  * light with a size, and no lights for them yet. */
 bool abbe_plan_surrounds(const abbe_scene *scene);
@@ -35,7 +31,4 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
 abbe_result abbe_plan_make_after(const abbe_plan *before, const abbe_scene *scene,
                                  const abbe_render_desc *desc, abbe_plan *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -28,7 +28,6 @@ static abbe_result support_wand(const abbe_scene *scene, const abbe_plan *plan, 
 
 abbe_result abbe_support_pinholes(const abbe_scene *scene, const abbe_plan *plan,
                                   abbe_error *error) {
-  ABBE_REQUIRE(scene && plan, error);
   if (plan->desc.transport != ABBE_TRANSPORT_PINHOLE) return ABBE_OK;
   if (abbe_profile_is_wand2003(plan->desc.profile)) return support_wand(scene, plan, error);
   if (scene->environment == NULL && !plan->rough)
@@ -44,7 +43,6 @@ abbe_result abbe_support_pinholes(const abbe_scene *scene, const abbe_plan *plan
 
 abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *plan,
                                    abbe_error *error) {
-  ABBE_REQUIRE(scene && plan, error);
   const char *profile = abbe_profile_name(plan->desc.profile);
   const bool thesis = abbe_profile_is_thesis(plan->desc.profile);
   if (!abbe_profile_has_lamp(plan->desc.profile)) return ABBE_OK;
@@ -89,7 +87,6 @@ abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *pla
 }
 
 abbe_result abbe_support_haze(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
-  ABBE_REQUIRE(scene && plan, error);
   if (!abbe_scene_is_hazy(scene)) return ABBE_OK;
   if (abbe_profile_is_published(plan->desc.profile))
     return abbe_error_set(error, ABBE_UNSUPPORTED,
@@ -114,7 +111,6 @@ static bool looks_from(const abbe_view *view, const abbe_light *light) {
 }
 
 abbe_result abbe_support_layout(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
-  ABBE_REQUIRE(scene && plan, error);
   const abbe_map_layout *layout = plan->desc.map_layout;
   const size_t index = plan->desc.map_layout_light;
   if (layout == NULL) return ABBE_OK;
@@ -140,7 +136,6 @@ abbe_result abbe_support_layout(const abbe_scene *scene, const abbe_plan *plan, 
 
 abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan,
                                  abbe_error *error) {
-  ABBE_REQUIRE(scene && plan, error);
   const abbe_object *mirror = abbe_scene_mirror(scene);
   const bool thesis = abbe_profile_is_thesis(plan->desc.profile);
   if (mirror == NULL || (!thesis && plan->desc.model != ABBE_MODEL_LAYERS)) return ABBE_OK;
@@ -157,7 +152,6 @@ abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan,
 
 abbe_result abbe_support_roughness(const abbe_scene *scene, const abbe_plan *plan,
                                    abbe_error *error) {
-  ABBE_REQUIRE(scene && plan, error);
   const abbe_render_desc *d = &plan->desc;
   const abbe_object *rough = NULL;
   for (size_t i = 0; i < scene->object_count && rough == NULL; i++)
@@ -230,7 +224,6 @@ static abbe_result check_exits_range(const abbe_render_desc *d, abbe_error *erro
 }
 
 abbe_result abbe_support_volume(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
-  ABBE_REQUIRE(scene && plan, error);
   const abbe_render_desc *d = &plan->desc;
   abbe_volume_place place;
   if (d->transport != ABBE_TRANSPORT_VOLUME) return ABBE_OK;

@@ -9,10 +9,6 @@
 #include "gl/plan/facts/plan_facts.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* ABBE_UNSUPPORTED for a rough mirror but by the transport of pinholes in the default profile. */
 abbe_result abbe_support_roughness(const abbe_scene *scene, const abbe_plan *plan,
                                    abbe_error *error);
@@ -39,7 +35,4 @@ abbe_result abbe_support_haze(const abbe_scene *scene, const abbe_plan *plan, ab
 /* ABBE_INVALID_ARGUMENT for a given map layout that is not the layout of its light's map. */
 abbe_result abbe_support_layout(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

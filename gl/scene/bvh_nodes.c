@@ -3,6 +3,7 @@
 #include "base/thread/watch.h"
 #include "scenes/geometry/vector.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -132,7 +133,7 @@ static int32_t pack(packer *p, const abbe_bvh_node *n) {
 
 abbe_result abbe_bvh_nodes_pack(const abbe_bvh *h, const double (*triangle)[9], size_t first_texel,
                                 size_t first_triangle, uint32_t (*out)[4], abbe_error *error) {
-  ABBE_REQUIRE(h && h->node_count > 0 && triangle && out, error);
+  assert(h->node_count > 0);
   packer p = {.h = h,
               .facing = malloc((h->triangle_count + 1) * sizeof *p.facing),
               .first_texel = first_texel,

@@ -12,10 +12,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Texels of four words: two for the tree, then three for each inner node. */
 size_t abbe_bvh_nodes_count(const abbe_bvh *bvh);
 
@@ -33,7 +29,4 @@ abbe_result abbe_bvh_nodes_pack(const abbe_bvh *hierarchy, const double (*triang
                                 size_t first_texel, size_t first_triangle, uint32_t (*out)[4],
                                 abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

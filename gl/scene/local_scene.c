@@ -2,6 +2,7 @@
 
 #include "scenes/geometry/vector.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -85,7 +86,6 @@ static abbe_result move_scene(const abbe_scene *scene, abbe_local_scene *out, ab
 
 abbe_result abbe_local_scene_make(const abbe_scene *scene, abbe_local_scene *out,
                                   abbe_error *error) {
-  ABBE_REQUIRE(scene && out, error);
   double centre[3];
   memset(out, 0, sizeof *out);
   out->scene = scene;
@@ -104,7 +104,6 @@ abbe_result abbe_local_scene_make(const abbe_scene *scene, abbe_local_scene *out
 
 abbe_result abbe_local_scene_repeat_lights(abbe_local_scene *local, const size_t *of, size_t count,
                                            abbe_error *error) {
-  ABBE_REQUIRE(local && local->scene && (of || count == 0), error);
   const abbe_scene *scene = local->scene;
   const size_t own = scene->light_count;
   abbe_light *light = calloc(own + count + 1, sizeof *light);
@@ -123,7 +122,7 @@ abbe_result abbe_local_scene_repeat_lights(abbe_local_scene *local, const size_t
 }
 
 abbe_result abbe_local_scene_scale_light(abbe_local_scene *local, abbe_error *error) {
-  ABBE_REQUIRE(local && local->scene, error);
+  assert(local->scene);
   static const double faint = 0x1p-40, bright = 0x1p40;
   const abbe_scene *scene = local->scene;
   double most = fmax(scene->ambient, scene->background);

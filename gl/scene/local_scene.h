@@ -15,10 +15,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_local_scene {
   const abbe_scene *scene; /* the original, or the copy below */
   double origin[3];        /* world = origin + local, m; zero where nothing is moved */
@@ -48,7 +44,4 @@ abbe_result abbe_local_scene_repeat_lights(abbe_local_scene *local, const size_t
 void abbe_local_scene_from_world(const abbe_local_scene *local, abbe_view *view);
 void abbe_local_scene_to_world(const abbe_local_scene *local, abbe_view *view);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -89,7 +89,6 @@ static abbe_result add_mesh(const abbe_object *object, size_t at, int32_t *side,
 
 abbe_result abbe_receiver_charts_make(const abbe_scene *scene, const abbe_plan *plan,
                                       abbe_receiver_charts *out, abbe_error *error) {
-  ABBE_REQUIRE(scene && plan && out, error);
   memset(out, 0, sizeof *out);
   out->face_first = calloc(plan->receiver_count + 1, sizeof *out->face_first);
   if (out->face_first == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for charts");

@@ -13,10 +13,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_receiver_charts {
   size_t count;
   double (*parallelogram)[9]; /* [count] corner, U, V */
@@ -31,7 +27,4 @@ abbe_result abbe_receiver_charts_make(const abbe_scene *scene, const abbe_plan *
                                       abbe_receiver_charts *out, abbe_error *error);
 void abbe_receiver_charts_free(abbe_receiver_charts *charts);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

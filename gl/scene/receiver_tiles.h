@@ -12,10 +12,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_RECEIVER_TILES 64 /* of one light at the most */
 #define ABBE_TILE_BINS 4096
 #define ABBE_TILE_FLOATS 16 /* of the shaders' Tile */
@@ -59,7 +55,4 @@ void abbe_receiver_tile_place(const abbe_receiver_tile *tile, const double paral
 void abbe_receiver_tile_pack(const abbe_receiver_tile *tile, const double parallelogram[9],
                              float out[ABBE_TILE_FLOATS]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -90,7 +90,6 @@ static size_t store_sides(const side *hull, size_t count, bool far, double (*out
 abbe_result abbe_shadow_planes_make(const double (*plane)[4], size_t count, const double inside[3],
                                     const abbe_light *light, bool faces, double (*out)[4],
                                     size_t *found, abbe_error *error) {
-  ABBE_REQUIRE((plane || count == 0) && inside && light && out && found, error);
   double at[4], axis[3], u[3], v[3];
   size_t lit = 0, pairs = 0, n = 0;
   *found = 0;

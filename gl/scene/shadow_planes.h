@@ -14,10 +14,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The solid n . x < d of `count` planes, unit n, with a place strictly inside. A place x is in the
  * light's shadow where n . x' < d for all planes of `out`, n of length 1; x' is x from the light's
  * position, or for a directional one x itself. There are the planes of the outline and, if `faces`,
@@ -34,7 +30,4 @@ abbe_result abbe_shadow_planes_make(const double (*plane)[4], size_t count, cons
 bool abbe_shadow_planes_in_front(const abbe_object *convex, const abbe_light *light,
                                  const abbe_object *object);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

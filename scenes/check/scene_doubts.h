@@ -8,10 +8,6 @@
 
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_SCENE_MOST_DOUBTS = 16 }; /* more are left out */
 
 typedef struct abbe_scene_doubts {
@@ -21,7 +17,4 @@ typedef struct abbe_scene_doubts {
 
 void abbe_scene_doubt(const abbe_scene *scene, abbe_scene_doubts *out);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -29,7 +29,6 @@ static void *grow(void *list, size_t count, size_t size) {
 }
 
 abbe_result abbe_cut_add_tier(abbe_cut *cut, double angle_deg, double distance, abbe_error *error) {
-  ABBE_REQUIRE(cut, error);
   abbe_cut_tier *tier = grow(cut->tier, cut->tier_count, sizeof *tier);
   if (!tier) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a tier");
   cut->tier = tier;
@@ -39,7 +38,6 @@ abbe_result abbe_cut_add_tier(abbe_cut *cut, double angle_deg, double distance, 
 }
 
 abbe_result abbe_cut_add_facet(abbe_cut *cut, double index, abbe_error *error) {
-  ABBE_REQUIRE(cut, error);
   if (cut->tier_count == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a facet needs a tier before it");
   if (cut->facet_count == ABBE_CUT_MAX_FACETS)
@@ -108,7 +106,6 @@ static abbe_result check_facet(const abbe_cut *cut, size_t i, abbe_error *error)
 }
 
 abbe_result abbe_cut_check(const abbe_cut *cut, abbe_error *error) {
-  ABBE_REQUIRE(cut, error);
   if (cut->gear == 0 || abs(cut->gear) > ABBE_CUT_MAX_GEAR || !isfinite(cut->offset))
     return abbe_error_set(error, ABBE_SCHEMA, "a gear has 1 to %d teeth, and this one %d",
                           ABBE_CUT_MAX_GEAR, cut->gear);

@@ -13,10 +13,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_CUT_MAX_FACETS 4096
 #define ABBE_CUT_MAX_GEAR 10000
 /* Distances are between 1 over this and this. */
@@ -78,7 +74,4 @@ bool abbe_cut_facet_is_girdle(const abbe_cut_facet *facet);
  * distance of 0 or fewer than 4 facets. */
 abbe_result abbe_cut_check(const abbe_cut *cut, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -314,7 +314,6 @@ static abbe_result read_all(reading *r, char *text, abbe_error *error) {
 
 abbe_result abbe_cut_asc_parse(const char *data, size_t size, const char *name, abbe_cut *out,
                                abbe_report *report, abbe_error *error) {
-  ABBE_REQUIRE(data && name && out, error);
   memset(out, 0, sizeof *out);
   reading r = {.name = name, .cut = out, .report = report};
   char *text = NULL;
@@ -380,7 +379,6 @@ static void write_tier(const abbe_cut *cut, size_t t, FILE *to, abbe_report *rep
 
 abbe_result abbe_cut_asc_write(const abbe_cut *cut, FILE *to, abbe_report *report,
                                abbe_error *error) {
-  ABBE_REQUIRE(cut && to, error);
   const abbe_result result = abbe_cut_check(cut, error);
   if (result != ABBE_OK) return result;
   fprintf(to, "GemCad 5.0\ng %d ", cut->gear);

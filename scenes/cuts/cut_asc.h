@@ -12,10 +12,6 @@
 
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* name is for messages; report (may be NULL) gets what was left out, changed or assumed.
  * ABBE_PARSE for what is no design, ABBE_SCHEMA for values that none has, with the line. */
 abbe_result abbe_cut_asc_parse(const char *data, size_t size, const char *name, abbe_cut *out,
@@ -27,7 +23,4 @@ abbe_result abbe_cut_asc_parse(const char *data, size_t size, const char *name, 
 abbe_result abbe_cut_asc_write(const abbe_cut *cut, FILE *to, abbe_report *report,
                                abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -475,7 +475,6 @@ static abbe_result write_sheet(sheet *s, const char *path, FILE *to, abbe_error 
 abbe_result abbe_cut_diagram_write(const char *path, const abbe_cut *cut,
                                    const abbe_cut_polyhedron *polyhedron, const char *note,
                                    abbe_error *error) {
-  ABBE_REQUIRE(path && cut && polyhedron, error);
   abbe_file_writer writer;
   sheet s = {.cut = cut, .p = polyhedron, .note = note};
   if (!ends_with(path, ".pdf") && !ends_with(path, ".svg") && !ends_with(path, ".png"))

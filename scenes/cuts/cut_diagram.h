@@ -11,10 +11,6 @@
 #include "scenes/cuts/cut.h"
 #include "scenes/cuts/cut_polyhedron.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Of a PNG, per point (1/72 inch). */
 #define ABBE_CUT_DIAGRAM_PIXELS 2
 
@@ -24,7 +20,4 @@ abbe_result abbe_cut_diagram_write(const char *path, const abbe_cut *cut,
                                    const abbe_cut_polyhedron *polyhedron, const char *note,
                                    abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

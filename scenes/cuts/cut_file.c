@@ -18,7 +18,6 @@ static const struct {
 
 abbe_result abbe_cut_file_read(const char *path, abbe_cut *out, abbe_report *report,
                                abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   memset(out, 0, sizeof *out);
   const char *ending = strrchr(abbe_file_name(path), '.');
   for (size_t i = 0; ending && i < sizeof kinds / sizeof *kinds; i++) {
@@ -42,7 +41,6 @@ abbe_result abbe_cut_file_read(const char *path, abbe_cut *out, abbe_report *rep
 abbe_result abbe_cut_file_read_stone(const char *path, double weld, abbe_cut *cut,
                                      abbe_cut_polyhedron *stone, abbe_report *report,
                                      abbe_error *error) {
-  ABBE_REQUIRE(path && cut && stone, error);
   abbe_error why;
   memset(stone, 0, sizeof *stone);
   abbe_result result = abbe_cut_file_read(path, cut, report, error);

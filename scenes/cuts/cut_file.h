@@ -7,10 +7,6 @@
 #include "scenes/cuts/cut.h"
 #include "scenes/cuts/cut_polyhedron.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_CUT_MAX_FILE (16u << 20) /* bytes */
 
 /* By its name's end. report (may be NULL) gets what was left out, changed or assumed.
@@ -24,7 +20,4 @@ abbe_result abbe_cut_file_read_stone(const char *path, double weld, abbe_cut *cu
                                      abbe_cut_polyhedron *stone, abbe_report *report,
                                      abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -360,7 +360,6 @@ static abbe_result finish(reading *r) {
 
 abbe_result abbe_cut_gcs_parse(const char *data, size_t size, const char *name, abbe_cut *out,
                                abbe_report *report, abbe_error *error) {
-  ABBE_REQUIRE(data && name && out, error);
   memset(out, 0, sizeof *out);
   document d = {.r = {.name = name, .cut = out, .report = report, .error = error}};
   if (size > INT_MAX)
@@ -469,7 +468,6 @@ static abbe_result check_depths(const writing *w, abbe_error *error) {
 
 abbe_result abbe_cut_gcs_write(const abbe_cut *cut, const abbe_cut_polyhedron *p, FILE *to,
                                abbe_report *report, abbe_error *error) {
-  ABBE_REQUIRE(cut && p && to, error);
   const double reach = fmax(fmax(p->max[0], -p->min[0]), fmax(p->max[1], -p->min[1]));
   const writing w = {cut, p, to, 1 / reach, 0.5 * (p->min[2] + p->max[2])};
   const abbe_result result = check_depths(&w, error);

@@ -15,10 +15,6 @@
 
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* name is for messages; report (may be NULL) gets what was left out or assumed. ABBE_PARSE for what
  * is no such file, ABBE_SCHEMA for values that no stone has, with the line. */
 abbe_result abbe_cut_gcs_parse(const char *data, size_t size, const char *name, abbe_cut *out,
@@ -32,7 +28,4 @@ abbe_result abbe_cut_gcs_parse(const char *data, size_t size, const char *name, 
 abbe_result abbe_cut_gcs_write(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron, FILE *to,
                                abbe_report *report, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

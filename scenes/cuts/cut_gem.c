@@ -217,7 +217,6 @@ static abbe_result take_trailer(reading *r, abbe_error *error) {
 
 abbe_result abbe_cut_gem_parse(const char *data, size_t size, const char *name, abbe_cut *out,
                                abbe_report *report, abbe_error *error) {
-  ABBE_REQUIRE(data && name && out, error);
   memset(out, 0, sizeof *out);
   reading r = {.data = (const unsigned char *)data,
                .size = size,
@@ -289,7 +288,6 @@ static void put_facet(const abbe_cut *cut, size_t i, const abbe_cut_polyhedron *
 
 abbe_result abbe_cut_gem_write(const abbe_cut *cut, const abbe_cut_polyhedron *p, FILE *to,
                                abbe_report *report, abbe_error *error) {
-  ABBE_REQUIRE(cut && p && to, error);
   const abbe_result result = abbe_cut_check(cut, error);
   if (result != ABBE_OK) return result;
   size_t next = 0;

@@ -12,10 +12,6 @@
 #include "scenes/cuts/cut.h"
 #include "scenes/cuts/cut_polyhedron.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name): the parts of a stone. */
 #define ABBE_CUT_SIDES(X)                                                                          \
   X(CROWN, "crown")                                                                                \
@@ -55,7 +51,4 @@ void abbe_cut_measures_make(const abbe_cut *cut, const abbe_cut_polyhedron *poly
 double abbe_cut_measures_carats(const abbe_cut_measures *measures, double width_m,
                                 double density_g_cm3);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

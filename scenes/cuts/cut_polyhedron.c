@@ -341,7 +341,6 @@ static abbe_result close_faces(abbe_cut_polyhedron *p, double share, abbe_error 
 
 abbe_result abbe_cut_polyhedron_make(const abbe_cut *cut, double share, abbe_cut_polyhedron *out,
                                      abbe_error *error) {
-  ABBE_REQUIRE(cut && out, error);
   memset(out, 0, sizeof *out);
   abbe_result result = abbe_cut_check(cut, error);
   if (result != ABBE_OK) return result;
@@ -383,7 +382,6 @@ static size_t best_fan(const abbe_cut_polyhedron *p, const abbe_cut_face *face) 
 
 abbe_result abbe_cut_polyhedron_mesh(const abbe_cut *cut, const abbe_cut_polyhedron *p,
                                      double scale, abbe_mesh *out, abbe_error *error) {
-  ABBE_REQUIRE(cut && p && out, error);
   memset(out, 0, sizeof *out);
   const size_t triangles = p->corner_count - 2 * p->face_count;
   const abbe_result result = abbe_mesh_make(p->corner_count, triangles, false, out, error);

@@ -15,10 +15,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Corners nearer to one another than this share of half the stone's width are one. */
 #define ABBE_CUT_WELD 1e-6
 #define ABBE_CUT_MOST_WELD 0.01
@@ -57,7 +53,4 @@ void abbe_cut_polyhedron_free(abbe_cut_polyhedron *polyhedron);
 abbe_result abbe_cut_polyhedron_mesh(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
                                      double scale, abbe_mesh *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -9,6 +9,7 @@
 #include "spectral/materials/material_numbers.h"
 #include "spectral/wavelengths.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -250,7 +251,7 @@ static abbe_result write_glb(const solid *s, const abbe_material *material, abbe
 abbe_result abbe_cut_solid_write(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
                                  double scale, const abbe_material *material,
                                  abbe_cut_solid_format format, FILE *to, abbe_error *error) {
-  ABBE_REQUIRE(cut && polyhedron && to && scale > 0, error);
+  assert(scale > 0);
   const solid s = {.cut = cut, .p = polyhedron, .scale = scale, .to = to};
   abbe_result result = ABBE_OK;
   switch (format) {

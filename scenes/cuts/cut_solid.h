@@ -13,10 +13,6 @@
 
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, ending): .gltf is not written, for it is two files. */
 #define ABBE_CUT_SOLIDS(X)                                                                         \
   X(STL, ".stl")                                                                                   \
@@ -42,7 +38,4 @@ abbe_result abbe_cut_solid_write(const abbe_cut *cut, const abbe_cut_polyhedron 
                                  double scale, const abbe_material *material,
                                  abbe_cut_solid_format format, FILE *to, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -134,7 +134,6 @@ static abbe_result check(const abbe_cut_measures *m, double crown, double pavili
 
 abbe_result abbe_cut_stretch_apply(abbe_cut *cut, const abbe_cut_polyhedron *p, double crown,
                                    double pavilion, abbe_error *error) {
-  ABBE_REQUIRE(cut && p, error);
   abbe_cut_measures m;
   abbe_cut_measures_make(cut, p, &m);
   abbe_result result = check(&m, crown, pavilion, error);
@@ -179,7 +178,6 @@ static abbe_result factor_of(const abbe_cut *cut, const abbe_cut_polyhedron *p, 
 abbe_result abbe_cut_stretch_to(abbe_cut *cut, const abbe_cut_polyhedron *p, double crown_deg,
                                 double pavilion_deg, abbe_error *error) {
   double crown, pavilion;
-  ABBE_REQUIRE(cut && p, error);
   abbe_result result = factor_of(cut, p, ABBE_CUT_CROWN, crown_deg, &crown, error);
   if (result == ABBE_OK)
     result = factor_of(cut, p, ABBE_CUT_PAVILION, pavilion_deg, &pavilion, error);

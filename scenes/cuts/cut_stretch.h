@@ -13,10 +13,6 @@
 #include "scenes/cuts/cut_measures.h"
 #include "scenes/cuts/cut_polyhedron.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Factors are between 1 over this and this. */
 #define ABBE_CUT_STRETCH_MOST 20.0
 
@@ -56,7 +52,4 @@ abbe_result abbe_cut_stretch_apply(abbe_cut *cut, const abbe_cut_polyhedron *pol
 abbe_result abbe_cut_stretch_to(abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
                                 double crown_deg, double pavilion_deg, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

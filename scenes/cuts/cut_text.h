@@ -4,10 +4,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Writes at most size - 1 bytes and a zero; control characters become spaces, letters that the
  * encoding lacks '?'. Returns the bytes written. */
 size_t abbe_cut_text_narrow(const char *utf8, char *out, size_t size);
@@ -16,7 +12,4 @@ size_t abbe_cut_text_narrow(const char *utf8, char *out, size_t size);
  * meaning U+FFFD. NULL without memory. */
 char *abbe_cut_text_widen(const char *bytes, size_t size);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

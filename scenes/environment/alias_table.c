@@ -38,7 +38,6 @@ static void fill(const double *weight, double mean, size_t heaviest, uint32_t *l
 
 abbe_result abbe_alias_table_make(const double *weight, size_t count, abbe_alias_table *out,
                                   abbe_error *error) {
-  ABBE_REQUIRE(weight && out, error);
   *out = (abbe_alias_table){0};
   double sum = 0;
   size_t heaviest = 0;

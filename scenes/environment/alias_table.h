@@ -7,10 +7,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* An entry of equal width is kept by its own index up to `keep`, and goes to `other` above. */
 typedef struct abbe_alias_table {
   size_t count;
@@ -28,7 +24,4 @@ void abbe_alias_table_free(abbe_alias_table *table);
  * 2^-52. Fewer bits leave few values of the fraction that decides, and so wrong chances. */
 size_t abbe_alias_table_draw(const abbe_alias_table *table, double u);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

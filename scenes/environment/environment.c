@@ -5,6 +5,7 @@
 #include "scenes/geometry/transform.h"
 #include "scenes/geometry/vector.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -65,7 +66,7 @@ static abbe_result make_table(const abbe_radiance_map *map, double *total, abbe_
 }
 
 abbe_result abbe_environment_prepare(abbe_environment *environment, abbe_error *error) {
-  ABBE_REQUIRE(environment && environment->map.rgb, error);
+  assert(environment->map.rgb);
   abbe_environment made = *environment;
   made.level_count = 0;
   made.texels = (abbe_alias_table){0};
@@ -150,7 +151,7 @@ static int brighter_first(const void *a, const void *b) {
 
 abbe_result abbe_environment_brightest(const abbe_environment *environment, double of_sphere,
                                        double *share, abbe_error *error) {
-  ABBE_REQUIRE(environment && environment->map.rgb && share, error);
+  assert(environment->map.rgb);
   const abbe_radiance_map *map = &environment->map;
   const size_t count = map->width * map->height;
   ranked *texel = malloc(count * sizeof *texel);

@@ -21,10 +21,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_ENVIRONMENT_MOST 1e12 /* W/(m2 sr), of one texel */
 #define ABBE_ENVIRONMENT_MAX_LEVELS 12
 
@@ -80,7 +76,4 @@ void abbe_environment_sample(const abbe_environment *environment, const double u
 /* The density of abbe_environment_sample at a unit world direction, 1/sr. */
 double abbe_environment_pdf(const abbe_environment *environment, const double direction[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

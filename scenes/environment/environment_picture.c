@@ -227,7 +227,6 @@ static abbe_result from_latlong(const abbe_image *image, abbe_radiance_map *out,
 
 abbe_result abbe_environment_picture_read(const char *path, abbe_environment_layout layout,
                                           abbe_radiance_map *out, abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   *out = (abbe_radiance_map){0};
   abbe_image image = {0};
   bool is_exr = false;

@@ -15,10 +15,6 @@
 #include "base/error.h"
 #include "scenes/environment/radiance_map.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef enum abbe_environment_layout {
   ABBE_LAYOUT_BY_ASPECT, /* what the picture's sides say */
   ABBE_LAYOUT_LATLONG,
@@ -35,7 +31,4 @@ typedef enum abbe_environment_layout {
 abbe_result abbe_environment_picture_read(const char *path, abbe_environment_layout layout,
                                           abbe_radiance_map *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -3,6 +3,7 @@
 #include "base/thread/watch.h"
 #include "scenes/geometry/vector.h"
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -297,7 +298,7 @@ static bool is_size(double angle, double most) {
 
 abbe_result abbe_environment_source_add(const abbe_environment_source *s, abbe_radiance_map *map,
                                         abbe_error *error) {
-  ABBE_REQUIRE(s && map && map->rgb, error);
+  assert(map->rgb);
   bool fine = true;
   switch (s->kind) {
   case ABBE_SOURCE_UNIFORM:

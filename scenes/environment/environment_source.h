@@ -14,10 +14,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_SOURCE_LEAST_RAD 8.7e-4 /* radius, half width, standard deviation: 0.05 degrees */
 
 typedef enum abbe_source_kind {
@@ -66,7 +62,4 @@ double abbe_environment_source_disk_radiance(double irradiance, double radius_ra
 /* sigma of the spot of that solid angle, sr, up to 1: to 1e-9. */
 double abbe_environment_source_spot_sigma(double solid_angle);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

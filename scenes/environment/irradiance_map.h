@@ -10,10 +10,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_IRRADIANCE_MAP_ROWS 21    /* from +z to -z */
 #define ABBE_IRRADIANCE_MAP_COLUMNS 40 /* from +x by +y */
 
@@ -26,7 +22,4 @@ void abbe_irradiance_map_normal(size_t row, size_t column, double normal[3]);
 /* At a unit normal. */
 void abbe_irradiance_map_at(const abbe_irradiance_map *map, const double normal[3], double rgb[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

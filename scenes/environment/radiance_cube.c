@@ -65,7 +65,6 @@ static void join(const float *fine, size_t side, float *out) {
 
 abbe_result abbe_radiance_cube_make(const abbe_radiance_map *map, size_t side,
                                     abbe_radiance_cube *out, abbe_error *error) {
-  ABBE_REQUIRE(map && out, error);
   *out = (abbe_radiance_cube){0};
   if (side < 1 || side > ABBE_RADIANCE_CUBE_MAX_SIDE || (side & (side - 1)) != 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

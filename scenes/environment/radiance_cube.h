@@ -12,10 +12,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_RADIANCE_CUBE_MAX_SIDE 1024
 #define ABBE_RADIANCE_CUBE_LEVELS 11 /* at the most: of side, side / 2 and so on to 1 */
 
@@ -34,7 +30,4 @@ void abbe_radiance_cube_direction(size_t face, double x, double y, double direct
 /* Of a texel of a face of side x side, sr; of all 6 side^2 of them 4 pi. */
 double abbe_radiance_cube_solid_angle(size_t side, size_t column, size_t row);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -9,7 +9,6 @@
 #define PI 3.14159265358979323846
 
 abbe_result abbe_radiance_map_make(size_t width, abbe_radiance_map *out, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   *out = (abbe_radiance_map){0};
   if (width < ABBE_RADIANCE_MAP_MIN_WIDTH || width > ABBE_RADIANCE_MAP_MAX_WIDTH || width % 2 != 0)
     return abbe_error_set(
@@ -176,7 +175,6 @@ static void average(const abbe_radiance_map *map, double top, double bottom, dou
 
 abbe_result abbe_radiance_map_halve(const abbe_radiance_map *map, abbe_radiance_map *out,
                                     abbe_error *error) {
-  ABBE_REQUIRE(map && out, error);
   *out = (abbe_radiance_map){0};
   if (map->height < 4)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

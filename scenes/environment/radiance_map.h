@@ -15,10 +15,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_RADIANCE_MAP_MIN_WIDTH 4
 #define ABBE_RADIANCE_MAP_MAX_WIDTH 8192
 
@@ -68,7 +64,4 @@ void abbe_radiance_map_irradiance(const abbe_radiance_map *map, const double nor
 abbe_result abbe_radiance_map_halve(const abbe_radiance_map *map, abbe_radiance_map *out,
                                     abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

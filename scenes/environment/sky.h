@@ -11,10 +11,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum {
   ABBE_SKY_OVERCAST_STEEP = 1, /* "CIE standard overcast sky, steep luminance gradation" */
   ABBE_SKY_CLEAR = 12,         /* "CIE standard clear sky, low luminance turbidity" */
@@ -38,7 +34,4 @@ double abbe_sky_relative(const abbe_sky *sky, const double direction[3]);
  * overcast sky. To 1e-5. */
 double abbe_sky_horizontal(const abbe_sky *sky);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

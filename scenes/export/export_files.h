@@ -13,10 +13,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_export_file {
   char *path;
   char *data; /* NULL: a picture */
@@ -47,7 +43,4 @@ abbe_result abbe_export_files_write(abbe_export_files *files, abbe_error *error)
 /* Removes what was written and had not been there. */
 void abbe_export_files_undo(abbe_export_files *files);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

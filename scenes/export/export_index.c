@@ -130,7 +130,6 @@ static abbe_result measure(const abbe_material *m, abbe_export_index *out, abbe_
 
 abbe_result abbe_export_index_make(const abbe_material *material, abbe_export_form form,
                                    double lambda_nm, abbe_export_index *out, abbe_error *error) {
-  ABBE_REQUIRE(material && out, error);
   const double last_nm =
       ABBE_EXPORT_TABLE_FIRST_NM + (ABBE_EXPORT_TABLE_COUNT - 1) * ABBE_EXPORT_TABLE_STEP_NM;
   double ignored;

@@ -13,10 +13,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name, what value[] holds). */
 #define ABBE_EXPORT_FORMS(X)                                                                       \
   X(TABLE, "table", "none: n every 5 nm from 360 to 830 nm, straight between")                     \
@@ -57,7 +53,4 @@ abbe_result abbe_export_index_make(const abbe_material *material, abbe_export_fo
 /* The form's index. */
 double abbe_export_index_at(const abbe_export_index *index, double lambda_nm);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -5,10 +5,6 @@
 
 #include "scenes/export/scene_export.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_EXPORT_LINE_D_NM 587.5618
 
 /* Fills the zeroed report: each material's index in the target's form, and notes. */
@@ -16,7 +12,4 @@ abbe_result abbe_export_survey(const abbe_scene *scene, abbe_scene_export_target
                                double lambda_nm, abbe_scene_export_report *report,
                                abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -7,10 +7,6 @@
 
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_EXPORT_DEGREES (180 / 3.14159265358979323846)
 #define ABBE_EXPORT_NAME_SIZE 96
 #define ABBE_EXPORT_DISK_SIDES 64
@@ -97,7 +93,4 @@ abbe_result abbe_export_texture(const abbe_export_writing *w, const abbe_object 
 /* Whether all triangles have their own normals at their corners. */
 bool abbe_export_is_faceted(const abbe_mesh *mesh);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

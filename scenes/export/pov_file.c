@@ -27,7 +27,6 @@ static double light_at(const abbe_illuminant *illuminant, double lambda_nm) {
 
 abbe_result abbe_pov_file_glass(const abbe_material *material, const abbe_illuminant *illuminant,
                                 abbe_pov_glass *out, abbe_error *error) {
-  ABBE_REQUIRE(material && illuminant && out, error);
   double lambda_nm[STEPS + 1], n[STEPS + 1], light[STEPS + 1], sum = 0, all = 0;
   memset(out, 0, sizeof *out);
   for (int i = 0; i <= STEPS; i++) {
@@ -330,7 +329,6 @@ static abbe_result check_options(const abbe_pov_options *o, abbe_error *error) {
 
 abbe_result abbe_pov_file_write(const char *path, const abbe_scene *scene,
                                 const abbe_pov_options *options, abbe_error *error) {
-  ABBE_REQUIRE(path && scene, error);
   abbe_pov_options o = options != NULL ? *options : (abbe_pov_options){0};
   if (o.photons == 0) o.photons = 100000;
   if (o.samples == 0) o.samples = 31;

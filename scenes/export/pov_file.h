@@ -15,10 +15,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_POV_MAX_SAMPLES 100
 #define ABBE_POV_MAX_PHOTONS 100000000
 
@@ -54,7 +50,4 @@ double abbe_pov_file_scale(const abbe_scene *scene);
 abbe_result abbe_pov_file_write(const char *path, const abbe_scene *scene,
                                 const abbe_pov_options *options, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -87,7 +87,6 @@ abbe_result abbe_scene_export_write(const char *path, const abbe_scene *scene,
                                     abbe_scene_export_target target,
                                     const abbe_scene_export_options *options,
                                     abbe_scene_export_report *report, abbe_error *error) {
-  ABBE_REQUIRE(path && scene && report, error);
   const char *ending = strrchr(abbe_file_name(path), '.');
   const double lambda_nm =
       options != NULL && options->lambda_nm != 0 ? options->lambda_nm : ABBE_EXPORT_LINE_D_NM;

@@ -16,10 +16,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name, ending, form of the index, the program). */
 #define ABBE_SCENE_EXPORTS(X)                                                                      \
   X(PBRT, "pbrt", ".pbrt", TABLE, "pbrt-v4")                                                       \
@@ -69,7 +65,4 @@ abbe_result abbe_scene_export_write(const char *path, const abbe_scene *scene,
                                     const abbe_scene_export_options *options,
                                     abbe_scene_export_report *report, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

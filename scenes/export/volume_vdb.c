@@ -23,7 +23,6 @@ static void fill(const abbe_caustic_volume *v, const double to_light[3], float *
 
 abbe_result abbe_volume_vdb_write(const char *path, const abbe_caustic_volume *v,
                                   const double to_light[3], abbe_error *error) {
-  ABBE_REQUIRE(path && v && to_light, error);
   const abbe_region_desc *r = &v->region.desc;
   if (v->kind != ABBE_VOLUME_VECTOR || r->kind != ABBE_REGION_GRID || v->value == NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

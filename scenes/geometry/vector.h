@@ -8,10 +8,6 @@
 #include <math.h>
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 static inline double abbe_vector_dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -76,7 +72,4 @@ static inline void abbe_vector_frame(const double a[3], const double b[3], doubl
   }
 }
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -6,10 +6,6 @@
 #include "base/yaml/yaml.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The values under 'camera'. With 'frame' its eye and target are not there yet. Errors with file,
  * line and key. */
 abbe_result abbe_camera_read(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera *out,
@@ -22,7 +18,4 @@ abbe_result abbe_camera_read(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera *
 abbe_result abbe_camera_frame(abbe_yaml *yaml, abbe_yaml_node root, abbe_scene *scene,
                               abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

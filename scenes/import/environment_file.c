@@ -103,7 +103,6 @@ static abbe_result read_scale(abbe_yaml *yaml, abbe_yaml_node node, abbe_radianc
 
 abbe_result abbe_environment_read(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
                                   abbe_environment *out, abbe_error *error) {
-  ABBE_REQUIRE(yaml && folder && out, error);
   size_t sources = 0;
   if (!abbe_yaml_is_mapping(yaml, node))
     return abbe_yaml_fail(yaml, node, error, "'environment' must be a mapping (key: value)");

@@ -7,10 +7,6 @@
 #include "base/yaml/yaml.h"
 #include "scenes/environment/environment.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_ENVIRONMENT_MAX_SOURCES 256 /* of one list */
 
 /* Reads the node into a zeroed *out and prepares it; relative paths start at folder. Errors say
@@ -18,7 +14,4 @@ extern "C" {
 abbe_result abbe_environment_read(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
                                   abbe_environment *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -200,7 +200,6 @@ static abbe_result read_light(abbe_yaml *yaml, abbe_yaml_node node, const char *
 
 abbe_result abbe_lights_read(abbe_yaml *yaml, abbe_yaml_node root, const char *folder,
                              abbe_light **out, size_t *count, abbe_error *error) {
-  ABBE_REQUIRE(yaml && folder && out && count, error);
   abbe_yaml_node list;
   size_t listed;
   abbe_result result =

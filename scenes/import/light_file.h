@@ -9,16 +9,9 @@
 #include "base/yaml/yaml.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The lights of the document whose root is given; relative paths start at folder. Errors say file
  * and line; what *out holds then is the caller's to free too (abbe_lights_free). */
 abbe_result abbe_lights_read(abbe_yaml *yaml, abbe_yaml_node root, const char *folder,
                              abbe_light **out, size_t *count, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -458,7 +458,6 @@ static abbe_result place(const abbe_object_reading *r, const abbe_object_surface
 abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
                              const abbe_material_table *table, abbe_object *out, size_t room,
                              size_t *count, abbe_error *error) {
-  ABBE_REQUIRE(yaml && folder && table && out && count, error);
   abbe_object_reading r = {
       .yaml = yaml, .node = node, .folder = folder, .normals = ABBE_NORMALS_AUTO};
   abbe_object_surface surface = {0};

@@ -11,10 +11,6 @@
 #include "base/yaml/yaml.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Reads the mapping at node into out[0], and where shells of its mesh cross into further objects
  * behind it, *count in all and at most room (zeroed before; freed with the scene, also on failure).
  * folder is the scene file's, with its slash, or "". Materials are found in table. */
@@ -22,7 +18,4 @@ abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *f
                              const abbe_material_table *table, abbe_object *out, size_t room,
                              size_t *count, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

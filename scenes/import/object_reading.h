@@ -7,10 +7,6 @@
 #include "scenes/mesh/mesh.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Stands for the name of a material: the one that the mesh's file has. */
 #define ABBE_OBJECT_FROM_FILE "from-file"
 
@@ -49,7 +45,4 @@ abbe_result abbe_object_read_surface(abbe_object_reading *reading, abbe_object *
 abbe_result abbe_object_read_water(const abbe_object_reading *reading, abbe_mesh *out,
                                    abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

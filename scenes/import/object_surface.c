@@ -314,7 +314,6 @@ static abbe_result place_one(const abbe_object_surface *s, const double matrix[1
 
 abbe_result abbe_object_place(const abbe_object_surface *s, abbe_object *out, size_t room,
                               size_t *count, abbe_error *error) {
-  ABBE_REQUIRE(s && out && count, error);
   double matrix[16];
   *count = 1;
   abbe_result result = abbe_object_kind_of(out) == ABBE_OBJECT_REFRACTOR

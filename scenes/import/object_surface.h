@@ -13,10 +13,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_object_surface {
   double matrix[16]; /* from its own coordinates to the world */
   double radius;     /* of a sphere, in its own coordinates; 0: it is none */
@@ -38,7 +34,4 @@ typedef struct abbe_object_surface {
 abbe_result abbe_object_place(const abbe_object_surface *surface, abbe_object *out, size_t room,
                               size_t *count, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

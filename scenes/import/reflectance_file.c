@@ -61,7 +61,6 @@ static abbe_result find_colour(abbe_object *out, abbe_error *error) {
 
 abbe_result abbe_reflectance_file_read(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
                                        abbe_object *out, abbe_error *error) {
-  ABBE_REQUIRE(yaml && folder && out, error);
   char *patch = NULL, *file = NULL;
   abbe_result result = abbe_yaml_get_string(yaml, node, "patch", &patch, error);
   if (result == ABBE_OK) result = abbe_yaml_get_string(yaml, node, "spectrum", &file, error);

@@ -10,16 +10,9 @@
 #include "base/yaml/yaml.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Fills the object's spectrum, its path and the colour under D65. Paths are relative to folder.
  * ABBE_SCHEMA and ABBE_NOT_FOUND with file, line and key; errors of the file. */
 abbe_result abbe_reflectance_file_read(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
                                        abbe_object *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

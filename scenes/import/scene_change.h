@@ -6,10 +6,6 @@
 
 #include "base/yaml/yaml_edit.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* "PATH=VALUE": PATH is keys with dots between them, and for an item of a list its number from 0 or
  * its 'name' (lights.lamp.intensity); VALUE is one line of YAML. The last key may be a new one.
  * "PATH=": what is there is taken out, as if it had never stood there. ABBE_INVALID_ARGUMENT for a path that leads nowhere, with the nearest key or name. */
@@ -28,7 +24,4 @@ bool abbe_scene_change_has_keyframes(const abbe_yaml *yaml);
  * and key for what is none. */
 abbe_result abbe_scene_change_keyframes(abbe_yaml_edit *edit, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

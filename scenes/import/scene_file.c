@@ -237,7 +237,6 @@ static abbe_result load_document(const char *path, const abbe_scene_options *opt
 
 abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options, abbe_scene *out,
                             abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   memset(out, 0, sizeof *out);
   abbe_yaml *yaml = NULL;
   const abbe_result result = load_document(path, options, &yaml, error);
@@ -271,7 +270,6 @@ static void swap_light(abbe_scene *a, abbe_scene *b) {
 
 abbe_result abbe_scene_load_lights(const char *path, const abbe_scene_options *options,
                                    abbe_scene *scene, abbe_error *error) {
-  ABBE_REQUIRE(path && scene, error);
   abbe_yaml *yaml = NULL;
   abbe_scene lit = {0};
   abbe_result result = load_document(path, options, &yaml, error);
@@ -299,7 +297,6 @@ abbe_result abbe_scene_load_lights(const char *path, const abbe_scene_options *o
 abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
                              const abbe_scene_options *options, abbe_scene *out,
                              abbe_error *error) {
-  ABBE_REQUIRE(text && name && out, error);
   memset(out, 0, sizeof *out);
   abbe_yaml *yaml = NULL;
   const abbe_result result = parse_document(text, size, name, options, &yaml, error);
@@ -308,7 +305,6 @@ abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
 
 abbe_result abbe_scene_text(const char *path, const abbe_scene_options *options, char **out,
                             size_t *size, abbe_error *error) {
-  ABBE_REQUIRE(path && out && size, error);
   abbe_yaml_edit edit = {0};
   char *text = NULL;
   size_t bytes = 0;

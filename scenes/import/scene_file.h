@@ -5,10 +5,6 @@
 #include "scenes/scene.h"
 #include "scenes/studio/studio.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Zeroed: as the file says. */
 typedef struct abbe_scene_options {
   const char *materials;  /* table to use instead of the file's: a path, "default" or "thesis" */
@@ -42,7 +38,4 @@ abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
 abbe_result abbe_scene_text(const char *path, const abbe_scene_options *options, char **out,
                             size_t *size, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

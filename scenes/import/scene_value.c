@@ -14,7 +14,6 @@ char *abbe_scene_value_path(const char *folder, const char *path) {
 
 abbe_result abbe_scene_value_locate(const abbe_yaml *yaml, abbe_yaml_node node, abbe_result code,
                                     abbe_error *error) {
-  ABBE_REQUIRE(yaml, error);
   if (!error) return code;
   char sentence[sizeof error->text];
   memcpy(sentence, error->text, sizeof sentence);
@@ -25,7 +24,6 @@ abbe_result abbe_scene_value_locate(const abbe_yaml *yaml, abbe_yaml_node node, 
 
 abbe_result abbe_scene_value_point(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                    double out[3], abbe_error *error) {
-  ABBE_REQUIRE(yaml && key && out, error);
   abbe_yaml_node ignored;
   const abbe_result result = abbe_yaml_require(yaml, mapping, key, &ignored, error);
   return result == ABBE_OK ? abbe_yaml_get_lengths(yaml, mapping, key, 3, -ABBE_SCENE_FAR,
@@ -36,7 +34,6 @@ abbe_result abbe_scene_value_point(abbe_yaml *yaml, abbe_yaml_node mapping, cons
 abbe_result abbe_scene_value_list(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                   size_t most, abbe_yaml_node *list, size_t *count,
                                   abbe_error *error) {
-  ABBE_REQUIRE(yaml && key && list && count, error);
   *list = abbe_yaml_get(yaml, mapping, key);
   *count = abbe_yaml_count(yaml, *list);
   if (list->id != 0 && !abbe_yaml_is_sequence(yaml, *list))
@@ -48,7 +45,6 @@ abbe_result abbe_scene_value_list(abbe_yaml *yaml, abbe_yaml_node mapping, const
 }
 
 abbe_result abbe_scene_value_time(abbe_yaml *yaml, double *out, abbe_error *error) {
-  ABBE_REQUIRE(yaml && out, error);
   *out = 0;
   return abbe_yaml_get_number(yaml, abbe_yaml_root(yaml), "time", -ABBE_SCENE_FAR, ABBE_SCENE_FAR,
                               out, error);
@@ -56,7 +52,6 @@ abbe_result abbe_scene_value_time(abbe_yaml *yaml, double *out, abbe_error *erro
 
 abbe_result abbe_scene_value_illuminant(abbe_yaml *yaml, abbe_yaml_node mapping, const char *folder,
                                         abbe_illuminant *out, char **path, abbe_error *error) {
-  ABBE_REQUIRE(yaml && folder && out && path, error);
   char *name = NULL, *joined = NULL;
   abbe_result result = abbe_yaml_get_string(yaml, mapping, "illuminant", &name, error);
   if (result == ABBE_OK && name) {

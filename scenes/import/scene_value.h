@@ -7,10 +7,6 @@
 #include "base/yaml/yaml.h"
 #include "colorimetry/illuminant.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* No coordinate or length of a scene, in metres, may be larger. */
 #define ABBE_SCENE_FAR 1e6
 /* No light may be brighter: W/sr, W/m2, W/(m2 sr). */
@@ -41,7 +37,4 @@ abbe_result abbe_scene_value_time(abbe_yaml *yaml, double *out, abbe_error *erro
 abbe_result abbe_scene_value_illuminant(abbe_yaml *yaml, abbe_yaml_node mapping, const char *folder,
                                         abbe_illuminant *out, char **path, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -2,6 +2,7 @@
 
 #include "scenes/geometry/vector.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -80,7 +81,7 @@ static size_t put_points(const abbe_light *light, size_t most, abbe_light *out) 
 
 abbe_result abbe_area_lights_add(const abbe_scene *scene, size_t points, size_t room,
                                  abbe_scene *out, abbe_error *error) {
-  ABBE_REQUIRE(scene && out && points > 0, error);
+  assert(points > 0);
   size_t disks = 0, count = 0;
   for (size_t i = 0; i < scene->light_count; i++) disks += has_size(&scene->light[i]);
   const size_t others = scene->light_count - disks;

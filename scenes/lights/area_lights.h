@@ -10,10 +10,6 @@
 
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Whether a light of the scene has a size and is not points yet. */
 bool abbe_area_lights_any(const abbe_scene *scene);
 
@@ -24,7 +20,4 @@ bool abbe_area_lights_any(const abbe_scene *scene);
 abbe_result abbe_area_lights_add(const abbe_scene *scene, size_t points, size_t room,
                                  abbe_scene *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

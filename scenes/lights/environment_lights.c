@@ -265,7 +265,6 @@ static bool is_kept(const search *s, size_t number) {
 
 abbe_result abbe_environment_lights_leave(const abbe_environment *environment, size_t count,
                                           abbe_radiance_map *out, abbe_error *error) {
-  ABBE_REQUIRE(environment && out, error);
   const abbe_radiance_map *map = &environment->map;
   search s;
   *out = (abbe_radiance_map){0};
@@ -366,7 +365,6 @@ abbe_result abbe_environment_lights_add(const abbe_scene *scene,
                                         const abbe_environment_lights_desc *desc,
                                         const abbe_scene *before, abbe_scene *out,
                                         abbe_error *error) {
-  ABBE_REQUIRE(scene && desc && out, error);
   size_t count = desc->count;
   const size_t own = scene->light_count, room = ABBE_SCENE_MAX_LIGHTS - own;
   *out = *scene;

@@ -16,10 +16,6 @@
 #include "colorimetry/observer.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_environment_lights_desc {
   size_t count;           /* at the most */
   double min_nm, max_nm;  /* of their spectra */
@@ -44,7 +40,4 @@ abbe_result abbe_environment_lights_leave(const abbe_environment *environment, s
 /* Frees such a copy; the scene stays. */
 void abbe_environment_lights_drop(abbe_scene *copy);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -11,7 +11,6 @@ static abbe_result copy_spectrum(const abbe_spectrum *s, abbe_spectrum **out, ab
 }
 
 abbe_result abbe_medium_copy(const abbe_medium *m, abbe_medium **out, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   *out = NULL;
   if (m == NULL) return ABBE_OK;
   abbe_medium *copy = malloc(sizeof *copy);

@@ -11,10 +11,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A phase function is no narrower than with this mean cosine either way. */
 #define ABBE_MEDIUM_MOST_G 0.99
 
@@ -45,7 +41,4 @@ double abbe_medium_phase(double g, double cosine);
 bool abbe_medium_clip(const double min[3], const double max[3], const double o[3],
                       const double d[3], double *from, double *to);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

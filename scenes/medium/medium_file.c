@@ -128,7 +128,6 @@ static abbe_result read_medium(abbe_yaml *yaml, abbe_yaml_node node, bool air, a
 
 abbe_result abbe_medium_file_read(abbe_yaml *yaml, abbe_yaml_node mapping, bool air,
                                   abbe_medium **out, abbe_error *error) {
-  ABBE_REQUIRE(yaml && out, error);
   *out = NULL;
   const abbe_yaml_node node = abbe_yaml_get(yaml, mapping, "medium");
   if (node.id == 0) return ABBE_OK;

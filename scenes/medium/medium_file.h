@@ -6,10 +6,6 @@
 #include "base/yaml/yaml.h"
 #include "scenes/medium/medium.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A coefficient, 1/m, may be this large. */
 #define ABBE_MEDIUM_MOST_PER_M 1e6
 
@@ -19,7 +15,4 @@ extern "C" {
 abbe_result abbe_medium_file_read(abbe_yaml *yaml, abbe_yaml_node mapping, bool air,
                                   abbe_medium **out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

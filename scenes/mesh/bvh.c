@@ -172,7 +172,6 @@ static void build(builder *b, size_t node, size_t first, size_t count, size_t de
 
 abbe_result abbe_bvh_make(const double (*triangle)[9], size_t count, abbe_bvh *out,
                           abbe_error *error) {
-  ABBE_REQUIRE((triangle || count == 0) && out, error);
   *out = (abbe_bvh){0};
   if (count == 0)
     return abbe_error_set(error, ABBE_GEOMETRY, "a BVH needs a triangle; there is none");

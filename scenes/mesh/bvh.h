@@ -14,10 +14,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_BVH_MAX_DEPTH 56
 
 /* As the shaders read it: two vec4. */
@@ -63,7 +59,4 @@ double (*abbe_bvh_triangles(const abbe_mesh *mesh))[9];
  * corner with its normal are of one part. Returns their number; 0: no memory. */
 size_t abbe_bvh_parts(const abbe_mesh *mesh, uint32_t *group);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

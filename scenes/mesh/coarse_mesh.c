@@ -165,7 +165,6 @@ static size_t merge(groups *g, uint32_t (*face)[3]) {
 
 abbe_result abbe_coarse_mesh_make(const abbe_mesh *mesh, uint32_t (**face)[3], size_t *count,
                                   abbe_error *error) {
-  ABBE_REQUIRE(mesh && face && count, error);
   groups g = {.mesh = mesh, .room = 1};
   *face = NULL;
   *count = 0;

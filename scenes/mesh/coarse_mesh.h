@@ -11,10 +11,6 @@
 
 #include "scenes/mesh/mesh.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* About as many triangles as that are left, or more where a mesh is much folded. */
 #define ABBE_COARSE_MESH_FACES 24000u
 
@@ -27,7 +23,4 @@ bool abbe_coarse_mesh_serves(const abbe_mesh *mesh);
 abbe_result abbe_coarse_mesh_make(const abbe_mesh *mesh, uint32_t (**face)[3], size_t *count,
                                   abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

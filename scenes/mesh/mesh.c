@@ -19,7 +19,6 @@ void abbe_mesh_free(abbe_mesh *mesh) {
 
 abbe_result abbe_mesh_make(size_t vertices, size_t faces, bool with_uv, abbe_mesh *out,
                            abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   memset(out, 0, sizeof *out);
   if (vertices == 0 || vertices > ABBE_MESH_MAX_VERTICES || faces == 0 ||
       faces > ABBE_MESH_MAX_FACES)
@@ -63,7 +62,6 @@ abbe_result abbe_mesh_drop_unused(abbe_mesh *mesh, abbe_error *error) {
 }
 
 abbe_result abbe_mesh_transform(abbe_mesh *mesh, const double matrix[16], abbe_error *error) {
-  ABBE_REQUIRE(mesh && matrix, error);
   double normal[9], normal4[16];
   const double determinant = abbe_transform_determinant3(matrix);
   if (!isfinite(determinant) || determinant == 0.0 || !abbe_transform_normal_matrix(matrix, normal))

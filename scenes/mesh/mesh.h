@@ -12,10 +12,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_MESH_MAX_VERTICES 50000000u
 #define ABBE_MESH_MAX_FACES 50000000u
 
@@ -123,7 +119,4 @@ abbe_result abbe_mesh_transform(abbe_mesh *mesh, const double matrix[16], abbe_e
  * ABBE_MESH_MAX_CONVEX_FACES are not examined: false. */
 bool abbe_mesh_is_convex(const abbe_mesh *mesh);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -100,7 +100,6 @@ static void bound(const abbe_mesh *mesh, const uint8_t *axis_of, const uint8_t *
 }
 
 abbe_result abbe_mesh_charts_make(const abbe_mesh *mesh, abbe_mesh_charts *out, abbe_error *error) {
-  ABBE_REQUIRE(mesh && out, error);
   abbe_topology t = {0};
   memset(out, 0, sizeof *out);
   abbe_result result = abbe_topology_make(mesh, &t, error);

@@ -13,10 +13,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_mesh_charts {
   size_t count; /* 0 where no face has an area */
   /* [count] corner, U, V: the rectangle that bounds it, across its axis; U x V points along that, to
@@ -29,7 +25,4 @@ typedef struct abbe_mesh_charts {
 abbe_result abbe_mesh_charts_make(const abbe_mesh *mesh, abbe_mesh_charts *out, abbe_error *error);
 void abbe_mesh_charts_free(abbe_mesh_charts *charts);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

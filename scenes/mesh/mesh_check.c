@@ -131,7 +131,6 @@ static abbe_result find_holes(const abbe_topology *t, abbe_mesh_report *report, 
 
 abbe_result abbe_mesh_check_known(const abbe_mesh *mesh, const abbe_topology *t,
                                   abbe_mesh_report *report, abbe_error *error) {
-  ABBE_REQUIRE(mesh && t && report, error);
   memset(report, 0, sizeof *report);
   for (size_t v = 0; v < mesh->vertex_count; v++)
     for (int k = 0; k < 3; k++) {
@@ -146,7 +145,6 @@ abbe_result abbe_mesh_check_known(const abbe_mesh *mesh, const abbe_topology *t,
 }
 
 abbe_result abbe_mesh_check(const abbe_mesh *mesh, abbe_mesh_report *report, abbe_error *error) {
-  ABBE_REQUIRE(mesh && report, error);
   abbe_topology t;
   abbe_result result = abbe_topology_make(mesh, &t, error);
   memset(report, 0, sizeof *report);

@@ -375,7 +375,6 @@ static abbe_result join(const abbe_mesh *mesh, abbe_mesh *joined, abbe_topology 
 
 abbe_result abbe_mesh_fix(abbe_mesh *mesh, abbe_mesh_normals normals, bool repair, size_t *solids,
                           char **what, abbe_error *error) {
-  ABBE_REQUIRE(mesh, error);
   if (what) *what = NULL;
   abbe_topology t;
   abbe_mesh_report report;

@@ -256,7 +256,6 @@ void abbe_mesh_fair_normal(const double normal[3], const double face[3], double 
 
 abbe_result abbe_mesh_compute_normals(abbe_mesh *mesh, abbe_mesh_normals normals,
                                       abbe_error *error) {
-  ABBE_REQUIRE(mesh, error);
   const abbe_result wanted = abbe_watch_check(error);
   if (wanted != ABBE_OK) return wanted;
   mesh->given_normals = false;

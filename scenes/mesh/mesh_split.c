@@ -110,7 +110,6 @@ static abbe_result take_all(const abbe_mesh *mesh, const abbe_topology *t, const
 
 abbe_result abbe_mesh_split(const abbe_mesh *mesh, abbe_mesh **part, size_t *count,
                             abbe_error *error) {
-  ABBE_REQUIRE(mesh && part && count, error);
   abbe_topology t;
   abbe_shells shells = {0};
   *part = NULL;

@@ -124,7 +124,6 @@ static abbe_result subdivide_once(abbe_mesh *mesh, abbe_error *error) {
 }
 
 abbe_result abbe_mesh_subdivide(abbe_mesh *mesh, size_t levels, abbe_error *error) {
-  ABBE_REQUIRE(mesh, error);
   size_t faces = mesh->face_count;
   for (size_t i = 0; i < levels; i++) {
     if (faces > ABBE_MESH_MAX_FACES / 4)

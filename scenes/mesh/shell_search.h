@@ -10,10 +10,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* What is needed while they are looked at. */
 typedef struct abbe_shell_search {
   const abbe_topology *t;
@@ -82,7 +78,4 @@ bool abbe_shells_cross(const abbe_shells *shells, uint32_t a, uint32_t b);
 /* Fills around, and with it depths; false where memory ran out. */
 bool abbe_shell_find_nesting(abbe_shell_search *s, const abbe_shell_tree *t);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

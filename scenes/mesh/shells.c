@@ -174,7 +174,6 @@ static abbe_result find_lie(abbe_shell_search *s, abbe_error *error) {
 
 abbe_result abbe_shells_find(const abbe_mesh *mesh, const abbe_topology *topology, abbe_shells *out,
                              abbe_error *error) {
-  ABBE_REQUIRE(mesh && topology && out, error);
   memset(out, 0, sizeof *out);
   if (topology->face_count == 0) return ABBE_OK;
   out->count = topology->shell_count;

@@ -17,10 +17,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_shell {
   double volume;        /* signed, of its own; negative: its faces look inwards */
   uint32_t depth;       /* of others that it lies wholly within */
@@ -48,7 +44,4 @@ abbe_result abbe_shells_find(const abbe_mesh *mesh, const abbe_topology *topolog
                              abbe_error *error);
 void abbe_shells_free(abbe_shells *shells);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

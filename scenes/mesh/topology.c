@@ -333,7 +333,6 @@ static abbe_result check_input(const abbe_mesh *mesh, abbe_error *error) {
 }
 
 abbe_result abbe_topology_make(const abbe_mesh *mesh, abbe_topology *out, abbe_error *error) {
-  ABBE_REQUIRE(mesh && out, error);
   memset(out, 0, sizeof *out);
   abbe_result result = check_input(mesh, error);
   if (result == ABBE_OK) result = abbe_watch_check(error);

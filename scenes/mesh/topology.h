@@ -16,10 +16,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_TOPOLOGY_NONE UINT32_MAX
 
 typedef struct abbe_edge {
@@ -44,7 +40,4 @@ typedef struct abbe_topology {
 abbe_result abbe_topology_make(const abbe_mesh *mesh, abbe_topology *out, abbe_error *error);
 void abbe_topology_free(abbe_topology *topology);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -23,7 +23,6 @@ static void cell_of(const abbe_point_grid *grid, const double at[3], int64_t cel
 
 abbe_result abbe_point_grid_make(double cell, size_t room, abbe_point_grid *out,
                                  abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   *out = (abbe_point_grid){0};
   if (!(cell > 0) || !isfinite(cell) || room >= UINT32_MAX)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

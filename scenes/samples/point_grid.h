@@ -12,10 +12,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_point_grid {
   double cell;    /* edge of a cell, m */
   uint32_t *head; /* [mask + 1] last number of a cell's chain, or UINT32_MAX */
@@ -38,7 +34,4 @@ typedef bool (*abbe_point_visit)(void *user, size_t number);
 void abbe_point_grid_visit(const abbe_point_grid *grid, const double at[3], abbe_point_visit visit,
                            void *user);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -178,7 +178,6 @@ static void sort_by_owner(builder *b) {
 
 abbe_result abbe_sample_tree_make(const abbe_surface_samples *samples, abbe_sample_tree *out,
                                   abbe_error *error) {
-  ABBE_REQUIRE(samples && out, error);
   *out = (abbe_sample_tree){0};
   const size_t count = samples->count, candidates = samples->candidate_count;
   const size_t most = 2 * (count + candidates) + 1;

@@ -17,10 +17,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_sample_node {
   abbe_surface_point
       at;          /* that stands for all below: a sample, or of a part one of its candidates */
@@ -44,7 +40,4 @@ abbe_result abbe_sample_tree_make(const abbe_surface_samples *samples, abbe_samp
                                   abbe_error *error);
 void abbe_sample_tree_free(abbe_sample_tree *tree);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

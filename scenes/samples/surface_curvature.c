@@ -119,7 +119,6 @@ static void fit(const abbe_point_grid *grid, const abbe_surface_samples *s, size
 
 abbe_result abbe_surface_curvature_fit(const abbe_surface_samples *samples,
                                        abbe_surface_curvature *out, abbe_error *error) {
-  ABBE_REQUIRE(samples && out, error);
   if (samples->count == 0) return ABBE_OK;
   abbe_point_grid grid;
   abbe_result result =

@@ -6,10 +6,6 @@
 #include "base/error.h"
 #include "scenes/samples/surface_samples.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Along along[0] and along[1], unit tangents that with the normal are a right-handed frame, the
  * normal turns by curvature[0] and curvature[1] (1/m, the first of the greater amount; above 0
  * where normals spread) towards them. */
@@ -24,7 +20,4 @@ typedef struct abbe_surface_curvature {
 abbe_result abbe_surface_curvature_fit(const abbe_surface_samples *samples,
                                        abbe_surface_curvature *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

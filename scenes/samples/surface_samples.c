@@ -336,7 +336,6 @@ static abbe_result share_out(abbe_surface_samples *s, abbe_error *error) {
 abbe_result abbe_surface_samples_make(const abbe_mesh *const *mesh, size_t mesh_count,
                                       const abbe_surface_sampling *sampling,
                                       abbe_surface_samples *out, abbe_error *error) {
-  ABBE_REQUIRE(mesh && sampling && out, error);
   *out = (abbe_surface_samples){0};
   const size_t most = sampling->count > 0 ? sampling->count : 1;
   if (most > ABBE_SURFACE_MAX_SAMPLES)

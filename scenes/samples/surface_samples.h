@@ -18,10 +18,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_SAMPLE_STRATEGIES(X)                                                                  \
   X(AUTO, "auto")                                                                                  \
   X(RANDOM, "random") X(GRID, "grid") X(QUANTIZED, "quantized") X(NEIGHBOUR, "neighbour")
@@ -73,7 +69,4 @@ void abbe_surface_samples_free(abbe_surface_samples *samples);
 
 const char *abbe_sample_strategy_name(abbe_sample_strategy strategy);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

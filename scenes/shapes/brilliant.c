@@ -108,7 +108,6 @@ static void join_all(abbe_mesh *mesh) {
 }
 
 abbe_result abbe_brilliant_make(const abbe_brilliant *cut, abbe_mesh *out, abbe_error *error) {
-  ABBE_REQUIRE(cut && out, error);
   memset(out, 0, sizeof *out);
   abbe_brilliant c = *cut;
   double plane[PLANES][4];

@@ -10,10 +10,6 @@
 #include "base/error.h"
 #include "scenes/mesh/mesh.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Zero means the default in every field but the diameter. */
 typedef struct abbe_brilliant {
   double diameter;     /* between opposite corners of the girdle, metres */
@@ -29,7 +25,4 @@ typedef struct abbe_brilliant {
  * ABBE_INVALID_ARGUMENT for proportions that are out of range or make no convex stone. */
 abbe_result abbe_brilliant_make(const abbe_brilliant *cut, abbe_mesh *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -8,10 +8,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A zeroed one is smooth. */
 typedef struct abbe_brushing {
   abbe_microfacets facets; /* x: along the grooves, y: across; both 0: smooth */
@@ -33,7 +29,4 @@ void abbe_brushing_grain(const abbe_brushing *b, const double p[3], const double
 /* Moves it with its object, by an affine 4x4 matrix. */
 void abbe_brushing_move(abbe_brushing *b, const double matrix[16]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

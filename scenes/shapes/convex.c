@@ -245,7 +245,6 @@ static abbe_result judge(search *s, abbe_convex *out, abbe_error *error) {
 
 abbe_result abbe_convex_find(const abbe_mesh *mesh, size_t max_planes, double (*plane)[4],
                              uint32_t *plane_of, abbe_convex *out, abbe_error *error) {
-  ABBE_REQUIRE(mesh && plane && out, error);
   memset(out, 0, sizeof *out);
   if (mesh->face_count == 0 || max_planes == 0 || max_planes > 4096) return ABBE_OK;
   search s = {.mesh = mesh, .most = max_planes};

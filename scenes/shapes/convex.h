@@ -14,10 +14,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* How far the corners of a triangle may lie off its plane, and in front of others, of the diagonal
  * of the mesh's bounds: the least that makes a solid of it is taken. Above the first, what is
  * beside a plane lies ABBE_CONVEX_CLEAR times as far off or meets it at ABBE_CONVEX_CLEAR_RAD, so
@@ -68,7 +64,4 @@ abbe_result abbe_convex_flatten(abbe_mesh *mesh, double share, size_t max_planes
 /* The verdict as a part of a sentence whose subject is "it". */
 void abbe_convex_reason(const abbe_convex *convex, char *text, size_t size);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -136,7 +136,6 @@ static abbe_result check(const abbe_knot *k, abbe_error *error) {
 }
 
 abbe_result abbe_knot_make(const abbe_knot *knot, abbe_mesh *out, abbe_error *error) {
-  ABBE_REQUIRE(knot && out, error);
   memset(out, 0, sizeof *out);
   const abbe_knot k = filled_in(knot);
   abbe_result result = check(&k, error);

@@ -12,10 +12,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_KNOT_MAX_SEGMENTS 4096
 #define ABBE_KNOT_MAX_WINDINGS 16
 #define ABBE_KNOT_MAX_SPINES 1024
@@ -38,7 +34,4 @@ abbe_result abbe_knot_make(const abbe_knot *knot, abbe_mesh *out, abbe_error *er
 double abbe_knot_length(const abbe_knot *knot);
 double abbe_knot_room(const abbe_knot *knot);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -77,7 +77,6 @@ static abbe_result split_in_four(abbe_mesh *mesh, abbe_error *error) {
 }
 
 abbe_result abbe_shape_sphere(double radius, size_t levels, abbe_mesh *out, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   memset(out, 0, sizeof *out);
   if (!is_length(radius)) return refuse_length("sphere", "radius", radius, error);
   if (levels > 9)
@@ -102,7 +101,6 @@ abbe_result abbe_shape_sphere(double radius, size_t levels, abbe_mesh *out, abbe
 
 abbe_result abbe_shape_ring(double major, double minor, size_t around, size_t across,
                             abbe_mesh *out, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   memset(out, 0, sizeof *out);
   if (!is_length(major)) return refuse_length("ring", "major radius", major, error);
   if (!is_length(minor)) return refuse_length("ring", "minor radius", minor, error);
@@ -138,7 +136,6 @@ abbe_result abbe_shape_ring(double major, double minor, size_t around, size_t ac
 abbe_result abbe_shape_gem(size_t sides, double girdle_radius, double table_radius,
                            double crown_height, double pavilion_depth, abbe_mesh *out,
                            abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   memset(out, 0, sizeof *out);
   if (sides < 3 || sides > 1024)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -173,7 +170,6 @@ abbe_result abbe_shape_gem(size_t sides, double girdle_radius, double table_radi
 
 abbe_result abbe_shape_prism(double apex_rad, double side, double length, abbe_mesh *out,
                              abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   memset(out, 0, sizeof *out);
   if (!is_length(side)) return refuse_length("prism", "side", side, error);
   if (!is_length(length)) return refuse_length("prism", "length", length, error);
@@ -197,7 +193,6 @@ abbe_result abbe_shape_prism(double apex_rad, double side, double length, abbe_m
 }
 
 abbe_result abbe_shape_rectangle(double width, double height, abbe_mesh *out, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   memset(out, 0, sizeof *out);
   if (!is_length(width)) return refuse_length("rectangle", "width", width, error);
   if (!is_length(height)) return refuse_length("rectangle", "height", height, error);
@@ -217,7 +212,6 @@ abbe_result abbe_shape_rectangle(double width, double height, abbe_mesh *out, ab
 }
 
 abbe_result abbe_shape_box(const double size[3], abbe_mesh *out, abbe_error *error) {
-  ABBE_REQUIRE(size && out, error);
   memset(out, 0, sizeof *out);
   for (int k = 0; k < 3; k++)
     if (!is_length(size[k])) return refuse_length("box", "edge", size[k], error);
@@ -331,7 +325,6 @@ static void lathe_segment(const double (*profile)[2], size_t count, size_t i, si
 
 abbe_result abbe_shape_lathe(const double (*profile)[2], size_t count, size_t around,
                              abbe_mesh *out, abbe_error *error) {
-  ABBE_REQUIRE(profile && out, error);
   memset(out, 0, sizeof *out);
   abbe_result result = check_profile(profile, count, around, error);
   if (result != ABBE_OK) return result;
@@ -347,7 +340,6 @@ abbe_result abbe_shape_lathe(const double (*profile)[2], size_t count, size_t ar
 
 abbe_result abbe_shape_round_profile(const double (*profile)[2], size_t count, size_t times,
                                      double (**out)[2], size_t *out_count, abbe_error *error) {
-  ABBE_REQUIRE(profile && out && out_count, error);
   *out = NULL;
   *out_count = 0;
   size_t final = count;

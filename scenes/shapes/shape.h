@@ -11,10 +11,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_SHAPE_MAX_PROFILE 4096u /* points of a lathe profile */
 
 /* An icosahedron subdivided `levels` times onto the sphere: 20 * 4^levels faces. */
@@ -46,7 +42,4 @@ abbe_result abbe_shape_lathe(const double (*profile)[2], size_t count, size_t ar
 abbe_result abbe_shape_round_profile(const double (*profile)[2], size_t count, size_t times,
                                      double (**out)[2], size_t *out_count, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

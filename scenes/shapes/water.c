@@ -306,7 +306,6 @@ static void make_walls(const size_t cells[2], double depth, abbe_mesh *out, size
 }
 
 abbe_result abbe_water_make(const abbe_water *water, abbe_mesh *out, abbe_error *error) {
-  ABBE_REQUIRE(water && out, error);
   memset(out, 0, sizeof *out);
   size_t cells[2] = {0}, face = 0;
   surface s = {.water = water};

@@ -14,10 +14,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_WATER_MOST_WAVES 64u
 #define ABBE_WATER_MOST_DROPS 64u /* whose rings are there at one time */
 #define ABBE_WATER_MOST_CELLS 2048u
@@ -63,7 +59,4 @@ double abbe_water_frequency(double wavenumber, double depth);
  * deep; ABBE_NO_MEMORY. */
 abbe_result abbe_water_make(const abbe_water *water, abbe_mesh *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -294,7 +294,6 @@ static abbe_result read_stones(building *b, const char *path, abbe_error *error)
 
 abbe_result abbe_studio_scene(const char *path, const abbe_studio *studio, const char *folder,
                               char **out, size_t *size, abbe_error *error) {
-  ABBE_REQUIRE(path && folder && out && size, error);
   static const struct {
     const char *text;
     const size_t *size;

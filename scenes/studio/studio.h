@@ -13,10 +13,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(name): scenes/looks/NAME.yaml. The first is the default. */
 #define ABBE_STUDIO_LOOKS(X)                                                                       \
   X(white) X(black) X(velvet) X(daylight) X(darkfield) X(lightbox) X(dispersion)
@@ -63,7 +59,4 @@ bool abbe_studio_is_stone(const char *path);
 abbe_result abbe_studio_scene(const char *path, const abbe_studio *studio, const char *folder,
                               char **out, size_t *size, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

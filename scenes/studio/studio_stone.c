@@ -148,7 +148,6 @@ static abbe_result read_mesh(const struct kind *kind, const abbe_studio *studio,
 
 abbe_result abbe_studio_stone_read(const char *path, const abbe_studio *studio,
                                    abbe_studio_stone *out, abbe_error *error) {
-  ABBE_REQUIRE(path && studio && out, error);
   const struct kind *kind = kind_of(path);
   *out = (abbe_studio_stone){.path = path, .design = kind != NULL && kind->design};
   if (kind == NULL)

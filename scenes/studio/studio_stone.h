@@ -6,10 +6,6 @@
 #include "scenes/studio/studio.h"
 #include "spectral/materials/material_table.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_studio_stone {
   const char *path;
   bool design;        /* planes; else a mesh */
@@ -29,7 +25,4 @@ abbe_result abbe_studio_stone_read(const char *path, const abbe_studio *studio,
  * by their names in the shipped table; NULL where the table has none. */
 const abbe_material *abbe_studio_nearest(const abbe_material_table *table, double n);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

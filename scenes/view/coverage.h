@@ -9,15 +9,8 @@
 
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* An image of one channel, A, from 0 to 1, rows downwards. samples: 1 to 16. ABBE_NO_MEMORY. */
 abbe_result abbe_coverage_make(const abbe_scene *scene, size_t width, size_t height, size_t samples,
                                abbe_image *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

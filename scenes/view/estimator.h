@@ -14,10 +14,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* With x(d) = origin + d direction, p(d) the place that the light sees in the direction of x(d),
  * and g(d) how far x(d) lies behind p(d), negative before it:
  *
@@ -98,7 +94,4 @@ double abbe_estimator_rate(bool axis, const double direction[3], const double li
 
 const char *abbe_estimator_name(abbe_estimator estimator);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -63,7 +63,6 @@ static bool rises(const double knot[STEPS + 1]) {
 }
 
 abbe_result abbe_map_layout_check(const abbe_map_layout *layout, abbe_error *error) {
-  ABBE_REQUIRE(layout, error);
   const char *fault = fault_of_view(&layout->view);
   if (fault != NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the map's view %s", fault);
@@ -276,7 +275,6 @@ static abbe_result read_all(const abbe_image *image, const char *name, abbe_map_
 
 abbe_result abbe_map_layout_write(const abbe_map_layout *layout, const char *light,
                                   abbe_image *image, abbe_error *error) {
-  ABBE_REQUIRE(layout && image, error);
   abbe_map_layout copy = *layout;
   abbe_result result = abbe_map_layout_check(layout, error);
   if (result == ABBE_OK) result = write_all(&copy, image, error);
@@ -287,7 +285,6 @@ abbe_result abbe_map_layout_write(const abbe_map_layout *layout, const char *lig
 
 abbe_result abbe_map_layout_read(const abbe_image *image, const char *name, abbe_map_layout *out,
                                  abbe_error *error) {
-  ABBE_REQUIRE(image && name && out, error);
   memset(out, 0, sizeof *out);
   abbe_result result = read_all(image, name, out, error);
   if (result != ABBE_OK) memset(out, 0, sizeof *out);

@@ -15,10 +15,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_MAP_LAYOUT_STEPS 128
 
 typedef struct abbe_map_layout {
@@ -76,7 +72,4 @@ abbe_result abbe_map_layout_write(const abbe_map_layout *layout, const char *lig
 abbe_result abbe_map_layout_read(const abbe_image *image, const char *name, abbe_map_layout *out,
                                  abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

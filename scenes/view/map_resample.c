@@ -72,7 +72,6 @@ static abbe_result fill(work *w, abbe_image *out, abbe_error *error) {
 abbe_result abbe_map_resample(const abbe_image *from, const char *name, const abbe_map_layout *to,
                               size_t width, size_t height, size_t parts, abbe_image *out,
                               abbe_error *error) {
-  ABBE_REQUIRE(from && name && to && out, error);
   work w = {.from = from, .to = to, .width = width, .height = height, .parts = parts};
   *out = (abbe_image){0};
   if (parts < 1 || parts > ABBE_MAP_RESAMPLE_MAX_PARTS)

@@ -10,10 +10,6 @@
 
 #include "scenes/view/map_layout.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_MAP_RESAMPLE_MAX_PARTS 64
 
 /* A map of width x height texels, with all channels of `from` (flux a texel, any unit) and its
@@ -25,7 +21,4 @@ abbe_result abbe_map_resample(const abbe_image *from, const char *name, const ab
                               size_t width, size_t height, size_t parts, abbe_image *out,
                               abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -10,10 +10,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_view {
   bool orthographic;
   double origin[3];
@@ -61,7 +57,4 @@ double abbe_view_area(const abbe_view *view);
 /* The shaders' View: six vec4 (origin and kind, right, up, forward, window, range). */
 void abbe_view_pack(const abbe_view *view, float out[24]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -166,7 +166,6 @@ static abbe_result make_room(size_t count, abbe_body_symmetry *out, abbe_error *
 
 abbe_result abbe_body_symmetry_find(const abbe_object *object, const double centre[3],
                                     double radius, abbe_body_symmetry *out, abbe_error *error) {
-  ABBE_REQUIRE(object && centre && out, error);
   abbe_result result = make_room(ABBE_BODY_SYMMETRY_MOST, out, error);
   if (result != ABBE_OK) return result;
   const bool crystal = object->material != NULL && abbe_material_is_uniaxial(object->material);
@@ -184,7 +183,6 @@ abbe_result abbe_body_symmetry_find(const abbe_object *object, const double cent
 
 abbe_result abbe_body_symmetry_make(size_t count, const double (*map)[9], abbe_body_symmetry *out,
                                     abbe_error *error) {
-  ABBE_REQUIRE(map && out, error);
   *out = (abbe_body_symmetry){0};
   bool good = count >= 1 && count <= ABBE_BODY_SYMMETRY_MOST;
   for (size_t i = 0; i < count && good; i++)

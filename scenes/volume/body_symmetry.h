@@ -9,10 +9,6 @@
 
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_BODY_SYMMETRY_MOST 512        /* maps */
 #define ABBE_BODY_SYMMETRY_MOST_MARKS 8192 /* faces of a solid of planes, vertices of another */
 
@@ -38,7 +34,4 @@ void abbe_body_symmetry_free(abbe_body_symmetry *symmetry);
 size_t abbe_body_symmetry_bring(const abbe_body_symmetry *symmetry, const double direction[3],
                                 double out[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

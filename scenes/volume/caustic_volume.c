@@ -14,7 +14,6 @@ static size_t count_of(const abbe_caustic_volume *v) {
 }
 
 abbe_result abbe_caustic_volume_allocate(abbe_caustic_volume *v, abbe_error *error) {
-  ABBE_REQUIRE(v, error);
   const size_t each = v->region.cells * abbe_caustic_volume_channels(v);
   if (each == 0 || v->nodes.count == 0 || v->kind == ABBE_VOLUME_EXITS)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a volume without nodes, cells or values");
@@ -138,7 +137,6 @@ static abbe_result combine(abbe_caustic_volume *v, size_t count, const double *f
 }
 
 abbe_result abbe_caustic_volume_project(abbe_caustic_volume *v, size_t degree, abbe_error *error) {
-  ABBE_REQUIRE(v, error);
   const size_t nodes = v->nodes.count, count = abbe_light_harmonics_count(degree);
   if (v->kind != ABBE_VOLUME_VECTOR || degree == 0 || abbe_caustic_volume_is_sum(v) ||
       v->value == NULL)
@@ -177,7 +175,6 @@ static abbe_result keep_modes(abbe_caustic_volume *v, size_t rank, double *mode,
 
 abbe_result abbe_caustic_volume_reduce(abbe_caustic_volume *v, size_t rank, double *left,
                                        abbe_error *error) {
-  ABBE_REQUIRE(v && left, error);
   const size_t nodes = v->nodes.count;
   if (v->kind != ABBE_VOLUME_VECTOR || abbe_caustic_volume_is_sum(v) || v->value == NULL ||
       rank == 0 || rank > nodes || rank > ABBE_CAUSTIC_VOLUME_MOST_RANK)
@@ -202,7 +199,6 @@ abbe_result abbe_caustic_volume_reduce(abbe_caustic_volume *v, size_t rank, doub
 
 abbe_result abbe_caustic_volume_join(abbe_caustic_volume *v, double tolerance, size_t *bytes,
                                      abbe_error *error) {
-  ABBE_REQUIRE(v && bytes, error);
   const size_t channels = abbe_caustic_volume_channels(v), each = v->region.cells * channels;
   abbe_volume_order order;
   *bytes = 0;

@@ -17,10 +17,6 @@
 #include "scenes/volume/volume_body.h"
 #include "scenes/volume/volume_region.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef enum abbe_volume_kind {
   /* F of X, Y and Z, of light with an irradiance of 1 across its beam whose white has Y = 1: what
    * lies before it gets -n . F, where all light comes from the front. */
@@ -137,7 +133,4 @@ void abbe_caustic_volume_flux(const abbe_caustic_volume *volume, const abbe_volu
 void abbe_caustic_volume_ratio(const abbe_caustic_volume *volume, const abbe_volume_sight *sight,
                                const double p[3], double rgb[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -40,7 +40,6 @@ abbe_result abbe_light_exits_make(const abbe_light_nodes *nodes, size_t points,
                                   double radius, double area, size_t cells, abbe_light_exits *out,
                                   abbe_error *error) {
   static const double unit_map[1][9] = {{1, 0, 0, 0, 1, 0, 0, 0, 1}};
-  ABBE_REQUIRE(nodes && point && out, error);
   *out = (abbe_light_exits){.points = points, .radius = radius, .area = area, .cells = cells};
   if (points < 1 || points > ABBE_LIGHT_EXITS_MOST || !(radius > 0) || !(area > 0) || cells == 0 ||
       nodes->count < 2)

@@ -18,10 +18,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_LIGHT_EXITS_MOST 131072 /* points */
 #define ABBE_LIGHT_EXITS_BINS 256    /* of wavelengths, alike in width */
 
@@ -110,7 +106,4 @@ void abbe_light_exits_point(const abbe_light_exits *exits, size_t point, double 
 size_t abbe_light_exits_at(const abbe_light_exits *exits, const abbe_exit_aim *aim, size_t point,
                            const double (*plane)[4], size_t planes, abbe_exit_ray ray[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -35,7 +35,6 @@ void abbe_light_harmonics_at(size_t degree, const double d[3], double *value) {
 /* (B^T B)^-1 B^T of the harmonics B at the nodes. */
 abbe_result abbe_light_harmonics_fit(const abbe_light_nodes *nodes, size_t degree, double *fit,
                                      abbe_error *error) {
-  ABBE_REQUIRE(nodes && fit, error);
   const size_t count = abbe_light_harmonics_count(degree);
   if (degree > ABBE_LIGHT_HARMONICS_MOST || count > nodes->count)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

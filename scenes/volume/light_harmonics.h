@@ -6,10 +6,6 @@
 
 #include "scenes/volume/light_nodes.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_LIGHT_HARMONICS_MOST 12 /* degree */
 #define ABBE_LIGHT_HARMONICS_MOST_COUNT 169
 
@@ -28,7 +24,4 @@ void abbe_light_harmonics_at(size_t degree, const double direction[3], double *v
 abbe_result abbe_light_harmonics_fit(const abbe_light_nodes *nodes, size_t degree, double *fit,
                                      abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

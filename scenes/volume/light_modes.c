@@ -57,7 +57,6 @@ static bool decompose(size_t nodes, double *square, double *singular, double *mo
 
 abbe_result abbe_light_modes_find(size_t nodes, size_t each, const uint16_t *value,
                                   double *singular, double *mode, abbe_error *error) {
-  ABBE_REQUIRE(value && singular && mode, error);
   if (nodes == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "modes of no nodes: 1 and more have some");
   double *square = calloc(nodes * nodes, sizeof *square);

@@ -10,10 +10,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Of halves value[nodes][each]: singular values that fall, singular[nodes], and modes in their
  * order, mode[nodes][nodes], a mode a row. Modes are orthogonal, of mean square 1 over the nodes;
  * the values times a mode, over the number of nodes, are its term. What is left out by the terms
@@ -22,7 +18,4 @@ extern "C" {
 abbe_result abbe_light_modes_find(size_t nodes, size_t each, const uint16_t *value,
                                   double *singular, double *mode, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -17,7 +17,6 @@ static abbe_result make_one(const double axis[3], abbe_light_nodes *out, abbe_er
 
 abbe_result abbe_light_nodes_make(size_t count, const double axis[3], abbe_light_nodes *out,
                                   abbe_error *error) {
-  ABBE_REQUIRE(axis && out, error);
   *out = (abbe_light_nodes){0};
   if (count == 1) return make_one(axis, out, error);
   for (size_t levels = 0; levels <= 4; levels++) {

@@ -6,10 +6,6 @@
 
 #include "scenes/volume/sphere_mesh.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_LIGHT_NODES_MOST 2562
 
 /* The corners of a subdivided icosahedron, or one direction alone, for what looks the same from all
@@ -44,7 +40,4 @@ void abbe_light_nodes_blend(const abbe_light_nodes *nodes, const double to_light
  * row-major; of opposite directions about any axis across them. */
 void abbe_light_nodes_turn(const double to_light[3], const double node[3], double turn[9]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -166,7 +166,6 @@ static bool make_icosahedron(abbe_sphere_mesh *m) {
 }
 
 abbe_result abbe_sphere_mesh_geodesic(size_t levels, abbe_sphere_mesh *out, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   *out = (abbe_sphere_mesh){0};
   if (levels > ABBE_SPHERE_MESH_MOST_LEVELS)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -187,7 +186,6 @@ static uint32_t corner_at(size_t side, size_t i, size_t j) {
 }
 
 abbe_result abbe_sphere_mesh_octahedral(size_t side, abbe_sphere_mesh *out, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   *out = (abbe_sphere_mesh){0};
   if (side < 2 || side > ABBE_SPHERE_MESH_MOST_SIDE || side % 2 != 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

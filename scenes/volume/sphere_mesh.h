@@ -11,10 +11,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_SPHERE_MESH_MOST_LEVELS 6 /* 40962 corners, 81920 faces */
 #define ABBE_SPHERE_MESH_MOST_SIDE 256
 
@@ -51,7 +47,4 @@ double abbe_sphere_mesh_area(const abbe_sphere_mesh *mesh, size_t face);
 void abbe_octahedral_place(const double d[3], double uv[2]);
 void abbe_octahedral_direction(const double uv[2], double d[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

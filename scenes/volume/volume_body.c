@@ -58,7 +58,6 @@ static void choose_anchors(const abbe_object *o, const double centre[3], abbe_vo
 
 abbe_result abbe_volume_body_make(const abbe_object *object, abbe_volume_body *out,
                                   abbe_error *error) {
-  ABBE_REQUIRE(object && out, error);
   *out = (abbe_volume_body){.ball = is_ball(object),
                             .radius = object->exact.radius,
                             .vertices = object->mesh.vertex_count,
@@ -113,7 +112,6 @@ static abbe_result check_kind(const abbe_volume_body *b, const abbe_object *o, a
 
 abbe_result abbe_volume_body_find(const abbe_volume_body *body, const abbe_object *object,
                                   abbe_volume_place *out, abbe_error *error) {
-  ABBE_REQUIRE(body && object && out, error);
   *out = (abbe_volume_place){.turn = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   abbe_result result = check_kind(body, object, error);
   if (result != ABBE_OK) return result;

@@ -6,10 +6,6 @@
 
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_volume_body {
   char name[128], material[128]; /* of the object; what it is made of */
   bool ball;                     /* looks the same from all sides */
@@ -33,7 +29,4 @@ abbe_result abbe_volume_body_make(const abbe_object *object, abbe_volume_body *o
 abbe_result abbe_volume_body_find(const abbe_volume_body *body, const abbe_object *object,
                                   abbe_volume_place *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -196,7 +196,6 @@ static abbe_result write_maps(const abbe_body_symmetry *s, abbe_image *image, ab
 
 abbe_result abbe_volume_file_write(const char *path, const abbe_caustic_volume *v,
                                    abbe_error *error) {
-  ABBE_REQUIRE(path && v, error);
   if (v->value == NULL && v->exits.points == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: the volume has no values", path);
   const size_t total = total_of(v), channels = channels_of(v);
@@ -454,7 +453,6 @@ static abbe_result take_values(const char *path, const abbe_image *image, abbe_c
 }
 
 abbe_result abbe_volume_file_read(const char *path, abbe_caustic_volume *out, abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   *out = (abbe_caustic_volume){0};
   abbe_image image = {0};
   abbe_region_desc region;

@@ -11,10 +11,6 @@
 
 #include "scenes/volume/caustic_volume.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* ABBE_IO, ABBE_NO_MEMORY; ABBE_UNSUPPORTED for more values than a picture has pixels. */
 abbe_result abbe_volume_file_write(const char *path, const abbe_caustic_volume *volume,
                                    abbe_error *error);
@@ -24,7 +20,4 @@ abbe_result abbe_volume_file_write(const char *path, const abbe_caustic_volume *
  * abbe_exr_read and abbe_volume_region_make. */
 abbe_result abbe_volume_file_read(const char *path, abbe_caustic_volume *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

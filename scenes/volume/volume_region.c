@@ -44,7 +44,6 @@ static abbe_result make_shells(abbe_volume_region *r, abbe_error *error) {
 
 abbe_result abbe_volume_region_make(const abbe_region_desc *desc, abbe_volume_region *out,
                                     abbe_error *error) {
-  ABBE_REQUIRE(desc && out, error);
   *out = (abbe_volume_region){.desc = *desc};
   abbe_result result = check(desc, error);
   if (result == ABBE_OK && desc->kind == ABBE_REGION_GRID) {

@@ -11,10 +11,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef enum abbe_region_kind {
   ABBE_REGION_GRID,      /* cubes */
   ABBE_REGION_GEODESIC,  /* shells of a subdivided icosahedron's faces */
@@ -80,7 +76,4 @@ size_t abbe_volume_region_walk(const abbe_volume_region *region, const double o[
 size_t abbe_volume_region_between(const abbe_volume_region *region, const double p[3],
                                   size_t cell[8], double weight[8]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

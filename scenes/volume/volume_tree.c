@@ -29,7 +29,6 @@ static size_t place_of(const abbe_volume_region *r, size_t cell, size_t levels) 
 
 abbe_result abbe_volume_order_make(const abbe_volume_region *r, abbe_volume_order *out,
                                    abbe_error *error) {
-  ABBE_REQUIRE(r && out, error);
   const bool geodesic = r->desc.kind == ABBE_REGION_GEODESIC;
   *out = (abbe_volume_order){0};
   if (r->cells == 0) return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a region without cells");
@@ -127,7 +126,6 @@ static abbe_result gather(const joining *j, abbe_volume_tree *out, abbe_error *e
 abbe_result abbe_volume_tree_make(const abbe_volume_order *order, size_t channels,
                                   const uint16_t *value, double tolerance, abbe_volume_tree *out,
                                   abbe_error *error) {
-  ABBE_REQUIRE(order && value && out, error);
   *out = (abbe_volume_tree){0};
   if (!(tolerance >= 0) || channels < 1 || channels > 9)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

@@ -10,10 +10,6 @@
 
 #include "scenes/volume/volume_region.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* An order of cells in which those that may be joined follow each other. */
 typedef struct abbe_volume_order {
   size_t cells, branch; /* 4 or 8 that are joined at a time */
@@ -54,7 +50,4 @@ static inline size_t abbe_volume_tree_bytes(const abbe_volume_tree *tree, size_t
   return tree->leaves * (sizeof *tree->first + channels * sizeof *tree->value);
 }
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -360,7 +360,6 @@ static abbe_result finish(reader *r) {
 abbe_result abbe_csv_points_parse(const char *text, size_t size, const char *name,
                                   const abbe_csv_options *options, abbe_csv_points *out,
                                   abbe_report *report, abbe_error *error) {
-  ABBE_REQUIRE(text && name && out, error);
   *out = (abbe_csv_points){0};
   char *clean = NULL;
   size_t length = 0;
@@ -385,7 +384,6 @@ abbe_result abbe_csv_points_parse(const char *text, size_t size, const char *nam
 
 abbe_result abbe_csv_points_load(const char *path, const abbe_csv_options *options,
                                  abbe_csv_points *out, abbe_report *report, abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   *out = (abbe_csv_points){0};
   char *text = NULL;
   size_t size = 0;

@@ -16,10 +16,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* What a third column holds where no header says so. */
 typedef enum abbe_csv_third { ABBE_CSV_UNCERTAINTY, ABBE_CSV_K, ABBE_CSV_IGNORED } abbe_csv_third;
 
@@ -61,7 +57,4 @@ abbe_result abbe_csv_points_parse(const char *text, size_t size, const char *nam
 abbe_result abbe_csv_points_load(const char *path, const abbe_csv_options *options,
                                  abbe_csv_points *out, abbe_report *report, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -204,7 +204,6 @@ static const char *wrong_conductor(const abbe_dispersion *d) {
 }
 
 abbe_result abbe_dispersion_check(const abbe_dispersion *dispersion, abbe_error *error) {
-  ABBE_REQUIRE(dispersion, error);
   if (!known(dispersion->model))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no dispersion model %d",
                           (int)dispersion->model);

@@ -14,10 +14,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name in files, formula); c[0], c[1], … are the coefficients, L is lambda in um. */
 #define ABBE_DISPERSION_MODELS(X)                                                             \
   X(CONSTANT, "constant", "n = c0")                                                           \
@@ -88,7 +84,4 @@ const char *abbe_dispersion_model_name(abbe_dispersion_model model);
 /* The formula as one line of text, for people. */
 const char *abbe_dispersion_model_formula(abbe_dispersion_model model);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -125,7 +125,6 @@ static abbe_result check_support(const abbe_fit_data *data, const abbe_fit_weake
 
 abbe_result abbe_fit_make(const abbe_index_points *points, const abbe_fit_request *request,
                           abbe_fit *out, abbe_error *error) {
-  ABBE_REQUIRE(points && request && out, error);
   *out = (abbe_fit){0};
   abbe_fit_data data;
   abbe_fit_weakest weakest = {0};
@@ -154,7 +153,6 @@ enum { MAX_CURVE_TERMS = 8, MAX_CURVE_POINTS = 100001 }; /* 1 nm steps up to 100
 abbe_result abbe_fit_dispersion(const abbe_dispersion *source, size_t terms, double min_nm,
                                 double max_nm, abbe_dispersion *out, double *max_error,
                                 abbe_error *error) {
-  ABBE_REQUIRE(source && out, error);
   *out = (abbe_dispersion){0};
   if (terms < 1 || terms > MAX_CURVE_TERMS)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

@@ -14,10 +14,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef enum abbe_fit_form {
   ABBE_FIT_CAUCHY,    /* n = c0 + c1 L^-2 + …: a coefficient a term */
   ABBE_FIT_SELLMEIER, /* n^2 - 1 = sum of B L^2 / (L^2 - C): two coefficients a term */
@@ -71,7 +67,4 @@ double abbe_fit_standard_error(const abbe_fit *fit, size_t i);
 
 const char *abbe_fit_form_name(abbe_fit_form form);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

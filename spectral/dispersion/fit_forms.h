@@ -4,10 +4,6 @@
 
 #include "spectral/dispersion/fit.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The points of one fit: those within its range. uncertainty is NULL where all weigh the same. */
 typedef struct abbe_fit_data {
   size_t count, terms;
@@ -28,7 +24,4 @@ abbe_result abbe_fit_cauchy(const abbe_fit_data *data, abbe_fit *fit, abbe_fit_w
 abbe_result abbe_fit_sellmeier(const abbe_fit_data *data, abbe_fit *fit, abbe_fit_weakest *weakest,
                                abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -6,7 +6,6 @@ abbe_result abbe_index_difference_of_points(const abbe_dispersion *a,
                                             const abbe_index_points *points, double min_nm,
                                             double max_nm, abbe_index_difference *out,
                                             abbe_error *error) {
-  ABBE_REQUIRE(a && points && out, error);
   abbe_index_difference found = {.max = -1};
   size_t used = 0;
   for (size_t i = 0; i < points->count; i++) {
@@ -37,7 +36,6 @@ abbe_result abbe_index_difference_of_points(const abbe_dispersion *a,
 abbe_result abbe_index_difference_of_curves(const abbe_dispersion *a, const abbe_dispersion *b,
                                             double min_nm, double max_nm,
                                             abbe_index_difference *out, abbe_error *error) {
-  ABBE_REQUIRE(a && b && out, error);
   abbe_index_points points;
   abbe_result result = abbe_index_points_sample(b, min_nm, max_nm, 401, 4001, &points, error);
   if (result == ABBE_OK)

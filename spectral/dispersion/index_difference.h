@@ -6,10 +6,6 @@
 #include "spectral/dispersion/dispersion.h"
 #include "spectral/dispersion/index_points.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_index_difference {
   double rms;    /* root of the mean square of n_a - n_b */
   double mean;   /* of n_a - n_b: what a shift of the whole curve would take away */
@@ -30,7 +26,4 @@ abbe_result abbe_index_difference_of_points(const abbe_dispersion *a,
                                             double max_nm, abbe_index_difference *out,
                                             abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -31,7 +31,6 @@ static abbe_result allocate(abbe_index_points *points, size_t count, bool uncert
 abbe_result abbe_index_points_sample(const abbe_dispersion *dispersion, double min_nm,
                                      double max_nm, size_t at_least, size_t at_most,
                                      abbe_index_points *out, abbe_error *error) {
-  ABBE_REQUIRE(dispersion && out, error);
   *out = (abbe_index_points){.exact = true};
   if (!isfinite(min_nm) || !isfinite(max_nm) || min_nm <= 0 || min_nm >= max_nm)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -100,7 +99,6 @@ static abbe_result take(const abbe_points *points, const char *name, abbe_index_
 
 abbe_result abbe_index_points_parse(const char *text, size_t size, const char *name,
                                     abbe_index_points *out, abbe_error *error) {
-  ABBE_REQUIRE(text && name && out, error);
   *out = (abbe_index_points){0};
   const abbe_csv_options options = {.repeats = true};
   abbe_csv_points csv;
@@ -119,7 +117,6 @@ abbe_result abbe_index_points_parse(const char *text, size_t size, const char *n
 }
 
 abbe_result abbe_index_points_load(const char *path, abbe_index_points *out, abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   *out = (abbe_index_points){0};
   char *text = NULL;
   size_t size = 0;

@@ -13,10 +13,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_INDEX_POINTS_MAX_COUNT 200000
 
 typedef struct abbe_index_points {
@@ -46,7 +42,4 @@ abbe_result abbe_index_points_sample(const abbe_dispersion *dispersion, double m
 
 void abbe_index_points_free(abbe_index_points *points);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -10,7 +10,6 @@ void abbe_points_free(abbe_points *points) {
 }
 
 abbe_result abbe_points_add(abbe_points *points, abbe_point point, abbe_error *error) {
-  ABBE_REQUIRE(points, error);
   if (points->count >= ABBE_SPECTRUM_MAX_COUNT)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "more than %d points",
                           ABBE_SPECTRUM_MAX_COUNT);
@@ -46,7 +45,6 @@ static bool in_order(const abbe_points *points) {
 }
 
 abbe_result abbe_points_sort(abbe_points *points, size_t *dropped, abbe_error *error) {
-  ABBE_REQUIRE(points, error);
   if (dropped != NULL) *dropped = 0;
   if (in_order(points)) return ABBE_OK;
   placed *list = malloc(points->count * sizeof *list);
@@ -67,7 +65,6 @@ abbe_result abbe_points_sort(abbe_points *points, size_t *dropped, abbe_error *e
 
 abbe_result abbe_points_spectrum(const abbe_points *points, abbe_interpolation interpolation,
                                  abbe_spectrum **out, abbe_error *error) {
-  ABBE_REQUIRE(points && out, error);
   double *lambda_nm = malloc((2 * points->count + 1) * sizeof *lambda_nm);
   if (lambda_nm == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu points", points->count);

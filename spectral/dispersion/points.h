@@ -11,10 +11,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_point {
   double lambda_nm, value;
   double error; /* standard uncertainty of value, in its unit; 0 where it is not known */
@@ -41,7 +37,4 @@ abbe_result abbe_points_sort(abbe_points *points, size_t *dropped, abbe_error *e
 abbe_result abbe_points_spectrum(const abbe_points *points, abbe_interpolation interpolation,
                                  abbe_spectrum **out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -8,10 +8,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Between these the ratio of the indices is `dispersion`; POV-Ray's spectrum ends there. */
 #define ABBE_POVRAY_VIOLET_NM 380.0
 #define ABBE_POVRAY_RED_NM 730.0
@@ -29,7 +25,4 @@ double abbe_povray_index_at(const abbe_povray_index *index, double lambda_nm);
 abbe_povray_index abbe_povray_index_fit(const double *lambda_nm, const double *n,
                                         const double *weight, size_t count);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

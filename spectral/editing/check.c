@@ -5,6 +5,7 @@
 #include "spectral/editing/check_parts.h"
 #include "spectral/wavelengths.h"
 
+#include <assert.h>
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -193,7 +194,7 @@ static abbe_result check(const abbe_material *material, size_t row,
 
 abbe_result abbe_check_material(const abbe_material *material, const abbe_material_table *known,
                                 abbe_findings *findings, abbe_error *error) {
-  ABBE_REQUIRE(material && material->name && findings, error);
+  assert(material->name);
   return check(material, 0, known, findings, error);
 }
 
@@ -206,7 +207,6 @@ static int by_row_and_kind(const void *a, const void *b) {
 
 abbe_result abbe_check_table(const abbe_material_table *table, const abbe_material_table *known,
                              abbe_findings *findings, abbe_error *error) {
-  ABBE_REQUIRE(table && findings, error);
   size_t before = findings->count;
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < table->count && result == ABBE_OK; i++)

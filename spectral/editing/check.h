@@ -12,10 +12,6 @@
 #include "spectral/editing/finding.h"
 #include "spectral/materials/material_table.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Adds what there is to say about one material. known may be NULL or hold the material itself.
  * ABBE_NO_MEMORY; finding nothing is ABBE_OK. */
 abbe_result abbe_check_material(const abbe_material *material, const abbe_material_table *known,
@@ -30,7 +26,4 @@ abbe_result abbe_check_table(const abbe_material_table *table, const abbe_materi
  * and Schott's "N-"; NULL where there is none. */
 const abbe_material *abbe_check_namesake(const abbe_material_table *known, const char *name);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -8,10 +8,6 @@
 #include "spectral/materials/material_numbers.h"
 #include "spectral/materials/material_table.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The check of one row. */
 typedef struct abbe_check {
   const abbe_material *material;
@@ -54,7 +50,4 @@ void abbe_check_cover(abbe_check *c);
 abbe_result abbe_check_compare_rows(const abbe_material_table *table, abbe_findings *findings,
                                     abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

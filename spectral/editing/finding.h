@@ -9,10 +9,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name, what it means). */
 #define ABBE_FINDING_KINDS(X)                                                                      \
   X(A_IS_ND, "a-is-n_d", "the column A holds n_d instead of Cauchy's A")                           \
@@ -80,7 +76,4 @@ const char *abbe_finding_kind_name(abbe_finding_kind kind);
 const char *abbe_finding_kind_meaning(abbe_finding_kind kind);
 const char *abbe_finding_weight_name(abbe_finding_weight weight);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

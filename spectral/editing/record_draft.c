@@ -266,7 +266,6 @@ static abbe_result put_field(abbe_table_edit *edit, const char *name, const abbe
 
 abbe_result abbe_record_draft_set(abbe_record_draft *d, size_t index, const char *text,
                                   abbe_error *error) {
-  ABBE_REQUIRE(d && text, error);
   if (index >= d->fields.count)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no field number %zu", index);
   abbe_draft_field *f = &d->fields.field[index];
@@ -311,7 +310,6 @@ static abbe_result put_value(abbe_table_edit *edit, const char *name, const char
 
 abbe_result abbe_record_draft_put(abbe_record_draft *d, const char *key, const char *value,
                                   abbe_error *error) {
-  ABBE_REQUIRE(d && key && value, error);
   if (find_field(&d->fields, key) == NULL && strcmp(key, "coefficients") != 0)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "'%.60s' is not edited here; 'set' and 'check --fix' do it", key);
@@ -325,7 +323,6 @@ abbe_result abbe_record_draft_put(abbe_record_draft *d, const char *key, const c
 }
 
 abbe_result abbe_record_draft_resize(abbe_record_draft *d, bool more, abbe_error *error) {
-  ABBE_REQUIRE(d, error);
   double value[ABBE_DISPERSION_MAX_COEFFICIENTS + 1] = {0};
   size_t count = coefficients_of(&d->fields, value);
   if (count == 0)
@@ -348,7 +345,6 @@ abbe_result abbe_record_draft_resize(abbe_record_draft *d, bool more, abbe_error
 
 abbe_result abbe_record_draft_try(const abbe_record_draft *d, size_t index, const char *text,
                                   abbe_material *out, abbe_error *error) {
-  ABBE_REQUIRE(d && text && out, error);
   *out = (abbe_material){0};
   abbe_table_edit *copy = NULL;
   abbe_material_table table = {0};
@@ -374,7 +370,6 @@ abbe_result abbe_record_draft_try(const abbe_record_draft *d, size_t index, cons
 
 abbe_result abbe_record_draft_open(const char *path, const char *name, abbe_record_draft **out,
                                    abbe_error *error) {
-  ABBE_REQUIRE(name && out, error);
   *out = NULL;
   abbe_record_draft *d = calloc(1, sizeof *d);
   if (d == NULL) return no_memory(error);
@@ -434,7 +429,6 @@ static abbe_result carry(abbe_record_draft *d, abbe_error *error) {
 }
 
 abbe_result abbe_record_draft_save(abbe_record_draft *d, abbe_error *error) {
-  ABBE_REQUIRE(d, error);
   if (d->table.count == 0)
     return abbe_error_set(error, ABBE_SCHEMA, "not saved: %s", abbe_record_draft_trouble(d));
   char *name = strdup(name_of(d));

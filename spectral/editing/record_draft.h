@@ -14,10 +14,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_record_draft abbe_record_draft;
 
 typedef struct abbe_draft_field {
@@ -67,7 +63,4 @@ bool abbe_record_draft_is_changed(const abbe_record_draft *draft);
  * abbe_table_edit_save. The draft goes on from what was saved; undo still leads back. */
 abbe_result abbe_record_draft_save(abbe_record_draft *draft, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -33,7 +33,6 @@ static abbe_result no_memory(abbe_error *error, const char *name) {
 
 abbe_result abbe_table_edit_parse(const char *text, size_t size, const char *name,
                                   abbe_table_edit **out, abbe_error *error) {
-  ABBE_REQUIRE(text && name && out, error);
   *out = NULL;
   abbe_table_edit *edit = calloc(1, sizeof *edit);
   if (edit == NULL) return no_memory(error, name);
@@ -56,7 +55,6 @@ abbe_result abbe_table_edit_parse(const char *text, size_t size, const char *nam
 }
 
 abbe_result abbe_table_edit_open(const char *path, abbe_table_edit **out, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   *out = NULL;
   size_t size = 0;
   if (abbe_material_table_shipped(path, &size) != NULL)
@@ -79,7 +77,6 @@ abbe_result abbe_table_edit_open(const char *path, abbe_table_edit **out, abbe_e
 }
 
 abbe_result abbe_table_edit_make(const char *path, abbe_table_edit **out, abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   static const char empty[] = "materials:\n";
   *out = NULL;
   if (access(path, F_OK) == 0)
@@ -134,7 +131,6 @@ static char *nested(char *rest, const char *value) {
 
 abbe_result abbe_table_edit_set(abbe_table_edit *edit, const char *name, const char *key,
                                 const char *value, abbe_error *error) {
-  ABBE_REQUIRE(edit && name && key && value, error);
   abbe_table_place p;
   abbe_result result = abbe_table_place_key(&edit->yaml, name, key, &p, error);
   if (result != ABBE_OK) return result;
@@ -150,7 +146,6 @@ abbe_result abbe_table_edit_set(abbe_table_edit *edit, const char *name, const c
 
 abbe_result abbe_table_edit_set_text(abbe_table_edit *edit, const char *name, const char *key,
                                      const char *text, abbe_error *error) {
-  ABBE_REQUIRE(edit && name && key && text, error);
   char *quoted = NULL;
   abbe_result result = abbe_yaml_quote_make(text, &quoted, error);
   if (result == ABBE_OK) result = abbe_table_edit_set(edit, name, key, quoted, error);
@@ -160,7 +155,6 @@ abbe_result abbe_table_edit_set_text(abbe_table_edit *edit, const char *name, co
 
 abbe_result abbe_table_edit_set_number(abbe_table_edit *edit, const char *name, const char *key,
                                        double value, abbe_error *error) {
-  ABBE_REQUIRE(edit && name && key, error);
   char text[ABBE_NUMBER_TEXT_SIZE];
   return abbe_table_edit_set(edit, name, key, abbe_number_text(value, text), error);
 }
@@ -187,7 +181,6 @@ static abbe_result set_each(abbe_table_edit *edit, const char *name, const char 
 
 abbe_result abbe_table_edit_set_numbers(abbe_table_edit *edit, const char *name, const char *key,
                                         const double *value, size_t count, abbe_error *error) {
-  ABBE_REQUIRE(edit && name && key && value, error);
   abbe_table_place p;
   abbe_result result = abbe_table_place_key(&edit->yaml, name, key, &p, error);
   if (result != ABBE_OK) return result;
@@ -207,7 +200,6 @@ abbe_result abbe_table_edit_set_numbers(abbe_table_edit *edit, const char *name,
 
 abbe_result abbe_table_edit_unset(abbe_table_edit *edit, const char *name, const char *key,
                                   abbe_error *error) {
-  ABBE_REQUIRE(edit && name && key, error);
   abbe_table_place p;
   abbe_result result = abbe_table_place_key(&edit->yaml, name, key, &p, error);
   if (result == ABBE_OK && !p.found) result = abbe_table_place_none(&edit->yaml, name, key, error);
@@ -216,7 +208,6 @@ abbe_result abbe_table_edit_unset(abbe_table_edit *edit, const char *name, const
 }
 
 abbe_result abbe_table_edit_add(abbe_table_edit *edit, const char *record, abbe_error *error) {
-  ABBE_REQUIRE(edit && record, error);
   size_t index;
   abbe_result result = abbe_table_place_list(&edit->yaml, &index, error);
   if (result != ABBE_OK) return result;
@@ -224,7 +215,6 @@ abbe_result abbe_table_edit_add(abbe_table_edit *edit, const char *record, abbe_
 }
 
 abbe_result abbe_table_edit_remove(abbe_table_edit *edit, const char *name, abbe_error *error) {
-  ABBE_REQUIRE(edit && name, error);
   size_t index = 0;
   abbe_yaml_node record, list = abbe_table_place_records(&edit->yaml);
   abbe_result result = abbe_table_place_record(&edit->yaml, name, &index, &record, error);
@@ -238,7 +228,6 @@ abbe_result abbe_table_edit_remove(abbe_table_edit *edit, const char *name, abbe
 
 abbe_result abbe_table_edit_rename(abbe_table_edit *edit, const char *name, const char *new_name,
                                    abbe_error *error) {
-  ABBE_REQUIRE(edit && name && new_name, error);
   size_t index = 0, other = 0;
   abbe_yaml_node record, taken;
   abbe_result result = abbe_table_place_record(&edit->yaml, name, &index, &record, error);
@@ -253,7 +242,6 @@ abbe_result abbe_table_edit_rename(abbe_table_edit *edit, const char *name, cons
 
 abbe_result abbe_table_edit_record(abbe_table_edit *edit, const char *name, char **out,
                                    abbe_error *error) {
-  ABBE_REQUIRE(edit && name && out, error);
   size_t index = 0;
   abbe_yaml_node record;
   abbe_result result = abbe_table_place_record(&edit->yaml, name, &index, &record, error);
@@ -263,7 +251,6 @@ abbe_result abbe_table_edit_record(abbe_table_edit *edit, const char *name, char
 
 abbe_result abbe_table_edit_get(const abbe_table_edit *edit, const char *name, const char *key,
                                 char **out, abbe_error *error) {
-  ABBE_REQUIRE(edit && name && key && out, error);
   *out = NULL;
   abbe_table_place p;
   abbe_error why = {0};
@@ -292,7 +279,6 @@ char *abbe_table_edit_first_name(const abbe_table_edit *edit) {
 }
 
 abbe_result abbe_table_edit_revert(abbe_table_edit *edit, abbe_error *error) {
-  ABBE_REQUIRE(edit, error);
   static const char empty[] = "materials:\n";
   abbe_yaml_edit before;
   const char *text = edit->is_new ? empty : edit->before;
@@ -307,7 +293,6 @@ abbe_result abbe_table_edit_revert(abbe_table_edit *edit, abbe_error *error) {
 /* ---- what becomes of them ---- */
 
 abbe_result abbe_table_edit_check(const abbe_table_edit *edit, abbe_error *error) {
-  ABBE_REQUIRE(edit, error);
   abbe_material_table table;
   abbe_result result =
       abbe_material_table_parse(edit->yaml.text, edit->yaml.size, edit->yaml.name, &table, error);
@@ -316,7 +301,6 @@ abbe_result abbe_table_edit_check(const abbe_table_edit *edit, abbe_error *error
 }
 
 abbe_result abbe_table_edit_diff(const abbe_table_edit *edit, char **out, abbe_error *error) {
-  ABBE_REQUIRE(edit && out, error);
   return abbe_text_diff(edit->before, edit->before_size, edit->yaml.text, edit->yaml.size,
                         edit->yaml.name, out, error);
 }
@@ -350,7 +334,6 @@ static bool was_a_table(const abbe_table_edit *edit) {
 }
 
 abbe_result abbe_table_edit_allow(const abbe_table_edit *edit, abbe_error *error) {
-  ABBE_REQUIRE(edit, error);
   abbe_error why = {0};
   abbe_result result = abbe_table_edit_check(edit, &why);
   if (result == ABBE_OK || !was_a_table(edit)) return ABBE_OK;
@@ -358,7 +341,6 @@ abbe_result abbe_table_edit_allow(const abbe_table_edit *edit, abbe_error *error
 }
 
 abbe_result abbe_table_edit_save(abbe_table_edit *edit, abbe_error *error) {
-  ABBE_REQUIRE(edit, error);
   if (edit->in_memory)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: was read from memory, not from a file",
                           edit->yaml.name);

@@ -13,10 +13,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_table_edit abbe_table_edit;
 
 /* Reads the file at path (at most 16 MiB). ABBE_UNSUPPORTED, with what to do instead, for NULL, the
@@ -89,7 +85,4 @@ abbe_result abbe_table_edit_diff(const abbe_table_edit *edit, char **out, abbe_e
  * changes nothing is written. */
 abbe_result abbe_table_edit_save(abbe_table_edit *edit, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

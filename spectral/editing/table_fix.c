@@ -73,7 +73,6 @@ static abbe_result pass(abbe_table_edit *edit, const abbe_material_table *known,
 
 abbe_result abbe_table_fix_make(abbe_table_edit *edit, const abbe_material_table *known,
                                 abbe_table_fix *out, abbe_error *error) {
-  ABBE_REQUIRE(edit && out, error);
   *out = (abbe_table_fix){0};
   size_t set = 1;
   abbe_result result = ABBE_OK;

@@ -12,10 +12,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_table_fix {
   size_t fixed;     /* values that were set */
   size_t refused;   /* that could not be, since a name stands twice or the text cannot carry it */
@@ -28,7 +24,4 @@ typedef struct abbe_table_fix {
 abbe_result abbe_table_fix_make(abbe_table_edit *edit, const abbe_material_table *known,
                                 abbe_table_fix *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -9,10 +9,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The index of the pair `materials` of the root, where it is a list or empty. */
 abbe_result abbe_table_place_list(const abbe_yaml_edit *edit, size_t *index, abbe_error *error);
 /* That list; absent where there is none. */
@@ -42,7 +38,4 @@ size_t abbe_table_place_after(const abbe_yaml *yaml, abbe_yaml_node record, cons
 abbe_result abbe_table_place_none(const abbe_yaml_edit *edit, const char *name, const char *key,
                                   abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -395,7 +395,6 @@ static abbe_result finish(reader *r, const char *name) {
 
 abbe_result abbe_agf_parse(const char *bytes, size_t size, const char *name,
                            abbe_material_table *out, abbe_report *report, abbe_error *error) {
-  ABBE_REQUIRE(bytes && name && out, error);
   *out = (abbe_material_table){0};
   char *text = NULL;
   size_t length = 0;
@@ -417,7 +416,6 @@ abbe_result abbe_agf_parse(const char *bytes, size_t size, const char *name,
 
 abbe_result abbe_agf_load(const char *path, abbe_material_table *out, abbe_report *report,
                           abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   *out = (abbe_material_table){0};
   char *bytes = NULL;
   size_t size = 0;

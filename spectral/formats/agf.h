@@ -14,10 +14,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The glasses of size bytes of catalogue in its order, each fit for a table (abbe_material_check);
  * name stands for the file in messages and sources. Indices are relative to air at the catalogue's
  * reference temperature (that of TD), the range is that of LD, internal transmittances (IT) become
@@ -29,7 +25,4 @@ abbe_result abbe_agf_parse(const char *bytes, size_t size, const char *name,
 abbe_result abbe_agf_load(const char *path, abbe_material_table *out, abbe_report *report,
                           abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -5,10 +5,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_AGF_MAX_FIELDS = 16 };
 
 /* Numbers of a record that may go on over several lines. NaN stands for '-'. */
@@ -29,7 +25,4 @@ void abbe_agf_numbers_read(const char *c, abbe_agf_numbers *to);
 /* Number i, or otherwise where it is not there or not known. */
 double abbe_agf_number(const abbe_agf_numbers *numbers, size_t i, double otherwise);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

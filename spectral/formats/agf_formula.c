@@ -105,7 +105,6 @@ static void read_formula(int number, const double *c, abbe_dispersion *d) {
 
 abbe_result abbe_agf_formula_read(const abbe_agf_formula *formula, abbe_dispersion *out,
                                   abbe_error *error) {
-  ABBE_REQUIRE(formula && out, error);
   *out = (abbe_dispersion){0};
   if (abbe_agf_formula_name(formula->number) == NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -248,7 +247,6 @@ static bool reads_back(const abbe_agf_formula *formula, const abbe_dispersion *d
 abbe_result abbe_agf_formula_write(const abbe_dispersion *dispersion, double min_nm, double max_nm,
                                    abbe_agf_formula *out, abbe_agf_fidelity *fidelity,
                                    double *max_error, abbe_error *error) {
-  ABBE_REQUIRE(dispersion && out && fidelity && max_error, error);
   *max_error = 0;
   *out = (abbe_agf_formula){0};
   if (write_same(dispersion, out)) {

@@ -11,10 +11,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_AGF_COEFFICIENTS 10
 
 typedef struct abbe_agf_formula {
@@ -43,7 +39,4 @@ abbe_result abbe_agf_formula_write(const abbe_dispersion *dispersion, double min
                                    abbe_agf_formula *out, abbe_agf_fidelity *fidelity,
                                    double *max_error, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -301,7 +301,6 @@ static abbe_result write_glass(const abbe_material *m, abbe_summary *t, abbe_rep
 
 abbe_result abbe_agf_write(const abbe_material_table *table, FILE *to, abbe_report *report,
                            abbe_error *error) {
-  ABBE_REQUIRE(table && to, error);
   abbe_summary t = {0};
   fputs("CC ", to);
   put_line(to, table->description != NULL ? table->description : "written by Abbe");

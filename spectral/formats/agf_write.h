@@ -13,17 +13,10 @@
 
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Writes the table to the stream. In report: the materials left out (SKIPPED), what AGF has no place
  * for and the errors of fits (LOST), and what is written in another way (CHANGED); what happens to
  * many materials is one note with their number. ABBE_IO where the stream fails; ABBE_NO_MEMORY. */
 abbe_result abbe_agf_write(const abbe_material_table *table, FILE *to, abbe_report *report,
                            abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -12,10 +12,6 @@
 
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Zero: the record's range within 380 to 780 nm, or all of it where it lies outside; 5 nm. */
 typedef struct abbe_csv_sampling {
   double min_nm, max_nm, step_nm;
@@ -28,7 +24,4 @@ typedef struct abbe_csv_sampling {
 abbe_result abbe_csv_write(const abbe_material *material, const abbe_csv_sampling *sampling,
                            FILE *to, abbe_report *report, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -273,7 +273,6 @@ static abbe_result check_target(const runner *r, abbe_error *error) {
 
 abbe_result abbe_import_batch_run(const abbe_import_batch *batch, abbe_material_table *into,
                                   abbe_report *report, abbe_error *error) {
-  ABBE_REQUIRE(batch && into, error);
   if (batch->count == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no file or folder to import is named");
   runner r = {.batch = batch, .table = into, .report = report};

@@ -13,10 +13,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_import_batch {
   const char *const *path; /* [count] files and folders */
   size_t count;
@@ -40,7 +36,4 @@ typedef struct abbe_import_batch {
 abbe_result abbe_import_batch_run(const abbe_import_batch *batch, abbe_material_table *into,
                                   abbe_report *report, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

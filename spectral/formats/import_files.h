@@ -11,10 +11,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_import_file {
   char *path;
   bool found; /* in a folder; false where it was named */
@@ -34,7 +30,4 @@ void abbe_import_files_free(abbe_import_files *files);
 abbe_result abbe_import_files_add(abbe_import_files *files, const char *path, abbe_report *report,
                                   abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

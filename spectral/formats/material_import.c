@@ -201,7 +201,6 @@ static abbe_result parse_as(abbe_import_format format, const char *bytes, size_t
 abbe_result abbe_import_parse(const char *bytes, size_t size, const char *path,
                               const abbe_import_options *options, abbe_material_table *into,
                               abbe_report *report, abbe_error *error) {
-  ABBE_REQUIRE(bytes && path && into, error);
   static const abbe_import_options defaults = {0};
   const abbe_import_options *o = options != NULL ? options : &defaults;
   abbe_import_format format = o->format;
@@ -227,7 +226,6 @@ static abbe_result load_store(const char *path, abbe_material_table *into, abbe_
 
 abbe_result abbe_import_load(const char *path, const abbe_import_options *options,
                              abbe_material_table *into, abbe_report *report, abbe_error *error) {
-  ABBE_REQUIRE(path && into, error);
   char *bytes = NULL;
   size_t size = 0;
   if (abbe_material_store_is(path)) return load_store(path, into, error);
@@ -239,7 +237,6 @@ abbe_result abbe_import_load(const char *path, const abbe_import_options *option
 }
 
 abbe_result abbe_import_explain(const char *path, abbe_result result, abbe_error *error) {
-  ABBE_REQUIRE(path, error);
   static const char *const names[ABBE_IMPORT_FORMAT_COUNT] = {
       [ABBE_IMPORT_AGF] = "a Zemax catalogue",
       [ABBE_IMPORT_RII] = "a file of refractiveindex.info",

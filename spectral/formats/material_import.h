@@ -13,10 +13,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name, what it is). */
 #define ABBE_IMPORT_FORMATS(X)                                                                     \
   X(AUTO, "auto", "what the file's own text says")                                                 \
@@ -63,7 +59,4 @@ abbe_result abbe_import_load(const char *path, const abbe_import_options *option
  * as it is. Returns result. */
 abbe_result abbe_import_explain(const char *path, abbe_result result, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

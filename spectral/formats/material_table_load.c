@@ -33,13 +33,11 @@ static abbe_result load(const char *path, bool lenient, abbe_material_table *out
 
 abbe_result abbe_material_table_load(const char *path, abbe_material_table *out,
                                      abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   return load(path, false, out, NULL, error);
 }
 
 abbe_result abbe_material_table_load_lenient(const char *path, abbe_material_table *out,
                                              abbe_report *report, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   return load(path, true, out, report, error);
 }
 
@@ -53,7 +51,6 @@ static abbe_result add_all_names(abbe_material_table *table, abbe_error *error) 
 
 abbe_result abbe_material_table_load_named(const char *path, const char *const *names, size_t count,
                                            abbe_material_table *out, abbe_error *error) {
-  ABBE_REQUIRE(names && out, error);
   size_t size;
   bool shipped = abbe_material_table_shipped(path, &size) != NULL;
   if (shipped || !abbe_material_store_is(path)) return abbe_material_table_load(path, out, error);

@@ -13,10 +13,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Loads a table: NULL or "default", "thesis", or the path of a YAML file (at most 16 MiB) or of a
  * store. */
 abbe_result abbe_material_table_load(const char *path, abbe_material_table *out, abbe_error *error);
@@ -28,7 +24,4 @@ abbe_result abbe_material_table_load_named(const char *path, const char *const *
 abbe_result abbe_material_table_load_lenient(const char *path, abbe_material_table *out,
                                              abbe_report *report, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -172,7 +172,6 @@ static void write_fits(const abbe_material *m, FILE *to) {
 /* ---- records and tables ---- */
 
 abbe_result abbe_material_write(const abbe_material *material, FILE *to, abbe_error *error) {
-  ABBE_REQUIRE(material && to, error);
   const abbe_material *m = material;
   abbe_result result = abbe_material_check(m, error);
   if (result != ABBE_OK) return result;
@@ -223,7 +222,6 @@ static abbe_result check_readable(const char *text, size_t size, size_t count, a
 
 abbe_result abbe_material_table_write(const abbe_material_table *table, FILE *to,
                                       abbe_error *error) {
-  ABBE_REQUIRE(table && to, error);
   char *text = NULL;
   size_t size = 0;
   FILE *memory = open_memstream(&text, &size);

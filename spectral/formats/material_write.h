@@ -13,10 +13,6 @@
 
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The record as an item of the list `materials:`, each line indented by two spaces or more, to the
  * stream. ABBE_INVALID_ARGUMENT for a record that could not be read again (abbe_material_check),
  * before anything is written; ABBE_IO where the stream fails. */
@@ -27,7 +23,4 @@ abbe_result abbe_material_write(const abbe_material *material, FILE *to, abbe_er
 abbe_result abbe_material_table_write(const abbe_material_table *table, FILE *to,
                                       abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -471,7 +471,6 @@ static abbe_result read_file(reader *r, const char *path, const char *name) {
 
 abbe_result abbe_rii_parse(const char *text, size_t size, const char *path, const char *name,
                            abbe_material *out, abbe_report *report, abbe_error *error) {
-  ABBE_REQUIRE(text && path && out, error);
   *out = (abbe_material){.temperature_c = NAN, .line = 1};
   char *clean = NULL;
   size_t length = 0;
@@ -489,7 +488,6 @@ abbe_result abbe_rii_parse(const char *text, size_t size, const char *path, cons
 
 abbe_result abbe_rii_load(const char *path, const char *name, abbe_material *out,
                           abbe_report *report, abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   *out = (abbe_material){0};
   char *text = NULL;
   size_t size = 0;

@@ -13,10 +13,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The material of size bytes of text [RefractiveIndexInfo], fit for a table. path stands for the
  * file in messages; name is the material's name, or NULL to make one of the path:
  * …/main/SiO2/nk/Malitson.yml is SiO2-Malitson, …/optical/N-BK7.yml is N-BK7. k becomes
@@ -29,7 +25,4 @@ abbe_result abbe_rii_parse(const char *text, size_t size, const char *path, cons
 abbe_result abbe_rii_load(const char *path, const char *name, abbe_material *out,
                           abbe_report *report, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

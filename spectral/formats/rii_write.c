@@ -179,7 +179,6 @@ static void note_losses(const abbe_material *m, abbe_report *report) {
 
 abbe_result abbe_rii_write(const abbe_material *material, FILE *to, abbe_report *report,
                            abbe_error *error) {
-  ABBE_REQUIRE(material && to, error);
   const abbe_material *m = material;
   abbe_result result = abbe_material_check(m, error);
   if (result != ABBE_OK) return result;

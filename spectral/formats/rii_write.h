@@ -12,16 +12,9 @@
 
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Writes the material to the stream. What the database has no place for is noted in report as LOST.
  * ABBE_INVALID_ARGUMENT as abbe_material_check has it, ABBE_IO where the stream fails. */
 abbe_result abbe_rii_write(const abbe_material *material, FILE *to, abbe_report *report,
                            abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

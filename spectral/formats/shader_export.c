@@ -368,7 +368,6 @@ static const struct {
 
 abbe_result abbe_shader_write(abbe_shader shader, const abbe_material_table *table, FILE *to,
                               abbe_report *report, abbe_error *error) {
-  ABBE_REQUIRE(table && to, error);
   if ((int)shader < 0 || shader >= ABBE_SHADER_COUNT)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no shader format %d",
                           (int)shader);

@@ -13,10 +13,6 @@
 
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name, what is written). */
 #define ABBE_SHADERS(X)                                                                            \
   X(PBRT, "pbrt", "named materials and media for pbrt-v4, spectra every 5 nm")                     \
@@ -49,7 +45,4 @@ void abbe_shader_gltf_numbers(const abbe_material *material, double *ior, double
 abbe_result abbe_shader_write(abbe_shader shader, const abbe_material_table *table, FILE *to,
                               abbe_report *report, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -53,7 +53,6 @@ static double of_k(abbe_point p, double unused) {
 abbe_result abbe_absorption_spectrum_of_transmittance(const abbe_points *transmittance,
                                                       double thickness_m, abbe_spectrum **out,
                                                       abbe_error *error) {
-  ABBE_REQUIRE(transmittance && out, error);
   if (!(thickness_m > 0) || !isfinite(thickness_m))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the thickness of a transmittance is %g m; it must be above 0",
@@ -70,7 +69,6 @@ abbe_result abbe_absorption_spectrum_of_transmittance(const abbe_points *transmi
 
 abbe_result abbe_absorption_spectrum_of_k(const abbe_points *k, abbe_spectrum **out,
                                           abbe_error *error) {
-  ABBE_REQUIRE(k && out, error);
   for (size_t i = 0; i < k->count; i++) {
     abbe_point p = k->point[i];
     if (p.value >= 0 && isfinite(p.value)) continue;
@@ -83,7 +81,6 @@ abbe_result abbe_absorption_spectrum_of_k(const abbe_points *k, abbe_spectrum **
 
 abbe_result abbe_absorption_spectrum_of_colour(const double colour[3], double distance_m,
                                                abbe_spectrum **out, abbe_error *error) {
-  ABBE_REQUIRE(colour && out, error);
   double attenuation[3];
   if (!(distance_m > 0) || !isfinite(distance_m))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

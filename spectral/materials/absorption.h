@@ -13,10 +13,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A table prints a transmittance of 0 where it is too small to measure: it is taken as this. */
 #define ABBE_ABSORPTION_LEAST_TRANSMITTANCE 1e-6
 
@@ -46,7 +42,4 @@ abbe_result abbe_absorption_spectrum_of_colour(const double colour[3], double di
 /* The three shares that are left after distance_m metres at those wavelengths: its inverse. */
 void abbe_absorption_colour(const abbe_spectrum *attenuation, double distance_m, double colour[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -7,7 +7,6 @@
 
 abbe_result abbe_conductor_make(const double *lambda_nm, const double *n, const double *k,
                                 size_t count, abbe_dispersion *out, abbe_error *error) {
-  ABBE_REQUIRE(lambda_nm && n && k && out, error);
   abbe_dispersion made = {.model = ABBE_DISPERSION_CONDUCTOR};
   *out = (abbe_dispersion){0};
   abbe_result result =
@@ -33,7 +32,6 @@ static bool is_metal(const abbe_points *n, const abbe_points *k, const abbe_mate
 
 abbe_result abbe_conductor_of_metal(const abbe_points *n, const abbe_points *k,
                                     abbe_material *material, bool *made, abbe_error *error) {
-  ABBE_REQUIRE(n && k && material && made, error);
   *made = false;
   if (!is_metal(n, k, material)) return ABBE_OK;
   double *column = malloc(3 * n->count * sizeof *column);

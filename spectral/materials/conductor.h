@@ -13,10 +13,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The dispersion of a conductor through count points: wavelengths, nm, ascending, n and k in
  * [0, 1e3], both straight between the points. The arrays are copied; *out is freed with
  * abbe_dispersion_free. ABBE_INVALID_ARGUMENT as abbe_spectrum_make and abbe_dispersion_check have
@@ -31,7 +27,4 @@ abbe_result abbe_conductor_make(const double *lambda_nm, const double *n, const 
 abbe_result abbe_conductor_of_metal(const abbe_points *n, const abbe_points *k,
                                     abbe_material *material, bool *made, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

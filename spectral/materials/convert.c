@@ -121,7 +121,6 @@ static abbe_result sellmeier_of(const claim *c, abbe_dispersion *out, abbe_error
 
 abbe_result abbe_convert_make(const abbe_given *given, abbe_fit_form form, abbe_dispersion *out,
                               abbe_error *error) {
-  ABBE_REQUIRE(given && out, error);
   *out = (abbe_dispersion){0};
   abbe_result result = check(given, error);
   if (result != ABBE_OK) return result;
@@ -217,7 +216,6 @@ static size_t nearest_in_v_d(const abbe_material_table *known, double v_d, doubl
 abbe_result abbe_convert_judge(const abbe_given *given, abbe_fit_form form,
                                const abbe_material_table *known, double min_nm, double max_nm,
                                abbe_convert_error *out, abbe_error *error) {
-  ABBE_REQUIRE(given && known && out, error);
   abbe_dispersion made;
   *out = (abbe_convert_error){.typical = NAN, .largest = NAN, .at_nm = NAN};
   abbe_result result = abbe_convert_make(given, form, &made, error);

@@ -13,10 +13,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, first number, second number). */
 #define ABBE_GIVENS(X)                                                                             \
   X(ND_VD, "n_d", "V_d")            /* catalogues */                                               \
@@ -68,7 +64,4 @@ abbe_result abbe_convert_judge(const abbe_given *given, abbe_fit_form form,
                                const abbe_material_table *known, double min_nm, double max_nm,
                                abbe_convert_error *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -59,7 +59,6 @@ static shape shape_of_cauchy(void) {
 abbe_result abbe_glass_distance_to_numbers(const abbe_material_table *table, double n_d, double v_d,
                                            size_t wanted, abbe_glass_distances *out,
                                            abbe_error *error) {
-  ABBE_REQUIRE(table && out, error);
   *out = (abbe_glass_distances){0};
   if (!(n_d > 1) || !isfinite(n_d) || !(v_d > 0))
     return abbe_error_set(
@@ -92,7 +91,6 @@ abbe_result abbe_glass_distance_to_numbers(const abbe_material_table *table, dou
 abbe_result abbe_glass_distance_to_points(const abbe_material_table *table,
                                           const abbe_index_points *points, size_t wanted,
                                           abbe_glass_distances *out, abbe_error *error) {
-  ABBE_REQUIRE(table && points && out, error);
   *out = (abbe_glass_distances){0};
   if (points->count == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there are no points to compare with");
@@ -122,7 +120,6 @@ abbe_result abbe_glass_distance_to_curve(const abbe_material_table *table,
                                          const abbe_dispersion *curve, double min_nm, double max_nm,
                                          size_t wanted, abbe_glass_distances *out,
                                          abbe_error *error) {
-  ABBE_REQUIRE(table && curve && out, error);
   *out = (abbe_glass_distances){0};
   abbe_index_points points;
   abbe_result result = abbe_index_points_sample(curve, min_nm, max_nm, 41, 401, &points, error);

@@ -13,10 +13,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_glass_distance {
   size_t index;       /* of the material in its table */
   double rms;         /* root mean square difference of n over the range: the distance */
@@ -52,7 +48,4 @@ abbe_result abbe_glass_distance_to_curve(const abbe_material_table *table,
 
 void abbe_glass_distances_free(abbe_glass_distances *distances);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

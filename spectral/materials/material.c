@@ -141,7 +141,6 @@ static abbe_result check_conductor(const abbe_material *m, abbe_error *error) {
 }
 
 abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *error) {
-  ABBE_REQUIRE(material, error);
   abbe_result result = abbe_material_check_name(material->name, error);
   if (result != ABBE_OK) return result;
   if (material->source == NULL || material->source[0] == '\0')
@@ -157,7 +156,6 @@ abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *
 }
 
 abbe_result abbe_material_check(const abbe_material *material, abbe_error *error) {
-  ABBE_REQUIRE(material, error);
   abbe_result result = abbe_material_check_form(material, error);
   return result == ABBE_OK ? check_index(material, error) : result;
 }
@@ -189,7 +187,6 @@ static abbe_result index_of(const abbe_material *material, const abbe_dispersion
 
 abbe_result abbe_material_n(const abbe_material *material, double lambda_nm, double *n,
                             abbe_error *error) {
-  ABBE_REQUIRE(material && n, error);
   return index_of(material, &material->dispersion, lambda_nm, n, error);
 }
 
@@ -199,7 +196,6 @@ bool abbe_material_is_uniaxial(const abbe_material *material) {
 
 abbe_result abbe_material_n_extraordinary(const abbe_material *material, double lambda_nm,
                                           double *n, abbe_error *error) {
-  ABBE_REQUIRE(material && n, error);
   const bool two = abbe_material_is_uniaxial(material);
   return index_of(material, two ? &material->extraordinary : &material->dispersion, lambda_nm, n,
                   error);
@@ -211,7 +207,6 @@ bool abbe_material_is_conductor(const abbe_material *material) {
 
 abbe_result abbe_material_nk(const abbe_material *material, double lambda_nm, double *n, double *k,
                              abbe_error *error) {
-  ABBE_REQUIRE(material && n && k, error);
   if (!abbe_material_is_conductor(material))
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%s is no conductor: it has a real index, and no k that goes with it",

@@ -17,10 +17,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A Cauchy form fitted to the material, as the table records it. */
 typedef struct abbe_material_fit {
   size_t terms;     /* 0 where the table has none */
@@ -127,7 +123,4 @@ double abbe_material_attenuation(const abbe_material *material, double lambda_nm
  * metals do, in which light does not get on. A conductor does. */
 bool abbe_material_is_opaque(const abbe_material *material, double min_nm, double max_nm);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

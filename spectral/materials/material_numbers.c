@@ -87,7 +87,6 @@ abbe_dispersion abbe_material_fit_dispersion(const abbe_material_fit *fit) {
 
 abbe_result abbe_material_fit_residual(const abbe_material *m, const abbe_material_fit *fit,
                                        abbe_index_difference *out, abbe_error *error) {
-  ABBE_REQUIRE(m && fit && out, error);
   if (fit->terms == 0 || fit->terms > sizeof fit->c / sizeof fit->c[0])
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s has no such fit", m->name);
   abbe_dispersion form = abbe_material_fit_dispersion(fit);

@@ -11,10 +11,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Mercury's lines, nm in air [Schott2014]. */
 #define ABBE_LINE_E_NM 546.074
 #define ABBE_LINE_SMALL_G_NM 435.8343
@@ -50,7 +46,4 @@ abbe_result abbe_material_fit_residual(const abbe_material *material, const abbe
 /* The recorded fit as a dispersion; its count is 0 where the record has none. */
 abbe_dispersion abbe_material_fit_dispersion(const abbe_material_fit *fit);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -126,7 +126,6 @@ static size_t choose(const abbe_material_table *table, const abbe_material_query
 abbe_result abbe_material_query_run(const abbe_material_table *table,
                                     const abbe_material_query *query, size_t **rows, size_t *count,
                                     abbe_error *error) {
-  ABBE_REQUIRE(table && query && rows && count, error);
   *rows = NULL;
   *count = 0;
   if ((int)query->sort < 0 || query->sort >= ABBE_MATERIAL_KEY_COUNT)

@@ -11,10 +11,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name): what rows may be sorted by. */
 #define ABBE_MATERIAL_KEYS(X)                                                                      \
   X(FILE, "file") /* the order of the file */                                                      \
@@ -53,7 +49,4 @@ abbe_result abbe_material_query_run(const abbe_material_table *table,
 
 const char *abbe_material_key_name(abbe_material_key key);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -253,14 +253,12 @@ static abbe_result read_record(abbe_record_reading *r) {
 
 abbe_result abbe_material_record_read(abbe_yaml *yaml, abbe_yaml_node record,
                                       abbe_material *material, abbe_error *error) {
-  ABBE_REQUIRE(yaml && material, error);
   abbe_record_reading r = {yaml, record, material, error, false};
   return read_record(&r);
 }
 
 abbe_result abbe_material_record_read_lenient(abbe_yaml *yaml, abbe_yaml_node record,
                                               abbe_material *material, abbe_error *error) {
-  ABBE_REQUIRE(yaml && material, error);
   abbe_record_reading r = {yaml, record, material, error, true};
   return read_record(&r);
 }

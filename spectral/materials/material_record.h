@@ -10,10 +10,6 @@
 #include "base/yaml/yaml.h"
 #include "spectral/materials/material.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Reads the mapping `record` into *material, which must be zeroed; the caller frees it, also where
  * reading fails. ABBE_SCHEMA with a sentence where the record is wrong. */
 abbe_result abbe_material_record_read(abbe_yaml *yaml, abbe_yaml_node record,
@@ -24,7 +20,4 @@ abbe_result abbe_material_record_read(abbe_yaml *yaml, abbe_yaml_node record,
 abbe_result abbe_material_record_read_lenient(abbe_yaml *yaml, abbe_yaml_node record,
                                               abbe_material *material, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

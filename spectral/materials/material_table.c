@@ -21,7 +21,6 @@ enum { MAX_MATERIALS = ABBE_MATERIAL_TABLE_MAX_COUNT };
 
 abbe_result abbe_material_table_append(abbe_material_table *table, abbe_material *material,
                                        abbe_error *error) {
-  ABBE_REQUIRE(table && material, error);
   size_t count = table->count;
   if (count >= MAX_MATERIALS)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a table holds at most %d materials",
@@ -46,7 +45,6 @@ static int by_name(const void *a, const void *b) {
 
 abbe_result abbe_material_table_unique(abbe_material_table *table, abbe_report *report,
                                        abbe_error *error) {
-  ABBE_REQUIRE(table, error);
   const abbe_material **sorted = malloc((table->count + 1) * sizeof *sorted);
   const abbe_material **first = calloc(table->count + 1, sizeof *first);
   if (sorted == NULL || first == NULL) {
@@ -187,14 +185,12 @@ const char *abbe_material_table_shipped(const char *path, size_t *size) {
 
 abbe_result abbe_material_table_parse(const char *text, size_t size, const char *name,
                                       abbe_material_table *out, abbe_error *error) {
-  ABBE_REQUIRE(text && name && out, error);
   return parse(text, size, name, &(mode){false, NULL}, out, error);
 }
 
 abbe_result abbe_material_table_parse_lenient(const char *text, size_t size, const char *name,
                                               abbe_material_table *out, abbe_report *report,
                                               abbe_error *error) {
-  ABBE_REQUIRE(text && name && out, error);
   return parse(text, size, name, &(mode){true, report}, out, error);
 }
 
@@ -237,7 +233,6 @@ static abbe_result not_found(const abbe_material_table *table, const char *name,
 
 abbe_result abbe_material_table_find(const abbe_material_table *table, const char *name,
                                      const abbe_material **out, abbe_error *error) {
-  ABBE_REQUIRE(table && name && out, error);
   for (size_t i = 0; i < table->count; i++) {
     if (strcasecmp(table->material[i].name, name) != 0) continue;
     *out = &table->material[i];

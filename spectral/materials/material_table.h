@@ -15,10 +15,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_MATERIAL_TABLE_MAX_COUNT = 10000 };
 
 typedef struct abbe_material_table {
@@ -60,7 +56,4 @@ abbe_result abbe_material_table_unique(abbe_material_table *table, abbe_report *
 abbe_result abbe_material_table_find(const abbe_material_table *table, const char *name,
                                      const abbe_material **out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -9,10 +9,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A record being read: where complaints go, and what fills. */
 typedef struct abbe_record_reading {
   abbe_yaml *yaml;
@@ -55,7 +51,4 @@ abbe_result abbe_record_read_interpolation(abbe_record_reading *r, abbe_yaml_nod
 /* Model, numbers and range of the material, and its extraordinary index. */
 abbe_result abbe_record_read_dispersion(abbe_record_reading *r);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -171,7 +171,6 @@ static void compare(const abbe_material_table *first, const abbe_material_table 
 
 abbe_result abbe_table_compare(const abbe_material_table *first, const abbe_material_table *second,
                                abbe_table_difference *out, abbe_error *error) {
-  ABBE_REQUIRE(first && second && out, error);
   *out =
       (abbe_table_difference){.row = malloc((first->count + second->count + 1) * sizeof *out->row)};
   const abbe_material **sorted = malloc((second->count + 1) * sizeof *sorted);

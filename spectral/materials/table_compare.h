@@ -13,10 +13,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef enum abbe_row_kind {
   ABBE_ROW_ONLY_IN_FIRST,
   ABBE_ROW_ONLY_IN_SECOND,
@@ -71,7 +67,4 @@ void abbe_table_difference_free(abbe_table_difference *difference);
 
 const char *abbe_row_part_name(abbe_row_part part);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

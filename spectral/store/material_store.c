@@ -488,13 +488,11 @@ static abbe_result read_store(reader *r, abbe_error *error) {
 abbe_result abbe_material_store_read(const char *path, const char *const *names, size_t count,
                                      abbe_report *unread, abbe_material_table *out,
                                      abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   return read_store(
       &(reader){.path = path, .names = names, .count = count, .unread = unread, .out = out}, error);
 }
 
 abbe_result abbe_material_store_read_names(const char *path, abbe_material_table *out,
                                            abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   return read_store(&(reader){.path = path, .names_only = true, .out = out}, error);
 }

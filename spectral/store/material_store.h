@@ -15,10 +15,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Whether a regular file stands at path that begins as SQLite's do. */
 bool abbe_material_store_is(const char *path);
 /* Reads the rows of those names (whatever the case; one that is not there is left out), or with
@@ -35,7 +31,4 @@ abbe_result abbe_material_store_read(const char *path, const char *const *names,
 abbe_result abbe_material_store_read_names(const char *path, abbe_material_table *out,
                                            abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -8,10 +8,6 @@
 
 #include <sqlite3.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* "Abbe" in the file's header, and the version of what follows. */
 enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 2, ABBE_STORE_MAX_TERMS = 3 };
 
@@ -70,7 +66,4 @@ abbe_result abbe_store_fail(sqlite3 *db, int code, const char *path, abbe_error 
 abbe_result abbe_store_prepare(sqlite3 *db, const char *sql, const char *path, sqlite3_stmt **out,
                                abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -190,7 +190,6 @@ static abbe_result execute(sqlite3 *db, const char *sql, abbe_error *error) {
 /* Made in memory, so that the file is written as every other, beside its target. */
 abbe_result abbe_material_store_write(const abbe_material_table *table, FILE *to,
                                       abbe_error *error) {
-  ABBE_REQUIRE(table && to, error);
   sqlite3 *db = NULL;
   char sql[256];
   snprintf(sql, sizeof sql, "PRAGMA application_id=%d; PRAGMA user_version=%d; BEGIN",

@@ -8,10 +8,6 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Whether a file of this name is to be a store: it ends in .sqlite. */
 bool abbe_material_store_is_name(const char *path);
 
@@ -21,7 +17,4 @@ bool abbe_material_store_is_name(const char *path);
 abbe_result abbe_material_store_write(const abbe_material_table *table, FILE *to,
                                       abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -11,10 +11,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* From now on the n-th allocation fails (n from 1; 0: none does), with `all` every later one too.
  */
 void faults_memory_begin(size_t n, bool all);
@@ -25,7 +21,4 @@ size_t faults_memory_failed(void);
 /* What failed first, for messages. */
 const char *faults_memory_what(void);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

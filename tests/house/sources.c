@@ -5,8 +5,8 @@
 #include <dirent.h>
 #include <sys/stat.h>
 
-static const char *const rooms[] = {"base",       "spectral",    "colorimetry", "scenes", "gl",
-                                    "validation", "cli/library", "cli",         "tests"};
+static const char *const rooms[] = {"base",       "spectral", "colorimetry", "scenes", "gl",
+                                    "validation", "library",  "cli",         "tests"};
 
 /* ---- paths ---- */
 

@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-#define ROOMS "base spectral colorimetry scenes gl validation cli/library"
+#define ROOMS "base spectral colorimetry scenes gl validation library"
 
 enum { MOST_ALONE = 512 };
 
@@ -30,7 +30,9 @@ static bool is_alone(const headers *alone, const char *name) {
   return false;
 }
 
-static bool is_directive(const char *line) { return line[strspn(line, " \t")] == '#'; }
+static bool is_directive(const char *line) {
+  return line[strspn(line, " \t")] == '#';
+}
 
 /* Whether the first directive of a source includes this header. No source: it does not. */
 static bool is_read_first(const char *source, const char *header) {

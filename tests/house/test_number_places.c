@@ -10,9 +10,8 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
-static const char *const rooms[] = {"base",   "spectral", "colorimetry",
-                                    "scenes", "gl",       "validation",
-                                    "cli/library"};
+static const char *const rooms[] = {"base", "spectral",   "colorimetry", "scenes",
+                                    "gl",   "validation", "library"};
 static const char *const the_place = "base/number.c";
 
 /* Read numbers, or print what is not told from here. */

@@ -1,4 +1,4 @@
-/* null_arguments.h: the library's functions that return a result, each to be called with pointers
+/* null_arguments.h: the API's functions that return a result, each to be called with pointers
  * that point to zeros or nowhere; the calls are made from the headers by
  * tests/null_arguments/generate.
  */
@@ -10,12 +10,11 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
 
 enum { NULL_PARAMETERS = 16 };
 
-/* Zeros; a file; or what only the library can make, which is never anything but NULL here. */
-typedef enum null_kind { NULL_DATA, NULL_FILE, NULL_HANDLE } null_kind;
+/* Zeros; or a handle, which only the library can make: it is never anything but NULL here. */
+typedef enum null_kind { NULL_DATA, NULL_HANDLE } null_kind;
 
 typedef struct null_call {
   const char *name;

@@ -140,7 +140,6 @@ static abbe_result compare(abbe_compare_state *s, abbe_error *error) {
 abbe_result abbe_compare(const abbe_field *reference, const abbe_field *test,
                          const abbe_compare_options *options, abbe_comparison *out,
                          abbe_error *error) {
-  ABBE_REQUIRE(reference && test && out, error);
   static const abbe_compare_options defaults = {0};
   abbe_comparison comparison = {0};
   *out = comparison;

@@ -15,10 +15,6 @@
 #include "validation/compare/mask.h"
 #include "validation/compare/ztest.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name, text). a is the test's value, b the reference's, the mean over pixels and
  * channels. Each is 0 for equal fields, but the energy ratios and SSIM, which are 1. */
 #define ABBE_COMPARE_METRICS(X)                                                                    \
@@ -130,7 +126,4 @@ typedef enum abbe_compare_verdict {
 abbe_compare_verdict abbe_compare_judge(abbe_compare_metric metric,
                                         const abbe_compare_value *value);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -4,10 +4,6 @@
 
 #include "validation/compare/file_comparison.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_COMPARE_MAX_NOTES 16
 
 typedef struct abbe_compare_notes {
@@ -18,7 +14,4 @@ typedef struct abbe_compare_notes {
 /* What the files do not say or differ in, what the numbers are in, and what noise explains. */
 void abbe_compare_notes_make(const abbe_file_comparison *comparison, abbe_compare_notes *out);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -4,10 +4,6 @@
 
 #include "validation/compare/compare.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_COMPARE_BAD_REFERENCE = 1, ABBE_COMPARE_BAD_TEST = 2 };
 
 /* What is compared: REF and TEST; or what is under REF's noise, with the noise of REF's errors on
@@ -47,7 +43,4 @@ bool abbe_compare_knows(const abbe_compare_state *s, abbe_compare_sides who);
 /* The metrics that look at a pixel's surroundings, of both regions of a picture. */
 abbe_result abbe_compare_structure(const abbe_compare_state *s, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -49,7 +49,6 @@ static double round_up(double value) {
 
 abbe_result abbe_difference_picture_range(const abbe_field *reference, const abbe_field *test,
                                           double scale, double *range, abbe_error *error) {
-  ABBE_REQUIRE(reference && test && range, error);
   *range = 0;
   abbe_result result = check(reference, test, error);
   if (result != ABBE_OK) return result;
@@ -89,7 +88,6 @@ static abbe_result draw(const char *path, const abbe_field *reference, const abb
 abbe_result abbe_difference_picture_write(const char *path, const abbe_field *reference,
                                           const abbe_field *test, double scale, double range,
                                           const char *title, abbe_error *error) {
-  ABBE_REQUIRE(path && reference && test, error);
   abbe_result result = check(reference, test, error);
   if (result == ABBE_OK && !(range > 0 && isfinite(range)))
     result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,

@@ -9,10 +9,6 @@
 
 #include "validation/compare/field.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A field whose longer side is shorter than this is enlarged, to at most this. */
 #define ABBE_DIFFERENCE_PICTURE_SIDE 512
 
@@ -29,7 +25,4 @@ abbe_result abbe_difference_picture_write(const char *path, const abbe_field *re
                                           const abbe_field *test, double scale, double range,
                                           const char *title, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -178,7 +178,6 @@ static abbe_result fill(const abbe_image *image, const char *name, abbe_field *f
 
 abbe_result abbe_field_make(const abbe_image *image, const char *name, abbe_field *out,
                             abbe_error *error) {
-  ABBE_REQUIRE(image && name && out, error);
   *out = (abbe_field){0};
   if (image->data == NULL || image->channels == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: the picture is empty", name);
@@ -192,7 +191,6 @@ abbe_result abbe_field_make(const abbe_image *image, const char *name, abbe_fiel
 }
 
 abbe_result abbe_field_load(const char *path, abbe_field *out, abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   abbe_image image = {0};
   *out = (abbe_field){0};
   abbe_result result = abbe_exr_read(path, &image, error);

@@ -14,10 +14,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name): the attribute abbe:kind of a file, or what its other attributes tell. */
 #define ABBE_FIELD_KINDS(X)                                                                        \
   X(PICTURE, "picture")           /* radiance a pixel */                                           \
@@ -84,7 +80,4 @@ abbe_result abbe_field_sum_down(abbe_field *field, size_t width, size_t height, 
 abbe_result abbe_field_align(abbe_field *a, const char *name_a, abbe_field *b, const char *name_b,
                              abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -34,7 +34,6 @@ static abbe_result sum_blocks(float **samples, size_t channels, size_t width, si
 }
 
 abbe_result abbe_field_sum_down(abbe_field *field, size_t width, size_t height, abbe_error *error) {
-  ABBE_REQUIRE(field, error);
   if (width < 1 || height < 1 || field->width % width != 0 || field->height % height != 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a map of %zu x %zu texels cannot be summed down to %zu x %zu; whole "
@@ -151,7 +150,6 @@ static void align_channels(abbe_field *a, abbe_field *b) {
 
 abbe_result abbe_field_align(abbe_field *a, const char *name_a, abbe_field *b, const char *name_b,
                              abbe_error *error) {
-  ABBE_REQUIRE(a && name_a && b && name_b, error);
   if (a->kind != b->kind)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s is a %s and %s a %s; two of a kind can be compared", name_a,

@@ -5,6 +5,7 @@
 #include "colorimetry/image/png_file.h"
 #include "validation/compare/difference_picture.h"
 
+#include <assert.h>
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -69,7 +70,7 @@ static abbe_result compare(const abbe_file_comparison_desc *q, abbe_file_compari
 
 abbe_result abbe_file_comparison_make(const abbe_file_comparison_desc *desc,
                                       abbe_file_comparison *out, abbe_error *error) {
-  ABBE_REQUIRE(desc && desc->path[0] && desc->path[1] && out, error);
+  assert(desc->path[0] && desc->path[1]);
   const bool found = desc->mask != NULL && strcmp(desc->mask, "caustic") == 0;
   *out = (abbe_file_comparison){.path = {desc->path[0], desc->path[1]},
                                 .mask_name = desc->mask,
@@ -104,7 +105,6 @@ bool abbe_file_comparison_has_errors(const abbe_file_comparison *c, int side) {
 abbe_result abbe_file_comparison_check(const abbe_file_comparison *c,
                                        const abbe_compare_tolerance *tolerance, size_t count,
                                        abbe_error *error) {
-  ABBE_REQUIRE(c && tolerance, error);
   for (size_t i = 0; i < count; i++) {
     const abbe_compare_tolerance *t = &tolerance[i];
     const abbe_compare_region *region = abbe_file_comparison_region(c, t->mask);
@@ -127,7 +127,6 @@ bool abbe_file_comparison_keeps(const abbe_file_comparison *c, const abbe_compar
 abbe_result abbe_file_comparison_judge(const abbe_file_comparison *c,
                                        const abbe_compare_tolerance *tolerance, size_t count,
                                        abbe_error *error) {
-  ABBE_REQUIRE(c && tolerance, error);
   const abbe_compare_tolerance *first = NULL;
   size_t failed = 0;
   for (size_t i = 0; i < count; i++) {
@@ -148,7 +147,7 @@ abbe_result abbe_file_comparison_judge(const abbe_file_comparison *c,
 
 abbe_result abbe_file_comparison_draw(const abbe_file_comparison *c, const char *path, double range,
                                       abbe_error *error) {
-  ABBE_REQUIRE(c && c->path[0] && c->path[1] && path, error);
+  assert(c->path[0] && c->path[1]);
   const double scale = c->comparison.scale;
   char title[160];
   snprintf(title, sizeof title, "%.70s less %.70s", abbe_file_name(c->path[1]),

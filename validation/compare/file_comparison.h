@@ -6,10 +6,6 @@
 
 #include "validation/compare/compare.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_file_comparison_desc {
   const char *path[2];          /* REF, TEST */
   const char *mask;             /* "caustic", a picture whose first channel is above 0.5; or NULL */
@@ -67,7 +63,4 @@ abbe_result abbe_file_comparison_judge(const abbe_file_comparison *comparison,
 abbe_result abbe_file_comparison_draw(const abbe_file_comparison *comparison, const char *path,
                                       double range, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -309,7 +309,6 @@ static abbe_result begin(size_t width, size_t height, double ppd, job *j, abbe_e
 
 abbe_result abbe_flip_map(const float (*reference)[3], const float (*test)[3], size_t width,
                           size_t height, double pixels_per_degree, float *out, abbe_error *error) {
-  ABBE_REQUIRE(reference && test && out, error);
   job *j = malloc(sizeof *j);
   if (j == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for FLIP");
   abbe_result result = begin(width, height, pixels_per_degree, j, error);
@@ -368,7 +367,6 @@ static abbe_flip_exposures find_exposures(const job *j, const float (*rgb)[3]) {
 abbe_result abbe_flip_hdr_map(const float (*reference)[3], const float (*test)[3], size_t width,
                               size_t height, double pixels_per_degree, float *out,
                               abbe_flip_exposures *exposures, abbe_error *error) {
-  ABBE_REQUIRE(reference && test && out && exposures, error);
   job *j = malloc(sizeof *j);
   if (j == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for FLIP");
   abbe_result result = begin(width, height, pixels_per_degree, j, error);

@@ -12,10 +12,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Pixels a degree of the published default: 0.7 m from a screen of 3840 pixels over 0.7 m. */
 #define ABBE_FLIP_PIXELS_PER_DEGREE 67.0206432765823
 
@@ -38,7 +34,4 @@ abbe_result abbe_flip_hdr_map(const float (*reference)[3], const float (*test)[3
                               size_t height, double pixels_per_degree, float *out,
                               abbe_flip_exposures *exposures, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -52,7 +52,6 @@ static void fill(const double *light, threshold t, abbe_mask *mask) {
 
 abbe_result abbe_mask_make_brightest(const double *light, size_t count, double share,
                                      abbe_mask *out, abbe_error *error) {
-  ABBE_REQUIRE(light && out, error);
   *out = (abbe_mask){0};
   if (count < 1 || count > SIZE_MAX / sizeof(double) || !(share > 0 && share <= 1))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -95,7 +94,6 @@ static double caustic_light(const abbe_field *f, size_t pixel) {
 
 abbe_result abbe_mask_make_caustic(const abbe_field *field, const char *name, double share,
                                    abbe_mask *out, abbe_error *error) {
-  ABBE_REQUIRE(field && name && out, error);
   *out = (abbe_mask){0};
   if (field->kind == ABBE_FIELD_PICTURE && field->caustic.channels == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -126,7 +124,6 @@ static size_t drawn_channel(const abbe_image *image) {
 }
 
 abbe_result abbe_mask_make_drawn(const abbe_image *image, abbe_mask *out, abbe_error *error) {
-  ABBE_REQUIRE(image && out, error);
   *out = (abbe_mask){0};
   if (image->data == NULL || image->channels == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the picture of a mask is empty");

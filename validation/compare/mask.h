@@ -10,10 +10,6 @@
 #include "colorimetry/image/image.h"
 #include "validation/compare/field.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The share of a caustic's light that its mask holds, unless another is asked for. */
 #define ABBE_MASK_CAUSTIC_SHARE 0.95
 
@@ -40,7 +36,4 @@ abbe_result abbe_mask_make_caustic(const abbe_field *field, const char *name, do
 abbe_result abbe_mask_make_drawn(const abbe_image *image, abbe_mask *out, abbe_error *error);
 void abbe_mask_free(abbe_mask *mask);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -151,7 +151,6 @@ static abbe_result check(size_t width, size_t height, const abbe_outline_options
 abbe_result abbe_outline_make(const double (*rgb)[3], size_t width, size_t height,
                               const abbe_outline_options *options, abbe_outline *out,
                               abbe_error *error) {
-  ABBE_REQUIRE(rgb && out, error);
   abbe_outline_options o = options != NULL ? *options : (abbe_outline_options){0};
   if (o.share == 0) o.share = 0.9;
   if (o.blur == 0) o.blur = 1;
@@ -267,7 +266,6 @@ static void compare_hues(const abbe_outline *a, const abbe_outline *b,
 
 abbe_result abbe_outline_compare(const abbe_outline *a, const abbe_outline *b,
                                  abbe_outline_agreement *out, abbe_error *error) {
-  ABBE_REQUIRE(a && b && out, error);
   *out = (abbe_outline_agreement){0};
   if (a->width != b->width || a->height != b->height || a->hue == NULL || b->hue == NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

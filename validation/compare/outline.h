@@ -14,10 +14,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name): sixths of the circle of hues, each around a primary of Rec.709 or a mixture of
  * two in equal parts. */
 #define ABBE_OUTLINE_HUES(X)                                                                       \
@@ -79,7 +75,4 @@ typedef struct abbe_outline_agreement {
 abbe_result abbe_outline_compare(const abbe_outline *a, const abbe_outline *b,
                                  abbe_outline_agreement *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

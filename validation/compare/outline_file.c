@@ -28,7 +28,6 @@ static abbe_result add_picture(const abbe_field *field, const char *name, double
 abbe_result abbe_outline_load(const char *path, const char *minus,
                               const abbe_outline_options *options, abbe_outline *out,
                               abbe_image place[2], abbe_error *error) {
-  ABBE_REQUIRE(path && options && out && place, error);
   abbe_field field = {0}, dark = {0};
   double(*rgb)[3] = NULL;
   abbe_result result = abbe_field_load(path, &field, error);

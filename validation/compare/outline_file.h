@@ -5,10 +5,6 @@
 #include "colorimetry/image/image.h"
 #include "validation/compare/outline.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The outline of the caustic's layers where the picture has them, else of its colour; with `minus`
  * (a picture of the same size and place, or NULL) of its colour less that one's. place[0] gets
  * the picture's display window, for abbe_image_check_place, and which part of its file it is;
@@ -18,7 +14,4 @@ abbe_result abbe_outline_load(const char *path, const char *minus,
                               const abbe_outline_options *options, abbe_outline *out,
                               abbe_image place[2], abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -42,7 +42,6 @@ static float index_of(const double m[MOMENTS]) {
 
 abbe_result abbe_ssim_map(const float *a, const float *b, size_t width, size_t height, float *out,
                           abbe_error *error) {
-  ABBE_REQUIRE(a && b && out, error);
   double weight[TAPS];
   moments *rows = calloc(width * height > 0 ? width * height : 1, sizeof *rows);
   if (rows == NULL)

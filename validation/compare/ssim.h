@@ -10,10 +10,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_SSIM_REACH = 5 }; /* pixels from a window's middle to its edge */
 
 /* The index, -1 to 1 (equal), of the window about each pixel, into out[width * height], row by row;
@@ -22,7 +18,4 @@ enum { ABBE_SSIM_REACH = 5 }; /* pixels from a window's middle to its edge */
 abbe_result abbe_ssim_map(const float *a, const float *b, size_t width, size_t height, float *out,
                           abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

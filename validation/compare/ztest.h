@@ -10,10 +10,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The chance at which even one of all elements may be above the critical |z| if all is right. */
 #define ABBE_ZTEST_LEVEL 0.01
 
@@ -46,7 +42,4 @@ double abbe_ztest_expected_mean_square(double freedom);
  * all differences are noise; Sidak's correction [Sidak1967]. */
 double abbe_ztest_critical(size_t count, double level, double freedom);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -183,7 +183,6 @@ static abbe_result fill_image(const filter *f, const abbe_image *out, abbe_error
 
 abbe_result abbe_denoise_picture(const abbe_image *picture, const abbe_denoise_desc *desc,
                                  abbe_image *out, abbe_error *error) {
-  ABBE_REQUIRE(picture && desc && out, error);
   *out = (abbe_image){0};
   if (picture->data == NULL || picture->width == 0 || picture->height == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no picture to filter");

@@ -14,10 +14,6 @@
 #include "base/error.h"
 #include "colorimetry/image/image.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_DENOISE_MAX_THREADS 256
 
 /* A zeroed request is valid. */
@@ -34,7 +30,4 @@ typedef struct abbe_denoise_desc {
 abbe_result abbe_denoise_picture(const abbe_image *picture, const abbe_denoise_desc *desc,
                                  abbe_image *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

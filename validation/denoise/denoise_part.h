@@ -11,10 +11,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_DENOISE_FEATURES = 7 };
 
 /* What both parts share. */
@@ -54,7 +50,4 @@ void abbe_denoise_part_raw(const abbe_denoise_part *part, size_t pixel, double r
 abbe_result abbe_denoise_take(const abbe_image *picture, const char *prefix, const char *name,
                               float *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

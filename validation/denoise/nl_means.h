@@ -13,10 +13,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_NL_MEANS_PLANES = 12 };
 
 /* A picture of one value a pixel with its variance: [height][width] each. */
@@ -41,7 +37,4 @@ typedef struct abbe_nl_means {
 /* ABBE_NO_MEMORY. The same result for any number of threads. */
 abbe_result abbe_nl_means_run(const abbe_nl_means *job, size_t threads, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

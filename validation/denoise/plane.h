@@ -7,16 +7,9 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* out (not from) of width x height pixels: means over squares of `reach` pixels to each side, less
  * where they leave the plane. `room` is another plane. */
 void abbe_plane_mean(const float *from, size_t width, size_t height, size_t reach, size_t threads,
                      float *room, float *out);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

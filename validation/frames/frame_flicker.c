@@ -85,7 +85,6 @@ static void add(abbe_frame_flicker *f, const abbe_image *frame, const size_t fro
 abbe_result abbe_frame_flicker_add(abbe_frame_flicker *f, const abbe_image *frame,
                                    const abbe_image *reference, abbe_frame_error *out,
                                    abbe_error *error) {
-  ABBE_REQUIRE(f && frame && out, error);
   size_t from[3], to[3] = {0, 0, 0};
   abbe_result result = f->before == NULL ? begin(f, frame, error) : ABBE_OK;
   if (result == ABBE_OK) result = check(f, frame, "frame", from, error);

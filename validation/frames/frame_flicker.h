@@ -13,10 +13,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A reference darker than this share of its own mean has no light there. */
 #define ABBE_FRAME_FLICKER_DARK 1e-3
 
@@ -47,7 +43,4 @@ void abbe_frame_flicker_sum_up(const abbe_frame_error *row, size_t count, abbe_f
 /* The largest of each: of changes, how far a frame pops. NaN where none is known. */
 void abbe_frame_flicker_largest(const abbe_frame_error *row, size_t count, abbe_frame_error *out);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -9,10 +9,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Unit vectors in the stone's axes. */
 typedef struct abbe_gem_eye {
   double right[3], up[3]; /* of the picture; x and y where the stone lies level */
@@ -33,7 +29,4 @@ void abbe_gem_eye_ray(const abbe_gem_eye *eye, size_t side, size_t column, size_
 void abbe_gem_eye_place(size_t side, size_t column, size_t row, size_t repeat, double *u,
                         double *v);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

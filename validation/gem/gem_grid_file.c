@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/number.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,7 +38,7 @@ static void write_row(FILE *to, const abbe_gem_optimum *o, size_t i) {
 
 abbe_result abbe_gem_grid_file_write(const char *path, const abbe_gem_optimum *o,
                                      abbe_error *error) {
-  ABBE_REQUIRE(path && o && o->value, error);
+  assert(o->value);
   abbe_file_writer writer = {0};
   char text[ASKED_SIZE];
   abbe_result result = abbe_file_writer_open(&writer, path, error);
@@ -94,7 +95,7 @@ static abbe_result read_head(const char *path, size_t line, const char *row,
 }
 
 abbe_result abbe_gem_grid_file_read(const char *path, abbe_gem_optimum *o, abbe_error *error) {
-  ABBE_REQUIRE(path && o && o->value, error);
+  assert(o->value);
   char *data, *rest = NULL;
   size_t size, line = 0;
   abbe_result result = abbe_file_read_text(path, MOST_BYTES, &data, &size, error);

@@ -6,10 +6,6 @@
 
 #include "validation/gem/gem_optimum.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* CSV: what was asked and what the design itself has, as comments; then a row for each pair that
  * was judged, with its place in value[], both angles in radians, value and standard error, all to
  * the last bit. ABBE_IO. */
@@ -23,7 +19,4 @@ abbe_result abbe_gem_grid_file_write(const char *path, const abbe_gem_optimum *o
  * On failure optimum may have some of the pairs. */
 abbe_result abbe_gem_grid_file_read(const char *path, abbe_gem_optimum *optimum, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

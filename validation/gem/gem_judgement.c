@@ -24,7 +24,6 @@ static size_t tilts_side(size_t side) {
 abbe_result abbe_gem_judgement_make(const abbe_gem_stone *stone, const abbe_weights *weights,
                                     const abbe_gem_judgement_desc *desc, abbe_gem_judgement *out,
                                     abbe_error *error) {
-  ABBE_REQUIRE(stone && weights && desc && out, error);
   memset(out, 0, sizeof *out);
   abbe_result result = abbe_gem_view_make(stone, weights, &desc->view, &out->view, error);
   if (result == ABBE_OK) {

@@ -5,10 +5,6 @@
 #include "validation/gem/gem_tilts.h"
 #include "validation/gem/gem_view.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_gem_judgement_desc {
   abbe_gem_view_desc view;
   bool tilts;                 /* else only from where the view is */
@@ -45,7 +41,4 @@ enum { ABBE_GEM_JUDGEMENT_MOST_ROWS = 32 };
 size_t abbe_gem_judgement_rows(const abbe_gem_judgement *judgement,
                                abbe_gem_judgement_row row[ABBE_GEM_JUDGEMENT_MOST_ROWS]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -11,10 +11,6 @@
 #include "validation/gem/gem_eye.h"
 #include "validation/gem/gem_path.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_GEM_LAMPS = 60 };
 #define ABBE_GEM_LAMP_MIN_DEG 2.0 /* across */
 #define ABBE_GEM_LAMP_MAX_DEG 10.0
@@ -29,7 +25,4 @@ abbe_gem_lamps abbe_gem_lamps_make(const abbe_gem_eye *eye, size_t repeat, doubl
 /* The share of the path's light that comes from lamps. */
 float abbe_gem_lamps_light(const abbe_gem_lamps *lamps, const abbe_gem_path *path);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

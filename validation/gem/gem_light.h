@@ -11,10 +11,6 @@
 
 #include "validation/gem/gem_path.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Default half angle of the head's shadow, degrees: ASET's [Sasian2007]. */
 #define ABBE_GEM_HEAD_DEG 15.0
 
@@ -57,7 +53,4 @@ abbe_gem_light abbe_gem_light_make(const double eye[3], double head_rad);
 void abbe_gem_light_judge(const abbe_gem_light *light, const abbe_gem_path *path,
                           float amount[ABBE_GEM_AMOUNT_COUNT]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

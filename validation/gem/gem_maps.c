@@ -75,7 +75,6 @@ static double encode(double light) {
 
 abbe_result abbe_gem_map_paint(const abbe_gem_view *v, abbe_gem_map map, abbe_image *out,
                                abbe_error *error) {
-  ABBE_REQUIRE(v && out, error);
   static const char *const channels[] = {"R", "G", "B"};
   abbe_result result = abbe_image_make(v->side, v->side, 3, channels, out, error);
   if (result != ABBE_OK) return result;
@@ -90,7 +89,6 @@ abbe_result abbe_gem_map_paint(const abbe_gem_view *v, abbe_gem_map map, abbe_im
 }
 
 abbe_result abbe_gem_map_image(const abbe_gem_view *v, abbe_image *out, abbe_error *error) {
-  ABBE_REQUIRE(v && out, error);
   enum { CHANNELS = 4 + AMOUNTS };
   const char *channels[CHANNELS] = {"X", "Y", "Z", "cover"};
   for (int a = 0; a < AMOUNTS; a++) channels[4 + a] = abbe_gem_amount_name((abbe_gem_amount)a);

@@ -9,10 +9,6 @@
 #include "colorimetry/image/image.h"
 #include "validation/gem/gem_view.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name, text) */
 #define ABBE_GEM_MAPS(X)                                                                           \
   X(COLOUR, "return", "light return, in colour")                                                   \
@@ -41,7 +37,4 @@ abbe_result abbe_gem_map_paint(const abbe_gem_view *view, abbe_gem_map map, abbe
  * caller frees. */
 abbe_result abbe_gem_map_image(const abbe_gem_view *view, abbe_image *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -4,10 +4,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_gem_number {
   double value, error; /* error: one standard deviation; NaN for fewer than two repeats */
 } abbe_gem_number;
@@ -19,7 +15,4 @@ abbe_gem_number abbe_gem_number_ratio(const double *sum, const double *weight, s
 /* whole: from all repeats; without[i]: the same measure without repeat i. */
 abbe_gem_number abbe_gem_number_jackknife(double whole, const double *without, size_t count);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

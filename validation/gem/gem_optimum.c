@@ -50,7 +50,6 @@ static abbe_result check_pair(const abbe_gem_optimum *o, size_t i, abbe_error *e
 abbe_result abbe_gem_optimum_apply(const abbe_gem_optimum *o, abbe_cut *cut,
                                    const abbe_cut_polyhedron *polyhedron, size_t i,
                                    abbe_error *error) {
-  ABBE_REQUIRE(o && cut && polyhedron, error);
   const abbe_result result = check_pair(o, i, error);
   if (result != ABBE_OK) return result;
   return abbe_cut_stretch_apply(
@@ -148,7 +147,6 @@ abbe_result abbe_gem_optimum_begin(const abbe_cut *cut, const abbe_cut_polyhedro
                                    const abbe_wavelengths *wavelengths, const abbe_weights *weights,
                                    const abbe_gem_optimum_desc *desc, abbe_gem_optimum *out,
                                    abbe_error *error) {
-  ABBE_REQUIRE(cut && polyhedron && material && wavelengths && weights && desc && out, error);
   memset(out, 0, sizeof *out);
   const work w = {material, wavelengths, weights, desc};
   abbe_result result = check(desc, error);
@@ -163,7 +161,6 @@ abbe_result abbe_gem_optimum_judge(const abbe_cut *cut, const abbe_cut_polyhedro
                                    const abbe_wavelengths *wavelengths, const abbe_weights *weights,
                                    const abbe_gem_optimum_desc *desc, abbe_gem_optimum *optimum,
                                    size_t i, abbe_error *error) {
-  ABBE_REQUIRE(cut && polyhedron && material && wavelengths && weights && desc && optimum, error);
   const work w = {material, wavelengths, weights, desc};
   abbe_gem_number value;
   abbe_result result = check_pair(optimum, i, error);

@@ -10,10 +10,6 @@
 #include "validation/gem/gem_tilts.h"
 #include "validation/gem/gem_view.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_GEM_MOST_ANGLES = 201 };
 
 typedef struct abbe_gem_optimum_desc {
@@ -78,7 +74,4 @@ abbe_result abbe_gem_optimum_apply(const abbe_gem_optimum *optimum, abbe_cut *cu
                                    const abbe_cut_polyhedron *polyhedron, size_t i,
                                    abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

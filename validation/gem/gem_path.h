@@ -13,10 +13,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A path ends where it carries less than this share of the ray's light, or at its most faces; what
  * it still carries is kept account of. */
 #define ABBE_GEM_LEAST_SHARE 1e-4f
@@ -43,7 +39,4 @@ bool abbe_gem_path_enter(const abbe_gem_stone *stone, const double o[3], const d
 void abbe_gem_path_follow(const abbe_gem_stone *stone, size_t k, const double p[3],
                           const double n[3], const double d[3], abbe_gem_path *out);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

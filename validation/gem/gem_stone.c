@@ -83,7 +83,6 @@ static abbe_result take_material(const abbe_material *m, const abbe_wavelengths 
 abbe_result abbe_gem_stone_make(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
                                 const abbe_material *material, const abbe_wavelengths *wavelengths,
                                 double width_m, abbe_gem_stone *out, abbe_error *error) {
-  ABBE_REQUIRE(cut && polyhedron && material && wavelengths && out, error);
   memset(out, 0, sizeof *out);
   if (!(width_m > 0) || !isfinite(width_m))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

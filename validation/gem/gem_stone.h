@@ -16,10 +16,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_gem_stone {
   abbe_solid solid; /* the same planes, in single precision */
   size_t plane_count;
@@ -42,7 +38,4 @@ abbe_result abbe_gem_stone_make(const abbe_cut *cut, const abbe_cut_polyhedron *
 /* Safe on a zeroed one. */
 void abbe_gem_stone_free(abbe_gem_stone *stone);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -220,7 +220,6 @@ static abbe_result check(const abbe_gem_stone *stone, const abbe_weights *weight
 abbe_result abbe_gem_tilts_make(const abbe_gem_stone *stone, const abbe_weights *weights,
                                 const abbe_gem_tilts_desc *desc, abbe_gem_tilts *out,
                                 abbe_error *error) {
-  ABBE_REQUIRE(stone && weights && desc && out, error);
   memset(out, 0, sizeof *out);
   abbe_result result = check(stone, weights, desc, error);
   if (result != ABBE_OK) return result;

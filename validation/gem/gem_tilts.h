@@ -14,10 +14,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_GEM_AXES = 4, ABBE_GEM_MOST_STEPS = 90 };
 
 /* A pixel shows fire where its colour is further than this from white of its own lightness,
@@ -77,7 +73,4 @@ abbe_result abbe_gem_tilts_make(const abbe_gem_stone *stone, const abbe_weights 
 /* Safe on a zeroed one. */
 void abbe_gem_tilts_free(abbe_gem_tilts *tilts);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

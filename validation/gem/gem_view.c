@@ -107,7 +107,6 @@ static abbe_result trace(const work *w, size_t threads, abbe_error *error) {
 
 abbe_result abbe_gem_view_check(const abbe_gem_stone *stone, const abbe_weights *weights,
                                 double head_rad, abbe_error *error) {
-  ABBE_REQUIRE(stone && weights, error);
   if (!(head_rad >= 0 && head_rad < 0.25 * PI))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a head's half angle of %g rad; it is at least 0 and below %g", head_rad,
@@ -150,7 +149,6 @@ static abbe_result allocate(abbe_gem_view *v, abbe_error *error) {
 abbe_result abbe_gem_view_make(const abbe_gem_stone *stone, const abbe_weights *weights,
                                const abbe_gem_view_desc *desc, abbe_gem_view *out,
                                abbe_error *error) {
-  ABBE_REQUIRE(stone && weights && desc && out, error);
   memset(out, 0, sizeof *out);
   abbe_result result = check(stone, weights, desc, error);
   if (result != ABBE_OK) return result;

@@ -13,10 +13,6 @@
 #include "validation/gem/gem_light.h"
 #include "validation/gem/gem_number.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_GEM_MOST_SIDE = 2048, ABBE_GEM_MOST_REPEATS = 64 };
 
 typedef struct abbe_gem_view_desc {
@@ -73,7 +69,4 @@ abbe_result abbe_gem_view_areas(const abbe_gem_view *view, abbe_gem_areas *out, 
  * [Peli1990]; of rays, and not of pixels, as the areas. */
 abbe_gem_number abbe_gem_view_contrast(const abbe_gem_view *view);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -31,7 +31,6 @@ static int greatest(const float amount[AMOUNTS]) {
 }
 
 abbe_result abbe_gem_view_areas(const abbe_gem_view *v, abbe_gem_areas *out, abbe_error *error) {
-  ABBE_REQUIRE(v && out, error);
   double area[AREAS][ABBE_GEM_MOST_REPEATS] = {{0}};
   if (v->side == 0 || v->repeats < 2 || v->repeats > ABBE_GEM_MOST_REPEATS)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a view without repeats has no areas");

@@ -54,7 +54,6 @@ static abbe_result check_group(const char *only, abbe_error *error) {
 
 abbe_result abbe_known_answers_make(const abbe_known_options *options, abbe_known_answers *out,
                                     abbe_error *error) {
-  ABBE_REQUIRE(options && out, error);
   const abbe_known_options defaults = {0};
   if (options == NULL) options = &defaults;
   *out = (abbe_known_answers){0};

@@ -19,10 +19,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(name, what is known): every group is `abbe_result abbe_known_NAME(run, error)`. */
 #define ABBE_KNOWN_GROUPS(X)                                                                       \
   X(prism, "least deviation of 60-degree prisms at the lines F, d and C; diamond has none")        \
@@ -90,7 +86,4 @@ size_t abbe_known_answers_failed(const abbe_known_answers *answers);
 const char *abbe_known_answers_group(size_t index);
 const char *abbe_known_answers_describe(size_t index);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

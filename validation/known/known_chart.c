@@ -53,7 +53,6 @@ static size_t add_groups(const abbe_known_answers *a, const columns *c,
 
 abbe_result abbe_known_chart_write(const char *path, const abbe_known_answers *answers,
                                    abbe_error *error) {
-  ABBE_REQUIRE(path && answers, error);
   if (answers->count == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: there are no answers to draw", path);
   columns c = {0};

@@ -7,16 +7,9 @@
 #include "base/error.h"
 #include "validation/known/known_answers.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Writes a .png or .svg beside and renamed; errors as abbe_chart_write, and ABBE_INVALID_ARGUMENT
  * where there are no answers. */
 abbe_result abbe_known_chart_write(const char *path, const abbe_known_answers *answers,
                                    abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

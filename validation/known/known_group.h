@@ -9,10 +9,6 @@
 #include "validation/transport/geometry.h"
 #include "validation/walks/route.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_KNOWN_DEGREES (180 / 3.14159265358979323846)
 
 typedef struct abbe_known_run {
@@ -78,7 +74,4 @@ double abbe_known_angle(const double a[3], const double b[3]);
 typedef double (*abbe_known_function)(double x, void *user);
 double abbe_known_least(abbe_known_function f, void *user, double low, double high);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

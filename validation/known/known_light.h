@@ -10,10 +10,6 @@
 #include "validation/known/rings.h"
 #include "validation/tracer/tracer.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A run for known answers: passes enough for their spread, and photons a pass such that all of
  * them are the options' samples, or the group's own number. Fills seed, threads and photons. */
 size_t abbe_known_passes(const abbe_known_run *run, uint64_t samples, abbe_trace_desc *desc);
@@ -66,7 +62,4 @@ abbe_result abbe_known_pane_setting(abbe_known_run *run, size_t index, bool abso
  * under a beam, through a pane). */
 abbe_result abbe_known_picture_setting(abbe_known_run *run, size_t index, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

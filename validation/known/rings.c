@@ -46,7 +46,6 @@ static void place_texel(abbe_rings *r, size_t column, size_t row) {
 abbe_result abbe_rings_make(const abbe_map_layout *layout, size_t width, size_t height,
                             const double centre[3], const double *edge, size_t count,
                             abbe_rings *out, abbe_error *error) {
-  ABBE_REQUIRE(layout && centre && edge && out, error);
   *out = (abbe_rings){.layout = *layout, .width = width, .height = height, .count = count};
   if (count < 1 || count > ABBE_RINGS_MAX || width < 1 || height < 1)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

@@ -15,10 +15,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_RINGS_MAX 64
 #define ABBE_RINGS_STEPS 24 /* circles across a ragged edge */
 
@@ -53,7 +49,4 @@ void abbe_rings_radii(const abbe_rings *rings, double *radius);
 void abbe_rings_expect(const abbe_rings *rings, const double *enclosed, size_t stride,
                        double *flux);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -263,7 +263,6 @@ static abbe_result check(const abbe_sphere_setup *s, abbe_error *error) {
 
 abbe_result abbe_sphere_quadrature_make(const abbe_sphere_setup *setup,
                                         abbe_sphere_quadrature **out, abbe_error *error) {
-  ABBE_REQUIRE(setup && out, error);
   *out = NULL;
   abbe_result result = check(setup, error);
   if (result != ABBE_OK) return result;
@@ -354,7 +353,6 @@ static double flux_past(const abbe_sphere_setup *s, double radius_m) {
 
 abbe_result abbe_sphere_quadrature_enclosed(const abbe_sphere_quadrature *quadrature,
                                             double radius_m, double *flux_w, abbe_error *error) {
-  ABBE_REQUIRE(quadrature && flux_w, error);
   if (!(radius_m >= 0))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a circle of radius %g m is none; it must be 0 or more", radius_m);
@@ -370,7 +368,6 @@ abbe_result abbe_sphere_quadrature_enclosed(const abbe_sphere_quadrature *quadra
 abbe_result abbe_sphere_quadrature_rings(const abbe_sphere_quadrature *quadrature,
                                          const double *edge_m, size_t count,
                                          double *irradiance_w_m2, abbe_error *error) {
-  ABBE_REQUIRE(quadrature && edge_m && irradiance_w_m2, error);
   double inner = 0, outer = 0;
   for (size_t i = 0; i <= count; i++) {
     if (!isfinite(edge_m[i]) || edge_m[i] < 0 || (i > 0 && edge_m[i] <= edge_m[i - 1]))
@@ -406,7 +403,6 @@ abbe_result abbe_sphere_quadrature_xyz(const abbe_sphere_setup *setup,
                                        const abbe_illuminant *illuminant, double min_nm,
                                        double max_nm, size_t bands, const double *radius_m,
                                        size_t count, double (*xyz)[3], abbe_error *error) {
-  ABBE_REQUIRE(setup && material && illuminant && radius_m && xyz, error);
   if (bands < 1 || bands > MAX_BANDS || !(min_nm > 0) || !(max_nm > min_nm) || !isfinite(max_nm))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%zu bands from %g to %g nm are no cut of a range; 1 to %d bands, "

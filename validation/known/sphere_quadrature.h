@@ -19,10 +19,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_SPHERE_MAX_ORDERS 64
 
 /* All zero but radius, index, plane_distance and power: a beam straight through. */
@@ -74,7 +70,4 @@ abbe_result abbe_sphere_quadrature_xyz(const abbe_sphere_setup *setup,
                                        double max_nm, size_t bands, const double *radius_m,
                                        size_t count, double (*xyz)[3], abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -144,7 +144,6 @@ static void measure(work *w, abbe_estimator kind, bool printed, bool reflected,
 
 abbe_result abbe_estimator_study_make(const abbe_scene *scene, size_t side, size_t grid,
                                       abbe_estimator_study *out, abbe_error *error) {
-  ABBE_REQUIRE(scene && out, error);
   work w = {.error = NULL};
   *out = (abbe_estimator_study){.side = side, .grid = grid};
   abbe_result result = abbe_landing_rays_make(scene, 0, lambda_nm, side, grid, &w.rays, error);
@@ -200,7 +199,6 @@ void abbe_estimator_study_print(const abbe_estimator_study *study, FILE *to) {
 
 abbe_result abbe_estimator_study_save(const abbe_estimator_study *study, const char *path,
                                       abbe_error *error) {
-  ABBE_REQUIRE(study && path, error);
   abbe_file_writer writer = {0};
   abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;

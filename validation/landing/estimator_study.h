@@ -10,10 +10,6 @@
 
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_ESTIMATOR_STUDY_MAX 256
 
 typedef struct abbe_estimator_point {
@@ -45,7 +41,4 @@ void abbe_estimator_study_print(const abbe_estimator_study *study, FILE *to);
 abbe_result abbe_estimator_study_save(const abbe_estimator_study *study, const char *path,
                                       abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -281,7 +281,6 @@ static abbe_result check(const abbe_scene *scene, size_t light, size_t side, siz
 abbe_result abbe_landing_rays_make(const abbe_scene *scene, size_t light, double lambda_nm,
                                    size_t side, size_t grid, abbe_landing_rays *out,
                                    abbe_error *error) {
-  ABBE_REQUIRE(scene && out, error);
   solids s = {.index = NULL};
   *out = (abbe_landing_rays){.side = side};
   abbe_result result = check(scene, light, side, grid, error);

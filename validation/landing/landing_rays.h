@@ -16,10 +16,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_landing_ray {
   double origin[3], direction[3]; /* unit */
   double distance;                /* to where it lands, m */
@@ -56,7 +52,4 @@ bool abbe_landing_rays_look_exactly(void *user, const double at[3], double seen[
 double abbe_landing_rays_texels(const abbe_landing_rays *rays, const double at[3],
                                 const double truth[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -15,10 +15,6 @@
 
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The stretch [from, to] of the ray from o along unit d that lies in the haze of the air, and the
  * wavelength: all in the frame. */
 typedef struct abbe_air_ray {
@@ -46,7 +42,4 @@ void abbe_air_light_surroundings(const abbe_air_ray *ray, const abbe_environment
 bool abbe_air_light_cone(const double tip[3], const double axis[3], double half_angle,
                          const double o[3], const double d[3], double *from, double *to);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -61,7 +61,6 @@ static abbe_result make_room(abbe_haze_grid *g, size_t count, abbe_error *error)
 
 abbe_result abbe_haze_grid_fill(abbe_haze_grid *g, const abbe_haze_photon *photon, size_t count,
                                 float radius, abbe_error *error) {
-  ABBE_REQUIRE(g && (photon || count == 0), error);
   lay_out(g, photon, count, radius);
   const abbe_result result = make_room(g, count, error);
   if (result != ABBE_OK) return result;

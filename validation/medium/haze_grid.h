@@ -16,10 +16,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_HAZE_GRID_SIDE 160 /* cubes a side, at the most */
 
 /* Where a photon is scattered. */
@@ -53,7 +49,4 @@ void abbe_haze_grid_gather(const abbe_haze_grid *grid, const float o[3], const f
                            void (*take)(void *user, const abbe_haze_photon *photon, float t),
                            void *user);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

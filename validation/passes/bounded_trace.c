@@ -62,7 +62,6 @@ static size_t find_more(const abbe_bounded_trace_desc *d, const abbe_bounded_tra
 abbe_result abbe_bounded_trace_make(const abbe_scene *scene, const abbe_bounded_trace_desc *desc,
                                     abbe_image *picture, abbe_bounded_trace *out,
                                     abbe_error *error) {
-  ABBE_REQUIRE(scene && desc && picture && out, error);
   abbe_tracer *tracer = NULL;
   abbe_trace_desc own = desc->trace;
   const size_t least = desc->filtered ? 2 : 1, bounded = desc->max_error > 0 ? 2 * least : least;

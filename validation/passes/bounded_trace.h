@@ -9,10 +9,6 @@
 #include "validation/passes/pass_error.h"
 #include "validation/tracer/tracer.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A bound may take up to so many times the passes that were asked for. */
 #define ABBE_BOUNDED_TRACE_MOST_TIMES 64
 
@@ -41,7 +37,4 @@ abbe_result abbe_bounded_trace_make(const abbe_scene *scene, const abbe_bounded_
                                     abbe_image *picture, abbe_bounded_trace *out,
                                     abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

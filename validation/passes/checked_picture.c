@@ -77,7 +77,6 @@ abbe_result abbe_checked_picture_make(const abbe_scene *scene,
                                       const abbe_checked_picture_desc *desc,
                                       const abbe_image *picture, abbe_image *traced,
                                       abbe_checked_picture *out, abbe_error *error) {
-  ABBE_REQUIRE(scene && desc && picture && traced && out, error);
   abbe_error why = {0};
   *traced = (abbe_image){0};
   *out = (abbe_checked_picture){.given = {NAN, NAN}, .traced = {NAN, NAN}};

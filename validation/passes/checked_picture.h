@@ -13,10 +13,6 @@
 #include "validation/passes/time_left.h"
 #include "validation/tracer/tracer.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_CHECKED_PICTURE_MOST_PASSES = 1024 };
 
 typedef struct abbe_checked_picture_desc {
@@ -49,7 +45,4 @@ abbe_result abbe_checked_picture_make(const abbe_scene *scene,
                                       const abbe_image *picture, abbe_image *traced,
                                       abbe_checked_picture *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

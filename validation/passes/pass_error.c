@@ -3,6 +3,7 @@
 #include "colorimetry/difference.h"
 #include "validation/compare/compare.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -207,7 +208,7 @@ static abbe_result check(const abbe_pass_pictures *p, const abbe_image *other, a
 
 abbe_result abbe_pass_error_make(const abbe_pass_pictures *p, abbe_pass_error *out,
                                  abbe_error *error) {
-  ABBE_REQUIRE(p && out && p->part && p->whole && !p->filtered == !p->filtered_part, error);
+  assert(p->part && p->whole && !p->filtered == !p->filtered_part);
   abbe_field part = {0}, whole = {0}, filtered_part = {0}, filtered = {0};
   *out = (abbe_pass_error){NAN, NAN};
   abbe_result result = check(p, NULL, error);
@@ -226,8 +227,7 @@ abbe_result abbe_pass_error_make(const abbe_pass_pictures *p, abbe_pass_error *o
 
 abbe_result abbe_pass_error_of_picture(const abbe_pass_pictures *p, const abbe_image *picture,
                                        abbe_pass_error *out, abbe_error *error) {
-  ABBE_REQUIRE(p && picture && out && p->part && p->whole && !p->filtered == !p->filtered_part,
-               error);
+  assert(p->part && p->whole && !p->filtered == !p->filtered_part);
   abbe_field part = {0}, whole = {0}, field = {0};
   *out = (abbe_pass_error){NAN, NAN};
   abbe_result result = check(p, picture, error);

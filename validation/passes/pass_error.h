@@ -12,10 +12,6 @@
 #include "base/error.h"
 #include "colorimetry/image/image.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A picture of abbe_tracer_picture, and what it was after the first of its passes. */
 typedef struct abbe_pass_pictures {
   const abbe_image *part, *whole;
@@ -48,7 +44,4 @@ abbe_result abbe_pass_error_of_picture(const abbe_pass_pictures *pictures,
                                        const abbe_image *picture, abbe_pass_error *out,
                                        abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -7,10 +7,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Work takes up to so many times as long as was expected of it, and has room for that. */
 #define ABBE_TIME_LEFT_ROOM 1.3
 
@@ -27,7 +23,4 @@ double abbe_time_left_seconds(const abbe_time_left *left);
  * NaN is work of which nothing is known: it fits where there is no end. */
 bool abbe_time_left_holds(const abbe_time_left *left, double seconds);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -12,7 +12,6 @@
 #include <unistd.h>
 
 abbe_result abbe_rank_files_name(const char *path, size_t rank, char **out, abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   const size_t size = strlen(path) + 32;
   *out = malloc(size);
   if (*out == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a file's name");
@@ -51,7 +50,6 @@ static abbe_result list(DIR *folder, const char *file, size_t **out, size_t *cou
 
 abbe_result abbe_rank_files_find(const char *path, size_t **out_rank, size_t *out_count,
                                  abbe_error *error) {
-  ABBE_REQUIRE(path && out_rank && out_count, error);
   const char *file = abbe_file_name(path);
   char *folder = strndup(path, (size_t)(file - path));
   *out_rank = NULL;

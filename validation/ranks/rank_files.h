@@ -8,10 +8,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A rank's file, malloc'd. ABBE_NO_MEMORY. */
 abbe_result abbe_rank_files_name(const char *path, size_t rank, char **out, abbe_error *error);
 
@@ -23,7 +19,4 @@ abbe_result abbe_rank_files_find(const char *path, size_t **out_rank, size_t *ou
 /* Removes them all, as far as that can be. */
 void abbe_rank_files_remove(const char *path);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -4,6 +4,7 @@
 #include "validation/gem/gem_grid_file.h"
 #include "validation/ranks/rank_files.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -96,7 +97,7 @@ static abbe_result search(const abbe_ranks *r, const abbe_ranked_optimum_desc *d
 
 abbe_result abbe_ranked_optimum_find(const abbe_ranks *ranks, const abbe_ranked_optimum_desc *desc,
                                      abbe_gem_optimum *out, abbe_error *error) {
-  ABBE_REQUIRE(ranks && ranks->most && desc && desc->path && desc->search && out, error);
+  assert(ranks->most && desc->path && desc->search);
   *out = (abbe_gem_optimum){0};
   abbe_result result =
       abbe_gem_optimum_begin(desc->cut, desc->polyhedron, desc->material, desc->wavelengths,

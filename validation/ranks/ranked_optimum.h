@@ -8,10 +8,6 @@
 #include "validation/gem/gem_optimum.h"
 #include "validation/tracer/ranked_run.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_ranked_optimum_desc {
   const abbe_cut *cut;
   const abbe_cut_polyhedron *polyhedron;
@@ -31,7 +27,4 @@ typedef struct abbe_ranked_optimum_desc {
 abbe_result abbe_ranked_optimum_find(const abbe_ranks *ranks, const abbe_ranked_optimum_desc *desc,
                                      abbe_gem_optimum *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

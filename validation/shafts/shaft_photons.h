@@ -17,10 +17,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_SHAFT_LANES = 16 };
 
 /* On its way to the eye. */
@@ -56,7 +52,4 @@ void abbe_shaft_photons_take(void *user, const abbe_light_stretch *stretch);
 void abbe_shaft_photons_flush(abbe_shaft_photons *photons);
 void abbe_shaft_photons_free(abbe_shaft_photons *photons);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -4,7 +4,6 @@
 
 abbe_result abbe_matched_physics(const abbe_scene *scene, double min_nm, double max_nm,
                                  abbe_physics *out, abbe_error *error) {
-  ABBE_REQUIRE(scene && out, error);
   abbe_plan plan;
   const abbe_render_desc desc = {.min_nm = min_nm, .max_nm = max_nm};
   abbe_result result = abbe_plan_make(scene, &desc, &plan, error);

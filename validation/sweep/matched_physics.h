@@ -7,16 +7,9 @@
 #include "scenes/scene.h"
 #include "validation/transport/physics.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Of the default profile over that range of wavelengths (0, 0: the default one). Errors of
  * abbe_plan_make. */
 abbe_result abbe_matched_physics(const abbe_scene *scene, double min_nm, double max_nm,
                                  abbe_physics *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -185,7 +185,6 @@ static abbe_result read_class(const reader *r, const char *path, abbe_preset_cla
 
 abbe_result abbe_picture_front_load(const char *path, abbe_preset_class of, abbe_picture_front *out,
                                     abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   reader r = {.error = error};
   size_t size;
   *out = (abbe_picture_front){0};
@@ -309,7 +308,6 @@ static abbe_result choose(abbe_picture_choice *c, const abbe_scene *scene, abbe_
 
 abbe_result abbe_picture_choose(const abbe_picture_request *request, const abbe_scene *scene,
                                 abbe_picture_choice *out, abbe_error *error) {
-  ABBE_REQUIRE(request && scene && out, error);
   abbe_plan plan;
   *out = (abbe_picture_choice){.request = *request, .unrest = NAN};
   if (request->name == NULL && !(request->max_error > 0) && !(request->budget_ms > 0))
@@ -372,7 +370,6 @@ static void explain(const abbe_picture_choice *c, double ms, char *out, size_t s
 }
 
 abbe_result abbe_picture_choice_check(const abbe_picture_choice *c, double ms, abbe_error *error) {
-  ABBE_REQUIRE(c, error);
   const abbe_picture_request *q = &c->request;
   if (c->point == NULL) return ABBE_OK;
   if (q->budget_ms > 0 && ms > q->budget_ms) {

@@ -17,10 +17,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Of one tool. */
 typedef struct abbe_picture_point {
   abbe_picture_tool tool;
@@ -107,7 +103,4 @@ double abbe_picture_choice_pass_s(const abbe_picture_choice *choice, size_t phot
 /* "the renderer: 7 wavelengths, ..." or "the tracer: 4 passes of 262144 photons, filtered". */
 void abbe_picture_describe(const abbe_picture_point *point, char *out, size_t size);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

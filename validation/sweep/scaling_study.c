@@ -179,7 +179,6 @@ static abbe_result grow_faces(work *w) {
 abbe_result abbe_scaling_study_measure(const abbe_sweep *sweep, abbe_scene *scene, size_t side,
                                        abbe_render_progress progress, void *user,
                                        abbe_scaling_study *out, abbe_error *error) {
-  ABBE_REQUIRE(sweep && scene && out, error);
   work w = {sweep, scene, {.wavelengths = 0}, side, progress, user, out, error};
   abbe_sweep_setting *list = NULL;
   size_t count, refused;
@@ -228,7 +227,6 @@ double abbe_scaling_study_slope(const abbe_scaling_study *g, abbe_scaling_study_
 
 abbe_result abbe_scaling_study_save(const abbe_scaling_study *g, const char *path,
                                     abbe_error *error) {
-  ABBE_REQUIRE(g && path, error);
   abbe_file_writer writer = {0};
   abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;
@@ -266,7 +264,6 @@ void abbe_scaling_study_print(const abbe_scaling_study *g, FILE *out) {
 
 abbe_result abbe_scaling_study_plot(const abbe_scaling_study *g, const char *path,
                                     abbe_error *error) {
-  ABBE_REQUIRE(g && path, error);
   double x[ABBE_SCALING_MAX], y[ABBE_SCALING_MAX], line_x[2] = {1, 1}, line_y[2];
   char label[ABBE_SCALING_COUNT][96], title[320];
   abbe_chart_series series[ABBE_SCALING_COUNT + 1];

@@ -12,10 +12,6 @@
 
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name, text): what is changed, and the unit of its numbers. */
 #define ABBE_SCALINGS(X)                                                                           \
   X(PHOTONS, "photons", "cells of the photon grid")                                                \
@@ -69,7 +65,4 @@ void abbe_scaling_study_print(const abbe_scaling_study *study, FILE *out);
 abbe_result abbe_scaling_study_plot(const abbe_scaling_study *study, const char *path,
                                     abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

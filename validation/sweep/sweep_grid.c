@@ -160,7 +160,6 @@ static abbe_result read_all(const reader *r, abbe_sweep_grids *out) {
 }
 
 abbe_result abbe_sweep_grids_load(const char *path, abbe_sweep_grids *out, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   reader r = {.error = error};
   *out = (abbe_sweep_grids){0};
   abbe_result result = path != NULL ? abbe_yaml_load(path, &r.yaml, error)
@@ -291,7 +290,6 @@ static abbe_result add_grid(expansion *e, const abbe_sweep_grid *g, abbe_error *
 abbe_result abbe_sweep_grid_expand(const abbe_scene *scene, const abbe_sweep_grid *grids,
                                    size_t count, abbe_sweep_setting **out, size_t *out_count,
                                    size_t *refused, abbe_error *why, abbe_error *error) {
-  ABBE_REQUIRE(scene && grids && out && out_count && refused, error);
   abbe_error first = {0};
   expansion e = {.scene = scene, .why = &first};
   *out = NULL;

@@ -14,10 +14,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_SWEEP_MAX_VALUES 16 /* of one axis */
 
 /* Values of one axis; none: the profile's default. */
@@ -79,7 +75,4 @@ abbe_result abbe_sweep_grid_expand(const abbe_scene *scene, const abbe_sweep_gri
                                    size_t count, abbe_sweep_setting **out, size_t *out_count,
                                    size_t *refused, abbe_error *why, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -5,16 +5,9 @@
 #include "colorimetry/image/image.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Of all that light meets: camera, lights, meshes, surfaces and materials. */
 unsigned long long abbe_sweep_hash_scene(const abbe_scene *scene);
 /* Either may be NULL. */
 unsigned long long abbe_sweep_hash_images(const abbe_image *picture, const abbe_image *map);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

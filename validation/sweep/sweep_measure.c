@@ -284,7 +284,6 @@ static abbe_result measure_frames(const abbe_sweep *s, const abbe_sweep_setting 
 abbe_result abbe_sweep_measure(const abbe_sweep *s, const abbe_sweep_setting *setting,
                                abbe_render_progress progress, void *user, abbe_sweep_row *out,
                                abbe_image *picture, abbe_error *error) {
-  ABBE_REQUIRE(s && setting && out, error);
   abbe_image own = {0}, *drawn = picture != NULL ? picture : &own;
   *drawn = (abbe_image){0};
   clear_row(setting, out);
@@ -298,7 +297,6 @@ abbe_result abbe_sweep_measure(const abbe_sweep *s, const abbe_sweep_setting *se
 
 abbe_result abbe_sweep_compare_picture(const abbe_sweep *s, const abbe_image *picture, bool scaled,
                                        abbe_sweep_row *out, abbe_error *error) {
-  ABBE_REQUIRE(s && picture && out, error);
   const abbe_sweep_setting none = {.photons = 0};
   clear_row(&none, out);
   return compare_picture(s, picture, scaled, out, error);
@@ -306,7 +304,6 @@ abbe_result abbe_sweep_compare_picture(const abbe_sweep *s, const abbe_image *pi
 
 abbe_result abbe_sweep_time(const abbe_sweep *s, const abbe_sweep_setting *setting, size_t width,
                             size_t height, abbe_sweep_row *out, abbe_error *error) {
-  ABBE_REQUIRE(s && setting && out, error);
   abbe_render_desc desc;
   abbe_renderer *renderer = NULL;
   clear_row(setting, out);
@@ -321,7 +318,6 @@ abbe_result abbe_sweep_time(const abbe_sweep *s, const abbe_sweep_setting *setti
 
 abbe_result abbe_sweep_model_measure(const abbe_sweep *s, abbe_sweep_model *out,
                                      abbe_error *error) {
-  ABBE_REQUIRE(s && out, error);
   abbe_comparison picture, map;
   *out = (abbe_sweep_model){NAN, NAN, NAN, NAN, NAN};
   abbe_result result = compare(s->picture, s->matched_picture, false, &picture, error);
@@ -344,7 +340,6 @@ abbe_result abbe_sweep_model_measure(const abbe_sweep *s, abbe_sweep_model *out,
 
 abbe_result abbe_sweep_fit_layout(abbe_context *context, const abbe_scene *scene, size_t light,
                                   abbe_map_layout *out, abbe_error *error) {
-  ABBE_REQUIRE(context && scene && out, error);
   abbe_renderer *renderer = NULL;
   abbe_render_desc desc = {.width = 16, .height = 16};
   abbe_result result = abbe_renderer_make(context, scene, &desc, &renderer, error);

@@ -17,10 +17,6 @@
 #include "scenes/view/map_layout.h"
 #include "validation/tradeoff/sweep_table.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_SWEEP_BANDS 8 /* in which maps are compared over wavelength */
 
 /* What the settings are held against. The images outlive it. */
@@ -62,7 +58,4 @@ abbe_result abbe_sweep_time(const abbe_sweep *sweep, const abbe_sweep_setting *s
 abbe_result abbe_sweep_model_measure(const abbe_sweep *sweep, abbe_sweep_model *out,
                                      abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -293,7 +293,6 @@ abbe_result abbe_sweep_page_write(abbe_context *context, const char *path,
                                   const abbe_sweep_table *tables, size_t count,
                                   abbe_sweep_number time, abbe_sweep_number number,
                                   abbe_error *error) {
-  ABBE_REQUIRE(context && path && tables, error);
   abbe_file_writer writer = {0};
   page p = {.path = path, .context = context, .time = time, .number = number};
   if (strlen(path) > ABBE_SWEEP_PATH / 2)

@@ -11,10 +11,6 @@
 #include "validation/sweep/sweep_reference.h"
 #include "validation/tradeoff/sweep_table.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_SWEEP_PAGE_PICTURES 6 /* of a table, at the most */
 
 /* Writes the page of tables[count], whose fronts of that time and that error are marked, and its
@@ -30,7 +26,4 @@ abbe_result abbe_sweep_page_write(abbe_context *context, const char *path,
 void abbe_sweep_page_picture(const char *path, const abbe_sweep_table *tables, size_t table,
                              size_t picture, char out[ABBE_SWEEP_PATH]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

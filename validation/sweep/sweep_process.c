@@ -5,6 +5,7 @@
 #include "base/number.h"
 #include "validation/sweep/sweep_trace.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <ftw.h>
@@ -170,7 +171,7 @@ static int compare_times(const void *a, const void *b) {
 
 abbe_result abbe_sweep_process_make(const abbe_sweep_process_desc *desc, abbe_sweep_process **out,
                                     abbe_error *error) {
-  ABBE_REQUIRE(desc && desc->program && desc->scene && out, error);
+  assert(desc->program && desc->scene);
   const char *base = getenv("TMPDIR");
   *out = NULL;
   abbe_sweep_process *p = calloc(1, sizeof *p);
@@ -198,7 +199,6 @@ void abbe_sweep_process_free(abbe_sweep_process *p) {
 
 abbe_result abbe_sweep_process_measure(abbe_sweep_process *p, bool cold, abbe_sweep_row *row,
                                        abbe_error *error) {
-  ABBE_REQUIRE(p && row, error);
   char picture[PATH + 32], cache[PATH + 32], filled[PATH + 32];
   double first = 0, warm[MOST_RUNS];
   command c;

@@ -13,10 +13,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_sweep_process_desc {
   const char *program;   /* a path that can be run */
   const char *scene;     /* path */
@@ -40,7 +36,4 @@ void abbe_sweep_process_free(abbe_sweep_process *process);
 abbe_result abbe_sweep_process_measure(abbe_sweep_process *process, bool cold, abbe_sweep_row *row,
                                        abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -27,7 +27,6 @@ static const char *preset_of(const abbe_preset_front *front, size_t point) {
 
 abbe_result abbe_sweep_promises_make(const abbe_sweep_table *table, const char *presets,
                                      abbe_sweep_promises *out, abbe_error *error) {
-  ABBE_REQUIRE(table && out, error);
   out->front = NULL;
   out->count = 0;
   abbe_result result = abbe_presets_load(presets, &out->presets, error);

@@ -5,10 +5,6 @@
 #include "gl/accuracy/preset.h"
 #include "validation/tradeoff/sweep_table.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Of one point of the front that the table has. */
 typedef struct abbe_sweep_promise {
   const char *preset; /* its name, or "" */
@@ -30,7 +26,4 @@ abbe_result abbe_sweep_promises_make(const abbe_sweep_table *table, const char *
                                      abbe_sweep_promises *out, abbe_error *error);
 void abbe_sweep_promises_free(abbe_sweep_promises *promises);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

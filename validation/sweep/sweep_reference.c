@@ -18,7 +18,6 @@ static const char *const stamp_name = "abbe:sweep";
 
 abbe_result abbe_sweep_reference_name(const char *table, bool matched, abbe_sweep_reference *out,
                                       abbe_error *error) {
-  ABBE_REQUIRE(table && out, error);
   const char *dot = strrchr(table, '.'), *slash = strrchr(table, '/');
   const char *kind = matched ? "matched" : "reference";
   int stem =
@@ -102,7 +101,6 @@ static abbe_result trace(abbe_context *context, const abbe_scene *scene,
 abbe_result abbe_sweep_reference_find(abbe_context *context, const abbe_scene *scene,
                                       const abbe_sweep_reference_desc *desc,
                                       abbe_sweep_reference *reference, abbe_error *error) {
-  ABBE_REQUIRE(context && scene && desc && reference, error);
   char stamp[STAMP];
   make_stamp(scene, desc, stamp);
   if (is_stamped(reference->picture_path, stamp, &reference->picture)) {
@@ -117,7 +115,6 @@ abbe_result abbe_sweep_reference_find(abbe_context *context, const abbe_scene *s
 
 abbe_result abbe_sweep_reference_load(const abbe_scene *scene, const char *picture, const char *map,
                                       abbe_sweep_reference *out, size_t *light, abbe_error *error) {
-  ABBE_REQUIRE(scene && out && light, error);
   abbe_result result = ABBE_OK;
   abbe_map_layout layout;
   *out = (abbe_sweep_reference){0};

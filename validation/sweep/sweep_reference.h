@@ -11,10 +11,6 @@
 #include "gl/device/context.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_SWEEP_PATH 1024
 
 /* How a reference is traced; zero means the default in every field. */
@@ -55,7 +51,4 @@ abbe_result abbe_sweep_reference_load(const abbe_scene *scene, const char *pictu
                                       abbe_sweep_reference *out, size_t *light, abbe_error *error);
 void abbe_sweep_reference_free(abbe_sweep_reference *reference);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

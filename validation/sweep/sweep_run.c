@@ -238,7 +238,6 @@ static abbe_result measure_processes(work *w, abbe_error *error) {
 abbe_result abbe_sweep_run(abbe_context *context, const abbe_scene *scene,
                            const abbe_sweep_request *request, abbe_sweep_table *out,
                            abbe_error *error) {
-  ABBE_REQUIRE(context && scene && request && out, error);
   work w = {.q = request, .scene = scene};
   w.sweep = (abbe_sweep){.context = context, .scene = scene, .frames = request->frames};
   *out = (abbe_sweep_table){0};
@@ -260,7 +259,6 @@ abbe_result abbe_sweep_run(abbe_context *context, const abbe_scene *scene,
 abbe_result abbe_sweep_preset_settings(const abbe_scene *scene, const char *presets,
                                        abbe_sweep_setting **out, size_t *out_count,
                                        abbe_error *error) {
-  ABBE_REQUIRE(scene && out && out_count, error);
   abbe_presets all = {0};
   const abbe_preset_front *front = NULL;
   abbe_plan plan;

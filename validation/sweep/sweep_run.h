@@ -9,10 +9,6 @@
 #include "validation/sweep/sweep_reference.h"
 #include "validation/tradeoff/sweep_table.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* What is under way ("reference", "matched", "sweep" or "processes"), and how much of it is done, 0
  * to 1; false stops. */
 typedef bool (*abbe_sweep_progress)(void *user, const char *what, double done);
@@ -53,7 +49,4 @@ abbe_result abbe_sweep_preset_settings(const abbe_scene *scene, const char *pres
                                        abbe_sweep_setting **out, size_t *out_count,
                                        abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

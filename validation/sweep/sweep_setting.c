@@ -84,7 +84,6 @@ static size_t pinholes_of(const char *profile) {
 
 abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_render_desc *out,
                                     abbe_error *error) {
-  ABBE_REQUIRE(setting && out, error);
   int profile = 0, fill = 0, model = 0, direction = 0;
   const size_t pinholes = pinholes_of(setting->profile);
   const unsigned polygons = polygons_of(setting->polygons);

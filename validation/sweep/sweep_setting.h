@@ -5,10 +5,6 @@
 #include "gl/plan/plan.h"
 #include "validation/tradeoff/sweep_table.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Kinds of polygons by their bits (ABBE_POLYGONS): "plain", "even", "corners", "even+corners", ...
  */
 extern const char *const abbe_sweep_polygons[ABBE_POLYGONS_ALL + 1];
@@ -31,7 +27,4 @@ void abbe_sweep_setting_describe(const abbe_sweep_setting *setting, char *out, s
 /* abbe_preset_is_fine. */
 bool abbe_sweep_setting_is_fine(const abbe_sweep_setting *setting);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -21,7 +21,6 @@ static bool is_filtered(const abbe_sweep_setting *setting) {
 }
 
 abbe_result abbe_sweep_trace_filter(abbe_image *picture, abbe_error *error) {
-  ABBE_REQUIRE(picture, error);
   abbe_image filtered = {0};
   const abbe_denoise_desc desc = {0};
   abbe_result result = abbe_denoise_picture(picture, &desc, &filtered, error);
@@ -82,7 +81,6 @@ static int compare_frames(const void *a, const void *b) {
 
 abbe_result abbe_sweep_trace_measure(const abbe_scene *scene, const abbe_sweep_trace_desc *desc,
                                      abbe_sweep_row *row, abbe_image *picture, abbe_error *error) {
-  ABBE_REQUIRE(scene && desc && row, error);
   frame frames[ABBE_FRAME_TIMES_MAX];
   abbe_image image = {0}, half = {0};
   const abbe_sweep_setting *setting = &row->setting;
@@ -179,7 +177,6 @@ double abbe_sweep_trace_own_error(const abbe_image *half, const abbe_image *pict
 }
 
 abbe_result abbe_sweep_trace_check(const abbe_scene *scene, abbe_error *error) {
-  ABBE_REQUIRE(scene, error);
   abbe_tracer *tracer = NULL;
   const abbe_trace_desc least = {.no_map = true, .width = 1, .height = 1, .photons = 1};
   abbe_result result = abbe_tracer_make(scene, &least, &tracer, error);

@@ -12,10 +12,6 @@
 #include "scenes/scene.h"
 #include "validation/tradeoff/sweep_table.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Of all traced contestants; references have other noise. */
 #define ABBE_SWEEP_TRACE_SEED 20261u
 
@@ -46,7 +42,4 @@ abbe_result abbe_sweep_trace_filter(abbe_image *picture, abbe_error *error);
 /* Whether the tracer knows the scene. Errors of abbe_tracer_make. */
 abbe_result abbe_sweep_trace_check(const abbe_scene *scene, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -26,7 +26,6 @@ static void free_rows(int64_t **row, size_t rows) {
 
 abbe_result abbe_accumulator_make(size_t values, size_t threads, double most, abbe_accumulator *out,
                                   abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   *out = (abbe_accumulator){0};
   if (!(most >= 1e-100 && most <= 1e100) || values == 0 || threads == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

@@ -20,10 +20,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_accumulator {
   size_t values; /* elements times channels */
   size_t threads;
@@ -89,7 +85,4 @@ double abbe_accumulator_error(const abbe_accumulator *a, size_t value);
 /* Additions that were cut. */
 uint64_t abbe_accumulator_cuts(const abbe_accumulator *a);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -166,7 +166,6 @@ static void put(hashed_stream *s, const void *data, size_t size) {
 }
 
 abbe_result abbe_checkpoint_save(const abbe_tracer *t, const char *path, abbe_error *error) {
-  ABBE_REQUIRE(t && path, error);
   abbe_file_writer writer = {0};
   abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;
@@ -325,7 +324,6 @@ static void add_part(abbe_tracer *t, const char *numbers, const abbe_pass_counts
 }
 
 abbe_result abbe_checkpoint_load(abbe_tracer *t, const char *path, abbe_error *error) {
-  ABBE_REQUIRE(t && path, error);
   char *data = NULL;
   size_t numbers = 0;
   abbe_pass_counts c;
@@ -453,7 +451,6 @@ static abbe_result add_parts(abbe_tracer *t, const parts *p, size_t count, abbe_
 
 abbe_result abbe_checkpoint_merge(abbe_tracer *t, const char *const *path, size_t count,
                                   abbe_checkpoint_merging *how, abbe_error *error) {
-  ABBE_REQUIRE(t && path, error);
   if (count == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there are no parts to merge");
   char lacks[sizeof how->lacks] = "";
@@ -488,7 +485,6 @@ void abbe_checkpoint_describe(const abbe_tracer *t, char out[ABBE_CHECKPOINT_TEX
 
 abbe_result abbe_checkpoint_compare(const abbe_tracer *t, const char *who, const char *theirs,
                                     abbe_error *error) {
-  ABBE_REQUIRE(t && who && theirs, error);
   char ours[ABBE_CHECKPOINT_TEXT];
   describe(t, ours, sizeof ours);
   return say_difference(who, theirs, ours, error);

@@ -13,10 +13,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* ABBE_IO where the file cannot be written. */
 abbe_result abbe_checkpoint_save(const abbe_tracer *tracer, const char *path, abbe_error *error);
 
@@ -52,7 +48,4 @@ void abbe_checkpoint_describe(const abbe_tracer *tracer, char out[ABBE_CHECKPOIN
 abbe_result abbe_checkpoint_compare(const abbe_tracer *tracer, const char *who, const char *theirs,
                                     abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

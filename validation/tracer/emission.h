@@ -8,10 +8,6 @@
 
 #include "validation/tracer/tracer_state.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Cell after cell: cell i has the photons from first[i] on. */
 typedef struct abbe_emission {
   const abbe_tracer *t;
@@ -28,7 +24,4 @@ void abbe_emission_free(abbe_emission *e);
 /* Photons [from, to), at most ABBE_LIGHT_WALK_BATCH of them; how many those are. */
 size_t abbe_emission_batch(const abbe_emission *e, uint32_t from, uint32_t to, abbe_photon *photon);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -9,10 +9,6 @@
 #include "validation/tracer/accumulator.h"
 #include "validation/walks/eye_walk.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Values of a pixel. The last ones are products, whose sums tell covariances. */
 enum {
   ABBE_GUIDE_PHOTONS = 0, /* R, G, B of the caustic that the eye sees straight */
@@ -54,7 +50,4 @@ double abbe_guide_sums_variance(const abbe_guide_sums *g, size_t passes, size_t 
 double abbe_guide_sums_covariance(const abbe_guide_sums *g, size_t passes, size_t pixel,
                                   size_t product);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

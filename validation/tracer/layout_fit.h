@@ -8,14 +8,7 @@
 
 #include "validation/tracer/tracer_state.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A view from the map's light around where its light lands, into t->layout. */
 abbe_result abbe_tracer_fit_layout(abbe_tracer *t, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

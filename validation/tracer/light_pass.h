@@ -8,10 +8,6 @@
 
 #include "validation/tracer/tracer_state.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Rays of the walks of all threads, trials too. */
 uint64_t abbe_tracer_walk_rays(const abbe_tracer *tracer);
 
@@ -26,7 +22,4 @@ abbe_result abbe_tracer_choose_splits(abbe_tracer *tracer, abbe_error *error);
 void abbe_tracer_add_to_map(abbe_tracer *tracer, size_t thread, size_t light,
                             const abbe_photon_hit *hit, size_t count);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -12,10 +12,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_MAP_TEXELS_LANES 16
 #define ABBE_MAP_TEXELS_NONE SIZE_MAX
 
@@ -29,7 +25,4 @@ typedef struct abbe_map_texels {
 void abbe_map_texels_find(const abbe_map_layout *layout, size_t width, size_t height,
                           abbe_map_texels *texels);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -73,7 +73,6 @@ void abbe_pass_sums_clear(abbe_tracer *t) {
 /* ---- passes ---- */
 
 abbe_result abbe_tracer_begin_at(abbe_tracer *t, size_t pass, size_t step, abbe_error *error) {
-  ABBE_REQUIRE(t, error);
   const size_t most = ABBE_WHOLE_SUM_MOST_PASSES;
   if (t->pass > t->first || pass >= most || step == 0 || step > most)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

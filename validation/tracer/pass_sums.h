@@ -8,10 +8,6 @@
 
 #include "validation/tracer/tracer_state.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_pass_counts {
   uint64_t first, end, step; /* passes first, first + step, ... below end */
   uint64_t whole;            /* passes that there are to be, of all parts; 0: it was not said */
@@ -41,7 +37,4 @@ bool abbe_pass_sums_hold(abbe_whole_sum sum, size_t passes);
 /* No passes, and sums of 0. */
 void abbe_pass_sums_clear(abbe_tracer *tracer);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -4,19 +4,20 @@
 #include "validation/tracer/checkpoint.h"
 #include "validation/tracer/pass_sums.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 abbe_result abbe_ranks_agree(const abbe_ranks *r, abbe_result own, abbe_error *error) {
-  ABBE_REQUIRE(r && r->most, error);
+  assert(r->most);
   const uint64_t failed = own == ABBE_OK ? 0 : r->count - r->rank, worst = r->most(failed);
   if (failed == worst) return own;
   return abbe_error_set(error, ABBE_CANCELLED, "rank %zu cannot go on", r->count - (size_t)worst);
 }
 
 abbe_result abbe_ranks_compare(const abbe_ranks *r, const abbe_tracer *tracer, abbe_error *error) {
-  ABBE_REQUIRE(r && r->spread && tracer, error);
+  assert(r->spread);
   char theirs[ABBE_CHECKPOINT_TEXT];
   abbe_checkpoint_describe(tracer, theirs);
   r->spread(theirs, sizeof theirs);
@@ -232,7 +233,7 @@ static abbe_result run_rounds(work *w, size_t most, abbe_error *error) {
 
 abbe_result abbe_ranked_run(const abbe_ranks *ranks, abbe_tracer *tracer,
                             const abbe_trace_run_desc *desc, abbe_error *error) {
-  ABBE_REQUIRE(ranks && ranks->sum && ranks->most && tracer && desc, error);
+  assert(ranks->sum && ranks->most);
   const double now = abbe_clock_seconds();
   tracer->whole = desc->whole;
   const size_t most = desc->passes > 0 ? desc->passes : ABBE_WHOLE_SUM_MOST_PASSES;

@@ -10,10 +10,6 @@
 #include "validation/tracer/trace_run.h"
 #include "validation/tracer/whole_sum.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Every rank calls each of these as often as the others, in the same order. */
 typedef struct abbe_ranks {
   size_t rank, count; /* 0 to count - 1 */
@@ -50,7 +46,4 @@ size_t abbe_ranked_run_next_look(size_t passes);
 abbe_result abbe_ranked_run(const abbe_ranks *ranks, abbe_tracer *tracer,
                             const abbe_trace_run_desc *desc, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -9,7 +9,6 @@ static const double checkpoint_every_s = 30;
 
 abbe_result abbe_reference_trace(const abbe_scene *scene, const abbe_reference_desc *desc,
                                  abbe_image *picture, abbe_image *map, abbe_error *error) {
-  ABBE_REQUIRE(scene && desc && picture && map, error);
   const abbe_trace_run_desc run = {.passes =
                                        desc->passes > 0 ? desc->passes : ABBE_REFERENCE_PASSES,
                                    .checkpoint = desc->checkpoint,

@@ -8,10 +8,6 @@
 
 #include "validation/tracer/tracer.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_REFERENCE_PASSES 64
 
 typedef struct abbe_reference_desc {
@@ -30,7 +26,4 @@ typedef struct abbe_reference_desc {
 abbe_result abbe_reference_trace(const abbe_scene *scene, const abbe_reference_desc *desc,
                                  abbe_image *picture, abbe_image *map, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

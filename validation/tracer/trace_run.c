@@ -24,13 +24,11 @@ static bool is_finished(const abbe_trace_run_desc *d, size_t passes, double spen
 
 abbe_result abbe_trace_keep(const abbe_tracer *tracer, const abbe_trace_run_desc *d,
                             abbe_error *error) {
-  ABBE_REQUIRE(tracer && d, error);
   if (d->checkpoint == NULL || abbe_tracer_passes(tracer) == 0) return ABBE_OK;
   return abbe_checkpoint_save(tracer, d->checkpoint, error);
 }
 
 abbe_result abbe_trace_run(abbe_tracer *tracer, const abbe_trace_run_desc *d, abbe_error *error) {
-  ABBE_REQUIRE(tracer && d, error);
   double start = abbe_clock_seconds(), saved = start, estimate = INFINITY;
   tracer->whole = d->whole;
   for (;;) {

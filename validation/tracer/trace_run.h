@@ -6,10 +6,6 @@
 
 #include "validation/tracer/tracer.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_trace_run_desc {
   size_t passes;  /* in all; 0: any number */
   size_t whole;   /* of all parts together, which the checkpoint keeps; 0: it is not known */
@@ -30,7 +26,4 @@ abbe_result abbe_trace_run(abbe_tracer *tracer, const abbe_trace_run_desc *desc,
 abbe_result abbe_trace_keep(const abbe_tracer *tracer, const abbe_trace_run_desc *desc,
                             abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -275,7 +275,6 @@ static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
 
 abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *desc,
                              abbe_tracer **out, abbe_error *error) {
-  ABBE_REQUIRE(scene && desc && out, error);
   *out = NULL;
   abbe_tracer *t = calloc(1, sizeof *t);
   if (t == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a tracer");
@@ -433,7 +432,6 @@ static void drop_pass(abbe_tracer *t) {
 }
 
 abbe_result abbe_tracer_pass(abbe_tracer *t, const volatile int *stop, abbe_error *error) {
-  ABBE_REQUIRE(t, error);
   if (t->pass >= ABBE_WHOLE_SUM_MOST_PASSES)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there are no more than %u passes",
                           ABBE_WHOLE_SUM_MOST_PASSES);

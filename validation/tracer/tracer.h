@@ -25,10 +25,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_TRACER_MAX_SIDE 8192
 #define ABBE_TRACER_FAINTEST 0x1p-44
 #define ABBE_TRACER_MAX_PHOTONS 67108864u /* a pass */
@@ -114,7 +110,4 @@ void abbe_tracer_statistics(const abbe_tracer *tracer, abbe_trace_statistics *ou
  * counted. */
 abbe_result abbe_tracer_rates(abbe_tracer *tracer, double *walk, double *embree, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

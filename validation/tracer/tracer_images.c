@@ -157,7 +157,6 @@ static void read_guides(const abbe_tracer *t, abbe_image *out) {
 }
 
 abbe_result abbe_tracer_picture(const abbe_tracer *t, abbe_image *out, abbe_error *error) {
-  ABBE_REQUIRE(t && out, error);
   *out = (abbe_image){0};
   if (t->desc.no_picture)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no picture was traced");
@@ -182,7 +181,6 @@ abbe_result abbe_tracer_picture(const abbe_tracer *t, abbe_image *out, abbe_erro
 }
 
 abbe_result abbe_tracer_map(const abbe_tracer *t, abbe_image *out, abbe_error *error) {
-  ABBE_REQUIRE(t && out, error);
   *out = (abbe_image){0};
   if (t->desc.no_map) return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no map was traced");
   static const char *const xyz[3] = {"X", "Y", "Z"};

@@ -31,7 +31,6 @@ static uint64_t rays_of(const abbe_light_walk *walk) {
 
 /* The best of a few turns of each, in turn, so that a busy machine harms neither more. */
 abbe_result abbe_tracer_rates(abbe_tracer *t, double *walk, double *embree, abbe_error *error) {
-  ABBE_REQUIRE(t && walk && embree, error);
   enum { TURNS = 5, PHOTONS = 131072, PACKETS = 65536 };
   *walk = *embree = 0;
   size_t light = 0;

@@ -11,10 +11,6 @@
 #include "validation/walks/eye_walk.h"
 #include "validation/walks/projection_map.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Parts of a ledger. */
 enum { ABBE_TRACER_LEDGER = sizeof(abbe_light_ledger) / sizeof(double) };
 enum { ABBE_TRACER_RGB = 0, ABBE_TRACER_CAUSTIC = 3, ABBE_TRACER_BANDS = 6 };
@@ -97,7 +93,4 @@ static inline size_t abbe_tracer_most_hits(const abbe_tracer *t, size_t light, s
   return photons;
 }
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -75,7 +75,6 @@ static void meet_front(const abbe_sweep_table *table, const double *cost, const 
 abbe_result abbe_baseline_comparison_make(const abbe_sweep_table *table, const char *profile,
                                           abbe_sweep_number time, abbe_sweep_number number,
                                           abbe_baseline_comparison *out, abbe_error *error) {
-  ABBE_REQUIRE(table && profile && out, error);
   size_t count = table->count;
   double *cost = calloc(2 * count + 1, sizeof *cost);
   size_t *order = calloc(count + 1, sizeof *order);

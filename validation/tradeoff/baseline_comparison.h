@@ -11,10 +11,6 @@
 
 #include "validation/tradeoff/sweep_table.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(profile, text, key): against whom; what its JSON names begin with. */
 #define ABBE_BASELINES(X)                                                                          \
   X("thesis", "thesis profile, with the best factor on its brightness", "")                        \
@@ -52,7 +48,4 @@ abbe_result abbe_baseline_comparison_make(const abbe_sweep_table *table, const c
                                           abbe_sweep_number time, abbe_sweep_number number,
                                           abbe_baseline_comparison *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

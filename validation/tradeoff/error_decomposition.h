@@ -12,10 +12,6 @@
 
 #include "validation/tradeoff/sweep_table.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* NaN: not measured. Each part with its reference's noise taken off in squares (0: all noise). */
 typedef struct abbe_error_decomposition {
   const abbe_sweep_row *row; /* the setting: the default profile's most accurate; NULL: none */
@@ -36,7 +32,4 @@ void abbe_error_decomposition_make(const abbe_sweep_table *table, abbe_error_dec
 void abbe_error_decomposition_say(const abbe_error_decomposition *decomposition, char *out,
                                   size_t size);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

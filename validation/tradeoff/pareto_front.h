@@ -11,10 +11,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Marks those of count points that no other beats: none has at most their cost and at most their
  * error, and less of one. Of equal points the first is marked. Returns how many. */
 size_t abbe_pareto_front_mark(const double *cost, const double *error, size_t count,
@@ -32,7 +28,4 @@ size_t abbe_pareto_front_knee(const double *cost, const double *error, size_t co
 /* The cheapest point of such a front whose error is at most 1 + slack times the least there is. */
 size_t abbe_pareto_front_accurate(const double *error, size_t count, double slack);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -193,7 +193,6 @@ static void find_widest(const abbe_sweep_table *tables, size_t count, group *g, 
 
 abbe_result abbe_sweep_pictures_write(FILE *out, const abbe_sweep_table *tables, size_t count,
                                       const char *of, abbe_sweep_number number, abbe_error *error) {
-  ABBE_REQUIRE(out && tables && of, error);
   group g = {.number = number};
   margins widest[ABBE_PICTURE_TOOL_COUNT];
   size_t most = 1;

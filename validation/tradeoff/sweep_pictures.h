@@ -15,10 +15,6 @@
 
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(code, name, profile): the tools, and the contestants of a sweep that they are. */
 #define ABBE_PICTURE_TOOLS(X)                                                                      \
   X(RENDER, "render", "default")                                                                   \
@@ -43,7 +39,4 @@ abbe_picture_tool abbe_picture_tool_of(const abbe_sweep_setting *setting);
 abbe_result abbe_sweep_pictures_write(FILE *out, const abbe_sweep_table *tables, size_t count,
                                       const char *of, abbe_sweep_number number, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

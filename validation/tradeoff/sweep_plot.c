@@ -191,7 +191,6 @@ static abbe_result make_chart(const abbe_sweep_table *table, abbe_sweep_number t
 
 abbe_result abbe_sweep_plot(const char *path, const abbe_sweep_table *table, abbe_sweep_number time,
                             const abbe_sweep_number *errors, size_t count, abbe_error *error) {
-  ABBE_REQUIRE(path && table && errors, error);
   figures f[MAX_CHARTS];
   abbe_chart charts[MAX_CHARTS];
   char title[600];
@@ -286,7 +285,6 @@ static void share_legend(figures *f, abbe_chart *chart, size_t charts, size_t ti
 
 abbe_result abbe_sweep_plot_scenes(const char *path, const abbe_sweep_table *tables, size_t count,
                                    abbe_sweep_number number, abbe_error *error) {
-  ABBE_REQUIRE(path && tables, error);
   if (count < 1 || count > MAX_SCENES)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%zu tables in one chart; 1 to %d can be drawn", count, MAX_SCENES);

@@ -9,10 +9,6 @@
 
 #include "validation/tradeoff/sweep_table.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Draws the charts of the errors named against that time, one above the other, to path (.png or
  * .svg); the fronts are found anew for each. ABBE_INVALID_ARGUMENT for a number that is no error or
  * where no row has it; errors of abbe_chart_write. */
@@ -25,7 +21,4 @@ abbe_result abbe_sweep_plot(const char *path, const abbe_sweep_table *table, abb
 abbe_result abbe_sweep_plot_scenes(const char *path, const abbe_sweep_table *tables, size_t count,
                                    abbe_sweep_number number, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -359,7 +359,6 @@ abbe_result abbe_sweep_presets_write(const char *path, const abbe_sweep_table *t
                                      abbe_sweep_number number,
                                      bool (*is_fine)(const abbe_sweep_setting *setting),
                                      abbe_error *error) {
-  ABBE_REQUIRE(path && tables && names && is_fine, error);
   abbe_file_writer writer = {0};
   abbe_result result = check(tables, names, count, error);
   if (result == ABBE_OK) result = abbe_file_writer_open(&writer, path, error);

@@ -13,10 +13,6 @@
 
 #include "validation/tradeoff/sweep_table.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Writes the presets of the tables to path, beside and renamed; name[count] are the tables' paths,
  * for sentences. is_fine tells which settings are finer than the defaults; a class without one has
  * no accurate, and a comment says so. ABBE_INVALID_ARGUMENT where a table names no class, was made
@@ -28,7 +24,4 @@ abbe_result abbe_sweep_presets_write(const char *path, const abbe_sweep_table *t
                                      bool (*is_fine)(const abbe_sweep_setting *setting),
                                      abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

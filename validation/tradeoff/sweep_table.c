@@ -143,7 +143,6 @@ const abbe_sweep_row *abbe_sweep_table_find(const abbe_sweep_table *table,
 
 abbe_result abbe_sweep_table_add(abbe_sweep_table *table, const abbe_sweep_row *row,
                                  abbe_error *error) {
-  ABBE_REQUIRE(table && row, error);
   if (abbe_sweep_table_find(table, &row->setting) != NULL) {
     char text[64];
     abbe_sweep_setting_label(&row->setting, text, sizeof text);
@@ -196,7 +195,6 @@ double abbe_sweep_table_unrest(const abbe_sweep_table *table) {
 abbe_result abbe_sweep_table_mark(abbe_sweep_table *table, abbe_sweep_number time,
                                   abbe_sweep_number number, const char *profile,
                                   abbe_error *error) {
-  ABBE_REQUIRE(table, error);
   size_t count = table->count;
   double *cost = calloc(2 * count + 1, sizeof *cost);
   bool *on = calloc(count + 1, sizeof *on);
@@ -236,7 +234,6 @@ size_t *abbe_sweep_table_front(const abbe_sweep_table *table, abbe_sweep_number 
 
 abbe_result abbe_sweep_table_agree(const abbe_sweep_table *a, const char *name,
                                    const abbe_sweep_table *b, abbe_error *error) {
-  ABBE_REQUIRE(a && name && b, error);
   static const abbe_sweep_fact must[] = {ABBE_SWEEP_FACT_PROGRAM, ABBE_SWEEP_FACT_SCENE_HASH,
                                          ABBE_SWEEP_FACT_SIZE,    ABBE_SWEEP_FACT_REFERENCE_HASH,
                                          ABBE_SWEEP_FACT_MODEL,   ABBE_SWEEP_FACT_DEVICE,
@@ -264,7 +261,6 @@ static abbe_result add_rows(const abbe_sweep_table *from, const char *name, abbe
 
 abbe_result abbe_sweep_table_join(const abbe_sweep_table *tables, const char *const *names,
                                   size_t count, abbe_sweep_table *out, abbe_error *error) {
-  ABBE_REQUIRE(tables && names && out, error);
   *out = (abbe_sweep_table){0};
   if (count == 0) return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no tables to join");
   memcpy(out->fact, tables[0].fact, sizeof out->fact);
@@ -318,7 +314,6 @@ static void write_row(FILE *to, const abbe_sweep_row *row) {
 
 abbe_result abbe_sweep_table_save(const abbe_sweep_table *table, const char *path,
                                   abbe_error *error) {
-  ABBE_REQUIRE(table && path, error);
   abbe_file_writer writer = {0};
   abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;
@@ -459,7 +454,6 @@ static abbe_result read_line(reader *r, char *line, bool *header, abbe_sweep_tab
 
 abbe_result abbe_sweep_table_parse(const char *text, size_t size, const char *name,
                                    abbe_sweep_table *out, abbe_error *error) {
-  ABBE_REQUIRE(text && name && out, error);
   reader r = {.name = name};
   bool header = false;
   *out = (abbe_sweep_table){0};
@@ -485,7 +479,6 @@ abbe_result abbe_sweep_table_parse(const char *text, size_t size, const char *na
 }
 
 abbe_result abbe_sweep_table_load(const char *path, abbe_sweep_table *out, abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   char *text = NULL;
   size_t size = 0;
   *out = (abbe_sweep_table){0};

@@ -12,10 +12,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_SWEEP_MAX_ROWS 4096
 #define ABBE_SWEEP_WORD 16
 #define ABBE_SWEEP_WORDS 32
@@ -219,7 +215,4 @@ abbe_result abbe_sweep_table_agree(const abbe_sweep_table *a, const char *name,
 abbe_result abbe_sweep_table_join(const abbe_sweep_table *tables, const char *const *names,
                                   size_t count, abbe_sweep_table *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -7,7 +7,6 @@
 
 abbe_result abbe_bands_make(const abbe_spectral_sampling *s, size_t count, abbe_bands *out,
                             abbe_error *error) {
-  ABBE_REQUIRE(s && out, error);
   *out = (abbe_bands){0};
   if (count > ABBE_BANDS_MAX)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%zu bands are too many: at most %d", count,

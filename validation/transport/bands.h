@@ -12,10 +12,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_BANDS_MAX 256
 
 typedef struct abbe_bands {
@@ -35,7 +31,4 @@ void abbe_bands_free(abbe_bands *bands);
 /* "S0.550,000000nm" */
 void abbe_bands_name(const abbe_bands *bands, size_t band, char *out, size_t size);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

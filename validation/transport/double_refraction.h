@@ -19,10 +19,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* One way on from a face. */
 typedef struct abbe_wave_way {
   float d[3];   /* unit */
@@ -54,7 +50,4 @@ void abbe_media_ways(const abbe_media *media, int from, int to, uint32_t step, f
  * and then one of both waves. */
 const abbe_wave_way *abbe_wave_ways_choose(const abbe_wave_ways *ways, float chance, float which);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

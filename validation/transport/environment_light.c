@@ -71,7 +71,6 @@ static void set_balls(const abbe_geometry *g, abbe_environment_light *e) {
 abbe_result abbe_environment_light_make(const abbe_geometry *g, const abbe_spectral_sampling *s,
                                         const abbe_bands *bands, abbe_rgb_space space,
                                         abbe_environment_light *out, abbe_error *error) {
-  ABBE_REQUIRE(g && s && bands && out, error);
   *out = (abbe_environment_light){0};
   const abbe_environment *environment = g->scene->environment;
   if (environment == NULL) return ABBE_OK;

@@ -18,10 +18,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Zeroed: there is none. */
 typedef struct abbe_environment_light {
   const abbe_environment *environment;
@@ -60,7 +56,4 @@ void abbe_environment_light_sample(const abbe_environment_light *light, const do
 void abbe_environment_light_ray(const abbe_environment_light *light, const double u[6], float o[3],
                                 float d[3], float rgb[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

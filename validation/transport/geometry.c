@@ -313,7 +313,6 @@ static void describe_arithmetic(abbe_geometry *g) {
 /* One thread builds the hierarchy: its shape, and so the winner of a tie at an edge, is the same
  * on every run. */
 abbe_result abbe_geometry_make(const abbe_scene *scene, abbe_geometry *out, abbe_error *error) {
-  ABBE_REQUIRE(scene && out, error);
   abbe_geometry g = {.scene = scene};
   *out = g;
   abbe_result result = count_objects(scene, &g, error);

@@ -18,10 +18,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_GEOMETRY_MAX_REFRACTORS 64 /* a bit each in the set of those around a path */
 
 /* Kinds of surfaces, as bits of ray masks. */
@@ -186,7 +182,4 @@ bool abbe_geometry_hit(const abbe_geometry *g, unsigned mask, const float o[3], 
 bool abbe_geometry_occluded(const abbe_geometry *g, unsigned mask, const float o[3],
                             const float d[3], float limit);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -31,7 +31,6 @@ static bool fill_row(const abbe_geometry *g, const double *lambda_nm, const floa
 
 abbe_result abbe_haze_make(const abbe_geometry *g, const double *lambda_nm, size_t steps,
                            const float *attenuation, abbe_haze *out, abbe_error *error) {
-  ABBE_REQUIRE(g && lambda_nm && out, error);
   *out = (abbe_haze){0};
   if (!abbe_scene_is_hazy(g->scene)) return ABBE_OK;
   const size_t rows = g->refractor_count + 1, values = rows * (steps + 1);

@@ -18,10 +18,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Zeroed: nothing scatters, and the air is clear. */
 typedef struct abbe_haze {
   size_t refractors, steps;
@@ -109,7 +105,4 @@ static inline float abbe_haze_place(float extinction, float length, float u, flo
   return fminf(at, length);
 }
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -8,10 +8,6 @@
 
 #include <math.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Unpolarised reflectance for cos_i in [0, 1] and eta = n_i / n_t > 0; the cosine of the angle of
  * refraction in *cos_t, 0 at total reflection. Exactly 0 where eta = 1. [BornWolf1999] */
 static inline float abbe_interface_reflectance(float cos_i, float eta, float *cos_t) {
@@ -53,7 +49,4 @@ static inline void abbe_interface_keep_side(const float ng[3], float side, float
   for (int k = 0; k < 3; k++) d[k] *= scale;
 }
 
-#ifdef __cplusplus
-}
-#endif
 #endif

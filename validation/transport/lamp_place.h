@@ -7,10 +7,6 @@
 
 #include "validation/transport/geometry.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Of a light that is not directional, of u in [0, 1)^2; the place (frame). Returns W/sr along the
  * direction of full intensity, as of all of it. */
 static inline float abbe_lamp_place(const abbe_geometry *g, const abbe_light *light,
@@ -44,7 +40,4 @@ static inline void abbe_lamp_clear(const abbe_light *light, const float from[3],
     place[k] += 4 * ABBE_GEOMETRY_OFFSET * size * (float)light->direction[k];
 }
 
-#ifdef __cplusplus
-}
-#endif
 #endif

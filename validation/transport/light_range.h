@@ -8,10 +8,6 @@
 
 #include "validation/transport/geometry.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* W/(m2 sr): about, of what is not dark; both 1 where all is. */
 typedef struct abbe_light_range {
   double least, greatest;
@@ -19,7 +15,4 @@ typedef struct abbe_light_range {
 
 void abbe_light_range_find(const abbe_geometry *geometry, abbe_light_range *out);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -1,5 +1,6 @@
 #include "validation/transport/media.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -67,7 +68,7 @@ static abbe_result fill(const abbe_geometry *g, const double *lambda_nm, abbe_me
 
 abbe_result abbe_media_make(const abbe_geometry *geometry, const double *lambda_nm, size_t steps,
                             abbe_media *out, abbe_error *error) {
-  ABBE_REQUIRE(geometry && geometry->scene && lambda_nm && out, error);
+  assert(geometry->scene);
   abbe_media m = {.refractors = geometry->refractor_count, .steps = steps};
   *out = m;
   size_t values = (m.refractors + 1) * (steps + 1);

@@ -18,10 +18,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef uint64_t abbe_media_set; /* bit i: inside refractor i */
 
 /* The refractor that the point is in, or -1: air. */
@@ -82,7 +78,4 @@ static inline float abbe_media_attenuation(const abbe_media *m, int i, uint32_t 
   return a[0] + f * (a[1] - a[0]);
 }
 
-#ifdef __cplusplus
-}
-#endif
 #endif

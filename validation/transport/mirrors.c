@@ -30,7 +30,6 @@ static abbe_result fill(const abbe_geometry *g, const double *lambda_nm, abbe_mi
 
 abbe_result abbe_mirrors_make(const abbe_geometry *geometry, const double *lambda_nm, size_t steps,
                               abbe_mirrors *out, abbe_error *error) {
-  ABBE_REQUIRE(geometry && lambda_nm && out, error);
   abbe_mirrors m = {.count = geometry->mirror_count, .steps = steps};
   m.reflectance = calloc(m.count + 1, sizeof *m.reflectance);
   m.nk = calloc(m.count * (steps + 1) + 1, sizeof *m.nk);

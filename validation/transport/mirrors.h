@@ -15,10 +15,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Of one: its facets and grooves (scenes/shapes/brushing.h), in the frame; x 0: smooth. */
 typedef struct abbe_mirror_lobe {
   float x, y, around, axis[3], centre[3];
@@ -91,7 +87,4 @@ float abbe_mirrors_scatter(const abbe_rough_hit *hit, const float u[2], float ou
  * density of abbe_mirrors_scatter, and the cosine to the facet's normal. */
 float abbe_mirrors_lobe(const abbe_rough_hit *hit, const float to[3], float *pdf, float *cos_h);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

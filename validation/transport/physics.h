@@ -12,10 +12,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A zeroed struct is full physics. */
 typedef struct abbe_physics {
   bool matched;
@@ -25,7 +21,4 @@ typedef struct abbe_physics {
   double eye_share;
 } abbe_physics;
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -7,10 +7,6 @@
 
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 static inline void abbe_random_bits(uint32_t a, uint32_t b, uint32_t c, uint32_t d,
                                     uint32_t out[4]) {
   a = a * 1664525u + 1013904223u;
@@ -59,7 +55,4 @@ static inline uint32_t abbe_random_part(uint32_t bits, uint32_t i, uint32_t coun
   return (uint32_t)(((uint64_t)i << 32 | bits) / count);
 }
 
-#ifdef __cplusplus
-}
-#endif
 #endif

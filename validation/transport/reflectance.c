@@ -3,6 +3,7 @@
 #include "colorimetry/matrix3.h"
 #include "colorimetry/reflectance/reflected_light.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -96,7 +97,7 @@ abbe_result abbe_reflectance_make(const abbe_geometry *geometry, const abbe_spec
                                   const abbe_bands *bands,
                                   const abbe_environment_light *environment, abbe_rgb_space space,
                                   abbe_reflectance *out, abbe_error *error) {
-  ABBE_REQUIRE(geometry && geometry->scene && s && bands && environment && out, error);
+  assert(geometry->scene);
   const size_t objects = geometry->scene->object_count;
   double from_xyz[9];
   abbe_rgb_space_from_xyz(space, from_xyz);

@@ -15,10 +15,6 @@
 
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Tables of every set of three channels: the first set is Rec.709's, each further one a measured
  * spectrum's, whose first channel alone is not 0. */
 typedef struct abbe_reflectance {
@@ -63,7 +59,4 @@ void abbe_reflectance_of_lifted(const abbe_reflectance *r, const abbe_reflected 
 /* The first light's colour becomes white. */
 void abbe_reflectance_whiten(const abbe_reflectance *r, const float colour[3], float out[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

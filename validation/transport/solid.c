@@ -141,7 +141,6 @@ static bool copy_planes(const abbe_geometry *g, const abbe_exact *e, abbe_solid 
 }
 
 abbe_result abbe_solids_make(const abbe_geometry *g, abbe_solid **out, abbe_error *error) {
-  ABBE_REQUIRE(g && out, error);
   abbe_solid *solids = calloc(g->refractor_count + 1, sizeof *solids);
   bool made = solids != NULL;
   for (size_t i = 0; i < g->surface_count && made; i++) {

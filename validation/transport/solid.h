@@ -15,10 +15,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_SOLID_LANES 16 /* planes are filled up to a multiple of these */
 
 struct abbe_geometry;
@@ -46,7 +42,4 @@ static inline bool abbe_solid_is(const abbe_solid *solid) {
 float abbe_solid_leave(const abbe_solid *solid, const float o[3], const float d[3], float p[3],
                        float n[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

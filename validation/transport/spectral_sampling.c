@@ -129,7 +129,6 @@ static abbe_result fill_colours(const abbe_scene *scene, abbe_spectral_sampling 
 abbe_result abbe_spectral_sampling_make(const abbe_scene *scene,
                                         const abbe_spectral_sampling_desc *desc,
                                         abbe_spectral_sampling *out, abbe_error *error) {
-  ABBE_REQUIRE(scene && desc && out, error);
   const double min_nm = desc->min_nm, max_nm = desc->max_nm, uniform = desc->uniform;
   const size_t bands = desc->bands > 0 ? desc->bands : 1;
   *out = (abbe_spectral_sampling){0};

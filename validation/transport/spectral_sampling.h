@@ -17,10 +17,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_SPECTRAL_SAMPLING_STEPS 4096u
 
 typedef struct abbe_spectral_sampling {
@@ -64,7 +60,4 @@ static inline double abbe_spectral_sampling_lambda(const abbe_spectral_sampling 
   return s->lambda_nm[step] + (double)within * (s->lambda_nm[step + 1] - s->lambda_nm[step]);
 }
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -358,7 +358,6 @@ static void free_tables(fill *f) {
 abbe_result abbe_exit_fill(const abbe_lone_object *lone, const abbe_exit_fill_desc *desc,
                            abbe_caustic_volume *volume, abbe_exit_fill_statistics *statistics,
                            abbe_error *error) {
-  ABBE_REQUIRE(lone && desc && volume && statistics, error);
   *statistics = (abbe_exit_fill_statistics){0};
   fill f = {.lone = lone, .desc = desc, .volume = volume, .statistics = statistics};
   f.space =

@@ -10,10 +10,6 @@
 #include "scenes/volume/caustic_volume.h"
 #include "validation/volume/lone_object.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_exit_fill_desc {
   size_t points;   /* on all of the surface */
   bool asymmetric; /* its symmetry is not looked for */
@@ -43,7 +39,4 @@ abbe_result abbe_exit_fill(const abbe_lone_object *lone, const abbe_exit_fill_de
                            abbe_caustic_volume *volume, abbe_exit_fill_statistics *statistics,
                            abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -10,10 +10,6 @@
 #include "validation/volume/exit_walk.h"
 #include "validation/volume/lone_object.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_exit_point {
   float place[3], normal[3]; /* frame; of the face, outwards */
   uint32_t bin;              /* of ABBE_LIGHT_EXITS_BINS */
@@ -34,7 +30,4 @@ abbe_result abbe_exit_points_make(const abbe_lone_object *lone, const abbe_body_
                                   abbe_exit_points *out, abbe_error *error);
 void abbe_exit_points_free(abbe_exit_points *points);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -11,10 +11,6 @@
 #include "validation/transport/media.h"
 #include "validation/transport/mirrors.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_EXIT_WALK_CHANCES 8 /* of decisions that are given; those after follow from the last  \
                                   */
 #define ABBE_EXIT_WALK_MOST 64   /* interfaces; what is longer is dropped */
@@ -44,7 +40,4 @@ typedef struct abbe_exit_end {
 
 void abbe_exit_walk(const abbe_exit_space *space, const abbe_exit_start *start, abbe_exit_end *end);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

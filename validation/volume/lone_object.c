@@ -6,7 +6,6 @@
 
 abbe_result abbe_lone_object_make(const abbe_scene *scene, size_t object, size_t light,
                                   abbe_lone_object *out, abbe_error *error) {
-  ABBE_REQUIRE(scene && out, error);
   *out = (abbe_lone_object){0};
   if (scene->light_count == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

@@ -11,10 +11,6 @@
 #include "validation/transport/media.h"
 #include "validation/transport/mirrors.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_lone_object {
   abbe_scene scene; /* a shallow copy */
   abbe_object object;
@@ -36,7 +32,4 @@ uint64_t abbe_lone_object_key(const abbe_lone_object *lone, const abbe_media *me
 /* From its centre to its surface, m. */
 double abbe_lone_object_depth(const abbe_lone_object *lone);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -21,7 +21,6 @@ uint64_t abbe_volume_key(uint64_t h, const void *data, size_t size) {
 abbe_result abbe_volume_checkpoint_save(const char *path, uint64_t key, uint64_t nodes,
                                         const abbe_kept_bytes *part, size_t parts,
                                         abbe_error *error) {
-  ABBE_REQUIRE(path && part, error);
   unsigned char head[HEAD];
   abbe_file_writer writer = {0};
   memcpy(head, magic, sizeof magic);
@@ -83,7 +82,6 @@ static abbe_result hash_all(const char *data, size_t size, const volatile int *s
 abbe_result abbe_volume_checkpoint_load(const char *path, uint64_t key, uint64_t *nodes,
                                         const abbe_kept_bytes *part, size_t parts,
                                         const volatile int *stop, abbe_error *error) {
-  ABBE_REQUIRE(path && nodes && part, error);
   size_t total = HEAD + TAIL, size;
   uint64_t of = 0, done = 0, sum = 0, hash = 0;
   char *data;
@@ -113,7 +111,6 @@ abbe_result abbe_volume_checkpoint_load(const char *path, uint64_t key, uint64_t
 }
 
 abbe_result abbe_volume_keeping_begin(abbe_volume_keeping *k, size_t *node, abbe_error *error) {
-  ABBE_REQUIRE(k && node, error);
   uint64_t nodes = 0;
   *node = 0;
   k->saved_s = abbe_clock_seconds();
@@ -130,7 +127,6 @@ abbe_result abbe_volume_keeping_begin(abbe_volume_keeping *k, size_t *node, abbe
 
 abbe_result abbe_volume_keeping_end_node(abbe_volume_keeping *k, size_t nodes, bool now,
                                          abbe_error *error) {
-  ABBE_REQUIRE(k, error);
   if (k->path == NULL || (!now && abbe_clock_seconds() < k->saved_s + k->every_s)) return ABBE_OK;
   const abbe_result result =
       abbe_volume_checkpoint_save(k->path, k->key, nodes, k->part, k->parts, error);

@@ -15,10 +15,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Bytes that are kept as they are. */
 typedef struct abbe_kept_bytes {
   void *data;
@@ -64,7 +60,4 @@ abbe_result abbe_volume_keeping_begin(abbe_volume_keeping *keeping, size_t *node
 abbe_result abbe_volume_keeping_end_node(abbe_volume_keeping *keeping, size_t nodes, bool now,
                                          abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -479,7 +479,6 @@ static abbe_result fill_values(fill *f, abbe_error *error) {
 abbe_result abbe_volume_fill(const abbe_scene *scene, const abbe_volume_fill_desc *desc,
                              abbe_caustic_volume *out, abbe_volume_fill_statistics *statistics,
                              abbe_error *error) {
-  ABBE_REQUIRE(scene && desc && out && statistics, error);
   *out = (abbe_caustic_volume){0};
   *statistics = (abbe_volume_fill_statistics){0};
   fill *f = calloc(1, sizeof *f);

@@ -11,10 +11,6 @@
 #include "scenes/volume/caustic_volume.h"
 #include "validation/walks/photon.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_VOLUME_FILL_MOST_PHOTONS (1u << 26) /* of a pass */
 #define ABBE_VOLUME_FILL_MOST_PASSES 100000
 
@@ -71,7 +67,4 @@ abbe_result abbe_volume_fill(const abbe_scene *scene, const abbe_volume_fill_des
                              abbe_caustic_volume *out, abbe_volume_fill_statistics *statistics,
                              abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -68,7 +68,6 @@ static void make_line(uint32_t i, const double centre[3], double radius, double 
 abbe_result abbe_volume_space_measure(const abbe_geometry *g, const abbe_volume_region *region,
                                       const double centre[3], double radius, size_t lines,
                                       float *share, abbe_error *error) {
-  ABBE_REQUIRE(g && region && centre && share, error);
   tally t = {.g = g, .region = region, .centre = centre};
   t.piece = malloc(ABBE_REGION_MOST_PIECES * sizeof *t.piece);
   t.whole = calloc(region->cells, sizeof *t.whole);

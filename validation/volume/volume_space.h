@@ -9,10 +9,6 @@
 #include "scenes/volume/volume_region.h"
 #include "validation/transport/geometry.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* share[region->cells], 0 to 1; of cells beyond `radius` (m, that bounds the object around
  * `centre`) 1. Of a geometry with that object alone. An open mirror takes no space. ABBE_NO_MEMORY.
  */
@@ -20,7 +16,4 @@ abbe_result abbe_volume_space_measure(const abbe_geometry *geometry,
                                       const abbe_volume_region *region, const double centre[3],
                                       double radius, size_t lines, float *share, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

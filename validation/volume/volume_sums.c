@@ -19,7 +19,6 @@ static void weigh(abbe_volume_sums *s, const float *share, const double beam[3])
 abbe_result abbe_volume_sums_make(const abbe_volume_region *region, bool printed,
                                   const float *share, const double beam[3], size_t threads,
                                   abbe_volume_sums *out, abbe_error *error) {
-  ABBE_REQUIRE(region && out && (beam || !printed), error);
   *out = (abbe_volume_sums){.region = region, .printed = printed, .channels = printed ? 3 : 9};
   abbe_result result =
       abbe_accumulator_make(region->cells * out->channels, threads, most, &out->sums, error);

@@ -12,10 +12,6 @@
 #include "scenes/volume/volume_region.h"
 #include "validation/tracer/accumulator.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_volume_sums {
   const abbe_volume_region *region;
   bool printed;
@@ -50,7 +46,4 @@ double abbe_volume_sums_relative_error(const abbe_volume_sums *sums);
  * their middles. Of shells, not printed. */
 double abbe_volume_sums_outflow(const abbe_volume_sums *sums, size_t shell);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -11,10 +11,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_trace_camera {
   float eye[3], right[3], up[3], forward[3]; /* frame; unit */
   float half_width, half_height;             /* of the film */
@@ -61,7 +57,4 @@ static inline bool abbe_trace_camera_pixel(const abbe_trace_camera *c, const flo
   return true;
 }
 
-#ifdef __cplusplus
-}
-#endif
 #endif

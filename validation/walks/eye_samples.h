@@ -12,10 +12,6 @@
 
 #include "validation/walks/camera.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_EYE_MOST_SAMPLES 16
 
 /* samples[height][width]: 1 for what shows receivers alone; else as many as about `rays` rays in
@@ -27,7 +23,4 @@ void abbe_eye_samples_share(const abbe_geometry *geometry, const abbe_trace_came
 /* How far the eye sees, mean over places of the picture that show something; frame; 1: none do. */
 float abbe_eye_samples_depth(const abbe_geometry *geometry, const abbe_trace_camera *camera);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

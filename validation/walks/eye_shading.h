@@ -9,10 +9,6 @@
 #include "validation/transport/random.h"
 #include "validation/walks/eye_walk.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A path from the eye. Where it is not dispersed it carries the whole spectrum, else one
  * wavelength. */
 typedef struct abbe_eye_path {
@@ -68,7 +64,4 @@ void abbe_eye_haze(const abbe_eye_context *context, abbe_eye_path *path, float l
 void abbe_eye_gloss(const abbe_eye_context *context, const abbe_eye_path *path, const abbe_hit *hit,
                     const float n[3], const abbe_rough_hit *rough);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

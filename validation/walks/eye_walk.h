@@ -25,10 +25,6 @@
 #include "validation/walks/camera.h"
 #include "validation/walks/photon_grid.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Variance times rays is about least with it, in cut stones, prisms and rings. */
 #define ABBE_EYE_LEAST_BRANCH 0.4f
 
@@ -75,7 +71,4 @@ typedef struct abbe_eye_sample {
 void abbe_eye_walk_pixel(const abbe_eye_walk *walk, size_t pixel, uint32_t pass,
                          abbe_eye_sample *out);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

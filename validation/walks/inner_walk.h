@@ -14,10 +14,6 @@
 #include "validation/walks/photon.h"
 #include "validation/walks/ray_batch.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_INNER_MAX_STEPS 10000 /* interfaces of a path, the one where it came in among them */
 #define ABBE_EVEN_STEPS 3          /* first interfaces whose decisions are spread evenly */
 
@@ -57,7 +53,4 @@ void abbe_inner_walk(const abbe_solid *solid, const abbe_inner_rules *rules, abb
                      size_t count, abbe_light_ledger *ledger, abbe_ray_record *record,
                      uint64_t *rays);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -12,10 +12,6 @@
 #include "validation/walks/photon.h"
 #include "validation/walks/ray_batch.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Whether a receiver may hide a place on another from the lamp: those that are the walls of a
  * convex room around it hide nothing, and no ray need be traced. */
 bool abbe_lamp_is_hidden(const abbe_geometry *g, const abbe_light *light);
@@ -39,7 +35,4 @@ void abbe_lamp_rays_add(abbe_lamp_rays *rays, const abbe_geometry *g, const abbe
 void abbe_lamp_rays_trace(abbe_lamp_rays *rays, const abbe_geometry *g, abbe_light_ledger *ledger,
                           abbe_ray_record *record);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -16,10 +16,6 @@
 
 #include <string.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A photon on its way. */
 typedef struct abbe_light_path {
   abbe_media_set inside;
@@ -193,7 +189,4 @@ static inline bool abbe_light_path_is_followed(const abbe_inner_rules *r, abbe_l
   return s->inner < r->physics.orders && (double)s->carried >= r->physics.energy_share;
 }
 
-#ifdef __cplusplus
-}
-#endif
 #endif

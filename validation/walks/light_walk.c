@@ -6,6 +6,7 @@
 #include "validation/walks/ray_batch.h"
 #include "validation/walks/scatter.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -55,7 +56,7 @@ struct abbe_light_walk {
 abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media *media,
                                  const abbe_mirrors *mirrors, const abbe_physics *physics,
                                  uint32_t seed, abbe_light_walk **out, abbe_error *error) {
-  ABBE_REQUIRE(geometry && geometry->scene && media && mirrors && physics && out, error);
+  assert(geometry->scene);
   *out = NULL;
   abbe_light_walk *w = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
   size_t lights = geometry->scene->light_count;

@@ -18,10 +18,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_LIGHT_WALK_BATCH 1024u /* photons side by side */
 #define ABBE_LIGHT_WALK_HITS (ABBE_LIGHT_WALK_BATCH << ABBE_PHOTON_SPLITS)
 
@@ -73,7 +69,4 @@ uint64_t abbe_light_walk_lamp_rays(const abbe_light_walk *walk);
 void abbe_light_walk_keep(abbe_light_walk *walk, size_t packets);
 bool abbe_light_walk_replay(abbe_light_walk *walk, double *seconds, uint64_t *rays);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

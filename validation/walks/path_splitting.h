@@ -9,15 +9,8 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The interfaces to split at (bit 0: the first), by the hits of a trial without: those that make
  * the least of the mean square of a hit's light, times the number of rays. */
 unsigned abbe_path_splitting_best(const abbe_photon_hit *hit, size_t count);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -5,10 +5,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_PHOTON_SPLITS 2 /* first interfaces that a path may be split at */
 
 typedef struct abbe_photon {
@@ -62,7 +58,4 @@ typedef struct abbe_light_ledger {
   double scattered; /* off its path by a medium, after its first refractor or mirror */
 } abbe_light_ledger;
 
-#ifdef __cplusplus
-}
-#endif
 #endif

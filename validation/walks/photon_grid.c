@@ -49,7 +49,6 @@ static abbe_result make_room(abbe_photon_grid *g, size_t count, abbe_error *erro
 
 abbe_result abbe_photon_grid_fill(abbe_photon_grid *g, const abbe_grid_photon *photon, size_t count,
                                   float radius, size_t threads, abbe_error *error) {
-  ABBE_REQUIRE(g && (photon || count == 0), error);
   abbe_result result = make_room(g, count, error);
   if (result != ABBE_OK) return result;
   g->count = count;

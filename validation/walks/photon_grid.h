@@ -13,10 +13,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A photon as the grid keeps it. */
 typedef struct abbe_grid_photon {
   float p[3];
@@ -47,7 +43,4 @@ void abbe_photon_grid_gather(const abbe_photon_grid *grid, const float p[3], flo
                              uint32_t surface, float side,
                              void (*take)(void *user, const abbe_grid_photon *photon), void *user);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

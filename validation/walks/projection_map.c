@@ -6,6 +6,7 @@
 #include "validation/transport/random.h"
 #include "validation/transport/side_by_side.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -387,7 +388,7 @@ static double versine_of(double angle) {
 
 abbe_result abbe_projection_map_make(const abbe_geometry *geometry, size_t light,
                                      abbe_projection_map *out, abbe_error *error) {
-  ABBE_REQUIRE(geometry && geometry->scene && light < geometry->scene->light_count && out, error);
+  assert(geometry->scene && light < geometry->scene->light_count);
   const abbe_light *l = &geometry->scene->light[light];
   abbe_projection_map a = {
       .light = l, .parallel = l->kind == ABBE_LIGHT_DIRECTIONAL, .power = (float)l->power};

@@ -18,10 +18,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_PROJECTION_MAP_SIDE 256 /* cells a side, at the most */
 
 typedef struct abbe_projection_map_cell {
@@ -67,7 +63,4 @@ typedef struct abbe_projection_map_rays {
 } abbe_projection_map_rays;
 void abbe_projection_map_aim(const abbe_projection_map *map, abbe_projection_map_rays *rays);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -13,10 +13,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_RAY_LANES 16 /* of a packet */
 
 /* What all rays of the packets have in common; they are zeroed before. */
@@ -100,7 +96,4 @@ void abbe_ray_batch_occlude(struct RTCRay16 *packet, size_t lanes, RTCScene scen
 void abbe_ray_batch_trace(struct RTCRayHit16 *packets, size_t count, bool coherent, RTCScene scene,
                           abbe_ray_record *record);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

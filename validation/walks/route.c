@@ -184,7 +184,6 @@ abbe_result abbe_route_follow(const abbe_geometry *geometry, const double from[3
                               const double direction[3], double lambda_nm, const char *choices,
                               abbe_route_vertex *vertex, size_t room, size_t *count,
                               abbe_error *error) {
-  ABBE_REQUIRE(geometry && from && direction && choices && (vertex || room == 0) && count, error);
   *count = 0;
   size_t known = strspn(choices, "trTR");
   if (choices[known] != '\0')

@@ -12,10 +12,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef enum abbe_route_event {
   ABBE_ROUTE_TRANSMITTED,
   ABBE_ROUTE_REFLECTED, /* chosen, or totally */
@@ -49,7 +45,4 @@ abbe_result abbe_route_follow(const abbe_geometry *geometry, const double from[3
                               abbe_route_vertex *vertex, size_t room, size_t *count,
                               abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -10,10 +10,6 @@
 #include "validation/transport/mirrors.h"
 #include "validation/walks/ray_batch.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_scatter {
   /* In: unit directions, places, unit normals on the side that the path comes from (n interpolated,
    * ng of the face), the ratio of indices (1: it passes straight on), a number in [0, 1) that
@@ -83,7 +79,4 @@ static inline void abbe_scatter_meet_mirror(abbe_scatter *s, abbe_mirroring *m, 
  * stay. */
 void abbe_scatter_turn(abbe_scatter *s);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

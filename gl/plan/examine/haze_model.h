@@ -7,16 +7,9 @@
 #include "gl/plan/facts/plan_facts.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Fills the plan's facts; of a scene without haze nothing. */
 void abbe_haze_model_choose(const abbe_scene *scene, abbe_plan *plan);
 /* Its entry and notes, when all other facts are known. */
 void abbe_haze_model_note(const abbe_scene *scene, abbe_plan *plan);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -14,10 +14,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Of the light that a plan takes exits by, the share that may stay inside, and of it the share that
  * may do so in paths that have become faint. */
 #define ABBE_INNER_LIGHT_MOST 0.005
@@ -51,7 +47,4 @@ size_t abbe_inner_light_exits(const abbe_inner_light *inside, size_t least, size
 double abbe_inner_light_plan(const abbe_scene *scene, const abbe_render_desc *asked,
                              abbe_plan *plan);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

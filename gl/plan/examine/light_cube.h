@@ -12,10 +12,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_LIGHT_CUBE_FACES 6
 #define ABBE_LIGHT_CUBE_ALL 63u /* a bit a face */
 
@@ -33,7 +29,4 @@ bool abbe_light_cube_fit(abbe_view *view, const abbe_object *object);
  * looked at. A spot's cone leaves faces out that lie beside it. */
 unsigned abbe_light_cube_reached(const abbe_light *light, const abbe_object *object);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

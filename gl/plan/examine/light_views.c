@@ -135,7 +135,6 @@ static abbe_result examine_view(const abbe_scene *scene, size_t light, abbe_plan
 }
 
 abbe_result abbe_light_views_choose(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
-  ABBE_REQUIRE(scene && plan, error);
   plan->light_view_count = scene->light_count;
   for (size_t i = 0; i < scene->light_count; i++)
     plan->light_view[i] = (abbe_light_view){i, -1, ABBE_LIGHT_CUBE_ALL};

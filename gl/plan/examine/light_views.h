@@ -9,10 +9,6 @@
 #include "scenes/scene.h"
 #include "scenes/view/view.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Which lights and whether the eye may meet a refractor; what none of them meets takes no light and
  * costs nothing. */
 void abbe_light_views_reach(const abbe_scene *scene, abbe_plan *plan);
@@ -28,7 +24,4 @@ abbe_result abbe_light_views_choose(const abbe_scene *scene, abbe_plan *plan, ab
 bool abbe_light_views_fit(const abbe_scene *scene, const abbe_light *light, const abbe_plan *plan,
                           abbe_view *out, size_t *off);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -13,10 +13,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Widest cone that has a view of its own, radians off its axis. */
 #define ABBE_LIT_WINDOW_MAX_CONE 1.2
 
@@ -30,7 +26,4 @@ bool abbe_lit_window_cone(const abbe_light *light, abbe_view *out);
 bool abbe_lit_window(const abbe_view *light, const abbe_view *eye, const double parallelogram[9],
                      size_t width, size_t height, int out[4]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -6,7 +6,6 @@ enum { STEPS = 81 };
 
 abbe_result abbe_material_range_make(const abbe_material *material, double min_nm, double max_nm,
                                      abbe_material_range *out, abbe_error *error) {
-  ABBE_REQUIRE(material && out, error);
   const double middle_nm = 0.5 * (min_nm + max_nm);
   *out = (abbe_material_range){.least_n = INFINITY,
                                .most_n = -INFINITY,

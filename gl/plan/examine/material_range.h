@@ -10,10 +10,6 @@
 #include "base/error.h"
 #include "spectral/materials/material.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_material_range {
   double least_n, most_n;
   double least_per_m, most_per_m; /* attenuation */
@@ -25,7 +21,4 @@ typedef struct abbe_material_range {
 abbe_result abbe_material_range_make(const abbe_material *material, double min_nm, double max_nm,
                                      abbe_material_range *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -6,17 +6,10 @@
 #include "gl/plan/facts/plan_facts.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Exits at the most, the share of its light at which a path ends, both of the eye's rays, and how
  * many hits of a photon there is room for. asked: the request as it came, or NULL. The
  * wavelengths are counted. */
 void abbe_path_limits_choose(const abbe_scene *scene, const abbe_render_desc *asked,
                              abbe_plan *plan);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

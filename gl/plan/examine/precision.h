@@ -11,10 +11,6 @@
 #include "gl/plan/facts/plan_facts.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* ABBE_UNSUPPORTED, with a sentence, where some refractor of the plan is so far from a light that
  * its shape is lost (65536 of its radii), so thin that its front and back are one (2^-20 of that
  * distance), or, of the grid of four photons a side or more, less than half a cell wide; or where a
@@ -22,7 +18,4 @@ extern "C" {
  * only. */
 abbe_result abbe_precision_check(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -10,10 +10,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* False where the light is a spot whose cone misses the ball around the object's bounds. */
 bool abbe_reach_light(const abbe_light *light, const abbe_object *object);
 
@@ -39,7 +35,4 @@ bool abbe_reach_is_entered(const abbe_scene *scene, const abbe_object *refractor
 /* Signed distance of a point from the plane of a parallelogram (corner, edges u and v), m. */
 double abbe_reach_side(const double parallelogram[9], const double at[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -6,10 +6,6 @@
 #include "gl/plan/facts/plan_facts.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Parallelograms as they come, as many as there is room for; triangles of all others. */
 void abbe_receiver_model_choose(const abbe_scene *scene, abbe_plan *plan);
 
@@ -22,7 +18,4 @@ bool abbe_receiver_model_is_coloured(const abbe_object *object);
 /* Whether light that refractors have spread may fall on a receiver in colours. */
 bool abbe_receiver_model_disperses(const abbe_scene *scene, const abbe_plan *plan);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

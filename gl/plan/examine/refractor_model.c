@@ -240,7 +240,6 @@ static abbe_result check_followed(const abbe_plan *plan, abbe_error *error) {
 
 abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan,
                                         abbe_error *error) {
-  ABBE_REQUIRE(scene && plan, error);
   const char *in_turn = why_in_turn(scene, plan);
   size_t unlisted = 0;
   plan->multi_refractor_paths = in_turn != NULL;

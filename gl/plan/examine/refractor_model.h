@@ -10,10 +10,6 @@
 #include "gl/plan/facts/plan_facts.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Lists the scene's refractors in the plan, each with its model, and what their materials ask of
  * the wavelengths. ABBE_UNSUPPORTED, by the object's name, where a model that is asked for cannot
  * serve it, or for more than 255 of them; ABBE_OUT_OF_RANGE for an index that is not known. */
@@ -23,7 +19,4 @@ abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan
 /* Notes what is left out where light is not followed from one to another. */
 void abbe_refractor_model_note(const abbe_scene *scene, abbe_plan *plan);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

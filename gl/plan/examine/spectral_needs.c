@@ -48,7 +48,6 @@ static void note_birefringence(const abbe_material *material, double lambda_nm, 
 
 abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_material *material,
                                         abbe_plan *plan, abbe_error *error) {
-  ABBE_REQUIRE(scene && material && plan, error);
   const double min = plan->desc.min_nm, max = plan->desc.max_nm;
   bool outside = extrapolated_share(scene, material, min, max) > LEAST_EXTRAPOLATED;
   abbe_material_range range;
@@ -70,7 +69,6 @@ abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_mate
 
 abbe_result abbe_spectral_needs_mirror(const abbe_object *mirror, abbe_plan *plan, char *text,
                                        size_t size, abbe_error *error) {
-  ABBE_REQUIRE(mirror && plan && text, error);
   const double min = plan->desc.min_nm, max = plan->desc.max_nm;
   double least = INFINITY, most = -INFINITY;
   if (mirror->conductor == NULL) {

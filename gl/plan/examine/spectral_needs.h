@@ -9,10 +9,6 @@
 #include "gl/plan/facts/plan_facts.h"
 #include "scenes/scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A refractor's material over the range: whether its index varies, whether it attenuates, and that
  * by wavelength; ABBE_OUT_OF_RANGE where its index is not known, and a note where what is seen of
  * it is extrapolated. Before the material's first refractor is added. */
@@ -30,7 +26,4 @@ void abbe_spectral_needs_count(abbe_plan *plan);
 /* A note where lights of several spectra are taken for one. */
 void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -8,10 +8,6 @@
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(id, stage, text, condition), in the plan's order: a pass runs where the condition holds of the
  * plan p (gl/plan/facts/plan_facts.h). The published methods draw front and back in one pass, of
  * which their plans list both halves. */
@@ -76,7 +72,4 @@ typedef enum abbe_pass_stage { ABBE_STAGE_LIGHT, ABBE_STAGE_EYE } abbe_pass_stag
 const char *abbe_plan_item_text(abbe_plan_item item);
 abbe_pass_stage abbe_pass_stage_of(abbe_pass pass);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

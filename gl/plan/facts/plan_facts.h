@@ -14,10 +14,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef enum abbe_refractor_model {
   ABBE_REFRACTOR_SPHERE, /* exact quadric */
   ABBE_REFRACTOR_CONVEX, /* plane tests */
@@ -207,7 +203,4 @@ abbe_plan_note(abbe_plan *plan, const char *format, ...);
 /* The entry of that item, and of that object or light (0 where it is about none); or NULL. */
 const abbe_plan_entry *abbe_plan_find(const abbe_plan *plan, abbe_plan_item item, size_t index);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

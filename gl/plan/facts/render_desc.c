@@ -410,7 +410,6 @@ static abbe_result check_choices(const abbe_render_desc *d, abbe_error *error) {
 
 abbe_result abbe_render_desc_resolve(const abbe_render_desc *desc, size_t width, size_t height,
                                      abbe_render_desc *out, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
   *out = desc != NULL ? *desc : (abbe_render_desc){0};
   fill_in_defaults(width, height, out);
   abbe_result result = check_counts(out, error);

@@ -16,10 +16,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Methods as they were published, with their own constants, and each (-cie) with the default
  * profile's wavelengths, CIE weights, indices, Fresnel's law and units. wyman2003 looks caustics up
  * in a printed volume; all else is the default profile's, as is its twin: the transport 'volume'.
@@ -290,7 +286,4 @@ const char *abbe_fill_name(abbe_fill fill);
 const char *abbe_transport_name(abbe_transport transport);
 const char *abbe_model_name(abbe_model model);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -13,10 +13,6 @@
 
 #include "gl/scene/spectra/spectral_tables.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { ABBE_CAMERA_BAND_SHARES = 4, ABBE_CAMERA_BAND_SETS = 1 + ABBE_CAMERA_BAND_SHARES };
 
 typedef struct abbe_camera_band {
@@ -57,7 +53,4 @@ abbe_result abbe_camera_bands_fill(const abbe_scene *scene, const abbe_plan *pla
 void abbe_camera_bands_reflected(const abbe_plan *plan, const abbe_camera_band *band,
                                  const float (*texel)[4], size_t r, double xyz[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

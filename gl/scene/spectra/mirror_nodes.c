@@ -92,7 +92,6 @@ static double mean_of(const abbe_material *metal, const abbe_wavelengths *w,
 abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelengths *w,
                                    const abbe_weights_range *light, abbe_mirror_node *out,
                                    abbe_error *error) {
-  ABBE_REQUIRE(mirror && w && light && out, error);
   for (size_t i = 0; i < w->count; i++) {
     out[i] = (abbe_mirror_node){.factor = 1 - mirror->mirror_reflectance, .k = -1};
     if (mirror->conductor == NULL) continue;

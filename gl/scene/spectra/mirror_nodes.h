@@ -14,10 +14,6 @@
 #include "gl/plan/facts/plan_facts.h"
 #include "spectral/wavelengths.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Absorbs factor times what Fresnel's reflectance of n + i k leaves, at most all; k below 0: the
  * factor itself, at all angles. So what grazes it is reflected, whatever the factor is. */
 typedef struct abbe_mirror_node {
@@ -44,7 +40,4 @@ abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelen
 const abbe_material *abbe_mirror_nodes_laid_by(const abbe_scene *scene, const abbe_plan *plan,
                                                size_t i);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -12,10 +12,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Bytes of all files of a mesh together. */
 #define ABBE_MESH_FILES_MOST ((size_t)1 << 30)
 
@@ -78,7 +74,4 @@ abbe_result abbe_gltf_charge(abbe_gltf *g, size_t count, size_t width);
 
 void abbe_gltf_free(abbe_gltf *g);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -10,10 +10,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_GLTF_MOST_JSON ((size_t)64 << 20) /* bytes */
 
 typedef struct abbe_gltf_json {
@@ -30,7 +26,4 @@ abbe_result abbe_gltf_json_parse(const char *path, const char *data, size_t size
 /* What the object, NULL for none, has under the name of an extension; NULL: nothing. */
 const cJSON *abbe_gltf_extension(const cJSON *object, const char *name);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

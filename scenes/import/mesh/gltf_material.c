@@ -188,7 +188,6 @@ static abbe_result choose(const reading *r, const cJSON *materials, const char *
 
 abbe_result abbe_gltf_material_load(const char *path, const char *part, abbe_material *out,
                                     char **name, abbe_error *error) {
-  ABBE_REQUIRE(path && out && name, error);
   const char *dot = strrchr(path, '.');
   const cJSON *material = NULL;
   abbe_gltf_json json = {0};

@@ -10,10 +10,6 @@
 #include "base/error.h"
 #include "spectral/materials/material.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_GLTF_MOST_DISPERSION 1e3
 
 /* The material called part, or, where part is NULL, the only one that transmits light, of a .gltf
@@ -25,7 +21,4 @@ extern "C" {
 abbe_result abbe_gltf_material_load(const char *path, const char *part, abbe_material *out,
                                     char **name, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -104,7 +104,6 @@ abbe_result abbe_mesh_load(const char *path, abbe_mesh_normals normals, abbe_mes
 
 abbe_result abbe_mesh_load_part(const char *path, const char *material, abbe_mesh_normals normals,
                                 abbe_mesh *out, char **others, abbe_error *error) {
-  ABBE_REQUIRE(path && out, error);
   memset(out, 0, sizeof *out);
   if (others) *others = NULL;
   abbe_result result = read_file(path, material, out, others, error);

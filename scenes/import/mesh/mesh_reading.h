@@ -13,10 +13,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_MESH_READING_NONE UINT32_MAX
 
 /* A growing list. */
@@ -62,7 +58,4 @@ abbe_result abbe_ply_read(abbe_mesh_reading *r, const char *data, size_t size, a
 abbe_result abbe_stl_read(abbe_mesh_reading *r, const char *data, size_t size, abbe_error *error);
 abbe_result abbe_gltf_read(abbe_mesh_reading *r, const char *data, size_t size, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

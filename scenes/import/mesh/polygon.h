@@ -12,10 +12,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* What all polygons of a file may take together, counted in looks at a corner, each of some
  * nanoseconds: so much, and so much more for each of their corners. */
 #define ABBE_POLYGON_WORK 4e9
@@ -30,7 +26,4 @@ extern "C" {
 abbe_result abbe_polygon_cut(const double (*corner)[3], size_t count, uint32_t (*triangle)[3],
                              double *work, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

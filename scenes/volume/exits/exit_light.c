@@ -4,6 +4,7 @@
 #include "scenes/geometry/vector.h"
 #include "scenes/volume/half.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -107,7 +108,7 @@ static void send_image(const sight *s, const double map[9]) {
 abbe_result abbe_exit_light_part(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
                                  size_t part, size_t parts, abbe_exit_light_take take, void *user,
                                  abbe_error *error) {
-  ABBE_REQUIRE(v && d && d->light && d->object && d->place && take, error);
+  assert(d->light && d->object && d->place);
   const abbe_light_exits *e = &v->exits;
   double(*plane)[4];
   size_t planes;
@@ -248,7 +249,7 @@ static void fill_colours(const abbe_caustic_volume *v, const abbe_exit_light_des
 
 abbe_result abbe_exit_colours_make(const abbe_caustic_volume *v, const abbe_exit_light_desc *d,
                                    abbe_exit_colours **out, abbe_error *error) {
-  ABBE_REQUIRE(v && d && d->light && d->object && out, error);
+  assert(d->light && d->object);
   *out = calloc(1, sizeof **out);
   if (*out == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
   fill_colours(v, d, *out);
@@ -344,7 +345,7 @@ static void add_ray(void *user, const abbe_exit_ray *ray, double flux, size_t bi
 
 abbe_result abbe_exit_light_fill(const abbe_caustic_volume *v, const abbe_exit_light_desc *desc,
                                  float *value, abbe_error *error) {
-  ABBE_REQUIRE(v && desc && desc->light && value, error);
+  assert(desc->light);
   const size_t cells = v->region.cells;
   if (v->exits.cells != cells)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the volume holds no exits");

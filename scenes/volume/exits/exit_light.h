@@ -9,10 +9,6 @@
 #include "scenes/volume/caustic_volume.h"
 #include "scenes/volume/exits/exit_sheets.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_exit_light_desc {
   const abbe_light *light;        /* in the world, of any kind; with a size it is its centre */
   const abbe_object *object;      /* whose planes the rays leave, where it is convex */
@@ -62,7 +58,4 @@ size_t abbe_exit_colours_split(const abbe_exit_colours *colours, const abbe_exit
                                float step[ABBE_EXIT_MOST_PARTS], float room[1][4],
                                const float (**xyz)[4]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

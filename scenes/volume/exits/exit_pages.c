@@ -4,6 +4,7 @@
 #include "scenes/volume/exits/exit_map.h"
 #include "scenes/volume/exits/exit_sheets.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -258,7 +259,7 @@ static abbe_result land_all(const abbe_caustic_volume *v, const abbe_exit_light_
 abbe_result abbe_exit_pages_make(const abbe_caustic_volume *v, const abbe_exit_light_desc *desc,
                                  const double (*parallelogram)[9], size_t parallelograms,
                                  size_t side, abbe_exit_pages *out, abbe_error *error) {
-  ABBE_REQUIRE(v && desc && desc->place && parallelogram && out, error);
+  assert(desc->place);
   *out = (abbe_exit_pages){.side = side, .count = 2 * parallelograms};
   if (side < 1 || side > ABBE_EXIT_PAGES_MOST_SIDE || v->exits.points == 0)
     return abbe_error_set(

@@ -9,10 +9,6 @@
 
 #include "scenes/volume/exits/exit_light.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_EXIT_PAGES_MOST_SIDE 1024
 
 typedef struct abbe_exit_pages {
@@ -42,7 +38,4 @@ void abbe_exit_pages_halve(const float (*from)[4], size_t side, float (*to)[4]);
 void abbe_exit_pages_at(const abbe_exit_pages *pages, size_t page, double u, double v,
                         double xyz[3]);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -9,10 +9,6 @@
 #include "scenes/volume/light_exits.h"
 #include "scenes/volume/volume_body.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_exit_sheet {
   double corner[3], normal[3]; /* in the object's own coordinates; unit, along U x V */
   double du[3], dv[3];         /* u and v of a place are its products with these from the corner */
@@ -51,7 +47,4 @@ void abbe_exit_sheets_meet(const abbe_exit_track *track, size_t sheets,
 bool abbe_exit_sheets_hide(const abbe_exit_sheet *sheet, size_t sheets, const double place[3],
                            const double way[3], double limit);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -9,10 +9,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The cylinder's axis is z, its foot stands in z = 0. */
 typedef struct abbe_catacaustic {
   double radius, height; /* m */
@@ -31,7 +27,4 @@ double abbe_catacaustic_irradiance(const abbe_catacaustic *c, const double p[2],
 double abbe_catacaustic_mean(const abbe_catacaustic *c, const double p[2], double half,
                              size_t steps, double reflectance, size_t bounces, size_t *branches);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -11,10 +11,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Unpolarised Fresnel reflectance at incidence [0, pi/2] from outside into index n, by the sine
  * and tangent laws; 1 beyond the critical angle where n < 1. [BornWolf1999, 1.5.2] */
 double abbe_closed_form_fresnel(double incidence, double n);
@@ -81,7 +77,4 @@ typedef struct abbe_prism_ray {
 bool abbe_closed_form_prism_ray(double apex, double n, double incidence, double along,
                                 abbe_prism_ray *ray);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

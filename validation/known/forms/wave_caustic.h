@@ -10,10 +10,6 @@
 
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 typedef struct abbe_wave_caustic {
   double amplitude, wavelength, depth; /* m */
   double index;                        /* of the water */
@@ -33,7 +29,4 @@ double abbe_wave_caustic_mean(const abbe_wave_caustic *w, double from, double to
 /* By how many rays the place x is lit, counted over `rays` even steps. */
 size_t abbe_wave_caustic_branches(const abbe_wave_caustic *w, double x, size_t rays);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -2,6 +2,7 @@
 
 #include "validation/ranks/rank_files.h"
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -120,7 +121,7 @@ static abbe_result trace_references(abbe_context *context, const abbe_scene *sce
 abbe_result abbe_ranked_sweep(const abbe_ranks *ranks, abbe_context *context,
                               const abbe_scene *scene, const abbe_sweep_request *request,
                               abbe_sweep_table *out, abbe_error *error) {
-  ABBE_REQUIRE(ranks && ranks->most && context && scene && request && request->table && out, error);
+  assert(ranks->most && request->table);
   const bool first = ranks->rank == 0;
   abbe_sweep_table known;
   *out = (abbe_sweep_table){0};

@@ -12,10 +12,6 @@
 #include "validation/sweep/sweep_run.h"
 #include "validation/tracer/ranked_run.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Every rank calls it alike. Rows of the table, and of tables that ranks left beside it
  * (ranks/rank_files.h), are not measured again, whatever number of ranks there was. out: the whole
  * table at rank 0, rows that are new in the settings' order, saved, and the ranks' removed; an
@@ -26,7 +22,4 @@ abbe_result abbe_ranked_sweep(const abbe_ranks *ranks, abbe_context *context,
                               const abbe_scene *scene, const abbe_sweep_request *request,
                               abbe_sweep_table *out, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

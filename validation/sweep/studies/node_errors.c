@@ -152,7 +152,6 @@ abbe_result abbe_node_errors_measure(abbe_node_errors *known, const abbe_sweep *
                                      const abbe_light_nodes *nodes, const abbe_render_desc *desc,
                                      abbe_renderer *renderer, double *at_node, double *between,
                                      abbe_error *error) {
-  ABBE_REQUIRE(known && sweep && nodes && desc && renderer && at_node && between, error);
   const abbe_scene *scene = sweep->scene;
   const abbe_plan *plan = abbe_renderer_plan(renderer);
   double to_light[3];

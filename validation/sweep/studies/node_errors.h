@@ -8,10 +8,6 @@
 #include "scenes/volume/light_nodes.h"
 #include "validation/sweep/sweep_measure.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_NODE_ERRORS_PLACES 3 /* of each kind, those nearest to the scene's first light */
 #define ABBE_NODE_ERRORS_SETS 8   /* of nodes */
 
@@ -47,7 +43,4 @@ abbe_result abbe_node_errors_measure(abbe_node_errors *known, const abbe_sweep *
                                      abbe_renderer *renderer, double *at_node, double *between,
                                      abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

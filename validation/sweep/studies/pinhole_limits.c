@@ -33,7 +33,6 @@ static abbe_result draw(abbe_context *context, const abbe_scene *scene,
 abbe_result abbe_pinhole_limits_find(abbe_pinhole_limits *known, abbe_context *context,
                                      const abbe_scene *scene, const abbe_render_desc *desc,
                                      const abbe_image **out, abbe_error *error) {
-  ABBE_REQUIRE(known && context && scene && desc && out, error);
   abbe_render_desc d = *desc;
   d.pinholes = known->samples > 0 ? known->samples : ABBE_SURFACE_MAX_SAMPLES;
   d.strategy = ABBE_SAMPLE_STRATEGY_NEIGHBOUR;
@@ -82,7 +81,6 @@ double abbe_pinhole_limits_distance(const abbe_image *picture, const abbe_image 
 abbe_result abbe_pinhole_limits_measure(abbe_pinhole_limits *known, abbe_context *context,
                                         const abbe_scene *scene, const abbe_render_desc *desc,
                                         double *rmse, abbe_error *error) {
-  ABBE_REQUIRE(known && context && scene && desc && rmse, error);
   const abbe_image *limit;
   double square = 0;
   abbe_result result = abbe_pinhole_limits_find(known, context, scene, desc, &limit, error);

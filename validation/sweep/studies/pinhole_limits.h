@@ -7,10 +7,6 @@
 #include "gl/renderer.h"
 #include "scenes/samples/surface_samples.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 #define ABBE_PINHOLE_LIMITS_MOST 8 /* profiles, each with footprints and without */
 
 /* A zeroed one knows nothing yet. */
@@ -43,7 +39,4 @@ abbe_result abbe_pinhole_limits_measure(abbe_pinhole_limits *known, abbe_context
                                         const abbe_scene *scene, const abbe_render_desc *desc,
                                         double *rmse, abbe_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -358,7 +358,6 @@ abbe_result abbe_transport_study_measure(const abbe_sweep *sweep,
                                          const char *file, abbe_render_progress progress,
                                          void *user, abbe_transport_study *out, size_t *refused,
                                          abbe_error *why, abbe_error *error) {
-  ABBE_REQUIRE(sweep && contestant && file && out && refused, error);
   work w = {.sweep = sweep, .file = file, .progress = progress, .user = user};
   abbe_error first = {0};
   *out = (abbe_transport_study){.count = 0};

@@ -8,10 +8,6 @@
 #include "validation/sweep/sweep_measure.h"
 #include "validation/volume/volume_fill.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* X(name, code): studies of contestants that are known by a name. */
 #define ABBE_TRANSPORT_STUDIES(X) X("volume", VOLUME) X("pinhole", PINHOLE)
 #define ABBE_TRANSPORT_STUDY_MOST 48
@@ -100,7 +96,4 @@ bool abbe_transport_same_but_samples(const abbe_render_desc *a, const abbe_rende
  * by least squares; NaN with fewer than two. */
 double abbe_transport_study_slope(const abbe_transport_study *study, size_t row);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -48,7 +48,6 @@ static const char *const footprints[] = {
 
 abbe_result abbe_transport_table_save(const abbe_transport_study *s, const char *path,
                                       abbe_error *error) {
-  ABBE_REQUIRE(s && path, error);
   abbe_file_writer writer = {0};
   abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;

@@ -6,10 +6,6 @@
 
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* CSV: transport, strategy, footprint, region, lookup, the numbers, front_time, front_bytes.
  * ABBE_IO. */
 abbe_result abbe_transport_table_save(const abbe_transport_study *study, const char *path,
@@ -19,7 +15,4 @@ abbe_result abbe_transport_table_save(const abbe_transport_study *study, const c
  * printed, where that is there; and slopes by samples. */
 void abbe_transport_table_print(const abbe_transport_study *study, FILE *out);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

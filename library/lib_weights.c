@@ -1,6 +1,7 @@
-#include "cli/library/lib_weights.h"
+#include "library/lib_weights.h"
 
 #include "colorimetry/weights.h"
+#include "library/lib_handles.h"
 
 #include <string.h>
 #include <strings.h>

@@ -1,6 +1,6 @@
 // A program outside the house, in C++: handles as unique pointers, errors as exceptions.
-#include "cli/library/lib_comparison.h"
-#include "cli/library/lib_scene.h"
+#include "library/lib_comparison.h"
+#include "library/lib_scene.h"
 
 #include <cstdio>
 #include <memory>

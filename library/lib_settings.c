@@ -1,7 +1,8 @@
-#include "cli/library/lib_settings.h"
+#include "library/lib_settings.h"
 
 #include "base/nearest.h"
 #include "base/number.h"
+#include "library/lib_handles.h"
 
 #include <math.h>
 #include <stdbool.h>

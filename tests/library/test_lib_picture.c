@@ -1,7 +1,7 @@
 /* Pictures by handle: pixels and names in and out, files there and back, what is refused. */
 #include "tests/check.h"
 
-#include "cli/library/lib_picture.h"
+#include "library/lib_picture.h"
 
 #include <stdlib.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "cli/library/lib_version.h"
+#include "library/lib_version.h"
 
 #ifndef ABBE_VERSION
 #error "the build defines ABBE_VERSION"

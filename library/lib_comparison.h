@@ -6,7 +6,7 @@
 #define ABBE_LIBRARY_LIB_COMPARISON_H
 
 #include "base/error.h"
-#include "cli/library/lib_picture.h"
+#include "library/lib_picture.h"
 
 #include <stdbool.h>
 #include <stddef.h>

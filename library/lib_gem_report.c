@@ -1,9 +1,8 @@
-#include "cli/library/lib_gem_report.h"
+#include "library/lib_gem_report.h"
 
 #include "colorimetry/weights.h"
-#include "cli/library/lib_handles.h"
-#include "cli/library/lib_settings.h"
-#include "cli/library/lib_shipped.h"
+#include "library/lib_handles.h"
+#include "library/lib_settings.h"
 #include "scenes/cuts/cut_file.h"
 #include "scenes/cuts/cut_polyhedron.h"
 #include "spectral/formats/material_table_load.h"

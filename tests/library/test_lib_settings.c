@@ -1,7 +1,7 @@
 /* Requests as texts: what each kind takes, what is refused, and by which words. */
 #include "tests/check.h"
 
-#include "cli/library/lib_settings.h"
+#include "library/lib_settings.h"
 
 #include <stdbool.h>
 

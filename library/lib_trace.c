@@ -1,7 +1,6 @@
 /* The pictures of lib_scene.h that the reference tracer makes. */
-#include "cli/library/lib_handles.h"
-#include "cli/library/lib_scene_state.h"
-#include "cli/library/lib_settings.h"
+#include "library/lib_handles.h"
+#include "library/lib_settings.h"
 #include "validation/denoise/denoise.h"
 #include "validation/sweep/matched_physics.h"
 #include "validation/tracer/trace_run.h"

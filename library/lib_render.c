@@ -1,7 +1,6 @@
 /* The pictures of lib_scene.h that OpenGL draws. */
-#include "cli/library/lib_handles.h"
-#include "cli/library/lib_scene_state.h"
-#include "cli/library/lib_settings.h"
+#include "library/lib_handles.h"
+#include "library/lib_settings.h"
 
 #include <stdlib.h>
 

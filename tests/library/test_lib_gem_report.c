@@ -1,7 +1,7 @@
 /* A design judged by handle: shares that add up, a diamond above quartz, what is refused. */
 #include "tests/check.h"
 
-#include "cli/library/lib_gem_report.h"
+#include "library/lib_gem_report.h"
 
 static const char *const design = ABBE_SOURCE_DIR "/scenes/designs/brilliant-diamond.asc";
 static const char *const coarse[] = {"size=16", "repeats=3", "wavelengths=2", "tilt_rad=0"};

@@ -1,7 +1,7 @@
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE /* dladdr */
 #endif
-#include "cli/library/lib_shipped.h"
+#include "library/lib_handles.h"
 
 #include <dlfcn.h>
 #include <limits.h>

@@ -1,7 +1,7 @@
 /* Materials by handle: published indices, metals, attenuation, what is refused. */
 #include "tests/check.h"
 
-#include "cli/library/lib_materials.h"
+#include "library/lib_materials.h"
 
 static abbe_lib_materials *table;
 

@@ -8,7 +8,7 @@
 #define ABBE_LIBRARY_LIB_SCENE_H
 
 #include "base/error.h"
-#include "cli/library/lib_picture.h"
+#include "library/lib_picture.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -55,9 +55,9 @@ void abbe_lib_scene_set_progress(abbe_lib_scene *scene, abbe_lib_progress progre
  * (auto, none, bridge, smear), model (auto, sphere, convex, layers, hierarchy), transport (auto,
  * photons, pinhole), of pinholes also pinholes and clusters (numbers), strategy (auto, random,
  * grid, quantized, neighbour) and footprint (auto, off, on), space (acescg, rec709, xyz), observer
- * (1931, 1964, 2015-2, 2015-10), aovs (1: direct.*, caustic.* and Z too), backend (auto, cpu, gpu: of
- * the first picture). docs/rendering.md says what they do. ABBE_INVALID_ARGUMENT, ABBE_UNSUPPORTED,
- * ABBE_GL, ABBE_CANCELLED, ABBE_NO_MEMORY. */
+ * (1931, 1964, 2015-2, 2015-10), aovs (1: direct.*, caustic.* and Z too), backend (auto, cpu, gpu:
+ * of the first picture). docs/rendering.md says what they do. ABBE_INVALID_ARGUMENT,
+ * ABBE_UNSUPPORTED, ABBE_GL, ABBE_CANCELLED, ABBE_NO_MEMORY. */
 abbe_result abbe_lib_scene_render(abbe_lib_scene *scene, const char *const *settings, size_t count,
                                   abbe_lib_picture **out, abbe_error *error);
 /* Where a light's flux landed in the last rendered picture, X, Y, Z in W a texel, and so many bands

@@ -2,8 +2,8 @@
  * scene opened anew; what fails leaves all as it was. */
 #include "tests/check.h"
 
-#include "cli/library/lib_comparison.h"
-#include "cli/library/lib_scene.h"
+#include "library/lib_comparison.h"
+#include "library/lib_scene.h"
 
 #include <stdbool.h>
 

@@ -1,11 +1,11 @@
-#include "cli/library/lib_picture.h"
+#include "library/lib_picture.h"
 
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/image/screen_png.h"
 #include "colorimetry/rgb_space.h"
-#include "cli/library/lib_handles.h"
-#include "cli/library/lib_settings.h"
+#include "library/lib_handles.h"
+#include "library/lib_settings.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

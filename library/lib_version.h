@@ -1,6 +1,6 @@
 /* lib_version.h: which release of the shared library a program runs with, and its promise.
  *
- * libabbe.so exports the functions of cli/library/lib_*.h and abbe_result_text of base/error.h, and
+ * libabbe.so exports the functions of library/lib_*.h and abbe_result_text of base/error.h, and
  * nothing else. What they take are handles, numbers, texts and arrays; only abbe_error has a layout
  * that callers know. Requests are texts KEY=VALUE, so that a key may be added. Before 1.0 the
  * second number of a release says whether programs must be built anew: the file's soname and the

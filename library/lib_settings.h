@@ -1,7 +1,7 @@
 /* lib_settings.h: requests as texts "KEY=VALUE", read by a table of the keys that are known.
  *
  * A request may then gain keys without another layout of any struct. Numbers have a decimal point
- * whatever the host's locale says. Internal to cli/library/.
+ * whatever the host's locale says. Internal to library/.
  */
 #ifndef ABBE_LIBRARY_LIB_SETTINGS_H
 #define ABBE_LIBRARY_LIB_SETTINGS_H

@@ -5,7 +5,7 @@
 #define ABBE_LIBRARY_LIB_GEM_REPORT_H
 
 #include "base/error.h"
-#include "cli/library/lib_picture.h"
+#include "library/lib_picture.h"
 
 #include <stdbool.h>
 #include <stddef.h>

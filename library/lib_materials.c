@@ -1,5 +1,6 @@
-#include "cli/library/lib_materials.h"
+#include "library/lib_materials.h"
 
+#include "library/lib_handles.h"
 #include "spectral/formats/material_table_load.h"
 
 #include <stdlib.h>

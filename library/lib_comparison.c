@@ -1,7 +1,7 @@
-#include "cli/library/lib_comparison.h"
+#include "library/lib_comparison.h"
 
-#include "cli/library/lib_handles.h"
-#include "cli/library/lib_settings.h"
+#include "library/lib_handles.h"
+#include "library/lib_settings.h"
 #include "validation/compare/compare.h"
 #include "validation/compare/difference_picture.h"
 

@@ -1,7 +1,7 @@
 /* Comparisons by handle: equal pictures, known factors, masks, what is refused. */
 #include "tests/check.h"
 
-#include "cli/library/lib_comparison.h"
+#include "library/lib_comparison.h"
 
 enum { SIDE = 16 };
 

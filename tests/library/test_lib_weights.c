@@ -1,7 +1,7 @@
 /* Weights as arrays: they sum to the white, in every space; what is refused. */
 #include "tests/check.h"
 
-#include "cli/library/lib_weights.h"
+#include "library/lib_weights.h"
 
 enum { COUNT = 9 };
 

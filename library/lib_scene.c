@@ -1,7 +1,6 @@
-#include "cli/library/lib_scene.h"
+#include "library/lib_scene.h"
 
-#include "cli/library/lib_scene_state.h"
-#include "cli/library/lib_shipped.h"
+#include "library/lib_handles.h"
 #include "scenes/import/scene_file.h"
 
 #include <limits.h>
