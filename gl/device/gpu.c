@@ -297,6 +297,8 @@ abbe_result abbe_gpu_set_target(abbe_gpu *gpu, const GLuint *colour, const int *
   gl->FramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, depth, 0);
   gl->DrawBuffers((GLsizei)count, attachments);
   gl->Viewport(0, 0, (GLsizei)width, (GLsizei)height);
+  gpu->target[0] = width;
+  gpu->target[1] = height;
   if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return ABBE_OK;
   return abbe_error_set(error, ABBE_GL, "this OpenGL cannot render to a %zu x %zu float texture",
                         width, height);

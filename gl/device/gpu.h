@@ -32,6 +32,7 @@ typedef struct abbe_gpu {
   /* of a dispatch, where a GPU runs it: its driver may end one that takes seconds */
   size_t most_groups;
   GLuint framebuffer, empty_array;
+  size_t target[2];                    /* texels across and up of what is drawn into */
   GLuint list_groups;                  /* program */
   GLuint sampler_states;               /* program; none where a GPU runs them */
   GLuint texels[ABBE_GPU_TEXEL_UNITS]; /* textures that show buffers, one a unit */
@@ -99,8 +100,8 @@ abbe_result abbe_gpu_make_texels(abbe_gpu *gpu, GLenum format, size_t size, cons
 abbe_result abbe_gpu_set_target(abbe_gpu *gpu, const GLuint *colour, const int *layer, size_t count,
                                 GLuint depth, size_t width, size_t height, abbe_error *error);
 
-/* Depths of abbe_view_reversed_matrix, of which the greatest is nearest, or their opposite again, as
- * outside of these two. The target's are cleared where nothing is drawn. */
+/* Depths of abbe_view_reversed_matrix, of which the greatest is nearest, or their opposite again,
+ * as outside of these two. The target's are cleared where nothing is drawn. */
 void abbe_gpu_begin_depths(abbe_gpu *gpu, bool clears);
 void abbe_gpu_end_depths(abbe_gpu *gpu);
 
@@ -152,6 +153,14 @@ void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t f
 /* The groups that stand in the list's words 1 to 3, as another program has written them for at most
  * so many elements, with a thread each. */
 void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list, size_t most);
+
+/* Draws of the program that is in use, which a GPU gets in parts of no more fragments, or vertices,
+ * than a dispatch has threads: a triangle over the whole target, in bands of rows; so many things
+ * of some vertices each, without buffers. */
+void abbe_gpu_draw_screen(abbe_gpu *gpu);
+void abbe_gpu_draw_things(abbe_gpu *gpu, GLenum mode, size_t count, size_t vertices);
+/* That many, SIZE_MAX where it is no GPU. */
+size_t abbe_gpu_most_threads(const abbe_gpu *gpu);
 
 /* Before a program that reads buffers as texels. Such a sampler has no filter of its own: Mesa
  * leaves there that of the texture which another program had at its place, and llvmpipe compiles a

@@ -4,6 +4,7 @@
 #include "gl/device/bindings.h"
 
 #include <math.h>
+#include <stdint.h>
 
 /* What a part of the work takes where somebody watches, and how many groups, or rows of groups, the
  * first has. */
@@ -126,6 +127,42 @@ void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list, size_
   gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, list);
   gpu->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 4, sizeof groups, groups);
   dispatch_parts(gpu, program, (size_t)groups[0] * groups[1], 0);
+}
+
+size_t abbe_gpu_most_threads(const abbe_gpu *gpu) {
+  return gpu->most_groups > SIZE_MAX / ABBE_GPU_GROUP ? SIZE_MAX
+                                                      : gpu->most_groups * ABBE_GPU_GROUP;
+}
+
+/* A band has an even count of rows: the four fragments whose differences are taken stay together.
+ */
+void abbe_gpu_draw_screen(abbe_gpu *gpu) {
+  const abbe_gl *gl = gpu->gl;
+  const size_t width = gpu->target[0], height = gpu->target[1];
+  const size_t rows = abbe_gpu_most_threads(gpu) / (2 * width) * 2;
+  gl->BindVertexArray(gpu->empty_array);
+  if (rows >= height) {
+    gl->DrawArrays(GL_TRIANGLES, 0, 3);
+    return;
+  }
+  gl->Enable(GL_SCISSOR_TEST);
+  for (size_t at = 0, count; at < height; at += count) {
+    count = rows > 0 ? rows : 2;
+    gl->Scissor(0, (GLint)at, (GLsizei)width, (GLsizei)count);
+    gl->DrawArrays(GL_TRIANGLES, 0, 3);
+    gl->Flush();
+  }
+  gl->Disable(GL_SCISSOR_TEST);
+}
+
+void abbe_gpu_draw_things(abbe_gpu *gpu, GLenum mode, size_t count, size_t vertices) {
+  const size_t most = abbe_gpu_most_threads(gpu) / vertices, part = most > 0 ? most : 1;
+  gpu->gl->BindVertexArray(gpu->empty_array);
+  for (size_t at = 0; at < count; at += part) {
+    const size_t here = count - at < part ? count - at : part;
+    if (at > 0) gpu->gl->Flush();
+    gpu->gl->DrawArrays(mode, (GLint)(vertices * at), (GLsizei)(vertices * here));
+  }
 }
 
 void abbe_gpu_forget_samplers(abbe_gpu *gpu) {

@@ -93,8 +93,7 @@ abbe_result abbe_picture_run(abbe_picture *picture, abbe_error *error) {
   } else {
     abbe_gpu_set_int(gpu, program, "pixels", (int)desc->upsample);
   }
-  gl->BindVertexArray(gpu->empty_array);
-  gl->DrawArrays(GL_TRIANGLES, 0, 3);
+  abbe_gpu_draw_screen(gpu);
   abbe_gpu_book_lap(gpu, ABBE_PASS_EYE_PICTURE);
   return ABBE_OK;
 }

@@ -114,10 +114,8 @@ static void draw_lit_parts(abbe_receivers_pass *pass, const int within[4]) {
 
 static void draw_surroundings(abbe_receivers_pass *pass) {
   const abbe_gpu_scene *scene = pass->lighting->scene;
-  const abbe_gl *gl = scene->gpu->gl;
   abbe_lighting_use(pass->lighting, pass->surroundings);
-  gl->BindVertexArray(scene->gpu->empty_array);
-  gl->DrawArrays(GL_TRIANGLES, 0, 3);
+  abbe_gpu_draw_screen(scene->gpu);
 }
 
 static void draw_within(abbe_receivers_pass *pass, const int within[4]) {
@@ -147,13 +145,14 @@ static size_t tiles_from(const size_t size[2], size_t at, size_t most, int withi
   return rows * columns;
 }
 
-/* All at once, or some tiles at a time where somebody watches. */
+/* All at once, or some tiles at a time where somebody watches or a GPU draws. */
 static void draw_receivers(abbe_receivers_pass *pass) {
   abbe_gpu *gpu = pass->lighting->scene->gpu;
   const size_t *size = pass->lighting->camera->receiver_samples;
   const size_t all = ((size[0] + TILE - 1) / TILE) * ((size[1] + TILE - 1) / TILE);
   const size_t least = (all + MOST_PARTS - 1) / MOST_PARTS; /* all vertices are run for each */
-  size_t part = gpu->progress != NULL ? 2 * least : all;
+  const size_t most = abbe_gpu_most_threads(gpu) / (TILE * TILE);
+  size_t part = gpu->progress != NULL ? 2 * least : most > least ? most : least;
   gpu->gl->Enable(GL_SCISSOR_TEST);
   for (size_t at = 0; at < all && abbe_gpu_ask(gpu);) {
     const double start_ms = 1e3 * abbe_clock_seconds();
@@ -161,7 +160,10 @@ static void draw_receivers(abbe_receivers_pass *pass) {
     const size_t count = tiles_from(size, at, part, within);
     draw_within(pass, within);
     at += count;
-    if (gpu->progress == NULL) continue;
+    if (gpu->progress == NULL) {
+      if (at < all) gpu->gl->Flush();
+      continue;
+    }
     gpu->gl->Finish();
     part = abbe_gpu_next_part(count, 1e3 * abbe_clock_seconds() - start_ms);
     if (part < least) part = least;

@@ -154,13 +154,12 @@ static abbe_result draw_listed(void *user, size_t beams, abbe_error *error) {
   abbe_gpu_bind_texels(scene->gpu, pass->draw_beams, "beams", BEAM_UNIT, GL_RGBA32F,
                        pass->beams.beams);
   set_size(pass, pass->draw_beams);
-  gl->BindVertexArray(scene->gpu->empty_array);
   abbe_gpu_begin_depths(scene->gpu, false);
   gl->DepthMask(GL_FALSE);
   gl->Enable(GL_BLEND);
   gl->BlendFunc(GL_ONE, GL_ONE);
   gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-  gl->DrawArrays(GL_TRIANGLES, 0, (GLsizei)(6 * beams));
+  abbe_gpu_draw_things(scene->gpu, GL_TRIANGLES, beams, 6);
   gl->BlendFunc(GL_ONE, GL_ZERO);
   gl->Disable(GL_BLEND);
   gl->DepthMask(GL_TRUE);
@@ -198,11 +197,10 @@ static abbe_result draw_shine(abbe_haze_pass *pass, abbe_error *error) {
   set_size(pass, pass->shine);
   abbe_gpu_set_int(scene->gpu, pass->shine, "steps_along",
                    scene->plan->desc.coarse == ABBE_COARSE_NONE ? STEPS_ALONG : COARSE_STEPS);
-  gl->BindVertexArray(scene->gpu->empty_array);
   gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   gl->Enable(GL_BLEND);
   gl->BlendFunc(GL_ONE, GL_ONE);
-  gl->DrawArrays(GL_TRIANGLES, 0, 3);
+  abbe_gpu_draw_screen(scene->gpu);
   gl->BlendFunc(GL_ONE, GL_ZERO);
   gl->Disable(GL_BLEND);
   return ABBE_OK;
@@ -222,13 +220,12 @@ static abbe_result lay_over(abbe_haze_pass *pass, abbe_error *error) {
   if (result != ABBE_OK) return result;
   abbe_lighting_use(lighting_of(pass), pass->over);
   abbe_gpu_bind_texture(scene->gpu, pass->over, "scattered", PICTURE_UNIT, pass->scattered);
-  gl->BindVertexArray(scene->gpu->empty_array);
   gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
   gl->Enable(GL_BLEND);
   for (int adds = 0; adds < 2; adds++) {
     gl->BlendFunc(adds ? GL_ONE : GL_ZERO, adds ? GL_ONE : GL_SRC_COLOR);
     abbe_gpu_set_int(scene->gpu, pass->over, "adds", adds);
-    gl->DrawArrays(GL_TRIANGLES, 0, 3);
+    abbe_gpu_draw_screen(scene->gpu);
   }
   gl->BlendFunc(GL_ONE, GL_ZERO);
   gl->Disable(GL_BLEND);

@@ -147,8 +147,7 @@ abbe_result abbe_image_view_draw_screen(const abbe_gpu_scene *scene, GLuint targ
   abbe_result result = abbe_gpu_set_target(scene->gpu, &target, &layer, 1, 0, width, height, error);
   if (result != ABBE_OK) return result;
   gl->Disable(GL_DEPTH_TEST);
-  gl->BindVertexArray(scene->gpu->empty_array);
-  gl->DrawArrays(GL_TRIANGLES, 0, 3);
+  abbe_gpu_draw_screen(scene->gpu);
   return ABBE_OK;
 }
 

@@ -198,11 +198,10 @@ static abbe_result splat_vertices(abbe_shah2007 *s, abbe_error *error) {
   gl->BlendFunc(GL_ONE, GL_ONE);
   gl->UseProgram(s->splat);
   set_splats(s);
-  gl->BindVertexArray(scene->gpu->empty_array);
   for (size_t i = 0; i < d->wavelengths * s->light.object_faces; i++) {
     abbe_gpu_set_int(scene->gpu, s->splat, "wavelength", (int)(i % d->wavelengths));
     abbe_gpu_set_int(scene->gpu, s->splat, "object_face", (int)(i / d->wavelengths));
-    gl->DrawArrays(GL_POINTS, 0, (GLsizei)(d->photons * d->photons));
+    abbe_gpu_draw_things(scene->gpu, GL_POINTS, d->photons * d->photons, 1);
   }
   gl->Disable(GL_BLEND);
   abbe_gpu_book_lap(scene->gpu, ABBE_PASS_PHOTONS);

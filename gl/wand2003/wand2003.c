@@ -139,8 +139,7 @@ static abbe_result draw(abbe_wand2003 *w, abbe_error *error) {
   gl->ClearBufferfv(GL_DEPTH, 0, &far_away);
   gl->Disable(GL_DEPTH_TEST);
   use(w, w->surroundings);
-  gl->BindVertexArray(w->scene->gpu->empty_array);
-  gl->DrawArrays(GL_TRIANGLES, 0, 3);
+  abbe_gpu_draw_screen(w->scene->gpu);
   gl->Enable(GL_DEPTH_TEST);
   use(w, w->receivers);
   draw_receivers(w, w->receivers);

@@ -81,7 +81,6 @@ abbe_result abbe_wyman_photons_run(const abbe_wyman_photons *p, size_t wavelengt
   abbe_gpu_set_float(scene->gpu, p->program, "object_bias", 1e-3 * scene->refractor_radius);
   gl->Uniform4f(gl->GetUniformLocation(p->program, "mirror_plane"), (float)p->background[0],
                 (float)p->background[1], (float)p->background[2], (float)p->background[3]);
-  gl->BindVertexArray(scene->gpu->empty_array);
-  gl->DrawArrays(GL_TRIANGLES, 0, 3);
+  abbe_gpu_draw_screen(scene->gpu);
   return ABBE_OK;
 }

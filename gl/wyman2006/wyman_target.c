@@ -180,11 +180,12 @@ static abbe_result draw(abbe_wyman_target *t, const float colour[3], bool first,
   gl->UseProgram(t->draw);
   set_drawing(t);
   gl->Uniform3f(gl->GetUniformLocation(t->draw, "colour"), colour[0], colour[1], colour[2]);
-  gl->BindVertexArray(scene->gpu->empty_array);
   const bool counts = t->query != 0 && scene->gpu->statistics != NULL;
   if (counts) gl->BeginQuery(GL_SAMPLES_PASSED, t->query);
-  gl->DrawArrays(t->polygons ? GL_TRIANGLES : GL_POINTS, 0,
-                 (GLsizei)(t->polygons ? 6 * cells : side * side));
+  if (t->polygons)
+    abbe_gpu_draw_things(scene->gpu, GL_TRIANGLES, cells, 6);
+  else
+    abbe_gpu_draw_things(scene->gpu, GL_POINTS, side * side, 1);
   if (counts) gl->EndQuery(GL_SAMPLES_PASSED);
   gl->Disable(GL_BLEND);
   if (counts) t->layers += count_layers(t) / (double)scene->plan->desc.wavelengths;
@@ -199,8 +200,7 @@ static abbe_result draw_over(const abbe_wyman_target *t, const GLuint target[2],
                                            t->places->size[0], t->places->size[1], error);
   if (result != ABBE_OK) return result;
   gl->Disable(GL_DEPTH_TEST);
-  gl->BindVertexArray(t->scene->gpu->empty_array);
-  gl->DrawArrays(GL_TRIANGLES, 0, 3);
+  abbe_gpu_draw_screen(t->scene->gpu);
   return ABBE_OK;
 }
 
