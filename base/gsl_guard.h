@@ -2,8 +2,7 @@
  *
  * GSL's default error handler aborts, even where a call only ran out of memory. Between enter and
  * leave it is off, so that GSL returns its code; the host program's own handler comes back with
- * the last leave. Calls nest and may come from several threads. Internal to spectral/,
- * scenes/ and validation/.
+ * the last leave. Calls nest and may come from several threads.
  */
 #ifndef ABBE_BASE_GSL_GUARD_H
 #define ABBE_BASE_GSL_GUARD_H

@@ -1,8 +1,9 @@
 #include "cli/base/arguments.h"
+
 #include "cli/base/command.h"
 #include "cli/options/spectral_options.h"
-
-#include "colorimetry/colour_description.h"
+#include "colorimetry/chromaticity.h"
+#include "colorimetry/colour_temperature.h"
 #include "colorimetry/image/image.h"
 #include "colorimetry/plot/chart.h"
 #include "colorimetry/spectral_picture/pixel_probe.h"
@@ -11,9 +12,37 @@
 #include <argp.h>
 #include <cjson/cJSON.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* All that a colorimeter says of a colour. */
+
+/* What there is none of is NaN. */
+typedef struct abbe_colour_description {
+  double xyz[3];
+  double xy[2], uv[2];    /* x, y and u', v' (chromaticity.h) */
+  abbe_dominant dominant; /* with respect to the white */
+  double kelvin, duv;     /* correlated colour temperature (colour_temperature.h) */
+} abbe_colour_description;
+
+/* Of XYZ as that observer sees it, with respect to a white of chromaticity white_xy. A correlated
+ * colour temperature is defined for the observer of 1931 alone. */
+static void colour_description_make(const double xyz[3], const double white_xy[2],
+                                    abbe_observer observer, abbe_colour_description *out) {
+  *out = (abbe_colour_description){.xyz = {xyz[0], xyz[1], xyz[2]},
+                                   .xy = {NAN, NAN},
+                                   .uv = {NAN, NAN},
+                                   .dominant = {NAN, NAN, NAN},
+                                   .kelvin = NAN,
+                                   .duv = NAN};
+  if (!abbe_chromaticity_xy(xyz, out->xy)) return;
+  abbe_chromaticity_uv_of_xy(out->xy, out->uv);
+  abbe_chromaticity_dominant(out->xy, white_xy, observer, &out->dominant);
+  if (observer == ABBE_OBSERVER_CIE_1931)
+    abbe_colour_temperature_find(out->xy, &out->kelvin, &out->duv);
+}
 
 typedef struct request {
   const char *program, *path, *layer, *plot;
@@ -39,9 +68,8 @@ static void describe(const request *r, const abbe_pixel_probe *p, colours *out) 
                        white);
     abbe_chromaticity_xy(white, d65);
   }
-  abbe_colour_description_make(p->xyz, d65, p->space.observer, &out->of[0]);
-  abbe_colour_description_make(p->spectral_xyz, p->white_xy, r->spectral.view.observer,
-                               &out->of[1]);
+  colour_description_make(p->xyz, d65, p->space.observer, &out->of[0]);
+  colour_description_make(p->spectral_xyz, p->white_xy, r->spectral.view.observer, &out->of[1]);
 }
 
 static const char *unit_of(const abbe_pixel_probe *p) {

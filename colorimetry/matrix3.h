@@ -1,4 +1,4 @@
-/* matrix3.h: products and inverses of row-major 3x3 matrices. Internal to colorimetry/. */
+/* matrix3.h: products and inverses of row-major 3x3 matrices. */
 #ifndef ABBE_COLORIMETRY_MATRIX3_H
 #define ABBE_COLORIMETRY_MATRIX3_H
 

@@ -1,6 +1,6 @@
 #include "gl/renderer.h"
 
-#include "gl/caustics/map_bands.h"
+#include "gl/caustics/caustics.h"
 #include "gl/device/state.h"
 #include "gl/renderer_parts.h"
 

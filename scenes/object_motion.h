@@ -12,4 +12,14 @@
  * where the object would have no finite place; the object is then as it was. */
 abbe_result abbe_object_move(abbe_object *object, const double matrix[16], abbe_error *error);
 
+/* The refractors of a scene tilted together, as a stone is rocked in the hand while eye, lights
+ * and all else stay where they are. */
+
+/* By tilt_rad, right-handed, about the horizontal axis of azimuth axis_rad (from +x towards +y)
+ * through the middle of the bounds of all refractors. abbe_scene_check follows.
+ * ABBE_INVALID_ARGUMENT where there is no refractor, or an angle is not finite; the scene is as it
+ * was then, and is not to be used after any other error. */
+abbe_result abbe_refractors_tilt(abbe_scene *scene, double tilt_rad, double axis_rad,
+                                 abbe_error *error);
+
 #endif

@@ -4,12 +4,13 @@
  * was meant. A file that is named twice for one option is refused, for one would be ignored. And no
  * output may be an input or another output: not the same file by device and inode, nor, where there
  * is none yet, the same name in the same folder; FILE#PART that is read is FILE. "-" is the name of
- * no output.
+ * no output. Internal to cli/.
  */
 #ifndef ABBE_CLI_BASE_ARGUMENTS_H
 #define ABBE_CLI_BASE_ARGUMENTS_H
 
 #include <argp.h>
+#include <stddef.h>
 
 /* Flags of an argp_option beside argp's own, which end at 0x10. A table that is edited in place is
  * read. */
@@ -43,5 +44,34 @@ const abbe_argument *abbe_arguments_given(size_t index);
 /* For the parser of a command about one file, what is no option: takes ARGP_KEY_ARG, and
  * ARGP_KEY_END, at which there must be one; ARGP_ERR_UNKNOWN for other keys. */
 error_t abbe_arguments_one_file(int key, char *text, const char **path, struct argp_state *state);
+
+/* The options of every command and verb, for what is made of them: manual pages and the shells'
+ * completion.
+ *
+ * A command hands its table to argp when it is run. It is run here with nobody's arguments, as far
+ * as that and no further. */
+
+struct abbe_verbs;
+
+/* Of one command or verb: the table and the flags of its arguments (arguments.h); or, of a command
+ * with verbs, those, which follow one by one. */
+typedef struct abbe_option_table {
+  const char *program, *summary; /* "abbe gem report" */
+  const struct argp *argp;
+  unsigned flags;
+  const struct abbe_verbs *verbs;
+} abbe_option_table;
+
+/* What it points to holds until the call returns. */
+typedef void (*abbe_option_table_take)(void *user, const abbe_option_table *table);
+
+/* Calls `take` with the table of a command and those of its verbs. */
+void abbe_option_tables_visit(const char *program, const char *summary,
+                              int (*run)(int argc, char **argv), abbe_option_table_take take,
+                              void *user);
+
+/* For abbe_arguments_parse and abbe_verbs_run: does not return where somebody visits. */
+void abbe_option_tables_offer(const struct argp *argp, unsigned flags);
+void abbe_option_tables_offer_verbs(const struct abbe_verbs *verbs);
 
 #endif

@@ -9,6 +9,7 @@
 
 #include <cjson/cJSON.h>
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <poll.h>
 #include <signal.h>
@@ -17,6 +18,21 @@
 #include <string.h>
 #include <strings.h>
 #include <unistd.h>
+
+const char *abbe_shipped_find(const char *path, char *text, size_t size) {
+  static const char *const shares[] = {ABBE_SHARE_BESIDE, ABBE_SHARE};
+  char own[PATH_MAX];
+  if (path[0] == '/' || access(path, F_OK) == 0) return path;
+  ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
+  own[length > 0 ? length : 0] = '\0';
+  char *slash = strrchr(own, '/');
+  if (slash != NULL) slash[1] = '\0';
+  for (int i = slash == NULL; i < 2; i++) {
+    int n = snprintf(text, size, "%s%s/%s", i == 0 ? own : "", shares[i], path);
+    if (n > 0 && (size_t)n < size && access(text, F_OK) == 0) return text;
+  }
+  return path;
+}
 
 int abbe_command_fail(const char *program, const abbe_error *error) {
   const char *text = error->text[0] ? error->text : abbe_result_text(error->code);

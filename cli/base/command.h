@@ -2,7 +2,7 @@
  *
  * Arguments are parsed by argp, which answers --help and ends with 2 for wrong use. Results go to
  * stdout, messages to stderr. Exit codes: 0 done, 1 failed at run time, 2 used wrongly, 3 a
- * comparison was out of tolerance.
+ * comparison was out of tolerance. Internal to cli/.
  */
 #ifndef ABBE_CLI_BASE_COMMAND_H
 #define ABBE_CLI_BASE_COMMAND_H
@@ -120,5 +120,31 @@ abbe_result abbe_command_print_json(const struct cJSON *json, abbe_error *error)
 bool abbe_command_output_failed(void);
 /* Ends a command: 0 where all results reached stdout; else the failure, said on stderr. */
 int abbe_command_end(const char *program, abbe_result result, abbe_error *error);
+
+/* A command that has verbs, such as `abbe materials show`: help on all of them, and the one that
+ * is asked for. */
+
+typedef struct abbe_verb {
+  const char *name, *summary;
+  int (*run)(int argc, char **argv); /* argv[0] is "abbe COMMAND VERB" */
+} abbe_verb;
+
+typedef struct abbe_verbs {
+  const abbe_verb *verb;
+  size_t count;
+  const char *const *example; /* of arguments behind the command's name */
+  size_t examples;
+  const char *page; /* of the documentation, as a sentence's end */
+} abbe_verbs;
+
+/* Runs the verb that argv[1] names, or prints help; the program's exit code. argv[0] is "abbe
+ * COMMAND". A word that is no verb is refused with the nearest one. */
+int abbe_verbs_run(const abbe_verbs *verbs, int argc, char **argv);
+
+/* Files that came with the program, found wherever it was installed. */
+
+/* path, where something is there; else that path in the share folder beside the program's own, or
+ * where the build installs it, in text[size]; else path. */
+const char *abbe_shipped_find(const char *path, char *text, size_t size);
 
 #endif

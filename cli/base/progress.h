@@ -1,5 +1,5 @@
 /* progress.h: a progress bar with the time left, on a terminal, for work over a second; and
- * whether the user asked to stop (Ctrl-C). */
+ * whether the user asked to stop (Ctrl-C). Internal to cli/. */
 #ifndef ABBE_CLI_BASE_PROGRESS_H
 #define ABBE_CLI_BASE_PROGRESS_H
 

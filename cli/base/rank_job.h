@@ -1,5 +1,5 @@
 /* rank_job.h: what a command is told where it is one of several processes, "ranks", that share its
- * work, as cli/mpi starts them.
+ * work, as cli/mpi starts them. Internal to cli/.
  */
 #ifndef ABBE_CLI_BASE_RANK_JOB_H
 #define ABBE_CLI_BASE_RANK_JOB_H

@@ -1,8 +1,7 @@
-#include "cli/base/verbs.h"
+#include "cli/base/command.h"
 
 #include "base/nearest.h"
-#include "cli/base/command.h"
-#include "cli/base/option_tables.h"
+#include "cli/base/arguments.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,6 @@
 #include "cli/gem/gem.h"
 
 #include "cli/base/command.h"
-#include "cli/base/verbs.h"
 
 static const abbe_verb verbs[] = {
 #define ABBE_GEM_ROW(name, summary) {#name, summary, abbe_gem_##name},

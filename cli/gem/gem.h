@@ -2,12 +2,18 @@
  *
  * A verb is one line of ABBE_GEM_VERBS and one function in cli/gem/gem_NAME.c. The program lists it
  * with its summary in `abbe gem --help`, and hands it its arguments with argv[0] "abbe gem NAME".
- * No verb holds logic that a library could use.
+ * No verb holds logic that a library could use. Internal to cli/.
  */
 #ifndef ABBE_CLI_GEM_GEM_H
 #define ABBE_CLI_GEM_GEM_H
 
+#include "base/report.h"
 #include "cli/base/rank_job.h"
+#include "cli/gem/gem_input.h"
+#include "scenes/cuts/cut.h"
+#include "scenes/cuts/cut_polyhedron.h"
+#include "spectral/materials/material.h"
+#include "validation/gem/gem_judgement.h"
 
 /* X(name, summary): every verb NAME is `int abbe_gem_NAME(int argc, char **argv)`. */
 #define ABBE_GEM_VERBS(X)                                                                          \
@@ -25,5 +31,37 @@ int abbe_gem_optimise_by_ranks(int argc, char **argv, abbe_rank_job *job);
 #define ABBE_GEM_DECLARE(name, summary) int abbe_gem_##name(int argc, char **argv);
 ABBE_GEM_VERBS(ABBE_GEM_DECLARE)
 #undef ABBE_GEM_DECLARE
+
+/* A design that a verb of `abbe gem` writes, by its name's ending. */
+
+/* .asc and .gem keep the design; .stl, .obj and .glb its solid, scale metres a unit. Written beside
+ * and renamed. ABBE_INVALID_ARGUMENT for another ending; what the formats say. */
+abbe_result abbe_gem_output_write(const char *path, const abbe_cut *cut,
+                                  const abbe_cut_polyhedron *stone, double scale,
+                                  const abbe_material *material, abbe_report *report,
+                                  abbe_error *error);
+
+/* What `abbe gem report` says of a judgement: as text, CSV, JSON, pages, pictures. */
+
+typedef struct abbe_gem_report_facts {
+  const abbe_gem_stone_input *input;
+  const abbe_gem_judgement *judgement;
+  double head_deg, seconds;
+} abbe_gem_report_facts;
+
+/* "91.73 %" and "0.02", for people. */
+void abbe_gem_report_number(const abbe_gem_judgement_row *row, char value[32], char error[32]);
+
+void abbe_gem_report_print(const abbe_gem_report_facts *facts);
+/* Rows of measure, axis, tilt, wavelength, value, standard error; what does not apply is empty. */
+void abbe_gem_report_print_csv(const abbe_gem_report_facts *facts);
+abbe_result abbe_gem_report_print_json(const abbe_gem_report_facts *facts, abbe_error *error);
+
+/* To path, .pdf. */
+abbe_result abbe_gem_report_sheet(const char *path, const abbe_gem_report_facts *facts,
+                                  abbe_error *error);
+/* maps.exr and a PNG for each map, into a folder that is there. */
+abbe_result abbe_gem_report_maps(const char *folder, const abbe_gem_judgement *judgement,
+                                 abbe_error *error);
 
 #endif

@@ -1,6 +1,5 @@
 #include "cli/gem/gem.h"
 #include "cli/gem/gem_input.h"
-#include "cli/gem/gem_output.h"
 
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"

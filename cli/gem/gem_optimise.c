@@ -3,8 +3,7 @@
 #include "cli/base/progress.h"
 #include "cli/base/rank_job.h"
 #include "cli/gem/gem.h"
-#include "cli/gem/gem_output.h"
-#include "cli/gem/gem_stone_input.h"
+#include "cli/gem/gem_input.h"
 
 #include "colorimetry/plot/chart.h"
 #include "scenes/cuts/cut_stretch.h"

@@ -1,9 +1,7 @@
-#include "cli/gem/gem_output.h"
+#include "cli/gem/gem.h"
 
 #include "base/file.h"
-#include "scenes/cuts/cut_asc.h"
-#include "scenes/cuts/cut_gcs.h"
-#include "scenes/cuts/cut_gem.h"
+#include "scenes/cuts/cut_file.h"
 #include "scenes/cuts/cut_solid.h"
 
 #include <string.h>

@@ -1,9 +1,8 @@
-#include "cli/gem/gem_report.h"
+#include "cli/gem/gem.h"
 
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
-#include "cli/gem/gem.h"
 
 #include <argp.h>
 #include <stdio.h>

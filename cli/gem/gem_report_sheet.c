@@ -1,5 +1,5 @@
 /* The report as a page, and its maps as files. */
-#include "cli/gem/gem_report.h"
+#include "cli/gem/gem.h"
 
 #include "base/file.h"
 #include "colorimetry/image/exr.h"

@@ -1,4 +1,4 @@
-#include "cli/gem/gem_report.h"
+#include "cli/gem/gem.h"
 
 #include "cli/base/command.h"
 

@@ -1,6 +1,5 @@
 #include "cli/gem/gem.h"
 #include "cli/gem/gem_input.h"
-#include "cli/gem/gem_output.h"
 
 #include "base/number.h"
 #include "cli/base/arguments.h"

@@ -1,7 +1,6 @@
 #include "cli/materials/materials.h"
 
 #include "cli/base/command.h"
-#include "cli/base/verbs.h"
 
 static const abbe_verb verbs[] = {
 #define ABBE_MATERIALS_ROW(name, summary) {#name, summary, abbe_materials_##name},

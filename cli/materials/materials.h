@@ -3,10 +3,21 @@
  * A verb is one line of ABBE_MATERIALS_VERBS and one function in cli/materials/materials_NAME.c.
  * The program finds it by its name, lists it with its summary in `abbe materials --help`, and hands
  * it its arguments with argv[0] "abbe materials NAME". No verb holds logic that a library could
- * use.
+ * use. Internal to cli/materials/.
  */
 #ifndef ABBE_CLI_MATERIALS_MATERIALS_H
 #define ABBE_CLI_MATERIALS_MATERIALS_H
+
+#include "base/report.h"
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "spectral/dispersion/fit.h"
+#include "spectral/editing/table_edit.h"
+#include "spectral/materials/material.h"
+
+#include <cjson/cJSON.h>
+#include <stdbool.h>
+#include <stddef.h>
 
 /* X(name, summary): every verb NAME is `int abbe_materials_NAME(int argc, char **argv)`. */
 #define ABBE_MATERIALS_VERBS(X)                                                                    \
@@ -29,5 +40,95 @@
 #define ABBE_MATERIALS_DECLARE(name, summary) int abbe_materials_##name(int argc, char **argv);
 ABBE_MATERIALS_VERBS(ABBE_MATERIALS_DECLARE)
 #undef ABBE_MATERIALS_DECLARE
+
+/* The options that several verbs of `abbe materials` have, and wrong use. */
+
+/* Rows of an argp_option list that several verbs have, and their keys; a verb's own keys begin at
+ * ABBE_MATERIALS_KEY_OWN. */
+enum { ABBE_MATERIALS_KEY_TABLE = 256, ABBE_MATERIALS_KEY_JSON, ABBE_MATERIALS_KEY_OWN };
+#define ABBE_MATERIALS_TABLE_OPTION                                                                \
+  {                                                                                                \
+    "table", ABBE_MATERIALS_KEY_TABLE, "FILE", ABBE_ARGUMENT_READS,                                \
+        "a table file, or default or thesis; without it, default", 0                               \
+  }
+#define ABBE_MATERIALS_JSON_OPTION                                                                 \
+  { "json", ABBE_MATERIALS_KEY_JSON, NULL, 0, "as JSON, numbers in full", 0 }
+
+struct argp;
+/* abbe_arguments_parse for verbs whose arguments are no files. */
+void abbe_materials_parse(const struct argp *parser, int argc, char **argv, void *request);
+/* Prints "PROGRAM: sentence" and where help is, and ends the program with ABBE_EXIT_USAGE. */
+_Noreturn void abbe_materials_wrong_use(const char *program, const char *sentence);
+
+/* A material's numbers as the verbs of `abbe materials` print them, and as JSON. */
+
+/* The numbers of a material; NaN where its record does not vouch for the wavelengths. */
+abbe_dispersion_numbers abbe_materials_numbers(const abbe_material *material);
+/* value by format into text[size], or "-" for NaN, or "infinite"; returns what to print. */
+const char *abbe_materials_number(char *text, size_t size, const char *format, double value);
+
+/* An object for abbe_materials_print_json; want of memory at any step after this is remembered,
+ * and then nothing is printed: half an answer is none. */
+cJSON *abbe_materials_json(void);
+abbe_result abbe_materials_print_json(const cJSON *root, abbe_error *error);
+/* Adds text, or null where there is none. */
+void abbe_materials_add_text(cJSON *to, const char *key, const char *text);
+/* n_d, v_d, the indices at the lines, b_g and partial dispersions; null where the record does not
+ * vouch for them. */
+void abbe_materials_add_numbers(cJSON *to, const abbe_material *material);
+/* A few coefficients to twelve digits, for a record that people read: no index moves by 1e-10. */
+void abbe_materials_round(abbe_dispersion *dispersion);
+/* density_g_cm3, null where the record has none. */
+void abbe_materials_add_density(cJSON *to, const abbe_material *material);
+void abbe_materials_add_pair(cJSON *to, const char *key, double a, double b);
+
+/* What a conversion met on its way, told to a person or to a program. */
+
+/* One line a note to stderr; of each kind the first few, then how many more there are, unless all
+ * are wanted. */
+void abbe_materials_print_report(const char *program, const abbe_report *report, bool all);
+
+/* Adds "notes", a list of kind, line, name and text, and the number of each kind. */
+void abbe_materials_add_report(cJSON *to, const abbe_report *report);
+
+/* What the verbs that change a table share: open, say, write. */
+
+/* The options that all of them have. */
+enum { ABBE_CHANGE_KEY_DRY_RUN = ABBE_MATERIALS_KEY_OWN, ABBE_CHANGE_KEY_OWN };
+#define ABBE_CHANGE_OPTIONS                                                                        \
+  {"table", ABBE_MATERIALS_KEY_TABLE, "FILE", ABBE_ARGUMENT_READS, "the table file to change", 0}, \
+  {                                                                                                \
+    "dry-run", ABBE_CHANGE_KEY_DRY_RUN, NULL, 0,                                                   \
+        "show the change as a unified diff, and write nothing", 0                                  \
+  }
+
+typedef struct abbe_change {
+  const char *program, *table;
+  bool dry_run;
+  abbe_table_edit *edit;
+} abbe_change;
+
+/* Takes one of the two options; false for any other key. */
+bool abbe_change_option(abbe_change *change, int key, const char *arg);
+/* ABBE_UNSUPPORTED, with how to come by a copy, for a table that is compiled in. */
+abbe_result abbe_change_check_table(const char *table, abbe_error *error);
+/* Opens the table; ends the program with ABBE_EXIT_USAGE where --table was not given. */
+abbe_result abbe_change_open(abbe_change *change, abbe_error *error);
+/* Sets NAME's key as one argument "KEY=VALUE" says; a text key's value is taken as it stands, any
+ * other's as YAML. */
+abbe_result abbe_change_assign(abbe_table_edit *edit, const char *name, const char *assignment,
+                               abbe_error *error);
+/* Saves, and prints what (a sentence) and the numbers n_d and V_d of record `name` (or NULL) before
+ * and after; or prints the diff. Says it on stderr where the file is still no table for an older
+ * reason. Frees the edit. */
+int abbe_change_end(abbe_change *change, abbe_result result, const char *what, const char *name,
+                    abbe_error *error);
+
+/* The picture of a fit: the curve through its points, its residuals below. */
+
+/* Writes the picture to path, whose ending says .png or .svg; of is what was fitted. */
+abbe_result abbe_materials_fit_plot(const char *path, const char *of,
+                                    const abbe_index_points *points, const abbe_fit *fit,
+                                    abbe_error *error);
 
 #endif

@@ -1,6 +1,4 @@
 #include "cli/materials/materials.h"
-#include "cli/materials/materials_change.h"
-#include "cli/materials/materials_options.h"
 
 #include "base/file.h"
 #include "base/yaml/yaml_edit.h"

@@ -1,7 +1,5 @@
-#include "cli/materials/materials_change.h"
+#include "cli/materials/materials.h"
 
-#include "cli/materials/materials_options.h"
-#include "cli/materials/materials_values.h"
 #include "spectral/materials/material_table.h"
 
 #include <stdio.h>

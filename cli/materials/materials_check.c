@@ -1,7 +1,4 @@
 #include "cli/materials/materials.h"
-#include "cli/materials/materials_change.h"
-#include "cli/materials/materials_options.h"
-#include "cli/materials/materials_values.h"
 
 #include "spectral/editing/check.h"
 #include "spectral/editing/table_fix.h"

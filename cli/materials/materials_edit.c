@@ -1,7 +1,5 @@
 #include "cli/materials/edit/edit_screen.h"
 #include "cli/materials/materials.h"
-#include "cli/materials/materials_change.h"
-#include "cli/materials/materials_options.h"
 
 #include "spectral/formats/material_table_load.h"
 

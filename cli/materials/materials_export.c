@@ -1,14 +1,8 @@
 #include "cli/materials/materials.h"
-#include "cli/materials/materials_options.h"
-#include "cli/materials/materials_report.h"
-#include "cli/materials/materials_values.h"
 
 #include "base/file.h"
-#include "spectral/formats/agf_write.h"
-#include "spectral/formats/csv_write.h"
 #include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
-#include "spectral/formats/rii_write.h"
 #include "spectral/formats/shader_export.h"
 #include "spectral/store/material_store_write.h"
 

@@ -1,7 +1,4 @@
 #include "cli/materials/materials.h"
-#include "cli/materials/materials_fit_plot.h"
-#include "cli/materials/materials_options.h"
-#include "cli/materials/materials_values.h"
 
 #include "base/number.h"
 #include "spectral/dispersion/fit.h"

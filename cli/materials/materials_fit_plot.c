@@ -1,4 +1,4 @@
-#include "cli/materials/materials_fit_plot.h"
+#include "cli/materials/materials.h"
 
 #include "colorimetry/plot/chart.h"
 

@@ -1,6 +1,4 @@
 #include "cli/materials/materials.h"
-#include "cli/materials/materials_options.h"
-#include "cli/materials/materials_values.h"
 
 #include "spectral/editing/check.h"
 #include "spectral/formats/material_table_load.h"

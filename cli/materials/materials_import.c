@@ -1,7 +1,4 @@
 #include "cli/materials/materials.h"
-#include "cli/materials/materials_options.h"
-#include "cli/materials/materials_report.h"
-#include "cli/materials/materials_values.h"
 
 #include "base/file.h"
 #include "spectral/formats/import_batch.h"

@@ -1,6 +1,4 @@
 #include "cli/materials/materials.h"
-#include "cli/materials/materials_options.h"
-#include "cli/materials/materials_values.h"
 
 #include "spectral/formats/material_table_load.h"
 #include "spectral/materials/material_numbers.h"

@@ -1,4 +1,4 @@
-#include "cli/materials/materials_options.h"
+#include "cli/materials/materials.h"
 
 #include <argp.h>
 #include <stdio.h>

@@ -1,5 +1,4 @@
 #include "cli/materials/materials.h"
-#include "cli/materials/materials_options.h"
 
 #include "colorimetry/plot/material_chart.h"
 #include "spectral/formats/material_table_load.h"

@@ -1,6 +1,4 @@
 #include "cli/materials/materials.h"
-#include "cli/materials/materials_change.h"
-#include "cli/materials/materials_options.h"
 
 #include <argp.h>
 #include <stdio.h>

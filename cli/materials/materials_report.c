@@ -1,4 +1,4 @@
-#include "cli/materials/materials_report.h"
+#include "cli/materials/materials.h"
 
 #include <stdio.h>
 

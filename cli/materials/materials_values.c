@@ -1,4 +1,4 @@
-#include "cli/materials/materials_values.h"
+#include "cli/materials/materials.h"
 
 #include "cli/base/command.h"
 #include "spectral/materials/material_numbers.h"

@@ -1,5 +1,5 @@
 /* frame_series.h: pictures one after another: which frames, when each of them is, what moves in
- * them, what their files are called, and the PNG that moves. It draws nothing.
+ * them, what their files are called, and the PNG that moves. It draws nothing. Internal to cli/.
  */
 #ifndef ABBE_CLI_OPTIONS_FRAME_SERIES_H
 #define ABBE_CLI_OPTIONS_FRAME_SERIES_H

@@ -1,4 +1,5 @@
 /* map_options.h: what commands that make a receiver map ask of it: whose, where to, laid out how.
+ * Internal to cli/.
  */
 #ifndef ABBE_CLI_OPTIONS_MAP_OPTIONS_H
 #define ABBE_CLI_OPTIONS_MAP_OPTIONS_H

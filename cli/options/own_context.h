@@ -1,5 +1,5 @@
 /* own_context.h: the context that a command draws with, and a word where a GPU that is there is not
- * taken for it.
+ * taken for it. Internal to cli/.
  */
 #ifndef ABBE_CLI_OPTIONS_OWN_CONTEXT_H
 #define ABBE_CLI_OPTIONS_OWN_CONTEXT_H

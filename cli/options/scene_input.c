@@ -6,10 +6,9 @@
 #include "base/number.h"
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
-#include "cli/base/shipped.h"
 #include "scenes/check/scene_doubts.h"
 #include "scenes/import/scene_file.h"
-#include "scenes/refractor_tilt.h"
+#include "scenes/object_motion.h"
 #include "scenes/view/coverage.h"
 
 #include <cjson/cJSON.h>

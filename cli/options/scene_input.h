@@ -1,6 +1,6 @@
 /* scene_input.h: the scene that a command works on: found and read, and what is to be said of its
  * objects to people on stderr, in a table, and as JSON. It judges nothing; what was mended stands
- * with the objects.
+ * with the objects. Internal to cli/.
  */
 #ifndef ABBE_CLI_OPTIONS_SCENE_INPUT_H
 #define ABBE_CLI_OPTIONS_SCENE_INPUT_H

@@ -1,5 +1,5 @@
 /* screen_options.h: how a picture is shown, for every command that writes a PNG: --ocio, --display,
- * --view, --exposure, --gamut, --white and --bits.
+ * --view, --exposure, --gamut, --white and --bits. Internal to cli/.
  */
 #ifndef ABBE_CLI_OPTIONS_SCREEN_OPTIONS_H
 #define ABBE_CLI_OPTIONS_SCREEN_OPTIONS_H

@@ -1,4 +1,5 @@
 /* spectral_options.h: --observer, --lit-by and --illuminant: how a spectral picture is looked at.
+ * Internal to cli/.
  */
 #ifndef ABBE_CLI_OPTIONS_SPECTRAL_OPTIONS_H
 #define ABBE_CLI_OPTIONS_SPECTRAL_OPTIONS_H

@@ -1,5 +1,5 @@
 /* work_options.h: what commands that follow many rays are asked alike: which wavelengths, random
- * numbers and threads, and that they go on from a checkpoint.
+ * numbers and threads, and that they go on from a checkpoint. Internal to cli/.
  */
 #ifndef ABBE_CLI_OPTIONS_WORK_OPTIONS_H
 #define ABBE_CLI_OPTIONS_WORK_OPTIONS_H

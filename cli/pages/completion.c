@@ -1,7 +1,7 @@
-#include "cli/pages/completion.h"
+#include "cli/pages/pages.h"
 
 #include "cli/base/arguments.h"
-#include "cli/base/verbs.h"
+#include "cli/base/command.h"
 
 #include <stdbool.h>
 #include <string.h>

@@ -1,13 +1,274 @@
 #include "cli/pages/pages.h"
 
 #include "base/file.h"
-#include "cli/pages/completion.h"
-#include "cli/pages/man_page.h"
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
 
+#include <ctype.h>
 #include <limits.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+
+/* A manual page in roff, from a command's option table. */
+
+/* ---- roff ---- */
+
+/* What roff would obey, as what it shows. */
+static void put(FILE *out, const char *text, size_t length) {
+  for (size_t i = 0; i < length; i++) {
+    const char c = text[i];
+    if (i == 0 && (c == '.' || c == '\'')) fputs("\\&", out);
+    if (c == '\\')
+      fputs("\\e", out);
+    else if (c == '-')
+      fputs("\\-", out);
+    else if (c == '~' || c == '^' || c == '`')
+      fprintf(out, "\\(%s", c == '~' ? "ti" : c == '^' ? "ha" : "ga");
+    else
+      putc(c, out);
+    /* A list may break behind its commas. */
+    if (c == ',' && i + 1 < length && text[i + 1] != ' ') fputs("\\:", out);
+  }
+}
+
+static void put_all(FILE *out, const char *text) {
+  put(out, text, strlen(text));
+}
+
+static void put_upper(FILE *out, const char *text) {
+  for (; *text != '\0'; text++)
+    if (*text == '-' || *text == ' ')
+      fputs("\\-", out);
+    else
+      putc(toupper((unsigned char)*text), out);
+}
+
+/* "abbe gem report" as the page's name, abbe-gem-report. */
+static void put_name(FILE *out, const char *program) {
+  for (; *program != '\0'; program++)
+    if (*program == ' ' || *program == '-')
+      fputs("\\-", out);
+    else
+      putc(*program, out);
+}
+
+static void begin(FILE *out, const char *program, const char *summary, const char *version) {
+  fputs(".TH ", out);
+  put_upper(out, program);
+  fprintf(out, " 1 \"\" \"abbe %s\" \"Abbe\"\n.ad l\n.SH NAME\n", version);
+  put_name(out, program);
+  fputs(" \\- ", out);
+  put_all(out, summary);
+  putc('\n', out);
+}
+
+static void end(FILE *out, const char *see) {
+  fputs(".SH EXIT STATUS\n0 done, 1 failed, 2 used wrongly, 3 out of tolerance.\n.SH SEE ALSO\n",
+        out);
+  fprintf(out, ".BR %s (1)\n", see);
+}
+
+/* ---- texts ---- */
+
+/* One line of a text: those that are indented are shown as they are. */
+static void put_line(FILE *out, const char *line, size_t length, bool *example) {
+  const bool shown = length > 2 && strncmp(line, "  ", 2) == 0;
+  const bool heading = length == strlen("Examples:") && strncmp(line, "Examples:", length) == 0;
+  if (*example && !shown) fputs(".EE\n.RE\n", out);
+  if (!*example && shown) fputs(".RS\n.EX\n", out);
+  *example = shown;
+  if (length == 0)
+    fputs(".PP\n", out);
+  else if (heading)
+    fputs(".SH EXAMPLES\n", out);
+  else {
+    put(out, line, length);
+    putc('\n', out);
+  }
+}
+
+static bool is_blank(const char *text, size_t length) {
+  for (size_t i = 0; i < length; i++)
+    if (!isspace((unsigned char)text[i])) return false;
+  return true;
+}
+
+static void put_text(FILE *out, const char *text, size_t length) {
+  bool example = false, skip = true;
+  for (size_t at = 0; at < length;) {
+    const char *stop = memchr(text + at, '\n', length - at);
+    const size_t count = stop != NULL ? (size_t)(stop - (text + at)) : length - at;
+    /* no empty paragraphs at the ends or before a heading */
+    const char *after = text + at + count + 1;
+    const bool drop = count == 0 && (skip || at + 1 >= length || is_blank(after, length - at - 1) ||
+                                     strncmp(after, "Examples:", strlen("Examples:")) == 0);
+    if (!drop) put_line(out, text + at, count, &example);
+    skip = count == 0 || strncmp(text + at, "Examples:", strlen("Examples:")) == 0;
+    at += count + 1;
+  }
+  if (example) fputs(".EE\n.RE\n", out);
+}
+
+/* ---- options ---- */
+
+static void put_argument(FILE *out, const struct argp_option *o, const char *between) {
+  if (o->arg == NULL) return;
+  const bool optional = o->flags & OPTION_ARG_OPTIONAL;
+  fprintf(out, "%s%s\\fI", optional ? "[" : "", between);
+  put_all(out, o->arg);
+  fprintf(out, "\\fR%s", optional ? "]" : "");
+}
+
+static void put_option(FILE *out, const struct argp_option *o) {
+  const bool is_short = o->key > ' ' && o->key < 0x7f;
+  fputs(".TP\n", out);
+  if (is_short) fprintf(out, "\\fB\\-%c\\fR", o->key);
+  if (is_short && o->name == NULL) put_argument(out, o, " ");
+  if (o->name != NULL) {
+    fprintf(out, "%s\\fB\\-\\-", is_short ? ", " : "");
+    put_all(out, o->name);
+    fputs("\\fR", out);
+    put_argument(out, o, "=");
+  }
+  putc('\n', out);
+  if (o->doc != NULL) put_text(out, o->doc, strlen(o->doc));
+}
+
+static void put_options(FILE *out, const struct argp *argp) {
+  for (const struct argp_option *o = argp->options; o && (o->name || o->key || o->doc); o++)
+    if ((o->name != NULL || o->key != 0) && !(o->flags & (OPTION_HIDDEN | OPTION_DOC)))
+      put_option(out, o);
+  for (const struct argp_child *c = argp->children; c != NULL && c->argp != NULL; c++) {
+    if (c->header != NULL && c->header[0] != '\0') {
+      fputs(".SS ", out);
+      put_all(out, c->header);
+      putc('\n', out);
+    }
+    put_options(out, c->argp);
+  }
+}
+
+static void put_synopsis(FILE *out, const char *program, const char *arguments) {
+  const char *rest = arguments == NULL ? "" : arguments;
+  fputs(".SH SYNOPSIS\n", out);
+  for (bool first = true; first || *rest != '\0'; first = false) {
+    const size_t length = strcspn(rest, "\n");
+    fprintf(out, "%s.B %s\n[\\fIOPTION\\fR…] ", first ? "" : ".br\n", program);
+    put(out, rest, length);
+    putc('\n', out);
+    rest += length + (rest[length] == '\n');
+  }
+}
+
+static void put_verbs(FILE *out, const char *program, const abbe_verbs *verbs) {
+  fprintf(out, ".SH SYNOPSIS\n.B %s\n\\fIVERB\\fR [\\fIOPTION\\fR…] [\\fINAME\\fR…]\n", program);
+  fputs(".SH VERBS\n", out);
+  for (size_t i = 0; i < verbs->count; i++) {
+    fputs(".TP\n\\fB", out);
+    put_name(out, program);
+    fprintf(out, "\\-%s\\fR(1)\n", verbs->verb[i].name);
+    put_all(out, verbs->verb[i].summary);
+    putc('\n', out);
+  }
+  fputs(".SH EXAMPLES\n.RS\n.EX\n", out);
+  for (size_t i = 0; i < verbs->examples; i++) {
+    fprintf(out, "%s ", program);
+    put_all(out, verbs->example[i]);
+    putc('\n', out);
+  }
+  fputs(".EE\n.RE\n", out);
+}
+
+/* The page of a command or verb; of a command with verbs, the list of them. version: "0.1.0". */
+static void man_page_write(FILE *out, const abbe_option_table *table, const char *version) {
+  begin(out, table->program, table->summary, version);
+  if (table->verbs != NULL) {
+    put_verbs(out, table->program, table->verbs);
+    end(out, "abbe");
+    return;
+  }
+  const char *doc = table->argp->doc == NULL ? "" : table->argp->doc;
+  const char *after = strchr(doc, '\v');
+  put_synopsis(out, table->program, table->argp->args_doc);
+  fputs(".SH DESCRIPTION\n", out);
+  put_text(out, doc, after != NULL ? (size_t)(after - doc) : strlen(doc));
+  fputs(".SH OPTIONS\n", out);
+  put_options(out, table->argp);
+  fputs(".TP\n\\fB\\-?\\fR, \\fB\\-\\-help\\fR\nthe options, with examples\n", out);
+  fputs(".TP\n\\fB\\-\\-usage\\fR\nthe options in short\n", out);
+  fputs(".TP\n\\fB\\-V\\fR, \\fB\\-\\-version\\fR\nwhich release this is\n", out);
+  if (after != NULL && strncmp(after + 1, "Examples:", strlen("Examples:")) != 0)
+    fputs(".SH NOTES\n", out);
+  if (after != NULL) put_text(out, after + 1, strlen(after + 1));
+  end(out, "abbe");
+}
+
+/* ---- the program's page ---- */
+
+/* The program's own page, in parts: what comes before the commands, one of them, and the rest. */
+static void man_page_begin(FILE *out, const char *version) {
+  begin(out, "abbe", "spectral dispersion caustics", version);
+  fputs(".SH SYNOPSIS\n.B abbe\n\\fICOMMAND\\fR [\\fIOPTION\\fR…] [\\fIFILE\\fR…]\n", out);
+  fputs(".SH DESCRIPTION\nAbbe renders what light does in gems, prisms and glass, traces a "
+        "reference with standard errors, compares the two, and keeps tables of materials and "
+        "designs of gems.\n.SH COMMANDS\n",
+        out);
+}
+
+static void man_page_command(FILE *out, const char *name, const char *summary) {
+  fprintf(out, ".TP\n\\fBabbe\\-%s\\fR(1)\n", name);
+  put_all(out, summary);
+  putc('\n', out);
+}
+
+static void man_page_end(FILE *out) {
+  fputs(".SH EXAMPLES\n", out);
+  put_text(out, ABBE_FIRST_STEPS, strlen(ABBE_FIRST_STEPS));
+  fputs("Scenes that are not where they are said to be are taken from those that came with the "
+        "program.\n",
+        out);
+  end(out, "abbe-render");
+}
+
+/* abbe-mpi's, whose options are another page's. */
+static void man_page_ranks(FILE *out, const char *version) {
+  begin(out, "abbe-mpi", "the work of one command by the ranks of an MPI job", version);
+  fputs(".SH SYNOPSIS\n.B mpirun\n[\\fIOPTION\\fR…]\n.B abbe\\-mpi\n\\fICOMMAND\\fR "
+        "[\\fIOPTION\\fR…] \\fIFILE\\fR\n",
+        out);
+  fputs(".SH DESCRIPTION\nRanks share the work of one command. What comes of it is that of one "
+        "process, whatever the number of ranks. Rank 0 alone writes it and says how far the work "
+        "is. A rank that is killed ends the job and costs what it had not written; the same "
+        "command goes on.\n",
+        out);
+  fputs(
+      ".SH COMMANDS\n"
+      ".TP\n.B trace\nRanks trace passes; the sums are put together exactly, to the last bit. "
+      "With\n.B \\-\\-frames\nthey trace frames. Options are those of\n.BR abbe\\-trace (1),\nbut\n"
+      ".BR \\-\\-passes ,\n.B \\-\\-merge\nand\n.BR \\-\\-rates .\nEach rank keeps a checkpoint, "
+      "named by its number; with\n.B \\-\\-resume\na job that was ended goes on from them.\n"
+      ".TP\n.B render\nRanks draw frames of\n.B \\-\\-turntable\nor\n.BR \\-\\-frames ;\nwith\n"
+      ".B \\-\\-resume\nthose alone that are not there. Options are those of\n"
+      ".BR abbe\\-render (1),\nbut\n.BR \\-\\-part ,\n.B \\-\\-merge\nand\n.BR "
+      "\\-\\-budget\\-ms .\n"
+      ".TP\n.B sweep\nRank 0 traces the reference, then ranks measure settings, each into a table "
+      "named by its number, until all are in one. Times are each rank's own: give each a machine "
+      "of one kind that does nothing else. Options are those of\n.BR abbe\\-sweep (1),\nbut\n"
+      ".BR \\-\\-part ,\n.BR \\-\\-list ,\n.BR \\-\\-scaling ,\n.BR \\-\\-estimators ,\n"
+      ".B \\-\\-processes\nand\n.BR \\-\\-trace\\-only .\n"
+      ".TP\n.B gem optimise\nRanks judge pairs of angles, kept beside the file of\n"
+      ".BR \\-\\-pairs ,\n.B \\-o\nor\n.BR \\-\\-plot ,\nof which one must be given. Options are "
+      "those of\n.BR abbe\\-gem\\-optimise (1),\nbut\n.B \\-\\-part\nand\n.BR \\-\\-merge .\n",
+      out);
+  fputs(".SH EXAMPLES\n", out);
+  static const char example[] =
+      "  mpirun -n 4 abbe-mpi trace scenes/gem.yaml -o gem.exr --spp 256 --resume\n"
+      "  mpirun -n 4 abbe-mpi render scenes/stone.yaml --turntable 72 --png stone.png\n"
+      "  mpirun -n 4 abbe-mpi gem optimise pear.asc --material ruby --grid 201x201 -o best.asc\n";
+  put_text(out, example, strlen(example));
+  end(out, "abbe-trace");
+}
 
 enum { MOST = 64 };
 
@@ -45,7 +306,7 @@ static void write_page(void *user, const abbe_option_table *table) {
     if (*c == ' ') *c = '-';
   w->result = open_page(w, name, &file);
   if (w->result != ABBE_OK) return;
-  abbe_man_page_write(file.stream, table, w->version);
+  man_page_write(file.stream, table, w->version);
   w->result = abbe_file_writer_commit(&file, w->error);
 }
 
@@ -53,10 +314,10 @@ static void write_own_page(work *w) {
   abbe_file_writer file = {0};
   if (w->result == ABBE_OK) w->result = open_page(w, "abbe.1", &file);
   if (w->result != ABBE_OK) return;
-  abbe_man_page_begin(file.stream, w->version);
+  man_page_begin(file.stream, w->version);
   for (size_t i = 0; i < w->count; i++)
-    abbe_man_page_command(file.stream, w->command[i].name, w->command[i].summary);
-  abbe_man_page_end(file.stream);
+    man_page_command(file.stream, w->command[i].name, w->command[i].summary);
+  man_page_end(file.stream);
   w->result = abbe_file_writer_commit(&file, w->error);
 }
 
@@ -64,7 +325,7 @@ static void write_ranks_page(work *w) {
   abbe_file_writer file = {0};
   if (w->result == ABBE_OK) w->result = open_page(w, "abbe-mpi.1", &file);
   if (w->result != ABBE_OK) return;
-  abbe_man_page_ranks(file.stream, w->version);
+  man_page_ranks(file.stream, w->version);
   w->result = abbe_file_writer_commit(&file, w->error);
 }
 

@@ -1,4 +1,5 @@
-/* error_options.h: a picture's own error: --error-bars and what is written of it. */
+/* error_options.h: a picture's own error: --error-bars and what is written of it.
+ * Internal to cli/render/. */
 #ifndef ABBE_CLI_RENDER_ERROR_OPTIONS_H
 #define ABBE_CLI_RENDER_ERROR_OPTIONS_H
 

@@ -1,5 +1,5 @@
 /* preset_options.h: a picture's tool and settings by name, by error or by time, as options and in
- * words. */
+ * words. Internal to cli/render/. */
 #ifndef ABBE_CLI_RENDER_PRESET_OPTIONS_H
 #define ABBE_CLI_RENDER_PRESET_OPTIONS_H
 

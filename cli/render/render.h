@@ -1,4 +1,5 @@
-/* render.h: `abbe render`, and its frames by several processes, as cli/mpi starts them. */
+/* render.h: `abbe render`, and its frames by several processes, as cli/mpi starts them.
+ * Internal to cli/. */
 #ifndef ABBE_CLI_RENDER_RENDER_H
 #define ABBE_CLI_RENDER_RENDER_H
 

@@ -1,4 +1,5 @@
-/* render_check.h: what of `abbe render` tells a picture's error by traced passes. */
+/* render_check.h: what of `abbe render` tells a picture's error by traced passes.
+ * Internal to cli/render/. */
 #ifndef ABBE_CLI_RENDER_RENDER_CHECK_H
 #define ABBE_CLI_RENDER_RENDER_CHECK_H
 

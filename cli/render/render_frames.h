@@ -2,7 +2,7 @@
  *
  * A turntable's camera goes around its target about its own upward direction; nothing else moves,
  * so lights' passes are drawn once. Over time the scene is read again for each frame, and the
- * renderer finds out what has moved. */
+ * renderer finds out what has moved. Internal to cli/render/. */
 #ifndef ABBE_CLI_RENDER_RENDER_FRAMES_H
 #define ABBE_CLI_RENDER_RENDER_FRAMES_H
 

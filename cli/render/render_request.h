@@ -1,4 +1,5 @@
-/* render_request.h: all that `abbe render` is asked, and what it writes of a picture. */
+/* render_request.h: all that `abbe render` is asked, and what it writes of a picture.
+ * Internal to cli/render/. */
 #ifndef ABBE_CLI_RENDER_RENDER_REQUEST_H
 #define ABBE_CLI_RENDER_RENDER_REQUEST_H
 

@@ -1,4 +1,5 @@
-/* traced_picture.h: the picture of `abbe render` where the tracer serves the request best. */
+/* traced_picture.h: the picture of `abbe render` where the tracer serves the request best.
+ * Internal to cli/render/. */
 #ifndef ABBE_CLI_RENDER_TRACED_PICTURE_H
 #define ABBE_CLI_RENDER_TRACED_PICTURE_H
 

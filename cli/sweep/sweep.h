@@ -1,4 +1,5 @@
-/* sweep.h: `abbe sweep`, and one sweep by several processes, as cli/mpi starts them. */
+/* sweep.h: `abbe sweep`, and one sweep by several processes, as cli/mpi starts them.
+ * Internal to cli/. */
 #ifndef ABBE_CLI_SWEEP_SWEEP_H
 #define ABBE_CLI_SWEEP_SWEEP_H
 

@@ -1,4 +1,4 @@
-/* sweep_options.h: what `abbe sweep` is asked. */
+/* sweep_options.h: what `abbe sweep` is asked. Internal to cli/sweep/. */
 #ifndef ABBE_CLI_SWEEP_SWEEP_OPTIONS_H
 #define ABBE_CLI_SWEEP_SWEEP_OPTIONS_H
 

@@ -1,4 +1,4 @@
-/* sweep_report.h: sweeps for people: the Pareto front as text and JSON. */
+/* sweep_report.h: sweeps for people: the Pareto front as text and JSON. Internal to cli/sweep/. */
 #ifndef ABBE_CLI_SWEEP_SWEEP_REPORT_H
 #define ABBE_CLI_SWEEP_SWEEP_REPORT_H
 

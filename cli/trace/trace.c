@@ -1,4 +1,3 @@
-#include "cli/trace/trace.h"
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/options/map_options.h"
@@ -6,9 +5,7 @@
 #include "cli/options/screen_options.h"
 #include "cli/options/spectral_options.h"
 #include "cli/trace/trace.h"
-#include "cli/trace/trace_frames.h"
-#include "cli/trace/trace_passes.h"
-#include "cli/trace/trace_results.h"
+#include "cli/trace/trace_request.h"
 
 #include "scenes/import/scene_file.h"
 #include "validation/sweep/matched_physics.h"

@@ -1,4 +1,5 @@
-/* trace.h: `abbe trace`, and the same by several processes, as cli/mpi starts them. */
+/* trace.h: `abbe trace`, and the same by several processes, as cli/mpi starts them.
+ * Internal to cli/. */
 #ifndef ABBE_CLI_TRACE_TRACE_H
 #define ABBE_CLI_TRACE_TRACE_H
 

@@ -1,4 +1,4 @@
-#include "cli/trace/trace_frames.h"
+#include "cli/trace/trace_request.h"
 
 #include <stdio.h>
 #include <stdlib.h>

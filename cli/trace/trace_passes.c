@@ -1,7 +1,6 @@
-#include "cli/trace/trace_passes.h"
+#include "cli/trace/trace_request.h"
 
 #include "cli/base/progress.h"
-#include "cli/trace/trace_results.h"
 
 #include "validation/tracer/checkpoint.h"
 

@@ -1,4 +1,4 @@
-/* trace_request.h: all that `abbe trace` is asked. */
+/* trace_request.h: all that `abbe trace` is asked. Internal to cli/trace/. */
 #ifndef ABBE_CLI_TRACE_TRACE_REQUEST_H
 #define ABBE_CLI_TRACE_TRACE_REQUEST_H
 
@@ -7,9 +7,11 @@
 #include "cli/options/scene_input.h"
 #include "cli/options/screen_options.h"
 #include "cli/options/work_options.h"
-
 #include "validation/tracer/ranked_run.h"
+#include "validation/tracer/trace_run.h"
 #include "validation/tracer/tracer.h"
+
+#include <argp.h>
 
 typedef struct abbe_trace_request {
   const char *program, *scene, *materials;
@@ -34,5 +36,41 @@ typedef struct abbe_trace_request {
   const abbe_scene *traced; /* while it is */
   size_t frame;             /* of the series, while it is traced */
 } abbe_trace_request;
+
+/* Frames of `abbe trace --frames A:B`, and the PNG that moves. */
+
+/* --frames and what goes with it. Its input is the request's abbe_frame_series. */
+extern const struct argp abbe_trace_frames_argp;
+
+/* Ends the program where options of the request do not go together with frames, or without. */
+void abbe_trace_frames_check(const abbe_trace_request *q, struct argp_state *state);
+
+typedef abbe_result (*abbe_trace_frame)(abbe_trace_request *q, const abbe_scene *scene,
+                                        abbe_error *error);
+
+/* Each frame of the request's series as a request of its own, whose files are numbered, by
+ * trace_one on the scene at its time; then FILE.png of all. What is there is left as it is where
+ * the request resumes. */
+abbe_result abbe_trace_frames(const abbe_trace_request *q, const abbe_scene *scene,
+                              abbe_trace_frame trace_one, abbe_error *error);
+
+/* The passes of `abbe trace`, by this process alone or by ranks together. */
+
+/* With a bar. ABBE_CANCELLED where the user stopped it: what is done is to be saved all the same.
+ */
+abbe_result abbe_trace_passes(const abbe_trace_request *q, const abbe_trace_run_desc *run,
+                              abbe_tracer *tracer, abbe_error *error);
+
+/* All of a trace by the request's ranks, once each has made its tracer, or could not. */
+abbe_result abbe_trace_together(abbe_trace_request *q, abbe_result made, abbe_tracer *tracer,
+                                abbe_error *error);
+
+/* What `abbe trace` writes of a trace, and says of it. */
+
+/* All files that are asked for; notes the time of the filter in the request. */
+abbe_result abbe_trace_write(abbe_trace_request *q, const abbe_tracer *tracer, abbe_error *error);
+
+/* A line on stderr, unless it is to be quiet. */
+void abbe_trace_summarise(const abbe_trace_request *q, const abbe_tracer *tracer);
 
 #endif

@@ -1,4 +1,4 @@
-#include "cli/trace/trace_results.h"
+#include "cli/trace/trace_request.h"
 
 #include "cli/base/command.h"
 

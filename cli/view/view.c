@@ -1,13 +1,12 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
-#include "cli/base/shipped.h"
 #include "cli/options/scene_input.h"
 #include "gl/plan/facts/render_desc.h"
 
 #ifdef ABBE_HAVE_VIEW
 #include "base/file.h"
+#include "cli/view/view_hidden.h"
 #include "cli/view/view_keep.h"
-#include "cli/view/view_script.h"
 #include "cli/view/view_serve.h"
 #include "cli/view/view_window.h"
 #include "scenes/volume/volume_file.h"

@@ -1,11 +1,7 @@
 #include "cli/view/view_app.h"
 
 #include "base/clock.h"
-#include "cli/view/view_asks.h"
 #include "cli/view/view_keep.h"
-#include "cli/view/view_marks.h"
-#include "cli/view/view_panel.h"
-#include "cli/view/view_turn.h"
 #include "colorimetry/rgb_space.h"
 
 #include <math.h>

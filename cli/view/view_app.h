@@ -2,7 +2,7 @@
  * picture drawn into the current context's framebuffer.
  *
  * It owns no window: cli/view/view_window.h and cli/view/view_script.h lend it a context and
- * events.
+ * events. Internal to cli/view/.
  */
 #ifndef ABBE_CLI_VIEW_VIEW_APP_H
 #define ABBE_CLI_VIEW_VIEW_APP_H
@@ -39,5 +39,42 @@ bool abbe_view_app_stopped(const abbe_view_session *app);
 bool abbe_view_app_painted(const abbe_view_session *app);
 /* Everything that was asked for is drawn. */
 bool abbe_view_app_rests(abbe_view_session *app, double now_s);
+
+/* What a viewer asks of its last picture at rest: the spectral map, and where the picked pixel's
+ * light has come in, and its spectrum.
+ *
+ * Each is asked for once, of the worker that has drawn the picture. */
+
+/* The next question, into the request; false: there is none. */
+bool abbe_view_asks_want(const abbe_view_session *session, abbe_view_request *out);
+/* The request has been given to a worker. */
+void abbe_view_asks_note(abbe_view_session *session, const abbe_view_request *request);
+/* Takes over what the worker has found. */
+void abbe_view_asks_take(abbe_view_session *session, abbe_view_result *result);
+/* The session's spectrum, if there is one, is that of the picked pixel as it is seen now. */
+bool abbe_view_asks_has_spot(const abbe_view_session *session);
+
+/* What is drawn over the picture: handles, the picked pixel, and what feeds that. */
+
+/* Between abbe_ui_begin and the panel. */
+void abbe_view_marks_draw(const abbe_view_session *session);
+
+/* The panel beside the picture: scene, settings, errors, plan, ledger, a pixel. */
+
+/* Within an open panel. What it changes goes into the session's state. */
+void abbe_view_panel_draw(abbe_view_session *session, double now_s);
+
+/* The turntable of the viewer: pictures from all around, kept as PNG, and one PNG that moves. */
+
+enum { ABBE_VIEW_TURN_FRAMES = 36 };
+#define ABBE_VIEW_TURN_PER_SECOND 12.0
+
+/* Begins: KEEP-turn-0001.png and so on, and KEEP-turn.png at the end; a note says how far it is. A
+ * change of anything ends it. ABBE_INVALID_ARGUMENT where no picture has come to rest. */
+abbe_result abbe_view_turn_begin(abbe_view_session *session, abbe_error *error);
+/* The next frame as a request; false where none is wanted. */
+bool abbe_view_turn_wants(const abbe_view_session *session, abbe_view_request *out);
+/* Keeps a frame that was asked for. */
+void abbe_view_turn_take(abbe_view_session *session, const abbe_view_result *result);
 
 #endif

@@ -1,4 +1,4 @@
-#include "cli/view/view_guard.h"
+#include "cli/view/view_serve.h"
 
 #include "base/clock.h"
 

@@ -1,5 +1,5 @@
 /* view_hidden.h: the viewer in a window that nobody sees: EGL without a surface, and a picture of
- * it that can be read. Scripts lead it, and the page that is served. */
+ * it that can be read. Scripts lead it, and the page that is served. Internal to cli/view/. */
 #ifndef ABBE_CLI_VIEW_VIEW_HIDDEN_H
 #define ABBE_CLI_VIEW_VIEW_HIDDEN_H
 
@@ -30,5 +30,14 @@ void abbe_view_hidden_frame(abbe_view_hidden *hidden);
 void abbe_view_hidden_sleep(abbe_view_hidden *hidden, double most_s);
 /* What it looks like: R, G, B a byte each, rows downward, malloc'd; NULL without memory. */
 unsigned char *abbe_view_hidden_read(abbe_view_hidden *hidden);
+
+/* The viewer led by a script, without a display: events, waiting, pictures of the whole window,
+ * and assertions. docs/view.md has the commands. */
+
+/* Runs the script in a window of that size that nobody sees. Errors name file, line and command:
+ * ABBE_PARSE for what is no command, ABBE_TOLERANCE for what was asserted and is not so; and those
+ * of abbe_context_make, abbe_view_app_begin. */
+abbe_result abbe_view_script_run(const char *path, const abbe_view_app_desc *desc, size_t width,
+                                 size_t height, abbe_error *error);
 
 #endif

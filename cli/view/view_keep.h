@@ -1,5 +1,5 @@
 /* view_keep.h: what is seen, kept: EXR, PNG, the scene with its changes, and the command line that
- * repeats the picture. */
+ * repeats the picture. Internal to cli/view/. */
 #ifndef ABBE_CLI_VIEW_VIEW_KEEP_H
 #define ABBE_CLI_VIEW_VIEW_KEEP_H
 

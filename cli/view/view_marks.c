@@ -1,4 +1,4 @@
-#include "cli/view/view_marks.h"
+#include "cli/view/view_app.h"
 
 #include "cli/view/state/view_camera.h"
 

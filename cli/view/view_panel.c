@@ -1,10 +1,9 @@
-#include "cli/view/view_panel.h"
+#include "cli/view/view_app.h"
 
 #include "base/file.h"
 #include "base/number.h"
 #include "base/yaml/yaml_quote.h"
 #include "cli/view/view_keep.h"
-#include "cli/view/view_turn.h"
 #include "cli/view/widgets/view_chart.h"
 
 #include <math.h>

@@ -1,9 +1,8 @@
-#include "cli/view/view_script.h"
+#include "cli/view/view_hidden.h"
 
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/number.h"
-#include "cli/view/view_hidden.h"
 #include "cli/view/view_keep.h"
 #include "colorimetry/image/png_file.h"
 

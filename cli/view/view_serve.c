@@ -4,7 +4,6 @@
 
 #include "base/clock.h"
 #include "cli/view/state/view_events.h"
-#include "cli/view/view_guard.h"
 #include "cli/view/view_hidden.h"
 
 #include <arpa/inet.h>

@@ -1,6 +1,6 @@
 /* view_session.h: what a running viewer holds: its state, its pictures, what is known of them.
  *
- * cli/view/view_app.h leads it; panel and scripts look into it.
+ * cli/view/view_app.h leads it; panel and scripts look into it. Internal to cli/view/.
  */
 #ifndef ABBE_CLI_VIEW_VIEW_SESSION_H
 #define ABBE_CLI_VIEW_VIEW_SESSION_H

@@ -1,4 +1,4 @@
-#include "cli/view/view_turn.h"
+#include "cli/view/view_app.h"
 
 #include "cli/view/view_keep.h"
 #include "colorimetry/image/animated_png.h"

@@ -1,4 +1,4 @@
-/* view_window.h: the viewer in a window, by GLFW. */
+/* view_window.h: the viewer in a window, by GLFW. Internal to cli/view/. */
 #ifndef ABBE_CLI_VIEW_VIEW_WINDOW_H
 #define ABBE_CLI_VIEW_VIEW_WINDOW_H
 

@@ -2,7 +2,7 @@
  *
  * Only what needs less than nothing of a primary is changed (compression also changes what is near
  * that): brightness above a display's white is its view's matter. None depends on exposure. XYZ is
- * relative to D65.
+ * relative to D65. Internal to colorimetry/.
  */
 #ifndef ABBE_COLORIMETRY_GAMUT_GAMUT_MAP_H
 #define ABBE_COLORIMETRY_GAMUT_GAMUT_MAP_H

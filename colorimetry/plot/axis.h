@@ -1,6 +1,6 @@
 /* axis.h: the axis of a chart: where a value lies on it, and which ticks it shows.
  *
- * Linear or logarithmic, in either direction. It draws nothing.
+ * Linear or logarithmic, in either direction. It draws nothing. Internal to colorimetry/plot/.
  */
 #ifndef ABBE_COLORIMETRY_PLOT_AXIS_H
 #define ABBE_COLORIMETRY_PLOT_AXIS_H

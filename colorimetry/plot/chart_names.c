@@ -1,7 +1,6 @@
-#include "colorimetry/plot/chart_names.h"
+#include "colorimetry/plot/chart_panel.h"
 
 #include "colorimetry/plot/chart_pen.h"
-#include "colorimetry/plot/chart_series.h"
 
 #include <cairo.h>
 #include <math.h>

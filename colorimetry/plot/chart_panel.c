@@ -1,9 +1,7 @@
 #include "colorimetry/plot/chart_panel.h"
 
 #include "colorimetry/image/colour_map.h"
-#include "colorimetry/plot/chart_names.h"
 #include "colorimetry/plot/chart_pen.h"
-#include "colorimetry/plot/chart_series.h"
 
 #include <cairo.h>
 #include <math.h>

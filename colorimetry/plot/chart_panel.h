@@ -31,4 +31,26 @@ void abbe_chart_panel_measure(abbe_chart_panel *panel, double *left, double *rig
 /* Draws it between top and bottom, left and right. */
 void abbe_chart_panel_draw(abbe_chart_panel *panel);
 
+/* Names beside points, and the legend: what finds itself a free place in a panel. */
+
+/* No name covers a point or another name, of whatever series; the last series' come first. */
+void abbe_chart_draw_names(abbe_chart_panel *panel);
+/* The labels of the series and of the shaded ranges, where they hide least of the data. */
+void abbe_chart_draw_legend(abbe_chart_panel *panel);
+
+/* The data of a chart's panel, drawn: curves, points, bars, bands, shaded ranges. */
+
+/* Where a value lies in the picture; NaN where its axis has no place for it. */
+double abbe_chart_panel_x(const abbe_chart_panel *p, double value);
+double abbe_chart_panel_y(const abbe_chart_panel *p, double value);
+
+/* The pen of a series: its colour, of that opacity, and its dashes. */
+void abbe_chart_set_pen(const abbe_chart_panel *p, size_t index, double alpha);
+void abbe_chart_draw_dot(const abbe_chart_panel *panel, size_t index, double x, double y);
+/* Each label has its grey; the ranges without one that follow it are more of the same. */
+double abbe_chart_shade_grey(const abbe_chart *c, size_t index);
+
+void abbe_chart_draw_series(abbe_chart_panel *p, size_t index);
+void abbe_chart_draw_shades(abbe_chart_panel *p);
+
 #endif

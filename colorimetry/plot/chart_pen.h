@@ -1,4 +1,4 @@
-/* chart_pen.h: text and lines as the charts have them. Internal to colorimetry/. */
+/* chart_pen.h: text and lines as the charts have them. */
 #ifndef ABBE_COLORIMETRY_PLOT_CHART_PEN_H
 #define ABBE_COLORIMETRY_PLOT_CHART_PEN_H
 

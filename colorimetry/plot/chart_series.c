@@ -1,4 +1,4 @@
-#include "colorimetry/plot/chart_series.h"
+#include "colorimetry/plot/chart_panel.h"
 
 #include "colorimetry/plot/chart_pen.h"
 

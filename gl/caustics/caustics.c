@@ -1,9 +1,8 @@
 #include "gl/caustics/caustics.h"
 
 #include "base/clock.h"
-#include "gl/caustics/cell_fit.h"
 #include "gl/caustics/map_fit.h"
-#include "gl/light/light_fit.h"
+#include "gl/light/light_layers.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,6 +4,7 @@
 #ifndef ABBE_GL_CAUSTICS_CAUSTICS_H
 #define ABBE_GL_CAUSTICS_CAUSTICS_H
 
+#include "colorimetry/image/image.h"
 #include "gl/caustics/deposit_pass.h"
 #include "gl/caustics/spectral_map.h"
 #include "gl/light/light_layers.h"
@@ -53,5 +54,13 @@ void abbe_caustics_energy(const abbe_caustics *caustics, abbe_ledger *out);
 abbe_result abbe_caustics_read_hits(abbe_caustics *caustics, size_t light, size_t first,
                                     const double origin[3], float **at, unsigned **path,
                                     unsigned **cell, size_t *count, abbe_error *error);
+
+/* A light's map in bands of wavelengths, three at a time. */
+
+/* X, Y, Z of the map as it is, and so many bands beside them, in W/nm, times `unit`; photons are
+ * followed anew, and once more at the end, so that all is as it was. *out may be made where this
+ * fails. */
+abbe_result abbe_map_bands_read(abbe_caustics *caustics, size_t light, size_t bands, double unit,
+                                abbe_image *out, abbe_error *error);
 
 #endif

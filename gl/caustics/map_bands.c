@@ -1,4 +1,4 @@
-#include "gl/caustics/map_bands.h"
+#include "gl/caustics/caustics.h"
 
 #include <stdlib.h>
 #include <string.h>

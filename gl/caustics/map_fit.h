@@ -4,6 +4,7 @@
 #define ABBE_GL_CAUSTICS_MAP_FIT_H
 
 #include "gl/light/receiver_atlas.h"
+#include "gl/photons/trace_pass.h"
 #include "scenes/view/map_layout.h"
 
 #include <stddef.h>
@@ -25,5 +26,12 @@ void abbe_map_fit_add(abbe_map_fit *fit, const abbe_receiver_atlas *atlas, const
 void abbe_map_fit_layout(const abbe_map_fit *fit, double wider, abbe_map_layout *layout);
 /* Whether the window holds nearly all of this light, and is filled by it for a good part. */
 bool abbe_map_fit_serves(const abbe_map_fit *fit);
+
+/* A light's photon grid no finer than its map can tell. */
+
+/* Traces a batch of wavelengths and makes the light's grid coarser, each way by itself, where the
+ * images of nearly all cells are thinner than two texels. The map is fitted by then. */
+abbe_result abbe_cell_fit_run(abbe_trace_pass *trace, abbe_photon_lights *views, size_t light,
+                              abbe_error *error);
 
 #endif

@@ -1,5 +1,5 @@
 #define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
-#include "gl/device/buffer_memory.h"
+#include "gl/device/gpu.h"
 
 #include <string.h>
 #include <sys/mman.h>

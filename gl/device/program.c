@@ -1,7 +1,5 @@
 #include "gl/device/program.h"
 
-#include "gl/device/shader_files.h"
-
 #include <assert.h>
 #include <ctype.h>
 #include <stdbool.h>

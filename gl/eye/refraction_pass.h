@@ -6,7 +6,7 @@
 
 #include "gl/eye/lighting.h"
 #include "gl/eye/receivers_pass.h"
-#include "gl/scene/seen/refractor_faces.h"
+#include "gl/scene/seen/seen_meshes.h"
 #include "gl/scene/shader_variant.h"
 
 #include <stdbool.h>

@@ -5,7 +5,8 @@
 #define ABBE_GL_LIGHT_LIGHT_LAYERS_H
 
 #include "gl/light/photon_lights.h"
-#include "gl/scene/seen/refractor_faces.h"
+#include "gl/scene/seen/seen_meshes.h"
+#include "gl/scene/shader_variant.h"
 #include "scenes/scene.h"
 
 /* What tells a view from another one. */
@@ -33,5 +34,18 @@ abbe_result abbe_light_layers_run(abbe_light_layers *layers, abbe_error *error);
 
 /* The textures, into the program that is in use. */
 void abbe_light_layers_set(const abbe_light_layers *layers, GLuint program);
+
+/* Near views shrunk to the rays that reach a refractor, once, before photons are placed. */
+
+typedef struct abbe_light_fit {
+  abbe_photon_lights *views;
+  abbe_light_layers *layers;
+  GLuint program, found;
+} abbe_light_fit;
+
+/* Of all lights whose light may meet a refractor; layers are drawn for it where meshes are
+ * traversed. ABBE_GL, ABBE_NO_MEMORY. */
+abbe_result abbe_light_fit_run(abbe_photon_lights *views, abbe_light_layers *layers,
+                               const abbe_shader_variant *variant, abbe_error *error);
 
 #endif

@@ -3,7 +3,7 @@
 #include "colorimetry/weights.h"
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"
-#include "gl/plan/examine/light_cube.h"
+#include "gl/plan/examine/light_views.h"
 #include "scenes/geometry/vector.h"
 
 #include <float.h>

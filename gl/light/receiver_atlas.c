@@ -1,7 +1,6 @@
 #include "gl/light/receiver_atlas.h"
 
 #include "gl/device/bindings.h"
-#include "gl/light/photon_hit.h"
 
 #include <math.h>
 #include <stdlib.h>

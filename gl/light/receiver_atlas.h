@@ -56,4 +56,9 @@ void abbe_receiver_atlas_world(const abbe_receiver_atlas *atlas, size_t light, c
 /* Layers of the map: one a light, and one for each that has tiles. */
 size_t abbe_receiver_atlas_layers(const abbe_receiver_atlas *atlas);
 
+/* Where a photon meets a receiver, as shaders keep it (outgoing_segment.glsl): place and flux in
+ * four floats, then the interface that the light left. */
+
+enum { ABBE_HIT_BYTES = 32 };
+
 #endif

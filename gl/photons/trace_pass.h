@@ -4,7 +4,6 @@
 #ifndef ABBE_GL_PHOTONS_TRACE_PASS_H
 #define ABBE_GL_PHOTONS_TRACE_PASS_H
 
-#include "gl/light/photon_hit.h"
 #include "gl/light/photon_start.h"
 #include "gl/light/receiver_atlas.h"
 #include "gl/photons/photon_ledger.h"

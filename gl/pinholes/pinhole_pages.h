@@ -6,12 +6,31 @@
 #ifndef ABBE_GL_PINHOLES_PINHOLE_PAGES_H
 #define ABBE_GL_PINHOLES_PINHOLE_PAGES_H
 
-#include "gl/pinholes/page_charts.h"
 #include "gl/pinholes/pinhole_samples.h"
-#include "gl/pinholes/pinhole_sky.h"
+#include "gl/scene/gpu_scene.h"
 #include "gl/scene/shader_variant.h"
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
+
+/* Charts of receivers that are meshes, for the pages of what pinholes show: where each texel of a
+ * chart lies on its mesh, and how shaders find a place's chart and texel again. */
+
+typedef struct abbe_page_charts {
+  GLuint places; /* two rows a texel, of the charts of meshes: place (w: 1; 0: none), normal */
+  GLuint rows, rows_texture;  /* of all charts: from a place to its u, and v */
+  GLuint faces, face_texture; /* side of a chart that each receiver's face is of */
+  bool *closed;               /* [all charts] it is of what encloses a space: its back is inside */
+} abbe_page_charts;
+
+/* Of side x side texels a page, laid out as pinhole_map.glsl says; a texel beside its chart has the
+ * nearest place of it. ABBE_GL, ABBE_NO_MEMORY. */
+abbe_result abbe_page_charts_make(const abbe_gpu_scene *scene, size_t side, abbe_page_charts *out,
+                                  abbe_error *error);
+void abbe_page_charts_free(abbe_gpu *gpu, abbe_page_charts *charts);
+/* The charts and their faces, where shaders expect them. */
+void abbe_page_charts_bind(abbe_gpu *gpu, const abbe_page_charts *charts);
 
 typedef struct abbe_pinhole_pages {
   const abbe_gpu_scene *scene; /* NULL: there are none */

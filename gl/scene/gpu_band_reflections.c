@@ -2,7 +2,7 @@
  * receiver and light with the light's white x, y and where its tables begin, 0: it has none; then
  * the tables, one for each of a texture's channels. */
 #include "colorimetry/reflectance/band_reflection.h"
-#include "gl/plan/examine/receiver_model.h"
+#include "gl/plan/examine/models.h"
 #include "gl/scene/gpu_scene.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "gl/scene/gpu_environment.h"
+#include "gl/scene/gpu_scene.h"
 
 #include "colorimetry/upsampling.h"
 #include "gl/device/bindings.h"

@@ -4,16 +4,69 @@
 #ifndef ABBE_GL_SCENE_GPU_SCENE_H
 #define ABBE_GL_SCENE_GPU_SCENE_H
 
+#include "base/error.h"
+#include "colorimetry/rgb_space.h"
 #include "gl/device/gpu.h"
+#include "gl/plan/facts/render_desc.h"
 #include "gl/plan/plan.h"
-#include "gl/scene/gpu_environment.h"
-#include "gl/scene/receiver_charts.h"
 #include "gl/scene/spectra/spectral_tables.h"
+#include "scenes/environment/radiance_cube.h"
+#include "scenes/mesh/bvh.h"
 #include "scenes/scene.h"
 #include "scenes/view/map_layout.h"
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
+
+/* The charts of a plan's receivers, numbered through.
+ *
+ * Parallelograms come first, as the shaders count them, then the charts of meshes
+ * (scenes/mesh/mesh_charts.h). It knows no light and no GL. */
+
+typedef struct abbe_receiver_charts {
+  size_t count;
+  double (*parallelogram)[9]; /* [count] corner, U, V */
+  size_t *object;             /* [count] the scene's */
+  size_t face_count;
+  size_t *face_first; /* [receiver_count + 1] of each receiver among all faces */
+  int32_t *face_side; /* [face_count] 2 * chart, + 1 where the face's normal points against U x V */
+} abbe_receiver_charts;
+
+/* ABBE_NO_MEMORY, ABBE_UNSUPPORTED for more faces or charts than can be numbered. */
+abbe_result abbe_receiver_charts_make(const abbe_scene *scene, const abbe_plan *plan,
+                                      abbe_receiver_charts *out, abbe_error *error);
+void abbe_receiver_charts_free(abbe_receiver_charts *charts);
+
+/* What is around a scene, on the device: a texture by longitude and latitude, a cube with levels
+ * for rays that stand for many directions, and irradiance by normal of what the scene's lights
+ * leave of it. */
+
+typedef struct abbe_gpu_environment {
+  GLuint texture;    /* W/(m2 sr); 0: there is none */
+  GLuint cube;       /* the same, texels about as wide, and means over wider ones */
+  GLuint soft_light; /* W/m2, by the nodes of an abbe_irradiance_map */
+} abbe_gpu_environment;
+
+/* Of a scene with lights for its environment (environment_lights.h), over the request's range, for
+ * its observer, in `space`; zeros where the scene has none. ABBE_GL, ABBE_NO_MEMORY, errors of
+ * abbe_upsampling_make_by. */
+abbe_result abbe_gpu_environment_make(abbe_gpu *gpu, const abbe_scene *scene, abbe_rgb_space space,
+                                      const abbe_render_desc *desc, abbe_gpu_environment *out,
+                                      abbe_error *error);
+/* To `space` from the RGB of an environment, which is relative to its illuminant; row-major. Errors
+ * of abbe_upsampling_make_by. */
+abbe_result abbe_gpu_environment_colours(const abbe_illuminant *illuminant, abbe_rgb_space space,
+                                         const abbe_render_desc *desc, double matrix[9],
+                                         abbe_error *error);
+/* A cube's levels, by the matrix. ABBE_GL, ABBE_NO_MEMORY. */
+abbe_result abbe_gpu_environment_cube(abbe_gpu *gpu, const abbe_radiance_cube *cube,
+                                      const double matrix[9], GLuint *out, abbe_error *error);
+void abbe_gpu_environment_free(abbe_gpu *gpu, abbe_gpu_environment *environment);
+
+/* Into the program that is in use, where it asks for it. `unit`: W in one of the scene's lights. */
+void abbe_gpu_environment_set(abbe_gpu *gpu, const abbe_scene *scene,
+                              const abbe_gpu_environment *environment, double unit, GLuint program);
 
 /* OpenGL promises uniform blocks of 16 KiB; every desktop driver, llvmpipe too, has 64. */
 enum { ABBE_GPU_BLOCK_BYTES = 65536 };
@@ -134,5 +187,51 @@ void abbe_gpu_shadows_free(abbe_gpu_scene *scene);
 /* Linear Rec.709, as scene files have it, to the space that the shaders work in. */
 void abbe_gpu_scene_to_working(const abbe_gpu_scene *scene, const double rgb[3], double out[3]);
 abbe_rgb_space abbe_gpu_scene_working_space(const abbe_gpu_scene *scene);
+
+/* A hierarchy over triangles as the shaders traverse it (hierarchy.glsl).
+ *
+ * Boxes stand on a grid of 16 bits over the tree, rounded outwards, and each with a cone that
+ * holds the normals below it: a ray that looks for faces of one side alone leaves out what shows
+ * it the other, and so what it starts from. It knows nothing of GL. */
+
+/* Texels of four words: two for the tree, then three for each inner node. */
+size_t abbe_bvh_nodes_count(const abbe_bvh *bvh);
+
+/* triangle: as the hierarchy was made from. The texels are the first_texel'th and following of
+ * the buffer that the shaders read, the triangles, in the hierarchy's order, the first_triangle'th
+ * and following; those end below 2^28, texels below 2^31. The root is first_texel.
+ *
+ * Tree: lowest grid point in x, y, z and, as bits, what the root leads to; width of a grid cell in
+ * x, y, z. Inner node: for each of two children, its box (low | high << 16 a word, in x, y, z) and
+ * what it leads to; then its cone twice, axis and sine of the half angle, snorm16: x | y << 16, z |
+ * sine << 16; a sine of one leaves nothing out. Leads to: an inner node's first texel, or the
+ * complement of a leaf's first triangle << 3 | count. ABBE_NO_MEMORY, ABBE_CANCELLED by the
+ * thread's watch. */
+abbe_result abbe_bvh_nodes_pack(const abbe_bvh *hierarchy, const double (*triangle)[9],
+                                size_t first_texel, size_t first_triangle, uint32_t (*out)[4],
+                                abbe_error *error);
+
+/* The shadow of a convex solid in a light without size, as planes.
+ *
+ * What lies in shadow is itself convex: it lies behind every face that the light is in front of,
+ * and within the planes through the light and the outline that the light sees. So a place is asked
+ * a few products instead of where its ray to the light meets each face. Places in the solid count
+ * as in shadow; what else stands in the light is not looked at. */
+
+/* The solid n . x < d of `count` planes, unit n, with a place strictly inside. A place x is in the
+ * light's shadow where n . x' < d for all planes of `out`, n of length 1; x' is x from the light's
+ * position, or for a directional one x itself. There are the planes of the outline and, if `faces`,
+ * those of the lit faces: without them places between the solid and the light count as in shadow
+ * too. One plane that holds for no place where the light is in front of no face, as for a light
+ * inside. Room in out: twice `count`, and one. ABBE_NO_MEMORY; what is found is *found. */
+abbe_result abbe_shadow_planes_make(const double (*plane)[4], size_t count, const double inside[3],
+                                    const abbe_light *light, bool faces, double (*out)[4],
+                                    size_t *found, abbe_error *error);
+
+/* Whether some part of the object may lie between a convex object and the light: false only where a
+ * plane, the object's own or across an axis, has the object on one side and those two on the other, up
+ * to 1e-6 of the convex object's size. */
+bool abbe_shadow_planes_in_front(const abbe_object *convex, const abbe_light *light,
+                                 const abbe_object *object);
 
 #endif

@@ -5,6 +5,7 @@
  * that far away in terms of their own size, the renderer works in a copy whose origin is in their
  * middle. Where its brightest light is beyond what floats sum well, all lights are scaled by a
  * power of two. Nothing else changes; textures, materials and topology are the original's.
+ * Internal to gl/.
  */
 #ifndef ABBE_GL_SCENE_LOCAL_SCENE_H
 #define ABBE_GL_SCENE_LOCAL_SCENE_H

@@ -1,4 +1,4 @@
-#include "gl/scene/receiver_charts.h"
+#include "gl/scene/gpu_scene.h"
 
 #include "scenes/geometry/vector.h"
 #include "scenes/mesh/mesh_charts.h"

@@ -4,7 +4,7 @@
  * A chart is a parallelogram, or a part of a mesh within the parallelogram that bounds it
  * (scenes/mesh/mesh_charts.h). A tile is a window of one side of a chart and a rectangle of texels
  * for it, in one layer beside the light's map. This chooses tiles from where light landed and lays
- * them out; it knows no GL.
+ * them out; it knows no GL. Internal to gl/.
  */
 #ifndef ABBE_GL_SCENE_RECEIVER_TILES_H
 #define ABBE_GL_SCENE_RECEIVER_TILES_H

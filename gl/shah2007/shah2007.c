@@ -18,7 +18,7 @@
  * no vertex, and estimators start from what the light sees behind the ray's origin. */
 #include "gl/shah2007/shah2007.h"
 
-#include "gl/image_space/image_tables.h"
+#include "gl/image_space/image_view.h"
 
 #include <math.h>
 #include <stdio.h>

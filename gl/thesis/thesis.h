@@ -8,12 +8,31 @@
 #include "gl/image_space/image_view.h"
 #include "gl/light/photon_start.h"
 #include "gl/scene/camera_view.h"
+#include "gl/scene/gpu_scene.h"
 #include "gl/scene/shader_variant.h"
-#include "gl/thesis/thesis_tables.h"
 #include "scenes/view/map_layout.h"
 
 #include <stdbool.h>
 #include <stddef.h>
+
+/* Indices, attenuations and colours of the thesis's wavelengths, as printed or by the CIE's
+ * observer. */
+
+/* What the thesis's seven colours sum to. */
+#define ABBE_THESIS_COLOUR_SUM 3.5
+
+typedef struct abbe_thesis_tables {
+  float (*colour)[3];            /* [wavelengths] RGB, or XYZ */
+  float *index, *attenuation_of; /* [wavelengths]; 1/m */
+  float white[3];                /* XYZ, of all weights; by the CIE alone */
+  double attenuation;            /* at 550 nm, 1/m; as printed alone */
+} abbe_thesis_tables;
+
+/* The printed seven colours, or as many as asked for along the same curve, with the same sum; cie:
+ * XYZ weights, indices and attenuations of the default profile. */
+abbe_result abbe_thesis_tables_make(const abbe_gpu_scene *scene, bool cie, abbe_thesis_tables *t,
+                                    abbe_error *error);
+void abbe_thesis_tables_free(abbe_thesis_tables *tables);
 
 typedef struct abbe_thesis {
   const abbe_gpu_scene *scene;

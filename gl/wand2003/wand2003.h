@@ -7,7 +7,6 @@
 #include "colorimetry/image/image.h"
 #include "gl/image_space/image_view.h"
 #include "gl/pinholes/pinhole_samples.h"
-#include "gl/pinholes/pinhole_sky.h"
 #include "gl/scene/camera_view.h"
 #include "gl/scene/shader_variant.h"
 #include "scenes/view/map_layout.h"

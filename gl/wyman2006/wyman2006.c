@@ -20,7 +20,7 @@
  * stay, and where frames are filtered their grids are shifted. */
 #include "gl/wyman2006/wyman2006.h"
 
-#include "gl/image_space/image_tables.h"
+#include "gl/image_space/image_view.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
-#include "scenes/cuts/cut_asc.h"
+#include "scenes/cuts/cut_file.h"
 
 #include "base/encoding.h"
 #include "base/number.h"
-#include "scenes/cuts/cut_text.h"
+#include "scenes/cuts/cut.h"
 
 #include <ctype.h>
 #include <math.h>

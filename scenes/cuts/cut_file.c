@@ -1,9 +1,6 @@
 #include "scenes/cuts/cut_file.h"
 
 #include "base/file.h"
-#include "scenes/cuts/cut_asc.h"
-#include "scenes/cuts/cut_gcs.h"
-#include "scenes/cuts/cut_gem.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -7,6 +7,8 @@
 #include "scenes/cuts/cut.h"
 #include "scenes/cuts/cut_polyhedron.h"
 
+#include <stdio.h>
+
 #define ABBE_CUT_MAX_FILE (16u << 20) /* bytes */
 
 /* By its name's end. report (may be NULL) gets what was left out, changed or assumed.
@@ -19,5 +21,59 @@ abbe_result abbe_cut_file_read(const char *path, abbe_cut *out, abbe_report *rep
 abbe_result abbe_cut_file_read_stone(const char *path, double weld, abbe_cut *cut,
                                      abbe_cut_polyhedron *stone, abbe_report *report,
                                      abbe_error *error);
+
+/* GemCad's text files of designs (.asc), in and out.
+ *
+ * Files of other programs are met with a word out of place; it is left out and noted. Every index
+ * is listed in such a file: its line of symmetry is for people. Lines may end in any way, and the
+ * text be UTF-8 or Windows-1252. */
+
+/* name is for messages; report (may be NULL) gets what was left out, changed or assumed.
+ * ABBE_PARSE for what is no design, ABBE_SCHEMA for values that none has, with the line. */
+abbe_result abbe_cut_asc_parse(const char *data, size_t size, const char *name, abbe_cut *out,
+                               abbe_report *report, abbe_error *error);
+
+/* Windows-1252, lines that end with a newline. What is read back has the same planes: numbers have
+ * GemCad's digits, or all that they need. report (may be NULL) gets what the format does not hold.
+ */
+abbe_result abbe_cut_asc_write(const abbe_cut *cut, FILE *to, abbe_report *report,
+                               abbe_error *error);
+
+/* Gem Cut Studio's files of designs (.gcs), in and out.
+ *
+ * XML of tiers and facets. A facet's normal rules over its index; a tier's depth may be missing,
+ * and then the facet's corners say it. Designs are turned by half a turn about z, so that the
+ * index at the gear's offset is in the direction of y, and indices are worked out anew from the
+ * normals: those of the program run the other way round on the crown. Document types, entities and
+ * whatever else could reach outside the file are refused. */
+
+/* name is for messages; report (may be NULL) gets what was left out or assumed. ABBE_PARSE for what
+ * is no such file, ABBE_SCHEMA for values that no stone has, with the line. */
+abbe_result abbe_cut_gcs_parse(const char *data, size_t size, const char *name, abbe_cut *out,
+                               abbe_report *report, abbe_error *error);
+
+/* UTF-8, with the facets' corners; polyhedron is the cut's. As the program has it, the stone is
+ * scaled so that its corners reach 1 in x or y, and its middle height is 0; facets without a face
+ * are left out, and a tier whose facets lie at several distances has none of its own. report (may
+ * be NULL) gets what was left out. ABBE_IO where the stream fails; ABBE_GEOMETRY where the middle
+ * height lies outside a facet's plane, which the format cannot say. */
+abbe_result abbe_cut_gcs_write(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron, FILE *to,
+                               abbe_report *report, abbe_error *error);
+
+/* GemCad's binary files of designs (.gem), in and out.
+ *
+ * A file holds each facet's plane and polygon. The planes rule: the polygons of some files are of
+ * another size, and they are not read. Angles and indices are worked out from the planes. The
+ * second design that a file may carry, the preform, is left out. */
+
+/* name is for messages; report (may be NULL) gets what was left out. ABBE_PARSE for what is no such
+ * file, ABBE_SCHEMA for values that no stone has, with the byte. */
+abbe_result abbe_cut_gem_parse(const char *data, size_t size, const char *name, abbe_cut *out,
+                               abbe_report *report, abbe_error *error);
+
+/* With the polygons of the polyhedron, which is the cut's. report (may be NULL) gets what the
+ * format does not hold: texts beyond 255 bytes. */
+abbe_result abbe_cut_gem_write(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron, FILE *to,
+                               abbe_report *report, abbe_error *error);
 
 #endif

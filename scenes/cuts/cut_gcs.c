@@ -1,4 +1,4 @@
-#include "scenes/cuts/cut_gcs.h"
+#include "scenes/cuts/cut_file.h"
 
 #include "base/number.h"
 #include "scenes/geometry/vector.h"

@@ -1,6 +1,6 @@
-#include "scenes/cuts/cut_gem.h"
+#include "scenes/cuts/cut_file.h"
 
-#include "scenes/cuts/cut_text.h"
+#include "scenes/cuts/cut.h"
 #include "scenes/geometry/vector.h"
 
 #include <math.h>

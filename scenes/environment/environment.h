@@ -8,18 +8,36 @@
  * the way, and pictures of it, are the renderer's and the tracer's.
  *
  * Make one: fill path, map, to_map, illuminant, illuminant_path, then abbe_environment_prepare,
- * which makes the rest.
+ * which makes the rest. Internal to scenes/.
  */
 #ifndef ABBE_SCENES_ENVIRONMENT_ENVIRONMENT_H
 #define ABBE_SCENES_ENVIRONMENT_ENVIRONMENT_H
 
 #include "base/error.h"
 #include "colorimetry/illuminant.h"
-#include "scenes/environment/alias_table.h"
 #include "scenes/environment/radiance_map.h"
 
 #include <stddef.h>
 #include <stdint.h>
+
+/* Draws from a list of shares in constant time [Walker1977] [Vose1991]. */
+
+/* An entry of equal width is kept by its own index up to `keep`, and goes to `other` above. */
+typedef struct abbe_alias_table {
+  size_t count;
+  double *keep;    /* [count], 0 to 1: of a bright entry among many only its last bits tell */
+  uint32_t *other; /* [count] */
+} abbe_alias_table;
+
+/* Weights, any scale: finite, >= 0, their sum > 0 and finite; else ABBE_INVALID_ARGUMENT. An entry
+ * of weight 0 is never drawn. ABBE_NO_MEMORY. */
+abbe_result abbe_alias_table_make(const double *weight, size_t count, abbe_alias_table *out,
+                                  abbe_error *error);
+void abbe_alias_table_free(abbe_alias_table *table);
+
+/* The entry of u in [0, 1), which has all bits of a double: each entry's chance is then right to
+ * 2^-52. Fewer bits leave few values of the fraction that decides, and so wrong chances. */
+size_t abbe_alias_table_draw(const abbe_alias_table *table, double u);
 
 #define ABBE_ENVIRONMENT_MOST 1e12 /* W/(m2 sr), of one texel */
 #define ABBE_ENVIRONMENT_MAX_LEVELS 12

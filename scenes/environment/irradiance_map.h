@@ -3,7 +3,7 @@
  *
  * Nodes by latitude and longitude, of which the rows at both ends are the poles: planes that face
  * along an axis are nodes. Between them it is linear; a cosine's error is then below 0.4 % of the
- * greatest value.
+ * greatest value. Internal to scenes/.
  */
 #ifndef ABBE_SCENES_ENVIRONMENT_IRRADIANCE_MAP_H
 #define ABBE_SCENES_ENVIRONMENT_IRRADIANCE_MAP_H

@@ -3,6 +3,7 @@
  * Formats have a table, two terms of Cauchy's, n_d with an Abbe number, one index, or one for red,
  * green and blue each. Here are the numbers that serve a material best in such a form, the form's
  * value at any wavelength, and its worst and RMS error over 380 to 780 nm. It writes nothing.
+ * Internal to scenes/export/.
  */
 #ifndef ABBE_SCENES_EXPORT_EXPORT_INDEX_H
 #define ABBE_SCENES_EXPORT_EXPORT_INDEX_H

@@ -1,13 +1,161 @@
 #include "scenes/export/scene_export.h"
 
 #include "base/file.h"
-#include "scenes/export/export_survey.h"
 #include "scenes/export/export_writing.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+
+/* What a format cannot hold of a scene, before anything is written. */
+
+#define ABBE_EXPORT_LINE_D_NM 587.5618
+
+typedef struct survey {
+  const abbe_scene *scene;
+  abbe_scene_export_target target;
+  bool spectral; /* spectra as such, not red, green and blue */
+  bool spheres;
+  abbe_scene_export_report *report;
+} survey;
+
+#define LOST(s, name, ...)                                                                         \
+  abbe_report_add(&(s)->report->notes, ABBE_NOTE_LOST, 0, name, __VA_ARGS__)
+#define CHANGED(s, name, ...)                                                                      \
+  abbe_report_add(&(s)->report->notes, ABBE_NOTE_CHANGED, 0, name, __VA_ARGS__)
+
+static abbe_result add_glass(const survey *s, const abbe_material *m, double lambda_nm,
+                             abbe_error *error) {
+#define ABBE_SURVEY_FORM(code, name, ending, form, program) ABBE_EXPORT_FORM_##form,
+  static const abbe_export_form forms[] = {ABBE_SCENE_EXPORTS(ABBE_SURVEY_FORM)};
+  abbe_scene_export_report *r = s->report;
+  for (size_t i = 0; i < r->glass_count; i++)
+    if (r->glass[i].material == m) return ABBE_OK;
+  abbe_scene_export_glass *all = realloc(r->glass, (r->glass_count + 1) * sizeof *all);
+  if (all == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a report");
+  r->glass = all;
+  abbe_scene_export_glass *g = &all[r->glass_count];
+  const abbe_result result =
+      abbe_export_index_make(m, forms[s->target], lambda_nm, &g->index, error);
+  if (result != ABBE_OK) return result;
+  g->material = m;
+  r->glass_count++;
+  if (g->index.held)
+    abbe_report_add(&r->notes, ABBE_NOTE_ASSUMED, 0, m->name,
+                    "its record goes from %.4g to %.4g nm; beyond, n is held", m->min_nm,
+                    m->max_nm);
+  if (abbe_material_is_uniaxial(m))
+    LOST(s, m->name, "its double refraction; the ordinary index is written");
+  if (g->index.form == ABBE_EXPORT_FORM_ONE && m->dispersion.model != ABBE_DISPERSION_CONSTANT)
+    LOST(s, m->name, "its dispersion: the format takes one index, that of %.7g nm", lambda_nm);
+  if (g->index.form == ABBE_EXPORT_FORM_CAUCHY && g->index.value[1] < 0)
+    LOST(s, m->name, "its index rises with the wavelength, for which there is no B below 0");
+  if (m->attenuation != NULL && !s->spectral)
+    CHANGED(s, m->name, "absorption is three numbers, of 611.4, 549.1 and 464.2 nm");
+  if (m->attenuation != NULL && s->target == ABBE_SCENE_EXPORT_MITSUBA)
+    CHANGED(s, m->name, "absorption is seen by the integrator volpath alone");
+  return ABBE_OK;
+}
+
+static void survey_roughness(const survey *s, const abbe_object *o) {
+  const abbe_microfacets *m = &o->brushing.facets;
+  if (!abbe_brushing_is_rough(&o->brushing)) return;
+  if (s->target == ABBE_SCENE_EXPORT_LUXCORE && o->conductor == NULL)
+    LOST(s, o->name, "its roughness: a mirror that is no metal is smooth");
+  else if (m->x < m->y || m->y < m->x)
+    LOST(s, o->name, "the way its grooves run: the root of both roughnesses' product is written");
+  if (s->target == ABBE_SCENE_EXPORT_LUXCORE && o->conductor != NULL)
+    CHANGED(s, o->name, "its facets are Schlick's instead of GGX's");
+}
+
+static void survey_mirror(const survey *s, const abbe_object *o) {
+  survey_roughness(s, o);
+  if (o->conductor != NULL) {
+    if (s->target == ABBE_SCENE_EXPORT_LUXCORE)
+      CHANGED(s, o->name, "n and k are three numbers each, of 611.4, 549.1 and 464.2 nm");
+    else if (!s->spectral)
+      LOST(s, o->name, "n and k: its colour at normal incidence is written");
+  } else if (s->target == ABBE_SCENE_EXPORT_PBRT) {
+    CHANGED(s, o->name,
+            "its reflectance is that of a conductor at normal incidence, and rises at grazing");
+  } else if (s->target == ABBE_SCENE_EXPORT_GLTF) {
+    CHANGED(s, o->name, "its reflectance rises at grazing");
+  }
+}
+
+static abbe_result survey_object(const survey *s, const abbe_object *o, double lambda_nm,
+                                 abbe_error *error) {
+  const abbe_object_kind kind = abbe_object_kind_of(o);
+  abbe_result result = ABBE_OK;
+  if (o->exact.kind == ABBE_EXACT_SPHERE && !s->spheres)
+    CHANGED(s, o->name, "the sphere is %zu triangles", o->mesh.face_count);
+  if (kind == ABBE_OBJECT_REFRACTOR) result = add_glass(s, o->material, lambda_nm, error);
+  if (kind == ABBE_OBJECT_MIRROR) survey_mirror(s, o);
+  if (o->medium != NULL) LOST(s, o->name, "what scatters in it: its inside is clear");
+  if (o->spectrum != NULL && !s->spectral)
+    LOST(s, o->name, "its measured reflectance: its colour under D65 is written");
+  else if (kind == ABBE_OBJECT_RECEIVER && o->texture_path != NULL && s->spectral)
+    CHANGED(s, o->name, "its colour is lifted to a spectrum in the program's own way");
+  if (kind == ABBE_OBJECT_RECEIVER && o->texture_path != NULL &&
+      s->target == ABBE_SCENE_EXPORT_GLTF)
+    CHANGED(s, o->name, "its texture is taken as sRGB, whatever its file says");
+  return result;
+}
+
+static void survey_light(const survey *s, const abbe_light *light) {
+  const bool soft = light->kind == ABBE_LIGHT_SPOT && light->soft_rad > 0;
+  const abbe_scene_export_target target = s->target;
+  if (!s->spectral && light->illuminant.kind != ABBE_ILLUMINANT_D65)
+    CHANGED(s, light->name, "its spectrum is a colour, linear Rec.709");
+  if (soft && target == ABBE_SCENE_EXPORT_MITSUBA)
+    CHANGED(s, light->name, "its edge fades in proportion to the angle, not by a smoothstep");
+  if (light->kind == ABBE_LIGHT_SPOT && target == ABBE_SCENE_EXPORT_LUXCORE)
+    CHANGED(s, light->name, "intensity goes with 1 / cosine off its axis%s",
+            soft ? ", and its edge fades with the fourth power of the cosine" : "");
+  if (soft && target == ABBE_SCENE_EXPORT_GLTF)
+    CHANGED(s, light->name, "its edge fades as the viewer has it");
+  if (!abbe_light_has_size(light)) return;
+  if (light->kind == ABBE_LIGHT_DISK && !s->spheres)
+    CHANGED(s, light->name, "the disk has %d straight sides and its own area",
+            ABBE_EXPORT_DISK_SIDES);
+  if (target == ABBE_SCENE_EXPORT_GLTF)
+    LOST(s, light->name, "its light: it is a surface that glows, by which viewers light nothing");
+  else
+    CHANGED(s, light->name, "its back is black, and light does not pass it");
+}
+
+static void survey_surroundings(const survey *s) {
+  if (s->scene->environment != NULL) {
+    if (s->target == ABBE_SCENE_EXPORT_GLTF)
+      LOST(s, "environment", "glTF has no surroundings; give the viewer a picture of its own");
+    else
+      CHANGED(s, "environment", "resampled to STEM-environment.exr, linear Rec.709");
+  }
+  if (s->scene->medium != NULL) LOST(s, "medium", "the air is clear");
+  if (s->scene->ambient > 0)
+    LOST(s, "ambient", "the format has no light without shadows (%.3g W/m2)", s->scene->ambient);
+  if (s->scene->background > 0)
+    LOST(s, "background", "the format has no radiance that only the camera sees (%.3g)",
+         s->scene->background);
+  if (s->target == ABBE_SCENE_EXPORT_GLTF)
+    LOST(s, "caustics", "viewers of glTF throw no light through refractors");
+}
+
+/* Fills the zeroed report: each material's index in the target's form, and notes. */
+static abbe_result export_survey(const abbe_scene *scene, abbe_scene_export_target target,
+                                 double lambda_nm, abbe_scene_export_report *report,
+                                 abbe_error *error) {
+  const bool spectral = target == ABBE_SCENE_EXPORT_PBRT || target == ABBE_SCENE_EXPORT_MITSUBA;
+  const survey s = {scene, target, spectral, spectral, report};
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < scene->object_count && result == ABBE_OK; i++)
+    result = survey_object(&s, &scene->object[i], lambda_nm, error);
+  if (result != ABBE_OK) return result;
+  for (size_t i = 0; i < scene->light_count; i++) survey_light(&s, &scene->light[i]);
+  survey_surroundings(&s);
+  return ABBE_OK;
+}
 
 static const struct {
   const char *name, *ending;
@@ -102,7 +250,7 @@ abbe_result abbe_scene_export_write(const char *path, const abbe_scene *scene,
                           "the wavelength of the one index is from 380 to 780 nm, not %g",
                           lambda_nm);
   abbe_result result = abbe_scene_check(scene, error);
-  if (result == ABBE_OK) result = abbe_export_survey(scene, target, lambda_nm, report, error);
+  if (result == ABBE_OK) result = export_survey(scene, target, lambda_nm, report, error);
   const abbe_export_writing w = {.scene = scene, .target = target, .report = report};
   if (result == ABBE_OK) result = write_all(path, &w, error);
   return result;

@@ -1,5 +1,5 @@
 /* disjoint_sets.h: a forest over numbers from 0, of which each tree is a set (union-find). It owns
- * no memory: parent[i] begins as i. */
+ * no memory: parent[i] begins as i. Internal to scenes/. */
 #ifndef ABBE_SCENES_GEOMETRY_DISJOINT_SETS_H
 #define ABBE_SCENES_GEOMETRY_DISJOINT_SETS_H
 

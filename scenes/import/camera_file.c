@@ -1,4 +1,4 @@
-#include "scenes/import/camera_file.h"
+#include "scenes/import/scene_reading.h"
 
 #include "base/nearest.h"
 #include "scenes/geometry/vector.h"

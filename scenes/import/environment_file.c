@@ -1,10 +1,9 @@
-#include "scenes/import/environment_file.h"
+#include "scenes/import/scene_reading.h"
 
 #include "colorimetry/image/exr.h"
 #include "colorimetry/upsampling.h"
 #include "scenes/environment/environment_picture.h"
 #include "scenes/geometry/vector.h"
-#include "scenes/import/environment_reading.h"
 #include "scenes/import/scene_value.h"
 
 #include <stdlib.h>

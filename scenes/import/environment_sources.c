@@ -1,6 +1,5 @@
 #include "scenes/geometry/vector.h"
-#include "scenes/import/environment_file.h"
-#include "scenes/import/environment_reading.h"
+#include "scenes/import/scene_reading.h"
 #include "scenes/import/scene_value.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "scenes/import/light_file.h"
+#include "scenes/import/scene_reading.h"
 
 #include "scenes/geometry/vector.h"
 #include "scenes/import/scene_value.h"

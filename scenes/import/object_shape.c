@@ -3,7 +3,7 @@
 #include "scenes/cuts/cut_polyhedron.h"
 #include "scenes/cuts/cut_stretch.h"
 #include "scenes/import/mesh/gltf_material.h"
-#include "scenes/import/object_reading.h"
+#include "scenes/import/scene_reading.h"
 #include "scenes/import/scene_value.h"
 #include "scenes/shapes/brilliant.h"
 #include "scenes/shapes/knot.h"

@@ -1,4 +1,4 @@
-#include "scenes/import/object_surface.h"
+#include "scenes/import/scene_reading.h"
 
 #include "base/number.h"
 #include "scenes/geometry/transform.h"

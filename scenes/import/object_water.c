@@ -1,5 +1,5 @@
 /* Water at the scene's time, as an object of a scene file asks for it. */
-#include "scenes/import/object_reading.h"
+#include "scenes/import/scene_reading.h"
 #include "scenes/import/scene_value.h"
 #include "scenes/shapes/water.h"
 

@@ -1,4 +1,4 @@
-#include "scenes/import/reflectance_file.h"
+#include "scenes/import/scene_reading.h"
 
 #include "colorimetry/reflectance/colour_checker.h"
 #include "colorimetry/reflectance/reflected_light.h"

@@ -1,4 +1,4 @@
-#include "scenes/import/scene_change.h"
+#include "scenes/import/scene_reading.h"
 
 #include "base/nearest.h"
 #include "scenes/import/scene_value.h"

@@ -5,7 +5,7 @@
  * bounds a hollow, one in an even number a body; bodies that cross are no one solid until they are
  * shared out among several meshes, or united. Crossings shallower than 1e-6 of the bounds' diagonal
  * count as touching. Faces of two shells that lie on one another, back to back or flush, are no
- * crossing, but no one solid either. It reads a mesh and changes nothing.
+ * crossing, but no one solid either. It reads a mesh and changes nothing. Internal to scenes/mesh/.
  */
 #ifndef ABBE_SCENES_MESH_SHELLS_H
 #define ABBE_SCENES_MESH_SHELLS_H

@@ -4,7 +4,7 @@
  * Vertices within 1e-9 of the bounds' diagonal count as one point, so that meshes whose vertices
  * are split by normal or texture are still seen as closed. Where bodies touch along an edge, more
  * than two faces meet there: they belong together by pairs that have a body between them. Expected
- * time is linear in the mesh. It reads a mesh and changes nothing.
+ * time is linear in the mesh. It reads a mesh and changes nothing. Internal to scenes/.
  */
 #ifndef ABBE_SCENES_MESH_TOPOLOGY_H
 #define ABBE_SCENES_MESH_TOPOLOGY_H

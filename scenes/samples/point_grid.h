@@ -2,6 +2,7 @@
  * place.
  *
  * The points are the caller's; the grid holds their numbers. It may grow while it is asked.
+ * Internal to scenes/samples/.
  */
 #ifndef ABBE_SCENES_SAMPLES_POINT_GRID_H
 #define ABBE_SCENES_SAMPLES_POINT_GRID_H

@@ -2,7 +2,7 @@
  *
  * A crown of a table, 8 stars, 8 bezels and 16 upper halves; a girdle of 16 upright faces; a
  * pavilion of 16 lower halves and 8 mains that meet in a point: 73 flat faces. Other cuts come as
- * meshes. Terms and proportions are those of the trade [Moses2004].
+ * meshes. Terms and proportions are those of the trade [Moses2004]. Internal to scenes/.
  */
 #ifndef ABBE_SCENES_SHAPES_BRILLIANT_H
 #define ABBE_SCENES_SHAPES_BRILLIANT_H

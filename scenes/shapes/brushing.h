@@ -1,5 +1,5 @@
 /* brushing.h: how rough a mirror is and which way its grooves run. What that does to light is
- * spectral/microfacets.h's.
+ * spectral/microfacets.h's. Internal to scenes/.
  */
 #ifndef ABBE_SCENES_SHAPES_BRUSHING_H
 #define ABBE_SCENES_SHAPES_BRUSHING_H

@@ -3,7 +3,7 @@
  *
  * Triangles that lie in one plane, as far as the file tells, make one of its faces. A solid whose
  * normals are rounded is none, for light would be bent by them and not by its faces. It reads a
- * mesh and changes nothing.
+ * mesh and changes nothing. Internal to scenes/.
  */
 #ifndef ABBE_SCENES_SHAPES_CONVEX_H
 #define ABBE_SCENES_SHAPES_CONVEX_H

@@ -2,7 +2,7 @@
  * wanted.
  *
  * Its middle line winds around a torus that stands around z, centred, and comes back to itself.
- * Smooth normals are those of the surface itself. Lengths in metres.
+ * Smooth normals are those of the surface itself. Lengths in metres. Internal to scenes/.
  */
 #ifndef ABBE_SCENES_SHAPES_KNOT_H
 #define ABBE_SCENES_SHAPES_KNOT_H

@@ -2,6 +2,7 @@
  *
  * Shapes stand in their own coordinates, metres, z up, centred on the origin unless said
  * otherwise. Curved shapes are tessellated with smooth normals, faceted ones with face normals.
+ * Internal to scenes/.
  */
 #ifndef ABBE_SCENES_SHAPES_SHAPE_H
 #define ABBE_SCENES_SHAPES_SHAPE_H

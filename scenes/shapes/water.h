@@ -3,7 +3,7 @@
  *
  * Linear waves: each goes its own way, undisturbed by the others, by the walls (which reflect none)
  * and by its own height. Gravity, surface tension and the depth say how fast [Lamb1932]. Any
- * instant is computed by itself, so frames may be made in any order.
+ * instant is computed by itself, so frames may be made in any order. Internal to scenes/.
  */
 #ifndef ABBE_SCENES_SHAPES_WATER_H
 #define ABBE_SCENES_SHAPES_WATER_H

@@ -3,6 +3,7 @@
  * them.
  *
  * It reads an object and holds maps; what depends on the direction of light it does not know.
+ * Internal to scenes/volume/.
  */
 #ifndef ABBE_SCENES_VOLUME_BODY_SYMMETRY_H
 #define ABBE_SCENES_VOLUME_BODY_SYMMETRY_H

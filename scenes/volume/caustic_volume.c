@@ -1,11 +1,146 @@
 #include "scenes/volume/caustic_volume.h"
 
+#include "base/gsl_guard.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/volume/half.h"
 #include "scenes/volume/volume_tree.h"
 
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { BATCH = 64 }; /* of values at a time: they stay in the cache */
+
+/* value[BATCH][nodes] of the places from `from` on; their number. */
+static size_t take_chunk(size_t nodes, size_t each, const uint16_t *value, size_t from,
+                         double *out) {
+  const size_t count = each - from < BATCH ? each - from : BATCH;
+  for (size_t j = 0; j < nodes; j++)
+    for (size_t i = 0; i < count; i++)
+      out[i * nodes + j] = abbe_half_value(value[j * each + from + i]);
+  return count;
+}
+
+/* Products of the values at each two nodes, the lower half: square[nodes][nodes]. */
+static void multiply(size_t nodes, size_t each, const uint16_t *value, double *chunk,
+                     double *square) {
+  for (size_t from = 0; from < each; from += BATCH) {
+    const size_t count = take_chunk(nodes, each, value, from, chunk);
+#pragma omp parallel for schedule(dynamic, 16)
+    for (size_t j = 0; j < nodes; j++)
+      for (size_t i = 0; i < count; i++) {
+        const double *at = chunk + i * nodes, own = at[j];
+        if (own == 0) continue; /* most cells are dark */
+        for (size_t k = 0; k <= j; k++) square[j * nodes + k] += own * at[k];
+      }
+  }
+}
+
+/* Eigenvalues of the products are squares of the singular values. */
+static bool decompose(size_t nodes, double *square, double *singular, double *mode) {
+  abbe_gsl_guard_enter();
+  gsl_eigen_symmv_workspace *room = gsl_eigen_symmv_alloc(nodes);
+  gsl_vector_view values = gsl_vector_view_array(singular, nodes);
+  gsl_matrix_view products = gsl_matrix_view_array(square, nodes, nodes),
+                  vectors = gsl_matrix_view_array(mode, nodes, nodes);
+  const bool good =
+      room != NULL &&
+      gsl_eigen_symmv(&products.matrix, &values.vector, &vectors.matrix, room) == 0 &&
+      gsl_eigen_symmv_sort(&values.vector, &vectors.matrix, GSL_EIGEN_SORT_VAL_DESC) == 0 &&
+      gsl_matrix_transpose(&vectors.matrix) == 0;
+  if (room != NULL) gsl_eigen_symmv_free(room);
+  abbe_gsl_guard_leave();
+  for (size_t k = 0; good && k < nodes; k++) {
+    singular[k] = sqrt(fmax(singular[k], 0));
+    for (size_t j = 0; j < nodes; j++) mode[k * nodes + j] *= sqrt((double)nodes);
+  }
+  return good;
+}
+
+abbe_result abbe_light_modes_find(size_t nodes, size_t each, const uint16_t *value,
+                                  double *singular, double *mode, abbe_error *error) {
+  if (nodes == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "modes of no nodes: 1 and more have some");
+  double *square = calloc(nodes * nodes, sizeof *square);
+  double *chunk = malloc(BATCH * nodes * sizeof *chunk);
+  bool good = square != NULL && chunk != NULL;
+  if (good) multiply(nodes, each, value, chunk, square);
+  good = good && decompose(nodes, square, singular, mode);
+  free(square);
+  free(chunk);
+  return good
+             ? ABBE_OK
+             : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the modes of %zu nodes", nodes);
+}
+
+#define PI 3.14159265358979323846
+
+/* Associated Legendre functions over sin^m are polynomials of z; times the real and imaginary parts
+ * of (x + i y)^m they need no angle. */
+void abbe_light_harmonics_at(size_t degree, const double d[3], double *value) {
+  double real = 1, imaginary = 0, first = sqrt(1 / (4 * PI));
+  for (size_t m = 0; m <= degree; m++) {
+    double before = 0, now = first; /* of degrees l - 1 and l, each with its norm */
+    for (size_t l = m; l <= degree; l++) {
+      const double both = m > 0 ? sqrt(2) : 1;
+      value[l * (l + 1) + m] = both * now * real;
+      if (m > 0) value[l * (l + 1) - m] = both * now * imaginary;
+      const double n = (double)l + 1, mm = (double)(m * m);
+      const double a = sqrt((4 * n * n - 1) / (n * n - mm));
+      const double b = l > m ? sqrt(((n - 1) * (n - 1) - mm) / (4 * (n - 1) * (n - 1) - 1)) : 0;
+      const double after = a * (d[2] * now - b * before);
+      before = now;
+      now = after;
+    }
+    const double next = real * d[0] - imaginary * d[1];
+    imaginary = real * d[1] + imaginary * d[0];
+    real = next;
+    first *= sqrt((2 * (double)m + 3) / (2 * (double)m + 2));
+  }
+}
+
+/* (B^T B)^-1 B^T of the harmonics B at the nodes. */
+abbe_result abbe_light_harmonics_fit(const abbe_light_nodes *nodes, size_t degree, double *fit,
+                                     abbe_error *error) {
+  const size_t count = abbe_light_harmonics_count(degree);
+  if (degree > ABBE_LIGHT_HARMONICS_MOST || count > nodes->count)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "harmonics to degree %zu: it may be at most %d, and %zu coefficients ask "
+                          "for as many nodes, of which there are %zu",
+                          degree, ABBE_LIGHT_HARMONICS_MOST, count, nodes->count);
+  abbe_gsl_guard_enter();
+  gsl_matrix *square = gsl_matrix_calloc(count, count);
+  abbe_gsl_guard_leave();
+  if (square == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for harmonics");
+  for (size_t j = 0; j < nodes->count; j++) {
+    double value[ABBE_LIGHT_HARMONICS_MOST_COUNT];
+    abbe_light_harmonics_at(degree, nodes->direction[j], value);
+    for (size_t a = 0; a < count; a++)
+      for (size_t b = 0; b < count; b++)
+        gsl_matrix_set(square, a, b, gsl_matrix_get(square, a, b) + value[a] * value[b]);
+  }
+  abbe_gsl_guard_enter();
+  const bool solved =
+      gsl_linalg_cholesky_decomp1(square) == 0 && gsl_linalg_cholesky_invert(square) == 0;
+  abbe_gsl_guard_leave();
+  for (size_t j = 0; solved && j < nodes->count; j++) {
+    double value[ABBE_LIGHT_HARMONICS_MOST_COUNT];
+    abbe_light_harmonics_at(degree, nodes->direction[j], value);
+    for (size_t a = 0; a < count; a++) {
+      fit[a * nodes->count + j] = 0;
+      for (size_t b = 0; b < count; b++)
+        fit[a * nodes->count + j] += gsl_matrix_get(square, a, b) * value[b];
+    }
+  }
+  gsl_matrix_free(square);
+  return solved ? ABBE_OK
+                : abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                                 "%zu nodes do not tell harmonics to degree %zu apart",
+                                 nodes->count, degree);
+}
 
 static const double unit_matrix[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 

@@ -11,11 +11,47 @@
 #ifndef ABBE_SCENES_VOLUME_CAUSTIC_VOLUME_H
 #define ABBE_SCENES_VOLUME_CAUSTIC_VOLUME_H
 
+#include "base/error.h"
 #include "scenes/volume/light_exits.h"
-#include "scenes/volume/light_harmonics.h"
-#include "scenes/volume/light_modes.h"
+#include "scenes/volume/light_nodes.h"
 #include "scenes/volume/volume_body.h"
 #include "scenes/volume/volume_region.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Values at light nodes as sums of a few modes of the light's direction: the singular value
+ * decomposition of the values, cut off. Of all sums of so many terms these leave the least mean
+ * square [EckartYoung1936]. */
+
+/* Of halves value[nodes][each]: singular values that fall, singular[nodes], and modes in their
+ * order, mode[nodes][nodes], a mode a row. Modes are orthogonal, of mean square 1 over the nodes;
+ * the values times a mode, over the number of nodes, are its term. What is left out by the terms
+ * from k on has as its sum of squares that of singular[k] and all behind it. ABBE_INVALID_ARGUMENT
+ * for no nodes, ABBE_NO_MEMORY. */
+abbe_result abbe_light_modes_find(size_t nodes, size_t each, const uint16_t *value,
+                                  double *singular, double *mode, abbe_error *error);
+
+/* Functions of the direction to a light as sums of spherical harmonics, and their coefficients
+ * from values at light nodes by least squares. */
+
+#define ABBE_LIGHT_HARMONICS_MOST 12 /* degree */
+#define ABBE_LIGHT_HARMONICS_MOST_COUNT 169
+
+/* Of all degrees up to that one: (degree + 1)^2. */
+static inline size_t abbe_light_harmonics_count(size_t degree) {
+  return (degree + 1) * (degree + 1);
+}
+
+/* The real harmonics of a unit direction, each of unit square over the sphere: value[l (l + 1) +
+ * m], m from -l to l. degree: at most ABBE_LIGHT_HARMONICS_MOST. */
+void abbe_light_harmonics_at(size_t degree, const double direction[3], double *value);
+
+/* fit[count][nodes->count]: a coefficient is the sum of its row times the values at the nodes. The
+ * nodes' spacing is not quite even, so that equal weights would not give a harmonic back; least
+ * squares do. ABBE_INVALID_ARGUMENT for more coefficients than nodes, ABBE_NO_MEMORY. */
+abbe_result abbe_light_harmonics_fit(const abbe_light_nodes *nodes, size_t degree, double *fit,
+                                     abbe_error *error);
 
 typedef enum abbe_volume_kind {
   /* F of X, Y and Z, of light with an irradiance of 1 across its beam whose white has Y = 1: what

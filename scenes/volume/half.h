@@ -1,7 +1,5 @@
 /* half.h: numbers of 16 bits, as OpenEXR and graphics devices store them: 11 bits of a mantissa, to
  * 65504, in steps of 6e-8 below 6e-5.
- *
- * Internal to scenes/ and gl/: it is not installed.
  */
 #ifndef ABBE_SCENES_VOLUME_HALF_H
 #define ABBE_SCENES_VOLUME_HALF_H

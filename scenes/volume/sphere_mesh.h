@@ -1,7 +1,7 @@
 /* sphere_mesh.h: the unit sphere cut into triangles by great circles: a subdivided icosahedron, or
  * the octahedral map's texels; which of them a direction meets, by a table.
  *
- * It holds directions and no light.
+ * It holds directions and no light. Internal to scenes/volume/.
  */
 #ifndef ABBE_SCENES_VOLUME_SPHERE_MESH_H
 #define ABBE_SCENES_VOLUME_SPHERE_MESH_H

@@ -3,7 +3,7 @@
  *
  * Neighbours are joined by fours in a shell and by eights in a grid, and what is joined again, as
  * long as no cell's value changes by more than a tolerance; the joint value is their mean by
- * volume, so that flux is kept.
+ * volume, so that flux is kept. Internal to scenes/volume/.
  */
 #ifndef ABBE_SCENES_VOLUME_VOLUME_TREE_H
 #define ABBE_SCENES_VOLUME_VOLUME_TREE_H

@@ -1,7 +1,6 @@
 #include "spectral/dispersion/fit.h"
 
 #include "base/gsl_guard.h"
-#include "spectral/dispersion/fit_forms.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* The Cauchy form is linear: it is solved in Chebyshev polynomials of t, which runs from -1 to 1
  * as x = L^-2 runs over the points, and then written out in powers of x. */
-#include "spectral/dispersion/fit_forms.h"
+#include "spectral/dispersion/fit.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit.h>

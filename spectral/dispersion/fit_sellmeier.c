@@ -1,7 +1,7 @@
 /* The Sellmeier form is not linear in its poles. Starts are taken from a grid of poles, at each of
  * which the strengths B follow linearly; the best few are followed down by Levenberg-Marquardt in
  * ln B and in a coordinate that keeps each pole on its side of the points. */
-#include "spectral/dispersion/fit_forms.h"
+#include "spectral/dispersion/fit.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>

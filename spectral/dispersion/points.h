@@ -1,7 +1,7 @@
 /* points.h: measured or tabulated points over wavelength while they are being read.
  *
  * A list that grows, is put in order, and becomes a spectrum. Its numbers carry no unit of their
- * own. It does not read files.
+ * own. It does not read files. Internal to spectral/.
  */
 #ifndef ABBE_SPECTRAL_DISPERSION_POINTS_H
 #define ABBE_SPECTRAL_DISPERSION_POINTS_H

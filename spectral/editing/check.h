@@ -9,7 +9,7 @@
 #define ABBE_SPECTRAL_EDITING_CHECK_H
 
 #include "base/error.h"
-#include "spectral/editing/finding.h"
+#include "spectral/editing/check_parts.h"
 #include "spectral/materials/material_table.h"
 
 /* Adds what there is to say about one material. known may be NULL or hold the material itself.

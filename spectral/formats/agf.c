@@ -1,4 +1,4 @@
-#include "spectral/formats/agf.h"
+#include "spectral/formats/material_import.h"
 
 #include "base/encoding.h"
 #include "base/file.h"

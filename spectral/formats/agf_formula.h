@@ -2,6 +2,7 @@
  *
  * Coefficients are in the catalogue's order and for micrometres in air, as Zemax has them [ZemaxAGF]. It reads
  * no files: see spectral/formats/agf.h and spectral/formats/agf_write.h.
+ * Internal to spectral/formats/.
  */
 #ifndef ABBE_SPECTRAL_FORMATS_AGF_FORMULA_H
 #define ABBE_SPECTRAL_FORMATS_AGF_FORMULA_H

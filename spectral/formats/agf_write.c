@@ -1,7 +1,7 @@
-#include "spectral/formats/agf_write.h"
+#include "spectral/formats/material_write.h"
 
 #include "base/number.h"
-#include "base/summary.h"
+#include "base/report.h"
 #include "spectral/formats/agf_formula.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/materials/material_numbers.h"

@@ -1,4 +1,4 @@
-#include "spectral/formats/csv_write.h"
+#include "spectral/formats/material_write.h"
 
 #include "base/number.h"
 #include "spectral/materials/absorption.h"

@@ -3,8 +3,6 @@
 #include "base/encoding.h"
 #include "base/file.h"
 #include "base/number.h"
-#include "spectral/formats/agf.h"
-#include "spectral/formats/rii.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/materials/conductor.h"
 #include "spectral/store/material_store.h"

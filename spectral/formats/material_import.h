@@ -1,7 +1,7 @@
 /* material_import.h: materials from files of any kind that is read, into one table.
  *
  * Finds out what a file is and calls spectral/formats/agf.h, rii.h, csv_points.h or material_table.h. What
- * could not be used is noted and does not stop the rest.
+ * could not be used is noted and does not stop the rest. Internal to spectral/.
  */
 #ifndef ABBE_SPECTRAL_FORMATS_MATERIAL_IMPORT_H
 #define ABBE_SPECTRAL_FORMATS_MATERIAL_IMPORT_H
@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/report.h"
 #include "spectral/dispersion/csv_points.h"
+#include "spectral/materials/material.h"
 #include "spectral/materials/material_table.h"
 
 #include <stddef.h>
@@ -58,5 +59,41 @@ abbe_result abbe_import_load(const char *path, const abbe_import_options *option
  * refractiveindex.info or a list of points, error says so and how it becomes a table; else it stays
  * as it is. Returns result. */
 abbe_result abbe_import_explain(const char *path, abbe_result result, abbe_error *error);
+
+/* Zemax glass catalogues (AGF files) as material tables.
+ *
+ * Reads what real catalogues hold: any encoding, either line end, free text before the first
+ * glass, coefficient lines that wrap, missing fields and '-', an n_d of 1 that stands for none. A
+ * glass that cannot be used is noted with its line, its name and the reason, and does not stop the
+ * rest. Writing is in spectral/formats/agf_write.h. */
+
+/* The glasses of size bytes of catalogue in its order, each fit for a table (abbe_material_check);
+ * name stands for the file in messages and sources. Indices are relative to air at the catalogue's
+ * reference temperature (that of TD), the range is that of LD, internal transmittances (IT) become
+ * attenuation, n_d and V_d of NM are kept as published; a GC line that begins with "source:" is the
+ * source. ABBE_PARSE where there is no NM line, ABBE_SCHEMA where no glass could be used. */
+abbe_result abbe_agf_parse(const char *bytes, size_t size, const char *name,
+                           abbe_material_table *out, abbe_report *report, abbe_error *error);
+/* The same from a file of at most 64 MiB. */
+abbe_result abbe_agf_load(const char *path, abbe_material_table *out, abbe_report *report,
+                          abbe_error *error);
+
+/* Materials from files of the refractiveindex.info database.
+ *
+ * A file holds one material: an index (formula 1 to 9, tabulated n or nk), maybe k, where the
+ * numbers come from, and what a maker's catalogue says. It does not read the database's catalogue
+ * of pages, the nonlinear index, or formulas for k. Writing is in spectral/formats/rii_write.h. */
+
+/* The material of size bytes of text [RefractiveIndexInfo], fit for a table. path stands for the
+ * file in messages; name is the material's name, or NULL to make one of the path:
+ * …/main/SiO2/nk/Malitson.yml is SiO2-Malitson, …/optical/N-BK7.yml is N-BK7. k becomes
+ * attenuation, or the index a conductor's (spectral/materials/conductor.h), with a note; references and comments lose their HTML. Indices or wavelengths that the file calls
+ * absolute (of the vacuum) are kept and get a warning. *out is freed by the caller where the result
+ * is ABBE_OK. ABBE_SCHEMA or ABBE_PARSE, with file and line, where there is no usable index. */
+abbe_result abbe_rii_parse(const char *text, size_t size, const char *path, const char *name,
+                           abbe_material *out, abbe_report *report, abbe_error *error);
+/* The same from a file of at most 16 MiB. */
+abbe_result abbe_rii_load(const char *path, const char *name, abbe_material *out,
+                          abbe_report *report, abbe_error *error);
 
 #endif

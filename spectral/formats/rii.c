@@ -1,4 +1,4 @@
-#include "spectral/formats/rii.h"
+#include "spectral/formats/material_import.h"
 
 #include "base/encoding.h"
 #include "base/file.h"

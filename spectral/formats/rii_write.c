@@ -1,4 +1,4 @@
-#include "spectral/formats/rii_write.h"
+#include "spectral/formats/material_write.h"
 
 #include "base/html_text.h"
 #include "base/number.h"

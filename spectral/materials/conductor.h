@@ -2,6 +2,7 @@
  *
  * It makes the dispersion of a conductor and tells metals from glasses among imported points. What
  * a conductor does to light is in spectral/optics.h, its record in material.h.
+ * Internal to spectral/.
  */
 #ifndef ABBE_SPECTRAL_MATERIALS_CONDUCTOR_H
 #define ABBE_SPECTRAL_MATERIALS_CONDUCTOR_H

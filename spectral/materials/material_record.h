@@ -2,6 +2,7 @@
  *
  * docs/materials.md documents the keys. Complaints name file, line, key and value. It knows nothing
  * of the table around the record, and does not write: see spectral/formats/material_write.h.
+ * Internal to spectral/materials/.
  */
 #ifndef ABBE_SPECTRAL_MATERIALS_MATERIAL_RECORD_H
 #define ABBE_SPECTRAL_MATERIALS_MATERIAL_RECORD_H

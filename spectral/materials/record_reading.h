@@ -1,4 +1,4 @@
-/* record_reading.h: what the parts of a record are read with. Internal to spectral/materials. */
+/* record_reading.h: what the parts of a record are read with. Internal to spectral/materials/. */
 #ifndef ABBE_SPECTRAL_MATERIALS_RECORD_READING_H
 #define ABBE_SPECTRAL_MATERIALS_RECORD_READING_H
 

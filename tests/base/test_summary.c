@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "base/summary.h"
+#include "base/report.h"
 
 static const abbe_summary_row rows[] = {{ABBE_NOTE_LOST, "no place for wit"},
                                         {ABBE_NOTE_CHANGED, "said otherwise"},

@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "base/text_cursor.h"
+#include "base/yaml/yaml_tree.h"
 
 /* One character of each length that UTF-8 has. */
 static const char mixed[] = "a\u00b5\u2026\U0001F48Ez";

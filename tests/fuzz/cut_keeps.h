@@ -5,8 +5,7 @@
 
 #include "tests/fuzz/fuzz.h"
 
-#include "scenes/cuts/cut_asc.h"
-#include "scenes/cuts/cut_gem.h"
+#include "scenes/cuts/cut_file.h"
 #include "scenes/cuts/cut_measures.h"
 
 #include <math.h>

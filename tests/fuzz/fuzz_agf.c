@@ -1,6 +1,6 @@
 #include "tests/fuzz/keeps.h"
 
-#include "spectral/formats/agf.h"
+#include "spectral/formats/material_import.h"
 
 const char *const fuzz_words[] = {"NM ",           "GC ",
                                   "ED ",           "CD ",

@@ -1,5 +1,5 @@
 /* Gem Cut Studio's designs. */
-#include "scenes/cuts/cut_gcs.h"
+#include "scenes/cuts/cut_file.h"
 #include "tests/fuzz/cut_keeps.h"
 
 const char *const fuzz_words[] = {"<GemCutStudio version=\"1000\">",

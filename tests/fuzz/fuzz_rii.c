@@ -1,6 +1,6 @@
 #include "tests/fuzz/keeps.h"
 
-#include "spectral/formats/rii.h"
+#include "spectral/formats/material_import.h"
 
 const char *const fuzz_words[] = {"DATA:\n",
                                   "  - type: formula 2\n",

@@ -4,10 +4,7 @@
 
 #include "tests/fuzz/fuzz.h"
 
-#include "spectral/formats/agf_write.h"
-#include "spectral/formats/csv_write.h"
 #include "spectral/formats/material_write.h"
-#include "spectral/formats/rii_write.h"
 #include "spectral/formats/shader_export.h"
 
 #include <math.h>

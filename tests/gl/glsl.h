@@ -10,7 +10,7 @@
 
 #include "gl/device/bindings.h"
 #include "gl/device/program.h"
-#include "gl/scene/bvh_nodes.h"
+#include "gl/scene/gpu_scene.h"
 
 #include <stdlib.h>
 

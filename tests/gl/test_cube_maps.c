@@ -3,7 +3,7 @@
 #include "tests/gl/frame.h"
 #include "tests/validation/trace_scene.h"
 
-#include "gl/plan/examine/light_cube.h"
+#include "gl/plan/examine/light_views.h"
 
 static const double pi = 3.14159265358979;
 

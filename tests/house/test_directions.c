@@ -116,6 +116,68 @@ static void test_the_rule_refuses_wrong_directions(void **state) {
   assert_true(may_use("cli/render/render.c", "library/lib_scene.h"));
 }
 
+/* ---- headers that stay inside ---- */
+
+/* The folder that a header's first comment says it is internal to; false: it says nothing. */
+static bool read_inside(const char *path, char folder[SOURCES_MAX_PATH]) {
+  char full[2 * SOURCES_MAX_PATH], text[4096];
+  size_t used = 0;
+  int c = EOF, before = EOF;
+  snprintf(full, sizeof full, ABBE_SOURCE_DIR "/%s", path);
+  FILE *file = fopen(full, "r");
+  assert_non_null(file);
+  while (used + 1 < sizeof text && (c = fgetc(file)) != EOF && !(before == '*' && c == '/')) {
+    before = c;
+    if (c == '*' || c == '\n') c = ' ';
+    if (c != ' ' || (used > 0 && text[used - 1] != ' ')) text[used++] = (char)c;
+  }
+  fclose(file);
+  text[used] = '\0';
+  const char *at = strstr(text, "Internal to ");
+  if (at == NULL || sscanf(at, "Internal to %1023[^.:, ]", folder) != 1) return false;
+  assert_true(folder[strlen(folder) - 1] == '/');
+  return true;
+}
+
+/* What is wrong with the header's word about who may include it. */
+static size_t judge_header(const sources *all, const char *header) {
+  char folder[SOURCES_MAX_PATH] = "";
+  const bool inside = read_inside(header, folder);
+  size_t wrong = 0, others = 0;
+  for (size_t i = 0; i < all->count; i++) {
+    const source_file *f = &all->file[i];
+    if (strcmp(sources_room(f->path), "tests") == 0) continue;
+    for (size_t k = 0; k < f->include_count; k++) {
+      if (strcmp(f->include[k].name, header) != 0) continue;
+      others += strcmp(sources_room(f->path), sources_room(header)) != 0;
+      if (!inside || strncmp(f->path, folder, strlen(folder)) == 0) continue;
+      wrong++;
+      print_error("%s: includes %s, which is internal to %s\n", f->path, header, folder);
+    }
+  }
+  if (inside || others > 0 || strcmp(sources_room(header), "library") == 0) return wrong;
+  print_error("%s: no other room includes it; it has to say which folder it is internal to\n",
+              header);
+  return wrong + 1;
+}
+
+static void test_headers_stay_inside(void **state) {
+  (void)state;
+  sources all;
+  size_t wrong = 0, headers = 0;
+  sources_read(&all);
+  for (size_t i = 0; i < all.count; i++) {
+    const char *path = all.file[i].path;
+    if (strcmp(sources_ending(path), "h") != 0 || strcmp(sources_room(path), "tests") == 0)
+      continue;
+    headers++;
+    wrong += judge_header(&all, path);
+  }
+  sources_free(&all);
+  assert_int_equal(wrong, 0);
+  assert_true(headers > 200);
+}
+
 static void test_include_lines_are_understood(void **state) {
   (void)state;
   char name[SOURCES_MAX_PATH];
@@ -200,6 +262,7 @@ static void test_who_wants_what_is_defined_is_found(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_sources_keep_the_directions),
                                      cmocka_unit_test(test_the_rule_refuses_wrong_directions),
+                                     cmocka_unit_test(test_headers_stay_inside),
                                      cmocka_unit_test(test_include_lines_are_understood),
                                      cmocka_unit_test(test_the_objects_keep_the_directions),
                                      cmocka_unit_test(test_lines_of_nm_are_understood),

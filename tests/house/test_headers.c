@@ -68,7 +68,7 @@ static void test_every_header_stands_alone(void **state) {
   }
   sources_free(&all);
   assert_int_equal(wrong, 0);
-  assert_true(read > 400);
+  assert_true(read > 250);
   assert_true(alone.count < read / 4);
 }
 

@@ -7,12 +7,10 @@
 #include "spectral/editing/record_draft.h"
 #include "spectral/editing/table_edit.h"
 #include "spectral/editing/table_fix.h"
-#include "spectral/formats/csv_write.h"
 #include "spectral/formats/import_batch.h"
 #include "spectral/formats/material_import.h"
 #include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
-#include "spectral/formats/rii_write.h"
 #include "spectral/formats/shader_export.h"
 #include "spectral/materials/convert.h"
 #include "spectral/materials/material_query.h"
@@ -21,7 +19,6 @@
 #include "spectral/wavelengths.h"
 
 #include "base/file.h"
-#include "spectral/formats/agf_write.h"
 
 #define CORPUS ABBE_SOURCE_DIR "/tests/fuzz/corpus/"
 #define TABLE ABBE_SOURCE_DIR "/tests/fuzz/parts/table.yaml"

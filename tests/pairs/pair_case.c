@@ -1,6 +1,6 @@
 #include "tests/pairs/pair_case.h"
 
-#include "cli/view/work/view_settings.h"
+#include "cli/view/work/view_worker.h"
 #include "gl/renderer.h"
 #include "scenes/import/scene_file.h"
 #include "validation/tracer/tracer.h"

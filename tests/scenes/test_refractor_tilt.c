@@ -1,7 +1,7 @@
 /* Stones that are tilted stand where a file with the same rotation puts them. */
 #include "tests/scenes/scene_text.h"
 
-#include "scenes/refractor_tilt.h"
+#include "scenes/object_motion.h"
 
 #include <math.h>
 

@@ -5,6 +5,7 @@
  * the layers S0.550,000000nm of spectral OpenEXR [Fichet2021]. Standard errors are the channels of
  * the same names behind "stderr."; where none of them is finite they are not known. Two fields are
  * brought to one size and one space here; how far they are apart is compare.h's business.
+ * Internal to validation/compare/.
  */
 #ifndef ABBE_VALIDATION_COMPARE_FIELD_H
 #define ABBE_VALIDATION_COMPARE_FIELD_H

@@ -63,4 +63,16 @@ abbe_result abbe_file_comparison_judge(const abbe_file_comparison *comparison,
 abbe_result abbe_file_comparison_draw(const abbe_file_comparison *comparison, const char *path,
                                       double range, abbe_error *error);
 
+/* What a reader of a comparison should know beside its numbers, in sentences. */
+
+#define ABBE_COMPARE_MAX_NOTES 16
+
+typedef struct abbe_compare_notes {
+  size_t count;
+  char note[ABBE_COMPARE_MAX_NOTES][400];
+} abbe_compare_notes;
+
+/* What the files do not say or differ in, what the numbers are in, and what noise explains. */
+void abbe_compare_notes_make(const abbe_file_comparison *comparison, abbe_compare_notes *out);
+
 #endif

@@ -1,4 +1,4 @@
-#include "validation/compare/flip.h"
+#include "validation/compare/compare_state.h"
 
 #include "base/order.h"
 #include "colorimetry/difference.h"

@@ -3,6 +3,7 @@
  * A mask is a byte an element, 1 inside and 0 outside. It is found from the light itself, the
  * brightest elements that together hold a share of it, or taken from a picture that was drawn for
  * it. It knows nothing of rows and columns, and nothing is smoothed or grown.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_COMPARE_MASK_H
 #define ABBE_VALIDATION_COMPARE_MASK_H

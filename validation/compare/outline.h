@@ -10,6 +10,7 @@
 #define ABBE_VALIDATION_COMPARE_OUTLINE_H
 
 #include "base/error.h"
+#include "colorimetry/image/image.h"
 #include "validation/compare/mask.h"
 
 #include <stddef.h>
@@ -74,5 +75,16 @@ typedef struct abbe_outline_agreement {
 /* ABBE_INVALID_ARGUMENT for different sizes, ABBE_NO_MEMORY. */
 abbe_result abbe_outline_compare(const abbe_outline *a, const abbe_outline *b,
                                  abbe_outline_agreement *out, abbe_error *error);
+
+/* Outlines of pictures and maps in files. */
+
+/* The outline of the caustic's layers where the picture has them, else of its colour; with `minus`
+ * (a picture of the same size and place, or NULL) of its colour less that one's. place[0] gets
+ * the picture's display window, for abbe_image_check_place, and which part of its file it is;
+ * place[1] the other one's. Errors of abbe_field_load and
+ * abbe_outline_make; ABBE_INVALID_ARGUMENT where there is no colour or the two do not match. */
+abbe_result abbe_outline_load(const char *path, const char *minus,
+                              const abbe_outline_options *options, abbe_outline *out,
+                              abbe_image place[2], abbe_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-#include "validation/compare/ztest.h"
+#include "validation/compare/compare.h"
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 
 #include "colorimetry/rgb_space.h"
 #include "validation/denoise/denoise_part.h"
-#include "validation/denoise/plane.h"
+#include "validation/denoise/nl_means.h"
 
 #include <math.h>
 #include <omp.h>

@@ -1,6 +1,6 @@
 #include "validation/denoise/denoise_part.h"
 
-#include "validation/denoise/plane.h"
+#include "validation/denoise/nl_means.h"
 
 #include <math.h>
 #include <stdio.h>

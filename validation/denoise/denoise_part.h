@@ -1,7 +1,7 @@
 /* denoise_part.h: a part of a traced picture whose noise is of one kind, filtered as brightness and
  * colour apart.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_DENOISE_DENOISE_PART_H
 #define ABBE_VALIDATION_DENOISE_DENOISE_PART_H

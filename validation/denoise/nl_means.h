@@ -4,7 +4,7 @@
  * than their noise [RousselleKnausZwicker2012], and which show the same thing
  * [RousselleManziZwicker2013]. It knows of no colours and no files.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_DENOISE_NL_MEANS_H
 #define ABBE_VALIDATION_DENOISE_NL_MEANS_H
@@ -36,5 +36,13 @@ typedef struct abbe_nl_means {
 
 /* ABBE_NO_MEMORY. The same result for any number of threads. */
 abbe_result abbe_nl_means_run(const abbe_nl_means *job, size_t threads, abbe_error *error);
+
+/* Means over squares of pixels.
+ * */
+
+/* out (not from) of width x height pixels: means over squares of `reach` pixels to each side, less
+ * where they leave the plane. `room` is another plane. */
+void abbe_plane_mean(const float *from, size_t width, size_t height, size_t reach, size_t threads,
+                     float *room, float *out);
 
 #endif

@@ -1,7 +1,7 @@
 /* gem_eye.h: an eye far away that looks at a stone: parallel rays through a square of pixels.
  *
  * The stone lies level or is tilted about a horizontal axis of its own; the square is the same at
- * all tilts, the least that holds the ball around the stone's corners.
+ * all tilts, the least that holds the ball around the stone's corners. Internal to validation/gem/.
  */
 #ifndef ABBE_VALIDATION_GEM_GEM_EYE_H
 #define ABBE_VALIDATION_GEM_GEM_EYE_H

@@ -1,4 +1,5 @@
-/* gem_number.h: a measured number and its standard error, from independent repeats. */
+/* gem_number.h: a measured number and its standard error, from independent repeats.
+ * Internal to validation/gem/. */
 #ifndef ABBE_VALIDATION_GEM_GEM_NUMBER_H
 #define ABBE_VALIDATION_GEM_GEM_NUMBER_H
 

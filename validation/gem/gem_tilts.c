@@ -1,7 +1,7 @@
 #include "validation/gem/gem_tilts.h"
 
 #include "colorimetry/difference.h"
-#include "validation/gem/gem_lamps.h"
+#include "validation/gem/gem_light.h"
 #include "validation/gem/gem_view.h"
 
 #include <math.h>

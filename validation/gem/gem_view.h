@@ -3,7 +3,7 @@
  * For each pixel, repeat and wavelength one ray of the eye, followed to all its exits. Means are
  * over the silhouette; those in white light are weighted by what the eye makes of each wavelength
  * under an illuminant (colorimetry/weights.h). Errors come from the repeats. Results do not depend
- * on the number of threads.
+ * on the number of threads. Internal to validation/gem/.
  */
 #ifndef ABBE_VALIDATION_GEM_GEM_VIEW_H
 #define ABBE_VALIDATION_GEM_GEM_VIEW_H

@@ -4,7 +4,7 @@
  * A texel belongs to the ring that its middle lies in, so the rings of a map have ragged edges and
  * a circle's flux is not theirs. Both halves of a comparison go over the same texels here: the
  * map's are summed, and the profile's flux is shared out between the rings wherever a circle
- * passes texels of both. It knows nothing of how either came about.
+ * passes texels of both. It knows nothing of how either came about. Internal to validation/known/.
  */
 #ifndef ABBE_VALIDATION_KNOWN_RINGS_H
 #define ABBE_VALIDATION_KNOWN_RINGS_H

@@ -8,6 +8,7 @@
  * answers are flux inside a circle and mean irradiance of a ring, which do not.
  *
  * It knows nothing of scenes, the tracer or the renderer: it is what they are held against.
+ * Internal to validation/known/.
  */
 #ifndef ABBE_VALIDATION_KNOWN_SPHERE_QUADRATURE_H
 #define ABBE_VALIDATION_KNOWN_SPHERE_QUADRATURE_H

@@ -3,7 +3,7 @@
  *
  * One light, one wavelength. Light goes through two interfaces of the triangles, or off one mirror;
  * what is totally reflected inside, or meets the object again, is left out: how it goes on is not
- * what estimators are judged by. In double precision.
+ * what estimators are judged by. In double precision. Internal to validation/landing/.
  */
 #ifndef ABBE_VALIDATION_LANDING_LANDING_RAYS_H
 #define ABBE_VALIDATION_LANDING_LANDING_RAYS_H

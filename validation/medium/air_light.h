@@ -4,7 +4,7 @@
  * One place on the ray and one of the lamp at a time, unbiased. What a refractor or mirror sends
  * there is not among it: photons bring it (haze_grid.h).
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_MEDIUM_AIR_LIGHT_H
 #define ABBE_VALIDATION_MEDIUM_AIR_LIGHT_H

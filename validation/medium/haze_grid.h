@@ -6,7 +6,7 @@
  * within a radius of the medium's edge; both vanish as the radius shrinks from pass to pass
  * [Jarosz2008], [KnausZwicker2011].
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_MEDIUM_HAZE_GRID_H
 #define ABBE_VALIDATION_MEDIUM_HAZE_GRID_H

@@ -5,7 +5,7 @@
  * unbiased; nearer than a distance it does not, where few would add much. All are kept for gathers
  * along paths of the eye. The path goes on with what is left of it, whatever happened here.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_SHAFTS_SHAFT_PHOTONS_H
 #define ABBE_VALIDATION_SHAFTS_SHAFT_PHOTONS_H

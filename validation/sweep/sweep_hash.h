@@ -1,4 +1,5 @@
-/* sweep_hash.h: numbers that tell whether two sweeps saw one scene, and one reference. */
+/* sweep_hash.h: numbers that tell whether two sweeps saw one scene, and one reference.
+ * Internal to validation/sweep/. */
 #ifndef ABBE_VALIDATION_SWEEP_SWEEP_MEASURE_HASH_H
 #define ABBE_VALIDATION_SWEEP_SWEEP_MEASURE_HASH_H
 

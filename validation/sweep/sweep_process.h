@@ -4,6 +4,7 @@
  * `abbe render` or `abbe trace` with a row's setting, by the clock: cold, with an empty cache of
  * shaders, and warm, with one that such a process has filled. What the process prints is dropped;
  * its picture and the caches are in a temporary folder, which goes with the measuring.
+ * Internal to validation/sweep/.
  */
 #ifndef ABBE_VALIDATION_SWEEP_SWEEP_PROCESS_H
 #define ABBE_VALIDATION_SWEEP_SWEEP_PROCESS_H

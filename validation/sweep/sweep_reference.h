@@ -2,7 +2,7 @@
  * table.
  *
  * A traced one is stamped with its scene and request and taken again where both are the same; what
- * was stopped goes on from its checkpoint.
+ * was stopped goes on from its checkpoint. Internal to validation/sweep/.
  */
 #ifndef ABBE_VALIDATION_SWEEP_SWEEP_REFERENCE_H
 #define ABBE_VALIDATION_SWEEP_SWEEP_REFERENCE_H

@@ -2,7 +2,7 @@
  * that takes once the scene stands.
  *
  * What is made once for a scene (geometry, tables, where lights aim) is not in the times, as what a
- * renderer prepares is not. It compares nothing.
+ * renderer prepares is not. It compares nothing. Internal to validation/sweep/.
  */
 #ifndef ABBE_VALIDATION_SWEEP_SWEEP_TRACE_H
 #define ABBE_VALIDATION_SWEEP_SWEEP_TRACE_H

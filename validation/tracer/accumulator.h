@@ -7,7 +7,7 @@
  *
  * A single unit would take all that is dim away beside what is bright. There are two, 2^32 apart: a
  * number goes by its own size to the one that keeps all its bits, or, below 2^24 of the finer ones,
- * to the nearest of these.
+ * to the nearest of these. Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRACER_ACCUMULATOR_H
 #define ABBE_VALIDATION_TRACER_ACCUMULATOR_H

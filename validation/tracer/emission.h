@@ -1,7 +1,7 @@
 /* emission.h: the photons that a light sends to the refractors in one pass: how many each cell of
  * its projection map gets, and where, whereto and at which wavelength each of them starts.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRACER_EMISSION_H
 #define ABBE_VALIDATION_TRACER_EMISSION_H

@@ -1,4 +1,4 @@
-#include "validation/tracer/guide_sums.h"
+#include "validation/tracer/tracer_state.h"
 
 #include <math.h>
 #include <stdlib.h>

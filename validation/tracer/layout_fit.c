@@ -1,4 +1,4 @@
-#include "validation/tracer/layout_fit.h"
+#include "validation/tracer/tracer_state.h"
 
 #include "base/order.h"
 #include "scenes/geometry/vector.h"

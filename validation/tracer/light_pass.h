@@ -1,7 +1,7 @@
 /* light_pass.h: the photons of a pass, from the lights to the map, the picture and the camera's
  * gathers.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRACER_LIGHT_PASS_H
 #define ABBE_VALIDATION_TRACER_LIGHT_PASS_H

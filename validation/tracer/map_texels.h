@@ -2,7 +2,7 @@
  *
  * The arithmetic of abbe_map_layout_texel, step by step: the texels are the same ones.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRACER_MAP_TEXELS_H
 #define ABBE_VALIDATION_TRACER_MAP_TEXELS_H

@@ -1,7 +1,7 @@
 /* pass_sums.h: which passes a tracer holds, and what it has summed over them, as whole numbers
  * alone: so they can be written to a file, and added to those of other passes.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRACER_PASS_SUMS_H
 #define ABBE_VALIDATION_TRACER_PASS_SUMS_H

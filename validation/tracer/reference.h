@@ -1,7 +1,7 @@
 /* reference.h: a traced reference from start to end: passes, checkpoints, the picture and the map.
  *
  * What `abbe_tracer` does pass by pass, as one piece of work that can be stopped and taken up
- * again. It compares nothing.
+ * again. It compares nothing. Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRACER_REFERENCE_H
 #define ABBE_VALIDATION_TRACER_REFERENCE_H

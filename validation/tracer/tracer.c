@@ -2,8 +2,8 @@
 
 #include "base/clock.h"
 #include "spectral/wavelengths.h"
-#include "validation/tracer/layout_fit.h"
 #include "validation/tracer/light_pass.h"
+#include "validation/tracer/tracer_state.h"
 #include "validation/transport/light_range.h"
 #include "validation/walks/eye_samples.h"
 

@@ -1,7 +1,7 @@
 /* whole_sum.h: sums of whole numbers over passes: they have the same bits in whatever order, and on
  * however many machines, the passes were done.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRACER_WHOLE_SUM_H
 #define ABBE_VALIDATION_TRACER_WHOLE_SUM_H

@@ -7,6 +7,7 @@
  * of the scenes' ratios to it. The tracer's errors are told likewise, by what the yardstick says of
  * its own error; the renderer's is the worst of the scenes'. It is a part of the file that
  * sweep_presets.h writes, and what validation/sweep/picture_choice.h reads.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRADEOFF_SWEEP_PICTURES_H
 #define ABBE_VALIDATION_TRADEOFF_SWEEP_PICTURES_H

@@ -2,6 +2,7 @@
  *
  * Bands of equal width tile the range; a band's value is the mean over it, a nanometre. Their
  * channels are named as [Fichet2021] lays them out, by the wavelength in the middle.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_BANDS_H
 #define ABBE_VALIDATION_TRANSPORT_BANDS_H

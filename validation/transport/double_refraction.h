@@ -7,7 +7,7 @@
  *
  * The physics is spectral/uniaxial.h's, in double precision.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_DOUBLE_REFRACTION_H
 #define ABBE_VALIDATION_TRANSPORT_DOUBLE_REFRACTION_H

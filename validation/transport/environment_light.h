@@ -7,7 +7,7 @@
  * Photons start from everywhere around the balls that hold the refractors and mirrors: a direction
  * is drawn by its luminance, and a place on the disk of one of the balls across it.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_ENVIRONMENT_LIGHT_H
 #define ABBE_VALIDATION_TRANSPORT_ENVIRONMENT_LIGHT_H

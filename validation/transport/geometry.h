@@ -4,7 +4,7 @@
  * in the middle of the refractors and they are about one unit in size, so that single precision
  * serves a scene of any size and place. Faces and interpolated normals point outwards. It finds
  * hits; what light does there is the walks' business. A geometry is read-only once made, by any
- * number of threads; the scene must outlive it.
+ * number of threads; the scene must outlive it. Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_GEOMETRY_H
 #define ABBE_VALIDATION_TRANSPORT_GEOMETRY_H

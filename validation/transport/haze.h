@@ -5,7 +5,7 @@
  * Light that is scattered once leaves the path that it was on; what becomes of it is the walks'
  * business. Its oracle is scenes/medium/medium.h.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_HAZE_H
 #define ABBE_VALIDATION_TRANSPORT_HAZE_H

@@ -2,6 +2,7 @@
  *
  * The tracer's own form of Snell's and Fresnel's laws; its oracle is spectral/optics.h. Directions
  * are those in which the light travels; n is the unit normal on the side that it comes from.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_INTERFACE_H
 #define ABBE_VALIDATION_TRANSPORT_INTERFACE_H

@@ -1,6 +1,6 @@
 /* lamp_place.h: a place on a lamp, drawn evenly over its area, and kept clear of its surface.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_LAMP_PLACE_H
 #define ABBE_VALIDATION_TRANSPORT_LAMP_PLACE_H

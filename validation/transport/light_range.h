@@ -1,7 +1,7 @@
 /* light_range.h: how bright a white receiver in the middle of the scene is by each of its lights, its
  * ambient light, its background and its environment: the range that a picture's sums are to hold.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_LIGHT_RANGE_H
 #define ABBE_VALIDATION_TRANSPORT_LIGHT_RANGE_H

@@ -5,7 +5,7 @@
  * later refractor covers is no interface, nor is one between two of the same material. The tables
  * hold index and attenuation of every refractor at the sampler's wavelengths. Air (n = 1) is where
  * no refractor is. A uniaxial crystal has two indices and an axis (double_refraction.h); two of one
- * material are one medium where their axes are alike.
+ * material are one medium where their axes are alike. Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_MEDIA_H
 #define ABBE_VALIDATION_TRANSPORT_MEDIA_H

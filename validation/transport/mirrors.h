@@ -3,7 +3,7 @@
  *
  * Its oracles are abbe_optics_fresnel_conductor and spectral/microfacets.h.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_MIRRORS_H
 #define ABBE_VALIDATION_TRANSPORT_MIRRORS_H

@@ -1,6 +1,7 @@
 /* random.h: counter-based random numbers: the same counters give the same numbers on any thread.
  *
  * Four 32-bit words are mixed into four others [JarzynskiOlano2020]; nothing is stored.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_RANDOM_H
 #define ABBE_VALIDATION_TRANSPORT_RANDOM_H

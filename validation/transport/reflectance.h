@@ -3,6 +3,7 @@
  *
  * A path of one wavelength is reflected by the reflectance there; light of all wavelengths by the
  * mean over them, with the colour of each: so both have the same mean, in every space.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_REFLECTANCE_H
 #define ABBE_VALIDATION_TRANSPORT_REFLECTANCE_H

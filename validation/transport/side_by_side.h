@@ -3,7 +3,7 @@
  * The one that fits is chosen when the program starts. Sanitizers do not bear it, and Clang knows
  * it in another form: there it says nothing.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_SIDE_BY_SIDE_H
 #define ABBE_VALIDATION_TRANSPORT_SIDE_BY_SIDE_H

@@ -5,7 +5,7 @@
  * has as triangles. Frame units (geometry.h). A refractor that touches another surface, or is
  * nearer to it than what tells the two apart in single precision, is none.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_SOLID_H
 #define ABBE_VALIDATION_TRANSPORT_SOLID_H

@@ -2,7 +2,7 @@
  * following them: for each node's light a ray from each point that faces it, and two beside it,
  * which tell how it changes with the light.
  *
- * Same request, same table, on any number of threads.
+ * Same request, same table, on any number of threads. Internal to validation/volume/.
  */
 #ifndef ABBE_VALIDATION_VOLUME_EXIT_FILL_H
 #define ABBE_VALIDATION_VOLUME_EXIT_FILL_H

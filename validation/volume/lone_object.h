@@ -1,7 +1,7 @@
 /* lone_object.h: an object of a scene alone in one directional light of unit power, as caustics
  * that are computed beforehand have it, and its surfaces for the tracer.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_VOLUME_LONE_OBJECT_H
 #define ABBE_VALIDATION_VOLUME_LONE_OBJECT_H

@@ -4,7 +4,7 @@
  * It belongs to one object, one request and one kind of processor; anything else is refused.
  * Written beside its target and renamed.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_VOLUME_VOLUME_CHECKPOINT_H
 #define ABBE_VALIDATION_VOLUME_VOLUME_CHECKPOINT_H

@@ -1,7 +1,7 @@
 /* volume_space.h: how much of each cell of a region lies outside the object that stands in it.
  *
  * Straight lines from all sides, evenly spread, are cut by the object's surface: what lies outside
- * of it, of all that lies in a cell. It follows no light.
+ * of it, of all that lies in a cell. It follows no light. Internal to validation/volume/.
  */
 #ifndef ABBE_VALIDATION_VOLUME_VOLUME_SPACE_H
 #define ABBE_VALIDATION_VOLUME_VOLUME_SPACE_H

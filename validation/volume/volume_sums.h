@@ -4,7 +4,7 @@
  * Of vector irradiance a cell's is the flux of every stretch in it, times its length and direction,
  * over the cell's space. As the method was printed a stretch counts once in every cell that it
  * comes to, with the cosine to where the cell lies from the centre, over what the beam alone would
- * bring there.
+ * bring there. Internal to validation/volume/.
  */
 #ifndef ABBE_VALIDATION_VOLUME_VOLUME_SUMS_H
 #define ABBE_VALIDATION_VOLUME_VOLUME_SUMS_H

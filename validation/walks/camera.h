@@ -1,7 +1,7 @@
 /* camera.h: the scene's pinhole camera in the tracer's frame.
  *
  * Pixels are counted from the top left; a pixel's value is the mean radiance over its area on the
- * film. Film coordinates are tangents at distance 1.
+ * film. Film coordinates are tangents at distance 1. Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_WALKS_CAMERA_H
 #define ABBE_VALIDATION_WALKS_CAMERA_H

@@ -5,7 +5,7 @@
  * refractor take as many samples as there is time for. The numbers are fixed before the first pass,
  * so that what is seen has no part in them, and the mean stays unbiased.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_WALKS_EYE_SAMPLES_H
 #define ABBE_VALIDATION_WALKS_EYE_SAMPLES_H

@@ -1,7 +1,7 @@
 /* eye_shading.h: what the paths of the eye find at their ends: receivers with the light on them,
  * the environment, the background, lamps.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_WALKS_EYE_SHADING_H
 #define ABBE_VALIDATION_WALKS_EYE_SHADING_H

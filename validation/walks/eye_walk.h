@@ -9,6 +9,7 @@
  * the eye sees straight it is left out, for the photons themselves find the eye (unbiased). In haze
  * it is alike: what comes straight from lamps is sampled along every path, what comes through
  * refractors and off mirrors is gathered or, where it is seen straight, left to the photons.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_WALKS_EYE_WALK_H
 #define ABBE_VALIDATION_WALKS_EYE_WALK_H

@@ -4,7 +4,7 @@
  * At every face Fresnel's law and a number decide between reflection and transmission, as the light
  * walk does at all other interfaces; between faces the material absorbs. It asks no hierarchy.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_WALKS_INNER_WALK_H
 #define ABBE_VALIDATION_WALKS_INNER_WALK_H

@@ -1,4 +1,4 @@
-#include "validation/walks/lamp_rays.h"
+#include "validation/walks/light_path.h"
 
 #include "validation/transport/side_by_side.h"
 

@@ -1,7 +1,6 @@
 #include "validation/walks/light_walk.h"
 
 #include "validation/transport/interface.h"
-#include "validation/walks/lamp_rays.h"
 #include "validation/walks/light_path.h"
 #include "validation/walks/ray_batch.h"
 #include "validation/walks/scatter.h"

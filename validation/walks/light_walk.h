@@ -3,7 +3,7 @@
  * A batch of photons is followed side by side: every interface reflects or transmits each of them
  * by Fresnel's law and a random number, so a photon keeps its whole flux but for what is absorbed.
  * Paths run until they land, leave the scene, or lose the roulette. Light that reaches a receiver
- * without meeting a refractor is not counted: the eye finds it by itself.
+ * without meeting a refractor is not counted: the eye finds it by itself. Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_WALKS_LIGHT_WALK_H
 #define ABBE_VALIDATION_WALKS_LIGHT_WALK_H

@@ -1,6 +1,6 @@
 /* path_splitting.h: at which of their first interfaces the paths of photons should be split.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_WALKS_PATH_SPLITTING_H
 #define ABBE_VALIDATION_WALKS_PATH_SPLITTING_H

@@ -1,4 +1,5 @@
-/* photon.h: photons on their way from a light, where they land, and where their light went. */
+/* photon.h: photons on their way from a light, where they land, and where their light went.
+ * Internal to validation/. */
 #ifndef ABBE_VALIDATION_WALKS_PHOTON_H
 #define ABBE_VALIDATION_WALKS_PHOTON_H
 

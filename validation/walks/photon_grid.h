@@ -2,7 +2,7 @@
  *
  * A hashed grid of cubes; a gather adds up what landed within a radius on the same side of the
  * same surface. The estimate is the flux within the disk over its area: its bias vanishes as the
- * radius shrinks from pass to pass [KnausZwicker2011].
+ * radius shrinks from pass to pass [KnausZwicker2011]. Internal to validation/walks/.
  */
 #ifndef ABBE_VALIDATION_WALKS_PHOTON_GRID_H
 #define ABBE_VALIDATION_WALKS_PHOTON_GRID_H

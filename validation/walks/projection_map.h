@@ -6,7 +6,7 @@
  * cells. A cell is kept if a ray of it can meet a refractor: each face's bounding ball is
  * projected, so nothing that refracts is missed and the estimate stays unbiased. A few trial rays a
  * cell then say where refractors are seen past other things; more photons go there, never none
- * elsewhere.
+ * elsewhere. Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_WALKS_PROJECTION_MAP_H
 #define ABBE_VALIDATION_WALKS_PROJECTION_MAP_H

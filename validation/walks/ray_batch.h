@@ -2,7 +2,7 @@
  *
  * It knows no light: a ray has a place in its batch, and what it meets is read there.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_WALKS_RAY_BATCH_H
 #define ABBE_VALIDATION_WALKS_RAY_BATCH_H

@@ -2,6 +2,7 @@
  *
  * At each interface the ray is transmitted or reflected as the list of choices says, so its
  * geometry is that of the tracer and nothing is random. Lengths in metres, world coordinates.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_WALKS_ROUTE_H
 #define ABBE_VALIDATION_WALKS_ROUTE_H

@@ -2,7 +2,7 @@
  *
  * Arithmetic alone, in arrays of a lane each, for the compiler to do side by side.
  *
- * Internal to validation/: it is not installed.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_WALKS_SCATTER_H
 #define ABBE_VALIDATION_WALKS_SCATTER_H

@@ -1,4 +1,5 @@
-/* edit_cells.h: text and colours in the cells of the editor's screen. */
+/* edit_cells.h: text and colours in the cells of the editor's screen.
+ * Internal to cli/materials/edit/. */
 #ifndef ABBE_CLI_MATERIALS_EDIT_EDIT_CELLS_H
 #define ABBE_CLI_MATERIALS_EDIT_EDIT_CELLS_H
 

@@ -1,17 +1,109 @@
 #include "cli/materials/edit/edit_screen.h"
 
+#include "base/number.h"
+#include "cli/base/output.h"
 #include "cli/materials/edit/edit_cells.h"
 #include "cli/materials/edit/edit_state.h"
-#include "cli/materials/edit/edit_terminal.h"
 #include "cli/materials/edit/edit_view.h"
-
-#include "base/number.h"
 #include "spectral/editing/check.h"
 
 #include <curses.h>
+#include <langinfo.h>
+#include <locale.h>
 #include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <term.h>
+#include <termios.h>
+#include <unistd.h>
+
+/* Takes the terminal for a full screen, and gives it back on every way out. */
+
+static SCREEN *terminal;
+static volatile sig_atomic_t asked_to_end;
+
+/* For a crash, where curses must not be called: the modes, and what the terminal wants to hear. */
+static struct termios modes_before;
+static char farewell[256];
+
+static void edit_terminal_give_back(void);
+
+static void on_end(int number) {
+  (void)number;
+  asked_to_end = 1;
+}
+
+static void on_crash(int number) {
+  (void)!write(STDOUT_FILENO, farewell, strlen(farewell));
+  tcsetattr(STDIN_FILENO, TCSANOW, &modes_before);
+  signal(number, SIG_DFL);
+  raise(number);
+}
+
+static void handle(int number, void (*handler)(int)) {
+  struct sigaction action = {.sa_handler = handler};
+  sigemptyset(&action.sa_mask);
+  sigaction(number, &action, NULL);
+}
+
+static void append_capability(const char *name) {
+  char capability[32];
+  strcpy(capability, name);
+  const char *text = tigetstr(capability);
+  if (text == NULL || text == (const char *)-1) return;
+  if (strlen(farewell) + strlen(text) < sizeof farewell) strcat(farewell, text);
+}
+
+/* Takes standard input and output; false where they are no terminal that curses can draw on. */
+static bool edit_terminal_take(void) {
+  static const int ends[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
+  static const int crashes[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
+  if (!isatty(STDIN_FILENO) || !isatty(STDOUT_FILENO)) return false;
+  if (tcgetattr(STDIN_FILENO, &modes_before) != 0) return false;
+  setlocale(LC_CTYPE, "");
+  for (int i = 0; i < 4; i++)
+    handle(ends[i], on_end); /* before curses, which keeps its hands off */
+  terminal = newterm(NULL, abbe_output_raw(stdout), stdin);
+  if (terminal == NULL) return false;
+  if (cursor_address == NULL) { /* a terminal of lines only, such as TERM=dumb */
+    edit_terminal_give_back();
+    return false;
+  }
+  farewell[0] = '\0';
+  append_capability("sgr0");
+  append_capability("cnorm");
+  append_capability("rmkx");
+  append_capability("rmcup");
+  for (int i = 0; i < 5; i++) handle(crashes[i], on_crash);
+  cbreak();
+  noecho();
+  keypad(stdscr, TRUE);
+  set_escdelay(25);
+  timeout(250);
+  return true;
+}
+
+static void edit_terminal_give_back(void) {
+  if (terminal == NULL) return;
+  endwin();
+  delscreen(terminal);
+  terminal = NULL;
+}
+
+/* Whether a signal asked for the end, or the terminal has hung up. */
+static bool edit_terminal_ended(void) {
+  struct pollfd input = {.fd = STDIN_FILENO, .events = POLLIN};
+  bool gone = poll(&input, 1, 0) > 0 && (input.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
+  return asked_to_end || gone;
+}
+
+/* Whether its characters are UTF-8. */
+static bool edit_terminal_is_utf8(void) {
+  return strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
+}
 
 enum { CTRL_L = 12, CTRL_R = 18, ESCAPE = 27 };
 
@@ -271,10 +363,10 @@ static void take(abbe_edit_state *a, int key) {
 }
 
 abbe_edit_end abbe_edit_screen_run(const abbe_edit_screen *screen) {
-  if (!abbe_edit_terminal_take()) return ABBE_EDIT_NO_TERMINAL;
+  if (!edit_terminal_take()) return ABBE_EDIT_NO_TERMINAL;
   static abbe_edit_state a;
   a = (abbe_edit_state){
-      .screen = screen, .draft = screen->draft, .plain = !abbe_edit_terminal_is_utf8()};
+      .screen = screen, .draft = screen->draft, .plain = !edit_terminal_is_utf8()};
   if (has_colors()) {
     start_color();
     use_default_colors();
@@ -283,13 +375,13 @@ abbe_edit_end abbe_edit_screen_run(const abbe_edit_screen *screen) {
     init_pair(ABBE_EDIT_CURVE, COLOR_CYAN, -1);
   }
   bool fresh = true;
-  while (!a.left && !abbe_edit_terminal_ended()) {
+  while (!a.left && !edit_terminal_ended()) {
     if (fresh) abbe_edit_view_draw(&a);
     int key = getch();
     fresh = key != ERR;
     if (fresh) take(&a, key);
   }
   forget_preview(&a);
-  abbe_edit_terminal_give_back();
+  edit_terminal_give_back();
   return a.left ? ABBE_EDIT_QUIT : ABBE_EDIT_INTERRUPTED;
 }

@@ -1,7 +1,7 @@
 /* edit_screen.h: the full screen of `abbe materials edit`: draws a record's draft and takes keys.
  *
  * Every number that it shows comes from the library's functions, the same that `show` uses. The
- * terminal is put back as it was on every way out, signals and crashes included.
+ * terminal is put back as it was on every way out, signals and crashes included. Internal to cli/.
  */
 #ifndef ABBE_CLI_MATERIALS_EDIT_EDIT_SCREEN_H
 #define ABBE_CLI_MATERIALS_EDIT_EDIT_SCREEN_H

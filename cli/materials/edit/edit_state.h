@@ -1,4 +1,5 @@
-/* edit_state.h: what the editor's screen shows, between two keys. */
+/* edit_state.h: what the editor's screen shows, between two keys.
+ * Internal to cli/materials/edit/. */
 #ifndef ABBE_CLI_MATERIALS_EDIT_EDIT_STATE_H
 #define ABBE_CLI_MATERIALS_EDIT_EDIT_STATE_H
 

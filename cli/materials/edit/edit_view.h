@@ -1,4 +1,5 @@
-/* edit_view.h: the editor's screen, drawn: fields, plots, numbers, warnings, keys. */
+/* edit_view.h: the editor's screen, drawn: fields, plots, numbers, warnings, keys.
+ * Internal to cli/materials/edit/. */
 #ifndef ABBE_CLI_MATERIALS_EDIT_EDIT_VIEW_H
 #define ABBE_CLI_MATERIALS_EDIT_EDIT_VIEW_H
 

@@ -1,5 +1,5 @@
 /* view_look.h: what is in a renderer beside its picture: the photons that feed a place, and the
- * spectral map. */
+ * spectral map. Internal to cli/. */
 #ifndef ABBE_CLI_VIEW_PICTURE_VIEW_LOOK_H
 #define ABBE_CLI_VIEW_PICTURE_VIEW_LOOK_H
 

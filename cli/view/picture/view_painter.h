@@ -1,7 +1,7 @@
 /* view_painter.h: what rests, made what the screen shows of it by a thread of its own.
  *
  * The display's own transform takes as long as a moving picture or two; whoever watches would wait
- * for it. One picture at a time.
+ * for it. One picture at a time. Internal to cli/.
  */
 #ifndef ABBE_CLI_VIEW_PICTURE_VIEW_PAINTER_H
 #define ABBE_CLI_VIEW_PICTURE_VIEW_PAINTER_H

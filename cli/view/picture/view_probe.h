@@ -1,5 +1,5 @@
 /* view_probe.h: what is known of a pixel's light: its spectrum with standard errors, and its
- * colour.
+ * colour. Internal to cli/.
  */
 #ifndef ABBE_CLI_VIEW_PICTURE_VIEW_PROBE_H
 #define ABBE_CLI_VIEW_PICTURE_VIEW_PROBE_H

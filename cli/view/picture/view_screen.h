@@ -1,4 +1,5 @@
 /* view_screen.h: the picture in the window: a texture, and how it is brought under the panel.
+ * Internal to cli/.
  */
 #ifndef ABBE_CLI_VIEW_PICTURE_VIEW_SCREEN_H
 #define ABBE_CLI_VIEW_PICTURE_VIEW_SCREEN_H

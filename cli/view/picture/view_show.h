@@ -1,4 +1,5 @@
 /* view_show.h: pictures as a screen shows them: through the display transform, or in false colours.
+ * Internal to cli/.
  */
 #ifndef ABBE_CLI_VIEW_PICTURE_VIEW_SHOW_H
 #define ABBE_CLI_VIEW_PICTURE_VIEW_SHOW_H

@@ -1,7 +1,7 @@
 /* view_spot.h: a pixel's spectrum by the reference tracer, long before a whole picture has one.
  *
  * A camera looks at nothing but the pixel, with many samples; the photons of each pass are as many
- * as a picture has, and are gathered as widely.
+ * as a picture has, and are gathered as widely. Internal to cli/.
  */
 #ifndef ABBE_CLI_VIEW_PICTURE_VIEW_SPOT_H
 #define ABBE_CLI_VIEW_PICTURE_VIEW_SPOT_H

@@ -1,5 +1,5 @@
 /* view_table.h: a display's table of colours (colorimetry/image/display_table.h), made on a thread
- * of its own, since that takes as long as some moving pictures.
+ * of its own, since that takes as long as some moving pictures. Internal to cli/.
  */
 #ifndef ABBE_CLI_VIEW_PICTURE_VIEW_TABLE_H
 #define ABBE_CLI_VIEW_PICTURE_VIEW_TABLE_H

@@ -1,7 +1,7 @@
 /* view_camera.h: a camera that is led by hand: around its target, sideways, nearer, about its eye.
  *
  * Plain maths on the scene's camera. Its `up` stays as it is; no move brings the view nearer to it
- * than a degree. "right" and "up" are the camera's own.
+ * than a degree. "right" and "up" are the camera's own. Internal to cli/.
  */
 #ifndef ABBE_CLI_VIEW_STATE_VIEW_CAMERA_H
 #define ABBE_CLI_VIEW_STATE_VIEW_CAMERA_H

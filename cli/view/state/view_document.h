@@ -3,7 +3,7 @@
  *
  * Changes are as `--set` takes them (scenes/import/scene_file.h), one for each key, so that the
  * same list loads the scene, writes it and makes the command line that repeats the picture. It
- * reads no files.
+ * reads no files. Internal to cli/.
  */
 #ifndef ABBE_CLI_VIEW_STATE_VIEW_DOCUMENT_H
 #define ABBE_CLI_VIEW_STATE_VIEW_DOCUMENT_H

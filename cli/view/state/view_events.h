@@ -1,5 +1,5 @@
 /* view_events.h: what a page's pointer and keys do, as lines of text, and a queue of it in which
- * what follows takes the place of what nobody would see.
+ * what follows takes the place of what nobody would see. Internal to cli/.
  */
 #ifndef ABBE_CLI_VIEW_STATE_VIEW_EVENTS_H
 #define ABBE_CLI_VIEW_STATE_VIEW_EVENTS_H

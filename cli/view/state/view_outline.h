@@ -3,6 +3,7 @@
  *
  * It is made of the scene and of the text that it was read from: of the one come places and names,
  * of the other keys, and how an object was put where it is. It changes nothing of these.
+ * Internal to cli/.
  */
 #ifndef ABBE_CLI_VIEW_STATE_VIEW_OUTLINE_H
 #define ABBE_CLI_VIEW_STATE_VIEW_OUTLINE_H

@@ -1,4 +1,5 @@
-/* view_chart.h: a pixel's spectrum with its standard errors, and its colour among the gamuts. */
+/* view_chart.h: a pixel's spectrum with its standard errors, and its colour among the gamuts.
+ * Internal to cli/. */
 #ifndef ABBE_CLI_VIEW_WIDGETS_VIEW_CHART_H
 #define ABBE_CLI_VIEW_WIDGETS_VIEW_CHART_H
 

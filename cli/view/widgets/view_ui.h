@@ -2,7 +2,7 @@
  *
  * The implementation is the C++ bridge view_ui.cpp; no exception leaves it, and it decides nothing.
  * Pixels run from the upper left corner. Whoever makes a window or a framebuffer hands events in.
- * Texts are UTF-8. Every widget is known by its label, so that scripts find it.
+ * Texts are UTF-8. Every widget is known by its label, so that scripts find it. Internal to cli/.
  */
 #ifndef ABBE_CLI_VIEW_WIDGETS_VIEW_UI_H
 #define ABBE_CLI_VIEW_WIDGETS_VIEW_UI_H

@@ -1,4 +1,5 @@
 /* view_files.h: the files that a scene is read from, and whether they have changed on disk since.
+ * Internal to cli/.
  */
 #ifndef ABBE_CLI_VIEW_WORK_VIEW_FILES_H
 #define ABBE_CLI_VIEW_WORK_VIEW_FILES_H

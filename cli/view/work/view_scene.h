@@ -2,7 +2,7 @@
  *
  * Objects stay where lights alone have changed, and all but the camera where that has moved: a mesh
  * takes longer to read than light to draw. It keeps one scene, and the one before only until its
- * owner has let go of it.
+ * owner has let go of it. Internal to cli/view/work/.
  */
 #ifndef ABBE_CLI_VIEW_WORK_VIEW_SCENE_H
 #define ABBE_CLI_VIEW_WORK_VIEW_SCENE_H

@@ -3,17 +3,20 @@
  * It has a context, a renderer and a tracer of its own, and loads the scene by itself, so that
  * whoever watches never waits, nor another worker. One job at a time; what it makes is handed over
  * whole. It decides nothing: which job is next, and whether one is to stop, is
- * cli/view/state/view_refine.h's business.
+ * cli/view/state/view_refine.h's business. Internal to cli/.
  */
 #ifndef ABBE_CLI_VIEW_WORK_VIEW_WORKER_H
 #define ABBE_CLI_VIEW_WORK_VIEW_WORKER_H
 
 #include "cli/view/picture/view_feed.h"
 #include "cli/view/picture/view_spot.h"
+#include "cli/view/state/view_document.h"
+#include "cli/view/state/view_refine.h"
 #include "cli/view/state/view_state.h"
 #include "cli/view/work/view_scene.h"
 #include "colorimetry/image/image.h"
 #include "gl/accuracy/error_bars.h"
+#include "gl/accuracy/preset.h"
 #include "gl/device/statistics.h"
 #include "gl/plan/plan.h"
 
@@ -92,5 +95,21 @@ void abbe_view_worker_cancel(abbe_view_worker *worker);
 void abbe_view_worker_wait(abbe_view_worker *worker, double seconds);
 /* The result, once; the caller frees it. False: none yet. */
 bool abbe_view_worker_take(abbe_view_worker *worker, abbe_view_result *out);
+
+/* What a stage of the viewer asks of the renderer.
+ *
+ * Its settings are a preset's, coarser or finer as the job says. It draws nothing and knows no
+ * worker; a picture's size is its caller's. */
+
+/* The preset that a stage takes; NULL where the front has none. */
+const abbe_preset_point *abbe_view_settings_point(const abbe_preset_front *front,
+                                                  abbe_view_stage stage);
+
+/* The request of a job. Without a preset, the plan's own settings and what is coarser and finer
+ * than these. document: its wavelengths, photons and texels hold but where light moves. volume (may
+ * be NULL): caustics are looked up in it, which lives as long as the request. */
+abbe_render_desc abbe_view_settings_of(const abbe_preset_front *front, const abbe_scene *scene,
+                                       const abbe_view_job *job, const abbe_view_document *document,
+                                       const abbe_caustic_volume *volume);
 
 #endif

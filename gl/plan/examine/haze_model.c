@@ -1,4 +1,4 @@
-#include "gl/plan/examine/haze_model.h"
+#include "gl/plan/examine/models.h"
 
 #include "colorimetry/weights.h"
 

@@ -3,6 +3,7 @@
  * Rays of a grid over the solid, as a light sends them or the eye, followed in double precision at
  * one wavelength by Snell's and Fresnel's laws. No receivers, no colours, nothing random: the same
  * scene gives the same figures. The plan takes exits by them; no picture is made of them.
+ * Internal to gl/.
  */
 #ifndef ABBE_GL_PLAN_EXAMINE_INNER_LIGHT_H
 #define ABBE_GL_PLAN_EXAMINE_INNER_LIGHT_H
@@ -45,6 +46,14 @@ size_t abbe_inner_light_exits(const abbe_inner_light *inside, size_t least, size
  * light that keeps most inside or, where no light meets the solid, by the eye; at the middle of the
  * wavelengths. Returns the share of the light that is then still inside. */
 double abbe_inner_light_plan(const abbe_scene *scene, const abbe_render_desc *asked,
+                             abbe_plan *plan);
+
+/* How far light is followed through refractors, from a light and from the eye. */
+
+/* Exits at the most, the share of its light at which a path ends, both of the eye's rays, and how
+ * many hits of a photon there is room for. asked: the request as it came, or NULL. The
+ * wavelengths are counted. */
+void abbe_path_limits_choose(const abbe_scene *scene, const abbe_render_desc *asked,
                              abbe_plan *plan);
 
 #endif

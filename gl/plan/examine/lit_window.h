@@ -2,7 +2,7 @@
  *
  * A narrow lamp leaves most of a picture dark, and there no shader need ask for it. This bounds
  * what a view of the light holds of a parallelogram by a rectangle of the picture; what hides it
- * from either is not looked at.
+ * from either is not looked at. Internal to gl/.
  */
 #ifndef ABBE_GL_PLAN_EXAMINE_LIT_WINDOW_H
 #define ABBE_GL_PLAN_EXAMINE_LIT_WINDOW_H

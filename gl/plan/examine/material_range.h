@@ -3,6 +3,7 @@
  *
  * Where the plan reads n(lambda) and attenuation, and nowhere else: whether something varies,
  * whether light notices it at all, and one value that stands for all of it.
+ * Internal to gl/plan/examine/.
  */
 #ifndef ABBE_GL_PLAN_EXAMINE_MATERIAL_RANGE_H
 #define ABBE_GL_PLAN_EXAMINE_MATERIAL_RANGE_H

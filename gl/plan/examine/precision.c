@@ -1,6 +1,5 @@
 #include "gl/plan/examine/precision.h"
 
-#include "gl/plan/examine/light_cube.h"
 #include "gl/plan/examine/light_views.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/view/view.h"

@@ -2,7 +2,7 @@
  *
  * Shaders compute in floats, and photons are the cells of a grid. A refractor that is lost in
  * either would be drawn wrong or by chance; it is refused with what would be right. Nothing is
- * said of receivers.
+ * said of receivers. Internal to gl/.
  */
 #ifndef ABBE_GL_PLAN_EXAMINE_PRECISION_H
 #define ABBE_GL_PLAN_EXAMINE_PRECISION_H

@@ -1,6 +1,7 @@
 /* reach.h: what light, a look of the eye or another object may meet, to judge by bounds.
  *
  * Judged by the object's bounds, and never wrongly no: what stands in between is not looked at.
+ * Internal to gl/.
  */
 #ifndef ABBE_GL_PLAN_EXAMINE_REACH_H
 #define ABBE_GL_PLAN_EXAMINE_REACH_H

@@ -1,4 +1,4 @@
-#include "gl/plan/examine/receiver_model.h"
+#include "gl/plan/examine/models.h"
 
 #include "gl/plan/examine/reach.h"
 #include "scenes/geometry/vector.h"

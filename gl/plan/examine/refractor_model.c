@@ -1,4 +1,4 @@
-#include "gl/plan/examine/refractor_model.h"
+#include "gl/plan/examine/models.h"
 
 #include "gl/plan/examine/material_range.h"
 #include "gl/plan/examine/reach.h"

@@ -1,6 +1,7 @@
 /* spectral_needs.h: what index, attenuation and light over the wavelengths ask of the plan.
  *
  * What varies, how many wavelengths that takes, and what is extrapolated or taken for one.
+ * Internal to gl/.
  */
 #ifndef ABBE_GL_PLAN_EXAMINE_SPECTRAL_NEEDS_H
 #define ABBE_GL_PLAN_EXAMINE_SPECTRAL_NEEDS_H
@@ -25,5 +26,24 @@ void abbe_spectral_needs_count(abbe_plan *plan);
 
 /* A note where lights of several spectra are taken for one. */
 void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan);
+
+/* What refractors and mirrors take of light by wavelength, as photons' hits keep it: of each of
+ * the first stuffs on a path how much it passed, which tells the rest at all wavelengths.
+ *
+ * An amount is a path inside, m, or of a mirror one for each reflection straight on; attenuation
+ * is optical depth by amount. */
+
+/* Stuffs whose amounts a hit keeps. */
+enum { ABBE_MOST_TINTS = 3 };
+
+/* Of refractor or mirror r, by amount; at most what leaves nothing, so that sums stay finite. */
+double abbe_tint_attenuation(const abbe_scene *scene, const abbe_plan *plan, size_t r,
+                             double lambda_nm);
+
+/* Of the plan's refractors and mirrors the first of the same stuff as r; -1: it takes of all
+ * wavelengths alike. */
+int abbe_tint_of(const abbe_scene *scene, const abbe_plan *plan, size_t r);
+/* Of all stuffs, ABBE_MOST_TINTS at the most. */
+size_t abbe_tint_count(const abbe_scene *scene, const abbe_plan *plan);
 
 #endif

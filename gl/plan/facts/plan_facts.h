@@ -1,7 +1,7 @@
 /* plan_facts.h: what a plan holds: facts of the scene, models, entries and notes.
  *
  * gl/plan/examine finds the facts out, gl/plan/plan.h makes the plan of them, the renderer reads
- * it.
+ * it. Internal to gl/.
  */
 #ifndef ABBE_GL_PLAN_FACTS_PLAN_FACTS_H
 #define ABBE_GL_PLAN_FACTS_PLAN_FACTS_H

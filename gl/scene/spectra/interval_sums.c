@@ -2,7 +2,7 @@
 
 #include "colorimetry/weights.h"
 #include "gl/device/float4.h"
-#include "gl/plan/examine/tints.h"
+#include "gl/plan/examine/spectral_needs.h"
 #include "gl/scene/spectra/mirror_nodes.h"
 
 #include <math.h>

@@ -3,6 +3,7 @@
  * KHR_materials_ior and KHR_materials_dispersion give Cauchy's two terms through n_d and V_d
  * [glTFDispersion], KHR_materials_volume the attenuation by a colour. What Abbe does not model of
  * it (a tint, roughness, textures) is in the record's warning. It reads no meshes.
+ * Internal to scenes/.
  */
 #ifndef ABBE_SCENES_IMPORT_MESH_GLTF_MATERIAL_H
 #define ABBE_SCENES_IMPORT_MESH_GLTF_MATERIAL_H

@@ -1,7 +1,6 @@
 #include "scenes/import/mesh/mesh_reading.h"
 
 #include "scenes/geometry/vector.h"
-#include "scenes/import/mesh/polygon.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "scenes/import/mesh/polygon.h"
+#include "scenes/import/mesh/mesh_reading.h"
 
 #include "scenes/geometry/vector.h"
 

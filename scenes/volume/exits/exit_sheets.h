@@ -2,6 +2,7 @@
  * that a ray is spread into by the object's index comes to the first of them.
  *
  * It knows places and directions; what light rays carry it does not.
+ * Internal to scenes/volume/exits/.
  */
 #ifndef ABBE_SCENES_VOLUME_EXITS_EXIT_SHEETS_H
 #define ABBE_SCENES_VOLUME_EXITS_EXIT_SHEETS_H

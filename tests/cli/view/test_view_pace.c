@@ -2,7 +2,7 @@
  * what is fixed, for the light of the finest step and for the eye's samples of the finest. */
 #include "tests/check.h"
 
-#include "cli/view/state/view_pace.h"
+#include "cli/view/state/view_refine.h"
 
 typedef struct machine {
   double fixed, light, eye;

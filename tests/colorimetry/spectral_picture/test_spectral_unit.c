@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "colorimetry/spectral_picture/spectral_unit.h"
+#include "colorimetry/spectral_picture/spectral_channels.h"
 
 static void units_are_read(void **state) {
   (void)state;

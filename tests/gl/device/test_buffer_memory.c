@@ -1,7 +1,7 @@
 /* Memory for large buffers is lent, taken back and lent again; no OpenGL is needed. */
 #include "tests/check.h"
 
-#include "gl/device/buffer_memory.h"
+#include "gl/device/gpu.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* What the plan leaves out does not show: with everything switched on the picture is the same. */
 #include "tests/gl/frame.h"
 
-#include "gl/plan/no_culling.h"
+#include "gl/plan/plan.h"
 
 #define ASIDE                                                                                      \
   "- {name: aside, kind: spot, position: [-0.3, 0.03, 0.6], target: [-0.5, 0, 0], cone: 10, "      \

@@ -4,7 +4,7 @@
 #include "tests/gl/glsl.h"
 
 #include "gl/device/state.h"
-#include "gl/scene/gpu_environment.h"
+#include "gl/scene/gpu_scene.h"
 
 enum { LOOKS = 4096 };
 static const double PI = 3.14159265358979;

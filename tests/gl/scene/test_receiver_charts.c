@@ -2,7 +2,7 @@
  */
 #include "tests/scenes/scene_text.h"
 
-#include "gl/scene/receiver_charts.h"
+#include "gl/scene/gpu_scene.h"
 #include "scenes/geometry/vector.h"
 
 #define CRATE                                                                                      \

@@ -5,7 +5,7 @@
 #include "tests/gl/glsl.h"
 #include "tests/random.h"
 
-#include "gl/scene/shadow_planes.h"
+#include "gl/scene/gpu_scene.h"
 #include "scenes/geometry/vector.h"
 
 #include <string.h>

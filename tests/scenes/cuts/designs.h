@@ -5,7 +5,7 @@
 
 #include "tests/check.h"
 
-#include "scenes/cuts/cut_asc.h"
+#include "scenes/cuts/cut_file.h"
 
 #define ROUND_INDICES "87 81 75 69 63 57 51 45 39 33 27 21 15 9 3"
 static const char design_a[] =

@@ -1,4 +1,4 @@
-#include "scenes/cuts/cut_gcs.h"
+#include "scenes/cuts/cut_file.h"
 
 #include "scenes/cuts/cut_polyhedron.h"
 #include "tests/scenes/cuts/designs.h"

@@ -1,4 +1,4 @@
-#include "scenes/cuts/cut_gem.h"
+#include "scenes/cuts/cut_file.h"
 
 #include "tests/scenes/cuts/designs.h"
 

@@ -1,4 +1,4 @@
-#include "scenes/cuts/cut_text.h"
+#include "scenes/cuts/cut.h"
 
 #include "tests/check.h"
 

@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "scenes/environment/alias_table.h"
+#include "scenes/environment/environment.h"
 
 /* The share of each entry, from the table itself. */
 static void check_shares(const double *weight, size_t count) {

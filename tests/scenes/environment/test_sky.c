@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "scenes/environment/sky.h"
+#include "scenes/environment/environment_source.h"
 #include "scenes/geometry/vector.h"
 
 #define PI 3.14159265358979323846

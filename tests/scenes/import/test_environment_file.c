@@ -2,7 +2,7 @@
 #include "tests/scenes/scene_text.h"
 
 #include "colorimetry/image/exr.h"
-#include "scenes/import/environment_file.h"
+#include "scenes/import/scene_reading.h"
 
 #include <stdlib.h>
 

@@ -2,8 +2,8 @@
 #include "tests/check.h"
 
 #include "base/yaml/yaml.h"
-#include "scenes/import/light_file.h"
 #include "scenes/import/scene_file.h"
+#include "scenes/import/scene_reading.h"
 
 #include <stdlib.h>
 

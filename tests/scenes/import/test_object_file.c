@@ -1,8 +1,7 @@
-#include "scenes/import/object_file.h"
+#include "scenes/import/scene_reading.h"
 #include "scenes/import/scene_value.h"
 
 #include "scenes/cuts/cut_file.h"
-#include "scenes/cuts/cut_gcs.h"
 #include "scenes/geometry/vector.h"
 #include "spectral/formats/material_table_load.h"
 

@@ -2,7 +2,7 @@
 
 #include "scenes/geometry/transform.h"
 #include "scenes/geometry/vector.h"
-#include "scenes/import/object_surface.h"
+#include "scenes/import/scene_reading.h"
 #include "scenes/shapes/shape.h"
 
 #include <stdlib.h>

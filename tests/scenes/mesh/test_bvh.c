@@ -1,7 +1,7 @@
 /* The BVH against every triangle in turn: in double precision, and as the shaders have it. */
 #include "tests/gl/glsl.h"
 
-#include "gl/scene/bvh_nodes.h"
+#include "gl/scene/gpu_scene.h"
 #include "scenes/mesh/bvh.h"
 #include "scenes/shapes/shape.h"
 #include "tests/patience.h"

@@ -2,7 +2,7 @@
 
 #include "base/file.h"
 #include "scenes/import/scene_file.h"
-#include "scenes/studio/studio_stone.h"
+#include "scenes/studio/studio.h"
 #include "spectral/formats/material_table_load.h"
 
 #include <math.h>

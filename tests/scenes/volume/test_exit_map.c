@@ -2,7 +2,7 @@
  * light stays even up to the ends. */
 #include "tests/check.h"
 
-#include "scenes/volume/exits/exit_map.h"
+#include "scenes/volume/exits/exit_pages.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include "tests/random.h"
 
 #include "scenes/geometry/vector.h"
-#include "scenes/volume/light_harmonics.h"
+#include "scenes/volume/caustic_volume.h"
 
 #include <stdlib.h>
 

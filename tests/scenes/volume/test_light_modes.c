@@ -3,8 +3,8 @@
 #include "tests/check.h"
 #include "tests/random.h"
 
+#include "scenes/volume/caustic_volume.h"
 #include "scenes/volume/half.h"
-#include "scenes/volume/light_modes.h"
 
 enum { NODES = 12, EACH = 300 };
 

@@ -2,7 +2,7 @@
 #include "tests/spectral/same_material.h"
 
 #include "spectral/dispersion/csv_points.h"
-#include "spectral/formats/csv_write.h"
+#include "spectral/formats/material_write.h"
 
 static abbe_csv_points reread(const abbe_material *m, const abbe_csv_sampling *sampling,
                               abbe_report *report) {

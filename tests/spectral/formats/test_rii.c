@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "spectral/formats/rii.h"
+#include "spectral/formats/material_import.h"
 
 #include <stdlib.h>
 

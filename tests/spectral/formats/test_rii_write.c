@@ -1,9 +1,9 @@
 #include "tests/spectral/random_material.h"
 #include "tests/spectral/same_material.h"
 
+#include "spectral/formats/material_import.h"
 #include "spectral/formats/material_table_load.h"
-#include "spectral/formats/rii.h"
-#include "spectral/formats/rii_write.h"
+#include "spectral/formats/material_write.h"
 
 static abbe_material reread(const abbe_material *m, abbe_report *report) {
   char *text = NULL;

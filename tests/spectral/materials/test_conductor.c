@@ -2,13 +2,9 @@
 #include "tests/spectral/same_material.h"
 
 #include "spectral/editing/check.h"
-#include "spectral/formats/agf_write.h"
-#include "spectral/formats/csv_write.h"
 #include "spectral/formats/material_import.h"
 #include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
-#include "spectral/formats/rii.h"
-#include "spectral/formats/rii_write.h"
 #include "spectral/formats/shader_export.h"
 #include "spectral/materials/conductor.h"
 #include "spectral/materials/glass_distance.h"

@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "colorimetry/image/exr.h"
-#include "validation/compare/compare_notes.h"
+#include "validation/compare/file_comparison.h"
 
 #include <unistd.h>
 

@@ -3,7 +3,7 @@
 #include "tests/check.h"
 
 #include "colorimetry/difference.h"
-#include "validation/compare/flip.h"
+#include "validation/compare/compare_state.h"
 
 #include <stdlib.h>
 

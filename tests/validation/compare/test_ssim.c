@@ -1,7 +1,7 @@
 /* SSIM by its definition, where it is known in closed form and summed window by window. */
 #include "tests/check.h"
 
-#include "validation/compare/ssim.h"
+#include "validation/compare/compare_state.h"
 
 #include <stdbool.h>
 

@@ -2,7 +2,6 @@
 
 #include "tests/random.h"
 #include "validation/denoise/nl_means.h"
-#include "validation/denoise/plane.h"
 
 #include <stdlib.h>
 

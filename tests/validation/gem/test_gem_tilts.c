@@ -1,7 +1,7 @@
 #include "validation/gem/gem_tilts.h"
 
 #include "tests/validation/gem/gem_stones.h"
-#include "validation/gem/gem_lamps.h"
+#include "validation/gem/gem_light.h"
 
 #include <stdlib.h>
 

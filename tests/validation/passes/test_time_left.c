@@ -1,7 +1,7 @@
 /* What fits into the time that is left. */
 #include "tests/check.h"
 
-#include "validation/passes/time_left.h"
+#include "validation/passes/checked_picture.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 #include "tests/validation/trace_scene.h"
 
-#include "validation/tracer/guide_sums.h"
+#include "validation/tracer/tracer_state.h"
 
 static const abbe_trace_desc small = {
     .width = 12, .height = 9, .map_width = 16, .photons = 3000, .threads = 1, .bands = 3};

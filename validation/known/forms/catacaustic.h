@@ -3,6 +3,7 @@
  * In plan a ray's course does not depend on how steeply it falls, so the floor shows the planar
  * caustic of a circle by reflection: of parallel light a nephroid, of a lamp on the wall a
  * cardioid. Double precision, whole rays, any number of reflections; the wall reflects all.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_KNOWN_FORMS_CATACAUSTIC_H
 #define ABBE_VALIDATION_KNOWN_FORMS_CATACAUSTIC_H

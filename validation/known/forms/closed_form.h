@@ -3,7 +3,7 @@
  * Plain formulas in double precision, written from their own sources and not through
  * spectral/optics.h, so that a mistake there does not agree with itself. Indices are relative to
  * the surroundings, angles in radians. What light throws onto a plane under a sphere is no closed
- * form: see sphere_quadrature.h.
+ * form: see sphere_quadrature.h. Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_KNOWN_FORMS_CLOSED_FORM_H
 #define ABBE_VALIDATION_KNOWN_FORMS_CLOSED_FORM_H

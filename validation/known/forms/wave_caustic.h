@@ -4,6 +4,7 @@
  * The surface is z = amplitude cos(2 pi x / wavelength), light comes down along -z, and the plane
  * lies at z = -depth. A ray is one number, where it enters, so irradiance is a sum over branches of
  * T / |dX/dx|. Double precision; it knows nothing of scenes, the tracer or the renderer.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_KNOWN_FORMS_WAVE_CAUSTIC_H
 #define ABBE_VALIDATION_KNOWN_FORMS_WAVE_CAUSTIC_H

@@ -1,5 +1,6 @@
 /* node_errors.h: how far what looks a caustic up at light nodes is from photons with the light at a
  * node, where nothing lies between, and in the middle of three, where most does.
+ * Internal to validation/sweep/studies/.
  */
 #ifndef ABBE_VALIDATION_SWEEP_STUDIES_NODE_ERRORS_H
 #define ABBE_VALIDATION_SWEEP_STUDIES_NODE_ERRORS_H

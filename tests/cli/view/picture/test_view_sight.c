@@ -1,7 +1,7 @@
 /* Where a look into refractors ends: a slab, a cube that light cannot leave by its side, a ball. */
 #include "tests/check.h"
 
-#include "cli/view/picture/view_sight.h"
+#include "cli/view/picture/view_feed.h"
 
 #include <math.h>
 #include <string.h>

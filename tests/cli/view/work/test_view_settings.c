@@ -1,7 +1,7 @@
 /* What stages ask of the renderer: the presets of their names, and what keeps up with a hand. */
 #include "tests/check.h"
 
-#include "cli/view/work/view_settings.h"
+#include "cli/view/work/view_worker.h"
 
 static abbe_preset_point points[] = {
     {.desc = {.wavelengths = 5, .photons = 100, .supersample = 1}},

@@ -1,7 +1,7 @@
 /* What the plan makes of media that scatter, and what it says that it leaves out. */
 #include "tests/gl/plan/planned.h"
 
-#include "gl/plan/examine/haze_model.h"
+#include "gl/plan/examine/models.h"
 
 #define MIST(scattering)                                                                           \
   "medium: {scattering: " scattering ", absorption: 0.5, g: 0.4, box: [[-1, -1, 0], [1, 1, 1]]}\n"

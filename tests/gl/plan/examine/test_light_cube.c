@@ -2,7 +2,7 @@
 #include "tests/random.h"
 #include "tests/scenes/scene_text.h"
 
-#include "gl/plan/examine/light_cube.h"
+#include "gl/plan/examine/light_views.h"
 #include "gl/plan/plan.h"
 #include "scenes/geometry/vector.h"
 

@@ -1,7 +1,7 @@
 /* Receivers are hit exactly as long as there is room; others are traversed. */
 #include "tests/gl/plan/planned.h"
 
-#include "gl/plan/examine/receiver_model.h"
+#include "gl/plan/examine/models.h"
 
 static void a_curved_receiver_asks_for_a_hierarchy(void **state) {
   (void)state;

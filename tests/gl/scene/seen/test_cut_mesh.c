@@ -1,7 +1,7 @@
 /* What a view sees of a mesh stays: cut where depth grows sixteenfold, in parts that share corners. */
 #include "tests/check.h"
 
-#include "gl/scene/seen/cut_mesh.h"
+#include "gl/scene/seen/seen_meshes.h"
 #include "scenes/geometry/vector.h"
 
 #include <math.h>

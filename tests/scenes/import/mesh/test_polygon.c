@@ -4,7 +4,7 @@
 #include "tests/scenes/import/mesh/polygons.h"
 
 #include "scenes/geometry/vector.h"
-#include "scenes/import/mesh/polygon.h"
+#include "scenes/import/mesh/mesh_reading.h"
 
 static abbe_error error;
 

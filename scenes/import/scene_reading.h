@@ -1,0 +1,168 @@
+/* scene_reading.h: what is known of an object of a scene file while it is read.
+ * Internal to scenes/. */
+#ifndef ABBE_SCENES_IMPORT_OBJECT_READING_H
+#define ABBE_SCENES_IMPORT_OBJECT_READING_H
+
+#include "base/error.h"
+#include "base/yaml/yaml.h"
+#include "base/yaml/yaml_edit.h"
+#include "scenes/environment/environment.h"
+#include "scenes/environment/environment_source.h"
+#include "scenes/mesh/mesh.h"
+#include "scenes/scene.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Stands for the name of a material: the one that the mesh's file has. */
+#define ABBE_OBJECT_FROM_FILE "from-file"
+
+#define ABBE_OBJECT_RADIANS (3.14159265358979323846 / 180.0)
+
+typedef enum abbe_object_form {
+  ABBE_OBJECT_SPHERE,
+  ABBE_OBJECT_RING,
+  ABBE_OBJECT_GEM,
+  ABBE_OBJECT_BRILLIANT,
+  ABBE_OBJECT_PRISM,
+  ABBE_OBJECT_BOX,
+  ABBE_OBJECT_RECTANGLE,
+  ABBE_OBJECT_LATHE,
+  ABBE_OBJECT_CUT,
+  ABBE_OBJECT_WATER,
+  ABBE_OBJECT_KNOT,
+  ABBE_OBJECT_MESH
+} abbe_object_form;
+
+typedef struct abbe_object_reading {
+  abbe_yaml *yaml;
+  abbe_yaml_node node;
+  const char *folder;
+  abbe_object_form form;
+  double radius;             /* of a sphere */
+  abbe_mesh_normals normals; /* of a mesh */
+  double matrix[16];         /* to world */
+} abbe_object_reading;
+
+/* The surface under `shape` or `mesh`, in its own coordinates, and its form, radius and normals. */
+abbe_result abbe_object_read_surface(abbe_object_reading *reading, abbe_object *object,
+                                     abbe_error *error);
+
+/* Water at the scene's time. */
+abbe_result abbe_object_read_water(const abbe_object_reading *reading, abbe_mesh *out,
+                                   abbe_error *error);
+
+/* A scene's camera: as its file has it, or placed so that objects fill the picture. */
+
+/* The values under 'camera'. With 'frame' its eye and target are not there yet. Errors with file,
+ * line and key. */
+abbe_result abbe_camera_read(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera *out,
+                             abbe_error *error);
+
+/* What 'frame' leaves open, once the scene has its objects: the target is the middle of those
+ * objects as they are seen, the eye as near as lets them fill the share 'fill' of the picture's
+ * width or height, whichever comes first. Then the whole camera is held to what a camera must be.
+ * ABBE_SCHEMA for an object that is not there, with the nearest name. */
+abbe_result abbe_camera_frame(abbe_yaml *yaml, abbe_yaml_node root, abbe_scene *scene,
+                              abbe_error *error);
+
+/* The lights of a scene file, key `lights` (docs/scene-files.md).
+ *
+ * A part of scene_file.h. It reads what an entry says and whether it can be so; where lights stand
+ * to all else is abbe_scene_check's business. */
+
+/* The lights of the document whose root is given; relative paths start at folder. Errors say file
+ * and line; what *out holds then is the caller's to free too (abbe_lights_free). */
+abbe_result abbe_lights_read(abbe_yaml *yaml, abbe_yaml_node root, const char *folder,
+                             abbe_light **out, size_t *count, abbe_error *error);
+
+/* One object of a scene file: its shape or mesh, its transform, what it is made of.
+ *
+ * A part of scene_file.h with the keys of an entry under "objects"; docs/scene-files.md documents
+ * them. It reads, tessellates, places, checks and fixes one object; the scene as a whole is
+ * scene_file's business. */
+
+/* Reads the mapping at node into out[0], and where shells of its mesh cross into further objects
+ * behind it, *count in all and at most room (zeroed before; freed with the scene, also on failure).
+ * folder is the scene file's, with its slash, or "". Materials are found in table. */
+abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
+                             const abbe_material_table *table, abbe_object *out, size_t room,
+                             size_t *count, abbe_error *error);
+
+/* The surroundings of a scene file, key `environment` (docs/scene-files.md): a picture, or sources
+ * that are computed, or both added up. */
+
+#define ABBE_ENVIRONMENT_MAX_SOURCES 256 /* of one list */
+
+/* Reads the node into a zeroed *out and prepares it; relative paths start at folder. Errors say
+ * file and line; what *out holds then is the caller's to free. */
+abbe_result abbe_environment_read(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
+                                  abbe_environment *out, abbe_error *error);
+
+/* What the readers of surroundings share. */
+
+/* Adds the sources that the node's keys name (uniform, sky, sun, softboxes, spots, dome) to the
+ * map; *count says how many there were. */
+abbe_result abbe_environment_read_sources(abbe_yaml *yaml, abbe_yaml_node node,
+                                          abbe_radiance_map *map, size_t *count, abbe_error *error);
+
+/* A receiver's measured reflectance, as a scene file asks for it: {spectrum: FILE, column: NAME}
+ * or {patch: NAME} of the ColorChecker.
+ *
+ * A part of object_file.h, which reads numbers. */
+
+/* Fills the object's spectrum, its path and the colour under D65. Paths are relative to folder.
+ * ABBE_SCHEMA and ABBE_NOT_FOUND with file, line and key; errors of the file. */
+abbe_result abbe_reflectance_file_read(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
+                                       abbe_object *out, abbe_error *error);
+
+/* An object's surface in the world: fixed, placed, told apart, known exactly where it can be.
+ *
+ * A part of object_file.h, which reads what is asked for. Here a refractor's mesh becomes a closed
+ * surface, shells that cross become solids of their own, and the surface gets its size and place.
+ */
+
+typedef struct abbe_object_surface {
+  double matrix[16]; /* from its own coordinates to the world */
+  double radius;     /* of a sphere, in its own coordinates; 0: it is none */
+  bool rectangles;   /* its mesh is made of them, four vertices each */
+  bool file;         /* its mesh is a file's */
+  abbe_mesh_normals normals;
+  bool repair;
+  double flatten; /* share of its size by which it is made a convex solid of planes, or 0 */
+  double fit;     /* the longest side of its bounds, m, or 0: as it is */
+  double width;   /* the smaller of their sides along x and y, m, or 0 */
+  bool centred, stands;
+  double centre[3]; /* where the middle of its bounds comes to stand, or of their lower side */
+} abbe_object_surface;
+
+/* From out->mesh, in its own coordinates, and out's material and name, all the rest. Shells that
+ * cross become further objects behind out, *count in all, for which there is room (zeroed before).
+ * ABBE_GEOMETRY for what cannot be a surface, of a refractor: in the mesh's own coordinates;
+ * ABBE_UNSUPPORTED for more objects than there is room for. */
+abbe_result abbe_object_place(const abbe_object_surface *surface, abbe_object *out, size_t room,
+                              size_t *count, abbe_error *error);
+
+/* Values of a scene file that are put in the place of others before it is read, so that what is
+ * wrong with them is said as of any value of the file. It knows no key of the format but
+ * 'objects', 'material', 'time' and 'keyframes'. */
+
+/* "PATH=VALUE": PATH is keys with dots between them, and for an item of a list its number from 0 or
+ * its 'name' (lights.lamp.intensity); VALUE is one line of YAML. The last key may be a new one.
+ * "PATH=": what is there is taken out, as if it had never stood there. ABBE_INVALID_ARGUMENT for a path that leads nowhere, with the nearest key or name. */
+abbe_result abbe_scene_change_set(abbe_yaml_edit *edit, const char *assignment, abbe_error *error);
+
+/* "STONE": what all refractors are made of, which must be one material; or "NAME=STONE": what is
+ * made of the material NAME, or the object NAME. ABBE_INVALID_ARGUMENT where nothing is. */
+abbe_result abbe_scene_change_material(abbe_yaml_edit *edit, const char *text, abbe_error *error);
+
+/* Whether some value of the document is a mapping with 'keyframes'. */
+bool abbe_scene_change_has_keyframes(const abbe_yaml *yaml);
+
+/* Each {keyframes: [[TIME, VALUE], ...], repeat: SECONDS} becomes its value at the scene's 'time':
+ * numbers or lists of as many numbers, straight lines between them, the first before and the last
+ * behind; with 'repeat' the time counts from 0 to it again and again. ABBE_SCHEMA with file, line
+ * and key for what is none. */
+abbe_result abbe_scene_change_keyframes(abbe_yaml_edit *edit, abbe_error *error);
+
+#endif
