@@ -1,5 +1,6 @@
-/* check.h: what the cmocka tests share: its includes in order, and comparisons that say the values.
- */
+/* check.h: what the tests share: cmocka's includes in order, tests that register themselves, and
+ * comparisons that say the values. tests/check.c runs the tests of a program in the order in which
+ * they stand: `test_NAME [PART…]`, `test_NAME --list`. */
 #ifndef ABBE_TESTS_CHECK_H
 #define ABBE_TESTS_CHECK_H
 
@@ -16,16 +17,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Whether faults of memory are looked for. The tests of label cpu run in release as well: there they
- * hold laws over many cases, of which a few are enough to look for faults. */
+/* Whether faults of memory are looked for. The tests of label cpu run in release as well: there
+ * they hold laws over many cases, of which a few are enough to look for faults. */
 #ifdef __SANITIZE_ADDRESS__
 enum { SANITIZED = 1 };
 #else
 enum { SANITIZED = 0 };
 #endif
 
-/* Whether a law is held to all its cases, as script/test --long does; else to those that differ most,
- * for each of the others compiles shaders of its own. */
+/* Whether a law is held to all its cases, as script/test --long does; else to those that differ
+ * most, for each of the others compiles shaders of its own. */
 static inline bool all_cases(void) {
   return getenv("ABBE_ALL_CASES") != NULL;
 }
@@ -34,6 +35,37 @@ static inline bool all_cases(void) {
 #ifndef assert_int_in_range
 #define assert_int_in_range assert_in_range
 #endif
+
+typedef struct check_test {
+  const char *name;
+  int line;
+  void (*run)(void), (*before)(void), (*after)(void);
+  struct check_test *next;
+} check_test;
+void check_add(check_test *test);
+void check_group(void (*before)(void), void (*after)(void));
+void check_each(void (*before)(void), void (*after)(void));
+
+/* TEST(name) { … } is a test of this program; TEST_WITH's is run between two functions. */
+#define TEST(name) TEST_WITH(name, NULL, NULL)
+#define TEST_WITH(name, before, after)                                                             \
+  static void test_##name(void);                                                                   \
+  __attribute__((constructor)) static void add_##name(void) {                                      \
+    static check_test test = {#name, __LINE__, test_##name, before, after, NULL};                  \
+    check_add(&test);                                                                              \
+  }                                                                                                \
+  static void test_##name(void)
+/* What is run around all tests of the program, or around each; NULL for nothing. */
+#define GROUP(before, after)                                                                       \
+  __attribute__((constructor)) static void add_group(void) {                                       \
+    check_group(before, after);                                                                    \
+  }                                                                                                \
+  struct check_test
+#define EACH(before, after)                                                                        \
+  __attribute__((constructor)) static void add_each(void) {                                        \
+    check_each(before, after);                                                                     \
+  }                                                                                                \
+  struct check_test
 
 /* |a - b| <= tolerance; a NaN on either side fails. */
 #define assert_near(a, b, tolerance) check_near(a, b, tolerance, #a, __FILE__, __LINE__)

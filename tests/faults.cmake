@@ -35,9 +35,6 @@ foreach(name killed_command starved_command)
   add_dependencies(test_${name} abbe faults_preload)
 endforeach()
 
-add_test(NAME killed_command_all COMMAND test_killed_command all)
-abbe_label(program long NAMES killed_command_all)
-
 abbe_test(gl_faults gl WRAPPED abbe_own_context abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 abbe_test(device_memory gl WRAPPED abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 foreach(name gl_faults device_memory)

@@ -5,8 +5,7 @@
 
 #include <time.h>
 
-static void a_wait_takes_as_long_as_it_lasts(void **state) {
-  (void)state;
+TEST(a_wait_takes_as_long_as_it_lasts) {
   const struct timespec wait = {.tv_nsec = 20000000};
   const double start_s = abbe_clock_seconds();
   assert_int_equal(nanosleep(&wait, NULL), 0);
@@ -15,8 +14,7 @@ static void a_wait_takes_as_long_as_it_lasts(void **state) {
 }
 
 /* While a thread waits no processor works for it. */
-static void work_alone_counts_for_a_thread(void **state) {
-  (void)state;
+TEST(work_alone_counts_for_a_thread) {
   const struct timespec wait = {.tv_nsec = 20000000};
   const double start_s = abbe_clock_thread_seconds();
   assert_int_equal(nanosleep(&wait, NULL), 0);
@@ -26,10 +24,4 @@ static void work_alone_counts_for_a_thread(void **state) {
   volatile unsigned steps = 0;
   while (abbe_clock_thread_seconds() - waited_s < 0.002) steps++;
   assert_true(abbe_clock_seconds() - from_s > 0.0019);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_wait_takes_as_long_as_it_lasts),
-                                     cmocka_unit_test(work_alone_counts_for_a_thread)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

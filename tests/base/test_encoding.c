@@ -14,8 +14,7 @@ static void becomes(const char *bytes, size_t size, const char *wanted) {
 }
 #define BECOMES(bytes, wanted) becomes(bytes, sizeof bytes - 1, wanted)
 
-static void every_encoding_becomes_utf8(void **state) {
-  (void)state;
+TEST(every_encoding_becomes_utf8) {
   BECOMES("", "");
   BECOMES("NM F2", "NM F2");
   BECOMES("\xef\xbb\xbfNM", "NM");
@@ -28,16 +27,14 @@ static void every_encoding_becomes_utf8(void **state) {
   BECOMES("25\xc2\xb0\x43", "25\xc2\xb0\x43");
 }
 
-static void lines_end_in_one_way(void **state) {
-  (void)state;
+TEST(lines_end_in_one_way) {
   BECOMES("a\r\nb\rc\n\nd", "a\nb\nc\n\nd");
   BECOMES("\xff\xfe"
           "a\0\r\0\n\0b\0",
           "a\nb");
 }
 
-static void what_cannot_be_decoded_is_replaced(void **state) {
-  (void)state;
+TEST(what_cannot_be_decoded_is_replaced) {
   BECOMES("\xff\xfe\x00\xd8"
           "a\0",
           "\xef\xbf\xbd"
@@ -54,8 +51,7 @@ static void what_cannot_be_decoded_is_replaced(void **state) {
   BECOMES("a\0b", "a b");
 }
 
-static void texts_are_told_from_other_files(void **state) {
-  (void)state;
+TEST(texts_are_told_from_other_files) {
   static const char latin[] = "NM F2 25\xb0\x43\r\n\x1a", marked[] = "\xff\xfeN\0M\0",
                     unmarked[] = "N\0M\0 \0F\0002\0\n",
                     xls[] = "\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1\0\0",
@@ -69,14 +65,4 @@ static void texts_are_told_from_other_files(void **state) {
   assert_true(abbe_encoding_is_binary(xls, sizeof xls - 1));
   assert_true(abbe_encoding_is_binary(gzip, sizeof gzip - 1));
   assert_true(abbe_encoding_is_binary(elf, sizeof elf - 1));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_encoding_becomes_utf8),
-      cmocka_unit_test(texts_are_told_from_other_files),
-      cmocka_unit_test(lines_end_in_one_way),
-      cmocka_unit_test(what_cannot_be_decoded_is_replaced),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

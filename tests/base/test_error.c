@@ -2,8 +2,7 @@
 
 #include "base/error.h"
 
-static void every_code_has_its_own_text(void **state) {
-  (void)state;
+TEST(every_code_has_its_own_text) {
   for (int i = 0; i < ABBE_RESULT_COUNT; i++) {
     assert_string_not_equal(abbe_result_text((abbe_result)i), "unknown result");
     for (int k = 0; k < i; k++)
@@ -13,8 +12,7 @@ static void every_code_has_its_own_text(void **state) {
   assert_string_equal(abbe_result_text(ABBE_RESULT_COUNT), "unknown result");
 }
 
-static void the_sentence_is_kept_cut_and_optional(void **state) {
-  (void)state;
+TEST(the_sentence_is_kept_cut_and_optional) {
   abbe_error error;
   assert_int_equal(abbe_error_set(&error, ABBE_IO, "%s:%d", "file", 7), ABBE_IO);
   assert_int_equal(error.code, ABBE_IO);
@@ -24,8 +22,7 @@ static void the_sentence_is_kept_cut_and_optional(void **state) {
   assert_int_equal(strlen(error.text), sizeof error.text - 1);
 }
 
-static void the_sentence_is_printable(void **state) {
-  (void)state;
+TEST(the_sentence_is_printable) {
   abbe_error error;
   abbe_error_set(&error, ABBE_IO, "%s: no\n%s\xff", "a\x1b[31m", "b\xc2\x9b");
   assert_string_equal(error.text, "a\xe2\x90\x9b[31m: no b\xef\xbf\xbd\xef\xbf\xbd");
@@ -36,13 +33,4 @@ static void the_sentence_is_printable(void **state) {
   many[sizeof many - 1] = '\0';
   abbe_error_set(&error, ABBE_IO, "%s", many); /* pictures take three bytes: cut between them */
   assert_int_equal(strlen(error.text), (sizeof error.text - 1) / 3 * 3);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_code_has_its_own_text),
-      cmocka_unit_test(the_sentence_is_kept_cut_and_optional),
-      cmocka_unit_test(the_sentence_is_printable),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,10 +22,9 @@ static const char *in_folder(const char *name) {
   return path[turn];
 }
 
-static int make_folder(void **state) {
-  (void)state;
+static void make_folder(void) {
   snprintf(folder, sizeof folder, "/tmp/abbe-test-file-XXXXXX");
-  return mkdtemp(folder) == NULL;
+  assert_non_null(mkdtemp(folder));
 }
 
 static int entries(void) {
@@ -38,13 +37,12 @@ static int entries(void) {
   return count;
 }
 
-static int empty_folder(void **state) {
-  (void)state;
+static void empty_folder(void) {
   DIR *dir = opendir(folder);
   for (struct dirent *entry; (entry = readdir(dir)) != NULL;)
     if (strcmp(entry->d_name, ".") && strcmp(entry->d_name, "..")) remove(in_folder(entry->d_name));
   closedir(dir);
-  return rmdir(folder);
+  assert_false(rmdir(folder));
 }
 
 static void assert_holds(const char *path, const char *text) {
@@ -56,8 +54,9 @@ static void assert_holds(const char *path, const char *text) {
   free(data);
 }
 
-static void what_is_written_is_read(void **state) {
-  (void)state;
+GROUP(make_folder, empty_folder);
+
+TEST(what_is_written_is_read) {
   char *data = NULL;
   size_t size = 0;
   assert_int_equal(abbe_file_write(in_folder("a"), "x\0y", 3, NULL), ABBE_OK);
@@ -70,8 +69,7 @@ static void what_is_written_is_read(void **state) {
   assert_int_equal(entries(), 1);
 }
 
-static void what_cannot_be_read_says_why(void **state) {
-  (void)state;
+TEST(what_cannot_be_read_says_why) {
   abbe_error error;
   char *data = NULL;
   size_t size = 0;
@@ -86,8 +84,7 @@ static void what_cannot_be_read_says_why(void **state) {
 }
 
 /* Whoever waits at one of these is ended by the test's limit alone. */
-static void only_a_regular_file_is_opened(void **state) {
-  (void)state;
+TEST(only_a_regular_file_is_opened) {
   abbe_error error;
   char *data = NULL;
   size_t size = 0;
@@ -125,8 +122,7 @@ int __wrap_poll(struct pollfd *one, nfds_t count, int milliseconds) {
 }
 
 /* As a shell's <(...) is one. */
-static void a_nameless_pipe_is_read_while_it_brings_something(void **state) {
-  (void)state;
+TEST(a_nameless_pipe_is_read_while_it_brings_something) {
   abbe_error error;
   int end[2];
   char path[64], *data = NULL;
@@ -145,8 +141,7 @@ static void a_nameless_pipe_is_read_while_it_brings_something(void **state) {
   close(end[0]);
 }
 
-static void standard_input_is_read(void **state) {
-  (void)state;
+TEST(standard_input_is_read) {
   int end[2], kept = dup(STDIN_FILENO);
   char *data = NULL;
   size_t size = 0;
@@ -162,8 +157,7 @@ static void standard_input_is_read(void **state) {
   free(data);
 }
 
-static void a_file_without_a_size_is_read(void **state) {
-  (void)state;
+TEST(a_file_without_a_size_is_read) {
   char *data = NULL;
   size_t size = 0;
   assert_int_equal(abbe_file_read("/proc/self/status", 1 << 20, &data, &size, NULL), ABBE_OK);
@@ -172,8 +166,7 @@ static void a_file_without_a_size_is_read(void **state) {
   free(data);
 }
 
-static void nothing_changes_before_commit_or_after_discard(void **state) {
-  (void)state;
+TEST(nothing_changes_before_commit_or_after_discard) {
   abbe_file_writer writer;
   assert_int_equal(abbe_file_write(in_folder("t"), "old", 3, NULL), ABBE_OK);
   int before = entries();
@@ -190,8 +183,7 @@ static void nothing_changes_before_commit_or_after_discard(void **state) {
   assert_int_equal(abbe_file_writer_commit(&writer, NULL), ABBE_INVALID_ARGUMENT);
 }
 
-static void a_link_is_written_through_and_a_mode_is_kept(void **state) {
-  (void)state;
+TEST(a_link_is_written_through_and_a_mode_is_kept) {
   struct stat status;
   assert_int_equal(abbe_file_write(in_folder("target"), "old", 3, NULL), ABBE_OK);
   assert_int_equal(chmod(in_folder("target"), 0640), 0);
@@ -206,8 +198,7 @@ static void a_link_is_written_through_and_a_mode_is_kept(void **state) {
   assert_int_equal(abbe_file_write(in_folder("dangling"), "new", 3, NULL), ABBE_IO);
 }
 
-static void an_unwritable_target_says_why(void **state) {
-  (void)state;
+TEST(an_unwritable_target_says_why) {
   abbe_error error;
   int before = entries();
   assert_int_equal(abbe_file_write(in_folder("no/such/folder"), "x", 1, &error), ABBE_IO);
@@ -220,8 +211,7 @@ static void an_unwritable_target_says_why(void **state) {
   assert_int_equal(entries(), before);
 }
 
-static void a_name_as_long_as_names_can_be_works(void **state) {
-  (void)state;
+TEST(a_name_as_long_as_names_can_be_works) {
   char name[256];
   memset(name, 'n', 255);
   name[255] = '\0';
@@ -230,8 +220,7 @@ static void a_name_as_long_as_names_can_be_works(void **state) {
 }
 
 /* A file-size limit fails a write as a full disk does. */
-static void a_full_disk_leaves_the_old_file(void **state) {
-  (void)state;
+TEST(a_full_disk_leaves_the_old_file) {
   enum { SIZE = 1 << 20 };
   char *big = calloc(1, SIZE);
   assert_non_null(big);
@@ -257,27 +246,8 @@ static void a_full_disk_leaves_the_old_file(void **state) {
   assert_int_equal(entries(), before);
 }
 
-static void test_name_follows_the_last_slash(void **state) {
-  (void)state;
+TEST(name_follows_the_last_slash) {
   assert_string_equal(abbe_file_name("a/b.exr"), "b.exr");
   assert_string_equal(abbe_file_name("b.exr"), "b.exr");
   assert_string_equal(abbe_file_name("/"), "");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_name_follows_the_last_slash),
-      cmocka_unit_test(what_is_written_is_read),
-      cmocka_unit_test(what_cannot_be_read_says_why),
-      cmocka_unit_test(a_file_without_a_size_is_read),
-      cmocka_unit_test(only_a_regular_file_is_opened),
-      cmocka_unit_test(a_nameless_pipe_is_read_while_it_brings_something),
-      cmocka_unit_test(standard_input_is_read),
-      cmocka_unit_test(nothing_changes_before_commit_or_after_discard),
-      cmocka_unit_test(a_link_is_written_through_and_a_mode_is_kept),
-      cmocka_unit_test(an_unwritable_target_says_why),
-      cmocka_unit_test(a_name_as_long_as_names_can_be_works),
-      cmocka_unit_test(a_full_disk_leaves_the_old_file),
-  };
-  return cmocka_run_group_tests(tests, make_folder, empty_folder);
 }

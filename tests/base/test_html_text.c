@@ -10,8 +10,7 @@ static void becomes(const char *html, const char *wanted) {
   free(text);
 }
 
-static void tags_and_entities_become_text(void **state) {
-  (void)state;
+TEST(tags_and_entities_become_text) {
   becomes("", "");
   becomes("  plain\n  text ", "plain text");
   becomes("<a href=\"https://x\"><i>Appl. Opt.</i> <b>46</b>, 3811-3820 (2007)</a>",
@@ -24,8 +23,7 @@ static void tags_and_entities_become_text(void **state) {
   becomes("<b></b>", "");
 }
 
-static void long_texts_are_cut_between_letters(void **state) {
-  (void)state;
+TEST(long_texts_are_cut_between_letters) {
   char *text = abbe_html_text("ab\xc3\xa4\xc3\xa4", 3);
   assert_string_equal(text, "ab");
   free(text);
@@ -35,8 +33,7 @@ static void long_texts_are_cut_between_letters(void **state) {
 }
 
 /* A quarter of a million openings, none of which ends. */
-static void unending_tags_take_no_time(void **state) {
-  (void)state;
+TEST(unending_tags_take_no_time) {
   enum { COUNT = 1 << 18 };
   char *html = malloc(2 * COUNT + 1);
   assert_non_null(html);
@@ -48,8 +45,7 @@ static void unending_tags_take_no_time(void **state) {
   free(html);
 }
 
-static void escaped_text_comes_back(void **state) {
-  (void)state;
+TEST(escaped_text_comes_back) {
   const char *const texts[] = {"a < b > c & d", "<b>", "&amp;", "", "\xc3\xa4"};
   for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
     char *html = abbe_html_escape(texts[i]);
@@ -57,14 +53,4 @@ static void escaped_text_comes_back(void **state) {
     assert_null(strchr(html, '<'));
     free(html);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(tags_and_entities_become_text),
-      cmocka_unit_test(long_texts_are_cut_between_letters),
-      cmocka_unit_test(unending_tags_take_no_time),
-      cmocka_unit_test(escaped_text_comes_back),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

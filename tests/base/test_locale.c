@@ -382,9 +382,10 @@ static void same(void (*work)(FILE *to)) {
   free(comma);
 }
 
+GROUP(comma_setup, comma_teardown);
+
 #define SAME(what)                                                                                 \
-  static void what##_are_the_same(void **state) {                                                  \
-    (void)state;                                                                                   \
+  TEST(what##_are_the_same) {                                                                      \
     same(with_##what);                                                                             \
   }
 SAME(materials)
@@ -397,13 +398,3 @@ SAME(scenes)
 SAME(answers)
 SAME(sweeps)
 SAME(messages)
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(materials_are_the_same),   cmocka_unit_test(imports_are_the_same),
-      cmocka_unit_test(illuminants_are_the_same), cmocka_unit_test(pictures_are_the_same),
-      cmocka_unit_test(charts_are_the_same),      cmocka_unit_test(meshes_are_the_same),
-      cmocka_unit_test(scenes_are_the_same),      cmocka_unit_test(answers_are_the_same),
-      cmocka_unit_test(sweeps_are_the_same),      cmocka_unit_test(messages_are_the_same)};
-  return cmocka_run_group_tests(tests, comma_setup, comma_teardown);
-}

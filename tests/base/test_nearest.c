@@ -5,8 +5,7 @@
 static const char *const words[] = {"diamond", "fused-silica", "n-bk7", "n-bak4", "water", "n"};
 enum { COUNT = sizeof words / sizeof words[0] };
 
-static void near_words_are_found(void **state) {
-  (void)state;
+TEST(near_words_are_found) {
   assert_string_equal(abbe_nearest_word("diamnod", words, COUNT), "diamond"); /* one swap */
   assert_string_equal(abbe_nearest_word("DIAMOND", words, COUNT), "diamond");
   assert_string_equal(abbe_nearest_word("fused_silicia", words, COUNT), "fused-silica");
@@ -14,8 +13,7 @@ static void near_words_are_found(void **state) {
   assert_string_equal(abbe_nearest_word("wter", words, COUNT), "water");
 }
 
-static void far_words_are_not(void **state) {
-  (void)state;
+TEST(far_words_are_not) {
   assert_null(abbe_nearest_word("teapot", words, COUNT));
   assert_null(abbe_nearest_word("", words, COUNT));
   assert_null(abbe_nearest_word("x", words, COUNT));
@@ -27,8 +25,7 @@ static void far_words_are_not(void **state) {
   assert_null(abbe_nearest_word("water", words, 0));
 }
 
-static void overlong_words_are_harmless(void **state) {
-  (void)state;
+TEST(overlong_words_are_harmless) {
   char word[5000];
   memset(word, 'w', sizeof word - 1);
   word[sizeof word - 1] = '\0';
@@ -37,13 +34,4 @@ static void overlong_words_are_harmless(void **state) {
   assert_string_equal(abbe_nearest_word("water", candidates, 2), "water");
   word[127] = '\0';
   assert_ptr_equal(abbe_nearest_word(word, candidates, 2), word);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(near_words_are_found),
-      cmocka_unit_test(far_words_are_not),
-      cmocka_unit_test(overlong_words_are_harmless),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

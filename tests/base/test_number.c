@@ -5,8 +5,7 @@
 #include <locale.h>
 #include <stdlib.h>
 
-static void written_numbers_are_short_and_read_back(void **state) {
-  (void)state;
+TEST(written_numbers_are_short_and_read_back) {
   char text[ABBE_NUMBER_TEXT_SIZE];
   assert_string_equal(abbe_number_text(1.5168, text), "1.5168");
   assert_string_equal(abbe_number_text(0.1 + 0.2, text), "0.30000000000000004");
@@ -23,8 +22,7 @@ static void written_numbers_are_short_and_read_back(void **state) {
   }
 }
 
-static void only_decimal_numbers_are_read(void **state) {
-  (void)state;
+TEST(only_decimal_numbers_are_read) {
   const char *end;
   double value = 7;
   const char *const none[] = {"", "-", ".", "x1", "nan", "inf", "0x10", "+", "-.", "e5"};
@@ -41,8 +39,7 @@ static void only_decimal_numbers_are_read(void **state) {
   assert_true(abbe_number_read("1e999", &end, &value) && isinf(value));
 }
 
-static void lengths_have_units(void **state) {
-  (void)state;
+TEST(lengths_have_units) {
   static const struct {
     const char *text;
     double metres;
@@ -64,8 +61,7 @@ static void lengths_have_units(void **state) {
 }
 
 /* Where the host has a locale with a decimal comma, it is without effect, and left as it was. */
-static void the_hosts_locale_is_without_effect(void **state) {
-  (void)state;
+TEST(the_hosts_locale_is_without_effect) {
   const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "C.UTF-8"};
   for (int i = 0; i < 4 && setlocale(LC_ALL, names[i]) == NULL; i++)
     ;
@@ -79,14 +75,4 @@ static void the_hosts_locale_is_without_effect(void **state) {
   snprintf(after, sizeof after, "%.1f", 0.5);
   assert_string_equal(before, after);
   setlocale(LC_ALL, "C");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(written_numbers_are_short_and_read_back),
-      cmocka_unit_test(only_decimal_numbers_are_read),
-      cmocka_unit_test(lengths_have_units),
-      cmocka_unit_test(the_hosts_locale_is_without_effect),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,8 +3,7 @@
 #include "base/report.h"
 #include "base/utf8.h"
 
-static void notes_are_kept_in_order(void **state) {
-  (void)state;
+TEST(notes_are_kept_in_order) {
   abbe_report report = {0};
   abbe_report_add(&report, ABBE_NOTE_SKIPPED, 12, "N-BK7", "no formula %d", 99);
   abbe_report_add(&report, ABBE_NOTE_LOST, 0, NULL, "a \x1b[2J");
@@ -25,8 +24,7 @@ static void notes_are_kept_in_order(void **state) {
 }
 
 /* Of a long text whole letters are kept, of a long path its end. */
-static void texts_are_cut_between_letters(void **state) {
-  (void)state;
+TEST(texts_are_cut_between_letters) {
   char text[800] = "", path[800] = "";
   for (int i = 0; i < 390; i++) strcat(text, "\xc3\xa4");
   snprintf(path, sizeof path, "%s%s", "x/", text);
@@ -45,8 +43,7 @@ static void texts_are_cut_between_letters(void **state) {
   abbe_report_free(&report);
 }
 
-static void there_is_an_end_to_what_is_kept(void **state) {
-  (void)state;
+TEST(there_is_an_end_to_what_is_kept) {
   abbe_report report = {0};
   for (int i = 0; i < ABBE_REPORT_MAX_NOTES + 5; i++)
     abbe_report_add(&report, ABBE_NOTE_CHANGED, (size_t)i, "x", "%d", i);
@@ -54,13 +51,4 @@ static void there_is_an_end_to_what_is_kept(void **state) {
   assert_int_equal(report.kinds[ABBE_NOTE_CHANGED], ABBE_REPORT_MAX_NOTES + 5);
   assert_string_equal(report.note[ABBE_REPORT_MAX_NOTES - 1].text, "9999");
   abbe_report_free(&report);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(notes_are_kept_in_order),
-      cmocka_unit_test(texts_are_cut_between_letters),
-      cmocka_unit_test(there_is_an_end_to_what_is_kept),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -23,8 +23,7 @@ static const char *notes_of(const char *const *names, size_t count) {
   return text;
 }
 
-static void many_materials_make_one_note(void **state) {
-  (void)state;
+TEST(many_materials_make_one_note) {
   const char *const names[] = {"a", "b", "c", "d", "e", "f"};
   assert_string_equal(notes_of(names, 0), "");
   assert_string_equal(notes_of(names, 1), "no place for wit (1 material: a)");
@@ -33,8 +32,7 @@ static void many_materials_make_one_note(void **state) {
   assert_string_equal(notes_of(names, 6), "no place for wit (6 materials: a, b, c, d, …)");
 }
 
-static void long_names_are_cut_and_fit(void **state) {
-  (void)state;
+TEST(long_names_are_cut_and_fit) {
   const char *const name = "a-name-of-forty-letters-that-goes-on-and-on";
   const char *const names[] = {name, name, name, name};
   assert_string_equal(notes_of(names, 2), "no place for wit (2 materials: "
@@ -43,8 +41,7 @@ static void long_names_are_cut_and_fit(void **state) {
   assert_contains(notes_of(names, 4), "(4 materials: ");
 }
 
-static void each_row_that_is_met_is_a_note_of_its_kind(void **state) {
-  (void)state;
+TEST(each_row_that_is_met_is_a_note_of_its_kind) {
   abbe_summary summary = {0};
   abbe_report report = {0};
   abbe_summary_add(&summary, 1, "only");
@@ -60,11 +57,4 @@ static void each_row_that_is_met_is_a_note_of_its_kind(void **state) {
   assert_int_equal(report.kinds[ABBE_NOTE_LOST], 1);
   abbe_report_free(&report);
   abbe_summary_report(&summary, rows, 3, NULL); /* nobody wants to know */
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(many_materials_make_one_note),
-                                     cmocka_unit_test(long_names_are_cut_and_fit),
-                                     cmocka_unit_test(each_row_that_is_met_is_a_note_of_its_kind)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,8 +5,7 @@
 /* One character of each length that UTF-8 has. */
 static const char mixed[] = "a\u00b5\u2026\U0001F48Ez";
 
-static void indices_become_bytes_in_any_order(void **state) {
-  (void)state;
+TEST(indices_become_bytes_in_any_order) {
   const size_t byte[] = {0, 1, 3, 6, 10, 11};
   abbe_text_cursor c = abbe_text_cursor_make(mixed, sizeof mixed - 1);
   for (size_t from = 0; from <= 5; from++)
@@ -16,8 +15,7 @@ static void indices_become_bytes_in_any_order(void **state) {
     }
 }
 
-static void a_byte_order_mark_is_no_character(void **state) {
-  (void)state;
+TEST(a_byte_order_mark_is_no_character) {
   const char text[] = "\xEF\xBB\xBF"
                       "ab";
   abbe_text_cursor c = abbe_text_cursor_make(text, sizeof text - 1);
@@ -26,8 +24,7 @@ static void a_byte_order_mark_is_no_character(void **state) {
   assert_int_equal(abbe_text_cursor_byte(&c, 0), 3);
 }
 
-static void it_never_leaves_the_text(void **state) {
-  (void)state;
+TEST(it_never_leaves_the_text) {
   abbe_text_cursor c = abbe_text_cursor_make(mixed, sizeof mixed - 1);
   assert_int_equal(abbe_text_cursor_byte(&c, 1000), sizeof mixed - 1);
   assert_int_equal(abbe_text_cursor_byte(&c, 1), 1);
@@ -36,13 +33,4 @@ static void it_never_leaves_the_text(void **state) {
   assert_int_equal(abbe_text_cursor_byte(&c, 0), 0);
   c = abbe_text_cursor_make("", 0);
   assert_int_equal(abbe_text_cursor_byte(&c, 3), 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(indices_become_bytes_in_any_order),
-      cmocka_unit_test(a_byte_order_mark_is_no_character),
-      cmocka_unit_test(it_never_leaves_the_text),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

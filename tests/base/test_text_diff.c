@@ -18,8 +18,7 @@ static void check_diff(const char *before, const char *after, const char *wanted
   free(out);
 }
 
-static void known_answers(void **state) {
-  (void)state;
+TEST(known_answers) {
   check_diff("a\nb\n", "a\nb\n", "");
   check_diff("", "", "");
   check_diff("a\n", "b\n", "--- t\n+++ t\n@@ -1 +1 @@\n-a\n+b\n");
@@ -32,8 +31,7 @@ static void known_answers(void **state) {
 }
 
 /* Two changes share a hunk where at most six unchanged lines part them. */
-static void hunks_meet_or_part(void **state) {
-  (void)state;
+TEST(hunks_meet_or_part) {
   check_diff("x\n1\n2\n3\n4\n5\n6\nx\n", "y\n1\n2\n3\n4\n5\n6\ny\n",
              "--- t\n+++ t\n@@ -1,8 +1,8 @@\n-x\n+y\n 1\n 2\n 3\n 4\n 5\n 6\n-x\n+y\n");
   check_diff("x\n1\n2\n3\n4\n5\n6\n7\nx\n", "y\n1\n2\n3\n4\n5\n6\n7\ny\n",
@@ -67,8 +65,7 @@ static void apply(const char *before, const char *script, char *out) {
   strcpy(out, at);
 }
 
-static void a_diff_applied_gives_the_other_text(void **state) {
-  (void)state;
+TEST(a_diff_applied_gives_the_other_text) {
   unsigned seed = 1;
   for (int round = 0; round < 3000; round++) {
     char text[2][256] = {"", ""}, made[1024];
@@ -90,8 +87,7 @@ static void a_diff_applied_gives_the_other_text(void **state) {
 }
 
 /* More lines than a table of all pairs may have: replaced as a whole, still right. */
-static void long_changes_are_replaced(void **state) {
-  (void)state;
+TEST(long_changes_are_replaced) {
   enum { LINES = 4000 };
   char *before = calloc(LINES, 8), *after = calloc(LINES, 8), *made = calloc(LINES, 16);
   assert_true(before != NULL && after != NULL && made != NULL);
@@ -106,14 +102,4 @@ static void long_changes_are_replaced(void **state) {
   free(before);
   free(after);
   free(made);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(known_answers),
-      cmocka_unit_test(hunks_meet_or_part),
-      cmocka_unit_test(a_diff_applied_gives_the_other_text),
-      cmocka_unit_test(long_changes_are_replaced),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,8 +2,7 @@
 
 #include "base/utf8.h"
 
-static void letters_are_told_and_cut_ones_trimmed(void **state) {
-  (void)state;
+TEST(letters_are_told_and_cut_ones_trimmed) {
   assert_int_equal(abbe_utf8_letter(""), 0);
   assert_int_equal(abbe_utf8_letter("a"), 1);
   assert_int_equal(abbe_utf8_letter("\xe2\x82\xac"), 3);
@@ -23,8 +22,7 @@ static void letters_are_told_and_cut_ones_trimmed(void **state) {
   }
 }
 
-static void what_a_terminal_obeys_becomes_pictures(void **state) {
-  (void)state;
+TEST(what_a_terminal_obeys_becomes_pictures) {
   static const struct {
     const char *text, *lines, *line;
   } rows[] = {{"", "", ""},
@@ -68,8 +66,7 @@ static void what_a_terminal_obeys_becomes_pictures(void **state) {
   assert_string_equal(small, "");
 }
 
-static void what_misleads_the_eye_is_shown(void **state) {
-  (void)state;
+TEST(what_misleads_the_eye_is_shown) {
   /* of each range its ends, and the letters beside them, which stay */
   static const struct {
     const char *first, *last, *before, *after;
@@ -90,13 +87,4 @@ static void what_misleads_the_eye_is_shown(void **state) {
       assert_string_equal(out, right);
       assert_int_equal(n, strlen(right));
     }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(letters_are_told_and_cut_ones_trimmed),
-      cmocka_unit_test(what_a_terminal_obeys_becomes_pictures),
-      cmocka_unit_test(what_misleads_the_eye_is_shown),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

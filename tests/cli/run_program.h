@@ -13,10 +13,9 @@
 static char run_folder[64];
 static char run_errors[1 << 14], run_output[1 << 17];
 
-static int run_setup(void **state) {
-  (void)state;
+static void run_setup(void) {
   snprintf(run_folder, sizeof run_folder, "/tmp/abbe-test-run-XXXXXX");
-  return mkdtemp(run_folder) == NULL;
+  assert_non_null(mkdtemp(run_folder));
 }
 
 /* Calls visit for every entry of the folder. */
@@ -51,10 +50,9 @@ static inline int run_left(void) {
   return count;
 }
 
-static int run_teardown(void **state) {
-  (void)state;
+static void run_teardown(void) {
   run_each(run_remove, NULL);
-  return rmdir(run_folder);
+  assert_false(rmdir(run_folder));
 }
 
 static inline void run_read(const char *name, char *text, size_t size) {

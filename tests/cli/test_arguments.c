@@ -139,9 +139,10 @@ static bool is_listed(const char *verb, const char *option) {
   return false;
 }
 
+EACH(run_setup, run_teardown);
+
 /* Every option whose value is a file by its help is in the table above. */
-static void test_the_list_is_whole(void **state) {
-  (void)state;
+TEST(the_list_is_whole) {
   static const char *const kinds[] = {"FILE", "TABLE", ".exr", ".png", ".yaml", ".csv", ".pov"};
   size_t found = 0;
   for (size_t v = 0; v < sizeof verbs / sizeof *verbs; v++) {
@@ -186,8 +187,7 @@ static void refuse_pair(const struct named *a, const char *a_path, const struct 
   assert_int_not_equal(run_line("test -e new.txt || test -e sub/new.txt"), 0);
 }
 
-static void test_no_output_over_another_file(void **state) {
-  (void)state;
+TEST(no_output_over_another_file) {
   static const char *const there[] = {"in.txt",   "./in.txt",      "soft.txt",
                                       "hard.txt", "sub/../in.txt", "\"$PWD\"/in.txt"};
   static const char *const none[][2] = {{"new.txt", "new.txt"},
@@ -213,8 +213,7 @@ static void test_no_output_over_another_file(void **state) {
 }
 
 /* A dash is standard output where that makes sense, and no file anywhere. */
-static void test_a_dash_is_no_file(void **state) {
-  (void)state;
+TEST(a_dash_is_no_file) {
   static const char gem[] = "\"$abbe\" trace \"$house\"/scenes/gem.yaml --size 8x8 --spp 1 "
                             "--photons 64 -q ";
   static const char *const refused[] = {"-o -", "--png -", "--save-map=- --map 4",
@@ -236,8 +235,7 @@ static void test_a_dash_is_no_file(void **state) {
 }
 
 /* Two files that are two may be named, whatever they are called. */
-static void test_other_files_are_let_through(void **state) {
-  (void)state;
+TEST(other_files_are_let_through) {
   assert_int_equal(run_line("cp \"$house\"/spectral/materials/thesis.yaml t.yaml; mkdir sub;"
                             "cp t.yaml sub; \"$abbe\" materials export --table t.yaml --to yaml "
                             "-o sub/t.yaml --force && \"$abbe\" materials add bk7 --from t.yaml "
@@ -246,8 +244,7 @@ static void test_other_files_are_let_through(void **state) {
 }
 
 /* What a scene names is read as well. */
-static void test_files_of_a_scene(void **state) {
-  (void)state;
+TEST(files_of_a_scene) {
   static const char make[] =
       "cp \"$house\"/scenes/wood.png wood.png; cp \"$house\"/spectral/materials/thesis.yaml "
       "t.yaml;\n"
@@ -289,8 +286,7 @@ static void test_files_of_a_scene(void **state) {
 
 /* What no option names is claimed as well; of sweeps, tests/cli/sweep/test_sweep_command.c has it.
  */
-static void test_files_that_no_option_names(void **state) {
-  (void)state;
+TEST(files_that_no_option_names) {
   assert_true(run_line("\"$abbe\" trace a.yaml -o c.exr --png c.exr.checkpoint") == 2);
   assert_contains(run_errors, "the checkpoint 'c.exr.checkpoint'");
   assert_true(run_line("OCIO=o.txt; export OCIO; printf kept >o.txt; \"$abbe\" display a.exr "
@@ -305,8 +301,7 @@ static void test_files_that_no_option_names(void **state) {
   assert_contains(run_errors, "'sub/hard.yaml' would be written over");
 }
 
-static void test_names_that_are_meant(void **state) {
-  (void)state;
+TEST(names_that_are_meant) {
   static const struct {
     const char *line, *part;
   } rows[] = {
@@ -344,8 +339,7 @@ static void test_names_that_are_meant(void **state) {
 }
 
 /* A reader that goes ends the program as it ends others: by SIGPIPE, and without a word. */
-static void test_a_reader_that_goes(void **state) {
-  (void)state;
+TEST(a_reader_that_goes) {
   static char *const asked[][5] = {{"abbe", "help"},
                                    {"abbe", "render", "--help"},
                                    {"abbe", "materials", "list"},
@@ -372,18 +366,4 @@ static void test_a_reader_that_goes(void **state) {
     assert_int_equal(stat(path, &said), 0);
     assert_int_equal(said.st_size, 0);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup_teardown(test_the_list_is_whole, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_no_output_over_another_file, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_other_files_are_let_through, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_a_dash_is_no_file, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_files_of_a_scene, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_files_that_no_option_names, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_names_that_are_meant, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_a_reader_that_goes, run_setup, run_teardown),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,8 +17,9 @@ static void refuse_all(const refusal *rows, size_t count, int code) {
   assert_int_equal(wrong, 0);
 }
 
-static void test_scenes_that_cannot_be_used(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(scenes_that_cannot_be_used) {
   static const refusal rows[] = {
       {"\"$abbe\" render missing.yaml" TO, "missing.yaml: cannot be opened: No such file"},
       {"\"$abbe\" render \"$house\"/scenes" TO, "is a directory"},
@@ -62,8 +63,7 @@ static void test_scenes_that_cannot_be_used(void **state) {
        "objects: [{shape: rectangle, width: 2, height: 2, " floor "}" thing "]' >scene.yaml;"      \
        "\"$abbe\" plan scene.yaml" AFTER
 
-static void test_pipes_are_not_waited_for(void **state) {
-  (void)state;
+TEST(pipes_are_not_waited_for) {
   static const refusal rows[] = {
       {FIFO "\"$abbe\" render fifo -o picture.exr" AFTER, "fifo: is a named pipe"},
       {FIFO "\"$abbe\" info fifo" AFTER, "fifo: is a named pipe"},
@@ -107,8 +107,7 @@ static void test_pipes_are_not_waited_for(void **state) {
 #define RADIANCE "#?RADIANCE\\nFORMAT=32-bit_rle_rgbe\\n\\n"
 #define BLACK "\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0"
 
-static void test_pictures_that_are_no_surroundings(void **state) {
-  (void)state;
+TEST(pictures_that_are_no_surroundings) {
   static const refusal rows[] = {
       {AROUND(""), "around.hdr"},
       {AROUND(RADIANCE), "scene.yaml:2: around.hdr: it cannot be read as a Radiance picture"},
@@ -121,8 +120,7 @@ static void test_pictures_that_are_no_surroundings(void **state) {
   refuse_all(rows, sizeof rows / sizeof *rows, 1);
 }
 
-static void test_requests_that_cannot_be_met(void **state) {
-  (void)state;
+TEST(requests_that_cannot_be_met) {
   static const refusal rows[] = {
       {GEM " --materials missing.yaml" TO, "missing.yaml: cannot be opened"},
       {GEM " --ocio missing.ocio" TO, "missing.ocio"},
@@ -138,8 +136,7 @@ static void test_requests_that_cannot_be_met(void **state) {
   refuse_all(rows, sizeof rows / sizeof *rows, 1);
 }
 
-static void test_targets_that_cannot_be_written(void **state) {
-  (void)state;
+TEST(targets_that_cannot_be_written) {
   static const refusal rows[] = {
       {GEM " -o missing/picture.exr", "missing/picture.exr: cannot be written"},
       {GEM " --png missing/picture.png", "missing/picture.png: cannot be written"},
@@ -157,8 +154,7 @@ static void test_targets_that_cannot_be_written(void **state) {
 
 /* A limit on a file's size stands for a disk that is full; the signal that comes with it must not
  * end the program. Each picture is larger than the limit of some kilobytes. */
-static void test_a_full_disk(void **state) {
-  (void)state;
+TEST(a_full_disk) {
   static const refusal rows[] = {
       {"ulimit -f 4; " GEM " --size 64x64 -o picture.exr", "picture.exr"},
       {"ulimit -f 4; " GEM " --size 96x96 --png picture.png", "picture.png"},
@@ -174,8 +170,7 @@ static void test_a_full_disk(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void test_wrong_use(void **state) {
-  (void)state;
+TEST(wrong_use) {
   static const refusal rows[] = {
       {GEM " -o gem.png", "-o writes a .exr file, and 'gem.png' ends like another kind; name it "
                           "'gem.exr', or take --png"},
@@ -231,8 +226,7 @@ static void test_wrong_use(void **state) {
 }
 
 /* Mended, not refused; but it is said. */
-static void test_an_inside_out_mesh_is_turned_and_told(void **state) {
-  (void)state;
+TEST(an_inside_out_mesh_is_turned_and_told) {
   static const char line[] =
       "cat >scene.yaml <<END\n"
       "camera: {eye: [0, -1, 0.5], target: [0, 0, 0]}\n"
@@ -247,18 +241,4 @@ static void test_an_inside_out_mesh_is_turned_and_told(void **state) {
   const char *first = strstr(run_errors, "note: object 'wedge': ");
   assert_non_null(first);
   assert_non_null(strstr(first + 1, "note: object 'wedge': ")); /* both commands */
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_scenes_that_cannot_be_used),
-      cmocka_unit_test(test_pipes_are_not_waited_for),
-      cmocka_unit_test(test_pictures_that_are_no_surroundings),
-      cmocka_unit_test(test_requests_that_cannot_be_met),
-      cmocka_unit_test(test_targets_that_cannot_be_written),
-      cmocka_unit_test(test_a_full_disk),
-      cmocka_unit_test(test_wrong_use),
-      cmocka_unit_test(test_an_inside_out_mesh_is_turned_and_told),
-  };
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

@@ -47,8 +47,7 @@ static double number(const cJSON *object, const char *key, int index) {
 }
 
 /* Which part of a file is read is said, and each can be named. */
-static void test_parts(void **state) {
-  (void)state;
+TEST(parts) {
   static const char *const depth[] = {"Z"}, *const colours[] = {"R", "G", "B"};
   char command[400], parts[80];
   for (int i = 0; i < 2; i++) {
@@ -77,8 +76,7 @@ static void test_parts(void **state) {
   unlink(parts);
 }
 
-static void test_weights_json(void **state) {
-  (void)state;
+TEST(weights_json) {
   cJSON *json = run_json("weights --count 7 --range 380:780 --illuminant D65 --space xyz --json");
   const cJSON *samples = cJSON_GetObjectItem(json, "samples");
   assert_int_equal(cJSON_GetArraySize(samples), 7);
@@ -102,8 +100,7 @@ static void test_weights_json(void **state) {
   cJSON_Delete(json);
 }
 
-static void test_weights_of_every_kind(void **state) {
-  (void)state;
+TEST(weights_of_every_kind) {
   static const char *const spaces[] = {"xyz", "rec709", "acescg"};
   static const char *const lights[] = {"D65", "D50", "a", "E"};
   for (int s = 0; s < 3; s++)
@@ -126,16 +123,14 @@ static void test_weights_of_every_kind(void **state) {
     }
 }
 
-static void test_weights_thesis(void **state) {
-  (void)state;
+TEST(weights_thesis) {
   cJSON *json = run_json("weights --set thesis --json");
   for (int k = 0; k < 3; k++) assert_true(fabs(number(json, "sum", k) - 3.5) < 1e-12);
   cJSON_Delete(json);
   must(0, "680", "weights --set thesis");
 }
 
-static void test_weights_used_wrongly(void **state) {
-  (void)state;
+TEST(weights_used_wrongly) {
   must(2, "--count '0'", "weights --count 0");
   must(2, "--count '4097'", "weights --count 4097");
   must(2, "--range '780:380'", "weights --range 780:380");
@@ -177,8 +172,7 @@ static void show(const char *options, double rgb[3]) {
   abbe_image_free(&image);
 }
 
-static void test_display(void **state) {
-  (void)state;
+TEST(display) {
   double xy[8], rgb[3];
   abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_REC709, xy);
   make_picture(xy, NULL, rgbz);
@@ -191,8 +185,7 @@ static void test_display(void **state) {
 }
 
 /* Equal numbers mean another colour in another space; who says so is ranked. */
-static void test_display_source(void **state) {
-  (void)state;
+TEST(display_source) {
   double rgb[3], xy[8];
   make_picture(NULL, "xyz", rgbz);
   show("--view Plain", rgb);
@@ -224,8 +217,7 @@ static void test_display_source(void **state) {
 
 /* A file that does not say its space is Rec.709 to every command, and each says so; and says how
  * many pixels are not finite. */
-static void test_one_meaning_of_the_numbers(void **state) {
-  (void)state;
+TEST(one_meaning_of_the_numbers) {
   static const char *const commands[] = {"display %s -o %s", "gamut %s --overlay %s",
                                          "pixel %s 2,1"};
   double silent[3], said[3], xy[8];
@@ -279,8 +271,7 @@ static bool holds(const char *word) {
 }
 
 /* By the display that was asked for. */
-static void test_display_says_its_colour(void **state) {
-  (void)state;
+TEST(display_says_its_colour) {
   double rgb[3];
   make_picture(NULL, NULL, rgbz);
   show("", rgb);
@@ -291,8 +282,7 @@ static void test_display_says_its_colour(void **state) {
   assert_true(!holds("iCCP") && !holds("sRGB"));
 }
 
-static void test_gamut(void **state) {
-  (void)state;
+TEST(gamut) {
   make_picture(NULL, "rec709", rgbz);
   char a[512];
   snprintf(a, sizeof a, "gamut %s --space rec2020 --json", exr);
@@ -327,8 +317,7 @@ static void test_gamut(void **state) {
   assert_true(holds("sRGB"));
 }
 
-static void test_display_fails(void **state) {
-  (void)state;
+TEST(display_fails) {
   make_picture(NULL, NULL, rgbz);
   char a[512];
   unlink(png);
@@ -353,8 +342,7 @@ static void test_display_fails(void **state) {
   must(0, "Display P3 / Plain", "display --list");
 }
 
-static void test_info(void **state) {
-  (void)state;
+TEST(info) {
   double xy[8];
   abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_ACESCG, xy);
   make_picture(xy, "acescg", rgbz);
@@ -382,8 +370,7 @@ static void test_info(void **state) {
 }
 
 /* A full disk, by a limit on the size of files: the sentence, the code, the old file. */
-static void test_a_full_disk(void **state) {
-  (void)state;
+TEST(a_full_disk) {
   make_picture(NULL, NULL, rgbz);
   assert_int_equal(abbe_file_write(png, "old", 3, NULL), ABBE_OK);
   char command[512];
@@ -398,15 +385,13 @@ static void test_a_full_disk(void **state) {
   free(data);
 }
 
-static int leave(void **state) {
-  (void)state;
+static void leave(void) {
   unlink(exr);
   unlink(png);
   unlink(other);
-  return 0;
 }
 
-int main(void) {
+static void begin(void) {
   /* As of tests/fontconfig.h, for the program that is run. */
   setenv("LSAN_OPTIONS", "suppressions=" ABBE_SOURCE_DIR "/tests/fontconfig.supp", 1);
   long id = (long)getpid();
@@ -414,18 +399,6 @@ int main(void) {
   snprintf(png, sizeof png, "/tmp/abbe_test_command_%ld.png", id);
   snprintf(other, sizeof other, "/tmp/abbe_test_command_%ld.txt", id);
   unsetenv("OCIO");
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_parts),
-                                     cmocka_unit_test(test_weights_json),
-                                     cmocka_unit_test(test_weights_of_every_kind),
-                                     cmocka_unit_test(test_weights_thesis),
-                                     cmocka_unit_test(test_weights_used_wrongly),
-                                     cmocka_unit_test(test_display),
-                                     cmocka_unit_test(test_display_source),
-                                     cmocka_unit_test(test_display_says_its_colour),
-                                     cmocka_unit_test(test_gamut),
-                                     cmocka_unit_test(test_one_meaning_of_the_numbers),
-                                     cmocka_unit_test(test_display_fails),
-                                     cmocka_unit_test(test_info),
-                                     cmocka_unit_test(test_a_full_disk)};
-  return cmocka_run_group_tests(tests, NULL, leave);
 }
+
+GROUP(begin, leave);

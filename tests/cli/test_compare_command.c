@@ -60,8 +60,9 @@ static double number(const cJSON *json, const char *region, const char *metric, 
   return cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(o, key));
 }
 
-static void test_numbers(void **state) {
-  (void)state;
+EACH(run_setup, run_teardown);
+
+TEST(numbers) {
   leave("ref.exr", picture(1, 0));
   leave("test.exr", picture(3, 0));
   cJSON *json = run_json(COMPARE "ref.exr test.exr --json", 0);
@@ -84,8 +85,7 @@ static void test_numbers(void **state) {
   assert_contains(run_output, "no standard errors");
 }
 
-static void test_maps_of_two_sizes(void **state) {
-  (void)state;
+TEST(maps_of_two_sizes) {
   leave("coarse.exr", map(false, -1));
   leave("fine.exr", map(true, -1));
   leave("moved.exr", map(true, -0.9));
@@ -108,8 +108,7 @@ static void test_maps_of_two_sizes(void **state) {
 }
 
 /* The way from a reference to a comparison: trace a map, render one like it, compare them. */
-static void test_a_traced_map_and_a_rendered_one(void **state) {
-  (void)state;
+TEST(a_traced_map_and_a_rendered_one) {
   assert_int_equal(
       run_line(
           "\"$abbe\" trace \"$house\"/scenes/sphere.yaml -q -o t.exr --save-map "
@@ -127,8 +126,7 @@ static void test_a_traced_map_and_a_rendered_one(void **state) {
   cJSON_Delete(json);
 }
 
-static void test_tolerances(void **state) {
-  (void)state;
+TEST(tolerances) {
   leave("ref.exr", picture(1, 0));
   leave("test.exr", picture(3, 0));
   assert_int_equal(run_line(COMPARE "ref.exr test.exr --tolerance relative_rmse=0.71"), 0);
@@ -144,8 +142,7 @@ static void test_tolerances(void **state) {
   cJSON_Delete(json);
 }
 
-static void test_a_pixel_that_is_no_number_keeps_no_tolerance(void **state) {
-  (void)state;
+TEST(a_pixel_that_is_no_number_keeps_no_tolerance) {
   abbe_image bad = picture(1, 0);
   bad.data[30] = NAN;
   leave("ref.exr", picture(1, 0));
@@ -156,8 +153,7 @@ static void test_a_pixel_that_is_no_number_keeps_no_tolerance(void **state) {
   assert_contains(run_errors, "not finite");
 }
 
-static void test_noise_is_told(void **state) {
-  (void)state;
+TEST(noise_is_told) {
   leave("ref.exr", picture(1, 0.1));
   leave("near.exr", picture(1.05, 0));
   leave("far.exr", picture(3, 0));
@@ -171,8 +167,7 @@ static void test_noise_is_told(void **state) {
   assert_string_equal(run_output, "");
 }
 
-static void test_masks_from_files(void **state) {
-  (void)state;
+TEST(masks_from_files) {
   abbe_image drawn = picture(1, 0), small = {0}, dark = picture(0, 0);
   static const char *const names[] = {"R"};
   for (size_t i = 24; i < 192; i++) drawn.data[i] = 0;
@@ -208,8 +203,7 @@ static void test_masks_from_files(void **state) {
   }
 }
 
-static void test_the_difference_picture(void **state) {
-  (void)state;
+TEST(the_difference_picture) {
   leave("ref.exr", picture(1, 0));
   leave("test.exr", picture(3, 0));
   char path[128];
@@ -231,8 +225,7 @@ static void test_the_difference_picture(void **state) {
   assert_contains(run_errors, "d.gif");
 }
 
-static void test_bad_files(void **state) {
-  (void)state;
+TEST(bad_files) {
   abbe_image half = {0};
   static const char *const names[] = {"depth"};
   assert_int_equal(abbe_image_make(8, 8, 1, names, &half, NULL), ABBE_OK);
@@ -266,8 +259,7 @@ static void test_bad_files(void **state) {
   }
 }
 
-static void test_used_wrongly(void **state) {
-  (void)state;
+TEST(used_wrongly) {
   static const struct {
     const char *line, *says;
   } rows[] = {
@@ -293,21 +285,4 @@ static void test_used_wrongly(void **state) {
     if (code != 2 || strstr(run_errors, rows[i].says) == NULL || run_output[0] != '\0')
       fail_msg("%s ends with %d: %s%s", rows[i].line, code, run_errors, run_output);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup_teardown(test_numbers, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_maps_of_two_sizes, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_a_traced_map_and_a_rendered_one, run_setup,
-                                      run_teardown),
-      cmocka_unit_test_setup_teardown(test_tolerances, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_a_pixel_that_is_no_number_keeps_no_tolerance, run_setup,
-                                      run_teardown),
-      cmocka_unit_test_setup_teardown(test_noise_is_told, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_masks_from_files, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_the_difference_picture, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_bad_files, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_used_wrongly, run_setup, run_teardown)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

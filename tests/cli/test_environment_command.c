@@ -32,8 +32,9 @@ static void check(const char *line) {
   cJSON_Delete(json);
 }
 
-static void a_scene_and_its_picture(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(a_scene_and_its_picture) {
   write_text("s.yaml", VIEW "environment:\n  size: 256\n  uniform: 0.5\n  rotate: 90\n  softboxes: "
                             "[{elevation: 20, radius: 3, radiance: 100}]\n");
   check("\"$abbe\" environment s.yaml --json -o out.exr --png out.png");
@@ -45,8 +46,7 @@ static void a_scene_and_its_picture(void **state) {
 
 /* The shipped pictures give the irradiances that scenes/environments/make-environments asks for: of
  * the skies by what is written there, of the studio by the scene whose it is. */
-static void what_ships(void **state) {
-  (void)state;
+TEST(what_ships) {
   cJSON *json = run_json(
       "\"$abbe\" environment " ABBE_SOURCE_DIR "/scenes/environments/overcast-sky.exr --json", 0);
   assert_near(number(json, "irradiance_up", 1), 3, 1e-3);
@@ -68,8 +68,7 @@ static void what_ships(void **state) {
   cJSON_Delete(json);
 }
 
-static void what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   write_text("s.yaml", VIEW "lights: [{kind: point, position: [0, 0, 1], intensity: 1}]\n");
   assert_int_equal(run_line("\"$abbe\" environment s.yaml"), 1);
   assert_contains(run_errors, "has no 'environment'");
@@ -79,13 +78,4 @@ static void what_is_refused(void **state) {
   assert_int_equal(
       run_line("\"$abbe\" environment s.yaml -o x.png; code=$?; rm s.yaml; exit $code"), 2);
   assert_int_equal(run_left(), 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_scene_and_its_picture),
-      cmocka_unit_test(what_ships),
-      cmocka_unit_test(what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

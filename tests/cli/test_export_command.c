@@ -1,8 +1,9 @@
 /* `abbe export` as people and programs meet it: the file, what is said of materials, refusals. */
 #include "tests/cli/run_json.h"
 
-static void test_a_scene_is_exported(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(a_scene_is_exported) {
   assert_int_equal(run_line("\"$abbe\" export \"$house\"/scenes/prism.yaml -o p.pov && "
                             "grep -c 'mesh2 {' p.pov"),
                    0);
@@ -15,8 +16,7 @@ static void test_a_scene_is_exported(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void test_materials_as_json(void **state) {
-  (void)state;
+TEST(materials_as_json) {
   cJSON *json = run_json("\"$abbe\" export \"$house\"/scenes/sphere.yaml -o s.pov --json "
                          "--photons 5000 --samples 15 && grep -q 'Photons = 5000' s.pov && "
                          "grep -q 'Samples = 15' s.pov && rm s.pov",
@@ -35,8 +35,7 @@ static void test_materials_as_json(void **state) {
 }
 
 /* The format by the file's ending or by --to; the same report for people and for programs. */
-static void test_other_programs(void **state) {
-  (void)state;
+TEST(other_programs) {
   static const struct {
     const char *to, *file, *says;
   } rows[] = {{"", "p.pbrt", "sf10: n as 'table'"},
@@ -68,8 +67,7 @@ static void test_other_programs(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void test_wrong_use_ends_with_2(void **state) {
-  (void)state;
+TEST(wrong_use_ends_with_2) {
   static const struct {
     const char *line;
     int code;
@@ -94,14 +92,4 @@ static void test_wrong_use_ends_with_2(void **state) {
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
     wrong += !run_refuses(rows[i].line, rows[i].code, rows[i].part);
   assert_int_equal(wrong, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_scene_is_exported),
-      cmocka_unit_test(test_materials_as_json),
-      cmocka_unit_test(test_other_programs),
-      cmocka_unit_test(test_wrong_use_ends_with_2),
-  };
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

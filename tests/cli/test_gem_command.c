@@ -5,8 +5,9 @@
 #define GEM "\"$abbe\" gem "
 #define QUARTZ " \"$house\"/scenes/designs/brilliant-quartz.asc "
 
-static void a_design_is_described(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(a_design_is_described) {
   assert_int_equal(run_line(GEM "info" QUARTZ "--material diamond --width 6.5 --density 3.52"), 0);
   assert_contains(run_output, "57 + 16 girdle: 33 crown, 24 pavilion; 57 corners, 128 edges");
   assert_contains(run_output, "critical angle 40.37 degrees");
@@ -26,8 +27,7 @@ static void a_design_is_described(void **state) {
   cJSON_Delete(json);
 }
 
-static void there_and_back(void **state) {
-  (void)state;
+TEST(there_and_back) {
   assert_int_equal(run_line(GEM "convert" QUARTZ "-o s.gem && " GEM "convert s.gem -o s.asc && " GEM
                                 "info s.asc -q"),
                    0);
@@ -41,8 +41,7 @@ static void there_and_back(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void other_angles(void **state) {
-  (void)state;
+TEST(other_angles) {
   cJSON *json = run_json(GEM "retarget" QUARTZ "--index 1.768 -o s.asc --json", 0);
   const cJSON *pavilion = json_item(json, "pavilion");
   assert_near(json_number(pavilion, "from_deg"), 43, 0);
@@ -61,16 +60,14 @@ static void other_angles(void **state) {
   assert_int_equal(run_line("rm s.asc"), 0);
 }
 
-static void sheets(void **state) {
-  (void)state;
+TEST(sheets) {
   assert_int_equal(run_line(GEM "diagram" QUARTZ "-o d.pdf && " GEM "diagram" QUARTZ
                                 "-o d.png && " GEM "diagram" QUARTZ
                                 "-o d.svg --material diamond && rm d.*"),
                    0);
 }
 
-static void what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   static const struct {
     const char *line, *part;
     int code;
@@ -104,13 +101,4 @@ static void what_is_refused(void **state) {
   assert_contains(run_errors, "o.asc");
   assert_int_equal(run_line("rm o.asc"), 0);
   assert_int_equal(run_left(), 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_design_is_described), cmocka_unit_test(there_and_back),
-      cmocka_unit_test(other_angles),          cmocka_unit_test(sheets),
-      cmocka_unit_test(what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

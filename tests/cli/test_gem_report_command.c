@@ -21,8 +21,9 @@ static void shares_add_up(const cJSON *m) {
   assert_true(value(m, "cos") <= value(m, "iso"));
 }
 
-static void numbers_add_up(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(numbers_add_up) {
   cJSON *json = run_json(GEM "report" DIAMOND SMALL "--step 15 --json", 0);
   const cJSON *m = json_item(json, "measures"), *one;
   shares_add_up(m);
@@ -63,8 +64,7 @@ static void numbers_add_up(void **state) {
   }
 }
 
-static void pages_maps_and_tables(void **state) {
-  (void)state;
+TEST(pages_maps_and_tables) {
   assert_int_equal(run_line("mkdir maps && " GEM "report" DIAMOND SMALL
                             "--step 15 -o r.pdf --maps maps && head -c 5 r.pdf"),
                    0);
@@ -80,8 +80,7 @@ static void pages_maps_and_tables(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void the_best_is_written_and_is_as_good_as_said(void **state) {
-  (void)state;
+TEST(the_best_is_written_and_is_as_good_as_said) {
   cJSON *json = run_json(GEM "optimise \"$house\"/scenes/designs/brilliant-quartz.asc --quiet "
                              "--material quartz --grid 3x3 --pavilion 36:46 --size 24 -o b.asc "
                              "--plot p.png --json",
@@ -102,16 +101,14 @@ static void the_best_is_written_and_is_as_good_as_said(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void a_design_brings_its_index(void **state) {
-  (void)state;
+TEST(a_design_brings_its_index) {
   cJSON *json = run_json(GEM "report" DIAMOND "--size 24 --wavelengths 5 --tilt 0 --json", 0);
   assert_string_equal(json_item(json, "material")->valuestring, "index 2.417");
   shares_add_up(json_item(json, "measures"));
   cJSON_Delete(json);
 }
 
-static void what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   static const struct {
     const char *line, *part;
     int code;
@@ -132,15 +129,4 @@ static void what_is_refused(void **state) {
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
     if (!run_refuses(wrong[i].line, wrong[i].code, wrong[i].part)) fail_msg("%s", wrong[i].line);
   assert_int_equal(run_left(), 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(numbers_add_up),
-      cmocka_unit_test(pages_maps_and_tables),
-      cmocka_unit_test(the_best_is_written_and_is_as_good_as_said),
-      cmocka_unit_test(a_design_brings_its_index),
-      cmocka_unit_test(what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

@@ -143,8 +143,9 @@ static const struct wrong {
      "% of the picture is over-exposed: white without detail; --exposure -", 0},
 };
 
-static void every_mistake_gets_its_sentence(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(every_mistake_gets_its_sentence) {
   size_t wrong = 0;
   for (size_t i = 0; i < sizeof wrongs / sizeof *wrongs; i++) {
     const struct wrong *w = &wrongs[i];
@@ -160,8 +161,7 @@ static void every_mistake_gets_its_sentence(void **state) {
 }
 
 /* Files on the command line count from where the user stands, and ~ is the user's folder. */
-static void files_count_from_here(void **state) {
-  (void)state;
+TEST(files_count_from_here) {
   assert_int_equal(
       run_line(
           SCENE("s/round.asc/nowhere.asc/") "mkdir sub; mv my.yaml sub; cp round.asc sub/o.asc;"
@@ -177,8 +177,7 @@ static void files_count_from_here(void **state) {
 }
 
 /* The scene that is saved draws the picture that was drawn, bit for bit. */
-static void a_saved_scene_draws_the_same(void **state) {
-  (void)state;
+TEST(a_saved_scene_draws_the_same) {
   const int code = run_line(
       QUARTZ "mkdir sub; " RENDER
              "round.asc --look velvet --size 24x24 -q --save-scene sub/my.yaml "
@@ -189,21 +188,10 @@ static void a_saved_scene_draws_the_same(void **state) {
   run_each(run_remove, NULL);
 }
 
-static void a_picture_is_named_after_its_stone(void **state) {
-  (void)state;
+TEST(a_picture_is_named_after_its_stone) {
   assert_int_equal(run_line(QUARTZ RENDER "round.asc --size 16x16 --with none --alpha && "
                                           "test -s round.png"),
                    0);
   assert_contains(run_errors, "round.asc as quartz, 6.5 mm wide (its design is for an index of");
   run_each(run_remove, NULL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_mistake_gets_its_sentence),
-      cmocka_unit_test(files_count_from_here),
-      cmocka_unit_test(a_saved_scene_draws_the_same),
-      cmocka_unit_test(a_picture_is_named_after_its_stone),
-  };
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

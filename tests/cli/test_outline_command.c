@@ -24,8 +24,9 @@ static void write_square(const char *name, int x, int y, float grey, bool apart)
   abbe_image_free(&image);
 }
 
-static void test_two_pictures_as_json(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(two_pictures_as_json) {
   write_square("a.exr", 10, 20, 0.25f, true);
   write_square("b.exr", 14, 20, 0.5f, false);
   write_square("dark.exr", WIDE, HIGH, 0.5f, false);
@@ -56,8 +57,7 @@ static void test_two_pictures_as_json(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void test_refusals(void **state) {
-  (void)state;
+TEST(refusals) {
   write_square("black.exr", WIDE, HIGH, 0, false);
   assert_int_equal(run_line("\"$abbe\" outline black.exr; rm black.exr"), 0);
   assert_contains(run_errors, "dark");
@@ -75,10 +75,4 @@ static void test_refusals(void **state) {
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
     wrong += !run_refuses(rows[i].line, rows[i].code, rows[i].part);
   assert_int_equal(wrong, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_two_pictures_as_json),
-                                     cmocka_unit_test(test_refusals)};
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

@@ -9,8 +9,7 @@
 static char path[] = "pixel_command.exr";
 
 /* 2 x 2 pixels of Rec.709's white, with the bands of an even spectrum of 1 in each. */
-static int make_picture(void **state) {
-  (void)state;
+static void make_picture(void) {
   char name[46][32];
   const char *names[46] = {"R", "G", "B", "stderr.R", "S0.385nm", "stderr.S0.385nm"};
   for (int i = 1; i < 40; i++) {
@@ -22,13 +21,10 @@ static int make_picture(void **state) {
   for (size_t i = 0; i < 4 * 45; i++) image.data[i] = 1;
   assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
   abbe_image_free(&image);
-  return 0;
 }
 
-static int remove_picture(void **state) {
-  (void)state;
+static void remove_picture(void) {
   remove(path);
-  return 0;
 }
 
 /* Runs the program with a pixel command on the picture; its exit code. */
@@ -49,9 +45,10 @@ static double number(const cJSON *root, const char *group, const char *key, int 
   return cJSON_GetNumberValue(index < 0 ? item : cJSON_GetArrayItem(item, index));
 }
 
+GROUP(make_picture, remove_picture);
+
 /* Equal energy is at x = y = 1/3, of 5455 K [CIE15]; the channels' white is D65. */
-static void test_equal_energy(void **state) {
-  (void)state;
+TEST(equal_energy) {
   assert_int_equal(run("0,0:1,1 --json"), 0);
   cJSON *root = cJSON_Parse(strchr(output, '{'));
   assert_non_null(root);
@@ -66,8 +63,7 @@ static void test_equal_energy(void **state) {
   assert_contains(output, "S0.385nm");
 }
 
-static void test_refusals(void **state) {
-  (void)state;
+TEST(refusals) {
   assert_int_equal(run("2,0"), 1);
   assert_contains(output, "(0, 0) to (1, 1)");
   assert_int_equal(run("nowhere"), 2);
@@ -76,10 +72,4 @@ static void test_refusals(void **state) {
   assert_int_equal(run("0,0 --observer 1930"), 2);
   assert_int_equal(run("0,0 --illuminant A"), 1);
   assert_contains(output, "which light it was made with");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_equal_energy),
-                                     cmocka_unit_test(test_refusals)};
-  return cmocka_run_group_tests(tests, make_picture, remove_picture);
 }

@@ -95,8 +95,14 @@ static void prepare(void) {
   write_text("broken.ocio", "ocio_profile_version: 2\n" EVIL ": [\n");
 }
 
-static void test_everything_that_is_said(void **state) {
-  (void)state;
+static void begin(void) {
+  assert_non_null(setlocale(LC_CTYPE, "C.UTF-8"));
+  run_setup();
+}
+
+GROUP(begin, run_teardown);
+
+TEST(everything_that_is_said) {
   static const char *const lines[] = {
       "$abbe info evil.exr",
       "$abbe info \"na\"*me.exr",
@@ -154,8 +160,7 @@ static void test_everything_that_is_said(void **state) {
 }
 
 /* JSON that goes to a file is as good. */
-static void test_json_in_files(void **state) {
-  (void)state;
+TEST(json_in_files) {
   prepare();
   assert_int_equal(run_line("$abbe trace names.yaml --spp 1 --photons 16 --map 4 -q --stats t.json "
                             "-o t.exr"),
@@ -172,8 +177,7 @@ static void test_json_in_files(void **state) {
 }
 
 /* What a text says keeps its letters, and its lines do not look like the program's own. */
-static void test_what_is_shown(void **state) {
-  (void)state;
+TEST(what_is_shown) {
   prepare();
   assert_int_equal(run_line("$abbe info evil.exr"), 0);
   assert_contains(run_output, ": a\n    \xe2\x90\x9b]0;x\xe2\x90\x87\xe2\x90\x9b[31m\xe2\x90\xa1");
@@ -190,8 +194,7 @@ static void test_what_is_shown(void **state) {
 }
 
 /* Letters of several bytes pass, though they come in pieces of any size. */
-static void test_letters_pass(void **state) {
-  (void)state;
+TEST(letters_pass) {
   static char text[40000];
   write_picture("evil.exr");
   char path[300];
@@ -216,8 +219,7 @@ static void test_letters_pass(void **state) {
 }
 
 /* A file of another kind is named as such, and not quoted. */
-static void test_binary_for_text(void **state) {
-  (void)state;
+TEST(binary_for_text) {
   static const char *const lines[] = {
       "materials import",        "materials fit --points",
       "materials list --table",  "materials diff default",
@@ -240,20 +242,10 @@ static void test_binary_for_text(void **state) {
 }
 
 /* An error where results should go is still seen. */
-static void test_a_full_output(void **state) {
-  (void)state;
+TEST(a_full_output) {
   prepare();
   assert_int_equal(run_line("$abbe info evil.exr > /dev/full"), 1);
   assert_contains(run_errors, "No space left");
   assert_int_equal(run_line("$abbe help > /dev/full"), 1);
   assert_contains(run_errors, "No space left");
-}
-
-int main(void) {
-  if (setlocale(LC_CTYPE, "C.UTF-8") == NULL) return 1;
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_everything_that_is_said), cmocka_unit_test(test_json_in_files),
-      cmocka_unit_test(test_what_is_shown),           cmocka_unit_test(test_letters_pass),
-      cmocka_unit_test(test_binary_for_text),         cmocka_unit_test(test_a_full_output)};
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

@@ -32,18 +32,14 @@ static void write_spectral(const char *path, const char *prefix, bool emissive) 
   abbe_image_free(&image);
 }
 
-static int make_pictures(void **state) {
-  (void)state;
+static void make_pictures(void) {
   write_spectral(lamp, "S0.", true);
   write_spectral(chart, "T.", false);
-  return 0;
 }
 
-static int remove_pictures(void **state) {
-  (void)state;
+static void remove_pictures(void) {
   const char *const paths[] = {lamp, chart, exr, png};
   for (int i = 0; i < 4; i++) remove(paths[i]);
-  return 0;
 }
 
 static char output[1 << 16];
@@ -72,8 +68,9 @@ static void expect_a(double y) {
   abbe_image_free(&image);
 }
 
-static void test_relight(void **state) {
-  (void)state;
+GROUP(make_pictures, remove_pictures);
+
+TEST(relight) {
   assert_int_equal(run("relight relight_lamp.exr --lit-by D65 --illuminant A --space xyz "
                        "-o relight_out.exr --png relight_out.png"),
                    0);
@@ -89,8 +86,7 @@ static void test_relight(void **state) {
   assert_contains(output, "1964");
 }
 
-static void test_display(void **state) {
-  (void)state;
+TEST(display) {
   assert_int_equal(run("display relight_chart.exr -o relight_out.png"), 0);
   assert_contains(output, "the colour of the spectrum, CIE 1931, 2 degrees");
   assert_int_equal(run("display relight_chart.exr -o relight_out.png --observer 2015-10"), 0);
@@ -99,10 +95,4 @@ static void test_display(void **state) {
   assert_int_equal(run("display relight_lamp.exr -o relight_out.png --layer 550nm --bits 16"), 1);
   assert_contains(output, "false colours, without --bits");
   assert_int_equal(run("display relight_lamp.exr -o relight_out.png --layer 950nm"), 1);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_relight),
-                                     cmocka_unit_test(test_display)};
-  return cmocka_run_group_tests(tests, make_pictures, remove_pictures);
 }

@@ -42,8 +42,9 @@ static bool same_pixels(const char *a, const char *b) {
   return same;
 }
 
-static void test_outputs(void **state) {
-  (void)state;
+EACH(run_setup, run_teardown);
+
+TEST(outputs) {
   check_run(TRACE BALL SMALL "--spp 2 -o a.exr --png a.png --save-map m.exr --stats s.json", 0);
   assert_string_equal(run_output, "");
   assert_string_equal(run_errors, "");
@@ -66,8 +67,7 @@ static void test_outputs(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_numbers(void **state) {
-  (void)state;
+TEST(numbers) {
   cJSON *json = run_json(TRACE BALL SMALL "--spp 3 --json", 0);
   assert_near(json_number(json, "passes"), 3, 0);
   assert_near(json_number(json, "photons"), 3 * 4000, 0);
@@ -82,8 +82,7 @@ static void test_numbers(void **state) {
 }
 
 /* Bands by the names of the spectral layout, which OpenEXR's own tool reads, where it is there. */
-static void test_bands(void **state) {
-  (void)state;
+TEST(bands) {
   check_run(TRACE BALL SMALL "--spp 2 --bands 4 -o a.exr --save-map m.exr", 0);
   abbe_image image;
   for (int i = 0; i < 2; i++) {
@@ -100,8 +99,7 @@ static void test_bands(void **state) {
 }
 
 /* Same seed, same bytes of pixels, however many threads; the seed is told apart. */
-static void test_seeds_and_threads(void **state) {
-  (void)state;
+TEST(seeds_and_threads) {
   check_run(TRACE BALL SMALL "--spp 2 -o one.exr", 0);
   check_run(TRACE BALL SMALL "--spp 2 -o two.exr --threads 2", 0);
   check_run(TRACE BALL SMALL "--spp 2 -o other.exr --seed 1", 0);
@@ -109,8 +107,7 @@ static void test_seeds_and_threads(void **state) {
   assert_false(same_pixels("one.exr", "other.exr"));
 }
 
-static void test_resume(void **state) {
-  (void)state;
+TEST(resume) {
   check_run(TRACE BALL SMALL "--spp 5 -o whole.exr --save-map whole-map.exr", 0);
   check_run(TRACE BALL SMALL "--spp 2 -o a.exr --save-map a-map.exr --checkpoint run.c", 0);
   assert_true(there("run.c"));
@@ -138,8 +135,7 @@ static void test_resume(void **state) {
 }
 
 /* Ctrl-C: what is done is saved, the exit code says that it is not all, and --resume goes on. */
-static void test_interrupt(void **state) {
-  (void)state;
+TEST(interrupt) {
   check_run(TRACE BALL SMALL
             "--spp 1000000 -o a.exr --save-map m.exr --checkpoint-every 0" AFTER_A_PASS
             "kill -INT $p; wait $p",
@@ -164,8 +160,7 @@ static void test_interrupt(void **state) {
 }
 
 /* A kill loses at most what came after the last checkpoint, which is whole. */
-static void test_kill(void **state) {
-  (void)state;
+TEST(kill) {
   check_run(TRACE BALL SMALL "--spp 1000000 -o a.exr --checkpoint-every 0.01" AFTER_A_PASS
                              "kill -KILL $p; wait $p; true",
             0);
@@ -177,8 +172,7 @@ static void test_kill(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_stops(void **state) {
-  (void)state;
+TEST(stops) {
   cJSON *json = run_json(TRACE BALL SMALL "--until-error 0.9 -o a.exr --json", 0);
   assert_true(json_number(json, "relative_error") <= 0.9 && json_number(json, "passes") >= 4);
   cJSON_Delete(json);
@@ -187,8 +181,7 @@ static void test_stops(void **state) {
   cJSON_Delete(json);
 }
 
-static void test_used_wrongly(void **state) {
-  (void)state;
+TEST(used_wrongly) {
   static const struct {
     const char *line, *part;
   } lines[] = {{TRACE BALL "-o a.exr --spp 0", "--spp"},
@@ -215,8 +208,7 @@ static void test_used_wrongly(void **state) {
 }
 
 /* Scenes that cannot be traced; each is made by sed from one that can. */
-static void test_bad_scenes(void **state) {
-  (void)state;
+TEST(bad_scenes) {
 #define SCENE(edit)                                                                                \
   "sed " edit " \"$house/scenes/sphere.yaml\" > s.yaml; " TRACE "s.yaml" SMALL                     \
   "--spp 1 -o a.exr; code=$?; rm s.yaml; exit $code"
@@ -254,8 +246,7 @@ static void save_two_maps(const char *options, abbe_image *a, abbe_image *b) {
   read_image("b.exr", b);
 }
 
-static void test_map_like(void **state) {
-  (void)state;
+TEST(map_like) {
   abbe_image a, b;
   save_two_maps("--seed 4", &a, &b);
   assert_string_equal(abbe_image_attribute_text(&a, "abbe:map_view"),
@@ -266,8 +257,7 @@ static void test_map_like(void **state) {
 }
 
 /* A map need not be square: it holds the same light. */
-static void test_map_sides(void **state) {
-  (void)state;
+TEST(map_sides) {
   abbe_image a, b;
   save_two_maps("--map 4x16", &a, &b);
   assert_int_equal(b.width, 4);
@@ -282,8 +272,7 @@ static void test_map_sides(void **state) {
 }
 
 /* Threads have the stack that the shell allows; a quarter of a megabyte does, also for two. */
-static void test_a_small_stack(void **state) {
-  (void)state;
+TEST(a_small_stack) {
   check_run("ulimit -s 256 && " TRACE BALL SMALL "--spp 1 -o a.exr --save-map m.exr --rates", 0);
   check_run("ulimit -s 256 && " TRACE "\"$house/scenes/bunny.yaml\" " SMALL
             "--threads 2 --spp 1 -o b.exr",
@@ -291,8 +280,7 @@ static void test_a_small_stack(void **state) {
 }
 
 /* Processes that know nothing of each other, one of them killed and started again. */
-static void test_parts(void **state) {
-  (void)state;
+TEST(parts) {
   const char *const whole = TRACE BALL SMALL "--spp 7 -o whole.exr --save-map whole-map.exr";
   check_run(whole, 0);
 #define PART(range, file)                                                                          \
@@ -323,8 +311,7 @@ static void refuse_parts(const char *arguments, int code, const char *part) {
   assert_contains(run_errors, part);
 }
 
-static void test_wrong_parts(void **state) {
-  (void)state;
+TEST(wrong_parts) {
   check_run(TRACE BALL SMALL "--passes 0:1 --checkpoint q0.ck", 0);
   check_run(TRACE BALL SMALL "--passes 3:4 --checkpoint q3.ck", 0);
   refuse_parts("-o c.exr --merge q0.ck q3.ck", 1, "passes 1 to 2 are missing");
@@ -354,16 +341,4 @@ static void test_wrong_parts(void **state) {
   refuse_parts("--passes 0:1 --merge q0.ck --checkpoint q.ck", 2, "--merge");
   refuse_parts("--passes 0:1 --checkpoint q3.ck --resume", 1, "from 3 on, not all from 0");
   assert_true(!there("c.exr") && !there("q.ck"));
-}
-
-int main(void) {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, run_setup, run_teardown)
-  const struct CMUnitTest tests[] = {
-      TEST(test_parts),    TEST(test_wrong_parts),  TEST(test_outputs),
-      TEST(test_numbers),  TEST(test_bands),        TEST(test_seeds_and_threads),
-      TEST(test_resume),   TEST(test_interrupt),    TEST(test_kill),
-      TEST(test_stops),    TEST(test_used_wrongly), TEST(test_bad_scenes),
-      TEST(test_map_like), TEST(test_map_sides),    TEST(test_a_small_stack),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,8 +1,9 @@
 /* The program's `validate`, as a person and as a program meet it. */
 #include "tests/cli/run_json.h"
 
-static void a_group_as_text(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(a_group_as_text) {
   assert_int_equal(run_line("\"$abbe\" validate --only rainbow"), 0);
   assert_contains(run_output, "secondary bow at 700 nm");
   assert_contains(run_output, "6 of 6 known answers are within tolerance");
@@ -11,8 +12,7 @@ static void a_group_as_text(void **state) {
   assert_string_equal(run_errors, "");
 }
 
-static void a_group_as_json(void **state) {
-  (void)state;
+TEST(a_group_as_json) {
   cJSON *json = run_json("\"$abbe\" validate --only prism --json", 0);
   const cJSON *list = cJSON_GetObjectItem(json, "answers"), *row = cJSON_GetArrayItem(list, 1);
   assert_int_equal(cJSON_GetArraySize(list), 13);
@@ -30,8 +30,7 @@ static void a_group_as_json(void **state) {
 /* Whole runs, small: their tolerances widen with their noise, and would fail where it tells
  * nothing.
  */
-static void runs_meet_a_furnace_and_converge(void **state) {
-  (void)state;
+TEST(runs_meet_a_furnace_and_converge) {
   assert_int_equal(run_line("\"$abbe\" validate --only furnace --samples 65536 --threads 1"), 0);
   assert_contains(run_output, "5 of 5 known answers are within tolerance");
   assert_int_equal(run_line("\"$abbe\" validate --only convergence --samples 65536 --threads 1"),
@@ -39,21 +38,18 @@ static void runs_meet_a_furnace_and_converge(void **state) {
   assert_contains(run_output, "slope of the error over the photons");
 }
 
-static void pictures_show_the_caustic(void **state) {
-  (void)state;
+TEST(pictures_show_the_caustic) {
   assert_int_equal(run_line("\"$abbe\" validate --only picture --samples 524288 --threads 1"), 0);
   assert_contains(run_output, "the caustic through a pane");
 }
 
-static void noise_is_no_agreement(void **state) {
-  (void)state;
+TEST(noise_is_no_agreement) {
   assert_int_equal(run_line("\"$abbe\" validate --only absorption --samples 1000 --threads 1"), 3);
   assert_contains(run_output, "TOO NOISY");
   assert_contains(run_errors, "of 5 known answers are out of tolerance");
 }
 
-static void errors_are_drawn(void **state) {
-  (void)state;
+TEST(errors_are_drawn) {
   assert_int_equal(
       run_line("\"$abbe\" validate --only slab --chart c.svg && grep -c '<svg' c.svg && "
                "rm c.svg"),
@@ -61,32 +57,16 @@ static void errors_are_drawn(void **state) {
   assert_true(run_refuses("\"$abbe\" validate --chart c.gif", 2, "'c.gif' wants a name"));
 }
 
-static void help_lists_the_groups(void **state) {
-  (void)state;
+TEST(help_lists_the_groups) {
   assert_int_equal(run_line("\"$abbe\" validate --help"), 0);
   assert_contains(run_output, "rainbow: primary");
   assert_contains(run_output, "Examples:");
 }
 
-static void wrong_use_is_explained(void **state) {
-  (void)state;
+TEST(wrong_use_is_explained) {
   bool right = run_refuses("\"$abbe\" validate --only rainbov", 2, "did you mean 'rainbow'");
   right = run_refuses("\"$abbe\" validate extra", 2, "'extra' is one argument too many") && right;
   right = run_refuses("\"$abbe\" validate --samples 0", 2, "--samples '0'") && right;
   right = run_refuses("\"$abbe\" validate --threads 0", 2, "--threads '0'") && right;
   assert_true(right);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_group_as_text),
-      cmocka_unit_test(a_group_as_json),
-      cmocka_unit_test(runs_meet_a_furnace_and_converge),
-      cmocka_unit_test(pictures_show_the_caustic),
-      cmocka_unit_test(noise_is_no_agreement),
-      cmocka_unit_test(errors_are_drawn),
-      cmocka_unit_test(help_lists_the_groups),
-      cmocka_unit_test(wrong_use_is_explained),
-  };
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

@@ -4,8 +4,7 @@
 
 static const double d65[2] = {0.3127, 0.3290};
 
-static void test_diagrams(void **state) {
-  (void)state;
+TEST(diagrams) {
   /* D65 and A as [CIE15] prints them. */
   static const struct {
     double xyz[3], xy[2], uv[2];
@@ -26,8 +25,7 @@ static void test_diagrams(void **state) {
   }
 }
 
-static void test_dark_has_none(void **state) {
-  (void)state;
+TEST(dark_has_none) {
   static const double dark[][3] = {{0, 0, 0},  {1, 0, 1},   {1, -1, 5},
                                    {-9, 1, 0}, {NAN, 1, 1}, {INFINITY, 1, 1}};
   double xy[2] = {7, 7}, xyz[3] = {7, 7, 7};
@@ -39,8 +37,7 @@ static void test_dark_has_none(void **state) {
 }
 
 /* The locus of 1931 as [CIE15, table T.6] prints it. */
-static void test_locus(void **state) {
-  (void)state;
+TEST(locus) {
   static const double at[][3] = {{400, 0.17334, 0.00480}, {450, 0.15664, 0.01771},
                                  {480, 0.09129, 0.13270}, {500, 0.00817, 0.53842},
                                  {520, 0.07430, 0.83380}, {555, 0.33736, 0.65885},
@@ -56,8 +53,7 @@ static void test_locus(void **state) {
 }
 
 /* The primaries of Rec.2020 are light of 630, 532 and 467 nm, to three decimals [BT2020]. */
-static void test_rec2020_is_spectral(void **state) {
-  (void)state;
+TEST(rec2020_is_spectral) {
   static const double primary[3][3] = {
       {630, 0.708, 0.292}, {532, 0.170, 0.797}, {467, 0.131, 0.046}};
   for (int i = 0; i < 3; i++) {
@@ -70,8 +66,7 @@ static void test_rec2020_is_spectral(void **state) {
 
 /* Two colours under D65 as [Colour] has them: wavelengths to a whole nm, purity by the CIE's 1 nm
  * table from 360 to 830 nm. */
-static void test_known_colours(void **state) {
-  (void)state;
+TEST(known_colours) {
   abbe_dominant d;
   assert_true(abbe_chromaticity_dominant((double[]){0.54369557, 0.32107944}, d65,
                                          ABBE_OBSERVER_CIE_1931, &d));
@@ -88,8 +83,7 @@ static void test_known_colours(void **state) {
 
 /* Mixtures of white and one wavelength, of every observer: the wavelength and the share of the
  * way. */
-static void test_mixtures(void **state) {
-  (void)state;
+TEST(mixtures) {
   for (int o = 0; o < ABBE_OBSERVER_COUNT; o++)
     for (double nm = 410; nm <= 690; nm += 7)
       for (double share = 0.1; share < 1.5; share += 0.3) {
@@ -106,8 +100,7 @@ static void test_mixtures(void **state) {
       }
 }
 
-static void test_without_a_direction(void **state) {
-  (void)state;
+TEST(without_a_direction) {
   abbe_dominant d;
   assert_false(abbe_chromaticity_dominant(d65, d65, ABBE_OBSERVER_CIE_1931, &d));
   assert_true(isnan(d.lambda_nm) && isnan(d.complementary_nm) && d.purity == 0);
@@ -119,15 +112,4 @@ static void test_without_a_direction(void **state) {
   /* a white outside the locus */
   assert_false(abbe_chromaticity_dominant(d65, (double[]){0.9, 0.9}, ABBE_OBSERVER_CIE_1931, &d));
   assert_false(abbe_chromaticity_dominant((double[]){0.2, 0.2}, d65, ABBE_OBSERVER_COUNT, &d));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_diagrams),
-                                     cmocka_unit_test(test_dark_has_none),
-                                     cmocka_unit_test(test_locus),
-                                     cmocka_unit_test(test_rec2020_is_spectral),
-                                     cmocka_unit_test(test_known_colours),
-                                     cmocka_unit_test(test_mixtures),
-                                     cmocka_unit_test(test_without_a_direction)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,8 +9,7 @@ static void to_1960(const double xy[2], double uv[2]) {
 }
 
 /* u, v (1960) of Planckian radiators by the CIE's 1 nm table, as [Colour] has them. */
-static void test_planckian_locus(void **state) {
-  (void)state;
+TEST(planckian_locus) {
   double xy[2], uv[2];
   abbe_colour_temperature_planck_xy(1000, xy);
   to_1960(xy, uv);
@@ -29,8 +28,7 @@ static void test_planckian_locus(void **state) {
 
 /* Colour and correlated colour temperature of the CIE's illuminants, as [CIE15] prints them:
  * chromaticities to four or five places, temperatures of the lamps F to 10 or 50 K. */
-static void test_the_cies_lights(void **state) {
-  (void)state;
+TEST(the_cies_lights) {
   static const struct {
     const char *name;
     double x, y, kelvin, tolerance;
@@ -54,8 +52,7 @@ static void test_the_cies_lights(void **state) {
 }
 
 /* [Ohno2014]'s method, as [Colour] has it carried out. */
-static void test_ohnos(void **state) {
-  (void)state;
+TEST(ohnos) {
   const double uv[2] = {0.1978, 0.3122 * 1.5};
   double xy[2], kelvin, duv;
   abbe_chromaticity_xy_of_uv(uv, xy);
@@ -65,8 +62,7 @@ static void test_ohnos(void **state) {
 }
 
 /* Off the locus by a known distance, straight across it. */
-static void test_across_the_locus(void **state) {
-  (void)state;
+TEST(across_the_locus) {
   for (double mired = 20; mired <= 900; mired += 55)
     for (double away = -0.02; away <= 0.021; away += 0.01) {
       double xy[3][2], uv[3][2], at[2], kelvin, duv;
@@ -84,8 +80,7 @@ static void test_across_the_locus(void **state) {
     }
 }
 
-static void test_without_one(void **state) {
-  (void)state;
+TEST(without_one) {
   static const double none[][2] = {{0.17, 0.01}, {0.1, 0.8},      {0.73, 0.26},
                                    {NAN, 0.3},   {0.3, INFINITY}, {0.15, 0.06}};
   for (int i = 0; i < 6; i++) {
@@ -97,8 +92,7 @@ static void test_without_one(void **state) {
 
 /* [CIE15]: D50, D55, D65, D75 are at 5003, 5503, 6504 and 7504 K of today's c2. Their
  * tables are rounded: all four lie 0.9e-4 to 1.3e-4 below the formula's y. */
-static void test_daylight(void **state) {
-  (void)state;
+TEST(daylight) {
   static const double known[4][3] = {{1.4388 / 1.4380 * 5000, 0.34567, 0.35850},
                                      {1.4388 / 1.4380 * 5500, 0.33242, 0.34743},
                                      {1.4388 / 1.4380 * 6500, 0.31272, 0.32903},
@@ -115,8 +109,7 @@ static void test_daylight(void **state) {
   }
 }
 
-static void test_planck(void **state) {
-  (void)state;
+TEST(planck) {
   assert_near(abbe_colour_temperature_planck(2856, 560), 100, 1e-12);
   /* A, whose table [CIE15] prints with c2 = 1.435e7 at 2848 K: the same ratio */
   assert_near(abbe_colour_temperature_planck(2848 * 1.4388 / 1.435, 380), 9.79510, 5e-5);
@@ -126,8 +119,7 @@ static void test_planck(void **state) {
   assert_true(isfinite(abbe_colour_temperature_planck(1, 300)));
 }
 
-static void test_a_white_in_words(void **state) {
-  (void)state;
+TEST(a_white_in_words) {
   static const char *const wrong[] = {"",     "warm",     "0.3127",     "999",        "25001",
                                       "0.3,", "0.3,0.3,", "0.7,0.4",    "-0.3,0.3",   "2856 K",
                                       "nan",  "0.3;0.3",  "0.3127,nan", "1e999,0.329"};
@@ -141,16 +133,4 @@ static void test_a_white_in_words(void **state) {
   assert_true(xy[0] == expected[0] && xy[1] == expected[1]);
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
     if (abbe_colour_temperature_read_white(wrong[i], xy)) fail_msg("'%s' is taken", wrong[i]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_planckian_locus),
-                                     cmocka_unit_test(test_the_cies_lights),
-                                     cmocka_unit_test(test_ohnos),
-                                     cmocka_unit_test(test_across_the_locus),
-                                     cmocka_unit_test(test_without_one),
-                                     cmocka_unit_test(test_daylight),
-                                     cmocka_unit_test(test_a_white_in_words),
-                                     cmocka_unit_test(test_planck)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,8 +41,7 @@ static const double pairs[34][7] = {
     {6.7747, -0.2908, -2.4247, 5.8714, -0.0985, -2.2286, 0.6377},
     {2.0776, 0.0795, -1.1350, 0.9033, -0.0636, -0.5514, 0.9082}};
 
-static void test_published_pairs(void **state) {
-  (void)state;
+TEST(published_pairs) {
   for (int i = 0; i < 34; i++) {
     double d = abbe_difference_ciede2000(pairs[i], pairs[i] + 3);
     double back = abbe_difference_ciede2000(pairs[i] + 3, pairs[i]);
@@ -53,8 +52,7 @@ static void test_published_pairs(void **state) {
 
 /* CIE76 and CIE94 of one standard against three samples: figures that Lindbloom's calculator and
  * the tests of the library colour-science print alike. */
-static void test_older_formulas(void **state) {
-  (void)state;
+TEST(older_formulas) {
   static const double standard[3] = {100, 21.57210357, 272.22819350};
   static const double samples[3][5] = {
       {100, 426.67945353, 72.39590835, 451.713301974, 83.7792255009},
@@ -71,8 +69,7 @@ static void test_older_formulas(void **state) {
 
 /* [BT2408, table 1]: reference white is 58 % PQ, grey of 26 cd/m2 38 %; ends by definition. The
  * signal of 100 cd/m2 is 0.508 [BT2100]. */
-static void test_pq(void **state) {
-  (void)state;
+TEST(pq) {
   assert_true(fabs(abbe_difference_pq(203) - 0.58) < 0.005);
   assert_true(fabs(abbe_difference_pq(26) - 0.38) < 0.005);
   assert_true(fabs(abbe_difference_pq(100) - 0.5081) < 5e-5);
@@ -84,8 +81,7 @@ static void test_pq(void **state) {
 
 /* Linear Rec.2020 in cd/m2 and its I, Ct, Cp, and a distance, as the tests of colour-science print
  * them; a neutral has neither Ct nor Cp. */
-static void test_ictcp(void **state) {
-  (void)state;
+TEST(ictcp) {
   static const double rgb[3] = {0.45620519, 0.03081071, 0.04091952};
   static const double expected[3] = {0.07351364, 0.00475253, 0.09351596};
   static const double a[3] = {0.4885468072, -0.04739350675, 0.07475401302},
@@ -102,15 +98,13 @@ static void test_ictcp(void **state) {
   assert_true(fabs(ictcp[1]) < 1e-9 && fabs(ictcp[2]) < 1e-9);
 }
 
-static void test_equal_colours(void **state) {
-  (void)state;
+TEST(equal_colours) {
   const double black[3] = {0, 0, 0}, red[3] = {50, 80, 60};
   assert_true(abbe_difference_ciede2000(black, black) == 0);
   assert_true(abbe_difference_ciede2000(red, red) == 0);
 }
 
-static void test_lab(void **state) {
-  (void)state;
+TEST(lab) {
   const double white[3] = {0.9505, 1, 1.089};
   double lab[3];
   abbe_difference_lab(white, white, lab);
@@ -127,8 +121,7 @@ static void test_lab(void **state) {
 }
 
 /* D65 and A as [CIE15] prints them. */
-static void test_uv(void **state) {
-  (void)state;
+TEST(uv) {
   const double d65[3] = {95.047, 100, 108.883}, a[3] = {1.0985, 1, 0.35585};
   const double dark[][3] = {{0, 0, 0}, {1, 0, 1}, {-20, 1, 0}, {NAN, 1, 1}};
   double uv[2] = {7, 7};
@@ -138,15 +131,4 @@ static void test_uv(void **state) {
   assert_true(fabs(uv[0] - 0.1978) < 5e-5 && fabs(uv[1] - 0.4683) < 5e-5);
   assert_true(abbe_difference_uv(a, uv));
   assert_true(fabs(uv[0] - 0.2560) < 5e-5 && fabs(uv[1] - 0.5243) < 5e-5);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_published_pairs),
-                                     cmocka_unit_test(test_older_formulas),
-                                     cmocka_unit_test(test_pq),
-                                     cmocka_unit_test(test_ictcp),
-                                     cmocka_unit_test(test_equal_colours),
-                                     cmocka_unit_test(test_lab),
-                                     cmocka_unit_test(test_uv)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

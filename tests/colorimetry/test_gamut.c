@@ -5,8 +5,7 @@
 #include "colorimetry/rgb_space.h"
 
 /* Luminances of the primaries as [BT2020] and [SMPTE-EG432] print them. */
-static void test_published_luminances(void **state) {
-  (void)state;
+TEST(published_luminances) {
   double m[9];
   abbe_gamut_to_xyz(ABBE_GAMUT_REC2020, m);
   assert_near(m[3], 0.2627, 5e-5);
@@ -18,8 +17,7 @@ static void test_published_luminances(void **state) {
   assert_near(m[5], 0.0793, 5e-5);
 }
 
-static void test_there_and_back(void **state) {
-  (void)state;
+TEST(there_and_back) {
   const double xyz[3] = {0.3, 0.2, 0.7};
   for (int g = 0; g < ABBE_GAMUT_COUNT; g++) {
     double from[9], to[9], v[3];
@@ -34,19 +32,11 @@ static void test_there_and_back(void **state) {
   assert_string_equal(abbe_gamut_name(ABBE_GAMUT_COUNT), "unknown");
 }
 
-static void test_excess(void **state) {
-  (void)state;
+TEST(excess) {
   const double in[3] = {2, 0, 1}, out[3] = {2, -0.5, 1}, dark[3] = {0, 0, 0},
                under[3] = {-3, -1, 0};
   assert_near(abbe_gamut_excess(in), 0, 0);
   assert_near(abbe_gamut_excess(out), 0.25, 1e-15);
   assert_near(abbe_gamut_excess(dark), 0, 0);
   assert_near(abbe_gamut_excess(under), 1, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_published_luminances),
-                                     cmocka_unit_test(test_there_and_back),
-                                     cmocka_unit_test(test_excess)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

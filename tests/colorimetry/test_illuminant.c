@@ -30,29 +30,24 @@ static void compare(const char *name, const char *file, double tolerance) {
   abbe_illuminant_free(&light);
 }
 
-static void test_d65_is_the_cies(void **state) {
-  (void)state;
+TEST(d65_is_the_cies) {
   compare("D65", "illuminant/CIE-D65.sp", 1e-12);
 }
 
 /* colord keeps three decimals, some of them means of rounded neighbours */
-static void test_d50_is_the_cies(void **state) {
-  (void)state;
+TEST(d50_is_the_cies) {
   compare("D50", "illuminant/CIE-D50.sp", 1.01e-3);
 }
 
-static void test_a_is_the_cies(void **state) {
-  (void)state;
+TEST(a_is_the_cies) {
   compare("A", "illuminant/CIE-A.sp", 1e-5);
 }
 
-static void test_e_is_flat(void **state) {
-  (void)state;
+TEST(e_is_flat) {
   compare("E", "illuminant/CIE-E.sp", 0);
 }
 
-static void test_interpolation_and_ends(void **state) {
-  (void)state;
+TEST(interpolation_and_ends) {
   abbe_illuminant light = {0};
   assert_string_equal(abbe_illuminant_name(&light), "D65");
   assert_true(fabs(abbe_illuminant_power(&light, 302.5) - (0.0341 + 1.6643) / 2) < 1e-14);
@@ -71,8 +66,7 @@ static char *write_text(const char *text) {
   return path;
 }
 
-static void test_a_file_of_ones_own(void **state) {
-  (void)state;
+TEST(a_file_of_ones_own) {
   char *path = write_text("# a lamp\n400, 0\r\n\n 500;10 # middle\n600\t20");
   abbe_illuminant light = make(path);
   assert_int_equal(light.kind, ABBE_ILLUMINANT_TABULATED);
@@ -85,8 +79,7 @@ static void test_a_file_of_ones_own(void **state) {
 }
 
 /* A spreadsheet's and a spectrometer's: what the reader of measured points takes, a light takes. */
-static void test_files_in_other_dresses(void **state) {
-  (void)state;
+TEST(files_in_other_dresses) {
   static const char *const dresses[] = {
       "\xef\xbb\xbf"
       "400 0\r\n500 10\r\n600 20\r\n",
@@ -104,8 +97,7 @@ static void test_files_in_other_dresses(void **state) {
   }
 }
 
-static void test_bad_files(void **state) {
-  (void)state;
+TEST(bad_files) {
   static const struct {
     const char *text, *says;
     abbe_result result;
@@ -129,8 +121,7 @@ static void test_bad_files(void **state) {
   }
 }
 
-static void test_unknown_names(void **state) {
-  (void)state;
+TEST(unknown_names) {
   abbe_illuminant light = {0};
   abbe_error error = {0};
   assert_int_equal(abbe_illuminant_make("LED-B9", &light, &error), ABBE_NOT_FOUND);
@@ -193,8 +184,7 @@ static void colour_by_sums(const abbe_illuminant *light, double xy[2]) {
 }
 
 /* And the whole integral, in which lamps' lines are triangles, is near. */
-static void test_published_colours(void **state) {
-  (void)state;
+TEST(published_colours) {
   for (size_t i = 0; i < sizeof published / sizeof *published; i++) {
     abbe_illuminant light = make(published[i].name);
     assert_string_equal(abbe_illuminant_name(&light), published[i].name);
@@ -212,8 +202,7 @@ static void test_published_colours(void **state) {
 
 /* Daylight by temperature: D65's and D50's own tables, to the places of the components, and the
  * colours that [CIE15] prints of D55 and D75. */
-static void test_daylight_of_a_temperature(void **state) {
-  (void)state;
+TEST(daylight_of_a_temperature) {
   static const struct {
     const char *series, *table;
     double off;
@@ -240,8 +229,7 @@ static void test_daylight_of_a_temperature(void **state) {
 }
 
 /* A is a black body of 2848 K by the c2 of its time: 2855.5 K by today's. */
-static void test_black_bodies(void **state) {
-  (void)state;
+TEST(black_bodies) {
   abbe_illuminant body = make("2856k"), a = make("A"), cold = make("1000K"), hot = make("1000000K");
   for (double nm = 380; nm <= 780; nm += 5)
     assert_near(abbe_illuminant_power(&body, nm) / abbe_illuminant_power(&a, nm), 1, 1e-3);
@@ -256,8 +244,7 @@ static void test_black_bodies(void **state) {
   abbe_illuminant_free(&hot);
 }
 
-static void test_every_listed_name_is_a_light(void **state) {
-  (void)state;
+TEST(every_listed_name_is_a_light) {
   size_t count = 0;
   for (const char *name; (name = abbe_illuminant_listed(count)) != NULL; count++) {
     abbe_illuminant light = make(name);
@@ -270,21 +257,4 @@ static void test_every_listed_name_is_a_light(void **state) {
   assert_near(abbe_illuminant_power(&f11, 545), abbe_illuminant_power(&same, 545), 0);
   abbe_illuminant_free(&f11);
   abbe_illuminant_free(&same);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_d65_is_the_cies),
-                                     cmocka_unit_test(test_d50_is_the_cies),
-                                     cmocka_unit_test(test_a_is_the_cies),
-                                     cmocka_unit_test(test_e_is_flat),
-                                     cmocka_unit_test(test_interpolation_and_ends),
-                                     cmocka_unit_test(test_a_file_of_ones_own),
-                                     cmocka_unit_test(test_files_in_other_dresses),
-                                     cmocka_unit_test(test_bad_files),
-                                     cmocka_unit_test(test_unknown_names),
-                                     cmocka_unit_test(test_published_colours),
-                                     cmocka_unit_test(test_daylight_of_a_temperature),
-                                     cmocka_unit_test(test_black_bodies),
-                                     cmocka_unit_test(test_every_listed_name_is_a_light)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

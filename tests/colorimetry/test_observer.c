@@ -15,8 +15,7 @@ static void compare_with_the_cies(const char *file, abbe_observer observer) {
   }
 }
 
-static void test_tables_are_the_cies(void **state) {
-  (void)state;
+TEST(tables_are_the_cies) {
   compare_with_the_cies("cmf/CIE1931-2deg-XYZ.cmf", ABBE_OBSERVER_CIE_1931);
   compare_with_the_cies("cmf/CIE1964-10deg-XYZ.cmf", ABBE_OBSERVER_CIE_1964);
   for (double nm = 350; nm < 840; nm += 0.7) {
@@ -29,8 +28,7 @@ static void test_tables_are_the_cies(void **state) {
 
 /* ybar of 2015 is 1 at 556 and 557 nm, its greatest [CIE170-2]; and each observer's equal-energy
  * light is white, by their normalisation: x = y = 1/3. */
-static void test_observers_of_2015(void **state) {
-  (void)state;
+TEST(observers_of_2015) {
   static const abbe_observer observer[2] = {ABBE_OBSERVER_CIE_2015_2, ABBE_OBSERVER_CIE_2015_10};
   static const double peak_nm[2] = {555, 555}, peak[2] = {0.999181, 0.9988};
   for (int o = 0; o < 2; o++) {
@@ -48,8 +46,7 @@ static void test_observers_of_2015(void **state) {
   }
 }
 
-static void test_names(void **state) {
-  (void)state;
+TEST(names) {
   for (int i = 0; i < ABBE_OBSERVER_COUNT; i++)
     assert_int_equal(abbe_observer_find(abbe_observer_name((abbe_observer)i)), i);
   assert_int_equal(abbe_observer_find("2006-10"), ABBE_OBSERVER_CIE_2015_10);
@@ -62,8 +59,7 @@ static void test_names(void **state) {
   assert_true(xyz[0] == 0 && xyz[1] == 0 && xyz[2] == 0);
 }
 
-static void test_between_knots(void **state) {
-  (void)state;
+TEST(between_knots) {
   for (int i = 0; i < 94; i++) {
     double low[3], high[3];
     abbe_observer_xyz(360 + 5 * i, low);
@@ -80,8 +76,7 @@ static void test_between_knots(void **state) {
 
 /* By hand from the table's first three rows: the end's slope is that of the parabola through them,
  * 1.5 s1 - 0.5 s2 [Steffen1990]. */
-static void test_between_the_first_knots(void **state) {
-  (void)state;
+TEST(between_the_first_knots) {
   const double x[3] = {0.0001299, 0.0002321, 0.0004149};
   const double first = x[1] - x[0], mean = (x[2] - x[0]) / 2, end = 1.5 * first - 0.5 * (x[2] - x[1]);
   double xyz[3];
@@ -90,8 +85,7 @@ static void test_between_the_first_knots(void **state) {
 }
 
 /* The sums of the CIE's 1 nm table; interpolating every fifth value comes within 2 in 10^4. */
-static void test_near_the_1_nm_table(void **state) {
-  (void)state;
+TEST(near_the_1_nm_table) {
   static const double sums[3] = {106.865469, 106.856917, 106.892251};
   double sum[3] = {0};
   for (int nm = 360; nm <= 830; nm++) {
@@ -103,23 +97,11 @@ static void test_near_the_1_nm_table(void **state) {
     if (fabs(sum[k] / sums[k] - 1) > 2e-4) fail_msg("component %d sums to %.6f", k, sum[k]);
 }
 
-static void test_zero_outside(void **state) {
-  (void)state;
+TEST(zero_outside) {
   static const double outside[] = {-1, 0, 359.999, 830.001, 1e300, INFINITY, -INFINITY, NAN};
   for (size_t i = 0; i < sizeof outside / sizeof outside[0]; i++) {
     double xyz[3] = {1, 1, 1};
     abbe_observer_xyz(outside[i], xyz);
     assert_true(xyz[0] == 0 && xyz[1] == 0 && xyz[2] == 0);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_tables_are_the_cies),
-                                     cmocka_unit_test(test_observers_of_2015),
-                                     cmocka_unit_test(test_names),
-                                     cmocka_unit_test(test_between_knots),
-                                     cmocka_unit_test(test_between_the_first_knots),
-                                     cmocka_unit_test(test_near_the_1_nm_table),
-                                     cmocka_unit_test(test_zero_outside)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

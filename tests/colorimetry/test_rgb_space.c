@@ -15,16 +15,14 @@ static void multiply(const double a[9], const double b[9], double out[9]) {
         a[i / 3 * 3] * b[i % 3] + a[i / 3 * 3 + 1] * b[3 + i % 3] + a[i / 3 * 3 + 2] * b[6 + i % 3];
 }
 
-static void test_rec709_is_the_published_matrix(void **state) {
-  (void)state;
+TEST(rec709_is_the_published_matrix) {
   double m[9];
   abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, m);
   for (int i = 0; i < 9; i++)
     if (fabs(m[i] - xyz_to_rec709[i]) > 6e-8) fail_msg("element %d: %.9f", i, m[i]);
 }
 
-static void test_acescg_to_rec709_is_the_published_matrix(void **state) {
-  (void)state;
+TEST(acescg_to_rec709_is_the_published_matrix) {
   double to_xyz[9], to_709[9], m[9];
   abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, to_xyz);
   abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, to_709);
@@ -34,8 +32,7 @@ static void test_acescg_to_rec709_is_the_published_matrix(void **state) {
       fail_msg("element %d: %.9f, published %.5f", i, m[i], acescg_to_rec709[i]);
 }
 
-static void test_there_and_back(void **state) {
-  (void)state;
+TEST(there_and_back) {
   for (int s = 0; s < ABBE_RGB_SPACE_COUNT; s++) {
     double to[9], from[9], product[9];
     abbe_rgb_space_to_xyz((abbe_rgb_space)s, to);
@@ -45,8 +42,7 @@ static void test_there_and_back(void **state) {
   }
 }
 
-static void test_nominal_d65_is_white(void **state) {
-  (void)state;
+TEST(nominal_d65_is_white) {
   const double d65[3] = {0.3127 / 0.3290, 1, (1 - 0.3127 - 0.3290) / 0.3290};
   static const abbe_rgb_space spaces[] = {ABBE_RGB_SPACE_ACESCG, ABBE_RGB_SPACE_REC709};
   for (int s = 0; s < 2; s++) {
@@ -57,8 +53,7 @@ static void test_nominal_d65_is_white(void **state) {
   }
 }
 
-static void test_primaries_have_their_chromaticities(void **state) {
-  (void)state;
+TEST(primaries_have_their_chromaticities) {
   double m[9], xy[8];
   abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, m);
   abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_REC709, xy);
@@ -69,23 +64,20 @@ static void test_primaries_have_their_chromaticities(void **state) {
   }
 }
 
-static void test_apply_in_place(void **state) {
-  (void)state;
+TEST(apply_in_place) {
   const double swap[9] = {0, 0, 1, 0, 1, 0, 1, 0, 0};
   double v[3] = {1, 2, 3};
   abbe_rgb_space_apply(swap, v, v);
   assert_true(v[0] == 3 && v[1] == 2 && v[2] == 1);
 }
 
-static void test_names(void **state) {
-  (void)state;
+TEST(names) {
   assert_string_equal(abbe_rgb_space_name(ABBE_RGB_SPACE_ACESCG), "acescg");
   assert_string_equal(abbe_rgb_space_ocio_name(ABBE_RGB_SPACE_REC709), "Linear Rec.709 (sRGB)");
   assert_string_equal(abbe_rgb_space_name(ABBE_RGB_SPACE_COUNT), "unknown");
 }
 
-static void test_spaces_are_known_by_single_precision_chromaticities(void **state) {
-  (void)state;
+TEST(spaces_are_known_by_single_precision_chromaticities) {
   for (int s = 0; s < ABBE_RGB_SPACE_COUNT; s++) {
     double xy[8], expected[9], m[9];
     abbe_rgb_space_chromaticities((abbe_rgb_space)s, xy);
@@ -99,8 +91,7 @@ static void test_spaces_are_known_by_single_precision_chromaticities(void **stat
 
 /* Display P3's matrix as SMPTE and Apple publish it, to the places printed; and of any space the
  * white is D65's. */
-static void test_other_chromaticities(void **state) {
-  (void)state;
+TEST(other_chromaticities) {
   static const double p3[8] = {0.680, 0.320, 0.265, 0.690, 0.150, 0.060, 0.3127, 0.3290};
   static const double p3_to_xyz[9] = {0.4865709, 0.2656677, 0.1982173, 0.2289746, 0.6917385,
                                       0.0792869, 0.0,       0.0451134, 1.0439444};
@@ -114,8 +105,7 @@ static void test_other_chromaticities(void **state) {
   assert_true(fabs(white[0] - 0.3127 / 0.3290) < 1e-12 && fabs(white[1] - 1) < 1e-12);
 }
 
-static void test_chromaticities_that_span_nothing(void **state) {
-  (void)state;
+TEST(chromaticities_that_span_nothing) {
   static const double bad[][8] = {{0},
                                   {0.1, 0.1, 0.2, 0.2, 0.3, 0.3, 0.3, 0.3},
                                   {0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3, 0},
@@ -131,8 +121,7 @@ static void test_chromaticities_that_span_nothing(void **state) {
 }
 
 /* From illuminant A to D65, as B. Lindbloom prints it for these whites. */
-static void test_published_adaptation(void **state) {
-  (void)state;
+TEST(published_adaptation) {
   static const double printed[9] = {0.8446965, -0.1179225, 0.3948108,  -0.1366303, 1.1041226,
                                     0.1291718, 0.0798489,  -0.1348999, 3.1924009};
   const double a_sum = 1.09850 + 1 + 0.35585, d65_sum = 0.95047 + 1 + 1.08883;
@@ -140,20 +129,4 @@ static void test_published_adaptation(void **state) {
   double m[9];
   abbe_rgb_space_adapt(a, d65, m);
   for (int i = 0; i < 9; i++) assert_true(fabs(m[i] - printed[i]) < 1e-6);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_rec709_is_the_published_matrix),
-      cmocka_unit_test(test_acescg_to_rec709_is_the_published_matrix),
-      cmocka_unit_test(test_there_and_back),
-      cmocka_unit_test(test_nominal_d65_is_white),
-      cmocka_unit_test(test_primaries_have_their_chromaticities),
-      cmocka_unit_test(test_apply_in_place),
-      cmocka_unit_test(test_names),
-      cmocka_unit_test(test_spaces_are_known_by_single_precision_chromaticities),
-      cmocka_unit_test(test_other_chromaticities),
-      cmocka_unit_test(test_published_adaptation),
-      cmocka_unit_test(test_chromaticities_that_span_nothing)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,8 +19,7 @@ static abbe_upsampling make(const abbe_illuminant *light, double min_nm, double 
   return u;
 }
 
-static void functions_are_a_partition_of_one(void **state) {
-  (void)state;
+TEST(functions_are_a_partition_of_one) {
   double before[3], basis[3];
   abbe_upsampling_basis(299.9, before);
   for (double nm = 300; nm <= 900; nm += 0.1) {
@@ -41,8 +40,7 @@ static void functions_are_a_partition_of_one(void **state) {
 }
 
 /* By a sum over narrow bands that knows nothing of how the matrix was made. */
-static void spectra_have_the_colour(void **state) {
-  (void)state;
+TEST(spectra_have_the_colour) {
   static const double ranges[][2] = {{380, 780}, {400, 700}, {360, 830}, {437.5, 611.3}};
   for (int kind = 0; kind < ABBE_ILLUMINANT_TABULATED; kind++)
     for (size_t r = 0; r < sizeof ranges / sizeof *ranges; r++) {
@@ -66,8 +64,7 @@ static void spectra_have_the_colour(void **state) {
     }
 }
 
-static void white_is_the_illuminant(void **state) {
-  (void)state;
+TEST(white_is_the_illuminant) {
   for (int kind = 0; kind < ABBE_ILLUMINANT_TABULATED; kind++) {
     const abbe_illuminant light = {.kind = (abbe_illuminant_kind)kind};
     const abbe_upsampling u = make(&light, 380, 780);
@@ -83,8 +80,7 @@ static void white_is_the_illuminant(void **state) {
   }
 }
 
-static void under_d65_it_is_rec709(void **state) {
-  (void)state;
+TEST(under_d65_it_is_rec709) {
   const abbe_illuminant light = {0};
   const abbe_upsampling u = make(&light, 380, 780);
   double rec709[9];
@@ -97,8 +93,7 @@ static void under_d65_it_is_rec709(void **state) {
 }
 
 /* Any tiling of the range adds up to the same, in each space; white gives the weights. */
-static void matrices_add_up(void **state) {
-  (void)state;
+TEST(matrices_add_up) {
   static const size_t counts[] = {1, 2, 7, 21, 400, 4096};
   for (int kind = 0; kind < ABBE_ILLUMINANT_TABULATED; kind++)
     for (int space = 0; space < ABBE_RGB_SPACE_COUNT; space++)
@@ -134,8 +129,7 @@ static void matrices_add_up(void **state) {
 }
 
 /* As docs/colour.md says. */
-static void least_values_are_known(void **state) {
-  (void)state;
+TEST(least_values_are_known) {
   static const double least[] = {0, -0.0433, -0.1355, -0.0455};
   for (int kind = 0; kind < ABBE_ILLUMINANT_TABULATED; kind++) {
     const abbe_illuminant light = {.kind = (abbe_illuminant_kind)kind};
@@ -144,8 +138,7 @@ static void least_values_are_known(void **state) {
   }
 }
 
-static void too_few_colours(void **state) {
-  (void)state;
+TEST(too_few_colours) {
   const double nm[] = {588, 589, 590}, power[] = {0, 1, 0};
   abbe_illuminant sodium = {.kind = ABBE_ILLUMINANT_TABULATED};
   const abbe_illuminant daylight = {0};
@@ -212,8 +205,7 @@ static void seen(int which, double scale, const abbe_upsampling *u, const double
   abbe_difference_lab(xyz, around, lab);
 }
 
-static void metamers_are_off_by_this_much(void **state) {
-  (void)state;
+TEST(metamers_are_off_by_this_much) {
   /* seen straight, through a filter that makes A of D65, and moved by 20 nm: CIEDE2000 */
   static const double most[6][3] = {{0.01, 1.2, 1.4}, {0.01, 0.7, 1},  {0.01, 0.4, 0.3},
                                     {0.01, 9, 16},    {0.01, 6.1, 28}, {0.01, 9, 22}};
@@ -246,8 +238,7 @@ static void metamers_are_off_by_this_much(void **state) {
 }
 
 /* Of three knots' trapezoids, and of whole ranges by many points. */
-static void means_are_integrals(void **state) {
-  (void)state;
+TEST(means_are_integrals) {
   static const double range[][2] = {{380, 780}, {492.5, 517.3}, {551, 553}, {300, 400}, {770, 900}};
   for (size_t i = 0; i < sizeof range / sizeof *range; i++) {
     enum { POINTS = 20000 };
@@ -265,19 +256,4 @@ static void means_are_integrals(void **state) {
   abbe_upsampling_basis_mean(500, 500, mean);
   abbe_upsampling_basis(500, basis);
   for (int k = 0; k < 3; k++) assert_true(mean[k] == basis[k]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(functions_are_a_partition_of_one),
-      cmocka_unit_test(spectra_have_the_colour),
-      cmocka_unit_test(white_is_the_illuminant),
-      cmocka_unit_test(under_d65_it_is_rec709),
-      cmocka_unit_test(means_are_integrals),
-      cmocka_unit_test(matrices_add_up),
-      cmocka_unit_test(least_values_are_known),
-      cmocka_unit_test(too_few_colours),
-      cmocka_unit_test(metamers_are_off_by_this_much),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

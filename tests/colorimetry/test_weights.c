@@ -18,8 +18,7 @@ static abbe_weights make(size_t count, double min, double max, abbe_illuminant_k
 }
 
 /* Chromaticities of the CIE's illuminants, 5 nm [CIE15]. */
-static void test_whites(void **state) {
-  (void)state;
+TEST(whites) {
   static const struct {
     abbe_illuminant_kind kind;
     double x, y;
@@ -37,8 +36,7 @@ static void test_whites(void **state) {
   }
 }
 
-static void test_any_count_adds_up_to_the_same_white(void **state) {
-  (void)state;
+TEST(any_count_adds_up_to_the_same_white) {
   static const size_t counts[] = {1, 2, 3, 7, 21, 81, 100, 401, 999, ABBE_WAVELENGTHS_MAX_COUNT};
   for (int kind = 0; kind < ABBE_ILLUMINANT_TABULATED; kind++) {
     abbe_weights one = make(1, 380, 780, (abbe_illuminant_kind)kind, ABBE_RGB_SPACE_XYZ);
@@ -71,16 +69,14 @@ static double trapezoid_y(double from, double to) {
   return sum * h;
 }
 
-static void test_a_band_is_an_integral(void **state) {
-  (void)state;
+TEST(a_band_is_an_integral) {
   const abbe_illuminant light = {0};
   double xyz[3];
   abbe_weights_band_xyz(&light, 380, 780, 501.3, 533.9, xyz);
   assert_true(fabs(xyz[1] - trapezoid_y(501.3, 533.9) / trapezoid_y(380, 780)) < 1e-10);
 }
 
-static void test_odd_tilings_add_up(void **state) {
-  (void)state;
+TEST(odd_tilings_add_up) {
   const abbe_illuminant light = {.kind = ABBE_ILLUMINANT_A};
   double edges[] = {380, 380.0001, 384.999999, 385, 417.3, 560, 777, 780}, whole[3], sum[3] = {0};
   for (int i = 0; i < 7; i++) {
@@ -96,8 +92,7 @@ static void test_odd_tilings_add_up(void **state) {
 }
 
 /* A range is made once for many bands, each the same as by itself. */
-static void test_a_range_serves_many_bands(void **state) {
-  (void)state;
+TEST(a_range_serves_many_bands) {
   for (int kind = 0; kind < ABBE_ILLUMINANT_TABULATED; kind++) {
     const abbe_illuminant light = {.kind = (abbe_illuminant_kind)kind};
     abbe_weights samples = make(7, 380, 780, light.kind, ABBE_RGB_SPACE_XYZ);
@@ -125,8 +120,7 @@ static void test_a_range_serves_many_bands(void **state) {
 
 /* In nm times the illuminant's own unit, which is what the observer's table adds up to under an
  * equal power of 1. */
-static void test_a_range_has_a_unit(void **state) {
-  (void)state;
+TEST(a_range_has_a_unit) {
   const double nm[] = {300, 900}, one[] = {1, 1}, thousand[] = {1000, 1000};
   abbe_weights_range range, brighter;
   abbe_illuminant light = {.kind = ABBE_ILLUMINANT_TABULATED}, bright = light;
@@ -148,8 +142,7 @@ static void test_a_range_has_a_unit(void **state) {
 }
 
 /* What lies outside is left out; what holds nothing is black. */
-static void test_the_ends_of_a_range(void **state) {
-  (void)state;
+TEST(the_ends_of_a_range) {
   const abbe_illuminant light = {0};
   abbe_weights_range range, wide, none;
   double inside[3], over[3];
@@ -174,8 +167,7 @@ static void test_the_ends_of_a_range(void **state) {
   }
 }
 
-static void test_the_share_of_power(void **state) {
-  (void)state;
+TEST(the_share_of_power) {
   const abbe_illuminant equal = {.kind = ABBE_ILLUMINANT_E};
   assert_true(fabs(abbe_weights_band_power(&equal, 400, 800, 500, 600) - 0.25) < 1e-14);
   assert_true(fabs(abbe_weights_band_power(&equal, 850, 950, 850, 900) - 0.5) < 1e-14);
@@ -185,8 +177,7 @@ static void test_the_share_of_power(void **state) {
 }
 
 /* Seven nodes taken pointwise tint the white; the bands do not. */
-static void test_pointwise_nodes_tint_the_white(void **state) {
-  (void)state;
+TEST(pointwise_nodes_tint_the_white) {
   abbe_weights exact = make(1, 380, 780, ABBE_ILLUMINANT_D65, ABBE_RGB_SPACE_XYZ);
   abbe_weights bands = make(7, 380, 780, ABBE_ILLUMINANT_D65, ABBE_RGB_SPACE_XYZ);
   const abbe_illuminant light = {0};
@@ -210,8 +201,7 @@ static void test_pointwise_nodes_tint_the_white(void **state) {
 
 /* The table's white (0.31272, 0.32903) is not the (0.3127, 0.3290) that the RGB spaces are defined
  * by, so D65 is white there to 5e-4 of a component: 0.03 of a CIEDE2000 unit. */
-static void test_d65_is_white_in_rgb(void **state) {
-  (void)state;
+TEST(d65_is_white_in_rgb) {
   static const abbe_rgb_space spaces[] = {ABBE_RGB_SPACE_REC709, ABBE_RGB_SPACE_ACESCG};
   for (int s = 0; s < 2; s++) {
     abbe_weights w = make(7, 380, 780, ABBE_ILLUMINANT_D65, spaces[s]);
@@ -221,8 +211,7 @@ static void test_d65_is_white_in_rgb(void **state) {
   }
 }
 
-static void test_rgb_keeps_negatives_and_is_the_matrix_times_xyz(void **state) {
-  (void)state;
+TEST(rgb_keeps_negatives_and_is_the_matrix_times_xyz) {
   abbe_weights xyz = make(21, 380, 780, ABBE_ILLUMINANT_D65, ABBE_RGB_SPACE_XYZ);
   abbe_weights rgb = make(21, 380, 780, ABBE_ILLUMINANT_D65, ABBE_RGB_SPACE_REC709);
   double matrix[9], least = 0;
@@ -240,8 +229,7 @@ static void test_rgb_keeps_negatives_and_is_the_matrix_times_xyz(void **state) {
   abbe_weights_free(&rgb);
 }
 
-static void test_a_table_with_knots_of_its_own(void **state) {
-  (void)state;
+TEST(a_table_with_knots_of_its_own) {
   /* a box from 501 to 502 nm with a ramp: knots off the observer's grid, zero outside */
   const double nm[] = {501, 501.3, 502}, power[] = {0, 3, 1};
   abbe_illuminant light = {.kind = ABBE_ILLUMINANT_TABULATED};
@@ -256,8 +244,7 @@ static void test_a_table_with_knots_of_its_own(void **state) {
   abbe_illuminant_free(&light);
 }
 
-static void test_no_light_in_range(void **state) {
-  (void)state;
+TEST(no_light_in_range) {
   abbe_wavelengths samples = {0};
   abbe_weights weights = {0};
   abbe_error error = {0};
@@ -271,8 +258,7 @@ static void test_no_light_in_range(void **state) {
   abbe_weights_free(&weights);
 }
 
-static void test_thesis(void **state) {
-  (void)state;
+TEST(thesis) {
   double rgb[3] = {0}, printed[3] = {0};
   for (int i = 0; i < ABBE_WEIGHTS_THESIS_COUNT; i++) {
     assert_true(abbe_weights_thesis_lambda_nm[i] == 380 + 50 * i);
@@ -288,8 +274,7 @@ static void test_thesis(void **state) {
 }
 
 /* Whites of the observer of 1964 [CIE15], and equal energy, a third each of any. */
-static void test_other_observers(void **state) {
-  (void)state;
+TEST(other_observers) {
   static const struct {
     abbe_observer observer;
     abbe_illuminant_kind kind;
@@ -318,8 +303,7 @@ static void test_other_observers(void **state) {
 
 /* Any tiling of a range adds up to its white, whose Y is 1, for every observer; and a range without
  * one named is that of 1931. */
-static void test_a_range_of_other_observers(void **state) {
-  (void)state;
+TEST(a_range_of_other_observers) {
   const abbe_illuminant light = {.kind = ABBE_ILLUMINANT_A};
   for (int o = 0; o < ABBE_OBSERVER_COUNT; o++) {
     abbe_weights_range range;
@@ -338,25 +322,4 @@ static void test_a_range_of_other_observers(void **state) {
     else
       assert_true(fabs(white[2] - xyz[2]) > 1e-3);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_whites),
-      cmocka_unit_test(test_any_count_adds_up_to_the_same_white),
-      cmocka_unit_test(test_a_band_is_an_integral),
-      cmocka_unit_test(test_odd_tilings_add_up),
-      cmocka_unit_test(test_a_range_serves_many_bands),
-      cmocka_unit_test(test_a_range_has_a_unit),
-      cmocka_unit_test(test_the_ends_of_a_range),
-      cmocka_unit_test(test_the_share_of_power),
-      cmocka_unit_test(test_pointwise_nodes_tint_the_white),
-      cmocka_unit_test(test_d65_is_white_in_rgb),
-      cmocka_unit_test(test_rgb_keeps_negatives_and_is_the_matrix_times_xyz),
-      cmocka_unit_test(test_a_table_with_knots_of_its_own),
-      cmocka_unit_test(test_no_light_in_range),
-      cmocka_unit_test(test_other_observers),
-      cmocka_unit_test(test_a_range_of_other_observers),
-      cmocka_unit_test(test_thesis)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -37,10 +37,9 @@ typedef struct operation {
 
 static char operation_folder[64];
 
-static inline int operation_setup(void **state) {
-  (void)state;
+static inline void operation_setup(void) {
   snprintf(operation_folder, sizeof operation_folder, "/tmp/abbe-test-faults-XXXXXX");
-  return mkdtemp(operation_folder) == NULL;
+  assert_non_null(mkdtemp(operation_folder));
 }
 
 static inline const char *operation_path(const char *name) {
@@ -62,14 +61,13 @@ static inline size_t operation_left(void) {
   return count;
 }
 
-static inline int operation_teardown(void **state) {
-  (void)state;
+static inline void operation_teardown(void) {
   DIR *dir = opendir(operation_folder);
-  if (dir == NULL) return 1;
+  assert_non_null(dir);
   for (struct dirent *entry; (entry = readdir(dir)) != NULL;)
     if (entry->d_name[0] != '.') unlink(operation_path(entry->d_name));
   closedir(dir);
-  return rmdir(operation_folder);
+  assert_false(rmdir(operation_folder));
 }
 
 static inline bool operation_holds(const operation *o, size_t n, bool all, uint64_t whole) {

@@ -8,18 +8,15 @@
 
 static abbe_context *context;
 
-static inline int make_context(void **state) {
+static inline void make_context(void) {
   abbe_error error = {0};
-  (void)state;
-  if (abbe_context_make(ABBE_CONTEXT_CPU, &context, &error) == ABBE_OK) return 0;
+  if (abbe_context_make(ABBE_CONTEXT_CPU, &context, &error) == ABBE_OK) return;
   print_error("%s\n", error.text);
-  return 1;
+  fail();
 }
 
-static inline int free_context(void **state) {
-  (void)state;
+static inline void free_context(void) {
   abbe_context_free(context);
-  return 0;
 }
 
 #endif

@@ -12,15 +12,12 @@ static const abbe_render_desc frame = {.width = SIDE, .height = SIDE, .photons =
 
 static abbe_context *context;
 
-static int setup(void **state) {
-  (void)state;
-  return abbe_context_make(ABBE_CONTEXT_CPU, &context, NULL) == ABBE_OK ? 0 : -1;
+static void setup(void) {
+  assert_int_equal(abbe_context_make(ABBE_CONTEXT_CPU, &context, NULL), ABBE_OK);
 }
 
-static int teardown(void **state) {
-  (void)state;
+static void teardown(void) {
   abbe_context_free(context);
-  return 0;
 }
 
 /* A grey and a coloured card under two lamps, no refractor. */
@@ -78,10 +75,11 @@ static double apart(const abbe_image *a, const abbe_image *b) {
   return sqrt(squares / (double)values) / (sum / (double)values);
 }
 
+GROUP(setup, teardown);
+
 /* Without refractors a grey reflects E rho / pi times the light's own spectrum: each band is known,
  * and the sum is the picture to single precision. */
-static void cards_in_bands(void **state) {
-  (void)state;
+TEST(cards_in_bands) {
   const abbe_illuminant d65 = {0};
   const size_t p = (SIDE - 3) * SIDE + 2; /* shows the grey */
   abbe_scene scene;
@@ -139,8 +137,7 @@ static double compare_band(const abbe_image *bands, const abbe_image *traced, si
 
 /* Two illuminants, ambient light, colours: the tracer's bands of the same scene. It gives each of its
  * 4096 steps of wavelength, 0.1 nm or so, to one band alone: at most 2 x 0.1 nm of 40 nm. */
-static void cards_against_the_tracer(void **state) {
-  (void)state;
+TEST(cards_against_the_tracer) {
   abbe_scene scene;
   abbe_image bands, traced;
   double ratio;
@@ -158,8 +155,7 @@ static void cards_against_the_tracer(void **state) {
 
 /* A prism spreads each band over many pixels: light must lie there by its power. By what the eye
  * makes of it, the first band would be off by three quarters. */
-static void a_prism_against_the_tracer(void **state) {
-  (void)state;
+TEST(a_prism_against_the_tracer) {
   abbe_scene scene;
   abbe_image bands, traced;
   double ratio;
@@ -180,8 +176,7 @@ static void a_prism_against_the_tracer(void **state) {
 /* The law of refractors: the bands through the observer are the picture, as near as bands of such a
  * width tell: a pixel of a prism's spectrum that shows a part of a band gets the whole one's colour.
  */
-static void sums_are_pictures(void **state) {
-  (void)state;
+TEST(sums_are_pictures) {
   static const struct {
     const char *name;
     size_t bands;
@@ -217,8 +212,7 @@ static bool stop_now(void *user, double done) {
   return done < 0.5;
 }
 
-static void refusals_and_cancelling(void **state) {
-  (void)state;
+TEST(refusals_and_cancelling) {
   abbe_scene scene;
   abbe_image bands;
   abbe_error error = {0};
@@ -239,12 +233,4 @@ static void refusals_and_cancelling(void **state) {
       ABBE_CANCELLED);
   assert_true(least < 0.5 && bands.data == NULL);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(cards_in_bands), cmocka_unit_test(cards_against_the_tracer),
-      cmocka_unit_test(a_prism_against_the_tracer),
-      cmocka_unit_test(sums_are_pictures), cmocka_unit_test(refusals_and_cancelling)};
-  return cmocka_run_group_tests(tests, setup, teardown);
 }

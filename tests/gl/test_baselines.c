@@ -23,9 +23,10 @@ static void draw(const abbe_scene *scene, abbe_profile profile, abbe_image *pict
   abbe_renderer_free(renderer);
 }
 
+GROUP(make_context, free_context);
+
 /* A pane turns no light: both profiles hold the lamp's power through it, less two reflections. */
-static void test_what_arrives_is_what_was_sent(void **state) {
-  (void)state;
+TEST(what_arrives_is_what_was_sent) {
   abbe_scene scene = {0};
   abbe_image own_picture, own_map, picture, map;
   load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
@@ -49,8 +50,7 @@ static void test_what_arrives_is_what_was_sent(void **state) {
 }
 
 /* A floor in the open has the same radiance, pixel by pixel, in the default profile's own units. */
-static void test_light_in_the_open_is_the_same(void **state) {
-  (void)state;
+TEST(light_in_the_open_is_the_same) {
   abbe_scene scene = {0};
   abbe_image own_picture, own_map, picture, map;
   load_text(CAMERA "ambient: 0.3\n" POINT_LIGHT FLOOR PANE("flat"), &scene);
@@ -71,12 +71,4 @@ static void test_light_in_the_open_is_the_same(void **state) {
   abbe_image_free(&picture);
   abbe_image_free(&map);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_arrives_is_what_was_sent),
-      cmocka_unit_test(test_light_in_the_open_is_the_same),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

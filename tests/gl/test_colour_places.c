@@ -71,11 +71,12 @@ static void assert_parted(const abbe_scene *scene, const abbe_render_desc *desc)
   abbe_image_free(&map);
 }
 
+GROUP(make_context, free_context);
+
 /* Violet leaves the pane beside red by a fortieth of a texel to a tenth, and by less than that of a
  * photon's footprint: however many wavelengths tell, bridged or each by itself, it lands there. The
  * beam's cone, of a degree, makes up to 2 % of that. */
-static void colours_part_within_a_texel(void **state) {
-  (void)state;
+TEST(colours_part_within_a_texel) {
   static const size_t counts[COUNTS] = {3, 5, 7, 21};
   abbe_scene scene = {0};
   abbe_map_layout fitted, even;
@@ -98,11 +99,4 @@ static void colours_part_within_a_texel(void **state) {
     desc.fill = ABBE_FILL_AUTO;
   }
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(colours_part_within_a_texel),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -77,8 +77,9 @@ static const struct {
     {1, {{{0, 0, 0.201}, 0.2}}},
 };
 
-static void all_light_goes_in_once(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(all_light_goes_in_once) {
   for (size_t i = 0; i < sizeof crowds / sizeof *crowds; i++) {
     abbe_scene scene;
     load_balls(crowds[i].ball, crowds[i].count, 0, point, &scene);
@@ -111,8 +112,7 @@ static double light_into_cone(const place *ball, size_t count, double least_cosi
   return sum;
 }
 
-static void a_wide_spot_has_a_cube_too(void **state) {
-  (void)state;
+TEST(a_wide_spot_has_a_cube_too) {
   static const place ball[2] = {{{-0.3, 0, 0}, 0.08}, {{0.3, 0, 0}, 0.08}};
   abbe_scene scene;
   load_balls(ball, 2, 0, "kind: spot, direction: [0, 0, -1], cone: 85, soft: 0", &scene);
@@ -126,8 +126,7 @@ static void a_wide_spot_has_a_cube_too(void **state) {
 
 /* A picture whose balls lie across seams is no farther from that whose balls lie on the faces' axes
  * than one whose balls lie beside them, in one face each. */
-static void seams_are_not_seen(void **state) {
-  (void)state;
+TEST(seams_are_not_seen) {
   static const place ball[2] = {{{-0.3, 0, 0}, 0.08}, {{0.3, 0, 0}, 0.08}};
   static const double turn[3] = {0, 20, 45};
   abbe_render_desc desc = small_frame;
@@ -160,8 +159,7 @@ static void seams_are_not_seen(void **state) {
 }
 
 /* Direct light with both balls is the less of what it is with either, whose lamp has one view. */
-static void direct_light_is_whole(void **state) {
-  (void)state;
+TEST(direct_light_is_whole) {
   static const place ball[2] = {{{-0.25, -0.25, -0.1}, 0.08}, {{0.25, 0.25, -0.1}, 0.08}};
   static const abbe_model models[] = {ABBE_MODEL_AUTO, ABBE_MODEL_BVH, ABBE_MODEL_LAYERS};
   for (int m = 0; m < (all_cases() ? 3 : 2); m++) {
@@ -199,8 +197,7 @@ static void direct_light_is_whole(void **state) {
 }
 
 /* Its faces' maps, laid out as one, hold what the tracer finds there. */
-static void the_tracer_agrees(void **state) {
-  (void)state;
+TEST(the_tracer_agrees) {
   enum { SIDE = 64, BLOCK = 8, BLOCKS = SIDE / BLOCK, PASSES = 12 };
   static const abbe_model models[] = {ABBE_MODEL_AUTO, ABBE_MODEL_BVH, ABBE_MODEL_LAYERS};
   abbe_scene scene;
@@ -257,8 +254,7 @@ static void the_tracer_agrees(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void a_cube_has_no_single_layout(void **state) {
-  (void)state;
+TEST(a_cube_has_no_single_layout) {
   abbe_scene scene;
   abbe_image map = {0};
   abbe_error error = {0};
@@ -273,13 +269,4 @@ static void a_cube_has_no_single_layout(void **state) {
   assert_int_equal(abbe_renderer_read_map(renderer, 1, true, &map, &error), ABBE_INVALID_ARGUMENT);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(all_light_goes_in_once), cmocka_unit_test(a_wide_spot_has_a_cube_too),
-      cmocka_unit_test(seams_are_not_seen),     cmocka_unit_test(direct_light_is_whole),
-      cmocka_unit_test(the_tracer_agrees),      cmocka_unit_test(a_cube_has_no_single_layout),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

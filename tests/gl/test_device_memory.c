@@ -141,9 +141,10 @@ static void draw_as_made_anew(abbe_renderer *renderer, const abbe_scene *scene,
   abbe_renderer_free(other);
 }
 
+GROUP(make_context, free_context);
+
 /* Another size of everything, within an eighth more than what it was. */
-static void a_change_needs_no_room_for_both(void **state) {
-  (void)state;
+TEST(a_change_needs_no_room_for_both) {
   abbe_scene scene = {0};
   abbe_error error = {0};
   load_text(text, &scene);
@@ -164,8 +165,7 @@ static void a_change_needs_no_room_for_both(void **state) {
 }
 
 /* So of a mesh, which is uploaded before the light's buffers are made. */
-static void a_larger_mesh_needs_no_room_beside_them(void **state) {
-  (void)state;
+TEST(a_larger_mesh_needs_no_room_beside_them) {
   abbe_scene scene = {0}, finer = {0};
   abbe_error error = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
@@ -186,8 +186,7 @@ static void a_larger_mesh_needs_no_room_beside_them(void **state) {
 }
 
 /* What does not fit at all is refused, and a smaller change goes on from there. */
-static void what_does_not_fit_is_refused(void **state) {
-  (void)state;
+TEST(what_does_not_fit_is_refused) {
   abbe_scene scene = {0};
   abbe_error error = {0};
   load_text(text, &scene);
@@ -230,8 +229,7 @@ static void give_back(abbe_gpu_scene *scene, int kind, GLuint *out) {
 
 /* What is not in use gives way to what has no room, and to no other error: neither to one of the
  * allocation itself nor to one that was pending before it, which is told as it is. */
-static void only_a_lack_of_memory_is_tried_again(void **state) {
-  (void)state;
+TEST(only_a_lack_of_memory_is_tried_again) {
   abbe_scene scene = {0};
   abbe_gpu gpu = {0};
   abbe_error error = {0};
@@ -274,12 +272,4 @@ static void only_a_lack_of_memory_is_tried_again(void **state) {
   }
   abbe_gpu_free(&gpu);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_change_needs_no_room_for_both),
-                                     cmocka_unit_test(a_larger_mesh_needs_no_room_beside_them),
-                                     cmocka_unit_test(what_does_not_fit_is_refused),
-                                     cmocka_unit_test(only_a_lack_of_memory_is_tried_again)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -20,9 +20,10 @@ static void assert_same_view(const abbe_view *a, const abbe_view *b) {
   for (int k = 0; k < 4; k++) assert_true(a->window[k] == b->window[k]);
 }
 
+GROUP(make_context, free_context);
+
 /* The plan is in the user's coordinates, as the request was, and may be one again. */
-static void the_plan_has_it_as_it_was_given(void **state) {
-  (void)state;
+TEST(the_plan_has_it_as_it_was_given) {
   abbe_scene scene = {0};
   abbe_map_layout fitted, given, used;
   abbe_image map = {0}, same = {0};
@@ -53,9 +54,4 @@ static void the_plan_has_it_as_it_was_given(void **state) {
   abbe_image_free(&map);
   abbe_image_free(&same);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(the_plan_has_it_as_it_was_given)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

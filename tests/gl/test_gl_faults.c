@@ -92,13 +92,11 @@ abbe_result __wrap_abbe_context_osmesa(abbe_context_native *out, abbe_error *err
   return abbe_error_set(error, ABBE_UNSUPPORTED, "there is no OSMesa");
 }
 
-static int reset(void **state) {
-  (void)state;
+static void reset(void) {
   hidden = NULL;
   lowered = 0;
   refused = mute = breaks = as_gpu = first_fails = bad_gpu = gone = false;
   tried = 0;
-  return 0;
 }
 
 static void assert_refused(const char *part) {
@@ -110,14 +108,14 @@ static void assert_refused(const char *part) {
   assert_contains(error.text, "--backend");
 }
 
-static void test_no_context(void **state) {
-  (void)state;
+EACH(reset, NULL);
+
+TEST(no_context) {
   refused = true;
   assert_refused("no context");
 }
 
-static void test_every_function_missing(void **state) {
-  (void)state;
+TEST(every_function_missing) {
   static const char *const names[] = {
 #define NAME(type, name) "gl" #name,
       ABBE_GL_FUNCTIONS(NAME)
@@ -131,8 +129,7 @@ static void test_every_function_missing(void **state) {
   }
 }
 
-static void test_versions_and_limits(void **state) {
-  (void)state;
+TEST(versions_and_limits) {
   static const struct {
     GLenum limit;
     GLint value;
@@ -165,8 +162,7 @@ static void make_described(abbe_context_backend backend, const char *name) {
 }
 
 /* A GPU is taken where one works, whichever it is; the CPU where none does. */
-static void test_the_device_that_works_is_taken(void **state) {
-  (void)state;
+TEST(the_device_that_works_is_taken) {
   abbe_context *context = NULL;
   abbe_error error = {0};
   make_described(ABBE_CONTEXT_AUTO, "cpu: ");
@@ -185,8 +181,7 @@ static void test_the_device_that_works_is_taken(void **state) {
 }
 
 /* Where neither works the causes are told together, and neither sends the user to the other. */
-static void test_two_causes_are_one_sentence(void **state) {
-  (void)state;
+TEST(two_causes_are_one_sentence) {
   abbe_context *context = NULL;
   abbe_error error = {0};
   as_gpu = refused = true;
@@ -215,8 +210,7 @@ static void make_and_read(bool quiet, char *said, size_t size) {
 }
 
 /* Why the CPU draws is told once, and only where there is a GPU. */
-static void test_a_gpu_that_is_not_taken_is_told_of_once(void **state) {
-  (void)state;
+TEST(a_gpu_that_is_not_taken_is_told_of_once) {
   char said[512];
   make_and_read(false, said, sizeof said);
   assert_string_equal(said, "");
@@ -231,8 +225,7 @@ static void test_a_gpu_that_is_not_taken_is_told_of_once(void **state) {
   assert_string_equal(said, "");
 }
 
-static void test_a_driver_without_a_name(void **state) {
-  (void)state;
+TEST(a_driver_without_a_name) {
   abbe_context *context = NULL;
   mute = true;
   assert_int_equal(abbe_context_make(ABBE_CONTEXT_CPU, &context, NULL), ABBE_OK);
@@ -251,8 +244,7 @@ static void make_gem(abbe_context **context, abbe_renderer **renderer, abbe_resu
   abbe_scene_free(&scene);
 }
 
-static void test_shaders_that_do_not_compile(void **state) {
-  (void)state;
+TEST(shaders_that_do_not_compile) {
   abbe_context *context = NULL;
   abbe_renderer *renderer = NULL;
   abbe_error error = {0};
@@ -271,8 +263,7 @@ static bool lose(void *user, double done) {
 }
 
 /* The frame ends with the driver's name and a way out, and what is freed then is freed. */
-static void test_a_device_lost_in_a_frame(void **state) {
-  (void)state;
+TEST(a_device_lost_in_a_frame) {
   abbe_context *context = NULL;
   abbe_renderer *renderer = NULL;
   abbe_error error = {0};
@@ -283,18 +274,4 @@ static void test_a_device_lost_in_a_frame(void **state) {
   assert_contains(error.text, "--backend cpu");
   abbe_renderer_free(renderer);
   abbe_context_free(context);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup(test_no_context, reset),
-      cmocka_unit_test_setup(test_every_function_missing, reset),
-      cmocka_unit_test_setup(test_versions_and_limits, reset),
-      cmocka_unit_test_setup(test_the_device_that_works_is_taken, reset),
-      cmocka_unit_test_setup(test_two_causes_are_one_sentence, reset),
-      cmocka_unit_test_setup(test_a_gpu_that_is_not_taken_is_told_of_once, reset),
-      cmocka_unit_test_setup(test_a_driver_without_a_name, reset),
-      cmocka_unit_test_setup(test_shaders_that_do_not_compile, reset),
-      cmocka_unit_test_setup(test_a_device_lost_in_a_frame, reset)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

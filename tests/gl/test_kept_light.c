@@ -23,8 +23,9 @@ static void assert_light_kept(abbe_renderer *renderer, const abbe_scene *scene, 
   abbe_image_free(&anew);
 }
 
-static void the_first_texture_keeps_photons(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(the_first_texture_keeps_photons) {
   static float texel[2][3] = {{0.5f, 0.25f, 0.75f}, {1, 0.5f, 0.25f}};
   abbe_scene scene = {0};
   abbe_image picture[3] = {{0}, {0}, {0}};
@@ -48,8 +49,7 @@ static void the_first_texture_keeps_photons(void **state) {
 }
 
 /* A spot's shadows are those of its place, whatever its cone is. */
-static void another_cone_is_followed_anew(void **state) {
-  (void)state;
+TEST(another_cone_is_followed_anew) {
   abbe_scene scene = {0};
   abbe_image kept = {0}, anew = {0};
   abbe_error error = {0};
@@ -92,8 +92,7 @@ static double sum_apart(const abbe_image *a, const abbe_image *b) {
 
 /* Views of fewer triangles: the camera's alone leave the light as it is, and what they show is
  * nearly the same; without them all is as before. */
-static void coarse_views_show_nearly_the_same(void **state) {
-  (void)state;
+TEST(coarse_views_show_nearly_the_same) {
   enum { NONE, EYE, ALL, AGAIN, COUNT };
   static const abbe_coarse coarse[COUNT] = {ABBE_COARSE_NONE, ABBE_COARSE_EYE, ABBE_COARSE_ALL,
                                             ABBE_COARSE_NONE};
@@ -127,8 +126,7 @@ static void coarse_views_show_nearly_the_same(void **state) {
   "[0.8, 0.5, 0.3], transform: [{translate: [0, 0, 0.1]}]}\n"
 
 /* Of receivers of many triangles, too, which rays meet then that are drawn else: but for edges. */
-static void rays_show_receivers_as_they_are_drawn(void **state) {
-  (void)state;
+TEST(rays_show_receivers_as_they_are_drawn) {
   abbe_scene scene = {0};
   abbe_image picture[2] = {{0}};
   abbe_render_desc desc = tiny;
@@ -149,12 +147,4 @@ static void rays_show_receivers_as_they_are_drawn(void **state) {
   for (int i = 0; i < 2; i++) abbe_image_free(&picture[i]);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(the_first_texture_keeps_photons),
-                                     cmocka_unit_test(another_cone_is_followed_anew),
-                                     cmocka_unit_test(coarse_views_show_nearly_the_same),
-                                     cmocka_unit_test(rays_show_receivers_as_they_are_drawn)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -77,8 +77,9 @@ static double ring_light(const place *p) {
   return drawn_mean(text, &desc, "caustic.Y") / known;
 }
 
-static void a_ring_throws_its_caustics(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(a_ring_throws_its_caustics) {
   static const place places[] = {
       {1, 45, {0}, {0.2, 0}, 0.1, 1},           /* before the nephroid's cusp */
       {1, 45, {0}, {0.75, 0}, 0.07, 3},         /* within the nephroid */
@@ -102,8 +103,7 @@ static void a_ring_throws_its_caustics(void **state) {
   "{axis: [0, 1, 0], angle: 90}}, {translate: [0.5, 0, 3.9]}]}\n"
 
 /* As the images of the lamp shine, the k-th by 0.8^k. */
-static void a_lamp_shines_by_its_images(void **state) {
-  (void)state;
+TEST(a_lamp_shines_by_its_images) {
   enum { STEPS = 20 };
   double known = 0;
   for (int k = 1; k < 40; k++)
@@ -126,8 +126,7 @@ static void a_lamp_shines_by_its_images(void **state) {
   assert_near(seen / known, 1, 0.02);
 }
 
-static void the_eye_sees_by_four_reflections(void **state) {
-  (void)state;
+TEST(the_eye_sees_by_four_reflections) {
   assert_near(drawn_mean("materials: default\ncamera: {eye: [0.25, 0, 0], target: [0.75, 0, -0.5], "
                          "fov: 1}\nenvironment: {size: 64, uniform: 2}\nobjects:\n"
                          "- {name: mote, shape: rectangle, width: 0.001, height: 0.001, "
@@ -170,15 +169,13 @@ static void check_penumbra(const char *light, bool disk, size_t points) {
   assert_true(worst < (disk ? 1.5 : 2.5) / (double)points);
 }
 
-static void a_penumbra_has_its_width(void **state) {
-  (void)state;
+TEST(a_penumbra_has_its_width) {
   check_penumbra("disk, radius: 0.02", true, 8);
   check_penumbra("disk, radius: 0.02", true, 16);
   check_penumbra("rectangle, width: 0.04, height: 0.04", false, 16);
 }
 
-static void floors_have_their_form_factors(void **state) {
-  (void)state;
+TEST(floors_have_their_form_factors) {
   static const double p[3] = {0, 0, 0}, up[3] = {0, 0, 1};
   static const double corner[4][3] = {
       {0.05, -0.1, 0.4}, {0.35, -0.1, 0.4}, {0.35, 0.1, 0.4}, {0.05, 0.1, 0.4}};
@@ -202,8 +199,7 @@ static void floors_have_their_form_factors(void **state) {
 }
 
 /* The eye sees the disk itself in a mirror, as far behind it as it is before it. */
-static void a_mirror_shows_the_disk(void **state) {
-  (void)state;
+TEST(a_mirror_shows_the_disk) {
   const double away = hypot(0.6, 1.2), film = pow(2 * tan(2.5 * PI / 180), 2);
   const double known = 0.8 * 7 * PI * 0.02 * 0.02 * 1.2 / (away * away * away) / film;
   abbe_render_desc desc = tiny;
@@ -221,8 +217,7 @@ static void a_mirror_shows_the_disk(void **state) {
 
 /* Through a hole and off a mirror onto a wall: its points' images have the disk's light, and lie as
  * widely. */
-static void a_hole_throws_the_disks_image(void **state) {
-  (void)state;
+TEST(a_hole_throws_the_disks_image) {
   enum { SIDE = 96 };
   const double r = 0.02, s = 0.004, half = 0.03;
   const double known = 0.8 * 1e4 * PI * r * r * s * s / (PI * 4 * half * half);
@@ -261,17 +256,4 @@ static void a_hole_throws_the_disks_image(void **state) {
   assert_near(sum / (SIDE * SIDE) / known, 1, 0.03);
   assert_near(moment / sum / square, 1, 0.05);
   abbe_image_free(&aovs);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_ring_throws_its_caustics),
-      cmocka_unit_test(a_lamp_shines_by_its_images),
-      cmocka_unit_test(the_eye_sees_by_four_reflections),
-      cmocka_unit_test(a_penumbra_has_its_width),
-      cmocka_unit_test(floors_have_their_form_factors),
-      cmocka_unit_test(a_mirror_shows_the_disk),
-      cmocka_unit_test(a_hole_throws_the_disks_image),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -18,8 +18,7 @@ static void draw(const char *locale, abbe_image *picture, abbe_image *map) {
   setlocale(LC_ALL, "C");
 }
 
-static void test_a_frame_is_the_same(void **state) {
-  (void)state;
+TEST(a_frame_is_the_same) {
   abbe_image picture[2] = {{0}}, map[2] = {{0}};
   draw("C", &picture[0], &map[0]);
   draw(COMMA, &picture[1], &map[1]);
@@ -34,15 +33,14 @@ static void test_a_frame_is_the_same(void **state) {
   }
 }
 
-static int begin(void **state) {
-  return comma_setup(state) || make_context(state);
+static void begin(void) {
+  comma_setup();
+  make_context();
 }
 
-static int end(void **state) {
-  return free_context(state) || comma_teardown(state);
+static void end(void) {
+  free_context();
+  comma_teardown();
 }
 
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_frame_is_the_same)};
-  return cmocka_run_group_tests(tests, begin, end);
-}
+GROUP(begin, end);

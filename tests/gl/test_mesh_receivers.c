@@ -120,10 +120,11 @@ static const char rooms[] =
     "#define SPECTRUM_ROOM 1\n#define WAVELENGTHS 1\n#define RECEIVER_HIERARCHY\n"
     "#define RECEIVER_ROOT 0\n";
 
+GROUP(make_context, free_context);
+
 /* Single precision: 1e-5 of the size, but for rays that graze a triangle or an edge, which may miss
  * it: one in two hundred. The normal turns by 1e-5 over the radius of the tube. */
-static void shaders_find_the_nearest_of_both(void **state) {
-  (void)state;
+TEST(shaders_find_the_nearest_of_both) {
   static float in[RAYS][8], out[RAYS][4], normal[RAYS][4];
   char text[2048];
   receivers r;
@@ -229,8 +230,7 @@ static double apart(const abbe_image *a, const abbe_image *b) {
  * ball, which sees both, and through a ring, whose light takes multi-refractor paths. The box hides
  * none of that light from the lamp: places that it hides have maps where they are parallelograms.
  */
-static void triangles_do_as_parallelograms_do(void **state) {
-  (void)state;
+TEST(triangles_do_as_parallelograms_do) {
   static const char *const texts[] = {CAMERA POINT_LIGHT TEXTURED_FLOOR CRATE HILL BALL("crown"),
                                       CAMERA SUN TEXTURED_FLOOR CRATE HILL RING("flat")};
   for (int i = all_cases() ? 0 : 1; i < 2; i++) {
@@ -295,8 +295,7 @@ static bool globe_normal(const abbe_camera *camera, size_t side, size_t pixel, d
 /* Every photon goes straight down, to the globe or past it. Its facets lie at most 2e-4 m within
  * it, and are inclined to it by
  * up to 0.04, which the cosine shows, beside what a texel and a pixel hold. */
-static void light_lands_on_a_ball_behind_a_pane(void **state) {
-  (void)state;
+TEST(light_lands_on_a_ball_behind_a_pane) {
   enum { SIDE = 48 };
   const abbe_render_desc desc = {.width = SIDE,
                                  .height = SIDE,
@@ -371,8 +370,7 @@ static void light_lands_on_a_ball_behind_a_pane(void **state) {
   "- {name: pane, shape: box, size: [0.4, 0.05, 0.4], transform: [{translate: [0, 0, 0.3]}], "     \
   "material: flat}\n"
 
-static void a_pane_mirrors_what_is_behind_the_eye(void **state) {
-  (void)state;
+TEST(a_pane_mirrors_what_is_behind_the_eye) {
   const double known = pane_reflects * 0.5 * 0.2 / acos(-1);
   abbe_scene scene = {0};
   load_text(MOON_BEHIND_THE_EYE, &scene);
@@ -395,14 +393,4 @@ static void a_pane_mirrors_what_is_behind_the_eye(void **state) {
     abbe_renderer_free(renderer);
   }
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(shaders_find_the_nearest_of_both),
-      cmocka_unit_test(triangles_do_as_parallelograms_do),
-      cmocka_unit_test(light_lands_on_a_ball_behind_a_pane),
-      cmocka_unit_test(a_pane_mirrors_what_is_behind_the_eye),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

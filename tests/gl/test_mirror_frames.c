@@ -64,11 +64,12 @@ static double mean_irradiance(double x, double half) {
   return sum / (STEPS * STEPS);
 }
 
+GROUP(make_context, free_context);
+
 /* A ball of radius R in an irradiance E sends rho E R^2 / 4 into every direction, from afar. The
  * eye looks down at the floor beside the ball, which is 1 m above; not where the light goes on
  * nearly straight, for there a cell of photons spreads widely. */
-static void a_ball_shines_evenly(void **state) {
-  (void)state;
+TEST(a_ball_shines_evenly) {
   frame f;
   abbe_render_desc desc = tiny;
   desc.photons = 256;
@@ -90,8 +91,7 @@ static void a_ball_shines_evenly(void **state) {
 }
 
 /* Pixel by pixel: what pattern the grid of photons and the texels leave in light that diverges. */
-static void a_balls_light_is_smooth(void **state) {
-  (void)state;
+TEST(a_balls_light_is_smooth) {
   enum { SIDE = 64 };
   frame f;
   abbe_render_desc desc = tiny;
@@ -148,15 +148,13 @@ static void check_pane(const char *angle) {
   drop(&f);
 }
 
-static void a_pane_shines_like_the_lamps_image(void **state) {
-  (void)state;
+TEST(a_pane_shines_like_the_lamps_image) {
   check_pane("90");
   check_pane("-90");
 }
 
 /* Behind the pane no light comes through: neither the lamp's nor any photon's. */
-static void a_mirrors_shadow_is_dark(void **state) {
-  (void)state;
+TEST(a_mirrors_shadow_is_dark) {
   frame f;
   draw(EYE("[0.9, -0.5, 0.6]", "[0.7, 0, 0]") LAMP("[-0.1, 0.1, 0.7]")
            WHITE_FLOOR PANE("[0.5, 0, 0.42]", "90", "0.9"),
@@ -168,8 +166,7 @@ static void a_mirrors_shadow_is_dark(void **state) {
 /* But another mirror may light that shadow: two upright panes in a sun that stands at 45 degrees.
  * The left one hides the floor from 1 to 21 cm behind it, and the right one throws its light from 9
  * to 29 cm. */
-static void a_mirrors_shadow_may_be_lit_by_another(void **state) {
-  (void)state;
+TEST(a_mirrors_shadow_may_be_lit_by_another) {
   frame f;
   abbe_render_desc desc = tiny;
   desc.photons = 512; /* of the light's layers too: they tell where panes end, to a texel */
@@ -193,8 +190,7 @@ static void a_mirrors_shadow_may_be_lit_by_another(void **state) {
 
 /* In surroundings that are alike all around, a whole mirror is not seen: a ball, and a ring, in
  * which light goes from wall to wall. */
-static void a_whole_mirror_is_not_seen_in_uniform_light(void **state) {
-  (void)state;
+TEST(a_whole_mirror_is_not_seen_in_uniform_light) {
   static const char *const shape[] = {
       "shape: sphere, radius: 0.1, levels: 4",
       "shape: ring, major: 0.1, minor: 0.03, around: 48, across: 24"};
@@ -220,8 +216,7 @@ static void a_whole_mirror_is_not_seen_in_uniform_light(void **state) {
 }
 
 /* The eye looks straight into a pane of gold and sees the surroundings in gold's own colour. */
-static void gold_has_its_colour(void **state) {
-  (void)state;
+TEST(gold_has_its_colour) {
   static const char text[] =
       "materials: default\ncamera: {eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 3}\n"
       "background: 1\nlights:\n- {name: lamp, kind: point, position: [0, 0, -1], intensity: 1, "
@@ -260,8 +255,7 @@ static void gold_has_its_colour(void **state) {
 }
 
 /* Glass on silver: light goes through the glass, off the mirror, and back through the glass. */
-static void light_goes_through_glass_off_a_mirror_and_back(void **state) {
-  (void)state;
+TEST(light_goes_through_glass_off_a_mirror_and_back) {
   frame f;
   abbe_render_desc desc = tiny;
   desc.energy_share = 1e-4;
@@ -289,8 +283,7 @@ static void light_goes_through_glass_off_a_mirror_and_back(void **state) {
 }
 
 /* Dispersed and coloured light, off gold, through glass, on meshes that are open. */
-static void the_ledger_closes(void **state) {
-  (void)state;
+TEST(the_ledger_closes) {
   frame f;
   draw(EYE("[0.2, -0.5, 0.6]", "[0.2, 0, 0]") LAMP("[-0.1, 0.1, 0.7]")
            WHITE_FLOOR PANE("[0.5, 0, 0.42]", "80", "gold")
@@ -305,19 +298,4 @@ static void the_ledger_closes(void **state) {
   assert_true(f.energy.absorbed > 0.05 * f.energy.reached);
   assert_true(f.energy.deposited > 0.1 * f.energy.reached);
   drop(&f);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_ball_shines_evenly),
-      cmocka_unit_test(a_balls_light_is_smooth),
-      cmocka_unit_test(a_pane_shines_like_the_lamps_image),
-      cmocka_unit_test(a_mirrors_shadow_is_dark),
-      cmocka_unit_test(a_mirrors_shadow_may_be_lit_by_another),
-      cmocka_unit_test(a_whole_mirror_is_not_seen_in_uniform_light),
-      cmocka_unit_test(gold_has_its_colour),
-      cmocka_unit_test(light_goes_through_glass_off_a_mirror_and_back),
-      cmocka_unit_test(the_ledger_closes),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

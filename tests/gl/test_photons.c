@@ -94,8 +94,9 @@ static void compare_path(const abbe_renderer_hits *l, size_t photon, sphere_path
   }
 }
 
-static void test_a_sphere_lands_as_double_precision_says(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(a_sphere_lands_as_double_precision_says) {
   abbe_scene scene = {0};
   abbe_renderer_hits l = {0};
   abbe_error error = {0};
@@ -151,8 +152,7 @@ static bool enters_high(const abbe_renderer_hits *l, size_t photon) {
   return z > 1.01 && z < apex_z - 0.01 && fabs(y) < 0.09;
 }
 
-static void test_a_prism_deviates_least_as_the_formula_says(void **state) {
-  (void)state;
+TEST(a_prism_deviates_least_as_the_formula_says) {
   abbe_renderer_hits near = {0}, far = {0};
   double expected;
   trace_prism("flat", 1, &near);
@@ -194,8 +194,7 @@ static double mean_height(const abbe_renderer_hits *l, size_t sample) {
 }
 
 /* The beam comes from below and is bent down: the more, the lower on the wall. */
-static void test_violet_is_bent_more_than_red(void **state) {
-  (void)state;
+TEST(violet_is_bent_more_than_red) {
   abbe_renderer_hits l = {0};
   trace_prism("crown", 1, &l);
   assert_int_equal(l.samples, 7);
@@ -205,8 +204,7 @@ static void test_violet_is_bent_more_than_red(void **state) {
 }
 
 /* The shipped prism's spectrum on its wall runs from violet, deviated most, to red. */
-static void test_the_shipped_prism_makes_a_spectrum(void **state) {
-  (void)state;
+TEST(the_shipped_prism_makes_a_spectrum) {
   abbe_scene scene = {0};
   abbe_renderer_hits l = {0};
   load_shipped("prism", &scene);
@@ -229,8 +227,7 @@ static void test_the_shipped_prism_makes_a_spectrum(void **state) {
 }
 
 /* A hill far away is traversed; what lands on the floor beside it lands in the same place. */
-static void test_a_hill_moves_no_hit_on_the_floor(void **state) {
-  (void)state;
+TEST(a_hill_moves_no_hit_on_the_floor) {
   static const char *const balls[] = {BALL("flat"), RING("flat")};
   size_t on_hill = 0;
   for (int k = 0; k < 2; k++) {
@@ -272,8 +269,7 @@ static void test_a_hill_moves_no_hit_on_the_floor(void **state) {
 /* The prism's slit is 2 by 30 mm, 0.6 m before the lamp of 40 W/sr and within its cone. Its light
  * does not depend on how many cells there are, nor on where they lie: 2 in 1024 rays of the view's
  * fit, and what 8 x 8 rays tell of cells that the jaws cut. */
-static void test_a_slit_lets_its_light_through_whatever_the_grid(void **state) {
-  (void)state;
+TEST(a_slit_lets_its_light_through_whatever_the_grid) {
   static const size_t grids[] = {20, 33, 64, 150};
   double expected = 40 * 0.002 * 0.03 / (0.6 * 0.6) * (1 - 1.5 * (0.03 * 0.03 / 12) / (0.6 * 0.6));
   abbe_scene scene = {0};
@@ -288,16 +284,4 @@ static void test_a_slit_lets_its_light_through_whatever_the_grid(void **state) {
     abbe_renderer_free(renderer);
   }
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_sphere_lands_as_double_precision_says),
-      cmocka_unit_test(test_a_prism_deviates_least_as_the_formula_says),
-      cmocka_unit_test(test_violet_is_bent_more_than_red),
-      cmocka_unit_test(test_the_shipped_prism_makes_a_spectrum),
-      cmocka_unit_test(test_a_hill_moves_no_hit_on_the_floor),
-      cmocka_unit_test(test_a_slit_lets_its_light_through_whatever_the_grid),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -68,8 +68,9 @@ static void check(const abbe_render_desc *desc, double power, abbe_rgb_space spa
 static const abbe_render_desc tiny = {
     .width = 20, .height = 12, .photons = 16, .map_size = 16, .wavelengths = 3};
 
-static void test_it_is_what_is_read_in_every_space(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(it_is_what_is_read_in_every_space) {
   abbe_render_desc desc = tiny;
   desc.aovs = true;
   desc.space = ABBE_RGB_SPACE_REC709;
@@ -80,8 +81,7 @@ static void test_it_is_what_is_read_in_every_space(void **state) {
   check(&desc, 1, ABBE_RGB_SPACE_ACESCG);
 }
 
-static void test_it_is_what_is_read_resolved_and_enlarged(void **state) {
-  (void)state;
+TEST(it_is_what_is_read_resolved_and_enlarged) {
   abbe_render_desc desc = tiny;
   desc.supersample = 2;
   check(&desc, 1, ABBE_RGB_SPACE_ACESCG);
@@ -90,13 +90,11 @@ static void test_it_is_what_is_read_resolved_and_enlarged(void **state) {
   check(&desc, 1, ABBE_RGB_SPACE_ACESCG);
 }
 
-static void test_its_scale_serves_faint_light(void **state) {
-  (void)state;
+TEST(its_scale_serves_faint_light) {
   check(&tiny, 0x1p-93, ABBE_RGB_SPACE_ACESCG);
 }
 
-static void test_the_thesis_has_one(void **state) {
-  (void)state;
+TEST(the_thesis_has_one) {
   abbe_render_desc desc = tiny;
   desc.wavelengths = 7;
   desc.profile = ABBE_PROFILE_THESIS;
@@ -104,13 +102,4 @@ static void test_the_thesis_has_one(void **state) {
   desc.profile = ABBE_PROFILE_THESIS_CIE;
   desc.space = ABBE_RGB_SPACE_XYZ;
   check(&desc, 1, ABBE_RGB_SPACE_ACESCG);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_it_is_what_is_read_in_every_space),
-      cmocka_unit_test(test_it_is_what_is_read_resolved_and_enlarged),
-      cmocka_unit_test(test_its_scale_serves_faint_light),
-      cmocka_unit_test(test_the_thesis_has_one)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -100,37 +100,27 @@ static void hold(const char *stone, double thickness_m, const char *beside, size
   abbe_scene_free(&scene);
 }
 
-static void a_plate_alone_has_its_colour(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(a_plate_alone_has_its_colour) {
   hold("ruby", 0.006, "", 4, 2, ABBE_COARSE_NONE);
   hold("emerald", 0.02, "", 4, 2, ABBE_COARSE_NONE);
 }
 
-static void a_plate_beside_glass_has_its_colour(void **state) {
-  (void)state;
+TEST(a_plate_beside_glass_has_its_colour) {
   hold("ruby", 0.006, BESIDE_GLASS, 4, 2, ABBE_COARSE_NONE);
   hold("ruby", 0.003, BESIDE_GLASS, 7, 2, ABBE_COARSE_NONE);
   hold("emerald", 0.006, BESIDE_GLASS, 7, 2, ABBE_COARSE_NONE);
 }
 
-static void a_plate_beside_a_mirror_has_its_colour(void **state) {
-  (void)state;
+TEST(a_plate_beside_a_mirror_has_its_colour) {
   hold("ruby", 0.006, BESIDE_GOLD, 4, 2, ABBE_COARSE_NONE);
 }
 
-static void a_plate_has_its_colour_while_it_moves(void **state) {
-  (void)state;
+TEST(a_plate_has_its_colour_while_it_moves) {
   hold("ruby", 0.006, "", 4, 1, ABBE_COARSE_ALL);
   hold("ruby", 0.003, "", 4, 1, ABBE_COARSE_ALL);
   hold("emerald", 0.006, "", 4, 1, ABBE_COARSE_ALL);
   hold("ruby", 0.006, BESIDE_GLASS, 4, 1, ABBE_COARSE_ALL);
   hold("emerald", 0.006, BESIDE_GOLD, 4, 1, ABBE_COARSE_ALL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_plate_alone_has_its_colour),
-                                     cmocka_unit_test(a_plate_beside_glass_has_its_colour),
-                                     cmocka_unit_test(a_plate_beside_a_mirror_has_its_colour),
-                                     cmocka_unit_test(a_plate_has_its_colour_while_it_moves)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

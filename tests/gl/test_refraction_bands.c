@@ -69,8 +69,9 @@ static double apart(const abbe_image *a, const abbe_image *b) {
   return sum / whole;
 }
 
-static void test_joined_bands_come_back(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(joined_bands_come_back) {
   abbe_scene scene;
   load_bars(STONE, &scene);
   abbe_image seven = picture(&scene, 7, 1, true), all = picture(&scene, 21, 1, true);
@@ -87,8 +88,7 @@ static void test_joined_bands_come_back(void **state) {
 }
 
 /* Up to eight wavelengths every pixel takes all of them. */
-static void test_few_wavelengths_are_all_taken(void **state) {
-  (void)state;
+TEST(few_wavelengths_are_all_taken) {
   abbe_scene scene;
   load_bars(STONE, &scene);
   abbe_image planned = picture(&scene, 8, 1, false), all = picture(&scene, 8, 1, true);
@@ -129,8 +129,7 @@ static void assert_shared_bands_add_up(const char *refractor, abbe_model model) 
   abbe_scene_free(&scene);
 }
 
-static void test_shared_bands_add_up(void **state) {
-  (void)state;
+TEST(shared_bands_add_up) {
   char ring[256];
   snprintf(ring, sizeof ring, RING_OF, "crown");
   assert_shared_bands_add_up(ring, ABBE_MODEL_AUTO);
@@ -140,8 +139,7 @@ static void test_shared_bands_add_up(void **state) {
 
 /* The samples of a pixel take every second band each, and lie no farther from many samples that
  * take all of many wavelengths than if each took all seven. */
-static void test_shared_bands_show_the_spectrum(void **state) {
-  (void)state;
+TEST(shared_bands_show_the_spectrum) {
   abbe_scene scene;
   load_ring("crown", &scene);
   abbe_image true_to = picture(&scene, 28, 4, true);
@@ -155,12 +153,4 @@ static void test_shared_bands_show_the_spectrum(void **state) {
   abbe_image_free(&shared);
   abbe_image_free(&all);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_joined_bands_come_back),
-                                     cmocka_unit_test(test_few_wavelengths_are_all_taken),
-                                     cmocka_unit_test(test_shared_bands_add_up),
-                                     cmocka_unit_test(test_shared_bands_show_the_spectrum)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

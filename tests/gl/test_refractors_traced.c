@@ -81,20 +81,19 @@ static void check(const char *text, int passes, double least_light) {
   assert_true(found.apart < found.trapped + 0.03);
 }
 
-static void test_a_hollow_ball(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(a_hollow_ball) {
   check(CAMERA POINT_LIGHT FLOOR BALL("crown") INNER("air"), 4, 1e-3);
 }
 
-static void test_a_ball_in_another(void **state) {
-  (void)state;
+TEST(a_ball_in_another) {
   check(CAMERA POINT_LIGHT FLOOR BALL("crown") INNER("dense"), 4, 1e-3);
 }
 
 /* A cup of glass with water up to its inner wall: the water is listed last and reaches into the
  * glass. */
-static void test_a_cup_of_water(void **state) {
-  (void)state;
+TEST(a_cup_of_water) {
   check(CAMERA POINT_LIGHT FLOOR
         "- {name: cup, shape: lathe, around: 48, profile: [[0, 0], [0.06, 0], [0.06, 0.12],"
         " [0.05, 0.12], [0.05, 0.01], [0, 0.01]],"
@@ -105,8 +104,7 @@ static void test_a_cup_of_water(void **state) {
 }
 
 /* Light comes to the wall from the pane's mirror alone. */
-static void test_the_outside_alone(void **state) {
-  (void)state;
+TEST(the_outside_alone) {
   check("materials: glass.yaml\ncamera: {eye: [-1, -1, 0.5], target: [0, 0, 0.05]}\n"
         "lights:\n- {name: lamp, kind: spot, position: [-0.5, 0, 0.6], target: [0, 0, 0.1],"
         " cone: 12, intensity: 1}\n"
@@ -136,8 +134,7 @@ static void check_parts(const char *parts, const char *listed) {
   assert_near(mesh.apart, boxes.apart, 0.01);
 }
 
-static void test_parts_of_a_mesh_that_cross(void **state) {
-  (void)state;
+TEST(parts_of_a_mesh_that_cross) {
   check_parts(CAMERA POINT_LIGHT FLOOR PARTS("crossing.obj"),
               CAMERA POINT_LIGHT FLOOR ONE_BY_ONE("a", "0.12, 0.12, 0.1", "0, 0, 0")
                   ONE_BY_ONE("b", "0.13, 0.07, 0.07", "0.045, 0.005, 0.005"));
@@ -145,8 +142,7 @@ static void test_parts_of_a_mesh_that_cross(void **state) {
 
 /* Faces lie on one another, back to back and side by side; of the boxes listed one by one those
  * that come later reach into the first, by a tenth of a millimetre. */
-static void test_parts_of_a_mesh_that_touch(void **state) {
-  (void)state;
+TEST(parts_of_a_mesh_that_touch) {
   check_parts(CAMERA POINT_LIGHT FLOOR PARTS("flush.obj"),
               CAMERA POINT_LIGHT FLOOR ONE_BY_ONE("a", "0.12, 0.12, 0.08", "0, 0, -0.01")
                   ONE_BY_ONE("b", "0.09, 0.07, 0.0601", "0.065, 0.005, -0.02005")
@@ -154,8 +150,7 @@ static void test_parts_of_a_mesh_that_touch(void **state) {
 }
 
 /* The tracer's picture of it all is that of one block: the wall within is none. */
-static void test_parts_of_one_stuff_have_no_wall(void **state) {
-  (void)state;
+TEST(parts_of_one_stuff_have_no_wall) {
 #define HALF(name, x)                                                                              \
   "- {name: " name ", shape: box, size: [0.081, 0.08, 0.06], transform: [{translate: [" x          \
   ", 0, 0.2]}], material: dense}\n"
@@ -213,33 +208,16 @@ static void check_stones(const char *stones, const char *eye, const char *target
   abbe_scene_free(&scene);
 }
 
-static void test_a_stone_face_up(void **state) {
-  (void)state;
+TEST(a_stone_face_up) {
   check_stones(STONE("stone", "0"), "[0, -0.04, 0.8]", "[0, 0, 0.05]", "4", 48);
 }
 
-static void test_a_stone_from_the_side(void **state) {
-  (void)state;
+TEST(a_stone_from_the_side) {
   check_stones(STONE("stone", "0"), "[0.1, -0.75, 0.2]", "[0, 0, 0.04]", "2.5", 8);
 }
 
 /* Through one the eye sees the other, from refractor to refractor. */
-static void test_two_stones_from_the_side(void **state) {
-  (void)state;
+TEST(two_stones_from_the_side) {
   check_stones(STONE("left", "-0.052") STONE("right", "0.052"), "[0.05, -0.75, 0.2]",
                "[-0.052, 0, 0.04]", "2.5", 8);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_stone_face_up),
-                                     cmocka_unit_test(test_two_stones_from_the_side),
-                                     cmocka_unit_test(test_a_stone_from_the_side),
-                                     cmocka_unit_test(test_a_hollow_ball),
-                                     cmocka_unit_test(test_a_ball_in_another),
-                                     cmocka_unit_test(test_a_cup_of_water),
-                                     cmocka_unit_test(test_the_outside_alone),
-                                     cmocka_unit_test(test_parts_of_a_mesh_that_cross),
-                                     cmocka_unit_test(test_parts_of_a_mesh_that_touch),
-                                     cmocka_unit_test(test_parts_of_one_stuff_have_no_wall)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

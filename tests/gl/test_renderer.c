@@ -58,9 +58,10 @@ static void assert_as_planned(const abbe_renderer *renderer, const abbe_statisti
   }
 }
 
+GROUP(make_context, free_context);
+
 /* All of them balance in their reference tests. */
-static void test_shipped_scenes_balance_and_repeat(void **state) {
-  (void)state;
+TEST(shipped_scenes_balance_and_repeat) {
   for (int i = 0; i < SHIPPED; i += all_cases() ? 1 : 2) {
     abbe_scene scene = {0};
     load_shipped(shipped[i], &scene);
@@ -102,16 +103,14 @@ static void the_thesis_renders(abbe_profile profile) {
   }
 }
 
-static void test_the_thesis_profiles_render(void **state) {
-  (void)state;
+TEST(the_thesis_profiles_render) {
   the_thesis_renders(ABBE_PROFILE_THESIS);
   the_thesis_renders(ABBE_PROFILE_THESIS_CIE);
 }
 
 /* Every model, light and material at once, at sizes that divide nothing; the first (with all cases,
  * the last, too) also with one photon and with a map of one texel. */
-static void test_mixed_scenes_balance(void **state) {
-  (void)state;
+TEST(mixed_scenes_balance) {
   static const char *const texts[] = {
       CAMERA POINT_LIGHT FLOOR BALL("smoke"),
       CAMERA POINT_LIGHT FLOOR BRICK("crown"),
@@ -150,8 +149,7 @@ static void test_mixed_scenes_balance(void **state) {
 }
 
 /* Samples go to the device in batches; their number changes neither balance nor total. */
-static void test_many_wavelengths_add_up(void **state) {
-  (void)state;
+TEST(many_wavelengths_add_up) {
   static const size_t counts[] = {1, 2, 64, 65, 200};
   abbe_scene scene = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
@@ -184,8 +182,7 @@ static void white_of(abbe_rgb_space space, double white[3]) {
 }
 
 /* By 2^-93 and 2^93: light that floats could not sum is scaled inside, and back. */
-static void test_faint_light_is_the_same_light(void **state) {
-  (void)state;
+TEST(faint_light_is_the_same_light) {
   static const int powers[] = {0, -93, 93};
   abbe_image picture[3], map[3];
   abbe_ledger energy[3];
@@ -221,8 +218,7 @@ static void test_faint_light_is_the_same_light(void **state) {
   }
 }
 
-static void test_white_in_white_out(void **state) {
-  (void)state;
+TEST(white_in_white_out) {
   abbe_scene scene = {0};
   abbe_image map = {0};
   abbe_render_desc desc = small_frame;
@@ -243,8 +239,7 @@ static void test_white_in_white_out(void **state) {
 
 /* Grey things, a constant index and 7 wavelengths: every pixel has the light's own chromaticity,
  * whether it is seen straight or through glass. */
-static void test_no_dispersion_no_colour(void **state) {
-  (void)state;
+TEST(no_dispersion_no_colour) {
   static const char *const texts[] = {CAMERA POINT_LIGHT FLOOR BALL("flat"),
                                       CAMERA POINT_LIGHT FLOOR BRICK("flat"),
                                       CAMERA POINT_LIGHT FLOOR RING("flat")};
@@ -291,8 +286,7 @@ static void map_of_dispersion(const char *text, double factor, size_t wavelength
   abbe_scene_free(&scene);
 }
 
-static void test_dispersion_goes_to_the_map_without(void **state) {
-  (void)state;
+TEST(dispersion_goes_to_the_map_without) {
   static const char *const texts[] = {CAMERA POINT_LIGHT FLOOR BALL("crown"),
                                       CAMERA POINT_LIGHT FLOOR BRICK("crown")};
   for (size_t i = 0; i < 2; i++) {
@@ -310,18 +304,4 @@ static void test_dispersion_goes_to_the_map_without(void **state) {
     abbe_image_free(&one);
     abbe_image_free(&full);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_shipped_scenes_balance_and_repeat),
-      cmocka_unit_test(test_the_thesis_profiles_render),
-      cmocka_unit_test(test_mixed_scenes_balance),
-      cmocka_unit_test(test_many_wavelengths_add_up),
-      cmocka_unit_test(test_faint_light_is_the_same_light),
-      cmocka_unit_test(test_white_in_white_out),
-      cmocka_unit_test(test_no_dispersion_no_colour),
-      cmocka_unit_test(test_dispersion_goes_to_the_map_without),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -21,8 +21,9 @@ static void assert_picture_again(abbe_renderer *renderer, const abbe_image *befo
   abbe_image_free(&after);
 }
 
-static void test_a_frame_can_be_stopped_and_drawn_again(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(a_frame_can_be_stopped_and_drawn_again) {
   abbe_scene scene = {0};
   abbe_error error = {0};
   abbe_image before = {0};
@@ -43,8 +44,7 @@ static void test_a_frame_can_be_stopped_and_drawn_again(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_the_baseline_leaves_the_picture(void **state) {
-  (void)state;
+TEST(the_baseline_leaves_the_picture) {
   for (size_t samples = 1; samples <= 2; samples++) {
     abbe_scene scene = {0};
     abbe_image before = {0};
@@ -71,8 +71,7 @@ static void test_the_baseline_leaves_the_picture(void **state) {
 /* One sample for 2 x 2 pixels is a picture of half the size, and between its pixels what lies
  * between them, or, of what moves, left to who shows it; where sides are odd the last sample stands
  * for what is left. */
-static void test_fewer_samples_than_pixels(void **state) {
-  (void)state;
+TEST(fewer_samples_than_pixels) {
   enum { KINDS = 5 };
   abbe_scene scene = {0};
   abbe_image coarse = {0}, half = {0}, odd = {0}, fine = {0}, moving = {0};
@@ -135,8 +134,7 @@ static void test_fewer_samples_than_pixels(void **state) {
 
 /* A map laid out as another of the same scene is that map, to the bit; with half the texels a side
  * its energy is the same, and each light has a map of its own. */
-static void test_a_map_takes_a_given_layout(void **state) {
-  (void)state;
+TEST(a_map_takes_a_given_layout) {
   abbe_scene scene;
   abbe_image fitted, again, half;
   abbe_map_layout first, layout, given;
@@ -187,8 +185,7 @@ static void test_a_map_takes_a_given_layout(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_what_is_not_there_is_refused(void **state) {
-  (void)state;
+TEST(what_is_not_there_is_refused) {
   abbe_scene scene = {0};
   abbe_image map = {0};
   abbe_error error = {0};
@@ -209,8 +206,7 @@ static void test_what_is_not_there_is_refused(void **state) {
 }
 
 /* What was not drawn is not black. */
-static void test_nothing_is_read_before_a_frame(void **state) {
-  (void)state;
+TEST(nothing_is_read_before_a_frame) {
   abbe_scene scene = {0};
   abbe_image image = {0};
   abbe_error error = {0};
@@ -240,8 +236,7 @@ static void test_nothing_is_read_before_a_frame(void **state) {
 
 /* One thread a pixel follows what the camera sees there, so a group has many pixels; what they
  * share is no more than a device has, beside mirrors too. */
-static void test_programs_of_what_moves_link(void **state) {
-  (void)state;
+TEST(programs_of_what_moves_link) {
   static const char *const names[] = {"metal-ring", "metals", "octahedra"};
   const abbe_render_desc desc = {.width = 32,
                                  .height = 32,
@@ -256,17 +251,4 @@ static void test_programs_of_what_moves_link(void **state) {
     abbe_renderer_free(renderer);
     abbe_scene_free(&scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_frame_can_be_stopped_and_drawn_again),
-      cmocka_unit_test(test_the_baseline_leaves_the_picture),
-      cmocka_unit_test(test_fewer_samples_than_pixels),
-      cmocka_unit_test(test_a_map_takes_a_given_layout),
-      cmocka_unit_test(test_what_is_not_there_is_refused),
-      cmocka_unit_test(test_nothing_is_read_before_a_frame),
-      cmocka_unit_test(test_programs_of_what_moves_link),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

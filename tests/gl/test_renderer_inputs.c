@@ -154,8 +154,7 @@ static void print_parts(const char *which, unsigned parts) {
 }
 
 /* Edits stay: what comes after one is told from it. */
-static void each_field_is_of_its_parts(void **state) {
-  (void)state;
+TEST(each_field_is_of_its_parts) {
   edited e = {.desc = {.width = 32, .height = 32, .photons = 32, .map_size = 64}};
   abbe_renderer_inputs before, after;
   int wrong = 0;
@@ -176,9 +175,4 @@ static void each_field_is_of_its_parts(void **state) {
   assert_int_equal(wrong, 0);
   memset(&floor_of(&e)->texture, 0, sizeof floor_of(&e)->texture);
   abbe_scene_free(&e.scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(each_field_is_of_its_parts)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,9 +21,10 @@ static double map_energy(const abbe_scene *scene, const abbe_render_desc *desc, 
   return image_sum(map, 1);
 }
 
+GROUP(make_context, free_context);
+
 /* A pane turns no light: the map holds the lamp's power through it, less two reflections. */
-static void test_what_arrives_is_what_was_sent(void **state) {
-  (void)state;
+TEST(what_arrives_is_what_was_sent) {
   abbe_scene scene = {0};
   abbe_image map = {0};
   load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
@@ -36,8 +37,7 @@ static void test_what_arrives_is_what_was_sent(void **state) {
 }
 
 /* A low pass keeps the light, and spreads it by its variance along either axis. */
-static void test_a_low_pass_spreads_light(void **state) {
-  (void)state;
+TEST(a_low_pass_spreads_light) {
   abbe_scene scene = {0};
   double sum[2], variance[2] = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
@@ -65,8 +65,7 @@ static void test_a_low_pass_spreads_light(void **state) {
 }
 
 /* Each estimator's map has the exact one's light, and nearly its place: moments of the caustic. */
-static void test_estimators_land_alike(void **state) {
-  (void)state;
+TEST(estimators_land_alike) {
   abbe_scene scene = {0};
   double exact[3] = {0};
   load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
@@ -102,8 +101,7 @@ static void test_estimators_land_alike(void **state) {
 
 /* A flat mirror sends all of its share of the lamp's light to the floor, as the default profile has
  * it. */
-static void test_a_flat_mirror_has_the_lamps_light(void **state) {
-  (void)state;
+TEST(a_flat_mirror_has_the_lamps_light) {
   abbe_scene scene = {0};
   abbe_image own = {0}, map = {0};
   load_text(CAMERA POINT_LIGHT FLOOR MIRROR, &scene);
@@ -121,8 +119,7 @@ static void test_a_flat_mirror_has_the_lamps_light(void **state) {
 }
 
 /* The sun, one interface and two: both pass; through two, a second share is reflected. */
-static void test_one_interface_and_the_sun(void **state) {
-  (void)state;
+TEST(one_interface_and_the_sun) {
   abbe_scene scene = {0};
   load_text(CAMERA SUN FLOOR PANE("flat"), &scene);
   double sum[2];
@@ -140,8 +137,7 @@ static void test_one_interface_and_the_sun(void **state) {
 
 /* A ball of air in the sun, all of whose light lands: two thirds of what its vertices are in full,
  * for (N . L) counts projection twice. */
-static void test_projection_is_counted_twice(void **state) {
-  (void)state;
+TEST(projection_is_counted_twice) {
   abbe_scene scene = {0};
   abbe_image map = {0};
   abbe_render_desc desc = small;
@@ -158,8 +154,7 @@ static void test_projection_is_counted_twice(void **state) {
 
 /* As printed: (N . L) / V, so that brightness does not go by the object's size, and three colours.
  */
-static void test_as_printed(void **state) {
-  (void)state;
+TEST(as_printed) {
   abbe_scene scene = {0};
   double sum[2];
   abbe_image map = {0}, picture = {0};
@@ -187,17 +182,4 @@ static void test_as_printed(void **state) {
   abbe_renderer_free(renderer);
   abbe_image_free(&picture);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_low_pass_spreads_light),
-      cmocka_unit_test(test_what_arrives_is_what_was_sent),
-      cmocka_unit_test(test_estimators_land_alike),
-      cmocka_unit_test(test_a_flat_mirror_has_the_lamps_light),
-      cmocka_unit_test(test_one_interface_and_the_sun),
-      cmocka_unit_test(test_projection_is_counted_twice),
-      cmocka_unit_test(test_as_printed),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

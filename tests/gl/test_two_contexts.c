@@ -52,22 +52,18 @@ static void take_alone(int scene, taken *out) {
   abbe_context_free(own);
 }
 
-static int draw_alone(void **state) {
-  (void)state;
+static void draw_alone(void) {
   for (int i = 0; i < SCENES; i++) {
     load_text(texts[i], &scenes[i]);
     take_alone(i, &alone[i]);
   }
-  return 0;
 }
 
-static int free_alone(void **state) {
-  (void)state;
+static void free_alone(void) {
   for (int i = 0; i < SCENES; i++) {
     abbe_scene_free(&scenes[i]);
     free_taken(&alone[i]);
   }
-  return 0;
 }
 
 static void assert_draws(abbe_renderer *renderer, const taken *expected, bool anew) {
@@ -79,10 +75,11 @@ static void assert_draws(abbe_renderer *renderer, const taken *expected, bool an
   free_taken(&now);
 }
 
+GROUP(draw_alone, free_alone);
+
 /* Frames and reads in any order, on one display, which closes with neither; then the second is
  * freed, whose context was made last, and the first is whole. */
-static void test_two_do_not_meet(void **state) {
-  (void)state;
+TEST(two_do_not_meet) {
   abbe_context *on[2];
   abbe_renderer *renderer[2];
   uint64_t seed = 1;
@@ -101,8 +98,7 @@ static void test_two_do_not_meet(void **state) {
   abbe_context_free(on[0]);
 }
 
-static void test_two_renderers_on_one_context(void **state) {
-  (void)state;
+TEST(two_renderers_on_one_context) {
   abbe_renderer *renderer[2];
   abbe_context *both = make();
   for (int i = 0; i < 2; i++) renderer[i] = make_on(both, i);
@@ -162,8 +158,7 @@ static void assert_host_draws(void) {
   assert_int_equal(get_error(), GL_NO_ERROR);
 }
 
-static void test_an_adopted_one_draws_the_same(void **state) {
-  (void)state;
+TEST(an_adopted_one_draws_the_same) {
   host h;
   make_host(&h);
   abbe_context *adopted = adopt(&h, false);
@@ -179,8 +174,7 @@ static void test_an_adopted_one_draws_the_same(void **state) {
 
 /* Told how, Abbe makes it current itself, between others; one that is gone is said to be, and what
  * was drawn on others stays. */
-static void test_an_adopted_one_beside_an_own(void **state) {
-  (void)state;
+TEST(an_adopted_one_beside_an_own) {
   host h;
   make_host(&h);
   abbe_context *own = make();
@@ -224,8 +218,7 @@ static bool draw_meanwhile(void *user, double done) {
   return true;
 }
 
-static void test_progress_may_draw_elsewhere(void **state) {
-  (void)state;
+TEST(progress_may_draw_elsewhere) {
   abbe_context *on[2];
   abbe_renderer *renderer[2];
   abbe_error error = {0};
@@ -239,13 +232,4 @@ static void test_progress_may_draw_elsewhere(void **state) {
     abbe_renderer_free(renderer[i]);
     abbe_context_free(on[i]);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_two_do_not_meet),
-                                     cmocka_unit_test(test_two_renderers_on_one_context),
-                                     cmocka_unit_test(test_an_adopted_one_draws_the_same),
-                                     cmocka_unit_test(test_an_adopted_one_beside_an_own),
-                                     cmocka_unit_test(test_progress_may_draw_elsewhere)};
-  return cmocka_run_group_tests(tests, draw_alone, free_alone);
 }

@@ -179,8 +179,9 @@ static void assert_bands_in_place(const setting *s, const abbe_render_desc *desc
   abbe_scene_free(&scene);
 }
 
-static void each_band_lands_in_its_place(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(each_band_lands_in_its_place) {
   static const setting settings[] = {
       {"sf10", 1.72825, 1, 0},    {"n-bk7", 1.5168, 0.3, -40}, {"n-sf11", 1.78472, 0.3, 0},
       {"n-sf11", 1.78472, 1, 40}, {"sf10", 1.72825, 3, 45},    {"n-sf11", 1.78472, 3, -40},
@@ -188,11 +189,4 @@ static void each_band_lands_in_its_place(void **state) {
   const abbe_render_desc desc = {.width = 16, .height = 16, .photons = 64, .map_size = 512, .exits = 1};
   for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++)
     if (all_cases() || i % 3 == 1 || i == 3) assert_bands_in_place(&settings[i], &desc);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(each_band_lands_in_its_place),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -34,8 +34,7 @@ static void add_symbol(void *user, const char *from, const char *to, const char 
   add_folders(&g->folders, from, to, name);
 }
 
-static void test_the_house_has_no_circles(void **state) {
-  (void)state;
+TEST(the_house_has_no_circles) {
   sources all;
   symbols names;
   graph files = {0};
@@ -90,8 +89,7 @@ static const char *circles_of(graph g) {
   return text;
 }
 
-static void test_circles_are_found_and_only_they(void **state) {
-  (void)state;
+TEST(circles_are_found_and_only_they) {
   assert_string_equal(circles_of((graph){0}), "");
   assert_string_equal(circles_of(GRAPH({"a", "b"}, {"b", "c"}, {"a", "c"})), "");
   assert_string_equal(circles_of(GRAPH({"a", "a"}, {"a", "b"})), "");
@@ -108,8 +106,7 @@ static void test_circles_are_found_and_only_they(void **state) {
                       "a1b1c1d1");
 }
 
-static void test_exceptions_are_few_and_needed(void **state) {
-  (void)state;
+TEST(exceptions_are_few_and_needed) {
   graph g = GRAPH({"a", "b"}, {"b", "a"}, {"b", "c"});
   assert_int_equal(graph_judge(&g, (const char *const[]){"a", "b", NULL}, "known"), 0);
   print_message("the next lines are of graphs made wrong on purpose\n");
@@ -118,11 +115,4 @@ static void test_exceptions_are_few_and_needed(void **state) {
   assert_int_equal(graph_judge(&g, (const char *const[]){"a", "b", "c", NULL}, "on purpose"), 1);
   assert_int_equal(graph_judge(&g, (const char *const[]){"a", "b", "gone", NULL}, "on purpose"), 1);
   graph_free(&g);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_house_has_no_circles),
-                                     cmocka_unit_test(test_circles_are_found_and_only_they),
-                                     cmocka_unit_test(test_exceptions_are_few_and_needed)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

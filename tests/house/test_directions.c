@@ -76,8 +76,7 @@ static size_t judge_file(const source_file *f) {
   return wrong;
 }
 
-static void test_the_sources_keep_the_directions(void **state) {
-  (void)state;
+TEST(the_sources_keep_the_directions) {
   sources all;
   size_t wrong = 0, files = 0, includes = 0;
   sources_read(&all);
@@ -94,8 +93,7 @@ static void test_the_sources_keep_the_directions(void **state) {
   assert_true(includes > 3 * files / 2);
 }
 
-static void test_the_rule_refuses_wrong_directions(void **state) {
-  (void)state;
+TEST(the_rule_refuses_wrong_directions) {
   assert_true(may_use("gl/plan/plan.c", "scenes/scene.h"));
   assert_true(may_use("scenes/scene.c", "colorimetry/image/image.h"));
   assert_true(may_use("cli/render/render.c", "validation/tracer/tracer.h"));
@@ -161,8 +159,7 @@ static size_t judge_header(const sources *all, const char *header) {
   return wrong + 1;
 }
 
-static void test_headers_stay_inside(void **state) {
-  (void)state;
+TEST(headers_stay_inside) {
   sources all;
   size_t wrong = 0, headers = 0;
   sources_read(&all);
@@ -178,8 +175,7 @@ static void test_headers_stay_inside(void **state) {
   assert_true(headers > 200);
 }
 
-static void test_include_lines_are_understood(void **state) {
-  (void)state;
+TEST(include_lines_are_understood) {
   char name[SOURCES_MAX_PATH];
   assert_true(sources_included_name("#include \"gl/plan/plan.h\"\n", name, sizeof name));
   assert_string_equal(name, "gl/plan/plan.h");
@@ -205,8 +201,7 @@ static void judge_edge(void *user, const char *from, const char *to, const char 
   print_error("%s may not use %s of %s\n", from, name, to);
 }
 
-static void test_the_objects_keep_the_directions(void **state) {
-  (void)state;
+TEST(the_objects_keep_the_directions) {
   symbols all;
   tally t = {0};
   symbols_read(ABBE_NM, ABBE_OBJECT_LIST, &all);
@@ -216,8 +211,7 @@ static void test_the_objects_keep_the_directions(void **state) {
   assert_true(t.edges > 1000);
 }
 
-static void test_lines_of_nm_are_understood(void **state) {
-  (void)state;
+TEST(lines_of_nm_are_understood) {
   symbol s = {0};
   char source[SOURCES_MAX_PATH];
   assert_true(symbols_source("/b/gl/CMakeFiles/abbe_gl.dir/plan/plan.c.o", source, sizeof source));
@@ -247,8 +241,7 @@ static void count_edge(void *user, const char *from, const char *to, const char 
   ++*(size_t *)user;
 }
 
-static void test_who_wants_what_is_defined_is_found(void **state) {
-  (void)state;
+TEST(who_wants_what_is_defined_is_found) {
   symbol list[] = {{"gl/a.c", "of_b", false},
                    {"gl/b.c", "of_b", true},
                    {"gl/b.c", "malloc", false},
@@ -257,15 +250,4 @@ static void test_who_wants_what_is_defined_is_found(void **state) {
   size_t edges = 0;
   symbols_edges(&(symbols){sizeof list / sizeof *list, list}, count_edge, &edges);
   assert_int_equal(edges, 1);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_sources_keep_the_directions),
-                                     cmocka_unit_test(test_the_rule_refuses_wrong_directions),
-                                     cmocka_unit_test(test_headers_stay_inside),
-                                     cmocka_unit_test(test_include_lines_are_understood),
-                                     cmocka_unit_test(test_the_objects_keep_the_directions),
-                                     cmocka_unit_test(test_lines_of_nm_are_understood),
-                                     cmocka_unit_test(test_who_wants_what_is_defined_is_found)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -201,8 +201,7 @@ static bool full_after(const target *t, size_t bytes) {
 
 /* Up to two thousand bytes each of them, beyond that and of what takes its time a share of them and
  * the last ones. */
-static void test_a_disk_that_is_full_after_each_byte(void **state) {
-  (void)state;
+TEST(a_disk_that_is_full_after_each_byte) {
   size_t wrong = 0;
   for (int named = 0; named < 2; named++)
     for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
@@ -246,8 +245,7 @@ static bool fails_at(const target *t, const content *whole, size_t n, int number
   return right;
 }
 
-static void test_each_call_failing(void **state) {
-  (void)state;
+TEST(each_call_failing) {
   static const int numbers[] = {EIO, ENOSPC};
   size_t wrong = 0, all = 0;
   for (int named = 0; named < 2; named++)
@@ -277,14 +275,13 @@ static const char text[] =
     "- {name: brick, shape: box, size: [0.1, 0.08, 0.06], transform: [{translate: [0, 0, 0.2]}],\n"
     "   material: crown}\n";
 
-static int setup(void **state) {
-  (void)state;
+static void setup(void) {
   static const char *const names[] = {"R", "G", "B"};
   const abbe_trace_desc desc = {
       .width = 3, .height = 2, .map_width = 2, .map_height = 2, .photons = 64, .threads = 1};
   abbe_error error = {0};
   signal(SIGXFSZ, SIG_IGN);
-  if (mkdtemp(folder) == NULL) return 1;
+  assert_non_null(mkdtemp(folder));
   abbe_result result = abbe_image_make(7, 5, 3, names, &image, &error);
   for (size_t i = 0; i < 7 * 5 * 3 && result == ABBE_OK; i++) image.data[i] = 0.01f * (float)i;
   if (result == ABBE_OK)
@@ -292,19 +289,14 @@ static int setup(void **state) {
   if (result == ABBE_OK) result = abbe_tracer_make(&scene, &desc, &tracer, &error);
   if (result == ABBE_OK) result = abbe_tracer_pass(tracer, NULL, &error);
   if (result != ABBE_OK) fprintf(stderr, "%s\n", error.text);
-  return result != ABBE_OK;
+  assert_int_equal(result, ABBE_OK);
 }
 
-static int teardown(void **state) {
-  (void)state;
+static void teardown(void) {
   abbe_tracer_free(tracer);
   abbe_scene_free(&scene);
   abbe_image_free(&image);
-  return rmdir(folder);
+  assert_false(rmdir(folder));
 }
 
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_disk_that_is_full_after_each_byte),
-                                     cmocka_unit_test(test_each_call_failing)};
-  return cmocka_run_group_tests(tests, setup, teardown);
-}
+GROUP(setup, teardown);

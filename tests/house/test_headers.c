@@ -50,8 +50,7 @@ static bool own_source_reads_it_first(const char *header) {
   return is_read_first(source, header);
 }
 
-static void test_every_header_stands_alone(void **state) {
-  (void)state;
+TEST(every_header_stands_alone) {
   static headers alone;
   sources all;
   size_t read = 0, wrong = 0;
@@ -72,16 +71,9 @@ static void test_every_header_stands_alone(void **state) {
   assert_true(alone.count < read / 4);
 }
 
-static void test_what_comes_first_is_seen(void **state) {
-  (void)state;
+TEST(what_comes_first_is_seen) {
   assert_true(is_read_first(ABBE_SOURCE_DIR "/gl/plan/plan.c", "gl/plan/plan.h"));
   assert_false(is_read_first(ABBE_SOURCE_DIR "/gl/plan/plan.c", "gl/plan/support.h"));
   assert_false(is_read_first(ABBE_SOURCE_DIR "/base/clock.c", "base/clock.h")); /* a #define */
   assert_false(is_read_first(ABBE_SOURCE_DIR "/base/order.c", "base/order.h")); /* no file */
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_header_stands_alone),
-                                     cmocka_unit_test(test_what_comes_first_is_seen)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,7 +20,10 @@ typedef struct command {
   size_t stride;      /* of the calls that are tried */
 } command;
 
-static size_t sparse = 3;
+/* Of the calls that are tried, every third. */
+static size_t sparse(void) {
+  return all_cases() ? 1 : 3;
+}
 
 static const char *path_of(const char *name) {
   static char path[256];
@@ -110,19 +113,24 @@ static void kill_everywhere(const command *c) {
   if (code != 0) fail_msg("%s ends with %d: %s", c->line, code, run_errors);
   for (int i = 0; c->output[i] != NULL; i++) whole[i] = read_whole(c->output[i]);
   size_t n = 1;
-  while (kill_at(c, whole, n)) n += c->stride > 1 ? c->stride * sparse : 1;
+  while (kill_at(c, whole, n)) n += c->stride > 1 ? c->stride * sparse() : 1;
   assert_true(n > 5);
   for (int i = 0; i < 4; i++) free(whole[i].data);
   run_each(run_remove, NULL);
 }
 
-static void test_a_trace(void **state) {
-  (void)state;
+static void begin(void) {
+  signal(SIGHUP, SIG_DFL); /* whoever runs the tests may ignore it, which programs inherit */
+  run_setup();
+}
+
+GROUP(begin, run_teardown);
+
+TEST(a_trace) {
   kill_everywhere(&(command){TRACE, {"t.exr", "m.exr", "t.png"}, "old", "t.exr.checkpoint", 31});
 }
 
-static void test_a_picture(void **state) {
-  (void)state;
+TEST(a_picture) {
   kill_everywhere(&(command){"\"$abbe\" render " SCENE " -q --size 8x8 --photons 16 --map 32 -o "
                              "r.exr --png r.png",
                              {"r.exr", "r.png"},
@@ -131,8 +139,7 @@ static void test_a_picture(void **state) {
                              40});
 }
 
-static void test_a_table(void **state) {
-  (void)state;
+TEST(a_table) {
   static const char old[] =
       "materials:\n- {name: a, model: constant, coefficients: [1.5], source: s}\n";
   kill_everywhere(
@@ -140,8 +147,7 @@ static void test_a_table(void **state) {
 }
 
 /* Rows hold times, so that the table differs from run to run: it can be read, and goes on. */
-static void test_a_sweep(void **state) {
-  (void)state;
+TEST(a_sweep) {
   static const char sweep[] =
       "\"$abbe\" sweep " SCENE " -q --size 8x8 --frames 1 --spp 2 --traced-photons 100 --texels 8 "
       "--map 32 --samples 1 --profiles default --wavelengths 7 --photons 8,16 -o s.csv";
@@ -150,7 +156,7 @@ static void test_a_sweep(void **state) {
   assert_int_equal(run_line(sweep), 0);
   content picture = read_whole("s-reference.exr"), map = read_whole("s-reference-map.exr");
   size_t tried = 0;
-  for (size_t n = 2;; n += 110 * sparse, tried++) {
+  for (size_t n = 2;; n += 110 * sparse(), tried++) {
     run_each(run_remove, NULL);
     snprintf(line, sizeof line, "LD_PRELOAD='" ABBE_PRELOAD "' ABBE_FAULT=kill:%zu %s", n, sweep);
     const int code = run_line(line);
@@ -171,8 +177,7 @@ static void test_a_sweep(void **state) {
 }
 
 /* At moments of the clock, by each signal: taken up until it is done, it is the unbroken trace. */
-static void test_any_moment(void **state) {
-  (void)state;
+TEST(any_moment) {
   static const char *const signals[] = {"INT", "TERM", "HUP", "KILL"};
   char line[2048];
   static const char trace[] = "\"$abbe\" trace " SCENE " -q --size 16x16 --photons 20000 --map 16 "
@@ -195,8 +200,7 @@ static void test_any_moment(void **state) {
 }
 
 /* Asked to end, it says what it did and how to go on; the checkpoint is there. */
-static void test_asked_to_end(void **state) {
-  (void)state;
+TEST(asked_to_end) {
   static const char *const signals[] = {"INT", "TERM", "HUP"};
   for (int i = 0; i < 3; i++) {
     char line[1024];
@@ -214,15 +218,3 @@ static void test_asked_to_end(void **state) {
 
 /* `all`: at all of the calls that are counted out above, not at every third; another argument picks
  * one of the tests. */
-int main(int argc, char **argv) {
-  if (argc > 1 && strcmp(argv[1], "all") == 0)
-    sparse = 1;
-  else if (argc > 1)
-    cmocka_set_test_filter(argv[1]);
-  signal(SIGHUP, SIG_DFL); /* whoever runs the tests may ignore it, which programs inherit */
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_trace),    cmocka_unit_test(test_a_picture),
-      cmocka_unit_test(test_a_table),    cmocka_unit_test(test_a_sweep),
-      cmocka_unit_test(test_any_moment), cmocka_unit_test(test_asked_to_end)};
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
-}

@@ -322,8 +322,9 @@ static abbe_result maps(abbe_error *error) {
   return result;
 }
 
-static void test_pictures(void **state) {
-  (void)state;
+GROUP(operation_setup, operation_teardown);
+
+TEST(pictures) {
   static const operation list[] = {
       {"EXR", exr, 0},
       {"PNG", png, 0},
@@ -336,8 +337,7 @@ static void test_pictures(void **state) {
   operation_check_all(list, sizeof list / sizeof *list);
 }
 
-static void test_scenes(void **state) {
-  (void)state;
+TEST(scenes) {
   static const operation list[] = {
       {"shapes", shapes, 0},
       {"meshes", meshes, 40},
@@ -352,10 +352,4 @@ static void test_scenes(void **state) {
       {"receiver maps", maps, 0},
   };
   operation_check_all(list, sizeof list / sizeof *list);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pictures),
-                                     cmocka_unit_test(test_scenes)};
-  return cmocka_run_group_tests(tests, operation_setup, operation_teardown);
 }

@@ -282,8 +282,9 @@ static abbe_result small_things(abbe_error *error) {
   return result;
 }
 
-static void test_tables(void **state) {
-  (void)state;
+GROUP(operation_setup, operation_teardown);
+
+TEST(tables) {
   static const operation list[] = {
       {"load a table", load_table, 0},
       {"load the shipped table", load_shipped, 60},
@@ -302,9 +303,4 @@ static void test_tables(void **state) {
       {"spectrum, samples, diff", small_things, 0},
   };
   operation_check_all(list, sizeof list / sizeof *list);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_tables)};
-  return cmocka_run_group_tests(tests, operation_setup, operation_teardown);
 }

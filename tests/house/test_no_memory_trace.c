@@ -210,42 +210,36 @@ static abbe_result known(abbe_error *error) {
   return result;
 }
 
-static int setup(void **state) {
+static void setup(void) {
   abbe_error error = {0};
-  if (operation_setup(state) != 0) return 1;
+  operation_setup();
   if (parse_scene(&shared, &error) == ABBE_OK &&
       abbe_tracer_make(&shared, &tiny, &traced, &error) == ABBE_OK &&
       abbe_tracer_pass(traced, NULL, &error) == ABBE_OK)
-    return 0;
+    return;
   fprintf(stderr, "%s\n", error.text);
-  return 1;
+  fail();
 }
 
-static int teardown(void **state) {
+static void teardown(void) {
   abbe_tracer_free(traced);
   abbe_scene_free(&shared);
-  return operation_teardown(state);
+  operation_teardown();
 }
 
-static void test_traces(void **state) {
-  (void)state;
+GROUP(setup, teardown);
+
+TEST(traces) {
   static const operation list[] = {
       {"trace", trace, 20}, {"reference", reference, 5}, {"checkpoint", checkpoint, 0}};
   operation_check_all(list, sizeof list / sizeof *list);
 }
 
-static void test_comparisons(void **state) {
-  (void)state;
+TEST(comparisons) {
   static const operation list[] = {{"compare", compare, 0},
                                    {"outlines", outlines, 0},
                                    {"POV-Ray scene", pov, 0},
                                    {"sweep", sweep, 200},
                                    {"known answers", known, 6}};
   operation_check_all(list, sizeof list / sizeof *list);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_traces),
-                                     cmocka_unit_test(test_comparisons)};
-  return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -63,17 +63,16 @@ static void *map(size_t size, int flags) {
   return memory == MAP_FAILED ? NULL : memory;
 }
 
-static int setup(void **state) {
-  (void)state;
+static void setup(void) {
   zeros = map(NULL_PARAMETERS * ROOM, MAP_PRIVATE);
   board = map(sizeof *board, MAP_SHARED);
-  return zeros == NULL || board == NULL;
+  assert_non_null(zeros);
+  assert_non_null(board);
 }
 
-static int teardown(void **state) {
-  (void)state;
+static void teardown(void) {
   munmap(zeros, NULL_PARAMETERS * ROOM);
-  return munmap(board, sizeof *board);
+  assert_false(munmap(board, sizeof *board));
 }
 
 static void add_trial(const null_call *call, int at) {
@@ -148,8 +147,9 @@ static bool must_be_refused(const null_call *call, int at) {
   return false;
 }
 
-static void test_a_pointer_to_nowhere_is_refused(void **state) {
-  (void)state;
+GROUP(setup, teardown);
+
+TEST(a_pointer_to_nowhere_is_refused) {
   size_t wrong = 0;
   assert_true(null_call_count > 25);
   board->count = 0;
@@ -170,8 +170,7 @@ static void test_a_pointer_to_nowhere_is_refused(void **state) {
   assert_int_equal(wrong, 0);
 }
 
-static void test_zeros_are_used_or_refused(void **state) {
-  (void)state;
+TEST(zeros_are_used_or_refused) {
   size_t wrong = 0;
   board->count = 0;
   for (size_t i = 0; i < null_call_count; i++) add_trial(&null_calls[i], NONE);
@@ -183,12 +182,4 @@ static void test_zeros_are_used_or_refused(void **state) {
                 board->trial[i].result);
   }
   assert_int_equal(wrong, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_pointer_to_nowhere_is_refused),
-      cmocka_unit_test(test_zeros_are_used_or_refused),
-  };
-  return cmocka_run_group_tests(tests, setup, teardown);
 }

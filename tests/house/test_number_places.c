@@ -103,8 +103,7 @@ static size_t read_text(const char *file, const char *text) {
   return r.found;
 }
 
-static void test_the_reader_finds_them(void **state) {
-  (void)state;
+TEST(the_reader_finds_them) {
   static const struct {
     const char *text;
     size_t found;
@@ -152,16 +151,9 @@ static void visit_folder(survey *s, const char *folder) {
   closedir(dir);
 }
 
-static void test_the_library_has_one_place(void **state) {
-  (void)state;
+TEST(the_library_has_one_place) {
   survey s = {0};
   for (size_t i = 0; i < sizeof rooms / sizeof *rooms; i++) visit_folder(&s, rooms[i]);
   assert_true(s.files > 100);
   assert_int_equal(s.found, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_reader_finds_them),
-                                     cmocka_unit_test(test_the_library_has_one_place)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -38,8 +38,7 @@ static size_t judge(const sized *list, size_t count, size_t most, const char *un
   return wrong;
 }
 
-static void test_sources_can_be_read(void **state) {
-  (void)state;
+TEST(sources_can_be_read) {
   sources all;
   static sized list[4096];
   size_t count = 0;
@@ -53,8 +52,7 @@ static void test_sources_can_be_read(void **state) {
   assert_int_equal(wrong, 0);
 }
 
-static void test_folders_can_be_seen(void **state) {
-  (void)state;
+TEST(folders_can_be_seen) {
   sources all;
   static char name[512][SOURCES_MAX_PATH];
   static sized list[512];
@@ -77,8 +75,7 @@ static void test_folders_can_be_seen(void **state) {
   assert_int_equal(judge(list, count, MOST_FILES, "files", data_folders), 0);
 }
 
-static void test_the_judge_sees_both_ends(void **state) {
-  (void)state;
+TEST(the_judge_sees_both_ends) {
   static const char *const none[] = {NULL}, *const b[] = {"b", NULL}, *const a[] = {"a", NULL};
   const sized list[] = {{"a", 10}, {"b", 11}};
   assert_int_equal(judge(list, 2, 11, "lines", none), 0);
@@ -87,11 +84,4 @@ static void test_the_judge_sees_both_ends(void **state) {
   assert_int_equal(judge(list, 2, 10, "lines", none), 1);
   assert_int_equal(judge(list, 2, 10, "lines", a), 2);
   assert_int_equal(judge(list, 2, 11, "lines", b), 1);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_sources_can_be_read),
-                                     cmocka_unit_test(test_folders_can_be_seen),
-                                     cmocka_unit_test(test_the_judge_sees_both_ends)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,8 +45,9 @@ static bool holds_at(const char *command, const char *how, size_t n) {
   return right;
 }
 
-static void test_commands(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(commands) {
   size_t wrong = 0;
   /* every allocation, where somebody waits for it; in the tests some of them, ever further apart */
   const bool all = getenv("ABBE_FAULTS_ALL") != NULL;
@@ -59,9 +60,4 @@ static void test_commands(void **state) {
     }
   }
   assert_int_equal(wrong, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_commands)};
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

@@ -21,8 +21,7 @@ static double value_of(const abbe_lib_comparison *c, const char *metric) {
   return value;
 }
 
-static void test_a_factor_is_found(void **state) {
-  (void)state;
+TEST(a_factor_is_found) {
   abbe_lib_picture *a = ramp(1), *b = ramp(2);
   abbe_lib_comparison *c = NULL;
   assert_int_equal(abbe_lib_comparison_make(a, a, NULL, NULL, 0, &c, NULL), ABBE_OK);
@@ -44,8 +43,7 @@ static void test_a_factor_is_found(void **state) {
   abbe_lib_picture_free(b);
 }
 
-static void test_a_drawn_mask_is_kept(void **state) {
-  (void)state;
+TEST(a_drawn_mask_is_kept) {
   static const char *const name[] = {"Y"};
   abbe_lib_picture *a = ramp(1), *b = ramp(1), *mask = NULL;
   abbe_lib_comparison *c = NULL;
@@ -72,8 +70,7 @@ static void test_a_drawn_mask_is_kept(void **state) {
   abbe_lib_picture_free(mask);
 }
 
-static void test_what_is_none_is_refused(void **state) {
-  (void)state;
+TEST(what_is_none_is_refused) {
   static const char *const name[] = {"R", "G", "B"};
   abbe_lib_picture *a = ramp(1), *small = NULL;
   abbe_lib_comparison *c = NULL;
@@ -98,17 +95,9 @@ static void test_what_is_none_is_refused(void **state) {
   abbe_lib_picture_free(small);
 }
 
-static void test_metrics_have_names(void **state) {
-  (void)state;
+TEST(metrics_have_names) {
   size_t count = 0;
   while (abbe_lib_comparison_metric(count) != NULL) count++;
   assert_true(count >= 14);
   assert_string_equal(abbe_lib_comparison_metric(0), "relative_rmse");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_factor_is_found), cmocka_unit_test(test_a_drawn_mask_is_kept),
-      cmocka_unit_test(test_what_is_none_is_refused), cmocka_unit_test(test_metrics_have_names)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -25,8 +25,7 @@ static abbe_lib_gem_report *judged(const char *material) {
   return r;
 }
 
-static void test_shares_add_up(void **state) {
-  (void)state;
+TEST(shares_add_up) {
   abbe_lib_gem_report *diamond = judged("diamond"), *quartz = judged("quartz");
   const double up = number_of(diamond, "iso"), down = number_of(diamond, "leakage");
   assert_near(up + down + number_of(diamond, "absorbed") + number_of(diamond, "left"), 1, 1e-5);
@@ -41,8 +40,7 @@ static void test_shares_add_up(void **state) {
   abbe_lib_gem_report_free(quartz);
 }
 
-static void test_what_is_none_is_refused(void **state) {
-  (void)state;
+TEST(what_is_none_is_refused) {
   abbe_lib_gem_report *r = NULL;
   abbe_error error = {0};
   assert_int_equal(abbe_lib_gem_report_make(design, "dimond", coarse, 4, NULL, NULL, &r, &error),
@@ -61,10 +59,4 @@ static void test_what_is_none_is_refused(void **state) {
   assert_int_equal(abbe_lib_gem_report_number(r, 99, &value, &off, &error), ABBE_INVALID_ARGUMENT);
   assert_null(abbe_lib_gem_report_name(r, 99));
   abbe_lib_gem_report_free(r);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_shares_add_up),
-                                     cmocka_unit_test(test_what_is_none_is_refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

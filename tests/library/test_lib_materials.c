@@ -5,15 +5,12 @@
 
 static abbe_lib_materials *table;
 
-static int setup(void **state) {
-  (void)state;
-  return abbe_lib_materials_load(NULL, &table, NULL) != ABBE_OK;
+static void setup(void) {
+  assert_int_equal(abbe_lib_materials_load(NULL, &table, NULL), ABBE_OK);
 }
 
-static int teardown(void **state) {
-  (void)state;
+static void teardown(void) {
   abbe_lib_materials_free(table);
-  return 0;
 }
 
 static size_t place_of(const char *name) {
@@ -22,9 +19,10 @@ static size_t place_of(const char *name) {
   return index;
 }
 
+GROUP(setup, teardown);
+
 /* Schott's data sheet of N-BK7: n_d 1.51680, n_F 1.52238, n_C 1.51432 [Schott2014]. */
-static void test_indices_are_the_published_ones(void **state) {
-  (void)state;
+TEST(indices_are_the_published_ones) {
   const double lines[] = {587.5618, 486.1327, 656.2725}, known[] = {1.51680, 1.52238, 1.51432};
   double n[3], k[3];
   assert_int_equal(abbe_lib_materials_index(table, place_of("N-BK7"), lines, 3, n, k, NULL),
@@ -35,8 +33,7 @@ static void test_indices_are_the_published_ones(void **state) {
   }
 }
 
-static void test_metals_have_both_parts(void **state) {
-  (void)state;
+TEST(metals_have_both_parts) {
   const double green = 550;
   double n, k;
   assert_int_equal(abbe_lib_materials_index(table, place_of("gold"), &green, 1, &n, &k, NULL),
@@ -44,8 +41,7 @@ static void test_metals_have_both_parts(void **state) {
   assert_true(n > 0 && n < 1 && k > 2);
 }
 
-static void test_every_row_has_its_texts(void **state) {
-  (void)state;
+TEST(every_row_has_its_texts) {
   const size_t count = abbe_lib_materials_count(table);
   assert_true(count > 10);
   for (size_t i = 0; i < count; i++) {
@@ -62,8 +58,7 @@ static void test_every_row_has_its_texts(void **state) {
   assert_null(abbe_lib_materials_text(table, 0, "colour"));
 }
 
-static void test_what_is_none_is_refused(void **state) {
-  (void)state;
+TEST(what_is_none_is_refused) {
   abbe_error error = {0};
   abbe_lib_materials *none = NULL;
   size_t index;
@@ -76,12 +71,4 @@ static void test_what_is_none_is_refused(void **state) {
                    ABBE_OUT_OF_RANGE);
   assert_int_equal(abbe_lib_materials_load("/nowhere.yaml", &none, &error), ABBE_IO);
   assert_null(none);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_indices_are_the_published_ones),
-                                     cmocka_unit_test(test_metals_have_both_parts),
-                                     cmocka_unit_test(test_every_row_has_its_texts),
-                                     cmocka_unit_test(test_what_is_none_is_refused)};
-  return cmocka_run_group_tests(tests, setup, teardown);
 }

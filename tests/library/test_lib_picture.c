@@ -13,14 +13,12 @@ static const float pixels[2 * 3 * 4] = {0.25f, 0.5f, 0.75f, 1,    -1,    0,  1e-
 
 static char folder[] = "/tmp/abbe-lib-picture-XXXXXX";
 
-static int setup(void **state) {
-  (void)state;
-  return mkdtemp(folder) == NULL;
+static void setup(void) {
+  assert_non_null(mkdtemp(folder));
 }
 
-static int teardown(void **state) {
-  (void)state;
-  return rmdir(folder);
+static void teardown(void) {
+  assert_false(rmdir(folder));
 }
 
 static abbe_lib_picture *made(void) {
@@ -38,8 +36,9 @@ static void assert_is_made(abbe_lib_picture *p) {
   assert_memory_equal(abbe_lib_picture_pixels(p), pixels, sizeof pixels);
 }
 
-static void test_pixels_are_copied(void **state) {
-  (void)state;
+GROUP(setup, teardown);
+
+TEST(pixels_are_copied) {
   abbe_lib_picture *p = made();
   assert_is_made(p);
   assert_true(abbe_lib_picture_pixels(p) != pixels);
@@ -49,8 +48,7 @@ static void test_pixels_are_copied(void **state) {
   abbe_lib_picture_free(p);
 }
 
-static void test_a_file_keeps_every_bit(void **state) {
-  (void)state;
+TEST(a_file_keeps_every_bit) {
   char path[64];
   abbe_error error = {0};
   abbe_lib_picture *p = made(), *q = NULL;
@@ -72,8 +70,7 @@ static void test_a_file_keeps_every_bit(void **state) {
 }
 
 /* White is white and black is black in every display's view; one stop brightens. */
-static void test_a_png_is_for_a_screen(void **state) {
-  (void)state;
+TEST(a_png_is_for_a_screen) {
   char path[64];
   abbe_error error = {0};
   abbe_lib_picture *p = NULL, *q = NULL;
@@ -101,8 +98,7 @@ static void test_a_png_is_for_a_screen(void **state) {
   assert_int_equal(unlink(path), 0);
 }
 
-static void test_what_is_none_is_refused(void **state) {
-  (void)state;
+TEST(what_is_none_is_refused) {
   abbe_error error = {0};
   abbe_lib_picture *p = NULL;
   assert_int_equal(abbe_lib_picture_make(0, 2, 1, names, NULL, &p, &error), ABBE_INVALID_ARGUMENT);
@@ -120,11 +116,4 @@ static void test_what_is_none_is_refused(void **state) {
   abbe_lib_picture_free(NULL);
   assert_int_equal(abbe_lib_picture_width(NULL), 0);
   assert_null(abbe_lib_picture_pixels(NULL));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_pixels_are_copied), cmocka_unit_test(test_a_file_keeps_every_bit),
-      cmocka_unit_test(test_a_png_is_for_a_screen), cmocka_unit_test(test_what_is_none_is_refused)};
-  return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -43,8 +43,7 @@ static void assert_same(abbe_lib_picture *a, abbe_lib_picture *b, bool expected)
   abbe_lib_picture_free(b);
 }
 
-static void test_a_change_is_a_scene_opened_so(void **state) {
-  (void)state;
+TEST(a_change_is_a_scene_opened_so) {
   const char *const dim[] = {"camera.fov=20"}, *const both[] = {"camera.fov=20", "ambient=0.5"};
   abbe_lib_scene *changed = opened(NULL, 0), *fresh = opened(both, 2);
   abbe_lib_picture *before = rendered(changed);
@@ -56,8 +55,7 @@ static void test_a_change_is_a_scene_opened_so(void **state) {
   abbe_lib_scene_free(fresh);
 }
 
-static void test_the_camera_moves_and_comes_back(void **state) {
-  (void)state;
+TEST(the_camera_moves_and_comes_back) {
   abbe_lib_scene *s = opened(NULL, 0);
   double eye[3], target[3], up[3], fov, moved[3], unused[3], angle;
   assert_int_equal(abbe_lib_scene_camera(s, eye, target, up, &fov, NULL), ABBE_OK);
@@ -80,8 +78,7 @@ static void test_the_camera_moves_and_comes_back(void **state) {
   abbe_lib_scene_free(s);
 }
 
-static void test_a_trace_agrees_with_the_picture(void **state) {
-  (void)state;
+TEST(a_trace_agrees_with_the_picture) {
   abbe_lib_scene *s = opened(NULL, 0);
   abbe_lib_picture *truth = NULL, *map = NULL, *mapped = NULL, *picture = rendered(s);
   abbe_lib_comparison *c = NULL;
@@ -114,8 +111,7 @@ static bool stop_at_once(void *user, double done) {
   return false;
 }
 
-static void test_progress_stops_the_work(void **state) {
-  (void)state;
+TEST(progress_stops_the_work) {
   abbe_lib_scene *s = opened(NULL, 0);
   abbe_lib_picture *p = NULL;
   abbe_error error = {0};
@@ -132,8 +128,7 @@ static void test_progress_stops_the_work(void **state) {
   abbe_lib_scene_free(s);
 }
 
-static void test_what_fails_leaves_all_as_it_was(void **state) {
-  (void)state;
+TEST(what_fails_leaves_all_as_it_was) {
   abbe_lib_scene *s = opened(NULL, 0), *none = NULL;
   abbe_lib_picture *p = NULL, *first = rendered(s);
   abbe_error error = {0};
@@ -159,8 +154,7 @@ static void test_what_fails_leaves_all_as_it_was(void **state) {
   abbe_lib_scene_free(s);
 }
 
-static void test_a_map_wants_a_picture(void **state) {
-  (void)state;
+TEST(a_map_wants_a_picture) {
   abbe_lib_scene *s = opened(NULL, 0);
   abbe_lib_picture *map = NULL;
   abbe_error error = {0};
@@ -175,8 +169,7 @@ static void test_a_map_wants_a_picture(void **state) {
 
 /* A lamp is no environment: settings of pinholes come to the request, which says what is missing.
  */
-static void test_pinholes_are_asked_for(void **state) {
-  (void)state;
+TEST(pinholes_are_asked_for) {
   static const struct {
     const char *const settings[2];
     abbe_result result;
@@ -198,15 +191,4 @@ static void test_pinholes_are_asked_for(void **state) {
     assert_null(p);
   }
   abbe_lib_scene_free(s);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pinholes_are_asked_for),
-                                     cmocka_unit_test(test_a_change_is_a_scene_opened_so),
-                                     cmocka_unit_test(test_the_camera_moves_and_comes_back),
-                                     cmocka_unit_test(test_a_trace_agrees_with_the_picture),
-                                     cmocka_unit_test(test_progress_stops_the_work),
-                                     cmocka_unit_test(test_what_fails_leaves_all_as_it_was),
-                                     cmocka_unit_test(test_a_map_wants_a_picture)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,8 +22,7 @@ static abbe_result read(request *q, const char *text, abbe_error *error) {
   return abbe_library_settings_read("render", known, sizeof known / sizeof *known, &text, 1, error);
 }
 
-static void test_each_kind_is_taken(void **state) {
-  (void)state;
+TEST(each_kind_is_taken) {
   request q = {0};
   assert_int_equal(read(&q, "width=8192", NULL), ABBE_OK);
   assert_int_equal(read(&q, "low=-1.5e0", NULL), ABBE_OK);
@@ -37,8 +36,7 @@ static void test_each_kind_is_taken(void **state) {
   assert_string_equal(q.name, "a=b");
 }
 
-static void test_the_last_one_counts(void **state) {
-  (void)state;
+TEST(the_last_one_counts) {
   size_t width = 0;
   const abbe_lib_setting known[] = {ABBE_LIB_COUNT("width", &width, 1, 9)};
   const char *const text[] = {"width=2", "width=3"};
@@ -47,8 +45,7 @@ static void test_the_last_one_counts(void **state) {
   assert_int_equal(abbe_library_settings_read("x", known, 1, NULL, 0, NULL), ABBE_OK);
 }
 
-static void test_what_is_none_is_refused(void **state) {
-  (void)state;
+TEST(what_is_none_is_refused) {
   static const char *const wrong[][2] = {
       {"widht=3", "did you mean 'width'?"},
       {"zzzzzzzzzzzz=3", "there are width, low, on, colour, name"},
@@ -72,11 +69,4 @@ static void test_what_is_none_is_refused(void **state) {
     assert_contains(error.text, wrong[i][1]);
     assert_int_equal(q.width, 7);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_each_kind_is_taken),
-                                     cmocka_unit_test(test_the_last_one_counts),
-                                     cmocka_unit_test(test_what_is_none_is_refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

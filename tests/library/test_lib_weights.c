@@ -5,8 +5,7 @@
 
 enum { COUNT = 9 };
 
-static void test_weights_sum_to_the_white(void **state) {
-  (void)state;
+TEST(weights_sum_to_the_white) {
   double nm[COUNT], weight[3 * COUNT], sum[3] = {0};
   assert_int_equal(abbe_lib_weights_fill(NULL, NULL, 380, 780, COUNT, nm, weight, NULL), ABBE_OK);
   assert_near(nm[0], 380, 0);
@@ -21,8 +20,7 @@ static void test_weights_sum_to_the_white(void **state) {
   assert_near(sum[2], (1 - 0.31272 - 0.32903) / 0.32903, 5e-4);
 }
 
-static void test_spaces_and_illuminants_are_by_name(void **state) {
-  (void)state;
+TEST(spaces_and_illuminants_are_by_name) {
   double nm[COUNT], weight[3 * COUNT], red = 0, blue = 0;
   assert_int_equal(abbe_lib_weights_fill("A", "rec709", 380, 780, COUNT, nm, weight, NULL),
                    ABBE_OK);
@@ -33,8 +31,7 @@ static void test_spaces_and_illuminants_are_by_name(void **state) {
   assert_true(red > 2 * blue); /* a lamp is reddish */
 }
 
-static void test_what_is_none_is_refused(void **state) {
-  (void)state;
+TEST(what_is_none_is_refused) {
   double nm[COUNT], weight[3 * COUNT];
   abbe_error error = {0};
   assert_int_equal(abbe_lib_weights_fill(NULL, "lab", 380, 780, COUNT, nm, weight, &error),
@@ -46,11 +43,4 @@ static void test_what_is_none_is_refused(void **state) {
                    ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_lib_weights_fill(NULL, NULL, 380, 780, 0, nm, weight, &error),
                    ABBE_INVALID_ARGUMENT);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_weights_sum_to_the_white),
-                                     cmocka_unit_test(test_spaces_and_illuminants_are_by_name),
-                                     cmocka_unit_test(test_what_is_none_is_refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -33,8 +33,9 @@ static void name_of(const cover_row *row, char *out, size_t size) {
            pair_level_name(PAIR_STAGE, row->level[PAIR_STAGE]));
 }
 
-static void test_few_cases_hold_all_pairs(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(few_cases_hold_all_pairs) {
   cover_row row[COVER_MOST];
   size_t pairs, missing;
   const size_t count = cover_make(pair_levels, pair_can, row);
@@ -50,8 +51,7 @@ static void test_few_cases_hold_all_pairs(void **state) {
 }
 
 /* What no row holds is refused in words; nothing else is. */
-static void test_what_cannot_be_is_refused_by_name(void **state) {
-  (void)state;
+TEST(what_cannot_be_is_refused_by_name) {
   for (size_t company = 0; company < PAIR_COMPANIES; company++)
     for (size_t transport = 0; transport < PAIR_TRANSPORTS; transport++) {
       const cover_row row = {{0, company, transport, 1}};
@@ -120,18 +120,10 @@ static bool is_as_traced(const cover_row *row) {
 }
 
 /* Eight hold half of the pairs: each of the first holds six that no earlier one does. */
-static void test_pictures_are_as_traced(void **state) {
-  (void)state;
+TEST(pictures_are_as_traced) {
   cover_row row[COVER_MOST];
   size_t wrong = 0;
   const size_t count = cover_make(pair_levels, pair_can, row);
   for (size_t i = 0; i < (all_cases() ? count : 8); i++) wrong += !is_as_traced(&row[i]);
   assert_int_equal(wrong, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_few_cases_hold_all_pairs),
-                                     cmocka_unit_test(test_what_cannot_be_is_refused_by_name),
-                                     cmocka_unit_test(test_pictures_are_as_traced)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

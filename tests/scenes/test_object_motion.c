@@ -48,8 +48,7 @@ static void assert_same_object(const abbe_object *a, const abbe_object *b) {
   assert_all_near(a->max, b->max, 3);
 }
 
-static void a_moved_object_is_the_one_put_there(void **state) {
-  (void)state;
+TEST(a_moved_object_is_the_one_put_there) {
   abbe_scene moved = {0}, there = {0};
   abbe_error error;
   double matrix[16];
@@ -67,8 +66,7 @@ static void a_moved_object_is_the_one_put_there(void **state) {
   abbe_scene_free(&there);
 }
 
-static void other_matrices_are_refused(void **state) {
-  (void)state;
+TEST(other_matrices_are_refused) {
   abbe_scene scene = {0};
   abbe_error error;
   load_text(START BRICK_AT(FIRST), &scene);
@@ -87,12 +85,4 @@ static void other_matrices_are_refused(void **state) {
     assert_true(brick->max[0] == corner);
   }
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_moved_object_is_the_one_put_there),
-      cmocka_unit_test(other_matrices_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,8 +20,7 @@
 #define ONE "{translate: [0.1, 0.1, 0.2]}"
 #define OTHER "{translate: [0.3, 0.1, 0.4]}"
 
-static void all_refractors_turn_about_their_middle(void **state) {
-  (void)state;
+TEST(all_refractors_turn_about_their_middle) {
   abbe_scene tilted = {0}, there = {0};
   load_text(START STONE_AT("a", ONE) PANE STONE_AT("b", OTHER), &tilted);
   load_text(START STONE_AT("a", ONE TURNED) PANE STONE_AT("b", OTHER TURNED), &there);
@@ -38,8 +37,7 @@ static void all_refractors_turn_about_their_middle(void **state) {
 }
 
 /* As abbe gem report has it: what is left of the axis' arrow rises. */
-static void a_tilt_lifts_what_is_left_of_its_axis(void **state) {
-  (void)state;
+TEST(a_tilt_lifts_what_is_left_of_its_axis) {
   abbe_scene scene = {0};
   load_text(START STONE_AT("a", "{translate: [0, 0, 0.2]}"), &scene);
   abbe_object *o = &scene.object[1];
@@ -61,8 +59,7 @@ static void refused(const char *text, double tilt, abbe_result why, const char *
   abbe_scene_free(&scene);
 }
 
-static void what_cannot_be_tilted_is_refused(void **state) {
-  (void)state;
+TEST(what_cannot_be_tilted_is_refused) {
   refused(START PANE, 0.1, ABBE_INVALID_ARGUMENT, "no refractor");
   refused(START STONE_AT("a", ONE), NAN, ABBE_INVALID_ARGUMENT, "finite");
   /* a corner reaches the lamp */
@@ -71,13 +68,4 @@ static void what_cannot_be_tilted_is_refused(void **state) {
           "- {name: a, shape: box, size: [0.1, 0.4, 0.1], material: crown,\n"
           "   transform: [{translate: [0, 0, 0.2]}]}\n",
           0.5 * 3.14159, ABBE_UNSUPPORTED, "lamp");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(all_refractors_turn_about_their_middle),
-      cmocka_unit_test(a_tilt_lifts_what_is_left_of_its_axis),
-      cmocka_unit_test(what_cannot_be_tilted_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

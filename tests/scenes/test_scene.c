@@ -5,8 +5,7 @@
 
 #include <stdlib.h>
 
-static void profile_of_a_spot_falls_smoothly(void **state) {
-  (void)state;
+TEST(profile_of_a_spot_falls_smoothly) {
   const abbe_light spot = {
       .kind = ABBE_LIGHT_SPOT, .direction = {0, 0, -1}, .cone_rad = 0.6, .soft_rad = 0.2};
   double last = 1.0;
@@ -23,16 +22,14 @@ static void profile_of_a_spot_falls_smoothly(void **state) {
   assert_true(fabs(abbe_light_profile(&spot, d) - 0.5) < 1e-12);
 }
 
-static void profile_of_a_hard_spot_is_a_step(void **state) {
-  (void)state;
+TEST(profile_of_a_hard_spot_is_a_step) {
   const abbe_light spot = {.kind = ABBE_LIGHT_SPOT, .direction = {1, 0, 0}, .cone_rad = 0.5};
   const double in[3] = {cos(0.49), sin(0.49), 0}, out[3] = {cos(0.51), sin(0.51), 0};
   assert_true(abbe_light_profile(&spot, in) == 1.0);
   assert_true(abbe_light_profile(&spot, out) == 0.0);
 }
 
-static void other_lights_have_no_profile(void **state) {
-  (void)state;
+TEST(other_lights_have_no_profile) {
   const double back[3] = {0, 0, 1};
   const abbe_light point = {.kind = ABBE_LIGHT_POINT};
   const abbe_light sun = {.kind = ABBE_LIGHT_DIRECTIONAL, .direction = {0, 0, -1}};
@@ -40,8 +37,7 @@ static void other_lights_have_no_profile(void **state) {
   assert_true(abbe_light_profile(&sun, back) == 1.0);
 }
 
-static void a_disk_shines_by_the_cosine(void **state) {
-  (void)state;
+TEST(a_disk_shines_by_the_cosine) {
   const abbe_light disk = {.kind = ABBE_LIGHT_DISK, .direction = {0, 0.6, -0.8}, .radius = 2};
   const double along[3] = {0, 0.6, -0.8}, aside[3] = {1, 0, 0}, slant[3] = {0.8, 0.36, -0.48},
                behind[3] = {0, -0.6, 0.8};
@@ -51,8 +47,7 @@ static void a_disk_shines_by_the_cosine(void **state) {
   assert_true(abbe_light_profile(&disk, behind) == 0.0);
 }
 
-static void bounds_choose_what_is_asked(void **state) {
-  (void)state;
+TEST(bounds_choose_what_is_asked) {
   const abbe_material glass = {0};
   abbe_object objects[2] = {{.material = &glass, .min = {-1, 0, 0}, .max = {1, 1, 1}},
                             {.min = {0, -5, 0}, .max = {0, 5, 9}}};
@@ -68,8 +63,7 @@ static void bounds_choose_what_is_asked(void **state) {
 }
 
 /* A mirror is neither of the other two; its bounds go with refractors'. */
-static void mirrors_are_a_kind_of_their_own(void **state) {
-  (void)state;
+TEST(mirrors_are_a_kind_of_their_own) {
   const abbe_material glass = {0}, metal = {0};
   abbe_object objects[3] = {{.material = &glass, .min = {-1, 0, 0}, .max = {1, 1, 1}},
                             {.min = {0, -5, 0}, .max = {0, 5, 9}},
@@ -90,8 +84,7 @@ static void mirrors_are_a_kind_of_their_own(void **state) {
 }
 
 /* A triangle that covers the whole view though all its corners are outside. */
-static void a_receiver_larger_than_the_view_is_in_view(void **state) {
-  (void)state;
+TEST(a_receiver_larger_than_the_view_is_in_view) {
   abbe_light light = {.kind = ABBE_LIGHT_POINT, .position = {0, 0, 50}};
   abbe_object floor = {0};
   assert_int_equal(abbe_shape_rectangle(1000, 1000, &floor.mesh, NULL), ABBE_OK);
@@ -112,8 +105,7 @@ static void a_receiver_larger_than_the_view_is_in_view(void **state) {
   abbe_mesh_free(&floor.mesh);
 }
 
-static void freeing_nothing_is_safe(void **state) {
-  (void)state;
+TEST(freeing_nothing_is_safe) {
   abbe_scene scene = {0};
   abbe_scene_free(&scene);
   abbe_scene_free(NULL);
@@ -121,8 +113,7 @@ static void freeing_nothing_is_safe(void **state) {
 
 /* Nearer than single precision tells, 2^-20 of half the diagonal of a ball and a box of half side
  * 1, a lamp is on them; twice as far it is not. */
-static void a_lamp_is_on_glass_or_off_it(void **state) {
-  (void)state;
+TEST(a_lamp_is_on_glass_or_off_it) {
   static const double side[3] = {2, 2, 2};
   const double gap = ABBE_SCENE_LEAST_GAP * sqrt(3);
   const abbe_material glass = {0};
@@ -161,8 +152,7 @@ static void a_lamp_is_on_glass_or_off_it(void **state) {
 
 /* Disks beside, above, across, around and inside a ball and a box of half side 1; the rim's
  * distance is known. */
-static void no_part_of_a_disk_is_in_glass(void **state) {
-  (void)state;
+TEST(no_part_of_a_disk_is_in_glass) {
   static const struct {
     double position[3], direction[3], radius;
     bool ball, box; /* meets it */
@@ -207,8 +197,7 @@ static void no_part_of_a_disk_is_in_glass(void **state) {
 }
 
 /* Of a box of 2 x 4 x 6 m; below a limit the same, at or beyond it no less. */
-static void distances_end_where_they_are_not_asked(void **state) {
-  (void)state;
+TEST(distances_end_where_they_are_not_asked) {
   static const struct {
     double at[3], away;
   } rows[] = {{{0, 0, 0}, 1}, {{0.75, 1, 1}, 0.25}, {{4, 0, 0}, 3}, {{4, 6, 2}, 5}};
@@ -225,8 +214,7 @@ static void distances_end_where_they_are_not_asked(void **state) {
   abbe_mesh_free(&box.mesh);
 }
 
-static void lights_are_found_by_name_or_number(void **state) {
-  (void)state;
+TEST(lights_are_found_by_name_or_number) {
   abbe_light light[4] = {{.name = "lamp"}, {.name = "1"}, {.name = "sun"}, {.name = "sun"}};
   const abbe_scene scene = {.path = "s.yaml", .light_count = 4, .light = light};
   abbe_error error = {0};
@@ -246,22 +234,4 @@ static void lights_are_found_by_name_or_number(void **state) {
   }
   assert_int_equal(abbe_scene_find_light(&scene, "sun", &index, &error), ABBE_INVALID_ARGUMENT);
   assert_non_null(strstr(error.text, "more than one light is called 'sun'"));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(profile_of_a_spot_falls_smoothly),
-      cmocka_unit_test(profile_of_a_hard_spot_is_a_step),
-      cmocka_unit_test(other_lights_have_no_profile),
-      cmocka_unit_test(a_disk_shines_by_the_cosine),
-      cmocka_unit_test(a_lamp_is_on_glass_or_off_it),
-      cmocka_unit_test(no_part_of_a_disk_is_in_glass),
-      cmocka_unit_test(bounds_choose_what_is_asked),
-      cmocka_unit_test(mirrors_are_a_kind_of_their_own),
-      cmocka_unit_test(lights_are_found_by_name_or_number),
-      cmocka_unit_test(distances_end_where_they_are_not_asked),
-      cmocka_unit_test(a_receiver_larger_than_the_view_is_in_view),
-      cmocka_unit_test(freeing_nothing_is_safe),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

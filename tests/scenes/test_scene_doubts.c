@@ -13,8 +13,7 @@ static size_t doubts_of(const char *text, abbe_scene_doubts *out) {
   return out->count;
 }
 
-static void what_is_hardly_meant_is_said(void **state) {
-  (void)state;
+TEST(what_is_hardly_meant_is_said) {
   static const char *const doubtful[][2] = {
       {EYE POINT_LIGHT FLOOR BALL("flat") BALL("flat"),
        "two objects are called 'ball' (lines 7 and 8)"},
@@ -36,8 +35,7 @@ static void what_is_hardly_meant_is_said(void **state) {
   }
 }
 
-static void what_is_meant_is_not_doubted(void **state) {
-  (void)state;
+TEST(what_is_meant_is_not_doubted) {
   static const char *const sound[] = {
       EYE POINT_LIGHT FLOOR STONE("stand: [0, 0, 0]") BALL("flat"),
       /* a liquid reaches into its basin's bottom, and beyond its walls */
@@ -54,8 +52,7 @@ static void what_is_meant_is_not_doubted(void **state) {
   }
 }
 
-static void no_shipped_scene_is_doubted(void **state) {
-  (void)state;
+TEST(no_shipped_scene_is_doubted) {
   static const char *const names[] = {
       "sphere",       "ring",       "gem",         "bunny",          "glass",      "prism",
       "rainbow",      "diamond",    "stone",       "diamond-studio", "calcite",    "metals",
@@ -69,13 +66,4 @@ static void no_shipped_scene_is_doubted(void **state) {
     abbe_scene_free(&scene);
     if (doubts.count > 0) fail_msg("%s: %s", names[i], doubts.text[0]);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(what_is_hardly_meant_is_said),
-      cmocka_unit_test(what_is_meant_is_not_doubted),
-      cmocka_unit_test(no_shipped_scene_is_doubted),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

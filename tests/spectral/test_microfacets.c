@@ -52,8 +52,7 @@ static double seen(const abbe_microfacets *m, const double wo[3], const double h
 }
 
 /* Facets cover the surface once; and from everywhere as much of them is seen as of the surface. */
-static void facets_cover_the_surface(void **state) {
-  (void)state;
+TEST(facets_cover_the_surface) {
   for (int i = 0; i < KINDS; i++) {
     double wo[3];
     assert_near(integrate(covered, &kinds[i], NULL), 1, 2e-4);
@@ -64,8 +63,7 @@ static void facets_cover_the_surface(void **state) {
   }
 }
 
-static void both_ways_are_alike(void **state) {
-  (void)state;
+TEST(both_ways_are_alike) {
   uint64_t random = 5;
   for (int i = 0; i < 1000; i++) {
     const abbe_microfacets *m = &kinds[i % KINDS], turned = {m->y, m->x};
@@ -95,15 +93,13 @@ static double straight(double alpha, double most) {
   return sum * most / STEPS;
 }
 
-static void the_closed_form_has_an_end(void **state) {
-  (void)state;
+TEST(the_closed_form_has_an_end) {
   assert_near(straight(1, 1), 1 - log(2), 1e-6);
 }
 
 /* Means over the sampler. What leaves within an angle of the normal is the closed form's, seen
  * straight on; at any angle each share is that of reflect, by its density. */
-static void the_sampler_is_the_lobe(void **state) {
-  (void)state;
+TEST(the_sampler_is_the_lobe) {
   enum { SAMPLES = 200000 };
   static const double polar[] = {0, 30, 70};
   uint64_t random = 11;
@@ -140,8 +136,7 @@ static double shared_out(const abbe_microfacets *m, const double wo[3], const do
 }
 
 /* Counted in sectors of the facets' slopes, too: a density that is of another lobe fails. */
-static void samples_fall_where_the_density_says(void **state) {
-  (void)state;
+TEST(samples_fall_where_the_density_says) {
   enum { SAMPLES = 200000 };
   uint64_t random = 3;
   for (int i = 0; i < KINDS; i++) {
@@ -163,8 +158,7 @@ static void samples_fall_where_the_density_says(void **state) {
 
 /* A mirror is what is left as roughness goes, at all angles; the share that it loses goes with the
  * square. */
-static void no_roughness_is_a_mirror(void **state) {
-  (void)state;
+TEST(no_roughness_is_a_mirror) {
   uint64_t random = 17;
   for (double a = 0.1; a >= ABBE_MICROFACETS_LEAST; a /= 10) {
     const abbe_microfacets m = {a, 0.5 * a};
@@ -179,14 +173,4 @@ static void no_roughness_is_a_mirror(void **state) {
     }
     assert_true(lost / 2000 < 3 * a * a);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(facets_cover_the_surface),
-                                     cmocka_unit_test(both_ways_are_alike),
-                                     cmocka_unit_test(the_closed_form_has_an_end),
-                                     cmocka_unit_test(the_sampler_is_the_lobe),
-                                     cmocka_unit_test(samples_fall_where_the_density_says),
-                                     cmocka_unit_test(no_roughness_is_a_mirror)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

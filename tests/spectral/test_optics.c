@@ -15,8 +15,7 @@ static double radians(double degree) {
 
 /* ---- published numbers ---- */
 
-static void glass_reflects_four_percent_head_on(void **state) {
-  (void)state;
+TEST(glass_reflects_four_percent_head_on) {
   assert_near(abbe_optics_fresnel(1, 1 / 1.5), 0.04, 1e-15);
   assert_near(abbe_optics_fresnel(1, 1.5), 0.04, 1e-15);
   assert_near(abbe_optics_fresnel(1, 1 / 2.417), 0.17197, 2e-6); /* diamond: 17 % */
@@ -24,8 +23,7 @@ static void glass_reflects_four_percent_head_on(void **state) {
 }
 
 /* Fresnel's own form: r_s = sin(i - t) / sin(i + t), r_p = tan(i - t) / tan(i + t). */
-static void fresnel_agrees_with_the_sine_and_tangent_laws(void **state) {
-  (void)state;
+TEST(fresnel_agrees_with_the_sine_and_tangent_laws) {
   for (double n = 1.05; n < 4; n *= 1.2)
     for (double i = 1; i < 90; i += 1) {
       double a = radians(i), b = asin(sin(a) / n);
@@ -37,8 +35,7 @@ static void fresnel_agrees_with_the_sine_and_tangent_laws(void **state) {
 }
 
 /* At Brewster's angle, tan i = n, only the s part is reflected: ((n^2 - 1) / (n^2 + 1))^2 / 2. */
-static void brewsters_angle_leaves_one_polarisation(void **state) {
-  (void)state;
+TEST(brewsters_angle_leaves_one_polarisation) {
   const double n[] = {1.0001, 1.333, 1.5, 2.417, 10};
   for (int i = 0; i < 5; i++) {
     double s = (n[i] * n[i] - 1) / (n[i] * n[i] + 1);
@@ -46,8 +43,7 @@ static void brewsters_angle_leaves_one_polarisation(void **state) {
   }
 }
 
-static void critical_angles_of_glass_water_and_diamond(void **state) {
-  (void)state;
+TEST(critical_angles_of_glass_water_and_diamond) {
   assert_near(degrees(abbe_optics_critical_angle(1.5, 1)), 41.81, 0.005);
   assert_near(degrees(abbe_optics_critical_angle(1.333, 1)), 48.61, 0.005);
   assert_near(degrees(abbe_optics_critical_angle(2.417, 1)), 24.44, 0.005);
@@ -57,8 +53,7 @@ static void critical_angles_of_glass_water_and_diamond(void **state) {
   assert_near(PI / 2 - abbe_optics_critical_angle(1 + 0x1p-40, 1), sqrt(2 * 0x1p-40), 1e-15);
 }
 
-static void minimum_deviation_of_a_sixty_degree_prism(void **state) {
-  (void)state;
+TEST(minimum_deviation_of_a_sixty_degree_prism) {
   double d = 0;
   assert_true(abbe_optics_minimum_deviation(radians(60), 1.5, &d));
   assert_near(degrees(d), 37.1808, 5e-5);
@@ -80,8 +75,7 @@ static void minimum_deviation_of_a_sixty_degree_prism(void **state) {
   assert_near(d / (2 * 0x1p-44 * tan(radians(30))), 1, 1e-12);
 }
 
-static void beer_and_lambert(void **state) {
-  (void)state;
+TEST(beer_and_lambert) {
   assert_near(abbe_optics_transmittance(2, 0.5), exp(-1), 1e-16);
   assert_near(abbe_optics_transmittance(log(2) / 0.01, 0.02), 0.25, 1e-15);
   assert_near(abbe_optics_transmittance(0, 5), 1, 0);
@@ -94,8 +88,7 @@ static void beer_and_lambert(void **state) {
 
 /* ---- laws ---- */
 
-static void snell_holds_and_reverses(void **state) {
-  (void)state;
+TEST(snell_holds_and_reverses) {
   for (double eta = 0.2; eta < 5; eta *= 1.07)
     for (double i = 0; i < 90; i += 0.37) {
       bool total = true;
@@ -117,8 +110,7 @@ static void snell_holds_and_reverses(void **state) {
 
 /* The transmitted part, from the amplitude transmittances, makes up the whole: T by its own
  * formula, not as 1 - R. */
-static void energy_is_conserved(void **state) {
-  (void)state;
+TEST(energy_is_conserved) {
   for (double eta = 0.25; eta < 4; eta *= 1.13)
     for (double c = 0.01; c <= 1; c += 0.01) {
       bool total = false;
@@ -130,8 +122,7 @@ static void energy_is_conserved(void **state) {
     }
 }
 
-static void directions_lie_in_one_plane_and_are_unit(void **state) {
-  (void)state;
+TEST(directions_lie_in_one_plane_and_are_unit) {
   const double n[3] = {0.6, 0, 0.8};
   for (double eta = 0.3; eta < 3; eta *= 1.1)
     for (double a = 0; a < 2 * PI; a += 0.3)
@@ -154,8 +145,7 @@ static void directions_lie_in_one_plane_and_are_unit(void **state) {
 
 /* ---- awkward inputs ---- */
 
-static void equal_indices_change_nothing(void **state) {
-  (void)state;
+TEST(equal_indices_change_nothing) {
   const double n[3] = {0, 0, 1}, cosines[] = {0, 1e-300, 1e-8, 0.5, 1};
   for (int i = 0; i < 5; i++) {
     double c = cosines[i], wi[3] = {sqrt((1 - c) * (1 + c)), 0, c}, wt[3];
@@ -169,8 +159,7 @@ static void equal_indices_change_nothing(void **state) {
 }
 
 /* To first order in e = n - 1, r_s = e/2 (1 + tan^2 i) and r_p = e/2 (1 - tan^2 i). */
-static void nearly_equal_indices_keep_their_digits(void **state) {
-  (void)state;
+TEST(nearly_equal_indices_keep_their_digits) {
   const double e = 0x1p-42; /* 2.3e-13 */
   for (double i = 0; i < 80; i += 7) {
     double c = cos(radians(i)), tan2 = pow(tan(radians(i)), 2);
@@ -183,8 +172,7 @@ static void nearly_equal_indices_keep_their_digits(void **state) {
   }
 }
 
-static void grazing_light(void **state) {
-  (void)state;
+TEST(grazing_light) {
   bool total = true;
   const double n[3] = {0, 0, 1}, wi[3] = {1, 0, 0};
   double wt[3] = {7, 7, 7};
@@ -205,8 +193,7 @@ static void grazing_light(void **state) {
   assert_near((1 - abbe_optics_fresnel(1e-6, 1 / m)) / 1e-6, slope, 1e-3);
 }
 
-static void the_critical_angle(void **state) {
-  (void)state;
+TEST(the_critical_angle) {
   const double eta = 1.5, sine = 1 / eta, c = sqrt((1 - sine) * (1 + sine));
   bool total = false;
   assert_near(abbe_optics_cos_refracted(c * (1 - 1e-12), eta, &total), 0, 0);
@@ -218,8 +205,7 @@ static void the_critical_angle(void **state) {
   assert_near(abbe_optics_fresnel(c * (1 + 1e-15), eta), 1, 1e-6);
 }
 
-static void cosines_outside_and_extreme_ratios(void **state) {
-  (void)state;
+TEST(cosines_outside_and_extreme_ratios) {
   const double etas[] = {1e-200, 1e-9, 0.3, 1 - 1e-12, 1, 1 + 1e-12, 3, 1e9, 1e200};
   const double cosines[] = {-1e-12, -0.0, 0, 5e-324, 1e-160, 1e-9, 0.5, 1 - 1e-16, 1, 1 + 1e-12};
   for (size_t e = 0; e < sizeof etas / sizeof etas[0]; e++)
@@ -254,8 +240,7 @@ enum { METALS = sizeof metals / sizeof metals[0] };
 
 /* ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2): silver 98.7, gold 88.2 and aluminium 91.5 % in yellow
  * light, of the indices of Johnson and Christy and of Rakic. */
-static void metals_reflect_head_on(void **state) {
-  (void)state;
+TEST(metals_reflect_head_on) {
   for (int i = 0; i < METALS; i++) {
     double n = metals[i][0], k = metals[i][1];
     double r = ((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k);
@@ -266,8 +251,7 @@ static void metals_reflect_head_on(void **state) {
   assert_near(abbe_optics_fresnel_conductor(1, 1.0728, 6.7839), 0.9147, 5e-5);
 }
 
-static void metals_reflect_aslant(void **state) {
-  (void)state;
+TEST(metals_reflect_aslant) {
   for (int i = 0; i < METALS; i++)
     for (double at = 1; at < 90; at++)
       assert_near(abbe_optics_fresnel_conductor(cos(radians(at)), metals[i][0], metals[i][1]),
@@ -276,8 +260,7 @@ static void metals_reflect_aslant(void **state) {
   assert_near(abbe_optics_fresnel_conductor(cos(radians(60)), 0.29, 2.863), 0.8770, 5e-5);
 }
 
-static void metals_reflect_all_grazing_light(void **state) {
-  (void)state;
+TEST(metals_reflect_all_grazing_light) {
   for (int i = 0; i < METALS; i++) {
     double n = metals[i][0], k = metals[i][1];
     assert_near(abbe_optics_fresnel_conductor(0, n, k), 1, 0);
@@ -286,8 +269,7 @@ static void metals_reflect_all_grazing_light(void **state) {
   }
 }
 
-static void a_conductor_without_k_is_a_dielectric(void **state) {
-  (void)state;
+TEST(a_conductor_without_k_is_a_dielectric) {
   const double n[] = {1e-3, 0.5, 1 - 1e-6, 1, 1 + 1e-6, 1.5, 2.417, 1e3};
   for (int i = 0; i < 8; i++)
     for (double at = 0; at <= 90; at += 1.5) {
@@ -300,8 +282,7 @@ static void a_conductor_without_k_is_a_dielectric(void **state) {
 }
 
 /* A perfect conductor reflects all; on the way there, 1 - R is 4 n / k^2 head on. */
-static void a_growing_k_reflects_more(void **state) {
-  (void)state;
+TEST(a_growing_k_reflects_more) {
   for (double at = 0; at < 85; at += 5) {
     double before = 0;
     for (double k = 1; k < 1e9; k *= 10) {
@@ -316,8 +297,7 @@ static void a_growing_k_reflects_more(void **state) {
               1e-12);
 }
 
-static void extreme_conductors(void **state) {
-  (void)state;
+TEST(extreme_conductors) {
   const double values[] = {0, 5e-324, 1e-160, 1e-9, 1 - 1e-16, 1, 1 + 1e-12, 40, 1e9, 1e70};
   const double cosines[] = {-1e-12, -0.0, 0, 5e-324, 1e-160, 1e-9, 0.5, 1 - 1e-16, 1, 1 + 1e-12};
   for (int n = 0; n < 10; n++)
@@ -329,30 +309,4 @@ static void extreme_conductors(void **state) {
   assert_near(abbe_optics_fresnel_conductor(0.5, 0, 3), 1, 1e-15); /* no loss without n */
   assert_near(abbe_optics_fresnel_conductor(0.5, 0, 0), 1, 0);
   assert_true(isnan(abbe_optics_fresnel_conductor(NAN, 0.2, 3)));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(glass_reflects_four_percent_head_on),
-      cmocka_unit_test(fresnel_agrees_with_the_sine_and_tangent_laws),
-      cmocka_unit_test(brewsters_angle_leaves_one_polarisation),
-      cmocka_unit_test(critical_angles_of_glass_water_and_diamond),
-      cmocka_unit_test(minimum_deviation_of_a_sixty_degree_prism),
-      cmocka_unit_test(beer_and_lambert),
-      cmocka_unit_test(snell_holds_and_reverses),
-      cmocka_unit_test(energy_is_conserved),
-      cmocka_unit_test(directions_lie_in_one_plane_and_are_unit),
-      cmocka_unit_test(equal_indices_change_nothing),
-      cmocka_unit_test(nearly_equal_indices_keep_their_digits),
-      cmocka_unit_test(grazing_light),
-      cmocka_unit_test(the_critical_angle),
-      cmocka_unit_test(cosines_outside_and_extreme_ratios),
-      cmocka_unit_test(metals_reflect_head_on),
-      cmocka_unit_test(metals_reflect_aslant),
-      cmocka_unit_test(metals_reflect_all_grazing_light),
-      cmocka_unit_test(a_conductor_without_k_is_a_dielectric),
-      cmocka_unit_test(a_growing_k_reflects_more),
-      cmocka_unit_test(extreme_conductors),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

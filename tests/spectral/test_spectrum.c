@@ -24,8 +24,7 @@ static double bk7(double nm) {
               1.01046945 * l / (l - 103.560653));
 }
 
-static void every_method_passes_through_its_points(void **state) {
-  (void)state;
+TEST(every_method_passes_through_its_points) {
   const double l[] = {400, 450, 470, 600, 700}, v[] = {1, 5, -2, 0, 3};
   for (int m = 0; m < 3; m++) {
     abbe_spectrum *s = make(l, v, 5, methods[m]);
@@ -40,8 +39,7 @@ static void every_method_passes_through_its_points(void **state) {
   }
 }
 
-static void methods_differ_as_they_should(void **state) {
-  (void)state;
+TEST(methods_differ_as_they_should) {
   const double l[] = {400, 500, 600, 700}, v[] = {0, 0, 1, 1};
   abbe_spectrum *linear = make(l, v, 4, ABBE_INTERPOLATION_LINEAR);
   abbe_spectrum *monotone = make(l, v, 4, ABBE_INTERPOLATION_MONOTONE);
@@ -66,8 +64,7 @@ static void methods_differ_as_they_should(void **state) {
 }
 
 /* The curve of a parabola that rises in every interval is that parabola, to both ends. */
-static void monotone_is_exact_for_a_parabola(void **state) {
-  (void)state;
+TEST(monotone_is_exact_for_a_parabola) {
   const double l[] = {400, 450, 520, 600, 710};
   double v[5], reversed[5];
   for (int i = 0; i < 5; i++) v[i] = (l[i] - 200) * (l[i] - 200) / 1e4;
@@ -84,8 +81,7 @@ static void monotone_is_exact_for_a_parabola(void **state) {
 }
 
 /* At an end the parabola's slope is held between 0 and twice the outer secant [Steffen1990]. */
-static void slopes_at_the_ends_of_a_monotone_curve_are_limited(void **state) {
-  (void)state;
+TEST(slopes_at_the_ends_of_a_monotone_curve_are_limited) {
   const double l[] = {400, 500, 600};
   abbe_spectrum *flat = make(l, (double[]){0, 1, 10}, 3, ABBE_INTERPOLATION_MONOTONE);
   abbe_spectrum *steep = make(l, (double[]){0, 1, -9}, 3, ABBE_INTERPOLATION_MONOTONE);
@@ -96,8 +92,7 @@ static void slopes_at_the_ends_of_a_monotone_curve_are_limited(void **state) {
 }
 
 /* N-BK7 by Schott's formula [Schott2014] at 400 to 700 nm in steps of 30. */
-static void monotone_follows_a_glass_in_its_first_interval(void **state) {
-  (void)state;
+TEST(monotone_follows_a_glass_in_its_first_interval) {
   double l[11], v[11], worst = 0;
   for (int i = 0; i < 11; i++) l[i] = 400 + 30 * i;
   for (int i = 0; i < 11; i++) v[i] = bk7(l[i]);
@@ -107,8 +102,7 @@ static void monotone_follows_a_glass_in_its_first_interval(void **state) {
   abbe_spectrum_free(s);
 }
 
-static void one_and_two_points_work_with_every_method(void **state) {
-  (void)state;
+TEST(one_and_two_points_work_with_every_method) {
   const double l[] = {500, 600}, v[] = {2, 4};
   for (int m = 0; m < 3; m++) {
     abbe_spectrum *one = make(l, v, 1, methods[m]), *two = make(l, v, 2, methods[m]);
@@ -121,8 +115,7 @@ static void one_and_two_points_work_with_every_method(void **state) {
   }
 }
 
-static void integrals_are_exact(void **state) {
-  (void)state;
+TEST(integrals_are_exact) {
   const double l[] = {400, 500, 700}, v[] = {1, 3, 1};
   abbe_spectrum *s = make(l, v, 3, ABBE_INTERPOLATION_LINEAR);
   assert_near(abbe_spectrum_integral(s, 400, 700), 200 + 400, 1e-11);
@@ -134,8 +127,7 @@ static void integrals_are_exact(void **state) {
   abbe_spectrum_free(s);
 }
 
-static void integrals_agree_with_sums_and_add_up(void **state) {
-  (void)state;
+TEST(integrals_agree_with_sums_and_add_up) {
   const double l[] = {400, 450, 470, 600, 700}, v[] = {1, 5, -2, 0, 3};
   for (int m = 0; m < 3; m++) {
     abbe_spectrum *s = make(l, v, 5, methods[m]);
@@ -161,8 +153,7 @@ static void refuses(const double *l, const double *v, size_t count, const char *
   }
 }
 
-static void what_is_no_spectrum_is_refused(void **state) {
-  (void)state;
+TEST(what_is_no_spectrum_is_refused) {
   const double v[] = {1, 2, 3};
   refuses(v, v, 0, "0 points");
   refuses(v, v, ABBE_SPECTRUM_MAX_COUNT + 1, "65537");
@@ -180,8 +171,7 @@ static void hosts_handler(const char *reason, const char *file, int line, int nu
   handled++;
 }
 
-static void overflow_is_refused_and_the_hosts_handler_kept(void **state) {
-  (void)state;
+TEST(overflow_is_refused_and_the_hosts_handler_kept) {
   gsl_error_handler_t *before = gsl_set_error_handler(hosts_handler);
   const double l[] = {400, 400.0000001, 500, 600}, v[] = {1e308, -1e308, 1e308, -1e308};
   abbe_spectrum *s = NULL;
@@ -199,8 +189,7 @@ static void *read_many(void *data) {
   return out;
 }
 
-static void threads_read_the_same(void **state) {
-  (void)state;
+TEST(threads_read_the_same) {
   const double l[] = {400, 450, 470, 600, 700}, v[] = {1, 5, -2, 0, 3};
   abbe_spectrum *s = make(l, v, 5, ABBE_INTERPOLATION_SPLINE);
   pthread_t threads[4];
@@ -214,21 +203,4 @@ static void threads_read_the_same(void **state) {
   }
   free(alone);
   abbe_spectrum_free(s);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_method_passes_through_its_points),
-      cmocka_unit_test(methods_differ_as_they_should),
-      cmocka_unit_test(monotone_is_exact_for_a_parabola),
-      cmocka_unit_test(slopes_at_the_ends_of_a_monotone_curve_are_limited),
-      cmocka_unit_test(monotone_follows_a_glass_in_its_first_interval),
-      cmocka_unit_test(one_and_two_points_work_with_every_method),
-      cmocka_unit_test(integrals_are_exact),
-      cmocka_unit_test(integrals_agree_with_sums_and_add_up),
-      cmocka_unit_test(what_is_no_spectrum_is_refused),
-      cmocka_unit_test(overflow_is_refused_and_the_hosts_handler_kept),
-      cmocka_unit_test(threads_read_the_same),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -55,8 +55,7 @@ static double total(const abbe_uniaxial_split *s) {
 
 /* ---- one wave ---- */
 
-static void the_index_runs_from_n_o_to_n_e(void **state) {
-  (void)state;
+TEST(the_index_runs_from_n_o_to_n_e) {
   assert_near(abbe_uniaxial_index(n_o, n_e, 1), n_o, 1e-15);
   assert_near(abbe_uniaxial_index(n_o, n_e, 0), n_e, 1e-15);
   for (double a = 0; a <= 90; a += 7.5) {
@@ -70,8 +69,7 @@ static void the_index_runs_from_n_o_to_n_e(void **state) {
 
 /* Calcite's angle: 6.22 degrees at 45 degrees to the axis, and the largest, where tan = n_e / n_o,
  * has the tangent (n_o^2 - n_e^2) / (2 n_o n_e). */
-static void calcites_ray_leaves_its_normal_by_six_degrees(void **state) {
-  (void)state;
+TEST(calcites_ray_leaves_its_normal_by_six_degrees) {
   assert_near(degrees(abbe_uniaxial_walk_off(n_o, n_e, sqrt(0.5))), 6.22, 0.005);
   const double most = cos(atan(n_e / n_o));
   assert_near(tan(abbe_uniaxial_walk_off(n_o, n_e, most)),
@@ -81,8 +79,7 @@ static void calcites_ray_leaves_its_normal_by_six_degrees(void **state) {
   assert_near(abbe_uniaxial_walk_off(n_o, n_e, -0.3), abbe_uniaxial_walk_off(n_o, n_e, 0.3), 0);
 }
 
-static void rays_and_normals_belong_together(void **state) {
-  (void)state;
+TEST(rays_and_normals_belong_together) {
   for (int i = 0; i < 1000; i++) {
     double axis[3], normal[3], ray[3], back[3];
     direction(axis);
@@ -104,8 +101,7 @@ static void rays_and_normals_belong_together(void **state) {
 /* Light falls straight onto a face that is cut at 45 degrees to the axis: the ordinary ray goes
  * straight on, the extraordinary one leans away from the axis, for calcite is negative; both
  * normals stay. */
-static void straight_light_splits_in_calcite(void **state) {
-  (void)state;
+TEST(straight_light_splits_in_calcite) {
   const abbe_uniaxial m = calcite(1, 0, 1);
   double in[3] = {0, 0, -1};
   abbe_uniaxial_split s;
@@ -131,8 +127,7 @@ static void straight_light_splits_in_calcite(void **state) {
 
 /* Axis along the face's normal: s sees n_o, and p is r = (n_o n_e c - q) / (n_o n_e c + q) with
  * q = sqrt(n_e^2 - sin^2) [Lekner1991]. */
-static void an_axis_across_the_face(void **state) {
-  (void)state;
+TEST(an_axis_across_the_face) {
   const abbe_uniaxial m = calcite(0, 0, 1);
   for (double a = 0; a < 90; a += 3) {
     double in[3];
@@ -154,8 +149,7 @@ static void an_axis_across_the_face(void **state) {
 /* Axis in the face and across the plane of incidence: the extraordinary wave is the s wave of n_e,
  * the ordinary one the p wave of n_o, both by Snell and Fresnel; from inside as well, to total
  * reflection. */
-static void an_axis_across_the_plane_of_incidence(void **state) {
-  (void)state;
+TEST(an_axis_across_the_plane_of_incidence) {
   const abbe_uniaxial m = calcite(0, 1, 0);
   for (double a = 1; a < 90; a += 2) {
     double in[3];
@@ -189,8 +183,7 @@ static void an_axis_across_the_plane_of_incidence(void **state) {
 
 /* A polariser along or across the axis of a plate: one wave alone is in it, and an analyser across
  * it stays dark. Between, the fields share out as sine and cosine. */
-static void crossed_polarisers_are_dark_where_the_axis_is_along_one(void **state) {
-  (void)state;
+TEST(crossed_polarisers_are_dark_where_the_axis_is_along_one) {
   const abbe_uniaxial m = calcite(1, 0, 0);
   double in[3] = {0, 0, -1};
   for (double a = 0; a <= 90; a += 15) {
@@ -223,8 +216,7 @@ static void crossed_polarisers_are_dark_where_the_axis_is_along_one(void **state
 }
 
 /* Along its axis a crystal is as glass of n_o: nothing is retarded, nothing walks off. */
-static void along_the_axis_nothing_splits(void **state) {
-  (void)state;
+TEST(along_the_axis_nothing_splits) {
   const abbe_uniaxial m = calcite(0, 0, 1);
   double in[3] = {0, 0, -1};
   abbe_uniaxial_split s;
@@ -253,8 +245,7 @@ static void random_ray(const double n[3], double ray[3]) {
 
 /* No light is lost or made, into, inside and out of crystals, total reflection included; tangential
  * wave vectors stay, and rays leave to their sides. */
-static void energy_is_conserved(void **state) {
-  (void)state;
+TEST(energy_is_conserved) {
   size_t totals = 0, couples = 0;
   for (int i = 0; i < 50000; i++) {
     abbe_uniaxial from, to;
@@ -289,8 +280,7 @@ static void energy_is_conserved(void **state) {
 }
 
 /* The share from one wave to another is that of the way back. */
-static void ways_back_have_the_same_share(void **state) {
-  (void)state;
+TEST(ways_back_have_the_same_share) {
   for (int i = 0; i < 5000; i++) {
     abbe_uniaxial from, to;
     double n[3], ray[3];
@@ -319,8 +309,7 @@ static void ways_back_have_the_same_share(void **state) {
 }
 
 /* Of one index it is Fresnel's and Snell's glass, whatever the axis is. */
-static void without_birefringence_it_is_fresnels_glass(void **state) {
-  (void)state;
+TEST(without_birefringence_it_is_fresnels_glass) {
   for (int i = 0; i < 5000; i++) {
     abbe_uniaxial m = {1 + 2 * next(), 0, {0}};
     double n[3], ray[3], wi[3], wt[3];
@@ -345,8 +334,7 @@ static void without_birefringence_it_is_fresnels_glass(void **state) {
 
 /* Total reflection turns the phase of s by -2 atan(sqrt(n^2 sin^2 - 1) / (n cos)) [BornWolf1999]:
  * the wave outside dies out, and does not grow. */
-static void total_reflection_has_fresnels_phase(void **state) {
-  (void)state;
+TEST(total_reflection_has_fresnels_phase) {
   const abbe_uniaxial glass = {1.5, 1.5, {0, 0, 1}};
   for (double a = 42; a < 90; a += 4) {
     double in[3];
@@ -362,8 +350,7 @@ static void total_reflection_has_fresnels_phase(void **state) {
 }
 
 /* A vanishing birefringence has the limit without, also where the axis is along the light. */
-static void a_vanishing_birefringence_changes_nothing(void **state) {
-  (void)state;
+TEST(a_vanishing_birefringence_changes_nothing) {
   for (double tilt = 1e-12; tilt < 2; tilt *= 10) {
     const abbe_uniaxial m = {1.5, 1.5 + 1e-9, {sin(tilt), 0, cos(tilt)}};
     const double in[3] = {0.6, 0, -0.8};
@@ -379,8 +366,7 @@ static void a_vanishing_birefringence_changes_nothing(void **state) {
 }
 
 /* Close to the axis, grazing, and at the edge of total reflection. */
-static void awkward_directions(void **state) {
-  (void)state;
+TEST(awkward_directions) {
   const abbe_uniaxial m = calcite(0.3, 0.2, 0.9);
   for (double off = 1e-15; off < 0.1; off *= 7) {
     abbe_uniaxial_split s;
@@ -409,24 +395,4 @@ static void awkward_directions(void **state) {
   abbe_uniaxial_meet(&m, &air, up, E, along, &s);
   assert_near(total(&s), 1, 0);
   assert_near(s.reflected[E].share, 1, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_index_runs_from_n_o_to_n_e),
-      cmocka_unit_test(calcites_ray_leaves_its_normal_by_six_degrees),
-      cmocka_unit_test(rays_and_normals_belong_together),
-      cmocka_unit_test(straight_light_splits_in_calcite),
-      cmocka_unit_test(an_axis_across_the_face),
-      cmocka_unit_test(an_axis_across_the_plane_of_incidence),
-      cmocka_unit_test(crossed_polarisers_are_dark_where_the_axis_is_along_one),
-      cmocka_unit_test(along_the_axis_nothing_splits),
-      cmocka_unit_test(energy_is_conserved),
-      cmocka_unit_test(ways_back_have_the_same_share),
-      cmocka_unit_test(without_birefringence_it_is_fresnels_glass),
-      cmocka_unit_test(total_reflection_has_fresnels_phase),
-      cmocka_unit_test(a_vanishing_birefringence_changes_nothing),
-      cmocka_unit_test(awkward_directions),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

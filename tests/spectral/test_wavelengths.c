@@ -2,8 +2,7 @@
 
 #include "spectral/wavelengths.h"
 
-static void seven_over_the_default_range(void **state) {
-  (void)state;
+TEST(seven_over_the_default_range) {
   abbe_wavelengths w;
   assert_int_equal(abbe_wavelengths_make(7, 380, 780, &w, NULL), ABBE_OK);
   assert_int_equal(w.count, 7);
@@ -21,8 +20,7 @@ static void seven_over_the_default_range(void **state) {
   abbe_wavelengths_free(&w);
 }
 
-static void one_stands_in_the_middle(void **state) {
-  (void)state;
+TEST(one_stands_in_the_middle) {
   abbe_wavelengths w;
   assert_int_equal(abbe_wavelengths_make(1, 400, 700, &w, NULL), ABBE_OK);
   assert_near(w.lambda_nm[0], 550, 0);
@@ -31,8 +29,7 @@ static void one_stands_in_the_middle(void **state) {
   abbe_wavelengths_free(&w);
 }
 
-static void bands_tile_the_range_at_any_count(void **state) {
-  (void)state;
+TEST(bands_tile_the_range_at_any_count) {
   for (size_t count = 2; count <= ABBE_WAVELENGTHS_MAX_COUNT; count = count * 3 / 2 + 1) {
     abbe_wavelengths w;
     assert_int_equal(abbe_wavelengths_make(count, 361.3, 829.7, &w, NULL), ABBE_OK);
@@ -56,8 +53,7 @@ static void refuses(size_t count, double min_nm, double max_nm, const char *part
   assert_null(w.lambda_nm);
 }
 
-static void what_is_no_sampling_is_refused(void **state) {
-  (void)state;
+TEST(what_is_no_sampling_is_refused) {
   refuses(0, 380, 780, "0 wavelengths");
   refuses(ABBE_WAVELENGTHS_MAX_COUNT + 1, 380, 780, "4097");
   refuses(SIZE_MAX, 380, 780, "wavelengths");
@@ -68,14 +64,4 @@ static void what_is_no_sampling_is_refused(void **state) {
   refuses(7, NAN, 780, "nan");
   refuses(7, 380, INFINITY, "inf");
   refuses(100, 500, nextafter(500, 501), "too narrow");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(seven_over_the_default_range),
-      cmocka_unit_test(one_stands_in_the_middle),
-      cmocka_unit_test(bands_tile_the_range_at_any_count),
-      cmocka_unit_test(what_is_no_sampling_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

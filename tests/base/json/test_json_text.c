@@ -12,8 +12,7 @@ static const double hard[] = {0.1 + 0.2,  2.4175239999999997, 1.0 / 3, DBL_MAX, 
                               1e15 + 0.5, 0.1,                 42,      -7e-30,  -0.0};
 enum { HARD = sizeof hard / sizeof *hard };
 
-static void every_number_reads_back_to_the_same_double(void **state) {
-  (void)state;
+TEST(every_number_reads_back_to_the_same_double) {
   for (int lines = 0; lines < 2; lines++) {
     cJSON *root = cJSON_CreateObject(), *list = cJSON_CreateDoubleArray(hard, HARD);
     cJSON_AddItemToObject(root, "list", list);
@@ -36,8 +35,7 @@ static void every_number_reads_back_to_the_same_double(void **state) {
   }
 }
 
-static void random_doubles_read_back(void **state) {
-  (void)state;
+TEST(random_doubles_read_back) {
   uint64_t bits = 88172645463325252u;
   for (int i = 0; i < 2000; i++) {
     double value;
@@ -54,8 +52,7 @@ static void random_doubles_read_back(void **state) {
   }
 }
 
-static void other_items_are_as_cjson_prints_them(void **state) {
-  (void)state;
+TEST(other_items_are_as_cjson_prints_them) {
   cJSON *root = cJSON_Parse("{\"a\":[true,null,\"0.1\",0.5],\"b\":{\"c\":-3}}");
   cJSON_AddNumberToObject(root, "no", NAN);
   char *text = abbe_json_text(root, false);
@@ -63,13 +60,4 @@ static void other_items_are_as_cjson_prints_them(void **state) {
   cJSON_free(text);
   cJSON_Delete(root);
   assert_null(abbe_json_text(NULL, true));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_number_reads_back_to_the_same_double),
-      cmocka_unit_test(random_doubles_read_back),
-      cmocka_unit_test(other_items_are_as_cjson_prints_them),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,8 +4,7 @@
 
 #include <pthread.h>
 
-static void test_it_is_over_for_good(void **state) {
-  (void)state;
+TEST(it_is_over_for_good) {
   patience p = {.most = 2};
   abbe_watch watch = {patience_lasts, &p, false};
   abbe_error error = {0};
@@ -27,8 +26,7 @@ static void *ask(void *user) {
   return NULL;
 }
 
-static void test_another_thread_has_none(void **state) {
-  (void)state;
+TEST(another_thread_has_none) {
   patience p = {.most = 0};
   abbe_watch watch = {patience_lasts, &p, false};
   pthread_t thread;
@@ -39,10 +37,4 @@ static void test_another_thread_has_none(void **state) {
   assert_true(wanted);
   assert_false(abbe_watch_goes_on());
   abbe_watch_set(NULL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_it_is_over_for_good),
-                                     cmocka_unit_test(test_another_thread_has_none)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,8 +12,7 @@ static abbe_yaml *parse(const char *text) {
   return yaml;
 }
 
-static void test_a_mistyped_key_is_named_where_one_is_missing(void **state) {
-  (void)state;
+TEST(a_mistyped_key_is_named_where_one_is_missing) {
   abbe_yaml *y = parse("a: 1\nintensitty: 3\n");
   abbe_yaml_node node;
   abbe_error e = {0};
@@ -26,8 +25,7 @@ static void test_a_mistyped_key_is_named_where_one_is_missing(void **state) {
   abbe_yaml_free(y);
 }
 
-static void test_a_tab_names_itself(void **state) {
-  (void)state;
+TEST(a_tab_names_itself) {
   static const char *const texts[] = {"a:\n\tb: 1\n", "a:\n  b: 1\n  \tc: 2\n", "a: 1\n\tb: 2\n"};
   static const char *const lines[] = {"t.yaml:2: ", "t.yaml:3: ", "t.yaml:2: "};
   for (int i = 0; i < 3; i++) {
@@ -52,8 +50,7 @@ static void refuses(const char *text, abbe_result code, const char *part) {
   refuses_bytes(text, strlen(text), code, part);
 }
 
-static void a_document_is_walked(void **state) {
-  (void)state;
+TEST(a_document_is_walked) {
   abbe_yaml *y = parse("# a comment\nname: glass\nlist: [1, 2.5, -3e2]\nnested:\n  on: true\n");
   abbe_yaml_node root = abbe_yaml_root(y), list;
   assert_true(abbe_yaml_is_mapping(y, root));
@@ -74,8 +71,7 @@ static void a_document_is_walked(void **state) {
   abbe_yaml_free(NULL);
 }
 
-static void typed_values_are_read_and_defaults_kept(void **state) {
-  (void)state;
+TEST(typed_values_are_read_and_defaults_kept) {
   abbe_yaml *y = parse("n: -1.5e-3\nc: 42\nb: true\ns: 'a text'\nw: two\nv: [1, 2, 3]\ne: []\n");
   abbe_yaml_node root = abbe_yaml_root(y);
   double n = 7, absent = 7, v[3], *list = NULL;
@@ -124,8 +120,7 @@ static void refuses_number(const char *text, const char *part) {
   abbe_yaml_free(y);
 }
 
-static void lengths_take_units(void **state) {
-  (void)state;
+TEST(lengths_take_units) {
   abbe_yaml *y = parse("a: 6.5mm\nb: 0.2 in\nc: [1cm, -2 mm, 0.5]\nd: 3 mn\ne: 4km\nf: 1.5m\n");
   const abbe_yaml_node root = abbe_yaml_root(y);
   abbe_error error;
@@ -149,8 +144,7 @@ static void lengths_take_units(void **state) {
   abbe_yaml_free(y);
 }
 
-static void numbers_are_finite_plain_and_in_range(void **state) {
-  (void)state;
+TEST(numbers_are_finite_plain_and_in_range) {
   refuses_number("a: 1\nx: nan\n", "'x: nan' is not a finite number");
   refuses_number("a: 1\nx: .inf\n", "finite");
   refuses_number("a: 1\nx: infinity\n", "finite");
@@ -167,8 +161,7 @@ static void numbers_are_finite_plain_and_in_range(void **state) {
 }
 
 /* One getter a case: the sentence that its wrong value gets. */
-static void other_types_are_refused_too(void **state) {
-  (void)state;
+TEST(other_types_are_refused_too) {
   abbe_yaml *y = parse("m: {a: 1}\nl: [1, x]\nw: twoo\ne: ''\nc: 1.5\nh: 99999999999999999999\n"
                        "z: -3\ny: yes\n");
   abbe_yaml_node r = abbe_yaml_root(y), node;
@@ -214,8 +207,7 @@ static void other_types_are_refused_too(void **state) {
   abbe_yaml_free(y);
 }
 
-static void unknown_keys_get_the_nearest_known(void **state) {
-  (void)state;
+TEST(unknown_keys_get_the_nearest_known) {
   abbe_yaml *y = parse("colour: 1\nm: {tempreature: 3}\nq: {unheard-of: 3}\n");
   abbe_error e;
   abbe_yaml_node r = abbe_yaml_root(y);
@@ -236,8 +228,7 @@ static void unknown_keys_get_the_nearest_known(void **state) {
   abbe_yaml_free(y);
 }
 
-static void malformed_documents_name_the_line(void **state) {
-  (void)state;
+TEST(malformed_documents_name_the_line) {
   refuses("a: 1\nb: [1, 2\nc: 3\n", ABBE_PARSE, "t.yaml:3: is not well-formed YAML");
   refuses("a: 'open\n", ABBE_PARSE, "t.yaml:2");
   refuses("\ta: 1\n", ABBE_PARSE, "t.yaml:1");
@@ -254,8 +245,7 @@ static void malformed_documents_name_the_line(void **state) {
   refuses_bytes("a: \0", 4, ABBE_PARSE, "byte");
 }
 
-static void complaints_hold_no_control_characters(void **state) {
-  (void)state;
+TEST(complaints_hold_no_control_characters) {
   abbe_yaml *y = parse("\"\\e[31mred\\n\": 1\n");
   abbe_error e;
   assert_int_equal(abbe_yaml_check_keys(y, abbe_yaml_root(y), "it", &e), ABBE_SCHEMA);
@@ -263,8 +253,7 @@ static void complaints_hold_no_control_characters(void **state) {
   abbe_yaml_free(y);
 }
 
-static void aliases_are_resolved_and_kept_harmless(void **state) {
-  (void)state;
+TEST(aliases_are_resolved_and_kept_harmless) {
   abbe_yaml *y = parse("a: &x [1, 2]\nb: *x\n");
   double v[2];
   assert_int_equal(abbe_yaml_get_numbers(y, abbe_yaml_root(y), "b", 2, 0, 9, v, NULL), ABBE_OK);
@@ -293,8 +282,7 @@ static char *repeat(const char *part, size_t times, size_t *size) {
   return text;
 }
 
-static void depth_and_size_are_bounded(void **state) {
-  (void)state;
+TEST(depth_and_size_are_bounded) {
   size_t size = 0;
   char *text = repeat("[", 65, &size);
   refuses_bytes(text, size, ABBE_SCHEMA, "deeper than 64");
@@ -318,8 +306,7 @@ static void depth_and_size_are_bounded(void **state) {
   free(text);
 }
 
-static void files_are_loaded_or_named(void **state) {
-  (void)state;
+TEST(files_are_loaded_or_named) {
   abbe_yaml *y = NULL;
   abbe_error e;
   assert_int_equal(abbe_yaml_load("/no/such.yaml", &y, &e), ABBE_IO);
@@ -338,8 +325,7 @@ static void spans(const char *text, const char *key, const char *wanted) {
   abbe_yaml_free(y);
 }
 
-static void values_know_their_bytes(void **state) {
-  (void)state;
+TEST(values_know_their_bytes) {
   spans("a: 1 # one\nb: 2\n", "a", "1");
   spans("# \u00b5\u2026\na: \u00e9 # \u00e9\nb: 2\n", "b", "2");
   spans("\xEF\xBB\xBF"
@@ -356,24 +342,4 @@ static void values_know_their_bytes(void **state) {
   assert_false(abbe_yaml_is_flow(y, abbe_yaml_get(y, abbe_yaml_root(y), "b")));
   assert_false(abbe_yaml_is_flow(y, abbe_yaml_root(y)));
   abbe_yaml_free(y);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_mistyped_key_is_named_where_one_is_missing),
-      cmocka_unit_test(test_a_tab_names_itself),
-      cmocka_unit_test(a_document_is_walked),
-      cmocka_unit_test(typed_values_are_read_and_defaults_kept),
-      cmocka_unit_test(lengths_take_units),
-      cmocka_unit_test(numbers_are_finite_plain_and_in_range),
-      cmocka_unit_test(other_types_are_refused_too),
-      cmocka_unit_test(unknown_keys_get_the_nearest_known),
-      cmocka_unit_test(malformed_documents_name_the_line),
-      cmocka_unit_test(complaints_hold_no_control_characters),
-      cmocka_unit_test(aliases_are_resolved_and_kept_harmless),
-      cmocka_unit_test(depth_and_size_are_bounded),
-      cmocka_unit_test(values_know_their_bytes),
-      cmocka_unit_test(files_are_loaded_or_named),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -76,8 +76,7 @@ static void appended(const char *text, const char *item, const char *wanted) {
   check_text(&e, wanted);
 }
 
-static void a_value_is_replaced_and_nothing_else(void **state) {
-  (void)state;
+TEST(a_value_is_replaced_and_nothing_else) {
   replaced("a: 1 # one\nb: 2\n", "a", "10", "a: 10 # one\nb: 2\n");
   replaced("a: 1\r\nb: '2'\r\n", "b", "[3]", "a: 1\r\nb: [3]\r\n");
   replaced("# \xC2\xB5\na: \xC3\xA9\nb: 2", "b", "3", "# \xC2\xB5\na: \xC3\xA9\nb: 3");
@@ -95,16 +94,14 @@ static void a_value_is_replaced_and_nothing_else(void **state) {
   replaced("l:\n- a: 1\n  b: 2\n- a: 3\n", "l/1/a", "4", "l:\n- a: 1\n  b: 2\n- a: 4\n");
 }
 
-static void a_block_gives_way_to_a_line(void **state) {
-  (void)state;
+TEST(a_block_gives_way_to_a_line) {
   replaced("a:\n  # why\n  b: 1\n  c: 2 # two\n# end\nd: 3\n", "a", "{b: 2}",
            "a: {b: 2}\n  # why\n# end\nd: 3\n");
   replaced("a:\n- 1\n- 2\nd: 3\n", "a", "[2]", "a: [2]\nd: 3\n");
   replaced("a:\r\n  b: 1", "a", "2", "a: 2");
 }
 
-static void long_lists_are_wrapped(void **state) {
-  (void)state;
+TEST(long_lists_are_wrapped) {
   replaced("a: [1]\n", "a",
            "[[1, 1.2345678901], [2, 1.2345678901], [3, 1.2345678901], [4, 1.2345678901], [5, "
            "1.2345678901], [6, 1]]",
@@ -112,8 +109,7 @@ static void long_lists_are_wrapped(void **state) {
            "[5, 1.2345678901],\n  [6, 1]\n]\n");
 }
 
-static void a_pair_finds_its_place(void **state) {
-  (void)state;
+TEST(a_pair_finds_its_place) {
   inserted("a: 1 # one\nb: 2\n", "a", "3", "a: 1 # one\nnew: 3\nb: 2\n");
   inserted("a: 1\nb: 2", "b", "3", "a: 1\nb: 2\nnew: 3");
   inserted("l:\r\n  - a: 1\r\n    b: [1,\r\n      2] # x\r\n", "l/0/b", "3",
@@ -129,8 +125,7 @@ static void a_pair_finds_its_place(void **state) {
   check_text(&e, "x: {k: 1}\n");
 }
 
-static void a_pair_is_taken_out(void **state) {
-  (void)state;
+TEST(a_pair_is_taken_out) {
   removed("a: 1\n# two\nb: 2 # two\n# three\nc: 3\n", "b", "a: 1\n# two\n# three\nc: 3\n");
   removed("{a: 1, b: 2, c: 3}", "b", "{a: 1, c: 3}");
   removed("{a: 1, b: 2, c: 3}", "c", "{a: 1, b: 2}");
@@ -141,8 +136,7 @@ static void a_pair_is_taken_out(void **state) {
   removed("a: 1\nb: 2", "b", "a: 1");
 }
 
-static void an_item_is_taken_out(void **state) {
-  (void)state;
+TEST(an_item_is_taken_out) {
   const char *text = "l:\n  # first\n  - a: 1\n    b: 2\n    # of it\n\n  # second\n  - a: 2\n\n"
                      "  - a: 3 # end\n# last\n";
   removed(text, "l/0", "l:\n  # first\n\n  # second\n  - a: 2\n\n  - a: 3 # end\n# last\n");
@@ -160,8 +154,7 @@ static void an_item_is_taken_out(void **state) {
   removed("l: [{a: 1}, {a: 2}]\n", "l/1", "l: [{a: 1}]\n");
 }
 
-static void an_item_is_put_at_the_end(void **state) {
-  (void)state;
+TEST(an_item_is_put_at_the_end) {
   appended("l:\n  - a: 1 # one\n# end\n", "a: 2\nb: 3\n",
            "l:\n  - a: 1 # one\n  - a: 2\n    b: 3\n# end\n");
   appended("l:\n- a: 1\n\n- a: 2\n", "a: 3", "l:\n- a: 1\n\n- a: 2\n\n- a: 3\n");
@@ -175,8 +168,7 @@ static void an_item_is_put_at_the_end(void **state) {
   appended("l: # none yet\n", "a: 2", "l: # none yet\n  - a: 2\n");
 }
 
-static void an_item_is_told_as_it_stands(void **state) {
-  (void)state;
+TEST(an_item_is_told_as_it_stands) {
   abbe_yaml_edit e = edit_of("l:\n  - a: 1 # one\n    b:\n      - 2\n    # end\n  - {a: 3}\n");
   abbe_yaml_node list = abbe_yaml_value(e.yaml, abbe_yaml_root(e.yaml), 0);
   char *text = NULL;
@@ -201,8 +193,7 @@ static void refused(const char *text, const char *path, const char *value, const
   check_text(&e, text);
 }
 
-static void what_the_text_would_misread_is_refused(void **state) {
-  (void)state;
+TEST(what_the_text_would_misread_is_refused) {
   refused("a: 1\nb: 2\n", "a", "1 # one", "put it in quotes");
   refused("a: 1\nb: 2\n", "a", "x: y", "would break the file");
   refused("a: 1\nb: 2\n", "a", "[1, 2", "would break the file");
@@ -225,26 +216,9 @@ static void what_the_text_would_misread_is_refused(void **state) {
   assert_int_equal(abbe_yaml_edit_make("a: [", 4, "t", &e, &error), ABBE_PARSE);
 }
 
-static void numbers_read_back(void **state) {
-  (void)state;
+TEST(numbers_read_back) {
   char *list = NULL;
   assert_int_equal(abbe_yaml_edit_list((double[]){1.5, 0.0042}, 2, &list, NULL), ABBE_OK);
   assert_string_equal(list, "[1.5, 0.0042]");
   free(list);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_value_is_replaced_and_nothing_else),
-      cmocka_unit_test(a_block_gives_way_to_a_line),
-      cmocka_unit_test(long_lists_are_wrapped),
-      cmocka_unit_test(a_pair_finds_its_place),
-      cmocka_unit_test(a_pair_is_taken_out),
-      cmocka_unit_test(an_item_is_taken_out),
-      cmocka_unit_test(an_item_is_put_at_the_end),
-      cmocka_unit_test(an_item_is_told_as_it_stands),
-      cmocka_unit_test(what_the_text_would_misread_is_refused),
-      cmocka_unit_test(numbers_read_back),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

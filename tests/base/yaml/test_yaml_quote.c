@@ -13,8 +13,7 @@ static char *quoted(const char *text) {
 }
 
 /* As a value in block style and in brackets, with a neighbour that must stay one. */
-static void texts_read_back(void **state) {
-  (void)state;
+TEST(texts_read_back) {
   const char *texts[] = {
       "plain text",   "a: b",         "x # y",   "true", "1.5",    "",      " lead",
       "tail ",        "[a]",          "\"q\\\"", "a\tb", "\x01",   "µ — é", "-",
@@ -38,8 +37,7 @@ static void texts_read_back(void **state) {
     }
 }
 
-static void only_what_must_be_is_quoted(void **state) {
-  (void)state;
+TEST(only_what_must_be_is_quoted) {
   static const struct {
     const char *text, *quote;
   } cases[] = {{"N-BK7, Schott", "\"N-BK7, Schott\""},
@@ -57,18 +55,8 @@ static void only_what_must_be_is_quoted(void **state) {
   }
 }
 
-static void bytes_that_are_no_letters_are_replaced(void **state) {
-  (void)state;
+TEST(bytes_that_are_no_letters_are_replaced) {
   char *quote = quoted("caf\xe9 \xe2\x82");
   assert_string_equal(quote, "\"caf\\ufffd \\ufffd\\ufffd\"");
   free(quote);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(texts_read_back),
-      cmocka_unit_test(only_what_must_be_is_quoted),
-      cmocka_unit_test(bytes_that_are_no_letters_are_replaced),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

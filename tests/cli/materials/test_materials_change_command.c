@@ -13,8 +13,9 @@ static int done(const char *line) {
   return code;
 }
 
-static void a_row_is_corrected(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(a_row_is_corrected) {
   assert_int_equal(done(RENEW MATERIALS
                         "set k5 coefficients.0=1.5090 --unset warning --dry-run" TABLE
                         " && cmp t.yaml \"$house\"/spectral/materials/thesis.yaml"),
@@ -42,15 +43,13 @@ static void a_row_is_corrected(void **state) {
   assert_int_equal(done("rm t.yaml"), 0);
 }
 
-static void what_is_so_already_is_not_changed(void **state) {
-  (void)state;
+TEST(what_is_so_already_is_not_changed) {
   assert_int_equal(run_line(RENEW MATERIALS "set k5 coefficients.1=0.00459" TABLE), 0);
   assert_contains(run_output, "it says so already; nothing is changed");
   assert_int_equal(run_line("cmp t.yaml \"$house\"/spectral/materials/thesis.yaml"), 0);
 }
 
-static void records_come_and_go(void **state) {
-  (void)state;
+TEST(records_come_and_go) {
   assert_int_equal(done(MATERIALS "add n-bk7 --from default --create" TABLE), 0);
   assert_int_equal(done(MATERIALS "add f2 --from default --as my-f2 source='melt 7'" TABLE), 0);
   assert_int_equal(done(MATERIALS "add mine model=cauchy 'coefficients=[1.509, 0.0046]' "
@@ -68,8 +67,7 @@ static void records_come_and_go(void **state) {
                                   "    model: constant\n    coefficients: [2]\n    source: s\n");
 }
 
-static void tables_are_compared(void **state) {
-  (void)state;
+TEST(tables_are_compared) {
   assert_int_equal(done(RENEW MATERIALS "diff thesis t.yaml --tolerance 0"), 0);
   assert_string_equal(run_output, "thesis -> t.yaml: 0 changed, 0 renamed, 0 only in the first, 0 "
                                   "only in the second, 5 the same\n");
@@ -92,16 +90,14 @@ static void tables_are_compared(void **state) {
 }
 
 /* A copied record is the shipped one, comments and all. */
-static void a_copy_is_whole(void **state) {
-  (void)state;
+TEST(a_copy_is_whole) {
   assert_int_equal(done(MATERIALS "add f2 --from default --create" TABLE " && grep -c '# 4 pi k' "
                                   "t.yaml && " MATERIALS "show f2" TABLE " > a && " MATERIALS
                                   "show f2 > b && cmp a b && rm a b t.yaml"),
                    0);
 }
 
-static void wrong_use_gets_a_sentence(void **state) {
-  (void)state;
+TEST(wrong_use_gets_a_sentence) {
   const struct {
     const char *line, *part;
     int code;
@@ -153,8 +149,7 @@ static void wrong_use_gets_a_sentence(void **state) {
 }
 
 /* Each line of the examples is a command or its next line: none was broken to fit the page. */
-static void help_shows_examples(void **state) {
-  (void)state;
+TEST(help_shows_examples) {
   const char *const verbs[] = {"list", "show",   "plot",   "nearest", "check", "fit",    "from",
                                "diff", "edit",   "set",    "add",     "remove", "rename", "import",
                                "export"};
@@ -169,17 +164,4 @@ static void help_shows_examples(void **state) {
     for (; *c != '\n' && *c != '\0'; c += strcspn(c, "\n") + 1)
       if (c[0] != ' ') fail_msg("%s: a broken example: %.40s", verbs[i], c);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_row_is_corrected),
-      cmocka_unit_test(records_come_and_go),
-      cmocka_unit_test(a_copy_is_whole),
-      cmocka_unit_test(tables_are_compared),
-      cmocka_unit_test(what_is_so_already_is_not_changed),
-      cmocka_unit_test(wrong_use_gets_a_sentence),
-      cmocka_unit_test(help_shows_examples),
-  };
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

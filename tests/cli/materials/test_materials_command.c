@@ -28,8 +28,7 @@ static double number(const cJSON *object, const char *key) {
   return cJSON_IsNumber(item) ? item->valuedouble : NAN;
 }
 
-static void json_answers_programs(void **state) {
-  (void)state;
+TEST(json_answers_programs) {
   assert_int_equal(run("materials show n-bk7 --at 587.5618 --at 1000 --json"), 0);
   cJSON *json = cJSON_Parse(output);
   assert_non_null(json);
@@ -46,8 +45,7 @@ static void json_answers_programs(void **state) {
   cJSON_Delete(json);
 }
 
-static void lists_hold_every_material(void **state) {
-  (void)state;
+TEST(lists_hold_every_material) {
   assert_int_equal(run("materials list --json"), 0);
   cJSON *json = cJSON_Parse(output);
   assert_non_null(json);
@@ -60,8 +58,7 @@ static void lists_hold_every_material(void **state) {
   assert_contains(output, "cubic-zirconia");
 }
 
-static void extrapolation_is_reported_or_refused(void **state) {
-  (void)state;
+TEST(extrapolation_is_reported_or_refused) {
   assert_int_equal(run("materials show diamond --at 770"), 0);
   assert_contains(output, "extrapolated\n");
   assert_contains(output, "warning");
@@ -76,8 +73,7 @@ static void extrapolation_is_reported_or_refused(void **state) {
                               "300 to 2500 nm, and its record does not say 'extrapolate: true'\n");
 }
 
-static void numbers_outside_the_data_are_not_told(void **state) {
-  (void)state;
+TEST(numbers_outside_the_data_are_not_told) {
   char path[] = "/tmp/abbe-test-materials-XXXXXX", command[256];
   int fd = mkstemp(path);
   assert_true(fd >= 0);
@@ -103,8 +99,7 @@ static void numbers_outside_the_data_are_not_told(void **state) {
   unlink(path);
 }
 
-static void a_density_is_set_shown_and_listed(void **state) {
-  (void)state;
+TEST(a_density_is_set_shown_and_listed) {
   char path[] = "/tmp/abbe-test-materials-XXXXXX", command[256];
   int fd = mkstemp(path);
   assert_true(fd >= 0);
@@ -140,8 +135,7 @@ static void a_density_is_set_shown_and_listed(void **state) {
 }
 
 /* What --fit prints is what the shipped record holds. */
-static void a_printed_fit_is_the_recorded_one(void **state) {
-  (void)state;
+TEST(a_printed_fit_is_the_recorded_one) {
   assert_int_equal(run("materials show diamond --fit"), 0);
   char *table = NULL, *line = NULL;
   size_t size = 0;
@@ -155,8 +149,7 @@ static void a_printed_fit_is_the_recorded_one(void **state) {
   free(table);
 }
 
-static void wrong_use_is_2_and_says_what_is_right(void **state) {
-  (void)state;
+TEST(wrong_use_is_2_and_says_what_is_right) {
   const struct {
     const char *arguments, *part;
     int code;
@@ -190,17 +183,4 @@ static void wrong_use_is_2_and_says_what_is_right(void **state) {
     if (code != cases[i].code) fail_msg("abbe %s: %d\n%s", cases[i].arguments, code, output);
     assert_contains(output, cases[i].part);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(json_answers_programs),
-      cmocka_unit_test(lists_hold_every_material),
-      cmocka_unit_test(extrapolation_is_reported_or_refused),
-      cmocka_unit_test(numbers_outside_the_data_are_not_told),
-      cmocka_unit_test(a_density_is_set_shown_and_listed),
-      cmocka_unit_test(a_printed_fit_is_the_recorded_one),
-      cmocka_unit_test(wrong_use_is_2_and_says_what_is_right),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

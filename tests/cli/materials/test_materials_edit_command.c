@@ -138,16 +138,17 @@ static void check_file(const char *wanted) {
   free(text);
 }
 
-static int set_up(void **state) {
-  if (run_setup(state) != 0) return 1;
+static void set_up(void) {
+  run_setup();
   snprintf(path, sizeof path, "%s/t.yaml", run_folder);
-  return abbe_file_write(path, table, strlen(table), NULL) != ABBE_OK;
+  assert_int_equal(abbe_file_write(path, table, strlen(table), NULL), ABBE_OK);
 }
 
 /* ---- tests ---- */
 
-static void values_are_edited_live_and_saved(void **state) {
-  (void)state;
+EACH(set_up, run_teardown);
+
+TEST(values_are_edited_live_and_saved) {
   start("", 32, 110);
   expect("n_d 1.535296");
   type(DOWN DOWN DOWN "1.509", "n_d 1.522296"); /* while it is typed */
@@ -168,8 +169,7 @@ static void values_are_edited_live_and_saved(void **state) {
              "- {name: flint, model: constant, coefficients: [1.6], source: x}\n");
 }
 
-static void warnings_and_complaints_are_shown(void **state) {
-  (void)state;
+TEST(warnings_and_complaints_are_shown) {
   start("--against k5", 32, 110);
   expect("wrong: A 1.522");
   type(DOWN DOWN DOWN "red", "does nothing here");
@@ -191,8 +191,7 @@ static void warnings_and_complaints_are_shown(void **state) {
   check_file(table);
 }
 
-static void leaving_asks_where_something_would_be_lost(void **state) {
-  (void)state;
+TEST(leaving_asks_where_something_would_be_lost) {
   start("", 24, 80);
   expect("n_d 1.535296");
   type(DOWN DOWN DOWN RIGHT, "n_d 1.535396");
@@ -211,8 +210,7 @@ static void leaving_asks_where_something_would_be_lost(void **state) {
   check_file(table);
 }
 
-static void a_file_changed_meanwhile_is_kept(void **state) {
-  (void)state;
+TEST(a_file_changed_meanwhile_is_kept) {
   start("", 24, 100);
   expect("n_d 1.535296");
   type(DOWN DOWN DOWN RIGHT, "n_d 1.535396");
@@ -224,8 +222,7 @@ static void a_file_changed_meanwhile_is_kept(void **state) {
   check_file(other);
 }
 
-static void the_window_may_change_its_size(void **state) {
-  (void)state;
+TEST(the_window_may_change_its_size) {
   start("", 32, 110);
   expect("n over wavelength");
   set_size(6, 30);
@@ -242,8 +239,7 @@ static void the_window_may_change_its_size(void **state) {
   assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
-static void signals_leave_the_terminal_as_it_was(void **state) {
-  (void)state;
+TEST(signals_leave_the_terminal_as_it_was) {
   const int ends[] = {SIGTERM, SIGHUP, SIGINT, SIGQUIT};
   for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
     start("", 24, 80);
@@ -265,8 +261,7 @@ static void signals_leave_the_terminal_as_it_was(void **state) {
   }
 }
 
-static void it_ends_with_its_terminal(void **state) {
-  (void)state;
+TEST(it_ends_with_its_terminal) {
   start("", 24, 80);
   expect("n_d 1.535296");
   close(slave);
@@ -281,8 +276,7 @@ static void it_ends_with_its_terminal(void **state) {
   }
 }
 
-static void a_terminal_of_lines_is_refused(void **state) {
-  (void)state;
+TEST(a_terminal_of_lines_is_refused) {
   terminal = "dumb";
   start("", 24, 80);
   expect("there is no terminal to draw on");
@@ -295,8 +289,7 @@ static void a_terminal_of_lines_is_refused(void **state) {
   close(master);
 }
 
-static void without_a_terminal_it_says_so(void **state) {
-  (void)state;
+TEST(without_a_terminal_it_says_so) {
   const struct {
     const char *arguments, *part;
     int code;
@@ -319,21 +312,4 @@ static void without_a_terminal_it_says_so(void **state) {
   }
   assert_int_equal(run_line("\"$abbe\" materials edit --help"), 0);
   assert_contains(run_output, "  abbe materials edit k5 --table glasses.yaml");
-}
-
-#define with_table(test) cmocka_unit_test_setup_teardown(test, set_up, run_teardown)
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      with_table(values_are_edited_live_and_saved),
-      with_table(warnings_and_complaints_are_shown),
-      with_table(leaving_asks_where_something_would_be_lost),
-      with_table(a_file_changed_meanwhile_is_kept),
-      with_table(the_window_may_change_its_size),
-      with_table(signals_leave_the_terminal_as_it_was),
-      with_table(it_ends_with_its_terminal),
-      with_table(a_terminal_of_lines_is_refused),
-      with_table(without_a_terminal_it_says_so),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

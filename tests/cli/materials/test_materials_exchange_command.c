@@ -9,8 +9,9 @@ static void runs(const char *line, const char *said) {
   if (strstr(run_errors, said) == NULL) fail_msg("'%s' is not in: %s", said, run_errors);
 }
 
-static void a_table_goes_out_and_comes_back(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(a_table_goes_out_and_comes_back) {
   runs(M "export --to yaml -o copy.yaml", "58 materials in copy.yaml");
   runs(M "import copy.yaml -o again.yaml && cmp copy.yaml again.yaml && rm again.yaml",
        "58 materials in again.yaml");
@@ -39,8 +40,7 @@ static void a_table_goes_out_and_comes_back(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void notes_are_numbers_for_a_program(void **state) {
-  (void)state;
+TEST(notes_are_numbers_for_a_program) {
   runs("printf 'NM A 99\\nNM B 2 0 1.5 60\\nCD 1 0.01\\nLD 0.3 2\\n' >c.agf; " M
        "import c.agf -o c.yaml --json && rm c.agf c.yaml",
        "");
@@ -51,8 +51,7 @@ static void notes_are_numbers_for_a_program(void **state) {
 }
 
 /* A folder in one command, into a store that every verb reads. */
-static void a_folder_becomes_a_store(void **state) {
-  (void)state;
+TEST(a_folder_becomes_a_store) {
   runs("mkdir -p d/one/nk d/two/nk; for m in one two; do for f in Ann Zoe; do printf "
        "'REFERENCES: r\\nCOMMENTS: 20 C\\nDATA:\\n- {type: formula 5, wavelength_range: 0.3 0.9, "
        "coefficients: 1.5 0.004 -2}\\n' >d/$m/nk/$f.yml; done; done; cp "
@@ -113,8 +112,7 @@ static void a_folder_becomes_a_store(void **state) {
 #undef T
 }
 
-static void names_may_get_a_prefix(void **state) {
-  (void)state;
+TEST(names_may_get_a_prefix) {
   runs(M "import \"$house/docs/examples/maker.agf\" --prefix maker-", "5 materials");
   assert_contains(run_output, "name: maker-N-BK7\n");
   runs("printf 'nm,n\n500,1.5\n600,1.4\n' >a.csv; " M "import a.csv --name x --prefix 'my '", "");
@@ -122,8 +120,7 @@ static void names_may_get_a_prefix(void **state) {
   runs("rm a.csv", "");
 }
 
-static void wrong_requests_get_a_sentence(void **state) {
-  (void)state;
+TEST(wrong_requests_get_a_sentence) {
   const struct {
     const char *line;
     int code;
@@ -159,15 +156,4 @@ static void wrong_requests_get_a_sentence(void **state) {
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
     right = run_refuses(rows[i].line, rows[i].code, rows[i].part) && right;
   assert_true(right);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_table_goes_out_and_comes_back),
-      cmocka_unit_test(notes_are_numbers_for_a_program),
-      cmocka_unit_test(a_folder_becomes_a_store),
-      cmocka_unit_test(names_may_get_a_prefix),
-      cmocka_unit_test(wrong_requests_get_a_sentence),
-  };
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

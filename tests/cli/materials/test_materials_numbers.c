@@ -35,8 +35,9 @@ static abbe_material_table record_of(const char *line) {
 
 /* ---- list and show ---- */
 
-static void lists_are_filtered_sorted_and_cut_into_columns(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(lists_are_filtered_sorted_and_cut_into_columns) {
   answers("$abbe materials list --nd 1.5:1.6 --vd 60:70 --sort n_d --columns name,v_d", 0,
           "name        V_d\nn-bk7     64.17\nquartz    69.69\namethyst  69.69\n"
           "citrine   69.69\n");
@@ -51,8 +52,7 @@ static void lists_are_filtered_sorted_and_cut_into_columns(void **state) {
   cJSON_Delete(json);
 }
 
-static void show_tells_all_that_is_known(void **state) {
-  (void)state;
+TEST(show_tells_all_that_is_known) {
   answers("$abbe materials show f2 --at 400", 0, "P_gF 0.5828");
   assert_contains(run_output, "printed       n_d 1.62004 (here +1e-07) V_d 36.37");
   assert_contains(run_output, "rms error 0.000468, largest 0.00184 at 380 nm");
@@ -75,8 +75,7 @@ static void show_tells_all_that_is_known(void **state) {
 /* ---- nearest ---- */
 
 /* A conductor has n, k and what it reflects; what is of glasses alone is left out or refused. */
-static void metals_are_told_by_n_and_k(void **state) {
-  (void)state;
+TEST(metals_are_told_by_n_and_k) {
   answers("$abbe materials show silver --at 582.1", 0, "582.1    0.050000    3.858000    0.987490");
   assert_null(strstr(run_output, "V_d"));
   assert_null(strstr(run_output, "nan"));
@@ -111,8 +110,7 @@ static void metals_are_told_by_n_and_k(void **state) {
     assert_true(run_refuses(refused[i].line, 1, refused[i].part));
 }
 
-static void nearest_finds_by_numbers_curve_and_points(void **state) {
-  (void)state;
+TEST(nearest_finds_by_numbers_curve_and_points) {
   cJSON *json = run_json("$abbe materials nearest --nd 1.517 --vd 64.2 --count 2 --json", 0);
   assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "nearest")), 2);
   assert_string_equal(text(first(json, "nearest"), "name"), "n-bk7");
@@ -134,8 +132,7 @@ static void nearest_finds_by_numbers_curve_and_points(void **state) {
 
 /* ---- check ---- */
 
-static void check_finds_the_four_wrong_rows_of_the_thesis(void **state) {
-  (void)state;
+TEST(check_finds_the_four_wrong_rows_of_the_thesis) {
   cJSON *json = run_json("$abbe materials check --table thesis --json", 3);
   assert_near(json_number(json, "wrong"), 4, 0);
   assert_near(json_number(json, "doubtful"), 0, 0);
@@ -151,8 +148,7 @@ static void check_finds_the_four_wrong_rows_of_the_thesis(void **state) {
   answers("$abbe materials check", 0, "0 wrong, 0 doubtful");
 }
 
-static void fix_changes_a_copy_and_leaves_the_rest(void **state) {
-  (void)state;
+TEST(fix_changes_a_copy_and_leaves_the_rest) {
   answers("cp $house/spectral/materials/thesis.yaml t.yaml\n"
           "$abbe materials check --table t.yaml --fix --dry-run && cmp t.yaml "
           "$house/spectral/materials/thesis.yaml",
@@ -165,8 +161,7 @@ static void fix_changes_a_copy_and_leaves_the_rest(void **state) {
 }
 
 /* What is only to know stands in one line of each kind, however many rows it is about. */
-static void notes_of_many_rows_are_one_line(void **state) {
-  (void)state;
+TEST(notes_of_many_rows_are_one_line) {
   answers(
       "{ echo materials:; for i in $(seq 200); do echo \"- {name: g$i, model: cauchy, "
       "coefficients: [1.$((1000 + 7 * i)), 0.004], range_nm: [400, 700], source: book}\"; done; "
@@ -182,8 +177,7 @@ static void notes_of_many_rows_are_one_line(void **state) {
   cJSON_Delete(json);
 }
 
-static void unreadable_records_do_not_stop_a_check(void **state) {
-  (void)state;
+TEST(unreadable_records_do_not_stop_a_check) {
   answers("printf 'materials:\\n- {name: a, model: cachy, source: s}\\n"
           "- {name: b, model: cauchy, coefficients: [1.5046, 4200], range_nm: [380, 780], "
           "source: book}\\n' >s.yaml; $abbe materials check --table s.yaml",
@@ -195,8 +189,7 @@ static void unreadable_records_do_not_stop_a_check(void **state) {
 
 /* ---- fit ---- */
 
-static void fits_come_with_their_errors(void **state) {
-  (void)state;
+TEST(fits_come_with_their_errors) {
   answers("$abbe materials fit n-bk7 --terms 3", 0, "largest error  0.000157 at 380 nm");
   assert_contains(run_output, "401 points from 380 to 780 nm");
   assert_contains(run_output, "covariance");
@@ -226,8 +219,7 @@ static void fits_come_with_their_errors(void **state) {
   "486.13,1.52238,2e-5\\n546.07,1.51871,2e-5\\n587.56,1.51681,2e-5\\n656.27,1.51431,2e-5\\n"       \
   "706.52,1.51289,2e-5\\n' >m.csv\n"
 
-static void measured_points_are_fitted_and_drawn(void **state) {
-  (void)state;
+TEST(measured_points_are_fitted_and_drawn) {
   answers(POINTS "$abbe materials fit --points m.csv --terms 3 --residuals --plot m.png && "
                  "head -c 4 m.png | tail -c 3",
           0, "in uncertainties");
@@ -250,8 +242,7 @@ static void measured_points_are_fitted_and_drawn(void **state) {
 
 /* ---- from ---- */
 
-static void two_numbers_make_a_record(void **state) {
-  (void)state;
+TEST(two_numbers_make_a_record) {
   const struct {
     const char *arguments;
     double n_d, v_d;
@@ -285,8 +276,7 @@ static void two_numbers_make_a_record(void **state) {
 
 /* ---- wrong use ---- */
 
-static void wrong_input_gets_a_sentence(void **state) {
-  (void)state;
+TEST(wrong_input_gets_a_sentence) {
   static const struct {
     const char *line;
     int code;
@@ -352,8 +342,7 @@ static void wrong_input_gets_a_sentence(void **state) {
   assert_true(good);
 }
 
-static void every_verb_helps_by_example(void **state) {
-  (void)state;
+TEST(every_verb_helps_by_example) {
   const char *const verbs[] = {"list", "show", "nearest", "check", "fit", "from"};
   for (size_t i = 0; i < sizeof verbs / sizeof verbs[0]; i++) {
     char line[100], part[100];
@@ -363,23 +352,4 @@ static void every_verb_helps_by_example(void **state) {
   }
   answers("$abbe materials --help", 0, verbs[0]);
   for (size_t i = 1; i < sizeof verbs / sizeof verbs[0]; i++) assert_contains(run_output, verbs[i]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(lists_are_filtered_sorted_and_cut_into_columns),
-      cmocka_unit_test(show_tells_all_that_is_known),
-      cmocka_unit_test(metals_are_told_by_n_and_k),
-      cmocka_unit_test(nearest_finds_by_numbers_curve_and_points),
-      cmocka_unit_test(check_finds_the_four_wrong_rows_of_the_thesis),
-      cmocka_unit_test(fix_changes_a_copy_and_leaves_the_rest),
-      cmocka_unit_test(notes_of_many_rows_are_one_line),
-      cmocka_unit_test(unreadable_records_do_not_stop_a_check),
-      cmocka_unit_test(fits_come_with_their_errors),
-      cmocka_unit_test(measured_points_are_fitted_and_drawn),
-      cmocka_unit_test(two_numbers_make_a_record),
-      cmocka_unit_test(wrong_input_gets_a_sentence),
-      cmocka_unit_test(every_verb_helps_by_example),
-  };
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

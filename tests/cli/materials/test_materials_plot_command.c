@@ -17,8 +17,9 @@ static void check_picture(const char *name, size_t width, size_t height) {
   unlink(path);
 }
 
-static void pictures_are_made(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(pictures_are_made) {
   assert_int_equal(run_line(PLOT "n-bk7 f2 -o a.png"), 0);
   check_picture("a.png", 960, 600);
   assert_int_equal(run_line(PLOT "rutile --fits --size 400x300 --range 300:900 -o a.png"), 0);
@@ -36,8 +37,7 @@ static void pictures_are_made(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void wrong_use_gets_a_sentence(void **state) {
-  (void)state;
+TEST(wrong_use_gets_a_sentence) {
   const struct {
     const char *line, *part;
     int code;
@@ -60,12 +60,4 @@ static void wrong_use_gets_a_sentence(void **state) {
     assert_true(run_refuses(cases[i].line, cases[i].code, cases[i].part));
   assert_int_equal(run_line(PLOT "--help"), 0);
   assert_contains(run_output, "  abbe materials plot n-bk7 f2 sf11 -o glasses.png");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(pictures_are_made),
-      cmocka_unit_test(wrong_use_gets_a_sentence),
-  };
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

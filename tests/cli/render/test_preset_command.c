@@ -17,8 +17,9 @@ static const cJSON *item(const cJSON *json, const char *key) {
   return json_item(json_item(json, "promise"), key);
 }
 
-static void test_by_name(void **state) {
-  (void)state;
+EACH(run_setup, run_teardown);
+
+TEST(by_name) {
   assert_int_equal(run_line(PRESETS), 0);
   cJSON *json = run_json(GEM "--presets p.yaml --preset balanced --json -q", 0);
   assert_string_equal(cJSON_GetStringValue(item(json, "preset")), "balanced");
@@ -50,8 +51,7 @@ static void test_by_name(void **state) {
   cJSON_Delete(json);
 }
 
-static void test_by_error_and_by_time(void **state) {
-  (void)state;
+TEST(by_error_and_by_time) {
   assert_int_equal(run_line(PRESETS), 0);
   cJSON *json = run_json(GEM "--presets p.yaml --max-error 5 --json -q", 0);
   assert_near(cJSON_GetNumberValue(item(json, "error")), 4, 0);
@@ -82,8 +82,7 @@ static void test_by_error_and_by_time(void **state) {
   assert_contains(run_errors, "these are the fastest");
 }
 
-static void test_what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   static const struct {
     const char *line, *part;
     int code;
@@ -114,8 +113,7 @@ static void test_what_is_refused(void **state) {
 
 /* With a time, passes tell the error where time is left, and else it is said to be expected. An age
  * is left here, or nothing. */
-static void test_what_a_budget_tells(void **state) {
-  (void)state;
+TEST(what_a_budget_tells) {
   assert_int_equal(run_line(PICTURES), 0);
   assert_int_equal(run_line("sed 's/    trace:/    trace-filter:/' q.yaml >f.yaml"), 0);
   static const struct {
@@ -149,8 +147,7 @@ static void test_what_a_budget_tells(void **state) {
   assert_int_equal(run_line("rm q.yaml f.yaml"), 0);
 }
 
-static void test_what_makes_the_picture(void **state) {
-  (void)state;
+TEST(what_makes_the_picture) {
   assert_int_equal(run_line(PICTURES), 0);
   cJSON *json = run_json(GEM "--presets q.yaml --max-error 12 --tool trace --json -o a.exr", 0);
   assert_string_equal(cJSON_GetStringValue(item(json, "for")), "picture");
@@ -233,8 +230,7 @@ static void test_what_makes_the_picture(void **state) {
 }
 
 /* Presets of a small sweep of its own, and a sweep that holds the shipped ones to their word. */
-static void test_presets_of_a_sweep(void **state) {
-  (void)state;
+TEST(presets_of_a_sweep) {
   int code =
       run_line("\"$abbe\" sweep \"$house\"/scenes/gem.yaml -q --size 24x24 --frames 1 --spp 2 "
                "--traced-photons 20000 --texels 16 --map 64 --samples 1 --wavelengths 3 "
@@ -253,16 +249,4 @@ static void test_presets_of_a_sweep(void **state) {
   assert_true(run_line("rm s.csv s-reference*.exr p.yaml") == 0);
   assert_true(run_refuses("\"$abbe\" sweep a.yaml -o s.csv --write-presets p.yaml", 2,
                           "--write-presets reads tables"));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup_teardown(test_by_name, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_by_error_and_by_time, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_what_makes_the_picture, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_what_a_budget_tells, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_what_is_refused, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_presets_of_a_sweep, run_setup, run_teardown),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

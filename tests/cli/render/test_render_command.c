@@ -34,8 +34,9 @@ static void assert_statistics(const char *text) {
   cJSON_Delete(json);
 }
 
-static void test_statistics_as_json(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(statistics_as_json) {
   assert_int_equal(run_line(GEM " --stats stats.json && cat stats.json && rm stats.json"), 0);
   assert_statistics(run_output);
   assert_int_equal(run_line(GEM " --stats -"), 0); /* as --json */
@@ -45,8 +46,7 @@ static void test_statistics_as_json(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void test_the_plan_as_json(void **state) {
-  (void)state;
+TEST(the_plan_as_json) {
   cJSON *json = run_json("\"$abbe\" plan \"$house\"/scenes/gem.yaml --json", 0);
   const cJSON *plan = cJSON_GetObjectItemCaseSensitive(json, "plan"), *entry;
   assert_true(cJSON_GetArraySize(plan) > 10);
@@ -74,8 +74,7 @@ static void test_the_plan_as_json(void **state) {
   assert_contains(run_output, "What does not run:");
 }
 
-static void test_pictures_are_written(void **state) {
-  (void)state;
+TEST(pictures_are_written) {
   char path[128];
   abbe_image image = {0};
   abbe_error error = {0};
@@ -102,8 +101,7 @@ static void test_pictures_are_written(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void test_a_map_like_another(void **state) {
-  (void)state;
+TEST(a_map_like_another) {
   assert_int_equal(run_line(GEM
                             " -q --save-map a.exr && \"$abbe\" render \"$house\"/scenes/gem.yaml "
                             "--size 32x24 --photons 32 -q --map-like a.exr --save-map b.exr && "
@@ -133,8 +131,7 @@ static void test_a_map_like_another(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void test_error_bars(void **state) {
-  (void)state;
+TEST(error_bars) {
   char path[128];
   abbe_image image = {0};
   abbe_error error = {0};
@@ -177,8 +174,7 @@ static void test_error_bars(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void test_every_command_has_help(void **state) {
-  (void)state;
+TEST(every_command_has_help) {
   static const char *const commands[] = {"render",  "plan", "weights", "materials",
                                          "display", "info", "compare"};
   assert_int_equal(run_line("\"$abbe\" help"), 0);
@@ -210,8 +206,7 @@ static pid_t start_long_render(int fd) {
 }
 
 /* The note on the preset is printed when the frame is about to begin. */
-static void test_ctrl_c_stops_cleanly(void **state) {
-  (void)state;
+TEST(ctrl_c_stops_cleanly) {
   int pipes[2], status = 0;
   assert_int_equal(pipe(pipes), 0);
   pid_t child = start_long_render(pipes[1]);
@@ -230,14 +225,4 @@ static void test_ctrl_c_stops_cleanly(void **state) {
   assert_int_equal(WEXITSTATUS(status), 1);
   assert_contains(run_errors, "cancelled");
   assert_int_equal(run_left(), 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_statistics_as_json),     cmocka_unit_test(test_the_plan_as_json),
-      cmocka_unit_test(test_pictures_are_written),   cmocka_unit_test(test_a_map_like_another),
-      cmocka_unit_test(test_every_command_has_help), cmocka_unit_test(test_error_bars),
-      cmocka_unit_test(test_ctrl_c_stops_cleanly),
-  };
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

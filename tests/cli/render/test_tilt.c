@@ -20,9 +20,10 @@ static double height(const char *options) {
   return ends[1] - ends[0];
 }
 
+GROUP(run_setup, run_teardown);
+
 /* A round stone lying on its side is as high as it is wide, 8 mm at least, about any axis. */
-static void a_stone_is_tilted(void **state) {
-  (void)state;
+TEST(a_stone_is_tilted) {
   const double level = height("");
   assert_int_in_range((int)(1e6 * level), 5000, 6500);
   assert_near(height("--tilt 0"), level, 0);
@@ -31,8 +32,7 @@ static void a_stone_is_tilted(void **state) {
   assert_true(height("--tilt 10") > level + 1e-4);
 }
 
-static void what_is_no_tilt(void **state) {
-  (void)state;
+TEST(what_is_no_tilt) {
 #define PLAN "\"$abbe\" plan "
   assert_true(run_refuses(PLAN STONE "--tilt steep", 2, "--tilt"));
   assert_true(run_refuses(PLAN STONE "--tilt 10,", 2, "--tilt"));
@@ -40,12 +40,4 @@ static void what_is_no_tilt(void **state) {
   assert_true(run_refuses(PLAN STONE "--tilt 400", 2, "--tilt"));
   assert_true(run_refuses(PLAN STONE "--tilt ''", 2, "--tilt"));
   assert_true(run_refuses(PLAN "\"$house\"/scenes/gem.yaml --tilt 1e99", 2, "--tilt"));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_stone_is_tilted),
-      cmocka_unit_test(what_is_no_tilt),
-  };
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

@@ -18,8 +18,9 @@ static const char pool[] =
 #define RENDER LOUD "-q "
 #define TRACE "\"$abbe\" trace pool.yaml --size 8x8 --spp 2 --photons 512 -q "
 
-static void frames_and_what_moves(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(frames_and_what_moves) {
   run_must(pool);
   run_must(RENDER "--frames 2:5 --fps 4 --png t.png -o t.exr && ls t*");
   assert_string_equal(run_output, "t-0002.exr\nt-0002.png\nt-0003.exr\nt-0003.png\nt-0004.exr\n"
@@ -50,8 +51,7 @@ static void frames_and_what_moves(void **state) {
 
 /* Frames of another size, seed or scene are not kept, which is said; those of the same request are,
  * whatever part or number of threads has made them. */
-static void what_made_a_frame_is_known(void **state) {
-  (void)state;
+TEST(what_made_a_frame_is_known) {
 #define SEEDED "\"$abbe\" trace pool.yaml --spp 1 --photons 512 -q --frames 0:2 -o s.exr "
   run_must(pool);
   run_must(SEEDED "--size 8x8 --seed 1 && cp s-0001.exr one.exr");
@@ -80,8 +80,7 @@ static void what_made_a_frame_is_known(void **state) {
 }
 
 /* What moves is halfway on the middle frame, and where it begins and ends on the others. */
-static void what_is_moved(void **state) {
-  (void)state;
+TEST(what_is_moved) {
   run_must(RENDER "--frames 2:5 --fps 4 --move 'camera.eye=[0, -0.5, 0.5]:[0.25, -0.5, 0.5]' "
                   "--move camera.fov=20:30 -o m.exr");
   run_must(RENDER "--at 0.75 --set camera.eye=[0.125,-0.5,0.5] --set camera.fov=25 -o one.exr && "
@@ -93,8 +92,7 @@ static void what_is_moved(void **state) {
   run_must("rm m* one.exr");
 }
 
-static void parts_are_put_together(void **state) {
-  (void)state;
+TEST(parts_are_put_together) {
   run_must(RENDER "--frames 0:4 --fps 4 --png t.png && " RENDER
                   "--frames 0:4 --fps 4 --png u.png --part 1/2 && " RENDER
                   "--frames 0:4 --fps 4 --png u.png --part 0/2 && " RENDER
@@ -102,8 +100,7 @@ static void parts_are_put_together(void **state) {
   run_must("rm t* u*");
 }
 
-static void traced_frames(void **state) {
-  (void)state;
+TEST(traced_frames) {
   run_must(TRACE "--frames 1:3 --fps 2 --png t.png -o t.exr && ls t*");
   assert_string_equal(run_output, "t-0001.exr\nt-0001.png\nt-0002.exr\nt-0002.png\nt.png\n");
   run_must(TRACE "--at 0.5 -o one.exr && \"$abbe\" compare one.exr t-0001.exr --tolerance "
@@ -120,8 +117,7 @@ static void traced_frames(void **state) {
 #define GEM "\"$abbe\" render \"$house\"/scenes/gem.yaml "
 #define GEM_TRACE "\"$abbe\" trace \"$house\"/scenes/gem.yaml "
 
-static void what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   assert_true(run_refuses(GEM "--frames 4:4 --png t.png", 2, "are no frames"));
   assert_true(run_refuses(GEM "--frames 4: --png t.png", 2, "--frames"));
   assert_true(run_refuses(GEM "--frames 0:4 --json", 2, "--frames A:B writes frames"));
@@ -136,14 +132,4 @@ static void what_is_refused(void **state) {
   assert_true(run_refuses(GEM_TRACE "--frames 0:4 --json", 2, "--frames writes frames"));
   assert_true(run_refuses(GEM_TRACE "--frames 0:4 -o t.exr --merge a b", 2, "goes without"));
   assert_true(run_refuses(GEM_TRACE "--fps 4 -o t.exr", 2, "--fps goes with --frames"));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(frames_and_what_moves),  cmocka_unit_test(what_is_moved),
-      cmocka_unit_test(what_made_a_frame_is_known),
-      cmocka_unit_test(parts_are_put_together), cmocka_unit_test(traced_frames),
-      cmocka_unit_test(what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

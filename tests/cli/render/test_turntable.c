@@ -3,8 +3,9 @@
 
 #define GEM "\"$abbe\" render \"$house\"/scenes/gem.yaml --size 16x16 --photons 16 --map 64 -q "
 
-static void frames_and_what_moves(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(frames_and_what_moves) {
   if (run_line(GEM "--turntable 4 --fps 10 --png t.png -o t.exr && ls t*") != 0)
     fail_msg("%s", run_errors);
   assert_string_equal(run_output, "t-0001.exr\nt-0001.png\nt-0002.exr\nt-0002.png\nt-0003.exr\n"
@@ -20,8 +21,7 @@ static void frames_and_what_moves(void **state) {
 }
 
 /* Two processes that draw every other frame make what one makes. */
-static void parts_are_put_together(void **state) {
-  (void)state;
+TEST(parts_are_put_together) {
   if (run_line(GEM "--turntable 5 --fps 10 --png t.png") != 0) fail_msg("%s", run_errors);
   if (run_line(GEM "--turntable 5 --png u.png --part 0/2 & " GEM
                    "--turntable 5 --png u.png --part 1/2; wait; ls u*") != 0)
@@ -41,21 +41,11 @@ static void parts_are_put_together(void **state) {
   assert_true(run_refuses(GEM "--png u.png --part 0/2", 2, "goes with --turntable"));
 }
 
-static void what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   assert_true(run_refuses(GEM "--turntable 1 --png t.png", 2, "--turntable"));
   assert_true(run_refuses(GEM "--fps 5 --png t.png", 2, "--fps goes with --turntable"));
   assert_true(run_refuses(GEM "--turntable 4 --json", 2, "--turntable writes frames"));
   assert_true(run_refuses(GEM "--turntable 4 --png t.png --error-bars", 2, "goes without"));
   assert_true(run_refuses(GEM "--turntable 4 --png t.png --max-error 3 --tool trace", 2,
                           "--turntable is for the renderer alone"));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(frames_and_what_moves),
-      cmocka_unit_test(parts_are_put_together),
-      cmocka_unit_test(what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

@@ -20,8 +20,9 @@ static void run_well(const char *line) {
   if (code != 0) fail_msg("%s ends with %d: %s", line, code, run_errors);
 }
 
-static void test_rows_are_measured_once(void **state) {
-  (void)state;
+EACH(run_setup, run_teardown);
+
+TEST(rows_are_measured_once) {
   abbe_sweep_table first = {0}, second = {0};
   run_well("ulimit -s 256 && " TWO);
   assert_contains(run_output, "2 settings");
@@ -52,8 +53,7 @@ static void test_rows_are_measured_once(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void test_the_thesis_beside_it(void **state) {
-  (void)state;
+TEST(the_thesis_beside_it) {
   cJSON *json = run_json(
       SWEEP "--profiles default,thesis,thesis-cie --wavelengths 7 --photons 32 --fill none "
             "-o s.csv --json",
@@ -79,8 +79,7 @@ static void test_the_thesis_beside_it(void **state) {
 }
 
 /* Full and matched physics: what the model leaves out is a fact of the table, and said. */
-static void test_the_error_is_decomposed(void **state) {
-  (void)state;
+TEST(the_error_is_decomposed) {
   /* The references alone first: the sweep takes them as they are. */
   run_well(SWEEP "-o s.csv --decompose --trace-only && ! test -e s.csv && sha1sum s-*.exr >sums");
   run_well(SWEEP "--profiles default --wavelengths 7 --photons 16 -o s.csv --decompose");
@@ -103,8 +102,7 @@ static void test_the_error_is_decomposed(void **state) {
                           "--decompose traces full and matched physics"));
 }
 
-static void test_given_references(void **state) {
-  (void)state;
+TEST(given_references) {
   run_well("\"$abbe\" render \"$house\"/scenes/gem.yaml -q --size 24x24 --photons 32 --map 64 "
            "--aovs -o r.exr --save-map m.exr");
   cJSON *json =
@@ -120,8 +118,7 @@ static void test_given_references(void **state) {
 }
 
 /* Each process has every other setting; all tables together are the whole. */
-static void test_parts_are_joined(void **state) {
-  (void)state;
+TEST(parts_are_joined) {
   abbe_sweep_table table = {0};
 #define PART(k)                                                                                    \
   "\"$abbe\" sweep \"$house\"/scenes/gem.yaml -q --frames 1 --reference r.exr "                    \
@@ -146,8 +143,7 @@ static void test_parts_are_joined(void **state) {
 }
 
 /* Stopped in the middle: the rows so far are kept, and the same command goes on. */
-static void test_ctrl_c_keeps_what_is_done(void **state) {
-  (void)state;
+TEST(ctrl_c_keeps_what_is_done) {
   abbe_sweep_table table = {0};
   int code = run_line(
       SWEEP "--profiles default --wavelengths 7,9,11,13,15,17,19,21 --photons 64,72,80,800 "
@@ -162,8 +158,7 @@ static void test_ctrl_c_keeps_what_is_done(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void test_what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   static const struct {
     const char *line, *part;
     int code;
@@ -203,8 +198,7 @@ static void test_what_is_refused(void **state) {
 }
 
 /* A page and its pictures stand beside what a table is of, and are written over none of it. */
-static void test_a_report_overwrites_nothing(void **state) {
-  (void)state;
+TEST(a_report_overwrites_nothing) {
   abbe_sweep_table table = {0};
   abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_SCENE, "gem.yaml");
   abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_REFERENCE, "s-gem-reference.png");
@@ -227,18 +221,4 @@ static void test_a_report_overwrites_nothing(void **state) {
   /* Two tables of scenes of one name: each has pictures of its own. */
   run_well("\"$abbe\" sweep a.csv b.csv --report r.md && rm a.csv b.csv r.md");
   assert_int_equal(run_left(), 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup_teardown(test_rows_are_measured_once, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_the_thesis_beside_it, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_the_error_is_decomposed, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_given_references, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_parts_are_joined, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_ctrl_c_keeps_what_is_done, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_what_is_refused, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_a_report_overwrites_nothing, run_setup, run_teardown),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

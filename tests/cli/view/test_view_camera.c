@@ -18,8 +18,7 @@ static void assert_point(const double p[3], double x, double y, double z) {
   assert_near(p[2], z, tolerance);
 }
 
-static void test_orbits_end_at_known_places(void **state) {
-  (void)state;
+TEST(orbits_end_at_known_places) {
   abbe_camera c = straight();
   abbe_view_camera_orbit(&c, 90 * DEGREES, 0);
   assert_point(c.eye, 2, 0, 0);
@@ -30,8 +29,7 @@ static void test_orbits_end_at_known_places(void **state) {
   assert_point(c.eye, 2, 0, 0);
 }
 
-static void test_no_move_reaches_the_pole(void **state) {
-  (void)state;
+TEST(no_move_reaches_the_pole) {
   abbe_camera c = straight();
   for (int i = 0; i < 5; i++) abbe_view_camera_orbit(&c, 1, 1);
   assert_near(c.eye[2], 2 * sin(89 * DEGREES), tolerance);
@@ -42,8 +40,7 @@ static void test_no_move_reaches_the_pole(void **state) {
   assert_true(abbe_vector_finite(above.eye) && above.eye[2] < 1.5);
 }
 
-static void test_looking_about_keeps_the_eye(void **state) {
-  (void)state;
+TEST(looking_about_keeps_the_eye) {
   abbe_camera c = straight();
   abbe_view_camera_look(&c, 90 * DEGREES, 0);
   assert_point(c.eye, 0, -2, 0);
@@ -52,8 +49,7 @@ static void test_looking_about_keeps_the_eye(void **state) {
   assert_point(c.target, sqrt(2), -2, sqrt(2));
 }
 
-static void test_pan_zoom_and_fly(void **state) {
-  (void)state;
+TEST(pan_zoom_and_fly) {
   abbe_camera c = straight();
   abbe_view_camera_pan(&c, 0.5, 0.25); /* the picture shows 4 m at 2 m */
   assert_point(c.eye, 2, -2, 1);
@@ -66,8 +62,7 @@ static void test_pan_zoom_and_fly(void **state) {
   assert_point(c.target, 1, 3, 2);
 }
 
-static void test_points_show_where_they_should(void **state) {
-  (void)state;
+TEST(points_show_where_they_should) {
   const abbe_camera c = straight();
   double xy[2];
   assert_true(abbe_view_camera_project(&c, 400, 200, (const double[3]){0, 0, 0}, xy));
@@ -80,8 +75,7 @@ static void test_points_show_where_they_should(void **state) {
 }
 
 /* A point that is dragged shows where the pointer is. */
-static void test_what_is_dragged_follows(void **state) {
-  (void)state;
+TEST(what_is_dragged_follows) {
   abbe_camera c = straight();
   abbe_view_camera_orbit(&c, 0.7, 0.5);
   const double p[3] = {0.3, 0.2, -0.1};
@@ -101,8 +95,7 @@ static void test_what_is_dragged_follows(void **state) {
   assert_near(shown[1], to[1], 1.0); /* upright lines lean by perspective */
 }
 
-static void test_drags_above_the_horizon_move_nothing(void **state) {
-  (void)state;
+TEST(drags_above_the_horizon_move_nothing) {
   const abbe_camera c = straight();
   const double p[3] = {0, 0, -1}, from[2] = {200, 150}, sky[2] = {200, 20};
   double moved[3];
@@ -112,15 +105,4 @@ static void test_drags_above_the_horizon_move_nothing(void **state) {
       .eye = {0, 0, 2}, .up = {0, 0, 1}, .target = {0.01, 0, 0}, .fov_y_rad = 1};
   assert_false(abbe_view_camera_drag(&down, 400, 200, ABBE_VIEW_DRAG_UPRIGHT, p, from, sky, moved));
   assert_point(moved, 0, 0, -1);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_orbits_end_at_known_places),
-                                     cmocka_unit_test(test_no_move_reaches_the_pole),
-                                     cmocka_unit_test(test_looking_about_keeps_the_eye),
-                                     cmocka_unit_test(test_pan_zoom_and_fly),
-                                     cmocka_unit_test(test_points_show_where_they_should),
-                                     cmocka_unit_test(test_what_is_dragged_follows),
-                                     cmocka_unit_test(test_drags_above_the_horizon_move_nothing)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

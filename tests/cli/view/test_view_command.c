@@ -10,8 +10,7 @@
 
 /* Opens the gem, turns it, makes it a diamond, drags the lamp, clicks the violet edge, keeps all.
  */
-static void the_story(void **state) {
-  (void)state;
+TEST(the_story) {
   run_must(VIEW "--size 532x256 --keep story --script " SCRIPTS "story.txt > said");
   /* the scene that was kept differs in what was changed, and draws the same picture */
   run_must("diff \"$house\"/scenes/gem.yaml story.yaml | grep -c '^>' > lines; grep -qx 4 lines");
@@ -27,8 +26,7 @@ static void the_story(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void what_is_wrong_is_said_and_the_picture_stays(void **state) {
-  (void)state;
+TEST(what_is_wrong_is_said_and_the_picture_stays) {
   run_must("cp \"$house\"/scenes/sphere.yaml scene.yaml; cp scene.yaml good.yaml");
   run_must("sed 's/radius:/radios:/' good.yaml > broken.yaml");
   run_must("sed 's/^ambient:.*/ambient: 1.5/' good.yaml > bright.yaml");
@@ -46,8 +44,7 @@ static void what_is_wrong_is_said_and_the_picture_stays(void **state) {
 
 /* The design is one of the scene's files: it is read again when it changes, and the scene is kept
  * where it finds it, however that folder is written. */
-static void a_design_is_a_file_of_the_scene(void **state) {
-  (void)state;
+TEST(a_design_is_a_file_of_the_scene) {
   run_must("mkdir in out && cp \"$house\"/scenes/designs/step-square.asc in/a.asc && "
            "\"$abbe\" gem retarget in/a.asc --crown 38 -o in/b.asc -q && "
            "sed 's/shape: gem/shape: cut/; s/girdle:.*/file: a.asc/; s/table:.*/width: 0.05/; "
@@ -66,8 +63,7 @@ static void a_design_is_a_file_of_the_scene(void **state) {
 }
 
 /* Its sliders begin at its own angles; the same angles are set for other commands. */
-static void a_design_is_recut(void **state) {
-  (void)state;
+TEST(a_design_is_recut) {
   run_must("cp \"$house\"/scenes/designs/step-square.asc . && sed 's/shape: gem/shape: cut/; "
            "s/girdle:.*/file: step-square.asc/; s/table:.*/width: 0.05/; /sides:/d; /crown:/d; "
            "/pavilion:/d' \"$house\"/scenes/gem.yaml > cut.yaml");
@@ -80,8 +76,7 @@ static void a_design_is_recut(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void what_is_shown_beside_the_picture(void **state) {
-  (void)state;
+TEST(what_is_shown_beside_the_picture) {
   run_must(VIEW "--last accurate --size 640x300 --script " SCRIPTS "shown.txt > said");
   /* pictures of which no two are alike */
   run_must("test $(cat caustic.png luminance.png distance.png map.png | wc -c) -gt 8000");
@@ -95,8 +90,7 @@ static void what_is_shown_beside_the_picture(void **state) {
 }
 
 /* A whole turn comes back to where it began, and what stood stands again. */
-static void a_turntable(void **state) {
-  (void)state;
+TEST(a_turntable) {
   run_must(
       "printf '%s\\n' 'wait accurate' 'remember hash first' 'key t' 'wait turntable' "
       "'assert note contains a-turn.png' 'wait accurate' 'assert hash = $first' 'key control+s' "
@@ -111,8 +105,7 @@ static void a_turntable(void **state) {
 }
 
 /* What was drawn in a context that is lost is drawn again in another, to the bit. */
-static void a_lost_context_is_made_good(void **state) {
-  (void)state;
+TEST(a_lost_context_is_made_good) {
   run_must("cp \"$house\"/scenes/sphere.yaml good.yaml");
   run_must("ABBE_LOST=lost LD_PRELOAD=" ABBE_LOST_CONTEXT " \"$abbe\" view good.yaml " FEW
            "--last accurate --size 500x200 --script " SCRIPTS "lost.txt");
@@ -123,8 +116,7 @@ static void a_lost_context_is_made_good(void **state) {
 
 /* The sun is dragged, and caustics are looked up there; rendering by the command that is said gives
  * the same picture. */
-static void caustics_are_looked_up(void **state) {
-  (void)state;
+TEST(caustics_are_looked_up) {
   run_must("cp \"$house\"/docs/examples/ball.yaml ball.yaml && \"$abbe\" volume ball.yaml -o v.exr "
            "--shells 6x12x12 --photons 20000 --passes 1 -q");
   run_must("printf '%s\\n' 'wait accurate' 'remember hash first' 'drag handle:sun 30,40' "
@@ -143,8 +135,7 @@ static void caustics_are_looked_up(void **state) {
 }
 
 /* Neither the scene nor the table beside it is lost by keeping, whatever the name is. */
-static void what_is_read_is_not_written_over(void **state) {
-  (void)state;
+TEST(what_is_read_is_not_written_over) {
   run_must("mkdir scenes; cp \"$house\"/scenes/sphere.yaml scenes/gem.yaml");
   run_must("cp scenes/gem.yaml other-view.yaml; ln scenes/gem.yaml link.yaml");
   run_must("cp scenes/gem.yaml before.yaml");
@@ -177,8 +168,7 @@ static void what_is_read_is_not_written_over(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void scripts_that_do_not_hold(void **state) {
-  (void)state;
+TEST(scripts_that_do_not_hold) {
   static const struct {
     const char *line, *sentence;
     int code;
@@ -214,23 +204,20 @@ static void scripts_that_do_not_hold(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
-static void without_a_display(void **state) {
-  (void)state;
+TEST(without_a_display) {
   assert_true(
       run_refuses("env -u DISPLAY -u WAYLAND_DISPLAY " VIEW, 1, "--script leads the viewer"));
 }
 
 #else
 
-static void it_says_what_to_install(void **state) {
-  (void)state;
+TEST(it_says_what_to_install) {
   assert_true(run_refuses(VIEW, 1, "install libglfw3-dev and libimgui-dev"));
 }
 
 #endif
 
-static void wrong_use(void **state) {
-  (void)state;
+TEST(wrong_use) {
   assert_true(run_refuses("\"$abbe\" view", 2, "which scene?"));
   assert_true(run_refuses(VIEW "--size 0x1", 2, "--size"));
   assert_true(run_refuses(VIEW "--last soon", 2, "--last"));
@@ -241,23 +228,4 @@ static void wrong_use(void **state) {
   assert_true(run_refuses(VIEW "--serve 0 --script a.txt", 2, "not both"));
 }
 
-int main(void) {
-  const struct CMUnitTest tests[] = {
-#ifdef ABBE_HAVE_VIEW
-      cmocka_unit_test(the_story),
-      cmocka_unit_test(what_is_wrong_is_said_and_the_picture_stays),
-      cmocka_unit_test(a_design_is_recut),
-      cmocka_unit_test(a_design_is_a_file_of_the_scene),
-      cmocka_unit_test(what_is_shown_beside_the_picture),
-      cmocka_unit_test(a_turntable),
-      cmocka_unit_test(a_lost_context_is_made_good),
-      cmocka_unit_test(caustics_are_looked_up),
-      cmocka_unit_test(what_is_read_is_not_written_over),
-      cmocka_unit_test(scripts_that_do_not_hold),
-      cmocka_unit_test(without_a_display),
-#else
-      cmocka_unit_test(it_says_what_to_install),
-#endif
-      cmocka_unit_test(wrong_use)};
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
-}
+GROUP(run_setup, run_teardown);

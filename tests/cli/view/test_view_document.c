@@ -15,8 +15,7 @@ static void set(abbe_view_document *d, const char *key, const char *value) {
   assert_int_equal(abbe_view_document_set(d, key, value, NULL), ABBE_OK);
 }
 
-static void test_a_key_has_one_value(void **state) {
-  (void)state;
+TEST(a_key_has_one_value) {
   abbe_view_document d = gem();
   set(&d, "ambient", "1");
   set(&d, "camera.fov", "30");
@@ -30,8 +29,7 @@ static void test_a_key_has_one_value(void **state) {
   abbe_view_document_free(&d);
 }
 
-static void test_one_change_too_many_is_refused(void **state) {
-  (void)state;
+TEST(one_change_too_many_is_refused) {
   abbe_view_document d = gem();
   abbe_error error = {0};
   char key[16];
@@ -47,8 +45,7 @@ static void test_one_change_too_many_is_refused(void **state) {
   abbe_view_document_free(&d);
 }
 
-static void test_points_are_what_is_written(void **state) {
-  (void)state;
+TEST(points_are_what_is_written) {
   double p[3] = {1.0 / 3, -2e-7 / 3, 123456.789};
   char text[96];
   abbe_view_document_point(p, text, sizeof text);
@@ -56,8 +53,7 @@ static void test_points_are_what_is_written(void **state) {
   assert_true(p[0] == 0.333333 && p[1] == -6.66667e-08 && p[2] == 123457);
 }
 
-static void test_what_differs(void **state) {
-  (void)state;
+TEST(what_differs) {
   abbe_view_document a = gem(), b = gem();
   assert_int_equal(abbe_view_document_compare(&a, &b), ABBE_VIEW_SAME);
   set(&a, "camera.eye", "[1, 0, 0]");
@@ -101,8 +97,7 @@ static const char *now(const abbe_view_history *h) {
   return abbe_view_document_value(abbe_view_history_now(h), "ambient");
 }
 
-static void test_there_and_back(void **state) {
-  (void)state;
+TEST(there_and_back) {
   static abbe_view_history h;
   abbe_view_document d = gem();
   assert_int_equal(abbe_view_history_begin(&h, &d, NULL), ABBE_OK);
@@ -126,8 +121,7 @@ static void test_there_and_back(void **state) {
   abbe_view_history_free(&h);
 }
 
-static void test_the_oldest_steps_are_forgotten(void **state) {
-  (void)state;
+TEST(the_oldest_steps_are_forgotten) {
   static abbe_view_history h;
   abbe_view_document d = gem();
   char value[16];
@@ -142,14 +136,4 @@ static void test_the_oldest_steps_are_forgotten(void **state) {
   assert_int_equal(steps, ABBE_VIEW_MOST_STEPS - 1);
   assert_string_equal(now(&h), "5");
   abbe_view_history_free(&h);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_key_has_one_value),
-                                     cmocka_unit_test(test_one_change_too_many_is_refused),
-                                     cmocka_unit_test(test_points_are_what_is_written),
-                                     cmocka_unit_test(test_what_differs),
-                                     cmocka_unit_test(test_there_and_back),
-                                     cmocka_unit_test(test_the_oldest_steps_are_forgotten)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,8 +17,7 @@ static void add(abbe_view_events *q, const char *text) {
 }
 
 /* A thousand moves are one; what a drag, a key or a turn of the wheel must find stays in order. */
-static void test_what_nobody_would_see_is_left_out(void **state) {
-  (void)state;
+TEST(what_nobody_would_see_is_left_out) {
   static abbe_view_events q;
   abbe_view_event e;
   char text[64];
@@ -61,8 +60,7 @@ static void test_what_nobody_would_see_is_left_out(void **state) {
 }
 
 /* As many as there may be wait in order, and no more. */
-static void test_the_queue_has_an_end(void **state) {
-  (void)state;
+TEST(the_queue_has_an_end) {
   static abbe_view_events q;
   const abbe_view_event down = event("down 0"), up = event("up 1");
   abbe_view_event e;
@@ -76,10 +74,4 @@ static void test_the_queue_has_an_end(void **state) {
     assert_int_equal(e.down, i < ABBE_VIEW_MOST_EVENTS - 10);
   }
   assert_int_equal(q.count, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_nobody_would_see_is_left_out),
-                                     cmocka_unit_test(test_the_queue_has_an_end)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

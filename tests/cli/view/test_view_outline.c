@@ -3,8 +3,7 @@
 
 #include <unistd.h>
 
-static void test_what_can_be_held_is_found(void **state) {
-  (void)state;
+TEST(what_can_be_held_is_found) {
   abbe_view_state *s = begun();
   const abbe_view_outline *o = &s->outline;
   assert_int_equal(o->light_count, 1);
@@ -24,8 +23,7 @@ static void test_what_can_be_held_is_found(void **state) {
 }
 
 /* Of a studio: its surroundings turn, and the angles of a cut are set. */
-static void test_a_studio_can_be_turned_and_its_stone_cut(void **state) {
-  (void)state;
+TEST(a_studio_can_be_turned_and_its_stone_cut) {
   char path[] = ABBE_SOURCE_DIR "/scenes/diamond-studio.yaml";
   static abbe_view_state s;
   memset(&s, 0, sizeof s);
@@ -55,8 +53,7 @@ static void test_a_studio_can_be_turned_and_its_stone_cut(void **state) {
 }
 
 /* Of a design its own angles are where the sliders begin, and their ends stay while it is recut. */
-static void test_a_design_begins_with_its_own_angles(void **state) {
-  (void)state;
+TEST(a_design_begins_with_its_own_angles) {
   const double turn = 3.14159265358979323846 / 180;
   char path[] = ABBE_SOURCE_DIR "/scenes/stone.yaml";
   static abbe_view_state s;
@@ -83,8 +80,7 @@ static void test_a_design_begins_with_its_own_angles(void **state) {
 }
 
 /* Whoever takes hold again before the scene is read again goes on from where it was left. */
-static void test_what_was_pulled_stands_at_once(void **state) {
-  (void)state;
+TEST(what_was_pulled_stands_at_once) {
   abbe_view_state *s = begun();
   const abbe_view_object *gem_of = &s->outline.object[0];
   double xy[2], middle[3];
@@ -116,8 +112,7 @@ static void test_what_was_pulled_stands_at_once(void **state) {
 
 /* Back and forth, and taken hold of before the scene is read again: from where the document has it.
  */
-static void test_what_was_undone_stands_at_once(void **state) {
-  (void)state;
+TEST(what_was_undone_stands_at_once) {
   abbe_view_state *s = begun();
   double lamp[2], stone[2], moved[2][3];
   const abbe_view_outline *o = &s->outline;
@@ -189,8 +184,7 @@ static void assert_same_bounds(const abbe_view_state *a, const abbe_view_state *
 }
 
 /* The pointer leads them alike; a tilt leaves their size. */
-static void test_what_is_fitted_or_centred_is_led_as_all(void **state) {
-  (void)state;
+TEST(what_is_fitted_or_centred_is_led_as_all) {
   static abbe_view_state s[BRICKS];
   const double own[3] = {0.005, 0, 0.1};
   const abbe_view_object *first = &s[0].outline.object[0];
@@ -224,8 +218,7 @@ static void test_what_is_fitted_or_centred_is_led_as_all(void **state) {
 }
 
 /* Of what is fitted the radius sets nothing, and `fit` the size. */
-static void test_what_is_fitted_is_sized_by_its_longest_side(void **state) {
-  (void)state;
+TEST(what_is_fitted_is_sized_by_its_longest_side) {
   static abbe_view_state s;
   begin_with_object(&s, "shape: sphere, radius: 7, levels: 1, fit: 0.02");
   const abbe_view_object *ball = &s.outline.object[0];
@@ -239,8 +232,7 @@ static void test_what_is_fitted_is_sized_by_its_longest_side(void **state) {
 }
 
 /* What a job has found of an older change is no place for what was undone since. */
-static void test_an_older_scene_moves_nothing_back(void **state) {
-  (void)state;
+TEST(an_older_scene_moves_nothing_back) {
   abbe_view_state *s = begun();
   static abbe_view_outline older;
   double lamp[2], own[3];
@@ -259,17 +251,4 @@ static void test_an_older_scene_moves_nothing_back(void **state) {
   assert_true(abbe_view_state_redo(s, 3));
   assert_true(o->light[0].position[0] < own[0] - 0.01);
   abbe_view_state_free(s);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_can_be_held_is_found),
-      cmocka_unit_test(test_a_studio_can_be_turned_and_its_stone_cut),
-      cmocka_unit_test(test_a_design_begins_with_its_own_angles),
-      cmocka_unit_test(test_what_was_pulled_stands_at_once),
-      cmocka_unit_test(test_what_was_undone_stands_at_once),
-      cmocka_unit_test(test_what_is_fitted_or_centred_is_led_as_all),
-      cmocka_unit_test(test_what_is_fitted_is_sized_by_its_longest_side),
-      cmocka_unit_test(test_an_older_scene_moves_nothing_back)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,8 +26,7 @@ static double draw(abbe_view_pace *p, const machine *m, bool lit, int pictures) 
 
 /* Where any step keeps the time, it is kept after a few pictures, whatever takes it, and but for
  * one in eight from then on; where the finest does, it is the finest. */
-static void test_the_time_is_kept_where_it_can_be(void **state) {
-  (void)state;
+TEST(the_time_is_kept_where_it_can_be) {
   static const double parts[] = {0, 3, 12, 26, 47, 90, 180};
   enum { PARTS = sizeof parts / sizeof *parts };
   for (size_t f = 0; f < 4; f++)
@@ -50,8 +49,7 @@ static void test_the_time_is_kept_where_it_can_be(void **state) {
 }
 
 /* Fewer photons and samples are no end: where they save nothing the picture is whole. */
-static void test_what_saves_nothing_is_left(void **state) {
-  (void)state;
+TEST(what_saves_nothing_is_left) {
   static const machine fixed = {170, 0, 0}, nearly = {170, 3, 6}, eye = {100, 0, 300};
   abbe_view_pace p = {0};
   draw(&p, &fixed, true, 20);
@@ -64,8 +62,7 @@ static void test_what_saves_nothing_is_left(void **state) {
   assert_int_equal(p.eye_step, 2);
 }
 
-static void test_the_light_gives_way_first(void **state) {
-  (void)state;
+TEST(the_light_gives_way_first) {
   static const machine even = {3, 34, 12};
   abbe_view_pace p = {0};
   draw(&p, &even, true, 10); /* 49, 32 and 23.5 ms */
@@ -74,8 +71,7 @@ static void test_the_light_gives_way_first(void **state) {
 }
 
 /* What is kept of the light takes no time, so the eye's steps alone count then. */
-static void test_a_camera_that_moves(void **state) {
-  (void)state;
+TEST(a_camera_that_moves) {
   static const machine m = {2, 1000, 400};
   abbe_view_pace p = {0};
   draw(&p, &m, false, 10);
@@ -87,8 +83,7 @@ static void test_a_camera_that_moves(void **state) {
 }
 
 /* What else the machine does comes and goes. */
-static void test_times_that_change(void **state) {
-  (void)state;
+TEST(times_that_change) {
   static const machine quiet = {3, 9, 8}, busy = {9, 36, 28};
   abbe_view_pace p = {0};
   draw(&p, &quiet, true, 5);
@@ -102,8 +97,7 @@ static void test_times_that_change(void **state) {
 }
 
 /* Times of a machine that was busy do not keep pictures coarse for ever. */
-static void test_what_was_slow_is_tried_again(void **state) {
-  (void)state;
+TEST(what_was_slow_is_tried_again) {
   abbe_view_pace p = {0};
   for (int i = 0; i < 60; i++)
     abbe_view_pace_take(&p, p.light_step, p.eye_step, true, i < 4 ? 80 : 5);
@@ -111,8 +105,7 @@ static void test_what_was_slow_is_tried_again(void **state) {
 }
 
 /* One picture that waits for a compiler says nothing of the next; two do. */
-static void test_one_strange_picture(void **state) {
-  (void)state;
+TEST(one_strange_picture) {
   abbe_view_pace p = {0};
   for (int i = 0; i < 5; i++) {
     abbe_view_pace_take(&p, p.light_step, p.eye_step, true, i == 2 ? 900 : 25);
@@ -124,24 +117,11 @@ static void test_one_strange_picture(void **state) {
 }
 
 /* From the coarsest to the finest in one picture, where there is room for it. */
-static void test_the_way_back_is_short(void **state) {
-  (void)state;
+TEST(the_way_back_is_short) {
   abbe_view_pace p = {.light_step = 3, .eye_step = 3};
   abbe_view_pace_take(&p, 3, 3, true, 1.9);
   assert_int_equal(p.light_step + p.eye_step, 0);
   p = (abbe_view_pace){.light_step = 3};
   abbe_view_pace_take(&p, 3, 0, true, 5.4); /* 13.5 ms are expected of step 1, 24.3 of 0 */
   assert_int_equal(p.light_step, 1);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_time_is_kept_where_it_can_be),
-                                     cmocka_unit_test(test_what_saves_nothing_is_left),
-                                     cmocka_unit_test(test_the_light_gives_way_first),
-                                     cmocka_unit_test(test_a_camera_that_moves),
-                                     cmocka_unit_test(test_times_that_change),
-                                     cmocka_unit_test(test_what_was_slow_is_tried_again),
-                                     cmocka_unit_test(test_one_strange_picture),
-                                     cmocka_unit_test(test_the_way_back_is_short)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -62,8 +62,7 @@ static abbe_view_refine refined(abbe_view_stage stage) {
   return r;
 }
 
-static void test_stages_follow_each_other(void **state) {
-  (void)state;
+TEST(stages_follow_each_other) {
   static const abbe_view_stage stages[] = {ABBE_VIEW_MOVING, ABBE_VIEW_BALANCED, ABBE_VIEW_ACCURATE,
                                            ABBE_VIEW_MEAN, ABBE_VIEW_TRACED};
   static const abbe_view_stage lights[] = {ABBE_VIEW_MOVING, ABBE_VIEW_BALANCED, ABBE_VIEW_ACCURATE,
@@ -85,8 +84,7 @@ static void test_stages_follow_each_other(void **state) {
 
 /* Whoever shows is given no stage that it has not drawn before; the other one shows as soon as it
  * has the better light, and has drawn all that moves with it. */
-static void test_who_shows_and_who_makes(void **state) {
-  (void)state;
+TEST(who_shows_and_who_makes) {
   abbe_view_refine r = begun();
   assert_true(idle(&r, BESIDE, 0)); /* the first picture has the machine for itself */
   draw(&r, 0, 0, 20);
@@ -115,8 +113,7 @@ static void test_who_shows_and_who_makes(void **state) {
 }
 
 /* A stage that takes its time, in the compiler say, keeps nothing that moves waiting. */
-static void test_motion_waits_for_nothing(void **state) {
-  (void)state;
+TEST(motion_waits_for_nothing) {
   abbe_view_refine r = refined(ABBE_VIEW_BALANCED);
   const size_t worker = begin(&r, BESIDE, 0);
   assert_int_equal(r.hand[worker].job.stage, ABBE_VIEW_ACCURATE);
@@ -133,8 +130,7 @@ static void test_motion_waits_for_nothing(void **state) {
   assert_int_equal(draw(&r, BESIDE, 9, 20).stage, ABBE_VIEW_BALANCED);
 }
 
-static void test_refining_waits_for_rest(void **state) {
-  (void)state;
+TEST(refining_waits_for_rest) {
   abbe_view_refine r = refined(ABBE_VIEW_BALANCED);
   abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_LIGHT, 10);
   assert_int_equal(draw(&r, SHOWS, 10, 20).stage, ABBE_VIEW_MOVING);
@@ -149,8 +145,7 @@ static void test_refining_waits_for_rest(void **state) {
   assert_int_equal(next(&r, BESIDE, 30.16).stage, ABBE_VIEW_BALANCED);
 }
 
-static void test_a_change_cancels_all_but_what_moves(void **state) {
-  (void)state;
+TEST(a_change_cancels_all_but_what_moves) {
   for (abbe_view_stage stage = ABBE_VIEW_MOVING; stage <= ABBE_VIEW_TRACED; stage++) {
     abbe_view_refine r = refined(stage - 1);
     const size_t worker = begin(&r, stage == ABBE_VIEW_MOVING ? SHOWS : BESIDE, 0);
@@ -164,8 +159,7 @@ static void test_a_change_cancels_all_but_what_moves(void **state) {
   }
 }
 
-static void test_the_camera_keeps_the_light(void **state) {
-  (void)state;
+TEST(the_camera_keeps_the_light) {
   abbe_view_refine r = refined(ABBE_VIEW_ACCURATE);
   for (int i = 0; i < 2; i++) {
     abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 1 + i);
@@ -195,8 +189,7 @@ static void test_the_camera_keeps_the_light(void **state) {
 }
 
 /* Whoever was kept from it draws the change as it moves first, and once. */
-static void test_a_change_is_seen_before_its_stages(void **state) {
-  (void)state;
+TEST(a_change_is_seen_before_its_stages) {
   abbe_view_refine r = refined(ABBE_VIEW_ACCURATE);
   abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 1);
   assert_int_equal(draw(&r, SHOWS, 9, 20).stage, ABBE_VIEW_MOVING);
@@ -215,8 +208,7 @@ static void test_a_change_is_seen_before_its_stages(void **state) {
 }
 
 /* A light that was drawn for a scene that is gone counts for nothing. */
-static void test_a_late_picture_brings_no_light(void **state) {
-  (void)state;
+TEST(a_late_picture_brings_no_light) {
   abbe_view_refine r = refined(ABBE_VIEW_ACCURATE);
   abbe_view_refine_change(&r, ABBE_VIEW_MOVED_CAMERA, 1);
   const size_t worker = begin(&r, SHOWS, 1);
@@ -228,8 +220,7 @@ static void test_a_late_picture_brings_no_light(void **state) {
 }
 
 /* Moving jobs take the steps that the times of the last ones lead to, those at rest none. */
-static void test_slow_pictures_get_cheaper(void **state) {
-  (void)state;
+TEST(slow_pictures_get_cheaper) {
   abbe_view_refine r = refined(ABBE_VIEW_ACCURATE);
   double now = 1;
   bool fewer = false;
@@ -256,8 +247,7 @@ static void test_slow_pictures_get_cheaper(void **state) {
 
 /* What the first picture of a kind takes is the compiler's, and coarser ones, whose programs nobody
  * knows, would be compiled too. */
-static void test_no_step_follows_from_the_compiler(void **state) {
-  (void)state;
+TEST(no_step_follows_from_the_compiler) {
   abbe_view_refine r = begun();
   draw(&r, SHOWS, 0, 3000);
   assert_int_equal(r.pace.light_step, 0);
@@ -270,8 +260,7 @@ static void test_no_step_follows_from_the_compiler(void **state) {
 }
 
 /* Of the first picture what was not its worker's own work was drawing. */
-static void test_the_first_step_follows_from_the_drawing(void **state) {
-  (void)state;
+TEST(the_first_step_follows_from_the_drawing) {
   static const struct {
     double drawn_ms;
     size_t eye_step;
@@ -284,8 +273,7 @@ static void test_the_first_step_follows_from_the_drawing(void **state) {
   }
 }
 
-static void test_what_is_refused_waits_for_a_change(void **state) {
-  (void)state;
+TEST(what_is_refused_waits_for_a_change) {
   abbe_view_refine r = refined(ABBE_VIEW_BALANCED);
   abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, 1);
   const size_t worker = begin(&r, SHOWS, 1);
@@ -300,8 +288,7 @@ static void test_what_is_refused_waits_for_a_change(void **state) {
 }
 
 /* Light that was begun is not there, nor what it was to take the place of. */
-static void test_a_stage_that_ends_early_leaves_no_light(void **state) {
-  (void)state;
+TEST(a_stage_that_ends_early_leaves_no_light) {
   static const struct {
     abbe_view_stage after;
     abbe_view_outcome outcome;
@@ -320,8 +307,7 @@ static void test_a_stage_that_ends_early_leaves_no_light(void **state) {
   }
 }
 
-static void test_a_spectrum_is_traced_before_the_mean(void **state) {
-  (void)state;
+TEST(a_spectrum_is_traced_before_the_mean) {
   abbe_view_refine r = refined(ABBE_VIEW_ACCURATE);
   const size_t worker = begin(&r, BESIDE, 0);
   assert_int_equal(r.hand[worker].job.stage, ABBE_VIEW_MEAN);
@@ -334,8 +320,7 @@ static void test_a_spectrum_is_traced_before_the_mean(void **state) {
 
 /* Without a mean the tracer follows, or nothing. */
 /* Light that is refused of fewer photons is drawn of more, until the scene is another. */
-static void test_photons_are_not_too_few(void **state) {
-  (void)state;
+TEST(photons_are_not_too_few) {
   abbe_view_refine r = begun();
   draw(&r, SHOWS, 0, 20);
   r.pace.light_step = 2;
@@ -352,8 +337,7 @@ static void test_photons_are_not_too_few(void **state) {
   assert_int_equal(r.pace.lights, 0);
 }
 
-static void test_a_picture_without_a_mean(void **state) {
-  (void)state;
+TEST(a_picture_without_a_mean) {
   abbe_view_refine r = refined(ABBE_VIEW_ACCURATE);
   r.single = true;
   assert_int_equal(next(&r, BESIDE, 0).stage, ABBE_VIEW_TRACED);
@@ -361,8 +345,7 @@ static void test_a_picture_without_a_mean(void **state) {
   assert_true(idle(&r, BESIDE, 9));
 }
 
-static void test_stages_end_where_they_are_wanted(void **state) {
-  (void)state;
+TEST(stages_end_where_they_are_wanted) {
   abbe_view_refine r = begun();
   r.last = ABBE_VIEW_BALANCED;
   draw_rest(&r, 0);
@@ -376,34 +359,11 @@ static void test_stages_end_where_they_are_wanted(void **state) {
 }
 
 /* A worker that has drawn something else begins anew, and shows nothing. */
-static void test_what_a_worker_holds_is_forgotten(void **state) {
-  (void)state;
+TEST(what_a_worker_holds_is_forgotten) {
   abbe_view_refine r = refined(ABBE_VIEW_ACCURATE);
   const size_t shows = r.shows;
   abbe_view_refine_forget(&r, 1 - shows);
   assert_int_equal(r.hand[1 - shows].light, ABBE_VIEW_NONE);
   assert_int_equal(draw(&r, BESIDE, 0, 20).stage, ABBE_VIEW_MEAN);
   assert_int_equal(r.shows, shows);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_stages_follow_each_other),
-                                     cmocka_unit_test(test_who_shows_and_who_makes),
-                                     cmocka_unit_test(test_motion_waits_for_nothing),
-                                     cmocka_unit_test(test_refining_waits_for_rest),
-                                     cmocka_unit_test(test_a_change_cancels_all_but_what_moves),
-                                     cmocka_unit_test(test_the_camera_keeps_the_light),
-                                     cmocka_unit_test(test_a_change_is_seen_before_its_stages),
-                                     cmocka_unit_test(test_a_late_picture_brings_no_light),
-                                     cmocka_unit_test(test_slow_pictures_get_cheaper),
-                                     cmocka_unit_test(test_no_step_follows_from_the_compiler),
-                                     cmocka_unit_test(test_the_first_step_follows_from_the_drawing),
-                                     cmocka_unit_test(test_what_is_refused_waits_for_a_change),
-                                     cmocka_unit_test(test_photons_are_not_too_few),
-                                     cmocka_unit_test(test_a_picture_without_a_mean),
-                                     cmocka_unit_test(test_a_stage_that_ends_early_leaves_no_light),
-                                     cmocka_unit_test(test_a_spectrum_is_traced_before_the_mean),
-                                     cmocka_unit_test(test_what_a_worker_holds_is_forgotten),
-                                     cmocka_unit_test(test_stages_end_where_they_are_wanted)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

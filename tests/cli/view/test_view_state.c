@@ -2,8 +2,7 @@
 #include "tests/cli/view/learnt.h"
 
 /* A mirror is taken hold of as a stone is, and is of a metal, which no stone is. */
-static void test_mirrors_are_held_and_of_a_metal(void **state) {
-  (void)state;
+TEST(mirrors_are_held_and_of_a_metal) {
   char path[] = ABBE_SOURCE_DIR "/scenes/metals.yaml";
   static abbe_view_state s;
   double xy[2];
@@ -27,8 +26,7 @@ static void test_mirrors_are_held_and_of_a_metal(void **state) {
   abbe_view_state_free(&s);
 }
 
-static void test_a_drag_turns_the_camera_in_one_step(void **state) {
-  (void)state;
+TEST(a_drag_turns_the_camera_in_one_step) {
   abbe_view_state *s = begun();
   const abbe_camera before = s->camera;
   drag(s, ABBE_VIEW_LEFT, 40, 400, 140, 400, 0);
@@ -48,8 +46,7 @@ static void test_a_drag_turns_the_camera_in_one_step(void **state) {
   abbe_view_state_free(s);
 }
 
-static void test_other_buttons_pan_and_look(void **state) {
-  (void)state;
+TEST(other_buttons_pan_and_look) {
   abbe_view_state *s = begun();
   const abbe_camera before = s->camera;
   drag(s, ABBE_VIEW_MIDDLE, 40, 400, 140, 400, 0);
@@ -74,8 +71,7 @@ static void test_other_buttons_pan_and_look(void **state) {
   abbe_view_state_free(s);
 }
 
-static void test_handles_move_and_tilt_objects(void **state) {
-  (void)state;
+TEST(handles_move_and_tilt_objects) {
   abbe_view_state *s = begun();
   double xy[2], middle[3];
   memcpy(middle, s->outline.object[0].middle, sizeof middle);
@@ -100,8 +96,7 @@ static void test_handles_move_and_tilt_objects(void **state) {
 }
 
 /* Handles are where the picture that stands has them, and there they are taken hold of. */
-static void test_handles_are_of_the_picture(void **state) {
-  (void)state;
+TEST(handles_are_of_the_picture) {
   abbe_view_state *s = begun();
   abbe_view_handle first, then;
   assert_true(abbe_view_state_handle(s, 0, &first));
@@ -123,8 +118,7 @@ static void test_handles_are_of_the_picture(void **state) {
 }
 
 /* Turns of the wheel that follow each other are one step, apart from what was changed before. */
-static void test_the_wheel_is_a_step(void **state) {
-  (void)state;
+TEST(the_wheel_is_a_step) {
   abbe_view_state *s = begun();
   abbe_view_state_set(s, "ambient", "1", false, 1);
   const size_t before = s->history.at;
@@ -148,8 +142,7 @@ static void test_the_wheel_is_a_step(void **state) {
   abbe_view_state_free(s);
 }
 
-static void test_lights_move(void **state) {
-  (void)state;
+TEST(lights_move) {
   enum { READY = 1u << ABBE_VIEW_MOVING };
   abbe_view_state *s = begun();
   double xy[2];
@@ -173,8 +166,7 @@ static void test_lights_move(void **state) {
 }
 
 /* A sun's handle stands on the way to it; dragged on its level it turns what it shines on. */
-static void test_the_sun_moves(void **state) {
-  (void)state;
+TEST(the_sun_moves) {
   static abbe_view_state s;
   char path[] = ABBE_SOURCE_DIR "/docs/examples/ball.yaml";
   double xy[2];
@@ -201,8 +193,7 @@ static void test_the_sun_moves(void **state) {
 }
 
 /* Whoever picks another scene by mistake has lost nothing. */
-static void test_another_scene_is_a_step(void **state) {
-  (void)state;
+TEST(another_scene_is_a_step) {
   abbe_view_state *s = begun();
   const abbe_camera gems = s->camera;
   abbe_view_state_set(s, "objects.gem.material", "diamond", false, 1);
@@ -226,8 +217,7 @@ static void test_another_scene_is_a_step(void **state) {
   abbe_view_state_free(s);
 }
 
-static void test_a_click_asks_for_a_spectrum(void **state) {
-  (void)state;
+TEST(a_click_asks_for_a_spectrum) {
   abbe_view_state *s = begun();
   const uint64_t serial = s->refine.serial;
   drag(s, ABBE_VIEW_LEFT, 40, 400, 41, 400, 0);
@@ -238,8 +228,7 @@ static void test_a_click_asks_for_a_spectrum(void **state) {
   abbe_view_state_free(s);
 }
 
-static void test_edits_and_settings(void **state) {
-  (void)state;
+TEST(edits_and_settings) {
   abbe_view_state *s = begun();
   abbe_view_state_set(s, "objects.gem.material", "diamond", false, 1);
   abbe_view_state_set(s, "lights.lamp.intensity", "0.3", false, 2);
@@ -259,8 +248,7 @@ static void test_edits_and_settings(void **state) {
   abbe_view_state_free(s);
 }
 
-static void test_a_window_without_room_takes_no_pointer(void **state) {
-  (void)state;
+TEST(a_window_without_room_takes_no_pointer) {
   abbe_view_state *s = begun();
   abbe_view_state_resize(s, 0, 0, 1);
   drag(s, ABBE_VIEW_LEFT, 40, 400, 140, 400, 0);
@@ -268,20 +256,4 @@ static void test_a_window_without_room_takes_no_pointer(void **state) {
   assert_false(s->refine.held);
   assert_int_equal(abbe_view_state_handle_at(s, 1, 1).kind, ABBE_VIEW_NO_HANDLE);
   abbe_view_state_free(s);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_mirrors_are_held_and_of_a_metal),
-                                     cmocka_unit_test(test_a_drag_turns_the_camera_in_one_step),
-                                     cmocka_unit_test(test_other_buttons_pan_and_look),
-                                     cmocka_unit_test(test_handles_move_and_tilt_objects),
-                                     cmocka_unit_test(test_handles_are_of_the_picture),
-                                     cmocka_unit_test(test_the_wheel_is_a_step),
-                                     cmocka_unit_test(test_the_sun_moves),
-                                     cmocka_unit_test(test_lights_move),
-                                     cmocka_unit_test(test_another_scene_is_a_step),
-                                     cmocka_unit_test(test_a_click_asks_for_a_spectrum),
-                                     cmocka_unit_test(test_edits_and_settings),
-                                     cmocka_unit_test(test_a_window_without_room_takes_no_pointer)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,8 +13,7 @@ static abbe_atlas make(const abbe_atlas_desc *desc) {
   return atlas;
 }
 
-static void test_published_chromaticities(void **state) {
-  (void)state;
+TEST(published_chromaticities) {
   static const double printed[3][3] = {
       {450, 0.15664, 0.01771}, {520, 0.07430, 0.83380}, {600, 0.62704, 0.37249}}; /* [CIE15] */
   abbe_atlas a = make(&(abbe_atlas_desc){0});
@@ -38,8 +37,7 @@ static void test_published_chromaticities(void **state) {
 }
 
 /* More bands, nearer to the truth; one band is the light's own colour. */
-static void test_bands(void **state) {
-  (void)state;
+TEST(bands) {
   double before = 1e9;
   static const size_t counts[] = {3, 7, 15, 31, 63};
   for (int i = 0; i < 5; i++) {
@@ -56,8 +54,7 @@ static void test_bands(void **state) {
   abbe_atlas_free(&one);
 }
 
-static void test_files(void **state) {
-  (void)state;
+TEST(files) {
   static const char png[] = "/tmp/abbe_test_atlas.png", svg[] = "/tmp/abbe_test_atlas.svg";
   abbe_atlas a = make(&(abbe_atlas_desc){.observer = ABBE_OBSERVER_CIE_2015_10, .bands = 7});
   assert_int_equal(abbe_atlas_picture(&a, png, NULL), ABBE_OK);
@@ -69,8 +66,7 @@ static void test_files(void **state) {
   abbe_atlas_free(&a);
 }
 
-static void test_refused(void **state) {
-  (void)state;
+TEST(refused) {
   static const abbe_atlas_desc wrong[] = {
       {.min_nm = 300, .max_nm = 700},
       {.min_nm = 400, .max_nm = 900},
@@ -84,11 +80,4 @@ static void test_refused(void **state) {
     assert_int_equal(abbe_atlas_make(&wrong[i], &a, NULL), ABBE_INVALID_ARGUMENT);
     assert_null(a.row);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_published_chromaticities),
-                                     cmocka_unit_test(test_bands), cmocka_unit_test(test_files),
-                                     cmocka_unit_test(test_refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

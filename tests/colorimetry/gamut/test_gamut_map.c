@@ -23,8 +23,7 @@ static void map_rgb(const abbe_gamut_map *map, double rgb[3]) {
   abbe_rgb_space_apply(map->from_xyz, rgb, rgb);
 }
 
-static void test_what_is_inside(void **state) {
-  (void)state;
+TEST(what_is_inside) {
   for (int g = 0; g < ABBE_GAMUT_COUNT; g++)
     for (int k = 0; k < ABBE_GAMUT_MAP_COUNT; k++) {
       const abbe_gamut_map map = map_of((abbe_gamut_map_kind)k, (abbe_gamut)g);
@@ -42,8 +41,7 @@ static void test_what_is_inside(void **state) {
     }
 }
 
-static void test_the_spectrum(void **state) {
-  (void)state;
+TEST(the_spectrum) {
   for (int g = 0; g < ABBE_GAMUT_COUNT; g++)
     for (int k = ABBE_GAMUT_MAP_CLIP; k < ABBE_GAMUT_MAP_COUNT; k++) {
       const abbe_gamut_map map = map_of((abbe_gamut_map_kind)k, (abbe_gamut)g);
@@ -67,8 +65,7 @@ static void test_the_spectrum(void **state) {
 
 /* The published curve, with distance 1.2, threshold 0.815 and limit 1.147 in hand, and its ends:
  * the limit becomes 1. */
-static void test_compression(void **state) {
-  (void)state;
+TEST(compression) {
   const abbe_gamut_map map = map_of(ABBE_GAMUT_MAP_COMPRESS, ABBE_GAMUT_REC709);
   for (int c = 0; c < 3; c++) {
     double rgb[3] = {1, 1, 1};
@@ -85,8 +82,7 @@ static void test_compression(void **state) {
   assert_true(map.limit[0] > 1.5 && map.limit[1] > 1 && map.limit[1] < 1.3); /* green is far out */
 }
 
-static void test_exposure(void **state) {
-  (void)state;
+TEST(exposure) {
   for (int k = ABBE_GAMUT_MAP_CLIP; k < ABBE_GAMUT_MAP_COUNT; k++) {
     const abbe_gamut_map map = map_of((abbe_gamut_map_kind)k, ABBE_GAMUT_P3);
     double one[3] = {0.4, 0.2, -0.05}, bright[3] = {400, 200, -50};
@@ -96,8 +92,7 @@ static void test_exposure(void **state) {
   }
 }
 
-static void test_awkward(void **state) {
-  (void)state;
+TEST(awkward) {
   for (int k = 0; k < ABBE_GAMUT_MAP_COUNT; k++) {
     const abbe_gamut_map map = map_of((abbe_gamut_map_kind)k, ABBE_GAMUT_REC709);
     double nan[3] = {NAN, 1, 1}, dark[3] = {0, 0, 0}, below[3] = {-1, -2, -3};
@@ -112,12 +107,4 @@ static void test_awkward(void **state) {
   abbe_gamut_map map;
   assert_int_equal(abbe_gamut_map_make(ABBE_GAMUT_MAP_CLIP, flat, &map, NULL),
                    ABBE_INVALID_ARGUMENT);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_is_inside), cmocka_unit_test(test_the_spectrum),
-      cmocka_unit_test(test_compression), cmocka_unit_test(test_exposure),
-      cmocka_unit_test(test_awkward)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,8 +3,7 @@
 
 #include "colorimetry/gamut/oklab.h"
 
-static void test_published_table(void **state) {
-  (void)state;
+TEST(published_table) {
   static const double rows[4][6] = {{0.950, 1, 1.089, 1, 0, 0},
                                     {1, 0, 0, 0.450, 1.236, -0.019},
                                     {0, 1, 0, 0.922, -0.671, 0.263},
@@ -19,17 +18,10 @@ static void test_published_table(void **state) {
 }
 
 /* Eight times the light is twice L, a and b. */
-static void test_exposure(void **state) {
-  (void)state;
+TEST(exposure) {
   const double xyz[3] = {0.3, 0.2, -0.01}, eight[3] = {2.4, 1.6, -0.08};
   double lab[2][3];
   abbe_oklab_of_xyz(xyz, lab[0]);
   abbe_oklab_of_xyz(eight, lab[1]);
   for (int c = 0; c < 3; c++) assert_near(lab[1][c], 2 * lab[0][c], 1e-12);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_published_table),
-                                     cmocka_unit_test(test_exposure)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,8 +29,7 @@ static uint32_t u32_at(const char *at) {
 }
 
 /* Every chunk is whole, its sum right, and sequence numbers count up from 0. */
-static void chunks_are_by_the_standard(void **state) {
-  (void)state;
+TEST(chunks_are_by_the_standard) {
   char *data;
   size_t size;
   uint32_t sequence = 0, controls = 0, others = 0, first = 0;
@@ -64,8 +63,7 @@ static void chunks_are_by_the_standard(void **state) {
   free(data);
 }
 
-static void the_first_frame_is_what_others_see(void **state) {
-  (void)state;
+TEST(the_first_frame_is_what_others_see) {
   abbe_image a, b;
   assert_int_equal(abbe_png_read(MOVES, &a, NULL), ABBE_OK);
   assert_int_equal(abbe_png_read(frames[0], &b, NULL), ABBE_OK);
@@ -75,8 +73,7 @@ static void the_first_frame_is_what_others_see(void **state) {
   abbe_image_free(&b);
 }
 
-static void what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   abbe_error error = {0};
   assert_int_equal(abbe_animated_png_write("none.png", frames, 0, 25, &error),
                    ABBE_INVALID_ARGUMENT);
@@ -99,13 +96,4 @@ static void what_is_refused(void **state) {
   assert_int_not_equal(access("none.png", F_OK), 0);
   for (int i = 0; i < 3; i++) unlink(frames[i]);
   unlink(MOVES);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(chunks_are_by_the_standard),
-      cmocka_unit_test(the_first_frame_is_what_others_see),
-      cmocka_unit_test(what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

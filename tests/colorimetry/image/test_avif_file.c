@@ -9,16 +9,12 @@
 
 static char path[64];
 
-static int setup(void **state) {
-  (void)state;
+static void setup(void) {
   snprintf(path, sizeof path, "/tmp/abbe-test-avif-%ld.avif", (long)getpid());
-  return 0;
 }
 
-static int teardown(void **state) {
-  (void)state;
+static void teardown(void) {
   unlink(path);
-  return 0;
 }
 
 enum { W = 97, H = 61 };
@@ -36,8 +32,9 @@ static void paint(abbe_image *image) {
     }
 }
 
-static void names_tell_what_is_meant(void **state) {
-  (void)state;
+GROUP(setup, teardown);
+
+TEST(names_tell_what_is_meant) {
   assert_true(abbe_avif_is_meant("a.avif") && abbe_avif_is_meant("b.c/D.AVIF"));
   assert_false(abbe_avif_is_meant("a.avif.png") || abbe_avif_is_meant("avif") ||
                abbe_avif_is_meant(NULL));
@@ -85,8 +82,7 @@ typedef struct encoding {
   int transfer, bits, code[3];
 } encoding;
 
-static void files_hold_pixels_and_their_colour(void **state) {
-  (void)state;
+TEST(files_hold_pixels_and_their_colour) {
   static const encoding of[] = {
       {{0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290}, {0}, 16, 10, {9, 16, 9}},
       {{0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290}, {0}, 16, 12, {9, 16, 9}},
@@ -117,8 +113,7 @@ static void files_hold_pixels_and_their_colour(void **state) {
 }
 
 /* A power of 2.4 has no code that decoders agree on: a profile says it. */
-static void other_encodings_have_a_profile(void **state) {
-  (void)state;
+TEST(other_encodings_have_a_profile) {
   static const double power[5] = {2.4, 1, 0, 0, 0};
   uint16_t *pixel = malloc(W * H * 3 * sizeof *pixel);
   abbe_image image;
@@ -140,8 +135,7 @@ static void other_encodings_have_a_profile(void **state) {
   free(pixel);
 }
 
-static void what_cannot_be_written_is_said(void **state) {
-  (void)state;
+TEST(what_cannot_be_written_is_said) {
   abbe_image image;
   abbe_error error = {0};
   assert_true(abbe_avif_is_there());
@@ -158,16 +152,8 @@ static void what_cannot_be_written_is_said(void **state) {
   abbe_image_free(&image);
 }
 
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(names_tell_what_is_meant),
-                                     cmocka_unit_test(files_hold_pixels_and_their_colour),
-                                     cmocka_unit_test(other_encodings_have_a_profile),
-                                     cmocka_unit_test(what_cannot_be_written_is_said)};
-  return cmocka_run_group_tests(tests, setup, teardown);
-}
 #else
-static void without_the_library_it_is_said(void **state) {
-  (void)state;
+TEST(without_the_library_it_is_said) {
   abbe_image image;
   abbe_error error = {0};
   paint(&image);
@@ -175,11 +161,5 @@ static void without_the_library_it_is_said(void **state) {
   assert_int_equal(abbe_avif_write(path, &image, 10, &error), ABBE_UNSUPPORTED);
   assert_contains(error.text, "libavif");
   abbe_image_free(&image);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(names_tell_what_is_meant),
-                                     cmocka_unit_test(without_the_library_it_is_said)};
-  return cmocka_run_group_tests(tests, setup, teardown);
 }
 #endif

@@ -12,15 +12,13 @@ static void check_colour(abbe_colour_map map, double t, double r, double g, doub
 }
 
 /* The colours that the paper prints, in 8 bits. */
-static void differences_have_the_published_ends(void **state) {
-  (void)state;
+TEST(differences_have_the_published_ends) {
   check_colour(ABBE_COLOUR_MAP_DIFFERENCE, 0, 59 / 255.0, 76 / 255.0, 192 / 255.0, 1.5 / 255);
   check_colour(ABBE_COLOUR_MAP_DIFFERENCE, 0.5, 221 / 255.0, 221 / 255.0, 221 / 255.0, 1.0 / 255);
   check_colour(ABBE_COLOUR_MAP_DIFFERENCE, 1, 180 / 255.0, 4 / 255.0, 38 / 255.0, 1.5 / 255);
 }
 
-static void amounts_grow_lighter(void **state) {
-  (void)state;
+TEST(amounts_grow_lighter) {
   check_colour(ABBE_COLOUR_MAP_AMOUNT, 0, 0, 0, 0, 0);
   check_colour(ABBE_COLOUR_MAP_AMOUNT, 1, 1, 1, 1, 0);
   double before = -1;
@@ -35,8 +33,7 @@ static void amounts_grow_lighter(void **state) {
   }
 }
 
-static void what_is_outside_is_held(void **state) {
-  (void)state;
+TEST(what_is_outside_is_held) {
   for (int map = 0; map < 2; map++) {
     double in[3], out[3];
     abbe_colour_map_at((abbe_colour_map)map, 0, in);
@@ -47,13 +44,4 @@ static void what_is_outside_is_held(void **state) {
     assert_memory_equal(in, out, sizeof in);
     check_colour((abbe_colour_map)map, NAN, 0, 0.8, 0, 0);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(differences_have_the_published_ends),
-      cmocka_unit_test(amounts_grow_lighter),
-      cmocka_unit_test(what_is_outside_is_held),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

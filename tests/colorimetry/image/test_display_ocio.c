@@ -47,9 +47,14 @@ static void near(const double got[3], const double expected[3], double tolerance
       fail_msg("%s: component %d is %.7f, not %.7f", what, k, got[k], expected[k]);
 }
 
+static void begin(void) {
+  unsetenv("OCIO");
+}
+
+GROUP(begin, NULL);
+
 /* Each space of the toolkit goes through its name in the configuration by the same matrices. */
-static void test_plain_is_the_encoding_alone(void **state) {
-  (void)state;
+TEST(plain_is_the_encoding_alone) {
   static const double colours[][3] = {{0, 0, 0},        {1, 1, 1},         {0.18, 0.18, 0.18},
                                       {0.9, 0.1, 0.02}, {0.001, 0.3, 0.7}, {0.4, 1.3, -0.2},
                                       {2, 3, 4}};
@@ -71,8 +76,7 @@ static void test_plain_is_the_encoding_alone(void **state) {
     }
 }
 
-static void test_display_p3(void **state) {
-  (void)state;
+TEST(display_p3) {
   /* Rec.709 red on a Display P3 screen, as published for CSS colours */
   double red[3] = {1, 0, 0};
   const double expected[3] = {0.91749, 0.20029, 0.13856};
@@ -82,8 +86,7 @@ static void test_display_p3(void **state) {
   near(red, expected, 2e-5, "Rec.709 red in P3");
 }
 
-static void test_exposure_is_in_stops(void **state) {
-  (void)state;
+TEST(exposure_is_in_stops) {
   double plain[3] = {0.4, 0.2, 0.1}, exposed[3] = {0.1, 0.05, 0.025};
   abbe_display_desc desc = {.view = "Plain"};
   show(&desc, plain);
@@ -106,8 +109,7 @@ static void must_fail(const abbe_display_desc *desc, abbe_result expected, const
 }
 
 /* White of a scene is 203 cd/m2: a signal of 58 % PQ, of 75 % HLG [BT2408]. */
-static void test_hdr_white(void **state) {
-  (void)state;
+TEST(hdr_white) {
   static const struct {
     const char *display;
     double signal;
@@ -124,8 +126,7 @@ static void test_hdr_white(void **state) {
 
 /* Red light of a wavelength is shown red, not salmon: with up to the light of white in ACEScg's
  * red, green and blue have less than a tenth of red's light. */
-static void test_spectral_red_stays_red(void **state) {
-  (void)state;
+TEST(spectral_red_stays_red) {
   static const char *const displays[] = {"sRGB", "Display P3"};
   double from[9];
   abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_ACESCG, from);
@@ -148,8 +149,7 @@ static void test_spectral_red_stays_red(void **state) {
 
 /* A gamut map comes before the view: towards white keeps Oklab's hue on a plain screen; where the
  * display's primaries are not told, it is refused. A white that is asked for is shown white. */
-static void test_gamut_and_white(void **state) {
-  (void)state;
+TEST(gamut_and_white) {
   double clipped[3] = {-0.1, 0.4, 0.2}, white[3] = {-0.1, 0.4, 0.2}, lamp[3];
   abbe_display_desc desc = {.source_space = "Linear Rec.709 (sRGB)", .view = "Plain"};
   desc.gamut = ABBE_GAMUT_MAP_CLIP;
@@ -174,8 +174,7 @@ static void test_gamut_and_white(void **state) {
 }
 
 /* A configuration that is too young is refused with the version that would be right. */
-static void test_versions(void **state) {
-  (void)state;
+TEST(versions) {
   static const char path[] = "/tmp/abbe_test_version.ocio";
   static const char young[] = "# of a studio\nocio_profile_version: 2.99\nroles: {}\n";
   assert_int_equal(abbe_file_write(path, young, strlen(young), NULL), ABBE_OK);
@@ -201,8 +200,7 @@ static void test_versions(void **state) {
 }
 
 /* Greys stay grey and follow the curve that the view states; 0.18 is kept. */
-static void test_looking_greys(void **state) {
-  (void)state;
+TEST(looking_greys) {
   static const char *const displays[] = {"sRGB", "Display P3"};
   for (int d = 0; d < 2; d++) {
     double before = -1;
@@ -234,8 +232,7 @@ static double luminance(const double encoded[3]) {
 /* The spectrum at any exposure: in the cube but for half a step of 16 bits, brighter with more
  * light, never a patch that clips to a corner, never a jump between wavelengths a nanometre apart.
  */
-static void test_looking_at_the_spectrum(void **state) {
-  (void)state;
+TEST(looking_at_the_spectrum) {
   enum { FIRST = 400, LAST = 700, COUNT = LAST - FIRST + 1, STEPS = 24 };
   const double half_a_step = 0.5 / 65535;
   abbe_image image = {0};
@@ -271,8 +268,7 @@ static void test_looking_at_the_spectrum(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_other_channels_stay(void **state) {
-  (void)state;
+TEST(other_channels_stay) {
   abbe_display *display = make(&(abbe_display_desc){0});
   abbe_image image = {0}, two = {0};
   assert_int_equal(abbe_image_make(3, 2, 5, names, &image, NULL), ABBE_OK);
@@ -288,8 +284,7 @@ static void test_other_channels_stay(void **state) {
   abbe_display_free(display);
 }
 
-static void test_unknown_names_list_the_known(void **state) {
-  (void)state;
+TEST(unknown_names_list_the_known) {
   must_fail(&(abbe_display_desc){.display = "sRBG"}, ABBE_COLOUR, "sRGB, Display P3");
   must_fail(&(abbe_display_desc){.view = "Plane"}, ABBE_COLOUR, "Looking, Plain, Raw");
   must_fail(&(abbe_display_desc){.source_space = "acescgg"}, ABBE_COLOUR, "ACEScg");
@@ -297,8 +292,7 @@ static void test_unknown_names_list_the_known(void **state) {
   must_fail(&(abbe_display_desc){.exposure = 1e9}, ABBE_INVALID_ARGUMENT, "1e+09");
 }
 
-static void test_broken_configurations(void **state) {
-  (void)state;
+TEST(broken_configurations) {
   static const char *const texts[] = {
       "",
       "not: [a, config",
@@ -333,8 +327,7 @@ static void test_broken_configurations(void **state) {
 }
 
 /* The shipped file also loads by its path, with $OCIO pointing at it. */
-static void test_list(void **state) {
-  (void)state;
+TEST(list) {
   static const char *const expected =
       "sRGB / Looking\nsRGB / Plain\nsRGB / Raw\n"
       "Display P3 / Looking\nDisplay P3 / Plain\nDisplay P3 / Raw\n"
@@ -376,8 +369,7 @@ static char encoding_of(const abbe_display_desc *desc) {
   return kind;
 }
 
-static void test_what_the_numbers_mean(void **state) {
-  (void)state;
+TEST(what_the_numbers_mean) {
   static const struct {
     const char *display, *view;
     char kind;
@@ -393,8 +385,7 @@ static void test_what_the_numbers_mean(void **state) {
 }
 
 /* A configuration of another maker: displays by formula, by name alone, and by neither. */
-static void test_what_other_configurations_tell(void **state) {
-  (void)state;
+TEST(what_other_configurations_tell) {
   static const char path[] = "/tmp/abbe_test_other.ocio";
   static const char text[] =
       "ocio_profile_version: 2\n"
@@ -440,24 +431,4 @@ static void test_what_other_configurations_tell(void **state) {
     }
   }
   unlink(path);
-}
-
-int main(void) {
-  unsetenv("OCIO");
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_plain_is_the_encoding_alone),
-                                     cmocka_unit_test(test_display_p3),
-                                     cmocka_unit_test(test_exposure_is_in_stops),
-                                     cmocka_unit_test(test_hdr_white),
-                                     cmocka_unit_test(test_spectral_red_stays_red),
-                                     cmocka_unit_test(test_gamut_and_white),
-                                     cmocka_unit_test(test_versions),
-                                     cmocka_unit_test(test_looking_greys),
-                                     cmocka_unit_test(test_looking_at_the_spectrum),
-                                     cmocka_unit_test(test_other_channels_stay),
-                                     cmocka_unit_test(test_unknown_names_list_the_known),
-                                     cmocka_unit_test(test_broken_configurations),
-                                     cmocka_unit_test(test_what_the_numbers_mean),
-                                     cmocka_unit_test(test_what_other_configurations_tell),
-                                     cmocka_unit_test(test_list)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

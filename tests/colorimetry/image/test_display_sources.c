@@ -30,10 +30,15 @@ static void near(const double got[3], const double expected[3], double tolerance
       fail_msg("%s: component %d is %.7f, not %.7f", what, k, got[k], expected[k]);
 }
 
+static void begin(void) {
+  unsetenv("OCIO");
+}
+
+GROUP(begin, NULL);
+
 /* Infinite light is as bright as light gets, whatever the exposure, and what is not a number is
  * dark; the ACES view of OpenColorIO makes infinities black by itself. */
-static void test_infinite_light(void **state) {
-  (void)state;
+TEST(infinite_light) {
   static const char path[] = "/tmp/abbe_test_aces.ocio";
   static const char aces[] =
       "ocio_profile_version: 2\n"
@@ -72,8 +77,7 @@ static void test_infinite_light(void **state) {
 }
 
 /* An exposure of any stops is that factor: white of 2^-e at e stops is white, and not tinted. */
-static void test_far_exposures(void **state) {
-  (void)state;
+TEST(far_exposures) {
   static const double stops[] = {-60, -40, -30, -20, -10, 20, 60};
   for (size_t i = 0; i < sizeof stops / sizeof *stops; i++) {
     abbe_display_desc desc = {
@@ -89,8 +93,7 @@ static void test_far_exposures(void **state) {
 
 /* Abbe's spaces are reached in configurations that do not have their names: by a role, by a name
  * that tells the primaries, and by what sRGB is; and not in one that tells nothing. */
-static void test_spaces_that_have_no_name(void **state) {
-  (void)state;
+TEST(spaces_that_have_no_name) {
   static const char path[] = "/tmp/abbe_test_nameless.ocio";
   static const char head[] = "ocio_profile_version: %s\nroles: {scene_linear: %s%s}\n%s"
                              "active_displays: [sRGB, None]\n"
@@ -150,14 +153,4 @@ static void test_spaces_that_have_no_name(void **state) {
     }
   }
   unlink(path);
-}
-
-int main(void) {
-  unsetenv("OCIO");
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_infinite_light),
-      cmocka_unit_test(test_far_exposures),
-      cmocka_unit_test(test_spaces_that_have_no_name),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

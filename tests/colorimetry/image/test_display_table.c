@@ -41,8 +41,7 @@ static double step_of(float value) {
 
 /* Colours from black to far above white, most of them of some hue: as a screen of 255 steps has
  * them. */
-static void test_colours_are_nearly_those_of_the_transform(void **state) {
-  (void)state;
+TEST(colours_are_nearly_those_of_the_transform) {
   static const char *const shown[][2] = {
       {"sRGB", "Looking"}, {"sRGB", "Plain"}, {"Display P3", "Looking"}, {"Rec.2100 PQ", "Plain"}};
   for (size_t d = 0; d < sizeof shown / sizeof *shown; d++) {
@@ -79,8 +78,7 @@ static void test_colours_are_nearly_those_of_the_transform(void **state) {
 }
 
 /* What the table does not hold goes through the transform itself, bit for bit. */
-static void test_colours_beyond_it_are_exact(void **state) {
-  (void)state;
+TEST(colours_beyond_it_are_exact) {
   static const float beyond[][3] = {
       {-0.01F, 0.2F, 0.5F},   {70, 1, 1},        {1e30F, 1, 0},
       {0.1F, 0.1F, INFINITY}, {NAN, 0.5F, 0.5F}, {0, 0, 0}}; /* the last one is its own node */
@@ -96,12 +94,4 @@ static void test_colours_beyond_it_are_exact(void **state) {
   abbe_image_free(&exact);
   abbe_image_free(&quick);
   abbe_display_free(display);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_colours_are_nearly_those_of_the_transform),
-      cmocka_unit_test(test_colours_beyond_it_are_exact),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,8 +29,7 @@ static void write_image(const abbe_image *image) {
   if (abbe_exr_write(path, image, &error) != ABBE_OK) fail_msg("%s", error.text);
 }
 
-static void test_round_trip_is_exact(void **state) {
-  (void)state;
+TEST(round_trip_is_exact) {
   static const size_t sizes[][2] = {{1, 1}, {7, 5}, {33, 16}, {16, 33}, {200, 100}};
   for (int s = 0; s < 5; s++) {
     abbe_image image = gradient(sizes[s][0], sizes[s][1]), back = {0};
@@ -77,8 +76,7 @@ static void through_half(const float *value, size_t count, float *back) {
 }
 
 /* IEEE 754's binary16: 11 bits, ties to even, steps of 2^-24 at the lower end. */
-static void test_half_precision_rounds_as_it_should(void **state) {
-  (void)state;
+TEST(half_precision_rounds_as_it_should) {
   const float value[] = {1,          1.0f / 3,     -0.1f,    65504,     65503,
                          0x1.002p0f, 0x1.006p0f,   0x1p-24f, 0x1p-25f,  0x1.8p-25f,
                          0,          0x1.ff8p-15f, INFINITY, -INFINITY, 2049};
@@ -96,8 +94,7 @@ static void test_half_precision_rounds_as_it_should(void **state) {
 }
 
 /* What is too great for half precision, or all too small, comes back all the same. */
-static void test_half_precision_never_overflows(void **state) {
-  (void)state;
+TEST(half_precision_never_overflows) {
   static const float scale[] = {65505, 1e6f, 1e38f, 0.99f, 1e-6f, 1e-12f, 1e-38f};
   for (int s = 0; s < 7; s++) {
     float value[5] = {scale[s], -scale[s] / 3, scale[s] / 1e4f, 0, INFINITY}, back[5];
@@ -109,8 +106,7 @@ static void test_half_precision_never_overflows(void **state) {
   }
 }
 
-static void test_units_that_are_none(void **state) {
-  (void)state;
+TEST(units_that_are_none) {
   static const char *const names[] = {"Y"};
   abbe_image image = {0}, back = {0};
   abbe_error error = {0};
@@ -140,8 +136,7 @@ static void test_units_that_are_none(void **state) {
   free(data);
 }
 
-static void test_what_cannot_be_written(void **state) {
-  (void)state;
+TEST(what_cannot_be_written) {
   static const char *const twice[] = {"R", "R"};
   abbe_image image = {0}, empty = {0};
   abbe_error error = {0};
@@ -163,8 +158,7 @@ static void test_what_cannot_be_written(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_a_full_disk_leaves_the_old_file(void **state) {
-  (void)state;
+TEST(a_full_disk_leaves_the_old_file) {
   assert_int_equal(abbe_file_write(path, "old", 3, NULL), ABBE_OK);
   abbe_image image = gradient(512, 512);
   for (size_t i = 0; i < 512 * 512 * 6; i++) image.data[i] = (float)rand();
@@ -249,8 +243,7 @@ static void write_foreign(exr_storage_t storage, exr_compression_t compression, 
   free(whole);
 }
 
-static void test_foreign_files(void **state) {
-  (void)state;
+TEST(foreign_files) {
   static const exr_compression_t codecs[] = {EXR_COMPRESSION_NONE, EXR_COMPRESSION_RLE,
                                              EXR_COMPRESSION_ZIPS, EXR_COMPRESSION_ZIP,
                                              EXR_COMPRESSION_PIZ};
@@ -284,8 +277,7 @@ static char *load(size_t *size) {
   return data;
 }
 
-static void test_truncated_anywhere(void **state) {
-  (void)state;
+TEST(truncated_anywhere) {
   abbe_image image = gradient(20, 40);
   write_image(&image);
   size_t size = 0;
@@ -298,8 +290,7 @@ static void test_truncated_anywhere(void **state) {
 }
 
 /* Any outcome but a crash, a leak or a hang: the sanitizers judge. */
-static void test_flipped_bits_anywhere(void **state) {
-  (void)state;
+TEST(flipped_bits_anywhere) {
   abbe_image image = gradient(20, 40);
   write_image(&image);
   size_t size = 0;
@@ -318,8 +309,7 @@ static void test_flipped_bits_anywhere(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_a_huge_data_window(void **state) {
-  (void)state;
+TEST(a_huge_data_window) {
   abbe_image image = gradient(20, 40);
   write_image(&image);
   size_t size = 0;
@@ -338,8 +328,7 @@ static void test_a_huge_data_window(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_not_pictures(void **state) {
-  (void)state;
+TEST(not_pictures) {
   abbe_image image = {0};
   abbe_error error = {0};
   assert_int_equal(abbe_exr_read("/no/such.exr", &image, &error), ABBE_IO);
@@ -363,8 +352,7 @@ static exr_context_t begin_pixel(exr_storage_t storage, const char *channel) {
 }
 
 /* One more than can be read. */
-static void test_too_many_attributes(void **state) {
-  (void)state;
+TEST(too_many_attributes) {
   exr_context_t f = begin_pixel(EXR_STORAGE_SCANLINE, "Y");
   for (int i = 0; i <= ABBE_IMAGE_MAX_ATTRIBUTES; i++) {
     char name[16];
@@ -382,8 +370,7 @@ static void test_too_many_attributes(void **state) {
   assert_null(image.data);
 }
 
-static void test_deep_is_unsupported(void **state) {
-  (void)state;
+TEST(deep_is_unsupported) {
   exr_context_t f = begin_pixel(EXR_STORAGE_DEEP_SCANLINE, "Z");
   assert_int_equal(exr_set_version(f, 0, 1), 0);
   assert_int_equal(exr_set_chunk_count(f, 0, 1), 0);
@@ -399,8 +386,7 @@ static void test_deep_is_unsupported(void **state) {
 }
 
 /* Codecs that are younger than the library are refused by their names. */
-static void test_younger_codecs(void **state) {
-  (void)state;
+TEST(younger_codecs) {
   static const char key[] = "compression\0compression\0\1\0\0"; /* and the size's last byte */
   static const struct {
     char number;
@@ -434,8 +420,7 @@ static void test_younger_codecs(void **state) {
 }
 
 /* The reference implementation's own tool accepts the file and sees what was written. */
-static void test_exrheader_agrees(void **state) {
-  (void)state;
+TEST(exrheader_agrees) {
   if (system("command -v exrheader > /dev/null") != 0)
     fail_msg("exrheader is missing; script/bootstrap installs it (openexr)");
   abbe_image image = gradient(31, 17);
@@ -455,28 +440,12 @@ static void test_exrheader_agrees(void **state) {
     if (strstr(text, says[i]) == NULL) fail_msg("no '%s' in %s", says[i], text);
 }
 
-static int leave(void **state) {
-  (void)state;
+static void leave(void) {
   unlink(path);
-  return 0;
 }
 
-int main(void) {
+static void begin(void) {
   snprintf(path, sizeof path, "/tmp/abbe_test_exr_%ld.exr", (long)getpid());
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_round_trip_is_exact),
-                                     cmocka_unit_test(test_half_precision_rounds_as_it_should),
-                                     cmocka_unit_test(test_half_precision_never_overflows),
-                                     cmocka_unit_test(test_units_that_are_none),
-                                     cmocka_unit_test(test_what_cannot_be_written),
-                                     cmocka_unit_test(test_a_full_disk_leaves_the_old_file),
-                                     cmocka_unit_test(test_foreign_files),
-                                     cmocka_unit_test(test_truncated_anywhere),
-                                     cmocka_unit_test(test_flipped_bits_anywhere),
-                                     cmocka_unit_test(test_a_huge_data_window),
-                                     cmocka_unit_test(test_not_pictures),
-                                     cmocka_unit_test(test_too_many_attributes),
-                                     cmocka_unit_test(test_deep_is_unsupported),
-                                     cmocka_unit_test(test_younger_codecs),
-                                     cmocka_unit_test(test_exrheader_agrees)};
-  return cmocka_run_group_tests(tests, NULL, leave);
 }
+
+GROUP(begin, leave);

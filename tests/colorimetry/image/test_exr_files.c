@@ -87,15 +87,13 @@ static void read_all(exr_library_file f) {
       }
 }
 
-static void test_scan_lines(void **state) {
-  (void)state;
+TEST(scan_lines) {
   for (int codec = EXR_COMPRESSION_NONE; codec <= EXR_COMPRESSION_B44A; codec++)
     read_all((exr_library_file){.codec = codec, .line_order = codec % 2});
 }
 
 /* The picture is the display window, wherever the data lie. */
-static void test_windows(void **state) {
-  (void)state;
+TEST(windows) {
   static const int display[][4] = {
       {0, 0, 29, 19}, {-7, 11, 22, 30}, {-1000000000, 3, -999999973, 9}};
   static const int data[][4] = {{3, 4, 12, 9},   {-5, -6, 40, 33}, {20, -9, 44, 7},
@@ -114,8 +112,7 @@ static void test_windows(void **state) {
       }
 }
 
-static void test_tiles(void **state) {
-  (void)state;
+TEST(tiles) {
   for (int codec = EXR_COMPRESSION_NONE; codec <= EXR_COMPRESSION_B44A; codec++)
     read_all((exr_library_file){.codec = codec, .tile = {16, 10}, .levels = codec % 2 == 0});
 }
@@ -143,8 +140,7 @@ static exr_library_file coloured(int codec, int side) {
   return f;
 }
 
-static void test_what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   exr_library_file f = coloured(EXR_COMPRESSION_ZIP, 64);
   f.sampling = 2;
   refused(&f, "subsampled");
@@ -156,8 +152,7 @@ static void test_what_is_refused(void **state) {
 
 /* What the OpenEXR that is here decodes is read, however small the file of a flat picture; else the
  * version is named that does. */
-static void test_younger_codecs(void **state) {
-  (void)state;
+TEST(younger_codecs) {
   enum { HTJ2K = 10, HTJ2K_32 = 11 };
   for (int codec = EXR_COMPRESSION_DWAA; codec <= HTJ2K_32; codec++) {
     exr_library_file f = coloured(codec, 64), flat = coloured(codec, 3000);
@@ -205,8 +200,7 @@ static void reads_part(const char *mark, int part, const char *says) {
   abbe_image_free(&image);
 }
 
-static void test_parts(void **state) {
-  (void)state;
+TEST(parts) {
   write_parts(PARTS);
   reads_part("", 2, "3 'rgb left' of 4"); /* the first with colours */
   reads_part("#depth", 0, "1 'depth' of 4");
@@ -236,8 +230,7 @@ static void test_parts(void **state) {
 }
 
 /* Each part has a codec of its own. */
-static void test_a_codec_of_one_part(void **state) {
-  (void)state;
+TEST(a_codec_of_one_part) {
   static const char key[] = "compression\0compression\0\1\0\0"; /* and the size's last byte */
   char *data = NULL;
   size_t size = 0;
@@ -259,8 +252,7 @@ static void test_a_codec_of_one_part(void **state) {
 }
 
 /* What a small file may unfold into is bounded, whichever window says it. */
-static void test_what_unfolds_is_refused(void **state) {
-  (void)state;
+TEST(what_unfolds_is_refused) {
   static const int wide[4] = {0, 0, 32767, 32767};
   exr_library_file f = {.channels = 1, .type = {1}, .name = {"Y"}, .codec = EXR_COMPRESSION_ZIP};
   char why[300];
@@ -276,8 +268,7 @@ static void test_what_unfolds_is_refused(void **state) {
 }
 
 /* Every half there is, by OpenEXR's own conversion. */
-static void test_every_half(void **state) {
-  (void)state;
+TEST(every_half) {
   exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
   exr_context_t f = NULL;
   int part = 0;
@@ -300,8 +291,7 @@ static void test_every_half(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_what_abbe_writes(void **state) {
-  (void)state;
+TEST(what_abbe_writes) {
   for (size_t channels = 1; channels <= 6; channels++)
     for (int s = 0; s < SIZES; s++)
       for (int half = 0; half < 2; half++) {
@@ -367,8 +357,7 @@ static long fill_chunks(abbe_image *image, bool half, uint64_t seed, size_t zero
 
 /* What deflates to its own size, to a byte more or less, is read as it was: at 3.1.5 OpenEXR's C
  * core keeps the deflated bytes of the first, which readers take for samples. */
-static void test_chunks_that_deflate_to_their_own_size(void **state) {
-  (void)state;
+TEST(chunks_that_deflate_to_their_own_size) {
   for (size_t channels = 1; channels <= 3; channels++)
     for (int half = 0; half < 2; half++) {
       abbe_image image = {0};
@@ -397,24 +386,12 @@ static void test_chunks_that_deflate_to_their_own_size(void **state) {
     }
 }
 
-static int leave(void **state) {
-  (void)state;
+static void leave(void) {
   unlink(path);
-  return 0;
 }
 
-int main(void) {
+static void begin(void) {
   snprintf(path, sizeof path, "/tmp/abbe_test_exr_files_%ld.exr", (long)getpid());
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_scan_lines),
-                                     cmocka_unit_test(test_windows),
-                                     cmocka_unit_test(test_tiles),
-                                     cmocka_unit_test(test_what_is_refused),
-                                     cmocka_unit_test(test_younger_codecs),
-                                     cmocka_unit_test(test_parts),
-                                     cmocka_unit_test(test_a_codec_of_one_part),
-                                     cmocka_unit_test(test_what_unfolds_is_refused),
-                                     cmocka_unit_test(test_every_half),
-                                     cmocka_unit_test(test_what_abbe_writes),
-                                     cmocka_unit_test(test_chunks_that_deflate_to_their_own_size)};
-  return cmocka_run_group_tests(tests, NULL, leave);
 }
+
+GROUP(begin, leave);

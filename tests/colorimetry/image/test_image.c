@@ -4,8 +4,7 @@
 
 static const char *const rgb[] = {"R", "G", "B"};
 
-static void test_make_is_black_and_named(void **state) {
-  (void)state;
+TEST(make_is_black_and_named) {
   abbe_image image = {0};
   abbe_error error = {0};
   assert_int_equal(abbe_image_make(3, 2, 3, rgb, &image, &error), ABBE_OK);
@@ -18,8 +17,7 @@ static void test_make_is_black_and_named(void **state) {
   abbe_image_free(NULL);
 }
 
-static void test_sizes_are_checked_first(void **state) {
-  (void)state;
+TEST(sizes_are_checked_first) {
   static const size_t bad[][3] = {{0, 1, 1},        {1, 0, 1},
                                   {1, 1, 0},        {ABBE_IMAGE_MAX_SIDE + 1, 1, 1},
                                   {1, SIZE_MAX, 1}, {1, 1, ABBE_IMAGE_MAX_CHANNELS + 1}};
@@ -33,8 +31,7 @@ static void test_sizes_are_checked_first(void **state) {
   }
 }
 
-static void test_attributes_have_a_limit(void **state) {
-  (void)state;
+TEST(attributes_have_a_limit) {
   abbe_image image = {0};
   abbe_error error = {0};
   char name[16];
@@ -49,8 +46,7 @@ static void test_attributes_have_a_limit(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_what_unfolds(void **state) {
-  (void)state;
+TEST(what_unfolds) {
   static const struct {
     size_t width, height, channels, bytes;
     abbe_result result;
@@ -69,8 +65,7 @@ static void test_what_unfolds(void **state) {
   }
 }
 
-static void test_places(void **state) {
-  (void)state;
+TEST(places) {
   abbe_image a = {0}, b = {0};
   abbe_error error = {0};
   assert_int_equal(abbe_image_make(3, 2, 3, rgb, &a, NULL), ABBE_OK);
@@ -87,8 +82,7 @@ static void test_places(void **state) {
   abbe_image_free(&b);
 }
 
-static void test_names_are_needed(void **state) {
-  (void)state;
+TEST(names_are_needed) {
   static const char *const bad[] = {"R", "", "B"};
   static const char *const none[] = {"R", NULL, "B"};
   abbe_image image = {0};
@@ -96,8 +90,7 @@ static void test_names_are_needed(void **state) {
   assert_int_equal(abbe_image_make(1, 1, 3, none, &image, NULL), ABBE_INVALID_ARGUMENT);
 }
 
-static void test_attributes(void **state) {
-  (void)state;
+TEST(attributes) {
   abbe_image image = {0};
   assert_int_equal(abbe_image_make(1, 1, 3, rgb, &image, NULL), ABBE_OK);
   assert_null(abbe_image_attribute_text(&image, "abbe:space"));
@@ -111,8 +104,7 @@ static void test_attributes(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_append(void **state) {
-  (void)state;
+TEST(append) {
   static const char *const more[] = {"S0.500nm", "Z"};
   abbe_image image, other, twice;
   abbe_error error = {0};
@@ -142,8 +134,7 @@ static void test_append(void **state) {
   abbe_image_free(&image);
 }
 
-static void bands_are_known_by_their_channels(void **state) {
-  (void)state;
+TEST(bands_are_known_by_their_channels) {
   static const char *const others[] = {
       "R", "S0.", "S0.nm", "S0.550nm", "S0.550,00nm", "stderr.S0.550,000000nm", "S0.550,000000nm2"};
   char name[64];
@@ -155,17 +146,4 @@ static void bands_are_known_by_their_channels(void **state) {
   }
   for (size_t i = 0; i < sizeof others / sizeof *others; i++)
     assert_false(abbe_image_band_middle(others[i], &middle));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(bands_are_known_by_their_channels),
-                                     cmocka_unit_test(test_make_is_black_and_named),
-                                     cmocka_unit_test(test_sizes_are_checked_first),
-                                     cmocka_unit_test(test_what_unfolds),
-                                     cmocka_unit_test(test_attributes_have_a_limit),
-                                     cmocka_unit_test(test_places),
-                                     cmocka_unit_test(test_names_are_needed),
-                                     cmocka_unit_test(test_append),
-                                     cmocka_unit_test(test_attributes)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

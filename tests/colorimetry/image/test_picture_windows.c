@@ -29,8 +29,9 @@ static void write_pictures(void) {
   write_picture("nothing.exr", (const int[]){0, 0, 31, 23}, (const int[]){40, 3, 49, 8});
 }
 
-static void test_info(void **state) {
-  (void)state;
+GROUP(run_setup, run_teardown);
+
+TEST(info) {
   write_pictures();
   ends_with(0, "$abbe info plain.exr");
   assert_contains(run_output, "32 x 24 pixels");
@@ -51,8 +52,7 @@ static void test_info(void **state) {
 }
 
 /* One block of light in two places is not one picture. */
-static void test_compare(void **state) {
-  (void)state;
+TEST(compare) {
   write_pictures();
   ends_with(0, "$abbe compare left.exr left.exr --tolerance relative_rmse=0");
   ends_with(3, "$abbe compare left.exr right.exr --tolerance relative_rmse=0.5");
@@ -78,8 +78,7 @@ static void test_compare(void **state) {
   ends_with(0, "$abbe outline left.exr left.exr");
 }
 
-static void test_display(void **state) {
-  (void)state;
+TEST(display) {
   write_pictures();
   ends_with(0, "$abbe display left.exr -o left.png --view Raw");
   abbe_image image = {0};
@@ -112,8 +111,7 @@ static void write_parts(const char *name) {
 }
 
 /* Whoever reads a picture says which part of its file that is, and writes over no part of it. */
-static void test_parts(void **state) {
-  (void)state;
+TEST(parts) {
   static const char *const lines[] = {"$abbe outline parts.exr",
                                       "$abbe outline plain.exr --minus parts.exr",
                                       "$abbe compare plain.exr plain.exr --mask parts.exr",
@@ -145,10 +143,4 @@ static void test_parts(void **state) {
     assert_contains(run_errors, "would be written over");
   }
   assert_int_equal(run_line("cmp parts.exr parts-0000.exr"), 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_info), cmocka_unit_test(test_compare),
-                                     cmocka_unit_test(test_display), cmocka_unit_test(test_parts)};
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

@@ -21,8 +21,7 @@ static abbe_image gradient(size_t width, size_t height, size_t channels) {
   return image;
 }
 
-static void test_round_trip(void **state) {
-  (void)state;
+TEST(round_trip) {
   static const size_t channels[] = {1, 3, 4};
   for (int bits = 8; bits <= 16; bits += 8)
     for (int c = 0; c < 3; c++) {
@@ -42,8 +41,7 @@ static void test_round_trip(void **state) {
     }
 }
 
-static void test_what_lies_outside_is_clamped(void **state) {
-  (void)state;
+TEST(what_lies_outside_is_clamped) {
   abbe_image image = gradient(2, 1, 3), back = {0};
   const float in[6] = {-1, NAN, INFINITY, 2, -INFINITY, 0.5f};
   const float out[6] = {0, 0, 1, 1, 0, 128.0f / 255};
@@ -55,8 +53,7 @@ static void test_what_lies_outside_is_clamped(void **state) {
   abbe_image_free(&back);
 }
 
-static void test_what_cannot_be_written(void **state) {
-  (void)state;
+TEST(what_cannot_be_written) {
   abbe_image image = gradient(2, 2, 3), empty = {0};
   abbe_error error = {0};
   assert_int_equal(abbe_png_write(path, &image, 12, &error), ABBE_INVALID_ARGUMENT);
@@ -66,8 +63,7 @@ static void test_what_cannot_be_written(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_a_full_disk_leaves_the_old_file(void **state) {
-  (void)state;
+TEST(a_full_disk_leaves_the_old_file) {
   assert_int_equal(abbe_file_write(path, "old", 3, NULL), ABBE_OK);
   abbe_image image = gradient(300, 300, 3);
   for (int i = 0; i < 270000; i++) image.data[i] = (float)rand() / (float)RAND_MAX;
@@ -136,8 +132,7 @@ static void write_foreign(int colour, int bits, int interlace) {
   end_foreign(&f);
 }
 
-static void test_foreign_files(void **state) {
-  (void)state;
+TEST(foreign_files) {
   static const struct {
     int colour, bits;
     float first[3];
@@ -177,16 +172,14 @@ static char *written(size_t *size) {
   return data;
 }
 
-static void test_truncated_anywhere(void **state) {
-  (void)state;
+TEST(truncated_anywhere) {
   size_t size = 0;
   char *data = written(&size);
   for (size_t cut = 0; cut < size; cut++) read_must_fail(data, cut, "truncated");
   free(data);
 }
 
-static void test_flipped_bits_anywhere(void **state) {
-  (void)state;
+TEST(flipped_bits_anywhere) {
   size_t size = 0;
   char *data = written(&size);
   for (size_t at = 0; at < size; at++) {
@@ -202,8 +195,7 @@ static void test_flipped_bits_anywhere(void **state) {
 }
 
 /* A header that promises too much, with its checksum right. */
-static void test_a_huge_header(void **state) {
-  (void)state;
+TEST(a_huge_header) {
   static const unsigned sides[][2] = {{2000, 2000}, {16385, 1}, {1, 16385}};
   for (int i = 0; i < 3; i++) {
     size_t size = 0;
@@ -221,8 +213,7 @@ static void test_a_huge_header(void **state) {
   }
 }
 
-static void test_not_pictures(void **state) {
-  (void)state;
+TEST(not_pictures) {
   abbe_image image = {0};
   abbe_error error = {0};
   assert_int_equal(abbe_png_read("/no/such.png", &image, &error), ABBE_IO);
@@ -245,8 +236,7 @@ static void chunks_are(const char *expected) {
   assert_string_equal(found, expected);
 }
 
-static void test_the_colour_is_said(void **state) {
-  (void)state;
+TEST(the_colour_is_said) {
   for (size_t channels = 1; channels <= 3; channels += 2) {
     abbe_image image = gradient(4, 4, channels), back = {0};
     assert_int_equal(abbe_png_write(path, &image, 8, NULL), ABBE_OK);
@@ -270,8 +260,7 @@ static const char *find(const char *data, size_t size, const char *bytes, size_t
 }
 
 /* PQ and HLG by cICP [H273], before the pixels, in 16 bits alone; libpng reads the chunk back. */
-static void test_hdr_is_said(void **state) {
-  (void)state;
+TEST(hdr_is_said) {
   static const double rec2020[8] = {0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290};
   static const char *const said[] = {"cICP\x09\x10\x00\x01", "cICP\x09\x12\x00\x01"};
   abbe_image image = gradient(4, 4, 3), back = {0};
@@ -355,8 +344,7 @@ static void say_pq(png_structp png, png_infop info) {
   say_cicp(png, info, 9, 16);
 }
 
-static void test_the_colour_is_heeded(void **state) {
-  (void)state;
+TEST(the_colour_is_heeded) {
   /* Rec.709's red on a Display P3 screen, as published for CSS colours; (V + 0.099) / 1.099 of 0.5
    * to the power 1/0.45 is 0.2597 */
   static const struct {
@@ -398,8 +386,7 @@ static long peak_kilobytes(void) {
 
 /* Pixels of one bit, and a text, that are a little beyond what is unpacked: refused before memory
  * is taken. */
-static void test_what_unfolds_is_refused(void **state) {
-  (void)state;
+TEST(what_unfolds_is_refused) {
   static const unsigned char text_bomb[] =
       "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\10\2\0\0\0\x90wS\xde\0\x40\0\1zTXtk";
   abbe_image image = {0};
@@ -417,26 +404,12 @@ static void test_what_unfolds_is_refused(void **state) {
   assert_true(peak_kilobytes() - before < 100000);
 }
 
-static int leave(void **state) {
-  (void)state;
+static void leave(void) {
   unlink(path);
-  return 0;
 }
 
-int main(void) {
+static void begin(void) {
   snprintf(path, sizeof path, "/tmp/abbe_test_png_%ld.png", (long)getpid());
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_round_trip),
-                                     cmocka_unit_test(test_what_lies_outside_is_clamped),
-                                     cmocka_unit_test(test_what_cannot_be_written),
-                                     cmocka_unit_test(test_a_full_disk_leaves_the_old_file),
-                                     cmocka_unit_test(test_foreign_files),
-                                     cmocka_unit_test(test_truncated_anywhere),
-                                     cmocka_unit_test(test_flipped_bits_anywhere),
-                                     cmocka_unit_test(test_a_huge_header),
-                                     cmocka_unit_test(test_not_pictures),
-                                     cmocka_unit_test(test_the_colour_is_said),
-                                     cmocka_unit_test(test_hdr_is_said),
-                                     cmocka_unit_test(test_the_colour_is_heeded),
-                                     cmocka_unit_test(test_what_unfolds_is_refused)};
-  return cmocka_run_group_tests(tests, NULL, leave);
 }
+
+GROUP(begin, leave);

@@ -37,8 +37,17 @@ static void check_pixel(const abbe_image *image, size_t x, size_t y, double r, d
 static const uint8_t six[6][4] = {{128, 0, 0, 129},    {0, 255, 1, 128},  {9, 9, 9, 0},
                                   {128, 64, 192, 137}, {200, 100, 50, 1}, {128, 128, 128, 130}};
 
-static void exponents_and_mantissas(void **state) {
-  (void)state;
+static void begin(void) {
+  snprintf(path, sizeof path, "/tmp/abbe-test-radiance-%d.hdr", (int)getpid());
+}
+
+static void finish(void) {
+  unlink(path);
+}
+
+GROUP(begin, finish);
+
+TEST(exponents_and_mantissas) {
   abbe_image image = read_pixels(HEAD "\n-Y 2 +X 3\n", six, sizeof six);
   assert_true(image.width == 3 && image.height == 2 && image.channels == 3);
   check_pixel(&image, 0, 0, 1, 0, 0);
@@ -53,8 +62,7 @@ static void exponents_and_mantissas(void **state) {
 
 /* The same six pixels in each of the eight directions: where the first and the second come to lie.
  */
-static void directions(void **state) {
-  (void)state;
+TEST(directions) {
   static const struct {
     const char *size;
     size_t first[2], second[2];
@@ -73,8 +81,7 @@ static void directions(void **state) {
   }
 }
 
-static void header_variables(void **state) {
-  (void)state;
+TEST(header_variables) {
   static const char head[] =
       "#?RGBE\n# EXPOSURE=7\nEXPOSURE= 4\nEXPOSURE=0.5\nCOLORCORR=1 2 0.5\nVIEW=-vtv\n"
       "FORMAT=32-bit_rle_rgbe\nPRIMARIES=0.7 0.3 0.2 0.7 0.1 0.1 0.33 0.33\n\n-Y 2 +X 3\n";
@@ -91,8 +98,7 @@ static void header_variables(void **state) {
 }
 
 /* Runs may be continued, by eight bits more each; the new coding is of each byte by itself. */
-static void runs(void **state) {
-  (void)state;
+TEST(runs) {
   static const uint8_t old[] = {128, 128, 128, 129, 1, 1,   1, 3, 1, 1,
                                 1,   1,   128, 0,   0, 130, 1, 1, 1, 0};
   abbe_image image = read_pixels(HEAD "\n-Y 1 +X 261\n", old, sizeof old);
@@ -114,8 +120,7 @@ static void runs(void **state) {
 }
 
 /* Pixels one by one, of which the second line begins as one in runs does. */
-static void flat_pixels(void **state) {
-  (void)state;
+TEST(flat_pixels) {
   uint8_t flat[2][8][4];
   memset(flat, 128, sizeof flat);
   memcpy(flat[1][0], (const uint8_t[4]){2, 2, 0, 8}, 4);
@@ -125,8 +130,7 @@ static void flat_pixels(void **state) {
   abbe_image_free(&image);
 }
 
-static void what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   static const struct {
     const char *data;
     size_t size; /* 0: of the text */
@@ -168,8 +172,7 @@ static void what_is_refused(void **state) {
   }
 }
 
-static void other_kinds_of_file(void **state) {
-  (void)state;
+TEST(other_kinds_of_file) {
   abbe_image image;
   abbe_error error;
   unlink(path);
@@ -178,20 +181,4 @@ static void other_kinds_of_file(void **state) {
   assert_int_equal(abbe_radiance_read(path, &image, &error), ABBE_IO);
   unlink(path);
   assert_int_equal(abbe_radiance_read("/dev", &image, &error), ABBE_IO);
-}
-
-int main(void) {
-  snprintf(path, sizeof path, "/tmp/abbe-test-radiance-%d.hdr", (int)getpid());
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(exponents_and_mantissas),
-      cmocka_unit_test(directions),
-      cmocka_unit_test(header_variables),
-      cmocka_unit_test(runs),
-      cmocka_unit_test(flat_pixels),
-      cmocka_unit_test(what_is_refused),
-      cmocka_unit_test(other_kinds_of_file),
-  };
-  const int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  unlink(path);
-  return failed;
 }

@@ -26,8 +26,7 @@ static void pixel_is(abbe_image *image, double r, double g, double b, double tol
   abbe_image_free(image);
 }
 
-static void test_curves(void **state) {
-  (void)state;
+TEST(curves) {
   double xy[8], curve[5];
   const double none[8] = {0};
   abbe_rgb_encoding_srgb(xy, curve);
@@ -54,8 +53,7 @@ static void answer(const double xy[8], const double curve[5], float xyz[][3]) {
   }
 }
 
-static void test_probes_find_the_encoding(void **state) {
-  (void)state;
+TEST(probes_find_the_encoding) {
   double xy[3][8], curve[3][5] = {{0}, {0}, {2.4, 1, 0, 0, 0}};
   abbe_rgb_encoding_srgb(xy[0], curve[0]);
   abbe_rgb_encoding_display_p3(xy[1], curve[1]);
@@ -71,8 +69,7 @@ static void test_probes_find_the_encoding(void **state) {
 }
 
 /* Each breaks one thing that an encoding of this form has. */
-static void test_probes_of_something_else(void **state) {
-  (void)state;
+TEST(probes_of_something_else) {
   for (int broken = 0; broken < 6; broken++) {
     double xy[8], curve[5];
     float xyz[ABBE_RGB_ENCODING_PROBES][3];
@@ -94,8 +91,7 @@ static void test_probes_of_something_else(void **state) {
 }
 
 /* The profile as another program opens it. */
-static void test_the_profile_of_display_p3(void **state) {
-  (void)state;
+TEST(the_profile_of_display_p3) {
   double xy[8], curve[5];
   void *icc[2];
   size_t size[2];
@@ -132,8 +128,7 @@ static void test_the_profile_of_display_p3(void **state) {
 }
 
 /* By formula and by Little CMS through the profile: the same. */
-static void test_to_srgb_in_two_ways(void **state) {
-  (void)state;
+TEST(to_srgb_in_two_ways) {
   double xy[8], curve[5];
   void *icc = NULL;
   size_t size = 0;
@@ -169,8 +164,7 @@ static void *saved(cmsHPROFILE profile, cmsUInt32Number *size) {
   return icc;
 }
 
-static void test_other_profiles(void **state) {
-  (void)state;
+TEST(other_profiles) {
   cmsUInt32Number size = 0;
   cmsToneCurve *linear = cmsBuildGamma(NULL, 1);
   void *icc = saved(cmsCreateGrayProfile(cmsD50_xyY(), linear), &size);
@@ -194,14 +188,4 @@ static void test_other_profiles(void **state) {
   image.xy[1] = image.xy[3] = image.xy[5] = 0.3; /* primaries on a line */
   assert_int_equal(abbe_rgb_encoding_to_srgb(&image, "line.png", &error), ABBE_INVALID_ARGUMENT);
   abbe_image_free(&image);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_curves),
-                                     cmocka_unit_test(test_probes_find_the_encoding),
-                                     cmocka_unit_test(test_probes_of_something_else),
-                                     cmocka_unit_test(test_the_profile_of_display_p3),
-                                     cmocka_unit_test(test_to_srgb_in_two_ways),
-                                     cmocka_unit_test(test_other_profiles)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -35,8 +35,13 @@ static void show(const char *const *channel, size_t channels, const float *value
   unlink(path);
 }
 
-static void test_a_space_by_word_by_channels_and_by_chromaticities(void **state) {
-  (void)state;
+static void begin(void) {
+  snprintf(path, sizeof path, "/tmp/abbe_test_screen_png_%ld.png", (long)getpid());
+}
+
+GROUP(begin, NULL);
+
+TEST(a_space_by_word_by_channels_and_by_chromaticities) {
   static const char *const rgb[] = {"R", "G", "B"}, *const xyz[] = {"X", "Y", "Z"};
   static const float ap1[] = {0.2f, 0.4f, 0.1f};
   double to_xyz[9], from_xyz[9], v[3] = {0.2, 0.4, 0.1}, xy[8];
@@ -60,8 +65,7 @@ static void test_a_space_by_word_by_channels_and_by_chromaticities(void **state)
 
 /* Colours of other primaries are shown as the same colour in Rec.709 is, with a note where nothing
  * is stated; by the name of the space too. */
-static void test_other_primaries(void **state) {
-  (void)state;
+TEST(other_primaries) {
   static const char *const rgb[] = {"R", "G", "B"};
   static const struct {
     double xy[8];
@@ -91,8 +95,7 @@ static void test_other_primaries(void **state) {
   }
 }
 
-static void test_notes(void **state) {
-  (void)state;
+TEST(notes) {
   static const char *const rgb[] = {"R", "G", "B", "Z"}, *const y[] = {"Y"};
   static const float value[] = {INFINITY, 1, NAN, INFINITY}, nan[] = {1, 1, NAN, 1};
   float got[3];
@@ -109,8 +112,7 @@ static void test_notes(void **state) {
   assert_true(got[0] > 0.99f && got[1] < 0.01f && got[2] < 0.01f);
 }
 
-static void test_layers_and_greys(void **state) {
-  (void)state;
+TEST(layers_and_greys) {
   static const char *const names[] = {"B", "caustic.B", "caustic.G", "caustic.R", "G", "R"};
   static const float value[] = {0.1f, 0.3f, 0.2f, 0.5f, 0.4f, 0.6f};
   static const char *const rgb[] = {"R", "G", "B"}, *const y[] = {"Y"};
@@ -126,8 +128,7 @@ static void test_layers_and_greys(void **state) {
 }
 
 /* Half of a pixel is covered by a grey of 0.6: the file has the grey, and half. */
-static void test_alpha_is_straight(void **state) {
-  (void)state;
+TEST(alpha_is_straight) {
   static const char *const channels[] = {"R", "G", "B", "A"};
   static const float pixels[] = {0.3f, 0.3f, 0.3f, 0.5f, 0, 0, 0, 0}, whole[] = {0.6f, 0.6f, 0.6f};
   const abbe_screen_png_desc desc = {.display = {.view = "Plain"}, .alpha = true, .bits = 8};
@@ -157,8 +158,7 @@ static void test_alpha_is_straight(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_what_cannot_be_shown_is_refused(void **state) {
-  (void)state;
+TEST(what_cannot_be_shown_is_refused) {
   static const char *const names[] = {"U", "V", "R"}, *const rgb[] = {"R", "G", "B"};
   const abbe_screen_png_desc desc = {.name = "it.exr"};
   abbe_image image = {0};
@@ -178,17 +178,4 @@ static void test_what_cannot_be_shown_is_refused(void **state) {
   assert_contains(error.text, "abbe:space is 'p3'");
   abbe_image_free(&image);
   assert_int_equal(access(path, F_OK), -1);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_space_by_word_by_channels_and_by_chromaticities),
-      cmocka_unit_test(test_other_primaries),
-      cmocka_unit_test(test_notes),
-      cmocka_unit_test(test_layers_and_greys),
-      cmocka_unit_test(test_alpha_is_straight),
-      cmocka_unit_test(test_what_cannot_be_shown_is_refused),
-  };
-  snprintf(path, sizeof path, "/tmp/abbe_test_screen_png_%ld.png", (long)getpid());
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

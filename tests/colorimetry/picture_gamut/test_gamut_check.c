@@ -26,8 +26,7 @@ static abbe_image picture(void) {
   return image;
 }
 
-static void test_known_pixels(void **state) {
-  (void)state;
+TEST(known_pixels) {
   abbe_image image = picture();
   abbe_gamut_check c;
   assert_int_equal(abbe_gamut_check_make(&image, "it", ABBE_GAMUT_REC709, &c, NULL), ABBE_OK);
@@ -54,8 +53,7 @@ static void test_known_pixels(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_what_is_not_finite_is_counted(void **state) {
-  (void)state;
+TEST(what_is_not_finite_is_counted) {
   abbe_image image = picture();
   abbe_gamut_check c;
   image.data[0] = INFINITY;
@@ -67,8 +65,7 @@ static void test_what_is_not_finite_is_counted(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_pictures_of_it(void **state) {
-  (void)state;
+TEST(pictures_of_it) {
   static const char png[] = "/tmp/abbe_test_overlay.png", svg[] = "/tmp/abbe_test_diagram.svg";
   abbe_image image = picture(), read = {0};
   abbe_gamut_check c;
@@ -91,8 +88,7 @@ static void test_pictures_of_it(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_nothing(void **state) {
-  (void)state;
+TEST(nothing) {
   static const char *const names[] = {"A", "Z", "S0.5"};
   abbe_image image = picture(), other = {0};
   abbe_gamut_check c;
@@ -107,11 +103,4 @@ static void test_nothing(void **state) {
   assert_int_equal(abbe_gamut_check_make(&other, "it", ABBE_GAMUT_P3, &c, &error), ABBE_NOT_FOUND);
   abbe_image_free(&other);
   abbe_image_free(&image);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_known_pixels), cmocka_unit_test(test_what_is_not_finite_is_counted),
-      cmocka_unit_test(test_pictures_of_it), cmocka_unit_test(test_nothing)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,8 +19,7 @@ static void check_labels(abbe_axis axis, size_t wanted, const char *labels, int 
   assert_int_equal(exponent, wanted_exponent);
 }
 
-static void ticks_are_round(void **state) {
-  (void)state;
+TEST(ticks_are_round) {
   check_labels((abbe_axis){380, 780, false, false}, 8, "400 450 500 550 600 650 700 750", 0);
   check_labels((abbe_axis){0, 1, false, false}, 5, "0.0 0.2 0.4 0.6 0.8 1.0", 0);
   check_labels((abbe_axis){-1, 1, false, true}, 4, "−1.0 −0.5 0.0 0.5 1.0", 0);
@@ -30,8 +29,7 @@ static void ticks_are_round(void **state) {
   check_labels((abbe_axis){0, 3e6, false, false}, 3, "0 1 2 3", 6);
 }
 
-static void decades_are_ticks_of_a_log_axis(void **state) {
-  (void)state;
+TEST(decades_are_ticks_of_a_log_axis) {
   check_labels((abbe_axis){0.01, 100, true, false}, 6, "0.01 0.1 1 10 100", 0);
   check_labels((abbe_axis){3e-6, 2e-3, true, false}, 6, "10⁻⁵ 10⁻⁴ 0.001", 0);
   check_labels((abbe_axis){1, 1e12, true, false}, 5, "1 1000 10⁶ 10⁹ 10¹²", 0);
@@ -48,8 +46,7 @@ static void decades_are_ticks_of_a_log_axis(void **state) {
   assert_false(tick[4].major);
 }
 
-static void values_have_places(void **state) {
-  (void)state;
+TEST(values_have_places) {
   abbe_axis linear = {10, 20, false, false}, logarithmic = {1, 100, true, false};
   assert_near(abbe_axis_at(&linear, 12.5), 0.25, 1e-15);
   assert_near(abbe_axis_at(&linear, 25), 1.5, 1e-15);
@@ -60,8 +57,7 @@ static void values_have_places(void **state) {
   assert_near(abbe_axis_at(&linear, 10), 1, 0);
 }
 
-static void an_axis_shows_its_values(void **state) {
-  (void)state;
+TEST(an_axis_shows_its_values) {
   abbe_axis a = abbe_axis_make(0, 10, 0.1, false, false);
   assert_near(a.min, -1, 1e-12);
   assert_near(a.max, 11, 1e-12);
@@ -88,14 +84,4 @@ static void an_axis_shows_its_values(void **state) {
       }
   a = abbe_axis_make(INFINITY, -INFINITY, 0.1, true, false);
   assert_true(0 < a.min && a.min < a.max && isfinite(a.max));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ticks_are_round),
-      cmocka_unit_test(decades_are_ticks_of_a_log_axis),
-      cmocka_unit_test(values_have_places),
-      cmocka_unit_test(an_axis_shows_its_values),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

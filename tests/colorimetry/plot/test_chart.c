@@ -12,20 +12,17 @@
 
 static char folder[64], path[2][96];
 
-static int make_folder(void **state) {
-  (void)state;
+static void make_folder(void) {
   snprintf(folder, sizeof folder, "/tmp/abbe-test-chart-XXXXXX");
-  if (mkdtemp(folder) == NULL) return 1;
+  assert_non_null(mkdtemp(folder));
   snprintf(path[0], sizeof path[0], "%s/c.png", folder);
   snprintf(path[1], sizeof path[1], "%s/c.SVG", folder);
-  return 0;
 }
 
-static int drop_folder(void **state) {
-  (void)state;
+static void drop_folder(void) {
   unlink(path[0]);
   unlink(path[1]);
-  return rmdir(folder);
+  assert_false(rmdir(folder));
 }
 
 static abbe_error error;
@@ -91,15 +88,15 @@ static void check_steps(const double *x, const double *y, bool log, bool reverse
   abbe_image_free(&image);
 }
 
-static void points_lie_where_their_axes_say(void **state) {
-  (void)state;
+EACH(make_folder, drop_folder);
+
+TEST(points_lie_where_their_axes_say) {
   check_steps((double[]){0, 5, 10}, (double[]){-1, 0, 1}, false, false);
   check_steps((double[]){0, 5, 10}, (double[]){-1, 0, 1}, false, true);
   check_steps((double[]){1, 10, 100}, (double[]){1e-4, 1e-2, 1}, true, false);
 }
 
-static void gaps_and_bars_are_drawn(void **state) {
-  (void)state;
+TEST(gaps_and_bars_are_drawn) {
   const double x[] = {0, 1, 2, 3, 4}, y[] = {1, 1, NAN, 1, 1}, low[] = {0, 0, 0, 0, 0},
                high[] = {2, 2, 2, 2, 2};
   abbe_chart_series series = {.count = 5, .x = x, .y = y, .colour = 2};
@@ -134,8 +131,7 @@ static void gaps_and_bars_are_drawn(void **state) {
   abbe_image_free(&image);
 }
 
-static void a_field_has_its_colours_and_scale(void **state) {
-  (void)state;
+TEST(a_field_has_its_colours_and_scale) {
   const float value[] = {-1, 0, 2, NAN};
   abbe_chart_field field = {
       .width = 2, .height = 2, .value = value, .map = ABBE_COLOUR_MAP_DIFFERENCE};
@@ -158,8 +154,7 @@ static void a_field_has_its_colours_and_scale(void **state) {
 }
 
 /* Of the two rows and three columns only one chart has a point; the picture's cells are equal. */
-static void a_grid_runs_row_by_row(void **state) {
-  (void)state;
+TEST(a_grid_runs_row_by_row) {
   const double x[] = {5}, y[] = {5};
   abbe_chart_series series = {.style = ABBE_CHART_POINTS, .count = 1, .x = x, .y = y, .colour = 2};
   spot at[6];
@@ -185,8 +180,7 @@ static void a_grid_runs_row_by_row(void **state) {
   }
 }
 
-static void an_svg_is_whole_and_scales(void **state) {
-  (void)state;
+TEST(an_svg_is_whole_and_scales) {
   const double x[] = {1, 2}, y[] = {1, 2};
   abbe_chart_series series = {.label = "a & <b>", .count = 2, .x = x, .y = y};
   abbe_chart charts[2] = {{.title = "One", .series_count = 1, .series = &series}, {.share = 0.5}};
@@ -201,8 +195,7 @@ static void an_svg_is_whole_and_scales(void **state) {
 }
 
 /* Behind the header, where the PNG specification wants it, before the palette or the pixels. */
-static void a_png_says_that_it_is_srgb(void **state) {
-  (void)state;
+TEST(a_png_says_that_it_is_srgb) {
   const double x[] = {1, 2}, y[] = {1, 2};
   abbe_chart_series series = {.count = 2, .x = x, .y = y};
   abbe_chart chart = {.series_count = 1, .series = &series};
@@ -218,8 +211,7 @@ static void a_png_says_that_it_is_srgb(void **state) {
 
 /* Whatever it is asked to show, it shows something or says why not, and no file is left half done.
  */
-static void awkward_charts_are_drawn_or_refused(void **state) {
-  (void)state;
+TEST(awkward_charts_are_drawn_or_refused) {
   const double wild[] = {NAN, INFINITY, -1e300, 1e300, 0}, one[] = {1, 1, 1, 1, 1};
   const char *const names[] = {"a", NULL, "c", "d", "e"};
   abbe_chart_series many[40];
@@ -270,19 +262,4 @@ static void awkward_charts_are_drawn_or_refused(void **state) {
   assert_int_equal(abbe_chart_write("/no/such/c.png", &empty, 1, 0, 0, &error), ABBE_IO);
   assert_contains(error.text, "/no/such/c.png");
   assert_int_not_equal(access(path[0], F_OK), 0);
-}
-
-#define in_folder(test) cmocka_unit_test_setup_teardown(test, make_folder, drop_folder)
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      in_folder(points_lie_where_their_axes_say),
-      in_folder(gaps_and_bars_are_drawn),
-      in_folder(a_field_has_its_colours_and_scale),
-      in_folder(an_svg_is_whole_and_scales),
-      in_folder(a_grid_runs_row_by_row),
-      in_folder(a_png_says_that_it_is_srgb),
-      in_folder(awkward_charts_are_drawn_or_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,8 +17,7 @@ static void make(abbe_image *image) {
     image->data[i] = (float)(i % CHANNELS) + (float)(i / CHANNELS) / 32;
 }
 
-static void test_what_is_meant(void **state) {
-  (void)state;
+TEST(what_is_meant) {
   static const struct {
     const char *layer;
     bool meant;
@@ -33,8 +32,7 @@ static void test_what_is_meant(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_values(void **state) {
-  (void)state;
+TEST(values) {
   abbe_image image;
   float *value;
   char title[100];
@@ -63,8 +61,7 @@ static void test_values(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_pictures_and_refusals(void **state) {
-  (void)state;
+TEST(pictures_and_refusals) {
   abbe_image image, png;
   abbe_error error = {0};
   make(&image);
@@ -89,11 +86,4 @@ static void test_pictures_and_refusals(void **state) {
                    ABBE_OK);
   remove("false_colours.png");
   abbe_image_free(&image);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_is_meant),
-                                     cmocka_unit_test(test_values),
-                                     cmocka_unit_test(test_pictures_and_refusals)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

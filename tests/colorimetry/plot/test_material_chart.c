@@ -13,19 +13,17 @@ static char folder[64], path[96];
 static abbe_material_table table;
 static abbe_error error;
 
-static int set_up(void **state) {
-  (void)state;
+static void set_up(void) {
   snprintf(folder, sizeof folder, "/tmp/abbe-test-material-chart-XXXXXX");
-  if (mkdtemp(folder) == NULL) return 1;
+  assert_non_null(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/c.png", folder);
-  return abbe_material_table_load("default", &table, NULL) != ABBE_OK;
+  assert_int_equal(abbe_material_table_load("default", &table, NULL), ABBE_OK);
 }
 
-static int tear_down(void **state) {
-  (void)state;
+static void tear_down(void) {
   abbe_material_table_free(&table);
   unlink(path);
-  return rmdir(folder);
+  assert_false(rmdir(folder));
 }
 
 static const abbe_material *find(const char *name) {
@@ -66,9 +64,10 @@ static void draw(const abbe_material_chart *chart) {
   if (abbe_material_chart_write(path, chart, &error) != ABBE_OK) fail_msg("%s", error.text);
 }
 
+EACH(set_up, tear_down);
+
 /* A curve takes up as much of the picture's width as its data do of the wavelengths. */
-static void curves_reach_as_far_as_their_data(void **state) {
-  (void)state;
+TEST(curves_reach_as_far_as_their_data) {
   const abbe_material *bk7 = find("n-bk7"), *water = find("water"); /* from 182 to 1129 nm */
   abbe_material_chart chart = {.count = 1, .material = &bk7};
   draw(&chart);
@@ -81,8 +80,7 @@ static void curves_reach_as_far_as_their_data(void **state) {
 }
 
 /* A record that allows it is continued in dashes, over a shaded ground. */
-static void continued_curves_are_dashed(void **state) {
-  (void)state;
+TEST(continued_curves_are_dashed) {
   const abbe_material *k5 = find("k5"); /* from 400 to 700 nm */
   abbe_material_chart chart = {.count = 1, .material = &k5, .min_nm = 400, .max_nm = 700};
   draw(&chart);
@@ -96,8 +94,7 @@ static void continued_curves_are_dashed(void **state) {
   assert_near((double)shaded() / whole, 0.4, 0.02); /* both ends in one grey */
 }
 
-static void fits_and_measurements_are_drawn(void **state) {
-  (void)state;
+TEST(fits_and_measurements_are_drawn) {
   const abbe_material *m[2] = {find("n-bk7"), find("f2")};
   abbe_index_points points;
   const char *csv = "435.8,1.5267,3e-4\n546.1,1.5187,2e-4\n656.3,1.5143,2e-4\n";
@@ -116,8 +113,7 @@ static void fits_and_measurements_are_drawn(void **state) {
   abbe_index_points_free(&points);
 }
 
-static void the_map_shows_all_that_have_numbers(void **state) {
-  (void)state;
+TEST(the_map_shows_all_that_have_numbers) {
   const abbe_material_table *tables[] = {&table};
   const abbe_material *marked = find("n-bk7");
   abbe_material_map map = {.table_count = 1, .table = tables, .marked_count = 1, .marked = &marked};
@@ -130,8 +126,7 @@ static void the_map_shows_all_that_have_numbers(void **state) {
   assert_true(blue() >= 40);
 }
 
-static void what_cannot_be_drawn_is_refused(void **state) {
-  (void)state;
+TEST(what_cannot_be_drawn_is_refused) {
   const abbe_material *m = find("n-bk7");
   abbe_material_chart chart = {.count = 1, .material = &m, .min_nm = 5000, .max_nm = 6000};
   assert_int_equal(abbe_material_chart_write(path, &chart, &error), ABBE_OUT_OF_RANGE);
@@ -151,17 +146,4 @@ static void what_cannot_be_drawn_is_refused(void **state) {
   m = &flat.material[0];
   draw(&chart); /* a flat line */
   abbe_material_table_free(&flat);
-}
-
-#define with_table(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      with_table(curves_reach_as_far_as_their_data),
-      with_table(continued_curves_are_dashed),
-      with_table(fits_and_measurements_are_drawn),
-      with_table(the_map_shows_all_that_have_numbers),
-      with_table(what_cannot_be_drawn_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,16 +8,13 @@
 
 static char folder[] = "/tmp/abbe-test-sheet-XXXXXX", path[64];
 
-static int setup(void **state) {
-  (void)state;
-  if (mkdtemp(folder) == NULL) return 1;
+static void setup(void) {
+  assert_non_null(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/s.pdf", folder);
-  return 0;
 }
 
-static int teardown(void **state) {
-  (void)state;
-  return rmdir(folder);
+static void teardown(void) {
+  assert_false(rmdir(folder));
 }
 
 static abbe_sheet *begin(void) {
@@ -29,9 +26,10 @@ static abbe_sheet *begin(void) {
   return sheet;
 }
 
+GROUP(setup, teardown);
+
 /* Cairo compresses what it draws; the number of pages stands in the open. */
-static void pages_are_written(void **state) {
-  (void)state;
+TEST(pages_are_written) {
   static const char *const names[] = {"R", "G", "B"};
   abbe_error error = {0};
   abbe_image image;
@@ -58,8 +56,7 @@ static void pages_are_written(void **state) {
   assert_int_equal(unlink(path), 0);
 }
 
-static void wrong_requests_are_refused(void **state) {
-  (void)state;
+TEST(wrong_requests_are_refused) {
   static const char *const grey[] = {"Y"};
   abbe_error error = {0};
   abbe_image image;
@@ -77,12 +74,4 @@ static void wrong_requests_are_refused(void **state) {
   abbe_sheet_free(sheet); /* and no file is there */
   assert_int_equal(access(path, F_OK), -1);
   abbe_sheet_free(NULL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(pages_are_written),
-      cmocka_unit_test(wrong_requests_are_refused),
-  };
-  return cmocka_run_group_tests(tests, setup, teardown);
 }

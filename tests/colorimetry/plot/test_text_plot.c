@@ -21,8 +21,7 @@ static void check_rows(abbe_text_plot *p, bool plain, const char *wanted) {
   assert_string_equal(text, wanted);
 }
 
-static void lines_are_dots(void **state) {
-  (void)state;
+TEST(lines_are_dots) {
   abbe_text_plot p = make(4, 2);
   const double x[] = {0, 1}, up[] = {0, 1};
   abbe_text_plot_line(&p, 1, 2, x, up); /* the diagonal of an 8 x 8 grid */
@@ -37,8 +36,7 @@ static void lines_are_dots(void **state) {
   abbe_text_plot_free(&p);
 }
 
-static void gaps_stay_open(void **state) {
-  (void)state;
+TEST(gaps_stay_open) {
   abbe_text_plot p = make(4, 1);
   const double x[] = {0, 0.25, 0.5, 0.75, 1}, y[] = {0, 0, NAN, 5, 0};
   abbe_text_plot_line(&p, 1, 5, x, y);
@@ -46,8 +44,7 @@ static void gaps_stay_open(void **state) {
   abbe_text_plot_free(&p);
 }
 
-static void points_are_crosses(void **state) {
-  (void)state;
+TEST(points_are_crosses) {
   abbe_text_plot p = make(3, 2);
   const double x[] = {0.4, 2, 1}, y[] = {0.43, 0.5, NAN};
   abbe_text_plot_points(&p, 3, 3, x, y);
@@ -55,21 +52,10 @@ static void points_are_crosses(void **state) {
   abbe_text_plot_free(&p);
 }
 
-static void sides_are_checked(void **state) {
-  (void)state;
+TEST(sides_are_checked) {
   abbe_text_plot p;
   abbe_axis a = {0, 1, false, false};
   assert_int_equal(abbe_text_plot_make(0, 1, a, a, &p, &error), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_text_plot_make(1, 1025, a, a, &p, &error), ABBE_INVALID_ARGUMENT);
   abbe_text_plot_free(&p);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(lines_are_dots),
-      cmocka_unit_test(gaps_stay_open),
-      cmocka_unit_test(points_are_crosses),
-      cmocka_unit_test(sides_are_checked),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

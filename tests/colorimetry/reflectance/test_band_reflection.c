@@ -32,8 +32,7 @@ static void fill(const abbe_reflected_light *light, const abbe_spectrum *measure
   assert_int_equal(abbe_band_reflection_fill(light, measured, rgb, cell, NULL), ABBE_OK);
 }
 
-static void greys_keep_their_share(void **state) {
-  (void)state;
+TEST(greys_keep_their_share) {
   static const double grey[3] = {0.37, 0.37, 0.37};
   abbe_reflected_light *light = make("D65");
   double white[3];
@@ -49,8 +48,7 @@ static void greys_keep_their_share(void **state) {
   abbe_reflected_light_free(light);
 }
 
-static void white_light_is_exact(void **state) {
-  (void)state;
+TEST(white_light_is_exact) {
   static const char *const lights[] = {"D65", "A", "F11", "LED-RGB1"};
   for (size_t l = 0; l < 4; l++) {
     abbe_reflected_light *light = make(lights[l]);
@@ -120,8 +118,7 @@ static void measure(const abbe_reflected_light *light, const abbe_spectrum *patc
 
 /* The most that may be off by bands: of a line, of 30 nm, of all below an edge, of a soft edge, and
  * of tints, where the mixture is right. */
-static void light_that_is_spread(void **state) {
-  (void)state;
+TEST(light_that_is_spread) {
   static const struct {
     const char *what;
     spectrum_of of;
@@ -148,8 +145,7 @@ static void light_that_is_spread(void **state) {
   abbe_reflected_light_free(light);
 }
 
-static void colours_add_up(void **state) {
-  (void)state;
+TEST(colours_add_up) {
   static const double rgb[3] = {0.7, 0.2, 0.4}, xyz[3] = {0.5, 0.3, 0.1};
   abbe_reflected_light *light = make("A");
   double white[3], whole[3], sum[3] = {0}, part[3];
@@ -167,8 +163,7 @@ static void colours_add_up(void **state) {
 }
 
 /* A line, or a range that nobody sees, has no colours to tell bands by. */
-static void lights_of_few_colours(void **state) {
-  (void)state;
+TEST(lights_of_few_colours) {
   static const double rgb[3] = {0.7, 0.2, 0.4};
   static const abbe_illuminant d65 = {.kind = ABBE_ILLUMINANT_D65};
   static const double ranges[][2] = {{589, 590}, {900, 1000}};
@@ -185,12 +180,4 @@ static void lights_of_few_colours(void **state) {
       assert_near(out[k], rgb[0] * of[0][k] + rgb[1] * of[1][k] + rgb[2] * of[2][k], 1e-3);
     abbe_reflected_light_free(light);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(greys_keep_their_share), cmocka_unit_test(white_light_is_exact),
-      cmocka_unit_test(light_that_is_spread), cmocka_unit_test(colours_add_up),
-      cmocka_unit_test(lights_of_few_colours)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

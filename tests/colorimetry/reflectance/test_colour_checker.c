@@ -13,8 +13,7 @@ static abbe_spectrum *make(const char *name) {
 /* x, y, Y under C as the chart's makers printed them [McCamy1976]; the chart that was measured is
  * another one, so a patch may be off by what charts differ: a tenth of the distance between any two
  * chromatic patches. */
-static void colours_are_near_the_printed_ones(void **state) {
-  (void)state;
+TEST(colours_are_near_the_printed_ones) {
   static const double printed[ABBE_COLOUR_CHECKER_COUNT][3] = {
       {0.4002, 0.3504, 0.1005}, {0.3773, 0.3446, 0.3582}, {0.2470, 0.2514, 0.1933},
       {0.3372, 0.4220, 0.1329}, {0.2651, 0.2400, 0.2427}, {0.2608, 0.3430, 0.4306},
@@ -106,8 +105,7 @@ static const double of_mean[ABBE_COLOUR_CHECKER_COUNT][3] = {
     {0.3488, 0.3628, 0.9129}, {0.3451, 0.3596, 0.5885}, {0.3446, 0.3590, 0.3595},
     {0.3438, 0.3589, 0.1912}, {0.3423, 0.3576, 0.0893}, {0.3439, 0.3565, 0.0320}};
 
-static void a_printed_pair_is_computed(void **state) {
-  (void)state;
+TEST(a_printed_pair_is_computed) {
   double nm[MEAN_POINTS], value[MEAN_POINTS];
   abbe_illuminant d50 = {0};
   abbe_reflected_light *light = NULL;
@@ -135,8 +133,7 @@ static void a_printed_pair_is_computed(void **state) {
   abbe_illuminant_free(&d50);
 }
 
-static void names_are_found_and_refused(void **state) {
-  (void)state;
+TEST(names_are_found_and_refused) {
   abbe_spectrum *spectrum = make("BLUE Sky");
   assert_near(abbe_spectrum_at(spectrum, 380), 0.125, 0.03);
   abbe_spectrum_free(spectrum);
@@ -145,11 +142,4 @@ static void names_are_found_and_refused(void **state) {
   assert_null(spectrum);
   assert_non_null(strstr(error.text, "did you mean 'blue sky'"));
   assert_null(abbe_colour_checker_name(ABBE_COLOUR_CHECKER_COUNT));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(colours_are_near_the_printed_ones),
-                                     cmocka_unit_test(a_printed_pair_is_computed),
-                                     cmocka_unit_test(names_are_found_and_refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

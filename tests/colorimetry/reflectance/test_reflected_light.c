@@ -30,8 +30,7 @@ static void integrate(const abbe_illuminant *illuminant, const abbe_spectrum *me
   for (int k = 0; k < 3; k++) xyz[k] /= white;
 }
 
-static void measured_patches_are_integrals(void **state) {
-  (void)state;
+TEST(measured_patches_are_integrals) {
   static const char *const lights[] = {"D65", "A", "F11", "LED-RGB1"};
   for (size_t l = 0; l < 4; l++) {
     abbe_illuminant illuminant;
@@ -60,8 +59,7 @@ static void measured_patches_are_integrals(void **state) {
 
 /* Under D65 a Rec.709 colour reflects that colour, as near as the table's white is to the nominal
  * one; greys are grey under any light. */
-static void rec709_under_d65_is_itself(void **state) {
-  (void)state;
+TEST(rec709_under_d65_is_itself) {
   abbe_illuminant illuminant;
   abbe_reflected_light *light = make("D65", 380, 780, &illuminant);
   double xyz[3][3], to_xyz[9], white[3];
@@ -79,8 +77,7 @@ static void rec709_under_d65_is_itself(void **state) {
 }
 
 /* The matrices of red, green and blue add up to no change at all. */
-static void white_changes_no_light(void **state) {
-  (void)state;
+TEST(white_changes_no_light) {
   abbe_illuminant illuminant;
   abbe_reflected_light *light = make("A", 400, 700, &illuminant);
   double matrix[3][9];
@@ -90,8 +87,7 @@ static void white_changes_no_light(void **state) {
   abbe_reflected_light_free(light);
 }
 
-static void narrow_lights_and_bad_ranges(void **state) {
-  (void)state;
+TEST(narrow_lights_and_bad_ranges) {
   abbe_illuminant illuminant;
   abbe_reflected_light *light = make("D65", 640, 640.5, &illuminant);
   double matrix[3][9];
@@ -110,12 +106,4 @@ static void narrow_lights_and_bad_ranges(void **state) {
                      ABBE_INVALID_ARGUMENT);
     assert_null(light);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(measured_patches_are_integrals),
-                                     cmocka_unit_test(rec709_under_d65_is_itself),
-                                     cmocka_unit_test(white_changes_no_light),
-                                     cmocka_unit_test(narrow_lights_and_bad_ranges)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,8 +14,7 @@ static void make(abbe_image *image) {
   image->display_window = (abbe_image_window){10, 20, 12, 21};
 }
 
-static void test_a_pixel_and_a_region(void **state) {
-  (void)state;
+TEST(a_pixel_and_a_region) {
   const abbe_spectral_view view = {0};
   abbe_image image;
   abbe_pixel_probe p;
@@ -41,8 +40,7 @@ static void test_a_pixel_and_a_region(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_colour_is_xyz(void **state) {
-  (void)state;
+TEST(colour_is_xyz) {
   const abbe_spectral_view view = {0};
   abbe_image image;
   abbe_pixel_probe p;
@@ -57,8 +55,7 @@ static void test_colour_is_xyz(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_refusals(void **state) {
-  (void)state;
+TEST(refusals) {
   const abbe_spectral_view view = {0};
   static const abbe_image_window outside[] = {
       {9, 20, 10, 20}, {10, 20, 13, 20}, {10, 22, 10, 22}, {11, 20, 10, 20}};
@@ -76,11 +73,4 @@ static void test_refusals(void **state) {
                    ABBE_NOT_FOUND);
   assert_contains(error.text, "layer 'none'");
   abbe_image_free(&image);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_pixel_and_a_region),
-                                     cmocka_unit_test(test_colour_is_xyz),
-                                     cmocka_unit_test(test_refusals)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

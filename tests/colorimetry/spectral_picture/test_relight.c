@@ -24,8 +24,7 @@ static double middle(int band) {
 /* x and y of an equal-energy spectrum: a third each for every observer, whose functions have equal
  * integrals by definition [CIE15] [CIE170-2], to the rounding of the tables; and over 380 to 780 nm.
  */
-static void test_equal_energy_of_each_observer(void **state) {
-  (void)state;
+TEST(equal_energy_of_each_observer) {
   abbe_image image, xyz;
   make("S0.", &image);
   for (size_t i = 0; i < 2 * BANDS; i++) image.data[i] = 0.5f;
@@ -65,8 +64,7 @@ static void integrate(const abbe_illuminant *light, abbe_observer observer, doub
   for (int k = 0; k < 3; k++) out[k] /= white;
 }
 
-static void test_a_reflectance_under_another_light(void **state) {
-  (void)state;
+TEST(a_reflectance_under_another_light) {
   const abbe_illuminant a = {.kind = ABBE_ILLUMINANT_A}, d65 = {0};
   const abbe_illuminant *const lights[2] = {&a, &d65};
   abbe_image reflected, emitted, out;
@@ -99,8 +97,7 @@ static void test_a_reflectance_under_another_light(void **state) {
 
 /* 683 lm/W and the integral of ybar: an even radiance of 1 mW/(m2 sr nm), and its thousandth of a
  * watt, are the same luminance; an irradiance is in lux. */
-static void test_units(void **state) {
-  (void)state;
+TEST(units) {
   static const struct {
     const char *unit, *says;
     float value;
@@ -123,8 +120,7 @@ static void test_units(void **state) {
 
 /* An infinite band is as bright as the brightest half, or as the brightest band that there is, and
  * does not take the others away; what is not a number stays so. */
-static void test_infinite_bands(void **state) {
-  (void)state;
+TEST(infinite_bands) {
   abbe_image image, xyz;
   abbe_image_odd odd;
   const abbe_relight_desc desc = {.space = ABBE_RGB_SPACE_ACESCG, .odd = &odd};
@@ -148,8 +144,7 @@ static void test_infinite_bands(void **state) {
 
 /* Bands that are kept are those that a lamp of the other illuminant makes; and looked at again, as
  * made with that one, they have the same colour. */
-static void test_bands_are_kept(void **state) {
-  (void)state;
+TEST(bands_are_kept) {
   const abbe_illuminant a = {.kind = ABBE_ILLUMINANT_A}, d65 = {0};
   abbe_image lamp, out, again;
   make("S0.", &lamp);
@@ -178,8 +173,7 @@ static void test_bands_are_kept(void **state) {
   abbe_image_free(&lamp);
 }
 
-static void test_what_is_refused_and_what_is_needed(void **state) {
-  (void)state;
+TEST(what_is_refused_and_what_is_needed) {
   static const char *const rgb[] = {"R", "G", "B", "left.S0.500nm", "left.S0.600nm"};
   const abbe_relight_desc none = {0}, left = {.layer = "left"};
   abbe_image image, out;
@@ -194,14 +188,4 @@ static void test_what_is_refused_and_what_is_needed(void **state) {
   assert_string_equal(abbe_image_attribute_text(&out, "abbe:unit"), "luminance, cd/m2");
   abbe_image_free(&out);
   abbe_image_free(&image);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_units),
-                                     cmocka_unit_test(test_infinite_bands),
-                                     cmocka_unit_test(test_equal_energy_of_each_observer),
-                                     cmocka_unit_test(test_a_reflectance_under_another_light),
-                                     cmocka_unit_test(test_bands_are_kept),
-                                     cmocka_unit_test(test_what_is_refused_and_what_is_needed)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,8 +3,7 @@
 #include "colorimetry/spectral_picture/spectral_channels.h"
 
 /* Names as [Fichet2021] writes them, and names that are none. */
-static void test_names(void **state) {
-  (void)state;
+TEST(names) {
   static const struct {
     const char *name;
     abbe_spectral_kind kind;
@@ -38,8 +37,7 @@ static void make(const char *const *names, size_t count, abbe_image *out) {
   assert_int_equal(abbe_image_make(1, 1, count, names, out, NULL), ABBE_OK);
 }
 
-static void test_bands_meet_midway(void **state) {
-  (void)state;
+TEST(bands_meet_midway) {
   static const char *const names[] = {"S0.600nm", "R", "stderr.S0.500nm", "S0.500nm", "S0.520nm"};
   abbe_image image;
   abbe_spectral_channels c;
@@ -60,8 +58,7 @@ static void test_bands_meet_midway(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_layers_and_reflectances(void **state) {
-  (void)state;
+TEST(layers_and_reflectances) {
   static const char *const names[] = {"left.T.500nm", "left.T.600nm", "T.400nm"};
   abbe_image image;
   abbe_spectral_channels c;
@@ -79,8 +76,7 @@ static void test_layers_and_reflectances(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_twice_the_same(void **state) {
-  (void)state;
+TEST(twice_the_same) {
   static const char *const names[] = {"S0.500nm", "S0.0,5um"};
   abbe_image image;
   abbe_spectral_channels c;
@@ -93,8 +89,7 @@ static void test_twice_the_same(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_what_is_not_read(void **state) {
-  (void)state;
+TEST(what_is_not_read) {
   static const char *const names[] = {
       "S0.500nm", "S0.600nm",  "S1.500nm", "S3.600nm", "T.400nm.500nm",
       "T.500nm",  "w420nm",    "w720nm",   "R",        "a.S2.500nm",
@@ -114,8 +109,7 @@ static void test_what_is_not_read(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_the_unit(void **state) {
-  (void)state;
+TEST(the_unit) {
   static const char *const names[] = {"S0.500nm", "S0.600nm"};
   abbe_image image;
   abbe_spectral_channels c;
@@ -133,14 +127,4 @@ static void test_the_unit(void **state) {
   assert_int_equal(abbe_spectral_channels_find(&image, NULL, "it", &c, &error), ABBE_UNSUPPORTED);
   assert_contains(error.text, "it: its emissiveUnits are 'photons'");
   abbe_image_free(&image);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_is_not_read),
-                                     cmocka_unit_test(test_the_unit),
-                                     cmocka_unit_test(test_names),
-                                     cmocka_unit_test(test_bands_meet_midway),
-                                     cmocka_unit_test(test_layers_and_reflectances),
-                                     cmocka_unit_test(test_twice_the_same)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,8 +21,7 @@ static void make(const char *prefix, abbe_image *image, abbe_spectral_channels *
 
 /* A perfect white is the illuminant's own colour: as [CIE15] prints them for 380 to 780 nm, for
  * both of its observers. */
-static void test_whites_of_illuminants(void **state) {
-  (void)state;
+TEST(whites_of_illuminants) {
   static const struct {
     abbe_observer observer;
     abbe_illuminant_kind kind;
@@ -56,8 +55,7 @@ static void test_whites_of_illuminants(void **state) {
 
 /* The light of a lamp of one watt in bands is its white with Y = 1; and every band's part is the
  * weight that a picture is made with. Under another illuminant it is that one's white. */
-static void test_a_lamp_in_bands(void **state) {
-  (void)state;
+TEST(a_lamp_in_bands) {
   const abbe_illuminant d65 = {0}, a = {.kind = ABBE_ILLUMINANT_A};
   abbe_image image;
   abbe_spectral_channels c;
@@ -83,8 +81,7 @@ static void test_a_lamp_in_bands(void **state) {
 }
 
 /* A radiance of 1 W/(m2 sr nm) in the band around 555 nm alone is 683 lm/W there. */
-static void test_absolute_light(void **state) {
-  (void)state;
+TEST(absolute_light) {
   static const char *const names[] = {"S0.554nm", "S0.555nm", "S0.556nm"};
   const abbe_spectral_view view = {0};
   abbe_image image, xyz;
@@ -106,8 +103,7 @@ static void test_absolute_light(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_refusals(void **state) {
-  (void)state;
+TEST(refusals) {
   static const char *const infrared[] = {"T.900nm", "T.910nm"}, *const lone[] = {"S0.500nm"};
   const abbe_illuminant a = {.kind = ABBE_ILLUMINANT_A};
   const abbe_spectral_view view = {0}, under_a = {.to = &a};
@@ -131,11 +127,4 @@ static void test_refusals(void **state) {
     abbe_spectral_channels_free(&c);
     abbe_image_free(&image);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_whites_of_illuminants), cmocka_unit_test(test_a_lamp_in_bands),
-      cmocka_unit_test(test_absolute_light), cmocka_unit_test(test_refusals)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

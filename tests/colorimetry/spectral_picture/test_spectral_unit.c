@@ -2,8 +2,7 @@
 
 #include "colorimetry/spectral_picture/spectral_channels.h"
 
-static void units_are_read(void **state) {
-  (void)state;
+TEST(units_are_read) {
   static const struct {
     const char *text;
     abbe_spectral_quantity quantity;
@@ -31,8 +30,7 @@ static void units_are_read(void **state) {
   }
 }
 
-static void what_is_no_unit_of_light_is_refused(void **state) {
-  (void)state;
+TEST(what_is_no_unit_of_light_is_refused) {
   static const char *const wrong[] = {"",           "photons.m^-2",
                                       "m^-2.sr^-1", "W^2.m^-2",
                                       "W.m^2",      "W.m^-2.sr^-2",
@@ -48,12 +46,4 @@ static void what_is_no_unit_of_light_is_refused(void **state) {
     assert_contains(error.text, "a.exr: its emissiveUnits are '");
   }
   assert_string_equal(abbe_spectral_quantity_text(ABBE_SPECTRAL_IRRADIANCE), "illuminance, lx");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(units_are_read),
-      cmocka_unit_test(what_is_no_unit_of_light_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,11 +19,12 @@ static void make_bars(const abbe_scene *scene, const abbe_render_desc *desc,
   abbe_renderer_free(renderer);
 }
 
+GROUP(make_context, free_context);
+
 /* Along every axis each variant has a place of its own, evenly spread about the picture's: over a
  * step of the grid and of the texels, over two thirds of the samples' distance,
  * or a third where the picture takes more rays at edges. */
-static void test_variants_spread_evenly(void **state) {
-  (void)state;
+TEST(variants_spread_evenly) {
   static const size_t counts[] = {2, 4, 7, ABBE_ERROR_BARS_MAX_VARIANTS};
   abbe_scene scene = {0};
   abbe_map_layout map, layout;
@@ -64,8 +65,7 @@ static void test_variants_spread_evenly(void **state) {
 }
 
 /* A grid that lies elsewhere is as good a grid: it meets the same light. */
-static void test_shifted_grids_carry_the_same_light(void **state) {
-  (void)state;
+TEST(shifted_grids_carry_the_same_light) {
   abbe_scene scene = {0};
   load_shipped("sphere", &scene);
   double least = INFINITY, most = 0;
@@ -102,8 +102,7 @@ static double true_error(const char *name, const abbe_image *picture) {
 }
 
 /* The references are of full physics; with so few photons what the model lacks is a small part. */
-static void test_errors_are_near_the_true_ones(void **state) {
-  (void)state;
+TEST(errors_are_near_the_true_ones) {
   static const char *const names[] = {"prism", "gem"};
   for (int i = 0; i < 2; i++) {
     abbe_scene scene = {0};
@@ -129,8 +128,7 @@ static void test_errors_are_near_the_true_ones(void **state) {
 
 /* Nothing that the shipped scenes have: a turned brick under the sun. Its truth is a picture of the
  * same model in steps a quarter as wide. */
-static void test_errors_are_near_those_of_a_scene_that_is_not_shipped(void **state) {
-  (void)state;
+TEST(errors_are_near_those_of_a_scene_that_is_not_shipped) {
   abbe_scene scene = {0};
   abbe_image picture = {0}, fine = {0};
   abbe_error_bars bars = {0};
@@ -176,8 +174,7 @@ static void test_errors_are_near_those_of_a_scene_that_is_not_shipped(void **sta
   abbe_scene_free(&scene);
 }
 
-static void test_the_mean_has_less_error(void **state) {
-  (void)state;
+TEST(the_mean_has_less_error) {
   abbe_scene scene = {0};
   abbe_error_bars bars[2] = {{.ms = 0}};
   abbe_error_bars_desc two = {.variants = 2}, desc = {.variants = 2, .of_mean = true};
@@ -194,8 +191,7 @@ static void test_the_mean_has_less_error(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_errors_shrink_with_finer_settings(void **state) {
-  (void)state;
+TEST(errors_shrink_with_finer_settings) {
   abbe_scene scene = {0};
   abbe_render_desc coarse = coarse_frame, fine = coarse_frame;
   abbe_error_bars bars[2] = {{.ms = 0}};
@@ -216,8 +212,7 @@ static void test_errors_shrink_with_finer_settings(void **state) {
 }
 
 /* A floor without end under the sun, and nothing else. */
-static void test_no_error_where_nothing_can_differ(void **state) {
-  (void)state;
+TEST(no_error_where_nothing_can_differ) {
   abbe_scene scene = {0};
   abbe_image picture = {0};
   abbe_error_bars bars = {0};
@@ -239,8 +234,7 @@ static void test_no_error_where_nothing_can_differ(void **state) {
 }
 
 /* Edges are all that differs where nothing refracts. */
-static void test_edges_have_errors(void **state) {
-  (void)state;
+TEST(edges_have_errors) {
   abbe_scene scene = {0};
   abbe_error_bars bars = {0};
   abbe_error_bars_desc two = {.variants = 2};
@@ -252,8 +246,7 @@ static void test_edges_have_errors(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_the_layer_is_what_compare_reads(void **state) {
-  (void)state;
+TEST(the_layer_is_what_compare_reads) {
   abbe_scene scene = {0};
   abbe_image picture = {0};
   abbe_error_bars bars = {0};
@@ -288,8 +281,7 @@ static bool stop_now(void *user, double done) {
   return ++*calls < 4;
 }
 
-static void test_what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   abbe_scene scene = {0};
   abbe_error_bars bars = {0};
   abbe_error error = {0};
@@ -313,20 +305,4 @@ static void test_what_is_refused(void **state) {
   assert_int_equal(abbe_error_bars_check(ABBE_PROFILE_THESIS_CIE, NULL, &error),
                    ABBE_INVALID_ARGUMENT);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_variants_spread_evenly),
-      cmocka_unit_test(test_shifted_grids_carry_the_same_light),
-      cmocka_unit_test(test_errors_are_near_the_true_ones),
-      cmocka_unit_test(test_errors_are_near_those_of_a_scene_that_is_not_shipped),
-      cmocka_unit_test(test_the_mean_has_less_error),
-      cmocka_unit_test(test_errors_shrink_with_finer_settings),
-      cmocka_unit_test(test_no_error_where_nothing_can_differ),
-      cmocka_unit_test(test_edges_have_errors),
-      cmocka_unit_test(test_the_layer_is_what_compare_reads),
-      cmocka_unit_test(test_what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

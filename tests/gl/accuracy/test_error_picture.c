@@ -50,8 +50,7 @@ static size_t count(const abbe_error_bars *bars, double t) {
   return found;
 }
 
-static void test_colours(void **state) {
-  (void)state;
+TEST(colours) {
   /* A pixel is drawn as 8 x 8, and the frame lies on the rim. The scale runs from 0.0005 to 0.5;
    * 0.05 is two thirds of its decades up. */
   abbe_error_bars bars = bars_of(0.05);
@@ -63,27 +62,16 @@ static void test_colours(void **state) {
 }
 
 /* Without any error all is black, and the scale still has a length. */
-static void test_no_error_at_all(void **state) {
-  (void)state;
+TEST(no_error_at_all) {
   abbe_error_bars bars = bars_of(0);
   assert_true(count(&bars, 0) >= 508 * 508);
   abbe_error_bars_free(&bars);
 }
 
-static void test_other_formats_are_refused(void **state) {
-  (void)state;
+TEST(other_formats_are_refused) {
   abbe_error error = {0};
   abbe_error_bars bars = bars_of(1);
   assert_int_equal(abbe_error_picture_write("errors.gif", &bars, &error), ABBE_INVALID_ARGUMENT);
   assert_non_null(strstr(error.text, "errors.gif"));
   abbe_error_bars_free(&bars);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_colours),
-      cmocka_unit_test(test_no_error_at_all),
-      cmocka_unit_test(test_other_formats_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,8 +15,9 @@ static bool watch_frames(void *user, double done) {
   return ++w->asked <= w->most;
 }
 
-static void test_times(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(times) {
   abbe_scene scene = {0};
   abbe_error error = {0};
   abbe_frame_times times;
@@ -44,8 +45,7 @@ static void test_times(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_unrest(void **state) {
-  (void)state;
+TEST(unrest) {
   char text[120];
   assert_near(abbe_frame_times_unrest(150, 100), 0.5, 1e-12);
   assert_near(abbe_frame_times_unrest(100, 100), 0, 0);
@@ -60,8 +60,7 @@ static void test_unrest(void **state) {
 }
 
 /* A camera's frame traces no photon, and the camera ends where it was. */
-static void test_camera(void **state) {
-  (void)state;
+TEST(camera) {
   abbe_scene scene = {0};
   abbe_error error = {0};
   abbe_image before, after;
@@ -82,10 +81,4 @@ static void test_camera(void **state) {
   abbe_image_free(&before);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_times), cmocka_unit_test(test_unrest),
-                                     cmocka_unit_test(test_camera)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

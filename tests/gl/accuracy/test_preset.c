@@ -23,8 +23,9 @@ static abbe_result load_presets(const char *text, abbe_presets *out, abbe_error 
   return result;
 }
 
-static void test_the_shipped_presets_are_whole(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(the_shipped_presets_are_whole) {
   abbe_presets presets;
   abbe_error error = {0};
   bool seen[ABBE_PRESET_CLASS_COUNT] = {false};
@@ -49,8 +50,7 @@ static void test_the_shipped_presets_are_whole(void **state) {
   abbe_presets_free(&presets);
 }
 
-static void test_broken_files_are_named(void **state) {
-  (void)state;
+TEST(broken_files_are_named) {
   static const struct {
     const char *text, *part;
   } broken[] = {
@@ -82,8 +82,7 @@ static void test_broken_files_are_named(void **state) {
 
 /* What is promised is what was measured times the margin; the first point's time is measured anew.
  */
-static void test_margins_widen_promises(void **state) {
-  (void)state;
+TEST(margins_widen_promises) {
   abbe_presets presets;
   abbe_error error = {0};
   bool kept;
@@ -110,8 +109,7 @@ static void test_margins_widen_promises(void **state) {
 
 /* Presets off a sweep without fine settings have no accurate: the name promises more than the
  * defaults. */
-static void test_a_name_may_be_missing(void **state) {
-  (void)state;
+TEST(a_name_may_be_missing) {
   abbe_presets presets;
   abbe_error error = {0};
   assert_ok(load_presets(HEAD "- class: convex\n  scenes: \"gem\"\n  draft: 0\n  front:\n" THREE,
@@ -138,8 +136,7 @@ static void test_a_name_may_be_missing(void **state) {
   assert_false(abbe_preset_is_fine(&fine));
 }
 
-static void test_choices(void **state) {
-  (void)state;
+TEST(choices) {
   abbe_presets presets;
   bool kept;
   assert_int_equal(load_presets(HEAD CLASS THREE, &presets, NULL), ABBE_OK);
@@ -164,8 +161,7 @@ static void test_choices(void **state) {
   abbe_presets_free(&presets);
 }
 
-static void test_what_the_caller_asks_for_stays(void **state) {
-  (void)state;
+TEST(what_the_caller_asks_for_stays) {
   abbe_presets presets;
   assert_int_equal(load_presets(HEAD CLASS THREE, &presets, NULL), ABBE_OK);
   abbe_render_desc empty = {0}, own = {.wavelengths = 21}, equal = {.photons = 64};
@@ -207,8 +203,7 @@ static void test_what_the_caller_asks_for_stays(void **state) {
 
 /* The fastest points of meshes follow no light off mirrors, show nothing that stands in a refractor
  * or that it scatters, and are seen from outside alone; others are drawn all the same. */
-static void test_layers_are_left_where_they_show_too_little(void **state) {
-  (void)state;
+TEST(layers_are_left_where_they_show_too_little) {
 #define SEA(more, deep)                                                                            \
   CAMERA POINT_LIGHT                                                                               \
       "objects:\n- {name: sea, shape: water, size: [1, 1, 0.3], cells: 4, material: crown" more    \
@@ -257,8 +252,7 @@ static void test_layers_are_left_where_they_show_too_little(void **state) {
 
 /* From between floor and ball: no receiver stands behind it. */
 #define LAMP_BELOW "lights:\n- {name: lamp, kind: point, position: [0, 0, 0.02], intensity: 1}\n"
-static void test_classes_and_calibration(void **state) {
-  (void)state;
+TEST(classes_and_calibration) {
   static const struct {
     const char *text;
     abbe_preset_class of;
@@ -292,18 +286,4 @@ static void test_classes_and_calibration(void **state) {
     abbe_scene_free(&scene);
   }
   abbe_presets_free(&presets);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_the_shipped_presets_are_whole),
-      cmocka_unit_test(test_broken_files_are_named),
-      cmocka_unit_test(test_margins_widen_promises),
-      cmocka_unit_test(test_a_name_may_be_missing),
-      cmocka_unit_test(test_choices),
-      cmocka_unit_test(test_what_the_caller_asks_for_stays),
-      cmocka_unit_test(test_layers_are_left_where_they_show_too_little),
-      cmocka_unit_test(test_classes_and_calibration),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -26,8 +26,22 @@ static abbe_result choose(abbe_preset_request request, abbe_render_desc *desc,
   return abbe_preset_choose(&request, context, &scene, desc, out, error);
 }
 
-static void test_names_and_errors(void **state) {
-  (void)state;
+static void begin(void) {
+  snprintf(path, sizeof path, "/tmp/abbe_test_preset_choice_%ld.yaml", (long)getpid());
+  assert_int_equal(abbe_file_write(path, PRESETS, strlen(PRESETS), NULL), ABBE_OK);
+  load_text(SCENE, &scene);
+  make_context();
+}
+
+static void finish(void) {
+  free_context();
+  abbe_scene_free(&scene);
+  unlink(path);
+}
+
+GROUP(begin, finish);
+
+TEST(names_and_errors) {
   abbe_preset_choice c;
   abbe_error error = {0};
   abbe_render_desc desc = {.width = 16, .height = 16};
@@ -52,8 +66,7 @@ static void test_names_and_errors(void **state) {
   abbe_preset_choice_free(&c);
 }
 
-static void test_times(void **state) {
-  (void)state;
+TEST(times) {
   abbe_preset_choice c;
   abbe_error error = {0};
   abbe_render_desc desc = {.width = 16, .height = 16};
@@ -75,8 +88,7 @@ static void test_times(void **state) {
   abbe_preset_choice_free(&c);
 }
 
-static void test_what_cannot_be_chosen(void **state) {
-  (void)state;
+TEST(what_cannot_be_chosen) {
   abbe_preset_choice c;
   abbe_error error = {0};
   abbe_render_desc desc = {0}, thesis = {.profile = ABBE_PROFILE_THESIS};
@@ -92,8 +104,7 @@ static void test_what_cannot_be_chosen(void **state) {
   abbe_preset_choice_free(&c);
 }
 
-static void test_settings_in_words(void **state) {
-  (void)state;
+TEST(settings_in_words) {
   char text[200];
   abbe_render_desc d = {.wavelengths = 7,
                         .photons = 256,
@@ -110,20 +121,4 @@ static void test_settings_in_words(void **state) {
   d.profile = ABBE_PROFILE_THESIS_CIE;
   abbe_preset_describe(&d, text, sizeof text);
   assert_contains(text, "thesis-cie: 7 wavelengths");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_names_and_errors),
-      cmocka_unit_test(test_times),
-      cmocka_unit_test(test_what_cannot_be_chosen),
-      cmocka_unit_test(test_settings_in_words),
-  };
-  snprintf(path, sizeof path, "/tmp/abbe_test_preset_choice_%ld.yaml", (long)getpid());
-  if (abbe_file_write(path, PRESETS, strlen(PRESETS), NULL) != ABBE_OK) return 1;
-  load_text(SCENE, &scene);
-  int failed = cmocka_run_group_tests(tests, make_context, free_context);
-  abbe_scene_free(&scene);
-  unlink(path);
-  return failed;
 }

@@ -31,16 +31,16 @@ static double across(double scattering, double extinction) {
   return 0.8 * exp(-before) * scattering * abbe_medium_phase(0.4, 0) * width;
 }
 
-static void a_beam_into_the_open(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(a_beam_into_the_open) {
   const double drawn = green_of(BESIDE_MIST("scattering: 0.8, absorption: 0.3", ""), 96);
   print_message("into the open: %.4f of the known light\n", drawn / across(0.8, 1.1));
   assert_near(drawn / across(0.8, 1.1), 1, 0.01);
 }
 
 /* The other mirror sends it up, and away. */
-static void a_beam_between_two_mirrors(void **state) {
-  (void)state;
+TEST(a_beam_between_two_mirrors) {
   const double drawn =
       green_of(BESIDE_MIST("scattering: 0.8, absorption: 0.3",
                            "- {name: other, shape: rectangle, width: 0.2, height: 0.2, mirror: "
@@ -52,8 +52,7 @@ static void a_beam_between_two_mirrors(void **state) {
 }
 
 /* Through a plate of glass, of its Fresnel loss, into the open. */
-static void a_beam_behind_glass(void **state) {
-  (void)state;
+TEST(a_beam_behind_glass) {
   const double once = 0.5 / 2.5, lost = once * once, through = (1 - lost) / (1 + lost);
   const double drawn = green_of(
       BESIDE_MIST("scattering: 0.8, absorption: 0.3",
@@ -102,8 +101,7 @@ static double beam_at(double nm) {
   return across(blue(nm), red(nm));
 }
 
-static void a_beam_in_coloured_mist(void **state) {
-  (void)state;
+TEST(a_beam_in_coloured_mist) {
   double drawn[3], known[3];
   mean_of(BESIDE_MIST(COLOURED, ""), &in_colour, drawn);
   known_colour(beam_at, known);
@@ -129,8 +127,7 @@ static double left_at(double nm) {
   return exp(-red(nm) / 5 / cos(50 * pi / 180));
 }
 
-static void coloured_mist_in_the_sun(void **state) {
-  (void)state;
+TEST(coloured_mist_in_the_sun) {
   double drawn[3], known[3];
   mean_of(SLAB("lights: [{name: sun, kind: directional, direction: [0.5, 0, -0.8660254], "
                "irradiance: 1, illuminant: D65}]\n"),
@@ -149,8 +146,7 @@ static double floor_at(double nm) {
   return 0.6 / pi * exp(-0.5 * red(nm));
 }
 
-static void a_floor_under_coloured_mist(void **state) {
-  (void)state;
+TEST(a_floor_under_coloured_mist) {
   double drawn[3], known[3];
   mean_of("camera: {eye: [0, 0, -0.6], target: [0, 0, -2], up: [0, 1, 0], fov: 1}\n"
           "lights: [{name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1, "
@@ -161,13 +157,4 @@ static void a_floor_under_coloured_mist(void **state) {
           &in_colour, drawn);
   known_colour(floor_at, known);
   assert_colour("a floor under it", drawn, known, 0.006);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_beam_into_the_open),     cmocka_unit_test(a_beam_between_two_mirrors),
-      cmocka_unit_test(a_beam_behind_glass),      cmocka_unit_test(a_beam_in_coloured_mist),
-      cmocka_unit_test(coloured_mist_in_the_sun), cmocka_unit_test(a_floor_under_coloured_mist),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

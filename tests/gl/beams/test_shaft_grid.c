@@ -43,9 +43,10 @@ static double scattered_along(const double d[3], double depth, double metres) {
          -expm1(-slope * metres) / slope;
 }
 
+GROUP(make_context, free_context);
+
 /* By Snell's law and Fresnel's; radiance over the squared index stays. */
-static void from_above_through_flat_water(void **state) {
-  (void)state;
+TEST(from_above_through_flat_water) {
   const double view = 25 * pi / 180;
   const double in = inside_of(view), d[3] = {-sin(in), 0, -cos(in)};
   const double exact =
@@ -67,8 +68,7 @@ static void from_above_through_flat_water(void **state) {
 /* Beyond the critical angle: what is scattered on the way up, and of what is mirrored that of the
  * way down. The first is drawn as beams, the other told by the grid. In pictures of what moves
  * the grid tells both. */
-static void mirrored_in_its_surface(void **state) {
-  (void)state;
+TEST(mirrored_in_its_surface) {
   enum { SIDE = 40 };
   const double view = 54 * pi / 180, half = tan(6 * pi / 180), high = 0.2;
   double first = 0, second = 0;
@@ -89,12 +89,4 @@ static void mirrored_in_its_surface(void **state) {
   assert_near(drawn / (first + second), 1, 0.02);
   print_message("of what moves: %.4f\n", coarse / (first + second));
   assert_near(coarse / (first + second), 1, 0.03);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(from_above_through_flat_water),
-      cmocka_unit_test(mirrored_in_its_surface),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

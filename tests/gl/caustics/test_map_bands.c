@@ -13,8 +13,9 @@ static void make_bands(const abbe_scene *scene, size_t bands, abbe_image *map) {
   abbe_renderer_free(renderer);
 }
 
-static void bands_add_up_to_the_colour(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(bands_add_up_to_the_colour) {
   abbe_scene scene;
   abbe_image map;
   load_shipped("gem", &scene);
@@ -55,8 +56,7 @@ static double middle_of(const abbe_image *map, size_t channel, int axis) {
   return weighted / sum;
 }
 
-static void a_prism_sorts_the_bands(void **state) {
-  (void)state;
+TEST(a_prism_sorts_the_bands) {
   abbe_scene scene;
   abbe_image map;
   load_shipped("prism", &scene);
@@ -72,8 +72,7 @@ static void a_prism_sorts_the_bands(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void the_renderer_is_as_it_was(void **state) {
-  (void)state;
+TEST(the_renderer_is_as_it_was) {
   abbe_scene scene;
   abbe_image before, bands, after;
   abbe_error error = {0};
@@ -97,8 +96,7 @@ static void the_renderer_is_as_it_was(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void refuses_what_has_no_bands(void **state) {
-  (void)state;
+TEST(refuses_what_has_no_bands) {
   abbe_scene scene;
   abbe_image map;
   abbe_error error = {0};
@@ -119,14 +117,4 @@ static void refuses_what_has_no_bands(void **state) {
   assert_non_null(strstr(error.text, "thesis"));
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(bands_add_up_to_the_colour),
-      cmocka_unit_test(a_prism_sorts_the_bands),
-      cmocka_unit_test(the_renderer_is_as_it_was),
-      cmocka_unit_test(refuses_what_has_no_bands),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -67,8 +67,9 @@ static double apart(const abbe_image *a, const abbe_image *b) {
   return most / image_max(b, 1);
 }
 
-static void test_a_still_scene_comes_to_the_mean(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(a_still_scene_comes_to_the_mean) {
   abbe_scene scene = {0};
   abbe_map_layout layout;
   abbe_image map = {0}, mean = {0}, last = {0};
@@ -112,8 +113,7 @@ static abbe_statistics change_and_draw(abbe_renderer *renderer, const abbe_scene
 
 /* Frames that follow changes alone: what stays is drawn once, whichever way the camera turns; what
  * has moved is as with a history that goes on. */
-static void test_what_stays_is_drawn_once(void **state) {
-  (void)state;
+TEST(what_stays_is_drawn_once) {
   abbe_scene scene[2] = {{0}};
   abbe_map_layout layout;
   abbe_image map[2] = {{0}}, kept = {0};
@@ -163,8 +163,7 @@ static void nearby(const abbe_image *map, size_t i, double *least, double *most)
 /* The brick jumps aside. In the first frame already no texel leaves what that frame has
  * around it, so where it is dark nothing is left; after as many frames as are kept it is the mean
  * of these. */
-static void test_nothing_is_left_after_a_jump(void **state) {
-  (void)state;
+TEST(nothing_is_left_after_a_jump) {
   abbe_scene scene[2] = {{0}};
   abbe_map_layout layout;
   abbe_image before = {0}, map = {0}, alone = {0};
@@ -274,20 +273,11 @@ static void measure_motion(motion out[2]) {
   }
 }
 
-static void test_what_moves_flickers_less(void **state) {
-  (void)state;
+TEST(what_moves_flickers_less) {
   motion moved[2];
   measure_motion(moved);
   print_message("flicker %.3f alone, %.3f with history; error %.3f, %.3f\n", moved[0].flicker,
                 moved[1].flicker, moved[0].error, moved[1].error);
   assert_true(moved[1].flicker < 0.85 * moved[0].flicker);
   assert_true(moved[1].error < 1.05 * moved[0].error);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_still_scene_comes_to_the_mean),
-                                     cmocka_unit_test(test_what_stays_is_drawn_once),
-                                     cmocka_unit_test(test_nothing_is_left_after_a_jump),
-                                     cmocka_unit_test(test_what_moves_flickers_less)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -109,11 +109,12 @@ static spread measure(double turn) {
                   second[1] / sum - m[1] * m[1]};
 }
 
+GROUP(make_context, free_context);
+
 /* A rectangle's variance along a side is a twelfth of its square. What the texels add is less than
  * that of a box as wide as the narrower side and half of it, whatever the rectangle's size and
  * turn: light stays where the photon's cell sends it. */
-static void test_light_stays_in_its_area(void **state) {
-  (void)state;
+TEST(light_stays_in_its_area) {
   double worst = 0;
   for (int i = 0; i < 200; i++) {
     const double narrow = 2 * pow(8, fmod(0.618034 * i, 1)), ratio = 1 + 3 * fmod(0.7549 * i, 1);
@@ -166,16 +167,7 @@ static void check_even(bool edges, double limit) {
 }
 
 /* Where light has edges, parts lie by their bounds. */
-static void test_side_by_side_they_are_even(void **state) {
-  (void)state;
+TEST(side_by_side_they_are_even) {
   check_even(false, 1e-3);
   check_even(true, 0.1);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_light_stays_in_its_area),
-      cmocka_unit_test(test_side_by_side_they_are_even),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -89,17 +89,17 @@ static void check_wave(double depth, double phase_deg, double tolerance) {
   abbe_scene_free(&scene);
 }
 
+GROUP(make_context, free_context);
+
 /* The crests' focus lies half a metre down. */
-static void light_under_a_wave(void **state) {
-  (void)state;
+TEST(light_under_a_wave) {
   check_wave(0.25, 0, 0.01);
   check_wave(0.25, 130, 0.01);
   check_wave(0.8, 0, 0.03);
 }
 
 /* Fresnel's law on the way in and out, and of radiance one part in n^2 leaves the water. */
-static void light_under_still_water(void **state) {
-  (void)state;
+TEST(light_under_still_water) {
   abbe_scene scene = {0};
   abbe_image picture = {0};
   double n = 0;
@@ -172,19 +172,9 @@ static double seen_from_below(const char *target, double bottom) {
   return mean;
 }
 
-static void the_eye_under_water(void **state) {
-  (void)state;
+TEST(the_eye_under_water) {
   const double n = 1.333, up = 1 - abbe_closed_form_fresnel(0, n);
   assert_near(seen_from_below("[0, 0, 1]", 0) / (n * n * up), 1, 2e-3);
   assert_near(seen_from_below("[1.2, 0, 0.4]", 0.5), 0.5, 1e-3);
   assert_near(seen_from_below("[0, 0, -1]", 0.25), 0.25, 1e-3);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(light_under_a_wave),
-      cmocka_unit_test(light_under_still_water),
-      cmocka_unit_test(the_eye_under_water),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -3,9 +3,10 @@
 
 #include "base/thread/watch.h"
 
+GROUP(make_context, free_context);
+
 /* Wherever a frame or a change is cancelled, the renderer goes on. */
-static void a_cancelled_renderer_goes_on(void **state) {
-  (void)state;
+TEST(a_cancelled_renderer_goes_on) {
   abbe_scene scene = {0};
   abbe_error error = {0};
   load_text(GLASS_SCENE, &scene);
@@ -42,8 +43,7 @@ static void a_cancelled_renderer_goes_on(void **state) {
 
 /* Units of work, counted: what is dispatched, drawn and compiled. */
 /* What the camera's passes alone ask for, cancelled, leaves the light as it is. */
-static void a_cancelled_view_keeps_the_light(void **state) {
-  (void)state;
+TEST(a_cancelled_view_keeps_the_light) {
   abbe_scene scene = {0};
   abbe_error error = {0};
   int left = 1;
@@ -72,8 +72,7 @@ static bool watch_at(void *user) {
   return stop_at(user, 0);
 }
 
-static void a_watch_ends_a_change(void **state) {
-  (void)state;
+TEST(a_watch_ends_a_change) {
   abbe_scene scene = {0};
   abbe_result result = ABBE_CANCELLED;
   int calls = 0;
@@ -150,8 +149,7 @@ static void end_count(void) {
 
 /* Whoever watches is asked after every few units of work, and after their no there is next to none:
  * of a change and the frame after it, from another light on, of another size. */
-static void a_cancel_is_heard_soon(void **state) {
-  (void)state;
+TEST(a_cancel_is_heard_soon) {
   enum { MOST_APART = 12, MOST_AFTER = 2 };
   abbe_scene scene = {0};
   abbe_error error = {0};
@@ -178,14 +176,4 @@ static void a_cancel_is_heard_soon(void **state) {
   assert_as_made_anew(renderer, &scene, &watched, "cancelled changes");
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_cancelled_renderer_goes_on),
-      cmocka_unit_test(a_cancelled_view_keeps_the_light),
-      cmocka_unit_test(a_watch_ends_a_change),
-      cmocka_unit_test(a_cancel_is_heard_soon),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

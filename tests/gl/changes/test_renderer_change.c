@@ -14,9 +14,10 @@ static void shift_object(abbe_object *object, double x, double y, double z) {
   assert_ok(abbe_object_move(object, matrix, &error), &error);
 }
 
+GROUP(make_context, free_context);
+
 /* What each kind of change runs. */
-static void a_change_runs_what_depends_on_it(void **state) {
-  (void)state;
+TEST(a_change_runs_what_depends_on_it) {
   abbe_scene scene = {0};
   load_text(GLASS_SCENE, &scene);
   abbe_render_desc desc = tiny;
@@ -61,8 +62,7 @@ static void a_change_runs_what_depends_on_it(void **state) {
 }
 
 /* A camera that looks away sees no refractor: its pass, and its buffers, come and go. */
-static void what_the_camera_sees_comes_and_goes(void **state) {
-  (void)state;
+TEST(what_the_camera_sees_comes_and_goes) {
   abbe_scene scene = {0};
   load_text(GLASS_SCENE, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &tiny);
@@ -79,8 +79,7 @@ static void what_the_camera_sees_comes_and_goes(void **state) {
 }
 
 /* What all powers are measured by goes by the greatest of lights, ambient light and background. */
-static void the_unit_of_power_comes_and_goes(void **state) {
-  (void)state;
+TEST(the_unit_of_power_comes_and_goes) {
   static const double powers[] = {1e-20, 1e-20, 1e-20, 1, 1}, background[] = {0, 0.1, 0, 0, 1e30};
   abbe_scene scene = {0};
   load_text(GLASS_SCENE, &scene);
@@ -103,8 +102,7 @@ static void the_unit_of_power_comes_and_goes(void **state) {
 }
 
 /* Watched and not, with more wavelengths than a pixel's coarse bands. */
-static void a_watched_frame_is_the_same(void **state) {
-  (void)state;
+TEST(a_watched_frame_is_the_same) {
   abbe_scene scene = {0};
   abbe_image alone = {0}, watched = {0};
   abbe_error error = {0};
@@ -134,8 +132,7 @@ static void a_watched_frame_is_the_same(void **state) {
 }
 
 /* The scene that cannot be planned leaves the renderer as it was. */
-static void a_refused_change_changes_nothing(void **state) {
-  (void)state;
+TEST(a_refused_change_changes_nothing) {
   abbe_scene scene = {0};
   abbe_image before = {0}, after = {0};
   load_text(GLASS_SCENE, &scene);
@@ -234,20 +231,17 @@ static void walk_at_random(const char *text, unsigned seed, int steps, bool size
   abbe_scene_free(&scene);
 }
 
-static void random_changes_of_a_solid(void **state) {
-  (void)state;
+TEST(random_changes_of_a_solid) {
   walk_at_random(GLASS_SCENE, 1, 20, true);
 }
 
 /* Fewer than a solid's: the shaders of meshes take llvmpipe seconds to compile. */
-static void random_changes_of_meshes(void **state) {
-  (void)state;
+TEST(random_changes_of_meshes) {
   walk_at_random(MESH_SCENE, 2, 8, false);
 }
 
 /* From one scene to another and back, and to the passes of published methods. */
-static void another_scene_is_a_change_too(void **state) {
-  (void)state;
+TEST(another_scene_is_a_change_too) {
   abbe_scene solid = {0}, mesh = {0};
   load_text(GLASS_SCENE, &solid);
   load_text(MESH_SCENE, &mesh);
@@ -269,18 +263,4 @@ static void another_scene_is_a_change_too(void **state) {
   abbe_renderer_free(renderer);
   abbe_scene_free(&solid);
   abbe_scene_free(&mesh);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_change_runs_what_depends_on_it),
-      cmocka_unit_test(what_the_camera_sees_comes_and_goes),
-      cmocka_unit_test(the_unit_of_power_comes_and_goes),
-      cmocka_unit_test(a_watched_frame_is_the_same),
-      cmocka_unit_test(a_refused_change_changes_nothing),
-      cmocka_unit_test(random_changes_of_a_solid),
-      cmocka_unit_test(random_changes_of_meshes),
-      cmocka_unit_test(another_scene_is_a_change_too),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -12,7 +12,7 @@ static void draw_three(const char *file) {
   char path[512];
   snprintf(path, sizeof path, ABBE_SOURCE_DIR "/scenes/%s.yaml", file);
   forget();
-  assert_int_equal(make_context(NULL), 0);
+  make_context();
   assert_ok(abbe_scene_load(path, NULL, &scene, &error), &error);
   abbe_renderer *renderer = make_renderer(&scene, &small_frame);
   for (int i = 0; i < 3; i++) draw_frame(renderer);
@@ -20,12 +20,11 @@ static void draw_three(const char *file) {
   abbe_image_free(&picture);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
-  free_context(NULL);
+  free_context();
   if (hazards > 0) print_error("%zu of %s%s\n", hazards, file, as_gpu ? ", as on a GPU" : "");
 }
 
-static void test_what_is_written_is_read_behind_its_barrier(void **state) {
-  (void)state;
+TEST(what_is_written_is_read_behind_its_barrier) {
   static const char *const scenes[] = {"gem",   "diamond-studio", "water/shafts", "metal-ring",
                                        "glass", "prism",          "rainbow",      "bunny"};
   const size_t count = all_cases() ? sizeof scenes / sizeof *scenes : 4;
@@ -36,10 +35,4 @@ static void test_what_is_written_is_read_behind_its_barrier(void **state) {
   }
   assert_int_equal(hazards, 0);
   for (size_t i = 0; i < SHADERS; i++) free(text[i]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_is_written_is_read_behind_its_barrier)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

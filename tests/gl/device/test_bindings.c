@@ -47,20 +47,12 @@ static void check_list(const char *prefix, size_t least, int most) {
 }
 
 /* Beside them test harnesses have two, 38 and 39. */
-static void buffers_have_a_number_each(void **state) {
-  (void)state;
+TEST(buffers_have_a_number_each) {
   check_list("BINDING_", 20, 37);
 }
 
 /* Passes use the units below. All stages together have 96 for sure, and one may look at 16 of them.
  */
-static void kept_textures_have_a_unit_each(void **state) {
-  (void)state;
+TEST(kept_textures_have_a_unit_each) {
   check_list("UNIT_", 5, 95);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(buffers_have_a_number_each),
-                                     cmocka_unit_test(kept_textures_have_a_unit_each)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -51,8 +51,7 @@ static void add(abbe_gpu_store *store, GLuint name, size_t bytes) {
   assert_int_equal(abbe_gpu_store_add(store, &key, name, NULL), ABBE_OK);
 }
 
-static void nothing_is_lent_where_it_does_not_serve(void **state) {
-  (void)state;
+TEST(nothing_is_lent_where_it_does_not_serve) {
   abbe_buffer_memory without = begun("GL_EXT_other", true),
                      gpu = begun("GL_AMD_pinned_memory", false);
   assert_false(abbe_buffer_memory_lend(&without, &gl, ABBE_MEMORY_LEAST, 1));
@@ -63,8 +62,7 @@ static void nothing_is_lent_where_it_does_not_serve(void **state) {
   abbe_buffer_memory_free(&m);
 }
 
-static void what_comes_back_is_lent_again(void **state) {
-  (void)state;
+TEST(what_comes_back_is_lent_again) {
   const size_t size = 3 * ABBE_MEMORY_LEAST + 5;
   abbe_buffer_memory m = begun("GL_AMD_pinned_memory", true);
   abbe_gpu_store store = {0};
@@ -102,8 +100,7 @@ static void what_comes_back_is_lent_again(void **state) {
 }
 
 /* More than stays goes back; untouched pages are no memory. */
-static void little_is_kept(void **state) {
-  (void)state;
+TEST(little_is_kept) {
   const size_t size = ABBE_MEMORY_UNUSED / 2;
   abbe_buffer_memory m = begun("GL_AMD_pinned_memory", true);
   const abbe_gpu_store none = {0};
@@ -113,11 +110,4 @@ static void little_is_kept(void **state) {
   for (size_t i = 0; i < ABBE_MEMORY_BLOCKS; i++) kept += m.block[i].size;
   assert_true(kept > 0 && kept <= ABBE_MEMORY_UNUSED);
   abbe_buffer_memory_free(&m);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_is_lent_where_it_does_not_serve),
-                                     cmocka_unit_test(what_comes_back_is_lent_again),
-                                     cmocka_unit_test(little_is_kept)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

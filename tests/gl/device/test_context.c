@@ -15,8 +15,7 @@ static void assert_works(abbe_context *context) {
   assert_int_equal(abbe_gl_check(gl, "nothing", &error), ABBE_OK);
 }
 
-static void test_the_cpu_makes_4_5(void **state) {
-  (void)state;
+TEST(the_cpu_makes_4_5) {
   abbe_context *context = NULL;
   abbe_error error = {0};
   assert_int_equal(abbe_context_make(ABBE_CONTEXT_CPU, &context, &error), ABBE_OK);
@@ -26,8 +25,7 @@ static void test_the_cpu_makes_4_5(void **state) {
 }
 
 /* Where there is no GPU the sentence says so and names the way out. */
-static void test_a_gpu_makes_one_or_says_why(void **state) {
-  (void)state;
+TEST(a_gpu_makes_one_or_says_why) {
   abbe_context *context = NULL;
   abbe_error error = {0};
   if (abbe_context_make(ABBE_CONTEXT_GPU, &context, &error) == ABBE_OK) {
@@ -40,8 +38,7 @@ static void test_a_gpu_makes_one_or_says_why(void **state) {
   assert_contains(error.text, "--backend cpu");
 }
 
-static void test_contexts_follow_each_other(void **state) {
-  (void)state;
+TEST(contexts_follow_each_other) {
   for (int i = 0; i < 3; i++) {
     abbe_context *context = NULL;
     assert_int_equal(abbe_context_make(ABBE_CONTEXT_CPU, &context, NULL), ABBE_OK);
@@ -51,8 +48,7 @@ static void test_contexts_follow_each_other(void **state) {
   abbe_context_free(NULL);
 }
 
-static void test_gl_errors_are_named_and_cleared(void **state) {
-  (void)state;
+TEST(gl_errors_are_named_and_cleared) {
   abbe_context *context = NULL;
   abbe_error error = {0};
   assert_int_equal(abbe_context_make(ABBE_CONTEXT_CPU, &context, NULL), ABBE_OK);
@@ -65,8 +61,7 @@ static void test_gl_errors_are_named_and_cleared(void **state) {
   abbe_context_free(context);
 }
 
-static void test_unknown_back_ends_are_refused(void **state) {
-  (void)state;
+TEST(unknown_back_ends_are_refused) {
   abbe_context *context = NULL;
   abbe_error error = {0};
   abbe_result result = abbe_context_make(ABBE_CONTEXT_BACKEND_COUNT, &context, &error);
@@ -116,8 +111,7 @@ static void assert_not_adopted(const abbe_context_host *host, abbe_result expect
 }
 
 /* What is adopted is checked as an own one; nothing but what the host gives is called. */
-static void test_a_host_is_adopted_or_told_why_not(void **state) {
-  (void)state;
+TEST(a_host_is_adopted_or_told_why_not) {
   const abbe_context_host host = {host_lookup, host_make_current, &host_calls};
   abbe_context *context = NULL;
   abbe_error error = {0};
@@ -179,8 +173,7 @@ static void make_two(const abbe_context_backend backend[2]) {
   abbe_context_free(made[1]);
 }
 
-static void test_two_are_two(void **state) {
-  (void)state;
+TEST(two_are_two) {
   abbe_context *gpu = NULL;
   make_two((abbe_context_backend[]){ABBE_CONTEXT_CPU, ABBE_CONTEXT_CPU});
   if (abbe_context_make(ABBE_CONTEXT_GPU, &gpu, NULL) != ABBE_OK) return;
@@ -188,15 +181,4 @@ static void test_two_are_two(void **state) {
   make_two((abbe_context_backend[]){ABBE_CONTEXT_GPU, ABBE_CONTEXT_GPU});
   make_two((abbe_context_backend[]){ABBE_CONTEXT_CPU, ABBE_CONTEXT_GPU});
   make_two((abbe_context_backend[]){ABBE_CONTEXT_GPU, ABBE_CONTEXT_CPU});
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_cpu_makes_4_5),
-                                     cmocka_unit_test(test_a_gpu_makes_one_or_says_why),
-                                     cmocka_unit_test(test_contexts_follow_each_other),
-                                     cmocka_unit_test(test_gl_errors_are_named_and_cleared),
-                                     cmocka_unit_test(test_unknown_back_ends_are_refused),
-                                     cmocka_unit_test(test_a_host_is_adopted_or_told_why_not),
-                                     cmocka_unit_test(test_two_are_two)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -37,8 +37,7 @@ static GLuint take(abbe_gpu_store *store, abbe_stored_key key) {
                      .levels = 1})
 #define PROGRAM(words) ((abbe_stored_key){.kind = ABBE_STORED_PROGRAM, .text = (words)})
 
-static void what_is_alike_is_taken_up_once(void **state) {
-  (void)state;
+TEST(what_is_alike_is_taken_up_once) {
   abbe_gpu_store store = {0};
   assert_int_equal(take(&store, BUFFER(64)), 0);
   add(&store, BUFFER(64), 5);
@@ -58,8 +57,7 @@ static void what_is_alike_is_taken_up_once(void **state) {
 
 /* No room is a power of two or has nothing in bits 8 to 15; large ones are shared, and not much is
  * wasted. */
-static void rooms_are_of_one_kind(void **state) {
-  (void)state;
+TEST(rooms_are_of_one_kind) {
   size_t kinds = 0, last = 0;
   for (size_t size = 0; size < (size_t)1 << 28; size += 1 + size / 300) {
     const size_t room = abbe_gpu_store_room(size);
@@ -76,8 +74,7 @@ static void rooms_are_of_one_kind(void **state) {
   assert_int_equal(abbe_gpu_store_room(SIZE_MAX), SIZE_MAX); /* which nobody has */
 }
 
-static void programs_are_shared_by_their_text(void **state) {
-  (void)state;
+TEST(programs_are_shared_by_their_text) {
   abbe_gpu_store store = {0};
   char text[] = "a.comp\n#define A\n";
   add(&store, PROGRAM(text), 7);
@@ -89,8 +86,7 @@ static void programs_are_shared_by_their_text(void **state) {
   abbe_gpu_store_free(&store, &gl);
 }
 
-static void only_what_is_not_in_use_is_deleted(void **state) {
-  (void)state;
+TEST(only_what_is_not_in_use_is_deleted) {
   abbe_gpu_store store = {0};
   for (GLuint i = 1; i <= 100; i++) add(&store, BUFFER(i), i);
   assert_int_equal(abbe_gpu_store_bytes(&store), 5050);
@@ -107,14 +103,4 @@ static void only_what_is_not_in_use_is_deleted(void **state) {
   deleted_count = 0;
   abbe_gpu_store_free(&store, &gl);
   assert_int_equal(deleted_count, 3);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(what_is_alike_is_taken_up_once),
-      cmocka_unit_test(rooms_are_of_one_kind),
-      cmocka_unit_test(programs_are_shared_by_their_text),
-      cmocka_unit_test(only_what_is_not_in_use_is_deleted),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -49,8 +49,9 @@ static void compiles(const abbe_program_stage *stages, size_t count, const char 
   abbe_context_gl(context)->DeleteProgram(program);
 }
 
-static void test_all_combinations(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(all_combinations) {
   char defines[1024];
   for (unsigned bits = 0; bits < 256; bits++) {
     /* triangles are walked, and layers are not */
@@ -81,8 +82,7 @@ static void must_differ(const char *a, const char *b, bool differ) {
 }
 
 /* A driver that knows a text compiles it no more: what a stage does not mention changes nothing. */
-static void test_definitions_that_do_not_matter(void **state) {
-  (void)state;
+TEST(definitions_that_do_not_matter) {
   char defines[1024];
   write_defines(63, defines, sizeof defines);
   must_differ(defines, "", true);
@@ -99,8 +99,7 @@ static void test_definitions_that_do_not_matter(void **state) {
   assert_null(text);
 }
 
-static void test_every_compute_shader(void **state) {
-  (void)state;
+TEST(every_compute_shader) {
   char defines[1024];
   size_t seen = 0;
   write_defines(63, defines, sizeof defines);
@@ -114,8 +113,7 @@ static void test_every_compute_shader(void **state) {
   assert_int_equal(seen, COMPUTE_SHADERS);
 }
 
-static void test_thesis_programs(void **state) {
-  (void)state;
+TEST(thesis_programs) {
   static const char *const fragments[] = {"thesis_fill.frag", "thesis_refraction.frag"};
   char defines[1024];
   write_defines(0, defines, sizeof defines);
@@ -143,8 +141,7 @@ static void test_thesis_programs(void **state) {
   compiles(depth, 2, defines);
 }
 
-static void test_complaints_name_the_file(void **state) {
-  (void)state;
+TEST(complaints_name_the_file) {
   const abbe_gl *gl = abbe_context_gl(context);
   abbe_error error = {0};
   GLuint program = 1;
@@ -156,12 +153,4 @@ static void test_complaints_name_the_file(void **state) {
       abbe_program_make_compute_text(gl, "void main() { nonsense; }\n", NULL, &program, &error),
       ABBE_GL);
   assert_non_null(strstr(error.text, "nonsense"));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_definitions_that_do_not_matter),
-      cmocka_unit_test(test_all_combinations), cmocka_unit_test(test_every_compute_shader),
-      cmocka_unit_test(test_thesis_programs), cmocka_unit_test(test_complaints_name_the_file)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

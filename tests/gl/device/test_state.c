@@ -101,8 +101,8 @@ static const struct {
                 {GL_PIXEL_PACK_BUFFER_BINDING, 0},
                 {GL_PIXEL_UNPACK_BUFFER_BINDING, 0}};
 
-static int make_things(void **state) {
-  if (make_context(state) != 0) return 1;
+static void make_things(void) {
+  make_context();
   gl = abbe_context_gl(context);
 #define LOAD(type, name)                                                                           \
   name = (PFNGL##type##PROC)(abbe_gl_function)eglGetProcAddress("gl" #name);
@@ -135,7 +135,7 @@ static int make_things(void **state) {
   gl->AttachShader(program, shader);
   gl->LinkProgram(program);
   gl->DeleteShader(shader);
-  return abbe_gl_check(gl, "the test's own things", NULL) != ABBE_OK;
+  assert_int_equal(abbe_gl_check(gl, "the test's own things", NULL), ABBE_OK);
 }
 
 /* Everything as it serves a pass the least, and an error on top. */
@@ -310,21 +310,20 @@ static void assert_same_in_any_state(const char *text, const abbe_render_desc *d
 static const abbe_render_desc tiny = {
     .width = 16, .height = 12, .photons = 16, .map_size = 32, .wavelengths = 3, .aovs = true};
 
-static void test_the_default_profile(void **state) {
-  (void)state;
+GROUP(make_things, free_context);
+
+TEST(the_default_profile) {
   assert_same_in_any_state(CAMERA POINT_LIGHT FLOOR HILL BALL("murk"), &tiny);
 }
 
 /* Triangles as texels, and samples that are resolved. */
-static void test_a_mesh(void **state) {
-  (void)state;
+TEST(a_mesh) {
   abbe_render_desc desc = tiny;
   desc.supersample = 2;
   assert_same_in_any_state(CAMERA SUN FLOOR RING("flat"), &desc);
 }
 
-static void test_the_thesis(void **state) {
-  (void)state;
+TEST(the_thesis) {
   abbe_render_desc desc = tiny;
   desc.profile = ABBE_PROFILE_THESIS;
   desc.wavelengths = 7;
@@ -333,18 +332,10 @@ static void test_the_thesis(void **state) {
   assert_same_in_any_state(CAMERA POINT_LIGHT FLOOR BALL("crown"), &desc);
 }
 
-static void test_caustics_mapping(void **state) {
-  (void)state;
+TEST(caustics_mapping) {
   abbe_render_desc desc = tiny;
   desc.profile = ABBE_PROFILE_SHAH2007_CIE;
   desc.aovs = false;
   desc.photons = desc.map_size = 64;
   assert_same_in_any_state(CAMERA SUN FLOOR BALL("crown"), &desc);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_the_default_profile), cmocka_unit_test(test_caustics_mapping),
-      cmocka_unit_test(test_a_mesh), cmocka_unit_test(test_the_thesis)};
-  return cmocka_run_group_tests(tests, make_things, free_context);
 }

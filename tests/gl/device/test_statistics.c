@@ -3,8 +3,7 @@
 
 #include "gl/device/statistics.h"
 
-static void times_add_up_by_pass_and_by_stage(void **state) {
-  (void)state;
+TEST(times_add_up_by_pass_and_by_stage) {
   abbe_statistics s = {0};
   abbe_statistics_add_ms(&s, ABBE_PASS_PHOTONS, 2);
   abbe_statistics_add_ms(&s, ABBE_PASS_EYE_PICTURE, 8);
@@ -19,8 +18,7 @@ static void times_add_up_by_pass_and_by_stage(void **state) {
   assert_near(abbe_statistics_stage_ms(&s, ABBE_STAGE_EYE), 8, 0);
 }
 
-static void a_ledger_balances_or_says_by_how_much_not(void **state) {
-  (void)state;
+TEST(a_ledger_balances_or_says_by_how_much_not) {
   abbe_ledger l = {.reached = 8, .reflected = 1, .absorbed = 1, .trapped = 1, .missed = 2};
   assert_near(abbe_ledger_imbalance(&l), 3.0 / 8, 1e-15);
   l.deposited = 5;
@@ -28,12 +26,4 @@ static void a_ledger_balances_or_says_by_how_much_not(void **state) {
   assert_near(abbe_ledger_imbalance(&l), 0, 1e-15);
   l.reached = 0;
   assert_near(abbe_ledger_imbalance(&l), 0, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(times_add_up_by_pass_and_by_stage),
-      cmocka_unit_test(a_ledger_balances_or_says_by_how_much_not),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

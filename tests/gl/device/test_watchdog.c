@@ -155,16 +155,11 @@ static void cut_as_whole(const char *file, bool things) {
   }
 }
 
-static void test_no_work_is_long(void **state) {
-  (void)state;
+TEST(no_work_is_long) {
   as_gpu = true;
-  assert_int_equal(make_context(NULL), 0);
+  make_context();
   cut_as_whole("gem", false);
   cut_as_whole("mist/prism", true);
-  free_context(NULL);
+  free_context();
 }
 
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_no_work_is_long)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}

@@ -96,9 +96,10 @@ static void measure_edge(const abbe_image *image, double *mean, double *worst) {
   *mean /= (double)count;
 }
 
+GROUP(make_context, free_context);
+
 /* Of a pixel at an edge the mean is that of what it covers, as near as so many rays can tell. */
-static void test_an_edge_is_covered(void **state) {
-  (void)state;
+TEST(an_edge_is_covered) {
   abbe_scene scene = {0};
   double mean[3], worst[3];
   load_text(FROM_ABOVE SUN_ABOVE TURNED_SQUARE, &scene);
@@ -119,8 +120,7 @@ static void test_an_edge_is_covered(void **state) {
 }
 
 /* What is alike all over asks for nothing, and stays to the bit. */
-static void test_flat_light_is_left_alone(void **state) {
-  (void)state;
+TEST(flat_light_is_left_alone) {
   abbe_scene scene = {0};
   abbe_image once = {0}, more = {0};
   load_text(FROM_ABOVE SUN_ABOVE FLOOR, &scene);
@@ -174,8 +174,7 @@ static void assert_nearer(const char *text, double most_left) {
   abbe_scene_free(&scene);
 }
 
-static void test_pictures_come_nearer_to_many_samples(void **state) {
-  (void)state;
+TEST(pictures_come_nearer_to_many_samples) {
   assert_nearer(FROM_ABOVE SHARP_SPOT FLOOR, 0.05);
   assert_nearer(CAMERA POINT_LIGHT FLOOR BALL("crown"), 0.2);
   /* triangles, and what hides them from light */
@@ -204,8 +203,7 @@ static bool shows_ball(const abbe_scene *scene, size_t x, size_t y) {
 }
 
 /* What lies behind a refractor is none of a ray's that is spread over a sample beside it. */
-static void test_samples_beside_a_refractor_stay(void **state) {
-  (void)state;
+TEST(samples_beside_a_refractor_stay) {
   abbe_scene scene = {0};
   abbe_image once = {0}, more = {0};
   size_t beside = 0, changed = 0;
@@ -230,14 +228,4 @@ static void test_samples_beside_a_refractor_stay(void **state) {
   abbe_image_free(&once);
   abbe_image_free(&more);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_an_edge_is_covered),
-      cmocka_unit_test(test_flat_light_is_left_alone),
-      cmocka_unit_test(test_samples_beside_a_refractor_stay),
-      cmocka_unit_test(test_pictures_come_nearer_to_many_samples),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

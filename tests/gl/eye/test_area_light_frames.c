@@ -90,8 +90,9 @@ static double lit_by_points(const lit *l) {
   return drawn(text);
 }
 
-static void they_light_by_closed_forms(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(they_light_by_closed_forms) {
   static const lit places[] = {
       {1.6, 1.6, 0.5, 0, false},   {1.6, 1.6, 0.1, 0, false},  {1.6, 1.6, 3, 0, false},
       {1.6, 1.6, 0.5, 1.1, false}, {2, 0.05, 0.1, 0.3, false}, {0.8, 0, 0.5, 0, false},
@@ -148,8 +149,7 @@ typedef struct view {
   double within; /* of the traced one, as a share */
 } view;
 
-static void they_are_opaque(void **state) {
-  (void)state;
+TEST(they_are_opaque) {
   static const lit under = {0.3, 0.3, 0.3, 0, false};
   const double own = 2 * irradiance(&under);
   const view views[] = {
@@ -194,12 +194,4 @@ static void they_are_opaque(void **state) {
     assert_near(renderer, v->known, 2e-3 * v->known);
     assert_near(tracer, v->known, v->within * v->known);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(they_light_by_closed_forms),
-      cmocka_unit_test(they_are_opaque),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -165,8 +165,9 @@ static void check(const setting *s) {
   assert_true(seen > 2500 && dark > 20 && mirrored > 20);
 }
 
-static void what_is_near_stands_on_any_ground(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(what_is_near_stands_on_any_ground) {
   static const double ground[] = {10, 1e3, 1e5};
   for (int i = 0; i < 12; i++) {
     const setting s = {ground[i % 3], 1, 0, i < 6, {0, i % 6 < 3 ? -3 : -0.6, i % 6 < 3 ? 1.5 : 0.5}};
@@ -175,17 +176,10 @@ static void what_is_near_stands_on_any_ground(void **state) {
 }
 
 /* On ground in no plane of two axes, of parts of a millimetre and of a thousand kilometres. */
-static void sizes_and_slopes_change_nothing(void **state) {
-  (void)state;
+TEST(sizes_and_slopes_change_nothing) {
   static const double unit[] = {1e-4, 1, 10};
   for (int i = 0; i < 6; i++) {
     const setting s = {i < 3 ? 1e5 : 1e3, unit[i % 3], 33, i % 2 == 0, {0, -3, 1.5}};
     check(&s);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_near_stands_on_any_ground),
-                                     cmocka_unit_test(sizes_and_slopes_change_nothing)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

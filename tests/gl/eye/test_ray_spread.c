@@ -146,8 +146,9 @@ static void make_case(int i, float in[8]) {
   in[4] = (float)(i / 2 % STEPS - 1);
 }
 
-static void test_neighbours_go_apart_as_two_rays_do(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(neighbours_go_apart_as_two_rays_do) {
   static float in[CASES][8], out[CASES][4];
   const double step = 1e-5;
   double worst = 0;
@@ -176,8 +177,7 @@ static void test_neighbours_go_apart_as_two_rays_do(void **state) {
 }
 
 /* On facets places do not count: as on anything that is not bent. */
-static void test_facets_are_not_bent(void **state) {
-  (void)state;
+TEST(facets_are_not_bent) {
   static float in[CASES][8], out[CASES][4];
   for (int i = 0; i < CASES; i++) make_case(i, in[i]);
   glsl_evaluate(
@@ -196,10 +196,4 @@ static void test_facets_are_not_bent(void **state) {
       (const float(*)[8])in, CASES, out);
   for (int i = 0; i < CASES; i++)
     for (int k = 0; k < 4; k++) assert_true(out[i][k] < 2e-6f);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_neighbours_go_apart_as_two_rays_do),
-                                     cmocka_unit_test(test_facets_are_not_bent)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

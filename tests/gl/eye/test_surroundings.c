@@ -23,9 +23,10 @@ static double at(const abbe_image *p, size_t x, size_t y, size_t channel) {
   return (double)p->data[(y * p->width + x) * p->channels + channel];
 }
 
+GROUP(make_context, free_context);
+
 /* Radiance of a colour that is white is that of the illuminant; RGB is Rec.709's. */
-static void the_sky_is_seen_as_it_is(void **state) {
-  (void)state;
+TEST(the_sky_is_seen_as_it_is) {
   abbe_image picture;
   draw(SKY_ONLY "environment: {uniform: [0.2, 0.5, 1.5]}\n", &picture);
   for (size_t y = 0; y < 64; y += 7)
@@ -38,8 +39,7 @@ static void the_sky_is_seen_as_it_is(void **state) {
 }
 
 /* Directions: a lamp at a known place stands where the camera's geometry puts it. */
-static void a_lamp_stands_where_it_is(void **state) {
-  (void)state;
+TEST(a_lamp_stands_where_it_is) {
   abbe_image picture;
   /* straight ahead of a level eye that looks along +y */
   draw("materials: glass.yaml\ncamera: {eye: [0, 0, 0.5], target: [0, 1, 0.5], fov: 40}\n"
@@ -70,8 +70,7 @@ static void a_lamp_stands_where_it_is(void **state) {
 }
 
 /* In uniform light no clear glass is seen: what it mirrors and what comes through add up. */
-static void clear_glass_is_not_seen_in_uniform_light(void **state) {
-  (void)state;
+TEST(clear_glass_is_not_seen_in_uniform_light) {
   static const char *const glass[] = {
       BALL("crown"),
       "- {name: stone, shape: brilliant, diameter: 0.3, transform: [{translate: [0, 0, 0.2]}], "
@@ -98,8 +97,7 @@ static void clear_glass_is_not_seen_in_uniform_light(void **state) {
 }
 
 /* Lights that stand for a dome give an open floor its irradiance, 2 pi / 3 of `cos`. */
-static void an_open_floor_has_its_irradiance(void **state) {
-  (void)state;
+TEST(an_open_floor_has_its_irradiance) {
   abbe_image picture;
   draw(CAMERA FLOOR "environment: {dome: cos}\n", &picture);
   for (size_t x = 8; x < 56; x += 8) assert_near(at(&picture, x, 40, 1) / (0.5 * 2.0 / 3), 1, 1e-2);
@@ -108,8 +106,7 @@ static void an_open_floor_has_its_irradiance(void **state) {
 
 /* Receivers that send on all that they get, in light that is alike all around: nothing is seen of
  * clear glass or of a whole mirror before them. */
-static void nothing_is_seen_in_a_furnace(void **state) {
-  (void)state;
+TEST(nothing_is_seen_in_a_furnace) {
   static const char *const body[] = {
       BALL("crown"),
       "- {name: stone, shape: brilliant, diameter: 0.3, transform: [{translate: [0, 0, 0.2]}], "
@@ -148,8 +145,7 @@ static double difference(const abbe_image *a, const abbe_image *b, double factor
 
 /* Turned with all that stands in it, it changes nothing but roundings, which edges of facets and
  * texels show; not turned, it does. */
-static void turning_all_changes_nothing(void **state) {
-  (void)state;
+TEST(turning_all_changes_nothing) {
   abbe_image here, there, half;
   draw(TURNED("0", "[0, -1, 0.5]", ""), &here);
   draw(TURNED("90", "[1, 0, 0.5]", "rotate: 90, "), &there);
@@ -163,8 +159,7 @@ static void turning_all_changes_nothing(void **state) {
   abbe_image_free(&half);
 }
 
-static void light_is_linear(void **state) {
-  (void)state;
+TEST(light_is_linear) {
   abbe_image once, thrice;
   draw(TURNED("0", "[0, -1, 0.5]", ""), &once);
   draw(TURNED("0", "[0, -1, 0.5]", "scale: 3, "), &thrice);
@@ -175,8 +170,7 @@ static void light_is_linear(void **state) {
 
 /* In uniform light clear glass is as bright as what it hides: a transparent picture of it is that
  * light times what it covers. */
-static void a_transparent_picture_is_premultiplied(void **state) {
-  (void)state;
+TEST(a_transparent_picture_is_premultiplied) {
   abbe_scene scene;
   abbe_image picture, alpha;
   abbe_render_desc desc = small_frame;
@@ -206,8 +200,7 @@ static void a_transparent_picture_is_premultiplied(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void the_ledger_closes(void **state) {
-  (void)state;
+TEST(the_ledger_closes) {
   abbe_image picture;
   const abbe_statistics s = draw(
       CAMERA FLOOR BALL("crown") "environment: {dome: cos, softboxes: [{elevation: 60, radius: "
@@ -216,17 +209,4 @@ static void the_ledger_closes(void **state) {
   assert_true(s.energy.reached > 0 && s.energy.deposited > 0);
   assert_true(abbe_ledger_imbalance(&s.energy) < 1e-4);
   abbe_image_free(&picture);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(the_sky_is_seen_as_it_is),
-                                     cmocka_unit_test(a_lamp_stands_where_it_is),
-                                     cmocka_unit_test(clear_glass_is_not_seen_in_uniform_light),
-                                     cmocka_unit_test(an_open_floor_has_its_irradiance),
-                                     cmocka_unit_test(nothing_is_seen_in_a_furnace),
-                                     cmocka_unit_test(turning_all_changes_nothing),
-                                     cmocka_unit_test(light_is_linear),
-                                     cmocka_unit_test(a_transparent_picture_is_premultiplied),
-                                     cmocka_unit_test(the_ledger_closes)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

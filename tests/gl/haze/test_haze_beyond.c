@@ -55,13 +55,13 @@ static void assert_lamp(const char *what, const char *text, double share) {
   for (int k = 0; k < 3; k++) assert_near(drawn[k] / known[k], 1, 0.01);
 }
 
-static void a_lamp_seen_straight(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(a_lamp_seen_straight) {
   assert_lamp("straight", LAMP("eye: [-1.5, 0, 0], target: [0, 0, 0]", ""), 1);
 }
 
-static void a_lamp_behind_glass(void **state) {
-  (void)state;
+TEST(a_lamp_behind_glass) {
   assert_lamp("behind glass",
               LAMP("eye: [-1.5, 0, 0], target: [0, 0, 0]",
                    "- {name: pane, shape: box, size: [0.02, 0.2, 0.2], material: flat, transform: "
@@ -70,8 +70,7 @@ static void a_lamp_behind_glass(void **state) {
 }
 
 /* The pane is within the mist, so a part of it is on the eye's own way. */
-static void a_lamp_behind_glass_in_the_mist(void **state) {
-  (void)state;
+TEST(a_lamp_behind_glass_in_the_mist) {
   assert_lamp("behind glass in the mist",
               LAMP("eye: [-1.5, 0, 0], target: [0, 0, 0]",
                    "- {name: pane, shape: box, size: [0.001, 0.2, 0.2], material: flat, transform: "
@@ -79,8 +78,7 @@ static void a_lamp_behind_glass_in_the_mist(void **state) {
               plate);
 }
 
-static void a_lamp_in_a_mirror(void **state) {
-  (void)state;
+TEST(a_lamp_in_a_mirror) {
   assert_lamp("in a mirror",
               LAMP("eye: [-1.5, -0.5, 0], target: [-1.5, 0, 0]",
                    "- {name: spot, shape: rectangle, width: 0.004, height: 0.004, reflectance: 0, "
@@ -112,8 +110,7 @@ static void a_lamp_in_a_mirror(void **state) {
   "{axis: [0, 1, 0], angle: 90}}, {rotate: {axis: [0, 0, 1], angle: 45}}, {translate: [0.4, "      \
   "-0.6, 0]}]}\n" more
 
-static void a_beam_in_a_mirror(void **state) {
-  (void)state;
+TEST(a_beam_in_a_mirror) {
   static const char *const panes[] = {
       BEAM(""),
       BEAM("- {name: pane, shape: box, size: [0.2, 0.02, 0.2], material: flat, transform: "
@@ -126,15 +123,4 @@ static void a_beam_in_a_mirror(void **state) {
                   drawn / known);
     assert_near(drawn / known, 1, 0.03);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_lamp_seen_straight),
-      cmocka_unit_test(a_lamp_behind_glass),
-      cmocka_unit_test(a_lamp_behind_glass_in_the_mist),
-      cmocka_unit_test(a_lamp_in_a_mirror),
-      cmocka_unit_test(a_beam_in_a_mirror),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

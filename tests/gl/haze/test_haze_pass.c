@@ -13,9 +13,10 @@ static const double pi = 3.14159265358979323846;
        "objects: [{name: spot, shape: rectangle, width: 0.004, height: 0.004, reflectance: 0,\n"   \
        "           transform: [{translate: [-7.150524, 0, -6]}]}]\n"
 
+GROUP(make_context, free_context);
+
 /* The sun 30 degrees off upright, the eye at 50 degrees: as validation's known answers have it. */
-static void a_slab_in_the_sun(void **state) {
-  (void)state;
+TEST(a_slab_in_the_sun) {
   const double sun = 30 * pi / 180, view = 50 * pi / 180, m0 = cos(sun), m = cos(view);
   const double turned = sin(sun) * sin(view) - m0 * m;
   const double exact = 0.8 / 1.1 * abbe_medium_phase(0.4, turned) * m0 / (m0 + m) *
@@ -32,8 +33,7 @@ static void a_slab_in_the_sun(void **state) {
 }
 
 /* Past it at 0.2 m, from 1 m before to 1 m behind. */
-static void a_lamp_in_mist(void **state) {
-  (void)state;
+TEST(a_lamp_in_mist) {
   static const char *const lamps[] = {
       "kind: point, position: [0, 0.2, 0], intensity: 1",
       "kind: spot, position: [0, 0.2, 0], direction: [0, -1, 0], cone: 40, intensity: 1"};
@@ -60,8 +60,7 @@ static void a_lamp_in_mist(void **state) {
 }
 
 /* Beams of photons, seen by an eye in the water: the way down is as long as the place is deep. */
-static void a_shaft_under_still_water(void **state) {
-  (void)state;
+TEST(a_shaft_under_still_water) {
   static const char text[] =
       "materials: glass.yaml\n"
       "camera: {eye: [-0.3, 0, -0.2], target: [1, 0, -0.2], fov: 30, inside: true}\n"
@@ -95,8 +94,7 @@ static void a_shaft_under_still_water(void **state) {
 }
 
 /* Few wavelengths make as even a fan as many: none leaves a stripe. */
-static void a_fan_without_stripes(void **state) {
-  (void)state;
+TEST(a_fan_without_stripes) {
   enum { W = 80, H = 60, FEW = 7, MANY = 31 };
   static const double middle[3] = {0.105, 0.15, 0.03};
   abbe_scene scene;
@@ -128,14 +126,4 @@ static void a_fan_without_stripes(void **state) {
   abbe_scene_free(&scene);
   print_message("relative RMSE of 7 wavelengths to 31: %.4f\n", sqrt(apart / square));
   assert_true(sqrt(apart / square) < 0.1);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_slab_in_the_sun),
-      cmocka_unit_test(a_lamp_in_mist),
-      cmocka_unit_test(a_shaft_under_still_water),
-      cmocka_unit_test(a_fan_without_stripes),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

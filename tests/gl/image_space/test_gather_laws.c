@@ -4,10 +4,11 @@
 
 #include "validation/known/forms/catacaustic.h"
 
+GROUP(make_context, free_context);
+
 /* G2. Behind a pane the floor has the lamp's light, h / (h^2 + r^2)^1.5; the seven pixels' Gaussian
  * of a standard deviation of 1.408 texels adds half its square times the Laplacian. */
-static void gathers_have_their_bias(void **state) {
-  (void)state;
+TEST(gathers_have_their_bias) {
   static const char text[] =
       "materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"
       "lights: [{name: lamp, kind: spot, position: [0, 0, 0.6], target: [0, 0, 0], intensity: 1, "
@@ -87,8 +88,7 @@ static double ring_light(const place *p, const abbe_render_desc *desc) {
 }
 
 /* R1 to R3, by both methods: of parallel light a nephroid, of a lamp by the wall a cardioid. */
-static void a_ring_throws_its_caustics(void **state) {
-  (void)state;
+TEST(a_ring_throws_its_caustics) {
   static const place suns[] = {{1, 45, {0}, {0.2, 0}, 0.1}, {1, 45, {0}, {0.75, 0}, 0.07}};
   static const place lamps[] = {{2, 0, {0.95, 0, 4}, {0, 0.05}, 0.1},
                                 {2, 0, {0.95, 0, 4}, {-0.6, 0}, 0.07}};
@@ -115,8 +115,7 @@ static void a_ring_throws_its_caustics(void **state) {
 }
 
 /* R4. At a fold light goes by the distance to -1/2, so a texel's by its width to -1/2. */
-static void folds_sharpen_by_the_root(void **state) {
-  (void)state;
+TEST(folds_sharpen_by_the_root) {
   static const place fold = {1, 45, {0}, {0}, 0};
   static const double origin[3] = {-0.5, 0, 0.5}, down[3] = {1, 0, -1}, up[3] = {0, 1, 0};
   abbe_map_layout layout; /* else texels are as wide as the light asks for */
@@ -214,8 +213,7 @@ static double fold_peak(const floor_map *m, const fold *f, double *width2) {
 
 /* G2. The seven pixels' Gaussian of a fold A d^-1/2 peaks at 1.021 A sigma^-1/2, in the mean along
  * it; a box of width w at 2 A w^-1/2, where its edge lies on the fold. */
-static void folds_have_their_peaks(void **state) {
-  (void)state;
+TEST(folds_have_their_peaks) {
   enum { PLACES = 40 };
   static const place of[2] = {{2, 0, {0.95, 0, 4}, {0}, 0}, {1, 45, {0}, {0}, 0}};
   static const double origin[3] = {-0.5, 0, 0.5}, down[3] = {1, 0, -1}, up[3] = {0, 1, 0};
@@ -262,14 +260,4 @@ static void folds_have_their_peaks(void **state) {
       assert_near(most, 1, 0.1);
     abbe_image_free(&m.image);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(gathers_have_their_bias),
-      cmocka_unit_test(a_ring_throws_its_caustics),
-      cmocka_unit_test(folds_sharpen_by_the_root),
-      cmocka_unit_test(folds_have_their_peaks),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

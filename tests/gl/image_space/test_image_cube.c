@@ -109,10 +109,11 @@ static double pane_light(void) {
   return through * 4 * asin(a * a / (a * a + h * h));
 }
 
+GROUP(make_context, free_context);
+
 /* Light of all panes, and what a texel well within one of them is of the lamp's: by how far it is
  * from the seams. */
-static void what_is_sent_arrives_all_around(void **state) {
-  (void)state;
+TEST(what_is_sent_arrives_all_around) {
   abbe_scene scene = {0};
   cube_map m;
   char text[4096] = ROOM;
@@ -158,8 +159,7 @@ static void what_is_sent_arrives_all_around(void **state) {
 }
 
 /* One pane on a corner: the light sees it through one view, and three faces have its light. */
-static void a_corner_has_its_light(void **state) {
-  (void)state;
+TEST(a_corner_has_its_light) {
   abbe_scene scene = {0};
   char text[1024] = ROOM;
   add_pane(pane[PANES - 1], "material: flat", text, strlen(text), sizeof text);
@@ -180,8 +180,7 @@ static void a_corner_has_its_light(void **state) {
 }
 
 /* Light that a mirror sends back past the lamp is lost by one view, and arrives on a cube. */
-static void a_mirror_lights_what_is_behind_the_lamp(void **state) {
-  (void)state;
+TEST(a_mirror_lights_what_is_behind_the_lamp) {
   static const char text[] =
       ROOM "- {name: mirror, shape: rectangle, width: 0.1, height: 0.1, mirror: 0.8, transform: "
            "[{rotate: {axis: [0, 1, 0], angle: -90}}, {translate: [0.5, 0.05, -0.07]}]}\n";
@@ -204,8 +203,7 @@ static void a_mirror_lights_what_is_behind_the_lamp(void **state) {
 
 /* A ball in an edge's direction bends light across it: every estimator brings it to where the exact
  * one does. */
-static void estimators_land_across_seams(void **state) {
-  (void)state;
+TEST(estimators_land_across_seams) {
   static const char text[] = ROOM "- {name: ball, shape: sphere, radius: 0.08, levels: 4, "
                                   "transform: [{translate: [0.3, 0.25, -0.05]}], material: flat}\n";
   static const abbe_estimator kinds[] = {ABBE_ESTIMATOR_EXACT,    ABBE_ESTIMATOR_SHAH,
@@ -238,8 +236,7 @@ static void estimators_land_across_seams(void **state) {
 }
 
 /* A lamp above a floor: the picture by one view and by six. */
-static void one_view_and_six_agree(void **state) {
-  (void)state;
+TEST(one_view_and_six_agree) {
   abbe_scene scene = {0};
   abbe_image picture[2] = {{0}};
   double sum[2] = {0}, off = 0;
@@ -267,8 +264,7 @@ static void one_view_and_six_agree(void **state) {
 
 /* Through panes all around, by photons in image space: the camera sees on the walls what it sees by
  * caustics mapping. */
-static void photons_in_image_space_agree(void **state) {
-  (void)state;
+TEST(photons_in_image_space_agree) {
   static const abbe_fill fills[] = {ABBE_FILL_TRIANGLES, ABBE_FILL_QUADS, ABBE_FILL_GATHER_EYE};
   abbe_scene scene = {0};
   abbe_image right = {0};
@@ -303,8 +299,7 @@ static void photons_in_image_space_agree(void **state) {
 }
 
 /* As printed, too; what a cube is not for, and who takes it by themselves. */
-static void who_has_a_cube(void **state) {
-  (void)state;
+TEST(who_has_a_cube) {
   abbe_scene scene = {0};
   abbe_plan plan;
   abbe_error error = {0};
@@ -345,17 +340,4 @@ static void who_has_a_cube(void **state) {
   desc.profile = ABBE_PROFILE_DEFAULT;
   assert_int_equal(abbe_plan_make(&scene, &desc, &plan, &error), ABBE_INVALID_ARGUMENT);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(what_is_sent_arrives_all_around),
-      cmocka_unit_test(a_corner_has_its_light),
-      cmocka_unit_test(a_mirror_lights_what_is_behind_the_lamp),
-      cmocka_unit_test(estimators_land_across_seams),
-      cmocka_unit_test(one_view_and_six_agree),
-      cmocka_unit_test(photons_in_image_space_agree),
-      cmocka_unit_test(who_has_a_cube),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

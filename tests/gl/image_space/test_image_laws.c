@@ -24,8 +24,9 @@ static double inside_mirror(const double p[3], double *light) {
   return 0.05 - fmax(fabs(abbe_vector_dot(at, along)), fabs(at[1]));
 }
 
-static void a_facets_light_has_edges(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(a_facets_light_has_edges) {
   static const abbe_fill fills[] = {ABBE_FILL_QUADS, ABBE_FILL_TRIANGLES};
   for (int f = 0; f < 2; f++) {
     abbe_render_desc desc = units;
@@ -67,8 +68,7 @@ static void a_facets_light_has_edges(void **state) {
 }
 
 /* M2. A small mirror ball far away sends rho E0 R^2 / 4 into every direction. */
-static void a_ball_shines_alike_everywhere(void **state) {
-  (void)state;
+TEST(a_ball_shines_alike_everywhere) {
   enum { RINGS = 4 };
   static const char text[] =
       "materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"
@@ -136,8 +136,7 @@ static void moments(abbe_renderer *renderer, const abbe_image *dark, double out[
 }
 
 /* T3. Of v pixels a frame, four frames lag by 1.5 v and spread by 1.25 v^2 more. */
-static void motion_lags(void **state) {
-  (void)state;
+TEST(motion_lags) {
   enum { FRAMES = 8 };
   abbe_render_desc desc = units;
   abbe_scene scene[FRAMES], dark[FRAMES];
@@ -229,22 +228,11 @@ static double noise(const abbe_scene *scene, size_t history) {
 }
 
 /* T4. Frames whose noise is independent leave a quarter of its variance. */
-static void noise_goes_by_four(void **state) {
-  (void)state;
+TEST(noise_goes_by_four) {
   abbe_scene scene = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
   const double one = noise(&scene, 1), four = noise(&scene, 4);
   print_message("variance of four frames: %.3f of one's\n", four / one);
   assert_near(four / one, 0.25, 0.07);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_facets_light_has_edges),
-      cmocka_unit_test(a_ball_shines_alike_everywhere),
-      cmocka_unit_test(motion_lags),
-      cmocka_unit_test(noise_goes_by_four),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

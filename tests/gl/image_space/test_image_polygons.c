@@ -2,10 +2,11 @@
  * between surfaces, and the light's image; and what gathers in two images have in common. */
 #include "tests/gl/image_space/image_pictures.h"
 
+GROUP(make_context, free_context);
+
 /* As printed, by beams that are all alike: under the lamp, in the middle of a field of 90 degrees,
  * a cell has 4 / N^2 sr, and the mean one 2 pi / 3 / N^2. */
-static void test_even_beams(void **state) {
-  (void)state;
+TEST(even_beams) {
   abbe_scene scene = {0};
   abbe_image picture = {0};
   double spread;
@@ -26,8 +27,7 @@ static void test_even_beams(void **state) {
 
 /* Other kinds of polygons: what arrives is what was sent, by quads and triangles alike, and behind
  * the pane it is the direct light, also where the light projects it. */
-static void test_polygons_of_other_kinds(void **state) {
-  (void)state;
+TEST(polygons_of_other_kinds) {
   static const unsigned kinds[] = {ABBE_POLYGONS_CORNERS, ABBE_POLYGONS_CULLED,
                                    ABBE_POLYGONS_IN_LIGHT,
                                    ABBE_POLYGONS_CORNERS | ABBE_POLYGONS_IN_LIGHT};
@@ -62,8 +62,7 @@ static void test_polygons_of_other_kinds(void **state) {
 
 /* A step under the pane: one column of cells lies between it and the floor. It is under the lamp,
  * where a column has a little more light than its share. */
-static void test_polygons_between_surfaces(void **state) {
-  (void)state;
+TEST(polygons_between_surfaces) {
   abbe_scene scene = {0};
   load_text(CAMERA POINT_LIGHT FLOOR
             "- {name: step, shape: rectangle, width: 1, height: 2, reflectance: 0.5, transform: "
@@ -99,8 +98,7 @@ static void load_mirror(const char *share, abbe_scene *out) {
 
 /* G4. What the camera's image and the light's gather draws near as pixels and texels shrink: the
  * mean difference by the mean light of the mirror. */
-static void test_gathers_agree(void **state) {
-  (void)state;
+TEST(gathers_agree) {
   abbe_scene dark = {0}, bright = {0};
   double apart[2];
   load_mirror("0.0001", &dark);
@@ -128,14 +126,4 @@ static void test_gathers_agree(void **state) {
   assert_true(apart[0] > 0 && apart[1] < 0.6 * apart[0]);
   abbe_scene_free(&dark);
   abbe_scene_free(&bright);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_even_beams),
-      cmocka_unit_test(test_polygons_of_other_kinds),
-      cmocka_unit_test(test_polygons_between_surfaces),
-      cmocka_unit_test(test_gathers_agree),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -120,10 +120,11 @@ static void compare(abbe_estimator kind, size_t iterations, bool printed, const 
   }
 }
 
+GROUP(make_context, free_context);
+
 /* Floats against doubles: where a step divides by a difference of two lookups that nearly agree,
  * the place is known to 1e-3 of what is a metre deep. Newton's difference is a sixty-fourth. */
-static void test_every_estimator(void **state) {
-  (void)state;
+TEST(every_estimator) {
   static const double lamp[3] = {0.2, -0.1, 0.7}, down[3] = {-0.1, 0.15, -1}, up[3] = {0, 1, 0};
   static const size_t iterations[] = {1, 3, 8};
   for (int kind = ABBE_ESTIMATOR_SHAH; kind < ABBE_ESTIMATOR_EXACT; kind++) {
@@ -143,9 +144,4 @@ static void test_every_estimator(void **state) {
     assert_true(alike >= all * 98 / 100);
     assert_true(found >= all / 2);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_estimator)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -1,10 +1,11 @@
 /* The published methods behind one set of verbs: what of their light a moved camera keeps. */
 #include "tests/gl/frame.h"
 
+GROUP(make_context, free_context);
+
 /* A camera that moves keeps the map in the light's image, or the buffer of photons that go to
  * its own, and sees what it would see anew. */
-static void still_light_is_kept(void **state) {
-  (void)state;
+TEST(still_light_is_kept) {
   static const struct {
     abbe_profile profile;
     abbe_fill fill;
@@ -55,9 +56,4 @@ static void still_light_is_kept(void **state) {
   }
   abbe_scene_free(&scene);
   abbe_scene_free(&moved);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(still_light_is_kept)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -9,10 +9,11 @@ static const abbe_fill fills[] = {ABBE_FILL_POINTS, ABBE_FILL_QUADS, ABBE_FILL_T
                                   ABBE_FILL_GATHER_EYE, ABBE_FILL_GATHER_LIGHT};
 enum { FILLS = sizeof fills / sizeof *fills };
 
+GROUP(make_context, free_context);
+
 /* A pane turns no light: each reconstruction's map holds the lamp's power through it, less two
  * reflections. Polygons miss half a cell all around. */
-static void test_what_arrives_is_what_was_sent(void **state) {
-  (void)state;
+TEST(what_arrives_is_what_was_sent) {
   abbe_scene scene = {0};
   load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
   /* as of the thesis's passes, whose test says how much it is */
@@ -29,8 +30,7 @@ static void test_what_arrives_is_what_was_sent(void **state) {
 
 /* Behind a thin pane, where the shadow map knows a shadow, the ratio of solid angles is 1, and the
  * picture is that of the light through it. Gathers of a constant field are constant. */
-static void test_a_pane_is_direct_light(void **state) {
-  (void)state;
+TEST(a_pane_is_direct_light) {
   abbe_scene scene = {0};
   abbe_image right = {0}, picture = {0};
   double spread, own_spread;
@@ -60,8 +60,7 @@ static void test_a_pane_is_direct_light(void **state) {
 
 /* As printed, likewise: shadowed by the pane and lit by its photons as the floor is beside it, for
  * Fresnel's law is not known; by whatever direction, for all are the direct light's. */
-static void test_a_pane_as_printed(void **state) {
-  (void)state;
+TEST(a_pane_as_printed) {
   static const abbe_direction directions[] = {ABBE_DIRECTION_OWN, ABBE_DIRECTION_MEAN,
                                               ABBE_DIRECTION_DIRECT};
   abbe_scene scene = {0};
@@ -89,8 +88,7 @@ static void test_a_pane_as_printed(void **state) {
 
 /* A flat mirror sends all of its share of the lamp's light to the floor, as the default profile has
  * it. */
-static void test_a_flat_mirror_has_the_lamps_light(void **state) {
-  (void)state;
+TEST(a_flat_mirror_has_the_lamps_light) {
   abbe_scene scene = {0};
   load_text(CAMERA POINT_LIGHT FLOOR MIRROR("0.8"), &scene);
   abbe_render_desc desc = small;
@@ -130,8 +128,7 @@ static double cosine(const double at[3], const double lamp[3]) {
 
 /* Shading by photons' direction is the direct light's times the ratio of their cosines to the
  * floor, and only the direct light's is right: area is counted with the cosine already. */
-static void test_directions_differ_by_their_cosines(void **state) {
-  (void)state;
+TEST(directions_differ_by_their_cosines) {
   static const double lamp[3] = {0.05, 0.03, 0.6}, centre[3] = {0.1, 0, 0.15};
   const double n[3] = {sin(60 * 3.14159265358979 / 180), 0, 0.5};
   double image[3], to[3], dark[64 * 64];
@@ -170,8 +167,7 @@ static void test_directions_differ_by_their_cosines(void **state) {
 }
 
 /* One photon in 32 x 32 texels: as printed all are dropped, in units none is. */
-static void test_sparse_neighbourhoods(void **state) {
-  (void)state;
+TEST(sparse_neighbourhoods) {
   abbe_scene scene = {0};
   load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
   abbe_render_desc desc = small;
@@ -197,8 +193,7 @@ static void next_frame(abbe_renderer *renderer, abbe_image *map) {
 }
 
 /* A still scene is the same frame by frame as printed; in units it is the mean of four grids. */
-static void test_a_still_scene(void **state) {
-  (void)state;
+TEST(a_still_scene) {
   abbe_scene scene = {0};
   abbe_image first = {0}, map = {0}, one = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
@@ -273,8 +268,7 @@ static void step(abbe_profile profile, bool up) {
   abbe_scene_free(&bright);
 }
 
-static void test_steps(void **state) {
-  (void)state;
+TEST(steps) {
   step(ABBE_PROFILE_WYMAN2006_CIE, true);
   step(ABBE_PROFILE_WYMAN2006_CIE, false);
 }
@@ -330,8 +324,7 @@ static void measure_motion(size_t photons, size_t history, double *flicker, doub
 }
 
 /* Less the difference that the motion itself makes, by maps of many photons. */
-static void test_flicker_and_ghost(void **state) {
-  (void)state;
+TEST(flicker_and_ghost) {
   double flicker[2], ghost[2], own, none;
   measure_motion(1024, 1, &own, &none);
   for (int k = 0; k < 2; k++) {
@@ -345,8 +338,7 @@ static void test_flicker_and_ghost(void **state) {
 }
 
 /* What it does not know. */
-static void test_refusals(void **state) {
-  (void)state;
+TEST(refusals) {
   abbe_scene scene = {0};
   abbe_renderer *renderer = NULL;
   abbe_error error = {0};
@@ -355,20 +347,4 @@ static void test_refusals(void **state) {
                    ABBE_UNSUPPORTED);
   assert_non_null(strstr(error.text, "directional"));
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_arrives_is_what_was_sent),
-      cmocka_unit_test(test_a_pane_is_direct_light),
-      cmocka_unit_test(test_a_pane_as_printed),
-      cmocka_unit_test(test_a_flat_mirror_has_the_lamps_light),
-      cmocka_unit_test(test_directions_differ_by_their_cosines),
-      cmocka_unit_test(test_sparse_neighbourhoods),
-      cmocka_unit_test(test_a_still_scene),
-      cmocka_unit_test(test_steps),
-      cmocka_unit_test(test_flicker_and_ghost),
-      cmocka_unit_test(test_refusals),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -29,9 +29,10 @@ static abbe_ledger draw(const char *name, size_t wavelengths, abbe_fill fill,
   return statistics.energy;
 }
 
+GROUP(make_context, free_context);
+
 /* All of the light is entered once, by the set that it was laid with. */
-static void every_photon_is_entered_once(void **state) {
-  (void)state;
+TEST(every_photon_is_entered_once) {
   static const char *const names[] = {"gem", "prism", "sphere"};
   for (size_t i = 0; i < 3; i++) {
     const abbe_ledger l = draw(names[i], 25, ABBE_FILL_BRIDGE, NULL, NULL);
@@ -44,8 +45,7 @@ static void every_photon_is_entered_once(void **state) {
 /* N-SF11 absorbs violet by tens in a metre and green by ones. What few wavelengths leave of it, and
  * 21 that are traced only where hits ask, is what 61 of all photons do, to one in a thousand of
  * the light: attenuation at the seven nodes alone would take three more. */
-static void absorption_is_that_of_all_wavelengths(void **state) {
-  (void)state;
+TEST(absorption_is_that_of_all_wavelengths) {
   static const size_t counts[] = {7, 21};
   abbe_map_layout layout = {0}; /* and with it the photons' grid: all trace the same */
   const abbe_ledger all = draw("gem", 61, ABBE_FILL_NONE, &layout, NULL);
@@ -82,8 +82,7 @@ static double passed(const abbe_material *material, double lambda_nm, double thi
  * Z. What one of these or a band of even power would take for its own is that of a place some 3 nm
  * off, of 0.6 more or less a metre, which makes up to 2 % of a band's light where most is taken in
  * 0.06 m; in a colour's sum both signs are left, and a tenth of it. */
-static void a_pane_leaves_what_the_law_says(void **state) {
-  (void)state;
+TEST(a_pane_leaves_what_the_law_says) {
   static const size_t counts[] = {7, 21, 64};
   const double thickness = 0.06;
   abbe_scene scene = {0};
@@ -140,8 +139,7 @@ static double difference(const abbe_image *a, const abbe_image *b) {
 /* 200 wavelengths are as good as all. The prism's spectrum is some forty texels long: five
  * wavelengths bend it off by a few of them, which those between set right. (Maps that are not
  * bridged differ from all these by the gaps between photons, which are more.) */
-static void refined_maps_are_those_of_all_wavelengths(void **state) {
-  (void)state;
+TEST(refined_maps_are_those_of_all_wavelengths) {
   static const char *const names[] = {"gem", "prism"};
   for (size_t i = 0; i < 2; i++) {
     abbe_image all = {0}, few = {0}, refined = {0}, again = {0};
@@ -164,8 +162,7 @@ static void refined_maps_are_those_of_all_wavelengths(void **state) {
 
 /* More wavelengths in an interval than in the coarse set, and paths that few of them take: what is
  * read of the coarse hits is the photon's own, in whatever order photons stand. */
-static void a_mesh_is_refined_alike_every_time(void **state) {
-  (void)state;
+TEST(a_mesh_is_refined_alike_every_time) {
   abbe_scene scene = {0};
   abbe_image map[2] = {{0}, {0}};
   abbe_render_desc desc = small_frame;
@@ -184,15 +181,4 @@ static void a_mesh_is_refined_alike_every_time(void **state) {
   assert_same_pixels(&map[0], &map[1]);
   for (int i = 0; i < 2; i++) abbe_image_free(&map[i]);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_photon_is_entered_once),
-      cmocka_unit_test(absorption_is_that_of_all_wavelengths),
-      cmocka_unit_test(a_pane_leaves_what_the_law_says),
-      cmocka_unit_test(refined_maps_are_those_of_all_wavelengths),
-      cmocka_unit_test(a_mesh_is_refined_alike_every_time),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -52,21 +52,15 @@ static void assert_same_light(const char *name, size_t wavelengths, const rooms 
   abbe_scene_free(&scene);
 }
 
-static void refined_intervals_fit_any_room(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(refined_intervals_fit_any_room) {
   static const rooms few = {.pairs = 8};
   assert_same_light("gem", 23, &few);
 }
 
-static void splats_fit_any_room(void **state) {
-  (void)state;
+TEST(splats_fit_any_room) {
   static const rooms few = {.splats = 512}, both = {.pairs = 37, .splats = 777};
   assert_same_light("prism", 7, &few);
   assert_same_light("gem", 23, &both);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(refined_intervals_fit_any_room),
-                                     cmocka_unit_test(splats_fit_any_room)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -70,10 +70,11 @@ static void place_of(size_t x, size_t y, double p[3]) {
   p[2] = 0;
 }
 
+GROUP(make_context, free_context);
+
 /* Clear glass and whole mirrors in a room of even light are not there, however few the pinholes;
  * the floor is lit from above alone, so nothing that looks down to it may be. */
-static void test_furnace(void **state) {
-  (void)state;
+TEST(furnace) {
   abbe_image with, without;
   static const char text[] = DOWN SOFT WHITE_FLOOR WALL("1");
   draw(text, ABBE_TRANSPORT_PINHOLE, 50, &with);
@@ -100,8 +101,7 @@ static double worst_of(const abbe_image *picture, const double (*corner)[3], dou
 }
 
 /* A mirror on the floor takes what it absorbs, whatever chooses its samples. */
-static void test_a_mirror_absorbs(void **state) {
-  (void)state;
+TEST(a_mirror_absorbs) {
   const double corner[4][3] = {
       {0.3, -0.25, 0}, {0.3, 0.25, 0}, {0.3, 0.25, 0.3}, {0.3, -0.25, 0.3}};
   for (int k = ABBE_SAMPLE_STRATEGY_QUANTIZED; k < ABBE_SAMPLE_STRATEGY_COUNT; k++) {
@@ -117,8 +117,7 @@ static void test_a_mirror_absorbs(void **state) {
 }
 
 /* Each shift of the photons' grid has samples of its own, whose errors even out. */
-static void test_frames_have_other_samples(void **state) {
-  (void)state;
+TEST(frames_have_other_samples) {
   enum { FRAMES = 4, STEP = 6 };
   static const double up[3] = {0, 0, 1},
                       corner[4][3] = {
@@ -154,8 +153,7 @@ static void test_frames_have_other_samples(void **state) {
 
 /* Pages of smooth mirrors know no lamps: they stay while one moves, and the picture is that of a
  * renderer made anew. Rough ones show lamps. */
-static void test_pages_stay_while_a_lamp_moves(void **state) {
-  (void)state;
+TEST(pages_stay_while_a_lamp_moves) {
   static const char *const walls[] = {DOWN SOFT LAMP WHITE_FLOOR WALL("0.5"),
                                       DOWN SOFT LAMP WHITE_FLOOR ROUGH_WALL};
   for (int rough = 0; rough < 2; rough++) {
@@ -191,8 +189,7 @@ static void test_pages_stay_while_a_lamp_moves(void **state) {
 }
 
 /* With a history what stands still shows the same samples in each frame; without, others. */
-static void test_a_history_keeps_samples(void **state) {
-  (void)state;
+TEST(a_history_keeps_samples) {
   abbe_render_desc a = request(ABBE_TRANSPORT_PINHOLE, 16), b = a;
   b.photon_shift[0] = 0.25;
   assert_true(abbe_pinhole_samples_seed(&a) != abbe_pinhole_samples_seed(&b));
@@ -201,8 +198,7 @@ static void test_a_history_keeps_samples(void **state) {
 }
 
 /* One that lies above shows the floor, which is dark: it hides all that it covers. */
-static void test_a_roof_hides(void **state) {
-  (void)state;
+TEST(a_roof_hides) {
   const double corner[4][3] = {
       {-0.25, -0.25, 0.3}, {0.25, -0.25, 0.3}, {0.25, 0.25, 0.3}, {-0.25, 0.25, 0.3}};
   abbe_image picture;
@@ -215,8 +211,7 @@ static void test_a_roof_hides(void **state) {
 
 /* Samples in clusters, and texels between others, are off by less than what one cluster may send,
  * from all samples at all texels; and these are as near to what the shape tells. */
-static void test_clusters(void **state) {
-  (void)state;
+TEST(clusters) {
   const double corner[4][3] = {
       {0.3, -0.25, 0}, {0.3, 0.25, 0}, {0.3, 0.25, 0.3}, {0.3, -0.25, 0.3}};
   static const size_t clusters[] = {ABBE_RENDER_MAX_CLUSTERS, 200, 0};
@@ -241,8 +236,7 @@ static void test_clusters(void **state) {
 }
 
 /* A floor of triangles has the light of a rectangle. */
-static void test_a_floor_of_triangles(void **state) {
-  (void)state;
+TEST(a_floor_of_triangles) {
   static const char disk[] =
       "objects:\n- {name: floor, shape: lathe, around: 64, profile: [[0, 0], [2, "
       "0]], reflectance: 1}\n";
@@ -265,8 +259,7 @@ static void test_a_floor_of_triangles(void **state) {
 }
 
 /* A ball beside a black square, in even light: what each place sees of the square is missing. */
-static void test_a_ball_is_lit(void **state) {
-  (void)state;
+TEST(a_ball_is_lit) {
   static const char text[] = DOWN SOFT
       "objects:\n- {name: globe, shape: sphere, radius: 0.3, levels: 5, reflectance: 1}\n"
       "- {name: wall, shape: rectangle, width: 0.5, height: 0.5, mirror: 0, transform: [{rotate: "
@@ -309,8 +302,7 @@ static void test_a_ball_is_lit(void **state) {
 
 /* What one mirror hides of another counts once: behind a wall that hides it a ball changes nothing.
  */
-static void test_hidden_ones(void **state) {
-  (void)state;
+TEST(hidden_ones) {
   static const char behind[] = "- {name: far ball, shape: sphere, radius: 0.05, levels: 4, mirror: "
                                "0, transform: [{translate: [0.45, 0, 0.06]}]}\n";
   char text[2048];
@@ -325,8 +317,7 @@ static void test_hidden_ones(void **state) {
 }
 
 /* Refractors too: a clear ball is not there in even light, but where it shows the dark floor. */
-static void test_glass_hides_little(void **state) {
-  (void)state;
+TEST(glass_hides_little) {
   abbe_image glass, black, without;
   static const char ball[] = DOWN SOFT WHITE_FLOOR BALL("flat");
   draw(ball, ABBE_TRANSPORT_PINHOLE, 300, &glass);
@@ -349,8 +340,7 @@ static void test_glass_hides_little(void **state) {
 
 /* Beside what dispersion asks for on coloured receivers: the light is that without pinholes but for
  * what these add. */
-static void test_dispersion_on_colours(void **state) {
-  (void)state;
+TEST(dispersion_on_colours) {
   static const char text[] =
       DOWN "environment: {size: 256, uniform: 0.4, spots: [{elevation: 60, azimuth: 20, radiance: "
            "80, sigma: 3}, {elevation: 40, azimuth: 200, radiance: 2, sigma: 20}]}\n"
@@ -382,8 +372,7 @@ static void test_dispersion_on_colours(void **state) {
   assert_near(sum[1] / sum[0], 1, 0.05);
 }
 
-static void test_refusals(void **state) {
-  (void)state;
+TEST(refusals) {
   static const struct {
     const char *text, *says;
   } cases[] = {
@@ -401,23 +390,4 @@ static void test_refusals(void **state) {
     assert_contains(error.text, cases[i].says);
     abbe_scene_free(&scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_furnace),
-      cmocka_unit_test(test_a_mirror_absorbs),
-      cmocka_unit_test(test_frames_have_other_samples),
-      cmocka_unit_test(test_pages_stay_while_a_lamp_moves),
-      cmocka_unit_test(test_a_history_keeps_samples),
-      cmocka_unit_test(test_a_roof_hides),
-      cmocka_unit_test(test_clusters),
-      cmocka_unit_test(test_a_floor_of_triangles),
-      cmocka_unit_test(test_a_ball_is_lit),
-      cmocka_unit_test(test_hidden_ones),
-      cmocka_unit_test(test_glass_hides_little),
-      cmocka_unit_test(test_dispersion_on_colours),
-      cmocka_unit_test(test_refusals),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -19,8 +19,9 @@ static const char source[] =
     "  return vec4(length(by_u), length(by_v), dot(by_u, by_v), 0.0) / a.w;\n"
     "}\n";
 
-static void test_footprints(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(footprints) {
   static float in[CASES][8], out[CASES][4];
   for (int i = 0; i < CASES; i++) {
     in[i][0] = (float)(1.4 * (i % 8) / 7);
@@ -37,9 +38,4 @@ static void test_footprints(void **state) {
     assert_near((double)out[i][1] / sagittal, 1, 0.02);
     assert_near((double)out[i][2], 0, 0.03 * tangential * sagittal * 1e-4 + 0.01);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_footprints)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

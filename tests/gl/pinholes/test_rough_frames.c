@@ -70,9 +70,10 @@ static double sent_by_the_wall(const abbe_microfacets *m, double reflectance, do
   return reflectance * e * sum * 0.15 / (STEPS * STEPS);
 }
 
+GROUP(make_context, free_context);
+
 /* In light of one direction, less what the floor has straight. Grooves spread it across them. */
-static void test_samples_send_the_lobe(void **state) {
-  (void)state;
+TEST(samples_send_the_lobe) {
   static const double d[3] = {0.8, 0, -0.6}, straight = 3 * 0.6;
   static const abbe_microfacets m = {0.2, 0.5};
   abbe_image picture;
@@ -91,8 +92,7 @@ static void test_samples_send_the_lobe(void **state) {
 }
 
 /* Even light that facets send to the floor: nearly all of what the wall hides. */
-static void test_even_light_keeps_nearly_all(void **state) {
-  (void)state;
+TEST(even_light_keeps_nearly_all) {
   abbe_image picture;
   double least = 1, most = 0;
   draw(DOWN "environment: {uniform: 0.5, size: 64}\n" WHITE_FLOOR WALL("1", "[0.05, 0.05]"), 60,
@@ -115,8 +115,7 @@ static void test_even_light_keeps_nearly_all(void **state) {
 
 /* A lamp's light there is the lobe's; of even light, what straight on is kept (test_microfacets.c):
  * 0.8774 at 0.3, 0.9883 at 0.1. */
-static void test_the_camera_sees_the_lobe(void **state) {
-  (void)state;
+TEST(the_camera_sees_the_lobe) {
   static const abbe_microfacets m = {0.1, 0.3};
   abbe_image picture;
   draw(DOWN DIM "lights:\n- {name: sun, kind: directional, direction: [-0.48, 0, -0.8773], "
@@ -140,8 +139,7 @@ static void test_the_camera_sees_the_lobe(void **state) {
   abbe_image_free(&picture);
 }
 
-static void test_refusals(void **state) {
-  (void)state;
+TEST(refusals) {
   static const char text[] = DOWN DIM WHITE_FLOOR WALL("0.9", "[0.1, 0.1]");
   static const struct {
     abbe_render_desc desc;
@@ -159,12 +157,4 @@ static void test_refusals(void **state) {
     assert_contains(error.text, "'wall'");
     abbe_scene_free(&scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_samples_send_the_lobe),
-                                     cmocka_unit_test(test_even_light_keeps_nearly_all),
-                                     cmocka_unit_test(test_the_camera_sees_the_lobe),
-                                     cmocka_unit_test(test_refusals)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

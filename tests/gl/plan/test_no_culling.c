@@ -42,9 +42,10 @@ static double with_everything(const abbe_scene *scene, size_t exits) {
   return found;
 }
 
+GROUP(make_context, free_context);
+
 /* Only rounding is left: floats in another order, and the map's whole units. */
-static void test_what_no_fact_asks_for_changes_nothing(void **state) {
-  (void)state;
+TEST(what_no_fact_asks_for_changes_nothing) {
   static const char *const texts[] = {
       CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat"),
       CAMERA POINT_LIGHT ASIDE FLOOR BRICK("crown"),
@@ -63,8 +64,7 @@ static void test_what_no_fact_asks_for_changes_nothing(void **state) {
   }
 }
 
-static void test_every_switch_is_on(void **state) {
-  (void)state;
+TEST(every_switch_is_on) {
   abbe_scene scene = {0};
   abbe_plan plan;
   const abbe_render_desc all = {.everything = true};
@@ -85,8 +85,7 @@ static void test_every_switch_is_on(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_what_is_asked_for_stays(void **state) {
-  (void)state;
+TEST(what_is_asked_for_stays) {
   abbe_scene scene = {0};
   abbe_plan plan;
   const abbe_render_desc all = {
@@ -98,13 +97,4 @@ static void test_what_is_asked_for_stays(void **state) {
   assert_false(plan.fills || abbe_plan_find(&plan, ABBE_PASS_GAP_FILL, 0)->runs);
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_no_fact_asks_for_changes_nothing),
-      cmocka_unit_test(test_every_switch_is_on),
-      cmocka_unit_test(test_what_is_asked_for_stays),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

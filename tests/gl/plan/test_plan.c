@@ -88,8 +88,7 @@ static void load_and_plan_shipped(const char *name, lines *out) {
   abbe_scene_free(&scene);
 }
 
-static void shipped_scenes(void **state) {
-  (void)state;
+TEST(shipped_scenes) {
   static lines sphere, other, difference;
   load_and_plan_shipped("sphere", &sphere);
   check_rows("sphere", sphere_rows, &sphere);
@@ -103,17 +102,14 @@ static void shipped_scenes(void **state) {
 /* The plans of both scenes of each pair, made once. */
 static lines from[PAIRS], to[PAIRS];
 
-static int plan_pairs(void **state) {
-  (void)state;
+static void plan_pairs(void) {
   for (size_t i = 0; i < PAIRS; i++) {
     load_and_plan(pairs[i].from, NULL, &from[i]);
     load_and_plan(pairs[i].to, &pairs[i].desc, &to[i]);
   }
-  return 0;
 }
 
-static void a_fact_changes_what_follows_from_it_alone(void **state) {
-  (void)state;
+TEST(a_fact_changes_what_follows_from_it_alone) {
   static lines one, difference;
   load_and_plan(ball, NULL, &one);
   check_rows("ball", ball_rows, &one);
@@ -133,8 +129,7 @@ static bool flips(const lines *a, const lines *b, const line *item) {
   return false;
 }
 
-static void every_pass_goes_with_some_fact(void **state) {
-  (void)state;
+TEST(every_pass_goes_with_some_fact) {
   static lines all;
   load_and_plan(ball, NULL, &all);
   for (size_t i = 0; i < all.count; i++) {
@@ -151,8 +146,7 @@ static void every_pass_goes_with_some_fact(void **state) {
 }
 
 /* The lists are the scene's objects in their order, and the flags the models in use. */
-static void lists_name_the_scenes_objects(void **state) {
-  (void)state;
+TEST(lists_name_the_scenes_objects) {
   abbe_plan plan;
   plan_text(CAMERA POINT_LIGHT FLOOR BALL("crown") CARD BRICK("flat"), NULL, &plan);
   assert_int_equal(plan.refractor_count, 2);
@@ -168,12 +162,4 @@ static void lists_name_the_scenes_objects(void **state) {
   abbe_plan_free(&plan);
 }
 
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(shipped_scenes),
-      cmocka_unit_test(a_fact_changes_what_follows_from_it_alone),
-      cmocka_unit_test(every_pass_goes_with_some_fact),
-      cmocka_unit_test(lists_name_the_scenes_objects),
-  };
-  return cmocka_run_group_tests(tests, plan_pairs, NULL);
-}
+GROUP(plan_pairs, NULL);

@@ -5,8 +5,7 @@
 
 #include <math.h>
 
-static void the_thesis_refuses_disks(void **state) {
-  (void)state;
+TEST(the_thesis_refuses_disks) {
   const abbe_render_desc thesis = {.profile = ABBE_PROFILE_THESIS};
   abbe_scene scene;
   abbe_plan plan;
@@ -29,8 +28,7 @@ static void the_thesis_refuses_disks(void **state) {
   "- {name: looking glass, shape: rectangle, width: 1, height: 1, mirror: 0.9, "                   \
   "transform: [{translate: [0, 0, -1]}]}\n"
 
-static void mirrors_are_refused_by_name_where_none_are_followed(void **state) {
-  (void)state;
+TEST(mirrors_are_refused_by_name_where_none_are_followed) {
   static const char text[] = CAMERA POINT_LIGHT FLOOR BALL("flat") LOOKING_GLASS;
   abbe_render_desc desc = {.profile = ABBE_PROFILE_THESIS};
   refuse_plan(text, &desc, ABBE_UNSUPPORTED, "'looking glass' (line 8) is a mirror");
@@ -41,8 +39,7 @@ static void mirrors_are_refused_by_name_where_none_are_followed(void **state) {
 }
 
 /* By pinholes where nothing else is asked for, and not at all by others. */
-static void rough_mirrors_go_by_pinholes(void **state) {
-  (void)state;
+TEST(rough_mirrors_go_by_pinholes) {
   static const char text[] = CAMERA
       "environment: {size: 64, uniform: 1}\n" FLOOR
       "- {name: dull plate, shape: rectangle, width: 1, height: 1, mirror: 0.9, roughness: 0.2, "
@@ -72,8 +69,7 @@ static void rough_mirrors_go_by_pinholes(void **state) {
   refuse_plan(text, &desc, ABBE_UNSUPPORTED, "the wand2003 profile knows smooth ones alone");
 }
 
-static void mirrors_are_followed_among_so_many(void **state) {
-  (void)state;
+TEST(mirrors_are_followed_among_so_many) {
   char text[8192] = CAMERA POINT_LIGHT FLOOR LOOKING_GLASS;
   for (int i = 0; i < 32; i++)
     snprintf(text + strlen(text), sizeof text - strlen(text),
@@ -83,8 +79,7 @@ static void mirrors_are_followed_among_so_many(void **state) {
   refuse_plan(text, NULL, ABBE_UNSUPPORTED, "at most 32 refractors and mirrors; the scene has 33");
 }
 
-static void a_map_layout_belongs_to_its_light(void **state) {
-  (void)state;
+TEST(a_map_layout_belongs_to_its_light) {
   static const char ball[] = CAMERA POINT_LIGHT FLOOR BALL("flat");
   static const double at[3] = {0.05, 0.03, 0.6}, down[3] = {0, 0, -1}, up[3] = {0, 1, 0};
   static const double point[1][3] = {{0, 0, 0}};
@@ -115,15 +110,4 @@ static void a_map_layout_belongs_to_its_light(void **state) {
   refuse_plan(ball, &desc, ABBE_INVALID_ARGUMENT, "along x");
   layout.view.origin[0] += 1e-3;
   refuse_plan(ball, &desc, ABBE_INVALID_ARGUMENT, "another place than 'lamp'");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_thesis_refuses_disks),
-      cmocka_unit_test(mirrors_are_refused_by_name_where_none_are_followed),
-      cmocka_unit_test(rough_mirrors_go_by_pinholes),
-      cmocka_unit_test(mirrors_are_followed_among_so_many),
-      cmocka_unit_test(a_map_layout_belongs_to_its_light),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,8 +14,7 @@ static void fit(const abbe_render_desc *desc, double fov_y_rad, abbe_camera_view
 }
 
 /* A quarter turn up: tangents of 1 up and of the picture's shape across. */
-static void the_window_is_the_field_of_view(void **state) {
-  (void)state;
+TEST(the_window_is_the_field_of_view) {
   const abbe_render_desc desc = {.width = 200, .height = 100, .supersample = 2, .upsample = 1};
   abbe_camera_view camera;
   fit(&desc, acos(0), &camera);
@@ -27,8 +26,7 @@ static void the_window_is_the_field_of_view(void **state) {
 }
 
 /* 34 samples of three pixels cover 100, and two more on the right; rows likewise at the top. */
-static void the_last_sample_may_stand_out(void **state) {
-  (void)state;
+TEST(the_last_sample_may_stand_out) {
   const abbe_render_desc desc = {.width = 100, .height = 100, .supersample = 1, .upsample = 3};
   abbe_camera_view camera;
   fit(&desc, acos(0), &camera);
@@ -40,8 +38,7 @@ static void the_last_sample_may_stand_out(void **state) {
 }
 
 /* Targets of pictures that follow each other in other sizes are all of one kind to a driver. */
-static void targets_of_coarse_pictures_are_no_power_of_two(void **state) {
-  (void)state;
+TEST(targets_of_coarse_pictures_are_no_power_of_two) {
   static const size_t heights[] = {1, 2, 64, 100, 255};
   abbe_render_desc desc = {.width = 512, .supersample = 1};
   for (size_t i = 0; i < sizeof heights / sizeof *heights; i++)
@@ -61,8 +58,7 @@ static void targets_of_coarse_pictures_are_no_power_of_two(void **state) {
 }
 
 /* By a part of a sample, of which two make a pixel; nothing else moves. */
-static void a_shift_moves_the_window(void **state) {
-  (void)state;
+TEST(a_shift_moves_the_window) {
   const abbe_render_desc desc = {
       .width = 50, .height = 50, .supersample = 2, .upsample = 1, .sample_shift = {0.5, -0.25}};
   abbe_camera_view camera;
@@ -72,13 +68,4 @@ static void a_shift_moves_the_window(void **state) {
   assert_near(camera.view.window[1], 1 + 0.5 * sample, 1e-12);
   assert_near(camera.view.window[2], -1 - 0.25 * sample, 1e-12);
   assert_near(camera.view.window[3], 1 - 0.25 * sample, 1e-12);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_window_is_the_field_of_view),
-      cmocka_unit_test(the_last_sample_may_stand_out),
-      cmocka_unit_test(targets_of_coarse_pictures_are_no_power_of_two),
-      cmocka_unit_test(a_shift_moves_the_window)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,10 +26,9 @@ static const char rooms[] =
     "#define SPECTRUM_ROOM 1\n#define WAVELENGTHS 1\n#define SPHERES\n#define CONVEX\n"
     "#include \"refractor.glsl\"\n#include \"receiver.glsl\"\n";
 
-static int make_gl(void **state) {
-  if (make_context(state) != 0) return 1;
+static void make_gl(void) {
+  make_context();
   gl = abbe_context_gl(context);
-  return 0;
 }
 
 static double dot(const double a[3], const double b[3]) {
@@ -107,8 +106,9 @@ static bool meet_sphere(const double o[3], const double d[3], double radius, dou
   return true;
 }
 
-static void spheres_are_met(void **state) {
-  (void)state;
+GROUP(make_gl, free_context);
+
+TEST(spheres_are_met) {
   double worst = 0, worst_inner = 0;
   size_t met = 0;
   for (int s = 0; s < 3; s++) {
@@ -177,8 +177,7 @@ static bool meet_planes(const double plane[6][4], const double o[3], const doubl
   return t[0] < t[1];
 }
 
-static void solids_are_met(void **state) {
-  (void)state;
+TEST(solids_are_met) {
   double worst = 0, worst_inner = 0;
   size_t met = 0;
   for (int s = 0; s < 3; s++) {
@@ -218,8 +217,7 @@ static void solids_are_met(void **state) {
   assert_true(worst_inner < 12);
 }
 
-static void receivers_are_met(void **state) {
-  (void)state;
+TEST(receivers_are_met) {
   double worst = 0;
   size_t met = 0;
   for (int s = 0; s < 3; s++) {
@@ -273,8 +271,7 @@ static void receivers_are_met(void **state) {
 }
 
 /* Window coordinates of places in the view, and the ray back through them. */
-static void views_project(void **state) {
-  (void)state;
+TEST(views_project) {
   double worst = 0, worst_ray = 0, worst_measure = 0;
   for (int s = 0; s < 6; s++) {
     const double r = sizes[s / 2], origin[3] = {0.3 * r, -0.2 * r, 2 * r};
@@ -341,8 +338,7 @@ static void views_project(void **state) {
   assert_true(worst_measure < 16); /* a cosine of three products, cubed, down to 0.6 */
 }
 
-static void maps_are_warped(void **state) {
-  (void)state;
+TEST(maps_are_warped) {
   static float knot[129][4]; /* x, y, and those of the next */
   double worst = 0;
   uint64_t random = 5;
@@ -377,8 +373,7 @@ static void maps_are_warped(void **state) {
 }
 
 /* A spot's soft edge, and the hard one that softness 0 leaves. */
-static void spots_fade(void **state) {
-  (void)state;
+TEST(spots_fade) {
   static const double cone[] = {0.001, 30, 85}, soft[] = {0, 1e-4, 20};
   double worst = 0;
   const double rad = acos(-1) / 180;
@@ -416,8 +411,7 @@ static void spots_fade(void **state) {
 
 /* Longitude and angle from the zenith, to far below a texel of a map of 8192 (7.7e-4 rad): all around,
  * on the axes, and close to them and to the poles. */
-static void directions_have_angles(void **state) {
-  (void)state;
+TEST(directions_have_angles) {
   double worst = 0;
   uint64_t random = 11;
   for (int i = 0; i < RAYS; i++) {
@@ -436,14 +430,4 @@ static void directions_have_angles(void **state) {
   }
   print_message("sphere_angles: %.2g eps rad\n", worst / eps);
   assert_true(worst < 6 * eps);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(spheres_are_met),   cmocka_unit_test(solids_are_met),
-      cmocka_unit_test(receivers_are_met), cmocka_unit_test(views_project),
-      cmocka_unit_test(maps_are_warped),   cmocka_unit_test(spots_fade),
-      cmocka_unit_test(directions_have_angles),
-  };
-  return cmocka_run_group_tests(tests, make_gl, free_context);
 }

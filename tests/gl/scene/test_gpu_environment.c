@@ -89,9 +89,10 @@ static void direction_of(size_t i, size_t count, double d[3]) {
   "height: 40, radiance: 2.5}, {elevation: 0, azimuth: 65, radius: 20, radiance: [1, 2, 3]}, "     \
   "{elevation: -35, azimuth: 200, radius: 1, radiance: 200}]"
 
+GROUP(make_context, free_context);
+
 /* Away from the poles, over which the texture does not go on. */
-static void a_narrow_ray_sees_the_map(void **state) {
-  (void)state;
+TEST(a_narrow_ray_sees_the_map) {
   sky s;
   make_sky(LAMPS, &s);
   for (size_t i = 0; i < LOOKS; i++) {
@@ -110,8 +111,7 @@ static void a_narrow_ray_sees_the_map(void **state) {
   free_sky(&s);
 }
 
-static void what_is_alike_all_around_stays_so(void **state) {
-  (void)state;
+TEST(what_is_alike_all_around_stays_so) {
   sky s;
   make_sky("uniform: [0.7, 1, 1.6]", &s);
   for (size_t i = 0; i < LOOKS; i++) {
@@ -127,8 +127,7 @@ static void what_is_alike_all_around_stays_so(void **state) {
   free_sky(&s);
 }
 
-static void the_mean_over_the_sphere_is_kept(void **state) {
-  (void)state;
+TEST(the_mean_over_the_sphere_is_kept) {
   sky s;
   make_sky(LAMPS, &s);
   for (double wide = 0.1; wide < 4; wide *= 2) {
@@ -150,8 +149,7 @@ static void the_mean_over_the_sphere_is_kept(void **state) {
 
 /* Great circles over edges and corners of the cube, poles and the map's own seam: as steep as its
  * width lets it be, and no steeper. */
-static void nothing_jumps(void **state) {
-  (void)state;
+TEST(nothing_jumps) {
   static const double axes[4][2][3] = {
       {{1, 0, 0}, {0, 1, 0}},
       {{0, 0, 1}, {0.8, 0.6, 0}},
@@ -207,8 +205,7 @@ static void mean_over(const abbe_environment *e, const float a[4], const float b
 
 /* A small lamp is as bright in a wide ray as its share of the ray: near the middle of the
  * footprint, where it does not matter how the filter fades. */
-static void a_wide_ray_sees_the_mean(void **state) {
-  (void)state;
+TEST(a_wide_ray_sees_the_mean) {
   enum { RAYS = 400 };
   sky s;
   double off = 0, all = 0, narrow_off = 0;
@@ -234,13 +231,4 @@ static void a_wide_ray_sees_the_mean(void **state) {
   assert_true(sqrt(off / all) < 0.15);
   assert_true(off < 0.2 * narrow_off);
   free_sky(&s);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_narrow_ray_sees_the_map),
-                                     cmocka_unit_test(what_is_alike_all_around_stays_so),
-                                     cmocka_unit_test(the_mean_over_the_sphere_is_kept),
-                                     cmocka_unit_test(nothing_jumps),
-                                     cmocka_unit_test(a_wide_ray_sees_the_mean)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

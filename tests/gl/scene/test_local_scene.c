@@ -10,8 +10,7 @@ static void make(const abbe_scene *scene, abbe_local_scene *local) {
   assert_int_equal(result, ABBE_OK);
 }
 
-static void a_scene_around_the_origin_stays(void **state) {
-  (void)state;
+TEST(a_scene_around_the_origin_stays) {
   abbe_scene scene;
   abbe_local_scene local;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
@@ -30,8 +29,7 @@ static void check_point(const double moved[3], const double origin[3], const dou
   for (int k = 0; k < 3; k++) assert_near(moved[k] + origin[k], world[k], last_digit);
 }
 
-static void everything_moves_together(void **state) {
-  (void)state;
+TEST(everything_moves_together) {
   abbe_scene scene;
   abbe_local_scene local;
   load_text("materials: glass.yaml\n"
@@ -83,8 +81,7 @@ static void everything_moves_together(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void lights_repeat_where_the_scene_is(void **state) {
-  (void)state;
+TEST(lights_repeat_where_the_scene_is) {
   static const char *const texts[] = {
       CAMERA POINT_LIGHT FLOOR BALL("crown"), CAMERA POINT_LIGHT FLOOR
       "- {name: ball, shape: sphere, radius: 0.08, levels: 2, transform: [{translate: [1000, 0, "
@@ -110,13 +107,4 @@ static void lights_repeat_where_the_scene_is(void **state) {
     abbe_local_scene_free(&local);
     abbe_scene_free(&scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_scene_around_the_origin_stays),
-      cmocka_unit_test(everything_moves_together),
-      cmocka_unit_test(lights_repeat_where_the_scene_is),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

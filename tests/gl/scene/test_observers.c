@@ -78,10 +78,11 @@ static void trace_xyz(const abbe_scene *scene, abbe_observer observer, size_t pa
   abbe_image_free(&image);
 }
 
+GROUP(make_context, free_context);
+
 /* D65, A [CIE15] by their published x, y; equal energy is a third of each, to which the tables of
  * all observers are normalised. */
-static void white_cards_have_published_whites(void **state) {
-  (void)state;
+TEST(white_cards_have_published_whites) {
   static const struct {
     const char *text;
     abbe_observer observer;
@@ -123,8 +124,7 @@ static void integrate(const abbe_scene *scene, abbe_observer observer, double xy
   for (int k = 0; k < 3; k++) xyz[k] /= white;
 }
 
-static void measured_cards_show_the_integral(void **state) {
-  (void)state;
+TEST(measured_cards_show_the_integral) {
   static const char *const texts[] = {CARD("D65", "{patch: red}"), CARD("A", "{patch: cyan}"),
                                       CARD("F11", "{patch: foliage}")};
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
@@ -153,8 +153,7 @@ static void measured_cards_show_the_integral(void **state) {
 
 /* One traced spectrum looked at by each observer is the trace for that observer, and the rendered
  * picture as far as it is that of 1931; not that of another. */
-static void bands_say_what_each_observer_sees(void **state) {
-  (void)state;
+TEST(bands_say_what_each_observer_sees) {
   static const abbe_illuminant d65 = {.kind = ABBE_ILLUMINANT_D65};
   abbe_scene scene;
   abbe_image bands;
@@ -193,8 +192,7 @@ static void bands_say_what_each_observer_sees(void **state) {
 
 /* An environment in colour lights a white card: to another observer what its spectrum is, which
  * bands tell. */
-static void an_environment_in_colour(void **state) {
-  (void)state;
+TEST(an_environment_in_colour) {
   static const abbe_illuminant d65 = {.kind = ABBE_ILLUMINANT_D65};
   static const char text[] =
       "materials: glass.yaml\ncamera: {eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 20}\n"
@@ -226,8 +224,7 @@ static void an_environment_in_colour(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void printed_colours_have_no_observer(void **state) {
-  (void)state;
+TEST(printed_colours_have_no_observer) {
   abbe_scene scene;
   abbe_renderer *renderer = NULL;
   abbe_error error = {0};
@@ -240,13 +237,4 @@ static void printed_colours_have_no_observer(void **state) {
   assert_int_equal(abbe_renderer_make(context, &scene, &desc, &renderer, &error),
                    ABBE_INVALID_ARGUMENT);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(white_cards_have_published_whites),
-                                     cmocka_unit_test(measured_cards_show_the_integral),
-                                     cmocka_unit_test(bands_say_what_each_observer_sees),
-                                     cmocka_unit_test(an_environment_in_colour),
-                                     cmocka_unit_test(printed_colours_have_no_observer)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

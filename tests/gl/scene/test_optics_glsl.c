@@ -68,8 +68,9 @@ static double slack(double (*oracle)(double, double), double c, double eta) {
   return most;
 }
 
-static void test_fresnel(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(fresnel) {
   make_cases();
   glsl_evaluate(abbe_context_gl(context),
                 "#include \"optics.glsl\"\n"
@@ -89,8 +90,7 @@ static void test_fresnel(void **state) {
 }
 
 /* Metals, and n and k that come near to glass, to air and to nothing. */
-static void test_fresnel_conductor(void **state) {
-  (void)state;
+TEST(fresnel_conductor) {
   static const double nk[][2] = {{0.03, 5.2}, {0.05, 1.9}, {0.13, 3.0}, {0.4, 2.4},  {1.5, 1.9},
                                  {3, 3},      {1, 0.01},   {1.5, 0},    {0.01, 9.9}, {1.3, 7.8}};
   enum { METALS = sizeof nk / sizeof *nk, ANGLES = 101 };
@@ -116,8 +116,7 @@ static void test_fresnel_conductor(void **state) {
 }
 
 /* Rough mirrors' lobe, its density and its sampler, from straight on to grazing. */
-static void test_microfacets(void **state) {
-  (void)state;
+TEST(microfacets) {
   static const double facets[][2] = {{0.05, 0.05}, {0.1, 0.5}, {0.7, 0.2}, {1, 1}};
   count = 0;
   for (int m = 0; m < 4; m++)
@@ -193,8 +192,7 @@ static void check_direction(const float in[8], const float out[4], double *worst
   if (allowed < 1e-4) *worst = fmax(*worst, away);
 }
 
-static void test_refract_direction(void **state) {
-  (void)state;
+TEST(refract_direction) {
   double worst = 0;
   make_cases();
   glsl_evaluate(abbe_context_gl(context),
@@ -211,8 +209,7 @@ static void test_refract_direction(void **state) {
   print_message("largest error of refract_direction, well conditioned: %.2g\n", worst);
 }
 
-static void test_equal_indices_change_nothing(void **state) {
-  (void)state;
+TEST(equal_indices_change_nothing) {
   make_cases();
   for (size_t i = 0; i < count; i++) inputs[i][3] = 1;
   glsl_evaluate(abbe_context_gl(context),
@@ -228,12 +225,4 @@ static void test_equal_indices_change_nothing(void **state) {
     assert_near(outputs[i][0], 0, 0);
     assert_true(outputs[i][1] == 0.0f);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_fresnel), cmocka_unit_test(test_fresnel_conductor),
-      cmocka_unit_test(test_microfacets), cmocka_unit_test(test_refract_direction),
-      cmocka_unit_test(test_equal_indices_change_nothing)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -22,8 +22,7 @@ static void make_charts(const char *text, abbe_scene *scene, abbe_plan *plan,
   assert_int_equal(result, ABBE_OK);
 }
 
-static void test_faces_know_their_sides(void **state) {
-  (void)state;
+TEST(faces_know_their_sides) {
   abbe_scene scene = {0};
   abbe_plan plan = {0};
   abbe_receiver_charts charts = {0};
@@ -58,9 +57,4 @@ static void test_faces_know_their_sides(void **state) {
   abbe_receiver_charts_free(&charts);
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_faces_know_their_sides)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

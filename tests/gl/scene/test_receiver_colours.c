@@ -72,8 +72,9 @@ static double off(const abbe_image *picture, const abbe_image *reference) {
   return apart / light;
 }
 
-static void a_spectrum_on_colours(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(a_spectrum_on_colours) {
   static const struct {
     const char *what, *patch;
     double rgb[3];
@@ -101,8 +102,7 @@ static void a_spectrum_on_colours(void **state) {
 }
 
 /* Tables are there where light arrives dispersed, and receivers are in colours. */
-static void tables_rest_on_facts(void **state) {
-  (void)state;
+TEST(tables_rest_on_facts) {
   static const struct {
     const char *text;
     bool has;
@@ -125,10 +125,4 @@ static void tables_rest_on_facts(void **state) {
     abbe_plan_free(&plan);
     abbe_scene_free(&scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_spectrum_on_colours),
-                                     cmocka_unit_test(tables_rest_on_facts)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -34,8 +34,9 @@ static void shine(abbe_tile_light *light, double low, double high, double flux) 
   }
 }
 
-static void test_windows_hold_the_light(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(windows_hold_the_light) {
   abbe_tile_light **light = make_light(1);
   abbe_receiver_tiles tiles;
   shine(light[0], 0.25, 0.5, 1);
@@ -49,8 +50,7 @@ static void test_windows_hold_the_light(void **state) {
 }
 
 /* Brightest first, until a thousandth is left. */
-static void test_tiles_of_what_is_worth_one(void **state) {
-  (void)state;
+TEST(tiles_of_what_is_worth_one) {
   enum { COUNT = ABBE_RECEIVER_TILES + 4 };
   abbe_tile_light **light = make_light(COUNT);
   double parallelogram[COUNT][9];
@@ -80,8 +80,7 @@ static void test_tiles_of_what_is_worth_one(void **state) {
 }
 
 /* Whatever the receivers' shapes: aligned, within the layer, none over another. */
-static void test_rectangles_are_apart(void **state) {
-  (void)state;
+TEST(rectangles_are_apart) {
   enum { COUNT = ABBE_RECEIVER_TILES };
   abbe_tile_light **light = make_light(COUNT);
   double parallelogram[COUNT][9] = {{0}};
@@ -112,8 +111,7 @@ static void test_rectangles_are_apart(void **state) {
 }
 
 /* The shaders' affine map undoes the place of a texel, and texels fill the window's area. */
-static void test_places_and_texels(void **state) {
-  (void)state;
+TEST(places_and_texels) {
   const abbe_receiver_tile tile = {.window = {0.25, 0.5, 0.1, 0.6}, .rect = {32, 96, 64, 128}};
   float packed[ABBE_TILE_FLOATS];
   double place[3];
@@ -182,8 +180,7 @@ static abbe_statistics draw(const char *text, const abbe_render_desc *desc, abbe
 }
 
 /* What a screen hides from the lamp looks as it does without the screen. */
-static void test_what_the_lamp_does_not_see(void **state) {
-  (void)state;
+TEST(what_the_lamp_does_not_see) {
   abbe_image open = {0}, hidden = {0};
   size_t tiles = 9;
   const abbe_statistics all = draw(LOW_EYE LAMP FLOOR GREAT_BALL, &one_exit, &open, &tiles);
@@ -223,8 +220,7 @@ static void test_what_the_lamp_does_not_see(void **state) {
 
 /* Where a screen hides the lamp, a mesh shows the light that a rectangle in its place does, however
  * it leans against the axes that its chart is seen along. */
-static void test_meshes_show_what_rectangles_do(void **state) {
-  (void)state;
+TEST(meshes_show_what_rectangles_do) {
   static const char *const texts[][2] = {
       {LOW_EYE LAMP TILTED_RECTANGLE("0") GREAT_BALL SCREEN,
        LOW_EYE LAMP TILTED_PRISM("0") GREAT_BALL SCREEN},
@@ -282,8 +278,7 @@ static void test_meshes_show_what_rectangles_do(void **state) {
  * from the axis, where its normal leans by d t / R, and goes back at t + 2 d t / R; so, near the
  * axis, L further up its light has spread to x = t (d + L (1 + 2 d / R)), and
  * E = I ((n - 1) / (n + 1))^2 / (x / t)^2. */
-static void test_behind_the_lamp(void **state) {
-  (void)state;
+TEST(behind_the_lamp) {
   abbe_image picture = {0};
   abbe_render_desc desc = one_exit;
   size_t tiles = 0;
@@ -329,8 +324,7 @@ static double sum_of_layer(const abbe_renderer *r, size_t layer, const abbe_rece
 }
 
 /* In a closed room everything lands; map and tiles hold it, each once, and nothing beside them. */
-static void test_a_closed_room(void **state) {
-  (void)state;
+TEST(a_closed_room) {
   static const struct {
     const char *what, *text;
     size_t wavelengths;
@@ -373,8 +367,7 @@ static void test_a_closed_room(void **state) {
 }
 
 /* No tile where none is worth it, whatever the plan expects. */
-static void test_no_tiles(void **state) {
-  (void)state;
+TEST(no_tiles) {
   size_t tiles = 9;
   abbe_render_desc desc = one_exit;
   desc.width = desc.height = 16;
@@ -387,8 +380,7 @@ static void test_no_tiles(void **state) {
 }
 
 /* More parts take light than there is room for maps: said, not left dark. */
-static void test_too_many_parts(void **state) {
-  (void)state;
+TEST(too_many_parts) {
   abbe_scene scene = {0};
   abbe_renderer *renderer = NULL;
   abbe_error error = {0};
@@ -401,20 +393,4 @@ static void test_too_many_parts(void **state) {
   assert_non_null(strstr(error.text, "'bubble'"));
   assert_non_null(strstr(error.text, "--map"));
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_windows_hold_the_light),
-      cmocka_unit_test(test_tiles_of_what_is_worth_one),
-      cmocka_unit_test(test_rectangles_are_apart),
-      cmocka_unit_test(test_places_and_texels),
-      cmocka_unit_test(test_what_the_lamp_does_not_see),
-      cmocka_unit_test(test_meshes_show_what_rectangles_do),
-      cmocka_unit_test(test_behind_the_lamp),
-      cmocka_unit_test(test_a_closed_room),
-      cmocka_unit_test(test_no_tiles),
-      cmocka_unit_test(test_too_many_parts),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -67,8 +67,9 @@ static void integrate(const abbe_scene *scene, double xyz[3]) {
   for (int k = 0; k < 3; k++) xyz[k] /= white;
 }
 
-static void flat_patches_show_the_integral(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(flat_patches_show_the_integral) {
   static const char *const texts[] = {
       CARD("D65", "{patch: red}"),     CARD("A", "{patch: red}"),
       CARD("F11", "{patch: red}"),     CARD("A", "{patch: cyan}"),
@@ -88,8 +89,7 @@ static void flat_patches_show_the_integral(void **state) {
   }
 }
 
-static void lifted_colours_are_the_same_in_both(void **state) {
-  (void)state;
+TEST(lifted_colours_are_the_same_in_both) {
   static const char *const lights[] = {CARD("A", "[0.7, 0.3, 0.1]"), CARD("F2", "[0.1, 0.6, 0.2]"),
                                        CARD("D65", "[0.1, 0.2, 0.8]")};
   for (size_t i = 0; i < 3; i++) {
@@ -117,8 +117,7 @@ static void lifted_colours_are_the_same_in_both(void **state) {
 
 /* The XYZ of a whole scene, with caustics and what is seen through glass; where more rays are sent
  * is decided by colours of the space, so none are. */
-static void the_space_does_not_change_the_light(void **state) {
-  (void)state;
+TEST(the_space_does_not_change_the_light) {
   abbe_scene scene;
   double xyz[ABBE_RGB_SPACE_COUNT][3], traced[ABBE_RGB_SPACE_COUNT][3];
   load_text(ROOM, &scene);
@@ -132,11 +131,4 @@ static void the_space_does_not_change_the_light(void **state) {
       assert_near(traced[s][k] / traced[0][k], 1, 2e-5);
     }
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(flat_patches_show_the_integral),
-                                     cmocka_unit_test(lifted_colours_are_the_same_in_both),
-                                     cmocka_unit_test(the_space_does_not_change_the_light)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -18,8 +18,7 @@ static char *text_of(const abbe_shader_variant *variant, const char *more) {
   return text;
 }
 
-static void counts_and_flags_are_told(void **state) {
-  (void)state;
+TEST(counts_and_flags_are_told) {
   const abbe_shader_variant v = {.lights = 2,
                                  .refractors = 3,
                                  .planes = 57,
@@ -48,8 +47,7 @@ static void counts_and_flags_are_told(void **state) {
 }
 
 /* A block may not be empty; what is not there is not told. */
-static void nothing_has_room_for_one(void **state) {
-  (void)state;
+TEST(nothing_has_room_for_one) {
   const abbe_shader_variant v = {.exits = 8};
   char *text = text_of(&v, NULL);
   assert_true(has(text, "#define REFRACTORS 0"));
@@ -63,8 +61,7 @@ static void nothing_has_room_for_one(void **state) {
 
 /* Where tables are copied, so are those that are known by their numbers, up to a count that is
  * worth it. */
-static void copies_are_told_where_they_are_made(void **state) {
-  (void)state;
+TEST(copies_are_told_where_they_are_made) {
   abbe_shader_variant v = {.lights = 1, .receivers = 3, .planes = 2, .one_convex = true};
   char *text = text_of(&v, NULL);
   assert_null(strstr(text, "EACH_"));
@@ -87,8 +84,7 @@ static void copies_are_told_where_they_are_made(void **state) {
 }
 
 /* A table of exactly a block is a block; one element more is storage. */
-static void tables_beyond_a_block_are_storage(void **state) {
-  (void)state;
+TEST(tables_beyond_a_block_are_storage) {
   abbe_shader_variant v = {.planes = ABBE_GPU_BLOCK_BYTES / 16, .refractors = 1};
   v.bands = ABBE_GPU_BLOCK_BYTES / 32 / ABBE_CAMERA_BAND_SETS;
   v.surfaces = ABBE_GPU_BLOCK_BYTES / 16;
@@ -111,8 +107,7 @@ static void tables_beyond_a_block_are_storage(void **state) {
   free(text);
 }
 
-static void photons_are_told_where_there_are_any(void **state) {
-  (void)state;
+TEST(photons_are_told_where_there_are_any) {
   abbe_shader_variant v = {.hit_stride = 7, .steps = 128, .bridge = true};
   char *text = text_of(&v, NULL);
   assert_true(has(text, "#define STEPS 128") && has(text, "#define BRIDGE"));
@@ -124,8 +119,7 @@ static void photons_are_told_where_there_are_any(void **state) {
 }
 
 /* Other counts are other uniforms of the same program. */
-static void other_counts_are_the_same_program(void **state) {
-  (void)state;
+TEST(other_counts_are_the_same_program) {
   abbe_shader_variant v = {.refractors = 2,
                            .wavelengths = 7,
                            .bands = 14,
@@ -153,16 +147,4 @@ static void other_counts_are_the_same_program(void **state) {
   assert_string_equal(text, other);
   free(text);
   free(other);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(counts_and_flags_are_told),
-      cmocka_unit_test(nothing_has_room_for_one),
-      cmocka_unit_test(copies_are_told_where_they_are_made),
-      cmocka_unit_test(tables_beyond_a_block_are_storage),
-      cmocka_unit_test(photons_are_told_where_there_are_any),
-      cmocka_unit_test(other_counts_are_the_same_program),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

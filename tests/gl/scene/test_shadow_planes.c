@@ -146,8 +146,9 @@ static size_t planes_of(const solid *s, const abbe_light *light, bool faces, dou
   return count;
 }
 
-static void same_as_face_by_face(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(same_as_face_by_face) {
   size_t hidden = 0, lit = 0, in_front = 0;
   uint64_t random = 11;
   for (int i = 0; i < 210; i++) {
@@ -181,8 +182,7 @@ static void same_as_face_by_face(void **state) {
 
 /* A cube of 1 m, its lamp 1.5 m above its top: on the ground 1 m below its foot the shadow is a
  * square with sides of 1 m times 3.5 / 1.5. */
-static void a_cube_over_the_ground(void **state) {
-  (void)state;
+TEST(a_cube_over_the_ground) {
   solid s;
   make_box(&s, 0.5, 0.5, 0.5);
   const abbe_light lamp = {.kind = ABBE_LIGHT_POINT, .position = {0, 0, 2}};
@@ -209,8 +209,7 @@ static void a_cube_over_the_ground(void **state) {
 }
 
 /* As many planes as the outline has edges, however many pairs of faces there are. */
-static void outlines_are_short(void **state) {
-  (void)state;
+TEST(outlines_are_short) {
   solid s;
   double plane[2 * MOST + 1][4];
   make_box(&s, 0.5, 0.5, 0.5);
@@ -235,8 +234,7 @@ static void outlines_are_short(void **state) {
 }
 
 /* The shader's own test, of every solid with another light at once. */
-static void the_shader_agrees(void **state) {
-  (void)state;
+TEST(the_shader_agrees) {
   static float in[PLACES][8], out[PLACES][4];
   const abbe_gl *gl = abbe_context_gl(context);
   static solid s[SHADER_SOLIDS];
@@ -302,8 +300,7 @@ static void the_shader_agrees(void **state) {
   assert_true(hidden > PLACES / 10 && lit > PLACES / 10 && near < PLACES / 4);
 }
 
-static void what_stands_in_front(void **state) {
-  (void)state;
+TEST(what_stands_in_front) {
   static const char *const text = CAMERA
       "lights:\n- {name: lamp, kind: point, position: [0, 0, 1], intensity: 1}\n"
       "- {name: sun, kind: directional, direction: [0, 0.6, -0.8], irradiance: 1}\n"
@@ -335,8 +332,7 @@ static void what_stands_in_front(void **state) {
 
 /* A brick hides the floor below it, and not a shelf between it and the lamp, which the picture
  * shows; with the shelf out of the light's way no face is asked, and the floor stays the same. */
-static void shelves_in_front_are_lit(void **state) {
-  (void)state;
+TEST(shelves_in_front_are_lit) {
   static const char *const text =
       "materials: glass.yaml\ncamera: {eye: [0, -0.3, 2.5], target: [0, 0, 0.5]}\n"
       "lights:\n- {name: lamp, kind: point, position: [0, 0.02, 1.5], intensity: 1}\n"
@@ -360,12 +356,4 @@ static void shelves_in_front_are_lit(void **state) {
   assert_true(fabs((double)pixel[5] / expected - 1) < 0.05);
   abbe_image_free(&image);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(same_as_face_by_face), cmocka_unit_test(a_cube_over_the_ground),
-      cmocka_unit_test(outlines_are_short),   cmocka_unit_test(the_shader_agrees),
-      cmocka_unit_test(what_stands_in_front), cmocka_unit_test(shelves_in_front_are_lit)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -29,9 +29,10 @@ static abbe_ledger energy_of(const char *text, const abbe_render_desc *desc) {
   return s.energy;
 }
 
+GROUP(make_context, free_context);
+
 /* At normal incidence light goes to and fro between the faces; in all 1/T = 1 + sum r / (1 - r). */
-static void stacked_slabs_pass_what_they_should(void **state) {
-  (void)state;
+TEST(stacked_slabs_pass_what_they_should) {
   const double r = 0.04, t = 1 / (1 + 4 * r / (1 - r));
   abbe_ledger e = energy_of(CAMERA DOWNWARDS FLOOR SLAB("upper", "0.2", "0.4", "flat")
                                 SLAB("lower", "0.3", "0.2", "flat"),
@@ -46,8 +47,7 @@ static void stacked_slabs_pass_what_they_should(void **state) {
 }
 
 /* The one listed last is there: glass in glass is one solid, and nothing is reflected between. */
-static void glass_in_the_same_glass_is_not_seen(void **state) {
-  (void)state;
+TEST(glass_in_the_same_glass_is_not_seen) {
   const double r = 0.04, alone = 1 / (1 + 2 * r / (1 - r));
   abbe_ledger e = energy_of(
       CAMERA DOWNWARDS FLOOR SLAB("outer", "0.3", "0.3",
@@ -87,8 +87,7 @@ static void draw_both(const abbe_scene *scene, abbe_ledger energy[2], double apa
 }
 
 /* A brick by its planes, and the same by its triangles: the same light at the same places. */
-static void triangles_do_as_planes_do(void **state) {
-  (void)state;
+TEST(triangles_do_as_planes_do) {
   abbe_ledger e[2];
   double apart[3];
   abbe_scene scene = {0};
@@ -108,8 +107,7 @@ static void triangles_do_as_planes_do(void **state) {
 
 /* A spectrum so wide that the violet's wavelengths land an eighth of the map apart: bridged alike.
  */
-static void triangles_spread_a_spectrum_as_planes_do(void **state) {
-  (void)state;
+TEST(triangles_spread_a_spectrum_as_planes_do) {
   abbe_ledger e[2];
   double apart[3];
   abbe_scene scene = {0};
@@ -117,14 +115,4 @@ static void triangles_spread_a_spectrum_as_planes_do(void **state) {
   draw_both(&scene, e, apart);
   for (int c = 0; c < 3; c++) assert_true(apart[c] < 0.02);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(stacked_slabs_pass_what_they_should),
-      cmocka_unit_test(glass_in_the_same_glass_is_not_seen),
-      cmocka_unit_test(triangles_do_as_planes_do),
-      cmocka_unit_test(triangles_spread_a_spectrum_as_planes_do),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

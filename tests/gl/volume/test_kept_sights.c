@@ -72,8 +72,9 @@ static void check_kept_sights(const char *text, abbe_volume_kind kind) {
   abbe_scene_free(&scene);
 }
 
-static void test_a_changed_light_is_as_one_made_anew(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(a_changed_light_is_as_one_made_anew) {
   check_kept_sights(ball, ABBE_VOLUME_VECTOR);
   check_kept_sights(wedge, ABBE_VOLUME_EXITS);
   check_kept_sights(plate, ABBE_VOLUME_EXITS);
@@ -88,8 +89,7 @@ static void draw_once(const abbe_scene *scene, const abbe_render_desc *desc, abb
 
 /* What the camera sees through the object by places of receivers, kept, is what it sees by light
  * looked up on its way, which a sample a pixel is. */
-static void test_kept_sights_show_what_rays_show(void **state) {
-  (void)state;
+TEST(kept_sights_show_what_rays_show) {
   const char *const text[] = {ball, wedge, plate};
   for (int k = 0; k < 3; k++) {
     enum { SIDE = 48 };
@@ -124,10 +124,4 @@ static void test_kept_sights_show_what_rays_show(void **state) {
     abbe_caustic_volume_free(&v);
     abbe_scene_free(&scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_changed_light_is_as_one_made_anew),
-                                     cmocka_unit_test(test_kept_sights_show_what_rays_show)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

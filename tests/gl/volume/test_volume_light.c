@@ -210,9 +210,10 @@ static double mean_difference(const abbe_scene *scene, const abbe_caustic_volume
   return off / all;
 }
 
+GROUP(make_context, free_context);
+
 /* Single precision finds another cell than double at its edges, once in a thousand places. */
-static void test_pixels_have_what_the_volume_holds(void **state) {
-  (void)state;
+TEST(pixels_have_what_the_volume_holds) {
   abbe_scene scene = {0};
   load_text(ball, &scene);
   for (size_t region = 0; region < 3; region++)
@@ -227,8 +228,7 @@ static void test_pixels_have_what_the_volume_holds(void **state) {
 }
 
 /* The object turned and moved, the light a point elsewhere: the same volume. */
-static void test_objects_and_lights_move(void **state) {
-  (void)state;
+TEST(objects_and_lights_move) {
   abbe_scene scene = {0}, original = {0};
   abbe_caustic_volume v;
   double turn[16], step[16];
@@ -261,8 +261,7 @@ static void test_objects_and_lights_move(void **state) {
 }
 
 /* Rays: of the sun, a lamp that is near, a cone that meets a part of the object; of any white. */
-static void test_rays_serve_any_light(void **state) {
-  (void)state;
+TEST(rays_serve_any_light) {
   static const double lamp[3] = {-0.1, -0.2, 0.7}, down[3] = {0, 0, -1};
   abbe_scene scene = {0};
   abbe_caustic_volume v;
@@ -331,8 +330,7 @@ static double largest_step(abbe_scene *scene, const abbe_caustic_volume *v,
 }
 
 /* From node to node the nearest one's caustic jumps; three nodes' fades. */
-static void test_blends_do_not_pop(void **state) {
-  (void)state;
+TEST(blends_do_not_pop) {
   abbe_scene scene = {0};
   abbe_caustic_volume v;
   load_text(wedge, &scene);
@@ -353,8 +351,7 @@ static void refuse(const abbe_scene *scene, const abbe_render_desc *desc, abbe_r
   assert_contains(error.text, part);
 }
 
-static void test_what_it_does_not_hold_is_refused(void **state) {
-  (void)state;
+TEST(what_it_does_not_hold_is_refused) {
   abbe_scene scene = {0}, two = {0};
   abbe_caustic_volume v, printed;
   load_text(ball, &scene);
@@ -395,15 +392,4 @@ static void test_what_it_does_not_hold_is_refused(void **state) {
   abbe_caustic_volume_free(&printed);
   abbe_scene_free(&scene);
   abbe_scene_free(&two);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_pixels_have_what_the_volume_holds),
-      cmocka_unit_test(test_objects_and_lights_move),
-      cmocka_unit_test(test_rays_serve_any_light),
-      cmocka_unit_test(test_blends_do_not_pop),
-      cmocka_unit_test(test_what_it_does_not_hold_is_refused),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

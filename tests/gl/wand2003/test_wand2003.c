@@ -46,10 +46,11 @@ static void place_of(size_t x, size_t y, double p[3]) {
 
 #define SOFT "environment: {uniform: 0.5, size: 256}\n"
 
+GROUP(make_context, free_context);
+
 /* What one pinhole adds is A L cos cos / (d2 + eps), eps its disk's diameter squared: of light
  * without it, less by eps / (d2 + eps). */
-static void test_one_pinhole(void **state) {
-  (void)state;
+TEST(one_pinhole) {
   static const char text[] = DOWN SOFT WHITE_FLOOR WALL("0.8");
   abbe_scene scene;
   abbe_image picture, base;
@@ -85,8 +86,7 @@ static void test_one_pinhole(void **state) {
 }
 
 /* A mirror under light that is alike all around is a lamp of its shape. */
-static void test_a_mirror_is_a_lamp_of_its_shape(void **state) {
-  (void)state;
+TEST(a_mirror_is_a_lamp_of_its_shape) {
   const double corner[4][3] = {
       {0.3, -0.25, 0}, {0.3, 0.25, 0}, {0.3, 0.25, 0.3}, {0.3, -0.25, 0.3}};
   abbe_image picture;
@@ -108,8 +108,7 @@ static void test_a_mirror_is_a_lamp_of_its_shape(void **state) {
 
 /* Whatever is around, a ball sends the same to all sides far away: r2 / 4 of the integral of
  * radiance. */
-static void test_a_ball_sends_light_to_all_sides(void **state) {
-  (void)state;
+TEST(a_ball_sends_light_to_all_sides) {
   static const char sky[] =
       "environment: {size: 256, spots: [{elevation: 50, azimuth: 30, radiance: 8, sigma: 12}, "
       "{elevation: -30, azimuth: 200, radiance: 4, sigma: 20}], uniform: 0.1}\n";
@@ -143,8 +142,7 @@ static void test_a_ball_sends_light_to_all_sides(void **state) {
 #define PIPE                                                                                       \
   "- {name: pipe, shape: lathe, around: 256, profile: [[0.3, 0], [0.3, 0.2]], mirror: 0.9}\n"
 
-static void test_linear(void **state) {
-  (void)state;
+TEST(linear) {
   abbe_image one, two;
   const abbe_render_desc desc = request(200);
   draw_text(DOWN SPOT("12", "5") WHITE_FLOOR PIPE, &desc, &one);
@@ -160,8 +158,7 @@ static void test_linear(void **state) {
 
 /* Surroundings, mirror and eye by 90 degrees about z: the pixels of a quarter turn are as before,
  * but for how triangles and texels lie. */
-static void test_turned_together(void **state) {
-  (void)state;
+TEST(turned_together) {
   static const char mirror[] = "- {name: mirror, shape: rectangle, width: 0.3, height: 0.2, "
                                "mirror: 0.9, transform: [{rotate: {axis: [0, 1, 0], angle: -60}}, "
                                "{translate: [0.3, 0.1, 0.3]}%s]}\n";
@@ -208,8 +205,7 @@ static double footprint_matters(const char *text, const char *bare) {
 }
 
 /* Light that is wider than footprints is looked up alike; light as narrow as theirs is not. */
-static void test_footprints(void **state) {
-  (void)state;
+TEST(footprints) {
   const double wide = footprint_matters(DOWN SPOT("35", "1") WHITE_FLOOR PIPE,
                                         DOWN SPOT("35", "1") WHITE_FLOOR WALL("0"));
   const double narrow = footprint_matters(DOWN SPOT("1.5", "400") WHITE_FLOOR PIPE,
@@ -239,8 +235,7 @@ static void send_off_pipe(double radius, double height, double e, double share, 
 }
 
 /* A pipe's wall under a small sun draws a nephroid, whose cusp is at half the radius. */
-static void test_a_pipe_draws_a_nephroid(void **state) {
-  (void)state;
+TEST(a_pipe_draws_a_nephroid) {
   static const char sun[] =
       "environment: {size: 1024, sun: {elevation: 35, azimuth: 180, irradiance: 1, diameter: 6}}\n";
   char text[2048], bare[2048];
@@ -269,8 +264,7 @@ static void test_a_pipe_draws_a_nephroid(void **state) {
   abbe_image_free(&base);
 }
 
-static void test_refusals(void **state) {
-  (void)state;
+TEST(refusals) {
   static const struct {
     const char *text, *says;
   } cases[] = {
@@ -290,18 +284,4 @@ static void test_refusals(void **state) {
     assert_contains(error.text, cases[i].says);
     abbe_scene_free(&scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_one_pinhole),
-      cmocka_unit_test(test_a_mirror_is_a_lamp_of_its_shape),
-      cmocka_unit_test(test_a_ball_sends_light_to_all_sides),
-      cmocka_unit_test(test_linear),
-      cmocka_unit_test(test_turned_together),
-      cmocka_unit_test(test_footprints),
-      cmocka_unit_test(test_a_pipe_draws_a_nephroid),
-      cmocka_unit_test(test_refusals),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -4,8 +4,7 @@
 
 #include <stdlib.h>
 
-static void directions_are_those_of_the_gear(void **state) {
-  (void)state;
+TEST(directions_are_those_of_the_gear) {
   abbe_cut cut = {.gear = 96};
   assert_int_equal(abbe_cut_add_tier(&cut, 45, 2, NULL), ABBE_OK);
   assert_int_equal(abbe_cut_add_facet(&cut, 96, NULL), ABBE_OK);
@@ -32,8 +31,7 @@ static void directions_are_those_of_the_gear(void **state) {
   abbe_cut_free(&cut);
 }
 
-static void angles_and_indices_come_back_from_planes(void **state) {
-  (void)state;
+TEST(angles_and_indices_come_back_from_planes) {
   const char *const designs[] = {design_a, design_b, design_c, design_d};
   for (size_t i = 0; i < sizeof designs / sizeof *designs; i++) {
     abbe_cut cut = design_parse(designs[i]);
@@ -50,8 +48,7 @@ static void angles_and_indices_come_back_from_planes(void **state) {
   }
 }
 
-static void names_go_on_within_a_tier(void **state) {
-  (void)state;
+TEST(names_go_on_within_a_tier) {
   abbe_cut cut = design_parse(design_d);
   assert_string_equal(abbe_cut_facet_name(&cut, 0), "87");
   assert_string_equal(abbe_cut_facet_name(&cut, 1), "87");
@@ -67,8 +64,7 @@ static void names_go_on_within_a_tier(void **state) {
   abbe_cut_free(&cut);
 }
 
-static void what_no_stone_has_is_refused(void **state) {
-  (void)state;
+TEST(what_no_stone_has_is_refused) {
   abbe_cut cut = {.gear = 96};
   abbe_error error;
   assert_int_equal(abbe_cut_add_facet(&cut, 1, &error), ABBE_INVALID_ARGUMENT);
@@ -91,14 +87,4 @@ static void what_no_stone_has_is_refused(void **state) {
   assert_int_equal(abbe_cut_check(&cut, &error), ABBE_SCHEMA);
   assert_contains(error.text, "teeth");
   abbe_cut_free(&cut);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(directions_are_those_of_the_gear),
-      cmocka_unit_test(angles_and_indices_come_back_from_planes),
-      cmocka_unit_test(names_go_on_within_a_tier),
-      cmocka_unit_test(what_no_stone_has_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

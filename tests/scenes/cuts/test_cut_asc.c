@@ -4,8 +4,7 @@
 
 #include <stdlib.h>
 
-static void design_d_has_all_of_the_grammar(void **state) {
-  (void)state;
+TEST(design_d_has_all_of_the_grammar) {
   abbe_cut cut = design_parse(design_d);
   assert_int_equal(cut.gear, -96);
   assert_near(cut.offset, 48, 0);
@@ -42,8 +41,7 @@ static void expect_notes(const char *text, const char *a, const char *b) {
 
 #define CUBE "a 90 1 96 24 48 72\na 0 1\na -0 1\n"
 
-static void odd_lines_are_met(void **state) {
-  (void)state;
+TEST(odd_lines_are_met) {
   const char glued[] = "\xef\xbb\xbf"
                        "GemCad 4.51\r\ng64 0.0\r\ny8y\r\nI1.54\r\nHTitle \xb0\r\n; g 3\r\n"
                        "a \xe2\x88\x92"
@@ -83,8 +81,7 @@ static void refuse(const char *text, const char *part) {
   assert_null(cut.tier);
 }
 
-static void bad_files_are_refused_with_the_line(void **state) {
-  (void)state;
+TEST(bad_files_are_refused_with_the_line) {
   refuse("", "no facet");
   refuse("GemCad 5.0\nH only a title\n", "no facet");
   refuse("g 0 0\n", "x.asc:1: a gear has");
@@ -111,8 +108,7 @@ static void bad_files_are_refused_with_the_line(void **state) {
   assert_contains(error.text, "no text");
 }
 
-static void too_many_facets_are_refused(void **state) {
-  (void)state;
+TEST(too_many_facets_are_refused) {
   const size_t size = 3 * 5000 + 32;
   char *text = calloc(1, size);
   strcpy(text, "g 96 0\na 45 1");
@@ -134,8 +130,7 @@ static char *written(const abbe_cut *cut) {
   return text;
 }
 
-static void what_is_written_reads_back(void **state) {
-  (void)state;
+TEST(what_is_written_reads_back) {
   const char *const designs[] = {design_a, design_b, design_c, design_d};
   for (size_t i = 0; i < sizeof designs / sizeof *designs; i++) {
     abbe_cut cut = design_parse(designs[i]);
@@ -163,23 +158,10 @@ static void what_is_written_reads_back(void **state) {
   }
 }
 
-static void gemcads_own_digits_stay(void **state) {
-  (void)state;
+TEST(gemcads_own_digits_stay) {
   abbe_cut cut = design_parse(design_a);
   char *text = written(&cut);
   assert_string_equal(text, design_a);
   free(text);
   abbe_cut_free(&cut);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(design_d_has_all_of_the_grammar),
-      cmocka_unit_test(odd_lines_are_met),
-      cmocka_unit_test(bad_files_are_refused_with_the_line),
-      cmocka_unit_test(too_many_facets_are_refused),
-      cmocka_unit_test(what_is_written_reads_back),
-      cmocka_unit_test(gemcads_own_digits_stay),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,8 +21,7 @@ static void write_sheet(const char *path, const char *text, const char *note) {
 
 /* Each face that is seen is one closed path, filled and outlined: of design A 33 from above, 24
  * from below and half of all from each side. */
-static void an_svg_has_all_faces(void **state) {
-  (void)state;
+TEST(an_svg_has_all_faces) {
   char *data;
   size_t size;
   write_sheet("cut_diagram_test.svg", design_a, "a note");
@@ -38,8 +37,7 @@ static void an_svg_has_all_faces(void **state) {
   free(data);
 }
 
-static void a_png_is_as_long_as_its_table(void **state) {
-  (void)state;
+TEST(a_png_is_as_long_as_its_table) {
   size_t height[3];
   char headed[20100], tall[20000] = "g 96 0\na -45 1 96 24 48 72\na 0 1 96\n";
   for (int i = 0; i < 60; i++) strcat(tall, "a -90 1 96 24 48 72 G and a line that says why\n");
@@ -64,8 +62,7 @@ static void a_png_is_as_long_as_its_table(void **state) {
   assert_true(height[2] >= height[1] + 2 * 11 * ABBE_CUT_DIAGRAM_PIXELS);
 }
 
-static void a_pdf_and_what_is_refused(void **state) {
-  (void)state;
+TEST(a_pdf_and_what_is_refused) {
   char *data;
   size_t size;
   abbe_error error = {0};
@@ -83,13 +80,4 @@ static void a_pdf_and_what_is_refused(void **state) {
   assert_int_equal(abbe_cut_diagram_write("no/such/folder/a.pdf", &cut, &p, NULL, &error), ABBE_IO);
   abbe_cut_polyhedron_free(&p);
   abbe_cut_free(&cut);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(an_svg_has_all_faces),
-      cmocka_unit_test(a_png_is_as_long_as_its_table),
-      cmocka_unit_test(a_pdf_and_what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,8 +6,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-static void the_ending_says_the_kind(void **state) {
-  (void)state;
+TEST(the_ending_says_the_kind) {
   char folder[] = "/tmp/abbe_cut_XXXXXX", path[64];
   const char text[] = "g 96 0\na 90 1 96 24 48 72\na 0 1\na -0 1\n";
   abbe_cut cut;
@@ -21,8 +20,7 @@ static void the_ending_says_the_kind(void **state) {
   rmdir(folder);
 }
 
-static void others_are_refused(void **state) {
-  (void)state;
+TEST(others_are_refused) {
   abbe_cut cut;
   abbe_error error;
   assert_int_equal(abbe_cut_file_read("stone.stl", &cut, NULL, &error), ABBE_UNSUPPORTED);
@@ -33,8 +31,7 @@ static void others_are_refused(void **state) {
 }
 
 /* Planes that close no stone, however well they are written. */
-static void an_open_design_is_named(void **state) {
-  (void)state;
+TEST(an_open_design_is_named) {
   char folder[] = "/tmp/abbe_cut_XXXXXX", path[64];
   const char open[] = "g 96 0\na 90 1 96 24 48 72\n",
              box[] = "g 96 0\na 90 1 96 24 48 72\na 0 1\na -0 1\n";
@@ -56,13 +53,4 @@ static void an_open_design_is_named(void **state) {
   abbe_cut_free(&cut);
   unlink(path);
   rmdir(folder);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_ending_says_the_kind),
-      cmocka_unit_test(others_are_refused),
-      cmocka_unit_test(an_open_design_is_named),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -36,8 +36,7 @@ static abbe_cut read(const char *text) {
   return cut;
 }
 
-static void a_design_is_read(void **state) {
-  (void)state;
+TEST(a_design_is_read) {
   abbe_cut cut = read(HEAD TABLE REST);
   abbe_cut_polyhedron p;
   assert_int_equal(cut.gear, 80);
@@ -65,8 +64,7 @@ static void a_design_is_read(void **state) {
 }
 
 /* Facets without normals have them from the angle and their index. */
-static void a_missing_normal_is_found(void **state) {
-  (void)state;
+TEST(a_missing_normal_is_found) {
   abbe_cut with = read(HEAD TABLE REST);
   abbe_cut without = read(
       HEAD TABLE "<tier angle='90' depth='1'><facet index_angle='0'/><facet index_angle='270'/>"
@@ -81,8 +79,7 @@ static void a_missing_normal_is_found(void **state) {
 }
 
 /* The symmetry tells people something, and stones nothing. */
-static void a_strange_symmetry_is_passed_over(void **state) {
-  (void)state;
+TEST(a_strange_symmetry_is_passed_over) {
   static const char *const said[] = {"symmetry='-1'", "symmetry='2.5'", "symmetry='round'",
                                      "symmetry='99999999'", "mirror='0'"};
   for (size_t i = 0; i < sizeof said / sizeof *said; i++) {
@@ -108,8 +105,7 @@ static void refuse(const char *text, abbe_result code, const char *part) {
   assert_null(cut.tier);
 }
 
-static void bad_files_are_refused(void **state) {
-  (void)state;
+TEST(bad_files_are_refused) {
   refuse("", ABBE_PARSE, "x.gcs:1: this is no well-formed XML");
   refuse("GemCad 5.0\n", ABBE_PARSE, "no well-formed XML");
   refuse("<html><p>not here</p></html>", ABBE_PARSE, "begins with <html>");
@@ -130,8 +126,7 @@ static void bad_files_are_refused(void **state) {
   refuse("<GemCutStudio><index gear='0'/></GemCutStudio>", ABBE_SCHEMA, "a gear has 1 to");
 }
 
-static void what_reaches_outside_is_refused(void **state) {
-  (void)state;
+TEST(what_reaches_outside_is_refused) {
   refuse("<!DOCTYPE GemCutStudio [<!ENTITY x SYSTEM "
          "\"/etc/hostname\">]>\n<GemCutStudio>&x;</GemCutStudio>",
          ABBE_PARSE, "no document type");
@@ -143,8 +138,7 @@ static void what_reaches_outside_is_refused(void **state) {
   refuse(deep, ABBE_PARSE, "nested deeper");
 }
 
-static void names_of_encodings_are_heeded(void **state) {
-  (void)state;
+TEST(names_of_encodings_are_heeded) {
   abbe_cut cut = read("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<GemCutStudio>"
                       "<info title=\"\xc3\xa9\"/><tier angle='45' depth='1'>"
                       "<facet index_angle='0'/><facet index_angle='1'/><facet index_angle='2'/>"
@@ -156,8 +150,7 @@ static void names_of_encodings_are_heeded(void **state) {
 
 /* What is written has the same planes, but for size and height, and is read back as the same stone.
  */
-static void what_is_written_is_read_back(void **state) {
-  (void)state;
+TEST(what_is_written_is_read_back) {
   const char *const designs[] = {design_a, design_b, design_c, design_d};
   for (int k = 0; k < 4; k++) {
     abbe_cut cut = design_parse(designs[k]);
@@ -197,17 +190,4 @@ static void what_is_written_is_read_back(void **state) {
     abbe_cut_free(&back);
     free(text);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_design_is_read),
-      cmocka_unit_test(a_missing_normal_is_found),
-      cmocka_unit_test(a_strange_symmetry_is_passed_over),
-      cmocka_unit_test(bad_files_are_refused),
-      cmocka_unit_test(what_reaches_outside_is_refused),
-      cmocka_unit_test(names_of_encodings_are_heeded),
-      cmocka_unit_test(what_is_written_is_read_back),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,8 +20,7 @@ static file written(const abbe_cut *cut) {
   return f;
 }
 
-static void what_is_written_reads_back(void **state) {
-  (void)state;
+TEST(what_is_written_reads_back) {
   const char *const designs[] = {design_a, design_b, design_c, design_d};
   for (size_t i = 0; i < sizeof designs / sizeof *designs; i++) {
     abbe_cut cut = design_parse(designs[i]), back;
@@ -57,8 +56,7 @@ static void what_is_written_reads_back(void **state) {
 }
 
 /* The layout to the byte: a facet's plane is n / d, its tier from 1, its name, its corners. */
-static void the_layout_is_gemcads(void **state) {
-  (void)state;
+TEST(the_layout_is_gemcads) {
   abbe_cut cut =
       design_parse("g 96 0\nI 1.5\nH Box\na 90 2 96 n G 24 48 72 G Cut\na 0 1\na -0 1\n");
   file f = written(&cut);
@@ -80,8 +78,7 @@ static void the_layout_is_gemcads(void **state) {
   abbe_cut_free(&cut);
 }
 
-static void every_truncation_is_refused(void **state) {
-  (void)state;
+TEST(every_truncation_is_refused) {
   abbe_cut cut = design_parse(design_d), back;
   file f = written(&cut);
   abbe_cut_free(&cut);
@@ -111,8 +108,7 @@ static void refuse(const file *f, size_t at, const void *bytes, size_t count, co
   free(bad);
 }
 
-static void hostile_values_are_refused(void **state) {
-  (void)state;
+TEST(hostile_values_are_refused) {
   abbe_cut cut = design_parse("g 96 0\nI 1.5\na 90 1 96 24 48 72\na 0 1\na -0 1\n"), back;
   file f = written(&cut);
   const double zero[3] = {0}, none[3] = {NAN, 0, 0}, far[3] = {1e300, 0, 0};
@@ -139,8 +135,7 @@ static void hostile_values_are_refused(void **state) {
   abbe_cut_free(&cut);
 }
 
-static void long_texts_are_cut_and_told(void **state) {
-  (void)state;
+TEST(long_texts_are_cut_and_told) {
   char text[700] = "g 96 0\na 0 1 n K G ";
   memset(text + strlen(text), 'x', 400);
   strcat(text, "\na 90 1 96 24 48 72\na -0 1\n");
@@ -161,13 +156,4 @@ static void long_texts_are_cut_and_told(void **state) {
   abbe_cut_polyhedron_free(&p);
   abbe_cut_free(&back);
   abbe_cut_free(&cut);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(what_is_written_reads_back),  cmocka_unit_test(the_layout_is_gemcads),
-      cmocka_unit_test(every_truncation_is_refused), cmocka_unit_test(hostile_values_are_refused),
-      cmocka_unit_test(long_texts_are_cut_and_told),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

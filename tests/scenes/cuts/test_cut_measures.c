@@ -20,8 +20,7 @@ static void assert_faces(const abbe_cut_measures *m, size_t crown, size_t girdle
   assert_int_equal(m->faces[ABBE_CUT_PAVILION], pavilion);
 }
 
-static void a_brilliant(void **state) {
-  (void)state;
+TEST(a_brilliant) {
   const abbe_cut_measures m = measure(design_a);
   assert_faces(&m, 33, 16, 24); /* 57 and 16 of the girdle */
   assert_near(m.length / m.width, 1, 1e-9);
@@ -37,8 +36,7 @@ static void a_brilliant(void **state) {
   assert_int_equal(m.dead + m.doubled, 0);
 }
 
-static void a_step_cut(void **state) {
-  (void)state;
+TEST(a_step_cut) {
   const abbe_cut_measures m = measure(design_c);
   assert_faces(&m, 9, 4, 8);
   assert_near(m.width, 2, 1e-9);
@@ -48,8 +46,7 @@ static void a_step_cut(void **state) {
   assert_near(m.table, 2 * half, 1e-7);
 }
 
-static void an_odd_one(void **state) {
-  (void)state;
+TEST(an_odd_one) {
   const abbe_cut_measures m = measure(design_d);
   assert_int_equal(m.dead, 1);
   assert_near(m.length, 1.236009 + 1.393609, 1e-6);
@@ -58,8 +55,7 @@ static void an_odd_one(void **state) {
 }
 
 /* A cube that stands on its corner has no girdle and shares corners. */
-static void without_a_girdle(void **state) {
-  (void)state;
+TEST(without_a_girdle) {
   const abbe_cut_measures m =
       measure("g 96 0\na 54.735610 0.5 96 32 64\na -54.735610 0.5 16 48 80\n");
   assert_faces(&m, 3, 0, 3);
@@ -70,19 +66,9 @@ static void without_a_girdle(void **state) {
 }
 
 /* A carat is a fifth of a gram: 6.5 mm of diamond are known as about one. */
-static void weight(void **state) {
-  (void)state;
+TEST(weight) {
   const abbe_cut_measures m = measure(design_b);
   const double carats = abbe_cut_measures_carats(&m, 6.5e-3, 3.51);
   assert_near(carats, 1.764071 * pow(0.65 / m.width, 3) * 3.51 * 5, 1e-5);
   assert_true(carats > 0.95 && carats < 1.05);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_brilliant), cmocka_unit_test(a_step_cut),
-      cmocka_unit_test(an_odd_one),  cmocka_unit_test(without_a_girdle),
-      cmocka_unit_test(weight),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,16 +28,14 @@ static void expect(const char *text, size_t v, size_t e, size_t f, double volume
   abbe_cut_free(&cut);
 }
 
-static void designs_have_their_counts(void **state) {
-  (void)state;
+TEST(designs_have_their_counts) {
   expect(design_a, 57, 128, 73, 2.097983, -0.980784, 0.473982);
   expect(design_b, 57, 128, 73, 1.764071, -0.903536, 0.349458);
   expect(design_b_without_table, 58, 128, 72, 0, -0.903536, 0);
   expect(design_d, 30, 45, 17, 0, -0.55, 0.35);
 }
 
-static void a_step_cut_is_the_same_at_any_weld(void **state) {
-  (void)state;
+TEST(a_step_cut_is_the_same_at_any_weld) {
   abbe_cut cut = design_parse(design_c);
   for (double weld = 1e-12; weld < 2e-4; weld *= 10) {
     abbe_cut_polyhedron p = stone(&cut, weld);
@@ -50,8 +48,7 @@ static void a_step_cut_is_the_same_at_any_weld(void **state) {
   abbe_cut_free(&cut);
 }
 
-static void bounds_are_known_and_not_mirrored(void **state) {
-  (void)state;
+TEST(bounds_are_known_and_not_mirrored) {
   abbe_cut cut = design_parse(design_a);
   abbe_cut_polyhedron p = stone(&cut, 0);
   for (int k = 0; k < 2; k++) assert_near(p.max[k] - p.min[k], 2.039182, 5e-7);
@@ -77,8 +74,7 @@ static void bounds_are_known_and_not_mirrored(void **state) {
 }
 
 /* Meets of design A are good to its eight digits: without a weld each is parted by rounding. */
-static void corners_that_nearly_meet_are_one(void **state) {
-  (void)state;
+TEST(corners_that_nearly_meet_are_one) {
   abbe_cut cut = design_parse(design_a);
   for (double weld = 1e-12; weld < 2e-4; weld *= 10) {
     abbe_cut_polyhedron p = stone(&cut, weld);
@@ -99,8 +95,7 @@ static void refuse(const abbe_cut *cut, double weld, abbe_result code, const cha
 }
 
 /* A cutter is told where to look. */
-static void the_open_side_is_named(void **state) {
-  (void)state;
+TEST(the_open_side_is_named) {
   static const struct {
     const char *text, *words;
   } designs[] = {{"g 96 0\na 90 1 96 24 48 72\na -0 1\n", "open on top: the crown lacks facets"},
@@ -116,8 +111,7 @@ static void the_open_side_is_named(void **state) {
   }
 }
 
-static void open_stones_are_refused(void **state) {
-  (void)state;
+TEST(open_stones_are_refused) {
   abbe_cut cut = design_parse(design_c_open);
   refuse(&cut, 0, ABBE_GEOMETRY, "open");
   abbe_cut_free(&cut);
@@ -137,8 +131,7 @@ static void open_stones_are_refused(void **state) {
   abbe_cut_free(&cut);
 }
 
-static void doubles_are_told(void **state) {
-  (void)state;
+TEST(doubles_are_told) {
   abbe_cut cut = design_parse("g 96 0\na 90 1 96 24 48 72\na 0 1 0\na -0 1 0\na 90 1 24\n");
   abbe_cut_polyhedron p = stone(&cut, 0);
   assert_int_equal(p.face_count, 6);
@@ -151,8 +144,7 @@ static void doubles_are_told(void **state) {
   abbe_cut_free(&cut);
 }
 
-static void every_face_lies_in_its_plane(void **state) {
-  (void)state;
+TEST(every_face_lies_in_its_plane) {
   const char *const designs[] = {design_a, design_b, design_c, design_d};
   for (size_t i = 0; i < sizeof designs / sizeof *designs; i++) {
     abbe_cut cut = design_parse(designs[i]);
@@ -169,8 +161,7 @@ static void every_face_lies_in_its_plane(void **state) {
   }
 }
 
-static void triangles_are_a_closed_convex_solid(void **state) {
-  (void)state;
+TEST(triangles_are_a_closed_convex_solid) {
   const char *const designs[] = {design_a, design_b, design_c, design_d};
   const size_t planes[] = {73, 73, 21, 17};
   for (size_t i = 0; i < sizeof designs / sizeof *designs; i++) {
@@ -192,19 +183,4 @@ static void triangles_are_a_closed_convex_solid(void **state) {
     abbe_cut_polyhedron_free(&p);
     abbe_cut_free(&cut);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(designs_have_their_counts),
-      cmocka_unit_test(a_step_cut_is_the_same_at_any_weld),
-      cmocka_unit_test(bounds_are_known_and_not_mirrored),
-      cmocka_unit_test(corners_that_nearly_meet_are_one),
-      cmocka_unit_test(open_stones_are_refused),
-      cmocka_unit_test(the_open_side_is_named),
-      cmocka_unit_test(doubles_are_told),
-      cmocka_unit_test(every_face_lies_in_its_plane),
-      cmocka_unit_test(triangles_are_a_closed_convex_solid),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

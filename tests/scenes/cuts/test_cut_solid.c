@@ -57,8 +57,7 @@ static void check(const char *text, double scale, int format) {
   abbe_cut_free(&cut);
 }
 
-static void what_is_written_reads_back(void **state) {
-  (void)state;
+TEST(what_is_written_reads_back) {
   for (int format = 0; format < ABBE_CUT_SOLID_COUNT; format++) {
     assert_int_equal(abbe_cut_solid_format_of(paths[format]), format);
     check(design_a, 0.004, format);
@@ -81,8 +80,7 @@ static const cJSON *under(const cJSON *object, const char *key) {
 }
 
 /* Diamond: n_d 2.4175, V_d 55.3 by the record; clear, so no colour. */
-static void gltf_knows_the_stone(void **state) {
-  (void)state;
+TEST(gltf_knows_the_stone) {
   abbe_cut cut = design_parse(design_b);
   abbe_cut_polyhedron p = stone_of(&cut);
   abbe_material_table table;
@@ -113,12 +111,4 @@ static void gltf_knows_the_stone(void **state) {
   abbe_material_table_free(&table);
   abbe_cut_polyhedron_free(&p);
   abbe_cut_free(&cut);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(what_is_written_reads_back),
-      cmocka_unit_test(gltf_knows_the_stone),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -46,8 +46,7 @@ static void check(const char *text, double crown, double pavilion) {
   abbe_cut_free(&before);
 }
 
-static void meets_are_kept(void **state) {
-  (void)state;
+TEST(meets_are_kept) {
   const char *const designs[] = {design_a, design_b, design_c};
   for (size_t i = 0; i < 3; i++) {
     check(designs[i], 0.9, 0.93);
@@ -58,8 +57,7 @@ static void meets_are_kept(void **state) {
 }
 
 /* Above a level girdle a crown that is stretched by k is k times as high. */
-static void heights_are_stretched(void **state) {
-  (void)state;
+TEST(heights_are_stretched) {
   abbe_cut cut = design_parse(design_a);
   abbe_cut_polyhedron p = stone_of(&cut);
   abbe_cut_measures m, n;
@@ -75,8 +73,7 @@ static void heights_are_stretched(void **state) {
   abbe_cut_free(&cut);
 }
 
-static void mains(void **state) {
-  (void)state;
+TEST(mains) {
   abbe_cut cut = design_parse(design_a);
   abbe_cut_polyhedron p = stone_of(&cut);
   assert_near(cut.tier[abbe_cut_stretch_main(&cut, &p, ABBE_CUT_PAVILION)].angle_deg, -43, 0);
@@ -92,8 +89,7 @@ static void angles_of(const abbe_cut *cut, const abbe_cut_polyhedron *p, double 
 }
 
 /* To main angles, either side alone, and back: as it was. */
-static void there_and_back(void **state) {
-  (void)state;
+TEST(there_and_back) {
   static const double way[][4] = {/* to, and what it is then */
                                   {35, 0, 35, 43},
                                   {0, 40, 35, 40},
@@ -114,8 +110,7 @@ static void there_and_back(void **state) {
   abbe_cut_free(&before);
 }
 
-static void angles_that_are_none(void **state) {
-  (void)state;
+TEST(angles_that_are_none) {
   static const double wrong[] = {-1, 90, 120, NAN};
   abbe_error error = {0};
   abbe_cut cut = design_parse(design_a);
@@ -140,8 +135,7 @@ static void angles_that_are_none(void **state) {
 
 /* Quartz: the critical angle is 40.37 degrees; and a ray that comes straight down onto 43 degrees
  * meets the facet opposite at 180 - 129 = 51. */
-static void the_window(void **state) {
-  (void)state;
+TEST(the_window) {
   double low, high;
   abbe_cut_stretch_window(1.544, &low, &high);
   assert_near(sin(low / TURN) * 1.544, 1, 1e-12);
@@ -153,8 +147,7 @@ static void the_window(void **state) {
   assert_near(abbe_cut_stretch_factor(-43, 41), tan(41 / TURN) / tan(43 / TURN), 1e-12);
 }
 
-static void what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   abbe_error error = {0};
   abbe_cut cut = design_parse("g 96 0\na 54.735610 0.5 96 32 64\na -54.735610 0.5 16 48 80\n");
   abbe_cut_polyhedron p = stone_of(&cut);
@@ -176,14 +169,4 @@ static void what_is_refused(void **state) {
   assert_near(cut.tier[2].angle_deg, -60, 0);
   abbe_cut_polyhedron_free(&p);
   abbe_cut_free(&cut);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(meets_are_kept),  cmocka_unit_test(heights_are_stretched),
-      cmocka_unit_test(mains),           cmocka_unit_test(there_and_back),
-      cmocka_unit_test(the_window),      cmocka_unit_test(angles_that_are_none),
-      cmocka_unit_test(what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,8 +5,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-static void letters_of_windows_1252_become_a_byte_each(void **state) {
-  (void)state;
+TEST(letters_of_windows_1252_become_a_byte_each) {
   char out[32];
   assert_int_equal(abbe_cut_text_narrow("a\xc3\xa9\xe2\x82\xac\xc2\xb0", out, sizeof out), 4);
   assert_string_equal(out, "a\xe9\x80\xb0");
@@ -18,8 +17,7 @@ static void letters_of_windows_1252_become_a_byte_each(void **state) {
   assert_string_equal(out, "abc");
 }
 
-static void bytes_come_back_as_letters(void **state) {
-  (void)state;
+TEST(bytes_come_back_as_letters) {
   char bytes[256], back[256];
   for (int i = 0; i < 255; i++) bytes[i] = (char)(i + 1);
   char *text = abbe_cut_text_widen(bytes, 255);
@@ -31,10 +29,4 @@ static void bytes_come_back_as_letters(void **state) {
     assert_int_equal((unsigned char)back[i], none ? '?' : control ? ' ' : byte);
   }
   free(text);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(letters_of_windows_1252_become_a_byte_each),
-                                     cmocka_unit_test(bytes_come_back_as_letters)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -40,8 +40,7 @@ static void read(size_t i, abbe_cut *cut, abbe_cut_polyhedron *p) {
     fail_msg("%s: %s", designs[i].name, error.text);
 }
 
-static void each_is_closed(void **state) {
-  (void)state;
+TEST(each_is_closed) {
   for (size_t i = 0; i < COUNT; i++) {
     abbe_cut cut;
     abbe_cut_polyhedron p;
@@ -73,8 +72,7 @@ static bool has_plane(const abbe_cut *cut, const double n[3], double d) {
   return false;
 }
 
-static void each_has_its_symmetry(void **state) {
-  (void)state;
+TEST(each_has_its_symmetry) {
   for (size_t i = 0; i < COUNT; i++) {
     abbe_cut cut;
     abbe_cut_polyhedron p;
@@ -94,8 +92,7 @@ static void each_has_its_symmetry(void **state) {
   }
 }
 
-static void none_is_forgotten(void **state) {
-  (void)state;
+TEST(none_is_forgotten) {
   size_t files = 0;
   DIR *folder = opendir(ABBE_SOURCE_DIR "/scenes/designs");
   assert_non_null(folder);
@@ -103,13 +100,4 @@ static void none_is_forgotten(void **state) {
     files += strstr(entry->d_name, ".asc") != NULL;
   closedir(folder);
   assert_int_equal(files, COUNT);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(each_is_closed),
-      cmocka_unit_test(each_has_its_symmetry),
-      cmocka_unit_test(none_is_forgotten),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

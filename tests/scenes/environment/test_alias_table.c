@@ -20,8 +20,7 @@ static void check_shares(const double *weight, size_t count) {
   abbe_alias_table_free(&table);
 }
 
-static void shares_are_the_weights(void **state) {
-  (void)state;
+TEST(shares_are_the_weights) {
   double weight[64];
   check_shares((const double[]){3}, 1);
   check_shares((const double[]){1, 1}, 2);
@@ -35,8 +34,7 @@ static void shares_are_the_weights(void **state) {
   }
 }
 
-static void draws(void **state) {
-  (void)state;
+TEST(draws) {
   const double weight[] = {0, 5, 0, 1, 2};
   size_t hits[5] = {0};
   abbe_alias_table table;
@@ -48,8 +46,7 @@ static void draws(void **state) {
   abbe_alias_table_free(NULL);
 }
 
-static void what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   static const double bad[][2] = {{0, 0},        {-1, 2},        {NAN, 1},
                                   {INFINITY, 1}, {1e308, 1e308}, {0, 1e-320}};
   abbe_alias_table table;
@@ -59,13 +56,4 @@ static void what_is_refused(void **state) {
     assert_null(table.keep);
   }
   assert_int_equal(abbe_alias_table_make(bad[0], 0, &table, &error), ABBE_INVALID_ARGUMENT);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(shares_are_the_weights),
-      cmocka_unit_test(draws),
-      cmocka_unit_test(what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,8 +29,7 @@ static void make(size_t width, abbe_environment *out) {
   if (abbe_environment_prepare(out, &error) != ABBE_OK) fail_msg("%s", error.text);
 }
 
-static void densities_integrate_to_one(void **state) {
-  (void)state;
+TEST(densities_integrate_to_one) {
   static const size_t widths[] = {4, 6, 16, 36};
   for (size_t w = 0; w < 4; w++) {
     abbe_environment e;
@@ -55,8 +54,7 @@ static void densities_integrate_to_one(void **state) {
 
 /* Each sample's radiance over density is the integral itself, and samples lie as the density says:
  * their shares of the octants, of a cap around a pole and moments. */
-static void samples_follow_their_density(void **state) {
-  (void)state;
+TEST(samples_follow_their_density) {
   static const size_t widths[] = {4, 6, 16, 36};
   for (size_t w = 0; w < 4; w++) {
     abbe_environment e;
@@ -100,8 +98,7 @@ static void samples_follow_their_density(void **state) {
 }
 
 /* The ends of [0, 1): nothing is outside, and no sample is where it is dark. */
-static void extreme_numbers(void **state) {
-  (void)state;
+TEST(extreme_numbers) {
   static const double ends[] = {0, 0x1p-60, 0.5, 1 - 0x1p-53};
   abbe_environment e;
   make(16, &e);
@@ -116,8 +113,7 @@ static void extreme_numbers(void **state) {
   abbe_environment_free(&e);
 }
 
-static void turning_both_changes_nothing(void **state) {
-  (void)state;
+TEST(turning_both_changes_nothing) {
   abbe_environment still = {0}, turned = {0};
   make(64, &still);
   make(64, &turned);
@@ -141,8 +137,7 @@ static void turning_both_changes_nothing(void **state) {
   abbe_environment_free(&turned);
 }
 
-static void light_is_linear(void **state) {
-  (void)state;
+TEST(light_is_linear) {
   abbe_environment one, three;
   const double n[3] = {0.6, 0, 0.8};
   double a[3], b[3];
@@ -161,8 +156,7 @@ static void light_is_linear(void **state) {
   abbe_environment_free(&three);
 }
 
-static void levels_are_blurred(void **state) {
-  (void)state;
+TEST(levels_are_blurred) {
   abbe_environment e;
   make(64, &e);
   assert_int_equal(e.level_count, 4);
@@ -176,8 +170,7 @@ static void levels_are_blurred(void **state) {
   abbe_environment_free(NULL);
 }
 
-static void the_brightest_part(void **state) {
-  (void)state;
+TEST(the_brightest_part) {
   abbe_environment e = {0};
   double share;
   assert_int_equal(abbe_radiance_map_make(256, &e.map, NULL), ABBE_OK);
@@ -192,8 +185,7 @@ static void the_brightest_part(void **state) {
   abbe_environment_free(&e);
 }
 
-static void what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   static const struct {
     float value;
     const char *part;
@@ -210,18 +202,4 @@ static void what_is_refused(void **state) {
     assert_null(e.texels.keep);
     abbe_environment_free(&e);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(densities_integrate_to_one),
-      cmocka_unit_test(samples_follow_their_density),
-      cmocka_unit_test(extreme_numbers),
-      cmocka_unit_test(turning_both_changes_nothing),
-      cmocka_unit_test(light_is_linear),
-      cmocka_unit_test(levels_are_blurred),
-      cmocka_unit_test(the_brightest_part),
-      cmocka_unit_test(what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

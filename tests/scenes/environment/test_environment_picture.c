@@ -27,8 +27,17 @@ static abbe_result read_back(abbe_image *image, abbe_environment_layout layout,
   return abbe_environment_picture_read(path, layout, map, error);
 }
 
-static void latlong_pictures(void **state) {
-  (void)state;
+static void begin(void) {
+  snprintf(path, sizeof path, "/tmp/abbe-test-environment-%d.exr", (int)getpid());
+}
+
+static void finish(void) {
+  unlink(path);
+}
+
+GROUP(begin, finish);
+
+TEST(latlong_pictures) {
   abbe_image image = picture(16, 8, rgb_names), kept = picture(16, 8, rgb_names);
   abbe_radiance_map map;
   assert_int_equal(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, NULL), ABBE_OK);
@@ -47,8 +56,7 @@ static void latlong_pictures(void **state) {
 }
 
 /* The same light by other numbers: in ACEScg, in XYZ. */
-static void colours_are_converted(void **state) {
-  (void)state;
+TEST(colours_are_converted) {
   for (int space = 0; space < ABBE_RGB_SPACE_COUNT; space++) {
     abbe_image image = picture(16, 8, space == ABBE_RGB_SPACE_XYZ ? xyz_names : rgb_names);
     abbe_image kept = picture(16, 8, rgb_names);
@@ -71,8 +79,7 @@ static void colours_are_converted(void **state) {
 }
 
 /* A green of ACEScg is no colour of Rec.709. */
-static void what_rec709_cannot_hold_is_clipped(void **state) {
-  (void)state;
+TEST(what_rec709_cannot_hold_is_clipped) {
   abbe_image image = picture(4, 2, rgb_names);
   abbe_radiance_map map;
   abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_ACESCG, image.xy);
@@ -84,8 +91,7 @@ static void what_rec709_cannot_hold_is_clipped(void **state) {
 
 /* abbe:space is taken as every other reader takes it, before the chromaticities; a file that says
  * nothing is Rec.709, and is known to say nothing. */
-static void the_space_that_a_file_says(void **state) {
-  (void)state;
+TEST(the_space_that_a_file_says) {
   abbe_radiance_map map[3];
   abbe_error error = {0};
   for (int i = 0; i < 3; i++) {
@@ -105,8 +111,7 @@ static void the_space_that_a_file_says(void **state) {
   assert_contains(error.text, "2 are infinite and 0 not a number");
 }
 
-static void grey_pictures(void **state) {
-  (void)state;
+TEST(grey_pictures) {
   static const char *const names[] = {"Y"};
   abbe_image image;
   abbe_radiance_map map;
@@ -119,8 +124,7 @@ static void grey_pictures(void **state) {
 
 /* Faces of one colour each, both crosses and OpenEXR's column: what looks along each axis, and that
  * all that is black beside the faces is not seen. A mark says how each is turned. */
-static void cubes(void **state) {
-  (void)state;
+TEST(cubes) {
   enum { SIDE = 16, LAYOUTS = 3 };
   static const size_t across[LAYOUTS] = {4, 3, 1}, down[LAYOUTS] = {3, 4, 6};
   static const struct {
@@ -178,8 +182,7 @@ static void check_refused(abbe_environment_layout layout, abbe_result code, cons
   assert_null(map.rgb);
 }
 
-static void what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   static const float bad[] = {-0.25f, NAN, INFINITY};
   static const char *const parts[] = {"is -0.25 in the channel G", "nan", "inf"};
   abbe_image image;
@@ -221,20 +224,4 @@ static void what_is_refused(void **state) {
   check_refused(ABBE_LAYOUT_BY_ASPECT, ABBE_IO, path);
   assert_int_equal(mkfifo(path, 0600), 0);
   check_refused(ABBE_LAYOUT_BY_ASPECT, ABBE_IO, path);
-}
-
-int main(void) {
-  snprintf(path, sizeof path, "/tmp/abbe-test-environment-%d.exr", (int)getpid());
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(latlong_pictures),
-      cmocka_unit_test(colours_are_converted),
-      cmocka_unit_test(what_rec709_cannot_hold_is_clipped),
-      cmocka_unit_test(the_space_that_a_file_says),
-      cmocka_unit_test(grey_pictures),
-      cmocka_unit_test(cubes),
-      cmocka_unit_test(what_is_refused),
-  };
-  const int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  unlink(path);
-  return failed;
 }

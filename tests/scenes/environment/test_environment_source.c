@@ -31,8 +31,7 @@ static double integral(const abbe_radiance_map *map, int channel) {
 }
 
 /* Wherever it stands, and however coarse the map. */
-static void energies_are_exact(void **state) {
-  (void)state;
+TEST(energies_are_exact) {
   static const double places[][2] = {{90, 0},       {89.9, 40}, {30, 0}, {0, 180},
                                      {-12, -179.9}, {-90, 3},   {60, 77}};
   static const size_t widths[] = {64, 512};
@@ -57,8 +56,7 @@ static void energies_are_exact(void **state) {
       }
 }
 
-static void known_solid_angles(void **state) {
-  (void)state;
+TEST(known_solid_angles) {
   abbe_environment_source s = {.kind = ABBE_SOURCE_DISK, .radius_rad = PI / 2};
   assert_near(abbe_environment_source_solid_angle(&s), 2 * PI, 1e-12);
   s = (abbe_environment_source){
@@ -71,8 +69,7 @@ static void known_solid_angles(void **state) {
 }
 
 /* A disk overhead: pi L sin^2; the sun: its irradiance, times the sine of its elevation. */
-static void known_irradiances(void **state) {
-  (void)state;
+TEST(known_irradiances) {
   double rgb[3];
   abbe_environment_source s = {
       .kind = ABBE_SOURCE_DISK, .radiance = {1, 1, 1}, .radius_rad = 30 * DEGREE};
@@ -109,8 +106,7 @@ static void known_irradiances(void **state) {
   abbe_radiance_map_free(&map);
 }
 
-static void skies(void **state) {
-  (void)state;
+TEST(skies) {
   double rgb[3];
   for (int type = 1; type <= ABBE_SKY_TYPES; type += SANITIZED ? 7 : 1) {
     const abbe_environment_source s = {
@@ -124,8 +120,7 @@ static void skies(void **state) {
   }
 }
 
-static void domes(void **state) {
-  (void)state;
+TEST(domes) {
   const abbe_dome_knot iso[] = {{0, {1, 1, 1}}, {PI / 2, {1, 1, 1}}};
   const abbe_dome_knot bands[] = {{0, {0, 1, 0}},           {45 * DEGREE, {0, 1, 0}},
                                   {45 * DEGREE, {1, 0, 0}}, {75 * DEGREE, {1, 0, 0}},
@@ -147,8 +142,7 @@ static void domes(void **state) {
   abbe_radiance_map_free(&map);
 }
 
-static void sources_add_up(void **state) {
-  (void)state;
+TEST(sources_add_up) {
   abbe_environment_source s = {.kind = ABBE_SOURCE_UNIFORM, .radiance = {1, 2, 3}};
   abbe_radiance_map map = map_of(64, &s);
   s = (abbe_environment_source){.kind = ABBE_SOURCE_DISK, .radiance = {1, 1, 1}, .radius_rad = 0.3};
@@ -160,8 +154,7 @@ static void sources_add_up(void **state) {
   abbe_radiance_map_free(&map);
 }
 
-static void what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   static const abbe_environment_source bad[] = {
       {.kind = ABBE_SOURCE_DISK, .radius_rad = 1e-5},
       {.kind = ABBE_SOURCE_DISK, .radius_rad = NAN},
@@ -175,17 +168,4 @@ static void what_is_refused(void **state) {
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
     assert_int_equal(abbe_environment_source_add(&bad[i], &map, &error), ABBE_INVALID_ARGUMENT);
   abbe_radiance_map_free(&map);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(energies_are_exact),
-      cmocka_unit_test(known_solid_angles),
-      cmocka_unit_test(known_irradiances),
-      cmocka_unit_test(skies),
-      cmocka_unit_test(domes),
-      cmocka_unit_test(sources_add_up),
-      cmocka_unit_test(what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

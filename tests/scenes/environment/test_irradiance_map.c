@@ -17,8 +17,7 @@ static void fill(const double from[3], abbe_irradiance_map *out) {
     }
 }
 
-static void axes_are_nodes(void **state) {
-  (void)state;
+TEST(axes_are_nodes) {
   static const double axes[6][3] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
                                     {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
   double from[3] = {0.3, -0.5, 0.7}, rgb[3];
@@ -34,8 +33,7 @@ static void axes_are_nodes(void **state) {
 
 /* Linear between nodes 9 degrees apart: a cosine is off by at most 2 (pi/40)^2 / 2 of the greatest,
  * from the two directions together, but within a step of where it ends. */
-static void planes_between_nodes(void **state) {
-  (void)state;
+TEST(planes_between_nodes) {
   const double step = 3.14159265358979 / (ROWS - 1);
   for (int i = 0; i < 200; i++) {
     double from[3], n[3], rgb[3];
@@ -51,10 +49,4 @@ static void planes_between_nodes(void **state) {
     const double right = abbe_vector_dot(n, from), off = fabs(rgb[0] - fmax(right, 0));
     assert_true(off < (fabs(right) > 2 * step ? step * step / 4 : step / 2));
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(axes_are_nodes),
-                                     cmocka_unit_test(planes_between_nodes)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

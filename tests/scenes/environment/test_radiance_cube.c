@@ -7,8 +7,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-static void test_solid_angles_fill_the_sphere(void **state) {
-  (void)state;
+TEST(solid_angles_fill_the_sphere) {
   for (size_t side = 1; side <= 32; side *= 2) {
     double sum = 0;
     for (size_t i = 0; i < side * side; i++)
@@ -18,8 +17,7 @@ static void test_solid_angles_fill_the_sphere(void **state) {
 }
 
 /* As OpenGL finds them: the major axis is the face, and what goes with it the place. */
-static void test_directions_are_opengls(void **state) {
-  (void)state;
+TEST(directions_are_opengls) {
   static const int major[6] = {0, 0, 1, 1, 2, 2};
   for (size_t face = 0; face < 6; face++) {
     const double x = 0.7, y = 0.2, sign = face % 2 == 0 ? 1 : -1;
@@ -46,8 +44,7 @@ static void make_map(abbe_radiance_map *map) {
   assert_int_equal(abbe_environment_source_add(&spot, map, NULL), ABBE_OK);
 }
 
-static void test_every_level_holds_the_light(void **state) {
-  (void)state;
+TEST(every_level_holds_the_light) {
   abbe_radiance_map map;
   abbe_radiance_cube cube;
   double mean[3], first[3] = {0, 0, 0};
@@ -73,8 +70,7 @@ static void test_every_level_holds_the_light(void **state) {
 }
 
 /* Where the map is smooth a texel is what the map shows in its direction. */
-static void test_texels_show_the_map(void **state) {
-  (void)state;
+TEST(texels_show_the_map) {
   abbe_radiance_map map;
   abbe_radiance_cube cube;
   make_map(&map);
@@ -91,8 +87,7 @@ static void test_texels_show_the_map(void **state) {
   abbe_radiance_map_free(&map);
 }
 
-static void test_wrong_sides(void **state) {
-  (void)state;
+TEST(wrong_sides) {
   abbe_radiance_map map = {0};
   abbe_radiance_cube cube;
   abbe_error error = {0};
@@ -103,15 +98,4 @@ static void test_wrong_sides(void **state) {
   assert_int_equal(abbe_radiance_cube_make(&map, 16, &cube, &error), ABBE_INVALID_ARGUMENT);
   abbe_radiance_cube_free(&cube);
   abbe_radiance_cube_free(NULL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_solid_angles_fill_the_sphere),
-      cmocka_unit_test(test_directions_are_opengls),
-      cmocka_unit_test(test_every_level_holds_the_light),
-      cmocka_unit_test(test_texels_show_the_map),
-      cmocka_unit_test(test_wrong_sides),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

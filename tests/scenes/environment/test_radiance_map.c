@@ -21,8 +21,7 @@ static abbe_radiance_map pattern(size_t width) {
 static const double normals[][3] = {
     {0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {-0.6, 0.64, 0.48}, {0.1, -0.7, -0.70710678118654746}};
 
-static void where_directions_are(void **state) {
-  (void)state;
+TEST(where_directions_are) {
   abbe_radiance_map map = make(64);
   static const struct {
     double direction[3], x, y;
@@ -39,8 +38,7 @@ static void where_directions_are(void **state) {
   abbe_radiance_map_free(&map);
 }
 
-static void solid_angles_add_up(void **state) {
-  (void)state;
+TEST(solid_angles_add_up) {
   for (size_t width = 4; width <= 8192; width *= 2) {
     const abbe_radiance_map map = {.width = width + (width == 64 ? 2 : 0),
                                    .height = width / 2 + (width == 64)};
@@ -53,8 +51,7 @@ static void solid_angles_add_up(void **state) {
   }
 }
 
-static void values_stand_at_middles_and_are_continuous(void **state) {
-  (void)state;
+TEST(values_stand_at_middles_and_are_continuous) {
   abbe_radiance_map map = pattern(16);
   for (size_t y = 0; y < 8; y++)
     for (size_t x = 0; x < 16; x++) {
@@ -80,8 +77,7 @@ static void values_stand_at_middles_and_are_continuous(void **state) {
 }
 
 /* By a midpoint rule of its own. */
-static void the_mean_is_the_integral(void **state) {
-  (void)state;
+TEST(the_mean_is_the_integral) {
   abbe_radiance_map map = pattern(16);
   double mean[3], sum[3] = {0};
   const int rows = 800, columns = 1600;
@@ -98,8 +94,7 @@ static void the_mean_is_the_integral(void **state) {
   abbe_radiance_map_free(&map);
 }
 
-static void uniform_light(void **state) {
-  (void)state;
+TEST(uniform_light) {
   static const size_t widths[] = {4, 8, 100, 512, 1024, 2048};
   for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
     abbe_radiance_map map = make(widths[w]);
@@ -122,8 +117,7 @@ static void uniform_light(void **state) {
 }
 
 /* Radiance 1 + n.d: irradiance pi + 2 pi / 3. */
-static void light_from_one_side(void **state) {
-  (void)state;
+TEST(light_from_one_side) {
   abbe_radiance_map map = make(512);
   for (size_t n = 0; n < sizeof normals / sizeof *normals; n++) {
     double rgb[3];
@@ -148,8 +142,7 @@ static double sum_over_cells(const abbe_radiance_map *map) {
   return sum;
 }
 
-static void halves_keep_the_light(void **state) {
-  (void)state;
+TEST(halves_keep_the_light) {
   static const size_t widths[] = {8, 10, 64, 100, 250, 374};
   for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
     abbe_radiance_map map = pattern(widths[w]);
@@ -165,8 +158,7 @@ static void halves_keep_the_light(void **state) {
   }
 }
 
-static void what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   static const size_t widths[] = {0, 2, 5, 8194, (size_t)-2};
   abbe_radiance_map map, half;
   abbe_error error;
@@ -176,18 +168,4 @@ static void what_is_refused(void **state) {
   assert_int_equal(abbe_radiance_map_halve(&map, &half, &error), ABBE_INVALID_ARGUMENT);
   abbe_radiance_map_free(&map);
   abbe_radiance_map_free(NULL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(where_directions_are),
-      cmocka_unit_test(solid_angles_add_up),
-      cmocka_unit_test(values_stand_at_middles_and_are_continuous),
-      cmocka_unit_test(the_mean_is_the_integral),
-      cmocka_unit_test(uniform_light),
-      cmocka_unit_test(light_from_one_side),
-      cmocka_unit_test(halves_keep_the_light),
-      cmocka_unit_test(what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,8 +9,7 @@ static abbe_sky sky_of(int type, double elevation) {
   return (abbe_sky){type, {cos(elevation), 0, sin(elevation)}};
 }
 
-static void every_sky_is_1_at_its_zenith(void **state) {
-  (void)state;
+TEST(every_sky_is_1_at_its_zenith) {
   for (int type = 1; type <= ABBE_SKY_TYPES; type++)
     for (double e = 0.1; e < 1.6; e += 0.3) {
       const abbe_sky sky = sky_of(type, e);
@@ -25,8 +24,7 @@ static void every_sky_is_1_at_its_zenith(void **state) {
     }
 }
 
-static void known_irradiances(void **state) {
-  (void)state;
+TEST(known_irradiances) {
   const abbe_sky overcast = {.type = ABBE_SKY_OVERCAST}, uniform = {.type = 5};
   assert_near(abbe_sky_horizontal(&overcast), 7 * PI / 9, 1e-5);
   assert_near(abbe_sky_horizontal(&uniform), PI, 1e-12);
@@ -34,8 +32,7 @@ static void known_irradiances(void **state) {
 
 /* By hand from the formula: the clear sky, sun at 30 degrees, 45 degrees up, opposite to the sun
  * (105 degrees from it) and towards it (15). */
-static void the_clear_sky(void **state) {
-  (void)state;
+TEST(the_clear_sky) {
   const abbe_sky sky = sky_of(ABBE_SKY_CLEAR, PI / 6);
   const double z = cos(PI / 4);
   const double scale = (1 - exp(-0.32 / z)) / (1 - exp(-0.32)) /
@@ -48,19 +45,8 @@ static void the_clear_sky(void **state) {
   assert_near(abbe_sky_relative(&sky, (const double[3]){z, 0, z}), scale * towards, 1e-12);
 }
 
-static void which_need_the_sun(void **state) {
-  (void)state;
+TEST(which_need_the_sun) {
   assert_true(abbe_sky_needs_sun(ABBE_SKY_CLEAR) && abbe_sky_needs_sun(2));
   assert_true(!abbe_sky_needs_sun(1) && !abbe_sky_needs_sun(5) && !abbe_sky_needs_sun(16));
   assert_true(!abbe_sky_needs_sun(0) && !abbe_sky_needs_sun(17));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_sky_is_1_at_its_zenith),
-      cmocka_unit_test(known_irradiances),
-      cmocka_unit_test(the_clear_sky),
-      cmocka_unit_test(which_need_the_sun),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,9 +11,8 @@
 
 static char folder[] = "/tmp/abbe-test-export-XXXXXX";
 
-static inline int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) == NULL;
+static inline void make_folder(void) {
+  assert_non_null(mkdtemp(folder));
 }
 
 /* How many files were there. */
@@ -31,10 +30,9 @@ static inline int clear_folder(void) {
   return count;
 }
 
-static inline int drop_folder(void **state) {
-  (void)state;
+static inline void drop_folder(void) {
   clear_folder();
-  return rmdir(folder);
+  assert_false(rmdir(folder));
 }
 
 static abbe_scene_export_report report;

@@ -17,8 +17,7 @@ static abbe_export_index index_of(const abbe_material_table *table, const char *
 }
 
 /* crown: n = 1.5 + 0.006 um2 / lambda^2. */
-static void test_a_law_of_two_terms(void **state) {
-  (void)state;
+TEST(a_law_of_two_terms) {
   abbe_scene scene;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   abbe_export_index i = index_of(&scene.table, "crown", ABBE_EXPORT_FORM_CAUCHY, 0);
@@ -41,8 +40,7 @@ static void test_a_law_of_two_terms(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_one_and_three_indices(void **state) {
-  (void)state;
+TEST(one_and_three_indices) {
   abbe_scene scene;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   abbe_export_index i = index_of(&scene.table, "crown", ABBE_EXPORT_FORM_ONE, 500);
@@ -62,8 +60,7 @@ static void test_one_and_three_indices(void **state) {
 }
 
 /* narrow is known from 400 to 700 nm; loose too, but goes on. */
-static void test_records_that_end(void **state) {
-  (void)state;
+TEST(records_that_end) {
   abbe_scene scene;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   abbe_export_index i = index_of(&scene.table, "narrow", ABBE_EXPORT_FORM_TABLE, 0);
@@ -77,8 +74,7 @@ static void test_records_that_end(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_stated_errors_are_those_measured(void **state) {
-  (void)state;
+TEST(stated_errors_are_those_measured) {
   abbe_material_table table;
   assert_int_equal(abbe_material_table_load("default", &table, NULL), ABBE_OK);
   for (size_t m = 0; m < table.count; m++) {
@@ -106,14 +102,4 @@ static void test_stated_errors_are_those_measured(void **state) {
     assert_true(worst[ABBE_EXPORT_FORM_TABLE] <= worst[ABBE_EXPORT_FORM_ONE] / 100 + 1e-12);
   }
   abbe_material_table_free(&table);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_law_of_two_terms),
-      cmocka_unit_test(test_one_and_three_indices),
-      cmocka_unit_test(test_records_that_end),
-      cmocka_unit_test(test_stated_errors_are_those_measured),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

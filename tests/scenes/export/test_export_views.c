@@ -126,8 +126,9 @@ static void gltf_pixel(const char *text, double w, double h, const double p[3], 
   cJSON_Delete(root);
 }
 
-static void test_cameras_show_the_same_pixels(void **state) {
-  (void)state;
+GROUP(make_folder, drop_folder);
+
+TEST(cameras_show_the_same_pixels) {
   static void (*const pixel[])(const char *, double, double, const double *, double *) = {
       pbrt_pixel, mitsuba_pixel, luxcore_pixel, gltf_pixel, blender_pixel};
   static const size_t sizes[][2] = {{300, 200}, {200, 300}, {256, 256}};
@@ -165,8 +166,7 @@ static void square_to_sphere(double across, double down, double out[3]) {
 }
 
 /* Mean radiance survives, and what is bright stands where each program looks for it. */
-static void test_surroundings_stand_where_they_were(void **state) {
-  (void)state;
+TEST(surroundings_stand_where_they_were) {
   static const abbe_scene_export_target all[] = {ABBE_SCENE_EXPORT_PBRT, ABBE_SCENE_EXPORT_MITSUBA,
                                                  ABBE_SCENE_EXPORT_LUXCORE,
                                                  ABBE_SCENE_EXPORT_BLENDER};
@@ -210,12 +210,4 @@ static void test_surroundings_stand_where_they_were(void **state) {
   }
   clear_folder();
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cameras_show_the_same_pixels),
-      cmocka_unit_test(test_surroundings_stand_where_they_were),
-  };
-  return cmocka_run_group_tests(tests, make_folder, drop_folder);
 }

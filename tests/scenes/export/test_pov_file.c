@@ -29,8 +29,7 @@ static abbe_pov_glass glass_of(const abbe_material_table *table, const char *nam
   return glass;
 }
 
-static void test_an_index_of_its_law_is_found_again(void **state) {
-  (void)state;
+TEST(an_index_of_its_law_is_found_again) {
   char path[] = "/tmp/abbe-test-law-XXXXXX";
   int file = mkstemp(path);
   assert_true(file >= 0);
@@ -53,8 +52,7 @@ static void test_an_index_of_its_law_is_found_again(void **state) {
 }
 
 /* The fit leaves what it says, and less than both ends' own numbers would in the middle. */
-static void test_real_glasses_are_met_as_said(void **state) {
-  (void)state;
+TEST(real_glasses_are_met_as_said) {
   abbe_material_table table;
   assert_int_equal(abbe_material_table_load("default", &table, NULL), ABBE_OK);
   for (size_t i = 0; i < table.count; i++) {
@@ -131,8 +129,7 @@ static double number_after(const char *text, const char *words) {
   return strtod(at + strlen(words), NULL);
 }
 
-static void test_a_point_light_keeps_its_brightness(void **state) {
-  (void)state;
+TEST(a_point_light_keeps_its_brightness) {
   abbe_scene scene;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   char *text = written(&scene, NULL);
@@ -158,8 +155,7 @@ static void test_a_point_light_keeps_its_brightness(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_every_kind_of_light_is_written(void **state) {
-  (void)state;
+TEST(every_kind_of_light_is_written) {
   abbe_scene scene;
   load_text(
       CAMERA
@@ -200,8 +196,7 @@ static void test_every_kind_of_light_is_written(void **state) {
 }
 
 /* Names are comments that cannot end early; a path that cannot be spelt is refused. */
-static void test_names_do_no_harm(void **state) {
-  (void)state;
+TEST(names_do_no_harm) {
   abbe_scene scene;
   abbe_error error = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
@@ -219,8 +214,7 @@ static void test_names_do_no_harm(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_what_cannot_be_is_refused(void **state) {
-  (void)state;
+TEST(what_cannot_be_is_refused) {
   abbe_scene scene;
   abbe_error error = {0};
   abbe_pov_options options = {.samples = 1};
@@ -252,8 +246,7 @@ static void test_what_cannot_be_is_refused(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_shipped_scenes_are_written(void **state) {
-  (void)state;
+TEST(shipped_scenes_are_written) {
   static const char *const names[] = {"sphere", "prism", "gem", "glass", "rainbow"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
     abbe_scene scene;
@@ -263,17 +256,4 @@ static void test_shipped_scenes_are_written(void **state) {
     free(text);
     abbe_scene_free(&scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_an_index_of_its_law_is_found_again),
-      cmocka_unit_test(test_real_glasses_are_met_as_said),
-      cmocka_unit_test(test_a_point_light_keeps_its_brightness),
-      cmocka_unit_test(test_every_kind_of_light_is_written),
-      cmocka_unit_test(test_names_do_no_harm),
-      cmocka_unit_test(test_what_cannot_be_is_refused),
-      cmocka_unit_test(test_shipped_scenes_are_written),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

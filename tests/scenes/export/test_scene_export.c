@@ -18,8 +18,9 @@ static double pbrt_n(const double *table, double nm) {
   return a[1] + (nm - a[0]) / (a[2] - a[0]) * (a[3] - a[1]);
 }
 
-static void test_the_index_in_the_file_has_the_stated_error(void **state) {
-  (void)state;
+GROUP(make_folder, drop_folder);
+
+TEST(the_index_in_the_file_has_the_stated_error) {
   static const char *const words[] = {"\"spectrum eta\" [", "name=\"n_m0_sf10\"",
                                       "interiorior =", "\"ior\":", "= glass('m0_sf10', "};
   static const size_t counts[] = {190, 1, 1, 1, 3};
@@ -66,8 +67,7 @@ static void test_the_index_in_the_file_has_the_stated_error(void **state) {
   "- {name: window, kind: rectangle, position: [-0.3, 0, 1], direction: [0, 0, -1], width: 0.2, "  \
   "height: 0.1, radiance: 40}\n"
 
-static void test_lights_keep_their_power(void **state) {
-  (void)state;
+TEST(lights_keep_their_power) {
   const double sphere = 4 * 3.14159265358979323846;
   abbe_scene scene;
   double v[16];
@@ -105,8 +105,7 @@ static void test_lights_keep_their_power(void **state) {
 }
 
 /* The format's validator refuses components of colours beyond 1: the largest is 1. */
-static void test_colours_in_gltf(void **state) {
-  (void)state;
+TEST(colours_in_gltf) {
   abbe_scene scene;
   load_text(CAMERA LIGHTS FLOOR BALL("murk") BRICK("flat"), &scene);
   char *text = written(&scene, ABBE_SCENE_EXPORT_GLTF);
@@ -129,8 +128,7 @@ static void test_colours_in_gltf(void **state) {
 /* An equal-energy lamp in glTF: 683 lm/W times the mean of V over 380 to 780 nm, 0.2672 (the
  * integral of V is 106.86 nm). In Mitsuba its film's Y, the integral of ybar times the values over
  * 106.75, is the power. */
-static void test_photometric_and_film_units(void **state) {
-  (void)state;
+TEST(photometric_and_film_units) {
   abbe_scene scene;
   double v[200];
   load_text(CAMERA "lights:\n- {name: lamp, kind: point, position: [0, 0, 0.9], intensity: 2, "
@@ -161,8 +159,7 @@ static bool noted(abbe_note_kind kind, const char *name, const char *part) {
   return false;
 }
 
-static void test_losses_are_said(void **state) {
-  (void)state;
+TEST(losses_are_said) {
   abbe_scene scene;
   load_text(CAMERA "ambient: 0.1\n" LIGHTS FLOOR BALL("murk"), &scene);
   char *text = written(&scene, ABBE_SCENE_EXPORT_MITSUBA);
@@ -222,8 +219,7 @@ static double between(double (*pair)[2], size_t count, double nm) {
 
 /* Of both programs that take spectra: read back, the floor reflects at each wavelength what it does
  * here, whether that was measured or lifted from three numbers. */
-static void test_reflectances_are_read_back(void **state) {
-  (void)state;
+TEST(reflectances_are_read_back) {
   static const char *const floors[] = {"{patch: orange}", "[0.7, 0.3, 0.1]"};
   static const abbe_scene_export_target targets[] = {ABBE_SCENE_EXPORT_PBRT,
                                                      ABBE_SCENE_EXPORT_MITSUBA};
@@ -259,8 +255,7 @@ static void test_reflectances_are_read_back(void **state) {
 }
 
 /* Names become identifiers; what would end a comment does not. */
-static void test_names_do_no_harm(void **state) {
-  (void)state;
+TEST(names_do_no_harm) {
   abbe_scene scene;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
   free(scene.object[1].name);
@@ -279,8 +274,7 @@ static void test_names_do_no_harm(void **state) {
   clear_folder();
 }
 
-static void test_nothing_half_written_stays(void **state) {
-  (void)state;
+TEST(nothing_half_written_stays) {
   abbe_scene scene;
   abbe_error error = {0};
   char path[200], blocked[220];
@@ -358,8 +352,7 @@ static int checked_by(const char *program, const char *line) {
   return system(command);
 }
 
-static void test_shipped_scenes_are_well_formed(void **state) {
-  (void)state;
+TEST(shipped_scenes_are_well_formed) {
   static const char *const names[] = {"gem", "metals", "prism", "glass", "diamond-studio"};
   for (size_t i = 0; i < (SANITIZED ? 2 : sizeof names / sizeof *names); i++) {
     abbe_scene scene;
@@ -386,19 +379,4 @@ static void test_shipped_scenes_are_well_formed(void **state) {
     abbe_scene_free(&scene);
     clear_folder();
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_the_index_in_the_file_has_the_stated_error),
-      cmocka_unit_test(test_lights_keep_their_power),
-      cmocka_unit_test(test_colours_in_gltf),
-      cmocka_unit_test(test_photometric_and_film_units),
-      cmocka_unit_test(test_losses_are_said),
-      cmocka_unit_test(test_reflectances_are_read_back),
-      cmocka_unit_test(test_names_do_no_harm),
-      cmocka_unit_test(test_nothing_half_written_stays),
-      cmocka_unit_test(test_shipped_scenes_are_well_formed),
-  };
-  return cmocka_run_group_tests(tests, make_folder, drop_folder);
 }

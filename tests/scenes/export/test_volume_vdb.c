@@ -11,8 +11,7 @@
 static const char path[] = "volume-vdb-test.vdb";
 static const double above[3] = {0, 0, 1};
 
-static void test_grids(void **state) {
-  (void)state;
+TEST(grids) {
   const abbe_region_desc grid = {.kind = ABBE_REGION_GRID, .side = 6, .outer = 0.3};
   abbe_caustic_volume v;
   abbe_error error = {0};
@@ -34,8 +33,7 @@ static void test_grids(void **state) {
   abbe_caustic_volume_free(&v);
 }
 
-static void test_others_are_refused(void **state) {
-  (void)state;
+TEST(others_are_refused) {
   const abbe_region_desc shells = {
       .kind = ABBE_REGION_GEODESIC, .levels = 1, .shells = 5, .inner = 0.1, .outer = 0.7};
   abbe_caustic_volume v;
@@ -44,10 +42,4 @@ static void test_others_are_refused(void **state) {
   assert_int_equal(abbe_volume_vdb_write(path, &v, above, &error), ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "--grid N");
   abbe_caustic_volume_free(&v);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_grids),
-                                     cmocka_unit_test(test_others_are_refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,8 +7,7 @@
 
 typedef uint64_t (*digest)(uint64_t h, const void *data, size_t size);
 
-static void each_byte_and_its_place_count(void **state) {
-  (void)state;
+TEST(each_byte_and_its_place_count) {
   static const digest kinds[] = {abbe_digest, abbe_digest_long};
   for (size_t kind = 0; kind < 2; kind++)
     for (size_t size = 0; size < 80; size++) {
@@ -30,16 +29,9 @@ static void each_byte_and_its_place_count(void **state) {
     }
 }
 
-static void arrays_differ_by_their_count(void **state) {
-  (void)state;
+TEST(arrays_differ_by_their_count) {
   static const double zeros[4] = {0};
   const uint64_t two = abbe_digest_array(1, zeros, 2, sizeof *zeros);
   assert_true(two != abbe_digest_array(1, zeros, 3, sizeof *zeros));
   assert_true(abbe_digest_array(1, zeros, 0, 8) != abbe_digest_array(1, NULL, 0, 8));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(each_byte_and_its_place_count),
-                                     cmocka_unit_test(arrays_differ_by_their_count)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,8 +8,7 @@ static void begin(uint32_t *parent) {
   for (uint32_t i = 0; i < COUNT; i++) parent[i] = i;
 }
 
-static void numbers_begin_alone_and_join(void **state) {
-  (void)state;
+TEST(numbers_begin_alone_and_join) {
   uint32_t parent[COUNT];
   begin(parent);
   for (uint32_t i = 0; i < COUNT; i++) assert_int_equal(abbe_disjoint_sets_find(parent, i), i);
@@ -22,8 +21,7 @@ static void numbers_begin_alone_and_join(void **state) {
 }
 
 /* Those alike modulo 7, joined along a chain, by both ends and twice. */
-static void sets_are_those_of_the_pairs(void **state) {
-  (void)state;
+TEST(sets_are_those_of_the_pairs) {
   uint32_t parent[COUNT];
   begin(parent);
   for (uint32_t i = 0; i + 7 < COUNT; i++) {
@@ -34,12 +32,4 @@ static void sets_are_those_of_the_pairs(void **state) {
     for (uint32_t k = i % 7; k < COUNT; k += 13)
       assert_int_equal(abbe_disjoint_sets_find(parent, i) == abbe_disjoint_sets_find(parent, k),
                        i % 7 == k % 7);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(numbers_begin_alone_and_join),
-      cmocka_unit_test(sets_are_those_of_the_pairs),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

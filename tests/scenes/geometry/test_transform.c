@@ -12,8 +12,7 @@ static void assert_point(const double m[16], double x, double y, double z, doubl
   assert_true(fabs(out[0] - ex) < 1e-12 && fabs(out[1] - ey) < 1e-12 && fabs(out[2] - ez) < 1e-12);
 }
 
-static void rotation_is_right_handed(void **state) {
-  (void)state;
+TEST(rotation_is_right_handed) {
   const double axis[3] = {0, 0, 7};
   double m[16];
   abbe_transform_rotate(PI / 2, axis, m);
@@ -21,8 +20,7 @@ static void rotation_is_right_handed(void **state) {
   assert_point(m, 0, 1, 0, -1, 0, 0);
 }
 
-static void product_applies_the_right_one_first_and_aliases(void **state) {
-  (void)state;
+TEST(product_applies_the_right_one_first_and_aliases) {
   const double offset[3] = {1, 2, 3}, factor[3] = {2, 2, 2};
   double move[16], scale[16];
   abbe_transform_translate(offset, move);
@@ -36,8 +34,7 @@ static void product_applies_the_right_one_first_and_aliases(void **state) {
   assert_true(fabs(abbe_transform_determinant3(scale) - 8) < 1e-12);
 }
 
-static void look_at_puts_the_target_on_minus_z(void **state) {
-  (void)state;
+TEST(look_at_puts_the_target_on_minus_z) {
   const double eye[3] = {3, -4, 5}, target[3] = {0, 1, 0}, up[3] = {0, 0, 1};
   double m[16];
   abbe_transform_look_at(eye, target, up, m);
@@ -51,24 +48,21 @@ static void look_at_puts_the_target_on_minus_z(void **state) {
   assert_point(m, 0, 5, 0, 0, 0, -5);
 }
 
-static void perspective_maps_its_frustum_to_the_cube(void **state) {
-  (void)state;
+TEST(perspective_maps_its_frustum_to_the_cube) {
   double m[16];
   abbe_transform_perspective(-0.5, 1.0, -0.25, 0.75, 0.1, 10, m);
   assert_point(m, -0.05, -0.025, -0.1, -1, -1, -1);
   assert_point(m, 10, 7.5, -10, 1, 1, 1);
 }
 
-static void orthographic_maps_its_box_to_the_cube(void **state) {
-  (void)state;
+TEST(orthographic_maps_its_box_to_the_cube) {
   double m[16];
   abbe_transform_orthographic(-2, 4, -1, 1, 1, 3, m);
   assert_point(m, -2, -1, -1, -1, -1, -1);
   assert_point(m, 4, 1, -3, 1, 1, 1);
 }
 
-static void inverse_undoes_and_refuses_singular(void **state) {
-  (void)state;
+TEST(inverse_undoes_and_refuses_singular) {
   const double offset[3] = {1, 2, 3}, axis[3] = {1, 1, 0}, flat[3] = {1, 0, 1};
   double move[16], turn[16], back[16];
   abbe_transform_translate(offset, move);
@@ -85,8 +79,7 @@ static void inverse_undoes_and_refuses_singular(void **state) {
   assert_false(abbe_transform_normal_matrix(move, normal));
 }
 
-static void normal_matrix_keeps_normals_perpendicular(void **state) {
-  (void)state;
+TEST(normal_matrix_keeps_normals_perpendicular) {
   const double factor[3] = {1, 4, 1};
   double m[16], n[9];
   abbe_transform_scale(factor, m);
@@ -95,23 +88,8 @@ static void normal_matrix_keeps_normals_perpendicular(void **state) {
   assert_true(fabs(n[0] * 1 + n[3] * 1 - 1) < 1e-12 && fabs(n[1] * 1 + n[4] * 1 - 0.25) < 1e-12);
 }
 
-static void identity_changes_nothing(void **state) {
-  (void)state;
+TEST(identity_changes_nothing) {
   double m[16];
   abbe_transform_identity(m);
   assert_point(m, 1, -2, 3, 1, -2, 3);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rotation_is_right_handed),
-      cmocka_unit_test(product_applies_the_right_one_first_and_aliases),
-      cmocka_unit_test(look_at_puts_the_target_on_minus_z),
-      cmocka_unit_test(perspective_maps_its_frustum_to_the_cube),
-      cmocka_unit_test(orthographic_maps_its_box_to_the_cube),
-      cmocka_unit_test(inverse_undoes_and_refuses_singular),
-      cmocka_unit_test(normal_matrix_keeps_normals_perpendicular),
-      cmocka_unit_test(identity_changes_nothing),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

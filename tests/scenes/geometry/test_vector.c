@@ -2,8 +2,7 @@
 
 #include "scenes/geometry/vector.h"
 
-static void products(void **state) {
-  (void)state;
+TEST(products) {
   const double x[3] = {1, 0, 0}, y[3] = {0, 2, 0};
   double z[3];
   abbe_vector_cross(x, y, z);
@@ -14,8 +13,7 @@ static void products(void **state) {
   assert_true(z[1] == -2 && z[2] == 2);
 }
 
-static void normalising_zero_or_infinity_is_refused(void **state) {
-  (void)state;
+TEST(normalising_zero_or_infinity_is_refused) {
   double zero[3] = {0, 0, 0}, infinite[3] = {INFINITY, 0, 0}, good[3] = {0, 0, -4};
   assert_false(abbe_vector_normalise(zero));
   assert_true(zero[0] == 0 && zero[2] == 0);
@@ -25,8 +23,7 @@ static void normalising_zero_or_infinity_is_refused(void **state) {
 }
 
 /* Squares of these are subnormal numbers, of few digits. */
-static void what_is_next_to_nothing_has_a_direction(void **state) {
-  (void)state;
+TEST(what_is_next_to_nothing_has_a_direction) {
   for (double size = 1e-120; size > 1e-161; size *= 0.1) {
     double a[3] = {3 * size, -4 * size, 12 * size};
     assert_true(abbe_vector_normalise(a));
@@ -35,8 +32,7 @@ static void what_is_next_to_nothing_has_a_direction(void **state) {
   }
 }
 
-static void triangle_points_along_its_normal(void **state) {
-  (void)state;
+TEST(triangle_points_along_its_normal) {
   const double a[3] = {1, 1, 5}, b[3] = {3, 1, 5}, c[3] = {1, 2, 5};
   double n[3];
   abbe_vector_triangle(a, b, c, n);
@@ -44,8 +40,7 @@ static void triangle_points_along_its_normal(void **state) {
 }
 
 /* A frame and its mirror image: columns of length 1, square to each other, to one hand each. */
-static void frames_are_square(void **state) {
-  (void)state;
+TEST(frames_are_square) {
   const double a[3] = {0, 3, 0}, b[3] = {-2, 5, 0};
   double frame[9], image[9];
   abbe_vector_frame(a, b, 1, frame);
@@ -55,15 +50,4 @@ static void frames_are_square(void **state) {
     assert_true(fabs(frame[k] - known[k]) < 1e-15);
     assert_true(fabs(image[k] - (k == 8 ? -1 : known[k])) < 1e-15);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(products),
-      cmocka_unit_test(normalising_zero_or_infinity_is_refused),
-      cmocka_unit_test(what_is_next_to_nothing_has_a_direction),
-      cmocka_unit_test(triangle_points_along_its_normal),
-      cmocka_unit_test(frames_are_square),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -35,8 +35,7 @@ static void seen(const abbe_scene *scene, size_t first, size_t last, double min[
     }
 }
 
-static void objects_fill_the_picture(void **state) {
-  (void)state;
+TEST(objects_fill_the_picture) {
   static const struct {
     const char *camera;
     size_t first, last;
@@ -57,8 +56,7 @@ static void objects_fill_the_picture(void **state) {
   }
 }
 
-static void the_side_is_the_cameras_own(void **state) {
-  (void)state;
+TEST(the_side_is_the_cameras_own) {
   abbe_scene scene;
   double view[3];
   make("{frame: [ball], elevation: 30, azimuth: 60, fov: 20}", &scene);
@@ -69,8 +67,7 @@ static void the_side_is_the_cameras_own(void **state) {
 }
 
 /* As where a camera that was led by hand is kept beside what the file frames. */
-static void an_eye_and_a_target_stay(void **state) {
-  (void)state;
+TEST(an_eye_and_a_target_stay) {
   abbe_scene scene;
   make("{frame: [ball], eye: [0, -1, 1], target: [0.2, 0, 0]}", &scene);
   assert_true(scene.camera.eye[1] == -1 && scene.camera.target[0] == 0.2);
@@ -81,8 +78,7 @@ static void an_eye_and_a_target_stay(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void what_cannot_be_framed_is_named(void **state) {
-  (void)state;
+TEST(what_cannot_be_framed_is_named) {
   static const char *const bad[][2] = {
       {"{frame: [bal]}", "none is called 'bal'; did you mean 'ball'?"},
       {"{frame: []}", "'frame' names no object"},
@@ -103,14 +99,4 @@ static void what_cannot_be_framed_is_named(void **state) {
     assert_contains(error.text, "t.yaml:1: ");
     assert_contains(error.text, bad[i][1]);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(objects_fill_the_picture),
-      cmocka_unit_test(the_side_is_the_cameras_own),
-      cmocka_unit_test(an_eye_and_a_target_stay),
-      cmocka_unit_test(what_cannot_be_framed_is_named),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

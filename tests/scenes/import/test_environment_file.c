@@ -35,8 +35,7 @@ static void check_irradiance(const char *text, const double normal[3], double ex
   abbe_environment_free(&e);
 }
 
-static void known_irradiances(void **state) {
-  (void)state;
+TEST(known_irradiances) {
   check_irradiance("{uniform: 2}", up, 2 * PI);
   check_irradiance("{uniform: 2, scale: 3, size: 64}", down, 6 * PI);
   check_irradiance("{dome: iso}", up, PI);
@@ -61,8 +60,7 @@ static void radiance_at(const abbe_environment *e, double x, double y, double z,
   abbe_environment_radiance(e, (const double[3]){x / length, y / length, z / length}, rgb);
 }
 
-static void places_and_turns(void **state) {
-  (void)state;
+TEST(places_and_turns) {
   abbe_environment e;
   double rgb[3];
   surroundings(
@@ -95,8 +93,7 @@ static void places_and_turns(void **state) {
   abbe_environment_free(&e);
 }
 
-static void aset(void **state) {
-  (void)state;
+TEST(aset) {
   static const double elevations[] = {-10, 20, 60, 80};
   abbe_environment e;
   surroundings("{dome: aset}", &e);
@@ -109,8 +106,7 @@ static void aset(void **state) {
   abbe_environment_free(&e);
 }
 
-static void pictures(void **state) {
-  (void)state;
+TEST(pictures) {
   static const char *const names[] = {"R", "G", "B"};
   abbe_image image;
   abbe_environment e;
@@ -139,8 +135,7 @@ static void pictures(void **state) {
   unlink(path);
 }
 
-static void what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   static const struct {
     const char *text, *part;
   } cases[] = {
@@ -203,8 +198,7 @@ static void what_is_refused(void **state) {
 }
 
 /* Sodium light has one colour. */
-static void an_illuminant_has_colours(void **state) {
-  (void)state;
+TEST(an_illuminant_has_colours) {
   char path[64], text[128];
   abbe_environment e;
   abbe_error error;
@@ -227,8 +221,7 @@ static void an_illuminant_has_colours(void **state) {
   "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"                                            \
   "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5}\n"
 
-static void scenes_have_surroundings(void **state) {
-  (void)state;
+TEST(scenes_have_surroundings) {
   abbe_scene scene;
   load_text(VIEW "environment: {uniform: 1, size: 64}\n", &scene);
   assert_int_equal(scene.light_count, 0);
@@ -254,8 +247,7 @@ static void scenes_have_surroundings(void **state) {
 }
 
 /* Each surroundings of the page, in a scene. */
-static void what_is_documented_loads(void **state) {
-  (void)state;
+TEST(what_is_documented_loads) {
   static const double grounds[] = {2, 3.4, 3};
   static const double tolerance[] = {1.2, 1e-2, 1e-3};
   char *text = NULL;
@@ -277,18 +269,4 @@ static void what_is_documented_loads(void **state) {
   }
   assert_int_equal(found, 3);
   free(text);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(known_irradiances),
-      cmocka_unit_test(places_and_turns),
-      cmocka_unit_test(aset),
-      cmocka_unit_test(pictures),
-      cmocka_unit_test(what_is_refused),
-      cmocka_unit_test(an_illuminant_has_colours),
-      cmocka_unit_test(scenes_have_surroundings),
-      cmocka_unit_test(what_is_documented_loads),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,8 +16,7 @@ static abbe_result read(const char *text, abbe_light **light, size_t *count, abb
   return result;
 }
 
-static void each_kind_is_read(void **state) {
-  (void)state;
+TEST(each_kind_is_read) {
   abbe_light *light;
   size_t count;
   abbe_error error;
@@ -51,8 +50,7 @@ static void each_kind_is_read(void **state) {
   abbe_lights_free(NULL, 0);
 }
 
-static void what_no_light_has_is_refused(void **state) {
-  (void)state;
+TEST(what_no_light_has_is_refused) {
   static const char *const bad[][2] = {
       {"lights: 3\n", "'lights' wants a list"},
       {"lights:\n- {position: [0, 0, 1], intensity: 1}\n", "kind"},
@@ -74,8 +72,7 @@ static void what_no_light_has_is_refused(void **state) {
 }
 
 /* Lights alone are read again: as with all else, and the objects stay where they are. */
-static void lights_change_alone(void **state) {
-  (void)state;
+TEST(lights_change_alone) {
   static const char *const sets[][2] = {
       {"lights.lamp.position=[0.02, 0.03, 0.25]", "ambient=0.5"},
       {"background=0.25", "lights.lamp={kind: point, position: [0, 0, 0.28], intensity: 3}"},
@@ -111,11 +108,4 @@ static void lights_change_alone(void **state) {
     assert_true(scene.light[0].power == 0.5 && scene.ambient != 0.5);
   }
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(each_kind_is_read),
-                                     cmocka_unit_test(what_no_light_has_is_refused),
-                                     cmocka_unit_test(lights_change_alone)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,15 +11,12 @@
 
 static abbe_material_table table;
 
-static int load_table(void **state) {
-  (void)state;
-  return abbe_material_table_load(NULL, &table, NULL) == ABBE_OK ? 0 : -1;
+static void load_table(void) {
+  assert_int_equal(abbe_material_table_load(NULL, &table, NULL), ABBE_OK);
 }
 
-static int free_table(void **state) {
-  (void)state;
+static void free_table(void) {
   abbe_material_table_free(&table);
-  return 0;
 }
 
 /* The object as a scene of its own, which frees it. */
@@ -54,9 +51,10 @@ static void refuses(const char *object, const char *says) {
   abbe_scene_free(&one);
 }
 
+GROUP(load_table, free_table);
+
 /* Designs that ship keep their planes, and are as wide as they are asked to be. */
-static void cuts_are_solids_of_their_planes(void **state) {
-  (void)state;
+TEST(cuts_are_solids_of_their_planes) {
   static const struct {
     const char *design;
     size_t planes;
@@ -144,8 +142,7 @@ static void write_gcs(const char *path) {
   abbe_cut_free(&cut);
 }
 
-static void cuts_are_cut_at_other_angles(void **state) {
-  (void)state;
+TEST(cuts_are_cut_at_other_angles) {
   const double turn = 3.14159265358979323846 / 180;
   const char *const quartz = "../../scenes/designs/brilliant-quartz.asc";
   char folder[] = "/tmp/abbe-test-design-XXXXXX", path[64], keys[120];
@@ -180,8 +177,7 @@ static void cuts_are_cut_at_other_angles(void **state) {
   assert_int_equal(remove(folder), 0);
 }
 
-static void angles_that_no_stone_has(void **state) {
-  (void)state;
+TEST(angles_that_no_stone_has) {
   static const char *const wrong[][2] = {
       {", crown: 90", "'crown' is the angle of that side's main facets, between 0 and 90"},
       {", pavilion: 0", "'pavilion' is the angle"},
@@ -198,8 +194,7 @@ static void angles_that_no_stone_has(void **state) {
 }
 
 /* With its defaults; refusals name the line. */
-static void knots_are_read(void **state) {
-  (void)state;
+TEST(knots_are_read) {
   static const struct {
     const char *keys, *says;
   } bad[] = {{"radius: 0.03", "meets itself"},
@@ -218,8 +213,7 @@ static void knots_are_read(void **state) {
   }
 }
 
-static void a_sphere_stays_one_under_similarities_only(void **state) {
-  (void)state;
+TEST(a_sphere_stays_one_under_similarities_only) {
   abbe_scene scene = read("{shape: sphere, radius: 2, material: water, transform: [{scale: 0.5}, "
                           "{rotate: {axis: [1, 2, 3], angle: 40}}, {translate: [1, 2, 3]}]}");
   const abbe_exact *exact = &scene.object[0].exact;
@@ -239,8 +233,7 @@ static void a_sphere_stays_one_under_similarities_only(void **state) {
 }
 
 /* z unless the scene says else, turned and never stretched with the object. */
-static void crystals_have_an_optic_axis(void **state) {
-  (void)state;
+TEST(crystals_have_an_optic_axis) {
   const struct {
     const char *keys;
     double axis[3];
@@ -263,8 +256,7 @@ static void crystals_have_an_optic_axis(void **state) {
 }
 
 /* Whole or open, with its exact surface where that is known, and nothing of it is mended. */
-static void mirrors_are_metals_or_numbers_of_any_shape(void **state) {
-  (void)state;
+TEST(mirrors_are_metals_or_numbers_of_any_shape) {
   static const struct {
     const char *text;
     abbe_exact_kind exact;
@@ -304,8 +296,7 @@ static void mirrors_are_metals_or_numbers_of_any_shape(void **state) {
 }
 
 /* Along a direction or around an axis, which turns with the object. */
-static void mirrors_may_be_brushed(void **state) {
-  (void)state;
+TEST(mirrors_may_be_brushed) {
   abbe_scene scene = read("{shape: sphere, radius: 1, mirror: silver, roughness: 0.25}");
   assert_true(scene.object[0].brushing.facets.x == 0.25);
   assert_true(scene.object[0].brushing.facets.y == 0.25);
@@ -323,8 +314,7 @@ static void mirrors_may_be_brushed(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void boxes_are_planes_or_parallelograms(void **state) {
-  (void)state;
+TEST(boxes_are_planes_or_parallelograms) {
   abbe_scene scene = read("{shape: box, size: [1, 2, 3], material: diamond}");
   assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_CONVEX);
   assert_int_equal(scene.object[0].exact.count, 6);
@@ -345,8 +335,7 @@ static void boxes_are_planes_or_parallelograms(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void steps_apply_in_order(void **state) {
-  (void)state;
+TEST(steps_apply_in_order) {
   abbe_scene scene = read("{shape: rectangle, width: 1, height: 1, reflectance: 1, transform: "
                           "[{translate: [1, 0, 0]}, {rotate: {axis: [0, 0, 1], angle: 90}}]}");
   assert_true(fabs(scene.object[0].min[1] - 0.5) < 1e-12);
@@ -354,8 +343,7 @@ static void steps_apply_in_order(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void look_turns_z_to_the_target(void **state) {
-  (void)state;
+TEST(look_turns_z_to_the_target) {
   abbe_scene scene = read("{shape: rectangle, width: 2, height: 1, reflectance: 1, transform: "
                           "[{look: {from: [1, 2, 3], to: [1, -7, 3]}}]}");
   const abbe_object *o = &scene.object[0];
@@ -365,8 +353,7 @@ static void look_turns_z_to_the_target(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void an_inverted_mesh_is_fixed_and_said(void **state) {
-  (void)state;
+TEST(an_inverted_mesh_is_fixed_and_said) {
   abbe_scene scene = read("{mesh: inverted.obj, smooth: false, material: n-sf11}");
   assert_non_null(scene.object[0].fixes);
   assert_non_null(strstr(scene.object[0].fixes, "inside-out"));
@@ -377,8 +364,7 @@ static void an_inverted_mesh_is_fixed_and_said(void **state) {
 
 /* A cube without normals in its file is cut, unless the scene says otherwise; the same to whoever
  * asks for its planes and to whoever asks for its normals. */
-static void a_die_is_what_the_scene_says(void **state) {
-  (void)state;
+TEST(a_die_is_what_the_scene_says) {
   static const struct {
     const char *key;
     bool cut;
@@ -404,8 +390,7 @@ static void a_die_is_what_the_scene_says(void **state) {
   }
 }
 
-static void parts_of_a_mesh_are_objects(void **state) {
-  (void)state;
+TEST(parts_of_a_mesh_are_objects) {
   abbe_scene scene = read("{name: boxes, mesh: ../meshes/crossing.obj, material: water}");
   assert_int_equal(scene.object_count, 2);
   assert_string_equal(scene.object[1].name, "boxes (part 2 of 2)");
@@ -419,33 +404,11 @@ static void parts_of_a_mesh_are_objects(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void paths_follow_the_folder(void **state) {
-  (void)state;
+TEST(paths_follow_the_folder) {
   char *path = abbe_scene_value_path("scenes/", "a.png");
   assert_string_equal(path, "scenes/a.png");
   free(path);
   path = abbe_scene_value_path("scenes/", "/a.png");
   assert_string_equal(path, "/a.png");
   free(path);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(cuts_are_solids_of_their_planes),
-      cmocka_unit_test(cuts_are_cut_at_other_angles),
-      cmocka_unit_test(angles_that_no_stone_has),
-      cmocka_unit_test(knots_are_read),
-      cmocka_unit_test(a_sphere_stays_one_under_similarities_only),
-      cmocka_unit_test(crystals_have_an_optic_axis),
-      cmocka_unit_test(mirrors_are_metals_or_numbers_of_any_shape),
-      cmocka_unit_test(mirrors_may_be_brushed),
-      cmocka_unit_test(boxes_are_planes_or_parallelograms),
-      cmocka_unit_test(steps_apply_in_order),
-      cmocka_unit_test(look_turns_z_to_the_target),
-      cmocka_unit_test(an_inverted_mesh_is_fixed_and_said),
-      cmocka_unit_test(a_die_is_what_the_scene_says),
-      cmocka_unit_test(parts_of_a_mesh_are_objects),
-      cmocka_unit_test(paths_follow_the_folder),
-  };
-  return cmocka_run_group_tests(tests, load_table, free_table);
 }

@@ -41,8 +41,7 @@ static abbe_mesh sphere(double radius, size_t levels) {
   return m;
 }
 
-static void a_size_and_a_place_are_taken_from_the_bounds(void **state) {
-  (void)state;
+TEST(a_size_and_a_place_are_taken_from_the_bounds) {
   const test_box box = {{10, 20, 30}, {14, 22, 31}, false};
   const double turn[3] = {0, 0, 1}, half_pi = 1.57079632679489662;
   abbe_object_surface s = request();
@@ -63,8 +62,7 @@ static void a_size_and_a_place_are_taken_from_the_bounds(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void a_width_is_the_smaller_side_and_a_foot_the_lowest(void **state) {
-  (void)state;
+TEST(a_width_is_the_smaller_side_and_a_foot_the_lowest) {
   const test_box box = {{10, 20, 30}, {14, 22, 31}, false};
   abbe_object_surface s = request();
   s.width = 0.006;
@@ -83,8 +81,7 @@ static void a_width_is_the_smaller_side_and_a_foot_the_lowest(void **state) {
 }
 
 /* The size that is asked for is the solid's, without the sheet that hangs on it. */
-static void what_is_dropped_has_no_size(void **state) {
-  (void)state;
+TEST(what_is_dropped_has_no_size) {
   const test_box box = {{0, 0, 0}, {4, 2, 1}, false};
   abbe_mesh whole = test_boxes(&box, 1), m;
   const size_t n = whole.vertex_count, f = whole.face_count;
@@ -108,8 +105,7 @@ static void what_is_dropped_has_no_size(void **state) {
 }
 
 /* Its vertices do not reach as far as the ball does. */
-static void a_ball_is_fitted_as_a_ball(void **state) {
-  (void)state;
+TEST(a_ball_is_fitted_as_a_ball) {
   abbe_object_surface s = request();
   s.radius = 3;
   s.fit = 0.1;
@@ -121,8 +117,7 @@ static void a_ball_is_fitted_as_a_ball(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void what_has_no_size_cannot_be_fitted(void **state) {
-  (void)state;
+TEST(what_has_no_size_cannot_be_fitted) {
   abbe_mesh m;
   assert_int_equal(abbe_mesh_make(3, 1, false, &m, NULL), ABBE_OK);
   m.face[0][1] = 1, m.face[0][2] = 2;
@@ -137,8 +132,7 @@ static void what_has_no_size_cannot_be_fitted(void **state) {
 }
 
 /* A body with a hollow, and a second body that crosses it, turned and made smaller with it. */
-static void shells_that_cross_become_objects(void **state) {
-  (void)state;
+TEST(shells_that_cross_become_objects) {
   const test_box box[3] = {{{0, 0, 0}, {9, 9, 9}, false},
                            {{2, 2, 2}, {7, 7, 7}, true},
                            {{8, 3, 3.5}, {12, 6, 6}, false}};
@@ -166,8 +160,7 @@ static void shells_that_cross_become_objects(void **state) {
 }
 
 /* Flush below and back to back: the second reaches into the first and past it below, a little. */
-static void solids_that_lie_on_one_another_overlap(void **state) {
-  (void)state;
+TEST(solids_that_lie_on_one_another_overlap) {
   const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 0.2, 0}, {2, 0.8, 0.5}, false}};
   abbe_object_surface s = request();
   abbe_scene scene = place(test_boxes(box, 2), &s, true);
@@ -179,8 +172,7 @@ static void solids_that_lie_on_one_another_overlap(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void more_parts_than_there_is_room_for_are_refused(void **state) {
-  (void)state;
+TEST(more_parts_than_there_is_room_for_are_refused) {
   const test_box box[2] = {{{0, 0, 0}, {2, 2, 2}, false}, {{1, 0.5, 0.7}, {4, 1.5, 1.5}, false}};
   const abbe_object_surface s = request();
   abbe_error error = {0};
@@ -210,8 +202,7 @@ static abbe_scene chosen(abbe_mesh m, bool given) {
   return place(m, &s, true);
 }
 
-static void a_stone_is_cut_and_a_ball_is_round(void **state) {
-  (void)state;
+TEST(a_stone_is_cut_and_a_ball_is_round) {
   abbe_mesh m;
   /* a stone: its facets meet at less than a crease, but at its girdle */
   assert_int_equal(abbe_shape_gem(16, 1, 0.6, 0.25, 0.5, &m, NULL), ABBE_OK);
@@ -265,8 +256,7 @@ static abbe_mesh rough_cube(double off) {
 }
 
 /* What is known by its planes has triangles in them: light that leaves a plane meets none. */
-static void triangles_of_a_rough_solid_lie_in_its_planes(void **state) {
-  (void)state;
+TEST(triangles_of_a_rough_solid_lie_in_its_planes) {
   static const double off[] = {0, 1e-6, 8e-6};
   for (size_t i = 0; i < sizeof off / sizeof *off; i++) {
     abbe_object_surface s = request();
@@ -292,20 +282,4 @@ static void triangles_of_a_rough_solid_lie_in_its_planes(void **state) {
     assert_true(off[i] == 0 || o->exact.convex.tolerance > 2e-6);
     abbe_scene_free(&scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(triangles_of_a_rough_solid_lie_in_its_planes),
-      cmocka_unit_test(a_size_and_a_place_are_taken_from_the_bounds),
-      cmocka_unit_test(a_width_is_the_smaller_side_and_a_foot_the_lowest),
-      cmocka_unit_test(what_is_dropped_has_no_size),
-      cmocka_unit_test(a_ball_is_fitted_as_a_ball),
-      cmocka_unit_test(what_has_no_size_cannot_be_fitted),
-      cmocka_unit_test(shells_that_cross_become_objects),
-      cmocka_unit_test(solids_that_lie_on_one_another_overlap),
-      cmocka_unit_test(more_parts_than_there_is_room_for_are_refused),
-      cmocka_unit_test(a_stone_is_cut_and_a_ball_is_round),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,8 +19,7 @@ static void load_plate(const char *format, const char *path, abbe_scene *scene) 
   load_text(text, scene);
 }
 
-static void a_file_gives_a_spectrum(void **state) {
-  (void)state;
+TEST(a_file_gives_a_spectrum) {
   const char *path = write_table("nm;leaf;stone\n400;0,1;0,5\n500;0,3;0,5\n700;0,2;0,5\n");
   abbe_scene scene;
   load_plate("{spectrum: %s, column: leaf}", path, &scene);
@@ -39,8 +38,7 @@ static void a_file_gives_a_spectrum(void **state) {
   unlink(path);
 }
 
-static void a_patch_gives_a_spectrum(void **state) {
-  (void)state;
+TEST(a_patch_gives_a_spectrum) {
   abbe_scene scene;
   load_text(PLATE("{patch: red}"), &scene);
   const abbe_object *o = &scene.object[0];
@@ -66,8 +64,7 @@ static void refuses(const char *format, const char *table, abbe_result result, c
   unlink(write_table(""));
 }
 
-static void what_is_no_reflectance_is_refused(void **state) {
-  (void)state;
+TEST(what_is_no_reflectance_is_refused) {
   const char *good = "nm,a\n400,0.5\n700,0.5\n";
   refuses("{patch: blue sky, column: a}", good, ABBE_SCHEMA, "either {spectrum: FILE}");
   refuses("{}", good, ABBE_SCHEMA, "either {spectrum: FILE}");
@@ -77,11 +74,4 @@ static void what_is_no_reflectance_is_refused(void **state) {
   refuses("{spectrum: /no/such.csv}", good, ABBE_IO, "/no/such.csv");
   refuses("{patch: red, colour: blue}", good, ABBE_SCHEMA, "colour");
   refuses("{patch: red}, texture: wood.png", good, ABBE_SCHEMA, "a texture multiplies");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_file_gives_a_spectrum),
-                                     cmocka_unit_test(a_patch_gives_a_spectrum),
-                                     cmocka_unit_test(what_is_no_reflectance_is_refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,19 +1,10 @@
 #include "scenes/import/scene_file.h"
 
+#include "tests/check.h"
+
 #include "base/file.h"
 #include "scenes/geometry/vector.h"
 #include "spectral/optics.h"
-
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 #define PI 3.14159265358979323846
 
@@ -40,8 +31,7 @@ static const abbe_object *refractor(const abbe_scene *scene) {
   return NULL;
 }
 
-static void every_shipped_scene_loads(void **state) {
-  (void)state;
+TEST(every_shipped_scene_loads) {
   static const struct {
     const char *name;
     size_t faces;
@@ -80,8 +70,7 @@ static void every_shipped_scene_loads(void **state) {
   }
 }
 
-static void cornell_boxes_face_inwards_and_are_red_on_the_left(void **state) {
-  (void)state;
+TEST(cornell_boxes_face_inwards_and_are_red_on_the_left) {
   static const char *const names[] = {"sphere", "ring", "gem", "bunny"};
   static const char *const walls[] = {"floor", "back wall", "left wall", "right wall", "ceiling"};
   const double inside[3] = {0, 0, 0.15};
@@ -105,8 +94,7 @@ static void cornell_boxes_face_inwards_and_are_red_on_the_left(void **state) {
 }
 
 /* A prism's ray in the plane of its base: [BornWolf1999]. */
-static void the_spectrum_of_the_prism_falls_on_the_wall(void **state) {
-  (void)state;
+TEST(the_spectrum_of_the_prism_falls_on_the_wall) {
   abbe_scene scene = load("prism");
   const abbe_object *prism = refractor(&scene), *wall = find(&scene, "wall");
   const double wavelengths[3] = {400, 588, 700};
@@ -140,8 +128,7 @@ static void the_spectrum_of_the_prism_falls_on_the_wall(void **state) {
 }
 
 /* The outermost ray of order one: b from 0 to 1, exit angle 4 asin(b/n) - 2 asin(b). */
-static void the_rainbow_falls_on_the_screen(void **state) {
-  (void)state;
+TEST(the_rainbow_falls_on_the_screen) {
   abbe_scene scene = load("rainbow");
   const abbe_object *drop = refractor(&scene), *above = find(&scene, "screen, above the hole");
   const double distance = above->min[0] - drop->exact.centre[0], r = drop->exact.radius;
@@ -163,8 +150,7 @@ static void the_rainbow_falls_on_the_screen(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void the_glass_stands_on_textured_wood(void **state) {
-  (void)state;
+TEST(the_glass_stands_on_textured_wood) {
   abbe_scene scene = load("glass");
   const abbe_object *table = find(&scene, "table");
   assert_int_equal(table->texture.width, 256);
@@ -175,8 +161,7 @@ static void the_glass_stands_on_textured_wood(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void options_choose_another_table(void **state) {
-  (void)state;
+TEST(options_choose_another_table) {
   const abbe_scene_options options = {.materials = "thesis"};
   abbe_scene scene;
   abbe_error error;
@@ -196,8 +181,7 @@ static abbe_result load_set(const char *stone, const char *set, abbe_scene *out,
   return abbe_scene_load(ABBE_SOURCE_DIR "/scenes/gem.yaml", &options, out, error);
 }
 
-static void values_are_set_by_their_path(void **state) {
-  (void)state;
+TEST(values_are_set_by_their_path) {
   abbe_scene scene;
   abbe_error error;
   assert_int_equal(load_set(NULL, "lights.lamp.intensity=2", &scene, &error), ABBE_OK);
@@ -234,8 +218,7 @@ static void values_are_set_by_their_path(void **state) {
   }
 }
 
-static void a_stone_takes_anothers_place(void **state) {
-  (void)state;
+TEST(a_stone_takes_anothers_place) {
   static const char *const good[] = {"ruby", "n-sf11=ruby", "gem=ruby"};
   abbe_scene scene;
   abbe_error error;
@@ -253,8 +236,7 @@ static void a_stone_takes_anothers_place(void **state) {
   }
 }
 
-static void bad_scenes_are_explained(void **state) {
-  (void)state;
+TEST(bad_scenes_are_explained) {
   static const struct {
     const char *name;
     abbe_result result;
@@ -397,8 +379,7 @@ static void bad_scenes_are_explained(void **state) {
 }
 
 /* The example of docs/scene-files.md, between its first pair of fences. */
-static void the_documented_scene_loads(void **state) {
-  (void)state;
+TEST(the_documented_scene_loads) {
   char *text = NULL;
   size_t size;
   assert_int_equal(
@@ -420,8 +401,7 @@ static void the_documented_scene_loads(void **state) {
   remove("t_documented.yaml");
 }
 
-static void a_missing_file_is_named(void **state) {
-  (void)state;
+TEST(a_missing_file_is_named) {
   abbe_scene scene;
   abbe_error error;
   assert_int_equal(abbe_scene_load("no_such_scene.yaml", NULL, &scene, &error), ABBE_IO);
@@ -429,8 +409,7 @@ static void a_missing_file_is_named(void **state) {
 }
 
 /* Text says what its file says; without a file the name stands in the messages. */
-static void text_is_read_like_a_file(void **state) {
-  (void)state;
+TEST(text_is_read_like_a_file) {
   char *text = NULL;
   size_t size = 0;
   abbe_error error = {0};
@@ -451,8 +430,7 @@ static void text_is_read_like_a_file(void **state) {
 }
 
 /* Only what was set differs; without changes nothing does. */
-static void texts_differ_where_something_was_set(void **state) {
-  (void)state;
+TEST(texts_differ_where_something_was_set) {
   static const char path[] = ABBE_SOURCE_DIR "/scenes/gem.yaml";
   const char *set = "lights.lamp.cone=40";
   const abbe_scene_options options = {.set = &set, .set_count = 1, .stone = "diamond"};
@@ -474,23 +452,4 @@ static void texts_differ_where_something_was_set(void **state) {
   assert_int_equal(abbe_scene_text(path, &options, &changed, &changed_size, NULL),
                    ABBE_INVALID_ARGUMENT);
   assert_null(changed);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_shipped_scene_loads),
-      cmocka_unit_test(cornell_boxes_face_inwards_and_are_red_on_the_left),
-      cmocka_unit_test(the_spectrum_of_the_prism_falls_on_the_wall),
-      cmocka_unit_test(the_rainbow_falls_on_the_screen),
-      cmocka_unit_test(the_glass_stands_on_textured_wood),
-      cmocka_unit_test(options_choose_another_table),
-      cmocka_unit_test(texts_differ_where_something_was_set),
-      cmocka_unit_test(values_are_set_by_their_path),
-      cmocka_unit_test(a_stone_takes_anothers_place),
-      cmocka_unit_test(bad_scenes_are_explained),
-      cmocka_unit_test(the_documented_scene_loads),
-      cmocka_unit_test(a_missing_file_is_named),
-      cmocka_unit_test(text_is_read_like_a_file),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

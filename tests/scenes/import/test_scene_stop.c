@@ -7,8 +7,7 @@
 #include <stdio.h>
 
 /* Whoever stops it is not asked again, whenever that is, and there is no scene. */
-static void reading_ends_when_it_is_told_to(void **state) {
-  (void)state;
+TEST(reading_ends_when_it_is_told_to) {
   static const struct {
     const char *name;
     size_t least; /* questions: of a large mesh, of surroundings and a cut stone */
@@ -33,9 +32,4 @@ static void reading_ends_when_it_is_told_to(void **state) {
     if (p.asked < scenes[i].least) fail_msg("%s: asked %zu times", scenes[i].name, p.asked);
     abbe_scene_free(&scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(reading_ends_when_it_is_told_to)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

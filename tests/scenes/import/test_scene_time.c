@@ -19,8 +19,7 @@ static abbe_scene load_at(const char *text, const char *time) {
   return scene;
 }
 
-static void numbers_go_between_keyframes(void **state) {
-  (void)state;
+TEST(numbers_go_between_keyframes) {
   static const struct {
     const char *time;
     double is;
@@ -35,8 +34,7 @@ static void numbers_go_between_keyframes(void **state) {
 }
 
 /* The scene's own time, places and angles, a list in block style, and a time that repeats. */
-static void all_kinds_of_values_move(void **state) {
-  (void)state;
+TEST(all_kinds_of_values_move) {
   static const char text[] =
       "time: 2.5\ncamera:\n  eye: {keyframes: [[2, [0, -1, 1]], [3, [0, -2, 3]]]}\n"
       "  target: [0, 0, 0]\n"
@@ -56,8 +54,7 @@ static void all_kinds_of_values_move(void **state) {
 }
 
 /* At the scene's time the surface is that of the shape at that time. */
-static void water_is_at_its_time(void **state) {
-  (void)state;
+TEST(water_is_at_its_time) {
   static const char text[] = FRONT LAMP("1") FLOOR
       "- {name: pool, shape: water, size: [1, 0.5, 0.1], material: water, cells: [40, 20],\n"
       "   waves: [{amplitude: 0.005, wavelength: 0.3, direction: 30, phase: 20}],\n"
@@ -103,8 +100,7 @@ static void refuses(const char *text, const char *part, const char *line) {
 
 #define POOL(keys) FRONT LAMP("1") FLOOR "- {shape: water, material: water, " keys "}\n"
 
-static void what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   refuses(FRONT LAMP("{keyframes: 3}") FLOOR, "'keyframes' wants a list", "t.yaml:2");
   refuses(FRONT LAMP("{keyframes: []}") FLOOR, "'keyframes' wants a list", "t.yaml:2");
   refuses(FRONT LAMP("{keyframes: [[0, 1], [0, 2]]}") FLOOR, "rising order", "t.yaml:2");
@@ -125,14 +121,4 @@ static void what_is_refused(void **state) {
   refuses(POOL("size: [1, 1, 0.1], rain: {every: 0, depth: 0.01, radius: 0.1}"), "every",
           "t.yaml:5");
   refuses(POOL("size: [1, 1, 0.1], cells: 2.5"), "whole", "t.yaml:5");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(numbers_go_between_keyframes),
-      cmocka_unit_test(all_kinds_of_values_move),
-      cmocka_unit_test(water_is_at_its_time),
-      cmocka_unit_test(what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,8 +10,7 @@ static const double PI = 3.14159265358979;
   "lights:\n- {name: panel, kind: disk, position: [0, 0, 0.5], direction: [0, 0, -1], radius: "    \
   "0.2, radiance: 3}\n"
 
-static void one_point_is_the_middle(void **state) {
-  (void)state;
+TEST(one_point_is_the_middle) {
   abbe_scene scene, lit;
   load_text(CAMERA DISK FLOOR, &scene);
   assert_true(abbe_area_lights_any(&scene));
@@ -26,8 +25,7 @@ static void one_point_is_the_middle(void **state) {
 
 /* Irradiance below its middle is pi L R^2 / (R^2 + h^2); on the floor beside it the points' means
  * come nearer to it the more there are. */
-static void points_shine_as_the_disk(void **state) {
-  (void)state;
+TEST(points_shine_as_the_disk) {
   static const double within[] = {0.2, 0.05, 0.02};
   for (int i = 0; i < 3; i++) {
     const size_t points = (size_t)1 << 2 * i;
@@ -55,8 +53,7 @@ static void points_shine_as_the_disk(void **state) {
 
 /* A rectangle of 0.4 x 0.1: of 8 points six stand in a row and a half; those that make even rows
  * do, in the middles of equal parts. */
-static void a_rectangle_is_a_grid(void **state) {
-  (void)state;
+TEST(a_rectangle_is_a_grid) {
   abbe_scene scene, lit;
   load_text(CAMERA
             "lights:\n- {name: panel, kind: rectangle, position: [0, 0, 0.5], direction: [0, "
@@ -82,8 +79,7 @@ static void a_rectangle_is_a_grid(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void others_stay_and_room_is_kept(void **state) {
-  (void)state;
+TEST(others_stay_and_room_is_kept) {
   abbe_scene scene, lit;
   load_text(CAMERA DISK
             "- {name: second, kind: disk, position: [1, 0, 0.5], direction: [0, 0, -1], "
@@ -100,11 +96,4 @@ static void others_stay_and_room_is_kept(void **state) {
   assert_int_equal(lit.light_count, 3);
   free(lit.light);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(one_point_is_the_middle), cmocka_unit_test(points_shine_as_the_disk),
-      cmocka_unit_test(a_rectangle_is_a_grid), cmocka_unit_test(others_stay_and_room_is_kept)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -23,8 +23,7 @@ static void drop(abbe_scene *scene, abbe_scene *lit) {
   abbe_scene_free(scene);
 }
 
-static void one_softbox_is_one_light(void **state) {
-  (void)state;
+TEST(one_softbox_is_one_light) {
   abbe_scene scene, lit;
   add("{softboxes: [{elevation: 60, azimuth: 30, radius: 10, radiance: 3}]}", 1, &scene, &lit);
   assert_int_equal(lit.light_count, 1);
@@ -44,8 +43,7 @@ static void one_softbox_is_one_light(void **state) {
   "-20, azimuth: 200, radius: 2, radiance: 400}]}"
 
 /* However many there are, lights and soft light shine on any open plane as the environment does. */
-static void every_open_plane_has_its_irradiance(void **state) {
-  (void)state;
+TEST(every_open_plane_has_its_irradiance) {
   for (size_t count = 1; count <= 16; count *= 4) {
     abbe_scene scene, lit;
     add(STUDIO, count, &scene, &lit);
@@ -75,8 +73,7 @@ static void every_open_plane_has_its_irradiance(void **state) {
 
 /* As radiance, what the lights leave and the lights are all: by luminance, with their directions,
  * and by colour where a lamp has one. No texel gains. */
-static void what_is_left_and_the_lights_are_all(void **state) {
-  (void)state;
+TEST(what_is_left_and_the_lights_are_all) {
   static const double luminance[3] = {0.2126390058715104, 0.7151686787677559, 0.0721923153607337};
   for (size_t count = 0; count <= 2; count++) {
     abbe_scene scene, lit;
@@ -108,8 +105,7 @@ static void what_is_left_and_the_lights_are_all(void **state) {
 }
 
 /* Small lamps are lights, and each its own; what is wide is left. */
-static void only_lamps_become_lights(void **state) {
-  (void)state;
+TEST(only_lamps_become_lights) {
   abbe_scene scene, lit;
   add(STUDIO, 8, &scene, &lit);
   assert_int_equal(lit.light_count, 2);
@@ -119,8 +115,7 @@ static void only_lamps_become_lights(void **state) {
 }
 
 /* Nothing stands out. */
-static void smooth_surroundings_need_no_light(void **state) {
-  (void)state;
+TEST(smooth_surroundings_need_no_light) {
   static const char *const smooth[] = {"{uniform: 1}", "{dome: cos}", "{dome: iso}"};
   for (int i = 0; i < 3; i++) {
     abbe_scene scene, lit;
@@ -135,8 +130,7 @@ static void smooth_surroundings_need_no_light(void **state) {
 }
 
 /* A sun in a sky is one light with the sun's own irradiance. */
-static void the_sun_stands_out_of_its_sky(void **state) {
-  (void)state;
+TEST(the_sun_stands_out_of_its_sky) {
   abbe_scene scene, lit;
   add("{uniform: 0.5, softboxes: [{elevation: 45, azimuth: 30, radius: 0.5, radiance: 4000}]}", 4,
       &scene, &lit);
@@ -145,8 +139,7 @@ static void the_sun_stands_out_of_its_sky(void **state) {
   drop(&scene, &lit);
 }
 
-static void colours_are_the_lights_own(void **state) {
-  (void)state;
+TEST(colours_are_the_lights_own) {
   abbe_scene scene, lit;
   add("{softboxes: [{elevation: 60, radius: 10, radiance: [1, 0.1, 0.1]}, {elevation: 60, azimuth: "
       "180, radius: 10, radiance: 0.4}]}",
@@ -167,8 +160,7 @@ static void colours_are_the_lights_own(void **state) {
 }
 
 /* Also at the zenith, where texels are thin. */
-static void a_lamp_at_the_zenith_is_no_brighter(void **state) {
-  (void)state;
+TEST(a_lamp_at_the_zenith_is_no_brighter) {
   abbe_scene scene, lit;
   add("{softboxes: [{elevation: 90, radius: 3, radiance: 9}]}", 1, &scene, &lit);
   const double r = 3 * PI / 180;
@@ -177,8 +169,7 @@ static void a_lamp_at_the_zenith_is_no_brighter(void **state) {
   drop(&scene, &lit);
 }
 
-static void own_lights_stay_and_leave_room(void **state) {
-  (void)state;
+TEST(own_lights_stay_and_leave_room) {
   abbe_scene scene, lit;
   char text[4096] = CAMERA POINT_LIGHT FLOOR "environment: {softboxes: [";
   for (int i = 0; i < 20; i++)
@@ -202,8 +193,7 @@ static void own_lights_stay_and_leave_room(void **state) {
 }
 
 /* What an earlier copy has is what would be found, and only of the same surroundings. */
-static void an_earlier_copy_is_taken_over(void **state) {
-  (void)state;
+TEST(an_earlier_copy_is_taken_over) {
   abbe_scene scene, first, again, turned;
   add(STUDIO, 2, &scene, &first);
   const abbe_environment_lights_desc desc = {.count = 2, .min_nm = 380, .max_nm = 780};
@@ -228,18 +218,4 @@ static void an_earlier_copy_is_taken_over(void **state) {
   abbe_environment_lights_drop(&again);
   abbe_environment_lights_drop(&turned);
   drop(&scene, &first);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(one_softbox_is_one_light),
-                                     cmocka_unit_test(every_open_plane_has_its_irradiance),
-                                     cmocka_unit_test(what_is_left_and_the_lights_are_all),
-                                     cmocka_unit_test(only_lamps_become_lights),
-                                     cmocka_unit_test(smooth_surroundings_need_no_light),
-                                     cmocka_unit_test(the_sun_stands_out_of_its_sky),
-                                     cmocka_unit_test(colours_are_the_lights_own),
-                                     cmocka_unit_test(a_lamp_at_the_zenith_is_no_brighter),
-                                     cmocka_unit_test(own_lights_stay_and_leave_room),
-                                     cmocka_unit_test(an_earlier_copy_is_taken_over)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

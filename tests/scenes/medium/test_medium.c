@@ -5,8 +5,7 @@
 #include "scenes/medium/medium.h"
 
 /* All that is scattered goes somewhere, and turns by the angle of the mean cosine g. */
-static void the_phase_function_is_normal(void **state) {
-  (void)state;
+TEST(the_phase_function_is_normal) {
   static const double g[] = {0, 0.3, -0.6, 0.9, 0.99};
   enum { PARTS = 400000 };
   for (size_t i = 0; i < sizeof g / sizeof *g; i++) {
@@ -38,8 +37,7 @@ static abbe_medium *make(void) {
   return &m;
 }
 
-static void coefficients_go_by_wavelength(void **state) {
-  (void)state;
+TEST(coefficients_go_by_wavelength) {
   abbe_medium *m = make(), *copy = NULL;
   assert_int_equal(abbe_medium_copy(m, &copy, NULL), ABBE_OK);
   abbe_spectrum_free(m->scattering);
@@ -61,8 +59,7 @@ static void coefficients_go_by_wavelength(void **state) {
 }
 
 /* What of a line is in a box: places of it, asked one by one. */
-static void a_box_cuts_lines(void **state) {
-  (void)state;
+TEST(a_box_cuts_lines) {
   const double min[3] = {-1, 0, 2}, max[3] = {0.5, 1, 3};
   uint64_t random = 5;
   size_t met = 0;
@@ -86,13 +83,4 @@ static void a_box_cuts_lines(void **state) {
     }
   }
   assert_int_in_range(met, 20, 380);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_phase_function_is_normal),
-      cmocka_unit_test(coefficients_go_by_wavelength),
-      cmocka_unit_test(a_box_cuts_lines),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,8 +3,7 @@
 
 #include "scenes/medium/medium_file.h"
 
-static void mist_and_murky_glass_are_read(void **state) {
-  (void)state;
+TEST(mist_and_murky_glass_are_read) {
   abbe_scene scene;
   load_text(CAMERA POINT_LIGHT
             "medium: {scattering: [[400, 4], [500, 2]], absorption: 0.5, g: -0.3,\n"
@@ -43,8 +42,7 @@ static void refuses(const char *air, const char *object, const char *says) {
   if (strstr(error.text, says) == NULL) fail_msg("%s%s: %s", air, object, error.text);
 }
 
-static void bad_mist_is_refused(void **state) {
-  (void)state;
+TEST(bad_mist_is_refused) {
   static const char *const bad[][2] = {
       {"medium: 0.3\n", "text:4: 'medium' wants a mapping"},
       {"medium: {scattering: 0.3}\n", "text:4: the air's 'medium' needs a 'box'"},
@@ -66,8 +64,7 @@ static void bad_mist_is_refused(void **state) {
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) refuses(bad[i][0], "", bad[i][1]);
 }
 
-static void bad_insides_are_refused(void **state) {
-  (void)state;
+TEST(bad_insides_are_refused) {
   static const char *const bad[][2] = {
       {"- {name: a, shape: sphere, radius: 0.08, reflectance: 1, medium: {scattering: 7}}\n",
        "no 'material'"},
@@ -84,13 +81,4 @@ static void bad_insides_are_refused(void **state) {
       {"- {name: a, shape: sphere, radius: 0.08, material: n-bk7, medium: {g: 0.5}}\n",
        "does nothing"}};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) refuses("", bad[i][0], bad[i][1]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(mist_and_murky_glass_are_read),
-      cmocka_unit_test(bad_mist_is_refused),
-      cmocka_unit_test(bad_insides_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -96,8 +96,9 @@ static void compare(const soup *s, size_t rays) {
   assert_true(hits > rays / 20);
 }
 
-static void nearest_of_all_triangles(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(nearest_of_all_triangles) {
   soup s;
   static const size_t counts[] = {1, 2, 5, 300, 3000};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
@@ -112,8 +113,7 @@ static void nearest_of_all_triangles(void **state) {
 }
 
 /* Every triangle is in one leaf, and every box holds what is below it. */
-static void boxes_hold_their_triangles(void **state) {
-  (void)state;
+TEST(boxes_hold_their_triangles) {
   soup s;
   make_soup(1000, 1, &s);
   size_t seen = 0;
@@ -137,8 +137,7 @@ static void boxes_hold_their_triangles(void **state) {
 
 /* What rays pay: the boxes' surfaces by the root's. Where most of a node is empty it is cut there.
  */
-static void boxes_are_tight(void **state) {
-  (void)state;
+TEST(boxes_are_tight) {
   soup s;
   make_ring(&s);
   double area = 0, whole = 0;
@@ -162,8 +161,7 @@ static void boxes_are_tight(void **state) {
   drop(&s);
 }
 
-static void equal_triangles_end_in_leaves(void **state) {
-  (void)state;
+TEST(equal_triangles_end_in_leaves) {
   soup s = {.count = 100000, .triangle = calloc(100000, sizeof *s.triangle)};
   for (size_t i = 0; i < s.count; i++) s.triangle[i][3] = s.triangle[i][7] = 1;
   finish(&s);
@@ -173,8 +171,7 @@ static void equal_triangles_end_in_leaves(void **state) {
 }
 
 /* Whoever stops it is not asked again, whenever that is; who does not changes nothing. */
-static void it_ends_when_it_is_told_to(void **state) {
-  (void)state;
+TEST(it_ends_when_it_is_told_to) {
   soup s;
   make_soup(100000, 1, &s);
   patience p = {.most = SIZE_MAX};
@@ -242,8 +239,7 @@ static size_t check_packed(const soup *s, uint32_t (*texel)[4], size_t at, int c
 }
 
 /* Packed boxes hold their triangles, and cones leave out no face that a ray meets from outside. */
-static void packed_nodes_leave_nothing_out(void **state) {
-  (void)state;
+TEST(packed_nodes_leave_nothing_out) {
   soup s[2];
   make_soup(3000, 1e4, &s[0]);
   make_ring(&s[1]);
@@ -286,8 +282,7 @@ static void upload(const soup *s) {
 
 /* Single precision: a hit lies 1e-5 of the scene's size from the true one, but for rays that graze
  * a triangle or its edge, which may miss it: one in two hundred. */
-static void the_shaders_find_the_same(void **state) {
-  (void)state;
+TEST(the_shaders_find_the_same) {
   enum { RAYS = 4096 };
   static float in[RAYS][8], out[RAYS][4];
   soup s[2];
@@ -339,8 +334,7 @@ static void the_shaders_find_the_same(void **state) {
 }
 
 /* A box has six, a ring one; a box without normals that break, one. */
-static void parts_end_where_normals_break(void **state) {
-  (void)state;
+TEST(parts_end_where_normals_break) {
   abbe_mesh mesh = {0};
   uint32_t group[8192];
   assert_int_equal(abbe_shape_box((double[3]){1, 2, 3}, &mesh, NULL), ABBE_OK);
@@ -356,18 +350,4 @@ static void parts_end_where_normals_break(void **state) {
   assert_int_equal(abbe_shape_ring(0.08, 0.02, 64, 32, &mesh, NULL), ABBE_OK);
   assert_int_equal(abbe_bvh_parts(&mesh, group), 1);
   abbe_mesh_free(&mesh);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(nearest_of_all_triangles),
-      cmocka_unit_test(boxes_hold_their_triangles),
-      cmocka_unit_test(boxes_are_tight),
-      cmocka_unit_test(equal_triangles_end_in_leaves),
-      cmocka_unit_test(it_ends_when_it_is_told_to),
-      cmocka_unit_test(packed_nodes_leave_nothing_out),
-      cmocka_unit_test(the_shaders_find_the_same),
-      cmocka_unit_test(parts_end_where_normals_break),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

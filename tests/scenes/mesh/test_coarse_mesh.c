@@ -72,8 +72,7 @@ static void assert_upright(const abbe_mesh *mesh) {
 }
 
 /* A shell whose wall is a tenth of a cell: its sides stay apart, and each is whole. */
-static void test_sides_of_a_thin_wall_stay_apart(void **state) {
-  (void)state;
+TEST(sides_of_a_thin_wall_stay_apart) {
   coarse c;
   static const double thin = 0.998;
   abbe_mesh w, both;
@@ -128,8 +127,7 @@ static double distance_along(const abbe_mesh *mesh, const double p[3], const dou
 
 /* Water, whose rim has vertices of the top and of the walls: ways out of its middle, and such that
  * pass close by the rim, meet it where they did. */
-static void test_seams_stay_closed(void **state) {
-  (void)state;
+TEST(seams_stay_closed) {
   enum { RAYS = 300 };
   const abbe_water_wave wave = {0.01, 0.5, 0.3, 0};
   const abbe_water water = {
@@ -159,8 +157,7 @@ static void test_seams_stay_closed(void **state) {
 }
 
 /* Few faces, faces of their own vertices, and no face at all: left as they are. */
-static void test_what_is_no_smooth_large_mesh_is_left(void **state) {
-  (void)state;
+TEST(what_is_no_smooth_large_mesh_is_left) {
   coarse c;
   assert_int_equal(abbe_shape_ring(0.08, 0.02, 64, 32, &c.whole, NULL), ABBE_OK);
   make_few(&c);
@@ -176,13 +173,4 @@ static void test_what_is_no_smooth_large_mesh_is_left(void **state) {
   make_few(&c);
   assert_null(c.few.face);
   drop(&c);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_sides_of_a_thin_wall_stay_apart),
-      cmocka_unit_test(test_seams_stay_closed),
-      cmocka_unit_test(test_what_is_no_smooth_large_mesh_is_left),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

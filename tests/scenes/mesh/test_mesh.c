@@ -11,8 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static void make_checks_sizes(void **state) {
-  (void)state;
+TEST(make_checks_sizes) {
   abbe_mesh m;
   assert_int_equal(abbe_mesh_make(0, 1, false, &m, NULL), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_mesh_make(SIZE_MAX, 1, false, &m, NULL), ABBE_INVALID_ARGUMENT);
@@ -23,8 +22,7 @@ static void make_checks_sizes(void **state) {
   abbe_mesh_free(NULL);
 }
 
-static void check_counts_what_is_wrong(void **state) {
-  (void)state;
+TEST(check_counts_what_is_wrong) {
   abbe_mesh m = test_sphere(2);
   m.face_count--;
   assert_int_equal(test_mesh_faults(&m).open_edges, 3);
@@ -40,8 +38,7 @@ static void check_counts_what_is_wrong(void **state) {
 }
 
 /* Of a unit sphere, whose faces lie within a hundredth of it; many rays pass close by its edges. */
-static void points_within_a_sphere_are_inside(void **state) {
-  (void)state;
+TEST(points_within_a_sphere_are_inside) {
   abbe_mesh m = test_sphere(4);
   for (int i = 0; i < 400; i++) {
     const double z = (i + 0.5) / 200 - 1, turn = 2.399963 * i, r = sqrt(1 - z * z);
@@ -53,8 +50,7 @@ static void points_within_a_sphere_are_inside(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void subdivision_keeps_a_mesh_closed_and_smooth(void **state) {
-  (void)state;
+TEST(subdivision_keeps_a_mesh_closed_and_smooth) {
   abbe_mesh m;
   const double size[3] = {1, 1, 1};
   assert_int_equal(abbe_shape_box(size, &m, NULL), ABBE_OK);
@@ -72,8 +68,7 @@ static void subdivision_keeps_a_mesh_closed_and_smooth(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void subdividing_an_octahedron_weights_the_limit_right(void **state) {
-  (void)state;
+TEST(subdividing_an_octahedron_weights_the_limit_right) {
   /* Loop on a regular octahedron by hand: a corner (valence 4, beta 3/32) goes from 1 to 5/8 */
   const double at[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   const uint32_t face[8][3] = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
@@ -95,8 +90,7 @@ static void subdividing_an_octahedron_weights_the_limit_right(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void transforms_mirror_and_keep_outwards(void **state) {
-  (void)state;
+TEST(transforms_mirror_and_keep_outwards) {
   abbe_mesh m = test_sphere(2);
   const double factor[3] = {-1, 2, 1}, offset[3] = {5, 0, 0}, flat[3] = {1, 0, 1};
   double scale[16], move[16];
@@ -149,8 +143,7 @@ static const char tetrahedron_gltf[] =
     "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/"
     "AAACAAEAAAABAAMAAQACAAMAAgAAAAMA\"}]}";
 
-static void loads_tetrahedra(void **state) {
-  (void)state;
+TEST(loads_tetrahedra) {
   static const struct {
     const char *path, *text;
     double volume;
@@ -176,8 +169,7 @@ static void loads_tetrahedra(void **state) {
   }
 }
 
-static void bad_files_are_refused(void **state) {
-  (void)state;
+TEST(bad_files_are_refused) {
   static const struct {
     const char *path, *text;
   } files[] = {
@@ -241,8 +233,7 @@ static const char normals_obj[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
                                   "f 2//1 3//1 4//1\n";
 
 /* Scanners leave points that no face names: they are no part of its bounds. */
-static void points_without_faces_are_left_out(void **state) {
-  (void)state;
+TEST(points_without_faces_are_left_out) {
   abbe_mesh m = load("t_far.ply",
                      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
                      "property float y\nproperty float z\nelement face 1\n"
@@ -254,8 +245,7 @@ static void points_without_faces_are_left_out(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void a_file_s_normals_are_its_default(void **state) {
-  (void)state;
+TEST(a_file_s_normals_are_its_default) {
   abbe_mesh m = load("t_normals.obj", normals_obj, ABBE_NORMALS_AUTO);
   assert_true(m.given_normals);
   const double *a = m.normal[m.face[0][0]], *b = m.normal[m.face[0][1]],
@@ -277,8 +267,7 @@ static void a_file_s_normals_are_its_default(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void smooth_normals_are_shared_across_split_vertices(void **state) {
-  (void)state;
+TEST(smooth_normals_are_shared_across_split_vertices) {
   const double size[3] = {1, 1, 1};
   abbe_mesh m;
   assert_int_equal(abbe_shape_box(size, &m, NULL), ABBE_OK);
@@ -287,21 +276,4 @@ static void smooth_normals_are_shared_across_split_vertices(void **state) {
   for (size_t v = 0; v < 24; v++)
     assert_true(abbe_vector_dot(m.normal[v], m.position[v]) > 0.8 * sqrt(0.75));
   abbe_mesh_free(&m);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(make_checks_sizes),
-      cmocka_unit_test(check_counts_what_is_wrong),
-      cmocka_unit_test(points_within_a_sphere_are_inside),
-      cmocka_unit_test(subdivision_keeps_a_mesh_closed_and_smooth),
-      cmocka_unit_test(subdividing_an_octahedron_weights_the_limit_right),
-      cmocka_unit_test(transforms_mirror_and_keep_outwards),
-      cmocka_unit_test(loads_tetrahedra),
-      cmocka_unit_test(bad_files_are_refused),
-      cmocka_unit_test(points_without_faces_are_left_out),
-      cmocka_unit_test(a_file_s_normals_are_its_default),
-      cmocka_unit_test(smooth_normals_are_shared_across_split_vertices),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,8 +27,7 @@ static void check_laws(const abbe_mesh *mesh, const abbe_mesh_charts *charts) {
   }
 }
 
-static void a_box_has_a_chart_a_side(void **state) {
-  (void)state;
+TEST(a_box_has_a_chart_a_side) {
   const double size[3] = {1, 2, 3};
   abbe_mesh box;
   abbe_mesh_charts charts;
@@ -48,8 +47,7 @@ static void a_box_has_a_chart_a_side(void **state) {
 }
 
 /* Caps of 60 degrees around x leave bands around y, and those nothing around z but four corners. */
-static void curved_meshes_have_few(void **state) {
-  (void)state;
+TEST(curved_meshes_have_few) {
   abbe_mesh mesh;
   abbe_mesh_charts charts;
   assert_int_equal(abbe_shape_sphere(1, 5, &mesh, NULL), ABBE_OK);
@@ -69,8 +67,7 @@ static void curved_meshes_have_few(void **state) {
 }
 
 /* Split vertices hang together, what only lies side by side does not, and slivers are no charts. */
-static void what_hangs_together(void **state) {
-  (void)state;
+TEST(what_hangs_together) {
   static const double at[11][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                    {5, 0, 0}, {6, 0, 0}, {5, 1, 0}, {7, 0, 0}, {8, 0, 0}};
   static const uint32_t face[4][3] = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}, {9, 10, 9}};
@@ -91,13 +88,4 @@ static void what_hangs_together(void **state) {
   assert_int_equal(charts.count, 0);
   abbe_mesh_charts_free(&charts);
   abbe_mesh_free(&mesh);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_box_has_a_chart_a_side),
-      cmocka_unit_test(curved_meshes_have_few),
-      cmocka_unit_test(what_hangs_together),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,8 +24,7 @@ static void assert_fixes(abbe_mesh *m, const char *word) {
   assert_true(r.volume > 0);
 }
 
-static void a_sound_mesh_is_left_alone(void **state) {
-  (void)state;
+TEST(a_sound_mesh_is_left_alone) {
   abbe_mesh m = test_sphere(2);
   const double(*before)[3] = (const double(*)[3])m.position;
   assert_fixes(&m, NULL);
@@ -54,8 +53,7 @@ static abbe_mesh torn_sphere(double off) {
   return m;
 }
 
-static void corners_that_lie_a_little_apart_are_joined(void **state) {
-  (void)state;
+TEST(corners_that_lie_a_little_apart_are_joined) {
   static const double off[] = {1e-9, 1e-7, 1e-6, 1e-5};
   for (size_t i = 0; i < sizeof off / sizeof *off; i++) {
     abbe_mesh m = torn_sphere(off[i]);
@@ -72,8 +70,7 @@ static void corners_that_lie_a_little_apart_are_joined(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void an_inverted_mesh_is_turned(void **state) {
-  (void)state;
+TEST(an_inverted_mesh_is_turned) {
   abbe_mesh m = test_sphere(2);
   for (size_t f = 0; f < m.face_count; f++) test_turn_face(&m, f);
   assert_true(test_mesh_faults(&m).volume < 0);
@@ -82,8 +79,7 @@ static void an_inverted_mesh_is_turned(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void single_flipped_faces_are_turned(void **state) {
-  (void)state;
+TEST(single_flipped_faces_are_turned) {
   abbe_mesh m = test_sphere(2);
   test_turn_face(&m, 0);
   test_turn_face(&m, 77);
@@ -91,8 +87,7 @@ static void single_flipped_faces_are_turned(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void small_and_flat_holes_are_closed(void **state) {
-  (void)state;
+TEST(small_and_flat_holes_are_closed) {
   abbe_mesh m = test_sphere(3);
   m.face_count--;
   assert_fixes(&m, "1 hole closed");
@@ -106,8 +101,7 @@ static void small_and_flat_holes_are_closed(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void a_large_bent_hole_is_refused_and_counted(void **state) {
-  (void)state;
+TEST(a_large_bent_hole_is_refused_and_counted) {
   abbe_mesh m = test_sphere(3);
   m.face_count -= 200;
   abbe_error error;
@@ -129,8 +123,7 @@ static void a_large_bent_hole_is_refused_and_counted(void **state) {
 }
 
 /* The rim of a bowl, and a body with two unlike holes. */
-static void holes_are_measured_and_placed(void **state) {
-  (void)state;
+TEST(holes_are_measured_and_placed) {
   const test_box box = {{0, 0, 0}, {3, 2, 1}, false};
   abbe_mesh m = test_boxes(&box, 1);
   memmove(m.face, m.face + 2, 8 * sizeof *m.face); /* neither x = 0 nor z = 1 */
@@ -151,8 +144,7 @@ static void holes_are_measured_and_placed(void **state) {
 }
 
 /* Without being asked a bowl is no solid; repaired it is one with a lid, as small as can be. */
-static void repair_closes_what_bends(void **state) {
-  (void)state;
+TEST(repair_closes_what_bends) {
   abbe_mesh m = test_sphere(3);
   size_t kept = 0;
   for (size_t f = 0; f < m.face_count; f++) {
@@ -180,8 +172,7 @@ static void repair_closes_what_bends(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void faces_that_are_there_twice_are_one(void **state) {
-  (void)state;
+TEST(faces_that_are_there_twice_are_one) {
   const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{0, 0, 0}, {1, 1, 1}, false}};
   abbe_mesh m = test_boxes(box, 2);
   assert_fixes(&m, "12 faces that were there twice dropped");
@@ -199,8 +190,7 @@ static char *repaired(abbe_mesh *m) {
 }
 
 /* Both sides of every face are there; and two bodies share a wall. */
-static void repair_drops_walls_of_faces_back_to_back(void **state) {
-  (void)state;
+TEST(repair_drops_walls_of_faces_back_to_back) {
   const test_box both[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{0, 0, 0}, {1, 1, 1}, true}};
   abbe_mesh m = test_boxes(both, 2);
   char *what = repaired(&m);
@@ -221,8 +211,7 @@ static void repair_drops_walls_of_faces_back_to_back(void **state) {
 }
 
 /* A fin on a box, and a wall of single faces across a longer one. */
-static void repair_drops_sheets(void **state) {
-  (void)state;
+TEST(repair_drops_sheets) {
   const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{5, 5, 5}, {6, 6, 6}, false}};
   abbe_mesh m = test_boxes(box, 2);
   m.face[12][0] = 4, m.face[12][1] = 5, m.face[12][2] = 15;
@@ -257,8 +246,7 @@ static void repair_drops_sheets(void **state) {
 }
 
 /* A point on another's edge, as booleans of modellers leave it: a slit without a width. */
-static void repair_closes_slits(void **state) {
-  (void)state;
+TEST(repair_closes_slits) {
   const test_box box = {{0, 0, 0}, {1, 1, 1}, false};
   abbe_mesh corner = test_boxes(&box, 1), m;
   assert_int_equal(abbe_mesh_make(9, 13, false, &m, NULL), ABBE_OK);
@@ -286,8 +274,7 @@ static void repair_closes_slits(void **state) {
 }
 
 /* Depth is told among what does not cross: a body that reaches into another is no bubble of it. */
-static void bodies_that_cross_stay_bodies(void **state) {
-  (void)state;
+TEST(bodies_that_cross_stay_bodies) {
   const test_box box[2] = {{{-1, -1, -1}, {1, 1, 1}, false},
                            {{-0.1, -0.3, -0.3}, {1.9, 0.9, 0.7}, false}};
   abbe_mesh m = test_boxes(box, 2), *part = NULL;
@@ -310,8 +297,7 @@ static void bodies_that_cross_stay_bodies(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void more_solids_than_are_followed_are_refused(void **state) {
-  (void)state;
+TEST(more_solids_than_are_followed_are_refused) {
   enum { COUNT = 34 };
   test_box box[COUNT];
   for (int i = 0; i < COUNT; i++) { /* each crosses all others: rods through one middle */
@@ -334,8 +320,7 @@ static void more_solids_than_are_followed_are_refused(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void a_surface_that_crosses_itself_is_said(void **state) {
-  (void)state;
+TEST(a_surface_that_crosses_itself_is_said) {
   abbe_mesh m;
   char *what = NULL;
   assert_int_equal(abbe_shape_ring(1, 0.3, 48, 24, &m, NULL), ABBE_OK);
@@ -349,8 +334,7 @@ static void a_surface_that_crosses_itself_is_said(void **state) {
 }
 
 /* A cylinder: around it smooth, at its rims not. */
-static void normals_by_angles_keep_creases(void **state) {
-  (void)state;
+TEST(normals_by_angles_keep_creases) {
   const double profile[4][2] = {{0, 0}, {1, 0}, {1, 2}, {0, 2}};
   abbe_mesh m;
   assert_int_equal(abbe_shape_lathe(profile, 4, 24, &m, NULL), ABBE_OK);
@@ -369,8 +353,7 @@ static void normals_by_angles_keep_creases(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void degenerate_faces_are_fixed(void **state) {
-  (void)state;
+TEST(degenerate_faces_are_fixed) {
   abbe_mesh m;
   /* a box whose top has a vertex in the middle of one edge: one face without area beside it */
   const double at[9][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},  {0, 0, 1},
@@ -405,8 +388,7 @@ static abbe_mesh joined(abbe_mesh *a, abbe_mesh *b) {
   return m;
 }
 
-static void a_bubble_faces_into_itself(void **state) {
-  (void)state;
+TEST(a_bubble_faces_into_itself) {
   abbe_mesh outer = test_sphere(2), inner;
   assert_int_equal(abbe_shape_sphere(0.5, 2, &inner, NULL), ABBE_OK);
   const double whole = test_mesh_faults(&outer).volume, hole = test_mesh_faults(&inner).volume;
@@ -424,8 +406,7 @@ static void a_bubble_faces_into_itself(void **state) {
 
 /* The lid of a box is missing: fixed, all that was there has the file's normals, the lid has its
  * own. */
-static void fixing_keeps_given_normals(void **state) {
-  (void)state;
+TEST(fixing_keeps_given_normals) {
   const test_box box = {{0, 0, 0}, {1, 1, 1}, false};
   abbe_mesh m = test_boxes(&box, 1), whole = test_boxes(&box, 1); /* smooth, as if a file said so */
   char *what = NULL;
@@ -447,29 +428,4 @@ static void fixing_keeps_given_normals(void **state) {
     for (int k = 0; k < 3; k++) assert_near(m.normal[m.face[f][k]][2], 1, 1e-9);
   abbe_mesh_free(&whole);
   abbe_mesh_free(&m);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_sound_mesh_is_left_alone),
-      cmocka_unit_test(corners_that_lie_a_little_apart_are_joined),
-      cmocka_unit_test(an_inverted_mesh_is_turned),
-      cmocka_unit_test(single_flipped_faces_are_turned),
-      cmocka_unit_test(small_and_flat_holes_are_closed),
-      cmocka_unit_test(a_large_bent_hole_is_refused_and_counted),
-      cmocka_unit_test(holes_are_measured_and_placed),
-      cmocka_unit_test(repair_closes_what_bends),
-      cmocka_unit_test(faces_that_are_there_twice_are_one),
-      cmocka_unit_test(repair_drops_walls_of_faces_back_to_back),
-      cmocka_unit_test(repair_drops_sheets),
-      cmocka_unit_test(repair_closes_slits),
-      cmocka_unit_test(bodies_that_cross_stay_bodies),
-      cmocka_unit_test(more_solids_than_are_followed_are_refused),
-      cmocka_unit_test(a_surface_that_crosses_itself_is_said),
-      cmocka_unit_test(normals_by_angles_keep_creases),
-      cmocka_unit_test(degenerate_faces_are_fixed),
-      cmocka_unit_test(a_bubble_faces_into_itself),
-      cmocka_unit_test(fixing_keeps_given_normals),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,8 +41,7 @@ static void set_face(abbe_mesh *m, size_t f, size_t a, size_t b, size_t c) {
 }
 
 /* Two fins on every one of many bodies. */
-static void as_many_sheets_as_there_are_go(void **state) {
-  (void)state;
+TEST(as_many_sheets_as_there_are_go) {
   enum { BODIES = 200 };
   static test_box box[BODIES + (2 * BODIES + 11) / 12]; /* whose last ones are made into fins */
   const size_t boxes = sizeof box / sizeof *box;
@@ -61,8 +60,7 @@ static void as_many_sheets_as_there_are_go(void **state) {
 
 /* Fins of two triangles, each a little smaller than the one on whose diagonal it hangs: they can
  * only go one after another. */
-static void sheets_on_sheets_go(void **state) {
-  (void)state;
+TEST(sheets_on_sheets_go) {
   enum { FINS = 40 };
   abbe_mesh m = box_and_more(2 * FINS, 2 * FINS);
   size_t p = 4, q = 5;
@@ -105,16 +103,14 @@ static abbe_mesh strips(size_t count, size_t points) {
   return m;
 }
 
-static void many_short_rims_are_closed(void **state) {
-  (void)state;
+TEST(many_short_rims_are_closed) {
   abbe_mesh m = strips(500, 20);
   assert_repairs(&m, "500 holes closed");
   abbe_mesh_free(&m);
 }
 
 /* The search takes the cube of a rim's points: what is too much is refused before it begins. */
-static void many_long_rims_are_refused(void **state) {
-  (void)state;
+TEST(many_long_rims_are_refused) {
   abbe_mesh m = strips(21, 600);
   const size_t faces = m.face_count;
   abbe_error error = {0};
@@ -123,11 +119,4 @@ static void many_long_rims_are_refused(void **state) {
   assert_contains(error.text, "where the mesh was made");
   assert_int_equal(m.face_count, faces);
   abbe_mesh_free(&m);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(as_many_sheets_as_there_are_go), cmocka_unit_test(sheets_on_sheets_go),
-      cmocka_unit_test(many_short_rims_are_closed), cmocka_unit_test(many_long_rims_are_refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

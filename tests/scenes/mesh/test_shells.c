@@ -22,8 +22,7 @@ static abbe_shells shells_of(const test_box *box, size_t count) {
   return s;
 }
 
-static void one_shell_is_one_solid(void **state) {
-  (void)state;
+TEST(one_shell_is_one_solid) {
   const test_box box = {{0, 0, 0}, {1, 2, 3}, false};
   abbe_shells s = shells_of(&box, 1);
   assert_int_equal(s.count, 1);
@@ -35,8 +34,7 @@ static void one_shell_is_one_solid(void **state) {
 }
 
 /* A box, a hollow in it, a body in the hollow, and one beside them all. */
-static void shells_nest(void **state) {
-  (void)state;
+TEST(shells_nest) {
   const test_box box[4] = {{{0, 0, 0}, {9, 9, 9}, false},
                            {{1, 1, 1}, {8, 8, 8}, true},
                            {{2, 2, 2}, {3, 3, 3}, false},
@@ -52,8 +50,7 @@ static void shells_nest(void **state) {
 }
 
 /* Whichever way round the shells are: that is what depths are asked for. */
-static void nesting_does_not_hang_on_orientation(void **state) {
-  (void)state;
+TEST(nesting_does_not_hang_on_orientation) {
   for (int turned = 0; turned < 4; turned++) {
     const test_box box[2] = {{{0, 0, 0}, {9, 9, 9}, turned & 1},
                              {{1, 1, 1}, {8, 8, 8}, turned & 2}};
@@ -64,8 +61,7 @@ static void nesting_does_not_hang_on_orientation(void **state) {
   }
 }
 
-static void what_crosses_is_told_apart_and_where(void **state) {
-  (void)state;
+TEST(what_crosses_is_told_apart_and_where) {
   const test_box box[3] = {{{0, 0, 0}, {2, 2, 2}, false},
                            {{1, 0.5, 0.7}, {4, 1.5, 1.5}, false},
                            {{3, 0.1, 0.2}, {6, 1.9, 1.8}, false}};
@@ -84,8 +80,7 @@ static void what_crosses_is_told_apart_and_where(void **state) {
 }
 
 /* The hollow belongs to the body around it; another body that reaches into it has none. */
-static void a_hollow_stays_with_its_body(void **state) {
-  (void)state;
+TEST(a_hollow_stays_with_its_body) {
   const test_box box[3] = {{{0, 0, 0}, {9, 9, 9}, false},
                            {{2, 2, 2}, {7, 7, 7}, true},
                            {{5, 3, 3.5}, {12, 6, 6}, false}};
@@ -97,8 +92,7 @@ static void a_hollow_stays_with_its_body(void **state) {
   abbe_shells_free(&s);
 }
 
-static void hollows_that_cross_are_refused_with_the_place(void **state) {
-  (void)state;
+TEST(hollows_that_cross_are_refused_with_the_place) {
   const test_box box[3] = {{{0, 0, 0}, {9, 9, 9}, false},
                            {{1, 1, 1}, {5, 5, 5}, true},
                            {{4, 2, 2.5}, {8, 4, 4.5}, true}};
@@ -112,8 +106,7 @@ static void hollows_that_cross_are_refused_with_the_place(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void faces_on_one_another_are_no_crossing_but_told(void **state) {
-  (void)state;
+TEST(faces_on_one_another_are_no_crossing_but_told) {
   /* back to back, cut into other triangles; and flush below */
   const test_box stacked[2] = {{{0, 0, 0}, {2, 2, 1}, false},
                                {{0.5, 0.6, 1}, {1.4, 1.5, 2}, false}};
@@ -136,8 +129,7 @@ static void faces_on_one_another_are_no_crossing_but_told(void **state) {
   abbe_shells_free(&s);
 }
 
-static void a_surface_that_crosses_itself_is_told(void **state) {
-  (void)state;
+TEST(a_surface_that_crosses_itself_is_told) {
   abbe_mesh m;
   abbe_shells s;
   assert_int_equal(abbe_shape_ring(1, 0.3, 48, 24, &m, NULL), ABBE_OK);
@@ -155,8 +147,7 @@ static void a_surface_that_crosses_itself_is_told(void **state) {
 }
 
 /* A grid of balls, of which each ninth crosses the next: as many rays and pairs as a tree saves. */
-static void many_shells_are_told_apart(void **state) {
-  (void)state;
+TEST(many_shells_are_told_apart) {
   enum { COUNT = 300 };
   test_box *box = calloc(COUNT, sizeof *box);
   assert_non_null(box);
@@ -192,8 +183,7 @@ static abbe_mesh nested_boxes(size_t count) {
 }
 
 /* Every ray meets all of them: looking for one after another from the start would take minutes. */
-static void deep_nests_take_the_square_of_their_depth(void **state) {
-  (void)state;
+TEST(deep_nests_take_the_square_of_their_depth) {
   enum { COUNT = 200 };
   abbe_mesh m = nested_boxes(COUNT);
   abbe_shells s;
@@ -204,8 +194,7 @@ static void deep_nests_take_the_square_of_their_depth(void **state) {
 }
 
 /* Bars along x, all through bars along y: each pair is found, and those alike are one solid. */
-static void all_through_all_is_two_solids(void **state) {
-  (void)state;
+TEST(all_through_all_is_two_solids) {
   enum { COUNT = 60 };
   test_box box[2 * COUNT];
   for (int i = 0; i < 2 * COUNT; i++) {
@@ -225,8 +214,7 @@ static void all_through_all_is_two_solids(void **state) {
 /* The work that it refuses to exceed takes the sanitizers ten seconds, and shows them no more than
  * the nest above and the refusal of hollows do: it is left to the release build. */
 #ifndef __SANITIZE_ADDRESS__
-static void what_would_take_too_long_is_refused(void **state) {
-  (void)state;
+TEST(what_would_take_too_long_is_refused) {
   abbe_mesh m = nested_boxes(1200);
   abbe_shells s;
   abbe_error error = {0};
@@ -236,23 +224,3 @@ static void what_would_take_too_long_is_refused(void **state) {
   abbe_mesh_free(&m);
 }
 #endif
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(one_shell_is_one_solid),
-      cmocka_unit_test(shells_nest),
-      cmocka_unit_test(nesting_does_not_hang_on_orientation),
-      cmocka_unit_test(what_crosses_is_told_apart_and_where),
-      cmocka_unit_test(a_hollow_stays_with_its_body),
-      cmocka_unit_test(hollows_that_cross_are_refused_with_the_place),
-      cmocka_unit_test(faces_on_one_another_are_no_crossing_but_told),
-      cmocka_unit_test(a_surface_that_crosses_itself_is_told),
-      cmocka_unit_test(many_shells_are_told_apart),
-      cmocka_unit_test(deep_nests_take_the_square_of_their_depth),
-      cmocka_unit_test(all_through_all_is_two_solids),
-#ifndef __SANITIZE_ADDRESS__
-      cmocka_unit_test(what_would_take_too_long_is_refused),
-#endif
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}

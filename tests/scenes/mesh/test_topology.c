@@ -4,8 +4,7 @@
 #include "scenes/mesh/topology.h"
 #include "scenes/shapes/shape.h"
 
-static void a_split_box_has_eight_points_and_eighteen_edges(void **state) {
-  (void)state;
+TEST(a_split_box_has_eight_points_and_eighteen_edges) {
   const double size[3] = {1, 2, 3};
   abbe_mesh box;
   abbe_topology t;
@@ -22,8 +21,7 @@ static void a_split_box_has_eight_points_and_eighteen_edges(void **state) {
   abbe_mesh_free(&box);
 }
 
-static void points_join_within_the_tolerance_only(void **state) {
-  (void)state;
+TEST(points_join_within_the_tolerance_only) {
   abbe_mesh m;
   abbe_topology t;
   assert_int_equal(abbe_mesh_make(6, 2, false, &m, NULL), ABBE_OK);
@@ -39,8 +37,7 @@ static void points_join_within_the_tolerance_only(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void a_large_mesh_is_whole(void **state) {
-  (void)state;
+TEST(a_large_mesh_is_whole) {
   abbe_mesh m;
   abbe_topology t;
   assert_int_equal(abbe_shape_ring(1, 0.3, 256, 128, &m, NULL), ABBE_OK);
@@ -52,8 +49,7 @@ static void a_large_mesh_is_whole(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void bad_indices_and_positions_are_refused(void **state) {
-  (void)state;
+TEST(bad_indices_and_positions_are_refused) {
   abbe_mesh m;
   abbe_topology t;
   abbe_error error;
@@ -76,8 +72,7 @@ static size_t count_touching(const abbe_topology *t) {
 }
 
 /* Two boxes along an edge, in any orientation: the edge's four faces pair up around the bodies. */
-static void bodies_that_touch_along_an_edge_are_two(void **state) {
-  (void)state;
+TEST(bodies_that_touch_along_an_edge_are_two) {
   const double turn[3] = {0.3, -0.8, 0.5};
   for (int i = 0; i < 8; i++) {
     const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false},
@@ -97,8 +92,7 @@ static void bodies_that_touch_along_an_edge_are_two(void **state) {
 }
 
 /* Back to back, by a whole side; and one corner on another. */
-static void what_touches_otherwise_is_two_as_well(void **state) {
-  (void)state;
+TEST(what_touches_otherwise_is_two_as_well) {
   abbe_topology t;
   const test_box side[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 0, 0}, {2, 1, 1}, false}};
   abbe_mesh m = test_boxes(side, 2);
@@ -117,8 +111,7 @@ static void what_touches_otherwise_is_two_as_well(void **state) {
 }
 
 /* A fin on an edge; and one of two boxes inside out: nothing pairs up. */
-static void what_does_not_pair_up_hangs_together(void **state) {
-  (void)state;
+TEST(what_does_not_pair_up_hangs_together) {
   abbe_topology t;
   const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 1, 0}, {2, 2, 1}, true}};
   abbe_mesh m = test_boxes(box, 2);
@@ -129,17 +122,4 @@ static void what_does_not_pair_up_hangs_together(void **state) {
   assert_int_equal(t.shell_count, 1);
   abbe_topology_free(&t);
   abbe_mesh_free(&m);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_split_box_has_eight_points_and_eighteen_edges),
-      cmocka_unit_test(points_join_within_the_tolerance_only),
-      cmocka_unit_test(a_large_mesh_is_whole),
-      cmocka_unit_test(bodies_that_touch_along_an_edge_are_two),
-      cmocka_unit_test(what_touches_otherwise_is_two_as_well),
-      cmocka_unit_test(what_does_not_pair_up_hangs_together),
-      cmocka_unit_test(bad_indices_and_positions_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

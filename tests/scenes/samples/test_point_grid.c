@@ -23,8 +23,7 @@ static bool stop_now(void *user, size_t number) {
   return false;
 }
 
-static void test_all_near_ones_are_found(void **state) {
-  (void)state;
+TEST(all_near_ones_are_found) {
   uint64_t random = 1;
   abbe_point_grid grid;
   const double cell = 0.07;
@@ -55,8 +54,7 @@ static void test_all_near_ones_are_found(void **state) {
   abbe_point_grid_free(&grid);
 }
 
-static void test_wrong_cells(void **state) {
-  (void)state;
+TEST(wrong_cells) {
   abbe_point_grid grid;
   abbe_error error = {0};
   const double wrong[] = {0, -1, NAN, INFINITY};
@@ -65,10 +63,4 @@ static void test_wrong_cells(void **state) {
   assert_contains(error.text, "above 0 m");
   abbe_point_grid_free(&grid);
   abbe_point_grid_free(NULL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_all_near_ones_are_found),
-                                     cmocka_unit_test(test_wrong_cells)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -40,8 +40,7 @@ static void check_node(const abbe_sample_tree *tree, size_t i) {
   if (children == 2) assert_near(area, node->area, 1e-12 * node->area);
 }
 
-static void test_all_are_in_it_once(void **state) {
-  (void)state;
+TEST(all_are_in_it_once) {
   static const abbe_sample_strategy strategies[] = {
       ABBE_SAMPLE_STRATEGY_RANDOM, ABBE_SAMPLE_STRATEGY_QUANTIZED, ABBE_SAMPLE_STRATEGY_NEIGHBOUR};
   static const size_t counts[] = {1, 2, 90};
@@ -75,8 +74,7 @@ static void test_all_are_in_it_once(void **state) {
 }
 
 /* Clusters face one way: of a ball no node of less than a sixteenth holds two sides. */
-static void test_clusters_face_alike(void **state) {
-  (void)state;
+TEST(clusters_face_alike) {
   abbe_mesh ball = {0};
   abbe_surface_samples s;
   abbe_sample_tree tree;
@@ -140,8 +138,7 @@ static double from_corner(double a, double b, double h) {
   return 0.5 * (x / p * atan(y / p) + y / q * atan(x / q));
 }
 
-static void test_cuts(void **state) {
-  (void)state;
+TEST(cuts) {
   static const double places[] = {0, 0.1, 0.3, 1, 3};
   const double a = 0.1, h = 0.15;
   abbe_mesh roof = {0};
@@ -175,22 +172,11 @@ static void test_cuts(void **state) {
   abbe_mesh_free(&roof);
 }
 
-static void test_nothing(void **state) {
-  (void)state;
+TEST(nothing) {
   const abbe_surface_samples none = {0};
   abbe_sample_tree tree;
   assert_int_equal(abbe_sample_tree_make(&none, &tree, NULL), ABBE_OK);
   assert_int_equal(tree.count, 0);
   abbe_sample_tree_free(&tree);
   abbe_sample_tree_free(NULL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_all_are_in_it_once),
-      cmocka_unit_test(test_clusters_face_alike),
-      cmocka_unit_test(test_cuts),
-      cmocka_unit_test(test_nothing),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,8 +24,7 @@ static abbe_surface_curvature *fit(const abbe_mesh *mesh, abbe_surface_samples *
   return out;
 }
 
-static void test_sphere(void **state) {
-  (void)state;
+TEST(sphere) {
   const double radius = 0.02;
   abbe_mesh ball = {0};
   abbe_surface_samples s = {0};
@@ -39,8 +38,7 @@ static void test_sphere(void **state) {
 }
 
 /* Seen from inside the normals of its mesh spread the other way; both walls are there. */
-static void test_cylinder(void **state) {
-  (void)state;
+TEST(cylinder) {
   const double inner = 0.04, outer = 0.0435, height = 0.1;
   const double profile[4][2] = {{inner, 0}, {inner, height}, {outer, height}, {outer, 0}};
   abbe_mesh ring = {0};
@@ -66,8 +64,7 @@ static void test_cylinder(void **state) {
   abbe_mesh_free(&ring);
 }
 
-static void test_plane(void **state) {
-  (void)state;
+TEST(plane) {
   abbe_mesh plane = {0};
   abbe_surface_samples s = {0};
   assert_int_equal(abbe_shape_rectangle(0.3, 0.2, &plane, NULL), ABBE_OK);
@@ -77,10 +74,4 @@ static void test_plane(void **state) {
   free(c);
   abbe_surface_samples_free(&s);
   abbe_mesh_free(&plane);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_sphere), cmocka_unit_test(test_cylinder),
-                                     cmocka_unit_test(test_plane)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

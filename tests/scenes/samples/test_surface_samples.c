@@ -44,8 +44,7 @@ static double distance(const abbe_surface_point *a, const abbe_surface_point *b)
 }
 
 /* Kept ones are a radius apart, and every candidate is within it of a kept one. */
-static void test_neighbours_are_apart_and_cover(void **state) {
-  (void)state;
+TEST(neighbours_are_apart_and_cover) {
   abbe_mesh ring = {0};
   assert_int_equal(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, NULL), ABBE_OK);
   for (int sided = 0; sided < 2; sided++) {
@@ -70,8 +69,7 @@ static void test_neighbours_are_apart_and_cover(void **state) {
 
 /* All lie on the surface but those that are moved to their cubes as published; shares are the whole
  * area, and so are weights that are alike. */
-static void test_area_and_places(void **state) {
-  (void)state;
+TEST(area_and_places) {
   abbe_mesh ball = {0};
   assert_int_equal(abbe_shape_sphere(0.02, 5, &ball, NULL), ABBE_OK);
   for (int k = 0; k < 2 * STRATEGIES; k++) {
@@ -111,8 +109,7 @@ static double beside_middle(const abbe_surface_point *p, double edge, double cub
 }
 
 /* Quantized ones that stay on the surface are the candidates nearest to their cubes' middles. */
-static void test_quantized_on_the_surface(void **state) {
-  (void)state;
+TEST(quantized_on_the_surface) {
   abbe_mesh ring = {0};
   assert_int_equal(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, NULL), ABBE_OK);
   abbe_surface_samples s = {0};
@@ -166,8 +163,7 @@ static double density_ratio(abbe_sample_strategy strategy, const double n[3]) {
 
 /* A grid's cubes are crossed by a tilted plane more often, as |n|_1, less those of which so little
  * is crossed that no candidate fell there; neighbours see no direction. */
-static void test_density_by_normal(void **state) {
-  (void)state;
+TEST(density_by_normal) {
   const double edge[3] = {0, sqrt(0.5), sqrt(0.5)},
                corner[3] = {sqrt(1 / 3.0), sqrt(1 / 3.0), sqrt(1 / 3.0)};
   const double grid_edge = density_ratio(ABBE_SAMPLE_STRATEGY_GRID, edge);
@@ -241,8 +237,7 @@ static double slope(const abbe_mesh *mesh, abbe_sample_strategy strategy, bool o
   return (SIZES * sxy - sx * sy) / (SIZES * sxx - sx * sx);
 }
 
-static void test_convergence_to_a_polygon(void **state) {
-  (void)state;
+TEST(convergence_to_a_polygon) {
   const double middle[3] = {0.05, 0.02, 0.4}, u[3] = {0, 0.8, 0.6}, v[3] = {1, 0, 0}, at[3] = {0},
                n[3] = {0, 0, 1};
   abbe_mesh mirror = {0};
@@ -270,8 +265,7 @@ static void test_convergence_to_a_polygon(void **state) {
 }
 
 /* A disk of radius R, h above: pi R^2 / (R^2 + h^2). */
-static void test_a_coaxial_disk(void **state) {
-  (void)state;
+TEST(a_coaxial_disk) {
   enum { AROUND = 512 };
   const double radius = 0.2, h = 0.25, at[3] = {0}, n[3] = {0, 0, 1};
   abbe_mesh disk = {0};
@@ -301,8 +295,7 @@ static void test_a_coaxial_disk(void **state) {
 
 /* What moves takes its samples along, so that light through them does not flicker; a grid's cubes
  * stay where they are. */
-static void test_samples_move_along(void **state) {
-  (void)state;
+TEST(samples_move_along) {
   static const double by[3] = {0.0078125, -0.03125, 0.00390625};
   for (int k = 0; k < STRATEGIES; k++) {
     abbe_mesh ring = {0};
@@ -329,8 +322,7 @@ static void test_samples_move_along(void **state) {
   }
 }
 
-static void test_wrong_requests(void **state) {
-  (void)state;
+TEST(wrong_requests) {
   abbe_mesh nothing = {0};
   const abbe_mesh *mesh = &nothing;
   abbe_surface_samples s;
@@ -344,18 +336,4 @@ static void test_wrong_requests(void **state) {
   assert_contains(error.text, "1 to 4096");
   assert_string_equal(abbe_sample_strategy_name((abbe_sample_strategy)99), "unknown");
   abbe_surface_samples_free(NULL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_neighbours_are_apart_and_cover),
-      cmocka_unit_test(test_area_and_places),
-      cmocka_unit_test(test_quantized_on_the_surface),
-      cmocka_unit_test(test_density_by_normal),
-      cmocka_unit_test(test_convergence_to_a_polygon),
-      cmocka_unit_test(test_a_coaxial_disk),
-      cmocka_unit_test(test_samples_move_along),
-      cmocka_unit_test(test_wrong_requests),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

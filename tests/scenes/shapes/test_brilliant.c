@@ -14,8 +14,7 @@ static size_t count_planes(const double (*plane)[4], size_t count, double z_low,
   return found;
 }
 
-static void has_the_faces_of_a_brilliant(void **state) {
-  (void)state;
+TEST(has_the_faces_of_a_brilliant) {
   const abbe_brilliant cut = {.diameter = 0.01};
   abbe_mesh m;
   abbe_mesh_report report;
@@ -38,8 +37,7 @@ static void has_the_faces_of_a_brilliant(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void bezels_and_mains_have_their_angles(void **state) {
-  (void)state;
+TEST(bezels_and_mains_have_their_angles) {
   const abbe_brilliant cut = {
       .diameter = 2, .crown_rad = 33 / DEGREES, .pavilion_rad = 41.2 / DEGREES};
   abbe_mesh m;
@@ -65,8 +63,7 @@ static void bezels_and_mains_have_their_angles(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void refuses_what_is_no_stone(void **state) {
-  (void)state;
+TEST(refuses_what_is_no_stone) {
   const abbe_brilliant bad[] = {{.diameter = 0},
                                 {.diameter = NAN},
                                 {.diameter = 1, .table = 1},
@@ -84,13 +81,4 @@ static void refuses_what_is_no_stone(void **state) {
     assert_null(m.position);
     assert_true(strlen(error.text) > 20);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(has_the_faces_of_a_brilliant),
-      cmocka_unit_test(bezels_and_mains_have_their_angles),
-      cmocka_unit_test(refuses_what_is_no_stone),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,8 +3,7 @@
 #include "scenes/geometry/transform.h"
 #include "scenes/shapes/brushing.h"
 
-static void grooves_run_along_or_around(void **state) {
-  (void)state;
+TEST(grooves_run_along_or_around) {
   static const struct {
     bool around;
     double axis[3], centre[3], p[3], n[3], along[3];
@@ -25,8 +24,7 @@ static void grooves_run_along_or_around(void **state) {
 }
 
 /* At a pole, on the axis, without one: any way, but along the surface and of length 1. */
-static void there_is_always_a_way(void **state) {
-  (void)state;
+TEST(there_is_always_a_way) {
   static const double n[][3] = {{0, 0, 1}, {0, -1, 0}, {1, 0, 0}, {0.6, 0, 0.8}, {1, 1e-12, 0}};
   for (size_t i = 0; i < sizeof n / sizeof *n; i++)
     for (int around = 0; around < 2; around++)
@@ -45,8 +43,7 @@ static void there_is_always_a_way(void **state) {
       }
 }
 
-static void it_moves_with_its_object(void **state) {
-  (void)state;
+TEST(it_moves_with_its_object) {
   static const double x[3] = {0, 0, 3}, turn[3] = {1, 0, 0};
   abbe_brushing b = {.facets = {0.1, 0.3}, .around = true, .axis = {0, 0, 1}, .centre = {0, 0, 1}};
   double m[16], step[16];
@@ -58,11 +55,4 @@ static void it_moves_with_its_object(void **state) {
   assert_near(b.centre[1], -1, 1e-12);
   assert_near(b.centre[2], 3, 1e-12);
   assert_true(abbe_brushing_is_rough(&b) && !abbe_brushing_is_rough(&(abbe_brushing){0}));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(grooves_run_along_or_around),
-                                     cmocka_unit_test(there_is_always_a_way),
-                                     cmocka_unit_test(it_moves_with_its_object)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

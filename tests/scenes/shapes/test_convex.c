@@ -37,8 +37,7 @@ static void round_to(abbe_mesh *m, double step) {
   assert_int_equal(abbe_mesh_compute_normals(m, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
 }
 
-static void a_box_far_away_has_its_planes(void **state) {
-  (void)state;
+TEST(a_box_far_away_has_its_planes) {
   const double size[3] = {1, 1, 1}, offset[3] = {1000, 0, 0};
   double move[16];
   abbe_mesh m;
@@ -64,8 +63,7 @@ static void a_box_far_away_has_its_planes(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void a_dent_is_measured_and_placed(void **state) {
-  (void)state;
+TEST(a_dent_is_measured_and_placed) {
   abbe_mesh m;
   assert_int_equal(abbe_shape_sphere(1, 1, &m, NULL), ABBE_OK);
   assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
@@ -100,8 +98,7 @@ static void a_dent_is_measured_and_placed(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void what_is_open_or_several_is_none(void **state) {
-  (void)state;
+TEST(what_is_open_or_several_is_none) {
   const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{5, 0, 0}, {6, 1, 1}, false}};
   abbe_mesh m = test_boxes(box, 2);
   assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
@@ -114,8 +111,7 @@ static void what_is_open_or_several_is_none(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void a_ball_has_too_many_planes(void **state) {
-  (void)state;
+TEST(a_ball_has_too_many_planes) {
   for (size_t levels = 3; levels <= 6; levels += 3) { /* all looked at, and by a sample */
     abbe_mesh m;
     assert_int_equal(abbe_shape_sphere(1, levels, &m, NULL), ABBE_OK);
@@ -128,8 +124,7 @@ static void a_ball_has_too_many_planes(void **state) {
 }
 
 /* A stone of 10 mm in a file of so many digits: the tolerance that is needed, and no other. */
-static void digits_of_a_file_cost_tolerance_and_no_more(void **state) {
-  (void)state;
+TEST(digits_of_a_file_cost_tolerance_and_no_more) {
   static const struct {
     double step, tolerance;
   } files[] = {{1e-9, 1e-6}, {1e-7, 1e-5}, {1e-6, 1e-4}};
@@ -148,8 +143,7 @@ static void digits_of_a_file_cost_tolerance_and_no_more(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void rounded_normals_are_no_planes(void **state) {
-  (void)state;
+TEST(rounded_normals_are_no_planes) {
   const test_box box = {{0, 0, 0}, {1, 1, 1}, false};
   abbe_mesh m = test_boxes(&box, 1); /* smooth */
   abbe_convex found = judge(&m);
@@ -163,8 +157,7 @@ static void rounded_normals_are_no_planes(void **state) {
 
 /* A lens of so long a focus that the triangles of its face lie within the greatest tolerance of
  * fewer than 256 planes: it is curved all the same. */
-static void a_gentle_curve_is_not_cut_into_planes(void **state) {
-  (void)state;
+TEST(a_gentle_curve_is_not_cut_into_planes) {
   for (double radius = 4; radius < 60; radius *= 1.5) {
     double profile[43][2] = {{0, 0}};
     for (int i = 0; i <= 40; i++) {
@@ -190,8 +183,7 @@ static void a_gentle_curve_is_not_cut_into_planes(void **state) {
 }
 
 /* Needles along an edge, as exporters leave them: their own normals are noise. */
-static void thin_faces_go_with_a_plane(void **state) {
-  (void)state;
+TEST(thin_faces_go_with_a_plane) {
   const double at[9][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0},
                            {0, 1, 0}, {0, 0, 1}, {1, 0, 1},
                            {1, 1, 1}, {0, 1, 1}, {0.5, 1e-7, 1 + 1e-7}};
@@ -216,8 +208,7 @@ static void thin_faces_go_with_a_plane(void **state) {
 
 /* A stone drawn by hand: kites folded by a few degrees. Flattened it has the planes that it was to
  * have, is closed, and its corners have hardly moved. */
-static void a_stone_of_folded_kites_is_flattened(void **state) {
-  (void)state;
+TEST(a_stone_of_folded_kites_is_flattened) {
   abbe_mesh m = brilliant();
   for (size_t v = 0; v < m.vertex_count;
        v++) { /* the middle of the crown's kites and the culet's */
@@ -247,8 +238,7 @@ static void a_stone_of_folded_kites_is_flattened(void **state) {
 }
 
 /* Planes that all meet in one point: only rounding says in which order. */
-static void points_of_many_planes_stay_closed(void **state) {
-  (void)state;
+TEST(points_of_many_planes_stay_closed) {
   for (size_t sides = 3; sides < 40; sides++) {
     abbe_mesh m;
     abbe_mesh_report r;
@@ -264,8 +254,7 @@ static void points_of_many_planes_stay_closed(void **state) {
   }
 }
 
-static void what_is_no_stone_is_not_flattened(void **state) {
-  (void)state;
+TEST(what_is_no_stone_is_not_flattened) {
   abbe_mesh m;
   abbe_error error = {0};
   double moved;
@@ -282,8 +271,7 @@ static void what_is_no_stone_is_not_flattened(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void nothing_is_judged_of_nothing(void **state) {
-  (void)state;
+TEST(nothing_is_judged_of_nothing) {
   abbe_mesh none = {0};
   abbe_convex found;
   char text[32] = "x";
@@ -291,22 +279,4 @@ static void nothing_is_judged_of_nothing(void **state) {
   assert_int_equal(found.verdict, ABBE_CONVEX_UNASKED);
   abbe_convex_reason(&found, text, sizeof text);
   assert_string_equal(text, "");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_box_far_away_has_its_planes),
-      cmocka_unit_test(a_dent_is_measured_and_placed),
-      cmocka_unit_test(what_is_open_or_several_is_none),
-      cmocka_unit_test(a_ball_has_too_many_planes),
-      cmocka_unit_test(digits_of_a_file_cost_tolerance_and_no_more),
-      cmocka_unit_test(rounded_normals_are_no_planes),
-      cmocka_unit_test(a_gentle_curve_is_not_cut_into_planes),
-      cmocka_unit_test(thin_faces_go_with_a_plane),
-      cmocka_unit_test(a_stone_of_folded_kites_is_flattened),
-      cmocka_unit_test(points_of_many_planes_stay_closed),
-      cmocka_unit_test(what_is_no_stone_is_not_flattened),
-      cmocka_unit_test(nothing_is_judged_of_nothing),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,8 +22,7 @@ static abbe_mesh_report report_of(const abbe_mesh *m) {
 }
 
 /* By Pappus: the area across times the length of the middle line. */
-static void a_tube_has_its_volume(void **state) {
-  (void)state;
+TEST(a_tube_has_its_volume) {
   abbe_mesh m;
   assert_int_equal(abbe_knot_make(&plain, &m, NULL), ABBE_OK);
   assert_int_equal(m.face_count, 2 * 400 * 32);
@@ -33,15 +32,13 @@ static void a_tube_has_its_volume(void **state) {
 }
 
 /* A ring, once around: its length, and that a tube has room up to its hole. */
-static void a_ring_is_the_simplest_knot(void **state) {
-  (void)state;
+TEST(a_ring_is_the_simplest_knot) {
   const abbe_knot ring = {.major = 1, .minor = 1e-4, .radius = 0.1, .turns = 1, .coils = 1};
   assert_near(abbe_knot_length(&ring), 2 * pi, 1e-4);
   assert_near(abbe_knot_room(&ring), 1, 1e-3);
 }
 
-static void spines_stand_out(void **state) {
-  (void)state;
+TEST(spines_stand_out) {
   abbe_knot k = plain;
   abbe_mesh m[2];
   k.radius = 0.006;
@@ -73,8 +70,7 @@ static void spines_stand_out(void **state) {
   abbe_mesh_free(&m[1]);
 }
 
-static void what_is_no_knot(void **state) {
-  (void)state;
+TEST(what_is_no_knot) {
   abbe_knot bad[8];
   static const char *const says[8] = {"meets itself", "common divisor", "hole",   "radius 0",
                                       "spines",       "segments",       "spines", "meets itself"};
@@ -95,14 +91,4 @@ static void what_is_no_knot(void **state) {
     if (strstr(error.text, says[i]) == NULL) print_error("%s\n", error.text);
     assert_non_null(strstr(error.text, says[i]));
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_tube_has_its_volume),
-      cmocka_unit_test(a_ring_is_the_simplest_knot),
-      cmocka_unit_test(spines_stand_out),
-      cmocka_unit_test(what_is_no_knot),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

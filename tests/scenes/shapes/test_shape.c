@@ -15,8 +15,7 @@ static bool is_convex(const abbe_mesh *mesh, size_t most, double (*plane)[4], si
   return found.verdict == ABBE_CONVEX_SOLID;
 }
 
-static void sphere_has_the_faces_and_nearly_the_volume(void **state) {
-  (void)state;
+TEST(sphere_has_the_faces_and_nearly_the_volume) {
   abbe_mesh m;
   assert_int_equal(abbe_shape_sphere(0.05, 4, &m, NULL), ABBE_OK);
   assert_int_equal(m.face_count, 5120);
@@ -29,8 +28,7 @@ static void sphere_has_the_faces_and_nearly_the_volume(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void ring_is_the_thesis_ring(void **state) {
-  (void)state;
+TEST(ring_is_the_thesis_ring) {
   abbe_mesh m;
   assert_int_equal(abbe_shape_ring(0.04, 0.01, 256, 128, &m, NULL), ABBE_OK);
   assert_int_equal(m.face_count, 65536);
@@ -39,8 +37,7 @@ static void ring_is_the_thesis_ring(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void gem_is_convex_with_nineteen_planes(void **state) {
-  (void)state;
+TEST(gem_is_convex_with_nineteen_planes) {
   abbe_mesh m;
   double plane[32][4];
   size_t count = 0;
@@ -52,8 +49,7 @@ static void gem_is_convex_with_nineteen_planes(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void prism_has_its_apex_angle(void **state) {
-  (void)state;
+TEST(prism_has_its_apex_angle) {
   abbe_mesh m;
   double plane[8][4];
   size_t count = 0;
@@ -72,8 +68,7 @@ static void prism_has_its_apex_angle(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void box_and_rectangle_face_outwards(void **state) {
-  (void)state;
+TEST(box_and_rectangle_face_outwards) {
   const double size[3] = {1, 2, 3};
   abbe_mesh m;
   assert_int_equal(abbe_shape_box(size, &m, NULL), ABBE_OK);
@@ -87,8 +82,7 @@ static void box_and_rectangle_face_outwards(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void lathe_of_a_cylinder_keeps_its_rims_sharp(void **state) {
-  (void)state;
+TEST(lathe_of_a_cylinder_keeps_its_rims_sharp) {
   const double profile[4][2] = {{0, 0}, {0.1, 0}, {0.1, 0.3}, {0, 0.3}};
   abbe_mesh m;
   assert_int_equal(abbe_shape_lathe(profile, 4, 64, &m, NULL), ABBE_OK);
@@ -100,8 +94,7 @@ static void lathe_of_a_cylinder_keeps_its_rims_sharp(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void lathe_of_an_arc_is_smooth(void **state) {
-  (void)state;
+TEST(lathe_of_an_arc_is_smooth) {
   double profile[33][2];
   for (int i = 0; i < 33; i++) {
     profile[i][0] = i == 0 || i == 32 ? 0 : sin(PI * i / 32);
@@ -116,8 +109,7 @@ static void lathe_of_an_arc_is_smooth(void **state) {
 }
 
 /* A pipe's wall, a disk and a bowl: rims where the profile ends off the axis. */
-static void an_open_lathe_has_rims(void **state) {
-  (void)state;
+TEST(an_open_lathe_has_rims) {
   const double wall[2][2] = {{0.1, 0}, {0.1, 0.3}}, disk[2][2] = {{0, 0.2}, {0.1, 0.2}};
   const double bowl[3][2] = {{0, 0}, {0.1, 0.02}, {0.15, 0.08}};
   const struct {
@@ -145,8 +137,7 @@ static void an_open_lathe_has_rims(void **state) {
   }
 }
 
-static void rounding_a_profile_cuts_corners_and_keeps_ends(void **state) {
-  (void)state;
+TEST(rounding_a_profile_cuts_corners_and_keeps_ends) {
   const double profile[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   double(*out)[2];
   size_t count;
@@ -160,8 +151,7 @@ static void rounding_a_profile_cuts_corners_and_keeps_ends(void **state) {
   assert_null(out);
 }
 
-static void impossible_parameters_are_refused(void **state) {
-  (void)state;
+TEST(impossible_parameters_are_refused) {
   abbe_mesh m;
   abbe_error error;
   const double flat[3] = {1, 0, 1}, cut[3][2] = {{0, 0}, {-1, 0}, {0, 1}};
@@ -185,20 +175,4 @@ static void impossible_parameters_are_refused(void **state) {
   assert_int_equal(abbe_shape_lathe(pinched, 3, 8, &m, &error), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_shape_lathe(twice, 4, 8, &m, &error), ABBE_INVALID_ARGUMENT);
   assert_null(m.face);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(sphere_has_the_faces_and_nearly_the_volume),
-      cmocka_unit_test(ring_is_the_thesis_ring),
-      cmocka_unit_test(gem_is_convex_with_nineteen_planes),
-      cmocka_unit_test(prism_has_its_apex_angle),
-      cmocka_unit_test(box_and_rectangle_face_outwards),
-      cmocka_unit_test(lathe_of_a_cylinder_keeps_its_rims_sharp),
-      cmocka_unit_test(lathe_of_an_arc_is_smooth),
-      cmocka_unit_test(an_open_lathe_has_rims),
-      cmocka_unit_test(rounding_a_profile_cuts_corners_and_keeps_ends),
-      cmocka_unit_test(impossible_parameters_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,8 +15,7 @@ static abbe_mesh make(const abbe_water *water) {
   return mesh;
 }
 
-static void still_water_is_a_box(void **state) {
-  (void)state;
+TEST(still_water_is_a_box) {
   const abbe_water water = {.size = {0.4, 0.3, 0.2}};
   double plane[8][4];
   abbe_convex found;
@@ -33,8 +32,7 @@ static void still_water_is_a_box(void **state) {
 
 /* Long waves over little water, deep water's, and the slowest of all, which tension and gravity
  * make together: (4 g T / rho)^(1/4), 0.23 m/s at 17 mm. */
-static void waves_have_the_speeds_that_are_known(void **state) {
-  (void)state;
+TEST(waves_have_the_speeds_that_are_known) {
   const double g = 9.80665, tension = 0.0728 / 998.2;
   assert_near(abbe_water_frequency(2 * PI / 100, 0.1) * 100 / (2 * PI), sqrt(g * 0.1), 1e-4);
   assert_near(abbe_water_frequency(2 * PI / 10, INFINITY) * 10 / (2 * PI), sqrt(g * 10 / (2 * PI)),
@@ -52,8 +50,7 @@ static void waves_have_the_speeds_that_are_known(void **state) {
 
 /* After a time the surface is what it was, moved by its speed along its direction; and normals are
  * those of the heights. */
-static void a_wave_goes_its_way(void **state) {
-  (void)state;
+TEST(a_wave_goes_its_way) {
   const double length = 0.2, turn = 0.7, k = 2 * PI / length, time = 0.37, phase = 0.4;
   const abbe_water_wave wave = {0.003, length, turn, phase};
   const abbe_water water = {
@@ -84,8 +81,7 @@ static abbe_mesh after(double age) {
 }
 
 /* At first the crater, to the step of its table; at every time all the water that there was. */
-static void a_drop_takes_no_water(void **state) {
-  (void)state;
+TEST(a_drop_takes_no_water) {
   abbe_mesh mesh = after(0);
   double worst = 0;
   for (size_t v = 0; v < 321 * 321; v++) {
@@ -115,8 +111,7 @@ static double part_of(const abbe_mesh *mesh, double k) {
 }
 
 /* Each part of a ring swings at its own frequency, as long as the walls are not reached. */
-static void rings_obey_their_relation(void **state) {
-  (void)state;
+TEST(rings_obey_their_relation) {
   abbe_mesh first = after(0);
   for (int i = 1; i < 5; i++) {
     const double age = 0.07 * i;
@@ -134,8 +129,7 @@ static void rings_obey_their_relation(void **state) {
 }
 
 /* Any instant is computed by itself, the same each time; rain moves on. */
-static void rain_falls(void **state) {
-  (void)state;
+TEST(rain_falls) {
   abbe_water water = {.size = {0.3, 0.2, 0.05}, .time = 7, .rain = {0.4, 0.002, 0.01, 3}};
   abbe_mesh a = make(&water), b = make(&water);
   assert_int_equal(a.vertex_count, b.vertex_count);
@@ -160,8 +154,7 @@ static void refuses(abbe_water water, const char *word) {
   assert_null(mesh.position);
 }
 
-static void what_is_no_water(void **state) {
-  (void)state;
+TEST(what_is_no_water) {
   const abbe_water_wave high = {0.3, 1, 0, 0}, none = {0.01, 0, 0, 0},
                         short_one = {1e-6, 1e-4, 0, 0};
   const abbe_water_wave nan = {NAN, 1, 0, 0};
@@ -177,17 +170,4 @@ static void what_is_no_water(void **state) {
   refuses((abbe_water){.size = {1, 1, 1}, .drop_count = 1, .drop = &bad}, "radius");
   refuses((abbe_water){.size = {1, 1, 1}, .rain = {-1, 1, 1, 0}}, "rain");
   refuses((abbe_water){.size = {1, 1, 1}, .rain = {0.01, 0.001, 0.01, 0}}, "more than 64 drops");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(still_water_is_a_box),
-      cmocka_unit_test(waves_have_the_speeds_that_are_known),
-      cmocka_unit_test(a_wave_goes_its_way),
-      cmocka_unit_test(a_drop_takes_no_water),
-      cmocka_unit_test(rings_obey_their_relation),
-      cmocka_unit_test(rain_falls),
-      cmocka_unit_test(what_is_no_water),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,8 +39,7 @@ static void put_box(const char *path, double unit) {
   fclose(f);
 }
 
-static void every_look_shows_a_stone(void **state) {
-  (void)state;
+TEST(every_look_shows_a_stone) {
   for (int look = 0; look < ABBE_STUDIO_LOOK_COUNT; look++)
     for (int with = 0; with < ABBE_STUDIO_WITH_COUNT; with++) {
       const abbe_studio studio = {.look = (abbe_studio_look)look, .with = (abbe_studio_with)with};
@@ -59,8 +58,7 @@ static void every_look_shows_a_stone(void **state) {
     }
 }
 
-static void width_and_stone_are_the_users(void **state) {
-  (void)state;
+TEST(width_and_stone_are_the_users) {
   const abbe_studio studio = {.width_m = 0.012, .material = "ruby"};
   abbe_scene scene;
   load(OVAL, &studio, &scene);
@@ -71,8 +69,7 @@ static void width_and_stone_are_the_users(void **state) {
 }
 
 /* Between any two is a gap, and all are in the picture. */
-static void several_stand_side_by_side(void **state) {
-  (void)state;
+TEST(several_stand_side_by_side) {
   const char *const more[] = {OVAL, QUARTZ, OVAL, QUARTZ};
   for (size_t count = 1; count <= 4; count++) {
     const abbe_studio studio = {.more = more, .more_count = count};
@@ -94,8 +91,7 @@ static void several_stand_side_by_side(void **state) {
   }
 }
 
-static void a_mesh_has_its_files_size(void **state) {
-  (void)state;
+TEST(a_mesh_has_its_files_size) {
   static const struct {
     const char *path;
     double unit, width;
@@ -117,8 +113,7 @@ static void a_mesh_has_its_files_size(void **state) {
 }
 
 /* What is made for another folder is the same scene there. */
-static void a_saved_scene_is_the_same(void **state) {
-  (void)state;
+TEST(a_saved_scene_is_the_same) {
   static const char path[] = "/tmp/abbe-test-studio.yaml";
   const abbe_studio studio = {.folder = "/tmp/", .look = ABBE_STUDIO_LOOK_velvet};
   const abbe_scene_options options = {.studio = &studio};
@@ -142,8 +137,7 @@ static void a_saved_scene_is_the_same(void **state) {
 }
 
 /* Lamps that stand about a small stone stand about a large one as well. */
-static void lamps_grow_with_the_stones(void **state) {
-  (void)state;
+TEST(lamps_grow_with_the_stones) {
   static const abbe_studio_look looks[] = {ABBE_STUDIO_LOOK_white, ABBE_STUDIO_LOOK_dispersion};
   for (int i = 0; i < 2; i++) {
     abbe_scene small, large;
@@ -162,8 +156,7 @@ static void lamps_grow_with_the_stones(void **state) {
   }
 }
 
-static void an_index_finds_a_stone(void **state) {
-  (void)state;
+TEST(an_index_finds_a_stone) {
   static const struct {
     double n;
     const char *name;
@@ -180,8 +173,7 @@ static void an_index_finds_a_stone(void **state) {
   abbe_material_table_free(&table);
 }
 
-static void what_is_wrong_is_said(void **state) {
-  (void)state;
+TEST(what_is_wrong_is_said) {
   static const char *const more[] = {OVAL};
   const struct {
     const char *path;
@@ -201,14 +193,4 @@ static void what_is_wrong_is_said(void **state) {
     assert_int_equal(abbe_scene_load(bad[i].path, &options, &scene, &error), bad[i].code);
     assert_contains(error.text, bad[i].words);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_look_shows_a_stone),   cmocka_unit_test(width_and_stone_are_the_users),
-      cmocka_unit_test(several_stand_side_by_side), cmocka_unit_test(a_mesh_has_its_files_size),
-      cmocka_unit_test(a_saved_scene_is_the_same),  cmocka_unit_test(lamps_grow_with_the_stones),
-      cmocka_unit_test(an_index_finds_a_stone),     cmocka_unit_test(what_is_wrong_is_said),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

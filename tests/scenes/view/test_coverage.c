@@ -18,8 +18,7 @@ static void make(const char *text, size_t width, size_t height, size_t samples, 
 }
 
 /* A ball of radius r at distance d in the middle of the view is a disk of r / sqrt(d^2 - r^2). */
-static void a_ball_covers_its_disk(void **state) {
-  (void)state;
+TEST(a_ball_covers_its_disk) {
   abbe_image alpha;
   make("materials: glass.yaml\ncamera: {eye: [0, -1, 0], target: [0, 0, 0], fov: 40}\n"
        "environment: {uniform: 1}\nobjects:\n"
@@ -33,8 +32,7 @@ static void a_ball_covers_its_disk(void **state) {
 }
 
 /* Rows go downwards, columns to the right; a quarter of the picture is covered to its edges. */
-static void a_wall_covers_its_side(void **state) {
-  (void)state;
+TEST(a_wall_covers_its_side) {
   abbe_image alpha;
   make("materials: glass.yaml\ncamera: {eye: [0, -1, 0], target: [0, 0, 0], fov: 90}\n"
        "environment: {uniform: 1}\nobjects:\n"
@@ -47,21 +45,11 @@ static void a_wall_covers_its_side(void **state) {
   abbe_image_free(&alpha);
 }
 
-static void nothing_covers_nothing(void **state) {
-  (void)state;
+TEST(nothing_covers_nothing) {
   abbe_image alpha;
   make("camera: {eye: [0, -1, 0], target: [0, 0, 0]}\nenvironment: {uniform: 1}\n", 8, 8, 1,
        &alpha);
   assert_string_equal(alpha.channel[0], "A");
   assert_near(sum_of(&alpha), 0, 0);
   abbe_image_free(&alpha);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_ball_covers_its_disk),
-      cmocka_unit_test(a_wall_covers_its_side),
-      cmocka_unit_test(nothing_covers_nothing),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

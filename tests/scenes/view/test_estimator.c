@@ -96,8 +96,7 @@ static ray ray_of(const world *w, int i) {
 
 /* The errors of successive iterations fall (or grow) by the rate of the law, on planes and spheres,
  * for point and directional lights. */
-static void test_the_fixed_points_have_their_rates(void **state) {
-  (void)state;
+TEST(the_fixed_points_have_their_rates) {
   int measured = 0;
   for (int k = 0; k < 8 * DIRECTIONS; k++) {
     world w = make_world(k & 1, k & 2);
@@ -122,8 +121,7 @@ static void test_the_fixed_points_have_their_rates(void **state) {
 }
 
 /* Beyond 1 in size it leaves the place, however near it begins. */
-static void test_a_rate_above_one_diverges(void **state) {
-  (void)state;
+TEST(a_rate_above_one_diverges) {
   world w = make_world(true, false);
   for (int k = 0; k < 3; k++) w.n[k] = k == 0;
   w.c = 0.3; /* a wall, nearly along the light */
@@ -136,8 +134,7 @@ static void test_a_rate_above_one_diverges(void **state) {
 }
 
 /* Of the thesis's steps: at once where the plane lies across the light's axis. */
-static void test_axis_is_exact_on_planes_across(void **state) {
-  (void)state;
+TEST(axis_is_exact_on_planes_across) {
   for (int k = 0; k < 2 * DIRECTIONS; k++) {
     world w = make_world(k & 1, false);
     for (int c = 0; c < 3; c++) w.n[c] = w.view.forward[c];
@@ -149,8 +146,7 @@ static void test_axis_is_exact_on_planes_across(void **state) {
 }
 
 /* The signed ratio is linear along the ray on any plane. */
-static void test_ratio_is_exact_on_planes(void **state) {
-  (void)state;
+TEST(ratio_is_exact_on_planes) {
   for (int k = 0; k < 2 * DIRECTIONS; k++) {
     world w = make_world(k & 1, false);
     const ray r = ray_of(&w, k / 2);
@@ -181,8 +177,7 @@ static double order_of(world *w, const ray *r, abbe_estimator kind, size_t least
 }
 
 /* Orders on a sphere: newton 2, secant 1.618, false position and the fixed points 1. */
-static void test_orders_of_convergence(void **state) {
-  (void)state;
+TEST(orders_of_convergence) {
   const struct {
     abbe_estimator kind;
     double order, within;
@@ -208,8 +203,7 @@ static void test_orders_of_convergence(void **state) {
 }
 
 /* Illinois's error goes with its third power every three lookups; Pegasus it is not. */
-static void test_illinois_cubes_in_three(void **state) {
-  (void)state;
+TEST(illinois_cubes_in_three) {
   double sum = 0;
   int count = 0;
   for (int i = 0; i < 2 * DIRECTIONS; i++) {
@@ -228,8 +222,7 @@ static void test_illinois_cubes_in_three(void **state) {
   assert_near(cbrt(sum / count), 1.442, 0.12);
 }
 
-static void test_bisection_halves_and_march_steps(void **state) {
-  (void)state;
+TEST(bisection_halves_and_march_steps) {
   for (int i = 0; i < 4 * DIRECTIONS; i++) {
     world w = make_world(i & 1, i & 2);
     const ray r = ray_of(&w, i / 4);
@@ -242,8 +235,7 @@ static void test_bisection_halves_and_march_steps(void **state) {
 }
 
 /* As printed, the difference reaches over the kink of the distance, and steps bounce. */
-static void test_newton_as_printed_stays_off(void **state) {
-  (void)state;
+TEST(newton_as_printed_stays_off) {
   double worst = 0;
   for (int i = 0; i < DIRECTIONS; i++) {
     world w = make_world(false, true);
@@ -262,8 +254,7 @@ static void test_newton_as_printed_stays_off(void **state) {
 
 /* All come to the same place, with the lookups that they are said to take; the three that keep no
  * bracket may get lost on their way. */
-static void test_all_land_where_the_ray_does(void **state) {
-  (void)state;
+TEST(all_land_where_the_ray_does) {
   const size_t lookups[ABBE_ESTIMATOR_COUNT] = {
       /* one at the origin, as they begin, and one to end */
       [ABBE_ESTIMATOR_SHAH] = 2 + 1,
@@ -290,8 +281,7 @@ static void test_all_land_where_the_ray_does(void **state) {
 }
 
 /* As printed: one iteration is two lookups, at 1 m and at the distance found there. */
-static void test_shah_as_printed(void **state) {
-  (void)state;
+TEST(shah_as_printed) {
   world w = make_world(false, false);
   const ray r = ray_of(&w, 0);
   const abbe_estimator_desc desc = {.kind = ABBE_ESTIMATOR_SHAH,
@@ -314,8 +304,7 @@ static void test_shah_as_printed(void **state) {
 }
 
 /* Where nothing is seen, at once or after a while, nothing is found and nothing is broken. */
-static void test_blind_lookups(void **state) {
-  (void)state;
+TEST(blind_lookups) {
   for (int kind = ABBE_ESTIMATOR_SHAH; kind < ABBE_ESTIMATOR_EXACT; kind++)
     for (size_t from = 1; from < 6; from++) {
       world w = make_world(false, true);
@@ -329,8 +318,7 @@ static void test_blind_lookups(void **state) {
 }
 
 /* Rays that go away from all receivers are not said to land in front of the light. */
-static void test_rays_that_meet_nothing(void **state) {
-  (void)state;
+TEST(rays_that_meet_nothing) {
   for (int i = 0; i < 2; i++) {
     world w = make_world(i & 1, false);
     const ray r = make_ray(&w, 0.05, 0.02, 0.25, 0.1, 0.2, 1);
@@ -341,8 +329,7 @@ static void test_rays_that_meet_nothing(void **state) {
 }
 
 /* What stands on a receiver sends its light from there: a hair in front of it or behind. */
-static void test_rays_from_the_surface(void **state) {
-  (void)state;
+TEST(rays_from_the_surface) {
   for (int i = 0; i < 4 * DIRECTIONS; i++) {
     world w = make_world(i & 1, false);
     ray r = ray_of(&w, i / 4);
@@ -357,28 +344,7 @@ static void test_rays_from_the_surface(void **state) {
   }
 }
 
-static void test_names(void **state) {
-  (void)state;
+TEST(names) {
   assert_string_equal(abbe_estimator_name(ABBE_ESTIMATOR_FALSE_POSITION), "false-position");
   assert_string_equal(abbe_estimator_name(ABBE_ESTIMATOR_COUNT), "unknown");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_the_fixed_points_have_their_rates),
-      cmocka_unit_test(test_a_rate_above_one_diverges),
-      cmocka_unit_test(test_axis_is_exact_on_planes_across),
-      cmocka_unit_test(test_ratio_is_exact_on_planes),
-      cmocka_unit_test(test_orders_of_convergence),
-      cmocka_unit_test(test_illinois_cubes_in_three),
-      cmocka_unit_test(test_bisection_halves_and_march_steps),
-      cmocka_unit_test(test_newton_as_printed_stays_off),
-      cmocka_unit_test(test_all_land_where_the_ray_does),
-      cmocka_unit_test(test_shah_as_printed),
-      cmocka_unit_test(test_blind_lookups),
-      cmocka_unit_test(test_rays_that_meet_nothing),
-      cmocka_unit_test(test_rays_from_the_surface),
-      cmocka_unit_test(test_names),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

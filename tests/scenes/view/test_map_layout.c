@@ -30,8 +30,7 @@ static abbe_map_layout slanted(bool orthographic) {
   return layout;
 }
 
-static void test_warp_and_unwarp_are_inverse(void **state) {
-  (void)state;
+TEST(warp_and_unwarp_are_inverse) {
   abbe_map_layout layout = slanted(false);
   for (int i = 0; i <= 1000; i++)
     for (int axis = 0; axis < 2; axis++) {
@@ -48,8 +47,7 @@ static void test_warp_and_unwarp_are_inverse(void **state) {
 }
 
 /* Window coordinates by the matrix, then by hand through the knots: the same as the projection. */
-static void test_a_place_projects_as_the_matrix_and_the_knots_say(void **state) {
-  (void)state;
+TEST(a_place_projects_as_the_matrix_and_the_knots_say) {
   for (int orthographic = 0; orthographic < 2; orthographic++) {
     abbe_map_layout layout = slanted(orthographic);
     double matrix[16], clip[3], uv[2];
@@ -73,8 +71,7 @@ static void test_a_place_projects_as_the_matrix_and_the_knots_say(void **state) 
   }
 }
 
-static void test_rays_land_where_they_came_from(void **state) {
-  (void)state;
+TEST(rays_land_where_they_came_from) {
   for (int orthographic = 0; orthographic < 2; orthographic++) {
     abbe_map_layout layout = slanted(orthographic);
     for (int i = 0; i < 81; i++) {
@@ -92,8 +89,7 @@ static void test_rays_land_where_they_came_from(void **state) {
   }
 }
 
-static void test_what_the_map_does_not_hold(void **state) {
-  (void)state;
+TEST(what_the_map_does_not_hold) {
   abbe_map_layout layout = slanted(false);
   const abbe_view *v = &layout.view;
   double p[3], uv[2] = {7, 7};
@@ -114,8 +110,7 @@ static void test_what_the_map_does_not_hold(void **state) {
   assert_int_equal(row, 0);
 }
 
-static void test_texel_areas_add_up_to_the_window(void **state) {
-  (void)state;
+TEST(texel_areas_add_up_to_the_window) {
   abbe_map_layout layout = slanted(true);
   static const size_t sizes[3][2] = {{1, 1}, {37, 64}, {512, 3}};
   for (int i = 0; i < 3; i++) {
@@ -141,8 +136,7 @@ static void make_image(abbe_image *out) {
 }
 
 /* Every bit comes back, whatever the host program's language writes for a decimal point. */
-static void test_attributes_give_back_every_bit(void **state) {
-  (void)state;
+TEST(attributes_give_back_every_bit) {
   const char *host = setlocale(LC_ALL, "de_DE.UTF-8");
   for (int orthographic = 0; orthographic < 2; orthographic++) {
     abbe_image image;
@@ -166,8 +160,7 @@ static void test_attributes_give_back_every_bit(void **state) {
   if (host != NULL) setlocale(LC_ALL, "C");
 }
 
-static void test_sameness_is_of_texels(void **state) {
-  (void)state;
+TEST(sameness_is_of_texels) {
   abbe_map_layout a = slanted(false), b = a;
   assert_true(abbe_map_layout_same(&a, &b));
   b.view.far *= 2; /* moves no texel */
@@ -186,8 +179,7 @@ static void test_sameness_is_of_texels(void **state) {
   assert_false(abbe_map_layout_same(&a, &b));
 }
 
-static void test_impossible_layouts_are_refused(void **state) {
-  (void)state;
+TEST(impossible_layouts_are_refused) {
   abbe_error error = {0};
   for (int fault = 0; fault < 8; fault++) {
     abbe_map_layout l = slanted(false);
@@ -250,8 +242,7 @@ static void refuse(const char *name, const char *text, abbe_result code, const c
   abbe_image_free(&image);
 }
 
-static void test_broken_attributes_are_refused(void **state) {
-  (void)state;
+TEST(broken_attributes_are_refused) {
   static const char *const views[] = {
       "",
       "perspective",
@@ -272,19 +263,4 @@ static void test_broken_attributes_are_refused(void **state) {
   assert_int_equal(abbe_map_layout_read(&image, "picture.exr", &layout, &error), ABBE_NOT_FOUND);
   assert_contains(error.text, "no receiver map");
   abbe_image_free(&image);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_warp_and_unwarp_are_inverse),
-      cmocka_unit_test(test_a_place_projects_as_the_matrix_and_the_knots_say),
-      cmocka_unit_test(test_rays_land_where_they_came_from),
-      cmocka_unit_test(test_what_the_map_does_not_hold),
-      cmocka_unit_test(test_texel_areas_add_up_to_the_window),
-      cmocka_unit_test(test_attributes_give_back_every_bit),
-      cmocka_unit_test(test_sameness_is_of_texels),
-      cmocka_unit_test(test_impossible_layouts_are_refused),
-      cmocka_unit_test(test_broken_attributes_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -40,8 +40,7 @@ static double sum_of(const abbe_image *image, size_t channel) {
   return sum;
 }
 
-static void test_the_same_layout_gives_the_same_map(void **state) {
-  (void)state;
+TEST(the_same_layout_gives_the_same_map) {
   for (int orthographic = 0; orthographic < 2; orthographic++) {
     abbe_map_layout layout = layout_of(orthographic, 0.2, 0.3, 0.5);
     abbe_image from = map_of(&layout, 16), to = {0};
@@ -54,8 +53,7 @@ static void test_the_same_layout_gives_the_same_map(void **state) {
   }
 }
 
-static void test_light_is_kept_in_a_wider_window_and_lost_outside_a_narrow_one(void **state) {
-  (void)state;
+TEST(light_is_kept_in_a_wider_window_and_lost_outside_a_narrow_one) {
   abbe_map_layout own = layout_of(false, 0, 0, 0.4), wide = layout_of(false, 0.15, 0.4, 0.8);
   abbe_map_layout half = layout_of(false, 0, 0, 0.2);
   abbe_image from = map_of(&own, 32), to = {0};
@@ -72,8 +70,7 @@ static void test_light_is_kept_in_a_wider_window_and_lost_outside_a_narrow_one(v
 }
 
 /* A bright texel lands where its ray meets the other layout, worked out through the world. */
-static void test_light_lands_where_it_belongs(void **state) {
-  (void)state;
+TEST(light_lands_where_it_belongs) {
   abbe_map_layout own = layout_of(false, 0.3, 0.5, 0.6), other = layout_of(false, 0.1, 0.2, 1.2);
   abbe_image from = map_of(&own, 64), to = {0};
   static const size_t places[][2] = {{3, 60}, {32, 32}, {50, 7}};
@@ -94,8 +91,7 @@ static void test_light_lands_where_it_belongs(void **state) {
   abbe_image_free(&from);
 }
 
-static void test_what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   abbe_map_layout own = layout_of(false, 0, 0, 0.4), moved = own;
   abbe_image from = map_of(&own, 8), to = {0}, bare = {0};
   static const char *const names[] = {"Y"};
@@ -118,14 +114,4 @@ static void test_what_is_refused(void **state) {
   assert_null(to.data);
   abbe_image_free(&bare);
   abbe_image_free(&from);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_the_same_layout_gives_the_same_map),
-      cmocka_unit_test(test_light_is_kept_in_a_wider_window_and_lost_outside_a_narrow_one),
-      cmocka_unit_test(test_light_lands_where_it_belongs),
-      cmocka_unit_test(test_what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

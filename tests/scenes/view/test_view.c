@@ -19,8 +19,7 @@ static double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void test_look_makes_a_right_handed_frame(void **state) {
-  (void)state;
+TEST(look_makes_a_right_handed_frame) {
   abbe_view v;
   abbe_view_look(eye, along_y, up_z, false, &v);
   assert_vector(v.origin, 1, 2, 3);
@@ -29,8 +28,7 @@ static void test_look_makes_a_right_handed_frame(void **state) {
   assert_vector(v.up, 0, 0, 1);
 }
 
-static void test_up_along_the_view_is_replaced(void **state) {
-  (void)state;
+TEST(up_along_the_view_is_replaced) {
   static const double axes[3][3] = {{1, 0, 0}, {0, -3, 0}, {0, 0, 1e-3}};
   for (int i = 0; i < 3; i++) {
     abbe_view v;
@@ -43,8 +41,7 @@ static void test_up_along_the_view_is_replaced(void **state) {
   }
 }
 
-static void test_fit_finds_known_windows(void **state) {
-  (void)state;
+TEST(fit_finds_known_windows) {
   static const double points[3][3] = {{2, 4, 2}, {0, 4, 4}, {1, 6, 3}};
   abbe_view v;
   abbe_view_look(eye, along_y, up_z, false, &v);
@@ -63,8 +60,7 @@ static void test_fit_finds_known_windows(void **state) {
   assert_near(abbe_view_area(&v), 4, tolerance);
 }
 
-static void test_fit_says_what_does_not_fit(void **state) {
-  (void)state;
+TEST(fit_says_what_does_not_fit) {
   static const double ahead[1][3] = {{1, 4, 3}}, behind[1][3] = {{2, 1, 3}};
   static const double aside[1][3] = {{1 + 2 * (ABBE_VIEW_MAX_TANGENT + 1), 4, 3}};
   abbe_view v;
@@ -83,8 +79,7 @@ static void test_fit_says_what_does_not_fit(void **state) {
   assert_true(abbe_view_fit(&v, aside, 1));
 }
 
-static void test_pad_widens_and_never_leaves_nothing(void **state) {
-  (void)state;
+TEST(pad_widens_and_never_leaves_nothing) {
   static const double points[2][3] = {{0, 4, 2}, {2, 8, 4}}, one[1][3] = {{1, 4, 3}};
   abbe_view v;
   abbe_view_look(eye, along_y, up_z, true, &v);
@@ -115,8 +110,7 @@ static abbe_view slanted(bool orthographic) {
   return v;
 }
 
-static void test_rays_project_back_to_where_they_start(void **state) {
-  (void)state;
+TEST(rays_project_back_to_where_they_start) {
   for (int i = 0; i < 2 * 7 * 7; i++) {
     abbe_view v = slanted(i % 2);
     double uv[2] = {(i / 2 % 7) / 6.0, (i / 14) / 6.0}, o[3], d[3], p[3], uvz[3], t = 0.6 + i;
@@ -131,8 +125,7 @@ static void test_rays_project_back_to_where_they_start(void **state) {
   }
 }
 
-static void test_projection_fails_behind_the_origin_only(void **state) {
-  (void)state;
+TEST(projection_fails_behind_the_origin_only) {
   double behind[3], uvz[3];
   for (int orthographic = 0; orthographic < 2; orthographic++) {
     abbe_view v = slanted(orthographic);
@@ -142,8 +135,7 @@ static void test_projection_fails_behind_the_origin_only(void **state) {
 }
 
 /* Clip space is the window, from -1 to 1, and near to far. */
-static void test_the_matrix_agrees_with_the_projection(void **state) {
-  (void)state;
+TEST(the_matrix_agrees_with_the_projection) {
   for (int orthographic = 0; orthographic < 2; orthographic++) {
     abbe_view v = slanted(orthographic);
     double matrix[16], uv[2] = {0.2, 0.7}, o[3], d[3], p[3], clip[3];
@@ -164,8 +156,7 @@ static void test_the_matrix_agrees_with_the_projection(void **state) {
   }
 }
 
-static void test_pack_is_the_float_copy(void **state) {
-  (void)state;
+TEST(pack_is_the_float_copy) {
   abbe_view v = slanted(false);
   float packed[24];
   abbe_view_pack(&v, packed);
@@ -178,19 +169,4 @@ static void test_pack_is_the_float_copy(void **state) {
   v = slanted(true);
   abbe_view_pack(&v, packed);
   assert_true(packed[3] == 0.0f);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_look_makes_a_right_handed_frame),
-      cmocka_unit_test(test_up_along_the_view_is_replaced),
-      cmocka_unit_test(test_fit_finds_known_windows),
-      cmocka_unit_test(test_fit_says_what_does_not_fit),
-      cmocka_unit_test(test_pad_widens_and_never_leaves_nothing),
-      cmocka_unit_test(test_rays_project_back_to_where_they_start),
-      cmocka_unit_test(test_projection_fails_behind_the_origin_only),
-      cmocka_unit_test(test_the_matrix_agrees_with_the_projection),
-      cmocka_unit_test(test_pack_is_the_float_copy),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -25,8 +25,7 @@ static void find(const char *object, abbe_body_symmetry *out) {
   abbe_scene_free(&scene);
 }
 
-static void test_orders_of_known_groups(void **state) {
-  (void)state;
+TEST(orders_of_known_groups) {
   static const struct {
     const char *object;
     size_t order;
@@ -52,8 +51,7 @@ static void test_orders_of_known_groups(void **state) {
 }
 
 /* All images of a direction are brought to one place, by orthogonal maps. */
-static void test_images_are_brought_together(void **state) {
-  (void)state;
+TEST(images_are_brought_together) {
   abbe_body_symmetry s, copy;
   uint64_t seed = 5;
   find("- {name: cube, shape: box, size: [0.1, 0.1, 0.1], material: flat" TURNED, &s);
@@ -81,10 +79,4 @@ static void test_images_are_brought_together(void **state) {
   assert_int_equal(abbe_body_symmetry_make(1, (const double(*)[9]) & s.map[1], &copy, NULL),
                    ABBE_INVALID_ARGUMENT);
   abbe_body_symmetry_free(&s);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_orders_of_known_groups),
-                                     cmocka_unit_test(test_images_are_brought_together)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

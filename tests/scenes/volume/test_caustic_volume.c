@@ -19,8 +19,7 @@ static void random_unit(uint64_t *seed, double d[3]) {
   abbe_vector_normalise(d);
 }
 
-static void test_halves(void **state) {
-  (void)state;
+TEST(halves) {
   static const double exact[] = {
       0, 1, -2.5, 65504, 6.103515625e-5, 5.9604644775390625e-8, 0.333251953125};
   for (size_t i = 0; i < sizeof exact / sizeof *exact; i++)
@@ -37,8 +36,7 @@ static void test_halves(void **state) {
 }
 
 /* Under a node's own light, in a cell's middle of a grid. */
-static void test_a_node_and_a_cell_are_what_is_stored(void **state) {
-  (void)state;
+TEST(a_node_and_a_cell_are_what_is_stored) {
   for (int lookup = ABBE_VOLUME_LOOKUP_NEAREST; lookup < ABBE_VOLUME_LOOKUP_COUNT; lookup++) {
     abbe_caustic_volume v;
     make_volume(ABBE_VOLUME_VECTOR, grid, 42, false, &v);
@@ -83,8 +81,7 @@ static double ball_error(const abbe_caustic_volume *v, abbe_volume_lookup lookup
 
 /* Turned lookups see a ball's field from any direction as from a node: what is left is the cells'.
  * Blends of three nodes are off by what the light turns, which more nodes make less. */
-static void test_turns_are_exact_for_a_ball(void **state) {
-  (void)state;
+TEST(turns_are_exact_for_a_ball) {
   double blended[2];
   static const size_t counts[] = {12, 162, 1};
   for (int i = 0; i < 3; i++) {
@@ -100,8 +97,7 @@ static void test_turns_are_exact_for_a_ball(void **state) {
   assert_true(blended[1] < 0.4 * blended[0]);
 }
 
-static void test_a_ball_is_turned_by_itself(void **state) {
-  (void)state;
+TEST(a_ball_is_turned_by_itself) {
   abbe_caustic_volume v;
   make_volume(ABBE_VOLUME_VECTOR, triangles, 12, true, &v);
   assert_int_equal(abbe_caustic_volume_resolve(&v, ABBE_VOLUME_LOOKUP_AUTO),
@@ -113,8 +109,7 @@ static void test_a_ball_is_turned_by_itself(void **state) {
 }
 
 /* A field that is a harmonic of the light's direction of degree 1 is one of their sum. */
-static void test_harmonics_of_the_light(void **state) {
-  (void)state;
+TEST(harmonics_of_the_light) {
   abbe_caustic_volume v;
   abbe_error error = {0};
   const abbe_region_desc small = {.kind = ABBE_REGION_GRID, .side = 4, .outer = 2};
@@ -169,8 +164,7 @@ static void compare_at_nodes(const abbe_caustic_volume *dense, const abbe_causti
 
 /* As many modes as nodes are the dense volume, to the rounding of halves; of fewer the error is
  * what was said, and less with more; lookups are those of the sum. */
-static void test_modes_of_the_light(void **state) {
-  (void)state;
+TEST(modes_of_the_light) {
   const abbe_region_desc small = {.kind = ABBE_REGION_GRID, .side = 6, .outer = 2};
   abbe_caustic_volume dense;
   abbe_error error = {0};
@@ -213,8 +207,7 @@ static void test_modes_of_the_light(void **state) {
 }
 
 /* No value is off by more than the tolerance, and fewer bytes hold them. */
-static void test_joint_cells(void **state) {
-  (void)state;
+TEST(joint_cells) {
   const abbe_region_desc small = {.kind = ABBE_REGION_GRID, .side = 16, .outer = 3};
   abbe_caustic_volume v, joint;
   size_t same = 0, bytes = 0;
@@ -231,8 +224,7 @@ static void test_joint_cells(void **state) {
 }
 
 /* Beyond the rim light thins by the square of the distance; printed it does not. */
-static void test_beyond_the_region(void **state) {
-  (void)state;
+TEST(beyond_the_region) {
   const abbe_region_desc all[] = {grid, shells, triangles};
   for (int i = 0; i < 3; i++) {
     abbe_caustic_volume v, printed;
@@ -262,8 +254,7 @@ static void test_beyond_the_region(void **state) {
   }
 }
 
-static void test_too_many_values_are_refused(void **state) {
-  (void)state;
+TEST(too_many_values_are_refused) {
   abbe_caustic_volume v = {0};
   abbe_error error = {0};
   const abbe_region_desc large = {.kind = ABBE_REGION_GRID, .side = 256, .outer = 1};
@@ -272,19 +263,4 @@ static void test_too_many_values_are_refused(void **state) {
   assert_int_equal(abbe_caustic_volume_allocate(&v, &error), ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "fewer");
   abbe_caustic_volume_free(&v);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_halves),
-      cmocka_unit_test(test_a_node_and_a_cell_are_what_is_stored),
-      cmocka_unit_test(test_turns_are_exact_for_a_ball),
-      cmocka_unit_test(test_a_ball_is_turned_by_itself),
-      cmocka_unit_test(test_harmonics_of_the_light),
-      cmocka_unit_test(test_modes_of_the_light),
-      cmocka_unit_test(test_joint_cells),
-      cmocka_unit_test(test_beyond_the_region),
-      cmocka_unit_test(test_too_many_values_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,8 +27,7 @@ static void find_moments(const float (*of)[4], int channel, double moment[5]) {
   for (int k = 3; k < 5; k++) moment[k] -= moment[k - 2] * moment[k - 2];
 }
 
-static void test_tents(void **state) {
-  (void)state;
+TEST(tents) {
   static const float value[4] = {1, 2, 3, 0}, wide[2] = {7.5f, 3.25f};
   double moment[5];
   memset(map, 0, sizeof map);
@@ -49,8 +48,7 @@ static void test_tents(void **state) {
 }
 
 /* At the ends nothing is lost, and an even map is even. */
-static void test_ends(void **state) {
-  (void)state;
+TEST(ends) {
   static const float value[4] = {1, 0, 0, 0}, wide[2] = {9, 200};
   static const float place[][2] = {{0, 0}, {SIDE, 0}, {0.2f, SIDE}, {SIDE, SIDE}, {-1, 3}};
   double moment[5];
@@ -67,8 +65,7 @@ static void test_ends(void **state) {
 }
 
 /* Narrow tents are what a place is already; a map of one texel has it all. */
-static void test_narrow(void **state) {
-  (void)state;
+TEST(narrow) {
   static const float value[4] = {1, 2, 3, 4}, wide[2] = {1, 0.5f}, wider[2] = {5, 5};
   float one[1][4] = {{0}}, out[1][4];
   memset(map, 0, sizeof map);
@@ -78,10 +75,4 @@ static void test_narrow(void **state) {
   abbe_exit_map_add(one, 1, 0.7f, 0.1f, value);
   abbe_exit_map_smooth((const float(*)[4])one, 1, wider, out);
   for (int k = 0; k < 4; k++) assert_near((double)out[0][k], (double)value[k], 1e-6);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_tents), cmocka_unit_test(test_ends),
-                                     cmocka_unit_test(test_narrow)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -113,16 +113,14 @@ static void check_beam(bool mirror, bool metal) {
   free_bench(&b);
 }
 
-static void test_a_beam_on_a_floor(void **state) {
-  (void)state;
+TEST(a_beam_on_a_floor) {
   check_beam(false, false);
   check_beam(true, false);
   check_beam(true, true);
 }
 
 /* A roof over half of the floor takes what is above it, on its upper side. */
-static void test_the_first_sheet_takes_it(void **state) {
-  (void)state;
+TEST(the_first_sheet_takes_it) {
   bench b;
   abbe_exit_pages pages;
   make_bench(40, &b);
@@ -147,8 +145,7 @@ static void test_the_first_sheet_takes_it(void **state) {
 }
 
 /* A lid over half of the plate hides the sun from that half. */
-static void test_what_hides_the_light(void **state) {
-  (void)state;
+TEST(what_hides_the_light) {
   bench b;
   abbe_exit_pages pages;
   make_bench(40, &b);
@@ -162,8 +159,7 @@ static void test_what_hides_the_light(void **state) {
   free_bench(&b);
 }
 
-static void test_requests(void **state) {
-  (void)state;
+TEST(requests) {
   bench b;
   abbe_exit_pages pages;
   make_bench(4, &b);
@@ -177,11 +173,4 @@ static void test_requests(void **state) {
                                         &pages, NULL),
                    ABBE_INVALID_ARGUMENT);
   free_bench(&b);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_beam_on_a_floor), cmocka_unit_test(test_the_first_sheet_takes_it),
-      cmocka_unit_test(test_what_hides_the_light), cmocka_unit_test(test_requests)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

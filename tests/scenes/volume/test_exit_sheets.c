@@ -30,8 +30,7 @@ static void meet(size_t first, size_t sheets, const float *step, size_t parts,
   abbe_exit_sheets_meet(track, sheets, step, parts, at);
 }
 
-static void test_parts(void **state) {
-  (void)state;
+TEST(parts) {
   const float step[ABBE_EXIT_MOST_PARTS] = {0, 1, 2, -1, 20};
   abbe_exit_landing at;
   meet(0, 1, step, 5, &at);
@@ -44,8 +43,7 @@ static void test_parts(void **state) {
   assert_int_equal(at.page[4], -1); /* beside the floor */
 }
 
-static void test_the_first(void **state) {
-  (void)state;
+TEST(the_first) {
   const float step[ABBE_EXIT_MOST_PARTS] = {0.1f, -1};
   abbe_exit_landing at;
   meet(0, 2, step, 2, &at);
@@ -58,8 +56,7 @@ static void test_the_first(void **state) {
   assert_int_equal(at.page[0], -1);
 }
 
-static void test_hiding(void **state) {
-  (void)state;
+TEST(hiding) {
   static const double up[3] = {-1, 0, 0}, below[3] = {2.5, 0, 0.5}, on[3] = {2, 0, 0.5};
   abbe_exit_sheet sheet[2];
   make_sheets(sheet);
@@ -67,10 +64,4 @@ static void test_hiding(void **state) {
   assert_false(abbe_exit_sheets_hide(sheet, 2, below, up, 0.4));
   assert_false(abbe_exit_sheets_hide(sheet, 1, below, up, INFINITY)); /* the floor is behind it */
   assert_false(abbe_exit_sheets_hide(sheet, 2, on, up, INFINITY));    /* what stands on the shelf */
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_parts), cmocka_unit_test(test_the_first),
-                                     cmocka_unit_test(test_hiding)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -107,8 +107,7 @@ static double largest_error(size_t count, bool apart) {
 
 /* Half the distance between nodes: an eighth of the error where facets are the same, down to
  * halves' steps; a quarter where each ray goes alone. */
-static void test_rays_follow_a_smooth_law(void **state) {
-  (void)state;
+TEST(rays_follow_a_smooth_law) {
   const double joint[] = {largest_error(162, false), largest_error(642, false)};
   const double alone[] = {largest_error(162, true), largest_error(642, true)};
   print_message("162 and 642 nodes: joined %.2e, %.2e; alone %.2e, %.2e\n", joint[0], joint[1],
@@ -119,8 +118,7 @@ static void test_rays_follow_a_smooth_law(void **state) {
 }
 
 /* Light of a node: what is stored, to its halves. */
-static void test_a_node_is_what_is_stored(void **state) {
-  (void)state;
+TEST(a_node_is_what_is_stored) {
   abbe_light_nodes nodes;
   abbe_light_exits exits;
   make_exits(42, false, &nodes, &exits);
@@ -143,8 +141,7 @@ static void test_a_node_is_what_is_stored(void **state) {
 }
 
 /* Rays of other facets, one of which would leave the body beside it: the others have its light. */
-static void test_rays_leave_a_body_on_its_surface(void **state) {
-  (void)state;
+TEST(rays_leave_a_body_on_its_surface) {
   abbe_light_nodes nodes;
   abbe_light_exits exits;
   uint64_t seed = 11;
@@ -171,8 +168,7 @@ static void test_rays_leave_a_body_on_its_surface(void **state) {
   free_exits(&nodes, &exits);
 }
 
-static void test_chances_and_points(void **state) {
-  (void)state;
+TEST(chances_and_points) {
   double chance[ABBE_LIGHT_EXITS_BINS], sum = 0, place[3], normal[3];
   size_t bin;
   abbe_light_nodes nodes;
@@ -191,8 +187,7 @@ static void test_chances_and_points(void **state) {
   free_exits(&nodes, &exits);
 }
 
-static void test_requests(void **state) {
-  (void)state;
+TEST(requests) {
   abbe_light_nodes one, nodes;
   abbe_light_exits exits;
   abbe_exit_halves point = {0};
@@ -211,15 +206,4 @@ static void test_requests(void **state) {
       ABBE_INVALID_ARGUMENT);
   abbe_light_nodes_free(&one);
   abbe_light_nodes_free(&nodes);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_rays_follow_a_smooth_law),
-      cmocka_unit_test(test_a_node_is_what_is_stored),
-      cmocka_unit_test(test_rays_leave_a_body_on_its_surface),
-      cmocka_unit_test(test_chances_and_points),
-      cmocka_unit_test(test_requests),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,8 +19,7 @@ static void random_unit(uint64_t *seed, double d[3]) {
   abbe_vector_normalise(d);
 }
 
-static void test_low_degrees(void **state) {
-  (void)state;
+TEST(low_degrees) {
   uint64_t seed = 1;
   for (int i = 0; i < 100; i++) {
     double d[3], y[9];
@@ -41,8 +40,7 @@ static void test_low_degrees(void **state) {
 }
 
 /* By Gauss-Legendre-like quadrature: midpoints in azimuth are exact, in z nearly. */
-static void test_they_are_orthonormal(void **state) {
-  (void)state;
+TEST(they_are_orthonormal) {
   enum { DEGREE = 6, COUNT = 49, Z = 4000, TURN = 16 };
   static double sum[COUNT][COUNT];
   for (int i = 0; i < Z * TURN; i++) {
@@ -59,8 +57,7 @@ static void test_they_are_orthonormal(void **state) {
 
 /* The square of a sum over the sphere is that of its coefficients; those above the degree are what
  * a fit of dense nodes leaves. */
-static void test_fits(void **state) {
-  (void)state;
+TEST(fits) {
   abbe_light_nodes nodes;
   abbe_error error = {0};
   assert_int_equal(abbe_light_nodes_make(642, up, &nodes, NULL), ABBE_OK);
@@ -98,8 +95,7 @@ static void test_fits(void **state) {
   abbe_light_nodes_free(&nodes);
 }
 
-static void test_too_few_nodes(void **state) {
-  (void)state;
+TEST(too_few_nodes) {
   abbe_light_nodes nodes;
   abbe_error error = {0};
   double fit[16 * 12];
@@ -108,11 +104,4 @@ static void test_too_few_nodes(void **state) {
   assert_contains(error.text, "16 coefficients");
   assert_int_equal(abbe_light_harmonics_fit(&nodes, 2, fit, &error), ABBE_OK);
   abbe_light_nodes_free(&nodes);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_low_degrees), cmocka_unit_test(test_they_are_orthonormal),
-      cmocka_unit_test(test_fits), cmocka_unit_test(test_too_few_nodes)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -36,8 +36,7 @@ static void assert_orthogonal(const double *mode) {
     }
 }
 
-static void test_what_a_cut_leaves(void **state) {
-  (void)state;
+TEST(what_a_cut_leaves) {
   uint16_t value[NODES * EACH];
   double singular[NODES], mode[NODES * NODES], all = 0;
   uint64_t seed = 11;
@@ -61,8 +60,7 @@ static void test_what_a_cut_leaves(void **state) {
 }
 
 /* Values that are a sum of two products are given back by two modes. */
-static void test_two_modes(void **state) {
-  (void)state;
+TEST(two_modes) {
   uint16_t value[NODES * EACH];
   double singular[NODES], mode[NODES * NODES];
   for (size_t j = 0; j < NODES; j++)
@@ -77,8 +75,7 @@ static void test_two_modes(void **state) {
 }
 
 /* Nothing but dark, one node, and none. */
-static void test_awkward(void **state) {
-  (void)state;
+TEST(awkward) {
   uint16_t dark[NODES * EACH] = {0}, one[3];
   double singular[NODES], mode[NODES * NODES];
   abbe_error error = {0};
@@ -91,11 +88,4 @@ static void test_awkward(void **state) {
   assert_near(fabs(mode[0]), 1, 0);
   assert_int_equal(abbe_light_modes_find(0, 3, one, singular, mode, &error), ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "no nodes");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_a_cut_leaves),
-                                     cmocka_unit_test(test_two_modes),
-                                     cmocka_unit_test(test_awkward)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

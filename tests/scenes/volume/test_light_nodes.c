@@ -14,8 +14,7 @@ static void random_unit(uint64_t *seed, double d[3]) {
   abbe_vector_normalise(d);
 }
 
-static void test_weights_sum_to_one_and_lie_along_the_light(void **state) {
-  (void)state;
+TEST(weights_sum_to_one_and_lie_along_the_light) {
   static const size_t counts[] = {12, 42, 162, 642};
   uint64_t seed = 3;
   for (size_t n = 0; n < 4; n++) {
@@ -44,8 +43,7 @@ static void test_weights_sum_to_one_and_lie_along_the_light(void **state) {
   }
 }
 
-static void test_at_a_node_it_is_alone(void **state) {
-  (void)state;
+TEST(at_a_node_it_is_alone) {
   abbe_light_nodes nodes;
   assert_int_equal(abbe_light_nodes_make(162, up, &nodes, NULL), ABBE_OK);
   for (size_t i = 0; i < nodes.count; i++) {
@@ -58,8 +56,7 @@ static void test_at_a_node_it_is_alone(void **state) {
   abbe_light_nodes_free(&nodes);
 }
 
-static void test_turns_bring_the_light_to_the_node(void **state) {
-  (void)state;
+TEST(turns_bring_the_light_to_the_node) {
   uint64_t seed = 5;
   for (int i = 0; i < 1000; i++) {
     double from[3], to[3], turn[9], across[3], axis[3];
@@ -79,8 +76,7 @@ static void test_turns_bring_the_light_to_the_node(void **state) {
   }
 }
 
-static void test_one_node_and_other_counts(void **state) {
-  (void)state;
+TEST(one_node_and_other_counts) {
   abbe_light_nodes nodes;
   abbe_error error = {0};
   abbe_node_blend b;
@@ -94,14 +90,4 @@ static void test_one_node_and_other_counts(void **state) {
   assert_contains(error.text, "162");
   assert_int_equal(abbe_light_nodes_make(1, (const double[3]){0}, &nodes, &error),
                    ABBE_INVALID_ARGUMENT);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_weights_sum_to_one_and_lie_along_the_light),
-      cmocka_unit_test(test_at_a_node_it_is_alone),
-      cmocka_unit_test(test_turns_bring_the_light_to_the_node),
-      cmocka_unit_test(test_one_node_and_other_counts),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,8 +24,7 @@ static void random_direction(uint64_t *seed, double d[3]) {
   while (!(abbe_vector_length(d) > 0.1) || abbe_vector_length(d) > 1);
 }
 
-static void test_faces_cover_the_sphere_once(void **state) {
-  (void)state;
+TEST(faces_cover_the_sphere_once) {
   for (int kind = 0; kind < 7; kind++) {
     abbe_sphere_mesh m;
     make(kind, &m);
@@ -38,8 +37,7 @@ static void test_faces_cover_the_sphere_once(void **state) {
 }
 
 /* Beyond each edge lies the face that has it, the other way round. */
-static void test_neighbours_share_an_edge(void **state) {
-  (void)state;
+TEST(neighbours_share_an_edge) {
   for (int kind = 0; kind < 7; kind++) {
     abbe_sphere_mesh m;
     make(kind, &m);
@@ -56,8 +54,7 @@ static void test_neighbours_share_an_edge(void **state) {
   }
 }
 
-static void test_a_direction_lies_inside_the_face_that_is_found(void **state) {
-  (void)state;
+TEST(a_direction_lies_inside_the_face_that_is_found) {
   uint64_t seed = 1;
   for (int kind = 0; kind < 7; kind++) {
     abbe_sphere_mesh m;
@@ -82,8 +79,7 @@ static void test_a_direction_lies_inside_the_face_that_is_found(void **state) {
   }
 }
 
-static void test_the_table_is_exact_in_the_middle_of_its_texels(void **state) {
-  (void)state;
+TEST(the_table_is_exact_in_the_middle_of_its_texels) {
   abbe_sphere_mesh m;
   make(3, &m);
   for (size_t i = 0; i < m.table_side * m.table_side; i++) {
@@ -101,8 +97,7 @@ static void test_the_table_is_exact_in_the_middle_of_its_texels(void **state) {
 }
 
 /* Two triangles are the texel that the map has there. */
-static void test_octahedral_faces_are_texels(void **state) {
-  (void)state;
+TEST(octahedral_faces_are_texels) {
   uint64_t seed = 7;
   const size_t side = 12;
   abbe_sphere_mesh m;
@@ -119,24 +114,11 @@ static void test_octahedral_faces_are_texels(void **state) {
   abbe_sphere_mesh_free(&m);
 }
 
-static void test_limits_are_told(void **state) {
-  (void)state;
+TEST(limits_are_told) {
   abbe_sphere_mesh m;
   abbe_error error = {0};
   assert_int_equal(abbe_sphere_mesh_geodesic(7, &m, &error), ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "0 to 6");
   assert_int_equal(abbe_sphere_mesh_octahedral(7, &m, &error), ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "even");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_faces_cover_the_sphere_once),
-      cmocka_unit_test(test_neighbours_share_an_edge),
-      cmocka_unit_test(test_a_direction_lies_inside_the_face_that_is_found),
-      cmocka_unit_test(test_the_table_is_exact_in_the_middle_of_its_texels),
-      cmocka_unit_test(test_octahedral_faces_are_texels),
-      cmocka_unit_test(test_limits_are_told),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,8 +15,7 @@
       "- {name: ball, shape: sphere, radius: 0.05, levels: 3, material: flat, transform: "         \
       "[{translate: [-0.2, 0.1, 0.2]}]}\n"
 
-static void test_motion_is_found(void **state) {
-  (void)state;
+TEST(motion_is_found) {
   abbe_scene scene = {0};
   static const double axis[3] = {1, -2, 0.5}, offset[3] = {0.1, -0.2, 0.3};
   load_text(SCENE, &scene);
@@ -46,8 +45,7 @@ static void test_motion_is_found(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_the_ball_around_it_holds_it(void **state) {
-  (void)state;
+TEST(the_ball_around_it_holds_it) {
   abbe_scene scene = {0};
   load_text(SCENE, &scene);
   for (size_t i = 1; i < 3; i++) {
@@ -66,8 +64,7 @@ static void test_the_ball_around_it_holds_it(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_others_are_told_apart(void **state) {
-  (void)state;
+TEST(others_are_told_apart) {
   abbe_scene scene = {0};
   abbe_volume_body wedge, ball;
   abbe_volume_place place;
@@ -90,11 +87,4 @@ static void test_others_are_told_apart(void **state) {
   assert_int_equal(abbe_volume_body_find(&ball, &scene.object[2], &place, &error),
                    ABBE_UNSUPPORTED);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_motion_is_found),
-                                     cmocka_unit_test(test_the_ball_around_it_holds_it),
-                                     cmocka_unit_test(test_others_are_told_apart)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

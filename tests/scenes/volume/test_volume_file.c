@@ -13,8 +13,7 @@ static const abbe_region_desc regions[] = {
     {.kind = ABBE_REGION_GEODESIC, .levels = 1, .shells = 5, .inner = 0.1, .outer = 0.7},
     {.kind = ABBE_REGION_OCTAHEDRAL, .side = 4, .shells = 3, .inner = 0.01, .outer = 0.1}};
 
-static void test_files_give_volumes_back(void **state) {
-  (void)state;
+TEST(files_give_volumes_back) {
   for (int i = 0; i < 18; i++) {
     abbe_caustic_volume v, back;
     abbe_error error = {0};
@@ -74,8 +73,7 @@ static void make_exits(abbe_caustic_volume *out) {
   for (size_t i = 0; i < out->exits.cells; i++) out->exits.space[i] = abbe_half_of((double)i / 512);
 }
 
-static void test_files_give_rays_back(void **state) {
-  (void)state;
+TEST(files_give_rays_back) {
   abbe_caustic_volume v, back;
   abbe_error error = {0};
   make_exits(&v);
@@ -130,8 +128,7 @@ static abbe_result read_with(const char *name, const char *text, abbe_error *err
   return result;
 }
 
-static void test_broken_attributes_are_told(void **state) {
-  (void)state;
+TEST(broken_attributes_are_told) {
   static const char *const broken[][2] = {
       {"abbe:volume", "scalar"},
       {"abbe:volume_region", "5 shells of 81 triangles, 0.1 to 0.7 m"},
@@ -165,8 +162,7 @@ static void test_broken_attributes_are_told(void **state) {
   assert_int_equal(read_with("abbe:other", "", &error), ABBE_OK);
 }
 
-static void test_other_pictures_are_no_volumes(void **state) {
-  (void)state;
+TEST(other_pictures_are_no_volumes) {
   static const char *const names[] = {"R", "G", "B"};
   abbe_image image = {0};
   abbe_caustic_volume v;
@@ -181,8 +177,7 @@ static void test_other_pictures_are_no_volumes(void **state) {
 }
 
 /* Values that a volume cannot have. */
-static void test_broken_values_are_told(void **state) {
-  (void)state;
+TEST(broken_values_are_told) {
   static const float wrong[] = {NAN, INFINITY, 0.5f, 256, -1};
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
     abbe_caustic_volume v, back;
@@ -199,15 +194,4 @@ static void test_broken_values_are_told(void **state) {
     abbe_caustic_volume_free(&v);
   }
   unlink(path);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_files_give_volumes_back),
-      cmocka_unit_test(test_files_give_rays_back),
-      cmocka_unit_test(test_broken_attributes_are_told),
-      cmocka_unit_test(test_other_pictures_are_no_volumes),
-      cmocka_unit_test(test_broken_values_are_told),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,8 +28,7 @@ static void random_unit(uint64_t *seed, double d[3]) {
   abbe_vector_normalise(d);
 }
 
-static void test_cells_fill_the_region(void **state) {
-  (void)state;
+TEST(cells_fill_the_region) {
   for (size_t i = 0; i < REGIONS; i++) {
     abbe_volume_region r;
     make(i, &r);
@@ -68,8 +67,7 @@ static double chord(size_t i, const double o[3], const double d[3], double limit
   return fmax(to - from, 0) - cut;
 }
 
-static void test_rays_are_cut_at_the_cells(void **state) {
-  (void)state;
+TEST(rays_are_cut_at_the_cells) {
   static abbe_region_piece piece[ABBE_REGION_MOST_PIECES];
   uint64_t seed = 11;
   for (size_t i = 0; i < REGIONS; i++) {
@@ -92,8 +90,7 @@ static void test_rays_are_cut_at_the_cells(void **state) {
 }
 
 /* A ray from a place outside: the middle of each piece lies in its cell. */
-static void test_pieces_lie_in_their_cells(void **state) {
-  (void)state;
+TEST(pieces_lie_in_their_cells) {
   static abbe_region_piece piece[ABBE_REGION_MOST_PIECES];
   uint64_t seed = 12;
   for (size_t i = 0; i < REGIONS; i++) {
@@ -123,8 +120,7 @@ static void test_pieces_lie_in_their_cells(void **state) {
 }
 
 /* Axes and planes of the cells are met and passed. */
-static void test_rays_along_edges_end(void **state) {
-  (void)state;
+TEST(rays_along_edges_end) {
   static abbe_region_piece piece[ABBE_REGION_MOST_PIECES];
   static const double ways[][3] = {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0.6, 0.8, 0}};
   for (size_t i = 0; i < REGIONS; i++) {
@@ -143,8 +139,7 @@ static void test_rays_along_edges_end(void **state) {
 }
 
 /* Of parallel lines, evenly spread, as many meet a cell as its area across them says. */
-static void test_areas_across_a_beam(void **state) {
-  (void)state;
+TEST(areas_across_a_beam) {
   enum { SIDE = 1200 };
   static abbe_region_piece piece[ABBE_REGION_MOST_PIECES];
   const double d[3] = {0.48, 0.6, 0.64}, x[3] = {0.8, 0, -0.6}, y[3] = {-0.36, 0.8, -0.48};
@@ -200,8 +195,7 @@ static double linear_error(const abbe_volume_region *r) {
 }
 
 /* On a grid it is kept; on shells as far as cells are flat: finer ones are nearer. */
-static void test_weights_between_cells(void **state) {
-  (void)state;
+TEST(weights_between_cells) {
   for (size_t i = 0; i < REGIONS; i++) {
     abbe_volume_region r, fine;
     abbe_region_desc desc = regions[i];
@@ -217,8 +211,7 @@ static void test_weights_between_cells(void **state) {
   }
 }
 
-static void test_limits_are_told(void **state) {
-  (void)state;
+TEST(limits_are_told) {
   abbe_volume_region r;
   abbe_error error = {0};
   abbe_region_desc d = {.kind = ABBE_REGION_GRID, .side = 1, .outer = 1};
@@ -232,15 +225,4 @@ static void test_limits_are_told(void **state) {
   d = (abbe_region_desc){.kind = ABBE_REGION_GEODESIC, .inner = 1, .outer = 2};
   assert_int_equal(abbe_volume_region_make(&d, &r, &error), ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "shells");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_cells_fill_the_region),
-                                     cmocka_unit_test(test_rays_are_cut_at_the_cells),
-                                     cmocka_unit_test(test_pieces_lie_in_their_cells),
-                                     cmocka_unit_test(test_rays_along_edges_end),
-                                     cmocka_unit_test(test_areas_across_a_beam),
-                                     cmocka_unit_test(test_weights_between_cells),
-                                     cmocka_unit_test(test_limits_are_told)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

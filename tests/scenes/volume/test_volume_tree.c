@@ -10,8 +10,7 @@ static const abbe_region_desc regions[] = {
     {.kind = ABBE_REGION_GEODESIC, .levels = 3, .shells = 6, .inner = 0.5, .outer = 3},
     {.kind = ABBE_REGION_OCTAHEDRAL, .side = 16, .shells = 6, .inner = 0.5, .outer = 3}};
 
-static void test_trees(void **state) {
-  (void)state;
+TEST(trees) {
   static const double tolerances[] = {0, 0.5, 4, 1000};
   for (int i = 0; i < 3; i++) {
     abbe_caustic_volume v;
@@ -60,8 +59,7 @@ static void test_trees(void **state) {
   }
 }
 
-static void test_sides_are_powers_of_two(void **state) {
-  (void)state;
+TEST(sides_are_powers_of_two) {
   abbe_volume_region r;
   abbe_volume_order order;
   abbe_error error = {0};
@@ -70,10 +68,4 @@ static void test_sides_are_powers_of_two(void **state) {
   assert_int_equal(abbe_volume_order_make(&r, &order, &error), ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "power of two");
   abbe_volume_region_free(&r);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_trees),
-                                     cmocka_unit_test(test_sides_are_powers_of_two)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,8 +15,7 @@ static abbe_csv_points parse(const char *text, const abbe_csv_options *options,
 }
 
 /* The same three points in every dress. */
-static void many_dresses_hold_the_same_points(void **state) {
-  (void)state;
+TEST(many_dresses_hold_the_same_points) {
   const char *const dresses[] = {
       "486.1,1.5224\n587.6,1.5168\n656.3,1.5143\n",
       "wavelength_nm,n\r\n486.1,1.5224\r\n587.6,1.5168\r\n656.3,1.5143",
@@ -39,8 +38,7 @@ static void many_dresses_hold_the_same_points(void **state) {
   }
 }
 
-static void a_third_column_is_what_the_header_or_the_caller_says(void **state) {
-  (void)state;
+TEST(a_third_column_is_what_the_header_or_the_caller_says) {
   abbe_csv_points p = parse("nm,n,uncertainty\n500,1.5,2e-5\n", NULL, NULL);
   assert_near(p.n.point[0].error, 2e-5, 0);
   abbe_csv_points_free(&p);
@@ -59,8 +57,7 @@ static void a_third_column_is_what_the_header_or_the_caller_says(void **state) {
 }
 
 /* As refractiveindex.info's download has it. */
-static void a_second_header_begins_a_block_of_k(void **state) {
-  (void)state;
+TEST(a_second_header_begins_a_block_of_k) {
   abbe_csv_points p = parse("wl,n\n0.4,1.5\n0.5,1.4\n\nwl,k\n0.4,0.001\n0.6,0.002\n", NULL, NULL);
   assert_int_equal(p.n.count, 2);
   assert_int_equal(p.k.count, 2);
@@ -69,8 +66,7 @@ static void a_second_header_begins_a_block_of_k(void **state) {
   abbe_csv_points_free(&p);
 }
 
-static void bad_lines_are_noted_and_passed_over(void **state) {
-  (void)state;
+TEST(bad_lines_are_noted_and_passed_over) {
   abbe_report report = {0};
   abbe_csv_points p =
       parse("400,1.5\n500,what\n-5,1.5\n600\n600,0\n700,1.4\n400,9\n800,1,-1\n", NULL, &report);
@@ -94,8 +90,7 @@ static void refuses(const char *text, const abbe_csv_options *options, abbe_resu
   assert_null(points.n.point);
 }
 
-static void what_cannot_be_told_is_asked_for(void **state) {
-  (void)state;
+TEST(what_cannot_be_told_is_asked_for) {
   refuses("", NULL, ABBE_SCHEMA, "m.csv: holds no points");
   refuses("nm,n\n", NULL, ABBE_SCHEMA, "such as 587.6, 1.5168");
   refuses("60,1.5\n70,1.4\n", NULL, ABBE_PARSE,
@@ -111,8 +106,7 @@ static void what_cannot_be_told_is_asked_for(void **state) {
 }
 
 /* The same light in every dress. */
-static void a_lights_spectrum_is_read_by_the_same_rules(void **state) {
-  (void)state;
+TEST(a_lights_spectrum_is_read_by_the_same_rules) {
   const char *const dresses[] = {
       "400 1.5\n500 0\n600 2\n",
       "\xef\xbb\xbf"
@@ -139,8 +133,7 @@ static void a_lights_spectrum_is_read_by_the_same_rules(void **state) {
 }
 
 /* A light without one of its lines would be another light. */
-static void a_lights_spectrum_loses_no_line(void **state) {
-  (void)state;
+TEST(a_lights_spectrum_loses_no_line) {
   const struct {
     const char *text, *part;
     abbe_result code;
@@ -164,8 +157,7 @@ static void a_lights_spectrum_loses_no_line(void **state) {
 }
 
 /* One column of several, by the name that the header gives it. */
-static void a_named_column_is_read(void **state) {
-  (void)state;
+TEST(a_named_column_is_read) {
   const char *const dresses[] = {
       "wavelength_nm,dark skin,Blue Sky\n400,0.1,0.2\n500,0.3,0.4\n",
       "\xef\xbb\xbfWellenlaenge [um];Blue Sky;dark skin\r\n0,4;0,2;0,1\r\n0,5;0,4;0,3\r\n",
@@ -184,18 +176,4 @@ static void a_named_column_is_read(void **state) {
   refuses("nm,blue sky\n400,\n", &options, ABBE_SCHEMA, "m.csv:2:");
   const abbe_csv_options two = {.quantity = ABBE_CSV_REFLECTANCE};
   refuses("nm,a,b\n400,1,2\n", &two, ABBE_PARSE, "name one");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(many_dresses_hold_the_same_points),
-      cmocka_unit_test(a_third_column_is_what_the_header_or_the_caller_says),
-      cmocka_unit_test(a_second_header_begins_a_block_of_k),
-      cmocka_unit_test(bad_lines_are_noted_and_passed_over),
-      cmocka_unit_test(what_cannot_be_told_is_asked_for),
-      cmocka_unit_test(a_lights_spectrum_is_read_by_the_same_rules),
-      cmocka_unit_test(a_lights_spectrum_loses_no_line),
-      cmocka_unit_test(a_named_column_is_read),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,8 +17,7 @@ static double n_of(abbe_dispersion_model model, const double *c, size_t count, d
   n_of(model, (double[]){__VA_ARGS__}, sizeof((double[]){__VA_ARGS__}) / sizeof(double), lambda_nm)
 
 /* Published indices, one model each. */
-static void every_model_gives_its_published_index(void **state) {
-  (void)state;
+TEST(every_model_gives_its_published_index) {
   assert_near(N_OF(ABBE_DISPERSION_CONSTANT, 587.5618, 1.5), 1.5, 0);
   assert_near(N_OF(ABBE_DISPERSION_CAUCHY, 500, 1.5, 0.004, 0.0001), 1.5 + 0.016 + 0.0016, 1e-15);
   /* fused silica [Malitson1965]: 1.45846 at d */
@@ -41,8 +40,7 @@ static void every_model_gives_its_published_index(void **state) {
 
 /* Other people's numbers: catalogue n_d of BASF5 (Conrady), silver bromide measured
  * at the D line (2.253), standard air, silicon at 5 um, urea at 1064 nm (1.59). */
-static void rarer_formulas_give_their_published_index(void **state) {
-  (void)state;
+TEST(rarer_formulas_give_their_published_index) {
   assert_near(N_OF(ABBE_DISPERSION_POWERS, ABBE_LINE_D_NM, 1.57410327, 0.0139786149, -1,
                    8.3004511e-4, -3.5),
               1.603233, 5e-7);
@@ -57,8 +55,7 @@ static void rarer_formulas_give_their_published_index(void **state) {
               1e-2);
 }
 
-static void shorter_forms_drop_their_terms(void **state) {
-  (void)state;
+TEST(shorter_forms_drop_their_terms) {
   assert_near(N_OF(ABBE_DISPERSION_CAUCHY, 500, 1.5), 1.5, 0);
   assert_near(N_OF(ABBE_DISPERSION_SELLMEIER, 500, 1.25), 1.5, 1e-15);
   assert_near(N_OF(ABBE_DISPERSION_POLYNOMIAL, 500, 2.25), 1.5, 1e-15);
@@ -66,8 +63,7 @@ static void shorter_forms_drop_their_terms(void **state) {
   assert_near(N_OF(ABBE_DISPERSION_RII4, 500, 2, 0.01, 2, 0, 1), sqrt(2.01), 1e-15);
 }
 
-static void tabulated_indices_are_interpolated(void **state) {
-  (void)state;
+TEST(tabulated_indices_are_interpolated) {
   abbe_dispersion d = {.model = ABBE_DISPERSION_TABULATED};
   assert_int_equal(abbe_spectrum_make((double[]){400, 600}, (double[]){1.6, 1.5}, 2,
                                       ABBE_INTERPOLATION_LINEAR, &d.table, NULL),
@@ -83,8 +79,7 @@ static void tabulated_indices_are_interpolated(void **state) {
   assert_int_equal(abbe_dispersion_check(&d, NULL), ABBE_INVALID_ARGUMENT);
 }
 
-static void no_real_index_is_nan(void **state) {
-  (void)state;
+TEST(no_real_index_is_nan) {
   assert_true(isnan(abbe_dispersion_n(&bk7, 0)));
   assert_true(isnan(abbe_dispersion_n(&bk7, -500)));
   assert_true(isnan(abbe_dispersion_n(&bk7, NAN)));
@@ -100,8 +95,7 @@ static void no_real_index_is_nan(void **state) {
 }
 
 /* Schott's data sheets. */
-static void fraunhofer_numbers_are_the_catalogues(void **state) {
-  (void)state;
+TEST(fraunhofer_numbers_are_the_catalogues) {
   abbe_dispersion_numbers d = abbe_dispersion_describe(&bk7);
   assert_near(d.n_d, 1.51680, 5e-6);
   assert_near(d.n_F, 1.52238, 5e-6);
@@ -119,8 +113,7 @@ static void fraunhofer_numbers_are_the_catalogues(void **state) {
   assert_near(d.b_g, 0, 0);
 }
 
-static void models_have_names_and_formulas(void **state) {
-  (void)state;
+TEST(models_have_names_and_formulas) {
   assert_string_equal(abbe_dispersion_model_name(ABBE_DISPERSION_SELLMEIER2), "sellmeier2");
   assert_string_equal(abbe_dispersion_model_formula(ABBE_DISPERSION_CONSTANT), "n = c0");
   assert_string_equal(abbe_dispersion_model_name((abbe_dispersion_model)99), "unknown");
@@ -134,8 +127,7 @@ static void refuses(abbe_dispersion_model model, size_t count, const char *part)
   assert_contains(error.text, part);
 }
 
-static void wrong_coefficients_are_refused(void **state) {
-  (void)state;
+TEST(wrong_coefficients_are_refused) {
   refuses(ABBE_DISPERSION_CONSTANT, 2, "the model constant wants 1");
   refuses(ABBE_DISPERSION_CAUCHY, 0, "1 or more");
   refuses(ABBE_DISPERSION_SELLMEIER, 6, "odd");
@@ -151,18 +143,4 @@ static void wrong_coefficients_are_refused(void **state) {
   abbe_dispersion d = bk7;
   d.c[3] = NAN;
   assert_int_equal(abbe_dispersion_check(&d, NULL), ABBE_INVALID_ARGUMENT);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_model_gives_its_published_index),
-      cmocka_unit_test(rarer_formulas_give_their_published_index),
-      cmocka_unit_test(shorter_forms_drop_their_terms),
-      cmocka_unit_test(tabulated_indices_are_interpolated),
-      cmocka_unit_test(no_real_index_is_nan),
-      cmocka_unit_test(fraunhofer_numbers_are_the_catalogues),
-      cmocka_unit_test(models_have_names_and_formulas),
-      cmocka_unit_test(wrong_coefficients_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

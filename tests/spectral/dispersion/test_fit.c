@@ -27,8 +27,7 @@ static abbe_fit made(const abbe_index_points *points, abbe_fit_request request) 
 
 /* ---- Cauchy ---- */
 
-static void cauchy_coefficients_are_found_again(void **state) {
-  (void)state;
+TEST(cauchy_coefficients_are_found_again) {
   const abbe_dispersion exact = {
       .model = ABBE_DISPERSION_CAUCHY, .count = 5, .c = {1.5, 4e-3, 1e-4, -2e-5, 3e-6}};
   for (size_t terms = 1; terms <= 5; terms++) {
@@ -46,8 +45,7 @@ static void cauchy_coefficients_are_found_again(void **state) {
 }
 
 /* A straight line in x = L^-2 with weights, by its textbook formulas: an independent answer. */
-static void weights_and_covariance_are_the_straight_lines(void **state) {
-  (void)state;
+TEST(weights_and_covariance_are_the_straight_lines) {
   double lambda_nm[] = {400, 450, 500, 600, 700};
   double n[] = {1.5251, 1.5199, 1.5161, 1.5112, 1.5080};
   double sigma[] = {5e-5, 2e-5, 1e-5, 2e-5, 4e-5};
@@ -89,8 +87,7 @@ static void weights_and_covariance_are_the_straight_lines(void **state) {
 }
 
 /* A point with a large uncertainty hardly counts; one with a small one is met. */
-static void uncertain_points_count_less(void **state) {
-  (void)state;
+TEST(uncertain_points_count_less) {
   double lambda_nm[] = {400, 500, 600, 700}, n[] = {1.525, 1.516, 1.60, 1.508162};
   double sigma[] = {1e-5, 1e-5, 1, 1e-5};
   const abbe_index_points points = {4, lambda_nm, n, sigma, false};
@@ -102,8 +99,7 @@ static void uncertain_points_count_less(void **state) {
 }
 
 /* Over many repeated measurements the coefficients scatter as the covariance says. */
-static void standard_errors_are_the_scatter(void **state) {
-  (void)state;
+TEST(standard_errors_are_the_scatter) {
   enum { RUNS = 2000, COUNT = 12 };
   uint64_t random = 7;
   double lambda_nm[COUNT], n[COUNT], sigma[COUNT], sum[2] = {0}, squares[2] = {0}, cross = 0;
@@ -129,8 +125,7 @@ static void standard_errors_are_the_scatter(void **state) {
   assert_near(cross / RUNS / fit.covariance[0][1], 1, 0.15);
 }
 
-static void only_points_of_the_range_are_used(void **state) {
-  (void)state;
+TEST(only_points_of_the_range_are_used) {
   double lambda_nm[] = {300, 400, 500, 600, 900};
   double n[] = {3, 1.525, 1.516, 1.5 + 0.004 / 0.36, 3};
   const abbe_index_points points = {5, lambda_nm, n, NULL, false};
@@ -141,8 +136,7 @@ static void only_points_of_the_range_are_used(void **state) {
   assert_near(fit.dispersion.c[1], 0.004, 1e-12);
 }
 
-static void as_many_points_as_coefficients_leave_no_error_bar(void **state) {
-  (void)state;
+TEST(as_many_points_as_coefficients_leave_no_error_bar) {
   double lambda_nm[] = {400, 600}, n[] = {1.525, 1.511}, sigma[] = {1e-5, 1e-5};
   abbe_index_points points = {2, lambda_nm, n, NULL, false};
   abbe_fit fit = made(&points, (abbe_fit_request){.terms = 2});
@@ -155,8 +149,7 @@ static void as_many_points_as_coefficients_leave_no_error_bar(void **state) {
   assert_near(abbe_fit_standard_error(&fit, 1), sqrt(2) * 1e-5 / x, 1e-12);
 }
 
-static void many_terms_are_fitted_until_doubles_end(void **state) {
-  (void)state;
+TEST(many_terms_are_fitted_until_doubles_end) {
   abbe_index_points points = sampled(&bk7, 380, 780);
   double before = INFINITY;
   for (size_t terms = 1; terms <= 16; terms++) {
@@ -176,8 +169,7 @@ static void many_terms_are_fitted_until_doubles_end(void **state) {
 /* ---- Sellmeier ---- */
 
 /* The published coefficients of glasses come back from the indices that they give. */
-static void published_sellmeier_coefficients_are_found_again(void **state) {
-  (void)state;
+TEST(published_sellmeier_coefficients_are_found_again) {
   const struct {
     abbe_dispersion glass;
     double min_nm, max_nm;
@@ -219,8 +211,7 @@ static void published_sellmeier_coefficients_are_found_again(void **state) {
 }
 
 /* Any glass of two terms, one on either side of the light: the curve is met. */
-static void random_sellmeier_curves_are_met(void **state) {
-  (void)state;
+TEST(random_sellmeier_curves_are_met) {
   uint64_t random = 3;
   for (int i = 0; i < 12; i++) {
     abbe_dispersion d = {.model = ABBE_DISPERSION_SELLMEIER2,
@@ -238,8 +229,7 @@ static void random_sellmeier_curves_are_met(void **state) {
   }
 }
 
-static void sellmeier_errors_cover_the_truth(void **state) {
-  (void)state;
+TEST(sellmeier_errors_cover_the_truth) {
   enum { COUNT = 40, RUNS = 40 };
   uint64_t random = 11;
   double lambda_nm[COUNT], n[COUNT], sigma[COUNT];
@@ -271,8 +261,7 @@ static void hosts_handler(const char *reason, const char *file, int line, int nu
   handled++;
 }
 
-static void what_cannot_be_is_refused(void **state) {
-  (void)state;
+TEST(what_cannot_be_is_refused) {
   double lambda_nm[] = {486.1, 486.1, 587.6, 656.3}, n[] = {1.5224, 1.5223, 1.5168, 1.5143};
   const abbe_index_points points = {4, lambda_nm, n, NULL, false};
   const struct {
@@ -306,8 +295,7 @@ static void what_cannot_be_is_refused(void **state) {
 }
 
 /* Over 10 nm, and known to 1e-4 only, B cannot be told from zero; over 300 nm it can. */
-static void a_range_too_small_for_the_data_is_refused(void **state) {
-  (void)state;
+TEST(a_range_too_small_for_the_data_is_refused) {
   enum { COUNT = 11 };
   double lambda_nm[COUNT], n[COUNT], sigma[COUNT];
   const double from[] = {580, 400}, step[] = {1, 30};
@@ -338,8 +326,7 @@ static void a_range_too_small_for_the_data_is_refused(void **state) {
 }
 
 /* Indices printed to five digits over the visible do not carry three Sellmeier terms. */
-static void sellmeier_terms_that_the_points_do_not_carry_are_refused(void **state) {
-  (void)state;
+TEST(sellmeier_terms_that_the_points_do_not_carry_are_refused) {
   const double lines_nm[] = {404.66, 435.83, 479.99, 486.13, 546.07, 587.56, 589.29, 632.8, 656.27};
   double lambda_nm[9], n[9];
   for (int i = 0; i < 9; i++) {
@@ -362,8 +349,7 @@ static void sellmeier_terms_that_the_points_do_not_carry_are_refused(void **stat
 
 /* ---- of another curve ---- */
 
-static void a_cauchy_curve_is_found_again(void **state) {
-  (void)state;
+TEST(a_cauchy_curve_is_found_again) {
   const abbe_dispersion exact = {.model = ABBE_DISPERSION_CAUCHY,
                                  .count = 8,
                                  .c = {1.5, 4e-3, 1e-4, -2e-5, 3e-6, -1e-6, 2e-7, -1e-8}};
@@ -380,8 +366,7 @@ static void a_cauchy_curve_is_found_again(void **state) {
 }
 
 /* The two-term form by the normal equations, written out: an independent answer. */
-static void two_terms_agree_with_the_normal_equations(void **state) {
-  (void)state;
+TEST(two_terms_agree_with_the_normal_equations) {
   double n = 0, sx = 0, sxx = 0, sy = 0, sxy = 0, worst = 0, told = 0;
   for (int l = 380; l <= 780; l++) {
     double x = 1e6 / (double)(l * l), y = abbe_dispersion_n(&bk7, l);
@@ -397,8 +382,7 @@ static void two_terms_agree_with_the_normal_equations(void **state) {
   assert_near(told, worst, 1e-11);
 }
 
-static void more_terms_fit_better(void **state) {
-  (void)state;
+TEST(more_terms_fit_better) {
   double before = INFINITY;
   for (size_t terms = 1; terms <= 6; terms++) {
     abbe_dispersion found;
@@ -410,8 +394,7 @@ static void more_terms_fit_better(void **state) {
   assert_true(before < 1e-5);
 }
 
-static void odd_ranges_of_a_curve_are_fitted(void **state) {
-  (void)state;
+TEST(odd_ranges_of_a_curve_are_fitted) {
   abbe_dispersion found;
   double worst = NAN;
   assert_int_equal(abbe_fit_dispersion(&bk7, 3, 550, 550.5, &found, &worst, NULL), ABBE_OK);
@@ -423,8 +406,7 @@ static void odd_ranges_of_a_curve_are_fitted(void **state) {
   assert_true(worst < 1e-6); /* nearly all points are at one end of 1 / L^2 */
 }
 
-static void a_curve_that_cannot_be_fitted_is_refused(void **state) {
-  (void)state;
+TEST(a_curve_that_cannot_be_fitted_is_refused) {
   const struct {
     size_t terms;
     double min_nm, max_nm;
@@ -449,28 +431,4 @@ static void a_curve_that_cannot_be_fitted_is_refused(void **state) {
   }
   assert_int_equal(handled, 0);
   assert_ptr_equal(gsl_set_error_handler(before), hosts_handler);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(cauchy_coefficients_are_found_again),
-      cmocka_unit_test(weights_and_covariance_are_the_straight_lines),
-      cmocka_unit_test(uncertain_points_count_less),
-      cmocka_unit_test(standard_errors_are_the_scatter),
-      cmocka_unit_test(only_points_of_the_range_are_used),
-      cmocka_unit_test(as_many_points_as_coefficients_leave_no_error_bar),
-      cmocka_unit_test(many_terms_are_fitted_until_doubles_end),
-      cmocka_unit_test(published_sellmeier_coefficients_are_found_again),
-      cmocka_unit_test(random_sellmeier_curves_are_met),
-      cmocka_unit_test(sellmeier_errors_cover_the_truth),
-      cmocka_unit_test(what_cannot_be_is_refused),
-      cmocka_unit_test(a_range_too_small_for_the_data_is_refused),
-      cmocka_unit_test(sellmeier_terms_that_the_points_do_not_carry_are_refused),
-      cmocka_unit_test(a_cauchy_curve_is_found_again),
-      cmocka_unit_test(two_terms_agree_with_the_normal_equations),
-      cmocka_unit_test(more_terms_fit_better),
-      cmocka_unit_test(odd_ranges_of_a_curve_are_fitted),
-      cmocka_unit_test(a_curve_that_cannot_be_fitted_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

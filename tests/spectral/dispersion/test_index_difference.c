@@ -7,8 +7,7 @@ static const abbe_dispersion b = {.model = ABBE_DISPERSION_CAUCHY, .count = 2, .
 static const abbe_dispersion steeper = {
     .model = ABBE_DISPERSION_CAUCHY, .count = 2, .c = {1.50, 0.0050}};
 
-static void a_shift_is_its_own_size_everywhere(void **state) {
-  (void)state;
+TEST(a_shift_is_its_own_size_everywhere) {
   abbe_index_difference d;
   assert_int_equal(abbe_index_difference_of_curves(&a, &b, 380, 780, &d, NULL), ABBE_OK);
   assert_near(d.rms, 0.01, 1e-14);
@@ -23,8 +22,7 @@ static void a_shift_is_its_own_size_everywhere(void **state) {
 }
 
 /* 0.001 / L^2: its mean square over L by hand is 1e-6 times (1/3) (a^-3 - b^-3) / (b - a). */
-static void a_steeper_curve_differs_most_in_the_violet(void **state) {
-  (void)state;
+TEST(a_steeper_curve_differs_most_in_the_violet) {
   abbe_index_difference d;
   assert_int_equal(abbe_index_difference_of_curves(&steeper, &b, 380, 780, &d, NULL), ABBE_OK);
   assert_near(d.max_nm, 380, 0);
@@ -34,8 +32,7 @@ static void a_steeper_curve_differs_most_in_the_violet(void **state) {
   assert_near(d.mean, 0.001 * (1 / 0.38 - 1 / 0.78) / 0.4, 2e-6 * 3);
 }
 
-static void points_outside_the_range_are_left_out(void **state) {
-  (void)state;
+TEST(points_outside_the_range_are_left_out) {
   double lambda_nm[] = {300, 500, 600, 900}, n[] = {9, 1.5, 1.5, 9};
   const abbe_dispersion flat = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.51}};
   const abbe_index_points points = {.count = 4, .lambda_nm = lambda_nm, .n = n};
@@ -48,8 +45,7 @@ static void points_outside_the_range_are_left_out(void **state) {
   assert_near(d.max, 7.49, 1e-12);
 }
 
-static void no_common_ground_is_refused(void **state) {
-  (void)state;
+TEST(no_common_ground_is_refused) {
   double lambda_nm[] = {500}, n[] = {1.5};
   const abbe_index_points points = {.count = 1, .lambda_nm = lambda_nm, .n = n};
   const abbe_dispersion pole = {.model = ABBE_DISPERSION_SELLMEIER2, .count = 3, .c = {0, 1, 0.3}};
@@ -65,14 +61,4 @@ static void no_common_ground_is_refused(void **state) {
                    ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_index_difference_of_curves(&a, &b, 780, 380, &d, &error),
                    ABBE_INVALID_ARGUMENT);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_shift_is_its_own_size_everywhere),
-      cmocka_unit_test(a_steeper_curve_differs_most_in_the_violet),
-      cmocka_unit_test(points_outside_the_range_are_left_out),
-      cmocka_unit_test(no_common_ground_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,8 +15,7 @@ static abbe_index_points parse(const char *text) {
   return points;
 }
 
-static void a_plain_file_is_read(void **state) {
-  (void)state;
+TEST(a_plain_file_is_read) {
   abbe_index_points p = parse("# own measurement\n\n656.3,1.5143\r\n587.6, 1.5168\n486.1,1.5224");
   assert_int_equal(p.count, 3);
   assert_near(p.lambda_nm[0], 486.1, 0); /* in order, whatever the file's */
@@ -29,8 +28,7 @@ static void a_plain_file_is_read(void **state) {
   abbe_index_points_free(&p);
 }
 
-static void units_are_named_or_plain(void **state) {
-  (void)state;
+TEST(units_are_named_or_plain) {
   const struct {
     const char *text;
     double first_nm;
@@ -49,8 +47,7 @@ static void units_are_named_or_plain(void **state) {
   }
 }
 
-static void uncertainties_are_kept_and_wavelengths_may_repeat(void **state) {
-  (void)state;
+TEST(uncertainties_are_kept_and_wavelengths_may_repeat) {
   abbe_index_points p = parse("600,1.51,2e-5\n500,1.52,1e-5\n600,1.512,3e-5\n");
   assert_int_equal(p.count, 3);
   assert_near(p.uncertainty[0], 1e-5, 0);
@@ -59,8 +56,7 @@ static void uncertainties_are_kept_and_wavelengths_may_repeat(void **state) {
   abbe_index_points_free(&p);
 }
 
-static void bad_lines_are_named(void **state) {
-  (void)state;
+TEST(bad_lines_are_named) {
   const struct {
     const char *text, *part;
     abbe_result code;
@@ -89,8 +85,7 @@ static void bad_lines_are_named(void **state) {
   }
 }
 
-static void files_are_read_or_named(void **state) {
-  (void)state;
+TEST(files_are_read_or_named) {
   char path[] = "/tmp/abbe-test-points-XXXXXX";
   int fd = mkstemp(path);
   assert_true(fd >= 0);
@@ -107,8 +102,7 @@ static void files_are_read_or_named(void **state) {
   assert_null(p.n);
 }
 
-static void many_points_are_read_at_once(void **state) {
-  (void)state;
+TEST(many_points_are_read_at_once) {
   enum { COUNT = 5000 };
   static char text[COUNT * 24];
   size_t used = 0;
@@ -121,8 +115,7 @@ static void many_points_are_read_at_once(void **state) {
   abbe_index_points_free(&p);
 }
 
-static void formulas_are_sampled_to_both_ends(void **state) {
-  (void)state;
+TEST(formulas_are_sampled_to_both_ends) {
   const abbe_dispersion d = {.model = ABBE_DISPERSION_CAUCHY, .count = 2, .c = {1.5, 0.004}};
   const struct {
     double min_nm, max_nm;
@@ -146,8 +139,7 @@ static void formulas_are_sampled_to_both_ends(void **state) {
   }
 }
 
-static void what_cannot_be_sampled_is_refused(void **state) {
-  (void)state;
+TEST(what_cannot_be_sampled_is_refused) {
   const abbe_dispersion d = {.model = ABBE_DISPERSION_SELLMEIER2, .count = 3, .c = {0, 1, 0.25}};
   const struct {
     double min_nm, max_nm;
@@ -170,18 +162,4 @@ static void what_cannot_be_sampled_is_refused(void **state) {
     assert_contains(error.text, cases[i].part);
     assert_null(p.n);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_plain_file_is_read),
-      cmocka_unit_test(units_are_named_or_plain),
-      cmocka_unit_test(uncertainties_are_kept_and_wavelengths_may_repeat),
-      cmocka_unit_test(bad_lines_are_named),
-      cmocka_unit_test(files_are_read_or_named),
-      cmocka_unit_test(many_points_are_read_at_once),
-      cmocka_unit_test(formulas_are_sampled_to_both_ends),
-      cmocka_unit_test(what_cannot_be_sampled_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,8 +4,7 @@
 
 #include <stdlib.h>
 
-static void points_are_put_in_order_and_the_first_of_equals_stays(void **state) {
-  (void)state;
+TEST(points_are_put_in_order_and_the_first_of_equals_stays) {
   abbe_points points = {0};
   const double lambda_nm[] = {600, 500, 600, 400, 500, 600};
   for (int i = 0; i < 6; i++)
@@ -29,8 +28,7 @@ static void points_are_put_in_order_and_the_first_of_equals_stays(void **state) 
                    ABBE_INVALID_ARGUMENT);
 }
 
-static void a_long_list_ends_where_a_spectrum_does(void **state) {
-  (void)state;
+TEST(a_long_list_ends_where_a_spectrum_does) {
   abbe_points points = {0};
   for (int i = 0; i < ABBE_SPECTRUM_MAX_COUNT; i++)
     assert_int_equal(abbe_points_add(&points, (abbe_point){70000 - i, i, 0}, NULL), ABBE_OK);
@@ -43,12 +41,4 @@ static void a_long_list_ends_where_a_spectrum_does(void **state) {
   for (size_t i = 1; i < points.count; i++)
     assert_true(points.point[i - 1].lambda_nm < points.point[i].lambda_nm);
   abbe_points_free(&points);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(points_are_put_in_order_and_the_first_of_equals_stays),
-      cmocka_unit_test(a_long_list_ends_where_a_spectrum_does),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

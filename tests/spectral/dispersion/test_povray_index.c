@@ -13,16 +13,14 @@ static void set_up_law(double ior, double dispersion) {
 }
 
 /* As the manual states it: ior in the middle, the ratio of the ends. */
-static void the_law_is_that_of_the_manual(void **state) {
-  (void)state;
+TEST(the_law_is_that_of_the_manual) {
   const abbe_povray_index index = {1.6, 1.04};
   assert_near(abbe_povray_index_at(&index, 555), 1.6, 1e-15);
   assert_near(abbe_povray_index_at(&index, 380) / abbe_povray_index_at(&index, 730), 1.04, 1e-15);
   assert_near(abbe_povray_index_at(&index, 380), 1.6 * sqrt(1.04), 1e-15);
 }
 
-static void what_follows_the_law_is_found_whatever_the_weights(void **state) {
-  (void)state;
+TEST(what_follows_the_law_is_found_whatever_the_weights) {
   const double ratios[] = {0.97, 1.01, 1.2};
   for (int k = 0; k < 3; k++) {
     double weight[COUNT];
@@ -38,8 +36,7 @@ static void what_follows_the_law_is_found_whatever_the_weights(void **state) {
 }
 
 /* Of two lines that disagree the fit goes with the one that weighs. */
-static void weights_decide(void **state) {
-  (void)state;
+TEST(weights_decide) {
   double weight[COUNT];
   set_up_law(1.5, 1.02);
   for (int i = 0; i < COUNT; i++) weight[i] = i % 2 == 0;
@@ -50,8 +47,7 @@ static void weights_decide(void **state) {
   assert_near(index.ior, 1.505, 1e-4);
 }
 
-static void a_constant_index_has_no_dispersion(void **state) {
-  (void)state;
+TEST(a_constant_index_has_no_dispersion) {
   set_up_law(1.33, 1);
   abbe_povray_index index = abbe_povray_index_fit(lambda_nm, n, NULL, COUNT);
   assert_near(index.dispersion, 1, 0);
@@ -59,14 +55,4 @@ static void a_constant_index_has_no_dispersion(void **state) {
   index = abbe_povray_index_fit(lambda_nm, n, NULL, 1);
   assert_near(index.dispersion, 1, 0);
   assert_near(index.ior, 1.33, 1e-14);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_law_is_that_of_the_manual),
-      cmocka_unit_test(what_follows_the_law_is_found_whatever_the_weights),
-      cmocka_unit_test(weights_decide),
-      cmocka_unit_test(a_constant_index_has_no_dispersion),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

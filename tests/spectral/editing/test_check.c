@@ -22,8 +22,9 @@ static size_t count_of(const abbe_findings *found, abbe_finding_weight at_least)
 
 /* ---- the shipped tables ---- */
 
-static void the_thesis_has_four_wrong_rows_and_bk7(void **state) {
-  (void)state;
+GROUP(shipped_load, shipped_free);
+
+TEST(the_thesis_has_four_wrong_rows_and_bk7) {
   abbe_material_table thesis;
   assert_int_equal(abbe_material_table_load("thesis", &thesis, NULL), ABBE_OK);
   abbe_findings found = checked_table(&thesis);
@@ -45,8 +46,7 @@ static void the_thesis_has_four_wrong_rows_and_bk7(void **state) {
   abbe_material_table_free(&thesis);
 }
 
-static void the_default_table_is_well(void **state) {
-  (void)state;
+TEST(the_default_table_is_well) {
   abbe_findings found = checked_table(&shipped);
   assert_int_equal(count_of(&found, ABBE_FINDING_DOUBTFUL), 0);
   for (size_t i = 0; i < found.count; i++) {
@@ -64,8 +64,7 @@ static void the_default_table_is_well(void **state) {
 #define POLES "1.03961212, 0.00600069867, 0.231792344, 0.0200179144, 1.01046945, 103.560653]"
 #define ROOTS "1.03961212, 0.0774642, 0.231792344, 0.14148467, 1.01046945, 10.1764755]"
 
-static void each_fault_is_found_with_its_fix(void **state) {
-  (void)state;
+TEST(each_fault_is_found_with_its_fix) {
   const struct {
     const char *record;
     abbe_finding_kind kind;
@@ -193,8 +192,7 @@ static void each_fault_is_found_with_its_fix(void **state) {
   }
 }
 
-static void rows_that_are_alike_are_found(void **state) {
-  (void)state;
+TEST(rows_that_are_alike_are_found) {
   abbe_material_table table = checked_parse(
       "- {name: a, model: cauchy, coefficients: [1.5, 0.004], range_nm: [380, 780], source: s1}\n"
       "- {name: b, model: cauchy, coefficients: [1.6, 0.009], range_nm: [380, 780], source: s1}\n"
@@ -229,8 +227,7 @@ static void rows_that_are_alike_are_found(void **state) {
 /* ---- fixes ---- */
 
 /* Certain fixes put into the text leave nothing certain to fix, and no new fault. */
-static void certain_fixes_fix(void **state) {
-  (void)state;
+TEST(certain_fixes_fix) {
   const char text[] =
       "materials:\n"
       "- {name: bak4, model: cauchy, coefficients: [1.5690, 0.00531], range_nm: [380, 780], "
@@ -309,8 +306,7 @@ static void expect(const abbe_material *m, abbe_finding_kind kind, const abbe_di
   abbe_findings_free(&found);
 }
 
-static void densities_in_another_unit_are_found(void **state) {
-  (void)state;
+TEST(densities_in_another_unit_are_found) {
   static const struct {
     double n, density;
     abbe_finding_kind kind;
@@ -327,8 +323,7 @@ static void densities_in_another_unit_are_found(void **state) {
 }
 
 /* Whatever the glass: as it is, it passes; with one fault, that fault is found. */
-static void any_glass_is_well_or_has_its_own_fault(void **state) {
-  (void)state;
+TEST(any_glass_is_well_or_has_its_own_fault) {
   uint64_t random = 2;
   for (int i = 0; i < 500; i++) {
     double uv = random_between(&random, 0.09, 0.15), ir = random_between(&random, 8, 14);
@@ -368,8 +363,7 @@ static void any_glass_is_well_or_has_its_own_fault(void **state) {
 }
 
 /* Numbers without any sense are judged without a crash, a hang or a number that is not one. */
-static void senseless_records_are_survived(void **state) {
-  (void)state;
+TEST(senseless_records_are_survived) {
   uint64_t random = 9;
   for (int i = 0; i < 3000; i++) {
     abbe_dispersion d = {
@@ -396,8 +390,7 @@ static void senseless_records_are_survived(void **state) {
   }
 }
 
-static void namesakes_are_found_in_any_spelling(void **state) {
-  (void)state;
+TEST(namesakes_are_found_in_any_spelling) {
   const struct {
     const char *name, *known;
   } cases[] = {{"BK7", "n-bk7"},     {"N-BK7", "n-bk7"}, {"nbk7", NULL},
@@ -411,8 +404,7 @@ static void namesakes_are_found_in_any_spelling(void **state) {
   assert_null(abbe_check_namesake(NULL, "n-bk7"));
 }
 
-static void words_are_there_for_all(void **state) {
-  (void)state;
+TEST(words_are_there_for_all) {
   for (int i = 0; i < ABBE_FINDING_KIND_COUNT; i++)
     assert_true(strlen(abbe_finding_kind_meaning((abbe_finding_kind)i)) > 10);
   assert_string_equal(abbe_finding_kind_name((abbe_finding_kind)-1), "unknown");
@@ -421,8 +413,7 @@ static void words_are_there_for_all(void **state) {
 }
 
 /* Calcite's and calomel's indices go together; those of a copied digit or unit do not. */
-static void crystals_have_indices_that_go_together(void **state) {
-  (void)state;
+TEST(crystals_have_indices_that_go_together) {
   const struct {
     const char *extraordinary;
     size_t findings;
@@ -447,21 +438,4 @@ static void crystals_have_indices_that_go_together(void **state) {
     abbe_findings_free(&found);
     abbe_material_table_free(&t);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_thesis_has_four_wrong_rows_and_bk7),
-      cmocka_unit_test(the_default_table_is_well),
-      cmocka_unit_test(each_fault_is_found_with_its_fix),
-      cmocka_unit_test(rows_that_are_alike_are_found),
-      cmocka_unit_test(certain_fixes_fix),
-      cmocka_unit_test(densities_in_another_unit_are_found),
-      cmocka_unit_test(any_glass_is_well_or_has_its_own_fault),
-      cmocka_unit_test(senseless_records_are_survived),
-      cmocka_unit_test(namesakes_are_found_in_any_spelling),
-      cmocka_unit_test(crystals_have_indices_that_go_together),
-      cmocka_unit_test(words_are_there_for_all),
-  };
-  return cmocka_run_group_tests(tests, shipped_load, shipped_free);
 }

@@ -29,9 +29,10 @@ static void assert_doubts(const char *record, size_t count) {
   abbe_findings_free(&found);
 }
 
+GROUP(shipped_load, shipped_free);
+
 /* n_d follows from the coefficients as far as these are printed. */
-static void few_digits_are_no_wrong_digit(void **state) {
-  (void)state;
+TEST(few_digits_are_no_wrong_digit) {
   const struct {
     const char *record;
     size_t doubtful;
@@ -54,8 +55,7 @@ static void few_digits_are_no_wrong_digit(void **state) {
 }
 
 /* What is not clear bends light in its own way, and gases hardly at all. */
-static void metals_dyes_and_gases_are_well(void **state) {
-  (void)state;
+TEST(metals_dyes_and_gases_are_well) {
   const char *const right[] = {
       /* a metal's n is small and rises */
       "- {name: a, model: tabulated, points: [[200, 1.1], [380, 0.2], [600, 0.1], [780, 0.14], "
@@ -83,8 +83,7 @@ static void metals_dyes_and_gases_are_well(void **state) {
 }
 
 /* What a formula does where nobody vouches for it is no fault of it. */
-static void rows_are_judged_inside_their_range(void **state) {
-  (void)state;
+TEST(rows_are_judged_inside_their_range) {
   const char *const right[] = {
       "- {name: a, model: sellmeier2, coefficients: [1.45, 2.9, 0.14, 0.95, 1380], range_nm: "
       "[1000, 12000], source: s1}",
@@ -114,13 +113,4 @@ static void rows_are_judged_inside_their_range(void **state) {
   assert_true(found.finding[0].certain);
   assert_string_equal(found.finding[0].value, "sellmeier");
   abbe_findings_free(&found);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(few_digits_are_no_wrong_digit),
-      cmocka_unit_test(metals_dyes_and_gases_are_well),
-      cmocka_unit_test(rows_are_judged_inside_their_range),
-  };
-  return cmocka_run_group_tests(tests, shipped_load, shipped_free);
 }

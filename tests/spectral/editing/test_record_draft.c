@@ -17,16 +17,16 @@ static const char table[] = "# A table\nmaterials:\n"
 static char path[] = "/tmp/abbe-test-record-draft-XXXXXX";
 static abbe_error error;
 
-static int set_up(void **state) {
-  (void)state;
+static void set_up(void) {
   strcpy(path + strlen(path) - 6, "XXXXXX");
   int fd = mkstemp(path);
-  return fd < 0 || close(fd) != 0 || abbe_file_write(path, table, strlen(table), NULL) != ABBE_OK;
+  assert_false(fd < 0);
+  assert_int_equal(close(fd), 0);
+  assert_int_equal(abbe_file_write(path, table, strlen(table), NULL), ABBE_OK);
 }
 
-static int tear_down(void **state) {
-  (void)state;
-  return unlink(path);
+static void tear_down(void) {
+  assert_false(unlink(path));
 }
 
 static abbe_record_draft *open_draft(const char *name) {
@@ -65,8 +65,9 @@ static double n_d(const abbe_material *m) {
   return numbers.n_d;
 }
 
-static void fields_are_those_of_the_record(void **state) {
-  (void)state;
+EACH(set_up, tear_down);
+
+TEST(fields_are_those_of_the_record) {
   abbe_record_draft *d = open_draft("k5");
   assert_string_equal(text(d, "name"), "K5");
   assert_string_equal(text(d, "coefficients.0"), "1.5220");
@@ -82,8 +83,7 @@ static void fields_are_those_of_the_record(void **state) {
   abbe_record_draft_free(d);
 }
 
-static void changes_are_live_and_undone(void **state) {
-  (void)state;
+TEST(changes_are_live_and_undone) {
   abbe_record_draft *d = open_draft("K5");
   assert_false(abbe_record_draft_undo(d));
   put(d, "coefficients.0", "1.509");
@@ -117,8 +117,7 @@ static void changes_are_live_and_undone(void **state) {
   abbe_record_draft_free(d);
 }
 
-static void a_fix_is_put_in(void **state) {
-  (void)state;
+TEST(a_fix_is_put_in) {
   abbe_record_draft *d = open_draft("k5");
   assert_int_equal(abbe_record_draft_put(d, "coefficients", "[1.509, 0.00459]", &error), ABBE_OK);
   assert_string_equal(text(d, "coefficients.0"), "1.509");
@@ -133,8 +132,7 @@ static void a_fix_is_put_in(void **state) {
   abbe_record_draft_free(d);
 }
 
-static void what_is_saved_is_what_was_changed(void **state) {
-  (void)state;
+TEST(what_is_saved_is_what_was_changed) {
   abbe_record_draft *d = open_draft("k5");
   put(d, "coefficients.0", "1.5090");
   put(d, "range_nm", "400:700");
@@ -164,8 +162,7 @@ static void what_is_saved_is_what_was_changed(void **state) {
   abbe_record_draft_free(d);
 }
 
-static void wrong_values_are_refused_or_held(void **state) {
-  (void)state;
+TEST(wrong_values_are_refused_or_held) {
   abbe_record_draft *d = open_draft("k5");
   const struct {
     const char *key, *value, *part;
@@ -208,8 +205,7 @@ static void wrong_values_are_refused_or_held(void **state) {
   assert_int_equal(abbe_record_draft_open("default", "k5", &d, &error), ABBE_UNSUPPORTED);
 }
 
-static void undo_reaches_back_a_thousand_changes(void **state) {
-  (void)state;
+TEST(undo_reaches_back_a_thousand_changes) {
   abbe_record_draft *d = open_draft("flint");
   char value[16];
   for (int i = 0; i < 1100; i++) {
@@ -221,18 +217,4 @@ static void undo_reaches_back_a_thousand_changes(void **state) {
   assert_int_equal(back, 999);
   assert_string_equal(text(d, "coefficients.0"), "1.1100");
   abbe_record_draft_free(d);
-}
-
-#define with_file(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      with_file(a_fix_is_put_in),
-      with_file(fields_are_those_of_the_record),
-      with_file(changes_are_live_and_undone),
-      with_file(what_is_saved_is_what_was_changed),
-      with_file(wrong_values_are_refused_or_held),
-      with_file(undo_reaches_back_a_thousand_changes),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -58,8 +58,7 @@ static void check_diff(abbe_table_edit *edit, const char *wanted) {
   abbe_table_edit_free(edit);
 }
 
-static void values_are_set(void **state) {
-  (void)state;
+TEST(values_are_set) {
   abbe_table_edit *edit = parse(two);
   must(abbe_table_edit_set(edit, "CROWN", "coefficients.0", "1.5090", &error));
   check_diff(edit, "@@ -5,7 +5,7 @@\n   # the first\n   - name: crown # a crown\n"
@@ -87,8 +86,7 @@ static void check_value(const abbe_table_edit *edit, const char *key, const char
   free(text);
 }
 
-static void values_are_told_and_taken_back(void **state) {
-  (void)state;
+TEST(values_are_told_and_taken_back) {
   abbe_table_edit *edit = parse(two);
   check_value(edit, "source", "[Somebody] p. 3");
   check_value(edit, "coefficients.0", "1.5220");
@@ -105,8 +103,7 @@ static void values_are_told_and_taken_back(void **state) {
   abbe_table_edit_free(edit);
 }
 
-static void new_keys_go_where_the_format_has_them(void **state) {
-  (void)state;
+TEST(new_keys_go_where_the_format_has_them) {
   abbe_table_edit *edit = parse(two);
   must(abbe_table_edit_set_text(edit, "crown", "warning", "Old.", &error));
   must(abbe_table_edit_set_text(edit, "crown", "description", "A crown", &error));
@@ -121,8 +118,7 @@ static void new_keys_go_where_the_format_has_them(void **state) {
                    "     # of the crown\n");
 }
 
-static void keys_and_records_come_and_go(void **state) {
-  (void)state;
+TEST(keys_and_records_come_and_go) {
   abbe_table_edit *edit = parse(two);
   must(abbe_table_edit_set(edit, "flint", "warning", "x", &error));
   must(abbe_table_edit_unset(edit, "flint", "warning", &error));
@@ -144,8 +140,7 @@ static void keys_and_records_come_and_go(void **state) {
 }
 
 /* Whatever is done to a shipped record, the others stay; all is done to the first and last ones. */
-static void each_edit_stays_inside_its_record(void **state) {
-  (void)state;
+TEST(each_edit_stays_inside_its_record) {
   const char *const paths[] = {ABBE_SOURCE_DIR "/spectral/materials/materials.yaml",
                                ABBE_SOURCE_DIR "/spectral/materials/thesis.yaml"};
   for (int file = 0; file < 2; file++) {
@@ -309,8 +304,7 @@ static void check_random_table(int round) {
   abbe_table_edit_free(edit);
 }
 
-static void random_tables_keep_their_other_records(void **state) {
-  (void)state;
+TEST(random_tables_keep_their_other_records) {
   for (int round = 0; round < (SANITIZED ? 250 : 1000); round++) check_random_table(round);
 }
 
@@ -348,8 +342,7 @@ static abbe_result set_flint(abbe_table_edit *e, abbe_error *why) {
   return abbe_table_edit_set(e, "flint", "coefficients.0", "2", why);
 }
 
-static void what_cannot_be_is_refused(void **state) {
-  (void)state;
+TEST(what_cannot_be_is_refused) {
   refuses(two, ABBE_NOT_FOUND, "did you mean 'crown'?", set_unknown);
   refuses(two, ABBE_NOT_FOUND, "has no 'source.more'", set_deep);
   refuses(two, ABBE_NOT_FOUND, "has no 'coefficients.2'", set_index);
@@ -375,17 +368,16 @@ static void what_cannot_be_is_refused(void **state) {
 
 static char path[] = "/tmp/abbe-test-table-edit-XXXXXX";
 
-static int make_file(void **state) {
-  (void)state;
+static void make_file(void) {
   strcpy(path + strlen(path) - 6, "XXXXXX");
   int fd = mkstemp(path);
-  return fd < 0 || close(fd) != 0 || abbe_file_write(path, two, strlen(two), NULL) != ABBE_OK;
+  assert_false(fd < 0);
+  assert_int_equal(close(fd), 0);
+  assert_int_equal(abbe_file_write(path, two, strlen(two), NULL), ABBE_OK);
 }
 
-static int drop_file(void **state) {
-  (void)state;
+static void drop_file(void) {
   unlink(path);
-  return 0;
 }
 
 static void check_file(const char *wanted) {
@@ -396,8 +388,7 @@ static void check_file(const char *wanted) {
   free(text);
 }
 
-static void a_saved_edit_is_on_the_disk(void **state) {
-  (void)state;
+TEST_WITH(a_saved_edit_is_on_the_disk, make_file, drop_file) {
   abbe_table_edit *edit = NULL;
   struct stat status;
   assert_int_equal(chmod(path, 0640), 0);
@@ -414,8 +405,7 @@ static void a_saved_edit_is_on_the_disk(void **state) {
   abbe_table_edit_free(edit);
 }
 
-static void a_file_that_changed_is_not_overwritten(void **state) {
-  (void)state;
+TEST_WITH(a_file_that_changed_is_not_overwritten, make_file, drop_file) {
   abbe_table_edit *edit = NULL;
   must(abbe_table_edit_open(path, &edit, &error));
   must(abbe_table_edit_set(edit, "flint", "coefficients.0", "1.7", &error));
@@ -426,8 +416,7 @@ static void a_file_that_changed_is_not_overwritten(void **state) {
   abbe_table_edit_free(edit);
 }
 
-static void a_table_is_not_broken_but_may_be_fixed(void **state) {
-  (void)state;
+TEST_WITH(a_table_is_not_broken_but_may_be_fixed, make_file, drop_file) {
   abbe_table_edit *edit = NULL;
   must(abbe_table_edit_open(path, &edit, &error));
   must(abbe_table_edit_set(edit, "flint", "model", "cauhcy", &error));
@@ -446,8 +435,7 @@ static void a_table_is_not_broken_but_may_be_fixed(void **state) {
   abbe_table_edit_free(edit);
 }
 
-static void a_new_table_begins_with_a_record(void **state) {
-  (void)state;
+TEST_WITH(a_new_table_begins_with_a_record, make_file, drop_file) {
   abbe_table_edit *edit = NULL;
   assert_int_equal(abbe_table_edit_make(path, &edit, &error), ABBE_IO);
   assert_contains(error.text, "is there already");
@@ -462,8 +450,7 @@ static void a_new_table_begins_with_a_record(void **state) {
   abbe_table_edit_free(edit);
 }
 
-static void a_record_moves_from_table_to_table(void **state) {
-  (void)state;
+TEST(a_record_moves_from_table_to_table) {
   abbe_table_edit *from = parse(two), *to = parse("materials: [{name: a}]\n");
   char *text = NULL;
   must(abbe_table_edit_record(from, "crown", &text, &error));
@@ -477,24 +464,4 @@ static void a_record_moves_from_table_to_table(void **state) {
   free(text);
   abbe_table_edit_free(from);
   abbe_table_edit_free(to);
-}
-
-#define with_file(test) cmocka_unit_test_setup_teardown(test, make_file, drop_file)
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(values_are_set),
-      cmocka_unit_test(values_are_told_and_taken_back),
-      cmocka_unit_test(new_keys_go_where_the_format_has_them),
-      cmocka_unit_test(keys_and_records_come_and_go),
-      cmocka_unit_test(each_edit_stays_inside_its_record),
-      cmocka_unit_test(random_tables_keep_their_other_records),
-      cmocka_unit_test(what_cannot_be_is_refused),
-      with_file(a_saved_edit_is_on_the_disk),
-      with_file(a_file_that_changed_is_not_overwritten),
-      with_file(a_table_is_not_broken_but_may_be_fixed),
-      with_file(a_new_table_begins_with_a_record),
-      cmocka_unit_test(a_record_moves_from_table_to_table),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

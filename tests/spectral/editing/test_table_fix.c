@@ -20,9 +20,10 @@ static abbe_table_fix fix_of(abbe_table_edit *edit) {
   return fix;
 }
 
+GROUP(shipped_load, shipped_free);
+
 /* Only the bytes of the wrong values change. */
-static void wrong_values_change_and_nothing_else(void **state) {
-  (void)state;
+TEST(wrong_values_change_and_nothing_else) {
   abbe_table_edit *edit = open_edit("# my glasses\n"
                                     "materials:\n"
                                     "  - name: bak4   # from a book\n"
@@ -52,8 +53,7 @@ static void wrong_values_change_and_nothing_else(void **state) {
 }
 
 /* New coefficients make a recorded fit stale, which is the next to fix. */
-static void a_fix_brings_out_the_next(void **state) {
-  (void)state;
+TEST(a_fix_brings_out_the_next) {
   abbe_table_edit *edit = open_edit(
       "materials:\n- name: a\n  model: cauchy\n  coefficients: [1.5046, 4200]\n"
       "  range_nm: [380, 780]\n  source: s1\n  fit:\n"
@@ -66,8 +66,7 @@ static void a_fix_brings_out_the_next(void **state) {
   abbe_table_edit_free(edit);
 }
 
-static void doubt_and_shared_names_are_left_alone(void **state) {
-  (void)state;
+TEST(doubt_and_shared_names_are_left_alone) {
   const char *const text =
       "materials:\n"
       "- {name: mystery, model: cauchy, coefficients: [1.5690, 0.00531], range_nm: [380, 780], "
@@ -84,13 +83,4 @@ static void doubt_and_shared_names_are_left_alone(void **state) {
   assert_contains(fix.why, "twin: the name stands twice");
   assert_string_equal(abbe_table_edit_text(edit, &size), text);
   abbe_table_edit_free(edit);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(wrong_values_change_and_nothing_else),
-      cmocka_unit_test(a_fix_brings_out_the_next),
-      cmocka_unit_test(doubt_and_shared_names_are_left_alone),
-  };
-  return cmocka_run_group_tests(tests, shipped_load, shipped_free);
 }

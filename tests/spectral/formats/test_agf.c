@@ -28,8 +28,7 @@ static abbe_material_table parse(const char *text) {
   "OD 1.0000 - 0.0000 1.0000 2.3000 2.3000\nLD 3.00000E-01 2.50000E+00\n"                          \
   "IT 3.34000E-01 7.80000E-01 2.50000E+01\nIT 4.00000E-01 9.92000E-01 2.50000E+01\n"
 
-static void a_glass_is_read_whole(void **state) {
-  (void)state;
+TEST(a_glass_is_read_whole) {
   abbe_material_table t = parse("free text of the maker\nCC Maker, spring\n" BK7);
   assert_int_equal(t.count, 1);
   assert_string_equal(t.description, "Maker, spring");
@@ -61,8 +60,7 @@ static void a_glass_is_read_whole(void **state) {
   abbe_material_table_free(&t);
 }
 
-static void commas_part_numbers_or_begin_their_decimals(void **state) {
-  (void)state;
+TEST(commas_part_numbers_or_begin_their_decimals) {
   abbe_material_table t =
       parse("NM A 2 517642 1,5168 64,17\nCD 1,03961212E+00 6,00069867E-03 "
             "2,31792344e-1 0,0200179144\n1,01046945 103,560653\nLD 0,3 2,5\n"
@@ -83,8 +81,7 @@ static void commas_part_numbers_or_begin_their_decimals(void **state) {
 }
 
 /* Chemists number the places of a molecule so. */
-static void a_name_may_hold_commas(void **state) {
-  (void)state;
+TEST(a_name_may_hold_commas) {
 #define CD "\nCD 1.03961212 0.00600069867\nLD 0.3 2.5\n"
   abbe_material_table t =
       parse("NM OCTANE-1,6 2 0 1.4 60" CD "NM DECANE-1,10,12 2 0.0 1.4 60" CD
@@ -101,8 +98,7 @@ static void a_name_may_hold_commas(void **state) {
 }
 
 /* Catalogues begin with a page of text; a source is a line. */
-static void a_long_title_is_cut_at_a_word(void **state) {
-  (void)state;
+TEST(a_long_title_is_cut_at_a_word) {
   abbe_material_table t = parse("CC Maker, all glasses of spring 2017 with melt data, for "
                                 "designers only, see our terms of use\n" BK7);
   assert_string_equal(t.material[0].source,
@@ -113,8 +109,7 @@ static void a_long_title_is_cut_at_a_word(void **state) {
 }
 
 /* As one maker prints them. */
-static void wrapped_lines_are_joined(void **state) {
-  (void)state;
+TEST(wrapped_lines_are_joined) {
   abbe_material_table t =
       parse("CC  Updated\nNM J-FK5 13 1 1.487490 70.318793 0 0 1\nGC \n"
             "ED 8.900000000E+000 0.000000000E+000 2.450000000E+000 2.700000000E-003 0 0\n"
@@ -136,8 +131,7 @@ static void wrapped_lines_are_joined(void **state) {
   abbe_material_table_free(&t);
 }
 
-static void encodings_and_line_ends_do_not_matter(void **state) {
-  (void)state;
+TEST(encodings_and_line_ends_do_not_matter) {
   static const char text[] = "CC maker\n" BK7;
   char wide[2 * sizeof text + 2], returns[2 * sizeof text];
   size_t w = 0, r = 0;
@@ -163,8 +157,7 @@ static void encodings_and_line_ends_do_not_matter(void **state) {
   }
 }
 
-static void placeholders_and_missing_fields_are_no_values(void **state) {
-  (void)state;
+TEST(placeholders_and_missing_fields_are_no_values) {
   abbe_material_table t =
       parse("NM CDS 2 1 1.000000 0.000000 0 0 0\nGC source:  Handbook of Optics\n"
             "CD 3.96582820 5.58036869E-02 1.811387400E-001 2.33146066E-01 0 0\n"
@@ -193,8 +186,7 @@ static void placeholders_and_missing_fields_are_no_values(void **state) {
 }
 
 /* Numbers that nothing uses may be anything, and must not make a table that cannot be read. */
-static void numbers_beyond_a_table_are_left_out(void **state) {
-  (void)state;
+TEST(numbers_beyond_a_table_are_left_out) {
   abbe_material_table t = parse("NM A 2 0 1.5168 64.17 0 1 1e9\nED 1e300 8.3 1e4 1e5 0\n" BK7_CD
                                 "TD 1e-6 1e200 0 0 0 0.17 20\nOD 1 2 3 4 5 1e13\n"
                                 "LD 0.3 2.5\n");
@@ -209,8 +201,7 @@ static void numbers_beyond_a_table_are_left_out(void **state) {
   abbe_material_table_free(&t);
 }
 
-static void one_bad_glass_does_not_stop_the_rest(void **state) {
-  (void)state;
+TEST(one_bad_glass_does_not_stop_the_rest) {
   abbe_material_table t =
       parse("NM A 99 0 1.5 60\n" BK7_CD "NM B 2 0 1.5 60\nLD 0.3 2\n"
             "NM C 2 0 1.5 60\nCD 1 what 2\nLD 0.3 2\n"
@@ -248,8 +239,7 @@ static void refuses(const char *text, abbe_result code, const char *part) {
   abbe_report_free(&mine);
 }
 
-static void what_is_no_catalogue_is_refused(void **state) {
-  (void)state;
+TEST(what_is_no_catalogue_is_refused) {
   refuses("", ABBE_PARSE, "x.agf: has no NM line");
   refuses("materials:\n- name: x\n", ABBE_PARSE, "no Zemax glass catalogue");
   refuses("NM A 99\n", ABBE_SCHEMA, "none of its 1 glasses can be used; the first: its formula");
@@ -259,8 +249,7 @@ static void what_is_no_catalogue_is_refused(void **state) {
 }
 
 /* A thousand glasses with 33 transmittances each, as a maker's catalogue has. */
-static void a_whole_catalogue_is_read(void **state) {
-  (void)state;
+TEST(a_whole_catalogue_is_read) {
   enum { GLASSES = 1000, EACH = 2200 };
   char *text = malloc(GLASSES * EACH);
   assert_non_null(text);
@@ -278,25 +267,8 @@ static void a_whole_catalogue_is_read(void **state) {
   free(text);
 }
 
-static int end(void **state) {
-  (void)state;
+static void end(void) {
   abbe_report_free(&report);
-  return 0;
 }
 
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_glass_is_read_whole),
-      cmocka_unit_test(commas_part_numbers_or_begin_their_decimals),
-      cmocka_unit_test(a_name_may_hold_commas),
-      cmocka_unit_test(a_long_title_is_cut_at_a_word),
-      cmocka_unit_test(wrapped_lines_are_joined),
-      cmocka_unit_test(encodings_and_line_ends_do_not_matter),
-      cmocka_unit_test(placeholders_and_missing_fields_are_no_values),
-      cmocka_unit_test(numbers_beyond_a_table_are_left_out),
-      cmocka_unit_test(one_bad_glass_does_not_stop_the_rest),
-      cmocka_unit_test(what_is_no_catalogue_is_refused),
-      cmocka_unit_test(a_whole_catalogue_is_read),
-  };
-  return cmocka_run_group_tests(tests, NULL, end);
-}
+GROUP(NULL, end);

@@ -6,8 +6,7 @@
 
 /* n_d as real catalogues print it beside the coefficients; what no catalogue prints is evaluated by
  * hand from the formula as Zemax's manual has it. */
-static void every_formula_gives_its_catalogues_index(void **state) {
-  (void)state;
+TEST(every_formula_gives_its_catalogues_index) {
   const struct {
     abbe_agf_formula f;
     double lambda_nm, n, within;
@@ -86,8 +85,7 @@ static double uniform(double low, double high) {
 
 /* Random coefficients of every formula come back as the same formula with the same coefficients,
  * and where they were given zeros, as one that computes the same. */
-static void formulas_survive_a_round_trip(void **state) {
-  (void)state;
+TEST(formulas_survive_a_round_trip) {
   static const int used[] = {0, 6, 6, 6, 5, 3, 8, 4, 4, 5, 8, 10, 8, 9};
   srand(7);
   for (int i = 0; i < 2600; i++) {
@@ -107,8 +105,7 @@ static void formulas_survive_a_round_trip(void **state) {
 }
 
 /* Cauchy forms are squared, squared poles are multiplied out, a constant term is a pole at 0. */
-static void other_forms_keep_their_index(void **state) {
-  (void)state;
+TEST(other_forms_keep_their_index) {
   const abbe_dispersion forms[] = {
       {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}},
       {.model = ABBE_DISPERSION_CAUCHY, .count = 1, .c = {1.5}},
@@ -136,8 +133,7 @@ static void other_forms_keep_their_index(void **state) {
 }
 
 /* The error that is stated is the error that is made. */
-static void what_has_no_formula_is_fitted_with_its_error(void **state) {
-  (void)state;
+TEST(what_has_no_formula_is_fitted_with_its_error) {
   const abbe_dispersion moissanite = {
       .model = ABBE_DISPERSION_RII4,
       .count = 11,
@@ -159,8 +155,7 @@ static void what_has_no_formula_is_fitted_with_its_error(void **state) {
                    ABBE_INVALID_ARGUMENT);
 }
 
-static void wrong_formulas_are_named(void **state) {
-  (void)state;
+TEST(wrong_formulas_are_named) {
   abbe_dispersion d;
   abbe_error error;
   const abbe_agf_formula none = {14, {1}}, zero = {2, {0}}, infinite = {1, {1, INFINITY}};
@@ -172,15 +167,4 @@ static void wrong_formulas_are_named(void **state) {
   assert_contains(error.text, "coefficient 1 is inf");
   assert_null(abbe_agf_formula_name(0));
   assert_string_equal(abbe_agf_formula_name(13), "Extended 3");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_formula_gives_its_catalogues_index),
-      cmocka_unit_test(formulas_survive_a_round_trip),
-      cmocka_unit_test(other_forms_keep_their_index),
-      cmocka_unit_test(what_has_no_formula_is_fitted_with_its_error),
-      cmocka_unit_test(wrong_formulas_are_named),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,8 +30,7 @@ static bool noted(const abbe_report *report, const char *part) {
 }
 
 /* n and the attenuation of every shipped row are those of the row, and what is lost is said. */
-static void the_shipped_table_becomes_a_catalogue(void **state) {
-  (void)state;
+TEST(the_shipped_table_becomes_a_catalogue) {
   abbe_material_table table;
   assert_int_equal(abbe_material_table_load(NULL, &table, NULL), ABBE_OK);
   abbe_report report = {0};
@@ -70,8 +69,7 @@ static void the_shipped_table_becomes_a_catalogue(void **state) {
 
 /* A table that came from a catalogue goes back to one and comes again, the same in all that both
  * can say. */
-static void a_catalogue_survives_the_way_through_a_table(void **state) {
-  (void)state;
+TEST(a_catalogue_survives_the_way_through_a_table) {
   srand(5);
   abbe_material_table table = {0};
   for (size_t i = 0; i < 400; i++) {
@@ -118,8 +116,7 @@ static size_t transmittances(const char *text, char lines[][80], size_t most) {
 }
 
 /* Printed transmittances come back as they were, at the thickness at which they were measured. */
-static void transmittances_come_back_to_the_last_digit(void **state) {
-  (void)state;
+TEST(transmittances_come_back_to_the_last_digit) {
   static const char text[] =
       "CC maker\n"
       "NM A 2 0 1.5168 64.17\nCD 1.03961212 0.00600069867 0 0 0 0\nLD 0.3 2.5\n"
@@ -148,8 +145,7 @@ static void transmittances_come_back_to_the_last_digit(void **state) {
 }
 
 /* Whatever absorbs, and however much: not a bit of it changes. */
-static void absorption_is_carried_to_the_last_bit(void **state) {
-  (void)state;
+TEST(absorption_is_carried_to_the_last_bit) {
   enum { COUNT = 4000 };
   static double lambda_nm[COUNT], attenuation[COUNT];
   uint64_t random = 7;
@@ -176,8 +172,7 @@ static void absorption_is_carried_to_the_last_bit(void **state) {
   abbe_spectrum_free(m.attenuation);
 }
 
-static void names_and_failures_are_told(void **state) {
-  (void)state;
+TEST(names_and_failures_are_told) {
   abbe_material list[2] = {
       {.name = (char[]){"two words, more"},
        .source = (char[]){"line\nbreak"},
@@ -203,15 +198,4 @@ static void names_and_failures_are_told(void **state) {
   FILE *full = fopen("/dev/full", "w");
   assert_int_equal(abbe_agf_write(&table, full, NULL, NULL), ABBE_IO);
   fclose(full);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_shipped_table_becomes_a_catalogue),
-      cmocka_unit_test(a_catalogue_survives_the_way_through_a_table),
-      cmocka_unit_test(transmittances_come_back_to_the_last_digit),
-      cmocka_unit_test(absorption_is_carried_to_the_last_bit),
-      cmocka_unit_test(names_and_failures_are_told),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,8 +19,7 @@ static abbe_csv_points reread(const abbe_material *m, const abbe_csv_sampling *s
   return points;
 }
 
-static void written_points_are_the_materials(void **state) {
-  (void)state;
+TEST(written_points_are_the_materials) {
   srand(4);
   for (size_t i = 0; i < 200; i++) {
     abbe_material m = random_material(i);
@@ -54,8 +53,7 @@ static abbe_material glass(void) {
 }
 
 /* The error that is told is that of straight lines through the points. */
-static void sampling_is_asked_for_and_its_error_told(void **state) {
-  (void)state;
+TEST(sampling_is_asked_for_and_its_error_told) {
   abbe_material m = glass();
   abbe_report report = {0};
   abbe_csv_points p = reread(&m, &(abbe_csv_sampling){450, 525, 50}, &report);
@@ -70,8 +68,7 @@ static void sampling_is_asked_for_and_its_error_told(void **state) {
   abbe_csv_points_free(&p);
 }
 
-static void what_cannot_be_sampled_is_refused(void **state) {
-  (void)state;
+TEST(what_cannot_be_sampled_is_refused) {
   abbe_material m = glass();
   abbe_error error;
   char *text = NULL;
@@ -90,13 +87,4 @@ static void what_cannot_be_sampled_is_refused(void **state) {
   FILE *full = fopen("/dev/full", "w");
   assert_int_equal(abbe_csv_write(&m, NULL, full, NULL, &error), ABBE_IO);
   fclose(full);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(written_points_are_the_materials),
-      cmocka_unit_test(sampling_is_asked_for_and_its_error_told),
-      cmocka_unit_test(what_cannot_be_sampled_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,17 +21,15 @@ static const char *below(const char *name) {
   return mine;
 }
 
-static int setup(void **state) {
-  (void)state;
+static void setup(void) {
   snprintf(root, sizeof root, "/tmp/abbe-test-batch-XXXXXX");
   made_count = 0;
-  return mkdtemp(root) == NULL;
+  assert_non_null(mkdtemp(root));
 }
 
-static int teardown(void **state) {
-  (void)state;
+static void teardown(void) {
   while (made_count > 0) remove(made[--made_count]);
-  return rmdir(root);
+  assert_false(rmdir(root));
 }
 
 static void folder(const char *name) {
@@ -80,17 +78,17 @@ static bool noted(abbe_note_kind kind, const char *part) {
   return false;
 }
 
-static int done(void **state) {
-  (void)state;
+static void done(void) {
   abbe_report_free(&report);
   abbe_material_table_free(&table);
-  return teardown(state);
+  teardown();
 }
 
 /* ---- folders ---- */
 
-static void a_folder_is_read_whole_and_in_order(void **state) {
-  (void)state;
+EACH(setup, done);
+
+TEST(a_folder_is_read_whole_and_in_order) {
   folder("b");
   folder("b/nk");
   folder("a");
@@ -119,8 +117,7 @@ static void a_folder_is_read_whole_and_in_order(void **state) {
   assert_true(found);
 }
 
-static void a_bad_file_stops_nothing(void **state) {
-  (void)state;
+TEST(a_bad_file_stops_nothing) {
   folder("d");
   file("d/a.agf", GLASS("A"));
   file("d/b.yml", "DATA:\n- {type: tabulated k, data: 0.5 1}\n");
@@ -138,8 +135,7 @@ static void a_bad_file_stops_nothing(void **state) {
   assert_true(noted(ABBE_NOTE_SKIPPED, "h.txt: is none of what can be read"));
 }
 
-static void nothing_at_all_is_a_failure(void **state) {
-  (void)state;
+TEST(nothing_at_all_is_a_failure) {
   abbe_error error = {0};
   folder("empty");
   file("a.yml", "DATA:\n- {type: tabulated k, data: 0.5 1}\n");
@@ -162,8 +158,7 @@ static void nothing_at_all_is_a_failure(void **state) {
   assert_int_equal(abbe_import_batch_run(&nothing, &table, NULL, &error), ABBE_INVALID_ARGUMENT);
 }
 
-static void the_target_is_none_of_the_files(void **state) {
-  (void)state;
+TEST(the_target_is_none_of_the_files) {
   abbe_error error = {0};
   folder("d");
   file("d/a.yml", RII);
@@ -179,8 +174,7 @@ static void the_target_is_none_of_the_files(void **state) {
   assert_int_equal(abbe_import_batch_run(&batch, &table, &report, &error), ABBE_OK);
 }
 
-static void a_binary_file_is_said_to_be_one(void **state) {
-  (void)state;
+TEST(a_binary_file_is_said_to_be_one) {
   abbe_error error = {0};
   file("a.xls", "\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1 \x01\x02\x03\x04\x05\x06\x0e\x0f");
   const char *const one[] = {below("a.xls")};
@@ -191,8 +185,7 @@ static void a_binary_file_is_said_to_be_one(void **state) {
 
 /* ---- names ---- */
 
-static void two_makers_glasses_are_kept_apart(void **state) {
-  (void)state;
+TEST(two_makers_glasses_are_kept_apart) {
   folder("hoya");
   folder("hoya/optical");
   folder("schott");
@@ -214,8 +207,7 @@ static void two_makers_glasses_are_kept_apart(void **state) {
       5);
 }
 
-static void two_catalogues_glasses_are_kept_apart(void **state) {
-  (void)state;
+TEST(two_catalogues_glasses_are_kept_apart) {
   folder("2012");
   folder("2017");
   file("2012/schott.agf", GLASS("F2") GLASS("K5"));
@@ -244,8 +236,7 @@ static void two_catalogues_glasses_are_kept_apart(void **state) {
   assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], 2);
 }
 
-static void long_names_are_cut_before(void **state) {
-  (void)state;
+TEST(long_names_are_cut_before) {
   char name[80], path[100], text[200];
   memset(name, 'n', 70);
   name[70] = '\0';
@@ -268,18 +259,4 @@ static void long_names_are_cut_before(void **state) {
     assert_int_equal(abbe_material_check(&table.material[i], NULL), ABBE_OK);
   runs(paths, 1, "a very long prefix that does not fit");
   assert_true(noted(ABBE_NOTE_RENAMED, "with the whole prefix its name would be too long"));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup_teardown(a_folder_is_read_whole_and_in_order, setup, done),
-      cmocka_unit_test_setup_teardown(a_bad_file_stops_nothing, setup, done),
-      cmocka_unit_test_setup_teardown(nothing_at_all_is_a_failure, setup, done),
-      cmocka_unit_test_setup_teardown(the_target_is_none_of_the_files, setup, done),
-      cmocka_unit_test_setup_teardown(a_binary_file_is_said_to_be_one, setup, done),
-      cmocka_unit_test_setup_teardown(two_makers_glasses_are_kept_apart, setup, done),
-      cmocka_unit_test_setup_teardown(two_catalogues_glasses_are_kept_apart, setup, done),
-      cmocka_unit_test_setup_teardown(long_names_are_cut_before, setup, done),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

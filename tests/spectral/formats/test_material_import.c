@@ -10,8 +10,7 @@
 #define CSV "# mine\nwavelength_nm,n,k\n400,1.5,1e-6\n500,1.49,0\n600,1.48,0\n"
 #define YAML "# a table\nmaterials:\n- {name: Y, model: constant, coefficients: [1.5], source: s}\n"
 
-static void the_text_says_what_it_is(void **state) {
-  (void)state;
+TEST(the_text_says_what_it_is) {
   const struct {
     const char *text;
     abbe_import_format format;
@@ -35,8 +34,7 @@ static void the_text_says_what_it_is(void **state) {
 }
 
 /* What a remark says is not what the file is. */
-static void remarks_decide_nothing(void **state) {
-  (void)state;
+TEST(remarks_decide_nothing) {
   const char *const remarks[] = {"20 \xc2\xb0"
                                  "C",
                                  "500 1.5", "materials: one", "NM is the unit", "0.5, 1.5, 0.1"};
@@ -54,8 +52,7 @@ static void remarks_decide_nothing(void **state) {
   assert_int_equal(abbe_import_detect(dated, strlen(dated)), ABBE_IMPORT_AGF);
 }
 
-static void all_kinds_go_into_one_table(void **state) {
-  (void)state;
+TEST(all_kinds_go_into_one_table) {
   const struct {
     const char *text, *path;
   } files[] = {
@@ -87,8 +84,7 @@ static void all_kinds_go_into_one_table(void **state) {
   abbe_material_table_free(&table);
 }
 
-static void options_name_what_the_file_does_not(void **state) {
-  (void)state;
+TEST(options_name_what_the_file_does_not) {
   abbe_material_table table = {0};
   const abbe_import_options options = {.format = ABBE_IMPORT_CSV,
                                        .name = "prism",
@@ -114,8 +110,7 @@ static void refuses(const char *text, const abbe_import_options *options, abbe_r
   abbe_material_table_free(&table);
 }
 
-static void what_cannot_be_read_is_named(void **state) {
-  (void)state;
+TEST(what_cannot_be_read_is_named) {
   refuses("hello", NULL, ABBE_PARSE, "x: is none of what can be read: a Zemax catalogue has NM");
   refuses("nm,k\n400,1\n", NULL, ABBE_SCHEMA, "holds k but no n");
   refuses(AGF, &(abbe_import_options){.format = ABBE_IMPORT_RII}, ABBE_SCHEMA, "no list 'DATA'");
@@ -123,15 +118,4 @@ static void what_cannot_be_read_is_named(void **state) {
   refuses("NM A 77\n", NULL, ABBE_SCHEMA, "none of its 1 glasses");
   abbe_material_table table = {0};
   assert_int_equal(abbe_import_load("/nowhere", NULL, &table, NULL, NULL), ABBE_IO);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_text_says_what_it_is),
-      cmocka_unit_test(remarks_decide_nothing),
-      cmocka_unit_test(all_kinds_go_into_one_table),
-      cmocka_unit_test(options_name_what_the_file_does_not),
-      cmocka_unit_test(what_cannot_be_read_is_named),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

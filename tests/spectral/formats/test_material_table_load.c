@@ -9,8 +9,7 @@
 
 /* As the catalogues print them; for papers that print none, from an evaluation of their formulas by
  * another hand. The tolerance is half of the last printed digit. */
-static void shipped_indices_are_the_published_ones(void **state) {
-  (void)state;
+TEST(shipped_indices_are_the_published_ones) {
   const struct {
     const char *name;
     double n_d, n_d_within, v_d, v_d_within;
@@ -53,8 +52,7 @@ static void shipped_indices_are_the_published_ones(void **state) {
 }
 
 /* Both ends of the spectrum, from an evaluation of the same published formulas by another hand. */
-static void shipped_indices_hold_at_the_ends(void **state) {
-  (void)state;
+TEST(shipped_indices_hold_at_the_ends) {
   const struct {
     const char *name;
     double n_380, n_780;
@@ -81,8 +79,7 @@ static void shipped_indices_hold_at_the_ends(void **state) {
 /* The extraordinary index at d, from an evaluation of the same formulas by another hand; of stones
  * whose birefringence alone is known, that. Metals, glasses and cubic or biaxial stones have none.
  */
-static void shipped_extraordinary_indices_are_the_published_ones(void **state) {
-  (void)state;
+TEST(shipped_extraordinary_indices_are_the_published_ones) {
   const struct {
     const char *name;
     double n, less; /* less: from the ordinary one */
@@ -110,8 +107,7 @@ static void shipped_extraordinary_indices_are_the_published_ones(void **state) {
 }
 
 /* What the indices are relative to has the index 1, exactly and everywhere. */
-static void air_is_what_indices_are_relative_to(void **state) {
-  (void)state;
+TEST(air_is_what_indices_are_relative_to) {
   abbe_material_table table = load_table("default");
   const abbe_material *air = find_material(&table, "air");
   for (double l = 200; l <= 3000; l += 10) {
@@ -126,8 +122,7 @@ static void air_is_what_indices_are_relative_to(void **state) {
 
 /* The shares that are reflected head on, of the printed n and k at or near 582 nm, and the points
  * themselves: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2). */
-static void shipped_metals_reflect_what_their_sources_say(void **state) {
-  (void)state;
+TEST(shipped_metals_reflect_what_their_sources_say) {
   const struct {
     const char *name;
     double nm, n, k, reflected;
@@ -165,8 +160,7 @@ static bool varies(const abbe_material *m) {
   return m->dispersion.model != ABBE_DISPERSION_CONSTANT;
 }
 
-static void every_shipped_row_covers_the_spectrum_and_falls_with_wavelength(void **state) {
-  (void)state;
+TEST(every_shipped_row_covers_the_spectrum_and_falls_with_wavelength) {
   abbe_material_table table = load_table("default");
   for (size_t i = 0; i < table.count; i++) {
     const abbe_material *m = &table.material[i];
@@ -187,8 +181,7 @@ static void every_shipped_row_covers_the_spectrum_and_falls_with_wavelength(void
   abbe_material_table_free(&table);
 }
 
-static void every_recorded_fit_is_made_again(void **state) {
-  (void)state;
+TEST(every_recorded_fit_is_made_again) {
   abbe_material_table table = load_table("default");
   for (size_t i = 0; i < table.count; i++) {
     const abbe_material *m = &table.material[i];
@@ -218,8 +211,7 @@ static void every_recorded_fit_is_made_again(void **state) {
   abbe_material_table_free(&table);
 }
 
-static void every_source_is_in_the_bibliography(void **state) {
-  (void)state;
+TEST(every_source_is_in_the_bibliography) {
   char *text = NULL;
   size_t size = 0;
   assert_int_equal(abbe_file_read(ABBE_SOURCE_DIR "/BIBLIOGRAPHY.md", 1 << 20, &text, &size, NULL),
@@ -241,8 +233,7 @@ static void every_source_is_in_the_bibliography(void **state) {
 }
 
 /* Verbatim: the digits that the thesis prints, and what is wrong with them. */
-static void the_thesis_is_kept_as_printed(void **state) {
-  (void)state;
+TEST(the_thesis_is_kept_as_printed) {
   const struct {
     const char *name;
     double a, b, high_by;
@@ -269,28 +260,11 @@ static void the_thesis_is_kept_as_printed(void **state) {
   abbe_material_table_free(&table);
 }
 
-static void missing_files_are_named(void **state) {
-  (void)state;
+TEST(missing_files_are_named) {
   abbe_material_table t;
   abbe_error error;
   assert_int_equal(abbe_material_table_load("/no/such/table.yaml", &t, &error), ABBE_IO);
   assert_contains(error.text, "/no/such/table.yaml");
   assert_int_equal(t.count, 0);
   assert_int_equal(abbe_material_table_load(ABBE_SOURCE_DIR, &t, &error), ABBE_IO);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(shipped_indices_are_the_published_ones),
-      cmocka_unit_test(shipped_indices_hold_at_the_ends),
-      cmocka_unit_test(shipped_extraordinary_indices_are_the_published_ones),
-      cmocka_unit_test(air_is_what_indices_are_relative_to),
-      cmocka_unit_test(shipped_metals_reflect_what_their_sources_say),
-      cmocka_unit_test(every_shipped_row_covers_the_spectrum_and_falls_with_wavelength),
-      cmocka_unit_test(every_recorded_fit_is_made_again),
-      cmocka_unit_test(every_source_is_in_the_bibliography),
-      cmocka_unit_test(the_thesis_is_kept_as_printed),
-      cmocka_unit_test(missing_files_are_named),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,8 +17,7 @@ static abbe_material_table reread(const abbe_material_table *table, char **text)
   return back;
 }
 
-static void shipped_tables_come_back_the_same(void **state) {
-  (void)state;
+TEST(shipped_tables_come_back_the_same) {
   const char *const names[] = {"default", "thesis"};
   for (int t = 0; t < 2; t++) {
     abbe_material_table table;
@@ -35,8 +34,7 @@ static void shipped_tables_come_back_the_same(void **state) {
   }
 }
 
-static void random_records_come_back_the_same(void **state) {
-  (void)state;
+TEST(random_records_come_back_the_same) {
   srand(11);
   for (int round = 0; round < 20; round++) {
     abbe_material_table table = {0};
@@ -58,8 +56,7 @@ static void random_records_come_back_the_same(void **state) {
 }
 
 /* Names and texts that YAML would take for something else. */
-static void odd_texts_come_back_the_same(void **state) {
-  (void)state;
+TEST(odd_texts_come_back_the_same) {
   const char *const odd[] = {"true",
                              "null",
                              "1.5",
@@ -106,8 +103,7 @@ static void odd_texts_come_back_the_same(void **state) {
   }
 }
 
-static void what_could_not_be_read_again_is_not_written(void **state) {
-  (void)state;
+TEST(what_could_not_be_read_again_is_not_written) {
   abbe_material m = {.name = (char[]){"x"},
                      .source = (char[]){"s"},
                      .min_nm = 400,
@@ -130,8 +126,7 @@ static void what_could_not_be_read_again_is_not_written(void **state) {
 }
 
 /* What is written can be read again: a table with more values than a reader takes is refused. */
-static void too_large_a_table_is_refused(void **state) {
-  (void)state;
+TEST(too_large_a_table_is_refused) {
   enum { POINTS = 60000, COUNT = 6 };
   static double lambda_nm[POINTS], value[POINTS];
   static char names[COUNT][4], source[] = "s";
@@ -165,15 +160,4 @@ static void too_large_a_table_is_refused(void **state) {
   assert_int_equal(size, 0);
   free(text);
   for (int i = 0; i < COUNT; i++) abbe_dispersion_free(&list[i].dispersion);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(shipped_tables_come_back_the_same),
-      cmocka_unit_test(random_records_come_back_the_same),
-      cmocka_unit_test(odd_texts_come_back_the_same),
-      cmocka_unit_test(what_could_not_be_read_again_is_not_written),
-      cmocka_unit_test(too_large_a_table_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -43,8 +43,7 @@ static const char bk7[] =
     "    resistance:\n        climatic: 1.0\n        stain: 0.0\n        acid: 1.0\n"
     "        alkali: 2.3\n        phosphate: 2.3\n";
 
-static void a_makers_glass_is_read_whole(void **state) {
-  (void)state;
+TEST(a_makers_glass_is_read_whole) {
   abbe_material m = parse_as(bk7, "database/data/specs/schott/optical/N-BK7.yml", NULL);
   assert_string_equal(m.name, "N-BK7");
   assert_string_equal(m.source, "SCHOTT Zemax catalog 2017-01-20b (obtained from "
@@ -72,8 +71,7 @@ static void a_makers_glass_is_read_whole(void **state) {
   abbe_material_free(&m);
 }
 
-static void names_come_from_the_path(void **state) {
-  (void)state;
+TEST(names_come_from_the_path) {
   static const char text[] =
       "DATA:\n- {type: formula 5, wavelength_range: 0.4 0.7, coefficients: 2}\n";
   const struct {
@@ -96,8 +94,7 @@ static void names_come_from_the_path(void **state) {
 }
 
 /* Formula by formula: published n, of the material that the database has for it. */
-static void every_formula_is_read(void **state) {
-  (void)state;
+TEST(every_formula_is_read) {
   const struct {
     const char *type, *range, *c;
     abbe_dispersion_model model;
@@ -137,8 +134,7 @@ static void every_formula_is_read(void **state) {
   }
 }
 
-static void tables_are_read_and_put_in_order(void **state) {
-  (void)state;
+TEST(tables_are_read_and_put_in_order) {
   abbe_material m = parse_as("REFERENCES: r\nDATA:\n  - type: tabulated nk\n    data: |\n"
                              "        0.6 1.45 0.02\n        0.5 1.5 0.01\n        0.7 1.4 0\n"
                              "        0.7 1.3 0\n        oops\n        0.8 -1 0\n",
@@ -161,8 +157,7 @@ static void tables_are_read_and_put_in_order(void **state) {
   abbe_material_free(&m);
 }
 
-static void properties_beyond_a_table_are_left_out(void **state) {
-  (void)state;
+TEST(properties_beyond_a_table_are_left_out) {
   abbe_material m =
       parse_as("REFERENCES: r\nDATA:\n  - type: formula 5\n    wavelength_range: 0.4 0.7\n"
                "    coefficients: 1.5 0.004 -2\nPROPERTIES:\n    nd: 1e-9\n    dPgF: 1e9\n"
@@ -177,8 +172,7 @@ static void properties_beyond_a_table_are_left_out(void **state) {
   abbe_material_free(&m);
 }
 
-static void absolute_indices_get_a_warning(void **state) {
-  (void)state;
+TEST(absolute_indices_get_a_warning) {
   abbe_material m = parse_as("REFERENCES: r\nDATA:\n- {type: formula 5, wavelength_range: 0.4 0.7,"
                              " coefficients: 1.5}\nCONDITIONS: {n_absolute: true,"
                              " wavelength_vacuum: true, temperature: 293.15}\n",
@@ -197,8 +191,7 @@ static void refuses(const char *text, abbe_result code, const char *part) {
   assert_null(m.name);
 }
 
-static void what_holds_no_index_is_refused(void **state) {
-  (void)state;
+TEST(what_holds_no_index_is_refused) {
   refuses("", ABBE_PARSE, "x.yml");
   refuses("materials: []\n", ABBE_SCHEMA, "x.yml:1: has no list 'DATA'");
   refuses("DATA: []\n", ABBE_SCHEMA, "holds no index");
@@ -236,21 +229,8 @@ static void what_holds_no_index_is_refused(void **state) {
   assert_int_equal(abbe_rii_load("/nowhere.yml", NULL, &m, NULL, NULL), ABBE_IO);
 }
 
-static int end(void **state) {
-  (void)state;
+static void end(void) {
   abbe_report_free(&report);
-  return 0;
 }
 
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_makers_glass_is_read_whole),
-      cmocka_unit_test(names_come_from_the_path),
-      cmocka_unit_test(every_formula_is_read),
-      cmocka_unit_test(tables_are_read_and_put_in_order),
-      cmocka_unit_test(properties_beyond_a_table_are_left_out),
-      cmocka_unit_test(absolute_indices_get_a_warning),
-      cmocka_unit_test(what_holds_no_index_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, end);
-}
+GROUP(NULL, end);

@@ -19,8 +19,7 @@ static abbe_material reread(const abbe_material *m, abbe_report *report) {
   return back;
 }
 
-static void shipped_rows_come_back_the_same(void **state) {
-  (void)state;
+TEST(shipped_rows_come_back_the_same) {
   const char *const tables[] = {"default", "thesis"};
   for (int t = 0; t < 2; t++) {
     abbe_material_table table;
@@ -36,8 +35,7 @@ static void shipped_rows_come_back_the_same(void **state) {
 
 /* What the database does not carry is left out of the record, the rest comes back; and what was
  * left out is noted. */
-static void random_records_come_back_the_same(void **state) {
-  (void)state;
+TEST(random_records_come_back_the_same) {
   srand(3);
   for (size_t i = 0; i < 400; i++) {
     abbe_material m = random_material(i);
@@ -87,8 +85,7 @@ static void random_records_come_back_the_same(void **state) {
   }
 }
 
-static void failures_are_told(void **state) {
-  (void)state;
+TEST(failures_are_told) {
   abbe_material m = {.name = (char[]){"x"},
                      .source = (char[]){"s"},
                      .min_nm = 400,
@@ -99,13 +96,4 @@ static void failures_are_told(void **state) {
   m.max_nm = 300;
   assert_int_equal(abbe_rii_write(&m, full, NULL, NULL), ABBE_INVALID_ARGUMENT);
   fclose(full);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(shipped_rows_come_back_the_same),
-      cmocka_unit_test(random_records_come_back_the_same),
-      cmocka_unit_test(failures_are_told),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,9 +10,9 @@ static abbe_report report;
 
 static char plain[] = "s", broken[] = "line\nbreak */", letter[] = "x";
 
-static int unload(void **state) {
+static void unload(void) {
   abbe_report_free(&report);
-  return shipped_free(state);
+  shipped_free();
 }
 
 static char *written(abbe_shader shader, const abbe_material *m, size_t count) {
@@ -26,9 +26,10 @@ static char *written(abbe_shader shader, const abbe_material *m, size_t count) {
   return text;
 }
 
+GROUP(shipped_load, unload);
+
 /* A material that follows POV-Ray's own law is found exactly; so is glTF's. */
-static void the_laws_of_others_are_found_again(void **state) {
-  (void)state;
+TEST(the_laws_of_others_are_found_again) {
   double lambda_nm[351], n[351], ior = 0, dispersion = 0, error = 1;
   for (int i = 0; i <= 350; i++) {
     lambda_nm[i] = 380 + i;
@@ -56,8 +57,7 @@ static void the_laws_of_others_are_found_again(void **state) {
 }
 
 /* N-BK7 has n_d 1.5168 and V_d 64.17: 20 / 64.17 = 0.3117. */
-static void gltf_has_the_numbers_of_the_catalogue(void **state) {
-  (void)state;
+TEST(gltf_has_the_numbers_of_the_catalogue) {
   char *text = written(ABBE_SHADER_GLTF, shipped.material, shipped.count);
   cJSON *root = cJSON_Parse(text);
   assert_non_null(root);
@@ -87,8 +87,7 @@ static void gltf_has_the_numbers_of_the_catalogue(void **state) {
 
 /* Every sample that pbrt gets is the index there, from 360 to 830 nm without a gap: it takes 0
  * outside. */
-static void pbrt_gets_the_index_every_five_nanometres(void **state) {
-  (void)state;
+TEST(pbrt_gets_the_index_every_five_nanometres) {
   const abbe_material *m = shipped_material("n-bk7");
   char *text = written(ABBE_SHADER_PBRT, m, 1);
   char *at = strstr(text, "\"spectrum eta\" [");
@@ -108,8 +107,7 @@ static void pbrt_gets_the_index_every_five_nanometres(void **state) {
   free(text);
 }
 
-static void held_indices_are_told(void **state) {
-  (void)state;
+TEST(held_indices_are_told) {
   abbe_material m = {.name = letter,
                      .source = plain,
                      .min_nm = 400,
@@ -124,8 +122,7 @@ static void held_indices_are_told(void **state) {
   assert_int_equal(report.kinds[ABBE_NOTE_ASSUMED], 0);
 }
 
-static void names_become_identifiers_once_each(void **state) {
-  (void)state;
+TEST(names_become_identifiers_once_each) {
   abbe_material m[4];
   char *const names[] = {(char[]){"n-bk7"}, (char[]){"n_bk7"}, (char[]){"n bk7"},
                          (char[]){"7 \xc3\xa4 \"x\""}};
@@ -155,8 +152,7 @@ static void names_become_identifiers_once_each(void **state) {
 }
 
 /* exp(-(1 - fade_color) d / fade_distance) is exp(-a d). */
-static void povray_fades_as_the_material_absorbs(void **state) {
-  (void)state;
+TEST(povray_fades_as_the_material_absorbs) {
   const abbe_material *m = shipped_material("n-sf11");
   char *text = written(ABBE_SHADER_POVRAY, m, 1), *at = strstr(text, "fade_distance ");
   double distance = strtod(at + strlen("fade_distance "), NULL), colour[3];
@@ -168,8 +164,7 @@ static void povray_fades_as_the_material_absorbs(void **state) {
   free(text);
 }
 
-static void failures_are_told(void **state) {
-  (void)state;
+TEST(failures_are_told) {
   abbe_error error;
   FILE *full = fopen("/dev/full", "w");
   assert_int_equal(abbe_shader_write(ABBE_SHADER_MDL, &shipped, full, NULL, &error), ABBE_IO);
@@ -180,17 +175,4 @@ static void failures_are_told(void **state) {
   free(written(ABBE_SHADER_GLTF, &bad, 1));
   assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], 1);
   assert_string_equal(abbe_shader_name(ABBE_SHADER_POVRAY), "povray");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_laws_of_others_are_found_again),
-      cmocka_unit_test(gltf_has_the_numbers_of_the_catalogue),
-      cmocka_unit_test(pbrt_gets_the_index_every_five_nanometres),
-      cmocka_unit_test(held_indices_are_told),
-      cmocka_unit_test(names_become_identifiers_once_each),
-      cmocka_unit_test(povray_fades_as_the_material_absorbs),
-      cmocka_unit_test(failures_are_told),
-  };
-  return cmocka_run_group_tests(tests, shipped_load, unload);
 }

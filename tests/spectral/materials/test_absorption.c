@@ -4,8 +4,7 @@
 
 /* F2 at 400 nm: an internal transmittance of 0.985 at 25 mm in the catalogue, and k = 1.9245e-8 by
  * the rule k = -ln(T) lambda / (4 pi d). */
-static void transmittance_and_k_agree(void **state) {
-  (void)state;
+TEST(transmittance_and_k_agree) {
   double a = abbe_absorption_from_transmittance(0.985, 0.025);
   assert_near(a, 0.604546, 5e-7);
   assert_near(abbe_absorption_k(a, 400), 1.92433e-8, 5e-13);
@@ -13,8 +12,7 @@ static void transmittance_and_k_agree(void **state) {
   assert_near(abbe_absorption_transmittance(a, 0.025), 0.985, 1e-15);
 }
 
-static void each_way_is_undone_by_its_inverse(void **state) {
-  (void)state;
+TEST(each_way_is_undone_by_its_inverse) {
   for (double t = 1e-6; t <= 1; t *= 1.7) {
     double a = abbe_absorption_from_transmittance(t, 0.01);
     assert_true(a >= 0);
@@ -28,8 +26,7 @@ static void each_way_is_undone_by_its_inverse(void **state) {
   assert_near(abbe_absorption_from_transmittance(0, 0.01), -log(1e-6) / 0.01, 1e-9);
 }
 
-static void tables_become_spectra_over_their_range(void **state) {
-  (void)state;
+TEST(tables_become_spectra_over_their_range) {
   abbe_point list[] = {{400, 0.5, 0}, {500, 1, 0}, {600, 0, 0}};
   const abbe_points points = {.count = 3, .point = list};
   abbe_spectrum *a = NULL;
@@ -44,8 +41,7 @@ static void tables_become_spectra_over_their_range(void **state) {
   abbe_spectrum_free(a);
 }
 
-static void a_colour_comes_back_at_its_distance(void **state) {
-  (void)state;
+TEST(a_colour_comes_back_at_its_distance) {
   const double ruby[3] = {0.8, 0.05, 0.1};
   double back[3];
   abbe_spectrum *a = NULL;
@@ -57,8 +53,7 @@ static void a_colour_comes_back_at_its_distance(void **state) {
   abbe_spectrum_free(a);
 }
 
-static void wrong_values_are_named(void **state) {
-  (void)state;
+TEST(wrong_values_are_named) {
   abbe_point high = {450, 99.5, 0}, negative = {450, -1, 0};
   const abbe_points percent = {.count = 1, .point = &high}, none = {0};
   const abbe_points below = {.count = 1, .point = &negative};
@@ -79,15 +74,4 @@ static void wrong_values_are_named(void **state) {
   assert_int_equal(abbe_absorption_spectrum_of_colour(colour, -1, &a, &error),
                    ABBE_INVALID_ARGUMENT);
   assert_null(a);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(transmittance_and_k_agree),
-      cmocka_unit_test(each_way_is_undone_by_its_inverse),
-      cmocka_unit_test(tables_become_spectra_over_their_range),
-      cmocka_unit_test(a_colour_comes_back_at_its_distance),
-      cmocka_unit_test(wrong_values_are_named),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -36,8 +36,7 @@ static abbe_material gold(void) {
 
 /* ---- n and k ---- */
 
-static void n_and_k_run_straight_between_the_points(void **state) {
-  (void)state;
+TEST(n_and_k_run_straight_between_the_points) {
   abbe_material m = gold();
   double n = 0, k = 0;
   assert_true(abbe_material_is_conductor(&m));
@@ -52,8 +51,7 @@ static void n_and_k_run_straight_between_the_points(void **state) {
   abbe_material_free(&m);
 }
 
-static void the_range_is_that_of_the_points(void **state) {
-  (void)state;
+TEST(the_range_is_that_of_the_points) {
   abbe_material m = gold();
   abbe_error error;
   double n = 7, k = 8;
@@ -67,8 +65,7 @@ static void the_range_is_that_of_the_points(void **state) {
   abbe_material_free(&m);
 }
 
-static void glasses_and_metals_are_not_mistaken(void **state) {
-  (void)state;
+TEST(glasses_and_metals_are_not_mistaken) {
   abbe_material m = gold();
   abbe_error error;
   double n = 7, k = 8;
@@ -91,8 +88,7 @@ static void glasses_and_metals_are_not_mistaken(void **state) {
   abbe_material_free(&m);
 }
 
-static void points_that_are_none_are_refused(void **state) {
-  (void)state;
+TEST(points_that_are_none_are_refused) {
   const double nm[] = {400, 500, 500}, n[] = {1, 0, 1e3}, k[] = {2, 2, -1}, bad[] = {1, NAN, 1};
   const double most[] = {1001, 1, 1};
   abbe_dispersion d;
@@ -112,8 +108,7 @@ static void points_that_are_none_are_refused(void **state) {
   assert_contains(error.text, "wants points of n and of k");
 }
 
-static void a_conductor_has_nothing_of_a_glass(void **state) {
-  (void)state;
+TEST(a_conductor_has_nothing_of_a_glass) {
   abbe_material m = gold();
   abbe_error error;
   m.extrapolate = true;
@@ -146,8 +141,7 @@ static void refuses(const char *rest, const char *part) {
   assert_contains(error.text, part);
 }
 
-static void bad_records_are_refused(void **state) {
-  (void)state;
+TEST(bad_records_are_refused) {
   refuses("", "'points' is missing");
   refuses("  points: []\n", "t.yaml:5: 'points' wants a list of 1 to 65536 points [nm, n, k]");
   refuses("  points: gold\n", "points [nm, n, k]");
@@ -185,8 +179,7 @@ static void same_conductor(const abbe_material *a, const abbe_material *b) {
   assert_true(same_spectrum(a->dispersion.k, b->dispersion.k, 0));
 }
 
-static void yaml_and_stores_keep_a_conductor(void **state) {
-  (void)state;
+TEST(yaml_and_stores_keep_a_conductor) {
   char *text = NULL, path[] = "/tmp/abbe-conductor-XXXXXX";
   size_t size = 0;
   abbe_material m = gold();
@@ -212,8 +205,7 @@ static void yaml_and_stores_keep_a_conductor(void **state) {
 
 /* ---- in other forms ---- */
 
-static void refractiveindex_info_keeps_a_conductor(void **state) {
-  (void)state;
+TEST(refractiveindex_info_keeps_a_conductor) {
   char *text = NULL;
   size_t size = 0;
   abbe_material m = gold(), back;
@@ -234,8 +226,7 @@ static void refractiveindex_info_keeps_a_conductor(void **state) {
 
 /* Where light gets through most of the visible, k stays absorption; so it does beyond the visible,
  * and where n and k stand at different wavelengths. */
-static void what_is_no_metal_stays_transparent(void **state) {
-  (void)state;
+TEST(what_is_no_metal_stays_transparent) {
   static const char *const texts[] = {
       "DATA:\n  - type: tabulated nk\n    data: |\n      0.4 1.5 0.5\n      0.45 1.5 0\n"
       "      0.7 1.5 0\n",
@@ -252,8 +243,7 @@ static void what_is_no_metal_stays_transparent(void **state) {
   }
 }
 
-static void csv_keeps_a_conductor(void **state) {
-  (void)state;
+TEST(csv_keeps_a_conductor) {
   char path[] = "/tmp/abbe-conductor-XXXXXX";
   abbe_material m = gold();
   abbe_material_table back = {0};
@@ -271,8 +261,7 @@ static void csv_keeps_a_conductor(void **state) {
   unlink(path);
 }
 
-static void catalogues_of_glass_leave_a_conductor_out(void **state) {
-  (void)state;
+TEST(catalogues_of_glass_leave_a_conductor_out) {
   abbe_material m = gold();
   abbe_material_table t = table_of(&m);
   const struct {
@@ -305,8 +294,7 @@ static void catalogues_of_glass_leave_a_conductor_out(void **state) {
 
 /* ---- among glasses ---- */
 
-static void no_glass_is_near_a_conductor(void **state) {
-  (void)state;
+TEST(no_glass_is_near_a_conductor) {
   abbe_material m = gold();
   abbe_material_table t = table_of(&m);
   abbe_glass_distances d;
@@ -317,8 +305,7 @@ static void no_glass_is_near_a_conductor(void **state) {
   abbe_material_table_free(&t);
 }
 
-static void a_change_of_k_is_told(void **state) {
-  (void)state;
+TEST(a_change_of_k_is_told) {
   abbe_material a = gold(), b = gold();
   double k[COUNT];
   memcpy(k, gold_k, sizeof k);
@@ -338,8 +325,7 @@ static void a_change_of_k_is_told(void **state) {
   abbe_material_table_free(&second);
 }
 
-static void the_check_knows_a_conductor(void **state) {
-  (void)state;
+TEST(the_check_knows_a_conductor) {
   abbe_material m = gold();
   abbe_findings found = {0};
   assert_int_equal(abbe_check_material(&m, NULL, &found, NULL), ABBE_OK);
@@ -348,24 +334,4 @@ static void the_check_knows_a_conductor(void **state) {
   assert_contains(found.finding[0].fix, "points that reach further");
   abbe_findings_free(&found);
   abbe_material_free(&m);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(n_and_k_run_straight_between_the_points),
-      cmocka_unit_test(the_range_is_that_of_the_points),
-      cmocka_unit_test(glasses_and_metals_are_not_mistaken),
-      cmocka_unit_test(points_that_are_none_are_refused),
-      cmocka_unit_test(a_conductor_has_nothing_of_a_glass),
-      cmocka_unit_test(bad_records_are_refused),
-      cmocka_unit_test(yaml_and_stores_keep_a_conductor),
-      cmocka_unit_test(refractiveindex_info_keeps_a_conductor),
-      cmocka_unit_test(what_is_no_metal_stays_transparent),
-      cmocka_unit_test(csv_keeps_a_conductor),
-      cmocka_unit_test(catalogues_of_glass_leave_a_conductor_out),
-      cmocka_unit_test(no_glass_is_near_a_conductor),
-      cmocka_unit_test(a_change_of_k_is_told),
-      cmocka_unit_test(the_check_knows_a_conductor),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

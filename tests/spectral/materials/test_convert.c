@@ -13,9 +13,10 @@ static abbe_dispersion made(abbe_given given, abbe_fit_form form) {
   return d;
 }
 
+GROUP(shipped_load, shipped_free);
+
 /* Whatever the numbers, both forms have exactly them. */
-static void both_forms_have_the_numbers_given(void **state) {
-  (void)state;
+TEST(both_forms_have_the_numbers_given) {
   uint64_t random = 1;
   for (int i = 0; i < 300; i++) {
     abbe_fit_form form = i % 2 ? ABBE_FIT_SELLMEIER : ABBE_FIT_CAUCHY;
@@ -47,8 +48,7 @@ static void both_forms_have_the_numbers_given(void **state) {
 }
 
 /* The curve that glTF's extension prints, with its rounded constants. */
-static void gltf_is_the_curve_of_its_extension(void **state) {
-  (void)state;
+TEST(gltf_is_the_curve_of_its_extension) {
   abbe_dispersion d = made((abbe_given){.kind = ABBE_GIVEN_GLTF, 2.42, 0.36}, ABBE_FIT_CAUCHY);
   for (double l = 380; l <= 780; l += 50) {
     double printed = 2.42 + 1.42 / (20 / 0.36) * (523655 / (l * l) - 1.5168);
@@ -60,8 +60,7 @@ static void gltf_is_the_curve_of_its_extension(void **state) {
 }
 
 /* What is told of the error is what the known glass itself shows, where it is the only one. */
-static void the_error_is_that_of_known_glasses(void **state) {
-  (void)state;
+TEST(the_error_is_that_of_known_glasses) {
   const abbe_material_table one = {.count = 1, .material = &shipped.material[1]};
   abbe_dispersion_numbers own = abbe_dispersion_describe(&one.material->dispersion);
   for (int form = 0; form < 2; form++) {
@@ -83,8 +82,7 @@ static void the_error_is_that_of_known_glasses(void **state) {
 }
 
 /* For every shipped material, left out of the known ones, its true error is of the order told. */
-static void the_error_told_is_near_the_true_one(void **state) {
-  (void)state;
+TEST(the_error_told_is_near_the_true_one) {
   size_t covered = 0, tried = 0;
   for (size_t i = 0; i < shipped.count; i++) {
     const abbe_material *m = &shipped.material[i];
@@ -114,8 +112,7 @@ static void the_error_told_is_near_the_true_one(void **state) {
 }
 
 /* Half a last digit of n_d moves the whole curve by as much, and more where V_d is coarse. */
-static void digits_left_open_move_the_curve(void **state) {
-  (void)state;
+TEST(digits_left_open_move_the_curve) {
   abbe_given given = {ABBE_GIVEN_ND_VD, 1.5168, 64.17, 5e-5, 0};
   abbe_convert_error e;
   assert_int_equal(abbe_convert_judge(&given, ABBE_FIT_CAUCHY, &shipped, 380, 780, &e, NULL),
@@ -128,8 +125,7 @@ static void digits_left_open_move_the_curve(void **state) {
   assert_near(e.rounding, 0.5168 * (1 / 59.17 - 1 / 64.17) * 2.11 + 5e-5, 3e-5);
 }
 
-static void nothing_known_leaves_the_error_open(void **state) {
-  (void)state;
+TEST(nothing_known_leaves_the_error_open) {
   const abbe_material_table none = {0};
   abbe_given given = {.kind = ABBE_GIVEN_ND_BG, .first = 2.417, .second = 0.044};
   abbe_convert_error e;
@@ -138,8 +134,7 @@ static void nothing_known_leaves_the_error_open(void **state) {
   assert_true(isnan(e.largest) && isnan(e.typical));
 }
 
-static void impossible_numbers_are_refused(void **state) {
-  (void)state;
+TEST(impossible_numbers_are_refused) {
   const struct {
     abbe_given given;
     int form;
@@ -176,17 +171,4 @@ static void impossible_numbers_are_refused(void **state) {
                    ABBE_INVALID_ARGUMENT);
   assert_string_equal(abbe_given_first_name((abbe_given_kind)-1), "unknown");
   assert_string_equal(abbe_given_second_name(ABBE_GIVEN_ND_VD), "V_d");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(both_forms_have_the_numbers_given),
-      cmocka_unit_test(gltf_is_the_curve_of_its_extension),
-      cmocka_unit_test(the_error_is_that_of_known_glasses),
-      cmocka_unit_test(the_error_told_is_near_the_true_one),
-      cmocka_unit_test(digits_left_open_move_the_curve),
-      cmocka_unit_test(nothing_known_leaves_the_error_open),
-      cmocka_unit_test(impossible_numbers_are_refused),
-  };
-  return cmocka_run_group_tests(tests, shipped_load, shipped_free);
 }

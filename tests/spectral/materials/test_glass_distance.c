@@ -9,8 +9,9 @@ static const char *name_of(const abbe_glass_distances *d, size_t i) {
   return shipped.material[d->nearest[i].index].name;
 }
 
-static void numbers_find_their_own_glass(void **state) {
-  (void)state;
+GROUP(shipped_load, shipped_free);
+
+TEST(numbers_find_their_own_glass) {
   for (size_t i = 0; i < shipped.count; i++) {
     abbe_dispersion_numbers own = abbe_dispersion_describe(&shipped.material[i].dispersion);
     if (!(own.n_d > 1)) continue; /* air, metals */
@@ -31,8 +32,7 @@ static void numbers_find_their_own_glass(void **state) {
 }
 
 /* The distance is that of two Cauchy curves written out. */
-static void the_distance_is_a_difference_of_index(void **state) {
-  (void)state;
+TEST(the_distance_is_a_difference_of_index) {
   abbe_dispersion bk7 = shipped.material[1].dispersion, pair[2];
   abbe_dispersion_numbers own = abbe_dispersion_describe(&bk7);
   const double n_d[] = {1.52, own.n_d}, v_d[] = {60, own.v_d};
@@ -55,8 +55,7 @@ static void the_distance_is_a_difference_of_index(void **state) {
 }
 
 /* SF11 and N-SF11 have the same n_d; the curve tells them apart, and so do a few exact points. */
-static void curves_and_points_find_their_own_glass(void **state) {
-  (void)state;
+TEST(curves_and_points_find_their_own_glass) {
   const char *const names[] = {"sf11", "n-sf11", "n-bk7", "cubic-zirconia"};
   for (int i = 0; i < 4; i++) {
     const abbe_material *m = NULL;
@@ -81,8 +80,7 @@ static void curves_and_points_find_their_own_glass(void **state) {
   }
 }
 
-static void materials_without_data_there_are_skipped(void **state) {
-  (void)state;
+TEST(materials_without_data_there_are_skipped) {
   abbe_glass_distances d;
   /* beyond 1129 nm water has no data and does not extrapolate */
   assert_int_equal(abbe_glass_distance_to_curve(&shipped, &shipped.material[1].dispersion, 500,
@@ -98,8 +96,7 @@ static void materials_without_data_there_are_skipped(void **state) {
   abbe_glass_distances_free(&d);
 }
 
-static void what_is_no_glass_is_refused(void **state) {
-  (void)state;
+TEST(what_is_no_glass_is_refused) {
   const double cases[][2] = {{1, 60},   {0.5, 60},  {NAN, 60},     {1.5, 0},
                              {1.5, -3}, {1.5, NAN}, {INFINITY, 60}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -120,15 +117,4 @@ static void what_is_no_glass_is_refused(void **state) {
                                                 0, &d, &error),
                    ABBE_INVALID_ARGUMENT);
   assert_null(d.nearest);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(numbers_find_their_own_glass),
-      cmocka_unit_test(the_distance_is_a_difference_of_index),
-      cmocka_unit_test(curves_and_points_find_their_own_glass),
-      cmocka_unit_test(materials_without_data_there_are_skipped),
-      cmocka_unit_test(what_is_no_glass_is_refused),
-  };
-  return cmocka_run_group_tests(tests, shipped_load, shipped_free);
 }

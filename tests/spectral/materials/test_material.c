@@ -13,8 +13,7 @@ static abbe_material glass(char *name) {
       .max_nm = 700};
 }
 
-static void the_range_is_kept(void **state) {
-  (void)state;
+TEST(the_range_is_kept) {
   abbe_material m = glass("glass");
   abbe_error error;
   double n = 7;
@@ -30,8 +29,7 @@ static void the_range_is_kept(void **state) {
   assert_near(n, 7, 0);
 }
 
-static void extrapolation_is_allowed_and_told(void **state) {
-  (void)state;
+TEST(extrapolation_is_allowed_and_told) {
   abbe_material m = glass("glass");
   double n = 0;
   m.extrapolate = true;
@@ -43,8 +41,7 @@ static void extrapolation_is_allowed_and_told(void **state) {
   assert_true(abbe_material_extrapolates(&m, 700.0001));
 }
 
-static void no_real_index_is_an_error(void **state) {
-  (void)state;
+TEST(no_real_index_is_an_error) {
   abbe_material m = glass("glass");
   abbe_error error;
   double n = 7;
@@ -56,8 +53,7 @@ static void no_real_index_is_an_error(void **state) {
   assert_near(n, 7, 0);
 }
 
-static void attenuation_is_zero_or_more(void **state) {
-  (void)state;
+TEST(attenuation_is_zero_or_more) {
   abbe_material m = glass(NULL);
   assert_near(abbe_material_attenuation(&m, 500), 0, 0);
   assert_int_equal(abbe_spectrum_make((double[]){400, 500, 600, 700}, (double[]){9, 0, 0, 9}, 4,
@@ -72,8 +68,7 @@ static void attenuation_is_zero_or_more(void **state) {
   abbe_material_free(&m);
 }
 
-static void only_what_can_be_read_again_may_stand_in_a_table(void **state) {
-  (void)state;
+TEST(only_what_can_be_read_again_may_stand_in_a_table) {
   abbe_material m = glass("glass");
   m.source = (char[]){"a paper"};
   abbe_error error;
@@ -118,8 +113,7 @@ static void only_what_can_be_read_again_may_stand_in_a_table(void **state) {
 }
 
 /* k of 0.0796 is a wavelength to 1/e. */
-static void metals_are_opaque(void **state) {
-  (void)state;
+TEST(metals_are_opaque) {
   static const struct {
     double k[4]; /* at 380, 580, 581 and 780 nm */
     bool opaque;
@@ -142,16 +136,4 @@ static void metals_are_opaque(void **state) {
     m.attenuation = NULL;
   }
   abbe_material_free(&m);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_range_is_kept),
-      cmocka_unit_test(extrapolation_is_allowed_and_told),
-      cmocka_unit_test(no_real_index_is_an_error),
-      cmocka_unit_test(attenuation_is_zero_or_more),
-      cmocka_unit_test(metals_are_opaque),
-      cmocka_unit_test(only_what_can_be_read_again_may_stand_in_a_table),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,9 +3,10 @@
 
 #include "spectral/materials/material_numbers.h"
 
+GROUP(shipped_load, shipped_free);
+
 /* Schott's data sheets print P_gF 0.5349 and 0.6046, and their distance from the normal line. */
-static void numbers_are_those_of_the_data_sheets(void **state) {
-  (void)state;
+TEST(numbers_are_those_of_the_data_sheets) {
   abbe_material_numbers m;
   abbe_material_numbers_make(shipped_material("n-bk7"), &m);
   assert_near(m.n_d, 1.51680, 5e-6);
@@ -23,8 +24,7 @@ static void numbers_are_those_of_the_data_sheets(void **state) {
   assert_near(m.b_g, 0.044, 5e-4); /* as gem tables print it */
 }
 
-static void what_the_record_does_not_vouch_for_is_not_a_number(void **state) {
-  (void)state;
+TEST(what_the_record_does_not_vouch_for_is_not_a_number) {
   abbe_material m = {.dispersion = {.model = ABBE_DISPERSION_CAUCHY, .count = 2, .c = {1.5, 0.004}},
                      .min_nm = 480,
                      .max_nm = 700};
@@ -42,8 +42,7 @@ static void what_the_record_does_not_vouch_for_is_not_a_number(void **state) {
   assert_near(numbers.b_g, 0, 0);
 }
 
-static void published_numbers_are_read_with_their_digits(void **state) {
-  (void)state;
+TEST(published_numbers_are_read_with_their_digits) {
   const struct {
     const char *source;
     double key_n_d, n_d, n_d_half, v_d, v_d_half;
@@ -74,8 +73,7 @@ static void published_numbers_are_read_with_their_digits(void **state) {
 }
 
 /* Every shipped row gives the n_d and V_d that its own source prints, to the last digit printed. */
-static void shipped_rows_give_what_their_sources_print(void **state) {
-  (void)state;
+TEST(shipped_rows_give_what_their_sources_print) {
   size_t checked = 0;
   for (size_t i = 0; i < shipped.count; i++) {
     abbe_material_numbers m;
@@ -88,8 +86,7 @@ static void shipped_rows_give_what_their_sources_print(void **state) {
   assert_true(checked == 16);
 }
 
-static void recorded_fits_are_held_against_the_formula(void **state) {
-  (void)state;
+TEST(recorded_fits_are_held_against_the_formula) {
   for (size_t i = 0; i < shipped.count; i++)
     for (int k = 0; k < 2; k++) {
       const abbe_material *m = &shipped.material[i];
@@ -107,15 +104,4 @@ static void recorded_fits_are_held_against_the_formula(void **state) {
   assert_contains(error.text, shipped.material[0].name);
   assert_int_equal(abbe_material_fit_residual(&shipped.material[0], &wrong, &d, &error),
                    ABBE_INVALID_ARGUMENT);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(numbers_are_those_of_the_data_sheets),
-      cmocka_unit_test(what_the_record_does_not_vouch_for_is_not_a_number),
-      cmocka_unit_test(published_numbers_are_read_with_their_digits),
-      cmocka_unit_test(shipped_rows_give_what_their_sources_print),
-      cmocka_unit_test(recorded_fits_are_held_against_the_formula),
-  };
-  return cmocka_run_group_tests(tests, shipped_load, shipped_free);
 }

@@ -6,8 +6,7 @@
 
 static abbe_material_table table;
 
-static int setup(void **state) {
-  (void)state;
+static void setup(void) {
   static const char text[] =
       "materials:\n"
       "- {name: n-bk7, model: cauchy, coefficients: [1.5046, 0.0042], range_nm: [300, 2500], "
@@ -19,13 +18,11 @@ static int setup(void **state) {
       "source: paper}\n"
       "- {name: fluorite, model: cauchy, coefficients: [1.4269, 0.0024], range_nm: [230, 9700], "
       "source: '[Malitson1963]'}\n";
-  return abbe_material_table_parse(text, sizeof text - 1, "t", &table, NULL) != ABBE_OK;
+  assert_int_equal(abbe_material_table_parse(text, sizeof text - 1, "t", &table, NULL), ABBE_OK);
 }
 
-static int teardown(void **state) {
-  (void)state;
+static void teardown(void) {
   abbe_material_table_free(&table);
-  return 0;
 }
 
 static void expect(abbe_material_query query, const char *wanted) {
@@ -42,8 +39,9 @@ static void expect(abbe_material_query query, const char *wanted) {
   assert_string_equal(got, wanted);
 }
 
-static void rows_are_chosen(void **state) {
-  (void)state;
+GROUP(setup, teardown);
+
+TEST(rows_are_chosen) {
   expect((abbe_material_query){0}, "n-bk7 N-SF11 flat infrared fluorite");
   expect((abbe_material_query){.name = "sf"}, "N-SF11");
   expect((abbe_material_query){.name = "n-*"}, "n-bk7 N-SF11");
@@ -57,8 +55,7 @@ static void rows_are_chosen(void **state) {
   expect((abbe_material_query){.n_d_min = 1.5, .n_d_max = 2, .name = "f"}, "N-SF11 flat");
 }
 
-static void rows_are_sorted_and_those_without_come_last(void **state) {
-  (void)state;
+TEST(rows_are_sorted_and_those_without_come_last) {
   expect((abbe_material_query){.sort = ABBE_MATERIAL_KEY_NAME},
          "flat fluorite infrared n-bk7 N-SF11");
   expect((abbe_material_query){.sort = ABBE_MATERIAL_KEY_NAME, .descending = true},
@@ -79,8 +76,7 @@ static void rows_are_sorted_and_those_without_come_last(void **state) {
   expect((abbe_material_query){.descending = true}, "fluorite infrared flat N-SF11 n-bk7");
 }
 
-static void keys_are_named(void **state) {
-  (void)state;
+TEST(keys_are_named) {
   size_t *rows, count;
   abbe_error error;
   assert_string_equal(abbe_material_key_name(ABBE_MATERIAL_KEY_PGF), "p_gF");
@@ -90,13 +86,4 @@ static void keys_are_named(void **state) {
                    ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "99");
   expect((abbe_material_query){.sort = ABBE_MATERIAL_KEY_PGF, .name = "flat"}, "flat");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rows_are_chosen),
-      cmocka_unit_test(rows_are_sorted_and_those_without_come_last),
-      cmocka_unit_test(keys_are_named),
-  };
-  return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -7,8 +7,7 @@
 
 /* ---- names ---- */
 
-static void names_are_found_in_any_case_or_suggested(void **state) {
-  (void)state;
+TEST(names_are_found_in_any_case_or_suggested) {
   abbe_material_table table = load_table("default");
   const abbe_material *m = NULL;
   abbe_error error;
@@ -23,8 +22,7 @@ static void names_are_found_in_any_case_or_suggested(void **state) {
   abbe_material_table_free(&table);
 }
 
-static void of_a_long_list_whole_names_are_told(void **state) {
-  (void)state;
+TEST(of_a_long_list_whole_names_are_told) {
   char name[300][24];
   abbe_material material[300] = {0};
   abbe_material_table table = {.path = (char[]){"t"}, .count = 300, .material = material};
@@ -55,8 +53,7 @@ static abbe_material_table parse(const char *text) {
   return table;
 }
 
-static void a_record_may_be_short(void **state) {
-  (void)state;
+TEST(a_record_may_be_short) {
   abbe_material_table t = parse("materials:\n  - {name: x, model: constant, coefficients: [1.5],"
                                 " source: made up}\n");
   assert_int_equal(t.count, 1);
@@ -72,8 +69,7 @@ static void a_record_may_be_short(void **state) {
   abbe_material_table_free(&t);
 }
 
-static void points_make_an_index(void **state) {
-  (void)state;
+TEST(points_make_an_index) {
   abbe_material_table t =
       parse("materials:\n- name: x\n  model: tabulated\n  interpolation: linear\n"
             "  points: [[400, 1.6], [600, 1.5], [800, 1.45]]\n  source: made up\n"
@@ -90,8 +86,7 @@ static void points_make_an_index(void **state) {
 }
 
 /* A second index: a formula or points, over the range of the first. */
-static void crystals_have_two_indices(void **state) {
-  (void)state;
+TEST(crystals_have_two_indices) {
   abbe_material_table t = parse(
       "materials:\n"
       "- {name: a, model: constant, coefficients: [1.5], source: s,\n"
@@ -113,8 +108,7 @@ static void crystals_have_two_indices(void **state) {
   abbe_material_table_free(&t);
 }
 
-static void second_indices_that_cannot_be_are_refused(void **state) {
-  (void)state;
+TEST(second_indices_that_cannot_be_are_refused) {
   const struct {
     const char *extraordinary, *part;
   } rows[] = {
@@ -148,8 +142,7 @@ static void second_indices_that_cannot_be_are_refused(void **state) {
 }
 
 /* A colour at a distance: its transmittances come back at that distance. */
-static void absorption_is_a_spectrum_or_a_colour(void **state) {
-  (void)state;
+TEST(absorption_is_a_spectrum_or_a_colour) {
   abbe_material_table t = parse("materials:\n"
                                 "- {name: a, model: constant, coefficients: [1.5], source: s,\n"
                                 "   absorption: {colour: [0.9, 0.25, 1], distance_m: 0.02}}\n"
@@ -165,8 +158,7 @@ static void absorption_is_a_spectrum_or_a_colour(void **state) {
   abbe_material_table_free(&t);
 }
 
-static void absorption_is_also_a_transmittance_or_k(void **state) {
-  (void)state;
+TEST(absorption_is_also_a_transmittance_or_k) {
   abbe_material_table t = parse("materials:\n"
                                 "- {name: a, model: constant, coefficients: [1.5], source: s,\n"
                                 "   absorption: {transmittance: [[400, 0.5], [500, 1]],\n"
@@ -178,8 +170,7 @@ static void absorption_is_also_a_transmittance_or_k(void **state) {
   abbe_material_table_free(&t);
 }
 
-static void what_the_catalogue_prints_is_kept(void **state) {
-  (void)state;
+TEST(what_the_catalogue_prints_is_kept) {
   abbe_material_table t =
       parse("materials:\n- name: N-BK7\n  model: constant\n  coefficients: [1.5]\n  source: s\n"
             "  n_d: 1.5168\n  v_d: 64.17\n  comment: step 0.5 available\n"
@@ -202,8 +193,7 @@ static void what_the_catalogue_prints_is_kept(void **state) {
   abbe_material_table_free(&t);
 }
 
-static void materials_are_moved_to_a_table(void **state) {
-  (void)state;
+TEST(materials_are_moved_to_a_table) {
   abbe_material_table t = parse("materials:\n" GOOD_RECORD);
   for (int i = 0; i < 20; i++) {
     abbe_material m = {.name = strdup("y"), .published_n_d = i};
@@ -216,8 +206,7 @@ static void materials_are_moved_to_a_table(void **state) {
   abbe_material_table_free(&t);
 }
 
-static void aliases_may_share_a_record_part(void **state) {
-  (void)state;
+TEST(aliases_may_share_a_record_part) {
   abbe_material_table t =
       parse("materials:\n"
             "- {name: a, model: cauchy, coefficients: &c [1.5, 0.004], range_nm: &r [380, 780],\n"
@@ -239,8 +228,7 @@ static void refuses(const char *text, const char *part) {
 
 #define GOOD "  name: x\n  model: constant\n  coefficients: [1.5]\n  source: s\n"
 
-static void bad_tables_name_line_and_key(void **state) {
-  (void)state;
+TEST(bad_tables_name_line_and_key) {
   refuses("", "empty");
   refuses("materials: []\n", "t.yaml:1: 'materials' wants a list");
   refuses("materials: 3\n", "wants a list");
@@ -272,8 +260,7 @@ static void bad_tables_name_line_and_key(void **state) {
           "is not a name");
 }
 
-static void a_density_is_the_records_own(void **state) {
-  (void)state;
+TEST(a_density_is_the_records_own) {
 #define DENSE "materials:\n- name: a\n  model: constant\n  coefficients: [1.5]\n  source: s\n"
   abbe_material_table t = parse(DENSE "  density_g_cm3: 3.52\n");
   assert_near(t.material[0].catalogue.density_g_cm3, 3.52, 0);
@@ -296,8 +283,7 @@ static void refuses_model(const char *rest, const char *part) {
   refuses(text, part);
 }
 
-static void bad_dispersion_is_refused(void **state) {
-  (void)state;
+TEST(bad_dispersion_is_refused) {
   refuses_model("  model: selmeier\n", "t.yaml:4: 'model: selmeier' is not known; did you mean "
                                        "'sellmeier'?");
   refuses_model("  model: cauchy\n  coefficients: [1.5, 0.004]\n", "'range_nm' is missing");
@@ -326,8 +312,7 @@ static void bad_dispersion_is_refused(void **state) {
                 "did you mean 'spline'?");
 }
 
-static void bad_absorption_and_fits_are_refused(void **state) {
-  (void)state;
+TEST(bad_absorption_and_fits_are_refused) {
   const char *const good = "materials:\n-\n" GOOD;
   const struct {
     const char *rest, *part;
@@ -364,8 +349,7 @@ static void bad_absorption_and_fits_are_refused(void **state) {
 }
 
 /* What the documentation shows is read as it stands. */
-static void the_documented_table_is_one(void **state) {
-  (void)state;
+TEST(the_documented_table_is_one) {
   char *text = NULL;
   size_t size = 0;
   assert_int_equal(
@@ -385,8 +369,7 @@ static void the_documented_table_is_one(void **state) {
 }
 
 /* For an examination all that can be read is there, and the rest is told with its line. */
-static void a_lenient_reading_keeps_what_can_be_read(void **state) {
-  (void)state;
+TEST(a_lenient_reading_keeps_what_can_be_read) {
   const char text[] = "materials:\n"
                       "- {name: a, model: cauchy, coefficients: [1.5, 0.004]}\n"
                       "- {name: b, model: cauchy, coefficients: [1.5, x], range_nm: [380, 780]}\n"
@@ -440,32 +423,7 @@ static void cut_table_is_harmless(const char *path, size_t step) {
   free(text);
 }
 
-static void cut_tables_are_harmless(void **state) {
-  (void)state;
+TEST(cut_tables_are_harmless) {
   cut_table_is_harmless(ABBE_SOURCE_DIR "/spectral/materials/thesis.yaml", 3);
   cut_table_is_harmless(ABBE_SOURCE_DIR "/spectral/materials/materials.yaml", 331);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(names_are_found_in_any_case_or_suggested),
-      cmocka_unit_test(of_a_long_list_whole_names_are_told),
-      cmocka_unit_test(a_record_may_be_short),
-      cmocka_unit_test(crystals_have_two_indices),
-      cmocka_unit_test(second_indices_that_cannot_be_are_refused),
-      cmocka_unit_test(points_make_an_index),
-      cmocka_unit_test(absorption_is_a_spectrum_or_a_colour),
-      cmocka_unit_test(absorption_is_also_a_transmittance_or_k),
-      cmocka_unit_test(what_the_catalogue_prints_is_kept),
-      cmocka_unit_test(a_density_is_the_records_own),
-      cmocka_unit_test(materials_are_moved_to_a_table),
-      cmocka_unit_test(aliases_may_share_a_record_part),
-      cmocka_unit_test(bad_tables_name_line_and_key),
-      cmocka_unit_test(bad_dispersion_is_refused),
-      cmocka_unit_test(bad_absorption_and_fits_are_refused),
-      cmocka_unit_test(the_documented_table_is_one),
-      cmocka_unit_test(a_lenient_reading_keeps_what_can_be_read),
-      cmocka_unit_test(cut_tables_are_harmless),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,8 +57,9 @@ static const struct {
 };
 enum { COUNT = sizeof stones / sizeof stones[0] };
 
-static void indices_and_densities_are_those_named(void **state) {
-  (void)state;
+GROUP(shipped_load, shipped_free);
+
+TEST(indices_and_densities_are_those_named) {
   for (size_t i = 0; i < COUNT; i++) {
     const abbe_material *m = shipped_material(stones[i].name);
     double n = 0;
@@ -70,8 +71,7 @@ static void indices_and_densities_are_those_named(void **state) {
 }
 
 /* No stone of the table is without figures above; they stand from ruby to strontium titanate. */
-static void every_stone_is_held(void **state) {
-  (void)state;
+TEST(every_stone_is_held) {
   for (const abbe_material *m = shipped_material("ruby"); m < shipped_material("air"); m++) {
     size_t found = 0;
     for (size_t i = 0; i < COUNT; i++) found += strcmp(stones[i].name, m->name) == 0;
@@ -80,8 +80,7 @@ static void every_stone_is_held(void **state) {
 }
 
 /* B-G of those whose index is known by it alone. */
-static void fire_is_the_one_that_is_named(void **state) {
-  (void)state;
+TEST(fire_is_the_one_that_is_named) {
   static const struct {
     const char *name;
     double b_g;
@@ -115,8 +114,7 @@ static void colour_through(const abbe_material *m, double metres, double lab[3])
   abbe_difference_lab(seen, white, lab);
 }
 
-static void five_to_ten_millimetres_have_the_stones_colour(void **state) {
-  (void)state;
+TEST(five_to_ten_millimetres_have_the_stones_colour) {
   for (size_t i = 0; i < COUNT; i++) {
     const abbe_material *m = shipped_material(stones[i].name);
     for (int mm = 5; mm <= 10; mm++) {
@@ -136,21 +134,9 @@ static void five_to_ten_millimetres_have_the_stones_colour(void **state) {
   }
 }
 
-static void a_designed_colour_says_so(void **state) {
-  (void)state;
+TEST(a_designed_colour_says_so) {
   for (size_t i = 0; i < COUNT; i++) {
     const abbe_material *m = shipped_material(stones[i].name);
     if (stones[i].hue_from != CLEAR) assert_contains(m->warning, "The absorption is designed");
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(indices_and_densities_are_those_named),
-      cmocka_unit_test(every_stone_is_held),
-      cmocka_unit_test(fire_is_the_one_that_is_named),
-      cmocka_unit_test(five_to_ten_millimetres_have_the_stones_colour),
-      cmocka_unit_test(a_designed_colour_says_so),
-  };
-  return cmocka_run_group_tests(tests, shipped_load, shipped_free);
 }

@@ -16,8 +16,7 @@ static abbe_material_table parse(const char *text) {
 #define B "{name: b, model: constant, coefficients: [1.6], source: s}"
 #define C "{name: c, model: tabulated, points: [[400, 1.5], [500, 1.4]], source: s}"
 
-static void rows_are_matched(void **state) {
-  (void)state;
+TEST(rows_are_matched) {
   abbe_material_table first = parse("materials: [" A ", " B ", " C "]");
   abbe_material_table second =
       parse("materials:\n- {name: new, model: constant, coefficients: [2], source: s}\n"
@@ -49,8 +48,7 @@ static void rows_are_matched(void **state) {
   abbe_material_table_free(&second);
 }
 
-static void a_table_is_the_same_as_itself(void **state) {
-  (void)state;
+TEST(a_table_is_the_same_as_itself) {
   abbe_material_table first, second;
   abbe_table_difference d;
   assert_int_equal(abbe_material_table_load("default", &first, &error), ABBE_OK);
@@ -63,8 +61,7 @@ static void a_table_is_the_same_as_itself(void **state) {
 }
 
 /* One key changed at a time is one part that differs, and no other. */
-static void each_part_is_seen(void **state) {
-  (void)state;
+TEST(each_part_is_seen) {
   const char *base = "name: a, model: tabulated, range_nm: [400, 500], source: s";
   const struct {
     const char *before, *after;
@@ -101,13 +98,4 @@ static void each_part_is_seen(void **state) {
     abbe_material_table_free(&first);
     abbe_material_table_free(&second);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rows_are_matched),
-      cmocka_unit_test(a_table_is_the_same_as_itself),
-      cmocka_unit_test(each_part_is_seen),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,19 +12,16 @@
 
 static char folder[64], path[128];
 
-static int setup(void **state) {
-  (void)state;
+static void setup(void) {
   snprintf(folder, sizeof folder, "/tmp/abbe-test-store-XXXXXX");
-  if (mkdtemp(folder) == NULL) return 1;
+  assert_non_null(mkdtemp(folder));
   /* as awkward as a path of a store may be */
   snprintf(path, sizeof path, "%s/50%% of #1? \xc3\xa4.sqlite", folder);
-  return 0;
 }
 
-static int teardown(void **state) {
-  (void)state;
+static void teardown(void) {
   unlink(path);
-  return rmdir(folder);
+  assert_false(rmdir(folder));
 }
 
 static void write_store(const abbe_material_table *table) {
@@ -93,8 +90,9 @@ static void refuses(abbe_result code, const char *part) {
 
 /* ---- round trips ---- */
 
-static void every_record_comes_back_the_same(void **state) {
-  (void)state;
+GROUP(setup, teardown);
+
+TEST(every_record_comes_back_the_same) {
   srand(21);
   abbe_material_table table = {0};
   for (size_t i = 0; i < 300; i++) {
@@ -116,8 +114,7 @@ static void every_record_comes_back_the_same(void **state) {
   abbe_material_table_free(&table);
 }
 
-static void the_shipped_table_comes_back_the_same(void **state) {
-  (void)state;
+TEST(the_shipped_table_comes_back_the_same) {
   abbe_material_table table;
   assert_int_equal(abbe_material_table_load(NULL, &table, NULL), ABBE_OK);
   write_store(&table);
@@ -131,8 +128,7 @@ static void the_shipped_table_comes_back_the_same(void **state) {
 /* ---- rows by name ---- */
 
 /* A row that is asked for is read, however broken the others are. */
-static void one_name_reads_one_row(void **state) {
-  (void)state;
+TEST(one_name_reads_one_row) {
   write_three();
   run_sql("UPDATE materials SET points = x'00' WHERE name = 'B'");
   const char *const names[] = {"C", "c", "A", "nobody"};
@@ -154,8 +150,7 @@ static void one_name_reads_one_row(void **state) {
 }
 
 /* Which is what YAML and the shipped tables do with all of theirs. */
-static void other_tables_are_asked_in_the_same_words(void **state) {
-  (void)state;
+TEST(other_tables_are_asked_in_the_same_words) {
   const char *const name = "diamond";
   abbe_material_table table;
   const abbe_material *m = NULL;
@@ -166,8 +161,7 @@ static void other_tables_are_asked_in_the_same_words(void **state) {
 
 /* ---- files of strangers ---- */
 
-static void what_is_wrong_with_a_row_is_told(void **state) {
-  (void)state;
+TEST(what_is_wrong_with_a_row_is_told) {
   const struct {
     const char *set, *part;
   } rows[] = {
@@ -211,8 +205,7 @@ static void what_is_wrong_with_a_row_is_told(void **state) {
 }
 
 /* A formula without an index is seen where the row is used, and by the check. */
-static void a_row_that_is_used_has_an_index(void **state) {
-  (void)state;
+TEST(a_row_that_is_used_has_an_index) {
   write_three();
   run_sql("UPDATE materials SET coefficients = x'000000000000f0bf000000000000f0bf' WHERE id = 1");
   const char *const names[] = {"a", "c"};
@@ -228,8 +221,7 @@ static void a_row_that_is_used_has_an_index(void **state) {
 }
 
 /* The check's reading leaves such a row out, and says so. */
-static void a_bad_row_is_noted_and_left_out(void **state) {
-  (void)state;
+TEST(a_bad_row_is_noted_and_left_out) {
   write_three();
   run_sql("UPDATE materials SET model = 'cachy' WHERE id = 2");
   abbe_material_table table;
@@ -243,8 +235,7 @@ static void a_bad_row_is_noted_and_left_out(void **state) {
   abbe_material_table_free(&table);
 }
 
-static void other_databases_are_no_stores(void **state) {
-  (void)state;
+TEST(other_databases_are_no_stores) {
   const char *const alien[] = {
       "CREATE TABLE materials(id INTEGER PRIMARY KEY, name TEXT)",
       "PRAGMA application_id = 1096966757; PRAGMA user_version = 1; CREATE TABLE materials(name)",
@@ -271,8 +262,7 @@ static void other_databases_are_no_stores(void **state) {
 }
 
 /* Whatever a disk or a stranger does to the bytes: a table, or a sentence. */
-static void changed_bytes_are_survived(void **state) {
-  (void)state;
+TEST(changed_bytes_are_survived) {
   write_three();
   char *bytes = NULL;
   size_t size = 0, read = 0, refused = 0;
@@ -307,8 +297,7 @@ static void changed_bytes_are_survived(void **state) {
 
 /* ---- writing ---- */
 
-static void what_cannot_be_stored_is_refused(void **state) {
-  (void)state;
+TEST(what_cannot_be_stored_is_refused) {
   abbe_error error = {0};
   abbe_material_table table = table_of(A B C);
   FILE *full = fopen("/dev/full", "w");
@@ -327,20 +316,4 @@ static void what_cannot_be_stored_is_refused(void **state) {
   assert_true(abbe_material_store_is_name("a/b.SQLite"));
   assert_false(abbe_material_store_is_name("a.sqlite/b"));
   assert_false(abbe_material_store_is_name("sqlite"));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_record_comes_back_the_same),
-      cmocka_unit_test(the_shipped_table_comes_back_the_same),
-      cmocka_unit_test(one_name_reads_one_row),
-      cmocka_unit_test(other_tables_are_asked_in_the_same_words),
-      cmocka_unit_test(what_is_wrong_with_a_row_is_told),
-      cmocka_unit_test(a_row_that_is_used_has_an_index),
-      cmocka_unit_test(a_bad_row_is_noted_and_left_out),
-      cmocka_unit_test(other_databases_are_no_stores),
-      cmocka_unit_test(changed_bytes_are_survived),
-      cmocka_unit_test(what_cannot_be_stored_is_refused),
-  };
-  return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -1,8 +1,7 @@
 /* Metrics against values worked out by hand, laws, and noise that is known because it is made. */
 #include "tests/validation/compare/fields.h"
 
-static void test_equal_fields(void **state) {
-  (void)state;
+TEST(equal_fields) {
   for (int what = 0; what < 2; what++) {
     abbe_field a = field_of(13, 7, what);
     paint(&a);
@@ -24,8 +23,7 @@ static void test_equal_fields(void **state) {
 
 /* Two pixels, Y only of note: b = 1, 3; a = 2, 3. Mean of b 4/3 over X, Y, Z of (1, 1, 1), (1, 3,
  * 1). */
-static void test_by_hand(void **state) {
-  (void)state;
+TEST(by_hand) {
   abbe_field b = field_of(2, 1, XYZ), a = field_of(2, 1, XYZ);
   const float reference[6] = {1, 1, 1, 1, 3, 1}, other[6] = {1, 2, 1, 1, 3, 1};
   memcpy(b.colour.value, reference, sizeof reference);
@@ -50,8 +48,7 @@ static void test_by_hand(void **state) {
   abbe_field_free(&b);
 }
 
-static void test_brighter_by_a_factor(void **state) {
-  (void)state;
+TEST(brighter_by_a_factor) {
   abbe_field b = field_of(16, 16, XYZ), a = field_of(16, 16, XYZ);
   paint(&b);
   double mean = 0, square = 0;
@@ -78,8 +75,7 @@ static void test_brighter_by_a_factor(void **state) {
 }
 
 /* Three pairs of [Sharma2005] as pixels, under a white that is given. */
-static void test_published_colour_differences(void **state) {
-  (void)state;
+TEST(published_colour_differences) {
   static const double pairs[3][7] = {{50, 2.5, 0, 50, 0, -2.5, 4.3065},
                                      {50, 2.5, 0, 73, 25, -18, 27.1492},
                                      {2.0776, 0.0795, -1.1350, 0.9033, -0.0636, -0.5514, 0.9082}};
@@ -107,8 +103,7 @@ static void test_published_colour_differences(void **state) {
 }
 
 /* SSIM and FLIP are asked for, know only pictures, and look into a mask as anywhere. */
-static void test_structure(void **state) {
-  (void)state;
+TEST(structure) {
   abbe_field b = field_of(24, 20, XYZ), a = field_of(24, 20, XYZ);
   const float *plain = b.colour.value;
   for (size_t i = 0; i < 480; i++)
@@ -143,8 +138,7 @@ static void test_structure(void **state) {
 
 /* Noise of a picture's own errors has an SSIM and a FLIP, and a test that has just those lies
  * within them. */
-static void test_noise_of_structure(void **state) {
-  (void)state;
+TEST(noise_of_structure) {
   abbe_field exact = field_of(48, 40, XYZ), noisy = field_of(48, 40, XYZ | ERRORS);
   for (size_t i = 0; i < 48 * 40; i++)
     for (size_t c = 0; c < 3; c++)
@@ -164,8 +158,7 @@ static void test_noise_of_structure(void **state) {
 }
 
 /* Of 1 to 100, 95 % are at most 95: the percentile is an element, not in between. */
-static void test_percentile(void **state) {
-  (void)state;
+TEST(percentile) {
   abbe_field b = field_of(10, 10, XYZ), a = field_of(10, 10, XYZ);
   const abbe_compare_options options = {.white = {d65[0], 1, d65[2]}};
   double expected = 0;
@@ -189,8 +182,7 @@ static void test_percentile(void **state) {
 }
 
 /* What is measured does not depend on the space that the file is kept in. */
-static void test_any_space_gives_the_same(void **state) {
-  (void)state;
+TEST(any_space_gives_the_same) {
   abbe_field b = field_of(12, 12, XYZ), a = field_of(12, 12, XYZ);
   abbe_field rgb_b = field_of(12, 12, 0), rgb_a = field_of(12, 12, 0);
   paint(&b);
@@ -216,8 +208,7 @@ static void test_any_space_gives_the_same(void **state) {
 }
 
 /* A mask measures what a field of its pixels alone does. */
-static void test_a_mask_is_a_field_of_its_pixels(void **state) {
-  (void)state;
+TEST(a_mask_is_a_field_of_its_pixels) {
   abbe_field b = field_of(8, 8, XYZ | ERRORS), a = field_of(8, 8, XYZ);
   abbe_field part_b = field_of(8, 2, XYZ | ERRORS), part_a = field_of(8, 2, XYZ);
   paint(&a);
@@ -251,8 +242,7 @@ static void test_a_mask_is_a_field_of_its_pixels(void **state) {
   abbe_field_free(&part_b);
 }
 
-static void test_bands(void **state) {
-  (void)state;
+TEST(bands) {
   abbe_field b = field_of(2, 1, BANDS | ERRORS), a = field_of(2, 1, BANDS);
   const float reference[4] = {1, 2, 1, 4}, other[4] = {1, 2, 2, 4}, error[4] = {0.5f, 0, 0.5f, 0};
   memcpy(b.bands.value, reference, sizeof reference);
@@ -279,8 +269,7 @@ static void test_bands(void **state) {
   abbe_field_free(&b);
 }
 
-static void test_pixels_that_are_not_finite(void **state) {
-  (void)state;
+TEST(pixels_that_are_not_finite) {
   abbe_field b = field_of(4, 1, XYZ | ERRORS), a = field_of(4, 1, XYZ);
   paint(&a);
   make_noisy(&b, &a, 0, 0, 1);
@@ -310,8 +299,7 @@ static void refuse(const abbe_field *b, const abbe_field *a, const abbe_compare_
   assert_null(c.whole.channel);
 }
 
-static void test_what_cannot_be_compared(void **state) {
-  (void)state;
+TEST(what_cannot_be_compared) {
   abbe_field lit = field_of(4, 4, XYZ), dark = field_of(4, 4, XYZ), small = field_of(4, 2, XYZ),
              bands = field_of(4, 4, BANDS), empty = {0};
   paint(&lit);
@@ -335,28 +323,10 @@ static void test_what_cannot_be_compared(void **state) {
   abbe_field_free(&bands);
 }
 
-static void test_names(void **state) {
-  (void)state;
+TEST(names) {
   for (int m = 0; m < ABBE_COMPARE_METRIC_COUNT; m++)
     assert_int_equal(abbe_compare_metric_find(abbe_compare_metric_name((abbe_compare_metric)m)), m);
   assert_int_equal(abbe_compare_metric_find("rmse"), ABBE_COMPARE_METRIC_COUNT);
   assert_near(abbe_compare_deviation(ABBE_COMPARE_ENERGY_RATIO, 0.75), 0.25, 1e-15);
   assert_near(abbe_compare_deviation(ABBE_COMPARE_UV_MEAN, 0.75), 0.75, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_equal_fields),
-                                     cmocka_unit_test(test_by_hand),
-                                     cmocka_unit_test(test_brighter_by_a_factor),
-                                     cmocka_unit_test(test_published_colour_differences),
-                                     cmocka_unit_test(test_structure),
-                                     cmocka_unit_test(test_noise_of_structure),
-                                     cmocka_unit_test(test_percentile),
-                                     cmocka_unit_test(test_any_space_gives_the_same),
-                                     cmocka_unit_test(test_a_mask_is_a_field_of_its_pixels),
-                                     cmocka_unit_test(test_bands),
-                                     cmocka_unit_test(test_pixels_that_are_not_finite),
-                                     cmocka_unit_test(test_what_cannot_be_compared),
-                                     cmocka_unit_test(test_names)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,8 +1,7 @@
 /* Comparisons that know their noise: what a difference is worth beside standard errors. */
 #include "tests/validation/compare/fields.h"
 
-static void test_an_exact_field_lies_in_the_noise(void **state) {
-  (void)state;
+TEST(an_exact_field_lies_in_the_noise) {
   abbe_field b = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
   paint(&a);
   int above[ABBE_COMPARE_METRIC_COUNT] = {0}, rounds = 20;
@@ -42,8 +41,7 @@ static void test_an_exact_field_lies_in_the_noise(void **state) {
 
 /* Errors that only brighten and darken change no hue: the noise that is told of hues is far less
  * than that of independent errors of the same size. */
-static void test_errors_that_go_together(void **state) {
-  (void)state;
+TEST(errors_that_go_together) {
   abbe_field b = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
   for (size_t i = 0; i < 3 * 48 * 48; i++)
     a.colour.value[i] = (float)(i % 3 == 2 ? 1.5 : 1) * (1 + 0.3f * (float)sin(0.01 * (double)i));
@@ -72,8 +70,7 @@ static void test_errors_that_go_together(void **state) {
 }
 
 /* A tenth off everywhere, in noise of a twentieth: told apart, and its size is found again. */
-static void test_a_true_difference_is_found(void **state) {
-  (void)state;
+TEST(a_true_difference_is_found) {
   abbe_field b = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
   paint(&a);
   make_noisy(&b, &a, 0.05, 2, 5);
@@ -97,8 +94,7 @@ static void test_a_true_difference_is_found(void **state) {
   abbe_field_free(&b);
 }
 
-static void test_the_noise_of_both(void **state) {
-  (void)state;
+TEST(the_noise_of_both) {
   abbe_field exact = field_of(48, 48, XYZ), b = field_of(48, 48, XYZ | ERRORS),
              a = field_of(48, 48, XYZ | ERRORS);
   paint(&exact);
@@ -142,8 +138,7 @@ static void make_passes(abbe_field *reference, const abbe_field *exact, unsigned
   reference->passes = PASSES;
 }
 
-static void test_errors_from_passes(void **state) {
-  (void)state;
+TEST(errors_from_passes) {
   abbe_field b = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
   paint(&a);
   int above = 0;
@@ -160,15 +155,4 @@ static void test_errors_from_passes(void **state) {
   assert_true(above <= 1);
   abbe_field_free(&a);
   abbe_field_free(&b);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_an_exact_field_lies_in_the_noise),
-      cmocka_unit_test(test_errors_that_go_together),
-      cmocka_unit_test(test_a_true_difference_is_found),
-      cmocka_unit_test(test_the_noise_of_both),
-      cmocka_unit_test(test_errors_from_passes),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,8 +24,7 @@ static double range_of(const abbe_field *b, const abbe_field *a, double scale) {
   return range;
 }
 
-static void test_range(void **state) {
-  (void)state;
+TEST(range) {
   abbe_field b = field_of(10, 20, 0), a = field_of(10, 20, 0);
   assert_near(range_of(&b, &a, 1), 0, 0);
   a.colour.value[1] = 3; /* one of 200: above 99 % of all, which are equal */
@@ -67,8 +66,7 @@ static void draw(const char *path, const abbe_field *b, const abbe_field *a) {
 }
 
 /* Each pixel is four by four of the picture, in the colour of its difference. */
-static void test_the_picture(void **state) {
-  (void)state;
+TEST(the_picture) {
   char path[64];
   snprintf(path, sizeof path, "/tmp/abbe_test_difference_%ld.png", (long)getpid());
   abbe_field b = field_of(128, 64, 1), a = field_of(128, 64, 1);
@@ -88,8 +86,7 @@ static void test_the_picture(void **state) {
   abbe_field_free(&b);
 }
 
-static void test_what_cannot_be_drawn(void **state) {
-  (void)state;
+TEST(what_cannot_be_drawn) {
   abbe_field b = field_of(4, 4, 1), small = field_of(4, 2, 1), empty = {0};
   abbe_error error = {0};
   double range;
@@ -107,11 +104,4 @@ static void test_what_cannot_be_drawn(void **state) {
                    ABBE_INVALID_ARGUMENT);
   abbe_field_free(&b);
   abbe_field_free(&small);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_range),
-                                     cmocka_unit_test(test_the_picture),
-                                     cmocka_unit_test(test_what_cannot_be_drawn)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -51,8 +51,7 @@ static abbe_field map_of(size_t width, size_t height, const abbe_map_layout *lay
   return field;
 }
 
-static void test_layers_by_name(void **state) {
-  (void)state;
+TEST(layers_by_name) {
   static const char *const names[] = {"stderr.G",
                                       "B",
                                       "S0.550,500000nm",
@@ -91,8 +90,7 @@ static void test_layers_by_name(void **state) {
 }
 
 /* Bands are compared in one unit, whatever the file's is; what is not read of a spectrum counts. */
-static void test_units_of_bands(void **state) {
-  (void)state;
+TEST(units_of_bands) {
   static const char *const names[] = {"S0.500nm",        "S0.600nm", "stderr.S0.500nm",
                                       "stderr.S0.600nm", "S1.500nm", "w500nm"};
   abbe_image image = image_of(1, 1, 6, names);
@@ -108,8 +106,7 @@ static void test_units_of_bands(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_errors_that_are_not_known(void **state) {
-  (void)state;
+TEST(errors_that_are_not_known) {
   static const char *const names[] = {"X", "Y", "Z", "stderr.X", "stderr.Y", "stderr.Z"};
   abbe_image image = image_of(2, 1, 6, names);
   for (size_t i = 0; i < 12; i++)
@@ -124,8 +121,7 @@ static void test_errors_that_are_not_known(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_spaces(void **state) {
-  (void)state;
+TEST(spaces) {
   static const char *const names[] = {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B"};
   for (int s = 0; s < ABBE_RGB_SPACE_XYZ; s++)
     for (int by_word = 0; by_word < 2; by_word++) {
@@ -161,8 +157,7 @@ static void test_spaces(void **state) {
     }
 }
 
-static void test_what_cannot_be_compared(void **state) {
-  (void)state;
+TEST(what_cannot_be_compared) {
   static const char *const depth[] = {"Z", "depth"}, *const half[] = {"R", "B"},
                            *const errors[] = {"X", "Y", "Z", "stderr.X"},
                            *const twice[] = {"S0.550nm", "S0.550,0nm"},
@@ -196,8 +191,7 @@ static void test_what_cannot_be_compared(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_summing_down_keeps_the_flux(void **state) {
-  (void)state;
+TEST(summing_down_keeps_the_flux) {
   abbe_field f = map_of(6, 4, NULL, NULL);
   double before[3] = {0}, squares = 0;
   for (size_t i = 0; i < 24; i++)
@@ -221,8 +215,7 @@ static void test_summing_down_keeps_the_flux(void **state) {
   abbe_field_free(&f);
 }
 
-static void test_maps_align(void **state) {
-  (void)state;
+TEST(maps_align) {
   static const size_t sizes[][2] = {{8, 2}, {2, 8}, {4, 4}};
   for (int i = 0; i < 3; i++) {
     abbe_map_layout near = layout_of(-1, 5), far = layout_of(-1, 9);
@@ -246,8 +239,7 @@ static void refuse(abbe_field *a, abbe_field *b, const char *says) {
   abbe_field_free(b);
 }
 
-static void test_what_does_not_align(void **state) {
-  (void)state;
+TEST(what_does_not_align) {
   static const char *const rgb[] = {"R", "G", "B"}, *const bands[] = {"S0.500nm", "S0.600nm"},
                            *const others[] = {"S0.500nm", "S0.601nm"};
   abbe_map_layout layout = layout_of(-1, 5), shifted = layout_of(-1.001, 5), warped = layout;
@@ -287,8 +279,7 @@ static void test_what_does_not_align(void **state) {
   abbe_image_free(&other);
 }
 
-static void test_spaces_align(void **state) {
-  (void)state;
+TEST(spaces_align) {
   static const char *const rgb[] = {"R", "G", "B", "S0.500nm"};
   abbe_image image = image_of(2, 2, 4, rgb), without = image_of(2, 2, 3, rgb);
   set(&image, "abbe:space", "acescg");
@@ -311,8 +302,7 @@ static void test_spaces_align(void **state) {
   abbe_image_free(&without);
 }
 
-static void test_from_a_file(void **state) {
-  (void)state;
+TEST(from_a_file) {
   static const char *const names[] = {"X", "Y", "Z"};
   char path[64];
   snprintf(path, sizeof path, "/tmp/abbe_test_field_%ld.exr", (long)getpid());
@@ -328,18 +318,4 @@ static void test_from_a_file(void **state) {
   assert_memory_equal(f.colour.value, image.data, 18 * sizeof(float));
   abbe_field_free(&f);
   abbe_image_free(&image);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_layers_by_name),
-                                     cmocka_unit_test(test_units_of_bands),
-                                     cmocka_unit_test(test_errors_that_are_not_known),
-                                     cmocka_unit_test(test_spaces),
-                                     cmocka_unit_test(test_what_cannot_be_compared),
-                                     cmocka_unit_test(test_summing_down_keeps_the_flux),
-                                     cmocka_unit_test(test_maps_align),
-                                     cmocka_unit_test(test_what_does_not_align),
-                                     cmocka_unit_test(test_spaces_align),
-                                     cmocka_unit_test(test_from_a_file)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -33,8 +33,22 @@ static bool says(const abbe_compare_notes *notes, const char *part) {
   return false;
 }
 
-static void test_tolerances(void **state) {
-  (void)state;
+static void begin(void) {
+  for (int i = 0; i < 3; i++)
+    snprintf(paths[i], sizeof paths[i], "/tmp/abbe_test_file_comparison_%ld_%d.exr",
+             (long)getpid(), i);
+  write_picture(paths[0], 1, true);
+  write_picture(paths[1], 1.1f, true);
+  write_picture(paths[2], 1, false);
+}
+
+static void finish(void) {
+  for (int i = 0; i < 3; i++) unlink(paths[i]);
+}
+
+GROUP(begin, finish);
+
+TEST(tolerances) {
   abbe_error error = {0};
   abbe_file_comparison c = compare(paths[0], paths[1]);
   const abbe_compare_tolerance kept = {ABBE_COMPARE_RELATIVE_RMSE, false, 0.11};
@@ -52,8 +66,7 @@ static void test_tolerances(void **state) {
   abbe_file_comparison_free(&c);
 }
 
-static void test_notes(void **state) {
-  (void)state;
+TEST(notes) {
   abbe_compare_notes notes;
   abbe_file_comparison c = compare(paths[0], paths[1]);
   abbe_compare_notes_make(&c, &notes);
@@ -67,8 +80,7 @@ static void test_notes(void **state) {
   abbe_file_comparison_free(&c);
 }
 
-static void test_masks(void **state) {
-  (void)state;
+TEST(masks) {
   abbe_error error = {0};
   abbe_file_comparison c;
   abbe_file_comparison_desc desc = {.path = {paths[0], paths[1]}, .mask = paths[2]};
@@ -81,21 +93,4 @@ static void test_masks(void **state) {
   assert_contains(error.text, "without the layers caustic.*");
   desc.mask = "no.png";
   assert_int_equal(abbe_file_comparison_make(&desc, &c, &error), ABBE_IO);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_tolerances),
-      cmocka_unit_test(test_notes),
-      cmocka_unit_test(test_masks),
-  };
-  for (int i = 0; i < 3; i++)
-    snprintf(paths[i], sizeof paths[i], "/tmp/abbe_test_file_comparison_%ld_%d.exr",
-             (long)getpid(), i);
-  write_picture(paths[0], 1, true);
-  write_picture(paths[1], 1.1f, true);
-  write_picture(paths[2], 1, false);
-  int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  for (int i = 0; i < 3; i++) unlink(paths[i]);
-  return failed;
 }

@@ -35,8 +35,7 @@ static double flip(picture reference, picture test, float *map) {
 
 /* Green against blue is the most that two colours differ by: 1. Of greys only L* counts: 100 to the
  * power 0.7 is bent by the greatest distance. */
-static void test_even_pictures(void **state) {
-  (void)state;
+TEST(even_pictures) {
   static picture a, b;
   static float map[PIXELS];
   even(a, 0, 1, 0);
@@ -57,8 +56,7 @@ static void test_even_pictures(void **state) {
 }
 
 /* What a screen cannot show is not seen, and neither is what is no number. */
-static void test_clipping(void **state) {
-  (void)state;
+TEST(clipping) {
   static picture a, b;
   static float map[PIXELS];
   even(a, 1, 1, 1);
@@ -83,8 +81,7 @@ static void paint(picture reference, picture test, double brightest) {
 }
 
 /* Means and exposures of the program of [Andersson2021], version 1.6, for these numbers. */
-static void test_published_program(void **state) {
-  (void)state;
+TEST(published_program) {
   static picture a, b;
   static float map[PIXELS];
   abbe_flip_exposures e;
@@ -100,8 +97,7 @@ static void test_published_program(void **state) {
   assert_int_equal(e.count, 9);
 }
 
-static void test_refused(void **state) {
-  (void)state;
+TEST(refused) {
   static picture a;
   static float map[PIXELS];
   abbe_flip_exposures e;
@@ -118,11 +114,4 @@ static void test_refused(void **state) {
   assert_int_equal(abbe_flip_hdr_map(p, p, W, H, 0, map, &e, NULL), ABBE_OK);
   assert_int_equal(e.count, 32);
   assert_near(mean_of(map), 0, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_even_pictures), cmocka_unit_test(test_clipping),
-      cmocka_unit_test(test_published_program), cmocka_unit_test(test_refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

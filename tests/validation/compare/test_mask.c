@@ -14,8 +14,7 @@ static abbe_mask brightest(const double *light, size_t count, double share) {
   return mask;
 }
 
-static void test_the_fewest_pixels_that_hold_the_share(void **state) {
-  (void)state;
+TEST(the_fewest_pixels_that_hold_the_share) {
   const double light[] = {1, 50, 2, 40, 7};
   static const struct {
     double share;
@@ -34,8 +33,7 @@ static void test_the_fewest_pixels_that_hold_the_share(void **state) {
   }
 }
 
-static void test_of_equals_the_first(void **state) {
-  (void)state;
+TEST(of_equals_the_first) {
   const double light[] = {1, 1, 1, 1, 0, 0};
   abbe_mask mask = brightest(light, 6, 0.5);
   assert_memory_equal(mask.in, "\1\1\0\0\0\0", 6);
@@ -46,8 +44,7 @@ static void test_of_equals_the_first(void **state) {
 }
 
 /* A wide field: the mask holds the share, and without its faintest pixel it would not. */
-static void test_smallest_on_many_pixels(void **state) {
-  (void)state;
+TEST(smallest_on_many_pixels) {
   enum { COUNT = 20000 };
   double *light = malloc(COUNT * sizeof *light);
   assert_non_null(light);
@@ -66,8 +63,7 @@ static void test_smallest_on_many_pixels(void **state) {
   free(light);
 }
 
-static void test_what_is_no_light(void **state) {
-  (void)state;
+TEST(what_is_no_light) {
   const double light[] = {NAN, -5, 3, INFINITY, 1};
   abbe_mask mask = brightest(light, 5, 1);
   assert_memory_equal(mask.in, "\0\0\1\0\1", 5);
@@ -84,8 +80,7 @@ static void test_what_is_no_light(void **state) {
   assert_null(mask.in);
 }
 
-static void test_drawn(void **state) {
-  (void)state;
+TEST(drawn) {
   static const char *const names[] = {"B", "G", "R"};
   abbe_image image = {0};
   assert_int_equal(abbe_image_make(3, 2, 3, names, &image, NULL), ABBE_OK);
@@ -131,8 +126,7 @@ static void assert_caustic(abbe_field field, const char *in) {
 
 /* Of a map by Y or by the sum of its bands; of a picture by its caustic layers and not by itself.
  */
-static void test_caustic(void **state) {
-  (void)state;
+TEST(caustic) {
   static const char *const xyz[] = {"X", "Y", "Z", "caustic.X", "caustic.Y", "caustic.Z"},
                            *const bands[] = {"S0.450nm", "S0.650nm"};
   static const float map[12] = {9, 0, 9, 0, 50, 0, 0, 46, 0, 9, 2, 9},
@@ -155,14 +149,4 @@ static void test_caustic(void **state) {
                    ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "it.exr");
   abbe_field_free(&bare);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_fewest_pixels_that_hold_the_share),
-                                     cmocka_unit_test(test_of_equals_the_first),
-                                     cmocka_unit_test(test_smallest_on_many_pixels),
-                                     cmocka_unit_test(test_what_is_no_light),
-                                     cmocka_unit_test(test_drawn),
-                                     cmocka_unit_test(test_caustic)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -40,8 +40,7 @@ static abbe_outline_agreement agreement(const abbe_outline_options *options) {
 
 static const double white[3] = {1, 1, 1};
 
-static void test_equal_pictures_agree(void **state) {
-  (void)state;
+TEST(equal_pictures_agree) {
   static const double tint[3] = {3, 1, 0.5};
   for (int i = 0; i < 2; i++) {
     clear(i);
@@ -63,8 +62,7 @@ static void test_equal_pictures_agree(void **state) {
 
 /* A disk that moves by d keeps of two circles' lens what geometry says, and its rim is |d cos| of
  * the angle away, 2 d / pi in the mean, where d is small against the radius. */
-static void test_a_moved_disk(void **state) {
-  (void)state;
+TEST(a_moved_disk) {
   const double pi = 3.14159265358979, r = 30, d = 6;
   clear(0);
   clear(1);
@@ -79,8 +77,7 @@ static void test_a_moved_disk(void **state) {
 }
 
 /* Brightness leaves place alone; smoothing keeps light, also at the picture's edge. */
-static void test_brightness_does_not_matter(void **state) {
-  (void)state;
+TEST(brightness_does_not_matter) {
   static const double bright[3] = {64, 64, 64};
   clear(0);
   clear(1);
@@ -98,8 +95,7 @@ static void test_brightness_does_not_matter(void **state) {
   abbe_outline_free(&o);
 }
 
-static void test_the_outline_holds_its_share(void **state) {
-  (void)state;
+TEST(the_outline_holds_its_share) {
   static const double core[3] = {9, 9, 9};
   clear(0);
   add_disk(0, 64, 64, 40, white);
@@ -115,8 +111,7 @@ static void test_the_outline_holds_its_share(void **state) {
 }
 
 /* A band of each hue of its own, in rows from the top: their centres are known. */
-static void test_hues_have_their_places(void **state) {
-  (void)state;
+TEST(hues_have_their_places) {
   static const double rgb[6][3] = {{2, 1, 1}, {2, 2, 1}, {1, 2, 1},
                                    {1, 2, 2}, {1, 1, 2}, {2, 1, 2}};
   clear(0);
@@ -134,8 +129,7 @@ static void test_hues_have_their_places(void **state) {
   abbe_outline_free(&o);
 }
 
-static void test_hues_at_the_sectors_borders(void **state) {
-  (void)state;
+TEST(hues_at_the_sectors_borders) {
   static const struct {
     double rgb[3];
     int hue;
@@ -155,8 +149,7 @@ static void test_hues_at_the_sectors_borders(void **state) {
 }
 
 /* Half of a hue stays, half goes 40 pixels to the right: half of it overlaps, 20 pixels apart. */
-static void test_hues_that_move_in_part(void **state) {
-  (void)state;
+TEST(hues_that_move_in_part) {
   static const double blue[3] = {0, 0, 5};
   for (int i = 0; i < 2; i++) {
     clear(i);
@@ -169,8 +162,7 @@ static void test_hues_that_move_in_part(void **state) {
   assert_near(a.hue[ABBE_OUTLINE_BLUE].apart, 20, 1e-9);
 }
 
-static void test_awkward_pictures(void **state) {
-  (void)state;
+TEST(awkward_pictures) {
   abbe_outline o;
   abbe_error error = {0};
   clear(0);
@@ -202,18 +194,4 @@ static void test_awkward_pictures(void **state) {
   assert_int_equal(abbe_outline_make((const double(*)[3])picture[0], 0, SIDE, NULL, &o, NULL),
                    ABBE_INVALID_ARGUMENT);
   abbe_outline_free(NULL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_equal_pictures_agree),
-      cmocka_unit_test(test_a_moved_disk),
-      cmocka_unit_test(test_brightness_does_not_matter),
-      cmocka_unit_test(test_the_outline_holds_its_share),
-      cmocka_unit_test(test_hues_have_their_places),
-      cmocka_unit_test(test_hues_at_the_sectors_borders),
-      cmocka_unit_test(test_hues_that_move_in_part),
-      cmocka_unit_test(test_awkward_pictures),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

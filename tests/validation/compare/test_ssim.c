@@ -13,8 +13,7 @@ static void map_of(const float *a, const float *b, float *out) {
 }
 
 /* Two even greys have no structure: only the means count. */
-static void test_even_greys(void **state) {
-  (void)state;
+TEST(even_greys) {
   float a[W * H], b[W * H], out[W * H];
   for (int i = 0; i < W * H; i++) {
     a[i] = 0.25f;
@@ -31,8 +30,7 @@ static void test_even_greys(void **state) {
 }
 
 /* [Wang2004, eq. 13 to 16], every window summed for itself about its own means. */
-static void test_by_definition(void **state) {
-  (void)state;
+TEST(by_definition) {
   float a[W * H], b[W * H], out[W * H];
   for (int i = 0; i < W * H; i++) {
     a[i] = (float)(0.5 + 0.4 * sin(1.7 * i) * cos(0.3 * i));
@@ -72,8 +70,7 @@ static void test_by_definition(void **state) {
 
 /* A picture that no window fits into has no index anywhere; a value that is not finite spoils the
  * windows that it is in alone. */
-static void test_edges(void **state) {
-  (void)state;
+TEST(edges) {
   float a[W * H] = {0}, out[W * H];
   assert_int_equal(abbe_ssim_map(a, a, 10, 14, out, NULL), ABBE_OK);
   for (int i = 0; i < 140; i++) assert_true(isnan(out[i]));
@@ -81,11 +78,4 @@ static void test_edges(void **state) {
   map_of(a, a, out);
   assert_true(isnan(out[5 * W + 5]));
   assert_near((double)out[5 * W + 6], 1, 1e-6);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_even_greys),
-                                     cmocka_unit_test(test_by_definition),
-                                     cmocka_unit_test(test_edges)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,8 +2,7 @@
 
 #include "tests/check.h"
 
-static void test_counts(void **state) {
-  (void)state;
+TEST(counts) {
   abbe_ztest t = {0}, more = {0};
   static const double z[] = {0, 1, -2, 2.5, -3.5, 3};
   for (int i = 0; i < 6; i++) abbe_ztest_add(i < 3 ? &t : &more, z[i] * 0.25, 0.0625);
@@ -22,8 +21,7 @@ static void test_counts(void **state) {
   assert_int_equal(t.untested_differ, 4);
 }
 
-static void test_nothing_tested(void **state) {
-  (void)state;
+TEST(nothing_tested) {
   abbe_ztest t = {0};
   assert_true(isnan(abbe_ztest_share_over2(&t)) && isnan(abbe_ztest_mean_square(&t)));
   assert_true(isnan(abbe_ztest_critical(0, 0.01, 0)));
@@ -31,8 +29,7 @@ static void test_nothing_tested(void **state) {
 }
 
 /* As tables of the normal distribution and of Student's t print them. */
-static void test_tabulated_quantiles(void **state) {
-  (void)state;
+TEST(tabulated_quantiles) {
   assert_near(abbe_ztest_expected_share(2, 0), 0.04550026, 1e-8);
   assert_near(abbe_ztest_expected_share(3, 0), 0.00269980, 1e-8);
   assert_near(abbe_ztest_critical(1, 0.05, 0), 1.959964, 1e-6);
@@ -46,8 +43,7 @@ static void test_tabulated_quantiles(void **state) {
 }
 
 /* Of count elements none exceeds it with the chance 1 - level: by the definition of the chance. */
-static void test_sidak(void **state) {
-  (void)state;
+TEST(sidak) {
   static const size_t counts[] = {2, 100, 196608, 100000000};
   static const double freedoms[] = {0, 15, 63, 1e6};
   for (int i = 0; i < 4; i++)
@@ -57,11 +53,4 @@ static void test_sidak(void **state) {
       assert_near(none, 0.99, 1e-6);
     }
   assert_true(isfinite(abbe_ztest_critical(1000000, 0.01, 1)));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_counts), cmocka_unit_test(test_nothing_tested),
-      cmocka_unit_test(test_tabulated_quantiles), cmocka_unit_test(test_sidak)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

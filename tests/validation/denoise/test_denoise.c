@@ -166,8 +166,7 @@ static const char *const errors[3] = {"stderr.R", "stderr.G", "stderr.B"};
 
 /* On a plain the variance falls at least thirty times; the picture's mean stays within the noise of
  * the mean; what is stated is not less than what is left, but for chance. In any unit of light. */
-static void noise_goes_and_light_stays(void **state) {
-  (void)state;
+TEST(noise_goes_and_light_stays) {
   static const double units[] = {1, 1e-9, 1e9};
   const truth of[2] = {{plain, none}, {none, plain}};
   for (size_t u = 0; u < (SANITIZED ? 1 : 3); u++)
@@ -187,8 +186,7 @@ static void noise_goes_and_light_stays(void **state) {
 }
 
 /* Structure is followed, and what blur there is, is stated. */
-static void structure_stays(void **state) {
-  (void)state;
+TEST(structure_stays) {
   const truth of[] = {{lobes, none}, {none, lobes}, {none, edge}, {edge, none}, {lobes, edge}};
   for (size_t s = 0; s < sizeof of / sizeof *of; s += SANITIZED ? 2 : 1) {
     abbe_image image = make(90, 80, &of[s], 0.1, 8, 1), out = filter(&image, 2);
@@ -204,8 +202,7 @@ static void structure_stays(void **state) {
   }
 }
 
-static void what_has_no_noise_stays(void **state) {
-  (void)state;
+TEST(what_has_no_noise_stays) {
   const truth of = {edge, lobes};
   abbe_image image = make(70, 40, &of, 0, 8, 1), out = filter(&image, 2);
   for (size_t i = 0; i < image.width * image.height; i++)
@@ -219,8 +216,7 @@ static void what_has_no_noise_stays(void **state) {
 
 /* Noise beside pixels without any: means of their variances are differences of sums, and what
  * rounding leaves of those, above 0 or below, is no variance. */
-static void quiet_pixels_beside_noisy_ones(void **state) {
-  (void)state;
+TEST(quiet_pixels_beside_noisy_ones) {
   enum { SIDE = 32, NOISY = 4, PICTURES = SANITIZED ? 20 : 400 };
   uint64_t random = 11;
   const truth t = {plain, none};
@@ -239,8 +235,7 @@ static void quiet_pixels_beside_noisy_ones(void **state) {
   }
 }
 
-static void raw_layers_are_kept(void **state) {
-  (void)state;
+TEST(raw_layers_are_kept) {
   const truth of = {edge, lobes};
   abbe_image image = make(20, 10, &of, 0.1, 4, 1), out = filter(&image, 2);
   static const char *const pairs[][2] = {{"R", "raw.R"},
@@ -258,8 +253,7 @@ static void raw_layers_are_kept(void **state) {
   abbe_image_free(&out);
 }
 
-static void threads_do_not_matter(void **state) {
-  (void)state;
+TEST(threads_do_not_matter) {
   const truth of = {edge, lobes};
   abbe_image image = make(70, 50, &of, 0.1, 4, 1), one = filter(&image, 1);
   for (size_t threads = 2; threads < 5; threads++) {
@@ -272,8 +266,7 @@ static void threads_do_not_matter(void **state) {
 }
 
 /* Small, black, and with what is no number in it: always a picture, and finite. */
-static void awkward_pictures(void **state) {
-  (void)state;
+TEST(awkward_pictures) {
   static const size_t sizes[][2] = {{1, 1}, {3, 3}, {1, 40}, {2, 1}};
   const truth of[] = {{edge, lobes}, {none, none}};
   for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++)
@@ -299,8 +292,7 @@ static void awkward_pictures(void **state) {
       }
 }
 
-static void a_missing_layer_is_named(void **state) {
-  (void)state;
+TEST(a_missing_layer_is_named) {
   const truth of = {edge, lobes};
   abbe_image image = make(4, 4, &of, 0.1, 4, 1), out;
   for (size_t c = 0; c < LAYERS; c++) {
@@ -352,8 +344,7 @@ static double distance(const abbe_image *a, const abbe_image *b, const char *nam
 
 /* A few passes, filtered, against many of another seed: nearer than they were, and the bands and
  * the light as a whole are as traced. In R, G, B and in X, Y, Z. */
-static void a_traced_picture_comes_nearer(void **state) {
-  (void)state;
+TEST(a_traced_picture_comes_nearer) {
   abbe_scene scene;
   load_text(SCENE, &scene);
   static const abbe_rgb_space spaces[2] = {ABBE_RGB_SPACE_ACESCG, ABBE_RGB_SPACE_XYZ};
@@ -375,8 +366,7 @@ static void a_traced_picture_comes_nearer(void **state) {
 }
 
 /* One pass tells no errors, so there is nothing to go by. */
-static void one_pass_is_refused(void **state) {
-  (void)state;
+TEST(one_pass_is_refused) {
   abbe_scene scene;
   load_text(SCENE, &scene);
   abbe_image one = trace(&scene, ABBE_RGB_SPACE_ACESCG, 1, 1), out;
@@ -386,18 +376,4 @@ static void one_pass_is_refused(void **state) {
   assert_contains(error.text, "two passes");
   abbe_image_free(&one);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(noise_goes_and_light_stays),
-                                     cmocka_unit_test(structure_stays),
-                                     cmocka_unit_test(quiet_pixels_beside_noisy_ones),
-                                     cmocka_unit_test(what_has_no_noise_stays),
-                                     cmocka_unit_test(raw_layers_are_kept),
-                                     cmocka_unit_test(threads_do_not_matter),
-                                     cmocka_unit_test(awkward_pictures),
-                                     cmocka_unit_test(a_missing_layer_is_named),
-                                     cmocka_unit_test(a_traced_picture_comes_nearer),
-                                     cmocka_unit_test(one_pass_is_refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

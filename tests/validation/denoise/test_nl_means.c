@@ -61,8 +61,7 @@ static double mean_square(double (*light)(size_t x, size_t y), size_t from, size
 
 /* 121 pixels of equal right to it would leave 1/121 of the variance; chance differences of the
  * patches take some of them away. The variance that is stated is the one that is left. */
-static void noise_on_a_plain_is_averaged(void **state) {
-  (void)state;
+TEST(noise_on_a_plain_is_averaged) {
   fill(flat, 0.5);
   const abbe_nl_means job = job_of(SIDE, SIDE);
   run(&job, 2);
@@ -78,8 +77,7 @@ static void noise_on_a_plain_is_averaged(void **state) {
 }
 
 /* Ten deviations high: what lies beyond it has no part in the means. */
-static void an_edge_stays(void **state) {
-  (void)state;
+TEST(an_edge_stays) {
   fill(edge, 0.1);
   const abbe_nl_means job = job_of(SIDE, SIDE);
   run(&job, 2);
@@ -87,8 +85,7 @@ static void an_edge_stays(void **state) {
   assert_true(mean_square(edge, SIDE / 2 - 1, SIDE / 2 + 1) < 0.01 / 5);
 }
 
-static void what_has_no_noise_is_unchanged(void **state) {
-  (void)state;
+TEST(what_has_no_noise_is_unchanged) {
   fill(edge, 0.7);
   memset(variance, 0, sizeof variance);
   const abbe_nl_means job = job_of(SIDE, SIDE);
@@ -100,8 +97,7 @@ static void what_has_no_noise_is_unchanged(void **state) {
 }
 
 /* Light that is the same on both sides of where a feature changes is not mixed. */
-static void features_part_what_looks_alike(void **state) {
-  (void)state;
+TEST(features_part_what_looks_alike) {
   fill(flat, 0.5);
   for (size_t i = 0; i < COUNT; i++) feature[i] = i % SIDE < SIDE / 2 ? 0 : 5;
   abbe_nl_means job = job_of(SIDE, SIDE);
@@ -120,8 +116,7 @@ static void features_part_what_looks_alike(void **state) {
   assert_true(near == out[SIDE * SIDE / 2 + SIDE / 2]);
 }
 
-static void threads_do_not_matter(void **state) {
-  (void)state;
+TEST(threads_do_not_matter) {
   fill(edge, 0.3);
   const abbe_nl_means job = job_of(SIDE, SIDE - 7);
   run(&job, 1);
@@ -134,8 +129,7 @@ static void threads_do_not_matter(void **state) {
   }
 }
 
-static void small_pictures_are_pictures_too(void **state) {
-  (void)state;
+TEST(small_pictures_are_pictures_too) {
   static const size_t sizes[][2] = {{1, 1}, {3, 3}, {1, 9}, {2, 1}, {65, 2}};
   fill(flat, 0.5);
   for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
@@ -150,8 +144,7 @@ static void small_pictures_are_pictures_too(void **state) {
 }
 
 /* Against the mean taken pixel by pixel. */
-static void means_over_squares(void **state) {
-  (void)state;
+TEST(means_over_squares) {
   static float room[COUNT];
   static const size_t cases[][3] = {{13, 9, 2}, {1, 1, 4}, {3, 17, 5}, {20, 20, 0}};
   fill(edge, 0.5);
@@ -170,15 +163,4 @@ static void means_over_squares(void **state) {
         assert_near((double)out[y * w + x], sum / n, 1e-6);
       }
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(noise_on_a_plain_is_averaged),
-                                     cmocka_unit_test(an_edge_stays),
-                                     cmocka_unit_test(what_has_no_noise_is_unchanged),
-                                     cmocka_unit_test(features_part_what_looks_alike),
-                                     cmocka_unit_test(threads_do_not_matter),
-                                     cmocka_unit_test(small_pictures_are_pictures_too),
-                                     cmocka_unit_test(means_over_squares)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

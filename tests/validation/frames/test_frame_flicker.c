@@ -29,8 +29,7 @@ static abbe_frame_error add(abbe_frame_flicker *f, abbe_image frame, abbe_image 
   return out;
 }
 
-static void errors_that_stay_do_not_flicker(void **state) {
-  (void)state;
+TEST(errors_that_stay_do_not_flicker) {
   abbe_frame_flicker f = {0};
   abbe_frame_error e = add(&f, make(false, 3, 2), make(false, 2, 2));
   assert_near(e.error, sqrt(0.5 * 1 / 4), 1e-7);
@@ -52,8 +51,7 @@ static void errors_that_stay_do_not_flicker(void **state) {
   abbe_frame_flicker_free(&f);
 }
 
-static void light_in_the_dark_is_a_ghost(void **state) {
-  (void)state;
+TEST(light_in_the_dark_is_a_ghost) {
   abbe_frame_flicker f = {.caustic = true};
   abbe_frame_error e = add(&f, make(true, 0.5f, 2), make(true, 0, 2));
   assert_near(e.ghost, 0.25, 1e-7);
@@ -63,8 +61,7 @@ static void light_in_the_dark_is_a_ghost(void **state) {
   abbe_frame_flicker_free(&f);
 }
 
-static void without_references(void **state) {
-  (void)state;
+TEST(without_references) {
   abbe_frame_flicker f = {0};
   abbe_frame_error e = add(&f, make(false, 1, 1), (abbe_image){0});
   assert_true(isnan(e.error) && isnan(e.ghost) && isnan(e.change));
@@ -73,8 +70,7 @@ static void without_references(void **state) {
   abbe_frame_flicker_free(&f);
 }
 
-static void what_does_not_fit_is_refused(void **state) {
-  (void)state;
+TEST(what_does_not_fit_is_refused) {
   static const char *const y[] = {"Y"};
   abbe_frame_flicker f = {0};
   abbe_frame_error out;
@@ -91,14 +87,4 @@ static void what_does_not_fit_is_refused(void **state) {
   abbe_frame_flicker_free(NULL);
   abbe_image_free(&small);
   abbe_image_free(&grey);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(errors_that_stay_do_not_flicker),
-      cmocka_unit_test(light_in_the_dark_is_a_ghost),
-      cmocka_unit_test(without_references),
-      cmocka_unit_test(what_does_not_fit_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,8 +34,7 @@ static void write_parts(const judged *j, const abbe_material *m) {
   }
 }
 
-static void parts_are_the_whole(void **state) {
-  (void)state;
+TEST(parts_are_the_whole) {
   const abbe_material quartz = glass(1.54);
   judged j = judged_make(design_a, &quartz, 1);
   const abbe_gem_optimum_desc desc = small_search();
@@ -74,8 +73,7 @@ static void refuse(const judged *j, const abbe_material *m, const abbe_gem_optim
   abbe_gem_optimum_free(&o);
 }
 
-static void what_is_of_another_search_or_broken(void **state) {
-  (void)state;
+TEST(what_is_of_another_search_or_broken) {
   const abbe_material quartz = glass(1.54), heavy = glass(1.9);
   judged j = judged_make(design_a, &quartz, 1);
   write_parts(&j, &quartz);
@@ -100,10 +98,4 @@ static void what_is_of_another_search_or_broken(void **state) {
   for (size_t k = 0; k < PARTS; k++) assert_int_equal(unlink(path[k]), 0);
   assert_int_equal(unlink("grid_file_bad.csv"), 0);
   judged_free(&j);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(parts_are_the_whole),
-                                     cmocka_unit_test(what_is_of_another_search_or_broken)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

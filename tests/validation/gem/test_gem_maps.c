@@ -17,8 +17,7 @@ static void middle(const abbe_gem_view *view, abbe_gem_map map, float rgb[3]) {
 }
 
 /* A roof shows the head alone; a plate shows what is behind it, and the head by its faces. */
-static void colours_are_those_of_the_scopes(void **state) {
-  (void)state;
+TEST(colours_are_those_of_the_scopes) {
   char text[256];
   float rgb[3];
   roof_text(45, text);
@@ -48,8 +47,7 @@ static void colours_are_those_of_the_scopes(void **state) {
 }
 
 /* The means of its channels over the silhouette are the measures. */
-static void channels_have_the_measures(void **state) {
-  (void)state;
+TEST(channels_have_the_measures) {
   judged j = judged_plain(design_b, 2.417);
   abbe_gem_view v = judged_view(&j, &small);
   abbe_image image;
@@ -73,12 +71,4 @@ static void channels_have_the_measures(void **state) {
   abbe_image_free(&image);
   abbe_gem_view_free(&v);
   judged_free(&j);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(colours_are_those_of_the_scopes),
-      cmocka_unit_test(channels_have_the_measures),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,8 +18,7 @@ static abbe_gem_optimum_desc describe(void) {
 
 /* In quartz a pavilion below the critical angle, 40.5 degrees, is a window: the search leaves it.
  * And what it says of a pair is what a view of that cut says. */
-static void it_leaves_the_window_behind(void **state) {
-  (void)state;
+TEST(it_leaves_the_window_behind) {
   const abbe_material quartz = glass(1.54);
   judged j = judged_make(design_a, &quartz, 1);
   abbe_gem_optimum_desc desc = describe();
@@ -60,8 +59,7 @@ static void it_leaves_the_window_behind(void **state) {
   judged_free(&j);
 }
 
-static void wrong_requests_are_refused(void **state) {
-  (void)state;
+TEST(wrong_requests_are_refused) {
   const abbe_material quartz = glass(1.54);
   judged j = judged_make(design_a, &quartz, 1);
   for (int i = 0; i < 5; i++) {
@@ -90,8 +88,7 @@ static void wrong_requests_are_refused(void **state) {
 }
 
 /* Whatever the order in which pairs become known. */
-static void the_first_of_equals_is_best(void **state) {
-  (void)state;
+TEST(the_first_of_equals_is_best) {
   static const size_t orders[2][3] = {{0, 1, 2}, {2, 1, 0}};
   static const double value[3] = {0.2, 0.5, 0.5};
   for (int k = 0; k < 2; k++) {
@@ -103,13 +100,4 @@ static void the_first_of_equals_is_best(void **state) {
     }
     assert_int_equal(o.best, 1);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(it_leaves_the_window_behind),
-      cmocka_unit_test(wrong_requests_are_refused),
-      cmocka_unit_test(the_first_of_equals_is_best),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,27 +22,24 @@ static const abbe_gem_tilts_desc few = {.head_rad = 15 * DEG,
 static judged brilliant;
 static abbe_gem_tilts brilliant_tilts;
 
-static int make_brilliant(void **state) {
-  (void)state;
+static void make_brilliant(void) {
   brilliant = judged_plain(design_b, 2.417);
   brilliant_tilts = tilts_of(&brilliant, &few);
-  return 0;
 }
 
-static int free_brilliant(void **state) {
-  (void)state;
+static void free_brilliant(void) {
   abbe_gem_tilts_free(&brilliant_tilts);
   judged_free(&brilliant);
-  return 0;
 }
 
 static double apart(abbe_gem_number a, abbe_gem_number b) {
   return fabs(a.value - b.value) / (hypot(a.error, b.error) + 1e-9);
 }
 
+GROUP(make_brilliant, free_brilliant);
+
 /* What is even at all tilts has no spread, and a plate without dispersion no fire. */
-static void curves_agree_with_views(void **state) {
-  (void)state;
+TEST(curves_agree_with_views) {
   const judged j = brilliant;
   const abbe_gem_tilts t = brilliant_tilts;
   assert_int_equal(t.tilts, 5);
@@ -67,8 +64,7 @@ static void curves_agree_with_views(void **state) {
   }
 }
 
-static void level_and_mirrored_tilts_are_the_same(void **state) {
-  (void)state;
+TEST(level_and_mirrored_tilts_are_the_same) {
   const abbe_gem_tilts t = brilliant_tilts;
   for (int c = 0; c < ABBE_GEM_TILT_CURVE_COUNT; c++)
     for (size_t a = 0; a < ABBE_GEM_AXES; a++) {
@@ -90,8 +86,7 @@ static abbe_material coloured(double dispersion) {
                          .max_nm = 800};
 }
 
-static void fire_comes_with_dispersion(void **state) {
-  (void)state;
+TEST(fire_comes_with_dispersion) {
   static const double dispersion[] = {0, 0.003, 0.013};
   double fire[3];
   for (int i = 0; i < 3; i++) {
@@ -112,8 +107,7 @@ static void fire_comes_with_dispersion(void **state) {
 
 /* The roof sends light back from where it came at all tilts about its ridge's cross: the head
  * alone, where no lamp is. */
-static void nothing_blinks_in_a_stone_that_shows_the_head(void **state) {
-  (void)state;
+TEST(nothing_blinks_in_a_stone_that_shows_the_head) {
   char text[256];
   roof_text(45, text);
   judged j = judged_plain(text, 1.6);
@@ -128,8 +122,7 @@ static void nothing_blinks_in_a_stone_that_shows_the_head(void **state) {
   judged_free(&j);
 }
 
-static void lamps_cover_what_their_sizes_say(void **state) {
-  (void)state;
+TEST(lamps_cover_what_their_sizes_say) {
   const abbe_gem_eye eye = abbe_gem_eye_make(0.3, 0.4);
   double expected = 0, met = 0;
   const abbe_gem_lamps lamps = abbe_gem_lamps_make(&eye, 3, 0);
@@ -151,8 +144,7 @@ static void lamps_cover_what_their_sizes_say(void **state) {
   assert_near(met, expected, 0.03 * expected); /* some overlap */
 }
 
-static void threads_change_nothing(void **state) {
-  (void)state;
+TEST(threads_change_nothing) {
   const judged j = brilliant;
   abbe_gem_tilts_desc desc = few;
   desc.side = 8;
@@ -174,8 +166,7 @@ static bool give_up(void *user, double done) {
   return false;
 }
 
-static void work_can_be_given_up_and_wrong_requests_are_refused(void **state) {
-  (void)state;
+TEST(work_can_be_given_up_and_wrong_requests_are_refused) {
   const judged j = brilliant;
   abbe_gem_tilts_desc desc = few;
   double done = 0;
@@ -191,17 +182,4 @@ static void work_can_be_given_up_and_wrong_requests_are_refused(void **state) {
   for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++)
     assert_int_equal(abbe_gem_tilts_make(&j.stone, &j.weights, &wrong[i], &t, &error),
                      ABBE_INVALID_ARGUMENT);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(curves_agree_with_views),
-      cmocka_unit_test(level_and_mirrored_tilts_are_the_same),
-      cmocka_unit_test(fire_comes_with_dispersion),
-      cmocka_unit_test(nothing_blinks_in_a_stone_that_shows_the_head),
-      cmocka_unit_test(lamps_cover_what_their_sizes_say),
-      cmocka_unit_test(threads_change_nothing),
-      cmocka_unit_test(work_can_be_given_up_and_wrong_requests_are_refused),
-  };
-  return cmocka_run_group_tests(tests, make_brilliant, free_brilliant);
 }

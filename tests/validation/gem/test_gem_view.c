@@ -10,8 +10,7 @@ static double mean(const abbe_gem_view *view, abbe_gem_amount amount) {
 }
 
 /* Light goes up and down between two faces: R + T^2 R / (1 - R^2) of it comes back. */
-static void slab_returns_what_its_faces_reflect(void **state) {
-  (void)state;
+TEST(slab_returns_what_its_faces_reflect) {
   static const double index[] = {1.5, 2.417};
   for (int i = 0; i < 2; i++) {
     judged j = judged_plain(slab, index[i]);
@@ -32,8 +31,7 @@ static void slab_returns_what_its_faces_reflect(void **state) {
   judged_free(&j);
 }
 
-static void slab_absorbs_by_its_thickness(void **state) {
-  (void)state;
+TEST(slab_absorbs_by_its_thickness) {
   static char name[] = "grey";
   const double nm[1] = {500}, per_m[1] = {60};
   abbe_material m = {.name = name,
@@ -58,8 +56,7 @@ static void slab_absorbs_by_its_thickness(void **state) {
 
 /* A right angle sends light back where it came from, and all of it where both faces reflect
  * totally. */
-static void roof_of_a_right_angle_is_all_blue(void **state) {
-  (void)state;
+TEST(roof_of_a_right_angle_is_all_blue) {
   static const double index[] = {1.4143, 1.54, 2.417};
   char text[256];
   roof_text(45, text);
@@ -109,8 +106,7 @@ static void brilliant_text(double pavilion_deg, char text[1024]) {
 
 /* Two faces of slope p turn light by 4 p - 180 degrees: it leaves the table at 45 where
  * n sin(180 - 4 p) = sin 45. */
-static void table_turns_from_green_to_red_where_it_must(void **state) {
-  (void)state;
+TEST(table_turns_from_green_to_red_where_it_must) {
   const double n = 2.417, toggle = 45 - asin(sin(45 * DEG) / n) / DEG / 4;
   assert_near(toggle, 40.75, 0.005);
   char text[1024];
@@ -126,8 +122,7 @@ static void table_turns_from_green_to_red_where_it_must(void **state) {
   }
 }
 
-static void light_everywhere_makes_every_pixel_white(void **state) {
-  (void)state;
+TEST(light_everywhere_makes_every_pixel_white) {
   judged j = judged_plain(design_b, 2.417);
   abbe_gem_view_desc desc = small;
   for (int tilt = -30; tilt <= 30; tilt += 15) {
@@ -150,8 +145,7 @@ static void light_everywhere_makes_every_pixel_white(void **state) {
   judged_free(&j);
 }
 
-static void shares_of_area_add_up(void **state) {
-  (void)state;
+TEST(shares_of_area_add_up) {
   judged j = judged_plain(design_b, 1.38);
   abbe_gem_view v = judged_view(&j, &small);
   abbe_gem_areas areas;
@@ -177,8 +171,7 @@ static double apart(abbe_gem_number a, abbe_gem_number b) {
 }
 
 /* Eight mains and mirrors: the same to either side, and about axes a quarter turn apart. */
-static void tilts_have_the_symmetry_of_the_cut(void **state) {
-  (void)state;
+TEST(tilts_have_the_symmetry_of_the_cut) {
   judged j = judged_plain(design_b, 2.417);
   abbe_gem_view_desc desc = small;
   desc.side = 64;
@@ -201,8 +194,7 @@ static void tilts_have_the_symmetry_of_the_cut(void **state) {
   judged_free(&j);
 }
 
-static void errors_are_those_of_the_means(void **state) {
-  (void)state;
+TEST(errors_are_those_of_the_means) {
   judged j = judged_plain(design_b, 2.417);
   abbe_gem_view_desc desc = small;
   abbe_gem_view coarse = judged_view(&j, &desc);
@@ -230,8 +222,7 @@ static void errors_are_those_of_the_means(void **state) {
   judged_free(&j);
 }
 
-static void threads_change_nothing(void **state) {
-  (void)state;
+TEST(threads_change_nothing) {
   judged j = judged_plain(design_b, 2.417);
   abbe_gem_view_desc desc = small;
   desc.threads = 1;
@@ -254,8 +245,7 @@ static void threads_change_nothing(void **state) {
 
 /* A slab's picture is even. One of stripes, three tenths of a pixel wide, has their share of area
  * and their contrast, however coarse the pixels. */
-static void areas_and_contrast_do_not_depend_on_the_grid(void **state) {
-  (void)state;
+TEST(areas_and_contrast_do_not_depend_on_the_grid) {
   const double share = 0.3;
   judged j = judged_plain(slab, 1.5);
   abbe_gem_view_desc desc = small;
@@ -285,8 +275,7 @@ static void areas_and_contrast_do_not_depend_on_the_grid(void **state) {
   judged_free(&j);
 }
 
-static void wrong_requests_are_refused(void **state) {
-  (void)state;
+TEST(wrong_requests_are_refused) {
   judged j = judged_plain(slab, 1.5);
   static const abbe_gem_view_desc wrong[] = {
       {.side = 4000}, {.repeats = 1}, {.repeats = 65}, {.head_rad = -0.1}, {.head_rad = 0.8}};
@@ -298,21 +287,4 @@ static void wrong_requests_are_refused(void **state) {
     assert_true(error.text[0] != '\0');
   }
   judged_free(&j);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(slab_returns_what_its_faces_reflect),
-      cmocka_unit_test(slab_absorbs_by_its_thickness),
-      cmocka_unit_test(roof_of_a_right_angle_is_all_blue),
-      cmocka_unit_test(table_turns_from_green_to_red_where_it_must),
-      cmocka_unit_test(light_everywhere_makes_every_pixel_white),
-      cmocka_unit_test(shares_of_area_add_up),
-      cmocka_unit_test(tilts_have_the_symmetry_of_the_cut),
-      cmocka_unit_test(errors_are_those_of_the_means),
-      cmocka_unit_test(threads_change_nothing),
-      cmocka_unit_test(areas_and_contrast_do_not_depend_on_the_grid),
-      cmocka_unit_test(wrong_requests_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,8 +34,7 @@ static const abbe_known_answer *find(const abbe_known_answers *a, const char *qu
   return NULL;
 }
 
-static void single_rays_meet_the_closed_forms(void **state) {
-  (void)state;
+TEST(single_rays_meet_the_closed_forms) {
   static const struct {
     const char *group;
     size_t rows;
@@ -51,8 +50,7 @@ static void single_rays_meet_the_closed_forms(void **state) {
 }
 
 /* The exact column itself against what others print. */
-static void the_exact_column_is_the_books(void **state) {
-  (void)state;
+TEST(the_exact_column_is_the_books) {
   abbe_known_answers a = make("prism");
   assert_near(find(&a, "n-bk7 at d, least deviation")->exact, 38.65, 5e-3);
   assert_near(find(&a, "diamond at d, rays that leave the second face")->exact, 0, 0);
@@ -70,8 +68,7 @@ static void the_exact_column_is_the_books(void **state) {
   abbe_known_answers_free(&a);
 }
 
-static void wrong_rows_fail(void **state) {
-  (void)state;
+TEST(wrong_rows_fail) {
   const abbe_known_options options = {0};
   abbe_known_answers a = {0};
   abbe_known_run run = {.options = &options, .out = &a, .group = "none", .to = 1};
@@ -94,8 +91,7 @@ static void wrong_rows_fail(void **state) {
   abbe_known_answers_free(&a);
 }
 
-static void unknown_groups_are_named(void **state) {
-  (void)state;
+TEST(unknown_groups_are_named) {
   abbe_known_answers a;
   abbe_error error = {0};
   const abbe_known_options options = {.only = "prisn"};
@@ -116,8 +112,7 @@ static bool stop_soon(void *user, double done) {
   return ++l->calls < 2;
 }
 
-static void work_can_be_stopped(void **state) {
-  (void)state;
+TEST(work_can_be_stopped) {
   abbe_known_answers a;
   abbe_error error = {0};
   listener l = {0};
@@ -136,24 +131,11 @@ static double nowhere(double x, void *user) {
   return x > 0.4 ? NAN : x;
 }
 
-static void the_least_value_is_found(void **state) {
-  (void)state;
+TEST(the_least_value_is_found) {
   for (double at = -0.9; at < 1; at += 0.3)
     assert_near(abbe_known_least(parabola, &at, -1, 1), -3, 1e-14);
   assert_true(isnan(abbe_known_least(nowhere, NULL, 0, 1)));
   const double a[3] = {1, 0, 0}, b[3] = {2e-9, 3, 0}, c[3] = {5, 5e-9, 0};
   assert_near(abbe_known_angle(a, b), acos(-1) / 2 - 2e-9 / 3, 1e-15);
   assert_near(abbe_known_angle(a, c), 1e-9, 1e-20);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(single_rays_meet_the_closed_forms),
-      cmocka_unit_test(the_exact_column_is_the_books),
-      cmocka_unit_test(wrong_rows_fail),
-      cmocka_unit_test(unknown_groups_are_named),
-      cmocka_unit_test(work_can_be_stopped),
-      cmocka_unit_test(the_least_value_is_found),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -48,8 +48,7 @@ static size_t find_marks(const char *text, mark *out) {
   return count;
 }
 
-static void errors_stand_over_their_rows_in_their_groups_colour(void **state) {
-  (void)state;
+TEST(errors_stand_over_their_rows_in_their_groups_colour) {
   abbe_known_answer rows[] = {{.group = "a", .error = 0.5, .tolerance = 1},
                               {.group = "a", .error = -1, .tolerance = 2},
                               {.group = "b", .error = NAN, .tolerance = 1},
@@ -65,8 +64,7 @@ static void errors_stand_over_their_rows_in_their_groups_colour(void **state) {
   free(text);
 }
 
-static void rows_out_of_tolerance_are_seen(void **state) {
-  (void)state;
+TEST(rows_out_of_tolerance_are_seen) {
   abbe_known_answer rows[] = {{.group = "a", .error = 0, .tolerance = 1},
                               {.group = "a", .error = -7, .tolerance = 1},
                               {.group = "b", .error = 1, .tolerance = NAN},
@@ -82,8 +80,7 @@ static void rows_out_of_tolerance_are_seen(void **state) {
 }
 
 /* Two rows that stand over photons make a second chart above, with their errors. */
-static void photons_make_a_chart_of_their_own(void **state) {
-  (void)state;
+TEST(photons_make_a_chart_of_their_own) {
   abbe_known_answer rows[] = {
       {.group = "a", .exact = 0.1, .traced = 0.11, .tolerance = 0.1, .photons = 1000},
       {.group = "a", .exact = 0.05, .traced = 0.04, .tolerance = 0.1, .photons = 4000}};
@@ -100,8 +97,7 @@ static void photons_make_a_chart_of_their_own(void **state) {
   free(one);
 }
 
-static void nothing_is_refused(void **state) {
-  (void)state;
+TEST(nothing_is_refused) {
   abbe_error error = {0};
   const abbe_known_answers none = {0};
   assert_int_equal(abbe_known_chart_write("x.svg", &none, &error), ABBE_INVALID_ARGUMENT);
@@ -109,14 +105,4 @@ static void nothing_is_refused(void **state) {
   abbe_known_answer row = {.group = "a", .tolerance = 1};
   const abbe_known_answers one = {.count = 1, .row = &row};
   assert_int_equal(abbe_known_chart_write("/no/such/folder/x.svg", &one, &error), ABBE_IO);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(errors_stand_over_their_rows_in_their_groups_colour),
-      cmocka_unit_test(rows_out_of_tolerance_are_seen),
-      cmocka_unit_test(photons_make_a_chart_of_their_own),
-      cmocka_unit_test(nothing_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

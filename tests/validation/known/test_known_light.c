@@ -36,21 +36,18 @@ static void check_setting(setting_maker make, size_t index, bool other, size_t r
   check_rows(&a, rows);
 }
 
-static void panes_reflect_pass_and_absorb(void **state) {
-  (void)state;
+TEST(panes_reflect_pass_and_absorb) {
   check_setting(abbe_known_pane_setting, 3, false, 1);  /* reflected at 60 degrees */
   check_setting(abbe_known_pane_setting, 11, false, 1); /* of a crystal */
   check_setting(abbe_known_pane_setting, 3, true, 1);   /* what absorbing glass leaves, aslant */
 }
 
-static void spheres_throw_rings(void **state) {
-  (void)state;
+TEST(spheres_throw_rings) {
   check_setting(abbe_known_sphere_setting, 3, false, 5);  /* a point's light, silica */
   check_setting(abbe_known_sphere_setting, 18, false, 5); /* two faces only */
 }
 
-static void settings_end(void **state) {
-  (void)state;
+TEST(settings_end) {
   static const struct {
     setting_maker make;
     size_t index;
@@ -70,16 +67,14 @@ static void settings_end(void **state) {
 }
 
 /* t of 9 degrees of freedom: 4.297 at 1e-3 one-sided; four of a normal is 3.17e-5. */
-static void few_passes_are_trusted_less(void **state) {
-  (void)state;
+TEST(few_passes_are_trusted_less) {
   assert_near(abbe_known_sigmas(1000000), 4, 1e-3);
   assert_true(abbe_known_sigmas(10) > 4.297);
   assert_true(abbe_known_sigmas(10) > abbe_known_sigmas(64));
   assert_true(isinf(abbe_known_sigmas(1)));
 }
 
-static void means_and_their_errors(void **state) {
-  (void)state;
+TEST(means_and_their_errors) {
   double sum[4][3] = {{0, 1, 0}, {0, 10, 0}, {0, 3, 0}, {0, 20, 0}}; /* two passes of two rings */
   double mean, spread;
   abbe_known_mean(sum, 2, 2, 0, 1, 1, &mean, &spread);
@@ -92,8 +87,7 @@ static void means_and_their_errors(void **state) {
   assert_true(isinf(spread));
 }
 
-static void samples_become_passes(void **state) {
-  (void)state;
+TEST(samples_become_passes) {
   abbe_known_options options = {.seed = 9, .threads = 3};
   abbe_known_run run = {.options = &options};
   abbe_trace_desc desc = {0};
@@ -106,16 +100,4 @@ static void samples_become_passes(void **state) {
   assert_true(desc.photons <= ABBE_TRACER_MAX_PHOTONS);
   abbe_known_narrow(500, &desc);
   assert_true(desc.min_nm < 500 && desc.max_nm > 500 && desc.max_nm - desc.min_nm < 0.2);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(panes_reflect_pass_and_absorb),
-      cmocka_unit_test(spheres_throw_rings),
-      cmocka_unit_test(settings_end),
-      cmocka_unit_test(few_passes_are_trusted_less),
-      cmocka_unit_test(means_and_their_errors),
-      cmocka_unit_test(samples_become_passes),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -78,15 +78,13 @@ static void compare(bool beam, bool warped) {
   abbe_rings_free(&rings);
 }
 
-static void a_profile_is_found_again(void **state) {
-  (void)state;
+TEST(a_profile_is_found_again) {
   compare(true, false);
   compare(false, false);
   compare(false, true);
 }
 
-static void squares_and_strides(void **state) {
-  (void)state;
+TEST(squares_and_strides) {
   const double edge[2] = {0, 1}, centre[3] = {0, 0, 0};
   abbe_map_layout layout = look_down(true, false);
   abbe_rings rings;
@@ -100,8 +98,7 @@ static void squares_and_strides(void **state) {
   abbe_rings_free(&rings);
 }
 
-static void wrong_rings_are_refused(void **state) {
-  (void)state;
+TEST(wrong_rings_are_refused) {
   const double falling[3] = {0, 2, 1}, centre[3] = {0, 0, 0};
   abbe_map_layout layout = look_down(true, false);
   abbe_rings rings;
@@ -115,13 +112,4 @@ static void wrong_rings_are_refused(void **state) {
                    ABBE_INVALID_ARGUMENT);
   abbe_rings_free(&rings);
   abbe_rings_free(NULL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_profile_is_found_again),
-      cmocka_unit_test(squares_and_strides),
-      cmocka_unit_test(wrong_rings_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

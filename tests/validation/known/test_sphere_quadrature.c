@@ -29,8 +29,7 @@ static double enclosed(const abbe_sphere_setup *setup, double radius_m) {
 
 /* ---- closed forms ---- */
 
-static void a_sphere_of_air_lets_all_light_pass(void **state) {
-  (void)state;
+TEST(a_sphere_of_air_lets_all_light_pass) {
   abbe_sphere_setup s = {.radius = 0.03, .index = 1, .plane_distance = 0.1, .power = 7};
   for (double r = 0; r < 0.05; r += 0.004) {
     double inside = fmin(r, 0.03);
@@ -49,8 +48,7 @@ static void a_sphere_of_air_lets_all_light_pass(void **state) {
 
 /* A beam through an absorbing ball: 2 (1 - (1 + y) exp(-y)) / y^2 of it is left, y = 2 a R: the
  * absorption of large soft particles (anomalous diffraction) [VanDeHulst1957]. */
-static void an_absorbing_ball(void **state) {
-  (void)state;
+TEST(an_absorbing_ball) {
   for (double y = 0.01; y < 30; y *= 3) {
     abbe_sphere_setup s = {.radius = 0.02, .index = 1, .plane_distance = 0.1, .power = 1};
     s.attenuation_per_m = y / (2 * s.radius);
@@ -61,8 +59,7 @@ static void an_absorbing_ball(void **state) {
 
 /* On the axis a thin pencil from the point at s spreads as the lens equation says. The plane is so
  * close that no ray from further out crosses the axis at it. */
-static void the_axis_is_paraxial_optics(void **state) {
-  (void)state;
+TEST(the_axis_is_paraxial_optics) {
   const double indices[] = {0.8, 1.05, 1.1, 1.25, 1.33}, distances[] = {0, 0.15, 1};
   for (int i = 0; i < 5; i++)
     for (int k = 0; k < 3; k++) {
@@ -80,8 +77,7 @@ static void the_axis_is_paraxial_optics(void **state) {
 
 /* Under a drop of n = 4/3 the bow of three inner reflections stands 41.6 degrees from straight
  * on; the first two are thrown back and never reach the plane [Adam2002]. */
-static void the_tertiary_rainbow_is_a_fold(void **state) {
-  (void)state;
+TEST(the_tertiary_rainbow_is_a_fold) {
   abbe_sphere_setup s = {.radius = 1e-6, .index = 4.0 / 3, .plane_distance = 1, .power = 1};
   const double *fold = NULL;
   s.without_direct_order = true;
@@ -101,8 +97,7 @@ static void the_tertiary_rainbow_is_a_fold(void **state) {
 
 /* Below the focus the marginal rays cross the axis first: all light lies inside the fold until the
  * marginal ray leaves it. Where the fold stands, the landing has its extreme. */
-static void the_fold_bounds_the_core(void **state) {
-  (void)state;
+TEST(the_fold_bounds_the_core) {
   abbe_sphere_setup s = {.radius = 1, .index = 1.5, .plane_distance = 1.3, .power = 1};
   double widest = 0;
   for (int k = 0; k < 200000; k++) { /* the rays that land on the near side of the axis */
@@ -203,8 +198,7 @@ static void compare(const abbe_sphere_setup *s) {
   abbe_sphere_quadrature_free(q);
 }
 
-static void every_order_agrees_with_traced_rays(void **state) {
-  (void)state;
+TEST(every_order_agrees_with_traced_rays) {
   const double indices[] = {0.7, 0.99, 1, 1.02, 1.33, 1.5, 1.8, 2.4, 4};
   const double planes[] = {1.001, 1.3, 2, 10}, lights[] = {0, 1.05, 2, 30};
   for (int n = 0; n < 9; n++)
@@ -223,8 +217,7 @@ static void every_order_agrees_with_traced_rays(void **state) {
 
 /* ---- laws ---- */
 
-static void rings_add_up_to_the_circle(void **state) {
-  (void)state;
+TEST(rings_add_up_to_the_circle) {
   abbe_sphere_setup s = {.radius = 0.05, .index = 1.6, .plane_distance = 0.09, .power = 2};
   s.inner_orders = 3;
   double edge[33], ring[32], sum = 0;
@@ -240,8 +233,7 @@ static void rings_add_up_to_the_circle(void **state) {
 }
 
 /* Scaling everything changes nothing but the unit. */
-static void the_answer_has_no_unit_of_its_own(void **state) {
-  (void)state;
+TEST(the_answer_has_no_unit_of_its_own) {
   for (double scale = 1e-4; scale < 1e6; scale *= 100) {
     abbe_sphere_setup s = {.radius = 0.4 * scale, .index = 1.6, .plane_distance = 0.7 * scale};
     s.power = 1 / (scale * scale);
@@ -255,8 +247,7 @@ static void the_answer_has_no_unit_of_its_own(void **state) {
 }
 
 /* Each further way adds light, and all of them together less than fell on the sphere. */
-static void nothing_is_made(void **state) {
-  (void)state;
+TEST(nothing_is_made) {
   abbe_sphere_setup s = {.radius = 1, .index = 1.3, .plane_distance = 1.01, .power = 1};
   s.outside = true;
   double before = 0;
@@ -269,8 +260,7 @@ static void nothing_is_made(void **state) {
   }
 }
 
-static void white_light_is_the_sum_of_its_bands(void **state) {
-  (void)state;
+TEST(white_light_is_the_sum_of_its_bands) {
   abbe_material_table table = {0};
   const abbe_material *flint = NULL;
   const abbe_illuminant d65 = {0};
@@ -308,8 +298,7 @@ static void refuse(abbe_sphere_setup s, const char *part) {
   assert_contains(error.text, part);
 }
 
-static void wrong_setups_are_refused(void **state) {
-  (void)state;
+TEST(wrong_setups_are_refused) {
   const abbe_sphere_setup s = {.radius = 1, .index = 1.5, .plane_distance = 2, .power = 1};
   abbe_sphere_setup w = s;
   refuse((w.radius = 0, w), "radius is 0");
@@ -332,21 +321,4 @@ static void wrong_setups_are_refused(void **state) {
   assert_contains(error.text, "edge 2 is 0.1");
   abbe_sphere_quadrature_free(q);
   abbe_sphere_quadrature_free(NULL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_sphere_of_air_lets_all_light_pass),
-      cmocka_unit_test(an_absorbing_ball),
-      cmocka_unit_test(the_axis_is_paraxial_optics),
-      cmocka_unit_test(the_tertiary_rainbow_is_a_fold),
-      cmocka_unit_test(the_fold_bounds_the_core),
-      cmocka_unit_test(every_order_agrees_with_traced_rays),
-      cmocka_unit_test(rings_add_up_to_the_circle),
-      cmocka_unit_test(the_answer_has_no_unit_of_its_own),
-      cmocka_unit_test(nothing_is_made),
-      cmocka_unit_test(white_light_is_the_sum_of_its_bands),
-      cmocka_unit_test(wrong_setups_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,8 +22,7 @@ static void study(const char *text, abbe_estimator_study *out) {
   abbe_scene_free(&scene);
 }
 
-static void test_a_ball_over_a_floor(void **state) {
-  (void)state;
+TEST(a_ball_over_a_floor) {
   static abbe_estimator_study s;
   study(CAMERA POINT_LIGHT FLOOR BALL("crown"), &s);
   /* a disk in a square, less what total reflection and the padding take of it */
@@ -49,8 +48,7 @@ static void test_a_ball_over_a_floor(void **state) {
               find(&s, ABBE_ESTIMATOR_BISECTION, false, 8)->median);
 }
 
-static void test_both_kinds_of_light(void **state) {
-  (void)state;
+TEST(both_kinds_of_light) {
   static abbe_estimator_study s;
   size_t kinds[2] = {0, 0};
   study(
@@ -62,8 +60,7 @@ static void test_both_kinds_of_light(void **state) {
   assert_true(kinds[0] > 40 && kinds[1] > 40);
 }
 
-static void test_what_is_printed_and_saved(void **state) {
-  (void)state;
+TEST(what_is_printed_and_saved) {
   static abbe_estimator_study s;
   char *text = NULL;
   size_t size = 0;
@@ -75,13 +72,4 @@ static void test_what_is_printed_and_saved(void **state) {
   assert_contains(text, "| refracted | shah, as printed | 1 | 2.0 |");
   free(text);
   assert_int_equal(abbe_estimator_study_save(&s, "/nowhere/at/all.csv", &error), ABBE_IO);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_ball_over_a_floor),
-      cmocka_unit_test(test_both_kinds_of_light),
-      cmocka_unit_test(test_what_is_printed_and_saved),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -23,8 +23,7 @@ static void make(const char *text, size_t side, size_t grid, abbe_scene *scene,
 }
 
 /* A pane shifts a ray sideways by h sin(a) (1 - cos a / (n cos b)), and does not turn it. */
-static void test_a_pane_shifts(void **state) {
-  (void)state;
+TEST(a_pane_shifts) {
   abbe_scene scene = {0};
   abbe_landing_rays r;
   make(CAMERA POINT_LIGHT FLOOR PANE, 64, 64, &scene, &r);
@@ -47,8 +46,7 @@ static void test_a_pane_shifts(void **state) {
 }
 
 /* Off a flat mirror light comes as from the lamp's image. */
-static void test_a_mirror_has_the_lamps_image(void **state) {
-  (void)state;
+TEST(a_mirror_has_the_lamps_image) {
   abbe_scene scene = {0};
   abbe_landing_rays r;
   make(CAMERA POINT_LIGHT FLOOR STEEP, 64, 256, &scene, &r);
@@ -70,8 +68,7 @@ static void test_a_mirror_has_the_lamps_image(void **state) {
 }
 
 /* The texture holds what exact lookups see at its texels' middles, and at their sides nearly. */
-static void test_lookups_agree(void **state) {
-  (void)state;
+TEST(lookups_agree) {
   abbe_scene scene = {0};
   abbe_landing_rays r;
   make(CAMERA SUN FLOOR HILL BALL("crown"), 128, 32, &scene, &r);
@@ -97,8 +94,7 @@ static void test_lookups_agree(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   abbe_scene scene = {0};
   abbe_landing_rays r;
   abbe_error error = {0};
@@ -113,14 +109,4 @@ static void test_what_is_refused(void **state) {
                    ABBE_INVALID_ARGUMENT);
   abbe_landing_rays_free(&r);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_pane_shifts),
-      cmocka_unit_test(test_a_mirror_has_the_lamps_image),
-      cmocka_unit_test(test_lookups_agree),
-      cmocka_unit_test(test_what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,8 +6,7 @@
 #include "validation/transport/media.h"
 
 /* Places of the line, asked one by one. */
-static void a_cone_cuts_lines(void **state) {
-  (void)state;
+TEST(a_cone_cuts_lines) {
   uint64_t random = 11;
   size_t met = 0;
   for (int i = 0; i < 3000; i++) {
@@ -108,8 +107,7 @@ static double expected(const fixture *f, const double o[3], double reach) {
   return sum;
 }
 
-static void lamps_light_the_mist(void **state) {
-  (void)state;
+TEST(lamps_light_the_mist) {
   static const char *const lights[] = {POINT_LIGHT, SPOT, SUN, PANEL};
   for (size_t i = 0; i < sizeof lights / sizeof *lights; i++) {
     fixture f;
@@ -141,8 +139,7 @@ static void lamps_light_the_mist(void **state) {
 
 /* In light that is alike from everywhere scattering alone changes nothing: what it takes it gives,
  * but for what it would have to scatter again. */
-static void an_even_sky_lights_mist_evenly(void **state) {
-  (void)state;
+TEST(an_even_sky_lights_mist_evenly) {
   fixture f;
   make("materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"
        "environment: {uniform: 3}\n"
@@ -170,13 +167,4 @@ static void an_even_sky_lights_mist_evenly(void **state) {
   }
   assert_near(sum / (3 * 1e-3 * 1.5), 1, 0.02);
   drop(&f);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_cone_cuts_lines),
-      cmocka_unit_test(lamps_light_the_mist),
-      cmocka_unit_test(an_even_sky_lights_mist_evenly),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -65,8 +65,7 @@ static void check_rays(const abbe_haze_grid *g, const abbe_haze_photon *photon, 
   assert_true(all > 500);
 }
 
-static void a_gather_finds_what_is_there(void **state) {
-  (void)state;
+TEST(a_gather_finds_what_is_there) {
   static const double sizes[][3] = {{1, 1, 1}, {1, 0.02, 0.4}, {0.7, 0, 0.7}};
   static const float radii[] = {0.05f, 0.004f, 0.2f};
   abbe_haze_photon *photon = malloc(COUNT * sizeof *photon);
@@ -81,8 +80,7 @@ static void a_gather_finds_what_is_there(void **state) {
   free(photon);
 }
 
-static void none_and_all_in_one_place(void **state) {
-  (void)state;
+TEST(none_and_all_in_one_place) {
   const float o[3] = {0}, d[3] = {0, 0, 1};
   abbe_haze_grid grid = {0};
   found f = {0};
@@ -101,12 +99,4 @@ static void none_and_all_in_one_place(void **state) {
   abbe_haze_grid_gather(&grid, o, d, 0, 1, 0.1f, -1, take, &f);
   assert_int_equal(f.count, 0);
   abbe_haze_grid_free(&grid);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_gather_finds_what_is_there),
-      cmocka_unit_test(none_and_all_in_one_place),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

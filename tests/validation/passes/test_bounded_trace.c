@@ -49,8 +49,17 @@ static void check_picture(const abbe_bounded_trace_desc *desc, size_t passes,
   abbe_tracer_free(tracer);
 }
 
-static void test_without_a_bound(void **state) {
-  (void)state;
+static void begin(void) {
+  load_text(SCENE, &scene);
+}
+
+static void finish(void) {
+  abbe_scene_free(&scene);
+}
+
+GROUP(begin, finish);
+
+TEST(without_a_bound) {
   abbe_image picture;
   abbe_bounded_trace_desc desc = describe(4, false, 0);
   abbe_bounded_trace t = make(&desc, &picture);
@@ -70,8 +79,7 @@ static void test_without_a_bound(void **state) {
   abbe_image_free(&picture);
 }
 
-static void test_until_it_is_kept(void **state) {
-  (void)state;
+TEST(until_it_is_kept) {
   for (int filtered = 0; filtered < 2; filtered++) {
     abbe_image picture;
     abbe_bounded_trace_desc desc = describe(2, filtered, 1000);
@@ -95,8 +103,7 @@ static void test_until_it_is_kept(void **state) {
   }
 }
 
-static void test_what_ends_it(void **state) {
-  (void)state;
+TEST(what_ends_it) {
   int asked = 0;
   abbe_image picture;
   abbe_bounded_trace t;
@@ -110,16 +117,4 @@ static void test_what_ends_it(void **state) {
   assert_int_equal(abbe_bounded_trace_make(&scene, &desc, &picture, &t, &error),
                    ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "1 passes are too few, at least 2");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_without_a_bound),
-      cmocka_unit_test(test_until_it_is_kept),
-      cmocka_unit_test(test_what_ends_it),
-  };
-  load_text(SCENE, &scene);
-  int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  abbe_scene_free(&scene);
-  return failed;
 }

@@ -35,9 +35,18 @@ static abbe_checked_picture check(const abbe_image *picture, double max_error, a
   return out;
 }
 
+static void begin(void) {
+  load_text(SCENE, &scene);
+}
+
+static void finish(void) {
+  abbe_scene_free(&scene);
+}
+
+GROUP(begin, finish);
+
 /* To tell that a good picture is one takes fewer passes than to make one. */
-static void test_a_good_picture(void **state) {
-  (void)state;
+TEST(a_good_picture) {
   abbe_image traced, picture = make_picture(1024);
   const abbe_checked_picture c = check(&picture, 2, &traced);
   if (!(c.given.bound <= 2) || c.traced.bound <= 2)
@@ -48,8 +57,7 @@ static void test_a_good_picture(void **state) {
   abbe_image_free(&picture);
 }
 
-static void test_a_bad_picture(void **state) {
-  (void)state;
+TEST(a_bad_picture) {
   abbe_image traced, picture = make_picture(64);
   for (size_t i = 0; i < picture.width * picture.height * picture.channels; i++)
     picture.data[i] *= 1.8f;
@@ -91,8 +99,7 @@ static abbe_checked_picture check_in(double seconds, double first_s, const abbe_
 }
 
 /* Passes are begun where they end in time, and what was told before stands. */
-static void test_in_the_time_that_is_left(void **state) {
-  (void)state;
+TEST(in_the_time_that_is_left) {
   abbe_image picture = make_picture(64), traced;
   abbe_checked_picture c = check_in(100, 90, &picture, 1e-3, false);
   assert_int_equal(c.passes, 0);
@@ -120,8 +127,7 @@ static void test_in_the_time_that_is_left(void **state) {
 }
 
 /* Who only asks is answered as soon as the picture is known to be no good. */
-static void test_a_bad_picture_is_soon_known(void **state) {
-  (void)state;
+TEST(a_bad_picture_is_soon_known) {
   abbe_image picture = make_picture(64);
   for (size_t i = 0; i < picture.width * picture.height * picture.channels; i++)
     picture.data[i] *= 4;
@@ -133,8 +139,7 @@ static void test_a_bad_picture_is_soon_known(void **state) {
   abbe_image_free(&picture);
 }
 
-static void test_what_ends_it(void **state) {
-  (void)state;
+TEST(what_ends_it) {
   int asked = 0;
   abbe_image traced, picture = make_picture(1), small;
   abbe_checked_picture out;
@@ -155,18 +160,4 @@ static void test_what_ends_it(void **state) {
   assert_null(traced.data);
   abbe_image_free(&small);
   abbe_image_free(&picture);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_good_picture),
-      cmocka_unit_test(test_a_bad_picture),
-      cmocka_unit_test(test_in_the_time_that_is_left),
-      cmocka_unit_test(test_a_bad_picture_is_soon_known),
-      cmocka_unit_test(test_what_ends_it),
-  };
-  load_text(SCENE, &scene);
-  int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  abbe_scene_free(&scene);
-  return failed;
 }

@@ -153,8 +153,7 @@ static void assert_honest(const trials *t, double mean, double within, double wi
 }
 
 /* Half of the light's pixels in every pass: the noise is small, and falls as it should. */
-static void test_even_noise(void **state) {
-  (void)state;
+TEST(even_noise) {
   trials t = run(32, 64, 0.5, false);
   assert_honest(&t, 1, 0.05, 1.6);
   t = run(48, 64, 0.5, false); /* parts that are not halves */
@@ -163,8 +162,7 @@ static void test_even_noise(void **state) {
 
 /* Of 16 passes one or two hit a pixel, or none, so that most of what is lit is dark or far too
  * bright, and errors fall slowly. */
-static void test_rare_specks(void **state) {
-  (void)state;
+TEST(rare_specks) {
   trials t = run(8, 16, 0.1, false);
   assert_honest(&t, 0.95, 0.15, 1.7);
   t = run(2, 4, 0.1, false);
@@ -174,8 +172,7 @@ static void test_rare_specks(void **state) {
 /* What the filter blurs is known too, though both of its pictures are blurred alike: with next to
  * no noise all is blur, which more passes do not lessen. The blurred caustic is also wider than the
  * true one, and its edge counts. */
-static void test_a_filter(void **state) {
-  (void)state;
+TEST(a_filter) {
   trials t = run(128, 256, 0.999, true);
   assert_honest(&t, 1, 0.25, 1.5);
   t = run(64, 128, 0.5, true);
@@ -212,8 +209,7 @@ static trials run_given(size_t passes, double often, double factor) {
   return t;
 }
 
-static void test_a_picture_of_another_make(void **state) {
-  (void)state;
+TEST(a_picture_of_another_make) {
   /* The region is the given picture's own, which is blurred and so wider than the true one. */
   trials t = run_given(128, 0.999, 1.1);
   assert_honest(&t, 1.25, 0.02, 1.3);
@@ -239,8 +235,7 @@ static void test_a_picture_of_another_make(void **state) {
   abbe_image_free(&image);
 }
 
-static void test_what_has_no_caustic(void **state) {
-  (void)state;
+TEST(what_has_no_caustic) {
   abbe_pass_error own;
   abbe_error error = {0};
   abbe_image image = make_image();
@@ -275,15 +270,4 @@ static void test_what_has_no_caustic(void **state) {
   assert_contains(error.text, "differ in size");
   abbe_image_free(&small);
   abbe_image_free(&image);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_even_noise),
-      cmocka_unit_test(test_rare_specks),
-      cmocka_unit_test(test_a_filter),
-      cmocka_unit_test(test_a_picture_of_another_make),
-      cmocka_unit_test(test_what_has_no_caustic),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,8 +15,7 @@ static double none(void *user) {
   return -1;
 }
 
-static void test_what_fits(void **state) {
-  (void)state;
+TEST(what_fits) {
   int asked = 0;
   const abbe_time_left two = {two_seconds, &asked}, over = {none, NULL};
   assert_near(abbe_time_left_seconds(&two), 2, 0);
@@ -27,18 +26,9 @@ static void test_what_fits(void **state) {
   assert_false(abbe_time_left_holds(&over, 0));
 }
 
-static void test_without_an_end(void **state) {
-  (void)state;
+TEST(without_an_end) {
   const abbe_time_left always = {0};
   assert_true(isinf(abbe_time_left_seconds(&always)));
   assert_true(abbe_time_left_holds(&always, 1e9));
   assert_true(abbe_time_left_holds(&always, NAN));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_fits),
-      cmocka_unit_test(test_without_an_end),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

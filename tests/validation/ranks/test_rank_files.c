@@ -11,8 +11,7 @@ static void put(const char *path) {
 }
 
 /* Of neighbours only those that a rank would write are found, in the order of their numbers. */
-static void ranks_files_are_found_and_removed(void **state) {
-  (void)state;
+TEST(ranks_files_are_found_and_removed) {
   static const char *const strange[] = {"rank_files.csv",    "rank_files.csv.01",
                                         "rank_files.csv.",   "rank_files.csv.1b",
                                         "rank_files.csv2.1", "a_rank_files.csv.1"};
@@ -43,17 +42,10 @@ static void ranks_files_are_found_and_removed(void **state) {
     assert_int_equal(unlink(strange[i]), 0);
 }
 
-static void a_folder_that_is_not_there_is_named(void **state) {
-  (void)state;
+TEST(a_folder_that_is_not_there_is_named) {
   size_t *rank, count;
   abbe_error error = {0};
   assert_int_equal(abbe_rank_files_find("nowhere/a.csv", &rank, &count, &error), ABBE_IO);
   assert_contains(error.text, "nowhere/: the folder cannot be read");
   abbe_rank_files_remove("nowhere/a.csv");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(ranks_files_are_found_and_removed),
-                                     cmocka_unit_test(a_folder_that_is_not_there_is_named)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

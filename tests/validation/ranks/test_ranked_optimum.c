@@ -70,8 +70,7 @@ static void check_same(const abbe_gem_optimum *a, const abbe_gem_optimum *b) {
   assert_true(a->design.value == b->design.value);
 }
 
-static void any_number_of_ranks_finds_the_same(void **state) {
-  (void)state;
+TEST(any_number_of_ranks_finds_the_same) {
   asked a = prepare();
   abbe_gem_optimum one = alone(&a);
   for (size_t count = 1; count <= 3; count++) {
@@ -90,8 +89,7 @@ static void any_number_of_ranks_finds_the_same(void **state) {
 
 /* Three ranks of which one is stopped after two of its four pairs; then two, who judge the two
  * pairs that are left. */
-static void other_ranks_go_on(void **state) {
-  (void)state;
+TEST(other_ranks_go_on) {
   asked a = prepare();
   abbe_gem_optimum one = alone(&a);
   abbe_result others[2];
@@ -118,10 +116,4 @@ static void other_ranks_go_on(void **state) {
   abbe_rank_files_remove(path);
   abbe_gem_optimum_free(&one);
   judged_free(&a.j);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(any_number_of_ranks_finds_the_same),
-                                     cmocka_unit_test(other_ranks_go_on)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,8 +18,7 @@ static void trace(const char *text, const abbe_trace_desc *desc, size_t passes, 
   abbe_scene_free(&scene);
 }
 
-static void the_ledger_closes(void **state) {
-  (void)state;
+TEST(the_ledger_closes) {
   static const char *const scenes[] = {
       CAMERA POINT_LIGHT MIST("2") FLOOR BALL("murk"),
       CAMERA SUN MIST("0.5") FLOOR "- {name: cloudy, shape: sphere, radius: 0.08, transform: "
@@ -41,8 +40,7 @@ static void the_ledger_closes(void **state) {
 }
 
 /* exp(-depth) of the light that sets out reaches the floor through a plate of air's index. */
-static void what_is_left_is_known(void **state) {
-  (void)state;
+TEST(what_is_left_is_known) {
   abbe_trace_statistics s;
   const abbe_trace_desc desc = {.width = 4, .height = 4, .no_map = true, .photons = 1 << 14};
   trace("materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"
@@ -55,8 +53,7 @@ static void what_is_left_is_known(void **state) {
   assert_near(s.ledger.scattered / s.ledger.reached, 1 - exp(-1.3 * 0.59), 1e-3);
 }
 
-static void zeros_change_no_bit(void **state) {
-  (void)state;
+TEST(zeros_change_no_bit) {
   const abbe_trace_desc desc = {.width = 16, .height = 12, .no_map = true, .photons = 1 << 13};
   abbe_image clear, zero;
   trace(CAMERA POINT_LIGHT FLOOR BALL("murk"), &desc, 2, &clear, NULL);
@@ -69,8 +66,7 @@ static void zeros_change_no_bit(void **state) {
   abbe_image_free(&zero);
 }
 
-static void threads_change_no_bit(void **state) {
-  (void)state;
+TEST(threads_change_no_bit) {
   static const char text[] = CAMERA POINT_LIGHT MIST("[[400, 3], [700, 1]]") FLOOR BALL("crown");
   abbe_trace_desc desc = {
       .width = 16, .height = 12, .no_map = true, .photons = 1 << 15, .threads = 1};
@@ -85,8 +81,7 @@ static void threads_change_no_bit(void **state) {
 
 /* Mist under a plate of air's index, which hides the lamp: photons bring what came straight
  * before. With a second plate before the eye they are gathered, without it they find the eye. */
-static void photons_bring_what_came_straight(void **state) {
-  (void)state;
+TEST(photons_bring_what_came_straight) {
 #define VIEW                                                                                       \
   "materials: glass.yaml\ncamera: {eye: [0, -0.8, 0.3], target: [0, 0, 0.3], fov: 20}\n"           \
   "lights:\n- {name: lamp, kind: point, position: [0, 0, 1.2], intensity: 1}\n"                    \
@@ -110,15 +105,4 @@ static void photons_bring_what_came_straight(void **state) {
   assert_true(sum[0] > 0);
   assert_near(sum[1] / sum[0], 1, 0.02);
   assert_near(sum[2] / sum[0], 1, 0.02);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_ledger_closes),
-      cmocka_unit_test(what_is_left_is_known),
-      cmocka_unit_test(zeros_change_no_bit),
-      cmocka_unit_test(threads_change_no_bit),
-      cmocka_unit_test(photons_bring_what_came_straight),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

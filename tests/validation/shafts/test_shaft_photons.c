@@ -56,8 +56,7 @@ static double expected(const abbe_trace_camera *c, const abbe_geometry *g, doubl
   return sum;
 }
 
-static void a_beam_is_seen_as_bright_as_it_is(void **state) {
-  (void)state;
+TEST(a_beam_is_seen_as_bright_as_it_is) {
   const double lambda_nm[STEPS + 1] = {500, 550, 600};
   for (int wall = 0; wall < 2; wall++) {
     char text[1024];
@@ -117,11 +116,4 @@ static void a_beam_is_seen_as_bright_as_it_is(void **state) {
     abbe_geometry_free(&g);
     abbe_scene_free(&scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_beam_is_seen_as_bright_as_it_is),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,8 +4,7 @@
 #include "gl/plan/plan.h"
 #include "validation/sweep/matched_physics.h"
 
-static void test_what_the_plan_follows(void **state) {
-  (void)state;
+TEST(what_the_plan_follows) {
   abbe_scene scene = {0};
   abbe_plan plan;
   abbe_physics physics = {0};
@@ -22,9 +21,4 @@ static void test_what_the_plan_follows(void **state) {
   /* A request that the renderer refuses has no plan to match. */
   assert_int_not_equal(abbe_matched_physics(&scene, 500, 400, &physics, NULL), ABBE_OK);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_the_plan_follows)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

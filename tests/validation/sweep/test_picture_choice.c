@@ -45,8 +45,19 @@ static void choose(abbe_picture_request request, abbe_picture_choice *out) {
   assert_good(abbe_picture_choose(&request, &scene, out, &error), &error);
 }
 
-static void test_the_file(void **state) {
-  (void)state;
+static void begin(void) {
+  snprintf(path, sizeof path, "/tmp/abbe_test_picture_choice_%ld.yaml", (long)getpid());
+  load_text(SCENE, &scene);
+}
+
+static void finish(void) {
+  abbe_scene_free(&scene);
+  unlink(path);
+}
+
+GROUP(begin, finish);
+
+TEST(the_file) {
   abbe_picture_front f;
   abbe_error error = {0};
   write_file(WHOLE);
@@ -67,8 +78,7 @@ static void test_the_file(void **state) {
 }
 
 /* Without the tracer and without a time nothing is measured: promises are the file's. */
-static void test_the_renderer_alone(void **state) {
-  (void)state;
+TEST(the_renderer_alone) {
   abbe_picture_choice c;
   abbe_error error = {0};
   write_file(WHOLE);
@@ -98,8 +108,7 @@ static void test_the_renderer_alone(void **state) {
 }
 
 /* The tracer's errors are the yardstick's own, as often as the file says; times likewise. */
-static void test_promises_are_told_by_the_yardstick(void **state) {
-  (void)state;
+TEST(promises_are_told_by_the_yardstick) {
   abbe_picture_choice c;
   abbe_sweep_row row = {0};
   abbe_error error = {0};
@@ -118,8 +127,7 @@ static void test_promises_are_told_by_the_yardstick(void **state) {
 }
 
 /* A traced picture's own passes decide, whatever was promised. */
-static void test_what_passes_tell(void **state) {
-  (void)state;
+TEST(what_passes_tell) {
   abbe_picture_choice c;
   abbe_error error = {0};
   write_file(WHOLE);
@@ -147,8 +155,7 @@ static void assert_says(const abbe_picture_choice *c, const char *right) {
 }
 
 /* What was measured elsewhere is expected; what passes of this picture say is told. */
-static void test_told_or_expected(void **state) {
-  (void)state;
+TEST(told_or_expected) {
   abbe_picture_choice c;
   write_file(WHOLE);
   choose((abbe_picture_request){.budget_ms = 1e9}, &c);
@@ -172,8 +179,7 @@ static void test_told_or_expected(void **state) {
 }
 
 /* Of many photons a pass takes as many times as long, of few no less than the yardstick's. */
-static void test_what_passes_take(void **state) {
-  (void)state;
+TEST(what_passes_take) {
   const size_t its = ABBE_PICTURE_YARDSTICK_PHOTONS * ABBE_PICTURE_YARDSTICK_PHOTONS;
   abbe_picture_choice c = {.once_ms = 50};
   assert_near(abbe_picture_choice_pass_s(&c, 4 * its), 0.2, 1e-12);
@@ -182,8 +188,7 @@ static void test_what_passes_take(void **state) {
   assert_true(isnan(abbe_picture_choice_pass_s(&c, its)));
 }
 
-static void test_by_time(void **state) {
-  (void)state;
+TEST(by_time) {
   abbe_picture_choice c;
   abbe_error error = {0};
   write_file(WHOLE);
@@ -201,8 +206,7 @@ static void test_by_time(void **state) {
 }
 
 /* What repeats of the yardstick tell of the machine is said where a budget is not kept. */
-static void test_a_busy_machine(void **state) {
-  (void)state;
+TEST(a_busy_machine) {
   abbe_picture_choice c;
   abbe_error error = {0};
   write_file(WHOLE);
@@ -226,8 +230,7 @@ static void test_a_busy_machine(void **state) {
   assert_contains(error.text, "the machine may be busy");
 }
 
-static void test_words(void **state) {
-  (void)state;
+TEST(words) {
   char text[300];
   abbe_picture_point point = {.tool = ABBE_PICTURE_TRACE_FILTER};
   abbe_sweep_setting_of_trace(256, 4, true, &point.setting);
@@ -240,8 +243,7 @@ static void test_words(void **state) {
   assert_contains(text, "the renderer: 3 wavelengths, 16 photons");
 }
 
-static void test_what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   static const struct {
     const char *text, *part;
   } broken[] = {
@@ -275,25 +277,4 @@ static void test_what_is_refused(void **state) {
   write_file(HEAD PICTURES "    trace:\n      front:\n" TRACE("64", "1", "2", "1"));
   const abbe_picture_request q = {.file = path, .max_error = 1, .tool = {true}};
   assert_int_equal(abbe_picture_choose(&q, &scene, &c, &error), ABBE_NOT_FOUND);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_the_file),
-      cmocka_unit_test(test_the_renderer_alone),
-      cmocka_unit_test(test_promises_are_told_by_the_yardstick),
-      cmocka_unit_test(test_what_passes_tell),
-      cmocka_unit_test(test_told_or_expected),
-      cmocka_unit_test(test_what_passes_take),
-      cmocka_unit_test(test_by_time),
-      cmocka_unit_test(test_a_busy_machine),
-      cmocka_unit_test(test_words),
-      cmocka_unit_test(test_what_is_refused),
-  };
-  snprintf(path, sizeof path, "/tmp/abbe_test_picture_choice_%ld.yaml", (long)getpid());
-  load_text(SCENE, &scene);
-  int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  abbe_scene_free(&scene);
-  unlink(path);
-  return failed;
 }

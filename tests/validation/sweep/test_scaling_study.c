@@ -9,8 +9,9 @@
 /* The cheapest shaders to compile: what grows is asked of each alike. */
 #define SCENE CAMERA POINT_LIGHT FLOOR BRICK("crown")
 
-static void test_slopes(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(slopes) {
   abbe_scaling_study g = {.count = 6};
   const abbe_scaling_study_point points[] = {
       {ABBE_SCALING_PHOTONS, 10, 5, 0, 0, 0},     {ABBE_SCALING_PHOTONS, 100, 50, 0, 0, 0},
@@ -29,8 +30,7 @@ static bool never(void *user, double done) {
   return false;
 }
 
-static void test_all_axes(void **state) {
-  (void)state;
+TEST(all_axes) {
   abbe_scene scene = {0};
   abbe_scaling_study g;
   abbe_error error = {0};
@@ -68,10 +68,4 @@ static void test_all_axes(void **state) {
   unlink(path);
   rmdir(folder);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_slopes),
-                                     cmocka_unit_test(test_all_axes)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -22,8 +22,7 @@ static size_t expand(const abbe_scene *scene, const abbe_sweep_grid *grids, size
   return got;
 }
 
-static void test_grids_hold_each_setting_once(void **state) {
-  (void)state;
+TEST(grids_hold_each_setting_once) {
   abbe_scene scene = {0};
   abbe_sweep_setting *list;
   size_t refused;
@@ -119,8 +118,7 @@ static void test_grids_hold_each_setting_once(void **state) {
 }
 
 /* Presets join the scenes of a class by setting, whatever exits their own plans take. */
-static void test_the_thin_grid_is_the_same_for_every_convex_solid(void **state) {
-  (void)state;
+TEST(the_thin_grid_is_the_same_for_every_convex_solid) {
   static const char *const names[] = {"prism", "gem", "diamond"};
   abbe_sweep_setting *list[3];
   size_t counts[3];
@@ -145,8 +143,7 @@ static void test_the_thin_grid_is_the_same_for_every_convex_solid(void **state) 
   abbe_sweep_grids_free(&grids);
 }
 
-static void test_what_a_profile_does_not_know_is_left_out(void **state) {
-  (void)state;
+TEST(what_a_profile_does_not_know_is_left_out) {
   abbe_scene scene = {0};
   abbe_sweep_setting *list;
   size_t refused, count;
@@ -164,8 +161,7 @@ static void test_what_a_profile_does_not_know_is_left_out(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_files(void **state) {
-  (void)state;
+TEST(files) {
   static const struct {
     const char *text, *part;
   } broken[] = {
@@ -208,14 +204,4 @@ static void test_files(void **state) {
   assert_near(second->share[0], ABBE_PLAN_SHARE, 0);
   assert_int_equal(second->photons.count, 0);
   abbe_sweep_grids_free(&grids);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_grids_hold_each_setting_once),
-      cmocka_unit_test(test_the_thin_grid_is_the_same_for_every_convex_solid),
-      cmocka_unit_test(test_what_a_profile_does_not_know_is_left_out),
-      cmocka_unit_test(test_files),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,8 +8,7 @@
   "lights:\n- {name: lamp, kind: spot, position: [0.05, 0.03, 0.6], direction: [0, 0, -1], "       \
   "intensity: 1, cone: 40}\n"
 
-static void test_hashes_tell_scenes_and_references_apart(void **state) {
-  (void)state;
+TEST(hashes_tell_scenes_and_references_apart) {
   static const char *const texts[] = {SCENE, CAMERA POINT_LIGHT FLOOR BALL("flat"),
                                       CAMERA SPOT FLOOR BALL("crown"), CAMERA POINT_LIGHT FLOOR};
   unsigned long long seen[4];
@@ -31,11 +30,4 @@ static void test_hashes_tell_scenes_and_references_apart(void **state) {
   assert_true(abbe_sweep_hash_images(&a, NULL) != abbe_sweep_hash_images(&b, NULL));
   abbe_image_free(&a);
   abbe_image_free(&b);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_hashes_tell_scenes_and_references_apart),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

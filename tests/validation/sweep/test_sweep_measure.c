@@ -48,8 +48,9 @@ static abbe_sweep_row measure(const abbe_sweep *sweep, const abbe_sweep_setting 
   return row;
 }
 
-static void test_the_same_picture_has_no_error(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(the_same_picture_has_no_error) {
   abbe_scene scene = {0};
   abbe_image picture, map;
   load_text(SCENE, &scene);
@@ -90,8 +91,7 @@ static void test_the_same_picture_has_no_error(void **state) {
 }
 
 /* The thesis profile against itself, but in another brightness: the best factor finds it back. */
-static void test_the_thesis_gets_its_best_brightness(void **state) {
-  (void)state;
+TEST(the_thesis_gets_its_best_brightness) {
   abbe_scene scene = {0};
   abbe_image picture, map;
   load_text(CAMERA SPOT FLOOR BALL("crown"), &scene);
@@ -122,8 +122,7 @@ static void test_the_thesis_gets_its_best_brightness(void **state) {
 }
 
 /* The same method in physical units is judged in them, and its fill's light is counted. */
-static void test_the_method_in_units_gets_no_factor(void **state) {
-  (void)state;
+TEST(the_method_in_units_gets_no_factor) {
   abbe_scene scene = {0};
   abbe_image picture, map;
   load_text(CAMERA SPOT FLOOR BALL("crown"), &scene);
@@ -161,8 +160,7 @@ static void test_the_method_in_units_gets_no_factor(void **state) {
 
 /* Of a still scene the fourth frame is the mean of four grids, and stays; held against itself it
  * has no error, and the frames before have. */
-static void test_frames_come_together(void **state) {
-  (void)state;
+TEST(frames_come_together) {
   abbe_scene scene = {0};
   abbe_image picture;
   abbe_render_desc desc;
@@ -200,8 +198,7 @@ static bool never(void *user, double done) {
 }
 
 /* Against a traced reference: the numbers are there with their noise, maps of other sizes too. */
-static void test_against_a_traced_reference(void **state) {
-  (void)state;
+TEST(against_a_traced_reference) {
   abbe_scene scene = {0};
   abbe_image picture, map, drawn;
   abbe_map_layout layout;
@@ -258,8 +255,7 @@ static void test_against_a_traced_reference(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_a_scene_without_refractors_has_no_map(void **state) {
-  (void)state;
+TEST(a_scene_without_refractors_has_no_map) {
   abbe_scene scene = {0};
   abbe_map_layout layout;
   abbe_error error = {0};
@@ -267,16 +263,4 @@ static void test_a_scene_without_refractors_has_no_map(void **state) {
   assert_int_equal(abbe_sweep_fit_layout(context, &scene, 0, &layout, &error), ABBE_UNSUPPORTED);
   assert_contains(error.text, "no refractor");
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_the_same_picture_has_no_error),
-      cmocka_unit_test(test_the_thesis_gets_its_best_brightness),
-      cmocka_unit_test(test_the_method_in_units_gets_no_factor),
-      cmocka_unit_test(test_frames_come_together),
-      cmocka_unit_test(test_against_a_traced_reference),
-      cmocka_unit_test(test_a_scene_without_refractors_has_no_map),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

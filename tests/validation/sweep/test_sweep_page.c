@@ -29,8 +29,9 @@ static abbe_sweep_table make_table(void) {
   return t;
 }
 
-static void test_tables_without_their_scene(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(tables_without_their_scene) {
   char path[64], *text;
   size_t size;
   snprintf(path, sizeof path, "/tmp/abbe_test_sweep_page_%ld.md", (long)getpid());
@@ -52,8 +53,7 @@ static void test_tables_without_their_scene(void **state) {
   abbe_sweep_table_free(&t);
 }
 
-static void test_names_of_pictures(void **state) {
-  (void)state;
+TEST(names_of_pictures) {
   abbe_sweep_table t[2] = {make_table(), make_table()};
   char path[ABBE_SWEEP_PATH];
   abbe_sweep_page_picture("out/trade.md", t, 0, 0, path);
@@ -61,12 +61,4 @@ static void test_names_of_pictures(void **state) {
   abbe_sweep_page_picture("out/trade.md", t, 1, 3, path);
   assert_string_equal(path, "out/trade-gem-2-accurate.png");
   for (int i = 0; i < 2; i++) abbe_sweep_table_free(&t[i]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_tables_without_their_scene),
-      cmocka_unit_test(test_names_of_pictures),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -40,9 +40,22 @@ static abbe_sweep_process *make(const abbe_sweep_process_desc *desc) {
   return process;
 }
 
+static void begin(void) {
+  assert_non_null(mkdtemp(folder));
+  snprintf(program, sizeof program, "%s/program", folder);
+  snprintf(log_path, sizeof log_path, "%s/log", folder);
+}
+
+static void finish(void) {
+  unlink(program);
+  unlink(log_path);
+  assert_int_equal(rmdir(folder), 0);
+}
+
+GROUP(begin, finish);
+
 /* Cold finds no cache and fills it, which takes a while; what is warm finds it. */
-static void test_cold_and_warm(void **state) {
-  (void)state;
+TEST(cold_and_warm) {
   char text[2000], script[600];
   abbe_error error = {0};
   abbe_sweep_row row = sweep_row("default", 64);
@@ -79,8 +92,7 @@ static void test_cold_and_warm(void **state) {
   assert_int_not_equal(access(left, F_OK), 0);
 }
 
-static void test_the_tracers_command(void **state) {
-  (void)state;
+TEST(the_tracers_command) {
   char text[2000], script[200];
   abbe_error error = {0};
   abbe_sweep_row row = {0};
@@ -97,8 +109,7 @@ static void test_the_tracers_command(void **state) {
   assert_contains(text, " --filter\n");
 }
 
-static void test_what_fails_is_said(void **state) {
-  (void)state;
+TEST(what_fails_is_said) {
   abbe_error error = {0};
   abbe_sweep_row row = sweep_row("default", 64);
   abbe_sweep_process *process = make(&asked), *none;
@@ -117,19 +128,4 @@ static void test_what_fails_is_said(void **state) {
   assert_int_equal(abbe_sweep_process_make(&asked, &none, &error), ABBE_IO);
   assert_contains(error.text, "/there/is/none");
   assert_int_equal(unsetenv("TMPDIR"), 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cold_and_warm),
-      cmocka_unit_test(test_the_tracers_command),
-      cmocka_unit_test(test_what_fails_is_said),
-  };
-  if (mkdtemp(folder) == NULL) return 1;
-  snprintf(program, sizeof program, "%s/program", folder);
-  snprintf(log_path, sizeof log_path, "%s/log", folder);
-  int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  unlink(program);
-  unlink(log_path);
-  return rmdir(folder) != 0 ? 1 : failed;
 }

@@ -25,8 +25,7 @@ static void add(abbe_sweep_table *t, size_t photons, double light_ms, double eye
   assert_int_equal(abbe_sweep_table_add(t, &row, NULL), ABBE_OK);
 }
 
-static void test_by_hand(void **state) {
-  (void)state;
+TEST(by_hand) {
   char path[] = "/tmp/abbe-test-promises-XXXXXX";
   int file = mkstemp(path);
   assert_true(file >= 0);
@@ -60,9 +59,4 @@ static void test_by_hand(void **state) {
   unlink(path);
   assert_int_equal(abbe_sweep_promises_make(&t, path, &p, &error), ABBE_IO);
   abbe_sweep_table_free(&t);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_by_hand)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

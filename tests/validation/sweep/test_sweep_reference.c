@@ -8,8 +8,7 @@
 
 #define SCENE CAMERA POINT_LIGHT FLOOR BALL("crown")
 
-static void test_names(void **state) {
-  (void)state;
+TEST(names) {
   abbe_sweep_reference r = {0};
   abbe_error error = {0};
   char path[2000];
@@ -24,8 +23,7 @@ static void test_names(void **state) {
   assert_contains(error.text, "is too long");
 }
 
-static void test_given_files(void **state) {
-  (void)state;
+TEST(given_files) {
   static const char *const names[] = {"R", "G", "B"};
   abbe_scene scene = {0};
   abbe_sweep_reference r;
@@ -51,12 +49,4 @@ static void test_given_files(void **state) {
   assert_int_equal(abbe_sweep_reference_load(&scene, path, NULL, &r, &light, &error), ABBE_IO);
   abbe_image_free(&image);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_names),
-      cmocka_unit_test(test_given_files),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,9 +20,26 @@ static bool tick(void *user, const char *what, double done) {
   return *left > 0 && (*left)-- > 0;
 }
 
+static void begin(void) {
+  assert_non_null(mkdtemp(folder));
+  make_context();
+}
+
+static void finish(void) {
+  free_context();
+  static const char *const files[] = {"s.csv", "r.exr"};
+  for (size_t i = 0; i < 2; i++) {
+    char path[96];
+    snprintf(path, sizeof path, "%s/%s", folder, files[i]);
+    unlink(path);
+  }
+  assert_int_equal(rmdir(folder), 0);
+}
+
+GROUP(begin, finish);
+
 /* With a picture that is given: tracing one is tested through the program. */
-static void test_a_sweep_goes_on_where_it_was_stopped(void **state) {
-  (void)state;
+TEST(a_sweep_goes_on_where_it_was_stopped) {
   static const char *const names[] = {"X", "Y", "Z"};
   abbe_scene scene = {0};
   abbe_image image;
@@ -74,8 +91,7 @@ static void test_a_sweep_goes_on_where_it_was_stopped(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_settings_of_presets(void **state) {
-  (void)state;
+TEST(settings_of_presets) {
   abbe_scene scene = {0};
   abbe_sweep_setting *setting;
   size_t count;
@@ -91,20 +107,4 @@ static void test_settings_of_presets(void **state) {
                    ABBE_UNSUPPORTED);
   assert_null(setting);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_sweep_goes_on_where_it_was_stopped),
-      cmocka_unit_test(test_settings_of_presets),
-  };
-  if (mkdtemp(folder) == NULL) return 1;
-  int failed = cmocka_run_group_tests(tests, make_context, free_context);
-  static const char *const files[] = {"s.csv", "r.exr"};
-  for (size_t i = 0; i < 2; i++) {
-    char path[96];
-    snprintf(path, sizeof path, "%s/%s", folder, files[i]);
-    unlink(path);
-  }
-  return rmdir(folder) != 0 ? 1 : failed;
 }

@@ -12,8 +12,7 @@ static const abbe_render_desc fine = {.wavelengths = 21,
                                       .energy_share = 0.01,
                                       .exits = 8};
 
-static void test_there_and_back(void **state) {
-  (void)state;
+TEST(there_and_back) {
   abbe_sweep_setting setting;
   abbe_render_desc desc;
   abbe_sweep_setting_of(&fine, &setting);
@@ -46,8 +45,7 @@ static const abbe_render_desc quads = {.profile = ABBE_PROFILE_WYMAN2006,
                                        .fill = ABBE_FILL_QUADS,
                                        .energy_share = 0.01};
 
-static void test_kinds_of_polygons(void **state) {
-  (void)state;
+TEST(kinds_of_polygons) {
 #define NAME(code, name, bit) {name, bit},
   static const struct {
     const char *name;
@@ -75,8 +73,7 @@ static void test_kinds_of_polygons(void **state) {
   }
 }
 
-static void test_directions(void **state) {
-  (void)state;
+TEST(directions) {
   for (int k = 0; k < ABBE_DIRECTION_COUNT; k++) {
     abbe_sweep_setting setting;
     char text[200];
@@ -97,8 +94,7 @@ static void test_directions(void **state) {
   assert_int_equal(abbe_sweep_setting_desc(&setting, &back, NULL), ABBE_NOT_FOUND);
 }
 
-static void test_pinholes_are_contestants(void **state) {
-  (void)state;
+TEST(pinholes_are_contestants) {
   abbe_sweep_setting setting;
   abbe_render_desc desc = fine;
   char text[200];
@@ -119,8 +115,7 @@ static void test_pinholes_are_contestants(void **state) {
   }
 }
 
-static void test_unknown_names(void **state) {
-  (void)state;
+TEST(unknown_names) {
   static const abbe_sweep_setting wrong = {
       .profile = "default", .fill = "glue", .model = "auto", .wavelengths = 3, .share = 0.01};
   abbe_render_desc desc;
@@ -131,13 +126,4 @@ static void test_unknown_names(void **state) {
   assert_false(abbe_sweep_setting_is_fine(&wrong));
   abbe_sweep_setting_describe(&wrong, text, sizeof text);
   assert_contains(text, "w3 p0");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_there_and_back), cmocka_unit_test(test_kinds_of_polygons),
-      cmocka_unit_test(test_directions),     cmocka_unit_test(test_pinholes_are_contestants),
-      cmocka_unit_test(test_unknown_names),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

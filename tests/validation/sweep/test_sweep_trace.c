@@ -19,8 +19,7 @@ static abbe_sweep_row row_of(size_t photons, size_t passes) {
   return row;
 }
 
-static void test_the_picture_is_the_tracers(void **state) {
-  (void)state;
+TEST(the_picture_is_the_tracers) {
   abbe_scene scene = {0};
   abbe_image picture = {0}, own = {0};
   abbe_error error = {0};
@@ -47,8 +46,7 @@ static void test_the_picture_is_the_tracers(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   abbe_scene scene = {0};
   abbe_error error = {0};
   int asked = 0;
@@ -67,12 +65,4 @@ static void test_what_is_refused(void **state) {
   assert_contains(error.text, "no light");
   scene.light_count = lights;
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_the_picture_is_the_tracers),
-      cmocka_unit_test(test_what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,8 +13,7 @@ static abbe_accumulator make(size_t values, size_t threads, double most) {
 }
 
 /* The same numbers, in another order and on other threads: the same result to the last bit. */
-static void order_and_threads_do_not_matter(void **state) {
-  (void)state;
+TEST(order_and_threads_do_not_matter) {
   enum { COUNT = 5000, VALUES = 3 };
   float x[COUNT];
   uint64_t random = 5;
@@ -50,8 +49,7 @@ static void order_and_threads_do_not_matter(void **state) {
 }
 
 /* Passes in another order, and in parts that are added up: the same sums to the last bit. */
-static void order_of_passes_does_not_matter(void **state) {
-  (void)state;
+TEST(order_of_passes_does_not_matter) {
   enum { PASSES = 40 };
   uint64_t random = 11;
   float x[PASSES];
@@ -75,8 +73,7 @@ static void order_of_passes_does_not_matter(void **state) {
 }
 
 /* The largest samples there may be, as many as there may be: no sum overflows. */
-static void the_largest_sums_fit(void **state) {
-  (void)state;
+TEST(the_largest_sums_fit) {
   const abbe_whole_sum most = (abbe_whole_sum)1 << ABBE_WHOLE_SUM_BITS;
   for (int sign = -1; sign <= 1; sign += 2) {
     abbe_whole_sum sum = sign * most, product[2] = {0};
@@ -96,8 +93,7 @@ static void the_largest_sums_fit(void **state) {
 }
 
 /* (a 2^52 + b)(c 2^52 + d), by hand; a product of less has one digit alone. */
-static void products_are_exact(void **state) {
-  (void)state;
+TEST(products_are_exact) {
   const abbe_whole_sum shift = (abbe_whole_sum)1 << 52, x = 5 * shift + 7, y = 11 * shift + 13;
   abbe_whole_sum sum[2] = {0};
   abbe_whole_sum_add_product(x, y, sum);
@@ -109,8 +105,7 @@ static void products_are_exact(void **state) {
 }
 
 /* Beside sums of a billion billion times as much, what is dim is there, to its last bits. */
-static void bright_light_takes_no_dim_light_away(void **state) {
-  (void)state;
+TEST(bright_light_takes_no_dim_light_away) {
   enum { PASSES = 8 };
   for (int brightness = 0; brightness <= 60; brightness += 5) {
     abbe_accumulator a = make(2, 2, ldexp(1, brightness) * 0x1p28);
@@ -129,8 +124,7 @@ static void bright_light_takes_no_dim_light_away(void **state) {
 }
 
 /* As many small additions as a finer sum does not hold go on in the coarser one. */
-static void sums_are_carried(void **state) {
-  (void)state;
+TEST(sums_are_carried) {
   const float x = 0x1.fffffep-38f; /* just below what the coarser unit takes of 1 */
   for (int sign = -1; sign <= 1; sign += 2) {
     abbe_accumulator a = make(1, 1, 1);
@@ -145,8 +139,7 @@ static void sums_are_carried(void **state) {
 }
 
 /* What is far below the range has its standard error too: no bit of a square is dropped. */
-static void dim_values_have_an_error(void **state) {
-  (void)state;
+TEST(dim_values_have_an_error) {
   abbe_accumulator a = make(2, 1, 0x1p93); /* units of 1 */
   for (int pass = 0; pass < 4; pass++) {
     abbe_accumulator_add(&a, 0, 0, pass % 2 ? 300 : 100);
@@ -161,8 +154,7 @@ static void dim_values_have_an_error(void **state) {
 }
 
 /* Passes of 1, 2, 3, 4: mean 2.5, standard error sqrt(5/3 / 4). */
-static void mean_and_standard_error(void **state) {
-  (void)state;
+TEST(mean_and_standard_error) {
   abbe_accumulator a = make(2, 2, 1e6);
   assert_true(abbe_accumulator_mean(&a, 0) == 0);
   assert_true(isinf(abbe_accumulator_error(&a, 0)));
@@ -185,8 +177,7 @@ static void mean_and_standard_error(void **state) {
 
 /* The error of the mean of n normal numbers of variance 1 is 1 / sqrt(n), known itself to a share
  * of 1 / sqrt(2 n); over 400 values to a twentieth of that. */
-static void the_error_is_the_spread_of_the_mean(void **state) {
-  (void)state;
+TEST(the_error_is_the_spread_of_the_mean) {
   enum { VALUES = 400, PASSES = 50 };
   abbe_accumulator a = make(VALUES, 1, 1e6);
   uint64_t random = 11;
@@ -205,8 +196,7 @@ static void the_error_is_the_spread_of_the_mean(void **state) {
   abbe_accumulator_free(&a);
 }
 
-static void a_dropped_pass_leaves_nothing(void **state) {
-  (void)state;
+TEST(a_dropped_pass_leaves_nothing) {
   abbe_accumulator a = make(1, 2, 1e6);
   abbe_accumulator_add(&a, 0, 0, 1);
   abbe_accumulator_end_pass(&a);
@@ -221,8 +211,7 @@ static void a_dropped_pass_leaves_nothing(void **state) {
   abbe_accumulator_free(&a);
 }
 
-static void what_is_too_large_is_cut_and_counted(void **state) {
-  (void)state;
+TEST(what_is_too_large_is_cut_and_counted) {
   abbe_accumulator a = make(3, 2, 1024);
   assert_near(a.limit, 1, 0);
   const float awkward[] = {2, -INFINITY, NAN, 1, -1, 1.0000001f};
@@ -237,8 +226,7 @@ static void what_is_too_large_is_cut_and_counted(void **state) {
 }
 
 /* More than a pass holds: no overflow, and it is told. */
-static void a_sum_that_runs_over_is_told(void **state) {
-  (void)state;
+TEST(a_sum_that_runs_over_is_told) {
   for (int sign = -1; sign <= 1; sign += 2) {
     abbe_accumulator a = make(1, 3, 1024);
     for (int i = 0; i < 30000; i++) abbe_accumulator_add(&a, (size_t)(i % 3), 0, (float)sign);
@@ -250,8 +238,7 @@ static void a_sum_that_runs_over_is_told(void **state) {
 }
 
 /* Numbers of 2^-50 of what a pass holds still count. */
-static void small_numbers_are_not_lost(void **state) {
-  (void)state;
+TEST(small_numbers_are_not_lost) {
   abbe_accumulator a = make(1, 1, 1);
   for (int i = 0; i < 1000; i++) abbe_accumulator_add(&a, 0, 0, 0x1p-50f);
   abbe_accumulator_add(&a, 0, 0, 0x1p-11f);
@@ -261,8 +248,7 @@ static void small_numbers_are_not_lost(void **state) {
   abbe_accumulator_free(&a);
 }
 
-static void what_cannot_be_kept_is_refused(void **state) {
-  (void)state;
+TEST(what_cannot_be_kept_is_refused) {
   abbe_accumulator a;
   abbe_error error = {0};
   const double most[] = {0, -1, NAN, INFINITY, 1e101, 1e-101};
@@ -274,24 +260,4 @@ static void what_cannot_be_kept_is_refused(void **state) {
   assert_int_equal(abbe_accumulator_make(1, 0, 1, &a, NULL), ABBE_INVALID_ARGUMENT);
   abbe_accumulator_free(&a);
   abbe_accumulator_free(NULL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(order_and_threads_do_not_matter),
-      cmocka_unit_test(order_of_passes_does_not_matter),
-      cmocka_unit_test(the_largest_sums_fit),
-      cmocka_unit_test(products_are_exact),
-      cmocka_unit_test(bright_light_takes_no_dim_light_away),
-      cmocka_unit_test(sums_are_carried),
-      cmocka_unit_test(dim_values_have_an_error),
-      cmocka_unit_test(mean_and_standard_error),
-      cmocka_unit_test(the_error_is_the_spread_of_the_mean),
-      cmocka_unit_test(a_dropped_pass_leaves_nothing),
-      cmocka_unit_test(what_is_too_large_is_cut_and_counted),
-      cmocka_unit_test(a_sum_that_runs_over_is_told),
-      cmocka_unit_test(small_numbers_are_not_lost),
-      cmocka_unit_test(what_cannot_be_kept_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,8 +17,7 @@ static double band_at(const abbe_image *image, const char *prefix, double middle
 }
 
 /* A grey floor in even light: half of 1 W/(m2 sr), over 400 nm. */
-static void a_lit_floor_is_even(void **state) {
-  (void)state;
+TEST(a_lit_floor_is_even) {
   static const size_t counts[] = {1, 20, 80, 160, 256};
   abbe_scene scene;
   load_text(CAMERA EVEN_SUN FLOOR, &scene);
@@ -41,8 +40,7 @@ static void a_lit_floor_is_even(void **state) {
 
 /* All that photons bring through a ball without dispersion. Its mean over bands is what each has,
  * and no band is farther off than errors of so many bands may be. */
-static void photons_are_even(void **state) {
-  (void)state;
+TEST(photons_are_even) {
   enum { BANDS = 160, PASSES = 48 };
   abbe_scene scene;
   load_text(CAMERA EVEN_SUN FLOOR BALL("flat"), &scene);
@@ -69,12 +67,4 @@ static void photons_are_even(void **state) {
   abbe_image_free(&map);
   abbe_tracer_free(tracer);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_lit_floor_is_even),
-      cmocka_unit_test(photons_are_even),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

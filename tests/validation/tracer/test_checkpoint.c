@@ -21,10 +21,9 @@ static const abbe_trace_desc small = {.layout = &layout,
 
 #define SCENE(more) CAMERA POINT_LIGHT FLOOR BEADS("crown") more
 
-static int setup(void **state) {
-  (void)state;
+static void setup(void) {
   snprintf(folder, sizeof folder, "/tmp/abbe-test-checkpoint-XXXXXX");
-  if (mkdtemp(folder) == NULL) return 1;
+  assert_non_null(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/run.checkpoint", folder);
   load_text(SCENE(""), &scene);
   abbe_trace_desc fitted = small;
@@ -35,14 +34,12 @@ static int setup(void **state) {
   assert_int_equal(abbe_map_layout_read(&map, "map", &layout, NULL), ABBE_OK);
   abbe_image_free(&map);
   abbe_tracer_free(tracer);
-  return 0;
 }
 
-static int teardown(void **state) {
-  (void)state;
+static void teardown(void) {
   unlink(path);
   abbe_scene_free(&scene);
-  return rmdir(folder);
+  assert_false(rmdir(folder));
 }
 
 /* Saves a run of that many passes. */
@@ -79,9 +76,10 @@ static void check_same(const abbe_tracer *a, const abbe_tracer *b) {
   assert_memory_equal(&s.ledger, &t.ledger, sizeof s.ledger);
 }
 
+GROUP(setup, teardown);
+
 /* Saved after 2, taken up on another number of threads, 3 more: the image of 5. */
-static void resumed_runs_give_the_image_of_unbroken_ones(void **state) {
-  (void)state;
+TEST(resumed_runs_give_the_image_of_unbroken_ones) {
   for (int guides = 0; guides < 2; guides++) {
     abbe_trace_desc desc = small;
     desc.guides = guides;
@@ -114,8 +112,7 @@ static void check_refused(const abbe_scene *of, const abbe_trace_desc *desc, abb
   abbe_tracer_free(tracer);
 }
 
-static void a_refusal_changes_nothing(void **state) {
-  (void)state;
+TEST(a_refusal_changes_nothing) {
   save(&small, 2);
   abbe_trace_desc other = small;
   other.seed = 9;
@@ -130,8 +127,7 @@ static void a_refusal_changes_nothing(void **state) {
   abbe_tracer_free(same);
 }
 
-static void another_request_is_named(void **state) {
-  (void)state;
+TEST(another_request_is_named) {
   save(&small, 1);
   static const struct {
     abbe_trace_desc desc;
@@ -181,8 +177,7 @@ static void another_request_is_named(void **state) {
 
 /* Whatever the light meets belongs to the scene: places, glasses, colours, and how the textures
  * and normals lie. */
-static void another_scene_is_told(void **state) {
-  (void)state;
+TEST(another_scene_is_told) {
   save(&small, 1);
   scene.light[0].position[0] += 1e-9;
   check_refused(&scene, &small, ABBE_INVALID_ARGUMENT, "another scene");
@@ -211,8 +206,7 @@ static void another_scene_is_told(void **state) {
   }
 }
 
-static void textures_and_normals_are_part_of_the_scene(void **state) {
-  (void)state;
+TEST(textures_and_normals_are_part_of_the_scene) {
   static const char *const names[] = {"R", "G", "B"};
   abbe_scene kept = scene;
   load_text(CAMERA POINT_LIGHT FLOOR RING("crown"), &scene);
@@ -237,8 +231,7 @@ static void textures_and_normals_are_part_of_the_scene(void **state) {
 }
 
 /* Which way an optic axis points, a crystal's other index, and how a light's sides lie. */
-static void axes_and_edges_are_part_of_the_scene(void **state) {
-  (void)state;
+TEST(axes_and_edges_are_part_of_the_scene) {
   abbe_scene kept = scene;
   load_text(CAMERA
             "lights:\n- {name: panel, kind: rectangle, position: [0, 0, 0.6], direction: [0, "
@@ -268,8 +261,7 @@ static void axes_and_edges_are_part_of_the_scene(void **state) {
   scene = kept;
 }
 
-static void broken_files_are_told(void **state) {
-  (void)state;
+TEST(broken_files_are_told) {
   save(&small, 2);
   char *data = NULL;
   size_t size = 0;
@@ -306,8 +298,7 @@ static void broken_files_are_told(void **state) {
   abbe_tracer_free(tracer);
 }
 
-static void what_is_no_checkpoint_is_told(void **state) {
-  (void)state;
+TEST(what_is_no_checkpoint_is_told) {
   static const struct {
     const char *text, *part;
   } files[] = {{"", "not a checkpoint"},
@@ -348,8 +339,7 @@ static void save_part(const abbe_trace_desc *desc, size_t first, size_t end, cha
 
 /* Any split, put together in any order, is one run to the last bit, guides and ledger too, and goes
  * on like one. */
-static void any_split_gives_the_bits_of_one_run(void **state) {
-  (void)state;
+TEST(any_split_gives_the_bits_of_one_run) {
   static const size_t split[][PARTS + 1] = {{0, 1, 2, 3, 6}, {0, 2, 3, 5, 6}, {0, 3, 4, 5, 6}};
   static const int order[][PARTS] = {{0, 1, 2, 3}, {3, 2, 1, 0}, {2, 0, 3, 1}};
   abbe_trace_desc desc = small;
@@ -392,8 +382,7 @@ static void check_unmerged(const char *const *paths, size_t count, abbe_result w
   abbe_tracer_free(tracer);
 }
 
-static void gaps_and_overlaps_are_named(void **state) {
-  (void)state;
+TEST(gaps_and_overlaps_are_named) {
   static const size_t range[PARTS][2] = {{0, 2}, {1, 4}, {4, 5}, {7, 8}};
   char file[PARTS][ROOM], other[ROOM];
   for (int k = 0; k < PARTS; k++) save_part(&small, range[k][0], range[k][1], file[k], k);
@@ -435,8 +424,7 @@ static void save_asked(size_t first, size_t done, size_t whole, const char *file
 
 /* The last part, and what a part that was killed had not done, are missed as any other; and what is
  * there is the mean of its own passes. */
-static void what_was_asked_for_is_missed(void **state) {
-  (void)state;
+TEST(what_was_asked_for_is_missed) {
   char file[3][ROOM];
   const char *paths[3] = {file[0], file[1], file[2]};
   for (int k = 0; k < 3; k++) snprintf(file[k], ROOM, "%s/asked-%d.ck", folder, k);
@@ -467,8 +455,7 @@ static void what_was_asked_for_is_missed(void **state) {
   for (int k = 0; k < 3; k++) unlink(file[k]);
 }
 
-static void a_trace_begins_once(void **state) {
-  (void)state;
+TEST(a_trace_begins_once) {
   abbe_tracer *tracer = make_tracer(&scene, &small);
   assert_int_equal(abbe_tracer_begin_at(tracer, 1u << 20, 1, NULL), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_tracer_begin_at(tracer, 5, 0, NULL), ABBE_INVALID_ARGUMENT);
@@ -478,22 +465,4 @@ static void a_trace_begins_once(void **state) {
   assert_int_equal(abbe_tracer_first_pass(tracer), 5);
   assert_int_equal(abbe_tracer_begin_at(tracer, 6, 1, NULL), ABBE_INVALID_ARGUMENT);
   abbe_tracer_free(tracer);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(resumed_runs_give_the_image_of_unbroken_ones),
-      cmocka_unit_test(a_refusal_changes_nothing),
-      cmocka_unit_test(another_request_is_named),
-      cmocka_unit_test(another_scene_is_told),
-      cmocka_unit_test(textures_and_normals_are_part_of_the_scene),
-      cmocka_unit_test(axes_and_edges_are_part_of_the_scene),
-      cmocka_unit_test(broken_files_are_told),
-      cmocka_unit_test(what_is_no_checkpoint_is_told),
-      cmocka_unit_test(any_split_gives_the_bits_of_one_run),
-      cmocka_unit_test(gaps_and_overlaps_are_named),
-      cmocka_unit_test(what_was_asked_for_is_missed),
-      cmocka_unit_test(a_trace_begins_once),
-  };
-  return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -10,20 +10,17 @@ static abbe_scene scene;
 static const abbe_trace_desc small = {
     .width = 6, .height = 5, .map_width = 6, .photons = 500, .threads = 1};
 
-static int setup(void **state) {
-  (void)state;
+static void setup(void) {
   snprintf(folder, sizeof folder, "/tmp/abbe-test-forged-XXXXXX");
-  if (mkdtemp(folder) == NULL) return 1;
+  assert_non_null(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/run.checkpoint", folder);
   load_text(CAMERA POINT_LIGHT FLOOR BEADS("crown"), &scene);
-  return 0;
 }
 
-static int teardown(void **state) {
-  (void)state;
+static void teardown(void) {
   unlink(path);
   abbe_scene_free(&scene);
-  return rmdir(folder);
+  assert_false(rmdir(folder));
 }
 
 /* The file of a run of that many passes; malloc'd. */
@@ -45,9 +42,10 @@ static void write_forged(char *data, size_t size) {
   assert_int_equal(abbe_file_write(path, data, size, NULL), ABBE_OK);
 }
 
+GROUP(setup, teardown);
+
 /* Sums that no passes have would overflow with the next ones, and such numbers of passes too. */
-static void forged_numbers_are_told(void **state) {
-  (void)state;
+TEST(forged_numbers_are_told) {
   abbe_error error = {0};
   abbe_tracer *tracer = make_tracer(&scene, &small);
   size_t size = 0;
@@ -90,8 +88,7 @@ static void forged_numbers_are_told(void **state) {
 }
 
 /* A file of a processor on which Embree takes other instructions. */
-static void other_instructions_are_told(void **state) {
-  (void)state;
+TEST(other_instructions_are_told) {
   abbe_error error = {0};
   abbe_tracer *tracer = make_tracer(&scene, &small);
   char ours[64];
@@ -110,12 +107,4 @@ static void other_instructions_are_told(void **state) {
   assert_contains(error.text, "put parts together");
   free(data);
   abbe_tracer_free(tracer);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(forged_numbers_are_told),
-      cmocka_unit_test(other_instructions_are_told),
-  };
-  return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -90,8 +90,7 @@ static double luminance(const abbe_image *p, size_t x, size_t y) {
 }
 
 /* Flux that a convex body meets is pi times its surface times the radiance. */
-static void a_convex_body_meets_pi_times_its_surface(void **state) {
-  (void)state;
+TEST(a_convex_body_meets_pi_times_its_surface) {
   static const struct {
     const char *body;
     double surface;
@@ -115,8 +114,7 @@ static void a_convex_body_meets_pi_times_its_surface(void **state) {
 }
 
 /* A photon goes to a body by its share of all their area, however small that is. */
-static void photons_find_a_grain_beside_a_boulder(void **state) {
-  (void)state;
+TEST(photons_find_a_grain_beside_a_boulder) {
   static const double radius = 1e-4;
   fixture f = {0};
   make(CAMERA POINT_LIGHT FAR_SPECK "- {name: boulder, shape: sphere, radius: 1, mirror: 1}\n"
@@ -151,8 +149,7 @@ static void photons_find_a_grain_beside_a_boulder(void **state) {
 }
 
 /* Through clear glass every ray ends in the same light: no pixel shows the glass. */
-static void clear_glass_is_not_seen_in_uniform_light(void **state) {
-  (void)state;
+TEST(clear_glass_is_not_seen_in_uniform_light) {
   fixture f;
   abbe_image picture;
   make(CAMERA POINT_LIGHT FAR_SPECK "- {name: stone, shape: brilliant, diameter: 0.3, transform: "
@@ -170,8 +167,7 @@ static void clear_glass_is_not_seen_in_uniform_light(void **state) {
 }
 
 /* What it covers alone is in a transparent picture, and what is behind it through it. */
-static void a_transparent_picture_is_premultiplied(void **state) {
-  (void)state;
+TEST(a_transparent_picture_is_premultiplied) {
   fixture f;
   abbe_image picture, alpha;
   make("materials: glass.yaml\ncamera: {frame: [stone], fov: 30}\n" POINT_LIGHT "objects:\n"
@@ -197,8 +193,7 @@ static void a_transparent_picture_is_premultiplied(void **state) {
   drop(&f);
 }
 
-static void a_whole_mirror_is_not_seen_in_uniform_light(void **state) {
-  (void)state;
+TEST(a_whole_mirror_is_not_seen_in_uniform_light) {
   fixture f;
   abbe_image picture;
   make(CAMERA POINT_LIGHT FAR_SPECK
@@ -225,8 +220,7 @@ static void check_floor(radiance_of radiance, double irradiance) {
   drop(&f);
 }
 
-static void an_open_floor_has_its_irradiance(void **state) {
-  (void)state;
+TEST(an_open_floor_has_its_irradiance) {
   check_floor(uniform, 2 * PI);
   check_floor(cosine_dome, 2 * PI / 3);
   check_floor(half_sky, 0.5 * PI * (3 + 0.5));
@@ -234,8 +228,7 @@ static void an_open_floor_has_its_irradiance(void **state) {
 
 /* However many texels are drawn from, the light on an open floor is theirs: within four standard
  * errors of its mean, as the passes tell them. `abbe validate` has as many as a map may have. */
-static void light_does_not_depend_on_how_many_texels_there_are(void **state) {
-  (void)state;
+TEST(light_does_not_depend_on_how_many_texels_there_are) {
   enum { PASSES = 64 };
   static const size_t widths[] = {64, 1024, 2048};
   for (size_t w = 0; w < (SANITIZED ? 2 : 3); w++) {
@@ -273,8 +266,7 @@ static double from_below(const double d[3]) {
 }
 
 /* A floor in ambient light above a light that reaches no pixel, however bright that is. */
-static void what_is_not_seen_takes_nothing_away(void **state) {
-  (void)state;
+TEST(what_is_not_seen_takes_nothing_away) {
   for (int power = 0; power <= 12; power += 3) {
     fixture f;
     abbe_image picture;
@@ -293,8 +285,7 @@ static void what_is_not_seen_takes_nothing_away(void **state) {
 }
 
 /* What no sums can hold together is told. */
-static void lights_too_far_apart_are_told(void **state) {
-  (void)state;
+TEST(lights_too_far_apart_are_told) {
   fixture f;
   abbe_image picture;
   abbe_trace_statistics s;
@@ -312,8 +303,7 @@ static void lights_too_far_apart_are_told(void **state) {
 
 /* A stone over a black table is seen, and no photon is followed for it; few are where a table lies
  * far off, and all where they fall on one that reflects a little. */
-static void photons_are_for_what_shows_them(void **state) {
-  (void)state;
+TEST(photons_are_for_what_shows_them) {
   static const struct {
     const char *reflectance, *place;
     uint64_t least, most;
@@ -349,8 +339,7 @@ static void photons_are_for_what_shows_them(void **state) {
 }
 
 /* What a clear ball takes from the speck below it, it brings back: as much light falls on it. */
-static void a_clear_ball_takes_nothing_away(void **state) {
-  (void)state;
+TEST(a_clear_ball_takes_nothing_away) {
   fixture f;
   abbe_image picture;
   make(CAMERA POINT_LIGHT SPECK "- {name: ball, shape: sphere, radius: 0.08, levels: 2, transform: "
@@ -410,8 +399,7 @@ static double chi_square(const abbe_image *a, const abbe_image *b, double factor
   return sum;
 }
 
-static void turning_all_changes_nothing(void **state) {
-  (void)state;
+TEST(turning_all_changes_nothing) {
   static const double eye[3] = {0.2, -1, 0.5}, eye_turned[3] = {1, 0.2, 0.5};
   abbe_image here, there, left;
   draw_stone("0", eye, half_sky, &here);
@@ -427,8 +415,7 @@ static void turning_all_changes_nothing(void **state) {
 }
 
 /* The same paths, of twice the light. */
-static void light_is_linear(void **state) {
-  (void)state;
+TEST(light_is_linear) {
   static const double eye[3] = {0.2, -1, 0.5};
   abbe_image once, twice;
   draw_stone("0", eye, half_sky, &once);
@@ -442,8 +429,7 @@ static void light_is_linear(void **state) {
 }
 
 /* In the shipped scenes of surroundings and mirrors no light is made or lost. */
-static void the_ledger_closes(void **state) {
-  (void)state;
+TEST(the_ledger_closes) {
   static const char *const names[] = {"metal-ring", "metal-ball",   "spoon",         "metals",
                                       "octahedra",  "glass-studio", "diamond-studio"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i += SANITIZED ? 3 : 1) {
@@ -465,23 +451,4 @@ static void the_ledger_closes(void **state) {
     abbe_tracer_free(tracer);
     abbe_scene_free(&scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_convex_body_meets_pi_times_its_surface),
-      cmocka_unit_test(photons_find_a_grain_beside_a_boulder),
-      cmocka_unit_test(clear_glass_is_not_seen_in_uniform_light),
-      cmocka_unit_test(a_transparent_picture_is_premultiplied),
-      cmocka_unit_test(a_whole_mirror_is_not_seen_in_uniform_light),
-      cmocka_unit_test(an_open_floor_has_its_irradiance),
-      cmocka_unit_test(light_does_not_depend_on_how_many_texels_there_are),
-      cmocka_unit_test(what_is_not_seen_takes_nothing_away),
-      cmocka_unit_test(lights_too_far_apart_are_told),
-      cmocka_unit_test(photons_are_for_what_shows_them),
-      cmocka_unit_test(a_clear_ball_takes_nothing_away),
-      cmocka_unit_test(turning_all_changes_nothing),
-      cmocka_unit_test(light_is_linear),
-      cmocka_unit_test(the_ledger_closes)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -32,8 +32,7 @@ static void drop(traced *r) {
 
 /* Photons and the eye's light make the picture, their variances those of the caustic and the rest
  * where no glass is seen; a floor's guides are the floor's. Nothing else changes by them. */
-static void guides_are_of_the_picture(void **state) {
-  (void)state;
+TEST(guides_are_of_the_picture) {
   abbe_scene scene;
   load_text("materials: glass.yaml\ncamera: {eye: [0, -0.5, 0.35], target: [0, 0, 0.05], fov: "
             "50}\n" POINT_LIGHT FLOOR BEADS("crown"),
@@ -75,8 +74,7 @@ static void guides_are_of_the_picture(void **state) {
 }
 
 /* Variances and covariances of the mean of three passes, by hand. */
-static void sums_tell_covariances(void **state) {
-  (void)state;
+TEST(sums_tell_covariances) {
   static const float rgb[3][3] = {{5, 1, 2}, {3, 2, 4}, {4, 6, 0}},
                      eye[3][3] = {{1, 1, 1}, {1, 1, 2}, {1, 4, 0}};
   abbe_accumulator picture;
@@ -103,10 +101,4 @@ static void sums_tell_covariances(void **state) {
   assert_near(abbe_guide_sums_covariance(&g, 3, 0, 5), -3 * unit, 1e-6); /* the eye's GB */
   abbe_guide_sums_free(&g);
   abbe_accumulator_free(&picture);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(guides_are_of_the_picture),
-                                     cmocka_unit_test(sums_tell_covariances)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

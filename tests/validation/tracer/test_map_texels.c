@@ -34,8 +34,7 @@ static void check(const abbe_map_layout *layout, abbe_map_texels *t, size_t *hel
   }
 }
 
-static void places_at_random(void **state) {
-  (void)state;
+TEST(places_at_random) {
   for (int parallel = 0; parallel < 2; parallel++) {
     abbe_map_layout layout;
     abbe_map_texels t;
@@ -52,8 +51,7 @@ static void places_at_random(void **state) {
 }
 
 /* The window's edges and corners, places beside and behind the light, and what is no number. */
-static void awkward_places(void **state) {
-  (void)state;
+TEST(awkward_places) {
   static const double share[] = {0, 1, 0.5, 1 - 0x1p-53, -0x1p-60, 1 + 0x1p-52, NAN, INFINITY};
   static const double depths[] = {1, 1e-300, 0, -1, 1e300, NAN};
   for (int parallel = 0; parallel < 2; parallel++) {
@@ -75,10 +73,4 @@ static void awkward_places(void **state) {
       }
     assert_true(held > 0);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(places_at_random),
-                                     cmocka_unit_test(awkward_places)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -125,8 +125,7 @@ static abbe_tracer *whole_run(const abbe_trace_desc *desc, size_t passes) {
 
 /* ---- tests ---- */
 
-static void any_number_of_ranks_gives_the_bits_of_one(void **state) {
-  (void)state;
+TEST(any_number_of_ranks_gives_the_bits_of_one) {
   static const size_t passes[] = {1, 3, 7};
   for (size_t i = 0; i < sizeof passes / sizeof *passes; i++) {
     abbe_trace_desc desc = small;
@@ -149,8 +148,7 @@ static void any_number_of_ranks_gives_the_bits_of_one(void **state) {
 }
 
 /* The error is looked at after as many passes, however many ranks there are. */
-static void an_error_ends_all_at_the_same_pass(void **state) {
-  (void)state;
+TEST(an_error_ends_all_at_the_same_pass) {
   abbe_tracer *whole = whole_run(&small, 10);
   const double target = abbe_tracer_error(whole) * 1.0001;
   size_t done = 0;
@@ -175,8 +173,7 @@ static void an_error_ends_all_at_the_same_pass(void **state) {
   abbe_tracer_free(whole);
 }
 
-static void time_ends_all_with_passes_from_0_on(void **state) {
-  (void)state;
+TEST(time_ends_all_with_passes_from_0_on) {
   for (size_t ranks = 1; ranks <= 3; ranks += 2) {
     job j[MOST_RANKS];
     for (size_t r = 0; r < ranks; r++) {
@@ -195,8 +192,7 @@ static void time_ends_all_with_passes_from_0_on(void **state) {
 
 /* One is stopped: all end, keep what they have, and go on from it, those of a rank that lost its
  * file from the beginning. */
-static void ranks_that_were_stopped_go_on(void **state) {
-  (void)state;
+TEST(ranks_that_were_stopped_go_on) {
   enum { RANKS = 3, PASSES = 8 };
   abbe_tracer *whole = whole_run(&small, PASSES);
   for (int lost = 0; lost < 2; lost++) {
@@ -242,8 +238,7 @@ static void ranks_that_were_stopped_go_on(void **state) {
   abbe_tracer_free(whole);
 }
 
-static void ranks_that_differ_are_refused(void **state) {
-  (void)state;
+TEST(ranks_that_differ_are_refused) {
   job j[2];
   abbe_trace_desc other = small;
   other.seed = 5;
@@ -258,8 +253,7 @@ static void ranks_that_differ_are_refused(void **state) {
 }
 
 /* A part that is beyond what is asked for now. */
-static void fewer_passes_than_there_are_are_refused(void **state) {
-  (void)state;
+TEST(fewer_passes_than_there_are_are_refused) {
   job j[2];
   for (size_t r = 0; r < 2; r++) {
     prepare(&j[r], &small, r, 2, false);
@@ -273,8 +267,7 @@ static void fewer_passes_than_there_are_are_refused(void **state) {
   finish(j, 2);
 }
 
-static void looks_are_a_quarter_apart_at_the_most(void **state) {
-  (void)state;
+TEST(looks_are_a_quarter_apart_at_the_most) {
   static const size_t first[] = {4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40};
   size_t at = 0;
   for (size_t i = 0; i < sizeof first / sizeof *first; i++) {
@@ -285,28 +278,15 @@ static void looks_are_a_quarter_apart_at_the_most(void **state) {
     assert_true(4 * abbe_ranked_run_next_look(at) <= 5 * at);
 }
 
-static int setup(void **state) {
-  (void)state;
+static void setup(void) {
   snprintf(folder, sizeof folder, "/tmp/abbe-test-ranks-XXXXXX");
   load_text(CAMERA POINT_LIGHT FLOOR BEADS("crown"), &scene);
-  return mkdtemp(folder) == NULL;
+  assert_non_null(mkdtemp(folder));
 }
 
-static int teardown(void **state) {
-  (void)state;
+static void teardown(void) {
   abbe_scene_free(&scene);
-  return rmdir(folder);
+  assert_false(rmdir(folder));
 }
 
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(any_number_of_ranks_gives_the_bits_of_one),
-      cmocka_unit_test(an_error_ends_all_at_the_same_pass),
-      cmocka_unit_test(time_ends_all_with_passes_from_0_on),
-      cmocka_unit_test(ranks_that_were_stopped_go_on),
-      cmocka_unit_test(ranks_that_differ_are_refused),
-      cmocka_unit_test(fewer_passes_than_there_are_are_refused),
-      cmocka_unit_test(looks_are_a_quarter_apart_at_the_most),
-  };
-  return cmocka_run_group_tests(tests, setup, teardown);
-}
+GROUP(setup, teardown);

@@ -19,8 +19,7 @@ static void assert_same(const abbe_image *a, const abbe_image *b) {
   assert_memory_equal(a->data, b->data, a->width * a->height * a->channels * sizeof *a->data);
 }
 
-static void test_stopped_and_taken_up_is_the_same(void **state) {
-  (void)state;
+TEST(stopped_and_taken_up_is_the_same) {
   char folder[] = "/tmp/abbe-test-reference-XXXXXX", path[64];
   abbe_scene scene = {0};
   abbe_image whole[2], parts[2];
@@ -52,8 +51,7 @@ static void test_stopped_and_taken_up_is_the_same(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_a_checkpoint_of_another_request_is_refused(void **state) {
-  (void)state;
+TEST(a_checkpoint_of_another_request_is_refused) {
   char folder[] = "/tmp/abbe-test-reference-XXXXXX", path[64];
   abbe_scene scene = {0};
   abbe_image picture, map;
@@ -75,8 +73,7 @@ static void test_a_checkpoint_of_another_request_is_refused(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_a_part_that_is_left_out(void **state) {
-  (void)state;
+TEST(a_part_that_is_left_out) {
   abbe_scene scene = {0};
   abbe_image picture, map;
   load_text(SCENE, &scene);
@@ -87,13 +84,4 @@ static void test_a_part_that_is_left_out(void **state) {
   assert_int_equal(map.width, 16);
   abbe_image_free(&map);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_stopped_and_taken_up_is_the_same),
-      cmocka_unit_test(test_a_checkpoint_of_another_request_is_refused),
-      cmocka_unit_test(test_a_part_that_is_left_out),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -55,8 +55,7 @@ static void sums(const abbe_image *image, double xyz[3], double error[3]) {
   }
 }
 
-static void a_trace_under_another_lamp(void **state) {
-  (void)state;
+TEST(a_trace_under_another_lamp) {
   const abbe_illuminant d65 = {0}, a = {.kind = ABBE_ILLUMINANT_A};
   abbe_image made, under_a, relit;
   abbe_error error = {0};
@@ -76,9 +75,4 @@ static void a_trace_under_another_lamp(void **state) {
   abbe_image_free(&relit);
   abbe_image_free(&under_a);
   abbe_image_free(&made);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_trace_under_another_lamp)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

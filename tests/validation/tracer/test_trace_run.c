@@ -23,8 +23,7 @@ static bool look(void *user, double done) {
   return w->left > 0 && w->left-- > 0;
 }
 
-static void test_what_ends_a_run(void **state) {
-  (void)state;
+TEST(what_ends_a_run) {
   abbe_scene scene = {0};
   abbe_error error = {0};
   load_text(SCENE, &scene);
@@ -53,8 +52,7 @@ static void test_what_ends_a_run(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_checkpoints(void **state) {
-  (void)state;
+TEST(checkpoints) {
   abbe_scene scene = {0};
   abbe_error error = {0};
   char path[64];
@@ -77,8 +75,7 @@ static void test_checkpoints(void **state) {
 }
 
 /* Whoever asks for an end has it before another ray is traced, whatever is being made. */
-static void test_an_end_is_heard_everywhere(void **state) {
-  (void)state;
+TEST(an_end_is_heard_everywhere) {
   volatile int stop = 0;
   abbe_trace_desc desc = small;
   abbe_error error = {0};
@@ -104,13 +101,4 @@ static void test_an_end_is_heard_everywhere(void **state) {
   abbe_image_free(&image);
   abbe_tracer_free(tracer);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_ends_a_run),
-      cmocka_unit_test(test_checkpoints),
-      cmocka_unit_test(test_an_end_is_heard_everywhere),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

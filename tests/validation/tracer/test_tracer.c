@@ -44,8 +44,7 @@ static traced trace(const abbe_scene *scene, const abbe_trace_desc *desc, size_t
 }
 
 /* Photons come in tasks of 16384: several of them, so that threads have something to share. */
-static void threads_do_not_matter_and_the_seed_does(void **state) {
-  (void)state;
+TEST(threads_do_not_matter_and_the_seed_does) {
   abbe_scene scene;
   load_text(CLOSE TWO_LIGHTS FLOOR BEADS("smoke"), &scene);
   abbe_trace_desc desc = small;
@@ -72,8 +71,7 @@ static void threads_do_not_matter_and_the_seed_does(void **state) {
 
 /* The caller's arithmetic is as it was: numbers below 2^-126 are still numbers. */
 /* Maps of two seeds can be compared: their texels lie alike. */
-static void the_layout_does_not_hang_on_the_seed(void **state) {
-  (void)state;
+TEST(the_layout_does_not_hang_on_the_seed) {
   abbe_scene scene;
   load_text(CAMERA POINT_LIGHT FLOOR BEADS("crown"), &scene);
   abbe_map_layout layout[2];
@@ -91,8 +89,7 @@ static void the_layout_does_not_hang_on_the_seed(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void tiny_numbers_are_left_to_the_caller(void **state) {
-  (void)state;
+TEST(tiny_numbers_are_left_to_the_caller) {
   abbe_scene scene;
   load_text(CLOSE POINT_LIGHT FLOOR, &scene);
   traced r = trace(&scene, &small, 1);
@@ -104,8 +101,7 @@ static void tiny_numbers_are_left_to_the_caller(void **state) {
 }
 
 /* A pass that is stopped is forgotten: the next ones give what they would have given. */
-static void a_stopped_pass_is_forgotten(void **state) {
-  (void)state;
+TEST(a_stopped_pass_is_forgotten) {
   abbe_scene scene;
   load_text(CLOSE POINT_LIGHT FLOOR BEADS("crown"), &scene);
   traced whole = trace(&scene, &small, 3);
@@ -135,8 +131,7 @@ static void a_stopped_pass_is_forgotten(void **state) {
 /* Over independent seeds the means spread as their standard errors say. The ratio of the two
  * variances has mean 1; over V values from S seeds its deviation is about sqrt(2 / (S - 1) / V) for
  * values that are independent, and the tolerance is four of them for a third of the values. */
-static void standard_errors_are_honest(void **state) {
-  (void)state;
+TEST(standard_errors_are_honest) {
   enum { SEEDS = 10, VALUES = 16 };
   abbe_scene scene;
   load_text(CLOSE POINT_LIGHT FLOOR BEADS("crown"), &scene);
@@ -213,16 +208,14 @@ static size_t coloured_texels(const char *text) {
 }
 
 /* White in, white out; a prism spreads the light where its glass does, and not where not. */
-static void no_dispersion_no_colour(void **state) {
-  (void)state;
+TEST(no_dispersion_no_colour) {
   assert_int_equal(coloured_texels(CLOSE POINT_LIGHT FLOOR ROOF("flat")), 0);
   assert_true(coloured_texels(CLOSE POINT_LIGHT FLOOR ROOF("crown")) > 8);
 }
 
 /* The map holds what landed, within its window; the light's cone around the ball was all reached.
  */
-static void the_map_holds_what_landed(void **state) {
-  (void)state;
+TEST(the_map_holds_what_landed) {
   abbe_scene scene;
   load_text(CLOSE POINT_LIGHT FLOOR BALL("flat"), &scene);
   abbe_trace_desc desc = {.no_picture = true, .map_width = 32, .photons = 30000, .threads = 1};
@@ -252,8 +245,7 @@ static void the_map_holds_what_landed(void **state) {
 }
 
 /* Watts a nanometre times the bands' width are watts: of an even light, Y's mean is that too. */
-static void bands_hold_the_maps_watts(void **state) {
-  (void)state;
+TEST(bands_hold_the_maps_watts) {
   abbe_scene scene;
   load_text(CLOSE "lights:\n- {name: lamp, kind: point, position: [0.05, 0.03, 0.6], intensity: 1, "
                   "illuminant: E}\n" FLOOR BALL("flat"),
@@ -277,8 +269,7 @@ static void bands_hold_the_maps_watts(void **state) {
 }
 
 /* Without glass there is no caustic, and the map is empty; the picture stands. */
-static void a_scene_without_glass(void **state) {
-  (void)state;
+TEST(a_scene_without_glass) {
   abbe_scene scene;
   load_text(CLOSE POINT_LIGHT FLOOR, &scene);
   traced r = trace(&scene, &small, 2);
@@ -291,8 +282,7 @@ static void a_scene_without_glass(void **state) {
 
 /* Direct light is shadowed by glass, and the caustic brings a part of it back; ACEScg and XYZ are
  * one picture in two spaces. */
-static void the_caustic_is_part_of_the_picture(void **state) {
-  (void)state;
+TEST(the_caustic_is_part_of_the_picture) {
   abbe_scene scene;
   load_text(CLOSE POINT_LIGHT FLOOR BEADS("crown"), &scene);
   abbe_trace_desc desc = small;
@@ -325,8 +315,7 @@ static void the_caustic_is_part_of_the_picture(void **state) {
 }
 
 /* One pass has no spread: its files say nothing of errors, and two passes' do. */
-static void one_pass_has_no_errors(void **state) {
-  (void)state;
+TEST(one_pass_has_no_errors) {
   abbe_scene scene;
   load_text(CLOSE POINT_LIGHT FLOOR BEADS("crown"), &scene);
   abbe_trace_desc desc = small;
@@ -351,8 +340,7 @@ static void one_pass_has_no_errors(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void the_error_falls(void **state) {
-  (void)state;
+TEST(the_error_falls) {
   abbe_scene scene;
   load_text(CLOSE POINT_LIGHT FLOOR BEADS("crown"), &scene);
   abbe_tracer *tracer = make_tracer(&scene, &small);
@@ -386,8 +374,7 @@ static void refuse(const abbe_scene *scene, abbe_trace_desc desc, abbe_result wh
   assert_contains(error.text, part);
 }
 
-static void what_is_out_of_limits_is_refused(void **state) {
-  (void)state;
+TEST(what_is_out_of_limits_is_refused) {
   abbe_scene scene;
   load_text(CLOSE POINT_LIGHT FLOOR BALL("narrow"), &scene);
   const abbe_result bad = ABBE_INVALID_ARGUMENT;
@@ -422,8 +409,7 @@ static void what_is_out_of_limits_is_refused(void **state) {
 
 /* Scenes of a tenth of a millimetre and of a hundred kilometres have the same picture as one of a
  * metre: lengths times s, intensities times s^2. */
-static void size_does_not_matter(void **state) {
-  (void)state;
+TEST(size_does_not_matter) {
   double expected = 0, lit = 0;
   for (int i = 0; i < 3; i++) {
     double s = i == 0 ? 1 : i == 1 ? 1e-4 : 1e5;
@@ -451,24 +437,4 @@ static void size_does_not_matter(void **state) {
     drop(&r);
     abbe_scene_free(&scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(threads_do_not_matter_and_the_seed_does),
-      cmocka_unit_test(the_layout_does_not_hang_on_the_seed),
-      cmocka_unit_test(tiny_numbers_are_left_to_the_caller),
-      cmocka_unit_test(a_stopped_pass_is_forgotten),
-      cmocka_unit_test(standard_errors_are_honest),
-      cmocka_unit_test(no_dispersion_no_colour),
-      cmocka_unit_test(the_map_holds_what_landed),
-      cmocka_unit_test(bands_hold_the_maps_watts),
-      cmocka_unit_test(a_scene_without_glass),
-      cmocka_unit_test(the_caustic_is_part_of_the_picture),
-      cmocka_unit_test(one_pass_has_no_errors),
-      cmocka_unit_test(the_error_falls),
-      cmocka_unit_test(what_is_out_of_limits_is_refused),
-      cmocka_unit_test(size_does_not_matter),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

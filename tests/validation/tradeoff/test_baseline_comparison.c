@@ -24,8 +24,7 @@ static abbe_baseline_comparison compare_with(const abbe_sweep_table *table, cons
   return c;
 }
 
-static void test_by_hand(void **state) {
-  (void)state;
+TEST(by_hand) {
   abbe_sweep_table t = {0};
   abbe_baseline_comparison d = compare_with(&t, "thesis");
   assert_null(d.baseline);
@@ -61,9 +60,4 @@ static void test_by_hand(void **state) {
   assert_true(isnan(d.front_ratio));
   assert_contains(abbe_baseline_text("thesis-cie"), "physical units");
   abbe_sweep_table_free(&t);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_by_hand)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

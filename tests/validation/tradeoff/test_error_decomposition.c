@@ -31,8 +31,7 @@ static void set_model(abbe_sweep_table *table, double de) {
   assert_near(read.energy, 0.93, 1e-12);
 }
 
-static void test_parts_and_words(void **state) {
-  (void)state;
+TEST(parts_and_words) {
   abbe_sweep_table t = {0};
   abbe_sweep_model model;
   abbe_error_decomposition s;
@@ -84,9 +83,4 @@ static void test_parts_and_words(void **state) {
   assert_int_equal(strlen(words), 19);
   assert_int_equal(words[20], 'x');
   abbe_sweep_table_free(&t);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_parts_and_words)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,8 +6,7 @@
 
 #include <stdlib.h>
 
-static void test_a_front_by_hand(void **state) {
-  (void)state;
+TEST(a_front_by_hand) {
   static const double cost[] = {1, 2, 3, 3, 4, 2, 5, NAN, 0, 6},
                       error[] = {9, 4, 4, 2, 3, 4, NAN, 0, 0, 2};
   static const bool right[] = {true, true, false, true, false, false, false, false, false, false};
@@ -23,8 +22,7 @@ static void test_a_front_by_hand(void **state) {
 }
 
 /* Every point off the front is beaten by one on it; none on it is; the order falls. */
-static void test_the_front_is_what_it_says(void **state) {
-  (void)state;
+TEST(the_front_is_what_it_says) {
   enum { COUNT = 200 };
   double cost[COUNT], error[COUNT];
   bool on[COUNT];
@@ -52,8 +50,7 @@ static void test_the_front_is_what_it_says(void **state) {
   }
 }
 
-static void test_the_knee_and_the_accurate_end(void **state) {
-  (void)state;
+TEST(the_knee_and_the_accurate_end) {
   /* In logarithms (0, 4), (1, 1), (2, 0.9), (4, 0): the line falls by 1 a step. */
   const double cost[] = {1, exp(1), exp(2), exp(4)};
   const double error[] = {exp(4), exp(1), exp(0.9), exp(0)};
@@ -67,13 +64,4 @@ static void test_the_knee_and_the_accurate_end(void **state) {
   assert_int_equal(abbe_pareto_front_accurate(error, 4, 0), 3);
   assert_int_equal(abbe_pareto_front_accurate(error, 4, exp(0.9) - 1 + 1e-9), 2);
   assert_int_equal(abbe_pareto_front_accurate(error, 4, 1e9), 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_front_by_hand),
-      cmocka_unit_test(test_the_front_is_what_it_says),
-      cmocka_unit_test(test_the_knee_and_the_accurate_end),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

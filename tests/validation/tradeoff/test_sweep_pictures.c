@@ -61,8 +61,7 @@ static void assert_point(abbe_yaml *yaml, abbe_yaml_node tool, size_t i, double 
   assert_near(number(yaml, point, "least"), least, 1e-3 * least);
 }
 
-static void test_two_scenes(void **state) {
-  (void)state;
+TEST(two_scenes) {
   abbe_sweep_table t[] = {table_of("convex"), table_of("convex"), table_of("spheres")};
   abbe_error error = {0};
   abbe_yaml *yaml;
@@ -115,8 +114,7 @@ static void test_two_scenes(void **state) {
 }
 
 /* A class with one scene takes the widest margins of the others, tool by tool. */
-static void test_one_scene(void **state) {
-  (void)state;
+TEST(one_scene) {
   abbe_sweep_table t[] = {table_of("spheres"), table_of("convex"), table_of("convex"),
                           table_of("meshes"), table_of("meshes")};
   abbe_error error = {0};
@@ -149,8 +147,7 @@ static void test_one_scene(void **state) {
   for (int i = 0; i < 5; i++) abbe_sweep_table_free(&t[i]);
 }
 
-static void test_tools(void **state) {
-  (void)state;
+TEST(tools) {
   static const char *const profiles[] = {"default", "trace", "trace-filter", "thesis"};
   static const char *const tools[] = {"render", "trace", "trace-filter", "unknown"};
   for (int i = 0; i < 4; i++) {
@@ -158,13 +155,4 @@ static void test_tools(void **state) {
     assert_int_equal(abbe_picture_tool_of(&row.setting), i);
     assert_string_equal(abbe_picture_tool_name((abbe_picture_tool)i), tools[i]);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_two_scenes),
-      cmocka_unit_test(test_one_scene),
-      cmocka_unit_test(test_tools),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,8 +17,7 @@ static void add(abbe_sweep_table *table, const char *profile, size_t photons, do
   assert_int_equal(abbe_sweep_table_add(table, &row, NULL), ABBE_OK);
 }
 
-static void test_the_chart(void **state) {
-  (void)state;
+TEST(the_chart) {
   char folder[] = "/tmp/abbe-test-sweep-plot-XXXXXX", path[64], *text;
   size_t size;
   abbe_sweep_table table = {0};
@@ -59,8 +58,7 @@ static abbe_result plot_scenes(const char *path, const abbe_sweep_table *tables,
 }
 
 /* A row a scene, a column a time that is known. */
-static void test_scenes(void **state) {
-  (void)state;
+TEST(scenes) {
   char folder[] = "/tmp/abbe-test-sweep-plot-XXXXXX", path[64];
   abbe_sweep_table tables[17] = {0};
   abbe_image image;
@@ -98,10 +96,4 @@ static void test_scenes(void **state) {
   unlink(path);
   assert_int_equal(rmdir(folder), 0);
   for (size_t i = 0; i < 2; i++) abbe_sweep_table_free(&tables[i]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_chart),
-                                     cmocka_unit_test(test_scenes)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,16 +10,15 @@
 
 static char path[64];
 
-static int setup(void **state) {
-  (void)state;
+static void setup(void) {
   snprintf(path, sizeof path, "/tmp/abbe-test-presets-XXXXXX");
   int file = mkstemp(path);
-  return file < 0 || close(file) != 0;
+  assert_false(file < 0);
+  assert_int_equal(close(file), 0);
 }
 
-static int teardown(void **state) {
-  (void)state;
-  return unlink(path);
+static void teardown(void) {
+  assert_false(unlink(path));
 }
 
 static void add(abbe_sweep_table *t, const char *profile, size_t photons, double light, double eye,
@@ -50,8 +49,9 @@ static double number(abbe_yaml *yaml, abbe_yaml_node node, const char *key) {
   return value;
 }
 
-static void test_a_class_of_two_scenes(void **state) {
-  (void)state;
+GROUP(setup, teardown);
+
+TEST(a_class_of_two_scenes) {
   static const char *const names[] = {"n.csv", "a.csv", "b.csv", "c.csv"};
   abbe_sweep_table all[] = {
       table_of("scenes/noisy.yaml", "convex"), table_of("scenes/gem.yaml", "convex"),
@@ -136,8 +136,7 @@ static void test_a_class_of_two_scenes(void **state) {
   for (int i = 0; i < 4; i++) abbe_sweep_table_free(&all[i]);
 }
 
-static void test_what_is_refused(void **state) {
-  (void)state;
+TEST(what_is_refused) {
   static const char *const names[] = {"a.csv", "b.csv"};
   abbe_sweep_table t[] = {table_of("gem.yaml", "convex"), table_of("prism.yaml", "convex")};
   abbe_error error = {0};
@@ -168,12 +167,4 @@ static void test_what_is_refused(void **state) {
   assert_string_equal(text, "before");
   free(text);
   for (int i = 0; i < 2; i++) abbe_sweep_table_free(&t[i]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_class_of_two_scenes),
-      cmocka_unit_test(test_what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -21,8 +21,7 @@ static void add(abbe_sweep_table *table, abbe_sweep_row row) {
   if (abbe_sweep_table_add(table, &row, &error) != ABBE_OK) fail_msg("%s", error.text);
 }
 
-static void test_what_is_saved_is_loaded(void **state) {
-  (void)state;
+TEST(what_is_saved_is_loaded) {
   char path[] = "/tmp/abbe-test-sweep-XXXXXX";
   abbe_sweep_table table = {0}, read = {0};
   uint64_t random = 3;
@@ -59,8 +58,7 @@ static void test_what_is_saved_is_loaded(void **state) {
   abbe_sweep_table_free(&read);
 }
 
-static void test_frames_before_are_apart(void **state) {
-  (void)state;
+TEST(frames_before_are_apart) {
   abbe_sweep_table table = {0};
   char text[64];
   add(&table, row_of("default", 7, 10, 5));
@@ -76,8 +74,7 @@ static void test_frames_before_are_apart(void **state) {
   abbe_sweep_table_free(&table);
 }
 
-static void test_settings_are_told_apart(void **state) {
-  (void)state;
+TEST(settings_are_told_apart) {
   abbe_sweep_table table = {0};
   abbe_sweep_row row = row_of("default", 7, 10, 1);
   abbe_error error = {0};
@@ -135,8 +132,7 @@ static void test_settings_are_told_apart(void **state) {
   abbe_sweep_table_free(&table);
 }
 
-static void test_the_front_of_all_and_of_a_profile(void **state) {
-  (void)state;
+TEST(the_front_of_all_and_of_a_profile) {
   abbe_sweep_table table = {0};
   add(&table, row_of("default", 3, 10, 5));
   add(&table, row_of("default", 7, 20, 2));
@@ -157,8 +153,7 @@ static void test_the_front_of_all_and_of_a_profile(void **state) {
 }
 
 /* The front of another time is another one, and settings without that time are not on it. */
-static void test_the_front_of_a_process(void **state) {
-  (void)state;
+TEST(the_front_of_a_process) {
   abbe_sweep_table table = {0};
   size_t count, *order;
   add(&table, row_of("default", 3, 10, 5));
@@ -178,8 +173,7 @@ static void test_the_front_of_a_process(void **state) {
 }
 
 /* Medians of frames are 0, 10, 20, 60 and 400 % above the fastest. */
-static void test_a_busy_machine_is_noticed(void **state) {
-  (void)state;
+TEST(a_busy_machine_is_noticed) {
   abbe_sweep_table table = {0};
   static const double over[] = {0, 4, 0.1, 0.2, 0.6};
   assert_near(abbe_sweep_table_unrest(&table), 0, 0);
@@ -216,8 +210,7 @@ static void refuse(const char *text, size_t size, const char *part) {
   assert_null(read.row);
 }
 
-static void test_broken_tables_are_named(void **state) {
-  (void)state;
+TEST(broken_tables_are_named) {
   static const struct {
     const char *from, *to, *part;
   } broken[] = {
@@ -258,8 +251,7 @@ static void test_broken_tables_are_named(void **state) {
   free(text);
 }
 
-static void test_tables_of_different_things_do_not_agree(void **state) {
-  (void)state;
+TEST(tables_of_different_things_do_not_agree) {
   abbe_sweep_table a = {0}, b = {0};
   abbe_error error = {0};
   abbe_sweep_table_set(&a, ABBE_SWEEP_FACT_MACHINE, "one processor");
@@ -271,8 +263,7 @@ static void test_tables_of_different_things_do_not_agree(void **state) {
   assert_contains(error.text, "the machine 'one processor', and now it is 'another'");
 }
 
-static void test_parts_are_joined(void **state) {
-  (void)state;
+TEST(parts_are_joined) {
   abbe_sweep_table part[2] = {0}, all;
   const char *const names[] = {"a.csv", "b.csv"};
   abbe_error error = {0};
@@ -306,8 +297,7 @@ static void test_parts_are_joined(void **state) {
   abbe_sweep_table_free(&part[1]);
 }
 
-static void test_names(void **state) {
-  (void)state;
+TEST(names) {
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) {
     abbe_sweep_number number = (abbe_sweep_number)i;
     assert_int_equal(abbe_sweep_number_find(abbe_sweep_number_name(number)), i);
@@ -319,20 +309,4 @@ static void test_names(void **state) {
   assert_true(abbe_sweep_number_is_error(ABBE_SWEEP_CAUSTIC_DE));
   assert_false(abbe_sweep_number_is_error(ABBE_SWEEP_FRAME_MS));
   assert_int_equal(abbe_sweep_number_find("beauty"), ABBE_SWEEP_NUMBER_COUNT);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_is_saved_is_loaded),
-      cmocka_unit_test(test_frames_before_are_apart),
-      cmocka_unit_test(test_settings_are_told_apart),
-      cmocka_unit_test(test_the_front_of_all_and_of_a_profile),
-      cmocka_unit_test(test_the_front_of_a_process),
-      cmocka_unit_test(test_a_busy_machine_is_noticed),
-      cmocka_unit_test(test_broken_tables_are_named),
-      cmocka_unit_test(test_tables_of_different_things_do_not_agree),
-      cmocka_unit_test(test_parts_are_joined),
-      cmocka_unit_test(test_names),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,21 +17,18 @@ static abbe_spectral_sampling sampling_over(double min_nm, double max_nm, size_t
   return s;
 }
 
-static int setup(void **state) {
-  (void)state;
+static void setup(void) {
   load_text(CAMERA TWO_LIGHTS FLOOR, &scene);
-  return 0;
 }
 
-static int teardown(void **state) {
-  (void)state;
+static void teardown(void) {
   abbe_scene_free(&scene);
-  return 0;
 }
+
+GROUP(setup, teardown);
 
 /* "S0.550,000000nm": a stokes component, a wavelength with a comma, its unit [Fichet2021]. */
-static void names_are_as_the_layout_has_them(void **state) {
-  (void)state;
+TEST(names_are_as_the_layout_has_them) {
   abbe_spectral_sampling s = sampling_over(380, 780, 40);
   abbe_bands b;
   char name[64];
@@ -51,8 +48,7 @@ static void names_are_as_the_layout_has_them(void **state) {
 }
 
 /* The most bands over a range of one nanometre still have names of their own. */
-static void narrow_bands_have_names_of_their_own(void **state) {
-  (void)state;
+TEST(narrow_bands_have_names_of_their_own) {
   abbe_spectral_sampling s = sampling_over(589, 590, ABBE_BANDS_MAX);
   abbe_bands b;
   assert_int_equal(abbe_bands_make(&s, ABBE_BANDS_MAX, &b, NULL), ABBE_OK);
@@ -66,8 +62,7 @@ static void narrow_bands_have_names_of_their_own(void **state) {
   abbe_spectral_sampling_free(&s);
 }
 
-static void bands_tile_the_range_and_hold_the_light(void **state) {
-  (void)state;
+TEST(bands_tile_the_range_and_hold_the_light) {
   static const double ranges[][2] = {{380, 780}, {589, 590}, {300, 900}};
   static const size_t counts[] = {1, 2, 7, 40, 256};
   for (size_t r = 0; r < 3; r++) {
@@ -107,8 +102,7 @@ static double power_of(size_t light, double from, double to) {
 }
 
 /* Illuminant E has the same power in every band, 1 W over 400 nm; D65 what its table says. */
-static void bands_hold_their_lights_power(void **state) {
-  (void)state;
+TEST(bands_hold_their_lights_power) {
   static const size_t counts[] = {1, 7, 20, 80, 160, 256};
   for (size_t c = 0; c < 6; c++) {
     abbe_spectral_sampling s = sampling_over(380, 780, counts[c]);
@@ -125,8 +119,7 @@ static void bands_hold_their_lights_power(void **state) {
   }
 }
 
-static void none_and_too_many(void **state) {
-  (void)state;
+TEST(none_and_too_many) {
   abbe_spectral_sampling s = sampling_over(380, 780, 0);
   abbe_bands b;
   abbe_error error = {0};
@@ -140,15 +133,4 @@ static void none_and_too_many(void **state) {
   abbe_bands_free(&b);
   abbe_bands_free(NULL);
   abbe_spectral_sampling_free(&s);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(names_are_as_the_layout_has_them),
-      cmocka_unit_test(narrow_bands_have_names_of_their_own),
-      cmocka_unit_test(bands_tile_the_range_and_hold_the_light),
-      cmocka_unit_test(bands_hold_their_lights_power),
-      cmocka_unit_test(none_and_too_many),
-  };
-  return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -16,8 +16,7 @@ static void direction(uint64_t *random, double out[3]) {
 }
 
 /* Shares add up, ways leave to their sides, and there are as many as media have waves. */
-static void ways_hold_all_of_the_light(void **state) {
-  (void)state;
+TEST(ways_hold_all_of_the_light) {
   uint64_t random = 5;
   size_t most = 0;
   for (int i = 0; i < 20000; i++) {
@@ -54,8 +53,7 @@ static void ways_hold_all_of_the_light(void **state) {
   assert_int_equal(most, 4);
 }
 
-static void glass_is_as_it_was(void **state) {
-  (void)state;
+TEST(glass_is_as_it_was) {
   const abbe_uniaxial glass = {1.5, 1.5, {0, 1, 0}};
   const float n[3] = {0, 0, 1};
   for (float s = 0.05f; s < 1; s += 0.05f) {
@@ -72,8 +70,7 @@ static void glass_is_as_it_was(void **state) {
 }
 
 /* As often as their shares say; reflection by the first number alone. */
-static void ways_are_chosen_by_their_shares(void **state) {
-  (void)state;
+TEST(ways_are_chosen_by_their_shares) {
   const abbe_wave_ways ways = {.count = 4,
                                .way = {{.share = 0.1f, .reflected = true},
                                        {.share = 0.2f, .wave = 1, .reflected = true},
@@ -108,8 +105,7 @@ static void ways_are_chosen_by_their_shares(void **state) {
       STONE("b", "[0, 0, -1]", "0.1") STONE("c", "[0, 1, 0]", "0.2")
 
 /* Axes are turned with the object; two of one material are one medium if their axes are. */
-static void media_know_their_axes(void **state) {
-  (void)state;
+TEST(media_know_their_axes) {
   abbe_scene scene;
   abbe_geometry g;
   abbe_media m;
@@ -138,14 +134,4 @@ static void media_know_their_axes(void **state) {
   abbe_media_free(&m);
   abbe_geometry_free(&g);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ways_hold_all_of_the_light),
-      cmocka_unit_test(glass_is_as_it_was),
-      cmocka_unit_test(ways_are_chosen_by_their_shares),
-      cmocka_unit_test(media_know_their_axes),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -25,8 +25,7 @@ static void make_of(const char *text, const char *part) {
 }
 
 /* A plate of half a diagonal of 0.1 m or so: eight steps off its faces are 2^-15 of that. */
-static void what_is_thinner_than_its_steps_is_refused(void **state) {
-  (void)state;
+TEST(what_is_thinner_than_its_steps_is_refused) {
 #define PLATE(thick)                                                                               \
   CAMERA POINT_LIGHT FLOOR "- {name: plate, shape: box, size: [0.2, 0.2, " thick                   \
                            "], transform: [{translate: [0, 0, 0.2]}], material: crown}\n"
@@ -35,8 +34,7 @@ static void what_is_thinner_than_its_steps_is_refused(void **state) {
 }
 
 /* Solids of curved faces that are flat as foil, which no axis of the world tells once turned. */
-static void foil_is_refused_however_it_is_turned(void **state) {
-  (void)state;
+TEST(foil_is_refused_however_it_is_turned) {
   static const char *const shape[] = {"sphere, radius: 0.04", "ring, major: 0.04, minor: 0.01"};
   for (int i = 0; i < 8; i++) {
     char text[1024];
@@ -49,8 +47,7 @@ static void foil_is_refused_however_it_is_turned(void **state) {
   }
 }
 
-static void hits_a_sphere_from_outside_and_inside(void **state) {
-  (void)state;
+TEST(hits_a_sphere_from_outside_and_inside) {
   abbe_scene scene;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   abbe_geometry g;
@@ -81,8 +78,7 @@ static void hits_a_sphere_from_outside_and_inside(void **state) {
 
 /* A closed mesh is left as often as it is entered, also along its edges and through its corners:
  * watertight. */
-static void no_ray_slips_between_faces(void **state) {
-  (void)state;
+TEST(no_ray_slips_between_faces) {
   abbe_scene scene;
   load_shipped("gem", &scene);
   abbe_geometry g;
@@ -107,8 +103,7 @@ static void no_ray_slips_between_faces(void **state) {
 }
 
 /* The same hits, relative to the size, for scenes from 1e-4 to 1e5 m and far from the origin. */
-static void size_and_place_do_not_matter(void **state) {
-  (void)state;
+TEST(size_and_place_do_not_matter) {
   float expected[3] = {0};
   const double sizes[] = {1, 1e-4, 1e5}, places[] = {0, 0, 1e6};
   for (int i = 0; i < 3; i++) {
@@ -144,15 +139,4 @@ static void size_and_place_do_not_matter(void **state) {
     abbe_geometry_free(&g);
     abbe_scene_free(&scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(what_is_thinner_than_its_steps_is_refused),
-      cmocka_unit_test(foil_is_refused_however_it_is_turned),
-      cmocka_unit_test(hits_a_sphere_from_outside_and_inside),
-      cmocka_unit_test(no_ray_slips_between_faces),
-      cmocka_unit_test(size_and_place_do_not_matter),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,8 +30,7 @@ static void drop(fixture *f) {
   "medium: {scattering: " scattering ", absorption: " absorption ", g: 0.4,\n"                     \
   "         box: [[-1, -2, -3], [1, 2, 3]]}\n"
 
-static void tables_are_the_scene_s(void **state) {
-  (void)state;
+TEST(tables_are_the_scene_s) {
   fixture f;
   make(CAMERA POINT_LIGHT MIST("[[400, 4], [700, 1]]", "0.5")
            FLOOR BALL("smoke") "- {name: cloudy, shape: sphere, radius: 0.02, material: grey, "
@@ -62,8 +61,7 @@ static void tables_are_the_scene_s(void **state) {
   drop(&f);
 }
 
-static void a_way_is_as_long_as_its_part_in_the_region(void **state) {
-  (void)state;
+TEST(a_way_is_as_long_as_its_part_in_the_region) {
   fixture f;
   make(CAMERA POINT_LIGHT MIST("0.3", "0.2") FLOOR BALL("flat"), &f);
   const abbe_haze *h = &f.media.haze;
@@ -86,8 +84,7 @@ static void a_way_is_as_long_as_its_part_in_the_region(void **state) {
 }
 
 /* Places as dense as they say, on thin and thick ways: their mean weight is the length. */
-static void places_have_their_density(void **state) {
-  (void)state;
+TEST(places_have_their_density) {
   static const float extinction[] = {0, 1e-4f, 0.3f, 4, 60};
   enum { PARTS = 100000 };
   for (size_t i = 0; i < sizeof extinction / sizeof *extinction; i++) {
@@ -107,8 +104,7 @@ static void places_have_their_density(void **state) {
 }
 
 /* Zeros are no haze, so that nothing changes by them. */
-static void nothing_is_no_haze(void **state) {
-  (void)state;
+TEST(nothing_is_no_haze) {
   fixture f;
   make(CAMERA POINT_LIGHT MIST("0", "0") FLOOR BALL("smoke"), &f);
   assert_false(abbe_haze_is(&f.media.haze));
@@ -118,14 +114,4 @@ static void nothing_is_no_haze(void **state) {
   assert_true(abbe_haze_left(&f.media.haze, -1, o, d, 0, 1, 0, 0) == 1);
   drop(&f);
   abbe_haze_free(NULL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(tables_are_the_scene_s),
-      cmocka_unit_test(a_way_is_as_long_as_its_part_in_the_region),
-      cmocka_unit_test(places_have_their_density),
-      cmocka_unit_test(nothing_is_no_haze),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

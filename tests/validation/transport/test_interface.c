@@ -4,8 +4,7 @@
 #include "validation/transport/interface.h"
 
 /* Single precision against the double oracle over all angles and ratios from 1/4 to 4. */
-static void matches_the_oracle(void **state) {
-  (void)state;
+TEST(matches_the_oracle) {
   double worst = 0, worst_cos = 0;
   for (int i = 0; i <= 400; i++)
     for (int j = 0; j <= 400; j++) {
@@ -25,8 +24,7 @@ static void matches_the_oracle(void **state) {
   assert_true(worst_cos < 1e-6);
 }
 
-static void nothing_happens_between_equal_media(void **state) {
-  (void)state;
+TEST(nothing_happens_between_equal_media) {
   float cos_t;
   for (float c = 0; c <= 1; c += 0.125f) {
     assert_true(abbe_interface_reflectance(c, 1, &cos_t) == 0);
@@ -34,8 +32,7 @@ static void nothing_happens_between_equal_media(void **state) {
   }
 }
 
-static void all_is_reflected_beyond_the_critical_angle(void **state) {
-  (void)state;
+TEST(all_is_reflected_beyond_the_critical_angle) {
   float cos_t;
   assert_true(abbe_interface_reflectance(0.5f, 1.5f, &cos_t) == 1);
   assert_true(cos_t == 0);
@@ -43,8 +40,7 @@ static void all_is_reflected_beyond_the_critical_angle(void **state) {
   assert_true(abbe_interface_reflectance(0, 0.5f, &cos_t) == 1);
 }
 
-static void directions_match_the_oracle(void **state) {
-  (void)state;
+TEST(directions_match_the_oracle) {
   for (int i = 1; i < 40; i++)
     for (int j = 0; j < 2; j++) {
       double angle = i * 0.039, eta = j ? 1.5 : 1 / 1.5;
@@ -63,8 +59,7 @@ static void directions_match_the_oracle(void **state) {
 
 /* On the right side nothing changes; from the wrong one a direction comes back to just beside the
  * face. */
-static void light_stays_on_its_side(void **state) {
-  (void)state;
+TEST(light_stays_on_its_side) {
   static const float up[3] = {0, 0, 1};
   for (int i = 0; i <= 16; i++)
     for (int side = -1; side <= 1; side += 2) {
@@ -80,15 +75,4 @@ static void light_stays_on_its_side(void **state) {
       else
         assert_near(along / sqrtf(d[0] * d[0] + 1e-12f), 1e-3f / fabsf(before[0]), 1e-4);
     }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(light_stays_on_its_side),
-      cmocka_unit_test(matches_the_oracle),
-      cmocka_unit_test(nothing_happens_between_equal_media),
-      cmocka_unit_test(all_is_reflected_beyond_the_critical_angle),
-      cmocka_unit_test(directions_match_the_oracle),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,16 +2,14 @@
 
 #include "validation/transport/media.h"
 
-static void the_last_refractor_is_there(void **state) {
-  (void)state;
+TEST(the_last_refractor_is_there) {
   assert_int_equal(abbe_media_of(0), -1);
   assert_int_equal(abbe_media_of(1), 0);
   assert_int_equal(abbe_media_of(5), 2);
   assert_int_equal(abbe_media_of((abbe_media_set)1 << 63 | 3), 63);
 }
 
-static void crossing_and_crossing_back_change_nothing(void **state) {
-  (void)state;
+TEST(crossing_and_crossing_back_change_nothing) {
   for (uint32_t i = 0; i < 64; i += 7) {
     abbe_media_set before, after, back, outside = 0x5a5a & ~((abbe_media_set)1 << i);
     abbe_media_cross(outside, i, true, &before, &after);
@@ -22,8 +20,7 @@ static void crossing_and_crossing_back_change_nothing(void **state) {
 }
 
 /* Between knots the index is interpolated: the error of a line over a step of 0.2 nm. */
-static void tables_follow_the_formula(void **state) {
-  (void)state;
+TEST(tables_follow_the_formula) {
   abbe_scene scene;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("smoke"), &scene);
   abbe_geometry g;
@@ -50,8 +47,7 @@ static void tables_follow_the_formula(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void refuses_what_the_record_does_not_know(void **state) {
-  (void)state;
+TEST(refuses_what_the_record_does_not_know) {
   abbe_scene scene;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &scene);
   abbe_geometry g;
@@ -65,8 +61,7 @@ static void refuses_what_the_record_does_not_know(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void refractors_of_one_material_are_one_medium(void **state) {
-  (void)state;
+TEST(refractors_of_one_material_are_one_medium) {
   abbe_scene scene;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("dense") RING("crown"), &scene);
   abbe_geometry g;
@@ -82,15 +77,4 @@ static void refractors_of_one_material_are_one_medium(void **state) {
   abbe_media_free(&m);
   abbe_geometry_free(&g);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_last_refractor_is_there),
-      cmocka_unit_test(crossing_and_crossing_back_change_nothing),
-      cmocka_unit_test(tables_follow_the_formula),
-      cmocka_unit_test(refractors_of_one_material_are_one_medium),
-      cmocka_unit_test(refuses_what_the_record_does_not_know),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,8 +11,7 @@ enum { STEPS = 40 };
   "- {name: " name                                                                                 \
   ", shape: sphere, radius: 0.05, transform: [{translate: [0, 0, 0.3]}], mirror: " what "}\n"
 
-static void metals_reflect_as_their_n_and_k_say(void **state) {
-  (void)state;
+TEST(metals_reflect_as_their_n_and_k_say) {
   abbe_scene scene;
   abbe_geometry g;
   abbe_mirrors m;
@@ -46,8 +45,7 @@ static void metals_reflect_as_their_n_and_k_say(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void what_is_not_known_is_refused(void **state) {
-  (void)state;
+TEST(what_is_not_known_is_refused) {
   abbe_scene scene;
   abbe_geometry g;
   abbe_mirrors m;
@@ -59,10 +57,4 @@ static void what_is_not_known_is_refused(void **state) {
   assert_non_null(strstr(error.text, "gold"));
   abbe_geometry_free(&g);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(metals_reflect_as_their_n_and_k_say),
-                                     cmocka_unit_test(what_is_not_known_is_refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

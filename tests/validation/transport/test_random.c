@@ -21,8 +21,7 @@ static void check_chi_square(const double *seen, size_t bins, double count) {
   assert_near(chi, freedom, 5 * sqrt(2 * freedom));
 }
 
-static void each_number_is_uniform_whichever_counter_runs(void **state) {
-  (void)state;
+TEST(each_number_is_uniform_whichever_counter_runs) {
   static const uint32_t starts[] = {0, 0xfffff000u, 0x61696du};
   for (int counter = 0; counter < 4; counter++)
     for (int s = 0; s < 3; s++) {
@@ -40,8 +39,7 @@ static void each_number_is_uniform_whichever_counter_runs(void **state) {
 }
 
 /* The low bits count as much as the high ones: 24 of them are used. */
-static void fine_parts_are_uniform(void **state) {
-  (void)state;
+TEST(fine_parts_are_uniform) {
   double seen[4][BINS] = {0};
   for (uint32_t i = 0; i < COUNT; i++) {
     float r[4];
@@ -53,8 +51,7 @@ static void fine_parts_are_uniform(void **state) {
 
 /* Pairs of what neighbours in a counter get, on a grid of 8 by 8: pixels side by side, a path's
  * steps, passes, seeds. */
-static void neighbours_do_not_know_of_each_other(void **state) {
-  (void)state;
+TEST(neighbours_do_not_know_of_each_other) {
   for (int counter = 0; counter < 4; counter++)
     for (int k = 0; k < 4; k++) {
       double seen[BINS] = {0};
@@ -68,8 +65,7 @@ static void neighbours_do_not_know_of_each_other(void **state) {
     }
 }
 
-static void the_four_numbers_do_not_know_of_each_other(void **state) {
-  (void)state;
+TEST(the_four_numbers_do_not_know_of_each_other) {
   for (int k = 0; k < 4; k++)
     for (int l = k + 1; l < 4; l++) {
       double seen[BINS] = {0};
@@ -83,8 +79,7 @@ static void the_four_numbers_do_not_know_of_each_other(void **state) {
 }
 
 /* A grid of pixels and passes, as the eye's paths use them. */
-static void two_counters_at_once(void **state) {
-  (void)state;
+TEST(two_counters_at_once) {
   double seen[BINS] = {0};
   for (uint32_t i = 0; i < COUNT; i++) {
     float r[4];
@@ -94,8 +89,7 @@ static void two_counters_at_once(void **state) {
   check_chi_square(seen, BINS, COUNT);
 }
 
-static void the_same_counters_give_the_same_numbers(void **state) {
-  (void)state;
+TEST(the_same_counters_give_the_same_numbers) {
   uint32_t a[4], b[4];
   abbe_random_bits(1, 2, 3, 4, a);
   abbe_random_bits(1, 2, 3, 4, b);
@@ -110,8 +104,7 @@ static void the_same_counters_give_the_same_numbers(void **state) {
     }
 }
 
-static void numbers_stay_below_one(void **state) {
-  (void)state;
+TEST(numbers_stay_below_one) {
   assert_true(abbe_random_float(0) == 0);
   assert_true(abbe_random_float(0xffffffffu) < 1);
   assert_true(abbe_random_float(0x80000000u) == 0.5f);
@@ -121,8 +114,7 @@ static void numbers_stay_below_one(void **state) {
 }
 
 /* Parts of the range lie side by side, and the last place of one is below the first of the next. */
-static void parts_do_not_overlap(void **state) {
-  (void)state;
+TEST(parts_do_not_overlap) {
   for (uint32_t count = 1; count <= 7; count++)
     for (uint32_t i = 0; i < count; i++) {
       const uint32_t first = abbe_random_part(0, i, count);
@@ -137,8 +129,7 @@ static void parts_do_not_overlap(void **state) {
 
 /* Drawn from many entries by one number, its fraction decides: of 2^25 entries it is as uniform as
  * of few, also where a lattice is shifted. */
-static void fractions_of_many_entries_are_uniform(void **state) {
-  (void)state;
+TEST(fractions_of_many_entries_are_uniform) {
   for (int log = 6; log <= 25; log++) {
     double seen[BINS] = {0};
     for (uint32_t i = 0; i < COUNT; i++) {
@@ -149,19 +140,4 @@ static void fractions_of_many_entries_are_uniform(void **state) {
     }
     check_chi_square(seen, BINS, COUNT);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(each_number_is_uniform_whichever_counter_runs),
-      cmocka_unit_test(fine_parts_are_uniform),
-      cmocka_unit_test(neighbours_do_not_know_of_each_other),
-      cmocka_unit_test(the_four_numbers_do_not_know_of_each_other),
-      cmocka_unit_test(two_counters_at_once),
-      cmocka_unit_test(the_same_counters_give_the_same_numbers),
-      cmocka_unit_test(numbers_stay_below_one),
-      cmocka_unit_test(parts_do_not_overlap),
-      cmocka_unit_test(fractions_of_many_entries_are_uniform),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,22 +14,19 @@ static abbe_spectral_sampling sampling;
 static abbe_bands bands;
 static const abbe_environment_light dark;
 
-static int setup(void **state) {
-  (void)state;
+static void setup(void) {
   const abbe_spectral_sampling_desc desc = {.min_nm = 380, .max_nm = 780, .uniform = 0.1};
   load_text(CAMERA POINT_LIGHT CARD, &scene);
-  return abbe_geometry_make(&scene, &geometry, NULL) != ABBE_OK ||
-         abbe_spectral_sampling_make(&scene, &desc, &sampling, NULL) != ABBE_OK ||
-         abbe_bands_make(&sampling, 40, &bands, NULL) != ABBE_OK;
+  assert_int_equal(abbe_geometry_make(&scene, &geometry, NULL), ABBE_OK);
+  assert_int_equal(abbe_spectral_sampling_make(&scene, &desc, &sampling, NULL), ABBE_OK);
+  assert_int_equal(abbe_bands_make(&sampling, 40, &bands, NULL), ABBE_OK);
 }
 
-static int teardown(void **state) {
-  (void)state;
+static void teardown(void) {
   abbe_bands_free(&bands);
   abbe_spectral_sampling_free(&sampling);
   abbe_geometry_free(&geometry);
   abbe_scene_free(&scene);
-  return 0;
 }
 
 /* The face and barycentric coordinates of the card at (x, y). */
@@ -72,8 +69,9 @@ static void put_texture(size_t width, size_t height, const double repeat[2]) {
   for (int k = 0; k < 2; k++) o->texture_repeat[k] = repeat[k];
 }
 
-static void without_a_texture_it_is_the_objects(void **state) {
-  (void)state;
+GROUP(setup, teardown);
+
+TEST(without_a_texture_it_is_the_objects) {
   abbe_reflectance r = make(ABBE_RGB_SPACE_REC709);
   float c[3];
   colour_at(&r, 0.3, -0.7, c);
@@ -83,8 +81,7 @@ static void without_a_texture_it_is_the_objects(void **state) {
 
 /* x to the right is u, y up is v; the texture's row 0 is at the top. Between the middles of texels
  * a linear ramp stays linear. */
-static void textures_stand_upright(void **state) {
-  (void)state;
+TEST(textures_stand_upright) {
   put_texture(16, 8, (double[2]){1, 1});
   abbe_reflectance r = make(ABBE_RGB_SPACE_REC709);
   for (int i = 0; i < 100; i++) {
@@ -98,8 +95,7 @@ static void textures_stand_upright(void **state) {
   abbe_reflectance_free(&r);
 }
 
-static void textures_repeat(void **state) {
-  (void)state;
+TEST(textures_repeat) {
   put_texture(16, 8, (double[2]){4, 3});
   abbe_reflectance r = make(ABBE_RGB_SPACE_REC709);
   float first[3], c[3];
@@ -118,8 +114,7 @@ static void textures_repeat(void **state) {
 }
 
 /* Repeats below 0 mirror; a texture of one texel is its colour everywhere. */
-static void awkward_textures(void **state) {
-  (void)state;
+TEST(awkward_textures) {
   put_texture(16, 8, (double[2]){-1, -1});
   abbe_reflectance r = make(ABBE_RGB_SPACE_REC709);
   float c[3];
@@ -141,8 +136,7 @@ static void awkward_textures(void **state) {
 
 /* The mean of one wavelength's paths is what light of all wavelengths shows, and under D65 that is
  * the colour, in every space; a grey is grey at all wavelengths. */
-static void wavelengths_add_up_to_the_colour(void **state) {
-  (void)state;
+TEST(wavelengths_add_up_to_the_colour) {
   const abbe_reflected card = {.share = {0.8f, 0.5f, 0.25f}}, grey = {.share = {0.5f, 0.5f, 0.5f}};
   for (int space = 0; space < ABBE_RGB_SPACE_COUNT; space++) {
     abbe_reflectance r = make((abbe_rgb_space)space);
@@ -173,8 +167,7 @@ static void wavelengths_add_up_to_the_colour(void **state) {
 }
 
 /* Objects of a spectrum have it, at every step and as the mean over a band. */
-static void a_spectrum_is_itself(void **state) {
-  (void)state;
+TEST(a_spectrum_is_itself) {
   static const double nm[] = {380, 780}, value[] = {0.1, 0.9};
   abbe_object *o = &scene.object[0];
   assert_int_equal(abbe_spectrum_make(nm, value, 2, ABBE_INTERPOLATION_LINEAR, &o->spectrum, NULL),
@@ -192,16 +185,4 @@ static void a_spectrum_is_itself(void **state) {
   abbe_reflectance_free(&r);
   abbe_spectrum_free(o->spectrum);
   o->spectrum = NULL;
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(without_a_texture_it_is_the_objects),
-      cmocka_unit_test(textures_stand_upright),
-      cmocka_unit_test(textures_repeat),
-      cmocka_unit_test(awkward_textures),
-      cmocka_unit_test(wavelengths_add_up_to_the_colour),
-      cmocka_unit_test(a_spectrum_is_itself),
-  };
-  return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -52,8 +52,7 @@ static void check_against_embree(const char *text) {
   drop(&scene, &g);
 }
 
-static void a_ray_leaves_where_embree_says(void **state) {
-  (void)state;
+TEST(a_ray_leaves_where_embree_says) {
   check_against_embree(CAMERA POINT_LIGHT FLOOR BALL("crown"));
   check_against_embree(CAMERA POINT_LIGHT FLOOR
                        "- {name: stone, shape: brilliant, diameter: 0.1, transform: [{rotate: "
@@ -65,8 +64,7 @@ static void a_ray_leaves_where_embree_says(void **state) {
 }
 
 /* On a face, as rounding leaves it a little outside: at once, or across; never lost. */
-static void rounding_at_a_face_loses_nothing(void **state) {
-  (void)state;
+TEST(rounding_at_a_face_loses_nothing) {
   abbe_scene scene;
   abbe_geometry g;
   make(CAMERA POINT_LIGHT FLOOR
@@ -112,8 +110,7 @@ static void check_alone(const char *objects, const bool *alone) {
 #define CUBE "box, size: [0.1, 0.1, 0.1]"
 #define AT(x, y, z) "{translate: [" x ", " y ", " z "]}"
 
-static void what_another_surface_touches_is_none(void **state) {
-  (void)state;
+TEST(what_another_surface_touches_is_none) {
   static const bool yes[] = {true, true}, no[] = {false, false}, second[] = {false, true};
   check_alone(GLASS("ball", "sphere, radius: 0.1", AT("0", "0", "0.101")), yes);
   check_alone(GLASS("ball", "sphere, radius: 0.1", AT("0", "0", "0.1")), no);
@@ -138,8 +135,7 @@ static void what_another_surface_touches_is_none(void **state) {
               second);
 }
 
-static void a_receiver_may_stand_around_it(void **state) {
-  (void)state;
+TEST(a_receiver_may_stand_around_it) {
   static const bool yes[] = {true}, no[] = {false};
   check_alone(WALL("room", "box, size: [1.5, 1.5, 1.1]", AT("0", "0", "0.6"))
                   GLASS("cube", CUBE, AT("0", "0", "0.4")),
@@ -156,12 +152,4 @@ static void a_receiver_may_stand_around_it(void **state) {
   check_alone(WALL("speck", "rectangle, width: 0.01, height: 0.01", AT("0", "0", "0.4"))
                   GLASS("ball", "sphere, radius: 0.1", AT("0", "0", "0.4")),
               no);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_ray_leaves_where_embree_says),
-                                     cmocka_unit_test(rounding_at_a_face_loses_nothing),
-                                     cmocka_unit_test(what_another_surface_touches_is_none),
-                                     cmocka_unit_test(a_receiver_may_stand_around_it)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,8 +29,7 @@ static void drop(abbe_scene *scene, abbe_spectral_sampling *s) {
 
 static const double ranges[][2] = {{380, 780}, {300, 900}, {589, 590}, {650, 1200}, {400, 401}};
 
-static void the_mean_of_all_paths_is_white(void **state) {
-  (void)state;
+TEST(the_mean_of_all_paths_is_white) {
   for (size_t r = 0; r < sizeof ranges / sizeof *ranges; r++) {
     abbe_scene scene;
     abbe_spectral_sampling s;
@@ -54,8 +53,7 @@ static void the_mean_of_all_paths_is_white(void **state) {
 }
 
 /* D65's white over the whole visible range, by its chromaticity [CIE 15]. */
-static void the_white_of_d65(void **state) {
-  (void)state;
+TEST(the_white_of_d65) {
   abbe_scene scene;
   abbe_spectral_sampling s;
   make(&scene, 360, 830, 0.15, &s);
@@ -65,8 +63,7 @@ static void the_white_of_d65(void **state) {
   drop(&scene, &s);
 }
 
-static void steps_rise_from_end_to_end(void **state) {
-  (void)state;
+TEST(steps_rise_from_end_to_end) {
   for (size_t r = 0; r < sizeof ranges / sizeof *ranges; r++) {
     abbe_scene scene;
     abbe_spectral_sampling s;
@@ -89,8 +86,7 @@ static double seen(const abbe_scene *scene, double lambda, double part[3]) {
 
 /* Every step has the same probability: the mean of the lights' visible spectra and a flat one,
  * integrated over it by itself. */
-static void steps_are_equally_probable(void **state) {
-  (void)state;
+TEST(steps_are_equally_probable) {
   abbe_scene scene;
   abbe_spectral_sampling s;
   const double uniform = 0.15, range = 400;
@@ -112,8 +108,7 @@ static void steps_are_equally_probable(void **state) {
 
 /* A uniform part of the density bounds how much brighter than the mean a path can be: none of the
  * lights' shares, a third each, is starved. */
-static void no_path_carries_much_more_than_the_mean(void **state) {
-  (void)state;
+TEST(no_path_carries_much_more_than_the_mean) {
   abbe_scene scene;
   abbe_spectral_sampling s;
   make(&scene, 380, 780, 0.15, &s);
@@ -126,8 +121,7 @@ static void no_path_carries_much_more_than_the_mean(void **state) {
   drop(&scene, &s);
 }
 
-static void a_number_finds_its_step_and_wavelength(void **state) {
-  (void)state;
+TEST(a_number_finds_its_step_and_wavelength) {
   abbe_scene scene;
   abbe_spectral_sampling s;
   make(&scene, 380, 780, 0.15, &s);
@@ -145,8 +139,7 @@ static void a_number_finds_its_step_and_wavelength(void **state) {
   drop(&scene, &s);
 }
 
-static void colours_are_the_xyz_in_the_space(void **state) {
-  (void)state;
+TEST(colours_are_the_xyz_in_the_space) {
   abbe_scene scene;
   abbe_spectral_sampling s;
   make(&scene, 380, 780, 0.15, &s);
@@ -163,8 +156,7 @@ static void colours_are_the_xyz_in_the_space(void **state) {
   drop(&scene, &s);
 }
 
-static void what_cannot_be_sampled_is_refused(void **state) {
-  (void)state;
+TEST(what_cannot_be_sampled_is_refused) {
   abbe_scene scene;
   load_text(CAMERA LIGHTS_OF_THREE_KINDS FLOOR, &scene);
   abbe_spectral_sampling s;
@@ -186,18 +178,4 @@ static void what_cannot_be_sampled_is_refused(void **state) {
   }
   abbe_spectral_sampling_free(&s);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_mean_of_all_paths_is_white),
-      cmocka_unit_test(the_white_of_d65),
-      cmocka_unit_test(steps_rise_from_end_to_end),
-      cmocka_unit_test(steps_are_equally_probable),
-      cmocka_unit_test(no_path_carries_much_more_than_the_mean),
-      cmocka_unit_test(a_number_finds_its_step_and_wavelength),
-      cmocka_unit_test(colours_are_the_xyz_in_the_space),
-      cmocka_unit_test(what_cannot_be_sampled_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -161,8 +161,7 @@ static double middle_error(const abbe_scene *scene, const abbe_caustic_volume *v
 
 /* Nodes half as far apart: an error of a quarter and less; copies of a beam beside it are what is
  * further off than half the square of the distance between nodes. */
-static void test_a_prism_bends_as_snell_has_it(void **state) {
-  (void)state;
+TEST(a_prism_bends_as_snell_has_it) {
   enum { LEVELS = SANITIZED ? 2 : 3 };
   static const size_t nodes[] = {42, 162, 642};
   abbe_scene scene = {0};
@@ -236,8 +235,7 @@ static void look_at_ball_ray(void *user, const abbe_exit_ray *ray, double flux, 
 }
 
 /* A lamp at a distance D: a ball of n focuses its light at f D / (D - f), f = n R / (2 (n - 1)). */
-static void test_lamps_nearby_are_lamps_nearby(void **state) {
-  (void)state;
+TEST(lamps_nearby_are_lamps_nearby) {
   abbe_scene scene = {0};
   abbe_caustic_volume v;
   abbe_volume_fill_statistics done;
@@ -275,8 +273,7 @@ static void test_lamps_nearby_are_lamps_nearby(void **state) {
 /* ---- light around it ---- */
 
 /* At a node the cells hold what photons bring there, in any light's colour. */
-static void test_cells_hold_what_photons_bring(void **state) {
-  (void)state;
+TEST(cells_hold_what_photons_bring) {
   abbe_scene scene = {0};
   abbe_caustic_volume exits, values;
   abbe_volume_fill_statistics done;
@@ -330,8 +327,7 @@ static void test_cells_hold_what_photons_bring(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_threads_change_nothing(void **state) {
-  (void)state;
+TEST(threads_change_nothing) {
   abbe_scene scene = {0};
   abbe_caustic_volume v[3];
   abbe_volume_fill_statistics done;
@@ -352,8 +348,7 @@ static void test_threads_change_nothing(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_requests(void **state) {
-  (void)state;
+TEST(requests) {
   abbe_scene scene = {0};
   abbe_caustic_volume v;
   abbe_volume_fill_statistics done;
@@ -378,15 +373,4 @@ static void test_requests(void **state) {
   assert_int_equal(calls, 1);
   assert_null(v.exits.exit);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_prism_bends_as_snell_has_it),
-      cmocka_unit_test(test_lamps_nearby_are_lamps_nearby),
-      cmocka_unit_test(test_cells_hold_what_photons_bring),
-      cmocka_unit_test(test_threads_change_nothing),
-      cmocka_unit_test(test_requests),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,8 +26,7 @@ static void free_points(abbe_scene *scene, abbe_lone_object *lone, abbe_exit_poi
   abbe_scene_free(scene);
 }
 
-static void test_a_ball(void **state) {
-  (void)state;
+TEST(a_ball) {
   abbe_scene scene = {0};
   abbe_lone_object lone;
   abbe_exit_points points;
@@ -51,8 +50,7 @@ static void test_a_ball(void **state) {
 }
 
 /* Faces have points by their areas; wavelengths and decisions are even. */
-static void test_a_brick(void **state) {
-  (void)state;
+TEST(a_brick) {
   static const double size[3] = {0.1, 0.08, 0.06};
   abbe_scene scene = {0};
   abbe_lone_object lone;
@@ -79,8 +77,7 @@ static void test_a_brick(void **state) {
 }
 
 /* A sheet of metal reflects on both sides. */
-static void test_an_open_mirror(void **state) {
-  (void)state;
+TEST(an_open_mirror) {
   abbe_scene scene = {0};
   abbe_lone_object lone;
   abbe_exit_points points;
@@ -92,10 +89,4 @@ static void test_an_open_mirror(void **state) {
   for (size_t i = 0; i < COUNT; i++) up += points.point[i].normal[2] > 0;
   assert_int_equal(up, COUNT / 2);
   free_points(&scene, &lone, &points);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_ball), cmocka_unit_test(test_a_brick),
-                                     cmocka_unit_test(test_an_open_mirror)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

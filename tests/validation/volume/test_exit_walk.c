@@ -48,8 +48,7 @@ static void walk(const bench *b, const double place[3], float chance, abbe_exit_
   abbe_exit_walk(&b->space, &start, end);
 }
 
-static void test_a_plate(void **state) {
-  (void)state;
+TEST(a_plate) {
   static const double top[3] = {0.1, 0, 0.51}, beside[3] = {0.11, 0.01, 0.51},
                       under[3] = {0.1, 0, 0.49}, near_end[3] = {0.195, 0, 0.51};
   bench b;
@@ -76,8 +75,7 @@ static void test_a_plate(void **state) {
   free_bench(&b);
 }
 
-static void test_what_is_lost_on_the_way(void **state) {
-  (void)state;
+TEST(what_is_lost_on_the_way) {
   static const double top[3] = {0.1, 0, 0.51};
   bench b;
   abbe_exit_end end;
@@ -92,10 +90,4 @@ static void test_what_is_lost_on_the_way(void **state) {
   assert_near((double)end.carried, 0.7, 1e-6);
   assert_near((double)end.way[2], 0.8, 1e-6);
   free_bench(&b);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_plate),
-                                     cmocka_unit_test(test_what_is_lost_on_the_way)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

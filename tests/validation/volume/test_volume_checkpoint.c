@@ -9,8 +9,7 @@
 
 static const char path[] = "volume-checkpoint-test";
 
-static void test_bytes_come_back(void **state) {
-  (void)state;
+TEST(bytes_come_back) {
   double numbers[3] = {1, -2, 0.1}, back[3] = {0};
   char word[5] = "node", read[5] = "";
   const abbe_kept_bytes from[] = {{numbers, sizeof numbers}, {word, sizeof word}},
@@ -32,8 +31,7 @@ static void test_bytes_come_back(void **state) {
   assert_int_equal(abbe_volume_checkpoint_load(path, 77, &nodes, to, 2, NULL, &error), ABBE_IO);
 }
 
-static void test_broken_files_are_told(void **state) {
-  (void)state;
+TEST(broken_files_are_told) {
   char *data;
   size_t size;
   double number = 3;
@@ -74,8 +72,7 @@ static bool stop_halfway(void *user, double done) {
 }
 
 /* Stopped after half the nodes, and gone on with: what an unbroken run makes. */
-static void test_fills_go_on_to_the_same_bits(void **state) {
-  (void)state;
+TEST(fills_go_on_to_the_same_bits) {
   abbe_scene scene = {0};
   load_text(CAMERA SUN FLOOR BRICK("crown"), &scene);
   for (int exits = 0; exits < 2; exits++) {
@@ -142,8 +139,7 @@ static void forge(const abbe_scene *scene, const abbe_volume_fill_desc *d, char 
   free(kept);
 }
 
-static void test_forged_files_are_refused(void **state) {
-  (void)state;
+TEST(forged_files_are_refused) {
   abbe_scene scene = {0};
   load_text(CAMERA SUN FLOOR BRICK("crown"), &scene);
   for (int exits = 0; exits < 2; exits++) {
@@ -188,14 +184,4 @@ static void test_forged_files_are_refused(void **state) {
     abbe_caustic_volume_free(&part);
   }
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_bytes_come_back),
-      cmocka_unit_test(test_broken_files_are_told),
-      cmocka_unit_test(test_fills_go_on_to_the_same_bits),
-      cmocka_unit_test(test_forged_files_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,8 +21,7 @@ static double value_at(const abbe_caustic_volume *v, size_t node, size_t cell, s
 
 /* Light straight down on a plate of n = 1.5: 2 n / (n^2 + 1) of it goes on through all reflections
  * inside, and the rest goes back; in the plate's own cells nothing is asked. */
-static void test_a_plate_has_two_beams(void **state) {
-  (void)state;
+TEST(a_plate_has_two_beams) {
   abbe_scene scene = {0};
   abbe_caustic_volume v;
   abbe_volume_fill_statistics done;
@@ -59,8 +58,7 @@ static void test_a_plate_has_two_beams(void **state) {
 }
 
 /* Through an index of 1 the beam goes on as it was, in the object's shadow alone. */
-static void test_index_one_is_a_beam(void **state) {
-  (void)state;
+TEST(index_one_is_a_beam) {
   abbe_scene scene = {0};
   abbe_caustic_volume v;
   abbe_volume_fill_statistics done;
@@ -139,8 +137,7 @@ static void trace_layer(abbe_scene *scene, double middle, double height, size_t 
 
 /* Under a ball, at the node that the light is at: a cell holds what the tracer brings to floors in
  * it, within four standard errors of both. */
-static void test_a_ball_is_as_the_tracer_has_it(void **state) {
-  (void)state;
+TEST(a_ball_is_as_the_tracer_has_it) {
   enum { SIDE = 12, LAYERS_END = SANITIZED ? 3 : 4 };
   abbe_scene scene = {0};
   abbe_caustic_volume v;
@@ -176,8 +173,7 @@ static void test_a_ball_is_as_the_tracer_has_it(void **state) {
 }
 
 /* Without receivers in the way every shell beyond the object has all the flux that left it. */
-static void test_shells_have_the_flux_of_the_ledger(void **state) {
-  (void)state;
+TEST(shells_have_the_flux_of_the_ledger) {
   abbe_scene scene = {0};
   abbe_caustic_volume v;
   abbe_volume_fill_statistics done;
@@ -199,8 +195,7 @@ static void test_shells_have_the_flux_of_the_ledger(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_threads_change_nothing(void **state) {
-  (void)state;
+TEST(threads_change_nothing) {
   abbe_scene scene = {0};
   abbe_caustic_volume v[3];
   abbe_volume_fill_statistics done;
@@ -224,8 +219,7 @@ static void test_threads_change_nothing(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_requests(void **state) {
-  (void)state;
+TEST(requests) {
   abbe_scene scene = {0};
   abbe_caustic_volume v;
   abbe_volume_fill_statistics done;
@@ -267,14 +261,4 @@ static void test_requests(void **state) {
   assert_near(v.error, done.error, 0);
   abbe_caustic_volume_free(&v);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_plate_has_two_beams),
-                                     cmocka_unit_test(test_index_one_is_a_beam),
-                                     cmocka_unit_test(test_a_ball_is_as_the_tracer_has_it),
-                                     cmocka_unit_test(test_shells_have_the_flux_of_the_ledger),
-                                     cmocka_unit_test(test_threads_change_nothing),
-                                     cmocka_unit_test(test_requests)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,8 +7,7 @@
 
 #define PI 3.14159265358979323846
 
-static void test_a_ball_takes_its_volume(void **state) {
-  (void)state;
+TEST(a_ball_takes_its_volume) {
   abbe_scene scene = {0};
   abbe_geometry g;
   abbe_volume_region r;
@@ -41,9 +40,4 @@ static void test_a_ball_takes_its_volume(void **state) {
   abbe_volume_region_free(&r);
   abbe_geometry_free(&g);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_ball_takes_its_volume)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,8 +18,7 @@ static void random_unit(uint64_t *seed, double d[3]) {
 }
 
 /* Along x through a row of a grid: flux times length by the cell's volume, and by its space. */
-static void test_one_stretch(void **state) {
-  (void)state;
+TEST(one_stretch) {
   abbe_volume_region r;
   abbe_volume_sums s;
   float space[64];
@@ -46,8 +45,7 @@ static void test_one_stretch(void **state) {
 }
 
 /* Whatever starts within and goes out passes every shell: all have the same flux. */
-static void test_every_shell_has_the_flux_that_leaves(void **state) {
-  (void)state;
+TEST(every_shell_has_the_flux_that_leaves) {
   static const abbe_region_desc regions[] = {
       {.kind = ABBE_REGION_GEODESIC, .levels = 4, .shells = 6, .inner = 1, .outer = 3},
       {.kind = ABBE_REGION_OCTAHEDRAL, .side = 64, .shells = 6, .inner = 1, .outer = 3}};
@@ -75,8 +73,7 @@ static void test_every_shell_has_the_flux_that_leaves(void **state) {
 }
 
 /* Nothing ends or begins in a shell that light crosses both ways: what comes in goes out. */
-static void test_what_comes_in_goes_out(void **state) {
-  (void)state;
+TEST(what_comes_in_goes_out) {
   abbe_volume_region r;
   abbe_volume_sums s;
   uint64_t seed = 10;
@@ -100,8 +97,7 @@ static void test_what_comes_in_goes_out(void **state) {
 }
 
 /* A beam with nothing in it brings every cell the cosine to where it lies, behind the middle. */
-static void test_a_printed_beam(void **state) {
-  (void)state;
+TEST(a_printed_beam) {
   enum { SIDE = 2000 };
   static const double d[3] = {0.48, 0.6, 0.64}, x[3] = {0.8, 0, -0.6}, y[3] = {-0.36, 0.8, -0.48};
   abbe_volume_region r;
@@ -125,12 +121,4 @@ static void test_a_printed_beam(void **state) {
   }
   abbe_volume_sums_free(&s);
   abbe_volume_region_free(&r);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_one_stretch),
-                                     cmocka_unit_test(test_every_shell_has_the_flux_that_leaves),
-                                     cmocka_unit_test(test_what_comes_in_goes_out),
-                                     cmocka_unit_test(test_a_printed_beam)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,17 +10,14 @@
 static abbe_scene scene;
 static abbe_geometry geometry;
 
-static int setup(void **state) {
-  (void)state;
+static void setup(void) {
   load_text(TILTED POINT_LIGHT FLOOR BALL("flat"), &scene);
-  return abbe_geometry_make(&scene, &geometry, NULL) != ABBE_OK;
+  assert_int_equal(abbe_geometry_make(&scene, &geometry, NULL), ABBE_OK);
 }
 
-static int teardown(void **state) {
-  (void)state;
+static void teardown(void) {
   abbe_geometry_free(&geometry);
   abbe_scene_free(&scene);
-  return 0;
 }
 
 static double dot(const float a[3], const float b[3]) {
@@ -29,8 +26,9 @@ static double dot(const float a[3], const float b[3]) {
   return sum;
 }
 
-static void the_frame_is_the_scenes(void **state) {
-  (void)state;
+GROUP(setup, teardown);
+
+TEST(the_frame_is_the_scenes) {
   abbe_trace_camera c;
   abbe_trace_camera_make(&geometry, 64, 48, &c);
   const float *axis[3] = {c.right, c.up, c.forward};
@@ -51,8 +49,7 @@ static void the_frame_is_the_scenes(void **state) {
 }
 
 /* Pixel 0 is at the top left. */
-static void the_top_left_is_first(void **state) {
-  (void)state;
+TEST(the_top_left_is_first) {
   abbe_trace_camera c;
   abbe_trace_camera_make(&geometry, 64, 48, &c);
   float d[3];
@@ -62,8 +59,7 @@ static void the_top_left_is_first(void **state) {
   assert_near(dot(d, c.forward), 1, 1e-6);
 }
 
-static void a_ray_comes_back_to_its_pixel(void **state) {
-  (void)state;
+TEST(a_ray_comes_back_to_its_pixel) {
   static const size_t sizes[][2] = {{1, 1}, {64, 48}, {3, 1000}, {8192, 8192}};
   uint64_t random = 1;
   for (int s = 0; s < 4; s++) {
@@ -90,8 +86,7 @@ static void a_ray_comes_back_to_its_pixel(void **state) {
 /* A pixel's mean of a radiance that reaches the eye from a small source is its intensity over the
  * square of the distance and over the pixel's solid angle; so 1 / per_pixel is that solid angle,
  * and over all pixels the film's: 4 atan(a b / sqrt(1 + a^2 + b^2)). */
-static void solid_angles_of_pixels_add_up_to_the_films(void **state) {
-  (void)state;
+TEST(solid_angles_of_pixels_add_up_to_the_films) {
   abbe_trace_camera c;
   abbe_trace_camera_make(&geometry, 200, 100, &c);
   double sum = 0;
@@ -109,8 +104,7 @@ static void solid_angles_of_pixels_add_up_to_the_films(void **state) {
   assert_near(sum / film, 1, 1e-4);
 }
 
-static void what_is_not_in_the_picture_has_no_pixel(void **state) {
-  (void)state;
+TEST(what_is_not_in_the_picture_has_no_pixel) {
   abbe_trace_camera c;
   abbe_trace_camera_make(&geometry, 64, 48, &c);
   float d[3], distance, per_pixel, p[3];
@@ -127,15 +121,4 @@ static void what_is_not_in_the_picture_has_no_pixel(void **state) {
   }
   for (int k = 0; k < 3; k++) p[k] = NAN;
   assert_false(abbe_trace_camera_pixel(&c, p, &pixel, &distance, d, &per_pixel));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_frame_is_the_scenes),
-      cmocka_unit_test(the_top_left_is_first),
-      cmocka_unit_test(a_ray_comes_back_to_its_pixel),
-      cmocka_unit_test(solid_angles_of_pixels_add_up_to_the_films),
-      cmocka_unit_test(what_is_not_in_the_picture_has_no_pixel),
-  };
-  return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -32,8 +32,7 @@ static void make_crystal(const char *text, const abbe_physics *physics, fixture 
 
 /* Of the light that enters as one wave a slab lets through, with all inner reflections, (1 - r) /
  * (1 + r): each wave by its own index, and neither makes any of the other head on. */
-static void a_beam_becomes_two(void **state) {
-  (void)state;
+TEST(a_beam_becomes_two) {
   fixture *f = malloc(sizeof *f);
   make_crystal(CALCITE("[1, 0, 1]"), NULL, f);
   const double from[3] = {0.02, 0.01, 0.5}, down[3] = {0, 0, -1}, cos_axis = sqrt(0.5);
@@ -68,8 +67,7 @@ static void a_beam_becomes_two(void **state) {
 }
 
 /* All that reaches the block is somewhere, whatever faces it meets and how often it is split. */
-static void the_ledger_closes(void **state) {
-  (void)state;
+TEST(the_ledger_closes) {
   for (unsigned splits = 0; splits < 4; splits++) {
     fixture *f = malloc(sizeof *f);
     make_crystal(CALCITE("[1, 0.3, 0.7]"), NULL, f);
@@ -85,8 +83,7 @@ static void the_ledger_closes(void **state) {
 }
 
 /* Split paths carry what chosen ones carry. */
-static void splitting_biases_nothing(void **state) {
-  (void)state;
+TEST(splitting_biases_nothing) {
   double landed[2];
   for (int i = 0; i < 2; i++) {
     fixture *f = malloc(sizeof *f);
@@ -101,8 +98,7 @@ static void splitting_biases_nothing(void **state) {
 }
 
 /* Matched physics is the renderer's, which has the ordinary index alone. */
-static void matched_physics_knows_one_index(void **state) {
-  (void)state;
+TEST(matched_physics_knows_one_index) {
   fixture *f = malloc(sizeof *f);
   const abbe_physics matched = {.matched = true, .orders = 1000, .energy_share = 0};
   make_crystal(CALCITE("[1, 0, 1]"), &matched, f);
@@ -118,8 +114,7 @@ static void matched_physics_knows_one_index(void **state) {
 
 /* A dark line on a bright floor under the block, seen straight from above, is two lines of half the
  * depth, as far apart as the closed form says. */
-static void a_line_is_seen_double(void **state) {
-  (void)state;
+TEST(a_line_is_seen_double) {
   enum { WIDE = 48, ROWS = 8 };
   char folder[] = "/tmp/abbe-test-crystal-XXXXXX", path[64], text[2048];
   assert_non_null(mkdtemp(folder));
@@ -178,13 +173,4 @@ static void a_line_is_seen_double(void **state) {
   abbe_scene_free(&scene);
   unlink(path);
   rmdir(folder);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_beam_becomes_two),       cmocka_unit_test(the_ledger_closes),
-      cmocka_unit_test(splitting_biases_nothing), cmocka_unit_test(matched_physics_knows_one_index),
-      cmocka_unit_test(a_line_is_seen_double),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

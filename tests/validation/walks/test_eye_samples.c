@@ -36,8 +36,7 @@ static size_t count(const fixture *f, uint8_t samples) {
 }
 
 /* Every pixel that may show the ball has its share, what is well off it has one. */
-static void glass_takes_more_samples(void **state) {
-  (void)state;
+TEST(glass_takes_more_samples) {
   fixture f;
   share(CAMERA POINT_LIGHT FLOOR BUBBLE, 1e9, 1, &f);
   size_t most = count(&f, ABBE_EYE_MOST_SAMPLES), seen = 0;
@@ -56,8 +55,7 @@ static void glass_takes_more_samples(void **state) {
 }
 
 /* As many as the rays allow, and one where they allow none. */
-static void rays_are_shared_out(void **state) {
-  (void)state;
+TEST(rays_are_shared_out) {
   fixture f;
   share(CAMERA POINT_LIGHT FLOOR BUBBLE, 1e9, 1, &f);
   double pixels = (double)count(&f, ABBE_EYE_MOST_SAMPLES);
@@ -71,30 +69,18 @@ static void rays_are_shared_out(void **state) {
   drop(&f);
 }
 
-static void no_glass_takes_one(void **state) {
-  (void)state;
+TEST(no_glass_takes_one) {
   fixture f;
   share(CAMERA POINT_LIGHT FLOOR, 1e9, 1, &f);
   assert_int_equal(count(&f, 1), SIDE * SIDE);
   drop(&f);
 }
 
-static void threads_do_not_matter(void **state) {
-  (void)state;
+TEST(threads_do_not_matter) {
   fixture a, b;
   share(CAMERA POINT_LIGHT FLOOR RING("crown"), 1e9, 1, &a);
   share(CAMERA POINT_LIGHT FLOOR RING("crown"), 1e9, 3, &b);
   assert_memory_equal(a.samples, b.samples, sizeof a.samples);
   drop(&a);
   drop(&b);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(glass_takes_more_samples),
-      cmocka_unit_test(rays_are_shared_out),
-      cmocka_unit_test(no_glass_takes_one),
-      cmocka_unit_test(threads_do_not_matter),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

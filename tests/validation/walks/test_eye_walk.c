@@ -79,8 +79,7 @@ static void check_radiance(const char *text, double radiance, double share) {
 }
 
 /* A matte floor of reflectance 1/2 returns E / (2 pi). */
-static void direct_light_on_a_plane(void **state) {
-  (void)state;
+TEST(direct_light_on_a_plane) {
   check_radiance(DOWN LIGHT("kind: point, position: [0.1, 0, 0.5], intensity: 3") FLOOR,
                  3 / 0.25 * 0.5 / pi, 1e-5);
   /* slanted: I cos^3 / h^2; the picture's place varies by 1e-3 m */
@@ -92,8 +91,7 @@ static void direct_light_on_a_plane(void **state) {
 }
 
 /* A spot's cone is where it is, also one of a twentieth of a degree. */
-static void spots_end_where_they_end(void **state) {
-  (void)state;
+TEST(spots_end_where_they_end) {
   static const double cones[] = {40, 3, 0.05};
   for (int i = 0; i < 3; i++)
     for (int inside = 0; inside < 2; inside++) {
@@ -122,8 +120,7 @@ static void spots_end_where_they_end(void **state) {
 /* A disk of radius R, radiance L, over a place at height h facing it: E = pi L R^2 / (R^2 + h^2);
  * off its axis by x: E = pi L / 2 (1 - (h^2 + x^2 - R^2) / sqrt((h^2 + x^2 + R^2)^2 - 4 x^2 R^2)).
  */
-static void a_disks_irradiance(void **state) {
-  (void)state;
+TEST(a_disks_irradiance) {
   for (int i = 0; i < 2; i++) {
     const char *text =
         i ? DOWN LIGHT("kind: disk, position: [0.5, 0, 0.3], direction: [0, 0, -1], radius: 0.2, "
@@ -171,8 +168,7 @@ static double polygon_irradiance(double (*corner)[3], size_t count, const double
 
 /* Off its axis, turned by 30 degrees and tilted: the edges are where width, height and roll put
  * them. */
-static void a_rectangles_irradiance(void **state) {
-  (void)state;
+TEST(a_rectangles_irradiance) {
   const double c = cos(pi / 6), s = sin(pi / 6), at[] = {0.1, 0, 0};
   for (int i = 0; i < 2; i++) {
     const char *text =
@@ -205,8 +201,7 @@ static void a_rectangles_irradiance(void **state) {
   }
 }
 
-static void lamps_are_seen_from_the_front(void **state) {
-  (void)state;
+TEST(lamps_are_seen_from_the_front) {
 #define LAMP(direction)                                                                            \
   LIGHT("kind: disk, position: [0.1, 0, 0.5], direction: [0, 0, " direction                        \
         "], radius: 0.1, radiance: 5")
@@ -225,8 +220,7 @@ static void lamps_are_seen_from_the_front(void **state) {
 
 /* Behind a lid, behind glass (its light comes as a caustic), on the far side: no light, and just
  * the ambient where there is some. */
-static void shadows(void **state) {
-  (void)state;
+TEST(shadows) {
 #define SIDE_LIGHT LIGHT("kind: point, position: [0.5, 0, 0.4], intensity: 3")
   check_radiance(DOWN SIDE_LIGHT FLOOR LID("0.5"), 0, 0);
   check_radiance(
@@ -247,8 +241,7 @@ static void shadows(void **state) {
 #define EVEN_SKY "background: 1\n" LIGHT("kind: point, position: [3, 3, 3], intensity: 1")
 
 /* In uniform light clear glass cannot be seen. */
-static void a_white_furnace(void **state) {
-  (void)state;
+TEST(a_white_furnace) {
   abbe_trace_desc desc = {.width = 8, .height = 8, .no_map = true, .threads = 1};
   fixture f;
   double mean[3], error[3];
@@ -266,8 +259,7 @@ static void a_white_furnace(void **state) {
 
 /* Splitting changes how a stone's light is found, not how much there is: against roulette at all
  * interfaces and none above a thousandth, each with less spread than the one before. */
-static void splitting_keeps_the_mean(void **state) {
-  (void)state;
+TEST(splitting_keeps_the_mean) {
   static const float least[] = {1, ABBE_EYE_LEAST_BRANCH, 1e-3f};
   double mean[3][3], error[3][3];
   fixture f;
@@ -291,8 +283,7 @@ static void splitting_keeps_the_mean(void **state) {
 
 /* Sixteen samples of a pixel: the mean of one, with less than a quarter of its spread, for they are
  * even over the pixel and the spectrum. */
-static void samples_share_a_pixel(void **state) {
-  (void)state;
+TEST(samples_share_a_pixel) {
   double mean[2][3], error[2][3];
   fixture f;
   make_with(
@@ -315,8 +306,7 @@ static void samples_share_a_pixel(void **state) {
 
 /* Along the axis of an absorbing ball: r + (1 - r)^2 k / (1 - r k) with k = exp(-a 2 R), over the
  * spectrum of the sky. */
-static void absorbing_glass_shows(void **state) {
-  (void)state;
+TEST(absorbing_glass_shows) {
   fixture f;
   double mean[3], error[3], expected[3] = {0}, white[3] = {0}, r = 0.04;
   make_with(DOWN EVEN_SKY GLASS_ONLY("smoke"),
@@ -341,8 +331,7 @@ static void absorbing_glass_shows(void **state) {
 
 /* Over black, a slab shows what it mirrors of the sky: 2 r / (1 + r) with all inner reflections;
  * r alone where matched physics follow no inner reflection. */
-static void a_slab_mirrors_the_sky(void **state) {
-  (void)state;
+TEST(a_slab_mirrors_the_sky) {
   abbe_trace_desc desc = {.width = 4, .height = 4, .no_map = true, .threads = 1};
   double r = 0.04, mean[3], error[3];
   for (int matched = 0; matched < 2; matched++) {
@@ -362,8 +351,7 @@ static void a_slab_mirrors_the_sky(void **state) {
 
 /* Straight down through a block that lets 0.8 % through, on a floor in ambient light: paths end by
  * roulette below 2 %, and their mean stays Beer-Lambert's. */
-static void dark_glass_keeps_its_mean(void **state) {
-  (void)state;
+TEST(dark_glass_keeps_its_mean) {
   fixture f;
   const double r = 0.04, left = exp(-0.4 * 12);
   const double want = 0.5 / pi * (1 - r) * (1 - r) * left / (1 - r * r * left * left);
@@ -399,8 +387,7 @@ static void dark_glass_keeps_its_mean(void **state) {
 }
 
 /* Bands hold watts a nanometre: over all of them what a receiver of that reflectance returns. */
-static void bands_add_up(void **state) {
-  (void)state;
+TEST(bands_add_up) {
   fixture f;
   abbe_eye_sample s;
   make_with(DOWN LIGHT("kind: point, position: [0.1, 0, 0.5], intensity: 3") FLOOR,
@@ -430,8 +417,7 @@ static void bands_add_up(void **state) {
   drop(&f);
 }
 
-static void a_sample_repeats_itself(void **state) {
-  (void)state;
+TEST(a_sample_repeats_itself) {
   fixture f;
   abbe_eye_sample a, b;
   make(CAMERA POINT_LIGHT FLOOR RING("crown"), &f);
@@ -448,24 +434,4 @@ static void a_sample_repeats_itself(void **state) {
   assert_true(differ > 8);
   assert_true(refract > 0 && refract < 16);
   drop(&f);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(direct_light_on_a_plane),
-      cmocka_unit_test(spots_end_where_they_end),
-      cmocka_unit_test(a_disks_irradiance),
-      cmocka_unit_test(a_rectangles_irradiance),
-      cmocka_unit_test(lamps_are_seen_from_the_front),
-      cmocka_unit_test(shadows),
-      cmocka_unit_test(a_white_furnace),
-      cmocka_unit_test(splitting_keeps_the_mean),
-      cmocka_unit_test(samples_share_a_pixel),
-      cmocka_unit_test(absorbing_glass_shows),
-      cmocka_unit_test(dark_glass_keeps_its_mean),
-      cmocka_unit_test(a_slab_mirrors_the_sky),
-      cmocka_unit_test(bands_add_up),
-      cmocka_unit_test(a_sample_repeats_itself),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

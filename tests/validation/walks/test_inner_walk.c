@@ -97,8 +97,7 @@ static float follow_alone(const fixture *f, const abbe_inner_path *from, abbe_in
   return 0;
 }
 
-static void every_lane_is_one_path(void **state) {
-  (void)state;
+TEST(every_lane_is_one_path) {
   static const char *const text[] = {STONE, CAMERA POINT_LIGHT FLOOR BALL("crown")};
   for (int i = 0; i < 2; i++) {
     static fixture f, alone;
@@ -124,8 +123,7 @@ static void every_lane_is_one_path(void **state) {
   }
 }
 
-static void light_leaves_or_is_absorbed(void **state) {
-  (void)state;
+TEST(light_leaves_or_is_absorbed) {
   static fixture f;
   make(STONE, 2.4f, 0.3f, &f);
   run(&f);
@@ -142,8 +140,7 @@ static void light_leaves_or_is_absorbed(void **state) {
 }
 
 /* In a sphere the share of what is absorbed on a chord is known. */
-static void a_chord_absorbs_by_its_length(void **state) {
-  (void)state;
+TEST(a_chord_absorbs_by_its_length) {
   static fixture f;
   make(CAMERA POINT_LIGHT FLOOR BALL("crown"), 1, 0.7f, &f);
   const float radius = f.g.solid[0].radius;
@@ -161,8 +158,7 @@ static void a_chord_absorbs_by_its_length(void **state) {
   drop(&f);
 }
 
-static void the_order_has_no_part_in_it(void **state) {
-  (void)state;
+TEST(the_order_has_no_part_in_it) {
   static fixture f, turned;
   make(STONE, 2.4f, 0.3f, &f);
   make(STONE, 2.4f, 0.3f, &turned);
@@ -182,8 +178,7 @@ static void the_order_has_no_part_in_it(void **state) {
 }
 
 /* Light at more than the critical angle goes round in a ball for ever. */
-static void what_never_leaves_is_lost(void **state) {
-  (void)state;
+TEST(what_never_leaves_is_lost) {
   static fixture f;
   make(CAMERA POINT_LIGHT FLOOR BALL("crown"), 1.5f, 0, &f);
   const float *c = f.g.solid[0].centre, radius = f.g.solid[0].radius;
@@ -200,8 +195,7 @@ static void what_never_leaves_is_lost(void **state) {
   drop(&f);
 }
 
-static void matched_physics_ends_where_the_renderer_does(void **state) {
-  (void)state;
+TEST(matched_physics_ends_where_the_renderer_does) {
   static fixture f;
   make(STONE, 2.4f, 0, &f);
   f.rules.physics = (abbe_physics){.matched = true, .orders = 3, .energy_share = 1e-3};
@@ -218,15 +212,4 @@ static void matched_physics_ends_where_the_renderer_does(void **state) {
   }
   assert_true(trapped > PATHS / 10 && trapped < PATHS);
   drop(&f);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_lane_is_one_path),
-      cmocka_unit_test(light_leaves_or_is_absorbed),
-      cmocka_unit_test(a_chord_absorbs_by_its_length),
-      cmocka_unit_test(the_order_has_no_part_in_it),
-      cmocka_unit_test(what_never_leaves_is_lost),
-      cmocka_unit_test(matched_physics_ends_where_the_renderer_does)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

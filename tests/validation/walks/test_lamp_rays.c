@@ -44,8 +44,7 @@ static void drop(lit *l) {
   abbe_image_free(&l->map);
 }
 
-static void a_mirrors_shadow_is_in_the_map(void **state) {
-  (void)state;
+TEST(a_mirrors_shadow_is_in_the_map) {
   lit l = trace(SCENE PANE("left", "0") PANE("right", "0.3"));
   const double seen = channel_sum(&l.picture, "caustic.Y") / 16;
   print_message("%.4f of the light in the map, %.4f in the picture\n",
@@ -57,8 +56,7 @@ static void a_mirrors_shadow_is_in_the_map(void **state) {
 }
 
 /* A board in the place of the left pane: its shadow is not in the map, and the rest is. */
-static void a_receivers_shadow_is_not(void **state) {
-  (void)state;
+TEST(a_receivers_shadow_is_not) {
   lit l = trace(SCENE PANE(
       "right",
       "0.3") "- {name: board, shape: box, size: [1e-4, 0.4, 0.2], transform: [{translate: [0, 0, "
@@ -69,10 +67,4 @@ static void a_receivers_shadow_is_not(void **state) {
   assert_near(l.statistics.ledger.hidden / hidden, 1, 0.01);
   assert_near(channel_sum(&l.map, "Y") / (0.4 * each), 1, 0.01);
   drop(&l);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_mirrors_shadow_is_in_the_map),
-                                     cmocka_unit_test(a_receivers_shadow_is_not)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,8 +2,7 @@
 
 /* What reached refractors went somewhere. Photons keep their flux but for absorption, whose
  * roulette is counted as absorbed, gained or lost: the ledger closes to rounding. */
-static void the_books_close(void **state) {
-  (void)state;
+TEST(the_books_close) {
   static const abbe_physics matched = {.matched = true, .orders = 3, .energy_share = 0.001};
   static const char *const scenes[] = {
       CAMERA POINT_LIGHT FLOOR BALL("flat"), CAMERA POINT_LIGHT FLOOR BALL("smoke"),
@@ -25,8 +24,7 @@ static void the_books_close(void **state) {
 }
 
 /* 4 % at each face and back and forth between them: 2 r / (1 + r) comes back. */
-static void fresnels_share_at_normal_incidence(void **state) {
-  (void)state;
+TEST(fresnels_share_at_normal_incidence) {
   static fixture f;
   make(CAMERA POINT_LIGHT FLOOR SLAB("flat"), NULL, &f);
   double r = 0.04, back = 2 * r / (1 + r);
@@ -39,8 +37,7 @@ static void fresnels_share_at_normal_incidence(void **state) {
 
 /* A slab of 0.1 m that keeps exp(-a d) of the light at each crossing: T = (1-r)^2 k / (1 - r^2 k^2)
  * lands, r + T r k escapes. */
-static void beer_and_lambert(void **state) {
-  (void)state;
+TEST(beer_and_lambert) {
   static fixture f;
   make(CAMERA POINT_LIGHT FLOOR SLAB("smoke"), NULL, &f);
   double landed = 0, r = 0.04, expected = 0;
@@ -59,8 +56,7 @@ static void beer_and_lambert(void **state) {
 
 /* A roof of 90 degrees over a base: what enters the base from below meets both slanted faces at 45
  * degrees, beyond the critical angle of 41.8, and comes back down whole. */
-static void total_reflection_lets_nothing_through(void **state) {
-  (void)state;
+TEST(total_reflection_lets_nothing_through) {
   static fixture f;
   make(CAMERA POINT_LIGHT FLOOR
        "- {name: roof, shape: prism, apex: 90, side: 0.2, length: 0.4, transform: [{translate: "
@@ -73,8 +69,7 @@ static void total_reflection_lets_nothing_through(void **state) {
 }
 
 /* Along the axis through ball in ball: four interfaces, of which the inner two hardly reflect. */
-static void nested_glass_reflects_by_the_two_indices(void **state) {
-  (void)state;
+TEST(nested_glass_reflects_by_the_two_indices) {
   static fixture f;
   make(CAMERA POINT_LIGHT FLOOR SHELL, NULL, &f);
   shoot(&f, (double[3]){0, 0, 0.6}, (double[3]){0, 0, -1}, 40);
@@ -92,8 +87,7 @@ static void nested_glass_reflects_by_the_two_indices(void **state) {
 }
 
 /* A refractor of index 1 is not there: light goes straight on, by one path. */
-static void glass_of_index_one_is_not_there(void **state) {
-  (void)state;
+TEST(glass_of_index_one_is_not_there) {
   static fixture f;
   make(CAMERA POINT_LIGHT FLOOR BALL("flat"), NULL, &f);
   for (size_t k = 0; k <= STEPS; k++) f.media.n[k] = 1;
@@ -110,8 +104,7 @@ static void glass_of_index_one_is_not_there(void **state) {
 }
 
 /* Light that meets no refractor is the eye's business. */
-static void light_that_misses_is_not_counted(void **state) {
-  (void)state;
+TEST(light_that_misses_is_not_counted) {
   static fixture f;
   make(CAMERA POINT_LIGHT FLOOR BALL("flat"), NULL, &f);
   assert_int_equal(shoot(&f, (double[3]){0.5, 0.3, 0.6}, (double[3]){0, 0, -1}, 1), 0);
@@ -133,8 +126,7 @@ static void light_that_misses_is_not_counted(void **state) {
 
 /* Matched rules, on a slab at normal incidence: what the outside mirrors goes on (4 %), what is
  * reflected inside more often than `orders` walls allow is dropped. */
-static void matched_rules_drop_what_they_say(void **state) {
-  (void)state;
+TEST(matched_rules_drop_what_they_say) {
   static fixture f;
   double r = 0.04;
   for (size_t orders = 1; orders <= 3; orders++) {
@@ -159,8 +151,7 @@ static void matched_rules_drop_what_they_say(void **state) {
 }
 
 /* Matched: light that has left one refractor meets the next, by the same rules. */
-static void matched_light_passes_two_refractors(void **state) {
-  (void)state;
+TEST(matched_light_passes_two_refractors) {
   static const abbe_physics matched = {.matched = true, .orders = 3, .energy_share = 0};
   static fixture f;
   const char *two = CAMERA POINT_LIGHT FLOOR SLAB(
@@ -182,8 +173,7 @@ static void matched_light_passes_two_refractors(void **state) {
 
 /* What lands where other receivers hide it from the lamp is told from the rest, in either physics.
  */
-static void light_that_the_lamp_does_not_see_is_hidden(void **state) {
-  (void)state;
+TEST(light_that_the_lamp_does_not_see_is_hidden) {
   static const abbe_physics matched = {.matched = true, .orders = 4, .energy_share = 0};
   static fixture f;
   /* the ray bends at the brick's slanted way and gets around the lid's edge to the floor */
@@ -218,8 +208,7 @@ static void light_that_the_lamp_does_not_see_is_hidden(void **state) {
 
 /* A floor or the walls of a room hide nothing from a lamp in it; and a card that hides a floor does
  * not hide what lands on the card. */
-static void walls_hide_nothing(void **state) {
-  (void)state;
+TEST(walls_hide_nothing) {
   static fixture f;
   const char *const more[] = {
       "",
@@ -241,8 +230,7 @@ static void walls_hide_nothing(void **state) {
 }
 
 /* The books tell light that gets onto a receiver from inside of a refractor. */
-static void contact_is_told(void **state) {
-  (void)state;
+TEST(contact_is_told) {
   static fixture f;
   make(CAMERA POINT_LIGHT FLOOR
        "- {name: brick, shape: box, size: [0.2, 0.2, 0.2], transform: [{translate: [0, 0, 0.05]}], "
@@ -255,8 +243,7 @@ static void contact_is_told(void **state) {
 }
 
 /* Same counters, same landings, whatever else ran before; another pass or seed: others. */
-static void a_walk_repeats_itself(void **state) {
-  (void)state;
+TEST(a_walk_repeats_itself) {
   static fixture f, g;
   make(CAMERA POINT_LIGHT FLOOR RING("crown"), NULL, &f);
   make(CAMERA POINT_LIGHT FLOOR RING("crown"), NULL, &g);
@@ -289,8 +276,7 @@ static void a_walk_repeats_itself(void **state) {
 
 /* Straight down through 0.4 m of smoke less than 2 % comes out: paths end by roulette below 5 %,
  * and their mean stays Beer-Lambert's, with the reflections that a slab adds up. */
-static void dark_glass_keeps_its_mean(void **state) {
-  (void)state;
+TEST(dark_glass_keeps_its_mean) {
   fixture f;
   static const double from[3] = {0.01, 0.02, 0.9}, down[3] = {0, 0, -1};
   make(CAMERA POINT_LIGHT FLOOR
@@ -327,8 +313,7 @@ static void dark_glass_keeps_its_mean(void **state) {
  * straight down, and to the wrong side of the face. It is pushed back until it runs just above the
  * face, leaves through the slab's end, level to a thousandth, and does not come down on the floor.
  */
-static void what_a_bent_normal_mirrors_stays_inside(void **state) {
-  (void)state;
+TEST(what_a_bent_normal_mirrors_stays_inside) {
   fixture f;
   static const double from[3] = {0.01, 0.02, 0.9}, down[3] = {0, 0, -1};
   double lambda_nm[STEPS + 1];
@@ -355,25 +340,4 @@ static void what_a_bent_normal_mirrors_stays_inside(void **state) {
   assert_true(f.ledger.lost == 0 && f.ledger.contact == 0);
   assert_near(f.ledger.missed / (double)f.photons, 1, 1e-6);
   drop(&f);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(dark_glass_keeps_its_mean),
-      cmocka_unit_test(what_a_bent_normal_mirrors_stays_inside),
-      cmocka_unit_test(the_books_close),
-      cmocka_unit_test(fresnels_share_at_normal_incidence),
-      cmocka_unit_test(beer_and_lambert),
-      cmocka_unit_test(total_reflection_lets_nothing_through),
-      cmocka_unit_test(nested_glass_reflects_by_the_two_indices),
-      cmocka_unit_test(glass_of_index_one_is_not_there),
-      cmocka_unit_test(light_that_misses_is_not_counted),
-      cmocka_unit_test(matched_rules_drop_what_they_say),
-      cmocka_unit_test(matched_light_passes_two_refractors),
-      cmocka_unit_test(light_that_the_lamp_does_not_see_is_hidden),
-      cmocka_unit_test(walls_hide_nothing),
-      cmocka_unit_test(contact_is_told),
-      cmocka_unit_test(a_walk_repeats_itself),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

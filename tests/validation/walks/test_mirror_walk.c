@@ -11,8 +11,7 @@ static double balance(const fixture *f) {
 
 /* A ball in a beam sends as much in all directions: of N photons over its disk, rho / (4 pi) a
  * steradian. */
-static void a_mirror_ball_shines_evenly(void **state) {
-  (void)state;
+TEST(a_mirror_ball_shines_evenly) {
   static fixture f;
   make(
       CAMERA POINT_LIGHT FLOOR ROOM
@@ -59,8 +58,7 @@ static void a_mirror_ball_shines_evenly(void **state) {
 }
 
 /* Between two mirrors that face each other a ray loses the same share each time. */
-static void two_mirrors_take_their_share_each_time(void **state) {
-  (void)state;
+TEST(two_mirrors_take_their_share_each_time) {
   static fixture f;
   make(CAMERA POINT_LIGHT FLOOR
        "- {name: left, shape: rectangle, width: 1, height: 1, transform: [{rotate: {axis: [0, 1, "
@@ -79,8 +77,7 @@ static void two_mirrors_take_their_share_each_time(void **state) {
 }
 
 /* A black mirror takes all, a whole one nothing. */
-static void reflectance_has_its_ends(void **state) {
-  (void)state;
+TEST(reflectance_has_its_ends) {
   static const char *const value[] = {"0", "1"};
   for (int i = 0; i < 2; i++) {
     static fixture f;
@@ -100,8 +97,7 @@ static void reflectance_has_its_ends(void **state) {
 }
 
 /* Glass on a mirror of silver: what goes through comes back through. */
-static void light_goes_through_glass_off_a_mirror_and_back(void **state) {
-  (void)state;
+TEST(light_goes_through_glass_off_a_mirror_and_back) {
   static fixture f;
   make(CAMERA POINT_LIGHT FLOOR ROOM SLAB(
            "flat") "- {name: plate, shape: rectangle, width: 1, height: 1, transform: [{translate: "
@@ -118,13 +114,4 @@ static void light_goes_through_glass_off_a_mirror_and_back(void **state) {
   }
   assert_near(balance(&f) / f.ledger.reached, 1, 1e-5);
   drop(&f);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_mirror_ball_shines_evenly),
-      cmocka_unit_test(two_mirrors_take_their_share_each_time),
-      cmocka_unit_test(reflectance_has_its_ends),
-      cmocka_unit_test(light_goes_through_glass_off_a_mirror_and_back)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,8 +5,7 @@
 
 /* A photon that goes both ways brings as much to the floor as many that choose, and the books close
  * as before. */
-static void parted_light_is_the_same_light(void **state) {
-  (void)state;
+TEST(parted_light_is_the_same_light) {
   static const char *const scenes[] = {CAMERA POINT_LIGHT FLOOR BALL("flat"),
                                        CAMERA POINT_LIGHT FLOOR BALL("smoke"),
                                        CAMERA POINT_LIGHT FLOOR SHELL};
@@ -32,8 +31,7 @@ static void parted_light_is_the_same_light(void **state) {
 }
 
 /* On a slab nothing is left to chance at the two interfaces where photons part. */
-static void parting_gives_fresnels_share_exactly(void **state) {
-  (void)state;
+TEST(parting_gives_fresnels_share_exactly) {
   static const double down[3] = {0, 0, -1}, above[3] = {0.1, 0.05, 0.9};
   static fixture f;
   make(CAMERA POINT_LIGHT FLOOR SLAB("flat"), NULL, &f);
@@ -50,8 +48,7 @@ static void parting_gives_fresnels_share_exactly(void **state) {
   drop(&f);
 }
 
-static void parts_are_where_the_rare_way_lands(void **state) {
-  (void)state;
+TEST(parts_are_where_the_rare_way_lands) {
   const struct {
     float common[2], rare[2];
     size_t rare_of_100;
@@ -72,13 +69,4 @@ static void parts_are_where_the_rare_way_lands(void **state) {
     assert_int_equal(abbe_path_splitting_best(hit, 100), cases[i].parts);
   }
   assert_int_equal(abbe_path_splitting_best(NULL, 0), 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(parted_light_is_the_same_light),
-      cmocka_unit_test(parting_gives_fresnels_share_exactly),
-      cmocka_unit_test(parts_are_where_the_rare_way_lands),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -46,8 +46,7 @@ static void scatter(abbe_grid_photon *photon, size_t count, const double centre[
 
 /* Around the origin, so on both sides of 0; far from it, where single precision is coarse against
  * the radius; on a plane along the cubes' faces; and with more cubes than cells. */
-static void finds_what_a_search_through_all_finds(void **state) {
-  (void)state;
+TEST(finds_what_a_search_through_all_finds) {
   static const struct {
     double centre[3], size, radius;
     bool flat;
@@ -80,8 +79,7 @@ static void finds_what_a_search_through_all_finds(void **state) {
 }
 
 /* Many photons in one place: all of them, once each. */
-static void photons_in_one_place(void **state) {
-  (void)state;
+TEST(photons_in_one_place) {
   static abbe_grid_photon photon[PHOTONS];
   for (uint32_t i = 0; i < PHOTONS; i++)
     photon[i] = (abbe_grid_photon){.p = {-0.5f, 0.25f, 0}, .flux = 1, .colour = i};
@@ -100,8 +98,7 @@ static void gather_order(void *user, const abbe_grid_photon *photon) {
 }
 
 /* Within a cell they stay in their order, so that sums do not depend on how the sort went. */
-static void order_is_kept_within_a_cell(void **state) {
-  (void)state;
+TEST(order_is_kept_within_a_cell) {
   static abbe_grid_photon photon[PHOTONS];
   for (uint32_t i = 0; i < PHOTONS; i++)
     photon[i] = (abbe_grid_photon){.p = {0.2f, 0.2f, 0.2f}, .flux = 1, .colour = i};
@@ -114,8 +111,7 @@ static void order_is_kept_within_a_cell(void **state) {
 }
 
 /* Filled again with fewer, more and none: what was there before is gone. */
-static void a_grid_can_be_filled_again(void **state) {
-  (void)state;
+TEST(a_grid_can_be_filled_again) {
   static abbe_grid_photon photon[PHOTONS];
   uint64_t random = 9;
   scatter(photon, PHOTONS, (double[3]){0, 0, 0}, 1, false, &random);
@@ -131,14 +127,4 @@ static void a_grid_can_be_filled_again(void **state) {
   }
   abbe_photon_grid_free(&grid);
   abbe_photon_grid_free(NULL);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(finds_what_a_search_through_all_finds),
-      cmocka_unit_test(photons_in_one_place),
-      cmocka_unit_test(order_is_kept_within_a_cell),
-      cmocka_unit_test(a_grid_can_be_filled_again),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

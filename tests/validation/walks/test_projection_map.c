@@ -161,8 +161,7 @@ static size_t check_covered(const char *text, size_t rays) {
   return met;
 }
 
-static void whatever_meets_a_refractor_is_in_a_cell(void **state) {
-  (void)state;
+TEST(whatever_meets_a_refractor_is_in_a_cell) {
   static const char *const scenes[] = {
       CAMERA FAR_POINT FLOOR BALL("flat") COARSE_RING,
       /* close to the ball; between it and a brick; in the hole of a ring; among walls */
@@ -185,8 +184,7 @@ static void whatever_meets_a_refractor_is_in_a_cell(void **state) {
     assert_true(check_covered(scenes[i], 4000) > 200);
 }
 
-static void shares_add_up_to_one(void **state) {
-  (void)state;
+TEST(shares_add_up_to_one) {
   static const char *const scenes[] = {CAMERA SUN FLOOR COARSE_RING,
                                        CAMERA SPOT("[0, 0, 0.2]", "5", "2") FLOOR BALL("flat")};
   for (int i = 0; i < 2; i++) {
@@ -225,8 +223,7 @@ static double flux_that_meets(const fixture *f, uint64_t random, size_t each) {
 
 /* A ball of half angle a is seen in 2 pi (1 - cos a) sr, and a parallel beam meets pi r^2 of it.
  * The cells that are kept lie within about two cells around it. */
-static void a_ball_gets_its_solid_angle(void **state) {
-  (void)state;
+TEST(a_ball_gets_its_solid_angle) {
   fixture f;
   make(CAMERA FAR_POINT FLOOR BALL("flat"), &f);
   double away = sqrt(0.05 * 0.05 + 0.03 * 0.03 + 0.4 * 0.4);
@@ -243,8 +240,7 @@ static void a_ball_gets_its_solid_angle(void **state) {
 
 /* From within a ring of walls that fill z = 0.5 to 0.7 around a light in the middle: every wall is
  * a rectangle of tangents 1 by 0.1 / 0.49, seen in 4 atan(a b / sqrt(1 + a^2 + b^2)). */
-static void walls_all_round_get_their_solid_angle(void **state) {
-  (void)state;
+TEST(walls_all_round_get_their_solid_angle) {
   fixture f;
   make(CAMERA LIGHT("kind: point, position: [0, 0, 0.6], intensity: 1") FLOOR ALL_ROUND, &f);
   double a = 1, b = 0.1 / 0.49;
@@ -256,8 +252,7 @@ static void walls_all_round_get_their_solid_angle(void **state) {
 /* A disk over a ball, both on one axis: the view factor from disk to sphere by an integral in
  * double precision of the ball's cone, cos-weighted, over the disk: for a ball wholly before the
  * disk's plane a point of it at distance D and angle t to the normal receives pi (r/D)^2 cos t. */
-static void a_disk_lights_flux(void **state) {
-  (void)state;
+TEST(a_disk_lights_flux) {
   fixture f;
   make(CAMERA LIGHT("kind: disk, position: [0, 0, 0.6], target: [0, 0, 0.2], radius: 0.1, "
                     "radiance: 3") FLOOR BALL("flat"),
@@ -274,8 +269,7 @@ static void a_disk_lights_flux(void **state) {
 
 /* A spot that fits into the ball: its own flux reaches it, however narrow it is. A soft edge is a
  * smoothstep in the cosine: half of the passage counts. */
-static void a_spots_cone_is_reached_whole(void **state) {
-  (void)state;
+TEST(a_spots_cone_is_reached_whole) {
   static const double cones[] = {10, 0.05, 0.001};
   for (size_t i = 0; i < sizeof cones / sizeof *cones; i++) {
     char text[1024];
@@ -300,8 +294,7 @@ static void a_spots_cone_is_reached_whole(void **state) {
 
 /* What is behind a wall gets few photons, but some: a wall hides nothing from photons
  * that the trials missed. What is in sight gets most. */
-static void hidden_cells_keep_a_share(void **state) {
-  (void)state;
+TEST(hidden_cells_keep_a_share) {
   fixture f;
   make(CAMERA FAR_POINT FLOOR BALL("flat") "- {name: lid, shape: rectangle, width: 0.4, height: "
                                            "0.4, transform: [{translate: [0.237, 0, "
@@ -324,8 +317,7 @@ static void hidden_cells_keep_a_share(void **state) {
   drop(&f);
 }
 
-static void lights_that_miss(void **state) {
-  (void)state;
+TEST(lights_that_miss) {
   fixture f;
   make(CAMERA FAR_POINT FLOOR, &f); /* no refractor */
   assert_int_equal(f.aim.count, 0);
@@ -345,8 +337,7 @@ static void lights_that_miss(void **state) {
 }
 
 /* Neighbours in the list are neighbours in the plane: most steps are of one cell. */
-static void neighbours_stay_together(void **state) {
-  (void)state;
+TEST(neighbours_stay_together) {
   fixture f;
   make(CAMERA FAR_POINT FLOOR BALL("flat"), &f);
   double steps = 0;
@@ -356,8 +347,7 @@ static void neighbours_stay_together(void **state) {
   drop(&f);
 }
 
-static void it_ends_when_it_is_told_to(void **state) {
-  (void)state;
+TEST(it_ends_when_it_is_told_to) {
   fixture f;
   abbe_projection_map map;
   abbe_result result = ABBE_CANCELLED;
@@ -379,20 +369,4 @@ static void it_ends_when_it_is_told_to(void **state) {
   assert_memory_equal(map.cell, f.aim.cell, map.count * sizeof *map.cell);
   abbe_projection_map_free(&map);
   drop(&f);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(whatever_meets_a_refractor_is_in_a_cell),
-      cmocka_unit_test(shares_add_up_to_one),
-      cmocka_unit_test(a_ball_gets_its_solid_angle),
-      cmocka_unit_test(walls_all_round_get_their_solid_angle),
-      cmocka_unit_test(a_disk_lights_flux),
-      cmocka_unit_test(a_spots_cone_is_reached_whole),
-      cmocka_unit_test(hidden_cells_keep_a_share),
-      cmocka_unit_test(lights_that_miss),
-      cmocka_unit_test(neighbours_stay_together),
-      cmocka_unit_test(it_ends_when_it_is_told_to),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

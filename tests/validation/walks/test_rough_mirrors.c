@@ -58,8 +58,7 @@ static double straight(double alpha) {
 }
 
 /* Light that is alike all around: a rough mirror shows what its facets let out. */
-static void uniform_light_keeps_what_facets_let_out(void **state) {
-  (void)state;
+TEST(uniform_light_keeps_what_facets_let_out) {
   static const double alpha[] = {0.05, 0.3, 1};
   for (int i = 0; i < 3; i++) {
     char text[2048];
@@ -75,8 +74,7 @@ static void uniform_light_keeps_what_facets_let_out(void **state) {
 
 /* A lamp without size, which no path meets: exactly the lobe's. Grooves along x spread light along
  * y. */
-static void a_point_lamp_shows_the_lobe(void **state) {
-  (void)state;
+TEST(a_point_lamp_shows_the_lobe) {
   static const char *const place[] = {"0.3, 0, 0.9", "0, 0.3, 0.9"};
   static const char *const brushed[] = {"along: [1, 0, 0]", "along: [0, 1, 0]"};
   static const double up[3] = {0, 0, 1};
@@ -105,8 +103,7 @@ static void a_point_lamp_shows_the_lobe(void **state) {
 
 /* A lamp of some size is met by the lobe's ways and sought by its own points: their weights make
  * one of both, where the lamp is the narrower and where the lobe is. */
-static void a_disk_lamp_counts_once(void **state) {
-  (void)state;
+TEST(a_disk_lamp_counts_once) {
   static const double alpha[] = {0.02, 0.1, 0.5}, up[3] = {0, 0, 1};
   for (int i = 0; i < 3; i++) {
     enum { RINGS = 200, SECTORS = 200 };
@@ -138,8 +135,7 @@ static void a_disk_lamp_counts_once(void **state) {
 }
 
 /* The same of surroundings that are dark but for a spot. */
-static void a_bright_spot_counts_once(void **state) {
-  (void)state;
+TEST(a_bright_spot_counts_once) {
   static const double alpha[] = {0.03, 0.15, 0.6}, up[3] = {0, 0, 1};
   for (int i = 0; i < 3; i++) {
     enum { RINGS = 400, SECTORS = 400 };
@@ -173,8 +169,7 @@ static void a_bright_spot_counts_once(void **state) {
 
 /* Of light straight down, the halfway slope along each way: less than its roughness in 1 / sqrt 2.
  */
-static void photons_follow_the_lobe(void **state) {
-  (void)state;
+TEST(photons_follow_the_lobe) {
   static const double across[2] = {0.02, 0.1}, from[3] = {0, 0, 1}, down[3] = {0, 0, -1};
   static fixture f;
   enum { BATCHES = 24 };
@@ -207,12 +202,4 @@ static void photons_follow_the_lobe(void **state) {
   const abbe_light_ledger *l = &f.ledger;
   assert_near((l->deposited + l->absorbed + l->missed + l->lost) / l->reached, 1, 1e-5);
   drop(&f);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(uniform_light_keeps_what_facets_let_out),
-      cmocka_unit_test(a_point_lamp_shows_the_lobe), cmocka_unit_test(a_disk_lamp_counts_once),
-      cmocka_unit_test(a_bright_spot_counts_once), cmocka_unit_test(photons_follow_the_lobe)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

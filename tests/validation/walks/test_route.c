@@ -27,8 +27,7 @@ static size_t follow(const char *text, const double from[3], const double d[3], 
 }
 
 /* A slab moves a ray sideways by d sin(i) (1 - cos(i) / (n cos(t))) and does not turn it. */
-static void a_slab_shifts_and_does_not_turn(void **state) {
-  (void)state;
+TEST(a_slab_shifts_and_does_not_turn) {
   double angle = 0.6, d[3] = {sin(angle), 0, -cos(angle)}, from[3] = {-0.2, 0, 0.6};
   abbe_route_vertex v[16];
   assert_int_equal(follow(CAMERA POINT_LIGHT FLOOR SLAB, from, d, "", v), 3);
@@ -43,8 +42,7 @@ static void a_slab_shifts_and_does_not_turn(void **state) {
   assert_true(fabs(straight - v[2].position[0] - shift / cos(angle)) < 2e-6);
 }
 
-static void choices_are_kept(void **state) {
-  (void)state;
+TEST(choices_are_kept) {
   double d[3] = {0.1, 0, -1}, from[3] = {0, 0, 0.6};
   abbe_vector_normalise(d);
   abbe_route_vertex v[16];
@@ -60,8 +58,7 @@ static void choices_are_kept(void **state) {
 
 /* Along the axis of concentric balls: air, 1.5, crown, 1.5, air; the indices are those of the
  * later object where both are. */
-static void the_later_refractor_is_there(void **state) {
-  (void)state;
+TEST(the_later_refractor_is_there) {
   abbe_route_vertex v[16];
   double crown = 1.5 + 0.006 / (0.55 * 0.55), expected[5] = {1, 1.5, crown, 1.5, 1};
   assert_int_equal(follow(CAMERA POINT_LIGHT FLOOR WATER_IN_GLASS, (double[3]){0, 0, 0.6},
@@ -72,13 +69,4 @@ static void the_later_refractor_is_there(void **state) {
   shares[2] = shares[1];
   for (int i = 0; i < 4; i++) assert_true(fabs(v[i].reflectance - shares[i]) < 1e-6);
   assert_true(fabs(v[2].distance - 0.1) < 1e-6);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_slab_shifts_and_does_not_turn),
-      cmocka_unit_test(choices_are_kept),
-      cmocka_unit_test(the_later_refractor_is_there),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,8 +41,7 @@ static void check_lane(const abbe_scatter *s, size_t k) {
   }
 }
 
-static void test_every_lane_is_one_interface(void **state) {
-  (void)state;
+TEST(every_lane_is_one_interface) {
   static const float etas[] = {1 / 1.5f, 1.5f, 1, 2.4f};
   uint64_t seed = 7;
   size_t reflected = 0;
@@ -82,8 +81,7 @@ static void test_every_lane_is_one_interface(void **state) {
 }
 
 /* Off mirrors of gold, of one reflectance, and of no normal but the face's, from both sides. */
-static void test_every_lane_is_one_mirror(void **state) {
-  (void)state;
+TEST(every_lane_is_one_mirror) {
   float reflectance[2] = {-1, 0.7f}, nk[6][2] = {{0.2f, 3}, {1.4f, 1.9f}, {0.13f, 4.1f}};
   const abbe_mirrors mirrors = {.count = 2, .steps = 2, .reflectance = reflectance, .nk = nk};
   uint64_t seed = 11;
@@ -117,10 +115,4 @@ static void test_every_lane_is_one_mirror(void **state) {
       assert_near((double)m.share[k], (double)expected[k], 1e-6);
     }
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_lane_is_one_interface),
-                                     cmocka_unit_test(test_every_lane_is_one_mirror)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

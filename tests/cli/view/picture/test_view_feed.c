@@ -92,19 +92,16 @@ static void from_above(bool mirror) {
   abbe_mesh_free(&object[1].mesh);
 }
 
-static void test_light_from_above_comes_through_the_top(void **state) {
-  (void)state;
+TEST(light_from_above_comes_through_the_top) {
   from_above(false);
 }
 
-static void test_light_comes_off_a_mirror_alike(void **state) {
-  (void)state;
+TEST(light_comes_off_a_mirror_alike) {
   from_above(true);
 }
 
 /* Aslant, of the beam's height one part meets the top and one the side, as the sines say. */
-static void test_two_facets_share_as_they_are_seen(void **state) {
-  (void)state;
+TEST(two_facets_share_as_they_are_seen) {
   static float at[4 * GRID * GRID];
   static unsigned cell[GRID * GRID];
   static abbe_view_feed feed;
@@ -132,8 +129,7 @@ static void test_two_facets_share_as_they_are_seen(void **state) {
   abbe_mesh_free(&object.mesh);
 }
 
-static void test_nothing_lands_or_nothing_is_met(void **state) {
-  (void)state;
+TEST(nothing_lands_or_nothing_is_met) {
   static float at[4 * GRID * GRID];
   static unsigned cell[GRID * GRID];
   static abbe_view_feed feed;
@@ -158,8 +154,7 @@ static void test_nothing_lands_or_nothing_is_met(void **state) {
 }
 
 /* Rays are followed until it is told to stop. */
-static void test_a_look_is_given_up(void **state) {
-  (void)state;
+TEST(a_look_is_given_up) {
   static float at[4 * GRID * GRID];
   static unsigned cell[GRID * GRID];
   static abbe_view_feed feed;
@@ -192,8 +187,7 @@ static size_t count_lights(const abbe_view_hits *hits, const double point[3], do
 
 /* Hits a metre apart, asked for at places far from all: between neighbours of one path there is
  * light, between others there is none, and beside the outermost none either. */
-static void test_light_lies_between_neighbours(void **state) {
-  (void)state;
+TEST(light_lies_between_neighbours) {
   enum { LEFT = 7 }; /* columns below it are of one path, the others of another */
   static float at[4 * GRID * GRID];
   static unsigned cell[GRID * GRID], path[GRID * GRID];
@@ -213,8 +207,7 @@ static void test_light_lies_between_neighbours(void **state) {
 }
 
 /* Three wavelengths that one photon spreads over 20 m, and two batches of two of them. */
-static void test_light_lies_between_wavelengths(void **state) {
-  (void)state;
+TEST(light_lies_between_wavelengths) {
   const float at[12] = {-3, 0, 0, 1, 7, 0, 0, 1, 17, 0, 0, 1};
   const unsigned path[3] = {5, 5, 5}, torn[3] = {5, 5, 6}, cell[1] = {0};
   abbe_view_hits hits;
@@ -251,8 +244,7 @@ static void test_light_lies_between_wavelengths(void **state) {
 }
 
 /* A grid that is coarser one way than the other: rays go through the middles of its own cells. */
-static void test_cells_of_an_oblong_grid(void **state) {
-  (void)state;
+TEST(cells_of_an_oblong_grid) {
   static float at[4 * GRID * GRID];
   static unsigned cell[GRID * GRID];
   static abbe_view_feed feed;
@@ -275,8 +267,7 @@ static void test_cells_of_an_oblong_grid(void **state) {
 
 /* On the cube, seen from outside; not before it, nor beside it on the ground. What is seen through
  * it is asked for then, where that is a receiver. */
-static void test_what_is_seen_may_be_the_refractor(void **state) {
-  (void)state;
+TEST(what_is_seen_may_be_the_refractor) {
   static abbe_view_feed feed;
   static abbe_material glass = {.name = "glass", .min_nm = 380, .max_nm = 780};
   abbe_object object[2] = {{0}};
@@ -304,17 +295,4 @@ static void test_what_is_seen_may_be_the_refractor(void **state) {
   abbe_view_feed_begin(cases[0].point, 0.01, &feed);
   assert_false(abbe_view_feed_look(&feed, &alone, 550)); /* nothing lies behind */
   for (int k = 0; k < 2; k++) abbe_mesh_free(&object[k].mesh);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_light_from_above_comes_through_the_top),
-                                     cmocka_unit_test(test_light_comes_off_a_mirror_alike),
-                                     cmocka_unit_test(test_two_facets_share_as_they_are_seen),
-                                     cmocka_unit_test(test_nothing_lands_or_nothing_is_met),
-                                     cmocka_unit_test(test_a_look_is_given_up),
-                                     cmocka_unit_test(test_light_lies_between_neighbours),
-                                     cmocka_unit_test(test_light_lies_between_wavelengths),
-                                     cmocka_unit_test(test_cells_of_an_oblong_grid),
-                                     cmocka_unit_test(test_what_is_seen_may_be_the_refractor)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

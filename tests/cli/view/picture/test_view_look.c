@@ -13,8 +13,9 @@ static const char text[] =
     "- {name: brick, shape: box, size: [0.5, 0.5, 0.2], material: crown,\n"
     "   transform: [{translate: [0, 0, 0.3]}]}\n";
 
-static void a_caustic_is_fed_however_few_photons_there_are(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(a_caustic_is_fed_however_few_photons_there_are) {
   static const double place[3] = {0.11, 0.07, 0};
   const double radius = 2e-4; /* of 48 pixels, a hundredth of a metre */
   static const size_t photons[] = {8, 20};
@@ -61,11 +62,4 @@ static void a_caustic_is_fed_however_few_photons_there_are(void **state) {
   assert_int_equal(feed.photons, found);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_caustic_is_fed_however_few_photons_there_are),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -46,8 +46,7 @@ static unsigned char *wait_for(case_ *c) {
   return pixels;
 }
 
-static void test_it_is_the_whole_picture_transformed(void **state) {
-  (void)state;
+TEST(it_is_the_whole_picture_transformed) {
   static const char *const names[] = {"R", "G", "B"};
   case_ c;
   abbe_image whole;
@@ -69,8 +68,7 @@ static void test_it_is_the_whole_picture_transformed(void **state) {
 }
 
 /* What is stopped takes a small part of the time, is dropped, and looks at nothing any more. */
-static void test_what_is_stopped_is_nothing(void **state) {
-  (void)state;
+TEST(what_is_stopped_is_nothing) {
   case_ c;
   unsigned char *pixels = NULL;
   abbe_result result;
@@ -95,10 +93,4 @@ static void test_what_is_stopped_is_nothing(void **state) {
   free(pixels);
   abbe_view_painter_give(c.painter, &c.painting);
   end(&c); /* nor does the end wait for it */
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_it_is_the_whole_picture_transformed),
-                                     cmocka_unit_test(test_what_is_stopped_is_nothing)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

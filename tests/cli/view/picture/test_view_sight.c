@@ -48,8 +48,7 @@ static void look(const double low[3], const double high[3], double x, double ang
 }
 
 /* Its ray goes on as it came, beside its line by t sin(a) (1 - cos(a) / (n cos(b))). */
-static void test_a_slab_shifts(void **state) {
-  (void)state;
+TEST(a_slab_shifts) {
   static const double low[3] = {-50, -50, -1}, high[3] = {50, 50, 0};
   for (int degrees = 0; degrees < 80; degrees += 20) {
     const double a = degrees * acos(-1) / 180, b = asin(sin(a) / 1.5);
@@ -66,8 +65,7 @@ static void test_a_slab_shifts(void **state) {
 
 /* From n = 1.5 no light that came in by the top leaves by a side: asin(1 / 1.5) is 41.8 degrees,
  * and it meets sides at 48.2 or more. It leaves by the bottom as it came in, its x turned back. */
-static void test_a_cube_turns_it_back(void **state) {
-  (void)state;
+TEST(a_cube_turns_it_back) {
   static const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
   const double a = 0.9, b = asin(sin(a) / 1.5);
   abbe_view_sight sight;
@@ -81,8 +79,7 @@ static void test_a_cube_turns_it_back(void **state) {
   assert_near(sight.place[3][0], out - 9 * tan(a), 1e-9);
 }
 
-static void test_what_does_not_land(void **state) {
-  (void)state;
+TEST(what_does_not_land) {
   static const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
   abbe_view_sight sight;
   look(low, high, 0, acos(-1), &sight); /* upward, from below the floor's top */
@@ -102,11 +99,4 @@ static void test_what_does_not_land(void **state) {
                          &sight);
   assert_int_equal(sight.count, 0);
   abbe_mesh_free(&object.mesh);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_slab_shifts),
-                                     cmocka_unit_test(test_a_cube_turns_it_back),
-                                     cmocka_unit_test(test_what_does_not_land)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,8 +18,7 @@ static const char text[] =
     "- {name: brick, shape: box, size: [0.1, 0.1, 0.1], material: crown,\n"
     "   transform: [{translate: [-1.5, 1.5, 0.1]}]}\n";
 
-static void a_pixel_has_the_light_of_its_place(void **state) {
-  (void)state;
+TEST(a_pixel_has_the_light_of_its_place) {
   enum { WIDTH = 160, HEIGHT = 120 };
   static const size_t pixels[][2] = {{12, 100}, {131, 30}};
   const volatile int stop = 1;
@@ -71,8 +70,7 @@ static double passes(double n, double angle) {
   return 0.5 * ((1 - s * s) / (1 + s * s) + (1 - p * p) / (1 + p * p));
 }
 
-static void a_caustic_behind_glass_has_all_bands(void **state) {
-  (void)state;
+TEST(a_caustic_behind_glass_has_all_bands) {
   enum { WIDTH = 512, HEIGHT = 512 };
   static const size_t pixel[2] = {256, 256};
   static abbe_view_spot spot;
@@ -92,8 +90,7 @@ static void a_caustic_behind_glass_has_all_bands(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void the_spectrum_of_more_passes_is_told(void **state) {
-  (void)state;
+TEST(the_spectrum_of_more_passes_is_told) {
   static abbe_view_probe probe, own = {.bands = 3};
   static abbe_view_spot none, spot = {.passes = 4, .bands = 2, .radiance = {5, 6}};
   abbe_view_probe_take_spot(&probe, 0, &none);
@@ -105,11 +102,4 @@ static void the_spectrum_of_more_passes_is_told(void **state) {
   assert_int_equal(probe.bands, 3);
   abbe_view_probe_take_spot(&probe, 3, &spot);
   assert_int_equal(probe.bands, 2);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_pixel_has_the_light_of_its_place),
-                                     cmocka_unit_test(a_caustic_behind_glass_has_all_bands),
-                                     cmocka_unit_test(the_spectrum_of_more_passes_is_told)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

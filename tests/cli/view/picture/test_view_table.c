@@ -16,8 +16,7 @@ static void make_image(abbe_image *out) {
     out->data[i] = (float)exp2(0.01 * (double)(i * 7919 % 1200) - 9);
 }
 
-static void test_it_is_the_one_that_is_made_at_once(void **state) {
-  (void)state;
+TEST(it_is_the_one_that_is_made_at_once) {
   const abbe_display_desc desc = {.display = "sRGB", .view = "Looking"};
   const struct timespec time = {.tv_nsec = 1000000};
   abbe_display *display = NULL;
@@ -40,18 +39,11 @@ static void test_it_is_the_one_that_is_made_at_once(void **state) {
   abbe_display_free(display);
 }
 
-static void test_it_may_be_left_before_it_is_made(void **state) {
-  (void)state;
+TEST(it_may_be_left_before_it_is_made) {
   abbe_display *display = NULL;
   assert_int_equal(abbe_display_make(&(abbe_display_desc){.view = NULL}, &display, NULL), ABBE_OK);
   abbe_view_table_free(abbe_view_table_begin(display));
   assert_null(abbe_view_table_get(NULL));
   abbe_view_table_free(NULL);
   abbe_display_free(display);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_it_is_the_one_that_is_made_at_once),
-                                     cmocka_unit_test(test_it_may_be_left_before_it_is_made)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

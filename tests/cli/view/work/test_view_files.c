@@ -15,21 +15,18 @@ static void set_time(const char *path, long seconds) {
   assert_int_equal(utimensat(AT_FDCWD, path, times, 0), 0);
 }
 
-static int make(void **state) {
-  (void)state;
+static void make(void) {
   for (int i = 0; i < 2; i++) {
     snprintf(names[i], sizeof names[i], "/tmp/abbe-files-XXXXXX");
     const int file = mkstemp(names[i]);
-    if (file < 0 || close(file) != 0) return 1;
+    assert_false(file < 0);
+    assert_int_equal(close(file), 0);
     set_time(names[i], 100);
   }
-  return 0;
 }
 
-static int drop(void **state) {
-  (void)state;
+static void drop(void) {
   for (int i = 0; i < 2; i++) unlink(names[i]);
-  return 0;
 }
 
 /* As if a scene of these had just been read. */
@@ -44,8 +41,9 @@ static void take(abbe_view_files *files, size_t count) {
   abbe_view_scene_news_free(&news);
 }
 
-static void test_a_change_is_told_once(void **state) {
-  (void)state;
+EACH(make, drop);
+
+TEST(a_change_is_told_once) {
   abbe_view_files files = {0};
   assert_false(abbe_view_files_changed(&files));
   take(&files, 2);
@@ -59,8 +57,7 @@ static void test_a_change_is_told_once(void **state) {
 }
 
 /* One worker reads a file, it changes, and another one reads it: the first has to read again. */
-static void test_what_two_have_read_is_watched_from_the_first(void **state) {
-  (void)state;
+TEST(what_two_have_read_is_watched_from_the_first) {
   abbe_view_files files = {0};
   take(&files, 1);
   set_time(names[0], 300);
@@ -68,12 +65,4 @@ static void test_what_two_have_read_is_watched_from_the_first(void **state) {
   assert_true(abbe_view_files_changed(&files));
   assert_false(abbe_view_files_changed(&files));
   abbe_view_files_free(&files);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup_teardown(test_a_change_is_told_once, make, drop),
-      cmocka_unit_test_setup_teardown(test_what_two_have_read_is_watched_from_the_first, make,
-                                      drop)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,8 +34,7 @@ static bool take(abbe_view_scene *s, const abbe_view_document *d, bool reload) {
   return outlined;
 }
 
-static void test_no_more_than_has_changed(void **state) {
-  (void)state;
+TEST(no_more_than_has_changed) {
   abbe_view_scene s = {0};
   abbe_view_document d = gem();
   assert_true(take(&s, &d, false));
@@ -66,8 +65,7 @@ static void test_no_more_than_has_changed(void **state) {
   abbe_view_scene_free(&s);
 }
 
-static void test_what_is_refused_leaves_the_scene(void **state) {
-  (void)state;
+TEST(what_is_refused_leaves_the_scene) {
   static const char *const bad[][2] = {{"lights.lamp.intensity", "-1"},
                                        {"lights.lamp.position", "[0, 0, 0.15]"},
                                        {"objects.gem.material", "cheese"}};
@@ -91,10 +89,4 @@ static void test_what_is_refused_leaves_the_scene(void **state) {
   }
   abbe_view_document_free(&d);
   abbe_view_scene_free(&s);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_no_more_than_has_changed),
-                                     cmocka_unit_test(test_what_is_refused_leaves_the_scene)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,8 +15,7 @@ static abbe_render_desc ask(const abbe_preset_front *front, abbe_view_job job) {
   return abbe_view_settings_of(front, NULL, &job, &none, NULL);
 }
 
-static void test_a_stage_takes_the_preset_of_its_name(void **state) {
-  (void)state;
+TEST(a_stage_takes_the_preset_of_its_name) {
   const abbe_render_desc balanced =
       ask(&measured, (abbe_view_job){.stage = ABBE_VIEW_BALANCED, .light = ABBE_VIEW_BALANCED});
   const abbe_render_desc accurate =
@@ -31,8 +30,7 @@ static void test_a_stage_takes_the_preset_of_its_name(void **state) {
 }
 
 /* A camera that moves leaves light as good as it is; light that moves is coarser itself. */
-static void test_what_moves_is_coarser(void **state) {
-  (void)state;
+TEST(what_moves_is_coarser) {
   const abbe_render_desc camera =
       ask(&measured,
           (abbe_view_job){.stage = ABBE_VIEW_MOVING, .light = ABBE_VIEW_ACCURATE, .eye_step = 2});
@@ -51,8 +49,7 @@ static void test_what_moves_is_coarser(void **state) {
 }
 
 /* Sliders hold for what rests, not for light that moves. */
-static void test_a_documents_settings_hold_at_rest(void **state) {
-  (void)state;
+TEST(a_documents_settings_hold_at_rest) {
   const abbe_view_document few = {.wavelengths = 13, .photons = 77, .map_size = 333};
   const abbe_view_job rest = {.stage = ABBE_VIEW_BALANCED, .light = ABBE_VIEW_BALANCED};
   const abbe_view_job moves = {.stage = ABBE_VIEW_MOVING, .light = ABBE_VIEW_MOVING};
@@ -64,11 +61,4 @@ static void test_a_documents_settings_hold_at_rest(void **state) {
   assert_int_not_equal(b.wavelengths, 13);
   assert_int_not_equal(b.photons, 77);
   assert_int_not_equal(b.map_size, 333);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_stage_takes_the_preset_of_its_name),
-                                     cmocka_unit_test(test_what_moves_is_coarser),
-                                     cmocka_unit_test(test_a_documents_settings_hold_at_rest)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -52,8 +52,7 @@ static void leave(abbe_view_worker *w, abbe_view_stage stage, bool warms, double
   abbe_image_free(&image);
 }
 
-static void test_whoever_draws_it_a_picture_is_the_same(void **state) {
-  (void)state;
+TEST(whoever_draws_it_a_picture_is_the_same) {
   abbe_view_worker *a = made(), *b = made();
   leave(a, ABBE_VIEW_MOVING, false, 0);
   leave(a, ABBE_VIEW_MOVING, false, 0.01);
@@ -98,8 +97,7 @@ static double beyond(const abbe_image *image, const abbe_image *other) {
  * (gl/caustics/map_history.h), where a lamp moves as little as a hand does in a picture. A mean
  * without these bounds leaves 9 % of the light where it was. The fifth frame's photons start where
  * the first one's do, so without the frames before it both are the same. */
-static void test_a_dragged_lamp_leaves_no_ghosts(void **state) {
-  (void)state;
+TEST(a_dragged_lamp_leaves_no_ghosts) {
   abbe_view_worker *a = made(), *b = made();
   double was = 0, blended = 0, light = 0;
   leave(a, ABBE_VIEW_MOVING, false, 0);
@@ -123,10 +121,4 @@ static void test_a_dragged_lamp_leaves_no_ghosts(void **state) {
   abbe_image_free(&dragged);
   abbe_view_worker_free(a);
   abbe_view_worker_free(b);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_whoever_draws_it_a_picture_is_the_same),
-                                     cmocka_unit_test(test_a_dragged_lamp_leaves_no_ghosts)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,8 +6,7 @@
 #define MIST(scattering)                                                                           \
   "medium: {scattering: " scattering ", absorption: 0.5, g: 0.4, box: [[-1, -1, 0], [1, 1, 1]]}\n"
 
-static void mist_is_a_fact(void **state) {
-  (void)state;
+TEST(mist_is_a_fact) {
   abbe_scene scene;
   abbe_plan plan;
   load_text(CAMERA POINT_LIGHT MIST("2") FLOOR BALL("flat"), &scene);
@@ -34,8 +33,7 @@ static void mist_is_a_fact(void **state) {
 }
 
 /* Between what it is at the ends, nearer to where X, Y and Z have their middle. */
-static void a_coloured_medium_is_its_mean(void **state) {
-  (void)state;
+TEST(a_coloured_medium_is_its_mean) {
   abbe_scene scene;
   abbe_plan plan;
   load_text(CAMERA POINT_LIGHT MIST("[[380, 0], [780, 4]]") FLOOR BALL("flat"), &scene);
@@ -47,8 +45,7 @@ static void a_coloured_medium_is_its_mean(void **state) {
 }
 
 /* An object's medium takes of light like an absorbing material. */
-static void murky_glass_attenuates(void **state) {
-  (void)state;
+TEST(murky_glass_attenuates) {
   abbe_scene scene;
   abbe_plan plan;
   load_text(CAMERA POINT_LIGHT FLOOR
@@ -63,8 +60,7 @@ static void murky_glass_attenuates(void **state) {
 }
 
 /* Of white light red goes first; what is in the water is seen through its surface. */
-static void blue_water(void **state) {
-  (void)state;
+TEST(blue_water) {
   abbe_scene scene;
   abbe_plan plan;
   load_file(ABBE_SOURCE_DIR "/scenes/water/shafts.yaml", &scene);
@@ -81,23 +77,11 @@ static void blue_water(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void published_methods_refuse_it(void **state) {
-  (void)state;
+TEST(published_methods_refuse_it) {
   abbe_render_desc desc = {.profile = ABBE_PROFILE_THESIS};
   refuse_plan(CAMERA POINT_LIGHT MIST("2") FLOOR BALL("flat"), &desc, ABBE_UNSUPPORTED,
               "of which the thesis profile knows nothing");
   desc.profile = ABBE_PROFILE_SHAH2007;
   refuse_plan(CAMERA POINT_LIGHT MIST("2") FLOOR BALL("flat"), &desc, ABBE_UNSUPPORTED,
               "take the default profile");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(mist_is_a_fact),
-      cmocka_unit_test(a_coloured_medium_is_its_mean),
-      cmocka_unit_test(murky_glass_attenuates),
-      cmocka_unit_test(blue_water),
-      cmocka_unit_test(published_methods_refuse_it),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

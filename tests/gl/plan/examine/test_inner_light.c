@@ -33,8 +33,9 @@ static double reflected_straight(double n) {
   return pow((n - 1) / (n + 1), 2);
 }
 
-static void a_slab_keeps_a_geometric_series(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(a_slab_keeps_a_geometric_series) {
   const double n = 1.5, r = reflected_straight(n), per_m = 3;
   const abbe_exact solid = solid_of(slab, 6);
   const abbe_view view = rays_along(down, 0.5);
@@ -50,8 +51,7 @@ static void a_slab_keeps_a_geometric_series(void **state) {
   }
 }
 
-static void faint_paths_end(void **state) {
-  (void)state;
+TEST(faint_paths_end) {
   const double n = 1.5, r = reflected_straight(n);
   const abbe_exact solid = solid_of(slab, 6);
   const abbe_view view = rays_along(down, 0.5);
@@ -64,8 +64,7 @@ static void faint_paths_end(void **state) {
   }
 }
 
-static void air_keeps_nothing(void **state) {
-  (void)state;
+TEST(air_keeps_nothing) {
   const abbe_exact solid = solid_of(slab, 6);
   const double slant[3] = {0.28, 0, -0.96};
   const abbe_view view = rays_along(slant, 0.5);
@@ -78,8 +77,7 @@ static void air_keeps_nothing(void **state) {
 
 /* Straight in through a leg, mirrored by the long side as a whole, and straight out of the other
  * leg; what that reflects goes back the same way. */
-static void a_right_angled_prism_turns_light(void **state) {
-  (void)state;
+TEST(a_right_angled_prism_turns_light) {
   const double n = 1.6, r = reflected_straight(n), root = sqrt(0.5);
   double prism[5][4] = {
       {0, 0, 1, 0.5}, {1, 0, 0, 0.5}, {-root, 0, -root, 0}, {0, 1, 0, 1}, {0, -1, 0, 1}};
@@ -91,8 +89,7 @@ static void a_right_angled_prism_turns_light(void **state) {
   for (size_t k = 0; k < 6; k++) assert_near(inside.kept[k], (1 - r) * known[k], 1e-9);
 }
 
-static void what_no_light_meets_keeps_none(void **state) {
-  (void)state;
+TEST(what_no_light_meets_keeps_none) {
   const abbe_exact solid = solid_of(slab, 6);
   const double up[3] = {0, 1, 0}, from[3] = {0, 0, 5};
   abbe_light spot = {
@@ -110,8 +107,7 @@ static void what_no_light_meets_keeps_none(void **state) {
   assert_true(inside.kept[1] > 0.03 && inside.kept[1] < 0.05);
 }
 
-static void diamond_keeps_more_than_crown(void **state) {
-  (void)state;
+TEST(diamond_keeps_more_than_crown) {
   abbe_scene scene = {0};
   abbe_inner_light diamond, crown;
   load_shipped("diamond", &scene);
@@ -129,8 +125,7 @@ static void diamond_keeps_more_than_crown(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void exits_are_as_few_as_do(void **state) {
-  (void)state;
+TEST(exits_are_as_few_as_do) {
   abbe_inner_light inside = {{0}, {0}};
   for (size_t k = 0; k <= ABBE_RENDER_MAX_EXITS; k++) inside.kept[k] = pow(0.5, (double)k);
   assert_int_equal(abbe_inner_light_exits(&inside, 2, 24), 8); /* 1 / 256 is below 1 / 200 */
@@ -151,8 +146,7 @@ static double planned(const abbe_scene *scene, const abbe_render_desc *asked, ab
 }
 
 /* Its plan follows the gem's light until little is inside; what is asked for stays. */
-static void a_gem_takes_as_many_exits_as_carry_light(void **state) {
-  (void)state;
+TEST(a_gem_takes_as_many_exits_as_carry_light) {
   abbe_scene scene = {0};
   abbe_plan plan, fewer, asked;
   load_shipped("gem", &scene);
@@ -174,8 +168,7 @@ static void a_gem_takes_as_many_exits_as_carry_light(void **state) {
 }
 
 /* An earlier plan's light is that of the same stone and lamps, and of no others. */
-static void an_earlier_plan_is_taken_over(void **state) {
-  (void)state;
+TEST(an_earlier_plan_is_taken_over) {
   abbe_scene scene = {0};
   abbe_plan first, again, moved;
   load_shipped("gem", &scene);
@@ -195,8 +188,7 @@ static void an_earlier_plan_is_taken_over(void **state) {
 }
 
 /* But while light moves it is that of where lamps stood, and of the same stone. */
-static void an_earlier_plan_serves_light_that_moves(void **state) {
-  (void)state;
+TEST(an_earlier_plan_serves_light_that_moves) {
   const abbe_render_desc coarse = {.coarse = ABBE_COARSE_ALL};
   abbe_scene scene = {0};
   abbe_plan first, moved, rests, other;
@@ -227,8 +219,7 @@ static void an_earlier_plan_serves_light_that_moves(void **state) {
 /* 64 x 64 rays here, 384 x 384 photons there, of one index: from a half to a hundredth of the
  * light.
  */
-static void the_ledger_says_the_same(void **state) {
-  (void)state;
+TEST(the_ledger_says_the_same) {
   static const char *const lights[] = {SUN, POINT_LIGHT};
   for (int i = 0; i < 2; i++)
     for (size_t exits = 1; exits <= 5; exits += 2) {
@@ -250,21 +241,4 @@ static void the_ledger_says_the_same(void **state) {
       abbe_renderer_free(renderer);
       abbe_scene_free(&scene);
     }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_slab_keeps_a_geometric_series),
-      cmocka_unit_test(faint_paths_end),
-      cmocka_unit_test(air_keeps_nothing),
-      cmocka_unit_test(a_right_angled_prism_turns_light),
-      cmocka_unit_test(what_no_light_meets_keeps_none),
-      cmocka_unit_test(diamond_keeps_more_than_crown),
-      cmocka_unit_test(exits_are_as_few_as_do),
-      cmocka_unit_test(a_gem_takes_as_many_exits_as_carry_light),
-      cmocka_unit_test(an_earlier_plan_is_taken_over),
-      cmocka_unit_test(an_earlier_plan_serves_light_that_moves),
-      cmocka_unit_test(the_ledger_says_the_same),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

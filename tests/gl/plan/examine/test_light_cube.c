@@ -22,8 +22,7 @@ static void whole_face(int face, abbe_view *view) {
   memcpy(view->window, window, sizeof window);
 }
 
-static void every_direction_has_one_face(void **state) {
-  (void)state;
+TEST(every_direction_has_one_face) {
   uint64_t random = 3;
   for (int i = 0; i < 20000; i++) {
     double d[3];
@@ -87,8 +86,7 @@ static void check_windows(const abbe_object *object, bool sphere) {
       if (isfinite(found[face][k])) assert_near(view[face].window[k], found[face][k], 0.12);
 }
 
-static void windows_hold_what_is_there(void **state) {
-  (void)state;
+TEST(windows_hold_what_is_there) {
   static const char *const shapes[] = {
       "shape: sphere, radius: 0.15, levels: 3, transform: [{translate: [0.5, 0, 0.1]}]",
       "shape: sphere, radius: 0.2, levels: 3, transform: [{translate: [0.3, -0.2, 0.302]}]",
@@ -109,8 +107,7 @@ static void windows_hold_what_is_there(void **state) {
 
 /* Of balls all around, as many faces as the angle says: one whose middle is on a face's axis
  * reaches the next face from sin(45 degrees) on. */
-static void a_ball_reaches_the_faces_that_it_crosses(void **state) {
-  (void)state;
+TEST(a_ball_reaches_the_faces_that_it_crosses) {
   static const struct {
     double at[3], radius;
     unsigned faces;
@@ -139,8 +136,7 @@ static void a_ball_reaches_the_faces_that_it_crosses(void **state) {
   assert_int_equal(abbe_light_cube_reached(&spot, &around), 1 | 4 | 8 | 16 | 32);
 }
 
-static void the_way_to_a_box_is_the_nearest(void **state) {
-  (void)state;
+TEST(the_way_to_a_box_is_the_nearest) {
   static const struct {
     double at[3], way;
   } rows[] = {{{0.2, 0, 0.4}, 0.17}, {{0.25, 0.04, 0.24}, 0.01}, {{0.28, 0.08, 0.23}, 0.05}};
@@ -155,8 +151,7 @@ static void the_way_to_a_box_is_the_nearest(void **state) {
   "- {name: amid" i ", kind: point, position: [" x ", " y ", 0.2], intensity: 1}\n"
 
 /* Each lamp stands between the same four balls: four faces, and four maps a lamp. */
-static void maps_have_an_end(void **state) {
-  (void)state;
+TEST(maps_have_an_end) {
   static const char balls[] =
       FLOOR "- {name: east, shape: sphere, radius: 0.08, levels: 2, transform: [{translate: [0.4, "
             "0, 0.2]}], material: flat}\n"
@@ -198,8 +193,7 @@ static void maps_have_an_end(void **state) {
 }
 
 /* A seam may not cut what only its layers tell; a mesh's triangles may be cut. */
-static void layers_need_one_view(void **state) {
-  (void)state;
+TEST(layers_need_one_view) {
   abbe_scene scene;
   abbe_plan plan;
   abbe_error error = {0};
@@ -214,16 +208,4 @@ static void layers_need_one_view(void **state) {
   assert_true(plan.cubes);
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_direction_has_one_face),
-      cmocka_unit_test(windows_hold_what_is_there),
-      cmocka_unit_test(a_ball_reaches_the_faces_that_it_crosses),
-      cmocka_unit_test(the_way_to_a_box_is_the_nearest),
-      cmocka_unit_test(maps_have_an_end),
-      cmocka_unit_test(layers_need_one_view),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,8 +4,7 @@
 #include "gl/plan/examine/light_views.h"
 
 /* Where the default profile has a cube, the thesis's has none; of a spot its view is the cone. */
-static void the_thesis_profile_looks_through_one_view(void **state) {
-  (void)state;
+TEST(the_thesis_profile_looks_through_one_view) {
   static const struct {
     const char *kind;
     bool one_view;
@@ -28,11 +27,4 @@ static void the_thesis_profile_looks_through_one_view(void **state) {
     abbe_plan_free(&plan);
     abbe_scene_free(&scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_thesis_profile_looks_through_one_view),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,11 +29,12 @@ static bool holds(const abbe_view *view, const double p[3], double uvz[3]) {
   return abbe_view_project(view, p, uvz) && uvz[0] >= 0 && uvz[0] < 1 && uvz[1] >= 0 && uvz[1] < 1;
 }
 
+GROUP(make_context, free_context);
+
 /* Every place that both views hold lies in the rectangle; and where the eye sees all of the lit
  * part, the rectangle is no wider than the places, but for its margin and what chance leaves out.
  */
-static void bounds_what_is_lit(void **state) {
-  (void)state;
+TEST(bounds_what_is_lit) {
   uint64_t random = 5;
   int lit = 0, dark = 0;
   for (int turn = 0; turn < 300; turn++) {
@@ -67,8 +68,7 @@ static void bounds_what_is_lit(void **state) {
   assert_true(dark > 50);
 }
 
-static void square_on_the_axis(void **state) {
-  (void)state;
+TEST(square_on_the_axis) {
   static const double origin[3] = {0, 0, 0}, forward[3] = {1, 0, 0}, up[3] = {0, 0, 1};
   static const double square[9] = {2, -1, -1, 0, 2, 0, 0, 0, 2};
   static const double behind[9] = {-2, -1, -1, 0, 2, 0, 0, 0, 2};
@@ -120,8 +120,7 @@ static void draw(const char *text, bool unlit, size_t samples, abbe_image *pictu
 }
 
 /* A second lamp that shines all around, too faint to show, has the picture drawn lit throughout. */
-static void unlit_where_nothing_shines(void **state) {
-  (void)state;
+TEST(unlit_where_nothing_shines) {
   static const char narrow[] = CAMERA "ambient: 0.2\n" NARROW_SPOT ROOM;
   static const char wide[] =
       CAMERA "ambient: 0.2\n" NARROW_SPOT
@@ -141,13 +140,4 @@ static void unlit_where_nothing_shines(void **state) {
     abbe_image_free(&parts);
     abbe_image_free(&whole);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(bounds_what_is_lit),
-      cmocka_unit_test(square_on_the_axis),
-      cmocka_unit_test(unlit_where_nothing_shines),
-  };
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -3,8 +3,7 @@
 
 #include "gl/plan/examine/material_range.h"
 
-static void extremes_are_those_of_the_range(void **state) {
-  (void)state;
+TEST(extremes_are_those_of_the_range) {
   abbe_scene scene = {0};
   abbe_material_range range;
   double first, last;
@@ -24,8 +23,7 @@ static void extremes_are_those_of_the_range(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void an_unknown_index_is_an_error(void **state) {
-  (void)state;
+TEST(an_unknown_index_is_an_error) {
   abbe_scene scene = {0};
   abbe_material_range range;
   abbe_error error = {0};
@@ -35,12 +33,4 @@ static void an_unknown_index_is_an_error(void **state) {
   assert_int_equal(abbe_material_range_make(narrow, 400, 701, &range, &error), ABBE_OUT_OF_RANGE);
   assert_contains(error.text, "narrow");
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(extremes_are_those_of_the_range),
-      cmocka_unit_test(an_unknown_index_is_an_error),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,8 +16,7 @@ static void check(const abbe_plan *plan, abbe_plan_item item, size_t index, cons
   assert_contains(entry->reason, part);
 }
 
-static void a_grey_ball_asks_for_one_wavelength(void **state) {
-  (void)state;
+TEST(a_grey_ball_asks_for_one_wavelength) {
   abbe_plan plan;
   plan_text(SILVERED POINT_LIGHT FLOOR MIRROR_BALL("0.9"), NULL, &plan);
   assert_int_equal(plan.refractor_count, 1);
@@ -33,8 +32,7 @@ static void a_grey_ball_asks_for_one_wavelength(void **state) {
   abbe_plan_free(&plan);
 }
 
-static void a_metal_asks_for_all(void **state) {
-  (void)state;
+TEST(a_metal_asks_for_all) {
   abbe_plan plan;
   plan_text(SILVERED POINT_LIGHT FLOOR MIRROR_BALL("gold"), NULL, &plan);
   assert_true(plan.colouring);
@@ -47,8 +45,7 @@ static void a_metal_asks_for_all(void **state) {
 }
 
 /* A path's parts of a band hold what a metal takes between coarse wavelengths. */
-static void glass_beside_a_metal_asks_for_no_more_wavelengths(void **state) {
-  (void)state;
+TEST(glass_beside_a_metal_asks_for_no_more_wavelengths) {
   abbe_plan plan;
   plan_text(SILVERED POINT_LIGHT FLOOR MIRROR_PANE("gold") BALL("n-bk7"), NULL, &plan);
   assert_true(plan.fills && plan.bvh && plan.mirror[0] && !plan.mirror[1]);
@@ -61,8 +58,7 @@ static void glass_beside_a_metal_asks_for_no_more_wavelengths(void **state) {
 }
 
 /* A ball is known by its triangles to whom is inside: they have two sides. */
-static void a_ball_around_the_lamp_is_a_mesh(void **state) {
-  (void)state;
+TEST(a_ball_around_the_lamp_is_a_mesh) {
   abbe_plan plan;
   plan_text(
       SILVERED POINT_LIGHT FLOOR
@@ -73,19 +69,7 @@ static void a_ball_around_the_lamp_is_a_mesh(void **state) {
   abbe_plan_free(&plan);
 }
 
-static void a_metal_is_known_over_the_range(void **state) {
-  (void)state;
+TEST(a_metal_is_known_over_the_range) {
   const abbe_render_desc desc = {.min_nm = 380, .max_nm = 1e5};
   refuse_plan(SILVERED POINT_LIGHT FLOOR MIRROR_BALL("gold"), &desc, ABBE_OUT_OF_RANGE, "gold");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_grey_ball_asks_for_one_wavelength),
-      cmocka_unit_test(a_metal_asks_for_all),
-      cmocka_unit_test(glass_beside_a_metal_asks_for_no_more_wavelengths),
-      cmocka_unit_test(a_ball_around_the_lamp_is_a_mesh),
-      cmocka_unit_test(a_metal_is_known_over_the_range),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

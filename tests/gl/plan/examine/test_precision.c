@@ -15,8 +15,7 @@ static abbe_result check(const char *text, size_t photons, abbe_error *error) {
   return result;
 }
 
-static void ordinary_scenes_are_fine(void **state) {
-  (void)state;
+TEST(ordinary_scenes_are_fine) {
   static const char *const texts[] = {
       CAMERA POINT_LIGHT FLOOR,
       CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("flat"),
@@ -28,8 +27,7 @@ static void ordinary_scenes_are_fine(void **state) {
       assert_int_equal(check(texts[i], photons, &error), ABBE_OK);
 }
 
-static void a_light_too_far_away_is_directional(void **state) {
-  (void)state;
+TEST(a_light_too_far_away_is_directional) {
   abbe_error error = {0};
   /* 65536 times 0.08 m is 5243 m. */
   assert_int_equal(check(CAMERA "lights:\n- {name: star, kind: point, position: [0, 0, 5000], "
@@ -48,8 +46,7 @@ static void a_light_too_far_away_is_directional(void **state) {
   "- {name: other, shape: sphere, radius: 0.08, levels: 4, transform: [{translate: [" x            \
   ", 0, 0.2]}], material: flat}\n"
 
-static void a_refractor_lost_in_its_scene_is_told(void **state) {
-  (void)state;
+TEST(a_refractor_lost_in_its_scene_is_told) {
   abbe_error error = {0};
   /* However far its receivers reach; 65536 times 0.08 m is 5243 m. */
   assert_int_equal(check(CAMERA SUN "objects:\n- {name: plain, shape: rectangle, width: 100000, "
@@ -67,8 +64,7 @@ static void a_refractor_lost_in_its_scene_is_told(void **state) {
   "- {name: pane, shape: box, size: [0.2, 0.2, " thick "], material: flat, transform: [{rotate: "  \
   "{axis: [1, 2, 3], angle: 40}}, {translate: [0, 0, 0.2]}]}\n"
 
-static void a_skin_has_no_inside(void **state) {
-  (void)state;
+TEST(a_skin_has_no_inside) {
   abbe_error error = {0};
   assert_int_equal(check(CAMERA POINT_LIGHT FLOOR PANE("1e-6"), 0, &error), ABBE_OK);
   assert_int_equal(check(CAMERA POINT_LIGHT FLOOR PANE("3e-7"), 0, &error), ABBE_UNSUPPORTED);
@@ -79,8 +75,7 @@ static void a_skin_has_no_inside(void **state) {
   "- {name: speck, shape: sphere, radius: " radius ", levels: 2, material: flat, transform: "      \
   "[{translate: [0.4, 0, 0.2]}]}\n"
 
-static void specks_between_photons_are_told(void **state) {
-  (void)state;
+TEST(specks_between_photons_are_told) {
   abbe_error error = {0};
   assert_int_equal(check(CAMERA POINT_LIGHT FLOOR BALL("flat") SPECK("1e-3"), 64, &error),
                    ABBE_UNSUPPORTED);
@@ -94,8 +89,7 @@ static void specks_between_photons_are_told(void **state) {
   CAMERA "lights:\n- {name: lamp, kind: point, position: [" at "], intensity: 1}\n" FLOOR
 
 /* Half the ball's diagonal is 0.1386 m, a 4096th of it 3.4e-5 m. */
-static void a_light_that_touches_is_told(void **state) {
-  (void)state;
+TEST(a_light_that_touches_is_told) {
   abbe_error error = {0};
   assert_int_equal(check(CLOSE("0, 0, 0.28004") BALL("flat"), 0, &error), ABBE_OK);
   assert_int_equal(check(CLOSE("0, 0, 0.28003") BALL("flat"), 0, &error), ABBE_UNSUPPORTED);
@@ -104,16 +98,4 @@ static void a_light_that_touches_is_told(void **state) {
   /* Over the middle of a box's side: its corners are no measure of the way. */
   assert_int_equal(check(CLOSE("0.2, 0, 0.23002") BRICK("flat"), 0, &error), ABBE_OK);
   assert_int_equal(check(CLOSE("0.2, 0, 0.23001") BRICK("flat"), 0, &error), ABBE_UNSUPPORTED);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ordinary_scenes_are_fine),
-      cmocka_unit_test(a_light_too_far_away_is_directional),
-      cmocka_unit_test(a_refractor_lost_in_its_scene_is_told),
-      cmocka_unit_test(a_skin_has_no_inside),
-      cmocka_unit_test(specks_between_photons_are_told),
-      cmocka_unit_test(a_light_that_touches_is_told),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,8 +26,7 @@ static const abbe_light spot = {
     .kind = ABBE_LIGHT_SPOT, .position = {0, 0, 1}, .direction = {0, 0, -1}, .cone_rad = 0.3};
 
 /* A ball at the distance d, a off the axis, is touched where a is the cone and asin(r / d). */
-static void test_a_cone_touches_a_ball(void **state) {
-  (void)state;
+TEST(a_cone_touches_a_ball) {
   const double d = 0.8, r = 0.1, rim = 0.3 + asin(r / d);
   for (int k = -1; k <= 1; k += 2) {
     double a = rim + 1e-3 * k;
@@ -37,8 +36,7 @@ static void test_a_cone_touches_a_ball(void **state) {
 }
 
 /* A ball of 0.1 at the distance 1 from a lamp: what stands behind, before and beside it. */
-static void test_what_stands_behind_a_ball(void **state) {
-  (void)state;
+TEST(what_stands_behind_a_ball) {
   const abbe_object object = ball(0, 0, 0, 0.1);
   const double tangent = 0.1 / sqrt(1 - 0.01);
   abbe_light light = spot;
@@ -61,8 +59,7 @@ static void test_what_stands_behind_a_ball(void **state) {
   assert_true(abbe_reach_through(&light, &around, &anywhere));
 }
 
-static void test_light_without_a_cone_goes_everywhere(void **state) {
-  (void)state;
+TEST(light_without_a_cone_goes_everywhere) {
   abbe_object behind = ball(0, 0, 3, 0.1), around = ball(0, 0, 1, 0.1);
   abbe_light light = spot;
   assert_false(abbe_reach_light(&light, &behind));
@@ -74,8 +71,7 @@ static void test_light_without_a_cone_goes_everywhere(void **state) {
 }
 
 /* No box that holds a lit place is said to be missed. */
-static void test_a_cone_is_never_wrongly_said_to_miss(void **state) {
-  (void)state;
+TEST(a_cone_is_never_wrongly_said_to_miss) {
   uint64_t seed = 1;
   size_t missed = 0, lit = 0;
   for (int i = 0; i < 20000; i++) {
@@ -105,8 +101,7 @@ static const abbe_camera camera = {.eye = {0, -2, 0},
 
 /* The window at the distance 2 is tan(0.5) 2 = 1.0926 high and twice as wide, to each side; a pixel
  * is 0.0219. */
-static void test_the_eye_sees_to_its_windows_rim(void **state) {
-  (void)state;
+TEST(the_eye_sees_to_its_windows_rim) {
   static const struct {
     double x, y, z, half;
     bool seen;
@@ -124,15 +119,13 @@ static void test_the_eye_sees_to_its_windows_rim(void **state) {
 }
 
 /* A narrower picture of the same height sees less. */
-static void test_the_request_decides_the_window(void **state) {
-  (void)state;
+TEST(the_request_decides_the_window) {
   abbe_object object = box(1.5, 0, 0, 0.01);
   assert_true(abbe_reach_eye(&camera, 200, 100, &object));
   assert_false(abbe_reach_eye(&camera, 100, 100, &object));
 }
 
-static void test_an_exact_ball_stands_out_of_its_triangles(void **state) {
-  (void)state;
+TEST(an_exact_ball_stands_out_of_its_triangles) {
   abbe_object object = ball(2.2 + 0.1, 0, 0, 0.1), triangles = object;
   triangles.exact.kind = ABBE_EXACT_NONE;
   for (int k = 0; k < 3; k++) {
@@ -143,8 +136,7 @@ static void test_an_exact_ball_stands_out_of_its_triangles(void **state) {
   assert_false(abbe_reach_eye(&camera, 200, 100, &triangles));
 }
 
-static void sides_and_overlaps(void **state) {
-  (void)state;
+TEST(sides_and_overlaps) {
   const double floor[9] = {0, 0, 1, 2, 0, 0, 0, 2, 0};
   assert_near(abbe_reach_side(floor, (double[3]){5, 5, 4}), 3, 1e-15);
   assert_near(abbe_reach_side(floor, (double[3]){-5, 0, -1}), -2, 1e-15);
@@ -156,8 +148,7 @@ static void sides_and_overlaps(void **state) {
 }
 
 /* A plane at 45 degrees: boxes on one side of it share its bounds, and are not reached into. */
-static void a_receiver_reaches_into_what_its_plane_cuts(void **state) {
-  (void)state;
+TEST(a_receiver_reaches_into_what_its_plane_cuts) {
   double slope[1][9] = {{0, 0, 0, 1, 0, 1, 0, 1, 0}};
   abbe_object receiver = {
       .exact = {.kind = ABBE_EXACT_PARALLELOGRAMS, .count = 1, .parallelogram = slope}};
@@ -169,19 +160,4 @@ static void a_receiver_reaches_into_what_its_plane_cuts(void **state) {
   abbe_object mesh = box(0.5, 0.5, 0.5, 0.5);
   assert_true(abbe_reach_into(&mesh, &below));
   assert_false(abbe_reach_into(&mesh, &apart));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(sides_and_overlaps),
-      cmocka_unit_test(a_receiver_reaches_into_what_its_plane_cuts),
-      cmocka_unit_test(test_a_cone_touches_a_ball),
-      cmocka_unit_test(test_what_stands_behind_a_ball),
-      cmocka_unit_test(test_light_without_a_cone_goes_everywhere),
-      cmocka_unit_test(test_a_cone_is_never_wrongly_said_to_miss),
-      cmocka_unit_test(test_the_eye_sees_to_its_windows_rim),
-      cmocka_unit_test(test_the_request_decides_the_window),
-      cmocka_unit_test(test_an_exact_ball_stands_out_of_its_triangles),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,8 +3,7 @@
 
 #include "gl/plan/examine/models.h"
 
-static void a_curved_receiver_asks_for_a_hierarchy(void **state) {
-  (void)state;
+TEST(a_curved_receiver_asks_for_a_hierarchy) {
   abbe_plan plan;
   plan_text(CAMERA POINT_LIGHT FLOOR HILL BALL("crown"), NULL, &plan);
   assert_int_equal(plan.receivers, ABBE_RECEIVER_BVH);
@@ -17,8 +16,7 @@ static void a_curved_receiver_asks_for_a_hierarchy(void **state) {
   abbe_plan_free(&plan);
 }
 
-static void too_many_rectangles_are_traversed(void **state) {
-  (void)state;
+TEST(too_many_rectangles_are_traversed) {
   abbe_scene scene = {0};
   abbe_plan plan;
   double many[97][9];
@@ -40,12 +38,4 @@ static void too_many_rectangles_are_traversed(void **state) {
   abbe_plan_free(&plan);
   *exact = floor;
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_curved_receiver_asks_for_a_hierarchy),
-      cmocka_unit_test(too_many_rectangles_are_traversed),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

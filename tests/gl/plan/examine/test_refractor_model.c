@@ -5,8 +5,7 @@
 #include "scenes/shapes/shape.h"
 
 /* What is asked for is taken where it can serve, and refused by name where it cannot. */
-static void a_model_that_is_asked_for(void **state) {
-  (void)state;
+TEST(a_model_that_is_asked_for) {
   static const struct {
     const char *text;
     abbe_model model;
@@ -45,8 +44,7 @@ static void a_model_that_is_asked_for(void **state) {
   }
 }
 
-static void too_many_refractors_are_unsupported(void **state) {
-  (void)state;
+TEST(too_many_refractors_are_unsupported) {
   abbe_scene scene = {0};
   abbe_plan plan;
   abbe_error error = {0};
@@ -75,8 +73,7 @@ static void too_many_refractors_are_unsupported(void **state) {
   "- {name: " name ", shape: sphere, radius: " radius ", levels: 2, "                              \
   "transform: [{translate: [0.09, 0.09, " z "]}], material: flat}\n"
 
-static void refractors_that_overlap_are_noted(void **state) {
-  (void)state;
+TEST(refractors_that_overlap_are_noted) {
   static const struct {
     const char *text, *part; /* NULL: none overlap */
   } rows[] = {
@@ -108,8 +105,7 @@ static void refractors_that_overlap_are_noted(void **state) {
   }
 }
 
-static void convex_meshes_are_known(void **state) {
-  (void)state;
+TEST(convex_meshes_are_known) {
   abbe_mesh mesh = {0};
   assert_int_equal(abbe_shape_sphere(2, 3, &mesh, NULL), ABBE_OK);
   assert_true(abbe_mesh_is_convex(&mesh));
@@ -120,14 +116,4 @@ static void convex_meshes_are_known(void **state) {
   assert_int_equal(abbe_shape_ring(0.08, 0.02, 32, 16, &mesh, NULL), ABBE_OK);
   assert_false(abbe_mesh_is_convex(&mesh));
   abbe_mesh_free(&mesh);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_model_that_is_asked_for),
-      cmocka_unit_test(too_many_refractors_are_unsupported),
-      cmocka_unit_test(refractors_that_overlap_are_noted),
-      cmocka_unit_test(convex_meshes_are_known),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,8 +3,7 @@
 
 #include "gl/plan/examine/spectral_needs.h"
 
-static void an_index_that_is_not_known_is_refused_or_noted(void **state) {
-  (void)state;
+TEST(an_index_that_is_not_known_is_refused_or_noted) {
   abbe_plan plan;
   refuse_plan(CAMERA POINT_LIGHT FLOOR BALL("narrow"), NULL, ABBE_OUT_OF_RANGE, "narrow");
   plan_text(CAMERA POINT_LIGHT FLOOR BALL("loose"), NULL, &plan);
@@ -22,8 +21,7 @@ static void an_index_that_is_not_known_is_refused_or_noted(void **state) {
 }
 
 /* A crystal has one index here, and the plan says what is left out, once a material. */
-static void double_refraction_is_noted(void **state) {
-  (void)state;
+TEST(double_refraction_is_noted) {
   abbe_plan plan;
   const char *head = "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR;
   char text[2048];
@@ -40,12 +38,4 @@ static void double_refraction_is_noted(void **state) {
   plan_text(text, NULL, &plan);
   assert_false(is_noted(&plan, "double refraction"));
   abbe_plan_free(&plan);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(an_index_that_is_not_known_is_refused_or_noted),
-      cmocka_unit_test(double_refraction_is_noted),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -40,8 +40,7 @@ static const char *const texts[] = {
     [ABBE_CHOICE_ENVIRONMENT] = "environment",
 };
 
-static void every_item_has_its_text(void **state) {
-  (void)state;
+TEST(every_item_has_its_text) {
   assert_int_equal(sizeof texts / sizeof *texts, ABBE_PLAN_ITEM_COUNT);
   for (int i = 0; i < ABBE_PLAN_ITEM_COUNT; i++) {
     assert_non_null(texts[i]);
@@ -52,18 +51,9 @@ static void every_item_has_its_text(void **state) {
   assert_string_equal(abbe_plan_item_text((abbe_plan_item)-1), "unknown");
 }
 
-static void a_text_begins_with_its_stage(void **state) {
-  (void)state;
+TEST(a_text_begins_with_its_stage) {
   for (int i = 0; i < ABBE_PASS_COUNT; i++) {
     const bool light = abbe_pass_stage_of((abbe_pass)i) == ABBE_STAGE_LIGHT;
     assert_memory_equal(texts[i], light ? "light: " : "eye: ", light ? 7 : 5);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_item_has_its_text),
-      cmocka_unit_test(a_text_begins_with_its_stage),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

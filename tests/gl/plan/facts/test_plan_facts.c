@@ -3,8 +3,7 @@
 
 #include "gl/plan/facts/plan_facts.h"
 
-static void an_entry_runs_by_its_condition(void **state) {
-  (void)state;
+TEST(an_entry_runs_by_its_condition) {
   static abbe_plan plan;
   plan = (abbe_plan){.caustics = true, .reaches = {false, true}};
   abbe_plan_add(&plan, ABBE_PASS_PHOTONS, "%d %s", 7, "wavelengths");
@@ -23,8 +22,7 @@ static void an_entry_runs_by_its_condition(void **state) {
 }
 
 /* What turns each item on, alone or with what it needs; all else stays off. */
-static void each_condition_is_its_own(void **state) {
-  (void)state;
+TEST(each_condition_is_its_own) {
   static const abbe_plan empty = {.receivers = ABBE_RECEIVER_EXACT};
   static abbe_plan plan;
   for (int i = 0; i < ABBE_PLAN_ITEM_COUNT; i++) {
@@ -57,8 +55,7 @@ static void each_condition_is_its_own(void **state) {
   assert_false(abbe_plan_runs(&plan, ABBE_CHOICE_REFRACTOR_MODEL, 4));
 }
 
-static void what_there_is_no_room_for_is_left_out(void **state) {
-  (void)state;
+TEST(what_there_is_no_room_for_is_left_out) {
   static abbe_plan plan;
   char wide[600];
   memset(wide, 'x', sizeof wide);
@@ -78,8 +75,7 @@ static void what_there_is_no_room_for_is_left_out(void **state) {
 
 /* Four wavelengths are enough to begin with where light is laid between them, unless the air takes
  * of it by wavelength, which hits do not keep. */
-static void least_wavelengths_are_few_where_light_is_bridged(void **state) {
-  (void)state;
+TEST(least_wavelengths_are_few_where_light_is_bridged) {
   static abbe_plan plan;
   static const struct {
     size_t wavelengths, least;
@@ -98,14 +94,4 @@ static void least_wavelengths_are_few_where_light_is_bridged(void **state) {
                        .tinted_air = rows[i].tinted_air};
     assert_int_equal(abbe_plan_least_wavelengths(&plan), rows[i].least);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(an_entry_runs_by_its_condition),
-      cmocka_unit_test(each_condition_is_its_own),
-      cmocka_unit_test(what_there_is_no_room_for_is_left_out),
-      cmocka_unit_test(least_wavelengths_are_few_where_light_is_bridged),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

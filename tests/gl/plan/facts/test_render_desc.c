@@ -10,8 +10,7 @@ static abbe_render_desc resolve(const abbe_render_desc *desc) {
   return out;
 }
 
-static void what_is_left_open_gets_its_default(void **state) {
-  (void)state;
+TEST(what_is_left_open_gets_its_default) {
   abbe_render_desc d = resolve(NULL);
   assert_true(d.width == 320 && d.height == 200 && d.photons == 256 && d.map_size == 1024);
   assert_true(d.supersample == 2 && d.upsample == 1 && d.fill == ABBE_FILL_BRIDGE);
@@ -46,8 +45,7 @@ static void what_is_left_open_gets_its_default(void **state) {
   assert_true(d.photons == 512 && d.fill == ABBE_FILL_SMEAR && d.max_nm == 780);
 }
 
-static void names_are_the_options(void **state) {
-  (void)state;
+TEST(names_are_the_options) {
   assert_string_equal(abbe_profile_name(ABBE_PROFILE_THESIS_CIE), "thesis-cie");
   assert_string_equal(abbe_fill_name(ABBE_FILL_SMEAR), "smear");
   assert_string_equal(abbe_transport_name(ABBE_TRANSPORT_PINHOLE), "pinhole");
@@ -59,8 +57,7 @@ static void names_are_the_options(void **state) {
   assert_false(abbe_profile_is_published(ABBE_PROFILE_DEFAULT));
 }
 
-static void limits_are_kept(void **state) {
-  (void)state;
+TEST(limits_are_kept) {
   const struct {
     abbe_render_desc desc;
     const char *part;
@@ -140,13 +137,4 @@ static void limits_are_kept(void **state) {
     assert_int_equal(error.code, ABBE_INVALID_ARGUMENT);
     assert_contains(error.text, rows[i].part);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(what_is_left_open_gets_its_default),
-      cmocka_unit_test(names_are_the_options),
-      cmocka_unit_test(limits_are_kept),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

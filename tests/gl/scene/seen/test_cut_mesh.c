@@ -61,8 +61,7 @@ static int held(const abbe_mesh *m, const double at[3], double uv[2]) {
   return count;
 }
 
-static void what_is_seen_stays(void **state) {
-  (void)state;
+TEST(what_is_seen_stays) {
   for (double side = 10; side < 2e5; side *= 100) {
     const abbe_view view = view_from(1);
     const double max[3] = {side / 2, side / 2, 0}, min[3] = {-side / 2, -side / 2, 0};
@@ -100,8 +99,7 @@ static void what_is_seen_stays(void **state) {
 }
 
 /* An edge with a part on one side alone has none on the other, or ends at the window. */
-static void parts_share_their_corners(void **state) {
-  (void)state;
+TEST(parts_share_their_corners) {
   const abbe_view view = view_from(1);
   abbe_mesh square, cut;
   uint32_t *face_of;
@@ -132,8 +130,7 @@ static void parts_share_their_corners(void **state) {
   abbe_mesh_free(&square);
 }
 
-static void small_things_are_not_cut(void **state) {
-  (void)state;
+TEST(small_things_are_not_cut) {
   const abbe_view view = view_from(1);
   abbe_mesh square;
   make_square(1, &square);
@@ -143,11 +140,4 @@ static void small_things_are_not_cut(void **state) {
   const double min[3] = {0, 2.5, 0}, max[3] = {1, 3.5, 0};
   assert_false(abbe_cut_mesh_needed(&square, min, max, &view));
   abbe_mesh_free(&square);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_seen_stays),
-                                     cmocka_unit_test(parts_share_their_corners),
-                                     cmocka_unit_test(small_things_are_not_cut)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -140,8 +140,7 @@ static void hold(const fixture *f, const passage *p, const char *what, double *w
 }
 
 /* Spheres of 6 mm: the colours hold for paths that are not usual, too. */
-static void stones_have_their_colour_at_any_length(void **state) {
-  (void)state;
+TEST(stones_have_their_colour_at_any_length) {
   static const double length_m[] = {0.001, 0.003, 0.006, 0.01, 0.02};
   double worst = 0;
   for (size_t s = 0; s < sizeof stone / sizeof *stone; s++)
@@ -159,8 +158,7 @@ static void stones_have_their_colour_at_any_length(void **state) {
   print_message("stones alone are at most %.3f CIEDE2000 off\n", worst);
 }
 
-static void paths_through_two_stones_have_their_colour(void **state) {
-  (void)state;
+TEST(paths_through_two_stones_have_their_colour) {
   double worst = 0;
   for (size_t k = 0; k < COUNTS; k++) {
     fixture f;
@@ -174,8 +172,7 @@ static void paths_through_two_stones_have_their_colour(void **state) {
   print_message("through two stones, %.3f\n", worst);
 }
 
-static void metals_have_their_colour_however_often_they_reflect(void **state) {
-  (void)state;
+TEST(metals_have_their_colour_however_often_they_reflect) {
   double worst = 0;
   for (size_t k = 0; k < COUNTS; k++) {
     fixture f;
@@ -188,12 +185,4 @@ static void metals_have_their_colour_however_often_they_reflect(void **state) {
     done(&f);
   }
   print_message("off gold, %.3f\n", worst);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(stones_have_their_colour_at_any_length),
-      cmocka_unit_test(paths_through_two_stones_have_their_colour),
-      cmocka_unit_test(metals_have_their_colour_however_often_they_reflect)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

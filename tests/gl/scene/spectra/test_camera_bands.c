@@ -36,8 +36,7 @@ static void done(fixture *f) {
   abbe_scene_free(&f->scene);
 }
 
-static void every_level_of_every_set_is_white(void **state) {
-  (void)state;
+TEST(every_level_of_every_set_is_white) {
   static const size_t count[] = {NODES, 4, 2, 1};
   fixture f;
   make(CAMERA POINT_LIGHT FLOOR BALL("murk") BRICK("crown"), &f);
@@ -61,8 +60,7 @@ static void every_level_of_every_set_is_white(void **state) {
 
 /* Of a red, seen by every band, what its own spectrum has there (upsampling.h), summed finely; of
  * the bands of a level together the red itself. */
-static void a_colour_has_a_spectrum_of_its_own(void **state) {
-  (void)state;
+TEST(a_colour_has_a_spectrum_of_its_own) {
   static const double red[3] = {0.7, 0.1, 0.05};
   fixture f;
   make(CAMERA POINT_LIGHT FLOOR BALL("crown"), &f);
@@ -104,8 +102,7 @@ static double index_at(const fixture *f, double lambda_nm) {
 }
 
 /* Of 400 to 700 by 50: bands from 400, 425, 475 ... 675, 700. */
-static void shares_stand_a_quarter_apart(void **state) {
-  (void)state;
+TEST(shares_stand_a_quarter_apart) {
   fixture f;
   make(CAMERA POINT_LIGHT FLOOR BALL("crown"), &f);
   for (size_t i = 0; i < NODES; i++) {
@@ -121,8 +118,7 @@ static void shares_stand_a_quarter_apart(void **state) {
 /* Four samples of a pixel, each with the weights of its own, leave of a spectrum what four times as
  * many wavelengths do: a line of light that is narrower than a band shows less of the wrong
  * colours. Y of what lies below 500 nm, against the integral. */
-static void together_they_tell_a_spectrum_better(void **state) {
-  (void)state;
+TEST(together_they_tell_a_spectrum_better) {
   fixture f;
   make(CAMERA POINT_LIGHT FLOOR BALL("crown"), &f);
   abbe_weights_range range;
@@ -140,14 +136,4 @@ static void together_they_tell_a_spectrum_better(void **state) {
   const double truth = below[1] / all[1];
   assert_true(fabs(four - truth) < 0.35 * fabs(one - truth));
   done(&f);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_level_of_every_set_is_white),
-      cmocka_unit_test(a_colour_has_a_spectrum_of_its_own),
-      cmocka_unit_test(shares_stand_a_quarter_apart),
-      cmocka_unit_test(together_they_tell_a_spectrum_better),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

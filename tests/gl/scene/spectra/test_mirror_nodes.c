@@ -17,21 +17,18 @@ static abbe_mirror_node node[NODES];
 static const abbe_illuminant white = {.kind = ABBE_ILLUMINANT_D65};
 static abbe_weights_range range;
 
-static int make(void **state) {
-  (void)state;
-  if (abbe_material_table_load(NULL, &table, NULL) != ABBE_OK) return -1;
-  if (abbe_material_table_find(&table, "gold", &gold.conductor, NULL) != ABBE_OK) return -1;
+static void make(void) {
+  assert_int_equal(abbe_material_table_load(NULL, &table, NULL), ABBE_OK);
+  assert_int_equal(abbe_material_table_find(&table, "gold", &gold.conductor, NULL), ABBE_OK);
   gold.mirror = true;
-  if (abbe_wavelengths_make(NODES, 380, 780, &w, NULL) != ABBE_OK) return -1;
+  assert_int_equal(abbe_wavelengths_make(NODES, 380, 780, &w, NULL), ABBE_OK);
   abbe_weights_range_make(&white, 380, 780, &range);
-  return abbe_mirror_nodes_fill(&gold, &w, &range, node, NULL) == ABBE_OK ? 0 : -1;
+  assert_int_equal(abbe_mirror_nodes_fill(&gold, &w, &range, node, NULL), ABBE_OK);
 }
 
-static int drop(void **state) {
-  (void)state;
+static void drop(void) {
   abbe_wavelengths_free(&w);
   abbe_material_table_free(&table);
-  return 0;
 }
 
 static double straight_at(double lambda_nm) {
@@ -55,8 +52,9 @@ static double reflected_y(bool polygon, int times) {
   return sum;
 }
 
-static void seven_nodes_tell_a_metals_light(void **state) {
-  (void)state;
+GROUP(make, drop);
+
+TEST(seven_nodes_tell_a_metals_light) {
   const double once = reflected_y(true, 1) / reflected_y(false, 1);
   const double twice = reflected_y(true, 2) / reflected_y(false, 2);
   print_message("gold at seven nodes: %.5f of the light, %.5f of it reflected twice\n", once,
@@ -65,8 +63,7 @@ static void seven_nodes_tell_a_metals_light(void **state) {
   assert_near(twice, 1, 0.02); /* squares of what is straight between two nodes */
 }
 
-static void a_number_is_reflected_as_it_is(void **state) {
-  (void)state;
+TEST(a_number_is_reflected_as_it_is) {
   const abbe_object grey = {.mirror = true, .mirror_reflectance = 0.7};
   abbe_mirror_node at[NODES];
   assert_int_equal(abbe_mirror_nodes_fill(&grey, &w, &range, at, NULL), ABBE_OK);
@@ -75,10 +72,4 @@ static void a_number_is_reflected_as_it_is(void **state) {
     assert_near(abbe_mirror_node_straight(&at[i]), 0.7, 1e-15);
   }
   assert_near(abbe_mirror_reflected(0, -1, abbe_mirror_factor(0, -1, 0.7)), 0.7, 1e-15);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(seven_nodes_tell_a_metals_light),
-                                     cmocka_unit_test(a_number_is_reflected_as_it_is)};
-  return cmocka_run_group_tests(tests, make, drop);
 }

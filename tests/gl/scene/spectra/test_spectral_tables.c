@@ -55,8 +55,7 @@ static const float (*rows_of_all(const fixture *f, const float (*table)[4]))[4] 
   return table + abbe_interval_sums_size(&f->plan, f->tables.steps, f->tables.coarse.count);
 }
 
-static void every_sampling_holds_all_of_the_light(void **state) {
-  (void)state;
+TEST(every_sampling_holds_all_of_the_light) {
   fixture f;
   make(CAMERA POINT_LIGHT FLOOR BALL("murk"), &f);
   const abbe_spectral_tables *t = &f.tables;
@@ -80,8 +79,7 @@ static void every_sampling_holds_all_of_the_light(void **state) {
 }
 
 /* Four bands of the range, three and then the last. */
-static void bands_tile_the_light(void **state) {
-  (void)state;
+TEST(bands_tile_the_light) {
   fixture f;
   make(CAMERA POINT_LIGHT FLOOR BALL("crown"), &f);
   double sum = 0;
@@ -98,8 +96,7 @@ static void bands_tile_the_light(void **state) {
   done(&f);
 }
 
-static void remade_tables_follow_the_material(void **state) {
-  (void)state;
+TEST(remade_tables_follow_the_material) {
   fixture f;
   make(CAMERA POINT_LIGHT FLOOR BALL("crown") RING("dense"), &f);
   const double before = f.tables.index[0];
@@ -111,8 +108,7 @@ static void remade_tables_follow_the_material(void **state) {
   done(&f);
 }
 
-static void an_unknown_index_is_an_error(void **state) {
-  (void)state;
+TEST(an_unknown_index_is_an_error) {
   fixture f;
   abbe_error error = {0};
   make(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &f);
@@ -124,23 +120,11 @@ static void an_unknown_index_is_an_error(void **state) {
   done(&f);
 }
 
-static void coarse_nodes_reach_both_ends_in_order(void **state) {
-  (void)state;
+TEST(coarse_nodes_reach_both_ends_in_order) {
   for (size_t n = 5; n <= ABBE_RENDER_MAX_WAVELENGTHS; n++) {
     assert_int_equal(abbe_spectral_tables_node(n, 5, 0), 0);
     assert_int_equal(abbe_spectral_tables_node(n, 5, 4), n - 1);
     for (size_t k = 0; k < 4; k++)
       assert_true(abbe_spectral_tables_node(n, 5, k) < abbe_spectral_tables_node(n, 5, k + 1));
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_sampling_holds_all_of_the_light),
-      cmocka_unit_test(bands_tile_the_light),
-      cmocka_unit_test(remade_tables_follow_the_material),
-      cmocka_unit_test(an_unknown_index_is_an_error),
-      cmocka_unit_test(coarse_nodes_reach_both_ends_in_order),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

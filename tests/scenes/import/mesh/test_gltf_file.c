@@ -128,8 +128,7 @@ static void assert_reads(const wish *w, double size, double shift, double tolera
 }
 
 /* The tetrahedron is 1 wide, 2 high along glTF's y and 3 deep. */
-static void meshes_stand(void **state) {
-  (void)state;
+TEST(meshes_stand) {
   static char data[8192];
   abbe_mesh m;
   abbe_mesh_report r;
@@ -145,8 +144,7 @@ static void meshes_stand(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void numbers_are_read_of_every_kind(void **state) {
-  (void)state;
+TEST(numbers_are_read_of_every_kind) {
   static const wish wishes[] = {
       {.type = FLOAT},
       {.type = FLOAT, .binary = true},
@@ -182,8 +180,7 @@ static void numbers_are_read_of_every_kind(void **state) {
   for (size_t i = 0; i < sizeof wishes / sizeof *wishes; i++) assert_reads(&wishes[i], 1, 0, 1e-6);
 }
 
-static void nodes_place_meshes(void **state) {
-  (void)state;
+TEST(nodes_place_meshes) {
   static const wish placed[] = {
       {.node = ",\"translation\":[5,0,0],\"scale\":[2,2,2]"},
       {.node = ",\"matrix\":[2,0,0,0,0,2,0,0,0,0,2,0,5,0,0,1]"},
@@ -211,8 +208,7 @@ static void nodes_place_meshes(void **state) {
 #define VEC(width, type, count)                                                                    \
   "{\"componentType\":" #type ",\"count\":" #count ",\"type\":\"VEC" #width "\",\"bufferView\":"
 
-static void instances_are_read(void **state) {
-  (void)state;
+TEST(instances_are_read) {
   const float place[6] = {0, 0, 0, 10, 0, 0}, size[6] = {1, 1, 1, 2, 2, 2};
   const signed char turn[8] = {0, 0, 0, 127, 0, 0, 127, 0}; /* the second by half a turn about z */
   unsigned char bytes[56];
@@ -243,8 +239,7 @@ static void instances_are_read(void **state) {
 }
 
 /* The last corner stands elsewhere. */
-static void sparse_numbers_are_read(void **state) {
-  (void)state;
+TEST(sparse_numbers_are_read) {
   unsigned char bytes[16] = {3};
   const float away[3] = {0, 0, 6};
   memcpy(bytes + 4, away, sizeof away);
@@ -272,8 +267,7 @@ static void sparse_numbers_are_read(void **state) {
 }
 
 /* Positions that only an extension has are no zeros. */
-static void compressed_meshes_are_refused(void **state) {
-  (void)state;
+TEST(compressed_meshes_are_refused) {
   static char data[8192];
   abbe_mesh m;
   const size_t size = make(
@@ -295,8 +289,7 @@ static void compressed_meshes_are_refused(void **state) {
 }
 
 /* Strips turn every second triangle; a strip round a tetrahedron closes it. */
-static void strips_and_fans_are_read(void **state) {
-  (void)state;
+TEST(strips_and_fans_are_read) {
   static const unsigned short strip[6] = {1, 0, 3, 2, 1, 0}, fan[6] = {0, 1, 3, 2, 1};
   for (int mode = 5; mode <= 6; mode++) {
     char primitive[40], more[80];
@@ -327,8 +320,7 @@ static void strips_and_fans_are_read(void **state) {
   }
 }
 
-static void names_of_buffers_are_decoded(void **state) {
-  (void)state;
+TEST(names_of_buffers_are_decoded) {
   static const char *const names[] = {"t%20gltf%251.bin", "t gltf%1.bin", "./t%20gltf%1.bin"};
   for (int i = 0; i < 3; i++) assert_reads(&(wish){.uri = names[i]}, 1, 0, 0);
   /* and are known to who loads the mesh */
@@ -350,8 +342,7 @@ static void names_of_buffers_are_decoded(void **state) {
   unlink("t gltf%1.bin");
 }
 
-static void what_is_not_read_is_named(void **state) {
-  (void)state;
+TEST(what_is_not_read_is_named) {
   static const struct {
     wish w;
     const char *words;
@@ -400,8 +391,7 @@ static void what_is_not_read_is_named(void **state) {
   assert_reads(&(wish){.primitive = ",\"targets\":[{\"POSITION\":1}]"}, 1, 0, 0);
 }
 
-static void cut_files_are_refused(void **state) {
-  (void)state;
+TEST(cut_files_are_refused) {
   static char data[8192];
   abbe_mesh m;
   const size_t size = make(&(wish){.binary = true}, data);
@@ -411,8 +401,7 @@ static void cut_files_are_refused(void **state) {
 
 /* A file of some kilobytes whose lists are gone through once for each of its nodes: primitives that
  * have no triangles, and weights. */
-static void work_has_an_end(void **state) {
-  (void)state;
+TEST(work_has_an_end) {
   static const struct {
     const char *more, *item; /* in the list that grows */
     int nodes, items;
@@ -432,21 +421,4 @@ static void work_has_an_end(void **state) {
     assert_int_equal(read_turned("t.gltf", text, strlen(text), &m), ABBE_UNSUPPORTED);
     assert_contains(error.text, "make more than the");
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(meshes_stand),
-      cmocka_unit_test(numbers_are_read_of_every_kind),
-      cmocka_unit_test(nodes_place_meshes),
-      cmocka_unit_test(instances_are_read),
-      cmocka_unit_test(sparse_numbers_are_read),
-      cmocka_unit_test(compressed_meshes_are_refused),
-      cmocka_unit_test(strips_and_fans_are_read),
-      cmocka_unit_test(names_of_buffers_are_decoded),
-      cmocka_unit_test(what_is_not_read_is_named),
-      cmocka_unit_test(cut_files_are_refused),
-      cmocka_unit_test(work_has_an_end),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

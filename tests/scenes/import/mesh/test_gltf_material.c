@@ -22,10 +22,11 @@ static abbe_result load(const char *json, const char *part, abbe_material *out, 
   "\"KHR_materials_ior\":{\"ior\":" ior "}"
 #define ONE(ior, more) "{\"materials\":[" GLASS("stone", ior, more) "}}]}"
 
+GROUP(make_folder, drop_folder);
+
 /* The extension's page: dispersion 2.04 for an Abbe number of 9.8 (rutile), 0.625 for 32, 0.36 for
  * 55, 0.33 for 59: rounded. */
-static void test_abbe_numbers_of_the_extension(void **state) {
-  (void)state;
+TEST(abbe_numbers_of_the_extension) {
   static const double rows[][2] = {{2.04, 9.8}, {0.625, 32}, {0.36, 55}, {0.33, 59}};
   for (size_t i = 0; i < 4; i++) {
     char json[1000], *name;
@@ -47,8 +48,7 @@ static void test_abbe_numbers_of_the_extension(void **state) {
   }
 }
 
-static void test_defaults_and_what_is_left_out(void **state) {
-  (void)state;
+TEST(defaults_and_what_is_left_out) {
   abbe_material m;
   char *name;
   double n;
@@ -74,8 +74,7 @@ static void test_defaults_and_what_is_left_out(void **state) {
   abbe_material_free(&m);
 }
 
-static void test_bad_files_are_refused(void **state) {
-  (void)state;
+TEST(bad_files_are_refused) {
   static const struct {
     const char *json, *part;
     abbe_result result;
@@ -131,8 +130,7 @@ static void test_bad_files_are_refused(void **state) {
 }
 
 /* Binary files that end early, or say that they are longer. */
-static void test_broken_binaries_are_refused(void **state) {
-  (void)state;
+TEST(broken_binaries_are_refused) {
   static const char whole[] = "glTF\2\0\0\0\44\0\0\0\20\0\0\0JSON{\"materials\":[]}";
   static const char path[] = "/tmp/abbe-test-material.glb";
   for (size_t size = 0; size < sizeof whole; size++) {
@@ -147,8 +145,7 @@ static void test_broken_binaries_are_refused(void **state) {
 }
 
 /* A ball of glass on a floor, as glTF: the ball alone comes back, of the same index and colour. */
-static void test_what_is_exported_is_read_again(void **state) {
-  (void)state;
+TEST(what_is_exported_is_read_again) {
   abbe_scene scene, again;
   char path[200], text[1000];
   abbe_error error = {0};
@@ -191,15 +188,4 @@ static void test_what_is_exported_is_read_again(void **state) {
     assert_contains(error.text, says[i]);
   }
   clear_folder();
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_abbe_numbers_of_the_extension),
-      cmocka_unit_test(test_defaults_and_what_is_left_out),
-      cmocka_unit_test(test_bad_files_are_refused),
-      cmocka_unit_test(test_broken_binaries_are_refused),
-      cmocka_unit_test(test_what_is_exported_is_read_again),
-  };
-  return cmocka_run_group_tests(tests, make_folder, drop_folder);
 }

@@ -92,8 +92,7 @@ static const double tilted[9] = {
     0.86602540378443865, -0.25, 0.43301270189221932, 0.5, 0.43301270189221932, -0.75, 0,
     0.86602540378443865, 0.5};
 
-static void known_prisms_are_right(void **state) {
-  (void)state;
+TEST(known_prisms_are_right) {
   const test_polygon l = {.at = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, 6, 3};
   test_polygon p[6];
   p[0] = l;
@@ -108,8 +107,7 @@ static void known_prisms_are_right(void **state) {
   }
 }
 
-static void rectilinear_prisms_are_right(void **state) {
-  (void)state;
+TEST(rectilinear_prisms_are_right) {
   uint64_t random = 41;
   for (int i = 0; i < (SANITIZED ? 20 : 104); i++) {
     test_polygon p;
@@ -119,8 +117,7 @@ static void rectilinear_prisms_are_right(void **state) {
 }
 
 /* Faces with holes, as bridges lead to them: the area alone, for bridges are in no other face. */
-static void faces_have_holes(void **state) {
-  (void)state;
+TEST(faces_have_holes) {
   for (int holes = 1; holes <= 4; holes++) {
     static text t;
     size_t corner[TEST_POLYGON_MOST];
@@ -141,13 +138,4 @@ static void faces_have_holes(void **state) {
     assert_int_equal(r.degenerate_faces + r.crowded_edges + r.flipped_edges, 0);
     abbe_mesh_free(&m);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(known_prisms_are_right),
-      cmocka_unit_test(rectilinear_prisms_are_right),
-      cmocka_unit_test(faces_have_holes),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,8 +2,7 @@
 
 #define POINTS "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\n"
 
-static void tetrahedra_are_read(void **state) {
-  (void)state;
+TEST(tetrahedra_are_read) {
   static const char *const texts[] = {
       POINTS "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n",
       "# made up\r\nmtllib no.mtl\r\no a\r\nv 0 0 0\r\nv 1 0 0 # x\r\nv 0 2 0\r\nv 0 0 3\r\ng b\r\n"
@@ -20,8 +19,7 @@ static void tetrahedra_are_read(void **state) {
   }
 }
 
-static void corners_have_their_own_uv_and_normals(void **state) {
-  (void)state;
+TEST(corners_have_their_own_uv_and_normals) {
   static const char text[] = POINTS "vt 0.25 0.75\nvt 1 0 0\nvn 0 0 1\nvn 0 0 -2\n"
                                     "f 1/1/1 2/2/2 3/-1/-2\nf 4//1 2/1/2 1/2/1\n";
   abbe_mesh m;
@@ -41,8 +39,7 @@ static void corners_have_their_own_uv_and_normals(void **state) {
 }
 
 /* Programs write faces whose texture coordinates and normals they leave out. */
-static void what_is_not_there_is_not_taken(void **state) {
-  (void)state;
+TEST(what_is_not_there_is_not_taken) {
   static const char text[] = POINTS "f 1/1/1 3/2/1 2/3/1\nf 1/1/9 2 4\nf 1 4 3\nf 2 3 4\n";
   abbe_mesh m;
   if (test_read(abbe_obj_read, "t.obj", NULL, text, strlen(text), &m) != ABBE_OK)
@@ -52,8 +49,7 @@ static void what_is_not_there_is_not_taken(void **state) {
   assert_tetrahedron(&m, 1, 0, 0);
 }
 
-static void a_material_s_faces_are_read_alone(void **state) {
-  (void)state;
+TEST(a_material_s_faces_are_read_alone) {
   static const char text[] =
       POINTS "f 1 2 3\nusemtl clear glass \nf 1 2 3 4\nusemtl clear\nf 1 2 3\n";
   abbe_mesh m;
@@ -66,8 +62,7 @@ static void a_material_s_faces_are_read_alone(void **state) {
   assert_contains(error.text, "no triangle is of a material called 'stone'");
 }
 
-static void what_is_wrong_is_said(void **state) {
-  (void)state;
+TEST(what_is_wrong_is_said) {
   static const struct {
     const char *text, *words;
     abbe_result code;
@@ -92,15 +87,4 @@ static void what_is_wrong_is_said(void **state) {
   };
   for (size_t i = 0; i < sizeof files / sizeof *files; i++)
     assert_refused(abbe_obj_read, "t.obj", files[i].text, files[i].code, files[i].words);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(tetrahedra_are_read),
-      cmocka_unit_test(corners_have_their_own_uv_and_normals),
-      cmocka_unit_test(what_is_not_there_is_not_taken),
-      cmocka_unit_test(a_material_s_faces_are_read_alone),
-      cmocka_unit_test(what_is_wrong_is_said),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

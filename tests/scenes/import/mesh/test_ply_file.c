@@ -33,8 +33,7 @@ static void assert_is_the_tetrahedron(abbe_mesh *m) {
   abbe_mesh_free(m);
 }
 
-static void text_is_read(void **state) {
-  (void)state;
+TEST(text_is_read) {
   abbe_mesh m;
   char text[1024];
   snprintf(text, sizeof text, "%s", HEADER("ascii"));
@@ -77,8 +76,7 @@ static size_t binary(bool big, char *out) {
   return (size_t)(at - out);
 }
 
-static void both_orders_are_read_and_no_part_of_them(void **state) {
-  (void)state;
+TEST(both_orders_are_read_and_no_part_of_them) {
   for (int big = 0; big < 2; big++) {
     char data[1024];
     abbe_mesh m;
@@ -99,8 +97,7 @@ static void both_orders_are_read_and_no_part_of_them(void **state) {
   "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n"
 
 /* Every second triangle runs the other way; -1 begins anew; a point twice turns a corner. */
-static void strips_alternate_and_begin_anew(void **state) {
-  (void)state;
+TEST(strips_alternate_and_begin_anew) {
   static const char *const strips[] = {"5 0 1 2 3 4\n", "9 0 1 2 -1 2 1 3 -1 0\n",
                                        "6 0 1 2 2 3 4\n"};
   static const size_t count[] = {3, 2, 2};
@@ -129,8 +126,7 @@ static void strips_alternate_and_begin_anew(void **state) {
 #define FACE_LIST "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
 
 /* What programs put around vertices and faces. */
-static void texts_of_faces_are_read(void **state) {
-  (void)state;
+TEST(texts_of_faces_are_read) {
   static const char *const texts[] = {
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
       "property float z\n" FACE_LIST "0 0 0 9 9\n1 0 0\n0 2\n0 7\n0 0 3\n3 0 2 1 0 0 0\n3 0 1 3\n"
@@ -155,8 +151,7 @@ static void texts_of_faces_are_read(void **state) {
 }
 
 /* The ending of the header's lines is that of its first: the body may begin with either byte. */
-static void a_body_may_begin_with_the_end_of_a_line(void **state) {
-  (void)state;
+TEST(a_body_may_begin_with_the_end_of_a_line) {
   static const char *const endings[] = {"\n", "\r\n", "\r"};
   static const char *const lines[] = {"ply",
                                       "format binary_little_endian 1.0",
@@ -185,8 +180,7 @@ static void a_body_may_begin_with_the_end_of_a_line(void **state) {
     }
 }
 
-static void vertices_and_corners_have_uv_and_normals(void **state) {
-  (void)state;
+TEST(vertices_and_corners_have_uv_and_normals) {
   static const char vertices[] =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
       "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
@@ -210,8 +204,7 @@ static void vertices_and_corners_have_uv_and_normals(void **state) {
 
 /* Lists of texture coordinates are their own face's: one before the corners, one of a face of two
  * corners, and none where as many others are as vertices. */
-static void texture_coordinates_stay_with_their_face(void **state) {
-  (void)state;
+TEST(texture_coordinates_stay_with_their_face) {
 #define VERTICES(count)                                                                            \
   "ply\nformat ascii 1.0\nelement vertex " count                                                   \
   "\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n"
@@ -238,8 +231,7 @@ static void texture_coordinates_stay_with_their_face(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void what_is_wrong_is_said(void **state) {
-  (void)state;
+TEST(what_is_wrong_is_said) {
   static const struct {
     const char *text, *part;
     abbe_result result;
@@ -283,8 +275,7 @@ static void what_is_wrong_is_said(void **state) {
   }
 }
 
-static void a_mesh_is_loaded_from_them(void **state) {
-  (void)state;
+TEST(a_mesh_is_loaded_from_them) {
   char data[1024];
   abbe_mesh m;
   const size_t size = binary(false, data);
@@ -298,19 +289,4 @@ static void a_mesh_is_loaded_from_them(void **state) {
   assert_int_equal(m.face_count, 4);
   assert_int_equal(m.vertex_count, 12);
   abbe_mesh_free(&m);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(text_is_read),
-      cmocka_unit_test(both_orders_are_read_and_no_part_of_them),
-      cmocka_unit_test(strips_alternate_and_begin_anew),
-      cmocka_unit_test(texts_of_faces_are_read),
-      cmocka_unit_test(a_body_may_begin_with_the_end_of_a_line),
-      cmocka_unit_test(vertices_and_corners_have_uv_and_normals),
-      cmocka_unit_test(texture_coordinates_stay_with_their_face),
-      cmocka_unit_test(what_is_wrong_is_said),
-      cmocka_unit_test(a_mesh_is_loaded_from_them),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

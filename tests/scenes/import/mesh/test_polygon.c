@@ -95,8 +95,7 @@ static void check_everywhere(const test_polygon *p, const char *name) {
   }
 }
 
-static void known_shapes_are_cut(void **state) {
-  (void)state;
+TEST(known_shapes_are_cut) {
   const test_polygon l = {.at = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, 6, 3};
   test_polygon p;
   check_everywhere(&l, "L");
@@ -119,8 +118,7 @@ static void known_shapes_are_cut(void **state) {
   }
 }
 
-static void rectilinear_polygons_are_cut(void **state) {
-  (void)state;
+TEST(rectilinear_polygons_are_cut) {
   uint64_t random = 41;
   for (int i = 0; i < (SANITIZED ? 40 : 208); i++) {
     test_polygon p;
@@ -151,8 +149,7 @@ static whole exact(const double *a, const double *b, const double *c) {
 
 /* A corner that is concave, straight or convex by the last bits of another one's coordinates:
  * doubles take many of these for one another [Kettner2008]. */
-static void turns_are_told_exactly(void **state) {
-  (void)state;
+TEST(turns_are_told_exactly) {
   for (int i = 0; i < 32 * 32 * 4; i++) {
     const double near[2] = {0.50000000000002531 + ldexp(i % 32, -53),
                             0.5000000000000171 + ldexp(i / 32 % 32, -53)};
@@ -169,8 +166,7 @@ static void turns_are_told_exactly(void **state) {
 }
 
 /* The triangles of four corners: those of the first and third, unless that is outside. */
-static void quadrangles_keep_their_first_corner(void **state) {
-  (void)state;
+TEST(quadrangles_keep_their_first_corner) {
   const double convex[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.1}, {0, 1, 0}};
   const double hollow[4][3] = {{0, 0, 0}, {0.2, 0.2, 0}, {1, 0, 0}, {0.2, 1, 0}};
   uint32_t t[2][3];
@@ -186,8 +182,7 @@ static void quadrangles_keep_their_first_corner(void **state) {
 }
 
 /* They end, with as many triangles of corners that there are. */
-static void bad_polygons_are_cut_somehow(void **state) {
-  (void)state;
+TEST(bad_polygons_are_cut_somehow) {
   uint64_t random = 5;
   for (int round = 0; round < 500; round++) {
     double at[40][3];
@@ -208,8 +203,7 @@ static void bad_polygons_are_cut_somehow(void **state) {
 }
 
 /* A cap of many sides, and a wheel with as many teeth. */
-static void many_corners_are_cut(void **state) {
-  (void)state;
+TEST(many_corners_are_cut) {
   enum { MANY = 20000 };
   double(*at)[3] = calloc(MANY, sizeof *at);
   uint32_t(*t)[3] = calloc(MANY, sizeof *t);
@@ -240,8 +234,7 @@ static void many_corners_are_cut(void **state) {
 
 /* Corners that go to and fro in one line have no ear: each is looked for in vain all around.
  * Polygons of a file share what they may take, so that many of these end as one does. */
-static void work_has_an_end(void **state) {
-  (void)state;
+TEST(work_has_an_end) {
   enum { LINE = 300, ROUNDS = 1000 };
   double at[LINE][3], work = 1e7;
   uint32_t t[LINE][3];
@@ -258,17 +251,4 @@ static void work_has_an_end(void **state) {
   assert_contains(error.text, "of 300 corners");
   /* a square of the corners each, and no more */
   assert_true(cut_so > 1 && cut_so <= 1e7 / (LINE * LINE));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(known_shapes_are_cut),
-      cmocka_unit_test(rectilinear_polygons_are_cut),
-      cmocka_unit_test(turns_are_told_exactly),
-      cmocka_unit_test(quadrangles_keep_their_first_corner),
-      cmocka_unit_test(bad_polygons_are_cut_somehow),
-      cmocka_unit_test(many_corners_are_cut),
-      cmocka_unit_test(work_has_an_end),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -36,8 +36,7 @@ static size_t write_binary(const char *head, uint32_t count, unsigned char *out)
   return 84 + 4 * 50;
 }
 
-static void texts_are_read(void **state) {
-  (void)state;
+TEST(texts_are_read) {
   static const struct {
     bool upper;
     const char *before, *end, *last;
@@ -56,8 +55,7 @@ static void texts_are_read(void **state) {
   }
 }
 
-static void several_solids_are_one_mesh(void **state) {
-  (void)state;
+TEST(several_solids_are_one_mesh) {
   char one[4096], text[8192];
   abbe_mesh m;
   write_text(false, "", "\n", "endsolid own\n", one);
@@ -68,8 +66,7 @@ static void several_solids_are_one_mesh(void **state) {
 }
 
 /* Some programs begin these with 'solid' too. */
-static void binaries_are_read(void **state) {
-  (void)state;
+TEST(binaries_are_read) {
   static const char *const heads[] = {"own", "solid own", "\nsolid"};
   for (size_t i = 0; i < 3; i++) {
     abbe_mesh m;
@@ -81,8 +78,7 @@ static void binaries_are_read(void **state) {
   }
 }
 
-static void another_count_is_said(void **state) {
-  (void)state;
+TEST(another_count_is_said) {
   static const uint32_t counts[] = {3, 9, 0, 5};
   abbe_mesh m;
   unsigned char data[84 + 4 * 50];
@@ -99,8 +95,7 @@ static void another_count_is_said(void **state) {
     assert_int_equal(test_read(abbe_stl_read, "t.stl", NULL, data, size - cut, &m), ABBE_PARSE);
 }
 
-static void what_is_wrong_is_said(void **state) {
-  (void)state;
+TEST(what_is_wrong_is_said) {
 #define FACET "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
   static const struct {
     const char *text, *words;
@@ -119,13 +114,4 @@ static void what_is_wrong_is_said(void **state) {
   };
   for (size_t i = 0; i < sizeof files / sizeof *files; i++)
     assert_refused(abbe_stl_read, "t.stl", files[i].text, files[i].code, files[i].words);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(texts_are_read),        cmocka_unit_test(several_solids_are_one_mesh),
-      cmocka_unit_test(binaries_are_read),     cmocka_unit_test(another_count_is_said),
-      cmocka_unit_test(what_is_wrong_is_said),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,8 +12,7 @@ static double sun_on_axis(double x, size_t *branches) {
 
 /* The nephroid's cusp stands at half the radius: one ray before it, three behind. There light is
  * as 1 / distance, and twice as much inside. */
-static void the_suns_cusp(void **state) {
-  (void)state;
+TEST(the_suns_cusp) {
   size_t outside, inside;
   const double sine = sin(PI / 4), before = sun_on_axis(0.499, &outside);
   const double behind = sun_on_axis(0.501, &inside);
@@ -28,8 +27,7 @@ static void the_suns_cusp(void **state) {
 
 /* Off the axis the fold is the nephroid (R / 4) (3 cos - cos 3, 3 sin - sin 3): two rays fewer
  * beyond it, and light as 1 / root of the distance. */
-static void the_suns_fold(void **state) {
-  (void)state;
+TEST(the_suns_fold) {
   const abbe_catacaustic c = {.radius = 1, .height = 1, .elevation = PI / 4};
   const double t = 0.5;
   const double fold[2] = {0.25 * (3 * cos(t) - cos(3 * t)), 0.25 * (3 * sin(t) - sin(3 * t))};
@@ -52,8 +50,7 @@ static void the_suns_fold(void **state) {
 
 /* Of a lamp s off the middle the cusp lies s R / (R + 2 s) beyond it: a third of the radius, the
  * cardioid's, as the lamp comes to the wall. */
-static void a_lamps_cusp(void **state) {
-  (void)state;
+TEST(a_lamps_cusp) {
   static const double at[] = {0.97, 0.6};
   for (int i = 0; i < 2; i++) {
     const abbe_catacaustic c = {.radius = 1, .height = 9, .lamp = {at[i], 0, 4}};
@@ -72,8 +69,7 @@ static void a_lamps_cusp(void **state) {
 }
 
 /* All that the sun sends into the ring comes to the floor, by some number of reflections. */
-static void no_light_is_lost(void **state) {
-  (void)state;
+TEST(no_light_is_lost) {
   enum { SIDE = SANITIZED ? 24 : 60 };
   const abbe_catacaustic c = {.radius = 1, .height = 1.5, .elevation = PI / 4};
   double sum = 0;
@@ -89,21 +85,11 @@ static void no_light_is_lost(void **state) {
   assert_near(sum / (PI * sin(PI / 4)), 1, 0.03);
 }
 
-static void means_are_means(void **state) {
-  (void)state;
+TEST(means_are_means) {
   const abbe_catacaustic c = {.radius = 1, .height = 1, .elevation = PI / 4};
   size_t branches, one;
   const double p[2] = {0.2, 0};
   const double light = abbe_catacaustic_irradiance(&c, p, 1, &one);
   assert_near(abbe_catacaustic_mean(&c, p, 1e-4, 2, 0.5, 1, &branches), 0.5 * light, 1e-3 * light);
   assert_int_equal(branches, one);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_suns_cusp),   cmocka_unit_test(the_suns_fold),
-      cmocka_unit_test(a_lamps_cusp),    cmocka_unit_test(no_light_is_lost),
-      cmocka_unit_test(means_are_means),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

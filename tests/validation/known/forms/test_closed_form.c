@@ -14,8 +14,7 @@ static double radians(double degree) {
   return degree * PI / 180;
 }
 
-static void glass_reflects_as_the_books_say(void **state) {
-  (void)state;
+TEST(glass_reflects_as_the_books_say) {
   assert_near(abbe_closed_form_fresnel(0, 1.5), 0.04, 1e-15);
   assert_near(abbe_closed_form_fresnel(radians(60), 1.5), 0.08919, 5e-6);
   assert_near(abbe_closed_form_fresnel(radians(80), 1.5), 0.38770, 1e-5);
@@ -27,8 +26,7 @@ static void glass_reflects_as_the_books_say(void **state) {
 }
 
 /* Two derivations, two files. */
-static void fresnel_agrees_with_the_optics(void **state) {
-  (void)state;
+TEST(fresnel_agrees_with_the_optics) {
   for (double n = 0.4; n < 4; n *= 1.17)
     for (double i = 1; i < 90; i += 1.3)
       assert_near(abbe_closed_form_fresnel(radians(i), n),
@@ -36,8 +34,7 @@ static void fresnel_agrees_with_the_optics(void **state) {
 }
 
 /* Complex amplitudes here, real formulas there. */
-static void metals_agree_with_the_optics(void **state) {
-  (void)state;
+TEST(metals_agree_with_the_optics) {
   for (double n = 0.05; n < 4; n *= 1.6)
     for (double k = 0.01; k < 9; k *= 2)
       for (double i = 0; i < 89; i += 7)
@@ -49,8 +46,7 @@ static void metals_agree_with_the_optics(void **state) {
 }
 
 /* The corner formula for a parallel rectangle, and what a cube's faces show of one another. */
-static void polygons_have_their_form_factors(void **state) {
-  (void)state;
+TEST(polygons_have_their_form_factors) {
   static const double p[3] = {0, 0, 0}, up[3] = {0, 0, 1}, aside[3] = {1, 0, 0};
   const double a = 0.7, b = 1.3; /* in heights */
   const double corner[4][3] = {{0, 0, 1}, {a, 0, 1}, {a, b, 1}, {0, b, 1}};
@@ -64,8 +60,7 @@ static void polygons_have_their_form_factors(void **state) {
   assert_near(abbe_closed_form_polygon(square, 4, p, up), 0.5541264239795719, 1e-13);
 }
 
-static void disks_have_their_form_factors(void **state) {
-  (void)state;
+TEST(disks_have_their_form_factors) {
   enum { SIDES = 4096 };
   static double corner[SIDES][3];
   static const double p[3] = {0, 0, 0}, up[3] = {0, 0, 1};
@@ -83,8 +78,7 @@ static void disks_have_their_form_factors(void **state) {
               0.09 * abbe_closed_form_coaxial_disks(0.3, 1, 0.5), 1e-14);
 }
 
-static void a_penumbra_grows_to_its_light(void **state) {
-  (void)state;
+TEST(a_penumbra_grows_to_its_light) {
   enum { STEPS = 200000 };
   assert_near(abbe_closed_form_penumbra(0), 0.5, 1e-15);
   assert_near(abbe_closed_form_penumbra(-1), 0, 1e-15);
@@ -99,8 +93,7 @@ static void a_penumbra_grows_to_its_light(void **state) {
 }
 
 /* A window pane: 7.7 % back and 92.3 % through, 2 n / (n^2 + 1) of it. */
-static void a_pane_of_glass(void **state) {
-  (void)state;
+TEST(a_pane_of_glass) {
   double reflected = 0, passed = 0;
   abbe_closed_form_slab(0.04, 1, &reflected, &passed);
   assert_near(passed, 2 * 1.5 / (1.5 * 1.5 + 1), 1e-15);
@@ -120,8 +113,7 @@ static void a_pane_of_glass(void **state) {
 }
 
 /* A small angle moves the ray by t i (n - 1) / n; a grazing one by the whole thickness. */
-static void a_slab_moves_a_ray(void **state) {
-  (void)state;
+TEST(a_slab_moves_a_ray) {
   assert_near(abbe_closed_form_slab_shift(0.01, 1e-4, 1.5) / (0.01 * 1e-4 / 3), 1, 1e-7);
   assert_near(abbe_closed_form_slab_shift(0.01, PI / 2, 1.5), 0.01, 1e-15);
   assert_near(abbe_closed_form_slab_shift(0.01, radians(45), 1.5), 0.0032914, 5e-8);
@@ -130,8 +122,7 @@ static void a_slab_moves_a_ray(void **state) {
 
 /* Ball lenses as sold: N-BK7 of 10 mm has its focus 7.34 mm from its centre at 588 nm; n = 2 has
  * it on its own back. */
-static void a_ball_focuses(void **state) {
-  (void)state;
+TEST(a_ball_focuses) {
   assert_near(abbe_closed_form_ball_focus(5, 1.5168), 7.3375, 1e-3);
   assert_near(abbe_closed_form_ball_focus(1, 2), 1, 0);
   assert_near(abbe_closed_form_ball_crossing(1, 1.5, 1e-5), 1.5, 1e-9);
@@ -144,8 +135,7 @@ static void a_ball_focuses(void **state) {
 
 /* A core of the shell's own glass is no core; a ball of air with a core is that core; a thin film
  * of glass around water hardly turns a ray. A bubble at least reflects what grazes it. */
-static void shells_turn_a_ray(void **state) {
-  (void)state;
+TEST(shells_turn_a_ray) {
   double plain = 2 * (asin(0.4) - asin(0.4 / 1.5));
   assert_near(abbe_closed_form_shell_turn(1, 1.5, 0.7, 1.5, 0.4), plain, 1e-15);
   assert_near(abbe_closed_form_shell_turn(1, 1.5, 0.2, 1.0, 0.4), plain, 1e-15);
@@ -160,8 +150,7 @@ static void shells_turn_a_ray(void **state) {
 }
 
 /* Descartes 1637 for n = 4/3: 137.97 and 230.97 degrees, at incidences of 59.39 and 71.83. */
-static void the_rainbows_of_descartes(void **state) {
-  (void)state;
+TEST(the_rainbows_of_descartes) {
   double deviation = 0, incidence = 0;
   assert_true(abbe_closed_form_rainbow(4.0 / 3, 1, &deviation, &incidence));
   assert_near(degrees(deviation), 137.97, 5e-3);
@@ -189,8 +178,7 @@ static void the_rainbows_of_descartes(void **state) {
   assert_false(abbe_closed_form_rainbow(1.3, 0, &deviation, &incidence));
 }
 
-static void a_prism_deviates_least_symmetrically(void **state) {
-  (void)state;
+TEST(a_prism_deviates_least_symmetrically) {
   double least = 0;
   assert_true(abbe_closed_form_prism_least(radians(60), 1.5, &least));
   assert_near(degrees(least), 37.1808, 5e-5);
@@ -217,22 +205,4 @@ static void a_prism_deviates_least_symmetrically(void **state) {
   assert_false(abbe_closed_form_prism_ray(radians(60), 2.417, i, 0.02, &ray));
   assert_false(abbe_closed_form_prism_ray(radians(60), 1.5, 0.1, 0.02, &ray)); /* total */
   assert_false(abbe_closed_form_prism_ray(radians(60), 1.5, i, 0, &ray));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(glass_reflects_as_the_books_say),
-      cmocka_unit_test(fresnel_agrees_with_the_optics),
-      cmocka_unit_test(metals_agree_with_the_optics),
-      cmocka_unit_test(polygons_have_their_form_factors),
-      cmocka_unit_test(disks_have_their_form_factors),
-      cmocka_unit_test(a_penumbra_grows_to_its_light),
-      cmocka_unit_test(a_pane_of_glass),
-      cmocka_unit_test(a_slab_moves_a_ray),
-      cmocka_unit_test(a_ball_focuses),
-      cmocka_unit_test(shells_turn_a_ray),
-      cmocka_unit_test(the_rainbows_of_descartes),
-      cmocka_unit_test(a_prism_deviates_least_symmetrically),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,8 +8,7 @@
 static const abbe_wave_caustic low = {
     .amplitude = 0.0002, .wavelength = 0.1, .depth = 1, .index = 4.0 / 3};
 
-static void rays_meet_under_the_crest(void **state) {
-  (void)state;
+TEST(rays_meet_under_the_crest) {
   abbe_wave_caustic w = low;
   w.depth = abbe_wave_caustic_focus(&w);
   const double k = 2 * PI / w.wavelength;
@@ -19,8 +18,7 @@ static void rays_meet_under_the_crest(void **state) {
 }
 
 /* Where the slope is small: E / T = 1 / |1 - (D / f) cos kx| at the place that x comes to. */
-static void a_low_wave_is_paraxial(void **state) {
-  (void)state;
+TEST(a_low_wave_is_paraxial) {
   abbe_wave_caustic w = low;
   const double through = 1 - pow(1.0 / 7, 2), k = 2 * PI / w.wavelength;
   w.depth = 0.4 * abbe_wave_caustic_focus(&w);
@@ -32,8 +30,7 @@ static void a_low_wave_is_paraxial(void **state) {
   }
 }
 
-static void what_falls_is_what_lands(void **state) {
-  (void)state;
+TEST(what_falls_is_what_lands) {
   abbe_wave_caustic w = {.amplitude = 0.002, .wavelength = 0.1, .index = 1.333};
   for (int i = 1; i < 6; i++) {
     double through = 0;
@@ -47,8 +44,7 @@ static void what_falls_is_what_lands(void **state) {
   }
 }
 
-static void branches_come_at_the_focus(void **state) {
-  (void)state;
+TEST(branches_come_at_the_focus) {
   abbe_wave_caustic w = low;
   const double focus = abbe_wave_caustic_focus(&w);
   w.depth = 0.8 * focus;
@@ -60,8 +56,7 @@ static void branches_come_at_the_focus(void **state) {
 }
 
 /* Beer's law straight down, and more along a slanting path. */
-static void water_takes_its_part(void **state) {
-  (void)state;
+TEST(water_takes_its_part) {
   abbe_wave_caustic w = low;
   double clear, dim;
   abbe_wave_caustic_landing(&w, 0, &clear);
@@ -73,13 +68,4 @@ static void water_takes_its_part(void **state) {
   w.attenuation_per_m = 0;
   abbe_wave_caustic_landing(&w, x, &clear);
   assert_near(-log(dim / clear), 0.7 * hypot(w.depth, at - x), 1e-12);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rays_meet_under_the_crest), cmocka_unit_test(a_low_wave_is_paraxial),
-      cmocka_unit_test(what_falls_is_what_lands),  cmocka_unit_test(branches_come_at_the_focus),
-      cmocka_unit_test(water_takes_its_part),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -92,8 +92,23 @@ static abbe_result work_alone(const abbe_ranks *ranks, void *user) {
   return forked_rank == 1 ? work(NULL, a) : ABBE_OK;
 }
 
-static void ranks_measure_what_one_does(void **state) {
-  (void)state;
+static void begin(void) {
+  assert_non_null(mkdtemp(folder));
+  snprintf(picture, sizeof picture, "%s/r.exr", folder);
+  snprintf(table, sizeof table, "%s/t.csv", folder);
+  snprintf(one, sizeof one, "%s/one.csv", folder);
+}
+
+static void finish(void) {
+  unlink(picture);
+  unlink(table);
+  unlink(one);
+  assert_int_equal(rmdir(folder), 0);
+}
+
+GROUP(begin, finish);
+
+TEST(ranks_measure_what_one_does) {
   asked a;
   abbe_result other;
   abbe_sweep_table whole = {0};
@@ -127,17 +142,4 @@ static void ranks_measure_what_one_does(void **state) {
   assert_int_equal(count, 0);
   free(a.setting);
   abbe_scene_free(&a.scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(ranks_measure_what_one_does)};
-  if (mkdtemp(folder) == NULL) return 1;
-  snprintf(picture, sizeof picture, "%s/r.exr", folder);
-  snprintf(table, sizeof table, "%s/t.csv", folder);
-  snprintf(one, sizeof one, "%s/one.csv", folder);
-  const int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  unlink(picture);
-  unlink(table);
-  unlink(one);
-  return rmdir(folder) != 0 ? 1 : failed;
 }

@@ -7,8 +7,9 @@
 
 enum { PLACES = ABBE_NODE_ERRORS_PLACES };
 
-static void test_places(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(places) {
   abbe_light_nodes nodes;
   const double to_light[3] = {0.36, 0.48, 0.8};
   double node[2 * PLACES][3], (*middle)[3] = node + PLACES;
@@ -40,8 +41,7 @@ static void test_places(void **state) {
   abbe_light_nodes_free(&nodes);
 }
 
-static void test_lights_move(void **state) {
-  (void)state;
+TEST(lights_move) {
   const double middle[3] = {1, 2, 3}, to[3] = {0.6, 0, 0.8};
   abbe_light light = {.kind = ABBE_LIGHT_DIRECTIONAL, .direction = {0, 0, -1}}, moved;
   assert_true(abbe_node_errors_move(&light, middle, to, &moved));
@@ -56,8 +56,7 @@ static void test_lights_move(void **state) {
 }
 
 /* Photons are what they are compared with: fewer are off by little, and drawn again as before. */
-static void test_photons_know_no_nodes(void **state) {
-  (void)state;
+TEST(photons_know_no_nodes) {
   abbe_scene scene = {0};
   abbe_image before, after;
   abbe_light_nodes nodes;
@@ -92,11 +91,4 @@ static void test_photons_know_no_nodes(void **state) {
   abbe_node_errors_free(&known);
   abbe_light_nodes_free(&nodes);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_places),
-                                     cmocka_unit_test(test_lights_move),
-                                     cmocka_unit_test(test_photons_know_no_nodes)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -4,8 +4,9 @@
 
 #include "validation/sweep/studies/pinhole_limits.h"
 
-static void test_distance(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(distance) {
   float a[8] = {3, 0, 0, 9, 0, 4, 0, 7}, b[8] = {3, 0, 2, 1, 0, 4, 0, 5};
   const abbe_image limit = {.width = 2, .height = 1, .channels = 4, .data = a},
                    picture = {.width = 2, .height = 1, .channels = 4, .data = b};
@@ -13,8 +14,7 @@ static void test_distance(void **state) {
   assert_near(abbe_pinhole_limits_distance(&limit, &limit), 0, 0);
 }
 
-static void test_more_samples_are_nearer(void **state) {
-  (void)state;
+TEST(more_samples_are_nearer) {
   abbe_scene scene = {0};
   abbe_error error = {0};
   abbe_pinhole_limits known = {.pictures = 2, .samples = 1024};
@@ -47,10 +47,4 @@ static void test_more_samples_are_nearer(void **state) {
   assert_ptr_equal(first, again);
   abbe_pinhole_limits_free(&known);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_distance),
-                                     cmocka_unit_test(test_more_samples_are_nearer)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-static void test_what_pays_and_fronts(void **state) {
-  (void)state;
+GROUP(make_context, free_context);
+
+TEST(what_pays_and_fronts) {
   static abbe_transport_study s;
   /* moved_ms, caustic_de, bytes, precompute_s; the second is better than the third in all */
   static const double rows[4][4] = {
@@ -37,8 +38,7 @@ static void test_what_pays_and_fronts(void **state) {
   assert_true(isnan(s.row[0].number[ABBE_TRANSPORT_PAYS_AFTER_NUMBER]));
 }
 
-static void test_slopes(void **state) {
-  (void)state;
+TEST(slopes) {
   static abbe_transport_study s;
   s.count = 4;
   for (size_t i = 0; i < 4; i++) {
@@ -53,8 +53,7 @@ static void test_slopes(void **state) {
   assert_true(isnan(abbe_transport_study_slope(&s, 3)));
 }
 
-static void test_named_contestants(void **state) {
-  (void)state;
+TEST(named_contestants) {
   abbe_transport_contestant list[ABBE_TRANSPORT_STUDY_MOST];
   assert_int_equal(abbe_transport_study_contestants("none", list), 0);
   const size_t volumes = abbe_transport_study_contestants("volume", list);
@@ -77,8 +76,7 @@ static bool never(void *user, double done) {
       "- {name: orb, shape: sphere, radius: 0.1, levels: 3, material: crown, transform: "          \
       "[{translate: [0, 0, 0.15]}]}\n"
 
-static void test_a_ball(void **state) {
-  (void)state;
+TEST(a_ball) {
   abbe_scene scene = {0};
   abbe_image picture = {0};
   abbe_error error = {0}, why = {0};
@@ -143,11 +141,4 @@ static void test_a_ball(void **state) {
       ABBE_INVALID_ARGUMENT);
   abbe_image_free(&picture);
   abbe_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_pays_and_fronts), cmocka_unit_test(test_slopes),
-      cmocka_unit_test(test_named_contestants), cmocka_unit_test(test_a_ball)};
-  return cmocka_run_group_tests(tests, make_context, free_context);
 }

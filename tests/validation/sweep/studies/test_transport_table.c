@@ -49,8 +49,7 @@ static void make_study(void) {
   }
 }
 
-static void test_for_people(void **state) {
-  (void)state;
+TEST(for_people) {
   make_study();
   char *text = NULL;
   size_t size;
@@ -74,8 +73,7 @@ static void test_for_people(void **state) {
   free(text);
 }
 
-static void test_for_programs(void **state) {
-  (void)state;
+TEST(for_programs) {
   abbe_error error = {0};
   char path[] = "/tmp/abbe-test-table-XXXXXX", *text;
   size_t size;
@@ -98,10 +96,4 @@ static void test_for_programs(void **state) {
   assert_contains(text, "\npinhole,grid,on,,,100,");
   free(text);
   unlink(path);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_for_people),
-                                     cmocka_unit_test(test_for_programs)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,79 @@
+#include "tests/check.h"
+
+typedef struct pair {
+  void (*before)(void), (*after)(void);
+} pair;
+
+static check_test *first;
+static pair group, each;
+
+void check_add(check_test *test) {
+  check_test **at = &first;
+  while (*at != NULL && (*at)->line < test->line) at = &(*at)->next;
+  test->next = *at;
+  *at = test;
+}
+
+void check_group(void (*before)(void), void (*after)(void)) {
+  group = (pair){before, after};
+}
+
+void check_each(void (*before)(void), void (*after)(void)) {
+  each = (pair){before, after};
+}
+
+static void call(void (*function)(void)) {
+  if (function != NULL) function();
+}
+
+static int begin(void **state) {
+  (void)state;
+  call(group.before);
+  return 0;
+}
+
+static int end(void **state) {
+  (void)state;
+  call(group.after);
+  return 0;
+}
+
+static int before(void **state) {
+  call(each.before);
+  call(((const check_test *)*state)->before);
+  return 0;
+}
+
+static void run(void **state) {
+  ((const check_test *)*state)->run();
+}
+
+static int after(void **state) {
+  call(((const check_test *)*state)->after);
+  call(each.after);
+  return 0;
+}
+
+static bool is_wanted(const check_test *test, int count, char **parts) {
+  bool wanted = count == 0;
+  for (int i = 0; i < count; i++) wanted |= strstr(test->name, parts[i]) != NULL;
+  return wanted;
+}
+
+static int list(void) {
+  for (const check_test *test = first; test != NULL; test = test->next) puts(test->name);
+  return 0;
+}
+
+int main(int count, char **argument) {
+  static struct CMUnitTest tests[200];
+  size_t n = 0;
+  if (count == 2 && strcmp(argument[1], "--list") == 0) return list();
+  for (check_test *test = first; test != NULL; test = test->next) {
+    if (!is_wanted(test, count - 1, argument + 1)) continue;
+    if (n == sizeof tests / sizeof *tests) return fputs("too many tests\n", stderr), 2;
+    tests[n++] = (struct CMUnitTest){test->name, run, before, after, test};
+  }
+  if (n == 0) return fputs("no such test\n", stderr), 2;
+  return cmocka_run_group_tests(tests, begin, end);
+}
