@@ -1,3 +1,4 @@
+#include "base/maths.h"
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/options/scene_input.h"
@@ -13,8 +14,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 typedef struct request {
   const char *program, *input, *out, *png;
@@ -47,8 +46,8 @@ static void find_brightest(const abbe_environment *e, measures *out) {
                               (double)(best / map->width) + 0.5, own);
   for (int i = 0; i < 3; i++)
     world[i] = e->to_map[i] * own[0] + e->to_map[3 + i] * own[1] + e->to_map[6 + i] * own[2];
-  out->elevation = atan2(world[2], hypot(world[0], world[1])) * 180 / PI;
-  out->azimuth = atan2(world[1], world[0]) * 180 / PI;
+  out->elevation = atan2(world[2], hypot(world[0], world[1])) * 180 / ABBE_PI;
+  out->azimuth = atan2(world[1], world[0]) * 180 / ABBE_PI;
 }
 
 static abbe_result measure(const abbe_environment *e, measures *out, abbe_error *error) {

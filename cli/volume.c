@@ -4,10 +4,10 @@
 #include "cli/options/scene_input.h"
 #include "cli/options/work_options.h"
 
+#include "base/maths.h"
 #include "base/nearest.h"
 #include "scenes/export/vdb_bytes.h"
 #include "scenes/export/volume_vdb.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/volume/volume_file.h"
 #include "validation/volume/volume_fill.h"
 

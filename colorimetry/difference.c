@@ -1,11 +1,10 @@
 #include "colorimetry/difference.h"
 
+#include "base/maths.h"
 #include "colorimetry/gamut.h"
 #include "colorimetry/rgb_space.h"
 
 #include <math.h>
-
-static const double pi = 3.14159265358979323846;
 
 /* [CIE15]: the cube root, and below (6/29)^3 its tangent line, which also carries negatives. */
 static double lab_f(double t) {
@@ -23,13 +22,13 @@ void abbe_difference_lab(const double xyz[3], const double white[3], double lab[
 }
 
 static double degrees_cos(double degrees) {
-  return cos(degrees * pi / 180);
+  return cos(degrees * ABBE_PI / 180);
 }
 
 /* Hue angle in degrees, [0, 360); 0 for a grey. */
 static double hue(double a, double b) {
   if (a == 0 && b == 0) return 0;
-  double h = atan2(b, a) * 180 / pi;
+  double h = atan2(b, a) * 180 / ABBE_PI;
   return h < 0 ? h + 360 : h;
 }
 
@@ -63,7 +62,7 @@ double abbe_difference_ciede2000(const double lab1[3], const double lab2[3]) {
 
   double dl = lab2[0] - lab1[0];
   double dc = c2 - c1;
-  double dh = 2 * sqrt(c1 * c2) * sin(hue_difference(h1, h2, c1 * c2) * pi / 360);
+  double dh = 2 * sqrt(c1 * c2) * sin(hue_difference(h1, h2, c1 * c2) * ABBE_PI / 360);
 
   double l = (lab1[0] + lab2[0]) / 2, c = (c1 + c2) / 2, h = hue_mean(h1, h2, c1 * c2);
   double t = 1 - 0.17 * degrees_cos(h - 30) + 0.24 * degrees_cos(2 * h) +
@@ -74,7 +73,7 @@ double abbe_difference_ciede2000(const double lab1[3], const double lab2[3]) {
   double sh = 1 + 0.015 * c * t;
   double turn = (h - 275) / 25;
   double theta = 30 * exp(-turn * turn);
-  double rt = -2 * seventh_power_share(c) * sin(2 * theta * pi / 180);
+  double rt = -2 * seventh_power_share(c) * sin(2 * theta * ABBE_PI / 180);
 
   double tl = dl / sl, tc = dc / sc, th = dh / sh;
   return sqrt(fmax(0, tl * tl + tc * tc + th * th + rt * tc * th));

@@ -1,5 +1,6 @@
 #include "library/lib_gem_report.h"
 
+#include "base/maths.h"
 #include "colorimetry/weights.h"
 #include "library/lib_handles.h"
 #include "library/lib_settings.h"
@@ -11,8 +12,6 @@
 
 #include <limits.h>
 #include <stdlib.h>
-
-#define PI 3.14159265358979323846
 
 struct abbe_lib_gem_report {
   abbe_gem_judgement judgement;
@@ -31,9 +30,9 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
   *q = (request){.width_m = 0.0065,
                  .min_nm = ABBE_WAVELENGTH_MIN_NM,
                  .max_nm = ABBE_WAVELENGTH_MAX_NM,
-                 .head_rad = ABBE_GEM_HEAD_DEG * PI / 180,
-                 .tilt_rad = PI / 6,
-                 .step_rad = PI / 90,
+                 .head_rad = ABBE_GEM_HEAD_DEG * ABBE_PI / 180,
+                 .tilt_rad = ABBE_PI / 6,
+                 .step_rad = ABBE_PI / 90,
                  .wavelengths = 16,
                  .size = 96,
                  .repeats = 4};
@@ -42,9 +41,9 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
       ABBE_LIB_NUMBER("width_m", &q->width_m, 1e-6, 1e3),
       ABBE_LIB_NUMBER("min_nm", &q->min_nm, 1, 1e6),
       ABBE_LIB_NUMBER("max_nm", &q->max_nm, 1, 1e6),
-      ABBE_LIB_NUMBER("head_rad", &q->head_rad, 0, 0.999 * PI / 4),
-      ABBE_LIB_NUMBER("tilt_rad", &q->tilt_rad, 0, PI / 2),
-      ABBE_LIB_NUMBER("step_rad", &q->step_rad, PI / 1800, PI / 2),
+      ABBE_LIB_NUMBER("head_rad", &q->head_rad, 0, 0.999 * ABBE_PI / 4),
+      ABBE_LIB_NUMBER("tilt_rad", &q->tilt_rad, 0, ABBE_PI / 2),
+      ABBE_LIB_NUMBER("step_rad", &q->step_rad, ABBE_PI / 1800, ABBE_PI / 2),
       ABBE_LIB_NUMBER("weld", &q->weld, 1e-12, ABBE_CUT_MOST_WELD),
       ABBE_LIB_COUNT("wavelengths", &q->wavelengths, 1, 256),
       ABBE_LIB_COUNT("size", &q->size, 8, ABBE_GEM_MOST_SIDE),

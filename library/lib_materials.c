@@ -1,12 +1,11 @@
 #include "library/lib_materials.h"
 
+#include "base/maths.h"
 #include "library/lib_handles.h"
 #include "spectral/formats/material_table_load.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-static const double PI = 3.14159265358979323846;
 
 struct abbe_lib_materials {
   abbe_material_table table;
@@ -90,7 +89,7 @@ abbe_result abbe_lib_materials_index(const abbe_lib_materials *m, size_t index,
       result = abbe_material_n(own, lambda_nm[i], &n[i], error);
     if (result != ABBE_OK || k == NULL) continue;
     if (!abbe_material_is_conductor(own))
-      kappa = abbe_material_attenuation(own, lambda_nm[i]) * 1e-9 * lambda_nm[i] / (4 * PI);
+      kappa = abbe_material_attenuation(own, lambda_nm[i]) * 1e-9 * lambda_nm[i] / (4 * ABBE_PI);
     k[i] = kappa;
   }
   return result;

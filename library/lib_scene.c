@@ -1,5 +1,6 @@
 #include "library/lib_scene.h"
 
+#include "base/maths.h"
 #include "library/lib_handles.h"
 #include "scenes/import/scene_file.h"
 
@@ -7,8 +8,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double PI = 3.14159265358979323846;
 
 static abbe_result no_memory(abbe_error *error) {
   return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory for the scene");
@@ -167,7 +166,7 @@ static abbe_result check_camera(const abbe_camera *c, abbe_error *error) {
     across[i] = to[(i + 1) % 3] * c->up[(i + 2) % 3] - to[(i + 2) % 3] * c->up[(i + 1) % 3];
   if (!finite)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a camera's number is not finite");
-  if (c->fov_y_rad <= 0 || c->fov_y_rad >= PI)
+  if (c->fov_y_rad <= 0 || c->fov_y_rad >= ABBE_PI)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a camera's vertical angle is above 0 and below 180 degrees");
   if (hypot(hypot(across[0], across[1]), across[2]) > 0) return ABBE_OK;

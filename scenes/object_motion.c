@@ -1,7 +1,7 @@
 #include "scenes/object_motion.h"
 
+#include "base/maths.h"
 #include "scenes/geometry/transform.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 

@@ -1,8 +1,8 @@
 #include "scenes/scene.h"
 
+#include "base/maths.h"
 #include "base/number.h"
 #include "scenes/geometry/transform.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -176,7 +176,7 @@ void abbe_scene_hold_lights(const abbe_scene *scene, double min[3], double max[3
 }
 
 double abbe_light_area(const abbe_light *light) {
-  if (light->kind == ABBE_LIGHT_DISK) return 3.14159265358979323846 * light->radius * light->radius;
+  if (light->kind == ABBE_LIGHT_DISK) return ABBE_PI * light->radius * light->radius;
   if (light->kind != ABBE_LIGHT_RECTANGLE) return 0;
   return 4 * abbe_vector_length(light->edge[0]) * abbe_vector_length(light->edge[1]);
 }

@@ -1,7 +1,7 @@
 /* abbe_scene_check: what cannot be rendered, and why. */
+#include "base/maths.h"
 #include "base/number.h"
 #include "scenes/geometry/transform.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/scene.h"
 #include <math.h>
 #include <stdio.h>

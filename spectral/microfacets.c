@@ -1,16 +1,12 @@
 #include "spectral/microfacets.h"
 
+#include "base/maths.h"
+
 #include <math.h>
 #include <stdbool.h>
 
-static const double pi = 3.14159265358979323846;
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static bool normalise(double a[3]) {
-  const double length = sqrt(dot(a, a));
+  const double length = sqrt(abbe_vector_dot(a, a));
   if (!(length > 0)) return false;
   for (int k = 0; k < 3; k++) a[k] /= length;
   return true;
@@ -19,7 +15,7 @@ static bool normalise(double a[3]) {
 double abbe_microfacets_density(const abbe_microfacets *m, const double h[3]) {
   if (!(h[2] > 0)) return 0;
   const double x = h[0] / m->x, y = h[1] / m->y, square = x * x + y * y + h[2] * h[2];
-  return 1 / (pi * m->x * m->y * square * square);
+  return 1 / (ABBE_PI * m->x * m->y * square * square);
 }
 
 /* Facets hidden by others, for each that is seen [Heitz2014]. */
@@ -59,9 +55,9 @@ static void see_hemisphere(const double v[3], const double u[2], double out[3]) 
   const double across = sqrt(v[0] * v[0] + v[1] * v[1]), radius = sqrt(u[0]);
   const double a[3] = {across > 0 ? -v[1] / across : 1, across > 0 ? v[0] / across : 0, 0};
   const double b[3] = {-v[2] * a[1], v[2] * a[0], v[0] * a[1] - v[1] * a[0]};
-  const double s = radius * cos(2 * pi * u[1]), whole = sqrt(fmax(1 - s * s, 0));
+  const double s = radius * cos(2 * ABBE_PI * u[1]), whole = sqrt(fmax(1 - s * s, 0));
   const double share = 0.5 * (1 + v[2]);
-  const double t = (1 - share) * whole + share * radius * sin(2 * pi * u[1]);
+  const double t = (1 - share) * whole + share * radius * sin(2 * ABBE_PI * u[1]);
   const double rest = sqrt(fmax(1 - s * s - t * t, 0));
   for (int k = 0; k < 3; k++) out[k] = s * a[k] + t * b[k] + rest * v[k];
 }
@@ -75,7 +71,7 @@ double abbe_microfacets_sample(const abbe_microfacets *m, const double wo[3], co
   h[1] *= m->y;
   h[2] = fmax(h[2], 0);
   if (!normalise(h)) h[2] = 1;
-  const double along = dot(wo, h);
+  const double along = abbe_vector_dot(wo, h);
   for (int k = 0; k < 3; k++) wi[k] = 2 * along * h[k] - wo[k];
   const double seen = abbe_microfacets_visible(m, wo);
   return seen > 0 ? visible_from_both(m, wi, wo) / seen : 0;

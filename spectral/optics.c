@@ -1,5 +1,7 @@
 #include "spectral/optics.h"
 
+#include "base/maths.h"
+
 #include <math.h>
 #include <stddef.h>
 
@@ -7,12 +9,8 @@ static double clamp_unit(double x) {
   return x < 0 ? 0 : x > 1 ? 1 : x;
 }
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void normalise(double v[3]) {
-  double length = sqrt(dot(v, v));
+  double length = sqrt(abbe_vector_dot(v, v));
   if (length > 0)
     for (int i = 0; i < 3; i++) v[i] /= length;
 }
@@ -76,7 +74,7 @@ double abbe_optics_fresnel_conductor(double cos_i, double n, double k) {
 
 bool abbe_optics_refract(const double wi[3], const double n[3], double eta, double wt[3]) {
   bool total = false;
-  double c = clamp_unit(dot(wi, n));
+  double c = clamp_unit(abbe_vector_dot(wi, n));
   double t = abbe_optics_cos_refracted(c, eta, &total);
   if (total) return false;
   /* eta c - t, without its cancellation */
@@ -90,7 +88,7 @@ bool abbe_optics_refract(const double wi[3], const double n[3], double eta, doub
 }
 
 void abbe_optics_reflect(const double wi[3], const double n[3], double wo[3]) {
-  double twice = 2 * dot(wi, n), out[3];
+  double twice = 2 * abbe_vector_dot(wi, n), out[3];
   for (int i = 0; i < 3; i++) out[i] = twice * n[i] - wi[i];
   normalise(out);
   for (int i = 0; i < 3; i++) wo[i] = out[i];

@@ -1,5 +1,7 @@
 #include "spectral/uniaxial.h"
 
+#include "base/maths.h"
+
 #include <complex.h>
 #include <math.h>
 #include <string.h>
@@ -8,12 +10,8 @@ typedef double complex number;
 
 static const double grazing = 1e-6; /* below, rounding hides which way it goes */
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void scale_to_unit(double v[3]) {
-  const double length = sqrt(dot(v, v));
+  const double length = sqrt(abbe_vector_dot(v, v));
   for (int k = 0; k < 3; k++) v[k] /= length;
 }
 
@@ -38,7 +36,7 @@ double abbe_uniaxial_walk_off(double n_o, double n_e, double cos_axis) {
 /* The part of v along the axis times `along`, and the part across it times `across`. */
 static void stretch(const abbe_uniaxial *m, const double v[3], double along, double across,
                     double out[3]) {
-  const double a = dot(v, m->axis);
+  const double a = abbe_vector_dot(v, m->axis);
   double stretched[3];
   for (int k = 0; k < 3; k++)
     stretched[k] = across * (v[k] - a * m->axis[k]) + along * a * m->axis[k];
@@ -87,10 +85,10 @@ typedef struct face {
 } face;
 
 static void make_face(const double n[3], const double k[3], face *f) {
-  const double normal = dot(n, k);
+  const double normal = abbe_vector_dot(n, k);
   memcpy(f->n, n, sizeof f->n);
   for (int i = 0; i < 3; i++) f->along[i] = k[i] - normal * n[i];
-  f->k = sqrt(dot(f->along, f->along));
+  f->k = sqrt(abbe_vector_dot(f->along, f->along));
   if (!(f->k > 1e-12)) { /* head on: any direction does */
     const int least = fabs(n[0]) < 0.6 ? 0 : 1;
     for (int i = 0; i < 3; i++) f->along[i] = (i == least) - n[least] * n[i];
@@ -109,8 +107,8 @@ static void find_wave_vector(const abbe_uniaxial *m, abbe_uniaxial_mode mode, co
   const double o = m->n_o * m->n_o, e = m->n_e * m->n_e;
   double a = 1 / o, b = 0, c = f->k * f->k / o - 1;
   if (bends(m, mode)) {
-    const double more = 1 / o - 1 / e, at_n = dot(m->axis, f->n),
-                 at_k = f->k * dot(m->axis, f->along);
+    const double more = 1 / o - 1 / e, at_n = abbe_vector_dot(m->axis, f->n),
+                 at_k = f->k * abbe_vector_dot(m->axis, f->along);
     a = 1 / e + more * at_n * at_n;
     b = more * at_n * at_k;
     c = f->k * f->k / e + more * at_k * at_k - 1;
@@ -248,13 +246,13 @@ static void tell(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const wave *w,
 static void graze(const abbe_uniaxial *from, const double n[3], abbe_uniaxial_mode mode,
                   const double ray[3], abbe_uniaxial_split *out) {
   abbe_uniaxial_wave *w = &out->reflected[mode];
-  const double twice = 2 * dot(ray, n);
+  const double twice = 2 * abbe_vector_dot(ray, n);
   memset(out, 0, sizeof *out);
   for (int i = 0; i < 3; i++) w->ray[i] = ray[i] - twice * n[i];
   scale_to_unit(w->ray);
   abbe_uniaxial_normal(from, mode, w->ray, w->normal);
   w->index = bends(from, mode)
-                 ? abbe_uniaxial_index(from->n_o, from->n_e, dot(w->normal, from->axis))
+                 ? abbe_uniaxial_index(from->n_o, from->n_e, abbe_vector_dot(w->normal, from->axis))
                  : from->n_o;
   w->share = 1;
   w->amplitude[0] = -1;
@@ -269,9 +267,9 @@ static void meet(const abbe_uniaxial *from, const abbe_uniaxial *to, const doubl
                  abbe_uniaxial_split out[COME]) {
   double k[3];
   abbe_uniaxial_normal(from, first, ray, k);
-  const double index = bends(from, first)
-                           ? abbe_uniaxial_index(from->n_o, from->n_e, dot(k, from->axis))
-                           : from->n_o;
+  const double index =
+      bends(from, first) ? abbe_uniaxial_index(from->n_o, from->n_e, abbe_vector_dot(k, from->axis))
+                         : from->n_o;
   for (int i = 0; i < 3; i++) k[i] *= index;
   face f;
   make_face(n, k, &f);
@@ -299,7 +297,7 @@ static void meet(const abbe_uniaxial *from, const abbe_uniaxial *to, const doubl
 
 void abbe_uniaxial_meet(const abbe_uniaxial *from, const abbe_uniaxial *to, const double n[3],
                         abbe_uniaxial_mode mode, const double ray[3], abbe_uniaxial_split *out) {
-  if (dot(ray, n) < -grazing)
+  if (abbe_vector_dot(ray, n) < -grazing)
     meet(from, to, n, mode, 1, ray, out);
   else
     graze(from, n, mode, ray, out);
@@ -309,7 +307,7 @@ void abbe_uniaxial_meet_unpolarised(const abbe_uniaxial *from, const abbe_uniaxi
                                     const double n[3], const double ray[3],
                                     abbe_uniaxial_split *out) {
   abbe_uniaxial_split both[COME];
-  if (dot(ray, n) < -grazing) {
+  if (abbe_vector_dot(ray, n) < -grazing) {
     meet(from, to, n, ABBE_UNIAXIAL_ORDINARY, COME, ray, both);
   } else {
     graze(from, n, ABBE_UNIAXIAL_ORDINARY, ray, &both[0]);

@@ -1,4 +1,4 @@
-foreach(name transform disjoint_sets vector
+foreach(name transform disjoint_sets
         mesh coarse_mesh mesh_fix mesh_repair mesh_charts topology shells
         convex shape brilliant brushing knot water scene_time
         cut cut_asc cut_diagram designs cut_file cut_gcs cut_gem cut_measures cut_polyhedron cut_stretch cut_text

@@ -1,3 +1,4 @@
+#include "base/maths.h"
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
@@ -19,8 +20,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-
-#define PI 3.14159265358979323846
 
 enum {
   KEY_MEASURE = 0x100,
@@ -199,7 +198,7 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
 /* ---- what came of it ---- */
 
 static double degrees(double rad) {
-  return rad * 180 / PI;
+  return rad * 180 / ABBE_PI;
 }
 
 static void print(const request *q, const abbe_gem_stone_input *in, const abbe_gem_optimum *o) {
@@ -303,18 +302,18 @@ static abbe_result write_best(request *q, const abbe_gem_optimum *o, abbe_error 
 /* ---- the search ---- */
 
 static abbe_gem_optimum_desc describe(const request *q, abbe_progress *progress) {
-  return (abbe_gem_optimum_desc){.crown_from_rad = q->crown[0] * PI / 180,
-                                 .crown_to_rad = q->crown[1] * PI / 180,
-                                 .pavilion_from_rad = q->pavilion[0] * PI / 180,
-                                 .pavilion_to_rad = q->pavilion[1] * PI / 180,
+  return (abbe_gem_optimum_desc){.crown_from_rad = q->crown[0] * ABBE_PI / 180,
+                                 .crown_to_rad = q->crown[1] * ABBE_PI / 180,
+                                 .pavilion_from_rad = q->pavilion[0] * ABBE_PI / 180,
+                                 .pavilion_to_rad = q->pavilion[1] * ABBE_PI / 180,
                                  .crowns = q->crowns,
                                  .pavilions = q->pavilions,
                                  .measure = measures[q->measure].amount,
                                  .least = measures[q->measure].least,
                                  .width_m = q->stone.width_m,
-                                 .view = {.axis_rad = q->axis_deg * PI / 180,
-                                          .tilt_rad = q->tilt_deg * PI / 180,
-                                          .head_rad = q->head_deg * PI / 180,
+                                 .view = {.axis_rad = q->axis_deg * ABBE_PI / 180,
+                                          .tilt_rad = q->tilt_deg * ABBE_PI / 180,
+                                          .head_rad = q->head_deg * ABBE_PI / 180,
                                           .side = q->size,
                                           .repeats = 4,
                                           .threads = q->threads},

@@ -1,5 +1,6 @@
 #include "cli/gem/gem.h"
 
+#include "base/maths.h"
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
@@ -7,8 +8,6 @@
 #include <argp.h>
 #include <stdio.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 enum {
   KEY_CSV = 0x100,
@@ -109,12 +108,12 @@ static abbe_gem_judgement_desc describe(const request *q, abbe_progress *progres
   size_t steps = (size_t)(q->tilt_deg / q->step_deg + 0.5);
   if (steps < 1) steps = 1;
   return (abbe_gem_judgement_desc){
-      .view = {.head_rad = q->head_deg * PI / 180,
+      .view = {.head_rad = q->head_deg * ABBE_PI / 180,
                .side = q->size,
                .repeats = q->repeats,
                .threads = q->threads},
       .tilts = q->tilt_deg > 0,
-      .rocked = {.most_rad = q->tilt_deg * PI / 180,
+      .rocked = {.most_rad = q->tilt_deg * ABBE_PI / 180,
                  .steps = steps < ABBE_GEM_MOST_STEPS ? steps : ABBE_GEM_MOST_STEPS,
                  .progress = abbe_progress_update,
                  .user = progress}};

@@ -2,6 +2,7 @@
 #include "cli/gem/gem.h"
 
 #include "base/file.h"
+#include "base/maths.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/plot/sheet.h"
@@ -9,8 +10,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-
-#define PI 3.14159265358979323846
 
 static const double MARGIN = 42, LINE = 13.5;
 
@@ -59,14 +58,14 @@ static abbe_result put_tilts(abbe_sheet *s, const abbe_gem_tilts *t, abbe_gem_ti
   char name[ABBE_GEM_AXES][32];
   for (size_t i = 0; i < all; i++) {
     const abbe_gem_number n = t->curve[curve][i];
-    room[i] = t->tilt_rad[i % t->tilts] * 180 / PI;
+    room[i] = t->tilt_rad[i % t->tilts] * 180 / ABBE_PI;
     room[all + i] = 100 * n.value;
     room[2 * all + i] = 100 * (n.value - n.error);
     room[3 * all + i] = 100 * (n.value + n.error);
   }
   for (size_t a = 0; a < ABBE_GEM_AXES; a++) {
     const size_t at = a * t->tilts;
-    snprintf(name[a], sizeof name[a], "axis at %.0f\u00b0", t->axis_rad[a] * 180 / PI);
+    snprintf(name[a], sizeof name[a], "axis at %.0f\u00b0", t->axis_rad[a] * 180 / ABBE_PI);
     series[a] = (abbe_chart_series){.label = name[a],
                                     .style = ABBE_CHART_JOINED_POINTS,
                                     .count = t->tilts,

@@ -1,12 +1,11 @@
 #include "cli/gem/gem.h"
 
+#include "base/maths.h"
 #include "cli/base/command.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
-
-#define PI 3.14159265358979323846
 
 void abbe_gem_report_number(const abbe_gem_judgement_row *row, char value[32], char error[32]) {
   const double unit = row->share ? 100 : 1;
@@ -36,7 +35,8 @@ void abbe_gem_report_print(const abbe_gem_report_facts *f) {
            f->input->in.material->name);
   if (j->has_tilts)
     printf("tilted about %d axes up to %g degrees by %g\n", ABBE_GEM_AXES,
-           j->tilts.tilt_rad[j->tilts.tilts - 1] * 180 / PI, j->tilts.step_rad * 180 / PI);
+           j->tilts.tilt_rad[j->tilts.tilts - 1] * 180 / ABBE_PI,
+           j->tilts.step_rad * 180 / ABBE_PI);
   printf("\n%-58s %10s %8s\n", "", "value", "error");
   for (size_t i = 0; i < count; i++) {
     char value[32], error[32];
@@ -47,10 +47,10 @@ void abbe_gem_report_print(const abbe_gem_report_facts *f) {
   printf("\nISO brightness by tilt, %%\n%-8s", "axis");
   const size_t stride = (j->tilts.tilts - 1) / 6 > 0 ? (j->tilts.tilts - 1) / 6 : 1;
   for (size_t t = 0; t < j->tilts.tilts; t += stride)
-    printf(" %7.0f", j->tilts.tilt_rad[t] * 180 / PI);
+    printf(" %7.0f", j->tilts.tilt_rad[t] * 180 / ABBE_PI);
   printf("\n");
   for (size_t a = 0; a < ABBE_GEM_AXES; a++) {
-    printf("%-8.0f", j->tilts.axis_rad[a] * 180 / PI);
+    printf("%-8.0f", j->tilts.axis_rad[a] * 180 / ABBE_PI);
     for (size_t t = 0; t < j->tilts.tilts; t += stride)
       printf(" %7.2f", 100 * j->tilts.curve[ABBE_GEM_TILT_ISO][a * j->tilts.tilts + t].value);
     printf("\n");
@@ -82,8 +82,8 @@ void abbe_gem_report_print_csv(const abbe_gem_report_facts *f) {
   for (int c = 0; c < ABBE_GEM_TILT_CURVE_COUNT; c++)
     for (size_t i = 0; is_shown(&j->tilts, c) && i < ABBE_GEM_AXES * j->tilts.tilts; i++)
       printf("%s,%.6g,%.6g,,%.9g,%.3g\n", abbe_gem_tilt_curve_name((abbe_gem_tilt_curve)c),
-             j->tilts.axis_rad[i / j->tilts.tilts] * 180 / PI,
-             j->tilts.tilt_rad[i % j->tilts.tilts] * 180 / PI, j->tilts.curve[c][i].value,
+             j->tilts.axis_rad[i / j->tilts.tilts] * 180 / ABBE_PI,
+             j->tilts.tilt_rad[i % j->tilts.tilts] * 180 / ABBE_PI, j->tilts.curve[c][i].value,
              j->tilts.curve[c][i].error);
 }
 
@@ -110,8 +110,8 @@ static void add_tilts(cJSON *root, const abbe_gem_tilts *t) {
   cJSON *list = cJSON_AddArrayToObject(root, "tilts");
   for (size_t i = 0; i < ABBE_GEM_AXES * t->tilts; i++) {
     cJSON *one = cJSON_CreateObject();
-    cJSON_AddNumberToObject(one, "axis_deg", t->axis_rad[i / t->tilts] * 180 / PI);
-    cJSON_AddNumberToObject(one, "tilt_deg", t->tilt_rad[i % t->tilts] * 180 / PI);
+    cJSON_AddNumberToObject(one, "axis_deg", t->axis_rad[i / t->tilts] * 180 / ABBE_PI);
+    cJSON_AddNumberToObject(one, "tilt_deg", t->tilt_rad[i % t->tilts] * 180 / ABBE_PI);
     for (int c = 0; c < ABBE_GEM_TILT_CURVE_COUNT; c++)
       if (is_shown(t, c))
         add_number(one, abbe_gem_tilt_curve_name((abbe_gem_tilt_curve)c), t->curve[c][i]);

@@ -1,3 +1,4 @@
+#include "base/maths.h"
 #include "cli/gem/gem.h"
 #include "cli/gem/gem_input.h"
 
@@ -102,7 +103,7 @@ static abbe_result choose_angles(request *q, abbe_error *error) {
   if (q->crown_deg > 0) q->crown.factor = abbe_cut_stretch_factor(q->crown.from_deg, q->crown_deg);
   if (q->crown_deg == 0 && q->index == 0)
     q->crown.factor = 1; /* the pavilion alone was asked for */
-  const double turn = 180 / 3.14159265358979323846;
+  const double turn = 180 / ABBE_PI;
   q->crown.to_deg = atan(q->crown.factor * tan(q->crown.from_deg / turn)) * turn;
   return ABBE_OK;
 }

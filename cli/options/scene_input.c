@@ -2,6 +2,7 @@
 #include "cli/options/scene_input.h"
 
 #include "base/file.h"
+#include "base/maths.h"
 #include "base/nearest.h"
 #include "base/number.h"
 #include "cli/base/arguments.h"
@@ -19,8 +20,6 @@
 #include <string.h>
 #include <strings.h>
 #include <unistd.h>
-
-static const double RAD = 3.14159265358979323846 / 180;
 
 static void take_tilt(abbe_scene_input_changes *changes, const char *text, const char *program) {
   char tilt[64];
@@ -204,7 +203,8 @@ static abbe_result load(const char *path, const char *materials,
     result = save(path, &studio, options, changes->save, error);
   if (result == ABBE_OK) out->transparent = changes->alpha;
   if (result != ABBE_OK || changes->tilt_deg == 0) return result;
-  return abbe_refractors_tilt(out, changes->tilt_deg * RAD, changes->axis_deg * RAD, error);
+  return abbe_refractors_tilt(out, changes->tilt_deg * ABBE_DEGREE, changes->axis_deg * ABBE_DEGREE,
+                              error);
 }
 
 /* To the sentence on a file that is not there, the name beside it that is nearest. */

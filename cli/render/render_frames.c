@@ -1,5 +1,6 @@
 #include "cli/render/render_frames.h"
 
+#include "base/maths.h"
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
@@ -117,7 +118,7 @@ typedef struct frame_scene {
 
 static abbe_result make_scene(const abbe_render_request *q, const abbe_scene *scene, size_t i,
                               frame_scene *out, abbe_error *error) {
-  const double full = 2 * 3.14159265358979323846;
+  const double full = 2 * ABBE_PI;
   const abbe_frame_series *s = &q->series;
   out->owned = !s->around;
   if (!s->around)

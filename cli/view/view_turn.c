@@ -1,5 +1,6 @@
 #include "cli/view/view_app.h"
 
+#include "base/maths.h"
 #include "cli/view/view_keep.h"
 #include "colorimetry/image/animated_png.h"
 
@@ -29,8 +30,7 @@ bool abbe_view_turn_wants(const abbe_view_session *session, abbe_view_request *o
   if (session->turn_frame == 0 || session->turn_serial != session->state.refine.serial)
     return false;
   out->turns = true;
-  out->turn_rad =
-      2 * 3.14159265358979323846 * (double)(session->turn_frame - 1) / ABBE_VIEW_TURN_FRAMES;
+  out->turn_rad = 2 * ABBE_PI * (double)(session->turn_frame - 1) / ABBE_VIEW_TURN_FRAMES;
   out->job = (abbe_view_job){
       .stage = ABBE_VIEW_ACCURATE, .light = ABBE_VIEW_ACCURATE, .serial = session->turn_serial};
   return true;

@@ -129,7 +129,7 @@ static void paint(const abbe_gamut_map *map, const double xyz[3], float pixel[3]
   const double most = fmax(rgb[0], fmax(rgb[1], rgb[2]));
   for (int c = 0; c < 3; c++) {
     const double x = fmin(fmax(rgb[c] / most, 0), 1);
-    pixel[c] = (float)(x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055);
+    pixel[c] = (float)abbe_srgb_encoded(x);
   }
 }
 

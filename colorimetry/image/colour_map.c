@@ -1,5 +1,6 @@
 #include "colorimetry/image/colour_map.h"
 
+#include "colorimetry/image/rgb_encoding.h"
 #include "colorimetry/rgb_space.h"
 
 #include <math.h>
@@ -23,7 +24,7 @@ static double from_lab(double f) {
 }
 
 static double srgb_encoded(double linear) {
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+  return abbe_srgb_encoded(linear);
 }
 
 /* Straight in magnitude, saturation and hue of CIELAB, the hue of the ends turned on to where the

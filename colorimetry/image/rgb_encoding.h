@@ -10,6 +10,7 @@
 
 #include "colorimetry/image/image.h"
 
+#include <math.h>
 #include <stdbool.h>
 
 #ifdef __cplusplus
@@ -54,6 +55,11 @@ abbe_result abbe_rgb_encoding_profile(const double xy[8], const double curve[5],
 abbe_result abbe_rgb_encoding_to_srgb(abbe_image *image, const char *name, abbe_error *error);
 abbe_result abbe_rgb_encoding_profile_to_srgb(abbe_image *image, const void *icc, size_t size,
                                               const char *name, abbe_error *error);
+
+/* Light from 0 to 1 by the curve of sRGB [IEC61966], with the rounded constants of its text. */
+static inline double abbe_srgb_encoded(double light) {
+  return light <= 0.0031308 ? 12.92 * light : 1.055 * pow(light, 1 / 2.4) - 0.055;
+}
 
 #ifdef __cplusplus
 }

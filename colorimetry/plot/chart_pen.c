@@ -1,12 +1,11 @@
 #include "colorimetry/plot/chart_pen.h"
 
+#include "base/maths.h"
 #include "base/utf8.h"
 
 #include <cairo.h>
 #include <math.h>
 #include <string.h>
-
-static const double PI = 3.14159265358979323846;
 
 void abbe_chart_set_font(cairo_t *cr, double size, bool bold) {
   cairo_select_font_face(cr, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
@@ -56,7 +55,7 @@ double abbe_chart_sharp(double at) {
 void abbe_chart_put_upright(cairo_t *cr, const char *text, double x, double y) {
   cairo_save(cr);
   cairo_translate(cr, x, y);
-  cairo_rotate(cr, -PI / 2);
+  cairo_rotate(cr, -ABBE_PI / 2);
   abbe_chart_put_text(cr, text, 0, 0, 0.5, 0);
   cairo_restore(cr);
 }

@@ -1,11 +1,10 @@
 #include "colorimetry/plot/chart_panel.h"
 
+#include "base/maths.h"
 #include "colorimetry/plot/chart_pen.h"
 
 #include <cairo.h>
 #include <math.h>
-
-static const double PI = 3.14159265358979323846;
 
 /* Blue, vermilion, green, purple, orange, sky blue, black, yellow [OkabeIto2008]. */
 static const double palette[ABBE_CHART_COLOURS][3] = {
@@ -46,7 +45,7 @@ void abbe_chart_draw_dot(const abbe_chart_panel *p, size_t index, double x, doub
   colour_of(p->chart, index, &turn);
   cairo_set_dash(p->cr, NULL, 0, 0);
   cairo_new_sub_path(p->cr);
-  cairo_arc(p->cr, x, y, 3.2, 0, 2 * PI);
+  cairo_arc(p->cr, x, y, 3.2, 0, 2 * ABBE_PI);
   if (turn == 0) {
     cairo_fill(p->cr);
     return;

@@ -1,8 +1,8 @@
 #include "gl/accuracy/frame_times.h"
 
 #include "base/clock.h"
+#include "base/maths.h"
 #include "base/order.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdio.h>

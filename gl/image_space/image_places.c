@@ -1,7 +1,7 @@
 #include "gl/image_space/image_places.h"
 
+#include "base/maths.h"
 #include "gl/light/photon_lights.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 

@@ -1,10 +1,10 @@
 #include "gl/light/photon_lights.h"
 
+#include "base/maths.h"
 #include "colorimetry/weights.h"
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"
 #include "gl/plan/examine/light_views.h"
-#include "scenes/geometry/vector.h"
 
 #include <float.h>
 #include <math.h>

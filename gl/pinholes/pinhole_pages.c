@@ -1,9 +1,9 @@
 #include "gl/pinholes/pinhole_pages.h"
 
+#include "base/maths.h"
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"
 #include "gl/scene/receiver_tiles.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/lights/environment_lights.h"
 
 #include <math.h>

@@ -1,9 +1,9 @@
 #include "gl/pinholes/pinhole_samples.h"
 
+#include "base/maths.h"
 #include "gl/device/float4.h"
 #include "gl/scene/spectra/camera_bands.h"
 #include "scenes/environment/radiance_cube.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/samples/sample_tree.h"
 #include "scenes/samples/surface_curvature.h"
 

@@ -1,7 +1,7 @@
 #include "gl/plan/support.h"
 
+#include "base/maths.h"
 #include "colorimetry/weights.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /* Lights with a size, as the camera's paths see them. */
+#include "base/maths.h"
 #include "colorimetry/weights.h"
 #include "gl/scene/gpu_scene.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdio.h>

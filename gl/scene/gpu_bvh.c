@@ -1,9 +1,9 @@
 #include "gl/scene/gpu_scene.h"
 
+#include "base/maths.h"
 #include "base/thread/watch.h"
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/mesh/bvh.h"
 
 #include <assert.h>

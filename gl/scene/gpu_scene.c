@@ -1,10 +1,10 @@
 #include "gl/scene/gpu_scene.h"
 
+#include "base/maths.h"
 #include "base/thread/watch.h"
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"
 #include "gl/scene/spectra/camera_bands.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -66,8 +66,8 @@ static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
   return result;
 }
 
-/* A parallelogram is known from the place of it that is nearest to the refractors: floats know what lies
- * there best, however far it reaches. Of dual edges du, dv. */
+/* A parallelogram is known from the place of it that is nearest to the refractors: floats know what
+ * lies there best, however far it reaches. Of dual edges du, dv. */
 static void find_anchor(const double p[9], const double du[3], const double dv[3],
                         const double near[3], double uv[2], double at[3]) {
   double from[3];

@@ -1,6 +1,6 @@
 #include "gl/scene/local_scene.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "gl/scene/gpu_scene.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/mesh/mesh_charts.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "gl/scene/receiver_tiles.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <math.h>
 #include <string.h>

@@ -10,11 +10,11 @@
  * caustics "a bit"; here all is in W. */
 #include "gl/wand2003/wand2003.h"
 
+#include "base/maths.h"
+
 #include <stdlib.h>
 
 enum { CUBE = 256, AT_ONCE = 32 /* samples of a pass */ };
-
-static const double PI = 3.14159265358979323846;
 
 static abbe_result make_programs(abbe_wand2003 *w, const abbe_shader_variant *variant,
                                  abbe_error *error) {
@@ -105,7 +105,7 @@ static void draw_mirrors(abbe_wand2003 *w) {
 static abbe_result add_pinholes(abbe_wand2003 *w, abbe_error *error) {
   abbe_gpu *gpu = w->scene->gpu;
   const abbe_gl *gl = gpu->gl;
-  const double disk = 4 / PI * w->samples.area / (double)w->samples.count;
+  const double disk = 4 / ABBE_PI * w->samples.area / (double)w->samples.count;
   abbe_result result = ABBE_OK;
   use(w, w->pinholes);
   abbe_gpu_set_float(gpu, w->pinholes, "softening", disk);

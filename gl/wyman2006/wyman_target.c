@@ -1,7 +1,7 @@
 #include "gl/wyman2006/wyman_target.h"
 
+#include "base/maths.h"
 #include "scenes/geometry/transform.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 #include "scenes/check/scene_doubts.h"
 
+#include "base/maths.h"
 #include "base/number.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 #include "scenes/cuts/cut.h"
 
+#include "base/maths.h"
 #include "base/utf8.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -53,8 +53,6 @@ char *abbe_cut_text_widen(const char *bytes, size_t size) {
   return text;
 }
 
-#define PI 3.14159265358979323846
-
 void abbe_cut_free(abbe_cut *cut) {
   if (!cut) return;
   for (int i = 0; i < ABBE_CUT_LINES; i++) {
@@ -101,8 +99,8 @@ void abbe_cut_place(abbe_cut *cut) {
   for (size_t i = 0; i < cut->facet_count; i++) {
     abbe_cut_facet *f = &cut->facet[i];
     const abbe_cut_tier *tier = &cut->tier[f->tier];
-    const double angle = fabs(tier->angle_deg) * PI / 180;
-    const double turn = 2 * PI * fmod(f->index - cut->offset, cut->gear) / cut->gear;
+    const double angle = fabs(tier->angle_deg) * ABBE_PI / 180;
+    const double turn = 2 * ABBE_PI * fmod(f->index - cut->offset, cut->gear) / cut->gear;
     const double side = fabs(tier->angle_deg) == 90 ? 1 : sin(angle);
     const double up = fabs(tier->angle_deg) == 90 ? 0 : cos(angle);
     f->n[0] = side * sin(turn);
@@ -113,14 +111,14 @@ void abbe_cut_place(abbe_cut *cut) {
 }
 
 double abbe_cut_angle(const double n[3]) {
-  const double angle = atan2(hypot(n[0], n[1]), fabs(n[2])) * 180 / PI;
+  const double angle = atan2(hypot(n[0], n[1]), fabs(n[2])) * 180 / ABBE_PI;
   return signbit(n[2]) ? -angle : angle;
 }
 
 double abbe_cut_index(const abbe_cut *cut, const double n[3]) {
   const double teeth = abs(cut->gear), whole = 1e-6, level = 1e-12;
   const bool flat = hypot(n[0], n[1]) <= level * fabs(n[2]);
-  double index = cut->offset + (flat ? 0 : atan2(n[0], n[1]) * cut->gear / (2 * PI));
+  double index = cut->offset + (flat ? 0 : atan2(n[0], n[1]) * cut->gear / (2 * ABBE_PI));
   if (fabs(index - round(index)) <= whole) index = round(index);
   index = fmod(index, teeth);
   return index > 0 ? index : index + teeth;
@@ -136,7 +134,7 @@ const char *abbe_cut_facet_name(const abbe_cut *cut, size_t facet) {
 }
 
 bool abbe_cut_facet_is_girdle(const abbe_cut_facet *facet) {
-  return fabs(facet->n[2]) < sin(ABBE_CUT_GIRDLE_DEG * PI / 180);
+  return fabs(facet->n[2]) < sin(ABBE_CUT_GIRDLE_DEG * ABBE_PI / 180);
 }
 
 static abbe_result check_facet(const abbe_cut *cut, size_t i, abbe_error *error) {

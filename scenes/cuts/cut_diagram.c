@@ -1,6 +1,7 @@
 #include "scenes/cuts/cut_diagram.h"
 
 #include "base/file.h"
+#include "base/maths.h"
 #include "base/number.h"
 #include "colorimetry/plot/chart_pen.h"
 #include "scenes/cuts/cut_measures.h"
@@ -13,8 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-
-#define PI 3.14159265358979323846
 
 /* Points, of 1/72 inch. */
 static const double page_width = 595, page_height = 842, margin = 40;
@@ -38,13 +37,9 @@ typedef struct view {
   double at[2], scale; /* of the stone's origin, points a unit */
 } view;
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void place(const view *v, const double at[3], double out[2]) {
-  out[0] = v->at[0] + v->scale * dot(v->x, at);
-  out[1] = v->at[1] - v->scale * dot(v->y, at);
+  out[0] = v->at[0] + v->scale * abbe_vector_dot(v->x, at);
+  out[1] = v->at[1] - v->scale * abbe_vector_dot(v->y, at);
 }
 
 static const double *corner(const sheet *s, const abbe_cut_face *face, size_t i) {
@@ -55,7 +50,7 @@ static const double *corner(const sheet *s, const abbe_cut_face *face, size_t i)
 
 static bool is_seen(const sheet *s, const view *v, const abbe_cut_face *face) {
   const double edge_on = 1e-3;
-  return dot(s->cut->facet[face->facet].n, v->towards) > edge_on;
+  return abbe_vector_dot(s->cut->facet[face->facet].n, v->towards) > edge_on;
 }
 
 static void trace_face(const sheet *s, const view *v, const abbe_cut_face *face) {
@@ -112,7 +107,7 @@ static void draw_faces(const sheet *s, const view *v, bool names) {
     const abbe_cut_face *face = &s->p->face[f];
     if (!is_seen(s, v, face)) continue;
     /* lighter where it faces the reader */
-    const double shade = 0.93 + 0.07 * dot(s->cut->facet[face->facet].n, v->towards);
+    const double shade = 0.93 + 0.07 * abbe_vector_dot(s->cut->facet[face->facet].n, v->towards);
     trace_face(s, v, face);
     cairo_set_source_rgb(s->cr, shade, shade, fmin(1, shade + 0.015));
     cairo_fill_preserve(s->cr);
@@ -139,7 +134,7 @@ static double in_turn(const abbe_cut *cut, double index) {
 
 /* A tick, and a label where one is wanted. mirrored: as seen from below. */
 static void draw_tick(const sheet *s, const double at[2], double index, bool mirrored, bool used) {
-  const double turn = 2 * PI * (index - s->cut->offset) / s->cut->gear;
+  const double turn = 2 * ABBE_PI * (index - s->cut->offset) / s->cut->gear;
   const double x = mirrored ? -sin(turn) : sin(turn), y = -cos(turn);
   const double to = wheel + (used ? 5 : 2.5);
   abbe_chart_set_grey(s->cr, used ? 0.1 : 0.6);
@@ -156,13 +151,13 @@ static void draw_tick(const sheet *s, const double at[2], double index, bool mir
 
 /* Labels of facets that are drawn, none twice and none on top of another. */
 static void draw_wheel(const sheet *s, const double at[2], abbe_cut_side side) {
-  const double turn = full_turn(s->cut), apart = turn * 8 / (2 * PI * (wheel + 11));
+  const double turn = full_turn(s->cut), apart = turn * 8 / (2 * ABBE_PI * (wheel + 11));
   double shown[ABBE_CUT_MAX_GEAR > 512 ? 512 : ABBE_CUT_MAX_GEAR];
   size_t count = 0;
   abbe_chart_set_grey(s->cr, 0.6);
   cairo_set_line_width(s->cr, 0.5);
   cairo_new_path(s->cr); /* text leaves a point behind, from which an arc would begin */
-  cairo_arc(s->cr, at[0], at[1], wheel, 0, 2 * PI);
+  cairo_arc(s->cr, at[0], at[1], wheel, 0, 2 * ABBE_PI);
   cairo_stroke(s->cr);
   for (int i = 1; turn <= 160 && i <= (int)turn; i++)
     draw_tick(s, at, i, side == ABBE_CUT_PAVILION, false);

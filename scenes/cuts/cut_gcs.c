@@ -1,7 +1,7 @@
 #include "scenes/cuts/cut_file.h"
 
+#include "base/maths.h"
 #include "base/number.h"
-#include "scenes/geometry/vector.h"
 
 #include <expat.h>
 
@@ -11,7 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
 enum { MOST_DEPTH = 16, ASSUMED_GEAR = 96, MOST_FOLDS = 1000 };
 
 typedef struct reading {
@@ -153,8 +152,8 @@ static bool find_normal(reading *r) {
   if (abbe_vector_finite(r->n) && abbe_vector_normalise(r->n)) return true;
   if (!isfinite(r->index_deg)) return false;
   const bool crown = !signbit(r->angle_deg);
-  const double turn = (crown ? r->index_deg - 90 : 270 - r->index_deg) * PI / 180;
-  const double slope = fabs(r->angle_deg) * PI / 180;
+  const double turn = (crown ? r->index_deg - 90 : 270 - r->index_deg) * ABBE_PI / 180;
+  const double slope = fabs(r->angle_deg) * ABBE_PI / 180;
   r->n[0] = sin(slope) * cos(turn);
   r->n[1] = sin(slope) * sin(turn);
   r->n[2] = crown ? cos(slope) : -cos(slope);
@@ -407,7 +406,7 @@ static double depth_of(const writing *w, const abbe_cut_facet *f) {
 
 static void write_facet(const writing *w, const abbe_cut_face *face) {
   const abbe_cut_facet *f = &w->cut->facet[face->facet];
-  const double turn = atan2(-f->n[1], -f->n[0]) * 180 / PI;
+  const double turn = atan2(-f->n[1], -f->n[0]) * 180 / ABBE_PI;
   const bool crown = !signbit(w->cut->tier[f->tier].angle_deg);
   fputs("    <facet", w->to);
   write_value(w->to, "nx", -f->n[0]);

@@ -1,7 +1,7 @@
 #include "scenes/cuts/cut_file.h"
 
+#include "base/maths.h"
 #include "scenes/cuts/cut.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 #include "scenes/cuts/cut_polyhedron.h"
 
+#include "base/maths.h"
 #include "scenes/geometry/disjoint_sets.h"
-#include "scenes/geometry/vector.h"
 
 #include <libqhull_r/libqhull_r.h>
 
@@ -102,7 +102,7 @@ static abbe_result open_stone(const abbe_cut *cut, abbe_error *error) {
                           "the planes leave the stone open below: the pavilion lacks facets "
                           "(angles below 0)");
   for (int i = 0; i < 360; i++) {
-    const double a = i * (3.14159265358979323846 / 180), aside[3] = {cos(a), sin(a), 0};
+    const double a = i * ABBE_DEGREE, aside[3] = {cos(a), sin(a), 0};
     if (is_open(cut, aside))
       return abbe_error_set(error, ABBE_GEOMETRY,
                             "the planes leave the stone open at the side, about index %.0f: facets "

@@ -1,9 +1,11 @@
 #include "scenes/cuts/cut_stretch.h"
 
+#include "base/maths.h"
+
 #include <math.h>
 #include <stdlib.h>
 
-#define DEGREES (180 / 3.14159265358979323846)
+#define DEGREES (180 / ABBE_PI)
 
 /* Flat facets have no angle to be changed. */
 static const double flat_deg = 1;

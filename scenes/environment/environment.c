@@ -1,9 +1,9 @@
 #include "scenes/environment/environment.h"
 
+#include "base/maths.h"
 #include "base/thread/watch.h"
 #include "scenes/geometry/digest.h"
 #include "scenes/geometry/transform.h"
-#include "scenes/geometry/vector.h"
 
 #include <assert.h>
 #include <math.h>
@@ -87,8 +87,6 @@ size_t abbe_alias_table_draw(const abbe_alias_table *table, double u) {
   if (i >= table->count) i = table->count - 1;
   return at - (double)i < table->keep[i] ? i : table->other[i];
 }
-
-#define PI 3.14159265358979323846
 
 static void apply(const double m[9], const double v[3], double out[3]) {
   for (int i = 0; i < 3; i++) out[i] = abbe_vector_dot(m + 3 * i, v);
@@ -242,7 +240,7 @@ abbe_result abbe_environment_brightest(const abbe_environment *environment, doub
     texel[i] = (ranked){(float)abbe_vector_dot(luminance, rgbs), (uint32_t)(i / map->width)};
   }
   qsort(texel, count, sizeof *texel, brighter_first);
-  double left = 4 * PI * of_sphere, sum = 0;
+  double left = 4 * ABBE_PI * of_sphere, sum = 0;
   for (size_t i = 0; i < count && left > 0; i++) {
     const double solid = fmin(abbe_radiance_map_solid_angle(map, texel[i].row), left);
     sum += solid * (double)texel[i].luminance;
@@ -296,13 +294,13 @@ static int pieces_of(const polar_row *r, polar_piece piece[4]) {
     cut[3] = cut[2], cut[2] = cut[1], cut[1] = -r->middle;
     count++;
   }
-  if (r->middle > PI - r->step) {
-    cut[count + 1] = cut[count], cut[count] = PI - r->middle;
+  if (r->middle > ABBE_PI - r->step) {
+    cut[count + 1] = cut[count], cut[count] = ABBE_PI - r->middle;
     count++;
   }
   for (int i = 0; i < count; i++) {
     const double at = (cut[i] + cut[i + 1]) / 2, slope = at < 0 ? 1 / r->step : -1 / r->step;
-    const double sign = r->middle + at < 0 || r->middle + at > PI ? -1 : 1;
+    const double sign = r->middle + at < 0 || r->middle + at > ABBE_PI ? -1 : 1;
     double rate;
     const double from = antiderivative(r, slope, cut[i], &rate);
     const double mass = sign * (antiderivative(r, slope, cut[i + 1], &rate) - from);
@@ -343,7 +341,7 @@ static double solve(const polar_row *r, const polar_piece *p, double mass) {
 /* Polar angle of a texel of the row, by share x solid angle; below 0 or above pi it lies over the
  * pole. */
 static double polar_of(const abbe_radiance_map *map, size_t row, double u) {
-  const double step = PI / (double)map->height, middle = ((double)row + 0.5) * step;
+  const double step = ABBE_PI / (double)map->height, middle = ((double)row + 0.5) * step;
   const polar_row r = {middle, step, sin(middle), cos(middle)};
   polar_piece piece[4];
   double sum = 0;
@@ -368,7 +366,7 @@ void abbe_environment_sample(const abbe_environment *environment, const double u
   /* over longitude the share is a triangle */
   const double aside = u[1] < 0.5 ? sqrt(2 * u[1]) - 1 : 1 - sqrt(2 - 2 * u[1]);
   const double x = (double)(texel % map->width) + 0.5 + aside;
-  const double y = polar_of(map, texel / map->width, u[2]) / PI * (double)map->height;
+  const double y = polar_of(map, texel / map->width, u[2]) / ABBE_PI * (double)map->height;
   double own[3], share[4];
   size_t around[4];
   abbe_radiance_map_direction(map, x, y, own);

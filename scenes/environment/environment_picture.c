@@ -1,17 +1,15 @@
 #include "scenes/environment/environment_picture.h"
 
 #include "base/file.h"
+#include "base/maths.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/picture_space.h"
 #include "colorimetry/image/radiance_file.h"
 #include "colorimetry/rgb_space.h"
-#include "scenes/geometry/vector.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 enum { CUBE_PARTS = 4, CUBE_MAX_SIDE = 8192 };
 
@@ -196,7 +194,7 @@ static void cube_texel(const abbe_image *image, const abbe_radiance_map *map, si
       const double x = (i + 0.5) / CUBE_PARTS - 1, y = (j + 0.5) / CUBE_PARTS - 1;
       const double place = (double)row + 0.5 + y;
       const double share =
-          (1 - fabs(x)) * (1 - fabs(y)) * fabs(sin(PI * place / (double)map->height));
+          (1 - fabs(x)) * (1 - fabs(y)) * fabs(sin(ABBE_PI * place / (double)map->height));
       double direction[3], rgb[3];
       abbe_radiance_map_direction(map, (double)column + 0.5 + x, place, direction);
       cube_at(image, direction, rgb);

@@ -1,14 +1,12 @@
 #include "scenes/environment/environment_source.h"
 
+#include "base/maths.h"
 #include "base/thread/watch.h"
-#include "scenes/geometry/vector.h"
 
 #include <assert.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 /* a, b of the gradation; c, d, e of the scattering [CIES011, table 1]. */
 static const double parameters[15][5] = {
@@ -30,7 +28,7 @@ static double gradation(const double p[5], double cosine) {
 /* By the cosine of the angle from the sun. */
 static double scattering(const double p[5], double cosine) {
   const double held = fmin(fmax(cosine, -1), 1);
-  return 1 + p[2] * (exp(p[3] * acos(held)) - exp(p[3] * PI / 2)) + p[4] * held * held;
+  return 1 + p[2] * (exp(p[3] * acos(held)) - exp(p[3] * ABBE_PI / 2)) + p[4] * held * held;
 }
 
 double abbe_sky_relative(const abbe_sky *sky, const double direction[3]) {
@@ -50,12 +48,12 @@ double abbe_sky_horizontal(const abbe_sky *sky) {
   for (int i = 0; i < RINGS; i++) {
     const double z = (i + 0.5) / RINGS, aside = sqrt(1 - z * z);
     for (int j = 0; j < PLACES; j++) {
-      const double azimuth = 2 * PI * (j + 0.5) / PLACES;
+      const double azimuth = 2 * ABBE_PI * (j + 0.5) / PLACES;
       const double direction[3] = {aside * cos(azimuth), aside * sin(azimuth), z};
       sum += z * abbe_sky_relative(sky, direction);
     }
   }
-  return 2 * PI * sum / (RINGS * PLACES);
+  return 2 * ABBE_PI * sum / (RINGS * PLACES);
 }
 
 enum { FINEST = 256, DOME_PLACES = 1 << 20 };
@@ -66,23 +64,23 @@ static const double spot_reach = 6; /* standard deviations: below 2e-8 of the mi
 /* Simpson's rule. */
 static double spot_solid_angle(double sigma) {
   enum { STEPS = 2000 };
-  const double end = fmin(spot_reach * sigma, PI), step = end / STEPS;
+  const double end = fmin(spot_reach * sigma, ABBE_PI), step = end / STEPS;
   double sum = 0;
   for (int i = 0; i <= STEPS; i++) {
     const double angle = i * step;
     const double weight = i == 0 || i == STEPS ? 1 : i % 2 ? 4 : 2;
     sum += weight * exp(-0.5 * (angle / sigma) * (angle / sigma)) * sin(angle);
   }
-  return 2 * PI * sum * step / 3;
+  return 2 * ABBE_PI * sum * step / 3;
 }
 
 double abbe_environment_source_solid_angle(const abbe_environment_source *s) {
   const double half = sin(s->radius_rad / 2);
   switch (s->kind) {
   case ABBE_SOURCE_UNIFORM:
-    return 4 * PI;
+    return 4 * ABBE_PI;
   case ABBE_SOURCE_DISK:
-    return 4 * PI * half * half;
+    return 4 * ABBE_PI * half * half;
   case ABBE_SOURCE_RECTANGLE:
     return 4 * asin(sin(s->half_width_rad) * sin(s->half_height_rad));
   case ABBE_SOURCE_SPOT:
@@ -95,7 +93,7 @@ double abbe_environment_source_solid_angle(const abbe_environment_source *s) {
 }
 
 double abbe_environment_source_disk_radiance(double irradiance, double radius_rad) {
-  return irradiance / (PI * sin(radius_rad) * sin(radius_rad));
+  return irradiance / (ABBE_PI * sin(radius_rad) * sin(radius_rad));
 }
 
 double abbe_environment_source_spot_sigma(double solid_angle) {
@@ -123,11 +121,11 @@ typedef struct profile {
 } profile;
 
 static profile profile_of(const abbe_environment_source *s) {
-  profile p = {.source = s, .reach_rad = PI, .least_rad = INFINITY};
+  profile p = {.source = s, .reach_rad = ABBE_PI, .least_rad = INFINITY};
   if (s->kind == ABBE_SOURCE_DISK || s->kind == ABBE_SOURCE_SPOT) {
     p.least_rad = s->radius_rad;
     p.reach_rad =
-        s->kind == ABBE_SOURCE_DISK ? s->radius_rad : fmin(spot_reach * s->radius_rad, PI);
+        s->kind == ABBE_SOURCE_DISK ? s->radius_rad : fmin(spot_reach * s->radius_rad, ABBE_PI);
   }
   if (s->kind == ABBE_SOURCE_RECTANGLE) {
     abbe_vector_cross(s->centre, s->up, p.right);
@@ -144,7 +142,7 @@ static void set_edges(profile *p) {
     const double from = half[i] - p->edge_rad / 2 - rounding;
     const double to = half[i] + p->edge_rad / 2 + rounding;
     p->inside[i] = from > 0 ? tan(from) : 0;
-    p->outside[i] = to < PI / 2 ? tan(to) : INFINITY;
+    p->outside[i] = to < ABBE_PI / 2 ? tan(to) : INFINITY;
   }
 }
 
@@ -188,8 +186,8 @@ typedef struct gathering {
 } gathering;
 
 static double strip(const gathering *g, size_t row) {
-  const double step = PI / (double)(g->map->height * g->parts), from = step * (double)row;
-  return (cos(from) - cos(from + step)) * 2 * PI / (double)(g->map->width * g->parts);
+  const double step = ABBE_PI / (double)(g->map->height * g->parts), from = step * (double)row;
+  return (cos(from) - cos(from + step)) * 2 * ABBE_PI / (double)(g->map->width * g->parts);
 }
 
 static void gather_solid(const gathering *g) {
@@ -208,11 +206,11 @@ static void gather_row(const gathering *g, const profile *p, size_t row, size_t 
                        size_t count) {
   const size_t columns = g->map->width * g->parts;
   const double y = ((double)row + 0.5) / (double)g->parts, solid = strip(g, row);
-  const double polar = PI * y / (double)g->map->height, across = sin(polar), up = cos(polar);
+  const double polar = ABBE_PI * y / (double)g->map->height, across = sin(polar), up = cos(polar);
   for (size_t c = 0; c < count; c++) {
     const double x = ((double)((first + c) % columns) + 0.5) / (double)g->parts;
     /* abbe_radiance_map_direction, with what a row has in common */
-    const double azimuth = PI - 2 * PI * x / (double)g->map->width;
+    const double azimuth = ABBE_PI - 2 * ABBE_PI * x / (double)g->map->width;
     const double direction[3] = {across * cos(azimuth), across * sin(azimuth), up};
     double share[4];
     size_t texel[4];
@@ -226,18 +224,19 @@ static void gather_row(const gathering *g, const profile *p, size_t row, size_t 
 /* Only the rows and columns that a source can reach are asked. */
 static void gather(const gathering *g, const profile *p) {
   const size_t rows = g->map->height * g->parts, columns = g->map->width * g->parts;
-  const double step = PI / (double)rows;
+  const double step = ABBE_PI / (double)rows;
   const double polar = acos(fmin(fmax(p->source->centre[2], -1), 1));
   const double azimuth = atan2(p->source->centre[1], p->source->centre[0]);
   size_t top = 0, bottom = rows, first = 0, count = columns;
-  if (p->reach_rad < PI) {
+  if (p->reach_rad < ABBE_PI) {
     top = (size_t)(fmax(polar - p->reach_rad, 0) / step);
     bottom = (size_t)fmin((polar + p->reach_rad) / step + 1, (double)rows);
-    const bool pole = polar - p->reach_rad <= step || polar + p->reach_rad >= PI - step;
-    const double half =
-        pole || p->reach_rad >= PI / 2 ? PI : asin(fmin(sin(p->reach_rad) / sin(polar), 1));
-    const double from = (PI - azimuth - half) / (2 * PI) * (double)columns - 1;
-    count = (size_t)fmin(half / PI * (double)columns + 3, (double)columns);
+    const bool pole = polar - p->reach_rad <= step || polar + p->reach_rad >= ABBE_PI - step;
+    const double half = pole || p->reach_rad >= ABBE_PI / 2
+                            ? ABBE_PI
+                            : asin(fmin(sin(p->reach_rad) / sin(polar), 1));
+    const double from = (ABBE_PI - azimuth - half) / (2 * ABBE_PI) * (double)columns - 1;
+    count = (size_t)fmin(half / ABBE_PI * (double)columns + 3, (double)columns);
     first = (size_t)(from < 0 ? from + (double)columns : from);
   }
   for (size_t row = top; row < bottom && abbe_watch_goes_on(); row++)
@@ -269,13 +268,13 @@ static abbe_result deposit(const gathering *g, const abbe_environment_source *s,
 
 static abbe_result add_profile(const abbe_environment_source *s, abbe_radiance_map *map,
                                abbe_error *error) {
-  const double texel = PI / (double)map->height;
+  const double texel = ABBE_PI / (double)map->height;
   profile p = profile_of(s);
   gathering g = {.map = map, .parts = 2};
   if (isfinite(p.least_rad)) g.parts = (size_t)fmin(fmax(ceil(8 * texel / p.least_rad), 4), FINEST);
   p.edge_rad = texel / (double)g.parts;
   set_edges(&p);
-  p.reach_rad = fmin(p.reach_rad + p.edge_rad, PI);
+  p.reach_rad = fmin(p.reach_rad + p.edge_rad, ABBE_PI);
   g.light = calloc(map->width * map->height, sizeof *g.light);
   g.solid = calloc(map->height, sizeof *g.solid);
   abbe_result result;
@@ -320,7 +319,7 @@ static void dome_at(const abbe_environment_source *s, double elevation, double r
 
 /* A row is of one value; its mean is by many places over its texels' share. */
 static void add_dome(const abbe_environment_source *s, abbe_radiance_map *map) {
-  const double step = PI / (double)map->height;
+  const double step = ABBE_PI / (double)map->height;
   const size_t places = 2 + DOME_PLACES / map->height;
   for (size_t row = 0; row < map->height; row++) {
     double sum[3] = {0}, whole = 0;
@@ -328,9 +327,9 @@ static void add_dome(const abbe_environment_source *s, abbe_radiance_map *map) {
     for (size_t i = 0; i < places; i++) {
       const double polar = middle + step * (((double)i + 0.5) * 2 / (double)places - 1);
       const double share = (1 - fabs(polar - middle) / step) * fabs(sin(polar));
-      const double held = polar < 0 ? -polar : polar > PI ? 2 * PI - polar : polar;
+      const double held = polar < 0 ? -polar : polar > ABBE_PI ? 2 * ABBE_PI - polar : polar;
       double rgb[3];
-      dome_at(s, PI / 2 - held, rgb);
+      dome_at(s, ABBE_PI / 2 - held, rgb);
       whole += share;
       for (int k = 0; k < 3; k++) sum[k] += share * rgb[k];
     }
@@ -359,7 +358,7 @@ abbe_result abbe_environment_source_add(const abbe_environment_source *s, abbe_r
     fine = s->sky.type >= 1 && s->sky.type <= ABBE_SKY_TYPES;
     break;
   case ABBE_SOURCE_DISK:
-    fine = is_size(s->radius_rad, PI);
+    fine = is_size(s->radius_rad, ABBE_PI);
     break;
   case ABBE_SOURCE_SPOT:
     fine = is_size(s->radius_rad, 1.05);

@@ -1,12 +1,12 @@
 #include "scenes/environment/irradiance_map.h"
 
+#include "base/maths.h"
+
 #include <math.h>
 
-static const double PI = 3.14159265358979323846;
-
 void abbe_irradiance_map_normal(size_t row, size_t column, double normal[3]) {
-  const double theta = PI * (double)row / (ABBE_IRRADIANCE_MAP_ROWS - 1);
-  const double phi = 2 * PI * (double)column / ABBE_IRRADIANCE_MAP_COLUMNS;
+  const double theta = ABBE_PI * (double)row / (ABBE_IRRADIANCE_MAP_ROWS - 1);
+  const double phi = 2 * ABBE_PI * (double)column / ABBE_IRRADIANCE_MAP_COLUMNS;
   normal[0] = sin(theta) * cos(phi);
   normal[1] = sin(theta) * sin(phi);
   normal[2] = cos(theta);
@@ -14,8 +14,8 @@ void abbe_irradiance_map_normal(size_t row, size_t column, double normal[3]) {
 
 void abbe_irradiance_map_at(const abbe_irradiance_map *map, const double normal[3], double rgb[3]) {
   enum { ROWS = ABBE_IRRADIANCE_MAP_ROWS, COLUMNS = ABBE_IRRADIANCE_MAP_COLUMNS };
-  const double y = atan2(hypot(normal[0], normal[1]), normal[2]) / PI * (ROWS - 1);
-  double x = atan2(normal[1], normal[0]) / (2 * PI) * COLUMNS;
+  const double y = atan2(hypot(normal[0], normal[1]), normal[2]) / ABBE_PI * (ROWS - 1);
+  double x = atan2(normal[1], normal[0]) / (2 * ABBE_PI) * COLUMNS;
   if (x < 0) x += COLUMNS;
   const size_t row = (size_t)fmin(y, ROWS - 2), column = (size_t)fmin(x, COLUMNS - 1);
   const double down = y - (double)row, along = x - (double)column;

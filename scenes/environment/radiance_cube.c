@@ -1,7 +1,7 @@
 #include "scenes/environment/radiance_cube.h"
 
+#include "base/maths.h"
 #include "base/thread/watch.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdlib.h>

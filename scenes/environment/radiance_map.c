@@ -1,12 +1,10 @@
 #include "scenes/environment/radiance_map.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 abbe_result abbe_radiance_map_make(size_t width, abbe_radiance_map *out, abbe_error *error) {
   *out = (abbe_radiance_map){0};
@@ -32,8 +30,8 @@ void abbe_radiance_map_free(abbe_radiance_map *map) {
 
 void abbe_radiance_map_direction(const abbe_radiance_map *map, double x, double y,
                                  double direction[3]) {
-  const double polar = PI * y / (double)map->height;
-  const double azimuth = PI - 2 * PI * x / (double)map->width;
+  const double polar = ABBE_PI * y / (double)map->height;
+  const double azimuth = ABBE_PI - 2 * ABBE_PI * x / (double)map->width;
   direction[0] = sin(polar) * cos(azimuth);
   direction[1] = sin(polar) * sin(azimuth);
   direction[2] = cos(polar);
@@ -42,8 +40,8 @@ void abbe_radiance_map_direction(const abbe_radiance_map *map, double x, double 
 void abbe_radiance_map_place(const abbe_radiance_map *map, const double direction[3], double *x,
                              double *y) {
   const double aside = hypot(direction[0], direction[1]);
-  *x = (PI - atan2(direction[1], direction[0])) / (2 * PI) * (double)map->width;
-  *y = atan2(aside, direction[2]) / PI * (double)map->height;
+  *x = (ABBE_PI - atan2(direction[1], direction[0])) / (2 * ABBE_PI) * (double)map->width;
+  *y = atan2(aside, direction[2]) / ABBE_PI * (double)map->height;
 }
 
 /* Over a pole a row goes on half a turn away. */
@@ -99,7 +97,7 @@ static double piece(double a, double b, double from, double to) {
 }
 
 double abbe_radiance_map_solid_angle(const abbe_radiance_map *map, size_t row) {
-  const double step = PI / (double)map->height, turn = 2 * PI / (double)map->width;
+  const double step = ABBE_PI / (double)map->height, turn = 2 * ABBE_PI / (double)map->width;
   const size_t from_pole = row < map->height - 1 - row ? row : map->height - 1 - row;
   const double middle = ((double)from_pole + 0.5) * step;
   const double below = piece(1 + middle / step, -1 / step, middle, middle + step);
@@ -112,7 +110,7 @@ double abbe_radiance_map_solid_angle(const abbe_radiance_map *map, size_t row) {
 void abbe_radiance_map_mean(const abbe_radiance_map *map, double rgb[3]) {
   rgb[0] = rgb[1] = rgb[2] = 0;
   for (size_t row = 0; row < map->height; row++) {
-    const double share = abbe_radiance_map_solid_angle(map, row) / (4 * PI);
+    const double share = abbe_radiance_map_solid_angle(map, row) / (4 * ABBE_PI);
     double sum[3] = {0};
     for (size_t i = row * map->width; i < (row + 1) * map->width; i++)
       for (int k = 0; k < 3; k++) sum[k] += (double)map->rgb[3 * i + (size_t)k];
@@ -129,7 +127,8 @@ static double facing(const abbe_radiance_map *map, size_t column, size_t row, si
     const double x = ((double)(i % places) + 0.5) * 2 / (double)places - 1;
     const double y = ((double)(i / places) + 0.5) * 2 / (double)places - 1;
     const double at = (double)row + 0.5 + y;
-    const double share = (1 - fabs(x)) * (1 - fabs(y)) * fabs(sin(PI * at / (double)map->height));
+    const double share =
+        (1 - fabs(x)) * (1 - fabs(y)) * fabs(sin(ABBE_PI * at / (double)map->height));
     double direction[3];
     abbe_radiance_map_direction(map, (double)column + 0.5 + x, at, direction);
     whole += share;
@@ -158,7 +157,7 @@ void abbe_radiance_map_irradiance(const abbe_radiance_map *map, const double nor
 /* One texel of the halved map, from rows [top, bottom) and columns [left, right) of the map. */
 static void average(const abbe_radiance_map *map, double top, double bottom, double left,
                     double right, float out[3]) {
-  const double step = PI / (double)map->height;
+  const double step = ABBE_PI / (double)map->height;
   double sum[3] = {0}, whole = 0;
   for (size_t row = (size_t)top; row < map->height && (double)row < bottom; row++) {
     const double from = fmax((double)row, top), to = fmin((double)row + 1, bottom);

@@ -4,11 +4,12 @@
  * three that take red, green and blue. */
 #include "scenes/export/export_writing.h"
 
+#include "base/maths.h"
 #include "base/number.h"
 
 #include <math.h>
 
-#define SPHERE (4 * 3.14159265358979323846)
+#define SPHERE (4 * ABBE_PI)
 
 /* Cut in pieces, since a compiler need not take longer strings. */
 static const char *const functions[] = {

@@ -4,9 +4,9 @@
 
 #include "base/file.h"
 #include "base/json/json_text.h"
+#include "base/maths.h"
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/weights.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/mesh/mesh.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/wavelengths.h"

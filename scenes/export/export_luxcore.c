@@ -3,6 +3,7 @@
  * there keeps the form by n_d, of forks); the camera's angle is that of the longer side. */
 #include "scenes/export/export_writing.h"
 
+#include "base/maths.h"
 #include "base/number.h"
 
 #include <math.h>
@@ -84,7 +85,7 @@ static abbe_result write_light(const abbe_export_writing *w, size_t i, abbe_erro
   const abbe_light *light = &w->scene->light[i];
   char name[ABBE_EXPORT_NAME_SIZE];
   double rgb[3];
-  const double sphere = light->kind == ABBE_LIGHT_POINT ? 4 * 3.14159265358979323846 : 1;
+  const double sphere = light->kind == ABBE_LIGHT_POINT ? 4 * ABBE_PI : 1;
   abbe_export_name(name, "l", i, light->name);
   abbe_export_light_rgb(&light->illuminant, rgb);
   for (int c = 0; c < 3; c++) rgb[c] *= sphere * light->power;

@@ -3,9 +3,9 @@
  * divides by, the luminance of a radiance of 1 W/(m2 sr nm). */
 #include "scenes/export/export_writing.h"
 
+#include "base/maths.h"
 #include "base/number.h"
 #include "colorimetry/weights.h"
-#include "scenes/geometry/vector.h"
 #include "spectral/wavelengths.h"
 
 #include <math.h>

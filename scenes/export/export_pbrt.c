@@ -3,8 +3,8 @@
  * spectrum is 0 outside its own wavelengths, so tables go from 360 to 830 nm. */
 #include "scenes/export/export_writing.h"
 
+#include "base/maths.h"
 #include "base/number.h"
-#include "scenes/geometry/vector.h"
 #include "spectral/wavelengths.h"
 
 #include <math.h>
@@ -151,7 +151,7 @@ static abbe_result write_light(const abbe_export_writing *w, const abbe_light *l
 static void square_direction(double across, double down, double out[3]) {
   const double u = 2 * across - 1, v = 2 * down - 1;
   const double edge = 1 - (fabs(u) + fabs(v)), r = 1 - fabs(edge);
-  const double quarter = 0.25 * 3.14159265358979323846;
+  const double quarter = 0.25 * ABBE_PI;
   const double phi = r > 0 ? quarter * ((fabs(v) - fabs(u)) / r + 1) : quarter;
   const double away = r * sqrt(fmax(2 - r * r, 0));
   out[0] = copysign(away * cos(phi), u);

@@ -1,12 +1,12 @@
 #include "scenes/export/export_writing.h"
 
 #include "base/file.h"
+#include "base/maths.h"
 #include "base/number.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/reflectance/reflected_light.h"
 #include "colorimetry/rgb_space.h"
 #include "colorimetry/weights.h"
-#include "scenes/geometry/vector.h"
 #include "spectral/wavelengths.h"
 
 #include <ctype.h>
@@ -108,8 +108,6 @@ void abbe_export_files_undo(abbe_export_files *files) {
   for (size_t i = 0; i < files->count; i++)
     if (files->file[i].written && files->file[i].fresh) unlink(files->file[i].path);
 }
-
-#define PI 3.14159265358979323846
 
 const char *abbe_export_name(char out[ABBE_EXPORT_NAME_SIZE], const char *prefix, size_t number,
                              const char *name) {
@@ -252,7 +250,7 @@ abbe_result abbe_export_light_mesh(const abbe_light *light, abbe_mesh *out, abbe
   const abbe_result result = abbe_mesh_make(sides, sides - 2, false, out, error);
   if (result != ABBE_OK) return result;
   if (light->kind == ABBE_LIGHT_DISK) {
-    const double step = 2 * PI / (double)sides;
+    const double step = 2 * ABBE_PI / (double)sides;
     const double radius = light->radius * sqrt(step / sin(step));
     double a[3], b[3];
     abbe_export_basis(light->direction, a, b);
@@ -360,7 +358,7 @@ abbe_result abbe_export_panorama(const abbe_export_writing *w,
 }
 
 void abbe_export_direction(double turns, double v, double out[3]) {
-  const double phi = 2 * PI * turns, theta = PI * v;
+  const double phi = 2 * ABBE_PI * turns, theta = ABBE_PI * v;
   out[0] = cos(phi) * sin(theta);
   out[1] = sin(phi) * sin(theta);
   out[2] = cos(theta);

@@ -3,6 +3,7 @@
 #define ABBE_SCENES_EXPORT_EXPORT_WRITING_H
 
 #include "base/error.h"
+#include "base/maths.h"
 #include "colorimetry/image/image.h"
 #include "scenes/export/scene_export.h"
 
@@ -46,7 +47,7 @@ abbe_result abbe_export_files_write(abbe_export_files *files, abbe_error *error)
 /* Removes what was written and had not been there. */
 void abbe_export_files_undo(abbe_export_files *files);
 
-#define ABBE_EXPORT_DEGREES (180 / 3.14159265358979323846)
+#define ABBE_EXPORT_DEGREES (180 / ABBE_PI)
 #define ABBE_EXPORT_NAME_SIZE 96
 #define ABBE_EXPORT_DISK_SIDES 64
 

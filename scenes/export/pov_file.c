@@ -1,18 +1,17 @@
 #include "scenes/export/pov_file.h"
 
 #include "base/file.h"
+#include "base/maths.h"
 #include "base/number.h"
 #include "colorimetry/rgb_space.h"
 #include "colorimetry/weights.h"
-#include "scenes/geometry/vector.h"
 #include "spectral/wavelengths.h"
 
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
-#define DEGREES (180.0 / PI)
+#define DEGREES (180.0 / ABBE_PI)
 
 /* --- the index --- */
 
@@ -140,7 +139,7 @@ static double fade_length(const abbe_scene *scene, const abbe_light *light) {
 }
 
 static void write_light(const writing *w, const abbe_light *light) {
-  double rgb[3], at[3], aim[3], power = light->power / PI;
+  double rgb[3], at[3], aim[3], power = light->power / ABBE_PI;
   const bool parallel = light->kind == ABBE_LIGHT_DIRECTIONAL;
   comment(w, "light", light->name);
   light_colour(light, rgb);
@@ -283,7 +282,7 @@ static abbe_result write_receiver(const writing *w, const abbe_object *object, a
                           object->texture_path, object->name);
   comment(w, "receiver", object->name);
   write_surface(w, object);
-  const double ambient = w->scene->ambient / PI, grey = (r[0] + r[1] + r[2]) / 3;
+  const double ambient = w->scene->ambient / ABBE_PI, grey = (r[0] + r[1] + r[2]) / 3;
   const bool textured = object->texture_path != NULL;
   if (textured) {
     if (r[0] != r[1] || r[1] != r[2])

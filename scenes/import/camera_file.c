@@ -1,13 +1,11 @@
 #include "scenes/import/scene_reading.h"
 
+#include "base/maths.h"
 #include "base/nearest.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/import/scene_value.h"
 
 #include <math.h>
 #include <string.h>
-
-#define RADIANS (3.14159265358979323846 / 180.0)
 
 static abbe_result read_size(abbe_yaml *yaml, abbe_yaml_node node, abbe_camera *out,
                              abbe_error *error) {
@@ -29,9 +27,9 @@ static abbe_result read_side(abbe_yaml *yaml, abbe_yaml_node node, double out[3]
   abbe_result result = abbe_yaml_get_number(yaml, node, "elevation", -89.9, 89.9, &up, error);
   if (result == ABBE_OK)
     result = abbe_yaml_get_number(yaml, node, "azimuth", -3600, 3600, &around, error);
-  out[0] = cos(up * RADIANS) * cos(around * RADIANS);
-  out[1] = cos(up * RADIANS) * sin(around * RADIANS);
-  out[2] = sin(up * RADIANS);
+  out[0] = cos(up * ABBE_DEGREE) * cos(around * ABBE_DEGREE);
+  out[1] = cos(up * ABBE_DEGREE) * sin(around * ABBE_DEGREE);
+  out[2] = sin(up * ABBE_DEGREE);
   return result;
 }
 
@@ -67,7 +65,7 @@ abbe_result abbe_camera_read(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera *
     result =
         abbe_yaml_get_numbers(yaml, node, "up", 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out->up, error);
   if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "fov", 0.1, 170, &fov, error);
-  out->fov_y_rad = fov * RADIANS;
+  out->fov_y_rad = fov * ABBE_DEGREE;
   if (result == ABBE_OK) result = read_size(yaml, node, out, error);
   if (result == ABBE_OK) result = abbe_yaml_get_bool(yaml, node, "inside", &out->inside, error);
   if (result == ABBE_OK) result = read_frame(yaml, node, error);

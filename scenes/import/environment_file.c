@@ -1,14 +1,12 @@
 #include "scenes/import/scene_reading.h"
 
+#include "base/maths.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/upsampling.h"
 #include "scenes/environment/environment_picture.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/import/scene_value.h"
 
 #include <stdlib.h>
-
-#define RADIANS (3.14159265358979323846 / 180.0)
 
 enum { LEAST_SIZE = 64, MOST_SIZE = 4096, DEFAULT_SIZE = 1024 };
 
@@ -43,7 +41,7 @@ static abbe_result read_turn(abbe_yaml *yaml, abbe_yaml_node node, double to_map
       result = abbe_yaml_fail(yaml, tilt, error, "'axis' is zero; it must point somewhere");
   }
   if (result == ABBE_OK)
-    abbe_environment_turn(rotate * RADIANS, tilt.id ? axis : NULL, angle * RADIANS, to_map);
+    abbe_environment_turn(rotate * ABBE_DEGREE, tilt.id ? axis : NULL, angle * ABBE_DEGREE, to_map);
   return result;
 }
 

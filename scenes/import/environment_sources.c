@@ -1,11 +1,9 @@
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/import/scene_reading.h"
 #include "scenes/import/scene_value.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-#define RADIANS (3.14159265358979323846 / 180.0)
 
 enum { MAX_KNOTS = 1024, COSINE_KNOTS = 181 };
 
@@ -51,9 +49,9 @@ static abbe_result require_colour(const reading *r, abbe_yaml_node node, const c
 /* Degrees, as radians; an absent key leaves *out. */
 static abbe_result read_angle(const reading *r, abbe_yaml_node node, const char *key, double least,
                               double most, double *out, abbe_error *error) {
-  double degrees = *out / RADIANS;
+  double degrees = *out / ABBE_DEGREE;
   const abbe_result result = abbe_yaml_get_number(r->yaml, node, key, least, most, &degrees, error);
-  *out = degrees * RADIANS;
+  *out = degrees * ABBE_DEGREE;
   return result;
 }
 
@@ -100,7 +98,7 @@ static abbe_result read_place(const reading *r, abbe_yaml_node node, abbe_enviro
 
 static abbe_result read_sun(reading *r, abbe_yaml_node node, abbe_error *error) {
   abbe_environment_source *sun = &r->sun;
-  double irradiance[3], diameter = 0.533 * RADIANS;
+  double irradiance[3], diameter = 0.533 * ABBE_DEGREE;
   *sun = (abbe_environment_source){.kind = ABBE_SOURCE_DISK};
   abbe_result result = read_place(r, node, sun, NULL, error);
   if (result == ABBE_OK) result = require_colour(r, node, "irradiance", irradiance, error);
@@ -231,12 +229,12 @@ static abbe_result read_spot(reading *r, abbe_yaml_node node, abbe_error *error)
 
 /* Green to 45 degrees, red to 75, blue above: what the faces of a stone show of the sky. */
 static const abbe_dome_knot aset[] = {{0, {0, 1, 0}},
-                                      {45 * RADIANS, {0, 1, 0}},
-                                      {45 * RADIANS, {1, 0, 0}},
-                                      {75 * RADIANS, {1, 0, 0}},
-                                      {75 * RADIANS, {0, 0, 1}},
-                                      {90 * RADIANS, {0, 0, 1}}};
-static const abbe_dome_knot iso[] = {{0, {1, 1, 1}}, {90 * RADIANS, {1, 1, 1}}};
+                                      {45 * ABBE_DEGREE, {0, 1, 0}},
+                                      {45 * ABBE_DEGREE, {1, 0, 0}},
+                                      {75 * ABBE_DEGREE, {1, 0, 0}},
+                                      {75 * ABBE_DEGREE, {0, 0, 1}},
+                                      {90 * ABBE_DEGREE, {0, 0, 1}}};
+static const abbe_dome_knot iso[] = {{0, {1, 1, 1}}, {90 * ABBE_DEGREE, {1, 1, 1}}};
 
 static abbe_result add_dome(reading *r, abbe_yaml_node node, const abbe_dome_knot *knot,
                             size_t count, abbe_error *error) {
@@ -264,7 +262,7 @@ static abbe_result read_knots(reading *r, abbe_yaml_node node, abbe_error *error
                                 &degrees, error);
     if (result == ABBE_OK)
       result = read_colour(r->yaml, abbe_yaml_item(r->yaml, item, 1), "dome", knot[i].rgb, error);
-    knot[i].elevation_rad = degrees * RADIANS;
+    knot[i].elevation_rad = degrees * ABBE_DEGREE;
     if (result == ABBE_OK && i > 0 && knot[i].elevation_rad < knot[i - 1].elevation_rad)
       result = abbe_yaml_fail(r->yaml, item, error, "%s", wants);
   }
@@ -282,7 +280,7 @@ static abbe_result read_dome(reading *r, abbe_yaml_node node, abbe_error *error)
   if (!text || strcmp(text, "cos") != 0) return read_knots(r, node, error);
   abbe_dome_knot knot[COSINE_KNOTS];
   for (int i = 0; i < COSINE_KNOTS; i++) {
-    const double elevation = 90 * RADIANS * i / (COSINE_KNOTS - 1), value = sin(elevation);
+    const double elevation = 90 * ABBE_DEGREE * i / (COSINE_KNOTS - 1), value = sin(elevation);
     knot[i] = (abbe_dome_knot){elevation, {value, value, value}};
   }
   return add_dome(r, node, knot, COSINE_KNOTS, error);

@@ -1,6 +1,6 @@
 #include "scenes/import/scene_reading.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/import/scene_value.h"
 
 #include <math.h>
@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define RADIANS (3.14159265358979323846 / 180.0)
 #define FAINTEST 1e-30
 
 static const char *const light_kinds[] = {"point", "spot",      "directional",
@@ -55,8 +54,8 @@ static abbe_result read_cone(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *o
   abbe_result result = abbe_yaml_require(yaml, node, "cone", &ignored, error);
   if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "cone", 0.001, 85, &cone, error);
   if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "soft", 0, cone, &soft, error);
-  out->cone_rad = cone * RADIANS;
-  out->soft_rad = soft * RADIANS;
+  out->cone_rad = cone * ABBE_DEGREE;
+  out->soft_rad = soft * ABBE_DEGREE;
   return result;
 }
 
@@ -98,7 +97,7 @@ static abbe_result read_rectangle(abbe_yaml *yaml, abbe_yaml_node node, abbe_lig
   abbe_vector_cross(hypot(n[0], n[1]) < upright ? y : z, n, across);
   abbe_vector_normalise(across);
   abbe_vector_cross(n, across, up);
-  const double c = cos(roll * RADIANS), s = sin(roll * RADIANS);
+  const double c = cos(roll * ABBE_DEGREE), s = sin(roll * ABBE_DEGREE);
   for (int k = 0; k < 3; k++) {
     out->edge[0][k] = 0.5 * width * (c * across[k] + s * up[k]);
     out->edge[1][k] = 0.5 * height * (c * up[k] - s * across[k]);

@@ -1,9 +1,9 @@
 #include "scenes/import/scene_reading.h"
 
+#include "base/maths.h"
 #include "base/number.h"
 #include "colorimetry/image/png_file.h"
 #include "scenes/geometry/transform.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/import/scene_value.h"
 #include "scenes/medium/medium_file.h"
 #include "spectral/materials/absorption.h"

@@ -1,8 +1,8 @@
 #include "scenes/import/scene_reading.h"
 
+#include "base/maths.h"
 #include "base/number.h"
 #include "scenes/geometry/transform.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/mesh/topology.h"
 
 #include <math.h>

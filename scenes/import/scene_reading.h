@@ -4,6 +4,7 @@
 #define ABBE_SCENES_IMPORT_OBJECT_READING_H
 
 #include "base/error.h"
+#include "base/maths.h"
 #include "base/yaml/yaml.h"
 #include "base/yaml/yaml_edit.h"
 #include "scenes/environment/environment.h"
@@ -17,7 +18,7 @@
 /* Stands for the name of a material: the one that the mesh's file has. */
 #define ABBE_OBJECT_FROM_FILE "from-file"
 
-#define ABBE_OBJECT_RADIANS (3.14159265358979323846 / 180.0)
+#define ABBE_OBJECT_RADIANS ABBE_DEGREE
 
 typedef enum abbe_object_form {
   ABBE_OBJECT_SPHERE,

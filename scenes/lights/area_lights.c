@@ -1,13 +1,11 @@
 #include "scenes/lights/area_lights.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double PI = 3.14159265358979323846;
 
 static bool has_size(const abbe_light *light) {
   return abbe_light_has_size(light) && light->points == 0;
@@ -29,7 +27,7 @@ static void across(const double n[3], double s[3], double t[3]) {
 
 /* Rings of equal area, a point each, the golden angle apart [Vogel1979]. */
 static void ring_place(const abbe_light *disk, size_t index, size_t points, double out[3]) {
-  const double golden = PI * (3 - sqrt(5));
+  const double golden = ABBE_PI * (3 - sqrt(5));
   const double share = ((double)index + 0.5) / (double)points;
   const double r = points > 1 ? disk->radius * sqrt(share) : 0, angle = golden * (double)index;
   double s[3], t[3];

@@ -1,9 +1,9 @@
 #include "scenes/lights/environment_lights.h"
 
+#include "base/maths.h"
 #include "base/thread/watch.h"
 #include "colorimetry/upsampling.h"
 #include "scenes/geometry/digest.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -19,7 +19,6 @@ enum {
   VALUES = 7 /* luminance, luminance x direction, RGB */
 };
 
-static const double PI = 3.14159265358979323846;
 static const double luminance[3] = {0.2126390058715104, 0.7151686787677559, 0.0721923153607337};
 
 static const double OVER_MEAN = 3;      /* so bright is what stands out */
@@ -60,7 +59,7 @@ static double luminance_of(const float *rgb) {
 /* The mean of the radiance as far as it does not stand out of that mean itself. */
 static double mean_of_most(const abbe_environment *e) {
   const abbe_radiance_map *map = &e->map;
-  double mean = e->luminance / (4 * PI);
+  double mean = e->luminance / (4 * ABBE_PI);
   for (int pass = 0; pass < 6; pass++) {
     double sum = 0;
     for (size_t y = 0; y < map->height; y++) {
@@ -69,7 +68,7 @@ static double mean_of_most(const abbe_environment *e) {
         row += fmin(luminance_of(map->rgb + 3 * (y * map->width + x)), OVER_MEAN * mean);
       sum += row * abbe_radiance_map_solid_angle(map, y);
     }
-    mean = sum / (4 * PI);
+    mean = sum / (4 * ABBE_PI);
   }
   return mean;
 }

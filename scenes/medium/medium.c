@@ -1,5 +1,7 @@
 #include "scenes/medium/medium.h"
 
+#include "base/maths.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -64,7 +66,7 @@ bool abbe_medium_is_coloured(const abbe_medium *m, double low_nm, double high_nm
 
 double abbe_medium_phase(double g, double cosine) {
   const double square = 1 + g * g - 2 * g * cosine;
-  return (1 - g * g) / (4 * 3.14159265358979323846 * square * sqrt(square));
+  return (1 - g * g) / (4 * ABBE_PI * square * sqrt(square));
 }
 
 bool abbe_medium_clip(const double min[3], const double max[3], const double o[3],

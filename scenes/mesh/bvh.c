@@ -1,8 +1,8 @@
 #include "scenes/mesh/bvh.h"
 
+#include "base/maths.h"
 #include "base/thread/watch.h"
 #include "scenes/geometry/disjoint_sets.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "scenes/mesh/coarse_mesh.h"
 
+#include "base/maths.h"
 #include "scenes/geometry/digest.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdlib.h>

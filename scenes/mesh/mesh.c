@@ -1,7 +1,7 @@
 #include "scenes/mesh/mesh.h"
 
+#include "base/maths.h"
 #include "scenes/geometry/transform.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/mesh/mesh_parts.h"
 
 #include <math.h>

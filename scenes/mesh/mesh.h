@@ -8,6 +8,8 @@
 
 #include "base/error.h"
 
+#include "base/maths.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -32,7 +34,7 @@ typedef enum abbe_mesh_normals {
                        the next by no more than ABBE_MESH_CREASE_RAD, by their angles there */
 } abbe_mesh_normals;
 
-#define ABBE_MESH_CREASE_RAD (30 * 3.14159265358979323846 / 180)
+#define ABBE_MESH_CREASE_RAD (30 * ABBE_PI / 180)
 
 /* Room for the given counts, zeroed; uv too where with_uv. Checks sizes first. */
 abbe_result abbe_mesh_make(size_t vertices, size_t faces, bool with_uv, abbe_mesh *out,

@@ -1,7 +1,7 @@
 #include "scenes/mesh/mesh_charts.h"
 
+#include "base/maths.h"
 #include "scenes/geometry/disjoint_sets.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/mesh/topology.h"
 
 #include <math.h>

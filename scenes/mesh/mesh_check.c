@@ -1,7 +1,7 @@
 /* What is wrong with a mesh; mesh_fix.c does something about it. */
+#include "base/maths.h"
 #include "base/number.h"
 #include "scenes/geometry/disjoint_sets.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/mesh/mesh.h"
 #include "scenes/mesh/mesh_parts.h"
 #include "scenes/mesh/topology.h"

@@ -1,6 +1,6 @@
 /* Fixing: a mesh as points and faces, on which the steps work until it is closed and outwards. */
+#include "base/maths.h"
 #include "base/number.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/mesh/mesh.h"
 #include "scenes/mesh/mesh_parts.h"
 #include "scenes/mesh/shells.h"

@@ -1,5 +1,5 @@
 /* Holes: their rims, and surfaces that close them. */
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/mesh/mesh_parts.h"
 
 #include <math.h>

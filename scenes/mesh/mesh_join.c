@@ -1,7 +1,7 @@
 /* Corners that are meant to be one and lie a little apart, as in files whose faces have each their
  * own, written to few digits. */
+#include "base/maths.h"
 #include "scenes/geometry/disjoint_sets.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/mesh/mesh_parts.h"
 
 #include <math.h>

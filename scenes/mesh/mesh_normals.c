@@ -1,7 +1,7 @@
 /* Normals: one a face, one a point, or one for each smooth part around a point. */
+#include "base/maths.h"
 #include "base/thread/watch.h"
 #include "scenes/geometry/disjoint_sets.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/mesh/mesh.h"
 #include "scenes/mesh/mesh_parts.h"
 #include "scenes/mesh/topology.h"

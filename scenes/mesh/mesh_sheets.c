@@ -1,6 +1,6 @@
 /* Sheets of faces that hang on a body, or stand in it, and belong to no surface of it. */
+#include "base/maths.h"
 #include "scenes/geometry/disjoint_sets.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/mesh/mesh_parts.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* A mesh whose shells cross, as several that do not. */
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/mesh/mesh.h"
 #include "scenes/mesh/mesh_parts.h"
 #include "scenes/mesh/shells.h"

@@ -1,6 +1,6 @@
 /* Faces of shells that go through one another, or lie on one another. */
+#include "base/maths.h"
 #include "base/thread/watch.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/mesh/bvh.h"
 #include "scenes/mesh/shell_search.h"
 

@@ -1,5 +1,5 @@
 /* Which shells lie in which: points of each vote, along rays. */
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/mesh/bvh.h"
 #include "scenes/mesh/shell_search.h"
 

@@ -1,7 +1,7 @@
 #include "scenes/mesh/shells.h"
 
+#include "base/maths.h"
 #include "base/thread/watch.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/mesh/bvh.h"
 #include "scenes/mesh/shell_search.h"
 

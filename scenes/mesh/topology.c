@@ -1,8 +1,8 @@
 #include "scenes/mesh/topology.h"
 
+#include "base/maths.h"
 #include "base/thread/watch.h"
 #include "scenes/geometry/disjoint_sets.h"
-#include "scenes/geometry/vector.h"
 
 #include <float.h>
 #include <math.h>
@@ -205,7 +205,7 @@ static int64_t angle_around(const abbe_topology *t, const abbe_edge *e, uint32_t
   abbe_vector_cross(axis, u, v);
   abbe_vector_normalise(v);
   abbe_vector_cross(v, axis, u);
-  const double turn = 2 * 3.14159265358979323846;
+  const double turn = 2 * ABBE_PI;
   const double angle = atan2(abbe_vector_dot(to, v), abbe_vector_dot(to, u)) + ANGLE_START;
   return (int64_t)floor((angle < 0 ? angle + turn : angle) / ANGLE_STEP);
 }

@@ -1,6 +1,6 @@
 #include "scenes/samples/surface_curvature.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/samples/point_grid.h"
 
 #include <math.h>

@@ -1,11 +1,10 @@
 #include "scenes/shapes/brilliant.h"
 
+#include "base/maths.h"
 #include "scenes/shapes/convex.h"
 
 #include <math.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 enum { MAINS = 8, GIRDLE = 2 * MAINS, FACES = 6 + MAINS * 13, PLANES = 73 };
 
@@ -28,16 +27,16 @@ static abbe_result check_share(const char *what, double value, abbe_error *error
 }
 
 static abbe_result check_angle(const char *what, double radians, abbe_error *error) {
-  if (radians > 0 && radians <= 80 * PI / 180) return ABBE_OK;
+  if (radians > 0 && radians <= 80 * ABBE_PI / 180) return ABBE_OK;
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                         "a brilliant's %s angle is %g degrees; it may be above 0, to 80", what,
-                        radians * 180 / PI);
+                        radians * 180 / ABBE_PI);
 }
 
 static abbe_result resolve(abbe_brilliant *cut, abbe_error *error) {
   if (cut->table == 0) cut->table = 0.56;
-  if (cut->crown_rad == 0) cut->crown_rad = 34.5 * PI / 180;
-  if (cut->pavilion_rad == 0) cut->pavilion_rad = 40.75 * PI / 180;
+  if (cut->crown_rad == 0) cut->crown_rad = 34.5 * ABBE_PI / 180;
+  if (cut->pavilion_rad == 0) cut->pavilion_rad = 40.75 * ABBE_PI / 180;
   if (cut->star == 0) cut->star = 0.5;
   if (cut->lower == 0) cut->lower = 0.77;
   if (cut->girdle == 0) cut->girdle = 0.03;
@@ -55,7 +54,7 @@ static abbe_result resolve(abbe_brilliant *cut, abbe_error *error) {
 
 /* Steps of half a main's angle. */
 static void place(abbe_mesh *mesh, size_t vertex, double radius, double half_steps, double z) {
-  const double angle = half_steps * PI / MAINS;
+  const double angle = half_steps * ABBE_PI / MAINS;
   mesh->position[vertex][0] = radius * cos(angle);
   mesh->position[vertex][1] = radius * sin(angle);
   mesh->position[vertex][2] = z;
@@ -63,7 +62,7 @@ static void place(abbe_mesh *mesh, size_t vertex, double radius, double half_ste
 
 static void place_all(const abbe_brilliant *cut, abbe_mesh *mesh) {
   const double r = 0.5 * cut->diameter, edge = 0.5 * cut->girdle * cut->diameter;
-  const double half = cos(PI / MAINS), table = cut->table * r;
+  const double half = cos(ABBE_PI / MAINS), table = cut->table * r;
   const double star = table * half + cut->star * (r - table * half), side = (1 - cut->lower) * r;
   const double crown = tan(cut->crown_rad), pavilion = tan(cut->pavilion_rad);
   for (size_t k = 0; k < MAINS; k++) {

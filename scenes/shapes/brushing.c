@@ -1,7 +1,7 @@
 #include "scenes/shapes/brushing.h"
 
+#include "base/maths.h"
 #include "scenes/geometry/transform.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 #include "scenes/shapes/convex.h"
 
+#include "base/maths.h"
 #include "base/number.h"
 #include "base/thread/watch.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/mesh/mesh_parts.h"
 #include "scenes/mesh/topology.h"
 
@@ -268,7 +268,7 @@ abbe_result abbe_convex_find(const abbe_mesh *mesh, size_t max_planes, double (*
 }
 
 void abbe_convex_reason(const abbe_convex *c, char *text, size_t size) {
-  const double degrees = 180 / 3.14159265358979323846;
+  const double degrees = 180 / ABBE_PI;
   text[0] = '\0';
   switch (c->verdict) {
   case ABBE_CONVEX_UNASKED:

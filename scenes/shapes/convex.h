@@ -9,6 +9,7 @@
 #define ABBE_SCENES_SHAPES_CONVEX_H
 
 #include "base/error.h"
+#include "base/maths.h"
 #include "scenes/mesh/mesh.h"
 
 #include <stddef.h>
@@ -21,9 +22,9 @@
 #define ABBE_CONVEX_TOLERANCES                                                                     \
   { 1e-6, 1e-5, 1e-4 }
 #define ABBE_CONVEX_CLEAR 10
-#define ABBE_CONVEX_CLEAR_RAD (1.5 * 3.14159265358979323846 / 180)
+#define ABBE_CONVEX_CLEAR_RAD (1.5 * ABBE_PI / 180)
 /* And a normal of a corner off its face, rad. */
-#define ABBE_CONVEX_FLAT_RAD (3.14159265358979323846 / 180)
+#define ABBE_CONVEX_FLAT_RAD ABBE_DEGREE
 
 typedef enum abbe_convex_verdict {
   ABBE_CONVEX_UNASKED,

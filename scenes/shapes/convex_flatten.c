@@ -1,5 +1,5 @@
 /* Solids of few planes out of meshes that are nearly such. */
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/mesh/mesh_parts.h"
 #include "scenes/shapes/convex.h"
 

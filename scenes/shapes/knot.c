@@ -1,6 +1,6 @@
 #include "scenes/shapes/knot.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,13 +1,11 @@
 #include "scenes/shapes/shape.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/mesh/topology.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 static bool is_length(double x) {
   return isfinite(x) && x > 0.0;
@@ -118,8 +116,8 @@ abbe_result abbe_shape_ring(double major, double minor, size_t around, size_t ac
   size_t face = 0;
   for (size_t i = 0; i < around; i++)
     for (size_t j = 0; j < across; j++) {
-      const double u = 2.0 * PI * (double)i / (double)around;
-      const double v = 2.0 * PI * (double)j / (double)across;
+      const double u = 2.0 * ABBE_PI * (double)i / (double)around;
+      const double v = 2.0 * ABBE_PI * (double)j / (double)across;
       const size_t here = i * across + j;
       set3(out->normal[here], cos(u) * cos(v), sin(u) * cos(v), sin(v));
       set3(out->position[here], cos(u) * (major + minor * cos(v)),
@@ -156,7 +154,7 @@ abbe_result abbe_shape_gem(size_t sides, double girdle_radius, double table_radi
   set3(out->position[culet], 0.0, 0.0, -pavilion_depth);
   size_t face = 0;
   for (size_t i = 0; i < sides; i++) {
-    const double a = 2.0 * PI * (double)i / (double)sides, b = a + PI / (double)sides;
+    const double a = 2.0 * ABBE_PI * (double)i / (double)sides, b = a + ABBE_PI / (double)sides;
     const size_t next = (i + 1) % sides;
     set3(out->position[i], table_radius * cos(a), table_radius * sin(a), crown_height);
     set3(out->position[sides + i], girdle_radius * cos(b), girdle_radius * sin(b), 0.0);
@@ -173,10 +171,10 @@ abbe_result abbe_shape_prism(double apex_rad, double side, double length, abbe_m
   memset(out, 0, sizeof *out);
   if (!is_length(side)) return refuse_length("prism", "side", side, error);
   if (!is_length(length)) return refuse_length("prism", "length", length, error);
-  if (!(apex_rad > 1e-6 && apex_rad < PI - 1e-6))
+  if (!(apex_rad > 1e-6 && apex_rad < ABBE_PI - 1e-6))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a prism with an apex of %g degrees is not possible: between 0 and 180",
-                          apex_rad * 180.0 / PI);
+                          apex_rad * 180.0 / ABBE_PI);
   static const uint32_t face[8][3] = {{0, 1, 2}, {3, 5, 4}, {0, 4, 1}, {0, 3, 4},
                                       {1, 5, 2}, {1, 4, 5}, {2, 3, 0}, {2, 5, 3}};
   const abbe_result result = abbe_mesh_make(6, 8, false, out, error);
@@ -280,7 +278,7 @@ static void segment_normal(const double (*profile)[2], size_t i, double n[2]) {
  */
 static void end_normal(const double (*profile)[2], size_t count, size_t i, size_t end,
                        double n[2]) {
-  const double smooth = cos(30.0 * PI / 180.0);
+  const double smooth = cos(30.0 * ABBE_PI / 180.0);
   double own[2], other[2];
   segment_normal(profile, i, own);
   memcpy(n, own, sizeof own);
@@ -310,7 +308,7 @@ static void lathe_segment(const double (*profile)[2], size_t count, size_t i, si
     const double r = profile[i + end][0], z = profile[i + end][1];
     for (size_t j = 0; j < around; j++) {
       const double turn = (end == 0 ? bottom : top) ? 0.5 : 0.0;
-      const double a = 2.0 * PI * ((double)j + turn) / (double)around;
+      const double a = 2.0 * ABBE_PI * ((double)j + turn) / (double)around;
       const size_t at = first + end * around + j;
       set3(out->position[at], r * cos(a), r * sin(a), z);
       set3(out->normal[at], n[0] * cos(a), n[0] * sin(a), n[1]);

@@ -1,14 +1,13 @@
 #define _XOPEN_SOURCE 700 /* j0, j1 */
 #include "scenes/shapes/water.h"
 
+#include "base/maths.h"
 #include "base/number.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
 #define GRAVITY 9.80665
 #define TENSION (0.0728 / 998.2) /* m3/s2, over the density */
 #define VISCOSITY 1.0e-6         /* m2/s */
@@ -35,7 +34,7 @@ static void sum_ring(const abbe_water_drop *drop, double depth, double age, ring
   const double a2 = drop->radius * drop->radius, most = 8 / drop->radius;
   const double reach = out->step * (double)out->count;
   const double speed = sqrt(GRAVITY * depth) + 1.5 * sqrt(TENSION * most);
-  const double dk = PI / (reach + speed * age + 8 * drop->radius);
+  const double dk = ABBE_PI / (reach + speed * age + 8 * drop->radius);
   for (double k = 0.5 * dk; k < most; k += dk) {
     const double share = drop->depth * a2 * a2 / 8 * k * k * k * exp(-0.25 * k * k * a2) * dk *
                          exp(-2 * VISCOSITY * k * k * age) *
@@ -95,7 +94,7 @@ static void height_at(const surface *s, const double at[2], double *height, doub
   *height = 0;
   for (size_t i = 0; i < w->wave_count; i++) {
     const abbe_water_wave *wave = &w->wave[i];
-    const double k = 2 * PI / wave->wavelength;
+    const double k = 2 * ABBE_PI / wave->wavelength;
     const double d[2] = {cos(wave->direction_rad), sin(wave->direction_rad)};
     const double phase = k * (d[0] * at[0] + d[1] * at[1]) -
                          abbe_water_frequency(k, w->size[2]) * w->time + wave->phase_rad;

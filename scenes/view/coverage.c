@@ -1,6 +1,6 @@
 #include "scenes/view/coverage.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/mesh/bvh.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "scenes/view/estimator.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <math.h>
 #include <string.h>

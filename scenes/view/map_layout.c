@@ -1,5 +1,6 @@
 #include "scenes/view/map_layout.h"
 
+#include "base/maths.h"
 #include "base/number.h"
 
 #include <math.h>
@@ -20,10 +21,6 @@ void abbe_map_layout_make(const abbe_view *view, abbe_map_layout *out) {
 
 /* --- checks --- */
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static bool finite_all(const double *v, size_t count) {
   for (size_t i = 0; i < count; i++)
     if (!isfinite(v[i])) return false;
@@ -36,11 +33,11 @@ static bool is_frame(const abbe_view *v) {
   const double *axis[3] = {v->right, v->up, v->forward};
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++)
-      if (!(fabs(dot(axis[i], axis[j]) - (i == j)) <= tolerance)) return false;
+      if (!(fabs(abbe_vector_dot(axis[i], axis[j]) - (i == j)) <= tolerance)) return false;
   const double *r = v->right, *u = v->up;
   const double back[3] = {r[1] * u[2] - r[2] * u[1], r[2] * u[0] - r[0] * u[2],
                           r[0] * u[1] - r[1] * u[0]};
-  return dot(back, v->forward) < 0;
+  return abbe_vector_dot(back, v->forward) < 0;
 }
 
 static const char *fault_of_view(const abbe_view *v) {

@@ -1,6 +1,6 @@
 #include "scenes/view/map_resample.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,13 +1,10 @@
 #include "scenes/view/view.h"
 
+#include "base/maths.h"
 #include "scenes/geometry/transform.h"
 
 #include <math.h>
 #include <string.h>
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 static void cross(const double a[3], const double b[3], double out[3]) {
   double c[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -15,7 +12,7 @@ static void cross(const double a[3], const double b[3], double out[3]) {
 }
 
 static void normalise(double v[3]) {
-  double length = sqrt(dot(v, v));
+  double length = sqrt(abbe_vector_dot(v, v));
   for (int i = 0; i < 3; i++) v[i] /= length;
 }
 
@@ -28,7 +25,7 @@ void abbe_view_look(const double origin[3], const double forward[3], const doubl
   memcpy(out->forward, forward, sizeof out->forward);
   normalise(out->forward);
   cross(out->forward, up, out->right);
-  for (int i = 0; i < 3 && dot(out->right, out->right) < 1e-12; i++)
+  for (int i = 0; i < 3 && abbe_vector_dot(out->right, out->right) < 1e-12; i++)
     cross(out->forward, hints[i], out->right);
   normalise(out->right);
   cross(out->right, out->forward, out->up);
@@ -68,7 +65,8 @@ bool abbe_view_fit(abbe_view *view, const double (*points)[3], size_t count) {
   for (size_t i = 0; i < count; i++) {
     double d[3];
     for (int k = 0; k < 3; k++) d[k] = points[i][k] - v.origin[k];
-    double x = dot(d, v.right), y = dot(d, v.up), z = dot(d, v.forward);
+    double x = abbe_vector_dot(d, v.right), y = abbe_vector_dot(d, v.up),
+           z = abbe_vector_dot(d, v.forward);
     if (!v.orthographic) fits = to_window(&x, &y, &z) && fits;
     /* not a number: it has no place, and the others stay */
     v.window[0] = x < v.window[0] ? x : v.window[0];
@@ -130,12 +128,13 @@ void abbe_view_reversed_matrix(const abbe_view *view, double out[16]) {
 bool abbe_view_project(const abbe_view *view, const double p[3], double uvz[3]) {
   double d[3];
   for (int k = 0; k < 3; k++) d[k] = p[k] - view->origin[k];
-  double x = dot(d, view->right), y = dot(d, view->up), z = dot(d, view->forward);
+  double x = abbe_vector_dot(d, view->right), y = abbe_vector_dot(d, view->up),
+         z = abbe_vector_dot(d, view->forward);
   uvz[2] = z;
   if (!view->orthographic) {
     x /= z;
     y /= z;
-    uvz[2] = sqrt(dot(d, d));
+    uvz[2] = sqrt(abbe_vector_dot(d, d));
   }
   uvz[0] = (x - view->window[0]) / (view->window[1] - view->window[0]);
   uvz[1] = (y - view->window[2]) / (view->window[3] - view->window[2]);

@@ -1,7 +1,7 @@
 #include "scenes/volume/caustic_volume.h"
 
 #include "base/gsl_guard.h"
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/volume/half.h"
 #include "scenes/volume/volume_tree.h"
 
@@ -76,12 +76,10 @@ abbe_result abbe_light_modes_find(size_t nodes, size_t each, const uint16_t *val
              : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the modes of %zu nodes", nodes);
 }
 
-#define PI 3.14159265358979323846
-
 /* Associated Legendre functions over sin^m are polynomials of z; times the real and imaginary parts
  * of (x + i y)^m they need no angle. */
 void abbe_light_harmonics_at(size_t degree, const double d[3], double *value) {
-  double real = 1, imaginary = 0, first = sqrt(1 / (4 * PI));
+  double real = 1, imaginary = 0, first = sqrt(1 / (4 * ABBE_PI));
   for (size_t m = 0; m <= degree; m++) {
     double before = 0, now = first; /* of degrees l - 1 and l, each with its norm */
     for (size_t l = m; l <= degree; l++) {

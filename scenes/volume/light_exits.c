@@ -1,7 +1,7 @@
 #include "scenes/volume/light_exits.h"
 
+#include "base/maths.h"
 #include "colorimetry/weights.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/volume/half.h"
 
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "scenes/volume/light_nodes.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <stdlib.h>
 #include <string.h>

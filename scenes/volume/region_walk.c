@@ -1,5 +1,5 @@
 /* Rays through cells: abbe_volume_region_walk. */
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/volume/volume_region.h"
 
 /* A ray and what it has been through. */

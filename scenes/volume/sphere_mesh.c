@@ -1,6 +1,6 @@
 #include "scenes/volume/sphere_mesh.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "scenes/volume/volume_body.h"
 
+#include "base/maths.h"
 #include "base/number.h"
-#include "scenes/geometry/vector.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 #include "scenes/volume/volume_file.h"
 
+#include "base/maths.h"
 #include "base/number.h"
 #include "colorimetry/image/exr.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/volume/half.h"
 
 #include <stdio.h>

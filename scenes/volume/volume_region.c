@@ -1,6 +1,6 @@
 #include "scenes/volume/volume_region.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <stdlib.h>
 

@@ -1,8 +1,8 @@
 #include "spectral/materials/absorption.h"
 
-#include <math.h>
+#include "base/maths.h"
 
-static const double PI = 3.14159265358979323846;
+#include <math.h>
 
 /* Dominant wavelengths of the Rec.709 primaries, blue to red. */
 static const double PRIMARY_NM[3] = {464.2, 549.1, 611.4};
@@ -17,11 +17,11 @@ double abbe_absorption_transmittance(double attenuation_per_m, double thickness_
 }
 
 double abbe_absorption_from_k(double k, double lambda_nm) {
-  return 4 * PI * k / (lambda_nm * 1e-9);
+  return 4 * ABBE_PI * k / (lambda_nm * 1e-9);
 }
 
 double abbe_absorption_k(double attenuation_per_m, double lambda_nm) {
-  return attenuation_per_m * (lambda_nm * 1e-9) / (4 * PI);
+  return attenuation_per_m * (lambda_nm * 1e-9) / (4 * ABBE_PI);
 }
 
 /* Copies the points, each value through `convert`; parameter is the thickness where it needs one.

@@ -4,7 +4,7 @@
 #include "tests/gl/glsl.h"
 #include "tests/random.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/mesh/bvh.h"
 #include "scenes/shapes/shape.h"
 #include "scenes/view/view.h"

@@ -2,6 +2,7 @@
  */
 #include "validation/compare/compare_state.h"
 
+#include "colorimetry/image/rgb_encoding.h"
 #include "colorimetry/rgb_space.h"
 
 #include <math.h>
@@ -75,7 +76,7 @@ typedef struct pair {
 /* [IEC61966] of light that is clipped to 0 to 1. */
 static float encode(double light) {
   const double x = light > 0 ? fmin(light, 1) : 0;
-  return (float)(x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055);
+  return (float)abbe_srgb_encoded(x);
 }
 
 /* REF's Y at a pixel less its noise: the mean of those around it as far as their errors explain how

@@ -1,5 +1,6 @@
 #include "validation/compare/compare_state.h"
 
+#include "base/maths.h"
 #include "base/order.h"
 #include "colorimetry/difference.h"
 #include "colorimetry/rgb_space.h"
@@ -15,7 +16,6 @@ static const double csf_a[3][2] = {{1, 0}, {1, 0}, {34.1, 13.5}};
 static const double csf_b[3][2] = {{0.0047, 1e-5}, {0.0053, 1e-5}, {0.04, 0.025}};
 static const double widest_b = 0.04, edge_width = 0.082;
 static const double colour_power = 0.7, knee = 0.4, knee_value = 0.95;
-static const double pi = 3.14159265358979323846;
 
 enum { MAX_REACH = 160, MAX_STOPS = 32, BLOCK = 128 /* of a row */, LANES = 8 };
 static const double max_pixels_per_degree = 1000;
@@ -78,13 +78,13 @@ static kernel detector(int reach, double deviation, int order) {
 }
 
 static void make_kernels(job *j, double ppd) {
-  const int reach = (int)ceil(3 * sqrt(widest_b / (2 * pi * pi)) * ppd);
+  const int reach = (int)ceil(3 * sqrt(widest_b / (2 * ABBE_PI * ABBE_PI)) * ppd);
   for (int c = 0; c < 3; c++) {
     double total = 0;
     for (int t = 0; t < 2; t++) {
-      j->csf[c][t] = gaussian(reach, pi * pi / (csf_b[c][t] * ppd * ppd));
+      j->csf[c][t] = gaussian(reach, ABBE_PI * ABBE_PI / (csf_b[c][t] * ppd * ppd));
       const double s = j->csf[c][t].sum;
-      total += j->share[c][t] = csf_a[c][t] * sqrt(pi / csf_b[c][t]) * s * s;
+      total += j->share[c][t] = csf_a[c][t] * sqrt(ABBE_PI / csf_b[c][t]) * s * s;
     }
     for (int t = 0; t < 2; t++) j->share[c][t] /= total;
   }

@@ -1,19 +1,19 @@
 #include "validation/gem/gem_light.h"
 
+#include "base/maths.h"
 #include "validation/transport/interface.h"
 #include "validation/transport/side_by_side.h"
 
 #include <math.h>
 
-#define PI 3.14159265358979323846
-#define GOLDEN_RAD (PI * (3 - sqrt(5.0))) /* of the spiral [Vogel1979] */
+#define GOLDEN_RAD (ABBE_PI * (3 - sqrt(5.0))) /* of the spiral [Vogel1979] */
 
 enum { LANES = 64 };
 
 abbe_gem_lamps abbe_gem_lamps_make(const abbe_gem_eye *eye, size_t repeat, double head_rad) {
   abbe_gem_lamps out;
   /* the room's own turn: the golden section of a whole one */
-  const double turn = 2 * PI * fmod((double)repeat * 0.6180339887498949, 1);
+  const double turn = 2 * ABBE_PI * fmod((double)repeat * 0.6180339887498949, 1);
   for (int i = 0; i < LANES; i++) {
     const double height = (i + 0.5) / ABBE_GEM_LAMPS, across = sqrt(fmax(1 - height * height, 0));
     const double azimuth = turn + i * GOLDEN_RAD;
@@ -29,7 +29,7 @@ abbe_gem_lamps abbe_gem_lamps_make(const abbe_gem_eye *eye, size_t repeat, doubl
     out.x[i] = (float)d[0];
     out.y[i] = (float)d[1];
     out.z[i] = (float)d[2];
-    out.cos_radius[i] = dark ? 2 : (float)cos(radius * PI / 180);
+    out.cos_radius[i] = dark ? 2 : (float)cos(radius * ABBE_PI / 180);
   }
   return out;
 }
@@ -49,17 +49,13 @@ float abbe_gem_lamps_light(const abbe_gem_lamps *lamps, const abbe_gem_path *pat
   return sum;
 }
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 bool abbe_gem_path_enter(const abbe_gem_stone *s, const double o[3], const double d[3], double p[3],
                          double n[3]) {
   double enter = -INFINITY, leave = INFINITY;
   const double *face = NULL;
   for (size_t j = 0; j < s->plane_count; j++) {
     const double *plane = s->plane[j];
-    const double ahead = dot(plane, d), off = plane[3] - dot(plane, o);
+    const double ahead = abbe_vector_dot(plane, d), off = plane[3] - abbe_vector_dot(plane, o);
     if (ahead < 0 && off / ahead > enter) {
       enter = off / ahead;
       face = plane;

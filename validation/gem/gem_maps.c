@@ -70,7 +70,7 @@ static void paint(const abbe_gem_view *v, size_t pixel, abbe_gem_map map, double
 /* [IEC61966] */
 static double encode(double light) {
   const double x = fmin(fmax(light, 0), 1);
-  return x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055;
+  return abbe_srgb_encoded(x);
 }
 
 abbe_result abbe_gem_map_paint(const abbe_gem_view *v, abbe_gem_map map, abbe_image *out,

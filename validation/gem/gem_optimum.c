@@ -1,12 +1,11 @@
 #include "validation/gem/gem_optimum.h"
 
+#include "base/maths.h"
 #include "scenes/cuts/cut_stretch.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 void abbe_gem_optimum_free(abbe_gem_optimum *optimum) {
   if (optimum == NULL) return;
@@ -81,8 +80,9 @@ static abbe_result try_pair(const work *w, const abbe_cut *cut, const abbe_cut_p
 
 static abbe_result check(const abbe_gem_optimum_desc *d, abbe_error *error) {
   const bool angles = d->crown_from_rad > 0 && d->crown_to_rad >= d->crown_from_rad &&
-                      d->crown_to_rad < 0.5 * PI && d->pavilion_from_rad > 0 &&
-                      d->pavilion_to_rad >= d->pavilion_from_rad && d->pavilion_to_rad < 0.5 * PI;
+                      d->crown_to_rad < 0.5 * ABBE_PI && d->pavilion_from_rad > 0 &&
+                      d->pavilion_to_rad >= d->pavilion_from_rad &&
+                      d->pavilion_to_rad < 0.5 * ABBE_PI;
   if (angles && d->crowns >= 1 && d->pavilions >= 1 && d->crowns <= ABBE_GEM_MOST_ANGLES &&
       d->pavilions <= ABBE_GEM_MOST_ANGLES && (unsigned)d->measure < ABBE_GEM_AMOUNT_COUNT &&
       (d->parts == 0 || d->part < d->parts))
@@ -91,7 +91,8 @@ static abbe_result check(const abbe_gem_optimum_desc *d, abbe_error *error) {
                         "a grid of %zu x %zu angles, %g to %g and %g to %g rad; each is above 0 "
                         "and below %g, ascending, and there are 1 to %d",
                         d->crowns, d->pavilions, d->crown_from_rad, d->crown_to_rad,
-                        d->pavilion_from_rad, d->pavilion_to_rad, 0.5 * PI, ABBE_GEM_MOST_ANGLES);
+                        d->pavilion_from_rad, d->pavilion_to_rad, 0.5 * ABBE_PI,
+                        ABBE_GEM_MOST_ANGLES);
 }
 
 static double *spread(double from, double to, size_t count) {
@@ -110,8 +111,8 @@ static abbe_result make_grid(const abbe_cut *cut, const abbe_cut_polyhedron *p,
     return abbe_error_set(error, ABBE_GEOMETRY,
                           "the design has no slanted facets on its %s, whose angle could change",
                           crown_deg > 0 ? "pavilion" : "crown");
-  out->design_crown_rad = crown_deg * PI / 180;
-  out->design_pavilion_rad = pavilion_deg * PI / 180;
+  out->design_crown_rad = crown_deg * ABBE_PI / 180;
+  out->design_pavilion_rad = pavilion_deg * ABBE_PI / 180;
   out->crowns = d->crowns;
   out->pavilions = d->pavilions;
   out->crown_rad = spread(d->crown_from_rad, d->crown_to_rad, d->crowns);

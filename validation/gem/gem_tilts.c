@@ -1,5 +1,6 @@
 #include "validation/gem/gem_tilts.h"
 
+#include "base/maths.h"
 #include "colorimetry/difference.h"
 #include "validation/gem/gem_light.h"
 #include "validation/gem/gem_view.h"
@@ -8,8 +9,6 @@
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 enum { CURVES = ABBE_GEM_TILT_CURVE_COUNT, REPEATS = ABBE_GEM_MOST_REPEATS };
 
@@ -207,13 +206,13 @@ static abbe_result allocate(const work *w, abbe_gem_tilts *out, frame **f, unsig
 
 static abbe_result check(const abbe_gem_stone *stone, const abbe_weights *weights,
                          const abbe_gem_tilts_desc *d, abbe_error *error) {
-  if (!(d->most_rad >= 0 && d->most_rad <= 0.5 * PI) || d->steps > ABBE_GEM_MOST_STEPS ||
+  if (!(d->most_rad >= 0 && d->most_rad <= 0.5 * ABBE_PI) || d->steps > ABBE_GEM_MOST_STEPS ||
       d->side > ABBE_GEM_MOST_SIDE || d->repeats == 1 || d->repeats > REPEATS)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "tilts of %g rad in %zu steps, %zu pixels a side and %zu repeats; there "
                           "are up to %g, 1 to %d, 1 to %d and 2 to %d",
-                          d->most_rad, d->steps, d->side, d->repeats, 0.5 * PI, ABBE_GEM_MOST_STEPS,
-                          ABBE_GEM_MOST_SIDE, REPEATS);
+                          d->most_rad, d->steps, d->side, d->repeats, 0.5 * ABBE_PI,
+                          ABBE_GEM_MOST_STEPS, ABBE_GEM_MOST_SIDE, REPEATS);
   return abbe_gem_view_check(stone, weights, d->head_rad, error);
 }
 
@@ -229,7 +228,7 @@ abbe_result abbe_gem_tilts_make(const abbe_gem_stone *stone, const abbe_weights 
                   .repeats = desc->repeats > 0 ? desc->repeats : 8,
                   .head_rad = desc->head_rad};
   const size_t steps = desc->steps > 0 ? desc->steps : 15;
-  const double most = desc->most_rad > 0 ? desc->most_rad : PI / 6;
+  const double most = desc->most_rad > 0 ? desc->most_rad : ABBE_PI / 6;
   out->tilts = 2 * steps + 1;
   out->step_rad = most / (double)steps;
   out->has_fire = stone->wavelengths > 1;
@@ -237,7 +236,7 @@ abbe_result abbe_gem_tilts_make(const abbe_gem_stone *stone, const abbe_weights 
   unsigned char *states = NULL;
   result = allocate(&w, out, &f, &states, error);
   if (result == ABBE_OK) {
-    for (int a = 0; a < ABBE_GEM_AXES; a++) out->axis_rad[a] = a * PI / ABBE_GEM_AXES;
+    for (int a = 0; a < ABBE_GEM_AXES; a++) out->axis_rad[a] = a * ABBE_PI / ABBE_GEM_AXES;
     for (size_t t = 0; t < out->tilts; t++)
       out->tilt_rad[t] = ((double)t - (double)steps) * out->step_rad;
     result = run(&w, desc, f, out, error);

@@ -1,11 +1,11 @@
 #include "validation/gem/gem_view.h"
 
+#include "base/maths.h"
+
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 enum { AMOUNTS = ABBE_GEM_AMOUNT_COUNT };
 
@@ -107,10 +107,10 @@ static abbe_result trace(const work *w, size_t threads, abbe_error *error) {
 
 abbe_result abbe_gem_view_check(const abbe_gem_stone *stone, const abbe_weights *weights,
                                 double head_rad, abbe_error *error) {
-  if (!(head_rad >= 0 && head_rad < 0.25 * PI))
+  if (!(head_rad >= 0 && head_rad < 0.25 * ABBE_PI))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a head's half angle of %g rad; it is at least 0 and below %g", head_rad,
-                          0.25 * PI);
+                          0.25 * ABBE_PI);
   if (weights->count != stone->wavelengths || stone->plane_count == 0 || !(weights->sum[1] > 0))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a stone of %zu planes at %zu wavelengths, and weights of %zu",

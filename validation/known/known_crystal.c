@@ -1,8 +1,8 @@
 /* A block of calcite under rays at the line d: where its two rays go, and what each of them has. */
 #include "validation/known/known_group.h"
 
+#include "base/maths.h"
 #include "base/number.h"
-#include "scenes/geometry/vector.h"
 #include "spectral/dispersion/dispersion.h"
 
 #include <math.h>

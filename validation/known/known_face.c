@@ -2,8 +2,8 @@
 #include "validation/known/forms/closed_form.h"
 #include "validation/known/known_group.h"
 
+#include "base/maths.h"
 #include "base/number.h"
-#include "scenes/geometry/vector.h"
 #include "spectral/dispersion/dispersion.h"
 
 #include <stdio.h>

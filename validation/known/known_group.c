@@ -1,7 +1,7 @@
 #include "validation/known/known_group.h"
 
+#include "base/maths.h"
 #include "base/number.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/import/scene_file.h"
 
 #include <stdarg.h>

@@ -4,12 +4,13 @@
 #ifndef ABBE_VALIDATION_KNOWN_KNOWN_GROUP_H
 #define ABBE_VALIDATION_KNOWN_KNOWN_GROUP_H
 
+#include "base/maths.h"
 #include "scenes/scene.h"
 #include "validation/known/known_answers.h"
 #include "validation/transport/geometry.h"
 #include "validation/walks/route.h"
 
-#define ABBE_KNOWN_DEGREES (180 / 3.14159265358979323846)
+#define ABBE_KNOWN_DEGREES (180 / ABBE_PI)
 
 typedef struct abbe_known_run {
   const abbe_known_options *options;

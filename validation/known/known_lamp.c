@@ -1,4 +1,5 @@
 /* Lights with a size, straight and off mirrors: form factors, penumbras, images through holes. */
+#include "base/maths.h"
 #include "validation/known/forms/closed_form.h"
 #include "validation/known/known_light.h"
 
@@ -6,8 +7,6 @@
 
 #include <math.h>
 #include <stdio.h>
-
-#define PI 3.14159265358979323846
 
 typedef struct work {
   double from, to; /* of the group */
@@ -80,7 +79,7 @@ static abbe_result add_mirror_disk(abbe_known_run *run, work w, abbe_error *erro
   return add_text(
       run,
       (abbe_known_setting){.what = "white disk under a coaxial mirror disk of 0.7, mean radiance",
-                           .exact = 0.7 * 2 * factor * PI * patch * patch / seen,
+                           .exact = 0.7 * 2 * factor * ABBE_PI * patch * patch / seen,
                            .samples = 1 << 21,
                            .channel = "caustic.Y"},
       UNDER_A_MIRROR
@@ -124,7 +123,7 @@ static abbe_result add_mirror_square(abbe_known_run *run, work w, abbe_error *er
  * light, from -1 to 1 of half of that. */
 static abbe_result add_penumbra(abbe_known_run *run, bool disk, double at, work w,
                                 abbe_error *error) {
-  const double half = 0.02, open = disk ? PI * half * half : 4 * half * half;
+  const double half = 0.02, open = disk ? ABBE_PI * half * half : 4 * half * half;
   const double share = disk ? abbe_closed_form_penumbra(at) : 0.5 * (1 + at);
   char text[1024], what[112];
   abbe_number_format(what, sizeof what,
@@ -140,7 +139,7 @@ static abbe_result add_penumbra(abbe_known_run *run, bool disk, double at, work 
       at * half, at * half, disk ? "disk, radius: 0.02" : "rectangle, width: 0.04, height: 0.04");
   return add_text(run,
                   (abbe_known_setting){.what = what,
-                                       .exact = 1000 * open / (4 * PI) * share,
+                                       .exact = 1000 * open / (4 * ABBE_PI) * share,
                                        .samples = 1 << 16,
                                        .side = 64,
                                        .channel = "Y"},
@@ -151,11 +150,12 @@ static abbe_result add_penumbra(abbe_known_run *run, bool disk, double at, work 
 
 /* A mirror shows the light as far behind it as it is before it. */
 static abbe_result add_seen_in_mirror(abbe_known_run *run, work w, abbe_error *error) {
-  const double away = hypot(0.6, 1.2), slant = 1.2 / away, film = pow(2 * tan(2.5 * PI / 180), 2);
+  const double away = hypot(0.6, 1.2), slant = 1.2 / away,
+               film = pow(2 * tan(2.5 * ABBE_PI / 180), 2);
   return add_text(
       run,
       (abbe_known_setting){.what = "disk light seen in a mirror of 0.8, mean radiance",
-                           .exact = 0.8 * 7 * PI * 0.02 * 0.02 * slant / (away * away) / film,
+                           .exact = 0.8 * 7 * ABBE_PI * 0.02 * 0.02 * slant / (away * away) / film,
                            .samples = 1 << 16,
                            .side = 64,
                            .channel = "Y"},
@@ -179,7 +179,7 @@ static double squared(double x, double y) {
  * moment, by the picture's half side. */
 static abbe_result add_pinhole(abbe_known_run *run, bool spread, work w, abbe_error *error) {
   const double r = 0.02, s = 0.006, a = 1, half = 0.03; /* m; the last of what the picture shows */
-  const double flux = 0.8 * 1e4 * PI * r * r * s * s / (a * a);
+  const double flux = 0.8 * 1e4 * ABBE_PI * r * r * s * s / (a * a);
   const double square = r * r / 2 + 2 * pow(2 * s, 2) / 12;
   char text[2048];
   abbe_number_format(
@@ -202,8 +202,9 @@ static abbe_result add_pinhole(abbe_known_run *run, bool spread, work w, abbe_er
       "[{translate: [0, %g, 0]}]}\n"
       "- {name: north, shape: rectangle, width: 0.01, height: 1, reflectance: 0, transform: "
       "[{translate: [0, %g, 0]}]}\n",
-      2 * atan(half / 0.3) * 180 / PI, r, -0.5 - s / 2, 0.5 + s / 2, -0.5 - s / 2, 0.5 + s / 2);
-  const double mean = flux / PI / (4 * half * half);
+      2 * atan(half / 0.3) * 180 / ABBE_PI, r, -0.5 - s / 2, 0.5 + s / 2, -0.5 - s / 2,
+      0.5 + s / 2);
+  const double mean = flux / ABBE_PI / (4 * half * half);
   return add_text(
       run,
       (abbe_known_setting){

@@ -1,5 +1,6 @@
 /* Media that scatter: a slab of mist in the sun from above and below, a lamp in mist, a shaft of
  * sunlight under still water seen from within and from above, and what is left of light. */
+#include "base/maths.h"
 #include "validation/known/forms/closed_form.h"
 #include "validation/known/known_light.h"
 
@@ -9,7 +10,7 @@
 
 #include <math.h>
 
-static const double pi = 3.14159265358979323846, middle_nm = 560;
+static const double pi = ABBE_PI, middle_nm = 560;
 
 static const char reason[] = "as improbable as four standard errors, taken from the spread of the "
                              "passes; and 2e-3 of the value, for one direction stands for a view "

@@ -4,21 +4,19 @@
 #include "validation/known/forms/closed_form.h"
 #include "validation/known/known_light.h"
 
+#include "base/maths.h"
 #include "base/number.h"
-#include "scenes/geometry/vector.h"
 #include "spectral/dispersion/dispersion.h"
 #include "validation/transport/mirrors.h"
 
 #include <math.h>
 #include <stdio.h>
 
-#define PI 3.14159265358979323846
-
 /* ---- metals ---- */
 
 static abbe_result add_metal(abbe_known_run *run, const char *metal, double degrees,
                              abbe_error *error) {
-  const double lambda_nm[2] = {ABBE_LINE_D_NM, ABBE_LINE_D_NM + 1}, angle = degrees * PI / 180;
+  const double lambda_nm[2] = {ABBE_LINE_D_NM, ABBE_LINE_D_NM + 1}, angle = degrees * ABBE_PI / 180;
   abbe_known_stage stage;
   abbe_mirrors mirrors = {0};
   double n = 0, k = 0;
@@ -104,7 +102,8 @@ static double ball_light(double r, const double p[3], double direction[3]) {
 /* A ball of radius R in a beam of E sends rho E R^2 / 4 into every direction, from afar. */
 static abbe_result add_ball(abbe_known_run *run, double degrees, work w, abbe_error *error) {
   enum { STEPS = 32 };
-  const double r = 0.02, beam = 1e4, angle = degrees * PI / 180, half = 0.7 * tan(20 * PI / 180);
+  const double r = 0.02, beam = 1e4, angle = degrees * ABBE_PI / 180,
+               half = 0.7 * tan(20 * ABBE_PI / 180);
   const double x = sin(angle), z = -cos(angle); /* from the beam's own direction on */
   abbe_scene scene = {0};
   abbe_known_setting s = caustic;
@@ -117,7 +116,7 @@ static abbe_result add_ball(abbe_known_run *run, double degrees, work w, abbe_er
     const double p[3] = {x - a * z, b, z + a * x};
     double d[3];
     const double light = ball_light(r, p, d);
-    s.exact += 0.8 * beam / PI * light * (d[0] * x + d[2] * z) / (STEPS * STEPS);
+    s.exact += 0.8 * beam / ABBE_PI * light * (d[0] * x + d[2] * z) / (STEPS * STEPS);
   }
   abbe_result result = abbe_known_scene(
       &scene, error,
@@ -147,15 +146,15 @@ static abbe_result add_images(abbe_known_run *run, work w, abbe_error *error) {
   s.what = "lamp between two mirrors of 0.8, its images' light on the floor";
   for (int k = 1; k < 60; k++)
     for (int side = -1; side <= 1; side += 2)
-      s.exact +=
-          pow(0.8, k) / PI * mean_irradiance(side * k + (k % 2 ? -lamp : lamp), height, x, half);
+      s.exact += pow(0.8, k) / ABBE_PI *
+                 mean_irradiance(side * k + (k % 2 ? -lamp : lamp), height, x, half);
   abbe_result result = abbe_known_scene(
       &scene, error,
       "camera: {eye: [%g, 0, 2], target: [%g, 0, 0], up: [0, 1, 0], fov: %.17g}\n"
       "lights: [{name: lamp, kind: point, position: [%g, 0, %g], intensity: 1}]\n"
       "objects:\n"
       "- {name: floor, shape: rectangle, width: 20, height: 20, reflectance: 1}\n%s",
-      x, x, 2 * atan(half / 2) * 180 / PI, lamp, height, between_mirrors);
+      x, x, 2 * atan(half / 2) * 180 / ABBE_PI, lamp, height, between_mirrors);
   if (result == ABBE_OK) result = add_run(run, s, &scene, w, error);
   abbe_scene_free(&scene);
   return result;
@@ -205,7 +204,7 @@ static const place places[] = {
 
 static abbe_result add_ring(abbe_known_run *run, const place *p, work w, abbe_error *error) {
   const bool sun = p->elevation > 0;
-  const double e = p->elevation * PI / 180, away = 20 * RADIUS;
+  const double e = p->elevation * ABBE_PI / 180, away = 20 * RADIUS;
   const double at[2] = {RADIUS * p->at[0], RADIUS * p->at[1]}, half = RADIUS * p->half;
   abbe_catacaustic c = {.radius = RADIUS, .height = RADIUS * p->height, .elevation = e};
   for (int k = 0; k < 3; k++) c.lamp[k] = RADIUS * p->lamp[k];
@@ -213,7 +212,7 @@ static abbe_result add_ring(abbe_known_run *run, const place *p, work w, abbe_er
   abbe_known_setting s = caustic;
   size_t branches;
   char what[112], light[160];
-  s.exact = abbe_catacaustic_mean(&c, at, half, 12, 0.9, 3, &branches) / PI;
+  s.exact = abbe_catacaustic_mean(&c, at, half, 12, 0.9, 3, &branches) / ABBE_PI;
   snprintf(what, sizeof what, "%s: %zu ray%s", p->what, branches, branches == 1 ? "" : "s");
   s.what = what;
   if (sun)
@@ -233,8 +232,8 @@ static abbe_result add_ring(abbe_known_run *run, const place *p, work w, abbe_er
       "- {name: floor, shape: rectangle, width: 1, height: 1, reflectance: 1}\n"
       "- {name: ring, shape: lathe, around: 2048, profile: [[%.17g, 0], [%.17g, %.17g]],\n"
       "   mirror: 0.9}\n",
-      at[0], at[1], away, at[0], at[1], 2 * atan(half / away) * 180 / PI, light, c.radius, c.radius,
-      c.height);
+      at[0], at[1], away, at[0], at[1], 2 * atan(half / away) * 180 / ABBE_PI, light, c.radius,
+      c.radius, c.height);
   if (result == ABBE_OK) result = add_run(run, s, &scene, w, error);
   abbe_scene_free(&scene);
   return result;

@@ -1,5 +1,6 @@
 /* Panes under a slanting beam: what they reflect and pass with all reflections inside, clear and
  * absorbing. */
+#include "base/maths.h"
 #include "validation/known/forms/closed_form.h"
 #include "validation/known/known_light.h"
 
@@ -9,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define PI 3.14159265358979323846
 #define ABOVE 2.0  /* m: the plane that the reflected light lands on */
 #define BELOW 0.06 /* m: the one under the pane */
 
@@ -67,7 +67,7 @@ static double all_light(const pane *p, const abbe_rings *rings) {
   double radius[RADII], enclosed[RADII], flux = 0;
   abbe_rings_radii(rings, radius);
   for (int i = 0; i < RADII; i++)
-    enclosed[i] = cos(p->degrees / ABBE_KNOWN_DEGREES) * PI * radius[i] * radius[i];
+    enclosed[i] = cos(p->degrees / ABBE_KNOWN_DEGREES) * ABBE_PI * radius[i] * radius[i];
   abbe_rings_expect(rings, enclosed, 1, &flux);
   return flux;
 }

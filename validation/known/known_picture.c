@@ -4,8 +4,8 @@
 #include "validation/known/known_light.h"
 #include "validation/known/sphere_quadrature.h"
 
+#include "base/maths.h"
 #include "base/number.h"
-#include "scenes/geometry/vector.h"
 #include "spectral/dispersion/dispersion.h"
 
 #include <math.h>
@@ -13,7 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
 #define RADIUS 0.04 /* m */
 #define PLANE 4.0   /* radii below the centre */
 #define REFLECTANCE 0.5
@@ -95,7 +94,7 @@ static void flux_of_pixels(const abbe_rings *rings, float *flux) {
     double distance = (centre[2] - origin[2]) / d[2];
     double angle = film * off_axis * off_axis * off_axis; /* sr of the pixel */
     double area = d[2] < 0 ? angle * distance * distance / -d[2] : 0;
-    flux[i] = (float)(PI / REFLECTANCE * area);
+    flux[i] = (float)(ABBE_PI / REFLECTANCE * area);
   }
 }
 
@@ -194,8 +193,8 @@ static abbe_result add_rows(abbe_known_run *run, const view_of *v, bool all,
   for (size_t i = 0; i < RINGS && result == ABBE_OK; i++) {
     double mean = 0, spread = 0, area = 0, e[2] = {rings->edge[i], rings->edge[i + 1]};
     abbe_known_mean(sum, passes, RINGS, i, i + 1, all ? 0 : 1, &mean, &spread);
-    area = PI * (e[1] - e[0]) * (e[1] + e[0]);
-    double scale = REFLECTANCE / PI / area; /* to radiance */
+    area = ABBE_PI * (e[1] - e[0]) * (e[1] + e[0]);
+    double scale = REFLECTANCE / ABBE_PI / area; /* to radiance */
     abbe_known_answer row = {
         .unit = "W/(m2 sr)",
         .exact = exact[i] * scale,

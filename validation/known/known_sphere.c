@@ -1,5 +1,6 @@
 /* What a sphere throws onto a plane: receiver maps of whole runs, ring by ring, against the
  * quadrature. */
+#include "base/maths.h"
 #include "validation/known/known_light.h"
 #include "validation/known/sphere_quadrature.h"
 
@@ -20,7 +21,6 @@ enum {
 };
 
 #define RADIUS 0.04 /* m */
-#define PI 3.14159265358979323846
 
 /* Of the flux that reaches the plane, what lies inside each ring's outer edge. */
 static const double quantile[RINGS] = {0.1, 0.35, 0.6, 0.85};
@@ -45,9 +45,9 @@ static abbe_sphere_setup setup_of(const setting *s, size_t orders) {
 
 /* W that fall on the sphere for a power of 1. */
 static double incident(const setting *s) {
-  if (s->light <= 0) return PI * RADIUS * RADIUS;
+  if (s->light <= 0) return ABBE_PI * RADIUS * RADIUS;
   double q = 1 / s->light;
-  return 2 * PI * q * q / (1 + sqrt(1 - q * q));
+  return 2 * ABBE_PI * q * q / (1 + sqrt(1 - q * q));
 }
 
 static abbe_result load(const setting *s, double outer, abbe_scene *scene, abbe_error *error) {

@@ -1,5 +1,6 @@
 /* Water: where single rays land under a wave, the focus under its crests, and the light that a wave
  * throws onto the bottom before that focus and behind it. */
+#include "base/maths.h"
 #include "validation/known/forms/closed_form.h"
 #include "validation/known/forms/wave_caustic.h"
 #include "validation/known/known_light.h"
@@ -77,7 +78,7 @@ static abbe_result add_focus(abbe_known_run *run, const char *line, double lambd
     const double x = steps[i] * WAVELENGTH / 256;
     double at;
     result = follow(&stage, x, lambda_nm, &at, error);
-    const double crest = w.amplitude * (1 - cos(2 * 3.14159265358979323846 * x / w.wavelength));
+    const double crest = w.amplitude * (1 - cos(2 * ABBE_PI * x / w.wavelength));
     const double fell = w.depth + w.amplitude - crest;
     row.traced += factor[i] * (crest + fell * x / (x - at));
   }
@@ -207,8 +208,7 @@ static abbe_result add_seen(abbe_known_run *run, double from, double to, abbe_er
     const double way = 1 + 1 / cos(asin(sin(angle) / n));
     const double per_m = abbe_material_attenuation(scene.object[0].material, middle_nm);
     s.exact = cos(angle) * (1 - abbe_closed_form_fresnel(angle, n)) *
-              (1 - abbe_closed_form_fresnel(0, n)) * exp(-per_m * depth * way) / (n * n) /
-              3.14159265358979323846;
+              (1 - abbe_closed_form_fresnel(0, n)) * exp(-per_m * depth * way) / (n * n) / ABBE_PI;
     s.slack = 2e-3 * s.exact;
     s.useful = 5e-2 * s.exact;
     result = abbe_known_add_setting(run, &s, &scene, from, to, error);
@@ -221,7 +221,7 @@ static abbe_result add_seen(abbe_known_run *run, double from, double to, abbe_er
  * share; and, beyond the critical angle, the bottom in the surface's mirror. */
 static abbe_result add_below(abbe_known_run *run, bool mirrored, double from, double to,
                              abbe_error *error) {
-  const double middle_nm = 560, pi = 3.14159265358979323846;
+  const double middle_nm = 560, pi = ABBE_PI;
   abbe_scene scene = {0};
   double n = 0;
   abbe_result result = abbe_known_scene(

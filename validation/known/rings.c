@@ -1,11 +1,9 @@
 #include "validation/known/rings.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 enum { AZIMUTHS = 2048 };
 
@@ -93,7 +91,7 @@ void abbe_rings_radii(const abbe_rings *rings, double *radius) {
 static double share_before(const abbe_rings *r, double radius, size_t edge) {
   size_t inside = 0;
   for (int k = 0; k < AZIMUTHS; k++) {
-    double around = 2 * PI * (k + 0.5) / AZIMUTHS;
+    double around = 2 * ABBE_PI * (k + 0.5) / AZIMUTHS;
     const double at[3] = {r->centre[0] + radius * cos(around), r->centre[1] + radius * sin(around),
                           r->centre[2]};
     size_t column, row;

@@ -1,6 +1,7 @@
 #include "validation/known/sphere_quadrature.h"
 
 #include "base/gsl_guard.h"
+#include "base/maths.h"
 #include "colorimetry/weights.h"
 #include "spectral/optics.h"
 
@@ -8,8 +9,6 @@
 #include <gsl/gsl_integration.h>
 #include <math.h>
 #include <stdlib.h>
-
-#define PI 3.14159265358979323846
 
 enum { OUTSIDE = -1, GRID = 1024, WORKSPACE = 256, MAX_CUTS = 64, MAX_BANDS = 4096 };
 
@@ -71,17 +70,17 @@ static ray ray_at(const abbe_sphere_setup *s, branch way, double angle) {
     double q = R / s->light_distance, cos_alpha = sqrt((1 - q * sin_i) * (1 + q * sin_i));
     alpha = asin(q * sin_i);
     alpha_slope = q * r.cos_i * i_slope / cos_alpha;
-    r.flux = s->power * 2 * PI * q * sin_i * alpha_slope;
+    r.flux = s->power * 2 * ABBE_PI * q * sin_i * alpha_slope;
   } else {
-    r.flux = s->power * PI * R * R * 2 * sin_i * r.cos_i * i_slope;
+    r.flux = s->power * ABBE_PI * R * R * 2 * sin_i * r.cos_i * i_slope;
   }
   r.b = R * sin_i;
   r.b_slope = R * r.cos_i * i_slope;
   if (way.order == OUTSIDE) {
-    r.phi = alpha + PI - 2 * i;
+    r.phi = alpha + ABBE_PI - 2 * i;
     r.phi_slope = alpha_slope - 2 * i_slope;
   } else {
-    r.phi = alpha - 2 * (i - t) - way.order * (PI - 2 * t);
+    r.phi = alpha - 2 * (i - t) - way.order * (ABBE_PI - 2 * t);
     r.phi_slope = alpha_slope - 2 * i_slope + 2 * (way.order + 1) * t_slope;
   }
   return r;
@@ -224,13 +223,13 @@ static bool add_branches(abbe_sphere_quadrature *q) {
   const abbe_sphere_setup *s = &q->setup;
   bool thin = s->index < 1;
   for (size_t k = s->without_direct_order ? 1 : 0; k <= s->inner_orders; k++) {
-    branch inside = {.order = (int)k, .by_refraction = thin, .from = 0, .to = PI / 2};
+    branch inside = {.order = (int)k, .by_refraction = thin, .from = 0, .to = ABBE_PI / 2};
     if (!add_branch(q, inside)) return false;
   }
   if (!s->outside) return true;
-  branch outer = {.order = OUTSIDE, .by_refraction = thin, .from = 0, .to = PI / 2};
+  branch outer = {.order = OUTSIDE, .by_refraction = thin, .from = 0, .to = ABBE_PI / 2};
   if (!add_branch(q, outer)) return false;
-  branch total = {.order = OUTSIDE, .from = thin ? asin(s->index) : 0, .to = PI / 2};
+  branch total = {.order = OUTSIDE, .from = thin ? asin(s->index) : 0, .to = ABBE_PI / 2};
   return !thin || add_branch(q, total);
 }
 
@@ -310,9 +309,9 @@ static double flux_at(double angle, void *user) {
 
 /* What falls on the sphere at all: the scale of the absolute error. */
 static double incident(const abbe_sphere_setup *s) {
-  if (s->light_distance <= 0) return s->power * PI * s->radius * s->radius;
+  if (s->light_distance <= 0) return s->power * ABBE_PI * s->radius * s->radius;
   double q = s->radius / s->light_distance;
-  return s->power * 2 * PI * q * q / (1 + sqrt((1 - q) * (1 + q)));
+  return s->power * 2 * ABBE_PI * q * q / (1 + sqrt((1 - q) * (1 + q)));
 }
 
 /* The angle of the piece at which its landing is x, or the end beyond which x lies. */
@@ -345,10 +344,10 @@ static abbe_result integrate(const abbe_sphere_quadrature *q, const piece *p, do
 /* Light that misses the sphere. */
 static double flux_past(const abbe_sphere_setup *s, double radius_m) {
   if (s->light_distance <= 0)
-    return s->power * PI * fmax(0, (radius_m - s->radius) * (radius_m + s->radius));
+    return s->power * ABBE_PI * fmax(0, (radius_m - s->radius) * (radius_m + s->radius));
   double q = s->radius / s->light_distance, edge = sqrt((1 - q) * (1 + q));
   double here = cos(atan2(radius_m, s->light_distance + s->plane_distance));
-  return s->power * 2 * PI * fmax(0, edge - here);
+  return s->power * 2 * ABBE_PI * fmax(0, edge - here);
 }
 
 abbe_result abbe_sphere_quadrature_enclosed(const abbe_sphere_quadrature *quadrature,
@@ -377,7 +376,7 @@ abbe_result abbe_sphere_quadrature_rings(const abbe_sphere_quadrature *quadratur
     if (result != ABBE_OK) return result;
     if (i > 0) {
       double a = edge_m[i - 1], b = edge_m[i];
-      irradiance_w_m2[i - 1] = (outer - inner) / (PI * (b - a) * (b + a));
+      irradiance_w_m2[i - 1] = (outer - inner) / (ABBE_PI * (b - a) * (b + a));
     }
     inner = outer;
   }

@@ -1,6 +1,6 @@
 #include "validation/landing/landing_rays.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "spectral/optics.h"
 
 #include <math.h>

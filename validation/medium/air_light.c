@@ -1,6 +1,6 @@
 #include "validation/medium/air_light.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "validation/transport/lamp_place.h"
 
 static float dot(const float a[3], const float b[3]) {

@@ -1,7 +1,7 @@
 #include "validation/tracer/tracer_state.h"
 
+#include "base/maths.h"
 #include "base/order.h"
-#include "scenes/geometry/vector.h"
 #include "validation/tracer/emission.h"
 
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "validation/transport/geometry.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "validation/transport/mirrors.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,6 @@
 #include "validation/volume/exit_fill.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/volume/half.h"
 #include "validation/volume/exit_points.h"
 #include "validation/volume/volume_checkpoint.h"

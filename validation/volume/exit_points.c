@@ -1,5 +1,6 @@
 #include "validation/volume/exit_points.h"
 
+#include "base/maths.h"
 #include "validation/transport/interface.h"
 #include "validation/transport/random.h"
 
@@ -120,7 +121,6 @@ void abbe_exit_walk(const abbe_exit_space *space, const abbe_exit_start *start,
   }
 }
 
-#define PI 3.14159265358979323846
 /* Numbers of a point that fill their space evenly together: two of its place, one of its
  * wavelength, three of its first decisions. */
 enum { EVEN = 6, SALT = 0x65786974 };
@@ -168,7 +168,7 @@ static abbe_result make_sheet(const abbe_lone_object *lone, sheet *out, double *
   *out = (sheet){.surface = s, .faces = s->sphere ? 1 : lone->object.mesh.face_count};
   out->upto = calloc(out->faces + 1, sizeof *out->upto);
   if (out->upto == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for faces");
-  double sum = s->sphere ? 4 * PI * (double)s->radius * (double)s->radius : 0, inside = 0;
+  double sum = s->sphere ? 4 * ABBE_PI * (double)s->radius * (double)s->radius : 0, inside = 0;
   for (size_t i = 0; !s->sphere && i < out->faces; i++) {
     double a[3], u[3], v[3], n[3];
     const double each = corners_of(s, i, a, u, v, n);
@@ -203,7 +203,7 @@ static size_t choose_face(const sheet *s, double *x) {
 
 static void place_on_sphere(const abbe_surface *s, double x, double y, abbe_exit_point *p) {
   const double z = 1 - 2 * x, r = sqrt(fmax(1 - z * z, 0));
-  const double n[3] = {r * cos(2 * PI * y), r * sin(2 * PI * y), z};
+  const double n[3] = {r * cos(2 * ABBE_PI * y), r * sin(2 * ABBE_PI * y), z};
   for (int k = 0; k < 3; k++) {
     p->normal[k] = (float)n[k];
     p->place[k] = s->centre[k] + s->radius * (float)n[k];

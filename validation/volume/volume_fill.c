@@ -1,9 +1,9 @@
 #include "validation/volume/volume_fill.h"
 
 #include "base/clock.h"
+#include "base/maths.h"
 #include "colorimetry/rgb_space.h"
 #include "colorimetry/weights.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/volume/half.h"
 #include "spectral/wavelengths.h"
 #include "validation/transport/random.h"
@@ -19,7 +19,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
 enum { TASK = 16384, LINES = 1 << 18, SALT = 0x766f6c, LEAST_PASSES = 2 };
 
 /* A thread of the work under way. */
@@ -221,14 +220,14 @@ static void start(const fill *f, const beam *b, uint32_t j, abbe_photon *p) {
   static const uint32_t golden[3] = {3915259345u, 3569120481u, 3253582939u};
   double u[2], world[3];
   for (int k = 0; k < 2; k++) u[k] = (double)(j * golden[k] + b->shift[k]) * 0x1p-32;
-  const double r = b->radius * sqrt(u[0]), a = 2 * PI * u[1];
+  const double r = b->radius * sqrt(u[0]), a = 2 * ABBE_PI * u[1];
   for (int k = 0; k < 3; k++)
     world[k] = f->lone.place.centre[k] + r * (cos(a) * b->x[k] + sin(a) * b->y[k]) -
                2 * b->radius * b->way[k];
   abbe_geometry_to_frame(&f->lone.geometry, world, p->o);
   for (int k = 0; k < 3; k++) p->d[k] = (float)b->way[k];
   p->step = abbe_spectral_sampling_step(j * golden[2] + b->shift[2], &p->within);
-  p->flux = (float)(PI * b->radius * b->radius / (double)f->desc.photons);
+  p->flux = (float)(ABBE_PI * b->radius * b->radius / (double)f->desc.photons);
   p->y = f->sampling.xyz[p->step][1];
   p->id = j;
 }

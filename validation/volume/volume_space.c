@@ -1,11 +1,10 @@
 #include "validation/volume/volume_space.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "validation/transport/random.h"
 
 #include <stdlib.h>
 
-#define PI 3.14159265358979323846
 enum { SALT = 0x737063, MOST_FACES_OF_LINE = 256 };
 
 typedef struct tally {
@@ -53,14 +52,14 @@ static void make_line(uint32_t i, const double centre[3], double radius, double 
   double x[3], y[3];
   abbe_random4(i, 0, 0, SALT, random);
   d[2] = 2 * (double)random[0] - 1;
-  const double across = sqrt(fmax(1 - d[2] * d[2], 0)), turn = 2 * PI * (double)random[1];
+  const double across = sqrt(fmax(1 - d[2] * d[2], 0)), turn = 2 * ABBE_PI * (double)random[1];
   d[0] = across * cos(turn);
   d[1] = across * sin(turn);
   const double other[3] = {fabs(d[0]) < 0.6, fabs(d[0]) >= 0.6, 0};
   abbe_vector_cross(d, other, x);
   abbe_vector_normalise(x);
   abbe_vector_cross(d, x, y);
-  const double r = radius * sqrt((double)random[2]), a = 2 * PI * (double)random[3];
+  const double r = radius * sqrt((double)random[2]), a = 2 * ABBE_PI * (double)random[3];
   for (int k = 0; k < 3; k++)
     o[k] = centre[k] + r * (cos(a) * x[k] + sin(a) * y[k]) - 4 * radius * d[k];
 }

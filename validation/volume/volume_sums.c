@@ -1,6 +1,6 @@
 #include "validation/volume/volume_sums.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,6 @@
 #include "validation/walks/eye_shading.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "validation/medium/air_light.h"
 #include "validation/transport/lamp_place.h"
 

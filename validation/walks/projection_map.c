@@ -1,7 +1,7 @@
 #include "validation/walks/projection_map.h"
 
+#include "base/maths.h"
 #include "base/thread/watch.h"
-#include "scenes/geometry/vector.h"
 #include "validation/transport/lamp_place.h"
 #include "validation/transport/random.h"
 #include "validation/transport/side_by_side.h"
@@ -11,7 +11,6 @@
 #include <string.h>
 
 enum { TRIALS = 8, MAX_SPLITS = 16 };
-static const double pi = 3.14159265358979323846;
 /* Share of photons for a cell whose trials meet no refractor, against one whose trials all do. */
 static const double least_share = 0.03;
 
@@ -56,7 +55,7 @@ static void disk_place(const abbe_projection_map *a, const float disk[2], float 
     for (int k = 0; k < 3; k++) out[k] = x * a->edge[0][k] + y * a->edge[1][k];
     return;
   }
-  float r = a->radius * sqrtf(disk[0]), angle = 2 * (float)pi * disk[1], s[3], t[3];
+  float r = a->radius * sqrtf(disk[0]), angle = 2 * (float)ABBE_PI * disk[1], s[3], t[3];
   abbe_geometry_across(a->facing, s, t);
   for (int k = 0; k < 3; k++) out[k] = r * (cosf(angle) * s[k] + sinf(angle) * t[k]);
 }
@@ -143,7 +142,7 @@ static patch cover(const abbe_projection_map *a, const double centre[3], double 
   double cap = asin(grown / distance), off = acos(fmin(fmax(z / distance, -1), 1));
   double across = hypot(x, y), r = 2 * sin(0.5 * off);
   /* the map stretches angles by 1 / cos(half the angle off its axis), at the most */
-  if (off + cap > 0.95 * pi) return (patch){.radius = -1};
+  if (off + cap > 0.95 * ABBE_PI) return (patch){.radius = -1};
   double scale = across > 0 ? r / across : 0;
   double stretch = 1 / cos(0.5 * (off + cap));
   return (patch){x * scale, y * scale, stretch * cap, stretch * asin(radius / distance)};

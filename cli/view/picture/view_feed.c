@@ -1,6 +1,6 @@
 #include "cli/view/picture/view_feed.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "spectral/optics.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 #include "cli/view/picture/view_spot.h"
 
 #include "base/clock.h"
+#include "base/maths.h"
 #include "cli/view/state/view_camera.h"
-#include "scenes/geometry/vector.h"
 #include "validation/tracer/tracer.h"
 
 #include <math.h>

@@ -1,11 +1,11 @@
 #include "cli/view/state/view_camera.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/view/view.h"
 
 #include <string.h>
 
-#define STEEPEST (89 * 3.14159265358979323846 / 180)
+#define STEEPEST (89 * ABBE_PI / 180)
 
 static void add(const double a[3], double s, const double b[3], double out[3]) {
   for (int k = 0; k < 3; k++) out[k] = a[k] + s * b[k];

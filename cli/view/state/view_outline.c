@@ -1,8 +1,8 @@
 #include "cli/view/state/view_outline.h"
 
+#include "base/maths.h"
 #include "base/number.h"
 #include "base/yaml/yaml.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -192,7 +192,7 @@ static void hold_value(abbe_view_value *v) {
 
 /* The design's own angle, and its tangent halved and doubled. False where the side has none. */
 static bool start_angle(const abbe_object *object, const char *key, abbe_view_value *v) {
-  const double turn = 180 / 3.14159265358979323846;
+  const double turn = 180 / ABBE_PI;
   v->value = object->cut_deg[strcmp(key, "crown") == 0 ? 0 : 1];
   v->min = atan(0.5 * tan(v->value / turn)) * turn;
   v->max = atan(2 * tan(v->value / turn)) * turn;
@@ -318,7 +318,7 @@ bool abbe_view_outline_transform(const abbe_view_object *object, double tilt_rad
                                  const double axis[3], const double translate[3], char *out,
                                  size_t size) {
   char tilt[160] = "";
-  const double degrees = tilt_rad * 180 / 3.14159265358979323846;
+  const double degrees = tilt_rad * 180 / ABBE_PI;
   if (tilt_rad != 0)
     abbe_number_format(tilt, sizeof tilt, "%s{rotate: {axis: [%.6g, %.6g, %.6g], angle: %.6g}}",
                        object->before[0] != '\0' ? ", " : "", axis[0], axis[1], axis[2], degrees);

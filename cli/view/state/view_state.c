@@ -1,8 +1,8 @@
 #include "cli/view/state/view_state.h"
 
+#include "base/maths.h"
 #include "base/number.h"
 #include "cli/view/state/view_camera.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/import/scene_value.h"
 
 #include <math.h>

@@ -1,11 +1,11 @@
 #include "gl/plan/examine/inner_light.h"
 
+#include "base/maths.h"
 #include "base/number.h"
 #include "base/thread/watch.h"
 #include "gl/plan/examine/material_range.h"
 #include "gl/plan/examine/reach.h"
 #include "scenes/geometry/digest.h"
-#include "scenes/geometry/vector.h"
 #include "spectral/optics.h"
 
 #include <math.h>

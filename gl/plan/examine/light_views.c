@@ -1,7 +1,7 @@
 #include "gl/plan/examine/light_views.h"
 
+#include "base/maths.h"
 #include "gl/plan/examine/reach.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "gl/plan/examine/lit_window.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <math.h>
 #include <string.h>

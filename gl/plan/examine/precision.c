@@ -1,7 +1,7 @@
 #include "gl/plan/examine/precision.h"
 
+#include "base/maths.h"
 #include "gl/plan/examine/light_views.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/view/view.h"
 
 #include <math.h>
@@ -26,11 +26,11 @@ static abbe_result check_distance(const abbe_scene *scene, const abbe_light *lig
   double radius =
       object->exact.kind == ABBE_EXACT_SPHERE ? object->exact.radius : abbe_vector_length(half);
   if (distance > most_radii * radius && sun)
-    return abbe_error_set(
-        error, ABBE_UNSUPPORTED,
-        "the refractors reach over %.3g m, and '%s' is %.3g m wide: single precision loses its shape "
-        "in the light '%s' of them all; move them nearer together",
-        distance, object->name, 2 * radius, light->name);
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the refractors reach over %.3g m, and '%s' is %.3g m wide: single "
+                          "precision loses its shape "
+                          "in the light '%s' of them all; move them nearer together",
+                          distance, object->name, 2 * radius, light->name);
   if (distance > most_radii * radius)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the light '%s' is %.3g m from the refractor '%s', which is %.3g m wide: "

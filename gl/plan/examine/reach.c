@@ -1,6 +1,6 @@
 #include "gl/plan/examine/reach.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/view/view.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 #include "gl/plan/examine/models.h"
 
+#include "base/maths.h"
 #include "gl/plan/examine/reach.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 
@@ -44,8 +44,8 @@ void abbe_receiver_model_choose(const abbe_scene *scene, abbe_plan *plan) {
 }
 
 /* Whether the parallelogram's plane has everything on one side of it: all other corners, those of
- * the refractors' bounds, and the places that light comes from. To 1e-6 of its own size: what is larger
- * may lie close to what is small. */
+ * the refractors' bounds, and the places that light comes from. To 1e-6 of its own size: what is
+ * larger may lie close to what is small. */
 static bool bounds_all(const abbe_scene *scene, const abbe_plan *plan, const double p[9]) {
   const double tolerance = 1e-6 * (abbe_vector_length(p + 3) + abbe_vector_length(p + 6));
   double low = 0, high = 0;

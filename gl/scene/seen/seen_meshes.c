@@ -1,6 +1,6 @@
 #include "gl/scene/seen/seen_meshes.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <math.h>
 #include <stdlib.h>

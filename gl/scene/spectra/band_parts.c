@@ -1,6 +1,6 @@
 #include "gl/scene/spectra/band_parts.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "spectral/optics.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* Meshes from files. */
 #include "base/file.h"
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/import/mesh/gltf_data.h"
 #include "scenes/import/mesh/mesh_reading.h"
 #include "scenes/mesh/mesh.h"

@@ -1,6 +1,6 @@
 #include "scenes/import/mesh/mesh_reading.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "scenes/volume/exits/exit_light.h"
 
+#include "base/maths.h"
 #include "colorimetry/weights.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/volume/half.h"
 
 #include <assert.h>

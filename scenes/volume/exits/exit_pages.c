@@ -1,6 +1,6 @@
 #include "scenes/volume/exits/exit_pages.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/volume/exits/exit_sheets.h"
 
 #include <assert.h>

@@ -1,6 +1,6 @@
 #include "scenes/volume/exits/exit_sheets.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <string.h>
 

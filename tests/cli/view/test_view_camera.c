@@ -1,8 +1,8 @@
 /* A camera led by hand: known places, what a move keeps, and what it may not reach. */
 #include "tests/check.h"
 
+#include "base/maths.h"
 #include "cli/view/state/view_camera.h"
-#include "scenes/geometry/vector.h"
 
 #define DEGREES (3.14159265358979323846 / 180)
 static const double tolerance = 1e-12; /* doubles of order one, some dozen operations */

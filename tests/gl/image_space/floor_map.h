@@ -4,7 +4,7 @@
 
 #include "tests/gl/frame.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #define PI 3.14159265358979323846
 

@@ -2,7 +2,7 @@
  * on planes and in a sphere, for point and directional lights. */
 #include "tests/gl/glsl.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/view/estimator.h"
 
 enum { CASES = 64 };

@@ -2,8 +2,8 @@
  * flat mirror sends, the three directions, sparse neighbourhoods, and the filter over frames. */
 #include "tests/gl/image_space/image_pictures.h"
 
+#include "base/maths.h"
 #include "gl/scene/camera_view.h"
-#include "scenes/geometry/vector.h"
 
 static const abbe_fill fills[] = {ABBE_FILL_POINTS, ABBE_FILL_QUADS, ABBE_FILL_TRIANGLES,
                                   ABBE_FILL_GATHER_EYE, ABBE_FILL_GATHER_LIGHT};

@@ -6,7 +6,7 @@
 #include "gl/pinholes/pinhole_samples.h"
 #include "validation/known/forms/closed_form.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 static const double PI = 3.14159265358979323846;
 

@@ -2,8 +2,8 @@
  */
 #include "tests/scenes/scene_text.h"
 
+#include "base/maths.h"
 #include "gl/scene/gpu_scene.h"
-#include "scenes/geometry/vector.h"
 
 #define CRATE                                                                                      \
   "- {name: crate, shape: box, size: [0.1, 0.2, 0.3], transform: [{rotate: {axis: [1, 2, 3], "     \

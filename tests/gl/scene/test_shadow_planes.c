@@ -5,8 +5,8 @@
 #include "tests/gl/glsl.h"
 #include "tests/random.h"
 
+#include "base/maths.h"
 #include "gl/scene/gpu_scene.h"
-#include "scenes/geometry/vector.h"
 
 #include <string.h>
 

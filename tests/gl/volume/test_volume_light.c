@@ -2,9 +2,9 @@
  * the object and the light are moved; what a volume does not hold is refused. */
 #include "tests/gl/frame.h"
 
+#include "base/maths.h"
 #include "colorimetry/rgb_space.h"
 #include "scenes/geometry/transform.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/object_motion.h"
 #include "scenes/volume/exits/exit_pages.h"
 #include "scenes/volume/half.h"

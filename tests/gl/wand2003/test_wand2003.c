@@ -3,7 +3,7 @@
 #include "tests/gl/frame.h"
 #include "validation/known/forms/closed_form.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/samples/surface_samples.h"
 
 static const double PI = 3.14159265358979323846;

@@ -1,6 +1,6 @@
 #include "scenes/cuts/cut_polyhedron.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/shapes/convex.h"
 #include "tests/scenes/cuts/designs.h"
 

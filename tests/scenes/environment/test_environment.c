@@ -1,8 +1,8 @@
 #include "tests/check.h"
 #include "tests/random.h"
 
+#include "base/maths.h"
 #include "scenes/environment/environment.h"
-#include "scenes/geometry/vector.h"
 
 #include <stdlib.h>
 

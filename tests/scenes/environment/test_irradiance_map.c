@@ -1,8 +1,8 @@
 /* Irradiance by normal: nodes, and how far off it is between them. */
 #include "tests/check.h"
 
+#include "base/maths.h"
 #include "scenes/environment/irradiance_map.h"
-#include "scenes/geometry/vector.h"
 
 enum { ROWS = ABBE_IRRADIANCE_MAP_ROWS, COLUMNS = ABBE_IRRADIANCE_MAP_COLUMNS };
 

@@ -1,9 +1,9 @@
 /* A cube of a map: directions, solid angles, and the same light in every level. */
 #include "tests/check.h"
 
+#include "base/maths.h"
 #include "scenes/environment/environment_source.h"
 #include "scenes/environment/radiance_cube.h"
-#include "scenes/geometry/vector.h"
 
 static const double PI = 3.14159265358979323846;
 

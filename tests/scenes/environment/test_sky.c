@@ -1,7 +1,7 @@
 #include "tests/check.h"
 
+#include "base/maths.h"
 #include "scenes/environment/environment_source.h"
-#include "scenes/geometry/vector.h"
 
 #define PI 3.14159265358979323846
 

@@ -2,8 +2,8 @@
  * are at the same pixels, and light comes from the same directions. */
 #include "tests/scenes/export/export_text.h"
 
+#include "base/maths.h"
 #include "colorimetry/image/exr.h"
-#include "scenes/geometry/vector.h"
 
 #include <cjson/cJSON.h>
 

@@ -1,8 +1,8 @@
 #include "scenes/import/scene_reading.h"
 #include "scenes/import/scene_value.h"
 
+#include "base/maths.h"
 #include "scenes/cuts/cut_file.h"
-#include "scenes/geometry/vector.h"
 #include "spectral/formats/material_table_load.h"
 
 #include "tests/check.h"

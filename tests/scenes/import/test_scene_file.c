@@ -3,7 +3,7 @@
 #include "tests/check.h"
 
 #include "base/file.h"
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "spectral/optics.h"
 
 #define PI 3.14159265358979323846

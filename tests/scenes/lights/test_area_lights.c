@@ -1,8 +1,8 @@
 /* Points in place of lights that have a size: their light and their places. */
 #include "tests/scenes/scene_text.h"
 
+#include "base/maths.h"
 #include "scenes/lights/area_lights.h"
-#include "scenes/geometry/vector.h"
 
 static const double PI = 3.14159265358979;
 

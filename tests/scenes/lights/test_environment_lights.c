@@ -1,7 +1,7 @@
 /* Directional lights in place of an environment, and the soft light that is left. */
 #include "tests/scenes/scene_text.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/lights/environment_lights.h"
 
 static const double PI = 3.14159265358979;

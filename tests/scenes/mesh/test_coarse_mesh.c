@@ -1,7 +1,7 @@
 /* Coarser meshes against what they must keep: the surface without holes, its sides apart. */
 #include "scenes/mesh/coarse_mesh.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/shapes/shape.h"
 #include "scenes/shapes/water.h"
 #include "tests/check.h"

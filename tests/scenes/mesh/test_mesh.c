@@ -1,7 +1,7 @@
 #include "tests/scenes/solids.h"
 
+#include "base/maths.h"
 #include "scenes/geometry/transform.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/shapes/shape.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/mesh/mesh_charts.h"
 #include "scenes/shapes/shape.h"
 

@@ -1,8 +1,8 @@
 /* What abbe_mesh_fix does, and what it refuses. */
 #include "tests/scenes/solids.h"
 
+#include "base/maths.h"
 #include "scenes/geometry/transform.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/shapes/shape.h"
 
 #include <stdlib.h>

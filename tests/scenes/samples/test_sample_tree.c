@@ -2,7 +2,7 @@
  * mirror square of even light gives, against its closed form and the sum over all samples. */
 #include "tests/check.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/samples/sample_tree.h"
 #include "scenes/shapes/shape.h"
 

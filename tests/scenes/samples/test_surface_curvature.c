@@ -2,7 +2,7 @@
  * it; not at all on a plane. */
 #include "tests/check.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/samples/surface_curvature.h"
 #include "scenes/shapes/shape.h"
 

@@ -3,7 +3,7 @@
 #include "tests/check.h"
 #include "tests/random.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/samples/surface_samples.h"
 #include "scenes/shapes/shape.h"
 

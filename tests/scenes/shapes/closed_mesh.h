@@ -4,7 +4,7 @@
 
 #include "tests/check.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/mesh/mesh.h"
 
 /* One closed shell of unit normals, each within a cosine of its faces'. Returns what was found. */

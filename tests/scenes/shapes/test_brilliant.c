@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/shapes/brilliant.h"
 #include "scenes/shapes/convex.h"
 

@@ -1,7 +1,7 @@
 /* Knots: closed, of a tube's volume, with normals of their own surface, and what they refuse. */
 #include "tests/check.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/mesh/mesh.h"
 #include "scenes/shapes/knot.h"
 

@@ -2,7 +2,7 @@
  * surfaces whose lookup is a formula; what they do where nothing is seen. */
 #include "tests/check.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/view/estimator.h"
 
 #include <float.h>

@@ -2,7 +2,7 @@
 #include "tests/random.h"
 #include "tests/scenes/scene_text.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/volume/body_symmetry.h"
 #include "scenes/volume/volume_body.h"
 

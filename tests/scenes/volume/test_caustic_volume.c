@@ -3,7 +3,7 @@
 #include "tests/random.h"
 #include "tests/scenes/volume/volumes.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <stdlib.h>
 

@@ -2,8 +2,8 @@
  * colour, and ends at what it meets first. */
 #include "tests/scenes/scene_text.h"
 
+#include "base/maths.h"
 #include "colorimetry/weights.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/volume/exits/exit_pages.h"
 #include "scenes/volume/half.h"
 

@@ -3,7 +3,7 @@
 #include "tests/check.h"
 #include "tests/random.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/volume/half.h"
 #include "scenes/volume/light_exits.h"
 

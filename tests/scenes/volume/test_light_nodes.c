@@ -2,7 +2,7 @@
 #include "tests/check.h"
 #include "tests/random.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/volume/light_nodes.h"
 
 static const double up[3] = {0, 0, 2};

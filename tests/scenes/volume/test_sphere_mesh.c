@@ -2,7 +2,7 @@
 #include "tests/check.h"
 #include "tests/random.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/volume/sphere_mesh.h"
 
 #include <stdlib.h>

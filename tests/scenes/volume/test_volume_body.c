@@ -2,8 +2,8 @@
  * another. */
 #include "tests/scenes/scene_text.h"
 
+#include "base/maths.h"
 #include "scenes/geometry/transform.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/object_motion.h"
 #include "scenes/volume/volume_body.h"
 

@@ -3,7 +3,7 @@
 #include "tests/check.h"
 #include "tests/scenes/scene_text.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "validation/landing/landing_rays.h"
 
 #define PANE                                                                                       \

@@ -1,6 +1,6 @@
 #include "tests/scenes/scene_text.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "validation/transport/geometry.h"
 
 static void ray(const abbe_geometry *g, const double from[3], const double to[3], float o[3],

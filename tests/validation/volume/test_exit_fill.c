@@ -3,8 +3,8 @@
  * is all that came in. */
 #include "tests/validation/volume/filled_volume.h"
 
+#include "base/maths.h"
 #include "colorimetry/weights.h"
-#include "scenes/geometry/vector.h"
 #include "scenes/volume/exits/exit_light.h"
 #include "scenes/volume/half.h"
 #include "spectral/optics.h"

@@ -2,7 +2,7 @@
  * through nothing, flux that every shell has. */
 #include "tests/validation/volume/filled_volume.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/view/view.h"
 #include "scenes/volume/half.h"
 

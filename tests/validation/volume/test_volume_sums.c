@@ -3,7 +3,7 @@
 #include "tests/check.h"
 #include "tests/random.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "validation/volume/volume_sums.h"
 
 static void make_region(abbe_region_desc desc, abbe_volume_region *out) {

@@ -1,6 +1,6 @@
 #include "tests/validation/trace_scene.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "validation/tracer/tracer_state.h"
 
 static const double pi = 3.14159265358979;

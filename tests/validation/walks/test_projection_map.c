@@ -1,6 +1,6 @@
 #include "tests/scenes/scene_text.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "tests/patience.h"
 #include "tests/random.h"
 #include "validation/walks/projection_map.h"

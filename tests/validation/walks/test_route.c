@@ -1,6 +1,6 @@
 #include "tests/scenes/scene_text.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "spectral/optics.h"
 #include "validation/walks/route.h"
 

@@ -1,13 +1,12 @@
 #include "validation/known/forms/wave_caustic.h"
 
+#include "base/maths.h"
 #include "validation/known/forms/closed_form.h"
 
 #include <math.h>
 
-#define PI 3.14159265358979323846
-
 double abbe_wave_caustic_landing(const abbe_wave_caustic *w, double x, double *passed) {
-  const double k = 2 * PI / w->wavelength, below = w->depth + w->amplitude * cos(k * x);
+  const double k = 2 * ABBE_PI / w->wavelength, below = w->depth + w->amplitude * cos(k * x);
   const double tilt = atan(-w->amplitude * k * sin(k * x));
   const double turn = tilt - asin(sin(tilt) / w->index); /* off the vertical */
   if (passed != NULL)
@@ -17,13 +16,13 @@ double abbe_wave_caustic_landing(const abbe_wave_caustic *w, double x, double *p
 }
 
 double abbe_wave_caustic_focus(const abbe_wave_caustic *w) {
-  const double k = 2 * PI / w->wavelength;
+  const double k = 2 * ABBE_PI / w->wavelength;
   return w->index / ((w->index - 1) * w->amplitude * k * k);
 }
 
 /* Light that lands at `from` to `to` enters within this of them, for no slope is steeper. */
 static double reach(const abbe_wave_caustic *w) {
-  const double tilt = atan(w->amplitude * 2 * PI / w->wavelength);
+  const double tilt = atan(w->amplitude * 2 * ABBE_PI / w->wavelength);
   return (w->depth + w->amplitude) * tan(tilt - asin(sin(tilt) / w->index));
 }
 

@@ -1,6 +1,6 @@
 #include "validation/sweep/studies/node_errors.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
 #include "validation/sweep/studies/transport_study.h"
 
 #include "base/clock.h"
+#include "base/maths.h"
 #include "gl/accuracy/frame_times.h"
 #include "scenes/volume/volume_file.h"
 #include "validation/frames/frame_flicker.h"
@@ -13,8 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#define RAD (3.14159265358979323846 / 180)
 
 bool abbe_transport_looks_up(const abbe_transport_contestant *c) {
   return c->fill.passes > 0;
@@ -215,7 +214,7 @@ static abbe_result time_without(const work *w, const abbe_render_desc *desc, dou
   for (size_t i = 0; i < scene->light_count; i++) {
     dark.light[i] = scene->light[i];
     dark.light[i].kind = ABBE_LIGHT_SPOT;
-    dark.light[i].cone_rad = 10 * RAD;
+    dark.light[i].cone_rad = 10 * ABBE_DEGREE;
     dark.light[i].soft_rad = 0;
     for (int k = 0; k < 3; k++) {
       dark.light[i].position[k] = max[k] + 10 * (max[k] - min[k]);
@@ -283,7 +282,8 @@ static abbe_result move_light(const work *w, const abbe_render_desc *desc, abbe_
   size_t count = 0;
   for (; count < MOVES && result == ABBE_OK; count++) {
     abbe_image picture = {0};
-    if (!turn_light(&scene->light[0], middle, (double)(count + 1) * RAD, &moved.light[0])) break;
+    if (!turn_light(&scene->light[0], middle, (double)(count + 1) * ABBE_DEGREE, &moved.light[0]))
+      break;
     const double start = abbe_clock_seconds();
     result = abbe_renderer_change(renderer, &moved, desc, error);
     if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, NULL, error);

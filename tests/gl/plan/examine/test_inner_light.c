@@ -1,9 +1,9 @@
 /* What convex solids keep inside: known answers, and what the renderer's ledger says. */
 #include "tests/gl/frame.h"
 
+#include "base/maths.h"
 #include "gl/plan/examine/inner_light.h"
 #include "gl/plan/plan.h"
-#include "scenes/geometry/vector.h"
 
 #include <string.h>
 

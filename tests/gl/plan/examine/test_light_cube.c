@@ -2,9 +2,9 @@
 #include "tests/random.h"
 #include "tests/scenes/scene_text.h"
 
+#include "base/maths.h"
 #include "gl/plan/examine/light_views.h"
 #include "gl/plan/plan.h"
-#include "scenes/geometry/vector.h"
 
 static const double origin[3] = {0.3, -0.2, 0.1};
 

@@ -1,8 +1,8 @@
 /* What a view sees of a mesh stays: cut where depth grows sixteenfold, in parts that share corners. */
 #include "tests/check.h"
 
+#include "base/maths.h"
 #include "gl/scene/seen/seen_meshes.h"
-#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "tests/scenes/import/mesh/meshes.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
  * another. */
 #include "tests/scenes/import/mesh/polygons.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "scenes/import/mesh/mesh_reading.h"
 
 static abbe_error error;

@@ -2,7 +2,7 @@
  * nothing there. */
 #include "tests/gl/frame.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 #include "validation/sweep/studies/node_errors.h"
 
 enum { PLACES = ABBE_NODE_ERRORS_PLACES };

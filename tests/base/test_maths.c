@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "scenes/geometry/vector.h"
+#include "base/maths.h"
 
 TEST(products) {
   const double x[3] = {1, 0, 0}, y[3] = {0, 2, 0};

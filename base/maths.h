@@ -1,12 +1,17 @@
-/* vector.h: three-component vectors in double precision, for the geometry of the scenes.
+/* maths.h: pi, angles, and three-component vectors in double precision.
  *
- * Small inline functions over double[3]; it has no matrices (transform.h) and no physics.
+ * Small inline functions over double[3]; it has no matrices (scenes/geometry/transform.h) and no
+ * physics.
  */
-#ifndef ABBE_SCENES_GEOMETRY_VECTOR_H
-#define ABBE_SCENES_GEOMETRY_VECTOR_H
+#ifndef ABBE_BASE_MATHS_H
+#define ABBE_BASE_MATHS_H
 
 #include <math.h>
 #include <stdbool.h>
+
+#define ABBE_PI 3.14159265358979323846
+/* A degree in radians. */
+#define ABBE_DEGREE (ABBE_PI / 180)
 
 static inline double abbe_vector_dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
