@@ -167,20 +167,6 @@ abbe_result abbe_gpu_make_levels(abbe_gpu *gpu, GLenum format, size_t side, size
   return result;
 }
 
-abbe_result abbe_gpu_make_cube(abbe_gpu *gpu, size_t side, size_t levels, GLuint *out,
-                               abbe_error *error) {
-  abbe_stored_key key = {.kind = ABBE_STORED_TEXTURE,
-                         .format = GL_RGBA32F,
-                         .width = side,
-                         .height = side,
-                         .levels = levels};
-  for (size_t i = 0; i < levels; i++) key.bytes += 6 * (side >> i) * (side >> i) * 16;
-  abbe_result result = make_storage(gpu, GL_TEXTURE_CUBE_MAP, &key, out, error);
-  if (result == ABBE_OK)
-    set_filter(gpu->gl, GL_TEXTURE_CUBE_MAP, GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR);
-  return result;
-}
-
 void abbe_gpu_drop_buffers(abbe_gpu *gpu, size_t count, GLuint *buffer) {
   for (size_t i = 0; i < count; i++) {
     if (buffer[i] != 0) abbe_gpu_store_put_back(&gpu->store, ABBE_STORED_BUFFER, buffer[i]);

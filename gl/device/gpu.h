@@ -100,9 +100,6 @@ abbe_result abbe_gpu_make_texture(abbe_gpu *gpu, GLenum format, size_t width, si
 /* A square array with levels, trilinear. ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_gpu_make_levels(abbe_gpu *gpu, GLenum format, size_t side, size_t layers,
                                  size_t levels, GLuint *out, abbe_error *error);
-/* A cube map of GL_RGBA32F with levels, trilinear. ABBE_GL, ABBE_NO_MEMORY. */
-abbe_result abbe_gpu_make_cube(abbe_gpu *gpu, size_t side, size_t levels, GLuint *out,
-                               abbe_error *error);
 /* Back to the device's store; each becomes 0, those that are 0 are left alone. */
 void abbe_gpu_drop_buffers(abbe_gpu *gpu, size_t count, GLuint *buffer);
 void abbe_gpu_drop_textures(abbe_gpu *gpu, size_t count, GLuint *texture);

@@ -77,7 +77,6 @@ static void set_all(const abbe_gl *gl, GLint alignment) {
 void abbe_gl_state_begin(const abbe_gl *gl) {
   abbe_gl_clear_errors(gl);
   set_all(gl, 1);
-  gl->Enable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
 }
 
 void abbe_gl_state_end(const abbe_gl *gl) {

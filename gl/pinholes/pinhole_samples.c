@@ -39,7 +39,7 @@ void abbe_pinhole_sky_set(const abbe_gpu_scene *scene, const abbe_pinhole_sky *s
   abbe_gpu_set_int(gpu, program, "pinhole_sky", unit);
   abbe_gpu_set_float(gpu, program, "sky_side", (double)sky->side);
   gpu->gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
-  gpu->gl->BindTexture(GL_TEXTURE_CUBE_MAP, sky->texture);
+  gpu->gl->BindTexture(GL_TEXTURE_2D, sky->texture);
 }
 
 enum { UNIT = 4, NODE_UNIT = 3, ROWS = ABBE_PINHOLE_ROWS, NODE_ROWS = ABBE_PINHOLE_NODE_ROWS };

@@ -22,9 +22,9 @@ bool lies_between(ivec2 at, ivec2 step, vec3 open, out vec3 middle) {
 // What is around over a hemisphere, in the mean.
 vec3 open_light() {
   float top = log2(sky_side);
-  vec3 sum = textureLod(pinhole_sky, vec3(1, 0, 0), top).rgb + textureLod(pinhole_sky, vec3(-1, 0, 0), top).rgb;
-  sum += textureLod(pinhole_sky, vec3(0, 1, 0), top).rgb + textureLod(pinhole_sky, vec3(0, -1, 0), top).rgb;
-  sum += textureLod(pinhole_sky, vec3(0, 0, 1), top).rgb + textureLod(pinhole_sky, vec3(0, 0, -1), top).rgb;
+  vec3 sum = cube_at(pinhole_sky, vec3(1, 0, 0), top).rgb + cube_at(pinhole_sky, vec3(-1, 0, 0), top).rgb;
+  sum += cube_at(pinhole_sky, vec3(0, 1, 0), top).rgb + cube_at(pinhole_sky, vec3(0, -1, 0), top).rgb;
+  sum += cube_at(pinhole_sky, vec3(0, 0, 1), top).rgb + cube_at(pinhole_sky, vec3(0, 0, -1), top).rgb;
   return 0.5235987756 * sum;
 }
 

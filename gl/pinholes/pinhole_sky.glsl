@@ -1,5 +1,5 @@
 // What is around as pinholes see it. TURNS_SKY: who includes this has environment_from_world.
-uniform samplerCube pinhole_sky;  // W/(m2 sr), by the surroundings' own directions
+uniform sampler2D pinhole_sky;  // W/(m2 sr), by the surroundings' own directions
 #ifndef TURNS_SKY
 uniform mat3 environment_from_world;
 #endif
@@ -7,7 +7,7 @@ uniform float sky_side;  // texels of a face
 
 #include "cube_mean.glsl"
 
-vec3 sky_at(vec3 d, float level) { return textureLod(pinhole_sky, environment_from_world * d, level).rgb; }
+vec3 sky_at(vec3 d, float level) { return cube_at(pinhole_sky, environment_from_world * d, level); }
 
 // The level whose texels are so wide, rad.
 float sky_level(float wide) { return max(log2(wide * sky_side / CUBE_TEXEL), 0.0); }

@@ -54,21 +54,40 @@ static abbe_result make_texture(abbe_gpu *gpu, const abbe_radiance_map *map, con
   return abbe_gl_check(gl, "the upload of the environment", error);
 }
 
+/* Where a level's first face begins, cube_mean.glsl looks it up. */
+static void place_of(size_t side, size_t level, size_t at[2]) {
+  at[0] = 6 * (level > 0 ? side - 2 * (side >> level) + 2 * (level - 1) : 0);
+  at[1] = level > 0 ? side + 2 : 0;
+}
+
 abbe_result abbe_gpu_environment_cube(abbe_gpu *gpu, const abbe_radiance_cube *cube,
                                       const double matrix[9], GLuint *out, abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
-  abbe_result result = abbe_gpu_make_cube(gpu, cube->side, cube->level_count, out, error);
+  const size_t side = cube->side, height = side + 2 + side / 2 + 2;
+  size_t end[2];
+  place_of(side, cube->level_count, end);
+  const size_t width = end[0] > 6 * (side + 2) ? end[0] : 6 * (side + 2);
+  abbe_result result = abbe_gpu_make_texture(gpu, GL_RGBA32F, width, height, 0, true, out, error);
   if (result != ABBE_OK) return result;
-  gl->BindTexture(GL_TEXTURE_CUBE_MAP, *out);
-  for (size_t i = 0; i < 6 * cube->level_count; i++) {
-    const size_t face = i % 6, level = i / 6, side = cube->side >> level;
-    float *texel = convert(matrix, cube->level[level] + 3 * face * side * side, side * side, error);
-    if (texel == NULL) return ABBE_NO_MEMORY;
-    gl->TexSubImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + (GLenum)face, (GLint)level, 0, 0,
-                      (GLsizei)side, (GLsizei)side, GL_RGBA, GL_FLOAT, texel);
+  float *rgb = malloc(3 * (side + 2) * (side + 2) * sizeof *rgb);
+  if (rgb == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the environment");
+  gl->BindTexture(GL_TEXTURE_2D, *out);
+  for (size_t i = 0; i < 6 * cube->level_count && result == ABBE_OK; i++) {
+    const size_t face = i % 6, level = i / 6, across = (side >> level) + 2;
+    for (size_t k = 0; k < across * across; k++)
+      abbe_radiance_cube_bordered(cube, level, face, k % across, k / across, rgb + 3 * k);
+    float *texel = convert(matrix, rgb, across * across, error);
+    if (texel == NULL) {
+      result = ABBE_NO_MEMORY;
+      break;
+    }
+    place_of(side, level, end);
+    gl->TexSubImage2D(GL_TEXTURE_2D, 0, (GLint)(end[0] + face * across), (GLint)end[1],
+                      (GLsizei)across, (GLsizei)across, GL_RGBA, GL_FLOAT, texel);
     free(texel);
   }
-  return abbe_gl_check(gl, "the upload of the environment", error);
+  free(rgb);
+  return result == ABBE_OK ? abbe_gl_check(gl, "the upload of the environment", error) : result;
 }
 
 /* Its texels are the power of two nearest to as wide as the map's. */
@@ -132,5 +151,5 @@ void abbe_gpu_environment_set(abbe_gpu *gpu, const abbe_scene *scene,
   gl->ActiveTexture(GL_TEXTURE0 + UNIT_ENVIRONMENT);
   gl->BindTexture(GL_TEXTURE_2D, environment->texture);
   gl->ActiveTexture(GL_TEXTURE0 + UNIT_ENVIRONMENT_CUBE);
-  gl->BindTexture(GL_TEXTURE_CUBE_MAP, environment->cube);
+  gl->BindTexture(GL_TEXTURE_2D, environment->cube);
 }

@@ -59,7 +59,8 @@ abbe_result abbe_gpu_environment_make(abbe_gpu *gpu, const abbe_scene *scene, ab
 abbe_result abbe_gpu_environment_colours(const abbe_illuminant *illuminant, abbe_rgb_space space,
                                          const abbe_render_desc *desc, double matrix[9],
                                          abbe_error *error);
-/* A cube's levels, by the matrix. ABBE_GL, ABBE_NO_MEMORY. */
+/* A cube's levels with borders, by the matrix, as cube_mean.glsl looks them up. ABBE_GL,
+ * ABBE_NO_MEMORY. */
 abbe_result abbe_gpu_environment_cube(abbe_gpu *gpu, const abbe_radiance_cube *cube,
                                       const double matrix[9], GLuint *out, abbe_error *error);
 void abbe_gpu_environment_free(abbe_gpu *gpu, abbe_gpu_environment *environment);

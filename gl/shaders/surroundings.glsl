@@ -2,7 +2,7 @@
 #ifdef ENVIRONMENT
 #include "cube_mean.glsl"
 layout(binding = UNIT_ENVIRONMENT) uniform sampler2D environment;  // by longitude and latitude, as scenes/environment/radiance_map.h
-layout(binding = UNIT_ENVIRONMENT_CUBE) uniform samplerCube environment_cube;  // means of it over wider and wider texels
+layout(binding = UNIT_ENVIRONMENT_CUBE) uniform sampler2D environment_cube;  // means of it over wider and wider texels
 uniform mat3 environment_from_world;
 uniform float environment_scale;  // from W/(m2 sr) to the scene's own units
 
@@ -36,7 +36,7 @@ vec3 surroundings_over(vec3 d, vec3 a, vec3 b) {
   a = environment_from_world * a;
   b = environment_from_world * b;
   float most = sqrt(max(dot(a, a), dot(b, b))), to_sphere = min(1.0, 2.0 / max(most, 1e-20));
-  float texel = CUBE_TEXEL / float(textureSize(environment_cube, 0).x);
+  float texel = CUBE_TEXEL / cube_side(environment_cube);
   float finest = max(texel, PI / float(textureSize(environment, 0).y));
   float share = clamp(log2(max(most, 1e-20) / finest), 0.0, 1.0);
   vec3 wide = cube_mean(environment_cube, WIDE_AS_BOX * texel, e, to_sphere * a, to_sphere * b,

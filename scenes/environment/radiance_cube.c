@@ -17,6 +17,44 @@ void abbe_radiance_cube_direction(size_t face, double x, double y, double direct
   abbe_vector_normalise(direction);
 }
 
+/* Of what a direction meets: the face, and the texel of so many a side. */
+static size_t texel_of(const double direction[3], size_t side) {
+  size_t axis = 0;
+  for (size_t k = 1; k < 3; k++)
+    if (fabs(direction[k]) > fabs(direction[axis])) axis = k;
+  const size_t face = 2 * axis + (direction[axis] < 0 ? 1 : 0);
+  const double x = direction[0], y = direction[1], z = direction[2];
+  const double of[6][2] = {{-z, -y}, {z, -y}, {x, z}, {x, -z}, {x, -y}, {-x, -y}};
+  size_t at[2];
+  for (int k = 0; k < 2; k++) {
+    const double place = 0.5 * (of[face][k] / fabs(direction[axis]) + 1) * (double)side;
+    at[k] = (size_t)fmin(fmax(place, 0), (double)side - 1);
+  }
+  return (face * side + at[1]) * side + at[0];
+}
+
+/* Inside its own; beyond an edge the neighbour's; at a corner, where three faces meet, their mean.
+ */
+void abbe_radiance_cube_bordered(const abbe_radiance_cube *cube, size_t level, size_t face,
+                                 size_t column, size_t row, float rgb[3]) {
+  static const double just_outside = 1e-6; /* of a face */
+  const size_t side = cube->side >> level, at[2] = {column, row};
+  const bool outside[2] = {column % (side + 1) == 0, row % (side + 1) == 0};
+  double place[2], sum[3] = {0, 0, 0}, count = 0;
+  for (int k = 0; k < 2; k++)
+    place[k] = fmin(fmax((double)at[k] - 0.5, 0.5), (double)side - 0.5) / (double)side;
+  for (int k = 0; k < 3; k++) {
+    if (k < 2 ? !outside[k] : outside[0] != outside[1]) continue;
+    double there[2] = {place[0], place[1]}, direction[3];
+    if (k < 2) there[k] = at[k] == 0 ? -just_outside : 1 + just_outside;
+    abbe_radiance_cube_direction(face, there[0], there[1], direction);
+    const float *texel = cube->level[level] + 3 * texel_of(direction, side);
+    for (int c = 0; c < 3; c++) sum[c] += (double)texel[c];
+    count++;
+  }
+  for (int c = 0; c < 3; c++) rgb[c] = (float)(sum[c] / count);
+}
+
 /* From the face's middle to a place. */
 static double corner_angle(double s, double t) {
   return atan2(s * t, sqrt(s * s + t * t + 1));

@@ -27,6 +27,10 @@ void abbe_radiance_cube_free(abbe_radiance_cube *cube);
 
 /* The unit direction of a place of a face, 0 to 6 excluded; x along rows, y down, each 0 to 1. */
 void abbe_radiance_cube_direction(size_t face, double x, double y, double direction[3]);
+/* A texel of a face with a border of its neighbours' texels, one wide: columns and rows are 0 to
+ * (side >> level) + 1. At a corner of the border it is the mean of the three faces that meet. */
+void abbe_radiance_cube_bordered(const abbe_radiance_cube *cube, size_t level, size_t face,
+                                 size_t column, size_t row, float rgb[3]);
 /* Of a texel of a face of side x side, sr; of all 6 side^2 of them 4 pi. */
 double abbe_radiance_cube_solid_angle(size_t side, size_t column, size_t row);
 

@@ -232,3 +232,25 @@ TEST(a_wide_ray_sees_the_mean) {
   assert_true(off < 0.2 * narrow_off);
   free_sky(&s);
 }
+
+/* Bits that a look finds are the same whatever is looked at beside it: every second look here is
+ * along an edge or a corner of the cube, and the others move from place to place. */
+TEST(looks_are_by_themselves) {
+  enum { TURN = 5 };
+  static float first[LOOKS][4];
+  sky s;
+  make_sky(LAMPS, &s);
+  for (int pass = 0; pass < 2; pass++) {
+    for (size_t i = 0; i < LOOKS; i++) {
+      const size_t from = pass == 0 || i % 2 != 0 ? i : (i + 2 * TURN) % LOOKS;
+      double d[3] = {1, i % 4 == 1 ? 1 : 0.3, 1};
+      if (i % 2 == 0) direction_of(from, LOOKS, d);
+      set_look(i, d, 0.1 + 0.4 * (double)(from % 3), 0.3);
+    }
+    look(&s, LOOKS);
+    if (pass == 0) memcpy(first, out, sizeof first);
+  }
+  for (size_t i = 0; i < LOOKS; i += 2)
+    assert_memory_equal(out[i], first[(i + 2 * TURN) % LOOKS], sizeof out[i]);
+  free_sky(&s);
+}

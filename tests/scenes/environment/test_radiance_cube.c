@@ -69,6 +69,43 @@ TEST(every_level_holds_the_light) {
   abbe_radiance_map_free(&map);
 }
 
+/* The texel beyond an edge is that of the neighbour which shares the edge: directions of both are
+ * as far apart as of two texels beside each other. */
+TEST(borders_are_the_neighbours) {
+  enum { SIDE = 8, TEXELS = 6 * SIDE * SIDE };
+  float level[3 * TEXELS];
+  const abbe_radiance_cube cube = {.side = SIDE, .level_count = 1, .level = {level}};
+  for (size_t i = 0; i < TEXELS; i++) { /* each holds its own direction */
+    double d[3];
+    abbe_radiance_cube_direction(i / (SIDE * SIDE), ((double)(i % SIDE) + 0.5) / SIDE,
+                                 ((double)(i / SIDE % SIDE) + 0.5) / SIDE, d);
+    for (int k = 0; k < 3; k++) level[3 * i + (size_t)k] = (float)d[k];
+  }
+  for (size_t face = 0; face < 6; face++)
+    for (size_t at = 1; at <= SIDE; at++)
+      for (int edge = 0; edge < 4; edge++) {
+        const size_t far = edge % 2 == 0 ? 0 : SIDE + 1, near = edge % 2 == 0 ? 1 : SIDE;
+        float out[3], in[3];
+        abbe_radiance_cube_bordered(&cube, 0, face, edge < 2 ? far : at, edge < 2 ? at : far, out);
+        abbe_radiance_cube_bordered(&cube, 0, face, edge < 2 ? near : at, edge < 2 ? at : near, in);
+        /* they mirror each other in the plane through the edge, where two components are alike */
+        double between[3], size = 0, edge_like = 0;
+        for (int k = 0; k < 3; k++) between[k] = 0.5 * ((double)out[k] + (double)in[k]);
+        for (int k = 0; k < 3; k++) size = fmax(size, fabs(between[k]));
+        for (int k = 0; k < 3; k++) edge_like += fabs(fabs(between[k]) - size) < 1e-6;
+        assert_true(edge_like >= 2);
+        assert_true(pow((double)out[0] - (double)in[0], 2) +
+                        pow((double)out[1] - (double)in[1], 2) +
+                        pow((double)out[2] - (double)in[2], 2) <
+                    pow(2.5 / SIDE, 2));
+      }
+  for (size_t face = 0; face < 6; face++) {
+    float corner[3];
+    abbe_radiance_cube_bordered(&cube, 0, face, 0, SIDE + 1, corner);
+    for (int k = 1; k < 3; k++) assert_near(fabs((double)corner[k]), fabs((double)corner[0]), 1e-6);
+  }
+}
+
 /* Where the map is smooth a texel is what the map shows in its direction. */
 TEST(texels_show_the_map) {
   abbe_radiance_map map;
