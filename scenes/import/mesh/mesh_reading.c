@@ -2,6 +2,7 @@
 
 #include "base/maths.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,6 +29,10 @@ bool abbe_mesh_reading_point(abbe_mesh_reading *r, const double at[3]) {
 
 bool abbe_mesh_reading_corner(abbe_mesh_reading *r, abbe_mesh_corner corner) {
   r->open++;
+  if (corner.point > r->farthest || r->farthest_line == 0) {
+    r->farthest = corner.point;
+    r->farthest_line = r->line;
+  }
   return abbe_mesh_list_add(&r->corner, 1, sizeof corner, &corner);
 }
 
@@ -52,6 +57,20 @@ void abbe_mesh_reading_free(abbe_mesh_reading *r) {
 
 /* ---- the mesh ---- */
 
+/* Of a face whose corner's point is none. */
+static abbe_result fail_point(const abbe_mesh_reading *r, size_t face, uint32_t point,
+                              abbe_error *error) {
+  if (r->line > 0)
+    return abbe_error_set(error, ABBE_GEOMETRY,
+                          "%s: line %zu: a face names vertex %" PRIu32
+                          ", counted from 1, that is none of the file's %zu",
+                          r->path, r->farthest_line, r->farthest + 1, r->point.count);
+  return abbe_error_set(error, ABBE_GEOMETRY,
+                        "%s: face %zu names vertex %" PRIu32
+                        ", counted from 0, that is none of the file's %zu",
+                        r->path, face + 1, point, r->point.count);
+}
+
 static abbe_result check(const abbe_mesh_reading *r, abbe_error *error) {
   const double(*point)[3] = r->point.item;
   const uint32_t *sides = r->sides.item;
@@ -70,11 +89,7 @@ static abbe_result check(const abbe_mesh_reading *r, abbe_error *error) {
                             r->path, i, point[i][0], point[i][1], point[i][2]);
   for (size_t f = 0; f < r->sides.count; corner += sides[f++])
     for (uint32_t k = 0; k < sides[f]; k++)
-      if (corner[k].point >= r->point.count)
-        return abbe_error_set(error, ABBE_GEOMETRY,
-                              "%s: face %zu names vertex %u, counted from 0, that is none of the "
-                              "file's %zu",
-                              r->path, f + 1, corner[k].point, r->point.count);
+      if (corner[k].point >= r->point.count) return fail_point(r, f, corner[k].point, error);
   return ABBE_OK;
 }
 

@@ -8,13 +8,12 @@
 typedef struct reading {
   abbe_mesh_reading *to;
   const char *at, *end;
-  size_t line;
   bool wanted; /* the material that is used now is the one to be read */
   abbe_error *error;
 } reading;
 
 static abbe_result fail(const reading *r, const char *what) {
-  return abbe_error_set(r->error, ABBE_PARSE, "%s: line %zu: %s", r->to->path, r->line, what);
+  return abbe_error_set(r->error, ABBE_PARSE, "%s: line %zu: %s", r->to->path, r->to->line, what);
 }
 
 /* Blanks, and ends of lines that a backslash continues. */
@@ -24,7 +23,7 @@ static void skip_blanks(reading *r) {
       r->at++;
     } else if (r->at + 1 < r->end && *r->at == '\\' && (r->at[1] == '\n' || r->at[1] == '\r')) {
       r->at += r->at[1] == '\r' && r->at + 2 < r->end && r->at[2] == '\n' ? 3 : 2;
-      r->line++;
+      r->to->line++;
     } else {
       return;
     }
@@ -46,7 +45,7 @@ static void skip_line(reading *r) {
   }
   if (r->at + 1 < r->end && *r->at == '\r' && r->at[1] == '\n') r->at++;
   if (r->at < r->end) r->at++;
-  r->line++;
+  r->to->line++;
 }
 
 /* As many numbers as there are, up to most; their count, or -1 where something else stands. */
@@ -122,16 +121,29 @@ static void read_material(reading *r) {
   r->wanted = name == NULL || (strlen(name) == length && memcmp(name, r->at, length) == 0);
 }
 
-/* The file of materials is not read, but it is the mesh's: nothing is written over it. */
-static abbe_result note_materials(reading *r) {
+/* Whether there was memory for a file beside the mesh's. */
+static bool note_file(reading *r, const char *name, size_t length) {
   abbe_mesh_list *others = &r->to->others;
   const char *path = r->to->path;
-  const size_t length = rest_of_line(r), folder = (size_t)(abbe_file_name(path) - path);
-  if (length == 0) return ABBE_OK;
-  if ((folder == 0 || abbe_mesh_list_add(others, folder, 1, path)) &&
-      abbe_mesh_list_add(others, length, 1, r->at) && abbe_mesh_list_add(others, 1, 1, ""))
-    return ABBE_OK;
-  return abbe_mesh_reading_no_memory(r->to, r->error);
+  const size_t folder = (size_t)(abbe_file_name(path) - path);
+  return (folder == 0 || abbe_mesh_list_add(others, folder, 1, path)) &&
+         abbe_mesh_list_add(others, length, 1, name) && abbe_mesh_list_add(others, 1, 1, "");
+}
+
+/* Files of materials are not read, but they are the mesh's: nothing is written over them. Blanks
+ * part their names, and programs write names that have blanks: so each word is one, and all
+ * together. */
+static abbe_result note_materials(reading *r) {
+  const size_t length = rest_of_line(r);
+  const char *const all = r->at, *const end = all + length, *word = all;
+  bool noted = length == 0 || note_file(r, all, length);
+  while (noted && word < end) {
+    const char *to = word;
+    while (to < end && *to != ' ' && *to != '\t') to++;
+    if (to > word && (size_t)(to - word) < length) noted = note_file(r, word, (size_t)(to - word));
+    word = to + 1;
+  }
+  return noted ? ABBE_OK : abbe_mesh_reading_no_memory(r->to, r->error);
 }
 
 static bool is_word(const char *from, size_t length, const char *word) {
@@ -157,13 +169,14 @@ static abbe_result read_line(reading *r) {
     if (is_word(word, n, surfaces[i]))
       return abbe_error_set(r->error, ABBE_UNSUPPORTED,
                             "%s: line %zu: '%s' is a free-form surface; only polygons are read",
-                            r->to->path, r->line, surfaces[i]);
+                            r->to->path, r->to->line, surfaces[i]);
   return ABBE_OK;
 }
 
 abbe_result abbe_obj_read(abbe_mesh_reading *to, const char *data, size_t size, abbe_error *error) {
-  reading r = {.to = to, .at = data, .end = data + size, .line = 1, .error = error};
+  reading r = {.to = to, .at = data, .end = data + size, .error = error};
   abbe_result result = ABBE_OK;
+  to->line = 1;
   r.wanted = to->material == NULL;
   while (r.at < r.end && result == ABBE_OK) {
     result = read_line(&r);

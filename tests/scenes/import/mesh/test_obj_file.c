@@ -1,5 +1,7 @@
 #include "tests/scenes/import/mesh/meshes.h"
 
+#include <unistd.h>
+
 #define POINTS "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\n"
 
 TEST(tetrahedra_are_read) {
@@ -62,13 +64,36 @@ TEST(a_material_s_faces_are_read_alone) {
   assert_contains(error.text, "no triangle is of a material called 'stone'");
 }
 
+/* Names may have blanks, and there may be several. */
+TEST(files_of_materials_are_known) {
+  static const char text[] =
+      "mtllib a.mtl\t my own.mtl \nmtllib b.mtl\nmtllib\n" POINTS "f 1 2 3\n";
+  static const char *const names[] = {"a.mtl\t my own.mtl", "a.mtl", "my", "own.mtl", "b.mtl", ""};
+  FILE *file = fopen("t_names.obj", "wb");
+  assert_non_null(file);
+  assert_int_equal(fwrite(text, 1, sizeof text - 1, file), sizeof text - 1);
+  fclose(file);
+  abbe_mesh m;
+  char *others = NULL;
+  if (abbe_mesh_load("t_names.obj", ABBE_NORMALS_FLAT, &m, &others, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  const char *at = others;
+  for (size_t i = 0; i < sizeof names / sizeof *names; at += strlen(at) + 1, i++)
+    assert_string_equal(at, names[i]);
+  free(others);
+  abbe_mesh_free(&m);
+  unlink("t_names.obj");
+}
+
 TEST(what_is_wrong_is_said) {
   static const struct {
     const char *text, *words;
     abbe_result code;
   } files[] = {
       {POINTS "f 1 2 3\nf 1 2 5\n",
-       "face 2 names vertex 4, counted from 0, that is none of the file's 4", ABBE_GEOMETRY},
+       "line 6: a face names vertex 5, counted from 1, that is none of the file's 4",
+       ABBE_GEOMETRY},
+      {POINTS "f 1 2 3\nf 1 2 7 \\\n 8\nf 1 2 6\n", "line 7: a face names vertex 8", ABBE_GEOMETRY},
       {POINTS "f 1 2 0\n", "line 5: a face's corner", ABBE_PARSE},
       {POINTS "f 1 2 -5\n", "line 5: a face's corner", ABBE_PARSE},
       {POINTS "\nf 1 2 x\n", "line 6: a face's corner", ABBE_PARSE},
