@@ -4,7 +4,8 @@
 
 #ifdef LAYERS
 void layers_hit(int r, vec3 p, vec3 d, out vec3 q, out vec3 n) {
-  layers_inner(camera_view(), eye_layers, 0.0, 2.0 * refractors[r].sphere.w, p, d, q, n);
+  vec2 drawn = eye_samples / vec2(textureSize(eye_layers, 0).xy);
+  layers_inner(camera_view(), eye_layers, drawn, 0.0, 2.0 * refractors[r].sphere.w, p, d, q, n);
 }
 #endif
 

@@ -12,8 +12,8 @@ const bool GO_ON = false;
 
 #ifdef LAYERS
 void layers_hit(int r, vec3 p, vec3 d, out vec3 q, out vec3 n) {
-  layers_inner(pass_light.near_view, light_layers, 2.0 * float(light), 2.0 * refractors[r].sphere.w, p, d,
-               q, n);
+  layers_inner(pass_light.near_view, light_layers, vec2(1), 2.0 * float(light), 2.0 * refractors[r].sphere.w, p,
+               d, q, n);
 }
 #endif
 

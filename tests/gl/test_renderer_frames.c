@@ -234,6 +234,41 @@ TEST(nothing_is_read_before_a_frame) {
   abbe_scene_free(&scene);
 }
 
+/* Textures of what moves have a row and a column more where sides are powers of two
+ * (camera_view.h), and layers are looked up in the part that is drawn. */
+TEST(test_layers_of_what_moves) {
+  abbe_scene scene = {0};
+  abbe_image image[2];
+  abbe_render_desc desc = {.width = 64,
+                           .height = 64,
+                           .photons = 32,
+                           .map_size = 64,
+                           .wavelengths = 3,
+                           .supersample = 1,
+                           .adaptive = 1,
+                           .energy_share = ABBE_COARSE_SHARE,
+                           .model = ABBE_MODEL_LAYERS};
+  load_shipped("gem", &scene);
+  for (size_t i = 0; i < 2; i++) {
+    desc.coarse = i == 0 ? ABBE_COARSE_NONE : ABBE_COARSE_EYE;
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_picture(renderer, true, &image[i]);
+    abbe_renderer_free(renderer);
+  }
+  double apart = 0, light = 0;
+  for (size_t i = 0; i < 64 * 64; i++) {
+    const double a = (double)image[0].data[i * image[0].channels],
+                 b = (double)image[1].data[i * image[1].channels];
+    light += a;
+    apart += fabs(b - a);
+  }
+  print_message("by layers, of what moves %.4f of the light lies elsewhere\n", apart / light);
+  assert_true(apart < 0.01 * light);
+  for (size_t i = 0; i < 2; i++) abbe_image_free(&image[i]);
+  abbe_scene_free(&scene);
+}
+
 /* One thread a pixel follows what the camera sees there, so a group has many pixels; what they
  * share is no more than a device has, beside mirrors too. */
 TEST(programs_of_what_moves_link) {
