@@ -181,10 +181,11 @@ static void middle_of(const abbe_mesh *mesh, double out[3]) {
   }
 }
 
-/* A place between the solid and the light is asked for where a receiver may have any. */
+/* A place between the solid and the light is asked for where a receiver may have any, and in haze.
+ */
 static bool needs_faces(const abbe_gpu_scene *scene, const abbe_object *convex,
                         const abbe_light *light) {
-  bool needs = scene->plan->desc.everything;
+  bool needs = scene->plan->desc.everything || scene->local->medium != NULL;
   for (size_t i = 0; i < scene->plan->receiver_count && !needs; i++)
     needs = abbe_shadow_planes_in_front(convex, light,
                                         &scene->local->object[scene->plan->receiver_object[i]]);

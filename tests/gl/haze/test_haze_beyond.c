@@ -124,3 +124,26 @@ TEST(a_beam_in_a_mirror) {
     assert_near(drawn / known, 1, 0.03);
   }
 }
+
+/* Haze between the sun and a solid lies in no shadow, however the solid is known: seen straight,
+ * and mirrored on the solid's top and through it. */
+TEST(haze_before_a_solid) {
+  static const char text[] =
+      "materials: glass.yaml\n"
+      "camera: {eye: [0.4, -2.6, 2.6], target: [0.1, 0.1, 0.4], fov: 8}\n"
+      "lights: [{name: sun, kind: directional, direction: [0, -1, -1.618034], irradiance: 3}]\n"
+      "medium: {scattering: 0.04, g: 0.5, box: [[-1.2, -1.2, 0.63], [1.2, 1.2, 1.2]]}\n"
+      "objects:\n"
+      "- {name: slab, shape: box, size: [1.6, 1.6, 0.1], material: dense,\n"
+      "   transform: [{translate: [0, 0, 0.5]}]}\n"
+      "- {name: paper, shape: rectangle, width: 10, height: 10, reflectance: 0}\n";
+  double light[2][3];
+  for (int i = 0; i < 2; i++)
+    mean_of(text,
+            &(abbe_render_desc){.photons = 64,
+                                .wavelengths = 3,
+                                .space = ABBE_RGB_SPACE_REC709,
+                                .model = i == 0 ? ABBE_MODEL_AUTO : ABBE_MODEL_BVH},
+            light[i]);
+  assert_near(light[0][1] / light[1][1], 1, 1e-2);
+}
