@@ -367,6 +367,7 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   for (size_t i = 0; i < scene->light_count; i++)
     out->sized_lights = out->sized_lights || abbe_light_has_size(&scene->light[i]);
   abbe_result result = abbe_support_mirrors(scene, out, error);
+  if (result == ABBE_OK) result = abbe_support_nesting(scene, out, error);
   if (result == ABBE_OK) result = abbe_support_roughness(scene, out, error);
   if (result == ABBE_OK) result = make_lists(scene, out, error);
   out->around_eye = abbe_scene_around_eye(scene);

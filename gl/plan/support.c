@@ -2,6 +2,7 @@
 
 #include "base/maths.h"
 #include "colorimetry/weights.h"
+#include "gl/plan/examine/reach.h"
 
 #include <math.h>
 
@@ -148,6 +149,41 @@ abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan,
                         "the object '%s' (line %zu) is a mirror, and the model 'layers' follows no "
                         "light off mirrors; leave it out, or take the model 'hierarchy'",
                         mirror->name, mirror->line);
+}
+
+/* Whether some of the inner one's vertices lie in the outer one, a little off those that touch it.
+ */
+static bool holds_part(const abbe_object *outer, const abbe_object *inner) {
+  enum { MOST = 64 };
+  const abbe_mesh *mesh = &inner->mesh;
+  const size_t step = mesh->vertex_count / MOST + 1;
+  const double off = 1e-4;
+  if (!abbe_reach_overlap(outer, inner)) return false;
+  for (size_t i = 0; i < mesh->vertex_count; i += step) {
+    double p[3];
+    for (int k = 0; k < 3; k++)
+      p[k] = (1 - off) * mesh->position[i][k] + off * 0.5 * (inner->min[k] + inner->max[k]);
+    if (abbe_object_contains(outer, p)) return true;
+  }
+  return false;
+}
+
+abbe_result abbe_support_nesting(const abbe_scene *scene, const abbe_plan *plan,
+                                 abbe_error *error) {
+  if (plan->desc.model != ABBE_MODEL_LAYERS) return ABBE_OK;
+  for (size_t i = 0; i < scene->object_count; i++)
+    for (size_t k = 0; k < scene->object_count; k++) {
+      const abbe_object *outer = &scene->object[i], *inner = &scene->object[k];
+      if (i == k || abbe_object_kind_of(outer) != ABBE_OBJECT_REFRACTOR ||
+          abbe_object_kind_of(inner) != ABBE_OBJECT_REFRACTOR || !holds_part(outer, inner))
+        continue;
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "'%s' (line %zu) lies in '%s' (line %zu), and the model 'layers' takes "
+                            "each refractor as if it stood in air alone; take the model "
+                            "'hierarchy'",
+                            inner->name, inner->line, outer->name, outer->line);
+    }
+  return ABBE_OK;
 }
 
 abbe_result abbe_support_roughness(const abbe_scene *scene, const abbe_plan *plan,

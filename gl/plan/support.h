@@ -15,6 +15,9 @@ abbe_result abbe_support_roughness(const abbe_scene *scene, const abbe_plan *pla
                                    abbe_error *error);
 /* ABBE_UNSUPPORTED for a mirror where the thesis's profiles or the model 'layers' is asked for. */
 abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
+/* ABBE_UNSUPPORTED for a refractor that lies in another, or partly, where the model 'layers' is
+ * asked for: by some of their vertices, so that a thin overlap may be let through. */
+abbe_result abbe_support_nesting(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 
 /* What the transport by pinholes follows, in wand2003 and in the default profile: an environment,
  * and mirrors or refractors. ABBE_UNSUPPORTED. */

@@ -30,6 +30,7 @@ static const size_t stone_region[4] = {14, 14, 38, 32}, caustic_region[4] = {12,
 const pair_refusal pair_refusals[] = {
     {MIRROR, LAYERS, "the model 'layers' follows no light off mirrors"},
     {RING, LAYERS, "the model 'layers' follows no light off mirrors"},
+    {WATER, LAYERS, "the model 'layers' takes each refractor as if it stood in air alone"},
     {HAZE, PINHOLE, "take the transport 'photons'"},
     {HAZE, VOLUME, "take the transport 'photons'"},
     {BALL, VOLUME, "a volume holds the caustics of one object alone"},

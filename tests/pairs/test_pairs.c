@@ -6,24 +6,23 @@
 
 /* What is not right, and why. Each is held to the same bounds: one that has become right is to be
  * taken out. */
-#define BY_LAYERS "the model 'layers' ends paths after four exits"
-#define IN_AIR "the model 'layers' takes each refractor as if it stood in air alone"
-#define IN_HAZE "of a diamond at this stage 5 % is lost without haze too; the rest is not explained"
-#define IN_SHADOW "where little light falls under water, more falls by the draft; not explained"
+#define BY_LAYERS                                                                                  \
+  "the model 'layers' ends paths after four exits, and knows inner ones roughly: a diamond keeps " \
+  "light for many"
+#define OF_A_SAMPLE                                                                                \
+  "one sample a pixel, in its middle: facets of a diamond show their means with four times as "    \
+  "many"
+#define OF_A_DRAFT                                                                                 \
+  "48 photons a side and a map of 128 texels blur what is dark beside what is bright"
 static const struct {
   const char *stone, *company, *transport, *stage, *region, *what, *why;
 } known[] = {
     {"diamond", "ball", "layers", "balanced", "stone", "hue", BY_LAYERS},
     {"diamond", "ball", "layers", "balanced", "stone", "light", BY_LAYERS},
     {"diamond", "ball", "layers", "balanced", "caustic", "light", BY_LAYERS},
-    {"emerald", "haze", "layers", "moving", "stone", "light", BY_LAYERS},
-    {"diamond", "haze", "default", "balanced", "stone", "light", IN_HAZE},
-    {"diamond", "haze", "default", "balanced", "caustic", "light", IN_HAZE},
-    {"diamond", "water", "default", "moving", "caustic", "light", IN_SHADOW},
-    {"ruby", "water", "layers", "balanced", "stone", "hue", IN_AIR},
-    {"ruby", "water", "layers", "balanced", "stone", "light", IN_AIR},
-    {"ruby", "water", "layers", "balanced", "caustic", "hue", IN_AIR},
-    {"ruby", "water", "layers", "balanced", "caustic", "light", IN_AIR},
+    {"diamond", "haze", "default", "balanced", "stone", "light", OF_A_SAMPLE},
+    {"diamond", "haze", "default", "balanced", "caustic", "light", OF_A_DRAFT},
+    {"diamond", "water", "default", "moving", "caustic", "light", OF_A_DRAFT},
 };
 
 static void name_of(const cover_row *row, char *out, size_t size) {

@@ -38,6 +38,38 @@ TEST(mirrors_are_refused_by_name_where_none_are_followed) {
   refuse_plan(text, &desc, ABBE_UNSUPPORTED, "the model 'layers' follows no light off mirrors");
 }
 
+#define DROP(name, radius, z)                                                                      \
+  "- {name: " name ", shape: sphere, radius: " radius ", levels: 2, "                              \
+  "transform: [{translate: [0.09, 0.09, " z "]}], material: flat}\n"
+#define CASE(name, z)                                                                              \
+  "- {name: " name ", shape: box, size: [0.1, 0.1, 0.1], material: flat, "                         \
+  "transform: [{translate: [0.09, 0.09, " z "]}]}\n"
+
+/* In part, and in whatever order the scene has them; not what touches it, or is near. */
+TEST(layers_refuse_by_name_what_lies_in_a_refractor) {
+  static const char *const in[][2] = {
+      {CAMERA POINT_LIGHT FLOOR CASE("case", "0.2") DROP("drop", "0.02", "0.2"),
+       "'drop' (line 8) lies in 'case' (line 7), and the model 'layers'"},
+      {CAMERA POINT_LIGHT FLOOR DROP("drop", "0.04", "0.26") CASE("case", "0.2"),
+       "'drop' (line 7) lies in 'case' (line 8)"},
+      {CAMERA POINT_LIGHT FLOOR BALL("flat") DROP("drop", "0.08", "0.26"), "takes each refractor"},
+  };
+  static const char *const beside[] = {
+      CAMERA POINT_LIGHT FLOOR CASE("case", "0.2") CASE("on it", "0.3"),
+      CAMERA POINT_LIGHT FLOOR BALL("flat") DROP("drop", "0.04", "0.26")};
+  const abbe_render_desc desc = {.model = ABBE_MODEL_LAYERS};
+  for (size_t i = 0; i < sizeof in / sizeof *in; i++)
+    refuse_plan(in[i][0], &desc, ABBE_UNSUPPORTED, in[i][1]);
+  for (size_t i = 0; i < sizeof beside / sizeof *beside; i++) {
+    abbe_scene scene;
+    abbe_plan plan;
+    load_text(beside[i], &scene);
+    assert_int_equal(abbe_plan_make(&scene, &desc, &plan, NULL), ABBE_OK);
+    abbe_plan_free(&plan);
+    abbe_scene_free(&scene);
+  }
+}
+
 /* By pinholes where nothing else is asked for, and not at all by others. */
 TEST(rough_mirrors_go_by_pinholes) {
   static const char text[] = CAMERA

@@ -90,7 +90,7 @@ TEST(refractors_that_overlap_are_noted) {
       {CAMERA POINT_LIGHT FLOOR RING("flat") BALL("flat"), "'ring' and 'ball' overlap"},
   };
   /* walked light keeps the scene's rule; two layers know one refractor at a time */
-  const abbe_render_desc apart = {.model = ABBE_MODEL_LAYERS};
+  const abbe_render_desc apart = {.profile = ABBE_PROFILE_THESIS};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     abbe_scene scene;
     abbe_plan plan;
