@@ -14,6 +14,7 @@
   "many"
 #define OF_A_DRAFT                                                                                 \
   "48 photons a side and a map of 128 texels blur what is dark beside what is bright"
+#define OF_BALANCED "of the settings of 'balanced'; by those of 'accurate' it is right"
 static const struct {
   const char *stone, *company, *transport, *stage, *region, *what, *why;
 } known[] = {
@@ -23,6 +24,8 @@ static const struct {
     {"diamond", "haze", "default", "balanced", "stone", "light", OF_A_SAMPLE},
     {"diamond", "haze", "default", "balanced", "caustic", "light", OF_A_DRAFT},
     {"diamond", "water", "default", "moving", "caustic", "light", OF_A_DRAFT},
+    {"ruby", "water", "pinhole", "balanced", "stone", "light", OF_BALANCED},
+    {"ruby", "water", "pinhole", "balanced", "caustic", "light", OF_BALANCED},
 };
 
 static void name_of(const cover_row *row, char *out, size_t size) {
