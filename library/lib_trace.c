@@ -1,8 +1,8 @@
 /* The pictures of lib_scene.h that the reference tracer makes. */
+#include "library/choice/matched_physics.h"
 #include "library/lib_handles.h"
 #include "library/lib_settings.h"
 #include "validation/denoise/denoise.h"
-#include "validation/sweep/matched_physics.h"
 #include "validation/tracer/trace_run.h"
 
 #include <stdint.h>

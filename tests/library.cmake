@@ -1,7 +1,8 @@
 # The shared library's own functions; tests/install and tests/python use them from outside.
-set(library_rooms abbe_library abbe_sweep abbe_gl abbe_validation abbe_scenes abbe_colorimetry
+set(library_rooms abbe_library abbe_gl abbe_validation abbe_scenes abbe_colorimetry
   abbe_spectral abbe_base)
-foreach(name lib_comparison lib_gem_report lib_materials lib_picture lib_settings lib_weights)
+foreach(name lib_comparison lib_gem_report lib_materials lib_picture lib_settings lib_weights matched_physics
+    picture_choice sweep_setting sweep_trace)
   abbe_test(${name} cpu ${library_rooms})
 endforeach()
 abbe_test(lib_scene gl ${library_rooms})

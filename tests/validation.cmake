@@ -63,8 +63,7 @@ foreach(name
   abbe_test(${name} cpu ${validation_rooms})
 endforeach()
 abbe_test(locale cpu abbe_sweep abbe_gl ${validation_rooms})
-foreach(name matched_physics picture_choice sweep_grid sweep_hash sweep_process sweep_promises sweep_reference
-    sweep_setting sweep_trace)
+foreach(name sweep_grid sweep_hash sweep_process sweep_promises sweep_reference)
   abbe_test(${name} cpu abbe_sweep abbe_gl ${validation_rooms})
 endforeach()
 foreach(name ranked_sweep scaling_study sweep_measure sweep_page sweep_run node_errors pinhole_limits

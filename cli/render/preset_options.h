@@ -5,7 +5,7 @@
 
 #include "gl/accuracy/preset_choice.h"
 #include "gl/device/statistics.h"
-#include "validation/sweep/picture_choice.h"
+#include "library/choice/picture_choice.h"
 
 #include <argp.h>
 

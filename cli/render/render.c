@@ -1,10 +1,10 @@
-#include "cli/render/render.h"
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
 #include "cli/options/own_context.h"
 #include "cli/options/scene_input.h"
 #include "cli/options/screen_options.h"
+#include "cli/render/render.h"
 #include "cli/render/render_check.h"
 #include "cli/render/render_frames.h"
 #include "cli/render/render_request.h"
@@ -12,8 +12,8 @@
 
 #include "colorimetry/image/exr.h"
 #include "gl/accuracy/frame_times.h"
+#include "library/choice/sweep_setting.h"
 #include "scenes/import/scene_file.h"
-#include "validation/sweep/sweep_setting.h"
 
 #include <argp.h>
 #include <stdio.h>

@@ -5,7 +5,7 @@
 
 #include "colorimetry/observer.h"
 #include "colorimetry/rgb_space.h"
-#include "validation/sweep/picture_choice.h"
+#include "library/choice/picture_choice.h"
 
 typedef struct abbe_traced_picture_desc {
   size_t width, height; /* pixels; 0: the scene's */

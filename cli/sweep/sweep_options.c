@@ -5,7 +5,7 @@
 
 #include "base/nearest.h"
 #include "gl/plan/plan.h"
-#include "validation/sweep/sweep_setting.h"
+#include "library/choice/sweep_setting.h"
 #include "validation/tracer/tracer.h"
 
 #include <stdio.h>

@@ -7,8 +7,8 @@
 #include "cli/trace/trace.h"
 #include "cli/trace/trace_request.h"
 
+#include "library/choice/matched_physics.h"
 #include "scenes/import/scene_file.h"
-#include "validation/sweep/matched_physics.h"
 #include "validation/tracer/checkpoint.h"
 #include "validation/tracer/trace_run.h"
 #include "validation/tracer/tracer.h"

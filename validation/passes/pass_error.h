@@ -5,7 +5,6 @@
  * the other. That tells the error of the first passes, which is no less than that of all, however
  * slowly a caustic of rare bright specks comes together. Errors are mean CIEDE2000 in the caustic
  * (the brightest pixels that hold 95 % of its light), relative to the picture's own white.
- * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_PASSES_PASS_ERROR_H
 #define ABBE_VALIDATION_PASSES_PASS_ERROR_H

@@ -3,8 +3,8 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "colorimetry/plot/chart.h"
+#include "library/choice/sweep_setting.h"
 #include "validation/sweep/sweep_grid.h"
-#include "validation/sweep/sweep_setting.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 
 #include "base/yaml/yaml.h"
 #include "gl/plan/plan.h"
-#include "validation/sweep/sweep_setting.h"
-#include "validation/sweep/sweep_trace.h"
+#include "library/choice/sweep_setting.h"
+#include "library/choice/sweep_trace.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,10 +1,10 @@
 #include "validation/sweep/sweep_measure.h"
 
 #include "gl/accuracy/frame_times.h"
+#include "library/choice/sweep_setting.h"
+#include "library/choice/sweep_trace.h"
 #include "scenes/view/map_resample.h"
 #include "validation/compare/compare.h"
-#include "validation/sweep/sweep_setting.h"
-#include "validation/sweep/sweep_trace.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,9 +4,9 @@
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/screen_png.h"
 #include "gl/renderer.h"
+#include "library/choice/sweep_setting.h"
+#include "library/choice/sweep_trace.h"
 #include "scenes/import/scene_file.h"
-#include "validation/sweep/sweep_setting.h"
-#include "validation/sweep/sweep_trace.h"
 #include "validation/tradeoff/baseline_comparison.h"
 #include "validation/tradeoff/error_decomposition.h"
 

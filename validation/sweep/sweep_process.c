@@ -3,7 +3,7 @@
 
 #include "base/clock.h"
 #include "base/number.h"
-#include "validation/sweep/sweep_trace.h"
+#include "library/choice/sweep_trace.h"
 
 #include <assert.h>
 #include <errno.h>

@@ -1,6 +1,6 @@
 #include "validation/sweep/sweep_promises.h"
 
-#include "validation/sweep/sweep_setting.h"
+#include "library/choice/sweep_setting.h"
 
 #include <math.h>
 #include <string.h>

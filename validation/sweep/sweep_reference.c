@@ -1,8 +1,8 @@
 #include "validation/sweep/sweep_reference.h"
 
 #include "colorimetry/image/exr.h"
+#include "library/choice/matched_physics.h"
 #include "scenes/view/map_layout.h"
-#include "validation/sweep/matched_physics.h"
 #include "validation/sweep/sweep_hash.h"
 #include "validation/sweep/sweep_measure.h"
 #include "validation/tracer/reference.h"

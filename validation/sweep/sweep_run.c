@@ -1,11 +1,11 @@
 #include "validation/sweep/sweep_run.h"
 
 #include "gl/accuracy/preset.h"
+#include "library/choice/sweep_setting.h"
 #include "validation/sweep/sweep_grid.h"
 #include "validation/sweep/sweep_hash.h"
 #include "validation/sweep/sweep_measure.h"
 #include "validation/sweep/sweep_process.h"
-#include "validation/sweep/sweep_setting.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
  *
  * The Pareto front of settings that cost time and make errors. It knows no settings: arrays in,
  * marks and indices out. A cost or an error that is not finite, and a cost that is not positive,
- * is not on the front. Internal to validation/.
+ * is not on the front.
  */
 #ifndef ABBE_VALIDATION_TRADEOFF_PARETO_FRONT_H
 #define ABBE_VALIDATION_TRADEOFF_PARETO_FRONT_H

@@ -6,8 +6,7 @@
  * tracer with few photons. A point's time is the geometric mean of the yardstick's, times the worst
  * of the scenes' ratios to it. The tracer's errors are told likewise, by what the yardstick says of
  * its own error; the renderer's is the worst of the scenes'. It is a part of the file that
- * sweep_presets.h writes, and what validation/sweep/picture_choice.h reads.
- * Internal to validation/.
+ * sweep_presets.h writes, and what library/choice/picture_choice.h reads.
  */
 #ifndef ABBE_VALIDATION_TRADEOFF_SWEEP_PICTURES_H
 #define ABBE_VALIDATION_TRADEOFF_SWEEP_PICTURES_H

@@ -5,7 +5,6 @@
  * interface is reflected, it ends if it is left with less than a share of its light or has met a
  * number of interfaces since. The surfaces are the true ones in both, and so is what the map of a
  * light holds: what lands where the lamp would see the receiver past others.
- * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_PHYSICS_H
 #define ABBE_VALIDATION_TRANSPORT_PHYSICS_H

@@ -2,8 +2,8 @@
 #include "tests/scenes/scene_text.h"
 
 #include "gl/plan/plan.h"
+#include "library/choice/sweep_setting.h"
 #include "validation/sweep/sweep_grid.h"
-#include "validation/sweep/sweep_setting.h"
 
 #include <stdlib.h>
 #include <unistd.h>

@@ -1,9 +1,9 @@
 /* Settings held against references: errors that are known beforehand. */
 #include "tests/gl/frame.h"
 
+#include "library/choice/sweep_setting.h"
 #include "validation/sweep/sweep_grid.h"
 #include "validation/sweep/sweep_measure.h"
-#include "validation/sweep/sweep_setting.h"
 #include "validation/tracer/reference.h"
 
 #define SCENE CAMERA POINT_LIGHT FLOOR BALL("crown")

@@ -2,8 +2,8 @@
  * fails. A script stands in for the program. */
 #include "tests/validation/tradeoff/sweep_row.h"
 
+#include "library/choice/sweep_setting.h"
 #include "validation/sweep/sweep_process.h"
-#include "validation/sweep/sweep_setting.h"
 
 #include <math.h>
 #include <stdlib.h>

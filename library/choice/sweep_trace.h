@@ -2,10 +2,10 @@
  * that takes once the scene stands.
  *
  * What is made once for a scene (geometry, tables, where lights aim) is not in the times, as what a
- * renderer prepares is not. It compares nothing. Internal to validation/sweep/.
+ * renderer prepares is not. It compares nothing.
  */
-#ifndef ABBE_VALIDATION_SWEEP_SWEEP_TRACE_H
-#define ABBE_VALIDATION_SWEEP_SWEEP_TRACE_H
+#ifndef ABBE_LIBRARY_CHOICE_SWEEP_TRACE_H
+#define ABBE_LIBRARY_CHOICE_SWEEP_TRACE_H
 
 #include "colorimetry/image/image.h"
 #include "gl/plan/facts/render_desc.h"

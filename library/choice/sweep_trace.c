@@ -1,4 +1,4 @@
-#include "validation/sweep/sweep_trace.h"
+#include "library/choice/sweep_trace.h"
 
 #include "base/clock.h"
 #include "gl/accuracy/frame_times.h"

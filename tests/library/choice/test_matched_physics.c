@@ -2,7 +2,7 @@
 #include "tests/scenes/scene_text.h"
 
 #include "gl/plan/plan.h"
-#include "validation/sweep/matched_physics.h"
+#include "library/choice/matched_physics.h"
 
 TEST(what_the_plan_follows) {
   abbe_scene scene = {0};

@@ -1,4 +1,4 @@
-#include "validation/sweep/sweep_setting.h"
+#include "library/choice/sweep_setting.h"
 
 #include "gl/accuracy/preset_choice.h"
 

@@ -1,7 +1,7 @@
 /* Settings of tables as the renderer's requests, and in words. */
 #include "tests/check.h"
 
-#include "validation/sweep/sweep_setting.h"
+#include "library/choice/sweep_setting.h"
 
 static const abbe_render_desc fine = {.wavelengths = 21,
                                       .photons = 512,

@@ -1,12 +1,12 @@
-#include "validation/sweep/picture_choice.h"
+#include "library/choice/picture_choice.h"
 
 #include "base/clock.h"
 #include "base/number.h"
 #include "base/yaml/yaml.h"
 #include "gl/accuracy/frame_times.h"
 #include "gl/plan/plan.h"
-#include "validation/sweep/sweep_setting.h"
-#include "validation/sweep/sweep_trace.h"
+#include "library/choice/sweep_setting.h"
+#include "library/choice/sweep_trace.h"
 #include "validation/tradeoff/pareto_front.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* sweep_setting.h: a table's settings as the renderer's requests, and the other way round. */
-#ifndef ABBE_VALIDATION_SWEEP_SWEEP_SETTING_H
-#define ABBE_VALIDATION_SWEEP_SWEEP_SETTING_H
+#ifndef ABBE_LIBRARY_CHOICE_SWEEP_SETTING_H
+#define ABBE_LIBRARY_CHOICE_SWEEP_SETTING_H
 
 #include "gl/plan/plan.h"
 #include "validation/tradeoff/sweep_table.h"

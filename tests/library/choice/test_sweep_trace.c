@@ -1,8 +1,8 @@
 /* The tracer as a contestant: its picture is the tracer's own to the bit, its frames are timed. */
 #include "tests/validation/trace_scene.h"
 
-#include "validation/sweep/sweep_setting.h"
-#include "validation/sweep/sweep_trace.h"
+#include "library/choice/sweep_setting.h"
+#include "library/choice/sweep_trace.h"
 
 #include <math.h>
 

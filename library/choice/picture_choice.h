@@ -7,8 +7,8 @@
  * times the tool's margin. How they carry over to this scene and machine is told by the yardstick,
  * a short frame of the tracer: how long it takes, and what it says of its own error.
  */
-#ifndef ABBE_VALIDATION_SWEEP_PICTURE_CHOICE_H
-#define ABBE_VALIDATION_SWEEP_PICTURE_CHOICE_H
+#ifndef ABBE_LIBRARY_CHOICE_PICTURE_CHOICE_H
+#define ABBE_LIBRARY_CHOICE_PICTURE_CHOICE_H
 
 #include "gl/accuracy/preset.h"
 #include "scenes/scene.h"

@@ -1,8 +1,8 @@
 /* matched_physics.h: what the tracer has to leave out to model what the renderer's plan does, and
  * no more.
  */
-#ifndef ABBE_VALIDATION_SWEEP_MATCHED_PHYSICS_H
-#define ABBE_VALIDATION_SWEEP_MATCHED_PHYSICS_H
+#ifndef ABBE_LIBRARY_CHOICE_MATCHED_PHYSICS_H
+#define ABBE_LIBRARY_CHOICE_MATCHED_PHYSICS_H
 
 #include "scenes/scene.h"
 #include "validation/transport/physics.h"

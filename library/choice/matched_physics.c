@@ -1,4 +1,4 @@
-#include "validation/sweep/matched_physics.h"
+#include "library/choice/matched_physics.h"
 
 #include "gl/plan/plan.h"
 

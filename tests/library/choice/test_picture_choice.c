@@ -3,9 +3,9 @@
 #include "tests/validation/trace_scene.h"
 
 #include "base/file.h"
-#include "validation/sweep/picture_choice.h"
-#include "validation/sweep/sweep_setting.h"
-#include "validation/sweep/sweep_trace.h"
+#include "library/choice/picture_choice.h"
+#include "library/choice/sweep_setting.h"
+#include "library/choice/sweep_trace.h"
 
 #include <math.h>
 #include <stdlib.h>
