@@ -13,7 +13,7 @@
 #include "colorimetry/illuminant.h"
 #include "colorimetry/image/image.h"
 #include "scenes/environment/environment.h"
-#include "scenes/environment/irradiance_map.h"
+#include "scenes/environment/radiance_map.h"
 #include "scenes/medium/medium.h"
 #include "scenes/mesh/mesh.h"
 #include "scenes/shapes/brushing.h"

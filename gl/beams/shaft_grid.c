@@ -1,4 +1,4 @@
-#include "gl/beams/shaft_grid.h"
+#include "gl/beams/beam_list.h"
 
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"

@@ -1,4 +1,4 @@
-#include "gl/device/gpu_store.h"
+#include "gl/device/gpu.h"
 
 #include <stdint.h>
 #include <stdlib.h>

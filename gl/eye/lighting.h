@@ -4,7 +4,7 @@
 #ifndef ABBE_GL_EYE_LIGHTING_H
 #define ABBE_GL_EYE_LIGHTING_H
 
-#include "gl/beams/shaft_grid.h"
+#include "gl/beams/beam_list.h"
 #include "gl/caustics/spectral_map.h"
 #include "gl/light/light_layers.h"
 #include "gl/light/receiver_atlas.h"

@@ -1,6 +1,6 @@
 // The light of an environment on what nothing hides from it; surroundings.glsl comes before.
 #ifdef ENVIRONMENT
-// rgb irradiance by normal, nodes as scenes/environment/irradiance_map.h has them.
+// rgb irradiance by normal, nodes as scenes/environment/radiance_map.h has them.
 layout(std140, binding = BINDING_SOFT_LIGHT) uniform SoftLight { vec4 soft_light[SOFT_ROWS * SOFT_COLUMNS]; };
 
 vec3 soft_irradiance(vec3 n) {

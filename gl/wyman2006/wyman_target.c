@@ -1,4 +1,4 @@
-#include "gl/wyman2006/wyman_target.h"
+#include "gl/wyman2006/wyman2006.h"
 
 #include "base/maths.h"
 #include "scenes/geometry/transform.h"

@@ -1,4 +1,4 @@
-#include "scenes/export/export_index.h"
+#include "scenes/export/scene_export.h"
 
 #include "spectral/wavelengths.h"
 

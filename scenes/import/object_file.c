@@ -5,7 +5,7 @@
 #include "colorimetry/image/png_file.h"
 #include "scenes/geometry/transform.h"
 #include "scenes/import/scene_value.h"
-#include "scenes/medium/medium_file.h"
+#include "scenes/medium/medium.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/wavelengths.h"
 

@@ -5,7 +5,7 @@
 #include "base/yaml/yaml.h"
 #include "scenes/import/scene_reading.h"
 #include "scenes/import/scene_value.h"
-#include "scenes/medium/medium_file.h"
+#include "scenes/medium/medium.h"
 #include "spectral/formats/material_table_load.h"
 
 #include <limits.h>

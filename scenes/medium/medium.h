@@ -7,6 +7,7 @@
 #define ABBE_SCENES_MEDIUM_MEDIUM_H
 
 #include "base/error.h"
+#include "base/yaml/yaml.h"
 #include "spectral/spectrum.h"
 
 #include <stdbool.h>
@@ -40,5 +41,16 @@ double abbe_medium_phase(double g, double cosine);
  * false where nothing is left. d need not be unit; *to may be infinite. */
 bool abbe_medium_clip(const double min[3], const double max[3], const double o[3],
                       const double d[3], double *from, double *to);
+
+/* The `medium` of a scene file: of the air, and of what refracts. */
+
+/* A coefficient, 1/m, may be this large. */
+#define ABBE_MEDIUM_MOST_PER_M 1e6
+
+/* The value under the key 'medium' of the scene (air: with absorption and a box) or of an object
+ * that refracts; NULL without the key. ABBE_SCHEMA with file and line, ABBE_NO_MEMORY; *out is then
+ * NULL. */
+abbe_result abbe_medium_file_read(abbe_yaml *yaml, abbe_yaml_node mapping, bool air,
+                                  abbe_medium **out, abbe_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-#include "scenes/volume/body_symmetry.h"
+#include "scenes/volume/light_exits.h"
 
 #include "base/maths.h"
 

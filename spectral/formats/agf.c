@@ -5,7 +5,6 @@
 #include "base/number.h"
 #include "base/utf8.h"
 #include "spectral/dispersion/points.h"
-#include "spectral/formats/agf_fields.h"
 #include "spectral/formats/agf_formula.h"
 #include "spectral/materials/absorption.h"
 

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "spectral/dispersion/dispersion.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #define ABBE_AGF_COEFFICIENTS 10
@@ -39,5 +40,27 @@ typedef enum abbe_agf_fidelity {
 abbe_result abbe_agf_formula_write(const abbe_dispersion *dispersion, double min_nm, double max_nm,
                                    abbe_agf_formula *out, abbe_agf_fidelity *fidelity,
                                    double *max_error, abbe_error *error);
+
+/* The words and numbers of a line of a Zemax catalogue. */
+
+enum { ABBE_AGF_MAX_FIELDS = 16 };
+
+/* Numbers of a record that may go on over several lines. NaN stands for '-'. */
+typedef struct abbe_agf_numbers {
+  double value[ABBE_AGF_MAX_FIELDS];
+  size_t count;
+  bool bad;    /* something in it was no number */
+  bool commas; /* it had decimal commas */
+} abbe_agf_numbers;
+
+/* What parts fields: blanks, tabs and commas. */
+bool abbe_agf_is_blank(char c);
+const char *abbe_agf_skip(const char *c);
+/* The next field into text, cut to fit; past it. */
+const char *abbe_agf_word(const char *c, char *text, size_t size);
+/* Adds all that follow. */
+void abbe_agf_numbers_read(const char *c, abbe_agf_numbers *to);
+/* Number i, or otherwise where it is not there or not known. */
+double abbe_agf_number(const abbe_agf_numbers *numbers, size_t i, double otherwise);
 
 #endif

@@ -1,7 +1,6 @@
-#include "spectral/materials/material_record.h"
+#include "spectral/materials/record_reading.h"
 
 #include "spectral/materials/absorption.h"
-#include "spectral/materials/record_reading.h"
 #include "spectral/wavelengths.h"
 
 #include <math.h>

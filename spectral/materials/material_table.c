@@ -2,7 +2,7 @@
 
 #include "base/nearest.h"
 #include "base/yaml/yaml.h"
-#include "spectral/materials/material_record.h"
+#include "spectral/materials/record_reading.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -2,12 +2,56 @@
 
 #include "validation/shafts/shaft_photons.h"
 #include "validation/tracer/emission.h"
-#include "validation/tracer/map_texels.h"
+#include "validation/transport/side_by_side.h"
 #include "validation/walks/path_splitting.h"
 
 #include <omp.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { TEXEL_LANES = ABBE_MAP_TEXELS_LANES, STEPS = ABBE_MAP_LAYOUT_STEPS };
+
+/* Window coordinates; below 0 where the map does not hold the place. */
+SIDE_BY_SIDE static void project(const abbe_view *view, const abbe_map_texels *t,
+                                 double window[2][TEXEL_LANES]) {
+  const abbe_view v = *view;
+  const double width = v.window[1] - v.window[0], height = v.window[3] - v.window[2];
+  const int parallel = v.orthographic;
+  for (int k = 0; k < TEXEL_LANES; k++) {
+    const double x = t->p[0][k] - v.origin[0], y = t->p[1][k] - v.origin[1],
+                 z = t->p[2][k] - v.origin[2];
+    const double depth = x * v.forward[0] + y * v.forward[1] + z * v.forward[2];
+    const double scale = parallel ? 1 : depth;
+    const double right = (x * v.right[0] + y * v.right[1] + z * v.right[2]) / scale;
+    const double up = (x * v.up[0] + y * v.up[1] + z * v.up[2]) / scale;
+    const double a = (right - v.window[0]) / width, b = (up - v.window[2]) / height;
+    const bool inside = (scale > 0) & (a >= 0) & (a <= 1) & (b >= 0) & (b <= 1);
+    window[0][k] = inside ? a : -1;
+    window[1][k] = b;
+  }
+}
+
+/* The texel along an axis of so many, of a window coordinate in [0, 1]. */
+static inline size_t texel_at(const double *knot, double window, size_t side) {
+  const double s = window * STEPS;
+  const int k = s < STEPS ? (int)s : STEPS - 1;
+  const double at = (knot[k] + (s - k) * (knot[k + 1] - knot[k])) * (double)side;
+  return at < (double)side ? (size_t)at : side - 1;
+}
+
+void abbe_map_texels_find(const abbe_map_layout *layout, size_t width, size_t height,
+                          abbe_map_texels *t) {
+  double window[2][TEXEL_LANES];
+  project(&layout->view, t, window);
+  for (int k = 0; k < TEXEL_LANES; k++) {
+    t->at[k] = ABBE_MAP_TEXELS_NONE;
+    if (!(window[0][k] >= 0)) continue;
+    const size_t column = texel_at(layout->knot[0], window[0][k], width);
+    const size_t row = height - 1 - texel_at(layout->knot[1], window[1][k], height);
+    t->at[k] = row * width + column;
+  }
+}
 
 enum { TASK = 16384, SPLIT_TRIALS = 16384 };
 
@@ -156,7 +200,7 @@ static uint64_t add_to_picture(const sink *s, const abbe_photon_hit *hit, size_t
 typedef struct task_result {
   abbe_light_ledger ledger;
   uint64_t splat_rays;
-  size_t kept; /* photons for the eye's gathers, from the task's first photon on */
+  size_t kept;                /* photons for the eye's gathers, from the task's first photon on */
   abbe_shaft_photons *shafts; /* NULL: nothing scatters */
 } task_result;
 

@@ -7,8 +7,8 @@
 #ifndef ABBE_VALIDATION_TRACER_RANKED_RUN_H
 #define ABBE_VALIDATION_TRACER_RANKED_RUN_H
 
+#include "validation/tracer/accumulator.h"
 #include "validation/tracer/trace_run.h"
-#include "validation/tracer/whole_sum.h"
 
 /* Every rank calls each of these as often as the others, in the same order. */
 typedef struct abbe_ranks {

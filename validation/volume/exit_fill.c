@@ -2,7 +2,6 @@
 
 #include "base/maths.h"
 #include "scenes/volume/half.h"
-#include "validation/volume/exit_points.h"
 #include "validation/volume/volume_checkpoint.h"
 #include "validation/volume/volume_space.h"
 

@@ -8,6 +8,10 @@
 #define ABBE_VALIDATION_VOLUME_EXIT_FILL_H
 
 #include "scenes/volume/caustic_volume.h"
+#include "scenes/volume/light_exits.h"
+#include "validation/transport/geometry.h"
+#include "validation/transport/media.h"
+#include "validation/transport/mirrors.h"
 #include "validation/volume/lone_object.h"
 
 typedef struct abbe_exit_fill_desc {
@@ -38,5 +42,62 @@ typedef struct abbe_exit_fill_statistics {
 abbe_result abbe_exit_fill(const abbe_lone_object *lone, const abbe_exit_fill_desc *desc,
                            abbe_caustic_volume *volume, abbe_exit_fill_statistics *statistics,
                            abbe_error *error);
+
+/* Points that light first meets an object at, spread evenly over its surface, each with a
+ * wavelength and with the numbers that decide for its ray [Roberts2018]. */
+
+/* One ray through an object that stands alone, to where it leaves it for good: the tracer's
+ * surfaces, media and laws, with the decisions between reflection and transmission given from
+ * outside, so that rays side by side decide alike.
+ * */
+
+#define ABBE_EXIT_WALK_CHANCES 8 /* of decisions that are given; those after follow from the last  \
+                                  */
+#define ABBE_EXIT_WALK_MOST 64   /* interfaces; what is longer is dropped */
+
+/* What is the same for all rays. */
+typedef struct abbe_exit_space {
+  const abbe_geometry *geometry;
+  const abbe_media *media;
+  const abbe_mirrors *mirrors;
+  const uint32_t *facet; /* [faces] of the object: in which of its planes each lies; NULL: one */
+} abbe_exit_space;
+
+typedef struct abbe_exit_start {
+  float place[3];      /* frame: where it should meet the surface first */
+  float way[3];        /* unit, into it */
+  uint32_t step;       /* of the media's wavelengths */
+  const float *chance; /* [ABBE_EXIT_WALK_CHANCES] in [0, 1) */
+} abbe_exit_start;
+
+typedef struct abbe_exit_end {
+  float place[3], way[3]; /* frame; unit */
+  float carried;   /* share of its light that gets there; 0: something stood before the place,
+                      or none of it came out */
+  uint32_t facets; /* of what it met and whether it was reflected there: the same for the same
+                      sequence */
+} abbe_exit_end;
+
+void abbe_exit_walk(const abbe_exit_space *space, const abbe_exit_start *start, abbe_exit_end *end);
+
+typedef struct abbe_exit_point {
+  float place[3], normal[3]; /* frame; of the face, outwards */
+  uint32_t bin;              /* of ABBE_LIGHT_EXITS_BINS */
+  float chance[ABBE_EXIT_WALK_CHANCES];
+} abbe_exit_point;
+
+typedef struct abbe_exit_points {
+  size_t count;
+  abbe_exit_point *point; /* [count] */
+  double area;            /* of the whole surface, m2: of an open mirror both sides */
+} abbe_exit_points;
+
+/* Of `count` points on all of the surface those that lie where the symmetry brings them, at least
+ * one. Wavelengths by abbe_light_exits_chances. ABBE_GEOMETRY for a surface without area,
+ * ABBE_NO_MEMORY. */
+abbe_result abbe_exit_points_make(const abbe_lone_object *lone, const abbe_body_symmetry *symmetry,
+                                  size_t count, double min_nm, double max_nm, uint32_t seed,
+                                  abbe_exit_points *out, abbe_error *error);
+void abbe_exit_points_free(abbe_exit_points *points);
 
 #endif

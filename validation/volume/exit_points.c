@@ -1,4 +1,4 @@
-#include "validation/volume/exit_points.h"
+#include "validation/volume/exit_fill.h"
 
 #include "base/maths.h"
 #include "validation/transport/interface.h"

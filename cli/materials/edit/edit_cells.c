@@ -1,4 +1,4 @@
-#include "cli/materials/edit/edit_cells.h"
+#include "cli/materials/edit/edit_state.h"
 
 #include "base/utf8.h"
 

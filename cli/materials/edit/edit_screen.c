@@ -2,9 +2,7 @@
 
 #include "base/number.h"
 #include "cli/base/output.h"
-#include "cli/materials/edit/edit_cells.h"
 #include "cli/materials/edit/edit_state.h"
-#include "cli/materials/edit/edit_view.h"
 #include "spectral/editing/check.h"
 
 #include <curses.h>

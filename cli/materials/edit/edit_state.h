@@ -27,4 +27,20 @@ static inline const abbe_material *abbe_edit_state_shown(const abbe_edit_state *
   return a->has_preview ? &a->preview : abbe_record_draft_material(a->draft);
 }
 
+/* The editor's screen, drawn: fields, plots, numbers, warnings, keys. */
+
+/* Scrolls so that the selected field is seen. */
+void abbe_edit_view_draw(abbe_edit_state *state);
+
+/* Text and colours in the cells of the editor's screen. */
+
+/* Curses' pairs of colours, which the screen makes. */
+enum { ABBE_EDIT_WARNING = 1, ABBE_EDIT_CHANGED, ABBE_EDIT_CURVE };
+
+/* text from column x, cut to width characters and filled up with blanks. */
+void abbe_edit_put(int y, int x, int width, const char *text);
+/* The characters in so many bytes of UTF-8. */
+size_t abbe_edit_characters(const char *text, size_t bytes);
+void abbe_edit_colour(int pair, bool on);
+
 #endif

@@ -1,7 +1,5 @@
-#include "cli/materials/edit/edit_view.h"
-
-#include "cli/materials/edit/edit_cells.h"
 #include "cli/materials/edit/edit_state.h"
+
 #include "colorimetry/plot/text_plot.h"
 #include "spectral/editing/check.h"
 #include "spectral/materials/material_numbers.h"

@@ -1,4 +1,4 @@
-// Light in media, cell by cell (gl/beams/shaft_grid.h): what of it is scattered along a ray that the camera's has
+// Light in media, cell by cell (gl/beams/beam_list.h): what of it is scattered along a ray that the camera's has
 // become, in SHAFT_STEPS steps.
 uniform sampler2DArray shaft_light;  // what is scattered, W/m3; then light's direction
 // Of each medium: its box, m; the share of the texture's width and height that it has, its first layer and cells

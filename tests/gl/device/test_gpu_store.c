@@ -1,7 +1,7 @@
 /* What is put back is taken up by what is made alike, and nothing else; no OpenGL is needed. */
 #include "tests/check.h"
 
-#include "gl/device/gpu_store.h"
+#include "gl/device/gpu.h"
 
 static GLuint deleted[8];
 static size_t deleted_count;

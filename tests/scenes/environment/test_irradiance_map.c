@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "base/maths.h"
-#include "scenes/environment/irradiance_map.h"
+#include "scenes/environment/radiance_map.h"
 
 enum { ROWS = ABBE_IRRADIANCE_MAP_ROWS, COLUMNS = ABBE_IRRADIANCE_MAP_COLUMNS };
 

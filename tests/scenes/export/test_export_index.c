@@ -2,7 +2,7 @@
  * errors against those measured anew. */
 #include "tests/scenes/scene_text.h"
 
-#include "scenes/export/export_index.h"
+#include "scenes/export/scene_export.h"
 #include "spectral/formats/material_table_load.h"
 
 static abbe_export_index index_of(const abbe_material_table *table, const char *name,

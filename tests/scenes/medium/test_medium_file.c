@@ -1,7 +1,7 @@
 /* Media in scene files: what they say is read, what is wrong is told with its line. */
 #include "tests/scenes/scene_text.h"
 
-#include "scenes/medium/medium_file.h"
+#include "scenes/medium/medium.h"
 
 TEST(mist_and_murky_glass_are_read) {
   abbe_scene scene;

@@ -3,7 +3,7 @@
 #include "tests/scenes/scene_text.h"
 
 #include "base/maths.h"
-#include "scenes/volume/body_symmetry.h"
+#include "scenes/volume/light_exits.h"
 #include "scenes/volume/volume_body.h"
 
 #define SUNNY CAMERA SUN FLOOR

@@ -2,7 +2,7 @@
 #include "tests/check.h"
 #include "tests/random.h"
 
-#include "validation/tracer/map_texels.h"
+#include "validation/tracer/light_pass.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
  */
 #include "tests/validation/trace_scene.h"
 
-#include "validation/volume/exit_points.h"
+#include "validation/volume/exit_fill.h"
 
 #define PI 3.14159265358979323846
 enum { COUNT = 8192 };

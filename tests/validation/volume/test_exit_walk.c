@@ -2,7 +2,7 @@
  * apart, what stands before a place hides it, and glass that absorbs takes its share. */
 #include "tests/validation/trace_scene.h"
 
-#include "validation/volume/exit_points.h"
+#include "validation/volume/exit_fill.h"
 #include "validation/volume/lone_object.h"
 
 #define PLATE(material)                                                                            \
