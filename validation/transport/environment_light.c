@@ -60,7 +60,7 @@ static void set_balls(const abbe_geometry *g, abbe_environment_light *e) {
     if ((g->surface[i].kind & ABBE_GEOMETRY_SPECULAR) == 0) continue;
     float *ball = e->ball[e->ball_count++];
     surround(g, &g->scene->object[i], ball);
-    e->area += ABBE_PI * pow((double)ball[3] * g->unit, 2);
+    e->area += 3.14159265358979 * pow((double)ball[3] * g->unit, 2);
   }
   abbe_scene_bounds(g->scene, true, true, min, max);
   abbe_scene_hold_lights(g->scene, min, max);

@@ -21,7 +21,7 @@ static inline float abbe_lamp_place(const abbe_geometry *g, const abbe_light *li
     for (int k = 0; k < 3; k++) n[k] = -(float)light->direction[k];
     abbe_geometry_across(n, a, b);
     for (int k = 0; k < 3; k++) place[k] += r * (cosf(angle) * a[k] + sinf(angle) * b[k]);
-    power *= (float)(ABBE_PI * light->radius * light->radius);
+    power *= (float)(3.14159265358979 * light->radius * light->radius);
   } else if (light->kind == ABBE_LIGHT_RECTANGLE) {
     const float x = 2 * u[0] - 1, y = 2 * u[1] - 1, unit = (float)g->unit;
     for (int k = 0; k < 3; k++)
