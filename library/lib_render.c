@@ -1,4 +1,5 @@
 /* The pictures of lib_scene.h that OpenGL draws. */
+#include "gl/plan/facts/render_settings.h"
 #include "library/lib_handles.h"
 #include "library/lib_settings.h"
 
@@ -6,64 +7,35 @@
 
 typedef struct request {
   abbe_render_desc desc;
-  int profile, fill, model, transport, strategy, footprint, space, observer, backend;
+  int backend;
 } request;
 
-#define NAME_OF_2(code, name) name,
-#define NAME_OF_3(code, name, ocio) name,
-static const char *const profiles[] = {ABBE_PROFILES(NAME_OF_2)};
-static const char *const fills[] = {ABBE_FILLS(NAME_OF_2)};
-static const char *const models[] = {ABBE_MODELS(NAME_OF_2)};
-static const char *const transports[] = {ABBE_TRANSPORTS(NAME_OF_2)};
-static const char *const strategies[] = {ABBE_SAMPLE_STRATEGIES(NAME_OF_2)};
-static const char *const footprints[] = {ABBE_FOOTPRINTS(NAME_OF_2)};
-static const char *const spaces[] = {ABBE_RGB_SPACES(NAME_OF_3)};
-static const char *const observers[] = {ABBE_OBSERVERS(NAME_OF_3)};
-static const char *const backends[] = {ABBE_CONTEXT_BACKENDS(NAME_OF_2)};
+#define NAME_OF(code, name) name,
+static const char *const backends[] = {ABBE_CONTEXT_BACKENDS(NAME_OF)};
 
+static abbe_lib_setting row_of(const abbe_render_setting *s, abbe_render_desc *desc) {
+  static const abbe_lib_setting_kind kinds[] = {[ABBE_SETTING_COUNT] = ABBE_LIB_SETTING_COUNT,
+                                                [ABBE_SETTING_NUMBER] = ABBE_LIB_SETTING_NUMBER,
+                                                [ABBE_SETTING_FLAG] = ABBE_LIB_SETTING_FLAG,
+                                                [ABBE_SETTING_CHOICE] = ABBE_LIB_SETTING_CHOICE};
+  return (abbe_lib_setting){.key = s->key,
+                            .kind = kinds[s->kind],
+                            .value = abbe_render_setting_in(s, desc),
+                            .least = s->least,
+                            .most = s->most,
+                            .names = s->names,
+                            .names_count = s->name_count};
+}
+
+/* The table's settings, and the device. */
 static abbe_result read_request(const char *const *settings, size_t count, request *q,
                                 abbe_error *error) {
-  abbe_render_desc *d = &q->desc;
-  const abbe_lib_setting known[] = {
-      ABBE_LIB_COUNT("width", &d->width, 1, ABBE_RENDER_MAX_SIDE),
-      ABBE_LIB_COUNT("height", &d->height, 1, ABBE_RENDER_MAX_SIDE),
-      ABBE_LIB_COUNT("wavelengths", &d->wavelengths, 1, ABBE_RENDER_MAX_WAVELENGTHS),
-      ABBE_LIB_NUMBER("min_nm", &d->min_nm, 1, 1e6),
-      ABBE_LIB_NUMBER("max_nm", &d->max_nm, 1, 1e6),
-      ABBE_LIB_COUNT("photons", &d->photons, 1, ABBE_RENDER_MAX_PHOTONS),
-      ABBE_LIB_COUNT("map_size", &d->map_size, 1, ABBE_RENDER_MAX_MAP),
-      ABBE_LIB_COUNT("supersample", &d->supersample, 1, 4),
-      ABBE_LIB_COUNT("upsample", &d->upsample, 1, 4),
-      ABBE_LIB_COUNT("adaptive", &d->adaptive, 1, ABBE_RENDER_MAX_ADAPTIVE),
-      ABBE_LIB_COUNT("receiver_samples", &d->receiver_samples, 1, 4),
-      ABBE_LIB_COUNT("environment_lights", &d->environment_lights, 1,
-                     ABBE_RENDER_MAX_ENVIRONMENT_LIGHTS),
-      ABBE_LIB_COUNT("light_points", &d->light_points, 1, ABBE_RENDER_MAX_LIGHT_POINTS),
-      ABBE_LIB_COUNT("exits", &d->exits, 1, ABBE_RENDER_MAX_EXITS),
-      ABBE_LIB_NUMBER("energy_share", &d->energy_share, 0, 1),
-      ABBE_LIB_CHOICE("profile", &q->profile, profiles),
-      ABBE_LIB_CHOICE("fill", &q->fill, fills),
-      ABBE_LIB_CHOICE("model", &q->model, models),
-      ABBE_LIB_CHOICE("transport", &q->transport, transports),
-      ABBE_LIB_COUNT("pinholes", &d->pinholes, 1, ABBE_SURFACE_MAX_SAMPLES),
-      ABBE_LIB_COUNT("clusters", &d->clusters, 1, ABBE_RENDER_MAX_CLUSTERS),
-      ABBE_LIB_CHOICE("strategy", &q->strategy, strategies),
-      ABBE_LIB_CHOICE("footprint", &q->footprint, footprints),
-      ABBE_LIB_CHOICE("space", &q->space, spaces),
-      ABBE_LIB_CHOICE("observer", &q->observer, observers),
-      ABBE_LIB_CHOICE("backend", &q->backend, backends),
-      ABBE_LIB_FLAG("aovs", &d->aovs)};
-  abbe_result result = abbe_library_settings_read("render", known, sizeof known / sizeof *known,
-                                                  settings, count, error);
-  d->profile = (abbe_profile)q->profile;
-  d->fill = (abbe_fill)q->fill;
-  d->model = (abbe_model)q->model;
-  d->transport = (abbe_transport)q->transport;
-  d->strategy = (abbe_sample_strategy)q->strategy;
-  d->footprint = (abbe_footprint)q->footprint;
-  d->space = (abbe_rgb_space)q->space;
-  d->observer = (abbe_observer)q->observer;
-  return result;
+  abbe_lib_setting known[ABBE_LIB_SETTINGS_MOST] = {
+      ABBE_LIB_CHOICE("backend", &q->backend, backends)};
+  size_t known_count = 1;
+  for (size_t i = 0; i < abbe_render_settings_count && known_count < ABBE_LIB_SETTINGS_MOST; i++)
+    known[known_count++] = row_of(&abbe_render_settings[i], &q->desc);
+  return abbe_library_settings_read("render", known, known_count, settings, count, error);
 }
 
 /* The renderer takes over the scene as it is now; what it held before is freed. */

@@ -39,7 +39,7 @@ typedef struct abbe_lib_setting {
 #define ABBE_LIB_TEXT(key, at)                                                                     \
   { key, ABBE_LIB_SETTING_TEXT, at, 0, 0, NULL, 0 }
 
-enum { ABBE_LIB_SETTINGS_MOST = 32 }; /* rows of a table */
+enum { ABBE_LIB_SETTINGS_MOST = 64 }; /* rows of a table */
 
 /* Of several texts with one key the last one counts. `what` names the request in sentences. text
  * may be NULL where count is 0. ABBE_INVALID_ARGUMENT, with the nearest key or the range, for a key

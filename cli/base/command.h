@@ -25,6 +25,7 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
   X(view, "show a scene in a window: turn it, change it, see the light follow")                    \
   X(trace, "trace the reference: what light really does, with standard errors")                    \
   X(volume, "compute an object's caustics beforehand, for light from all sides")                   \
+  X(methods, "the published methods that render can take in place of its own, and their options")  \
   X(plan, "say which passes and models a scene asks for, and why")                                 \
   X(materials, "look into, edit, convert and check tables of materials")                           \
   X(gem, "say what a gem's design holds, draw it, convert it, change its angles")                  \

@@ -415,15 +415,15 @@ static void be_silent(request *q) {
 }
 
 static int run_command(int argc, char **argv, abbe_rank_job *job) {
-  static const struct argp_child children[] = {
-      {&abbe_render_options_argp, 0, "Speed and accuracy:", 1},
+  const struct argp_child children[] = {
+      {abbe_render_options_argp(), 0, "Speed and accuracy:", 1},
       {&abbe_map_options_argp, 0, "Spectral map:", 3},
       {&abbe_preset_options_argp, 0, "By error or by time:", 2},
       {&abbe_error_options_argp, 0, "How far off it is:", 4},
       {&abbe_render_frames_argp, 0, "From all around, and over time:", 5},
       {&abbe_screen_options_argp, 0, "How the PNG shows it:", 6},
       {0}};
-  static const struct argp argp = {
+  const struct argp argp = {
       options,
       parse,
       NULL,

@@ -19,9 +19,11 @@ typedef struct abbe_render_options {
   abbe_caustic_volume volume; /* of that file; whoever loads it frees it */
 } abbe_render_options;
 
-/* An argp child: profile, size, wavelengths, photons …, and the scene as the one argument. Its
- * input is an abbe_render_options with program set. */
-extern const struct argp abbe_render_options_argp;
+/* An argp child: the table of settings, size, range …, and the scene as the one argument. Its input
+ * is an abbe_render_options with program set. */
+const struct argp *abbe_render_options_argp(void);
+/* Those of them that only published methods, pinholes or caustic volumes take, for their page. */
+const struct argp_option *abbe_render_options_of_methods(void);
 
 /* The volume that is named, into the request; errors of abbe_volume_file_read. */
 abbe_result abbe_render_options_load_volume(abbe_render_options *request, abbe_error *error);

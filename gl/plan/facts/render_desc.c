@@ -1,5 +1,6 @@
 #include "gl/plan/facts/render_desc.h"
 
+#include "gl/plan/facts/render_settings.h"
 #include "spectral/wavelengths.h"
 
 #include <math.h>
@@ -158,37 +159,12 @@ static void fill_in_defaults(size_t width, size_t height, abbe_render_desc *d) {
 }
 
 static abbe_result check_counts(const abbe_render_desc *d, abbe_error *error) {
-  const struct {
-    const char *what;
-    size_t value, least, most;
-  } counts[] = {
-      {"the width", d->width, 1, ABBE_RENDER_MAX_SIDE},
-      {"the height", d->height, 1, ABBE_RENDER_MAX_SIDE},
-      {"the photon grid", d->photons, 1, ABBE_RENDER_MAX_PHOTONS},
-      {"the spectral map", d->map_size, 1, ABBE_RENDER_MAX_MAP},
-      {"the supersampling", d->supersample, 1, 4},
-      {"the upsampling", d->upsample, 1, 4},
-      {"the number of the environment's lights", d->environment_lights, 1,
-       ABBE_RENDER_MAX_ENVIRONMENT_LIGHTS},
-      {"the number of a light's points", d->light_points, 1, ABBE_RENDER_MAX_LIGHT_POINTS},
-      {"the adaptive sampling", d->adaptive, 1, ABBE_RENDER_MAX_ADAPTIVE},
-      /* 0: the scene tells */
-      {"the number of wavelengths", d->wavelengths, 0,
-       abbe_profile_is_published(d->profile) ? 64 : ABBE_RENDER_MAX_WAVELENGTHS},
-      {"the number of exits", d->exits, 0, ABBE_RENDER_MAX_EXITS},
-      {"the number of iterations", d->iterations, 0, ABBE_ESTIMATOR_MAX_ITERATIONS},
-      {"the number of interfaces", d->interfaces, 0, 2},
-      {"the number of the light's views", d->faces, 0, ABBE_RENDER_CUBE_FACES},
-      {"the low pass of the map", d->low_pass, 0, ABBE_RENDER_MAX_LOW_PASS},
-      {"the number of pinholes", d->pinholes, 0, ABBE_SURFACE_MAX_SAMPLES},
-      {"the number of clusters", d->clusters, 0, ABBE_RENDER_MAX_CLUSTERS},
-      {"the number of a picture's frames", d->history, 0, ABBE_RENDER_MAX_HISTORY},
-  };
-  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
-    if (counts[i].value < counts[i].least || counts[i].value > counts[i].most)
-      return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s is %zu; it may be 1 to %zu",
-                            counts[i].what, counts[i].value, counts[i].most);
-  return ABBE_OK;
+  enum { PUBLISHED_WAVELENGTHS = 64 };
+  if (abbe_profile_is_published(d->profile) && d->wavelengths > PUBLISHED_WAVELENGTHS)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the number of wavelengths is %zu; it may be 1 to %d", d->wavelengths,
+                          PUBLISHED_WAVELENGTHS);
+  return abbe_render_settings_check(d, error);
 }
 
 static abbe_result check_numbers(const abbe_render_desc *d, abbe_error *error) {

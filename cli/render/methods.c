@@ -1,0 +1,52 @@
+/* abbe methods: what can be drawn in place of the renderer's own way, and the options of that. */
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "cli/render/render_options.h"
+
+#include "gl/plan/facts/render_desc.h"
+
+#include <argp.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  (void)text;
+  const bool asks = key > 0 && key < ARGP_KEY_END; /* for one of the options below */
+  if (key == ARGP_KEY_ARG || asks)
+    argp_error(state, "this is a page to be read; draw by 'abbe render SCENE.yaml --profile NAME'");
+  return 0;
+}
+
+int abbe_command_methods(int argc, char **argv) {
+  const struct argp argp = {
+      abbe_render_options_of_methods(),
+      parse,
+      NULL,
+      "Lists the published methods that 'abbe render --profile NAME' draws by, as they were "
+      "printed "
+      "and, with -cie, with CIE weights, Fresnel's law and watts. Below are the options of 'abbe "
+      "render' that only they, pinholes and caustic volumes take.\v"
+      "Examples:\n"
+      "  abbe methods\n"
+      "  abbe render scenes/sphere.yaml --profile thesis --png thesis.png --view Plain\n"
+      "  abbe render scenes/sphere.yaml --profile wyman2006-cie --fill quads --png quads.png\n"
+      "  abbe render scenes/metals.yaml --transport pinhole --pinholes 512 --png metals.png\n",
+      NULL,
+      NULL,
+      NULL};
+  abbe_arguments_parse(&argp, 0, argc, argv, NULL);
+  static const char *const says[ABBE_PROFILE_COUNT] = {
+      [ABBE_PROFILE_DEFAULT] = "Abbe's own: adaptive photons, splats by footprint, exact areas",
+      [ABBE_PROFILE_THESIS] = "adaptive spectral maps with a 20-step fill, as printed",
+      [ABBE_PROFILE_THESIS_CIE] = "the same in units",
+      [ABBE_PROFILE_SHAH2007] = "caustics mapping: vertices splatted into the light's map",
+      [ABBE_PROFILE_SHAH2007_CIE] = "the same in units",
+      [ABBE_PROFILE_WYMAN2006] = "photons in image space: points, polygons or gathers",
+      [ABBE_PROFILE_WYMAN2006_CIE] = "the same in units",
+      [ABBE_PROFILE_WYMAN2003] = "caustics looked up in a printed volume (--volume, abbe volume)",
+      [ABBE_PROFILE_WAND2003] = "surroundings through samples of mirrors as pinholes"};
+  for (int i = 0; i < ABBE_PROFILE_COUNT; i++)
+    printf("%-14s %s\n", abbe_profile_name((abbe_profile)i), says[i]);
+  printf("\n'abbe methods --help' shows their options; docs/methods.md compares their pictures.\n");
+  return ABBE_EXIT_DONE;
+}
