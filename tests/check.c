@@ -22,6 +22,25 @@ void check_each(void (*before)(void), void (*after)(void)) {
   each = (pair){before, after};
 }
 
+abbe_error last_error;
+
+void check_ok(abbe_result result, const abbe_error *error, const char *call, const char *file,
+              int line) {
+  if (result == ABBE_OK) return;
+  const abbe_error *told = error->text[0] != '\0' ? error : &last_error;
+  print_error("%s\n  fails (%d): %s\n", call, (int)result, told->text);
+  _fail(file, line);
+}
+
+void check_refusal(abbe_result code, const char *words, abbe_result result, const abbe_error *error,
+                   const char *call, const char *file, int line) {
+  last_error = *error;
+  if (result == code && error->text[0] != '\0' && strstr(error->text, words) != NULL) return;
+  print_error("%s\n  is to be refused (%d) with '%s', and gives (%d) '%s'\n", call, (int)code,
+              words, (int)result, error->text);
+  _fail(file, line);
+}
+
 static void call(void (*function)(void)) {
   if (function != NULL) function();
 }

@@ -11,6 +11,8 @@
 
 #include <cmocka.h>
 
+#include "base/error.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -66,6 +68,26 @@ void check_each(void (*before)(void), void (*after)(void));
     check_each(before, after);                                                                     \
   }                                                                                                \
   struct check_test
+
+/* OK(call) and REFUSED(code, words, call): the call succeeds, or fails with that code and a
+ * sentence that contains the words ("" for any sentence). The call names its error as &error, which
+ * is the macro's own. last_error is what the last REFUSED was told; calls that have no error to
+ * give may fill it. */
+extern abbe_error last_error;
+#define OK(...)                                                                                    \
+  do {                                                                                             \
+    abbe_error error = {.text = ""};                                                               \
+    check_ok((__VA_ARGS__), &error, #__VA_ARGS__, __FILE__, __LINE__);                             \
+  } while (0)
+#define REFUSED(code, words, ...)                                                                  \
+  do {                                                                                             \
+    abbe_error error = {.text = ""};                                                               \
+    check_refusal(code, words, (__VA_ARGS__), &error, #__VA_ARGS__, __FILE__, __LINE__);           \
+  } while (0)
+void check_ok(abbe_result result, const abbe_error *error, const char *call, const char *file,
+              int line);
+void check_refusal(abbe_result code, const char *words, abbe_result result, const abbe_error *error,
+                   const char *call, const char *file, int line);
 
 /* |a - b| <= tolerance; a NaN on either side fails. */
 #define assert_near(a, b, tolerance) check_near(a, b, tolerance, #a, __FILE__, __LINE__)

@@ -5,8 +5,6 @@
 #include "tests/check.h"
 
 #include <locale.h>
-#include <stdbool.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #define COMMA "de_DE.UTF-8"

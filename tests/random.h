@@ -2,6 +2,8 @@
 #ifndef ABBE_TESTS_RANDOM_H
 #define ABBE_TESTS_RANDOM_H
 
+#include "base/maths.h"
+
 #include <math.h>
 #include <stdint.h>
 
@@ -15,6 +17,14 @@ static inline uint64_t random_bits(uint64_t *state) {
 /* Evenly in [low, high). */
 static inline double random_between(uint64_t *state, double low, double high) {
   return low + (high - low) * (double)(random_bits(state) >> 11) * 0x1p-53;
+}
+
+/* A direction, all alike. */
+static inline void random_unit(uint64_t *state, double d[3]) {
+  do
+    for (int k = 0; k < 3; k++) d[k] = random_between(state, -1, 1);
+  while (!(abbe_vector_length(d) > 0.1) || abbe_vector_length(d) > 1);
+  abbe_vector_normalise(d);
 }
 
 /* Of mean 0 and variance 1, by Box and Muller. */

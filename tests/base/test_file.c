@@ -6,8 +6,6 @@
 #include <dirent.h>
 #include <poll.h>
 #include <signal.h>
-#include <stdbool.h>
-#include <stdlib.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -48,7 +46,7 @@ static void empty_folder(void) {
 static void assert_holds(const char *path, const char *text) {
   char *data = NULL;
   size_t size = 0;
-  assert_int_equal(abbe_file_read(path, 1000, &data, &size, NULL), ABBE_OK);
+  OK(abbe_file_read(path, 1000, &data, &size, &error));
   assert_int_equal(size, strlen(text));
   assert_string_equal(data, text);
   free(data);
@@ -59,33 +57,28 @@ GROUP(make_folder, empty_folder);
 TEST(what_is_written_is_read) {
   char *data = NULL;
   size_t size = 0;
-  assert_int_equal(abbe_file_write(in_folder("a"), "x\0y", 3, NULL), ABBE_OK);
-  assert_int_equal(abbe_file_read(in_folder("a"), 3, &data, &size, NULL), ABBE_OK);
+  OK(abbe_file_write(in_folder("a"), "x\0y", 3, &error));
+  OK(abbe_file_read(in_folder("a"), 3, &data, &size, &error));
   assert_int_equal(size, 3);
   assert_memory_equal(data, "x\0y", 4);
   free(data);
-  assert_int_equal(abbe_file_write(in_folder("a"), "", 0, NULL), ABBE_OK);
+  OK(abbe_file_write(in_folder("a"), "", 0, &error));
   assert_holds(in_folder("a"), "");
   assert_int_equal(entries(), 1);
 }
 
 TEST(what_cannot_be_read_says_why) {
-  abbe_error error;
   char *data = NULL;
   size_t size = 0;
-  assert_int_equal(abbe_file_read(in_folder("none"), 10, &data, &size, &error), ABBE_IO);
-  assert_contains(error.text, "/none: ");
-  assert_int_equal(abbe_file_read(folder, 10, &data, &size, &error), ABBE_IO);
-  assert_contains(error.text, "is a directory");
-  assert_int_equal(abbe_file_write(in_folder("long"), "12345678901", 11, NULL), ABBE_OK);
-  assert_int_equal(abbe_file_read(in_folder("long"), 10, &data, &size, &error), ABBE_IO);
-  assert_contains(error.text, "at most 10");
+  REFUSED(ABBE_IO, "/none: ", abbe_file_read(in_folder("none"), 10, &data, &size, &error));
+  REFUSED(ABBE_IO, "is a directory", abbe_file_read(folder, 10, &data, &size, &error));
+  OK(abbe_file_write(in_folder("long"), "12345678901", 11, &error));
+  REFUSED(ABBE_IO, "at most 10", abbe_file_read(in_folder("long"), 10, &data, &size, &error));
   assert_null(data);
 }
 
 /* Whoever waits at one of these is ended by the test's limit alone. */
 TEST(only_a_regular_file_is_opened) {
-  abbe_error error;
   char *data = NULL;
   size_t size = 0;
   FILE *stream = NULL;
@@ -96,16 +89,14 @@ TEST(only_a_regular_file_is_opened) {
                 {folder, "is a directory"}};
   assert_int_equal(mkfifo(others[0].path, 0600), 0);
   for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
-    assert_int_equal(abbe_file_read(others[i].path, 100000, &data, &size, &error), ABBE_IO);
-    assert_contains(error.text, others[i].path);
-    assert_contains(error.text, others[i].kind);
-    assert_int_equal(abbe_file_open(others[i].path, &stream, &size, &error), ABBE_IO);
-    assert_contains(error.text, others[i].kind);
+    REFUSED(ABBE_IO, others[i].path, abbe_file_read(others[i].path, 100000, &data, &size, &error));
+    assert_contains(last_error.text, others[i].kind);
+    REFUSED(ABBE_IO, others[i].kind, abbe_file_open(others[i].path, &stream, &size, &error));
     assert_null(stream);
   }
   assert_null(data);
-  assert_int_equal(abbe_file_write(in_folder("whole"), "12345", 5, NULL), ABBE_OK);
-  assert_int_equal(abbe_file_open(in_folder("whole"), &stream, &size, &error), ABBE_OK);
+  OK(abbe_file_write(in_folder("whole"), "12345", 5, &error));
+  OK(abbe_file_open(in_folder("whole"), &stream, &size, &error));
   assert_int_equal(size, 5);
   assert_int_equal(fgetc(stream), '1');
   fclose(stream);
@@ -123,7 +114,6 @@ int __wrap_poll(struct pollfd *one, nfds_t count, int milliseconds) {
 
 /* As a shell's <(...) is one. */
 TEST(a_nameless_pipe_is_read_while_it_brings_something) {
-  abbe_error error;
   int end[2];
   char path[64], *data = NULL;
   size_t size = 0;
@@ -131,9 +121,9 @@ TEST(a_nameless_pipe_is_read_while_it_brings_something) {
   snprintf(path, sizeof path, "/dev/fd/%d", end[0]);
   assert_int_equal(write(end[1], "text", 4), 4);
   nothing_comes = true;
-  assert_int_equal(abbe_file_read(path, 100, &data, &size, &error), ABBE_IO);
+  REFUSED(ABBE_IO, "", abbe_file_read(path, 100, &data, &size, &error));
   nothing_comes = false;
-  assert_contains(error.text, "nothing has come through this pipe for 60 s");
+  assert_contains(last_error.text, "nothing has come through this pipe for 60 s");
   assert_null(data);
   assert_int_equal(write(end[1], "more", 4), 4);
   close(end[1]);
@@ -149,7 +139,7 @@ TEST(standard_input_is_read) {
   assert_int_equal(write(end[1], "text", 4), 4);
   close(end[1]);
   dup2(end[0], STDIN_FILENO);
-  assert_int_equal(abbe_file_read_input(100, &data, &size, NULL), ABBE_OK);
+  OK(abbe_file_read_input(100, &data, &size, &error));
   dup2(kept, STDIN_FILENO);
   close(kept);
   close(end[0]);
@@ -160,7 +150,7 @@ TEST(standard_input_is_read) {
 TEST(a_file_without_a_size_is_read) {
   char *data = NULL;
   size_t size = 0;
-  assert_int_equal(abbe_file_read("/proc/self/status", 1 << 20, &data, &size, NULL), ABBE_OK);
+  OK(abbe_file_read("/proc/self/status", 1 << 20, &data, &size, &error));
   assert_contains(data, "Name:");
   assert_int_equal(size, strlen(data));
   free(data);
@@ -168,9 +158,9 @@ TEST(a_file_without_a_size_is_read) {
 
 TEST(nothing_changes_before_commit_or_after_discard) {
   abbe_file_writer writer;
-  assert_int_equal(abbe_file_write(in_folder("t"), "old", 3, NULL), ABBE_OK);
+  OK(abbe_file_write(in_folder("t"), "old", 3, &error));
   int before = entries();
-  assert_int_equal(abbe_file_writer_open(&writer, in_folder("t"), NULL), ABBE_OK);
+  OK(abbe_file_writer_open(&writer, in_folder("t"), &error));
   fputs("new", writer.stream);
   fflush(writer.stream);
   assert_holds(in_folder("t"), "old");
@@ -185,10 +175,10 @@ TEST(nothing_changes_before_commit_or_after_discard) {
 
 TEST(a_link_is_written_through_and_a_mode_is_kept) {
   struct stat status;
-  assert_int_equal(abbe_file_write(in_folder("target"), "old", 3, NULL), ABBE_OK);
+  OK(abbe_file_write(in_folder("target"), "old", 3, &error));
   assert_int_equal(chmod(in_folder("target"), 0640), 0);
   assert_int_equal(symlink("target", in_folder("link")), 0);
-  assert_int_equal(abbe_file_write(in_folder("link"), "new", 3, NULL), ABBE_OK);
+  OK(abbe_file_write(in_folder("link"), "new", 3, &error));
   assert_int_equal(lstat(in_folder("link"), &status), 0);
   assert_true(S_ISLNK(status.st_mode));
   assert_holds(in_folder("target"), "new");
@@ -199,15 +189,11 @@ TEST(a_link_is_written_through_and_a_mode_is_kept) {
 }
 
 TEST(an_unwritable_target_says_why) {
-  abbe_error error;
   int before = entries();
-  assert_int_equal(abbe_file_write(in_folder("no/such/folder"), "x", 1, &error), ABBE_IO);
-  assert_contains(error.text, "no/such/folder");
-  assert_int_equal(abbe_file_write(folder, "x", 1, &error), ABBE_IO);
-  assert_contains(error.text, "directory");
-  assert_int_equal(abbe_file_write("/dev/null", "x", 1, &error), ABBE_IO);
-  assert_contains(error.text, "not a regular file");
-  assert_int_equal(abbe_file_write("", "x", 1, &error), ABBE_IO);
+  REFUSED(ABBE_IO, "no/such/folder", abbe_file_write(in_folder("no/such/folder"), "x", 1, &error));
+  REFUSED(ABBE_IO, "directory", abbe_file_write(folder, "x", 1, &error));
+  REFUSED(ABBE_IO, "not a regular file", abbe_file_write("/dev/null", "x", 1, &error));
+  REFUSED(ABBE_IO, "", abbe_file_write("", "x", 1, &error));
   assert_int_equal(entries(), before);
 }
 
@@ -215,7 +201,7 @@ TEST(a_name_as_long_as_names_can_be_works) {
   char name[256];
   memset(name, 'n', 255);
   name[255] = '\0';
-  assert_int_equal(abbe_file_write(in_folder(name), "x", 1, NULL), ABBE_OK);
+  OK(abbe_file_write(in_folder(name), "x", 1, &error));
   assert_holds(in_folder(name), "x");
 }
 
@@ -224,7 +210,7 @@ TEST(a_full_disk_leaves_the_old_file) {
   enum { SIZE = 1 << 20 };
   char *big = calloc(1, SIZE);
   assert_non_null(big);
-  assert_int_equal(abbe_file_write(in_folder("kept"), "old", 3, NULL), ABBE_OK);
+  OK(abbe_file_write(in_folder("kept"), "old", 3, &error));
   int before = entries();
   struct rlimit limit, small;
   assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);
@@ -232,16 +218,16 @@ TEST(a_full_disk_leaves_the_old_file) {
   small.rlim_cur = 4096;
   signal(SIGXFSZ, SIG_IGN);
   assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
-  abbe_error error = {0};
-  abbe_result result = abbe_file_write(in_folder("kept"), big, SIZE, &error);
+  abbe_error why = {0};
+  abbe_result result = abbe_file_write(in_folder("kept"), big, SIZE, &why);
   /* small enough for the stream's buffer: the failure shows at commit only */
   abbe_result buffered = abbe_file_write(in_folder("kept"), big, 4097, NULL);
   setrlimit(RLIMIT_FSIZE, &limit);
   free(big);
   assert_int_equal(result, ABBE_IO);
   assert_int_equal(buffered, ABBE_IO);
-  assert_contains(error.text, "kept");
-  assert_contains(error.text, "File too large");
+  assert_contains(why.text, "kept");
+  assert_contains(why.text, "File too large");
   assert_holds(in_folder("kept"), "old");
   assert_int_equal(entries(), before);
 }

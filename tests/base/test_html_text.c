@@ -2,8 +2,6 @@
 
 #include "base/html_text.h"
 
-#include <stdlib.h>
-
 static void becomes(const char *html, const char *wanted) {
   char *text = abbe_html_text(html, 1000);
   assert_string_equal(text, wanted);

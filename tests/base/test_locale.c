@@ -25,13 +25,7 @@
 #include "validation/tradeoff/error_decomposition.h"
 #include "validation/tradeoff/sweep_presets.h"
 
-static abbe_error error;
-
 /* ---- what is noted of a run ---- */
-
-static void ok(abbe_result result) {
-  if (result != ABBE_OK) fail_msg("%s", error.text);
-}
 
 /* Bits, not digits: the test itself must not go by the locale. */
 static void note(FILE *to, const char *what, const void *data, size_t size) {
@@ -47,14 +41,14 @@ static void in_folder(const char *name, char path[300]) {
 static void make_file(const char *name, const char *text) {
   char path[300];
   in_folder(name, path);
-  ok(abbe_file_write(path, text, strlen(text), &error));
+  OK(abbe_file_write(path, text, strlen(text), &error));
 }
 
 static void note_file(FILE *to, const char *name) {
   char path[300], *data = NULL;
   size_t size = 0;
   in_folder(name, path);
-  ok(abbe_file_read(path, 1 << 26, &data, &size, &error));
+  OK(abbe_file_read(path, 1 << 26, &data, &size, &error));
   for (size_t i = 0; i < size; i++)
     if (data[i] == '\0') data[i] = '@'; /* the notes are text */
   /* cairo counts the surfaces of a process */
@@ -81,17 +75,17 @@ static void with_materials(FILE *to) {
     abbe_material_table table = {0}, known = {0};
     abbe_report report = {0};
     abbe_findings findings = {0};
-    ok(abbe_material_table_load(sets[t], &table, &error));
-    ok(abbe_material_table_load("default", &known, &error));
-    ok(abbe_material_table_write(&table, to, &error));
-    ok(abbe_agf_write(&table, to, &report, &error));
+    OK(abbe_material_table_load(sets[t], &table, &error));
+    OK(abbe_material_table_load("default", &known, &error));
+    OK(abbe_material_table_write(&table, to, &error));
+    OK(abbe_agf_write(&table, to, &report, &error));
     for (int s = 0; s < ABBE_SHADER_COUNT; s++)
-      ok(abbe_shader_write((abbe_shader)s, &table, to, &report, &error));
+      OK(abbe_shader_write((abbe_shader)s, &table, to, &report, &error));
     const abbe_csv_sampling sampling = {450, 525, 12.5};
-    ok(abbe_csv_write(&table.material[1], &sampling, to, &report, &error));
-    ok(abbe_rii_write(&table.material[1], to, &report, &error));
+    OK(abbe_csv_write(&table.material[1], &sampling, to, &report, &error));
+    OK(abbe_rii_write(&table.material[1], to, &report, &error));
     for (size_t i = 0; i < report.count; i++) fprintf(to, "%s\n", report.note[i].text);
-    ok(abbe_check_table(&table, &known, &findings, &error));
+    OK(abbe_check_table(&table, &known, &findings, &error));
     for (size_t i = 0; i < findings.count; i++)
       fprintf(to, "%s %s %s\n", findings.finding[i].evidence,
               findings.finding[i].fix ? findings.finding[i].fix : "",
@@ -119,8 +113,8 @@ static void with_imports(FILE *to) {
     abbe_report report = {0};
     in_folder(files[i][0], path);
     make_file(files[i][0], files[i][1]);
-    ok(abbe_import_load(path, &(abbe_import_options){0}, &table, &report, &error));
-    ok(abbe_material_table_write(&table, to, &error));
+    OK(abbe_import_load(path, &(abbe_import_options){0}, &table, &report, &error));
+    OK(abbe_material_table_write(&table, to, &error));
     for (size_t k = 0; k < report.count; k++) fprintf(to, "%s\n", report.note[k].text);
     abbe_report_free(&report);
     abbe_material_table_free(&table);
@@ -135,7 +129,7 @@ static void with_illuminants(FILE *to) {
     abbe_illuminant light;
     in_folder(files[i][0], path);
     make_file(files[i][0], files[i][1]);
-    ok(abbe_illuminant_make(path, &light, &error));
+    OK(abbe_illuminant_make(path, &light, &error));
     const double power[2] = {abbe_illuminant_power(&light, 500.5),
                              abbe_illuminant_power(&light, 450)};
     note(to, files[i][0], power, sizeof power);
@@ -160,25 +154,25 @@ static void with_pictures(FILE *to) {
   abbe_image_band_name(550.25, band, sizeof band);
   fprintf(to, "%s\n", band);
   assert_string_equal(band, "S0.550,250000nm"); /* [Fichet2021] */
-  ok(abbe_image_make(2, 2, 3, names, &image, &error));
+  OK(abbe_image_make(2, 2, 3, names, &image, &error));
   for (int i = 0; i < 12; i++) image.data[i] = 1e-5f * (float)(i + 1);
   abbe_map_layout_make(&view, &layout);
-  ok(abbe_map_layout_write(&layout, "lamp", &image, &error));
-  ok(abbe_image_set_attribute(&image, "abbe:passes", "16", &error));
-  ok(abbe_exr_write_half(path, &image, &error));
+  OK(abbe_map_layout_write(&layout, "lamp", &image, &error));
+  OK(abbe_image_set_attribute(&image, "abbe:passes", "16", &error));
+  OK(abbe_exr_write_half(path, &image, &error));
   note_file(to, "half.exr");
-  ok(abbe_exr_read(path, &back, &error));
+  OK(abbe_exr_read(path, &back, &error));
   note_image(to, "back", &back);
-  ok(abbe_map_layout_read(&back, path, &layout, &error));
+  OK(abbe_map_layout_read(&back, path, &layout, &error));
   note(to, "layout", &layout, sizeof layout);
   abbe_field field;
-  ok(abbe_field_make(&back, path, &field, &error));
+  OK(abbe_field_make(&back, path, &field, &error));
   fprintf(to, "%zu passes\n", field.passes);
   abbe_field_free(&field);
   abbe_image_free(&back);
   abbe_display *display = NULL;
-  ok(abbe_display_make(&(abbe_display_desc){.exposure = 12.5}, &display, &error));
-  ok(abbe_display_apply(display, &image, &error));
+  OK(abbe_display_make(&(abbe_display_desc){.exposure = 12.5}, &display, &error));
+  OK(abbe_display_apply(display, &image, &error));
   note_image(to, "displayed", &image);
   note(to, "xy", image.xy, sizeof image.xy);
   abbe_display_free(display);
@@ -192,7 +186,7 @@ static void with_charts(FILE *to) {
                           {.y = {.log = true}, .series_count = 1, .series = &series}};
   char path[300];
   in_folder("chart.svg", path);
-  ok(abbe_chart_write(path, charts, 2, 400, 300, &error));
+  OK(abbe_chart_write(path, charts, 2, 400, 300, &error));
   note_file(to, "chart.svg");
 }
 
@@ -225,7 +219,7 @@ static void with_meshes(FILE *to) {
     abbe_mesh mesh = {0};
     in_folder(files[i][0], path);
     make_file(files[i][0], files[i][1]);
-    ok(abbe_mesh_load(path, ABBE_NORMALS_FLAT, &mesh, NULL, &error));
+    OK(abbe_mesh_load(path, ABBE_NORMALS_FLAT, &mesh, NULL, &error));
     double most = 0;
     for (size_t v = 0; v < mesh.vertex_count; v++) most = fmax(most, mesh.position[v][2]);
     assert_near(most, 0.375, 1e-6); /* of glTF, y is up: 0.25, scaled */
@@ -240,13 +234,13 @@ static void with_scenes(FILE *to) {
   char path[300];
   load_shipped("gem", &scene);
   note(to, "eye", scene.camera.eye, sizeof scene.camera.eye);
-  ok(abbe_plan_make(&scene, NULL, &plan, &error));
+  OK(abbe_plan_make(&scene, NULL, &plan, &error));
   for (size_t i = 0; i < plan.entry_count; i++)
     fprintf(to, "%s: %s\n", plan.entry[i].name, plan.entry[i].reason);
   for (size_t i = 0; i < plan.note_count; i++) fprintf(to, "%s\n", plan.note[i]);
   abbe_plan_free(&plan);
   in_folder("gem.pov", path);
-  ok(abbe_pov_file_write(path, &scene, NULL, &error));
+  OK(abbe_pov_file_write(path, &scene, NULL, &error));
   note_file(to, "gem.pov");
   abbe_image picture = {0}, map = {0};
   const abbe_reference_desc desc = {.trace = {.width = 6,
@@ -258,7 +252,7 @@ static void with_scenes(FILE *to) {
                                               .map_height = 4,
                                               .seed = 1},
                                     .passes = 2};
-  ok(abbe_reference_trace(&scene, &desc, &picture, &map, &error));
+  OK(abbe_reference_trace(&scene, &desc, &picture, &map, &error));
   note_image(to, "traced", &picture);
   abbe_image_free(&picture);
   abbe_image_free(&map);
@@ -270,7 +264,7 @@ static void with_answers(FILE *to) {
   for (int i = 0; i < 4; i++) {
     abbe_known_answers answers;
     const abbe_known_options options = {.only = groups[i], .threads = 1};
-    ok(abbe_known_answers_make(&options, &answers, &error));
+    OK(abbe_known_answers_make(&options, &answers, &error));
     assert_int_equal(abbe_known_answers_failed(&answers), 0);
     for (size_t k = 0; k < answers.count; k++) {
       fprintf(to, "%s\n", answers.row[k].quantity);
@@ -295,15 +289,15 @@ static void with_sweeps(FILE *to) {
     row.number[ABBE_SWEEP_EYE_MS] = 1.25;
     row.number[ABBE_SWEEP_FRAME_MS] = 10.5 * (double)i + 1.25;
     row.number[ABBE_SWEEP_CAUSTIC_DE] = 4.5 / (double)i;
-    ok(abbe_sweep_table_add(&table, &row, &error));
+    OK(abbe_sweep_table_add(&table, &row, &error));
   }
   abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_SCENE, "a.yaml");
   abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_CLASS, "spheres");
   abbe_sweep_model_write(&model, &table);
   in_folder("sweep.csv", path);
-  ok(abbe_sweep_table_save(&table, path, &error));
+  OK(abbe_sweep_table_save(&table, path, &error));
   note_file(to, "sweep.csv");
-  ok(abbe_sweep_table_load(path, &back, &error));
+  OK(abbe_sweep_table_load(path, &back, &error));
   note(to, "row", back.row[1].number, sizeof back.row[1].number);
   model = (abbe_sweep_model){0};
   assert_true(abbe_sweep_model_read(&back, &model));
@@ -314,10 +308,10 @@ static void with_sweeps(FILE *to) {
   fprintf(to, "%s\n", text);
   const char *const name[] = {"sweep.csv"};
   in_folder("presets.yaml", path);
-  ok(abbe_sweep_presets_write(path, &back, name, 1, ABBE_SWEEP_CAUSTIC_DE, is_fine, &error));
+  OK(abbe_sweep_presets_write(path, &back, name, 1, ABBE_SWEEP_CAUSTIC_DE, is_fine, &error));
   note_file(to, "presets.yaml");
   abbe_presets presets;
-  ok(abbe_presets_load(path, &presets, &error));
+  OK(abbe_presets_load(path, &presets, &error));
   abbe_presets_free(&presets);
   abbe_scaling_study growth = {
       .scene = "a.yaml",
@@ -325,7 +319,7 @@ static void with_sweeps(FILE *to) {
       .point = {{.x = 0.5, .frame_ms = 1.5, .light_ms = 0.25, .eye_ms = 1, .baseline_ms = 0.125},
                 {.x = 1.5, .frame_ms = 2.5, .light_ms = 0.75, .eye_ms = 2, .baseline_ms = 0.375}}};
   in_folder("growth.csv", path);
-  ok(abbe_scaling_study_save(&growth, path, &error));
+  OK(abbe_scaling_study_save(&growth, path, &error));
   note_file(to, "growth.csv");
   abbe_scaling_study_print(&growth, to);
   abbe_sweep_table_free(&table);

@@ -3,7 +3,6 @@
 #include "base/number.h"
 
 #include <locale.h>
-#include <stdlib.h>
 
 TEST(written_numbers_are_short_and_read_back) {
   char text[ABBE_NUMBER_TEXT_SIZE];

@@ -3,8 +3,6 @@
 
 #include "base/order.h"
 
-#include <stdlib.h>
-
 TEST(numbers_come_in_order) {
   double a[] = {2, -INFINITY, 0.5, 1e300, 0.5, -3};
   float b[] = {2, -INFINITY, 0.5f, 1e30f, 0.5f, -3};

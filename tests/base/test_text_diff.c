@@ -2,13 +2,9 @@
 
 #include "base/text_diff.h"
 
-#include <stdlib.h>
-
 static char *diff(const char *before, const char *after) {
   char *out = NULL;
-  abbe_error error = {0};
-  if (abbe_text_diff(before, strlen(before), after, strlen(after), "t", &out, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_text_diff(before, strlen(before), after, strlen(after), "t", &out, &error));
   return out;
 }
 

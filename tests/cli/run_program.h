@@ -5,8 +5,6 @@
 #include "tests/check.h"
 
 #include <dirent.h>
-#include <stdbool.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 

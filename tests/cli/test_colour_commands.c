@@ -1,5 +1,5 @@
 /* The subcommands weights, display and info, as a person or a program runs them. */
-#include "tests/check.h"
+#include "tests/cli/run_output.h"
 
 #include "base/file.h"
 #include "colorimetry/image/exr.h"
@@ -8,25 +8,9 @@
 #include "colorimetry/weights.h"
 
 #include <cjson/cJSON.h>
-#include <stdbool.h>
-#include <stdlib.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 static char exr[64], png[64], other[64];
-static char output[1 << 22];
-
-/* Runs the program with stderr joined to stdout; its exit code. */
-static int run(const char *arguments) {
-  char command[1024];
-  snprintf(command, sizeof command, "%s %s 2>&1", ABBE_PROGRAM, arguments);
-  FILE *pipe = popen(command, "r");
-  assert_non_null(pipe);
-  output[fread(output, 1, sizeof output - 1, pipe)] = '\0';
-  int status = pclose(pipe);
-  assert_true(WIFEXITED(status));
-  return WEXITSTATUS(status);
-}
 
 static void must(int code, const char *says, const char *arguments) {
   int got = run(arguments);
@@ -52,11 +36,9 @@ TEST(parts) {
   char command[400], parts[80];
   for (int i = 0; i < 2; i++) {
     abbe_image image = {0};
-    abbe_error error = {0};
-    assert_int_equal(abbe_image_make(4, 4, i == 0 ? 1 : 3, i == 0 ? depth : colours, &image, NULL),
-                     ABBE_OK);
+    OK(abbe_image_make(4, 4, i == 0 ? 1 : 3, i == 0 ? depth : colours, &image, &error));
     for (size_t k = 0; k < 16 * image.channels; k++) image.data[k] = 1;
-    assert_int_equal(abbe_exr_write(i == 0 ? other : exr, &image, &error), ABBE_OK);
+    OK(abbe_exr_write(i == 0 ? other : exr, &image, &error));
     abbe_image_free(&image);
   }
   snprintf(parts, sizeof parts, "%s.parts.exr", exr);
@@ -83,8 +65,8 @@ TEST(weights_json) {
   abbe_wavelengths nodes = {0};
   abbe_weights weights = {0};
   const abbe_illuminant light = {0};
-  assert_int_equal(abbe_wavelengths_make(7, 380, 780, &nodes, NULL), ABBE_OK);
-  assert_int_equal(abbe_weights_make(&nodes, &light, ABBE_RGB_SPACE_XYZ, &weights, NULL), ABBE_OK);
+  OK(abbe_wavelengths_make(7, 380, 780, &nodes, &error));
+  OK(abbe_weights_make(&nodes, &light, ABBE_RGB_SPACE_XYZ, &weights, &error));
   for (int i = 0; i < 7; i++) {
     const cJSON *sample = cJSON_GetArrayItem(samples, i);
     assert_true(number(sample, "lambda_nm", -1) == nodes.lambda_nm[i]);
@@ -149,14 +131,13 @@ TEST(weights_used_wrongly) {
 
 static void make_picture(const double *xy, const char *space, const char *const names[4]) {
   abbe_image image = {0};
-  assert_int_equal(abbe_image_make(4, 3, 4, names, &image, NULL), ABBE_OK);
+  OK(abbe_image_make(4, 3, 4, names, &image, &error));
   for (int i = 0; i < 48; i++) image.data[i] = i % 4 == 3 ? (float)i : 0.18f;
   if (xy != NULL) memcpy(image.xy, xy, sizeof image.xy);
-  if (space != NULL)
-    assert_int_equal(abbe_image_set_attribute(&image, "abbe:space", space, NULL), ABBE_OK);
+  if (space != NULL) OK(abbe_image_set_attribute(&image, "abbe:space", space, &error));
   image.data[3] = NAN;
   image.data[7] = -INFINITY;
-  assert_int_equal(abbe_exr_write(exr, &image, NULL), ABBE_OK);
+  OK(abbe_exr_write(exr, &image, &error));
   abbe_image_free(&image);
 }
 
@@ -167,7 +148,7 @@ static void show(const char *options, double rgb[3]) {
   snprintf(arguments, sizeof arguments, "display %s -o %s --bits 16 %s", exr, png, options);
   if (run(arguments) != 0) fail_msg("abbe %s: %s", arguments, output);
   abbe_image image = {0};
-  assert_int_equal(abbe_png_read(png, &image, NULL), ABBE_OK);
+  OK(abbe_png_read(png, &image, &error));
   for (int k = 0; k < 3; k++) rgb[k] = (double)image.data[k];
   abbe_image_free(&image);
 }
@@ -238,14 +219,14 @@ TEST(one_meaning_of_the_numbers) {
     must(0, "does not say its colour space; linear Rec.709 is taken", line);
   }
   abbe_image image = {0};
-  assert_int_equal(abbe_image_make(8, 4, 3, rgbz, &image, NULL), ABBE_OK);
+  OK(abbe_image_make(8, 4, 3, rgbz, &image, &error));
   for (int i = 0; i < 96; i++) image.data[i] = 1;
-  assert_int_equal(abbe_exr_write(exr, &image, NULL), ABBE_OK);
+  OK(abbe_exr_write(exr, &image, &error));
   snprintf(line, sizeof line, "environment %s", exr);
   must(0, "does not say its colour space", line);
   for (int i = 0; i < 96; i++) image.data[i] = i < 9 ? INFINITY : i < 12 ? NAN : 1;
   memcpy(image.xy, xy, sizeof xy);
-  assert_int_equal(abbe_exr_write(exr, &image, NULL), ABBE_OK);
+  OK(abbe_exr_write(exr, &image, &error));
   must(1, "3 are infinite and 1 not a number", line);
   for (int c = 0; c < 2; c++) {
     snprintf(line, sizeof line, commands[c], exr, png);
@@ -331,7 +312,7 @@ TEST(display_fails) {
   must(1, "Looking, Plain, Raw", a);
   snprintf(a, sizeof a, "display %s -o %s --ocio /no/such.ocio", exr, png);
   must(1, "/no/such.ocio", a);
-  assert_int_equal(abbe_file_write(other, "broken: [", 9, NULL), ABBE_OK);
+  OK(abbe_file_write(other, "broken: [", 9, &error));
   snprintf(a, sizeof a, "display %s -o %s --ocio %s", exr, png, other);
   must(1, other, a);
   assert_int_not_equal(access(png, F_OK), 0);
@@ -364,7 +345,7 @@ TEST(info) {
   must(0, "4 x 3 pixels, 4 channels", a);
   must(2, "which file", "info");
   must(1, "/no/such.exr", "info /no/such.exr");
-  assert_int_equal(abbe_file_write(other, "broken", 6, NULL), ABBE_OK);
+  OK(abbe_file_write(other, "broken", 6, &error));
   snprintf(a, sizeof a, "info %s", other);
   must(1, other, a);
 }
@@ -372,7 +353,7 @@ TEST(info) {
 /* A full disk, by a limit on the size of files: the sentence, the code, the old file. */
 TEST(a_full_disk) {
   make_picture(NULL, NULL, rgbz);
-  assert_int_equal(abbe_file_write(png, "old", 3, NULL), ABBE_OK);
+  OK(abbe_file_write(png, "old", 3, &error));
   char command[512];
   snprintf(command, sizeof command, "sh -c 'ulimit -f 0; %s display %s -o %s' > %s 2>/dev/null",
            ABBE_PROGRAM, exr, png, "/dev/null");
@@ -380,7 +361,7 @@ TEST(a_full_disk) {
   assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 1);
   char *data = NULL;
   size_t size = 0;
-  assert_int_equal(abbe_file_read(png, 100, &data, &size, NULL), ABBE_OK);
+  OK(abbe_file_read(png, 100, &data, &size, &error));
   assert_string_equal(data, "old");
   free(data);
 }

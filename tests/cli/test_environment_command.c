@@ -10,7 +10,7 @@
 static void write_text(const char *name, const char *text) {
   char path[128];
   snprintf(path, sizeof path, "%s/%s", run_folder, name);
-  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
+  OK(abbe_file_write(path, text, strlen(text), &error));
 }
 
 static double number(const cJSON *object, const char *key, int index) {

@@ -11,7 +11,7 @@ static void write_square(const char *name, int x, int y, float grey, bool apart)
   static const char *const names[] = {"R", "G", "B", "caustic.R", "caustic.G", "caustic.B"};
   abbe_image image;
   char path[128];
-  assert_int_equal(abbe_image_make(WIDE, HIGH, apart ? 6 : 3, names, &image, NULL), ABBE_OK);
+  OK(abbe_image_make(WIDE, HIGH, apart ? 6 : 3, names, &image, &error));
   for (int i = 0; i < WIDE * HIGH; i++) {
     float *p = image.data + (size_t)i * image.channels;
     p[0] = p[1] = p[2] = grey;
@@ -20,7 +20,7 @@ static void write_square(const char *name, int x, int y, float grey, bool apart)
     if (apart) p[5] = 1;
   }
   snprintf(path, sizeof path, "%s/%s", run_folder, name);
-  assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
+  OK(abbe_exr_write(path, &image, &error));
   abbe_image_free(&image);
 }
 

@@ -1,12 +1,12 @@
 /* The subcommand pixel, as a person or a program runs it. */
-#include "tests/check.h"
+#include "tests/cli/run_output.h"
 
 #include "colorimetry/image/exr.h"
 
 #include <cjson/cJSON.h>
-#include <sys/wait.h>
 
-static char path[] = "pixel_command.exr";
+#define PICTURE "pixel_command.exr"
+#define PIXEL "pixel " PICTURE " "
 
 /* 2 x 2 pixels of Rec.709's white, with the bands of an even spectrum of 1 in each. */
 static void make_picture(void) {
@@ -17,27 +17,14 @@ static void make_picture(void) {
     names[5 + i] = name[i];
   }
   abbe_image image;
-  assert_int_equal(abbe_image_make(2, 2, 45, names, &image, NULL), ABBE_OK);
+  OK(abbe_image_make(2, 2, 45, names, &image, &error));
   for (size_t i = 0; i < 4 * 45; i++) image.data[i] = 1;
-  assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
+  OK(abbe_exr_write(PICTURE, &image, &error));
   abbe_image_free(&image);
 }
 
 static void remove_picture(void) {
-  remove(path);
-}
-
-/* Runs the program with a pixel command on the picture; its exit code. */
-static char output[1 << 16];
-static int run(const char *arguments) {
-  char command[512];
-  snprintf(command, sizeof command, "%s pixel %s %s 2>&1", ABBE_PROGRAM, path, arguments);
-  FILE *pipe = popen(command, "r");
-  assert_non_null(pipe);
-  output[fread(output, 1, sizeof output - 1, pipe)] = '\0';
-  const int status = pclose(pipe);
-  assert_true(WIFEXITED(status));
-  return WEXITSTATUS(status);
+  remove(PICTURE);
 }
 
 static double number(const cJSON *root, const char *group, const char *key, int index) {
@@ -49,7 +36,7 @@ GROUP(make_picture, remove_picture);
 
 /* Equal energy is at x = y = 1/3, of 5455 K [CIE15]; the channels' white is D65. */
 TEST(equal_energy) {
-  assert_int_equal(run("0,0:1,1 --json"), 0);
+  assert_int_equal(run(PIXEL "0,0:1,1 --json"), 0);
   cJSON *root = cJSON_Parse(strchr(output, '{'));
   assert_non_null(root);
   assert_near(number(root, "spectrum", "xy", 0), 1.0 / 3, 1e-4);
@@ -58,18 +45,18 @@ TEST(equal_energy) {
   assert_near(number(root, "picture", "cct_k", -1), 6504, 2);
   assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(root, "bands")), 40);
   cJSON_Delete(root);
-  assert_int_equal(run("1,1 --observer 1964"), 0);
+  assert_int_equal(run(PIXEL "1,1 --observer 1964"), 0);
   assert_contains(output, "CIE 1964, 10 degrees");
   assert_contains(output, "S0.385nm");
 }
 
 TEST(refusals) {
-  assert_int_equal(run("2,0"), 1);
+  assert_int_equal(run(PIXEL "2,0"), 1);
   assert_contains(output, "(0, 0) to (1, 1)");
-  assert_int_equal(run("nowhere"), 2);
-  assert_int_equal(run("1,1:0,0"), 2);
-  assert_int_equal(run(""), 2);
-  assert_int_equal(run("0,0 --observer 1930"), 2);
-  assert_int_equal(run("0,0 --illuminant A"), 1);
+  assert_int_equal(run(PIXEL "nowhere"), 2);
+  assert_int_equal(run(PIXEL "1,1:0,0"), 2);
+  assert_int_equal(run(PIXEL ""), 2);
+  assert_int_equal(run(PIXEL "0,0 --observer 1930"), 2);
+  assert_int_equal(run(PIXEL "0,0 --illuminant A"), 1);
   assert_contains(output, "which light it was made with");
 }

@@ -37,20 +37,18 @@ static void path_of(const char *name, char path[300]) {
 static void write_text(const char *name, const char *text) {
   char path[300];
   path_of(name, path);
-  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
+  OK(abbe_file_write(path, text, strlen(text), &error));
 }
 
 static void write_picture(const char *name) {
   static const char *const names[] = {"R", "G", "B", "x" EVIL "\nforged 1 1 1"};
   abbe_image image = {0};
-  abbe_error error = {0};
   char path[300];
   path_of(name, path);
-  assert_int_equal(abbe_image_make(4, 4, 4, names, &image, NULL), ABBE_OK);
+  OK(abbe_image_make(4, 4, 4, names, &image, &error));
   for (int i = 0; i < 64; i++) image.data[i] = 0.5f;
-  assert_int_equal(abbe_image_set_attribute(&image, "note" EVIL, "a\n" EVIL "\r" EVIL, NULL),
-                   ABBE_OK);
-  if (abbe_exr_write(path, &image, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_image_set_attribute(&image, "note" EVIL, "a\n" EVIL "\r" EVIL, &error));
+  OK(abbe_exr_write(path, &image, &error));
   abbe_image_free(&image);
 }
 
@@ -168,7 +166,7 @@ TEST(json_in_files) {
   char path[300], *text = NULL;
   size_t size = 0;
   path_of("t.json", path);
-  assert_int_equal(abbe_file_read(path, 1 << 20, &text, &size, NULL), ABBE_OK);
+  OK(abbe_file_read(path, 1 << 20, &text, &size, &error));
   assert_true(is_printable(text));
   cJSON *json = cJSON_Parse(text);
   assert_non_null(json);
@@ -200,13 +198,13 @@ TEST(letters_pass) {
   char path[300];
   abbe_image image = {0};
   path_of("evil.exr", path);
-  assert_int_equal(abbe_exr_read(path, &image, NULL), ABBE_OK);
+  OK(abbe_exr_read(path, &image, &error));
   for (size_t used = 0; used + 12 < sizeof text;) {
     const char *letters[] = {"a", "\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x92\x8e", "\r\n"};
     used += (size_t)snprintf(text + used, 8, "%s", letters[used % 7 % 5]);
   }
-  assert_int_equal(abbe_image_set_attribute(&image, "text", text, NULL), ABBE_OK);
-  assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
+  OK(abbe_image_set_attribute(&image, "text", text, &error));
+  OK(abbe_exr_write(path, &image, &error));
   abbe_image_free(&image);
   assert_int_equal(run_line("$abbe info evil.exr"), 0);
   char *at = strstr(run_output, "text: ");
@@ -230,7 +228,7 @@ TEST(binary_for_text) {
                                          0xfe, 0xff, 9,    0,    '1',  0xc0, ' ',  '2',  '\n', '3'};
   char path[300];
   path_of("book.xls", path);
-  assert_int_equal(abbe_file_write(path, xls, sizeof xls, NULL), ABBE_OK);
+  OK(abbe_file_write(path, xls, sizeof xls, &error));
   for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
     char line[200];
     snprintf(line, sizeof line, "$abbe %s book.xls", lines[i]);

@@ -1,11 +1,8 @@
 /* The subcommands relight and display on spectral pictures, as a person runs them. */
-#include "tests/check.h"
+#include "tests/cli/run_output.h"
 
 #include "colorimetry/image/exr.h"
 #include "colorimetry/weights.h"
-
-#include <stdbool.h>
-#include <sys/wait.h>
 
 static char lamp[] = "relight_lamp.exr", chart[] = "relight_chart.exr";
 static char exr[] = "relight_out.exr", png[] = "relight_out.png";
@@ -22,13 +19,13 @@ static void write_spectral(const char *path, const char *prefix, bool emissive) 
     names[i] = name[i];
   }
   abbe_image image;
-  assert_int_equal(abbe_image_make(2, 2, BANDS, names, &image, NULL), ABBE_OK);
+  OK(abbe_image_make(2, 2, BANDS, names, &image, &error));
   for (size_t i = 0; i < 4 * BANDS; i++) {
     const double from = 380 + 10 * (double)(i % BANDS);
     image.data[i] =
         emissive ? (float)(abbe_weights_band_power(&d65, 380, 780, from, from + 10) / 10) : 0.5f;
   }
-  assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
+  OK(abbe_exr_write(path, &image, &error));
   abbe_image_free(&image);
 }
 
@@ -42,22 +39,10 @@ static void remove_pictures(void) {
   for (int i = 0; i < 4; i++) remove(paths[i]);
 }
 
-static char output[1 << 16];
-static int run(const char *arguments) {
-  char command[512];
-  snprintf(command, sizeof command, "%s %s 2>&1", ABBE_PROGRAM, arguments);
-  FILE *pipe = popen(command, "r");
-  assert_non_null(pipe);
-  output[fread(output, 1, sizeof output - 1, pipe)] = '\0';
-  const int status = pclose(pipe);
-  assert_true(WIFEXITED(status));
-  return WEXITSTATUS(status);
-}
-
 /* The white of A [CIE15], by the sum of X, Y and Z. */
 static void expect_a(double y) {
   abbe_image image;
-  assert_int_equal(abbe_exr_read(exr, &image, NULL), ABBE_OK);
+  OK(abbe_exr_read(exr, &image, &error));
   assert_int_equal(image.channels, 3);
   double xyz[3];
   for (int k = 0; k < 3; k++) xyz[k] = (double)image.data[k];

@@ -15,9 +15,8 @@
 
 static void read_image(const char *name, abbe_image *image) {
   char path[128];
-  abbe_error error = {0};
   snprintf(path, sizeof path, "%s/%s", run_folder, name);
-  if (abbe_exr_read(path, image, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_exr_read(path, image, &error));
 }
 
 static bool there(const char *name) {
@@ -331,9 +330,10 @@ TEST(wrong_parts) {
   /* the last part is missing */
   check_run(TRACE BALL SMALL "--spp 3 --passes 0:1 --checkpoint r0.ck", 0);
   check_run(TRACE BALL SMALL "--spp 3 --passes 1:2 --checkpoint r1.ck", 0);
-  refuse_parts("-o c.exr --merge r0.ck r1.ck", 1,
-               "pass 2 is missing: there are to be 3, as r0.ck says; trace them, or take what is there "
-               "with --incomplete");
+  refuse_parts(
+      "-o c.exr --merge r0.ck r1.ck", 1,
+      "pass 2 is missing: there are to be 3, as r0.ck says; trace them, or take what is there "
+      "with --incomplete");
   refuse_parts("-o c.exr --spp 2 --merge q0.ck", 1, "pass 1 is missing: there are to be 2, as is");
   check_run(TRACE BALL SMALL "-o c.exr --merge r0.ck r1.ck --incomplete", 0);
   assert_contains(run_errors, "note: pass 2 is missing");

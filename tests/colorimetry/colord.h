@@ -6,8 +6,6 @@
 
 #include "tests/check.h"
 
-#include <stdlib.h>
-
 /* The numbers after BEGIN_DATA, row after row, into values[max]; their count. *start and *end are
  * the first and last wavelength. Fails the test where the package is not installed, which
  * script/bootstrap does. */

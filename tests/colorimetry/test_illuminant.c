@@ -11,8 +11,7 @@
 
 static abbe_illuminant make(const char *name) {
   abbe_illuminant light = {0};
-  abbe_error error = {0};
-  if (abbe_illuminant_make(name, &light, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_illuminant_make(name, &light, &error));
   return light;
 }
 
@@ -62,7 +61,7 @@ TEST(interpolation_and_ends) {
 static char *write_text(const char *text) {
   static char path[128];
   snprintf(path, sizeof path, "/tmp/abbe_test_illuminant_%ld.txt", (long)getpid());
-  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
+  OK(abbe_file_write(path, text, strlen(text), &error));
   return path;
 }
 

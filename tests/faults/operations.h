@@ -14,7 +14,6 @@
 #include "base/error.h"
 
 #include <dirent.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 /* What an operation put out, as a number; 0 in the beginning. */

@@ -50,28 +50,20 @@ static inline void look_aside(abbe_scene *scene) {
   scene->camera.fov_y_rad = 0.01;
 }
 
-static inline void assert_ok(abbe_result result, const abbe_error *error) {
-  if (result != ABBE_OK) print_error("%s\n", error->text);
-  assert_int_equal(result, ABBE_OK);
-}
-
 static inline abbe_renderer *make_renderer(const abbe_scene *scene, const abbe_render_desc *desc) {
   abbe_renderer *renderer = NULL;
-  abbe_error error = {0};
-  assert_ok(abbe_renderer_make(context, scene, desc, &renderer, &error), &error);
+  OK(abbe_renderer_make(context, scene, desc, &renderer, &error));
   return renderer;
 }
 
 static inline abbe_statistics draw_frame(abbe_renderer *renderer) {
   abbe_statistics statistics;
-  abbe_error error = {0};
-  assert_ok(abbe_renderer_frame(renderer, NULL, NULL, &statistics, &error), &error);
+  OK(abbe_renderer_frame(renderer, NULL, NULL, &statistics, &error));
   return statistics;
 }
 
 static inline void read_picture(abbe_renderer *renderer, bool aovs, abbe_image *out) {
-  abbe_error error = {0};
-  assert_ok(abbe_renderer_read(renderer, aovs, out, &error), &error);
+  OK(abbe_renderer_read(renderer, aovs, out, &error));
 }
 
 static inline void assert_finite(const abbe_image *image) {
@@ -94,8 +86,7 @@ static inline abbe_statistics draw_text(const char *text, const abbe_render_desc
 }
 
 static inline void read_map(abbe_renderer *renderer, size_t light, abbe_image *out) {
-  abbe_error error = {0};
-  assert_ok(abbe_renderer_read_map(renderer, light, true, out, &error), &error);
+  OK(abbe_renderer_read_map(renderer, light, true, out, &error));
 }
 
 /* The map of one frame of a scene. */

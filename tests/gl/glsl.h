@@ -12,8 +12,6 @@
 #include "gl/device/program.h"
 #include "gl/scene/gpu_scene.h"
 
-#include <stdlib.h>
-
 /* A bound buffer of that target: GL_SHADER_STORAGE_BUFFER or GL_UNIFORM_BUFFER. */
 static inline GLuint glsl_bind(const abbe_gl *gl, GLenum target, GLuint binding, size_t size,
                                const void *data) {
@@ -51,7 +49,7 @@ static inline void glsl_hierarchy(const abbe_gl *gl, const abbe_bvh *h,
                                   const double (*triangle)[9]) {
   const size_t count = abbe_bvh_nodes_count(h);
   uint32_t(*texel)[4] = calloc(count, sizeof *texel);
-  assert_int_equal(abbe_bvh_nodes_pack(h, triangle, 0, 0, texel, NULL), ABBE_OK);
+  OK(abbe_bvh_nodes_pack(h, triangle, 0, 0, texel, &error));
   glsl_texels(gl, 7, GL_RGBA32UI, count * sizeof *texel, texel);
   free(texel);
 }
@@ -90,7 +88,7 @@ static inline void glsl_run(const abbe_gl *gl, GLuint program, const float (*in)
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * sizeof *out), out);
   gl->DeleteBuffers(1, &inputs);
   gl->DeleteBuffers(1, &outputs);
-  assert_int_equal(abbe_gl_check(gl, "the harness", NULL), ABBE_OK);
+  OK(abbe_gl_check(gl, "the harness", &error));
 }
 
 static inline void glsl_evaluate(const abbe_gl *gl, const char *text, const float (*in)[8],

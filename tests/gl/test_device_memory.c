@@ -146,7 +146,6 @@ GROUP(make_context, free_context);
 /* Another size of everything, within an eighth more than what it was. */
 TEST(a_change_needs_no_room_for_both) {
   abbe_scene scene = {0};
-  abbe_error error = {0};
   load_text(text, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &before);
   draw_frame(renderer);
@@ -156,7 +155,7 @@ TEST(a_change_needs_no_room_for_both) {
   after.map_size = 644;
   after.width = after.height = 33;
   most_bytes = needs + needs / 8;
-  assert_ok(abbe_renderer_change(renderer, &scene, &after, &error), &error);
+  OK(abbe_renderer_change(renderer, &scene, &after, &error));
   print_message("%zu KiB before, %zu KiB after\n", needs >> 10, held_bytes >> 10);
   draw_as_made_anew(renderer, &scene, &after);
   abbe_renderer_free(renderer);
@@ -167,7 +166,6 @@ TEST(a_change_needs_no_room_for_both) {
 /* So of a mesh, which is uploaded before the light's buffers are made. */
 TEST(a_larger_mesh_needs_no_room_beside_them) {
   abbe_scene scene = {0}, finer = {0};
-  abbe_error error = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   load_text(CAMERA POINT_LIGHT FLOOR "- {name: ball, shape: sphere, radius: 0.08, levels: 6, "
                                      "transform: [{translate: [0, 0, 0.2]}], material: crown}\n",
@@ -178,7 +176,7 @@ TEST(a_larger_mesh_needs_no_room_beside_them) {
   abbe_render_desc after = before;
   after.map_size = 512;
   most_bytes = held_bytes + mesh / 2;
-  assert_ok(abbe_renderer_change(renderer, &finer, &after, &error), &error);
+  OK(abbe_renderer_change(renderer, &finer, &after, &error));
   draw_as_made_anew(renderer, &finer, &after);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
@@ -188,17 +186,15 @@ TEST(a_larger_mesh_needs_no_room_beside_them) {
 /* What does not fit at all is refused, and a smaller change goes on from there. */
 TEST(what_does_not_fit_is_refused) {
   abbe_scene scene = {0};
-  abbe_error error = {0};
   load_text(text, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &before);
   draw_frame(renderer);
   abbe_render_desc large = before;
   large.map_size = 1600;
   most_bytes = held_bytes + held_bytes / 8;
-  assert_int_equal(abbe_renderer_change(renderer, &scene, &large, &error), ABBE_NO_MEMORY);
-  assert_contains(error.text, "out of memory");
+  REFUSED(ABBE_NO_MEMORY, "out of memory", abbe_renderer_change(renderer, &scene, &large, &error));
   assert_int_equal(abbe_renderer_frame(renderer, NULL, NULL, NULL, NULL), ABBE_INVALID_ARGUMENT);
-  assert_ok(abbe_renderer_change(renderer, &scene, &before, &error), &error);
+  OK(abbe_renderer_change(renderer, &scene, &before, &error));
   draw_as_made_anew(renderer, &scene, &before);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
@@ -232,39 +228,38 @@ static void give_back(abbe_gpu_scene *scene, int kind, GLuint *out) {
 TEST(only_a_lack_of_memory_is_tried_again) {
   abbe_scene scene = {0};
   abbe_gpu gpu = {0};
-  abbe_error error = {0};
+  abbe_error why = {0};
   load_text(text, &scene);
-  assert_ok(abbe_context_make_current(context, &error), &error);
-  assert_ok(abbe_gpu_make(abbe_context_gl(context), &gpu, &error), &error);
+  OK(abbe_context_make_current(context, &error));
+  OK(abbe_gpu_make(abbe_context_gl(context), &gpu, &error));
   abbe_gpu_scene on = {.gpu = &gpu, .local = &scene};
   for (int kind = 0; kind < KINDS; kind++) {
     static const GLenum codes[] = {GL_INVALID_OPERATION, GL_OUT_OF_MEMORY};
     GLuint unused = 0, out = 0;
-    assert_ok(abbe_gpu_make_buffer(&gpu, UNUSED_BYTES, NULL, &unused, &error), &error);
+    OK(abbe_gpu_make_buffer(&gpu, UNUSED_BYTES, NULL, &unused, &error));
     const GLuint name = unused;
     abbe_gpu_drop_buffers(&gpu, 1, &unused);
 
     for (int k = 0; k < 2; k++) {
       pending = codes[k];
       takes = 0;
-      assert_int_equal(allocate(&on, kind, &out, &error), k == 0 ? ABBE_GL : ABBE_NO_MEMORY);
-      assert_contains(error.text, "what came before");
+      assert_int_equal(allocate(&on, kind, &out, &why), k == 0 ? ABBE_GL : ABBE_NO_MEMORY);
+      assert_contains(why.text, "what came before");
       assert_int_equal(takes, 0);
       give_back(&on, kind, &out);
     }
     takes = 0;
     fault = GL_INVALID_VALUE;
-    assert_int_equal(allocate(&on, kind, &out, &error), ABBE_GL);
-    assert_contains(error.text, "invalid value");
+    REFUSED(ABBE_GL, "invalid value", allocate(&on, kind, &out, &error));
     assert_int_equal(takes, kind == MESHES ? 2 : 1); /* of a mesh: vertices and faces */
     fault = GL_NO_ERROR;
     give_back(&on, kind, &out);
-    assert_ok(abbe_gpu_make_buffer(&gpu, UNUSED_BYTES, NULL, &unused, &error), &error);
+    OK(abbe_gpu_make_buffer(&gpu, UNUSED_BYTES, NULL, &unused, &error));
     assert_int_equal(unused, name); /* it is still there */
     abbe_gpu_drop_buffers(&gpu, 1, &unused);
 
     const size_t with_unused = most_bytes = held_bytes;
-    assert_ok(allocate(&on, kind, &out, &error), &error);
+    OK(allocate(&on, kind, &out, &error));
     assert_true(held_bytes < with_unused);
     most_bytes = 0;
     give_back(&on, kind, &out);

@@ -27,7 +27,6 @@ TEST(the_plan_has_it_as_it_was_given) {
   abbe_scene scene = {0};
   abbe_map_layout fitted, given, used;
   abbe_image map = {0}, same = {0};
-  abbe_error error = {0};
   abbe_render_desc desc = {.width = 16, .height = 16, .photons = 32, .map_size = 64};
   load_text(FAR_SCENE, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
@@ -36,7 +35,7 @@ TEST(the_plan_has_it_as_it_was_given) {
   desc.map_layout = &given;
   for (int turn = 0; turn < 3; turn++) {
     const abbe_render_desc again = abbe_renderer_plan(renderer)->desc;
-    assert_ok(abbe_renderer_change(renderer, &scene, turn < 2 ? &desc : &again, &error), &error);
+    OK(abbe_renderer_change(renderer, &scene, turn < 2 ? &desc : &again, &error));
     const abbe_map_layout *held = abbe_renderer_plan(renderer)->desc.map_layout;
     assert_non_null(held);
     assert_same_view(&held->view, &fitted.view);

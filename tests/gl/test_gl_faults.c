@@ -9,7 +9,6 @@
 #include "gl/renderer.h"
 #include "scenes/import/scene_file.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 static const char *hidden; /* a function that is not there */
@@ -101,11 +100,10 @@ static void reset(void) {
 
 static void assert_refused(const char *part) {
   abbe_context *context = NULL;
-  abbe_error error = {0};
-  assert_int_equal(abbe_context_make(ABBE_CONTEXT_CPU, &context, &error), ABBE_GL);
+  REFUSED(ABBE_GL, "", abbe_context_make(ABBE_CONTEXT_CPU, &context, &error));
   assert_null(context);
-  assert_contains(error.text, part);
-  assert_contains(error.text, "--backend");
+  assert_contains(last_error.text, part);
+  assert_contains(last_error.text, "--backend");
 }
 
 EACH(reset, NULL);
@@ -155,8 +153,7 @@ TEST(versions_and_limits) {
 
 static void make_described(abbe_context_backend backend, const char *name) {
   abbe_context *context = NULL;
-  abbe_error error = {0};
-  assert_int_equal(abbe_context_make(backend, &context, &error), ABBE_OK);
+  OK(abbe_context_make(backend, &context, &error));
   assert_int_equal(strncmp(abbe_context_description(context), name, strlen(name)), 0);
   abbe_context_free(context);
 }
@@ -164,31 +161,27 @@ static void make_described(abbe_context_backend backend, const char *name) {
 /* A GPU is taken where one works, whichever it is; the CPU where none does. */
 TEST(the_device_that_works_is_taken) {
   abbe_context *context = NULL;
-  abbe_error error = {0};
   make_described(ABBE_CONTEXT_AUTO, "cpu: ");
-  assert_int_equal(abbe_context_make(ABBE_CONTEXT_GPU, &context, &error), ABBE_GL);
-  assert_contains(error.text, "no GPU");
-  assert_contains(error.text, "--backend cpu");
+  REFUSED(ABBE_GL, "no GPU", abbe_context_make(ABBE_CONTEXT_GPU, &context, &error));
+  assert_contains(last_error.text, "--backend cpu");
   as_gpu = true;
   make_described(ABBE_CONTEXT_AUTO, "gpu: ");
   first_fails = true;
   tried = 0;
   make_described(ABBE_CONTEXT_GPU, "gpu: ");
   assert_int_equal(tried, 2);
-  assert_int_equal(abbe_context_make(ABBE_CONTEXT_CPU, &context, &error), ABBE_GL);
-  assert_contains(error.text, "no OpenGL for the CPU");
-  assert_contains(error.text, "llvmpipe");
+  REFUSED(ABBE_GL, "no OpenGL for the CPU", abbe_context_make(ABBE_CONTEXT_CPU, &context, &error));
+  assert_contains(last_error.text, "llvmpipe");
 }
 
 /* Where neither works the causes are told together, and neither sends the user to the other. */
 TEST(two_causes_are_one_sentence) {
   abbe_context *context = NULL;
-  abbe_error error = {0};
   as_gpu = refused = true;
-  assert_int_equal(abbe_context_make(ABBE_CONTEXT_AUTO, &context, &error), ABBE_GL);
-  assert_contains(error.text, "EGL gives no context; there is no OpenGL for the CPU");
-  assert_contains(error.text, "--backend cpu needs Mesa's llvmpipe");
-  assert_null(strstr(error.text, "--backend gpu"));
+  REFUSED(ABBE_GL, "EGL gives no context; there is no OpenGL for the CPU",
+          abbe_context_make(ABBE_CONTEXT_AUTO, &context, &error));
+  assert_contains(last_error.text, "--backend cpu needs Mesa's llvmpipe");
+  assert_null(strstr(last_error.text, "--backend gpu"));
 }
 
 /* What a command says on stderr while it makes its context. */
@@ -228,7 +221,7 @@ TEST(a_gpu_that_is_not_taken_is_told_of_once) {
 TEST(a_driver_without_a_name) {
   abbe_context *context = NULL;
   mute = true;
-  assert_int_equal(abbe_context_make(ABBE_CONTEXT_CPU, &context, NULL), ABBE_OK);
+  OK(abbe_context_make(ABBE_CONTEXT_CPU, &context, &error));
   assert_contains(abbe_context_description(context), "unnamed");
   abbe_context_free(context);
 }
@@ -266,12 +259,11 @@ static bool lose(void *user, double done) {
 TEST(a_device_lost_in_a_frame) {
   abbe_context *context = NULL;
   abbe_renderer *renderer = NULL;
-  abbe_error error = {0};
-  make_gem(&context, &renderer, ABBE_OK, &error);
-  assert_int_equal(abbe_renderer_frame(renderer, lose, NULL, NULL, &error), ABBE_GL);
-  assert_contains(error.text, "device was lost in");
-  assert_contains(error.text, "(cpu: llvmpipe");
-  assert_contains(error.text, "--backend cpu");
+  abbe_error why = {0};
+  make_gem(&context, &renderer, ABBE_OK, &why);
+  REFUSED(ABBE_GL, "device was lost in", abbe_renderer_frame(renderer, lose, NULL, NULL, &error));
+  assert_contains(last_error.text, "(cpu: llvmpipe");
+  assert_contains(last_error.text, "--backend cpu");
   abbe_renderer_free(renderer);
   abbe_context_free(context);
 }

@@ -8,8 +8,7 @@ static const abbe_render_desc tiny = {.width = 24, .height = 20, .photons = 32, 
 static void assert_light_kept(abbe_renderer *renderer, const abbe_scene *scene, double before,
                               abbe_image *picture) {
   abbe_image anew = {0};
-  abbe_error error = {0};
-  assert_ok(abbe_renderer_change(renderer, scene, &tiny, &error), &error);
+  OK(abbe_renderer_change(renderer, scene, &tiny, &error));
   const abbe_statistics s = draw_frame(renderer);
   assert_true(s.kept[ABBE_PASS_PHOTONS] && s.kept[ABBE_PASS_SPECTRAL_MAP]);
   assert_false(s.kept[ABBE_PASS_EYE_RECEIVERS]);
@@ -52,7 +51,6 @@ TEST(the_first_texture_keeps_photons) {
 TEST(another_cone_is_followed_anew) {
   abbe_scene scene = {0};
   abbe_image kept = {0}, anew = {0};
-  abbe_error error = {0};
   load_text(CAMERA
             "lights:\n- {name: spot, kind: spot, position: [0.1, 0, 0.7], target: [0.2, 0, 0.2],"
             " intensity: 2, cone: 30, soft: 5}\n" FLOOR BRICK("crown"),
@@ -63,7 +61,7 @@ TEST(another_cone_is_followed_anew) {
     if (turn == 0) scene.light[0].cone_rad *= 0.8;
     if (turn == 1) scene.light[0].soft_rad *= 2;
     if (turn == 2) scene.light[0].direction[0] = 0, scene.light[0].direction[2] = -1;
-    assert_ok(abbe_renderer_change(renderer, &scene, &tiny, &error), &error);
+    OK(abbe_renderer_change(renderer, &scene, &tiny, &error));
     const abbe_statistics s = draw_frame(renderer);
     assert_false(s.kept[ABBE_PASS_PHOTONS]);
     read_picture(renderer, false, &kept);
@@ -103,9 +101,8 @@ TEST(coarse_views_show_nearly_the_same) {
   load_text(CAMERA POINT_LIGHT FLOOR LARGE_RING, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   for (int i = 0; i < COUNT; i++) {
-    abbe_error error = {0};
     desc.coarse = coarse[i];
-    assert_ok(abbe_renderer_change(renderer, &scene, &desc, &error), &error);
+    OK(abbe_renderer_change(renderer, &scene, &desc, &error));
     const abbe_statistics s = draw_frame(renderer);
     assert_true(s.kept[ABBE_PASS_PHOTONS] == (i == EYE));
     assert_false(s.kept[ABBE_PASS_EYE_RECEIVERS]);
@@ -135,9 +132,8 @@ TEST(rays_show_receivers_as_they_are_drawn) {
   load_text(CAMERA POINT_LIGHT FLOOR BRICK("crown") RING_IN_COLOUR, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   for (int i = 0; i < 2; i++) {
-    abbe_error error = {0};
     desc.coarse = i == 0 ? ABBE_COARSE_NONE : ABBE_COARSE_EYE;
-    assert_ok(abbe_renderer_change(renderer, &scene, &desc, &error), &error);
+    OK(abbe_renderer_change(renderer, &scene, &desc, &error));
     draw_frame(renderer);
     read_picture(renderer, true, &picture[i]);
   }

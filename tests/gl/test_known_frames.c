@@ -2,10 +2,9 @@
  * between mirrors, penumbras, a lamp's image through a hole and in a mirror. */
 #include "tests/gl/frame.h"
 
+#include "base/maths.h"
 #include "validation/known/forms/catacaustic.h"
 #include "validation/known/forms/closed_form.h"
-
-#define PI 3.14159265358979323846
 
 static const abbe_render_desc tiny = {.width = 16,
                                       .height = 16,
@@ -49,7 +48,7 @@ typedef struct place {
 
 /* Of a ring of radius 0.05 that reflects 0.9: caustic seen at the place, over what is known. */
 static double ring_light(const place *p) {
-  const double r = 0.05, e = p->elevation * PI / 180, away = 20 * r;
+  const double r = 0.05, e = p->elevation * ABBE_PI / 180, away = 20 * r;
   const double at[2] = {r * p->at[0], r * p->at[1]}, half = r * p->half;
   abbe_catacaustic c = {.radius = r, .height = r * p->height, .elevation = e};
   for (int k = 0; k < 3; k++) c.lamp[k] = r * p->lamp[k];
@@ -66,10 +65,10 @@ static double ring_light(const place *p) {
            "- {name: floor, shape: rectangle, width: 1, height: 1, reflectance: 1}\n"
            "- {name: ring, shape: lathe, around: 1024, profile: [[%.9g, 0], [%.9g, %.9g]], mirror: "
            "0.9}\n",
-           at[0], at[1], away, at[0], at[1], 2 * atan(half / away) * 180 / PI, light, r, r,
+           at[0], at[1], away, at[0], at[1], 2 * atan(half / away) * 180 / ABBE_PI, light, r, r,
            c.height);
   size_t branches;
-  const double known = abbe_catacaustic_mean(&c, at, half, 12, 0.9, 3, &branches) / PI;
+  const double known = abbe_catacaustic_mean(&c, at, half, 12, 0.9, 3, &branches) / ABBE_PI;
   assert_int_equal(branches, p->branches);
   abbe_render_desc desc = tiny;
   desc.photons = 512;
@@ -111,7 +110,7 @@ TEST(a_lamp_shines_by_its_images) {
       const double x = (i % 2 ? k : -k) + (k % 2 ? -0.1 : 0.1) + 0.15;
       const double a = x - 0.3 * ((2 * (i / 2 % STEPS) + 1.0) / STEPS - 1);
       const double b = 0.3 * ((2 * (i / 2 / STEPS) + 1.0) / STEPS - 1);
-      known += pow(0.8, k) * 0.5 * pow(0.25 + a * a + b * b, -1.5) / (PI * STEPS * STEPS);
+      known += pow(0.8, k) * 0.5 * pow(0.25 + a * a + b * b, -1.5) / (ABBE_PI * STEPS * STEPS);
     }
   abbe_render_desc desc = tiny;
   desc.energy_share = 1e-3;
@@ -146,7 +145,7 @@ TEST(the_eye_sees_by_four_reflections) {
 
 /* What an edge half way down leaves of the light, in as many steps as it has points. */
 static void check_penumbra(const char *light, bool disk, size_t points) {
-  const double half = 0.02, area = disk ? PI * half * half : 4 * half * half;
+  const double half = 0.02, area = disk ? ABBE_PI * half * half : 4 * half * half;
   abbe_render_desc desc = tiny;
   desc.light_points = points;
   double worst = 0;
@@ -161,7 +160,7 @@ static void check_penumbra(const char *light, bool disk, size_t points) {
              "- {name: jaw, shape: rectangle, width: 1, height: 1, reflectance: 0, transform: "
              "[{translate: [-0.5, 0, 1]}]}\n",
              at * half, at * half, light);
-    const double seen = drawn_mean(text, &desc, "direct.Y") / (1000 * area / (4 * PI));
+    const double seen = drawn_mean(text, &desc, "direct.Y") / (1000 * area / (4 * ABBE_PI));
     worst = fmax(worst, fabs(seen - share));
     if (fabs(at) > 1) assert_near(seen, share, 1e-3);
   }
@@ -200,8 +199,8 @@ TEST(floors_have_their_form_factors) {
 
 /* The eye sees the disk itself in a mirror, as far behind it as it is before it. */
 TEST(a_mirror_shows_the_disk) {
-  const double away = hypot(0.6, 1.2), film = pow(2 * tan(2.5 * PI / 180), 2);
-  const double known = 0.8 * 7 * PI * 0.02 * 0.02 * 1.2 / (away * away * away) / film;
+  const double away = hypot(0.6, 1.2), film = pow(2 * tan(2.5 * ABBE_PI / 180), 2);
+  const double known = 0.8 * 7 * ABBE_PI * 0.02 * 0.02 * 1.2 / (away * away * away) / film;
   abbe_render_desc desc = tiny;
   desc.width = desc.height = 64;
   desc.supersample = 4;
@@ -220,7 +219,7 @@ TEST(a_mirror_shows_the_disk) {
 TEST(a_hole_throws_the_disks_image) {
   enum { SIDE = 96 };
   const double r = 0.02, s = 0.004, half = 0.03;
-  const double known = 0.8 * 1e4 * PI * r * r * s * s / (PI * 4 * half * half);
+  const double known = 0.8 * 1e4 * ABBE_PI * r * r * s * s / (ABBE_PI * 4 * half * half);
   const double square = r * r / 2 + 2 * pow(2 * s, 2) / 12;
   abbe_render_desc desc = tiny;
   desc.width = desc.height = SIDE;

@@ -75,10 +75,9 @@ static void make_receivers(receivers *r) {
   memset(r, 0, sizeof *r);
   r->tiles = calloc(2 * FLATS, sizeof *r->tiles);
   for (int k = 0; k < FLATS; k++) make_flat(k, r);
-  assert_int_equal(abbe_shape_ring(0.2, 0.06, 48, 24, &r->mesh, NULL), ABBE_OK);
+  OK(abbe_shape_ring(0.2, 0.06, 48, 24, &r->mesh, &error));
   r->triangle = abbe_bvh_triangles(&r->mesh);
-  assert_int_equal(abbe_bvh_make((const double(*)[9])r->triangle, r->mesh.face_count, &r->h, NULL),
-                   ABBE_OK);
+  OK(abbe_bvh_make((const double(*)[9])r->triangle, r->mesh.face_count, &r->h, &error));
   upload_receivers(r);
 }
 
@@ -309,7 +308,6 @@ TEST(light_lands_on_a_ball_behind_a_pane) {
                                  .aovs = true};
   abbe_scene scene = {0};
   abbe_image picture = {0};
-  abbe_error error = {0};
   abbe_renderer_hits hits;
   size_t on_globe = 0, seen = 0;
   load_text(UNDER_A_PANE, &scene);
@@ -317,7 +315,7 @@ TEST(light_lands_on_a_ball_behind_a_pane) {
   const abbe_ledger e = draw_frame(renderer).energy;
   assert_true(abbe_ledger_imbalance(&e) < 1e-4);
   assert_near(e.deposited / e.reached, pane_passes, 1e-3);
-  assert_ok(abbe_renderer_read_hits(renderer, 0, 0, NULL, NULL, &hits, &error), &error);
+  OK(abbe_renderer_read_hits(renderer, 0, 0, NULL, NULL, &hits, &error));
   for (size_t i = 0; i < hits.count * hits.slots * hits.samples; i++) {
     const float *p = hits.at + 4 * i;
     if (p[3] <= 0) continue;

@@ -1,12 +1,12 @@
 /* Light off mirrors, and what the eye sees in them: laws of spheres, planes and closed rooms. */
 #include "tests/gl/frame.h"
 
+#include "base/maths.h"
 #include "colorimetry/matrix3.h"
 #include "colorimetry/upsampling.h"
 #include "colorimetry/weights.h"
 #include "spectral/optics.h"
 
-#define PI 3.14159265358979323846
 #define EYE(eye, target) "materials: default\ncamera: {eye: " eye ", target: " target ", fov: 3}\n"
 #define LAMP(at) "lights:\n- {name: lamp, kind: point, position: " at ", intensity: 1}\n"
 #define WHITE_FLOOR                                                                                \
@@ -81,7 +81,7 @@ TEST(a_ball_shines_evenly) {
                                   "{translate: [0, 0, 1]}", "0.8"),
        &desc, &f);
   const double intensity = 0.8 * 0.005 * 0.005 / 4;
-  const double known = intensity * mean_irradiance(-0.7, 0.6 * tan(20 * PI / 180)) / PI;
+  const double known = intensity * mean_irradiance(-0.7, 0.6 * tan(20 * ABBE_PI / 180)) / ABBE_PI;
   const double seen = mean_of(&f.aovs, "caustic.Y");
   print_message("%.4f of the ball's light\n", seen / known);
   assert_near(seen / known, 1, 0.02);
@@ -105,12 +105,12 @@ TEST(a_balls_light_is_smooth) {
                                   "{translate: [0, 0, 1]}", "0.8"),
        &desc, &f);
   const size_t channel = abbe_image_find_channel(&f.aovs, "caustic.Y");
-  const double half = 0.6 * tan(20 * PI / 180), intensity = 0.8 * 0.001 * 0.001 / 4;
+  const double half = 0.6 * tan(20 * ABBE_PI / 180), intensity = 0.8 * 0.001 * 0.001 / 4;
   double mean = 0, square = 0, worst = 0;
   for (size_t i = 0; i < SIDE * SIDE; i++) {
     const double x = -0.7 + half * (2 * ((double)(i % SIDE) + 0.5) / SIDE - 1);
     const double y = half * (2 * ((double)(i / SIDE) + 0.5) / SIDE - 1);
-    const double known = intensity * pow(1 + x * x + y * y, -1.5) / PI;
+    const double known = intensity * pow(1 + x * x + y * y, -1.5) / ABBE_PI;
     const double ratio = (double)f.aovs.data[i * f.aovs.channels + channel] / known;
     mean += ratio / (SIDE * SIDE);
     square += ratio * ratio / (SIDE * SIDE);
@@ -136,7 +136,7 @@ static void check_pane(const char *angle) {
   double known[2];
   for (int i = 0; i < 2; i++) {
     const double x = i == 0 ? -0.1 : 1.1, r2 = (0.2 - x) * (0.2 - x) + 0.01 + 0.49;
-    known[i] = (i == 0 ? 1 : 0.9) * 0.7 / (r2 * sqrt(r2)) / PI;
+    known[i] = (i == 0 ? 1 : 0.9) * 0.7 / (r2 * sqrt(r2)) / ABBE_PI;
   }
   const double image = mean_of(&f.aovs, "caustic.Y"), lamp = mean_of(&f.aovs, "direct.Y");
   print_message("%.4f of the image's light, %.4f of the lamp's\n", image / known[1],
@@ -180,7 +180,7 @@ TEST(a_mirrors_shadow_may_be_lit_by_another) {
                                               "[0.3, 0, 0.11]}",
                                               "0.8"),
        &desc, &f);
-  const double known = 0.8 * sqrt(0.5) / PI;
+  const double known = 0.8 * sqrt(0.5) / ABBE_PI;
   print_message("%.4f of the light\n", mean_of(&f.aovs, "caustic.Y") / known);
   assert_near(mean_of(&f.aovs, "caustic.Y") / known, 1, 0.01);
   assert_near(mean_of(&f.aovs, "direct.Y"), 0, 1e-6);
@@ -230,8 +230,7 @@ TEST(gold_has_its_colour) {
   load_text(text, &scene);
   abbe_weights_range_make(&scene.light[0].illuminant, 380, 780, &range);
   /* The surroundings are the working space's white, lifted to all wavelengths under the lamp's. */
-  assert_int_equal(abbe_upsampling_make(&scene.light[0].illuminant, 380, 780, &lift, NULL),
-                   ABBE_OK);
+  OK(abbe_upsampling_make(&scene.light[0].illuminant, 380, 780, &lift, &error));
   abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, to_xyz);
   for (int i = 0; i < 9; i++) behind[i / 3] += to_xyz[i];
   abbe_matrix3_invert(lift.to_xyz, from_xyz);
@@ -239,8 +238,7 @@ TEST(gold_has_its_colour) {
   for (int i = 0; i < 4000; i++) {
     double n, k;
     abbe_weights_range_xyz(&range, 380 + 0.1 * i, 380 + 0.1 * (i + 1), xyz);
-    assert_int_equal(
-        abbe_material_nk(scene.object[1].conductor, 380 + 0.1 * (i + 0.5), &n, &k, NULL), ABBE_OK);
+    OK(abbe_material_nk(scene.object[1].conductor, 380 + 0.1 * (i + 0.5), &n, &k, &error));
     const double share = abbe_upsampling_at(&lift, rgb, 380 + 0.1 * (i + 0.5));
     for (int c = 0; c < 3; c++) known[c] += share * xyz[c] * abbe_optics_fresnel_conductor(1, n, k);
   }

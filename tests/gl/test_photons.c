@@ -1,6 +1,7 @@
 /* Photons' hits against optics in double precision: a sphere, a prism, a slit. */
 #include "tests/gl/frame.h"
 
+#include "base/maths.h"
 #include "spectral/optics.h"
 
 static void trace_photons(const abbe_scene *scene, const abbe_render_desc *desc,
@@ -8,9 +9,8 @@ static void trace_photons(const abbe_scene *scene, const abbe_render_desc *desc,
   abbe_scene aside = *scene;
   look_aside(&aside);
   abbe_renderer *renderer = make_renderer(&aside, desc);
-  abbe_error error = {0};
   draw_frame(renderer);
-  assert_ok(abbe_renderer_read_hits(renderer, 0, 0, NULL, NULL, l, &error), &error);
+  OK(abbe_renderer_read_hits(renderer, 0, 0, NULL, NULL, l, &error));
   abbe_renderer_free(renderer);
   assert_true(l->count > 0);
 }
@@ -26,10 +26,6 @@ static void photon_ray(const abbe_renderer_hits *l, size_t photon, double o[3], 
   abbe_view_ray(&l->view, uv, o, d);
 }
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* The ray in the sphere, from wall to wall: the double twin of the shaders' path. */
 typedef struct sphere_path {
   const double *centre;
@@ -41,27 +37,28 @@ typedef struct sphere_path {
 static bool enter(sphere_path *path, const double o[3], const double d[3]) {
   double oc[3], wi[3];
   for (int k = 0; k < 3; k++) oc[k] = o[k] - path->centre[k];
-  double b = dot(oc, d), inside = b * b - dot(oc, oc) + path->radius * path->radius;
+  double b = abbe_vector_dot(oc, d),
+         inside = b * b - abbe_vector_dot(oc, oc) + path->radius * path->radius;
   if (inside <= 0) return false;
   for (int k = 0; k < 3; k++) {
     path->p[k] = o[k] + (-b - sqrt(inside)) * d[k];
     path->normal[k] = (path->p[k] - path->centre[k]) / path->radius;
     wi[k] = -d[k];
   }
-  path->share = 1 - abbe_optics_fresnel(dot(wi, path->normal), 1 / path->n);
+  path->share = 1 - abbe_optics_fresnel(abbe_vector_dot(wi, path->normal), 1 / path->n);
   return abbe_optics_refract(wi, path->normal, 1 / path->n, path->d);
 }
 
 /* To the next wall: the direction and share that leave there; what stays goes on. */
 static void step(sphere_path *path, double out[3], double *out_share) {
-  double chord = -2 * path->radius * dot(path->normal, path->d), wi[3], inward[3];
+  double chord = -2 * path->radius * abbe_vector_dot(path->normal, path->d), wi[3], inward[3];
   for (int k = 0; k < 3; k++) {
     path->p[k] += chord * path->d[k];
     path->normal[k] = (path->p[k] - path->centre[k]) / path->radius;
     inward[k] = -path->normal[k];
     wi[k] = -path->d[k];
   }
-  double kept = abbe_optics_fresnel(dot(wi, inward), path->n);
+  double kept = abbe_optics_fresnel(abbe_vector_dot(wi, inward), path->n);
   *out_share = path->share * (1 - kept);
   abbe_optics_refract(wi, inward, path->n, out);
   abbe_optics_reflect(wi, inward, path->d);
@@ -75,8 +72,8 @@ static void compare_path(const abbe_renderer_hits *l, size_t photon, sphere_path
                          size_t *compared) {
   double o[3], d[3], out[3], share, power = 1;
   photon_ray(l, photon, o, d);
-  if (!enter(&path, o, d) || -dot(d, path.normal) < 0.3) return;
-  double c = dot(d, l->view.forward);
+  if (!enter(&path, o, d) || -abbe_vector_dot(d, path.normal) < 0.3) return;
+  double c = abbe_vector_dot(d, l->view.forward);
   double flux = power * c * c * c * abbe_view_area(&l->view) / (double)(l->grid[0] * l->grid[1]);
   for (size_t order = 0; order < 3; order++) {
     step(&path, out, &share);
@@ -99,14 +96,13 @@ GROUP(make_context, free_context);
 TEST(a_sphere_lands_as_double_precision_says) {
   abbe_scene scene = {0};
   abbe_renderer_hits l = {0};
-  abbe_error error = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   abbe_render_desc desc = small_frame;
   desc.wavelengths = 1; /* one sample stands in the middle, at 580 nm */
   trace_photons(&scene, &desc, &l);
   sphere_path path = {.centre = scene.object[1].exact.centre,
                       .radius = scene.object[1].exact.radius};
-  assert_ok(abbe_material_n(scene.object[1].material, 580, &path.n, &error), &error);
+  OK(abbe_material_n(scene.object[1].material, 580, &path.n, &error));
   path.n = (float)path.n; /* as the shaders have it */
   size_t compared = 0;
   for (size_t i = 0; i < l.count; i++) compare_path(&l, i, path, &compared);
@@ -147,7 +143,7 @@ static bool enters_high(const abbe_renderer_hits *l, size_t photon) {
   photon_ray(l, photon, o, d);
   double inradius = 0.2 / (2 * sqrt(3)), apex_z = 1 + 0.2 / sqrt(3);
   double offset = inradius + normal[2]; /* of the face: the middle is at z = 1 */
-  double t = (offset - dot(normal, o)) / dot(normal, d);
+  double t = (offset - abbe_vector_dot(normal, o)) / abbe_vector_dot(normal, d);
   double y = o[1] + t * d[1], z = o[2] + t * d[2];
   return z > 1.01 && z < apex_z - 0.01 && fabs(y) < 0.09;
 }
@@ -171,7 +167,7 @@ TEST(a_prism_deviates_least_as_the_formula_says) {
     for (int c = 0; c < 3; c++)
       way[c] = (double)hit(&far, k, 0, 0)[c] - (double)hit(&near, i, 0, 0)[c];
     /* Two hits half a metre apart, each a float's few 1e-7 m off. */
-    double cosine = dot(way, d) / sqrt(dot(way, way));
+    double cosine = abbe_vector_dot(way, d) / sqrt(abbe_vector_dot(way, way));
     assert_near(acos(cosine), expected, 4e-6);
     compared++;
   }

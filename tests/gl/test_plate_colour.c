@@ -33,7 +33,7 @@ static void load_plate(const char *stone, double thickness_m, const char *beside
 /* What of the light goes on to the background, through the plate or back off its faces. */
 static double seen_at(const abbe_material *stone, double thickness_m, double lambda_nm) {
   double n;
-  assert_int_equal(abbe_material_n(stone, lambda_nm, &n, NULL), ABBE_OK);
+  OK(abbe_material_n(stone, lambda_nm, &n, &error));
   const double r = pow((n - 1) / (n + 1), 2);
   const double e = exp(-thickness_m * abbe_material_attenuation(stone, lambda_nm));
   return r + (1 - r) * (1 - r) * e * (1 + r * e) / (1 - r * r * e * e);

@@ -24,7 +24,6 @@ typedef struct agreement {
 static agreement compare(const char *text, int passes) {
   abbe_scene scene;
   abbe_image drawn, traced;
-  abbe_error error = {0};
   abbe_render_desc desc = small_frame;
   desc.photons = 128;
   desc.map_size = SIDE;
@@ -35,7 +34,7 @@ static agreement compare(const char *text, int passes) {
   read_map(renderer, 0, &drawn);
   abbe_renderer_free(renderer);
   abbe_map_layout layout;
-  assert_ok(abbe_map_layout_read(&drawn, "drawn", &layout, &error), &error);
+  OK(abbe_map_layout_read(&drawn, "drawn", &layout, &error));
   abbe_tracer *tracer = make_tracer(&scene, &(abbe_trace_desc){.no_picture = true,
                                                                .map_width = SIDE,
                                                                .map_height = SIDE,
@@ -43,7 +42,7 @@ static agreement compare(const char *text, int passes) {
                                                                .photons = 1 << 17,
                                                                .space = ABBE_RGB_SPACE_XYZ});
   run_passes(tracer, passes);
-  assert_ok(abbe_tracer_map(tracer, &traced, &error), &error);
+  OK(abbe_tracer_map(tracer, &traced, &error));
   double a[BLOCKS * BLOCKS], b[BLOCKS * BLOCKS];
   sum_blocks(&drawn, a);
   sum_blocks(&traced, b);
@@ -174,7 +173,6 @@ static void check_stones(const char *stones, const char *eye, const char *target
   char text[1024];
   abbe_scene scene;
   abbe_image drawn, traced;
-  abbe_error error = {0};
   snprintf(text, sizeof text,
            "materials: glass.yaml\nambient: 3\n"
            "camera: {eye: %s, target: %s, up: [0, 1, 0.3], fov: %s}\n"
@@ -192,7 +190,7 @@ static void check_stones(const char *stones, const char *eye, const char *target
   abbe_tracer *tracer = make_tracer(
       &scene, &(abbe_trace_desc){.no_map = true, .width = 64, .height = 64, .photons = 1});
   run_passes(tracer, looks);
-  assert_ok(abbe_tracer_picture(tracer, &traced, &error), &error);
+  OK(abbe_tracer_picture(tracer, &traced, &error));
   const double noise = abbe_tracer_error(tracer) / 64; /* of the mean of 64 x 64 pixels */
   for (size_t k = 0; k < 3; k++) {
     static const char *const names[] = {"R", "G", "B"};

@@ -2,8 +2,6 @@
 
 #include "tests/house/lists.h"
 
-#include <stdbool.h>
-
 void graph_free(graph *g) {
   for (size_t i = 0; i < g->count; i++) free(g->name[i]);
   for (size_t i = 0; i < g->edges; i++) free(g->edge[i].why);

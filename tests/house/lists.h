@@ -4,8 +4,6 @@
 
 #include "tests/check.h"
 
-#include <stdlib.h>
-
 /* The list with room for one more than count entries; the room doubles at each power of two. */
 static inline void *grown(void *list, size_t count, size_t size) {
   if (count > 0 && (count & (count - 1)) != 0) return list;

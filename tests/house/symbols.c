@@ -3,7 +3,6 @@
 #include "tests/check.h"
 #include "tests/house/sources.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 bool symbols_source(const char *object, char *out, size_t size) {

@@ -4,7 +4,6 @@
 #include "tests/house/sources.h"
 #include "tests/house/symbols.h"
 
-#include <stdlib.h>
 #include <sys/stat.h>
 
 #define ALL "base spectral colorimetry scenes gl validation library cli tests"

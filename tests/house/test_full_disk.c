@@ -19,7 +19,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <signal.h>
-#include <stdlib.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -142,7 +141,7 @@ typedef struct content {
 
 static content read_whole(const char *path) {
   content c = {0};
-  assert_int_equal(abbe_file_read(path, 1 << 24, &c.data, &c.size, NULL), ABBE_OK);
+  OK(abbe_file_read(path, 1 << 24, &c.data, &c.size, &error));
   return c;
 }
 

@@ -3,8 +3,6 @@
 #include "tests/check.h"
 #include "tests/house/sources.h"
 
-#include <stdlib.h>
-
 #define ROOMS "base spectral colorimetry scenes gl validation library"
 
 enum { MOST_ALONE = 512 };

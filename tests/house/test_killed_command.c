@@ -53,7 +53,7 @@ static bool holds(const char *name, const content *wanted) {
 static void put_old(const command *c) {
   run_each(run_remove, NULL);
   for (int i = 0; c->old != NULL && c->output[i] != NULL; i++)
-    assert_int_equal(abbe_file_write(path_of(c->output[i]), c->old, strlen(c->old), NULL), ABBE_OK);
+    OK(abbe_file_write(path_of(c->output[i]), c->old, strlen(c->old), &error));
 }
 
 static const command *present;

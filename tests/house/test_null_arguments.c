@@ -5,7 +5,6 @@
 #include "tests/null_arguments/null_arguments.h"
 
 #include <signal.h>
-#include <stdlib.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>

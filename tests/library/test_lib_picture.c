@@ -3,7 +3,6 @@
 
 #include "library/lib_picture.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 static const char *const names[] = {"B", "G", "R", "Z"}; /* a file sorts them */
@@ -23,7 +22,7 @@ static void teardown(void) {
 
 static abbe_lib_picture *made(void) {
   abbe_lib_picture *p = NULL;
-  assert_int_equal(abbe_lib_picture_make(3, 2, 4, names, pixels, &p, NULL), ABBE_OK);
+  OK(abbe_lib_picture_make(3, 2, 4, names, pixels, &p, &error));
   return p;
 }
 
@@ -43,20 +42,19 @@ TEST(pixels_are_copied) {
   assert_is_made(p);
   assert_true(abbe_lib_picture_pixels(p) != pixels);
   abbe_lib_picture_free(p);
-  assert_int_equal(abbe_lib_picture_make(2, 2, 1, names, NULL, &p, NULL), ABBE_OK);
+  OK(abbe_lib_picture_make(2, 2, 1, names, NULL, &p, &error));
   for (int i = 0; i < 4; i++) assert_near(abbe_lib_picture_pixels(p)[i], 0, 0);
   abbe_lib_picture_free(p);
 }
 
 TEST(a_file_keeps_every_bit) {
   char path[64];
-  abbe_error error = {0};
   abbe_lib_picture *p = made(), *q = NULL;
   snprintf(path, sizeof path, "%s/a.exr", folder);
-  assert_int_equal(abbe_lib_picture_set_attribute(p, "abbe:space", "rec709", &error), ABBE_OK);
-  assert_int_equal(abbe_lib_picture_set_attribute(p, "who", "me", &error), ABBE_OK);
-  assert_int_equal(abbe_lib_picture_save(p, path, &error), ABBE_OK);
-  assert_int_equal(abbe_lib_picture_load(path, &q, &error), ABBE_OK);
+  OK(abbe_lib_picture_set_attribute(p, "abbe:space", "rec709", &error));
+  OK(abbe_lib_picture_set_attribute(p, "who", "me", &error));
+  OK(abbe_lib_picture_save(p, path, &error));
+  OK(abbe_lib_picture_load(path, &q, &error));
   assert_is_made(q);
   assert_string_equal(abbe_lib_picture_attribute(q, "who"), "me");
   assert_string_equal(abbe_lib_picture_attribute(q, "abbe:space"), "rec709");
@@ -99,19 +97,15 @@ TEST(a_png_is_for_a_screen) {
 }
 
 TEST(what_is_none_is_refused) {
-  abbe_error error = {0};
   abbe_lib_picture *p = NULL;
-  assert_int_equal(abbe_lib_picture_make(0, 2, 1, names, NULL, &p, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_lib_picture_make(2, 40000, 1, names, NULL, &p, &error),
-                   ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_lib_picture_load("/nowhere/a.exr", &p, &error), ABBE_IO);
-  assert_contains(error.text, "/nowhere/a.exr");
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_lib_picture_make(0, 2, 1, names, NULL, &p, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_lib_picture_make(2, 40000, 1, names, NULL, &p, &error));
+  REFUSED(ABBE_IO, "/nowhere/a.exr", abbe_lib_picture_load("/nowhere/a.exr", &p, &error));
   assert_null(p);
   p = made();
-  assert_int_equal(abbe_lib_picture_set_attribute(p, "abbe:space", "mauve", &error),
-                   ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "mauve");
-  assert_int_equal(abbe_lib_picture_save(p, "/nowhere/a.exr", &error), ABBE_IO);
+  REFUSED(ABBE_INVALID_ARGUMENT, "mauve",
+          abbe_lib_picture_set_attribute(p, "abbe:space", "mauve", &error));
+  REFUSED(ABBE_IO, "", abbe_lib_picture_save(p, "/nowhere/a.exr", &error));
   abbe_lib_picture_free(p);
   abbe_lib_picture_free(NULL);
   assert_int_equal(abbe_lib_picture_width(NULL), 0);

@@ -9,7 +9,6 @@
 #include "base/file.h"
 #include "scenes/import/scene_file.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 /* Clear and constant, dispersive, also of a high index, air's, dispersive and absorbing below
@@ -27,7 +26,7 @@
   "- {name: smoke, model: constant, coefficients: [1.5], source: made up,\n"                       \
   "   absorption: {attenuation_per_m: [[400, 20], [700, 5]]}}\n"                                   \
   "- {name: grey, model: constant, coefficients: [1.5], source: made up,\n"                        \
-  "   absorption: {attenuation_per_m: [[400, 10], [700, 10]]}}\n"                                   \
+  "   absorption: {attenuation_per_m: [[400, 10], [700, 10]]}}\n"                                  \
   "- {name: narrow, model: cauchy, coefficients: [1.5, 0.006], range_nm: [400, 700],\n"            \
   "   source: made up}\n"                                                                          \
   "- {name: loose, model: cauchy, coefficients: [1.5, 0.006], range_nm: [400, 700],\n"             \
@@ -70,14 +69,14 @@ static inline void load_text(const char *text, abbe_scene *scene) {
   assert_non_null(mkdtemp(folder));
   snprintf(table, sizeof table, "%s/glass.yaml", folder);
   snprintf(path, sizeof path, "%s/scene.yaml", folder);
-  assert_int_equal(abbe_file_write(table, GLASSES, strlen(GLASSES), NULL), ABBE_OK);
-  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
-  abbe_error error = {0};
-  abbe_result result = abbe_scene_load(path, NULL, scene, &error);
+  OK(abbe_file_write(table, GLASSES, strlen(GLASSES), &error));
+  OK(abbe_file_write(path, text, strlen(text), &error));
+  abbe_error why = {0};
+  abbe_result result = abbe_scene_load(path, NULL, scene, &why);
   unlink(table);
   unlink(path);
   rmdir(folder);
-  if (result != ABBE_OK) print_error("%s\n", error.text);
+  if (result != ABBE_OK) print_error("%s\n", why.text);
   assert_int_equal(result, ABBE_OK);
 }
 

@@ -8,8 +8,6 @@
 #include "scenes/mesh/mesh.h"
 #include "scenes/shapes/shape.h"
 
-#include <stdbool.h>
-
 typedef struct test_box {
   double min[3], max[3];
   bool inwards;
@@ -22,7 +20,7 @@ static const uint32_t test_box_face[12][3] = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {
 
 static inline abbe_mesh test_boxes(const test_box *box, size_t count) {
   abbe_mesh m;
-  assert_int_equal(abbe_mesh_make(8 * count, 12 * count, false, &m, NULL), ABBE_OK);
+  OK(abbe_mesh_make(8 * count, 12 * count, false, &m, &error));
   for (size_t i = 0; i < count; i++) {
     for (size_t v = 0; v < 8; v++)
       for (size_t k = 0; k < 3; k++)
@@ -31,19 +29,19 @@ static inline abbe_mesh test_boxes(const test_box *box, size_t count) {
       for (size_t k = 0; k < 3; k++)
         m.face[12 * i + f][k] = (uint32_t)(8 * i) + test_box_face[f][box[i].inwards ? 2 - k : k];
   }
-  assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_SMOOTH, NULL), ABBE_OK);
+  OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_SMOOTH, &error));
   return m;
 }
 
 static inline abbe_mesh test_sphere(size_t levels) {
   abbe_mesh m;
-  assert_int_equal(abbe_shape_sphere(1, levels, &m, NULL), ABBE_OK);
+  OK(abbe_shape_sphere(1, levels, &m, &error));
   return m;
 }
 
 static inline abbe_mesh_report test_mesh_faults(const abbe_mesh *m) {
   abbe_mesh_report r;
-  assert_int_equal(abbe_mesh_check(m, &r, NULL), ABBE_OK);
+  OK(abbe_mesh_check(m, &r, &error));
   return r;
 }
 

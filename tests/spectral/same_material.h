@@ -6,8 +6,6 @@
 
 #include "spectral/materials/material.h"
 
-#include <stdbool.h>
-
 static inline bool same_text(const char *a, const char *b) {
   return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }

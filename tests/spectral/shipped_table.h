@@ -9,23 +9,21 @@
 
 static inline abbe_material_table load_table(const char *path) {
   abbe_material_table table;
-  abbe_error error = {0};
-  if (abbe_material_table_load(path, &table, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_material_table_load(path, &table, &error));
   return table;
 }
 
 static inline const abbe_material *find_material(const abbe_material_table *table,
                                                  const char *name) {
   const abbe_material *m = NULL;
-  abbe_error error = {0};
-  if (abbe_material_table_find(table, name, &m, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_material_table_find(table, name, &m, &error));
   return m;
 }
 
 static abbe_material_table shipped;
 
 static inline void shipped_load(void) {
-  assert_int_equal(abbe_material_table_load(NULL, &shipped, NULL), ABBE_OK);
+  OK(abbe_material_table_load(NULL, &shipped, &error));
 }
 
 static inline void shipped_free(void) {

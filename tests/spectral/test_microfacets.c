@@ -3,15 +3,14 @@
 #include "tests/check.h"
 #include "tests/random.h"
 
+#include "base/maths.h"
 #include "spectral/microfacets.h"
-
-#define PI 3.14159265358979323846
 
 static const abbe_microfacets kinds[] = {{0.05, 0.05}, {0.3, 0.3}, {1, 1}, {0.08, 0.4}, {0.6, 0.1}};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 static void direction(double polar_deg, double azimuth_deg, double out[3]) {
-  const double t = polar_deg * PI / 180, a = azimuth_deg * PI / 180;
+  const double t = polar_deg * ABBE_PI / 180, a = azimuth_deg * ABBE_PI / 180;
   out[0] = sin(t) * cos(a);
   out[1] = sin(t) * sin(a);
   out[2] = cos(t);
@@ -30,16 +29,12 @@ static double integrate(of_direction f, const abbe_microfacets *m, const double 
     const double cosine = 1 / sqrt(1 + tangent * tangent), sine = tangent * cosine;
     const double by_s = wide / ((1 - s) * (1 - s)) * cosine * cosine * sine / RINGS;
     for (int k = 0; k < SECTORS; k++) {
-      const double a = 2 * PI * (k + 0.5) / SECTORS;
+      const double a = 2 * ABBE_PI * (k + 0.5) / SECTORS;
       const double h[3] = {sine * cos(a), sine * sin(a), cosine};
-      sum += f(m, wo, h) * by_s * 2 * PI / SECTORS;
+      sum += f(m, wo, h) * by_s * 2 * ABBE_PI / SECTORS;
     }
   }
   return sum;
-}
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 static double covered(const abbe_microfacets *m, const double wo[3], const double h[3]) {
@@ -48,7 +43,8 @@ static double covered(const abbe_microfacets *m, const double wo[3], const doubl
 }
 
 static double seen(const abbe_microfacets *m, const double wo[3], const double h[3]) {
-  return abbe_microfacets_density(m, h) * abbe_microfacets_visible(m, wo) * fmax(dot(wo, h), 0);
+  return abbe_microfacets_density(m, h) * abbe_microfacets_visible(m, wo) *
+         fmax(abbe_vector_dot(wo, h), 0);
 }
 
 /* Facets cover the surface once; and from everywhere as much of them is seen as of the surface. */
@@ -111,7 +107,7 @@ TEST(the_sampler_is_the_lobe) {
       for (int k = 0; k < SAMPLES; k++) {
         const double u[2] = {random_between(&random, 0, 1), random_between(&random, 0, 1)};
         const double share = abbe_microfacets_sample(m, wo, u, h, wi);
-        assert_near(dot(wi, wi), 1, 1e-9);
+        assert_near(abbe_vector_dot(wi, wi), 1, 1e-9);
         assert_true(share >= 0 && share <= 1 && (share > 0) == (wi[2] > 0));
         all += share;
         if (wi[2] > 0.8) near += share;
@@ -128,7 +124,7 @@ TEST(the_sampler_is_the_lobe) {
 }
 
 static double shared_out(const abbe_microfacets *m, const double wo[3], const double h[3]) {
-  const double along = dot(wo, h);
+  const double along = abbe_vector_dot(wo, h);
   double wi[3];
   if (!(along > 0)) return 0;
   for (int k = 0; k < 3; k++) wi[k] = 2 * along * h[k] - wo[k];
@@ -169,7 +165,7 @@ TEST(no_roughness_is_a_mirror) {
       direction(random_between(&random, 0, 40), random_between(&random, 0, 360), wo);
       lost += 1 - abbe_microfacets_sample(&m, wo, u, h, wi);
       const double mirror[3] = {-wo[0], -wo[1], wo[2]};
-      assert_true(dot(wi, mirror) > cos(fmin(12 * a, PI)));
+      assert_true(abbe_vector_dot(wi, mirror) > cos(fmin(12 * a, ABBE_PI)));
     }
     assert_true(lost / 2000 < 3 * a * a);
   }

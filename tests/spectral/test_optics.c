@@ -1,16 +1,15 @@
 #include "tests/check.h"
 
+#include "base/maths.h"
 #include "spectral/optics.h"
 
 #include <complex.h>
 
-#define PI 3.14159265358979323846
-
 static double degrees(double radians) {
-  return radians * 180 / PI;
+  return radians * 180 / ABBE_PI;
 }
 static double radians(double degree) {
-  return degree * PI / 180;
+  return degree * ABBE_PI / 180;
 }
 
 /* ---- published numbers ---- */
@@ -47,10 +46,10 @@ TEST(critical_angles_of_glass_water_and_diamond) {
   assert_near(degrees(abbe_optics_critical_angle(1.5, 1)), 41.81, 0.005);
   assert_near(degrees(abbe_optics_critical_angle(1.333, 1)), 48.61, 0.005);
   assert_near(degrees(abbe_optics_critical_angle(2.417, 1)), 24.44, 0.005);
-  assert_near(abbe_optics_critical_angle(1, 1), PI / 2, 0);
-  assert_near(abbe_optics_critical_angle(1, 1.5), PI / 2, 0);
+  assert_near(abbe_optics_critical_angle(1, 1), ABBE_PI / 2, 0);
+  assert_near(abbe_optics_critical_angle(1, 1.5), ABBE_PI / 2, 0);
   /* pi/2 - sqrt(2 e) for n_i / n_t = 1 + e, where asin has lost its digits */
-  assert_near(PI / 2 - abbe_optics_critical_angle(1 + 0x1p-40, 1), sqrt(2 * 0x1p-40), 1e-15);
+  assert_near(ABBE_PI / 2 - abbe_optics_critical_angle(1 + 0x1p-40, 1), sqrt(2 * 0x1p-40), 1e-15);
 }
 
 TEST(minimum_deviation_of_a_sixty_degree_prism) {
@@ -125,7 +124,7 @@ TEST(energy_is_conserved) {
 TEST(directions_lie_in_one_plane_and_are_unit) {
   const double n[3] = {0.6, 0, 0.8};
   for (double eta = 0.3; eta < 3; eta *= 1.1)
-    for (double a = 0; a < 2 * PI; a += 0.3)
+    for (double a = 0; a < 2 * ABBE_PI; a += 0.3)
       for (double i = 0.5; i < 90; i += 3) {
         double s = sin(radians(i)), c = cos(radians(i));
         double u = s * cos(a), v = s * sin(a);

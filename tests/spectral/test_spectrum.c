@@ -4,7 +4,6 @@
 
 #include <gsl/gsl_errno.h>
 #include <pthread.h>
-#include <stdlib.h>
 
 static const abbe_interpolation methods[] = {ABBE_INTERPOLATION_LINEAR, ABBE_INTERPOLATION_MONOTONE,
                                              ABBE_INTERPOLATION_SPLINE};
@@ -12,9 +11,7 @@ static const abbe_interpolation methods[] = {ABBE_INTERPOLATION_LINEAR, ABBE_INT
 static abbe_spectrum *make(const double *l, const double *v, size_t count,
                            abbe_interpolation interpolation) {
   abbe_spectrum *spectrum = NULL;
-  abbe_error error = {0};
-  if (abbe_spectrum_make(l, v, count, interpolation, &spectrum, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_spectrum_make(l, v, count, interpolation, &spectrum, &error));
   return spectrum;
 }
 
@@ -145,11 +142,9 @@ TEST(integrals_agree_with_sums_and_add_up) {
 static void refuses(const double *l, const double *v, size_t count, const char *part) {
   for (int m = 0; m < 3; m++) {
     abbe_spectrum *s = NULL;
-    abbe_error error;
-    assert_int_equal(abbe_spectrum_make(l, v, count, methods[m], &s, &error),
-                     ABBE_INVALID_ARGUMENT);
+    REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_spectrum_make(l, v, count, methods[m], &s, &error));
     assert_null(s);
-    assert_contains(error.text, part);
+    assert_contains(last_error.text, part);
   }
 }
 

@@ -1,12 +1,8 @@
 #include "tests/check.h"
 
+#include "base/maths.h"
 #include "spectral/optics.h"
 #include "spectral/uniaxial.h"
-
-#include <stdbool.h>
-#include <stdlib.h>
-
-#define PI 3.14159265358979323846
 
 /* Calcite at 589.3 nm [Ghosh1999]. */
 static const double n_o = 1.65835, n_e = 1.48640;
@@ -15,10 +11,10 @@ static const abbe_uniaxial air = {1, 1, {0, 0, 1}};
 static const abbe_uniaxial_mode O = ABBE_UNIAXIAL_ORDINARY, E = ABBE_UNIAXIAL_EXTRAORDINARY;
 
 static double radians(double degree) {
-  return degree * PI / 180;
+  return degree * ABBE_PI / 180;
 }
 static double degrees(double radian) {
-  return radian * 180 / PI;
+  return radian * 180 / ABBE_PI;
 }
 static double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -162,7 +158,8 @@ TEST(an_axis_across_the_plane_of_incidence) {
         const double eta = inside ? index[mode] : 1 / index[mode];
         bool beyond;
         const double t = abbe_optics_cos_refracted(c, eta, &beyond);
-        const double r = mode == (int)E ? (eta * c - t) / (eta * c + t) : (c - eta * t) / (c + eta * t);
+        const double r =
+            mode == (int)E ? (eta * c - t) / (eta * c + t) : (c - eta * t) / (c + eta * t);
         const double share = beyond ? 1 : r * r;
         if (inside) {
           abbe_uniaxial_meet(&m, &air, up, (abbe_uniaxial_mode)mode, in, &s);

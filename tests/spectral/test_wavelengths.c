@@ -4,7 +4,7 @@
 
 TEST(seven_over_the_default_range) {
   abbe_wavelengths w;
-  assert_int_equal(abbe_wavelengths_make(7, 380, 780, &w, NULL), ABBE_OK);
+  OK(abbe_wavelengths_make(7, 380, 780, &w, &error));
   assert_int_equal(w.count, 7);
   assert_near(w.lambda_nm[0], 380, 0);
   assert_near(w.lambda_nm[1], 380 + 400.0 / 6, 1e-12);
@@ -22,7 +22,7 @@ TEST(seven_over_the_default_range) {
 
 TEST(one_stands_in_the_middle) {
   abbe_wavelengths w;
-  assert_int_equal(abbe_wavelengths_make(1, 400, 700, &w, NULL), ABBE_OK);
+  OK(abbe_wavelengths_make(1, 400, 700, &w, &error));
   assert_near(w.lambda_nm[0], 550, 0);
   assert_near(w.edge_nm[0], 400, 0);
   assert_near(w.edge_nm[1], 700, 0);
@@ -32,7 +32,7 @@ TEST(one_stands_in_the_middle) {
 TEST(bands_tile_the_range_at_any_count) {
   for (size_t count = 2; count <= ABBE_WAVELENGTHS_MAX_COUNT; count = count * 3 / 2 + 1) {
     abbe_wavelengths w;
-    assert_int_equal(abbe_wavelengths_make(count, 361.3, 829.7, &w, NULL), ABBE_OK);
+    OK(abbe_wavelengths_make(count, 361.3, 829.7, &w, &error));
     assert_near(w.edge_nm[0], 361.3, 0);
     assert_near(w.edge_nm[count], 829.7, 0);
     for (size_t i = 0; i < count; i++) {
@@ -47,9 +47,7 @@ TEST(bands_tile_the_range_at_any_count) {
 
 static void refuses(size_t count, double min_nm, double max_nm, const char *part) {
   abbe_wavelengths w;
-  abbe_error error;
-  assert_int_equal(abbe_wavelengths_make(count, min_nm, max_nm, &w, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, part);
+  REFUSED(ABBE_INVALID_ARGUMENT, part, abbe_wavelengths_make(count, min_nm, max_nm, &w, &error));
   assert_null(w.lambda_nm);
 }
 

@@ -4,8 +4,6 @@
 
 #include <cjson/cJSON.h>
 #include <float.h>
-#include <stdint.h>
-#include <string.h>
 
 static const double hard[] = {0.1 + 0.2,  2.4175239999999997, 1.0 / 3, DBL_MAX, DBL_MIN,
                               5e-324,     1 - DBL_EPSILON / 2, 1e22,    -0.1,    123456789012345678.0,

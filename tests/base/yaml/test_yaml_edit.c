@@ -2,14 +2,9 @@
 
 #include "base/yaml/yaml_edit.h"
 
-#include <stdbool.h>
-#include <stdlib.h>
-
 static abbe_yaml_edit edit_of(const char *text) {
   abbe_yaml_edit e;
-  abbe_error error = {0};
-  if (abbe_yaml_edit_make(text, strlen(text), "t", &e, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_yaml_edit_make(text, strlen(text), "t", &e, &error));
   return e;
 }
 
@@ -43,9 +38,7 @@ static void replaced(const char *text, const char *path, const char *value, cons
   abbe_yaml_edit e = edit_of(text);
   size_t index = 0;
   abbe_yaml_node parent = walk(&e, path, &index);
-  abbe_error error = {0};
-  if (abbe_yaml_edit_replace(&e, parent, index, value, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_yaml_edit_replace(&e, parent, index, value, &error));
   check_text(&e, wanted);
 }
 
@@ -53,9 +46,7 @@ static void inserted(const char *text, const char *path, const char *value, cons
   abbe_yaml_edit e = edit_of(text);
   size_t index = 0;
   abbe_yaml_node parent = walk(&e, path, &index);
-  abbe_error error = {0};
-  if (abbe_yaml_edit_insert_pair(&e, parent, index, "new", value, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_yaml_edit_insert_pair(&e, parent, index, "new", value, &error));
   check_text(&e, wanted);
 }
 
@@ -63,16 +54,13 @@ static void removed(const char *text, const char *path, const char *wanted) {
   abbe_yaml_edit e = edit_of(text);
   size_t index = 0;
   abbe_yaml_node parent = walk(&e, path, &index);
-  abbe_error error = {0};
-  if (abbe_yaml_edit_remove(&e, parent, index, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_yaml_edit_remove(&e, parent, index, &error));
   check_text(&e, wanted);
 }
 
 static void appended(const char *text, const char *item, const char *wanted) {
   abbe_yaml_edit e = edit_of(text);
-  abbe_error error = {0};
-  if (abbe_yaml_edit_append(&e, abbe_yaml_root(e.yaml), 0, item, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_yaml_edit_append(&e, abbe_yaml_root(e.yaml), 0, item, &error));
   check_text(&e, wanted);
 }
 
@@ -118,10 +106,8 @@ TEST(a_pair_finds_its_place) {
   inserted("a: >-\n  text\n\nb: 2\n", "a", "3", "a: >-\n  text\nnew: 3\n\nb: 2\n");
   inserted("x: {}\na: 1\n", "x", "3", "x: {}\nnew: 3\na: 1\n");
   abbe_yaml_edit e = edit_of("x: {}\n");
-  assert_int_equal(abbe_yaml_edit_insert_pair(&e,
-                                              abbe_yaml_value(e.yaml, abbe_yaml_root(e.yaml), 0),
-                                              ABBE_YAML_EDIT_END, "k", "1", NULL),
-                   ABBE_OK);
+  OK(abbe_yaml_edit_insert_pair(&e, abbe_yaml_value(e.yaml, abbe_yaml_root(e.yaml), 0),
+                                ABBE_YAML_EDIT_END, "k", "1", &error));
   check_text(&e, "x: {k: 1}\n");
 }
 
@@ -172,10 +158,10 @@ TEST(an_item_is_told_as_it_stands) {
   abbe_yaml_edit e = edit_of("l:\n  - a: 1 # one\n    b:\n      - 2\n    # end\n  - {a: 3}\n");
   abbe_yaml_node list = abbe_yaml_value(e.yaml, abbe_yaml_root(e.yaml), 0);
   char *text = NULL;
-  assert_int_equal(abbe_yaml_edit_item(&e, list, 0, &text, NULL), ABBE_OK);
+  OK(abbe_yaml_edit_item(&e, list, 0, &text, &error));
   assert_string_equal(text, "a: 1 # one\nb:\n  - 2\n# end");
   free(text);
-  assert_int_equal(abbe_yaml_edit_item(&e, list, 1, &text, NULL), ABBE_OK);
+  OK(abbe_yaml_edit_item(&e, list, 1, &text, &error));
   assert_string_equal(text, "{a: 3}");
   free(text);
   abbe_yaml_edit_free(&e);
@@ -207,18 +193,16 @@ TEST(what_the_text_would_misread_is_refused) {
   refused("l:\n- &x {a: 1}\n- *x\n", "l/0", NULL, "would break the file");
   refused("l:\n- a: 1\n", "l/0", NULL, "only one");
   abbe_yaml_edit e;
-  abbe_error error = {0};
-  assert_int_equal(abbe_yaml_edit_make("\xFF\xFE"
-                                       "a\0",
-                                       4, "t", &e, &error),
-                   ABBE_UNSUPPORTED);
-  assert_contains(error.text, "iconv");
-  assert_int_equal(abbe_yaml_edit_make("a: [", 4, "t", &e, &error), ABBE_PARSE);
+  REFUSED(ABBE_UNSUPPORTED, "iconv",
+          abbe_yaml_edit_make("\xFF\xFE"
+                              "a\0",
+                              4, "t", &e, &error));
+  REFUSED(ABBE_PARSE, "", abbe_yaml_edit_make("a: [", 4, "t", &e, &error));
 }
 
 TEST(numbers_read_back) {
   char *list = NULL;
-  assert_int_equal(abbe_yaml_edit_list((double[]){1.5, 0.0042}, 2, &list, NULL), ABBE_OK);
+  OK(abbe_yaml_edit_list((double[]){1.5, 0.0042}, 2, &list, &error));
   assert_string_equal(list, "[1.5, 0.0042]");
   free(list);
 }

@@ -3,12 +3,9 @@
 #include "base/yaml/yaml.h"
 #include "base/yaml/yaml_quote.h"
 
-#include <stdlib.h>
-
 static char *quoted(const char *text) {
   char *out = NULL;
-  abbe_error error = {0};
-  if (abbe_yaml_quote_make(text, &out, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_yaml_quote_make(text, &out, &error));
   return out;
 }
 

@@ -1,27 +1,10 @@
 /* The program's `materials`, as a person and as a program meet it. */
-#include "tests/check.h"
+#include "tests/cli/run_output.h"
 
 #include "base/file.h"
 
 #include <cjson/cJSON.h>
-#include <stdlib.h>
-#include <sys/wait.h>
 #include <unistd.h>
-
-static char output[1 << 17];
-
-/* Runs `abbe ARGUMENTS`, both streams into output; returns the exit code. */
-static int run(const char *arguments) {
-  char command[2048];
-  snprintf(command, sizeof command, "exec 2>&1; '%s' %s", ABBE_PROGRAM, arguments);
-  FILE *pipe = popen(command, "r");
-  assert_non_null(pipe);
-  size_t used = fread(output, 1, sizeof output - 1, pipe);
-  output[used] = '\0';
-  int status = pclose(pipe);
-  assert_true(WIFEXITED(status));
-  return WEXITSTATUS(status);
-}
 
 static double number(const cJSON *object, const char *key) {
   const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
@@ -69,8 +52,9 @@ TEST(extrapolation_is_reported_or_refused) {
   assert_true(cJSON_IsTrue(cJSON_GetObjectItem(first, "extrapolated")));
   cJSON_Delete(json);
   assert_int_equal(run("materials show n-bk7 --at 500 --at 2600 --json"), 1);
-  assert_string_equal(output, "abbe materials show: n-bk7 has no index at 2600 nm: its data reach from "
-                              "300 to 2500 nm, and its record does not say 'extrapolate: true'\n");
+  assert_string_equal(output,
+                      "abbe materials show: n-bk7 has no index at 2600 nm: its data reach from "
+                      "300 to 2500 nm, and its record does not say 'extrapolate: true'\n");
 }
 
 TEST(numbers_outside_the_data_are_not_told) {
@@ -81,7 +65,7 @@ TEST(numbers_outside_the_data_are_not_told) {
   const char *text = "materials:\n- name: infrared glass\n  model: cauchy\n"
                      "  coefficients: [1.5, 0.004]\n  range_nm: [600, 1000]\n  source: s\n"
                      "- name: flat\n  model: constant\n  coefficients: [1.5]\n  source: s\n";
-  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
+  OK(abbe_file_write(path, text, strlen(text), &error));
   snprintf(command, sizeof command, "materials show 'infrared glass' --table %s --json", path);
   assert_int_equal(run(command), 0);
   cJSON *json = cJSON_Parse(output);
@@ -107,7 +91,7 @@ TEST(a_density_is_set_shown_and_listed) {
   const char *text = "materials:\n- name: heavy\n  model: constant\n  coefficients: [1.5]\n"
                      "  source: s\n- name: unknown\n  model: constant\n  coefficients: [1.6]\n"
                      "  source: s\n";
-  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
+  OK(abbe_file_write(path, text, strlen(text), &error));
   snprintf(command, sizeof command, "materials set heavy density_g_cm3=4.73 --table %s", path);
   assert_int_equal(run(command), 0);
   snprintf(command, sizeof command, "materials show heavy --table %s", path);
@@ -139,9 +123,8 @@ TEST(a_printed_fit_is_the_recorded_one) {
   assert_int_equal(run("materials show diamond --fit"), 0);
   char *table = NULL, *line = NULL;
   size_t size = 0;
-  assert_int_equal(
-      abbe_file_read(ABBE_SOURCE_DIR "/spectral/materials/materials.yaml", 1 << 20, &table, &size, NULL),
-      ABBE_OK);
+  OK(abbe_file_read(ABBE_SOURCE_DIR "/spectral/materials/materials.yaml", 1 << 20, &table, &size,
+                    &error));
   int lines = 0;
   for (line = strtok(output, "\n"); line != NULL; line = strtok(NULL, "\n"), lines++)
     assert_contains(table, line);

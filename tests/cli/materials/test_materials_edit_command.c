@@ -133,7 +133,7 @@ static int finish(void) {
 static void check_file(const char *wanted) {
   char *text = NULL;
   size_t size = 0;
-  assert_int_equal(abbe_file_read(path, 1 << 20, &text, &size, NULL), ABBE_OK);
+  OK(abbe_file_read(path, 1 << 20, &text, &size, &error));
   assert_string_equal(text, wanted);
   free(text);
 }
@@ -141,7 +141,7 @@ static void check_file(const char *wanted) {
 static void set_up(void) {
   run_setup();
   snprintf(path, sizeof path, "%s/t.yaml", run_folder);
-  assert_int_equal(abbe_file_write(path, table, strlen(table), NULL), ABBE_OK);
+  OK(abbe_file_write(path, table, strlen(table), &error));
 }
 
 /* ---- tests ---- */
@@ -215,7 +215,7 @@ TEST(a_file_changed_meanwhile_is_kept) {
   expect("n_d 1.535296");
   type(DOWN DOWN DOWN RIGHT, "n_d 1.535396");
   const char *other = "materials: []\n";
-  assert_int_equal(abbe_file_write(path, other, strlen(other), NULL), ABBE_OK);
+  OK(abbe_file_write(path, other, strlen(other), &error));
   type("s", "Look at it"); /* the end of a sentence longer than the screen is wide */
   send_keys("Q");
   finish();

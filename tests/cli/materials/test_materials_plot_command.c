@@ -8,9 +8,8 @@
 static void check_picture(const char *name, size_t width, size_t height) {
   char path[160];
   abbe_image image;
-  abbe_error error;
   snprintf(path, sizeof path, "%s/%s", run_folder, name);
-  if (abbe_png_read(path, &image, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_png_read(path, &image, &error));
   assert_int_equal(image.width, width);
   assert_int_equal(image.height, height);
   abbe_image_free(&image);

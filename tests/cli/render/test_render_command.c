@@ -77,11 +77,10 @@ TEST(the_plan_as_json) {
 TEST(pictures_are_written) {
   char path[128];
   abbe_image image = {0};
-  abbe_error error = {0};
   assert_int_equal(run_line(GEM " -o a.exr --png a.png --save-map map.exr --bits 16"), 0);
   assert_string_equal(run_output, "");
   snprintf(path, sizeof path, "%s/a.exr", run_folder);
-  assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_OK);
+  OK(abbe_exr_read(path, &image, &error));
   assert_int_equal(image.width, 32);
   assert_int_equal(image.height, 24);
   assert_string_equal(abbe_image_attribute_text(&image, "abbe:space"), "acescg");
@@ -89,7 +88,7 @@ TEST(pictures_are_written) {
   assert_contains(abbe_image_attribute_text(&image, "abbe:scene"), "gem.yaml");
   abbe_image_free(&image);
   snprintf(path, sizeof path, "%s/map.exr", run_folder);
-  assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_OK);
+  OK(abbe_exr_read(path, &image, &error));
   assert_int_equal(image.width, 64);
   assert_true(abbe_image_find_channel(&image, "Y") != (size_t)-1);
   abbe_image_free(&image);
@@ -134,7 +133,6 @@ TEST(a_map_like_another) {
 TEST(error_bars) {
   char path[128];
   abbe_image image = {0};
-  abbe_error error = {0};
   cJSON *json =
       run_json(GEM " -o a.exr --error-bars=2 --error-png e.png --json && test -s e.png", 0);
   const cJSON *bars = cJSON_GetObjectItemCaseSensitive(json, "error_bars");
@@ -146,7 +144,7 @@ TEST(error_bars) {
   assert_true(json_number(caustic, "ciede2000_mean") > 0);
   cJSON_Delete(json);
   snprintf(path, sizeof path, "%s/a.exr", run_folder);
-  assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_OK);
+  OK(abbe_exr_read(path, &image, &error));
   assert_int_equal(image.channels, 6);
   assert_true(abbe_image_find_channel(&image, "stderr.G") != (size_t)-1);
   assert_contains(abbe_image_attribute_text(&image, "abbe:stderr"), "what is not modelled");

@@ -10,9 +10,8 @@
 
 static void load(const char *name, abbe_sweep_table *table) {
   char path[128];
-  abbe_error error = {0};
   snprintf(path, sizeof path, "%s/%s", run_folder, name);
-  if (abbe_sweep_table_load(path, table, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_sweep_table_load(path, table, &error));
 }
 
 static void run_well(const char *line) {
@@ -205,7 +204,7 @@ TEST(a_report_overwrites_nothing) {
   for (int i = 0; i < 2; i++) {
     char path[128];
     snprintf(path, sizeof path, "%s/%s", run_folder, i == 0 ? "a.csv" : "b.csv");
-    assert_int_equal(abbe_sweep_table_save(&table, path, NULL), ABBE_OK);
+    OK(abbe_sweep_table_save(&table, path, &error));
   }
   run_well("touch gem.yaml s-gem-reference.png");
   assert_int_equal(run_line("\"$abbe\" sweep a.csv --report gem.yaml"), 2);

@@ -8,8 +8,6 @@
 #include "cli/view/state/view_state.h"
 #include "scenes/import/scene_file.h"
 
-#include <stdlib.h>
-
 static const char gem[] = ABBE_SOURCE_DIR "/scenes/gem.yaml";
 
 static inline void see(abbe_view_state *s) {
@@ -22,12 +20,11 @@ static inline void find(const abbe_view_state *s, abbe_view_outline *out) {
   const abbe_scene_options options = {.set = (const char *const *)now->set,
                                       .set_count = now->set_count};
   abbe_scene scene;
-  abbe_error error = {0};
   char *text;
   size_t size;
-  if (abbe_scene_load(now->path, &options, &scene, &error) != ABBE_OK) fail_msg("%s", error.text);
-  assert_int_equal(abbe_scene_text(now->path, &options, &text, &size, NULL), ABBE_OK);
-  assert_int_equal(abbe_view_outline_make(&scene, text, size, out, NULL), ABBE_OK);
+  OK(abbe_scene_load(now->path, &options, &scene, &error));
+  OK(abbe_scene_text(now->path, &options, &text, &size, &error));
+  OK(abbe_view_outline_make(&scene, text, size, out, &error));
   out->camera = scene.camera;
   free(text);
   abbe_scene_free(&scene);
@@ -47,7 +44,7 @@ static inline abbe_view_state *begun(void) {
   memset(&s, 0, sizeof s);
   strcpy(path, gem);
   const abbe_view_document document = {.path = path};
-  assert_int_equal(abbe_view_state_begin(&s, &document, NULL), ABBE_OK);
+  OK(abbe_view_state_begin(&s, &document, &error));
   abbe_view_state_resize(&s, 512, 512, 0);
   learn(&s);
   return &s;
@@ -69,7 +66,7 @@ static inline void drag(abbe_view_state *s, abbe_view_button button, double x0, 
 static inline void begin_with(abbe_view_state *s, char *path) {
   const abbe_view_document document = {.path = path};
   memset(s, 0, sizeof *s);
-  assert_int_equal(abbe_view_state_begin(s, &document, NULL), ABBE_OK);
+  OK(abbe_view_state_begin(s, &document, &error));
   abbe_view_state_resize(s, 512, 512, 0);
   learn(s);
 }

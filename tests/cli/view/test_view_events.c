@@ -7,7 +7,7 @@ static abbe_view_event event(const char *text) {
   char line[96];
   abbe_view_event e;
   snprintf(line, sizeof line, "%s", text);
-  assert_int_equal(abbe_view_event_read(line, &e, NULL), ABBE_OK);
+  OK(abbe_view_event_read(line, &e, &error));
   return e;
 }
 

@@ -28,7 +28,7 @@ TEST(a_studio_can_be_turned_and_its_stone_cut) {
   static abbe_view_state s;
   memset(&s, 0, sizeof s);
   const abbe_view_document document = {.path = path};
-  assert_int_equal(abbe_view_state_begin(&s, &document, NULL), ABBE_OK);
+  OK(abbe_view_state_begin(&s, &document, &error));
   learn(&s);
   const abbe_view_outline *o = &s.outline;
   assert_true(o->surrounded);
@@ -59,7 +59,7 @@ TEST(a_design_begins_with_its_own_angles) {
   static abbe_view_state s;
   memset(&s, 0, sizeof s);
   const abbe_view_document document = {.path = path};
-  assert_int_equal(abbe_view_state_begin(&s, &document, NULL), ABBE_OK);
+  OK(abbe_view_state_begin(&s, &document, &error));
   learn(&s);
   const abbe_view_object *stone = &s.outline.object[0];
   assert_int_equal(stone->value_count, 3);

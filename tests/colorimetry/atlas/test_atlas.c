@@ -8,8 +8,7 @@
 
 static abbe_atlas make(const abbe_atlas_desc *desc) {
   abbe_atlas atlas;
-  abbe_error error = {0};
-  if (abbe_atlas_make(desc, &atlas, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_atlas_make(desc, &atlas, &error));
   return atlas;
 }
 
@@ -57,8 +56,8 @@ TEST(bands) {
 TEST(files) {
   static const char png[] = "/tmp/abbe_test_atlas.png", svg[] = "/tmp/abbe_test_atlas.svg";
   abbe_atlas a = make(&(abbe_atlas_desc){.observer = ABBE_OBSERVER_CIE_2015_10, .bands = 7});
-  assert_int_equal(abbe_atlas_picture(&a, png, NULL), ABBE_OK);
-  assert_int_equal(abbe_atlas_plot(&a, svg, NULL), ABBE_OK);
+  OK(abbe_atlas_picture(&a, png, &error));
+  OK(abbe_atlas_plot(&a, svg, &error));
   assert_int_equal(access(png, R_OK) + access(svg, R_OK), 0);
   assert_int_equal(abbe_atlas_plot(&a, "a.jpg", NULL), ABBE_INVALID_ARGUMENT);
   unlink(png);

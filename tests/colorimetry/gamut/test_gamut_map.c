@@ -11,9 +11,8 @@
 static abbe_gamut_map map_of(abbe_gamut_map_kind kind, abbe_gamut gamut) {
   double xy[8];
   abbe_gamut_map map;
-  abbe_error error = {0};
   abbe_gamut_chromaticities(gamut, xy);
-  if (abbe_gamut_map_make(kind, xy, &map, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_gamut_map_make(kind, xy, &map, &error));
   return map;
 }
 

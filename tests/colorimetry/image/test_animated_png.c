@@ -5,9 +5,6 @@
 #include "colorimetry/image/animated_png.h"
 #include "colorimetry/image/png_file.h"
 
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -17,9 +14,9 @@ static const char *const frames[] = {"animated_0.png", "animated_1.png", "animat
 static void write_frame(const char *path, size_t side, float grey) {
   static const char *const names[] = {"R", "G", "B"};
   abbe_image image;
-  assert_int_equal(abbe_image_make(side, side, 3, names, &image, NULL), ABBE_OK);
+  OK(abbe_image_make(side, side, 3, names, &image, &error));
   for (size_t i = 0; i < 3 * side * side; i++) image.data[i] = grey * (float)(i % 7) / 7;
-  assert_int_equal(abbe_png_write(path, &image, 8, NULL), ABBE_OK);
+  OK(abbe_png_write(path, &image, 8, &error));
   abbe_image_free(&image);
 }
 
@@ -33,10 +30,9 @@ TEST(chunks_are_by_the_standard) {
   char *data;
   size_t size;
   uint32_t sequence = 0, controls = 0, others = 0, first = 0;
-  abbe_error error = {0};
   for (int i = 0; i < 3; i++) write_frame(frames[i], 16, 0.3f * (float)(i + 1));
-  if (abbe_animated_png_write(MOVES, frames, 3, 25, &error) != ABBE_OK) fail_msg("%s", error.text);
-  assert_int_equal(abbe_file_read(MOVES, 1 << 20, &data, &size, NULL), ABBE_OK);
+  OK(abbe_animated_png_write(MOVES, frames, 3, 25, &error));
+  OK(abbe_file_read(MOVES, 1 << 20, &data, &size, &error));
   assert_memory_equal(data + 12, "IHDR", 4);
   assert_memory_equal(data + 8 + 25 + 4, "acTL", 4);
   assert_int_equal(u32_at(data + 8 + 25 + 8), 3);
@@ -65,8 +61,8 @@ TEST(chunks_are_by_the_standard) {
 
 TEST(the_first_frame_is_what_others_see) {
   abbe_image a, b;
-  assert_int_equal(abbe_png_read(MOVES, &a, NULL), ABBE_OK);
-  assert_int_equal(abbe_png_read(frames[0], &b, NULL), ABBE_OK);
+  OK(abbe_png_read(MOVES, &a, &error));
+  OK(abbe_png_read(frames[0], &b, &error));
   assert_int_equal(a.width, 16);
   assert_memory_equal(a.data, b.data, 3 * 16 * 16 * sizeof(float));
   abbe_image_free(&a);
@@ -74,23 +70,19 @@ TEST(the_first_frame_is_what_others_see) {
 }
 
 TEST(what_is_refused) {
-  abbe_error error = {0};
-  assert_int_equal(abbe_animated_png_write("none.png", frames, 0, 25, &error),
-                   ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_animated_png_write("none.png", frames, 2, NAN, &error),
-                   ABBE_INVALID_ARGUMENT);
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_animated_png_write("none.png", frames, 0, 25, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_animated_png_write("none.png", frames, 2, NAN, &error));
   write_frame(frames[1], 8, 0.5f);
-  assert_int_equal(abbe_animated_png_write("none.png", frames, 3, 25, &error),
-                   ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "another kind");
-  assert_int_equal(abbe_file_write(frames[1], "\x89PNG, they say", 15, NULL), ABBE_OK);
-  assert_int_equal(abbe_animated_png_write("none.png", frames, 3, 25, &error), ABBE_PARSE);
+  REFUSED(ABBE_INVALID_ARGUMENT, "another kind",
+          abbe_animated_png_write("none.png", frames, 3, 25, &error));
+  OK(abbe_file_write(frames[1], "\x89PNG, they say", 15, &error));
+  REFUSED(ABBE_PARSE, "", abbe_animated_png_write("none.png", frames, 3, 25, &error));
   char *data;
   size_t size;
-  assert_int_equal(abbe_file_read(frames[0], 1 << 20, &data, &size, NULL), ABBE_OK);
+  OK(abbe_file_read(frames[0], 1 << 20, &data, &size, &error));
   for (size_t cut = 0; cut < size; cut += 7) {
-    assert_int_equal(abbe_file_write(frames[1], data, cut, NULL), ABBE_OK);
-    assert_int_equal(abbe_animated_png_write("none.png", frames, 2, 25, &error), ABBE_PARSE);
+    OK(abbe_file_write(frames[1], data, cut, &error));
+    REFUSED(ABBE_PARSE, "", abbe_animated_png_write("none.png", frames, 2, 25, &error));
   }
   free(data);
   assert_int_not_equal(access("none.png", F_OK), 0);

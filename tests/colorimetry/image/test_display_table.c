@@ -4,21 +4,16 @@
 #include "tests/check.h"
 #include "tests/random.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 enum { SIDE = 128, COLOURS = SIDE * SIDE };
 
 static void make_display(const char *name, const char *view, abbe_display **out) {
   const abbe_display_desc desc = {.display = name, .view = view};
-  abbe_error error = {0};
-  assert_int_equal(abbe_display_make(&desc, out, &error), ABBE_OK);
+  OK(abbe_display_make(&desc, out, &error));
 }
 
 static void make_image(abbe_image *out) {
   static const char *const names[] = {"R", "G", "B"};
-  assert_int_equal(abbe_image_make(SIDE, SIDE, 3, names, out, NULL), ABBE_OK);
+  OK(abbe_image_make(SIDE, SIDE, 3, names, out, &error));
 }
 
 /* Both ways. */
@@ -29,9 +24,9 @@ static void show(const abbe_display *display, const abbe_image *image, abbe_imag
   make_image(quick);
   memcpy(exact->data, image->data, 3 * COLOURS * sizeof *image->data);
   memcpy(quick->data, image->data, 3 * COLOURS * sizeof *image->data);
-  assert_int_equal(abbe_display_table_make(display, &table, NULL), ABBE_OK);
-  assert_int_equal(abbe_display_apply(display, exact, NULL), ABBE_OK);
-  assert_int_equal(abbe_display_table_apply(table, quick, NULL), ABBE_OK);
+  OK(abbe_display_table_make(display, &table, &error));
+  OK(abbe_display_apply(display, exact, &error));
+  OK(abbe_display_table_apply(table, quick, &error));
   abbe_display_table_free(table);
 }
 

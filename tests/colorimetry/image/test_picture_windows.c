@@ -82,10 +82,9 @@ TEST(display) {
   write_pictures();
   ends_with(0, "$abbe display left.exr -o left.png --view Raw");
   abbe_image image = {0};
-  abbe_error error = {0};
   char path[128];
   snprintf(path, sizeof path, "%s/left.png", run_folder);
-  if (abbe_png_read(path, &image, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_png_read(path, &image, &error));
   assert_int_equal(image.width, 32);
   assert_int_equal(image.height, 24);
   for (size_t y = 0; y < 24; y++)

@@ -5,13 +5,12 @@
 #include "colorimetry/rgb_space.h"
 
 #include <lcms2.h>
-#include <stdlib.h>
 
 static const char *const names[] = {"R", "G", "B"};
 
 static abbe_image one_pixel(double r, double g, double b) {
   abbe_image image = {0};
-  assert_int_equal(abbe_image_make(1, 1, 3, names, &image, NULL), ABBE_OK);
+  OK(abbe_image_make(1, 1, 3, names, &image, &error));
   image.data[0] = (float)r;
   image.data[1] = (float)g;
   image.data[2] = (float)b;
@@ -44,7 +43,7 @@ TEST(curves) {
 static void answer(const double xy[8], const double curve[5], float xyz[][3]) {
   double to_xyz[9];
   abbe_rgb_encoding_probes(xyz);
-  assert_int_equal(abbe_rgb_space_chromaticities_to_xyz(xy, to_xyz, NULL), ABBE_OK);
+  OK(abbe_rgb_space_chromaticities_to_xyz(xy, to_xyz, &error));
   for (int i = 0; i < ABBE_RGB_ENCODING_PROBES; i++) {
     double v[3];
     for (int c = 0; c < 3; c++) v[c] = abbe_rgb_encoding_light(curve, (double)xyz[i][c]);
@@ -96,8 +95,7 @@ TEST(the_profile_of_display_p3) {
   void *icc[2];
   size_t size[2];
   abbe_rgb_encoding_display_p3(xy, curve);
-  for (int i = 0; i < 2; i++)
-    assert_int_equal(abbe_rgb_encoding_profile(xy, curve, &icc[i], &size[i], NULL), ABBE_OK);
+  for (int i = 0; i < 2; i++) OK(abbe_rgb_encoding_profile(xy, curve, &icc[i], &size[i], &error));
   assert_int_equal(size[0], size[1]);
   assert_memory_equal(icc[0], icc[1], size[0]);
   cmsHPROFILE profile = cmsOpenProfileFromMem(icc[0], (cmsUInt32Number)size[0]);
@@ -133,7 +131,7 @@ TEST(to_srgb_in_two_ways) {
   void *icc = NULL;
   size_t size = 0;
   abbe_rgb_encoding_display_p3(xy, curve);
-  assert_int_equal(abbe_rgb_encoding_profile(xy, curve, &icc, &size, NULL), ABBE_OK);
+  OK(abbe_rgb_encoding_profile(xy, curve, &icc, &size, &error));
   uint64_t seed = 7;
   for (int i = 0; i < 200; i++) {
     double v[3];
@@ -141,17 +139,17 @@ TEST(to_srgb_in_two_ways) {
     abbe_image a = one_pixel(v[0], v[1], v[2]), b = one_pixel(v[0], v[1], v[2]);
     memcpy(a.xy, xy, sizeof xy);
     memcpy(a.curve, curve, sizeof curve);
-    assert_int_equal(abbe_rgb_encoding_to_srgb(&a, "a", NULL), ABBE_OK);
-    assert_int_equal(abbe_rgb_encoding_profile_to_srgb(&b, icc, size, "b", NULL), ABBE_OK);
+    OK(abbe_rgb_encoding_to_srgb(&a, "a", &error));
+    OK(abbe_rgb_encoding_profile_to_srgb(&b, icc, size, "b", &error));
     pixel_is(&b, (double)a.data[0], (double)a.data[1], (double)a.data[2], 1.5e-3);
     abbe_image_free(&a);
   }
   /* Rec.709's red, as published for CSS colours, and a red that sRGB cannot hold */
   abbe_image red = one_pixel(0.91749, 0.20029, 0.13856);
-  assert_int_equal(abbe_rgb_encoding_profile_to_srgb(&red, icc, size, "red", NULL), ABBE_OK);
+  OK(abbe_rgb_encoding_profile_to_srgb(&red, icc, size, "red", &error));
   pixel_is(&red, 1, 0, 0, 4e-3);
   red = one_pixel(1, 0, 0);
-  assert_int_equal(abbe_rgb_encoding_profile_to_srgb(&red, icc, size, "red", NULL), ABBE_OK);
+  OK(abbe_rgb_encoding_profile_to_srgb(&red, icc, size, "red", &error));
   pixel_is(&red, 1, 0, 0, 0);
   free(icc);
 }
@@ -170,22 +168,19 @@ TEST(other_profiles) {
   void *icc = saved(cmsCreateGrayProfile(cmsD50_xyY(), linear), &size);
   cmsFreeToneCurve(linear);
   abbe_image grey = one_pixel(0.5, 0.5, 0.5);
-  assert_int_equal(abbe_rgb_encoding_profile_to_srgb(&grey, icc, size, "grey", NULL), ABBE_OK);
+  OK(abbe_rgb_encoding_profile_to_srgb(&grey, icc, size, "grey", &error));
   pixel_is(&grey, 0.73536, 0.73536, 0.73536, 1e-3);
-  abbe_error error = {0};
   abbe_image image = one_pixel(0.5, 0.5, 0.5);
-  assert_int_equal(abbe_rgb_encoding_profile_to_srgb(&image, icc, 100, "cut.png", &error),
-                   ABBE_COLOUR);
-  assert_contains(error.text, "cut.png");
+  REFUSED(ABBE_COLOUR, "cut.png",
+          abbe_rgb_encoding_profile_to_srgb(&image, icc, 100, "cut.png", &error));
   free(icc);
   icc = saved(cmsCreateLab4Profile(NULL), &size);
   assert_int_equal(abbe_rgb_encoding_profile_to_srgb(&image, icc, size, "lab", NULL), ABBE_COLOUR);
   free(icc);
-  assert_int_equal(abbe_rgb_encoding_to_srgb(&image, "unstated.png", &error),
-                   ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "unstated.png");
+  REFUSED(ABBE_INVALID_ARGUMENT, "unstated.png",
+          abbe_rgb_encoding_to_srgb(&image, "unstated.png", &error));
   abbe_rgb_encoding_srgb(image.xy, image.curve);
   image.xy[1] = image.xy[3] = image.xy[5] = 0.3; /* primaries on a line */
-  assert_int_equal(abbe_rgb_encoding_to_srgb(&image, "line.png", &error), ABBE_INVALID_ARGUMENT);
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_rgb_encoding_to_srgb(&image, "line.png", &error));
   abbe_image_free(&image);
 }

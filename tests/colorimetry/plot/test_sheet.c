@@ -3,7 +3,6 @@
 #include "tests/check.h"
 #include "tests/fontconfig.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 static char folder[] = "/tmp/abbe-test-sheet-XXXXXX", path[64];
@@ -19,8 +18,7 @@ static void teardown(void) {
 
 static abbe_sheet *begin(void) {
   abbe_sheet *sheet;
-  abbe_error error = {0};
-  assert_int_equal(abbe_sheet_make(path, &sheet, &error), ABBE_OK);
+  OK(abbe_sheet_make(path, &sheet, &error));
   abbe_sheet_text(sheet, 40, 40, 12, true, false, 0, "a line of text");
   abbe_sheet_line(sheet, 40, 45, 300, 45, 0.5);
   return sheet;
@@ -31,18 +29,17 @@ GROUP(setup, teardown);
 /* Cairo compresses what it draws; the number of pages stands in the open. */
 TEST(pages_are_written) {
   static const char *const names[] = {"R", "G", "B"};
-  abbe_error error = {0};
   abbe_image image;
   abbe_sheet *sheet = begin();
-  assert_int_equal(abbe_image_make(8, 4, 3, names, &image, &error), ABBE_OK);
-  assert_int_equal(abbe_sheet_picture(sheet, 40, 60, 160, 80, &image, &error), ABBE_OK);
+  OK(abbe_image_make(8, 4, 3, names, &image, &error));
+  OK(abbe_sheet_picture(sheet, 40, 60, 160, 80, &image, &error));
   const double x[2] = {0, 1}, y[2] = {1, 2};
   const abbe_chart_series series = {.count = 2, .x = x, .y = y};
   const abbe_chart chart = {.series_count = 1, .series = &series};
   abbe_sheet_turn(sheet);
-  assert_int_equal(abbe_sheet_chart(sheet, 40, 60, 400, 200, 0.7, &chart, &error), ABBE_OK);
+  OK(abbe_sheet_chart(sheet, 40, 60, 400, 200, 0.7, &chart, &error));
   assert_int_equal(access(path, F_OK), -1); /* not before it is whole */
-  assert_int_equal(abbe_sheet_finish(sheet, &error), ABBE_OK);
+  OK(abbe_sheet_finish(sheet, &error));
   abbe_image_free(&image);
   FILE *file = fopen(path, "rb");
   assert_non_null(file);
@@ -58,18 +55,16 @@ TEST(pages_are_written) {
 
 TEST(wrong_requests_are_refused) {
   static const char *const grey[] = {"Y"};
-  abbe_error error = {0};
   abbe_image image;
   abbe_sheet *sheet;
-  assert_int_equal(abbe_sheet_make("s.png", &sheet, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, ".pdf");
-  assert_int_equal(abbe_sheet_make("/nowhere/s.pdf", &sheet, &error), ABBE_IO);
+  REFUSED(ABBE_INVALID_ARGUMENT, ".pdf", abbe_sheet_make("s.png", &sheet, &error));
+  REFUSED(ABBE_IO, "", abbe_sheet_make("/nowhere/s.pdf", &sheet, &error));
   sheet = begin();
-  assert_int_equal(abbe_image_make(2, 2, 1, grey, &image, &error), ABBE_OK);
-  assert_int_equal(abbe_sheet_picture(sheet, 0, 0, 9, 9, &image, &error), ABBE_INVALID_ARGUMENT);
+  OK(abbe_image_make(2, 2, 1, grey, &image, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_sheet_picture(sheet, 0, 0, 9, 9, &image, &error));
   const abbe_chart chart = {.x = {.min = 2, .max = 1}};
-  assert_int_equal(abbe_sheet_chart(sheet, 0, 0, 99, 99, 0, &chart, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_sheet_chart(sheet, 0, 0, 99, 99, 1, &chart, &error), ABBE_INVALID_ARGUMENT);
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_sheet_chart(sheet, 0, 0, 99, 99, 0, &chart, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_sheet_chart(sheet, 0, 0, 99, 99, 1, &chart, &error));
   abbe_image_free(&image);
   abbe_sheet_free(sheet); /* and no file is there */
   assert_int_equal(access(path, F_OK), -1);

@@ -13,23 +13,21 @@ static const double even[3] = {1, 1, 1};
 static abbe_reflected_light *make(const char *name) {
   abbe_reflected_light *light = NULL;
   abbe_illuminant illuminant;
-  abbe_error error = {0};
-  assert_int_equal(abbe_illuminant_make(name, &illuminant, &error), ABBE_OK);
-  if (abbe_reflected_light_make(&illuminant, 380, 780, &light, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_illuminant_make(name, &illuminant, &error));
+  OK(abbe_reflected_light_make(&illuminant, 380, 780, &light, &error));
   abbe_illuminant_free(&illuminant);
   return light;
 }
 
 static abbe_spectrum *patch_of(const char *name) {
   abbe_spectrum *patch = NULL;
-  assert_int_equal(abbe_colour_checker_make(name, &patch, NULL), ABBE_OK);
+  OK(abbe_colour_checker_make(name, &patch, &error));
   return patch;
 }
 
 static void fill(const abbe_reflected_light *light, const abbe_spectrum *measured,
                  const double rgb[3]) {
-  assert_int_equal(abbe_band_reflection_fill(light, measured, rgb, cell, NULL), ABBE_OK);
+  OK(abbe_band_reflection_fill(light, measured, rgb, cell, &error));
 }
 
 TEST(greys_keep_their_share) {
@@ -170,8 +168,7 @@ TEST(lights_of_few_colours) {
   for (size_t i = 0; i < 2; i++) {
     abbe_reflected_light *light = NULL;
     double white[3], of[3][3], out[3];
-    assert_int_equal(abbe_reflected_light_make(&d65, ranges[i][0], ranges[i][1], &light, NULL),
-                     ABBE_OK);
+    OK(abbe_reflected_light_make(&d65, ranges[i][0], ranges[i][1], &light, &error));
     abbe_reflected_light_white(light, white);
     abbe_reflected_light_xyz(light, NULL, of);
     fill(light, NULL, rgb);

@@ -5,8 +5,7 @@
 
 static abbe_spectrum *make(const char *name) {
   abbe_spectrum *spectrum = NULL;
-  abbe_error error = {0};
-  if (abbe_colour_checker_make(name, &spectrum, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_colour_checker_make(name, &spectrum, &error));
   return spectrum;
 }
 
@@ -25,8 +24,8 @@ TEST(colours_are_near_the_printed_ones) {
       {0.3101, 0.3163, 0.1977}, {0.3101, 0.3163, 0.0900}, {0.3101, 0.3163, 0.0313}};
   abbe_illuminant c = {0};
   abbe_reflected_light *light = NULL;
-  assert_int_equal(abbe_illuminant_make("C", &c, NULL), ABBE_OK);
-  assert_int_equal(abbe_reflected_light_make(&c, 360, 830, &light, NULL), ABBE_OK);
+  OK(abbe_illuminant_make("C", &c, &error));
+  OK(abbe_reflected_light_make(&c, 360, 830, &light, &error));
   for (size_t i = 0; i < ABBE_COLOUR_CHECKER_COUNT; i++) {
     abbe_spectrum *spectrum = make(abbe_colour_checker_name(i));
     double xyz[3][3];
@@ -109,8 +108,8 @@ TEST(a_printed_pair_is_computed) {
   double nm[MEAN_POINTS], value[MEAN_POINTS];
   abbe_illuminant d50 = {0};
   abbe_reflected_light *light = NULL;
-  assert_int_equal(abbe_illuminant_make("D50", &d50, NULL), ABBE_OK);
-  assert_int_equal(abbe_reflected_light_make(&d50, 380, 780, &light, NULL), ABBE_OK);
+  OK(abbe_illuminant_make("D50", &d50, &error));
+  OK(abbe_reflected_light_make(&d50, 380, 780, &light, &error));
   for (size_t i = 0; i < ABBE_COLOUR_CHECKER_COUNT; i++) {
     abbe_spectrum *spectrum = NULL;
     double xyz[3][3];
@@ -118,9 +117,7 @@ TEST(a_printed_pair_is_computed) {
       nm[k] = 380 + 10 * (double)k;
       value[k] = 1e-3 * mean[i][k];
     }
-    assert_int_equal(
-        abbe_spectrum_make(nm, value, MEAN_POINTS, ABBE_INTERPOLATION_SPLINE, &spectrum, NULL),
-        ABBE_OK);
+    OK(abbe_spectrum_make(nm, value, MEAN_POINTS, ABBE_INTERPOLATION_SPLINE, &spectrum, &error));
     abbe_reflected_light_xyz(light, spectrum, xyz);
     const double sum = xyz[0][0] + xyz[0][1] + xyz[0][2], dark = of_mean[i][2] < 0.05 ? 2 : 1;
     const double off[3] = {xyz[0][0] / sum - of_mean[i][0], xyz[0][1] / sum - of_mean[i][1],
@@ -137,9 +134,8 @@ TEST(names_are_found_and_refused) {
   abbe_spectrum *spectrum = make("BLUE Sky");
   assert_near(abbe_spectrum_at(spectrum, 380), 0.125, 0.03);
   abbe_spectrum_free(spectrum);
-  abbe_error error = {0};
-  assert_int_equal(abbe_colour_checker_make("blue skies", &spectrum, &error), ABBE_NOT_FOUND);
+  REFUSED(ABBE_NOT_FOUND, "", abbe_colour_checker_make("blue skies", &spectrum, &error));
   assert_null(spectrum);
-  assert_non_null(strstr(error.text, "did you mean 'blue sky'"));
+  assert_non_null(strstr(last_error.text, "did you mean 'blue sky'"));
   assert_null(abbe_colour_checker_name(ABBE_COLOUR_CHECKER_COUNT));
 }

@@ -8,10 +8,8 @@
 static abbe_reflected_light *make(const char *name, double min_nm, double max_nm,
                                   abbe_illuminant *illuminant) {
   abbe_reflected_light *light = NULL;
-  abbe_error error = {0};
-  assert_int_equal(abbe_illuminant_make(name, illuminant, &error), ABBE_OK);
-  if (abbe_reflected_light_make(illuminant, min_nm, max_nm, &light, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_illuminant_make(name, illuminant, &error));
+  OK(abbe_reflected_light_make(illuminant, min_nm, max_nm, &light, &error));
   return light;
 }
 
@@ -38,8 +36,7 @@ TEST(measured_patches_are_integrals) {
     for (size_t p = 0; p < ABBE_COLOUR_CHECKER_COUNT; p++) {
       abbe_spectrum *patch = NULL;
       double wanted[3], xyz[3][3], matrix[3][9], white[3], seen[3];
-      assert_int_equal(abbe_colour_checker_make(abbe_colour_checker_name(p), &patch, NULL),
-                       ABBE_OK);
+      OK(abbe_colour_checker_make(abbe_colour_checker_name(p), &patch, &error));
       integrate(&illuminant, patch, wanted);
       abbe_reflected_light_xyz(light, patch, xyz);
       abbe_reflected_light_matrices(light, patch, matrix);

@@ -8,7 +8,7 @@ enum { CHANNELS = 7 };
 
 /* 3 x 2 pixels from (10, 20) on, channel c of pixel i being 100 i + c. */
 static void make(abbe_image *image) {
-  assert_int_equal(abbe_image_make(3, 2, CHANNELS, names, image, NULL), ABBE_OK);
+  OK(abbe_image_make(3, 2, CHANNELS, names, image, &error));
   for (size_t i = 0; i < 6 * CHANNELS; i++)
     image->data[i] = (float)(100 * (i / CHANNELS) + i % CHANNELS);
   image->display_window = (abbe_image_window){10, 20, 12, 21};
@@ -19,9 +19,8 @@ TEST(a_pixel_and_a_region) {
   abbe_image image;
   abbe_pixel_probe p;
   make(&image);
-  assert_int_equal(abbe_pixel_probe_make(&image, NULL, "it", (abbe_image_window){11, 21, 11, 21},
-                                         &view, &p, NULL),
-                   ABBE_OK);
+  OK(abbe_pixel_probe_make(&image, NULL, "it", (abbe_image_window){11, 21, 11, 21}, &view, &p,
+                           &error));
   assert_int_equal(p.pixels, 1);
   for (size_t c = 0; c < CHANNELS; c++) assert_near(p.mean[c], 400 + (double)c, 1e-12);
   assert_near(p.error[0], 403, 1e-12);
@@ -30,9 +29,8 @@ TEST(a_pixel_and_a_region) {
   assert_true(p.has_colour && p.space.assumed && p.has_spectral_xyz && !p.is_relative);
   abbe_pixel_probe_free(&p);
 
-  assert_int_equal(abbe_pixel_probe_make(&image, NULL, "it", (abbe_image_window){10, 20, 11, 21},
-                                         &view, &p, NULL),
-                   ABBE_OK);
+  OK(abbe_pixel_probe_make(&image, NULL, "it", (abbe_image_window){10, 20, 11, 21}, &view, &p,
+                           &error));
   assert_int_equal(p.pixels, 4);
   assert_near(p.mean[1], (1 + 101 + 301 + 401) / 4.0, 1e-12);
   assert_near(p.error[0], sqrt(3 * 3 + 103 * 103 + 303 * 303 + 403 * 403) / 4, 1e-9);
@@ -46,9 +44,8 @@ TEST(colour_is_xyz) {
   abbe_pixel_probe p;
   make(&image);
   for (size_t c = 0; c < 3; c++) image.data[c] = 1;
-  assert_int_equal(abbe_pixel_probe_make(&image, NULL, "it", (abbe_image_window){10, 20, 10, 20},
-                                         &view, &p, NULL),
-                   ABBE_OK);
+  OK(abbe_pixel_probe_make(&image, NULL, "it", (abbe_image_window){10, 20, 10, 20}, &view, &p,
+                           &error));
   assert_near(p.xyz[0], 0.3127 / 0.3290, 1e-9);
   assert_near(p.xyz[1], 1, 1e-9);
   abbe_pixel_probe_free(&p);
@@ -61,16 +58,13 @@ TEST(refusals) {
       {9, 20, 10, 20}, {10, 20, 13, 20}, {10, 22, 10, 22}, {11, 20, 10, 20}};
   abbe_image image;
   abbe_pixel_probe p;
-  abbe_error error = {0};
   make(&image);
   for (int i = 0; i < 4; i++) {
-    assert_int_equal(abbe_pixel_probe_make(&image, NULL, "it.exr", outside[i], &view, &p, &error),
-                     ABBE_INVALID_ARGUMENT);
-    assert_contains(error.text, "(10, 20) to (12, 21)");
+    REFUSED(ABBE_INVALID_ARGUMENT, "(10, 20) to (12, 21)",
+            abbe_pixel_probe_make(&image, NULL, "it.exr", outside[i], &view, &p, &error));
   }
-  assert_int_equal(abbe_pixel_probe_make(&image, "none", "it.exr",
-                                         (abbe_image_window){10, 20, 10, 20}, &view, &p, &error),
-                   ABBE_NOT_FOUND);
-  assert_contains(error.text, "layer 'none'");
+  REFUSED(ABBE_NOT_FOUND, "layer 'none'",
+          abbe_pixel_probe_make(&image, "none", "it.exr", (abbe_image_window){10, 20, 10, 20},
+                                &view, &p, &error));
   abbe_image_free(&image);
 }

@@ -14,7 +14,7 @@ static void make(const char *prefix, abbe_image *image) {
     snprintf(name[i], sizeof name[i], "%s%d,5nm", prefix, 382 + 5 * i);
     names[i] = name[i];
   }
-  assert_int_equal(abbe_image_make(2, 1, BANDS, names, image, NULL), ABBE_OK);
+  OK(abbe_image_make(2, 1, BANDS, names, image, &error));
 }
 
 static double middle(int band) {
@@ -22,18 +22,18 @@ static double middle(int band) {
 }
 
 /* x and y of an equal-energy spectrum: a third each for every observer, whose functions have equal
- * integrals by definition [CIE15] [CIE170-2], to the rounding of the tables; and over 380 to 780 nm.
+ * integrals by definition [CIE15] [CIE170-2], to the rounding of the tables; and over 380 to 780
+ * nm.
  */
 TEST(equal_energy_of_each_observer) {
   abbe_image image, xyz;
   make("S0.", &image);
   for (size_t i = 0; i < 2 * BANDS; i++) image.data[i] = 0.5f;
   for (int observer = 0; observer < ABBE_OBSERVER_COUNT; observer++) {
-    abbe_relight_desc desc = {.view.observer = (abbe_observer)observer,
-                              .space = ABBE_RGB_SPACE_XYZ,
-                              .relative = true};
+    abbe_relight_desc desc = {
+        .view.observer = (abbe_observer)observer, .space = ABBE_RGB_SPACE_XYZ, .relative = true};
     double xy[2];
-    assert_int_equal(abbe_relight_make(&image, "it", &desc, &xyz, NULL), ABBE_OK);
+    OK(abbe_relight_make(&image, "it", &desc, &xyz, &error));
     const double at[3] = {(double)xyz.data[0], (double)xyz.data[1], (double)xyz.data[2]};
     assert_near(at[1], 0.5, 1e-6);
     assert_true(abbe_chromaticity_xy(at, xy));
@@ -82,12 +82,12 @@ TEST(a_reflectance_under_another_light) {
       integrate(lights[light], (abbe_observer)observer, expected);
       abbe_relight_desc desc = {.view = {.observer = (abbe_observer)observer, .to = lights[light]},
                                 .space = ABBE_RGB_SPACE_XYZ};
-      assert_int_equal(abbe_relight_make(&reflected, "it", &desc, &out, NULL), ABBE_OK);
+      OK(abbe_relight_make(&reflected, "it", &desc, &out, &error));
       for (int k = 0; k < 3; k++) assert_near((double)out.data[k], expected[k], 2e-4);
       abbe_image_free(&out);
       /* The same of the light that comes back, made with D65. */
       desc.view.from = &d65;
-      assert_int_equal(abbe_relight_make(&emitted, "it", &desc, &out, NULL), ABBE_OK);
+      OK(abbe_relight_make(&emitted, "it", &desc, &out, &error));
       for (int k = 0; k < 3; k++) assert_near((double)out.data[k], expected[k], 2e-4);
       abbe_image_free(&out);
     }
@@ -110,7 +110,7 @@ TEST(units) {
     make("S0.", &image);
     for (size_t b = 0; b < 2 * BANDS; b++) image.data[b] = cases[i].value;
     abbe_image_set_attribute(&image, "emissiveUnits", cases[i].unit, NULL);
-    assert_int_equal(abbe_relight_make(&image, "it", &desc, &xyz, NULL), ABBE_OK);
+    OK(abbe_relight_make(&image, "it", &desc, &xyz, &error));
     assert_near((double)xyz.data[1], 0.683 * 106.856, 0.03); /* the CIE's sum over 360 to 830 nm */
     assert_string_equal(abbe_image_attribute_text(&xyz, "abbe:unit"), cases[i].says);
     abbe_image_free(&xyz);
@@ -127,12 +127,12 @@ TEST(infinite_bands) {
   double bright[3];
   make("S0.", &image);
   image.data[40] = 65504;
-  assert_int_equal(abbe_relight_make(&image, "it", &desc, &xyz, NULL), ABBE_OK);
+  OK(abbe_relight_make(&image, "it", &desc, &xyz, &error));
   for (int k = 0; k < 3; k++) bright[k] = (double)xyz.data[k];
   abbe_image_free(&xyz);
   image.data[40] = INFINITY;
   image.data[BANDS] = NAN;
-  assert_int_equal(abbe_relight_make(&image, "it", &desc, &xyz, NULL), ABBE_OK);
+  OK(abbe_relight_make(&image, "it", &desc, &xyz, &error));
   for (int k = 0; k < 3; k++) {
     assert_near((double)xyz.data[k], bright[k], 1e-6 * fabs(bright[k]));
     assert_true(isnan(xyz.data[3 + k]));
@@ -154,7 +154,7 @@ TEST(bands_are_kept) {
   lamp.display_window = lamp.data_window = (abbe_image_window){3, 4, 4, 4};
   const abbe_relight_desc desc = {
       .view = {.from = &d65, .to = &a}, .space = ABBE_RGB_SPACE_XYZ, .bands = true};
-  assert_int_equal(abbe_relight_make(&lamp, "it", &desc, &out, NULL), ABBE_OK);
+  OK(abbe_relight_make(&lamp, "it", &desc, &out, &error));
   assert_int_equal(out.channels, 3 + BANDS);
   assert_string_equal(out.channel[3], "S0.382,500000nm");
   assert_string_equal(abbe_image_attribute_text(&out, "spectralLayoutVersion"), "1.0");
@@ -165,9 +165,8 @@ TEST(bands_are_kept) {
     assert_near((double)out.data[3 + b], expected, 1e-6 * expected);
   }
   const abbe_relight_desc as_it_is = {.view.from = &a, .space = ABBE_RGB_SPACE_XYZ};
-  assert_int_equal(abbe_relight_make(&out, "it", &as_it_is, &again, NULL), ABBE_OK);
-  for (int k = 0; k < 3; k++)
-    assert_near((double)again.data[k], (double)out.data[k], 1e-6);
+  OK(abbe_relight_make(&out, "it", &as_it_is, &again, &error));
+  for (int k = 0; k < 3; k++) assert_near((double)again.data[k], (double)out.data[k], 1e-6);
   abbe_image_free(&again);
   abbe_image_free(&out);
   abbe_image_free(&lamp);
@@ -177,14 +176,13 @@ TEST(what_is_refused_and_what_is_needed) {
   static const char *const rgb[] = {"R", "G", "B", "left.S0.500nm", "left.S0.600nm"};
   const abbe_relight_desc none = {0}, left = {.layer = "left"};
   abbe_image image, out;
-  abbe_error error = {0};
-  assert_int_equal(abbe_image_make(1, 1, 5, rgb, &image, NULL), ABBE_OK);
-  assert_int_equal(abbe_relight_make(&image, "it.exr", &none, &out, &error), ABBE_NOT_FOUND);
-  assert_contains(error.text, "it.exr: it has no bands");
+  OK(abbe_image_make(1, 1, 5, rgb, &image, &error));
+  REFUSED(ABBE_NOT_FOUND, "it.exr: it has no bands",
+          abbe_relight_make(&image, "it.exr", &none, &out, &error));
   assert_false(abbe_relight_is_needed(&image, NULL));
   assert_true(abbe_relight_is_needed(&image, "left"));
   assert_false(abbe_relight_is_needed(&image, "right"));
-  assert_int_equal(abbe_relight_make(&image, "it.exr", &left, &out, NULL), ABBE_OK);
+  OK(abbe_relight_make(&image, "it.exr", &left, &out, &error));
   assert_string_equal(abbe_image_attribute_text(&out, "abbe:unit"), "luminance, cd/m2");
   abbe_image_free(&out);
   abbe_image_free(&image);

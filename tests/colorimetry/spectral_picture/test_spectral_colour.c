@@ -14,8 +14,8 @@ static void make(const char *prefix, abbe_image *image, abbe_spectral_channels *
     snprintf(name[i], sizeof name[i], "%s%dnm", prefix, 385 + 10 * i);
     names[i] = name[i];
   }
-  assert_int_equal(abbe_image_make(2, 1, BANDS, names, image, NULL), ABBE_OK);
-  assert_int_equal(abbe_spectral_channels_find(image, NULL, "it", c, NULL), ABBE_OK);
+  OK(abbe_image_make(2, 1, BANDS, names, image, &error));
+  OK(abbe_spectral_channels_find(image, NULL, "it", c, &error));
   assert_int_equal(c->count, BANDS);
 }
 
@@ -39,7 +39,7 @@ TEST(whites_of_illuminants) {
     const abbe_illuminant light = {.kind = white[i].kind};
     const abbe_spectral_view view = {.observer = white[i].observer, .to = &light};
     double weight[BANDS][3], sum[3] = {0}, xy[2], own[3];
-    assert_int_equal(abbe_spectral_colour_weights(&c, &view, "it", weight, NULL), ABBE_OK);
+    OK(abbe_spectral_colour_weights(&c, &view, "it", weight, &error));
     for (int b = 0; b < BANDS; b++)
       for (int k = 0; k < 3; k++) sum[k] += weight[b][k];
     assert_near(sum[1], 1, 1e-12);
@@ -62,8 +62,8 @@ TEST(a_lamp_in_bands) {
   make("S0.", &image, &c);
   const abbe_spectral_view as_it_is = {.from = &d65}, under_a = {.from = &d65, .to = &a};
   double weight[BANDS][3], other[BANDS][3], sum[3] = {0}, white[3];
-  assert_int_equal(abbe_spectral_colour_weights(&c, &as_it_is, "it", weight, NULL), ABBE_OK);
-  assert_int_equal(abbe_spectral_colour_weights(&c, &under_a, "it", other, NULL), ABBE_OK);
+  OK(abbe_spectral_colour_weights(&c, &as_it_is, "it", weight, &error));
+  OK(abbe_spectral_colour_weights(&c, &under_a, "it", other, &error));
   for (int b = 0; b < BANDS; b++) {
     double expected[3];
     const double from = 380 + 10 * b,
@@ -87,14 +87,13 @@ TEST(absolute_light) {
   abbe_image image, xyz;
   abbe_spectral_channels c;
   double weight[3][3];
-  assert_int_equal(abbe_image_make(1, 1, 3, names, &image, NULL), ABBE_OK);
-  assert_int_equal(abbe_spectral_channels_find(&image, NULL, "it", &c, NULL), ABBE_OK);
-  assert_int_equal(abbe_spectral_colour_weights(&c, &view, "it", weight, NULL), ABBE_OK);
+  OK(abbe_image_make(1, 1, 3, names, &image, &error));
+  OK(abbe_spectral_channels_find(&image, NULL, "it", &c, &error));
+  OK(abbe_spectral_colour_weights(&c, &view, "it", weight, &error));
   assert_near(weight[1][1], 683, 0.1);
   image.data[1] = 2;
   image.display_window = (abbe_image_window){5, 6, 5, 6};
-  assert_int_equal(abbe_spectral_colour_image(&image, &c, (const double(*)[3])weight, &xyz, NULL),
-                   ABBE_OK);
+  OK(abbe_spectral_colour_image(&image, &c, (const double(*)[3])weight, &xyz, &error));
   for (int k = 0; k < 3; k++) assert_near((double)xyz.data[k], 2 * weight[1][k], 1e-3);
   assert_string_equal(abbe_image_attribute_text(&xyz, "abbe:space"), "xyz");
   assert_true(xyz.display_window.x0 == 5 && xyz.display_window.y1 == 6);
@@ -109,21 +108,17 @@ TEST(refusals) {
   const abbe_spectral_view view = {0}, under_a = {.to = &a};
   abbe_image image;
   abbe_spectral_channels c;
-  abbe_error error = {0};
   double weight[BANDS][3];
   make("S0.", &image, &c);
-  assert_int_equal(abbe_spectral_colour_weights(&c, &under_a, "it", weight, &error),
-                   ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "which light it was made with");
+  REFUSED(ABBE_INVALID_ARGUMENT, "which light it was made with",
+          abbe_spectral_colour_weights(&c, &under_a, "it", weight, &error));
   abbe_spectral_channels_free(&c);
   abbe_image_free(&image);
   for (int i = 0; i < 2; i++) {
-    assert_int_equal(abbe_image_make(1, 1, 2 - (size_t)i, i ? lone : infrared, &image, NULL),
-                     ABBE_OK);
-    assert_int_equal(abbe_spectral_channels_find(&image, NULL, "it", &c, NULL), ABBE_OK);
-    assert_int_equal(abbe_spectral_colour_weights(&c, &view, "it", weight, &error),
-                     ABBE_INVALID_ARGUMENT);
-    assert_contains(error.text, i ? "two or more" : "no light that the eye sees");
+    OK(abbe_image_make(1, 1, 2 - (size_t)i, i ? lone : infrared, &image, &error));
+    OK(abbe_spectral_channels_find(&image, NULL, "it", &c, &error));
+    REFUSED(ABBE_INVALID_ARGUMENT, i ? "two or more" : "no light that the eye sees",
+            abbe_spectral_colour_weights(&c, &view, "it", weight, &error));
     abbe_spectral_channels_free(&c);
     abbe_image_free(&image);
   }

@@ -22,9 +22,7 @@ TEST(units_are_read) {
                {"W.sr^-1", ABBE_SPECTRAL_INTENSITY, 1}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     abbe_spectral_unit unit;
-    abbe_error error = {0};
-    if (abbe_spectral_unit_read(cases[i].text, "a.exr", &unit, &error) != ABBE_OK)
-      fail_msg("%s", error.text);
+    OK(abbe_spectral_unit_read(cases[i].text, "a.exr", &unit, &error));
     assert_int_equal(unit.quantity, cases[i].quantity);
     assert_near(unit.factor / cases[i].factor, 1, 1e-14);
   }

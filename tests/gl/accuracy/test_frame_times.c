@@ -19,14 +19,13 @@ GROUP(make_context, free_context);
 
 TEST(times) {
   abbe_scene scene = {0};
-  abbe_error error = {0};
   abbe_frame_times times;
   load_text(SCENE, &scene);
   const abbe_render_desc small = {.width = 16, .height = 16, .photons = 16, .map_size = 32};
   abbe_renderer *renderer = make_renderer(&scene, &small);
   watch w = {.most = 4};
   abbe_frame_times_desc desc = {.frames = 4, .progress = watch_frames, .user = &w};
-  assert_ok(abbe_frame_times_measure(renderer, &desc, &times, &error), &error);
+  OK(abbe_frame_times_measure(renderer, &desc, &times, &error));
   assert_int_equal(w.asked, 4);
   assert_true(times.fastest_ms > 0 && times.fastest_ms <= times.median.frame_ms);
   assert_true(times.median.energy.reached > 0);
@@ -34,12 +33,12 @@ TEST(times) {
   w = (watch){.most = 9};
   desc.frames = 9;
   desc.enough_ms = 1e-9;
-  assert_ok(abbe_frame_times_measure(renderer, &desc, &times, &error), &error);
+  OK(abbe_frame_times_measure(renderer, &desc, &times, &error));
   assert_int_equal(w.asked, 3);
   w = (watch){.most = 2};
-  assert_int_equal(abbe_frame_times_measure(renderer, &desc, &times, &error), ABBE_CANCELLED);
+  REFUSED(ABBE_CANCELLED, "", abbe_frame_times_measure(renderer, &desc, &times, &error));
   double ms = 0;
-  assert_ok(abbe_frame_times_baseline(renderer, 3, &ms, &error), &error);
+  OK(abbe_frame_times_baseline(renderer, 3, &ms, &error));
   assert_true(ms > 0);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
@@ -62,18 +61,17 @@ TEST(unrest) {
 /* A camera's frame traces no photon, and the camera ends where it was. */
 TEST(camera) {
   abbe_scene scene = {0};
-  abbe_error error = {0};
   abbe_image before, after;
   load_text(SCENE, &scene);
   const abbe_render_desc small = {.width = 16, .height = 16, .photons = 16, .map_size = 32};
   abbe_renderer *renderer = make_renderer(&scene, &small);
   draw_frame(renderer);
-  assert_ok(abbe_renderer_read(renderer, false, &before, &error), &error);
+  OK(abbe_renderer_read(renderer, false, &before, &error));
   for (size_t count = 1; count <= 4; count += 3) {
     double ms = 0;
-    assert_ok(abbe_frame_times_camera(renderer, &scene, &small, count, &ms, &error), &error);
+    OK(abbe_frame_times_camera(renderer, &scene, &small, count, &ms, &error));
     assert_true(ms > 0);
-    assert_ok(abbe_renderer_read(renderer, false, &after, &error), &error);
+    OK(abbe_renderer_read(renderer, false, &after, &error));
     assert_memory_equal(after.data, before.data, 16 * 16 * 3 * sizeof *after.data);
     abbe_image_free(&after);
     assert_true(draw_frame(renderer).kept[ABBE_PASS_PHOTONS]);

@@ -27,9 +27,8 @@ GROUP(make_context, free_context);
 
 TEST(the_shipped_presets_are_whole) {
   abbe_presets presets;
-  abbe_error error = {0};
   bool seen[ABBE_PRESET_CLASS_COUNT] = {false};
-  assert_ok(abbe_presets_load(NULL, &presets, &error), &error);
+  OK(abbe_presets_load(NULL, &presets, &error));
   assert_string_equal(presets.error, "caustic_de");
   assert_true(strlen(presets.run) > 20);
   for (size_t i = 0; i < presets.count; i++) {
@@ -84,11 +83,9 @@ TEST(broken_files_are_named) {
  */
 TEST(margins_widen_promises) {
   abbe_presets presets;
-  abbe_error error = {0};
   bool kept;
-  assert_ok(load_presets(HEAD CLASS THREE "  margin: 1.5\n  time_margin: 2\n  margin_scenes: 3\n",
-                         &presets, &error),
-            &error);
+  OK(load_presets(HEAD CLASS THREE "  margin: 1.5\n  time_margin: 2\n  margin_scenes: 3\n",
+                  &presets, &error));
   const abbe_preset_front *f = &presets.front[0];
   assert_int_equal(f->margin_scenes, 3);
   static const double worst[] = {8, 4, 2}, light[] = {20, 80, 320}, eye[] = {10, 20, 20};
@@ -111,10 +108,8 @@ TEST(margins_widen_promises) {
  * defaults. */
 TEST(a_name_may_be_missing) {
   abbe_presets presets;
-  abbe_error error = {0};
-  assert_ok(load_presets(HEAD "- class: convex\n  scenes: \"gem\"\n  draft: 0\n  front:\n" THREE,
-                         &presets, &error),
-            &error);
+  OK(load_presets(HEAD "- class: convex\n  scenes: \"gem\"\n  draft: 0\n  front:\n" THREE, &presets,
+                  &error));
   assert_int_equal(presets.front[0].named[ABBE_PRESET_DRAFT], 0);
   assert_int_equal(presets.front[0].named[ABBE_PRESET_ACCURATE], 3);
   abbe_presets_free(&presets);
@@ -139,7 +134,7 @@ TEST(a_name_may_be_missing) {
 TEST(choices) {
   abbe_presets presets;
   bool kept;
-  assert_int_equal(load_presets(HEAD CLASS THREE, &presets, NULL), ABBE_OK);
+  OK(load_presets(HEAD CLASS THREE, &presets, &error));
   const abbe_preset_front *f = &presets.front[0];
   assert_int_equal(abbe_preset_for_error(f, 100, &kept), 0);
   assert_true(kept);
@@ -163,7 +158,7 @@ TEST(choices) {
 
 TEST(what_the_caller_asks_for_stays) {
   abbe_presets presets;
-  assert_int_equal(load_presets(HEAD CLASS THREE, &presets, NULL), ABBE_OK);
+  OK(load_presets(HEAD CLASS THREE, &presets, &error));
   abbe_render_desc empty = {0}, own = {.wavelengths = 21}, equal = {.photons = 64};
   const abbe_preset_point *point = &presets.front[0].point[1];
   assert_true(abbe_preset_apply(point, NULL, &empty));
@@ -218,10 +213,9 @@ TEST(layers_are_left_where_they_show_too_little) {
       SEA("", "-0.2"), SEA("", "-0.5"), SEA(", medium: {scattering: 1}", "-0.5")};
   static const bool may[] = {true, false, false, true, false};
   abbe_presets presets;
-  abbe_error error = {0};
   size_t layers = 0;
   const abbe_scene inside = {.camera.inside = true};
-  assert_ok(abbe_presets_load(NULL, &presets, &error), &error);
+  OK(abbe_presets_load(NULL, &presets, &error));
   for (size_t t = 0; t < sizeof texts / sizeof *texts; t++) {
     abbe_scene scene = {0};
     load_text(texts[t], &scene);
@@ -236,7 +230,7 @@ TEST(layers_are_left_where_they_show_too_little) {
         assert_true(abbe_preset_apply(point, NULL, &plain));
         assert_int_equal(plain.model, point->desc.model);
         if (t < 2) {
-          assert_ok(abbe_plan_make(&scene, &desc, &plan, &error), &error);
+          OK(abbe_plan_make(&scene, &desc, &plan, &error));
           abbe_plan_free(&plan);
         }
         layers += layered;
@@ -263,22 +257,22 @@ TEST(classes_and_calibration) {
                 {CAMERA POINT_LIGHT FLOOR RING("crown"), ABBE_PRESET_CLASS_MESHES},
                 {CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("crown"), ABBE_PRESET_CLASS_CONVEX}};
   abbe_presets presets;
-  abbe_error error = {0};
-  assert_int_equal(load_presets(HEAD CLASS THREE, &presets, NULL), ABBE_OK);
+  abbe_error why = {0};
+  OK(load_presets(HEAD CLASS THREE, &presets, &error));
   for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
     abbe_scene scene = {0};
     abbe_plan plan;
     const abbe_preset_front *front = NULL;
     load_text(scenes[i].text, &scene);
-    assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+    OK(abbe_plan_make(&scene, NULL, &plan, &error));
     assert_int_equal(abbe_preset_class_of(&plan), scenes[i].of);
-    abbe_result result = abbe_presets_find(&presets, &plan, &front, &error);
+    abbe_result result = abbe_presets_find(&presets, &plan, &front, &why);
     assert_int_equal(result, scenes[i].of == ABBE_PRESET_CLASS_CONVEX ? ABBE_OK : ABBE_UNSUPPORTED);
-    if (result != ABBE_OK) assert_contains(error.text, abbe_preset_class_name(scenes[i].of));
+    if (result != ABBE_OK) assert_contains(why.text, abbe_preset_class_name(scenes[i].of));
     if (result == ABBE_OK) {
       abbe_preset_speed speed = {0};
       const abbe_render_desc small = {.width = 16, .height = 16};
-      assert_ok(abbe_preset_calibrate(context, &scene, front, &small, &speed, &error), &error);
+      OK(abbe_preset_calibrate(context, &scene, front, &small, &speed, &error));
       assert_true(speed.light > 0 && isfinite(speed.light));
       assert_true(speed.eye > 0 && isfinite(speed.eye));
     }

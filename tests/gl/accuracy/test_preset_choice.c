@@ -28,7 +28,7 @@ static abbe_result choose(abbe_preset_request request, abbe_render_desc *desc,
 
 static void begin(void) {
   snprintf(path, sizeof path, "/tmp/abbe_test_preset_choice_%ld.yaml", (long)getpid());
-  assert_int_equal(abbe_file_write(path, PRESETS, strlen(PRESETS), NULL), ABBE_OK);
+  OK(abbe_file_write(path, PRESETS, strlen(PRESETS), &error));
   load_text(SCENE, &scene);
   make_context();
 }
@@ -43,64 +43,60 @@ GROUP(begin, finish);
 
 TEST(names_and_errors) {
   abbe_preset_choice c;
-  abbe_error error = {0};
   abbe_render_desc desc = {.width = 16, .height = 16};
-  assert_ok(choose((abbe_preset_request){.name = "balanced"}, &desc, &c, &error), &error);
+  OK(choose((abbe_preset_request){.name = "balanced"}, &desc, &c, &error));
   assert_int_equal(desc.photons, 24);
   assert_true(c.kept && !c.overridden && !c.timed);
-  assert_int_equal(abbe_preset_choice_check(&c, 1e9, NULL), ABBE_OK);
+  OK(abbe_preset_choice_check(&c, 1e9, &error));
   abbe_preset_choice_free(&c);
   /* The cheapest that keeps the error; a field of one's own stays. */
   desc = (abbe_render_desc){.wavelengths = 5};
-  assert_ok(choose((abbe_preset_request){.max_error = 5}, &desc, &c, &error), &error);
+  OK(choose((abbe_preset_request){.max_error = 5}, &desc, &c, &error));
   assert_int_equal(desc.photons, 24);
   assert_int_equal(desc.wavelengths, 5);
   assert_true(c.kept && c.overridden);
   abbe_preset_choice_free(&c);
   /* None does: the most accurate, and the picture is out of tolerance. */
   desc = (abbe_render_desc){0};
-  assert_ok(choose((abbe_preset_request){.max_error = 1}, &desc, &c, &error), &error);
+  OK(choose((abbe_preset_request){.max_error = 1}, &desc, &c, &error));
   assert_int_equal(desc.photons, 32);
   assert_false(c.kept);
-  assert_int_equal(abbe_preset_choice_check(&c, 1, &error), ABBE_TOLERANCE);
+  REFUSED(ABBE_TOLERANCE, "", abbe_preset_choice_check(&c, 1, &error));
   abbe_preset_choice_free(&c);
 }
 
 TEST(times) {
   abbe_preset_choice c;
-  abbe_error error = {0};
   abbe_render_desc desc = {.width = 16, .height = 16};
-  assert_ok(choose((abbe_preset_request){.budget_ms = 1e-6}, &desc, &c, &error), &error);
+  OK(choose((abbe_preset_request){.budget_ms = 1e-6}, &desc, &c, &error));
   assert_int_equal(desc.photons, 16);
   assert_true(c.timed && c.promised_ms > 0);
   assert_false(c.kept);
-  assert_int_equal(abbe_preset_choice_check(&c, 1, &error), ABBE_TOLERANCE);
-  assert_contains(error.text, "the budget of 1e-06 ms is not kept, for no faster settings");
-  assert_int_equal(abbe_preset_choice_check(&c, 1e-7, NULL), ABBE_OK);
+  REFUSED(ABBE_TOLERANCE, "the budget of 1e-06 ms is not kept, for no faster settings",
+          abbe_preset_choice_check(&c, 1, &error));
+  OK(abbe_preset_choice_check(&c, 1e-7, &error));
   /* Frames that differed are said to be of a busy machine; those that did not are not. */
   assert_true(c.unrest >= 0);
   c.unrest = 0.5;
-  assert_int_equal(abbe_preset_choice_check(&c, 1, &error), ABBE_TOLERANCE);
-  assert_contains(error.text, "the machine is busy: repeats took 50 % longer than the fastest");
+  REFUSED(ABBE_TOLERANCE, "the machine is busy: repeats took 50 % longer than the fastest",
+          abbe_preset_choice_check(&c, 1, &error));
   c.unrest = 0.05;
-  assert_int_equal(abbe_preset_choice_check(&c, 1, &error), ABBE_TOLERANCE);
-  assert_null(strstr(error.text, "busy"));
+  REFUSED(ABBE_TOLERANCE, "", abbe_preset_choice_check(&c, 1, &error));
+  assert_null(strstr(last_error.text, "busy"));
   abbe_preset_choice_free(&c);
 }
 
 TEST(what_cannot_be_chosen) {
   abbe_preset_choice c;
-  abbe_error error = {0};
   abbe_render_desc desc = {0}, thesis = {.profile = ABBE_PROFILE_THESIS};
-  assert_ok(choose((abbe_preset_request){0}, &desc, &c, &error), &error);
+  OK(choose((abbe_preset_request){0}, &desc, &c, &error));
   assert_null(c.point);
   assert_int_equal(desc.photons, 0);
-  assert_int_equal(abbe_preset_choice_check(&c, 1e9, NULL), ABBE_OK);
-  assert_int_equal(choose((abbe_preset_request){.name = "accurate"}, &desc, &c, &error),
-                   ABBE_NOT_FOUND);
-  assert_contains(error.text, "there is no 'accurate' for scenes of the class spheres");
-  assert_int_equal(choose((abbe_preset_request){.name = "draft"}, &thesis, &c, &error),
-                   ABBE_INVALID_ARGUMENT);
+  OK(abbe_preset_choice_check(&c, 1e9, &error));
+  REFUSED(ABBE_NOT_FOUND, "there is no 'accurate' for scenes of the class spheres",
+          choose((abbe_preset_request){.name = "accurate"}, &desc, &c, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "",
+          choose((abbe_preset_request){.name = "draft"}, &thesis, &c, &error));
   abbe_preset_choice_free(&c);
 }
 

@@ -2,10 +2,9 @@
  * each band of the spectrum by Beer's law. */
 #include "tests/gl/haze/haze_picture.h"
 
+#include "base/maths.h"
 #include "colorimetry/weights.h"
 #include "scenes/medium/medium.h"
-
-static const double pi = 3.14159265358979323846;
 
 /* The sun from above, on a mirror of 0.1 m beside the mist, which turns it along the mist; a roof
  * keeps it from the mist itself. The eye looks across what is 0.1 m wide, at 0.4 m from the mirror
@@ -70,7 +69,7 @@ static void known_colour(double (*at)(double nm), double xyz[3]) {
   enum { STEPS = 400 };
   abbe_illuminant d65;
   abbe_weights_range range;
-  assert_int_equal(abbe_illuminant_make("D65", &d65, NULL), ABBE_OK);
+  OK(abbe_illuminant_make("D65", &d65, &error));
   abbe_weights_range_make_by(in_colour.observer, &d65, 380, 780, &range);
   for (int k = 0; k < 3; k++) xyz[k] = 0;
   for (int i = 0; i < STEPS; i++) {
@@ -117,14 +116,14 @@ TEST(a_beam_in_coloured_mist) {
 
 /* The sun 30 degrees off upright, the eye at 50 degrees, as in test_haze_pass.c. */
 static double slab_at(double nm) {
-  const double m0 = cos(30 * pi / 180), m = cos(50 * pi / 180), extinction = red(nm) / 5;
-  const double turned = sin(30 * pi / 180) * sin(50 * pi / 180) - m0 * m;
+  const double m0 = cos(30 * ABBE_PI / 180), m = cos(50 * ABBE_PI / 180), extinction = red(nm) / 5;
+  const double turned = sin(30 * ABBE_PI / 180) * sin(50 * ABBE_PI / 180) - m0 * m;
   return blue(nm) / red(nm) * abbe_medium_phase(0.4, turned) * m0 / (m0 + m) *
          -expm1(-extinction * (1 / m0 + 1 / m));
 }
 
 static double left_at(double nm) {
-  return exp(-red(nm) / 5 / cos(50 * pi / 180));
+  return exp(-red(nm) / 5 / cos(50 * ABBE_PI / 180));
 }
 
 TEST(coloured_mist_in_the_sun) {
@@ -143,7 +142,7 @@ TEST(coloured_mist_in_the_sun) {
 
 /* A white floor under 0.5 m of it, close before the eye. */
 static double floor_at(double nm) {
-  return 0.6 / pi * exp(-0.5 * red(nm));
+  return 0.6 / ABBE_PI * exp(-0.5 * red(nm));
 }
 
 TEST(a_floor_under_coloured_mist) {

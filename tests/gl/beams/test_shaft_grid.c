@@ -2,9 +2,9 @@
  * against the closed form of a flat slab. */
 #include "tests/gl/haze/haze_picture.h"
 
+#include "base/maths.h"
 #include "scenes/medium/medium.h"
 
-static const double pi = 3.14159265358979323846;
 static const double index_of_water = 1.5, scattering = 0.8, g = 0.5, deep = 0.4;
 
 /* The sun at 30 degrees; black walls keep it from the sides, and what is seen behind the haze is
@@ -36,7 +36,7 @@ static double passes(double outside) {
 /* Radiance in the water that is scattered along a unit way that runs from a depth for so many
  * metres, its third component upwards. */
 static double scattered_along(const double d[3], double depth, double metres) {
-  const double sun = pi / 6, way = inside_of(sun);
+  const double sun = ABBE_PI / 6, way = inside_of(sun);
   const double e = passes(sun) * cos(sun) / cos(way), turned = cos(way) * d[2] - sin(way) * d[1];
   const double slope = scattering * (1 - d[2] / cos(way));
   return e * scattering * abbe_medium_phase(g, turned) * exp(-scattering * depth / cos(way)) *
@@ -47,7 +47,7 @@ GROUP(make_context, free_context);
 
 /* By Snell's law and Fresnel's; radiance over the squared index stays. */
 TEST(from_above_through_flat_water) {
-  const double view = 25 * pi / 180;
+  const double view = 25 * ABBE_PI / 180;
   const double in = inside_of(view), d[3] = {-sin(in), 0, -cos(in)};
   const double exact =
       passes(view) * scattered_along(d, 0, deep / cos(in)) / pow(index_of_water, 2);
@@ -70,7 +70,7 @@ TEST(from_above_through_flat_water) {
  * the grid tells both. */
 TEST(mirrored_in_its_surface) {
   enum { SIDE = 40 };
-  const double view = 54 * pi / 180, half = tan(6 * pi / 180), high = 0.2;
+  const double view = 54 * ABBE_PI / 180, half = tan(6 * ABBE_PI / 180), high = 0.2;
   double first = 0, second = 0;
   for (int i = 0; i < SIDE * SIDE; i++) {
     const double a = half * ((2 * (i % SIDE) + 1) / (double)SIDE - 1);

@@ -103,8 +103,7 @@ TEST(a_still_scene_comes_to_the_mean) {
 
 static abbe_statistics change_and_draw(abbe_renderer *renderer, const abbe_scene *scene,
                                        const abbe_render_desc *like, abbe_image *out) {
-  abbe_error error = {0};
-  assert_ok(abbe_renderer_change(renderer, scene, like, &error), &error);
+  OK(abbe_renderer_change(renderer, scene, like, &error));
   const abbe_statistics s = draw_frame(renderer);
   abbe_image_free(out);
   read_map(renderer, 0, out);
@@ -167,7 +166,6 @@ TEST(nothing_is_left_after_a_jump) {
   abbe_scene scene[2] = {{0}};
   abbe_map_layout layout;
   abbe_image before = {0}, map = {0}, alone = {0};
-  abbe_error error = {0};
   for (int k = 0; k < 2; k++) load_brick(0.05 + 0.14 * k, &scene[k]);
   lay_out(&scene[0], &layout);
   abbe_render_desc given = desc;
@@ -175,7 +173,7 @@ TEST(nothing_is_left_after_a_jump) {
   abbe_renderer *renderer = make_renderer(&scene[0], &given);
   for (size_t k = 0; k < FRAMES; k++) draw_frame(renderer);
   read_map(renderer, 0, &before);
-  assert_ok(abbe_renderer_change(renderer, &scene[1], &given, &error), &error);
+  OK(abbe_renderer_change(renderer, &scene[1], &given, &error));
   for (size_t k = FRAMES; k < 2 * FRAMES; k++) {
     double was = 0, ghost = 0, off = 0;
     draw_frame(renderer);
@@ -239,12 +237,11 @@ static void measure_motion(motion out[2]) {
   for (int step = 0; step < STEPS; step++) {
     abbe_image picture[3] = {{0}};
     for (int k = 0; k < 3; k++) {
-      abbe_error error = {0};
       scene[k].light[0].position[0] += 1e-3;
       if (step == 0)
         renderer[k] = make_renderer(&scene[k], &moving[k]);
       else
-        assert_ok(abbe_renderer_change(renderer[k], &scene[k], &moving[k], &error), &error);
+        OK(abbe_renderer_change(renderer[k], &scene[k], &moving[k], &error));
       draw_frame(renderer[k]);
       read_picture(renderer[k], true, &picture[k]);
     }

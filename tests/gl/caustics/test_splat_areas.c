@@ -3,9 +3,6 @@
  */
 #include "tests/gl/glsl.h"
 
-#include <math.h>
-#include <string.h>
-
 enum { SIDE = 128, LEVELS = 6, WORDS = 12, MOST = 4096, UNITS = 1 << 20 };
 
 typedef struct splat {
@@ -44,10 +41,10 @@ static uint32_t list[4 + MOST * WORDS], sums[2 * SIDE * SIDE * 3];
 static void run(const splat *splats, size_t count, bool edges) {
   const abbe_gl *gl = abbe_context_gl(context);
   static GLuint program;
-  abbe_error error = {0};
+  abbe_error why = {0};
   if (program == 0 && abbe_program_make_compute(gl, "photon_splat.comp", "#define LIGHTS 1\n",
-                                                &program, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+                                                &program, &why) != ABBE_OK)
+    fail_msg("%s", why.text);
   memset(list, 0, sizeof list);
   list[0] = (uint32_t)count;
   for (size_t i = 0; i < count; i++) pack(&splats[i], list + 4 + i * WORDS);
@@ -62,7 +59,7 @@ static void run(const splat *splats, size_t count, bool edges) {
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof sums, sums);
   gl->DeleteBuffers(2, buffer);
-  assert_int_equal(abbe_gl_check(gl, "the splats", NULL), ABBE_OK);
+  OK(abbe_gl_check(gl, "the splats", &error));
 }
 
 /* The level whose texels are as wide as a footprint's narrower side asks for

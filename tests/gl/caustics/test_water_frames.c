@@ -2,10 +2,9 @@
  * crests and behind it, as waves move, and under still water from aslant. */
 #include "tests/gl/frame.h"
 
+#include "base/maths.h"
 #include "validation/known/forms/closed_form.h"
 #include "validation/known/forms/wave_caustic.h"
-
-#define PI 3.14159265358979323846
 
 /* Bins are wider than the seam between two levels of the map. */
 enum { SIDE = 256, BINS = 4 };
@@ -68,7 +67,7 @@ static void check_wave(double depth, double phase_deg, double tolerance) {
   abbe_image map = {0};
   double mean[BINS], worst = 0;
   load_water(depth, phase_deg, &scene);
-  assert_int_equal(abbe_material_n(scene.object[0].material, 587.5, &w.index, NULL), ABBE_OK);
+  OK(abbe_material_n(scene.object[0].material, 587.5, &w.index, &error));
   w.attenuation_per_m = abbe_material_attenuation(scene.object[0].material, 587.5);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   const abbe_statistics statistics = draw_frame(renderer);
@@ -111,7 +110,7 @@ TEST(light_under_still_water) {
             "- {name: bottom, shape: rectangle, width: 2, height: 2, reflectance: 1, transform: "
             "[{translate: [0, 0, -0.1]}]}\n",
             &scene);
-  assert_int_equal(abbe_material_n(scene.object[0].material, 587.5, &n, NULL), ABBE_OK);
+  OK(abbe_material_n(scene.object[0].material, 587.5, &n, &error));
   const abbe_render_desc desc = {.width = 16,
                                  .height = 16,
                                  .photons = 256,
@@ -123,11 +122,11 @@ TEST(light_under_still_water) {
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   draw_frame(renderer);
   read_picture(renderer, false, &picture);
-  const double through = 1 - abbe_closed_form_fresnel(PI / 3, n);
-  const double up = 1 - abbe_closed_form_fresnel(0, n), inside = asin(sin(PI / 3) / n);
+  const double through = 1 - abbe_closed_form_fresnel(ABBE_PI / 3, n);
+  const double up = 1 - abbe_closed_form_fresnel(0, n), inside = asin(sin(ABBE_PI / 3) / n);
   const double per_m = abbe_material_attenuation(scene.object[0].material, 587.5);
   const double path = exp(-per_m * 0.1 * (1 + 1 / cos(inside)));
-  const double known = 0.5 * through * up * path / (n * n) / PI;
+  const double known = 0.5 * through * up * path / (n * n) / ABBE_PI;
   const double seen = image_sum(&picture, 1) / (16 * 16);
   print_message("still water: %.4f of the known light\n", seen / known);
   assert_near(seen / known, 1, 0.02);

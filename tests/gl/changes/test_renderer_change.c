@@ -9,9 +9,8 @@
 static void shift_object(abbe_object *object, double x, double y, double z) {
   const double offset[3] = {x, y, z};
   double matrix[16];
-  abbe_error error = {0};
   abbe_transform_translate(offset, matrix);
-  assert_ok(abbe_object_move(object, matrix, &error), &error);
+  OK(abbe_object_move(object, matrix, &error));
 }
 
 GROUP(make_context, free_context);
@@ -51,7 +50,7 @@ TEST(a_change_runs_what_depends_on_it) {
     if (i == 9) shift_object(&scene.object[2], 0, 0, 0.02);
     if (i == 10) desc.photons = 48;
     if (i == 11) desc.map_size = 128;
-    assert_int_equal(change(renderer, &scene, &desc), ABBE_OK);
+    OK(change(renderer, &scene, &desc));
     s = draw_frame(renderer);
     assert_ran(&s, cases[i].light, cases[i].eye);
     if (i == 2) assert_near(s.energy.reached, 0.5 * energy, 1e-12 * energy);
@@ -70,7 +69,7 @@ TEST(what_the_camera_sees_comes_and_goes) {
   for (int turn = 0; turn < 3; turn++) {
     scene.camera.target[0] = turn == 1 ? -3 : 0;
     scene.camera.target[1] = turn == 1 ? -0.5 : 0;
-    assert_int_equal(change(renderer, &scene, &tiny), ABBE_OK);
+    OK(change(renderer, &scene, &tiny));
     assert_true(abbe_renderer_plan(renderer)->camera_sees_refractor == (turn != 1));
     assert_as_made_anew(renderer, &scene, &tiny, "a turn of the camera");
   }
@@ -88,12 +87,12 @@ TEST(the_unit_of_power_comes_and_goes) {
   for (size_t i = 0; i < sizeof powers / sizeof *powers; i++) {
     scene.light[0].power = powers[i];
     scene.background = background[i];
-    assert_int_equal(change(renderer, &scene, &tiny), ABBE_OK);
+    OK(change(renderer, &scene, &tiny));
     assert_as_made_anew(renderer, &scene, &tiny, "another unit of power");
   }
   abbe_render_desc other = tiny;
   other.space = ABBE_RGB_SPACE_REC709;
-  assert_int_equal(change(renderer, &scene, &other), ABBE_OK);
+  OK(change(renderer, &scene, &other));
   const abbe_statistics s = draw_frame(renderer);
   assert_ran(&s, false, true);
   assert_as_made_anew(renderer, &scene, &other, "another space");
@@ -105,7 +104,6 @@ TEST(the_unit_of_power_comes_and_goes) {
 TEST(a_watched_frame_is_the_same) {
   abbe_scene scene = {0};
   abbe_image alone = {0}, watched = {0};
-  abbe_error error = {0};
   int left = 1 << 30;
   load_text(GLASS_SCENE, &scene);
   abbe_render_desc desc = tiny;
@@ -117,9 +115,9 @@ TEST(a_watched_frame_is_the_same) {
   read_picture(renderer, false, &alone);
   for (int turn = 0; turn < 2; turn++) { /* then of a camera that sees no refractor */
     if (turn == 1) scene.camera.target[0] = -3, scene.camera.target[1] = -0.5;
-    assert_int_equal(change(renderer, &scene, &desc), ABBE_OK);
+    OK(change(renderer, &scene, &desc));
     abbe_renderer_redraw(renderer);
-    assert_ok(abbe_renderer_frame(renderer, stop_at, &left, NULL, &error), &error);
+    OK(abbe_renderer_frame(renderer, stop_at, &left, NULL, &error));
     assert_as_made_anew(renderer, &scene, &desc, "a watched frame");
     if (turn == 1) continue;
     read_picture(renderer, false, &watched);
@@ -247,18 +245,18 @@ TEST(another_scene_is_a_change_too) {
   load_text(MESH_SCENE, &mesh);
   abbe_renderer *renderer = make_renderer(&solid, &tiny);
   draw_frame(renderer);
-  assert_int_equal(change(renderer, &mesh, &tiny), ABBE_OK);
+  OK(change(renderer, &mesh, &tiny));
   assert_as_made_anew(renderer, &mesh, &tiny, "another scene");
   static const abbe_profile published[] = {ABBE_PROFILE_THESIS, ABBE_PROFILE_SHAH2007};
   for (int i = 0; i < 2; i++) {
     abbe_render_desc desc = tiny;
     desc.profile = published[i];
     desc.wavelengths = 0;
-    assert_int_equal(change(renderer, &solid, &desc), ABBE_OK);
+    OK(change(renderer, &solid, &desc));
     abbe_statistics s = draw_frame(renderer);
     assert_true(s.pass_count > 0 && s.photons > 0);
   }
-  assert_int_equal(change(renderer, &solid, &tiny), ABBE_OK);
+  OK(change(renderer, &solid, &tiny));
   assert_as_made_anew(renderer, &solid, &tiny, "published profiles");
   abbe_renderer_free(renderer);
   abbe_scene_free(&solid);

@@ -8,12 +8,11 @@
 static void draw_three(const char *file) {
   abbe_scene scene = {0};
   abbe_image picture = {0};
-  abbe_error error = {0};
   char path[512];
   snprintf(path, sizeof path, ABBE_SOURCE_DIR "/scenes/%s.yaml", file);
   forget();
   make_context();
-  assert_ok(abbe_scene_load(path, NULL, &scene, &error), &error);
+  OK(abbe_scene_load(path, NULL, &scene, &error));
   abbe_renderer *renderer = make_renderer(&scene, &small_frame);
   for (int i = 0; i < 3; i++) draw_frame(renderer);
   read_picture(renderer, true, &picture);

@@ -3,8 +3,6 @@
 
 #include "base/file.h"
 
-#include <stdlib.h>
-
 enum { MOST = 64 };
 
 typedef struct list {
@@ -16,10 +14,7 @@ typedef struct list {
 static void read_list(const char *prefix, list *out) {
   char *text = NULL;
   size_t size = 0;
-  abbe_error error;
-  assert_int_equal(
-      abbe_file_read(ABBE_SOURCE_DIR "/gl/device/bindings.h", 1 << 16, &text, &size, &error),
-      ABBE_OK);
+  OK(abbe_file_read(ABBE_SOURCE_DIR "/gl/device/bindings.h", 1 << 16, &text, &size, &error));
   out->count = 0;
   for (char *line = text; line != NULL && out->count < MOST;
        line = strchr(line, '\n') != NULL ? strchr(line, '\n') + 1 : NULL) {

@@ -3,8 +3,6 @@
 
 #include "gl/device/gpu.h"
 
-#include <string.h>
-
 static const char *extension;
 static const void *given;
 static size_t waits;
@@ -48,7 +46,7 @@ static abbe_buffer_memory begun(const char *name, bool software) {
 
 static void add(abbe_gpu_store *store, GLuint name, size_t bytes) {
   const abbe_stored_key key = {.kind = ABBE_STORED_BUFFER, .bytes = bytes};
-  assert_int_equal(abbe_gpu_store_add(store, &key, name, NULL), ABBE_OK);
+  OK(abbe_gpu_store_add(store, &key, name, &error));
 }
 
 TEST(nothing_is_lent_where_it_does_not_serve) {

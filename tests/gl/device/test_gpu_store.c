@@ -18,8 +18,7 @@ static const abbe_gl gl = {
     .DeleteBuffers = delete_some, .DeleteTextures = delete_some, .DeleteProgram = delete_program};
 
 static void add(abbe_gpu_store *store, abbe_stored_key key, GLuint name) {
-  abbe_error error;
-  assert_int_equal(abbe_gpu_store_add(store, &key, name, &error), ABBE_OK);
+  OK(abbe_gpu_store_add(store, &key, name, &error));
 }
 
 static GLuint take(abbe_gpu_store *store, abbe_stored_key key) {

@@ -3,10 +3,6 @@
 
 #include "gl/device/program.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* Those of gl/: one that is added is compiled here, and counted. */
 enum { COMPUTE_SHADERS = 26 };
 
@@ -73,9 +69,8 @@ TEST(all_combinations) {
 
 static void must_differ(const char *a, const char *b, bool differ) {
   char *text[2] = {NULL, NULL};
-  abbe_error error = {0};
-  assert_int_equal(abbe_program_text("light_fit.comp", a, &text[0], &error), ABBE_OK);
-  assert_int_equal(abbe_program_text("light_fit.comp", b, &text[1], &error), ABBE_OK);
+  OK(abbe_program_text("light_fit.comp", a, &text[0], &error));
+  OK(abbe_program_text("light_fit.comp", b, &text[1], &error));
   assert_int_equal(strcmp(text[0], text[1]) != 0, differ);
   free(text[0]);
   free(text[1]);
@@ -94,8 +89,7 @@ TEST(definitions_that_do_not_matter) {
   must_differ("#define NOBODYS LIGHT_ROOM\n#define LIGHT_ROOM 2\n", "#define LIGHT_ROOM 2\n",
               false);
   char *text = (char *)"";
-  abbe_error error = {0};
-  assert_int_equal(abbe_program_text("nobody.comp", NULL, &text, &error), ABBE_NOT_FOUND);
+  REFUSED(ABBE_NOT_FOUND, "", abbe_program_text("nobody.comp", NULL, &text, &error));
   assert_null(text);
 }
 
@@ -143,14 +137,11 @@ TEST(thesis_programs) {
 
 TEST(complaints_name_the_file) {
   const abbe_gl *gl = abbe_context_gl(context);
-  abbe_error error = {0};
   GLuint program = 1;
-  assert_int_equal(abbe_program_make_compute(gl, "no_such.comp", NULL, &program, &error),
-                   ABBE_NOT_FOUND);
-  assert_non_null(strstr(error.text, "no_such.comp"));
+  REFUSED(ABBE_NOT_FOUND, "no_such.comp",
+          abbe_program_make_compute(gl, "no_such.comp", NULL, &program, &error));
   assert_int_equal(program, 0);
-  assert_int_equal(
-      abbe_program_make_compute_text(gl, "void main() { nonsense; }\n", NULL, &program, &error),
-      ABBE_GL);
-  assert_non_null(strstr(error.text, "nonsense"));
+  REFUSED(
+      ABBE_GL, "nonsense",
+      abbe_program_make_compute_text(gl, "void main() { nonsense; }\n", NULL, &program, &error));
 }

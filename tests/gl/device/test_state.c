@@ -104,8 +104,7 @@ static const struct {
 static void make_things(void) {
   make_context();
   gl = abbe_context_gl(context);
-#define LOAD(type, name)                                                                           \
-  name = (PFNGL##type##PROC)(abbe_gl_function)eglGetProcAddress("gl" #name);
+#define LOAD(type, name) name = (PFNGL##type##PROC)(abbe_gl_function)eglGetProcAddress("gl" #name);
   MORE(LOAD)
   GenSamplers(1, &sampler);
   SamplerParameteri(sampler, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
@@ -135,7 +134,7 @@ static void make_things(void) {
   gl->AttachShader(program, shader);
   gl->LinkProgram(program);
   gl->DeleteShader(shader);
-  assert_int_equal(abbe_gl_check(gl, "the test's own things", NULL), ABBE_OK);
+  OK(abbe_gl_check(gl, "the test's own things", &error));
 }
 
 /* Everything as it serves a pass the least, and an error on top. */
@@ -252,7 +251,6 @@ static void take(const abbe_scene *scene, const abbe_render_desc *desc, bool awk
   const bool thesis = abbe_profile_is_published(desc->profile);
   abbe_renderer *renderer = NULL;
   abbe_renderer_picture p;
-  abbe_error error = {0};
   double ms = 0;
 #define ENTRY(what, call)                                                                          \
   do {                                                                                             \
@@ -260,17 +258,15 @@ static void take(const abbe_scene *scene, const abbe_render_desc *desc, bool awk
     call;                                                                                          \
     assert_after(what);                                                                            \
   } while (0)
-  ENTRY("make", assert_ok(abbe_renderer_make(context, scene, desc, &renderer, &error), &error));
+  ENTRY("make", OK(abbe_renderer_make(context, scene, desc, &renderer, &error)));
   ENTRY("frame", draw_frame(renderer));
-  if (!thesis) ENTRY("baseline", assert_ok(abbe_renderer_baseline(renderer, &ms, &error), &error));
+  if (!thesis) ENTRY("baseline", OK(abbe_renderer_baseline(renderer, &ms, &error)));
   ENTRY("read", read_picture(renderer, true, &out->picture));
-  ENTRY("texture", assert_ok(abbe_renderer_texture(renderer, &p, &error), &error));
+  ENTRY("texture", OK(abbe_renderer_texture(renderer, &p, &error)));
   ENTRY("read_map", read_map(renderer, 0, &out->map));
   if (!thesis) {
-    ENTRY("read_map_bands",
-          assert_ok(abbe_renderer_read_map_bands(renderer, 0, 4, &out->bands, &error), &error));
-    ENTRY("read_hits",
-          assert_ok(abbe_renderer_read_hits(renderer, 0, 0, NULL, NULL, &out->hits, &error), &error));
+    ENTRY("read_map_bands", OK(abbe_renderer_read_map_bands(renderer, 0, 4, &out->bands, &error)));
+    ENTRY("read_hits", OK(abbe_renderer_read_hits(renderer, 0, 0, NULL, NULL, &out->hits, &error)));
     assert_true(out->hits.count > 0);
   }
   assert_true(image_max(&out->picture, 1) > 0 && image_max(&out->map, 1) > 0);

@@ -104,10 +104,9 @@ abbe_result __wrap_abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *e
 
 static void draw(const char *file, abbe_image *picture, abbe_image *map) {
   abbe_scene scene = {0};
-  abbe_error error = {0};
   char path[512];
   snprintf(path, sizeof path, ABBE_SOURCE_DIR "/scenes/%s.yaml", file);
-  assert_ok(abbe_scene_load(path, NULL, &scene, &error), &error);
+  OK(abbe_scene_load(path, NULL, &scene, &error));
   abbe_renderer *renderer = make_renderer(&scene, &frame);
   dispatches = most_seen = screen_seen = part_seen = things_seen = 0;
   draw_frame(renderer);
@@ -162,4 +161,3 @@ TEST(no_work_is_long) {
   cut_as_whole("mist/prism", true);
   free_context();
 }
-

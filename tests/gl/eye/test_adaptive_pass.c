@@ -4,8 +4,6 @@
 
 #include "gl/renderer_state.h"
 
-#include <math.h>
-
 enum { SIDE = 48 };
 
 /* From straight above: half the height of what is seen at z = 0 is 0.5 m. */

@@ -2,9 +2,8 @@
  * behind, wherever light comes from and whatever shows them, to renderer and tracer alike. */
 #include "tests/gl/frame.h"
 
+#include "base/maths.h"
 #include "validation/tracer/tracer.h"
-
-#define PI 3.14159265358979323846
 
 static double mean_of(const abbe_image *image, const char *name) {
   const size_t channel = abbe_image_find_channel(image, name);
@@ -38,11 +37,10 @@ static double traced(const char *text) {
   abbe_scene scene = {0};
   abbe_tracer *tracer = NULL;
   abbe_image picture = {0};
-  abbe_error error = {0};
   load_text(text, &scene);
-  assert_ok(abbe_tracer_make(&scene, &desc, &tracer, &error), &error);
-  for (int i = 0; i < 8; i++) assert_ok(abbe_tracer_pass(tracer, NULL, &error), &error);
-  assert_ok(abbe_tracer_picture(tracer, &picture, &error), &error);
+  OK(abbe_tracer_make(&scene, &desc, &tracer, &error));
+  for (int i = 0; i < 8; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
+  OK(abbe_tracer_picture(tracer, &picture, &error));
   const double seen = mean_of(&picture, "Y");
   abbe_image_free(&picture);
   abbe_tracer_free(tracer);
@@ -71,7 +69,7 @@ static double irradiance(const lit *l) {
     if (l->height == 0 && u * u + v * v > 0.25) continue;
     sum += fmax(l->wall ? x : l->above, 0) * l->above / (square * square);
   }
-  return sum * across * along / ((double)PARTS * PARTS * PI);
+  return sum * across * along / ((double)PARTS * PARTS * ABBE_PI);
 }
 
 static double lit_by_points(const lit *l) {

@@ -2,6 +2,8 @@
  * difference of two rays that are followed in doubles. */
 #include "tests/gl/glsl.h"
 
+#include "base/maths.h"
+
 enum { CASES = 256, STEPS = 4 };
 static const double EYE[3] = {0.1, -0.2, -1}, RADIUS = 0.3;
 
@@ -60,12 +62,8 @@ static const char source[] =
     "  return vec4(spread_refracted(s, d, -n, -bend, index).turn_x, 0);\n"
     "}\n";
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void normalise(double v[3]) {
-  const double size = sqrt(dot(v, v));
+  const double size = sqrt(abbe_vector_dot(v, v));
   for (int k = 0; k < 3; k++) v[k] /= size;
 }
 
@@ -75,12 +73,12 @@ static void cross(const double a[3], const double b[3], double out[3]) {
 }
 
 static void mirror(const double n[3], double d[3]) {
-  const double along = dot(d, n);
+  const double along = abbe_vector_dot(d, n);
   for (int k = 0; k < 3; k++) d[k] -= 2 * along * n[k];
 }
 
 static bool bend_at(const double n[3], double eta, double d[3]) {
-  const double c = -dot(d, n), t2 = 1 - eta * eta * (1 - c * c);
+  const double c = -abbe_vector_dot(d, n), t2 = 1 - eta * eta * (1 - c * c);
   for (int k = 0; k < 3; k++) d[k] = eta * d[k] + (eta * c - sqrt(fmax(t2, 0))) * n[k];
   return t2 > 0.02;
 }
@@ -93,12 +91,12 @@ static void triangle_normal(const double d[3], double n[3]) {
     c[k] = corner[0][k] - EYE[k];
   }
   cross(e1, e2, g);
-  const double t = dot(c, g) / dot(d, g);
+  const double t = abbe_vector_dot(c, g) / abbe_vector_dot(d, g);
   for (int k = 0; k < 3; k++) q[k] = t * d[k] - c[k];
   cross(q, e2, by);
-  const double u = dot(by, g) / dot(g, g);
+  const double u = abbe_vector_dot(by, g) / abbe_vector_dot(g, g);
   cross(e1, q, by);
-  const double v = dot(by, g) / dot(g, g);
+  const double v = abbe_vector_dot(by, g) / abbe_vector_dot(g, g);
   for (int k = 0; k < 3; k++)
     n[k] = (1 - u - v) * normal[0][k] + u * normal[1][k] + v * normal[2][k];
   normalise(n);
@@ -115,7 +113,8 @@ static bool follow(double index, int inside, double d[3]) {
     mirror(n, d);
     return true;
   }
-  const double m = dot(EYE, d), t = -m - sqrt(RADIUS * RADIUS - dot(EYE, EYE) + m * m);
+  const double m = abbe_vector_dot(EYE, d),
+               t = -m - sqrt(RADIUS * RADIUS - abbe_vector_dot(EYE, EYE) + m * m);
   for (int k = 0; k < 3; k++) n[k] = (p[k] = EYE[k] + t * d[k]) / RADIUS;
   if (index == 0) {
     mirror(n, d);
@@ -123,7 +122,7 @@ static bool follow(double index, int inside, double d[3]) {
   }
   bool well = bend_at(n, 1 / index, d);
   for (int i = 0; i <= inside; i++) {
-    const double way = -2 * dot(p, d);
+    const double way = -2 * abbe_vector_dot(p, d);
     for (int k = 0; k < 3; k++) n[k] = (p[k] += way * d[k]) / RADIUS;
     if (i < inside) mirror(n, d);
   }

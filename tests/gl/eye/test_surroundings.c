@@ -1,9 +1,8 @@
 /* What is around a scene: seen straight, through glass, and as light on receivers. */
 #include "tests/gl/frame.h"
 
+#include "base/maths.h"
 #include "scenes/view/coverage.h"
-
-static const double PI = 3.14159265358979;
 
 /* The floor is far out of the way. */
 #define SKY_ONLY                                                                                   \
@@ -61,7 +60,7 @@ TEST(a_lamp_stands_where_it_is) {
         y_max = y;
       }
     }
-  const double r = PI / 180, half = tan(20 * r);
+  const double r = ABBE_PI / 180, half = tan(20 * r);
   const double d[3] = {cos(10 * r) * cos(80 * r), cos(10 * r) * sin(80 * r), sin(10 * r)};
   assert_near(x_sum / sum, 32 * (1 + d[0] / d[1] / half), 0.3);
   assert_near(y_sum / sum, 32 * (1 - d[2] / d[1] / half), 0.3);
@@ -184,7 +183,7 @@ TEST(a_transparent_picture_is_premultiplied) {
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   draw_frame(renderer);
   read_picture(renderer, false, &picture);
-  assert_int_equal(abbe_coverage_make(&scene, 64, 64, 2, &alpha, NULL), ABBE_OK);
+  OK(abbe_coverage_make(&scene, 64, 64, 2, &alpha, &error));
   size_t off = 0, partly = 0;
   for (size_t i = 0; i < 64 * 64; i++) {
     const double a = (double)alpha.data[i], seen = (double)picture.data[3 * i + 1];

@@ -2,10 +2,10 @@
  * leave. */
 #include "tests/gl/haze/haze_picture.h"
 
+#include "base/maths.h"
 #include "colorimetry/weights.h"
 #include "scenes/medium/medium.h"
 
-static const double pi = 3.14159265358979323846;
 static const double plate =
     (1 - 0.04) / (1 + 0.04); /* of glass, by Fresnel's law, straight through */
 
@@ -28,7 +28,7 @@ static const abbe_render_desc asked = {.photons = 64, .space = ABBE_RGB_SPACE_XY
 static double lamp_at(double nm) {
   enum { PARTS = 400 };
   const double scattering = 1 - 0.8 * (nm - 380) / 400, takes = scattering + 0.8 * (nm - 380) / 400;
-  const double half = 0.2 * tan(40 * pi / 180);
+  const double half = 0.2 * tan(40 * ABBE_PI / 180);
   double sum = 0;
   for (int k = 0; k < PARTS; k++) {
     const double along = half * (1 - 2 * (k + 0.5) / PARTS), distance = hypot(0.2, along);
@@ -42,7 +42,7 @@ static void assert_lamp(const char *what, const char *text, double share) {
   double drawn[3], known[3] = {0};
   abbe_illuminant d65;
   abbe_weights_range range;
-  assert_int_equal(abbe_illuminant_make("D65", &d65, NULL), ABBE_OK);
+  OK(abbe_illuminant_make("D65", &d65, &error));
   abbe_weights_range_make_by(asked.observer, &d65, 380, 780, &range);
   for (int i = 0; i < 100; i++) {
     double part[3];

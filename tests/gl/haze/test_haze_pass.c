@@ -2,9 +2,8 @@
  * what is behind it, a lamp in mist, and a shaft of sunlight under still water. */
 #include "tests/gl/haze/haze_picture.h"
 
+#include "base/maths.h"
 #include "scenes/medium/medium.h"
-
-static const double pi = 3.14159265358979323846;
 
 #define VIEW(more)                                                                                 \
   more "camera: {eye: [2.383508, 0, 2], target: [0, 0, 0], up: [0, 1, 0], fov: 1}\n"               \
@@ -17,7 +16,7 @@ GROUP(make_context, free_context);
 
 /* The sun 30 degrees off upright, the eye at 50 degrees: as validation's known answers have it. */
 TEST(a_slab_in_the_sun) {
-  const double sun = 30 * pi / 180, view = 50 * pi / 180, m0 = cos(sun), m = cos(view);
+  const double sun = 30 * ABBE_PI / 180, view = 50 * ABBE_PI / 180, m0 = cos(sun), m = cos(view);
   const double turned = sin(sun) * sin(view) - m0 * m;
   const double exact = 0.8 / 1.1 * abbe_medium_phase(0.4, turned) * m0 / (m0 + m) *
                        (1 - exp(-1.1 * (1 / m0 + 1 / m)));
@@ -43,7 +42,7 @@ TEST(a_lamp_in_mist) {
     enum { PARTS = 20000 };
     for (int k = 0; k < PARTS; k++) {
       const double t = 2 * (k + 0.5) / PARTS, along = 1 - t, distance = hypot(0.2, along);
-      if (i == 1 && 0.2 / distance < cos(40 * pi / 180)) continue;
+      if (i == 1 && 0.2 / distance < cos(40 * ABBE_PI / 180)) continue;
       exact += 2.0 / PARTS * 0.4 * abbe_medium_phase(0.7, along / distance) *
                exp(-0.5 * (t + distance)) / (distance * distance);
     }
@@ -74,7 +73,7 @@ TEST(a_shaft_under_still_water) {
       "   transform: [{rotate: {axis: [1, 0, 0], angle: 90}}, {translate: [0, -0.41, -0.22]}]}\n"
       "- {name: wall, shape: rectangle, width: 0.38, height: 1, reflectance: 0,\n"
       "   transform: [{rotate: {axis: [0, 1, 0], angle: 90}}, {translate: [0.3, 0, -0.2]}]}\n";
-  const double sun = pi / 6, inside = asin(0.5 / 1.5), half = tan(15 * pi / 180);
+  const double sun = ABBE_PI / 6, inside = asin(0.5 / 1.5), half = tan(15 * ABBE_PI / 180);
   const double rs = (cos(sun) - 1.5 * cos(inside)) / (cos(sun) + 1.5 * cos(inside));
   const double rp = (1.5 * cos(sun) - cos(inside)) / (1.5 * cos(sun) + cos(inside));
   const double e = (1 - 0.5 * (rs * rs + rp * rp)) * cos(sun) / cos(inside);
@@ -101,7 +100,7 @@ TEST(a_fan_without_stripes) {
   abbe_image picture[2];
   load_file(ABBE_SOURCE_DIR "/scenes/mist/prism.yaml", &scene);
   memcpy(scene.camera.target, middle, sizeof middle);
-  scene.camera.fov_y_rad = 16 * pi / 180;
+  scene.camera.fov_y_rad = 16 * ABBE_PI / 180;
   for (int i = 0; i < 2; i++) {
     const abbe_render_desc desc = {.width = W,
                                    .height = H,

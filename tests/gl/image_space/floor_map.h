@@ -6,8 +6,6 @@
 
 #include "base/maths.h"
 
-#define PI 3.14159265358979323846
-
 static const abbe_render_desc units = {.profile = ABBE_PROFILE_WYMAN2006_CIE,
                                        .width = 16,
                                        .height = 16,

@@ -46,7 +46,7 @@ typedef struct place {
 } place;
 
 static void ring_text(const place *p, char *text, size_t size) {
-  const double r = RING_RADIUS, e = p->elevation * PI / 180;
+  const double r = RING_RADIUS, e = p->elevation * ABBE_PI / 180;
   char light[200];
   if (p->elevation > 0)
     snprintf(light, sizeof light, "kind: directional, direction: [%.9g, 0, %.9g], irradiance: 1",
@@ -67,7 +67,7 @@ static void ring_text(const place *p, char *text, size_t size) {
 /* Light in the square by that which is known of one reflection. */
 static double ring_light(const place *p, const abbe_render_desc *desc) {
   const double r = RING_RADIUS, at[2] = {r * p->at[0], r * p->at[1]}, half = r * p->half;
-  abbe_catacaustic c = {.radius = r, .height = r * p->height, .elevation = p->elevation * PI / 180};
+  abbe_catacaustic c = {.radius = r, .height = r * p->height, .elevation = p->elevation * ABBE_PI / 180};
   char text[1024];
   floor_map m;
   double flux = 0, all = 0;
@@ -225,9 +225,9 @@ TEST(folds_have_their_peaks) {
   view.far = 1.5;
   abbe_map_layout_make(&view, &layout);
   for (int kind = 0; kind < 2; kind++) {
-    const double r = RING_RADIUS, middle = (kind == 0 ? 120 : 45) * PI / 180;
+    const double r = RING_RADIUS, middle = (kind == 0 ? 120 : 45) * ABBE_PI / 180;
     abbe_catacaustic c = {
-        .radius = r, .height = r * of[kind].height, .elevation = of[kind].elevation * PI / 180};
+        .radius = r, .height = r * of[kind].height, .elevation = of[kind].elevation * ABBE_PI / 180};
     abbe_render_desc desc = units;
     char text[1024];
     floor_map m;

@@ -12,7 +12,7 @@ static const double mirror_centre[3] = {0.1, 0, 0.15}, mirror_lamp[3] = {0.05, 0
 /* How far inside the mirror's edges the ray from the lamp's image to p passes, m; outside: below 0.
  * *light: what comes there. */
 static double inside_mirror(const double p[3], double *light) {
-  const double n[3] = {sin(PI / 3), 0, 0.5}, along[3] = {0.5, 0, -sin(PI / 3)};
+  const double n[3] = {sin(ABBE_PI / 3), 0, 0.5}, along[3] = {0.5, 0, -sin(ABBE_PI / 3)};
   double to[3], image[3], ray[3], at[3];
   abbe_vector_subtract(mirror_lamp, mirror_centre, to);
   for (int k = 0; k < 3; k++) image[k] = mirror_lamp[k] - 2 * abbe_vector_dot(to, n) * n[k];
@@ -151,7 +151,6 @@ TEST(motion_lags) {
     abbe_renderer *renderer = NULL;
     desc.history = pass == 0 ? 1 : 4;
     for (int k = 0; k < FRAMES; k++) {
-      abbe_error error = {0};
       if (pass == 0) {
         load_moved(0.003 * k - 0.01, 0, &dark[k]);
         load_moved(0.003 * k - 0.01, 0.8, &scene[k]);
@@ -165,7 +164,7 @@ TEST(motion_lags) {
       if (renderer == NULL)
         renderer = make_renderer(&scene[k], &desc);
       else
-        assert_ok(abbe_renderer_change(renderer, &scene[k], &desc, &error), &error);
+        OK(abbe_renderer_change(renderer, &scene[k], &desc, &error));
       moments(renderer, &black[k], pass == 0 ? own[k] : kept[k]);
     }
     abbe_renderer_free(renderer);
@@ -202,7 +201,6 @@ static double noise(const abbe_scene *scene, size_t history) {
   desc.map_size = SIDE;
   desc.history = history;
   for (size_t k = 0; k < (SAMPLES + 1) * history; k++) {
-    abbe_error error = {0};
     abbe_image map = {0};
     for (int axis = 0; axis < 2; axis++) {
       seed = seed * 1664525u + 1013904223u;
@@ -211,7 +209,7 @@ static double noise(const abbe_scene *scene, size_t history) {
     if (renderer == NULL)
       renderer = make_renderer(scene, &desc);
     else
-      assert_ok(abbe_renderer_change(renderer, scene, &desc, &error), &error);
+      OK(abbe_renderer_change(renderer, scene, &desc, &error));
     draw_frame(renderer);
     if (k < history || k % history != history - 1) continue;
     read_map(renderer, 0, &map);

@@ -34,11 +34,10 @@ TEST(still_light_is_kept) {
                                    .photons = 64,
                                    .map_size = 64};
     abbe_image kept = {0}, anew = {0};
-    abbe_error error = {0};
     abbe_renderer *renderer = make_renderer(&scene, &desc);
     abbe_statistics statistics = draw_frame(renderer);
     assert_true(abbe_statistics_ran(&statistics, ABBE_PASS_PHOTONS));
-    assert_ok(abbe_renderer_change(renderer, &moved, &desc, &error), &error);
+    OK(abbe_renderer_change(renderer, &moved, &desc, &error));
     statistics = draw_frame(renderer);
     assert_int_equal(abbe_statistics_ran(&statistics, ABBE_PASS_PHOTONS), rows[i].draws);
     assert_false(abbe_statistics_ran(&statistics, ABBE_PASS_RECEIVER_DEPTH));

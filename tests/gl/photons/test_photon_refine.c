@@ -57,10 +57,11 @@ TEST(absorption_is_that_of_all_wavelengths) {
     assert_near(some.absorbed / some.reached, all.absorbed / all.reached, 0.001);
     /* So is what lies in the map: what the ledger keeps as interpolated corrects the few
      * wavelengths' own sum, and adds no light. Few follow long paths a little less far. */
-    print_message("deposited: %.4f %% of 61, %.4f %% of %zu, %.4f interpolated; trapped %.4f, %.4f\n",
-                  100 * all.deposited / all.reached, 100 * some.deposited / some.reached, counts[i],
-                  100 * some.interpolated / some.reached, 100 * all.trapped / all.reached,
-                  100 * some.trapped / some.reached);
+    print_message(
+        "deposited: %.4f %% of 61, %.4f %% of %zu, %.4f interpolated; trapped %.4f, %.4f\n",
+        100 * all.deposited / all.reached, 100 * some.deposited / some.reached, counts[i],
+        100 * some.interpolated / some.reached, 100 * all.trapped / all.reached,
+        100 * some.trapped / some.reached);
     assert_near(some.deposited / some.reached, all.deposited / all.reached, 5e-4);
     assert_near(some.trapped / some.reached, all.trapped / all.reached, 1e-3);
   }
@@ -107,7 +108,6 @@ TEST(a_pane_leaves_what_the_law_says) {
   }
   for (size_t i = 0; i < 3; i++) {
     abbe_render_desc desc = small_frame;
-    abbe_error error = {0};
     abbe_image map = {0};
     desc.wavelengths = counts[i];
     desc.energy_share = 1e-6;
@@ -115,7 +115,7 @@ TEST(a_pane_leaves_what_the_law_says) {
     const abbe_ledger l = draw_frame(renderer).energy;
     assert_near(l.deposited / l.reached, sum[1] / white[1], 1e-3);
     assert_true(abbe_ledger_imbalance(&l) < 1e-5);
-    assert_ok(abbe_renderer_read_map_bands(renderer, 0, BANDS, &map, &error), &error);
+    OK(abbe_renderer_read_map_bands(renderer, 0, BANDS, &map, &error));
     const double reached = image_sum(&map, 1) / (l.deposited / l.reached);
     for (size_t c = 0; c < 3; c++)
       assert_near(image_sum(&map, c) / reached, sum[c] / white[1], 2e-3);

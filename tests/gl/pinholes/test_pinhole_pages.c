@@ -8,8 +8,6 @@
 
 #include "base/maths.h"
 
-static const double PI = 3.14159265358979323846;
-
 #define DOWN                                                                                       \
   "materials: glass.yaml\n"                                                                        \
   "camera: {eye: [0, 0, 2], target: [0, 0, 0], up: [0, 1, 0], fov: 28.0724869}\n"
@@ -61,7 +59,7 @@ static void draw(const char *text, abbe_transport transport, size_t pinholes, ab
 }
 
 static double at(const abbe_image *p, size_t x, size_t y) {
-  return PI * (double)p->data[(y * p->width + x) * p->channels + 1];
+  return ABBE_PI * (double)p->data[(y * p->width + x) * p->channels + 1];
 }
 
 static void place_of(size_t x, size_t y, double p[3]) {
@@ -94,7 +92,8 @@ static double worst_of(const abbe_image *picture, const double (*corner)[3], dou
       double p[3];
       place_of(x, y, p);
       static const double up[3] = {0, 0, 1};
-      const double right = 0.5 * (PI - share * PI * abbe_closed_form_polygon(corner, 4, p, up));
+      const double right =
+          0.5 * (ABBE_PI - share * ABBE_PI * abbe_closed_form_polygon(corner, 4, p, up));
       worst = fmax(worst, fabs(at(picture, x, y) / right - 1));
     }
   return worst;
@@ -135,7 +134,7 @@ TEST(frames_have_other_samples) {
       for (size_t x = 0; x < 34; x += STEP) {
         double p[3];
         place_of(x, y, p);
-        const double right = 0.5 * PI * (1 - abbe_closed_form_polygon(corner, 4, p, up));
+        const double right = 0.5 * ABBE_PI * (1 - abbe_closed_form_polygon(corner, 4, p, up));
         const double off = at(&picture, x, y) - right;
         sum[y][x] += off / FRAMES;
         single += off * off / FRAMES;
@@ -148,8 +147,7 @@ TEST(frames_have_other_samples) {
   assert_true(single > 0 && mean < 0.5 * single);
 }
 
-#define LAMP                                                                                       \
-  "lights:\n- {name: lamp, kind: point, position: [-0.3, 0, 0.5], intensity: 0.1}\n"
+#define LAMP "lights:\n- {name: lamp, kind: point, position: [-0.3, 0, 0.5], intensity: 0.1}\n"
 
 /* Pages of smooth mirrors know no lamps: they stay while one moves, and the picture is that of a
  * renderer made anew. Rough ones show lamps. */
@@ -159,13 +157,12 @@ TEST(pages_stay_while_a_lamp_moves) {
   for (int rough = 0; rough < 2; rough++) {
     abbe_scene scene;
     abbe_image kept, anew;
-    abbe_error error = {0};
     const abbe_render_desc desc = request(ABBE_TRANSPORT_PINHOLE, 8);
     load_text(walls[rough], &scene);
     abbe_renderer *renderer = make_renderer(&scene, &desc);
     draw_frame(renderer);
     scene.light[0].position[1] += 0.1;
-    assert_int_equal(abbe_renderer_change(renderer, &scene, &desc, &error), ABBE_OK);
+    OK(abbe_renderer_change(renderer, &scene, &desc, &error));
     const abbe_statistics s = draw_frame(renderer);
     assert_true(abbe_statistics_ran(&s, ABBE_PASS_PHOTONS));
     assert_int_equal(s.kept[ABBE_PASS_PINHOLES], !rough);
@@ -224,7 +221,7 @@ TEST(clusters) {
     for (size_t y = 0; y < SIDE; y++)
       for (size_t x = 0; x < 37; x++) {
         const double off = at(&picture[k], x, y) - at(&picture[0], x, y);
-        worst[k] = fmax(worst[k], fabs(off) / (0.5 * PI));
+        worst[k] = fmax(worst[k], fabs(off) / (0.5 * ABBE_PI));
       }
     print_message("%zu: off by %.5f of all samples, by %.5f of the shape's\n", clusters[k],
                   worst[k], worst_of(&picture[k], corner, 0.75, 37));
@@ -249,7 +246,7 @@ TEST(a_floor_of_triangles) {
   for (size_t y = 0; y < SIDE; y++)
     for (size_t x = 0; x < 37; x++) {
       worst = fmax(worst, fabs(at(&mesh, x, y) - at(&rectangle, x, y)));
-      most = fmax(most, 0.5 * PI - at(&mesh, x, y));
+      most = fmax(most, 0.5 * ABBE_PI - at(&mesh, x, y));
     }
   print_message("off by %.5f where the wall takes up to %.3f\n", worst, most);
   assert_true(most > 0.3);
@@ -290,7 +287,7 @@ TEST(a_ball_is_lit) {
       }
       if (!above) continue;
       const double seen = abbe_closed_form_polygon(corner, 4, p, n);
-      worst = fmax(worst, fabs(at(&picture, x, y) / (0.5 * PI) - (1 - seen)));
+      worst = fmax(worst, fabs(at(&picture, x, y) / (0.5 * ABBE_PI) - (1 - seen)));
       most = fmax(most, seen);
       places++;
     }
@@ -323,13 +320,13 @@ TEST(glass_hides_little) {
   draw(ball, ABBE_TRANSPORT_PINHOLE, 300, &glass);
   draw(DOWN SOFT WHITE_FLOOR MIRROR_BALL("0"), ABBE_TRANSPORT_PINHOLE, 300, &black);
   draw(ball, ABBE_TRANSPORT_PHOTONS, 0, &without);
-  double of_glass = 0, of_black = 0, open = 0.5 * PI * SIDE * 10;
+  double of_glass = 0, of_black = 0, open = 0.5 * ABBE_PI * SIDE * 10;
   for (size_t y = 0; y < SIDE; y++)
     for (size_t x = 0; x < 10; x++) {
       of_glass += open / (SIDE * 10) - at(&glass, x, y);
       of_black += open / (SIDE * 10) - at(&black, x, y);
-      assert_near(at(&without, x, y), 0.5 * PI, 1e-3);
-      assert_true(at(&glass, x, y) < 0.5 * PI + 1e-3);
+      assert_near(at(&without, x, y), 0.5 * ABBE_PI, 1e-3);
+      assert_true(at(&glass, x, y) < 0.5 * ABBE_PI + 1e-3);
     }
   print_message("glass hides %.5f, black %.5f\n", of_glass / open, of_black / open);
   assert_true(of_black > 0 && of_glass < 0.5 * of_black);
@@ -382,12 +379,10 @@ TEST(refusals) {
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     abbe_scene scene;
     abbe_renderer *renderer = NULL;
-    abbe_error error = {0};
     const abbe_render_desc desc = {.width = 16, .height = 16, .transport = ABBE_TRANSPORT_PINHOLE};
     load_text(cases[i].text, &scene);
-    assert_int_equal(abbe_renderer_make(context, &scene, &desc, &renderer, &error),
-                     ABBE_UNSUPPORTED);
-    assert_contains(error.text, cases[i].says);
+    REFUSED(ABBE_UNSUPPORTED, cases[i].says,
+            abbe_renderer_make(context, &scene, &desc, &renderer, &error));
     abbe_scene_free(&scene);
   }
 }

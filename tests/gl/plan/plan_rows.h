@@ -4,8 +4,6 @@
 
 #include "tests/gl/plan/planned.h"
 
-#include <stdio.h>
-
 typedef enum row_kind { ROW_END, ROW_COUNTS, ROW_RUNS, ROW_RESTS, ROW_GONE, ROW_NOTE } row_kind;
 
 /* `part` of the reason, or of the note; `about`: name of the object or light, or "". */

@@ -8,8 +8,7 @@
 
 static inline void plan_scene(const abbe_scene *scene, const abbe_render_desc *desc,
                               abbe_plan *plan) {
-  abbe_error error = {0};
-  if (abbe_plan_make(scene, desc, plan, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_plan_make(scene, desc, plan, &error));
 }
 
 static inline void plan_text(const char *text, const abbe_render_desc *desc, abbe_plan *plan) {

@@ -70,7 +70,7 @@ TEST(every_switch_is_on) {
   const abbe_render_desc all = {.everything = true};
   load_text(CAMERA POINT_LIGHT ASIDE WIDE FLOOR BALL("flat") "environment: {uniform: 0.1}\n",
             &scene);
-  assert_int_equal(abbe_plan_make(&scene, &all, &plan, NULL), ABBE_OK);
+  OK(abbe_plan_make(&scene, &all, &plan, &error));
   for (size_t i = 0; i < plan.entry_count; i++) {
     const abbe_plan_entry *entry = &plan.entry[i];
     const bool model = entry->item == ABBE_PASS_RECEIVER_DEPTH || /* other models, other pictures */
@@ -91,7 +91,7 @@ TEST(what_is_asked_for_stays) {
   const abbe_render_desc all = {
       .everything = true, .wavelengths = 3, .exits = 2, .fill = ABBE_FILL_NONE};
   load_text(CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat"), &scene);
-  assert_int_equal(abbe_plan_make(&scene, &all, &plan, NULL), ABBE_OK);
+  OK(abbe_plan_make(&scene, &all, &plan, &error));
   assert_int_equal(plan.desc.wavelengths, 3);
   assert_int_equal(plan.desc.exits, 2);
   assert_false(plan.fills || abbe_plan_find(&plan, ABBE_PASS_GAP_FILL, 0)->runs);

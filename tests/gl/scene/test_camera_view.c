@@ -3,8 +3,6 @@
 
 #include "gl/scene/camera_view.h"
 
-#include <math.h>
-
 static void fit(const abbe_render_desc *desc, double fov_y_rad, abbe_camera_view *out) {
   abbe_scene scene = {0};
   load_shipped("sphere", &scene);

@@ -7,6 +7,7 @@
 #include "tests/gl/glsl.h"
 #include "tests/random.h"
 
+#include "base/maths.h"
 #include "scenes/scene.h"
 #include "scenes/view/view.h"
 
@@ -31,13 +32,9 @@ static void make_gl(void) {
   gl = abbe_context_gl(context);
 }
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void unit_vector(uint64_t *random, double out[3]) {
   for (int k = 0; k < 3; k++) out[k] = random_normal(random);
-  double length = sqrt(dot(out, out));
+  double length = sqrt(abbe_vector_dot(out, out));
   for (int k = 0; k < 3; k++) out[k] /= length;
 }
 
@@ -54,7 +51,7 @@ static void aim(double radius) {
     double miss = i % 4 == 0 ? 1 - pow(10, -random_between(&random, 0, 7)) : sqrt(i % 97 / 97.0);
     for (int k = 0; k < 3; k++) along += to[k] * from[k];
     for (int k = 0; k < 3; k++) to[k] -= along * from[k]; /* across the way to the middle */
-    double length = sqrt(dot(to, to)), sine = miss * radius / far;
+    double length = sqrt(abbe_vector_dot(to, to)), sine = miss * radius / far;
     for (int k = 0; k < 3; k++) d[k] = sine * to[k] / length - sqrt(1 - sine * sine) * from[k];
     for (int k = 0; k < 3; k++) {
       inputs[i][k] = (float)(far * from[k]);
@@ -99,7 +96,8 @@ static void upload_refractors(double radius, double plane[6][4], GLuint buffer[2
 
 /* Distance to the sphere, its entry and exit; false where the ray misses. */
 static bool meet_sphere(const double o[3], const double d[3], double radius, double t[2]) {
-  double a = dot(d, d), b = dot(o, d), c = dot(o, o) - radius * radius, disc = b * b - a * c;
+  double a = abbe_vector_dot(d, d), b = abbe_vector_dot(o, d),
+         c = abbe_vector_dot(o, o) - radius * radius, disc = b * b - a * c;
   if (disc <= 0) return false;
   t[0] = (-b - sqrt(disc)) / a;
   t[1] = (-b + sqrt(disc)) / a;
@@ -125,7 +123,9 @@ TEST(spheres_are_met) {
       double o[3], d[3], t[2], apart = 0;
       ray_of(i, o, d);
       bool hit = meet_sphere(o, d, sizes[s], t);
-      double far = sqrt(dot(o, o)), sine2 = 1 - pow(dot(o, d), 2) / dot(o, o) / dot(d, d);
+      double far = sqrt(abbe_vector_dot(o, o)),
+             sine2 =
+                 1 - pow(abbe_vector_dot(o, d), 2) / abbe_vector_dot(o, o) / abbe_vector_dot(d, d);
       double cosine = sqrt(fmax(1 - sine2 * pow(far / sizes[s], 2), 0));
       /* Which rays just miss is a matter of the last digits. */
       double known = cosine * cosine;
@@ -167,7 +167,8 @@ static bool meet_planes(const double plane[6][4], const double o[3], const doubl
   t[0] = -INFINITY;
   t[1] = INFINITY;
   for (int i = 0; i < 6; i++) {
-    double slope = dot(plane[i], d), at = (plane[i][3] - dot(plane[i], o)) / slope;
+    double slope = abbe_vector_dot(plane[i], d),
+           at = (plane[i][3] - abbe_vector_dot(plane[i], o)) / slope;
     if (slope < 0 && at > t[0]) {
       t[0] = at;
       *cosine = -slope;
@@ -195,7 +196,7 @@ TEST(solids_are_met) {
     for (int i = 0; i < RAYS; i++) {
       double o[3], d[3], t[2], cosine = 1;
       ray_of(i, o, d);
-      double far = sqrt(dot(o, o));
+      double far = sqrt(abbe_vector_dot(o, o));
       bool hit = meet_planes((const double(*)[4])plane, o, d, t, &cosine);
       double unit = eps * far / cosine;
       if (hit != (outputs[i][0] > 0)) {
@@ -205,9 +206,10 @@ TEST(solids_are_met) {
       if (!hit) continue;
       met++;
       worst = fmax(worst, fabs((double)outputs[i][0] - t[0]) / unit);
-      double chord = (t[1] - t[0]) * sqrt(dot(d, d));
-      worst_inner = fmax(worst_inner, fabs((double)outputs[i][1] - chord) / unit *
-                                          fmin(cosine, fabs(dot(plane[(int)outputs[i][3]], d))));
+      double chord = (t[1] - t[0]) * sqrt(abbe_vector_dot(d, d));
+      worst_inner =
+          fmax(worst_inner, fabs((double)outputs[i][1] - chord) / unit *
+                                fmin(cosine, fabs(abbe_vector_dot(plane[(int)outputs[i][3]], d))));
     }
     gl->DeleteBuffers(2, buffer);
   }
@@ -247,12 +249,13 @@ TEST(receivers_are_met) {
         m[k] = block[3][k];
         from[k] = block[0][k] - o[k];
       }
-      double slope = dot(m, d), t = ((double)block[3][3] - dot(m, o)) / slope;
-      double unit = eps * sqrt(dot(o, o)) / fabs(slope);
+      double slope = abbe_vector_dot(m, d),
+             t = ((double)block[3][3] - abbe_vector_dot(m, o)) / slope;
+      double unit = eps * sqrt(abbe_vector_dot(o, o)) / fabs(slope);
       for (int k = 0; k < 3; k++) x[k] = t * d[k] - from[k];
       for (int axis = 0; axis < 2; axis++) {
         double dual[3] = {block[4 + axis][0], block[4 + axis][1], block[4 + axis][2]};
-        double at = dot(x, dual);
+        double at = abbe_vector_dot(x, dual);
         edge = fmin(edge, fmin(at, 1 - at));
       }
       bool hit = t > 0 && edge >= 0;
@@ -323,7 +326,7 @@ TEST(views_project) {
           abbe_view_ray(&view, uv, o, d);
           for (int k = 0; k < 3; k++)
             worst_ray = fmax(worst_ray, fabs((double)outputs[i][k] - d[k]) / eps);
-          double c = s % 2 ? 1 : dot(d, view.forward);
+          double c = s % 2 ? 1 : abbe_vector_dot(d, view.forward);
           worst_measure = fmax(worst_measure, fabs((double)outputs[i][3] / (c * c * c) - 1) / eps);
         }
       }
@@ -409,8 +412,8 @@ TEST(spots_fade) {
   assert_true(worst < 4);
 }
 
-/* Longitude and angle from the zenith, to far below a texel of a map of 8192 (7.7e-4 rad): all around,
- * on the axes, and close to them and to the poles. */
+/* Longitude and angle from the zenith, to far below a texel of a map of 8192 (7.7e-4 rad): all
+ * around, on the axes, and close to them and to the poles. */
 TEST(directions_have_angles) {
   double worst = 0;
   uint64_t random = 11;
@@ -419,7 +422,7 @@ TEST(directions_have_angles) {
     unit_vector(&random, d);
     for (int k = 0; k < 3; k++)
       if (i / 4 % 4 == k + 1) d[k] *= i % 2 ? pow(10, -random_between(&random, 0, 7)) : 0;
-    const double length = sqrt(dot(d, d));
+    const double length = sqrt(abbe_vector_dot(d, d));
     for (int k = 0; k < 3; k++) inputs[i][k] = (float)(d[k] / length);
   }
   run("vec4 f(vec4 a, vec4 b) { return vec4(sphere_angles(a.xyz), 0, 0); }\n");

@@ -3,11 +3,11 @@
 #include "tests/gl/frame.h"
 #include "tests/gl/glsl.h"
 
+#include "base/maths.h"
 #include "gl/device/state.h"
 #include "gl/scene/gpu_scene.h"
 
 enum { LOOKS = 4096 };
-static const double PI = 3.14159265358979;
 
 /* a: direction, width along b's direction; b: unit vector across a, width along the other. */
 static const char source[] =
@@ -41,10 +41,9 @@ static void make_sky(const char *environment, sky *out_sky) {
            environment);
   load_text(text, &out_sky->scene);
   abbe_gl_state_begin(gl);
-  assert_int_equal(abbe_gpu_make(gl, &out_sky->gpu, NULL), ABBE_OK);
-  assert_int_equal(abbe_gpu_environment_make(&out_sky->gpu, &out_sky->scene, ABBE_RGB_SPACE_REC709,
-                                             &desc, &out_sky->environment, NULL),
-                   ABBE_OK);
+  OK(abbe_gpu_make(gl, &out_sky->gpu, &error));
+  OK(abbe_gpu_environment_make(&out_sky->gpu, &out_sky->scene, ABBE_RGB_SPACE_REC709, &desc,
+                               &out_sky->environment, &error));
   out_sky->program = glsl_make(gl, source);
   abbe_gpu_environment_set(&out_sky->gpu, &out_sky->scene, &out_sky->environment, 1,
                            out_sky->program);
@@ -160,7 +159,7 @@ TEST(nothing_jumps) {
   make_sky(LAMPS, &s);
   for (int circle = 0; circle < 4; circle++)
     for (double wide = 0.1; wide < 1; wide *= 2) {
-      const double step = 2 * PI / LOOKS;
+      const double step = 2 * ABBE_PI / LOOKS;
       double most = 0;
       for (size_t i = 0; i < LOOKS; i++) {
         double d[3];

@@ -11,7 +11,7 @@ enum { SIDE = 48, PASSES = 6 };
 /* By a texture of two texels, both of that colour. */
 static void paint(const double rgb[3], abbe_object *object) {
   static const char *const names[3] = {"R", "G", "B"};
-  assert_int_equal(abbe_image_make(2, 1, 3, names, &object->texture, NULL), ABBE_OK);
+  OK(abbe_image_make(2, 1, 3, names, &object->texture, &error));
   for (size_t i = 0; i < 6; i++) object->texture.data[i] = (float)rgb[i % 3];
   for (int k = 0; k < 3; k++) object->reflectance[k] = 1;
 }
@@ -26,8 +26,7 @@ static void load_prism(const char *patch, const double rgb[3], bool textured, ab
     abbe_image_free(&o->texture);
     for (int k = 0; k < 3; k++) o->reflectance[k] = rgb[k];
     if (textured && had) paint(rgb, o);
-    if (patch != NULL)
-      assert_int_equal(abbe_colour_checker_make(patch, &o->spectrum, NULL), ABBE_OK);
+    if (patch != NULL) OK(abbe_colour_checker_make(patch, &o->spectrum, &error));
   }
 }
 
@@ -48,10 +47,9 @@ static void trace(const abbe_scene *scene, abbe_image *out) {
                                 .photons = 1 << 18,
                                 .threads = 2};
   abbe_tracer *tracer = NULL;
-  abbe_error error = {0};
-  assert_ok(abbe_tracer_make(scene, &desc, &tracer, &error), &error);
-  for (int i = 0; i < PASSES; i++) assert_ok(abbe_tracer_pass(tracer, NULL, &error), &error);
-  assert_ok(abbe_tracer_picture(tracer, out, &error), &error);
+  OK(abbe_tracer_make(scene, &desc, &tracer, &error));
+  for (int i = 0; i < PASSES; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
+  OK(abbe_tracer_picture(tracer, out, &error));
   abbe_tracer_free(tracer);
 }
 
@@ -120,7 +118,7 @@ TEST(tables_rest_on_facts) {
     abbe_scene scene;
     abbe_plan plan;
     load_text(of[i].text, &scene);
-    assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+    OK(abbe_plan_make(&scene, NULL, &plan, &error));
     assert_int_equal(plan.receiver_colours, of[i].has);
     abbe_plan_free(&plan);
     abbe_scene_free(&scene);

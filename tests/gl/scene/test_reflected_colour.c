@@ -42,11 +42,10 @@ static void trace_xyz(const abbe_scene *scene, abbe_rgb_space space, size_t pass
   const abbe_trace_desc desc = {
       .width = 16, .height = 16, .no_map = true, .space = space, .photons = 4096, .threads = 1};
   abbe_tracer *tracer = NULL;
-  abbe_error error = {0};
-  assert_ok(abbe_tracer_make(scene, &desc, &tracer, &error), &error);
-  for (size_t i = 0; i < passes; i++) assert_ok(abbe_tracer_pass(tracer, NULL, &error), &error);
+  OK(abbe_tracer_make(scene, &desc, &tracer, &error));
+  for (size_t i = 0; i < passes; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
   abbe_image image;
-  assert_ok(abbe_tracer_picture(tracer, &image, &error), &error);
+  OK(abbe_tracer_picture(tracer, &image, &error));
   mean_xyz(&image, space, xyz);
   abbe_image_free(&image);
   abbe_tracer_free(tracer);

@@ -3,8 +3,6 @@
 #include "gl/scene/shader_variant.h"
 #include "gl/scene/spectra/camera_bands.h"
 
-#include <stdlib.h>
-
 static bool has(const char *text, const char *line) {
   const size_t size = strlen(line);
   for (const char *at = text; (at = strstr(at, line)) != NULL; at += size)

@@ -8,8 +8,6 @@
 #include "base/maths.h"
 #include "gl/scene/gpu_scene.h"
 
-#include <string.h>
-
 enum { MOST = 64, PLACES = 4096, SHADER_SOLIDS = 24 };
 
 typedef struct solid {
@@ -135,11 +133,9 @@ static double outside(const double (*plane)[4], size_t count, const abbe_light *
 }
 
 static size_t planes_of(const solid *s, const abbe_light *light, bool faces, double (*out)[4]) {
-  abbe_error error = {0};
   size_t count = 0;
-  assert_ok(abbe_shadow_planes_make((const double(*)[4])s->plane, s->count, origin, light, faces,
-                                    out, &count, &error),
-            &error);
+  OK(abbe_shadow_planes_make((const double(*)[4])s->plane, s->count, origin, light, faces, out,
+                             &count, &error));
   assert_true(count >= 1 && count <= 2 * s->count);
   for (size_t i = 0; i < count; i++)
     assert_true(fabs(abbe_vector_length(out[i]) - 1) < 1e-12 && isfinite(out[i][3]));
@@ -224,11 +220,9 @@ TEST(outlines_are_short) {
   const abbe_light within = {.kind = ABBE_LIGHT_POINT, .position = {0, 0.1, 0}};
   const double anywhere[3] = {5, 6, 7};
   assert_int_equal(planes_of(&s, &corner, true, plane) > 3, 1);
-  abbe_error error = {0};
   size_t count = 0;
-  assert_ok(abbe_shadow_planes_make((const double(*)[4])s.plane, s.count, origin, &within, true,
-                                    plane, &count, &error),
-            &error);
+  OK(abbe_shadow_planes_make((const double(*)[4])s.plane, s.count, origin, &within, true, plane,
+                             &count, &error));
   assert_int_equal(count, 1);
   assert_true(outside((const double(*)[4])plane, count, &within, anywhere) > 0);
 }

@@ -10,8 +10,6 @@
 #include "scenes/volume/half.h"
 #include "validation/volume/volume_fill.h"
 
-#define PI 3.14159265358979323846
-
 enum { MAP_TEXELS = 16 }; /* a side of a page: so few that it has one level */
 
 static const char ball[] = CAMERA SUN FLOOR
@@ -28,7 +26,6 @@ static const abbe_region_desc regions[] = {
 
 static void make_volume(const abbe_scene *scene, abbe_volume_kind kind, size_t region, size_t nodes,
                         abbe_caustic_volume *out) {
-  abbe_error error = {0};
   abbe_volume_fill_statistics done;
   const bool exits = kind == ABBE_VOLUME_EXITS;
   const abbe_volume_fill_desc desc = {.object = 1,
@@ -39,7 +36,7 @@ static void make_volume(const abbe_scene *scene, abbe_volume_kind kind, size_t r
                                       .photons = 8192,
                                       .passes = 1,
                                       .threads = 2};
-  assert_ok(abbe_volume_fill(scene, &desc, out, &done, &error), &error);
+  OK(abbe_volume_fill(scene, &desc, out, &done, &error));
 }
 
 /* Where pixel i of the picture sees the floor; false where the object may be in the way. */
@@ -96,14 +93,14 @@ static void oracle(const abbe_scene *scene, const abbe_caustic_volume *v, abbe_v
     abbe_caustic_volume_ratio(v, &sight, at, ratio);
     abbe_rgb_space_apply(matrix, v->white, white);
     const double facing = fmax(-from[2] / abbe_vector_length(from), 0);
-    for (int k = 0; k < 3; k++) rgb[k] = 0.5 / PI * strength * facing * ratio[k] * white[k];
+    for (int k = 0; k < 3; k++) rgb[k] = 0.5 / ABBE_PI * strength * facing * ratio[k] * white[k];
     return;
   }
   abbe_caustic_volume_flux(v, &sight, at, f);
   for (int c = 0; c < 3; c++) {
     double down = 0; /* of F in the world */
     for (int j = 0; j < 3; j++) down -= place->turn[6 + j] * f[c][j];
-    xyz[c] = 0.5 / PI * strength * fmax(down, 0);
+    xyz[c] = 0.5 / ABBE_PI * strength * fmax(down, 0);
   }
   abbe_rgb_space_apply(matrix, xyz, rgb);
 }
@@ -121,11 +118,10 @@ static void fill_by_rays(const abbe_scene *scene, const abbe_caustic_volume *v,
   float *value = malloc(count * sizeof *value);
   assert_non_null(value);
   *out = (abbe_caustic_volume){.body = v->body};
-  assert_int_equal(abbe_volume_region_make(&v->region.desc, &out->region, NULL), ABBE_OK);
-  assert_int_equal(abbe_light_nodes_make(1, (const double[3]){0, 0, 1}, &out->nodes, NULL),
-                   ABBE_OK);
-  assert_int_equal(abbe_caustic_volume_allocate(out, NULL), ABBE_OK);
-  assert_int_equal(abbe_exit_light_fill(v, &desc, value, NULL), ABBE_OK);
+  OK(abbe_volume_region_make(&v->region.desc, &out->region, &error));
+  OK(abbe_light_nodes_make(1, (const double[3]){0, 0, 1}, &out->nodes, &error));
+  OK(abbe_caustic_volume_allocate(out, &error));
+  OK(abbe_exit_light_fill(v, &desc, value, &error));
   for (size_t i = 0; i < count; i++) out->value[i] = abbe_half_of((double)value[i]);
   free(value);
 }
@@ -140,7 +136,7 @@ static void look_at_pages(const abbe_scene *scene, const abbe_exit_pages *pages,
   const double u = abbe_vector_dot(from, at + 3) / abbe_vector_dot(at + 3, at + 3),
                v = abbe_vector_dot(from, at + 6) / abbe_vector_dot(at + 6, at + 6);
   abbe_exit_pages_at(pages, n[2] > 0 ? 0 : 1, u, v, xyz);
-  for (int k = 0; k < 3; k++) xyz[k] *= 0.5 / PI * scene->light[0].power;
+  for (int k = 0; k < 3; k++) xyz[k] *= 0.5 / ABBE_PI * scene->light[0].power;
   abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
   abbe_rgb_space_apply(matrix, xyz, rgb);
 }
@@ -153,7 +149,7 @@ static void make_pages(const abbe_scene *scene, const abbe_caustic_volume *v,
                                      .min_nm = 380,
                                      .max_nm = 780};
   const double(*floor)[9] = (const double(*)[9])scene->object[0].exact.parallelogram;
-  assert_int_equal(abbe_exit_pages_make(v, &desc, floor, 1, MAP_TEXELS, out, NULL), ABBE_OK);
+  OK(abbe_exit_pages_make(v, &desc, floor, 1, MAP_TEXELS, out, &error));
 }
 
 /* Mean difference between the caustic of a frame and the oracle's, of the mean. */
@@ -162,7 +158,6 @@ static double mean_difference(const abbe_scene *scene, const abbe_caustic_volume
   enum { SIDE = 64 };
   abbe_image picture = {0};
   abbe_volume_place place;
-  abbe_error error = {0};
   const bool printed = v->kind == ABBE_VOLUME_PRINTED;
   const abbe_render_desc desc = {.profile = printed ? ABBE_PROFILE_WYMAN2003 : ABBE_PROFILE_DEFAULT,
                                  .width = SIDE,
@@ -175,7 +170,7 @@ static double mean_difference(const abbe_scene *scene, const abbe_caustic_volume
                                  .volume = v,
                                  .lookup = lookup};
   abbe_caustic_volume filled = {0};
-  assert_ok(abbe_volume_body_find(&v->body, &scene->object[1], &place, &error), &error);
+  OK(abbe_volume_body_find(&v->body, &scene->object[1], &place, &error));
   abbe_renderer *renderer = make_renderer(scene, &desc);
   draw_frame(renderer);
   read_picture(renderer, true, &picture);
@@ -238,21 +233,21 @@ TEST(objects_and_lights_move) {
   abbe_transform_rotate(0.7, axis, turn);
   abbe_transform_translate(offset, step);
   abbe_transform_multiply(step, turn, turn);
-  assert_int_equal(abbe_object_move(&scene.object[1], turn, NULL), ABBE_OK);
+  OK(abbe_object_move(&scene.object[1], turn, &error));
   for (int lookup = ABBE_VOLUME_LOOKUP_NEAREST; lookup < ABBE_VOLUME_LOOKUP_COUNT; lookup++)
     assert_near(mean_difference(&scene, &v, (abbe_volume_lookup)lookup), 0, 0.004);
   scene.light[0].kind = ABBE_LIGHT_POINT;
   static const double there[3] = {-0.8, -0.4, 2.4};
   memcpy(scene.light[0].position, there, sizeof there);
   assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_BLEND), 0, 0.004);
-  assert_int_equal(abbe_caustic_volume_project(&v, 2, NULL), ABBE_OK);
+  OK(abbe_caustic_volume_project(&v, 2, &error));
   assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_AUTO), 0, 0.004);
   abbe_caustic_volume_free(&v);
   /* of modes, a blend alone */
   double left;
   load_text(wedge, &original);
   make_volume(&original, ABBE_VOLUME_VECTOR, 2, 12, &v);
-  assert_int_equal(abbe_caustic_volume_reduce(&v, 5, &left, NULL), ABBE_OK);
+  OK(abbe_caustic_volume_reduce(&v, 5, &left, &error));
   assert_true(left > 0.01);
   assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_AUTO), 0, 0.004);
   abbe_caustic_volume_free(&v);
@@ -301,7 +296,6 @@ static double largest_step(abbe_scene *scene, const abbe_caustic_volume *v,
                                  .lookup = lookup};
   abbe_renderer *renderer = NULL;
   abbe_image before = {0}, now = {0};
-  abbe_error error = {0};
   double most = 0;
   for (int f = 0; f < FRAMES; f++) {
     const double turn = 0.5 + 0.8 * f / FRAMES;
@@ -311,7 +305,7 @@ static double largest_step(abbe_scene *scene, const abbe_caustic_volume *v,
     if (renderer == NULL)
       renderer = make_renderer(scene, &desc);
     else
-      assert_ok(abbe_renderer_change(renderer, scene, &desc, &error), &error);
+      OK(abbe_renderer_change(renderer, scene, &desc, &error));
     draw_frame(renderer);
     read_picture(renderer, true, &now);
     const size_t green = abbe_image_find_channel(&now, "caustic.G");
@@ -346,9 +340,7 @@ TEST(blends_do_not_pop) {
 static void refuse(const abbe_scene *scene, const abbe_render_desc *desc, abbe_result wanted,
                    const char *part) {
   abbe_plan plan;
-  abbe_error error = {0};
-  assert_int_equal(abbe_plan_make(scene, desc, &plan, &error), wanted);
-  assert_contains(error.text, part);
+  REFUSED(wanted, part, abbe_plan_make(scene, desc, &plan, &error));
 }
 
 TEST(what_it_does_not_hold_is_refused) {

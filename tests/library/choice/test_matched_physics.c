@@ -9,8 +9,8 @@ TEST(what_the_plan_follows) {
   abbe_plan plan;
   abbe_physics physics = {0};
   load_shipped("gem", &scene);
-  assert_int_equal(abbe_matched_physics(&scene, 0, 0, &physics, NULL), ABBE_OK);
-  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+  OK(abbe_matched_physics(&scene, 0, 0, &physics, &error));
+  OK(abbe_plan_make(&scene, NULL, &plan, &error));
   assert_true(physics.matched);
   assert_int_equal(physics.orders, plan.desc.exits);
   assert_int_equal(physics.eye_orders, plan.eye_exits);

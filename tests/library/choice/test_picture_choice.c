@@ -7,8 +7,6 @@
 #include "library/choice/sweep_setting.h"
 #include "library/choice/sweep_trace.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #define SCENE CAMERA POINT_LIGHT FLOOR BEADS("crown")
@@ -30,19 +28,14 @@
 static char path[64];
 static abbe_scene scene;
 
-static void assert_good(abbe_result result, const abbe_error *error) {
-  if (result != ABBE_OK) fail_msg("%s", error->text);
-}
-
 static void write_file(const char *text) {
-  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
+  OK(abbe_file_write(path, text, strlen(text), &error));
 }
 
 static void choose(abbe_picture_request request, abbe_picture_choice *out) {
-  abbe_error error = {0};
   request.file = path;
   request.width = request.height = 16;
-  assert_good(abbe_picture_choose(&request, &scene, out, &error), &error);
+  OK(abbe_picture_choose(&request, &scene, out, &error));
 }
 
 static void begin(void) {
@@ -59,9 +52,8 @@ GROUP(begin, finish);
 
 TEST(the_file) {
   abbe_picture_front f;
-  abbe_error error = {0};
   write_file(WHOLE);
-  assert_good(abbe_picture_front_load(path, ABBE_PRESET_CLASS_SPHERES, &f, &error), &error);
+  OK(abbe_picture_front_load(path, ABBE_PRESET_CLASS_SPHERES, &f, &error));
   assert_int_equal(f.count, 4);
   assert_string_equal(f.scenes, "beads");
   assert_int_equal(f.point[1].tool, ABBE_PICTURE_RENDER);
@@ -72,15 +64,13 @@ TEST(the_file) {
   assert_int_equal(f.point[3].tool, ABBE_PICTURE_TRACE);
   assert_int_equal(f.point[3].setting.passes, 8);
   assert_near(f.point[3].error, 1e-9, 0);
-  assert_int_equal(abbe_picture_front_load(path, ABBE_PRESET_CLASS_MESHES, &f, &error),
-                   ABBE_UNSUPPORTED);
-  assert_contains(error.text, "class meshes");
+  REFUSED(ABBE_UNSUPPORTED, "class meshes",
+          abbe_picture_front_load(path, ABBE_PRESET_CLASS_MESHES, &f, &error));
 }
 
 /* Without the tracer and without a time nothing is measured: promises are the file's. */
 TEST(the_renderer_alone) {
   abbe_picture_choice c;
-  abbe_error error = {0};
   write_file(WHOLE);
   abbe_picture_request q = {.max_error = 16, .tool = {[ABBE_PICTURE_RENDER] = true}};
   choose(q, &c);
@@ -91,13 +81,13 @@ TEST(the_renderer_alone) {
   q.max_error = 15.9;
   choose(q, &c);
   assert_int_equal(c.point->setting.photons, 32);
-  assert_int_equal(abbe_picture_choice_check(&c, 1e9, &error), ABBE_OK);
+  OK(abbe_picture_choice_check(&c, 1e9, &error));
   q.max_error = 5.9;
   choose(q, &c);
   assert_int_equal(c.point->setting.photons, 32);
   assert_false(c.kept);
-  assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_TOLERANCE);
-  assert_contains(error.text, "an error of 5.9; the nearest was taken, of which 6 is promised");
+  REFUSED(ABBE_TOLERANCE, "an error of 5.9; the nearest was taken, of which 6 is promised",
+          abbe_picture_choice_check(&c, 1, &error));
   q.max_error = 0;
   q.name = "draft";
   choose(q, &c);
@@ -111,7 +101,6 @@ TEST(the_renderer_alone) {
 TEST(promises_are_told_by_the_yardstick) {
   abbe_picture_choice c;
   abbe_sweep_row row = {0};
-  abbe_error error = {0};
   write_file(WHOLE);
   choose((abbe_picture_request){.max_error = 1e-6}, &c);
   assert_int_equal(c.point->tool, ABBE_PICTURE_TRACE);
@@ -120,7 +109,7 @@ TEST(promises_are_told_by_the_yardstick) {
   abbe_sweep_setting_of_trace(ABBE_PICTURE_YARDSTICK_PHOTONS, ABBE_PICTURE_YARDSTICK_PASSES, false,
                               &row.setting);
   const abbe_sweep_trace_desc desc = {.width = 16, .height = 16, .frames = 1};
-  assert_good(abbe_sweep_trace_measure(&scene, &desc, &row, NULL, &error), &error);
+  OK(abbe_sweep_trace_measure(&scene, &desc, &row, NULL, &error));
   assert_true(row.number[ABBE_SWEEP_OWN_DE] > 0);
   assert_near(c.promised_error, 1e-9 * row.number[ABBE_SWEEP_OWN_DE], 1e-20);
   assert_true(c.promised_ms > 1e9);
@@ -129,23 +118,22 @@ TEST(promises_are_told_by_the_yardstick) {
 /* A traced picture's own passes decide, whatever was promised. */
 TEST(what_passes_tell) {
   abbe_picture_choice c;
-  abbe_error error = {0};
   write_file(WHOLE);
   choose((abbe_picture_request){.max_error = 1e-6}, &c);
   assert_false(abbe_picture_choice_tells(&c));
-  assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_OK);
+  OK(abbe_picture_choice_check(&c, 1, &error));
   c.passes = 8;
   c.met = (abbe_pass_error){2e-6, 3e-6};
   assert_true(abbe_picture_choice_tells(&c));
-  assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_TOLERANCE);
-  assert_contains(error.text, "8 passes tell one of 2e-06, and at most 3e-06");
+  REFUSED(ABBE_TOLERANCE, "8 passes tell one of 2e-06, and at most 3e-06",
+          abbe_picture_choice_check(&c, 1, &error));
   c.met.bound = 1e-6;
   c.kept = false;
-  assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_OK);
+  OK(abbe_picture_choice_check(&c, 1, &error));
   c.met.bound = NAN;
   c.kept = true;
   assert_false(abbe_picture_choice_tells(&c));
-  assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_TOLERANCE);
+  REFUSED(ABBE_TOLERANCE, "", abbe_picture_choice_check(&c, 1, &error));
 }
 
 static void assert_says(const abbe_picture_choice *c, const char *right) {
@@ -173,9 +161,8 @@ TEST(told_or_expected) {
   c.others = false;
   assert_says(&c, "about 1.5 (at most 1.75), told by 4 passes, half against half; expected were 2");
   /* An error that is too large is told and is no failure where a time was asked for. */
-  abbe_error error = {0};
   c.met = (abbe_pass_error){17, 27};
-  assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_OK);
+  OK(abbe_picture_choice_check(&c, 1, &error));
 }
 
 /* Of many photons a pass takes as many times as long, of few no less than the yardstick's. */
@@ -190,15 +177,14 @@ TEST(what_passes_take) {
 
 TEST(by_time) {
   abbe_picture_choice c;
-  abbe_error error = {0};
   write_file(WHOLE);
   /* Of what no machine does in that time the fastest. */
   choose((abbe_picture_request){.budget_ms = 1e-3}, &c);
   assert_int_equal(c.point->setting.photons, 16);
   assert_false(c.kept);
-  assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_TOLERANCE);
-  assert_contains(error.text, "the budget of 0.001 ms is not kept, for nothing faster is known");
-  assert_int_equal(abbe_picture_choice_check(&c, 1e-4, &error), ABBE_OK);
+  REFUSED(ABBE_TOLERANCE, "the budget of 0.001 ms is not kept, for nothing faster is known",
+          abbe_picture_choice_check(&c, 1, &error));
+  OK(abbe_picture_choice_check(&c, 1e-4, &error));
   /* An age is time for all but what takes 1e12 times the yardstick. */
   choose((abbe_picture_request){.budget_ms = 1e9}, &c);
   assert_int_equal(c.point->setting.photons, 32);
@@ -208,7 +194,6 @@ TEST(by_time) {
 /* What repeats of the yardstick tell of the machine is said where a budget is not kept. */
 TEST(a_busy_machine) {
   abbe_picture_choice c;
-  abbe_error error = {0};
   write_file(WHOLE);
   choose((abbe_picture_request){.max_error = 1e-6}, &c);
   assert_true(isnan(c.unrest)); /* no time is asked for: it is not repeated */
@@ -219,15 +204,14 @@ TEST(a_busy_machine) {
   c.request.budget_ms = 1000;
   c.promised_ms = 900;
   c.unrest = 0.4;
-  assert_int_equal(abbe_picture_choice_check(&c, 1100, &error), ABBE_TOLERANCE);
-  assert_contains(error.text, "the machine is busy: repeats took 40 % longer than the fastest");
-  assert_int_equal(abbe_picture_choice_check(&c, 1000, &error), ABBE_OK);
+  REFUSED(ABBE_TOLERANCE, "the machine is busy: repeats took 40 % longer than the fastest",
+          abbe_picture_choice_check(&c, 1100, &error));
+  OK(abbe_picture_choice_check(&c, 1000, &error));
   c.unrest = 0.1;
-  assert_int_equal(abbe_picture_choice_check(&c, 1100, &error), ABBE_TOLERANCE);
-  assert_null(strstr(error.text, "busy"));
+  REFUSED(ABBE_TOLERANCE, "", abbe_picture_choice_check(&c, 1100, &error));
+  assert_null(strstr(last_error.text, "busy"));
   c.unrest = NAN;
-  assert_int_equal(abbe_picture_choice_check(&c, 1400, &error), ABBE_TOLERANCE);
-  assert_contains(error.text, "the machine may be busy");
+  REFUSED(ABBE_TOLERANCE, "the machine may be busy", abbe_picture_choice_check(&c, 1400, &error));
 }
 
 TEST(words) {
@@ -263,18 +247,18 @@ TEST(what_is_refused) {
   };
   abbe_picture_front f;
   abbe_picture_choice c;
-  abbe_error error = {0};
+  abbe_error why = {0};
   for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
     write_file(broken[i].text);
-    error = (abbe_error){0};
-    if (abbe_picture_front_load(path, ABBE_PRESET_CLASS_SPHERES, &f, &error) != ABBE_SCHEMA)
-      fail_msg("%zu is not refused so: %s", i, error.text);
-    assert_contains(error.text, broken[i].part);
-    assert_contains(error.text, path);
+    why = (abbe_error){0};
+    if (abbe_picture_front_load(path, ABBE_PRESET_CLASS_SPHERES, &f, &why) != ABBE_SCHEMA)
+      fail_msg("%zu is not refused so: %s", i, why.text);
+    assert_contains(why.text, broken[i].part);
+    assert_contains(why.text, path);
   }
-  assert_int_equal(abbe_picture_choose(&(abbe_picture_request){0}, &scene, &c, &error),
-                   ABBE_INVALID_ARGUMENT);
+  REFUSED(ABBE_INVALID_ARGUMENT, "",
+          abbe_picture_choose(&(abbe_picture_request){0}, &scene, &c, &error));
   write_file(HEAD PICTURES "    trace:\n      front:\n" TRACE("64", "1", "2", "1"));
   const abbe_picture_request q = {.file = path, .max_error = 1, .tool = {true}};
-  assert_int_equal(abbe_picture_choose(&q, &scene, &c, &error), ABBE_NOT_FOUND);
+  REFUSED(ABBE_NOT_FOUND, "", abbe_picture_choose(&q, &scene, &c, &error));
 }

@@ -16,7 +16,7 @@ TEST(there_and_back) {
   abbe_sweep_setting setting;
   abbe_render_desc desc;
   abbe_sweep_setting_of(&fine, &setting);
-  assert_int_equal(abbe_sweep_setting_desc(&setting, &desc, NULL), ABBE_OK);
+  OK(abbe_sweep_setting_desc(&setting, &desc, &error));
   assert_memory_equal(&desc, &fine, sizeof desc);
   assert_true(abbe_sweep_setting_is_fine(&setting));
   setting.photons = 64;
@@ -25,7 +25,7 @@ TEST(there_and_back) {
   setting.history = 4;
   abbe_sweep_setting_describe(&setting, text, sizeof text);
   assert_contains(text, ", of 4 frames");
-  assert_int_equal(abbe_sweep_setting_desc(&setting, &desc, NULL), ABBE_OK);
+  OK(abbe_sweep_setting_desc(&setting, &desc, &error));
   assert_int_equal(desc.history, 4);
   /* What is without effect in a thesis profile makes one setting of all. */
   desc.profile = ABBE_PROFILE_THESIS;
@@ -64,7 +64,7 @@ TEST(kinds_of_polygons) {
     desc.polygons = bits;
     abbe_sweep_setting_of(&desc, &setting);
     assert_string_equal(setting.polygons, words);
-    assert_int_equal(abbe_sweep_setting_desc(&setting, &back, NULL), ABBE_OK);
+    OK(abbe_sweep_setting_desc(&setting, &back, &error));
     assert_memory_equal(&back, &desc, sizeof back);
     abbe_sweep_setting_describe(&setting, text, sizeof text);
     if (bits > 0) assert_contains(text, words);
@@ -82,7 +82,7 @@ TEST(directions) {
     const bool other = k == ABBE_DIRECTION_OWN || k == ABBE_DIRECTION_DIRECT;
     abbe_sweep_setting_of(&desc, &setting);
     assert_string_equal(setting.direction, other ? abbe_sweep_directions[k] : "");
-    assert_int_equal(abbe_sweep_setting_desc(&setting, &back, NULL), ABBE_OK);
+    OK(abbe_sweep_setting_desc(&setting, &back, &error));
     assert_int_equal(back.direction, other ? k : ABBE_DIRECTION_AUTO);
     abbe_sweep_setting_describe(&setting, text, sizeof text);
     if (other) assert_contains(text, abbe_sweep_directions[k]);
@@ -106,7 +106,7 @@ TEST(pinholes_are_contestants) {
   abbe_sweep_setting_describe(&setting, text, sizeof text);
   assert_contains(text, "pinhole-256");
   abbe_render_desc back;
-  assert_int_equal(abbe_sweep_setting_desc(&setting, &back, NULL), ABBE_OK);
+  OK(abbe_sweep_setting_desc(&setting, &back, &error));
   assert_memory_equal(&back, &desc, sizeof back);
   static const char *const wrong[] = {"pinhole-", "pinhole-x", "pinhole-99999", "pinhole-0"};
   for (int i = 0; i < 4; i++) {
@@ -119,10 +119,8 @@ TEST(unknown_names) {
   static const abbe_sweep_setting wrong = {
       .profile = "default", .fill = "glue", .model = "auto", .wavelengths = 3, .share = 0.01};
   abbe_render_desc desc;
-  abbe_error error = {0};
   char text[200];
-  assert_int_equal(abbe_sweep_setting_desc(&wrong, &desc, &error), ABBE_NOT_FOUND);
-  assert_contains(error.text, "'glue'");
+  REFUSED(ABBE_NOT_FOUND, "'glue'", abbe_sweep_setting_desc(&wrong, &desc, &error));
   assert_false(abbe_sweep_setting_is_fine(&wrong));
   abbe_sweep_setting_describe(&wrong, text, sizeof text);
   assert_contains(text, "w3 p0");

@@ -4,12 +4,6 @@
 #include "library/choice/sweep_setting.h"
 #include "library/choice/sweep_trace.h"
 
-#include <math.h>
-
-static void assert_ok(abbe_result result, const abbe_error *error) {
-  if (result != ABBE_OK) fail_msg("%s", error->text);
-}
-
 #define SCENE CAMERA POINT_LIGHT FLOOR BEADS("crown")
 
 static abbe_sweep_row row_of(size_t photons, size_t passes) {
@@ -22,17 +16,16 @@ static abbe_sweep_row row_of(size_t photons, size_t passes) {
 TEST(the_picture_is_the_tracers) {
   abbe_scene scene = {0};
   abbe_image picture = {0}, own = {0};
-  abbe_error error = {0};
   abbe_sweep_row row = row_of(16, 2);
   const abbe_sweep_trace_desc desc = {.width = 16, .height = 12, .frames = 3};
   const abbe_trace_desc same = {
       .no_map = true, .width = 16, .height = 12, .photons = 256, .seed = ABBE_SWEEP_TRACE_SEED};
   load_text(SCENE, &scene);
-  assert_ok(abbe_sweep_trace_check(&scene, &error), &error);
-  assert_ok(abbe_sweep_trace_measure(&scene, &desc, &row, &picture, &error), &error);
+  OK(abbe_sweep_trace_check(&scene, &error));
+  OK(abbe_sweep_trace_measure(&scene, &desc, &row, &picture, &error));
   abbe_tracer *tracer = make_tracer(&scene, &same);
   run_passes(tracer, 2);
-  assert_ok(abbe_tracer_picture(tracer, &own, &error), &error);
+  OK(abbe_tracer_picture(tracer, &own, &error));
   assert_int_equal(picture.channels, own.channels);
   assert_memory_equal(picture.data, own.data, 16 * 12 * own.channels * sizeof *own.data);
   assert_true(row.number[ABBE_SWEEP_FASTEST_MS] > 0);
@@ -48,21 +41,18 @@ TEST(the_picture_is_the_tracers) {
 
 TEST(what_is_refused) {
   abbe_scene scene = {0};
-  abbe_error error = {0};
   int asked = 0;
   abbe_sweep_row row = row_of(16, 2);
   abbe_sweep_trace_desc desc = {.width = 8, .height = 8, .progress = stop_at_once, .user = &asked};
   load_text(SCENE, &scene);
-  assert_int_equal(abbe_sweep_trace_measure(&scene, &desc, &row, NULL, &error), ABBE_CANCELLED);
+  REFUSED(ABBE_CANCELLED, "", abbe_sweep_trace_measure(&scene, &desc, &row, NULL, &error));
   assert_int_equal(asked, 1);
   snprintf(row.setting.profile, sizeof row.setting.profile, "thesis");
-  assert_int_equal(abbe_sweep_trace_measure(&scene, &desc, &row, NULL, &error),
-                   ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "'thesis'");
+  REFUSED(ABBE_INVALID_ARGUMENT, "'thesis'",
+          abbe_sweep_trace_measure(&scene, &desc, &row, NULL, &error));
   const size_t lights = scene.light_count;
   scene.light_count = 0;
-  assert_int_equal(abbe_sweep_trace_check(&scene, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "no light");
+  REFUSED(ABBE_INVALID_ARGUMENT, "no light", abbe_sweep_trace_check(&scene, &error));
   scene.light_count = lights;
   abbe_scene_free(&scene);
 }

@@ -2,8 +2,6 @@
 
 #include "tests/scenes/cuts/designs.h"
 
-#include <stdlib.h>
-
 TEST(design_d_has_all_of_the_grammar) {
   abbe_cut cut = design_parse(design_d);
   assert_int_equal(cut.gear, -96);
@@ -28,7 +26,7 @@ static void expect_notes(const char *text, const char *a, const char *b) {
   abbe_cut cut;
   abbe_report report = {0};
   char all[4096] = "";
-  assert_int_equal(abbe_cut_asc_parse(text, strlen(text), "x.asc", &cut, &report, NULL), ABBE_OK);
+  OK(abbe_cut_asc_parse(text, strlen(text), "x.asc", &cut, &report, &error));
   for (size_t i = 0; i < report.count; i++) {
     strncat(all, report.note[i].text, sizeof all - strlen(all) - 2);
     strcat(all, "\n");
@@ -102,10 +100,8 @@ TEST(bad_files_are_refused_with_the_line) {
   refuse("g 96 0\na 45 1 1e7\n", "x.asc:2: 1e+07 is no index");
   refuse("g 96 0\na 45 1 96 24 48\n", "3 facets enclose nothing");
   abbe_cut cut;
-  abbe_error error;
-  assert_int_equal(abbe_cut_asc_parse("\0\1\2\3\0\0\0", 7, "x.asc", &cut, NULL, &error),
-                   ABBE_PARSE);
-  assert_contains(error.text, "no text");
+  REFUSED(ABBE_PARSE, "no text",
+          abbe_cut_asc_parse("\0\1\2\3\0\0\0", 7, "x.asc", &cut, NULL, &error));
 }
 
 TEST(too_many_facets_are_refused) {
@@ -114,10 +110,8 @@ TEST(too_many_facets_are_refused) {
   strcpy(text, "g 96 0\na 45 1");
   for (size_t i = 0, at = strlen(text); i < 5000; i++, at += 2) memcpy(text + at, " 1", 2);
   abbe_cut cut;
-  abbe_error error = {0};
-  assert_int_equal(abbe_cut_asc_parse(text, strlen(text), "x.asc", &cut, NULL, &error),
-                   ABBE_UNSUPPORTED);
-  assert_contains(error.text, "x.asc:2: more than 4096 facets");
+  REFUSED(ABBE_UNSUPPORTED, "x.asc:2: more than 4096 facets",
+          abbe_cut_asc_parse(text, strlen(text), "x.asc", &cut, NULL, &error));
   free(text);
 }
 
@@ -125,7 +119,7 @@ static char *written(const abbe_cut *cut) {
   char *text = NULL;
   size_t size = 0;
   FILE *to = open_memstream(&text, &size);
-  assert_int_equal(abbe_cut_asc_write(cut, to, NULL, NULL), ABBE_OK);
+  OK(abbe_cut_asc_write(cut, to, NULL, &error));
   fclose(to);
   return text;
 }

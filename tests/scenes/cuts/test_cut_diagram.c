@@ -6,15 +6,13 @@
 #include "tests/scenes/cuts/designs.h"
 #include "tests/svg.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 static void write_sheet(const char *path, const char *text, const char *note) {
   abbe_cut cut = design_parse(text);
   abbe_cut_polyhedron p;
-  abbe_error error = {0};
-  assert_int_equal(abbe_cut_polyhedron_make(&cut, 0, &p, NULL), ABBE_OK);
-  if (abbe_cut_diagram_write(path, &cut, &p, note, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
+  OK(abbe_cut_diagram_write(path, &cut, &p, note, &error));
   abbe_cut_polyhedron_free(&p);
   abbe_cut_free(&cut);
 }
@@ -25,7 +23,7 @@ TEST(an_svg_has_all_faces) {
   char *data;
   size_t size;
   write_sheet("cut_diagram_test.svg", design_a, "a note");
-  assert_int_equal(abbe_file_read("cut_diagram_test.svg", 1 << 22, &data, &size, NULL), ABBE_OK);
+  OK(abbe_file_read("cut_diagram_test.svg", 1 << 22, &data, &size, &error));
   assert_int_equal(unlink("cut_diagram_test.svg"), 0);
   /* the profile's sides show 8 of 16 girdle facets and those of crown and pavilion that look there
    */
@@ -43,12 +41,10 @@ TEST(a_png_is_as_long_as_its_table) {
   for (int i = 0; i < 60; i++) strcat(tall, "a -90 1 96 24 48 72 G and a line that says why\n");
   snprintf(headed, sizeof headed, "H a title\nH one\nH two\nH three\n%s", tall);
   for (int i = 0; i < 3; i++) {
-    abbe_error error = {0};
     char *data;
     size_t size;
     write_sheet("cut_diagram_test.png", i == 0 ? design_c : i == 1 ? tall : headed, NULL);
-    assert_int_equal(abbe_file_read("cut_diagram_test.png", 1 << 24, &data, &size, &error),
-                     ABBE_OK);
+    OK(abbe_file_read("cut_diagram_test.png", 1 << 24, &data, &size, &error));
     const unsigned char *head = (const unsigned char *)data;
     assert_memory_equal(head + 12, "IHDR", 4);
     assert_int_equal(head[18] * 256 + head[19], 595 * ABBE_CUT_DIAGRAM_PIXELS);
@@ -65,19 +61,17 @@ TEST(a_png_is_as_long_as_its_table) {
 TEST(a_pdf_and_what_is_refused) {
   char *data;
   size_t size;
-  abbe_error error = {0};
   write_sheet("cut_diagram_test.pdf", design_d, NULL);
-  assert_int_equal(abbe_file_read("cut_diagram_test.pdf", 1 << 22, &data, &size, NULL), ABBE_OK);
+  OK(abbe_file_read("cut_diagram_test.pdf", 1 << 22, &data, &size, &error));
   assert_memory_equal(data, "%PDF", 4);
   free(data);
   assert_int_equal(unlink("cut_diagram_test.pdf"), 0);
   abbe_cut cut = design_parse(design_c);
   abbe_cut_polyhedron p;
-  assert_int_equal(abbe_cut_polyhedron_make(&cut, 0, &p, NULL), ABBE_OK);
-  assert_int_equal(abbe_cut_diagram_write("sheet.jpg", &cut, &p, NULL, &error),
-                   ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "ends with .pdf, .svg or .png");
-  assert_int_equal(abbe_cut_diagram_write("no/such/folder/a.pdf", &cut, &p, NULL, &error), ABBE_IO);
+  OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "ends with .pdf, .svg or .png",
+          abbe_cut_diagram_write("sheet.jpg", &cut, &p, NULL, &error));
+  REFUSED(ABBE_IO, "", abbe_cut_diagram_write("no/such/folder/a.pdf", &cut, &p, NULL, &error));
   abbe_cut_polyhedron_free(&p);
   abbe_cut_free(&cut);
 }

@@ -3,8 +3,6 @@
 #include "scenes/cuts/cut_polyhedron.h"
 #include "tests/scenes/cuts/designs.h"
 
-#include <stdlib.h>
-
 /* A pyramid: a table, four mains of 45 degrees below, cut off by four girdle facets. */
 #define HEAD                                                                                       \
   "<GemCutStudio version=\"1000\">\n<index gear=\"80\" base=\"5\" symmetry=\"4\" mirror=\"1\"/>\n"
@@ -55,7 +53,7 @@ TEST(a_design_is_read) {
   assert_near(cut.facet[5].n[1], sqrt(0.5), 1e-15); /* its index 0 is in the direction of y */
   assert_near(cut.facet[5].index, 80, 0);
   assert_near(cut.facet[8].index, 20, 0);
-  assert_int_equal(abbe_cut_polyhedron_make(&cut, 0, &p, NULL), ABBE_OK);
+  OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
   assert_int_equal(p.vertex_count, 9);
   assert_int_equal(p.face_count, 9);
   assert_near(p.min[2], -0.8 * sqrt(2), 1e-12);
@@ -87,7 +85,7 @@ TEST(a_strange_symmetry_is_passed_over) {
     abbe_cut cut;
     abbe_report report = {0};
     snprintf(text, sizeof text, "<GemCutStudio><index gear='80' %s/>" TABLE REST, said[i]);
-    assert_int_equal(abbe_cut_gcs_parse(text, strlen(text), "x.gcs", &cut, &report, NULL), ABBE_OK);
+    OK(abbe_cut_gcs_parse(text, strlen(text), "x.gcs", &cut, &report, &error));
     assert_int_equal(cut.folds, 0);
     assert_false(cut.mirror);
     assert_int_equal(report.count, i < 4);
@@ -98,9 +96,7 @@ TEST(a_strange_symmetry_is_passed_over) {
 
 static void refuse(const char *text, abbe_result code, const char *part) {
   abbe_cut cut;
-  abbe_error error = {0};
-  assert_int_equal(abbe_cut_gcs_parse(text, strlen(text), "x.gcs", &cut, NULL, &error), code);
-  assert_contains(error.text, part);
+  REFUSED(code, part, abbe_cut_gcs_parse(text, strlen(text), "x.gcs", &cut, NULL, &error));
   assert_null(cut.facet);
   assert_null(cut.tier);
 }
@@ -155,16 +151,15 @@ TEST(what_is_written_is_read_back) {
   for (int k = 0; k < 4; k++) {
     abbe_cut cut = design_parse(designs[k]);
     abbe_cut_polyhedron p, q;
-    abbe_error error = {0};
     char *text = NULL;
     size_t size = 0;
     FILE *to = open_memstream(&text, &size);
     assert_non_null(to);
-    assert_int_equal(abbe_cut_polyhedron_make(&cut, 0, &p, NULL), ABBE_OK);
-    if (abbe_cut_gcs_write(&cut, &p, to, NULL, &error) != ABBE_OK) fail_msg("%s", error.text);
+    OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
+    OK(abbe_cut_gcs_write(&cut, &p, to, NULL, &error));
     assert_int_equal(fclose(to), 0);
     abbe_cut back = read(text);
-    assert_int_equal(abbe_cut_polyhedron_make(&back, 0, &q, NULL), ABBE_OK);
+    OK(abbe_cut_polyhedron_make(&back, 0, &q, &error));
     assert_int_equal(q.vertex_count, p.vertex_count);
     assert_int_equal(q.edge_count, p.edge_count);
     assert_int_equal(q.face_count, p.face_count);

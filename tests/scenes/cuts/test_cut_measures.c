@@ -7,7 +7,7 @@ static abbe_cut_measures measure(const char *text) {
   abbe_cut cut = design_parse(text);
   abbe_cut_polyhedron p;
   abbe_cut_measures m;
-  assert_int_equal(abbe_cut_polyhedron_make(&cut, 0, &p, NULL), ABBE_OK);
+  OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
   abbe_cut_measures_make(&cut, &p, &m);
   abbe_cut_polyhedron_free(&p);
   abbe_cut_free(&cut);

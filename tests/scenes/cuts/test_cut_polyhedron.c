@@ -4,8 +4,6 @@
 #include "scenes/shapes/convex.h"
 #include "tests/scenes/cuts/designs.h"
 
-#include <stdlib.h>
-
 static abbe_cut_polyhedron stone(const abbe_cut *cut, double weld) {
   abbe_cut_polyhedron p;
   abbe_error error = {0};
@@ -87,9 +85,7 @@ TEST(corners_that_nearly_meet_are_one) {
 
 static void refuse(const abbe_cut *cut, double weld, abbe_result code, const char *part) {
   abbe_cut_polyhedron p;
-  abbe_error error = {0};
-  assert_int_equal(abbe_cut_polyhedron_make(cut, weld, &p, &error), code);
-  assert_contains(error.text, part);
+  REFUSED(code, part, abbe_cut_polyhedron_make(cut, weld, &p, &error));
   assert_null(p.vertex);
   assert_null(p.fate);
 }
@@ -104,9 +100,7 @@ TEST(the_open_side_is_named) {
   for (size_t i = 0; i < sizeof designs / sizeof *designs; i++) {
     abbe_cut cut = design_parse(designs[i].text);
     abbe_cut_polyhedron p;
-    abbe_error error = {0};
-    assert_int_equal(abbe_cut_polyhedron_make(&cut, 0, &p, &error), ABBE_GEOMETRY);
-    assert_contains(error.text, designs[i].words);
+    REFUSED(ABBE_GEOMETRY, designs[i].words, abbe_cut_polyhedron_make(&cut, 0, &p, &error));
     abbe_cut_free(&cut);
   }
 }
@@ -171,12 +165,12 @@ TEST(triangles_are_a_closed_convex_solid) {
     abbe_mesh_report report;
     abbe_convex convex;
     double plane[256][4];
-    assert_int_equal(abbe_cut_polyhedron_mesh(&cut, &p, 0.01, &m, NULL), ABBE_OK);
-    assert_int_equal(abbe_mesh_check(&m, &report, NULL), ABBE_OK);
+    OK(abbe_cut_polyhedron_mesh(&cut, &p, 0.01, &m, &error));
+    OK(abbe_mesh_check(&m, &report, &error));
     assert_int_equal(report.open_edges + report.crowded_edges + report.flipped_edges, 0);
     assert_int_equal(report.degenerate_faces, 0);
     assert_near(report.volume, p.volume * 1e-6, 1e-10 * p.volume);
-    assert_int_equal(abbe_convex_find(&m, 256, plane, NULL, &convex, NULL), ABBE_OK);
+    OK(abbe_convex_find(&m, 256, plane, NULL, &convex, &error));
     assert_int_equal(convex.verdict, ABBE_CONVEX_SOLID);
     assert_int_equal(convex.planes, planes[i]);
     abbe_mesh_free(&m);

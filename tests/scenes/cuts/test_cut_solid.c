@@ -10,7 +10,6 @@
 #include "tests/scenes/cuts/designs.h"
 
 #include <cjson/cJSON.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 static const char *const paths[] = {"cut_solid_test.stl", "cut_solid_test.obj",
@@ -18,7 +17,7 @@ static const char *const paths[] = {"cut_solid_test.stl", "cut_solid_test.obj",
 
 static abbe_cut_polyhedron stone_of(const abbe_cut *cut) {
   abbe_cut_polyhedron p;
-  assert_int_equal(abbe_cut_polyhedron_make(cut, 0, &p, NULL), ABBE_OK);
+  OK(abbe_cut_polyhedron_make(cut, 0, &p, &error));
   return p;
 }
 
@@ -39,12 +38,10 @@ static void check(const char *text, double scale, int format) {
   abbe_cut_polyhedron p = stone_of(&cut);
   abbe_mesh mesh;
   abbe_mesh_report report;
-  abbe_error error = {0};
   const double unit = format == 2 ? scale : 1e3 * scale, size = unit * (p.max[0] - p.min[0]);
   write_to(paths[format], &cut, &p, scale, NULL);
-  if (abbe_mesh_load(paths[format], ABBE_NORMALS_FLAT, &mesh, NULL, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
-  assert_int_equal(abbe_mesh_check(&mesh, &report, &error), ABBE_OK);
+  OK(abbe_mesh_load(paths[format], ABBE_NORMALS_FLAT, &mesh, NULL, &error));
+  OK(abbe_mesh_check(&mesh, &report, &error));
   assert_near(report.volume, p.volume * pow(unit, 3), 1e-5 * p.volume * pow(unit, 3));
   assert_int_equal(report.open_edges + report.flipped_edges + report.crowded_edges, 0);
   assert_near(report.min[0], unit * p.min[0], 1e-6 * size);
@@ -87,10 +84,10 @@ TEST(gltf_knows_the_stone) {
   const abbe_material *diamond;
   char *data;
   size_t size;
-  assert_int_equal(abbe_material_table_load(NULL, &table, NULL), ABBE_OK);
-  assert_int_equal(abbe_material_table_find(&table, "diamond", &diamond, NULL), ABBE_OK);
+  OK(abbe_material_table_load(NULL, &table, &error));
+  OK(abbe_material_table_find(&table, "diamond", &diamond, &error));
   write_to(paths[2], &cut, &p, 0.003, diamond);
-  assert_int_equal(abbe_file_read(paths[2], 1 << 20, &data, &size, NULL), ABBE_OK);
+  OK(abbe_file_read(paths[2], 1 << 20, &data, &size, &error));
   assert_memory_equal(data, "glTF\2\0\0\0", 8);
   cJSON *root = cJSON_Parse(data + 20);
   assert_non_null(root);

@@ -2,9 +2,6 @@
 
 #include "tests/check.h"
 
-#include <stdbool.h>
-#include <stdlib.h>
-
 TEST(letters_of_windows_1252_become_a_byte_each) {
   char out[32];
   assert_int_equal(abbe_cut_text_narrow("a\xc3\xa9\xe2\x82\xac\xc2\xb0", out, sizeof out), 4);

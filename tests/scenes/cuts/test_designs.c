@@ -7,9 +7,6 @@
 #include "tests/check.h"
 
 #include <dirent.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const struct {
   const char *name;
@@ -33,11 +30,11 @@ enum { COUNT = sizeof designs / sizeof *designs };
 
 static void read(size_t i, abbe_cut *cut, abbe_cut_polyhedron *p) {
   char path[300];
-  abbe_error error = {0};
+  abbe_error why = {0};
   snprintf(path, sizeof path, ABBE_SOURCE_DIR "/scenes/designs/%s.asc", designs[i].name);
-  if (abbe_cut_file_read(path, cut, NULL, &error) != ABBE_OK) fail_msg("%s", error.text);
-  if (abbe_cut_polyhedron_make(cut, 0, p, &error) != ABBE_OK)
-    fail_msg("%s: %s", designs[i].name, error.text);
+  OK(abbe_cut_file_read(path, cut, NULL, &error));
+  if (abbe_cut_polyhedron_make(cut, 0, p, &why) != ABBE_OK)
+    fail_msg("%s: %s", designs[i].name, why.text);
 }
 
 TEST(each_is_closed) {

@@ -4,10 +4,6 @@
 #include "base/maths.h"
 #include "scenes/environment/environment.h"
 
-#include <stdlib.h>
-
-#define PI 3.14159265358979323846
-
 /* Grey noise with black places, a bright spot at the zenith and one where longitude begins again.
  */
 static void fill(abbe_radiance_map *map) {
@@ -21,12 +17,11 @@ static void fill(abbe_radiance_map *map) {
 }
 
 static void make(size_t width, abbe_environment *out) {
-  abbe_error error = {0};
   *out = (abbe_environment){0};
-  assert_int_equal(abbe_radiance_map_make(width, &out->map, NULL), ABBE_OK);
+  OK(abbe_radiance_map_make(width, &out->map, &error));
   fill(&out->map);
   abbe_environment_turn(0.7, (const double[3]){1, 2, 0.5}, -1.1, out->to_map);
-  if (abbe_environment_prepare(out, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_environment_prepare(out, &error));
 }
 
 TEST(densities_integrate_to_one) {
@@ -38,16 +33,16 @@ TEST(densities_integrate_to_one) {
     const int rows = 500, columns = 1000;
     for (int i = 0; i < rows; i++)
       for (int j = 0; j < columns; j++) {
-        const double z = 1 - 2 * (i + 0.5) / rows, a = 2 * PI * (j + 0.5) / columns;
+        const double z = 1 - 2 * (i + 0.5) / rows, a = 2 * ABBE_PI * (j + 0.5) / columns;
         const double s = sqrt(1 - z * z), d[3] = {s * cos(a), s * sin(a), z};
         double rgb[3];
-        sum += abbe_environment_pdf(&e, d) * 4 * PI / (rows * columns);
+        sum += abbe_environment_pdf(&e, d) * 4 * ABBE_PI / (rows * columns);
         abbe_environment_radiance(&e, d, rgb);
         mean += rgb[0] / (rows * columns);
       }
     assert_near(sum, 1, 3e-4);
     assert_near(mean, e.mean[0], 3e-4 * e.mean[0]);
-    assert_near(e.luminance, 4 * PI * e.mean[0], 1e-9 * e.luminance);
+    assert_near(e.luminance, 4 * ABBE_PI * e.mean[0], 1e-9 * e.luminance);
     abbe_environment_free(&e);
   }
 }
@@ -83,11 +78,11 @@ TEST(samples_follow_their_density) {
     const int rows = 500, columns = 1000;
     for (int i = 0; i < rows; i++)
       for (int j = 0; j < columns; j++) {
-        const double z = 1 - 2 * (i + 0.5) / rows, a = 2 * PI * (j + 0.5) / columns;
+        const double z = 1 - 2 * (i + 0.5) / rows, a = 2 * ABBE_PI * (j + 0.5) / columns;
         const double s = sqrt(1 - z * z), own[3] = {s * cos(a), s * sin(a), z};
         double rgb[3];
         abbe_radiance_map_at(&e.map, own, rgb);
-        const double share = rgb[0] / e.luminance * 4 * PI / (rows * columns);
+        const double share = rgb[0] / e.luminance * 4 * ABBE_PI / (rows * columns);
         expected[(own[0] > 0) + 2 * (own[1] > 0) + 4 * (own[2] > 0)] += share;
         expected[8] += (own[2] > 0.98) * share;
         for (int k = 0; k < 3; k++) expected[9 + k] += own[k] * share;
@@ -119,7 +114,7 @@ TEST(turning_both_changes_nothing) {
   make(64, &turned);
   abbe_environment_turn(0, NULL, 0, still.to_map);
   /* a quarter about z takes +x to +y; then a quarter about x takes +y to +z */
-  abbe_environment_turn(PI / 2, (const double[3]){1, 0, 0}, PI / 2, turned.to_map);
+  abbe_environment_turn(ABBE_PI / 2, (const double[3]){1, 0, 0}, ABBE_PI / 2, turned.to_map);
   for (int i = 0; i < 200; i++) {
     double d[3] = {sin(i), cos(3 * i), sin(5 * i) + 0.1}, one[3], other[3];
     assert_true(abbe_vector_normalise(d));
@@ -146,7 +141,7 @@ TEST(light_is_linear) {
   for (size_t i = 0; i < 3 * 64 * 32; i++) three.map.rgb[i] *= 3;
   abbe_alias_table_free(&three.texels);
   for (size_t i = 0; i < three.level_count; i++) abbe_radiance_map_free(&three.level[i]);
-  assert_int_equal(abbe_environment_prepare(&three, NULL), ABBE_OK);
+  OK(abbe_environment_prepare(&three, &error));
   abbe_environment_irradiance(&one, n, a);
   abbe_environment_irradiance(&three, n, b);
   assert_near(b[0], 3 * a[0], 1e-5 * b[0]);
@@ -173,13 +168,13 @@ TEST(levels_are_blurred) {
 TEST(the_brightest_part) {
   abbe_environment e = {0};
   double share;
-  assert_int_equal(abbe_radiance_map_make(256, &e.map, NULL), ABBE_OK);
+  OK(abbe_radiance_map_make(256, &e.map, &error));
   for (size_t i = 0; i < 3 * 256 * 128; i++) e.map.rgb[i] = i / 3 % 256 < 64 ? 3 : 1;
   abbe_environment_turn(0, NULL, 0, e.to_map);
-  assert_int_equal(abbe_environment_prepare(&e, NULL), ABBE_OK);
+  OK(abbe_environment_prepare(&e, &error));
   static const double known[][2] = {{0, 0}, {0.125, 0.25}, {0.25, 0.5}, {0.5, 2.0 / 3}, {1, 1}};
   for (int i = 0; i < 5; i++) {
-    assert_int_equal(abbe_environment_brightest(&e, known[i][0], &share, NULL), ABBE_OK);
+    OK(abbe_environment_brightest(&e, known[i][0], &share, &error));
     assert_near(share, known[i][1], 1e-6);
   }
   abbe_environment_free(&e);
@@ -193,12 +188,10 @@ TEST(what_is_refused) {
       {-1e-3f, "is -0.001"}, {NAN, "nan"}, {INFINITY, "inf"}, {2e12f, "2e+12"}, {0, "black"}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     abbe_environment e = {0};
-    abbe_error error;
-    assert_int_equal(abbe_radiance_map_make(16, &e.map, NULL), ABBE_OK);
+    OK(abbe_radiance_map_make(16, &e.map, &error));
     e.map.rgb[3 * (16 * 2 + 5) + 1] = cases[i].value;
-    assert_int_equal(abbe_environment_prepare(&e, &error), ABBE_INVALID_ARGUMENT);
-    assert_contains(error.text, cases[i].part);
-    if (i < 4) assert_contains(error.text, "green of the texel at column 5, row 2");
+    REFUSED(ABBE_INVALID_ARGUMENT, cases[i].part, abbe_environment_prepare(&e, &error));
+    if (i < 4) assert_contains(last_error.text, "green of the texel at column 5, row 2");
     assert_null(e.texels.keep);
     abbe_environment_free(&e);
   }

@@ -3,8 +3,6 @@
 #include "base/maths.h"
 #include "scenes/environment/environment_source.h"
 
-#define PI 3.14159265358979323846
-
 static abbe_sky sky_of(int type, double elevation) {
   return (abbe_sky){type, {cos(elevation), 0, sin(elevation)}};
 }
@@ -26,21 +24,21 @@ TEST(every_sky_is_1_at_its_zenith) {
 
 TEST(known_irradiances) {
   const abbe_sky overcast = {.type = ABBE_SKY_OVERCAST}, uniform = {.type = 5};
-  assert_near(abbe_sky_horizontal(&overcast), 7 * PI / 9, 1e-5);
-  assert_near(abbe_sky_horizontal(&uniform), PI, 1e-12);
+  assert_near(abbe_sky_horizontal(&overcast), 7 * ABBE_PI / 9, 1e-5);
+  assert_near(abbe_sky_horizontal(&uniform), ABBE_PI, 1e-12);
 }
 
 /* By hand from the formula: the clear sky, sun at 30 degrees, 45 degrees up, opposite to the sun
  * (105 degrees from it) and towards it (15). */
 TEST(the_clear_sky) {
-  const abbe_sky sky = sky_of(ABBE_SKY_CLEAR, PI / 6);
-  const double z = cos(PI / 4);
+  const abbe_sky sky = sky_of(ABBE_SKY_CLEAR, ABBE_PI / 6);
+  const double z = cos(ABBE_PI / 4);
   const double scale = (1 - exp(-0.32 / z)) / (1 - exp(-0.32)) /
-                       (1 + 10 * (exp(-PI) - exp(-1.5 * PI)) + 0.45 * 0.25);
-  const double away =
-      1 + 10 * (exp(-3 * 105 * PI / 180) - exp(-1.5 * PI)) + 0.45 * pow(cos(105 * PI / 180), 2);
-  const double towards =
-      1 + 10 * (exp(-3 * 15 * PI / 180) - exp(-1.5 * PI)) + 0.45 * pow(cos(15 * PI / 180), 2);
+                       (1 + 10 * (exp(-ABBE_PI) - exp(-1.5 * ABBE_PI)) + 0.45 * 0.25);
+  const double away = 1 + 10 * (exp(-3 * 105 * ABBE_PI / 180) - exp(-1.5 * ABBE_PI)) +
+                      0.45 * pow(cos(105 * ABBE_PI / 180), 2);
+  const double towards = 1 + 10 * (exp(-3 * 15 * ABBE_PI / 180) - exp(-1.5 * ABBE_PI)) +
+                         0.45 * pow(cos(15 * ABBE_PI / 180), 2);
   assert_near(abbe_sky_relative(&sky, (const double[3]){-z, 0, z}), scale * away, 1e-12);
   assert_near(abbe_sky_relative(&sky, (const double[3]){z, 0, z}), scale * towards, 1e-12);
 }

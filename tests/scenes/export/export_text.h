@@ -42,11 +42,9 @@ __attribute__((noinline)) static char *written(const abbe_scene *scene,
                                                abbe_scene_export_target target) {
   char path[200], *text = NULL;
   size_t size = 0;
-  abbe_error error = {0};
   snprintf(path, sizeof path, "%s/it%s", folder, abbe_scene_export_ending(target));
-  if (abbe_scene_export_write(path, scene, target, NULL, &report, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
-  assert_int_equal(abbe_file_read(path, 1 << 28, &text, &size, NULL), ABBE_OK);
+  OK(abbe_scene_export_write(path, scene, target, NULL, &report, &error));
+  OK(abbe_file_read(path, 1 << 28, &text, &size, &error));
   if (target == ABBE_SCENE_EXPORT_GLTF) {
     uint32_t length;
     assert_true(size > 20 && memcmp(text, "glTF\2\0\0\0", 8) == 0);

@@ -9,10 +9,8 @@ static abbe_export_index index_of(const abbe_material_table *table, const char *
                                   abbe_export_form form, double lambda_nm) {
   const abbe_material *material = NULL;
   abbe_export_index index;
-  abbe_error error = {0};
-  assert_int_equal(abbe_material_table_find(table, name, &material, &error), ABBE_OK);
-  if (abbe_export_index_make(material, form, lambda_nm, &index, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_material_table_find(table, name, &material, &error));
+  OK(abbe_export_index_make(material, form, lambda_nm, &index, &error));
   return index;
 }
 
@@ -76,7 +74,7 @@ TEST(records_that_end) {
 
 TEST(stated_errors_are_those_measured) {
   abbe_material_table table;
-  assert_int_equal(abbe_material_table_load("default", &table, NULL), ABBE_OK);
+  OK(abbe_material_table_load("default", &table, &error));
   for (size_t m = 0; m < table.count; m++) {
     const abbe_material *material = &table.material[m];
     abbe_export_index index;

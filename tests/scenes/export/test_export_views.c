@@ -183,7 +183,7 @@ TEST(surroundings_stand_where_they_were) {
     double mean = 0, weights = 0, middle[3] = {0};
     done(written(&scene, all[t]));
     snprintf(path, sizeof path, "%s/it-environment.exr", folder);
-    assert_int_equal(abbe_exr_read(path, &image, NULL), ABBE_OK);
+    OK(abbe_exr_read(path, &image, &error));
     for (size_t i = 0; i < image.width * image.height; i++) {
       const double u = ((double)(i % image.width) + 0.5) / (double)image.width;
       const double v = ((double)(i / image.width) + 0.5) / (double)image.height;

@@ -3,8 +3,6 @@
 
 #include "scenes/geometry/digest.h"
 
-#include <string.h>
-
 typedef uint64_t (*digest)(uint64_t h, const void *data, size_t size);
 
 TEST(each_byte_and_its_place_count) {

@@ -1,8 +1,7 @@
 #include "tests/check.h"
 
+#include "base/maths.h"
 #include "scenes/geometry/transform.h"
-
-#define PI 3.14159265358979323846
 
 static void assert_point(const double m[16], double x, double y, double z, double ex, double ey,
                          double ez) {
@@ -15,7 +14,7 @@ static void assert_point(const double m[16], double x, double y, double z, doubl
 TEST(rotation_is_right_handed) {
   const double axis[3] = {0, 0, 7};
   double m[16];
-  abbe_transform_rotate(PI / 2, axis, m);
+  abbe_transform_rotate(ABBE_PI / 2, axis, m);
   assert_point(m, 1, 0, 0, 0, 1, 0);
   assert_point(m, 0, 1, 0, -1, 0, 0);
 }

@@ -5,8 +5,6 @@
 #include "scenes/import/scene_file.h"
 #include "scenes/import/scene_reading.h"
 
-#include <stdlib.h>
-
 static abbe_result read(const char *text, abbe_light **light, size_t *count, abbe_error *error) {
   abbe_yaml *yaml = NULL;
   *error = (abbe_error){0};
@@ -19,18 +17,12 @@ static abbe_result read(const char *text, abbe_light **light, size_t *count, abb
 TEST(each_kind_is_read) {
   abbe_light *light;
   size_t count;
-  abbe_error error;
-  assert_int_equal(
-      read("lights:\n"
-           "- {kind: point, position: [1, 2, 3], intensity: 4}\n"
-           "- {name: s, kind: spot, position: [0, 0, 2], target: [0, 0, 0], intensity: 1, cone: 30,"
-           " soft: 6}\n"
-           "- {kind: directional, direction: [0, 3, 4], irradiance: 5}\n"
-           "- {kind: disk, position: [0, 0, 1], direction: [0, 0, -1], radius: 0.1, radiance: 6}\n"
-           "- {kind: rectangle, position: [0, 0, 1], direction: [0, 0, -1], width: 0.4, height: "
-           "0.2, radiance: 7, illuminant: A}\n",
-           &light, &count, &error),
-      ABBE_OK);
+  OK(read("lights:\n- {kind: point, position: [1, 2, 3], intensity: 4}\n- {name: s, kind: spot, "
+          "position: [0, 0, 2], target: [0, 0, 0], intensity: 1, cone: 30, soft: 6}\n- {kind: "
+          "directional, direction: [0, 3, 4], irradiance: 5}\n- {kind: disk, position: [0, 0, 1], "
+          "direction: [0, 0, -1], radius: 0.1, radiance: 6}\n- {kind: rectangle, position: [0, 0, "
+          "1], direction: [0, 0, -1], width: 0.4, height: 0.2, radiance: 7, illuminant: A}\n",
+          &light, &count, &error));
   assert_int_equal(count, 5);
   for (size_t i = 0; i < count; i++) {
     static const double powers[] = {4, 1, 5, 6, 7};
@@ -44,7 +36,7 @@ TEST(each_kind_is_read) {
   assert_near(light[2].direction[1], 0.6, 1e-15);
   assert_near(abbe_light_area(&light[4]), 0.08, 1e-15);
   abbe_lights_free(light, count);
-  assert_int_equal(read("ambient: 1\n", &light, &count, &error), ABBE_OK);
+  OK(read("ambient: 1\n", &light, &count, &error));
   assert_int_equal(count, 0);
   abbe_lights_free(light, count);
   abbe_lights_free(NULL, 0);
@@ -79,13 +71,13 @@ TEST(lights_change_alone) {
       {"lights.lamp.illuminant=A", "lights.lamp.intensity=0.5"}};
   const char *path = ABBE_SOURCE_DIR "/scenes/gem.yaml";
   abbe_scene scene, anew;
-  abbe_error error = {0};
-  assert_int_equal(abbe_scene_load(path, NULL, &scene, &error), ABBE_OK);
+  abbe_error why = {0};
+  OK(abbe_scene_load(path, NULL, &scene, &error));
   const abbe_object *objects = scene.object;
   for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
     const abbe_scene_options options = {.set = sets[i], .set_count = 2};
-    assert_int_equal(abbe_scene_load_lights(path, &options, &scene, &error), ABBE_OK);
-    assert_int_equal(abbe_scene_load(path, &options, &anew, &error), ABBE_OK);
+    OK(abbe_scene_load_lights(path, &options, &scene, &error));
+    OK(abbe_scene_load(path, &options, &anew, &error));
     assert_ptr_equal(scene.object, objects);
     assert_int_equal(scene.light_count, anew.light_count);
     const abbe_light *a = scene.light, *b = anew.light;
@@ -104,7 +96,7 @@ TEST(lights_change_alone) {
                                     "lights.lamp.position=[0, 0, 0.15]"};
   for (size_t i = 0; i < 2; i++) {
     const abbe_scene_options options = {.set = &bad[i], .set_count = 1};
-    assert_int_not_equal(abbe_scene_load_lights(path, &options, &scene, &error), ABBE_OK);
+    assert_int_not_equal(abbe_scene_load_lights(path, &options, &scene, &why), ABBE_OK);
     assert_true(scene.light[0].power == 0.5 && scene.ambient != 0.5);
   }
   abbe_scene_free(&scene);

@@ -7,12 +7,10 @@
 
 #include "tests/check.h"
 
-#include <stdlib.h>
-
 static abbe_material_table table;
 
 static void load_table(void) {
-  assert_int_equal(abbe_material_table_load(NULL, &table, NULL), ABBE_OK);
+  OK(abbe_material_table_load(NULL, &table, &error));
 }
 
 static void free_table(void) {
@@ -22,14 +20,12 @@ static void free_table(void) {
 /* The object as a scene of its own, which frees it. */
 static abbe_scene read(const char *text) {
   abbe_yaml *yaml;
-  abbe_error error = {0};
   enum { ROOM = 4 };
   abbe_scene scene = {.object = calloc(ROOM, sizeof(abbe_object))};
   assert_non_null(scene.object);
-  assert_int_equal(abbe_yaml_parse(text, strlen(text), "text", &yaml, &error), ABBE_OK);
-  if (abbe_object_read(yaml, abbe_yaml_root(yaml), ABBE_SOURCE_DIR "/tests/bad/", &table,
-                       scene.object, ROOM, &scene.object_count, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_yaml_parse(text, strlen(text), "text", &yaml, &error));
+  OK(abbe_object_read(yaml, abbe_yaml_root(yaml), ABBE_SOURCE_DIR "/tests/bad/", &table,
+                      scene.object, ROOM, &scene.object_count, &error));
   abbe_yaml_free(yaml);
   return scene;
 }
@@ -37,16 +33,16 @@ static abbe_scene read(const char *text) {
 /* In a sentence that has those words and the line. */
 static void refuses(const char *object, const char *says) {
   abbe_scene one = {.object = calloc(1, sizeof *one.object)};
-  abbe_error error = {0};
+  abbe_error why = {0};
   abbe_yaml *yaml;
   char text[512];
   snprintf(text, sizeof text, "\n%s", object);
-  assert_int_equal(abbe_yaml_parse(text, strlen(text), "text", &yaml, &error), ABBE_OK);
+  OK(abbe_yaml_parse(text, strlen(text), "text", &yaml, &error));
   assert_int_not_equal(abbe_object_read(yaml, abbe_yaml_root(yaml), ABBE_SOURCE_DIR "/tests/bad/",
-                                        &table, one.object, 1, &one.object_count, &error),
+                                        &table, one.object, 1, &one.object_count, &why),
                        ABBE_OK);
-  if (strstr(error.text, says) == NULL || strstr(error.text, "text:2:") == NULL)
-    fail_msg("%s", error.text);
+  if (strstr(why.text, says) == NULL || strstr(why.text, "text:2:") == NULL)
+    fail_msg("%s", why.text);
   abbe_yaml_free(yaml);
   abbe_scene_free(&one);
 }
@@ -131,12 +127,11 @@ static void recut(const char *file, const char *keys, double crown, double pavil
 static void write_gcs(const char *path) {
   abbe_cut cut;
   abbe_cut_polyhedron stone;
-  assert_int_equal(
-      abbe_cut_file_read(ABBE_SOURCE_DIR "/scenes/designs/emerald.asc", &cut, NULL, NULL), ABBE_OK);
-  assert_int_equal(abbe_cut_polyhedron_make(&cut, 0, &stone, NULL), ABBE_OK);
+  OK(abbe_cut_file_read(ABBE_SOURCE_DIR "/scenes/designs/emerald.asc", &cut, NULL, &error));
+  OK(abbe_cut_polyhedron_make(&cut, 0, &stone, &error));
   FILE *to = fopen(path, "w");
   assert_non_null(to);
-  assert_int_equal(abbe_cut_gcs_write(&cut, &stone, to, NULL, NULL), ABBE_OK);
+  OK(abbe_cut_gcs_write(&cut, &stone, to, NULL, &error));
   fclose(to);
   abbe_cut_polyhedron_free(&stone);
   abbe_cut_free(&cut);

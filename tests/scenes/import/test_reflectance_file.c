@@ -8,7 +8,7 @@
 static const char *write_table(const char *text) {
   static char path[64];
   snprintf(path, sizeof path, "/tmp/abbe-test-spectrum-%ld.csv", (long)getpid());
-  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
+  OK(abbe_file_write(path, text, strlen(text), &error));
   return path;
 }
 
@@ -54,12 +54,11 @@ static void refuses(const char *format, const char *table, abbe_result result, c
   snprintf(plate, sizeof plate, format, write_table(table));
   snprintf(text, sizeof text, PLATE("%s"), plate);
   const char *whole = strstr(text, "camera:");
-  assert_int_equal(abbe_file_write(path, whole, strlen(whole), NULL), ABBE_OK);
+  OK(abbe_file_write(path, whole, strlen(whole), &error));
   abbe_scene scene;
-  abbe_error error = {0};
-  const abbe_result got = abbe_scene_load(path, NULL, &scene, &error);
-  if (got != result || strstr(error.text, says) == NULL)
-    fail_msg("%s: %d %s", format, got, error.text);
+  abbe_error why = {0};
+  const abbe_result got = abbe_scene_load(path, NULL, &scene, &why);
+  if (got != result || strstr(why.text, says) == NULL) fail_msg("%s: %d %s", format, got, why.text);
   unlink(path);
   unlink(write_table(""));
 }

@@ -4,8 +4,6 @@
 
 #include "scenes/import/scene_file.h"
 
-#include <stdio.h>
-
 /* Whoever stops it is not asked again, whenever that is, and there is no scene. */
 TEST(reading_ends_when_it_is_told_to) {
   static const struct {

@@ -13,9 +13,7 @@ static abbe_scene load_at(const char *text, const char *time) {
   const char *const set[] = {time};
   const abbe_scene_options options = {.set = set, .set_count = time != NULL};
   abbe_scene scene;
-  abbe_error error = {0};
-  if (abbe_scene_parse(text, strlen(text), "t.yaml", &options, &scene, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_scene_parse(text, strlen(text), "t.yaml", &options, &scene, &error));
   return scene;
 }
 
@@ -70,7 +68,7 @@ TEST(water_is_at_its_time) {
                             .drop_count = 1,
                             .drop = &drop};
   abbe_mesh known;
-  assert_int_equal(abbe_water_make(&water, &known, NULL), ABBE_OK);
+  OK(abbe_water_make(&water, &known, &error));
   abbe_scene scene = load_at(text, "time=0.75");
   const abbe_mesh *seen = &scene.object[1].mesh;
   assert_null(scene.object[1].fixes);

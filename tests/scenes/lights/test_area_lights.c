@@ -4,8 +4,6 @@
 #include "base/maths.h"
 #include "scenes/lights/area_lights.h"
 
-static const double PI = 3.14159265358979;
-
 #define DISK                                                                                       \
   "lights:\n- {name: panel, kind: disk, position: [0, 0, 0.5], direction: [0, 0, -1], radius: "    \
   "0.2, radiance: 3}\n"
@@ -14,10 +12,10 @@ TEST(one_point_is_the_middle) {
   abbe_scene scene, lit;
   load_text(CAMERA DISK FLOOR, &scene);
   assert_true(abbe_area_lights_any(&scene));
-  assert_int_equal(abbe_area_lights_add(&scene, 1, ABBE_SCENE_MAX_LIGHTS, &lit, NULL), ABBE_OK);
+  OK(abbe_area_lights_add(&scene, 1, ABBE_SCENE_MAX_LIGHTS, &lit, &error));
   assert_false(abbe_area_lights_any(&lit));
   assert_int_equal(lit.light_count, 1);
-  assert_near(lit.light[0].power, 3 * PI * 0.04, 1e-12);
+  assert_near(lit.light[0].power, 3 * ABBE_PI * 0.04, 1e-12);
   assert_memory_equal(lit.light[0].position, scene.light[0].position, sizeof(double[3]));
   free(lit.light);
   abbe_scene_free(&scene);
@@ -32,8 +30,7 @@ TEST(points_shine_as_the_disk) {
     abbe_scene scene, lit;
     double sum = 0;
     load_text(CAMERA DISK FLOOR, &scene);
-    assert_int_equal(abbe_area_lights_add(&scene, points, ABBE_SCENE_MAX_LIGHTS, &lit, NULL),
-                     ABBE_OK);
+    OK(abbe_area_lights_add(&scene, points, ABBE_SCENE_MAX_LIGHTS, &lit, &error));
     assert_int_equal(lit.light_count, points);
     for (size_t k = 0; k < points; k++) {
       double away[3];
@@ -45,7 +42,7 @@ TEST(points_shine_as_the_disk) {
       assert_near(lit.light[k].position[2], 0.5, 1e-12);
       assert_true(hypot(lit.light[k].position[0], lit.light[k].position[1]) < 0.2);
     }
-    assert_near(sum / (PI * 3 * 0.04 / (0.04 + 0.25)), 1, within[i]);
+    assert_near(sum / (ABBE_PI * 3 * 0.04 / (0.04 + 0.25)), 1, within[i]);
     free(lit.light);
     abbe_scene_free(&scene);
   }
@@ -60,7 +57,7 @@ TEST(a_rectangle_is_a_grid) {
             "0, -1], width: 0.4, height: 0.1, radiance: 3}\n" FLOOR,
             &scene);
   assert_near(abbe_light_area(&scene.light[0]), 0.04, 1e-12);
-  assert_int_equal(abbe_area_lights_add(&scene, 8, ABBE_SCENE_MAX_LIGHTS, &lit, NULL), ABBE_OK);
+  OK(abbe_area_lights_add(&scene, 8, ABBE_SCENE_MAX_LIGHTS, &lit, &error));
   assert_int_equal(lit.light_count, 6); /* sqrt(8 x 4) is 6 columns */
   double sum = 0;
   for (size_t i = 0; i < lit.light_count; i++) {
@@ -72,7 +69,7 @@ TEST(a_rectangle_is_a_grid) {
   }
   assert_near(sum, 3 * 0.04, 1e-12);
   free(lit.light);
-  assert_int_equal(abbe_area_lights_add(&scene, 16, ABBE_SCENE_MAX_LIGHTS, &lit, NULL), ABBE_OK);
+  OK(abbe_area_lights_add(&scene, 16, ABBE_SCENE_MAX_LIGHTS, &lit, &error));
   assert_int_equal(lit.light_count, 16); /* 8 columns, 2 rows */
   assert_near(fabs(lit.light[0].position[1]), 0.025, 1e-12);
   free(lit.light);
@@ -86,13 +83,13 @@ TEST(others_stay_and_room_is_kept) {
             "radius: 0.2, radiance: 3}\n"
             "- {name: lamp, kind: point, position: [0, 1, 0.5], intensity: 1}\n" FLOOR,
             &scene);
-  assert_int_equal(abbe_area_lights_add(&scene, 16, 12, &lit, NULL), ABBE_OK);
+  OK(abbe_area_lights_add(&scene, 16, 12, &lit, &error));
   assert_int_equal(lit.light_count, 11);
   assert_int_equal(lit.light[0].points, 5);
   assert_string_equal(lit.light[10].name, "lamp");
   assert_near(lit.light[10].power, 1, 0);
   free(lit.light);
-  assert_int_equal(abbe_area_lights_add(&scene, 16, 1, &lit, NULL), ABBE_OK);
+  OK(abbe_area_lights_add(&scene, 16, 1, &lit, &error));
   assert_int_equal(lit.light_count, 3);
   free(lit.light);
   abbe_scene_free(&scene);

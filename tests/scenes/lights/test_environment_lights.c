@@ -4,18 +4,14 @@
 #include "base/maths.h"
 #include "scenes/lights/environment_lights.h"
 
-static const double PI = 3.14159265358979;
-
 #define PLAIN CAMERA FLOOR
 
 static void add(const char *environment, size_t count, abbe_scene *scene, abbe_scene *out) {
   char text[2048];
-  abbe_error error = {0};
   snprintf(text, sizeof text, PLAIN "environment: %s\n", environment);
   load_text(text, scene);
   const abbe_environment_lights_desc desc = {.count = count, .min_nm = 380, .max_nm = 780};
-  if (abbe_environment_lights_add(scene, &desc, NULL, out, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_environment_lights_add(scene, &desc, NULL, out, &error));
 }
 
 static void drop(abbe_scene *scene, abbe_scene *lit) {
@@ -28,10 +24,10 @@ TEST(one_softbox_is_one_light) {
   add("{softboxes: [{elevation: 60, azimuth: 30, radius: 10, radiance: 3}]}", 1, &scene, &lit);
   assert_int_equal(lit.light_count, 1);
   assert_int_equal(lit.environment_lights, 1);
-  const double r = 10 * PI / 180, e = 60 * PI / 180, a = 30 * PI / 180;
+  const double r = 10 * ABBE_PI / 180, e = 60 * ABBE_PI / 180, a = 30 * ABBE_PI / 180;
   const double way[3] = {-cos(e) * cos(a), -cos(e) * sin(a), -sin(e)};
   /* across its middle a disk of constant radiance gives pi L sin^2 r */
-  assert_near(lit.light[0].power / (PI * 3 * pow(sin(r), 2)), 1, 1e-3);
+  assert_near(lit.light[0].power / (ABBE_PI * 3 * pow(sin(r), 2)), 1, 1e-3);
   for (int k = 0; k < 3; k++) assert_near(lit.light[0].direction[k], way[k], 1e-3);
   assert_int_equal(lit.light[0].kind, ABBE_LIGHT_DIRECTIONAL);
   drop(&scene, &lit);
@@ -81,8 +77,7 @@ TEST(what_is_left_and_the_lights_are_all) {
     add(STUDIO, count, &scene, &lit);
     assert_int_equal(lit.environment_lights, count);
     const abbe_environment *e = scene.environment;
-    assert_int_equal(abbe_environment_lights_leave(e, lit.environment_lights, &left, NULL),
-                     ABBE_OK);
+    OK(abbe_environment_lights_leave(e, lit.environment_lights, &left, &error));
     double flux[3] = {0, 0, 0};
     for (size_t i = 0; i < left.width * left.height; i++) {
       double d[3], y = 0;
@@ -109,8 +104,8 @@ TEST(only_lamps_become_lights) {
   abbe_scene scene, lit;
   add(STUDIO, 8, &scene, &lit);
   assert_int_equal(lit.light_count, 2);
-  assert_near(lit.light[0].direction[2], -sin(70 * PI / 180), 2e-3);
-  assert_near(lit.light[1].direction[2], sin(20 * PI / 180), 2e-3);
+  assert_near(lit.light[0].direction[2], -sin(70 * ABBE_PI / 180), 2e-3);
+  assert_near(lit.light[1].direction[2], sin(20 * ABBE_PI / 180), 2e-3);
   drop(&scene, &lit);
 }
 
@@ -135,7 +130,7 @@ TEST(the_sun_stands_out_of_its_sky) {
   add("{uniform: 0.5, softboxes: [{elevation: 45, azimuth: 30, radius: 0.5, radiance: 4000}]}", 4,
       &scene, &lit);
   assert_int_equal(lit.light_count, 1);
-  assert_near(lit.light[0].power / (PI * 4000 * pow(sin(0.5 * PI / 180), 2)), 1, 2e-3);
+  assert_near(lit.light[0].power / (ABBE_PI * 4000 * pow(sin(0.5 * ABBE_PI / 180), 2)), 1, 2e-3);
   drop(&scene, &lit);
 }
 
@@ -163,8 +158,8 @@ TEST(colours_are_the_lights_own) {
 TEST(a_lamp_at_the_zenith_is_no_brighter) {
   abbe_scene scene, lit;
   add("{softboxes: [{elevation: 90, radius: 3, radiance: 9}]}", 1, &scene, &lit);
-  const double r = 3 * PI / 180;
-  assert_near(lit.light[0].power / (PI * 9 * pow(sin(r), 2)), 1, 2e-3);
+  const double r = 3 * ABBE_PI / 180;
+  assert_near(lit.light[0].power / (ABBE_PI * 9 * pow(sin(r), 2)), 1, 2e-3);
   assert_near(lit.light[0].direction[2], -1, 1e-6);
   drop(&scene, &lit);
 }
@@ -178,7 +173,7 @@ TEST(own_lights_stay_and_leave_room) {
   strcat(text, "]}\n");
   abbe_environment_lights_desc desc = {.count = 99, .min_nm = 380, .max_nm = 780};
   load_text(text, &scene);
-  assert_int_equal(abbe_environment_lights_add(&scene, &desc, NULL, &lit, NULL), ABBE_OK);
+  OK(abbe_environment_lights_add(&scene, &desc, NULL, &lit, &error));
   assert_int_equal(lit.light_count, ABBE_SCENE_MAX_LIGHTS);
   assert_int_equal(lit.environment_lights, ABBE_SCENE_MAX_LIGHTS - 1);
   assert_string_equal(lit.light[0].name, "lamp");
@@ -186,7 +181,7 @@ TEST(own_lights_stay_and_leave_room) {
   drop(&scene, &lit);
   load_text(CAMERA POINT_LIGHT FLOOR, &scene);
   desc.count = 4;
-  assert_int_equal(abbe_environment_lights_add(&scene, &desc, NULL, &lit, NULL), ABBE_OK);
+  OK(abbe_environment_lights_add(&scene, &desc, NULL, &lit, &error));
   assert_int_equal(lit.light_count, 1);
   assert_int_equal(lit.environment_lights, 0);
   drop(&scene, &lit);
@@ -198,7 +193,7 @@ TEST(an_earlier_copy_is_taken_over) {
   add(STUDIO, 2, &scene, &first);
   const abbe_environment_lights_desc desc = {.count = 2, .min_nm = 380, .max_nm = 780};
   first.light[0].power *= 3; /* to see who was there */
-  assert_int_equal(abbe_environment_lights_add(&scene, &desc, &first, &again, NULL), ABBE_OK);
+  OK(abbe_environment_lights_add(&scene, &desc, &first, &again, &error));
   assert_int_equal(again.light_count, first.light_count);
   assert_int_equal(again.environment_lights, first.environment_lights);
   assert_memory_equal(again.soft_light, first.soft_light, sizeof *first.soft_light);
@@ -212,7 +207,7 @@ TEST(an_earlier_copy_is_taken_over) {
                   abbe_illuminant_power(&b->illuminant, nm));
   }
   abbe_environment_turn(1, NULL, 0, scene.environment->to_map);
-  assert_int_equal(abbe_environment_lights_add(&scene, &desc, &first, &turned, NULL), ABBE_OK);
+  OK(abbe_environment_lights_add(&scene, &desc, &first, &turned, &error));
   assert_near(turned.light[0].power / (first.light[0].power / 3), 1, 1e-12);
   assert_true(turned.light[0].direction[0] != first.light[0].direction[0]);
   abbe_environment_lights_drop(&again);

@@ -7,9 +7,6 @@
 #include "tests/patience.h"
 #include "tests/random.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 typedef struct soup {
   double (*triangle)[9];
   size_t count;
@@ -19,7 +16,7 @@ typedef struct soup {
 
 static void finish(soup *s) {
   assert_non_null(s->triangle);
-  assert_int_equal(abbe_bvh_make((const double(*)[9])s->triangle, s->count, &s->h, NULL), ABBE_OK);
+  OK(abbe_bvh_make((const double(*)[9])s->triangle, s->count, &s->h, &error));
 }
 
 static void drop(soup *s) {
@@ -43,7 +40,7 @@ static void make_soup(size_t count, double size, soup *s) {
 
 static void make_ring(soup *s) {
   abbe_mesh mesh = {0};
-  assert_int_equal(abbe_shape_ring(0.08, 0.02, 64, 32, &mesh, NULL), ABBE_OK);
+  OK(abbe_shape_ring(0.08, 0.02, 64, 32, &mesh, &error));
   *s = (soup){.count = mesh.face_count, .size = 0.1, .triangle = abbe_bvh_triangles(&mesh)};
   abbe_mesh_free(&mesh);
   finish(s);
@@ -179,7 +176,7 @@ TEST(it_ends_when_it_is_told_to) {
   abbe_bvh h;
   const double(*triangle)[9] = (const double(*)[9])s.triangle;
   abbe_watch_set(&watch);
-  assert_int_equal(abbe_bvh_make(triangle, s.count, &h, NULL), ABBE_OK);
+  OK(abbe_bvh_make(triangle, s.count, &h, &error));
   assert_int_equal(h.node_count, s.h.node_count);
   assert_memory_equal(h.node, s.h.node, h.node_count * sizeof *h.node);
   abbe_bvh_free(&h);
@@ -247,9 +244,8 @@ TEST(packed_nodes_leave_nothing_out) {
     uint64_t random = 3;
     size_t left_out = 0, seen = 0;
     uint32_t(*texel)[4] = calloc(abbe_bvh_nodes_count(&s[which].h), sizeof *texel);
-    assert_int_equal(
-        abbe_bvh_nodes_pack(&s[which].h, (const double(*)[9])s[which].triangle, 0, 0, texel, NULL),
-        ABBE_OK);
+    OK(abbe_bvh_nodes_pack(&s[which].h, (const double(*)[9])s[which].triangle, 0, 0, texel,
+                           &error));
     for (int i = 0; i < 20; i++) {
       double o[3], d[3];
       random_ray(&s[which], &random, o, d);
@@ -337,17 +333,17 @@ TEST(the_shaders_find_the_same) {
 TEST(parts_end_where_normals_break) {
   abbe_mesh mesh = {0};
   uint32_t group[8192];
-  assert_int_equal(abbe_shape_box((double[3]){1, 2, 3}, &mesh, NULL), ABBE_OK);
+  OK(abbe_shape_box((double[3]){1, 2, 3}, &mesh, &error));
   assert_int_equal(abbe_bvh_parts(&mesh, group), 6);
   for (size_t i = 0; i < mesh.face_count; i++)
     for (size_t k = 0; k < mesh.face_count; k++) {
       const double *a = mesh.normal[mesh.face[i][0]], *b = mesh.normal[mesh.face[k][0]];
       assert_true((group[i] == group[k]) == (a[0] == b[0] && a[1] == b[1] && a[2] == b[2]));
     }
-  assert_int_equal(abbe_mesh_compute_normals(&mesh, ABBE_NORMALS_SMOOTH, NULL), ABBE_OK);
+  OK(abbe_mesh_compute_normals(&mesh, ABBE_NORMALS_SMOOTH, &error));
   assert_int_equal(abbe_bvh_parts(&mesh, group), 1);
   abbe_mesh_free(&mesh);
-  assert_int_equal(abbe_shape_ring(0.08, 0.02, 64, 32, &mesh, NULL), ABBE_OK);
+  OK(abbe_shape_ring(0.08, 0.02, 64, 32, &mesh, &error));
   assert_int_equal(abbe_bvh_parts(&mesh, group), 1);
   abbe_mesh_free(&mesh);
 }

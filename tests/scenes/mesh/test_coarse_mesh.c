@@ -7,18 +7,13 @@
 #include "tests/check.h"
 #include "tests/random.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 typedef struct coarse {
   abbe_mesh whole, few; /* few: the same vertices */
 } coarse;
 
 static void make_few(coarse *c) {
   c->few = c->whole;
-  assert_int_equal(abbe_coarse_mesh_make(&c->whole, &c->few.face, &c->few.face_count, NULL),
-                   ABBE_OK);
+  OK(abbe_coarse_mesh_make(&c->whole, &c->few.face, &c->few.face_count, &error));
 }
 
 static void drop(coarse *c) {
@@ -76,9 +71,8 @@ TEST(sides_of_a_thin_wall_stay_apart) {
   coarse c;
   static const double thin = 0.998;
   abbe_mesh w, both;
-  assert_int_equal(abbe_shape_sphere(0.5, 6, &w, NULL), ABBE_OK); /* 81,920 faces */
-  assert_int_equal(abbe_mesh_make(2 * w.vertex_count, 2 * w.face_count, false, &both, NULL),
-                   ABBE_OK);
+  OK(abbe_shape_sphere(0.5, 6, &w, &error)); /* 81,920 faces */
+  OK(abbe_mesh_make(2 * w.vertex_count, 2 * w.face_count, false, &both, &error));
   for (size_t v = 0; v < both.vertex_count; v++)
     for (int k = 0; k < 3; k++) {
       const size_t from = v % w.vertex_count;
@@ -135,7 +129,7 @@ TEST(seams_stay_closed) {
   const double middle[3] = {0, 0, -0.3};
   uint64_t random = 3;
   coarse c;
-  assert_int_equal(abbe_water_make(&water, &c.whole, NULL), ABBE_OK);
+  OK(abbe_water_make(&water, &c.whole, &error));
   make_few(&c);
   assert_non_null(c.few.face);
   assert_int_in_range(c.few.face_count, ABBE_COARSE_MESH_FACES / 2, 3 * ABBE_COARSE_MESH_FACES / 2);
@@ -159,16 +153,16 @@ TEST(seams_stay_closed) {
 /* Few faces, faces of their own vertices, and no face at all: left as they are. */
 TEST(what_is_no_smooth_large_mesh_is_left) {
   coarse c;
-  assert_int_equal(abbe_shape_ring(0.08, 0.02, 64, 32, &c.whole, NULL), ABBE_OK);
+  OK(abbe_shape_ring(0.08, 0.02, 64, 32, &c.whole, &error));
   make_few(&c);
   assert_null(c.few.face);
   drop(&c);
-  assert_int_equal(abbe_shape_sphere(0.5, 6, &c.whole, NULL), ABBE_OK);
-  assert_int_equal(abbe_mesh_compute_normals(&c.whole, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
+  OK(abbe_shape_sphere(0.5, 6, &c.whole, &error));
+  OK(abbe_mesh_compute_normals(&c.whole, ABBE_NORMALS_FLAT, &error));
   make_few(&c);
   assert_null(c.few.face);
   drop(&c);
-  assert_int_equal(abbe_shape_sphere(0.5, 6, &c.whole, NULL), ABBE_OK);
+  OK(abbe_shape_sphere(0.5, 6, &c.whole, &error));
   for (size_t v = 0; v < c.whole.vertex_count; v++) memset(c.whole.position[v], 0, 24);
   make_few(&c);
   assert_null(c.few.face);

@@ -5,13 +5,9 @@
 #include "scenes/geometry/transform.h"
 #include "scenes/shapes/shape.h"
 
-#include <stdlib.h>
-
 static void assert_fixes(abbe_mesh *m, const char *word) {
   char *what = NULL;
-  abbe_error error = {0};
-  if (abbe_mesh_fix(m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_mesh_fix(m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error));
   if (word) {
     assert_non_null(what);
     if (!strstr(what, word)) fail_msg("'%s' lacks '%s'", what, word);
@@ -36,8 +32,7 @@ TEST(a_sound_mesh_is_left_alone) {
 static abbe_mesh torn_sphere(double off) {
   abbe_mesh whole = test_sphere(2), m;
   uint32_t random = 1;
-  assert_int_equal(abbe_mesh_make(3 * whole.face_count, whole.face_count, false, &m, NULL),
-                   ABBE_OK);
+  OK(abbe_mesh_make(3 * whole.face_count, whole.face_count, false, &m, &error));
   for (size_t f = 0; f < whole.face_count; f++)
     for (size_t k = 0; k < 3; k++) {
       const size_t v = 3 * f + k;
@@ -64,9 +59,7 @@ TEST(corners_that_lie_a_little_apart_are_joined) {
   }
   /* farther apart than that they are another mesh's business */
   abbe_mesh m = torn_sphere(1e-2);
-  abbe_error error = {0};
-  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, NULL, &error),
-                   ABBE_GEOMETRY);
+  REFUSED(ABBE_GEOMETRY, "", abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, NULL, &error));
   abbe_mesh_free(&m);
 }
 
@@ -94,7 +87,7 @@ TEST(small_and_flat_holes_are_closed) {
   assert_int_equal(m.face_count, 1280);
   abbe_mesh_free(&m);
   const double size[3] = {1, 1, 1};
-  assert_int_equal(abbe_shape_box(size, &m, NULL), ABBE_OK);
+  OK(abbe_shape_box(size, &m, &error));
   m.face_count -= 2;
   assert_fixes(&m, "1 hole closed");
   assert_true(fabs(test_mesh_faults(&m).volume - 1) < 1e-12);
@@ -104,20 +97,18 @@ TEST(small_and_flat_holes_are_closed) {
 TEST(a_large_bent_hole_is_refused_and_counted) {
   abbe_mesh m = test_sphere(3);
   m.face_count -= 200;
-  abbe_error error;
   char *what = NULL;
   const abbe_mesh_report r = test_mesh_faults(&m);
-  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error),
-                   ABBE_GEOMETRY);
+  REFUSED(ABBE_GEOMETRY, "", abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error));
   assert_null(what);
   char where[160];
   snprintf(where, sizeof where,
            "%zu open edges make %zu hole%s, the widest of %zu edges, %.3g across", r.open_edges,
            r.holes, r.holes == 1 ? "" : "s", r.hole_edges, r.hole_size);
-  assert_contains(error.text, where);
+  assert_contains(last_error.text, where);
   snprintf(where, sizeof where, "around (%.4g, %.4g, %.4g)", r.hole[0], r.hole[1], r.hole[2]);
-  assert_contains(error.text, where);
-  assert_contains(error.text, "'repair: true' closes holes");
+  assert_contains(last_error.text, where);
+  assert_contains(last_error.text, "'repair: true' closes holes");
   assert_int_equal(m.face_count, 1080);
   abbe_mesh_free(&m);
 }
@@ -156,11 +147,9 @@ TEST(repair_closes_what_bends) {
     if (most < 0.3) memmove(m.face[kept++], c, sizeof *m.face);
   }
   m.face_count = kept;
-  abbe_error error = {0};
   char *what = NULL;
-  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, NULL, &error), ABBE_GEOMETRY);
-  if (abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, true, NULL, &what, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  REFUSED(ABBE_GEOMETRY, "", abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, NULL, &error));
+  OK(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, true, NULL, &what, &error));
   assert_contains(what, "1 hole closed, 1.98 across in the mesh's own unit");
   free(what);
   const abbe_mesh_report r = test_mesh_faults(&m);
@@ -182,10 +171,8 @@ TEST(faces_that_are_there_twice_are_one) {
 }
 
 static char *repaired(abbe_mesh *m) {
-  abbe_error error = {0};
   char *what = NULL;
-  if (abbe_mesh_fix(m, ABBE_NORMALS_AUTO, true, NULL, &what, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_mesh_fix(m, ABBE_NORMALS_AUTO, true, NULL, &what, &error));
   return what;
 }
 
@@ -216,11 +203,9 @@ TEST(repair_drops_sheets) {
   abbe_mesh m = test_boxes(box, 2);
   m.face[12][0] = 4, m.face[12][1] = 5, m.face[12][2] = 15;
   m.face_count = 13;
-  abbe_error error = {0};
-  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, NULL, &error), ABBE_GEOMETRY);
-  assert_contains(error.text,
-                  "1 edge with more than two faces, one of 3 from (1, 0, 0) to (1, 0, 1)");
-  assert_contains(error.text, "'repair: true'");
+  REFUSED(ABBE_GEOMETRY, "1 edge with more than two faces, one of 3 from (1, 0, 0) to (1, 0, 1)",
+          abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, NULL, &error));
+  assert_contains(last_error.text, "'repair: true'");
   char *what = repaired(&m);
   assert_contains(what, "1 sheet that hung on the body");
   assert_int_equal(m.face_count, 12);
@@ -230,7 +215,7 @@ TEST(repair_drops_sheets) {
   m = test_boxes(box, 2);
   m.face[12][0] = 4, m.face[12][1] = 5, m.face[12][2] = 15;
   m.face_count = 13;
-  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, true, NULL, NULL, NULL), ABBE_OK);
+  OK(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, true, NULL, NULL, &error));
   assert_int_equal(m.vertex_count, 8);
   abbe_mesh_free(&m);
   const test_box beside[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 0, 0}, {2, 1, 1}, false}};
@@ -249,7 +234,7 @@ TEST(repair_drops_sheets) {
 TEST(repair_closes_slits) {
   const test_box box = {{0, 0, 0}, {1, 1, 1}, false};
   abbe_mesh corner = test_boxes(&box, 1), m;
-  assert_int_equal(abbe_mesh_make(9, 13, false, &m, NULL), ABBE_OK);
+  OK(abbe_mesh_make(9, 13, false, &m, &error));
   memcpy(m.position, corner.position, 8 * sizeof *m.position);
   memcpy(m.face, corner.face, 12 * sizeof *m.face);
   abbe_mesh_free(&corner);
@@ -280,10 +265,10 @@ TEST(bodies_that_cross_stay_bodies) {
   abbe_mesh m = test_boxes(box, 2), *part = NULL;
   size_t solids = 0, count = 0;
   char *what = NULL;
-  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, &solids, &what, NULL), ABBE_OK);
+  OK(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, &solids, &what, &error));
   assert_null(what);
   assert_int_equal(solids, 2);
-  assert_int_equal(abbe_mesh_split(&m, &part, &count, NULL), ABBE_OK);
+  OK(abbe_mesh_split(&m, &part, &count, &error));
   assert_int_equal(count, 2);
   assert_near(test_mesh_faults(&part[0]).volume, 8, 1e-12);
   assert_near(test_mesh_faults(&part[1]).volume, 2 * 1.2, 1e-12);
@@ -291,7 +276,7 @@ TEST(bodies_that_cross_stay_bodies) {
   free(part);
   abbe_mesh_free(&m);
   m = test_boxes(box, 1);
-  assert_int_equal(abbe_mesh_split(&m, &part, &count, NULL), ABBE_OK);
+  OK(abbe_mesh_split(&m, &part, &count, &error));
   assert_int_equal(count, 1);
   assert_null(part);
   abbe_mesh_free(&m);
@@ -323,10 +308,10 @@ TEST(more_solids_than_are_followed_are_refused) {
 TEST(a_surface_that_crosses_itself_is_said) {
   abbe_mesh m;
   char *what = NULL;
-  assert_int_equal(abbe_shape_ring(1, 0.3, 48, 24, &m, NULL), ABBE_OK);
+  OK(abbe_shape_ring(1, 0.3, 48, 24, &m, &error));
   for (size_t v = 0; v < m.vertex_count; v++)
     if (m.position[v][0] > 0.8) m.position[v][0] -= 2.1;
-  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, NULL), ABBE_OK);
+  OK(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error));
   assert_contains(what, "the surface crosses itself, in ");
   assert_contains(what, ": light may go wrong there");
   free(what);
@@ -337,9 +322,9 @@ TEST(a_surface_that_crosses_itself_is_said) {
 TEST(normals_by_angles_keep_creases) {
   const double profile[4][2] = {{0, 0}, {1, 0}, {1, 2}, {0, 2}};
   abbe_mesh m;
-  assert_int_equal(abbe_shape_lathe(profile, 4, 24, &m, NULL), ABBE_OK);
-  assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
-  assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_AUTO, NULL), ABBE_OK);
+  OK(abbe_shape_lathe(profile, 4, 24, &m, &error));
+  OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
+  OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_AUTO, &error));
   assert_int_equal(m.vertex_count, 24 * 4 + 2);
   for (size_t v = 0; v < m.vertex_count; v++) {
     const double *p = m.position[v], *n = m.normal[v];
@@ -361,7 +346,7 @@ TEST(degenerate_faces_are_fixed) {
   const uint32_t face[16][3] = {{0, 2, 1}, {0, 3, 2}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6},
                                 {3, 0, 4}, {3, 4, 7}, {0, 1, 5}, {0, 5, 4}, {4, 5, 8}, {4, 8, 7},
                                 {8, 5, 6}, {8, 6, 7}, {0, 0, 1}, {6, 7, 7}};
-  assert_int_equal(abbe_mesh_make(9, 16, false, &m, NULL), ABBE_OK);
+  OK(abbe_mesh_make(9, 16, false, &m, &error));
   memcpy(m.position, at, sizeof at);
   memcpy(m.face, face, sizeof face);
   assert_int_equal(test_mesh_faults(&m).degenerate_faces, 3);
@@ -374,9 +359,8 @@ TEST(degenerate_faces_are_fixed) {
 /* Two shells in one mesh: b is moved into a. */
 static abbe_mesh joined(abbe_mesh *a, abbe_mesh *b) {
   abbe_mesh m;
-  assert_int_equal(abbe_mesh_make(a->vertex_count + b->vertex_count, a->face_count + b->face_count,
-                                  false, &m, NULL),
-                   ABBE_OK);
+  OK(abbe_mesh_make(a->vertex_count + b->vertex_count, a->face_count + b->face_count, false, &m,
+                    &error));
   memcpy(m.position, a->position, a->vertex_count * sizeof *a->position);
   memcpy(m.position + a->vertex_count, b->position, b->vertex_count * sizeof *b->position);
   memcpy(m.face, a->face, a->face_count * sizeof *a->face);
@@ -390,7 +374,7 @@ static abbe_mesh joined(abbe_mesh *a, abbe_mesh *b) {
 
 TEST(a_bubble_faces_into_itself) {
   abbe_mesh outer = test_sphere(2), inner;
-  assert_int_equal(abbe_shape_sphere(0.5, 2, &inner, NULL), ABBE_OK);
+  OK(abbe_shape_sphere(0.5, 2, &inner, &error));
   const double whole = test_mesh_faults(&outer).volume, hole = test_mesh_faults(&inner).volume;
   abbe_mesh m = joined(&outer, &inner);
   assert_int_equal(test_mesh_faults(&m).shells, 2);
@@ -413,7 +397,7 @@ TEST(fixing_keeps_given_normals) {
   m.given_normals = true;
   m.face_count = 10;
   for (size_t f = 0; f < 10; f++) test_turn_face(&m, f); /* and inside out */
-  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, &what, NULL), ABBE_OK);
+  OK(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, &what, &error));
   assert_contains(what, "hole closed");
   free(what);
   assert_true(m.given_normals);

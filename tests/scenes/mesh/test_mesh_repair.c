@@ -1,19 +1,15 @@
 /* What 'repair: true' does to meshes of thousands of faults. */
 #include "tests/scenes/solids.h"
 
-#include <stdlib.h>
-
 static bool is_closed(const abbe_mesh *m) {
   abbe_mesh_report r;
-  assert_int_equal(abbe_mesh_check(m, &r, NULL), ABBE_OK);
+  OK(abbe_mesh_check(m, &r, &error));
   return r.open_edges + r.crowded_edges + r.flipped_edges + r.degenerate_faces == 0;
 }
 
 static void assert_repairs(abbe_mesh *m, const char *word) {
-  abbe_error error = {0};
   char *what = NULL;
-  if (abbe_mesh_fix(m, ABBE_NORMALS_AUTO, true, NULL, &what, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_mesh_fix(m, ABBE_NORMALS_AUTO, true, NULL, &what, &error));
   assert_contains(what, word);
   assert_true(is_closed(m));
   free(what);
@@ -23,7 +19,7 @@ static void assert_repairs(abbe_mesh *m, const char *word) {
 static abbe_mesh box_and_more(size_t points, size_t faces) {
   const test_box one = {{0, 0, 0}, {1, 1, 1}, false};
   abbe_mesh m, box = test_boxes(&one, 1);
-  assert_int_equal(abbe_mesh_make(8 + points, 12 + faces, false, &m, NULL), ABBE_OK);
+  OK(abbe_mesh_make(8 + points, 12 + faces, false, &m, &error));
   memcpy(m.position, box.position, 8 * sizeof *m.position);
   memcpy(m.face, box.face, 12 * sizeof *m.face);
   abbe_mesh_free(&box);
@@ -87,7 +83,7 @@ TEST(sheets_on_sheets_go) {
 static abbe_mesh strips(size_t count, size_t points) {
   const size_t pairs = points / 2, faces = 2 * (pairs - 1);
   abbe_mesh m;
-  assert_int_equal(abbe_mesh_make(count * points, count * faces, false, &m, NULL), ABBE_OK);
+  OK(abbe_mesh_make(count * points, count * faces, false, &m, &error));
   for (size_t s = 0; s < count; s++) {
     const size_t v = s * points, f = s * faces;
     for (size_t i = 0; i < pairs; i++) {
@@ -113,10 +109,9 @@ TEST(many_short_rims_are_closed) {
 TEST(many_long_rims_are_refused) {
   abbe_mesh m = strips(21, 600);
   const size_t faces = m.face_count;
-  abbe_error error = {0};
-  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, true, NULL, NULL, &error), ABBE_GEOMETRY);
-  assert_contains(error.text, "21 holes that bend, of up to 600 edges");
-  assert_contains(error.text, "where the mesh was made");
+  REFUSED(ABBE_GEOMETRY, "21 holes that bend, of up to 600 edges",
+          abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, true, NULL, NULL, &error));
+  assert_contains(last_error.text, "where the mesh was made");
   assert_int_equal(m.face_count, faces);
   abbe_mesh_free(&m);
 }

@@ -3,8 +3,6 @@
 #include "scenes/mesh/shells.h"
 #include "scenes/shapes/shape.h"
 
-#include <stdlib.h>
-
 static abbe_result find(const abbe_mesh *m, abbe_shells *out, abbe_error *error) {
   abbe_topology t;
   assert_int_equal(abbe_topology_make(m, &t, NULL), ABBE_OK);
@@ -15,9 +13,8 @@ static abbe_result find(const abbe_mesh *m, abbe_shells *out, abbe_error *error)
 
 static abbe_shells shells_of(const test_box *box, size_t count) {
   abbe_shells s;
-  abbe_error error = {0};
   abbe_mesh m = test_boxes(box, count);
-  if (find(&m, &s, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(find(&m, &s, &error));
   abbe_mesh_free(&m);
   return s;
 }
@@ -98,10 +95,8 @@ TEST(hollows_that_cross_are_refused_with_the_place) {
                            {{4, 2, 2.5}, {8, 4, 4.5}, true}};
   abbe_mesh m = test_boxes(box, 3);
   abbe_shells s;
-  abbe_error error = {0};
-  assert_int_equal(find(&m, &s, &error), ABBE_GEOMETRY);
-  assert_contains(error.text, "hollows of the mesh cross");
-  assert_contains(error.text, "at (5, ");
+  REFUSED(ABBE_GEOMETRY, "hollows of the mesh cross", find(&m, &s, &error));
+  assert_contains(last_error.text, "at (5, ");
   assert_null(s.shell);
   abbe_mesh_free(&m);
 }
@@ -132,14 +127,14 @@ TEST(faces_on_one_another_are_no_crossing_but_told) {
 TEST(a_surface_that_crosses_itself_is_told) {
   abbe_mesh m;
   abbe_shells s;
-  assert_int_equal(abbe_shape_ring(1, 0.3, 48, 24, &m, NULL), ABBE_OK);
-  assert_int_equal(find(&m, &s, NULL), ABBE_OK);
+  OK(abbe_shape_ring(1, 0.3, 48, 24, &m, &error));
+  OK(find(&m, &s, &error));
   assert_int_equal(s.self_count, 0);
   abbe_shells_free(&s);
   /* the tube is pulled through the other side of the ring */
   for (size_t v = 0; v < m.vertex_count; v++)
     if (m.position[v][0] > 0.8) m.position[v][0] -= 2.1;
-  assert_int_equal(find(&m, &s, NULL), ABBE_OK);
+  OK(find(&m, &s, &error));
   assert_true(s.self_count > 0);
   assert_true(s.self_place[0] < -0.5);
   abbe_shells_free(&s);
@@ -187,7 +182,7 @@ TEST(deep_nests_take_the_square_of_their_depth) {
   enum { COUNT = 200 };
   abbe_mesh m = nested_boxes(COUNT);
   abbe_shells s;
-  assert_int_equal(find(&m, &s, NULL), ABBE_OK);
+  OK(find(&m, &s, &error));
   for (uint32_t i = 0; i < COUNT; i++) assert_int_equal(s.shell[i].depth, COUNT - 1 - i);
   abbe_shells_free(&s);
   abbe_mesh_free(&m);
@@ -217,9 +212,8 @@ TEST(all_through_all_is_two_solids) {
 TEST(what_would_take_too_long_is_refused) {
   abbe_mesh m = nested_boxes(1200);
   abbe_shells s;
-  abbe_error error = {0};
-  assert_int_equal(find(&m, &s, &error), ABBE_UNSUPPORTED);
-  assert_contains(error.text, "the 1200 parts of the mesh, of 14400 faces, lie in and through");
+  REFUSED(ABBE_UNSUPPORTED, "the 1200 parts of the mesh, of 14400 faces, lie in and through",
+          find(&m, &s, &error));
   assert_null(s.shell);
   abbe_mesh_free(&m);
 }

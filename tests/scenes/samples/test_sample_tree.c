@@ -6,16 +6,11 @@
 #include "scenes/samples/sample_tree.h"
 #include "scenes/shapes/shape.h"
 
-#include <stdlib.h>
-
-static const double PI = 3.14159265358979323846;
-
 static void sample(const abbe_mesh *mesh, size_t count, abbe_sample_strategy strategy,
                    abbe_surface_samples *out, abbe_sample_tree *tree) {
-  abbe_error error = {0};
   const abbe_surface_sampling sampling = {count, strategy, 3, true, true, true};
-  assert_int_equal(abbe_surface_samples_make(&mesh, 1, &sampling, out, &error), ABBE_OK);
-  assert_int_equal(abbe_sample_tree_make(out, tree, &error), ABBE_OK);
+  OK(abbe_surface_samples_make(&mesh, 1, &sampling, out, &error));
+  OK(abbe_sample_tree_make(out, tree, &error));
 }
 
 static void assert_holds(const abbe_sample_node *node, const abbe_sample_node *below) {
@@ -45,7 +40,7 @@ TEST(all_are_in_it_once) {
       ABBE_SAMPLE_STRATEGY_RANDOM, ABBE_SAMPLE_STRATEGY_QUANTIZED, ABBE_SAMPLE_STRATEGY_NEIGHBOUR};
   static const size_t counts[] = {1, 2, 90};
   abbe_mesh ring = {0};
-  assert_int_equal(abbe_shape_ring(0.03, 0.008, 48, 24, &ring, NULL), ABBE_OK);
+  OK(abbe_shape_ring(0.03, 0.008, 48, 24, &ring, &error));
   for (size_t k = 0; k < 9; k++) {
     abbe_surface_samples s;
     abbe_sample_tree tree;
@@ -78,7 +73,7 @@ TEST(clusters_face_alike) {
   abbe_mesh ball = {0};
   abbe_surface_samples s;
   abbe_sample_tree tree;
-  assert_int_equal(abbe_shape_sphere(0.02, 4, &ball, NULL), ABBE_OK);
+  OK(abbe_shape_sphere(0.02, 4, &ball, &error));
   sample(&ball, 256, ABBE_SAMPLE_STRATEGY_NEIGHBOUR, &s, &tree);
   for (size_t i = 0; i < tree.count; i++)
     if (tree.node[i].area < s.area / 15) assert_true(tree.node[i].cone > 0.3);
@@ -90,7 +85,7 @@ TEST(clusters_face_alike) {
 /* A square 2 a wide and parallel to the floor at a height, facing down. */
 static void make_roof(double a, double height, abbe_mesh *out) {
   static const uint32_t face[2][3] = {{0, 2, 1}, {0, 3, 2}};
-  assert_int_equal(abbe_mesh_make(4, 2, false, out, NULL), ABBE_OK);
+  OK(abbe_mesh_make(4, 2, false, out, &error));
   for (int i = 0; i < 4; i++) {
     const double place[3] = {i == 1 || i == 2 ? a : -a, i > 1 ? a : -a, height},
                  down[3] = {0, 0, -1};
@@ -119,7 +114,7 @@ static double cut(const abbe_sample_tree *tree, double x, double share, size_t *
     const double d[3] = {node->at.position[0] - x, node->at.position[1], node->at.position[2]};
     const double gap = fmax(abbe_vector_length(d) - node->radius, 0),
                  most = node->area / (gap * gap);
-    if (node->cluster && !(most <= PI * share)) {
+    if (node->cluster && !(most <= ABBE_PI * share)) {
       i++;
       continue;
     }
@@ -161,7 +156,7 @@ TEST(cuts) {
     assert_true(whole == sum && none == 0);
     assert_int_equal(all, s.count);
     assert_true(fabs(clustered - whole) <= bound);
-    assert_near(clustered, right, PI / 200);
+    assert_near(clustered, right, ABBE_PI / 200);
     assert_near(whole, right, 0.01 * right);
     assert_true(few <= before && few <= all);
     before = few;
@@ -175,7 +170,7 @@ TEST(cuts) {
 TEST(nothing) {
   const abbe_surface_samples none = {0};
   abbe_sample_tree tree;
-  assert_int_equal(abbe_sample_tree_make(&none, &tree, NULL), ABBE_OK);
+  OK(abbe_sample_tree_make(&none, &tree, &error));
   assert_int_equal(tree.count, 0);
   abbe_sample_tree_free(&tree);
   abbe_sample_tree_free(NULL);

@@ -6,14 +6,12 @@
 #include "scenes/samples/surface_curvature.h"
 #include "scenes/shapes/shape.h"
 
-#include <stdlib.h>
-
 static abbe_surface_curvature *fit(const abbe_mesh *mesh, abbe_surface_samples *s) {
   const abbe_surface_sampling sampling = {
       .count = 400, .strategy = ABBE_SAMPLE_STRATEGY_NEIGHBOUR, .seed = 1, .sided = true};
-  assert_int_equal(abbe_surface_samples_make(&mesh, 1, &sampling, s, NULL), ABBE_OK);
+  OK(abbe_surface_samples_make(&mesh, 1, &sampling, s, &error));
   abbe_surface_curvature *out = calloc(s->count, sizeof *out);
-  assert_int_equal(abbe_surface_curvature_fit(s, out, NULL), ABBE_OK);
+  OK(abbe_surface_curvature_fit(s, out, &error));
   for (size_t i = 0; i < s->count; i++) {
     double across[3];
     assert_true(fabs(out[i].curvature[0]) >= fabs(out[i].curvature[1]));
@@ -28,7 +26,7 @@ TEST(sphere) {
   const double radius = 0.02;
   abbe_mesh ball = {0};
   abbe_surface_samples s = {0};
-  assert_int_equal(abbe_shape_sphere(radius, 5, &ball, NULL), ABBE_OK);
+  OK(abbe_shape_sphere(radius, 5, &ball, &error));
   abbe_surface_curvature *c = fit(&ball, &s);
   for (size_t i = 0; i < s.count; i++)
     for (int k = 0; k < 2; k++) assert_near(c[i].curvature[k] * radius, 1, 0.03);
@@ -43,7 +41,7 @@ TEST(cylinder) {
   const double profile[4][2] = {{inner, 0}, {inner, height}, {outer, height}, {outer, 0}};
   abbe_mesh ring = {0};
   abbe_surface_samples s = {0};
-  assert_int_equal(abbe_shape_lathe(profile, 4, 256, &ring, NULL), ABBE_OK);
+  OK(abbe_shape_lathe(profile, 4, 256, &ring, &error));
   abbe_surface_curvature *c = fit(&ring, &s);
   size_t walls[2] = {0, 0};
   for (size_t i = 0; i < s.count; i++) {
@@ -67,7 +65,7 @@ TEST(cylinder) {
 TEST(plane) {
   abbe_mesh plane = {0};
   abbe_surface_samples s = {0};
-  assert_int_equal(abbe_shape_rectangle(0.3, 0.2, &plane, NULL), ABBE_OK);
+  OK(abbe_shape_rectangle(0.3, 0.2, &plane, &error));
   abbe_surface_curvature *c = fit(&plane, &s);
   for (size_t i = 0; i < s.count; i++)
     for (int k = 0; k < 2; k++) assert_near(c[i].curvature[k], 0, 1e-9);

@@ -7,10 +7,6 @@
 #include "scenes/samples/surface_samples.h"
 #include "scenes/shapes/shape.h"
 
-#include <stdlib.h>
-
-static const double PI = 3.14159265358979323846;
-
 static const abbe_sample_strategy strategies[] = {
     ABBE_SAMPLE_STRATEGY_RANDOM, ABBE_SAMPLE_STRATEGY_GRID, ABBE_SAMPLE_STRATEGY_QUANTIZED,
     ABBE_SAMPLE_STRATEGY_NEIGHBOUR};
@@ -18,16 +14,15 @@ enum { STRATEGIES = 4 };
 
 static void take(const abbe_mesh *mesh, size_t count, abbe_sample_strategy strategy, uint64_t seed,
                  bool ours, abbe_surface_samples *out) {
-  abbe_error error = {0};
   const abbe_surface_sampling sampling = {count, strategy, seed, ours, ours, ours};
-  assert_int_equal(abbe_surface_samples_make(&mesh, 1, &sampling, out, &error), ABBE_OK);
+  OK(abbe_surface_samples_make(&mesh, 1, &sampling, out, &error));
 }
 
 /* A rectangle of a width and a height about a middle, spanned by two unit directions. */
 static void make_rectangle(const double middle[3], const double u[3], const double v[3],
                            double width, double height, abbe_mesh *out) {
   static const double corner[4][2] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
-  assert_int_equal(abbe_mesh_make(4, 2, false, out, NULL), ABBE_OK);
+  OK(abbe_mesh_make(4, 2, false, out, &error));
   for (int i = 0; i < 4; i++) {
     for (int k = 0; k < 3; k++)
       out->position[i][k] = middle[k] + corner[i][0] * width * u[k] + corner[i][1] * height * v[k];
@@ -46,7 +41,7 @@ static double distance(const abbe_surface_point *a, const abbe_surface_point *b)
 /* Kept ones are a radius apart, and every candidate is within it of a kept one. */
 TEST(neighbours_are_apart_and_cover) {
   abbe_mesh ring = {0};
-  assert_int_equal(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, NULL), ABBE_OK);
+  OK(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, &error));
   for (int sided = 0; sided < 2; sided++) {
     abbe_surface_samples s = {0};
     take(&ring, 300, ABBE_SAMPLE_STRATEGY_NEIGHBOUR, 7, sided != 0, &s);
@@ -71,7 +66,7 @@ TEST(neighbours_are_apart_and_cover) {
  * area, and so are weights that are alike. */
 TEST(area_and_places) {
   abbe_mesh ball = {0};
-  assert_int_equal(abbe_shape_sphere(0.02, 5, &ball, NULL), ABBE_OK);
+  OK(abbe_shape_sphere(0.02, 5, &ball, &error));
   for (int k = 0; k < 2 * STRATEGIES; k++) {
     const bool ours = k >= STRATEGIES;
     const abbe_sample_strategy strategy = strategies[k % STRATEGIES];
@@ -89,7 +84,7 @@ TEST(area_and_places) {
     }
     print_message("%s: %zu of 200\n", abbe_sample_strategy_name(strategy), s.count);
     assert_true(s.count <= 200 && s.count >= 190);
-    assert_near(s.area, 4 * PI * 4e-4, 3e-6);
+    assert_near(s.area, 4 * ABBE_PI * 4e-4, 3e-6);
     assert_near(sum, s.area, 1e-12);
     assert_near(s.spacing, sqrt(s.area / (double)s.count), 1e-15);
     abbe_surface_samples_free(&s);
@@ -111,12 +106,12 @@ static double beside_middle(const abbe_surface_point *p, double edge, double cub
 /* Quantized ones that stay on the surface are the candidates nearest to their cubes' middles. */
 TEST(quantized_on_the_surface) {
   abbe_mesh ring = {0};
-  assert_int_equal(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, NULL), ABBE_OK);
+  OK(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, &error));
   abbe_surface_samples s = {0};
   abbe_surface_sampling sampling = {.count = 300, .strategy = ABBE_SAMPLE_STRATEGY_QUANTIZED};
   sampling.on_surface = true;
   const abbe_mesh *mesh = &ring;
-  assert_int_equal(abbe_surface_samples_make(&mesh, 1, &sampling, &s, NULL), ABBE_OK);
+  OK(abbe_surface_samples_make(&mesh, 1, &sampling, &s, &error));
   size_t cubes = 0;
   for (size_t i = 0; i < s.count; i++) {
     double own[3], other[3];
@@ -152,7 +147,7 @@ static double density_ratio(abbe_sample_strategy strategy, const double n[3]) {
   for (uint64_t seed = 0; seed < 4; seed++) {
     abbe_surface_samples s = {0};
     const abbe_surface_sampling sampling = {.count = 400, .strategy = strategy, .seed = seed};
-    assert_int_equal(abbe_surface_samples_make(both, 2, &sampling, &s, NULL), ABBE_OK);
+    OK(abbe_surface_samples_make(both, 2, &sampling, &s, &error));
     for (size_t i = 0; i < s.count; i++) *(s.sample[i].mesh == 0 ? &flat : &tilted) += 1;
     abbe_surface_samples_free(&s);
   }
@@ -269,16 +264,16 @@ TEST(a_coaxial_disk) {
   enum { AROUND = 512 };
   const double radius = 0.2, h = 0.25, at[3] = {0}, n[3] = {0, 0, 1};
   abbe_mesh disk = {0};
-  assert_int_equal(abbe_mesh_make(AROUND + 1, AROUND, false, &disk, NULL), ABBE_OK);
+  OK(abbe_mesh_make(AROUND + 1, AROUND, false, &disk, &error));
   for (uint32_t i = 0; i <= AROUND; i++) {
-    const double angle = 2 * PI * i / AROUND, r = i < AROUND ? radius : 0;
+    const double angle = 2 * ABBE_PI * i / AROUND, r = i < AROUND ? radius : 0;
     const double place[3] = {r * cos(angle), r * sin(angle), h}, down[3] = {0, 0, -1};
     memcpy(disk.position[i], place, sizeof place);
     memcpy(disk.normal[i], down, sizeof down);
     const uint32_t face[3] = {AROUND, (i + 1) % AROUND, i};
     if (i < AROUND) memcpy(disk.face[i], face, sizeof face);
   }
-  const double right = PI * radius * radius / (radius * radius + h * h);
+  const double right = ABBE_PI * radius * radius / (radius * radius + h * h);
   for (int k = 0; k < STRATEGIES; k++) {
     double sum = 0;
     for (uint64_t seed = 0; seed < 4; seed++) {
@@ -300,7 +295,7 @@ TEST(samples_move_along) {
   for (int k = 0; k < STRATEGIES; k++) {
     abbe_mesh ring = {0};
     abbe_surface_samples before = {0}, after = {0};
-    assert_int_equal(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, NULL), ABBE_OK);
+    OK(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, &error));
     take(&ring, 200, strategies[k], 5, true, &before);
     for (size_t i = 0; i < ring.vertex_count; i++)
       for (int c = 0; c < 3; c++) ring.position[i][c] += by[c];
@@ -326,14 +321,12 @@ TEST(wrong_requests) {
   abbe_mesh nothing = {0};
   const abbe_mesh *mesh = &nothing;
   abbe_surface_samples s;
-  abbe_error error = {0};
   abbe_surface_sampling sampling = {.count = 10};
-  assert_int_equal(abbe_surface_samples_make(&mesh, 1, &sampling, &s, &error), ABBE_GEOMETRY);
-  assert_contains(error.text, "an area of 0 m2");
+  REFUSED(ABBE_GEOMETRY, "an area of 0 m2",
+          abbe_surface_samples_make(&mesh, 1, &sampling, &s, &error));
   sampling.count = ABBE_SURFACE_MAX_SAMPLES + 1;
-  assert_int_equal(abbe_surface_samples_make(&mesh, 1, &sampling, &s, &error),
-                   ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "1 to 4096");
+  REFUSED(ABBE_INVALID_ARGUMENT, "1 to 4096",
+          abbe_surface_samples_make(&mesh, 1, &sampling, &s, &error));
   assert_string_equal(abbe_sample_strategy_name((abbe_sample_strategy)99), "unknown");
   abbe_surface_samples_free(NULL);
 }

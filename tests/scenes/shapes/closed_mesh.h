@@ -10,7 +10,7 @@
 /* One closed shell of unit normals, each within a cosine of its faces'. Returns what was found. */
 static inline abbe_mesh_report assert_closed(const abbe_mesh *mesh, double least_cosine) {
   abbe_mesh_report report;
-  assert_int_equal(abbe_mesh_check(mesh, &report, NULL), ABBE_OK);
+  OK(abbe_mesh_check(mesh, &report, &error));
   assert_int_equal(report.open_edges, 0);
   assert_int_equal(report.crowded_edges, 0);
   assert_int_equal(report.flipped_edges, 0);

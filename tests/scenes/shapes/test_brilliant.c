@@ -4,8 +4,6 @@
 #include "scenes/shapes/brilliant.h"
 #include "scenes/shapes/convex.h"
 
-#include <stdlib.h>
-
 #define DEGREES (180 / 3.14159265358979323846)
 
 static size_t count_planes(const double (*plane)[4], size_t count, double z_low, double z_high) {
@@ -20,13 +18,13 @@ TEST(has_the_faces_of_a_brilliant) {
   abbe_mesh_report report;
   double plane[80][4];
   size_t count = 0;
-  assert_int_equal(abbe_brilliant_make(&cut, &m, NULL), ABBE_OK);
-  assert_int_equal(abbe_mesh_check(&m, &report, NULL), ABBE_OK);
+  OK(abbe_brilliant_make(&cut, &m, &error));
+  OK(abbe_mesh_check(&m, &report, &error));
   assert_int_equal(report.open_edges + report.crowded_edges + report.flipped_edges, 0);
   assert_int_equal(report.degenerate_faces, 0);
   assert_true(report.volume > 0);
   abbe_convex found;
-  assert_int_equal(abbe_convex_find(&m, 80, plane, NULL, &found, NULL), ABBE_OK);
+  OK(abbe_convex_find(&m, 80, plane, NULL, &found, &error));
   assert_int_equal(found.verdict, ABBE_CONVEX_SOLID);
   count = found.planes;
   assert_int_equal(count, 73);
@@ -43,9 +41,9 @@ TEST(bezels_and_mains_have_their_angles) {
   abbe_mesh m;
   double plane[80][4];
   size_t count = 0, bezels = 0, mains = 0;
-  assert_int_equal(abbe_brilliant_make(&cut, &m, NULL), ABBE_OK);
+  OK(abbe_brilliant_make(&cut, &m, &error));
   abbe_convex found;
-  assert_int_equal(abbe_convex_find(&m, 80, plane, NULL, &found, NULL), ABBE_OK);
+  OK(abbe_convex_find(&m, 80, plane, NULL, &found, &error));
   assert_int_equal(found.verdict, ABBE_CONVEX_SOLID);
   count = found.planes;
   for (size_t i = 0; i < count; i++) {
@@ -56,7 +54,7 @@ TEST(bezels_and_mains_have_their_angles) {
   assert_int_equal(mains, 8);
   /* Crown height by the trade's own rule: half of (1 - table) times the bezel's tangent. */
   abbe_mesh_report report;
-  assert_int_equal(abbe_mesh_check(&m, &report, NULL), ABBE_OK);
+  OK(abbe_mesh_check(&m, &report, &error));
   assert_true(fabs(report.max[2] - (0.03 + 0.44 * tan(33 / DEGREES))) < 1e-12);
   assert_true(fabs(report.min[2] + 0.03 + tan(41.2 / DEGREES)) < 1e-12);
   assert_true(fabs(report.max[0] - 1) < 1e-12);
@@ -76,9 +74,8 @@ TEST(refuses_what_is_no_stone) {
                                 {.diameter = 1, .star = 0.05}};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
     abbe_mesh m;
-    abbe_error error = {0};
-    assert_int_equal(abbe_brilliant_make(&bad[i], &m, &error), ABBE_INVALID_ARGUMENT);
+    REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_brilliant_make(&bad[i], &m, &error));
     assert_null(m.position);
-    assert_true(strlen(error.text) > 20);
+    assert_true(strlen(last_error.text) > 20);
   }
 }

@@ -6,13 +6,11 @@
 #include "scenes/shapes/convex.h"
 #include "scenes/shapes/shape.h"
 
-#include <stdlib.h>
-
 static double plane[256][4];
 
 static abbe_convex judge(const abbe_mesh *m) {
   abbe_convex found;
-  assert_int_equal(abbe_convex_find(m, 256, plane, NULL, &found, NULL), ABBE_OK);
+  OK(abbe_convex_find(m, 256, plane, NULL, &found, &error));
   return found;
 }
 
@@ -25,7 +23,7 @@ static void assert_reason(const abbe_convex *c, const char *part) {
 static abbe_mesh brilliant(void) {
   const abbe_brilliant cut = {.diameter = 0.01};
   abbe_mesh m;
-  assert_int_equal(abbe_brilliant_make(&cut, &m, NULL), ABBE_OK);
+  OK(abbe_brilliant_make(&cut, &m, &error));
   return m;
 }
 
@@ -34,7 +32,7 @@ static abbe_mesh brilliant(void) {
 static void round_to(abbe_mesh *m, double step) {
   for (size_t v = 0; v < m->vertex_count; v++)
     for (int k = 0; k < 3; k++) m->position[v][k] = step * round(m->position[v][k] / step);
-  assert_int_equal(abbe_mesh_compute_normals(m, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
+  OK(abbe_mesh_compute_normals(m, ABBE_NORMALS_FLAT, &error));
 }
 
 TEST(a_box_far_away_has_its_planes) {
@@ -42,11 +40,11 @@ TEST(a_box_far_away_has_its_planes) {
   double move[16];
   abbe_mesh m;
   abbe_convex found;
-  assert_int_equal(abbe_shape_box(size, &m, NULL), ABBE_OK);
+  OK(abbe_shape_box(size, &m, &error));
   abbe_transform_translate(offset, move);
-  assert_int_equal(abbe_mesh_transform(&m, move, NULL), ABBE_OK);
+  OK(abbe_mesh_transform(&m, move, &error));
   uint32_t plane_of[12];
-  assert_int_equal(abbe_convex_find(&m, 6, plane, plane_of, &found, NULL), ABBE_OK);
+  OK(abbe_convex_find(&m, 6, plane, plane_of, &found, &error));
   assert_int_equal(found.verdict, ABBE_CONVEX_SOLID);
   assert_int_equal(found.planes, 6);
   assert_near(found.tolerance, 1e-6, 0);
@@ -57,7 +55,7 @@ TEST(a_box_far_away_has_its_planes) {
     for (int k = 0; k < 3; k++)
       assert_near(abbe_vector_dot(p, m.position[m.face[f][k]]), p[3], 1e-9);
   }
-  assert_int_equal(abbe_convex_find(&m, 5, plane, NULL, &found, NULL), ABBE_OK);
+  OK(abbe_convex_find(&m, 5, plane, NULL, &found, &error));
   assert_int_equal(found.verdict, ABBE_CONVEX_MANY);
   assert_reason(&found, "more than 5 planes");
   abbe_mesh_free(&m);
@@ -65,8 +63,8 @@ TEST(a_box_far_away_has_its_planes) {
 
 TEST(a_dent_is_measured_and_placed) {
   abbe_mesh m;
-  assert_int_equal(abbe_shape_sphere(1, 1, &m, NULL), ABBE_OK);
-  assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
+  OK(abbe_shape_sphere(1, 1, &m, &error));
+  OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
   abbe_convex found = judge(&m);
   assert_int_equal(found.verdict, ABBE_CONVEX_SOLID);
   assert_int_equal(found.planes, 80);
@@ -101,7 +99,7 @@ TEST(a_dent_is_measured_and_placed) {
 TEST(what_is_open_or_several_is_none) {
   const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{5, 0, 0}, {6, 1, 1}, false}};
   abbe_mesh m = test_boxes(box, 2);
-  assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
+  OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
   assert_int_equal(judge(&m).verdict, ABBE_CONVEX_DENTED);
   m.face_count = 11;
   m.vertex_count = 33;
@@ -114,8 +112,8 @@ TEST(what_is_open_or_several_is_none) {
 TEST(a_ball_has_too_many_planes) {
   for (size_t levels = 3; levels <= 6; levels += 3) { /* all looked at, and by a sample */
     abbe_mesh m;
-    assert_int_equal(abbe_shape_sphere(1, levels, &m, NULL), ABBE_OK);
-    assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
+    OK(abbe_shape_sphere(1, levels, &m, &error));
+    OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
     const abbe_convex found = judge(&m);
     assert_int_equal(found.verdict, ABBE_CONVEX_MANY);
     assert_reason(&found, "more than 256 planes");
@@ -150,7 +148,7 @@ TEST(rounded_normals_are_no_planes) {
   assert_int_equal(found.verdict, ABBE_CONVEX_ROUNDED);
   assert_near(found.off, acos(sqrt(1.0 / 3)), 0.3);
   assert_reason(&found, "normals are rounded, by up to ");
-  assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_AUTO, NULL), ABBE_OK);
+  OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_AUTO, &error));
   assert_int_equal(judge(&m).verdict, ABBE_CONVEX_SOLID);
   abbe_mesh_free(&m);
 }
@@ -171,10 +169,8 @@ TEST(a_gentle_curve_is_not_cut_into_planes) {
     closed[1][0] = 0.5, closed[1][1] = 0;
     memcpy(closed + 2, profile + 1, 41 * sizeof *closed);
     abbe_mesh m;
-    abbe_error error = {0};
-    if (abbe_shape_lathe((const double(*)[2])closed, 43, 96, &m, &error) != ABBE_OK)
-      fail_msg("%s", error.text);
-    assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
+    OK(abbe_shape_lathe((const double(*)[2])closed, 43, 96, &m, &error));
+    OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
     const abbe_convex found = judge(&m);
     if (found.verdict != ABBE_CONVEX_MANY && found.verdict != ABBE_CONVEX_CURVED)
       fail_msg("radius %g: verdict %d, %zu planes", radius, found.verdict, found.planes);
@@ -193,11 +189,11 @@ TEST(thin_faces_go_with_a_plane) {
   abbe_mesh m;
   uint32_t plane_of[14];
   abbe_convex found;
-  assert_int_equal(abbe_mesh_make(9, 14, false, &m, NULL), ABBE_OK);
+  OK(abbe_mesh_make(9, 14, false, &m, &error));
   memcpy(m.position, at, sizeof at);
   memcpy(m.face, face, sizeof face);
-  assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
-  assert_int_equal(abbe_convex_find(&m, 256, plane, plane_of, &found, NULL), ABBE_OK);
+  OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
+  OK(abbe_convex_find(&m, 256, plane, plane_of, &found, &error));
   assert_int_equal(found.verdict, ABBE_CONVEX_SOLID);
   assert_int_equal(found.planes, 6);
   assert_true(found.off > 0.5); /* the needle's normal, which the planes' is to replace */
@@ -215,15 +211,14 @@ TEST(a_stone_of_folded_kites_is_flattened) {
     const double *p = m.position[v];
     if (p[2] > 0.0004 && p[2] < 0.0015) m.position[v][2] += 3e-5;
   }
-  assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
+  OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
   const abbe_convex before = judge(&m);
   assert_int_equal(before.verdict, ABBE_CONVEX_DENTED);
   abbe_mesh_report was, is;
-  assert_int_equal(abbe_mesh_check(&m, &was, NULL), ABBE_OK);
+  OK(abbe_mesh_check(&m, &was, &error));
   double moved = 0;
-  abbe_error error = {0};
-  if (abbe_convex_flatten(&m, 0.005, 256, &moved, &error) != ABBE_OK) fail_msg("%s", error.text);
-  assert_int_equal(abbe_mesh_check(&m, &is, NULL), ABBE_OK);
+  OK(abbe_convex_flatten(&m, 0.005, 256, &moved, &error));
+  OK(abbe_mesh_check(&m, &is, &error));
   assert_int_equal(is.open_edges + is.crowded_edges + is.flipped_edges, 0);
   assert_int_equal(is.shells, 1);
   assert_near(is.volume / was.volume, 1, 0.02);
@@ -243,11 +238,10 @@ TEST(points_of_many_planes_stay_closed) {
     abbe_mesh m;
     abbe_mesh_report r;
     double moved = 0;
-    abbe_error error = {0};
-    assert_int_equal(abbe_shape_gem(sides, 1, 0.6, 0.25, 0.5, &m, NULL), ABBE_OK);
-    if (abbe_convex_flatten(&m, 1e-4, 256, &moved, &error) != ABBE_OK) fail_msg("%s", error.text);
+    OK(abbe_shape_gem(sides, 1, 0.6, 0.25, 0.5, &m, &error));
+    OK(abbe_convex_flatten(&m, 1e-4, 256, &moved, &error));
     assert_true(moved < 1e-9);
-    assert_int_equal(abbe_mesh_check(&m, &r, NULL), ABBE_OK);
+    OK(abbe_mesh_check(&m, &r, &error));
     assert_int_equal(r.open_edges + r.crowded_edges + r.flipped_edges, 0);
     assert_int_equal(judge(&m).planes, 3 * sides + 1);
     abbe_mesh_free(&m);
@@ -256,17 +250,16 @@ TEST(points_of_many_planes_stay_closed) {
 
 TEST(what_is_no_stone_is_not_flattened) {
   abbe_mesh m;
-  abbe_error error = {0};
   double moved;
-  assert_int_equal(abbe_shape_ring(1, 0.3, 48, 24, &m, NULL), ABBE_OK);
+  OK(abbe_shape_ring(1, 0.3, 48, 24, &m, &error));
   const double(*before)[3] = (const double(*)[3])m.position;
-  assert_int_equal(abbe_convex_flatten(&m, 0, 256, &moved, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_convex_flatten(&m, 0.021, 256, &moved, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_convex_flatten(&m, NAN, 256, &moved, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_convex_flatten(&m, 0.001, 256, &moved, &error), ABBE_GEOMETRY);
-  assert_contains(error.text, "more planes than can be followed");
-  assert_int_equal(abbe_convex_flatten(&m, 0.02, 4096, &moved, &error), ABBE_GEOMETRY);
-  assert_contains(error.text, "is no convex solid yet: (");
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_convex_flatten(&m, 0, 256, &moved, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_convex_flatten(&m, 0.021, 256, &moved, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_convex_flatten(&m, NAN, 256, &moved, &error));
+  REFUSED(ABBE_GEOMETRY, "more planes than can be followed",
+          abbe_convex_flatten(&m, 0.001, 256, &moved, &error));
+  REFUSED(ABBE_GEOMETRY, "is no convex solid yet: (",
+          abbe_convex_flatten(&m, 0.02, 4096, &moved, &error));
   assert_ptr_equal(before, m.position);
   abbe_mesh_free(&m);
 }
@@ -275,7 +268,7 @@ TEST(nothing_is_judged_of_nothing) {
   abbe_mesh none = {0};
   abbe_convex found;
   char text[32] = "x";
-  assert_int_equal(abbe_convex_find(&none, 256, plane, NULL, &found, NULL), ABBE_OK);
+  OK(abbe_convex_find(&none, 256, plane, NULL, &found, &error));
   assert_int_equal(found.verdict, ABBE_CONVEX_UNASKED);
   abbe_convex_reason(&found, text, sizeof text);
   assert_string_equal(text, "");

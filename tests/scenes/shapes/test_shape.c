@@ -1,26 +1,23 @@
+#include "base/maths.h"
 #include "scenes/shapes/shape.h"
 
 #include "tests/scenes/shapes/closed_mesh.h"
 
 #include "scenes/shapes/convex.h"
 
-#include <stdlib.h>
-
-#define PI 3.14159265358979323846
-
 static bool is_convex(const abbe_mesh *mesh, size_t most, double (*plane)[4], size_t *count) {
   abbe_convex found;
-  assert_int_equal(abbe_convex_find(mesh, most, plane, NULL, &found, NULL), ABBE_OK);
+  OK(abbe_convex_find(mesh, most, plane, NULL, &found, &error));
   *count = found.planes;
   return found.verdict == ABBE_CONVEX_SOLID;
 }
 
 TEST(sphere_has_the_faces_and_nearly_the_volume) {
   abbe_mesh m;
-  assert_int_equal(abbe_shape_sphere(0.05, 4, &m, NULL), ABBE_OK);
+  OK(abbe_shape_sphere(0.05, 4, &m, &error));
   assert_int_equal(m.face_count, 5120);
   const abbe_mesh_report r = assert_closed(&m, 0.7);
-  assert_true(fabs(r.volume / (4.0 / 3.0 * PI * 0.05 * 0.05 * 0.05) - 1) < 0.005);
+  assert_true(fabs(r.volume / (4.0 / 3.0 * ABBE_PI * 0.05 * 0.05 * 0.05) - 1) < 0.005);
   for (size_t v = 0; v < m.vertex_count; v++) {
     assert_true(fabs(abbe_vector_length(m.position[v]) - 0.05) < 1e-15);
     assert_true(fabs(abbe_vector_dot(m.position[v], m.normal[v]) - 0.05) < 1e-15);
@@ -30,10 +27,10 @@ TEST(sphere_has_the_faces_and_nearly_the_volume) {
 
 TEST(ring_is_the_thesis_ring) {
   abbe_mesh m;
-  assert_int_equal(abbe_shape_ring(0.04, 0.01, 256, 128, &m, NULL), ABBE_OK);
+  OK(abbe_shape_ring(0.04, 0.01, 256, 128, &m, &error));
   assert_int_equal(m.face_count, 65536);
   const abbe_mesh_report r = assert_closed(&m, 0.7);
-  assert_true(fabs(r.volume / (2 * PI * PI * 0.04 * 0.01 * 0.01) - 1) < 0.002);
+  assert_true(fabs(r.volume / (2 * ABBE_PI * ABBE_PI * 0.04 * 0.01 * 0.01) - 1) < 0.002);
   abbe_mesh_free(&m);
 }
 
@@ -41,7 +38,7 @@ TEST(gem_is_convex_with_nineteen_planes) {
   abbe_mesh m;
   double plane[32][4];
   size_t count = 0;
-  assert_int_equal(abbe_shape_gem(6, 0.05, 0.028, 0.016, 0.043, &m, NULL), ABBE_OK);
+  OK(abbe_shape_gem(6, 0.05, 0.028, 0.016, 0.043, &m, &error));
   assert_int_equal(m.face_count, 24);
   assert_closed(&m, 0.7);
   assert_true(is_convex(&m, 32, plane, &count));
@@ -53,7 +50,7 @@ TEST(prism_has_its_apex_angle) {
   abbe_mesh m;
   double plane[8][4];
   size_t count = 0;
-  assert_int_equal(abbe_shape_prism(PI / 3, 0.05, 0.1, &m, NULL), ABBE_OK);
+  OK(abbe_shape_prism(ABBE_PI / 3, 0.05, 0.1, &m, &error));
   const abbe_mesh_report r = assert_closed(&m, 0.7);
   assert_true(fabs(r.volume - 0.05 * 0.05 * sqrt(3) / 4 * 0.1) < 1e-12);
   assert_true(fabs(r.max[2] - 0.05 * sqrt(3) / 3) < 1e-12);
@@ -63,19 +60,19 @@ TEST(prism_has_its_apex_angle) {
   for (size_t i = 0; i < count; i++)
     for (size_t j = 0; j < i; j++)
       if (plane[i][2] > 0.1 && plane[j][2] > 0.1)
-        apex = PI - acos(abbe_vector_dot(plane[i], plane[j]));
-  assert_true(fabs(apex - PI / 3) < 1e-9);
+        apex = ABBE_PI - acos(abbe_vector_dot(plane[i], plane[j]));
+  assert_true(fabs(apex - ABBE_PI / 3) < 1e-9);
   abbe_mesh_free(&m);
 }
 
 TEST(box_and_rectangle_face_outwards) {
   const double size[3] = {1, 2, 3};
   abbe_mesh m;
-  assert_int_equal(abbe_shape_box(size, &m, NULL), ABBE_OK);
+  OK(abbe_shape_box(size, &m, &error));
   assert_true(fabs(assert_closed(&m, 0.7).volume - 6) < 1e-12);
   assert_non_null(m.uv);
   abbe_mesh_free(&m);
-  assert_int_equal(abbe_shape_rectangle(2, 3, &m, NULL), ABBE_OK);
+  OK(abbe_shape_rectangle(2, 3, &m, &error));
   double n[3];
   abbe_vector_triangle(m.position[0], m.position[1], m.position[2], n);
   assert_true(n[2] > 0 && m.normal[3][2] == 1 && m.uv[2][0] == 1 && m.uv[2][1] == 1);
@@ -85,10 +82,10 @@ TEST(box_and_rectangle_face_outwards) {
 TEST(lathe_of_a_cylinder_keeps_its_rims_sharp) {
   const double profile[4][2] = {{0, 0}, {0.1, 0}, {0.1, 0.3}, {0, 0.3}};
   abbe_mesh m;
-  assert_int_equal(abbe_shape_lathe(profile, 4, 64, &m, NULL), ABBE_OK);
+  OK(abbe_shape_lathe(profile, 4, 64, &m, &error));
   assert_int_equal(m.face_count, 2 * 64 * 2);
   const abbe_mesh_report r = assert_closed(&m, 0.7);
-  assert_true(fabs(r.volume / (PI * 0.01 * 0.3) - 1) < 0.002);
+  assert_true(fabs(r.volume / (ABBE_PI * 0.01 * 0.3) - 1) < 0.002);
   for (size_t v = 0; v < m.vertex_count; v++)
     assert_true(fabs(m.normal[v][2]) < 1e-12 || fabs(fabs(m.normal[v][2]) - 1) < 1e-12);
   abbe_mesh_free(&m);
@@ -97,11 +94,11 @@ TEST(lathe_of_a_cylinder_keeps_its_rims_sharp) {
 TEST(lathe_of_an_arc_is_smooth) {
   double profile[33][2];
   for (int i = 0; i < 33; i++) {
-    profile[i][0] = i == 0 || i == 32 ? 0 : sin(PI * i / 32);
-    profile[i][1] = -cos(PI * i / 32);
+    profile[i][0] = i == 0 || i == 32 ? 0 : sin(ABBE_PI * i / 32);
+    profile[i][1] = -cos(ABBE_PI * i / 32);
   }
   abbe_mesh m;
-  assert_int_equal(abbe_shape_lathe((const double(*)[2])profile, 33, 48, &m, NULL), ABBE_OK);
+  OK(abbe_shape_lathe((const double(*)[2])profile, 33, 48, &m, &error));
   assert_closed(&m, 0.7);
   for (size_t v = 0; v < m.vertex_count; v++)
     assert_true(abbe_vector_dot(m.normal[v], m.position[v]) > 0.9999);
@@ -116,13 +113,13 @@ TEST(an_open_lathe_has_rims) {
     const double (*profile)[2];
     size_t count, faces;
     double area;
-  } cases[] = {{wall, 2, 2 * 64, 2 * PI * 0.1 * 0.3},
-               {disk, 2, 64, PI * 0.01},
-               {bowl, 3, 3 * 64, PI * (0.1 * hypot(0.1, 0.02) + 0.25 * hypot(0.05, 0.06))}};
+  } cases[] = {{wall, 2, 2 * 64, 2 * ABBE_PI * 0.1 * 0.3},
+               {disk, 2, 64, ABBE_PI * 0.01},
+               {bowl, 3, 3 * 64, ABBE_PI * (0.1 * hypot(0.1, 0.02) + 0.25 * hypot(0.05, 0.06))}};
   for (int i = 0; i < 3; i++) {
     abbe_mesh m;
     double area = 0;
-    assert_int_equal(abbe_shape_lathe(cases[i].profile, cases[i].count, 64, &m, NULL), ABBE_OK);
+    OK(abbe_shape_lathe(cases[i].profile, cases[i].count, 64, &m, &error));
     assert_int_equal(m.face_count, cases[i].faces);
     for (size_t f = 0; f < m.face_count; f++) {
       double n[3];
@@ -141,7 +138,7 @@ TEST(rounding_a_profile_cuts_corners_and_keeps_ends) {
   const double profile[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   double(*out)[2];
   size_t count;
-  assert_int_equal(abbe_shape_round_profile(profile, 4, 2, &out, &count, NULL), ABBE_OK);
+  OK(abbe_shape_round_profile(profile, 4, 2, &out, &count, &error));
   assert_int_equal(count, 10);
   assert_true(out[0][0] == 0 && out[0][1] == 0 && out[9][0] == 0 && out[9][1] == 1);
   for (size_t i = 1; i + 1 < count; i++) assert_true(out[i][0] > 0 && out[i][0] <= 1);
@@ -153,26 +150,25 @@ TEST(rounding_a_profile_cuts_corners_and_keeps_ends) {
 
 TEST(impossible_parameters_are_refused) {
   abbe_mesh m;
-  abbe_error error;
   const double flat[3] = {1, 0, 1}, cut[3][2] = {{0, 0}, {-1, 0}, {0, 1}};
   const double line[2][2] = {{0, 0}, {0, 1}}, pinched[3][2] = {{1, 0}, {0, 1}, {1, 2}},
                twice[4][2] = {{0, 0}, {1, 0}, {1, 0}, {0, 1}};
-  assert_int_equal(abbe_shape_sphere(0, 2, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_sphere(NAN, 2, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_sphere(1, 10, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_ring(1, 1, 8, 8, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_ring(1, 0.5, 2, 8, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_ring(1, INFINITY, 8, 8, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_gem(2, 1, 0.5, 1, 1, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_gem(6, 1, 1.5, 1, 1, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_gem(6, 1, 0.5, 1, -1, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_prism(PI, 1, 1, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_prism(1, 1, 0, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_box(flat, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_rectangle(1, -1, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_lathe(cut, 3, 8, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_lathe(line, 2, 8, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_lathe(pinched, 3, 8, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_lathe(twice, 4, 8, &m, &error), ABBE_INVALID_ARGUMENT);
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_sphere(0, 2, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_sphere(NAN, 2, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_sphere(1, 10, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_ring(1, 1, 8, 8, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_ring(1, 0.5, 2, 8, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_ring(1, INFINITY, 8, 8, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_gem(2, 1, 0.5, 1, 1, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_gem(6, 1, 1.5, 1, 1, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_gem(6, 1, 0.5, 1, -1, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_prism(ABBE_PI, 1, 1, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_prism(1, 1, 0, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_box(flat, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_rectangle(1, -1, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_lathe(cut, 3, 8, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_lathe(line, 2, 8, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_lathe(pinched, 3, 8, &m, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_shape_lathe(twice, 4, 8, &m, &error));
   assert_null(m.face);
 }

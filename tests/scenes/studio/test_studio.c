@@ -5,17 +5,14 @@
 #include "scenes/studio/studio.h"
 #include "spectral/formats/material_table_load.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #define QUARTZ ABBE_SOURCE_DIR "/scenes/designs/brilliant-quartz.asc"
 #define OVAL ABBE_SOURCE_DIR "/scenes/designs/oval.asc"
 
 static void load(const char *path, const abbe_studio *studio, abbe_scene *out) {
-  abbe_error error = {0};
   const abbe_scene_options options = {.studio = studio};
-  if (abbe_scene_load(path, &options, out, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_scene_load(path, &options, out, &error));
 }
 
 static const abbe_object *called(const abbe_scene *scene, const char *name) {
@@ -25,7 +22,7 @@ static const abbe_object *called(const abbe_scene *scene, const char *name) {
 }
 
 static void put(const char *path, const char *text) {
-  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
+  OK(abbe_file_write(path, text, strlen(text), &error));
 }
 
 /* A box of 4 x 6 x 2 of the file's units. */
@@ -120,7 +117,7 @@ TEST(a_saved_scene_is_the_same) {
   char *text;
   size_t size;
   abbe_scene made, saved;
-  assert_int_equal(abbe_scene_text(OVAL, &options, &text, &size, NULL), ABBE_OK);
+  OK(abbe_scene_text(OVAL, &options, &text, &size, &error));
   put(path, text);
   free(text);
   load(OVAL, &studio, &made);
@@ -166,7 +163,7 @@ TEST(an_index_finds_a_stone) {
       {2.417, "diamond"}, {1.1, "quartz"},    {3, "moissanite"}};
   abbe_material_table table;
   const abbe_material_table none = {0};
-  assert_int_equal(abbe_material_table_load(NULL, &table, NULL), ABBE_OK);
+  OK(abbe_material_table_load(NULL, &table, &error));
   for (size_t i = 0; i < sizeof stones / sizeof *stones; i++)
     assert_string_equal(abbe_studio_nearest(&table, stones[i].n)->name, stones[i].name);
   assert_null(abbe_studio_nearest(&none, 1.54));
@@ -187,10 +184,8 @@ TEST(what_is_wrong_is_said) {
               "a ring holds one stone, not 2"},
              {QUARTZ, {.material = "rubi"}, ABBE_NOT_FOUND, "did you mean 'ruby'"}};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-    abbe_error error = {0};
     abbe_scene scene;
     const abbe_scene_options options = {.studio = &bad[i].studio};
-    assert_int_equal(abbe_scene_load(bad[i].path, &options, &scene, &error), bad[i].code);
-    assert_contains(error.text, bad[i].words);
+    REFUSED(bad[i].code, bad[i].words, abbe_scene_load(bad[i].path, &options, &scene, &error));
   }
 }

@@ -2,8 +2,6 @@
 
 #include "scenes/view/coverage.h"
 
-#include <math.h>
-
 static double sum_of(const abbe_image *alpha) {
   double sum = 0;
   for (size_t i = 0; i < alpha->width * alpha->height; i++) sum += (double)alpha->data[i];
@@ -13,7 +11,7 @@ static double sum_of(const abbe_image *alpha) {
 static void make(const char *text, size_t width, size_t height, size_t samples, abbe_image *out) {
   abbe_scene scene;
   load_text(text, &scene);
-  assert_int_equal(abbe_coverage_make(&scene, width, height, samples, out, NULL), ABBE_OK);
+  OK(abbe_coverage_make(&scene, width, height, samples, out, &error));
   abbe_scene_free(&scene);
 }
 

@@ -6,7 +6,6 @@
 #include "scenes/view/map_layout.h"
 
 #include <locale.h>
-#include <stdlib.h>
 
 static const double tolerance = 1e-12;
 
@@ -132,7 +131,7 @@ TEST(texel_areas_add_up_to_the_window) {
 
 static void make_image(abbe_image *out) {
   static const char *const names[] = {"X", "Y", "Z"};
-  assert_int_equal(abbe_image_make(4, 4, 3, names, out, NULL), ABBE_OK);
+  OK(abbe_image_make(4, 4, 3, names, out, &error));
 }
 
 /* Every bit comes back, whatever the host program's language writes for a decimal point. */
@@ -141,12 +140,11 @@ TEST(attributes_give_back_every_bit) {
   for (int orthographic = 0; orthographic < 2; orthographic++) {
     abbe_image image;
     abbe_map_layout layout = slanted(orthographic), back;
-    abbe_error error = {0};
     make_image(&image);
     layout.view.origin[0] = -1.0 / 3e-300;
-    assert_int_equal(abbe_map_layout_write(&layout, "lamp", &image, &error), ABBE_OK);
+    OK(abbe_map_layout_write(&layout, "lamp", &image, &error));
     assert_string_equal(abbe_image_attribute_text(&image, "abbe:map_light"), "lamp");
-    assert_int_equal(abbe_map_layout_read(&image, "map.exr", &back, &error), ABBE_OK);
+    OK(abbe_map_layout_read(&image, "map.exr", &back, &error));
     assert_int_equal(back.view.orthographic, orthographic);
     assert_memory_equal(back.view.origin, layout.view.origin, sizeof back.view.origin);
     assert_memory_equal(back.view.right, layout.view.right, sizeof back.view.right);
@@ -180,7 +178,6 @@ TEST(sameness_is_of_texels) {
 }
 
 TEST(impossible_layouts_are_refused) {
-  abbe_error error = {0};
   for (int fault = 0; fault < 8; fault++) {
     abbe_map_layout l = slanted(false);
     const char *part = NULL;
@@ -218,8 +215,7 @@ TEST(impossible_layouts_are_refused) {
       part = "along y";
       break;
     }
-    assert_int_equal(abbe_map_layout_check(&l, &error), ABBE_INVALID_ARGUMENT);
-    assert_contains(error.text, part);
+    REFUSED(ABBE_INVALID_ARGUMENT, part, abbe_map_layout_check(&l, &error));
     abbe_image image;
     make_image(&image);
     assert_int_equal(abbe_map_layout_write(&l, NULL, &image, NULL), ABBE_INVALID_ARGUMENT);
@@ -230,14 +226,12 @@ TEST(impossible_layouts_are_refused) {
 
 static void refuse(const char *name, const char *text, abbe_result code, const char *part) {
   abbe_image image;
-  abbe_error error = {0};
   abbe_map_layout layout = slanted(false), none = {0};
   make_image(&image);
-  assert_int_equal(abbe_map_layout_write(&layout, NULL, &image, NULL), ABBE_OK);
-  assert_int_equal(abbe_image_set_attribute(&image, name, text, NULL), ABBE_OK);
-  assert_int_equal(abbe_map_layout_read(&image, "that.exr", &layout, &error), code);
-  assert_contains(error.text, part);
-  assert_contains(error.text, "that.exr");
+  OK(abbe_map_layout_write(&layout, NULL, &image, &error));
+  OK(abbe_image_set_attribute(&image, name, text, &error));
+  REFUSED(code, part, abbe_map_layout_read(&image, "that.exr", &layout, &error));
+  assert_contains(last_error.text, "that.exr");
   assert_memory_equal(&layout, &none, sizeof none);
   abbe_image_free(&image);
 }
@@ -257,10 +251,9 @@ TEST(broken_attributes_are_refused) {
   refuse("abbe:map_warp_x", "0 1", ABBE_PARSE, "abbe:map_warp_x");
   refuse("abbe:map_warp_y", "", ABBE_PARSE, "abbe:map_warp_y");
   abbe_image image;
-  abbe_error error = {0};
   abbe_map_layout layout;
   make_image(&image);
-  assert_int_equal(abbe_map_layout_read(&image, "picture.exr", &layout, &error), ABBE_NOT_FOUND);
-  assert_contains(error.text, "no receiver map");
+  REFUSED(ABBE_NOT_FOUND, "no receiver map",
+          abbe_map_layout_read(&image, "picture.exr", &layout, &error));
   abbe_image_free(&image);
 }

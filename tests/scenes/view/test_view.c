@@ -1,6 +1,7 @@
 /* Views: known windows, the way there and back, and their matrices. */
 #include "tests/check.h"
 
+#include "base/maths.h"
 #include "scenes/geometry/transform.h"
 #include "scenes/view/view.h"
 
@@ -13,10 +14,6 @@ static void assert_vector(const double v[3], double x, double y, double z) {
   assert_near(v[0], x, tolerance);
   assert_near(v[1], y, tolerance);
   assert_near(v[2], z, tolerance);
-}
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 TEST(look_makes_a_right_handed_frame) {
@@ -33,11 +30,11 @@ TEST(up_along_the_view_is_replaced) {
   for (int i = 0; i < 3; i++) {
     abbe_view v;
     abbe_view_look(eye, axes[i], axes[i], false, &v);
-    assert_near(dot(v.right, v.right), 1, tolerance);
-    assert_near(dot(v.up, v.up), 1, tolerance);
-    assert_near(dot(v.right, v.forward), 0, tolerance);
-    assert_near(dot(v.up, v.forward), 0, tolerance);
-    assert_near(dot(v.right, v.up), 0, tolerance);
+    assert_near(abbe_vector_dot(v.right, v.right), 1, tolerance);
+    assert_near(abbe_vector_dot(v.up, v.up), 1, tolerance);
+    assert_near(abbe_vector_dot(v.right, v.forward), 0, tolerance);
+    assert_near(abbe_vector_dot(v.up, v.forward), 0, tolerance);
+    assert_near(abbe_vector_dot(v.right, v.up), 0, tolerance);
   }
 }
 
@@ -115,7 +112,7 @@ TEST(rays_project_back_to_where_they_start) {
     abbe_view v = slanted(i % 2);
     double uv[2] = {(i / 2 % 7) / 6.0, (i / 14) / 6.0}, o[3], d[3], p[3], uvz[3], t = 0.6 + i;
     abbe_view_ray(&v, uv, o, d);
-    assert_near(dot(d, d), 1, tolerance);
+    assert_near(abbe_vector_dot(d, d), 1, tolerance);
     for (int k = 0; k < 3; k++) p[k] = o[k] + t * d[k];
     assert_true(abbe_view_project(&v, p, uvz));
     /* p lies up to 100 m away: its rounding, 1e-14 m, is seen over a window of 1. */
@@ -143,7 +140,7 @@ TEST(the_matrix_agrees_with_the_projection) {
     abbe_view_ray(&v, uv, o, d);
     double depth[3] = {v.near, 2, v.far}, z[3];
     for (int i = 0; i < 3; i++) {
-      double t = depth[i] / dot(d, v.forward);
+      double t = depth[i] / abbe_vector_dot(d, v.forward);
       for (int k = 0; k < 3; k++) p[k] = o[k] + t * d[k];
       abbe_transform_point(matrix, p, clip);
       assert_near(clip[0], 2 * uv[0] - 1, tolerance);

@@ -14,14 +14,12 @@ static void find(const char *object, abbe_body_symmetry *out) {
   abbe_scene scene = {0};
   abbe_volume_body body;
   abbe_volume_place place;
-  abbe_error error = {0};
   char text[2048];
   snprintf(text, sizeof text, "%s%s", SUNNY, object);
   load_text(text, &scene);
-  assert_int_equal(abbe_volume_body_make(&scene.object[1], &body, &error), ABBE_OK);
-  assert_int_equal(abbe_volume_body_find(&body, &scene.object[1], &place, &error), ABBE_OK);
-  assert_int_equal(
-      abbe_body_symmetry_find(&scene.object[1], place.centre, body.radius, out, &error), ABBE_OK);
+  OK(abbe_volume_body_make(&scene.object[1], &body, &error));
+  OK(abbe_volume_body_find(&body, &scene.object[1], &place, &error));
+  OK(abbe_body_symmetry_find(&scene.object[1], place.centre, body.radius, out, &error));
   abbe_scene_free(&scene);
 }
 
@@ -67,8 +65,7 @@ TEST(images_are_brought_together) {
     }
     assert_int_equal(abbe_body_symmetry_bring(&s, there, again), 0);
   }
-  assert_int_equal(abbe_body_symmetry_make(s.count, (const double(*)[9])s.map, &copy, NULL),
-                   ABBE_OK);
+  OK(abbe_body_symmetry_make(s.count, (const double(*)[9])s.map, &copy, &error));
   assert_memory_equal(copy.map, s.map, s.count * sizeof *s.map);
   abbe_body_symmetry_free(&copy);
   s.map[3][4] += 0.01;

@@ -4,10 +4,6 @@
 
 #include "scenes/volume/exits/exit_pages.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 enum { SIDE = 48 };
 
 static float map[SIDE * SIDE][4], smooth[SIDE * SIDE][4];

@@ -25,10 +25,10 @@ static void make_bench(size_t across, bench *b) {
   abbe_caustic_volume *v = &b->volume;
   *v = (abbe_caustic_volume){.kind = ABBE_VOLUME_EXITS, .min_nm = 380, .max_nm = 780};
   const abbe_region_desc region = {.side = 2, .outer = 1};
-  assert_int_equal(abbe_volume_body_make(&b->scene.object[1], &v->body, NULL), ABBE_OK);
-  assert_int_equal(abbe_volume_body_find(&v->body, &b->scene.object[1], &b->place, NULL), ABBE_OK);
-  assert_int_equal(abbe_volume_region_make(&region, &v->region, NULL), ABBE_OK);
-  assert_int_equal(abbe_light_nodes_make(42, (const double[3]){0, 0, 1}, &v->nodes, NULL), ABBE_OK);
+  OK(abbe_volume_body_make(&b->scene.object[1], &v->body, &error));
+  OK(abbe_volume_body_find(&v->body, &b->scene.object[1], &b->place, &error));
+  OK(abbe_volume_region_make(&region, &v->region, &error));
+  OK(abbe_light_nodes_make(42, (const double[3]){0, 0, 1}, &v->nodes, &error));
   abbe_exit_halves *point = calloc(across * across, sizeof *point);
   assert_non_null(point);
   const double r = v->body.radius;
@@ -41,10 +41,8 @@ static void make_bench(size_t across, bench *b) {
     point[i][ABBE_EXIT_NORMAL + 2] = abbe_half_of(1);
     point[i][ABBE_EXIT_BIN] = abbe_half_of((double)(i * 37 % ABBE_LIGHT_EXITS_BINS));
   }
-  assert_int_equal(abbe_light_exits_make(&v->nodes, across * across,
-                                         (const abbe_exit_halves *)point, NULL, r, 0.04,
-                                         v->region.cells, &v->exits, NULL),
-                   ABBE_OK);
+  OK(abbe_light_exits_make(&v->nodes, across * across, (const abbe_exit_halves *)point, NULL, r,
+                           0.04, v->region.cells, &v->exits, &error));
   for (size_t n = 0; n < v->nodes.count; n++)
     for (size_t i = 0; i < across * across; i++) {
       const uint32_t at = v->exits.at[n * v->exits.points + i];
@@ -70,14 +68,12 @@ static void free_bench(bench *b) {
 
 static void make_pages(const bench *b, const double (*sheets)[9], size_t count,
                        const abbe_light *light, abbe_exit_pages *out) {
-  abbe_error error = {0};
   const abbe_exit_light_desc desc = {.light = light,
                                      .object = &b->scene.object[1],
                                      .place = &b->place,
                                      .min_nm = 380,
                                      .max_nm = 780};
-  assert_int_equal(abbe_exit_pages_make(&b->volume, &desc, sheets, count, 64, out, &error),
-                   ABBE_OK);
+  OK(abbe_exit_pages_make(&b->volume, &desc, sheets, count, 64, out, &error));
 }
 
 static const double floor_below[9] = {-1, -1, 0, 2, 0, 0, 0, 2, 0};

@@ -4,8 +4,6 @@
 
 #include "scenes/volume/exits/exit_sheets.h"
 
-#include <math.h>
-
 /* A quarter turn about y: the object's x is down, its z the world's x. */
 static const abbe_volume_place place = {.centre = {1, 2, 3}, .turn = {0, 0, 1, 0, 1, 0, -1, 0, 0}};
 /* The floor at z = 0, U x V up, and a shelf at z = 1 over x > 1, U x V down. */

@@ -7,8 +7,6 @@
 #include "scenes/volume/half.h"
 #include "scenes/volume/light_exits.h"
 
-#include <stdlib.h>
-
 static const double radius = 0.5;
 
 /* A law that is smooth and not linear in the light's direction. */
@@ -54,10 +52,9 @@ static void make_exits(size_t count, bool apart, abbe_light_nodes *nodes, abbe_l
   abbe_exit_halves point = {0};
   point[ABBE_EXIT_NORMAL + 2] = abbe_half_of(1);
   point[ABBE_EXIT_BIN] = abbe_half_of(77);
-  assert_int_equal(abbe_light_nodes_make(count, (const double[3]){0, 0, 1}, nodes, NULL), ABBE_OK);
-  assert_int_equal(abbe_light_exits_make(nodes, 1, (const abbe_exit_halves *)&point, NULL, radius,
-                                         2, 8, out, NULL),
-                   ABBE_OK);
+  OK(abbe_light_nodes_make(count, (const double[3]){0, 0, 1}, nodes, &error));
+  OK(abbe_light_exits_make(nodes, 1, (const abbe_exit_halves *)&point, NULL, radius, 2, 8, out,
+                           &error));
   assert_true(out->count > count / 3 && out->count <= count / 2 + 1);
   for (size_t i = 0; i < count; i++)
     if (out->at[i] != 0)
@@ -193,8 +190,8 @@ TEST(requests) {
   abbe_exit_halves point = {0};
   const abbe_exit_halves *p = (const abbe_exit_halves *)&point;
   const double up[3] = {0, 0, 1};
-  assert_int_equal(abbe_light_nodes_make(1, up, &one, NULL), ABBE_OK);
-  assert_int_equal(abbe_light_nodes_make(12, up, &nodes, NULL), ABBE_OK);
+  OK(abbe_light_nodes_make(1, up, &one, &error));
+  OK(abbe_light_nodes_make(12, up, &nodes, &error));
   assert_int_equal(abbe_light_exits_make(&one, 1, p, NULL, 1, 1, 1, &exits, NULL),
                    ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_light_exits_make(&nodes, 0, p, NULL, 1, 1, 1, &exits, NULL),

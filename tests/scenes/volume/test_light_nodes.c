@@ -7,19 +7,12 @@
 
 static const double up[3] = {0, 0, 2};
 
-static void random_unit(uint64_t *seed, double d[3]) {
-  do
-    for (int k = 0; k < 3; k++) d[k] = random_between(seed, -1, 1);
-  while (!(abbe_vector_length(d) > 0.1) || abbe_vector_length(d) > 1);
-  abbe_vector_normalise(d);
-}
-
 TEST(weights_sum_to_one_and_lie_along_the_light) {
   static const size_t counts[] = {12, 42, 162, 642};
   uint64_t seed = 3;
   for (size_t n = 0; n < 4; n++) {
     abbe_light_nodes nodes;
-    assert_int_equal(abbe_light_nodes_make(counts[n], up, &nodes, NULL), ABBE_OK);
+    OK(abbe_light_nodes_make(counts[n], up, &nodes, &error));
     assert_int_equal(nodes.count, counts[n]);
     for (int i = 0; i < 2000; i++) {
       double l[3], sum[3] = {0}, all = 0, best = -2;
@@ -45,7 +38,7 @@ TEST(weights_sum_to_one_and_lie_along_the_light) {
 
 TEST(at_a_node_it_is_alone) {
   abbe_light_nodes nodes;
-  assert_int_equal(abbe_light_nodes_make(162, up, &nodes, NULL), ABBE_OK);
+  OK(abbe_light_nodes_make(162, up, &nodes, &error));
   for (size_t i = 0; i < nodes.count; i++) {
     abbe_node_blend b;
     double weight = 0;

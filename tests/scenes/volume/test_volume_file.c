@@ -4,7 +4,6 @@
 #include "colorimetry/image/exr.h"
 #include "scenes/volume/volume_file.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 static const char path[] = "volume-file-test.exr";
@@ -16,17 +15,16 @@ static const abbe_region_desc regions[] = {
 TEST(files_give_volumes_back) {
   for (int i = 0; i < 18; i++) {
     abbe_caustic_volume v, back;
-    abbe_error error = {0};
     const size_t nodes = i / 3 % 2 != 0 ? 12 : 1;
     make_volume(i < 6 || i >= 12 ? ABBE_VOLUME_VECTOR : ABBE_VOLUME_PRINTED, regions[i % 3],
                 i < 12 ? nodes : 12, i % 2 != 0, &v);
     double left;
     if (i >= 15)
-      assert_int_equal(abbe_caustic_volume_reduce(&v, 4, &left, &error), ABBE_OK);
+      OK(abbe_caustic_volume_reduce(&v, 4, &left, &error));
     else if (i >= 12)
-      assert_int_equal(abbe_caustic_volume_project(&v, 2, &error), ABBE_OK);
-    assert_int_equal(abbe_volume_file_write(path, &v, &error), ABBE_OK);
-    assert_int_equal(abbe_volume_file_read(path, &back, &error), ABBE_OK);
+      OK(abbe_caustic_volume_project(&v, 2, &error));
+    OK(abbe_volume_file_write(path, &v, &error));
+    OK(abbe_volume_file_read(path, &back, &error));
     assert_int_equal(back.kind, v.kind);
     const abbe_region_desc *a = &back.region.desc, *b = &v.region.desc;
     assert_true(a->kind == b->kind && a->side == b->side && a->levels == b->levels &&
@@ -65,9 +63,8 @@ static void make_exits(abbe_caustic_volume *out) {
     point[i][ABBE_EXIT_NORMAL + i % 3] = abbe_half_of(i < 3 ? 1 : -1);
     point[i][ABBE_EXIT_BIN] = abbe_half_of(31 * i);
   }
-  assert_int_equal(abbe_light_exits_make(&out->nodes, POINTS, (const abbe_exit_halves *)point, NULL,
-                                         1, 0.75, out->region.cells, &out->exits, NULL),
-                   ABBE_OK);
+  OK(abbe_light_exits_make(&out->nodes, POINTS, (const abbe_exit_halves *)point, NULL, 1, 0.75,
+                           out->region.cells, &out->exits, &error));
   for (size_t i = 0; i < out->exits.count * ABBE_EXIT_HALVES; i++)
     out->exits.exit[i / ABBE_EXIT_HALVES][i % ABBE_EXIT_HALVES] = abbe_half_of((double)i / 64 - 3);
   for (size_t i = 0; i < out->exits.cells; i++) out->exits.space[i] = abbe_half_of((double)i / 512);
@@ -75,11 +72,10 @@ static void make_exits(abbe_caustic_volume *out) {
 
 TEST(files_give_rays_back) {
   abbe_caustic_volume v, back;
-  abbe_error error = {0};
   make_exits(&v);
   assert_true(v.exits.count > 20);
-  assert_int_equal(abbe_volume_file_write(path, &v, &error), ABBE_OK);
-  assert_int_equal(abbe_volume_file_read(path, &back, &error), ABBE_OK);
+  OK(abbe_volume_file_write(path, &v, &error));
+  OK(abbe_volume_file_read(path, &back, &error));
   assert_int_equal(back.kind, ABBE_VOLUME_EXITS);
   assert_int_equal(back.exits.points, v.exits.points);
   assert_int_equal(back.exits.count, v.exits.count);
@@ -99,12 +95,11 @@ TEST(files_give_rays_back) {
                                           {"abbe:volume", "vector"}};
   for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
     abbe_image image = {0};
-    assert_int_equal(abbe_volume_file_write(path, &v, NULL), ABBE_OK);
-    assert_int_equal(abbe_exr_read(path, &image, NULL), ABBE_OK);
-    assert_int_equal(abbe_image_set_attribute(&image, broken[i][0], broken[i][1], NULL), ABBE_OK);
-    assert_int_equal(abbe_exr_write_half(path, &image, NULL), ABBE_OK);
-    assert_int_equal(abbe_volume_file_read(path, &back, &error), ABBE_PARSE);
-    assert_contains(error.text, path);
+    OK(abbe_volume_file_write(path, &v, &error));
+    OK(abbe_exr_read(path, &image, &error));
+    OK(abbe_image_set_attribute(&image, broken[i][0], broken[i][1], &error));
+    OK(abbe_exr_write_half(path, &image, &error));
+    REFUSED(ABBE_PARSE, path, abbe_volume_file_read(path, &back, &error));
     abbe_image_free(&image);
   }
   abbe_caustic_volume_free(&v);
@@ -154,26 +149,21 @@ TEST(broken_attributes_are_told) {
       {"abbe:volume_byte", "-1"},
   };
   for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
-    abbe_error error = {0};
-    assert_int_equal(read_with(broken[i][0], broken[i][1], &error), ABBE_PARSE);
-    assert_contains(error.text, path);
+    REFUSED(ABBE_PARSE, path, read_with(broken[i][0], broken[i][1], &error));
   }
-  abbe_error error = {0};
-  assert_int_equal(read_with("abbe:other", "", &error), ABBE_OK);
+  OK(read_with("abbe:other", "", &error));
 }
 
 TEST(other_pictures_are_no_volumes) {
   static const char *const names[] = {"R", "G", "B"};
   abbe_image image = {0};
   abbe_caustic_volume v;
-  abbe_error error = {0};
-  assert_int_equal(abbe_image_make(4, 4, 3, names, &image, NULL), ABBE_OK);
-  assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
-  assert_int_equal(abbe_volume_file_read(path, &v, &error), ABBE_NOT_FOUND);
-  assert_contains(error.text, "abbe volume");
+  OK(abbe_image_make(4, 4, 3, names, &image, &error));
+  OK(abbe_exr_write(path, &image, &error));
+  REFUSED(ABBE_NOT_FOUND, "abbe volume", abbe_volume_file_read(path, &v, &error));
   abbe_image_free(&image);
   unlink(path);
-  assert_int_equal(abbe_volume_file_read(path, &v, &error), ABBE_IO);
+  REFUSED(ABBE_IO, "", abbe_volume_file_read(path, &v, &error));
 }
 
 /* Values that a volume cannot have. */
@@ -182,14 +172,12 @@ TEST(broken_values_are_told) {
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
     abbe_caustic_volume v, back;
     abbe_image image = {0};
-    abbe_error error = {0};
     make_volume(ABBE_VOLUME_PRINTED, regions[0], 1, true, &v);
-    assert_int_equal(abbe_volume_file_write(path, &v, NULL), ABBE_OK);
-    assert_int_equal(abbe_exr_read(path, &image, NULL), ABBE_OK);
+    OK(abbe_volume_file_write(path, &v, &error));
+    OK(abbe_exr_read(path, &image, &error));
     image.data[7] = wrong[i];
-    assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
-    assert_int_equal(abbe_volume_file_read(path, &back, &error), ABBE_PARSE);
-    assert_contains(error.text, "channel");
+    OK(abbe_exr_write(path, &image, &error));
+    REFUSED(ABBE_PARSE, "channel", abbe_volume_file_read(path, &back, &error));
     abbe_image_free(&image);
     abbe_caustic_volume_free(&v);
   }

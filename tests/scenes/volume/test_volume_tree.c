@@ -3,8 +3,6 @@
 
 #include "scenes/volume/volume_tree.h"
 
-#include <stdlib.h>
-
 static const abbe_region_desc regions[] = {
     {.kind = ABBE_REGION_GRID, .side = 16, .outer = 3},
     {.kind = ABBE_REGION_GEODESIC, .levels = 3, .shells = 6, .inner = 0.5, .outer = 3},
@@ -24,12 +22,11 @@ TEST(trees) {
       if (p[2] > 0) memset(v.value + 9 * c, 0, 18);
     }
     uint16_t *back = calloc(cells * 9, sizeof *back);
-    assert_int_equal(abbe_volume_order_make(&v.region, &order, NULL), ABBE_OK);
+    OK(abbe_volume_order_make(&v.region, &order, &error));
     size_t before = cells + 1;
     for (size_t t = 0; t < 4; t++) {
       abbe_volume_tree tree;
-      assert_int_equal(abbe_volume_tree_make(&order, 9, v.value, tolerances[t], &tree, NULL),
-                       ABBE_OK);
+      OK(abbe_volume_tree_make(&order, 9, v.value, tolerances[t], &tree, &error));
       abbe_volume_tree_expand(&tree, &order, 9, back);
       assert_true(tree.leaves <= before && tree.leaves < cells);
       before = tree.leaves;
@@ -62,10 +59,8 @@ TEST(trees) {
 TEST(sides_are_powers_of_two) {
   abbe_volume_region r;
   abbe_volume_order order;
-  abbe_error error = {0};
   const abbe_region_desc odd = {.kind = ABBE_REGION_GRID, .side = 12, .outer = 1};
-  assert_int_equal(abbe_volume_region_make(&odd, &r, NULL), ABBE_OK);
-  assert_int_equal(abbe_volume_order_make(&r, &order, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "power of two");
+  OK(abbe_volume_region_make(&odd, &r, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "power of two", abbe_volume_order_make(&r, &order, &error));
   abbe_volume_region_free(&r);
 }

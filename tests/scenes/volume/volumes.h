@@ -36,10 +36,9 @@ static inline void make_volume(abbe_volume_kind kind, abbe_region_desc region, s
                                .max_nm = 780,
                                .byte = 0.03125,
                                .error = 0.125};
-  assert_int_equal(abbe_volume_region_make(&region, &out->region, NULL), ABBE_OK);
-  assert_int_equal(abbe_light_nodes_make(nodes, (const double[3]){0, 0, 1}, &out->nodes, NULL),
-                   ABBE_OK);
-  assert_int_equal(abbe_caustic_volume_allocate(out, NULL), ABBE_OK);
+  OK(abbe_volume_region_make(&region, &out->region, &error));
+  OK(abbe_light_nodes_make(nodes, (const double[3]){0, 0, 1}, &out->nodes, &error));
+  OK(abbe_caustic_volume_allocate(out, &error));
   const size_t channels = abbe_caustic_volume_channels(out);
   for (size_t i = 0; i < nodes * out->region.cells; i++) {
     double p[3], f[9];

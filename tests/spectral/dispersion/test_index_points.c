@@ -4,14 +4,11 @@
 
 #include "base/file.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 static abbe_index_points parse(const char *text) {
   abbe_index_points points;
-  abbe_error error = {0};
-  if (abbe_index_points_parse(text, strlen(text), "p.csv", &points, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_index_points_parse(text, strlen(text), "p.csv", &points, &error));
   return points;
 }
 
@@ -90,15 +87,13 @@ TEST(files_are_read_or_named) {
   int fd = mkstemp(path);
   assert_true(fd >= 0);
   close(fd);
-  assert_int_equal(abbe_file_write(path, "500,1.5\n", 8, NULL), ABBE_OK);
+  OK(abbe_file_write(path, "500,1.5\n", 8, &error));
   abbe_index_points p;
-  abbe_error error;
-  assert_int_equal(abbe_index_points_load(path, &p, &error), ABBE_OK);
+  OK(abbe_index_points_load(path, &p, &error));
   assert_int_equal(p.count, 1);
   abbe_index_points_free(&p);
   unlink(path);
-  assert_int_equal(abbe_index_points_load(path, &p, &error), ABBE_IO);
-  assert_contains(error.text, path);
+  REFUSED(ABBE_IO, path, abbe_index_points_load(path, &p, &error));
   assert_null(p.n);
 }
 
@@ -124,9 +119,8 @@ TEST(formulas_are_sampled_to_both_ends) {
                {380.5, 382.25, 2, 100, 3}, {380, 381, 7, 9, 7},        {1, 1e6, 2, 50, 50}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     abbe_index_points p;
-    assert_int_equal(abbe_index_points_sample(&d, cases[i].min_nm, cases[i].max_nm, cases[i].least,
-                                              cases[i].most, &p, NULL),
-                     ABBE_OK);
+    OK(abbe_index_points_sample(&d, cases[i].min_nm, cases[i].max_nm, cases[i].least, cases[i].most,
+                                &p, &error));
     assert_int_equal(p.count, cases[i].count);
     assert_near(p.lambda_nm[0], cases[i].min_nm, 0);
     assert_near(p.lambda_nm[p.count - 1], cases[i].max_nm, 0);
@@ -155,11 +149,9 @@ TEST(what_cannot_be_sampled_is_refused) {
                {400, 780, 2, 9, "no real index at 400 nm"}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     abbe_index_points p;
-    abbe_error error;
-    assert_int_equal(abbe_index_points_sample(&d, cases[i].min_nm, cases[i].max_nm, cases[i].least,
-                                              cases[i].most, &p, &error),
-                     ABBE_INVALID_ARGUMENT);
-    assert_contains(error.text, cases[i].part);
+    REFUSED(ABBE_INVALID_ARGUMENT, cases[i].part,
+            abbe_index_points_sample(&d, cases[i].min_nm, cases[i].max_nm, cases[i].least,
+                                     cases[i].most, &p, &error));
     assert_null(p.n);
   }
 }

@@ -10,8 +10,7 @@
 
 static inline abbe_findings checked_table(const abbe_material_table *table) {
   abbe_findings found = {0};
-  abbe_error error = {0};
-  if (abbe_check_table(table, &shipped, &found, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_check_table(table, &shipped, &found, &error));
   return found;
 }
 

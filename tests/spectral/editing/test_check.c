@@ -6,8 +6,6 @@
 #include "spectral/editing/table_edit.h"
 #include "spectral/formats/material_table_load.h"
 
-#include <stdlib.h>
-
 static const abbe_finding *find(const abbe_findings *found, abbe_finding_kind kind) {
   for (size_t i = 0; i < found->count; i++)
     if (found->finding[i].kind == kind) return &found->finding[i];
@@ -26,7 +24,7 @@ GROUP(shipped_load, shipped_free);
 
 TEST(the_thesis_has_four_wrong_rows_and_bk7) {
   abbe_material_table thesis;
-  assert_int_equal(abbe_material_table_load("thesis", &thesis, NULL), ABBE_OK);
+  OK(abbe_material_table_load("thesis", &thesis, &error));
   abbe_findings found = checked_table(&thesis);
   const char *const wrong[] = {"fused-silica", "k5", "bak4", "baf10"};
   const double right_a[] = {1.44775, 1.50870, 1.55362, 1.64848};
@@ -245,17 +243,15 @@ TEST(certain_fixes_fix) {
       "  range_nm: [380, 780]\n  source: s1\n  fit:\n"
       "    cauchy2: {coefficients: [1.5, 0.005], max_error: 1.0e-5}\n";
   abbe_table_edit *edit = NULL;
-  abbe_error error = {0};
-  if (abbe_table_edit_parse(text, sizeof text - 1, "t.yaml", &edit, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  abbe_error why = {0};
+  OK(abbe_table_edit_parse(text, sizeof text - 1, "t.yaml", &edit, &error));
   size_t fixed = 0, certain = 1;
   for (int pass = 0; pass < 3 && certain > 0; pass++) {
     size_t size = 0;
     const char *now = abbe_table_edit_text(edit, &size);
     abbe_material_table table;
     abbe_report report = {0};
-    assert_int_equal(abbe_material_table_parse_lenient(now, size, "t.yaml", &table, &report, NULL),
-                     ABBE_OK);
+    OK(abbe_material_table_parse_lenient(now, size, "t.yaml", &table, &report, &error));
     assert_int_equal(report.count, 0);
     abbe_findings found = checked_table(&table);
     certain = 0;
@@ -263,9 +259,8 @@ TEST(certain_fixes_fix) {
       const abbe_finding *f = &found.finding[i];
       if (!f->certain) continue;
       certain++;
-      if (abbe_table_edit_set(edit, table.material[f->row].name, f->key, f->value, &error) !=
-          ABBE_OK)
-        fail_msg("%s: %s", f->value, error.text);
+      if (abbe_table_edit_set(edit, table.material[f->row].name, f->key, f->value, &why) != ABBE_OK)
+        fail_msg("%s: %s", f->value, why.text);
     }
     fixed += certain;
     if (certain == 0) assert_int_equal(count_of(&found, ABBE_FINDING_DOUBTFUL), 0);
@@ -274,7 +269,7 @@ TEST(certain_fixes_fix) {
   }
   assert_int_equal(certain, 0);
   assert_int_equal(fixed, 7);
-  assert_int_equal(abbe_table_edit_check(edit, &error), ABBE_OK);
+  OK(abbe_table_edit_check(edit, &error));
   abbe_table_edit_free(edit);
 }
 
@@ -293,7 +288,7 @@ static abbe_material row(const abbe_dispersion *d) {
 /* The finding of that kind, or none where the kind is ABBE_FINDING_KIND_COUNT, and nothing else. */
 static void expect(const abbe_material *m, abbe_finding_kind kind, const abbe_dispersion *right) {
   abbe_findings found = {0};
-  assert_int_equal(abbe_check_material(m, NULL, &found, NULL), ABBE_OK);
+  OK(abbe_check_material(m, NULL, &found, &error));
   bool good = kind == ABBE_FINDING_KIND_COUNT ? found.count == 0
                                               : found.count == 1 && found.finding[0].kind == kind;
   if (!good) {
@@ -339,7 +334,7 @@ TEST(any_glass_is_well_or_has_its_own_fault) {
     abbe_dispersion_numbers own = abbe_dispersion_describe(&good);
     m.published_n_d = round(own.n_d * 1e5) / 1e5;
     m.published_v_d = round(own.v_d * 100) / 100;
-    assert_int_equal(abbe_check_material(&m, NULL, &found, NULL), ABBE_OK);
+    OK(abbe_check_material(&m, NULL, &found, &error));
     assert_int_equal(found.count, 1);
     assert_int_equal(found.finding[0].kind, ABBE_FINDING_POLES);
     assert_string_equal(found.finding[0].value, "sellmeier");
@@ -380,7 +375,7 @@ TEST(senseless_records_are_survived) {
     m.fit[0] = (abbe_material_fit){2, {1.5, 0.004}, 1e-4, 380, 780};
     abbe_findings found = {0};
     const abbe_material_table one = {.count = 1, .material = &m};
-    assert_int_equal(abbe_check_table(&one, &shipped, &found, NULL), ABBE_OK);
+    OK(abbe_check_table(&one, &shipped, &found, &error));
     for (size_t k = 0; k < found.count; k++) {
       assert_non_null(found.finding[k].evidence);
       assert_non_null(found.finding[k].fix);

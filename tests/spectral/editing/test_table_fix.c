@@ -3,20 +3,15 @@
 
 #include "spectral/editing/table_fix.h"
 
-#include <stdlib.h>
-
 static abbe_table_edit *open_edit(const char *text) {
   abbe_table_edit *edit = NULL;
-  abbe_error error = {0};
-  if (abbe_table_edit_parse(text, strlen(text), "t.yaml", &edit, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_table_edit_parse(text, strlen(text), "t.yaml", &edit, &error));
   return edit;
 }
 
 static abbe_table_fix fix_of(abbe_table_edit *edit) {
   abbe_table_fix fix;
-  abbe_error error = {0};
-  if (abbe_table_fix_make(edit, &shipped, &fix, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_table_fix_make(edit, &shipped, &fix, &error));
   return fix;
 }
 

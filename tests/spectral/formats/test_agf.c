@@ -2,16 +2,12 @@
 
 #include "spectral/formats/material_import.h"
 
-#include <stdlib.h>
-
 static abbe_report report;
 
 static abbe_material_table parse_bytes(const char *bytes, size_t size) {
   abbe_material_table table;
-  abbe_error error = {0};
   abbe_report_free(&report);
-  if (abbe_agf_parse(bytes, size, "glass/maker.agf", &table, &report, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_agf_parse(bytes, size, "glass/maker.agf", &table, &report, &error));
   return table;
 }
 
@@ -231,10 +227,8 @@ TEST(one_bad_glass_does_not_stop_the_rest) {
 
 static void refuses(const char *text, abbe_result code, const char *part) {
   abbe_material_table table;
-  abbe_error error = {0};
   abbe_report mine = {0};
-  assert_int_equal(abbe_agf_parse(text, strlen(text), "x.agf", &table, &mine, &error), code);
-  assert_contains(error.text, part);
+  REFUSED(code, part, abbe_agf_parse(text, strlen(text), "x.agf", &table, &mine, &error));
   assert_null(table.material);
   abbe_report_free(&mine);
 }
@@ -244,8 +238,7 @@ TEST(what_is_no_catalogue_is_refused) {
   refuses("materials:\n- name: x\n", ABBE_PARSE, "no Zemax glass catalogue");
   refuses("NM A 99\n", ABBE_SCHEMA, "none of its 1 glasses can be used; the first: its formula");
   abbe_material_table table;
-  abbe_error error;
-  assert_int_equal(abbe_agf_load("/nowhere/x.agf", &table, NULL, &error), ABBE_IO);
+  REFUSED(ABBE_IO, "", abbe_agf_load("/nowhere/x.agf", &table, NULL, &error));
 }
 
 /* A thousand glasses with 33 transmittances each, as a maker's catalogue has. */

@@ -2,8 +2,6 @@
 
 #include "spectral/formats/agf_formula.h"
 
-#include <stdlib.h>
-
 /* n_d as real catalogues print it beside the coefficients; what no catalogue prints is evaluated by
  * hand from the formula as Zemax's manual has it. */
 TEST(every_formula_gives_its_catalogues_index) {
@@ -157,14 +155,12 @@ TEST(what_has_no_formula_is_fitted_with_its_error) {
 
 TEST(wrong_formulas_are_named) {
   abbe_dispersion d;
-  abbe_error error;
   const abbe_agf_formula none = {14, {1}}, zero = {2, {0}}, infinite = {1, {1, INFINITY}};
-  assert_int_equal(abbe_agf_formula_read(&none, &d, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "no formula 14; a catalogue's are 1 to 13");
-  assert_int_equal(abbe_agf_formula_read(&zero, &d, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "are 0");
-  assert_int_equal(abbe_agf_formula_read(&infinite, &d, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "coefficient 1 is inf");
+  REFUSED(ABBE_INVALID_ARGUMENT, "no formula 14; a catalogue's are 1 to 13",
+          abbe_agf_formula_read(&none, &d, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "are 0", abbe_agf_formula_read(&zero, &d, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "coefficient 1 is inf",
+          abbe_agf_formula_read(&infinite, &d, &error));
   assert_null(abbe_agf_formula_name(0));
   assert_string_equal(abbe_agf_formula_name(13), "Extended 3");
 }

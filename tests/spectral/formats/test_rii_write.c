@@ -9,12 +9,12 @@ static abbe_material reread(const abbe_material *m, abbe_report *report) {
   char *text = NULL;
   size_t size = 0;
   FILE *to = open_memstream(&text, &size);
-  abbe_error error = {0};
-  if (abbe_rii_write(m, to, report, &error) != ABBE_OK) fail_msg("%s", error.text);
+  abbe_error why = {0};
+  OK(abbe_rii_write(m, to, report, &error));
   fclose(to);
   abbe_material back;
-  if (abbe_rii_parse(text, size, "x.yml", m->name, &back, NULL, &error) != ABBE_OK)
-    fail_msg("%s\n%s", error.text, text);
+  if (abbe_rii_parse(text, size, "x.yml", m->name, &back, NULL, &why) != ABBE_OK)
+    fail_msg("%s\n%s", why.text, text);
   free(text);
   return back;
 }
@@ -23,7 +23,7 @@ TEST(shipped_rows_come_back_the_same) {
   const char *const tables[] = {"default", "thesis"};
   for (int t = 0; t < 2; t++) {
     abbe_material_table table;
-    assert_int_equal(abbe_material_table_load(tables[t], &table, NULL), ABBE_OK);
+    OK(abbe_material_table_load(tables[t], &table, &error));
     for (size_t i = 0; i < table.count; i++) {
       abbe_material back = reread(&table.material[i], NULL);
       assert_carried(&table.material[i], &back, 1e-14);

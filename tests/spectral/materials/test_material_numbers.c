@@ -92,16 +92,14 @@ TEST(recorded_fits_are_held_against_the_formula) {
       const abbe_material *m = &shipped.material[i];
       abbe_index_difference d;
       if (m->fit[k].terms == 0) continue; /* air */
-      assert_int_equal(abbe_material_fit_residual(m, &m->fit[k], &d, NULL), ABBE_OK);
+      OK(abbe_material_fit_residual(m, &m->fit[k], &d, &error));
       assert_near(d.max, m->fit[k].max_error, 0.006 * d.max); /* printed to three digits */
       assert_true(d.rms > 0 && d.rms < d.max);
     }
   abbe_index_difference d;
-  abbe_error error;
   const abbe_material_fit none = {0}, wrong = {.terms = 9};
-  assert_int_equal(abbe_material_fit_residual(&shipped.material[0], &none, &d, &error),
-                   ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, shipped.material[0].name);
-  assert_int_equal(abbe_material_fit_residual(&shipped.material[0], &wrong, &d, &error),
-                   ABBE_INVALID_ARGUMENT);
+  REFUSED(ABBE_INVALID_ARGUMENT, shipped.material[0].name,
+          abbe_material_fit_residual(&shipped.material[0], &none, &d, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "",
+          abbe_material_fit_residual(&shipped.material[0], &wrong, &d, &error));
 }

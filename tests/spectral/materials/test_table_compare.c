@@ -3,12 +3,9 @@
 #include "spectral/formats/material_table_load.h"
 #include "spectral/materials/table_compare.h"
 
-static abbe_error error;
-
 static abbe_material_table parse(const char *text) {
   abbe_material_table table;
-  if (abbe_material_table_parse(text, strlen(text), "t", &table, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_material_table_parse(text, strlen(text), "t", &table, &error));
   return table;
 }
 
@@ -24,7 +21,7 @@ TEST(rows_are_matched) {
             "- {name: A, model: cauchy, coefficients: [1.501, 0.004], range_nm: [300, 700], "
             "source: s}\n");
   abbe_table_difference d;
-  assert_int_equal(abbe_table_compare(&first, &second, &d, &error), ABBE_OK);
+  OK(abbe_table_compare(&first, &second, &d, &error));
   assert_int_equal(d.count, 4);
   assert_int_equal(d.row[0].kind, ABBE_ROW_CHANGED);
   assert_int_equal(d.row[0].parts, 1u << ABBE_ROW_PART_COEFFICIENTS | 1u << ABBE_ROW_PART_RANGE);
@@ -51,9 +48,9 @@ TEST(rows_are_matched) {
 TEST(a_table_is_the_same_as_itself) {
   abbe_material_table first, second;
   abbe_table_difference d;
-  assert_int_equal(abbe_material_table_load("default", &first, &error), ABBE_OK);
-  assert_int_equal(abbe_material_table_load("default", &second, &error), ABBE_OK);
-  assert_int_equal(abbe_table_compare(&first, &second, &d, &error), ABBE_OK);
+  OK(abbe_material_table_load("default", &first, &error));
+  OK(abbe_material_table_load("default", &second, &error));
+  OK(abbe_table_compare(&first, &second, &d, &error));
   assert_int_equal(d.kinds[ABBE_ROW_SAME], first.count);
   abbe_table_difference_free(&d);
   abbe_material_table_free(&first);
@@ -91,7 +88,7 @@ TEST(each_part_is_seen) {
                k == 0 ? cases[i].before : cases[i].after);
     abbe_material_table first = parse(text[0]), second = parse(text[1]);
     abbe_table_difference d;
-    assert_int_equal(abbe_table_compare(&first, &second, &d, &error), ABBE_OK);
+    OK(abbe_table_compare(&first, &second, &d, &error));
     if (d.row[0].parts != 1u << cases[i].part)
       fail_msg("%s: %x", abbe_row_part_name(cases[i].part), d.row[0].parts);
     abbe_table_difference_free(&d);

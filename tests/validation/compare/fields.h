@@ -8,8 +8,6 @@
 #include "colorimetry/rgb_space.h"
 #include "tests/check.h"
 
-#include <stdlib.h>
-
 enum { XYZ = 1, ERRORS = 2, BANDS = 4 };
 
 static const double d65[3] = {0.3127 / 0.3290, 1, (1 - 0.3127 - 0.3290) / 0.3290};
@@ -23,9 +21,9 @@ static inline abbe_field field_of(size_t width, size_t height, int what) {
   size_t channels = (what & BANDS ? 2 : 3) * (size_t)(what & ERRORS ? 2 : 1);
   abbe_image image = {0};
   abbe_field field = {0};
-  assert_int_equal(abbe_image_make(width, height, channels, of, &image, NULL), ABBE_OK);
-  assert_int_equal(abbe_image_set_attribute(&image, "abbe:space", "acescg", NULL), ABBE_OK);
-  assert_int_equal(abbe_field_make(&image, "it", &field, NULL), ABBE_OK);
+  OK(abbe_image_make(width, height, channels, of, &image, &error));
+  OK(abbe_image_set_attribute(&image, "abbe:space", "acescg", &error));
+  OK(abbe_field_make(&image, "it", &field, &error));
   abbe_image_free(&image);
   return field;
 }
@@ -51,10 +49,9 @@ static inline void paint(abbe_field *field) {
 }
 
 static inline abbe_comparison compare(const abbe_field *reference, const abbe_field *test,
-                               const abbe_compare_options *options) {
+                                      const abbe_compare_options *options) {
   abbe_comparison out = {0};
-  abbe_error error = {0};
-  if (abbe_compare(reference, test, options, &out, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_compare(reference, test, options, &out, &error));
   return out;
 }
 
@@ -63,8 +60,8 @@ static inline double value(const abbe_compare_region *region, abbe_compare_metri
 }
 
 /* REF is TEST and noise of a known size on top. */
-static inline void make_noisy(abbe_field *reference, const abbe_field *exact, double share, double bias,
-                       unsigned seed) {
+static inline void make_noisy(abbe_field *reference, const abbe_field *exact, double share,
+                              double bias, unsigned seed) {
   for (size_t i = 0; i < 3 * exact->width * exact->height; i++) {
     double v = (double)exact->colour.value[i], error = share * v;
     reference->colour.value[i] = (float)(v + error * (bias + normal(&seed)));

@@ -5,24 +5,22 @@
 #include "scenes/view/map_layout.h"
 #include "tests/check.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 static abbe_image image_of(size_t width, size_t height, size_t channels, const char *const *names) {
   abbe_image image = {0};
-  assert_int_equal(abbe_image_make(width, height, channels, names, &image, NULL), ABBE_OK);
+  OK(abbe_image_make(width, height, channels, names, &image, &error));
   for (size_t i = 0; i < width * height * channels; i++) image.data[i] = (float)(i + 1);
   return image;
 }
 
 static void set(abbe_image *image, const char *key, const char *text) {
-  assert_int_equal(abbe_image_set_attribute(image, key, text, NULL), ABBE_OK);
+  OK(abbe_image_set_attribute(image, key, text, &error));
 }
 
 static abbe_field field_of(const abbe_image *image) {
   abbe_field field = {0};
-  abbe_error error = {0};
-  if (abbe_field_make(image, "it", &field, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_field_make(image, "it", &field, &error));
   return field;
 }
 
@@ -44,7 +42,7 @@ static abbe_field map_of(size_t width, size_t height, const abbe_map_layout *lay
                          const char *light) {
   static const char *const names[] = {"X", "Y", "Z", "stderr.X", "stderr.Y", "stderr.Z"};
   abbe_image image = image_of(width, height, 6, names);
-  if (layout != NULL) assert_int_equal(abbe_map_layout_write(layout, light, &image, NULL), ABBE_OK);
+  if (layout != NULL) OK(abbe_map_layout_write(layout, light, &image, &error));
   set(&image, "abbe:kind", "receiver map");
   abbe_field field = field_of(&image);
   abbe_image_free(&image);
@@ -173,21 +171,18 @@ TEST(what_cannot_be_compared) {
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     abbe_image image = image_of(2, 2, rows[i].count, rows[i].names);
     abbe_field field = {0};
-    abbe_error error = {0};
-    assert_int_equal(abbe_field_make(&image, "a.exr", &field, &error), ABBE_INVALID_ARGUMENT);
-    assert_contains(error.text, rows[i].says);
-    assert_contains(error.text, "a.exr");
+    REFUSED(ABBE_INVALID_ARGUMENT, rows[i].says, abbe_field_make(&image, "a.exr", &field, &error));
+    assert_contains(last_error.text, "a.exr");
     assert_null(field.colour.value);
     abbe_image_free(&image);
   }
   abbe_image image = image_of(1, 1, 3, rgb), empty = {0};
   for (int i = 0; i < 8; i++) image.xy[i] = 0.3;
   abbe_field field = {0};
-  abbe_error error = {0};
-  assert_int_equal(abbe_field_make(&image, "a.exr", &field, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "span no colour space");
-  assert_int_equal(abbe_field_make(&empty, "a.exr", &field, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_field_load("/no/such.exr", &field, &error), ABBE_IO);
+  REFUSED(ABBE_INVALID_ARGUMENT, "span no colour space",
+          abbe_field_make(&image, "a.exr", &field, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_field_make(&empty, "a.exr", &field, &error));
+  REFUSED(ABBE_IO, "", abbe_field_load("/no/such.exr", &field, &error));
   abbe_image_free(&image);
 }
 
@@ -221,8 +216,7 @@ TEST(maps_align) {
     abbe_map_layout near = layout_of(-1, 5), far = layout_of(-1, 9);
     abbe_field a = map_of(sizes[i][0], sizes[i][0], &near, "lamp"),
                b = map_of(sizes[i][1], sizes[i][1], &far, NULL);
-    abbe_error error = {0};
-    if (abbe_field_align(&a, "a", &b, "b", &error) != ABBE_OK) fail_msg("%s", error.text);
+    OK(abbe_field_align(&a, "a", &b, "b", &error));
     assert_int_equal(a.width, b.width);
     assert_int_equal(a.width, sizes[i][0] < sizes[i][1] ? sizes[i][0] : sizes[i][1]);
     abbe_field_free(&a);
@@ -231,10 +225,8 @@ TEST(maps_align) {
 }
 
 static void refuse(abbe_field *a, abbe_field *b, const char *says) {
-  abbe_error error = {0};
-  assert_int_equal(abbe_field_align(a, "a.exr", b, "b.exr", &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, says);
-  assert_contains(error.text, "a.exr");
+  REFUSED(ABBE_INVALID_ARGUMENT, says, abbe_field_align(a, "a.exr", b, "b.exr", &error));
+  assert_contains(last_error.text, "a.exr");
   abbe_field_free(a);
   abbe_field_free(b);
 }
@@ -251,9 +243,7 @@ TEST(what_does_not_align) {
   }
   abbe_field a = map_of(4, 4, &layout, NULL), b = map_of(4, 4, &layout, NULL);
   set(&b.header, "abbe:map_view", "perspective, from above");
-  abbe_error error = {0};
-  assert_int_equal(abbe_field_align(&a, "a.exr", &b, "b.exr", &error), ABBE_PARSE);
-  assert_contains(error.text, "b.exr");
+  REFUSED(ABBE_PARSE, "b.exr", abbe_field_align(&a, "a.exr", &b, "b.exr", &error));
   abbe_field_free(&a);
   abbe_field_free(&b);
   a = map_of(4, 4, &layout, NULL), b = map_of(4, 4, &layout, NULL);
@@ -285,7 +275,7 @@ TEST(spaces_align) {
   set(&image, "abbe:space", "acescg");
   set(&without, "abbe:space", "acescg");
   abbe_field a = field_of(&image), b = field_of(&without);
-  assert_int_equal(abbe_field_align(&a, "a", &b, "b", NULL), ABBE_OK);
+  OK(abbe_field_align(&a, "a", &b, "b", &error));
   assert_true(!a.is_xyz && !b.is_xyz);
   assert_int_equal(a.bands.channels, 0);
   abbe_field_free(&b);
@@ -293,7 +283,7 @@ TEST(spaces_align) {
   b = field_of(&without);
   double xyz[3];
   abbe_field_xyz(&a, 3, xyz, NULL);
-  assert_int_equal(abbe_field_align(&a, "a", &b, "b", NULL), ABBE_OK);
+  OK(abbe_field_align(&a, "a", &b, "b", &error));
   assert_true(a.is_xyz && b.is_xyz);
   for (size_t k = 0; k < 3; k++) assert_near((double)a.colour.value[9 + k], xyz[k], 1e-5);
   abbe_field_free(&a);
@@ -308,10 +298,10 @@ TEST(from_a_file) {
   snprintf(path, sizeof path, "/tmp/abbe_test_field_%ld.exr", (long)getpid());
   abbe_image image = image_of(3, 2, 3, names);
   abbe_map_layout layout = layout_of(-1, 5);
-  assert_int_equal(abbe_map_layout_write(&layout, NULL, &image, NULL), ABBE_OK);
-  assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
+  OK(abbe_map_layout_write(&layout, NULL, &image, &error));
+  OK(abbe_exr_write(path, &image, &error));
   abbe_field f = {0};
-  assert_int_equal(abbe_field_load(path, &f, NULL), ABBE_OK);
+  OK(abbe_field_load(path, &f, &error));
   unlink(path);
   assert_int_equal(f.kind, ABBE_FIELD_RECEIVER_MAP);
   assert_true(f.is_xyz && f.colour.error == NULL && f.passes == 0);

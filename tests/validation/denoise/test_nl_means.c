@@ -3,8 +3,6 @@
 #include "tests/random.h"
 #include "validation/denoise/nl_means.h"
 
-#include <stdlib.h>
-
 enum { SIDE = 96, COUNT = SIDE * SIDE };
 
 static float value[COUNT], variance[COUNT], out[COUNT], left[COUNT], own[COUNT];
@@ -44,7 +42,7 @@ static abbe_nl_means job_of(size_t width, size_t height) {
 }
 
 static void run(const abbe_nl_means *job, size_t threads) {
-  assert_int_equal(abbe_nl_means_run(job, threads, NULL), ABBE_OK);
+  OK(abbe_nl_means_run(job, threads, &error));
 }
 
 static double mean_square(double (*light)(size_t x, size_t y), size_t from, size_t to) {

@@ -10,8 +10,7 @@ static abbe_image make(bool caustic, float even, float odd) {
   static const char *const rgb[] = {"R", "G", "B"};
   static const char *const layers[] = {"R", "G", "B", "caustic.R", "caustic.G", "caustic.B"};
   abbe_image image;
-  assert_int_equal(
-      abbe_image_make(SIDE, SIDE, caustic ? 6 : 3, caustic ? layers : rgb, &image, NULL), ABBE_OK);
+  OK(abbe_image_make(SIDE, SIDE, caustic ? 6 : 3, caustic ? layers : rgb, &image, &error));
   for (size_t i = 0; i < SIDE * SIDE; i++)
     for (size_t k = 0; k < image.channels; k++)
       image.data[i * image.channels + k] = k + 3 < image.channels ? 99.0f : i % 2 ? odd : even;
@@ -20,10 +19,8 @@ static abbe_image make(bool caustic, float even, float odd) {
 
 static abbe_frame_error add(abbe_frame_flicker *f, abbe_image frame, abbe_image reference) {
   abbe_frame_error out;
-  abbe_error error = {0};
   const bool known = reference.data != NULL;
-  if (abbe_frame_flicker_add(f, &frame, known ? &reference : NULL, &out, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_frame_flicker_add(f, &frame, known ? &reference : NULL, &out, &error));
   abbe_image_free(&frame);
   abbe_image_free(&reference);
   return out;
@@ -74,15 +71,14 @@ TEST(what_does_not_fit_is_refused) {
   static const char *const y[] = {"Y"};
   abbe_frame_flicker f = {0};
   abbe_frame_error out;
-  abbe_error error = {0};
   abbe_image small, grey;
   add(&f, make(false, 1, 1), (abbe_image){0});
-  assert_int_equal(abbe_image_make(2, 2, 1, y, &small, NULL), ABBE_OK);
-  assert_int_equal(abbe_image_make(SIDE, SIDE, 1, y, &grey, NULL), ABBE_OK);
-  assert_int_equal(abbe_frame_flicker_add(&f, &small, NULL, &out, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "frame 2 has 2 x 2");
-  assert_int_equal(abbe_frame_flicker_add(&f, &grey, NULL, &out, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "has no channels R, G, B");
+  OK(abbe_image_make(2, 2, 1, y, &small, &error));
+  OK(abbe_image_make(SIDE, SIDE, 1, y, &grey, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "frame 2 has 2 x 2",
+          abbe_frame_flicker_add(&f, &small, NULL, &out, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "has no channels R, G, B",
+          abbe_frame_flicker_add(&f, &grey, NULL, &out, &error));
   abbe_frame_flicker_free(&f);
   abbe_frame_flicker_free(NULL);
   abbe_image_free(&small);

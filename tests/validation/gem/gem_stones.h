@@ -12,11 +12,6 @@
 /* A square plate twice as wide as thick. */
 static const char slab[] = "GemCad 5.0\ng 96 0.0\n" GIRDLE_OF_FOUR "a 0 0.5 96\na -0 0.5 96\n";
 
-static inline void need(abbe_result result, const abbe_error *error) {
-  if (result != ABBE_OK) print_error("%s\n", error->text);
-  assert_int_equal(result, ABBE_OK);
-}
-
 /* A roof of that slope under a table: its ridge runs along x. */
 static inline void roof_text(double slope_deg, char text[256]) {
   snprintf(text, 256, "GemCad 5.0\ng 96 0.0\na -90 1.0 24 72\na -%.9f 0.7 96 48\na 0 0.1 96\n",
@@ -33,14 +28,12 @@ typedef struct judged {
 
 static inline judged judged_make(const char *text, const abbe_material *material, size_t count) {
   judged j;
-  abbe_error error = {0};
   abbe_illuminant d65 = {0};
   j.cut = design_parse(text);
-  need(abbe_cut_polyhedron_make(&j.cut, 0, &j.polyhedron, &error), &error);
-  need(abbe_wavelengths_make(count, 400, 700, &j.wavelengths, &error), &error);
-  need(abbe_weights_make(&j.wavelengths, &d65, ABBE_RGB_SPACE_XYZ, &j.weights, &error), &error);
-  need(abbe_gem_stone_make(&j.cut, &j.polyhedron, material, &j.wavelengths, 0.01, &j.stone, &error),
-       &error);
+  OK(abbe_cut_polyhedron_make(&j.cut, 0, &j.polyhedron, &error));
+  OK(abbe_wavelengths_make(count, 400, 700, &j.wavelengths, &error));
+  OK(abbe_weights_make(&j.wavelengths, &d65, ABBE_RGB_SPACE_XYZ, &j.weights, &error));
+  OK(abbe_gem_stone_make(&j.cut, &j.polyhedron, material, &j.wavelengths, 0.01, &j.stone, &error));
   return j;
 }
 
@@ -64,8 +57,7 @@ static inline void judged_free(judged *j) {
 
 static inline abbe_gem_view judged_view(const judged *j, const abbe_gem_view_desc *desc) {
   abbe_gem_view view;
-  abbe_error error = {0};
-  need(abbe_gem_view_make(&j->stone, &j->weights, desc, &view, &error), &error);
+  OK(abbe_gem_view_make(&j->stone, &j->weights, desc, &view, &error));
   return view;
 }
 

@@ -3,20 +3,14 @@
 #include "tests/validation/gem/gem_stones.h"
 #include "validation/gem/gem_light.h"
 
-#include <stdlib.h>
-
 static abbe_gem_tilts tilts_of(const judged *j, const abbe_gem_tilts_desc *desc) {
   abbe_gem_tilts tilts;
-  abbe_error error = {0};
-  need(abbe_gem_tilts_make(&j->stone, &j->weights, desc, &tilts, &error), &error);
+  OK(abbe_gem_tilts_make(&j->stone, &j->weights, desc, &tilts, &error));
   return tilts;
 }
 
-static const abbe_gem_tilts_desc few = {.head_rad = 15 * DEG,
-                                        .steps = 2,
-                                        .side = SANITIZED ? 8 : 16,
-                                        .repeats = 6,
-                                        .threads = 2};
+static const abbe_gem_tilts_desc few = {
+    .head_rad = 15 * DEG, .steps = 2, .side = SANITIZED ? 8 : 16, .repeats = 6, .threads = 2};
 
 /* A brilliant of one index, and what few rays tell of it. */
 static judged brilliant;
@@ -174,12 +168,11 @@ TEST(work_can_be_given_up_and_wrong_requests_are_refused) {
   desc.user = &done;
   desc.threads = 1;
   abbe_gem_tilts t;
-  abbe_error error = {0};
-  assert_int_equal(abbe_gem_tilts_make(&j.stone, &j.weights, &desc, &t, &error), ABBE_CANCELLED);
+  REFUSED(ABBE_CANCELLED, "", abbe_gem_tilts_make(&j.stone, &j.weights, &desc, &t, &error));
   assert_near(done, 1.0 / 20, 1e-12);
   static const abbe_gem_tilts_desc wrong[] = {
       {.most_rad = 2}, {.most_rad = -1}, {.steps = 91}, {.repeats = 1}, {.head_rad = 0.8}};
   for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++)
-    assert_int_equal(abbe_gem_tilts_make(&j.stone, &j.weights, &wrong[i], &t, &error),
-                     ABBE_INVALID_ARGUMENT);
+    REFUSED(ABBE_INVALID_ARGUMENT, "",
+            abbe_gem_tilts_make(&j.stone, &j.weights, &wrong[i], &t, &error));
 }

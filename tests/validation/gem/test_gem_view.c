@@ -1,7 +1,5 @@
 #include "tests/validation/gem/gem_stones.h"
 
-#include <stdlib.h>
-
 static const abbe_gem_view_desc small = {
     .head_rad = 15 * DEG, .side = 32, .repeats = 4, .threads = 2};
 
@@ -38,8 +36,7 @@ TEST(slab_absorbs_by_its_thickness) {
                      .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}},
                      .min_nm = 300,
                      .max_nm = 800};
-  abbe_error error = {0};
-  need(abbe_spectrum_make(nm, per_m, 1, ABBE_INTERPOLATION_LINEAR, &m.attenuation, &error), &error);
+  OK(abbe_spectrum_make(nm, per_m, 1, ABBE_INTERPOLATION_LINEAR, &m.attenuation, &error));
   judged j = judged_make(slab, &m, 3);
   abbe_gem_view view = judged_view(&j, &small);
   /* 10 mm wide, 5 mm thick */
@@ -149,8 +146,7 @@ TEST(shares_of_area_add_up) {
   judged j = judged_plain(design_b, 1.38);
   abbe_gem_view v = judged_view(&j, &small);
   abbe_gem_areas areas;
-  abbe_error error = {0};
-  need(abbe_gem_view_areas(&v, &areas, &error), &error);
+  OK(abbe_gem_view_areas(&v, &areas, &error));
   assert_near(areas.brilliant.value + areas.window.value + areas.extinct.value, 1, 1e-12);
   assert_true(areas.window.value > 0.2); /* below its critical angle */
   assert_true(areas.brilliant.error > 0 && areas.brilliant.error < 0.05);
@@ -160,7 +156,7 @@ TEST(shares_of_area_add_up) {
   roof_text(45, text);
   j = judged_plain(text, 1.54);
   v = judged_view(&j, &small);
-  need(abbe_gem_view_areas(&v, &areas, &error), &error);
+  OK(abbe_gem_view_areas(&v, &areas, &error));
   assert_near(areas.extinct.value, 1, 1e-12); /* all from the head */
   abbe_gem_view_free(&v);
   judged_free(&j);
@@ -210,9 +206,8 @@ TEST(errors_are_those_of_the_means) {
     assert_true(apart(a, b) < 8); /* four repeats tell a deviation poorly */
   }
   abbe_gem_areas few, many;
-  abbe_error error = {0};
-  need(abbe_gem_view_areas(&coarse, &few, &error), &error);
-  need(abbe_gem_view_areas(&fine, &many, &error), &error);
+  OK(abbe_gem_view_areas(&coarse, &few, &error));
+  OK(abbe_gem_view_areas(&fine, &many, &error));
   assert_true(apart(few.brilliant, many.brilliant) < 8);
   assert_true(apart(few.window, many.window) < 8);
   assert_true(apart(few.extinct, many.extinct) < 8);
@@ -263,8 +258,7 @@ TEST(areas_and_contrast_do_not_depend_on_the_grid) {
       amount[ABBE_GEM_DOWN] = 1 - amount[ABBE_GEM_RETURN];
     }
     abbe_gem_areas areas;
-    abbe_error error = {0};
-    need(abbe_gem_view_areas(&v, &areas, &error), &error);
+    OK(abbe_gem_view_areas(&v, &areas, &error));
     const abbe_gem_number contrast = abbe_gem_view_contrast(&v);
     assert_true(fabs(areas.brilliant.value - share) < 5 * areas.brilliant.error);
     assert_true(areas.brilliant.error < 0.5 / (double)side);
@@ -281,10 +275,9 @@ TEST(wrong_requests_are_refused) {
       {.side = 4000}, {.repeats = 1}, {.repeats = 65}, {.head_rad = -0.1}, {.head_rad = 0.8}};
   for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
     abbe_gem_view view;
-    abbe_error error = {0};
-    assert_int_equal(abbe_gem_view_make(&j.stone, &j.weights, &wrong[i], &view, &error),
-                     ABBE_INVALID_ARGUMENT);
-    assert_true(error.text[0] != '\0');
+    REFUSED(ABBE_INVALID_ARGUMENT, "",
+            abbe_gem_view_make(&j.stone, &j.weights, &wrong[i], &view, &error));
+    assert_true(last_error.text[0] != '\0');
   }
   judged_free(&j);
 }

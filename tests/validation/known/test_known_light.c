@@ -3,8 +3,6 @@
 
 #include "validation/known/known_light.h"
 
-#include <stdlib.h>
-
 static const abbe_known_options few = {.samples = 1 << 15, .threads = 1};
 
 /* Every row is within what its own noise allows, whether or not that is narrow enough to pass. */
@@ -30,9 +28,8 @@ typedef abbe_result (*setting_maker)(abbe_known_run *run, size_t index, bool oth
 
 static void check_setting(setting_maker make, size_t index, bool other, size_t rows) {
   abbe_known_answers a = {0};
-  abbe_error error = {0};
   abbe_known_run run = {.options = &few, .out = &a, .group = "group", .to = 1};
-  if (make(&run, index, other, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(make(&run, index, other, &error));
   check_rows(&a, rows);
 }
 

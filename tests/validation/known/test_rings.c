@@ -1,11 +1,8 @@
 /* Rings of texels: what is put into a map round by round is found again ring by ring. */
 #include "tests/check.h"
 
+#include "base/maths.h"
 #include "validation/known/rings.h"
-
-#include <stdlib.h>
-
-#define PI 3.14159265358979323846
 
 enum { SIDE = 96, RINGS = 5, RADII = (RINGS + 1) * (ABBE_RINGS_STEPS + 1) };
 
@@ -22,10 +19,10 @@ static abbe_map_layout look_down(bool beam, bool warped) {
   abbe_map_layout_make(&view, &layout);
   for (int k = 0; warped && k <= ABBE_MAP_LAYOUT_STEPS; k++) {
     double x = (double)k / ABBE_MAP_LAYOUT_STEPS;
-    layout.knot[0][k] = x + 0.1 * sin(2 * PI * x) / PI;
-    layout.knot[1][k] = x - 0.15 * sin(2 * PI * x) / PI;
+    layout.knot[0][k] = x + 0.1 * sin(2 * ABBE_PI * x) / ABBE_PI;
+    layout.knot[1][k] = x - 0.15 * sin(2 * ABBE_PI * x) / ABBE_PI;
   }
-  assert_int_equal(abbe_map_layout_check(&layout, NULL), ABBE_OK);
+  OK(abbe_map_layout_check(&layout, &error));
   return layout;
 }
 
@@ -45,7 +42,7 @@ static void fill(const abbe_map_layout *layout, double z, float *map) {
     double from = 0.08 * c / CIRCLES, to = 0.08 * (c + 1) / CIRCLES, r = (from + to) / 2;
     double flux = (profile(to) - profile(from)) / AROUND;
     for (int k = 0; k < AROUND; k++) {
-      double around = 2 * PI * (k + 0.618 * c) / AROUND;
+      double around = 2 * ABBE_PI * (k + 0.618 * c) / AROUND;
       const double at[3] = {r * cos(around), r * sin(around), z};
       size_t column, row;
       if (abbe_map_layout_texel(layout, SIDE, SIDE, at, &column, &row))
@@ -61,8 +58,7 @@ static void compare(bool beam, bool warped) {
   const double centre[3] = {0, 0, -0.2};
   abbe_map_layout layout = look_down(beam, warped);
   abbe_rings rings;
-  assert_int_equal(abbe_rings_make(&layout, SIDE, SIDE, centre, edge, RINGS, &rings, NULL),
-                   ABBE_OK);
+  OK(abbe_rings_make(&layout, SIDE, SIDE, centre, edge, RINGS, &rings, &error));
   double radius[RADII], enclosed[RADII], expected[RINGS], sum[RINGS];
   abbe_rings_radii(&rings, radius);
   for (int i = 0; i < RADII; i++) enclosed[i] = profile(radius[i]);
@@ -90,7 +86,7 @@ TEST(squares_and_strides) {
   abbe_rings rings;
   float map[3 * 4] = {1, 9, 2, 9, 3, 9, 4, 9};
   double sum = 0;
-  assert_int_equal(abbe_rings_make(&layout, 2, 2, centre, edge, 1, &rings, NULL), ABBE_OK);
+  OK(abbe_rings_make(&layout, 2, 2, centre, edge, 1, &rings, &error));
   abbe_rings_sum(&rings, map, 2, false, &sum);
   assert_near(sum, 10, 0);
   abbe_rings_sum(&rings, map, 2, true, &sum);
@@ -102,14 +98,12 @@ TEST(wrong_rings_are_refused) {
   const double falling[3] = {0, 2, 1}, centre[3] = {0, 0, 0};
   abbe_map_layout layout = look_down(true, false);
   abbe_rings rings;
-  abbe_error error = {0};
-  assert_int_equal(abbe_rings_make(&layout, 8, 8, centre, falling, 2, &rings, &error),
-                   ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "ring edge 2 is 1");
-  assert_int_equal(abbe_rings_make(&layout, 8, 8, centre, falling, 65, &rings, &error),
-                   ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_rings_make(&layout, 0, 8, centre, falling, 1, &rings, &error),
-                   ABBE_INVALID_ARGUMENT);
+  REFUSED(ABBE_INVALID_ARGUMENT, "ring edge 2 is 1",
+          abbe_rings_make(&layout, 8, 8, centre, falling, 2, &rings, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "",
+          abbe_rings_make(&layout, 8, 8, centre, falling, 65, &rings, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "",
+          abbe_rings_make(&layout, 0, 8, centre, falling, 1, &rings, &error));
   abbe_rings_free(&rings);
   abbe_rings_free(NULL);
 }

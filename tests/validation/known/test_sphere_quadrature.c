@@ -1,28 +1,21 @@
 /* The quadrature against closed forms, and against rays traced one by one as vectors. */
 #include "tests/check.h"
 
+#include "base/maths.h"
 #include "spectral/formats/material_table_load.h"
 #include "spectral/optics.h"
 #include "validation/known/sphere_quadrature.h"
 
-#include <stdbool.h>
-#include <stdlib.h>
-
-#define PI 3.14159265358979323846
-
 static abbe_sphere_quadrature *make(const abbe_sphere_setup *setup) {
   abbe_sphere_quadrature *q = NULL;
-  abbe_error error = {0};
-  if (abbe_sphere_quadrature_make(setup, &q, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_sphere_quadrature_make(setup, &q, &error));
   return q;
 }
 
 static double enclosed(const abbe_sphere_setup *setup, double radius_m) {
   abbe_sphere_quadrature *q = make(setup);
-  abbe_error error = {0};
   double flux = NAN;
-  if (abbe_sphere_quadrature_enclosed(q, radius_m, &flux, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_sphere_quadrature_enclosed(q, radius_m, &flux, &error));
   abbe_sphere_quadrature_free(q);
   return flux;
 }
@@ -33,17 +26,17 @@ TEST(a_sphere_of_air_lets_all_light_pass) {
   abbe_sphere_setup s = {.radius = 0.03, .index = 1, .plane_distance = 0.1, .power = 7};
   for (double r = 0; r < 0.05; r += 0.004) {
     double inside = fmin(r, 0.03);
-    assert_near(enclosed(&s, r), 7 * PI * inside * inside, 1e-13);
+    assert_near(enclosed(&s, r), 7 * ABBE_PI * inside * inside, 1e-13);
     s.past = s.outside = true;
     s.inner_orders = 5;
-    assert_near(enclosed(&s, r), 7 * PI * r * r, 1e-13);
+    assert_near(enclosed(&s, r), 7 * ABBE_PI * r * r, 1e-13);
     s.past = s.outside = false;
   }
   s.light_distance = 0.2;
   s.past = true;
   for (double r = 0; r < 0.1; r += 0.007)
-    assert_near(enclosed(&s, r), 7 * 2 * PI * (1 - 0.3 / hypot(0.3, r)), 1e-12);
-  assert_near(enclosed(&s, INFINITY), 7 * 2 * PI, 1e-12);
+    assert_near(enclosed(&s, r), 7 * 2 * ABBE_PI * (1 - 0.3 / hypot(0.3, r)), 1e-12);
+  assert_near(enclosed(&s, INFINITY), 7 * 2 * ABBE_PI, 1e-12);
 }
 
 /* A beam through an absorbing ball: 2 (1 - (1 + y) exp(-y)) / y^2 of it is left, y = 2 a R: the
@@ -53,7 +46,7 @@ TEST(an_absorbing_ball) {
     abbe_sphere_setup s = {.radius = 0.02, .index = 1, .plane_distance = 0.1, .power = 1};
     s.attenuation_per_m = y / (2 * s.radius);
     double left = 2 * (1 - (1 + y) * exp(-y)) / (y * y);
-    assert_near(enclosed(&s, 1) / (PI * 0.02 * 0.02), left, 1e-9);
+    assert_near(enclosed(&s, 1) / (ABBE_PI * 0.02 * 0.02), left, 1e-9);
   }
 }
 
@@ -71,7 +64,7 @@ TEST(the_axis_is_paraxial_optics) {
       double slope = (s > 0 ? 1 / s : 0) - 2 * (n - 1) / (n * R), here = 1 + h * slope;
       double before = s > 0 ? 1 / (s * s) : 1, through = 1 - pow((n - 1) / (n + 1), 2);
       double irradiance = before * through * through / (here * here);
-      assert_near(enclosed(&setup, r) / (PI * r * r) / irradiance, 1, 1e-6);
+      assert_near(enclosed(&setup, r) / (ABBE_PI * r * r) / irradiance, 1, 1e-6);
     }
 }
 
@@ -84,13 +77,14 @@ TEST(the_tertiary_rainbow_is_a_fold) {
   s.inner_orders = 2;
   abbe_sphere_quadrature *q = make(&s);
   for (size_t i = abbe_sphere_quadrature_folds(q, &fold); i-- > 0;)
-    assert_true(fold[i] > tan(80 * PI / 180));
+    assert_true(fold[i] > tan(80 * ABBE_PI / 180));
   abbe_sphere_quadrature_free(q);
   s.inner_orders = 3;
   q = make(&s);
   bool seen = false;
   size_t count = abbe_sphere_quadrature_folds(q, &fold);
-  for (size_t i = 0; i < count; i++) seen = seen || fabs(atan(fold[i]) * 180 / PI - 41.6) < 0.05;
+  for (size_t i = 0; i < count; i++)
+    seen = seen || fabs(atan(fold[i]) * 180 / ABBE_PI - 41.6) < 0.05;
   assert_true(seen);
   abbe_sphere_quadrature_free(q);
 }
@@ -101,7 +95,7 @@ TEST(the_fold_bounds_the_core) {
   abbe_sphere_setup s = {.radius = 1, .index = 1.5, .plane_distance = 1.3, .power = 1};
   double widest = 0;
   for (int k = 0; k < 200000; k++) { /* the rays that land on the near side of the axis */
-    double i = (k + 0.5) / 200000 * PI / 2, turn = 2 * (i - asin(sin(i) / 1.5));
+    double i = (k + 0.5) / 200000 * ABBE_PI / 2, turn = 2 * (i - asin(sin(i) / 1.5));
     double x = (sin(i) - 1.3 * sin(turn)) / cos(turn);
     if (turn < 1) widest = fmax(widest, x);
   }
@@ -151,9 +145,10 @@ static void follow_inside(const abbe_sphere_setup *s, double at[2], double to[2]
 }
 
 static void trace(const abbe_sphere_setup *s, const double *radius, double *sum) {
-  double beam = s->power * PI * s->radius * s->radius / RAYS, R = s->radius, d = s->light_distance;
+  double beam = s->power * ABBE_PI * s->radius * s->radius / RAYS, R = s->radius,
+         d = s->light_distance;
   double edge = d > 0 ? sqrt((1 - R / d) * (1 + R / d)) : 0;
-  double cone = s->power * 2 * PI * (1 - edge) / RAYS;
+  double cone = s->power * 2 * ABBE_PI * (1 - edge) / RAYS;
   for (int k = 0; k < RAYS; k++) {
     double u = (k + 0.5) / RAYS, to[2] = {0, -1}, at[2] = {R * sqrt(u), 0};
     if (d > 0) { /* evenly over the solid angle of the cone around the sphere */
@@ -186,13 +181,13 @@ static void compare(const abbe_sphere_setup *s) {
   for (int k = 0; k < CIRCLES; k++) radius[k] = s->radius * 0.02 * pow(2, k);
   trace(s, radius, sum);
   abbe_sphere_quadrature *q = make(s);
-  double incident = s->power * PI * pow(s->radius, 2);
+  double incident = s->power * ABBE_PI * pow(s->radius, 2);
   if (s->light_distance > 0)
-    incident = s->power * 2 * PI * (1 - sqrt(1 - pow(s->radius / s->light_distance, 2)));
+    incident = s->power * 2 * ABBE_PI * (1 - sqrt(1 - pow(s->radius / s->light_distance, 2)));
   double tolerance = incident * (3.0 + (double)s->inner_orders) / RAYS;
   for (int k = 0; k < CIRCLES; k++) {
     double flux = NAN;
-    assert_int_equal(abbe_sphere_quadrature_enclosed(q, radius[k], &flux, NULL), ABBE_OK);
+    OK(abbe_sphere_quadrature_enclosed(q, radius[k], &flux, &error));
     assert_near(flux, sum[k], tolerance);
   }
   abbe_sphere_quadrature_free(q);
@@ -223,11 +218,11 @@ TEST(rings_add_up_to_the_circle) {
   double edge[33], ring[32], sum = 0;
   for (int i = 0; i < 33; i++) edge[i] = 0.08 * i / 32;
   abbe_sphere_quadrature *q = make(&s);
-  assert_int_equal(abbe_sphere_quadrature_rings(q, edge, 32, ring, NULL), ABBE_OK);
+  OK(abbe_sphere_quadrature_rings(q, edge, 32, ring, &error));
   abbe_sphere_quadrature_free(q);
   for (int i = 0; i < 32; i++) {
     assert_true(ring[i] >= 0);
-    sum += ring[i] * PI * (edge[i + 1] * edge[i + 1] - edge[i] * edge[i]);
+    sum += ring[i] * ABBE_PI * (edge[i + 1] * edge[i + 1] - edge[i] * edge[i]);
   }
   assert_near(sum, enclosed(&s, 0.08), 1e-11);
 }
@@ -255,7 +250,7 @@ TEST(nothing_is_made) {
     s.inner_orders = orders;
     double all = enclosed(&s, INFINITY);
     assert_true(all >= before);
-    assert_true(all < PI);
+    assert_true(all < ABBE_PI);
     before = all;
   }
 }
@@ -264,25 +259,21 @@ TEST(white_light_is_the_sum_of_its_bands) {
   abbe_material_table table = {0};
   const abbe_material *flint = NULL;
   const abbe_illuminant d65 = {0};
-  assert_int_equal(abbe_material_table_load(NULL, &table, NULL), ABBE_OK);
-  assert_int_equal(abbe_material_table_find(&table, "sf10", &flint, NULL), ABBE_OK);
+  OK(abbe_material_table_load(NULL, &table, &error));
+  OK(abbe_material_table_find(&table, "sf10", &flint, &error));
   abbe_sphere_setup s = {.radius = 0.04, .plane_distance = 0.07, .power = 5};
   const double radius[] = {0.002, 0.01, INFINITY};
   double coarse[3][3], fine[3][3], white[1][3];
-  assert_int_equal(
-      abbe_sphere_quadrature_xyz(&s, flint, &d65, 380, 780, 100, radius, 3, coarse, NULL), ABBE_OK);
-  assert_int_equal(
-      abbe_sphere_quadrature_xyz(&s, flint, &d65, 380, 780, 400, radius, 3, fine, NULL), ABBE_OK);
+  OK(abbe_sphere_quadrature_xyz(&s, flint, &d65, 380, 780, 100, radius, 3, coarse, &error));
+  OK(abbe_sphere_quadrature_xyz(&s, flint, &d65, 380, 780, 400, radius, 3, fine, &error));
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++) assert_near(coarse[i][k] / fine[i][k], 1, 2e-4);
   /* every band's power adds up to the light's white with Y = power */
   abbe_material air = {.dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1}},
                        .min_nm = 1,
                        .max_nm = 1e5};
-  assert_int_equal(
-      abbe_sphere_quadrature_xyz(&s, &air, &d65, 380, 780, 40, radius + 2, 1, white, NULL),
-      ABBE_OK);
-  assert_near(white[0][1], 5 * PI * 0.04 * 0.04, 1e-12);
+  OK(abbe_sphere_quadrature_xyz(&s, &air, &d65, 380, 780, 40, radius + 2, 1, white, &error));
+  assert_near(white[0][1], 5 * ABBE_PI * 0.04 * 0.04, 1e-12);
   assert_near(white[0][0] / white[0][1], 0.95043, 2e-4); /* D65 [CIE15] */
   assert_near(white[0][2] / white[0][1], 1.08880, 5e-4);
   abbe_material_table_free(&table);
@@ -292,10 +283,9 @@ TEST(white_light_is_the_sum_of_its_bands) {
 
 static void refuse(abbe_sphere_setup s, const char *part) {
   abbe_sphere_quadrature *q = NULL;
-  abbe_error error = {0};
-  assert_int_equal(abbe_sphere_quadrature_make(&s, &q, &error), ABBE_INVALID_ARGUMENT);
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_sphere_quadrature_make(&s, &q, &error));
   assert_null(q);
-  assert_contains(error.text, part);
+  assert_contains(last_error.text, part);
 }
 
 TEST(wrong_setups_are_refused) {
@@ -310,15 +300,14 @@ TEST(wrong_setups_are_refused) {
   refuse((w = s, w.power = -1, w), "power is -1");
   refuse((w = s, w.attenuation_per_m = -1, w), "attenuation_per_m is -1");
   refuse((w = s, w.inner_orders = 65, w), "65 inner orders");
-  abbe_error error = {0};
   abbe_sphere_quadrature *q = make(&s);
   double flux = 0;
-  assert_int_equal(abbe_sphere_quadrature_enclosed(q, -1, &flux, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_sphere_quadrature_enclosed(q, NAN, &flux, &error), ABBE_INVALID_ARGUMENT);
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_sphere_quadrature_enclosed(q, -1, &flux, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_sphere_quadrature_enclosed(q, NAN, &flux, &error));
   const double edges[] = {0, 0.2, 0.1};
   double rings[2];
-  assert_int_equal(abbe_sphere_quadrature_rings(q, edges, 2, rings, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "edge 2 is 0.1");
+  REFUSED(ABBE_INVALID_ARGUMENT, "edge 2 is 0.1",
+          abbe_sphere_quadrature_rings(q, edges, 2, rings, &error));
   abbe_sphere_quadrature_free(q);
   abbe_sphere_quadrature_free(NULL);
 }

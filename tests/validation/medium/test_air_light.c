@@ -56,8 +56,8 @@ typedef struct fixture {
 static void make(const char *text, fixture *f) {
   const double lambda_nm[STEPS + 1] = {500, 525, 550, 575, 600};
   load_text(text, &f->scene);
-  assert_int_equal(abbe_geometry_make(&f->scene, &f->geometry, NULL), ABBE_OK);
-  assert_int_equal(abbe_media_make(&f->geometry, lambda_nm, STEPS, &f->media, NULL), ABBE_OK);
+  OK(abbe_geometry_make(&f->scene, &f->geometry, &error));
+  OK(abbe_media_make(&f->geometry, lambda_nm, STEPS, &f->media, &error));
 }
 
 static void drop(fixture *f) {

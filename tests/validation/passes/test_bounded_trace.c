@@ -6,8 +6,6 @@
 #include "validation/denoise/denoise.h"
 #include "validation/passes/bounded_trace.h"
 
-#include <math.h>
-
 #define SCENE CAMERA POINT_LIGHT FLOOR BEADS("crown")
 
 static abbe_scene scene;
@@ -22,9 +20,7 @@ static abbe_bounded_trace_desc describe(size_t passes, bool filtered, double max
 
 static abbe_bounded_trace make(const abbe_bounded_trace_desc *desc, abbe_image *picture) {
   abbe_bounded_trace out;
-  abbe_error error = {0};
-  if (abbe_bounded_trace_make(&scene, desc, picture, &out, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_bounded_trace_make(&scene, desc, picture, &out, &error));
   return out;
 }
 
@@ -36,10 +32,10 @@ static void check_picture(const abbe_bounded_trace_desc *desc, size_t passes,
   own.guides = desc->filtered;
   abbe_tracer *tracer = make_tracer(&scene, &own);
   run_passes(tracer, passes);
-  assert_int_equal(abbe_tracer_picture(tracer, &raw, NULL), ABBE_OK);
+  OK(abbe_tracer_picture(tracer, &raw, &error));
   const abbe_denoise_desc denoise = {0};
   if (desc->filtered) {
-    assert_int_equal(abbe_denoise_picture(&raw, &denoise, &filtered, NULL), ABBE_OK);
+    OK(abbe_denoise_picture(&raw, &denoise, &filtered, &error));
     check_same_image(picture, &filtered);
     abbe_image_free(&filtered);
   } else {
@@ -107,14 +103,12 @@ TEST(what_ends_it) {
   int asked = 0;
   abbe_image picture;
   abbe_bounded_trace t;
-  abbe_error error = {0};
   abbe_bounded_trace_desc desc = describe(4, false, 1);
   desc.progress = stop_at_once;
   desc.user = &asked;
-  assert_int_equal(abbe_bounded_trace_make(&scene, &desc, &picture, &t, &error), ABBE_CANCELLED);
+  REFUSED(ABBE_CANCELLED, "", abbe_bounded_trace_make(&scene, &desc, &picture, &t, &error));
   assert_int_equal(asked, 1);
   desc = describe(1, true, 0);
-  assert_int_equal(abbe_bounded_trace_make(&scene, &desc, &picture, &t, &error),
-                   ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "1 passes are too few, at least 2");
+  REFUSED(ABBE_INVALID_ARGUMENT, "1 passes are too few, at least 2",
+          abbe_bounded_trace_make(&scene, &desc, &picture, &t, &error));
 }

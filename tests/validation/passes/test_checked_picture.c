@@ -5,8 +5,6 @@
 
 #include "validation/passes/checked_picture.h"
 
-#include <math.h>
-
 #define SCENE CAMERA POINT_LIGHT FLOOR BEADS("crown")
 
 static abbe_scene scene;
@@ -21,17 +19,15 @@ static abbe_image make_picture(size_t passes) {
   own.seed = 17;
   abbe_tracer *tracer = make_tracer(&scene, &own);
   run_passes(tracer, passes);
-  assert_int_equal(abbe_tracer_picture(tracer, &image, NULL), ABBE_OK);
+  OK(abbe_tracer_picture(tracer, &image, &error));
   abbe_tracer_free(tracer);
   return image;
 }
 
 static abbe_checked_picture check(const abbe_image *picture, double max_error, abbe_image *traced) {
   abbe_checked_picture out;
-  abbe_error error = {0};
   const abbe_checked_picture_desc desc = {.trace = trace, .max_error = max_error};
-  if (abbe_checked_picture_make(&scene, &desc, picture, traced, &out, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_checked_picture_make(&scene, &desc, picture, traced, &out, &error));
   return out;
 }
 
@@ -68,7 +64,7 @@ TEST(a_bad_picture) {
   abbe_image own;
   abbe_tracer *tracer = make_tracer(&scene, &trace);
   run_passes(tracer, c.passes);
-  assert_int_equal(abbe_tracer_picture(tracer, &own, NULL), ABBE_OK);
+  OK(abbe_tracer_picture(tracer, &own, &error));
   check_same_image(&own, &traced);
   abbe_image_free(&own);
   abbe_tracer_free(tracer);
@@ -85,14 +81,12 @@ static abbe_checked_picture check_in(double seconds, double first_s, const abbe_
                                      double max_error, bool only_check) {
   abbe_image traced;
   abbe_checked_picture out;
-  abbe_error error = {0};
   const abbe_checked_picture_desc desc = {.trace = trace,
                                           .max_error = max_error,
                                           .only_check = only_check,
                                           .left = {look, &seconds},
                                           .first_s = first_s};
-  if (abbe_checked_picture_make(&scene, &desc, picture, &traced, &out, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_checked_picture_make(&scene, &desc, picture, &traced, &out, &error));
   assert_true((traced.data == NULL) == out.timed_out);
   abbe_image_free(&traced);
   return out;
@@ -143,20 +137,18 @@ TEST(what_ends_it) {
   int asked = 0;
   abbe_image traced, picture = make_picture(1), small;
   abbe_checked_picture out;
-  abbe_error error = {0};
   abbe_checked_picture_desc desc = {.trace = trace, .progress = stop_at_once, .user = &asked};
-  assert_int_equal(abbe_checked_picture_make(&scene, &desc, &picture, &traced, &out, &error),
-                   ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "an error of 0 cannot be kept");
+  REFUSED(ABBE_INVALID_ARGUMENT, "an error of 0 cannot be kept",
+          abbe_checked_picture_make(&scene, &desc, &picture, &traced, &out, &error));
   desc.max_error = 1;
-  assert_int_equal(abbe_checked_picture_make(&scene, &desc, &picture, &traced, &out, &error),
-                   ABBE_CANCELLED);
+  REFUSED(ABBE_CANCELLED, "",
+          abbe_checked_picture_make(&scene, &desc, &picture, &traced, &out, &error));
   assert_int_equal(asked, 1);
   assert_null(traced.data);
   desc.progress = NULL;
-  assert_int_equal(abbe_image_make(8, 8, 1, (const char *const[]){"Y"}, &small, NULL), ABBE_OK);
-  assert_int_equal(abbe_checked_picture_make(&scene, &desc, &small, &traced, &out, &error),
-                   ABBE_INVALID_ARGUMENT);
+  OK(abbe_image_make(8, 8, 1, (const char *const[]){"Y"}, &small, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "",
+          abbe_checked_picture_make(&scene, &desc, &small, &traced, &out, &error));
   assert_null(traced.data);
   abbe_image_free(&small);
   abbe_image_free(&picture);

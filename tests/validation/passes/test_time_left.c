@@ -3,8 +3,6 @@
 
 #include "validation/passes/checked_picture.h"
 
-#include <math.h>
-
 static double two_seconds(void *user) {
   ++*(int *)user;
   return 2;

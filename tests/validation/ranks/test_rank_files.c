@@ -3,11 +3,10 @@
 #include "base/file.h"
 #include "tests/check.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 static void put(const char *path) {
-  assert_int_equal(abbe_file_write(path, "x", 1, NULL), ABBE_OK);
+  OK(abbe_file_write(path, "x", 1, &error));
 }
 
 /* Of neighbours only those that a rank would write are found, in the order of their numbers. */
@@ -18,12 +17,12 @@ TEST(ranks_files_are_found_and_removed) {
   size_t *rank, count;
   char *name;
   for (size_t i = 0; i < sizeof strange / sizeof *strange; i++) put(strange[i]);
-  assert_int_equal(abbe_rank_files_find("rank_files.csv", &rank, &count, NULL), ABBE_OK);
+  OK(abbe_rank_files_find("rank_files.csv", &rank, &count, &error));
   assert_int_equal(count, 0);
   assert_null(rank);
   static const size_t there[] = {0, 2, 11};
   for (size_t i = 3; i-- > 0;) {
-    assert_int_equal(abbe_rank_files_name("rank_files.csv", there[i], &name, NULL), ABBE_OK);
+    OK(abbe_rank_files_name("rank_files.csv", there[i], &name, &error));
     put(name);
     free(name);
   }
@@ -31,12 +30,12 @@ TEST(ranks_files_are_found_and_removed) {
   char here[4096], path[sizeof here + 32];
   assert_non_null(getcwd(here, sizeof here));
   snprintf(path, sizeof path, "%s/rank_files.csv", here);
-  assert_int_equal(abbe_rank_files_find(path, &rank, &count, NULL), ABBE_OK);
+  OK(abbe_rank_files_find(path, &rank, &count, &error));
   assert_int_equal(count, 3);
   assert_memory_equal(rank, there, sizeof there);
   free(rank);
   abbe_rank_files_remove(path);
-  assert_int_equal(abbe_rank_files_find(path, &rank, &count, NULL), ABBE_OK);
+  OK(abbe_rank_files_find(path, &rank, &count, &error));
   assert_int_equal(count, 0);
   for (size_t i = 0; i < sizeof strange / sizeof *strange; i++)
     assert_int_equal(unlink(strange[i]), 0);
@@ -44,8 +43,7 @@ TEST(ranks_files_are_found_and_removed) {
 
 TEST(a_folder_that_is_not_there_is_named) {
   size_t *rank, count;
-  abbe_error error = {0};
-  assert_int_equal(abbe_rank_files_find("nowhere/a.csv", &rank, &count, &error), ABBE_IO);
-  assert_contains(error.text, "nowhere/: the folder cannot be read");
+  REFUSED(ABBE_IO, "nowhere/: the folder cannot be read",
+          abbe_rank_files_find("nowhere/a.csv", &rank, &count, &error));
   abbe_rank_files_remove("nowhere/a.csv");
 }

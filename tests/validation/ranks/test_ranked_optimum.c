@@ -9,8 +9,6 @@
 #include "validation/gem/gem_grid_file.h"
 #include "validation/ranks/rank_files.h"
 
-#include <stdlib.h>
-
 static const char *const path = "ranked_optimum.csv";
 
 /* One search, as each process has it. */
@@ -54,12 +52,10 @@ static abbe_result find(const abbe_ranks *ranks, void *user) {
 
 static abbe_gem_optimum alone(const asked *a) {
   abbe_gem_optimum o;
-  abbe_error error = {0};
   abbe_gem_optimum_desc search = a->search;
   search.progress = NULL;
-  need(abbe_gem_optimum_find(&a->j.cut, &a->j.polyhedron, &a->quartz, &a->j.wavelengths,
-                             &a->j.weights, &search, &o, &error),
-       &error);
+  OK(abbe_gem_optimum_find(&a->j.cut, &a->j.polyhedron, &a->quartz, &a->j.wavelengths,
+                           &a->j.weights, &search, &o, &error));
   return o;
 }
 
@@ -76,7 +72,7 @@ TEST(any_number_of_ranks_finds_the_same) {
   for (size_t count = 1; count <= 3; count++) {
     abbe_result others[2] = {0};
     a.judged = 0;
-    need(forked_run(count, find, &a, others), &a.error);
+    OK(forked_run(count, find, &a, others));
     assert_true(others[0] == ABBE_OK && others[1] == ABBE_OK);
     assert_int_equal(a.judged, 12 / count);
     check_same(&a.out, &one);
@@ -100,13 +96,13 @@ TEST(other_ranks_go_on) {
   assert_null(a.out.value);
   a.left = 0;
   a.judged = 0;
-  need(forked_run(2, find, &a, NULL), &a.error);
+  OK(forked_run(2, find, &a, NULL));
   assert_int_equal(a.judged, 1);
   check_same(&a.out, &one);
   abbe_gem_optimum_free(&a.out);
   /* All is known; a search for something else is told so by the files that are there. */
   a.judged = 0;
-  need(forked_run(2, find, &a, NULL), &a.error);
+  OK(forked_run(2, find, &a, NULL));
   assert_int_equal(a.judged, 0);
   abbe_gem_optimum_free(&a.out);
   a.search.measure = ABBE_GEM_COS;

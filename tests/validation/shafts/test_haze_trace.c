@@ -12,7 +12,7 @@ static void trace(const char *text, const abbe_trace_desc *desc, size_t passes, 
   load_text(text, &scene);
   abbe_tracer *tracer = make_tracer(&scene, desc);
   run_passes(tracer, passes);
-  if (picture != NULL) assert_int_equal(abbe_tracer_picture(tracer, picture, NULL), ABBE_OK);
+  if (picture != NULL) OK(abbe_tracer_picture(tracer, picture, &error));
   if (statistics != NULL) abbe_tracer_statistics(tracer, statistics);
   abbe_tracer_free(tracer);
   abbe_scene_free(&scene);

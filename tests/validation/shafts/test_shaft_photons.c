@@ -71,8 +71,8 @@ TEST(a_beam_is_seen_as_bright_as_it_is) {
                     "{translate: [0.2, -0.5, 0.3]}]}\n"
                   : "");
     load_text(text, &scene);
-    assert_int_equal(abbe_geometry_make(&scene, &g, NULL), ABBE_OK);
-    assert_int_equal(abbe_media_make(&g, lambda_nm, STEPS, &m, NULL), ABBE_OK);
+    OK(abbe_geometry_make(&scene, &g, &error));
+    OK(abbe_media_make(&g, lambda_nm, STEPS, &m, &error));
     abbe_trace_camera_make(&g, 1, 1, &camera);
     abbe_shaft_photons *s = aligned_alloc(64, (sizeof *s + 63) / 64 * 64);
     memset(s, 0, sizeof *s);

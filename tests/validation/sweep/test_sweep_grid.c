@@ -5,7 +5,6 @@
 #include "library/choice/sweep_setting.h"
 #include "validation/sweep/sweep_grid.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 #define SPOT                                                                                       \
@@ -45,8 +44,8 @@ TEST(grids_hold_each_setting_once) {
     abbe_render_desc desc;
     abbe_plan plan;
     abbe_sweep_setting again;
-    assert_int_equal(abbe_sweep_setting_desc(&list[i], &desc, NULL), ABBE_OK);
-    assert_int_equal(abbe_plan_make(&scene, &desc, &plan, NULL), ABBE_OK);
+    OK(abbe_sweep_setting_desc(&list[i], &desc, &error));
+    OK(abbe_plan_make(&scene, &desc, &plan, &error));
     abbe_sweep_setting_of(&plan.desc, &again);
     assert_true(abbe_sweep_setting_same(&list[i], &again));
     abbe_plan_free(&plan);
@@ -102,7 +101,7 @@ TEST(grids_hold_each_setting_once) {
   assert_int_equal(list[0].passes, ABBE_SWEEP_TRACE_PASSES);
   free(list);
   abbe_sweep_grids grids_of_file;
-  assert_int_equal(abbe_sweep_grids_load(NULL, &grids_of_file, NULL), ABBE_OK);
+  OK(abbe_sweep_grids_load(NULL, &grids_of_file, &error));
   assert_int_equal(grids_of_file.count, 3);
   static const char *const names[] = {"quick", "full", "thin"};
   static const size_t least[] = {30, 150, 18};
@@ -123,7 +122,7 @@ TEST(the_thin_grid_is_the_same_for_every_convex_solid) {
   abbe_sweep_setting *list[3];
   size_t counts[3];
   abbe_sweep_grids grids;
-  assert_int_equal(abbe_sweep_grids_load(NULL, &grids, NULL), ABBE_OK);
+  OK(abbe_sweep_grids_load(NULL, &grids, &error));
   const abbe_sweep_named_grid *thin = &grids.grid[2];
   for (int i = 0; i < 3; i++) {
     abbe_scene scene = {0};
@@ -147,16 +146,14 @@ TEST(what_a_profile_does_not_know_is_left_out) {
   abbe_scene scene = {0};
   abbe_sweep_setting *list;
   size_t refused, count;
-  abbe_error error = {0};
   load_text(CAMERA SUN FLOOR BALL("crown"), &scene);
   abbe_sweep_grid grid = {.profiles = {2, {ABBE_PROFILE_DEFAULT, ABBE_PROFILE_THESIS}}};
   assert_int_equal(expand(&scene, &grid, 1, &list, &refused), 1);
   assert_int_equal(refused, 1);
   free(list);
   grid.profiles = (abbe_sweep_values){1, {ABBE_PROFILE_THESIS}};
-  assert_int_equal(abbe_sweep_grid_expand(&scene, &grid, 1, &list, &count, &refused, NULL, &error),
-                   ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "'sun' is directional");
+  REFUSED(ABBE_INVALID_ARGUMENT, "'sun' is directional",
+          abbe_sweep_grid_expand(&scene, &grid, 1, &list, &count, &refused, NULL, &error));
   assert_null(list);
   abbe_scene_free(&scene);
 }
@@ -183,17 +180,15 @@ TEST(files) {
   close(file);
   abbe_sweep_grids grids;
   for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
-    abbe_error error = {0};
-    assert_int_equal(abbe_file_write(path, broken[i].text, strlen(broken[i].text), NULL), ABBE_OK);
-    assert_int_equal(abbe_sweep_grids_load(path, &grids, &error), ABBE_SCHEMA);
-    assert_contains(error.text, broken[i].part);
+    OK(abbe_file_write(path, broken[i].text, strlen(broken[i].text), &error));
+    REFUSED(ABBE_SCHEMA, broken[i].part, abbe_sweep_grids_load(path, &grids, &error));
     assert_int_equal(grids.count, 0);
   }
   static const char own[] =
       "grids:\n- name: own\n  fixed: true\n  parts:\n"
       "  - {photons: [8, 16], samples: [2], model: [layers], share: [0.5]}\n  - {}\n";
-  assert_int_equal(abbe_file_write(path, own, strlen(own), NULL), ABBE_OK);
-  assert_int_equal(abbe_sweep_grids_load(path, &grids, NULL), ABBE_OK);
+  OK(abbe_file_write(path, own, strlen(own), &error));
+  OK(abbe_sweep_grids_load(path, &grids, &error));
   unlink(path);
   assert_int_equal(grids.grid[0].count, 2);
   const abbe_sweep_grid *first = &grids.grid[0].part[0], *second = &grids.grid[0].part[1];

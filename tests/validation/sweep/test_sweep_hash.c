@@ -22,8 +22,8 @@ TEST(hashes_tell_scenes_and_references_apart) {
   }
   static const char *const names[] = {"Y"};
   abbe_image a = {0}, b = {0};
-  assert_int_equal(abbe_image_make(4, 4, 1, names, &a, NULL), ABBE_OK);
-  assert_int_equal(abbe_image_make(4, 4, 1, names, &b, NULL), ABBE_OK);
+  OK(abbe_image_make(4, 4, 1, names, &a, &error));
+  OK(abbe_image_make(4, 4, 1, names, &b, &error));
   assert_true(abbe_sweep_hash_images(&a, &b) == abbe_sweep_hash_images(&b, &a));
   b.data[3] = 1;
   assert_true(abbe_sweep_hash_images(&a, &b) != abbe_sweep_hash_images(&b, &a));

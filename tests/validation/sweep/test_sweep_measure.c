@@ -15,12 +15,11 @@
 static abbe_sweep_setting small_setting(const abbe_scene *scene, abbe_profile profile) {
   abbe_sweep_setting *list, setting;
   size_t count, refused;
-  abbe_error error = {0};
   const abbe_sweep_grid grid = {.profiles = {1, {(size_t)profile}},
                                 .photons = {1, {64}},
                                 .map = {1, {128}},
                                 .samples = {1, {1}}};
-  assert_ok(abbe_sweep_grid_expand(scene, &grid, 1, &list, &count, &refused, NULL, &error), &error);
+  OK(abbe_sweep_grid_expand(scene, &grid, 1, &list, &count, &refused, NULL, &error));
   assert_int_equal(count, 1);
   setting = list[0];
   free(list);
@@ -31,7 +30,7 @@ static abbe_sweep_setting small_setting(const abbe_scene *scene, abbe_profile pr
 static void own_reference(const abbe_scene *scene, const abbe_sweep_setting *setting,
                           abbe_image *picture, abbe_image *map) {
   abbe_render_desc desc;
-  assert_int_equal(abbe_sweep_setting_desc(setting, &desc, NULL), ABBE_OK);
+  OK(abbe_sweep_setting_desc(setting, &desc, &error));
   desc.width = desc.height = 32;
   desc.aovs = true;
   abbe_renderer *renderer = make_renderer(scene, &desc);
@@ -43,8 +42,7 @@ static void own_reference(const abbe_scene *scene, const abbe_sweep_setting *set
 
 static abbe_sweep_row measure(const abbe_sweep *sweep, const abbe_sweep_setting *setting) {
   abbe_sweep_row row;
-  abbe_error error = {0};
-  assert_ok(abbe_sweep_measure(sweep, setting, NULL, NULL, &row, NULL, &error), &error);
+  OK(abbe_sweep_measure(sweep, setting, NULL, NULL, &row, NULL, &error));
   return row;
 }
 
@@ -167,7 +165,7 @@ TEST(frames_come_together) {
   load_text(CAMERA SPOT FLOOR BALL("flat"), &scene);
   abbe_sweep_setting setting = small_setting(&scene, ABBE_PROFILE_DEFAULT);
   setting.history = 4;
-  assert_int_equal(abbe_sweep_setting_desc(&setting, &desc, NULL), ABBE_OK);
+  OK(abbe_sweep_setting_desc(&setting, &desc, &error));
   desc.width = desc.height = 32;
   desc.aovs = true;
   abbe_renderer *renderer = make_renderer(&scene, &desc);
@@ -202,9 +200,8 @@ TEST(against_a_traced_reference) {
   abbe_scene scene = {0};
   abbe_image picture, map, drawn;
   abbe_map_layout layout;
-  abbe_error error = {0};
   load_text(SCENE, &scene);
-  assert_ok(abbe_sweep_fit_layout(context, &scene, 0, &layout, &error), &error);
+  OK(abbe_sweep_fit_layout(context, &scene, 0, &layout, &error));
   /* What the renderer models and no more, so that what is left is sampling. */
   const abbe_reference_desc desc = {.trace = {.physics = {true, 8, 0.01},
                                               .width = 32,
@@ -215,7 +212,7 @@ TEST(against_a_traced_reference) {
                                               .photons = 1 << 16,
                                               .threads = 2},
                                     .passes = 4};
-  assert_ok(abbe_reference_trace(&scene, &desc, &picture, &map, &error), &error);
+  OK(abbe_reference_trace(&scene, &desc, &picture, &map, &error));
   /* The same against itself: the model leaves out nothing. */
   const abbe_sweep sweep = {.context = context,
                             .scene = &scene,
@@ -225,7 +222,7 @@ TEST(against_a_traced_reference) {
                             .matched_picture = &picture,
                             .matched_map = &map};
   abbe_sweep_model model;
-  assert_ok(abbe_sweep_model_measure(&sweep, &model, &error), &error);
+  OK(abbe_sweep_model_measure(&sweep, &model, &error));
   assert_near(model.de, 0, 1e-6);
   assert_near(model.energy, 1, 1e-9);
   assert_true(model.map_noise > 0);
@@ -244,10 +241,10 @@ TEST(against_a_traced_reference) {
     assert_true(row.number[ABBE_SWEEP_CAUSTIC_DE] < 10);
   }
   abbe_sweep_row row;
-  assert_int_equal(abbe_sweep_measure(&sweep, &setting, never, NULL, &row, &drawn, &error),
-                   ABBE_CANCELLED);
+  REFUSED(ABBE_CANCELLED, "",
+          abbe_sweep_measure(&sweep, &setting, never, NULL, &row, &drawn, &error));
   assert_null(drawn.data);
-  assert_int_equal(abbe_sweep_measure(&sweep, &setting, NULL, NULL, &row, &drawn, &error), ABBE_OK);
+  OK(abbe_sweep_measure(&sweep, &setting, NULL, NULL, &row, &drawn, &error));
   assert_int_equal(drawn.width, 32);
   abbe_image_free(&drawn);
   abbe_image_free(&picture);
@@ -258,9 +255,8 @@ TEST(against_a_traced_reference) {
 TEST(a_scene_without_refractors_has_no_map) {
   abbe_scene scene = {0};
   abbe_map_layout layout;
-  abbe_error error = {0};
   load_text(CAMERA POINT_LIGHT FLOOR, &scene);
-  assert_int_equal(abbe_sweep_fit_layout(context, &scene, 0, &layout, &error), ABBE_UNSUPPORTED);
-  assert_contains(error.text, "no refractor");
+  REFUSED(ABBE_UNSUPPORTED, "no refractor",
+          abbe_sweep_fit_layout(context, &scene, 0, &layout, &error));
   abbe_scene_free(&scene);
 }

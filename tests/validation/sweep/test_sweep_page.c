@@ -36,18 +36,17 @@ TEST(tables_without_their_scene) {
   size_t size;
   snprintf(path, sizeof path, "/tmp/abbe_test_sweep_page_%ld.md", (long)getpid());
   abbe_sweep_table t = make_table();
-  abbe_error error = {0};
-  assert_ok(abbe_sweep_page_write(context, path, &t, 1, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE,
-                                  &error),
-            &error);
-  assert_ok(abbe_file_read(path, 1 << 16, &text, &size, &error), &error);
+  OK(abbe_sweep_page_write(context, path, &t, 1, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE,
+                           &error));
+  OK(abbe_file_read(path, 1 << 16, &text, &size, &error));
   assert_contains(text, "## gem.yaml");
   assert_contains(text, "6 pictures are missing");
   assert_contains(text, "| w7 p32 m512 s1 | 10 | - | - | 8 (0.5) |");
   assert_contains(text, "| w7 p128 m512 s1 | 40 | - | - | 2 (0.5) |");
   assert_contains(text, "| baseline: thesis w7 p512 m1024 s1 | 40 | - | - | 8 |");
   /* It has the baseline's error four times sooner, and a quarter of it in its time. */
-  assert_contains(text, "best factor on its brightness | frame, ms | 4 | 0.25 | 4 | 0.25 | 1 of 1 |");
+  assert_contains(text,
+                  "best factor on its brightness | frame, ms | 4 | 0.25 | 4 | 0.25 | 1 of 1 |");
   free(text);
   unlink(path);
   abbe_sweep_table_free(&t);

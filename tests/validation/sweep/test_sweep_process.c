@@ -5,9 +5,6 @@
 #include "library/choice/sweep_setting.h"
 #include "validation/sweep/sweep_process.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -35,8 +32,7 @@ static const abbe_sweep_process_desc asked = {
 
 static abbe_sweep_process *make(const abbe_sweep_process_desc *desc) {
   abbe_sweep_process *process = NULL;
-  abbe_error error = {0};
-  if (abbe_sweep_process_make(desc, &process, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_sweep_process_make(desc, &process, &error));
   return process;
 }
 
@@ -57,7 +53,6 @@ GROUP(begin, finish);
 /* Cold finds no cache and fills it, which takes a while; what is warm finds it. */
 TEST(cold_and_warm) {
   char text[2000], script[600];
-  abbe_error error = {0};
   abbe_sweep_row row = sweep_row("default", 64);
   snprintf(script, sizeof script,
            "#!/bin/sh\n"
@@ -67,8 +62,7 @@ TEST(cold_and_warm) {
            log_path);
   write_program(script);
   abbe_sweep_process *process = make(&asked);
-  if (abbe_sweep_process_measure(process, true, &row, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_sweep_process_measure(process, true, &row, &error));
   assert_true(row.number[ABBE_SWEEP_COLD_MS] >= 200);
   assert_true(row.number[ABBE_SWEEP_WARM_MS] > 0);
   read_log(text, sizeof text);
@@ -81,8 +75,7 @@ TEST(cold_and_warm) {
   /* Without the cold run another cache is filled, once. */
   abbe_sweep_row second = sweep_row("default", 64);
   unlink(log_path);
-  for (int i = 0; i < 2; i++)
-    assert_int_equal(abbe_sweep_process_measure(process, false, &second, &error), ABBE_OK);
+  for (int i = 0; i < 2; i++) OK(abbe_sweep_process_measure(process, false, &second, &error));
   assert_true(isnan(second.number[ABBE_SWEEP_COLD_MS]));
   assert_true(second.number[ABBE_SWEEP_WARM_MS] > 0);
   read_log(text, sizeof text);
@@ -94,14 +87,12 @@ TEST(cold_and_warm) {
 
 TEST(the_tracers_command) {
   char text[2000], script[200];
-  abbe_error error = {0};
   abbe_sweep_row row = {0};
   snprintf(script, sizeof script, "#!/bin/sh\necho \"$@\" >>%s\n", log_path);
   write_program(script);
   abbe_sweep_setting_of_trace(256, 4, true, &row.setting);
   abbe_sweep_process *process = make(&asked);
-  if (abbe_sweep_process_measure(process, false, &row, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_sweep_process_measure(process, false, &row, &error));
   abbe_sweep_process_free(process);
   read_log(text, sizeof text);
   assert_contains(text, "trace a scene.yaml --quiet -o /");
@@ -110,22 +101,18 @@ TEST(the_tracers_command) {
 }
 
 TEST(what_fails_is_said) {
-  abbe_error error = {0};
   abbe_sweep_row row = sweep_row("default", 64);
   abbe_sweep_process *process = make(&asked), *none;
   write_program("#!/bin/sh\nexit 1\n");
-  assert_int_equal(abbe_sweep_process_measure(process, true, &row, &error), ABBE_IO);
-  assert_contains(error.text, "did not end well");
-  assert_contains(error.text, "render a scene.yaml --quiet");
+  REFUSED(ABBE_IO, "did not end well", abbe_sweep_process_measure(process, true, &row, &error));
+  assert_contains(last_error.text, "render a scene.yaml --quiet");
   assert_true(isnan(row.number[ABBE_SWEEP_WARM_MS]));
   write_program("#!/bin/sh\nkill -INT $$\n");
-  assert_int_equal(abbe_sweep_process_measure(process, true, &row, &error), ABBE_CANCELLED);
+  REFUSED(ABBE_CANCELLED, "", abbe_sweep_process_measure(process, true, &row, &error));
   assert_int_equal(unlink(program), 0);
-  assert_int_equal(abbe_sweep_process_measure(process, true, &row, &error), ABBE_IO);
-  assert_contains(error.text, "could not be run");
+  REFUSED(ABBE_IO, "could not be run", abbe_sweep_process_measure(process, true, &row, &error));
   abbe_sweep_process_free(process);
   assert_int_equal(setenv("TMPDIR", "/there/is/none", 1), 0);
-  assert_int_equal(abbe_sweep_process_make(&asked, &none, &error), ABBE_IO);
-  assert_contains(error.text, "/there/is/none");
+  REFUSED(ABBE_IO, "/there/is/none", abbe_sweep_process_make(&asked, &none, &error));
   assert_int_equal(unsetenv("TMPDIR"), 0);
 }

@@ -45,19 +45,17 @@ TEST(a_sweep_goes_on_where_it_was_stopped) {
   abbe_image image;
   abbe_sweep_setting *setting;
   size_t count, refused, left = 0;
-  abbe_error error = {0};
   char path[96], picture[96];
   snprintf(path, sizeof path, "%s/s.csv", folder);
   snprintf(picture, sizeof picture, "%s/r.exr", folder);
   load_text(SCENE, &scene);
-  assert_ok(abbe_image_make(16, 16, 3, names, &image, &error), &error);
+  OK(abbe_image_make(16, 16, 3, names, &image, &error));
   for (size_t i = 0; i < 16 * 16 * 3; i++) image.data[i] = 0.01f;
-  assert_ok(abbe_exr_write(picture, &image, &error), &error);
+  OK(abbe_exr_write(picture, &image, &error));
   abbe_image_free(&image);
   const abbe_sweep_grid grid = {
       .wavelengths = {1, {3}}, .photons = {1, {8}}, .map = {1, {32}}, .samples = {1, {1}}};
-  assert_ok(abbe_sweep_grid_expand(&scene, &grid, 1, &setting, &count, &refused, NULL, &error),
-            &error);
+  OK(abbe_sweep_grid_expand(&scene, &grid, 1, &setting, &count, &refused, NULL, &error));
   abbe_sweep_request q = {.program = "abbe test",
                           .scene_path = "ball.yaml",
                           .table = path,
@@ -69,10 +67,10 @@ TEST(a_sweep_goes_on_where_it_was_stopped) {
                           .progress = tick,
                           .user = &left};
   abbe_sweep_table t;
-  assert_int_equal(abbe_sweep_run(context, &scene, &q, &t, &error), ABBE_CANCELLED);
-  assert_contains(error.text, "0 of 1 settings are in ");
+  REFUSED(ABBE_CANCELLED, "0 of 1 settings are in ",
+          abbe_sweep_run(context, &scene, &q, &t, &error));
   left = 99;
-  assert_ok(abbe_sweep_run(context, &scene, &q, &t, &error), &error);
+  OK(abbe_sweep_run(context, &scene, &q, &t, &error));
   assert_int_equal(left, 98);
   assert_int_equal(t.count, 1);
   assert_string_equal(t.fact[ABBE_SWEEP_FACT_SIZE], "16x16");
@@ -80,13 +78,13 @@ TEST(a_sweep_goes_on_where_it_was_stopped) {
   assert_true(t.row[0].number[ABBE_SWEEP_PICTURE_DE] > 0 && t.row[0].front);
   abbe_sweep_table_free(&t);
   /* Nothing is left to measure. */
-  assert_ok(abbe_sweep_run(context, &scene, &q, &t, &error), &error);
+  OK(abbe_sweep_run(context, &scene, &q, &t, &error));
   assert_int_equal(left, 98);
   abbe_sweep_table_free(&t);
   /* Of another program these rows are not. */
   q.program = "abbe other";
-  assert_int_equal(abbe_sweep_run(context, &scene, &q, &t, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "were measured with the program 'abbe test'");
+  REFUSED(ABBE_INVALID_ARGUMENT, "were measured with the program 'abbe test'",
+          abbe_sweep_run(context, &scene, &q, &t, &error));
   free(setting);
   abbe_scene_free(&scene);
 }
@@ -95,16 +93,14 @@ TEST(settings_of_presets) {
   abbe_scene scene = {0};
   abbe_sweep_setting *setting;
   size_t count;
-  abbe_error error = {0};
   load_text(SCENE, &scene);
-  assert_ok(abbe_sweep_preset_settings(&scene, NULL, &setting, &count, &error), &error);
+  OK(abbe_sweep_preset_settings(&scene, NULL, &setting, &count, &error));
   assert_true(count >= 3);
   assert_true(setting[0].photons < setting[count - 1].photons);
   free(setting);
   abbe_scene_free(&scene);
   load_text(CAMERA POINT_LIGHT FLOOR, &scene);
-  assert_int_equal(abbe_sweep_preset_settings(&scene, NULL, &setting, &count, &error),
-                   ABBE_UNSUPPORTED);
+  REFUSED(ABBE_UNSUPPORTED, "", abbe_sweep_preset_settings(&scene, NULL, &setting, &count, &error));
   assert_null(setting);
   abbe_scene_free(&scene);
 }

@@ -1,8 +1,6 @@
 /* Bands of the tracer: exact however many there are, within their own standard errors. */
 #include "tests/validation/trace_scene.h"
 
-#include <stdio.h>
-
 #define EVEN_SUN                                                                                   \
   "lights:\n- {name: sun, kind: directional, direction: [0, 0, -1], irradiance: 3.14159265, "      \
   "illuminant: E}\n"
@@ -27,7 +25,7 @@ TEST(a_lit_floor_is_even) {
     abbe_tracer *tracer = make_tracer(&scene, &desc);
     abbe_image picture;
     run_passes(tracer, 2);
-    assert_int_equal(abbe_tracer_picture(tracer, &picture, NULL), ABBE_OK);
+    OK(abbe_tracer_picture(tracer, &picture, &error));
     for (size_t i = 0; i < counts[c]; i++) {
       const double middle = 380 + 400 * ((double)i + 0.5) / (double)counts[c];
       assert_near(band_at(&picture, "", middle, 4), 0.00125, 1e-5 * 0.00125);
@@ -44,11 +42,8 @@ TEST(photons_are_even) {
   enum { BANDS = 160, PASSES = 48 };
   abbe_scene scene;
   load_text(CAMERA EVEN_SUN FLOOR BALL("flat"), &scene);
-  const abbe_trace_desc desc = {.no_picture = true,
-                                .map_width = 1,
-                                .photons = 1 << 14,
-                                .threads = 1,
-                                .bands = BANDS};
+  const abbe_trace_desc desc = {
+      .no_picture = true, .map_width = 1, .photons = 1 << 14, .threads = 1, .bands = BANDS};
   abbe_tracer *tracer = make_tracer(&scene, &desc);
   abbe_image map;
   double mean = 0, squares = 0, greatest = 0;

@@ -30,8 +30,8 @@ static void setup(void) {
   fitted.layout = NULL;
   abbe_tracer *tracer = make_tracer(&scene, &fitted);
   abbe_image map;
-  assert_int_equal(abbe_tracer_map(tracer, &map, NULL), ABBE_OK);
-  assert_int_equal(abbe_map_layout_read(&map, "map", &layout, NULL), ABBE_OK);
+  OK(abbe_tracer_map(tracer, &map, &error));
+  OK(abbe_map_layout_read(&map, "map", &layout, &error));
   abbe_image_free(&map);
   abbe_tracer_free(tracer);
 }
@@ -46,7 +46,7 @@ static void teardown(void) {
 static void save(const abbe_trace_desc *desc, size_t passes) {
   abbe_tracer *tracer = make_tracer(&scene, desc);
   run_passes(tracer, passes);
-  assert_int_equal(abbe_checkpoint_save(tracer, path, NULL), ABBE_OK);
+  OK(abbe_checkpoint_save(tracer, path, &error));
   abbe_tracer_free(tracer);
 }
 
@@ -58,13 +58,13 @@ static abbe_result load(abbe_tracer *tracer, abbe_error *error) {
 static void check_same(const abbe_tracer *a, const abbe_tracer *b) {
   abbe_image x, y;
   assert_int_equal(abbe_tracer_passes(a), abbe_tracer_passes(b));
-  assert_int_equal(abbe_tracer_picture(a, &x, NULL), ABBE_OK);
-  assert_int_equal(abbe_tracer_picture(b, &y, NULL), ABBE_OK);
+  OK(abbe_tracer_picture(a, &x, &error));
+  OK(abbe_tracer_picture(b, &y, &error));
   check_same_image(&x, &y);
   abbe_image_free(&x);
   abbe_image_free(&y);
-  assert_int_equal(abbe_tracer_map(a, &x, NULL), ABBE_OK);
-  assert_int_equal(abbe_tracer_map(b, &y, NULL), ABBE_OK);
+  OK(abbe_tracer_map(a, &x, &error));
+  OK(abbe_tracer_map(b, &y, &error));
   check_same_image(&x, &y);
   abbe_image_free(&x);
   abbe_image_free(&y);
@@ -88,8 +88,7 @@ TEST(resumed_runs_give_the_image_of_unbroken_ones) {
     run_passes(whole, 5);
     desc.threads = 2;
     abbe_tracer *broken = make_tracer(&scene, &desc);
-    abbe_error error;
-    assert_int_equal(load(broken, &error), ABBE_OK);
+    OK(load(broken, &error));
     assert_int_equal(abbe_tracer_passes(broken), 2);
     run_passes(broken, 3);
     check_same(whole, broken);
@@ -116,10 +115,9 @@ TEST(a_refusal_changes_nothing) {
   save(&small, 2);
   abbe_trace_desc other = small;
   other.seed = 9;
-  abbe_error error;
   abbe_tracer *tracer = make_tracer(&scene, &other), *same = make_tracer(&scene, &other);
   run_passes(tracer, 1);
-  assert_int_equal(load(tracer, &error), ABBE_INVALID_ARGUMENT);
+  REFUSED(ABBE_INVALID_ARGUMENT, "", load(tracer, &error));
   run_passes(tracer, 1);
   run_passes(same, 2);
   check_same(tracer, same);
@@ -211,7 +209,7 @@ TEST(textures_and_normals_are_part_of_the_scene) {
   abbe_scene kept = scene;
   load_text(CAMERA POINT_LIGHT FLOOR RING("crown"), &scene);
   abbe_object *floor = &scene.object[0], *ring = &scene.object[1];
-  assert_int_equal(abbe_image_make(4, 2, 3, names, &floor->texture, NULL), ABBE_OK);
+  OK(abbe_image_make(4, 2, 3, names, &floor->texture, &error));
   floor->texture_repeat[0] = floor->texture_repeat[1] = 1;
   save(&small, 1);
   floor->texture_repeat[1] = 2;
@@ -265,32 +263,30 @@ TEST(broken_files_are_told) {
   save(&small, 2);
   char *data = NULL;
   size_t size = 0;
-  assert_int_equal(abbe_file_read(path, 1 << 24, &data, &size, NULL), ABBE_OK);
+  OK(abbe_file_read(path, 1 << 24, &data, &size, &error));
   char *broken = malloc(size + 8);
   assert_non_null(broken);
-  abbe_error error;
+  abbe_error why;
   abbe_tracer *tracer = make_tracer(&scene, &small);
   /* cut off anywhere, or with something behind it */
   for (size_t i = 0; i <= 40; i++) {
     size_t length = i < 40 ? size * i / 40 : size - 1;
-    assert_int_equal(abbe_file_write(path, data, length, NULL), ABBE_OK);
-    assert_int_equal(load(tracer, &error), ABBE_PARSE);
-    assert_contains(error.text, path);
+    OK(abbe_file_write(path, data, length, &error));
+    REFUSED(ABBE_PARSE, path, load(tracer, &error));
   }
   memcpy(broken, data, size);
   memset(broken + size, 0, 8);
-  assert_int_equal(abbe_file_write(path, broken, size + 8, NULL), ABBE_OK);
-  assert_int_equal(load(tracer, &error), ABBE_PARSE);
-  assert_contains(error.text, "damaged");
+  OK(abbe_file_write(path, broken, size + 8, &error));
+  REFUSED(ABBE_PARSE, "damaged", load(tracer, &error));
   /* one bit turned over, anywhere */
   for (size_t i = 0; i < 60; i++) {
     size_t at = i < 59 ? size * i / 59 : size - 1;
     memcpy(broken, data, size);
     broken[at] = (char)(broken[at] ^ 1 << i % 8);
-    assert_int_equal(abbe_file_write(path, broken, size, NULL), ABBE_OK);
-    abbe_result result = load(tracer, &error);
+    OK(abbe_file_write(path, broken, size, &error));
+    abbe_result result = load(tracer, &why);
     assert_true(result == ABBE_PARSE || (at < 600 && result == ABBE_INVALID_ARGUMENT));
-    assert_contains(error.text, path);
+    assert_contains(why.text, path);
   }
   assert_int_equal(abbe_tracer_passes(tracer), 0);
   free(broken);
@@ -307,18 +303,16 @@ TEST(what_is_no_checkpoint_is_told) {
                {"abbe checkpoint 10\n", "broken"},
                {"abbe checkpoint 10\nscene 0123", "broken"},
                {"abbe checkpoint 10\n\n\n", "start anew"}};
-  abbe_error error;
+  abbe_error why;
   abbe_tracer *tracer = make_tracer(&scene, &small);
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
-    assert_int_equal(abbe_file_write(path, files[i].text, strlen(files[i].text), NULL), ABBE_OK);
-    assert_true(load(tracer, &error) != ABBE_OK);
-    assert_contains(error.text, files[i].part);
+    OK(abbe_file_write(path, files[i].text, strlen(files[i].text), &error));
+    assert_true(load(tracer, &why) != ABBE_OK);
+    assert_contains(why.text, files[i].part);
   }
   unlink(path);
-  assert_int_equal(load(tracer, &error), ABBE_IO);
-  assert_contains(error.text, path);
-  assert_int_equal(abbe_checkpoint_save(tracer, "/nowhere/at/all", &error), ABBE_IO);
-  assert_contains(error.text, "/nowhere/at/all");
+  REFUSED(ABBE_IO, path, load(tracer, &error));
+  REFUSED(ABBE_IO, "/nowhere/at/all", abbe_checkpoint_save(tracer, "/nowhere/at/all", &error));
   abbe_tracer_free(tracer);
 }
 
@@ -331,9 +325,9 @@ static void save_part(const abbe_trace_desc *desc, size_t first, size_t end, cha
                       int number) {
   snprintf(file, ROOM, "%s/part-%d.ck", folder, number);
   abbe_tracer *tracer = make_tracer(&scene, desc);
-  assert_int_equal(abbe_tracer_begin_at(tracer, first, 1, NULL), ABBE_OK);
+  OK(abbe_tracer_begin_at(tracer, first, 1, &error));
   run_passes(tracer, end - first);
-  assert_int_equal(abbe_checkpoint_save(tracer, file, NULL), ABBE_OK);
+  OK(abbe_checkpoint_save(tracer, file, &error));
   abbe_tracer_free(tracer);
 }
 
@@ -355,9 +349,7 @@ TEST(any_split_gives_the_bits_of_one_run) {
     }
     for (int k = 0; k < PARTS; k++) paths[k] = file[order[i][k]];
     abbe_tracer *merged = make_tracer(&scene, &desc);
-    abbe_error error = {0};
-    if (abbe_checkpoint_merge(merged, paths, PARTS, NULL, &error) != ABBE_OK)
-      fail_msg("%s", error.text);
+    OK(abbe_checkpoint_merge(merged, paths, PARTS, NULL, &error));
     check_same(whole, merged);
     if (i == 2) {
       run_passes(whole, 1);
@@ -403,9 +395,9 @@ TEST(gaps_and_overlaps_are_named) {
   char *data = NULL;
   size_t size = 0;
   save_part(&small, 2, 3, other, 9);
-  assert_int_equal(abbe_file_read(other, 1 << 24, &data, &size, NULL), ABBE_OK);
+  OK(abbe_file_read(other, 1 << 24, &data, &size, &error));
   data[size - 20] = (char)(data[size - 20] ^ 1);
-  assert_int_equal(abbe_file_write(other, data, size, NULL), ABBE_OK);
+  OK(abbe_file_write(other, data, size, &error));
   check_unmerged((const char *[]){file[0], other}, 2, ABBE_PARSE, "damaged");
   free(data);
   unlink(other);
@@ -417,8 +409,8 @@ static void save_asked(size_t first, size_t done, size_t whole, const char *file
   abbe_tracer *tracer = make_tracer(&scene, &small);
   const abbe_trace_run_desc run = {.passes = done - first, .whole = whole, .checkpoint = file};
   abbe_tracer_begin_at(tracer, first, 1, NULL);
-  assert_int_equal(abbe_trace_run(tracer, &run, NULL), ABBE_OK);
-  assert_int_equal(abbe_trace_keep(tracer, &run, NULL), ABBE_OK);
+  OK(abbe_trace_run(tracer, &run, &error));
+  OK(abbe_trace_keep(tracer, &run, &error));
   abbe_tracer_free(tracer);
 }
 
@@ -439,16 +431,15 @@ TEST(what_was_asked_for_is_missed) {
   save_asked(0, 2, 0, file[0]);
   abbe_checkpoint_merging how = {.whole = 3};
   abbe_tracer *tracer = make_tracer(&scene, &small), *other = make_tracer(&scene, &small);
-  abbe_error error = {0};
-  assert_int_equal(abbe_checkpoint_merge(tracer, paths, 1, &how, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "pass 2 is missing: there are to be 3, as is asked for");
+  REFUSED(ABBE_INVALID_ARGUMENT, "pass 2 is missing: there are to be 3, as is asked for",
+          abbe_checkpoint_merge(tracer, paths, 1, &how, &error));
   how.incomplete = true;
-  assert_int_equal(abbe_checkpoint_merge(tracer, paths, 1, &how, &error), ABBE_OK);
+  OK(abbe_checkpoint_merge(tracer, paths, 1, &how, &error));
   assert_contains(how.lacks, "pass 2 is missing");
   run_passes(other, 2);
   check_same(tracer, other);
   how = (abbe_checkpoint_merging){.incomplete = true}; /* a hole in the middle: three passes */
-  assert_int_equal(abbe_checkpoint_merge(tracer, paths, 2, &how, &error), ABBE_OK);
+  OK(abbe_checkpoint_merge(tracer, paths, 2, &how, &error));
   assert_int_equal(abbe_tracer_passes(tracer), 3);
   abbe_tracer_free(tracer);
   abbe_tracer_free(other);
@@ -459,7 +450,7 @@ TEST(a_trace_begins_once) {
   abbe_tracer *tracer = make_tracer(&scene, &small);
   assert_int_equal(abbe_tracer_begin_at(tracer, 1u << 20, 1, NULL), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_tracer_begin_at(tracer, 5, 0, NULL), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_tracer_begin_at(tracer, 5, 1, NULL), ABBE_OK);
+  OK(abbe_tracer_begin_at(tracer, 5, 1, &error));
   run_passes(tracer, 1);
   assert_int_equal(abbe_tracer_passes(tracer), 1);
   assert_int_equal(abbe_tracer_first_pass(tracer), 5);

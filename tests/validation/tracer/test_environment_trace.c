@@ -1,14 +1,13 @@
 /* Light from everywhere in the tracer: laws that hold whatever stands in it. */
 #include "tests/validation/trace_scene.h"
 
+#include "base/maths.h"
 #include "colorimetry/upsampling.h"
 #include "scenes/view/coverage.h"
 #include "validation/transport/environment_light.h"
 
 #define SPECK                                                                                      \
   "objects:\n- {name: speck, shape: rectangle, width: 0.05, height: 0.05, reflectance: 0.5}\n"
-
-static const double PI = 3.14159265358979;
 
 #define FAR_SPECK                                                                                  \
   "objects:\n- {name: speck, shape: rectangle, width: 1, height: 1, reflectance: 0.5, transform: " \
@@ -31,7 +30,7 @@ static double half_sky(const double d[3]) {
 
 static abbe_environment *surround(radiance_of radiance, size_t width) {
   abbe_environment *e = calloc(1, sizeof *e);
-  assert_int_equal(abbe_radiance_map_make(width, &e->map, NULL), ABBE_OK);
+  OK(abbe_radiance_map_make(width, &e->map, &error));
   for (size_t y = 0; y < e->map.height; y++)
     for (size_t x = 0; x < e->map.width; x++) {
       double d[3];
@@ -40,8 +39,8 @@ static abbe_environment *surround(radiance_of radiance, size_t width) {
         e->map.rgb[3 * (y * e->map.width + x) + (size_t)k] = (float)radiance(d);
     }
   abbe_environment_turn(0, NULL, 0, e->to_map);
-  assert_int_equal(abbe_illuminant_make("D65", &e->illuminant, NULL), ABBE_OK);
-  assert_int_equal(abbe_environment_prepare(e, NULL), ABBE_OK);
+  OK(abbe_illuminant_make("D65", &e->illuminant, &error));
+  OK(abbe_environment_prepare(e, &error));
   return e;
 }
 
@@ -68,7 +67,7 @@ static void trace(fixture *f, size_t photons, size_t passes, abbe_image *picture
       .no_map = true, .width = 48, .height = 48, .photons = photons, .threads = 2};
   f->tracer = make_tracer(&f->scene, &desc);
   run_passes(f->tracer, passes);
-  assert_int_equal(abbe_tracer_picture(f->tracer, picture, NULL), ABBE_OK);
+  OK(abbe_tracer_picture(f->tracer, picture, &error));
 }
 
 static void drop(fixture *f) {
@@ -107,7 +106,7 @@ TEST(a_convex_body_meets_pi_times_its_surface) {
     trace(&f, 1 << 14, 32, &picture);
     abbe_trace_statistics s;
     abbe_tracer_statistics(f.tracer, &s);
-    assert_near(s.ledger.reached / (PI * 2 * cases[i].surface), 1, 2e-3);
+    assert_near(s.ledger.reached / (ABBE_PI * 2 * cases[i].surface), 1, 2e-3);
     abbe_image_free(&picture);
     drop(&f);
   }
@@ -126,11 +125,10 @@ TEST(photons_find_a_grain_beside_a_boulder) {
   abbe_geometry geometry;
   abbe_spectral_sampling sampling;
   abbe_environment_light light;
-  assert_int_equal(abbe_geometry_make(&f.scene, &geometry, NULL), ABBE_OK);
-  assert_int_equal(abbe_spectral_sampling_make(&f.scene, &spectrum, &sampling, NULL), ABBE_OK);
-  assert_int_equal(
-      abbe_environment_light_make(&geometry, &sampling, &none, ABBE_RGB_SPACE_ACESCG, &light, NULL),
-      ABBE_OK);
+  OK(abbe_geometry_make(&f.scene, &geometry, &error));
+  OK(abbe_spectral_sampling_make(&f.scene, &spectrum, &sampling, &error));
+  OK(abbe_environment_light_make(&geometry, &sampling, &none, ABBE_RGB_SPACE_ACESCG, &light,
+                                 &error));
   const double grain[3] = {3, 0, 0}, share = radius * radius / (1 + radius * radius);
   float centre[3];
   abbe_geometry_to_frame(&geometry, grain, centre);
@@ -177,7 +175,7 @@ TEST(a_transparent_picture_is_premultiplied) {
        uniform, &f);
   f.scene.transparent = true;
   trace(&f, 1024, 16, &picture);
-  assert_int_equal(abbe_coverage_make(&f.scene, 48, 48, 8, &alpha, NULL), ABBE_OK);
+  OK(abbe_coverage_make(&f.scene, 48, 48, 8, &alpha, &error));
   double sum = 0, covered = 0;
   for (size_t y = 0; y < 48; y++)
     for (size_t x = 0; x < 48; x++) {
@@ -215,15 +213,15 @@ static void check_floor(radiance_of radiance, double irradiance) {
   double sum = 0;
   for (size_t y = 24; y < 48; y++)
     for (size_t x = 0; x < 48; x++) sum += luminance(&picture, x, y) / (24 * 48);
-  assert_near(sum / (0.5 * irradiance / PI), 1, 5e-3);
+  assert_near(sum / (0.5 * irradiance / ABBE_PI), 1, 5e-3);
   abbe_image_free(&picture);
   drop(&f);
 }
 
 TEST(an_open_floor_has_its_irradiance) {
-  check_floor(uniform, 2 * PI);
-  check_floor(cosine_dome, 2 * PI / 3);
-  check_floor(half_sky, 0.5 * PI * (3 + 0.5));
+  check_floor(uniform, 2 * ABBE_PI);
+  check_floor(cosine_dome, 2 * ABBE_PI / 3);
+  check_floor(half_sky, 0.5 * ABBE_PI * (3 + 0.5));
 }
 
 /* However many texels are drawn from, the light on an open floor is theirs: within four standard
@@ -276,7 +274,7 @@ TEST(what_is_not_seen_takes_nothing_away) {
               from_below, 64, &f);
     trace(&f, 256, 2, &picture);
     for (size_t x = 0; x < 48; x++) {
-      assert_near(luminance(&picture, x, 20), 0.15 * 0.5 / PI, 1e-6);
+      assert_near(luminance(&picture, x, 20), 0.15 * 0.5 / ABBE_PI, 1e-6);
       assert_near(channel(&picture, "stderr.G", x, 20), 0, 1e-6);
     }
     abbe_image_free(&picture);
@@ -348,7 +346,7 @@ TEST(a_clear_ball_takes_nothing_away) {
   const double eye[3] = {0, -0.3, 0.06}, target[3] = {0, 0, 0};
   memcpy(f.scene.camera.eye, eye, sizeof eye);
   memcpy(f.scene.camera.target, target, sizeof target);
-  f.scene.camera.fov_y_rad = 3.0 * PI / 180;
+  f.scene.camera.fov_y_rad = 3.0 * ABBE_PI / 180;
   trace(&f, 1 << 19, 8, &picture);
   double sum = 0, caustic = 0;
   for (size_t y = 22; y < 26; y++)

@@ -19,8 +19,8 @@ static traced trace(const abbe_scene *scene, const abbe_trace_desc *desc, size_t
   abbe_tracer *tracer = make_tracer(scene, desc);
   run_passes(tracer, passes);
   traced r;
-  assert_int_equal(abbe_tracer_picture(tracer, &r.picture, NULL), ABBE_OK);
-  assert_int_equal(abbe_tracer_map(tracer, &r.map, NULL), ABBE_OK);
+  OK(abbe_tracer_picture(tracer, &r.picture, &error));
+  OK(abbe_tracer_map(tracer, &r.map, &error));
   abbe_tracer_free(tracer);
   return r;
 }
@@ -79,8 +79,8 @@ TEST(sums_tell_covariances) {
                      eye[3][3] = {{1, 1, 1}, {1, 1, 2}, {1, 4, 0}};
   abbe_accumulator picture;
   abbe_guide_sums g;
-  assert_int_equal(abbe_accumulator_make(3, 2, 1e6, &picture, NULL), ABBE_OK);
-  assert_int_equal(abbe_guide_sums_make(1, picture.unit, &g, NULL), ABBE_OK);
+  OK(abbe_accumulator_make(3, 2, 1e6, &picture, &error));
+  OK(abbe_guide_sums_make(1, picture.unit, &g, &error));
   for (size_t pass = 0; pass < 3; pass++) {
     const abbe_eye_sample sample = {.depth = (float)pass, .albedo = {NAN, 1, 0}};
     for (size_t k = 0; k < 3; k++) abbe_accumulator_add(&picture, k % 2, k, rgb[pass][k]);

@@ -4,8 +4,6 @@
 
 #include "validation/tracer/light_pass.h"
 
-#include <math.h>
-
 enum { LANES = ABBE_MAP_TEXELS_LANES, WIDTH = 37, HEIGHT = 1000 };
 
 static void make_layout(bool parallel, abbe_map_layout *out) {

@@ -21,7 +21,6 @@ static void trace(const char *illuminant, size_t bands, abbe_image *out) {
   char text[1200];
   abbe_scene scene;
   abbe_tracer *tracer = NULL;
-  abbe_error error = {0};
   snprintf(text, sizeof text, SCENE, illuminant);
   load_text(text, &scene);
   const abbe_trace_desc desc = {.width = SIDE,
@@ -31,10 +30,9 @@ static void trace(const char *illuminant, size_t bands, abbe_image *out) {
                                 .photons = 1 << 15,
                                 .no_map = true,
                                 .threads = 2};
-  if (abbe_tracer_make(&scene, &desc, &tracer, &error) != ABBE_OK) fail_msg("%s", error.text);
-  for (int i = 0; i < PASSES; i++)
-    assert_int_equal(abbe_tracer_pass(tracer, NULL, &error), ABBE_OK);
-  assert_int_equal(abbe_tracer_picture(tracer, out, &error), ABBE_OK);
+  OK(abbe_tracer_make(&scene, &desc, &tracer, &error));
+  for (int i = 0; i < PASSES; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
+  OK(abbe_tracer_picture(tracer, out, &error));
   abbe_tracer_free(tracer);
   abbe_scene_free(&scene);
 }
@@ -58,12 +56,11 @@ static void sums(const abbe_image *image, double xyz[3], double error[3]) {
 TEST(a_trace_under_another_lamp) {
   const abbe_illuminant d65 = {0}, a = {.kind = ABBE_ILLUMINANT_A};
   abbe_image made, under_a, relit;
-  abbe_error error = {0};
   double expected[3], found[3], own[3], none[3];
   trace("D65", 40, &made);
   trace("A", 0, &under_a);
   const abbe_relight_desc desc = {.view = {.from = &d65, .to = &a}, .space = ABBE_RGB_SPACE_XYZ};
-  assert_int_equal(abbe_relight_make(&made, "it", &desc, &relit, &error), ABBE_OK);
+  OK(abbe_relight_make(&made, "it", &desc, &relit, &error));
   sums(&under_a, expected, own);
   sums(&relit, found, none);
   for (int k = 0; k < 3; k++) {

@@ -3,8 +3,6 @@
 
 #include "validation/tradeoff/baseline_comparison.h"
 
-#include <math.h>
-
 static void add(abbe_sweep_table *table, const char *profile, size_t photons, double ms, double e) {
   bool plain = strcmp(profile, "default") == 0;
   abbe_sweep_row row = sweep_row(profile, photons);
@@ -12,15 +10,13 @@ static void add(abbe_sweep_table *table, const char *profile, size_t photons, do
   if (!plain) snprintf(row.setting.fill, sizeof row.setting.fill, "smear");
   row.number[ABBE_SWEEP_FRAME_MS] = ms;
   row.number[ABBE_SWEEP_CAUSTIC_DE] = e;
-  assert_int_equal(abbe_sweep_table_add(table, &row, NULL), ABBE_OK);
+  OK(abbe_sweep_table_add(table, &row, &error));
 }
 
 static abbe_baseline_comparison compare_with(const abbe_sweep_table *table, const char *profile) {
   abbe_baseline_comparison c;
-  abbe_error error = {0};
-  if (abbe_baseline_comparison_make(table, profile, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, &c,
-                                    &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_baseline_comparison_make(table, profile, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, &c,
+                                   &error));
   return c;
 }
 

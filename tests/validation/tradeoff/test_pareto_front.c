@@ -4,8 +4,6 @@
 #include "tests/random.h"
 #include "validation/tradeoff/pareto_front.h"
 
-#include <stdlib.h>
-
 TEST(a_front_by_hand) {
   static const double cost[] = {1, 2, 3, 3, 4, 2, 5, NAN, 0, 6},
                       error[] = {9, 4, 4, 2, 3, 4, NAN, 0, 0, 2};

@@ -6,9 +6,6 @@
 #include "base/yaml/yaml.h"
 #include "validation/tradeoff/sweep_pictures.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 static abbe_sweep_table table_of(const char *of) {
   abbe_sweep_table t = {0};
   abbe_sweep_table_set(&t, ABBE_SWEEP_FACT_CLASS, of);
@@ -38,17 +35,15 @@ static char *write(const abbe_sweep_table *tables, size_t count, const char *of)
   char *text = NULL;
   size_t size = 0;
   FILE *file = open_memstream(&text, &size);
-  abbe_error error = {0};
   fprintf(file, "class:\n");
-  if (abbe_sweep_pictures_write(file, tables, count, of, ABBE_SWEEP_CAUSTIC_DE, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_sweep_pictures_write(file, tables, count, of, ABBE_SWEEP_CAUSTIC_DE, &error));
   fclose(file);
   return text;
 }
 
 static double number(abbe_yaml *yaml, abbe_yaml_node node, const char *key) {
   double value = NAN;
-  assert_int_equal(abbe_yaml_get_number(yaml, node, key, -1e9, 1e9, &value, NULL), ABBE_OK);
+  OK(abbe_yaml_get_number(yaml, node, key, -1e9, 1e9, &value, &error));
   return value;
 }
 

@@ -5,7 +5,6 @@
 #include "base/yaml/yaml.h"
 #include "validation/tradeoff/sweep_presets.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 static char path[64];
@@ -45,7 +44,7 @@ static bool is_fine(const abbe_sweep_setting *setting) {
 
 static double number(abbe_yaml *yaml, abbe_yaml_node node, const char *key) {
   double value = NAN;
-  assert_int_equal(abbe_yaml_get_number(yaml, node, key, -1e9, 1e9, &value, NULL), ABBE_OK);
+  OK(abbe_yaml_get_number(yaml, node, key, -1e9, 1e9, &value, &error));
   return value;
 }
 
@@ -139,31 +138,23 @@ TEST(a_class_of_two_scenes) {
 TEST(what_is_refused) {
   static const char *const names[] = {"a.csv", "b.csv"};
   abbe_sweep_table t[] = {table_of("gem.yaml", "convex"), table_of("prism.yaml", "convex")};
-  abbe_error error = {0};
   char *text;
   size_t size;
-  assert_int_equal(abbe_file_write(path, "before", 6, NULL), ABBE_OK);
+  OK(abbe_file_write(path, "before", 6, &error));
   add(&t[0], "default", 64, 1, 1, 1);
   add(&t[1], "default", 32, 1, 1, 1);
-  assert_int_equal(
-      abbe_sweep_presets_write(path, t, names, 2, ABBE_SWEEP_CAUSTIC_DE, is_fine, &error),
-      ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "a.csv: its class, convex, has no setting");
+  REFUSED(ABBE_INVALID_ARGUMENT, "a.csv: its class, convex, has no setting",
+          abbe_sweep_presets_write(path, t, names, 2, ABBE_SWEEP_CAUSTIC_DE, is_fine, &error));
   abbe_sweep_table_set(&t[1], ABBE_SWEEP_FACT_MACHINE, "another");
-  assert_int_equal(
-      abbe_sweep_presets_write(path, t, names, 2, ABBE_SWEEP_CAUSTIC_DE, is_fine, &error),
-      ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "a.csv and b.csv are of different machines");
+  REFUSED(ABBE_INVALID_ARGUMENT, "a.csv and b.csv are of different machines",
+          abbe_sweep_presets_write(path, t, names, 2, ABBE_SWEEP_CAUSTIC_DE, is_fine, &error));
   abbe_sweep_table_set(&t[0], ABBE_SWEEP_FACT_CLASS, "");
-  assert_int_equal(
-      abbe_sweep_presets_write(path, t, names, 1, ABBE_SWEEP_CAUSTIC_DE, is_fine, &error),
-      ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "does not name its scene's class");
-  assert_int_equal(
-      abbe_sweep_presets_write(path, t, names, 0, ABBE_SWEEP_CAUSTIC_DE, is_fine, &error),
-      ABBE_INVALID_ARGUMENT);
+  REFUSED(ABBE_INVALID_ARGUMENT, "does not name its scene's class",
+          abbe_sweep_presets_write(path, t, names, 1, ABBE_SWEEP_CAUSTIC_DE, is_fine, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "",
+          abbe_sweep_presets_write(path, t, names, 0, ABBE_SWEEP_CAUSTIC_DE, is_fine, &error));
   /* The file that was there is as it was. */
-  assert_int_equal(abbe_file_read(path, 100, &text, &size, NULL), ABBE_OK);
+  OK(abbe_file_read(path, 100, &text, &size, &error));
   assert_string_equal(text, "before");
   free(text);
   for (int i = 0; i < 2; i++) abbe_sweep_table_free(&t[i]);

@@ -4,7 +4,6 @@
 #include "tests/random.h"
 #include "validation/tradeoff/sweep_table.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 static abbe_sweep_row row_of(const char *profile, size_t wavelengths, double ms, double error) {
@@ -17,15 +16,13 @@ static abbe_sweep_row row_of(const char *profile, size_t wavelengths, double ms,
 }
 
 static void add(abbe_sweep_table *table, abbe_sweep_row row) {
-  abbe_error error = {0};
-  if (abbe_sweep_table_add(table, &row, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_sweep_table_add(table, &row, &error));
 }
 
 TEST(what_is_saved_is_loaded) {
   char path[] = "/tmp/abbe-test-sweep-XXXXXX";
   abbe_sweep_table table = {0}, read = {0};
   uint64_t random = 3;
-  abbe_error error = {0};
   int file = mkstemp(path);
   assert_true(file >= 0);
   close(file);
@@ -40,8 +37,8 @@ TEST(what_is_saved_is_loaded) {
     row.front = i % 5 == 0;
     add(&table, row);
   }
-  assert_int_equal(abbe_sweep_table_save(&table, path, &error), ABBE_OK);
-  if (abbe_sweep_table_load(path, &read, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_sweep_table_save(&table, path, &error));
+  OK(abbe_sweep_table_load(path, &read, &error));
   unlink(path);
   assert_int_equal(read.count, 100);
   for (int i = 0; i < ABBE_SWEEP_FACT_COUNT; i++) assert_string_equal(read.fact[i], table.fact[i]);
@@ -67,9 +64,7 @@ TEST(frames_before_are_apart) {
   add(&table, row);
   abbe_sweep_setting_label(&row.setting, text, sizeof text);
   assert_string_equal(text, "w7 p128 m512 s2 h4");
-  assert_int_equal(
-      abbe_sweep_table_mark(&table, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, NULL, NULL),
-      ABBE_OK);
+  OK(abbe_sweep_table_mark(&table, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, NULL, &error));
   assert_true(table.row[0].front && !table.row[1].front);
   abbe_sweep_table_free(&table);
 }
@@ -77,12 +72,10 @@ TEST(frames_before_are_apart) {
 TEST(settings_are_told_apart) {
   abbe_sweep_table table = {0};
   abbe_sweep_row row = row_of("default", 7, 10, 1);
-  abbe_error error = {0};
   char text[160];
   add(&table, row);
   assert_ptr_equal(abbe_sweep_table_find(&table, &row.setting), &table.row[0]);
-  assert_int_equal(abbe_sweep_table_add(&table, &row, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "w7 p128 m512 s2");
+  REFUSED(ABBE_INVALID_ARGUMENT, "w7 p128 m512 s2", abbe_sweep_table_add(&table, &row, &error));
   size_t *const counts[] = {&row.setting.wavelengths, &row.setting.photons,  &row.setting.map,
                             &row.setting.samples,     &row.setting.upsample, &row.setting.exits,
                             &row.setting.passes,      &row.setting.history};
@@ -139,14 +132,10 @@ TEST(the_front_of_all_and_of_a_profile) {
   add(&table, row_of("default", 21, 40, NAN));
   add(&table, row_of("thesis", 7, 30, 8));
   add(&table, row_of("thesis", 21, 50, 7));
-  assert_int_equal(
-      abbe_sweep_table_mark(&table, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, NULL, NULL),
-      ABBE_OK);
+  OK(abbe_sweep_table_mark(&table, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, NULL, &error));
   static const bool all[] = {true, true, false, false, false};
   for (int i = 0; i < 5; i++) assert_int_equal(table.row[i].front, all[i]);
-  assert_int_equal(
-      abbe_sweep_table_mark(&table, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, "thesis", NULL),
-      ABBE_OK);
+  OK(abbe_sweep_table_mark(&table, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, "thesis", &error));
   static const bool thesis[] = {false, false, false, true, true};
   for (int i = 0; i < 5; i++) assert_int_equal(table.row[i].front, thesis[i]);
   abbe_sweep_table_free(&table);
@@ -162,9 +151,7 @@ TEST(the_front_of_a_process) {
   add(&table, row_of("trace", 1, 300, 2));
   static const double warm_ms[] = {900, NAN, 600, 500};
   for (int i = 0; i < 4; i++) table.row[i].number[ABBE_SWEEP_WARM_MS] = warm_ms[i];
-  assert_int_equal(
-      abbe_sweep_table_mark(&table, ABBE_SWEEP_WARM_MS, ABBE_SWEEP_CAUSTIC_DE, NULL, NULL),
-      ABBE_OK);
+  OK(abbe_sweep_table_mark(&table, ABBE_SWEEP_WARM_MS, ABBE_SWEEP_CAUSTIC_DE, NULL, &error));
   order = abbe_sweep_table_front(&table, ABBE_SWEEP_WARM_MS, &count);
   assert_int_equal(count, 1);
   assert_int_equal(order[0], 3);
@@ -193,7 +180,7 @@ static char *text_of_one_row(void) {
   close(mkstemp(path));
   abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_SCENE, "a.yaml");
   add(&table, row_of("default", 7, 10, 5));
-  assert_int_equal(abbe_sweep_table_save(&table, path, NULL), ABBE_OK);
+  OK(abbe_sweep_table_save(&table, path, &error));
   FILE *file = fopen(path, "rb");
   assert_true(fread(text, 1, 8191, file) > 0);
   fclose(file);
@@ -204,9 +191,7 @@ static char *text_of_one_row(void) {
 
 static void refuse(const char *text, size_t size, const char *part) {
   abbe_sweep_table read = {0};
-  abbe_error error = {0};
-  assert_int_equal(abbe_sweep_table_parse(text, size, "s.csv", &read, &error), ABBE_PARSE);
-  assert_contains(error.text, part);
+  REFUSED(ABBE_PARSE, part, abbe_sweep_table_parse(text, size, "s.csv", &read, &error));
   assert_null(read.row);
 }
 
@@ -253,28 +238,26 @@ TEST(broken_tables_are_named) {
 
 TEST(tables_of_different_things_do_not_agree) {
   abbe_sweep_table a = {0}, b = {0};
-  abbe_error error = {0};
   abbe_sweep_table_set(&a, ABBE_SWEEP_FACT_MACHINE, "one processor");
   abbe_sweep_table_set(&b, ABBE_SWEEP_FACT_MACHINE, "one processor");
   abbe_sweep_table_set(&a, ABBE_SWEEP_FACT_DATE, "yesterday");
-  assert_int_equal(abbe_sweep_table_agree(&a, "s.csv", &b, &error), ABBE_OK);
+  OK(abbe_sweep_table_agree(&a, "s.csv", &b, &error));
   abbe_sweep_table_set(&b, ABBE_SWEEP_FACT_MACHINE, "another");
-  assert_int_equal(abbe_sweep_table_agree(&a, "s.csv", &b, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "the machine 'one processor', and now it is 'another'");
+  REFUSED(ABBE_INVALID_ARGUMENT, "the machine 'one processor', and now it is 'another'",
+          abbe_sweep_table_agree(&a, "s.csv", &b, &error));
 }
 
 TEST(parts_are_joined) {
   abbe_sweep_table part[2] = {0}, all;
   const char *const names[] = {"a.csv", "b.csv"};
-  abbe_error error = {0};
   abbe_sweep_row row = {.setting = {.profile = "default", .fill = "auto", .model = "auto"}};
   for (size_t i = 0; i < 5; i++) {
     row.setting.wavelengths = i;
     row.number[ABBE_SWEEP_FRAME_MS] = (double)i;
-    assert_int_equal(abbe_sweep_table_add(&part[i % 2], &row, NULL), ABBE_OK);
+    OK(abbe_sweep_table_add(&part[i % 2], &row, &error));
   }
   abbe_sweep_table_set(&part[0], ABBE_SWEEP_FACT_DATE, "yesterday");
-  assert_int_equal(abbe_sweep_table_join(part, names, 2, &all, &error), ABBE_OK);
+  OK(abbe_sweep_table_join(part, names, 2, &all, &error));
   assert_int_equal(all.count, 5);
   assert_string_equal(all.fact[ABBE_SWEEP_FACT_DATE], "yesterday");
   for (size_t i = 0; i < 5; i++) {
@@ -283,15 +266,14 @@ TEST(parts_are_joined) {
     assert_true(found != NULL && found->number[ABBE_SWEEP_FRAME_MS] == (double)i);
   }
   abbe_sweep_table_free(&all);
-  assert_int_equal(abbe_sweep_table_join(part, names, 0, &all, &error), ABBE_INVALID_ARGUMENT);
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_sweep_table_join(part, names, 0, &all, &error));
   /* a setting in both, then another machine */
-  assert_int_equal(abbe_sweep_table_add(&part[1], &row, NULL), ABBE_OK);
-  assert_int_equal(abbe_sweep_table_join(part, names, 2, &all, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "b.csv");
-  assert_contains(error.text, "twice");
+  OK(abbe_sweep_table_add(&part[1], &row, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "b.csv", abbe_sweep_table_join(part, names, 2, &all, &error));
+  assert_contains(last_error.text, "twice");
   abbe_sweep_table_set(&part[1], ABBE_SWEEP_FACT_MACHINE, "another");
-  assert_int_equal(abbe_sweep_table_join(part, names, 2, &all, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "the machine 'another'");
+  REFUSED(ABBE_INVALID_ARGUMENT, "the machine 'another'",
+          abbe_sweep_table_join(part, names, 2, &all, &error));
   assert_true(all.count == 0 && all.row == NULL);
   abbe_sweep_table_free(&part[0]);
   abbe_sweep_table_free(&part[1]);

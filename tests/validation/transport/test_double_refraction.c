@@ -109,12 +109,10 @@ TEST(media_know_their_axes) {
   abbe_scene scene;
   abbe_geometry g;
   abbe_media m;
-  abbe_error error = {0};
   const double lambda_nm[2] = {587.5618, 600};
-  if (abbe_scene_parse(SCENE, strlen(SCENE), "scene", NULL, &scene, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
-  assert_int_equal(abbe_geometry_make(&scene, &g, NULL), ABBE_OK);
-  assert_int_equal(abbe_media_make(&g, lambda_nm, 1, &m, NULL), ABBE_OK);
+  OK(abbe_scene_parse(SCENE, strlen(SCENE), "scene", NULL, &scene, &error));
+  OK(abbe_geometry_make(&scene, &g, &error));
+  OK(abbe_media_make(&g, lambda_nm, 1, &m, &error));
   abbe_uniaxial u;
   abbe_media_crystal(&m, 0, 0, 0, &u);
   assert_near(u.n_o, 1.658461, 1e-6);

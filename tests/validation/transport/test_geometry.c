@@ -51,7 +51,7 @@ TEST(hits_a_sphere_from_outside_and_inside) {
   abbe_scene scene;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   abbe_geometry g;
-  assert_int_equal(abbe_geometry_make(&scene, &g, NULL), ABBE_OK);
+  OK(abbe_geometry_make(&scene, &g, &error));
   float o[3], d[3], next[3];
   abbe_hit hit;
   ray(&g, (double[3]){0, 0, 1}, (double[3]){0.03, 0.01, 0.2}, o, d);
@@ -82,7 +82,7 @@ TEST(no_ray_slips_between_faces) {
   abbe_scene scene;
   load_shipped("gem", &scene);
   abbe_geometry g;
-  assert_int_equal(abbe_geometry_make(&scene, &g, NULL), ABBE_OK);
+  OK(abbe_geometry_make(&scene, &g, &error));
   const abbe_object *gem = &scene.object[g.refractor_object[0]];
   double middle[3];
   for (int k = 0; k < 3; k++) middle[k] = 0.5 * (gem->min[k] + gem->max[k]);
@@ -120,7 +120,7 @@ TEST(size_and_place_do_not_matter) {
       }
     }
     abbe_geometry g;
-    assert_int_equal(abbe_geometry_make(&scene, &g, NULL), ABBE_OK);
+    OK(abbe_geometry_make(&scene, &g, &error));
     double from[3] = {0.05, 0.06, 0.5}, to[3] = {0.08, 0, 0.2};
     for (int k = 0; k < 3; k++) {
       from[k] = sizes[i] * from[k] + places[i];

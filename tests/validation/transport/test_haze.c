@@ -15,9 +15,9 @@ typedef struct fixture {
 
 static void make(const char *text, fixture *f) {
   load_text(text, &f->scene);
-  assert_int_equal(abbe_geometry_make(&f->scene, &f->geometry, NULL), ABBE_OK);
+  OK(abbe_geometry_make(&f->scene, &f->geometry, &error));
   for (int k = 0; k <= STEPS; k++) f->lambda_nm[k] = 400 + 300.0 * k / STEPS;
-  assert_int_equal(abbe_media_make(&f->geometry, f->lambda_nm, STEPS, &f->media, NULL), ABBE_OK);
+  OK(abbe_media_make(&f->geometry, f->lambda_nm, STEPS, &f->media, &error));
 }
 
 static void drop(fixture *f) {

@@ -15,14 +15,13 @@ TEST(metals_reflect_as_their_n_and_k_say) {
   abbe_scene scene;
   abbe_geometry g;
   abbe_mirrors m;
-  abbe_error error = {0};
   double lambda_nm[STEPS + 1];
   for (int k = 0; k <= STEPS; k++) lambda_nm[k] = 380 + 10.0 * k;
   load_text(DEFAULT_TABLE POINT_LIGHT FLOOR MIRROR("a", "silver") MIRROR("b", "gold")
                 MIRROR("c", "0.7") MIRROR("d", "copper"),
             &scene);
-  assert_int_equal(abbe_geometry_make(&scene, &g, NULL), ABBE_OK);
-  if (abbe_mirrors_make(&g, lambda_nm, STEPS, &m, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_geometry_make(&scene, &g, &error));
+  OK(abbe_mirrors_make(&g, lambda_nm, STEPS, &m, &error));
   assert_int_equal(m.count, 4);
   for (uint32_t i = 0; i < 4; i++) {
     assert_int_equal(abbe_mirrors_is_grey(&m, i), i == 2);
@@ -36,7 +35,7 @@ TEST(metals_reflect_as_their_n_and_k_say) {
           continue;
         }
         const abbe_material *metal = scene.object[g.mirror_object[i]].conductor;
-        assert_int_equal(abbe_material_nk(metal, lambda_nm[k], &n, &kk, NULL), ABBE_OK);
+        OK(abbe_material_nk(metal, lambda_nm[k], &n, &kk, &error));
         assert_near(seen, abbe_optics_fresnel_conductor((double)cosine, n, kk), 5e-6);
       }
   }
@@ -49,12 +48,10 @@ TEST(what_is_not_known_is_refused) {
   abbe_scene scene;
   abbe_geometry g;
   abbe_mirrors m;
-  abbe_error error = {0};
   const double lambda_nm[] = {380, 1e5};
   load_text(DEFAULT_TABLE POINT_LIGHT FLOOR MIRROR("a", "gold"), &scene);
-  assert_int_equal(abbe_geometry_make(&scene, &g, NULL), ABBE_OK);
-  assert_int_equal(abbe_mirrors_make(&g, lambda_nm, 1, &m, &error), ABBE_OUT_OF_RANGE);
-  assert_non_null(strstr(error.text, "gold"));
+  OK(abbe_geometry_make(&scene, &g, &error));
+  REFUSED(ABBE_OUT_OF_RANGE, "gold", abbe_mirrors_make(&g, lambda_nm, 1, &m, &error));
   abbe_geometry_free(&g);
   abbe_scene_free(&scene);
 }

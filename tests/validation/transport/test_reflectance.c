@@ -17,9 +17,9 @@ static const abbe_environment_light dark;
 static void setup(void) {
   const abbe_spectral_sampling_desc desc = {.min_nm = 380, .max_nm = 780, .uniform = 0.1};
   load_text(CAMERA POINT_LIGHT CARD, &scene);
-  assert_int_equal(abbe_geometry_make(&scene, &geometry, NULL), ABBE_OK);
-  assert_int_equal(abbe_spectral_sampling_make(&scene, &desc, &sampling, NULL), ABBE_OK);
-  assert_int_equal(abbe_bands_make(&sampling, 40, &bands, NULL), ABBE_OK);
+  OK(abbe_geometry_make(&scene, &geometry, &error));
+  OK(abbe_spectral_sampling_make(&scene, &desc, &sampling, &error));
+  OK(abbe_bands_make(&sampling, 40, &bands, &error));
 }
 
 static void teardown(void) {
@@ -40,8 +40,7 @@ static void at_place(double x, double y, abbe_hit *hit) {
 
 static abbe_reflectance make(abbe_rgb_space space) {
   abbe_reflectance r;
-  assert_int_equal(abbe_reflectance_make(&geometry, &sampling, &bands, &dark, space, &r, NULL),
-                   ABBE_OK);
+  OK(abbe_reflectance_make(&geometry, &sampling, &bands, &dark, space, &r, &error));
   return r;
 }
 
@@ -58,7 +57,7 @@ static void put_texture(size_t width, size_t height, const double repeat[2]) {
   static const char *const names[] = {"R", "G", "B"};
   abbe_object *o = &scene.object[0];
   abbe_image_free(&o->texture);
-  assert_int_equal(abbe_image_make(width, height, 3, names, &o->texture, NULL), ABBE_OK);
+  OK(abbe_image_make(width, height, 3, names, &o->texture, &error));
   for (size_t y = 0; y < height; y++)
     for (size_t x = 0; x < width; x++) {
       float *texel = o->texture.data + 3 * (y * width + x);
@@ -170,8 +169,7 @@ TEST(wavelengths_add_up_to_the_colour) {
 TEST(a_spectrum_is_itself) {
   static const double nm[] = {380, 780}, value[] = {0.1, 0.9};
   abbe_object *o = &scene.object[0];
-  assert_int_equal(abbe_spectrum_make(nm, value, 2, ABBE_INTERPOLATION_LINEAR, &o->spectrum, NULL),
-                   ABBE_OK);
+  OK(abbe_spectrum_make(nm, value, 2, ABBE_INTERPOLATION_LINEAR, &o->spectrum, &error));
   abbe_reflectance r = make(ABBE_RGB_SPACE_XYZ);
   abbe_reflected of;
   abbe_reflectance_find(&r, 0, 0, 0.2f, 0.3f, &of);

@@ -9,9 +9,8 @@ static float dot(const float a[3], const float b[3]) {
 }
 
 static void make(const char *text, abbe_scene *scene, abbe_geometry *g) {
-  abbe_error error = {0};
   load_text(text, scene);
-  if (abbe_geometry_make(scene, g, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_geometry_make(scene, g, &error));
 }
 
 static void drop(abbe_scene *scene, abbe_geometry *g) {

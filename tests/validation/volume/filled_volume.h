@@ -8,8 +8,7 @@
 
 static inline void fill_volume(const abbe_scene *scene, const abbe_volume_fill_desc *desc,
                                abbe_caustic_volume *out, abbe_volume_fill_statistics *done) {
-  abbe_error error = {0};
-  if (abbe_volume_fill(scene, desc, out, done, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_volume_fill(scene, desc, out, done, &error));
 }
 
 #endif

@@ -20,13 +20,11 @@ typedef struct bench {
 
 static void make_bench(const char *text, bench *b) {
   static const double lambda_nm[2] = {500, 600};
-  abbe_error error = {0};
   *b = (bench){0};
   load_text(text, &b->scene);
-  assert_int_equal(abbe_lone_object_make(&b->scene, 1, 0, &b->lone, &error), ABBE_OK);
-  assert_int_equal(abbe_media_make(&b->lone.geometry, lambda_nm, 1, &b->media, &error), ABBE_OK);
-  assert_int_equal(abbe_mirrors_make(&b->lone.geometry, lambda_nm, 1, &b->mirrors, &error),
-                   ABBE_OK);
+  OK(abbe_lone_object_make(&b->scene, 1, 0, &b->lone, &error));
+  OK(abbe_media_make(&b->lone.geometry, lambda_nm, 1, &b->media, &error));
+  OK(abbe_mirrors_make(&b->lone.geometry, lambda_nm, 1, &b->mirrors, &error));
   for (uint32_t i = 0; i < 64; i++) b->facet[i] = i / 2; /* a box's faces, by twos */
   b->space = (abbe_exit_space){
       .geometry = &b->lone.geometry, .media = &b->media, .mirrors = &b->mirrors, .facet = b->facet};

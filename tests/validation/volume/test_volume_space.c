@@ -1,11 +1,8 @@
 /* How much of a cell an object leaves: of a ball in a grid, by its volume. */
 #include "tests/scenes/scene_text.h"
 
+#include "base/maths.h"
 #include "validation/volume/volume_space.h"
-
-#include <stdlib.h>
-
-#define PI 3.14159265358979323846
 
 TEST(a_ball_takes_its_volume) {
   abbe_scene scene = {0};
@@ -19,10 +16,10 @@ TEST(a_ball_takes_its_volume) {
   alone.object = &scene.object[1];
   alone.object_count = 1;
   const abbe_region_desc desc = {.kind = ABBE_REGION_GRID, .side = 20, .outer = 2 * radius};
-  assert_int_equal(abbe_geometry_make(&alone, &g, NULL), ABBE_OK);
-  assert_int_equal(abbe_volume_region_make(&desc, &r, NULL), ABBE_OK);
+  OK(abbe_geometry_make(&alone, &g, &error));
+  OK(abbe_volume_region_make(&desc, &r, &error));
   float *share = calloc(r.cells, sizeof *share);
-  assert_int_equal(abbe_volume_space_measure(&g, &r, centre, radius, 400000, share, NULL), ABBE_OK);
+  OK(abbe_volume_space_measure(&g, &r, centre, radius, 400000, share, &error));
   double taken = 0;
   for (size_t cell = 0; cell < r.cells; cell++) {
     double p[3], near = 0, far = 0;
@@ -35,7 +32,7 @@ TEST(a_ball_takes_its_volume) {
     if (sqrt(near) > radius) assert_near((double)share[cell], 1, 1e-3);
     taken += (1 - (double)share[cell]) * abbe_volume_region_volume(&r, cell);
   }
-  assert_near(taken / (4 * PI / 3 * pow(radius, 3)), 1, 0.01);
+  assert_near(taken / (4 * ABBE_PI / 3 * pow(radius, 3)), 1, 0.01);
   free(share);
   abbe_volume_region_free(&r);
   abbe_geometry_free(&g);

@@ -35,13 +35,12 @@ static inline void make(const char *text, const abbe_physics *physics, fixture *
   double lambda_nm[STEPS + 1];
   memset(f, 0, sizeof *f);
   load_text(text, &f->scene);
-  assert_int_equal(abbe_geometry_make(&f->scene, &f->geometry, NULL), ABBE_OK);
+  OK(abbe_geometry_make(&f->scene, &f->geometry, &error));
   for (int k = 0; k <= STEPS; k++) lambda_nm[k] = 500 + 100.0 * k / STEPS;
-  assert_int_equal(abbe_media_make(&f->geometry, lambda_nm, STEPS, &f->media, NULL), ABBE_OK);
-  assert_int_equal(abbe_mirrors_make(&f->geometry, lambda_nm, STEPS, &f->mirrors, NULL), ABBE_OK);
-  assert_int_equal(
-      abbe_light_walk_make(&f->geometry, &f->media, &f->mirrors, physics ? physics : &full, 3, &f->walk, NULL),
-      ABBE_OK);
+  OK(abbe_media_make(&f->geometry, lambda_nm, STEPS, &f->media, &error));
+  OK(abbe_mirrors_make(&f->geometry, lambda_nm, STEPS, &f->mirrors, &error));
+  OK(abbe_light_walk_make(&f->geometry, &f->media, &f->mirrors, physics ? physics : &full, 3,
+                          &f->walk, &error));
 }
 
 static inline void drop(fixture *f) {
@@ -54,7 +53,7 @@ static inline void drop(fixture *f) {
 
 /* A photon of 1 W from `from` along d, world coordinates. */
 static inline abbe_photon photon_of(const fixture *f, const double from[3], const double d[3],
-                             uint32_t id) {
+                                    uint32_t id) {
   abbe_photon p = {.flux = 1, .y = 1, .step = id % STEPS, .within = 0.5f, .id = id};
   double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
   abbe_geometry_to_frame(&f->geometry, from, p.o);

@@ -12,7 +12,7 @@ static abbe_geometry geometry;
 
 static void setup(void) {
   load_text(TILTED POINT_LIGHT FLOOR BALL("flat"), &scene);
-  assert_int_equal(abbe_geometry_make(&scene, &geometry, NULL), ABBE_OK);
+  OK(abbe_geometry_make(&scene, &geometry, &error));
 }
 
 static void teardown(void) {

@@ -23,7 +23,7 @@ static void make_crystal(const char *text, const abbe_physics *physics, fixture 
   char folder[] = "/tmp/abbe-test-crystal-XXXXXX", path[64], all[4096];
   assert_non_null(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/table.yaml", folder);
-  assert_int_equal(abbe_file_write(path, TABLE, strlen(TABLE), NULL), ABBE_OK);
+  OK(abbe_file_write(path, TABLE, strlen(TABLE), &error));
   snprintf(all, sizeof all, "materials: %s\n%s", path, text);
   make(all, physics, f);
   unlink(path);
@@ -119,7 +119,7 @@ TEST(a_line_is_seen_double) {
   char folder[] = "/tmp/abbe-test-crystal-XXXXXX", path[64], text[2048];
   assert_non_null(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/table.yaml", folder);
-  assert_int_equal(abbe_file_write(path, TABLE, strlen(TABLE), NULL), ABBE_OK);
+  OK(abbe_file_write(path, TABLE, strlen(TABLE), &error));
   snprintf(text, sizeof text,
            "materials: %s\n"
            "camera: {eye: [0, 0, 40], target: [0, 0, 0], up: [0, 1, 0], fov: 0.1, "
@@ -134,9 +134,7 @@ TEST(a_line_is_seen_double) {
            "   transform: [{translate: [0, 0, 0.6]}]}\n",
            path, WIDE, ROWS);
   abbe_scene scene;
-  abbe_error error = {0};
-  if (abbe_scene_parse(text, strlen(text), "scene", NULL, &scene, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_scene_parse(text, strlen(text), "scene", NULL, &scene, &error));
   abbe_tracer *tracer = NULL;
   const abbe_trace_desc desc = {.no_map = true,
                                 .space = ABBE_RGB_SPACE_XYZ,
@@ -144,10 +142,10 @@ TEST(a_line_is_seen_double) {
                                 .height = ROWS,
                                 .photons = 1024,
                                 .threads = 1};
-  assert_int_equal(abbe_tracer_make(&scene, &desc, &tracer, NULL), ABBE_OK);
-  for (int p = 0; p < 24; p++) assert_int_equal(abbe_tracer_pass(tracer, NULL, NULL), ABBE_OK);
+  OK(abbe_tracer_make(&scene, &desc, &tracer, &error));
+  for (int p = 0; p < 24; p++) OK(abbe_tracer_pass(tracer, NULL, &error));
   abbe_image picture = {0};
-  assert_int_equal(abbe_tracer_picture(tracer, &picture, NULL), ABBE_OK);
+  OK(abbe_tracer_picture(tracer, &picture, &error));
   const size_t y = abbe_image_find_channel(&picture, "Y");
   const double pixel = 2 * 40 * tan(0.05 / 180 * 3.14159265358979) / ROWS; /* m on the floor */
   const double shift = tan(abbe_uniaxial_walk_off(n_o, n_e, sqrt(0.5))), around = 0.04;

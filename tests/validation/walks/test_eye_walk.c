@@ -3,8 +3,6 @@
 #include "base/maths.h"
 #include "validation/tracer/tracer_state.h"
 
-static const double pi = 3.14159265358979;
-
 /* The camera looks straight down at (0.1, 0) of the floor, through so small an angle that all of
  * the picture is one place. */
 #define DOWN                                                                                       \
@@ -81,13 +79,13 @@ static void check_radiance(const char *text, double radiance, double share) {
 /* A matte floor of reflectance 1/2 returns E / (2 pi). */
 TEST(direct_light_on_a_plane) {
   check_radiance(DOWN LIGHT("kind: point, position: [0.1, 0, 0.5], intensity: 3") FLOOR,
-                 3 / 0.25 * 0.5 / pi, 1e-5);
+                 3 / 0.25 * 0.5 / ABBE_PI, 1e-5);
   /* slanted: I cos^3 / h^2; the picture's place varies by 1e-3 m */
   double tangent = 0.4 / 0.5, cosine = 1 / sqrt(1 + tangent * tangent);
   check_radiance(DOWN LIGHT("kind: point, position: [0.5, 0, 0.5], intensity: 3") FLOOR,
-                 3 * pow(cosine, 3) / 0.25 * 0.5 / pi, 2e-3);
+                 3 * pow(cosine, 3) / 0.25 * 0.5 / ABBE_PI, 2e-3);
   check_radiance(DOWN LIGHT("kind: directional, direction: [3, 0, -4], irradiance: 7") FLOOR,
-                 7 * 0.8 * 0.5 / pi, 1e-5);
+                 7 * 0.8 * 0.5 / ABBE_PI, 1e-5);
 }
 
 /* A spot's cone is where it is, also one of a twentieth of a degree. */
@@ -97,7 +95,7 @@ TEST(spots_end_where_they_end) {
     for (int inside = 0; inside < 2; inside++) {
       char text[1024];
       /* the place seen lies off the spot's axis by 0.98 or 1.02 of the cone */
-      double off = tan(cones[i] * pi / 180 * (inside ? 0.98 : 1.02));
+      double off = tan(cones[i] * ABBE_PI / 180 * (inside ? 0.98 : 1.02));
       snprintf(text, sizeof text,
                "materials: glass.yaml\ncamera: {eye: [0.1, 0, 1], target: [%.9g, 0, 0], up: [0, 1, "
                "0], fov: 0.1, size: [1000, 1000]}\n" LIGHT(
@@ -112,7 +110,7 @@ TEST(spots_end_where_they_end) {
       f.tracer->camera.half_width = f.tracer->camera.half_height = 1e-9f;
       look(&f, 1, mean, error);
       assert_near(mean[1] / (double)f.tracer->white[0][1],
-                  inside ? 3 * pow(cosine, 3) * 0.5 / pi : 0, 1e-4);
+                  inside ? 3 * pow(cosine, 3) * 0.5 / ABBE_PI : 0, 1e-4);
       drop(&f);
     }
 }
@@ -169,7 +167,7 @@ static double polygon_irradiance(double (*corner)[3], size_t count, const double
 /* Off its axis, turned by 30 degrees and tilted: the edges are where width, height and roll put
  * them. */
 TEST(a_rectangles_irradiance) {
-  const double c = cos(pi / 6), s = sin(pi / 6), at[] = {0.1, 0, 0};
+  const double c = cos(ABBE_PI / 6), s = sin(ABBE_PI / 6), at[] = {0.1, 0, 0};
   for (int i = 0; i < 2; i++) {
     const char *text =
         i ? DOWN LIGHT("kind: rectangle, position: [0.3, 0.1, 0.3], direction: [-1, 0, -1], width: "
@@ -194,7 +192,8 @@ TEST(a_rectangles_irradiance) {
     look(&f, 250, mean, error);
     for (int k = 0; k < 3; k++) {
       const double white = (double)f.tracer->white[0][k];
-      assert_near(mean[k], 5 * polygon_irradiance(corner, 4, at) * 0.5 / pi * white, 4 * error[k]);
+      assert_near(mean[k], 5 * polygon_irradiance(corner, 4, at) * 0.5 / ABBE_PI * white,
+                  4 * error[k]);
       assert_true(error[k] < 0.02 * mean[k]);
     }
     drop(&f);
@@ -234,7 +233,7 @@ TEST(shadows) {
   make(DOWN "ambient: 0.3\n" SIDE_LIGHT FLOOR LID("0.5"), &f);
   look(&f, 1, mean, error);
   /* ambient light is white in the picture's space: 1, 1, 1 */
-  for (int k = 0; k < 3; k++) assert_near(mean[k], 0.3 * 0.5 / pi, 1e-6);
+  for (int k = 0; k < 3; k++) assert_near(mean[k], 0.3 * 0.5 / ABBE_PI, 1e-6);
   drop(&f);
 }
 
@@ -354,7 +353,7 @@ TEST(a_slab_mirrors_the_sky) {
 TEST(dark_glass_keeps_its_mean) {
   fixture f;
   const double r = 0.04, left = exp(-0.4 * 12);
-  const double want = 0.5 / pi * (1 - r) * (1 - r) * left / (1 - r * r * left * left);
+  const double want = 0.5 / ABBE_PI * (1 - r) * (1 - r) * left / (1 - r * r * left * left);
   double mean[3], error[3];
   load_text(
       DOWN "ambient: 1\n" LIGHT(
@@ -396,7 +395,7 @@ TEST(bands_add_up) {
   abbe_eye_walk_pixel(&f.tracer->eye, 5, 0, &s);
   double sum = 0;
   for (int i = 0; i < 16; i++) sum += (double)s.band[i] * 25;
-  assert_near(sum, 3 / 0.25 * 0.5 / pi, 1e-4);
+  assert_near(sum, 3 / 0.25 * 0.5 / ABBE_PI, 1e-4);
   drop(&f);
   /* through glass each path has one wavelength, and so one band: the mean is the same */
   make_with(DOWN EVEN_SKY GLASS_ONLY("crown"),

@@ -32,7 +32,7 @@ static float dot(const float a[3], const float b[3]) {
 static void make(const char *text, float eta, float attenuation, fixture *f) {
   memset(f, 0, sizeof *f);
   load_text(text, &f->scene);
-  assert_int_equal(abbe_geometry_make(&f->scene, &f->g, NULL), ABBE_OK);
+  OK(abbe_geometry_make(&f->scene, &f->g, &error));
   f->rules = (abbe_inner_rules){.seed = 3, .pass = 2, .shift = {7, 1u << 20, 5, 11}};
   uint64_t random = 11;
   for (uint32_t i = 0; i < PATHS; i++) {

@@ -32,8 +32,8 @@ static lit trace(const char *text) {
   abbe_tracer *tracer = make_tracer(&scene, &desc);
   run_passes(tracer, 2);
   abbe_tracer_statistics(tracer, &l.statistics);
-  assert_int_equal(abbe_tracer_picture(tracer, &l.picture, NULL), ABBE_OK);
-  assert_int_equal(abbe_tracer_map(tracer, &l.map, NULL), ABBE_OK);
+  OK(abbe_tracer_picture(tracer, &l.picture, &error));
+  OK(abbe_tracer_map(tracer, &l.map, &error));
   abbe_tracer_free(tracer);
   abbe_scene_free(&scene);
   return l;

@@ -332,10 +332,9 @@ TEST(what_a_bent_normal_mirrors_stays_inside) {
   f.scene.object[1].exact.kind = ABBE_EXACT_NONE;
   for (int k = 0; k <= STEPS; k++) lambda_nm[k] = 500 + 100.0 * k / STEPS;
   static const abbe_physics full = {0};
-  assert_int_equal(abbe_geometry_make(&f.scene, &f.geometry, NULL), ABBE_OK);
-  assert_int_equal(abbe_media_make(&f.geometry, lambda_nm, STEPS, &f.media, NULL), ABBE_OK);
-  assert_int_equal(abbe_light_walk_make(&f.geometry, &f.media, &f.mirrors, &full, 3, &f.walk, NULL),
-                   ABBE_OK);
+  OK(abbe_geometry_make(&f.scene, &f.geometry, &error));
+  OK(abbe_media_make(&f.geometry, lambda_nm, STEPS, &f.media, &error));
+  OK(abbe_light_walk_make(&f.geometry, &f.media, &f.mirrors, &full, 3, &f.walk, &error));
   assert_int_equal(shoot(&f, from, down, 4), 0);
   assert_true(f.ledger.lost == 0 && f.ledger.contact == 0);
   assert_near(f.ledger.missed / (double)f.photons, 1, 1e-6);

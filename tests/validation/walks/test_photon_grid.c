@@ -3,8 +3,6 @@
 #include "tests/random.h"
 #include "validation/walks/photon_grid.h"
 
-#include <stdlib.h>
-
 enum { PHOTONS = 3000 };
 
 typedef struct gathered {
@@ -64,7 +62,7 @@ TEST(finds_what_a_search_through_all_finds) {
   for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
     float radius = (float)cases[c].radius;
     scatter(photon, PHOTONS, cases[c].centre, cases[c].size, cases[c].flat, &random);
-    assert_int_equal(abbe_photon_grid_fill(&grid, photon, PHOTONS, radius, 2, NULL), ABBE_OK);
+    OK(abbe_photon_grid_fill(&grid, photon, PHOTONS, radius, 2, &error));
     for (int i = 0; i < 100; i++) {
       /* half of the places are photons themselves, the others anywhere */
       float p[3];
@@ -84,7 +82,7 @@ TEST(photons_in_one_place) {
   for (uint32_t i = 0; i < PHOTONS; i++)
     photon[i] = (abbe_grid_photon){.p = {-0.5f, 0.25f, 0}, .flux = 1, .colour = i};
   abbe_photon_grid grid = {0};
-  assert_int_equal(abbe_photon_grid_fill(&grid, photon, PHOTONS, 0.5f, 2, NULL), ABBE_OK);
+  OK(abbe_photon_grid_fill(&grid, photon, PHOTONS, 0.5f, 2, &error));
   check_gather(&grid, photon, PHOTONS, (float[3]){-0.5f, 0.25f, 0}, 0.5f, 0, 1);
   check_gather(&grid, photon, PHOTONS, (float[3]){0, 0.25f, 0}, 0.5f, 0, 1); /* on the rim */
   check_gather(&grid, photon, PHOTONS, (float[3]){0.01f, 0.25f, 0}, 0.5f, 0, 1);
@@ -103,7 +101,7 @@ TEST(order_is_kept_within_a_cell) {
   for (uint32_t i = 0; i < PHOTONS; i++)
     photon[i] = (abbe_grid_photon){.p = {0.2f, 0.2f, 0.2f}, .flux = 1, .colour = i};
   abbe_photon_grid grid = {0};
-  assert_int_equal(abbe_photon_grid_fill(&grid, photon, PHOTONS, 0.1f, 2, NULL), ABBE_OK);
+  OK(abbe_photon_grid_fill(&grid, photon, PHOTONS, 0.1f, 2, &error));
   uint32_t last = 0;
   abbe_photon_grid_gather(&grid, photon[0].p, 0.1f, 0, 1, gather_order, &last);
   assert_int_equal(last, PHOTONS - 1);
@@ -118,7 +116,7 @@ TEST(a_grid_can_be_filled_again) {
   abbe_photon_grid grid = {0};
   const size_t counts[] = {10, PHOTONS, 1, 0, 1500};
   for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
-    assert_int_equal(abbe_photon_grid_fill(&grid, photon, counts[c], 0.3f, 2, NULL), ABBE_OK);
+    OK(abbe_photon_grid_fill(&grid, photon, counts[c], 0.3f, 2, &error));
     for (uint32_t surface = 0; surface < 3; surface++)
       check_gather(&grid, photon, counts[c], photon[0].p, 0.3f, surface, 1);
     gathered g = {0};

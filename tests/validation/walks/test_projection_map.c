@@ -5,8 +5,6 @@
 #include "tests/random.h"
 #include "validation/walks/projection_map.h"
 
-static const double pi = 3.14159265358979;
-
 #define LIGHT(text) "lights:\n- {name: lamp, " text "}\n"
 #define FAR_POINT LIGHT("kind: point, position: [0.05, 0.03, 0.6], intensity: 2")
 #define SPOT(target, cone, soft)                                                                   \
@@ -34,8 +32,8 @@ typedef struct fixture {
 
 static void make(const char *text, fixture *f) {
   load_text(text, &f->scene);
-  assert_int_equal(abbe_geometry_make(&f->scene, &f->geometry, NULL), ABBE_OK);
-  assert_int_equal(abbe_projection_map_make(&f->geometry, 0, &f->aim, NULL), ABBE_OK);
+  OK(abbe_geometry_make(&f->scene, &f->geometry, &error));
+  OK(abbe_projection_map_make(&f->geometry, 0, &f->aim, &error));
 }
 
 static void drop(fixture *f) {
@@ -52,7 +50,7 @@ static double dot(const float a[3], const float b[3]) {
 
 /* A direction evenly over the sphere. */
 static void any_direction(uint64_t *random, float d[3]) {
-  double z = random_between(random, -1, 1), angle = random_between(random, 0, 2 * pi);
+  double z = random_between(random, -1, 1), angle = random_between(random, 0, 2 * ABBE_PI);
   double across = sqrt(1 - z * z);
   d[0] = (float)(across * cos(angle));
   d[1] = (float)(across * sin(angle));
@@ -227,12 +225,12 @@ TEST(a_ball_gets_its_solid_angle) {
   fixture f;
   make(CAMERA FAR_POINT FLOOR BALL("flat"), &f);
   double away = sqrt(0.05 * 0.05 + 0.03 * 0.03 + 0.4 * 0.4);
-  double exact = 2 * 2 * pi * (1 - cos(asin(0.08 / away)));
+  double exact = 2 * 2 * ABBE_PI * (1 - cos(asin(0.08 / away)));
   assert_near(flux_that_meets(&f, 1, 4) / exact, 1, 2e-3);
   assert_true(f.aim.reach >= exact && f.aim.reach < exact * pow(1 + 4.0 / 128, 2));
   drop(&f);
   make(CAMERA SUN FLOOR BALL("flat"), &f);
-  exact = pi * 0.08 * 0.08;
+  exact = ABBE_PI * 0.08 * 0.08;
   assert_near(flux_that_meets(&f, 2, 4) / exact, 1, 2e-3);
   assert_true(f.aim.reach >= exact && f.aim.reach < exact * pow(1 + 4.0 / 128, 2));
   drop(&f);
@@ -261,7 +259,8 @@ TEST(a_disk_lights_flux) {
   enum { RINGS = 1000 };
   for (int i = 0; i < RINGS; i++) {
     double rho = 0.1 * (i + 0.5) / RINGS, square = rho * rho + 0.16;
-    exact += 3 * 2 * pi * rho * 0.1 / RINGS * pi * 0.08 * 0.08 / square * 0.4 / sqrt(square);
+    exact +=
+        3 * 2 * ABBE_PI * rho * 0.1 / RINGS * ABBE_PI * 0.08 * 0.08 / square * 0.4 / sqrt(square);
   }
   assert_near(flux_that_meets(&f, 4, 8) / exact, 1, 4e-3);
   drop(&f);
@@ -279,15 +278,15 @@ TEST(a_spots_cone_is_reached_whole) {
              cones[i]);
     fixture f;
     make(text, &f);
-    double exact = 2 * 4 * pi * pow(sin(0.5 * cones[i] * pi / 180), 2);
+    double exact = 2 * 4 * ABBE_PI * pow(sin(0.5 * cones[i] * ABBE_PI / 180), 2);
     assert_near(flux_that_meets(&f, 5 + i, 4) / exact, 1, 5e-3);
     assert_near(f.aim.reach / exact, 1, 5e-3);
     drop(&f);
   }
   fixture f;
   make(CAMERA SPOT("[0, 0, 0.2]", "9", "4") FLOOR BALL("flat"), &f);
-  double inner = cos(5 * pi / 180), outer = cos(9 * pi / 180);
-  double exact = 2 * 2 * pi * ((1 - inner) + 0.5 * (inner - outer));
+  double inner = cos(5 * ABBE_PI / 180), outer = cos(9 * ABBE_PI / 180);
+  double exact = 2 * 2 * ABBE_PI * ((1 - inner) + 0.5 * (inner - outer));
   assert_near(flux_that_meets(&f, 11, 4) / exact, 1, 3e-3);
   drop(&f);
 }

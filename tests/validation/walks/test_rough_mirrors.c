@@ -3,9 +3,8 @@
 #include "tests/validation/trace_scene.h"
 #include "tests/validation/walks/light_walks.h"
 
+#include "base/maths.h"
 #include "validation/tracer/tracer_state.h"
-
-#define PI 3.14159265358979323846
 
 /* Straight down onto a plate of reflectance 0.8, half a metre up; under it a floor that shows
  * nothing. */
@@ -114,13 +113,13 @@ TEST(a_disk_lamp_counts_once) {
     double sum = 0;
     for (int r = 0; r < RINGS; r++)
       for (int s = 0; s < SECTORS; s++) {
-        const double rho = radius * sqrt((r + 0.5) / RINGS), a = 2 * PI * (s + 0.5) / SECTORS;
+        const double rho = radius * sqrt((r + 0.5) / RINGS), a = 2 * ABBE_PI * (s + 0.5) / SECTORS;
         const double x = aside + rho * cos(a), y = rho * sin(a);
         const double far2 = x * x + y * y + high * high, far = sqrt(far2);
         const double wi[3] = {x / far, y / far, high / far};
         sum += abbe_microfacets_reflect(&m, wi, up) * wi[2] * wi[2] / far2;
       }
-    const double expected = 0.8 * 5 * sum * PI * radius * radius / (RINGS * SECTORS);
+    const double expected = 0.8 * 5 * sum * ABBE_PI * radius * radius / (RINGS * SECTORS);
     snprintf(
         text, sizeof text,
         DOWN LIGHT("kind: disk, position: [0.12, 0, 1.1], direction: [0, 0, -1], radius: 0.08, "
@@ -150,14 +149,14 @@ TEST(a_bright_spot_counts_once) {
     see(text, 400, &v);
     for (int r = 0; r < RINGS; r++)
       for (int s = 0; s < SECTORS; s++) {
-        const double polar = PI / 2 * (r + 0.5) / RINGS, a = 2 * PI * (s + 0.5) / SECTORS;
+        const double polar = ABBE_PI / 2 * (r + 0.5) / RINGS, a = 2 * ABBE_PI * (s + 0.5) / SECTORS;
         const double t = sin(polar), wi[3] = {t * cos(a), t * sin(a), cos(polar)};
         const float d[3] = {(float)wi[0], (float)wi[1], (float)wi[2]};
         float rgb[3];
         abbe_environment_light_seen(v.tracer->eye.environment, d, rgb);
         sum += abbe_microfacets_reflect(&m, wi, up) * wi[2] * t * (double)rgb[1];
       }
-    const double expected = 0.8 * sum * PI * PI / (RINGS * SECTORS);
+    const double expected = 0.8 * sum * ABBE_PI * ABBE_PI / (RINGS * SECTORS);
     assert_true(expected > 0 && v.error < 0.05 * v.y);
     assert_near(v.y, expected, 4 * v.error + 5e-3 * expected);
     forget(&v);

@@ -18,9 +18,9 @@ static size_t follow(const char *text, const double from[3], const double d[3], 
   abbe_scene scene;
   load_text(text, &scene);
   abbe_geometry g;
-  assert_int_equal(abbe_geometry_make(&scene, &g, NULL), ABBE_OK);
+  OK(abbe_geometry_make(&scene, &g, &error));
   size_t count;
-  assert_int_equal(abbe_route_follow(&g, from, d, 550, choices, vertex, 16, &count, NULL), ABBE_OK);
+  OK(abbe_route_follow(&g, from, d, 550, choices, vertex, 16, &count, &error));
   abbe_geometry_free(&g);
   abbe_scene_free(&scene);
   return count;

@@ -3,14 +3,7 @@
 
 #include "cli/view/picture/view_feed.h"
 
-#include <math.h>
-#include <string.h>
-
 enum { GRID = 16 };
-
-static void assert_ok(abbe_result result, const abbe_error *error) {
-  if (result != ABBE_OK) fail_msg("%s", error->text);
-}
 
 /* A cube of 2 m around the origin, a quad a side in two triangles. */
 static void make_cube(abbe_object *object) {
@@ -19,9 +12,8 @@ static void make_cube(abbe_object *object) {
   static const uint32_t side[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                       {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
   static const abbe_material glass = {.name = "glass"};
-  abbe_error error = {0};
   *object = (abbe_object){.material = &glass, .min = {-1, -1, -1}, .max = {1, 1, 1}};
-  assert_ok(abbe_mesh_make(8, 12, false, &object->mesh, &error), &error);
+  OK(abbe_mesh_make(8, 12, false, &object->mesh, &error));
   memcpy(object->mesh.position, corner, sizeof corner);
   for (int i = 0; i < 6; i++)
     for (int k = 0; k < 3; k++) {
@@ -66,10 +58,9 @@ static void from_above(bool mirror) {
   if (mirror) object[1].material = NULL;
   const abbe_scene scene = {.object_count = 2, .object = object};
   abbe_view_hits hits;
-  abbe_error error = {0};
   shine(at, cell, &hits, 0);
   abbe_view_feed_begin((const double[3]){4, 7, -3}, 1.1, &feed); /* that cell and four around */
-  assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
+  OK(abbe_view_feed_add(&feed, &hits, &error));
   abbe_view_feed_end(&feed, &scene, NULL);
   assert_int_equal(feed.photons, 5);
   assert_int_equal(feed.ray_count, 5);
@@ -109,10 +100,9 @@ TEST(two_facets_share_as_they_are_seen) {
   make_cube(&object);
   const abbe_scene scene = {.object_count = 1, .object = &object};
   abbe_view_hits hits;
-  abbe_error error = {0};
   shine(at, cell, &hits, 1);
   abbe_view_feed_begin((const double[3]){7.5, 7.5, -3}, 7.6, &feed); /* 178 cells, all alike */
-  assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
+  OK(abbe_view_feed_add(&feed, &hits, &error));
   abbe_view_feed_end(&feed, &scene, NULL);
   assert_true(feed.photons > 150 && feed.photons < ABBE_VIEW_FEED_RAYS);
   assert_int_equal(feed.ray_count, feed.photons);
@@ -135,19 +125,18 @@ TEST(nothing_lands_or_nothing_is_met) {
   static abbe_view_feed feed;
   const abbe_scene scene = {0};
   abbe_view_hits hits;
-  abbe_error error = {0};
   shine(at, cell, &hits, 0);
   abbe_view_feed_begin((const double[3]){4, 7, 5}, 1.1, &feed);
-  assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
+  OK(abbe_view_feed_add(&feed, &hits, &error));
   abbe_view_feed_end(&feed, &scene, NULL);
   assert_int_equal(feed.photons + feed.ray_count + feed.facet_count + feed.edge_count, 0);
   const volatile int stop = 1;
   hits.stop = &stop;
   abbe_view_feed_begin((const double[3]){4, 7, -3}, 1.1, &feed);
-  assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
+  OK(abbe_view_feed_add(&feed, &hits, &error));
   assert_int_equal(feed.photons, 0);
   hits.stop = NULL;
-  assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
+  OK(abbe_view_feed_add(&feed, &hits, &error));
   abbe_view_feed_end(&feed, &scene, NULL);
   assert_int_equal(feed.photons, 5);
   assert_int_equal(feed.ray_count + feed.facet_count, 0);
@@ -162,12 +151,11 @@ TEST(a_look_is_given_up) {
   make_cube(&object);
   const abbe_scene scene = {.object_count = 1, .object = &object};
   abbe_view_hits hits;
-  abbe_error error = {0};
   shine(at, cell, &hits, 0);
   for (int stop = 0; stop < 2; stop++) {
     const volatile int told = stop;
     abbe_view_feed_begin((const double[3]){4, 7, -3}, 1.1, &feed);
-    assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
+    OK(abbe_view_feed_add(&feed, &hits, &error));
     abbe_view_feed_end(&feed, &scene, &told);
     assert_int_equal(feed.ray_count, stop ? 0 : 5);
     assert_int_equal(feed.facet_count, stop ? 0 : 1);
@@ -178,9 +166,8 @@ TEST(a_look_is_given_up) {
 static size_t count_lights(const abbe_view_hits *hits, const double point[3], double radius) {
   static const abbe_scene nothing = {0};
   static abbe_view_feed feed;
-  abbe_error error = {0};
   abbe_view_feed_begin(point, radius, &feed);
-  assert_ok(abbe_view_feed_add(&feed, hits, &error), &error);
+  OK(abbe_view_feed_add(&feed, hits, &error));
   abbe_view_feed_end(&feed, &nothing, NULL);
   return feed.photons;
 }
@@ -229,15 +216,14 @@ TEST(light_lies_between_wavelengths) {
   assert_int_equal(count_lights(&hits, (const double[3]){17, 0, 0}, 0.5), 1);
   /* in batches that share the middle one: one photon, and each wavelength's flux once */
   static abbe_view_feed feed;
-  abbe_error error = {0};
   abbe_view_feed_begin((const double[3]){7, 0, 0}, 11, &feed);
   hits.path = path;
   hits.samples = 2;
   hits.last = false;
-  assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
+  OK(abbe_view_feed_add(&feed, &hits, &error));
   hits.at = at + 4;
   hits.last = true;
-  assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
+  OK(abbe_view_feed_add(&feed, &hits, &error));
   assert_int_equal(feed.photons, 1);
   assert_near(feed.flux, 3, 1e-12);
   abbe_view_feed_end(&feed, &(const abbe_scene){0}, NULL);
@@ -252,11 +238,10 @@ TEST(cells_of_an_oblong_grid) {
   make_cube(&object);
   const abbe_scene scene = {.object_count = 1, .object = &object};
   abbe_view_hits hits;
-  abbe_error error = {0};
   shine(at, cell, &hits, 0);
   hits.grid[1] = 2 * GRID;
   abbe_view_feed_begin((const double[3]){8, 15, -3}, 0.5, &feed);
-  assert_ok(abbe_view_feed_add(&feed, &hits, &error), &error);
+  OK(abbe_view_feed_add(&feed, &hits, &error));
   abbe_view_feed_end(&feed, &scene, NULL);
   assert_int_equal(feed.ray_count, 1);
   const double right = fabs(feed.ray[0].entry[0]), above = fabs(feed.ray[0].entry[1]);

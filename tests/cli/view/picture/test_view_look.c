@@ -21,7 +21,6 @@ TEST(a_caustic_is_fed_however_few_photons_there_are) {
   static const size_t photons[] = {8, 20};
   static abbe_view_feed feed;
   volatile int stop = 0;
-  abbe_error error = {0};
   abbe_scene scene = {0};
   load_text(text, &scene);
   for (size_t i = 0; i < sizeof photons / sizeof *photons; i++) {
@@ -29,21 +28,18 @@ TEST(a_caustic_is_fed_however_few_photons_there_are) {
         .width = 16, .height = 16, .photons = photons[i], .wavelengths = 3, .map_size = 64};
     abbe_renderer *renderer = make_renderer(&scene, &desc);
     draw_frame(renderer);
-    assert_ok(abbe_view_look_feed(renderer, &scene, place, radius, 550, &stop, &feed, &error),
-              &error);
+    OK(abbe_view_look_feed(renderer, &scene, place, radius, 550, &stop, &feed, &error));
     assert_int_equal(feed.photons, 0); /* they land too far from each other */
-    assert_ok(
-        abbe_view_look_closer(context, renderer, &scene, place, radius, 550, &stop, &feed, &error),
-        &error);
+    OK(abbe_view_look_closer(context, renderer, &scene, place, radius, 550, &stop, &feed, &error));
     assert_true(feed.photons > 0 && feed.facet_count == 1);
     assert_int_equal(feed.facet[0].object, 1);
     assert_near(feed.facet[0].normal[2], 1, 1e-9);
     assert_near(feed.ray[0].entry[0], place[0], 0.01);
     assert_int_equal(abbe_renderer_plan(renderer)->desc.photons, photons[i]);
     stop = 1;
-    assert_int_equal(
-        abbe_view_look_closer(context, renderer, &scene, place, radius, 550, &stop, &feed, &error),
-        ABBE_CANCELLED);
+    REFUSED(
+        ABBE_CANCELLED, "",
+        abbe_view_look_closer(context, renderer, &scene, place, radius, 550, &stop, &feed, &error));
     stop = 0;
     abbe_renderer_free(renderer);
   }
@@ -51,14 +47,11 @@ TEST(a_caustic_is_fed_however_few_photons_there_are) {
       .width = 16, .height = 16, .photons = 513, .wavelengths = 3, .map_size = 1026};
   abbe_renderer *renderer = make_renderer(&scene, &many);
   draw_frame(renderer);
-  assert_ok(abbe_view_look_feed(renderer, &scene, place, radius, 550, &stop, &feed, &error),
-            &error);
+  OK(abbe_view_look_feed(renderer, &scene, place, radius, 550, &stop, &feed, &error));
   const size_t found = feed.photons;
   assert_true(found > 0);
-  assert_ok(/* there are no more to follow: what was found stays */
-            abbe_view_look_closer(context, renderer, &scene, place, radius, 550, &stop, &feed,
-                                  &error),
-            &error);
+  /* there are no more to follow: what was found stays */
+  OK(abbe_view_look_closer(context, renderer, &scene, place, radius, 550, &stop, &feed, &error));
   assert_int_equal(feed.photons, found);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);

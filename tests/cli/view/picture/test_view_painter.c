@@ -5,8 +5,6 @@
 #include "base/clock.h"
 #include "cli/view/picture/view_painter.h"
 
-#include <math.h>
-#include <string.h>
 #include <time.h>
 
 enum { WIDTH = 301, HEIGHT = 207, PIXELS = WIDTH * HEIGHT };
@@ -22,9 +20,9 @@ static void begin(case_ *c) {
   static const char *const names[] = {"R", "G", "B", "A"};
   const abbe_display_desc desc = {.display = "sRGB", .view = "Looking"};
   *c = (case_){0};
-  assert_int_equal(abbe_display_make(&desc, &c->display, NULL), ABBE_OK);
-  assert_int_equal(abbe_view_painter_make(NULL, &c->painter, NULL), ABBE_OK);
-  assert_int_equal(abbe_image_make(WIDTH, HEIGHT, 4, names, &c->pictures.rendered, NULL), ABBE_OK);
+  OK(abbe_display_make(&desc, &c->display, &error));
+  OK(abbe_view_painter_make(NULL, &c->painter, &error));
+  OK(abbe_image_make(WIDTH, HEIGHT, 4, names, &c->pictures.rendered, &error));
   for (size_t i = 0; i < 4 * PIXELS; i++)
     c->pictures.rendered.data[i] = (float)exp2(0.01 * (double)(i * 7919 % 1200) - 9);
   c->painting = (abbe_view_painting){&c->pictures, ABBE_VIEW_RENDERED_PICTURE, 1, c->display};
@@ -51,10 +49,10 @@ TEST(it_is_the_whole_picture_transformed) {
   case_ c;
   abbe_image whole;
   begin(&c);
-  assert_int_equal(abbe_image_make(WIDTH, HEIGHT, 3, names, &whole, NULL), ABBE_OK);
+  OK(abbe_image_make(WIDTH, HEIGHT, 3, names, &whole, &error));
   for (size_t i = 0; i < 3 * PIXELS; i++)
     whole.data[i] = 2 * c.pictures.rendered.data[4 * (i / 3) + i % 3]; /* a stop */
-  assert_int_equal(abbe_display_apply(c.display, &whole, NULL), ABBE_OK);
+  OK(abbe_display_apply(c.display, &whole, &error));
   abbe_view_painter_give(c.painter, &c.painting);
   assert_true(abbe_view_painter_has(c.painter)->exposure == 1);
   unsigned char *pixels = wait_for(&c);

@@ -3,23 +3,15 @@
 
 #include "cli/view/picture/view_feed.h"
 
-#include <math.h>
-#include <string.h>
-
 static abbe_material glass = {.name = "glass", .min_nm = 380, .max_nm = 780};
-
-static void assert_ok(abbe_result result, const abbe_error *error) {
-  if (result != ABBE_OK) fail_msg("%s", error->text);
-}
 
 /* A box, outward all around. */
 static void make_box(const double low[3], const double high[3], const abbe_material *material,
                      abbe_object *object) {
   static const uint32_t side[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                       {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-  abbe_error error = {0};
   *object = (abbe_object){.material = material};
-  assert_ok(abbe_mesh_make(8, 12, false, &object->mesh, &error), &error);
+  OK(abbe_mesh_make(8, 12, false, &object->mesh, &error));
   for (int i = 0; i < 8; i++)
     for (int k = 0; k < 3; k++) object->mesh.position[i][k] = (i >> k & 1) != 0 ? high[k] : low[k];
   for (int i = 0; i < 6; i++)

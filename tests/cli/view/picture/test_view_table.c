@@ -3,15 +3,13 @@
 
 #include "cli/view/picture/view_table.h"
 
-#include <math.h>
-#include <string.h>
 #include <time.h>
 
 enum { SIDE = 64 };
 
 static void make_image(abbe_image *out) {
   static const char *const names[] = {"R", "G", "B"};
-  assert_int_equal(abbe_image_make(SIDE, SIDE, 3, names, out, NULL), ABBE_OK);
+  OK(abbe_image_make(SIDE, SIDE, 3, names, out, &error));
   for (size_t i = 0; i < 3 * SIDE * SIDE; i++)
     out->data[i] = (float)exp2(0.01 * (double)(i * 7919 % 1200) - 9);
 }
@@ -22,15 +20,15 @@ TEST(it_is_the_one_that_is_made_at_once) {
   abbe_display *display = NULL;
   abbe_display_table *other = NULL;
   abbe_image a, b;
-  assert_int_equal(abbe_display_make(&desc, &display, NULL), ABBE_OK);
+  OK(abbe_display_make(&desc, &display, &error));
   abbe_view_table *table = abbe_view_table_begin(display);
   assert_non_null(table);
-  assert_int_equal(abbe_display_table_make(display, &other, NULL), ABBE_OK);
+  OK(abbe_display_table_make(display, &other, &error));
   while (abbe_view_table_get(table) == NULL) nanosleep(&time, NULL);
   make_image(&a);
   make_image(&b);
-  assert_int_equal(abbe_display_table_apply(abbe_view_table_get(table), &a, NULL), ABBE_OK);
-  assert_int_equal(abbe_display_table_apply(other, &b, NULL), ABBE_OK);
+  OK(abbe_display_table_apply(abbe_view_table_get(table), &a, &error));
+  OK(abbe_display_table_apply(other, &b, &error));
   assert_memory_equal(a.data, b.data, 3 * sizeof *a.data * SIDE * SIDE);
   abbe_image_free(&a);
   abbe_image_free(&b);
@@ -41,7 +39,7 @@ TEST(it_is_the_one_that_is_made_at_once) {
 
 TEST(it_may_be_left_before_it_is_made) {
   abbe_display *display = NULL;
-  assert_int_equal(abbe_display_make(&(abbe_display_desc){.view = NULL}, &display, NULL), ABBE_OK);
+  OK(abbe_display_make(&(abbe_display_desc){.view = NULL}, &display, &error));
   abbe_view_table_free(abbe_view_table_begin(display));
   assert_null(abbe_view_table_get(NULL));
   abbe_view_table_free(NULL);

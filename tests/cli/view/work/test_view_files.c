@@ -4,7 +4,6 @@
 #include "cli/view/work/view_files.h"
 
 #include <fcntl.h>
-#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

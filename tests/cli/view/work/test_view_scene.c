@@ -7,20 +7,19 @@ static abbe_view_document gem(void) {
   char path[] = ABBE_SOURCE_DIR "/scenes/gem.yaml";
   const abbe_view_document named = {.path = path};
   abbe_view_document out;
-  assert_int_equal(abbe_view_document_copy(&named, &out, NULL), ABBE_OK);
+  OK(abbe_view_document_copy(&named, &out, &error));
   return out;
 }
 
 static void set(abbe_view_document *d, const char *key, const char *value) {
-  assert_int_equal(abbe_view_document_set(d, key, value, NULL), ABBE_OK);
+  OK(abbe_view_document_set(d, key, value, &error));
 }
 
 /* Takes the document, and tells whether the scene was outlined. */
 static bool take(abbe_view_scene *s, const abbe_view_document *d, bool reload) {
   abbe_view_scene_news news = {0};
-  abbe_error error = {0};
   abbe_scene *before = s->now;
-  if (abbe_view_scene_take(s, d, reload, 0, &news, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_view_scene_take(s, d, reload, 0, &news, &error));
   const bool outlined = news.outlined;
   if (outlined) {
     assert_true(news.file_count > 0);
@@ -76,12 +75,12 @@ TEST(what_is_refused_leaves_the_scene) {
   const double power = s.now->light[0].power;
   for (size_t i = 0; i < 3; i++) {
     abbe_view_scene_news news = {0};
-    abbe_error error = {0};
+    abbe_error why = {0};
     abbe_view_document wrong;
-    assert_int_equal(abbe_view_document_copy(&d, &wrong, NULL), ABBE_OK);
+    OK(abbe_view_document_copy(&d, &wrong, &error));
     set(&wrong, bad[i][0], bad[i][1]);
-    assert_int_not_equal(abbe_view_scene_take(&s, &wrong, false, 0, &news, &error), ABBE_OK);
-    assert_true(error.text[0] != '\0' && !news.outlined);
+    assert_int_not_equal(abbe_view_scene_take(&s, &wrong, false, 0, &news, &why), ABBE_OK);
+    assert_true(why.text[0] != '\0' && !news.outlined);
     assert_ptr_equal(s.now->object, objects);
     assert_near(s.now->light[0].power, power, 0);
     assert_false(take(&s, &d, false));

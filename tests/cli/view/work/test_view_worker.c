@@ -4,15 +4,11 @@
 
 #include "cli/view/work/view_worker.h"
 
-#include <math.h>
-#include <string.h>
-
 enum { SIDE = 128 };
 
 static abbe_view_worker *made(void) {
   abbe_view_worker *out = NULL;
-  abbe_error error = {0};
-  if (abbe_view_worker_make(NULL, NULL, NULL, &out, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_view_worker_make(NULL, NULL, NULL, &out, &error));
   return out;
 }
 
@@ -22,10 +18,9 @@ static void give(abbe_view_worker *w, abbe_view_stage stage, bool warms, double 
   const abbe_view_document few = {.path = path, .photons = 96, .map_size = 256, .wavelengths = 9};
   abbe_view_request request = {
       .job = {.stage = stage, .light = stage, .warms = warms}, .width = SIDE, .height = SIDE};
-  assert_int_equal(abbe_view_document_copy(&few, &request.document, NULL), ABBE_OK);
+  OK(abbe_view_document_copy(&few, &request.document, &error));
   snprintf(place, sizeof place, "[%.3f, 0.03, 0.295]", x);
-  assert_int_equal(abbe_view_document_set(&request.document, "lights.lamp.position", place, NULL),
-                   ABBE_OK);
+  OK(abbe_view_document_set(&request.document, "lights.lamp.position", place, &error));
   abbe_view_worker_give(w, &request);
 }
 

@@ -10,7 +10,7 @@ TEST(mist_is_a_fact) {
   abbe_scene scene;
   abbe_plan plan;
   load_text(CAMERA POINT_LIGHT MIST("2") FLOOR BALL("flat"), &scene);
-  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+  OK(abbe_plan_make(&scene, NULL, &plan, &error));
   assert_true(plan.hazy && plan.eye_in_air);
   assert_near(plan.air_haze.scattering, 2, 1e-9);
   assert_near(plan.air_haze.absorption, 0.5, 1e-9);
@@ -25,7 +25,7 @@ TEST(mist_is_a_fact) {
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
-  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+  OK(abbe_plan_make(&scene, NULL, &plan, &error));
   assert_false(plan.hazy);
   assert_null(abbe_plan_find(&plan, ABBE_PASS_EYE_HAZE, 0));
   abbe_plan_free(&plan);
@@ -37,7 +37,7 @@ TEST(a_coloured_medium_is_its_mean) {
   abbe_scene scene;
   abbe_plan plan;
   load_text(CAMERA POINT_LIGHT MIST("[[380, 0], [780, 4]]") FLOOR BALL("flat"), &scene);
-  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+  OK(abbe_plan_make(&scene, NULL, &plan, &error));
   assert_near(plan.air_haze.scattering, 4 * (524 - 380) / 400.0, 0.1);
   assert_true(is_noted(&plan, "taken for white"));
   abbe_plan_free(&plan);
@@ -52,7 +52,7 @@ TEST(murky_glass_attenuates) {
             "- {name: ball, shape: sphere, radius: 0.08, transform: [{translate: [0, 0, 0.2]}], "
             "material: flat, medium: {scattering: 3}}\n",
             &scene);
-  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+  OK(abbe_plan_make(&scene, NULL, &plan, &error));
   assert_true(plan.hazy && plan.absorbing && !plan.tinting);
   assert_near(plan.eye_haze.scattering, 0, 0);
   abbe_plan_free(&plan);
@@ -64,7 +64,7 @@ TEST(blue_water) {
   abbe_scene scene;
   abbe_plan plan;
   load_file(ABBE_SOURCE_DIR "/scenes/water/shafts.yaml", &scene);
-  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+  OK(abbe_plan_make(&scene, NULL, &plan, &error));
   const abbe_plan_haze *h = &plan.eye_haze;
   assert_true(!plan.eye_in_air && h->absorption > 0.05 && h->absorption < 0.2);
   assert_true(h->takes[8] > 1.5 * h->takes[2] && h->scatters[2] > h->scatters[8]);

@@ -5,8 +5,6 @@
 #include "gl/plan/examine/inner_light.h"
 #include "gl/plan/plan.h"
 
-#include <string.h>
-
 static const double share_of_nothing = 1e-12;
 
 /* A solid of planes that lies within 1 m of the origin, and parallel rays onto it along d. */
@@ -139,9 +137,7 @@ TEST(exits_are_as_few_as_do) {
 }
 
 static double planned(const abbe_scene *scene, const abbe_render_desc *asked, abbe_plan *plan) {
-  abbe_error error = {0};
-  abbe_result result = abbe_plan_make(scene, asked, plan, &error);
-  assert_ok(result, &error);
+  OK(abbe_plan_make(scene, asked, plan, &error));
   return abbe_inner_light_plan(scene, asked, plan);
 }
 
@@ -172,14 +168,14 @@ TEST(an_earlier_plan_is_taken_over) {
   abbe_scene scene = {0};
   abbe_plan first, again, moved;
   load_shipped("gem", &scene);
-  assert_int_equal(abbe_plan_make(&scene, NULL, &first, NULL), ABBE_OK);
+  OK(abbe_plan_make(&scene, NULL, &first, &error));
   first.inside.exits++; /* to see who was there */
   scene.camera.eye[0] += 0.01;
-  assert_int_equal(abbe_plan_make_after(&first, &scene, NULL, &again, NULL), ABBE_OK);
+  OK(abbe_plan_make_after(&first, &scene, NULL, &again, &error));
   assert_int_equal(again.desc.exits, first.desc.exits + 1);
   assert_near(again.desc.energy_share, first.desc.energy_share, 0);
   scene.light[0].position[0] += 1e-9;
-  assert_int_equal(abbe_plan_make_after(&first, &scene, NULL, &moved, NULL), ABBE_OK);
+  OK(abbe_plan_make_after(&first, &scene, NULL, &moved, &error));
   assert_int_equal(moved.desc.exits, first.desc.exits);
   abbe_plan_free(&first);
   abbe_plan_free(&again);
@@ -193,16 +189,17 @@ TEST(an_earlier_plan_serves_light_that_moves) {
   abbe_scene scene = {0};
   abbe_plan first, moved, rests, other;
   load_shipped("gem", &scene);
-  assert_int_equal(abbe_plan_make(&scene, &coarse, &first, NULL), ABBE_OK);
+  OK(abbe_plan_make(&scene, &coarse, &first, &error));
   first.inside.exits++;
   scene.light[0].position[0] += 1e-9;
-  assert_int_equal(abbe_plan_make_after(&first, &scene, &coarse, &moved, NULL), ABBE_OK);
+  OK(abbe_plan_make_after(&first, &scene, &coarse, &moved, &error));
   assert_int_equal(moved.desc.exits, first.desc.exits + 1);
-  assert_int_equal(abbe_plan_make_after(&first, &scene, NULL, &rests, NULL), ABBE_OK);
+  OK(abbe_plan_make_after(&first, &scene, NULL, &rests, &error));
   assert_int_equal(rests.desc.exits, first.desc.exits);
   for (size_t i = 0; i < scene.object_count; i++)
-    if (scene.object[i].exact.kind == ABBE_EXACT_CONVEX) scene.object[i].exact.plane[0][3] *= 1 - 1e-9;
-  assert_int_equal(abbe_plan_make_after(&first, &scene, &coarse, &other, NULL), ABBE_OK);
+    if (scene.object[i].exact.kind == ABBE_EXACT_CONVEX)
+      scene.object[i].exact.plane[0][3] *= 1 - 1e-9;
+  OK(abbe_plan_make_after(&first, &scene, &coarse, &other, &error));
   assert_int_equal(other.desc.exits, first.desc.exits);
   abbe_plan_free(&first);
   abbe_plan_free(&moved);

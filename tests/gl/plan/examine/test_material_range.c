@@ -9,16 +9,16 @@ TEST(extremes_are_those_of_the_range) {
   double first, last;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("murk"), &scene); /* n falls; 20 per m at 400, 0 at 500 */
   const abbe_material *murk = scene.object[1].material;
-  assert_int_equal(abbe_material_range_make(murk, 400, 700, &range, NULL), ABBE_OK);
-  assert_int_equal(abbe_material_n(murk, 400, &first, NULL), ABBE_OK);
-  assert_int_equal(abbe_material_n(murk, 700, &last, NULL), ABBE_OK);
+  OK(abbe_material_range_make(murk, 400, 700, &range, &error));
+  OK(abbe_material_n(murk, 400, &first, &error));
+  OK(abbe_material_n(murk, 700, &last, &error));
   assert_true(range.most_n == first && range.least_n == last && last < first);
   assert_near(range.most_per_m, 20, 1e-12);
   assert_near(range.least_per_m, 0, 0);
-  assert_int_equal(abbe_material_n(murk, 550, &first, NULL), ABBE_OK);
+  OK(abbe_material_n(murk, 550, &first, &error));
   assert_near(range.middle_n, first, 0);
   assert_near(range.middle_per_m, 0, 0);
-  assert_int_equal(abbe_material_range_make(murk, 500, 700, &range, NULL), ABBE_OK);
+  OK(abbe_material_range_make(murk, 500, 700, &range, &error));
   assert_near(range.most_per_m, 0, 0);
   abbe_scene_free(&scene);
 }
@@ -26,11 +26,9 @@ TEST(extremes_are_those_of_the_range) {
 TEST(an_unknown_index_is_an_error) {
   abbe_scene scene = {0};
   abbe_material_range range;
-  abbe_error error = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &scene);
   const abbe_material *narrow = scene.object[1].material;
-  assert_int_equal(abbe_material_range_make(narrow, 400, 700, &range, &error), ABBE_OK);
-  assert_int_equal(abbe_material_range_make(narrow, 400, 701, &range, &error), ABBE_OUT_OF_RANGE);
-  assert_contains(error.text, "narrow");
+  OK(abbe_material_range_make(narrow, 400, 700, &range, &error));
+  REFUSED(ABBE_OUT_OF_RANGE, "narrow", abbe_material_range_make(narrow, 400, 701, &range, &error));
   abbe_scene_free(&scene);
 }

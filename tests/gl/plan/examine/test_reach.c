@@ -4,9 +4,6 @@
 
 #include "gl/plan/examine/reach.h"
 
-#include <math.h>
-#include <string.h>
-
 static abbe_object box(double x, double y, double z, double half) {
   abbe_object object = {.min = {x - half, y - half, z - half},
                         .max = {x + half, y + half, z + half}};

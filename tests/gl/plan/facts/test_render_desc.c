@@ -5,8 +5,7 @@
 
 static abbe_render_desc resolve(const abbe_render_desc *desc) {
   abbe_render_desc out;
-  abbe_error error = {0};
-  if (abbe_render_desc_resolve(desc, 320, 200, &out, &error) != ABBE_OK) fail_msg("%s", error.text);
+  OK(abbe_render_desc_resolve(desc, 320, 200, &out, &error));
   return out;
 }
 
@@ -131,10 +130,9 @@ TEST(limits_are_kept) {
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     abbe_render_desc out;
-    abbe_error error = {0};
-    assert_int_equal(abbe_render_desc_resolve(&rows[i].desc, 320, 200, &out, &error),
-                     ABBE_INVALID_ARGUMENT);
-    assert_int_equal(error.code, ABBE_INVALID_ARGUMENT);
-    assert_contains(error.text, rows[i].part);
+    REFUSED(ABBE_INVALID_ARGUMENT, "",
+            abbe_render_desc_resolve(&rows[i].desc, 320, 200, &out, &error));
+    assert_int_equal(last_error.code, ABBE_INVALID_ARGUMENT);
+    assert_contains(last_error.text, rows[i].part);
   }
 }

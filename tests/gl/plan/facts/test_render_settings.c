@@ -24,10 +24,8 @@ TEST(a_request_is_held_to_every_limit) {
     const abbe_render_setting *s = &abbe_render_settings[i];
     if (s->kind != ABBE_SETTING_COUNT || s->what == NULL) continue;
     abbe_render_desc desc = {0}, out;
-    abbe_error error = {0};
     *(size_t *)abbe_render_setting_in(s, &desc) = (size_t)s->most + 1;
-    assert_int_equal(abbe_render_desc_resolve(&desc, 8, 8, &out, &error), ABBE_INVALID_ARGUMENT);
-    assert_contains(error.text, s->what);
+    REFUSED(ABBE_INVALID_ARGUMENT, s->what, abbe_render_desc_resolve(&desc, 8, 8, &out, &error));
     held++;
   }
   assert_int_equal(held, 18);

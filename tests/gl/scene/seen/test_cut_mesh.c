@@ -1,18 +1,15 @@
-/* What a view sees of a mesh stays: cut where depth grows sixteenfold, in parts that share corners. */
+/* What a view sees of a mesh stays: cut where depth grows sixteenfold, in parts that share corners.
+ */
 #include "tests/check.h"
 
 #include "base/maths.h"
 #include "gl/scene/seen/seen_meshes.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 static const double growth = 16;
 
 /* A square of that side in z = 0, of two faces. */
 static void make_square(double side, abbe_mesh *out) {
-  assert_int_equal(abbe_mesh_make(4, 2, true, out, NULL), ABBE_OK);
+  OK(abbe_mesh_make(4, 2, true, out, &error));
   static const uint32_t face[2][3] = {{0, 1, 2}, {0, 2, 3}};
   memcpy(out->face, face, sizeof face);
   for (int i = 0; i < 4; i++) {
@@ -42,7 +39,8 @@ static double depth_of(const abbe_view *v, const double p[3]) {
   return abbe_vector_dot(from, v->forward);
 }
 
-/* How many faces of the mesh hold the place, and the coordinates that the last of them has there. */
+/* How many faces of the mesh hold the place, and the coordinates that the last of them has there.
+ */
 static int held(const abbe_mesh *m, const double at[3], double uv[2]) {
   int count = 0;
   for (size_t i = 0; i < m->face_count; i++) {
@@ -69,7 +67,7 @@ TEST(what_is_seen_stays) {
     uint32_t *face_of;
     make_square(side, &square);
     assert_true(abbe_cut_mesh_needed(&square, min, max, &view));
-    assert_int_equal(abbe_cut_mesh_make(&square, &view, &cut, &face_of, NULL), ABBE_OK);
+    OK(abbe_cut_mesh_make(&square, &view, &cut, &face_of, &error));
     for (size_t i = 0; i < cut.face_count; i++) {
       double least = INFINITY, most = -INFINITY;
       assert_true(face_of[i] < 2);
@@ -105,7 +103,7 @@ TEST(parts_share_their_corners) {
   uint32_t *face_of;
   size_t alone = 0;
   make_square(1e5, &square);
-  assert_int_equal(abbe_cut_mesh_make(&square, &view, &cut, &face_of, NULL), ABBE_OK);
+  OK(abbe_cut_mesh_make(&square, &view, &cut, &face_of, &error));
   for (size_t i = 0; i < 3 * cut.face_count; i++) {
     const double *a = cut.position[cut.face[i / 3][i % 3]];
     const double *b = cut.position[cut.face[i / 3][(i + 1) % 3]];

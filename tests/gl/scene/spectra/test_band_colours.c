@@ -38,9 +38,8 @@ static void make(const char *objects, size_t count, fixture *f) {
   f->band = calloc(f->surfaces * SETS * f->count, sizeof *f->band);
   f->texel = calloc(abbe_camera_bands_texels(&f->plan), sizeof *f->texel);
   assert_true(f->band != NULL && f->texel != NULL);
-  assert_int_equal(abbe_spectral_tables_make(&f->scene, &f->plan, &f->tables, NULL), ABBE_OK);
-  assert_int_equal(abbe_camera_bands_fill(&f->scene, &f->plan, &f->tables, f->band, f->texel, NULL),
-                   ABBE_OK);
+  OK(abbe_spectral_tables_make(&f->scene, &f->plan, &f->tables, &error));
+  OK(abbe_camera_bands_fill(&f->scene, &f->plan, &f->tables, f->band, f->texel, &error));
 }
 
 static void done(fixture *f) {
@@ -85,7 +84,7 @@ static double left_at(const fixture *f, const passage *p, double lambda_nm) {
     if (!f->plan.mirror[r]) {
       left *= exp(-p->by[r] * abbe_material_attenuation(o->material, lambda_nm));
     } else {
-      assert_int_equal(abbe_material_nk(o->conductor, lambda_nm, &n, &k, NULL), ABBE_OK);
+      OK(abbe_material_nk(o->conductor, lambda_nm, &n, &k, &error));
       left *= pow(abbe_optics_fresnel_conductor(1, n, k), p->by[r]);
     }
   }

@@ -24,10 +24,8 @@ static void make(const char *text, fixture *f) {
   memset(f->texel, 0, sizeof f->texel);
   load_text(text, &f->scene);
   plan_scene(&f->scene, &desc, &f->plan);
-  assert_int_equal(abbe_spectral_tables_make(&f->scene, &f->plan, &f->tables, NULL), ABBE_OK);
-  assert_int_equal(
-      abbe_camera_bands_fill(&f->scene, &f->plan, &f->tables, f->band[0][0], f->texel, NULL),
-      ABBE_OK);
+  OK(abbe_spectral_tables_make(&f->scene, &f->plan, &f->tables, &error));
+  OK(abbe_camera_bands_fill(&f->scene, &f->plan, &f->tables, f->band[0][0], f->texel, &error));
 }
 
 static void done(fixture *f) {
@@ -68,7 +66,7 @@ TEST(a_colour_has_a_spectrum_of_its_own) {
   abbe_weights_range light;
   double xyz[3] = {0}, all[3] = {0};
   const abbe_illuminant *illuminant = abbe_scene_illuminant(&f.scene);
-  assert_int_equal(abbe_upsampling_make(illuminant, 400, 700, &lift, NULL), ABBE_OK);
+  OK(abbe_upsampling_make(illuminant, 400, 700, &lift, &error));
   abbe_weights_range_make(illuminant, 400, 700, &light);
   for (int c = 0; c < 3; c++)
     for (int k = 0; k < 3; k++) xyz[c] += lift.to_xyz[3 * c + k] * red[k];
@@ -97,7 +95,7 @@ TEST(a_colour_has_a_spectrum_of_its_own) {
 static double index_at(const fixture *f, double lambda_nm) {
   double n = 0;
   const abbe_material *material = f->scene.object[f->plan.refractor_object[0]].material;
-  assert_int_equal(abbe_material_n(material, lambda_nm, &n, NULL), ABBE_OK);
+  OK(abbe_material_n(material, lambda_nm, &n, &error));
   return n;
 }
 

@@ -6,8 +6,6 @@
 
 #include "scenes/import/mesh/mesh_reading.h"
 
-static abbe_error error;
-
 typedef abbe_result test_reader(abbe_mesh_reading *r, const char *data, size_t size,
                                 abbe_error *error);
 
@@ -20,10 +18,10 @@ static inline abbe_result test_read(test_reader *read, const char *path, const c
   memcpy(whole, data, size);
   whole[size] = '\0';
   memset(out, 0, sizeof *out);
-  error.text[0] = '\0';
-  abbe_result result = read(&r, whole, size, &error);
+  last_error.text[0] = '\0';
+  abbe_result result = read(&r, whole, size, &last_error);
   free(whole);
-  if (result == ABBE_OK) result = abbe_mesh_reading_finish(&r, out, &error);
+  if (result == ABBE_OK) result = abbe_mesh_reading_finish(&r, out, &last_error);
   abbe_mesh_reading_free(&r);
   return result;
 }
@@ -33,7 +31,7 @@ static inline abbe_result test_read(test_reader *read, const char *path, const c
 static inline void assert_tetrahedron(abbe_mesh *m, double size, double shift, double tolerance) {
   abbe_mesh_report r;
   assert_int_equal(m->face_count, 4);
-  assert_int_equal(abbe_mesh_check(m, &r, NULL), ABBE_OK);
+  OK(abbe_mesh_check(m, &r, &error));
   assert_int_equal(r.open_edges + r.flipped_edges + r.crowded_edges, 0);
   assert_near(r.volume, size * size * size, tolerance);
   for (int k = 0; k < 3; k++) {
@@ -47,9 +45,9 @@ static inline void assert_refused(test_reader *read, const char *path, const cha
                                   abbe_result code, const char *words) {
   abbe_mesh m;
   const abbe_result result = test_read(read, path, NULL, text, strlen(text), &m);
-  if (result != code) fail_msg("%d (%s) for: %s", result, error.text, text);
-  assert_contains(error.text, path);
-  assert_contains(error.text, words);
+  if (result != code) fail_msg("%d (%s) for: %s", result, last_error.text, text);
+  assert_contains(last_error.text, path);
+  assert_contains(last_error.text, words);
   assert_null(m.position);
 }
 

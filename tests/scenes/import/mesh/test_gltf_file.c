@@ -123,7 +123,7 @@ static abbe_result read_wish(const wish *w, abbe_mesh *out) {
 
 static void assert_reads(const wish *w, double size, double shift, double tolerance) {
   abbe_mesh m;
-  if (read_wish(w, &m) != ABBE_OK) fail_msg("%s", error.text);
+  OK(read_wish(w, &m));
   assert_tetrahedron(&m, size, shift, tolerance);
 }
 
@@ -133,8 +133,8 @@ TEST(meshes_stand) {
   abbe_mesh m;
   abbe_mesh_report r;
   const size_t size = make(&(wish){.type = FLOAT}, data);
-  assert_int_equal(test_read(abbe_gltf_read, "t.gltf", NULL, data, size, &m), ABBE_OK);
-  assert_int_equal(abbe_mesh_check(&m, &r, NULL), ABBE_OK);
+  OK(test_read(abbe_gltf_read, "t.gltf", NULL, data, size, &m));
+  OK(abbe_mesh_check(&m, &r, &error));
   assert_near(r.volume, 1, 1e-12); /* not mirrored */
   static const double min[] = {0, -3, 0}, max[] = {1, 0, 2};
   for (int k = 0; k < 3; k++) {
@@ -190,16 +190,14 @@ TEST(nodes_place_meshes) {
   /* a mirror turns faces, so that they look outwards again */
   abbe_mesh m;
   abbe_mesh_report r;
-  assert_int_equal(read_wish(&(wish){.node = ",\"scale\":[-1,1,1]"}, &m), ABBE_OK);
-  assert_int_equal(abbe_mesh_check(&m, &r, NULL), ABBE_OK);
+  OK(read_wish(&(wish){.node = ",\"scale\":[-1,1,1]"}, &m));
+  OK(abbe_mesh_check(&m, &r, &error));
   assert_near(r.volume, 1, 1e-12);
   assert_near(r.min[0], -1, 0);
   abbe_mesh_free(&m);
   /* a quarter turn about z takes x to y */
-  assert_int_equal(
-      read_wish(&(wish){.node = ",\"rotation\":[0,0,0.7071067811865476,0.7071067811865476]"}, &m),
-      ABBE_OK);
-  assert_int_equal(abbe_mesh_check(&m, &r, NULL), ABBE_OK);
+  OK(read_wish(&(wish){.node = ",\"rotation\":[0,0,0.7071067811865476,0.7071067811865476]"}, &m));
+  OK(abbe_mesh_check(&m, &r, &error));
   assert_near(r.min[0], -2, 1e-12);
   assert_near(r.max[1], 1, 1e-12);
   abbe_mesh_free(&m);
@@ -228,9 +226,9 @@ TEST(instances_are_read) {
       .size = sizeof bytes};
   abbe_mesh m;
   abbe_mesh_report r;
-  if (read_wish(&w, &m) != ABBE_OK) fail_msg("%s", error.text);
+  OK(read_wish(&w, &m));
   assert_int_equal(m.face_count, 8);
-  assert_int_equal(abbe_mesh_check(&m, &r, NULL), ABBE_OK);
+  OK(abbe_mesh_check(&m, &r, &error));
   assert_near(r.volume, 1 + 8, 1e-9);
   assert_int_equal(r.shells, 2);
   assert_near(r.max[0], 10, 1e-9);
@@ -260,8 +258,8 @@ TEST(sparse_numbers_are_read) {
   assert_true(sparse != NULL && end != NULL);
   memmove(sparse, sparse + 1, (size_t)(end - sparse) - 1);
   end[-1] = '}';
-  if (read_turned("t.gltf", data, size, &m) != ABBE_OK) fail_msg("%s", error.text);
-  assert_int_equal(abbe_mesh_check(&m, &r, NULL), ABBE_OK);
+  OK(read_turned("t.gltf", data, size, &m));
+  OK(abbe_mesh_check(&m, &r, &error));
   assert_near(r.volume, 2, 1e-12);
   abbe_mesh_free(&m);
 }
@@ -278,14 +276,14 @@ TEST(compressed_meshes_are_refused) {
   assert_non_null(view);
   memset(view, ' ', 15);
   assert_int_equal(read_turned("t.gltf", data, size, &m), ABBE_UNSUPPORTED);
-  assert_contains(error.text, "compressed by KHR_draco_mesh_compression");
+  assert_contains(last_error.text, "compressed by KHR_draco_mesh_compression");
   const size_t whole = make(&(wish){.binary = false}, data);
   data[whole] = '\0';
   char *uri = strstr(data, ",\"uri\"");
   assert_non_null(uri);
   strcpy(uri, ",\"extensions\":{\"EXT_meshopt_compression\":{\"fallback\":true}}}]}");
   assert_int_equal(read_turned("t.gltf", data, strlen(data), &m), ABBE_UNSUPPORTED);
-  assert_contains(error.text, "meshopt_compression");
+  assert_contains(last_error.text, "meshopt_compression");
 }
 
 /* Strips turn every second triangle; a strip round a tetrahedron closes it. */
@@ -310,8 +308,8 @@ TEST(strips_and_fans_are_read) {
     char *first = strstr(data, "\"indices\":0,"); /* one key of the name alone */
     assert_non_null(first);
     memset(first, ' ', 12);
-    if (read_turned("t.gltf", data, size, &m) != ABBE_OK) fail_msg("%s", error.text);
-    assert_int_equal(abbe_mesh_check(&m, &r, NULL), ABBE_OK);
+    OK(read_turned("t.gltf", data, size, &m));
+    OK(abbe_mesh_check(&m, &r, &error));
     assert_int_equal(r.flipped_edges + r.crowded_edges, 0);
     assert_int_equal(m.face_count, mode == 5 ? 4 : 3);
     assert_int_equal(r.open_edges, mode == 5 ? 0 : 3);
@@ -332,8 +330,7 @@ TEST(names_of_buffers_are_decoded) {
   fclose(file);
   abbe_mesh m;
   char *others = NULL;
-  if (abbe_mesh_load("t_names.gltf", ABBE_NORMALS_FLAT, &m, &others, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_mesh_load("t_names.gltf", ABBE_NORMALS_FLAT, &m, &others, &error));
   assert_string_equal(others, "t gltf%1.bin");
   assert_string_equal(others + strlen(others) + 1, "");
   free(others);
@@ -382,9 +379,9 @@ TEST(what_is_not_read_is_named) {
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
     abbe_mesh m;
     const abbe_result result = read_wish(&files[i].w, &m);
-    if (result != files[i].code) fail_msg("%zu: %d (%s)", i, result, error.text);
-    assert_contains(error.text, files[i].words);
-    assert_contains(error.text, "t");
+    if (result != files[i].code) fail_msg("%zu: %d (%s)", i, result, last_error.text);
+    assert_contains(last_error.text, files[i].words);
+    assert_contains(last_error.text, "t");
   }
   unlink("t gltf%1.bin");
   /* targets of no weight change nothing */
@@ -419,6 +416,6 @@ TEST(work_has_an_end) {
     for (int k = 0; k < files[i].nodes; k++) at += sprintf(at, ",{\"mesh\":0}");
     sprintf(at, "]}");
     assert_int_equal(read_turned("t.gltf", text, strlen(text), &m), ABBE_UNSUPPORTED);
-    assert_contains(error.text, "make more than the");
+    assert_contains(last_error.text, "make more than the");
   }
 }

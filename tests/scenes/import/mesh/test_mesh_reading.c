@@ -71,16 +71,14 @@ static void check(const test_polygon *p, const double frame[9], int digits, doub
     abbe_mesh_report r;
     char *what = NULL;
     write_prism(p, frame, digits, obj, &t);
-    if (test_read(obj ? abbe_obj_read : abbe_ply_read, "t", NULL, t.data, t.size, &m) != ABBE_OK)
-      fail_msg("%s", error.text);
+    OK(test_read(obj ? abbe_obj_read : abbe_ply_read, "t", NULL, t.data, t.size, &m));
     assert_int_equal(m.face_count, 4 * p->count - 4);
-    assert_int_equal(abbe_mesh_check(&m, &r, NULL), ABBE_OK);
+    OK(abbe_mesh_check(&m, &r, &error));
     assert_int_equal(r.open_edges + r.crowded_edges + r.flipped_edges + r.degenerate_faces, 0);
     assert_near(r.volume, p->area, tolerance * p->area);
     const double area = 2 * p->area + length_around(p);
     assert_near(r.area, area, tolerance * area);
-    if (abbe_mesh_fix(&m, ABBE_NORMALS_FLAT, false, NULL, &what, &error) != ABBE_OK)
-      fail_msg("%s", error.text);
+    OK(abbe_mesh_fix(&m, ABBE_NORMALS_FLAT, false, NULL, &what, &error));
     if (what != NULL) fail_msg("%s", what);
     abbe_mesh_free(&m);
   }
@@ -131,9 +129,8 @@ TEST(faces_have_holes) {
       corner[i] = i;
     }
     add_polygon(&t, true, corner, p.count);
-    if (test_read(abbe_obj_read, "t", NULL, t.data, t.size, &m) != ABBE_OK)
-      fail_msg("%s", error.text);
-    assert_int_equal(abbe_mesh_check(&m, &r, NULL), ABBE_OK);
+    OK(test_read(abbe_obj_read, "t", NULL, t.data, t.size, &m));
+    OK(abbe_mesh_check(&m, &r, &error));
     assert_near(r.area, 100 - holes, 1e-9);
     assert_int_equal(r.degenerate_faces + r.crowded_edges + r.flipped_edges, 0);
     abbe_mesh_free(&m);

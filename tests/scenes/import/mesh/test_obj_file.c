@@ -14,8 +14,7 @@ TEST(tetrahedra_are_read) {
   };
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     abbe_mesh m;
-    if (test_read(abbe_obj_read, "t.obj", NULL, texts[i], strlen(texts[i]), &m) != ABBE_OK)
-      fail_msg("%s", error.text);
+    OK(test_read(abbe_obj_read, "t.obj", NULL, texts[i], strlen(texts[i]), &m));
     assert_false(m.given_normals);
     assert_tetrahedron(&m, 1, 0, 0);
   }
@@ -25,8 +24,7 @@ TEST(corners_have_their_own_uv_and_normals) {
   static const char text[] = POINTS "vt 0.25 0.75\nvt 1 0 0\nvn 0 0 1\nvn 0 0 -2\n"
                                     "f 1/1/1 2/2/2 3/-1/-2\nf 4//1 2/1/2 1/2/1\n";
   abbe_mesh m;
-  if (test_read(abbe_obj_read, "t.obj", NULL, text, strlen(text), &m) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(test_read(abbe_obj_read, "t.obj", NULL, text, strlen(text), &m));
   assert_true(m.given_normals);
   assert_int_equal(m.face_count, 2);
   static const double uv[6][2] = {{0.25, 0.75}, {1, 0}, {1, 0}, {0, 0}, {0.25, 0.75}, {1, 0}};
@@ -44,8 +42,7 @@ TEST(corners_have_their_own_uv_and_normals) {
 TEST(what_is_not_there_is_not_taken) {
   static const char text[] = POINTS "f 1/1/1 3/2/1 2/3/1\nf 1/1/9 2 4\nf 1 4 3\nf 2 3 4\n";
   abbe_mesh m;
-  if (test_read(abbe_obj_read, "t.obj", NULL, text, strlen(text), &m) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(test_read(abbe_obj_read, "t.obj", NULL, text, strlen(text), &m));
   assert_false(m.given_normals);
   assert_null(m.uv);
   assert_tetrahedron(&m, 1, 0, 0);
@@ -55,13 +52,12 @@ TEST(a_material_s_faces_are_read_alone) {
   static const char text[] =
       POINTS "f 1 2 3\nusemtl clear glass \nf 1 2 3 4\nusemtl clear\nf 1 2 3\n";
   abbe_mesh m;
-  assert_int_equal(test_read(abbe_obj_read, "t.obj", "clear glass", text, strlen(text), &m),
-                   ABBE_OK);
+  OK(test_read(abbe_obj_read, "t.obj", "clear glass", text, strlen(text), &m));
   assert_int_equal(m.face_count, 2);
   abbe_mesh_free(&m);
   assert_int_equal(test_read(abbe_obj_read, "t.obj", "stone", text, strlen(text), &m),
                    ABBE_GEOMETRY);
-  assert_contains(error.text, "no triangle is of a material called 'stone'");
+  assert_contains(last_error.text, "no triangle is of a material called 'stone'");
 }
 
 /* Names may have blanks, and there may be several. */
@@ -75,8 +71,7 @@ TEST(files_of_materials_are_known) {
   fclose(file);
   abbe_mesh m;
   char *others = NULL;
-  if (abbe_mesh_load("t_names.obj", ABBE_NORMALS_FLAT, &m, &others, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  OK(abbe_mesh_load("t_names.obj", ABBE_NORMALS_FLAT, &m, &others, &error));
   const char *at = others;
   for (size_t i = 0; i < sizeof names / sizeof *names; at += strlen(at) + 1, i++)
     assert_string_equal(at, names[i]);

@@ -2,8 +2,6 @@
 
 #include "base/maths.h"
 
-#include <stdbool.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #define HEADER(format)                                                                             \
@@ -27,7 +25,7 @@ static void assert_is_the_tetrahedron(abbe_mesh *m) {
   assert_int_equal(m->face_count, 4);
   for (int v = 0; v < CORNERS; v++)
     for (int k = 0; k < 3; k++) assert_near(m->position[v][k], corner[v][k], 0);
-  assert_int_equal(abbe_mesh_check(m, &r, NULL), ABBE_OK);
+  OK(abbe_mesh_check(m, &r, &error));
   assert_int_equal(r.open_edges + r.flipped_edges + r.crowded_edges, 0);
   assert_near(r.volume, 1.0 / 6, 1e-15);
   abbe_mesh_free(m);
@@ -43,7 +41,7 @@ TEST(text_is_read) {
   strcat(text, "3 7 8\r\n9\n6");
   for (int i = 0; i < LENGTH; i++)
     snprintf(text + strlen(text), sizeof text - strlen(text), " %d", strip[i]);
-  if (parse(text, strlen(text), &m) != ABBE_OK) fail_msg("%s", error.text);
+  OK(parse(text, strlen(text), &m));
   assert_is_the_tetrahedron(&m);
 }
 
@@ -81,11 +79,11 @@ TEST(both_orders_are_read_and_no_part_of_them) {
     char data[1024];
     abbe_mesh m;
     const size_t size = binary(big, data);
-    if (parse(data, size, &m) != ABBE_OK) fail_msg("%s", error.text);
+    OK(parse(data, size, &m));
     assert_is_the_tetrahedron(&m);
     for (size_t cut = 0; cut < size; cut++) {
       assert_int_equal(parse(data, cut, &m), ABBE_PARSE);
-      assert_contains(error.text, "t.ply: ");
+      assert_contains(last_error.text, "t.ply: ");
       assert_null(m.face);
     }
   }
@@ -105,7 +103,7 @@ TEST(strips_alternate_and_begin_anew) {
     abbe_mesh m;
     char text[512];
     snprintf(text, sizeof text, PLAIN "%s", strips[i]);
-    if (parse(text, strlen(text), &m) != ABBE_OK) fail_msg("%s", error.text);
+    OK(parse(text, strlen(text), &m));
     assert_int_equal(m.face_count, count[i]);
     for (size_t f = 0; f < (i < 2 ? m.face_count : 1); f++) {
       double n[3];
@@ -145,7 +143,7 @@ TEST(texts_of_faces_are_read) {
   };
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     abbe_mesh m;
-    if (parse(texts[i], strlen(texts[i]), &m) != ABBE_OK) fail_msg("%s", error.text);
+    OK(parse(texts[i], strlen(texts[i]), &m));
     assert_tetrahedron(&m, 1, 0, 0);
   }
 }
@@ -174,7 +172,7 @@ TEST(a_body_may_begin_with_the_end_of_a_line) {
       const size_t head = strlen(data);
       /* after a lone return, a line feed is the body's own */
       memcpy(data + head, body, sizeof body);
-      if (parse(data, head + sizeof body, &m) != ABBE_OK) fail_msg("%s", error.text);
+      OK(parse(data, head + sizeof body, &m));
       assert_near(m.position[0][0], first, 0);
       abbe_mesh_free(&m);
     }
@@ -192,7 +190,7 @@ TEST(vertices_and_corners_have_uv_and_normals) {
   for (int i = 0; i < 2; i++) {
     abbe_mesh m;
     const char *text = i == 0 ? vertices : corners;
-    if (parse(text, strlen(text), &m) != ABBE_OK) fail_msg("%s", error.text);
+    OK(parse(text, strlen(text), &m));
     assert_true(m.given_normals == (i == 0));
     if (i == 0) assert_near(m.normal[m.face[0][2]][2], 3, 0);
     assert_near(m.uv[m.face[0][0]][0], 0.5, 0);
@@ -217,13 +215,13 @@ TEST(texture_coordinates_stay_with_their_face) {
                     "end_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
                     "4 1 2 3 0 8 0 0 1 0 1 1 0 1\n3 1 2 3 0\n";
   abbe_mesh m;
-  if (parse(before, strlen(before), &m) != ABBE_OK) fail_msg("%s", error.text);
+  OK(parse(before, strlen(before), &m));
   assert_int_equal(m.face_count, 1);
   assert_near(m.uv[m.face[0][0]][0], 0.5, 0);
   assert_near(m.uv[m.face[0][1]][0], 1, 0);
   assert_near(m.uv[m.face[0][2]][1], 1, 0);
   abbe_mesh_free(&m);
-  if (parse(none, strlen(none), &m) != ABBE_OK) fail_msg("%s", error.text);
+  OK(parse(none, strlen(none), &m));
   assert_int_equal(m.face_count, 3);
   assert_near(m.uv[m.face[0][1]][0], 1, 0);
   for (int k = 0; k < 3; k++)
@@ -270,7 +268,7 @@ TEST(what_is_wrong_is_said) {
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
     abbe_mesh m;
     assert_int_equal(parse(files[i].text, strlen(files[i].text), &m), files[i].result);
-    assert_contains(error.text, files[i].part);
+    assert_contains(last_error.text, files[i].part);
     assert_null(m.position);
   }
 }
@@ -283,9 +281,10 @@ TEST(a_mesh_is_loaded_from_them) {
   assert_non_null(f);
   assert_int_equal(fwrite(data, 1, size, f), size);
   fclose(f);
-  const abbe_result result = abbe_mesh_load("t_strips.ply", ABBE_NORMALS_FLAT, &m, NULL, &error);
+  const abbe_result result =
+      abbe_mesh_load("t_strips.ply", ABBE_NORMALS_FLAT, &m, NULL, &last_error);
   unlink("t_strips.ply");
-  if (result != ABBE_OK) fail_msg("%s", error.text);
+  if (result != ABBE_OK) fail_msg("%s", last_error.text);
   assert_int_equal(m.face_count, 4);
   assert_int_equal(m.vertex_count, 12);
   abbe_mesh_free(&m);

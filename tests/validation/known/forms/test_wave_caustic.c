@@ -1,9 +1,8 @@
 /* Light under a sinusoidal surface against what is known of it in closed form. */
+#include "base/maths.h"
 #include "validation/known/forms/wave_caustic.h"
 
 #include "tests/check.h"
-
-#define PI 3.14159265358979323846
 
 static const abbe_wave_caustic low = {
     .amplitude = 0.0002, .wavelength = 0.1, .depth = 1, .index = 4.0 / 3};
@@ -11,7 +10,7 @@ static const abbe_wave_caustic low = {
 TEST(rays_meet_under_the_crest) {
   abbe_wave_caustic w = low;
   w.depth = abbe_wave_caustic_focus(&w);
-  const double k = 2 * PI / w.wavelength;
+  const double k = 2 * ABBE_PI / w.wavelength;
   assert_near(w.depth, 4 / (w.amplitude * k * k), 1e-12);
   for (int i = 1; i < 5; i++)
     assert_near(abbe_wave_caustic_landing(&w, 1e-4 * i, NULL), 0, 1e-3 * 1e-4 * i);
@@ -20,7 +19,7 @@ TEST(rays_meet_under_the_crest) {
 /* Where the slope is small: E / T = 1 / |1 - (D / f) cos kx| at the place that x comes to. */
 TEST(a_low_wave_is_paraxial) {
   abbe_wave_caustic w = low;
-  const double through = 1 - pow(1.0 / 7, 2), k = 2 * PI / w.wavelength;
+  const double through = 1 - pow(1.0 / 7, 2), k = 2 * ABBE_PI / w.wavelength;
   w.depth = 0.4 * abbe_wave_caustic_focus(&w);
   for (int i = 0; i < 8; i++) {
     const double x = w.wavelength * (i + 0.5) / 16, at = abbe_wave_caustic_landing(&w, x, NULL);

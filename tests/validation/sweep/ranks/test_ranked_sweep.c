@@ -39,9 +39,9 @@ static void prepare(asked *a) {
   size_t refused;
   *a = (asked){0};
   load_text(SCENE, &a->scene);
-  assert_ok(abbe_image_make(16, 16, 3, names, &image, &a->error), &a->error);
+  OK(abbe_image_make(16, 16, 3, names, &image, &error));
   for (size_t i = 0; i < 16 * 16 * 3; i++) image.data[i] = 0.01f;
-  assert_ok(abbe_exr_write(picture, &image, &a->error), &a->error);
+  OK(abbe_exr_write(picture, &image, &error));
   abbe_image_free(&image);
   a->q = (abbe_sweep_request){.program = "abbe test",
                               .scene_path = "ball.yaml",
@@ -51,9 +51,8 @@ static void prepare(asked *a) {
                               .error = ABBE_SWEEP_PICTURE_DE,
                               .progress = tick,
                               .user = a};
-  assert_ok(abbe_sweep_grid_expand(&a->scene, &grid, 1, &a->setting, &a->q.setting_count, &refused,
-                                   NULL, &a->error),
-            &a->error);
+  OK(abbe_sweep_grid_expand(&a->scene, &grid, 1, &a->setting, &a->q.setting_count, &refused, NULL,
+                            &error));
   a->q.setting = a->setting;
   assert_int_equal(a->q.setting_count, 3);
 }
@@ -61,15 +60,14 @@ static void prepare(asked *a) {
 /* Of a rank that was killed after its one row: as if it had been the last of three. */
 static void leave_a_row(const asked *a, double time_ms) {
   abbe_sweep_table t = {0};
-  abbe_error error = {0};
   char path[128];
-  assert_ok(abbe_sweep_table_load(one, &t, &error), &error);
+  OK(abbe_sweep_table_load(one, &t, &error));
   t.row[0] = t.row[2];
   t.row[0].number[ABBE_SWEEP_FRAME_MS] = time_ms;
   t.count = 1;
   assert_true(abbe_sweep_setting_same(&t.row[0].setting, &a->setting[2]));
   snprintf(path, sizeof path, "%s.2", table);
-  assert_ok(abbe_sweep_table_save(&t, path, &error), &error);
+  OK(abbe_sweep_table_save(&t, path, &error));
   abbe_sweep_table_free(&t);
 }
 
@@ -113,13 +111,13 @@ TEST(ranks_measure_what_one_does) {
   abbe_result other;
   abbe_sweep_table whole = {0};
   prepare(&a);
-  assert_ok(forked_run(2, work_alone, &a, &other), &a.error);
+  OK(forked_run(2, work_alone, &a, &other));
   assert_int_equal(other, ABBE_OK);
   leave_a_row(&a, 12345);
   a.q.table = table;
-  assert_ok(forked_run(2, work, &a, &other), &a.error);
+  OK(forked_run(2, work, &a, &other));
   assert_int_equal(other, ABBE_OK);
-  assert_ok(abbe_sweep_table_load(one, &whole, &a.error), &a.error);
+  OK(abbe_sweep_table_load(one, &whole, &error));
   assert_int_equal(a.out.count, 3);
   for (size_t i = 0; i < 3; i++) {
     assert_true(abbe_sweep_setting_same(&a.out.row[i].setting, &a.setting[i]));
@@ -129,7 +127,7 @@ TEST(ranks_measure_what_one_does) {
   }
   assert_near(a.out.row[2].number[ABBE_SWEEP_FRAME_MS], 12345, 0); /* was not measured again */
   size_t *rank, count;
-  assert_ok(abbe_rank_files_find(table, &rank, &count, &a.error), &a.error);
+  OK(abbe_rank_files_find(table, &rank, &count, &error));
   assert_int_equal(count, 0);
   abbe_sweep_table_free(&whole);
   abbe_sweep_table_free(&a.out);
@@ -138,7 +136,7 @@ TEST(ranks_measure_what_one_does) {
   a.q.program = "abbe other";
   assert_int_equal(forked_run(1, work, &a, NULL), ABBE_INVALID_ARGUMENT);
   assert_contains(a.error.text, "were measured with the program 'abbe test'");
-  assert_ok(abbe_rank_files_find(table, &rank, &count, &a.error), &a.error);
+  OK(abbe_rank_files_find(table, &rank, &count, &error));
   assert_int_equal(count, 0);
   free(a.setting);
   abbe_scene_free(&a.scene);

@@ -13,7 +13,7 @@ TEST(places) {
   abbe_light_nodes nodes;
   const double to_light[3] = {0.36, 0.48, 0.8};
   double node[2 * PLACES][3], (*middle)[3] = node + PLACES;
-  assert_int_equal(abbe_light_nodes_make(42, to_light, &nodes, NULL), ABBE_OK);
+  OK(abbe_light_nodes_make(42, to_light, &nodes, &error));
   assert_true(abbe_node_errors_places(&nodes, to_light, node));
   abbe_node_blend nearest, three;
   abbe_light_nodes_nearest(&nodes, to_light, &nearest);
@@ -36,7 +36,7 @@ TEST(places) {
                 abbe_vector_dot(middle[k], to_light) <= abbe_vector_dot(middle[k - 1], to_light));
   }
   abbe_light_nodes_free(&nodes);
-  assert_int_equal(abbe_light_nodes_make(1, to_light, &nodes, NULL), ABBE_OK);
+  OK(abbe_light_nodes_make(1, to_light, &nodes, &error));
   assert_false(abbe_node_errors_places(&nodes, to_light, node));
   abbe_light_nodes_free(&nodes);
 }
@@ -60,14 +60,13 @@ TEST(photons_know_no_nodes) {
   abbe_scene scene = {0};
   abbe_image before, after;
   abbe_light_nodes nodes;
-  abbe_error error = {0};
   const double up[3] = {0, 0, 1};
   abbe_node_errors known = {0};
   load_text(CAMERA SUN FLOOR
             "- {name: orb, shape: sphere, radius: 0.1, levels: 3, material: crown, transform: "
             "[{translate: [0, 0, 0.15]}]}\n",
             &scene);
-  assert_int_equal(abbe_light_nodes_make(162, up, &nodes, NULL), ABBE_OK);
+  OK(abbe_light_nodes_make(162, up, &nodes, &error));
   const abbe_image size = {.width = 24, .height = 24};
   const abbe_sweep sweep = {.context = context, .scene = &scene, .picture = &size};
   const abbe_render_desc desc = {.width = 24, .height = 24, .photons = 48, .aovs = true};
@@ -75,9 +74,7 @@ TEST(photons_know_no_nodes) {
   double at_node, between;
   draw_frame(renderer);
   read_picture(renderer, false, &before);
-  assert_ok(
-      abbe_node_errors_measure(&known, &sweep, &nodes, &desc, renderer, &at_node, &between, &error),
-      &error);
+  OK(abbe_node_errors_measure(&known, &sweep, &nodes, &desc, renderer, &at_node, &between, &error));
   print_message("%g at nodes, %g between\n", at_node, between);
   assert_int_equal(known.count, 1);
   assert_true(at_node > 1e-3 && between > 1e-3 && at_node < 0.05 && between < 0.05);

@@ -16,7 +16,6 @@ TEST(distance) {
 
 TEST(more_samples_are_nearer) {
   abbe_scene scene = {0};
-  abbe_error error = {0};
   abbe_pinhole_limits known = {.pictures = 2, .samples = 1024};
   const abbe_image *first, *again;
   load_text(
@@ -35,15 +34,14 @@ TEST(more_samples_are_nearer) {
                            .strategy = ABBE_SAMPLE_STRATEGY_RANDOM};
   for (int k = 0; k < 3; k++) {
     desc.pinholes = (size_t)4 << 3 * k;
-    assert_ok(abbe_pinhole_limits_measure(&known, context, &scene, &desc, &rmse[k], &error),
-              &error);
+    OK(abbe_pinhole_limits_measure(&known, context, &scene, &desc, &rmse[k], &error));
     print_message("%zu: %g\n", desc.pinholes, rmse[k]);
   }
   assert_true(rmse[1] < 0.7 * rmse[0] && rmse[2] < 0.7 * rmse[1]);
   assert_int_equal(known.count, 1);
-  assert_ok(abbe_pinhole_limits_find(&known, context, &scene, &desc, &first, &error), &error);
+  OK(abbe_pinhole_limits_find(&known, context, &scene, &desc, &first, &error));
   desc.pinholes = 1;
-  assert_ok(abbe_pinhole_limits_find(&known, context, &scene, &desc, &again, &error), &error);
+  OK(abbe_pinhole_limits_find(&known, context, &scene, &desc, &again, &error));
   assert_ptr_equal(first, again);
   abbe_pinhole_limits_free(&known);
   abbe_scene_free(&scene);

@@ -3,7 +3,6 @@
 
 #include "validation/sweep/studies/transport_study.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 GROUP(make_context, free_context);
@@ -79,7 +78,7 @@ static bool never(void *user, double done) {
 TEST(a_ball) {
   abbe_scene scene = {0};
   abbe_image picture = {0};
-  abbe_error error = {0}, why = {0};
+  abbe_error why = {0};
   static abbe_transport_study s;
   size_t refused;
   char folder[] = "/tmp/abbe-test-transports-XXXXXX", file[64];
@@ -102,12 +101,10 @@ TEST(a_ball) {
        .fill = {.nodes = 12, .region = grid, .passes = 1, .photons = 2000},
        .joined_bytes = most}};
   abbe_sweep sweep = {.context = context, .scene = &scene, .frames = 1, .picture = &picture};
-  assert_int_equal(
-      abbe_transport_study_measure(&sweep, list, 4, file, never, NULL, &s, &refused, NULL, &error),
-      ABBE_CANCELLED);
-  assert_ok(
-      abbe_transport_study_measure(&sweep, list, 4, file, NULL, NULL, &s, &refused, &why, &error),
-      &error);
+  REFUSED(
+      ABBE_CANCELLED, "",
+      abbe_transport_study_measure(&sweep, list, 4, file, never, NULL, &s, &refused, NULL, &error));
+  OK(abbe_transport_study_measure(&sweep, list, 4, file, NULL, NULL, &s, &refused, &why, &error));
   if (refused > 1) print_message("%s\n", why.text);
   assert_int_equal(s.count, 3);
   assert_int_equal(refused, 1);
@@ -136,9 +133,9 @@ TEST(a_ball) {
   assert_int_not_equal(access(file, F_OK), 0);
   rmdir(folder);
   sweep.picture = NULL;
-  assert_int_equal(
-      abbe_transport_study_measure(&sweep, list, 4, file, NULL, NULL, &s, &refused, NULL, &error),
-      ABBE_INVALID_ARGUMENT);
+  REFUSED(
+      ABBE_INVALID_ARGUMENT, "",
+      abbe_transport_study_measure(&sweep, list, 4, file, NULL, NULL, &s, &refused, NULL, &error));
   abbe_image_free(&picture);
   abbe_scene_free(&scene);
 }

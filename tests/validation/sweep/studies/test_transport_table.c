@@ -5,7 +5,6 @@
 #include "base/file.h"
 #include "validation/sweep/studies/transport_table.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 static abbe_transport_study s;
@@ -74,7 +73,6 @@ TEST(for_people) {
 }
 
 TEST(for_programs) {
-  abbe_error error = {0};
   char path[] = "/tmp/abbe-test-table-XXXXXX", *text;
   size_t size;
   const int file = mkstemp(path);
@@ -84,8 +82,8 @@ TEST(for_programs) {
   s.row[0].number[ABBE_TRANSPORT_NODE_ERROR_NUMBER] = 0.5;
   s.row[0].number[ABBE_TRANSPORT_MID_ERROR_NUMBER] = 0.75;
   s.row[0].on_bytes = true;
-  assert_int_equal(abbe_transport_table_save(&s, path, &error), ABBE_OK);
-  assert_int_equal(abbe_file_read(path, 1 << 16, &text, &size, &error), ABBE_OK);
+  OK(abbe_transport_table_save(&s, path, &error));
+  OK(abbe_file_read(path, 1 << 16, &text, &size, &error));
   assert_contains(text, "# scene: prism.yaml\n"
                         "transport,strategy,footprint,region,lookup,samples,nodes,cells,order,rank,"
                         "photons_node,precompute_s,bytes_memory,bytes_disk,bytes_gpu,frame_ms,"
