@@ -5,6 +5,186 @@
 
 #include <cairo.h>
 #include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+static const double FONT = 13, SMALL_FONT = 11, GAP = 6, LINE_HEIGHT = 18, SAMPLE = 26;
+
+/* ---- names beside points ---- */
+
+typedef struct box {
+  double x0, y0, x1, y1;
+} box;
+
+static bool overlap(box a, box b) {
+  return a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
+}
+
+static bool is_free(const abbe_chart_panel *p, box b, const box *taken, size_t count) {
+  if (b.x0 < p->left || b.x1 > p->right || b.y0 < p->plot_top || b.y1 > p->plot_bottom)
+    return false;
+  for (size_t i = 0; i < count; i++)
+    if (overlap(b, taken[i])) return false;
+  return true;
+}
+
+/* A name goes right, left, above or below its point, or nowhere. */
+static void draw_name(abbe_chart_panel *p, const char *name, double x, double y, box *taken,
+                      size_t *count) {
+  double w = abbe_chart_text_width(p->cr, name), h = SMALL_FONT;
+  const double place[4][2] = {
+      {x + 6, y - h / 2}, {x - 6 - w, y - h / 2}, {x - w / 2, y - 6 - h}, {x - w / 2, y + 6}};
+  for (int k = 0; k < 4; k++) {
+    box b = {place[k][0], place[k][1], place[k][0] + w, place[k][1] + h};
+    if (!is_free(p, b, taken, *count)) continue;
+    taken[(*count)++] = b;
+    abbe_chart_put_text(p->cr, name, b.x0, b.y0 + 1, 0, 0);
+    return;
+  }
+}
+
+static bool has_names(const abbe_chart_series *s) {
+  return s->text != NULL && s->y != NULL;
+}
+
+/* No name covers a point or another name, of whatever series; the last series' come first. */
+void abbe_chart_draw_names(abbe_chart_panel *p) {
+  enum { MAX_NAMES = 4096 };
+  size_t total = 0, count = 0;
+  for (size_t k = 0; k < p->chart->series_count; k++)
+    if (has_names(&p->chart->series[k])) total += p->chart->series[k].count;
+  box *taken = total == 0 || total > MAX_NAMES ? NULL : calloc(2 * total, sizeof *taken);
+  if (taken == NULL) return;
+  abbe_chart_set_font(p->cr, SMALL_FONT, false);
+  abbe_chart_set_grey(p->cr, 0.2);
+  for (int round = 0; round < 2; round++)
+    for (size_t k = p->chart->series_count; k-- > 0;) {
+      const abbe_chart_series *s = &p->chart->series[k];
+      for (size_t i = 0; has_names(s) && i < s->count; i++) {
+        double x = abbe_chart_panel_x(p, s->x[i]), y = abbe_chart_panel_y(p, s->y[i]);
+        if (!isfinite(x + y)) continue;
+        if (round == 0)
+          taken[count++] = (box){x - 3, y - 3, x + 3, y + 3};
+        else if (s->text[i] != NULL)
+          draw_name(p, s->text[i], x, y, taken, &count);
+      }
+    }
+  free(taken);
+}
+
+/* ---- legend ---- */
+
+/* How many of the steps along a stroke lie in the box. */
+static size_t crossed(box b, double x0, double y0, double x1, double y1) {
+  enum { PIECES = 8 };
+  size_t hits = 0;
+  for (int i = 0; i < PIECES; i++) {
+    double x = x0 + (x1 - x0) * i / PIECES, y = y0 + (y1 - y0) * i / PIECES;
+    hits += x > b.x0 && x < b.x1 && y > b.y0 && y < b.y1;
+  }
+  return hits;
+}
+
+/* How much of the data lies in the box: points, the lines between them, and their bars. */
+static size_t covered(const abbe_chart_panel *p, box b) {
+  size_t hits = 0;
+  for (size_t k = 0; k < p->chart->series_count; k++) {
+    const abbe_chart_series *s = &p->chart->series[k];
+    const double *y = s->y != NULL ? s->y : s->high;
+    size_t stride = 1 + s->count / 256; /* a long series is as well judged by some of it */
+    for (size_t i = 0; i < s->count; i += stride) {
+      size_t next = i + stride < s->count ? i + stride : s->count - 1;
+      bool joined = s->style != ABBE_CHART_POINTS;
+      double x0 = abbe_chart_panel_x(p, s->x[i]), y0 = abbe_chart_panel_y(p, y[i]);
+      if (joined)
+        hits +=
+            crossed(b, x0, y0, abbe_chart_panel_x(p, s->x[next]), abbe_chart_panel_y(p, y[next]));
+      if (!joined) hits += 8 * (crossed(b, x0, y0, x0, y0) > 0);
+      if (s->low != NULL)
+        hits +=
+            crossed(b, x0, abbe_chart_panel_y(p, s->low[i]), x0, abbe_chart_panel_y(p, s->high[i]));
+    }
+  }
+  return hits;
+}
+
+/* The place that hides least; of equal ones that nearest to a corner, the upper right one first. */
+static box place_legend(const abbe_chart_panel *p, double width, double height) {
+  enum { STEPS = 8 };
+  static const int order[STEPS + 1] = {8, 0, 7, 1, 6, 2, 5, 3, 4};
+  box best = {0};
+  size_t least = SIZE_MAX;
+  for (int sum = 0; sum <= 2 * STEPS; sum++)
+    for (int i = 0; i <= sum; i++) {
+      if (i > STEPS || sum - i > STEPS) continue;
+      double across = order[sum - i] / (double)STEPS, down = 1 - order[i] / (double)STEPS;
+      double x = p->left + 10 + across * (p->right - p->left - 20 - width);
+      double y = p->plot_top + 10 + down * (p->plot_bottom - p->plot_top - 20 - height);
+      box b = {x, y, x + width, y + height};
+      size_t hits = covered(p, b);
+      if (hits >= least) continue;
+      least = hits;
+      best = b;
+    }
+  return best;
+}
+
+static void draw_sample(abbe_chart_panel *p, size_t index, double x, double y) {
+  const abbe_chart_series *s = &p->chart->series[index];
+  bool band = s->style == ABBE_CHART_BAND;
+  abbe_chart_set_pen(p, index, band ? 0.25 : 1);
+  if (band) {
+    cairo_rectangle(p->cr, x, y - 5, SAMPLE, 10);
+    cairo_fill(p->cr);
+  } else if (s->style != ABBE_CHART_POINTS) {
+    abbe_chart_draw_line(p->cr, x, y, x + SAMPLE, y);
+  }
+  if (s->style == ABBE_CHART_POINTS || s->style == ABBE_CHART_JOINED_POINTS)
+    abbe_chart_draw_dot(p, index, x + SAMPLE / 2, y);
+}
+
+/* The label of entry i: the series first, then the shaded ranges. */
+static const char *entry(const abbe_chart *c, size_t i) {
+  return i < c->series_count ? c->series[i].label : c->shade[i - c->series_count].label;
+}
+
+void abbe_chart_draw_legend(abbe_chart_panel *p) {
+  const abbe_chart *c = p->chart;
+  size_t total = c->series_count + c->shade_count, count = 0, done = 0;
+  double widest_label = 0;
+  abbe_chart_set_font(p->cr, FONT, false);
+  for (size_t i = 0; i < total; i++) {
+    if (entry(c, i) == NULL) continue;
+    widest_label = fmax(widest_label, abbe_chart_text_width(p->cr, entry(c, i)));
+    count++;
+  }
+  double room = p->plot_bottom - p->plot_top - 30, column = SAMPLE + 3 * GAP + widest_label;
+  size_t rows = (size_t)fmax(1, floor(room / LINE_HEIGHT));
+  if (count == 0 || room < LINE_HEIGHT) return;
+  if (rows > count) rows = count;
+  double width = column * ceil((double)count / (double)rows) + GAP;
+  double height = LINE_HEIGHT * (double)rows + GAP;
+  box b = place_legend(p, width, height);
+  cairo_set_source_rgba(p->cr, 1, 1, 1, 0.85);
+  cairo_rectangle(p->cr, b.x0, b.y0, width, height);
+  cairo_fill(p->cr);
+  for (size_t i = 0; i < total; i++) {
+    if (entry(c, i) == NULL) continue;
+    double x = b.x0 + GAP + column * (double)(done / rows);
+    double y = b.y0 + GAP / 2 + LINE_HEIGHT * ((double)(done % rows) + 0.5);
+    if (i < c->series_count) {
+      draw_sample(p, i, x, y);
+    } else {
+      abbe_chart_set_grey(p->cr, abbe_chart_shade_grey(c, i - c->series_count));
+      cairo_rectangle(p->cr, x, y - 6, SAMPLE, 12);
+      cairo_fill(p->cr);
+    }
+    cairo_set_dash(p->cr, NULL, 0, 0);
+    abbe_chart_set_grey(p->cr, 0.15);
+    abbe_chart_put_text(p->cr, entry(c, i), x + SAMPLE + GAP, y, 0, 0.5);
+    done++;
+  }
+}
 
 /* Blue, vermilion, green, purple, orange, sky blue, black, yellow [OkabeIto2008]. */
 static const double palette[ABBE_CHART_COLOURS][3] = {

@@ -3,8 +3,8 @@
 #include "base/maths.h"
 #include "base/number.h"
 #include "base/thread/watch.h"
-#include "gl/plan/examine/material_range.h"
 #include "gl/plan/examine/reach.h"
+#include "gl/plan/examine/spectral_needs.h"
 #include "scenes/geometry/digest.h"
 #include "spectral/optics.h"
 

@@ -1,6 +1,5 @@
 #include "gl/plan/examine/models.h"
 
-#include "gl/plan/examine/material_range.h"
 #include "gl/plan/examine/reach.h"
 #include "gl/plan/examine/spectral_needs.h"
 #include "scenes/geometry/digest.h"

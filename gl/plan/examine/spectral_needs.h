@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "gl/plan/facts/plan_facts.h"
 #include "scenes/scene.h"
+#include "spectral/materials/material.h"
 
 /* A refractor's material over the range: whether its index varies, whether it attenuates, and that
  * by wavelength; ABBE_OUT_OF_RANGE where its index is not known, and a note where what is seen of
@@ -45,5 +46,21 @@ double abbe_tint_attenuation(const abbe_scene *scene, const abbe_plan *plan, siz
 int abbe_tint_of(const abbe_scene *scene, const abbe_plan *plan, size_t r);
 /* Of all stuffs, ABBE_MOST_TINTS at the most. */
 size_t abbe_tint_count(const abbe_scene *scene, const abbe_plan *plan);
+
+/* Between what a material's index and attenuation lie over a range of wavelengths.
+ *
+ * Where the plan reads n(lambda) and attenuation, and nowhere else: whether something varies,
+ * whether light notices it at all, and one value that stands for all of it. */
+
+typedef struct abbe_material_range {
+  double least_n, most_n;
+  double least_per_m, most_per_m; /* attenuation */
+  double middle_n, middle_per_m;  /* at the range's middle */
+} abbe_material_range;
+
+/* At 81 wavelengths from min_nm to max_nm, and at their mean. ABBE_OUT_OF_RANGE where the index is
+ * not known. */
+abbe_result abbe_material_range_make(const abbe_material *material, double min_nm, double max_nm,
+                                     abbe_material_range *out, abbe_error *error);
 
 #endif

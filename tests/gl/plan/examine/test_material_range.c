@@ -1,7 +1,7 @@
 /* Extremes of index and attenuation over a range, and an index that is not known in it. */
 #include "tests/scenes/scene_text.h"
 
-#include "gl/plan/examine/material_range.h"
+#include "gl/plan/examine/spectral_needs.h"
 
 TEST(extremes_are_those_of_the_range) {
   abbe_scene scene = {0};
