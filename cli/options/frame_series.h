@@ -22,7 +22,7 @@ typedef struct abbe_frame_series {
   abbe_command_part part;
   bool merge;  /* frames that are there, and draw none */
   bool resume; /* draw those alone that are not there, or that another run has made */
-  char *made;  /* what this run's frames have in common (frame_record.h) */
+  char *made;  /* what this run's frames have in common */
   size_t moves;
   char move_first[ABBE_FRAME_SERIES_MOVES][ABBE_FRAME_SERIES_MOVE_TEXT]; /* "KEY=A" */
   const char *move_last[ABBE_FRAME_SERIES_MOVES];                        /* "B" */

@@ -25,7 +25,7 @@ typedef struct abbe_scene_input_changes {
   const char *stone; /* NULL: as the scene says */
   const char *set[ABBE_SCENE_INPUT_MOST];
   size_t set_count;
-  double tilt_deg, axis_deg; /* of the refractors (scenes/refractor_tilt.h) */
+  double tilt_deg, axis_deg; /* of the refractors (scenes/object_motion.h) */
   bool timed;                /* at `time` s and not when the scene says */
   double time;
 } abbe_scene_input_changes;

@@ -1,7 +1,7 @@
 /* view_app.h: the viewer as a whole, frame by frame: events in, jobs given and taken, a window's
  * picture drawn into the current context's framebuffer.
  *
- * It owns no window: cli/view/view_window.h and cli/view/view_script.h lend it a context and
+ * It owns no window: cli/view/view_window.h and cli/view/view_hidden.h lend it a context and
  * events. Internal to cli/view/.
  */
 #ifndef ABBE_CLI_VIEW_VIEW_APP_H

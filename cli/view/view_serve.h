@@ -18,11 +18,11 @@
  *   POST /events?token=T              lines, at most 64 KiB: move X Y; down B [shift] [control]; up
  *                                     B; wheel CLICKS; key NAME down|up [shift] [control]; size W H
  *
- * Moves that follow each other are one, and sizes; turns of the wheel are added up. Signals are obeyed
- * within a second whatever waits. 403 without the token, with a Host that is not this machine's or an
- * Origin that is not this page's; the connection ends then, or where there is no request within 5 s,
- * and of nine such connections the oldest (view_guard.h). 404 and 405 elsewhere, 400 with the line that is wrong, 413, and 503 while
- * too many events wait. */
+ * Moves that follow each other are one, and sizes; turns of the wheel are added up. Signals are
+ * obeyed within a second whatever waits. 403 without the token, with a Host that is not this
+ * machine's or an Origin that is not this page's; the connection ends then, or where there is no
+ * request within 5 s, and of nine such connections the oldest. 404 and 405 elsewhere, 400 with the
+ * line that is wrong, 413, and 503 while too many events wait. */
 abbe_result abbe_view_serve_run(unsigned port, const abbe_view_app_desc *desc, size_t width,
                                 size_t height, abbe_error *error);
 

@@ -1,7 +1,7 @@
 /* pixel_probe.h: what a picture has at a pixel, or in the mean of a region.
  *
  * Every channel, with its standard error where the picture has it ("stderr." before the name); the
- * colour; and the spectrum, where there are bands. It describes no colours (colour_description.h).
+ * colour; and the spectrum, where there are bands. It describes no colours (pixel.c).
  */
 #ifndef ABBE_COLORIMETRY_SPECTRAL_PICTURE_PIXEL_PROBE_H
 #define ABBE_COLORIMETRY_SPECTRAL_PICTURE_PIXEL_PROBE_H

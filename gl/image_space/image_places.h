@@ -17,7 +17,7 @@
 
 /* Through how many views a light sees in the published methods: one, or of receivers the six of a
  * cube around it, and of refractors and mirrors one around them or six. Faces and their axes are
- * those of gl/plan/examine/light_cube.h. */
+ * those of gl/plan/examine/light_views.h. */
 
 typedef struct abbe_image_cube {
   size_t faces, object_faces; /* 1 or 6 each */

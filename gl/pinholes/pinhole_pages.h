@@ -37,7 +37,7 @@ typedef struct abbe_pinhole_pages {
   abbe_pinhole_samples samples;
   abbe_pinhole_sky sky;
   abbe_page_charts charts; /* where the plan has them */
-  size_t side, count;      /* texels of a page; pages: two a chart (gl/scene/receiver_charts.h) */
+  size_t side, count;      /* texels of a page; pages: two a chart (gl/scene/gpu_scene.h) */
   GLuint texels[2];        /* lists: of a page's, those that are filled, and that ask for more */
   uint32_t *order;         /* [side * side] room to sort one of them */
   GLuint select, fill;     /* programs */

@@ -162,7 +162,7 @@ typedef struct gpu_corners {
 } gpu_corners;
 
 typedef struct forest {
-  uint32_t (*texel)[4]; /* bvh_nodes.h */
+  uint32_t (*texel)[4]; /* gpu_scene.h */
   gpu_triangle *triangle;
   gpu_corners *corners;
   size_t texel_count, triangle_count;
@@ -182,7 +182,7 @@ static bool make_room(forest *f, size_t texels, size_t triangles) {
 typedef struct grove {
   const abbe_mesh **mesh;
   uint32_t *surface, *face_first; /* of each mesh; face_first has one more */
-  const int32_t **side;           /* of each mesh's faces (receiver_charts.h), or NULL */
+  const int32_t **side;           /* of each mesh's faces (gpu_scene.h), or NULL */
   size_t mesh_count;
   uint32_t *owner, *part; /* of each face: its mesh, and which part */
 } grove;

@@ -143,7 +143,7 @@ void abbe_gpu_scene_bind(const abbe_gpu_scene *scene);
 /* The scene's uniforms and textures, into the program that is in use. */
 void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program);
 
-/* gpu_area_lights.c: disks and rectangles, as rays meet them; of: the number from 1 of the one that
+/* gpu_environment.c: disks and rectangles, as rays meet them; of: the number from 1 of the one that
  * a light is a point of, 0: none. */
 size_t abbe_gpu_area_lights_count(const abbe_gpu_scene *scene);
 size_t abbe_gpu_area_lights_of(const abbe_gpu_scene *scene, size_t light);
@@ -174,7 +174,7 @@ void abbe_gpu_haze_set(const abbe_gpu_scene *scene, GLuint program);
 size_t abbe_gpu_surfaces_reflections(const abbe_gpu_scene *scene);
 abbe_result abbe_gpu_surfaces_upload(abbe_gpu_scene *scene, abbe_error *error);
 
-/* gpu_band_reflections.c: what receivers in colours reflect of bands of each light
+/* gpu_surfaces.c: what receivers in colours reflect of bands of each light
  * (band_reflection.h), where the plan asks for it. */
 abbe_result abbe_gpu_band_reflections_upload(abbe_gpu_scene *scene, abbe_error *error);
 

@@ -49,7 +49,7 @@ vec4 own_plane[PLANE_ROOM];
 #endif
 
 #ifdef SHADOW_PLANES
-// The shadows of convex refractors (shadow_planes.h): where the planes of each light and refractor begin,
+// The shadows of convex refractors (gpu_scene.h): where the planes of each light and refractor begin,
 // and how many they are. ONE_SHADOW: they are all of one.
 layout(std140, binding = BINDING_SHADOW_PLANES) uniform ShadowPlanes {
   ivec4 shadow_range[LIGHT_ROOM * REFRACTOR_ROOM];

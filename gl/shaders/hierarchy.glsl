@@ -3,7 +3,7 @@
 // alone: Mesa 22's llvmpipe clobbers what is loaded in a loop that lanes leave in its middle.
 
 // Buffers as textures: llvmpipe fetches a texel of all lanes at once, and storage word by word.
-layout(binding = UNIT_BVH_NODES) uniform usamplerBuffer hierarchy_nodes;  // as bvh_nodes.h has them
+layout(binding = UNIT_BVH_NODES) uniform usamplerBuffer hierarchy_nodes;  // as gpu_scene.h has them
 layout(binding = UNIT_BVH_TRIANGLES) uniform samplerBuffer hierarchy_triangles;
 layout(binding = UNIT_BVH_CORNERS) uniform samplerBuffer hierarchy_corners;
 

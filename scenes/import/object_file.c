@@ -27,7 +27,7 @@ static abbe_result read_rotate(abbe_yaml *yaml, abbe_yaml_node node, double out[
   if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "'rotate'", error);
   if (result == ABBE_OK && !(abbe_vector_length(axis) > 0.0))
     result = abbe_yaml_fail(yaml, node, error, "'axis' is zero; it must point somewhere");
-  if (result == ABBE_OK) abbe_transform_rotate(angle * ABBE_OBJECT_RADIANS, axis, out);
+  if (result == ABBE_OK) abbe_transform_rotate(angle * ABBE_DEGREE, axis, out);
   return result;
 }
 

@@ -54,8 +54,8 @@ static abbe_result read_wave(abbe_yaml *yaml, abbe_yaml_node node, abbe_water_wa
     result = abbe_yaml_get_number(yaml, node, "direction", -3600, 3600, &direction, error);
   if (result == ABBE_OK)
     result = abbe_yaml_get_number(yaml, node, "phase", -3600, 3600, &phase, error);
-  out->direction_rad = direction * ABBE_OBJECT_RADIANS;
-  out->phase_rad = phase * ABBE_OBJECT_RADIANS;
+  out->direction_rad = direction * ABBE_DEGREE;
+  out->phase_rad = phase * ABBE_DEGREE;
   return result == ABBE_OK ? abbe_yaml_check_keys(yaml, node, "a wave", error) : result;
 }
 
@@ -225,8 +225,8 @@ static abbe_result read_brilliant(const abbe_object_reading *r, abbe_mesh *out, 
   abbe_result result = need_length(r, "diameter", &cut.diameter, error);
   for (size_t i = 0; i < sizeof keys / sizeof *keys && result == ABBE_OK; i++)
     result = abbe_yaml_get_number(r->yaml, r->node, keys[i].key, 1e-6, 90, keys[i].value, error);
-  cut.crown_rad = crown * ABBE_OBJECT_RADIANS;
-  cut.pavilion_rad = pavilion * ABBE_OBJECT_RADIANS;
+  cut.crown_rad = crown * ABBE_DEGREE;
+  cut.pavilion_rad = pavilion * ABBE_DEGREE;
   return result == ABBE_OK ? abbe_brilliant_make(&cut, out, error) : result;
 }
 
@@ -235,7 +235,7 @@ static abbe_result read_prism(const abbe_object_reading *r, abbe_mesh *out, abbe
   abbe_result result = abbe_yaml_get_number(r->yaml, r->node, "apex", -360, 360, &apex, error);
   if (result == ABBE_OK) result = need_length(r, "side", &side, error);
   if (result == ABBE_OK) result = need_length(r, "length", &length, error);
-  return result == ABBE_OK ? abbe_shape_prism(apex * ABBE_OBJECT_RADIANS, side, length, out, error)
+  return result == ABBE_OK ? abbe_shape_prism(apex * ABBE_DEGREE, side, length, out, error)
                            : result;
 }
 

@@ -1,7 +1,11 @@
-/* scene_reading.h: what is known of an object of a scene file while it is read.
- * Internal to scenes/. */
-#ifndef ABBE_SCENES_IMPORT_OBJECT_READING_H
-#define ABBE_SCENES_IMPORT_OBJECT_READING_H
+/* scene_reading.h: the parts of a scene file (scene_file.h), each with a reader of its own:
+ * objects, camera, lights, surroundings, reflectances; and values that are changed before any is
+ * read.
+ *
+ * Internal to scenes/.
+ */
+#ifndef ABBE_SCENES_IMPORT_SCENE_READING_H
+#define ABBE_SCENES_IMPORT_SCENE_READING_H
 
 #include "base/error.h"
 #include "base/maths.h"
@@ -17,8 +21,6 @@
 
 /* Stands for the name of a material: the one that the mesh's file has. */
 #define ABBE_OBJECT_FROM_FILE "from-file"
-
-#define ABBE_OBJECT_RADIANS ABBE_DEGREE
 
 typedef enum abbe_object_form {
   ABBE_OBJECT_SPHERE,
@@ -110,7 +112,7 @@ abbe_result abbe_environment_read_sources(abbe_yaml *yaml, abbe_yaml_node node,
 /* A receiver's measured reflectance, as a scene file asks for it: {spectrum: FILE, column: NAME}
  * or {patch: NAME} of the ColorChecker.
  *
- * A part of object_file.h, which reads numbers. */
+ * A part of scene_reading.h, which reads numbers. */
 
 /* Fills the object's spectrum, its path and the colour under D65. Paths are relative to folder.
  * ABBE_SCHEMA and ABBE_NOT_FOUND with file, line and key; errors of the file. */
@@ -119,8 +121,9 @@ abbe_result abbe_reflectance_file_read(abbe_yaml *yaml, abbe_yaml_node node, con
 
 /* An object's surface in the world: fixed, placed, told apart, known exactly where it can be.
  *
- * A part of object_file.h, which reads what is asked for. Here a refractor's mesh becomes a closed
- * surface, shells that cross become solids of their own, and the surface gets its size and place.
+ * A part of scene_reading.h, which reads what is asked for. Here a refractor's mesh becomes a
+ * closed surface, shells that cross become solids of their own, and the surface gets its size and
+ * place.
  */
 
 typedef struct abbe_object_surface {
@@ -150,7 +153,8 @@ abbe_result abbe_object_place(const abbe_object_surface *surface, abbe_object *o
 
 /* "PATH=VALUE": PATH is keys with dots between them, and for an item of a list its number from 0 or
  * its 'name' (lights.lamp.intensity); VALUE is one line of YAML. The last key may be a new one.
- * "PATH=": what is there is taken out, as if it had never stood there. ABBE_INVALID_ARGUMENT for a path that leads nowhere, with the nearest key or name. */
+ * "PATH=": what is there is taken out, as if it had never stood there. ABBE_INVALID_ARGUMENT for a
+ * path that leads nowhere, with the nearest key or name. */
 abbe_result abbe_scene_change_set(abbe_yaml_edit *edit, const char *assignment, abbe_error *error);
 
 /* "STONE": what all refractors are made of, which must be one material; or "NAME=STONE": what is

@@ -88,7 +88,7 @@ typedef struct abbe_caustic_volume {
   double byte;            /* PRINTED: what a byte of 1 stands for */
   double error;           /* relative standard error of what was summed up; 0: not known */
   uint16_t *value;        /* halves [blocks][region.cells][channels]; EXITS: NULL */
-  uint16_t *mode;         /* halves [rank][nodes.count], light_modes.h; without a rank NULL */
+  uint16_t *mode;         /* halves [rank][nodes.count], caustic_volume.h; without a rank NULL */
   abbe_light_exits exits; /* EXITS: for the nodes, and cells of the region */
 } abbe_caustic_volume;
 

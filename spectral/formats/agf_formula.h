@@ -1,7 +1,7 @@
 /* agf_formula.h: the thirteen dispersion formulas of Zemax glass catalogues, to our models and back.
  *
  * Coefficients are in the catalogue's order and for micrometres in air, as Zemax has them [ZemaxAGF]. It reads
- * no files: see spectral/formats/agf.h and spectral/formats/agf_write.h.
+ * no files: see spectral/formats/material_import.h and spectral/formats/material_write.h.
  * Internal to spectral/formats/.
  */
 #ifndef ABBE_SPECTRAL_FORMATS_AGF_FORMULA_H

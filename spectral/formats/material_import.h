@@ -1,6 +1,6 @@
 /* material_import.h: materials from files of any kind that is read, into one table.
  *
- * Finds out what a file is and calls spectral/formats/agf.h, rii.h, csv_points.h or material_table.h. What
+ * Finds out what a file is and calls spectral/formats/material_import.h, material_import.h, csv_points.h or material_table.h. What
  * could not be used is noted and does not stop the rest. Internal to spectral/.
  */
 #ifndef ABBE_SPECTRAL_FORMATS_MATERIAL_IMPORT_H
@@ -65,7 +65,7 @@ abbe_result abbe_import_explain(const char *path, abbe_result result, abbe_error
  * Reads what real catalogues hold: any encoding, either line end, free text before the first
  * glass, coefficient lines that wrap, missing fields and '-', an n_d of 1 that stands for none. A
  * glass that cannot be used is noted with its line, its name and the reason, and does not stop the
- * rest. Writing is in spectral/formats/agf_write.h. */
+ * rest. Writing is in spectral/formats/material_write.h. */
 
 /* The glasses of size bytes of catalogue in its order, each fit for a table (abbe_material_check);
  * name stands for the file in messages and sources. Indices are relative to air at the catalogue's
@@ -82,7 +82,7 @@ abbe_result abbe_agf_load(const char *path, abbe_material_table *out, abbe_repor
  *
  * A file holds one material: an index (formula 1 to 9, tabulated n or nk), maybe k, where the
  * numbers come from, and what a maker's catalogue says. It does not read the database's catalogue
- * of pages, the nonlinear index, or formulas for k. Writing is in spectral/formats/rii_write.h. */
+ * of pages, the nonlinear index, or formulas for k. Writing is in spectral/formats/material_write.h. */
 
 /* The material of size bytes of text [RefractiveIndexInfo], fit for a table. path stands for the
  * file in messages; name is the material's name, or NULL to make one of the path:

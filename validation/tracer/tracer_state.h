@@ -32,7 +32,7 @@ typedef struct abbe_guide_sums {
   size_t pixels;
   double unit;         /* of the colours: the picture's sums' */
   float *adding;       /* [pixels][10] the pass that is under way, but for the photons */
-  abbe_whole_sum *sum; /* [pixels][ABBE_GUIDE_VALUES] over passes, in units (whole_sum.h) */
+  abbe_whole_sum *sum; /* [pixels][ABBE_GUIDE_VALUES] over passes, in units (accumulator.h) */
 } abbe_guide_sums;
 
 /* picture_unit: abbe_accumulator's of the picture. */

@@ -8,7 +8,7 @@
  * the better to show, because its light is better and it has drawn moving pictures with it once,
  * the two change their parts. So motion waits neither for the compiler nor for a stage.
  *
- * Moving, a job takes the steps that cli/view/state/view_pace.h finds; after ABBE_VIEW_REST_S
+ * Moving, a job takes the steps that cli/view/state/view_refine.h finds; after ABBE_VIEW_REST_S
  * without a change the stages follow each other up to the last. A change makes any stage but a
  * moving one obsolete at once: a moving one is nearly done, and what it shows is newer than what
  * stands. Internal to cli/.

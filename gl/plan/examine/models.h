@@ -1,10 +1,10 @@
-/* models.h: which model follows light through each refractor, and whether one after
- * another.
+/* models.h: by which model light goes through refractors, through media that scatter, and to
+ * receivers.
  *
  * What light does not notice is no refractor. Internal to gl/.
  */
-#ifndef ABBE_GL_PLAN_EXAMINE_REFRACTOR_MODEL_H
-#define ABBE_GL_PLAN_EXAMINE_REFRACTOR_MODEL_H
+#ifndef ABBE_GL_PLAN_EXAMINE_MODELS_H
+#define ABBE_GL_PLAN_EXAMINE_MODELS_H
 
 #include "base/error.h"
 #include "gl/plan/facts/plan_facts.h"

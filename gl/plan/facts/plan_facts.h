@@ -41,7 +41,7 @@ typedef struct abbe_plan_entry {
 /* A light, or a face of the cube around one whose refractors do not fit one view. */
 typedef struct abbe_light_view {
   size_t light; /* the scene's */
-  int face; /* that it looks through (gl/plan/examine/light_cube.h); -1: it is no part of a cube */
+  int face; /* that it looks through (gl/plan/examine/light_views.h); -1: it is no part of a cube */
   unsigned faces; /* whose light it carries, a bit each: its own; the first of a cube also has all
                      those through which no light reaches a refractor; without a cube, all */
 } abbe_light_view;
@@ -154,7 +154,7 @@ typedef struct abbe_plan {
   bool page_charts; /* pinholes light receivers that are meshes: by their charts */
   bool fills;       /* light is laid between wavelengths */
   bool edges;       /* some refractor has facets: light ends at edges, and splats are cut finer */
-  size_t tints;     /* of so many stuffs hits keep how much their path passed (examine/tints.h) */
+  size_t tints;     /* of so many stuffs hits keep how much their path passed (spectral_needs.h) */
   bool band_parts; /* attenuation or reflectance varies: bands have parts that are attenuated alike */
   bool draw_back;   /* views show the back of refractors, too */
   abbe_coarse fewer_triangles; /* for whose sake some mesh is drawn by fewer */

@@ -243,7 +243,7 @@ typedef struct abbe_render_desc {
    * other pictures that the same request could have given (gl/accuracy/error_bars.h). Pinholes are
    * other ones for each shift of the grid. */
   double photon_shift[2], sample_shift[2];
-  bool everything;               /* all on, to measure what the plan saves (gl/plan/no_culling.h) */
+  bool everything;               /* all on, to measure what the plan saves (gl/plan/plan.h) */
   bool aovs;                     /* keep direct and caustic light of the receivers apart as well */
   abbe_render_progress progress; /* while the renderer is made: photons are traced once to fit */
   void *progress_user;

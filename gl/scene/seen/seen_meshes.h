@@ -1,5 +1,5 @@
 /* seen_meshes.h: the scene's meshes as its camera sees them: those that reach from close by to far away
- * are cut (cut_mesh.h), the others are the scene's. Internal to gl/.
+ * are cut, the others are the scene's. Internal to gl/.
  */
 #ifndef ABBE_GL_SCENE_SEEN_SEEN_MESHES_H
 #define ABBE_GL_SCENE_SEEN_SEEN_MESHES_H

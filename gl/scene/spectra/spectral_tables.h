@@ -17,7 +17,7 @@
 #include <stddef.h>
 
 /* What refractors and mirrors take of the bands of photons' wavelengths, by what a path passed of
- * them (gl/plan/examine/tints.h). */
+ * them (gl/plan/examine/spectral_needs.h). */
 
 enum { ABBE_TINT_TEXELS = 2 };
 
@@ -41,7 +41,7 @@ typedef struct abbe_spectral_tables {
    * that is more. */
   size_t steps;                        /* of an interval */
   float (*intervals)[4];               /* interval_sums.h: X, Y, Z */
-  float (*tints)[ABBE_TINT_TEXELS][4]; /* tint_nodes.h; NULL where hits keep none */
+  float (*tints)[ABBE_TINT_TEXELS][4]; /* spectral_tables.h; NULL where hits keep none */
   /* [light views][all]: Y of the band below and above the node, by all and by the coarse set */
   float (*sample_weight)[4];
   float *interval_weight; /* [light views][coarse - 1]: shares of X + Y + Z, of mean 1 */

@@ -89,7 +89,7 @@ static double beyond(const abbe_image *image, const abbe_image *other) {
 }
 
 /* Frames that follow one another are blended, each texel within what the last frame has around it
- * (gl/caustics/map_history.h), where a lamp moves as little as a hand does in a picture. A mean
+ * (gl/caustics/spectral_map.h), where a lamp moves as little as a hand does in a picture. A mean
  * without these bounds leaves 9 % of the light where it was. The fifth frame's photons start where
  * the first one's do, so without the frames before it both are the same. */
 TEST(a_dragged_lamp_leaves_no_ghosts) {
