@@ -70,15 +70,18 @@ static void take_studio(abbe_scene_input_changes *changes, int key, const char *
     changes->save = abbe_command_target(program, "--save-scene", text, ".yaml");
     return;
   }
-  changes->look = key == ABBE_SCENE_INPUT_LOOK   ? "--look"
-                  : key == ABBE_SCENE_INPUT_WITH ? "--with"
-                                                 : "--width";
+  changes->look = key == ABBE_SCENE_INPUT_LOOK    ? "--look"
+                  : key == ABBE_SCENE_INPUT_WITH  ? "--with"
+                  : key == ABBE_SCENE_INPUT_METAL ? "--metal"
+                                                  : "--width";
   if (key == ABBE_SCENE_INPUT_LOOK)
     studio->look = (abbe_studio_look)abbe_command_choice(program, "--look", text, looks,
                                                          ABBE_STUDIO_LOOK_COUNT);
   else if (key == ABBE_SCENE_INPUT_WITH)
     studio->with = (abbe_studio_with)abbe_command_choice(program, "--with", text, withs,
                                                          ABBE_STUDIO_WITH_COUNT);
+  else if (key == ABBE_SCENE_INPUT_METAL)
+    studio->metal = text;
   else
     studio->width_m = abbe_command_length(program, "--width", text, 1e-6, 1e3);
 }

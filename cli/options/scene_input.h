@@ -38,6 +38,7 @@ enum {
   ABBE_SCENE_INPUT_AT,
   ABBE_SCENE_INPUT_LOOK,
   ABBE_SCENE_INPUT_WITH,
+  ABBE_SCENE_INPUT_METAL,
   ABBE_SCENE_INPUT_WIDTH,
   ABBE_SCENE_INPUT_SAVE,
   ABBE_SCENE_INPUT_ALPHA
@@ -61,6 +62,12 @@ enum {
        "WHAT",                                                                                     \
        0,                                                                                          \
        "what a stone's file is shown with: table, ring, none (table)",                             \
+       group},                                                                                     \
+      {"metal",                                                                                    \
+       ABBE_SCENE_INPUT_METAL,                                                                     \
+       "NAME",                                                                                     \
+       0,                                                                                          \
+       "of --with ring: gold, silver, platinum, rhodium, palladium, green-gold … (gold)",          \
        group},                                                                                     \
       {"width",                                                                                    \
        ABBE_SCENE_INPUT_WIDTH,                                                                     \

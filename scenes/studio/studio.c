@@ -280,12 +280,13 @@ static abbe_result add_ring(building *b, abbe_error *error) {
   const double w = 0.5 * hypot(s->size[0], s->size[1]), r = fmax(BAND_M, s->width);
   const double wire = WIRE_M * r / BAND_M, top = 2 * (r + wire);
   const double girdle = s->girdle * s->size[2];
+  const char *metal = b->studio->metal != NULL ? b->studio->metal : "gold";
   char item[640];
   b->high = top + 0.1 * s->size[2];
   abbe_number_format(item, sizeof item,
-                     "name: band\nshape: ring\nmajor: %.6gmm\nminor: %.6gmm\nmirror: gold\n"
+                     "name: band\nshape: ring\nmajor: %.6gmm\nminor: %.6gmm\nmirror: %s\n"
                      "transform:\n- rotate: {axis: [1, 0, 0], angle: 90}\nstand: [0, 0, 0]\n",
-                     1e3 * r, 1e3 * wire);
+                     1e3 * r, 1e3 * wire, metal);
   abbe_result result = append(b, item, error);
   if (result != ABBE_OK) return result;
   const double x = s->size[0] / hypot(s->size[0], s->size[1]) * sqrt(2);
@@ -293,10 +294,10 @@ static abbe_result add_ring(building *b, abbe_error *error) {
   const double rim = w / sqrt(2);
   abbe_number_format(
       item, sizeof item,
-      "name: cup\nshape: lathe\naround: 128\nmirror: gold\nprofile:\n"
+      "name: cup\nshape: lathe\naround: 128\nmirror: %s\nprofile:\n"
       "- [%.6gmm, %.6gmm]\n- [%.6gmm, %.6gmm]\n- [%.6gmm, %.6gmm]\n- [%.6gmm, %.6gmm]\n"
       "- [%.6gmm, %.6gmm]\ntransform:\n- scale: [%.6g, %.6g, 1]\n- translate: [0, 0, %.6g]\n",
-      300 * rim, -50 * s->size[2], 1e3 * 1.12 * rim, 1e3 * (girdle - 0.1 * s->size[2]),
+      metal, 300 * rim, -50 * s->size[2], 1e3 * 1.12 * rim, 1e3 * (girdle - 0.1 * s->size[2]),
       1e3 * 1.12 * rim, 1e3 * (girdle + 0.03 * s->size[2]), 1e3 * 1.04 * rim,
       1e3 * (girdle + 0.03 * s->size[2]), 1e3 * 1.04 * rim, 1e3 * (girdle - 0.1 * s->size[2]), x, y,
       b->high);
@@ -417,20 +418,27 @@ static abbe_result compose(building *b, abbe_error *error) {
 }
 
 /* What is asked for by name is looked up before it stands in a scene, whose lines nobody knows. */
-static abbe_result check_material(const building *b, abbe_error *error) {
-  const char *name = b->studio->material;
+static abbe_result check_name(const building *b, const char *name, bool metal, abbe_error *error) {
   abbe_material_table table = {0};
   const abbe_material *found;
   if (name == NULL) return ABBE_OK;
   abbe_result result = abbe_material_table_load_named(b->studio->table, &name, 1, &table, error);
   if (result == ABBE_OK) result = abbe_material_table_find(&table, name, &found, error);
-  if (result == ABBE_OK && abbe_material_is_conductor(found))
+  if (result == ABBE_OK && abbe_material_is_conductor(found) != metal)
     result = abbe_error_set(error, ABBE_UNSUPPORTED,
-                            "'%s' is a metal; a stone is of something that light passes, such as "
-                            "ruby ('abbe materials list')",
+                            metal ? "'%s' is no metal; a ring is of one, such as gold or platinum"
+                                  : "'%s' is a metal; a stone is of something that light passes, "
+                                    "such as ruby ('abbe materials list')",
                             name);
   abbe_material_table_free(&table);
   return result;
+}
+
+static abbe_result check_names(const building *b, abbe_error *error) {
+  if (b->studio->metal != NULL && b->studio->with != ABBE_STUDIO_WITH_RING)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a metal is for a ring: add --with ring");
+  const abbe_result result = check_name(b, b->studio->material, false, error);
+  return result == ABBE_OK ? check_name(b, b->studio->metal, true, error) : result;
 }
 
 static abbe_result read_stones(building *b, const char *path, abbe_error *error) {
@@ -463,7 +471,7 @@ abbe_result abbe_studio_scene(const char *path, const abbe_studio *studio, const
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a ring holds one stone, not %zu", b.count);
   b.stone = calloc(b.count, sizeof *b.stone);
   abbe_result result = b.stone != NULL
-                           ? check_material(&b, error)
+                           ? check_names(&b, error)
                            : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for stones");
   if (result == ABBE_OK) result = read_stones(&b, path, error);
   if (result == ABBE_OK)

@@ -41,6 +41,7 @@ enum { ABBE_STUDIO_MOST_STONES = 64 };
 typedef struct abbe_studio {
   abbe_studio_look look;
   abbe_studio_with with;
+  const char *metal; /* of a ring, a conductor of the table; NULL: gold */
   double width_m; /* the smaller extent of each stone's outline; 0: as its file has it */
   const char
       *material;      /* of all stones; NULL: what the file says, or what its index is nearest to */

@@ -129,6 +129,8 @@ TEST(shipped_metals_reflect_what_their_sources_say) {
       {"copper", 582.1, 0.70, 2.704, 0.7255},       {"aluminium", 563.57, 1.0728, 6.7839, 0.9147},
       {"chromium", 582, 3.22, 3.30, 0.5512},        {"iron", 582, 2.94, 2.99, 0.5193},
       {"nickel", 582, 1.96, 3.80, 0.6621},          {"titanium", 582, 2.60, 3.58, 0.5965},
+      {"palladium", 582, 1.68, 4.02, 0.7121},       {"platinum", 582.29, 2.1751, 3.8852, 0.6544},
+      {"rhodium", 590.4, 2.05, 5.30, 0.7807},       {"green-gold", 580, 0.31411, 3.34981, 0.9030},
       {"mercury", 563.56, 1.62088, 4.7505, 0.7797},
   };
   abbe_material_table table = load_table("default");
