@@ -4,7 +4,7 @@
 #include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
 #include "spectral/formats/shader_export.h"
-#include "spectral/store/material_store_write.h"
+#include "spectral/store/material_store.h"
 
 #include <argp.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
 #include "spectral/formats/import_batch.h"
 #include "spectral/formats/material_write.h"
 #include "spectral/materials/material_table.h"
-#include "spectral/store/material_store_write.h"
+#include "spectral/store/material_store.h"
 
 #include <argp.h>
 #include <stdio.h>

@@ -2,9 +2,6 @@
 #include "cli/base/output.h"
 #include "cli/base/rank_job.h"
 #include "cli/gem/gem.h"
-#include "cli/render/render.h"
-#include "cli/sweep/sweep.h"
-#include "cli/trace/trace.h"
 
 #include "colorimetry/image/display_ocio.h"
 

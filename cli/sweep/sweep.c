@@ -1,9 +1,9 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
+#include "cli/base/rank_job.h"
 #include "cli/options/own_context.h"
 #include "cli/options/scene_input.h"
-#include "cli/sweep/sweep.h"
 #include "cli/sweep/sweep_options.h"
 #include "cli/sweep/sweep_report.h"
 

@@ -1,10 +1,10 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
+#include "cli/base/rank_job.h"
 #include "cli/options/map_options.h"
 #include "cli/options/scene_input.h"
 #include "cli/options/screen_options.h"
 #include "cli/options/spectral_options.h"
-#include "cli/trace/trace.h"
 #include "cli/trace/trace_request.h"
 
 #include "library/choice/matched_physics.h"

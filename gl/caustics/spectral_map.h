@@ -108,4 +108,14 @@ abbe_result abbe_spectral_map_read_ledger(const abbe_spectral_map *map, size_t l
 abbe_result abbe_spectral_map_read(const abbe_spectral_map *map, size_t light, double unit,
                                    abbe_image *out, abbe_error *error);
 
+/* Texels of a map as it lies on the device, as a picture. */
+
+/* X, Y, Z, W a texel, of flux over window area for unit power; texel: [side][side][4], rows
+ * upwards. ABBE_NO_MEMORY. */
+abbe_result abbe_map_picture_flux(const float *texel, size_t side, const abbe_map_layout *layout,
+                                  double power, abbe_image *out, abbe_error *error);
+/* R, G, B in Rec.709 as they are. */
+abbe_result abbe_map_picture_colour(const float *texel, size_t side, abbe_image *out,
+                                    abbe_error *error);
+
 #endif

@@ -1,7 +1,7 @@
 #include "gl/image_space/image_view.h"
 
 #include "colorimetry/weights.h"
-#include "gl/caustics/map_picture.h"
+#include "gl/caustics/spectral_map.h"
 #include "gl/eye/picture.h"
 #include "gl/light/photon_lights.h"
 #include "scenes/geometry/transform.h"

@@ -21,7 +21,7 @@
 abbe_result abbe_material_write(const abbe_material *material, FILE *to, abbe_error *error);
 
 /* The whole table. ABBE_INVALID_ARGUMENT also where it is too large for a reader of YAML (a store
- * holds it: spectral/store/material_store_write.h); nothing is written then. */
+ * holds it: spectral/store/material_store.h); nothing is written then. */
 abbe_result abbe_material_table_write(const abbe_material_table *table, FILE *to,
                                       abbe_error *error);
 

@@ -1,7 +1,7 @@
 /* material_store.h: a table of materials as one SQLite file, for more of them than YAML can hold.
  *
  * Rows are found by name without reading the others. A store is written whole, from a table
- * (spectral/store/material_store_write.h), and not changed afterwards: what people edit is YAML
+ * (spectral/store/material_store.h), and not changed afterwards: what people edit is YAML
  * (spectral/editing/table_edit.h). docs/materials.md describes its columns, which any SQLite
  * program reads.
  */
@@ -14,6 +14,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 /* Whether a regular file stands at path that begins as SQLite's do. */
 bool abbe_material_store_is(const char *path);
@@ -30,5 +31,16 @@ abbe_result abbe_material_store_read(const char *path, const char *const *names,
 /* All rows, but of each its name alone: not to be used, but to be asked for. */
 abbe_result abbe_material_store_read_names(const char *path, abbe_material_table *out,
                                            abbe_error *error);
+
+/* A table of materials into a store (spectral/store/material_store.h). */
+
+/* Whether a file of this name is to be a store: it ends in .sqlite. */
+bool abbe_material_store_is_name(const char *path);
+
+/* Writes the table to the stream; it is made in memory before. ABBE_INVALID_ARGUMENT for a material
+ * that abbe_material_check does not pass and for a name that stands twice (whatever the case);
+ * ABBE_IO where the stream fails; ABBE_NO_MEMORY. */
+abbe_result abbe_material_store_write(const abbe_material_table *table, FILE *to,
+                                      abbe_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-#include "spectral/store/material_store_write.h"
+#include "spectral/store/material_store.h"
 
 #include "spectral/store/material_store_columns.h"
 

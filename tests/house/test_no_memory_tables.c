@@ -15,7 +15,7 @@
 #include "spectral/materials/convert.h"
 #include "spectral/materials/material_query.h"
 #include "spectral/materials/table_compare.h"
-#include "spectral/store/material_store_write.h"
+#include "spectral/store/material_store.h"
 #include "spectral/wavelengths.h"
 
 #include "base/file.h"

@@ -4,8 +4,8 @@
 #include "spectral/wavelengths.h"
 #include "validation/tracer/light_pass.h"
 #include "validation/tracer/tracer_state.h"
-#include "validation/transport/light_range.h"
-#include "validation/walks/eye_samples.h"
+#include "validation/transport/lamp_place.h"
+#include "validation/walks/camera.h"
 
 #include <omp.h>
 #include <stdio.h>

@@ -5,9 +5,8 @@
 #ifndef ABBE_VALIDATION_TRANSPORT_LAMP_PLACE_H
 #define ABBE_VALIDATION_TRANSPORT_LAMP_PLACE_H
 
-#include "validation/transport/geometry.h"
-
 #include "base/maths.h"
+#include "validation/transport/geometry.h"
 
 /* Of a light that is not directional, of u in [0, 1)^2; the place (frame). Returns W/sr along the
  * direction of full intensity, as of all of it. */
@@ -41,5 +40,15 @@ static inline void abbe_lamp_clear(const abbe_light *light, const float from[3],
   for (int k = 0; k < 3; k++)
     place[k] += 4 * ABBE_GEOMETRY_OFFSET * size * (float)light->direction[k];
 }
+
+/* How bright a white receiver in the middle of the scene is by each of its lights, its ambient
+ * light, its background and its environment: the range that a picture's sums are to hold. */
+
+/* W/(m2 sr): about, of what is not dark; both 1 where all is. */
+typedef struct abbe_light_range {
+  double least, greatest;
+} abbe_light_range;
+
+void abbe_light_range_find(const abbe_geometry *geometry, abbe_light_range *out);
 
 #endif

@@ -1,4 +1,4 @@
-#include "validation/transport/light_range.h"
+#include "validation/transport/lamp_place.h"
 
 #include <math.h>
 

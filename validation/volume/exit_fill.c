@@ -2,8 +2,8 @@
 
 #include "base/maths.h"
 #include "scenes/volume/half.h"
+#include "validation/volume/lone_object.h"
 #include "validation/volume/volume_checkpoint.h"
-#include "validation/volume/volume_space.h"
 
 #include <omp.h>
 #include <stdlib.h>

@@ -11,7 +11,6 @@
 #include "validation/volume/exit_fill.h"
 #include "validation/volume/lone_object.h"
 #include "validation/volume/volume_checkpoint.h"
-#include "validation/volume/volume_space.h"
 #include "validation/volume/volume_sums.h"
 #include "validation/walks/light_walk.h"
 

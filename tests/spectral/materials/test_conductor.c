@@ -11,7 +11,6 @@
 #include "spectral/materials/material_numbers.h"
 #include "spectral/materials/table_compare.h"
 #include "spectral/store/material_store.h"
-#include "spectral/store/material_store_write.h"
 
 #include <unistd.h>
 

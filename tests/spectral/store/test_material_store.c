@@ -5,7 +5,6 @@
 #include "base/file.h"
 #include "spectral/formats/material_table_load.h"
 #include "spectral/store/material_store.h"
-#include "spectral/store/material_store_write.h"
 
 #include <sqlite3.h>
 #include <unistd.h>

@@ -2,7 +2,7 @@
 #include "tests/scenes/scene_text.h"
 
 #include "base/maths.h"
-#include "validation/volume/volume_space.h"
+#include "validation/volume/lone_object.h"
 
 TEST(a_ball_takes_its_volume) {
   abbe_scene scene = {0};

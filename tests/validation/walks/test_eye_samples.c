@@ -1,7 +1,7 @@
 #include "tests/validation/trace_scene.h"
 
 #include "validation/tracer/tracer_state.h"
-#include "validation/walks/eye_samples.h"
+#include "validation/walks/camera.h"
 
 enum { SIDE = 40 };
 #define BUBBLE                                                                                     \
