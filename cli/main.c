@@ -28,15 +28,20 @@ static const abbe_pages_command commands[] = {
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 static void help(FILE *out) {
+#define ROW(name, summary) fprintf(out, "  %-12s %s\n", #name, summary);
   fprintf(out,
           "abbe %s: spectral dispersion caustics\n\n"
           "usage: abbe COMMAND [OPTION…] [FILE…]\n\n"
-          "First steps:\n" ABBE_FIRST_STEPS "\nCommands:\n",
+          "First steps:\n" ABBE_FIRST_STEPS "\nStones and scenes:\n",
           ABBE_VERSION);
-  for (int i = 0; i < COMMAND_COUNT; i++)
-    fprintf(out, "  %-11s %s\n", commands[i].name, commands[i].summary);
-  fprintf(out, "  %-11s %s\n\n", "help", "this page, or a command's own: abbe help render");
-  fprintf(out, "Exit codes: 0 done, 1 failed, 2 used wrongly, 3 out of tolerance.\n");
+  ABBE_SCENE_COMMANDS(ROW)
+  fprintf(out, "\nPictures:\n");
+  ABBE_PICTURE_COMMANDS(ROW)
+  fprintf(out, "\nMaterials, colours and measurements:\n");
+  ABBE_DATA_COMMANDS(ROW)
+  fprintf(out, "\n'abbe help COMMAND' or 'abbe COMMAND --help' shows a command's options.\n"
+               "Exit codes: 0 done, 1 failed, 2 used wrongly, 3 out of tolerance.\n");
+#undef ROW
 }
 
 /* What a page of help or a version says goes to stdout too, past all commands. */

@@ -57,7 +57,7 @@ void abbe_lib_scene_set_progress(abbe_lib_scene *scene, abbe_lib_progress progre
  * grid, quantized, neighbour) and footprint (auto, off, on), space (acescg, rec709, xyz), observer
  * (1931, 1964, 2015-2, 2015-10), aovs (1: direct.*, caustic.* and Z too), backend (auto, cpu, gpu:
  * of the first picture), and those of published methods that 'abbe methods --help' lists, with _
- * for -. docs/rendering.md says what they do. ABBE_INVALID_ARGUMENT,
+ * for -. docs/rendering.md and docs/methods.md say what they do. ABBE_INVALID_ARGUMENT,
  * ABBE_UNSUPPORTED, ABBE_GL, ABBE_CANCELLED, ABBE_NO_MEMORY. */
 abbe_result abbe_lib_scene_render(abbe_lib_scene *scene, const char *const *settings, size_t count,
                                   abbe_lib_picture **out, abbe_error *error);

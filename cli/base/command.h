@@ -19,30 +19,33 @@ struct cJSON;
 enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_TOLERANCE = 3 };
 
 /* X(name, summary): every subcommand NAME is `int abbe_command_NAME(int argc, char **argv)`;
- * argv[0] is "abbe NAME". */
-#define ABBE_COMMANDS(X)                                                                           \
-  X(render, "render a scene to OpenEXR and PNG")                                                   \
-  X(view, "show a scene in a window: turn it, change it, see the light follow")                    \
+ * argv[0] is "abbe NAME". Three groups, as `abbe help` shows them. */
+#define ABBE_SCENE_COMMANDS(X)                                                                     \
+  X(render, "render a stone or a scene to OpenEXR and PNG")                                        \
+  X(view, "show it in a window: turn it, change it, see the light follow")                         \
   X(trace, "trace the reference: what light really does, with standard errors")                    \
-  X(volume, "compute an object's caustics beforehand, for light from all sides")                   \
-  X(methods, "the published methods that render can take in place of its own, and their options")  \
+  X(gem, "say what a gem's design holds, draw it, report on it, convert it, change its angles")    \
   X(plan, "say which passes and models a scene asks for, and why")                                 \
-  X(materials, "look into, edit, convert and check tables of materials")                           \
-  X(gem, "say what a gem's design holds, draw it, convert it, change its angles")                  \
-  X(weights, "what each wavelength sample adds to a colour, in XYZ or RGB")                        \
-  X(display, "turn a linear EXR into a PNG for a screen, through OpenColorIO")                     \
-  X(environment, "say how much light a scene's surroundings hold, and write them as a picture")    \
   X(export, "write a scene for pbrt, Mitsuba, LuxCore, glTF, Blender or POV-Ray")                  \
-  X(flicker, "say how a series of frames errs over time: flicker and ghosts")                      \
-  X(outline, "say where a caustic's light and hues fall, and how far two pictures agree")          \
+  X(environment, "say how much light a scene's surroundings hold, and write them as a picture")    \
+  X(volume, "compute an object's caustics beforehand, for light from all sides")                   \
+  X(methods, "the published methods that render can take in place of its own, and their options")
+#define ABBE_PICTURE_COMMANDS(X)                                                                   \
+  X(info, "say what an EXR holds: size, channels, space, settings, statistics")                    \
+  X(display, "turn a linear EXR into a PNG for a screen, through OpenColorIO")                     \
   X(pixel, "say what a picture has at a pixel: spectrum, XYZ, wavelength, colour temperature")     \
   X(relight, "show a spectral picture to another observer, or under another illuminant")           \
   X(gamut, "say what of a picture a display's gamut cannot hold, and what mapping it costs")       \
-  X(atlas, "show the spectral colours, what bands make of them, and what displays can show")       \
-  X(info, "say what an EXR holds: size, channels, space, settings, statistics")                    \
-  X(sweep, "measure settings: time against error, and which are worth it")                         \
   X(compare, "say how far a picture or a receiver map is from a reference")                        \
+  X(outline, "say where a caustic's light and hues fall, and how far two pictures agree")          \
+  X(flicker, "say how a series of frames errs over time: flicker and ghosts")
+#define ABBE_DATA_COMMANDS(X)                                                                      \
+  X(materials, "look into, edit, convert and check tables of materials")                           \
+  X(weights, "what each wavelength sample adds to a colour, in XYZ or RGB")                        \
+  X(atlas, "show the spectral colours, what bands make of them, and what displays can show")       \
+  X(sweep, "measure settings: time against error, and which are worth it")                         \
   X(validate, "hold the reference tracer against optics that is known")
+#define ABBE_COMMANDS(X) ABBE_SCENE_COMMANDS(X) ABBE_PICTURE_COMMANDS(X) ABBE_DATA_COMMANDS(X)
 
 #define ABBE_COMMAND_DECLARE(name, summary) int abbe_command_##name(int argc, char **argv);
 ABBE_COMMANDS(ABBE_COMMAND_DECLARE)
