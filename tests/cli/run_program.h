@@ -16,16 +16,23 @@ static void run_setup(void) {
   assert_non_null(mkdtemp(run_folder));
 }
 
+/* A file of that name in the folder; the text stays for three more. */
+static inline const char *run_path(const char *name) {
+  static char path[4][400];
+  static size_t next;
+  char *out = path[next++ % 4];
+  snprintf(out, sizeof path[0], "%s/%s", run_folder, name);
+  return out;
+}
+
 /* Calls visit for every entry of the folder. */
 static inline void run_each(void (*visit)(const char *path, const char *name, void *user),
                             void *user) {
   DIR *dir = opendir(run_folder);
   assert_non_null(dir);
   for (struct dirent *entry; (entry = readdir(dir)) != NULL;) {
-    char path[400];
     if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0) continue;
-    snprintf(path, sizeof path, "%s/%s", run_folder, entry->d_name);
-    visit(path, entry->d_name, user);
+    visit(run_path(entry->d_name), entry->d_name, user);
   }
   closedir(dir);
 }
@@ -81,6 +88,12 @@ static inline int run_line(const char *line) {
 /* The same, of a line that ends well. */
 static inline void run_must(const char *line) {
   if (run_line(line) != 0) fail_msg("%s: %s", line, run_errors);
+}
+
+/* The same, of one whose output contains the words. */
+static inline void run_says(const char *line, const char *words) {
+  run_must(line);
+  if (strstr(run_output, words) == NULL) fail_msg("%s: no '%s' in: %s", line, words, run_output);
 }
 
 /* Exit code `code`, a sentence on stderr that holds part, nothing on stdout, nothing left. */

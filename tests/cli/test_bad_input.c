@@ -92,10 +92,9 @@ TEST(pipes_are_not_waited_for) {
       {FIFO "\"$abbe\" compare fifo fifo" AFTER, "fifo: is a named pipe"}};
   refuse_all(comparison, 1, 1);
   /* what an OBJ says of its colours is not needed */
-  assert_int_equal(run_line("printf 'mtllib fifo\nv 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\n"
-                            "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >box.obj;" SCENE(
-                                "", "reflectance: 1", ", {mesh: box.obj, material: f2}")),
-                   0);
+  run_must(
+      "printf 'mtllib fifo\nv 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf "
+      "2 3 4\n' >box.obj;" SCENE("", "reflectance: 1", ", {mesh: box.obj, material: f2}"));
   assert_int_equal(run_left(), 0);
 }
 
@@ -162,10 +161,8 @@ TEST(a_full_disk) {
   };
   refuse_all(rows, sizeof rows / sizeof *rows, 1);
   /* What stood there before is as it was. */
-  assert_int_equal(run_line("printf before >picture.exr; (ulimit -f 4; " GEM
-                            " --size 64x64 -o picture.exr); echo $?; cat picture.exr;"
-                            "rm picture.exr"),
-                   0);
+  run_must("printf before >picture.exr; (ulimit -f 4; " GEM
+           " --size 64x64 -o picture.exr); echo $?; cat picture.exr;rm picture.exr");
   assert_string_equal(run_output, "1\nbefore");
   assert_int_equal(run_left(), 0);
 }
@@ -237,7 +234,7 @@ TEST(an_inside_out_mesh_is_turned_and_told) {
       "   transform: [{translate: [0, 0, 0.2]}]}\n"
       "END\n"
       "\"$abbe\" render scene.yaml" SMALL TO " && \"$abbe\" plan scene.yaml >plan.txt\n";
-  assert_int_equal(run_line(line), 0);
+  run_must(line);
   const char *first = strstr(run_errors, "note: object 'wedge': ");
   assert_non_null(first);
   assert_non_null(strstr(first + 1, "note: object 'wedge': ")); /* both commands */

@@ -4,14 +4,11 @@
 GROUP(run_setup, run_teardown);
 
 TEST(a_scene_is_exported) {
-  assert_int_equal(run_line("\"$abbe\" export \"$house\"/scenes/prism.yaml -o p.pov && "
-                            "grep -c 'mesh2 {' p.pov"),
-                   0);
+  run_must("\"$abbe\" export \"$house\"/scenes/prism.yaml -o p.pov && grep -c 'mesh2 {' p.pov");
   assert_string_equal(run_output, "7\n"); /* the prism, four jaws, floor and wall */
   assert_contains(run_errors, "sf10: ior 1.73");
-  assert_int_equal(run_line("\"$abbe\" export \"$house\"/scenes/prism.yaml -o q.pov -q && "
-                            "cmp p.pov q.pov && rm p.pov q.pov"),
-                   0);
+  run_must("\"$abbe\" export \"$house\"/scenes/prism.yaml -o q.pov -q && cmp p.pov q.pov && rm "
+           "p.pov q.pov");
   assert_string_equal(run_errors, "");
   assert_int_equal(run_left(), 0);
 }
@@ -47,7 +44,7 @@ TEST(other_programs) {
     char line[300];
     snprintf(line, sizeof line, "\"$abbe\" export \"$house\"/scenes/prism.yaml %s -o %s",
              rows[i].to, rows[i].file);
-    assert_int_equal(run_line(line), 0);
+    run_must(line);
     assert_string_equal(run_output, "");
     assert_contains(run_errors, rows[i].says);
     snprintf(line, sizeof line,
@@ -62,7 +59,7 @@ TEST(other_programs) {
     const double worst = cJSON_GetObjectItemCaseSensitive(glass, "worst")->valuedouble;
     assert_true(worst > 0 && worst >= cJSON_GetObjectItemCaseSensitive(glass, "rms")->valuedouble);
     cJSON_Delete(json);
-    assert_int_equal(run_line("rm -f p.* p-*"), 0);
+    run_must("rm -f p.* p-*");
   }
   assert_int_equal(run_left(), 0);
 }

@@ -8,8 +8,8 @@
 GROUP(run_setup, run_teardown);
 
 TEST(a_design_is_described) {
-  assert_int_equal(run_line(GEM "info" QUARTZ "--material diamond --width 6.5 --density 3.52"), 0);
-  assert_contains(run_output, "57 + 16 girdle: 33 crown, 24 pavilion; 57 corners, 128 edges");
+  run_says(GEM "info" QUARTZ "--material diamond --width 6.5 --density 3.52",
+           "57 + 16 girdle: 33 crown, 24 pavilion; 57 corners, 128 edges");
   assert_contains(run_output, "critical angle 40.37 degrees");
   assert_contains(run_output, "Meet A-A-B-B");
   assert_contains(run_output, "main       crown 42.00 degrees, facets B; pavilion 43.00 degrees");
@@ -28,16 +28,14 @@ TEST(a_design_is_described) {
 }
 
 TEST(there_and_back) {
-  assert_int_equal(run_line(GEM "convert" QUARTZ "-o s.gem && " GEM "convert s.gem -o s.asc && " GEM
-                                "info s.asc -q"),
-                   0);
-  assert_contains(run_output, "57 + 16 girdle");
+  run_says(GEM "convert" QUARTZ "-o s.gem && " GEM "convert s.gem -o s.asc && " GEM "info s.asc -q",
+           "57 + 16 girdle");
   assert_contains(run_output, "Round brilliant for quartz");
-  assert_int_equal(run_line(GEM "convert" QUARTZ "--width 8 -o s.stl && " GEM "convert" QUARTZ
-                                "--width 8 -o s.obj && " GEM "convert" QUARTZ
-                                "--width 8 --material diamond -o s.glb && test -s s.stl -a -s "
-                                "s.obj -a -s s.glb && rm s.*"),
-                   0);
+  run_must(
+      GEM
+      "convert" QUARTZ "--width 8 -o s.stl && " GEM "convert" QUARTZ "--width 8 -o s.obj && " GEM
+      "convert" QUARTZ
+      "--width 8 --material diamond -o s.glb && test -s s.stl -a -s s.obj -a -s s.glb && rm s.*");
   assert_int_equal(run_left(), 0);
 }
 
@@ -57,14 +55,12 @@ TEST(other_angles) {
   assert_near(json_number(json_item(json, "crown"), "tangent_ratio"), 1, 0);
   assert_near(json_number(json_item(json, "pavilion"), "to_deg"), 41, 0);
   cJSON_Delete(json);
-  assert_int_equal(run_line("rm s.asc"), 0);
+  run_must("rm s.asc");
 }
 
 TEST(sheets) {
-  assert_int_equal(run_line(GEM "diagram" QUARTZ "-o d.pdf && " GEM "diagram" QUARTZ
-                                "-o d.png && " GEM "diagram" QUARTZ
-                                "-o d.svg --material diamond && rm d.*"),
-                   0);
+  run_must(GEM "diagram" QUARTZ "-o d.pdf && " GEM "diagram" QUARTZ "-o d.png && " GEM
+               "diagram" QUARTZ "-o d.svg --material diamond && rm d.*");
 }
 
 TEST(what_is_refused) {
@@ -99,6 +95,6 @@ TEST(what_is_refused) {
   /* A design is not written over itself. */
   assert_int_equal(run_line("cp" QUARTZ "o.asc; " GEM "retarget o.asc --index 1.7 -o o.asc"), 2);
   assert_contains(run_errors, "o.asc");
-  assert_int_equal(run_line("rm o.asc"), 0);
+  run_must("rm o.asc");
   assert_int_equal(run_left(), 0);
 }

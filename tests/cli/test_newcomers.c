@@ -192,9 +192,7 @@ TEST(a_saved_scene_draws_the_same) {
 }
 
 TEST(a_picture_is_named_after_its_stone) {
-  assert_int_equal(run_line(QUARTZ RENDER "round.asc --size 16x16 --with none --alpha && "
-                                          "test -s round.png"),
-                   0);
+  run_must(QUARTZ RENDER "round.asc --size 16x16 --with none --alpha && test -s round.png");
   assert_contains(run_errors, "round.asc as quartz, 6.5 mm wide (its design is for an index of");
   run_each(run_remove, NULL);
 }

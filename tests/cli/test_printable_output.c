@@ -160,9 +160,7 @@ TEST(everything_that_is_said) {
 /* JSON that goes to a file is as good. */
 TEST(json_in_files) {
   prepare();
-  assert_int_equal(run_line("$abbe trace names.yaml --spp 1 --photons 16 --map 4 -q --stats t.json "
-                            "-o t.exr"),
-                   0);
+  run_must("$abbe trace names.yaml --spp 1 --photons 16 --map 4 -q --stats t.json -o t.exr");
   char path[300], *text = NULL;
   size_t size = 0;
   path_of("t.json", path);
@@ -177,12 +175,12 @@ TEST(json_in_files) {
 /* What a text says keeps its letters, and its lines do not look like the program's own. */
 TEST(what_is_shown) {
   prepare();
-  assert_int_equal(run_line("$abbe info evil.exr"), 0);
-  assert_contains(run_output, ": a\n    \xe2\x90\x9b]0;x\xe2\x90\x87\xe2\x90\x9b[31m\xe2\x90\xa1");
+  run_says("$abbe info evil.exr",
+           ": a\n    \xe2\x90\x9b]0;x\xe2\x90\x87\xe2\x90\x9b[31m\xe2\x90\xa1");
   assert_null(strstr(run_output, "\nforged"));
-  assert_int_equal(run_line("$abbe plan names.yaml"), 0);
-  assert_contains(run_output, "model: ba\xe2\x90\x9b[31m\xe2\x90\x87\xe2\x90\xa1\xef\xbf\xbd ll");
-  assert_int_equal(run_line("$abbe info --json evil.exr"), 0);
+  run_says("$abbe plan names.yaml",
+           "model: ba\xe2\x90\x9b[31m\xe2\x90\x87\xe2\x90\xa1\xef\xbf\xbd ll");
+  run_must("$abbe info --json evil.exr");
   cJSON *json = cJSON_Parse(run_output);
   const cJSON *attributes = cJSON_GetObjectItem(json, "attributes");
   assert_non_null(attributes);
@@ -206,7 +204,7 @@ TEST(letters_pass) {
   OK(abbe_image_set_attribute(&image, "text", text, &error));
   OK(abbe_exr_write(path, &image, &error));
   abbe_image_free(&image);
-  assert_int_equal(run_line("$abbe info evil.exr"), 0);
+  run_must("$abbe info evil.exr");
   char *at = strstr(run_output, "text: ");
   assert_non_null(at);
   at += 6;

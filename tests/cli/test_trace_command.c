@@ -14,15 +14,11 @@
 #define AFTER_A_PASS " & p=$!; while [ ! -e a.exr.checkpoint ] && kill -0 $p; do sleep 0.02; done; "
 
 static void read_image(const char *name, abbe_image *image) {
-  char path[128];
-  snprintf(path, sizeof path, "%s/%s", run_folder, name);
-  OK(abbe_exr_read(path, image, &error));
+  OK(abbe_exr_read(run_path(name), image, &error));
 }
 
 static bool there(const char *name) {
-  char path[128];
-  snprintf(path, sizeof path, "%s/%s", run_folder, name);
-  return access(path, F_OK) == 0;
+  return access(run_path(name), F_OK) == 0;
 }
 
 static void check_run(const char *line, int code) {

@@ -153,7 +153,7 @@ TEST(a_sweep) {
       "--map 32 --samples 1 --profiles default --wavelengths 7 --photons 8,16 -o s.csv";
   char line[2048];
   run_each(run_remove, NULL);
-  assert_int_equal(run_line(sweep), 0);
+  run_must(sweep);
   content picture = read_whole("s-reference.exr"), map = read_whole("s-reference-map.exr");
   size_t tried = 0;
   for (size_t n = 2;; n += 110 * sparse(), tried++) {
@@ -163,11 +163,11 @@ TEST(a_sweep) {
     if (code == 0) break;
     assert_int_equal(code, 137);
     if (access(path_of("s.csv"), F_OK) == 0) /* looked at where it stands, it is whole */
-      assert_int_equal(run_line("\"$abbe\" sweep s.csv --json"), 0);
+      run_must("\"$abbe\" sweep s.csv --json");
     if (run_line(sweep) != 0) fail_msg("after %s it does not go on: %s", line, run_errors);
     assert_true(holds("s-reference.exr", &picture) && holds("s-reference-map.exr", &map));
     assert_int_equal(access(path_of("s-reference.checkpoint"), F_OK), -1);
-    assert_int_equal(run_line("grep -c '^default,' s.csv"), 0);
+    run_must("grep -c '^default,' s.csv");
     assert_string_equal(run_output, "2\n");
   }
   assert_true(tried >= 2);
@@ -183,7 +183,7 @@ TEST(any_moment) {
   static const char trace[] = "\"$abbe\" trace " SCENE " -q --size 16x16 --photons 20000 --map 16 "
                               "--spp 12 --checkpoint-every 0 --resume -o";
   snprintf(line, sizeof line, "%s whole.exr", trace);
-  assert_int_equal(run_line(line), 0);
+  run_must(line);
   content whole = read_whole("whole.exr");
   for (int i = 0; i < 4; i++) {
     snprintf(line, sizeof line,
@@ -212,7 +212,7 @@ TEST(asked_to_end) {
         signals[i]);
     assert_int_equal(run_line(line), 1);
     assert_contains(run_errors, "with --resume goes on");
-    assert_int_equal(run_line("rm t.exr t.exr.checkpoint"), 0);
+    run_must("rm t.exr t.exr.checkpoint");
   }
 }
 

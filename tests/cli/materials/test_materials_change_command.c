@@ -7,19 +7,11 @@
 #define MATERIALS "\"$abbe\" materials "
 #define RENEW "cp \"$house\"/spectral/materials/thesis.yaml t.yaml && "
 
-static int done(const char *line) {
-  int code = run_line(line);
-  if (code != 0) print_error("%s\n%s%s", line, run_output, run_errors);
-  return code;
-}
-
 GROUP(run_setup, run_teardown);
 
 TEST(a_row_is_corrected) {
-  assert_int_equal(done(RENEW MATERIALS
-                        "set k5 coefficients.0=1.5090 --unset warning --dry-run" TABLE
-                        " && cmp t.yaml \"$house\"/spectral/materials/thesis.yaml"),
-                   0);
+  run_must(RENEW MATERIALS "set k5 coefficients.0=1.5090 --unset warning --dry-run" TABLE
+                           " && cmp t.yaml \"$house\"/spectral/materials/thesis.yaml");
   assert_string_equal(run_output,
                       "--- t.yaml\n+++ t.yaml\n@@ -24,12 +24,9 @@\n   - name: k5\n"
                       "     description: Hard crown K5, as the thesis has it\n"
@@ -30,37 +22,34 @@ TEST(a_row_is_corrected) {
                       "index is too high by\n-      about 0.013.\n   - name: bak4\n"
                       "     description: Barium crown BaK4, as the thesis has it\n"
                       "     model: cauchy\n");
-  assert_int_equal(done(MATERIALS "set k5 coefficients.0=1.5090 source='own: 3 May' note=1" TABLE),
-                   1);
+  assert_int_equal(
+      run_line(MATERIALS "set k5 coefficients.0=1.5090 source='own: 3 May' note=1" TABLE), 1);
   assert_contains(run_errors, "nothing was written: t.yaml:33: a material has no key 'note'");
-  assert_int_equal(done(MATERIALS "set k5 coefficients.0=1.5090 source='own: 3 May'" TABLE), 0);
-  assert_contains(run_output, "t.yaml: the record 'k5' is changed\n"
-                              "  n_d 1.535296 -> 1.522296, V_d 61.071 -> 59.588\n");
-  assert_int_equal(done("diff t.yaml \"$house\"/spectral/materials/thesis.yaml | grep -c '^[<>]'"), 0);
+  run_says(
+      MATERIALS "set k5 coefficients.0=1.5090 source='own: 3 May'" TABLE,
+      "t.yaml: the record 'k5' is changed\n  n_d 1.535296 -> 1.522296, V_d 61.071 -> 59.588\n");
+  run_must("diff t.yaml \"$house\"/spectral/materials/thesis.yaml | grep -c '^[<>]'");
   assert_string_equal(run_output, "4\n");
-  assert_int_equal(done(MATERIALS "show k5 --at 587.5618" TABLE), 0);
-  assert_contains(run_output, "own: 3 May");
-  assert_int_equal(done("rm t.yaml"), 0);
+  run_says(MATERIALS "show k5 --at 587.5618" TABLE, "own: 3 May");
+  run_must("rm t.yaml");
 }
 
 TEST(what_is_so_already_is_not_changed) {
-  assert_int_equal(run_line(RENEW MATERIALS "set k5 coefficients.1=0.00459" TABLE), 0);
-  assert_contains(run_output, "it says so already; nothing is changed");
-  assert_int_equal(run_line("cmp t.yaml \"$house\"/spectral/materials/thesis.yaml"), 0);
+  run_says(RENEW MATERIALS "set k5 coefficients.1=0.00459" TABLE,
+           "it says so already; nothing is changed");
+  run_must("cmp t.yaml \"$house\"/spectral/materials/thesis.yaml && rm t.yaml");
 }
 
 TEST(records_come_and_go) {
-  assert_int_equal(done(MATERIALS "add n-bk7 --from default --create" TABLE), 0);
-  assert_int_equal(done(MATERIALS "add f2 --from default --as my-f2 source='melt 7'" TABLE), 0);
-  assert_int_equal(done(MATERIALS "add mine model=cauchy 'coefficients=[1.509, 0.0046]' "
-                                  "'range_nm=[400, 700]' source='own: 3 May'" TABLE),
-                   0);
-  assert_int_equal(done("printf 'name: x\\nmodel: constant\\ncoefficients: [2]\\nsource: s\\n' | "
-                        "\"$abbe\" materials add --record -" TABLE),
-                   0);
-  assert_int_equal(done(MATERIALS "rename x 'x, the last'" TABLE), 0);
-  assert_int_equal(done(MATERIALS "remove n-bk7 MY-F2" TABLE), 0);
-  assert_int_equal(done("cat t.yaml && rm t.yaml"), 0);
+  run_must(MATERIALS "add n-bk7 --from default --create" TABLE);
+  run_must(MATERIALS "add f2 --from default --as my-f2 source='melt 7'" TABLE);
+  run_must(MATERIALS "add mine model=cauchy 'coefficients=[1.509, 0.0046]' 'range_nm=[400, 700]' "
+                     "source='own: 3 May'" TABLE);
+  run_must("printf 'name: x\\nmodel: constant\\ncoefficients: [2]\\nsource: s\\n' | \"$abbe\" "
+           "materials add --record -" TABLE);
+  run_must(MATERIALS "rename x 'x, the last'" TABLE);
+  run_must(MATERIALS "remove n-bk7 MY-F2" TABLE);
+  run_must("cat t.yaml && rm t.yaml");
   assert_string_equal(run_output, "materials:\n  - name: mine\n    model: cauchy\n"
                                   "    coefficients: [1.509, 0.0046]\n    range_nm: [400, 700]\n"
                                   "    source: \"own: 3 May\"\n\n  - name: \"x, the last\"\n"
@@ -68,33 +57,32 @@ TEST(records_come_and_go) {
 }
 
 TEST(tables_are_compared) {
-  assert_int_equal(done(RENEW MATERIALS "diff thesis t.yaml --tolerance 0"), 0);
+  run_must(RENEW MATERIALS "diff thesis t.yaml --tolerance 0");
   assert_string_equal(run_output, "thesis -> t.yaml: 0 changed, 0 renamed, 0 only in the first, 0 "
                                   "only in the second, 5 the same\n");
-  assert_int_equal(
-      done(MATERIALS "set k5 coefficients.0=1.5090" TABLE " && " MATERIALS "diff thesis t.yaml"),
-      0);
+  assert_int_equal(run_line(MATERIALS "set k5 coefficients.0=1.5090" TABLE " && " MATERIALS
+                                      "diff thesis t.yaml"),
+                   0);
   assert_contains(run_output, "~ k5: coefficients\n    n_d 1.535296 -> 1.522296, V_d 61.071 -> "
                               "59.588\n    largest change of n 0.013, at ");
   assert_int_equal(run_line(MATERIALS "diff thesis t.yaml --tolerance 0.01"), 3);
   assert_contains(run_errors, "the index of 'k5' changes by 0.013");
-  assert_int_equal(done(MATERIALS "diff thesis t.yaml --tolerance 0.02"), 0);
-  assert_int_equal(done(MATERIALS "diff thesis t.yaml --json"), 0);
+  run_must(MATERIALS "diff thesis t.yaml --tolerance 0.02");
+  run_must(MATERIALS "diff thesis t.yaml --json");
   cJSON *json = cJSON_Parse(run_output);
   const cJSON *row = cJSON_GetArrayItem(cJSON_GetObjectItem(json, "rows"), 2);
   assert_string_equal(cJSON_GetObjectItem(row, "kind")->valuestring, "changed");
   assert_near(cJSON_GetObjectItem(row, "largest")->valuedouble, 0.013, 1e-12);
   assert_near(cJSON_GetObjectItem(row, "mean")->valuedouble, -0.013, 1e-12);
   cJSON_Delete(json);
-  assert_int_equal(done("rm t.yaml"), 0);
+  run_must("rm t.yaml");
 }
 
 /* A copied record is the shipped one, comments and all. */
 TEST(a_copy_is_whole) {
-  assert_int_equal(done(MATERIALS "add f2 --from default --create" TABLE " && grep -c '# 4 pi k' "
-                                  "t.yaml && " MATERIALS "show f2" TABLE " > a && " MATERIALS
-                                  "show f2 > b && cmp a b && rm a b t.yaml"),
-                   0);
+  run_must(MATERIALS "add f2 --from default --create" TABLE
+                     " && grep -c '# 4 pi k' t.yaml && " MATERIALS "show f2" TABLE
+                     " > a && " MATERIALS "show f2 > b && cmp a b && rm a b t.yaml");
 }
 
 TEST(wrong_use_gets_a_sentence) {
@@ -111,7 +99,8 @@ TEST(wrong_use_gets_a_sentence) {
       {MATERIALS "set k6 source=x" TABLE, "did you mean 'k5'?", 1},
       {MATERIALS "set k5 range_nm=380:780" TABLE, "'range_nm' wants a list of 2 numbers", 1},
       {MATERIALS "set k5 'range_nm=[380'" TABLE, "break the file", 1},
-      {MATERIALS "set k5 coefficients.2=1" TABLE, "has no 'coefficients.2'; the list has 2 items", 1},
+      {MATERIALS "set k5 coefficients.2=1" TABLE, "has no 'coefficients.2'; the list has 2 items",
+       1},
       {MATERIALS "set k5 coefficients.1=0,0046" TABLE, "with a decimal point, 0.0046", 1},
       {MATERIALS "set k5 --unset fit" TABLE, "has no 'fit'", 1},
       {MATERIALS "set k5 --unset source" TABLE, "the key 'source' is missing", 1},
@@ -138,27 +127,26 @@ TEST(wrong_use_gets_a_sentence) {
       {MATERIALS "diff a b c", "one argument too many", 2},
       {MATERIALS "rename a b c" TABLE, "one argument too many", 2},
   };
-  assert_int_equal(run_line(RENEW "true"), 0);
+  run_must(RENEW "true");
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     int code = run_line(cases[i].line);
     if (code != cases[i].code || run_output[0] != '\0')
       fail_msg("%s: %d\n%s%s", cases[i].line, code, run_output, run_errors);
     assert_contains(run_errors, cases[i].part);
   }
-  assert_int_equal(run_line("cmp t.yaml \"$house\"/spectral/materials/thesis.yaml && rm t.yaml"), 0);
+  run_must("cmp t.yaml \"$house\"/spectral/materials/thesis.yaml && rm t.yaml");
 }
 
 /* Each line of the examples is a command or its next line: none was broken to fit the page. */
 TEST(help_shows_examples) {
-  const char *const verbs[] = {"list", "show",   "plot",   "nearest", "check", "fit",    "from",
-                               "diff", "edit",   "set",    "add",     "remove", "rename", "import",
-                               "export"};
+  const char *const verbs[] = {"list", "show",   "plot",   "nearest", "check",
+                               "fit",  "from",   "diff",   "edit",    "set",
+                               "add",  "remove", "rename", "import",  "export"};
   for (size_t i = 0; i < sizeof verbs / sizeof verbs[0]; i++) {
     char line[96], example[64];
     snprintf(line, sizeof line, MATERIALS "%s --help", verbs[i]);
     snprintf(example, sizeof example, "  abbe materials %s ", verbs[i]);
-    assert_int_equal(run_line(line), 0);
-    assert_contains(run_output, "Examples:");
+    run_says(line, "Examples:");
     assert_contains(run_output, example);
     const char *c = strstr(run_output, "Examples:\n") + 10;
     for (; *c != '\n' && *c != '\0'; c += strcspn(c, "\n") + 1)

@@ -24,7 +24,7 @@ static abbe_material_table record_of(const char *line) {
   char table_text[4096];
   abbe_material_table table;
   abbe_error error = {0};
-  assert_int_equal(run_line(line), 0);
+  run_must(line);
   snprintf(table_text, sizeof table_text, "materials:\n%.4000s", run_output);
   if (abbe_material_table_parse(table_text, strlen(table_text), "printed", &table, &error) !=
       ABBE_OK)
@@ -270,7 +270,7 @@ TEST(two_numbers_make_a_record) {
   assert_true(json_number(json, "largest_error") > json_number(json, "typical_error"));
   cJSON_Delete(json);
   /* what the check doubts is said, on the side */
-  assert_int_equal(run_line("$abbe materials from --a 1.5690 --b 0.00531"), 0);
+  run_must("$abbe materials from --a 1.5690 --b 0.00531");
   assert_contains(run_errors, "the column A holds n_d");
 }
 

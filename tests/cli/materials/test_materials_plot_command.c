@@ -6,32 +6,29 @@
 #define PLOT "\"$abbe\" materials plot "
 
 static void check_picture(const char *name, size_t width, size_t height) {
-  char path[160];
   abbe_image image;
-  snprintf(path, sizeof path, "%s/%s", run_folder, name);
-  OK(abbe_png_read(path, &image, &error));
+  OK(abbe_png_read(run_path(name), &image, &error));
   assert_int_equal(image.width, width);
   assert_int_equal(image.height, height);
   abbe_image_free(&image);
-  unlink(path);
+  unlink(run_path(name));
 }
 
 GROUP(run_setup, run_teardown);
 
 TEST(pictures_are_made) {
-  assert_int_equal(run_line(PLOT "n-bk7 f2 -o a.png"), 0);
+  run_must(PLOT "n-bk7 f2 -o a.png");
   check_picture("a.png", 960, 600);
-  assert_int_equal(run_line(PLOT "rutile --fits --size 400x300 --range 300:900 -o a.png"), 0);
+  run_must(PLOT "rutile --fits --size 400x300 --range 300:900 -o a.png");
   check_picture("a.png", 400, 300);
-  assert_int_equal(run_line("printf '486.1 1.5224\\n656.3 1.5143\\n' > p.csv && " PLOT
-                            "n-bk7 --points p.csv -o a.png && rm p.csv"),
-                   0);
+  run_must("printf '486.1 1.5224\\n656.3 1.5143\\n' > p.csv && " PLOT
+           "n-bk7 --points p.csv -o a.png && rm p.csv");
   check_picture("a.png", 960, 600);
-  assert_int_equal(run_line(PLOT "--map --table thesis --table default bk7 n-bk7 -o a.png"), 0);
+  run_must(PLOT "--map --table thesis --table default bk7 n-bk7 -o a.png");
   assert_string_equal(run_errors, "abbe materials plot: left out 1 without n_d and a finite V_d in "
                                   "their range\n");
   check_picture("a.png", 960, 600);
-  assert_int_equal(run_line(PLOT "n-bk7 -o a.svg && head -c 5 a.svg && rm a.svg"), 0);
+  run_must(PLOT "n-bk7 -o a.svg && head -c 5 a.svg && rm a.svg");
   assert_string_equal(run_output, "<?xml");
   assert_int_equal(run_left(), 0);
 }
@@ -57,6 +54,5 @@ TEST(wrong_use_gets_a_sentence) {
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
     assert_true(run_refuses(cases[i].line, cases[i].code, cases[i].part));
-  assert_int_equal(run_line(PLOT "--help"), 0);
-  assert_contains(run_output, "  abbe materials plot n-bk7 f2 sf11 -o glasses.png");
+  run_says(PLOT "--help", "  abbe materials plot n-bk7 f2 sf11 -o glasses.png");
 }

@@ -20,7 +20,7 @@ static const cJSON *item(const cJSON *json, const char *key) {
 EACH(run_setup, run_teardown);
 
 TEST(by_name) {
-  assert_int_equal(run_line(PRESETS), 0);
+  run_must(PRESETS);
   cJSON *json = run_json(GEM "--presets p.yaml --preset balanced --json -q", 0);
   assert_string_equal(cJSON_GetStringValue(item(json, "preset")), "balanced");
   assert_contains(cJSON_GetStringValue(item(json, "settings")), "24 photons, map 64");
@@ -52,7 +52,7 @@ TEST(by_name) {
 }
 
 TEST(by_error_and_by_time) {
-  assert_int_equal(run_line(PRESETS), 0);
+  run_must(PRESETS);
   cJSON *json = run_json(GEM "--presets p.yaml --max-error 5 --json -q", 0);
   assert_near(cJSON_GetNumberValue(item(json, "error")), 4, 0);
   assert_true(cJSON_IsTrue(item(json, "possible")));
@@ -63,7 +63,7 @@ TEST(by_error_and_by_time) {
   assert_contains(run_errors, "no settings are known to keep 1; these are the most accurate");
   assert_contains(run_errors,
                   "no settings are known to keep an error of 1; the most accurate ones");
-  assert_int_equal(run_line("test -s a.png && rm a.png"), 0);
+  run_must("test -s a.png && rm a.png");
   cJSON_Delete(json);
   /* The third would take ten million times the first's time. */
   json = run_json(GEM "--presets p.yaml --budget-ms 100000 --json -q", 0);
@@ -76,7 +76,7 @@ TEST(by_error_and_by_time) {
   assert_true(cJSON_IsFalse(item(json, "budget_met")));
   assert_contains(run_errors,
                   "the budget of 0.001 ms is not kept, for no faster settings are known");
-  assert_int_equal(run_line("test -s a.png && rm a.png"), 0);
+  run_must("test -s a.png && rm a.png");
   cJSON_Delete(json);
   assert_int_equal(run_line(GEM "--presets p.yaml --budget-ms 0.001 --png a.png && rm a.png"), 3);
   assert_contains(run_errors, "these are the fastest");
@@ -114,8 +114,8 @@ TEST(what_is_refused) {
 /* With a time, passes tell the error where time is left, and else it is said to be expected. An age
  * is left here, or nothing. */
 TEST(what_a_budget_tells) {
-  assert_int_equal(run_line(PICTURES), 0);
-  assert_int_equal(run_line("sed 's/    trace:/    trace-filter:/' q.yaml >f.yaml"), 0);
+  run_must(PICTURES);
+  run_must("sed 's/    trace:/    trace-filter:/' q.yaml >f.yaml");
   static const struct {
     const char *line, *met;
   } told[] = {
@@ -144,11 +144,11 @@ TEST(what_a_budget_tells) {
   json = run_json(GEM "--presets q.yaml --preset draft --json --tool render", 0);
   assert_contains(cJSON_GetStringValue(item(json, "error_is")), "no passes were traced for that");
   cJSON_Delete(json);
-  assert_int_equal(run_line("rm q.yaml f.yaml"), 0);
+  run_must("rm q.yaml f.yaml");
 }
 
 TEST(what_makes_the_picture) {
-  assert_int_equal(run_line(PICTURES), 0);
+  run_must(PICTURES);
   cJSON *json = run_json(GEM "--presets q.yaml --max-error 12 --tool trace --json -o a.exr", 0);
   assert_string_equal(cJSON_GetStringValue(item(json, "for")), "picture");
   assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "trace");
@@ -174,8 +174,7 @@ TEST(what_makes_the_picture) {
   assert_contains(run_errors, "that is more, for this scene's light is of another kind");
   assert_contains(run_errors, "an error of 0.5 is not known to be kept: 4 passes tell one of");
   cJSON_Delete(json);
-  assert_int_equal(run_line("\"$abbe\" info a.exr && rm a.exr"), 0);
-  assert_contains(run_output, "stderr.R");
+  run_says("\"$abbe\" info a.exr && rm a.exr", "stderr.R");
   json = run_json(GEM "--presets q.yaml --max-error 30 --json --tool render -q", 0);
   assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "render");
   assert_true(cJSON_IsFalse(item(json, "overridden")));
@@ -195,8 +194,7 @@ TEST(what_makes_the_picture) {
   assert_true(cJSON_IsTrue(item(json, "error_kept")));
   assert_contains(run_errors, "of what they made; it is taken");
   cJSON_Delete(json);
-  assert_int_equal(run_line("\"$abbe\" info a.exr && rm a.exr"), 0);
-  assert_contains(run_output, "stderr.R");
+  run_says("\"$abbe\" info a.exr && rm a.exr", "stderr.R");
   json = run_json(GEM "--presets r.yaml --max-error 3 --json --tool render", 3);
   assert_true(cJSON_IsFalse(item(json, "traced_instead")));
   assert_true(cJSON_IsFalse(item(json, "error_kept")));
@@ -215,7 +213,7 @@ TEST(what_makes_the_picture) {
   assert_null(
       cJSON_GetObjectItemCaseSensitive(cJSON_GetObjectItemCaseSensitive(json, "promise"), "for"));
   cJSON_Delete(json);
-  assert_int_equal(run_line("rm q.yaml r.yaml"), 0);
+  run_must("rm q.yaml r.yaml");
   static const struct {
     const char *line, *part;
     int code;

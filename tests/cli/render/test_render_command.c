@@ -37,11 +37,11 @@ static void assert_statistics(const char *text) {
 GROUP(run_setup, run_teardown);
 
 TEST(statistics_as_json) {
-  assert_int_equal(run_line(GEM " --stats stats.json && cat stats.json && rm stats.json"), 0);
+  run_must(GEM " --stats stats.json && cat stats.json && rm stats.json");
   assert_statistics(run_output);
-  assert_int_equal(run_line(GEM " --stats -"), 0); /* as --json */
+  run_must(GEM " --stats -"); /* as --json */
   assert_statistics(run_output);
-  assert_int_equal(run_line(GEM " --json --frames 3"), 0);
+  run_must(GEM " --json --frames 3");
   assert_statistics(run_output);
   assert_int_equal(run_left(), 0);
 }
@@ -68,8 +68,8 @@ TEST(the_plan_as_json) {
   assert_string_equal(cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(gem, "material")),
                       "n-sf11");
   cJSON_Delete(json);
-  assert_int_equal(run_line("\"$abbe\" plan \"$house\"/scenes/gem.yaml"), 0);
-  assert_contains(run_output, "What runs, and the fact that asks for it:");
+  run_says("\"$abbe\" plan \"$house\"/scenes/gem.yaml",
+           "What runs, and the fact that asks for it:");
   assert_contains(run_output, "What is there, with its size and the middle of its bounds, m:");
   assert_contains(run_output, "What does not run:");
 }
@@ -77,7 +77,7 @@ TEST(the_plan_as_json) {
 TEST(pictures_are_written) {
   char path[128];
   abbe_image image = {0};
-  assert_int_equal(run_line(GEM " -o a.exr --png a.png --save-map map.exr --bits 16"), 0);
+  run_must(GEM " -o a.exr --png a.png --save-map map.exr --bits 16");
   assert_string_equal(run_output, "");
   snprintf(path, sizeof path, "%s/a.exr", run_folder);
   OK(abbe_exr_read(path, &image, &error));
@@ -93,24 +93,20 @@ TEST(pictures_are_written) {
   assert_true(abbe_image_find_channel(&image, "Y") != (size_t)-1);
   abbe_image_free(&image);
   /* The same request gives the same bytes. */
-  assert_int_equal(run_line(GEM " -q -o b.exr --png b.png --bits 16 && cmp a.png b.png && "
-                                "cmp a.exr b.exr && rm a.exr a.png b.exr b.png map.exr"),
-                   0);
+  run_must(GEM " -q -o b.exr --png b.png --bits 16 && cmp a.png b.png && cmp a.exr b.exr && rm "
+               "a.exr a.png b.exr b.png map.exr");
   assert_string_equal(run_errors, "");
   assert_int_equal(run_left(), 0);
 }
 
 TEST(a_map_like_another) {
-  assert_int_equal(run_line(GEM
-                            " -q --save-map a.exr && \"$abbe\" render \"$house\"/scenes/gem.yaml "
-                            "--size 32x24 --photons 32 -q --map-like a.exr --save-map b.exr && "
-                            "cmp a.exr b.exr"),
-                   0);
+  run_must(GEM " -q --save-map a.exr && \"$abbe\" render \"$house\"/scenes/gem.yaml --size 32x24 "
+               "--photons 32 -q --map-like a.exr --save-map b.exr && cmp a.exr b.exr");
   /* Finer, in the same window; and the light by its name or number. */
-  assert_int_equal(run_line(GEM "0 -q --map-like a.exr --map-light 1 --save-map b.exr && "
-                                "\"$abbe\" info b.exr && rm b.exr"),
-                   0);
-  assert_contains(run_output, "640 x 640 pixels");
+  run_says(
+      GEM
+      "0 -q --map-like a.exr --map-light 1 --save-map b.exr && \"$abbe\" info b.exr && rm b.exr",
+      "640 x 640 pixels");
   assert_contains(run_output, "abbe:map_light: lamp");
   assert_int_equal(run_line(GEM " --map-like a.exr --map-light moon --save-map b.exr"), 2);
   assert_contains(run_errors, "no light is called 'moon'; its lights are 1 'lamp'");
@@ -131,7 +127,6 @@ TEST(a_map_like_another) {
 }
 
 TEST(error_bars) {
-  char path[128];
   abbe_image image = {0};
   cJSON *json =
       run_json(GEM " -o a.exr --error-bars=2 --error-png e.png --json && test -s e.png", 0);
@@ -143,19 +138,15 @@ TEST(error_bars) {
   assert_true(json_number(caustic, "relative_rmse") > 0);
   assert_true(json_number(caustic, "ciede2000_mean") > 0);
   cJSON_Delete(json);
-  snprintf(path, sizeof path, "%s/a.exr", run_folder);
-  OK(abbe_exr_read(path, &image, &error));
+  OK(abbe_exr_read(run_path("a.exr"), &image, &error));
   assert_int_equal(image.channels, 6);
   assert_true(abbe_image_find_channel(&image, "stderr.G") != (size_t)-1);
   assert_contains(abbe_image_attribute_text(&image, "abbe:stderr"), "what is not modelled");
   abbe_image_free(&image);
   /* The errors leave the picture alone; the mean is another. */
-  assert_int_equal(run_line(GEM " -q --png b.png && " GEM " -q --png c.png --error-bars=2 && "
-                                "cmp b.png c.png"),
-                   0);
-  assert_int_equal(run_line(GEM " -q --png c.png --error-bars=2 --mean && ! cmp -s b.png c.png"),
-                   0);
-  assert_int_equal(run_line("rm a.exr e.png b.png c.png"), 0);
+  run_must(GEM " -q --png b.png && " GEM " -q --png c.png --error-bars=2 && cmp b.png c.png");
+  run_must(GEM " -q --png c.png --error-bars=2 --mean && ! cmp -s b.png c.png");
+  run_must("rm a.exr e.png b.png c.png");
   static const struct {
     const char *line, *says;
   } refused[] = {
@@ -175,20 +166,16 @@ TEST(error_bars) {
 TEST(every_command_has_help) {
   static const char *const commands[] = {"render",  "plan", "weights", "materials",
                                          "display", "info", "compare"};
-  assert_int_equal(run_line("\"$abbe\" help"), 0);
+  run_must("\"$abbe\" help");
   for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
     char line[128];
-    assert_int_equal(run_line("\"$abbe\" help"), 0);
-    assert_contains(run_output, commands[i]);
+    run_says("\"$abbe\" help", commands[i]);
     snprintf(line, sizeof line, "\"$abbe\" help %s", commands[i]);
-    assert_int_equal(run_line(line), 0);
-    assert_contains(run_output, "Examples:");
+    run_says(line, "Examples:");
     snprintf(line, sizeof line, "\"$abbe\" %s --help", commands[i]);
-    assert_int_equal(run_line(line), 0);
-    assert_contains(run_output, "Examples:");
+    run_says(line, "Examples:");
   }
-  assert_int_equal(run_line("\"$abbe\" --version"), 0);
-  assert_contains(run_output, "abbe ");
+  run_says("\"$abbe\" --version", "abbe ");
 }
 
 /* A render whose picture takes many seconds, its stderr on fd. */

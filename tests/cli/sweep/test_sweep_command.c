@@ -9,9 +9,7 @@
 #define TWO SWEEP "--profiles default --wavelengths 7 --photons 16,32 -o s.csv "
 
 static void load(const char *name, abbe_sweep_table *table) {
-  char path[128];
-  snprintf(path, sizeof path, "%s/%s", run_folder, name);
-  OK(abbe_sweep_table_load(path, table, &error));
+  OK(abbe_sweep_table_load(run_path(name), table, &error));
 }
 
 static void run_well(const char *line) {
@@ -202,9 +200,7 @@ TEST(a_report_overwrites_nothing) {
   abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_SCENE, "gem.yaml");
   abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_REFERENCE, "s-gem-reference.png");
   for (int i = 0; i < 2; i++) {
-    char path[128];
-    snprintf(path, sizeof path, "%s/%s", run_folder, i == 0 ? "a.csv" : "b.csv");
-    OK(abbe_sweep_table_save(&table, path, &error));
+    OK(abbe_sweep_table_save(&table, run_path(i == 0 ? "a.csv" : "b.csv"), &error));
   }
   run_well("touch gem.yaml s-gem-reference.png");
   assert_int_equal(run_line("\"$abbe\" sweep a.csv --report gem.yaml"), 2);

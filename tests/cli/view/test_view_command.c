@@ -45,19 +45,19 @@ TEST(what_is_wrong_is_said_and_the_picture_stays) {
 /* The design is one of the scene's files: it is read again when it changes, and the scene is kept
  * where it finds it, however that folder is written. */
 TEST(a_design_is_a_file_of_the_scene) {
-  run_must("mkdir in out && cp \"$house\"/scenes/designs/step-square.asc in/a.asc && "
-           "\"$abbe\" gem retarget in/a.asc --crown 38 -o in/b.asc -q && "
-           "sed 's/shape: gem/shape: cut/; s/girdle:.*/file: a.asc/; s/table:.*/width: 0.05/; "
-           "/sides:/d; /crown:/d; /pavilion:/d' \"$house\"/scenes/gem.yaml > in/cut.yaml");
-  run_must("printf '%s\\n' 'wait balanced' 'key control+s' 'say note' 'remember hash first' "
-           "'copy in/b.asc in/a.asc' 'wait changed' 'wait balanced' 'assert hash != $first' "
-           "> a.txt");
+  run_must("mkdir in out && cp \"$house\"/scenes/designs/step-square.asc in/a.asc && \"$abbe\" gem "
+           "retarget in/a.asc --crown 38 -o in/b.asc -q && sed 's/shape: gem/shape: cut/; "
+           "s/girdle:.*/file: a.asc/; s/table:.*/width: 0.05/; /sides:/d; /crown:/d; /pavilion:/d' "
+           "\"$house\"/scenes/gem.yaml > in/cut.yaml");
+  run_must("printf '%s\\n' 'wait balanced' 'key control+s' 'say note' 'remember hash first' 'copy "
+           "in/b.asc in/a.asc' 'wait changed' 'wait balanced' 'assert hash != $first' > a.txt");
   run_must("\"$abbe\" view in/cut.yaml " FEW
-           "--last balanced --size 420x64 --keep \"$PWD/in/kept\" "
-           "--script a.txt && cmp in/cut.yaml in/kept.yaml");
+           "--last balanced --size 420x64 --keep \"$PWD/in/kept\" --script a.txt && cmp "
+           "in/cut.yaml in/kept.yaml");
   run_must("printf '%s\\n' 'wait balanced' 'key control+s' 'assert note contains own' > a.txt");
-  run_must("\"$abbe\" view in/cut.yaml " FEW "--last balanced --size 420x64 --keep out/kept "
-           "--script a.txt && ! test -e out/kept.yaml && test -e out/kept.exr");
+  run_must("\"$abbe\" view in/cut.yaml " FEW
+           "--last balanced --size 420x64 --keep out/kept --script a.txt && ! test -e "
+           "out/kept.yaml && test -e out/kept.exr");
   run_must("rm -r in out a.txt");
   assert_int_equal(run_left(), 0);
 }
@@ -91,13 +91,11 @@ TEST(what_is_shown_beside_the_picture) {
 
 /* A whole turn comes back to where it began, and what stood stands again. */
 TEST(a_turntable) {
-  run_must(
-      "printf '%s\\n' 'wait accurate' 'remember hash first' 'key t' 'wait turntable' "
-      "'assert note contains a-turn.png' 'wait accurate' 'assert hash = $first' 'key control+s' "
-      "'key t' 'wheel 20,20 1' 'wait accurate' 'assert turning = no' > a.txt");
+  run_must("printf '%s\\n' 'wait accurate' 'remember hash first' 'key t' 'wait turntable' 'assert "
+           "note contains a-turn.png' 'wait accurate' 'assert hash = $first' 'key control+s' 'key "
+           "t' 'wheel 20,20 1' 'wait accurate' 'assert turning = no' > a.txt");
   run_must("\"$abbe\" view \"$house\"/scenes/sphere.yaml " FEW
-           "--last accurate --size 404x64 --keep a "
-           "--script a.txt");
+           "--last accurate --size 404x64 --keep a --script a.txt");
   run_must("test $(ls a-turn-0*.png | wc -l) = 36 && cmp a-turn-0001.png a.png");
   run_must("! cmp -s a-turn-0001.png a-turn-0019.png; grep -q acTL a-turn.png");
   run_must("rm a*");
@@ -119,11 +117,10 @@ TEST(a_lost_context_is_made_good) {
 TEST(caustics_are_looked_up) {
   run_must("cp \"$house\"/docs/examples/ball.yaml ball.yaml && \"$abbe\" volume ball.yaml -o v.exr "
            "--shells 6x12x12 --photons 20000 --passes 1 -q");
-  run_must("printf '%s\\n' 'wait accurate' 'remember hash first' 'drag handle:sun 30,40' "
-           "'wait accurate' 'assert hash != $first' 'key control+s' 'say command' > a.txt");
-  run_must(
-      "\"$abbe\" view ball.yaml --volume v.exr --last accurate --size 440x80 --keep a --script "
-      "a.txt > said");
+  run_must("printf '%s\\n' 'wait accurate' 'remember hash first' 'drag handle:sun 30,40' 'wait "
+           "accurate' 'assert hash != $first' 'key control+s' 'say command' > a.txt");
+  run_must("\"$abbe\" view ball.yaml --volume v.exr --last accurate --size 440x80 --keep a "
+           "--script a.txt > said");
   run_must("sed -n 's/^command abbe/\"$abbe\"/p' said > again.sh");
   run_must("grep -q -e '--volume .*--set .lights.sun.direction' again.sh");
   run_must("echo \"$(cat again.sh) --backend cpu -q\" > again.sh && . ./again.sh");
@@ -148,17 +145,16 @@ TEST(what_is_read_is_not_written_over) {
   assert_contains(run_errors, "names no files");
   /* another scene than at the start, picked in the panel, is kept under its own name; back at the
    * first one that would be written over */
-  run_must("printf '%s\\n' 'wait balanced' 'choose scene other-view.yaml' 'wait balanced' "
-           "'slide exposure 0.6' 'key control+s' 'assert note contains other-view-view.exr' "
-           "'key control+z' 'wait balanced' 'assert scene = other.yaml' 'key control+s' "
-           "'assert note contains lost' 'key control+y' 'wait balanced' "
-           "'assert scene = other-view.yaml' > a.txt");
+  run_must(
+      "printf '%s\\n' 'wait balanced' 'choose scene other-view.yaml' 'wait balanced' 'slide "
+      "exposure 0.6' 'key control+s' 'assert note contains other-view-view.exr' 'key control+z' "
+      "'wait balanced' 'assert scene = other.yaml' 'key control+s' 'assert note contains lost' "
+      "'key control+y' 'wait balanced' 'assert scene = other-view.yaml' > a.txt");
   run_must("cp before.yaml other.yaml; \"$abbe\" view other.yaml " FEW
-           "--last balanced --size 420x600 "
-           "--script a.txt");
+           "--last balanced --size 420x600 --script a.txt");
   /* what is no scene is not to be picked */
-  run_must("cp \"$house\"/scenes/water/clear-water.yaml table.yaml; "
-           "printf 'choose scene table.yaml' > a.txt");
+  run_must("cp \"$house\"/scenes/water/clear-water.yaml table.yaml; printf 'choose scene "
+           "table.yaml' > a.txt");
   assert_int_equal(
       run_line("\"$abbe\" view other.yaml --last moving --size 420x600 --script a.txt"), 1);
   assert_contains(run_errors, "there is no 'table.yaml' in sight");

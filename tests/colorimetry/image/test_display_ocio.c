@@ -1,7 +1,6 @@
-#include "tests/check.h"
+#include "tests/colorimetry/image/one_colour.h"
 
 #include "base/file.h"
-#include "colorimetry/image/display_ocio.h"
 #include "colorimetry/image/rgb_encoding.h"
 #include "colorimetry/observer.h"
 #include "colorimetry/rgb_space.h"
@@ -16,18 +15,6 @@ static abbe_display *make(const abbe_display_desc *desc) {
   return display;
 }
 
-/* One colour through one display; rgb is replaced. */
-static void show(const abbe_display_desc *desc, double rgb[3]) {
-  abbe_display *display = make(desc);
-  abbe_image image = {0};
-  OK(abbe_image_make(1, 1, 3, names, &image, &error));
-  for (int k = 0; k < 3; k++) image.data[k] = (float)rgb[k];
-  OK(abbe_display_apply(display, &image, &error));
-  for (int k = 0; k < 3; k++) rgb[k] = (double)image.data[k];
-  abbe_image_free(&image);
-  abbe_display_free(display);
-}
-
 static double srgb_encode(double x) {
   if (x <= 0) return 0;
   if (x >= 1) return 1;
@@ -37,19 +24,6 @@ static double srgb_encode(double x) {
 static double srgb_decode(double x) {
   return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
 }
-
-static void near(const double got[3], const double expected[3], double tolerance,
-                 const char *what) {
-  for (int k = 0; k < 3; k++)
-    if (!(fabs(got[k] - expected[k]) <= tolerance))
-      fail_msg("%s: component %d is %.7f, not %.7f", what, k, got[k], expected[k]);
-}
-
-static void begin(void) {
-  unsetenv("OCIO");
-}
-
-GROUP(begin, NULL);
 
 /* Each space of the toolkit goes through its name in the configuration by the same matrices. */
 TEST(plain_is_the_encoding_alone) {

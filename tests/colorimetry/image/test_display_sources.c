@@ -1,38 +1,10 @@
 /* Light that no screen takes, and configurations that do not call Abbe's spaces by their names. */
-#include "tests/check.h"
+#include "tests/colorimetry/image/one_colour.h"
 
 #include "base/file.h"
-#include "colorimetry/image/display_ocio.h"
 #include "colorimetry/rgb_space.h"
 
 #include <unistd.h>
-
-/* One colour through one display; rgb is replaced. */
-static void show(const abbe_display_desc *desc, double rgb[3]) {
-  static const char *const names[] = {"R", "G", "B"};
-  abbe_display *display = NULL;
-  abbe_image image = {0};
-  OK(abbe_display_make(desc, &display, &error));
-  OK(abbe_image_make(1, 1, 3, names, &image, &error));
-  for (int k = 0; k < 3; k++) image.data[k] = (float)rgb[k];
-  OK(abbe_display_apply(display, &image, &error));
-  for (int k = 0; k < 3; k++) rgb[k] = (double)image.data[k];
-  abbe_image_free(&image);
-  abbe_display_free(display);
-}
-
-static void near(const double got[3], const double expected[3], double tolerance,
-                 const char *what) {
-  for (int k = 0; k < 3; k++)
-    if (!(fabs(got[k] - expected[k]) <= tolerance))
-      fail_msg("%s: component %d is %.7f, not %.7f", what, k, got[k], expected[k]);
-}
-
-static void begin(void) {
-  unsetenv("OCIO");
-}
-
-GROUP(begin, NULL);
 
 /* Infinite light is as bright as light gets, whatever the exposure, and what is not a number is
  * dark; the ACES view of OpenColorIO makes infinities black by itself. */

@@ -82,9 +82,7 @@ TEST(display) {
   write_pictures();
   ends_with(0, "$abbe display left.exr -o left.png --view Raw");
   abbe_image image = {0};
-  char path[128];
-  snprintf(path, sizeof path, "%s/left.png", run_folder);
-  OK(abbe_png_read(path, &image, &error));
+  OK(abbe_png_read(run_path("left.png"), &image, &error));
   assert_int_equal(image.width, 32);
   assert_int_equal(image.height, 24);
   for (size_t y = 0; y < 24; y++)
@@ -123,12 +121,11 @@ TEST(parts) {
       "$abbe compare plain.exr 'parts.exr#rgba' --difference parts.exr"};
   write_parts("parts.exr");
   write_picture("plain.exr", (const int[]){0, 0, 31, 15}, (const int[]){0, 0, 31, 15});
-  assert_int_equal(run_line("for i in '' '#rgba'; do printf 'camera: {eye: [0, -1, 0], target: [0, "
-                            "0, 0]}\\nobjects:\\n- {shape: rectangle, width: 1, height: 1, "
-                            "reflectance: 0.5}\\nenvironment: {file: \"parts.exr%s\"}\\n' \"$i\" "
-                            ">scene$i.yaml; done; mv 'scene#rgba.yaml' second.yaml; cp parts.exr "
-                            "parts-0000.exr; cp plain.exr parts-0001.exr"),
-                   0);
+  run_must(
+      "for i in '' '#rgba'; do printf 'camera: {eye: [0, -1, 0], target: [0, 0, 0]}\\nobjects:\\n- "
+      "{shape: rectangle, width: 1, height: 1, reflectance: 0.5}\\nenvironment: {file: "
+      "\"parts.exr%s\"}\\n' \"$i\" >scene$i.yaml; done; mv 'scene#rgba.yaml' second.yaml; cp "
+      "parts.exr parts-0000.exr; cp plain.exr parts-0001.exr");
   for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
     ends_with(0, lines[i]);
     assert_contains(run_errors, "its part 2 'rgba' of 2 is read");
@@ -141,5 +138,5 @@ TEST(parts) {
     ends_with(2, over[i]);
     assert_contains(run_errors, "would be written over");
   }
-  assert_int_equal(run_line("cmp parts.exr parts-0000.exr"), 0);
+  run_must("cmp parts.exr parts-0000.exr");
 }
