@@ -65,7 +65,8 @@ static void describe(const abbe_render_setting *s, char out[HELP_SIZE]) {
   snprintf(out, HELP_SIZE, s->default_ != NULL ? "%s%s (%s)" : "%s%s", s->help, range, s->default_);
 }
 
-/* Options of the settings that are for methods alone, or of the others; `hidden` has flags. */
+/* Options of the settings that are for methods alone, or of the others; flags are argp's, of each.
+ * Returns how many there are. */
 static size_t list_settings(bool of_methods, int flags, struct argp_option *out) {
   static char help[MOST_OPTIONS][HELP_SIZE];
   static const char *const arguments[] = {

@@ -147,7 +147,7 @@ static abbe_result make_texture(abbe_gpu *gpu, const abbe_radiance_map *map, con
   return abbe_gl_check(gl, "the upload of the environment", error);
 }
 
-/* Where a level's first face begins, cube_mean.glsl looks it up. */
+/* Where a level's first face begins, in texels; cube_mean.glsl has the same. */
 static void place_of(size_t side, size_t level, size_t at[2]) {
   at[0] = 6 * (level > 0 ? side - 2 * (side >> level) + 2 * (level - 1) : 0);
   at[1] = level > 0 ? side + 2 : 0;
