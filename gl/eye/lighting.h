@@ -8,10 +8,10 @@
 #include "gl/caustics/spectral_map.h"
 #include "gl/light/light_layers.h"
 #include "gl/light/receiver_atlas.h"
-#include "gl/pinholes/pinhole_pages.h"
+#include "gl/methods/pinholes/pinhole_pages.h"
+#include "gl/methods/volume/volume_light.h"
 #include "gl/scene/camera_view.h"
 #include "gl/scene/seen/seen_meshes.h"
-#include "gl/volume/volume_light.h"
 
 typedef struct abbe_lighting {
   const abbe_gpu_scene *scene;
