@@ -1,7 +1,7 @@
 #include "gl/band_picture.h"
 
-#include "colorimetry/upsampling.h"
 #include "colorimetry/observer.h"
+#include "colorimetry/upsampling.h"
 #include "colorimetry/weights.h"
 #include "spectral/spectrum.h"
 
@@ -30,8 +30,8 @@ static double density(const abbe_illuminant *light, const double range_nm[2],
          (band_nm[1] - band_nm[0]);
 }
 
-/* The light within the band, over what the eye makes of it: what is then seen of each wavelength, as
- * X + Y + Z, is its power. */
+/* The light within the band, over what the eye makes of it: what is then seen of each wavelength,
+ * as X + Y + Z, is its power. */
 static abbe_result flatten(const abbe_illuminant *light, const double band_nm[2],
                            abbe_illuminant *out, abbe_error *error) {
   const double width = band_nm[1] - band_nm[0];
@@ -46,8 +46,8 @@ static abbe_result flatten(const abbe_illuminant *light, const double band_nm[2]
     power[i] = seen > 0 ? abbe_illuminant_power(light, nm[i]) / seen : 0;
   }
   *out = (abbe_illuminant){.kind = ABBE_ILLUMINANT_TABULATED};
-  const abbe_result result = abbe_spectrum_make(nm, power, steps + 1, ABBE_INTERPOLATION_LINEAR,
-                                                &out->spectrum, error);
+  const abbe_result result =
+      abbe_spectrum_make(nm, power, steps + 1, ABBE_INTERPOLATION_LINEAR, &out->spectrum, error);
   free(nm);
   return result;
 }
@@ -62,8 +62,7 @@ static abbe_result dim(abbe_light *light, const double range_nm[2], const double
   light->power *= density(&whole, range_nm, band_nm);
   const bool dark = !(brightness(&whole, band_nm) > 0);
   if (dark) light->power = 0;
-  const abbe_result result =
-      flatten(dark ? &even : &whole, band_nm, &light->illuminant, error);
+  const abbe_result result = flatten(dark ? &even : &whole, band_nm, &light->illuminant, error);
   if (result != ABBE_OK) return result;
   const double own = brightness(&light->illuminant, band_nm);
   if (own > 0) light->power *= first / own;
@@ -168,8 +167,7 @@ typedef struct work {
 
 static bool tell(void *user, double done) {
   const work *w = user;
-  return w->progress == NULL ||
-         w->progress(w->user, ((double)w->band + done) / (double)w->bands);
+  return w->progress == NULL || w->progress(w->user, ((double)w->band + done) / (double)w->bands);
 }
 
 static abbe_result check(const work *w, abbe_error *error) {
@@ -177,7 +175,7 @@ static abbe_result check(const work *w, abbe_error *error) {
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a picture of %zu bands; it may have 1 to %d", w->bands,
                           ABBE_RENDER_MAX_BANDS);
-  if (abbe_profile_is_published(w->desc.profile))
+  if (abbe_method_of(w->desc.profile)->own_passes)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the %s profile's passes sum colours; bands go with the default profile",
                           abbe_profile_name(w->desc.profile));
@@ -212,8 +210,7 @@ static abbe_result make_image(const work *w, abbe_image *out, abbe_error *error)
     abbe_image_band_name(0.5 * (band[0] + band[1]), name[i], sizeof name[i]);
     names[i] = name[i];
   }
-  abbe_result result =
-      abbe_image_make(w->desc.width, w->desc.height, w->bands, names, out, error);
+  abbe_result result = abbe_image_make(w->desc.width, w->desc.height, w->bands, names, out, error);
   if (result == ABBE_OK)
     result = abbe_image_set_attribute(out, "spectralLayoutVersion", "1.0", error);
   if (result == ABBE_OK)
@@ -222,15 +219,14 @@ static abbe_result make_image(const work *w, abbe_image *out, abbe_error *error)
 }
 
 /* The renderer shows the band afterwards, and the scene that it had before is freed. */
-static abbe_result change(work *w, const abbe_render_desc *desc, const double band[2],
-                          double *unit, abbe_error *error) {
+static abbe_result change(work *w, const abbe_render_desc *desc, const double band[2], double *unit,
+                          abbe_error *error) {
   const double range[2] = {w->desc.min_nm, w->desc.max_nm};
   abbe_scene next;
   abbe_result result = abbe_band_scene_make(w->scene, range, band, &next, unit, error);
   if (result != ABBE_OK) return result;
-  result = w->renderer == NULL
-               ? abbe_renderer_make(w->context, &next, desc, &w->renderer, error)
-               : abbe_renderer_change(w->renderer, &next, desc, error);
+  result = w->renderer == NULL ? abbe_renderer_make(w->context, &next, desc, &w->renderer, error)
+                               : abbe_renderer_change(w->renderer, &next, desc, error);
   abbe_band_scene_free(&w->shown);
   w->shown = next;
   return result;
@@ -267,13 +263,9 @@ abbe_result abbe_band_picture_make(abbe_context *context, const abbe_scene *scen
                                    abbe_render_progress progress, void *user, abbe_image *out,
                                    abbe_error *error) {
   *out = (abbe_image){0};
-  work w = {.context = context,
-            .scene = scene,
-            .bands = bands,
-            .progress = progress,
-            .user = user};
-  abbe_result result = abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height,
-                                                &w.desc, error);
+  work w = {.context = context, .scene = scene, .bands = bands, .progress = progress, .user = user};
+  abbe_result result =
+      abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &w.desc, error);
   if (result == ABBE_OK && w.desc.wavelengths == 0) w.desc.wavelengths = ABBE_PLAN_WAVELENGTHS;
   if (result == ABBE_OK) result = check(&w, error);
   if (result == ABBE_OK) result = make_image(&w, out, error);

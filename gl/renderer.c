@@ -8,7 +8,7 @@
 #include <string.h>
 
 static bool is_published(const abbe_renderer *r) {
-  return abbe_profile_is_published(r->plan.desc.profile);
+  return abbe_method_of(r->plan.desc.profile)->own_passes;
 }
 
 /* A caller's progress may make another context current. */
@@ -88,13 +88,13 @@ static abbe_result check_drawn(const abbe_renderer *r, abbe_error *error) {
 }
 
 static abbe_rgb_space space_of(const abbe_renderer *r) {
-  return abbe_profile_is_printed(r->plan.desc.profile) ? ABBE_RGB_SPACE_REC709 : r->plan.desc.space;
+  return abbe_method_of(r->plan.desc.profile)->printed ? ABBE_RGB_SPACE_REC709 : r->plan.desc.space;
 }
 
 /* Whose colours they are; printed methods have their own. */
 static abbe_result set_observer(const abbe_renderer *r, abbe_image *out, abbe_error *error) {
   const abbe_render_desc *d = &r->plan.desc;
-  if (abbe_profile_is_printed(d->profile)) return ABBE_OK;
+  if (abbe_method_of(d->profile)->printed) return ABBE_OK;
   return abbe_image_set_attribute(out, "abbe:observer", abbe_observer_text(d->observer), error);
 }
 

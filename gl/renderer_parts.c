@@ -20,7 +20,7 @@ enum {
 enum { COARSE_SHAFT_STEPS = 12 };
 
 static bool is_published(const abbe_renderer *r) {
-  return abbe_profile_is_published(r->plan.desc.profile);
+  return abbe_method_of(r->plan.desc.profile)->own_passes;
 }
 
 abbe_result abbe_renderer_parts_check(const abbe_renderer *r, abbe_error *error) {
@@ -142,7 +142,7 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   variant.textured = r->plan.textured;
   variant.receiver_colours = r->plan.receiver_colours;
   abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);
-  r->lighting = (abbe_lighting){&r->scene,  &r->views,  &r->layers,   &r->atlas, &r->map,
+  r->lighting = (abbe_lighting){&r->scene,  &r->views,  &r->layers,   &r->atlas,  &r->map,
                                 &r->camera, &r->volume, &r->pinholes, &r->shafts, &r->meshes};
   abbe_result result = abbe_seen_meshes_make(&r->scene, &r->camera.view, &r->meshes, error);
   if (result == ABBE_OK)
@@ -219,7 +219,7 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   abbe_renderer_inputs_of(scene, &plan, &inputs);
   unsigned parts = r->lacking;
   if (parts != ALL) parts |= abbe_renderer_inputs_differ(&r->inputs, &inputs);
-  if (abbe_profile_is_published(plan.desc.profile) && parts != 0 && !looks_alone(r, &plan, parts))
+  if (abbe_method_of(plan.desc.profile)->own_passes && parts != 0 && !looks_alone(r, &plan, parts))
     parts = ALL; /* its tables hold all */
   const bool crowded = abbe_gpu_program_count(&r->gpu) > ABBE_GPU_MOST_PROGRAMS;
   if (crowded && (parts & LIGHT) != 0) parts = ALL;

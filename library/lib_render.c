@@ -74,7 +74,7 @@ abbe_result abbe_lib_scene_render(abbe_lib_scene *s, const char *const *settings
     result = abbe_renderer_frame(s->renderer, s->progress, s->user, NULL, error);
   if (result == ABBE_OK) result = abbe_renderer_read(s->renderer, q.desc.aovs, &image, error);
   if (result == ABBE_OK) result = abbe_image_set_attribute(&image, "abbe:scene", s->path, error);
-  const bool printed = abbe_profile_is_printed(q.desc.profile);
+  const bool printed = abbe_method_of(q.desc.profile)->printed;
   if (result == ABBE_OK)
     result = abbe_image_set_attribute(
         &image, "abbe:unit", printed ? "display brightness" : "radiance, W/(m2 sr)", error);

@@ -3,6 +3,7 @@
 #include "cli/base/command.h"
 #include "cli/render/render_options.h"
 
+#include "gl/methods/facts/method_facts.h"
 #include "gl/plan/facts/render_desc.h"
 
 #include <argp.h>
@@ -35,18 +36,8 @@ int abbe_command_methods(int argc, char **argv) {
       NULL,
       NULL};
   abbe_arguments_parse(&argp, 0, argc, argv, NULL);
-  static const char *const says[ABBE_PROFILE_COUNT] = {
-      [ABBE_PROFILE_DEFAULT] = "Abbe's own: adaptive photons, splats by footprint, exact areas",
-      [ABBE_PROFILE_THESIS] = "adaptive spectral maps with a 20-step fill, as printed",
-      [ABBE_PROFILE_THESIS_CIE] = "the same in units",
-      [ABBE_PROFILE_SHAH2007] = "caustics mapping: vertices splatted into the light's map",
-      [ABBE_PROFILE_SHAH2007_CIE] = "the same in units",
-      [ABBE_PROFILE_WYMAN2006] = "photons in image space: points, polygons or gathers",
-      [ABBE_PROFILE_WYMAN2006_CIE] = "the same in units",
-      [ABBE_PROFILE_WYMAN2003] = "caustics looked up in a printed volume (--volume, abbe volume)",
-      [ABBE_PROFILE_WAND2003] = "surroundings through samples of mirrors as pinholes"};
   for (int i = 0; i < ABBE_PROFILE_COUNT; i++)
-    printf("%-14s %s\n", abbe_profile_name((abbe_profile)i), says[i]);
+    printf("%-14s %s\n", abbe_profile_name((abbe_profile)i), abbe_method_of((abbe_profile)i)->says);
   printf("\n'abbe methods --help' shows their options; docs/methods.md compares their pictures.\n");
   return ABBE_EXIT_DONE;
 }

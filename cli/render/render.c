@@ -157,7 +157,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 /* A view that the configuration does not have is found out before the work, as a target is. */
 static abbe_result check_display(const request *q, abbe_error *error) {
   if (q->png == NULL) return ABBE_OK;
-  const bool printed = abbe_profile_is_printed(q->render.desc.profile);
+  const bool printed = abbe_method_of(q->render.desc.profile)->printed;
   return abbe_screen_options_check(&q->screen,
                                    printed ? ABBE_RGB_SPACE_REC709 : q->render.desc.space, error);
 }
@@ -178,7 +178,7 @@ static abbe_result run_frames(const request *q, abbe_renderer *renderer, abbe_st
     if (result == ABBE_OK) *out = times.median;
   }
   abbe_progress_end(&progress);
-  if (result == ABBE_OK && q->frames > 0 && !abbe_profile_is_published(q->render.desc.profile))
+  if (result == ABBE_OK && q->frames > 0 && !abbe_method_of(q->render.desc.profile)->own_passes)
     result = abbe_frame_times_baseline(renderer, q->frames, &out->baseline_ms, error);
   return result;
 }
@@ -309,28 +309,28 @@ static abbe_result render(request *q, const abbe_scene *scene, abbe_context *con
 /* An option that the tracer does not know, or NULL. */
 static const char *renderers_own(const request *q) {
   const abbe_render_desc *d = &q->render.desc;
-  return q->aovs                              ? "--aovs"
-         : q->bands > 0                       ? "--bands"
-         : q->map.save != NULL                ? "--save-map"
-         : q->map.like != NULL                ? "--map-like"
-         : q->frames > 0                      ? "--frames"
-         : q->errors.asked                    ? "--error-bars"
-         : q->series.count > 0                ? (q->series.around ? "--turntable" : "--frames")
-         : d->wavelengths > 0                 ? "--wavelengths"
-         : d->photons > 0                     ? "--photons"
-         : d->map_size > 0                    ? "--map"
-         : d->supersample > 0                 ? "--samples"
-         : d->upsample > 0                    ? "--upsample"
-         : d->adaptive > 0                    ? "--adaptive"
-         : d->receiver_samples > 0            ? "--receiver-samples"
-         : d->environment_lights > 0          ? "--environment-lights"
-         : d->light_points > 0                ? "--light-points"
-         : d->exits > 0                       ? "--exits"
-         : d->energy_share > 0                ? "--share"
-         : d->fill != ABBE_FILL_AUTO          ? "--fill"
-         : d->model != ABBE_MODEL_AUTO        ? "--model"
-         : d->profile != ABBE_PROFILE_DEFAULT ? "--profile"
-                                              : NULL;
+  return q->aovs                                ? "--aovs"
+         : q->bands > 0                         ? "--bands"
+         : q->map.save != NULL                  ? "--save-map"
+         : q->map.like != NULL                  ? "--map-like"
+         : q->frames > 0                        ? "--frames"
+         : q->errors.asked                      ? "--error-bars"
+         : q->series.count > 0                  ? (q->series.around ? "--turntable" : "--frames")
+         : d->wavelengths > 0                   ? "--wavelengths"
+         : d->photons > 0                       ? "--photons"
+         : d->map_size > 0                      ? "--map"
+         : d->supersample > 0                   ? "--samples"
+         : d->upsample > 0                      ? "--upsample"
+         : d->adaptive > 0                      ? "--adaptive"
+         : d->receiver_samples > 0              ? "--receiver-samples"
+         : d->environment_lights > 0            ? "--environment-lights"
+         : d->light_points > 0                  ? "--light-points"
+         : d->exits > 0                         ? "--exits"
+         : d->energy_share > 0                  ? "--share"
+         : d->fill != ABBE_FILL_AUTO            ? "--fill"
+         : d->model != ABBE_MODEL_AUTO          ? "--model"
+         : !abbe_method_of(d->profile)->presets ? "--profile"
+                                                : NULL;
 }
 
 /* Leaves the choice without a point where a frame's settings are asked for, or where the presets
@@ -347,7 +347,7 @@ static abbe_result choose_picture(request *q, const abbe_scene *scene, abbe_erro
                             .width = q->render.desc.width,
                             .height = q->render.desc.height};
   if (p->name == NULL && !(p->max_error > 0) && !(p->budget_ms > 0)) return ABBE_OK;
-  if (o->of_frame || q->render.desc.profile != ABBE_PROFILE_DEFAULT) return ABBE_OK;
+  if (o->of_frame || !abbe_method_of(q->render.desc.profile)->presets) return ABBE_OK;
   if (o->tool > 0 && own != NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "--tool %s: %s is for the renderer alone; leave one of the two out",

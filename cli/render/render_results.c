@@ -115,7 +115,7 @@ abbe_result abbe_render_annotate(const request *q, const abbe_renderer *renderer
   if (result == ABBE_OK)
     result = abbe_image_set_attribute(
         image, "abbe:unit",
-        abbe_profile_is_printed(d->profile) ? "display brightness" : "radiance, W/(m2 sr)", error);
+        abbe_method_of(d->profile)->printed ? "display brightness" : "radiance, W/(m2 sr)", error);
   return result;
 }
 
@@ -138,7 +138,7 @@ abbe_result abbe_render_write_png(const request *q, const abbe_image *image, abb
 
 abbe_result abbe_render_save_map(const request *q, abbe_renderer *renderer, abbe_error *error) {
   abbe_image map = {0};
-  bool thesis = abbe_profile_is_printed(abbe_renderer_plan(renderer)->desc.profile);
+  bool thesis = abbe_method_of(abbe_renderer_plan(renderer)->desc.profile)->printed;
   abbe_result result =
       q->bands > 0
           ? abbe_renderer_read_map_bands(renderer, q->map.light_index, q->bands, &map, error)

@@ -32,7 +32,7 @@ enum { AXES = 6 };
 
 abbe_result abbe_error_bars_check(abbe_profile profile, const abbe_error_bars_desc *desc,
                                   abbe_error *error) {
-  if (abbe_profile_is_published(profile))
+  if (abbe_method_of(profile)->own_passes)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the profile '%s' has no error bars: it keeps to its own "
                           "sampling; use the default profile",

@@ -273,7 +273,7 @@ bool abbe_preset_apply(const abbe_preset_point *point, const abbe_scene *scene,
   if (d->fill == ABBE_FILL_AUTO) d->fill = p->fill;
   same = take_share(&d->energy_share, p->energy_share) && same;
   if (fits && d->model == ABBE_MODEL_AUTO) d->model = p->model;
-  return same && d->fill == p->fill && d->model == p->model && d->profile == ABBE_PROFILE_DEFAULT;
+  return same && d->fill == p->fill && d->model == p->model && abbe_method_of(d->profile)->presets;
 }
 
 bool abbe_preset_is_fine(const abbe_render_desc *d) {

@@ -46,7 +46,7 @@ abbe_result abbe_preset_choose(const abbe_preset_request *request, abbe_context 
   size_t point = 0;
   *out = (abbe_preset_choice){.request = *q};
   if (!is_asked(q)) return ABBE_OK;
-  if (desc->profile != ABBE_PROFILE_DEFAULT)
+  if (!abbe_method_of(desc->profile)->presets)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "presets are of the default profile; a published method has none");
   abbe_result result = find_front(scene, desc, &c, error);
@@ -98,7 +98,7 @@ abbe_result abbe_preset_choice_check(const abbe_preset_choice *choice, double fr
 }
 
 void abbe_preset_describe(const abbe_render_desc *d, char *out, size_t size) {
-  const bool plain = d->profile == ABBE_PROFILE_DEFAULT;
+  const bool plain = abbe_method_of(d->profile)->presets;
   char share[ABBE_NUMBER_TEXT_SIZE], upsample[32] = "";
   if (d->upsample > 1) snprintf(upsample, sizeof upsample, ", upsample %zu", d->upsample);
   snprintf(out, size,

@@ -32,7 +32,7 @@ void abbe_photon_light_look(const abbe_gpu_scene *scene, size_t index, abbe_view
   }
   double origin[3], forward[3], back = scene->size;
   /* From farther off, floats would round places across a parallel view to its size. */
-  if (scene->plan->refractor_count > 0 && !abbe_profile_is_published(scene->plan->desc.profile))
+  if (scene->plan->refractor_count > 0 && !abbe_method_of(scene->plan->desc.profile)->own_passes)
     back = fmin(back, 64 * scene->refractor_radius);
   for (int k = 0; k < 3; k++) {
     double centre = scene->plan->refractor_count > 0 ? scene->refractor_centre[k]

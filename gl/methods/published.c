@@ -14,11 +14,11 @@ static bool is_wand(const abbe_published *p) {
 
 abbe_result abbe_published_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
                                 abbe_published *out, abbe_error *error) {
-  if (abbe_profile_is_shah2007(scene->plan->desc.profile))
+  if (abbe_method_of(scene->plan->desc.profile)->low_pass)
     return abbe_shah2007_make(scene, variant, &out->shah, error);
-  if (abbe_profile_is_wyman2006(scene->plan->desc.profile))
+  if (abbe_method_of(scene->plan->desc.profile)->draws_photons)
     return abbe_wyman2006_make(scene, variant, &out->wyman, error);
-  if (abbe_profile_is_wand2003(scene->plan->desc.profile))
+  if (abbe_method_of(scene->plan->desc.profile)->surroundings)
     return abbe_wand2003_make(scene, variant, &out->wand, error);
   return abbe_thesis_make(scene, variant, &out->thesis, error);
 }
@@ -38,8 +38,8 @@ abbe_result abbe_published_run(abbe_published *p, bool lit, abbe_error *error) {
 }
 
 bool abbe_published_keeps_light(const abbe_render_desc *desc) {
-  if (abbe_profile_is_wyman2006(desc->profile)) return abbe_wyman2006_keeps_light(desc);
-  return abbe_profile_is_shah2007(desc->profile);
+  if (abbe_method_of(desc->profile)->draws_photons) return abbe_wyman2006_keeps_light(desc);
+  return abbe_method_of(desc->profile)->low_pass;
 }
 
 void abbe_published_look(abbe_published *p) {

@@ -36,11 +36,6 @@ static int count_faces(const abbe_plan *plan, size_t light) {
   return faces;
 }
 
-static const char *knows_none(const abbe_plan *plan) {
-  return abbe_profile_is_thesis(plan->desc.profile) ? "the thesis knows none"
-                                                    : "the published method knows none";
-}
-
 static void list_maps(const abbe_scene *scene, abbe_plan *plan) {
   for (size_t i = 0; i < scene->light_count && plan->refractor_count > 0; i++) {
     const char *name = scene->light[i].name;
@@ -54,13 +49,17 @@ static void list_maps(const abbe_scene *scene, abbe_plan *plan) {
                           plan->reaches[i] ? "the light may meet a refractor"
                                            : "its cone misses every refractor");
   }
-  abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MAPS, "%s",
-                !plan->caustics                                 ? no_photons(plan)
-                : abbe_profile_is_published(plan->desc.profile) ? knows_none(plan)
-                : plan->receiver_shadows ? "a receiver may hide from a light where its light lands"
-                : plan->outside_map_view
-                    ? "a receiver lies more than 76 degrees off the view of a light's map"
-                    : "the lights' maps hold all receivers");
+  const abbe_method_facts *method = abbe_method_of(plan->desc.profile);
+  if (plan->caustics && method->own_passes)
+    abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MAPS, "%s knows none", method->called);
+  else
+    abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MAPS, "%s",
+                  !plan->caustics ? no_photons(plan)
+                  : plan->receiver_shadows
+                      ? "a receiver may hide from a light where its light lands"
+                  : plan->outside_map_view
+                      ? "a receiver lies more than 76 degrees off the view of a light's map"
+                      : "the lights' maps hold all receivers");
 }
 
 static void list_sizes(const abbe_scene *scene, abbe_plan *plan) {
@@ -109,6 +108,7 @@ static void list_back(abbe_plan *plan, abbe_pass pass, bool met, const char *unm
 }
 
 static void list_photons(abbe_plan *plan) {
+  const abbe_method_facts *method = abbe_method_of(plan->desc.profile);
   const size_t least = abbe_plan_least_wavelengths(plan), most = plan->desc.wavelengths;
   if (!plan->caustics) {
     abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT, no_photons(plan));
@@ -116,16 +116,13 @@ static void list_photons(abbe_plan *plan) {
     abbe_plan_add(plan, ABBE_PASS_SPECTRAL_MAP, no_photons(plan));
     return;
   }
-  if (abbe_profile_is_wyman2006(plan->desc.profile))
-    abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT, "a photon each for %zu x %zu pixels",
-                  plan->desc.photons, plan->desc.photons);
-  else if (abbe_profile_is_shah2007(plan->desc.profile))
-    abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT, "a vertex each for %zu x %zu pixels",
+  if (method->pixel != NULL)
+    abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT, "a %s each for %zu x %zu pixels", method->pixel,
                   plan->desc.photons, plan->desc.photons);
   else
     abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT,
                   "at most %zu a side, where light meets a refractor", plan->desc.photons);
-  if (abbe_profile_estimates(plan->desc.profile))
+  if (method->estimates)
     abbe_plan_add(
         plan, ABBE_PASS_PHOTONS,
         "%zu wavelengths, %zu interface%s; receivers by the estimator '%s', %zu iteration%s", most,
@@ -148,18 +145,17 @@ static void list_photons(abbe_plan *plan) {
 
 static void list_light(abbe_plan *plan) {
   const bool apart = plan->caustics && plan->dispersive && plan->desc.wavelengths > 1;
-  abbe_plan_add(plan, ABBE_PASS_RECEIVER_DEPTH,
-                plan->receivers == ABBE_RECEIVER_DEPTH
-                    ? "receivers are found by their depth from the light"
-                : abbe_profile_has_lamp(plan->desc.profile)
-                    ? "it casts the shadows; receivers are hit exactly"
-                    : "receivers are hit exactly");
+  abbe_plan_add(
+      plan, ABBE_PASS_RECEIVER_DEPTH,
+      plan->receivers == ABBE_RECEIVER_DEPTH ? "receivers are found by their depth from the light"
+      : abbe_method_of(plan->desc.profile)->lamp ? "it casts the shadows; receivers are hit exactly"
+                                                 : "receivers are hit exactly");
   abbe_plan_add(plan, ABBE_PASS_LIGHT_FRONT, "%s",
                 plan->caustics ? "photons start where the light sees a refractor"
                                : no_photons(plan));
   list_back(plan, ABBE_PASS_LIGHT_BACK, plan->caustics, no_photons(plan));
   list_photons(plan);
-  if (abbe_profile_is_wyman2006(plan->desc.profile))
+  if (abbe_method_of(plan->desc.profile)->draws_photons)
     abbe_plan_add(plan, ABBE_PASS_GAP_FILL, "photons are drawn as '%s'",
                   abbe_fill_name(plan->desc.fill));
   else if (plan->fills)
@@ -176,7 +172,7 @@ static void list_pinholes(abbe_plan *plan) {
                 "at most %zu samples of surfaces, '%s', footprints %s; %s", d->pinholes,
                 abbe_sample_strategy_name(d->strategy),
                 d->footprint == ABBE_FOOTPRINT_ON ? "by curvature" : "off",
-                abbe_profile_is_wand2003(d->profile)
+                abbe_method_of(d->profile)->surroundings
                     ? "each pixel sees each, whatever is between"
                     : "each receiver's map sees clusters of them and parts, and what lies behind");
 }
@@ -216,11 +212,12 @@ static void list_eye(abbe_plan *plan) {
     abbe_plan_add(plan, ABBE_PASS_EYE_ADAPTIVE,
                   "%zu x %zu rays for a sample of a receiver where its light bends",
                   plan->desc.adaptive, plan->desc.adaptive);
+  else if (abbe_method_of(plan->desc.profile)->own_passes)
+    abbe_plan_add(plan, ABBE_PASS_EYE_ADAPTIVE, "%s knows none",
+                  abbe_method_of(plan->desc.profile)->called);
   else
     abbe_plan_add(plan, ABBE_PASS_EYE_ADAPTIVE, "%s",
-                  abbe_profile_is_published(plan->desc.profile) ? knows_none(plan)
-                  : plan->desc.upsample > 1                     ? "none: samples are far apart"
-                                                                : "none, as asked");
+                  plan->desc.upsample > 1 ? "none: samples are far apart" : "none, as asked");
   if (plan->camera_sees_refractor && plan->eye_exits > 1)
     abbe_plan_add(plan, ABBE_PASS_EYE_REFRACTION,
                   "one direction a wavelength, until less than %g of its light is left, %zu exits "
@@ -293,7 +290,7 @@ static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc
 
 void abbe_no_culling_apply(const abbe_scene *scene, const abbe_render_desc *asked,
                            abbe_plan *plan) {
-  if (abbe_profile_is_published(plan->desc.profile)) return;
+  if (abbe_method_of(plan->desc.profile)->own_passes) return;
   plan->receiver_shadows = plan->textured = true;
   if (plan->refractor_count > 0) switch_refraction_on(scene, asked, plan);
   list_again(plan);
@@ -328,13 +325,13 @@ static size_t count_pages(const abbe_plan *plan) {
 
 /* Facts that follow from others. */
 static void combine(abbe_plan *plan) {
-  const bool published = abbe_profile_is_published(plan->desc.profile), caustics = plan->caustics;
+  const bool published = abbe_method_of(plan->desc.profile)->own_passes, caustics = plan->caustics;
   const bool apart = caustics && plan->dispersive && plan->desc.wavelengths > 1;
   plan->draw_back = plan->layers;
   plan->tiles = caustics && !published && (plan->receiver_shadows || plan->outside_map_view);
   plan->page_charts = plan->desc.transport == ABBE_TRANSPORT_PINHOLE && !published &&
                       plan->receivers == ABBE_RECEIVER_BVH;
-  plan->fills = !abbe_profile_is_wyman2006(plan->desc.profile) &&
+  plan->fills = !abbe_method_of(plan->desc.profile)->draws_photons &&
                 plan->desc.fill != ABBE_FILL_NONE &&
                 ((apart && !published) || (published && caustics));
   plan->edges = caustics && !published && plan->facets;
@@ -348,7 +345,7 @@ static void choose_transport(const abbe_scene *scene, const abbe_render_desc *de
     plan->rough = plan->rough || abbe_brushing_is_rough(&scene->object[i].brushing);
   const bool open = desc == NULL || desc->transport == ABBE_TRANSPORT_AUTO;
   if (plan->rough && open && plan->desc.transport == ABBE_TRANSPORT_PHOTONS &&
-      !abbe_profile_is_published(plan->desc.profile))
+      !abbe_method_of(plan->desc.profile)->own_passes)
     abbe_render_desc_take_pinholes(&plan->desc);
 }
 
@@ -425,7 +422,7 @@ abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *
       abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &d, error);
   if (result != ABBE_OK) return result;
   /* wand2003 shows all of an environment through its pinholes. */
-  const bool cut = scene->environment != NULL && !abbe_profile_is_wand2003(d.profile);
+  const bool cut = scene->environment != NULL && !abbe_method_of(d.profile)->surroundings;
   const size_t others = cut ? d.environment_lights : 0;
   abbe_scene pointed;
   result =

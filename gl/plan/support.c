@@ -30,7 +30,7 @@ static abbe_result support_wand(const abbe_scene *scene, const abbe_plan *plan, 
 abbe_result abbe_support_pinholes(const abbe_scene *scene, const abbe_plan *plan,
                                   abbe_error *error) {
   if (plan->desc.transport != ABBE_TRANSPORT_PINHOLE) return ABBE_OK;
-  if (abbe_profile_is_wand2003(plan->desc.profile)) return support_wand(scene, plan, error);
+  if (abbe_method_of(plan->desc.profile)->surroundings) return support_wand(scene, plan, error);
   if (scene->environment == NULL && !plan->rough)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the transport 'pinhole' carries an environment's light; this scene has "
@@ -45,8 +45,8 @@ abbe_result abbe_support_pinholes(const abbe_scene *scene, const abbe_plan *plan
 abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *plan,
                                    abbe_error *error) {
   const char *profile = abbe_profile_name(plan->desc.profile);
-  const bool thesis = abbe_profile_is_thesis(plan->desc.profile);
-  if (!abbe_profile_has_lamp(plan->desc.profile)) return ABBE_OK;
+  const abbe_method_facts *method = abbe_method_of(plan->desc.profile);
+  if (!method->lamp) return ABBE_OK;
   if (scene->environment != NULL)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the %s profile knows no environment; this scene has one", profile);
@@ -66,8 +66,7 @@ abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *pla
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the %s profile knows one light; this scene has %zu", profile,
                           scene->light_count);
-  const bool rays = thesis || abbe_profile_is_wyman2006(plan->desc.profile);
-  if (rays && scene->light[0].kind == ABBE_LIGHT_DIRECTIONAL)
+  if (!method->directional && scene->light[0].kind == ABBE_LIGHT_DIRECTIONAL)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the %s profile knows point and spot lights; '%s' is directional",
                           profile, scene->light[0].name);
@@ -79,7 +78,7 @@ abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *pla
   if (plan->refractor_count == 0)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the %s profile needs a refractor; this scene has none", profile);
-  for (size_t i = 1; thesis && i < plan->refractor_count; i++)
+  for (size_t i = 1; !method->materials && i < plan->refractor_count; i++)
     if (scene->object[plan->refractor_object[i]].material !=
         scene->object[plan->refractor_object[0]].material)
       return abbe_error_set(error, ABBE_UNSUPPORTED,
@@ -89,7 +88,7 @@ abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *pla
 
 abbe_result abbe_support_haze(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
   if (!abbe_scene_is_hazy(scene)) return ABBE_OK;
-  if (abbe_profile_is_published(plan->desc.profile))
+  if (abbe_method_of(plan->desc.profile)->own_passes)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the scene has a 'medium' that scatters light, of which the %s profile "
                           "knows nothing; leave it out, or take the default profile",
@@ -119,7 +118,7 @@ abbe_result abbe_support_layout(const abbe_scene *scene, const abbe_plan *plan, 
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the map layout is for light %zu; the scene has %zu", index + 1,
                           scene->light_count);
-  if (abbe_profile_is_published(plan->desc.profile))
+  if (abbe_method_of(plan->desc.profile)->own_passes)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the %s profile lays its map out by the light's cone; a given layout "
                           "goes with the default profile",
@@ -138,9 +137,9 @@ abbe_result abbe_support_layout(const abbe_scene *scene, const abbe_plan *plan, 
 abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan,
                                  abbe_error *error) {
   const abbe_object *mirror = abbe_scene_mirror(scene);
-  const bool thesis = abbe_profile_is_thesis(plan->desc.profile);
-  if (mirror == NULL || (!thesis && plan->desc.model != ABBE_MODEL_LAYERS)) return ABBE_OK;
-  if (thesis)
+  const bool none = !abbe_method_of(plan->desc.profile)->mirrors;
+  if (mirror == NULL || (!none && plan->desc.model != ABBE_MODEL_LAYERS)) return ABBE_OK;
+  if (none)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the object '%s' (line %zu) is a mirror, and the %s profile follows no "
                           "light off mirrors; leave it out, or take the default profile",
@@ -193,7 +192,7 @@ abbe_result abbe_support_roughness(const abbe_scene *scene, const abbe_plan *pla
   for (size_t i = 0; i < scene->object_count && rough == NULL; i++)
     if (abbe_brushing_is_rough(&scene->object[i].brushing)) rough = &scene->object[i];
   if (rough == NULL) return ABBE_OK;
-  if (abbe_profile_is_published(d->profile))
+  if (abbe_method_of(d->profile)->own_passes)
     return abbe_error_set(
         error, ABBE_UNSUPPORTED,
         "the object '%s' (line %zu) is a rough mirror, and the %s profile knows "

@@ -39,12 +39,12 @@ static double distance_to(const double p[3], const abbe_object *o) {
   return gap > 0 ? gap : fabs(abbe_object_distance(o, p));
 }
 
-/* Before all that is there, which reversed depths tell apart however far the scene reaches. Those of the
- * published methods do not. */
+/* Before all that is there, which reversed depths tell apart however far the scene reaches. Those
+ * of the published methods do not. */
 static void come_near(const abbe_scene *scene, const abbe_render_desc *desc, abbe_view *view) {
   static const double least = 1e-7;
   double gap = INFINITY, min[3], max[3];
-  if (abbe_profile_is_published(desc->profile)) return;
+  if (abbe_method_of(desc->profile)->own_passes) return;
   for (size_t i = 0; i < scene->object_count; i++)
     gap = fmin(gap, distance_to(scene->camera.eye, &scene->object[i]));
   for (size_t i = 0; i < scene->light_count; i++)

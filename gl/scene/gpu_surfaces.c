@@ -108,7 +108,7 @@ typedef struct gpu_surface {
 
 /* The published methods multiply colours in the working space. */
 static bool reflects_spectra(const abbe_gpu_scene *scene) {
-  return scene->plan->desc.profile == ABBE_PROFILE_DEFAULT;
+  return abbe_method_of(scene->plan->desc.profile)->reflects_spectra;
 }
 
 /* Working space: the picture's, or ACEScg where the picture is XYZ, so that a colour times a

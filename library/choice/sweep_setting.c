@@ -51,7 +51,7 @@ void abbe_sweep_setting_of_trace(size_t photons, size_t passes, bool filtered,
 }
 
 void abbe_sweep_setting_of(const abbe_render_desc *d, abbe_sweep_setting *out) {
-  bool thesis = abbe_profile_is_published(d->profile);
+  bool thesis = abbe_method_of(d->profile)->own_passes;
   *out = (abbe_sweep_setting){.wavelengths = d->wavelengths,
                               .photons = d->photons,
                               .map = d->map_size,
@@ -61,13 +61,13 @@ void abbe_sweep_setting_of(const abbe_render_desc *d, abbe_sweep_setting *out) {
                               .share = thesis ? 0.01 : d->energy_share,
                               .exits = d->exits,
                               .history = d->history > 1 ? d->history : 1};
-  if (d->profile == ABBE_PROFILE_DEFAULT && d->transport == ABBE_TRANSPORT_PINHOLE)
+  if (!abbe_method_of(d->profile)->own_passes && d->transport == ABBE_TRANSPORT_PINHOLE)
     snprintf(out->profile, sizeof out->profile, "%s%zu", ABBE_SWEEP_PINHOLE, d->pinholes);
   else
     snprintf(out->profile, sizeof out->profile, "%s", abbe_profile_name(d->profile));
   if (d->polygons > 0 && d->polygons <= ABBE_POLYGONS_ALL)
     snprintf(out->polygons, sizeof out->polygons, "%s", abbe_sweep_polygons[d->polygons]);
-  if (d->direction != abbe_direction_of_profile(d->profile) && d->direction != ABBE_DIRECTION_AUTO)
+  if (d->direction != abbe_method_of(d->profile)->direction && d->direction != ABBE_DIRECTION_AUTO)
     snprintf(out->direction, sizeof out->direction, "%s", abbe_sweep_directions[d->direction]);
   snprintf(out->fill, sizeof out->fill, "%s", abbe_fill_name(d->fill));
   snprintf(out->model, sizeof out->model, "%s", abbe_model_name(d->model));

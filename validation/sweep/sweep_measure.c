@@ -41,7 +41,7 @@ static abbe_result time_frames(const abbe_sweep *s, abbe_renderer *renderer,
   out->number[ABBE_SWEEP_PHOTONS_HIT] = (double)times.median.photons;
   out->number[ABBE_SWEEP_HIT_SHARE] = times.median.refractor_share;
   if (times.median.polygon_layers > 0) out->number[ABBE_SWEEP_LAYERS] = times.median.polygon_layers;
-  if (abbe_profile_is_published(abbe_renderer_plan(renderer)->desc.profile)) return ABBE_OK;
+  if (abbe_method_of(abbe_renderer_plan(renderer)->desc.profile)->own_passes) return ABBE_OK;
   return abbe_frame_times_baseline(renderer, 3, &out->number[ABBE_SWEEP_BASELINE_MS], error);
 }
 
@@ -204,11 +204,11 @@ static abbe_result measure_map(const abbe_sweep *s, abbe_renderer *renderer, abb
                                abbe_error *error) {
   abbe_image map = {0}, before = {0};
   const abbe_plan *plan = abbe_renderer_plan(renderer);
-  bool thesis = abbe_profile_is_published(plan->desc.profile);
+  bool thesis = abbe_method_of(plan->desc.profile)->own_passes;
   const bool whole = thesis || plan->desc.history > 1; /* bands are of one frame */
   if (!plan->caustics || s->light >= plan->light_view_count) return ABBE_OK;
   if (thesis && plan->desc.faces > 1) return ABBE_OK; /* a cube has no one layout */
-  if (s->map == NULL && !abbe_profile_is_thesis(plan->desc.profile)) return ABBE_OK;
+  if (s->map == NULL && abbe_method_of(plan->desc.profile)->fill != ABBE_FILL_SMEAR) return ABBE_OK;
   abbe_result result =
       whole ? abbe_renderer_read_map(renderer, s->light, true, &map, error)
             : abbe_renderer_read_map_bands(renderer, s->light, ABBE_SWEEP_BANDS, &map, error);
@@ -217,7 +217,7 @@ static abbe_result measure_map(const abbe_sweep *s, abbe_renderer *renderer, abb
     if (result == ABBE_OK) note_fill(&before, &map, out);
   }
   if (result == ABBE_OK && s->map != NULL)
-    result = compare_map(s, &map, abbe_profile_is_printed(plan->desc.profile), thesis, out, error);
+    result = compare_map(s, &map, abbe_method_of(plan->desc.profile)->printed, thesis, out, error);
   abbe_image_free(&map);
   abbe_image_free(&before);
   return result;
@@ -231,7 +231,7 @@ static abbe_result make_desc(const abbe_sweep *s, const abbe_sweep_setting *sett
   if (result != ABBE_OK) return result;
   out->width = s->picture != NULL ? s->picture->width : 0;
   out->height = s->picture != NULL ? s->picture->height : 0;
-  if (s->map == NULL || abbe_profile_is_published(out->profile)) return ABBE_OK;
+  if (s->map == NULL || abbe_method_of(out->profile)->own_passes) return ABBE_OK;
   out->map_layout = layout;
   out->map_layout_light = s->light;
   return abbe_map_layout_read(s->map, "the reference", layout, error);
@@ -263,7 +263,7 @@ static abbe_result measure_frames(const abbe_sweep *s, const abbe_sweep_setting 
   abbe_render_desc desc;
   abbe_renderer *renderer = NULL;
   abbe_result result = make_desc(s, setting, &layout, &desc, error);
-  bool scaled = abbe_profile_is_printed(desc.profile);
+  bool scaled = abbe_method_of(desc.profile)->printed;
   if (result == ABBE_OK) result = abbe_renderer_make(s->context, s->scene, &desc, &renderer, error);
   if (result == ABBE_OK) result = compare_history(s, renderer, scaled, out, error);
   if (result == ABBE_OK) result = time_frames(s, renderer, progress, user, out, error);

@@ -83,7 +83,7 @@ static void set_lighting(abbe_image_eye *e, GLuint caustic_map) {
   abbe_gpu_set_float(scene->gpu, p, "shadow_bias", bias_share * light->view.view.far);
   gl->Uniform3f(gl->GetUniformLocation(p, "eye"), (float)eye[0], (float)eye[1], (float)eye[2]);
   abbe_gpu_bind_array(scene->gpu, p, "surface_texture", 1, scene->surface_texture);
-  if (light->faces > 1 && abbe_profile_is_shah2007(scene->plan->desc.profile))
+  if (light->faces > 1 && !abbe_method_of(scene->plan->desc.profile)->draws_photons)
     abbe_gpu_bind_array(scene->gpu, p, "caustic_map", 0, caustic_map);
   else
     abbe_gpu_bind_texture(scene->gpu, p, "caustic_map", 0, caustic_map);
@@ -98,7 +98,7 @@ static abbe_result light_receivers(abbe_image_eye *e, GLuint caustic_map, abbe_e
   static const GLfloat far_away = 1;
   const abbe_gpu_scene *scene = e->scene;
   const abbe_gl *gl = scene->gpu->gl;
-  const bool printed = abbe_profile_is_printed(scene->plan->desc.profile);
+  const bool printed = abbe_method_of(scene->plan->desc.profile)->printed;
   const GLfloat sky = printed ? 0 : (float)scene->local->background;
   const GLfloat background[4] = {sky, sky, sky, 0};
   abbe_gpu_start_lap(scene->gpu);

@@ -16,7 +16,7 @@
 size_t abbe_image_tables_define(const abbe_render_desc *d, char *out, size_t size) {
   size_t used = (size_t)snprintf(out, size, "#define WAVELENGTHS %zu\n#define INTERFACES %zu\n%s",
                                  d->wavelengths, d->interfaces,
-                                 abbe_profile_is_printed(d->profile) ? "#define AS_PRINTED\n" : "");
+                                 abbe_method_of(d->profile)->printed ? "#define AS_PRINTED\n" : "");
 #define ABBE_DEFINE(code, name)                                                                    \
   used += (size_t)snprintf(out + used, size - used, "#define ESTIMATOR_" #code " %d\n",            \
                            (int)ABBE_ESTIMATOR_##code);
@@ -28,7 +28,7 @@ size_t abbe_image_tables_define(const abbe_render_desc *d, char *out, size_t siz
 abbe_result abbe_image_tables_colours(const abbe_gpu_scene *scene, bool by_white, float (**out)[3],
                                       abbe_error *error) {
   const size_t n = scene->plan->desc.wavelengths;
-  const bool printed = abbe_profile_is_printed(scene->plan->desc.profile);
+  const bool printed = abbe_method_of(scene->plan->desc.profile)->printed;
   float(*colour)[3] = calloc(n, sizeof *colour);
   *out = colour;
   if (colour == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for colours");
@@ -65,7 +65,7 @@ static void fit_objects(const abbe_gpu_scene *scene, const size_t *object, size_
 }
 
 static bool in_units(const abbe_gpu_scene *scene) {
-  return !abbe_profile_is_printed(scene->plan->desc.profile);
+  return !abbe_method_of(scene->plan->desc.profile)->printed;
 }
 
 void abbe_image_view_fit_light(const abbe_gpu_scene *scene, abbe_view *view) {

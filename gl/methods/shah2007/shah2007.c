@@ -31,7 +31,7 @@ static const double least_size = 3, most_size = 255; /* texels; drivers draw no 
 static const double tau = 6.283185307179586;
 
 static bool is_printed(const abbe_gpu_scene *scene) {
-  return abbe_profile_is_printed(scene->plan->desc.profile);
+  return abbe_method_of(scene->plan->desc.profile)->printed;
 }
 
 static bool around(const abbe_shah2007 *s) {

@@ -132,7 +132,7 @@ abbe_result abbe_thesis_make(const abbe_gpu_scene *scene, const abbe_shader_vari
                              abbe_thesis *out, abbe_error *error) {
   abbe_thesis *t = out;
   t->scene = scene;
-  t->cie = scene->plan->desc.profile == ABBE_PROFILE_THESIS_CIE;
+  t->cie = !abbe_method_of(scene->plan->desc.profile)->printed;
   abbe_view fitted;
   abbe_image_view_fit_light(scene, &fitted);
   abbe_map_layout_make(&fitted, &t->layout);

@@ -33,7 +33,7 @@ static const double jitter[4][2] = {
 enum { shared_border = 2 };
 
 static bool is_printed(const abbe_gpu_scene *scene) {
-  return abbe_profile_is_printed(scene->plan->desc.profile);
+  return abbe_method_of(scene->plan->desc.profile)->printed;
 }
 
 static bool draws_polygons(const abbe_render_desc *d) {

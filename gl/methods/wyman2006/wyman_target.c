@@ -47,7 +47,7 @@ abbe_result abbe_wyman_photons_make(const abbe_gpu_scene *scene, const abbe_imag
                                     abbe_wyman_photons *out, abbe_error *error) {
   const size_t side = scene->plan->desc.photons;
   const GLenum format =
-      abbe_profile_is_printed(scene->plan->desc.profile) ? GL_RGBA16F : GL_RGBA32F;
+      abbe_method_of(scene->plan->desc.profile)->printed ? GL_RGBA16F : GL_RGBA32F;
   *out = (abbe_wyman_photons){.scene = scene, .light = light};
   find_background(scene, out->background);
   abbe_result result =
@@ -91,7 +91,7 @@ static const GLfloat nothing[4] = {0, 0, 0, 0};
 static const int flat[2] = {-1, -1};
 
 static bool is_printed(const abbe_gpu_scene *scene) {
-  return abbe_profile_is_printed(scene->plan->desc.profile);
+  return abbe_method_of(scene->plan->desc.profile)->printed;
 }
 
 /* What polygons are compiled for. */

@@ -22,7 +22,7 @@ static size_t eye_exits(const abbe_plan *plan) {
 
 void abbe_path_limits_choose(const abbe_scene *scene, const abbe_render_desc *asked,
                              abbe_plan *plan) {
-  const bool thesis = abbe_profile_is_published(plan->desc.profile);
+  const bool thesis = abbe_method_of(plan->desc.profile)->own_passes;
   char inside[64] = "";
   /* What a view's layers do not show is missed more with every reflection: fewer are worth it. */
   if (thesis || plan->desc.exits == 0)
@@ -44,10 +44,7 @@ void abbe_path_limits_choose(const abbe_scene *scene, const abbe_render_desc *as
     abbe_plan_add(plan, ABBE_CHOICE_INNER_REFLECTIONS, "%s", abbe_plan_no_refraction(plan));
   else if (plan->desc.exits == 1)
     abbe_plan_add(plan, ABBE_CHOICE_INNER_REFLECTIONS, "two interfaces only, as %s%s",
-                  abbe_profile_is_thesis(plan->desc.profile) ? "in the thesis"
-                  : thesis                                   ? "published"
-                                                             : "asked",
-                  inside);
+                  thesis ? "published" : "asked", inside);
   else
     abbe_plan_add(plan, ABBE_CHOICE_INNER_REFLECTIONS,
                   "followed until less than %g of the light is left, %zu exits at most%s",

@@ -153,7 +153,7 @@ unsigned abbe_light_cube_reached(const abbe_light *light, const abbe_object *obj
 }
 
 void abbe_light_views_reach(const abbe_scene *scene, abbe_plan *plan) {
-  bool thesis = abbe_profile_is_published(plan->desc.profile);
+  bool thesis = abbe_method_of(plan->desc.profile)->own_passes;
   const bool lands = plan->receiver_count > 0 || abbe_scene_is_hazy(scene);
   for (size_t k = 0; k < plan->refractor_count; k++) {
     const abbe_object *object = &scene->object[plan->refractor_object[k]];
@@ -260,10 +260,10 @@ bool abbe_light_views_fit(const abbe_scene *scene, const abbe_light *light, cons
 /* Where one view of the light holds all refractors, it has that; else a cube of them. */
 static abbe_result examine_view(const abbe_scene *scene, size_t light, abbe_plan *plan,
                                 abbe_error *error) {
-  const bool thesis = abbe_profile_is_published(plan->desc.profile);
+  const bool thesis = abbe_method_of(plan->desc.profile)->own_passes;
   const abbe_light *from = &scene->light[light];
   abbe_view view;
-  const bool cube = abbe_profile_estimates(plan->desc.profile) && plan->desc.faces == 0 &&
+  const bool cube = abbe_method_of(plan->desc.profile)->estimates && plan->desc.faces == 0 &&
                     !abbe_render_desc_in_light(&plan->desc);
   if (thesis && from->kind == ABBE_LIGHT_SPOT) return ABBE_OK; /* its view is its cone */
   const bool fits = abbe_light_views_fit(scene, from, plan, &view, &plan->off_view[light]);
@@ -277,7 +277,7 @@ static abbe_result examine_view(const abbe_scene *scene, size_t light, abbe_plan
                         "or take the default profile%s",
                         abbe_profile_name(plan->desc.profile), from->name,
                         scene->object[plan->off_view[light]].name,
-                        abbe_profile_estimates(plan->desc.profile)
+                        abbe_method_of(plan->desc.profile)->estimates
                             ? ", or six views (--faces 6; of wyman2006, with photons in the "
                               "camera's image)"
                             : "");

@@ -142,7 +142,7 @@ static abbe_result check_cube(const abbe_scene *scene, const abbe_plan *plan, si
 abbe_result abbe_precision_check(const abbe_scene *scene, const abbe_plan *plan,
                                  abbe_error *error) {
   abbe_result result = ABBE_OK;
-  if (plan->refractor_count == 0 || abbe_profile_is_printed(plan->desc.profile)) return ABBE_OK;
+  if (plan->refractor_count == 0 || abbe_method_of(plan->desc.profile)->printed) return ABBE_OK;
   for (size_t i = 0; i < scene->light_count && result == ABBE_OK; i++)
     if (plan->reaches[i])
       result = plan->light_view[i].face >= 0 || plan->desc.faces > 1

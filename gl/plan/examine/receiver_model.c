@@ -11,7 +11,7 @@ void abbe_receiver_model_choose(const abbe_scene *scene, abbe_plan *plan) {
   /* The published methods look their receivers up; an exact estimator meets them as the default
    * profile does. */
   const bool looked_up =
-      abbe_profile_has_lamp(plan->desc.profile) && plan->desc.estimator != ABBE_ESTIMATOR_EXACT;
+      abbe_method_of(plan->desc.profile)->lamp && plan->desc.estimator != ABBE_ESTIMATOR_EXACT;
   const abbe_object *general = NULL, *beyond = NULL;
   plan->receivers = looked_up ? ABBE_RECEIVER_DEPTH : ABBE_RECEIVER_EXACT;
   for (size_t i = 0; i < plan->receiver_count; i++) {
@@ -116,7 +116,7 @@ bool abbe_receiver_model_is_coloured(const abbe_object *object) {
 
 bool abbe_receiver_model_disperses(const abbe_scene *scene, const abbe_plan *plan) {
   if (!plan->caustics || !plan->dispersive || plan->desc.wavelengths < 2 ||
-      abbe_profile_is_published(plan->desc.profile))
+      abbe_method_of(plan->desc.profile)->own_passes)
     return false;
   for (size_t i = 0; i < plan->receiver_count; i++)
     if (abbe_receiver_model_is_coloured(&scene->object[plan->receiver_object[i]])) return true;

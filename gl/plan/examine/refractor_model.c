@@ -16,7 +16,7 @@ static const double invisible = 2e-6;
 static bool is_invisible(const abbe_scene *scene, const abbe_object *object,
                          const abbe_plan *plan) {
   abbe_material_range range;
-  if (abbe_profile_is_printed(plan->desc.profile) || object->medium != NULL ||
+  if (abbe_method_of(plan->desc.profile)->printed || object->medium != NULL ||
       abbe_material_range_make(object->material, plan->desc.min_nm, plan->desc.max_nm, &range,
                                NULL) != ABBE_OK)
     return false;
@@ -47,7 +47,7 @@ static const char *why_in_turn(const abbe_scene *scene, abbe_plan *plan) {
     only = o;
     refractors++;
   }
-  if (abbe_profile_is_published(plan->desc.profile)) return NULL;
+  if (abbe_method_of(plan->desc.profile)->own_passes) return NULL;
   if (abbe_scene_mirror(scene) != NULL) return "what a mirror sends on may meet a surface again";
   if (refractors == 0) return NULL;
   if (plan->desc.model == ABBE_MODEL_LAYERS || refractors > MAX_FOLLOWED) return NULL;
@@ -98,14 +98,14 @@ static bool is_seen_from_outside(const abbe_scene *scene, const abbe_object *bal
 static abbe_refractor_model mirror_model(const abbe_scene *scene, const abbe_object *object,
                                          const abbe_plan *plan) {
   const bool ball = object->exact.kind == ABBE_EXACT_SPHERE;
-  if (abbe_profile_is_published(plan->desc.profile)) return ABBE_REFRACTOR_LAYERS;
+  if (abbe_method_of(plan->desc.profile)->own_passes) return ABBE_REFRACTOR_LAYERS;
   return ball && plan->desc.model != ABBE_MODEL_BVH && is_seen_from_outside(scene, object)
              ? ABBE_REFRACTOR_SPHERE
              : ABBE_REFRACTOR_BVH;
 }
 
 static abbe_refractor_model model_of(const abbe_object *object, const abbe_plan *plan) {
-  if (abbe_profile_is_published(plan->desc.profile)) return ABBE_REFRACTOR_LAYERS;
+  if (abbe_method_of(plan->desc.profile)->own_passes) return ABBE_REFRACTOR_LAYERS;
   if (plan->desc.model != ABBE_MODEL_AUTO)
     return (abbe_refractor_model)(plan->desc.model - ABBE_MODEL_SPHERE);
   if (object->exact.kind == ABBE_EXACT_SPHERE) return ABBE_REFRACTOR_SPHERE;
@@ -120,7 +120,7 @@ static void write_reason(const abbe_object *object, const abbe_plan *plan, char 
   const char *because, *joint = NULL; /* before what the mesh itself tells */
   char why[128], only[64];
   abbe_convex_reason(&object->exact.convex, why, sizeof why);
-  if (abbe_profile_is_published(plan->desc.profile)) {
+  if (abbe_method_of(plan->desc.profile)->own_passes) {
     snprintf(only, sizeof only, "the %s profile knows no other model",
              abbe_profile_name(plan->desc.profile));
     because = only;
@@ -207,9 +207,7 @@ static void list_in_turn(abbe_plan *plan, const char *why) {
   abbe_plan_add(plan, ABBE_CHOICE_MULTI_REFRACTOR_PATHS, "%s",
                 plan->refractor_count == 0    ? "nothing refracts"
                 : plan->multi_refractor_paths ? why
-                : abbe_profile_is_thesis(plan->desc.profile)
-                    ? "the thesis profile follows two interfaces"
-                : abbe_profile_is_published(plan->desc.profile)
+                : abbe_method_of(plan->desc.profile)->own_passes
                     ? "the published method follows two interfaces at the most"
                 : plan->desc.model == ABBE_MODEL_LAYERS
                     ? "light goes through two layers and no further, as asked"

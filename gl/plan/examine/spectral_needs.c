@@ -180,13 +180,10 @@ static const char *wavelengths_reason(const abbe_plan *plan, bool asked) {
 }
 
 void abbe_spectral_needs_count(abbe_plan *plan) {
-  bool asked = plan->desc.wavelengths != 0;
-  if (!asked)
-    plan->desc.wavelengths =
-        !(plan->dispersive || plan->tinting || plan->colouring || plan->tinted_air) ? 1
-        : plan->desc.profile == ABBE_PROFILE_WYMAN2006                              ? 1
-        : plan->desc.profile == ABBE_PROFILE_SHAH2007 ? ABBE_PLAN_SHAH_COLOURS
-                                                      : ABBE_PLAN_WAVELENGTHS;
+  const bool asked = plan->desc.wavelengths != 0;
+  const size_t own = abbe_method_of(plan->desc.profile)->wavelengths;
+  const bool varies = plan->dispersive || plan->tinting || plan->colouring || plan->tinted_air;
+  if (!asked) plan->desc.wavelengths = !varies ? 1 : own > 0 ? own : ABBE_PLAN_WAVELENGTHS;
   if (abbe_plan_no_refraction(plan) != NULL) plan->desc.wavelengths = 1;
   abbe_plan_add(plan, ABBE_CHOICE_WAVELENGTHS, "%zu from %g to %g nm: %s", plan->desc.wavelengths,
                 plan->desc.min_nm, plan->desc.max_nm, wavelengths_reason(plan, asked));

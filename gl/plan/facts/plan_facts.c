@@ -36,12 +36,12 @@ size_t abbe_plan_least_wavelengths(const abbe_plan *plan) {
   static const size_t coarse = 4;
   const size_t n = plan->desc.wavelengths;
   /* Hits do not know what the air changes between two wavelengths. */
-  const bool apart = plan->fills && !abbe_profile_is_published(plan->desc.profile);
+  const bool apart = plan->fills && !abbe_method_of(plan->desc.profile)->own_passes;
   return apart && !plan->tinted_air && n > coarse ? coarse : n;
 }
 
 static bool has_lamp(const abbe_plan *p) {
-  return abbe_profile_has_lamp(p->desc.profile);
+  return abbe_method_of(p->desc.profile)->lamp;
 }
 
 static bool has_pinholes(const abbe_plan *p) {
@@ -50,7 +50,7 @@ static bool has_pinholes(const abbe_plan *p) {
 
 /* Its photons are the pixels of what the light sees. */
 static bool is_gridded(const abbe_plan *p) {
-  return abbe_profile_estimates(p->desc.profile);
+  return abbe_method_of(p->desc.profile)->estimates;
 }
 
 static bool refracts(const abbe_plan *p, size_t object) {

@@ -8,99 +8,12 @@
 #include "base/error.h"
 #include "colorimetry/observer.h"
 #include "colorimetry/rgb_space.h"
+#include "gl/methods/facts/method_facts.h"
 #include "scenes/samples/surface_samples.h"
-#include "scenes/view/estimator.h"
 #include "scenes/view/map_layout.h"
-#include "scenes/volume/caustic_volume.h"
 
 #include <stdbool.h>
 #include <stddef.h>
-
-/* Methods as they were published, with their own constants, and each (-cie) with the default
- * profile's wavelengths, CIE weights, indices, Fresnel's law and units. wyman2003 looks caustics up
- * in a printed volume; all else is the default profile's, as is its twin: the transport 'volume'.
- */
-#define ABBE_PROFILES(X)                                                                           \
-  X(DEFAULT, "default")                                                                            \
-  X(THESIS, "thesis")                                                                              \
-  X(THESIS_CIE, "thesis-cie")                                                                      \
-  X(SHAH2007, "shah2007")                                                                          \
-  X(SHAH2007_CIE, "shah2007-cie")                                                                  \
-  X(WYMAN2006, "wyman2006")                                                                        \
-  X(WYMAN2006_CIE, "wyman2006-cie") X(WYMAN2003, "wyman2003") X(WAND2003, "wand2003")
-typedef enum abbe_profile {
-#define ABBE_PROFILE_ENUM(code, name) ABBE_PROFILE_##code,
-  ABBE_PROFILES(ABBE_PROFILE_ENUM)
-#undef ABBE_PROFILE_ENUM
-      ABBE_PROFILE_COUNT
-} abbe_profile;
-
-/* bridge: light is laid between neighbouring wavelengths' hits; none: each wavelength lands
- * on its own; smear: the thesis's 20-step fill; of wyman2006, in the camera's image points, quads
- * or triangles of neighbouring photons or a gather, or a gather in the light's. AUTO is bridge,
- * smear in the thesis profile, gather-light in wyman2006, whose none is points. */
-#define ABBE_FILLS(X)                                                                              \
-  X(AUTO, "auto")                                                                                  \
-  X(NONE, "none")                                                                                  \
-  X(BRIDGE, "bridge")                                                                              \
-  X(SMEAR, "smear")                                                                                \
-  X(POINTS, "points")                                                                              \
-  X(QUADS, "quads")                                                                                \
-  X(TRIANGLES, "triangles") X(GATHER_EYE, "gather-eye") X(GATHER_LIGHT, "gather-light")
-typedef enum abbe_fill {
-#define ABBE_FILL_ENUM(code, name) ABBE_FILL_##code,
-  ABBE_FILLS(ABBE_FILL_ENUM)
-#undef ABBE_FILL_ENUM
-      ABBE_FILL_COUNT
-} abbe_fill;
-
-/* The direction by which wyman2006 shades caustics: photons' own, their mean in a pixel, the direct
- * light's. AUTO is mean; in units direct, which there is exact. */
-#define ABBE_DIRECTIONS(X) X(AUTO, "auto") X(OWN, "own") X(MEAN, "mean") X(DIRECT, "direct")
-typedef enum abbe_direction {
-#define ABBE_DIRECTION_ENUM(code, name) ABBE_DIRECTION_##code,
-  ABBE_DIRECTIONS(ABBE_DIRECTION_ENUM)
-#undef ABBE_DIRECTION_ENUM
-      ABBE_DIRECTION_COUNT
-} abbe_direction;
-/* What AUTO is; AUTO where a profile takes none. */
-abbe_direction abbe_direction_of_profile(abbe_profile profile);
-
-/* What wyman2006 does otherwise with quads and triangles, bits of a request. even: as printed,
- * beams have the light of one photon of the field each, not that of their solid angle; corners:
- * light by corner, of all polygons around it, not by polygon; culled: polygons between surfaces are
- * left out; in-light: they are drawn into the light's image, which the light then projects. */
-#define ABBE_POLYGONS(X)                                                                           \
-  X(EVEN, "even", 1) X(CORNERS, "corners", 2) X(CULLED, "culled", 4) X(IN_LIGHT, "in-light", 8)
-enum {
-#define ABBE_POLYGONS_ENUM(code, name, bit) ABBE_POLYGONS_##code = (bit),
-  ABBE_POLYGONS(ABBE_POLYGONS_ENUM)
-#undef ABBE_POLYGONS_ENUM
-      ABBE_POLYGONS_ALL = 15
-};
-
-/* How caustics come to receivers: by photons; looked up in a volume that was computed beforehand
- * (scenes/volume/caustic_volume.h); or those of what stands out of surroundings by photons, and
- * those of the rest through samples of mirrors and refractors as pinholes. AUTO: in a volume where
- * one is given, by pinholes in wand2003. */
-#define ABBE_TRANSPORTS(X)                                                                         \
-  X(AUTO, "auto") X(PHOTONS, "photons") X(VOLUME, "volume") X(PINHOLE, "pinhole")
-typedef enum abbe_transport {
-#define ABBE_TRANSPORT_ENUM(code, name) ABBE_TRANSPORT_##code,
-  ABBE_TRANSPORTS(ABBE_TRANSPORT_ENUM)
-#undef ABBE_TRANSPORT_ENUM
-      ABBE_TRANSPORT_COUNT
-} abbe_transport;
-
-/* Whether a pinhole shows the surroundings as wide as its sample reflects them, by curvature. AUTO
- * is on. */
-#define ABBE_FOOTPRINTS(X) X(AUTO, "auto") X(OFF, "off") X(ON, "on")
-typedef enum abbe_footprint {
-#define ABBE_FOOTPRINT_ENUM(code, name) ABBE_FOOTPRINT_##code,
-  ABBE_FOOTPRINTS(ABBE_FOOTPRINT_ENUM)
-#undef ABBE_FOOTPRINT_ENUM
-      ABBE_FOOTPRINT_COUNT
-} abbe_footprint;
 
 /* How light is followed through refractors. AUTO: by the scene; the others ask for one model for
  * all refractors. */
@@ -144,7 +57,6 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 
 /* What a request of the default profile leaves open, where a scene disperses. */
 #define ABBE_PLAN_WAVELENGTHS 7
-#define ABBE_PLAN_SHAH_COLOURS 3 /* of shah2007: blue, green and red */
 #define ABBE_PLAN_PHOTONS 256
 #define ABBE_PLAN_MAP 1024
 #define ABBE_PLAN_SAMPLES 2
@@ -268,22 +180,6 @@ abbe_result abbe_render_desc_resolve(const abbe_render_desc *desc, size_t width,
 /* Whether it is wyman2006 whose photons go to the light's image, and not to the camera's. */
 bool abbe_render_desc_in_light(const abbe_render_desc *desc);
 
-const char *abbe_profile_name(abbe_profile profile);
-/* Whether it is a published method, with passes of its own: all in images, of one light. */
-bool abbe_profile_is_published(abbe_profile profile);
-/* Whether it is one with its own constants: of display brightness, and no units. */
-bool abbe_profile_is_printed(abbe_profile profile);
-bool abbe_profile_is_thesis(abbe_profile profile);
-bool abbe_profile_is_shah2007(abbe_profile profile);
-bool abbe_profile_is_wyman2006(abbe_profile profile);
-bool abbe_profile_is_wyman2003(abbe_profile profile);
-bool abbe_profile_is_wand2003(abbe_profile profile);
-/* Whether it looks from its one light: all but wand2003, whose light is from all around. */
-bool abbe_profile_has_lamp(abbe_profile profile);
-/* Whether rays are brought to receivers by an estimator: shah2007 and wyman2006. */
-bool abbe_profile_estimates(abbe_profile profile);
-const char *abbe_fill_name(abbe_fill fill);
-const char *abbe_transport_name(abbe_transport transport);
 const char *abbe_model_name(abbe_model model);
 
 #endif

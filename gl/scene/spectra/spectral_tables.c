@@ -226,7 +226,7 @@ abbe_result abbe_spectral_tables_make(const abbe_scene *scene, const abbe_plan *
   if (result == ABBE_OK)
     result = abbe_weights_make_by(desc->observer, &t->all, abbe_scene_illuminant(scene),
                                   ABBE_RGB_SPACE_XYZ, &t->camera, error);
-  if (result != ABBE_OK || !plan->caustics || abbe_profile_is_published(desc->profile))
+  if (result != ABBE_OK || !plan->caustics || abbe_method_of(desc->profile)->own_passes)
     return result;
   result = weigh_lights(scene, plan, t, error);
   if (result == ABBE_OK)

@@ -248,7 +248,7 @@ static void free_taken(taken *t) {
 /* Makes a renderer and calls each of its entries, each in a state that is awkward or as it comes.
  */
 static void take(const abbe_scene *scene, const abbe_render_desc *desc, bool awkward, taken *out) {
-  const bool thesis = abbe_profile_is_published(desc->profile);
+  const bool thesis = abbe_method_of(desc->profile)->own_passes;
   abbe_renderer *renderer = NULL;
   abbe_renderer_picture p;
   double ms = 0;
@@ -287,7 +287,7 @@ static void assert_same_in_any_state(const char *text, const abbe_render_desc *d
   load_text(text, &scene);
   take(&scene, desc, false, &calm);
   take(&scene, desc, true, &awkward);
-  if (abbe_profile_is_published(desc->profile)) {
+  if (abbe_method_of(desc->profile)->own_passes) {
     assert_alike(&awkward.picture, &calm.picture);
     assert_alike(&awkward.map, &calm.map);
   } else {

@@ -121,7 +121,7 @@ static abbe_result compare(const work *w, const abbe_render_desc *desc, abbe_ren
   abbe_sweep_row row;
   abbe_sweep sweep = *w->sweep;
   sweep.picture = truth;
-  const bool printed = abbe_profile_is_printed(desc->profile);
+  const bool printed = abbe_method_of(desc->profile)->printed;
   abbe_result result = abbe_renderer_change(renderer, &w->moved, desc, error);
   if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, NULL, error);
   if (result == ABBE_OK) result = abbe_renderer_read(renderer, false, &picture, error);

@@ -21,7 +21,7 @@ static abbe_result draw(abbe_context *context, const abbe_scene *scene,
   abbe_render_desc d = *desc;
   abbe_renderer *renderer = NULL;
   d.map_size = MAP;
-  if (d.profile == ABBE_PROFILE_DEFAULT) d.clusters = ABBE_RENDER_MAX_CLUSTERS;
+  if (!abbe_method_of(d.profile)->surroundings) d.clusters = ABBE_RENDER_MAX_CLUSTERS;
   d.photon_shift[0] = ((double)k + 0.5) / (double)count - 0.5;
   abbe_result result = abbe_renderer_make(context, scene, &d, &renderer, error);
   if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, NULL, error);

@@ -185,7 +185,7 @@ static abbe_result time_still(const work *w, abbe_renderer *renderer, double *n,
   double alone = NAN;
   const abbe_frame_times_desc desc = {.frames = w->sweep->frames, .enough_ms = 3000};
   abbe_result result = abbe_frame_times_measure(renderer, &desc, &times, error);
-  if (result == ABBE_OK && !abbe_profile_is_published(abbe_renderer_plan(renderer)->desc.profile))
+  if (result == ABBE_OK && !abbe_method_of(abbe_renderer_plan(renderer)->desc.profile)->own_passes)
     result = abbe_frame_times_baseline(renderer, 3, &alone, error);
   if (result != ABBE_OK) return result;
   n[ABBE_TRANSPORT_FRAME_MS_NUMBER] = times.median.frame_ms;
@@ -207,7 +207,7 @@ static abbe_result time_without(const work *w, const abbe_render_desc *desc, dou
   abbe_renderer *renderer = NULL;
   abbe_frame_times times;
   const abbe_frame_times_desc how = {.frames = w->sweep->frames, .enough_ms = 3000};
-  if (abbe_profile_is_published(desc->profile) || scene->light_count == 0) return ABBE_OK;
+  if (abbe_method_of(desc->profile)->own_passes || scene->light_count == 0) return ABBE_OK;
   dark.light = malloc(scene->light_count * sizeof *dark.light);
   if (dark.light == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for lights");
   abbe_scene_bounds(scene, true, true, min, max);
@@ -232,7 +232,7 @@ static abbe_result time_without(const work *w, const abbe_render_desc *desc, dou
 static abbe_result compare(const work *w, abbe_renderer *renderer, double *n, abbe_error *error) {
   abbe_image picture = {0};
   abbe_sweep_row row;
-  const bool printed = abbe_profile_is_printed(abbe_renderer_plan(renderer)->desc.profile);
+  const bool printed = abbe_method_of(abbe_renderer_plan(renderer)->desc.profile)->printed;
   abbe_result result = abbe_renderer_read(renderer, false, &picture, error);
   if (result == ABBE_OK)
     result = abbe_sweep_compare_picture(w->sweep, &picture, printed, &row, error);

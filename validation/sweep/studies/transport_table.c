@@ -14,7 +14,7 @@ static const char *const columns[] = {
 };
 
 static const char *transport_of(const abbe_render_desc *d) {
-  if (d->profile != ABBE_PROFILE_DEFAULT) return abbe_profile_name(d->profile);
+  if (!abbe_method_of(d->profile)->presets) return abbe_profile_name(d->profile);
   return abbe_transport_name(d->transport == ABBE_TRANSPORT_AUTO ? ABBE_TRANSPORT_PHOTONS
                                                                  : d->transport);
 }

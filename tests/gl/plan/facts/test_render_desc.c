@@ -52,8 +52,8 @@ TEST(names_are_the_options) {
   assert_string_equal(abbe_profile_name((abbe_profile)-1), "unknown");
   assert_string_equal(abbe_fill_name(ABBE_FILL_COUNT), "unknown");
   assert_string_equal(abbe_model_name(ABBE_MODEL_COUNT), "unknown");
-  assert_true(abbe_profile_is_published(ABBE_PROFILE_THESIS_CIE));
-  assert_false(abbe_profile_is_published(ABBE_PROFILE_DEFAULT));
+  assert_true(abbe_method_of(ABBE_PROFILE_THESIS_CIE)->own_passes);
+  assert_false(abbe_method_of(ABBE_PROFILE_DEFAULT)->own_passes);
 }
 
 TEST(limits_are_kept) {
