@@ -1,4 +1,4 @@
-/* clock.h: how long something takes. It tells no date. */
+/* clock.h: how long something takes. It does not know the date. */
 #ifndef ABBE_BASE_CLOCK_H
 #define ABBE_BASE_CLOCK_H
 
@@ -10,7 +10,7 @@ double abbe_clock_seconds(void);
 double abbe_clock_thread_seconds(void);
 
 /* Seconds since this process was started, to a hundredth, loading of its libraries included; where
- * the system does not tell, since some moment after. */
+ * the system does not know, since some moment after. */
 double abbe_clock_process_seconds(void);
 
 #endif

@@ -61,8 +61,8 @@ static inline void abbe_vector_triangle(const double a[3], const double b[3], co
   abbe_vector_cross(u, v, out);
 }
 
-/* Of two directions that are not along each other, three unit vectors as the columns of out, row by
- * row: along a, across it towards b, and side (1, or -1 for a mirror image) times a x b. */
+/* Three unit vectors as the columns of out, row by row, from two directions that are not along each
+ * other: along a, across it towards b, and side (1, or -1 for a mirror image) times a x b. */
 static inline void abbe_vector_frame(const double a[3], const double b[3], double side,
                                      double out[9]) {
   double x[3] = {a[0], a[1], a[2]}, y[3], z[3];

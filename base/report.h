@@ -11,9 +11,9 @@
 
 /* X(code, word): from harmless to severe. */
 #define ABBE_NOTE_KINDS(X)                                                                         \
-  X(CHANGED, "changed") /* the same material, written in another way */                            \
+  X(CHANGED, "changed") /* the same material, written differently */                               \
   X(RENAMED, "renamed") /* the same material, under another name */                                \
-  X(LOST, "lost")       /* something that the record said is not carried */                        \
+  X(LOST, "lost")       /* something in the record is not carried */                               \
   X(ASSUMED, "assumed") /* something that the record lacks is supplied */                          \
   X(SKIPPED, "skipped") /* the record as a whole is left out */
 
@@ -21,14 +21,14 @@ typedef enum abbe_note_kind {
 #define ABBE_NOTE_ENUM(code, word) ABBE_NOTE_##code,
   ABBE_NOTE_KINDS(ABBE_NOTE_ENUM)
 #undef ABBE_NOTE_ENUM
-  ABBE_NOTE_KIND_COUNT
+      ABBE_NOTE_KIND_COUNT
 } abbe_note_kind;
 
 typedef struct abbe_note {
   abbe_note_kind kind;
   size_t line;    /* in the source file, from 1; 0 where it has none */
   char file[128]; /* the end of its path, where there are several; else "" */
-  char name[96];  /* of the material; "" where it is none's */
+  char name[96];  /* the material's name; "" where no material is concerned */
   char text[320]; /* a sentence; printable */
 } abbe_note;
 
@@ -37,10 +37,10 @@ typedef struct abbe_note {
 
 /* Zero-initialise. */
 typedef struct abbe_report {
-  size_t count;                        /* of note[] */
-  abbe_note *note;                     /* in the order in which they were met */
-  size_t kinds[ABBE_NOTE_KIND_COUNT];  /* notes of each kind, those not kept included */
-  const char *file;                    /* that the next notes are about; NULL: the only one */
+  size_t count;                       /* notes in note[] */
+  abbe_note *note;                    /* in the order in which they were met */
+  size_t kinds[ABBE_NOTE_KIND_COUNT]; /* notes of each kind, those not kept included */
+  const char *file;                   /* that the next notes are about; NULL: the only one */
 } abbe_report;
 
 void abbe_report_free(abbe_report *report);

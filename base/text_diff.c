@@ -41,7 +41,7 @@ static void change_all(line *at, size_t count) {
   for (size_t i = 0; i < count; i++) at[i].changed = true;
 }
 
-/* Marks what is in only one of a[n] and b[m]: cell (i, j) holds the length of the longest common
+/* Finds what is in only one of a[n] and b[m]: cell (i, j) holds the length of the longest common
  * sequence of the lines from i and j on. */
 static void mark(line *a, size_t n, line *b, size_t m) {
   uint32_t *cell = n > 0 && m > 0 && n < MAX_CELLS && m < MAX_CELLS && (n + 1) * (m + 1) < MAX_CELLS
@@ -86,7 +86,7 @@ static void print_line(FILE *out, char sign, const line *l) {
   if (l->text[l->size - 1] != '\n') fputs("\n\\ No newline at end of file\n", out);
 }
 
-/* One walk over both texts from a[*i] and b[*j] to the end of a hunk; out NULL only counts. */
+/* Goes through both texts once, from a[*i] and b[*j] to the end of a hunk; out NULL only counts. */
 static void walk(lines a, lines b, size_t *i, size_t *j, FILE *out) {
   size_t after = 0; /* unchanged lines since the last change */
   while (*i < a.count || *j < b.count) {

@@ -82,8 +82,8 @@ static double secant(const abbe_spectrum *s, size_t interval) {
          (s->lambda_nm[interval + 1] - s->lambda_nm[interval]);
 }
 
-/* [Steffen1990]: the slope of the parabola through three points, at the middle one, held to twice the
- * flatter secant, and flat at an extremum. */
+/* [Steffen1990]: the slope of the parabola through three points, at the middle one, held to twice
+ * the flatter secant, and flat at an extremum. */
 static double inner_slope(const abbe_spectrum *s, size_t i) {
   const double left = secant(s, i - 1), right = secant(s, i);
   const double before = s->lambda_nm[i] - s->lambda_nm[i - 1];
@@ -161,8 +161,8 @@ void abbe_spectrum_free(abbe_spectrum *spectrum) {
   free(spectrum);
 }
 
-/* Of the cubic in one interval, at a share t of it: its value, or its integral from the interval's
- * beginning, over the width. */
+/* Evaluates the cubic in one interval, at a share t of it: its value, or its integral from the
+ * interval's beginning, over the width. */
 static double cubic(const abbe_spectrum *s, size_t i, double t, bool integral) {
   const double width = s->lambda_nm[i + 1] - s->lambda_nm[i], y = s->value[i];
   const double rise = s->value[i + 1] - y, from = width * s->slope[i], to = width * s->slope[i + 1];

@@ -8,7 +8,7 @@
 
 typedef double complex number;
 
-static const double grazing = 1e-6; /* below, rounding hides which way it goes */
+static const double grazing = 1e-6; /* below, rounding hides in which direction it goes */
 
 static void scale_to_unit(double v[3]) {
   const double length = sqrt(abbe_vector_dot(v, v));
@@ -137,7 +137,7 @@ static void finish_wave(const face *f, wave *w) {
   }
 }
 
-/* A direction across the wave vector, by which both fields are told apart: across the axis too or,
+/* A direction across the wave vector, by which both fields are separated: across the axis too or,
  * where that lies along the wave vector or there is none, across the plane of incidence. */
 static void across_wave_vector(const abbe_uniaxial *m, const face *f, const wave *w,
                                number out[3]) {

@@ -7,9 +7,8 @@
  * tangential electric and magnetic fields the same on both sides [BornWolf1999] [Lekner1991].
  * Clear, not magnetic, not optically active; plane waves and plane faces.
  *
- * Directions are unit vectors of the way the light travels; n is the unit normal of the face on the
- * side that the light comes from.
- */
+ * Directions are unit vectors in which the light travels; n is the unit normal of the face on the
+ * side that the light comes from. */
 #ifndef ABBE_SPECTRAL_UNIAXIAL_H
 #define ABBE_SPECTRAL_UNIAXIAL_H
 
@@ -45,10 +44,11 @@ void abbe_uniaxial_normal(const abbe_uniaxial *medium, abbe_uniaxial_mode mode, 
 
 /* A wave that leaves a face. */
 typedef struct abbe_uniaxial_wave {
-  double share;        /* of the power that came to the face; 0 for one that clings to the face */
+  double
+      share; /* its share of the power that came to the face; 0 for one that clings to the face */
   double index;        /* along its normal; the fields below hold where share > 0 or it travels */
-  double normal[3];    /* of the wave */
-  double ray[3];       /* of its energy */
+  double normal[3];    /* the wave's normal */
+  double ray[3];       /* the direction of its energy */
   double field[3];     /* the unit direction of its electric field */
   double amplitude[2]; /* real and imaginary part along it, for an incident field of 1 */
   bool travels;        /* false: evanescent */

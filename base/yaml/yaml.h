@@ -17,7 +17,7 @@
 typedef struct abbe_yaml abbe_yaml; /* a document */
 typedef struct abbe_yaml_node {
   int id;
-} abbe_yaml_node; /* of one document; id 0: absent */
+} abbe_yaml_node; /* index in one document; id 0: absent */
 
 abbe_result abbe_yaml_parse(const char *text, size_t size, const char *name, abbe_yaml **out,
                             abbe_error *error);
@@ -45,7 +45,7 @@ abbe_yaml_node abbe_yaml_item(const abbe_yaml *yaml, abbe_yaml_node sequence, si
 abbe_yaml_node abbe_yaml_key(const abbe_yaml *yaml, abbe_yaml_node mapping, size_t index);
 abbe_yaml_node abbe_yaml_value(const abbe_yaml *yaml, abbe_yaml_node mapping, size_t index);
 
-/* The value of key in mapping, or an absent node (id 0); marks the key as known. */
+/* The value of key in mapping, or an absent node (id 0); the key counts as known from then on. */
 abbe_yaml_node abbe_yaml_get(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key);
 
 /* A child that must be there; ABBE_SCHEMA with a sentence where it is not. */

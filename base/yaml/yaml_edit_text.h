@@ -19,8 +19,8 @@ abbe_result abbe_yaml_edit_no_memory(const abbe_yaml_edit *e, abbe_error *error)
 /* Those of a node, as abbe_yaml_span has them. */
 abbe_yaml_bytes abbe_yaml_edit_span_of(const abbe_yaml_edit *e, abbe_yaml_node node);
 
-/* Of the line of `at`: its start behind a byte-order mark, and the end of its text before its line
- * end; and the start of the line after it, or the end of the text. */
+/* For the line of `at`: its start behind a byte-order mark, the end of its text before its line
+ * end, and the start of the line after it, or the end of the text. */
 size_t abbe_yaml_edit_line_from(const abbe_yaml_edit *e, size_t at);
 size_t abbe_yaml_edit_line_to(const abbe_yaml_edit *e, size_t at);
 size_t abbe_yaml_edit_next_line(const abbe_yaml_edit *e, size_t at);

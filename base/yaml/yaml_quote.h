@@ -11,7 +11,7 @@
 
 #include <stdio.h>
 
-/* To the stream, whose own error state tells of failure. */
+/* Writes to the stream, whose own error state shows a failure. */
 void abbe_yaml_quote_write(const char *text, FILE *to);
 /* *out is malloc'd, NULL on failure. ABBE_NO_MEMORY. */
 abbe_result abbe_yaml_quote_make(const char *text, char **out, abbe_error *error);

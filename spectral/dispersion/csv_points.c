@@ -20,7 +20,7 @@ typedef struct reader {
   const char *name;
   const abbe_csv_options *options;
   bool light;         /* two columns, or one that is named, and nothing is passed over */
-  const char *column; /* of that name; NULL: there are two */
+  const char *column; /* its name; NULL: there are two */
   const char *noun;   /* what a light's second column holds */
   abbe_csv_points *out;
   abbe_report *report;
@@ -143,8 +143,8 @@ static void join_units(reader *r) {
   r->fields = kept;
 }
 
-/* Of a light's two columns the first that is called so has the wavelengths: "S(lambda)" is power.
- */
+/* Among a light's two columns the first that is called so has the wavelengths: "S(lambda)" is
+ * power. */
 static role role_of_two(const reader *r, size_t column) {
   bool second = role_of(r->field[1], 1) == WAVELENGTH && role_of(r->field[0], 1) != WAVELENGTH;
   return column == (size_t)second ? WAVELENGTH : POWER;

@@ -16,7 +16,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* What a third column holds where no header says so. */
+/* What a third column holds where no header names it. */
 typedef enum abbe_csv_third { ABBE_CSV_UNCERTAINTY, ABBE_CSV_K, ABBE_CSV_IGNORED } abbe_csv_third;
 
 /* What the columns beside the wavelength hold. */
@@ -28,10 +28,10 @@ typedef enum abbe_csv_quantity {
 
 typedef struct abbe_csv_options {
   abbe_csv_quantity quantity;
-  const char *column; /* of a power or reflectance: the one that the header names so (any case),
-                         beside which there may be others; NULL: there are two columns */
-  double unit_nm;     /* of the first column: 1 for nm, 1000 for um; 0: the header's, or else nm
-                         where all are above 100 and um where all are below 50 */
+  const char *column; /* a power's or reflectance's column: the one that the header names so (any
+                         case), beside which there may be others; NULL: there are two columns */
+  double unit_nm; /* unit of the first column: 1 for nm, 1000 for um; 0: the header's, or else nm
+                     where all are above 100 and um where all are below 50 */
   abbe_csv_third third;
   bool repeats; /* keep several points at one wavelength, as measured ones may be */
 } abbe_csv_options;
@@ -40,15 +40,15 @@ typedef struct abbe_csv_points {
   abbe_points n;     /* in order; each error is its uncertainty, 0 where none is given */
   abbe_points k;     /* in order; may be empty */
   abbe_points power; /* in order; of a power or reflectance, which has no others */
-  size_t first_line; /* of the first number */
+  size_t first_line; /* the line of the first number */
 } abbe_csv_points;
 
 void abbe_csv_points_free(abbe_csv_points *points);
 
-/* Reads size bytes of text (any encoding of base/encoding.h); name stands for the file in
- * messages, options may be NULL. A line that cannot be used is noted in report and passed over, as
- * are, without options->repeats, points at a wavelength that was there before; a light's are
- * ABBE_PARSE or ABBE_SCHEMA, with line and text. ABBE_PARSE where the unit cannot be told;
+/* Reads size bytes of text (any encoding of base/encoding.h); name stands for the file in messages,
+ * options may be NULL. A line that cannot be used is noted in report and passed over, and so are,
+ * without options->repeats, points at a wavelength that was there before; in a light's file these
+ * are ABBE_PARSE or ABBE_SCHEMA, with line and text. ABBE_PARSE where the unit is not clear;
  * ABBE_SCHEMA where no point remains. */
 abbe_result abbe_csv_points_parse(const char *text, size_t size, const char *name,
                                   const abbe_csv_options *options, abbe_csv_points *out,

@@ -13,7 +13,7 @@
 enum { MAX_TERMS = ABBE_FIT_MAX_CAUCHY_TERMS };
 
 typedef struct basis {
-  double middle, half; /* of x, um^-2 */
+  double middle, half; /* of x's range, um^-2 */
   size_t terms;
   double power[MAX_TERMS][MAX_TERMS]; /* T_k = sum_j power[k][j] x^j */
 } basis;
@@ -151,7 +151,7 @@ double abbe_fit_standard_error(const abbe_fit *fit, size_t i) {
   return i < ABBE_DISPERSION_MAX_COEFFICIENTS ? sqrt(fit->covariance[i][i]) : NAN;
 }
 
-/* The wavelengths that are different from each other: no more can be told from the points. */
+/* The number of wavelengths that are different from each other: the points hold no more. */
 static size_t different(const abbe_fit_data *data) {
   size_t count = data->count > 0;
   for (size_t i = 1; i < data->count; i++) count += data->lambda_nm[i] > data->lambda_nm[i - 1];
@@ -234,7 +234,7 @@ static void measure(const abbe_fit_data *data, abbe_fit *fit) {
       data->count > fit->free ? weighted / (double)(data->count - fit->free) : NAN;
 }
 
-/* Without uncertainties the residuals say how large they are. */
+/* Without uncertainties the residuals show how large they are. */
 static double scale_covariance(abbe_fit *fit) {
   double scale = fit->weighted ? 1 : fit->reduced_chi_squared;
   size_t count = fit->dispersion.count;

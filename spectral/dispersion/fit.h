@@ -35,7 +35,7 @@ typedef struct abbe_fit {
   double min_nm, max_nm;      /* first and last wavelength of the points used */
   size_t points, free;        /* points used, coefficients that were fitted */
   bool weighted;              /* by the points' uncertainties */
-  double rms, max_error;      /* of n - fit at the points used, unweighted */
+  double rms, max_error;      /* residuals n - fit at the points used, unweighted */
   double max_nm_of_error;     /* where the largest is */
   /* sum of squared residuals over (points - free): in units of the uncertainties where weighted
    * (about 1 where they and the form are right), else of n^2; NaN where no point is left over */
@@ -45,12 +45,13 @@ typedef struct abbe_fit {
   double covariance[ABBE_DISPERSION_MAX_COEFFICIENTS][ABBE_DISPERSION_MAX_COEFFICIENTS];
 } abbe_fit;
 
-/* Fits points, weighted by 1 / uncertainty^2 where they have them. The poles of a Sellmeier form
- * stay outside the points' wavelengths, and its B above 0.
- * ABBE_INVALID_ARGUMENT, with the numbers that show it, for terms that are not possible, fewer
- * wavelengths than coefficients, a range too narrow for the terms, coefficients so large that
- * they cancel beyond double precision, and, unless the points are a formula's, a highest term
- * that the points do not tell from zero (below twice its standard error). */
+/* Fits points, weighted by 1
+ * uncertainty^2 where they have them. The poles of a Sellmeier form stay outside the points'
+ * wavelengths, and its B above 0. ABBE_INVALID_ARGUMENT, with the numbers that show it, for terms
+ * that are not possible, fewer wavelengths than coefficients, a range too narrow for the terms,
+ * coefficients so large that they cancel beyond double precision, and, unless the points are a
+ * formula's, a highest term that the points do not separate from zero (below twice its standard
+ * error). */
 abbe_result abbe_fit_make(const abbe_index_points *points, const abbe_fit_request *request,
                           abbe_fit *out, abbe_error *error);
 
@@ -67,7 +68,7 @@ double abbe_fit_standard_error(const abbe_fit *fit, size_t i);
 
 const char *abbe_fit_form_name(abbe_fit_form form);
 
-/* What spectral/dispersion/fit.c asks of its two forms. */
+/* What spectral/dispersion/fit.c needs of its two forms. */
 
 /* The points of one fit: those within its range. uncertainty is NULL where all weigh the same. */
 typedef struct abbe_fit_data {

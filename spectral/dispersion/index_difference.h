@@ -8,7 +8,7 @@
 
 typedef struct abbe_index_difference {
   double rms;    /* root of the mean square of n_a - n_b */
-  double mean;   /* of n_a - n_b: what a shift of the whole curve would take away */
+  double mean;   /* mean of n_a - n_b: what a shift of the whole curve would take away */
   double max;    /* largest |n_a - n_b| */
   double max_nm; /* where that is */
 } abbe_index_difference;

@@ -106,7 +106,7 @@ abbe_result abbe_index_points_parse(const char *text, size_t size, const char *n
   abbe_error why = {0};
   abbe_result result = abbe_csv_points_parse(text, size, name, &options, &csv, &report, &why);
   abbe_result refused = refuse_notes(&report, name, error);
-  /* a line that was passed over says more than that nothing remained */
+  /* a line that was passed over explains more than that nothing remained */
   if (result != ABBE_OK && refused == ABBE_OK) abbe_error_set(error, result, "%s", why.text);
   if (refused != ABBE_OK) result = refused;
   if (result == ABBE_OK) result = take(&csv.n, name, out, error);

@@ -23,10 +23,10 @@ typedef struct abbe_index_points {
   bool exact;          /* n of a formula, so that residuals are the form's and not noise */
 } abbe_index_points;
 
-/* Reads a file of columns as spectral/dispersion/csv_points.h has it, strictly: a line that is not a point is
- * an error, since a measurement with holes is another one. Lines may come in any order.
- * ABBE_IO for the file; ABBE_PARSE for a line, or a unit that cannot be told; ABBE_SCHEMA for no
- * points, points outside 1 nm to 1 mm, and uncertainties on some lines only. */
+/* Reads a file of columns as spectral/dispersion/csv_points.h has it, strictly: a line that is not
+ * a point is an error, because a measurement with holes is another one. Lines may come in any
+ * order. ABBE_IO for the file; ABBE_PARSE for a line, or a unit that is not clear; ABBE_SCHEMA for
+ * no points, points outside 1 nm to 1 mm, and uncertainties on some lines only. */
 abbe_result abbe_index_points_load(const char *path, abbe_index_points *out, abbe_error *error);
 /* The same from text; name stands for the path in messages. */
 abbe_result abbe_index_points_parse(const char *text, size_t size, const char *name,

@@ -1,8 +1,8 @@
 /* povray_index.h: an index as POV-Ray has it: two numbers.
  *
- * n(lambda) = ior dispersion^((555 nm - lambda) / 350 nm) [PovRay37]. Here are the law and its fit
- * by least squares; what is sampled, and what weighs how much, its users say. It writes nothing.
- */
+ * n(lambda) = ior dispersion^((555 nm - lambda)
+ * 350 nm) [PovRay37]. Here are the law and its fit by least squares; its users choose samples and
+ * weights. It writes nothing. */
 #ifndef ABBE_SPECTRAL_DISPERSION_POVRAY_INDEX_H
 #define ABBE_SPECTRAL_DISPERSION_POVRAY_INDEX_H
 

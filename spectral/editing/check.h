@@ -12,12 +12,12 @@
 #include "spectral/editing/check_parts.h"
 #include "spectral/materials/material_table.h"
 
-/* Adds what there is to say about one material. known may be NULL or hold the material itself.
+/* Adds the findings about one material. known may be NULL or hold the material itself.
  * ABBE_NO_MEMORY; finding nothing is ABBE_OK. */
 abbe_result abbe_check_material(const abbe_material *material, const abbe_material_table *known,
                                 abbe_findings *findings, abbe_error *error);
 
-/* Adds what there is to say about every row, and about rows that are alike. Tables read with
+/* Adds the findings about every row, and about rows that are alike. Tables read with
  * abbe_material_table_load_lenient may be checked. */
 abbe_result abbe_check_table(const abbe_material_table *table, const abbe_material_table *known,
                              abbe_findings *findings, abbe_error *error);

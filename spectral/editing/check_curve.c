@@ -29,7 +29,7 @@ static double most_k(const abbe_check *c) {
  * band this strong is a metal, or opaque near it: n may rise there, and be below 1 beside it. */
 static const double THIN = 1e-3, XRAY_NM = 120, STRONG = 0.1;
 
-/* False where the formula fails inside its range: nothing else can be said of it then. */
+/* False where the formula fails inside its range: nothing else can be checked then. */
 static bool check_index(abbe_check *c) {
   enum { STEPS = 2000 };
   double least = INFINITY, least_nm = 0;

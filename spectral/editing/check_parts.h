@@ -35,7 +35,7 @@
   X(SAME, "duplicate", "two rows have the same numbers")                                           \
   X(NEAR, "near-duplicate", "two rows differ by less than can be measured")                        \
   X(NO_SOURCE, "no-source", "nothing says where the numbers come from")                            \
-  X(UNITS, "units", "a range is missing, or a number in another unit")                                      \
+  X(UNITS, "units", "a range is missing, or a number in another unit")                             \
   X(FIT, "fit", "a recorded fit is not the row's")
 
 typedef enum abbe_finding_kind {
@@ -56,12 +56,12 @@ typedef enum abbe_finding_weight {
 typedef struct abbe_finding {
   abbe_finding_kind kind;
   abbe_finding_weight weight;
-  size_t row;      /* of the table; 0 for a single material */
+  size_t row;      /* row of the table; 0 for a single material */
   size_t other;    /* the row that it is like, or ABBE_FINDING_NO_ROW */
   char *evidence;  /* a sentence with numbers */
   char *fix;       /* a sentence: what would be right */
   bool certain;    /* key set to value fixes it */
-  const char *key; /* of the record, such as "coefficients"; NULL without a value */
+  const char *key; /* key of the record, such as "coefficients"; NULL without a value */
   char *value;     /* YAML, one line; NULL where the fix is not a value */
 } abbe_finding;
 
@@ -113,12 +113,13 @@ void abbe_check_say(abbe_check *c, char **sentence, const char *format, ...);
 void abbe_check_set_coefficients(abbe_check *c, abbe_finding *finding,
                                  const abbe_dispersion *right);
 
-/* Whether the coefficients make sense only when they are read in another way; true where they do,
- * since nothing else can be said of them then. */
+/* Whether the coefficients make sense only when they are read differently; if so, nothing else can
+ * be checked. */
 bool abbe_check_read_anew(abbe_check *c);
 /* What the curve does over its range, and what is printed about it. */
 void abbe_check_follow_curve(abbe_check *c);
-/* Whether its data cover the visible; the whole of what can be said of a conductor's curve. */
+/* Checks whether its data cover the visible, which is all that is checked of a conductor's
+ * curve. */
 void abbe_check_cover(abbe_check *c);
 /* Rows that are alike. */
 abbe_result abbe_check_compare_rows(const abbe_material_table *table, abbe_findings *findings,

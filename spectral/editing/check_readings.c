@@ -21,7 +21,7 @@ static const double MOST_N = 8;
 
 typedef struct reading {
   abbe_dispersion dispersion;
-  double n_d, v_d; /* NaN where the row's range does not tell */
+  double n_d, v_d; /* NaN where the row's range does not contain it */
   bool possible;   /* as a transparent material: n above 1, and falling */
   bool plausible;  /* with a usual V_d too, which single materials have not */
 } reading;
@@ -47,8 +47,8 @@ static reading read_as(const abbe_check *c, const abbe_dispersion *dispersion) {
   return r;
 }
 
-/* What the row should have, where its range tells: from its own source, else from its namesake; NaN
- * where unknown. */
+/* What the row should have, where its range allows: from its own source, else from its namesake;
+ * NaN where unknown. */
 typedef struct target {
   double n_d, v_d;
   const char *the, *whose; /* "the known " and its name, or "" and "its own source" */
@@ -236,7 +236,7 @@ static bool check_model(abbe_check *c, const reading *now, const target *t) {
   return true;
 }
 
-/* One pole that alone was squared, or was not: told only by n_d and V_d that then come out. */
+/* One pole that alone was squared, or was not: seen only by n_d and V_d that then come out. */
 static bool check_one_pole(abbe_check *c, const reading *now, const target *t) {
   const abbe_dispersion *as = &c->material->dispersion;
   bool off = fabs(now->n_d - t->n_d) > 2e-4 || fabs(now->v_d / t->v_d - 1) > 2e-3;
@@ -262,7 +262,7 @@ static bool check_one_pole(abbe_check *c, const reading *now, const target *t) {
   return false;
 }
 
-/* Two columns of a table that have changed places: told only by n_d and V_d that then come out. */
+/* Two columns of a table that have changed places: seen only by n_d and V_d that then come out. */
 static bool check_order(abbe_check *c, const reading *now, const target *t) {
   const abbe_dispersion *as = &c->material->dispersion;
   if (t->whose == NULL || isnan(t->v_d) || !is_far(now, t)) return false;

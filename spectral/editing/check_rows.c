@@ -10,8 +10,8 @@ enum { LINES = 5 };
 static const double lines_nm[LINES] = {ABBE_LINE_D_NM, ABBE_LINE_SMALL_G_NM, ABBE_LINE_F_NM,
                                        ABBE_LINE_C_NM, 404.656};
 
-/* Below what catalogues print; and a slip of one in the fifth decimal, which is also what a
- * refractometer does not tell apart. */
+/* Below what catalogues print; and a slip of one in the fifth decimal, which a refractometer does
+ * not resolve either. */
 static const double SAME = 1e-7, NEAR = 1.5e-5;
 
 typedef struct place {

@@ -24,7 +24,7 @@ struct abbe_record_draft {
   field_list fields, saved;
   char *state[MAX_STATES]; /* texts of `alone`, oldest first */
   size_t state_count, now;
-  abbe_material_table table, original; /* of one material, or of none */
+  abbe_material_table table, original; /* holding one material, or none */
   abbe_error trouble;
 };
 

@@ -51,7 +51,7 @@ bool abbe_record_draft_redo(abbe_record_draft *draft);
 /* What the record would be with field `index` as text; the caller frees it. */
 abbe_result abbe_record_draft_try(const abbe_record_draft *draft, size_t index, const char *text,
                                   abbe_material *out, abbe_error *error);
-/* The record as a material, or NULL where it is none; then _trouble says why, else "". */
+/* The record as a material, or NULL where it is none; then _trouble gives the reason, else "". */
 const abbe_material *abbe_record_draft_material(const abbe_record_draft *draft);
 const char *abbe_record_draft_trouble(const abbe_record_draft *draft);
 /* The record as it was opened, or NULL where it was no material. */

@@ -74,10 +74,10 @@ char *abbe_table_edit_first_name(const abbe_table_edit *edit);
 /* Takes all changes back: the text is as it was read or last saved. */
 abbe_result abbe_table_edit_revert(abbe_table_edit *edit, abbe_error *error);
 
-/* ABBE_OK where the changed text is a table, else what abbe_material_table_parse says of it. */
+/* ABBE_OK where the changed text is a table, else abbe_material_table_parse's error about it. */
 abbe_result abbe_table_edit_check(const abbe_table_edit *edit, abbe_error *error);
-/* What abbe_table_edit_save would say, but for the disk: ABBE_SCHEMA where the text was a table and
- * would be none after the changes. */
+/* What abbe_table_edit_save would return, but for the disk: ABBE_SCHEMA where the text was a table
+ * and would be none after the changes. */
 abbe_result abbe_table_edit_allow(const abbe_table_edit *edit, abbe_error *error);
 /* The changes so far as a unified diff, malloc'd; "" where there are none. */
 abbe_result abbe_table_edit_diff(const abbe_table_edit *edit, char **out, abbe_error *error);

@@ -60,7 +60,7 @@ static abbe_result keep_text(reader *r, const char *text, char **out) {
   return ABBE_OK;
 }
 
-/* ---- a glass from what its lines said ---- */
+/* ---- a glass from what its lines hold ---- */
 
 /* What of the catalogue's first remark goes with every glass; the description has it all. */
 static void title_of(const char *remark, char title[MAX_TITLE + 8]) {

@@ -72,7 +72,7 @@ static int status_number(const char *status) {
 static void write_nm(const abbe_material *m, int formula, abbe_summary *t, FILE *to) {
   const abbe_material_catalogue *c = &m->catalogue;
   abbe_dispersion_numbers d = abbe_dispersion_describe(&m->dispersion);
-  abbe_material_published printed; /* also where only the words of the source say it */
+  abbe_material_published printed; /* also where only the text of the source has it */
   abbe_material_published_make(m, &printed);
   double n_d = isnan(printed.n_d) ? 0 : printed.n_d, v_d = isnan(printed.v_d) ? 0 : printed.v_d;
   bool inside = !abbe_material_extrapolates(m, ABBE_LINE_F_NM) &&
@@ -142,8 +142,9 @@ static bool reads_as(double share, double thickness_mm, double attenuation) {
   return abbe_absorption_from_transmittance(share, thickness_mm / 1000) == attenuation;
 }
 
-/* The digits of the share at that thickness where ten decimals say the attenuation to its last bit,
- * which a number that was not read from them does once in a million times; 0 where they do not. */
+/* The digits of the share at that thickness where ten decimals give the attenuation to its last
+ * bit, which a number that was not read from them does once in a million times; 0 where they do
+ * not. */
 static int printed_digits(double attenuation, double thickness_mm, double *share) {
   double decimals = round(abbe_absorption_transmittance(attenuation, thickness_mm / 1000) * 1e10);
   int digits = 0;
@@ -187,7 +188,7 @@ static double usual_thickness(const double *attenuation, size_t count) {
   return usual_mm;
 }
 
-/* A share that says the attenuation to its last bit, among the neighbours of the rounded one. */
+/* A share that gives the attenuation to its last bit, among the neighbours of the rounded one. */
 static bool find_exact(double attenuation, double thickness_mm, double *share) {
   double rounded = abbe_absorption_transmittance(attenuation, thickness_mm / 1000);
   double up = rounded, down = rounded;

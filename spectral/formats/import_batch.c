@@ -16,8 +16,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-/* The files that paths name, folders walked.
- *
+/* The files that paths name, those in folders included.
  * It knows which endings files of materials have and opens none of them. */
 
 typedef struct abbe_import_file {
@@ -217,7 +216,7 @@ static abbe_result remember(runner *r, const char *path, abbe_error *error) {
   return ABBE_OK;
 }
 
-/* Of a file that cannot be used the reason is told, not what was met before it. */
+/* Where a file cannot be used, the reason is reported, not what was met before it. */
 static abbe_result take_file(runner *r, const abbe_import_file *file, abbe_error *error) {
   abbe_error why = {0};
   bool strange = false, many = r->files.count > 1;
@@ -264,8 +263,8 @@ static abbe_result take_files(runner *r, abbe_error *error) {
 
 /* ---- names ---- */
 
-/* Whether the file without its ending says no more than the material's name, as that of a file with
- * one material does. */
+/* Whether the file without its ending is just the material's name, as that of a file with one
+ * material is. */
 static bool is_named_after(const row *it) {
   const char *slash = strrchr(it->path, '/'), *stem = slash != NULL ? slash + 1 : it->path;
   const char *dot = strrchr(stem, '.'), *name = it->material->name;
@@ -275,7 +274,7 @@ static bool is_named_after(const row *it) {
 }
 
 /* The part of a row's path `level` from its end: 0 is the file without its ending, or its folder
- * where that says no more than the name; "" beyond the first. */
+ * where the file is just the name; "" beyond the first. */
 static void part_of(const row *it, int level, char out[MAX_PART]) {
   const char *path = it->path, *end = path + strlen(path), *start;
   if (is_named_after(it)) level++;
@@ -308,8 +307,8 @@ static likeness compare(const label *labels, size_t count, const label **sorted)
   return steps == 0 ? ALL_ALIKE : steps + 1 < count ? SOME_ALIKE : ALL_DIFFER;
 }
 
-/* The folder or file that alone tells the rows apart, the nearest to the file; else all that
- * differ, joined. False where the paths are alike. */
+/* The one folder or file, nearest to the file, by which the rows differ; else all that differ,
+ * joined. False where the paths are alike. */
 static bool find_labels(const row *rows, size_t count, label *labels, label *parts,
                         const label **sorted) {
   for (int level = 0; level < MAX_LEVELS; level++) {
@@ -369,7 +368,7 @@ static abbe_result rename_row(runner *r, const row *it, const char *before, bool
 static abbe_result name_apart(runner *r, const row *rows, size_t count, abbe_error *error) {
   bool one_file = true;
   for (size_t i = 1; i < count; i++) one_file = one_file && strcmp(rows[0].path, rows[i].path) == 0;
-  if (one_file) return ABBE_OK; /* told and dropped as a repetition */
+  if (one_file) return ABBE_OK; /* reported, and dropped as a repetition */
   label *labels = calloc(2 * count, sizeof *labels);
   const label **sorted = calloc(count, sizeof *sorted);
   abbe_result result = labels != NULL && sorted != NULL

@@ -52,7 +52,7 @@ static abbe_import_format numbered(const char *line, size_t length) {
                                                                 : ABBE_IMPORT_AUTO;
 }
 
-/* The first line that says it, among all of them or among those that begin at the margin. */
+/* The first line that fits it, among all of them or among those that begin at the margin. */
 static abbe_import_format say(const char *text, bool at_margin,
                               abbe_import_format (*kind)(const char *line, size_t length)) {
   for (const char *line = text; *line != '\0';) {

@@ -1,7 +1,8 @@
 /* material_import.h: materials from files of any kind that is read, into one table.
  *
- * Finds out what a file is and calls spectral/formats/material_import.h, material_import.h, csv_points.h or material_table.h. What
- * could not be used is noted and does not stop the rest. Internal to spectral/.
+ * Finds out what a file is and calls spectral/formats/material_import.h, material_import.h,
+ * csv_points.h or material_table.h. What could not be used is noted and does not stop the rest.
+ * Internal to spectral/.
  */
 #ifndef ABBE_SPECTRAL_FORMATS_MATERIAL_IMPORT_H
 #define ABBE_SPECTRAL_FORMATS_MATERIAL_IMPORT_H
@@ -33,8 +34,8 @@ typedef enum abbe_import_format {
 /* Zero: found out, named after the file. */
 typedef struct abbe_import_options {
   abbe_import_format format;
-  const char *name;   /* of the one material that a file of RII or CSV holds; NULL: the file's */
-  const char *source; /* of measured points; NULL: "measured points in FILE" */
+  const char *name; /* name of the one material that a file of RII or CSV holds; NULL: the file's */
+  const char *source; /* source of measured points; NULL: "measured points in FILE" */
   abbe_csv_options csv;
 } abbe_import_options;
 
@@ -56,8 +57,8 @@ abbe_result abbe_import_load(const char *path, const abbe_import_options *option
                              abbe_material_table *into, abbe_report *report, abbe_error *error);
 
 /* After a table could not be read with `result`: where the file at path is a catalogue, a file of
- * refractiveindex.info or a list of points, error says so and how it becomes a table; else it stays
- * as it is. Returns result. */
+ * refractiveindex.info or a list of points, error explains that and how it becomes a table; else it
+ * stays as it is. Returns result. */
 abbe_result abbe_import_explain(const char *path, abbe_result result, abbe_error *error);
 
 /* Zemax glass catalogues (AGF files) as material tables.
@@ -82,14 +83,16 @@ abbe_result abbe_agf_load(const char *path, abbe_material_table *out, abbe_repor
  *
  * A file holds one material: an index (formula 1 to 9, tabulated n or nk), maybe k, where the
  * numbers come from, and what a maker's catalogue says. It does not read the database's catalogue
- * of pages, the nonlinear index, or formulas for k. Writing is in spectral/formats/material_write.h. */
+ * of pages, the nonlinear index, or formulas for k. Writing is in
+ * spectral/formats/material_write.h. */
 
 /* The material of size bytes of text [RefractiveIndexInfo], fit for a table. path stands for the
  * file in messages; name is the material's name, or NULL to make one of the path:
  * …/main/SiO2/nk/Malitson.yml is SiO2-Malitson, …/optical/N-BK7.yml is N-BK7. k becomes
- * attenuation, or the index a conductor's (spectral/materials/conductor.h), with a note; references and comments lose their HTML. Indices or wavelengths that the file calls
- * absolute (of the vacuum) are kept and get a warning. *out is freed by the caller where the result
- * is ABBE_OK. ABBE_SCHEMA or ABBE_PARSE, with file and line, where there is no usable index. */
+ * attenuation, or the index a conductor's (spectral/materials/conductor.h), with a note; references
+ * and comments lose their HTML. Indices or wavelengths that the file calls absolute (of the vacuum)
+ * are kept and get a warning. *out is freed by the caller where the result is ABBE_OK. ABBE_SCHEMA
+ * or ABBE_PARSE, with file and line, where there is no usable index. */
 abbe_result abbe_rii_parse(const char *text, size_t size, const char *path, const char *name,
                            abbe_material *out, abbe_report *report, abbe_error *error);
 /* The same from a file of at most 16 MiB. */

@@ -41,7 +41,7 @@ abbe_result abbe_material_table_load_lenient(const char *path, abbe_material_tab
   return load(path, true, out, report, error);
 }
 
-/* For whoever asks for a row that is not there: the names that are. */
+/* Adds the names that are there, for a message about a row that is not. */
 static abbe_result add_all_names(abbe_material_table *table, abbe_error *error) {
   table->all = calloc(1, sizeof *table->all);
   if (table->all == NULL)

@@ -16,8 +16,8 @@
 /* Loads a table: NULL or "default", "thesis", or the path of a YAML file (at most 16 MiB) or of a
  * store. */
 abbe_result abbe_material_table_load(const char *path, abbe_material_table *out, abbe_error *error);
-/* The same for one who will ask for these names alone: of a store no other rows are read. Names
- * that it does not have are no failure here; abbe_material_table_find says so of each. */
+/* The same for a caller that needs these names alone: from a store no other rows are read. Names
+ * that it does not have are no failure here; abbe_material_table_find reports each. */
 abbe_result abbe_material_table_load_named(const char *path, const char *const *names, size_t count,
                                            abbe_material_table *out, abbe_error *error);
 /* A table to be examined, not used, as abbe_material_table_parse_lenient has it. */

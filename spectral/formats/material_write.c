@@ -48,7 +48,7 @@ static void write_list(const double *value, size_t count, int column, int indent
   fputc(']', to);
 }
 
-/* Of a conductor, third is k; else NULL. */
+/* third is a conductor's k, else NULL. */
 static void write_points(const abbe_spectrum *spectrum, const abbe_spectrum *third, int indent,
                          FILE *to) {
   const double *lambda_nm = abbe_spectrum_lambda_nm(spectrum);
@@ -133,8 +133,8 @@ static void write_numbers(const char *key, const double *value, size_t count, FI
 
 static void write_catalogue(const abbe_material_catalogue *c, FILE *to) {
   bool something = c->code != NULL || c->status != NULL || c->melt_frequency != 0 ||
-                   any(c->expansion_per_k, 2) || any(c->expansion_range_k, 4) || c->dpgf != 0 || any(c->thermal, 6) ||
-                   c->rating_count > 0;
+                   any(c->expansion_per_k, 2) || any(c->expansion_range_k, 4) || c->dpgf != 0 ||
+                   any(c->thermal, 6) || c->rating_count > 0;
   if (!something) return;
   fputs("    catalogue:\n", to);
   if (c->code != NULL) {
@@ -147,8 +147,7 @@ static void write_catalogue(const abbe_material_catalogue *c, FILE *to) {
   write_text("      status", c->status, to);
   if (c->melt_frequency != 0) write_number("      melt_frequency", c->melt_frequency, to);
   if (any(c->expansion_per_k, 2)) write_numbers("expansion_per_k", c->expansion_per_k, 2, to);
-  if (any(c->expansion_range_k, 4))
-    write_numbers("expansion_range_k", c->expansion_range_k, 4, to);
+  if (any(c->expansion_range_k, 4)) write_numbers("expansion_range_k", c->expansion_range_k, 4, to);
   if (c->dpgf != 0) write_number("      dpgf", c->dpgf, to);
   if (any(c->thermal, 6)) write_numbers("thermal", c->thermal, 6, to);
   if (c->rating_count == 6) write_numbers("ratings", c->ratings, 6, to);

@@ -92,7 +92,7 @@ static void write_conductor(const abbe_dispersion *d, FILE *to) {
   }
 }
 
-/* ---- what the catalogue says ---- */
+/* ---- what the catalogue prints ---- */
 
 static bool any(const double *value, size_t count) {
   for (size_t i = 0; i < count; i++)

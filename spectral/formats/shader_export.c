@@ -25,7 +25,7 @@ const char *abbe_shader_name(abbe_shader shader) {
   return (int)shader >= 0 && shader < ABBE_SHADER_COUNT ? names[shader] : "unknown";
 }
 
-/* ---- n where the record says it, and beyond ---- */
+/* ---- n where the record has it, and beyond ---- */
 
 static double index_at(const abbe_material *m, double lambda_nm) {
   double held = fmin(fmax(lambda_nm, m->min_nm), m->max_nm);

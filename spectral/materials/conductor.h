@@ -1,9 +1,8 @@
 /* conductor.h: the complex index of a metal, n + i k, from measured points.
  *
- * It makes the dispersion of a conductor and tells metals from glasses among imported points. What
- * a conductor does to light is in spectral/optics.h, its record in material.h.
- * Internal to spectral/.
- */
+ * It makes the dispersion of a conductor and separates metals from glasses among imported points.
+ * What a conductor does to light is in spectral/optics.h, its record in material.h.
+ * Internal to spectral/. */
 #ifndef ABBE_SPECTRAL_MATERIALS_CONDUCTOR_H
 #define ABBE_SPECTRAL_MATERIALS_CONDUCTOR_H
 
@@ -24,7 +23,7 @@ abbe_result abbe_conductor_make(const double *lambda_nm, const double *n, const 
 /* Makes a conductor of a tabulated material that was read of the points n and k, where those stand
  * at the same wavelengths and it absorbs within a wavelength in most of what it has of 380 to 780
  * nm (abbe_material_is_opaque), so that no scene could refract by it. Its attenuation, and n_d and
- * V_d that its source prints, go. *made tells whether it was. */
+ * V_d that its source prints, go. *made is true where it did. */
 abbe_result abbe_conductor_of_metal(const abbe_points *n, const abbe_points *k,
                                     abbe_material *material, bool *made, abbe_error *error);
 

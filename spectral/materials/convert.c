@@ -25,7 +25,7 @@ const char *abbe_given_second_name(abbe_given_kind kind) {
   return known_kind(kind) ? names[kind].second : "unknown";
 }
 
-/* ---- what the two numbers say ---- */
+/* ---- what the two numbers mean ---- */
 
 /* An index at one line, and the difference between those at two others. */
 typedef struct claim {

@@ -1,8 +1,7 @@
 /* convert.h: a dispersion formula from the two numbers that people have, and the error it implies.
  *
- * Two numbers do not fix a curve. The form is made to have exactly the numbers given; how far it
- * is from the truth is told by doing the same to materials whose curves are known.
- */
+ * Two numbers do not fix a curve. The form is made to have exactly the numbers given; how far it is
+ * from the truth is estimated by doing the same to materials whose curves are known. */
 #ifndef ABBE_SPECTRAL_MATERIALS_CONVERT_H
 #define ABBE_SPECTRAL_MATERIALS_CONVERT_H
 

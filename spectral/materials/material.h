@@ -31,18 +31,18 @@ enum { ABBE_MATERIAL_MAX_NAME = 80 };
  * the density, which weighs stones. 0 (NULL) means that the catalogue is silent, as it does in the
  * catalogues themselves. */
 typedef struct abbe_material_catalogue {
-  char *code;                /* the six-digit code of n_d and V_d, as printed: 517642.251 */
-  char *status;              /* standard, preferred, obsolete, special or melt */
-  double melt_frequency;     /* 1 (most often molten) to 5 */
-  double density_g_cm3;      /* up to ABBE_MATERIAL_DENSITY_MOST; a record's own key in tables */
-  double expansion_per_k[2]; /* linear, 1/K; at lower and at higher temperatures */
+  char *code;                  /* the six-digit code of n_d and V_d, as printed: 517642.251 */
+  char *status;                /* standard, preferred, obsolete, special or melt */
+  double melt_frequency;       /* 1 (most often molten) to 5 */
+  double density_g_cm3;        /* up to ABBE_MATERIAL_DENSITY_MOST; a record's own key in tables */
+  double expansion_per_k[2];   /* linear, 1/K; at lower and at higher temperatures */
   double expansion_range_k[4]; /* from, to of the first, from, to of the second, K; 0, 0: that of
                                   abbe_material_expansion_range_k */
-  double dpgf;               /* deviation of the partial dispersion P_gF from the normal line */
-  double thermal[6];         /* dn/dT: D0, D1, D2, E0, E1, lambda_tk (um); about temperature_c */
-  size_t rating_count;       /* 0 or 6 */
-  double ratings[6];         /* relative cost, then resistance: climate, stain, acid, alkali,
-                                phosphate; -1 where it is not known */
+  double dpgf;                 /* deviation of the partial dispersion P_gF from the normal line */
+  double thermal[6];           /* dn/dT: D0, D1, D2, E0, E1, lambda_tk (um); about temperature_c */
+  size_t rating_count;         /* 0 or 6 */
+  double ratings[6];           /* relative cost, then resistance: climate, stain, acid, alkali,
+                                  phosphate; -1 where it is not known */
 } abbe_material_catalogue;
 
 /* What makers' catalogues state expansions over: -30 to 70 C and 100 to 300 C, in K. */
@@ -52,20 +52,21 @@ typedef struct abbe_material {
   char *name;        /* unique in its table, as on the command line */
   char *description; /* one line for people; may be NULL */
   abbe_dispersion dispersion;
-  abbe_dispersion extraordinary; /* of a uniaxial crystal, whose ordinary index is the other; of
-                                    any other material zeroed */
+  abbe_dispersion extraordinary; /* the second index of a uniaxial crystal, whose ordinary index is
+                                    the other; of any other material zeroed */
   double min_nm, max_nm;         /* valid range of the dispersion, from its source */
   bool extrapolate;              /* the record allows use outside that range; reported when used */
   abbe_spectrum *attenuation;    /* natural attenuation coefficient, 1/m, at nm; NULL: clear */
-  double temperature_c;          /* of the measurement, Celsius; NaN where the source is silent */
-  char *source;                  /* key into BIBLIOGRAPHY.md, then details */
-  char *warning;                 /* what a user of this row must know (thesis rows); may be NULL */
-  abbe_material_fit fit[2];      /* two and three terms */
-  double published_n_d;          /* n_d and V_d as the source prints them, for the check; */
-  double published_v_d;          /* 0 where it prints none */
-  char *comment;                 /* the source's own remark; may be NULL */
+  double
+      temperature_c; /* temperature of the measurement, Celsius; NaN where the source is silent */
+  char *source;      /* key into BIBLIOGRAPHY.md, then details */
+  char *warning;     /* what a user of this row must know (thesis rows); may be NULL */
+  abbe_material_fit fit[2]; /* two and three terms */
+  double published_n_d;     /* n_d and V_d as the source prints them, for the check; */
+  double published_v_d;     /* 0 where it prints none */
+  char *comment;            /* the source's own remark; may be NULL */
   abbe_material_catalogue catalogue;
-  size_t line; /* of the record in its file, for messages */
+  size_t line; /* the record's line in its file, for messages */
 } abbe_material;
 
 void abbe_material_free(abbe_material *material);
@@ -76,9 +77,9 @@ void abbe_material_free(abbe_material *material);
 #define ABBE_MATERIAL_DENSITY_MOST 1e3
 #define ABBE_MATERIAL_DPGF_MOST 1e3
 
-/* Makes a table able to hold what a file says, which may be anything: a number that is not finite
- * or beyond those bounds, or a density or melt frequency below 0, becomes 0 (a rating -1). How many
- * did. */
+/* Makes a table able to hold what a file has, which may be anything: a number that is not finite or
+ * beyond those bounds, or a density or melt frequency below 0, becomes 0 (a rating -1). Returns how
+ * many did. */
 size_t abbe_material_catalogue_bound(abbe_material_catalogue *catalogue);
 
 /* Whether a table may hold the record, that is: what is written of it can be read again. The name
@@ -88,7 +89,7 @@ size_t abbe_material_catalogue_bound(abbe_material_catalogue *catalogue);
  * extraordinary one as well, and a conductor has nothing that only a transparent material has.
  * ABBE_INVALID_ARGUMENT, with a sentence that begins with the name. */
 abbe_result abbe_material_check(const abbe_material *material, abbe_error *error);
-/* All of it but the last, which takes its time: what can be told without a value of the formula. */
+/* Checks all of it but the last, which takes its time: what needs no value of the formula. */
 abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *error);
 /* The part of it that is about the name alone. */
 abbe_result abbe_material_check_name(const char *name, abbe_error *error);

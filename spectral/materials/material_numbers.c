@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A number is told only where the record vouches for it. */
+/* A number is given only where the record covers it. */
 static double n_at(const abbe_material *m, double lambda_nm) {
   if (abbe_material_extrapolates(m, lambda_nm) && !m->extrapolate) return NAN;
   return abbe_dispersion_n(&m->dispersion, lambda_nm);

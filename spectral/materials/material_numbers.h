@@ -1,8 +1,7 @@
 /* material_numbers.h: the numbers by which people know a material, from its record.
  *
  * Indices at the lines, Abbe numbers, partial dispersion, the gem trade's dispersion, and what the
- * record's own text says that they are. A number that the record does not vouch for is NaN.
- */
+ * record's own text gives them as. A number that the record does not cover is NaN. */
 #ifndef ABBE_SPECTRAL_MATERIALS_MATERIAL_NUMBERS_H
 #define ABBE_SPECTRAL_MATERIALS_MATERIAL_NUMBERS_H
 
@@ -27,9 +26,9 @@ typedef struct abbe_material_numbers {
 /* NaN where a line lies outside the record's range and the record does not extrapolate. */
 void abbe_material_numbers_make(const abbe_material *material, abbe_material_numbers *out);
 
-/* n_d and V_d as the record says that its source prints them, each with half of its last digit; NaN
- * where it is silent. From its own keys, else from the words "n_d NUMBER" and "V_d NUMBER" in its
- * source. */
+/* n_d and V_d as the record has them from its source, each with half of its last digit; NaN
+ * where it is silent. From its own keys, else from the words "n_d NUMBER" and "V_d NUMBER" in
+ * its source. */
 typedef struct abbe_material_published {
   double n_d, n_d_half, v_d, v_d_half;
 } abbe_material_published;

@@ -69,7 +69,7 @@ static abbe_result read_transmittance(abbe_record_reading *r, abbe_yaml_node whe
   return result;
 }
 
-/* The ways to say what absorbs, and the keys that go with each. */
+/* The three kinds of absorption, and the keys that go with each. */
 static const struct {
   const char *key;
   abbe_result (*read)(abbe_record_reading *r, abbe_yaml_node where);
@@ -94,7 +94,7 @@ static abbe_result read_absorption(abbe_record_reading *r) {
     which = i;
   }
   if (found != 1) {
-    /* a mistyped key is the likelier mistake, and says more */
+    /* a mistyped key is the likelier mistake, and explains more */
     static const char *const rest[] = {"distance_m", "thickness_m", "interpolation"};
     for (int i = 0; i < 3; i++) abbe_yaml_get(r->yaml, where, rest[i]);
     abbe_result result = abbe_yaml_check_keys(r->yaml, where, "'absorption'", r->error);

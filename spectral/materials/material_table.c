@@ -25,7 +25,7 @@ abbe_result abbe_material_table_append(abbe_material_table *table, abbe_material
   if (count >= MAX_MATERIALS)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a table holds at most %d materials",
                           MAX_MATERIALS);
-  /* doubled at each power of two; a table that was read has its count's room only */
+  /* doubled at each power of two; a table that was read has capacity for its count only */
   size_t wanted = 1;
   while (wanted <= count) wanted *= 2;
   abbe_material *larger = realloc(table->material, wanted * sizeof *larger);

@@ -18,13 +18,12 @@
 enum { ABBE_MATERIAL_TABLE_MAX_COUNT = 10000 };
 
 typedef struct abbe_material_table {
-  char *path;              /* file, or "default" or "thesis" */
-  char *description;       /* what the table is, for people; may be NULL */
+  char *path;        /* file, or "default" or "thesis" */
+  char *description; /* what the table is, for people; may be NULL */
   size_t count;
-  abbe_material *material; /* [count], in file order */
-  struct abbe_material_table
-      *all; /* of a store of which only some rows were read, one of them in
-               vain: the names of all its rows and no more; else NULL; owned */
+  abbe_material *material;         /* [count], in file order */
+  struct abbe_material_table *all; /* if only some rows of a store were read, one of them in vain:
+                                      the names of all its rows and no more; else NULL; owned */
 } abbe_material_table;
 
 /* The text of a table that is compiled in, as it is in its file: path is NULL, "default" or

@@ -37,7 +37,7 @@ static bool same_points(const abbe_spectrum *a, const abbe_spectrum *b) {
   if (count != abbe_spectrum_count(b)) return false;
   return same_numbers(abbe_spectrum_lambda_nm(a), abbe_spectrum_lambda_nm(b), count) &&
          same_numbers(abbe_spectrum_value(a), abbe_spectrum_value(b), count) &&
-         /* the same points, joined in another way */
+         /* the same points, joined differently */
          same_number(abbe_spectrum_integral(a, 1, 1e6), abbe_spectrum_integral(b, 1, 1e6));
 }
 

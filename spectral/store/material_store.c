@@ -19,7 +19,7 @@ enum { MAX_ROW = 4 << 20 };
 #define NAMED(name, type) ", " #name
 #define SELECT "SELECT id" ABBE_STORE_COLUMNS(NAMED) " FROM materials"
 
-/* ---- what SQLite says ---- */
+/* ---- SQLite's failures ---- */
 
 abbe_result abbe_store_fail(sqlite3 *db, int code, const char *name, abbe_error *error) {
   const char *text = db != NULL ? sqlite3_errmsg(db) : sqlite3_errstr(code);
@@ -46,7 +46,7 @@ bool abbe_material_store_is(const char *path) {
   static const char magic[16] = "SQLite format 3"; /* with its zero */
   char head[sizeof magic];
   struct stat status;
-  int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a pipe is asked, not waited for */
+  int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a pipe is opened without waiting */
   if (fd < 0) return false;
   bool found = fstat(fd, &status) == 0 && S_ISREG(status.st_mode) &&
                pread(fd, head, sizeof head, 0) == (ssize_t)sizeof head &&
@@ -114,7 +114,7 @@ static abbe_result read_text(reader *r, abbe_store_column column, char **out) {
   return *out != NULL ? ABBE_OK : no_memory(r);
 }
 
-/* One of names[count]; *out stays as it is where the row says nothing. */
+/* Reads one of names[count]; *out stays as it is where the row has none. */
 static abbe_result read_word(reader *r, abbe_store_column column, const char *(*name)(int),
                              int count, int *out) {
   char *text = NULL;
@@ -328,7 +328,8 @@ static abbe_result read_row(reader *r) {
                            1e15, &m->attenuation);
   if (result == ABBE_OK) result = read_catalogue(r);
   if (result != ABBE_OK) return result;
-  /* of a row that is used; thousands that are looked through would take as long again */
+  /* only rows that are used are checked; thousands that are looked through would take as long
+   * again */
   result =
       r->names != NULL ? abbe_material_check(m, r->error) : abbe_material_check_form(m, r->error);
   return result == ABBE_OK ? ABBE_OK : ABBE_SCHEMA;
@@ -404,7 +405,7 @@ static char *uri_of(const char *path) {
   return uri;
 }
 
-/* One value of one row; what a stranger's file says instead of it, or nothing, is not ours. */
+/* One value of one row; other contents of a stranger's file are refused. */
 static abbe_result check_value(sqlite3 *db, const char *path, const char *sql, const char *wanted,
                                abbe_error *error) {
   sqlite3_stmt *q = NULL;
@@ -424,7 +425,7 @@ static abbe_result check_value(sqlite3 *db, const char *path, const char *sql, c
   return result;
 }
 
-/* A file may be anyone's: its schema is held against ours letter by letter before it is asked. */
+/* A file may be anyone's: its schema is compared with ours letter by letter before it is read. */
 static abbe_result open_store(const char *path, sqlite3 **db, abbe_error *error) {
   char *uri = uri_of(path), number[24];
   if (uri == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", path);

@@ -28,7 +28,7 @@ abbe_result abbe_material_store_read(const char *path, const char *const *names,
                                      abbe_report *unread, abbe_material_table *out,
                                      abbe_error *error);
 
-/* All rows, but of each its name alone: not to be used, but to be asked for. */
+/* All rows, but only the name of each: for lists and messages, not to be used. */
 abbe_result abbe_material_store_read_names(const char *path, abbe_material_table *out,
                                            abbe_error *error);
 

@@ -1,6 +1,6 @@
-/* material_store_columns.h: what is in a store of materials, and how SQLite's failures are told.
- * Internal to spectral/.
- */
+/* material_store_columns.h: what is in a store of materials, and how SQLite's failures are
+ * reported.
+ * Internal to spectral/. */
 #ifndef ABBE_SPECTRAL_STORE_MATERIAL_STORE_COLUMNS_H
 #define ABBE_SPECTRAL_STORE_MATERIAL_STORE_COLUMNS_H
 
@@ -12,7 +12,8 @@
 enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 2, ABBE_STORE_MAX_TERMS = 3 };
 
 /* X(name, type): the columns after id. Lists of numbers are doubles, the least byte first; points
- * are pairs of them, nm and value, or nm, n and k of a conductor. What is large comes last: SQLite reads a row from its beginning.
+ * are pairs of them, nm and value, or nm, n and k of a conductor. What is large comes last: SQLite
+ * reads a row from its beginning.
  */
 #define ABBE_STORE_COLUMNS(X)                                                                      \
   X(name, "TEXT NOT NULL UNIQUE COLLATE NOCASE")                                                   \
@@ -36,7 +37,7 @@ enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 2, ABBE_STORE_M
   X(status, "TEXT")                                                                                \
   X(melt_frequency, "REAL")                                                                        \
   X(density_g_cm3, "REAL")                                                                         \
-  X(expansion_per_k, "BLOB") /* the two, or these and from, to, from, to in K */                                                                       \
+  X(expansion_per_k, "BLOB") /* the two, or these and from, to, from, to in K */                   \
   X(dpgf, "REAL")                                                                                  \
   X(thermal, "BLOB")                                                                               \
   X(ratings, "BLOB")                                                                               \
@@ -59,7 +60,7 @@ typedef enum abbe_store_column {
 #define ABBE_STORE_MATERIALS                                                                       \
   "CREATE TABLE materials(id INTEGER PRIMARY KEY" ABBE_STORE_COLUMNS(ABBE_STORE_TYPED) ")"
 
-/* What SQLite's code says, of the file at path: ABBE_NO_MEMORY, ABBE_IO, or ABBE_PARSE. db may be
+/* Turns SQLite's code into ABBE_NO_MEMORY, ABBE_IO, or ABBE_PARSE of the file at path. db may be
  * NULL. */
 abbe_result abbe_store_fail(sqlite3 *db, int code, const char *path, abbe_error *error);
 /* sqlite3_prepare_v2; *out is freed with sqlite3_finalize, also after a failure. */

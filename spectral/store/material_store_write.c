@@ -26,7 +26,7 @@ static int bind_text(sqlite3_stmt *q, abbe_store_column column, const char *text
   return sqlite3_bind_text(q, column + 1, text, -1, SQLITE_STATIC);
 }
 
-/* As the YAML of a table has it: NaN and 0 are not said. */
+/* As in the YAML of a table, NaN and 0 are left out. */
 static int bind_number(sqlite3_stmt *q, abbe_store_column column, double value) {
   return value == 0 || isnan(value) ? SQLITE_OK : sqlite3_bind_double(q, column + 1, value);
 }
