@@ -119,6 +119,16 @@ abbe_result abbe_screen_options_check(const abbe_screen_options *o, abbe_rgb_spa
   return result;
 }
 
+/* No exposure shows what is infinite, and none is proposed that would be refused. */
+static void warn_white(const abbe_screen_png_notes *notes, double exposure) {
+  const double less = fmin(notes->stops, exposure - 0.5);
+  fprintf(stderr, "warning: %.0f %% of the picture is over-exposed: white without detail",
+          100 * notes->white);
+  if (notes->stops != 0 && less >= -ABBE_DISPLAY_MAX_EXPOSURE)
+    fprintf(stderr, "; --exposure %.1f shows it", less);
+  fputc('\n', stderr);
+}
+
 abbe_result abbe_screen_options_write(const abbe_screen_options *o, const char *path,
                                       const abbe_image *image, const char *layer, const char *name,
                                       abbe_error *error) {
@@ -132,12 +142,7 @@ abbe_result abbe_screen_options_write(const abbe_screen_options *o, const char *
   const abbe_result result = abbe_screen_png_write(path, image, &desc, error);
   if (name == NULL) name = "the picture";
   if (notes.space_assumed) abbe_command_note_space(name);
-  if (notes.white > MOST_WHITE)
-    fprintf(
-        stderr,
-        "warning: %.0f %% of the picture is over-exposed: white without detail; --exposure %.1f "
-        "shows it\n",
-        100 * notes.white, fmin(notes.stops, o->display.exposure - 0.5));
+  if (notes.white > MOST_WHITE) warn_white(&notes, o->display.exposure);
   abbe_command_note_odd(name, &notes.odd, "shown as the brightest light there is");
   return result;
 }

@@ -116,7 +116,7 @@ static int by_size(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* By the greatest channels of pixels all over the picture. */
+/* By the greatest finite channels of pixels all over the picture. */
 static double find_stops(const abbe_image *picked) {
   enum { MOST = 4096 };
   static const double bright = 0.8, share = 0.9;
@@ -125,8 +125,10 @@ static double find_stops(const abbe_image *picked) {
   size_t count = 0;
   for (size_t i = 0; i < pixels; i += step) {
     const float *p = picked->data + 3 * i;
-    most[count++] = fmaxf(p[0], fmaxf(p[1], p[2]));
+    most[count] = fmaxf(p[0], fmaxf(p[1], p[2]));
+    if (isfinite(most[count])) count++;
   }
+  if (count == 0) return 0;
   qsort(most, count, sizeof *most, by_size);
   const double value = (double)most[(size_t)(share * (double)(count - 1))];
   return value > 0 ? log2(bright / value) : 0;

@@ -13,7 +13,8 @@ typedef struct abbe_screen_png_notes {
   bool space_assumed; /* its R, G, B are of no stated space, and Rec.709's were taken */
   abbe_image_odd odd; /* of the channels that are shown */
   double white;       /* the share of its pixels that are the display's white, without detail */
-  double stops;       /* by which more exposure a tenth of its pixels would be brighter than 0.8 */
+  double stops;       /* by which more exposure a tenth of its finite pixels would be brighter than
+                         0.8; 0: none is finite, or they are dark */
 } abbe_screen_png_notes;
 
 /* Zeroed: the picture's own channels in the space that it states, the default view, 8 bits. */

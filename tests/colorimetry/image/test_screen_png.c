@@ -110,6 +110,24 @@ TEST(notes) {
   assert_true(got[0] > 0.99f && got[1] < 0.01f && got[2] < 0.01f);
 }
 
+/* The exposure that shows more is that of finite light; of infinite light alone there is none. */
+TEST(stops_are_those_of_finite_light) {
+  static const char *const rgb[] = {"R", "G", "B"};
+  static const float value[][3] = {
+      {INFINITY, INFINITY, INFINITY}, {NAN, NAN, NAN}, {3.2f, 1, 0}, {0.1f, 0.2f, 3.2f}};
+  const abbe_screen_png_desc desc = {.bits = 8, .notes = &notes};
+  abbe_image image = {0};
+  OK(abbe_image_make(4, 1, 3, rgb, &image, &error));
+  memcpy(image.data, value, sizeof value);
+  OK(abbe_screen_png_write(path, &image, &desc, &error));
+  assert_near(notes.stops, -2, 1e-6);
+  for (size_t i = 0; i < 12; i++) image.data[i] = INFINITY;
+  OK(abbe_screen_png_write(path, &image, &desc, &error));
+  assert_true(notes.stops == 0 && notes.white == 1);
+  abbe_image_free(&image);
+  unlink(path);
+}
+
 TEST(layers_and_greys) {
   static const char *const names[] = {"B", "caustic.B", "caustic.G", "caustic.R", "G", "R"};
   static const float value[] = {0.1f, 0.3f, 0.2f, 0.5f, 0.4f, 0.6f};
