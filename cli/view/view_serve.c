@@ -4,6 +4,7 @@
 
 #include "base/clock.h"
 #include "cli/view/state/view_events.h"
+#include "cli/view/state/view_guard.h"
 #include "cli/view/view_hidden.h"
 
 #include <arpa/inet.h>
@@ -22,7 +23,7 @@
 #include <unistd.h>
 
 enum { MOST_BYTES = 65536, TOKEN_BYTES = 16, LONGEST_WAIT_S = 1 };
-#define LOOK_S 0.1 /* how often the keeper looks */
+#define LOOK_S 0.1 /* how long the keeper waits for connections */
 #define LAST_S 0.6 /* for an end in order; then the process ends whatever it does */
 
 extern const unsigned char abbe_embedded_view_page[];
@@ -34,6 +35,7 @@ typedef struct server {
   size_t width, height;
   char token[2 * TOKEN_BYTES + 1];
   abbe_view_guard guard;
+  struct MHD_Daemon *daemon;
   pthread_mutex_t lock; /* of what follows: */
   pthread_cond_t called, drawn;
   bool woken, ended;
@@ -106,13 +108,9 @@ static enum MHD_Result say(struct MHD_Connection *c, unsigned code, const char *
   return reply(c, code, "text/plain; charset=utf-8", text, strlen(text), 0);
 }
 
-/* In a time that does not tell how much of it is right. */
 static bool has_token(const server *s, struct MHD_Connection *c) {
   const char *given = MHD_lookup_connection_value(c, MHD_GET_ARGUMENT_KIND, "token");
-  unsigned differs = 0;
-  if (given == NULL || strlen(given) != strlen(s->token)) return false;
-  for (size_t i = 0; s->token[i] != '\0'; i++) differs |= (unsigned)(given[i] ^ s->token[i]);
-  return differs == 0;
+  return given != NULL && abbe_view_guard_is_token(s->token, given, strlen(given));
 }
 
 static enum MHD_Result send_picture(server *s, struct MHD_Connection *c) {
@@ -182,9 +180,6 @@ static enum MHD_Result answer(void *user, struct MHD_Connection *c, const char *
   if (b == NULL) {
     const char *why = why_refused(s, c);
     if (why != NULL) return refuse(c, why);
-    const union MHD_ConnectionInfo *info =
-        MHD_get_connection_info(c, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
-    if (info != NULL) abbe_view_guard_trust(&s->guard, info->socket_context);
     *own = calloc(1, sizeof *b);
     return *own != NULL ? MHD_YES : MHD_NO;
   }
@@ -209,17 +204,13 @@ static enum MHD_Result answer(void *user, struct MHD_Connection *c, const char *
   return send_picture(s, c);
 }
 
-/* Connections come and go. */
-static void note_connection(void *user, struct MHD_Connection *c, void **context,
-                            enum MHD_ConnectionNotificationCode code) {
+/* A connection that has shown the token. */
+static void enter(void *user, int socket) {
   server *s = user;
-  if (code == MHD_CONNECTION_NOTIFY_STARTED) {
-    const union MHD_ConnectionInfo *info =
-        MHD_get_connection_info(c, MHD_CONNECTION_INFO_CONNECTION_FD);
-    *context = info != NULL ? abbe_view_guard_enter(&s->guard, info->connect_fd) : NULL;
-  } else {
-    abbe_view_guard_leave(&s->guard, *context);
-  }
+  struct sockaddr_in from = {0};
+  socklen_t size = sizeof from;
+  getpeername(socket, (struct sockaddr *)&from, &size);
+  MHD_add_connection(s->daemon, socket, (struct sockaddr *)&from, size);
 }
 
 static void end_request(void *user, struct MHD_Connection *c, void **own,
@@ -339,7 +330,7 @@ static void loop(server *s) {
   }
 }
 
-/* A thread beside all: has the guard look at the connections, and ends the process where it does
+/* A thread beside all: has the guard look at connections, and ends the process where it does
  * not end by itself, for a driver that compiles cannot be stopped. Files are whole at any time. */
 static void *keep(void *user) {
   server *s = user;
@@ -354,9 +345,7 @@ static void *keep(void *user) {
     }
     if (since >= 0 && now - since > LAST_S) _exit(0);
     pthread_mutex_unlock(&s->lock);
-    abbe_view_guard_look(&s->guard, now);
-    const struct timespec pause = {.tv_nsec = (long)(1e9 * LOOK_S)};
-    nanosleep(&pause, NULL);
+    abbe_view_guard_look(&s->guard, LOOK_S);
     pthread_mutex_lock(&s->lock);
   }
   pthread_mutex_unlock(&s->lock);
@@ -371,24 +360,18 @@ static abbe_result make_token(char *out, abbe_error *error) {
   return ABBE_OK;
 }
 
-static abbe_result start(server *s, unsigned port, struct MHD_Daemon **out, abbe_error *error) {
-  struct sockaddr_in place = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)};
-  place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  *out = MHD_start_daemon(MHD_USE_THREAD_PER_CONNECTION | MHD_USE_INTERNAL_POLLING_THREAD,
-                          (uint16_t)port, NULL, NULL, answer, s, MHD_OPTION_SOCK_ADDR, &place,
-                          MHD_OPTION_CONNECTION_LIMIT, (unsigned)ABBE_VIEW_GUARD_MOST,
-                          MHD_OPTION_CONNECTION_TIMEOUT, 30U, MHD_OPTION_NOTIFY_CONNECTION,
-                          note_connection, s, MHD_OPTION_NOTIFY_COMPLETED, end_request, NULL,
-                          MHD_OPTION_END);
-  if (*out == NULL)
-    return abbe_error_set(
-        error, ABBE_IO,
-        "port %u of 127.0.0.1 cannot be served, it may be in use; choose another, "
-        "or 0 for any",
-        port);
-  const union MHD_DaemonInfo *info = MHD_get_daemon_info(*out, MHD_DAEMON_INFO_BIND_PORT);
-  printf("http://127.0.0.1:%u/?token=%s\n", info != NULL ? (unsigned)info->port : port, s->token);
-  fflush(stdout);
+static abbe_result start(server *s, unsigned port, abbe_error *error) {
+  s->guard.token = s->token;
+  s->guard.enter = enter;
+  s->guard.user = s;
+  const abbe_result result = abbe_view_guard_begin(&s->guard, port, error);
+  if (result != ABBE_OK) return result;
+  s->daemon = MHD_start_daemon(MHD_USE_THREAD_PER_CONNECTION | MHD_USE_INTERNAL_POLLING_THREAD |
+                                   MHD_USE_ITC | MHD_USE_NO_LISTEN_SOCKET,
+                               0, NULL, NULL, answer, s, MHD_OPTION_CONNECTION_LIMIT,
+                               (unsigned)ABBE_VIEW_GUARD_MOST, MHD_OPTION_CONNECTION_TIMEOUT, 30U,
+                               MHD_OPTION_NOTIFY_COMPLETED, end_request, NULL, MHD_OPTION_END);
+  if (s->daemon == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no thread for the page");
   return ABBE_OK;
 }
 
@@ -410,14 +393,18 @@ static abbe_result show(server *s, const abbe_view_app_desc *desc, size_t width,
 
 static abbe_result serve(server *s, unsigned port, const abbe_view_app_desc *desc, size_t width,
                          size_t height, abbe_error *error) {
-  struct MHD_Daemon *daemon = NULL;
   pthread_t keeper;
+  abbe_result result = make_token(s->token, error);
+  if (result == ABBE_OK) result = start(s, port, error);
+  if (result != ABBE_OK) return result;
   if (pthread_create(&keeper, NULL, keep, s) != 0)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no thread for the page's connections");
-  abbe_result result = make_token(s->token, error);
-  if (result == ABBE_OK) result = start(s, port, &daemon, error);
-  if (result == ABBE_OK) result = show(s, desc, width, height, error);
-  if (daemon != NULL) MHD_stop_daemon(daemon);
+  printf("http://127.0.0.1:%u/?token=%s\n", s->guard.port, s->token);
+  fflush(stdout);
+  result = show(s, desc, width, height, error);
+  abbe_view_guard_close(&s->guard);
+  MHD_stop_daemon(s->daemon);
+  s->daemon = NULL;
   pthread_mutex_lock(&s->lock);
   s->ended = true;
   pthread_mutex_unlock(&s->lock);
@@ -429,12 +416,12 @@ abbe_result abbe_view_serve_run(unsigned port, const abbe_view_app_desc *desc, s
                                 size_t height, abbe_error *error) {
   server *s = calloc(1, sizeof *s);
   if (s == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the viewer");
-  abbe_view_guard_begin(&s->guard);
   pthread_mutex_init(&s->lock, NULL);
   pthread_cond_init(&s->called, NULL);
   pthread_cond_init(&s->drawn, NULL);
   served = s;
   const abbe_result result = serve(s, port, desc, width, height, error);
+  if (s->daemon != NULL) MHD_stop_daemon(s->daemon);
   pthread_cond_destroy(&s->drawn);
   pthread_cond_destroy(&s->called);
   pthread_mutex_destroy(&s->lock);
