@@ -7,10 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool is_published(const abbe_renderer *r) {
-  return abbe_method_of(r->plan.desc.profile)->own_passes;
-}
-
 /* A caller's progress may make another context current. */
 typedef struct watched {
   abbe_context *context;
@@ -101,8 +97,8 @@ static abbe_result set_observer(const abbe_renderer *r, abbe_image *out, abbe_er
 static abbe_result read_picture(abbe_renderer *r, bool aovs, abbe_image *out, abbe_error *error) {
   abbe_result result = check_drawn(r, error);
   if (result != ABBE_OK) return result;
-  result = is_published(r) ? abbe_published_read(&r->published, out, error)
-                           : abbe_picture_read(&r->picture, aovs, r->local.unit, out, error);
+  result = r->method != NULL ? abbe_method_read(r->method, out, error)
+                             : abbe_picture_read(&r->picture, aovs, r->local.unit, out, error);
   if (result != ABBE_OK) return result;
   const abbe_rgb_space space = space_of(r);
   abbe_rgb_space_chromaticities(space, out->xy);
@@ -123,13 +119,13 @@ static abbe_result check_map(const abbe_renderer *r, size_t light, abbe_error *e
                           "caustics are looked up in a volume, so there is no spectral map");
   abbe_result result = check_drawn(r, error);
   if (result != ABBE_OK) return result;
-  if (is_published(r) && r->plan.desc.faces > 1)
+  if (r->method != NULL && r->plan.desc.faces > 1)
     return abbe_error_set(
         error, ABBE_UNSUPPORTED,
         "the light '%s' has a cube of maps, each with its own layout; ask for one "
         "view (--faces 1), or for the picture",
         r->scene.local->light[light].name);
-  if (is_published(r) || !abbe_photon_lights_is_face(&r->views, light) ||
+  if (r->method != NULL || !abbe_photon_lights_is_face(&r->views, light) ||
       abbe_photon_lights_map_is_given(&r->views, light))
     return ABBE_OK;
   return abbe_error_set(error, ABBE_UNSUPPORTED,
@@ -154,8 +150,8 @@ static abbe_result read_map(abbe_renderer *r, size_t light, bool filled, abbe_im
                             abbe_error *error) {
   abbe_result result = check_map(r, light, error);
   if (result != ABBE_OK) return result;
-  result = is_published(r) ? abbe_published_read_map(&r->published, filled, out, error)
-                           : abbe_spectral_map_read(&r->map, light, r->local.unit, out, error);
+  result = r->method != NULL ? abbe_method_read_map(r->method, filled, out, error)
+                             : abbe_spectral_map_read(&r->map, light, r->local.unit, out, error);
   if (result != ABBE_OK) return result;
   result = abbe_gl_check(r->gpu.gl, "the reading of the map", error);
   return describe_map(r, light, result, out, error);
@@ -166,7 +162,7 @@ static abbe_result read_map_bands(abbe_renderer *r, size_t light, size_t bands, 
   if (bands < 1 || bands > ABBE_RENDER_MAX_BANDS)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a map of %zu bands; it may have 1 to %d",
                           bands, ABBE_RENDER_MAX_BANDS);
-  if (is_published(r))
+  if (r->method != NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the %s profile's passes sum colours; bands go with the default profile",
                           abbe_profile_name(r->plan.desc.profile));
@@ -181,7 +177,7 @@ static abbe_result read_map_bands(abbe_renderer *r, size_t light, size_t bands, 
 }
 
 void abbe_renderer_map_layout(const abbe_renderer *r, size_t light, abbe_map_layout *out) {
-  *out = is_published(r) ? *abbe_published_layout(&r->published) : r->views.light[light].map;
+  *out = r->method != NULL ? r->method->layout : r->views.light[light].map;
   abbe_local_scene_to_world(&r->local, &out->view);
 }
 
@@ -189,7 +185,7 @@ static abbe_result read_hits(abbe_renderer *r, size_t light, size_t first, abbe_
                              abbe_error *error) {
   const abbe_result made = abbe_renderer_parts_check(r, error);
   if (made != ABBE_OK) return made;
-  if (light >= r->plan.light_view_count || !r->plan.reaches[light] || is_published(r))
+  if (light >= r->plan.light_view_count || !r->plan.reaches[light] || r->method != NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no photons start from light %zu", light);
   if (first >= r->plan.desc.wavelengths)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "wavelength %zu of %zu is asked for", first,
@@ -208,12 +204,12 @@ static abbe_result find_texture(abbe_renderer *r, abbe_renderer_picture *out, ab
   abbe_result result = check_drawn(r, error);
   if (result != ABBE_OK) return result;
   out->texture =
-      is_published(r) ? abbe_published_picture(&r->published) : abbe_picture_texture(&r->picture);
+      r->method != NULL ? abbe_method_picture(r->method) : abbe_picture_texture(&r->picture);
   size_t size[2] = {r->plan.desc.width, r->plan.desc.height};
-  if (!is_published(r)) abbe_picture_size(&r->picture, size);
+  if (r->method == NULL) abbe_picture_size(&r->picture, size);
   out->width = size[0];
   out->height = size[1];
-  out->scale = is_published(r) ? 1 : r->local.unit;
+  out->scale = r->method != NULL ? 1 : r->local.unit;
   out->space = space_of(r) == ABBE_RGB_SPACE_XYZ ? ABBE_RGB_SPACE_ACESCG : space_of(r);
   r->gpu.gl->MemoryBarrier(GL_ALL_BARRIER_BITS);
   return abbe_gl_check(r->gpu.gl, "the handing out of the picture", error);
@@ -249,7 +245,8 @@ abbe_result abbe_renderer_change(abbe_renderer *r, const abbe_scene *scene,
 }
 
 void abbe_renderer_redraw(abbe_renderer *r) {
-  r->lit = r->seen = r->refraction.whole = r->pinholes.filled = false;
+  r->lit = r->seen = r->refraction.whole = false;
+  abbe_transports_redraw(&r->transports);
 }
 
 static void delete_none(GLsizei count, const GLuint *names) {

@@ -19,7 +19,8 @@ enum {
 
 enum { COARSE_SHAFT_STEPS = 12 };
 
-static bool is_published(const abbe_renderer *r) {
+/* Whether a published method draws in place of the passes here. */
+static bool has_method(const abbe_renderer *r) {
   return abbe_method_of(r->plan.desc.profile)->own_passes;
 }
 
@@ -36,8 +37,7 @@ static abbe_result make_local_scene(abbe_renderer *r, const abbe_scene *scene, a
   size_t of[ABBE_SCENE_MAX_LIGHTS] = {0};
   abbe_local_scene_free(&r->local);
   abbe_result result = abbe_local_scene_make(scene, &r->local, error);
-  if (result == ABBE_OK && !is_published(r))
-    result = abbe_local_scene_scale_light(&r->local, error);
+  if (result == ABBE_OK && !has_method(r)) result = abbe_local_scene_scale_light(&r->local, error);
   for (size_t i = own; i < r->plan.light_view_count; i++) of[i - own] = r->plan.light_view[i].light;
   if (result == ABBE_OK && r->plan.cubes)
     result = abbe_local_scene_repeat_lights(&r->local, of, r->plan.light_view_count - own, error);
@@ -83,12 +83,11 @@ static void free_eye(abbe_renderer *r) {
   r->seen = false;
 }
 
-static void free_light(abbe_renderer *r) {
-  abbe_published_free(&r->published);
-  abbe_pinhole_pages_free(&r->pinholes);
+static void free_light(abbe_renderer *r, bool pages_stay) {
+  abbe_method_free(&r->method);
+  abbe_transports_free(&r->transports, pages_stay);
   abbe_shaft_grid_free(&r->shafts);
   abbe_caustics_free(&r->caustics);
-  abbe_volume_light_free(&r->volume);
   abbe_spectral_map_free(&r->map);
   abbe_receiver_atlas_free(&r->atlas);
   abbe_light_layers_free(&r->layers);
@@ -101,16 +100,16 @@ static void free_light(abbe_renderer *r) {
   r->lit = false;
 }
 
-static void free_parts(abbe_renderer *r, unsigned parts) {
+static void free_parts(abbe_renderer *r, unsigned parts, bool pages_stay) {
   if (parts & EYE) free_eye(r);
-  if (parts & LIGHT) free_light(r);
+  if (parts & LIGHT) free_light(r, pages_stay);
   abbe_gpu_scene_free(&r->scene, scene_parts(parts));
 }
 
 static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
   abbe_shader_variant_make(&r->scene, &r->variant);
   r->variant.copies = r->gpu.software;
-  if (is_published(r)) return abbe_published_make(&r->scene, &r->variant, &r->published, error);
+  if (has_method(r)) return abbe_method_make(&r->scene, &r->variant, &r->method, error);
   /* no light is followed beyond a receiver */
   r->variant.textured = r->variant.receiver_colours = false;
   abbe_result result = abbe_photon_lights_make(&r->scene, &r->views, error);
@@ -119,7 +118,6 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK) result = abbe_light_layers_make(&r->views, &r->faces, &r->layers, error);
   r->atlas.views = &r->views;
   r->map.history = &r->history;
-  if (result == ABBE_OK) result = abbe_volume_light_make(&r->scene, &r->volume, error);
   if (result != ABBE_OK) return result;
   result = r->plan.caustics
                ? abbe_caustics_make(&r->views, &r->layers, &r->atlas, &r->map, &r->variant,
@@ -128,7 +126,7 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK && r->plan.shaft_count > 0)
     result = abbe_shaft_grid_make(&r->caustics, &r->variant, &r->shafts, error);
   if (result != ABBE_OK) return result;
-  return abbe_pinhole_pages_make(&r->scene, &r->variant, &r->pinholes, error);
+  return abbe_transports_make(&r->scene, &r->variant, &r->transports, error);
 }
 
 static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
@@ -142,8 +140,8 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   variant.textured = r->plan.textured;
   variant.receiver_colours = r->plan.receiver_colours;
   abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);
-  r->lighting = (abbe_lighting){&r->scene,  &r->views,  &r->layers,   &r->atlas,  &r->map,
-                                &r->camera, &r->volume, &r->pinholes, &r->shafts, &r->meshes};
+  r->lighting = (abbe_lighting){&r->scene,  &r->views,      &r->layers, &r->atlas, &r->map,
+                                &r->camera, &r->transports, &r->shafts, &r->meshes};
   abbe_result result = abbe_seen_meshes_make(&r->scene, &r->camera.view, &r->meshes, error);
   if (result == ABBE_OK)
     result = abbe_receivers_pass_make(&r->lighting, &variant, &r->receivers, error);
@@ -163,15 +161,15 @@ static abbe_result make_parts(abbe_renderer *r, const abbe_scene *scene, unsigne
                               abbe_error *error) {
   abbe_result result = make_local_scene(r, scene, error);
   if (result != ABBE_OK) return result;
-  const size_t frames = r->plan.caustics && !is_published(r) ? r->plan.desc.history : 0;
+  const size_t frames = r->plan.caustics && !has_method(r) ? r->plan.desc.history : 0;
   if ((parts & LIGHT) != 0) abbe_map_history_change(&r->history, frames, r->local.origin);
   abbe_gpu_scene_begin(&r->gpu, r->local.scene, r->local.unit, &r->plan, local_layout(r),
                        &r->scene);
   result = abbe_gpu_scene_make(&r->scene, scene_parts(parts), error);
   if (result == ABBE_OK && (parts & LIGHT) != 0) result = make_light(r, error);
-  if (result == ABBE_OK && is_published(r) && (parts & (LIGHT | EYE)) == EYE)
-    abbe_published_look(&r->published);
-  if (result != ABBE_OK || is_published(r)) return result;
+  if (result == ABBE_OK && has_method(r) && (parts & (LIGHT | EYE)) == EYE)
+    abbe_method_look(r->method);
+  if (result != ABBE_OK || has_method(r)) return result;
   if ((parts & (LIGHT | POWERS)) == POWERS) abbe_photon_lights_upload(&r->views);
   return (parts & EYE) != 0 ? make_eye(r, error) : ABBE_OK;
 }
@@ -202,7 +200,7 @@ static abbe_result plan_scene(const abbe_renderer *r, const abbe_scene *scene,
 /* Whether the camera alone has moved, and the published method's light stays. */
 static bool looks_alone(const abbe_renderer *r, const abbe_plan *plan, unsigned parts) {
   const abbe_render_desc *before = &r->plan.desc, *now = &plan->desc;
-  return parts == EYE && r->lit && abbe_published_keeps_light(now) && before->width == now->width &&
+  return parts == EYE && r->lit && abbe_method_keeps_light(now) && before->width == now->width &&
          before->height == now->height;
 }
 
@@ -223,15 +221,12 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
     parts = ALL; /* its tables hold all */
   const bool crowded = abbe_gpu_program_count(&r->gpu) > ABBE_GPU_MOST_PROGRAMS;
   if (crowded && (parts & LIGHT) != 0) parts = ALL;
-  abbe_wyman_history frames = {0};
+  abbe_method_history frames = {0};
   if ((parts & (GEOMETRY | EYE)) == EYE && r->inputs.sights == inputs.sights)
     abbe_refraction_pass_leave(&r->refraction, &r->kept);
-  if ((parts & LIGHT) != 0) abbe_published_take_frames(&r->published, &frames);
+  if ((parts & LIGHT) != 0) abbe_method_leave(r->method, &frames);
   const bool pages_stay = parts != ALL && r->inputs.pages == inputs.pages;
-  const abbe_pinhole_pages pages = r->pinholes;
-  if (pages_stay) r->pinholes = (abbe_pinhole_pages){0};
-  free_parts(r, parts);
-  if (pages_stay) r->pinholes = pages;
+  free_parts(r, parts, pages_stay);
   if (parts == ALL && crowded) abbe_gpu_drop_programs(&r->gpu);
   take_plan(r, &plan);
   r->inputs = inputs;
@@ -240,16 +235,16 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   r->gpu.compiling = plan.desc.compiling;
   result = end_watch(r, make_parts(r, scene, parts, error), error);
   r->lacking = result == ABBE_OK ? 0 : parts; /* the others are as they were */
-  if (r->lacking == 0) abbe_published_give_frames(&r->published, &frames);
-  abbe_gpu_drop_textures(&r->gpu, ABBE_WYMAN_KEPT, frames.sums);
+  if (r->lacking == 0) abbe_method_follow(r->method, &frames);
+  abbe_gpu_drop_textures(&r->gpu, ABBE_METHOD_KEPT, frames.sums);
   abbe_refraction_kept_free(&r->gpu, &r->kept);
-  free_parts(r, r->lacking);
+  free_parts(r, r->lacking, false);
   abbe_gpu_trim(&r->gpu);
   return result;
 }
 
 void abbe_renderer_parts_free(abbe_renderer *r) {
-  free_parts(r, ALL);
+  free_parts(r, ALL, false);
   abbe_map_history_free(&r->history);
   abbe_gpu_free(&r->gpu);
   abbe_local_scene_free(&r->local);
@@ -276,7 +271,7 @@ static abbe_result draw_light(abbe_renderer *r, abbe_error *error) {
   if (r->plan.caustics && goes_on(r, result))
     result = abbe_caustics_run(&r->caustics, &r->untimed_ms, error);
   if (goes_on(r, result)) result = draw_shafts(r, error);
-  if (goes_on(r, result)) result = abbe_pinhole_pages_run(&r->pinholes, error);
+  if (goes_on(r, result)) result = abbe_transports_run(&r->transports, error);
   return result;
 }
 
@@ -294,8 +289,8 @@ static abbe_result draw_eye(abbe_renderer *r, abbe_error *error) {
  * has changed since are left out. */
 static abbe_result run_passes(abbe_renderer *r, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  if (is_published(r)) {
-    if (!r->seen) result = abbe_published_run(&r->published, r->lit, error);
+  if (has_method(r)) {
+    if (!r->seen) result = abbe_method_run(r->method, r->lit, error);
     r->lit = result == ABBE_OK;
   } else {
     if (!r->lit) result = draw_light(r, error);
@@ -310,24 +305,19 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
   s->frame_ms = 1e3 * abbe_clock_seconds() - start_ms - r->untimed_ms;
   s->wavelengths = r->plan.desc.wavelengths;
   s->device_bytes = abbe_gpu_bytes(&r->gpu) + r->scene.mesh_bytes;
-  double cells = (double)r->plan.desc.photons * (double)r->plan.desc.photons;
-  size_t first = is_published(r) ? abbe_published_photons(&r->published) : 0;
-  if (!is_published(r)) {
+  if (has_method(r)) {
+    abbe_method_count(r->method, s);
+  } else {
+    const abbe_photon_light *first = &r->views.light[0];
     for (size_t i = 0; i < r->plan.light_view_count; i++)
       s->photons += r->views.light[i].photon_count;
-    cells = (double)r->views.light[0].cells[0] * (double)r->views.light[0].cells[1];
-    first = r->views.light[0].photon_count;
-  } else {
-    s->photons = first;
-    cells = (double)abbe_published_cells(&r->published);
-    s->polygon_layers = abbe_published_layers(&r->published);
+    s->refractor_share =
+        (double)first->photon_count / ((double)first->cells[0] * (double)first->cells[1]);
   }
-  s->refractor_share = (double)first / cells;
-  if (r->plan.caustics && !is_published(r)) abbe_caustics_energy(&r->caustics, &s->energy);
+  if (r->plan.caustics && !has_method(r)) abbe_caustics_energy(&r->caustics, &s->energy);
   double *part = &s->energy.reached;
   for (size_t i = 0; i < sizeof s->energy / sizeof *part; i++) part[i] *= r->local.unit;
-  for (abbe_pass pass = 0; pass < ABBE_PASS_COUNT && (!is_published(r) || s->pass_count == 0);
-       pass++)
+  for (abbe_pass pass = 0; pass < ABBE_PASS_COUNT && (!has_method(r) || s->pass_count == 0); pass++)
     s->kept[pass] = abbe_plan_runs(&r->plan, pass, 0) && !abbe_statistics_ran(s, pass);
 }
 
@@ -335,13 +325,12 @@ abbe_result abbe_renderer_parts_draw(abbe_renderer *r, abbe_render_progress prog
                                      abbe_statistics *statistics, abbe_error *error) {
   if (statistics != NULL) memset(statistics, 0, sizeof *statistics);
   if (abbe_renderer_parts_check(r, error) != ABBE_OK) return ABBE_INVALID_ARGUMENT;
-  if (statistics != NULL && r->plan.caustics && !is_published(r) &&
+  if (statistics != NULL && r->plan.caustics && !has_method(r) &&
       !abbe_caustics_know_energy(&r->caustics))
     r->lit = false; /* no frame with statistics has followed this light */
   r->gpu.statistics = statistics;
   r->untimed_ms = 0;
-  if (!r->lit || (is_published(r) && statistics != NULL))
-    r->seen = false; /* it counts as it draws */
+  if (!r->lit || (has_method(r) && statistics != NULL)) r->seen = false; /* it counts as it draws */
   const double start_ms = 1e3 * abbe_clock_seconds();
   abbe_gpu_watch(&r->gpu, progress, user);
   abbe_result result = run_passes(r, error);
@@ -365,7 +354,7 @@ abbe_result abbe_renderer_parts_baseline(abbe_renderer *r, double *ms, abbe_erro
   const abbe_gl *gl = r->gpu.gl;
   abbe_result result = abbe_renderer_parts_check(r, error);
   if (result != ABBE_OK) return result;
-  if (is_published(r))
+  if (has_method(r))
     return abbe_error_set(error, ABBE_UNSUPPORTED, "the %s profile has no baseline of its own",
                           abbe_profile_name(r->plan.desc.profile));
   if (r->baseline == 0) /* the picture may be what lies in the receivers' colour, and stays */

@@ -8,8 +8,7 @@
 #include "gl/eye/adaptive_pass.h"
 #include "gl/eye/picture.h"
 #include "gl/haze/haze_pass.h"
-#include "gl/methods/pinholes/pinhole_pages.h"
-#include "gl/methods/published.h"
+#include "gl/methods/methods.h"
 #include "gl/renderer.h"
 #include "gl/renderer_inputs.h"
 #include "gl/scene/local_scene.h"
@@ -35,10 +34,9 @@ struct abbe_renderer {
   abbe_map_history history; /* of maps, from change to change */
   abbe_spectral_map map;
   abbe_caustics caustics;
-  abbe_volume_light volume; /* in place of them, where caustics are looked up */
-  abbe_pinhole_pages pinholes;
-  abbe_published published; /* in place of these and those below */
-  bool lit;                 /* all of that is drawn: the maps hold the light as it is now */
+  abbe_transports transports;
+  abbe_method *method; /* in place of these and those below, or NULL */
+  bool lit;            /* all of that is drawn: the maps hold the light as it is now */
 
   /* eye */
   abbe_camera_view camera;

@@ -27,8 +27,7 @@ void abbe_lighting_use(const abbe_lighting *lighting, GLuint program) {
   abbe_spectral_map_set(lighting->map, program);
   abbe_gpu_scene_set(lighting->scene, program);
   abbe_light_layers_set(lighting->layers, program);
-  abbe_volume_light_set(lighting->volume, program);
-  abbe_pinhole_pages_set(lighting->pinholes, program);
+  abbe_transports_set(lighting->transports, program);
   abbe_shaft_grid_set(lighting->shafts, program);
   set_camera(lighting, program);
 }

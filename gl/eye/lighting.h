@@ -8,8 +8,7 @@
 #include "gl/caustics/spectral_map.h"
 #include "gl/light/light_layers.h"
 #include "gl/light/receiver_atlas.h"
-#include "gl/methods/pinholes/pinhole_pages.h"
-#include "gl/methods/volume/volume_light.h"
+#include "gl/methods/transports/transports.h"
 #include "gl/scene/camera_view.h"
 #include "gl/scene/seen/seen_meshes.h"
 
@@ -20,8 +19,7 @@ typedef struct abbe_lighting {
   const abbe_receiver_atlas *atlas;
   const abbe_spectral_map *map;
   const abbe_camera_view *camera;
-  const abbe_volume_light *volume;
-  const abbe_pinhole_pages *pinholes;
+  const abbe_transports *transports;
   const abbe_shaft_grid *shafts;
   const abbe_seen_meshes *meshes; /* the camera's */
 } abbe_lighting;

@@ -11,10 +11,6 @@ static const double bias_share = 0.005; /* of the light's range */
 
 static abbe_result make_programs(abbe_image_eye *e, const abbe_shader_variant *variant,
                                  const char *more, abbe_error *error) {
-  static const abbe_program_stage lit[] = {{GL_VERTEX_SHADER, "surface.vert"},
-                                           {GL_FRAGMENT_SHADER, "image_receivers.frag"}};
-  static const abbe_program_stage refracted[] = {{GL_VERTEX_SHADER, "screen.vert"},
-                                                 {GL_FRAGMENT_SHADER, "image_refraction.frag"}};
   char search[1024];
   char lit_by[1024];
   const int length =
@@ -23,12 +19,10 @@ static abbe_result make_programs(abbe_image_eye *e, const abbe_shader_variant *v
   snprintf(lit_by, sizeof lit_by, "%s%s", more, e->light->faces > 1 ? "#define LIT_CUBE\n" : "");
   if (length < 0 || (size_t)length >= sizeof search)
     return abbe_error_set(error, ABBE_GL, "a shader's definitions are too long");
-  abbe_result result =
-      abbe_shader_variant_program(variant, e->scene->gpu, lit, 2, lit_by, &e->receivers, error);
-  if (result == ABBE_OK)
-    result = abbe_shader_variant_program(variant, e->scene->gpu, refracted, 2, search,
-                                         &e->refraction, error);
-  return result;
+  const abbe_image_program all[] = {
+      {&e->receivers, "surface.vert", NULL, "image_receivers.frag", lit_by, false},
+      {&e->refraction, "screen.vert", NULL, "image_refraction.frag", search, false}};
+  return abbe_image_programs_make(variant, e->scene->gpu, all, 2, error);
 }
 
 abbe_result abbe_image_eye_make(const abbe_gpu_scene *scene, const abbe_image_places *light,
@@ -41,15 +35,11 @@ abbe_result abbe_image_eye_make(const abbe_gpu_scene *scene, const abbe_image_pl
   abbe_image_cube_one(&out->camera.view, &sight);
   abbe_result result =
       abbe_image_places_make(scene, &sight, size, size, false, &out->places, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, size[0], size[1], 0, false, &out->lit, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_texture(scene->gpu, GL_DEPTH_COMPONENT32F, size[0], size[1], 0, false,
-                                   &out->lit_depth, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, size[0], size[1], 0, false,
-                                   &out->picture, error);
+  const abbe_image_texture all[] = {
+      {&out->lit, GL_RGBA32F, size[0], size[1], 0, false},
+      {&out->lit_depth, GL_DEPTH_COMPONENT32F, size[0], size[1], 0, false},
+      {&out->picture, GL_RGBA32F, size[0], size[1], 0, false}};
+  if (result == ABBE_OK) result = abbe_image_textures_make(scene->gpu, all, 3, error);
   return result == ABBE_OK ? make_programs(out, variant, more, error) : result;
 }
 

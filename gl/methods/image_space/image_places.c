@@ -73,48 +73,25 @@ static const int all_of_it = -1;
 
 static abbe_result make_targets(abbe_image_places *p, abbe_error *error) {
   const size_t faces = p->faces > 1 ? p->faces : 0, layers = 2 * p->object_faces;
-  const struct {
-    GLuint *texture;
-    GLenum format;
-    const size_t *size;
-    size_t layers;
-    bool linear;
-  } all[] = {{&p->receivers, GL_RGBA32F, p->size, faces, false},
-             {&p->depth, GL_DEPTH_COMPONENT32F, p->size, faces, false},
-             {&p->places, GL_RGBA32F, p->grid, layers, false},
-             {&p->normals, GL_RGBA32F, p->grid, layers, true},
-             {&p->depths, GL_DEPTH_COMPONENT32F, p->grid, layers, false}};
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < sizeof all / sizeof *all && result == ABBE_OK; i++)
-    result = abbe_gpu_make_texture(p->scene->gpu, all[i].format, all[i].size[0], all[i].size[1],
-                                   all[i].layers, all[i].linear, all[i].texture, error);
-  return result;
+  const size_t *size = p->size, *grid = p->grid;
+  const abbe_image_texture all[] = {
+      {&p->receivers, GL_RGBA32F, size[0], size[1], faces, false},
+      {&p->depth, GL_DEPTH_COMPONENT32F, size[0], size[1], faces, false},
+      {&p->places, GL_RGBA32F, grid[0], grid[1], layers, false},
+      {&p->normals, GL_RGBA32F, grid[0], grid[1], layers, true},
+      {&p->depths, GL_DEPTH_COMPONENT32F, grid[0], grid[1], layers, false}};
+  return abbe_image_textures_make(p->scene->gpu, all, sizeof all / sizeof *all, error);
 }
 
 static abbe_result make_programs(abbe_image_places *p, abbe_error *error) {
-  static const abbe_program_stage seen[] = {{GL_VERTEX_SHADER, "surface.vert"},
-                                            {GL_FRAGMENT_SHADER, "image_places.frag"}};
-  static const abbe_program_stage depth[] = {{GL_VERTEX_SHADER, "surface.vert"},
-                                             {GL_FRAGMENT_SHADER, "depth.frag"}};
-  static const abbe_program_stage objects[] = {{GL_VERTEX_SHADER, "image_objects.vert"},
-                                               {GL_GEOMETRY_SHADER, "image_objects.geom"},
-                                               {GL_FRAGMENT_SHADER, "image_objects.frag"}};
-  static const abbe_program_stage seen_around[] = {{GL_VERTEX_SHADER, "image_objects.vert"},
-                                                   {GL_GEOMETRY_SHADER, "image_faces.geom"},
-                                                   {GL_FRAGMENT_SHADER, "image_places.frag"}};
-  static const abbe_program_stage depth_around[] = {{GL_VERTEX_SHADER, "image_objects.vert"},
-                                                    {GL_GEOMETRY_SHADER, "image_faces.geom"},
-                                                    {GL_FRAGMENT_SHADER, "depth.frag"}};
-  abbe_gpu *gpu = p->scene->gpu;
   const bool around = p->faces > 1;
-  const size_t stages = around ? 3 : 2;
-  abbe_result result =
-      abbe_gpu_program(gpu, around ? seen_around : seen, stages, "", &p->seen, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_gpu_program(gpu, around ? depth_around : depth, stages, "", &p->depth_only, error);
-  if (result == ABBE_OK) result = abbe_gpu_program(gpu, objects, 3, "", &p->objects, error);
-  return result;
+  const char *vertex = around ? "image_objects.vert" : "surface.vert";
+  const char *faces = around ? "image_faces.geom" : NULL;
+  const abbe_image_program all[] = {
+      {&p->seen, vertex, faces, "image_places.frag", NULL, true},
+      {&p->depth_only, vertex, faces, "depth.frag", NULL, true},
+      {&p->objects, "image_objects.vert", "image_objects.geom", "image_objects.frag", NULL, true}};
+  return abbe_image_programs_make(NULL, p->scene->gpu, all, sizeof all / sizeof *all, error);
 }
 
 void abbe_image_places_look(abbe_image_places *p, const abbe_image_cube *cube) {

@@ -220,3 +220,32 @@ abbe_result abbe_image_view_read_map(const abbe_gpu_scene *scene, GLuint map,
   free(data);
   return result;
 }
+
+abbe_result abbe_image_textures_make(abbe_gpu *gpu, const abbe_image_texture *all, size_t count,
+                                     abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < count && result == ABBE_OK; i++)
+    if (all[i].texture != NULL)
+      result = abbe_gpu_make_texture(gpu, all[i].format, all[i].width, all[i].height, all[i].layers,
+                                     all[i].linear, all[i].texture, error);
+  return result;
+}
+
+abbe_result abbe_image_programs_make(const abbe_shader_variant *variant, abbe_gpu *gpu,
+                                     const abbe_image_program *all, size_t count,
+                                     abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
+    const abbe_image_program *p = &all[i];
+    abbe_program_stage stages[3] = {{GL_VERTEX_SHADER, p->vertex}};
+    size_t used = 1;
+    if (p->program == NULL) continue;
+    if (p->geometry != NULL) stages[used++] = (abbe_program_stage){GL_GEOMETRY_SHADER, p->geometry};
+    stages[used++] = (abbe_program_stage){GL_FRAGMENT_SHADER, p->fragment};
+    result =
+        p->plain
+            ? abbe_gpu_program(gpu, stages, used, p->more != NULL ? p->more : "", p->program, error)
+            : abbe_shader_variant_program(variant, gpu, stages, used, p->more, p->program, error);
+  }
+  return result;
+}

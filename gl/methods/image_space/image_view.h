@@ -6,6 +6,7 @@
 
 #include "colorimetry/image/image.h"
 #include "gl/scene/gpu_scene.h"
+#include "gl/scene/shader_variant.h"
 #include "scenes/view/map_layout.h"
 #include "scenes/view/view.h"
 
@@ -65,5 +66,26 @@ size_t abbe_image_tables_define(const abbe_render_desc *desc, char *out, size_t 
  * ABBE_NO_MEMORY. */
 abbe_result abbe_image_tables_colours(const abbe_gpu_scene *scene, bool by_white, float (**out)[3],
                                       abbe_error *error);
+
+/* What the methods are made of, from tables. */
+
+typedef struct abbe_image_texture {
+  GLuint *texture; /* NULL: it is not wanted */
+  GLenum format;
+  size_t width, height, layers; /* layers: 0: no array */
+  bool linear;
+} abbe_image_texture;
+abbe_result abbe_image_textures_make(abbe_gpu *gpu, const abbe_image_texture *all, size_t count,
+                                     abbe_error *error);
+
+typedef struct abbe_image_program {
+  GLuint *program;                          /* NULL: it is not wanted */
+  const char *vertex, *geometry, *fragment; /* geometry: may be NULL */
+  const char *more;                         /* definitions; may be NULL */
+  bool plain;                               /* it asks for none of the variant's */
+} abbe_image_program;
+abbe_result abbe_image_programs_make(const abbe_shader_variant *variant, abbe_gpu *gpu,
+                                     const abbe_image_program *all, size_t count,
+                                     abbe_error *error);
 
 #endif

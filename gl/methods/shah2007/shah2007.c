@@ -18,8 +18,6 @@
  * no vertex, and estimators start from what the light sees behind the ray's origin. */
 #include "gl/methods/shah2007/shah2007.h"
 
-#include "gl/methods/image_space/image_view.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,7 +33,7 @@ static bool is_printed(const abbe_gpu_scene *scene) {
 }
 
 static bool around(const abbe_shah2007 *s) {
-  return s->light.faces > 1;
+  return s->base.light.faces > 1;
 }
 
 static double splat_size(double apart) {
@@ -48,48 +46,42 @@ static double window_side(const abbe_image_view *view) {
 
 /* The distance of undisturbed vertices on the map, texels. */
 static double vertices_apart(const abbe_shah2007 *s) {
-  const abbe_render_desc *d = &s->scene->plan->desc;
-  return (double)d->map_size / (double)d->photons * window_side(&s->light.object_face[0]) /
-         window_side(&s->light.face[0]);
+  const abbe_render_desc *d = &s->base.scene->plan->desc;
+  return (double)d->map_size / (double)d->photons * window_side(&s->base.light.object_face[0]) /
+         window_side(&s->base.light.face[0]);
 }
 
 /* What a splat's peak is of a vertex of unit light. */
 static double vertex_strength(const abbe_shah2007 *s) {
-  const abbe_render_desc *d = &s->scene->plan->desc;
+  const abbe_render_desc *d = &s->base.scene->plan->desc;
   const double apart = vertices_apart(s), sigma = splat_size(apart) / 6;
   const double texel = 1 / (tau * sigma * sigma * held);
-  if (!is_printed(s->scene)) return texel * apart * apart;
+  if (!is_printed(s->base.scene)) return texel * apart * apart;
   const double texels = (double)d->map_size * (double)d->map_size;
-  return texel * white_share * texels / fmax((double)s->photon_count, 1);
+  return texel * white_share * texels / fmax((double)s->base.photon_count, 1);
 }
 
 static abbe_result make_programs(abbe_shah2007 *s, const abbe_shader_variant *variant,
                                  abbe_error *error) {
-  static const abbe_program_stage splat[] = {{GL_VERTEX_SHADER, "shah_splat.vert"},
-                                             {GL_FRAGMENT_SHADER, "shah_splat.frag"}};
-  static const abbe_program_stage splat_around[] = {{GL_VERTEX_SHADER, "shah_splat.vert"},
-                                                    {GL_GEOMETRY_SHADER, "shah_faces.geom"},
-                                                    {GL_FRAGMENT_SHADER, "shah_splat.frag"}};
-  const abbe_render_desc *d = &s->scene->plan->desc;
+  const abbe_render_desc *d = &s->base.scene->plan->desc;
   float(*shares)[3] = NULL;
   char more[640], search[800];
-  const abbe_program_stage low_pass[] = {{GL_VERTEX_SHADER, "screen.vert"},
-                                         {GL_FRAGMENT_SHADER, "shah_low_pass.frag"}};
   const char *cube = around(s) ? "#define PLACES_CUBE\n" : "";
   abbe_image_tables_define(d, more, sizeof more);
   snprintf(search, sizeof search,
            "%s#define ESTIMATOR %d\n#define ITERATIONS %zu\n#define OBJECT_FACES %zu\n%s%s", more,
-           (int)d->estimator, d->iterations, s->light.object_faces, cube,
-           is_printed(s->scene) ? "#define SEARCH_AS_PRINTED\n" : "");
-  abbe_result result = around(s) ? abbe_shader_variant_program(variant, s->scene->gpu, splat_around,
-                                                               3, search, &s->splat, error)
-                                 : abbe_shader_variant_program(variant, s->scene->gpu, splat, 2,
-                                                               search, &s->splat, error);
-  if (result == ABBE_OK && d->low_pass > 0)
-    result = abbe_gpu_program(s->scene->gpu, low_pass, 2, cube, &s->low_pass, error);
-  if (result == ABBE_OK) result = abbe_image_tables_colours(s->scene, true, &shares, error);
+           (int)d->estimator, d->iterations, s->base.light.object_faces, cube,
+           is_printed(s->base.scene) ? "#define SEARCH_AS_PRINTED\n" : "");
+  const abbe_image_program all[] = {{&s->splat, "shah_splat.vert",
+                                     around(s) ? "shah_faces.geom" : NULL, "shah_splat.frag",
+                                     search, false},
+                                    {d->low_pass > 0 ? &s->low_pass : NULL, "screen.vert", NULL,
+                                     "shah_low_pass.frag", cube, true}};
+  abbe_result result = abbe_image_programs_make(variant, s->base.scene->gpu, all, 2, error);
+  if (result == ABBE_OK) result = abbe_image_tables_colours(s->base.scene, true, &shares, error);
   if (result == ABBE_OK)
-    result = abbe_image_eye_make(s->scene, &s->light, variant, more, shares, &s->eye, error);
+    result = abbe_image_eye_make(s->base.scene, &s->base.light, variant, more, shares, &s->base.eye,
+                                 error);
   return result;
 }
 
@@ -120,71 +112,54 @@ static abbe_result look_from_light(const abbe_gpu_scene *scene, abbe_image_cube 
   return ABBE_OK;
 }
 
-abbe_result abbe_shah2007_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
-                               abbe_shah2007 *out, abbe_error *error) {
+static abbe_result make(abbe_method *m, const abbe_shader_variant *variant, abbe_error *error) {
+  abbe_shah2007 *s = (abbe_shah2007 *)m;
+  const abbe_gpu_scene *scene = m->scene;
   const abbe_render_desc *d = &scene->plan->desc;
   const size_t map[2] = {d->map_size, d->map_size}, grid[2] = {d->photons, d->photons};
   abbe_image_cube sight;
-  out->scene = scene;
   abbe_result result = look_from_light(scene, &sight, error);
   if (result != ABBE_OK) return result;
   const size_t layers = sight.faces > 1 ? sight.faces : 0;
-  abbe_map_layout_make(&sight.face[0], &out->layout);
-  result = abbe_image_places_make(scene, &sight, map, grid, true, &out->light, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, map[0], map[1], layers, true, &out->map,
-                                   error);
-  if (result == ABBE_OK && d->low_pass > 0)
-    result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, map[0], map[1], layers, true,
-                                   &out->smoothed, error);
-  if (result == ABBE_OK) result = abbe_image_tables_colours(scene, false, &out->colour, error);
-  if (result == ABBE_OK) result = make_programs(out, variant, error);
+  const abbe_image_texture all[] = {
+      {&s->map, GL_RGBA32F, map[0], map[1], layers, true},
+      {d->low_pass > 0 ? &s->smoothed : NULL, GL_RGBA32F, map[0], map[1], layers, true}};
+  abbe_map_layout_make(&sight.face[0], &m->layout);
+  result = abbe_image_places_make(scene, &sight, map, grid, true, &m->light, error);
+  if (result == ABBE_OK) result = abbe_image_textures_make(scene->gpu, all, 2, error);
+  if (result == ABBE_OK) result = abbe_image_tables_colours(scene, false, &m->colour, error);
+  if (result == ABBE_OK) result = make_programs(s, variant, error);
   return result;
 }
 
-void abbe_shah2007_free(abbe_shah2007 *s) {
-  if (s->scene == NULL) return;
-  abbe_image_eye_free(&s->eye);
-  abbe_image_places_free(&s->light);
-  abbe_gpu_drop_textures(s->scene->gpu, 1, &s->map);
-  abbe_gpu_drop_textures(s->scene->gpu, 1, &s->smoothed);
-  free(s->colour);
-  *s = (abbe_shah2007){0};
-}
-
-static abbe_result see_from_light(abbe_shah2007 *s, abbe_error *error) {
-  abbe_gpu *gpu = s->scene->gpu;
-  abbe_gpu_start_lap(gpu);
-  abbe_result result = abbe_image_places_receivers(&s->light, error);
-  if (result == ABBE_OK) result = abbe_image_places_shadow(&s->light, error);
-  abbe_gpu_book_lap(gpu, ABBE_PASS_RECEIVER_DEPTH);
-  if (result == ABBE_OK) result = abbe_image_places_objects(&s->light, error);
-  s->photon_count = abbe_image_places_count(&s->light);
-  abbe_gpu_book_lap(gpu, ABBE_PASS_LIGHT_FRONT_AND_BACK);
-  return result;
+static void free_own(abbe_method *m) {
+  abbe_shah2007 *s = (abbe_shah2007 *)m;
+  abbe_gpu_drop_textures(m->scene->gpu, 1, &s->map);
+  abbe_gpu_drop_textures(m->scene->gpu, 1, &s->smoothed);
 }
 
 static void set_splats(abbe_shah2007 *s) {
-  const abbe_gpu_scene *scene = s->scene;
+  const abbe_gpu_scene *scene = s->base.scene;
   const abbe_gl *gl = scene->gpu->gl;
   const abbe_render_desc *d = &scene->plan->desc;
   const abbe_light *light = &scene->local->light[0];
   GLuint p = s->splat;
   abbe_gpu_scene_set(scene, p);
-  abbe_image_places_set(&s->light, p);
+  abbe_image_places_set(&s->base.light, p);
   abbe_image_view_set_lamp(scene, p, light->direction);
   abbe_gpu_set_int(scene->gpu, p, "grid", (int)d->photons);
   abbe_gpu_set_float(scene->gpu, p, "map_side", (double)d->map_size);
   abbe_gpu_set_float(scene->gpu, p, "splat_size", splat_size(vertices_apart(s)));
   abbe_gpu_set_float(scene->gpu, p, "strength", vertex_strength(s));
   abbe_gpu_set_float(scene->gpu, p, "object_bias", 1e-3 * scene->refractor_radius);
-  gl->Uniform3fv(gl->GetUniformLocation(p, "colour"), (GLsizei)d->wavelengths, &s->colour[0][0]);
+  gl->Uniform3fv(gl->GetUniformLocation(p, "colour"), (GLsizei)d->wavelengths,
+                 &s->base.colour[0][0]);
 }
 
 static abbe_result splat_vertices(abbe_shah2007 *s, abbe_error *error) {
   static const int flat = -1;
   static const GLfloat nothing[4] = {0, 0, 0, 0};
-  const abbe_gpu_scene *scene = s->scene;
+  const abbe_gpu_scene *scene = s->base.scene;
   const abbe_gl *gl = scene->gpu->gl;
   const abbe_render_desc *d = &scene->plan->desc;
   abbe_gpu_start_lap(scene->gpu);
@@ -198,7 +173,7 @@ static abbe_result splat_vertices(abbe_shah2007 *s, abbe_error *error) {
   gl->BlendFunc(GL_ONE, GL_ONE);
   gl->UseProgram(s->splat);
   set_splats(s);
-  for (size_t i = 0; i < d->wavelengths * s->light.object_faces; i++) {
+  for (size_t i = 0; i < d->wavelengths * s->base.light.object_faces; i++) {
     abbe_gpu_set_int(scene->gpu, s->splat, "wavelength", (int)(i % d->wavelengths));
     abbe_gpu_set_int(scene->gpu, s->splat, "object_face", (int)(i / d->wavelengths));
     abbe_gpu_draw_things(scene->gpu, GL_POINTS, d->photons * d->photons, 1);
@@ -210,8 +185,8 @@ static abbe_result splat_vertices(abbe_shah2007 *s, abbe_error *error) {
 
 /* Along one axis and then along the other, back into the map; face -1: its only one. */
 static abbe_result smooth_face(abbe_shah2007 *s, int face, abbe_error *error) {
-  abbe_gpu *gpu = s->scene->gpu;
-  const abbe_render_desc *d = &s->scene->plan->desc;
+  abbe_gpu *gpu = s->base.scene->gpu;
+  const abbe_render_desc *d = &s->base.scene->plan->desc;
   abbe_result result = ABBE_OK;
   for (int axis = 0; axis < 2 && result == ABBE_OK; axis++) {
     const GLuint from = axis == 0 ? s->map : s->smoothed, to = axis == 0 ? s->smoothed : s->map;
@@ -223,36 +198,41 @@ static abbe_result smooth_face(abbe_shah2007 *s, int face, abbe_error *error) {
       abbe_gpu_bind_array(gpu, s->low_pass, "map", 0, from);
     gpu->gl->Uniform2i(gpu->gl->GetUniformLocation(s->low_pass, "along"), axis == 0, axis == 1);
     abbe_gpu_set_float(gpu, s->low_pass, "sigma", (double)d->low_pass);
-    result = abbe_image_view_draw_screen(s->scene, to, face, d->map_size, d->map_size, error);
+    result = abbe_image_view_draw_screen(s->base.scene, to, face, d->map_size, d->map_size, error);
   }
   return result;
 }
 
 static abbe_result smooth_map(abbe_shah2007 *s, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  for (size_t f = 0; f < s->light.faces && s->low_pass != 0 && result == ABBE_OK; f++)
+  for (size_t f = 0; f < s->base.light.faces && s->low_pass != 0 && result == ABBE_OK; f++)
     result = smooth_face(s, around(s) ? (int)f : -1, error);
   return result;
 }
 
 static abbe_result draw_map(abbe_shah2007 *s, abbe_error *error) {
-  abbe_result result = see_from_light(s, error);
+  abbe_result result = abbe_method_see_from_light(&s->base, error);
   if (result == ABBE_OK) result = splat_vertices(s, error);
   return result == ABBE_OK ? smooth_map(s, error) : result;
 }
 
-abbe_result abbe_shah2007_run(abbe_shah2007 *s, bool lit, abbe_error *error) {
-  abbe_gpu_scene_bind(s->scene);
+static abbe_result run(abbe_method *m, bool lit, abbe_error *error) {
+  abbe_shah2007 *s = (abbe_shah2007 *)m;
   abbe_result result = lit ? ABBE_OK : draw_map(s, error);
-  if (result == ABBE_OK) result = abbe_image_eye_run(&s->eye, s->map, error);
-  return result == ABBE_OK ? abbe_gl_check(s->scene->gpu->gl, "the shah2007 profile", error)
-                           : result;
+  return result == ABBE_OK ? abbe_image_eye_run(&m->eye, s->map, error) : result;
 }
 
-abbe_result abbe_shah2007_read(const abbe_shah2007 *s, abbe_image *out, abbe_error *error) {
-  return abbe_image_view_read(s->scene, s->eye.picture, out, error);
+static bool keeps_light(const abbe_render_desc *desc) {
+  (void)desc;
+  return true;
 }
 
-abbe_result abbe_shah2007_read_map(const abbe_shah2007 *s, abbe_image *out, abbe_error *error) {
-  return abbe_image_view_read_map(s->scene, s->map, &s->layout, out, error);
+static abbe_result map(abbe_method *m, bool filled, GLuint *texture, abbe_error *error) {
+  (void)filled;
+  (void)error;
+  *texture = ((abbe_shah2007 *)m)->map;
+  return ABBE_OK;
 }
+
+const abbe_method_kind abbe_shah2007_kind = {sizeof(abbe_shah2007), make, free_own, run,
+                                             keeps_light,           map};

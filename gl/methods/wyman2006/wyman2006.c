@@ -20,10 +20,14 @@
  * stay, and where frames are filtered their grids are shifted. */
 #include "gl/methods/wyman2006/wyman2006.h"
 
-#include "gl/methods/image_space/image_view.h"
-
 #include <stdio.h>
 #include <stdlib.h>
+
+typedef struct abbe_wyman2006 {
+  abbe_method base;
+  abbe_wyman_photons photons;
+  abbe_wyman_target map, picture; /* the light's image; the camera's, where photons go there */
+} abbe_wyman2006;
 
 /* Four grids that fall into each other's gaps, in cells. */
 static const double jitter[4][2] = {
@@ -63,14 +67,14 @@ static void look_from_light(const abbe_gpu_scene *scene, abbe_image_cube *out) {
 
 static abbe_result make_eye(abbe_wyman2006 *w, const abbe_shader_variant *variant,
                             const char *definitions, abbe_error *error) {
-  const abbe_fill fill = w->scene->plan->desc.fill;
-  const abbe_direction direction = w->scene->plan->desc.direction;
+  const abbe_fill fill = w->base.scene->plan->desc.fill;
+  const abbe_direction direction = w->base.scene->plan->desc.direction;
   const bool whole =
-      in_camera(w->scene) && (fill == ABBE_FILL_QUADS || fill == ABBE_FILL_TRIANGLES);
+      in_camera(w->base.scene) && (fill == ABBE_FILL_QUADS || fill == ABBE_FILL_TRIANGLES);
   float(*shares)[3] = NULL;
   char more[960];
   const int length = snprintf(more, sizeof more, "%s#define CAUSTIC_RATIOS\n%s%s%s%s", definitions,
-                              in_camera(w->scene) ? "#define CAUSTICS_SEEN\n" : "",
+                              in_camera(w->base.scene) ? "#define CAUSTICS_SEEN\n" : "",
                               whole ? "#define CAUSTICS_WHOLE\n" : "",
                               direction != ABBE_DIRECTION_DIRECT ? "#define DIRECTIONS\n" : "",
                               direction == ABBE_DIRECTION_MEAN && fill == ABBE_FILL_POINTS
@@ -78,9 +82,10 @@ static abbe_result make_eye(abbe_wyman2006 *w, const abbe_shader_variant *varian
                                   : "");
   if (length < 0 || (size_t)length >= sizeof more)
     return abbe_error_set(error, ABBE_GL, "a shader's definitions are too long");
-  abbe_result result = abbe_image_tables_colours(w->scene, true, &shares, error);
+  abbe_result result = abbe_image_tables_colours(w->base.scene, true, &shares, error);
   if (result == ABBE_OK)
-    result = abbe_image_eye_make(w->scene, &w->light, variant, more, shares, &w->eye, error);
+    result = abbe_image_eye_make(w->base.scene, &w->base.light, variant, more, shares, &w->base.eye,
+                                 error);
   return result;
 }
 
@@ -94,126 +99,96 @@ static void interpolate_receivers(const abbe_image_places *light) {
   gl->TexParameteri(kind, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
 }
 
-abbe_result abbe_wyman2006_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
-                                abbe_wyman2006 *out, abbe_error *error) {
+static abbe_wyman_target *own_target(abbe_wyman2006 *w) {
+  return in_camera(w->base.scene) ? &w->picture : &w->map;
+}
+
+static abbe_result make(abbe_method *m, const abbe_shader_variant *variant, abbe_error *error) {
+  abbe_wyman2006 *w = (abbe_wyman2006 *)m;
+  const abbe_gpu_scene *scene = m->scene;
   const abbe_render_desc *d = &scene->plan->desc;
   const size_t map[2] = {d->map_size, d->map_size}, grid[2] = {d->photons, d->photons};
   char definitions[768];
   abbe_image_cube sight;
-  out->scene = scene;
   abbe_image_tables_define(d, definitions, sizeof definitions);
   look_from_light(scene, &sight);
-  abbe_map_layout_make(&sight.face[0], &out->layout);
-  abbe_result result = abbe_image_places_make(scene, &sight, map, grid, true, &out->light, error);
-  if (result == ABBE_OK) interpolate_receivers(&out->light);
+  abbe_map_layout_make(&sight.face[0], &m->layout);
+  abbe_result result = abbe_image_places_make(scene, &sight, map, grid, true, &m->light, error);
+  if (result == ABBE_OK) interpolate_receivers(&m->light);
   if (result == ABBE_OK)
-    result =
-        abbe_wyman_photons_make(scene, &out->light, variant, definitions, &out->photons, error);
-  if (result == ABBE_OK) result = abbe_image_tables_colours(scene, false, &out->colour, error);
-  if (result == ABBE_OK) result = make_eye(out, variant, definitions, error);
+    result = abbe_wyman_photons_make(scene, &m->light, variant, definitions, &w->photons, error);
+  if (result == ABBE_OK) result = abbe_image_tables_colours(scene, false, &m->colour, error);
+  if (result == ABBE_OK) result = make_eye(w, variant, definitions, error);
   if (result == ABBE_OK && sight.faces == 1)
-    result = abbe_wyman_target_make(&out->photons, &out->light, false, variant, &out->map, error);
+    result = abbe_wyman_target_make(&w->photons, &m->light, false, variant, &w->map, error);
   if (result == ABBE_OK && in_camera(scene))
-    result = abbe_wyman_target_make(&out->photons, &out->eye.places, true, variant, &out->picture,
-                                    error);
+    result = abbe_wyman_target_make(&w->photons, &m->eye.places, true, variant, &w->picture, error);
+  m->history = &own_target(w)->history;
   return result;
 }
 
-void abbe_wyman2006_free(abbe_wyman2006 *w) {
-  if (w->scene == NULL) return;
+static void free_own(abbe_method *m) {
+  abbe_wyman2006 *w = (abbe_wyman2006 *)m;
   abbe_wyman_target_free(&w->picture);
   abbe_wyman_target_free(&w->map);
   abbe_wyman_photons_free(&w->photons);
-  abbe_image_eye_free(&w->eye);
-  abbe_image_places_free(&w->light);
-  free(w->colour);
-  *w = (abbe_wyman2006){0};
-}
-
-static abbe_wyman_target *own_target(abbe_wyman2006 *w) {
-  return in_camera(w->scene) ? &w->picture : &w->map;
-}
-
-void abbe_wyman2006_leave(abbe_wyman2006 *w, abbe_wyman_history *out) {
-  abbe_wyman_history *own = &own_target(w)->history;
-  *out = *own;
-  *own = (abbe_wyman_history){0};
-}
-
-void abbe_wyman2006_follow(abbe_wyman2006 *w, abbe_wyman_history *before) {
-  abbe_wyman_history *own = &own_target(w)->history, made = *own;
-  for (int k = 0; k < 2; k++)
-    if (before->size[k] != own->size[k]) return;
-  for (size_t i = 0; i < ABBE_WYMAN_KEPT; i++)
-    if ((before->sums[i] == 0) != (own->sums[i] == 0)) return;
-  if (before->printed != own->printed) return;
-  *own = *before;
-  *before = made;
 }
 
 static void shift_grid(abbe_wyman2006 *w) {
-  const abbe_render_desc *d = &w->scene->plan->desc;
+  const abbe_render_desc *d = &w->base.scene->plan->desc;
   const double *by = jitter[own_target(w)->history.frame % 4];
-  const bool moves = d->history > 1 && !is_printed(w->scene);
-  for (int k = 0; k < 2; k++) w->light.shift[k] = d->photon_shift[k] + (moves ? by[k] : 0);
-}
-
-static abbe_result see_from_light(abbe_wyman2006 *w, abbe_error *error) {
-  abbe_gpu *gpu = w->scene->gpu;
-  abbe_gpu_start_lap(gpu);
-  shift_grid(w);
-  abbe_result result = abbe_image_places_receivers(&w->light, error);
-  if (result == ABBE_OK) result = abbe_image_places_shadow(&w->light, error);
-  abbe_gpu_book_lap(gpu, ABBE_PASS_RECEIVER_DEPTH);
-  if (result == ABBE_OK) result = abbe_image_places_objects(&w->light, error);
-  w->photon_count = abbe_image_places_count(&w->light);
-  abbe_gpu_book_lap(gpu, ABBE_PASS_LIGHT_FRONT_AND_BACK);
-  return result;
+  const bool moves = d->history > 1 && !is_printed(w->base.scene);
+  for (int k = 0; k < 2; k++) w->base.light.shift[k] = d->photon_shift[k] + (moves ? by[k] : 0);
 }
 
 /* kept: their buffer is there. */
 static abbe_result draw_photons(abbe_wyman2006 *w, abbe_wyman_target *target, bool kept,
                                 abbe_error *error) {
-  abbe_result result = kept ? ABBE_OK : see_from_light(w, error);
-  abbe_gpu_start_lap(w->scene->gpu);
-  if (result == ABBE_OK && in_camera(w->scene))
-    result = abbe_image_places_receivers(&w->eye.places, error);
-  if (result == ABBE_OK) result = abbe_wyman_target_run(target, w->colour, true, kept, error);
-  abbe_gpu_book_lap(w->scene->gpu, ABBE_PASS_PHOTONS);
+  if (!kept) shift_grid(w);
+  abbe_result result = kept ? ABBE_OK : abbe_method_see_from_light(&w->base, error);
+  abbe_gpu_start_lap(w->base.scene->gpu);
+  if (result == ABBE_OK && in_camera(w->base.scene))
+    result = abbe_image_places_receivers(&w->base.eye.places, error);
+  if (result == ABBE_OK) result = abbe_wyman_target_run(target, w->base.colour, true, kept, error);
+  abbe_gpu_book_lap(w->base.scene->gpu, ABBE_PASS_PHOTONS);
   if (result == ABBE_OK) target->history.frame++;
   return result;
 }
 
-bool abbe_wyman2006_keeps_light(const abbe_render_desc *desc) {
+/* The light's image, or with one wavelength and view the buffer of photons that go to the camera's;
+ * where it holds no frames before. */
+static bool keeps_light(const abbe_render_desc *desc) {
   return desc->history <= 1 &&
          (abbe_render_desc_in_light(desc) || (desc->wavelengths == 1 && desc->faces <= 1));
 }
 
-abbe_result abbe_wyman2006_run(abbe_wyman2006 *w, bool lit, abbe_error *error) {
-  abbe_gpu *gpu = w->scene->gpu;
+static abbe_result run(abbe_method *m, bool lit, abbe_error *error) {
+  abbe_wyman2006 *w = (abbe_wyman2006 *)m;
   abbe_wyman_target *target = own_target(w);
-  const bool kept = lit && abbe_wyman2006_keeps_light(&w->scene->plan->desc);
-  const bool map = kept && !in_camera(w->scene);
-  abbe_gpu_scene_bind(w->scene);
+  const bool kept = lit && keeps_light(&m->scene->plan->desc);
+  const bool map = kept && !in_camera(m->scene);
   abbe_result result = map ? ABBE_OK : draw_photons(w, target, kept, error);
+  m->polygon_layers = target->layers;
   if (result != ABBE_OK) return result;
-  gpu->gl->UseProgram(w->eye.receivers);
-  abbe_image_view_set_view(w->scene, w->eye.receivers, "camera_view", &w->eye.places.view.view);
-  abbe_gpu_bind_texture(gpu, w->eye.receivers, "caustic_directions", 3, target->light_directions);
-  result = abbe_image_eye_run(&w->eye, target->light, error);
-  return result == ABBE_OK ? abbe_gl_check(gpu->gl, "the wyman2006 profile", error) : result;
+  m->scene->gpu->gl->UseProgram(m->eye.receivers);
+  abbe_image_view_set_view(m->scene, m->eye.receivers, "camera_view", &m->eye.places.view.view);
+  abbe_gpu_bind_texture(m->scene->gpu, m->eye.receivers, "caustic_directions", 3,
+                        target->light_directions);
+  return abbe_image_eye_run(&m->eye, target->light, error);
 }
 
-abbe_result abbe_wyman2006_read(const abbe_wyman2006 *w, abbe_image *out, abbe_error *error) {
-  return abbe_image_view_read(w->scene, w->eye.picture, out, error);
-}
-
-abbe_result abbe_wyman2006_read_map(abbe_wyman2006 *w, abbe_image *out, abbe_error *error) {
+/* Drawn for it where photons go to the camera. */
+static abbe_result map(abbe_method *m, bool filled, GLuint *texture, abbe_error *error) {
+  abbe_wyman2006 *w = (abbe_wyman2006 *)m;
   abbe_result result = ABBE_OK;
-  if (in_camera(w->scene)) {
-    abbe_gpu_scene_bind(w->scene);
-    result = abbe_wyman_target_run(&w->map, w->colour, false, false, error);
+  (void)filled;
+  if (in_camera(m->scene)) {
+    abbe_gpu_scene_bind(m->scene);
+    result = abbe_wyman_target_run(&w->map, m->colour, false, false, error);
   }
-  if (result != ABBE_OK) return result;
-  return abbe_image_view_read_map(w->scene, w->map.light, &w->layout, out, error);
+  *texture = w->map.light;
+  return result;
 }
+
+const abbe_method_kind abbe_wyman2006_kind = {
+    sizeof(abbe_wyman2006), make, free_own, run, keeps_light, map};

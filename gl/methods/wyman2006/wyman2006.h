@@ -1,13 +1,10 @@
 /* wyman2006.h: photons in image space as they were published, and in units: passes of their own,
- * from the light's grid to the picture. Internal to gl/.
+ * from the light's grid to the picture. Internal to gl/methods/.
  */
-#ifndef ABBE_GL_WYMAN2006_WYMAN2006_H
-#define ABBE_GL_WYMAN2006_WYMAN2006_H
+#ifndef ABBE_GL_METHODS_WYMAN2006_WYMAN2006_H
+#define ABBE_GL_METHODS_WYMAN2006_WYMAN2006_H
 
-#include "colorimetry/image/image.h"
-#include "gl/methods/image_space/image_eye.h"
-#include "gl/methods/image_space/image_places.h"
-#include "scenes/view/map_layout.h"
+#include "gl/methods/image_space/method.h"
 
 /* An image that photons are drawn into, the light's or the camera's: as points, as polygons of
  * neighbours, or as points that are gathered, with a filter over frames.
@@ -36,16 +33,6 @@ void abbe_wyman_photons_free(abbe_wyman_photons *photons);
 abbe_result abbe_wyman_photons_run(const abbe_wyman_photons *photons, size_t wavelength,
                                    size_t face, abbe_error *error);
 
-#define ABBE_WYMAN_KEPT 3 /* frames beside this one */
-
-/* Photons of the frames before. */
-typedef struct abbe_wyman_history {
-  GLuint sums[ABBE_WYMAN_KEPT];
-  size_t size[2], count; /* of them, those that are drawn */
-  size_t frame;          /* of the sequence, the one to come */
-  bool printed;          /* in 16 bits */
-} abbe_wyman_history;
-
 typedef struct abbe_wyman_target {
   const abbe_gpu_scene *scene;
   const abbe_wyman_photons *photons;
@@ -53,7 +40,7 @@ typedef struct abbe_wyman_target {
   bool camera, directions, polygons, gathers;
   GLuint draw, area, gather, filter; /* programs */
   GLuint sum, direction_sum, areas, filtered[2], gathered[2];
-  abbe_wyman_history history;
+  abbe_method_history history;
   GLuint query;  /* fragments of polygons; 0: none are drawn */
   double layers; /* of polygons over a pixel, mean of the last frame with statistics */
   GLuint light, light_directions; /* of the last run, two of those above; directions: 0: none */
@@ -68,36 +55,5 @@ void abbe_wyman_target_free(abbe_wyman_target *target);
  * photons are those of the last run, of one wavelength. */
 abbe_result abbe_wyman_target_run(abbe_wyman_target *target, float (*colour)[3], bool next_frame,
                                   bool kept, abbe_error *error);
-
-typedef struct abbe_wyman2006 {
-  const abbe_gpu_scene *scene;
-  abbe_map_layout layout; /* of the light's one frustum; of a cube, its first face's */
-  abbe_image_places light;
-  abbe_image_eye eye;
-  abbe_wyman_photons photons;
-  abbe_wyman_target map, picture; /* the light's image; the camera's, where photons go there */
-  float (*colour)[3];             /* [wavelengths] XYZ, or RGB as printed; of unit light */
-  size_t photon_count;            /* of the last frame: pixels that show objects */
-} abbe_wyman2006;
-
-abbe_result abbe_wyman2006_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
-                                abbe_wyman2006 *out, abbe_error *error);
-void abbe_wyman2006_free(abbe_wyman2006 *wyman);
-/* Whether a camera that moves leaves what the light's passes make as it is: the light's image, or
- * with one wavelength and view the buffer of photons that go to the camera's; where it holds no
- * frames before. */
-bool abbe_wyman2006_keeps_light(const abbe_render_desc *desc);
-/* A frame; lit: what is kept is there. ABBE_GL. */
-abbe_result abbe_wyman2006_run(abbe_wyman2006 *wyman, bool lit, abbe_error *error);
-
-/* Hands out the frames that it has drawn, before it is freed. */
-void abbe_wyman2006_leave(abbe_wyman2006 *wyman, abbe_wyman_history *out);
-/* Goes on with them, where images are alike; what is not needed is left in `before`. */
-void abbe_wyman2006_follow(abbe_wyman2006 *wyman, abbe_wyman_history *before);
-
-/* As of abbe_renderer_read and _read_map; the map is drawn for it where photons go to the camera.
- */
-abbe_result abbe_wyman2006_read(const abbe_wyman2006 *wyman, abbe_image *out, abbe_error *error);
-abbe_result abbe_wyman2006_read_map(abbe_wyman2006 *wyman, abbe_image *out, abbe_error *error);
 
 #endif

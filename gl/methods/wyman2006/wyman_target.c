@@ -28,8 +28,6 @@ static void find_background(const abbe_gpu_scene *scene, double out[4]) {
 
 static abbe_result make_program(abbe_wyman_photons *p, const abbe_shader_variant *variant,
                                 const char *definitions, abbe_error *error) {
-  static const abbe_program_stage stages[] = {{GL_VERTEX_SHADER, "screen.vert"},
-                                              {GL_FRAGMENT_SHADER, "wyman_photons.frag"}};
   const abbe_render_desc *d = &p->scene->plan->desc;
   char text[1024];
   const int length =
@@ -39,7 +37,9 @@ static abbe_result make_program(abbe_wyman_photons *p, const abbe_shader_variant
                p->light->faces > 1 ? "#define PLACES_CUBE\n" : "");
   if (length < 0 || (size_t)length >= sizeof text)
     return abbe_error_set(error, ABBE_GL, "a shader's definitions are too long");
-  return abbe_shader_variant_program(variant, p->scene->gpu, stages, 2, text, &p->program, error);
+  const abbe_image_program photons = {&p->program,          "screen.vert", NULL,
+                                      "wyman_photons.frag", text,          false};
+  return abbe_image_programs_make(variant, p->scene->gpu, &photons, 1, error);
 }
 
 abbe_result abbe_wyman_photons_make(const abbe_gpu_scene *scene, const abbe_image_places *light,
@@ -109,18 +109,7 @@ static void define_polygons(const abbe_wyman_target *t, char *out, size_t size) 
 
 static abbe_result make_programs(abbe_wyman_target *t, const abbe_shader_variant *variant,
                                  abbe_error *error) {
-  static const abbe_program_stage points[] = {{GL_VERTEX_SHADER, "wyman_points.vert"},
-                                              {GL_FRAGMENT_SHADER, "wyman_points.frag"}};
-  static const abbe_program_stage polygons[] = {{GL_VERTEX_SHADER, "wyman_polygons.vert"},
-                                                {GL_FRAGMENT_SHADER, "wyman_polygons.frag"}};
-  static const abbe_program_stage areas[] = {{GL_VERTEX_SHADER, "screen.vert"},
-                                             {GL_FRAGMENT_SHADER, "wyman_areas.frag"}};
-  static const abbe_program_stage gather[] = {{GL_VERTEX_SHADER, "screen.vert"},
-                                              {GL_FRAGMENT_SHADER, "wyman_gather.frag"}};
-  static const abbe_program_stage filter[] = {{GL_VERTEX_SHADER, "screen.vert"},
-                                              {GL_FRAGMENT_SHADER, "wyman_history.frag"}};
   const abbe_render_desc *d = &t->scene->plan->desc;
-  abbe_gpu *gpu = t->scene->gpu;
   char more[320], kind[160];
   define_polygons(t, kind, sizeof kind);
   snprintf(more, sizeof more, "%s%s%s%s%s%s", t->camera ? "#define IN_CAMERA\n" : "",
@@ -128,15 +117,13 @@ static abbe_result make_programs(abbe_wyman_target *t, const abbe_shader_variant
            t->directions ? "#define DIRECTIONS\n" : "",
            d->direction == ABBE_DIRECTION_MEAN ? "#define MEAN_DIRECTION\n" : "",
            is_printed(t->scene) ? "#define AS_PRINTED\n" : "", kind);
-  abbe_result result = abbe_shader_variant_program(variant, gpu, t->polygons ? polygons : points, 2,
-                                                   more, &t->draw, error);
-  if (result == ABBE_OK && t->gathers)
-    result = abbe_gpu_program(gpu, areas, 2, "", &t->area, error);
-  if (result == ABBE_OK && t->gathers)
-    result = abbe_gpu_program(gpu, gather, 2, more, &t->gather, error);
-  if (result == ABBE_OK && d->history > 1)
-    result = abbe_gpu_program(gpu, filter, 2, more, &t->filter, error);
-  return result;
+  const abbe_image_program all[] = {
+      {&t->draw, t->polygons ? "wyman_polygons.vert" : "wyman_points.vert", NULL,
+       t->polygons ? "wyman_polygons.frag" : "wyman_points.frag", more, false},
+      {t->gathers ? &t->area : NULL, "screen.vert", NULL, "wyman_areas.frag", NULL, true},
+      {t->gathers ? &t->gather : NULL, "screen.vert", NULL, "wyman_gather.frag", more, true},
+      {d->history > 1 ? &t->filter : NULL, "screen.vert", NULL, "wyman_history.frag", more, true}};
+  return abbe_image_programs_make(variant, t->scene->gpu, all, sizeof all / sizeof *all, error);
 }
 
 static abbe_result make_targets(abbe_wyman_target *t, abbe_error *error) {
@@ -145,26 +132,21 @@ static abbe_result make_targets(abbe_wyman_target *t, abbe_error *error) {
   t->history.printed = is_printed(t->scene);
   const GLenum format = is_printed(t->scene) ? GL_RGBA16F : GL_RGBA32F;
   const bool filters = history > 1;
-  const struct {
-    GLuint *texture;
-    bool wanted;
-    GLenum format;
-  } all[] = {{&t->sum, true, format},
-             {&t->direction_sum, t->directions, format},
-             {&t->areas, t->gathers, GL_R32F},
-             {&t->gathered[0], t->gathers, format},
-             {&t->gathered[1], t->gathers && t->directions, format},
-             {&t->filtered[0], filters, format},
-             {&t->filtered[1], filters && t->directions, format},
-             {&t->history.sums[0], filters, format},
-             {&t->history.sums[1], history > 2, format},
-             {&t->history.sums[2], history > 3, format}};
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < sizeof all / sizeof *all && result == ABBE_OK; i++)
-    if (all[i].wanted)
-      result = abbe_gpu_make_texture(t->scene->gpu, all[i].format, size[0], size[1], 0, true,
-                                     all[i].texture, error);
-  return result;
+  const bool directed = t->directions;
+#define OF_SIZE size[0], size[1], 0, true
+  const abbe_image_texture all[] = {
+      {&t->sum, format, OF_SIZE},
+      {directed ? &t->direction_sum : NULL, format, OF_SIZE},
+      {t->gathers ? &t->areas : NULL, GL_R32F, OF_SIZE},
+      {t->gathers ? &t->gathered[0] : NULL, format, OF_SIZE},
+      {t->gathers && directed ? &t->gathered[1] : NULL, format, OF_SIZE},
+      {filters ? &t->filtered[0] : NULL, format, OF_SIZE},
+      {filters && directed ? &t->filtered[1] : NULL, format, OF_SIZE},
+      {filters ? &t->history.sums[0] : NULL, format, OF_SIZE},
+      {history > 2 ? &t->history.sums[1] : NULL, format, OF_SIZE},
+      {history > 3 ? &t->history.sums[2] : NULL, format, OF_SIZE}};
+#undef OF_SIZE
+  return abbe_image_textures_make(t->scene->gpu, all, sizeof all / sizeof *all, error);
 }
 
 abbe_result abbe_wyman_target_make(const abbe_wyman_photons *photons,
@@ -193,7 +175,7 @@ void abbe_wyman_target_free(abbe_wyman_target *t) {
   abbe_gpu_drop_textures(gpu, 1, &t->areas);
   abbe_gpu_drop_textures(gpu, 2, t->filtered);
   abbe_gpu_drop_textures(gpu, 2, t->gathered);
-  abbe_gpu_drop_textures(gpu, ABBE_WYMAN_KEPT, t->history.sums);
+  abbe_gpu_drop_textures(gpu, ABBE_METHOD_KEPT, t->history.sums);
   if (t->query != 0) gpu->gl->DeleteQueries(1, &t->query);
   *t = (abbe_wyman_target){0};
 }
@@ -294,7 +276,7 @@ static void bind_sums(const abbe_wyman_target *t, GLuint program) {
 }
 
 static abbe_result filter(abbe_wyman_target *t, bool next, abbe_error *error) {
-  abbe_wyman_history *h = &t->history;
+  abbe_method_history *h = &t->history;
   abbe_gpu *gpu = t->scene->gpu;
   const size_t most = t->scene->plan->desc.history - 1;
   bind_sums(t, t->filter);

@@ -2,6 +2,7 @@
  * seams between faces show nothing, and where one view would do the light is the same. */
 #include "tests/gl/frame.h"
 
+#include "gl/methods/shah2007/shah2007.h"
 #include "gl/renderer_state.h"
 
 enum { SIDE = 192, FACES = ABBE_LIGHT_CUBE_FACES };
@@ -29,9 +30,9 @@ typedef struct cube_map {
 static void draw_cube(const abbe_scene *scene, const abbe_render_desc *desc, cube_map *out) {
   abbe_renderer *renderer = make_renderer(scene, desc);
   draw_frame(renderer);
-  const abbe_shah2007 *shah = &renderer->published.shah;
-  assert_int_equal(shah->light.faces, FACES);
-  for (int f = 0; f < FACES; f++) out->view[f] = shah->light.face[f].view;
+  const abbe_shah2007 *shah = (const abbe_shah2007 *)renderer->method;
+  assert_int_equal(shah->base.light.faces, FACES);
+  for (int f = 0; f < FACES; f++) out->view[f] = shah->base.light.face[f].view;
   out->texel = calloc((size_t)FACES * SIDE * SIDE * 4, sizeof *out->texel);
   assert_non_null(out->texel);
   OK(abbe_context_make_current(context, &error));
