@@ -26,12 +26,6 @@ void abbe_chromaticity_uv_of_xy(const double xy[2], double uv[2]) {
   uv[1] = 9 * y / below;
 }
 
-void abbe_chromaticity_xy_of_uv(const double uv[2], double xy[2]) {
-  const double below = 6 * uv[0] - 16 * uv[1] + 12, u = uv[0], v = uv[1];
-  xy[0] = 9 * u / below;
-  xy[1] = 4 * v / below;
-}
-
 void abbe_chromaticity_locus_ends(abbe_observer observer, double *min_nm, double *max_nm) {
   const bool known = (unsigned)observer < ABBE_OBSERVER_COUNT;
   *min_nm = known ? fmax(380, abbe_observer_tables[observer].first_nm) : NAN;

@@ -19,7 +19,6 @@ bool abbe_chromaticity_xy(const double xyz[3], double xy[2]);
 bool abbe_chromaticity_xyz(const double xy[2], double xyz[3]);
 /* CIE 1976 u', v' of x, y [CIE15], and back. Not finite where there is none. */
 void abbe_chromaticity_uv_of_xy(const double xy[2], double uv[2]);
-void abbe_chromaticity_xy_of_uv(const double uv[2], double xy[2]);
 
 /* x, y of light of one wavelength; what lies outside the locus' ends is at the nearest end. */
 void abbe_chromaticity_locus(abbe_observer observer, double lambda_nm, double xy[2]);

@@ -31,12 +31,6 @@ const char *abbe_gamut_text(abbe_gamut gamut) {
   return (unsigned)gamut < ABBE_GAMUT_COUNT ? texts[gamut] : "unknown";
 }
 
-abbe_gamut abbe_gamut_find(const char *name) {
-  int g = 0;
-  while (g < ABBE_GAMUT_COUNT && strcmp(name, abbe_gamut_name((abbe_gamut)g)) != 0) g++;
-  return (abbe_gamut)g;
-}
-
 void abbe_gamut_chromaticities(abbe_gamut gamut, double xy[8]) {
   memcpy(xy, chromaticities[gamut], sizeof chromaticities[gamut]);
 }

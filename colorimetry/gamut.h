@@ -23,8 +23,6 @@ typedef enum abbe_gamut {
 
 const char *abbe_gamut_name(abbe_gamut gamut);
 const char *abbe_gamut_text(abbe_gamut gamut);
-/* The gamut of that name, or ABBE_GAMUT_COUNT. */
-abbe_gamut abbe_gamut_find(const char *name);
 
 /* x, y of red, green, blue, white. */
 void abbe_gamut_chromaticities(abbe_gamut gamut, double xy[8]);

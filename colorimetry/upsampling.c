@@ -63,8 +63,8 @@ void abbe_upsampling_basis_mean(double from_nm, double to_nm, double mean[3]) {
 static bool make_coefficients(abbe_upsampling *u) {
   const double most = 100; /* a standard illuminant's are below 2 */
   double of_basis[9], inverse[9];
-  abbe_observer_integral_of(u->observer, u->illuminant, u->min_nm, u->max_nm,
-                            abbe_upsampling_basis, of_basis);
+  abbe_observer_integral_of(u->observer, u->illuminant, u->min_nm, u->max_nm, abbe_upsampling_basis,
+                            of_basis);
   for (int i = 0; i < 9; i++) of_basis[i] /= u->white_y;
   abbe_matrix3_invert(of_basis, inverse);
   abbe_matrix3_multiply(inverse, u->to_xyz, u->to_coefficients);
@@ -154,12 +154,4 @@ void abbe_upsampling_band(const abbe_upsampling *u, abbe_rgb_space space, double
   abbe_rgb_space_from_xyz(space, to_space);
   abbe_matrix3_multiply(to_space, of_basis, coloured);
   abbe_matrix3_multiply(coloured, u->to_coefficients, matrix);
-}
-
-void abbe_upsampling_matrices(const abbe_upsampling *upsampling,
-                              const abbe_wavelengths *wavelengths, abbe_rgb_space space,
-                              double (*matrix)[9]) {
-  for (size_t i = 0; i < wavelengths->count; i++)
-    abbe_upsampling_band(upsampling, space, wavelengths->edge_nm[i], wavelengths->edge_nm[i + 1],
-                         matrix[i]);
 }

@@ -63,12 +63,4 @@ double abbe_upsampling_at(const abbe_upsampling *upsampling, const double rgb[3]
 void abbe_upsampling_band(const abbe_upsampling *upsampling, abbe_rgb_space space, double from_nm,
                           double to_nm, double matrix[9]);
 
-/* The same for the band of each wavelength sample: matrix[count]. They add up to the matrix from
- * RGB to `space`: for samples over the whole range, `to_xyz` in that space. Each is of one colour a
- * wavelength: a narrow band's has rank 1, sample k's being the weight of weights.h times the row of
- * B(lambda) M^-1. */
-void abbe_upsampling_matrices(const abbe_upsampling *upsampling,
-                              const abbe_wavelengths *wavelengths, abbe_rgb_space space,
-                              double (*matrix)[9]);
-
 #endif

@@ -15,11 +15,6 @@ const double abbe_weights_thesis_rgb[ABBE_WEIGHTS_THESIS_COUNT][3] = {
     {0.3, 0.0, 0.8}, {0.2, 0.2, 1.0}, {0.0, 0.9, 1.0}, {0.3, 1.0, 0.4},
     {0.8, 0.9, 0.3}, {0.9, 0.5, 0.0}, {1.0, 0.0, 0.0}};
 
-/* [Blanchette2012, table 2] */
-const double abbe_weights_thesis_table2[ABBE_WEIGHTS_THESIS_COUNT][3] = {
-    {77, 0, 204},     {51, 51, 255},   {0, 229.5, 255}, {76.5, 255, 102},
-    {204, 229.5, 77}, {229.5, 128, 0}, {255, 0, 0}};
-
 void abbe_weights_range_make_by(abbe_observer observer, const abbe_illuminant *illuminant,
                                 double min_nm, double max_nm, abbe_weights_range *out) {
   double white[3];

@@ -77,7 +77,5 @@ double abbe_weights_band_power(const abbe_illuminant *illuminant, double min_nm,
 #define ABBE_WEIGHTS_THESIS_COUNT 7
 extern const double abbe_weights_thesis_lambda_nm[ABBE_WEIGHTS_THESIS_COUNT];
 extern const double abbe_weights_thesis_rgb[ABBE_WEIGHTS_THESIS_COUNT][3];
-/* Table 2 as printed, 0 to 255. */
-extern const double abbe_weights_thesis_table2[ABBE_WEIGHTS_THESIS_COUNT][3];
 
 #endif

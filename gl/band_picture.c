@@ -104,9 +104,23 @@ static abbe_result lift_object(abbe_object *object, const double basis[3], abbe_
   return ABBE_OK;
 }
 
-abbe_result abbe_band_scene_make(const abbe_scene *scene, const double range_nm[2],
-                                 const double band_nm[2], abbe_scene *out, double *unit,
-                                 abbe_error *error) {
+static void band_scene_free(abbe_scene *scene) {
+  if (scene == NULL) return;
+  for (size_t i = 0; i < scene->object_count && scene->object != NULL; i++)
+    free(scene->object[i].texture.data);
+  for (size_t i = 0; i < scene->light_count && scene->light != NULL; i++)
+    abbe_spectrum_free(scene->light[i].illuminant.spectrum);
+  free(scene->light);
+  free(scene->object);
+  *scene = (abbe_scene){0};
+}
+
+/* The scene in the light of from_nm to to_nm alone, of a picture over min_nm to max_nm: such that
+ * X + Y + Z of its picture over that band, times *unit, is spectral radiance. It has lights and
+ * objects of its own, all else is the scene's; abbe_band_scene_free frees them. ABBE_NO_MEMORY. */
+static abbe_result band_scene_make(const abbe_scene *scene, const double range_nm[2],
+                                   const double band_nm[2], abbe_scene *out, double *unit,
+                                   abbe_error *error) {
   static const abbe_illuminant even = {.kind = ABBE_ILLUMINANT_E};
   if (scene->light_count == 0 || !(band_nm[0] < band_nm[1]))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -137,19 +151,8 @@ abbe_result abbe_band_scene_make(const abbe_scene *scene, const double range_nm[
     result = lift_object(&out->object[i], basis, error);
     out->object_count++;
   }
-  if (result != ABBE_OK) abbe_band_scene_free(out);
+  if (result != ABBE_OK) band_scene_free(out);
   return result;
-}
-
-void abbe_band_scene_free(abbe_scene *scene) {
-  if (scene == NULL) return;
-  for (size_t i = 0; i < scene->object_count && scene->object != NULL; i++)
-    free(scene->object[i].texture.data);
-  for (size_t i = 0; i < scene->light_count && scene->light != NULL; i++)
-    abbe_spectrum_free(scene->light[i].illuminant.spectrum);
-  free(scene->light);
-  free(scene->object);
-  *scene = (abbe_scene){0};
 }
 
 /* ---- the picture ---- */
@@ -223,11 +226,11 @@ static abbe_result change(work *w, const abbe_render_desc *desc, const double ba
                           abbe_error *error) {
   const double range[2] = {w->desc.min_nm, w->desc.max_nm};
   abbe_scene next;
-  abbe_result result = abbe_band_scene_make(w->scene, range, band, &next, unit, error);
+  abbe_result result = band_scene_make(w->scene, range, band, &next, unit, error);
   if (result != ABBE_OK) return result;
   result = w->renderer == NULL ? abbe_renderer_make(w->context, &next, desc, &w->renderer, error)
                                : abbe_renderer_change(w->renderer, &next, desc, error);
-  abbe_band_scene_free(&w->shown);
+  band_scene_free(&w->shown);
   w->shown = next;
   return result;
 }
@@ -272,7 +275,7 @@ abbe_result abbe_band_picture_make(abbe_context *context, const abbe_scene *scen
   for (w.band = 0; w.band < bands && result == ABBE_OK; w.band++)
     result = draw_band(&w, out, error);
   abbe_renderer_free(w.renderer);
-  abbe_band_scene_free(&w.shown);
+  band_scene_free(&w.shown);
   if (result != ABBE_OK) abbe_image_free(out);
   return result;
 }

@@ -13,22 +13,14 @@
 #include "gl/renderer.h"
 
 /* desc as of abbe_renderer_make; its range is shared out to so many bands (1 to
- * ABBE_RENDER_MAX_BANDS) of equal width, its wavelengths too: at least two a band, where it has more
- * than one. progress may be NULL. Channels "S0.550,000000nm" and so on, the mean spectral radiance
- * over each band in W/(m2 sr nm), with the attributes of that layout [Fichet2021].
+ * ABBE_RENDER_MAX_BANDS) of equal width, its wavelengths too: at least two a band, where it has
+ * more than one. progress may be NULL. Channels "S0.550,000000nm" and so on, the mean spectral
+ * radiance over each band in W/(m2 sr nm), with the attributes of that layout [Fichet2021].
  * ABBE_INVALID_ARGUMENT for a published profile and for so many bands that light would be beyond
  * what the eye sees; errors of abbe_renderer_make and abbe_renderer_frame. */
 abbe_result abbe_band_picture_make(abbe_context *context, const abbe_scene *scene,
                                    const abbe_render_desc *desc, size_t bands,
                                    abbe_render_progress progress, void *user, abbe_image *out,
                                    abbe_error *error);
-
-/* The scene in the light of from_nm to to_nm alone, of a picture over min_nm to max_nm: such that
- * X + Y + Z of its picture over that band, times *unit, is spectral radiance. It has lights and
- * objects of its own, all else is the scene's; abbe_band_scene_free frees them. ABBE_NO_MEMORY. */
-abbe_result abbe_band_scene_make(const abbe_scene *scene, const double range_nm[2],
-                                 const double band_nm[2], abbe_scene *out, double *unit,
-                                 abbe_error *error);
-void abbe_band_scene_free(abbe_scene *scene);
 
 #endif

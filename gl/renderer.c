@@ -200,21 +200,6 @@ static abbe_result read_hits(abbe_renderer *r, size_t light, size_t first, abbe_
                                  &out->cell, &out->count, error);
 }
 
-static abbe_result find_texture(abbe_renderer *r, abbe_renderer_picture *out, abbe_error *error) {
-  abbe_result result = check_drawn(r, error);
-  if (result != ABBE_OK) return result;
-  out->texture =
-      r->method != NULL ? abbe_method_picture(r->method) : abbe_picture_texture(&r->picture);
-  size_t size[2] = {r->plan.desc.width, r->plan.desc.height};
-  if (r->method == NULL) abbe_picture_size(&r->picture, size);
-  out->width = size[0];
-  out->height = size[1];
-  out->scale = r->method != NULL ? 1 : r->local.unit;
-  out->space = space_of(r) == ABBE_RGB_SPACE_XYZ ? ABBE_RGB_SPACE_ACESCG : space_of(r);
-  r->gpu.gl->MemoryBarrier(GL_ALL_BARRIER_BITS);
-  return abbe_gl_check(r->gpu.gl, "the handing out of the picture", error);
-}
-
 /* What is public and draws or reads: on the renderer's context, in a state of its own. */
 
 static abbe_result enter(abbe_context *context, abbe_error *error) {
@@ -288,12 +273,6 @@ abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress,
 abbe_result abbe_renderer_baseline(abbe_renderer *r, double *ms, abbe_error *error) {
   const abbe_result result = enter(r->context, error);
   return result == ABBE_OK ? leave(r->context, abbe_renderer_parts_baseline(r, ms, error)) : result;
-}
-
-abbe_result abbe_renderer_texture(abbe_renderer *r, abbe_renderer_picture *out, abbe_error *error) {
-  *out = (abbe_renderer_picture){0};
-  const abbe_result result = enter(r->context, error);
-  return result == ABBE_OK ? leave(r->context, find_texture(r, out, error)) : result;
 }
 
 abbe_result abbe_renderer_read(abbe_renderer *r, bool aovs, abbe_image *out, abbe_error *error) {

@@ -84,24 +84,6 @@ abbe_result abbe_renderer_baseline(abbe_renderer *renderer, double *ms, abbe_err
 abbe_result abbe_renderer_read(abbe_renderer *renderer, bool aovs, abbe_image *out,
                                abbe_error *error);
 
-/* The picture where it was drawn. */
-typedef struct abbe_renderer_picture {
-  GLuint texture; /* GL_TEXTURE_2D of one level, GL_RGBA32F, rows upward; of a coarse one it may be
-                     larger than the picture */
-  size_t width, height;
-  /* R, G, B times this are those of abbe_renderer_read: 1, or a power of two where the scene's
-   * light would leave the range of floats. A is the distance from the eye in m, 0 where nothing is
-   * seen; of the thesis's profiles it has no meaning. */
-  double scale;
-  abbe_rgb_space space; /* of the texels: the plan's; ACEScg where that is XYZ */
-} abbe_renderer_picture;
-
-/* For drawing on without a copy. The texture is the renderer's, of its context and those that share
- * with it; it is read, not written, and holds until the next change, the next frame or the
- * renderer's end. ABBE_INVALID_ARGUMENT before a whole frame was drawn. */
-abbe_result abbe_renderer_texture(abbe_renderer *renderer, abbe_renderer_picture *out,
-                                  abbe_error *error);
-
 /* A light's spectral map: channels X, Y, Z, flux a texel in W, with its layout and the light's name
  * in its attributes (abbe_map_layout_read). Of a light with a cube of maps only where the request
  * gives one layout for all, else ABBE_UNSUPPORTED. filled: after the gap fill, where the fill is a

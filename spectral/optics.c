@@ -98,19 +98,3 @@ double abbe_optics_transmittance(double attenuation_per_m, double distance_m) {
   if (attenuation_per_m == 0 || distance_m == 0) return 1; /* also against infinity */
   return exp(-attenuation_per_m * distance_m);
 }
-
-/* asin(n_t / n_i), whose slope is infinite where the indices are equal. */
-double abbe_optics_critical_angle(double n_i, double n_t) {
-  if (n_i <= n_t) return acos(0);
-  return atan2(n_t, sqrt((n_i - n_t) * (n_i + n_t)));
-}
-
-/* 2 asin(n sin h) - 2 h for h = apex / 2, by the sine of that difference: exact as n nears 1. */
-bool abbe_optics_minimum_deviation(double apex_rad, double n, double *deviation_rad) {
-  double h = apex_rad / 2, sine = n * sin(h);
-  if (!(h >= 0) || h > acos(0) || !(n > 0) || sine > 1) return false;
-  double sum = n * cos(h) + sqrt((1 - sine) * (1 + sine));
-  double difference = sum > 0 ? sin(h) * (n - 1) * ((n + 1) / sum) : 0;
-  *deviation_rad = 2 * asin(fmax(-1, fmin(difference, 1)));
-  return true;
-}

@@ -36,11 +36,4 @@ void abbe_optics_reflect(const double wi[3], const double n[3], double wo[3]);
  * 1 for a = 0 or d = 0; 0 for infinite a with d > 0. Both arguments >= 0. */
 double abbe_optics_transmittance(double attenuation_per_m, double distance_m);
 
-/* Critical angle in radians for light inside n_i meeting n_t; pi/2 where n_i <= n_t. */
-double abbe_optics_critical_angle(double n_i, double n_t);
-
-/* Minimum deviation, in radians, of a prism of apex angle apex_rad and index n relative to its
- * surroundings; returns false where no ray passes symmetrically (n sin(apex/2) > 1). */
-bool abbe_optics_minimum_deviation(double apex_rad, double n, double *deviation_rad);
-
 #endif

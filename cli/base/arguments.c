@@ -35,7 +35,7 @@ void abbe_option_tables_visit(const char *program, const char *summary,
   here = outer;
 }
 
-void abbe_option_tables_offer(const struct argp *argp, unsigned flags) {
+static void option_tables_offer(const struct argp *argp, unsigned flags) {
   visit *const v = here;
   if (v == NULL) return;
   const abbe_option_table table = {
@@ -279,7 +279,7 @@ void abbe_arguments_parse(const struct argp *argp, unsigned flags, int argc, cha
   static const struct argp always = {.options = own};
   option_list list = {.count = 0};
   bool only_arguments = false;
-  abbe_option_tables_offer(argp, flags);
+  option_tables_offer(argp, flags);
   collect(argp, &list);
   collect(&always, &list);
   abbe_arguments_add(argv[0], ABBE_ARGUMENT_READS, "$OCIO", getenv("OCIO"));

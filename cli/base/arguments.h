@@ -70,8 +70,7 @@ void abbe_option_tables_visit(const char *program, const char *summary,
                               int (*run)(int argc, char **argv), abbe_option_table_take take,
                               void *user);
 
-/* For abbe_arguments_parse and abbe_verbs_run: does not return where somebody visits. */
-void abbe_option_tables_offer(const struct argp *argp, unsigned flags);
+/* For abbe_verbs_run: does not return where somebody visits. */
 void abbe_option_tables_offer_verbs(const struct abbe_verbs *verbs);
 
 #endif

@@ -34,7 +34,9 @@ const char *abbe_shipped_find(const char *path, char *text, size_t size) {
   return path;
 }
 
-int abbe_command_fail(const char *program, const abbe_error *error) {
+/* Prints "PROGRAM: sentence" to stderr (its general text where the sentence is empty); returns
+ * the exit code that goes with the result. */
+static int command_fail(const char *program, const abbe_error *error) {
   const char *text = error->text[0] ? error->text : abbe_result_text(error->code);
   fprintf(stderr, "%s: %s\n", program, text);
   return error->code == ABBE_TOLERANCE ? ABBE_EXIT_TOLERANCE : ABBE_EXIT_FAILED;
@@ -190,7 +192,7 @@ int abbe_command_end(const char *program, abbe_result result, abbe_error *error)
     result =
         abbe_error_set(error, ABBE_IO, "the results could not be written to the output: %s", why);
   }
-  return result == ABBE_OK ? ABBE_EXIT_DONE : abbe_command_fail(program, error);
+  return result == ABBE_OK ? ABBE_EXIT_DONE : command_fail(program, error);
 }
 
 const char *abbe_command_target(const char *program, const char *option, const char *text,

@@ -60,10 +60,6 @@ ABBE_COMMANDS(ABBE_COMMAND_DECLARE)
   "  round.asc is a design (.asc, .gem, .gcs) or, but for the report, a mesh (.stl, .obj, .ply,\n" \
   "  .glb); a scene of your own is a .yaml: abbe render scenes/gem.yaml --png gem.png\n"
 
-/* Prints "PROGRAM: sentence" to stderr (its general text where the sentence is empty); returns
- * the exit code that goes with the result. */
-int abbe_command_fail(const char *program, const abbe_error *error);
-
 /* Parses the whole text as a finite number in [min, max]. On failure prints a sentence that names
  * the option, and ends the program with ABBE_EXIT_USAGE. */
 double abbe_command_number(const char *program, const char *option, const char *text, double min,

@@ -199,6 +199,11 @@ static void put_change(abbe_scene_input_changes *changes, const char *first, con
     if (strcmp(changes->set[i], first) == 0) changes->set[i] = all;
 }
 
+/* When frame i is, s, in a scene whose own time is scene_time. */
+static double frame_series_time(const abbe_frame_series *s, double scene_time, size_t i) {
+  return scene_time + (double)(s->first + i) / rate(s);
+}
+
 abbe_result abbe_frame_series_scene(const abbe_frame_series *s, const abbe_scene *scene,
                                     const char *materials, const abbe_scene_input_changes *changes,
                                     size_t i, abbe_scene *out, abbe_error *error) {
@@ -208,11 +213,11 @@ abbe_result abbe_frame_series_scene(const abbe_frame_series *s, const abbe_scene
     const char *first = s->move_first[m];
     const int key = (int)strcspn(first, "=");
     abbe_number_format(move[m], sizeof move[m], "%.*s={keyframes: [[%.17g, %s], [%.17g, %s]]}", key,
-                       first, abbe_frame_series_time(s, scene->time, 0), first + key + 1,
-                       abbe_frame_series_time(s, scene->time, s->count - 1), s->move_last[m]);
+                       first, frame_series_time(s, scene->time, 0), first + key + 1,
+                       frame_series_time(s, scene->time, s->count - 1), s->move_last[m]);
     put_change(&own, first, move[m]);
   }
-  return abbe_scene_input_at(scene, materials, &own, abbe_frame_series_time(s, scene->time, i), out,
+  return abbe_scene_input_at(scene, materials, &own, frame_series_time(s, scene->time, i), out,
                              error);
 }
 
@@ -275,10 +280,6 @@ bool abbe_frame_series_draws(const abbe_frame_series *s, size_t i, const char *e
                              const char *png) {
   if (!abbe_command_part_has(&s->part, i)) return false;
   return !s->resume || !is_there(s, exr, s->first + i) || !is_there(s, png, s->first + i);
-}
-
-double abbe_frame_series_time(const abbe_frame_series *s, double scene_time, size_t i) {
-  return scene_time + (double)(s->first + i) / rate(s);
 }
 
 /* Frames that carry records carry those of one request. */

@@ -65,9 +65,6 @@ abbe_result abbe_frame_series_mark(const abbe_frame_series *series, size_t i, ab
 bool abbe_frame_series_draws(const abbe_frame_series *series, size_t i, const char *exr,
                              const char *png);
 
-/* When frame i is, s, in a scene whose own time is scene_time. */
-double abbe_frame_series_time(const abbe_frame_series *series, double scene_time, size_t i);
-
 /* "stone.png" is "stone-0001.png" for the number 1; malloc'd, NULL without a path. */
 abbe_result abbe_frame_series_name(const char *path, size_t number, char **out, abbe_error *error);
 

@@ -90,7 +90,8 @@ double abbe_view_session_rate(const abbe_view_session *session) {
   return sum > 0 ? 1e3 * (double)count / sum : 0;
 }
 
-unsigned long long abbe_view_session_hash(const abbe_view_session *session) {
+/* FNV-1a of the bytes of the linear picture that stands. */
+static unsigned long long view_session_hash(const abbe_view_session *session) {
   const abbe_image *image = &session->pictures.rendered;
   unsigned long long hash = 14695981039346656037ULL;
   /* a rendered picture's first three channels are its colour */
@@ -201,7 +202,7 @@ bool abbe_view_session_value(const abbe_view_session *session, const char *name,
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
     if (strcmp(name, texts[i].name) == 0) return snprintf(out, size, "%s", texts[i].text) >= 0;
   if (strcmp(name, "hash") == 0)
-    return snprintf(out, size, "%016llx", abbe_view_session_hash(session)) > 0;
+    return snprintf(out, size, "%016llx", view_session_hash(session)) > 0;
   const char *set = abbe_view_document_value(now, name);
   return set != NULL && snprintf(out, size, "%s", set) >= 0;
 }

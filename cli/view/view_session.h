@@ -109,7 +109,5 @@ const abbe_view_feed *abbe_view_session_feed(const abbe_view_session *session);
 /* How far the rendered picture is from the traced one, and how sure that is, over the mean. The
  * errors of the three channels are taken as one. */
 void abbe_view_session_compare(abbe_view_session *session);
-/* FNV-1a of the bytes of the linear picture that stands. */
-unsigned long long abbe_view_session_hash(const abbe_view_session *session);
 
 #endif

@@ -21,15 +21,6 @@ const char *abbe_gamut_map_name(abbe_gamut_map_kind kind) {
   return (unsigned)kind < ABBE_GAMUT_MAP_COUNT ? names[kind] : "unknown";
 }
 
-const char *abbe_gamut_map_text(abbe_gamut_map_kind kind) {
-  static const char *const texts[] = {
-#define TEXT(code, name, text) text,
-      ABBE_GAMUT_MAPS(TEXT)
-#undef TEXT
-  };
-  return (unsigned)kind < ABBE_GAMUT_MAP_COUNT ? texts[kind] : "unknown";
-}
-
 static double greatest(const double rgb[3]) {
   return fmax(rgb[0], fmax(rgb[1], rgb[2]));
 }

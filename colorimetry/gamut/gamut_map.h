@@ -28,7 +28,6 @@ typedef enum abbe_gamut_map_kind {
 } abbe_gamut_map_kind;
 
 const char *abbe_gamut_map_name(abbe_gamut_map_kind kind);
-const char *abbe_gamut_map_text(abbe_gamut_map_kind kind);
 
 typedef struct abbe_gamut_map {
   abbe_gamut_map_kind kind;

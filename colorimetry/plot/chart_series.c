@@ -129,10 +129,49 @@ static box place_legend(const abbe_chart_panel *p, double width, double height) 
   return best;
 }
 
+/* Blue, vermilion, green, purple, orange, sky blue, black, yellow [OkabeIto2008]. */
+static const double palette[ABBE_CHART_COLOURS][3] = {
+    {0, 0.447, 0.698}, {0.835, 0.369, 0},     {0, 0.620, 0.451}, {0.800, 0.475, 0.655},
+    {0.902, 0.624, 0}, {0.337, 0.706, 0.914}, {0, 0, 0},         {0.941, 0.894, 0.259}};
+
+static int colour_of(const abbe_chart *c, size_t index, int *turn) {
+  int next = 0;
+  for (size_t i = 0; i < index; i++) next += c->series[i].colour == 0;
+  if (c->series[index].colour > 0) next = c->series[index].colour - 1;
+  *turn = next / ABBE_CHART_COLOURS;
+  return next % ABBE_CHART_COLOURS;
+}
+
+static void chart_draw_dot(const abbe_chart_panel *p, size_t index, double x, double y) {
+  int turn;
+  colour_of(p->chart, index, &turn);
+  cairo_set_dash(p->cr, NULL, 0, 0);
+  cairo_new_sub_path(p->cr);
+  cairo_arc(p->cr, x, y, 3.2, 0, 2 * ABBE_PI);
+  if (turn == 0) {
+    cairo_fill(p->cr);
+    return;
+  }
+  cairo_set_line_width(p->cr, 1.3);
+  cairo_stroke(p->cr);
+}
+
+/* The pen of a series: its colour, of that opacity, and its dashes. */
+static void chart_set_pen(const abbe_chart_panel *p, size_t index, double alpha) {
+  int turn;
+  const double *rgb = palette[colour_of(p->chart, index, &turn)];
+  bool dashed = p->chart->series[index].style == ABBE_CHART_DASHED;
+  const double dash[2] = {dashed ? 6 : 10, dashed ? 4 : 2 + 2 * (double)turn};
+  cairo_set_source_rgba(p->cr, rgb[0], rgb[1], rgb[2], alpha);
+  cairo_set_line_width(p->cr, 1.8);
+  cairo_set_line_join(p->cr, CAIRO_LINE_JOIN_ROUND);
+  cairo_set_dash(p->cr, dash, dashed || turn > 0 ? 2 : 0, 0);
+}
+
 static void draw_sample(abbe_chart_panel *p, size_t index, double x, double y) {
   const abbe_chart_series *s = &p->chart->series[index];
   bool band = s->style == ABBE_CHART_BAND;
-  abbe_chart_set_pen(p, index, band ? 0.25 : 1);
+  chart_set_pen(p, index, band ? 0.25 : 1);
   if (band) {
     cairo_rectangle(p->cr, x, y - 5, SAMPLE, 10);
     cairo_fill(p->cr);
@@ -140,12 +179,19 @@ static void draw_sample(abbe_chart_panel *p, size_t index, double x, double y) {
     abbe_chart_draw_line(p->cr, x, y, x + SAMPLE, y);
   }
   if (s->style == ABBE_CHART_POINTS || s->style == ABBE_CHART_JOINED_POINTS)
-    abbe_chart_draw_dot(p, index, x + SAMPLE / 2, y);
+    chart_draw_dot(p, index, x + SAMPLE / 2, y);
 }
 
 /* The label of entry i: the series first, then the shaded ranges. */
 static const char *entry(const abbe_chart *c, size_t i) {
   return i < c->series_count ? c->series[i].label : c->shade[i - c->series_count].label;
+}
+
+/* Each label has its grey; the ranges without one that follow it are more of the same. */
+static double chart_shade_grey(const abbe_chart *c, size_t index) {
+  size_t labels = 0;
+  for (size_t i = 0; i <= index; i++) labels += c->shade[i].label != NULL;
+  return labels > 0 && labels % 2 == 0 ? 0.86 : 0.92;
 }
 
 void abbe_chart_draw_legend(abbe_chart_panel *p) {
@@ -175,7 +221,7 @@ void abbe_chart_draw_legend(abbe_chart_panel *p) {
     if (i < c->series_count) {
       draw_sample(p, i, x, y);
     } else {
-      abbe_chart_set_grey(p->cr, abbe_chart_shade_grey(c, i - c->series_count));
+      abbe_chart_set_grey(p->cr, chart_shade_grey(c, i - c->series_count));
       cairo_rectangle(p->cr, x, y - 6, SAMPLE, 12);
       cairo_fill(p->cr);
     }
@@ -186,11 +232,6 @@ void abbe_chart_draw_legend(abbe_chart_panel *p) {
   }
 }
 
-/* Blue, vermilion, green, purple, orange, sky blue, black, yellow [OkabeIto2008]. */
-static const double palette[ABBE_CHART_COLOURS][3] = {
-    {0, 0.447, 0.698}, {0.835, 0.369, 0},     {0, 0.620, 0.451}, {0.800, 0.475, 0.655},
-    {0.902, 0.624, 0}, {0.337, 0.706, 0.914}, {0, 0, 0},         {0.941, 0.894, 0.259}};
-
 double abbe_chart_panel_x(const abbe_chart_panel *p, double value) {
   double x = p->left + (p->right - p->left) * abbe_axis_at(&p->x, value);
   return x < -1e5 ? -1e5 : x > 1e5 ? 1e5 : x; /* cairo's own numbers are small; NaN stays */
@@ -199,39 +240,6 @@ double abbe_chart_panel_x(const abbe_chart_panel *p, double value) {
 double abbe_chart_panel_y(const abbe_chart_panel *p, double value) {
   double y = p->plot_bottom - (p->plot_bottom - p->plot_top) * abbe_axis_at(&p->y, value);
   return y < -1e5 ? -1e5 : y > 1e5 ? 1e5 : y;
-}
-
-static int colour_of(const abbe_chart *c, size_t index, int *turn) {
-  int next = 0;
-  for (size_t i = 0; i < index; i++) next += c->series[i].colour == 0;
-  if (c->series[index].colour > 0) next = c->series[index].colour - 1;
-  *turn = next / ABBE_CHART_COLOURS;
-  return next % ABBE_CHART_COLOURS;
-}
-
-void abbe_chart_set_pen(const abbe_chart_panel *p, size_t index, double alpha) {
-  int turn;
-  const double *rgb = palette[colour_of(p->chart, index, &turn)];
-  bool dashed = p->chart->series[index].style == ABBE_CHART_DASHED;
-  const double dash[2] = {dashed ? 6 : 10, dashed ? 4 : 2 + 2 * (double)turn};
-  cairo_set_source_rgba(p->cr, rgb[0], rgb[1], rgb[2], alpha);
-  cairo_set_line_width(p->cr, 1.8);
-  cairo_set_line_join(p->cr, CAIRO_LINE_JOIN_ROUND);
-  cairo_set_dash(p->cr, dash, dashed || turn > 0 ? 2 : 0, 0);
-}
-
-void abbe_chart_draw_dot(const abbe_chart_panel *p, size_t index, double x, double y) {
-  int turn;
-  colour_of(p->chart, index, &turn);
-  cairo_set_dash(p->cr, NULL, 0, 0);
-  cairo_new_sub_path(p->cr);
-  cairo_arc(p->cr, x, y, 3.2, 0, 2 * ABBE_PI);
-  if (turn == 0) {
-    cairo_fill(p->cr);
-    return;
-  }
-  cairo_set_line_width(p->cr, 1.3);
-  cairo_stroke(p->cr);
 }
 
 static void draw_band(abbe_chart_panel *p, const abbe_chart_series *s) {
@@ -264,7 +272,7 @@ static void draw_points(abbe_chart_panel *p, size_t index) {
   const abbe_chart_series *s = &p->chart->series[index];
   for (size_t i = 0; i < s->count; i++) {
     double x = abbe_chart_panel_x(p, s->x[i]), y = abbe_chart_panel_y(p, s->y[i]);
-    if (isfinite(x + y)) abbe_chart_draw_dot(p, index, x, y);
+    if (isfinite(x + y)) chart_draw_dot(p, index, x, y);
   }
 }
 
@@ -285,21 +293,15 @@ static void draw_bars(abbe_chart_panel *p, const abbe_chart_series *s) {
 void abbe_chart_draw_series(abbe_chart_panel *p, size_t index) {
   const abbe_chart_series *s = &p->chart->series[index];
   if (s->count == 0) return;
-  abbe_chart_set_pen(p, index, s->style == ABBE_CHART_BAND ? 0.25 : 1);
+  chart_set_pen(p, index, s->style == ABBE_CHART_BAND ? 0.25 : 1);
   if (s->style == ABBE_CHART_BAND) {
     draw_band(p, s);
     return;
   }
   if (s->low != NULL) draw_bars(p, s);
-  abbe_chart_set_pen(p, index, 1);
+  chart_set_pen(p, index, 1);
   if (s->style != ABBE_CHART_POINTS) draw_line(p, s);
   if (s->style == ABBE_CHART_POINTS || s->style == ABBE_CHART_JOINED_POINTS) draw_points(p, index);
-}
-
-double abbe_chart_shade_grey(const abbe_chart *c, size_t index) {
-  size_t labels = 0;
-  for (size_t i = 0; i <= index; i++) labels += c->shade[i].label != NULL;
-  return labels > 0 && labels % 2 == 0 ? 0.86 : 0.92;
 }
 
 void abbe_chart_draw_shades(abbe_chart_panel *p) {
@@ -314,7 +316,7 @@ void abbe_chart_draw_shades(abbe_chart_panel *p) {
         x[k] = abbe_chart_panel_x(p, value);
     }
     if (!isfinite(x[0] + x[1] + y[0] + y[1])) continue;
-    abbe_chart_set_grey(p->cr, abbe_chart_shade_grey(p->chart, i));
+    abbe_chart_set_grey(p->cr, chart_shade_grey(p->chart, i));
     cairo_rectangle(p->cr, x[0], y[0], x[1] - x[0], y[1] - y[0]);
     cairo_fill(p->cr);
   }

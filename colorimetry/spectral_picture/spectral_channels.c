@@ -15,7 +15,8 @@ static const struct {
                 {"M", 6},  {"k", 3},  {"h", 2},   {"da", 1},  {"d", -1},  {"c", -2},  {"m", -3},
                 {"u", -6}, {"n", -9}, {"p", -12}, {"f", -15}, {"a", -18}, {"z", -21}, {"y", -24}};
 
-bool abbe_spectral_prefix(const char *text, size_t length, int *exponent) {
+/* The power of ten of an SI prefix of so many letters ("" is one); false: there is none. */
+static bool spectral_prefix(const char *text, size_t length, int *exponent) {
   for (size_t i = 0; i < sizeof prefixes / sizeof *prefixes; i++)
     if (strlen(prefixes[i].text) == length && strncmp(prefixes[i].text, text, length) == 0) {
       *exponent = prefixes[i].exponent;
@@ -36,7 +37,7 @@ static bool read_factor(const char **text, bool below, int power[UNITS], int *te
   for (int u = 0; u < UNITS && unit == UNITS; u++) {
     const size_t own = strlen(names[u]);
     if (length >= own && strncmp(c + length - own, names[u], own) == 0 &&
-        abbe_spectral_prefix(c, length - own, &prefix))
+        spectral_prefix(c, length - own, &prefix))
       unit = u;
   }
   c += length;
@@ -123,7 +124,7 @@ static double parse_place(const char *text) {
   const bool hertz = length - end >= 2 && strcmp(text + length - 2, "Hz") == 0;
   int exponent = 0;
   if (!hertz && (length == end || text[length - 1] != 'm')) return 0;
-  if (!abbe_spectral_prefix(unit, length - end - (hertz ? 2 : 1), &exponent)) return 0;
+  if (!spectral_prefix(unit, length - end - (hertz ? 2 : 1), &exponent)) return 0;
   return hertz ? light_nm_s / (value * pow(10, exponent)) : value * pow(10, exponent + 9);
 }
 

@@ -43,9 +43,6 @@ abbe_result abbe_spectral_unit_read(const char *text, const char *name, abbe_spe
 /* What its luminous counterpart is, in words: "luminance, cd/m2". */
 const char *abbe_spectral_quantity_text(abbe_spectral_quantity quantity);
 
-/* The power of ten of an SI prefix of so many letters ("" is one); false: there is none. */
-bool abbe_spectral_prefix(const char *text, size_t length, int *exponent);
-
 typedef enum abbe_spectral_kind {
   ABBE_SPECTRAL_NONE,
   ABBE_SPECTRAL_EMISSIVE,  /* S0 */

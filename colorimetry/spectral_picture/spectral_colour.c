@@ -77,25 +77,3 @@ abbe_result abbe_spectral_colour_weights(const abbe_spectral_channels *c,
   }
   return ABBE_OK;
 }
-
-abbe_result abbe_spectral_colour_image(const abbe_image *image, const abbe_spectral_channels *c,
-                                       const double (*weight)[3], abbe_image *out,
-                                       abbe_error *error) {
-  static const char *const xyz[3] = {"X", "Y", "Z"};
-  abbe_result result = abbe_image_make(image->width, image->height, 3, xyz, out, error);
-  if (result != ABBE_OK) return result;
-  out->display_window = image->display_window;
-  out->data_window = image->data_window;
-  abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_XYZ, out->xy);
-  for (size_t p = 0; p < image->width * image->height; p++)
-    for (int k = 0; k < 3; k++) {
-      double sum = 0;
-      for (size_t i = 0; i < c->count; i++)
-        sum += weight[i][k] * (double)image->data[p * image->channels + c->channel[i]];
-      out->data[3 * p + (size_t)k] = (float)sum;
-    }
-  result =
-      abbe_image_set_attribute(out, "abbe:space", abbe_rgb_space_name(ABBE_RGB_SPACE_XYZ), error);
-  if (result != ABBE_OK) abbe_image_free(out);
-  return result;
-}

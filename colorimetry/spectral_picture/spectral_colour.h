@@ -40,10 +40,4 @@ abbe_result abbe_spectral_colour_weights(const abbe_spectral_channels *channels,
 void abbe_spectral_colour_white(const abbe_spectral_channels *channels,
                                 const abbe_spectral_view *view, double xyz[3]);
 
-/* The picture's X, Y, Z by such weights, with its windows. */
-abbe_result abbe_spectral_colour_image(const abbe_image *image,
-                                       const abbe_spectral_channels *channels,
-                                       const double (*weight)[3], abbe_image *out,
-                                       abbe_error *error);
-
 #endif

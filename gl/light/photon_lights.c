@@ -188,12 +188,6 @@ size_t abbe_photon_lights_map_words(const abbe_photon_lights *views) {
   return views->wide ? 6 : 3;
 }
 
-double abbe_photon_lights_texel_size(const abbe_photon_lights *views, size_t light, int axis,
-                                     size_t texel) {
-  return abbe_map_layout_texel_size(&views->light[light].map, axis,
-                                    views->scene->plan->desc.map_size, texel);
-}
-
 static double texel_size(const abbe_photon_lights *views, size_t light, int axis, size_t side,
                          size_t i) {
   return abbe_map_layout_texel_size(&views->light[light].map, axis, side, i);

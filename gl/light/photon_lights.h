@@ -67,8 +67,5 @@ void abbe_photon_lights_set_grid(const abbe_photon_lights *views, GLuint program
 double abbe_photon_lights_map_unit(const abbe_photon_lights *views, size_t light);
 /* 32-bit words of a map texel's sums. */
 size_t abbe_photon_lights_map_words(const abbe_photon_lights *views);
-/* Window width (axis 0) or height (1) of the map's column or row `texel`. */
-double abbe_photon_lights_texel_size(const abbe_photon_lights *views, size_t light, int axis,
-                                     size_t texel);
 
 #endif

@@ -288,8 +288,9 @@ static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc
   }
 }
 
-void abbe_no_culling_apply(const abbe_scene *scene, const abbe_render_desc *asked,
-                           abbe_plan *plan) {
+/* asked: the request as it came; what it says itself stays. */
+static void no_culling_apply(const abbe_scene *scene, const abbe_render_desc *asked,
+                             abbe_plan *plan) {
   if (abbe_method_of(plan->desc.profile)->own_passes) return;
   plan->receiver_shadows = plan->textured = true;
   if (plan->refractor_count > 0) switch_refraction_on(scene, asked, plan);
@@ -407,7 +408,7 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   out->around_eye = NULL; /* the plan may outlive the scene */
   abbe_refractor_model_note(scene, out);
   abbe_spectral_needs_note(scene, out);
-  if (out->desc.everything) abbe_no_culling_apply(scene, desc, out);
+  if (out->desc.everything) no_culling_apply(scene, desc, out);
   return ABBE_OK;
 }
 

@@ -37,7 +37,4 @@ abbe_result abbe_plan_make_after(const abbe_plan *before, const abbe_scene *scen
  * models stay as planned: receivers by their depth, refractors by their triangles or in turn are
  * other pictures. The default profile only; the thesis's passes all run anyway. */
 
-/* asked: the request as it came; what it says itself stays. */
-void abbe_no_culling_apply(const abbe_scene *scene, const abbe_render_desc *asked, abbe_plan *plan);
-
 #endif

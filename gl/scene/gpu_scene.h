@@ -75,7 +75,7 @@ enum { ABBE_GPU_BLOCK_BYTES = 65536 };
 typedef struct abbe_gpu_mesh {
   GLuint array, vertices, indices;
   GLsizei index_count;
-  size_t bytes; /* of vertices and indices */
+  size_t bytes;  /* of vertices and indices */
   GLuint coarse; /* indices of fewer triangles, once they were asked for; 0: there are none */
   GLsizei coarse_count;
   bool coarse_known;
@@ -106,7 +106,7 @@ typedef struct abbe_gpu_scene {
   GLuint refractors, planes, receivers, surfaces, reflections, spectra, bands, shadows;
   GLuint surface_texture;
   GLuint band_texels, band_texels_texture; /* of camera_bands.h */
-  GLuint band_reflections; /* 0: no dispersed light falls on receivers in colours */
+  GLuint band_reflections;                 /* 0: no dispersed light falls on receivers in colours */
   abbe_gpu_environment environment;
   size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
 
@@ -174,10 +174,6 @@ void abbe_gpu_haze_set(const abbe_gpu_scene *scene, GLuint program);
 size_t abbe_gpu_surfaces_reflections(const abbe_gpu_scene *scene);
 abbe_result abbe_gpu_surfaces_upload(abbe_gpu_scene *scene, abbe_error *error);
 
-/* gpu_surfaces.c: what receivers in colours reflect of bands of each light
- * (band_reflection.h), where the plan asks for it. */
-abbe_result abbe_gpu_band_reflections_upload(abbe_gpu_scene *scene, abbe_error *error);
-
 /* gpu_bvh.c: the triangles of what is traversed. */
 abbe_result abbe_gpu_bvh_make(abbe_gpu_scene *scene, abbe_error *error);
 
@@ -230,8 +226,8 @@ abbe_result abbe_shadow_planes_make(const double (*plane)[4], size_t count, cons
                                     size_t *found, abbe_error *error);
 
 /* Whether some part of the object may lie between a convex object and the light: false only where a
- * plane, the object's own or across an axis, has the object on one side and those two on the other, up
- * to 1e-6 of the convex object's size. */
+ * plane, the object's own or across an axis, has the object on one side and those two on the other,
+ * up to 1e-6 of the convex object's size. */
 bool abbe_shadow_planes_in_front(const abbe_object *convex, const abbe_light *light,
                                  const abbe_object *object);
 

@@ -77,7 +77,9 @@ static abbe_result fill_light(work *w, size_t l, abbe_error *error) {
   return result;
 }
 
-abbe_result abbe_gpu_band_reflections_upload(abbe_gpu_scene *scene, abbe_error *error) {
+/* gpu_surfaces.c: what receivers in colours reflect of bands of each light
+ * (band_reflection.h), where the plan asks for it. */
+static abbe_result gpu_band_reflections_upload(abbe_gpu_scene *scene, abbe_error *error) {
   const abbe_plan *plan = scene->plan;
   if (!plan->receiver_colours) return ABBE_OK;
   work w = {.scene = scene,
@@ -288,7 +290,7 @@ abbe_result abbe_gpu_surfaces_upload(abbe_gpu_scene *scene, abbe_error *error) {
                                   surface, &scene->surfaces, error);
   free(surface);
   if (result == ABBE_OK) result = upload_reflections(scene, error);
-  if (result == ABBE_OK) result = abbe_gpu_band_reflections_upload(scene, error);
+  if (result == ABBE_OK) result = gpu_band_reflections_upload(scene, error);
   if (result != ABBE_OK) return result;
   return abbe_gpu_environment_make(scene->gpu, scene->local, abbe_gpu_scene_working_space(scene),
                                    &scene->plan->desc, &scene->environment, error);

@@ -20,7 +20,8 @@ static bool is_filtered(const abbe_sweep_setting *setting) {
   return strcmp(setting->profile, ABBE_SWEEP_TRACE_FILTER) == 0;
 }
 
-abbe_result abbe_sweep_trace_filter(abbe_image *picture, abbe_error *error) {
+/* The picture of a tracer with guides becomes what abbe_denoise_picture makes of it. */
+static abbe_result sweep_trace_filter(abbe_image *picture, abbe_error *error) {
   abbe_image filtered = {0};
   const abbe_denoise_desc desc = {0};
   abbe_result result = abbe_denoise_picture(picture, &desc, &filtered, error);
@@ -63,7 +64,7 @@ static abbe_result trace(const abbe_scene *scene, const abbe_sweep_trace_desc *d
     copied = abbe_clock_seconds() - copied;
   }
   if (result == ABBE_OK) result = abbe_tracer_picture(tracer, picture, error);
-  if (result == ABBE_OK && is_filtered(setting)) result = abbe_sweep_trace_filter(picture, error);
+  if (result == ABBE_OK && is_filtered(setting)) result = sweep_trace_filter(picture, error);
   const double end = abbe_clock_seconds();
   if (result == ABBE_OK) {
     abbe_tracer_statistics(tracer, &statistics);
@@ -77,55 +78,6 @@ static abbe_result trace(const abbe_scene *scene, const abbe_sweep_trace_desc *d
 static int compare_frames(const void *a, const void *b) {
   const frame *x = a, *y = b;
   return (x->ms > y->ms) - (x->ms < y->ms);
-}
-
-abbe_result abbe_sweep_trace_measure(const abbe_scene *scene, const abbe_sweep_trace_desc *desc,
-                                     abbe_sweep_row *row, abbe_image *picture, abbe_error *error) {
-  frame frames[ABBE_FRAME_TIMES_MAX];
-  abbe_image image = {0}, half = {0};
-  const abbe_sweep_setting *setting = &row->setting;
-  size_t count = desc->frames > 0 ? desc->frames : USUAL_FRAMES, done = 0;
-  double spent = 0;
-  const size_t least = is_filtered(setting) ? 2 : 1;
-  if (!abbe_sweep_setting_is_traced(setting) || setting->passes < least || setting->photons < 1)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the setting of '%s' is not one to trace",
-                          setting->profile);
-  if (count > ABBE_FRAME_TIMES_MAX) count = ABBE_FRAME_TIMES_MAX;
-  abbe_result result = ABBE_OK;
-  while (done < count && result == ABBE_OK) {
-    if (desc->enough_ms > 0 && spent > desc->enough_ms && done >= FEW_FRAMES) break;
-    result = trace(scene, desc, setting, (double)done / (double)count, &frames[done], &half, &image,
-                   error);
-    if (result == ABBE_OK) spent += frames[done++].ms;
-  }
-  if (result == ABBE_OK && half.data != NULL)
-    row->number[ABBE_SWEEP_OWN_DE] = abbe_sweep_trace_own_error(&half, &image);
-  abbe_image_free(&half);
-  if (result != ABBE_OK) {
-    abbe_image_free(&image);
-    return result;
-  }
-  qsort(frames, done, sizeof *frames, compare_frames);
-  row->number[ABBE_SWEEP_FRAME_MS] = frames[done / 2].ms;
-  row->number[ABBE_SWEEP_CAMERA_MS] = frames[done / 2].ms;
-  row->number[ABBE_SWEEP_FASTEST_MS] = frames[0].ms;
-  row->number[ABBE_SWEEP_LIGHT_MS] = frames[done / 2].light_ms;
-  row->number[ABBE_SWEEP_EYE_MS] = frames[done / 2].eye_ms;
-  if (picture != NULL)
-    *picture = image;
-  else
-    abbe_image_free(&image);
-  return ABBE_OK;
-}
-
-static abbe_result copy_image(const abbe_image *in, abbe_image *out) {
-  const size_t count = in->width * in->height * in->channels;
-  abbe_result result = abbe_image_make(in->width, in->height, in->channels,
-                                       (const char *const *)in->channel, out, NULL);
-  if (result != ABBE_OK) return result;
-  memcpy(out->data, in->data, count * sizeof *out->data);
-  memcpy(out->xy, in->xy, sizeof out->xy);
-  return ABBE_OK;
 }
 
 /* The mean over 9 x 9 pixels of the channels that hold the caustic: of few photons the brightest
@@ -148,9 +100,19 @@ static void smooth_caustic(const abbe_image *in, abbe_image *out) {
   }
 }
 
+static abbe_result copy_image(const abbe_image *in, abbe_image *out) {
+  const size_t count = in->width * in->height * in->channels;
+  abbe_result result = abbe_image_make(in->width, in->height, in->channels,
+                                       (const char *const *)in->channel, out, NULL);
+  if (result != ABBE_OK) return result;
+  memcpy(out->data, in->data, count * sizeof *out->data);
+  memcpy(out->xy, in->xy, sizeof out->xy);
+  return ABBE_OK;
+}
+
 /* The mean of all passes less that of half of them varies as the mean of all does, colours and
  * neighbours together, which standard errors of channels do not tell. */
-double abbe_sweep_trace_own_error(const abbe_image *half, const abbe_image *picture) {
+static double sweep_trace_own_error(const abbe_image *half, const abbe_image *picture) {
   static const char name[] = "the picture";
   abbe_field a = {0}, b = {0}, smooth = {0};
   abbe_image copy = {0};
@@ -174,6 +136,45 @@ double abbe_sweep_trace_own_error(const abbe_image *half, const abbe_image *pict
   abbe_field_free(&smooth);
   abbe_image_free(&copy);
   return own;
+}
+
+abbe_result abbe_sweep_trace_measure(const abbe_scene *scene, const abbe_sweep_trace_desc *desc,
+                                     abbe_sweep_row *row, abbe_image *picture, abbe_error *error) {
+  frame frames[ABBE_FRAME_TIMES_MAX];
+  abbe_image image = {0}, half = {0};
+  const abbe_sweep_setting *setting = &row->setting;
+  size_t count = desc->frames > 0 ? desc->frames : USUAL_FRAMES, done = 0;
+  double spent = 0;
+  const size_t least = is_filtered(setting) ? 2 : 1;
+  if (!abbe_sweep_setting_is_traced(setting) || setting->passes < least || setting->photons < 1)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the setting of '%s' is not one to trace",
+                          setting->profile);
+  if (count > ABBE_FRAME_TIMES_MAX) count = ABBE_FRAME_TIMES_MAX;
+  abbe_result result = ABBE_OK;
+  while (done < count && result == ABBE_OK) {
+    if (desc->enough_ms > 0 && spent > desc->enough_ms && done >= FEW_FRAMES) break;
+    result = trace(scene, desc, setting, (double)done / (double)count, &frames[done], &half, &image,
+                   error);
+    if (result == ABBE_OK) spent += frames[done++].ms;
+  }
+  if (result == ABBE_OK && half.data != NULL)
+    row->number[ABBE_SWEEP_OWN_DE] = sweep_trace_own_error(&half, &image);
+  abbe_image_free(&half);
+  if (result != ABBE_OK) {
+    abbe_image_free(&image);
+    return result;
+  }
+  qsort(frames, done, sizeof *frames, compare_frames);
+  row->number[ABBE_SWEEP_FRAME_MS] = frames[done / 2].ms;
+  row->number[ABBE_SWEEP_CAMERA_MS] = frames[done / 2].ms;
+  row->number[ABBE_SWEEP_FASTEST_MS] = frames[0].ms;
+  row->number[ABBE_SWEEP_LIGHT_MS] = frames[done / 2].light_ms;
+  row->number[ABBE_SWEEP_EYE_MS] = frames[done / 2].eye_ms;
+  if (picture != NULL)
+    *picture = image;
+  else
+    abbe_image_free(&image);
+  return ABBE_OK;
 }
 
 abbe_result abbe_sweep_trace_check(const abbe_scene *scene, abbe_error *error) {

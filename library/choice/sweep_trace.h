@@ -30,15 +30,6 @@ typedef struct abbe_sweep_trace_desc {
 abbe_result abbe_sweep_trace_measure(const abbe_scene *scene, const abbe_sweep_trace_desc *desc,
                                      abbe_sweep_row *row, abbe_image *picture, abbe_error *error);
 
-/* How noisy a traced picture is beside another scene's: the mean CIEDE2000 between it and the mean
- * of the first half of its passes, in its caustic and nine pixels around. What presets are told by;
- * of rare bright specks it is far less than the error, which pass_error.h tells. NaN where nothing
- * is lit through refractors. */
-double abbe_sweep_trace_own_error(const abbe_image *half, const abbe_image *picture);
-
-/* The picture of a tracer with guides becomes what abbe_denoise_picture makes of it. */
-abbe_result abbe_sweep_trace_filter(abbe_image *picture, abbe_error *error);
-
 /* Whether the tracer knows the scene. Errors of abbe_tracer_make. */
 abbe_result abbe_sweep_trace_check(const abbe_scene *scene, abbe_error *error);
 

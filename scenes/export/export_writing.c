@@ -79,8 +79,8 @@ abbe_result abbe_export_files_add(abbe_export_files *files, const char *suffix, 
   return ABBE_OK;
 }
 
-abbe_result abbe_export_files_add_picture(abbe_export_files *files, const char *suffix,
-                                          abbe_image *picture, abbe_error *error) {
+static abbe_result export_files_add_picture(abbe_export_files *files, const char *suffix,
+                                            abbe_image *picture, abbe_error *error) {
   abbe_export_file *file = NULL;
   const abbe_result result = add(files, suffix, &file, error);
   if (result != ABBE_OK) {
@@ -161,13 +161,13 @@ void abbe_export_comment(const abbe_export_writing *w, const char *before, const
   }
 }
 
-void abbe_export_vector(FILE *file, const double v[3], const char *separator) {
-  abbe_export_numbers(file, v, 3, separator);
-}
-
-void abbe_export_numbers(FILE *file, const double *v, size_t count, const char *separator) {
+static void export_numbers(FILE *file, const double *v, size_t count, const char *separator) {
   for (size_t i = 0; i < count; i++)
     abbe_number_write(file, "%s%.9g", i > 0 ? separator : "", v[i]);
+}
+
+void abbe_export_vector(FILE *file, const double v[3], const char *separator) {
+  export_numbers(file, v, 3, separator);
 }
 
 void abbe_export_camera(const abbe_camera *camera, double right[3], double up[3],
@@ -347,7 +347,7 @@ abbe_result abbe_export_environment(const abbe_export_writing *w, size_t width, 
     for (int c = 0; c < 3; c++)
       picture.data[3 * i + (size_t)c] = (float)(white[c] * sum[c] / (FINE * FINE));
   }
-  return abbe_export_files_add_picture(w->files, "-environment.exr", &picture, error);
+  return export_files_add_picture(w->files, "-environment.exr", &picture, error);
 }
 
 abbe_result abbe_export_panorama(const abbe_export_writing *w,
@@ -376,7 +376,7 @@ abbe_result abbe_export_texture(const abbe_export_writing *w, const abbe_object 
       picture.data[3 * i + c] =
           (float)(object->reflectance[c] * (double)from->data[from->channels * i + c]);
   snprintf(suffix, sizeof suffix, "-%s.exr", name);
-  return abbe_export_files_add_picture(w->files, suffix, &picture, error);
+  return export_files_add_picture(w->files, suffix, &picture, error);
 }
 
 bool abbe_export_is_faceted(const abbe_mesh *mesh) {

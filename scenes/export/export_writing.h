@@ -40,8 +40,6 @@ void abbe_export_files_free(abbe_export_files *files);
  * result. ABBE_NO_MEMORY. */
 abbe_result abbe_export_files_add(abbe_export_files *files, const char *suffix, char *data,
                                   size_t size, abbe_error *error);
-abbe_result abbe_export_files_add_picture(abbe_export_files *files, const char *suffix,
-                                          abbe_image *picture, abbe_error *error);
 
 abbe_result abbe_export_files_write(abbe_export_files *files, abbe_error *error);
 /* Removes what was written and had not been there. */
@@ -78,7 +76,6 @@ void abbe_export_comment(const abbe_export_writing *w, const char *before, const
 
 /* "a b c" with a separator; the numbers of many. */
 void abbe_export_vector(FILE *file, const double v[3], const char *separator);
-void abbe_export_numbers(FILE *file, const double *v, size_t count, const char *separator);
 
 /* The camera's own axes: unit, right-handed with -forward. */
 void abbe_export_camera(const abbe_camera *camera, double right[3], double up[3],

@@ -99,30 +99,6 @@ static abbe_result read_scale(abbe_yaml *yaml, abbe_yaml_node node, abbe_radianc
   return result;
 }
 
-abbe_result abbe_environment_read(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
-                                  abbe_environment *out, abbe_error *error) {
-  size_t sources = 0;
-  if (!abbe_yaml_is_mapping(yaml, node))
-    return abbe_yaml_fail(yaml, node, error, "'environment' must be a mapping (key: value)");
-  const bool file = abbe_yaml_get(yaml, node, "file").id != 0;
-  abbe_result result = read_turn(yaml, node, out->to_map, error);
-  if (result == ABBE_OK) result = read_illuminant(yaml, node, folder, out, error);
-  if (result == ABBE_OK)
-    result =
-        file ? read_picture(yaml, node, folder, out, error) : read_size(yaml, node, out, error);
-  if (result == ABBE_OK)
-    result = abbe_environment_read_sources(yaml, node, &out->map, &sources, error);
-  if (result == ABBE_OK) result = read_scale(yaml, node, &out->map, error);
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "'environment'", error);
-  if (result == ABBE_OK && !file && sources == 0)
-    result = abbe_yaml_fail(yaml, node, error,
-                            "'environment' has no light: give it a 'file', or one or more of "
-                            "uniform, sky, sun, softboxes, spots, dome");
-  if (result != ABBE_OK) return result;
-  result = abbe_environment_prepare(out, error);
-  return result == ABBE_OK ? result : abbe_scene_value_locate(yaml, node, result, error);
-}
-
 enum { MAX_KNOTS = 1024, COSINE_KNOTS = 181 };
 
 typedef struct reading {
@@ -436,9 +412,11 @@ static abbe_result read_one(reading *r, abbe_yaml_node node, const char *key,
   return read(r, value, error);
 }
 
-abbe_result abbe_environment_read_sources(abbe_yaml *yaml, abbe_yaml_node node,
-                                          abbe_radiance_map *map, size_t *count,
-                                          abbe_error *error) {
+/* Adds the sources that the node's keys name (uniform, sky, sun, softboxes, spots, dome) to the
+ * map; *count says how many there were. */
+static abbe_result environment_read_sources(abbe_yaml *yaml, abbe_yaml_node node,
+                                            abbe_radiance_map *map, size_t *count,
+                                            abbe_error *error) {
   reading r = {.yaml = yaml, .map = map};
   const abbe_yaml_node uniform = abbe_yaml_get(yaml, node, "uniform");
   const abbe_yaml_node dome = abbe_yaml_get(yaml, node, "dome");
@@ -455,4 +433,27 @@ abbe_result abbe_environment_read_sources(abbe_yaml *yaml, abbe_yaml_node node,
   if (result == ABBE_OK) result = read_list(&r, node, "spots", read_spot, error);
   *count = r.count;
   return result;
+}
+
+abbe_result abbe_environment_read(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
+                                  abbe_environment *out, abbe_error *error) {
+  size_t sources = 0;
+  if (!abbe_yaml_is_mapping(yaml, node))
+    return abbe_yaml_fail(yaml, node, error, "'environment' must be a mapping (key: value)");
+  const bool file = abbe_yaml_get(yaml, node, "file").id != 0;
+  abbe_result result = read_turn(yaml, node, out->to_map, error);
+  if (result == ABBE_OK) result = read_illuminant(yaml, node, folder, out, error);
+  if (result == ABBE_OK)
+    result =
+        file ? read_picture(yaml, node, folder, out, error) : read_size(yaml, node, out, error);
+  if (result == ABBE_OK) result = environment_read_sources(yaml, node, &out->map, &sources, error);
+  if (result == ABBE_OK) result = read_scale(yaml, node, &out->map, error);
+  if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "'environment'", error);
+  if (result == ABBE_OK && !file && sources == 0)
+    result = abbe_yaml_fail(yaml, node, error,
+                            "'environment' has no light: give it a 'file', or one or more of "
+                            "uniform, sky, sun, softboxes, spots, dome");
+  if (result != ABBE_OK) return result;
+  result = abbe_environment_prepare(out, error);
+  return result == ABBE_OK ? result : abbe_scene_value_locate(yaml, node, result, error);
 }

@@ -116,8 +116,9 @@ static abbe_result read_cells(const abbe_object_reading *r, size_t cells[2], abb
   return ABBE_OK;
 }
 
-abbe_result abbe_object_read_water(const abbe_object_reading *r, abbe_mesh *out,
-                                   abbe_error *error) {
+/* Water at the scene's time. */
+static abbe_result object_read_water(const abbe_object_reading *r, abbe_mesh *out,
+                                     abbe_error *error) {
   abbe_water water = {0};
   abbe_yaml_node list;
   void *waves = NULL, *drops = NULL;
@@ -463,7 +464,7 @@ abbe_result abbe_object_read_surface(abbe_object_reading *r, abbe_object *object
     result = read_cut(r, object, error);
     break;
   case ABBE_OBJECT_WATER:
-    result = abbe_object_read_water(r, out, error);
+    result = object_read_water(r, out, error);
     break;
   case ABBE_OBJECT_KNOT:
     result = read_knot(r, out, error);

@@ -51,10 +51,6 @@ typedef struct abbe_object_reading {
 abbe_result abbe_object_read_surface(abbe_object_reading *reading, abbe_object *object,
                                      abbe_error *error);
 
-/* Water at the scene's time. */
-abbe_result abbe_object_read_water(const abbe_object_reading *reading, abbe_mesh *out,
-                                   abbe_error *error);
-
 /* A scene's camera: as its file has it, or placed so that objects fill the picture. */
 
 /* The values under 'camera'. With 'frame' its eye and target are not there yet. Errors with file,
@@ -103,11 +99,6 @@ abbe_result abbe_environment_read(abbe_yaml *yaml, abbe_yaml_node node, const ch
                                   abbe_environment *out, abbe_error *error);
 
 /* What the readers of surroundings share. */
-
-/* Adds the sources that the node's keys name (uniform, sky, sun, softboxes, spots, dome) to the
- * map; *count says how many there were. */
-abbe_result abbe_environment_read_sources(abbe_yaml *yaml, abbe_yaml_node node,
-                                          abbe_radiance_map *map, size_t *count, abbe_error *error);
 
 /* A receiver's measured reflectance, as a scene file asks for it: {spectrum: FILE, column: NAME}
  * or {patch: NAME} of the ColorChecker.

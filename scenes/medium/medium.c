@@ -206,17 +206,3 @@ double abbe_medium_phase(double g, double cosine) {
   const double square = 1 + g * g - 2 * g * cosine;
   return (1 - g * g) / (4 * ABBE_PI * square * sqrt(square));
 }
-
-bool abbe_medium_clip(const double min[3], const double max[3], const double o[3],
-                      const double d[3], double *from, double *to) {
-  for (int k = 0; k < 3; k++) {
-    if (d[k] == 0) {
-      if (!(o[k] >= min[k] && o[k] <= max[k])) return false;
-      continue;
-    }
-    const double a = (min[k] - o[k]) / d[k], b = (max[k] - o[k]) / d[k];
-    *from = fmax(*from, fmin(a, b));
-    *to = fmin(*to, fmax(a, b));
-  }
-  return *from < *to;
-}

@@ -37,11 +37,6 @@ bool abbe_medium_is_coloured(const abbe_medium *medium, double low_nm, double hi
  * over all directions 1. [HenyeyGreenstein1941] */
 double abbe_medium_phase(double g, double cosine);
 
-/* The part [*from, *to] of the line o + t d that the region holds, cut to what they are before;
- * false where nothing is left. d need not be unit; *to may be infinite. */
-bool abbe_medium_clip(const double min[3], const double max[3], const double o[3],
-                      const double d[3], double *from, double *to);
-
 /* The `medium` of a scene file: of the air, and of what refracts. */
 
 /* A coefficient, 1/m, may be this large. */

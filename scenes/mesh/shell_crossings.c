@@ -86,12 +86,25 @@ static void sort_faces(const abbe_topology *t, uint32_t *first, uint32_t *face) 
   first[0] = 0;
 }
 
+static int by_pair(const void *a, const void *b) {
+  const uint32_t *x = a, *y = b;
+  if (x[0] != y[0]) return x[0] < y[0] ? -1 : 1;
+  return (x[1] > y[1]) - (x[1] < y[1]);
+}
+
+/* Whether the shells do; of crossings in order. */
+static bool shells_cross(const abbe_shells *shells, uint32_t a, uint32_t b) {
+  const uint32_t pair[2] = {a < b ? a : b, a < b ? b : a};
+  return shells->crossing_count > 0 &&
+         bsearch(pair, shells->crossing, shells->crossing_count, sizeof pair, by_pair) != NULL;
+}
+
 static bool add_around(abbe_shells *out, uint32_t shell, const unsigned char *votes, size_t *used,
                        size_t *room) {
   abbe_shell *self = &out->shell[shell];
   self->first = (uint32_t)*used;
   for (size_t i = 0; i < out->count; i++) {
-    if (2 * votes[i] <= FACES * DIRECTIONS || abbe_shells_cross(out, shell, (uint32_t)i)) continue;
+    if (2 * votes[i] <= FACES * DIRECTIONS || shells_cross(out, shell, (uint32_t)i)) continue;
     if (*used == *room) {
       const size_t more = *room > 0 ? 2 * *room : 64;
       void *larger = realloc(out->around, more * sizeof *out->around);
@@ -261,12 +274,6 @@ static bool share_a_point(const uint32_t a[3], const uint32_t b[3]) {
   return false;
 }
 
-static int by_pair(const void *a, const void *b) {
-  const uint32_t *x = a, *y = b;
-  if (x[0] != y[0]) return x[0] < y[0] ? -1 : 1;
-  return (x[1] > y[1]) - (x[1] < y[1]);
-}
-
 void abbe_shell_sort_crossings(abbe_shells *out) {
   size_t kept = 0;
   if (out->crossing_count > 0)
@@ -391,10 +398,4 @@ void abbe_shell_find_crossings(abbe_shell_search *s, const abbe_shell_tree *t, b
   s->work = 0;
   s->within = within;
   meet_parts(s, t, all, all);
-}
-
-bool abbe_shells_cross(const abbe_shells *shells, uint32_t a, uint32_t b) {
-  const uint32_t pair[2] = {a < b ? a : b, a < b ? b : a};
-  return shells->crossing_count > 0 &&
-         bsearch(pair, shells->crossing, shells->crossing_count, sizeof pair, by_pair) != NULL;
 }

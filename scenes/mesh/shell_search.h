@@ -73,8 +73,6 @@ static inline bool abbe_shell_boxes_meet(const abbe_shell_box *a, const abbe_she
 void abbe_shell_find_crossings(abbe_shell_search *s, const abbe_shell_tree *t, bool within);
 /* Puts them in order, each pair once. */
 void abbe_shell_sort_crossings(abbe_shells *out);
-/* Whether the shells do; of crossings in order. */
-bool abbe_shells_cross(const abbe_shells *shells, uint32_t a, uint32_t b);
 /* Fills around, and with it depths; false where memory ran out. */
 bool abbe_shell_find_nesting(abbe_shell_search *s, const abbe_shell_tree *t);
 

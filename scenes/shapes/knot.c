@@ -31,17 +31,6 @@ static void line_at(const abbe_knot *k, double t, double at[3], double along[3],
   memcpy(out, normal, sizeof normal);
 }
 
-double abbe_knot_length(const abbe_knot *knot) {
-  const abbe_knot k = filled_in(knot);
-  double sum = 0;
-  for (int i = 0; i < STEPS; i++) {
-    double at[3], along[3], out[3];
-    line_at(&k, whole * i / STEPS, at, along, out);
-    sum += abbe_vector_length(along) * whole / STEPS;
-  }
-  return sum;
-}
-
 /* The least radius of a circle that touches the line at one place and passes through another. */
 double abbe_knot_room(const abbe_knot *knot) {
   const abbe_knot k = filled_in(knot);

@@ -30,8 +30,7 @@ typedef struct abbe_knot {
  */
 abbe_result abbe_knot_make(const abbe_knot *knot, abbe_mesh *out, abbe_error *error);
 
-/* Of the middle line: its length, and the radius of the widest tube along it, m. */
-double abbe_knot_length(const abbe_knot *knot);
+/* The radius of the widest tube along the middle line, m. */
 double abbe_knot_room(const abbe_knot *knot);
 
 #endif

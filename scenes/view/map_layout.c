@@ -93,12 +93,6 @@ bool abbe_map_layout_same(const abbe_map_layout *a, const abbe_map_layout *b) {
          near_all(a->knot[1], b->knot[1], STEPS + 1, share);
 }
 
-/* --- places --- */
-
-void abbe_map_layout_matrix(const abbe_map_layout *layout, double out[16]) {
-  abbe_view_matrix(&layout->view, out);
-}
-
 static double clamp(double x, double low, double high) {
   return fmin(fmax(x, low), high);
 }
@@ -158,12 +152,6 @@ double abbe_map_layout_texel_size(const abbe_map_layout *layout, int axis, size_
   const double share = abbe_map_layout_unwarp(layout, axis, (double)(index + 1) / (double)side) -
                        abbe_map_layout_unwarp(layout, axis, (double)index / (double)side);
   return share * (window[1] - window[0]);
-}
-
-double abbe_map_layout_texel_area(const abbe_map_layout *layout, size_t width, size_t height,
-                                  size_t column, size_t row) {
-  return abbe_map_layout_texel_size(layout, 0, width, column) *
-         abbe_map_layout_texel_size(layout, 1, height, height - 1 - row);
 }
 
 /* --- attributes --- */

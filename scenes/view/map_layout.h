@@ -35,9 +35,6 @@ abbe_result abbe_map_layout_check(const abbe_map_layout *layout, abbe_error *err
  * near to far are not compared: they move no texel. */
 bool abbe_map_layout_same(const abbe_map_layout *a, const abbe_map_layout *b);
 
-/* Column-major world-to-clip matrix of the view; clip x and y are the unwarped window. */
-void abbe_map_layout_matrix(const abbe_map_layout *layout, double out[16]);
-
 /* Window coordinate to texture coordinate along an axis (0: x, 1: y), and back; both 0 to 1, what
  * lies outside is moved to the nearest end. */
 double abbe_map_layout_warp(const abbe_map_layout *layout, int axis, double window);
@@ -57,10 +54,6 @@ void abbe_map_layout_ray(const abbe_map_layout *layout, const double uv[2], doub
  * texture coordinate: a difference of tangents (perspective) or metres (parallel). */
 double abbe_map_layout_texel_size(const abbe_map_layout *layout, int axis, size_t side,
                                   size_t index);
-/* Window area of a texel of an image of that size, row 0 at the top: tangents squared, or m2. A
- * perspective window area dA holds the solid angle cos^3(t) dA, t the angle to the view's axis. */
-double abbe_map_layout_texel_area(const abbe_map_layout *layout, size_t width, size_t height,
-                                  size_t column, size_t row);
 
 /* Writes the layout into the image's text attributes abbe:map_view, abbe:map_warp_x and
  * abbe:map_warp_y, every number with the digits that give it back exactly; and abbe:map_light, the

@@ -125,8 +125,8 @@ static abbe_result check_cancelling(const abbe_fit_data *data, const basis *b, c
                         b->terms, data->lambda_nm[0], data->lambda_nm[data->count - 1], worst);
 }
 
-abbe_result abbe_fit_cauchy(const abbe_fit_data *data, abbe_fit *fit, abbe_fit_weakest *weakest,
-                            abbe_error *error) {
+static abbe_result fit_cauchy(const abbe_fit_data *data, abbe_fit *fit, abbe_fit_weakest *weakest,
+                              abbe_error *error) {
   basis b;
   workspace w;
   plan(data, &b);
@@ -274,7 +274,7 @@ abbe_result abbe_fit_make(const abbe_index_points *points, const abbe_fit_reques
   result = check_data(&data, fit.free, form, error);
   if (result != ABBE_OK) return result;
   abbe_gsl_guard_enter();
-  result = cauchy ? abbe_fit_cauchy(&data, &fit, &weakest, error)
+  result = cauchy ? fit_cauchy(&data, &fit, &weakest, error)
                   : abbe_fit_sellmeier(&data, &fit, &weakest, error);
   abbe_gsl_guard_leave();
   if (result != ABBE_OK) return result;

@@ -85,8 +85,6 @@ typedef struct abbe_fit_weakest {
   double value, standard_error, least_ratio; /* refused where value < least_ratio x error */
 } abbe_fit_weakest;
 
-abbe_result abbe_fit_cauchy(const abbe_fit_data *data, abbe_fit *fit, abbe_fit_weakest *weakest,
-                            abbe_error *error);
 abbe_result abbe_fit_sellmeier(const abbe_fit_data *data, abbe_fit *fit, abbe_fit_weakest *weakest,
                                abbe_error *error);
 

@@ -54,8 +54,10 @@ void abbe_findings_free(abbe_findings *findings) {
   *findings = (abbe_findings){0};
 }
 
-abbe_finding *abbe_findings_add(abbe_findings *findings, abbe_finding_kind kind,
-                                abbe_finding_weight weight, size_t row) {
+/* A finding at the end of the list, of that row and without a text yet; NULL for want of memory. It
+ * stays where it is until the next is added. */
+static abbe_finding *findings_add(abbe_findings *findings, abbe_finding_kind kind,
+                                  abbe_finding_weight weight, size_t row) {
   abbe_findings *f = findings;
   if (f->count == f->capacity) {
     size_t capacity = f->capacity > 0 ? 2 * f->capacity : 16;
@@ -86,7 +88,7 @@ bool abbe_check_is_exponent(const abbe_dispersion *dispersion, size_t k) {
 }
 
 abbe_finding *abbe_check_find(abbe_check *c, abbe_finding_kind kind, abbe_finding_weight weight) {
-  abbe_finding *made = abbe_findings_add(c->findings, kind, weight, c->row);
+  abbe_finding *made = findings_add(c->findings, kind, weight, c->row);
   return made != NULL ? made : no_memory(c);
 }
 

@@ -73,11 +73,6 @@ typedef struct abbe_findings {
 
 void abbe_findings_free(abbe_findings *findings);
 
-/* A finding at the end of the list, of that row and without a text yet; NULL for want of memory. It
- * stays where it is until the next is added. */
-abbe_finding *abbe_findings_add(abbe_findings *findings, abbe_finding_kind kind,
-                                abbe_finding_weight weight, size_t row);
-
 const char *abbe_finding_kind_name(abbe_finding_kind kind);
 const char *abbe_finding_kind_meaning(abbe_finding_kind kind);
 const char *abbe_finding_weight_name(abbe_finding_weight weight);

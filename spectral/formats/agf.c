@@ -412,14 +412,3 @@ abbe_result abbe_agf_parse(const char *bytes, size_t size, const char *name,
   if (result != ABBE_OK) abbe_material_table_free(out);
   return result;
 }
-
-abbe_result abbe_agf_load(const char *path, abbe_material_table *out, abbe_report *report,
-                          abbe_error *error) {
-  *out = (abbe_material_table){0};
-  char *bytes = NULL;
-  size_t size = 0;
-  abbe_result result = abbe_file_read_text(path, MAX_BYTES, &bytes, &size, error);
-  if (result == ABBE_OK) result = abbe_agf_parse(bytes, size, path, out, report, error);
-  free(bytes);
-  return result;
-}

@@ -15,15 +15,6 @@
 
 enum { MAX_BYTES = 64 << 20 };
 
-const char *abbe_import_format_name(abbe_import_format format) {
-  static const char *const names[] = {
-#define ABBE_IMPORT_NAME(code, name, text) name,
-      ABBE_IMPORT_FORMATS(ABBE_IMPORT_NAME)
-#undef ABBE_IMPORT_NAME
-  };
-  return (int)format >= 0 && format < ABBE_IMPORT_FORMAT_COUNT ? names[format] : "unknown";
-}
-
 /* ---- what a file is ---- */
 
 static bool begins(const char *line, size_t length, const char *word) {

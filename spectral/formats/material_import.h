@@ -15,20 +15,14 @@
 
 #include <stddef.h>
 
-/* X(code, name, what it is). */
-#define ABBE_IMPORT_FORMATS(X)                                                                     \
-  X(AUTO, "auto", "what the file's own text says")                                                 \
-  X(AGF, "agf", "a Zemax glass catalogue")                                                         \
-  X(RII, "rii", "a file of refractiveindex.info")                                                  \
-  X(CSV, "csv", "measured points: wavelength, n, and k or uncertainty")                            \
-  X(YAML, "yaml", "a table of ours")                                                               \
-  X(STORE, "sqlite", "a store of ours")
-
 typedef enum abbe_import_format {
-#define ABBE_IMPORT_ENUM(code, name, text) ABBE_IMPORT_##code,
-  ABBE_IMPORT_FORMATS(ABBE_IMPORT_ENUM)
-#undef ABBE_IMPORT_ENUM
-      ABBE_IMPORT_FORMAT_COUNT
+  ABBE_IMPORT_AUTO,  /* what the file's own text says */
+  ABBE_IMPORT_AGF,   /* a Zemax glass catalogue */
+  ABBE_IMPORT_RII,   /* a file of refractiveindex.info */
+  ABBE_IMPORT_CSV,   /* measured points: wavelength, n, and k or uncertainty */
+  ABBE_IMPORT_YAML,  /* a table of ours */
+  ABBE_IMPORT_STORE, /* a store of ours, SQLite */
+  ABBE_IMPORT_FORMAT_COUNT
 } abbe_import_format;
 
 /* Zero: found out, named after the file. */
@@ -38,8 +32,6 @@ typedef struct abbe_import_options {
   const char *source; /* source of measured points; NULL: "measured points in FILE" */
   abbe_csv_options csv;
 } abbe_import_options;
-
-const char *abbe_import_format_name(abbe_import_format format);
 
 /* What the bytes are: STORE where they begin as SQLite's; AGF where a line begins with NM, RII with
  * DATA:, YAML with materials:. The first such line decides, one at the margin before one that is
@@ -75,9 +67,6 @@ abbe_result abbe_import_explain(const char *path, abbe_result result, abbe_error
  * source. ABBE_PARSE where there is no NM line, ABBE_SCHEMA where no glass could be used. */
 abbe_result abbe_agf_parse(const char *bytes, size_t size, const char *name,
                            abbe_material_table *out, abbe_report *report, abbe_error *error);
-/* The same from a file of at most 64 MiB. */
-abbe_result abbe_agf_load(const char *path, abbe_material_table *out, abbe_report *report,
-                          abbe_error *error);
 
 /* Materials from files of the refractiveindex.info database.
  *
@@ -95,8 +84,5 @@ abbe_result abbe_agf_load(const char *path, abbe_material_table *out, abbe_repor
  * or ABBE_PARSE, with file and line, where there is no usable index. */
 abbe_result abbe_rii_parse(const char *text, size_t size, const char *path, const char *name,
                            abbe_material *out, abbe_report *report, abbe_error *error);
-/* The same from a file of at most 16 MiB. */
-abbe_result abbe_rii_load(const char *path, const char *name, abbe_material *out,
-                          abbe_report *report, abbe_error *error);
 
 #endif

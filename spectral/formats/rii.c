@@ -485,14 +485,3 @@ abbe_result abbe_rii_parse(const char *text, size_t size, const char *path, cons
   if (result != ABBE_OK) abbe_material_free(out);
   return result;
 }
-
-abbe_result abbe_rii_load(const char *path, const char *name, abbe_material *out,
-                          abbe_report *report, abbe_error *error) {
-  *out = (abbe_material){0};
-  char *text = NULL;
-  size_t size = 0;
-  abbe_result result = abbe_file_read_text(path, MAX_BYTES, &text, &size, error);
-  if (result == ABBE_OK) result = abbe_rii_parse(text, size, path, name, out, report, error);
-  free(text);
-  return result;
-}

@@ -16,15 +16,6 @@ enum { STEP_NM = 5, MAX_IDENTIFIER = 120 };
 /* What pbrt-v4 samples; a spectrum of it is 0 outside its points. */
 static const double PBRT_LOW_NM = 360, PBRT_HIGH_NM = 830;
 
-const char *abbe_shader_name(abbe_shader shader) {
-  static const char *const names[] = {
-#define ABBE_SHADER_NAME(code, name, text) name,
-      ABBE_SHADERS(ABBE_SHADER_NAME)
-#undef ABBE_SHADER_NAME
-  };
-  return (int)shader >= 0 && shader < ABBE_SHADER_COUNT ? names[shader] : "unknown";
-}
-
 /* ---- n where the record has it, and beyond ---- */
 
 static double index_at(const abbe_material *m, double lambda_nm) {

@@ -13,35 +13,27 @@
 
 #include <stdio.h>
 
-/* X(code, name, what is written). */
-#define ABBE_SHADERS(X)                                                                            \
-  X(PBRT, "pbrt", "named materials and media for pbrt-v4, spectra every 5 nm")                     \
-  X(POVRAY, "povray", "interiors for an include file of POV-Ray")                                  \
-  X(MDL, "mdl", "a module of NVIDIA's Material Definition Language, spectra every 5 nm")           \
-  X(GLTF, "gltf", "materials for a glTF file: ior, dispersion, transmission, volume")
-
 typedef enum abbe_shader {
-#define ABBE_SHADER_ENUM(code, name, text) ABBE_SHADER_##code,
-  ABBE_SHADERS(ABBE_SHADER_ENUM)
-#undef ABBE_SHADER_ENUM
-      ABBE_SHADER_COUNT
+  ABBE_SHADER_PBRT,   /* named materials and media for pbrt-v4, spectra every 5 nm */
+  ABBE_SHADER_POVRAY, /* interiors for an include file of POV-Ray */
+  ABBE_SHADER_MDL,    /* a module of NVIDIA's Material Definition Language, spectra every 5 nm */
+  ABBE_SHADER_GLTF,   /* materials for a glTF file: ior, dispersion, transmission, volume */
+  ABBE_SHADER_COUNT
 } abbe_shader;
 
-const char *abbe_shader_name(abbe_shader shader);
-
-/* POV-Ray's two numbers (spectral/dispersion/povray_index.h), fitted over the part of 380 to 730 nm that the
- * record vouches for, and the largest error of n there. */
+/* POV-Ray's two numbers (spectral/dispersion/povray_index.h), fitted over the part of 380 to 730 nm
+ * that the record vouches for, and the largest error of n there. */
 void abbe_shader_povray_numbers(const abbe_material *material, double *ior, double *dispersion,
                                 double *max_error);
-/* glTF's law: Cauchy's two terms through n_d and V_d = 20 / dispersion [glTFDispersion]; the largest
- * error of n over 380 to 780 nm. dispersion is 0 where V_d is not above 0. */
+/* glTF's law: Cauchy's two terms through n_d and V_d = 20 / dispersion [glTFDispersion]; the
+ * largest error of n over 380 to 780 nm. dispersion is 0 where V_d is not above 0. */
 void abbe_shader_gltf_numbers(const abbe_material *material, double *ior, double *dispersion,
                               double *max_error);
 
-/* Writes all materials of the table. Outside a record's range n is continued where the record allows
- * it, else held at the range's end, and noted as ASSUMED. Names become identifiers, each only once.
- * ABBE_IO where the stream fails; a material that a table may not hold is noted as SKIPPED, and so
- * is a conductor, but for pbrt. */
+/* Writes all materials of the table. Outside a record's range n is continued where the record
+ * allows it, else held at the range's end, and noted as ASSUMED. Names become identifiers, each
+ * only once. ABBE_IO where the stream fails; a material that a table may not hold is noted as
+ * SKIPPED, and so is a conductor, but for pbrt. */
 abbe_result abbe_shader_write(abbe_shader shader, const abbe_material_table *table, FILE *to,
                               abbe_report *report, abbe_error *error);
 

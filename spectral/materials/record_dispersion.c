@@ -59,8 +59,9 @@ abbe_result abbe_record_rows_read(abbe_record_reading *r, abbe_yaml_node list, c
   return ABBE_OK;
 }
 
-abbe_result abbe_record_tell(abbe_record_reading *r, abbe_yaml_node list, const char *key,
-                             abbe_result result, const abbe_error *why) {
+/* What a spectrum cannot be made of, as a complaint about the list. */
+static abbe_result record_tell(abbe_record_reading *r, abbe_yaml_node list, const char *key,
+                               abbe_result result, const abbe_error *why) {
   if (result == ABBE_INVALID_ARGUMENT)
     return abbe_yaml_fail(r->yaml, list, r->error, "'%s': %s", key, why->text);
   return result == ABBE_OK ? ABBE_OK : abbe_error_set(r->error, result, "%s", why->text);
@@ -76,7 +77,7 @@ abbe_result abbe_record_read_points(abbe_record_reading *r, abbe_yaml_node list,
     abbe_spectrum_free(*out);
     result =
         abbe_spectrum_make(pairs.column[0], pairs.column[1], pairs.count, interpolation, out, &why);
-    result = abbe_record_tell(r, list, key, result, &why);
+    result = record_tell(r, list, key, result, &why);
   }
   abbe_record_rows_free(&pairs);
   return result;
@@ -128,7 +129,7 @@ static abbe_result read_conductor(abbe_record_reading *r, abbe_yaml_node points)
   if (result == ABBE_OK) {
     result = abbe_conductor_make(list.column[0], list.column[1], list.column[2], list.count,
                                  &r->material->dispersion, &why);
-    result = abbe_record_tell(r, points, "points", result, &why);
+    result = record_tell(r, points, "points", result, &why);
   }
   abbe_record_rows_free(&list);
   return result;

@@ -33,10 +33,6 @@ abbe_result abbe_record_rows_read(abbe_record_reading *r, abbe_yaml_node list, c
                                   double min, double max, abbe_record_rows *out);
 void abbe_record_rows_free(abbe_record_rows *list);
 
-/* What a spectrum cannot be made of, as a complaint about the list. */
-abbe_result abbe_record_tell(abbe_record_reading *r, abbe_yaml_node list, const char *key,
-                             abbe_result result, const abbe_error *why);
-
 /* A list of pairs as a spectrum. */
 abbe_result abbe_record_read_points(abbe_record_reading *r, abbe_yaml_node list, const char *key,
                                     double min, double max, abbe_interpolation interpolation,

@@ -11,15 +11,13 @@ TEST(diagrams) {
   } white[2] = {{{95.047, 100, 108.883}, {0.3127, 0.3290}, {0.1978, 0.4683}},
                 {{109.85, 100, 35.585}, {0.4476, 0.4074}, {0.2560, 0.5243}}};
   for (int i = 0; i < 2; i++) {
-    double xy[2], uv[2], back[2], xyz[3];
+    double xy[2], uv[2], xyz[3];
     assert_true(abbe_chromaticity_xy(white[i].xyz, xy));
     abbe_chromaticity_uv_of_xy(xy, uv);
-    abbe_chromaticity_xy_of_uv(uv, back);
     assert_true(abbe_chromaticity_xyz(xy, xyz));
     for (int k = 0; k < 2; k++) {
       assert_near(xy[k], white[i].xy[k], 5e-5);
       assert_near(uv[k], white[i].uv[k], 5e-5);
-      assert_near(back[k], xy[k], 1e-14);
     }
     for (int k = 0; k < 3; k++) assert_near(xyz[k], white[i].xyz[k] / 100, 1e-14);
   }

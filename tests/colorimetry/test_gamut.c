@@ -26,9 +26,7 @@ TEST(there_and_back) {
     abbe_rgb_space_apply(from, xyz, v);
     abbe_rgb_space_apply(to, v, v);
     for (int c = 0; c < 3; c++) assert_near(v[c], xyz[c], 1e-12);
-    assert_int_equal(abbe_gamut_find(abbe_gamut_name((abbe_gamut)g)), g);
   }
-  assert_int_equal(abbe_gamut_find("srgb"), ABBE_GAMUT_COUNT);
   assert_string_equal(abbe_gamut_name(ABBE_GAMUT_COUNT), "unknown");
 }
 

@@ -39,7 +39,6 @@ typedef struct abbe_ztest {
 /* One element: its difference and the variance of that difference. Variance that is not finite or
  * not above zero: untested. */
 void abbe_ztest_add(abbe_ztest *test, double difference, double variance);
-void abbe_ztest_merge(abbe_ztest *test, const abbe_ztest *more);
 
 /* Shares of the tested elements, and the mean of z^2; NaN where nothing was tested. */
 double abbe_ztest_share_over2(const abbe_ztest *test);

@@ -17,16 +17,6 @@ void abbe_ztest_add(abbe_ztest *test, double difference, double variance) {
   test->max = fmax(test->max, z);
 }
 
-void abbe_ztest_merge(abbe_ztest *test, const abbe_ztest *more) {
-  test->count += more->count;
-  test->over2 += more->over2;
-  test->over3 += more->over3;
-  test->sum_square += more->sum_square;
-  test->max = fmax(test->max, more->max);
-  test->untested += more->untested;
-  test->untested_differ += more->untested_differ;
-}
-
 static double share(const abbe_ztest *test, double part) {
   return test->count > 0 ? part / (double)test->count : NAN;
 }

@@ -364,25 +364,6 @@ abbe_result abbe_sphere_quadrature_enclosed(const abbe_sphere_quadrature *quadra
   return result;
 }
 
-abbe_result abbe_sphere_quadrature_rings(const abbe_sphere_quadrature *quadrature,
-                                         const double *edge_m, size_t count,
-                                         double *irradiance_w_m2, abbe_error *error) {
-  double inner = 0, outer = 0;
-  for (size_t i = 0; i <= count; i++) {
-    if (!isfinite(edge_m[i]) || edge_m[i] < 0 || (i > 0 && edge_m[i] <= edge_m[i - 1]))
-      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                            "ring edge %zu is %g m; edges ascend from 0 or more", i, edge_m[i]);
-    abbe_result result = abbe_sphere_quadrature_enclosed(quadrature, edge_m[i], &outer, error);
-    if (result != ABBE_OK) return result;
-    if (i > 0) {
-      double a = edge_m[i - 1], b = edge_m[i];
-      irradiance_w_m2[i - 1] = (outer - inner) / (ABBE_PI * (b - a) * (b + a));
-    }
-    inner = outer;
-  }
-  return ABBE_OK;
-}
-
 static abbe_result add_band(const abbe_sphere_setup *setup, const double weight[3],
                             const double *radius_m, size_t count, double (*xyz)[3],
                             abbe_error *error) {

@@ -50,12 +50,6 @@ void abbe_sphere_quadrature_free(abbe_sphere_quadrature *quadrature);
 abbe_result abbe_sphere_quadrature_enclosed(const abbe_sphere_quadrature *quadrature,
                                             double radius_m, double *flux_w, abbe_error *error);
 
-/* Mean irradiance in W/m2 of the rings between edge_m[i] and edge_m[i + 1], i < count; edges
- * ascending from >= 0, finite. */
-abbe_result abbe_sphere_quadrature_rings(const abbe_sphere_quadrature *quadrature,
-                                         const double *edge_m, size_t count,
-                                         double *irradiance_w_m2, abbe_error *error);
-
 /* Radii in m, in no order, at which the light folds over: the caustic's edges, where the irradiance
  * is infinite. Owned by the quadrature. */
 size_t abbe_sphere_quadrature_folds(const abbe_sphere_quadrature *quadrature,

@@ -17,14 +17,6 @@ enum { MAX_FACES = 2000000 };
 static const char *const names[] = {ABBE_SCALINGS(ABBE_NAME_OF)};
 static const char *const texts[] = {ABBE_SCALINGS(ABBE_TEXT_OF)};
 
-const char *abbe_scaling_study_name(abbe_scaling_study_axis axis) {
-  return (unsigned)axis < ABBE_SCALING_COUNT ? names[axis] : "unknown";
-}
-
-const char *abbe_scaling_study_text(abbe_scaling_study_axis axis) {
-  return (unsigned)axis < ABBE_SCALING_COUNT ? texts[axis] : "unknown";
-}
-
 /* Meshes */
 
 static void middle(const double a[3], const double b[3], bool unit, double out[3]) {

@@ -27,9 +27,6 @@ typedef enum abbe_scaling_study_axis {
       ABBE_SCALING_COUNT
 } abbe_scaling_study_axis;
 
-const char *abbe_scaling_study_name(abbe_scaling_study_axis axis);
-const char *abbe_scaling_study_text(abbe_scaling_study_axis axis);
-
 #define ABBE_SCALING_MAX 40
 
 typedef struct abbe_scaling_study_point {

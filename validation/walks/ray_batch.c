@@ -16,7 +16,8 @@ void abbe_ray_record_keep(abbe_ray_record *r, const struct RTCRayHit16 *packet, 
     to->ray.flags[k] = k < lanes ? KEPT | (coherent ? KEPT_COHERENT : 0) : 0;
 }
 
-void abbe_ray_record_keep_shadow(abbe_ray_record *r, const struct RTCRay16 *packet, size_t lanes) {
+static void ray_record_keep_shadow(abbe_ray_record *r, const struct RTCRay16 *packet,
+                                   size_t lanes) {
   if (r->shadows == r->room) return;
   struct RTCRay16 *to = &r->shadow[r->shadows++];
   *to = *packet;
@@ -36,7 +37,7 @@ void abbe_ray_batch_trace(struct RTCRayHit16 *packets, size_t count, bool cohere
 
 void abbe_ray_batch_occlude(struct RTCRay16 *packet, size_t lanes, RTCScene scene,
                             abbe_ray_record *record) {
-  if (record->packet != NULL) abbe_ray_record_keep_shadow(record, packet, lanes);
+  if (record->packet != NULL) ray_record_keep_shadow(record, packet, lanes);
   abbe_embree_occluded_16(scene, packet, lanes);
 }
 

@@ -37,10 +37,4 @@ void abbe_edit_view_draw(abbe_edit_state *state);
 /* Curses' pairs of colours, which the screen makes. */
 enum { ABBE_EDIT_WARNING = 1, ABBE_EDIT_CHANGED, ABBE_EDIT_CURVE };
 
-/* text from column x, cut to width characters and filled up with blanks. */
-void abbe_edit_put(int y, int x, int width, const char *text);
-/* The characters in so many bytes of UTF-8. */
-size_t abbe_edit_characters(const char *text, size_t bytes);
-void abbe_edit_colour(int pair, bool on);
-
 #endif

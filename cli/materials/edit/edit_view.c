@@ -11,7 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-void abbe_edit_put(int y, int x, int width, const char *text) {
+/* text from column x, cut to width characters and filled up with blanks. */
+static void edit_put(int y, int x, int width, const char *text) {
   char shown[2048];
   int used = 0;
   move(y, x);
@@ -24,13 +25,14 @@ void abbe_edit_put(int y, int x, int width, const char *text) {
   for (; used < width; used++) addch(' ');
 }
 
-size_t abbe_edit_characters(const char *text, size_t bytes) {
+/* The characters in so many bytes of UTF-8. */
+static size_t edit_characters(const char *text, size_t bytes) {
   size_t count = 0;
   for (size_t i = 0; i < bytes; i++) count += ((unsigned char)text[i] & 0xc0) != 0x80;
   return count;
 }
 
-void abbe_edit_colour(int pair, bool on) {
+static void edit_colour(int pair, bool on) {
   if (!has_colors()) return;
   if (on)
     attron(COLOR_PAIR(pair));
@@ -86,9 +88,9 @@ static void draw_cells(const abbe_edit_state *a, const abbe_text_plot *plot, int
     for (size_t i = 0; i < plot->columns; i++) {
       char text[4];
       bool now = abbe_text_plot_curve(plot, i, row) != CURVE_BEFORE;
-      if (now) abbe_edit_colour(ABBE_EDIT_CURVE, true);
+      if (now) edit_colour(ABBE_EDIT_CURVE, true);
       mvaddstr(top + (int)row, left + (int)i, abbe_text_plot_cell(plot, i, row, a->plain, text));
-      if (now) abbe_edit_colour(ABBE_EDIT_CURVE, false);
+      if (now) edit_colour(ABBE_EDIT_CURVE, false);
     }
 }
 
@@ -118,9 +120,9 @@ static void draw_ends(abbe_edit_area area, const plot_content *p, const abbe_axi
   char text[32];
   if (has_height) {
     snprintf(text, sizeof text, p->format, y->max);
-    abbe_edit_put(area.top + 1, area.left, LABELS - 1, text);
+    edit_put(area.top + 1, area.left, LABELS - 1, text);
     snprintf(text, sizeof text, p->format, y->min);
-    abbe_edit_put(area.top + area.rows - 2, area.left, LABELS - 1, text);
+    edit_put(area.top + area.rows - 2, area.left, LABELS - 1, text);
   }
   mvprintw(area.top + area.rows - 1, area.left + LABELS, "%.0f", x->min);
   mvprintw(area.top + area.rows - 1, area.left + area.columns - 6, "%.0f nm", x->max);
@@ -131,7 +133,7 @@ static void draw_plot(const abbe_edit_state *a, abbe_edit_area area, const plot_
   double low, high;
   find_height(p, &low, &high);
   attron(A_BOLD);
-  abbe_edit_put(area.top, area.left, area.columns, p->caption);
+  edit_put(area.top, area.left, area.columns, p->caption);
   attroff(A_BOLD);
   const abbe_axis x = {ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM, false, false};
   const abbe_axis y = abbe_axis_make(low, high, 0.02, false, false);
@@ -190,20 +192,20 @@ static void draw_field(const abbe_edit_state *a, size_t index, int y, int width)
   bool here = index == a->selected;
   char key[48];
   snprintf(key, sizeof key, "%c %s", f->changed ? '*' : ' ', f->key);
-  if (f->changed) abbe_edit_colour(ABBE_EDIT_CHANGED, true);
-  abbe_edit_put(y, 0, KEY_WIDTH + 2, key);
-  if (f->changed) abbe_edit_colour(ABBE_EDIT_CHANGED, false);
+  if (f->changed) edit_colour(ABBE_EDIT_CHANGED, true);
+  edit_put(y, 0, KEY_WIDTH + 2, key);
+  if (f->changed) edit_colour(ABBE_EDIT_CHANGED, false);
   int room = width - KEY_WIDTH - 3;
   if (here) attron(A_REVERSE);
   if (here && a->editing) {
     /* the end of a long text, as far as the cursor is seen */
-    size_t skip = abbe_edit_characters(a->input, a->cursor), start = 0;
+    size_t skip = edit_characters(a->input, a->cursor), start = 0;
     for (skip = skip >= (size_t)room ? skip - (size_t)room + 1 : 0; skip > 0; skip--) do
         start++;
       while (((unsigned char)a->input[start] & 0xc0) == 0x80);
-    abbe_edit_put(y, KEY_WIDTH + 2, room, a->input + start);
+    edit_put(y, KEY_WIDTH + 2, room, a->input + start);
   } else {
-    abbe_edit_put(y, KEY_WIDTH + 2, room, f->text);
+    edit_put(y, KEY_WIDTH + 2, room, f->text);
   }
   if (here) attroff(A_REVERSE);
 }
@@ -244,7 +246,7 @@ static void draw_numbers(const abbe_edit_state *a, int y) {
     snprintf(line, sizeof line, "no material: %.180s", abbe_record_draft_trouble(a->draft));
   }
   attron(A_BOLD);
-  abbe_edit_put(y, 0, COLS, line);
+  edit_put(y, 0, COLS, line);
   attroff(A_BOLD);
 }
 
@@ -260,7 +262,7 @@ static int put_wrapped(int y, int rows, const char *text) {
     }
     char line[1100];
     snprintf(line, sizeof line, "%.*s", (int)length, text);
-    abbe_edit_put(y + used++, 0, COLS, line);
+    edit_put(y + used++, 0, COLS, line);
     text += length;
     while (*text == ' ') text++;
   }
@@ -279,20 +281,20 @@ static int draw_warnings(const abbe_edit_state *a, int y, int rows) {
       char line[1000];
       snprintf(line, sizeof line, "%s: %s; %s", abbe_finding_weight_name(f->weight), f->evidence,
                f->fix);
-      abbe_edit_colour(ABBE_EDIT_WARNING, weight == ABBE_FINDING_WRONG);
+      edit_colour(ABBE_EDIT_WARNING, weight == ABBE_FINDING_WRONG);
       used += put_wrapped(y + used, rows - used, line);
-      abbe_edit_colour(ABBE_EDIT_WARNING, false);
+      edit_colour(ABBE_EDIT_WARNING, false);
     }
-  if (used == 0 && rows > 0 && m != NULL) abbe_edit_put(y + used++, 0, COLS, "no warnings");
+  if (used == 0 && rows > 0 && m != NULL) edit_put(y + used++, 0, COLS, "no warnings");
   abbe_findings_free(&found);
   return used;
 }
 
 /* Above the keys; a long one takes the place of warnings for the while. */
 static void draw_message(const abbe_edit_state *a, int warnings) {
-  int rows = 1 + (int)(abbe_edit_characters(a->message, strlen(a->message)) * 10 / 9) / COLS;
+  int rows = 1 + (int)(edit_characters(a->message, strlen(a->message)) * 10 / 9) / COLS;
   if (rows > 1 + warnings) rows = 1 + warnings;
-  for (int i = 0; i < rows; i++) abbe_edit_put(LINES - 1 - rows + i, 0, COLS, "");
+  for (int i = 0; i < rows; i++) edit_put(LINES - 1 - rows + i, 0, COLS, "");
   put_wrapped(LINES - 1 - rows, rows, a->message);
 }
 
@@ -322,7 +324,7 @@ static void draw_help(void) {
       "",
       "Any key goes back."};
   for (int i = 0; i < (int)(sizeof lines / sizeof lines[0]) && i + 2 < LINES; i++)
-    abbe_edit_put(i + 2, 2, COLS - 4, lines[i]);
+    edit_put(i + 2, 2, COLS - 4, lines[i]);
 }
 
 void abbe_edit_view_draw(abbe_edit_state *a) {
@@ -330,14 +332,14 @@ void abbe_edit_view_draw(abbe_edit_state *a) {
   const char *name = abbe_record_draft_field(a->draft, 0)->text;
   erase();
   if (LINES < 8 || COLS < 40) {
-    abbe_edit_put(0, 0, COLS, "This window is too small: 40 x 8 at least");
+    edit_put(0, 0, COLS, "This window is too small: 40 x 8 at least");
     refresh();
     return;
   }
   snprintf(title, sizeof title, " %.140s: %.80s%s", a->screen->path, name,
            abbe_record_draft_is_changed(a->draft) ? "  (changed)" : "");
   attron(A_REVERSE);
-  abbe_edit_put(0, 0, COLS, title);
+  edit_put(0, 0, COLS, title);
   attroff(A_REVERSE);
   if (a->helping) {
     draw_help();
@@ -353,11 +355,11 @@ void abbe_edit_view_draw(abbe_edit_state *a) {
   draw_warnings(a, LINES - 2 - warnings, warnings);
   draw_message(a, warnings);
   attron(A_DIM);
-  abbe_edit_put(LINES - 1, 0, COLS - 1, keys_line(a));
+  edit_put(LINES - 1, 0, COLS - 1, keys_line(a));
   attroff(A_DIM);
   curs_set(a->editing ? 1 : 0);
   if (a->editing) {
-    int x = 18 + (int)abbe_edit_characters(a->input, a->cursor), most = width - 2;
+    int x = 18 + (int)edit_characters(a->input, a->cursor), most = width - 2;
     move(2 + (int)(a->selected - a->first), x > most ? most : x);
   }
   refresh();

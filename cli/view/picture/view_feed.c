@@ -24,8 +24,10 @@ static double distance_to(const double origin[3], const double direction[3], con
   return s >= 0 && t >= 0 && s + t <= 1 ? distance : INFINITY;
 }
 
-void abbe_view_meet(const abbe_scene *scene, const double origin[3], const double direction[3],
-                    double from, bool bending, abbe_view_met *out) {
+/* The nearest surface on a ray (unit direction) beyond `from` m; bending: of refractors and mirrors
+ * alone. */
+static void view_meet(const abbe_scene *scene, const double origin[3], const double direction[3],
+                      double from, bool bending, abbe_view_met *out) {
   *out = (abbe_view_met){.distance = INFINITY};
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *object = &scene->object[i];
@@ -40,7 +42,8 @@ void abbe_view_meet(const abbe_scene *scene, const double origin[3], const doubl
   }
 }
 
-void abbe_view_met_normal(const abbe_object *object, size_t face, double out[3]) {
+/* Outward, of the triangle; unit. */
+static void view_met_normal(const abbe_object *object, size_t face, double out[3]) {
   const abbe_mesh *m = &object->mesh;
   const uint32_t *at = m->face[face];
   abbe_vector_triangle(m->position[at[0]], m->position[at[1]], m->position[at[2]], out);
@@ -51,7 +54,7 @@ void abbe_view_met_normal(const abbe_object *object, size_t face, double out[3])
 static bool face_ray(const abbe_view_met *met, const double place[3], const double direction[3],
                      double n[3]) {
   const abbe_exact *exact = &met->object->exact;
-  abbe_view_met_normal(met->object, met->face, n);
+  view_met_normal(met->object, met->face, n);
   if (exact->kind == ABBE_EXACT_SPHERE) {
     abbe_vector_subtract(place, exact->centre, n);
     abbe_vector_normalise(n);
@@ -85,7 +88,7 @@ void abbe_view_sight_follow(const abbe_scene *scene, const double eye[3], const 
   *out = (abbe_view_sight){.nm = nm};
   while (out->count < ABBE_VIEW_SIGHT_PLACES) {
     abbe_view_met met;
-    abbe_view_meet(scene, at, along, from, false, &met);
+    view_meet(scene, at, along, from, false, &met);
     if (met.object == NULL) return;
     for (int k = 0; k < 3; k++) at[k] += met.distance * along[k];
     out->length += met.distance;
@@ -242,7 +245,7 @@ static int by_flux(const void *a, const void *b) {
 }
 
 static void plane_of(const abbe_object *object, size_t face, double normal[3], double *offset) {
-  abbe_view_met_normal(object, face, normal);
+  view_met_normal(object, face, normal);
   *offset = abbe_vector_dot(normal, object->mesh.position[object->mesh.face[face][0]]);
 }
 
@@ -331,7 +334,7 @@ bool abbe_view_feed_look(abbe_view_feed *feed, const abbe_scene *scene, double n
   abbe_vector_subtract(feed->point, eye, along);
   const double far = abbe_vector_length(along);
   if (!abbe_vector_normalise(along)) return true;
-  abbe_view_meet(scene, eye, along, 0, true, &first);
+  view_meet(scene, eye, along, 0, true, &first);
   feed->on_refractor = fabs(first.distance - far) < fmax(feed->radius, 1e-3 * far);
   if (!feed->on_refractor) return true;
   abbe_view_sight_follow(scene, eye, along, nm, &feed->sight);
@@ -347,7 +350,7 @@ void abbe_view_feed_end(abbe_view_feed *feed, const abbe_scene *scene, const vol
   for (size_t i = 0; i < feed->photons && i < ABBE_VIEW_FEED_RAYS && is_wanted(stop); i++) {
     const landed *l = &feed->landed[i];
     abbe_view_met best;
-    abbe_view_meet(scene, l->origin, l->direction, 0, true, &best);
+    view_meet(scene, l->origin, l->direction, 0, true, &best);
     if (best.object == NULL) continue;
     abbe_view_ray_in *ray = &feed->ray[feed->ray_count];
     of[feed->ray_count++] = best;

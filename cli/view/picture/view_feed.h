@@ -27,13 +27,6 @@ typedef struct abbe_view_met {
   double distance;           /* infinite where nothing is met */
 } abbe_view_met;
 
-/* The nearest surface on a ray (unit direction) beyond `from` m; bending: of refractors and mirrors
- * alone. */
-void abbe_view_meet(const abbe_scene *scene, const double origin[3], const double direction[3],
-                    double from, bool bending, abbe_view_met *out);
-/* Outward, of the triangle; unit. */
-void abbe_view_met_normal(const abbe_object *object, size_t face, double out[3]);
-
 typedef struct abbe_view_sight {
   double nm;
   size_t count; /* interfaces that were met, then where it ends */

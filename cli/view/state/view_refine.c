@@ -130,7 +130,9 @@ static double keep(abbe_view_pace *p, bool lit, const size_t now[2], double ms) 
   return *own;
 }
 
-void abbe_view_pace_guess(abbe_view_pace *p, double drawn_ms) {
+/* The first picture of all took so long to be drawn, as far as that is known: coarser ones, of the
+ * same programs, have their share. */
+static void view_pace_guess(abbe_view_pace *p, double drawn_ms) {
   p->eye_step = 1; /* what is too coarse is not so for long */
   while (p->eye_step + 1 < ABBE_VIEW_EYE_STEPS &&
          drawn_ms * eye_share(p->eye_step) > roomy * ABBE_VIEW_MOVING_MS)
@@ -353,7 +355,7 @@ bool abbe_view_refine_end(abbe_view_refine *refine, size_t worker, abbe_view_out
     if (hand->moved == job->light)
       abbe_view_pace_take(&refine->pace, job->light_step, job->eye_step, lit, ms);
     else if (refine->pace.ms == 0)
-      abbe_view_pace_guess(&refine->pace, ms - own_ms);
+      view_pace_guess(&refine->pace, ms - own_ms);
   }
   if (job->stage == ABBE_VIEW_MOVING) hand->moved = job->light;
   /* light of an older scene is no light for this one */

@@ -44,10 +44,6 @@ typedef struct abbe_view_pace {
   double lit_ms[ABBE_VIEW_LIGHT_STEPS][ABBE_VIEW_EYE_STEPS], kept_ms[ABBE_VIEW_EYE_STEPS];
 } abbe_view_pace;
 
-/* The first picture of all took so long to be drawn, as far as that is known: coarser ones, of the
- * same programs, have their share. */
-void abbe_view_pace_guess(abbe_view_pace *pace, double drawn_ms);
-
 /* A picture of these steps took so long; lit: its light was drawn for it. One that took many times
  * as long as the one before has compiled programs, which does not last. */
 void abbe_view_pace_take(abbe_view_pace *pace, size_t light_step, size_t eye_step, bool lit,

@@ -292,15 +292,6 @@ bool abbe_ui_choose(const char *label, const char *const *names, size_t count, s
   return chosen;
 }
 
-void abbe_ui_tooltip(const char *text) {
-  if (!ImGui::IsItemHovered()) return;
-  ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(340);
-  ImGui::TextUnformatted(text);
-  ImGui::PopTextWrapPos();
-  ImGui::EndTooltip();
-}
-
 bool abbe_ui_place(const char *label, double width, double height, double *x, double *y) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImGui::InvisibleButton(whole(label).c_str(), at(width, height));

@@ -58,7 +58,6 @@ bool abbe_ui_button(const char *label);
 bool abbe_ui_slider(const char *label, double *value, double min, double max, const char *format,
                     bool logarithmic, bool *began);
 bool abbe_ui_choose(const char *label, const char *const *names, size_t count, size_t *index);
-void abbe_ui_tooltip(const char *text);
 
 /* An empty place of the panel for a drawing; false where it is out of sight. */
 bool abbe_ui_place(const char *label, double width, double height, double *x, double *y);

@@ -29,6 +29,10 @@ void abbe_refractor_faces_use(const abbe_refractor_faces *faces, const abbe_view
                 (float)view->forward[1], (float)view->forward[2]);
 }
 
+static bool seen_meshes_is_cut(const abbe_seen_meshes *seen, size_t object) {
+  return seen->cut[object].array != 0;
+}
+
 abbe_result abbe_refractor_faces_draw(const abbe_refractor_faces *faces,
                                       const abbe_faces_target *target, bool clear_alone,
                                       abbe_error *error) {
@@ -54,7 +58,7 @@ abbe_result abbe_refractor_faces_draw(const abbe_refractor_faces *faces,
       gl->Enable(GL_CULL_FACE);
     abbe_gpu_set_uint(scene->gpu, faces->program, "owner", i + 1);
     const size_t object = scene->plan->refractor_object[i];
-    if (target->meshes != NULL && abbe_seen_meshes_is_cut(target->meshes, object))
+    if (target->meshes != NULL && seen_meshes_is_cut(target->meshes, object))
       abbe_seen_meshes_draw(target->meshes, object);
     else if (target->coarse)
       abbe_gpu_meshes_draw_coarse(scene, object);
@@ -332,13 +336,9 @@ void abbe_seen_meshes_free(abbe_seen_meshes *seen) {
   *seen = (abbe_seen_meshes){0};
 }
 
-bool abbe_seen_meshes_is_cut(const abbe_seen_meshes *seen, size_t object) {
-  return seen->cut[object].array != 0;
-}
-
 void abbe_seen_meshes_draw(const abbe_seen_meshes *seen, size_t object) {
   const abbe_gl *gl = seen->scene->gpu->gl;
-  if (!abbe_seen_meshes_is_cut(seen, object)) {
+  if (!seen_meshes_is_cut(seen, object)) {
     abbe_gpu_meshes_draw(seen->scene, object);
     return;
   }
@@ -353,7 +353,7 @@ void abbe_seen_meshes_draw_numbered(const abbe_seen_meshes *seen, size_t object,
   const uint32_t *face_of = seen->face_of[object];
   const size_t count = (size_t)seen->cut[object].index_count / 3;
   gl->Uniform1i(location, (GLint)face_first);
-  if (!abbe_seen_meshes_is_cut(seen, object)) {
+  if (!seen_meshes_is_cut(seen, object)) {
     abbe_gpu_meshes_draw(seen->scene, object);
     return;
   }

@@ -1,5 +1,5 @@
-/* seen_meshes.h: the scene's meshes as its camera sees them: those that reach from close by to far away
- * are cut, the others are the scene's. Internal to gl/.
+/* seen_meshes.h: the scene's meshes as its camera sees them: those that reach from close by to far
+ * away are cut, the others are the scene's. Internal to gl/.
  */
 #ifndef ABBE_GL_SCENE_SEEN_SEEN_MESHES_H
 #define ABBE_GL_SCENE_SEEN_SEEN_MESHES_H
@@ -23,10 +23,9 @@ abbe_result abbe_seen_meshes_make(const abbe_gpu_scene *scene, const abbe_view *
                                   abbe_seen_meshes *out, abbe_error *error);
 void abbe_seen_meshes_free(abbe_seen_meshes *seen);
 
-bool abbe_seen_meshes_is_cut(const abbe_seen_meshes *seen, size_t object);
 void abbe_seen_meshes_draw(const abbe_seen_meshes *seen, size_t object);
-/* The same where the program in use numbers faces: its uniform at `location` is the number of the first
- * face that is drawn, of which the object's are number `face_first` on. */
+/* The same where the program in use numbers faces: its uniform at `location` is the number of the
+ * first face that is drawn, of which the object's are number `face_first` on. */
 void abbe_seen_meshes_draw_numbered(const abbe_seen_meshes *seen, size_t object, GLint location,
                                     size_t face_first);
 
@@ -34,13 +33,14 @@ void abbe_seen_meshes_draw_numbered(const abbe_seen_meshes *seen, size_t object,
  * such faces are clipped to the window and cut where depth has grown sixteenfold. Single precision
  * interpolates places on each part as well as it knows them. Knows no GL. */
 
-/* Whether it has a face whose depth grows more than that in front of the view. min and max: bounds. */
+/* Whether it has a face whose depth grows more than that in front of the view. min and max: bounds.
+ */
 bool abbe_cut_mesh_needed(const abbe_mesh *mesh, const double min[3], const double max[3],
                           const abbe_view *view);
 
-/* Its vertices, and those of the parts behind them; faces that are not cut, in their order, and then the
- * parts of the others. Parts next to each other share their corners to the bit. *face_of: of each face
- * of `out` the mesh's own; malloc'd. ABBE_NO_MEMORY. */
+/* Its vertices, and those of the parts behind them; faces that are not cut, in their order, and
+ * then the parts of the others. Parts next to each other share their corners to the bit. *face_of:
+ * of each face of `out` the mesh's own; malloc'd. ABBE_NO_MEMORY. */
 abbe_result abbe_cut_mesh_make(const abbe_mesh *mesh, const abbe_view *view, abbe_mesh *out,
                                uint32_t **face_of, abbe_error *error);
 
@@ -59,9 +59,9 @@ typedef struct abbe_faces_target {
   size_t width, height;
   GLfloat distance; /* that is kept where nothing is drawn, m */
   bool back;
-  bool both;   /* or front and back, the nearest */
+  bool both;                      /* or front and back, the nearest */
   const abbe_seen_meshes *meshes; /* as the camera sees them; NULL: the scene's */
-  bool coarse; /* of fewer triangles, where meshes have many */
+  bool coarse;                    /* of fewer triangles, where meshes have many */
 } abbe_faces_target;
 
 abbe_result abbe_refractor_faces_make(const abbe_gpu_scene *scene, abbe_refractor_faces *out,

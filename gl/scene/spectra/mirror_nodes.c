@@ -28,10 +28,6 @@ double abbe_mirror_reflected(double n, double k, double factor) {
   return fmax(1 - factor * taken_by(n, k), 0);
 }
 
-double abbe_mirror_node_straight(const abbe_mirror_node *node) {
-  return abbe_mirror_reflected(node->n, node->k, node->factor);
-}
-
 /* A system of three diagonals, of least squares, within 0 and 1: by turns, each corner where it
  * does best beside its neighbours. */
 static void solve(size_t count, const double *beside, const double *middle, const double *right,

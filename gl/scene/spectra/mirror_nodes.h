@@ -20,9 +20,6 @@ typedef struct abbe_mirror_node {
   double factor, n, k;
 } abbe_mirror_node;
 
-/* At normal incidence, 0 to 1. */
-double abbe_mirror_node_straight(const abbe_mirror_node *node);
-
 /* The factor with which n + i k reflects so much at normal incidence. */
 double abbe_mirror_factor(double n, double k, double reflected);
 /* What that factor reflects. */

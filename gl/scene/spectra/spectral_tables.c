@@ -58,8 +58,12 @@ static void fill_half(const abbe_scene *scene, const abbe_plan *plan, size_t r,
   *range = fmaxf(*range, (float)range_of(&h));
 }
 
-void abbe_tint_nodes_fill(const abbe_scene *scene, const abbe_plan *plan, const abbe_wavelengths *w,
-                          float (*out)[ABBE_TINT_TEXELS][4]) {
+/* out: [w->count][refractors] attenuation of two parts of the half of the band below the node, and
+ * of two above it, each of a half's brightness, as they leave their mean of a usual path; then the
+ * most by which it differs within a half, and abbe_tint_of(). Of one node both halves are the whole
+ * band. */
+static void tint_nodes_fill(const abbe_scene *scene, const abbe_plan *plan,
+                            const abbe_wavelengths *w, float (*out)[ABBE_TINT_TEXELS][4]) {
   const bool one = w->count == 1;
   abbe_weights_range light;
   abbe_weights_range_make_by(plan->desc.observer, abbe_scene_illuminant(scene), w->edge_nm[0],
@@ -208,8 +212,8 @@ static abbe_result fill_tints(const abbe_scene *scene, const abbe_plan *plan,
   t->tints =
       calloc(coarse + (refines ? t->all.count * plan->refractor_count : 0), sizeof *t->tints);
   if (t->tints == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for attenuation");
-  abbe_tint_nodes_fill(scene, plan, &t->coarse, t->tints);
-  if (refines) abbe_tint_nodes_fill(scene, plan, &t->all, t->tints + coarse);
+  tint_nodes_fill(scene, plan, &t->coarse, t->tints);
+  if (refines) tint_nodes_fill(scene, plan, &t->all, t->tints + coarse);
   return ABBE_OK;
 }
 

@@ -21,13 +21,6 @@
 
 enum { ABBE_TINT_TEXELS = 2 };
 
-/* out: [w->count][refractors] attenuation of two parts of the half of the band below the node, and
- * of two above it, each of a half's brightness, as they leave their mean of a usual path; then the
- * most by which it differs within a half, and abbe_tint_of(). Of one node both halves are the whole
- * band. */
-void abbe_tint_nodes_fill(const abbe_scene *scene, const abbe_plan *plan, const abbe_wavelengths *w,
-                          float (*out)[ABBE_TINT_TEXELS][4]);
-
 typedef struct abbe_spectral_tables {
   abbe_wavelengths all;    /* the plan's */
   abbe_wavelengths coarse; /* those that every photon takes, with bands of their own; or all */

@@ -250,7 +250,6 @@ static void free_taken(taken *t) {
 static void take(const abbe_scene *scene, const abbe_render_desc *desc, bool awkward, taken *out) {
   const bool thesis = abbe_method_of(desc->profile)->own_passes;
   abbe_renderer *renderer = NULL;
-  abbe_renderer_picture p;
   double ms = 0;
 #define ENTRY(what, call)                                                                          \
   do {                                                                                             \
@@ -262,7 +261,6 @@ static void take(const abbe_scene *scene, const abbe_render_desc *desc, bool awk
   ENTRY("frame", draw_frame(renderer));
   if (!thesis) ENTRY("baseline", OK(abbe_renderer_baseline(renderer, &ms, &error)));
   ENTRY("read", read_picture(renderer, true, &out->picture));
-  ENTRY("texture", OK(abbe_renderer_texture(renderer, &p, &error)));
   ENTRY("read_map", read_map(renderer, 0, &out->map));
   if (!thesis) {
     ENTRY("read_map_bands", OK(abbe_renderer_read_map_bands(renderer, 0, 4, &out->bands, &error)));

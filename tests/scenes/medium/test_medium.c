@@ -53,30 +53,3 @@ TEST(coefficients_go_by_wavelength) {
   assert_near(abbe_medium_scattering(NULL, 500), 0, 0);
   assert_false(abbe_medium_is_coloured(NULL, 380, 780));
 }
-
-/* What of a line is in a box: places of it, asked one by one. */
-TEST(a_box_cuts_lines) {
-  const double min[3] = {-1, 0, 2}, max[3] = {0.5, 1, 3};
-  uint64_t random = 5;
-  size_t met = 0;
-  for (int i = 0; i < 400; i++) {
-    double o[3], d[3], from = 0, to = INFINITY;
-    for (int k = 0; k < 3; k++) {
-      const double size = max[k] - min[k];
-      d[k] = i % 7 == k ? 0 : random_between(&random, -1, 1);
-      o[k] = random_between(&random, min[k] - 0.4 * size, max[k] + 0.4 * size) - 5 * d[k];
-    }
-    const bool some = abbe_medium_clip(min, max, o, d, &from, &to);
-    met += some;
-    for (int j = 0; j < 200; j++) {
-      const double t = 0.05 * (j + 0.5);
-      bool inside = true;
-      for (int k = 0; k < 3; k++) {
-        const double x = o[k] + t * d[k];
-        inside = inside && x > min[k] && x < max[k];
-      }
-      assert_int_equal(inside, some && t > from && t < to);
-    }
-  }
-  assert_int_in_range(met, 20, 380);
-}

@@ -5,8 +5,13 @@
 #include "scenes/mesh/mesh.h"
 #include "scenes/shapes/knot.h"
 
-static const abbe_knot plain = {
-    .major = 0.05, .minor = 0.025, .radius = 0.008, .along = 400, .across = 32};
+static const abbe_knot plain = {.turns = 2,
+                                .coils = 3,
+                                .major = 0.05,
+                                .minor = 0.025,
+                                .radius = 0.008,
+                                .along = 400,
+                                .across = 32};
 
 static abbe_mesh_report report_of(const abbe_mesh *m) {
   abbe_mesh_report report;
@@ -17,20 +22,33 @@ static abbe_mesh_report report_of(const abbe_mesh *m) {
   return report;
 }
 
+/* Of the middle line, by its chords. */
+static double length_of(const abbe_knot *k) {
+  enum { STEPS = 20000 };
+  double sum = 0, before[3] = {0};
+  for (int i = 0; i <= STEPS; i++) {
+    const double t = 2 * ABBE_PI * i / STEPS, p = (double)k->turns * t, q = (double)k->coils * t;
+    const double reach = k->major + k->minor * cos(q);
+    const double at[3] = {reach * cos(p), reach * sin(p), k->minor * sin(q)};
+    if (i > 0) sum += hypot(hypot(at[0] - before[0], at[1] - before[1]), at[2] - before[2]);
+    memcpy(before, at, sizeof at);
+  }
+  return sum;
+}
+
 /* By Pappus: the area across times the length of the middle line. */
 TEST(a_tube_has_its_volume) {
   abbe_mesh m;
   OK(abbe_knot_make(&plain, &m, &error));
   assert_int_equal(m.face_count, 2 * 400 * 32);
-  const double right = ABBE_PI * 0.008 * 0.008 * abbe_knot_length(&plain);
+  const double right = ABBE_PI * 0.008 * 0.008 * length_of(&plain);
   assert_near(report_of(&m).volume / right, 1, 0.01); /* of 32 corners for a circle: -0.0064 */
   abbe_mesh_free(&m);
 }
 
-/* A ring, once around: its length, and that a tube has room up to its hole. */
+/* A ring, once around: a tube has room up to its hole. */
 TEST(a_ring_is_the_simplest_knot) {
   const abbe_knot ring = {.major = 1, .minor = 1e-4, .radius = 0.1, .turns = 1, .coils = 1};
-  assert_near(abbe_knot_length(&ring), 2 * ABBE_PI, 1e-4);
   assert_near(abbe_knot_room(&ring), 1, 1e-3);
 }
 

@@ -28,7 +28,6 @@ TEST(the_text_says_what_it_is) {
     assert_int_equal(abbe_import_detect(rows[i].text, strlen(rows[i].text)), rows[i].format);
   static const char wide[] = "\xff\xfeN\0M\0 \0A\0\n\0";
   assert_int_equal(abbe_import_detect(wide, sizeof wide - 1), ABBE_IMPORT_AGF);
-  assert_string_equal(abbe_import_format_name(ABBE_IMPORT_RII), "rii");
 }
 
 /* What a remark says is not what the file is. */

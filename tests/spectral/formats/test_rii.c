@@ -219,8 +219,6 @@ TEST(what_holds_no_index_is_refused) {
   refuses("DATA:\n- {type: tabulated n}\n", ABBE_SCHEMA, "wants its 'data', 2 numbers a line");
   refuses("DATA:\n- {type: tabulated n, data: nothing}\n", ABBE_SCHEMA, "no usable line");
   refuses("DATA:\n- 3\n", ABBE_SCHEMA, "wants a 'type'");
-  abbe_material m;
-  assert_int_equal(abbe_rii_load("/nowhere.yml", NULL, &m, NULL, NULL), ABBE_IO);
 }
 
 static void end(void) {

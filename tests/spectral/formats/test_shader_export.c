@@ -172,5 +172,4 @@ TEST(failures_are_told) {
   abbe_material bad = {.name = (char[]){"bad"}};
   free(written(ABBE_SHADER_GLTF, &bad, 1));
   assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], 1);
-  assert_string_equal(abbe_shader_name(ABBE_SHADER_POVRAY), "povray");
 }

@@ -124,7 +124,8 @@ static void trace_layer(abbe_scene *scene, double middle, double height, size_t 
     const size_t y = abbe_image_find_channel(&map, "Y"),
                  e = abbe_image_find_channel(&map, "stderr.Y");
     for (size_t i = 0; i < side * side; i++) {
-      const double area = abbe_map_layout_texel_area(&layout, side, side, 0, 0);
+      const double area = abbe_map_layout_texel_size(&layout, 0, side, 0) *
+                          abbe_map_layout_texel_size(&layout, 1, side, side - 1);
       sum[i] += (double)map.data[i * map.channels + y] / area / FLOORS;
       square[i] += pow((double)map.data[i * map.channels + e] / area / FLOORS, 2);
     }
