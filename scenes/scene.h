@@ -18,6 +18,7 @@
 #include "scenes/mesh/mesh.h"
 #include "scenes/shapes/brushing.h"
 #include "scenes/shapes/convex.h"
+#include "spectral/dispersion/conditions.h"
 #include "spectral/materials/material_table.h"
 #include "spectral/spectrum.h"
 
@@ -136,6 +137,7 @@ typedef struct abbe_scene {
   abbe_material_table table;
   double ambient;    /* W/m2: uniform irradiance on every receiver, unshadowed by definition */
   double background; /* W/(m2 sr): radiance seen where nothing is hit */
+  abbe_conditions conditions; /* of refractors and the air, as the file gives them */
   bool transparent; /* the camera sees nothing behind the objects: a picture to be laid over another
                        (view/coverage.h); what they refract and reflect stays */
 } abbe_scene;

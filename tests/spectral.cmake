@@ -1,5 +1,5 @@
 foreach(name wavelengths spectrum optics microfacets uniaxial
-        dispersion index_points index_difference fit points csv_points povray_index
+        conditions dispersion index_points index_difference fit points csv_points povray_index
         material material_numbers material_query material_table absorption conductor glass_distance convert
         table_compare
         agf agf_formula agf_write rii rii_write csv_write material_write material_import material_table_load

@@ -80,6 +80,9 @@ void abbe_materials_add_numbers(cJSON *to, const abbe_material *material);
 void abbe_materials_round(abbe_dispersion *dispersion);
 /* density_g_cm3, null where the record has none. */
 void abbe_materials_add_density(cJSON *to, const abbe_material *material);
+/* The temperature of its measurement, that which it is shown at, and dn/dT. */
+void abbe_materials_print_conditions(const abbe_material *material);
+void abbe_materials_add_conditions(cJSON *to, const abbe_material *material);
 void abbe_materials_add_pair(cJSON *to, const char *key, double a, double b);
 
 /* What a conversion met on its way, told to a person or to a program. */

@@ -21,6 +21,7 @@ typedef struct request {
   const char *program, *name, *table;
   double at[MAX_AT];
   size_t at_count;
+  abbe_conditions conditions;
   bool json, fit;
 } request;
 
@@ -114,7 +115,7 @@ static void show_formula(const abbe_material *m) {
   show_extraordinary(m);
   printf("  range         %g to %g nm%s\n", m->min_nm, m->max_nm,
          m->extrapolate ? ", extrapolated outside" : "");
-  if (!isnan(m->temperature_c)) printf("  temperature   %g C\n", m->temperature_c);
+  abbe_materials_print_conditions(m);
   if (m->catalogue.density_g_cm3 > 0)
     printf("  density       %g g/cm3\n", m->catalogue.density_g_cm3);
 }
@@ -162,6 +163,7 @@ static void show_numbers(const abbe_material *m) {
   abbe_material_published p;
   abbe_material_numbers_make(m, &n);
   abbe_material_published_make(m, &p);
+  if (m->dispersion.shift.on) p = (abbe_material_published){0}; /* of other conditions */
   printf("  n_d %s   V_d %s   B-G %s   n_F - n_C %s\n",
          abbe_materials_number(text[0], sizeof text[0], "%.6f", n.n_d),
          abbe_materials_number(text[1], sizeof text[1], "%.3f", n.v_d),
@@ -195,7 +197,7 @@ static abbe_result show_text(const request *r, const abbe_material *m, const abb
     show_numbers(m);
   show_formula(m);
   if (!metal) show_absorption(m);
-  if (!metal) show_fits(m);
+  if (!metal && !m->dispersion.shift.on) show_fits(m);
   printf("  source        %s\n", m->source);
   if (m->comment != NULL) printf("  comment       %s\n", m->comment);
   if (m->warning != NULL) printf("  warning       %s\n", m->warning);
@@ -281,6 +283,7 @@ static void add_record(cJSON *to, const abbe_material *m) {
   abbe_materials_add_pair(to, "range_nm", m->min_nm, m->max_nm);
   cJSON_AddBoolToObject(to, "extrapolate", m->extrapolate);
   cJSON_AddNumberToObject(to, "temperature_c", m->temperature_c);
+  abbe_materials_add_conditions(to, m);
   abbe_materials_add_density(to, m);
   if (m->attenuation != NULL)
     add_points(to, "attenuation_per_m", m->attenuation, NULL);
@@ -289,7 +292,7 @@ static void add_record(cJSON *to, const abbe_material *m) {
   abbe_materials_add_text(to, "source", m->source);
   abbe_materials_add_text(to, "warning", m->warning);
   cJSON *fits = cJSON_AddArrayToObject(to, "fits");
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < 2 && !m->dispersion.shift.on; i++) {
     const abbe_material_fit *fit = &m->fit[i];
     cJSON *item = fit->terms > 0 ? cJSON_CreateObject() : NULL;
     if (item == NULL || !cJSON_AddItemToArray(fits, item)) continue;
@@ -356,11 +359,13 @@ static abbe_result show_json(const request *r, const abbe_material_table *table,
   cJSON *list = metal ? NULL : cJSON_AddArrayToObject(root, "n");
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < r->at_count && !metal && result == ABBE_OK; i++) {
-    double n = 0;
+    double n = 0, absolute = 0;
     result = abbe_material_n(m, r->at[i], &n, error);
+    abbe_material_n_absolute(m, r->at[i], &absolute, NULL);
     cJSON *item = cJSON_CreateObject();
     cJSON_AddNumberToObject(item, "lambda_nm", r->at[i]);
     cJSON_AddNumberToObject(item, "n", n);
+    cJSON_AddNumberToObject(item, "n_absolute", absolute);
     if (abbe_material_is_uniaxial(m))
       cJSON_AddNumberToObject(item, "n_extraordinary", extraordinary_at(m, r->at[i]));
     cJSON_AddNumberToObject(item, "attenuation_per_m", abbe_material_attenuation(m, r->at[i]));
@@ -381,10 +386,14 @@ static abbe_result show_json(const request *r, const abbe_material_table *table,
 
 /* ---- arguments ---- */
 
-enum { KEY_AT = ABBE_MATERIALS_KEY_OWN, KEY_FIT };
+enum { KEY_AT = ABBE_MATERIALS_KEY_OWN, KEY_TEMPERATURE, KEY_PRESSURE, KEY_FIT };
 
 static const struct argp_option options[] = {
     {"at", KEY_AT, "NM", 0, "also the index at this wavelength; may be repeated", 0},
+    {"temperature", KEY_TEMPERATURE, "C", 0,
+     "the indices at this temperature of material and air, Celsius", 0},
+    {"pressure", KEY_PRESSURE, "ATM", 0,
+     "and relative to air of this pressure; 0: relative to vacuum", 0},
     ABBE_MATERIALS_TABLE_OPTION,
     ABBE_MATERIALS_JSON_OPTION,
     {"fit", KEY_FIT, NULL, 0,
@@ -397,6 +406,14 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case KEY_AT:
     if (r->at_count == MAX_AT) argp_error(state, "more than %d --at", MAX_AT);
     r->at[r->at_count++] = abbe_command_number(r->program, "--at", arg, 1, 1e6);
+    return 0;
+  case KEY_TEMPERATURE:
+    r->conditions.temperature_c = abbe_command_number(
+        r->program, "--temperature", arg, ABBE_CONDITIONS_LEAST_C, ABBE_CONDITIONS_MOST_C);
+    return 0;
+  case KEY_PRESSURE:
+    r->conditions.pressure_atm =
+        abbe_command_number(r->program, "--pressure", arg, 0, ABBE_CONDITIONS_MOST_ATM);
     return 0;
   case ABBE_MATERIALS_KEY_TABLE:
     r->table = arg;
@@ -425,7 +442,8 @@ static const struct argp parser = {
            "  abbe materials show diamond --at 430.8 --at 686.7\n"
            "  abbe materials show n-bk7 --at 587.5618 --json\n"
            "  abbe materials show my-glass --table glasses.yaml --fit\n"
-           "  abbe materials show gold --at 550\n\n"
+           "  abbe materials show gold --at 550\n"
+           "  abbe materials show n-bk7 --temperature -40 --pressure 0\n\n"
            "A wavelength outside a record's range is an error, unless the record says "
            "'extrapolate: true'; the answer then says so.",
 };
@@ -449,11 +467,16 @@ static abbe_result answer(const request *r, const abbe_material_table *table, ab
                                            : abbe_material_n(m, r->at[i], &n, error);
   }
   if (result != ABBE_OK) return result;
-  if (r->fit) return show_fit_yaml(m, error);
+  abbe_material here = *m; /* owns nothing of its own */
+  if (abbe_conditions_given(&r->conditions))
+    result = abbe_material_place(&here, &r->conditions, error);
+  if (result != ABBE_OK) return result;
+  if (r->fit) return show_fit_yaml(&here, error);
   abbe_material_table known;
   abbe_findings found = {0};
   result = abbe_material_table_load(NULL, &known, error);
   if (result == ABBE_OK) result = abbe_check_material(m, &known, &found, error);
+  if (result == ABBE_OK) m = &here;
   if (result == ABBE_OK)
     result = r->json ? show_json(r, table, m, &found, error) : show_text(r, m, &found, error);
   abbe_findings_free(&found);
@@ -463,7 +486,7 @@ static abbe_result answer(const request *r, const abbe_material_table *table, ab
 
 int abbe_materials_show(int argc, char **argv) {
   static request r;
-  r = (request){.program = argv[0]};
+  r = (request){.program = argv[0], .conditions = {NAN, NAN}};
   abbe_error error = {0};
   abbe_materials_parse(&parser, argc, argv, &r);
   check(&r);

@@ -186,10 +186,21 @@ static void find_hidden_lamps(const abbe_scene *scene, abbe_scene_doubts *out) {
     }
 }
 
+static void find_cold_metals(const abbe_scene *scene, abbe_scene_doubts *out) {
+  const double here_c = scene->conditions.temperature_c;
+  for (size_t i = 0; i < scene->object_count && !isnan(here_c); i++) {
+    const abbe_object *o = &scene->object[i];
+    if (o->conductor != NULL && o->conductor->temperature_c != here_c)
+      doubt(out, "the object '%.60s' has n and k of %.60s as they were measured, not at %g C",
+            o->name, o->conductor->name, here_c);
+  }
+}
+
 void abbe_scene_doubt(const abbe_scene *scene, abbe_scene_doubts *out) {
   out->count = 0;
   find_names(scene, out);
   find_far_eye(scene, out);
   find_sunk(scene, out);
   find_hidden_lamps(scene, out);
+  find_cold_metals(scene, out);
 }

@@ -9,6 +9,7 @@
 #include "spectral/formats/material_table_load.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -106,6 +107,35 @@ static abbe_result read_brightness(abbe_yaml *yaml, abbe_yaml_node root, abbe_sc
   return abbe_yaml_get_number(yaml, root, "background", 0, most, &out->background, error);
 }
 
+static abbe_result read_conditions(abbe_yaml *yaml, abbe_yaml_node root, abbe_conditions *out,
+                                   abbe_error *error) {
+  *out = (abbe_conditions){NAN, NAN};
+  const abbe_result result =
+      abbe_yaml_get_number(yaml, root, "temperature", ABBE_CONDITIONS_LEAST_C,
+                           ABBE_CONDITIONS_MOST_C, &out->temperature_c, error);
+  if (result != ABBE_OK) return result;
+  return abbe_yaml_get_number(yaml, root, "pressure", 0, ABBE_CONDITIONS_MOST_ATM,
+                              &out->pressure_atm, error);
+}
+
+/* The materials of refractors; a metal's n and k are known as they were measured alone. */
+static abbe_result place_materials(abbe_yaml *yaml, abbe_yaml_node root, abbe_scene *scene,
+                                   abbe_error *error) {
+  abbe_error why;
+  if (!abbe_conditions_given(&scene->conditions)) return ABBE_OK;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *o = &scene->object[i];
+    if (o->material == NULL) continue;
+    abbe_material *m = o->own_material != NULL
+                           ? o->own_material
+                           : &scene->table.material[o->material - scene->table.material];
+    if (abbe_material_place(m, &scene->conditions, &why) != ABBE_OK)
+      return abbe_yaml_fail(yaml, abbe_yaml_get(yaml, root, "temperature"), error,
+                            "'temperature': %s", why.text);
+  }
+  return ABBE_OK;
+}
+
 static abbe_result read_scene(abbe_yaml *yaml, const char *folder,
                               const abbe_scene_options *options, abbe_scene *out,
                               abbe_error *error) {
@@ -114,6 +144,7 @@ static abbe_result read_scene(abbe_yaml *yaml, const char *folder,
     return abbe_yaml_fail(yaml, root, error, "a scene must be a mapping (key: value)");
   abbe_result result = abbe_yaml_get_string(yaml, root, "description", &out->description, error);
   if (result == ABBE_OK) result = read_brightness(yaml, root, out, error);
+  if (result == ABBE_OK) result = read_conditions(yaml, root, &out->conditions, error);
   if (result == ABBE_OK) result = abbe_scene_value_time(yaml, &out->time, error);
   if (result == ABBE_OK) result = abbe_camera_read(yaml, root, &out->camera, error);
   if (result == ABBE_OK) result = abbe_medium_file_read(yaml, root, true, &out->medium, error);
@@ -127,6 +158,7 @@ static abbe_result read_scene(abbe_yaml *yaml, const char *folder,
   if (result == ABBE_OK) result = read_environment(yaml, root, folder, out, error);
   if (result == ABBE_OK) result = read_table(yaml, root, folder, options, out, error);
   if (result == ABBE_OK) result = read_objects(yaml, root, folder, out, error);
+  if (result == ABBE_OK) result = place_materials(yaml, root, out, error);
   if (result == ABBE_OK) result = abbe_camera_frame(yaml, root, out, error);
   return result == ABBE_OK ? abbe_scene_check(out, error) : result;
 }

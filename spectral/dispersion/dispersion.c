@@ -77,7 +77,7 @@ static double physical(double n) {
   return isfinite(n) && n > 0 ? n : NAN;
 }
 
-double abbe_dispersion_n(const abbe_dispersion *dispersion, double lambda_nm) {
+static double index_of_source(const abbe_dispersion *dispersion, double lambda_nm) {
   if (!(lambda_nm > 0) || !isfinite(lambda_nm)) return NAN;
   const double *c = dispersion->c;
   size_t count = dispersion->count;
@@ -113,6 +113,11 @@ double abbe_dispersion_n(const abbe_dispersion *dispersion, double lambda_nm) {
     break;
   }
   return NAN;
+}
+
+double abbe_dispersion_n(const abbe_dispersion *dispersion, double lambda_nm) {
+  const double n = index_of_source(dispersion, lambda_nm);
+  return dispersion->shift.on ? physical(abbe_index_shift_n(&dispersion->shift, n, lambda_nm)) : n;
 }
 
 bool abbe_dispersion_nk(const abbe_dispersion *dispersion, double lambda_nm, double *n, double *k) {

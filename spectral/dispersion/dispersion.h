@@ -2,13 +2,14 @@
  *
  * The models are the published formulas with their own coefficients; lambda is in nm in this
  * interface and in micrometres inside the formulas. Indices are relative to air at the source's
- * conditions, wavelengths in air, unless the material's record says otherwise. It knows nothing
- * of names, tables or files.
+ * conditions, wavelengths in air, unless the material's record says otherwise, or to the air of its
+ * shift. It knows nothing of names, tables or files.
  */
 #ifndef ABBE_SPECTRAL_DISPERSION_DISPERSION_H
 #define ABBE_SPECTRAL_DISPERSION_DISPERSION_H
 
 #include "base/error.h"
+#include "spectral/dispersion/conditions.h"
 #include "spectral/spectrum.h"
 
 #include <stdbool.h>
@@ -47,6 +48,7 @@ typedef struct abbe_dispersion {
   double c[ABBE_DISPERSION_MAX_COEFFICIENTS];
   abbe_spectrum *table;                         /* TABULATED, CONDUCTOR: n at nm; owned; else NULL */
   abbe_spectrum *k;                             /* CONDUCTOR: k at the nm of n; owned; else NULL */
+  abbe_index_shift shift;                       /* to a scene's conditions; zeroed in tables */
 } abbe_dispersion;
 
 void abbe_dispersion_free(abbe_dispersion *dispersion);

@@ -132,8 +132,10 @@ static abbe_result read_catalogue(reader *r, abbe_material *m) {
   if (beyond > 0)
     abbe_report_add(r->report, ABBE_NOTE_LOST, g->line, g->name,
                     "%zu of its numbers besides the index are too large to be true", beyond);
+  /* zeros alone are a record that was not filled in */
   double temperature = abbe_agf_number(&g->td, 6, NAN);
-  m->temperature_c = temperature >= -273.15 && temperature <= 1e4 ? temperature : NAN;
+  bool told = temperature != 0 || abbe_material_has_thermal(m);
+  m->temperature_c = told && temperature >= -273.15 && temperature <= 1e4 ? temperature : NAN;
   if (status >= 0 && status < 5) return keep_text(r, statuses[(int)status], &c->status);
   return ABBE_OK;
 }

@@ -66,11 +66,11 @@ static int numbers_at(reader *r, abbe_yaml_node node, double *out, int max) {
 }
 
 static bool number_at(reader *r, abbe_yaml_node mapping, const char *key, double *out) {
-  if (!abbe_yaml_is_mapping(r->yaml, mapping)) return false;
   double value;
-  if (numbers_at(r, abbe_yaml_get(r->yaml, mapping, key), &value, 1) != 1) return false;
-  *out = value;
-  return true;
+  const bool there = abbe_yaml_is_mapping(r->yaml, mapping) &&
+                     numbers_at(r, abbe_yaml_get(r->yaml, mapping, key), &value, 1) == 1;
+  if (there) *out = value;
+  return there;
 }
 
 /* ---- formulas ---- */
@@ -270,8 +270,7 @@ static abbe_result take_metal(reader *r, abbe_yaml_node root) {
   abbe_result result = abbe_conductor_of_metal(&r->n, &r->k, r->m, &made, r->error);
   if (made)
     note(r, ABBE_NOTE_CHANGED, root,
-         "light does not get into it (k is above 0.08 in most of the visible): it is taken as a "
-         "conductor, for mirrors");
+         "k is above 0.08 in most of the visible: it is taken as a conductor, for mirrors");
   return result;
 }
 
@@ -284,17 +283,21 @@ static abbe_result read_text(reader *r, abbe_yaml_node root, const char *key, ch
   if (text == NULL) return abbe_error_set(r->error, ABBE_NO_MEMORY, "no memory for a text");
   if (strchr(html, '<') != NULL && strchr(text, '<') == NULL)
     note(r, ABBE_NOTE_CHANGED, abbe_yaml_get(r->yaml, root, key), "references lose their HTML");
-  if (text[0] != '\0') {
+  if (text[0] != '\0')
     *out = text;
-    return ABBE_OK;
-  }
-  free(text);
+  else
+    free(text);
   return ABBE_OK;
 }
 
 static bool is_true(reader *r, abbe_yaml_node mapping, const char *key) {
   const char *text = abbe_yaml_text(r->yaml, abbe_yaml_get(r->yaml, mapping, key));
   return text != NULL && (strcmp(text, "true") == 0 || strcmp(text, "True") == 0);
+}
+
+/* Makers' 20, 23 and 25 C stand as whole kelvin, and dn/dT counts from theirs. */
+static double zero_k(double kelvin) {
+  return kelvin == 293 || kelvin == 296 || kelvin == 298 ? 273 : ZERO_CELSIUS_K;
 }
 
 static abbe_result read_conditions(reader *r, abbe_yaml_node root) {
@@ -305,10 +308,9 @@ static abbe_result read_conditions(reader *r, abbe_yaml_node root) {
     if (!abbe_yaml_is_mapping(r->yaml, node)) continue;
     double kelvin;
     if (number_at(r, node, "temperature", &kelvin) && kelvin >= 0 && kelvin <= 1e4)
-      r->m->temperature_c = abbe_number_tidy(kelvin - ZERO_CELSIUS_K);
-    absolute = absolute || is_true(r, node, "n_absolute") || is_true(r, node, "n_is_absolute");
-    vacuum =
-        vacuum || is_true(r, node, "wavelength_vacuum") || is_true(r, node, "wavelength_is_vacuum");
+      r->m->temperature_c = abbe_number_tidy(kelvin - zero_k(kelvin));
+    absolute |= is_true(r, node, "n_absolute") || is_true(r, node, "n_is_absolute");
+    vacuum |= is_true(r, node, "wavelength_vacuum") || is_true(r, node, "wavelength_is_vacuum");
   }
   if (!absolute && !vacuum) return ABBE_OK;
   char text[240];
@@ -391,10 +393,10 @@ static abbe_result read_properties(reader *r, abbe_yaml_node root) {
   abbe_yaml_node node = abbe_yaml_get(r->yaml, root, "PROPERTIES");
   if (!abbe_yaml_is_mapping(r->yaml, node)) node = abbe_yaml_get(r->yaml, root, "SPECS");
   if (!abbe_yaml_is_mapping(r->yaml, node)) return ABBE_OK;
-  double n_d = 0, v_d = 0, dpgf = 0;
+  double n_d = 0, v_d = 0;
   if (number_at(r, node, "nd", &n_d) && n_d >= 1e-3 && n_d < 1e3) r->m->published_n_d = n_d;
   if (number_at(r, node, "Vd", &v_d) && fabs(v_d) < 1e6) r->m->published_v_d = v_d;
-  if (number_at(r, node, "dPgF", &dpgf)) c->dpgf = dpgf;
+  number_at(r, node, "dPgF", &c->dpgf);
   double density = value_of(r, abbe_yaml_get(r->yaml, node, "density"), 0);
   c->density_g_cm3 = abbe_number_tidy(fmax(density, 0) / 1000);
   for (size_t i = 0; i < 2; i++)

@@ -190,6 +190,71 @@ abbe_result abbe_material_n(const abbe_material *material, double lambda_nm, dou
   return index_of(material, &material->dispersion, lambda_nm, n, error);
 }
 
+/* ---- at other conditions ---- */
+
+bool abbe_material_has_thermal(const abbe_material *material) {
+  for (int i = 0; i < 6; i++)
+    if (material->catalogue.thermal[i] != 0) return true;
+  return false;
+}
+
+static const double USUAL_C = 20; /* where a source is silent */
+
+/* NULL, or why the index is not known at another temperature than its measurement's. */
+static const char *no_thermal(const abbe_material *m) {
+  if (isnan(m->temperature_c)) return "its record does not say at what temperature its index is";
+  if (!abbe_material_has_thermal(m))
+    return "its record gives no dn/dT, which is not 0 for that; 'catalogue: thermal' takes six "
+           "coefficients";
+  if (abbe_material_is_uniaxial(m)) return "its record has one dn/dT for two indices";
+  return m->catalogue.thermal[5] < 0
+             ? "its lambda_tk is negative, of which programs square it and others do not"
+             : NULL;
+}
+
+static bool is_air(const abbe_material *m) {
+  return m->dispersion.model == ABBE_DISPERSION_CONSTANT && m->dispersion.c[0] == 1;
+}
+
+abbe_result abbe_material_place(abbe_material *material, const abbe_conditions *at,
+                                abbe_error *error) {
+  abbe_material *m = material;
+  const double own_c = isnan(m->temperature_c) ? USUAL_C : m->temperature_c;
+  abbe_index_shift shift = {.on = true,
+                            .from_c = own_c,
+                            .to_c = isnan(at->temperature_c) ? own_c : at->temperature_c,
+                            .pressure_atm = isnan(at->pressure_atm) ? 1 : at->pressure_atm};
+  if (!(shift.to_c >= ABBE_CONDITIONS_LEAST_C && shift.to_c <= ABBE_CONDITIONS_MOST_C) ||
+      !(shift.pressure_atm >= 0 && shift.pressure_atm <= ABBE_CONDITIONS_MOST_ATM))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%g C and %g atm are no conditions from %g to %g C and 0 to %g atm",
+                          shift.to_c, shift.pressure_atm, ABBE_CONDITIONS_LEAST_C,
+                          ABBE_CONDITIONS_MOST_C, ABBE_CONDITIONS_MOST_ATM);
+  if (abbe_material_is_conductor(m))
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%s is a conductor: its n and k are known as they were measured alone",
+                          m->name);
+  const bool warmed = !isnan(at->temperature_c) && at->temperature_c != m->temperature_c;
+  const char *why = warmed && !is_air(m) ? no_thermal(m) : NULL;
+  if (why != NULL)
+    return abbe_error_set(error, ABBE_UNSUPPORTED, "%s has no index at %g C: %s", m->name,
+                          shift.to_c, why);
+  memcpy(shift.thermal, m->catalogue.thermal, sizeof shift.thermal);
+  m->dispersion.shift = shift;
+  m->extraordinary.shift = shift;
+  return ABBE_OK;
+}
+
+abbe_result abbe_material_n_absolute(const abbe_material *material, double lambda_nm, double *n,
+                                     abbe_error *error) {
+  const abbe_index_shift *s = &material->dispersion.shift;
+  const double own_c = isnan(material->temperature_c) ? USUAL_C : material->temperature_c;
+  const abbe_result result = abbe_material_n(material, lambda_nm, n, error);
+  if (result == ABBE_OK)
+    *n *= s->on ? abbe_air_n(lambda_nm, s->to_c, s->pressure_atm) : abbe_air_n(lambda_nm, own_c, 1);
+  return result;
+}
+
 bool abbe_material_is_uniaxial(const abbe_material *material) {
   return material->extraordinary.count > 0 || material->extraordinary.table != NULL;
 }

@@ -28,8 +28,8 @@ typedef struct abbe_material_fit {
 enum { ABBE_MATERIAL_MAX_NAME = 80 };
 
 /* What a maker's catalogue says about a glass besides its index. It is carried, not used, but for
- * the density, which weighs stones. 0 (NULL) means that the catalogue is silent, as it does in the
- * catalogues themselves. */
+ * the density, which weighs stones, and dn/dT. 0 (NULL) means that the catalogue is silent, as it
+ * does in the catalogues themselves. */
 typedef struct abbe_material_catalogue {
   char *code;                  /* the six-digit code of n_d and V_d, as printed: 517642.251 */
   char *status;                /* standard, preferred, obsolete, special or melt */
@@ -39,7 +39,8 @@ typedef struct abbe_material_catalogue {
   double expansion_range_k[4]; /* from, to of the first, from, to of the second, K; 0, 0: that of
                                   abbe_material_expansion_range_k */
   double dpgf;                 /* deviation of the partial dispersion P_gF from the normal line */
-  double thermal[6];           /* dn/dT: D0, D1, D2, E0, E1, lambda_tk (um); about temperature_c */
+  double thermal[6];           /* dn/dT: D0, D1, D2, E0, E1, lambda_tk (um); about temperature_c;
+                                  all 0: not known */
   size_t rating_count;         /* 0 or 6 */
   double ratings[6];           /* relative cost, then resistance: climate, stain, acid, alkali,
                                   phosphate; -1 where it is not known */
@@ -99,6 +100,19 @@ abbe_result abbe_material_check_name(const char *name, abbe_error *error);
  * conductor. */
 abbe_result abbe_material_n(const abbe_material *material, double lambda_nm, double *n,
                             abbe_error *error);
+
+/* Whether its record gives dn/dT. */
+bool abbe_material_has_thermal(const abbe_material *material);
+/* Takes its index, from now on, at those conditions; twice moves it from its record's again. A
+ * material of an index of exactly 1 is the air around, and stays. Where a temperature is not of its
+ * measurement, ABBE_UNSUPPORTED of what gives no dn/dT, or one for two indices, or a negative
+ * lambda_tk, which programs read in two ways; also of a conductor. ABBE_INVALID_ARGUMENT outside
+ * ABBE_CONDITIONS_LEAST_C to _MOST_C or _MOST_ATM. */
+abbe_result abbe_material_place(abbe_material *material, const abbe_conditions *at,
+                                abbe_error *error);
+/* Its absolute index there, n relative to vacuum; as abbe_material_n. */
+abbe_result abbe_material_n_absolute(const abbe_material *material, double lambda_nm, double *n,
+                                     abbe_error *error);
 
 /* Whether it is a uniaxial crystal: it has an extraordinary index besides. */
 bool abbe_material_is_uniaxial(const abbe_material *material);

@@ -26,6 +26,11 @@ typedef struct abbe_material_numbers {
 /* NaN where a line lies outside the record's range and the record does not extrapolate. */
 void abbe_material_numbers_make(const abbe_material *material, abbe_material_numbers *out);
 
+/* Gain of the index per kelvin, 1/K, mean from 10 K below a temperature to 10 K above it: [0]
+ * relative to air of 1 atm, [1] absolute; NaN where the record does not give it. */
+void abbe_material_dn_dt(const abbe_material *material, double lambda_nm, double temperature_c,
+                         double out[2]);
+
 /* n_d and V_d as the record has them from its source, each with half of its last digit; NaN
  * where it is silent. From its own keys, else from the words "n_d NUMBER" and "V_d NUMBER" in
  * its source. */

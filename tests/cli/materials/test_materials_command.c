@@ -28,6 +28,25 @@ TEST(json_answers_programs) {
   cJSON_Delete(json);
 }
 
+TEST(an_index_is_shown_at_a_temperature_and_a_pressure) {
+  assert_int_equal(run("materials show n-bk7 --temperature 30 --pressure 0.5"), 0);
+  assert_contains(output, "temperature   20 C\n  shown         at 30 C in air of 0.5 atm");
+  assert_contains(output, "dn/dT         3.0 relative to air, 1.6 to vacuum, 1e-6/K at e and 30 C");
+  assert_int_equal(run("materials show n-bk7 --temperature -40 --at 587.5618 --json"), 0);
+  cJSON *json = cJSON_Parse(output);
+  const cJSON *first = cJSON_GetArrayItem(cJSON_GetObjectItem(json, "n"), 0);
+  assert_near(number(first, "n"), 1.5166348, 5e-8);
+  assert_near(number(first, "n_absolute"), 1.5171546, 5e-8);
+  assert_near(number(cJSON_GetObjectItem(json, "shown_at"), "temperature_c"), -40, 0);
+  cJSON_Delete(json);
+  assert_int_equal(run("materials show diamond"), 0);
+  assert_contains(output, "dn/dT         not given");
+  assert_int_equal(run("materials show diamond --temperature 40"), 1);
+  assert_contains(output, "diamond has no index at 40 C: its record gives no dn/dT");
+  assert_int_equal(run("materials show n-bk7 --temperature 293"), 2);
+  assert_int_equal(run("materials show n-bk7 --pressure -1"), 2);
+}
+
 TEST(lists_hold_every_material) {
   assert_int_equal(run("materials list --json"), 0);
   cJSON *json = cJSON_Parse(output);
