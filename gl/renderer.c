@@ -1,323 +1,212 @@
-#include "gl/renderer.h"
+/* The frame. A renderer draws what light does, and then what the camera sees of it; whatever a
+ * change has left as it was is not drawn again. A published method draws all of it in its own way
+ * (gl/methods). */
+#include "gl/renderer_state.h"
 
-#include "gl/caustics/caustics.h"
+#include "base/clock.h"
 #include "gl/device/state.h"
-#include "gl/renderer_parts.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-/* A caller's progress may make another context current. */
-typedef struct watched {
-  abbe_context *context;
-  abbe_render_progress progress;
-  void *user;
-  abbe_result result;
-  abbe_error *error;
-  void (*compiling)(void *user);
-} watched;
-
-static bool watch(void *user, double done) {
-  watched *w = user;
-  const bool goes_on = w->progress(w->user, done);
-  w->result = abbe_context_make_current(w->context, w->error);
-  return goes_on && w->result == ABBE_OK;
+static abbe_result make_views(abbe_renderer *r, abbe_error *error) {
+  const abbe_result result = abbe_photon_lights_make(&r->scene, &r->views, error);
+  r->variant.wide = r->views.wide;
+  r->atlas.views = &r->views;
+  r->map.history = &r->history;
+  return result;
 }
 
-static void tell_compiling(void *user) {
-  const watched *w = user;
-  w->compiling(w->user);
+/* The map alone where no photons are followed: shaders read it. */
+static abbe_result make_caustics(abbe_renderer *r, abbe_error *error) {
+  return r->plan.caustics
+             ? abbe_caustics_make(&r->views, &r->layers, &r->atlas, &r->map, &r->variant,
+                                  &r->caustics, error)
+             : abbe_spectral_map_make(&r->views, &r->atlas, &r->variant, &r->map, error);
 }
 
-/* The scene and the request taken over, with whoever watches that. */
-static abbe_result change_watched(abbe_renderer *r, const abbe_scene *scene,
-                                  const abbe_render_desc *desc, abbe_error *error) {
-  abbe_error lost = {0};
-  abbe_render_desc request = desc != NULL ? *desc : (abbe_render_desc){0};
-  watched w = {r->context, request.progress, request.progress_user, ABBE_OK,
-               &lost,      request.compiling};
-  if (request.progress != NULL) request.progress = watch;
-  if (request.compiling != NULL) request.compiling = tell_compiling;
-  request.progress_user = &w;
-  const abbe_result result = abbe_renderer_parts_change(r, scene, &request, error);
-  r->plan.desc.progress = NULL;
-  r->plan.desc.compiling = NULL;
-  return w.result == ABBE_OK ? result : abbe_error_set(error, w.result, "%s", lost.text);
+static abbe_result draw_caustics(abbe_renderer *r, abbe_error *error) {
+  return r->plan.caustics ? abbe_caustics_run(&r->caustics, &r->untimed_ms, error) : ABBE_OK;
 }
 
-static void free_renderer(abbe_renderer *r) {
-  abbe_renderer_parts_free(r);
-  free(r);
+static void free_caustics(abbe_renderer *r) {
+  abbe_caustics_free(&r->caustics);
+  abbe_spectral_map_free(&r->map);
+  r->caustics = (abbe_caustics){0};
+  r->map = (abbe_spectral_map){0};
 }
 
-static abbe_result make_renderer(abbe_context *context, const abbe_scene *scene,
-                                 const abbe_render_desc *desc, abbe_renderer **out,
-                                 abbe_error *error) {
-  abbe_renderer *r = calloc(1, sizeof *r);
-  if (r == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a renderer");
-  r->context = context;
-  r->lacking = (1u << ABBE_PART_COUNT) - 1;
-  r->gpu.software = strstr(abbe_context_description(context), "llvmpipe") != NULL;
-  abbe_result result = abbe_gpu_make(abbe_context_gl(context), &r->gpu, error);
-  if (result == ABBE_OK) result = change_watched(r, scene, desc, error);
-  if (result != ABBE_OK) {
-    free_renderer(r);
-    return result;
+/* With the picture's beams, which are of the same photons. */
+static abbe_result draw_shafts(abbe_renderer *r, abbe_error *error) {
+  abbe_beam_use draws;
+  if (r->plan.shaft_count == 0) return ABBE_OK;
+  const bool shown = !r->seen && r->haze.caustics != NULL;
+  abbe_result result = shown ? abbe_haze_pass_begin(&r->haze, &draws, error) : ABBE_OK;
+  return result == ABBE_OK ? abbe_shaft_grid_run(&r->shafts, shown ? &draws : NULL, error) : result;
+}
+
+#define FREED(name, type) (abbe_##type##_free(&r->name), (void)memset(&r->name, 0, sizeof r->name))
+
+/* The passes in the order of the frame, each of which may read what is above it: PASS(stage, name,
+ * made, run, freed); a PART is not run. v is what shaders are compiled for. */
+#define FRAME(PASS, PART)                                                                          \
+  PART(LIGHT, views, make_views(r, error), FREED(views, photon_lights))                            \
+  PART(LIGHT, faces, abbe_refractor_faces_make(&r->scene, &r->faces, error), (void)0)              \
+  PASS(LIGHT, layers, abbe_light_layers_make(&r->views, &r->faces, &r->layers, error),             \
+       abbe_light_layers_run(&r->layers, error), FREED(layers, light_layers))                      \
+  PART(LIGHT, atlas, ABBE_OK, FREED(atlas, receiver_atlas))                                        \
+  PASS(LIGHT, caustics, make_caustics(r, error), draw_caustics(r, error), free_caustics(r))        \
+  PASS(LIGHT, shafts,                                                                              \
+       r->plan.shaft_count > 0 ? abbe_shaft_grid_make(&r->caustics, v, &r->shafts, error)          \
+                               : ABBE_OK,                                                          \
+       draw_shafts(r, error), abbe_shaft_grid_free(&r->shafts))                                    \
+  PASS(LIGHT, transports, abbe_transports_make(&r->scene, v, &r->transports, error),               \
+       abbe_transports_run(&r->transports, error),                                                 \
+       abbe_transports_free(&r->transports, r->pages_stay))                                        \
+  PART(EYE, meshes, abbe_seen_meshes_make(&r->scene, &r->camera.view, &r->meshes, error),          \
+       abbe_seen_meshes_free(&r->meshes))                                                          \
+  PASS(EYE, receivers, abbe_receivers_pass_make(&r->lighting, v, &r->receivers, error),            \
+       abbe_receivers_pass_run(&r->receivers, error), FREED(receivers, receivers_pass))            \
+  PASS(EYE, refraction,                                                                            \
+       abbe_refraction_pass_make(&r->lighting, &r->faces, &r->receivers, v, &r->kept,              \
+                                 &r->refraction, error),                                           \
+       abbe_refraction_pass_draw(&r->refraction, error), FREED(refraction, refraction_pass))       \
+  PASS(EYE, adaptive,                                                                              \
+       abbe_adaptive_pass_make(&r->receivers, &r->refraction, v, &r->adaptive, error),             \
+       abbe_adaptive_pass_run(&r->adaptive, error), FREED(adaptive, adaptive_pass))                \
+  PASS(EYE, refracted, ABBE_OK, abbe_refraction_pass_run(&r->refraction, error), (void)0)          \
+  PASS(EYE, picture, abbe_picture_make(&r->receivers, &r->refraction, &r->picture, error),         \
+       abbe_picture_run(&r->picture, error), FREED(picture, picture))                              \
+  PASS(EYE, haze, abbe_haze_pass_make(&r->picture, &r->caustics, v, &r->haze, error),              \
+       abbe_haze_pass_run(&r->haze, error), abbe_haze_pass_free(&r->haze))
+
+#define DEFINE_PART(stage, name, made, freed)                                                      \
+  static abbe_result make_the_##name(abbe_renderer *r, const abbe_shader_variant *v,               \
+                                     abbe_error *error) {                                          \
+    (void)r, (void)v, (void)error;                                                                 \
+    return made;                                                                                   \
+  }                                                                                                \
+  static void free_the_##name(abbe_renderer *r) {                                                  \
+    (void)r;                                                                                       \
+    freed;                                                                                         \
   }
-  *out = r;
-  return ABBE_OK;
-}
+#define DEFINE_PASS(stage, name, made, ran, freed)                                                 \
+  DEFINE_PART(stage, name, made, freed)                                                            \
+  static abbe_result run_the_##name(abbe_renderer *r, abbe_error *error) {                         \
+    return ran;                                                                                    \
+  }
+FRAME(DEFINE_PASS, DEFINE_PART)
 
-bool abbe_renderer_is_lit(const abbe_renderer *r) {
-  return r->lit;
-}
+static const struct {
+  abbe_pass_stage stage;
+  abbe_result (*make)(abbe_renderer *r, const abbe_shader_variant *v, abbe_error *error);
+  abbe_result (*run)(abbe_renderer *r, abbe_error *error); /* NULL: it has nothing to run */
+  void (*free)(abbe_renderer *r);
+} frame[] = {
+#define PASS_ROW(stage, name, made, ran, freed)                                                    \
+  {ABBE_STAGE_##stage, make_the_##name, run_the_##name, free_the_##name},
+#define PART_ROW(stage, name, made, freed)                                                         \
+  {ABBE_STAGE_##stage, make_the_##name, NULL, free_the_##name},
+    FRAME(PASS_ROW, PART_ROW)};
+enum { STEPS = sizeof frame / sizeof *frame };
 
-const abbe_plan *abbe_renderer_plan(const abbe_renderer *r) {
-  return &r->plan;
-}
-
-static abbe_result check_drawn(const abbe_renderer *r, abbe_error *error) {
-  if (r->seen) return ABBE_OK;
-  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                        "no frame has been drawn, so there is nothing to read; "
-                        "abbe_renderer_frame comes first");
-}
-
-static abbe_rgb_space space_of(const abbe_renderer *r) {
-  return abbe_method_of(r->plan.desc.profile)->printed ? ABBE_RGB_SPACE_REC709 : r->plan.desc.space;
-}
-
-/* Whose colours they are; printed methods have their own. */
-static abbe_result set_observer(const abbe_renderer *r, abbe_image *out, abbe_error *error) {
-  const abbe_render_desc *d = &r->plan.desc;
-  if (abbe_method_of(d->profile)->printed) return ABBE_OK;
-  return abbe_image_set_attribute(out, "abbe:observer", abbe_observer_text(d->observer), error);
-}
-
-static abbe_result read_picture(abbe_renderer *r, bool aovs, abbe_image *out, abbe_error *error) {
-  abbe_result result = check_drawn(r, error);
-  if (result != ABBE_OK) return result;
-  result = r->method != NULL ? abbe_method_read(r->method, out, error)
-                             : abbe_picture_read(&r->picture, aovs, r->local.unit, out, error);
-  if (result != ABBE_OK) return result;
-  const abbe_rgb_space space = space_of(r);
-  abbe_rgb_space_chromaticities(space, out->xy);
-  result = abbe_image_set_attribute(out, "abbe:space", abbe_rgb_space_name(space), error);
-  if (result == ABBE_OK) result = set_observer(r, out, error);
-  if (result == ABBE_OK) result = abbe_gl_check(r->gpu.gl, "the reading of the picture", error);
-  if (result != ABBE_OK) abbe_image_free(out);
+abbe_result abbe_renderer_make_stage(abbe_renderer *r, abbe_pass_stage stage,
+                                     const abbe_shader_variant *variant, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < STEPS && result == ABBE_OK; i++)
+    if (frame[i].stage == stage) result = frame[i].make(r, variant, error);
   return result;
 }
 
-static abbe_result check_map(const abbe_renderer *r, size_t light, abbe_error *error) {
-  if (light >= r->plan.light_view_count || !r->plan.reaches[light] ||
-      r->plan.light_view[light].light != light)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the scene has no spectral map of light %zu", light);
-  if (r->plan.volume)
-    return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "caustics are looked up in a volume, so there is no spectral map");
-  abbe_result result = check_drawn(r, error);
-  if (result != ABBE_OK) return result;
-  if (r->method != NULL && r->plan.desc.faces > 1)
-    return abbe_error_set(
-        error, ABBE_UNSUPPORTED,
-        "the light '%s' has a cube of maps, each with its own layout; ask for one "
-        "view (--faces 1), or for the picture",
-        r->scene.local->light[light].name);
-  if (r->method != NULL || !abbe_photon_lights_is_face(&r->views, light) ||
-      abbe_photon_lights_map_is_given(&r->views, light))
-    return ABBE_OK;
-  return abbe_error_set(error, ABBE_UNSUPPORTED,
-                        "the light '%s' has a cube of maps, each with its own layout; give one "
-                        "layout for all, such as that of a traced map (--map-like)",
-                        r->scene.local->light[light].name);
+void abbe_renderer_free_stage(abbe_renderer *r, abbe_pass_stage stage) {
+  for (size_t i = STEPS; i-- > 0;)
+    if (frame[i].stage == stage) frame[i].free(r);
 }
 
-/* A map that was read gets its layout and its light's name; of one that was not nothing is left. */
-static abbe_result describe_map(const abbe_renderer *r, size_t light, abbe_result result,
-                                abbe_image *out, abbe_error *error) {
-  abbe_map_layout layout;
-  abbe_renderer_map_layout(r, light, &layout);
-  if (result == ABBE_OK)
-    result = abbe_map_layout_write(&layout, r->scene.local->light[light].name, out, error);
-  if (result == ABBE_OK) result = set_observer(r, out, error);
-  if (result != ABBE_OK) abbe_image_free(out);
+/* Until one fails, or whoever watches stops it. */
+static abbe_result run_stage(abbe_renderer *r, abbe_pass_stage stage, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  bool first = true;
+  for (size_t i = 0; i < STEPS && result == ABBE_OK; i++) {
+    if (frame[i].stage != stage || frame[i].run == NULL) continue;
+    if (!first && !abbe_gpu_ask(&r->gpu)) break;
+    result = frame[i].run(r, error);
+    first = false;
+  }
   return result;
 }
 
-static abbe_result read_map(abbe_renderer *r, size_t light, bool filled, abbe_image *out,
-                            abbe_error *error) {
-  abbe_result result = check_map(r, light, error);
-  if (result != ABBE_OK) return result;
-  result = r->method != NULL ? abbe_method_read_map(r->method, filled, out, error)
-                             : abbe_spectral_map_read(&r->map, light, r->local.unit, out, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_gl_check(r->gpu.gl, "the reading of the map", error);
-  return describe_map(r, light, result, out, error);
+/* The frame: the light's passes, then the camera's; those that were run and depend on nothing that
+ * has changed since are left out. */
+static abbe_result run_passes(abbe_renderer *r, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  if (r->method != NULL) {
+    if (!r->seen) result = abbe_method_run(r->method, r->lit, error);
+    r->lit = result == ABBE_OK;
+  } else {
+    if (!r->lit) result = run_stage(r, ABBE_STAGE_LIGHT, error);
+    r->lit = r->lit || (result == ABBE_OK && !r->gpu.stopped &&
+                        (r->plan.desc.history_of_changes || abbe_map_history_settled(&r->history)));
+    if (result == ABBE_OK && !r->seen && !r->gpu.stopped)
+      result = run_stage(r, ABBE_STAGE_EYE, error);
+  }
+  return result != ABBE_OK ? result : abbe_gl_check(r->gpu.gl, "the frame's passes", error);
 }
 
-static abbe_result read_map_bands(abbe_renderer *r, size_t light, size_t bands, abbe_image *out,
-                                  abbe_error *error) {
-  if (bands < 1 || bands > ABBE_RENDER_MAX_BANDS)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a map of %zu bands; it may have 1 to %d",
-                          bands, ABBE_RENDER_MAX_BANDS);
-  if (r->method != NULL)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the %s profile's passes sum colours; bands go with the default profile",
-                          abbe_profile_name(r->plan.desc.profile));
-  if (r->plan.desc.history > 1)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "bands are of one frame, not of a history of %zu", r->plan.desc.history);
-  abbe_result result = check_map(r, light, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_map_bands_read(&r->caustics, light, bands, r->local.unit, out, error);
-  if (result != ABBE_OK) r->lit = r->seen = false; /* the map may hold bands */
-  return describe_map(r, light, result, out, error);
+static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *s) {
+  s->frame_ms = 1e3 * abbe_clock_seconds() - start_ms - r->untimed_ms;
+  s->wavelengths = r->plan.desc.wavelengths;
+  s->device_bytes = abbe_gpu_bytes(&r->gpu) + r->scene.mesh_bytes;
+  if (r->method != NULL) {
+    abbe_method_count(r->method, s);
+  } else {
+    const abbe_photon_light *first = &r->views.light[0];
+    for (size_t i = 0; i < r->plan.light_view_count; i++)
+      s->photons += r->views.light[i].photon_count;
+    s->refractor_share =
+        (double)first->photon_count / ((double)first->cells[0] * (double)first->cells[1]);
+  }
+  if (r->plan.caustics && r->method == NULL) abbe_caustics_energy(&r->caustics, &s->energy);
+  double *part = &s->energy.reached;
+  for (size_t i = 0; i < sizeof s->energy / sizeof *part; i++) part[i] *= r->local.unit;
+  for (abbe_pass pass = 0; pass < ABBE_PASS_COUNT && (r->method == NULL || s->pass_count == 0);
+       pass++)
+    s->kept[pass] = abbe_plan_runs(&r->plan, pass, 0) && !abbe_statistics_ran(s, pass);
 }
 
-void abbe_renderer_map_layout(const abbe_renderer *r, size_t light, abbe_map_layout *out) {
-  *out = r->method != NULL ? r->method->layout : r->views.light[light].map;
-  abbe_local_scene_to_world(&r->local, &out->view);
-}
-
-static abbe_result read_hits(abbe_renderer *r, size_t light, size_t first, abbe_renderer_hits *out,
-                             abbe_error *error) {
-  const abbe_result made = abbe_renderer_parts_check(r, error);
-  if (made != ABBE_OK) return made;
-  if (light >= r->plan.light_view_count || !r->plan.reaches[light] || r->method != NULL)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no photons start from light %zu", light);
-  if (first >= r->plan.desc.wavelengths)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "wavelength %zu of %zu is asked for", first,
-                          r->plan.desc.wavelengths);
-  const abbe_photon_light *from = &r->views.light[light];
-  out->slots = r->plan.hit_slots;
-  out->samples = r->caustics.trace.hits.stride;
-  out->view = from->near_view;
-  abbe_local_scene_to_world(&r->local, &out->view);
-  for (int k = 0; k < 2; k++) out->grid[k] = from->cells[k];
-  return abbe_caustics_read_hits(&r->caustics, light, first, r->local.origin, &out->at, &out->path,
-                                 &out->cell, &out->count, error);
-}
-
-/* What is public and draws or reads: on the renderer's context, in a state of its own. */
-
-static abbe_result enter(abbe_context *context, abbe_error *error) {
-  const abbe_result result = abbe_context_make_current(context, error);
-  if (result == ABBE_OK) abbe_gl_state_begin(abbe_context_gl(context));
+static abbe_result draw(abbe_renderer *r, abbe_render_progress progress, void *user,
+                        abbe_statistics *statistics, abbe_error *error) {
+  if (statistics != NULL) memset(statistics, 0, sizeof *statistics);
+  if (abbe_renderer_check(r, error) != ABBE_OK) return ABBE_INVALID_ARGUMENT;
+  if (statistics != NULL && r->plan.caustics && r->method == NULL &&
+      !abbe_caustics_know_energy(&r->caustics))
+    r->lit = false; /* no frame with statistics has followed this light */
+  r->gpu.statistics = statistics;
+  r->untimed_ms = 0;
+  if (!r->lit || (r->method != NULL && statistics != NULL))
+    r->seen = false; /* it counts as it draws */
+  const double start_ms = 1e3 * abbe_clock_seconds();
+  abbe_gpu_watch(&r->gpu, progress, user);
+  abbe_result result = run_passes(r, error);
+  r->gpu.gl->Finish();
+  result = abbe_renderer_end_watch(r, result, error);
+  r->seen = result == ABBE_OK;
+  if (result != ABBE_OK && result != ABBE_CANCELLED) { /* lists without room, say */
+    r->lacking = (1u << ABBE_PART_COUNT) - 1;
+    r->lit = false;
+  }
+  abbe_gpu_trim(&r->gpu); /* what was outgrown */
+  if (statistics != NULL && result == ABBE_OK) summarise(r, start_ms, statistics);
+  r->gpu.statistics = NULL;
   return result;
-}
-
-static abbe_result leave(abbe_context *context, abbe_result result) {
-  abbe_gl_state_end(abbe_context_gl(context));
-  return result;
-}
-
-abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
-                               const abbe_render_desc *desc, abbe_renderer **out,
-                               abbe_error *error) {
-  *out = NULL;
-  const abbe_result result = enter(context, error);
-  if (result != ABBE_OK) return result;
-  return leave(context, make_renderer(context, scene, desc, out, error));
-}
-
-abbe_result abbe_renderer_change(abbe_renderer *r, const abbe_scene *scene,
-                                 const abbe_render_desc *desc, abbe_error *error) {
-  const abbe_result result = enter(r->context, error);
-  if (result != ABBE_OK) return result;
-  return leave(r->context, change_watched(r, scene, desc, error));
-}
-
-void abbe_renderer_redraw(abbe_renderer *r) {
-  r->lit = r->seen = r->refraction.whole = false;
-  abbe_transports_redraw(&r->transports);
-}
-
-static void delete_none(GLsizei count, const GLuint *names) {
-  (void)count;
-  (void)names;
-}
-
-static void delete_no_program(GLuint program) {
-  (void)program;
-}
-
-/* In another context the names would be those of other things. */
-static const abbe_gl no_gl = {.DeleteBuffers = delete_none,
-                              .DeleteFramebuffers = delete_none,
-                              .DeleteProgram = delete_no_program,
-                              .DeleteTextures = delete_none,
-                              .DeleteVertexArrays = delete_none};
-
-void abbe_renderer_free(abbe_renderer *r) {
-  if (r == NULL) return;
-  abbe_context *context = r->context;
-  const bool entered = enter(context, NULL) == ABBE_OK;
-  if (!entered) r->gpu.gl = &no_gl;
-  free_renderer(r);
-  if (entered) leave(context, ABBE_OK);
 }
 
 abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress, void *user,
                                 abbe_statistics *statistics, abbe_error *error) {
   abbe_error lost = {0};
-  watched w = {r->context, progress, user, ABBE_OK, &lost, NULL};
-  abbe_result result = enter(r->context, error);
+  abbe_renderer_watched w = {r->context, progress, user, ABBE_OK, &lost, NULL};
+  abbe_result result = abbe_renderer_enter(r->context, error);
   if (result != ABBE_OK) return result;
-  result = abbe_renderer_parts_draw(r, progress != NULL ? watch : NULL, &w, statistics, error);
+  result = draw(r, progress != NULL ? abbe_renderer_watch : NULL, &w, statistics, error);
   if (w.result != ABBE_OK) return abbe_error_set(error, w.result, "%s", lost.text);
-  return leave(r->context, result);
-}
-
-abbe_result abbe_renderer_baseline(abbe_renderer *r, double *ms, abbe_error *error) {
-  const abbe_result result = enter(r->context, error);
-  return result == ABBE_OK ? leave(r->context, abbe_renderer_parts_baseline(r, ms, error)) : result;
-}
-
-abbe_result abbe_renderer_read(abbe_renderer *r, bool aovs, abbe_image *out, abbe_error *error) {
-  *out = (abbe_image){0};
-  const abbe_result result = enter(r->context, error);
-  return result == ABBE_OK ? leave(r->context, read_picture(r, aovs, out, error)) : result;
-}
-
-abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, abbe_image *out,
-                                   abbe_error *error) {
-  *out = (abbe_image){0};
-  const abbe_result result = enter(r->context, error);
-  return result == ABBE_OK ? leave(r->context, read_map(r, light, filled, out, error)) : result;
-}
-
-abbe_result abbe_renderer_read_map_bands(abbe_renderer *r, size_t light, size_t bands,
-                                         abbe_image *out, abbe_error *error) {
-  *out = (abbe_image){0};
-  const abbe_result result = enter(r->context, error);
-  if (result != ABBE_OK) return result;
-  return leave(r->context, read_map_bands(r, light, bands, out, error));
-}
-
-abbe_result abbe_renderer_read_hits(abbe_renderer *r, size_t light, size_t first,
-                                    abbe_render_progress progress, void *user,
-                                    abbe_renderer_hits *out, abbe_error *error) {
-  *out = (abbe_renderer_hits){0};
-  abbe_error lost = {0};
-  watched w = {r->context, progress, user, ABBE_OK, &lost, NULL};
-  abbe_result result = enter(r->context, error);
-  if (result != ABBE_OK) return result;
-  abbe_gpu_watch(&r->gpu, progress != NULL ? watch : NULL, &w);
-  result = read_hits(r, light, first, out, error);
-  if (result == ABBE_OK) result = abbe_gpu_tell(&r->gpu, 1, error);
-  abbe_gpu_watch(&r->gpu, NULL, NULL);
-  if (w.result != ABBE_OK) result = abbe_error_set(error, w.result, "%s", lost.text);
-  if (w.result == ABBE_OK) result = leave(r->context, result);
-  if (result != ABBE_OK) abbe_renderer_hits_free(out);
-  return result;
-}
-
-void abbe_renderer_hits_free(abbe_renderer_hits *hits) {
-  if (hits == NULL) return;
-  free(hits->at);
-  free(hits->path);
-  free(hits->cell);
-  *hits = (abbe_renderer_hits){0};
+  return abbe_renderer_leave(r->context, result);
 }

@@ -28,7 +28,7 @@ typedef enum abbe_renderer_part {
 typedef struct abbe_renderer_inputs {
   uint64_t part[ABBE_PART_COUNT];
   uint64_t
-      sights; /* where the camera's rays through refractors go: all of the eye but the lights */
+      sights;     /* where the camera's rays through refractors go: all of the eye but the lights */
   uint64_t pages; /* what pinholes show: of smooth mirrors and refractors no lamps */
 } abbe_renderer_inputs;
 

@@ -1,5 +1,6 @@
-/* renderer_state.h: what a renderer is made of. Internal to gl/: only renderer.c, renderer_parts.c
- * and their tests look inside.
+/* renderer_state.h: what a renderer is made of. Internal to gl/: only renderer*.c and their
+ * tests look inside. renderer.c has the frame, renderer_change.c what a change makes anew,
+ * renderer_read.c what is read.
  */
 #ifndef ABBE_GL_RENDERER_STATE_H
 #define ABBE_GL_RENDERER_STATE_H
@@ -35,6 +36,7 @@ struct abbe_renderer {
   abbe_spectral_map map;
   abbe_caustics caustics;
   abbe_transports transports;
+  bool pages_stay;     /* of pinholes, when light's passes are freed */
   abbe_method *method; /* in place of these and those below, or NULL */
   bool lit;            /* all of that is drawn: the maps hold the light as it is now */
 
@@ -54,5 +56,33 @@ struct abbe_renderer {
   GLuint baseline;   /* what abbe_renderer_baseline draws into; 0 before */
   double untimed_ms; /* of this frame, spent on its ledger */
 };
+
+/* For the files of the renderer, whose public functions are on its context and in a state of its
+ * own, between these two. */
+abbe_result abbe_renderer_enter(abbe_context *context, abbe_error *error);
+abbe_result abbe_renderer_leave(abbe_context *context, abbe_result result);
+
+/* A caller's progress, which may make another context current: watch is told of it as user. */
+typedef struct abbe_renderer_watched {
+  abbe_context *context;
+  abbe_render_progress progress;
+  void *user;
+  abbe_result result; /* of making the context current again, with its error */
+  abbe_error *error;
+  void (*compiling)(void *user);
+} abbe_renderer_watched;
+bool abbe_renderer_watch(void *watched, double done);
+/* After a cancel nothing more was dispatched: whatever the passes say, there is no result. */
+abbe_result abbe_renderer_end_watch(abbe_renderer *renderer, abbe_result result, abbe_error *error);
+
+/* Whether a published method draws in place of the passes here. */
+bool abbe_renderer_has_method(const abbe_renderer *renderer);
+/* ABBE_INVALID_ARGUMENT where its last change or frame failed. */
+abbe_result abbe_renderer_check(const abbe_renderer *renderer, abbe_error *error);
+
+/* A stage's passes, made in the frame's order and freed in the other. */
+abbe_result abbe_renderer_make_stage(abbe_renderer *renderer, abbe_pass_stage stage,
+                                     const abbe_shader_variant *variant, abbe_error *error);
+void abbe_renderer_free_stage(abbe_renderer *renderer, abbe_pass_stage stage);
 
 #endif

@@ -11,52 +11,33 @@ enum { SHAFT_STEPS = 40 };
 
 void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *out) {
   const abbe_plan *p = scene->plan;
-  *out = (abbe_shader_variant){
-      .lights = p->light_view_count,
-      .area_lights = abbe_gpu_area_lights_count(scene),
-      .refractors = p->refractor_count,
-      .receivers = p->parallelogram_count,
-      .surfaces = p->receiver_count,
-      .reflections = abbe_gpu_surfaces_reflections(scene),
-      .wavelengths = p->desc.wavelengths,
-      .bands = scene->band_count,
-      .band_levels = scene->band_levels,
-      .exits = p->desc.exits,
-      .slots = p->hit_slots,
-      .bvh_stack = scene->bvh_depth + 1,
-      .receiver_root = scene->receiver_root,
-      .shadow_planes = scene->shadow_planes,
-      .spheres = p->spheres,
-      .convex = p->convex,
-      .layers = p->layers,
-      .hierarchy = p->bvh,
-      .receiver_hierarchy = p->receivers == ABBE_RECEIVER_BVH,
-      .one_convex = p->convex && p->refractor_count == 1,
-      .one_shadow = p->light_view_count * p->refractor_count == 1,
-      .receiver_shadows = p->receiver_shadows,
-      .absorbing = p->absorbing,
-      .band_parts = p->band_parts,
-      .tints = p->tints,
-      .textured = p->textured,
-      .receiver_colours = p->receiver_colours,
-      .environment = scene->environment.texture != 0,
-      .caustics = p->caustics,
-      .walk = p->multi_refractor_paths,
-      .mirrors = p->mirror_count > 0,
-      .rough = p->rough,
-      .cubes = p->cubes,
-      .haze = p->hazy,
-      .haze_beyond = p->haze_beyond,
-      .shafts = p->shaft_count,
-      .shaft_steps = SHAFT_STEPS,
-      .pinholes = p->desc.transport == ABBE_TRANSPORT_PINHOLE,
-      .page_charts = p->page_charts,
-      .pixel_threads = !p->multi_refractor_paths ? 1
-                       : p->desc.wavelengths > 1 ? 8
-                                                 : 2,
+  *out = (abbe_shader_variant){.lights = p->light_view_count,
+                               .area_lights = abbe_gpu_area_lights_count(scene),
+                               .refractors = p->refractor_count,
+                               .receivers = p->parallelogram_count,
+                               .surfaces = p->receiver_count,
+                               .reflections = abbe_gpu_surfaces_reflections(scene),
+                               .wavelengths = p->desc.wavelengths,
+                               .bands = scene->band_count,
+                               .band_levels = scene->band_levels,
+                               .exits = p->desc.exits,
+                               .slots = p->hit_slots,
+                               .bvh_stack = scene->bvh_depth + 1,
+                               .receiver_root = scene->receiver_root,
+                               .shadow_planes = scene->shadow_planes,
+                               .one_shadow = p->light_view_count * p->refractor_count == 1,
+                               .tints = p->tints,
+                               .receiver_colours = p->receiver_colours,
+                               .shafts = p->shaft_count,
+                               .shaft_steps = SHAFT_STEPS,
+                               .pixel_threads = !p->multi_refractor_paths ? 1
+                                                : p->desc.wavelengths > 1 ? 8
+                                                                          : 2,
+#define FLAG_OF(field, define, value) .field = value,
+                               ABBE_VARIANT_FLAGS(FLAG_OF)
+#undef FLAG_OF
   };
   if (p->volume) {
-    out->volume = true;
     out->volume_kind = p->desc.volume->kind;
     out->volume_region = p->desc.volume->region.desc.kind;
     out->volume_pages = p->volume_pages;
@@ -131,49 +112,29 @@ static void print_copies(FILE *to, const abbe_shader_variant *v) {
 }
 
 static void print_facts(FILE *to, const abbe_shader_variant *v) {
-  print_flag(to, "RECEIVER_SHADOWS", v->receiver_shadows);
-  print_flag(to, "WIDE", v->wide);
-  print_flag(to, "AOVS", v->aovs);
-  print_flag(to, "ONE_CONVEX", v->one_convex);
-  print_flag(to, "SPHERES", v->spheres);
-  print_flag(to, "CONVEX", v->convex);
-  print_flag(to, "LAYERS", v->layers);
+#define PRINT_FLAG(field, define, value) print_flag(to, #define, v->field);
+  ABBE_VARIANT_FLAGS(PRINT_FLAG)
+#undef PRINT_FLAG
   print_flag(to, "FRONT_LAYER", v->layers || v->hierarchy);
-  print_flag(to, "HIERARCHY", v->hierarchy);
-  print_flag(to, "RECEIVER_HIERARCHY", v->receiver_hierarchy);
-  print_flag(to, "ABSORBING", v->absorbing);
-  print_flag(to, "BAND_PARTS", v->band_parts);
   if (v->tints > 0) print_count(to, "TINTS", v->tints);
-  print_flag(to, "TEXTURED", v->textured);
   if (v->receiver_colours) {
     print_count(to, "RECEIVER_COLOURS", 1);
     print_count(to, "BAND_TURNS", ABBE_BAND_REFLECTION_TURNS);
     print_count(to, "BAND_RINGS", ABBE_BAND_REFLECTION_RINGS);
   }
-  print_flag(to, "ENVIRONMENT", v->environment);
   if (v->area_lights > 0) print_count(to, "AREA_LIGHTS", v->area_lights);
   if (v->environment) {
     print_count(to, "SOFT_ROWS", ABBE_IRRADIANCE_MAP_ROWS);
     print_count(to, "SOFT_COLUMNS", ABBE_IRRADIANCE_MAP_COLUMNS);
   }
-  print_flag(to, "CAUSTICS", v->caustics);
-  print_flag(to, "VOLUME", v->volume);
   if (v->volume && v->volume_pages > 0) print_count(to, "VOLUME_PAGES", v->volume_pages);
   print_flag(to, "VOLUME_PRINTED", v->volume && v->volume_kind == ABBE_VOLUME_PRINTED);
   print_flag(to, "VOLUME_GRID", v->volume && v->volume_region == ABBE_REGION_GRID);
   print_flag(to, "VOLUME_GEODESIC", v->volume && v->volume_region == ABBE_REGION_GEODESIC);
   print_flag(to, "VOLUME_OCTAHEDRAL", v->volume && v->volume_region == ABBE_REGION_OCTAHEDRAL);
-  print_flag(to, "WALK", v->walk);
-  print_flag(to, "MIRRORS", v->mirrors);
-  print_flag(to, "ROUGH", v->rough);
-  print_flag(to, "CUBES", v->cubes);
-  print_flag(to, "HAZE", v->haze);
   print_count(to, "HAZE_BANDS", ABBE_PLAN_HAZE_BANDS);
-  print_flag(to, "HAZE_BEYOND", v->haze_beyond);
   if (v->shafts > 0) print_count(to, "SHAFTS", v->shafts);
   if (v->shafts > 0) print_count(to, "SHAFT_STEPS", v->shaft_steps);
-  print_flag(to, "PINHOLES", v->pinholes);
-  print_flag(to, "PINHOLE_CHARTS", v->page_charts);
   print_flag(to, "CHART_SIDES", v->page_charts || v->tiles > 0);
   print_count(to, "PIXEL_THREADS", v->pixel_threads);
 }

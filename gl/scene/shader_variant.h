@@ -12,32 +12,53 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/* Flags that are a #define: X(field, #define, of the plan p and the scene when a variant is made).
+ */
+#define ABBE_VARIANT_FLAGS(X)                                                                      \
+  X(receiver_shadows, RECEIVER_SHADOWS, p->receiver_shadows)                                       \
+  X(wide, WIDE, false) /* the map's */                                                             \
+  X(aovs, AOVS, false) /* the picture has them */                                                  \
+  X(one_convex, ONE_CONVEX, p->convex && p->refractor_count == 1)                                  \
+  X(spheres, SPHERES, p->spheres)                                                                  \
+  X(convex, CONVEX, p->convex)                                                                     \
+  X(layers, LAYERS, p->layers)                                                                     \
+  X(hierarchy, HIERARCHY, p->bvh)                                                                  \
+  X(receiver_hierarchy, RECEIVER_HIERARCHY, p->receivers == ABBE_RECEIVER_BVH)                     \
+  X(absorbing, ABSORBING, p->absorbing)                                                            \
+  X(band_parts, BAND_PARTS, p->band_parts)                                                         \
+  X(textured, TEXTURED, p->textured)                                                               \
+  X(environment, ENVIRONMENT, scene->environment.texture != 0)                                     \
+  X(caustics, CAUSTICS, p->caustics)                                                               \
+  X(volume, VOLUME, p->volume) /* caustics are looked up in the plan's */                          \
+  X(walk, WALK, p->multi_refractor_paths)                                                          \
+  X(mirrors, MIRRORS, p->mirror_count > 0)                                                         \
+  X(rough, ROUGH, p->rough)                                                                        \
+  X(cubes, CUBES, p->cubes)                                                                        \
+  X(haze, HAZE, p->hazy)                      /* in the air, or around the eye */                  \
+  X(haze_beyond, HAZE_BEYOND, p->haze_beyond) /* in the air, for bent rays of the camera */        \
+  X(pinholes, PINHOLES, p->desc.transport == ABBE_TRANSPORT_PINHOLE) /* receivers have pages */    \
+  X(page_charts, PINHOLE_CHARTS, p->page_charts) /* also those that are meshes */
+
 typedef struct abbe_shader_variant {
+#define ABBE_VARIANT_FIELD(field, define, value) bool field;
+  ABBE_VARIANT_FLAGS(ABBE_VARIANT_FIELD)
+#undef ABBE_VARIANT_FIELD
   /* the scene */
   size_t lights, area_lights, refractors, receivers, surfaces, reflections, planes;
   size_t wavelengths, bands, band_levels;
   size_t exits, slots, tints;
   size_t bvh_stack, receiver_root, shadow_planes;
-  bool spheres, convex, layers, hierarchy, receiver_hierarchy, one_convex, one_shadow;
-  bool receiver_shadows, absorbing, band_parts, textured, receiver_colours, environment, caustics, walk,
-      mirrors, rough, cubes;
-  bool volume; /* caustics are looked up in the plan's, of that kind */
-  abbe_volume_kind volume_kind;
+  bool one_shadow, receiver_colours;
+  abbe_volume_kind volume_kind; /* of a volume */
   abbe_region_kind volume_region;
   size_t volume_pages; /* of a light, in place of cells */
-  bool haze;           /* in the air, or around the eye */
-  bool haze_beyond;    /* in the air, for bent rays of the camera */
   size_t shafts;       /* media with light for these, */
   size_t shaft_steps;  /* and steps of a way through it */
-  bool pinholes;       /* receivers have pages of what these show */
-  bool page_charts;    /* also those that are meshes */
   bool copies;         /* a software rasteriser: tables are copied first (copies.glsl) */
   /* the picture */
-  bool aovs;
   size_t eye_bands;     /* of a pixel at the most, where they are not refined */
   size_t pixel_threads; /* threads of a pixel (refraction_threads.glsl) */
   /* the map */
-  bool wide;
   size_t map_levels;
   size_t tiles, tile_blocks, chart_sides; /* tiles: room for those of a light; 0: none has any */
   /* photons; hit_stride 0: the program follows none */
