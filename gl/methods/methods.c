@@ -76,12 +76,9 @@ void abbe_method_follow(abbe_method *m, abbe_method_history *before) {
   *before = made;
 }
 
-GLuint abbe_method_picture(const abbe_method *m) {
-  return m->eye.scene != NULL ? m->eye.picture : m->picture;
-}
-
 abbe_result abbe_method_read(const abbe_method *m, abbe_image *out, abbe_error *error) {
-  return abbe_image_view_read(m->scene, abbe_method_picture(m), out, error);
+  const GLuint picture = m->eye.scene != NULL ? m->eye.picture : m->picture;
+  return abbe_image_view_read(m->scene, picture, out, error);
 }
 
 abbe_result abbe_method_read_map(abbe_method *m, bool filled, abbe_image *out, abbe_error *error) {

@@ -30,7 +30,6 @@ void abbe_method_follow(abbe_method *method, abbe_method_history *frames);
 abbe_result abbe_method_read(const abbe_method *method, abbe_image *out, abbe_error *error);
 abbe_result abbe_method_read_map(abbe_method *method, bool filled, abbe_image *out,
                                  abbe_error *error);
-GLuint abbe_method_picture(const abbe_method *method);
 /* Of the last frame with statistics: photons, their cells, polygons over a pixel. */
 void abbe_method_count(const abbe_method *method, abbe_statistics *statistics);
 
