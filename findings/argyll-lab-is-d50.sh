@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # ArgyllCMS: the Lab values that spec2cie computes for a perfect white from its spectrum, for three
-# illuminants. It writes two sets of them: LAB and ALAB.
+# illuminants. Beside LAB it writes columns named after the illuminant where that is not D50, as ALAB.
 set -euo pipefail
 package=argyll=2.3.1+repack-1.1+b1
 work=$(mktemp -d)
@@ -28,14 +28,15 @@ for illuminant in D50 D65 A; do
     $1 == "SAMPLE_ID" { for (i = 1; i <= NF; i++) column[$i] = i }
     $1 == "1" && NF > 9 {
       printf "seen: %s: LAB %.1f %.1f %.1f", illuminant, $column["LAB_L"], $column["LAB_A"], $column["LAB_B"]
-      if ("ALAB_L" in column)
-        printf "; ALAB %.1f %.1f %.1f", $column["ALAB_L"], $column["ALAB_A"], $column["ALAB_B"]
+      own = illuminant "LAB_"
+      if (own "L" in column)
+        printf "; %s %.1f %.1f %.1f", own "*", $column[own "L"], $column[own "A"], $column[own "B"]
       print ""
     }' out.ti3 | sed 's/-0\.0/0.0/g' | tee line
   case $illuminant in
-  D65) grep -q 'LAB 100.0 -2.4 -19.4; ALAB 100.0 0.0 0.0' line || changed=1 ;;
-  A) grep -q 'LAB 100.0 22.2 48.9; ALAB 100.0 0.0 0.0' line || changed=1 ;;
+  D65) grep -q 'LAB 100.0 -2.4 -19.4; D65LAB_. 100.0 0.0 0.0' line || changed=1 ;;
+  A) grep -q 'LAB 100.0 22.2 48.9; ALAB_. 100.0 0.0 0.0' line || changed=1 ;;
   esac
 done
 [ -z "$changed" ] || { echo "this has changed" >&2; exit 1; }
-echo "so LAB is always against D50; only ALAB may be compared with Lab values of the illuminant's own white"
+echo "so LAB is always against D50; compare D65LAB or ALAB with Lab values that have the illuminant's own white"
