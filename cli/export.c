@@ -139,6 +139,8 @@ static abbe_result report_pov(const request *q, const abbe_scene *scene, abbe_er
               m->name, g.index.ior, g.index.dispersion, g.worst, g.worst_nm, g.rms);
       if (abbe_material_is_uniaxial(m))
         fprintf(stderr, "%s: its double refraction is left out\n", m->name);
+      if (abbe_material_is_pleochroic(m))
+        fprintf(stderr, "%s: its absorption is the mean over its axes\n", m->name);
       continue;
     }
     cJSON *glass = cJSON_CreateObject();

@@ -33,6 +33,13 @@ double abbe_uniaxial_walk_off(double n_o, double n_e, double cos_axis) {
   return fabs(atan2((o - e) * s * c, e * c * c + o * s * s));
 }
 
+/* E of unit length is across the ray, so that E x H along it has the length of H, and that is the
+ * root of E* Re(permittivity) E. */
+double abbe_uniaxial_attenuation(double n_o, double n_e, double a_o, double a_e, double cos_ray) {
+  const double c = fmin(fabs(cos_ray), 1), along = (1 - c) * (1 + c), across = c * c;
+  return (n_o * a_o * across + n_e * a_e * along) / sqrt(n_o * n_o * across + n_e * n_e * along);
+}
+
 /* The part of v along the axis times `along`, and the part across it times `across`. */
 static void stretch(const abbe_uniaxial *m, const double v[3], double along, double across,
                     double out[3]) {

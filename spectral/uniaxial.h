@@ -5,7 +5,7 @@
  * the angle between its normal and the axis, and whose ray (its energy) leaves its normal. At a
  * face a wave becomes up to two reflected and two transmitted ones: four amplitudes that make the
  * tangential electric and magnetic fields the same on both sides [BornWolf1999] [Lekner1991].
- * Clear, not magnetic, not optically active; plane waves and plane faces.
+ * Not magnetic, not optically active; plane waves and plane faces, at which it counts as clear.
  *
  * Directions are unit vectors in which the light travels; n is the unit normal of the face on the
  * side that the light comes from. */
@@ -34,6 +34,12 @@ double abbe_uniaxial_index(double n_o, double n_e, double cos_axis);
 /* Angle in radians, at least 0, between ray and normal of that wave: 6.2 degrees in calcite at 45
  * degrees. */
 double abbe_uniaxial_walk_off(double n_o, double n_e, double cos_axis);
+
+/* Natural attenuation a metre of ray of the extraordinary wave whose ray makes the angle of that
+ * cosine with the axis, in a crystal whose fields across the axis and along it lose a_o and a_e a
+ * metre: k0 E* Im(permittivity) E / |Re E x H*| with Im of each principal permittivity n a / k0.
+ * Exact to the first order in the imaginary part of the index. a_o along the axis, a_e across. */
+double abbe_uniaxial_attenuation(double n_o, double n_e, double a_o, double a_e, double cos_ray);
 
 /* From a wave's normal to its ray and back; they are the same but for the extraordinary wave. out
  * may be the other. */

@@ -71,6 +71,10 @@ const char *abbe_materials_number(char *text, size_t size, const char *format, d
  * and then nothing is printed: half an answer is none. */
 cJSON *abbe_materials_json(void);
 abbe_result abbe_materials_print_json(const cJSON *root, abbe_error *error);
+/* The part of a record that is about absorption; where it goes by direction, the colours of faces
+ * too. JSON has `attenuation_per_m` (of the ordinary wave) and `pleochroism`. */
+void abbe_materials_show_absorption(const abbe_material *material);
+void abbe_materials_add_absorption(cJSON *to, const abbe_material *material);
 /* Adds text, or null where there is none. */
 void abbe_materials_add_text(cJSON *to, const char *key, const char *text);
 /* n_d, v_d, the indices at the lines, b_g and partial dispersions; null where the record does not

@@ -6,7 +6,6 @@
 #include "spectral/dispersion/fit.h"
 #include "spectral/editing/check.h"
 #include "spectral/formats/material_table_load.h"
-#include "spectral/materials/absorption.h"
 #include "spectral/materials/material_numbers.h"
 #include "spectral/optics.h"
 #include "spectral/wavelengths.h"
@@ -120,24 +119,6 @@ static void show_formula(const abbe_material *m) {
     printf("  density       %g g/cm3\n", m->catalogue.density_g_cm3);
 }
 
-static void show_absorption(const abbe_material *m) {
-  if (m->attenuation == NULL) {
-    printf("  absorption    none recorded\n");
-    return;
-  }
-  printf("  absorption    1/m, at nm:");
-  const double *l = abbe_spectrum_lambda_nm(m->attenuation);
-  const double *a = abbe_spectrum_value(m->attenuation);
-  size_t count = abbe_spectrum_count(m->attenuation);
-  for (size_t i = 0; i < count && i < 8; i++)
-    printf(" %.4g at %g%s", a[i], l[i], i + 1 < count ? "," : "");
-  printf(count > 8 ? " … (%zu points)\n" : "\n", count);
-  printf("                through 10 mm:");
-  for (int nm = 400; nm <= 700; nm += 100)
-    printf(" %.4g at %d%s", abbe_absorption_transmittance(abbe_material_attenuation(m, nm), 0.01),
-           nm, nm < 700 ? "," : " nm\n");
-}
-
 static void show_fits(const abbe_material *m) {
   for (int i = 0; i < 2; i++) {
     const abbe_material_fit *fit = &m->fit[i];
@@ -196,7 +177,7 @@ static abbe_result show_text(const request *r, const abbe_material *m, const abb
   else
     show_numbers(m);
   show_formula(m);
-  if (!metal) show_absorption(m);
+  if (!metal) abbe_materials_show_absorption(m);
   if (!metal && !m->dispersion.shift.on) show_fits(m);
   printf("  source        %s\n", m->source);
   if (m->comment != NULL) printf("  comment       %s\n", m->comment);
@@ -285,10 +266,7 @@ static void add_record(cJSON *to, const abbe_material *m) {
   cJSON_AddNumberToObject(to, "temperature_c", m->temperature_c);
   abbe_materials_add_conditions(to, m);
   abbe_materials_add_density(to, m);
-  if (m->attenuation != NULL)
-    add_points(to, "attenuation_per_m", m->attenuation, NULL);
-  else
-    cJSON_AddNullToObject(to, "attenuation_per_m");
+  abbe_materials_add_absorption(to, m);
   abbe_materials_add_text(to, "source", m->source);
   abbe_materials_add_text(to, "warning", m->warning);
   cJSON *fits = cJSON_AddArrayToObject(to, "fits");

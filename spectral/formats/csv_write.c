@@ -18,8 +18,8 @@ static void write_row(const abbe_material *m, double lambda_nm, double n, FILE *
   put(to, n);
   if (m->attenuation != NULL) {
     fputc(',', to);
-    put(to,
-        abbe_number_tidy(abbe_absorption_k(abbe_material_attenuation(m, lambda_nm), lambda_nm)));
+    put(to, abbe_number_tidy(
+                abbe_absorption_k(abbe_material_attenuation_along(m, 0, lambda_nm), lambda_nm)));
   }
   fputc('\n', to);
 }
@@ -88,7 +88,8 @@ static void note_losses(const abbe_material *m, abbe_report *report) {
                   more ? ", nor for the rest of the record" : "");
   if (abbe_material_is_uniaxial(m))
     abbe_report_add(report, ABBE_NOTE_LOST, m->line, m->name,
-                    "a table of points has one index: the ordinary one");
+                    "a table of points has one index: the ordinary one%s",
+                    abbe_material_is_pleochroic(m) ? ", and its wave's k" : "");
   if (m->attenuation != NULL)
     abbe_report_add(report, ABBE_NOTE_LOST, m->line, m->name,
                     "absorption is written as k at the wavelengths of n alone");

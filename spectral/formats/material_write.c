@@ -109,14 +109,25 @@ static void write_dispersion(const abbe_material *m, FILE *to) {
   if (!isnan(m->temperature_c)) write_number("    temperature_c", m->temperature_c, to);
 }
 
+static void write_attenuation(const abbe_spectrum *attenuation, int indent, FILE *to) {
+  abbe_interpolation interpolation = abbe_spectrum_interpolation(attenuation);
+  if (interpolation != ABBE_INTERPOLATION_LINEAR)
+    fprintf(to, "%*sinterpolation: %s\n", indent, "", abbe_interpolation_name(interpolation));
+  fprintf(to, "%*sattenuation_per_m: ", indent, "");
+  write_points(attenuation, NULL, indent + 2, to);
+}
+
 static void write_absorption(const abbe_material *m, FILE *to) {
   if (m->attenuation == NULL) return;
   fputs("    absorption:\n", to);
-  abbe_interpolation interpolation = abbe_spectrum_interpolation(m->attenuation);
-  if (interpolation != ABBE_INTERPOLATION_LINEAR)
-    fprintf(to, "      interpolation: %s\n", abbe_interpolation_name(interpolation));
-  fputs("      attenuation_per_m: ", to);
-  write_points(m->attenuation, NULL, 8, to);
+  if (!abbe_material_is_pleochroic(m)) {
+    write_attenuation(m->attenuation, 6, to);
+    return;
+  }
+  fputs("      ordinary:\n", to);
+  write_attenuation(m->attenuation, 8, to);
+  fputs("      extraordinary:\n", to);
+  write_attenuation(m->attenuation_yz[1], 8, to);
 }
 
 static bool any(const double *value, size_t count) {

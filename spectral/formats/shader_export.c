@@ -198,9 +198,22 @@ static void write_pbrt(writer *w, const abbe_material *m) {
 
 /* ---- POV-Ray ---- */
 
-static void povray_fading(FILE *to, const abbe_spectrum *attenuation) {
+/* As abbe_absorption_colour; of a pleochroic crystal by the mean over its axes. */
+static void colour_left(const abbe_material *m, double distance_m, double colour[3]) {
+  double product[3] = {1, 1, 1};
+  abbe_absorption_colour(m->attenuation, distance_m, colour);
+  if (!abbe_material_is_pleochroic(m)) return;
+  for (int axis = 0; axis < 3; axis++) {
+    const abbe_spectrum *own = axis > 0 ? m->attenuation_yz[axis - 1] : NULL;
+    abbe_absorption_colour(own != NULL ? own : m->attenuation, distance_m, colour);
+    for (int i = 0; i < 3; i++) product[i] *= colour[i];
+  }
+  for (int i = 0; i < 3; i++) colour[i] = cbrt(product[i]);
+}
+
+static void povray_fading(FILE *to, const abbe_material *m) {
   double colour[3], most = 0;
-  abbe_absorption_colour(attenuation, 1, colour);
+  colour_left(m, 1, colour);
   for (int i = 0; i < 3; i++) {
     colour[i] = fabs(log(fmax(colour[i], 1e-300))); /* 1/m again, red first */
     most = fmax(most, colour[i]);
@@ -224,7 +237,7 @@ static void write_povray(writer *w, const abbe_material *m) {
   put(to, abbe_number_tidy(round(ior * 1e6) / 1e6), "  ior ");
   put(to, abbe_number_tidy(round(dispersion * 1e6) / 1e6), "\n  dispersion ");
   fputs("\n  dispersion_samples 31\n", to);
-  if (m->attenuation != NULL) povray_fading(to, m->attenuation);
+  if (m->attenuation != NULL) povray_fading(to, m);
   fputs("}\n", to);
   abbe_report_add(
       w->report, ABBE_NOTE_LOST, m->line, m->name,
@@ -289,15 +302,15 @@ static void json_text(FILE *to, const char *text) {
 }
 
 /* At the distance where the darkest of the three shares is 1 / e. */
-static void gltf_volume(FILE *to, const abbe_spectrum *attenuation) {
+static void gltf_volume(FILE *to, const abbe_material *m) {
   double colour[3], most = 0;
   fputs("\"KHR_materials_volume\": { \"thicknessFactor\": 1", to);
-  if (attenuation != NULL) {
-    abbe_absorption_colour(attenuation, 1, colour);
+  if (m->attenuation != NULL) {
+    colour_left(m, 1, colour);
     for (int i = 0; i < 3; i++) most = fmax(most, -log(fmax(colour[i], 1e-300)));
   }
   if (most > 0) {
-    abbe_absorption_colour(attenuation, 1 / most, colour);
+    colour_left(m, 1 / most, colour);
     put(to, 1 / most, ", \"attenuationDistance\": ");
     for (int i = 0; i < 3; i++)
       put(to, abbe_number_tidy(round(colour[i] * 1e6) / 1e6),
@@ -323,7 +336,7 @@ static void write_gltf(writer *w, const abbe_material *m) {
   put(to, abbe_number_tidy(round(dispersion * 1e6) / 1e6),
       " },\n        \"KHR_materials_dispersion\": { \"dispersion\": ");
   fputs(" },\n        ", to);
-  gltf_volume(to, m->attenuation);
+  gltf_volume(to, m);
   fputs("\n      }\n    }", to);
   abbe_report_add(
       w->report, ABBE_NOTE_LOST, m->line, m->name,
@@ -380,8 +393,10 @@ abbe_result abbe_shader_write(abbe_shader shader, const abbe_material_table *tab
       continue;
     }
     if (abbe_material_is_uniaxial(m))
-      abbe_report_add(report, ABBE_NOTE_LOST, m->line, m->name,
-                      "it is written with its ordinary index alone");
+      abbe_report_add(
+          report, ABBE_NOTE_LOST, m->line, m->name, "it is written with its ordinary index alone%s",
+          abbe_material_is_pleochroic(m) ? ", and with the mean of its absorption over its axes"
+                                         : "");
     if (w.count > 0) fputs(forms[shader].between, to);
     forms[shader].write(&w, m);
   }

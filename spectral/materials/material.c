@@ -18,6 +18,7 @@ void abbe_material_free(abbe_material *material) {
   abbe_dispersion_free(&material->dispersion);
   abbe_dispersion_free(&material->extraordinary);
   abbe_spectrum_free(material->attenuation);
+  for (int i = 0; i < 2; i++) abbe_spectrum_free(material->attenuation_yz[i]);
   *material = (abbe_material){0};
 }
 
@@ -126,6 +127,22 @@ static abbe_result check_extraordinary(const abbe_material *m, abbe_error *error
                         why.text);
 }
 
+/* By the field's direction absorb crystals alone; of a uniaxial one x and y are alike. */
+abbe_result abbe_material_check_absorption(const abbe_material *m, abbe_error *error) {
+  if (m->attenuation_yz[0] == NULL && m->attenuation_yz[1] == NULL) return ABBE_OK;
+  if (!abbe_material_is_uniaxial(m))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: it absorbs by direction, and has one index in all directions; only "
+                          "a crystal, with an 'extraordinary' index, is pleochroic",
+                          m->name);
+  if (m->attenuation != NULL && m->attenuation_yz[0] == NULL && m->attenuation_yz[1] != NULL)
+    return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "%s: a uniaxial crystal absorbs alike along x and y: give 'ordinary' and "
+                        "'extraordinary'",
+                        m->name);
+}
+
 /* What would be of no effect, and could not be written. */
 static abbe_result check_conductor(const abbe_material *m, abbe_error *error) {
   const char *idle = m->extrapolate                               ? "extrapolate"
@@ -152,6 +169,7 @@ abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: %s", material->name, why.text);
   result = check_conductor(material, error);
   if (result == ABBE_OK) result = check_extraordinary(material, error);
+  if (result == ABBE_OK) result = abbe_material_check_absorption(material, error);
   return result == ABBE_OK ? check_range(material, error) : result;
 }
 
@@ -285,10 +303,28 @@ abbe_result abbe_material_nk(const abbe_material *material, double lambda_nm, do
                         material->name);
 }
 
-double abbe_material_attenuation(const abbe_material *material, double lambda_nm) {
-  if (material->attenuation == NULL) return 0;
-  double value = abbe_spectrum_at(material->attenuation, lambda_nm);
+static double attenuation_of(const abbe_spectrum *spectrum, double lambda_nm) {
+  if (spectrum == NULL) return 0;
+  double value = abbe_spectrum_at(spectrum, lambda_nm);
   return value > 0 ? value : 0; /* a spline may dip below its points */
+}
+
+bool abbe_material_is_pleochroic(const abbe_material *material) {
+  return material->attenuation_yz[1] != NULL;
+}
+
+double abbe_material_attenuation_along(const abbe_material *material, int axis, double lambda_nm) {
+  const abbe_spectrum *own = axis > 0 ? material->attenuation_yz[axis - 1] : NULL;
+  return attenuation_of(own != NULL ? own : material->attenuation, lambda_nm);
+}
+
+double abbe_material_attenuation(const abbe_material *material, double lambda_nm) {
+  if (!abbe_material_is_pleochroic(material))
+    return attenuation_of(material->attenuation, lambda_nm);
+  double sum = 0;
+  for (int axis = 0; axis < 3; axis++)
+    sum += abbe_material_attenuation_along(material, axis, lambda_nm);
+  return sum / 3;
 }
 
 bool abbe_material_is_opaque(const abbe_material *material, double min_nm, double max_nm) {

@@ -2,7 +2,8 @@
  *
  * It is transparent, with a real index, or a conductor, with n and k and nothing to do with light
  * but to mirror it: a conductor has no attenuation, fit, published n_d or V_d, and does not
- * extrapolate. A transparent one may be a uniaxial crystal, with two indices (spectral/uniaxial.h).
+ * extrapolate. A transparent one may be a uniaxial crystal, with two indices (spectral/uniaxial.h),
+ * and a crystal may be pleochroic: then it absorbs by the direction of the light's field.
  *
  * A zeroed record with a name, a source and a dispersion is a valid one, but for temperature_c: 0
  * means 0 Celsius, NaN that the source is silent.
@@ -57,7 +58,10 @@ typedef struct abbe_material {
                                     the other; of any other material zeroed */
   double min_nm, max_nm;         /* valid range of the dispersion, from its source */
   bool extrapolate;              /* the record allows use outside that range; reported when used */
-  abbe_spectrum *attenuation;    /* natural attenuation coefficient, 1/m, at nm; NULL: clear */
+  abbe_spectrum *attenuation;    /* natural attenuation coefficient, 1/m, at nm; NULL: clear; of a
+                                    pleochroic crystal for a field along x */
+  abbe_spectrum *attenuation_yz[2]; /* of a pleochroic crystal, along y (NULL: as along x) and along
+                                       z, a uniaxial one's optic axis; else both NULL */
   double
       temperature_c; /* temperature of the measurement, Celsius; NaN where the source is silent */
   char *source;      /* key into BIBLIOGRAPHY.md, then details */
@@ -92,6 +96,8 @@ size_t abbe_material_catalogue_bound(abbe_material_catalogue *catalogue);
 abbe_result abbe_material_check(const abbe_material *material, abbe_error *error);
 /* Checks all of it but the last, which takes its time: what needs no value of the formula. */
 abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *error);
+/* The part of it that is about absorption along axes. */
+abbe_result abbe_material_check_absorption(const abbe_material *material, abbe_error *error);
 /* The part of it that is about the name alone. */
 abbe_result abbe_material_check_name(const char *name, abbe_error *error);
 
@@ -131,8 +137,14 @@ abbe_result abbe_material_nk(const abbe_material *material, double lambda_nm, do
 /* Whether lambda_nm lies outside the valid range (so that n there is extrapolated). */
 bool abbe_material_extrapolates(const abbe_material *material, double lambda_nm);
 
-/* Natural attenuation coefficient at lambda_nm, 1/m, >= 0; 0 for a clear material. */
+/* Natural attenuation coefficient at lambda_nm, 1/m, >= 0; 0 for a clear material. That of a
+ * pleochroic crystal is the mean over its three principal axes. */
 double abbe_material_attenuation(const abbe_material *material, double lambda_nm);
+
+/* Whether it absorbs by the direction of the light's field. */
+bool abbe_material_is_pleochroic(const abbe_material *material);
+/* The same for a field along principal axis 0, 1 or 2 (x, y, z; the optic axis is z). */
+double abbe_material_attenuation_along(const abbe_material *material, int axis, double lambda_nm);
 
 /* Whether it absorbs within a wavelength (down to 1/e: k above 0.08) in most of the range, as
  * metals do, in which light does not get on. A conductor does. */

@@ -9,7 +9,7 @@
 
 /* ---- absorption ---- */
 
-static abbe_result read_colour(abbe_record_reading *r, abbe_yaml_node where) {
+static abbe_result read_colour(abbe_record_reading *r, abbe_yaml_node where, abbe_spectrum **out) {
   double colour[3] = {1, 1, 1}, distance_m = 0;
   abbe_yaml_node node;
   abbe_result result = abbe_yaml_require(r->yaml, where, "distance_m", &node, r->error);
@@ -18,17 +18,16 @@ static abbe_result read_colour(abbe_record_reading *r, abbe_yaml_node where) {
   if (result == ABBE_OK)
     result = abbe_yaml_get_numbers(r->yaml, where, "colour", 3, 1e-6, 1, colour, r->error);
   if (result != ABBE_OK) return result;
-  return abbe_absorption_spectrum_of_colour(colour, distance_m, &r->material->attenuation,
-                                            r->error);
+  return abbe_absorption_spectrum_of_colour(colour, distance_m, out, r->error);
 }
 
-static abbe_result read_attenuation(abbe_record_reading *r, abbe_yaml_node where) {
+static abbe_result read_attenuation(abbe_record_reading *r, abbe_yaml_node where,
+                                    abbe_spectrum **out) {
   abbe_interpolation interpolation = ABBE_INTERPOLATION_LINEAR;
   abbe_result result = abbe_record_read_interpolation(r, where, &interpolation);
   if (result != ABBE_OK) return result;
   return abbe_record_read_points(r, abbe_yaml_get(r->yaml, where, "attenuation_per_m"),
-                                 "attenuation_per_m", 0, 1e15, interpolation,
-                                 &r->material->attenuation);
+                                 "attenuation_per_m", 0, 1e15, interpolation, out);
 }
 
 /* Pairs into points, for what is converted. */
@@ -45,16 +44,16 @@ static abbe_result read_list(abbe_record_reading *r, abbe_yaml_node where, const
   return result;
 }
 
-static abbe_result read_k(abbe_record_reading *r, abbe_yaml_node where) {
+static abbe_result read_k(abbe_record_reading *r, abbe_yaml_node where, abbe_spectrum **out) {
   abbe_points points = {0};
   abbe_result result = read_list(r, where, "k", 1e3, &points);
-  if (result == ABBE_OK)
-    result = abbe_absorption_spectrum_of_k(&points, &r->material->attenuation, r->error);
+  if (result == ABBE_OK) result = abbe_absorption_spectrum_of_k(&points, out, r->error);
   abbe_points_free(&points);
   return result;
 }
 
-static abbe_result read_transmittance(abbe_record_reading *r, abbe_yaml_node where) {
+static abbe_result read_transmittance(abbe_record_reading *r, abbe_yaml_node where,
+                                      abbe_spectrum **out) {
   abbe_points points = {0};
   double thickness_m = 0;
   abbe_yaml_node node;
@@ -63,8 +62,7 @@ static abbe_result read_transmittance(abbe_record_reading *r, abbe_yaml_node whe
     result = abbe_yaml_get_number(r->yaml, where, "thickness_m", 1e-9, 1e9, &thickness_m, r->error);
   if (result == ABBE_OK) result = read_list(r, where, "transmittance", 1, &points);
   if (result == ABBE_OK)
-    result = abbe_absorption_spectrum_of_transmittance(&points, thickness_m,
-                                                       &r->material->attenuation, r->error);
+    result = abbe_absorption_spectrum_of_transmittance(&points, thickness_m, out, r->error);
   abbe_points_free(&points);
   return result;
 }
@@ -72,7 +70,7 @@ static abbe_result read_transmittance(abbe_record_reading *r, abbe_yaml_node whe
 /* The three kinds of absorption, and the keys that go with each. */
 static const struct {
   const char *key;
-  abbe_result (*read)(abbe_record_reading *r, abbe_yaml_node where);
+  abbe_result (*read)(abbe_record_reading *r, abbe_yaml_node where, abbe_spectrum **out);
 } ways[] = {
     {"attenuation_per_m", read_attenuation},
     {"transmittance", read_transmittance},
@@ -82,11 +80,9 @@ static const struct {
 #define WAYS                                                                                       \
   "'attenuation_per_m', 'k', 'transmittance' and 'thickness_m', or 'colour' and 'distance_m'"
 
-static abbe_result read_absorption(abbe_record_reading *r) {
-  abbe_yaml_node where = abbe_yaml_get(r->yaml, r->record, "absorption");
-  if (where.id == 0) return ABBE_OK;
-  if (!abbe_yaml_is_mapping(r->yaml, where))
-    return abbe_yaml_fail(r->yaml, where, r->error, "'absorption' wants " WAYS);
+/* In one of those ways. */
+static abbe_result read_absorbed(abbe_record_reading *r, abbe_yaml_node where,
+                                 abbe_spectrum **out) {
   size_t found = 0, which = 0;
   for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
     if (abbe_yaml_get(r->yaml, where, ways[i].key).id == 0) continue;
@@ -101,9 +97,62 @@ static abbe_result read_absorption(abbe_record_reading *r) {
     if (result != ABBE_OK) return result;
     return abbe_yaml_fail(r->yaml, where, r->error, "'absorption' wants one of " WAYS);
   }
-  abbe_result result = ways[which].read(r, where);
+  abbe_result result = ways[which].read(r, where, out);
   return result != ABBE_OK ? result
                            : abbe_yaml_check_keys(r->yaml, where, "'absorption'", r->error);
+}
+
+/* Along axes: each of the keys has one of those ways. */
+static abbe_result read_axes(abbe_record_reading *r, abbe_yaml_node where, const char *const *key,
+                             size_t count, abbe_spectrum ***out) {
+  for (size_t i = 0; i < count; i++) {
+    const abbe_yaml_node axis = abbe_yaml_get(r->yaml, where, key[i]);
+    if (axis.id == 0)
+      return abbe_yaml_fail(r->yaml, where, r->error, "'absorption' along axes wants '%s' too",
+                            key[i]);
+    if (!abbe_yaml_is_mapping(r->yaml, axis))
+      return abbe_yaml_fail(r->yaml, axis, r->error, "'%s' wants " WAYS, key[i]);
+    abbe_result result = read_absorbed(r, axis, out[i]);
+    if (result != ABBE_OK) return result;
+  }
+  return abbe_yaml_check_keys(r->yaml, where, "'absorption'", r->error);
+}
+
+/* Whether all of it is said twice. */
+static bool is_same(const abbe_spectrum *a, const abbe_spectrum *b) {
+  const size_t count = abbe_spectrum_count(a), size = count * sizeof(double);
+  return count == abbe_spectrum_count(b) &&
+         abbe_spectrum_interpolation(a) == abbe_spectrum_interpolation(b) &&
+         memcmp(abbe_spectrum_lambda_nm(a), abbe_spectrum_lambda_nm(b), size) == 0 &&
+         memcmp(abbe_spectrum_value(a), abbe_spectrum_value(b), size) == 0;
+}
+
+static abbe_result read_pleochroism(abbe_record_reading *r, abbe_yaml_node where, bool xyz) {
+  static const char *const two[] = {"ordinary", "extraordinary"}, *const three[] = {"x", "y", "z"};
+  abbe_material *m = r->material;
+  abbe_spectrum **y = &m->attenuation_yz[0];
+  abbe_error why;
+  abbe_spectrum **of_two[] = {&m->attenuation, &m->attenuation_yz[1]},
+                **of_three[] = {&m->attenuation, y, &m->attenuation_yz[1]};
+  abbe_result result = read_axes(r, where, xyz ? three : two, xyz ? 3 : 2, xyz ? of_three : of_two);
+  if (result == ABBE_OK && *y != NULL && is_same(*y, m->attenuation)) {
+    abbe_spectrum_free(*y);
+    *y = NULL;
+  }
+  if (result == ABBE_OK && abbe_material_check_absorption(m, &why) != ABBE_OK)
+    return abbe_yaml_fail(r->yaml, where, r->error, "%s", why.text);
+  return result;
+}
+
+static abbe_result read_absorption(abbe_record_reading *r) {
+  static const char *const axes[] = {"ordinary", "extraordinary", "x", "y", "z"};
+  abbe_yaml_node where = abbe_yaml_get(r->yaml, r->record, "absorption");
+  if (where.id == 0) return ABBE_OK;
+  if (!abbe_yaml_is_mapping(r->yaml, where))
+    return abbe_yaml_fail(r->yaml, where, r->error, "'absorption' wants " WAYS);
+  for (int i = 0; i < 5; i++)
+    if (abbe_yaml_get(r->yaml, where, axes[i]).id != 0) return read_pleochroism(r, where, i > 1);
+  return read_absorbed(r, where, &r->material->attenuation);
 }
 
 /* ---- fits ---- */

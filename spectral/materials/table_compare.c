@@ -82,7 +82,9 @@ static unsigned parts_of(const abbe_material *a, const abbe_material *b) {
       [ABBE_ROW_PART_SOURCE] = same_text(a->source, b->source),
       [ABBE_ROW_PART_WARNING] = same_text(a->warning, b->warning),
       [ABBE_ROW_PART_COMMENT] = same_text(a->comment, b->comment),
-      [ABBE_ROW_PART_ABSORPTION] = same_points(a->attenuation, b->attenuation),
+      [ABBE_ROW_PART_ABSORPTION] = same_points(a->attenuation, b->attenuation) &&
+                                   same_points(a->attenuation_yz[0], b->attenuation_yz[0]) &&
+                                   same_points(a->attenuation_yz[1], b->attenuation_yz[1]),
       [ABBE_ROW_PART_CATALOGUE] = same_catalogue(&a->catalogue, &b->catalogue),
       [ABBE_ROW_PART_FIT] = same_fits(a, b),
   };

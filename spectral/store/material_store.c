@@ -19,28 +19,7 @@ enum { MAX_ROW = 4 << 20 };
 #define NAMED(name, type) ", " #name
 #define SELECT "SELECT id" ABBE_STORE_COLUMNS(NAMED) " FROM materials"
 
-/* ---- SQLite's failures ---- */
-
-abbe_result abbe_store_fail(sqlite3 *db, int code, const char *name, abbe_error *error) {
-  const char *text = db != NULL ? sqlite3_errmsg(db) : sqlite3_errstr(code);
-  switch (code & 0xff) {
-  case SQLITE_NOMEM:
-    return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", name);
-  case SQLITE_CANTOPEN:
-  case SQLITE_IOERR:
-  case SQLITE_PERM:
-  case SQLITE_AUTH:
-    return abbe_error_set(error, ABBE_IO, "%s: cannot be read: %s", name, text);
-  default:
-    return abbe_error_set(error, ABBE_PARSE, "%s: the store is damaged: %s", name, text);
-  }
-}
-
-abbe_result abbe_store_prepare(sqlite3 *db, const char *sql, const char *name, sqlite3_stmt **out,
-                               abbe_error *error) {
-  int code = sqlite3_prepare_v2(db, sql, -1, out, NULL);
-  return code == SQLITE_OK ? ABBE_OK : abbe_store_fail(db, code, name, error);
-}
+/* ---- whether it is one ---- */
 
 bool abbe_material_store_is(const char *path) {
   static const char magic[16] = "SQLite format 3"; /* with its zero */
@@ -326,6 +305,9 @@ static abbe_result read_row(reader *r) {
   if (result == ABBE_OK)
     result = read_spectrum(r, ABBE_STORE_attenuation_per_m, ABBE_STORE_attenuation_interpolation, 0,
                            1e15, &m->attenuation);
+  if (result == ABBE_OK)
+    result = read_spectrum(r, ABBE_STORE_attenuation_z_per_m,
+                           ABBE_STORE_attenuation_z_interpolation, 0, 1e15, &m->attenuation_yz[1]);
   if (result == ABBE_OK) result = read_catalogue(r);
   if (result != ABBE_OK) return result;
   /* only rows that are used are checked; thousands that are looked through would take as long

@@ -143,6 +143,9 @@ static int bind_material(sqlite3_stmt *q, const abbe_material *m) {
   if (code == SQLITE_OK)
     code = bind_spectrum(q, ABBE_STORE_attenuation_per_m, ABBE_STORE_attenuation_interpolation,
                          m->attenuation);
+  if (code == SQLITE_OK)
+    code = bind_spectrum(q, ABBE_STORE_attenuation_z_per_m, ABBE_STORE_attenuation_z_interpolation,
+                         m->attenuation_yz[1]);
   return code == SQLITE_OK ? bind_catalogue(q, &m->catalogue) : code;
 }
 

@@ -157,6 +157,8 @@ static inline abbe_material random_material(size_t number) {
         abbe_spectrum_lambda_nm(m.dispersion.table)[abbe_spectrum_count(m.dispersion.table) - 1];
   }
   if (rand() % 3 == 0) m.extraordinary = random_second(&m.dispersion);
+  if (abbe_material_is_uniaxial(&m) && m.attenuation != NULL)
+    m.attenuation_yz[1] = random_spectrum(0, 300);
   random_catalogue(&m.catalogue);
   if (rand() % 2)
     m.fit[0] = (abbe_material_fit){2, {random_in(1, 2), random_in(0, 0.01)}, 1e-4, 380, 780};

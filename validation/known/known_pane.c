@@ -82,7 +82,7 @@ static double polarised(double angle, double n, bool across) {
 }
 
 /* The extraordinary wave is polarised across the plane of incidence and sees n_e, the ordinary one
- * in it, and sees n_o; neither makes any of the other. */
+ * in it, and sees n_o; neither makes any of the other, and each has its own absorption. */
 static abbe_result exact_of_crystal(const pane *p, const abbe_material *material, double *reflected,
                                     double *passed, abbe_error *error) {
   double n[2], angle = p->degrees / ABBE_KNOWN_DEGREES, r, t;
@@ -91,7 +91,10 @@ static abbe_result exact_of_crystal(const pane *p, const abbe_material *material
     result = abbe_material_n_extraordinary(material, p->lambda_nm, &n[1], error);
   if (result != ABBE_OK) return result;
   for (int wave = 0; wave < 2; wave++) {
-    abbe_closed_form_slab(polarised(angle, n[wave], wave == 1), 1, &r, &t);
+    const double slanted = p->thickness / cos(asin(sin(angle) / n[wave]));
+    const double per_m = abbe_material_attenuation_along(material, wave == 1 ? 2 : 0, p->lambda_nm);
+    const double tau = exp(-per_m * slanted);
+    abbe_closed_form_slab(polarised(angle, n[wave], wave == 1), tau, &r, &t);
     *reflected += r / 2;
     *passed += t / 2;
   }
@@ -178,6 +181,8 @@ static const setting absorbing[] = {
     {{"n-sf11", 546, 0.02, 0, 0.25, false}, false}, {{"n-sf11", 436, 0.02, 0, 0.25, false}, false},
     {{"n-sf11", 400, 0.02, 0, 0.25, false}, false}, {{"n-sf11", 400, 0.02, 45, 0.25, false}, false},
     {{"n-sf11", 400, 0.1, 0, 0.25, false}, false},
+    {{"tourmaline-green", 640, 0.02, 0, 0.25, true}, false},
+    {{"tourmaline-green", 640, 0.02, 45, 0.25, true}, false},
 };
 
 enum { CLEAR = sizeof clear / sizeof *clear, ABSORBING = sizeof absorbing / sizeof *absorbing };

@@ -1,5 +1,7 @@
 #include "validation/transport/media.h"
 
+#include "spectral/uniaxial.h"
+
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,6 +33,9 @@ static abbe_result fill_crystal(const abbe_geometry *g, const double *lambda_nm,
     m->extraordinary[at] = (float)n;
     m->dispersive[i] =
         m->dispersive[i] || m->extraordinary[at] != m->extraordinary[i * (m->steps + 1)];
+    for (int axis = 0; axis < 3; axis++)
+      m->pleochroism[3 * at + (size_t)axis] =
+          (float)(abbe_material_attenuation_along(o->material, axis, lambda_nm[k]) * g->unit);
   }
   return ABBE_OK;
 }
@@ -39,9 +44,11 @@ static void free_crystals(abbe_media *m) {
   free(m->extraordinary);
   free(m->crystal);
   free(m->axis);
+  free(m->pleochroism);
   m->extraordinary = NULL;
   m->crystal = NULL;
   m->axis = NULL;
+  m->pleochroism = NULL;
 }
 
 static abbe_result fill(const abbe_geometry *g, const double *lambda_nm, abbe_media *m,
@@ -79,18 +86,26 @@ abbe_result abbe_media_make(const abbe_geometry *geometry, const double *lambda_
   m.extraordinary = calloc(values, sizeof *m.extraordinary);
   m.crystal = calloc(m.refractors + 1, sizeof *m.crystal);
   m.axis = calloc(m.refractors + 1, sizeof *m.axis);
-  bool absorbs = false, crystals = false;
+  m.pleochroism = calloc(3 * values, sizeof *m.pleochroism);
+  bool absorbs = false, crystals = false, pleochroic = false;
   abbe_result result =
       m.n == NULL || m.attenuation == NULL || m.dispersive == NULL || m.stuff == NULL ||
-              m.extraordinary == NULL || m.crystal == NULL || m.axis == NULL
+              m.extraordinary == NULL || m.crystal == NULL || m.axis == NULL ||
+              m.pleochroism == NULL
           ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for tables of %zu media", m.refractors)
           : fill(geometry, lambda_nm, &m, &absorbs, error);
   if (!absorbs) {
     free(m.attenuation);
     m.attenuation = NULL;
   }
-  for (size_t i = 0; i < m.refractors && result == ABBE_OK; i++)
+  for (size_t i = 0; i < m.refractors && result == ABBE_OK; i++) {
     crystals = crystals || m.crystal[i];
+    pleochroic = pleochroic || abbe_material_is_pleochroic(object_of(geometry, i)->material);
+  }
+  if (!pleochroic) {
+    free(m.pleochroism);
+    m.pleochroism = NULL;
+  }
   if (!crystals) free_crystals(&m);
   if (result == ABBE_OK)
     result = abbe_haze_make(geometry, lambda_nm, steps, m.attenuation, &m.haze, error);
@@ -108,6 +123,19 @@ void abbe_media_free(abbe_media *m) {
   free_crystals(m);
   abbe_haze_free(&m->haze);
   *m = (abbe_media){0};
+}
+
+float abbe_media_attenuation_along(const abbe_media *m, int i, uint32_t k, float f,
+                                   const float d[3], uint8_t wave) {
+  const size_t at = (size_t)i * (m->steps + 1) + k;
+  const float *a = m->pleochroism + 3 * at, *n = m->extraordinary + at;
+  const double a_o = (double)(a[0] + f * (a[3] - a[0]));
+  if (wave == ABBE_UNIAXIAL_ORDINARY) return (float)a_o;
+  double cos_ray = 0;
+  for (int c = 0; c < 3; c++) cos_ray += (double)d[c] * m->axis[i][c];
+  return (float)abbe_uniaxial_attenuation((double)abbe_media_n(m, i, k, f),
+                                          (double)(n[0] + f * (n[1] - n[0])), a_o,
+                                          (double)(a[2] + f * (a[5] - a[2])), cos_ray);
 }
 
 void abbe_media_forget_axes(abbe_media *m) {

@@ -43,6 +43,8 @@ typedef struct abbe_media {
   float *extraordinary; /* the other index of crystals, as n; NULL where there are none */
   bool *crystal;        /* [refractors] */
   double (*axis)[3];    /* [refractors] unit, of crystals */
+  float *pleochroism;   /* [refractors][steps + 1][3] attenuation along x, y, z, a frame unit; NULL
+                           where no crystal absorbs by direction */
   abbe_haze haze;       /* what scatters in them and in the air */
 } abbe_media;
 
@@ -76,6 +78,18 @@ static inline float abbe_media_attenuation(const abbe_media *m, int i, uint32_t 
   if (i < 0 || m->attenuation == NULL) return 0;
   const float *a = m->attenuation + (size_t)i * (m->steps + 1) + k;
   return a[0] + f * (a[1] - a[0]);
+}
+
+/* Of one wave of crystal i along the unit ray d, where some crystal is pleochroic. */
+float abbe_media_attenuation_along(const abbe_media *media, int i, uint32_t k, float f,
+                                   const float d[3], uint8_t wave);
+
+/* The same of any medium along the unit ray d, of that wave where it is a crystal. */
+static inline float abbe_media_loss(const abbe_media *m, int i, uint32_t k, float f,
+                                    const float d[3], uint8_t wave) {
+  if (m->pleochroism != NULL && abbe_media_is_crystal(m, i))
+    return abbe_media_attenuation_along(m, i, k, f, d, wave);
+  return abbe_media_attenuation(m, i, k, f);
 }
 
 #endif

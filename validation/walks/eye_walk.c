@@ -134,7 +134,8 @@ static void absorb(const abbe_eye_context *c, abbe_eye_path *p, float length, ui
   int medium = abbe_media_of(p->inside);
   if (medium < 0 || c->w->media->attenuation == NULL) return;
   disperse(p, wave);
-  p->share *= expf(-length * abbe_media_attenuation(c->w->media, medium, p->step, p->within));
+  p->share *=
+      expf(-length * abbe_media_loss(c->w->media, medium, p->step, p->within, p->d, p->wave));
 }
 
 /* ---- branches ---- */

@@ -122,7 +122,10 @@ static inline bool abbe_light_path_absorb(const abbe_inner_rules *r, const abbe_
   if (abbe_haze_is(&media->haze)) return abbe_light_path_fade(r, &media->haze, s, rays, k, ledger);
   int medium = abbe_media_of(s->inside);
   if (medium < 0 || media->attenuation == NULL) return true;
-  float left = expf(-rays->ray.tfar[k] * abbe_media_attenuation(media, medium, s->step, s->within));
+  float o[3], d[3];
+  abbe_ray_take(rays, k, o, d);
+  float left =
+      expf(-rays->ray.tfar[k] * abbe_media_loss(media, medium, s->step, s->within, d, s->wave));
   ledger->absorbed += (double)(s->y * s->flux * (1 - left));
   s->flux *= left;
   s->carried *= left;

@@ -1,6 +1,7 @@
 #include "gl/plan/examine/spectral_needs.h"
 
 #include "base/number.h"
+#include "colorimetry/pleochroism.h"
 #include "colorimetry/weights.h"
 #include "spectral/optics.h"
 
@@ -122,6 +123,20 @@ static void note_birefringence(const abbe_material *material, double lambda_nm, 
                  material->name, fabs(n_e - n_o), n_e < n_o ? "lower" : "higher", lambda_nm);
 }
 
+/* A pleochroic crystal absorbs by the mean over its axes. */
+static void note_pleochroism(const abbe_material *material, abbe_plan *plan) {
+  enum { MM = 5 };
+  if (!abbe_material_is_pleochroic(material)) return;
+  abbe_pleochroism p;
+  abbe_pleochroism_make(material, 1e-3 * MM, &p);
+  const double *o = p.field_lab[0], *e = p.field_lab[2];
+  abbe_plan_note(plan,
+                 "%s: pleochroic; %d mm pass CIELAB %.0f %.0f %.0f of its ordinary ray and %.0f "
+                 "%.0f %.0f of the extraordinary one, %.0f apart; the mean over its axes is drawn, "
+                 "and 'abbe trace' follows each",
+                 material->name, MM, o[0], o[1], o[2], e[0], e[1], e[2], p.largest);
+}
+
 abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_material *material,
                                         abbe_plan *plan, abbe_error *error) {
   const double min = plan->desc.min_nm, max = plan->desc.max_nm;
@@ -137,6 +152,7 @@ abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_mate
   for (size_t i = 0; i < plan->refractor_count && !noted; i++)
     noted = scene->object[plan->refractor_object[i]].material == material;
   if (!noted) note_birefringence(material, 0.5 * (min + max), plan);
+  if (!noted) note_pleochroism(material, plan);
   if (outside && !noted)
     abbe_plan_note(plan, "%s: the index is extrapolated outside its valid range, %g to %g nm",
                    material->name, material->min_nm, material->max_nm);

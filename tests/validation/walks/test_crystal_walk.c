@@ -12,22 +12,28 @@
   "- {name: slab, shape: box, size: [0.4, 0.4, 0.1], transform: [{translate: [0, 0, 0.3]}], "      \
   "material: spar, axis: " axis "}\n"
 
-#define TABLE                                                                                      \
+#define TABLE_OF(absorption)                                                                       \
   "materials:\n- {name: spar, model: constant, coefficients: [1.66], source: made up,\n"           \
-  "   extraordinary: {model: constant, coefficients: [1.48]}}\n"
+  "   extraordinary: {model: constant, coefficients: [1.48]}," absorption "}\n"
+#define TABLE TABLE_OF("")
 
 static const double n_o = 1.66, n_e = 1.48;
 
-/* As make, with the crystal's table. */
-static void make_crystal(const char *text, const abbe_physics *physics, fixture *f) {
+/* As make, with a crystal's table. */
+static void make_table(const char *table, const char *text, const abbe_physics *physics,
+                       fixture *f) {
   char folder[] = "/tmp/abbe-test-crystal-XXXXXX", path[64], all[4096];
   assert_non_null(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/table.yaml", folder);
-  OK(abbe_file_write(path, TABLE, strlen(TABLE), &error));
+  OK(abbe_file_write(path, table, strlen(table), &error));
   snprintf(all, sizeof all, "materials: %s\n%s", path, text);
   make(all, physics, f);
   unlink(path);
   rmdir(folder);
+}
+
+static void make_crystal(const char *text, const abbe_physics *physics, fixture *f) {
+  make_table(TABLE, text, physics, f);
 }
 
 /* Of the light that enters as one wave a slab lets through, with all inner reflections, (1 - r) /
@@ -62,6 +68,40 @@ TEST(a_beam_becomes_two) {
   }
   assert_near(f->ledger.reached, (double)photons, 1e-6 * (double)photons);
   assert_near(f->ledger.lost, 0, 0);
+  drop(f);
+  free(f);
+}
+
+/* Through a slab whose axis lies in its face head on, each wave with its own loss: two
+ * exponentials, and not one of the mean. */
+TEST(a_pleochroic_slab_passes_two_exponentials) {
+  enum { BATCHES = 64 };
+  static const double per_m[2] = {30, 4}, thick = 0.1, n[2] = {1.66, 1.48};
+  fixture *f = malloc(sizeof *f);
+  make_table(TABLE_OF("\n   absorption: {ordinary: {attenuation_per_m: [[500, 30]]},\n"
+                      "     extraordinary: {attenuation_per_m: [[500, 4]]}}"),
+             CALCITE("[1, 1, 0]"), NULL, f);
+  const double from[3] = {0.02, 0.01, 0.5}, down[3] = {0, 0, -1};
+  double landed = 0, wanted = 0, sent = 0;
+  for (uint32_t b = 0; b < BATCHES; b++) {
+    for (uint32_t i = 0; i < BATCH; i++) f->photon[i] = photon_of(f, from, down, i);
+    for (uint32_t i = 0; i < BATCH; i++) sent += (double)f->photon[i].flux;
+    const size_t hits =
+        abbe_light_walk_run(f->walk, &f->scene.light[0], b, f->photon, BATCH, f->hit, &f->ledger);
+    for (size_t i = 0; i < hits; i++) {
+      double p[3];
+      abbe_geometry_to_world(&f->geometry, f->hit[i].p, p);
+      if (p[2] < 0.1) landed += (double)f->hit[i].flux;
+    }
+  }
+  for (int wave = 0; wave < 2; wave++) {
+    const double r = pow((n[wave] - 1) / (n[wave] + 1), 2), tau = exp(-per_m[wave] * thick);
+    wanted += 0.5 * (1 - r) * (1 - r) * tau / (1 - r * r * tau * tau);
+  }
+  assert_near(landed / sent, wanted, 4 * 0.35 / sqrt(BATCHES * BATCH));
+  assert_near(f->ledger.reached,
+              f->ledger.deposited + f->ledger.absorbed + f->ledger.missed + f->ledger.trapped,
+              1e-5 * f->ledger.reached);
   drop(f);
   free(f);
 }

@@ -20,6 +20,18 @@ TEST(an_index_that_is_not_known_is_refused_or_noted) {
   abbe_plan_free(&plan);
 }
 
+/* Its colours by ray, how far apart they are, and what is drawn. */
+TEST(pleochroism_is_noted) {
+  abbe_plan plan;
+  const char *head = "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR;
+  char text[2048];
+  snprintf(text, sizeof text, "%s%s", head, BALL("tourmaline-green"));
+  plan_text(text, NULL, &plan);
+  assert_true(is_noted(&plan, "tourmaline-green: pleochroic; 5 mm pass CIELAB 86 -49 46 of its "
+                              "ordinary ray and 97 -12 14 of the extraordinary one, 50 apart"));
+  abbe_plan_free(&plan);
+}
+
 /* A crystal has one index here, and the plan says what is left out, once a material. */
 TEST(double_refraction_is_noted) {
   abbe_plan plan;
