@@ -10,6 +10,7 @@
 #include "scenes/check/scene_doubts.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/object_motion.h"
+#include "scenes/studio/setting.h"
 #include "scenes/view/coverage.h"
 
 #include <cjson/cJSON.h>
@@ -63,6 +64,7 @@ static void take_studio(abbe_scene_input_changes *changes, int key, const char *
 #define WITH_NAME(code, name) #name,
   static const char *const looks[] = {ABBE_STUDIO_LOOKS(LOOK_NAME)};
   static const char *const withs[] = {ABBE_STUDIO_WITHS(WITH_NAME)};
+  static const char *const settings[] = {ABBE_SETTING_KINDS(WITH_NAME)};
 #undef LOOK_NAME
 #undef WITH_NAME
   abbe_studio *studio = &changes->studio;
@@ -70,16 +72,20 @@ static void take_studio(abbe_scene_input_changes *changes, int key, const char *
     changes->save = abbe_command_target(program, "--save-scene", text, ".yaml");
     return;
   }
-  changes->look = key == ABBE_SCENE_INPUT_LOOK    ? "--look"
-                  : key == ABBE_SCENE_INPUT_WITH  ? "--with"
-                  : key == ABBE_SCENE_INPUT_METAL ? "--metal"
-                                                  : "--width";
+  changes->look = key == ABBE_SCENE_INPUT_LOOK      ? "--look"
+                  : key == ABBE_SCENE_INPUT_WITH    ? "--with"
+                  : key == ABBE_SCENE_INPUT_SETTING ? "--setting"
+                  : key == ABBE_SCENE_INPUT_METAL   ? "--metal"
+                                                    : "--width";
   if (key == ABBE_SCENE_INPUT_LOOK)
     studio->look = (abbe_studio_look)abbe_command_choice(program, "--look", text, looks,
                                                          ABBE_STUDIO_LOOK_COUNT);
   else if (key == ABBE_SCENE_INPUT_WITH)
     studio->with = (abbe_studio_with)abbe_command_choice(program, "--with", text, withs,
                                                          ABBE_STUDIO_WITH_COUNT);
+  else if (key == ABBE_SCENE_INPUT_SETTING)
+    studio->setting =
+        1 + abbe_command_choice(program, "--setting", text, settings, ABBE_SETTING_COUNT);
   else if (key == ABBE_SCENE_INPUT_METAL)
     studio->metal = text;
   else

@@ -38,6 +38,7 @@ enum {
   ABBE_SCENE_INPUT_AT,
   ABBE_SCENE_INPUT_LOOK,
   ABBE_SCENE_INPUT_WITH,
+  ABBE_SCENE_INPUT_SETTING,
   ABBE_SCENE_INPUT_METAL,
   ABBE_SCENE_INPUT_WIDTH,
   ABBE_SCENE_INPUT_SAVE,
@@ -63,11 +64,17 @@ enum {
        0,                                                                                          \
        "what a stone's file is shown with: table, ring, none (table)",                             \
        group},                                                                                     \
+      {"setting",                                                                                  \
+       ABBE_SCENE_INPUT_SETTING,                                                                   \
+       "KIND",                                                                                     \
+       0,                                                                                          \
+       "metal around each stone of a file: prongs, bezel, channel, band, pave (none)",             \
+       group},                                                                                     \
       {"metal",                                                                                    \
        ABBE_SCENE_INPUT_METAL,                                                                     \
        "NAME",                                                                                     \
        0,                                                                                          \
-       "of --with ring: gold, silver, platinum, rhodium, palladium, green-gold … (gold)",          \
+       "of a ring or a setting: gold, silver, platinum, rhodium, palladium, green-gold … (gold)",  \
        group},                                                                                     \
       {"width",                                                                                    \
        ABBE_SCENE_INPUT_WIDTH,                                                                     \

@@ -458,6 +458,7 @@ abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *f
   abbe_object_reading r = {
       .yaml = yaml, .node = node, .folder = folder, .normals = ABBE_NORMALS_AUTO};
   abbe_object_surface surface = {0};
+  abbe_object metal[ABBE_SETTINGS_MOST] = {0};
   *count = 1;
   out->line = abbe_yaml_line(yaml, node);
   if (!abbe_yaml_is_mapping(yaml, node))
@@ -474,12 +475,16 @@ abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *f
   if (result == ABBE_OK) result = read_size_and_place(&r, &surface, error);
   if (result == ABBE_OK) result = read_solid(&r, &surface, error);
   if (result == ABBE_OK) result = read_substance(&r, table, out, error);
+  if (result == ABBE_OK)
+    result = abbe_setting_read(&r, table, out, room - 1, metal, &surface.setting_count, error);
   if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "an object", error);
-  if (result != ABBE_OK) return result;
+  surface.setting = metal;
   memcpy(surface.matrix, r.matrix, sizeof surface.matrix);
   surface.radius = r.form == ABBE_OBJECT_SPHERE ? r.radius : 0;
   surface.rectangles = r.form == ABBE_OBJECT_RECTANGLE || r.form == ABBE_OBJECT_BOX;
   surface.file = r.form == ABBE_OBJECT_MESH;
   surface.normals = normals_of(&r);
-  return place(&r, &surface, out, room, count, error);
+  if (result == ABBE_OK)
+    result = place(&r, &surface, out, room - surface.setting_count, count, error);
+  return abbe_setting_place(&surface, result, metal, out, count, error);
 }

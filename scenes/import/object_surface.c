@@ -67,9 +67,13 @@ static abbe_result fit_matrix(const abbe_object_surface *s, abbe_object *part, s
     for (int k = 0; k < 3; k++) min[k] *= factor, max[k] *= factor;
   }
   if (s->centred) {
-    double offset[3];
+    double offset[3], low[3], high[3];
+    memcpy(low, min, sizeof low);
+    memcpy(high, max, sizeof high);
+    for (size_t i = 0; i < s->setting_count; i++)
+      bound_vertices(&s->setting[i].mesh, out, low, high);
     for (int k = 0; k < 3; k++)
-      offset[k] = s->centre[k] - (s->stands && k == 2 ? min[k] : 0.5 * (min[k] + max[k]));
+      offset[k] = s->centre[k] - (s->stands && k == 2 ? low[k] : 0.5 * (min[k] + max[k]));
     abbe_transform_translate(offset, step);
     abbe_transform_multiply(step, out, out);
     for (size_t i = 0; i < count; i++) memcpy(part[i].centring, offset, sizeof offset);

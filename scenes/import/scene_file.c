@@ -59,17 +59,30 @@ static abbe_result read_environment(abbe_yaml *yaml, abbe_yaml_node root, const 
 
 /* --- the scene --- */
 
-/* The materials that the objects name, so that of a store of many no others are read. */
-static size_t names_in(abbe_yaml *yaml, abbe_yaml_node root,
-                       const char *names[ABBE_SCENE_MAX_OBJECTS]) {
+enum { NAMES = 4 * ABBE_SCENE_MAX_OBJECTS };
+
+static void add_name(const char *name, const char *names[NAMES], size_t *count) {
+  if (name && strcmp(name, ABBE_OBJECT_FROM_FILE) != 0 && *count < NAMES) names[(*count)++] = name;
+}
+
+/* The materials that the objects and their settings name, so that of a store of many no others are
+ * read. */
+static size_t names_in(abbe_yaml *yaml, abbe_yaml_node root, const char *names[NAMES]) {
   const abbe_yaml_node list = abbe_yaml_get(yaml, root, "objects");
   const size_t count = abbe_yaml_is_sequence(yaml, list) ? abbe_yaml_count(yaml, list) : 0;
   size_t found = 0;
-  for (size_t i = 0; i < count && found < ABBE_SCENE_MAX_OBJECTS; i++) {
+  for (size_t i = 0; i < count; i++) {
     const abbe_yaml_node object = abbe_yaml_item(yaml, list, i);
     if (!abbe_yaml_is_mapping(yaml, object)) continue;
-    const char *name = abbe_yaml_text(yaml, abbe_yaml_get(yaml, object, "material"));
-    if (name && strcmp(name, ABBE_OBJECT_FROM_FILE) != 0) names[found++] = name;
+    add_name(abbe_yaml_text(yaml, abbe_yaml_get(yaml, object, "material")), names, &found);
+    add_name(abbe_yaml_text(yaml, abbe_yaml_get(yaml, object, "mirror")), names, &found);
+    const abbe_yaml_node setting = abbe_yaml_get(yaml, object, "setting");
+    const bool several = abbe_yaml_is_sequence(yaml, setting);
+    for (size_t k = 0; k < (several ? abbe_yaml_count(yaml, setting) : setting.id != 0); k++) {
+      const abbe_yaml_node one = several ? abbe_yaml_item(yaml, setting, k) : setting;
+      if (abbe_yaml_is_mapping(yaml, one))
+        add_name(abbe_yaml_text(yaml, abbe_yaml_get(yaml, one, "metal")), names, &found);
+    }
   }
   return found;
 }
@@ -78,7 +91,7 @@ static abbe_result read_table(abbe_yaml *yaml, abbe_yaml_node root, const char *
                               const abbe_scene_options *options, abbe_scene *out,
                               abbe_error *error) {
   char *name = NULL, *path = NULL;
-  const char *names[ABBE_SCENE_MAX_OBJECTS];
+  const char *names[NAMES];
   const size_t count = names_in(yaml, root, names);
   abbe_result result = abbe_yaml_get_string(yaml, root, "materials", &name, error);
   if (result != ABBE_OK) return result;

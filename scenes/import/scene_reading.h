@@ -51,6 +51,15 @@ typedef struct abbe_object_reading {
 abbe_result abbe_object_read_surface(abbe_object_reading *reading, abbe_object *object,
                                      abbe_error *error);
 
+#define ABBE_SETTINGS_MOST 4 /* of one stone */
+
+/* The metal around the stone, whose mesh is in its own coordinates still: *count objects in the
+ * same coordinates, for which a scene has room. Errors with file, line and key. */
+abbe_result abbe_setting_read(const abbe_object_reading *reading, const abbe_material_table *table,
+                              const abbe_object *stone, size_t room,
+                              abbe_object out[ABBE_SETTINGS_MOST], size_t *count,
+                              abbe_error *error);
+
 /* A scene's camera: as its file has it, or placed so that objects fill the picture. */
 
 /* The values under 'camera'. With 'frame' its eye and target are not there yet. Errors with file,
@@ -129,6 +138,8 @@ typedef struct abbe_object_surface {
   double width;   /* the smaller of their sides along x and y, m, or 0 */
   bool centred, stands;
   double centre[3]; /* where the middle of its bounds comes to stand, or of their lower side */
+  const abbe_object *setting; /* [setting_count] what stands with it, in its own coordinates */
+  size_t setting_count;
 } abbe_object_surface;
 
 /* From out->mesh, in its own coordinates, and out's material and name, all the rest. Shells that
@@ -137,6 +148,12 @@ typedef struct abbe_object_surface {
  * ABBE_UNSUPPORTED for more objects than there is room for. */
 abbe_result abbe_object_place(const abbe_object_surface *surface, abbe_object *out, size_t room,
                               size_t *count, abbe_error *error);
+
+/* Where the stone was placed (`before` is ABBE_OK), the metal around it moves the same way and
+ * behind the *count objects at out; else it is freed. Returns what was before, or what fails. */
+abbe_result abbe_setting_place(const abbe_object_surface *surface, abbe_result before,
+                               abbe_object metal[ABBE_SETTINGS_MOST], abbe_object *out,
+                               size_t *count, abbe_error *error);
 
 /* Values of a scene file that are put in the place of others before it is read, so that what is
  * wrong with them is said as of any value of the file. It knows no key of the format but

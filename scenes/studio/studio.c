@@ -5,169 +5,24 @@
 #include "base/number.h"
 #include "base/yaml/yaml_edit.h"
 #include "base/yaml/yaml_quote.h"
-#include "scenes/cuts/cut_file.h"
-#include "scenes/cuts/cut_measures.h"
-#include "scenes/import/mesh/gltf_material.h"
-#include "scenes/mesh/mesh.h"
+#include "scenes/studio/setting.h"
 #include "spectral/formats/material_table_load.h"
-#include "spectral/wavelengths.h"
 
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
-
-/* Jewellers' programs write millimetres into files that say no unit; glTF's is the metre. */
-static const struct kind {
-  const char *ending;
-  bool design, gltf;
-  double unit_m; /* of meshes */
-} kinds[] = {{".asc", true, false, 0},     {".gem", true, false, 0},
-             {".gcs", true, false, 0},     {".stl", false, false, 1e-3},
-             {".obj", false, false, 1e-3}, {".ply", false, false, 1e-3},
-             {".gltf", false, true, 1},    {".glb", false, true, 1}};
-
-#define UNKNOWN "diamond" /* where a file says nothing of its stone */
-#define NEAR 0.015        /* of an index */
-/* Beyond these a mesh is in another unit. */
-#define LEAST_M 0.0005
-#define MOST_M 0.5
-
-static const struct kind *kind_of(const char *path) {
-  const char *dot = strrchr(path, '.');
-  for (size_t i = 0; dot != NULL && i < sizeof kinds / sizeof *kinds; i++)
-    if (strcasecmp(dot, kinds[i].ending) == 0) return &kinds[i];
-  return NULL;
-}
-
-bool abbe_studio_is_stone(const char *path) {
-  return path != NULL && kind_of(path) != NULL;
-}
-
-/* Stones of the shipped table that designs are made for; of colours the usual one of its kind. */
-static const char *const clear[] = {"quartz", "topaz",          "spinel",  "sapphire",   "yag",
-                                    "zircon", "cubic-zirconia", "diamond", "moissanite", NULL};
-static const char *const tinted[] = {"emerald",   "tourmaline-green", "peridot",   "tanzanite",
-                                     "tsavorite", "spessartine",      "demantoid", NULL};
-
-/* Of those names in the table; *off: how far its index is. */
-static const abbe_material *nearest_of(const abbe_material_table *table, const char *const *names,
-                                       double n, double *off) {
-  const abbe_material *best = NULL, *m;
-  double own;
-  *off = INFINITY;
-  for (; *names != NULL; names++)
-    if (abbe_material_table_find(table, *names, &m, NULL) == ABBE_OK &&
-        abbe_material_n(m, ABBE_LINE_D_NM, &own, NULL) == ABBE_OK && fabs(own - n) < *off) {
-      *off = fabs(own - n);
-      best = m;
-    }
-  return best;
-}
-
-const abbe_material *abbe_studio_nearest(const abbe_material_table *table, double n) {
-  double off[2];
-  const abbe_material *best = nearest_of(table, clear, n, &off[0]);
-  const abbe_material *other = nearest_of(table, tinted, n, &off[1]);
-  return off[0] > NEAR && off[1] <= NEAR ? other : best;
-}
-
-/* What a design's index is nearest to. */
-static abbe_result choose(double n, const abbe_studio *studio, abbe_studio_stone *out,
-                          abbe_error *error) {
-  abbe_material_table table = {0};
-  abbe_result result = abbe_material_table_load(studio->table, &table, error);
-  const abbe_material *near = result == ABBE_OK && n > 1 ? abbe_studio_nearest(&table, n) : NULL;
-  snprintf(out->material, sizeof out->material, "%s", near != NULL ? near->name : UNKNOWN);
-  if (near != NULL)
-    abbe_number_format(out->note, sizeof out->note, "its design is for an index of %g", n);
-  else
-    snprintf(out->note, sizeof out->note, "its file names no stone");
-  abbe_material_table_free(&table);
-  return result;
-}
-
-static abbe_result read_design(const char *path, const abbe_studio *studio, abbe_studio_stone *out,
-                               abbe_error *error) {
-  abbe_cut cut = {0};
-  abbe_cut_polyhedron stone = {0};
-  abbe_cut_measures m;
-  abbe_result result = abbe_cut_file_read_stone(path, ABBE_CUT_WELD, &cut, &stone, NULL, error);
-  if (result == ABBE_OK) {
-    abbe_cut_measures_make(&cut, &stone, &m);
-    out->width = studio->width_m > 0 ? studio->width_m : ABBE_STUDIO_WIDTH_M;
-    for (int k = 0; k < 3; k++) out->size[k] = (stone.max[k] - stone.min[k]) * out->width / m.width;
-    out->girdle =
-        (0.5 * (m.girdle_low + m.girdle_high) - stone.min[2]) / (stone.max[2] - stone.min[2]);
-    if (studio->material == NULL) result = choose(cut.refractive_index, studio, out, error);
-  }
-  abbe_cut_polyhedron_free(&stone);
-  abbe_cut_free(&cut);
-  return result;
-}
-
-/* A glTF's own stone, where it has one. */
-static void choose_own(const struct kind *kind, abbe_studio_stone *out) {
-  abbe_material own = {0};
-  char *name = NULL;
-  const bool has = kind->gltf && abbe_gltf_material_load(out->path, NULL, &own, &name, NULL) == 0;
-  snprintf(out->material, sizeof out->material, "%s", has ? "from-file" : UNKNOWN);
-  snprintf(out->note, sizeof out->note, "its file %s",
-           has ? "has a glass of its own" : "names no stone");
-  if (has) abbe_material_free(&own);
-  free(name);
-}
-
-static abbe_result read_mesh(const struct kind *kind, const abbe_studio *studio,
-                             abbe_studio_stone *out, abbe_error *error) {
-  abbe_mesh mesh = {0};
-  double min[3] = {INFINITY, INFINITY, INFINITY}, max[3] = {-INFINITY, -INFINITY, -INFINITY};
-  const abbe_result result = abbe_mesh_load(out->path, ABBE_NORMALS_AUTO, &mesh, NULL, error);
-  if (result != ABBE_OK) return result;
-  for (size_t v = 0; v < mesh.vertex_count; v++)
-    for (int k = 0; k < 3; k++) {
-      min[k] = fmin(min[k], mesh.position[v][k]);
-      max[k] = fmax(max[k], mesh.position[v][k]);
-    }
-  abbe_mesh_free(&mesh);
-  const double own = fmin(max[0] - min[0], max[1] - min[1]);
-  if (!(own > 0) || !(max[2] > min[2]))
-    return abbe_error_set(error, ABBE_GEOMETRY, "%s: it is flat; a stone has a volume", out->path);
-  out->girdle = 0.6;
-  out->width = studio->width_m > 0 ? studio->width_m : own * kind->unit_m;
-  const bool odd = out->width < LEAST_M || out->width > MOST_M;
-  if (studio->material == NULL) choose_own(kind, out);
-  if (odd && !(studio->width_m > 0)) {
-    const size_t used = strlen(out->note);
-    abbe_number_format(out->note + used, sizeof out->note - used,
-                       "%sit would be %g m wide, so its unit is another: --width says which",
-                       used > 0 ? "; " : "", out->width);
-    out->width = ABBE_STUDIO_WIDTH_M;
-  }
-  for (int k = 0; k < 3; k++) out->size[k] = (max[k] - min[k]) * out->width / own;
-  return ABBE_OK;
-}
-
-abbe_result abbe_studio_stone_read(const char *path, const abbe_studio *studio,
-                                   abbe_studio_stone *out, abbe_error *error) {
-  const struct kind *kind = kind_of(path);
-  *out = (abbe_studio_stone){.path = path, .design = kind != NULL && kind->design};
-  if (kind == NULL)
-    return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "%s: a stone's file ends with .asc, .gem, .gcs, .stl, .obj, .ply, .gltf "
-                          "or .glb",
-                          path);
-  snprintf(out->material, sizeof out->material, "%s", studio->material ? studio->material : "");
-  return kind->design ? read_design(path, studio, out, error) : read_mesh(kind, studio, out, error);
-}
 
 #define LOOK(name)                                                                                 \
   extern const unsigned char abbe_embedded_look_##name[];                                          \
   extern const size_t abbe_embedded_look_##name##_size;
 ABBE_STUDIO_LOOKS(LOOK)
 #undef LOOK
+
+#define SETTING_NAME(code, name) #name,
+static const char *const settings[] = {ABBE_SETTING_KINDS(SETTING_NAME)};
+#undef SETTING_NAME
 
 /* Between the outlines of stones in a row, of the larger of them. */
 #define GAP 0.35
@@ -247,23 +102,39 @@ static void name_stone(const building *b, size_t i, char out[32]) {
   snprintf(out, 32, b->count > 1 ? "stone %zu" : "stone", i + 1);
 }
 
+static const char *metal_of(const building *b) {
+  return b->studio->metal != NULL ? b->studio->metal : "gold";
+}
+
+/* The metal around each stone; with a ring the band of a finger below it. */
+static void setting_of(const building *b, char *out, size_t size) {
+  const char *metal = metal_of(b);
+  out[0] = '\0';
+  if (b->studio->setting == 0) return;
+  const size_t used = (size_t)snprintf(out, size, "setting:\n- {kind: %s, metal: %.100s}\n",
+                                       settings[b->studio->setting - 1], metal);
+  if (b->studio->with == ABBE_STUDIO_WITH_RING)
+    snprintf(out + used, size - used, "- {kind: band, metal: %.100s}\n", metal);
+}
+
 static abbe_result add_stone(building *b, size_t i, abbe_error *error) {
   const abbe_studio_stone *s = &b->stone[i];
-  char *file = NULL, *material = NULL, name[32];
+  char *file = NULL, *material = NULL, name[32], setting[320];
   const double x = ((double)(i % b->columns) - 0.5 * (double)(b->columns - 1)) * b->pitch[0];
   const double y = (0.5 * (double)(b->rows - 1) - (double)(i / b->columns)) * b->pitch[1];
   abbe_result result = name_file(b, s->path, &file, error);
   if (result == ABBE_OK) result = abbe_yaml_quote_make(s->material, &material, error);
   if (result == ABBE_OK) {
-    const size_t size = strlen(file) + strlen(material) + 256;
+    const size_t size = strlen(file) + strlen(material) + sizeof setting + 256;
     char *item = malloc(size);
     name_stone(b, i, name);
+    setting_of(b, setting, sizeof setting);
     if (item == NULL) result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a scene");
     if (item != NULL)
-      abbe_number_format(item, size,
-                         "name: %s\n%s%s\nwidth: %.6gmm\nstand: [%.6g, %.6g, %.6g]\nmaterial: %s\n",
-                         name, s->design ? "shape: cut\nfile: " : "mesh: ", file, 1e3 * s->width, x,
-                         y, b->high, material);
+      abbe_number_format(
+          item, size, "name: %s\n%s%s\nwidth: %.6gmm\nstand: [%.6g, %.6g, %.6g]\nmaterial: %s\n%s",
+          name, s->design ? "shape: cut\nfile: " : "mesh: ", file, 1e3 * s->width, x, y, b->high,
+          material, setting);
     if (item != NULL) result = append(b, item, error);
     free(item);
   }
@@ -280,7 +151,7 @@ static abbe_result add_ring(building *b, abbe_error *error) {
   const double w = 0.5 * hypot(s->size[0], s->size[1]), r = fmax(BAND_M, s->width);
   const double wire = WIRE_M * r / BAND_M, top = 2 * (r + wire);
   const double girdle = s->girdle * s->size[2];
-  const char *metal = b->studio->metal != NULL ? b->studio->metal : "gold";
+  const char *metal = metal_of(b);
   char item[640];
   b->high = top + 0.1 * s->size[2];
   abbe_number_format(item, sizeof item,
@@ -310,9 +181,17 @@ static abbe_result add_ring(building *b, abbe_error *error) {
 static void arrange(building *b) {
   b->columns = b->count <= 3 ? b->count : (size_t)ceil(sqrt((double)b->count));
   b->rows = (b->count + b->columns - 1) / b->columns;
+  const abbe_setting setting = {.kind = (abbe_setting_kind)(b->studio->setting - 1)};
+  const bool row =
+      b->studio->setting == 1 + ABBE_SETTING_PAVE || b->studio->setting == 1 + ABBE_SETTING_CHANNEL;
+  if (row) b->columns = b->count, b->rows = 1;
   for (int k = 0; k < 2; k++)
-    for (size_t i = 0; i < b->count; i++)
-      b->pitch[k] = fmax(b->pitch[k], (1 + GAP) * b->stone[i].size[k]);
+    for (size_t i = 0; i < b->count; i++) {
+      const abbe_studio_stone *s = &b->stone[i];
+      const double apart = row && k == 0 ? abbe_setting_pitch(&setting, s->size[0], s->width)
+                                         : (1 + GAP) * s->size[k];
+      b->pitch[k] = fmax(b->pitch[k], apart);
+    }
 }
 
 static abbe_result set_camera(building *b, abbe_error *error) {
@@ -371,7 +250,10 @@ static abbe_yaml_node table_of(const building *b, size_t i) {
 /* Table and lamps are as large beside large stones as beside small ones. */
 static abbe_result set_size(building *b, abbe_error *error) {
   const double across = fmax((double)b->columns * b->pitch[0], (double)b->rows * b->pitch[1]);
-  const double factor = fmax(across, b->high) / ROOM_M;
+  const bool finger =
+      b->studio->with == ABBE_STUDIO_WITH_RING || b->studio->setting == 1 + ABBE_SETTING_BAND;
+  const double high = finger ? 2 * (BAND_M + WIRE_M) : 0;
+  const double factor = fmax(across, fmax(b->high, high)) / ROOM_M;
   if (factor <= 1) return ABBE_OK;
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < abbe_yaml_count(b->edit.yaml, value_of(b, "lights")); i++) {
@@ -407,7 +289,8 @@ static abbe_result describe(building *b, abbe_error *error) {
 static abbe_result compose(building *b, abbe_error *error) {
   const abbe_studio_with with = b->studio->with;
   arrange(b);
-  abbe_result result = with == ABBE_STUDIO_WITH_RING ? add_ring(b, error) : ABBE_OK;
+  abbe_result result =
+      with == ABBE_STUDIO_WITH_RING && b->studio->setting == 0 ? add_ring(b, error) : ABBE_OK;
   for (size_t i = 0; i < b->count && result == ABBE_OK; i++) result = add_stone(b, i, error);
   /* the look's own goes last, for a list keeps its last item; `stone` is the first of that name */
   if (result == ABBE_OK) result = take_out(b, "stone", error);
@@ -435,8 +318,11 @@ static abbe_result check_name(const building *b, const char *name, bool metal, a
 }
 
 static abbe_result check_names(const building *b, abbe_error *error) {
-  if (b->studio->metal != NULL && b->studio->with != ABBE_STUDIO_WITH_RING)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a metal is for a ring: add --with ring");
+  if (b->studio->metal != NULL && b->studio->with != ABBE_STUDIO_WITH_RING &&
+      b->studio->setting == 0)
+    return abbe_error_set(
+        error, ABBE_INVALID_ARGUMENT,
+        "a metal is for a ring or a setting: add --with ring or --setting prongs");
   const abbe_result result = check_name(b, b->studio->material, false, error);
   return result == ABBE_OK ? check_name(b, b->studio->metal, true, error) : result;
 }

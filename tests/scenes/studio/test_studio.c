@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "scenes/import/scene_file.h"
+#include "scenes/studio/setting.h"
 #include "scenes/studio/studio.h"
 #include "spectral/formats/material_table_load.h"
 
@@ -51,6 +52,38 @@ TEST(every_look_shows_a_stone) {
       if (with == ABBE_STUDIO_WITH_TABLE) assert_near(stone->min[2], 0, 1e-15);
       if (with == ABBE_STUDIO_WITH_RING) assert_true(stone->min[2] > 0.01);
       assert_int_equal(called(&scene, "band") != NULL, with == ABBE_STUDIO_WITH_RING);
+      abbe_scene_free(&scene);
+    }
+}
+
+/* The metal stands on the table, and in a row touches the next. */
+TEST(settings_hold_every_stone) {
+  static const char *const names[] = {"prongs", "bezel", "channel", "band", "pave"};
+  for (int kind = 0; kind < ABBE_SETTING_COUNT; kind++)
+    for (int ring = 0; ring < 2; ring++) {
+      const char *const more[] = {OVAL};
+      const abbe_studio studio = {.setting = 1 + kind,
+                                  .with = ring ? ABBE_STUDIO_WITH_RING : ABBE_STUDIO_WITH_TABLE,
+                                  .more = more,
+                                  .more_count = !ring,
+                                  .metal = "silver"};
+      abbe_scene scene;
+      char name[64];
+      load(OVAL, &studio, &scene);
+      snprintf(name, sizeof name, "stone%s's %s", ring ? "" : " 1", names[kind]);
+      const abbe_object *metal = called(&scene, name);
+      assert_non_null(metal);
+      assert_string_equal(metal->conductor->name, "silver");
+      double lowest = metal->min[2];
+      for (size_t i = 0; i < scene.object_count; i++)
+        if (strstr(scene.object[i].name, "stone") != NULL)
+          lowest = fmin(lowest, scene.object[i].min[2]);
+      assert_near(lowest, 0, 1e-12);
+      if (kind == ABBE_SETTING_CHANNEL || kind == ABBE_SETTING_PAVE)
+        if (!ring) {
+          snprintf(name, sizeof name, "stone 2's %s", names[kind]);
+          assert_near(called(&scene, name)->min[0], metal->max[0], 1e-8);
+        }
       abbe_scene_free(&scene);
     }
 }
