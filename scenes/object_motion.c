@@ -5,15 +5,11 @@
 
 #include <math.h>
 
-static bool is_refractor(const abbe_object *o) {
-  return abbe_object_kind_of(o) == ABBE_OBJECT_REFRACTOR;
-}
-
-/* False where there are none. */
-static bool find_middle(const abbe_scene *scene, double middle[3]) {
+/* False where there are none of that kind. */
+static bool find_middle(const abbe_scene *scene, abbe_object_kind kind, double middle[3]) {
   double min[3] = {INFINITY, INFINITY, INFINITY}, max[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (size_t i = 0; i < scene->object_count; i++)
-    for (int k = 0; k < 3 && is_refractor(&scene->object[i]); k++) {
+    for (int k = 0; k < 3 && abbe_object_kind_of(&scene->object[i]) == kind; k++) {
       min[k] = fmin(min[k], scene->object[i].min[k]);
       max[k] = fmax(max[k], scene->object[i].max[k]);
     }
@@ -31,21 +27,42 @@ static void turn_about(const double middle[3], double rad, const double axis[3],
   abbe_transform_multiply(step, out, out);
 }
 
+/* Refractors, and with them mirrors or not, turned about the axis through a place. */
+static abbe_result turn(abbe_scene *scene, bool mirrors, const double middle[3],
+                        const double axis[3], double rad, abbe_error *error) {
+  double matrix[16];
+  turn_about(middle, rad, axis, matrix);
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < scene->object_count && result == ABBE_OK; i++) {
+    const abbe_object_kind kind = abbe_object_kind_of(&scene->object[i]);
+    if (kind == ABBE_OBJECT_REFRACTOR || (mirrors && kind == ABBE_OBJECT_MIRROR))
+      result = abbe_object_move(&scene->object[i], matrix, error);
+  }
+  return result == ABBE_OK ? abbe_scene_check(scene, error) : result;
+}
+
 abbe_result abbe_refractors_tilt(abbe_scene *scene, double tilt_rad, double axis_rad,
                                  abbe_error *error) {
   const double axis[3] = {cos(axis_rad), sin(axis_rad), 0};
-  double middle[3], matrix[16];
+  double middle[3];
   if (!isfinite(tilt_rad) || !isfinite(axis_rad))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a tilt takes two finite angles");
-  if (!find_middle(scene, middle))
+  if (!find_middle(scene, ABBE_OBJECT_REFRACTOR, middle))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "nothing to tilt: the scene has no refractor");
-  turn_about(middle, tilt_rad, axis, matrix);
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < scene->object_count && result == ABBE_OK; i++)
-    if (is_refractor(&scene->object[i]))
-      result = abbe_object_move(&scene->object[i], matrix, error);
-  return result == ABBE_OK ? abbe_scene_check(scene, error) : result;
+  return turn(scene, false, middle, axis, tilt_rad, error);
+}
+
+abbe_result abbe_piece_turn(abbe_scene *scene, const double axis[3], double turn_rad,
+                            abbe_error *error) {
+  double middle[3];
+  if (!isfinite(turn_rad) || !abbe_vector_finite(axis) || !(abbe_vector_length(axis) > 0))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a turn takes an axis and a finite angle");
+  if (!find_middle(scene, ABBE_OBJECT_REFRACTOR, middle) &&
+      !find_middle(scene, ABBE_OBJECT_MIRROR, middle))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "nothing to turn: the scene has neither refractor nor mirror");
+  return turn(scene, true, middle, axis, turn_rad, error);
 }
 
 /* Axes of one length, at right angles, right-handed; their length. */

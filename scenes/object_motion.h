@@ -22,4 +22,11 @@ abbe_result abbe_object_move(abbe_object *object, const double matrix[16], abbe_
 abbe_result abbe_refractors_tilt(abbe_scene *scene, double tilt_rad, double axis_rad,
                                  abbe_error *error);
 
+/* The piece, all refractors and mirrors, turned together by turn_rad about the axis through the
+ * middle of the refractors' bounds (of the mirrors' where there is none), right-handed, while the
+ * rest stays. abbe_scene_check follows. ABBE_INVALID_ARGUMENT where there is no piece, or for an
+ * axis or angle that is none; the scene is not to be used after any other error. */
+abbe_result abbe_piece_turn(abbe_scene *scene, const double axis[3], double turn_rad,
+                            abbe_error *error);
+
 #endif

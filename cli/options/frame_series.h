@@ -18,6 +18,7 @@ typedef struct abbe_frame_series {
   const char *program;
   size_t first, count; /* numbers first to first + count - 1; count 0: one picture and no series */
   bool around;         /* the camera goes around, and time stands still */
+  bool piece;          /* not the camera but the piece turns */
   double per_second;   /* 0: 25 */
   abbe_command_part part;
   bool merge;  /* frames that are there, and draw none */

@@ -5,18 +5,30 @@
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
 #include "cli/options/scene_input.h"
+#include "scenes/object_motion.h"
 
 #include "colorimetry/image/exr.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-enum { OPTION_TURNTABLE = 0x800, OPTION_FPS, OPTION_PART, OPTION_MERGE, OPTION_RESUME };
+enum {
+  OPTION_TURNTABLE = 0x800,
+  OPTION_TURN,
+  OPTION_FPS,
+  OPTION_PART,
+  OPTION_MERGE,
+  OPTION_RESUME
+};
 enum { MOST_AROUND = 9999 };
 
 static const struct argp_option options[] = {
     {"turntable", OPTION_TURNTABLE, "N", 0,
      "N frames from all around, numbered: FILE-0001.exr, FILE-0001.png, and FILE.png that moves",
+     5},
+    {"turn", OPTION_TURN, "WHAT", 0,
+     "of a turntable: camera, which goes around, or stone, which turns with its metal under lights "
+     "and camera that stay (camera)",
      5},
     {"part", OPTION_PART, "K/N", 0,
      "only every N-th frame from the K-th on, 0/8 to 7/8, and no PNG that moves", 5},
@@ -35,12 +47,15 @@ static void check(const abbe_frame_series *o, struct argp_state *state) {
                : o->resume         ? "resume"
                : o->per_second > 0 ? "fps"
                                    : "part");
+  if (o->piece && !o->around) argp_error(state, "--turn goes with --turntable N");
   if (o->part.parts > 0 && o->part.part >= o->count)
     argp_error(state, "--part %zu/%zu has none of %zu frames", o->part.part, o->part.parts,
                o->count);
   if (o->part.parts > 0 && o->merge)
     argp_error(state, "--part draws frames, and --merge draws nothing");
 }
+
+static const char *const turns[] = {"camera", "stone"};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   abbe_frame_series *o = state->input;
@@ -49,6 +64,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     o->count = abbe_command_count(o->program, "--turntable", text, 2, MOST_AROUND);
     o->first = 1;
     o->around = true;
+    return 0;
+  case OPTION_TURN:
+    o->piece = abbe_command_choice(o->program, "--turn", text, turns, 2) == 1;
     return 0;
   case OPTION_FPS:
     o->per_second = abbe_command_number(o->program, "--fps", text, 0.1, 1000);
@@ -110,7 +128,7 @@ static abbe_result write_frame(const abbe_render_request *q, const abbe_image *i
 }
 
 /* The scene of a frame: the same with another camera, whose parts are the scene's, or all of it at
- * another time. */
+ * another time or with the piece turned. */
 typedef struct frame_scene {
   abbe_scene scene;
   bool owned;
@@ -118,15 +136,25 @@ typedef struct frame_scene {
 
 static abbe_result make_scene(const abbe_render_request *q, const abbe_scene *scene, size_t i,
                               frame_scene *out, abbe_error *error) {
-  const double full = 2 * ABBE_PI;
   const abbe_frame_series *s = &q->series;
-  out->owned = !s->around;
-  if (!s->around)
-    return abbe_frame_series_scene(s, scene, q->render.materials, &q->render.changes, i,
-                                   &out->scene, error);
-  out->scene = *scene;
-  out->scene.camera = camera_at(&scene->camera, full * (double)i / (double)s->count);
-  return ABBE_OK;
+  const double rad = s->around ? 2 * ABBE_PI * (double)i / (double)s->count : 0;
+  *out = (frame_scene){.owned = !s->around || s->piece};
+  abbe_result result = ABBE_OK;
+  if (s->piece)
+    result = abbe_scene_input_at(scene, q->render.materials, &q->render.changes, scene->time,
+                                 &out->scene, error);
+  else if (out->owned)
+    result = abbe_frame_series_scene(s, scene, q->render.materials, &q->render.changes, i,
+                                     &out->scene, error);
+  else
+    out->scene = *scene;
+  if (result != ABBE_OK) return result;
+  if (!s->piece) {
+    if (s->around) out->scene.camera = camera_at(&scene->camera, rad);
+    return ABBE_OK;
+  }
+  /* it shows the sides that a camera shows that goes around the other way */
+  return abbe_piece_turn(&out->scene, scene->camera.up, -rad, error);
 }
 
 static void free_scene(frame_scene *f) {

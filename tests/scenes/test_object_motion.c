@@ -85,3 +85,25 @@ TEST(other_matrices_are_refused) {
   }
   abbe_scene_free(&scene);
 }
+
+/* What refracts and what reflects turn about the middle of what refracts; the floor stays. */
+TEST(the_piece_turns) {
+  static const double up[3] = {0, 0, 2};
+  abbe_scene turned = {0}, there = {0};
+#define METAL_AT(steps)                                                                            \
+  "- {name: metal, shape: box, size: [0.02, 0.02, 0.02], mirror: 0.9, transform: [" steps "]}\n"
+#define TURNED "{rotate: {axis: [0, 0, 1], angle: 90}}, {translate: [0.2, 0.1, 0.2]}"
+  load_text(START BRICK_AT(FIRST) METAL_AT("{translate: [0.3, 0.1, 0.3]}"), &turned);
+  load_text(START BRICK_AT(TURNED) METAL_AT("{translate: [0.1, 0, 0.1]}, " TURNED), &there);
+  OK(abbe_piece_turn(&turned, up, 0.5 * 3.14159265358979323846, &error));
+  assert_same_object(&turned.object[0], &there.object[0]);
+  assert_same_object(&turned.object[1], &there.object[1]);
+  for (int k = 0; k < 3; k++)
+    assert_near(turned.object[2].min[k], k == 0 ? 0.19 : k == 1 ? 0.19 : 0.29, 1e-12);
+  REFUSED(ABBE_INVALID_ARGUMENT, "an axis", abbe_piece_turn(&turned, (double[3]){0}, 1, &error));
+  abbe_scene_free(&turned);
+  abbe_scene_free(&there);
+  load_text(START, &turned);
+  REFUSED(ABBE_INVALID_ARGUMENT, "nothing to turn", abbe_piece_turn(&turned, up, 1, &error));
+  abbe_scene_free(&turned);
+}
