@@ -25,6 +25,7 @@
   X(show, "one material: model, indices, Abbe number, absorption, source, fits")                   \
   X(plot, "draw the index over wavelength, with fits and measurements, or the glass map")          \
   X(nearest, "the materials nearest to an n_d and V_d, to a curve, or to points")                  \
+  X(partners, "glasses that make an achromat with a glass, by secondary spectrum")                 \
   X(check, "what is wrong or doubtful in a table, and how to fix it")                              \
   X(fit, "a Cauchy or Sellmeier form through a material, a formula or points")                     \
   X(from, "a record from n_d and V_d, a gem's dispersion, A and B, or glTF's pair")                \

@@ -282,7 +282,8 @@ abbe_result abbe_material_chart_write(const char *path, const abbe_material_char
 /* ---- the map of glasses ---- */
 
 typedef struct spots {
-  double *v_d, *n_d;
+  bool partial;
+  double *v_d, *y; /* n_d or P_gF */
   const char **name;
   size_t count, room;
 } spots;
@@ -290,22 +291,27 @@ typedef struct spots {
 static bool add_spot(spots *s, const abbe_material *m) {
   abbe_material_numbers numbers;
   abbe_material_numbers_make(m, &numbers);
-  if (!isfinite(numbers.n_d) || !isfinite(numbers.v_d) || s->count == s->room) return false;
+  const double y = s->partial ? numbers.p_gF : numbers.n_d;
+  if (!isfinite(y) || !isfinite(numbers.v_d) || s->count == s->room) return false;
   s->v_d[s->count] = numbers.v_d;
-  s->n_d[s->count] = numbers.n_d;
+  s->y[s->count] = y;
   s->name[s->count++] = m->name;
   return true;
 }
 
-static bool make_spots(spots *s, size_t room) {
-  *s = (spots){calloc(room + 1, sizeof(double)), calloc(room + 1, sizeof(double)),
-               calloc(room + 1, sizeof(char *)), 0, room};
-  return s->v_d != NULL && s->n_d != NULL && s->name != NULL;
+static bool make_spots(spots *s, size_t room, bool partial) {
+  *s = (spots){partial,
+               calloc(room + 1, sizeof(double)),
+               calloc(room + 1, sizeof(double)),
+               calloc(room + 1, sizeof(char *)),
+               0,
+               room};
+  return s->v_d != NULL && s->y != NULL && s->name != NULL;
 }
 
 static void free_spots(spots *s) {
   free(s->v_d);
-  free(s->n_d);
+  free(s->y);
   free(s->name);
 }
 
@@ -324,7 +330,7 @@ static abbe_result write_map(const char *path, const abbe_material_map *map, spo
                             .style = ABBE_CHART_POINTS,
                             .count = s[i].count,
                             .x = s[i].v_d,
-                            .y = s[i].n_d,
+                            .y = s[i].y,
                             .text = s[i].name,
                             .colour = marked   ? 2
                                       : i == 0 ? 1
@@ -336,7 +342,7 @@ static abbe_result write_map(const char *path, const abbe_material_map *map, spo
                           map->table[0]->path);
   abbe_chart chart = {.title = "Glass map",
                       .x = {.label = "Abbe number V_d", .reversed = true},
-                      .y = {.label = "n_d"},
+                      .y = {.label = map->partial ? "P_gF" : "n_d"},
                       .series_count = count,
                       .series = series};
   return abbe_chart_write(path, &chart, 1, map->width, map->height, error);
@@ -356,10 +362,10 @@ abbe_result abbe_material_map_write(const char *path, const abbe_material_map *m
                           map->table_count, ABBE_MATERIAL_MAP_MAX_TABLES);
   spots s[ABBE_MATERIAL_MAP_MAX_TABLES + 1] = {0};
   size_t missing = 0;
-  bool good = make_spots(&s[map->table_count], map->marked_count);
+  bool good = make_spots(&s[map->table_count], map->marked_count, map->partial);
   for (size_t i = 0; i < map->table_count && good; i++) {
     const abbe_material_table *t = map->table[i];
-    good = make_spots(&s[i], t->count);
+    good = make_spots(&s[i], t->count, map->partial);
     for (size_t k = 0; k < t->count && good; k++)
       if (!is_marked(map, &t->material[k]) && !abbe_material_is_conductor(&t->material[k]))
         missing += !add_spot(&s[i], &t->material[k]);

@@ -38,6 +38,7 @@ typedef struct abbe_material_map {
   size_t marked_count; /* materials in a colour of their own, with their names */
   const abbe_material *const *marked;
   size_t width, height;
+  bool partial; /* P_gF in the place of n_d */
 } abbe_material_map;
 
 /* n_d over V_d, which runs from right to left as glass makers draw it; names where there is room.

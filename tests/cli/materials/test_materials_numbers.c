@@ -130,6 +130,22 @@ TEST(nearest_finds_by_numbers_curve_and_points) {
   answers("$abbe materials nearest --like n-bk7 --range 500:2000", 0, "were skipped");
 }
 
+TEST(partners_are_listed_and_drawn) {
+  cJSON *json = run_json("$abbe materials partners n-bk7 --json -o map.svg && grep -q svg map.svg "
+                         "&& rm map.svg",
+                         0);
+  const cJSON *best = first(json, "partners");
+  assert_string_equal(text(best, "name"), "fluorite");
+  const cJSON *powers = cJSON_GetObjectItem(best, "powers");
+  assert_int_equal(cJSON_GetArraySize(powers), 2);
+  assert_near(cJSON_GetArrayItem(powers, 0)->valuedouble +
+                  cJSON_GetArrayItem(powers, 1)->valuedouble,
+              1, 1e-12);
+  cJSON_Delete(json);
+  answers("$abbe materials partners n-bk7 --with sf10 --count 2", 0, "f_d-f_F mm");
+  answers("$abbe materials partners n-bk7 --most-power 3 --count 1", 0, "sf10");
+}
+
 /* ---- check ---- */
 
 TEST(check_finds_the_four_wrong_rows_of_the_thesis) {
@@ -289,6 +305,10 @@ TEST(wrong_input_gets_a_sentence) {
        "--nd '1.5' is not a range: two numbers above 0, the "
        "smaller first, such as 1.5:1.6"},
       {"$abbe materials from --nd 1.5 --bg 5", 1, "1.5 and 5 go with no material"},
+      {"$abbe materials partners", 2, "partners of what?"},
+      {"$abbe materials partners gold", 1, "gold has no single index with a V_d and a P_gF"},
+      {"$abbe materials partners n-bk7 --with flourite", 1, "did you mean 'fluorite'?"},
+      {"$abbe materials partners n-bk7 --most-power 1", 1, "no glass of 'default' makes"},
       {"$abbe materials nearest", 2, "nearest to what?"},
       {"$abbe materials nearest --nd 1.5", 2, "--nd and --vd go together"},
       {"$abbe materials nearest --nd 1.5 --vd 60 --like diamond", 2, "exclude each other"},
@@ -343,7 +363,7 @@ TEST(wrong_input_gets_a_sentence) {
 }
 
 TEST(every_verb_helps_by_example) {
-  const char *const verbs[] = {"list", "show", "nearest", "check", "fit", "from"};
+  const char *const verbs[] = {"list", "show", "nearest", "partners", "check", "fit", "from"};
   for (size_t i = 0; i < sizeof verbs / sizeof verbs[0]; i++) {
     char line[100], part[100];
     snprintf(line, sizeof line, "$abbe materials %s --help", verbs[i]);
