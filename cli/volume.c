@@ -31,8 +31,6 @@ enum {
   OPTION_OBJECT = 0x100,
   OPTION_LIGHT,
   OPTION_NODES,
-  OPTION_HARMONICS,
-  OPTION_RANK,
   OPTION_RAYS,
   OPTION_ASYMMETRIC,
   OPTION_SHELLS,
@@ -60,11 +58,6 @@ static const struct argp_option options[] = {
     {"light", OPTION_LIGHT, "NAME", 0, "of whose colour the light is; the first without", 1},
     {"nodes", OPTION_NODES, "N", 0,
      "directions of light: 1, 12, 42, 162, 642 or 2562 (162; of a ball 1)", 1},
-    {"sh", OPTION_HARMONICS, "N", 0,
-     "spherical harmonics of the light's direction to degree N, 1 to 12, in place of the nodes", 1},
-    {"rank", OPTION_RANK, "N", 0,
-     "the N modes of the light's direction that leave the least, 1 to 256, in place of the nodes",
-     1},
     {"rays", OPTION_RAYS, "N", 0,
      "the rays of N points of the object's surface in place of cells' values: any illuminant, "
      "lamps "
@@ -178,12 +171,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_NODES:
     d->nodes = abbe_command_count(q->program, "--nodes", text, 1, ABBE_LIGHT_NODES_MOST);
     return 0;
-  case OPTION_HARMONICS:
-    d->degree = abbe_command_count(q->program, "--sh", text, 1, ABBE_LIGHT_HARMONICS_MOST);
-    return 0;
-  case OPTION_RANK:
-    d->rank = abbe_command_count(q->program, "--rank", text, 1, ABBE_CAUSTIC_VOLUME_MOST_RANK);
-    return 0;
   case OPTION_RAYS:
     d->exits = abbe_command_count(q->program, "--rays", text, 1, ABBE_LIGHT_EXITS_MOST);
     return 0;
@@ -296,8 +283,6 @@ static void summarise(const request *q, const abbe_caustic_volume *v,
         "of facets; of %.2g it is not known how they change\n",
         v->exits.count, v->exits.points, s->maps, s->carried, s->sequences, s->alone);
   if (s->error > 0) fprintf(stderr, "relative standard error %.2g\n", s->error);
-  if (v->rank > 0)
-    fprintf(stderr, "%zu modes leave %.3g of the values (root mean square)\n", v->rank, s->left);
   if (s->joint_bytes > 0)
     fprintf(stderr, "joint cells take %.4g MB\n", 1e-6 * (double)s->joint_bytes);
   if (s->outflow[1] > 0)
@@ -321,7 +306,6 @@ static abbe_result print_json(const request *q, const abbe_caustic_volume *v,
       {"exits", (double)v->exits.count},   {"exits_carried", s->carried},
       {"exits_alone", s->alone},           {"sequences", (double)s->sequences},
       {"points", (double)v->exits.points}, {"symmetry", (double)s->maps},
-      {"modes", (double)v->rank},          {"modes_left", s->left},
       {"absorbed_w", s->ledger.absorbed},  {"lost_w", s->ledger.lost},
       {"outflow_least", s->outflow[0]},    {"outflow_greatest", s->outflow[1]}};
   bool made = cJSON_AddStringToObject(root, "file", q->out) != NULL &&

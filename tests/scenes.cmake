@@ -6,7 +6,7 @@ foreach(name transform disjoint_sets
         polygon mesh_reading obj_file ply_file stl_file gltf_file
         alias_table area_lights environment environment_file environment_lights environment_picture environment_source irradiance_map
         radiance_cube radiance_map sky
-        sphere_mesh light_nodes body_symmetry exit_map exit_pages exit_sheets light_exits light_harmonics light_modes volume_region volume_body caustic_volume volume_file volume_tree
+        sphere_mesh light_nodes body_symmetry exit_map exit_pages exit_sheets light_exits volume_region volume_body caustic_volume volume_file volume_tree
         medium medium_file
         point_grid sample_tree surface_curvature surface_samples
         view coverage estimator map_layout map_resample pov_file export_index volume_vdb)

@@ -50,21 +50,13 @@ static size_t total_of(const abbe_caustic_volume *v) {
   if (v->kind == ABBE_VOLUME_EXITS)
     return v->exits.points + v->exits.count +
            (v->region.cells + ABBE_EXIT_HALVES - 1) / ABBE_EXIT_HALVES;
-  const size_t channels = channels_of(v);
-  return abbe_caustic_volume_blocks(v) * v->region.cells +
-         (v->rank * v->nodes.count + channels - 1) / channels;
+  return v->nodes.count * v->region.cells;
 }
 
 /* The half in a channel of a pixel; NULL where nothing is kept. */
 static uint16_t *half_at(const abbe_caustic_volume *v, size_t pixel, size_t channel) {
   const abbe_light_exits *e = &v->exits;
-  if (v->kind != ABBE_VOLUME_EXITS) {
-    const size_t cells = abbe_caustic_volume_blocks(v) * v->region.cells;
-    const size_t channels = channels_of(v);
-    if (pixel < cells) return &v->value[pixel * channels + channel];
-    const size_t at = (pixel - cells) * channels + channel;
-    return at < v->rank * v->nodes.count ? &v->mode[at] : NULL;
-  }
+  if (v->kind != ABBE_VOLUME_EXITS) return &v->value[pixel * channels_of(v) + channel];
   if (pixel < e->points) return &e->point[pixel][channel];
   pixel -= e->points;
   if (pixel < e->count) return &e->exit[pixel][channel];
@@ -108,8 +100,6 @@ static const char geodesic_pattern[] = "# shells of # triangles, # to # m";
 static const char octahedral_pattern[] = "# shells of # x # octahedral texels, # to # m";
 static const char one_pattern[] = "1 along # # #";
 static const char nodes_pattern[] = "# of a geodesic sphere";
-static const char harmonics_pattern[] = "harmonics to degree # of # of a geodesic sphere";
-static const char modes_pattern[] = "# modes of # of a geodesic sphere";
 static const char ball_pattern[] = "ball, radius # m, # vertices, # faces";
 static const char body_pattern[] =
     "radius # m, # vertices, # faces; of them # at # # #, # at # # #, # at # # #";
@@ -146,10 +136,6 @@ static abbe_result write_attributes(const abbe_caustic_volume *v, abbe_image *im
   describe_body(&v->body, body);
   if (v->nodes.count == 1)
     join(one_pattern, axis, nodes);
-  else if (v->degree > 0)
-    join(harmonics_pattern, (double[]){(double)v->degree, (double)v->nodes.count}, nodes);
-  else if (v->rank > 0)
-    join(modes_pattern, (double[]){(double)v->rank, (double)v->nodes.count}, nodes);
   else
     join(nodes_pattern, (double[]){(double)v->nodes.count}, nodes);
   join(light_pattern, (double[]){v->white[0], v->white[1], v->white[2], v->min_nm, v->max_nm},
@@ -276,23 +262,10 @@ static bool read_body(const char *text, abbe_volume_body *b) {
 }
 
 /* nodes: how many, and of one its direction. */
-static bool read_nodes(const char *text, size_t *degree, size_t *rank, double nodes[4]) {
-  double n[2];
+static bool read_nodes(const char *text, double nodes[4]) {
   nodes[0] = 1;
-  *degree = *rank = 0;
-  if (part(one_pattern, text, nodes + 1)) return true;
-  if (part(harmonics_pattern, text, n)) {
-    if (!is_count(n[0], ABBE_LIGHT_HARMONICS_MOST) || n[0] < 1) return false;
-    *degree = (size_t)n[0];
-    nodes[0] = n[1];
-  } else if (part(modes_pattern, text, n)) {
-    if (!is_count(n[0], fmin(n[1], ABBE_CAUSTIC_VOLUME_MOST_RANK)) || n[0] < 1) return false;
-    *rank = (size_t)n[0];
-    nodes[0] = n[1];
-  } else if (!part(nodes_pattern, text, nodes)) {
-    return false;
-  }
-  return is_count(nodes[0], ABBE_LIGHT_NODES_MOST);
+  return part(one_pattern, text, nodes + 1) ||
+         (part(nodes_pattern, text, nodes) && is_count(nodes[0], ABBE_LIGHT_NODES_MOST));
 }
 
 static bool read_light(const char *text, abbe_caustic_volume *v) {
@@ -333,9 +306,7 @@ static abbe_result read_attributes(const char *path, const abbe_image *image,
   if (!printed && !exits && strcmp(text[0], "vector") != 0)
     return broken(path, names[0], text[0], error);
   if (!read_region(text[1], region)) return broken(path, names[1], text[1], error);
-  if (!read_nodes(text[2], &v->degree, &v->rank, nodes) ||
-      ((printed || exits) && abbe_caustic_volume_is_sum(v)))
-    return broken(path, names[2], text[2], error);
+  if (!read_nodes(text[2], nodes)) return broken(path, names[2], text[2], error);
   if (!read_body(text[3], &v->body)) return broken(path, names[3], text[3], error);
   if (!read_light(text[4], v)) return broken(path, names[4], text[4], error);
   snprintf(v->body.name, sizeof v->body.name, "%s", text[5]);

@@ -49,37 +49,16 @@ static abbe_result check_counts(const abbe_volume_fill_desc *d, abbe_error *erro
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%zu photons a pass, %zu passes; at most %u and %d", d->photons,
                           d->passes, ABBE_VOLUME_FILL_MOST_PHOTONS, ABBE_VOLUME_FILL_MOST_PASSES);
-  const bool sums = d->degree > 0 || d->rank > 0;
-  if (d->degree > 0 && d->rank > 0)
+  if (d->exits > 0 && (d->joins || d->kind == ABBE_VOLUME_PRINTED))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "harmonics and modes: ask for one of them in place of nodes");
-  if (sums && d->kind == ABBE_VOLUME_PRINTED)
-    return abbe_error_set(
-        error, ABBE_INVALID_ARGUMENT,
-        "harmonics and modes are of vectors; a printed volume has bytes at nodes");
-  if (d->exits > 0 && (sums || d->joins || d->kind == ABBE_VOLUME_PRINTED))
-    return abbe_error_set(
-        error, ABBE_INVALID_ARGUMENT,
-        "exits are rays at nodes: they go with neither harmonics, modes nor joint cells, "
-        "and are not printed");
+                          "exits are rays at nodes: they go with no joint cells, and are not "
+                          "printed");
   return ABBE_OK;
-}
-
-/* So that it is known before all the work. */
-static abbe_result check_sums(const abbe_volume_fill_desc *d, abbe_error *error) {
-  const size_t count = d->rank > 0     ? d->rank
-                       : d->degree > 0 ? abbe_light_harmonics_count(d->degree)
-                                       : 0;
-  if (count <= d->nodes && d->rank <= ABBE_CAUSTIC_VOLUME_MOST_RANK) return ABBE_OK;
-  return abbe_error_set(
-      error, ABBE_INVALID_ARGUMENT, "%zu %s of %zu nodes: there may be as many as nodes%s", count,
-      d->rank > 0 ? "modes" : "harmonics", d->nodes, d->rank > 0 ? ", and 256" : "");
 }
 
 static void resolve(const abbe_volume_body *body, double surface, abbe_volume_fill_desc *d) {
   abbe_region_desc *r = &d->region;
-  if (d->nodes == 0)
-    d->nodes = body->ball && d->degree == 0 && d->rank == 0 && d->exits == 0 ? 1 : 162;
+  if (d->nodes == 0) d->nodes = body->ball && d->exits == 0 ? 1 : 162;
   if (d->photons == 0) d->photons = 1u << 18;
   if (d->passes == 0) d->passes = 4;
   if (d->until_error > 0 && d->passes < LEAST_PASSES) d->passes = LEAST_PASSES;
@@ -110,8 +89,7 @@ static abbe_result begin(const abbe_scene *scene, fill *f, abbe_error *error) {
   v->kind = d->exits > 0 ? ABBE_VOLUME_EXITS : d->kind;
   v->min_nm = d->min_nm;
   v->max_nm = d->max_nm;
-  result = check_sums(d, error);
-  if (result == ABBE_OK) result = abbe_volume_region_make(&d->region, &v->region, error);
+  result = abbe_volume_region_make(&d->region, &v->region, error);
   if (result == ABBE_OK)
     result = abbe_light_nodes_make(d->nodes, (const double[3]){0, 0, 1}, &v->nodes, error);
   if (result != ABBE_OK || d->exits > 0) return result;
@@ -466,9 +444,6 @@ static abbe_result fill_values(fill *f, abbe_error *error) {
                  ? sqrt(s->error / (double)v->nodes.count)
                  : NAN;
   if (!isnan(s->error)) v->error = s->error;
-  if (result == ABBE_OK && d->degree > 0) result = abbe_caustic_volume_project(v, d->degree, error);
-  if (result == ABBE_OK && d->rank > 0)
-    result = abbe_caustic_volume_reduce(v, d->rank, &s->left, error);
   if (result == ABBE_OK && d->joins)
     result = abbe_caustic_volume_join(v, d->tolerance, &s->joint_bytes, error);
   return result;

@@ -23,8 +23,6 @@ typedef struct abbe_volume_fill_desc {
   size_t exits;            /* above 0: in place of values the rays of so many points, at most
                               ABBE_LIGHT_EXITS_MOST; photons and passes are not read */
   bool asymmetric;         /* the object's symmetry is not looked for */
-  size_t degree;           /* above 0: harmonics to that degree, of what the nodes hold */
-  size_t rank;             /* above 0: the best so many modes of what the nodes hold */
   abbe_region_desc region; /* without sizes: 24 shells of 5120 triangles, for exits of
                               48 x 48 texels; outer 0: three radii of
                               the object, inner 0: just below its surface */
@@ -48,7 +46,6 @@ typedef struct abbe_volume_fill_statistics {
   size_t passes; /* of all nodes */
   uint64_t photons;
   size_t joint_bytes; /* that the joint values take; else 0 */
-  double left;        /* of modes: abbe_caustic_volume_reduce; else 0 */
   double seconds;     /* wall time */
   double carried;     /* of exits: see abbe_exit_fill_statistics, whose rays photons is */
   double alone;

@@ -160,18 +160,6 @@ static void pack_floats(const float *value, size_t cells, uint32_t *out) {
   }
 }
 
-/* The sum of all blocks by their weights, as halves. */
-static abbe_result pack_sum(const abbe_caustic_volume *v, const abbe_volume_sight *sight,
-                            uint32_t *out, abbe_error *error) {
-  const size_t cells = v->region.cells;
-  float *sum = malloc(9 * cells * sizeof *sum);
-  if (sum == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu cells", cells);
-  abbe_caustic_volume_sum(v, sight, sum);
-  pack_floats(sum, cells, out);
-  free(sum);
-  return ABBE_OK;
-}
-
 /* Of rays that leave the object in that light, as halves. */
 static abbe_result pack_exits(const abbe_volume_light *v, const abbe_caustic_volume *volume,
                               const abbe_volume_place *place, size_t light, uint32_t *out,
@@ -234,9 +222,8 @@ static abbe_result sight_exits(abbe_volume_light *v, const abbe_caustic_volume *
                     values + 3 * light * volume->region.cells * words_of(volume), error);
 }
 
-static abbe_result sight_light(abbe_volume_light *v, const abbe_caustic_volume *volume,
-                               const abbe_volume_place *place, size_t light, uint32_t *values,
-                               abbe_error *error) {
+static void sight_light(abbe_volume_light *v, const abbe_caustic_volume *volume,
+                        const abbe_volume_place *place, size_t light, uint32_t *values) {
   const abbe_plan *plan = v->scene->plan;
   double to_light[3], own[3];
   abbe_volume_sight sight;
@@ -247,17 +234,11 @@ static abbe_result sight_light(abbe_volume_light *v, const abbe_caustic_volume *
              place->turn[6 + k] * to_light[2];
   abbe_caustic_volume_look(volume, plan->desc.lookup, own, &sight);
   const size_t block = volume->region.cells * words_of(volume);
-  if (abbe_caustic_volume_is_sum(volume)) { /* one block, as it stands */
-    v->weight[3 * light] = 1;
-    join_turns(place, sight.turn[0], v->turn[3 * light]);
-    return pack_sum(volume, &sight, values + 3 * light * block, error);
-  }
   for (size_t k = 0; k < sight.count; k++) {
     v->weight[3 * light + k] = (float)sight.weight[k];
     join_turns(place, sight.turn[k], v->turn[3 * light + k]);
-    pack_node(volume, sight.block[k], values + (3 * light + k) * block);
+    pack_node(volume, sight.node[k], values + (3 * light + k) * block);
   }
-  return ABBE_OK;
 }
 
 abbe_result abbe_volume_light_make(const abbe_gpu_scene *scene, abbe_volume_light *out,
@@ -284,7 +265,7 @@ abbe_result abbe_volume_light_make(const abbe_gpu_scene *scene, abbe_volume_ligh
     if (volume->kind == ABBE_VOLUME_EXITS)
       result = sight_exits(out, volume, &place, i, values, error);
     else
-      result = sight_light(out, volume, &place, i, values, error);
+      sight_light(out, volume, &place, i, values);
   if (table)
     memcpy(values + 3 * lights * block, volume->region.mesh.table, side * side * sizeof *values);
   if (result == ABBE_OK)

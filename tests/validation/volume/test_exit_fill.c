@@ -354,12 +354,9 @@ TEST(requests) {
   abbe_volume_fill_desc desc = {.object = 1, .exits = 10, .nodes = 1};
   REFUSED(ABBE_INVALID_ARGUMENT, "nodes", abbe_volume_fill(&scene, &desc, &v, &done, &error));
   desc.nodes = 12;
-  desc.degree = 2;
-  REFUSED(ABBE_INVALID_ARGUMENT, "harmonics", abbe_volume_fill(&scene, &desc, &v, &done, &error));
-  desc.degree = 0;
-  desc.rank = 2;
-  REFUSED(ABBE_INVALID_ARGUMENT, "modes", abbe_volume_fill(&scene, &desc, &v, &done, &error));
-  desc.rank = 0;
+  desc.joins = true;
+  REFUSED(ABBE_INVALID_ARGUMENT, "joint", abbe_volume_fill(&scene, &desc, &v, &done, &error));
+  desc.joins = false;
   desc.progress = stop_at_once;
   desc.user = &calls;
   REFUSED(ABBE_CANCELLED, "", abbe_volume_fill(&scene, &desc, &v, &done, &error));

@@ -32,7 +32,6 @@ static abbe_transport_contestant volume_of(size_t nodes, abbe_region_desc region
 /* Of each kind one that has nearly as many bytes as the method as printed, the last, has. */
 static size_t add_volumes(abbe_transport_contestant *out) {
   static const abbe_region_desc texels = {.kind = ABBE_REGION_OCTAHEDRAL, .shells = 24, .side = 32},
-                                fewer = {.kind = ABBE_REGION_OCTAHEDRAL, .shells = 22, .side = 32},
                                 few = {.kind = ABBE_REGION_OCTAHEDRAL, .shells = 19, .side = 32},
                                 triangles = {.kind = ABBE_REGION_GEODESIC,
                                              .shells = 24,
@@ -41,7 +40,7 @@ static size_t add_volumes(abbe_transport_contestant *out) {
                                                  .shells = 15,
                                                  .levels = 3},
                                 grid = {.kind = ABBE_REGION_GRID, .side = 27};
-  const size_t printed = 162 * 24 * 1280 * 3, modes[] = {8, 36, 81}, points[] = {16384, 32768};
+  const size_t printed = 162 * 24 * 1280 * 3, points[] = {16384, 32768};
   size_t n = 0;
   out[n++] = volume_of(42, grid, ABBE_VOLUME_LOOKUP_BLEND);
   out[n++] = volume_of(42, few_triangles, ABBE_VOLUME_LOOKUP_BLEND);
@@ -54,12 +53,6 @@ static size_t add_volumes(abbe_transport_contestant *out) {
     out[n].fill.joins = true;
     out[n].fill.tolerance = 0.02;
     if (i == 1) out[n].joined_bytes = printed;
-  }
-  out[n] = volume_of(162, fewer, ABBE_VOLUME_LOOKUP_AUTO);
-  out[n++].fill.degree = 5;
-  for (size_t i = 0; i < 3; i++, n++) {
-    out[n] = volume_of(162, modes[i] == 36 ? fewer : texels, ABBE_VOLUME_LOOKUP_AUTO);
-    out[n].fill.rank = modes[i];
   }
   for (size_t i = 0; i < 2; i++, n++) {
     out[n] = volume_of(162, texels, ABBE_VOLUME_LOOKUP_AUTO);
@@ -172,8 +165,6 @@ static abbe_result fill(work *w, abbe_transport_row *row, abbe_caustic_volume *o
   n[ABBE_TRANSPORT_BYTES_MEMORY_NUMBER] =
       done.joint_bytes > 0 ? (double)done.joint_bytes : (double)abbe_caustic_volume_bytes(out);
   n[ABBE_TRANSPORT_BYTES_DISK_NUMBER] = file_bytes(w->file);
-  if (out->degree > 0) n[ABBE_TRANSPORT_ORDER_NUMBER] = (double)out->degree;
-  if (out->rank > 0) n[ABBE_TRANSPORT_RANK_NUMBER] = (double)out->rank;
   if (done.outflow[1] > 0) n[ABBE_TRANSPORT_FLUX_DRIFT_NUMBER] = done.outflow[1] - done.outflow[0];
   unlink(w->file);
   return ABBE_OK;

@@ -18,8 +18,6 @@
   X(SAMPLES, "samples") /* of surfaces */                                                          \
   X(NODES, "nodes")                                                                                \
   X(CELLS, "cells")                                                                                \
-  X(ORDER, "order") /* of harmonics */                                                             \
-  X(RANK, "rank")   /* modes */                                                                    \
   X(PHOTONS_NODE, "photons_node")                                                                  \
   X(PRECOMPUTE_S, "precompute_s")                                                                  \
   X(BYTES_MEMORY, "bytes_memory")                                                                  \

@@ -81,8 +81,6 @@ static void print_name(const abbe_transport_row *row, FILE *out) {
             abbe_sample_strategy_name(c->render.strategy), footprints[c->render.footprint]);
   if (!abbe_transport_looks_up(c)) return;
   abbe_number_write(out, ", %g nodes, %s", row->number[ABBE_TRANSPORT_NODES_NUMBER], region);
-  if (c->fill.degree > 0) fprintf(out, ", harmonics to degree %zu", c->fill.degree);
-  if (c->fill.rank > 0) fprintf(out, ", %zu modes", c->fill.rank);
   if (c->render.lookup != ABBE_VOLUME_LOOKUP_AUTO) fprintf(out, ", %s", lookups[c->render.lookup]);
 }
 
@@ -113,13 +111,11 @@ static void print_all(const abbe_transport_study *s, FILE *out) {
 
 /* ---- at equal bytes ---- */
 
-typedef enum kind { NONE, GRID, TRIANGLES, TEXELS, JOINED, HARMONICS, MODES, RAYS, KINDS } kind;
+typedef enum kind { NONE, GRID, TRIANGLES, TEXELS, JOINED, RAYS, KINDS } kind;
 
 static kind kind_of(const abbe_transport_contestant *c) {
   if (!abbe_transport_looks_up(c) || c->fill.kind == ABBE_VOLUME_PRINTED) return NONE;
   if (c->fill.exits > 0) return RAYS;
-  if (c->fill.degree > 0) return HARMONICS;
-  if (c->fill.rank > 0) return MODES;
   if (c->fill.joins) return JOINED;
   return c->fill.region.kind == ABBE_REGION_GRID       ? GRID
          : c->fill.region.kind == ABBE_REGION_GEODESIC ? TRIANGLES

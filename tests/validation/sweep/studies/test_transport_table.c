@@ -85,12 +85,12 @@ TEST(for_programs) {
   OK(abbe_transport_table_save(&s, path, &error));
   OK(abbe_file_read(path, 1 << 16, &text, &size, &error));
   assert_contains(text, "# scene: prism.yaml\n"
-                        "transport,strategy,footprint,region,lookup,samples,nodes,cells,order,rank,"
+                        "transport,strategy,footprint,region,lookup,samples,nodes,cells,"
                         "photons_node,precompute_s,bytes_memory,bytes_disk,bytes_gpu,frame_ms,"
                         "lookup_ms,none_ms,over_none,moved_ms,caustic_de,caustic_de_noise,"
                         "caustic_rmse,caustic_rmse_noise,node_error,mid_error,limit_rmse,pop,"
                         "flux_drift,pays_after,front_time,front_bytes\n");
-  assert_contains(text, "\nvolume,,,grid 27,auto,,42,,,,,,900,,,,,,,,7,,,,0.5,0.75,,,,,,yes\n");
+  assert_contains(text, "\nvolume,,,grid 27,auto,,42,,,,900,,,,,,,,7,,,,0.5,0.75,,,,,,yes\n");
   assert_contains(text, "\npinhole,grid,on,,,100,");
   free(text);
   unlink(path);
