@@ -1,6 +1,7 @@
 #include "spectral/uniaxial.h"
 
 #include "base/maths.h"
+#include "spectral/boundary.h"
 
 #include <complex.h>
 #include <math.h>
@@ -182,10 +183,6 @@ static void make_wave(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const fac
 
 /* ---- the face ---- */
 
-static double size_of(number z) {
-  return fabs(creal(z)) + fabs(cimag(z));
-}
-
 static number part(const number v[3], const double d[3]) {
   return v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
 }
@@ -197,37 +194,7 @@ static void tangential(const wave *w, const face *f, number out[4]) {
   out[3] = part(w->h, f->across);
 }
 
-/* Most waves that come at once: s and p. */
-enum { COME = 2 };
-
-/* Gauss with the largest pivot; m[row][0..3] x = m[row][4 + i] for each of `count` right sides,
- * whose solutions take their place. */
-static void solve(number m[4][4 + COME], int count) {
-  const int end = 4 + count;
-  for (int c = 0; c < 4; c++) {
-    int best = c;
-    for (int r = c + 1; r < 4; r++)
-      if (size_of(m[r][c]) > size_of(m[best][c])) best = r;
-    if (best != c)
-      for (int k = c; k < end; k++) {
-        const number swapped = m[c][k];
-        m[c][k] = m[best][k];
-        m[best][k] = swapped;
-      }
-    /* two waves that cling to the face may be one: any split between them is right */
-    if (size_of(m[c][c]) < 1e-30) m[c][c] = 1e-30;
-    const number inverse = 1 / m[c][c];
-    for (int r = c + 1; r < 4; r++) {
-      const number times = m[r][c] * inverse;
-      for (int k = c + 1; k < end; k++) m[r][k] -= times * m[c][k];
-    }
-    for (int k = 4; k < end; k++) m[c][k] *= inverse;
-    for (int k = c + 1; k < 4; k++) m[c][k] *= inverse;
-  }
-  for (int r = 3; r >= 0; r--)
-    for (int i = 4; i < end; i++)
-      for (int k = r + 1; k < 4; k++) m[r][i] -= m[r][k] * m[k][i];
-}
+enum { COME = ABBE_BOUNDARY_COME };
 
 static void tell(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const wave *w, number amplitude,
                  double flux, abbe_uniaxial_wave *out) {
@@ -293,7 +260,7 @@ static void meet(const abbe_uniaxial *from, const abbe_uniaxial *to, const doubl
     tangential(&waves[i], &f, column);
     for (int r = 0; r < 4; r++) m[r][i] = inside ? column[r] : -column[r];
   }
-  solve(m, count);
+  abbe_boundary_solve(m, count);
   for (int c = 0; c < count; c++) {
     for (int i = 0; i < 4; i++)
       tell(i < 2 ? from : to, (abbe_uniaxial_mode)(i & 1), &waves[i], m[i][4 + c], incident[c].flux,
