@@ -39,7 +39,7 @@ void abbe_chromaticity_locus(abbe_observer observer, double lambda_nm, double xy
   if (!abbe_chromaticity_xy(xyz, xy)) xy[0] = xy[1] = NAN;
 }
 
-/* How far to the left of the line from `white` along `way` the locus is at lambda_nm; *ahead, how
+/* How far to the left of the line from `white` along `way` the locus is at lambda_nm; *ahead is how
  * far along it. */
 static double side(abbe_observer observer, double lambda_nm, const double white[2],
                    const double way[2], double *ahead) {

@@ -28,14 +28,14 @@ void abbe_chromaticity_locus_ends(abbe_observer observer, double *min_nm, double
 typedef struct abbe_dominant {
   double lambda_nm;        /* where the line from the white through the colour meets the locus; NaN
                               where it meets the purple line */
-  double complementary_nm; /* where the line the other way does; NaN likewise */
-  double purity;           /* excitation purity: from the white to the colour, over the way to the
-                              locus or the purple line; above 1 outside them */
+  double complementary_nm; /* where the line in the other direction does; NaN likewise */
+  double purity; /* excitation purity: from the white to the colour, over the distance to the locus
+                    or the purple line; above 1 outside them */
 } abbe_dominant;
 
-/* Of the colour xy with respect to the white [CIE15]. False where the two are one (within 1e-7),
- * where the white is not inside the locus, and where something is not finite; *out is then all NaN,
- * with a purity of 0 where they are one. */
+/* Dominant wavelength and purity of the colour xy with respect to the white [CIE15]. False where
+ * the two are one (within 1e-7), where the white is not inside the locus, and where something is
+ * not finite; *out is then all NaN, with a purity of 0 where they are one. */
 bool abbe_chromaticity_dominant(const double xy[2], const double white[2], abbe_observer observer,
                                 abbe_dominant *out);
 

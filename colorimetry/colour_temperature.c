@@ -93,7 +93,7 @@ bool abbe_colour_temperature_find(const double xy[2], double *kelvin, double *du
   const double step = (max - min) / STEPS, mired = min + step * nearest;
   const double best = nearest_between(uv, fmax(min, mired - step), fmin(max, mired + step));
   const double away = distance(uv, best, way);
-  const double edge = 1e-5; /* of the ends: there the nearest one lies beyond */
+  const double edge = 1e-5; /* near the ends, where the nearest one lies beyond */
   if (away > ABBE_COLOUR_TEMPERATURE_MAX_DUV || best < min * (1 + edge) || best > max * (1 - edge))
     return false;
   *kelvin = 1e6 / best;

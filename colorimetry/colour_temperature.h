@@ -24,8 +24,8 @@ void abbe_colour_temperature_planck_xy(double kelvin, double xy[2]);
  * untouched) outside. D65 is 6504 K, not 6500: c2 has changed since. */
 bool abbe_colour_temperature_daylight_xy(double kelvin, double xy[2]);
 
-/* x, y of a white that text says: a chromaticity "0.3127,0.3290", or a temperature in K "5000": of
- * daylight from 4000 K on, below that of a Planckian radiator, from ABBE_COLOUR_TEMPERATURE_MIN to
+/* x, y of a white that text names: a chromaticity "0.3127,0.3290", or a temperature in K "5000":
+ * daylight from 4000 K on, a Planckian radiator below, from ABBE_COLOUR_TEMPERATURE_MIN to
  * ABBE_COLOUR_TEMPERATURE_MAX_DAYLIGHT. False (xy untouched) for anything else. */
 #define ABBE_COLOUR_TEMPERATURE_MAX_DAYLIGHT 25000.0
 bool abbe_colour_temperature_read_white(const char *text, double xy[2]);

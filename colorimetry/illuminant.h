@@ -1,12 +1,11 @@
 /* illuminant.h: relative spectral power distributions of light sources.
  *
- * A (the CIE's formula), D50 and D65 (the CIE's tables), E; C, F1 to F12 and the CIE's LED lamps
+ * A (the CIE's formula), D50 and D65 (the CIE's tables), E; C, F1 to F12 and the CIE's LED sources
  * (its tables); daylight and black bodies by their temperature; or a tabulated spectrum of the
  * user's own. Only the shape matters: weights are normalised. Tables are interpolated linearly
- * between their knots (daylight's at 10 nm), as is a file of the user's own; outside its table a
- * light is dark: beyond 380 to 780 nm of F and LED, beyond 300 to 830 nm of daylight and black
- * bodies.
- */
+ * between their knots (daylight's at 10 nm), as is a file of the user's own. Outside its table a
+ * light is dark: beyond 380 to 780 nm for F and LED, beyond 300 to 830 nm for daylight and black
+ * bodies. */
 #ifndef ABBE_COLORIMETRY_ILLUMINANT_H
 #define ABBE_COLORIMETRY_ILLUMINANT_H
 
@@ -51,7 +50,7 @@ void abbe_illuminant_free(abbe_illuminant *illuminant);
  * tabulated one is 0 outside its table. */
 double abbe_illuminant_power(const abbe_illuminant *illuminant, double lambda_nm);
 
-/* As it was asked for; "tabulated" of a file's. */
+/* The name that was requested; "tabulated" for a file. */
 const char *abbe_illuminant_name(const abbe_illuminant *illuminant);
 
 /* Whether it names a light, whatever files there are, also one of a temperature that cannot be.

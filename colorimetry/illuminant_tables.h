@@ -1,8 +1,7 @@
 /* illuminant_tables.h: relative spectral powers as the CIE prints them [CIE15], in steps of 5 nm:
- * illuminant C, the fluorescent lamps F1 to F12, the LED lamps; and the components of daylight.
+ * illuminant C, the fluorescent sources F1 to F12, the LED sources; and the components of daylight.
  *
- * illuminant.h makes lights of them. Internal to colorimetry/.
- */
+ * illuminant.h makes lights of them. Internal to colorimetry/. */
 #ifndef ABBE_COLORIMETRY_ILLUMINANT_TABLES_H
 #define ABBE_COLORIMETRY_ILLUMINANT_TABLES_H
 

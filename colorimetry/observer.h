@@ -24,7 +24,7 @@ typedef enum abbe_observer {
       ABBE_OBSERVER_COUNT
 } abbe_observer;
 
-/* Of the observer of 1931; no other reaches further. */
+/* Range of the observer of 1931; no other reaches further. */
 #define ABBE_OBSERVER_MIN_NM 360.0
 #define ABBE_OBSERVER_MAX_NM 830.0
 

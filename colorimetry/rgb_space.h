@@ -1,4 +1,4 @@
-/* rgb_space.h: the linear colour spaces that pictures are kept in, and the way to them from XYZ.
+/* rgb_space.h: the linear colour spaces that pictures are kept in, and their transforms from XYZ.
  *
  * XYZ here is relative to D65: an object lit by D65 has the chromaticity of D65, and the RGB
  * spaces' whites are D65 (Rec.709) and the ACES white (ACEScg, reached from D65 by the Bradford
@@ -6,8 +6,7 @@
  *
  * The matrices come from the published chromaticities, whose D65 is (0.3127, 0.3290). The white of
  * illuminant D65's table is (0.31272, 0.32903), so it is (1, 1, 1) to 5e-4 only, a CIEDE2000 of
- * 0.03; it is left so, for files then mean what their chromaticities say.
- */
+ * 0.03; it is left so, because files then mean what their chromaticities state. */
 #ifndef ABBE_COLORIMETRY_RGB_SPACE_H
 #define ABBE_COLORIMETRY_RGB_SPACE_H
 

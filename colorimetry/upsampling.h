@@ -40,8 +40,8 @@ typedef struct abbe_upsampling {
   double white[3];  /* the illuminant's own colour: XYZ, Y = 1 */
   double to_xyz[9]; /* row-major: XYZ of RGB; its rows add up to white */
   double to_coefficients[9]; /* row-major M^-1: c of RGB; its rows add up to 1 */
-  double least; /* of the spectra of (1, 0, 0), (0, 1, 0) and (0, 0, 1), over the illuminant's, the
-                   smallest value: 0 to rounding, or below */
+  double least; /* smallest value of the spectra of (1, 0, 0), (0, 1, 0) and (0, 0, 1), over the
+                   illuminant's: 0 to rounding, or below */
 } abbe_upsampling;
 
 /* ABBE_INVALID_ARGUMENT where the range is empty or holds no light that the eye sees, and where the

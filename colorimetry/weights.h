@@ -17,8 +17,8 @@
 
 typedef struct abbe_weights {
   size_t count;
-  double (*weight)[3]; /* [count], in the space that was asked for */
-  double sum[3];       /* of all weights: the illuminant's white, in that space */
+  double (*weight)[3]; /* [count], in the requested space */
+  double sum[3];       /* sum of all weights: the illuminant's white, in that space */
 } abbe_weights;
 
 /* Weights of the samples under the illuminant. For several hundred samples a band is narrower
@@ -33,8 +33,8 @@ abbe_result abbe_weights_make_by(abbe_observer observer, const abbe_wavelengths 
                                  abbe_weights *out, abbe_error *error);
 void abbe_weights_free(abbe_weights *weights);
 
-/* An illuminant over a range of wavelengths, and what the bands of that range are divided by.
- * Whoever asks for many bands makes it once. */
+/* An illuminant over a range of wavelengths, and what the bands of that range are divided by. A
+ * caller that needs many bands makes it once. */
 typedef struct abbe_weights_range {
   abbe_observer observer;
   const abbe_illuminant *illuminant; /* not owned: it outlives the range */

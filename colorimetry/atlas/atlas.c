@@ -33,7 +33,7 @@ static double difference(const double a[3], const double b[3]) {
   return abbe_difference_ciede2000(lab[0], lab[1]);
 }
 
-/* All ways into all gamuts. */
+/* All gamut mappings into all gamuts. */
 typedef struct ways {
   abbe_gamut_map map[ABBE_GAMUT_COUNT][ABBE_GAMUT_MAP_COUNT];
 } ways;

@@ -14,19 +14,19 @@
 
 typedef struct abbe_atlas_desc {
   abbe_observer observer;            /* the CIE's of 1931 */
-  const abbe_illuminant *illuminant; /* of the light whose bands are summed; NULL: D65 */
+  const abbe_illuminant *illuminant; /* illuminant of the light whose bands are summed; NULL: D65 */
   double min_nm, max_nm;             /* both 0: 400 to 700 nm */
   size_t bands;                      /* that tile the range; 0: 21 */
 } abbe_atlas_desc;
 
 typedef struct abbe_atlas_row {
   double lambda_nm;
-  double xyz[3], band_xyz[3]; /* of Y = 0.5 */
+  double xyz[3], band_xyz[3]; /* for Y = 0.5 */
   double xy[2], band_xy[2];
   double band_uv;         /* distance in u'v' of the band's colour from the wavelength's own */
   double band_difference; /* the same as CIEDE2000 */
   double excess[ABBE_GAMUT_COUNT];                           /* abbe_gamut_excess */
-  double difference[ABBE_GAMUT_COUNT][ABBE_GAMUT_MAP_COUNT]; /* CIEDE2000 of each way inside */
+  double difference[ABBE_GAMUT_COUNT][ABBE_GAMUT_MAP_COUNT]; /* CIEDE2000 of each mapping */
 } abbe_atlas_row;
 
 typedef struct abbe_atlas {
@@ -38,7 +38,7 @@ typedef struct abbe_atlas {
 } abbe_atlas;
 
 /* Errors of abbe_wavelengths_make; ABBE_INVALID_ARGUMENT for a range that is not within 380 to 730
- * nm (380 from where the observer's table begins), where colours are told apart. */
+ * nm (380 from where the observer's table begins), where colours are distinguishable. */
 abbe_result abbe_atlas_make(const abbe_atlas_desc *desc, abbe_atlas *out, abbe_error *error);
 void abbe_atlas_free(abbe_atlas *atlas);
 

@@ -1,9 +1,8 @@
-/* gamut_map.h: colours outside of a display's gamut, brought inside by one of three ways.
+/* gamut_map.h: colours outside of a display's gamut, brought inside by one of three mappings.
  *
  * Only what needs less than nothing of a primary is changed (compression also changes what is near
  * that): brightness above a display's white is its view's matter. None depends on exposure. XYZ is
- * relative to D65. Internal to colorimetry/.
- */
+ * relative to D65. Internal to colorimetry/. */
 #ifndef ABBE_COLORIMETRY_GAMUT_GAMUT_MAP_H
 #define ABBE_COLORIMETRY_GAMUT_GAMUT_MAP_H
 
@@ -31,8 +30,8 @@ const char *abbe_gamut_map_name(abbe_gamut_map_kind kind);
 
 typedef struct abbe_gamut_map {
   abbe_gamut_map_kind kind;
-  double from_xyz[9], to_xyz[9]; /* of the gamut's linear RGB */
-  double limit[3], scale[3];     /* of the compression, red, green, blue */
+  double from_xyz[9], to_xyz[9]; /* between XYZ and the gamut's linear RGB */
+  double limit[3], scale[3];     /* of the compression: for red, green, blue */
 } abbe_gamut_map;
 
 /* Into the gamut of these chromaticities (red, green, blue, white). The compression's limits are

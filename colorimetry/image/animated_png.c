@@ -15,7 +15,7 @@ static const unsigned char signature[SIGNATURE] = {0x89, 'P', 'N', 'G', '\r', '\
 typedef struct png_frame {
   const char *path;
   unsigned char *data;
-  size_t size, at; /* of the next chunk */
+  size_t size, at; /* size and place of the next chunk */
 } png_frame;
 
 typedef struct chunk {

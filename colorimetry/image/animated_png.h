@@ -1,8 +1,7 @@
 /* animated_png.h: PNG files of one kind, one after another, as one that moves (APNG, [PNG2025]).
  *
  * Frames are whole PNGs of one size and depth; their compressed pixels are taken as they are, and
- * what the first says of colour holds for all. Viewers that know no animation show the first.
- */
+ * the colour chunks of the first hold for all. Viewers that know no animation show the first. */
 #ifndef ABBE_COLORIMETRY_IMAGE_ANIMATED_PNG_H
 #define ABBE_COLORIMETRY_IMAGE_ANIMATED_PNG_H
 

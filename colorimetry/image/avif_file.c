@@ -18,7 +18,7 @@ bool abbe_avif_is_meant(const char *path) {
 #include <stdint.h>
 #include <stdlib.h>
 
-/* Of 63: no step of an even picture is seen. */
+/* Quantizers from 0 to 63: no step of an even picture is seen. */
 enum { BEST = 0, WORST = 8, SPEED = 6 };
 
 bool abbe_avif_is_there(void) {

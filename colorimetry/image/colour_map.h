@@ -1,9 +1,8 @@
 /* colour_map.h: numbers as colours, for false-colour pictures and their scale bars.
  *
- * Two maps: one for amounts, from black to white with lightness rising all the way, so that it also
+ * Two maps: one for amounts, from black to white with lightness rising throughout, so that it also
  * reads in grey [Green2011]; one for differences about a middle, from blue over light grey to red
- * [Moreland2009]. It scales nothing: that is the caller's axis.
- */
+ * [Moreland2009]. It scales nothing: that is the caller's axis. */
 #ifndef ABBE_COLORIMETRY_IMAGE_COLOUR_MAP_H
 #define ABBE_COLORIMETRY_IMAGE_COLOUR_MAP_H
 

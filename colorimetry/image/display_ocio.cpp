@@ -27,7 +27,7 @@ struct abbe_display {
   OCIO::ConstCPUProcessorRcPtr processor;
   double xy[8], curve[5];
   int transfer;
-  bool adjusts; /* on the way: to_linear, adjustment, map, processor */
+  bool adjusts; /* between the picture and the view: to_linear, adjustment, map, processor */
   OCIO::ConstCPUProcessorRcPtr to_linear;
   double adjustment[9]; /* exposure, and in XYZ the white */
   abbe_gamut_map map;
@@ -35,7 +35,7 @@ struct abbe_display {
 
 namespace {
 
-/* More light overflows in some views, or on its way there. */
+/* More light overflows in some views, or before them. */
 const float MOST_SHOWN = 0x1p60F, MOST_READ = 0x1p100F;
 
 /* OpenColorIO reads the numbers of a configuration by the thread's locale. */
@@ -157,14 +157,14 @@ abbe_result unknown(const char *config, const char *kind, const char *name,
                         known.c_str());
 }
 
-/* A linear, scene-referred space of a configuration and what its numbers are: the way between
+/* A linear, scene-referred space of a configuration and what its numbers are: the link between
  * Abbe's spaces and those of the configuration. */
 struct anchor {
   std::string space; /* empty: none is known */
   double to_xyz[9];  /* row-major, to XYZ relative to D65 */
 };
 
-/* The roles that spaces are exchanged by, then names that tell the primaries;
+/* The roles that spaces are exchanged by, then names that state the primaries;
  * ABBE_RGB_SPACE_COUNT: AP0. */
 const struct {
   const char *name;
@@ -286,7 +286,7 @@ bool named(const std::string &display, const char *name) {
   return display == name || display == std::string(name) + " - Display";
 }
 
-/* What the display's numbers mean; nothing where the configuration does not tell. */
+/* What the display's numbers mean; nothing where the configuration does not state it. */
 void find_encoding(const OCIO::ConstConfigRcPtr &config, const std::string &display,
                    const char *view, abbe_display *out) {
   const std::string word = config->getDisplayViewColorSpaceName(display.c_str(), view);
@@ -300,7 +300,7 @@ void find_encoding(const OCIO::ConstConfigRcPtr &config, const std::string &disp
     encoding_to_xyz(config, space)->getDefaultCPUProcessor()->apply(pixels);
     if (abbe_rgb_encoding_of_probes(probes, out->xy, out->curve)) return;
     if (abbe_rgb_encoding_of_hdr_probes(probes, out->xy, &out->transfer)) return;
-  } catch (const OCIO::Exception &) { /* no such role, or a transform of one way only */
+  } catch (const OCIO::Exception &) { /* no such role, or a transform in one direction only */
   }
   if (named(display, "sRGB")) abbe_rgb_encoding_srgb(out->xy, out->curve);
   if (named(display, "Display P3")) abbe_rgb_encoding_display_p3(out->xy, out->curve);

@@ -11,7 +11,7 @@
 enum { POWERS = 16, PER_POWER = 3, NODES = POWERS * PER_POWER + 1 };
 enum { ONE = 127 << 23, POWER = 1 << 23 }; /* bits of 1.0f; of twice as much, more */
 static const float finest = 1024;
-static const float most_off = 1.5F / 255; /* of cells that are used */
+static const float most_off = 1.5F / 255; /* over the cells that are used */
 
 struct abbe_display_table {
   const abbe_display *display;
@@ -119,9 +119,9 @@ void abbe_display_table_free(abbe_display_table *table) {
   free(table);
 }
 
-/* Between the four corners of the tetrahedron that holds the colour: from the least corner of its
- * cell along the part that is farthest, then the next. False: it is beyond the table, or in a cell
- * that tells too little. */
+/* Interpolates between the four corners of the tetrahedron that holds the colour: from the least
+ * corner of its cell along the part that is farthest, then the next. False: the colour is beyond
+ * the table, or in a cell that is too coarse. */
 static bool look_up(const abbe_display_table *t, float rgb[3]) {
   size_t at = 0, step[3] = {stride[0], stride[1], stride[2]};
   float rest[3], sum[4];

@@ -13,7 +13,7 @@
 
 typedef struct abbe_display_table abbe_display_table;
 
-/* Of the display, which it looks at as long as it lives. ABBE_NO_MEMORY, errors of
+/* Makes the table of a display, which it refers to as long as it lives. ABBE_NO_MEMORY, errors of
  * abbe_display_apply. */
 abbe_result abbe_display_table_make(const abbe_display *display, abbe_display_table **out,
                                     abbe_error *error);

@@ -18,14 +18,14 @@ typedef struct abbe_exr_stream {
   const char *part; /* its name or number, as given; NULL: that which has the picture */
   int fd;
   int64_t size;
-  int io_errno; /* of a failed system call; 0: the bytes themselves are at fault */
+  int io_errno; /* error of a failed system call; 0: the bytes themselves are at fault */
   char message[512];
 } abbe_exr_stream;
 
-/* Of the part that is read. */
+/* Layout of the part that is read. */
 typedef struct abbe_exr_layout {
   int part, parts;
-  const char *name; /* of the part; NULL: it has none */
+  const char *name; /* the part's name; NULL: it has none */
   exr_storage_t storage;
   exr_compression_t compression;
   exr_attr_box2i_t data, display; /* the windows */

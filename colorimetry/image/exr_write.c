@@ -16,11 +16,11 @@
 typedef struct target {
   const char *path;
   int fd;
-  int io_errno; /* of a failed system call; 0: none */
+  int io_errno; /* error of a failed system call; 0: none */
 } target;
 
-/* While a header is written the library holds the lock that exr_get_user_data would take: a
- * writing context is told nothing but its result. */
+/* While a header is written the library holds the lock that exr_get_user_data would take: a writing
+ * context returns nothing but its result. */
 static void ignore_error(exr_const_context_t context, exr_result_t code, const char *message) {
   (void)context;
   (void)code;

@@ -32,13 +32,13 @@ typedef struct abbe_image {
   char **channel;  /* [channels] names: "R", "G", "B", "A", "caustic.R", … */
   float *data;     /* [height][width][channels] */
   double xy[8];    /* chromaticities of R, G, B, white; all 0: not stated */
-  double curve[5]; /* of values encoded for a display (rgb_encoding.h); all 0: not encoded, or not
+  double curve[5]; /* encoding of values for a display (rgb_encoding.h); all 0: not encoded, or not
                       stated */
-  int transfer;    /* of values encoded for an HDR display, by [H273]: 16 PQ, 18 HLG; 0: curve */
+  int transfer; /* curve of values encoded for an HDR display, by [H273]: 16 PQ, 18 HLG; 0: curve */
   abbe_image_window display_window; /* where the pixels lie; (0, 0) is the first of one made here */
   abbe_image_window
       data_window; /* what the file it comes from had values for; elsewhere they are 0 */
-  char part[40];   /* of a file of several parts, the one that it is: "2 'depth' of 3"; else "" */
+  char part[40];   /* which part of a file of several this is: "2 'depth' of 3"; else "" */
   size_t attribute_count;
   abbe_image_attribute *attribute; /* text for the file's header */
 } abbe_image;

@@ -14,7 +14,8 @@
 
 enum { MAX_SIDE = 16384, MAX_CHUNK_BYTES = 4 << 20, DEFLATE_RATIO = 1032 };
 
-/* One file under way. libpng leaves by longjmp, so what must outlive that lives here. */
+/* One file being read or written. libpng leaves by longjmp, so what must outlive that lives
+ * here. */
 typedef struct job {
   const char *path;
   FILE *file;
@@ -23,7 +24,7 @@ typedef struct job {
   png_bytep rows;
   png_bytep *row;
   png_uint_32 width, height;
-  int bits, samples; /* of a row's pixel in memory */
+  int bits, samples; /* a row's pixel in memory */
   void *icc;         /* to be written; of three channels that are not in sRGB */
   size_t icc_size;
   bool io_failed, no_memory;
@@ -86,7 +87,7 @@ static void write_cicp(const job *j, const abbe_image *image) {
   png_set_unknown_chunks(j->png, j->info, &chunk, 1);
 }
 
-/* The chunks that say what the numbers mean. */
+/* The chunks that state what the numbers mean. */
 static void write_encoding(const job *j, const abbe_image *image) {
   if (image->transfer != 0) {
     write_cicp(j, image);
@@ -174,7 +175,7 @@ abbe_result abbe_png_write(const char *path, const abbe_image *image, int bits, 
 
 /* Reading */
 
-/* Of what is not pixels only what says their colour is read: no text, thumbnail or profile of
+/* Besides pixels only the chunks about their colour are read: no text, thumbnail or profile of
  * whatever kind is unpacked in vain. */
 static void choose_chunks(const job *j) {
   static const png_byte known[] = "bKGD\0eXIf\0hIST\0iTXt\0oFFs\0pCAL\0pHYs\0sBIT\0sCAL\0"
@@ -274,13 +275,13 @@ static void decode_gamma(const job *j, double xy[8], double curve[5]) {
     memcpy(xy, stated, sizeof stated);
   }
   if (png_get_gAMA(j->png, j->info, &gamma) == 0 || !(gamma > 0)) return;
-  /* 1/2.2 with sRGB's primaries is how sRGB is said to old readers */
+  /* old readers know sRGB as 1/2.2 with sRGB's primaries */
   const bool srgb = abbe_rgb_encoding_is_srgb(xy, curve) && fabs(gamma * 2.2 - 1) < 1e-3;
   const double power[5] = {1 / gamma, 1, 0, 0, 0};
   if (!srgb) memcpy(curve, power, sizeof power);
 }
 
-/* What the file says of its colour, in the order in which [PNG2025] ranks it. */
+/* The file's chunks about its colour, in the order in which [PNG2025] ranks them. */
 static abbe_result become_srgb(const job *j, abbe_image *image, abbe_error *error) {
   png_unknown_chunkp chunk = NULL;
   png_charp name = NULL;

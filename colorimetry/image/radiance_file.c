@@ -16,7 +16,7 @@ typedef struct reader {
   const char *path;
   const uint8_t *data;
   size_t size, at;
-  double divisor[3]; /* of R, G, B: all exposures and colour corrections */
+  double divisor[3]; /* for R, G, B: all exposures and colour corrections */
   double xy[8];
   bool xyze;
   bool columns, right_to_left, bottom_up; /* how lines run */
@@ -134,8 +134,8 @@ static abbe_result read_resolution(reader *r, abbe_error *error) {
   return ABBE_OK;
 }
 
-/* The rest of a line as pixels one by one, some of which say how often the one before is repeated;
- * done: those that are there already. */
+/* The rest of a line as pixels one by one, some of which repeat the one before; done: those that
+ * are there already. */
 static const char *read_old(reader *r, uint8_t (*line)[4], size_t done, size_t length) {
   unsigned shift = 0;
   while (done < length) {

@@ -20,7 +20,7 @@ extern "C" {
 /* Rec.709's primaries, D65 and the curve of [IEC61966]; P3's primaries with the same. */
 void abbe_rgb_encoding_srgb(double xy[8], double curve[5]);
 void abbe_rgb_encoding_display_p3(double xy[8], double curve[5]);
-/* Whether it is that, to what PNG's own numbers of five decimals can say. */
+/* Whether it is sRGB, to the five decimals of PNG's own numbers. */
 bool abbe_rgb_encoding_is_srgb(const double xy[8], const double curve[5]);
 /* Whether it is known at all. */
 bool abbe_rgb_encoding_is_known(const double xy[8], const double curve[5]);

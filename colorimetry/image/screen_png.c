@@ -97,7 +97,7 @@ static void enter_space(const abbe_picture_space *from, abbe_image *picked, cons
   }
 }
 
-/* What the command line says, else what every reader of the picture takes it for. */
+/* The space that the command line names, else what every reader of the picture takes it for. */
 static abbe_result find_source(const abbe_screen_png_desc *d, const abbe_image *image, int triple,
                                abbe_image *picked, const char **space, abbe_error *error) {
   abbe_picture_space found;

@@ -8,10 +8,10 @@
 
 #include "colorimetry/image/display_ocio.h"
 
-/* What there is to say of a picture that was shown. */
+/* Notes about a picture that was shown. */
 typedef struct abbe_screen_png_notes {
   bool space_assumed; /* its R, G, B are of no stated space, and Rec.709's were taken */
-  abbe_image_odd odd; /* of the channels that are shown */
+  abbe_image_odd odd; /* odd values of the channels that are shown */
   double white;       /* the share of its pixels that are the display's white, without detail */
   double stops;       /* by which more exposure a tenth of its finite pixels would be brighter than
                          0.8; 0: none is finite, or they are dark */
@@ -19,18 +19,17 @@ typedef struct abbe_screen_png_notes {
 
 /* Zeroed: the picture's own channels in the space that it states, the default view, 8 bits. */
 typedef struct abbe_screen_png_desc {
-  abbe_display_desc display; /* its source_space NULL: what the picture says */
+  abbe_display_desc display; /* its source_space NULL: what the picture states */
   const char *layer;         /* channels LAYER.R, LAYER.G, LAYER.B; NULL: R, G, B */
   bool alpha;                /* its channel A goes into the PNG, straight, as PNG has it: colours
                                 are those before they were multiplied by it */
-  const char *name;          /* of the picture, for sentences; NULL: "the picture" */
-  int bits;                  /* of a PNG 8 or 16, 0: 8, for an HDR display 16; of an AVIF 10 or 12,
-                                0: 10 */
+  const char *name;          /* the picture's name, for sentences; NULL: "the picture" */
+  int bits; /* of a PNG 8 or 16, 0: 8, for an HDR display 16; of an AVIF 10 or 12, 0: 10 */
   abbe_screen_png_notes *notes; /* filled; may be NULL */
 } abbe_screen_png_desc;
 
-/* As an AVIF where path ends with .avif (avif_file.h). Shows R, G, B, else X, Y, Z, else Y, in the
- * space that abbe_picture_space_find says. ABBE_NOT_FOUND without such channels; errors of
+/* Writes an AVIF where path ends with .avif (avif_file.h). Shows R, G, B, else X, Y, Z, else Y, in
+ * the space of abbe_picture_space_find. ABBE_NOT_FOUND without such channels; errors of
  * abbe_picture_space_find, abbe_display_make, abbe_display_apply, abbe_png_write and
  * abbe_avif_write. */
 abbe_result abbe_screen_png_write(const char *path, const abbe_image *image,

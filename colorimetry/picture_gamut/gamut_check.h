@@ -19,24 +19,24 @@ typedef struct abbe_gamut_cost {
 
 typedef struct abbe_gamut_check {
   abbe_gamut gamut;
-  abbe_picture_space space; /* of the picture */
+  abbe_picture_space space; /* the picture's space */
   size_t width, height;
   size_t lit;           /* pixels that are finite and of Y above 0 */
-  size_t outside;       /* of these */
+  size_t outside;       /* of the pixels: those outside */
   abbe_image_odd odd;   /* pixels that are not finite */
   double light_outside; /* their share of all lit pixels' Y */
-  double excess_mean;   /* of the pixels outside; 0: none is */
+  double excess_mean;   /* mean over the pixels outside; 0: none is */
   double excess_greatest;
   size_t x, y;    /* the pixel of the greatest excess, from the picture's corner */
   double white_y; /* 99 % of the lit pixels have no more */
-  abbe_gamut_cost cost[ABBE_GAMUT_MAP_COUNT]; /* of each way inside; of NONE zeros */
+  abbe_gamut_cost cost[ABBE_GAMUT_MAP_COUNT]; /* of each mapping; zeros for NONE */
   float (*xyz)[3];                            /* [height * width] relative to D65 */
   float *excess;                              /* [height * width]; NaN where it is not lit */
 } abbe_gamut_check;
 
-/* Of the picture's R, G, B or X, Y, Z. ABBE_NOT_FOUND without these, ABBE_INVALID_ARGUMENT where
- * nothing is lit and for chromaticities that span no space, ABBE_NO_MEMORY. `name` is what errors
- * call the picture. */
+/* Checks the picture's R, G, B or X, Y, Z. ABBE_NOT_FOUND without these, ABBE_INVALID_ARGUMENT
+ * where nothing is lit and for chromaticities that span no space, ABBE_NO_MEMORY. `name` is what
+ * errors call the picture. */
 abbe_result abbe_gamut_check_make(const abbe_image *image, const char *name, abbe_gamut gamut,
                                   abbe_gamut_check *out, abbe_error *error);
 void abbe_gamut_check_free(abbe_gamut_check *check);

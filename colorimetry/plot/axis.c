@@ -116,7 +116,7 @@ static size_t log_ticks(const abbe_axis *a, size_t wanted, abbe_axis_tick *tick,
   do count = powers_of_ten(a, stride, false, tick, &major);
   while (major < 2 && stride-- > 1);
   if (major >= 2) return count;
-  /* round values say more than one lonely power of ten */
+  /* round values show more than one lonely power of ten */
   const bool plain = a->min >= 1e-3 && a->max <= 1e5 && decades >= 1;
   if (plain) count = powers_of_ten(a, 1, true, tick, &major);
   return plain && major >= 2 ? count : linear_ticks(a, wanted, tick, exponent);

@@ -23,7 +23,7 @@ typedef struct abbe_axis_tick {
 } abbe_axis_tick;
 
 /* An axis that shows min to max with `margin` of its length free at either end; a single value, or
- * none (min > max), gets room too. */
+ * none (min > max), gets a range too. */
 abbe_axis abbe_axis_make(double min, double max, double margin, bool log, bool reversed);
 
 /* Where value lies: 0 at the origin, 1 at the end, beyond them outside; NaN for what a logarithmic

@@ -25,10 +25,10 @@ static cairo_status_t write_bytes(void *closure, const unsigned char *data, unsi
 
 typedef struct png_stream {
   FILE *file;
-  size_t left; /* of a PNG's signature and header, which are always its first 33 bytes */
+  size_t left; /* bytes left of a PNG's signature and header, which are always its first 33 */
 } png_stream;
 
-/* Cairo does not say that its colours are sRGB: the chunk that does comes behind the header. */
+/* Cairo does not state that its colours are sRGB: the chunk that does comes behind the header. */
 static cairo_status_t write_png(void *closure, const unsigned char *data, unsigned int length) {
   static const unsigned char srgb[] = {0, 0, 0, 1, 's', 'R', 'G', 'B', 1, 0xd9, 0xc9, 0x2c, 0x7f};
   png_stream *stream = closure;
@@ -96,11 +96,9 @@ static abbe_result write_surface(cairo_surface_t *surface, const grid *g, FILE *
   if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface);
   cairo_surface_destroy(surface);
   if (status == CAIRO_STATUS_SUCCESS) return ABBE_OK;
-  return abbe_error_set(error,
-                        status == CAIRO_STATUS_NO_MEMORY ? ABBE_NO_MEMORY
-                                                         : ABBE_INVALID_ARGUMENT,
-                        "%s: the chart could not be drawn: %s", path,
-                        cairo_status_to_string(status));
+  return abbe_error_set(
+      error, status == CAIRO_STATUS_NO_MEMORY ? ABBE_NO_MEMORY : ABBE_INVALID_ARGUMENT,
+      "%s: the chart could not be drawn: %s", path, cairo_status_to_string(status));
 }
 
 static abbe_result write_panels(const char *path, const grid *g, abbe_error *error) {

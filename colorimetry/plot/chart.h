@@ -1,12 +1,11 @@
 /* chart.h: two-dimensional charts as PNG and SVG, drawn by cairo.
  *
- * Series over linear or logarithmic axes, with ticks, labels and a legend that keeps out of the
- * data's way; error bars, bands, shaded ranges, points with names; a field of numbers in false
- * colours with its scale bar. Several charts stand one above the other in one picture, their plots
- * flush, or in a grid. It computes nothing from the data but ranges, and knows nothing of what they mean.
+ * Series over linear or logarithmic axes, with ticks, labels and a legend that does not cover the
+ * data; error bars, bands, shaded ranges, points with names; a field of numbers in false colours
+ * with its scale bar. Several charts stand one above the other in one picture, their plots flush,
+ * or in a grid. It computes nothing from the data but ranges, and knows nothing of what they mean.
  *
- * A zeroed abbe_chart is a valid, empty chart. Texts are UTF-8.
- */
+ * A zeroed abbe_chart is a valid, empty chart. Texts are UTF-8. */
 #ifndef ABBE_COLORIMETRY_PLOT_CHART_H
 #define ABBE_COLORIMETRY_PLOT_CHART_H
 
@@ -34,7 +33,7 @@ typedef struct abbe_chart_series {
   size_t count;
   const double *x, *y;      /* [count]; y may be NULL for a band */
   const double *low, *high; /* [count] ends of error bars, or edges of the band; or NULL */
-  const char *const *text;  /* [count] names beside the points, where there is room; or NULL */
+  const char *const *text;  /* [count] names beside the points, where there is space; or NULL */
   int colour;               /* 1 to 2 ABBE_CHART_COLOURS, the second of them dashed; 0: the next */
 } abbe_chart_series;
 
@@ -51,8 +50,8 @@ typedef struct abbe_chart_shade {
   const char *label; /* in the legend; NULL: more of the range before it, in its grey */
 } abbe_chart_shade;
 
-/* Numbers in false colours. Unless the axes say otherwise x runs from 0 to width, y from 0 at the
- * top to height, and the pixels are square; without axis labels there are no ticks. */
+/* Numbers in false colours. Unless the axes give other ranges x runs from 0 to width, y from 0 at
+ * the top to height, and the pixels are square; without axis labels there are no ticks. */
 typedef struct abbe_chart_field {
   size_t width, height;
   const float *value; /* [height][width], row 0 at the top */
@@ -60,7 +59,7 @@ typedef struct abbe_chart_field {
                          ABBE_COLOUR_MAP_DIFFERENCE */
   bool log;
   abbe_colour_map map;
-  const char *label; /* of the scale bar */
+  const char *label; /* label of the scale bar */
 } abbe_chart_field;
 
 typedef struct abbe_chart {
@@ -71,7 +70,7 @@ typedef struct abbe_chart {
   size_t shade_count;
   const abbe_chart_shade *shade;
   const abbe_chart_field *field; /* or NULL */
-  double share;                  /* of the picture's height, relative to the others; 0: 1 */
+  double share;                  /* share of the picture's height, relative to the others; 0: 1 */
 } abbe_chart;
 
 /* Writes the charts, the first at the top, as a picture of width x height pixels (SVG: points; 0:

@@ -142,7 +142,7 @@ void abbe_chart_panel_measure(abbe_chart_panel *p, double *left, double *right) 
     *left = 16 + TICK + GAP + widest(p->cr, p->y_tick, p->y_count);
     if (c->y.label != NULL) *left += 24;
   }
-  if (p->y_exponent != 0 && c->title == NULL) p->plot_top += 12; /* room for its note */
+  if (p->y_exponent != 0 && c->title == NULL) p->plot_top += 12; /* space for its note */
   if (c->field != NULL) {
     p->scale_count =
         abbe_axis_ticks(&p->scale, (size_t)fmax(2, height / 45), p->scale_tick, &p->scale_exponent);
@@ -316,7 +316,7 @@ static void draw_scale(abbe_chart_panel *p) {
 void abbe_chart_panel_draw(abbe_chart_panel *p) {
   const abbe_chart *c = p->chart;
   double left = p->left;
-  if (p->right - left < 20 || p->plot_bottom - p->plot_top < 20) return; /* no room for a plot */
+  if (p->right - left < 20 || p->plot_bottom - p->plot_top < 20) return; /* no space for a plot */
   square(p);
   if (has_ticks(c))
     p->x_count = abbe_axis_ticks(&p->x, (size_t)fmax(2, (p->right - p->left) / 90), p->x_tick,

@@ -13,8 +13,8 @@ typedef struct abbe_chart_panel {
   struct _cairo *cr;
   const abbe_chart *chart;
   abbe_axis x, y, scale; /* scale: of the field's colours */
-  double top, bottom;    /* of the panel in the picture */
-  double left, right;    /* of the plot, shared by all panels of a picture */
+  double top, bottom;    /* the panel's edges in the picture */
+  double left, right;    /* the plot's edges, shared by all panels of a picture */
   double plot_top, plot_bottom;
   size_t x_count, y_count, scale_count;
   abbe_axis_tick x_tick[ABBE_AXIS_MAX_TICKS], y_tick[ABBE_AXIS_MAX_TICKS];
@@ -25,7 +25,7 @@ typedef struct abbe_chart_panel {
 /* The axes, from the chart or its data. ABBE_INVALID_ARGUMENT as abbe_chart_write has it. */
 abbe_result abbe_chart_panel_make(const abbe_chart *chart, abbe_chart_panel *out,
                                   abbe_error *error);
-/* The room that the labels want to the left and to the right of the plot, for a panel of this
+/* The space that the labels need to the left and to the right of the plot, for a panel of this
  * height; fills the ticks. */
 void abbe_chart_panel_measure(abbe_chart_panel *panel, double *left, double *right);
 /* Draws it between top and bottom, left and right. */

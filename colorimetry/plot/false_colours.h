@@ -15,11 +15,11 @@
  * of standard errors ("stderr", "stderr.NAME"), whose R, G, B are no colour. */
 bool abbe_false_colours_mean(const abbe_image *image, const char *layer);
 
-/* Writes that layer to path (.png or .svg). A scale from 0 to a round number that 999 of 1000 values
- * are below; between the least and the greatest, where all lie in the upper half; about 0 in two
- * colours, where some are negative; of standard errors by their logarithm, three decades. What is
- * not finite is green. `name` is what errors call the picture. ABBE_NOT_FOUND where nothing has that
- * name, with what there is. */
+/* Writes that layer to path (.png or .svg). A scale from 0 to a round number that 999 of 1000
+ * values are below; between the least and the greatest, where all lie in the upper half; about 0 in
+ * two colours, where some are negative; of standard errors by their logarithm, three decades. What
+ * is not finite is green. `name` is what errors call the picture. ABBE_NOT_FOUND where nothing has
+ * that name, with what there is. */
 abbe_result abbe_false_colours_write(const char *path, const abbe_image *image, const char *layer,
                                      const char *name, abbe_error *error);
 
@@ -34,8 +34,8 @@ typedef struct abbe_false_colours_desc {
 abbe_result abbe_false_colours_draw(const char *path, const abbe_false_colours_desc *desc,
                                     float *value, abbe_error *error);
 
-/* The values of that layer, image->width x image->height, malloc'd; of R, G, B of errors: what Y's
- * is at the most. *title, of title_size bytes, says what they are, *is_error whether they are
+/* The values of that layer, image->width x image->height, malloc'd; for errors of R, G, B the
+ * largest that Y's may be. *title, of title_size bytes, describes them, *is_error whether they are
  * errors. */
 abbe_result abbe_false_colours_values(const abbe_image *image, const char *layer, const char *name,
                                       float **values, char *title, size_t title_size,

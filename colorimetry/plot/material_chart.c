@@ -121,7 +121,7 @@ static abbe_result add_fit(sheet *s, size_t index, int which, abbe_error *error)
   char label[LABEL];
   bool alone = s->chart->count == 1;
   if (d.count == 0 || !(from < to)) return ABBE_OK;
-  /* one material: a colour a fit; several: a colour a material, the fits told apart by dashes */
+  /* one material: a colour a fit; several: a colour a material, dashes for the fits */
   int colour = alone ? which + 2 : colour_of(index);
   snprintf(label, sizeof label, "%s%sCauchy, %zu terms", alone ? "" : m->name, alone ? "" : ": ",
            fit->terms);
@@ -319,7 +319,7 @@ static abbe_result write_map(const char *path, const abbe_material_map *map, spo
                              abbe_error *error) {
   abbe_chart_series series[ABBE_MATERIAL_MAP_MAX_TABLES + 1];
   size_t count = 0, spots_count = 0;
-  for (size_t i = 0; i <= map->table_count; i++) { /* the marked ones last, on top */
+  for (size_t i = 0; i <= map->table_count; i++) { /* the highlighted ones last, on top */
     bool marked = i == map->table_count;
     if (s[i].count == 0) continue;
     spots_count += s[i].count;
@@ -348,7 +348,7 @@ static abbe_result write_map(const char *path, const abbe_material_map *map, spo
   return abbe_chart_write(path, &chart, 1, map->width, map->height, error);
 }
 
-/* Marked ones are not drawn a second time in their table's colour. */
+/* Highlighted materials are not drawn a second time in their table's colour. */
 static bool is_marked(const abbe_material_map *map, const abbe_material *m) {
   for (size_t i = 0; i < map->marked_count; i++)
     if (map->marked[i] == m) return true;

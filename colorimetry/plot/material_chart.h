@@ -41,9 +41,10 @@ typedef struct abbe_material_map {
   bool partial; /* P_gF in the place of n_d */
 } abbe_material_map;
 
-/* n_d over V_d, which runs from right to left as glass makers draw it; names where there is room.
+/* n_d over V_d, which runs from right to left as glass makers draw it; names where there is space.
  * Materials without finite n_d and V_d in their range are left out, their number in *left_out (may
- * be NULL; conductors are counted where they are marked). ABBE_NOT_FOUND where that leaves none. */
+ * be NULL; conductors are counted where they are highlighted). ABBE_NOT_FOUND where that leaves
+ * none. */
 abbe_result abbe_material_map_write(const char *path, const abbe_material_map *map,
                                     size_t *left_out, abbe_error *error);
 

@@ -1,8 +1,7 @@
 /* sheet.h: printed pages of text, pictures and charts as PDF, drawn by cairo.
  *
- * Whoever makes a page says where everything goes, in points (1/72 inch) from the upper left. A
- * file that is not finished is not left behind.
- */
+ * The caller places everything, in points (1/72 inch) from the upper left. A file that is not
+ * finished is not left behind. */
 #ifndef ABBE_COLORIMETRY_PLOT_SHEET_H
 #define ABBE_COLORIMETRY_PLOT_SHEET_H
 
@@ -18,7 +17,7 @@
 
 typedef struct abbe_sheet abbe_sheet;
 
-/* A file of A4 pages, upright. ABBE_INVALID_ARGUMENT for a name that does not end with .pdf,
+/* Begins a file of A4 pages, upright. ABBE_INVALID_ARGUMENT for a name that does not end with .pdf,
  * ABBE_IO, ABBE_NO_MEMORY. */
 abbe_result abbe_sheet_make(const char *path, abbe_sheet **out, abbe_error *error);
 
@@ -32,7 +31,7 @@ abbe_result abbe_sheet_picture(abbe_sheet *sheet, double x, double y, double wid
 /* Its letters are `scale` times those of a picture. Errors as abbe_chart_write. */
 abbe_result abbe_sheet_chart(abbe_sheet *sheet, double x, double y, double width, double height,
                              double scale, const abbe_chart *chart, abbe_error *error);
-/* What follows is on another page. */
+/* Begins another page. */
 void abbe_sheet_turn(abbe_sheet *sheet);
 
 /* Writes the file and frees the sheet, whatever comes of it. ABBE_IO, ABBE_NO_MEMORY. */

@@ -2,8 +2,7 @@
  *
  * A character cell holds 2 x 4 dots, as braille has them, or one letter of plain text where the
  * terminal knows no better. Each cell remembers which curve drew in it last. It prints nothing: the
- * caller asks cell by cell.
- */
+ * caller reads cell by cell. */
 #ifndef ABBE_COLORIMETRY_PLOT_TEXT_PLOT_H
 #define ABBE_COLORIMETRY_PLOT_TEXT_PLOT_H
 

@@ -8,7 +8,7 @@
 
 enum { TURNS = ABBE_BAND_REFLECTION_TURNS, RINGS = ABBE_BAND_REFLECTION_RINGS, MOST_WIDTHS = 64 };
 
-/* Of the way to the locus: mixtures below, bands above. */
+/* Shares of the distance to the locus: mixtures below, bands above. */
 static const double mixed = 0.3, banded = 0.7;
 
 /* A band in one direction: how far from the white, its shares, and its X + Y + Z. */
@@ -21,7 +21,7 @@ typedef struct work {
   size_t steps;
   double (*all)[3], (*kept)[3]; /* [steps + 1], sums up to each step of the light, and reflected */
   double white[2], whole[3];    /* its chromaticity, and shares of all of it */
-  double matrix[9];             /* of the mixture */
+  double matrix[9];             /* matrix of the mixture */
   place *ring;                  /* [steps], bands of one width */
   size_t count[TURNS];
   place (*found)[MOST_WIDTHS]; /* [TURNS], of each width */
@@ -39,7 +39,7 @@ static void set_shares(const double all[3], const double kept[3], double share[3
   for (int k = 0; k < 3; k++) share[k] = all[k] > least * sum ? kept[k] / all[k] : mean;
 }
 
-/* Of the steps from `first` on, going on at the beginning. */
+/* Sums the steps from `first` on, going on at the beginning. */
 static void sum_band(const work *w, const double (*sum)[3], size_t first, size_t width,
                      double out[3]) {
   const size_t end = first + width;
@@ -68,7 +68,7 @@ static size_t find_bands(work *w, size_t width) {
   return count;
 }
 
-/* On the chord from a to b, whose turn there is `part` of the way. */
+/* The place on the chord from a to b, a share `part` along it. */
 static place between(const place *a, const place *b, double part) {
   place p = {.light = fmin(a->light, b->light)};
   for (int k = 0; k < 2; k++) p.off[k] = a->off[k] + part * (b->off[k] - a->off[k]);

@@ -5,11 +5,10 @@
  * or all but those. For every chromaticity there is one such band, from the light's white (all of
  * it) to the spectral locus (one wavelength) and the line of purples. The share of X, Y and Z that
  * a surface reflects of that band is tabulated by where the chromaticity lies as seen from the
- * white: in which direction, and how far on the way to the locus. Near the white, where tints of
- * glass lie and bands are nearly all of the spectrum, the mixture of three functions takes its
- * place (reflected_light.h), and the change is gradual. White light and what greys reflect are
- * exact.
- */
+ * white: in which direction, and at which share of the distance to the locus. Near the white, where
+ * tints of glass lie and bands are nearly all of the spectrum, the mixture of three functions takes
+ * its place (reflected_light.h), and the change is gradual. White light and what greys reflect are
+ * exact. */
 #ifndef ABBE_COLORIMETRY_REFLECTANCE_BAND_REFLECTION_H
 #define ABBE_COLORIMETRY_REFLECTANCE_BAND_REFLECTION_H
 

@@ -19,14 +19,14 @@ typedef struct abbe_pixel_probe {
   double *mean, *error; /* [channels] of the image: standard errors, as of independent pixels */
   bool has_colour;
   abbe_picture_space space;
-  double xyz[3];                   /* of R, G, B or X, Y, Z; relative to D65 */
+  double xyz[3];                   /* from R, G, B or X, Y, Z; relative to D65 */
   abbe_spectral_channels spectrum; /* count 0: none; its values are mean[spectrum.channel[i]] */
   bool has_spectral_xyz;
   bool is_relative;         /* spectral_xyz is in the unit of the picture; else lm (of a radiance:
                                cd/m2) */
-  double spectral_xyz[3];   /* of the bands, by the view */
+  double spectral_xyz[3];   /* from the bands, by the view */
   double spectral_error[3]; /* at the most, whatever the correlation of the bands' errors */
-  double white_xy[2];       /* of the view */
+  double white_xy[2];       /* the view's white */
 } abbe_pixel_probe;
 
 /* Probes image in the window. `layer`: channels LAYER.R and so on; NULL: those without one. `name`

@@ -1,9 +1,8 @@
 /* relight.h: a spectral picture as another observer sees it, or under another illuminant, made of
  * its bands alone: nothing is rendered anew.
  *
- * What one light did in the scene and what another did is not told apart: all lights of the scene
- * are taken to have one illuminant. It knows nothing of screens.
- */
+ * The bands do not separate the lights: all lights of the scene are taken to have one illuminant.
+ * It knows nothing of screens. */
 #ifndef ABBE_COLORIMETRY_SPECTRAL_PICTURE_RELIGHT_H
 #define ABBE_COLORIMETRY_SPECTRAL_PICTURE_RELIGHT_H
 
@@ -33,8 +32,8 @@ typedef struct abbe_relight_desc {
 abbe_result abbe_relight_make(const abbe_image *image, const char *name,
                               const abbe_relight_desc *desc, abbe_image *out, abbe_error *error);
 
-/* Whether its colours are in its bands alone: it has bands there, and neither R, G, B nor X, Y, Z nor
- * Y. */
+/* Whether its colours are in its bands alone: it has bands there, and neither R, G, B nor X, Y, Z
+ * nor Y. */
 bool abbe_relight_is_needed(const abbe_image *image, const char *layer);
 
 #endif

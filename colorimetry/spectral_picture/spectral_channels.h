@@ -3,9 +3,8 @@
  * The layout of [Fichet2021]: "S0.550,000000nm" is emitted (or arriving) light, "T.550,000000nm" a
  * reflectance; the comma is the decimal point, the unit m or Hz with or without a prefix. What
  * stands before, up to a point, is a layer. Each sample stands for a band; bands meet midway
- * between neighbouring samples and reach as far beyond the first and the last; of a lone sample
- * nothing tells the band, and it has no width. It reads no files.
- */
+ * between neighbouring samples and reach as far beyond the first and the last; a lone sample has no
+ * known band, and so no width. It reads no files. */
 #ifndef ABBE_COLORIMETRY_SPECTRAL_PICTURE_SPECTRAL_CHANNELS_H
 #define ABBE_COLORIMETRY_SPECTRAL_PICTURE_SPECTRAL_CHANNELS_H
 
@@ -49,8 +48,8 @@ typedef enum abbe_spectral_kind {
   ABBE_SPECTRAL_REFLECTIVE /* T */
 } abbe_spectral_kind;
 
-/* What a channel's name without its layer says, and the wavelength in *lambda_nm (vacuum's, where
- * the name says a frequency). Of polarised light only S0, all of it, counts; re-radiation
+/* What a channel's name without its layer means, and the wavelength in *lambda_nm (vacuum's, where
+ * the name has a frequency). Of polarised light only S0, all of it, counts; re-radiation
  * ("T.550nm.600nm") is none. */
 abbe_spectral_kind abbe_spectral_channel_parse(const char *name, double *lambda_nm);
 
@@ -64,7 +63,7 @@ typedef struct abbe_spectral_channels {
   size_t *error;     /* [count] the channel of its standard error, "stderr." before the name, or
                         (size_t)-1 */
   abbe_spectral_unit
-      unit; /* of emissive samples, by the attribute emissiveUnits; else of factor 1 */
+      unit; /* unit of emissive samples, by the attribute emissiveUnits; else of factor 1 */
 } abbe_spectral_channels;
 
 /* The emissive samples of a picture, else the reflective ones, else none (count 0, ABBE_OK).

@@ -6,7 +6,7 @@
 #include <math.h>
 
 static const abbe_illuminant d65 = {.kind = ABBE_ILLUMINANT_D65};
-static const abbe_illuminant even = {.kind = ABBE_ILLUMINANT_E}; /* of power 100 */
+static const abbe_illuminant even = {.kind = ABBE_ILLUMINANT_E}; /* with power 100 */
 
 static const abbe_illuminant *seen_light(const abbe_spectral_channels *c,
                                          const abbe_spectral_view *view) {
@@ -68,7 +68,7 @@ abbe_result abbe_spectral_colour_weights(const abbe_spectral_channels *c,
     double factor = 1 / white[1];
     if (absolute) factor = ABBE_SPECTRAL_COLOUR_KM / 100;
     if (!absolute && !reflective) {
-      /* of a light of one watt the band has this, a nm */
+      /* the band of a light of one watt has this, a nm */
       const double mean = abbe_observer_integral_power(view->from, from, to) / (to - from) / power;
       factor = mean > 0 ? factor / mean : 0;
     }

@@ -31,7 +31,7 @@ typedef struct abbe_spectral_view {
  * white under `to`, whose Y is 1.
  *
  * ABBE_INVALID_ARGUMENT where there are less than two bands, where they hold no light that the eye
- * sees, and where `to` is asked of a light that is not known. */
+ * sees, and where `to` is given for a light that is not known. */
 abbe_result abbe_spectral_colour_weights(const abbe_spectral_channels *channels,
                                          const abbe_spectral_view *view, const char *name,
                                          double (*weight)[3], abbe_error *error);
