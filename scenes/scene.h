@@ -27,7 +27,7 @@
 
 #define ABBE_SCENE_MAX_LIGHTS 16
 #define ABBE_SCENE_MAX_OBJECTS 1024
-#define ABBE_SCENE_MAX_PLANES 256 /* of one convex refractor */
+#define ABBE_SCENE_MAX_PLANES 256 /* planes of one convex refractor */
 
 typedef struct abbe_camera {
   double eye[3], target[3], up[3];
@@ -54,7 +54,7 @@ typedef struct abbe_light {
   double edge[2][3];   /* rectangle: half of its width and of its height, m */
   size_t points;       /* disk, rectangle: of so many that stand for it (area_lights.h), with power
                           in W/sr; 0 where it is whole, as in a scene as it is loaded */
-  double centre[3];    /* of the light that the points stand for */
+  double centre[3];    /* centre of the light that the points stand for */
   double cone_rad;     /* spot: half angle beyond which there is no light */
   double soft_rad; /* spot: full intensity inside cone - soft; smoothstep in the cosine between */
   double power;    /* W/sr, W/m2 or W/(m2 sr) over the rendered wavelength range, shared out over
@@ -95,16 +95,16 @@ typedef struct abbe_object {
   double fitted;         /* what `fit` scaled it by about the origin, after `transform`; 1 */
   double centring[3];    /* by which `centre` moved it then, m; 0 */
   const abbe_material *material; /* refractor: of the scene's table or its own; else NULL */
-  double axis[3];                /* of a uniaxial crystal: unit, its optic axis in the world; of
-                                    other materials of no meaning */
-  abbe_material *own_material;   /* refractor: that of its mesh's file, owned, or NULL */
-  abbe_medium *medium;           /* refractor: what scatters in it, owned, or NULL */
-  double reflectance[3];         /* receiver: linear Rec.709, 0 to 1, as reflected_light.h lifts it;
-                                    of a spectrum: its colour under D65, kept within that */
-  abbe_spectrum *spectrum;       /* receiver: its measured reflectance, owned; NULL: Rec.709's */
-  char *spectrum_path;           /* the file that it is of, or NULL */
-  char *texture_path;            /* receiver: NULL or the PNG that multiplies reflectance */
-  abbe_image texture;            /* linear Rec.709, "R","G","B"; zeroed without a texture */
+  double axis[3]; /* a uniaxial crystal's optic axis in the world, unit; of no meaning for other
+                     materials */
+  abbe_material *own_material; /* refractor: that of its mesh's file, owned, or NULL */
+  abbe_medium *medium;         /* refractor: what scatters in it, owned, or NULL */
+  double reflectance[3];       /* receiver: linear Rec.709, 0 to 1, as reflected_light.h lifts it;
+                                  of a spectrum: its colour under D65, kept within that */
+  abbe_spectrum *spectrum;     /* receiver: its measured reflectance, owned; NULL: Rec.709's */
+  char *spectrum_path;         /* the file that it is of, or NULL */
+  char *texture_path;          /* receiver: NULL or the PNG that multiplies reflectance */
+  abbe_image texture;          /* linear Rec.709, "R","G","B"; zeroed without a texture */
   double texture_repeat[2];
   bool mirror;
   const abbe_material *conductor; /* mirror: of its n and k, owned by the scene's table, or NULL: */
@@ -131,7 +131,7 @@ typedef struct abbe_scene {
                                       RGB; NULL in a scene as it is loaded */
   uint64_t surrounded_by;          /* a digest of what both were found from; 0: nothing was */
   abbe_environment *environment;   /* owned; NULL: dark surroundings */
-  abbe_medium *medium;             /* of the air, owned, or NULL: it is clear */
+  abbe_medium *medium;             /* the air's medium, owned, or NULL: it is clear */
   size_t object_count;
   abbe_object *object;
   abbe_material_table table;

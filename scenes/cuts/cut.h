@@ -23,14 +23,14 @@ enum { ABBE_CUT_LINES = 4 }; /* headings, and footnotes */
 
 typedef struct abbe_cut_facet {
   double n[3], d; /* n . x <= d, unit n, d above 0 */
-  double index;   /* of the gear, as it is read; it may have a fraction */
+  double index;   /* the gear's index, as it is read; it may have a fraction */
   size_t tier;
   char *name; /* or NULL: it shares that of another of its tier (abbe_cut_facet_name) */
 } abbe_cut_facet;
 
 typedef struct abbe_cut_tier {
   double angle_deg, distance;
-  size_t first, count; /* of facet[] */
+  size_t first, count; /* range in facet[] */
   char *instruction;   /* or NULL */
 } abbe_cut_tier;
 
@@ -38,7 +38,7 @@ typedef struct abbe_cut_tier {
 typedef struct abbe_cut {
   int gear;      /* teeth; below 0 where indices grow the other way round */
   double offset; /* the index in the direction of y */
-  int folds;     /* of its symmetry, for people: every facet is listed; 0: not said */
+  int folds;     /* order of its symmetry, for people: every facet is listed; 0: not stated */
   bool mirror;
   double refractive_index; /* that it was designed for; 0: not said */
   char *heading[ABBE_CUT_LINES], *footnote[ABBE_CUT_LINES]; /* the first heading is its title */
@@ -59,7 +59,7 @@ abbe_result abbe_cut_add_facet(abbe_cut *cut, double index, abbe_error *error);
 /* The facets' planes from their tiers' angles and distances and their own indices. */
 void abbe_cut_place(abbe_cut *cut);
 
-/* Of the unit normal: the angle in degrees as cutters say it; -0 where it points straight down. */
+/* The angle of the unit normal in degrees, as cutters give it; -0 where it points straight down. */
 double abbe_cut_angle(const double n[3]);
 /* The index at the unit normal's azimuth, above 0 to the gear's teeth; the offset's where it points
  * up or down. Within 1e-6 of a whole number it is that. */

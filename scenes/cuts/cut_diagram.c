@@ -34,7 +34,7 @@ typedef struct sheet {
 typedef struct view {
   double x[3], y[3];   /* to the right and up on the sheet */
   double towards[3];   /* where from */
-  double at[2], scale; /* of the stone's origin, points a unit */
+  double at[2], scale; /* place of the stone's origin; points a unit */
 } view;
 
 static void place(const view *v, const double at[3], double out[2]) {

@@ -11,10 +11,10 @@
 #include "scenes/cuts/cut.h"
 #include "scenes/cuts/cut_polyhedron.h"
 
-/* Of a PNG, per point (1/72 inch). */
+/* Pixels of a PNG per point (1/72 inch). */
 #define ABBE_CUT_DIAGRAM_PIXELS 2
 
-/* Of the cut's polyhedron. The format is the name's ending: .pdf, .svg or .png. note, under the
+/* Draws the cut's polyhedron. The format is the name's ending: .pdf, .svg or .png. note, under the
  * proportions, may be NULL. ABBE_INVALID_ARGUMENT for another ending, ABBE_IO, ABBE_NO_MEMORY. */
 abbe_result abbe_cut_diagram_write(const char *path, const abbe_cut *cut,
                                    const abbe_cut_polyhedron *polyhedron, const char *note,

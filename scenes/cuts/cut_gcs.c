@@ -20,11 +20,11 @@ typedef struct reading {
   abbe_report *report;
   abbe_error *error;
   abbe_result result;
-  int depth; /* of elements */
+  int depth; /* depth of elements */
   bool in_tier, in_facet, geared;
-  double angle_deg, distance; /* of the tier; NAN: not said */
-  double n[3];                /* of the facet; NAN: not said */
-  double index_deg, reach;    /* of the facet: its index, how far its corners lie; NAN: not said */
+  double angle_deg, distance; /* the tier's; NAN: not stated */
+  double n[3];                /* the facet's normal; NAN: not stated */
+  double index_deg, reach;    /* the facet's index, how far its corners lie; NAN: not stated */
   size_t facet_line;
 } reading;
 

@@ -19,7 +19,7 @@ typedef struct reading {
   const char *name;
   abbe_cut *cut;
   abbe_report *report;
-  int32_t key; /* of the last facet's tier */
+  int32_t key; /* the last facet's tier */
 } reading;
 
 #if defined(__GNUC__)

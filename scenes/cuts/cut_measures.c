@@ -7,7 +7,7 @@
 static const char *const names[] = {ABBE_CUT_SIDES(ABBE_SIDE_NAME)};
 
 static const double carats_per_gram = 5;
-/* Of a table: within so much of level, the sine of an angle. */
+/* A table is within so much of level, the sine of an angle. */
 static const double flat = 1e-3;
 
 const char *abbe_cut_side_name(abbe_cut_side side) {

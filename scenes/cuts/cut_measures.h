@@ -43,7 +43,7 @@ typedef struct abbe_cut_measures {
   double volume;
 } abbe_cut_measures;
 
-/* Of the cut's polyhedron. */
+/* Measures the cut's polyhedron. */
 void abbe_cut_measures_make(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
                             abbe_cut_measures *out);
 

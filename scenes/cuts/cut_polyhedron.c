@@ -15,7 +15,7 @@
 /* Where planes meet: a corner before it is welded. */
 typedef struct meet {
   double at[3];
-  size_t first, count; /* of plane[] */
+  size_t first, count; /* range in plane[] */
 } meet;
 
 typedef struct work {

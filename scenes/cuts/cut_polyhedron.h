@@ -26,8 +26,8 @@ typedef enum abbe_cut_fate {
 } abbe_cut_fate;
 
 typedef struct abbe_cut_face {
-  size_t facet;        /* of the cut */
-  size_t first, count; /* of corner[], counter-clockwise seen from outside */
+  size_t facet;        /* facet of the cut */
+  size_t first, count; /* range in corner[], counter-clockwise seen from outside */
   double area;
 } abbe_cut_face;
 

@@ -29,11 +29,12 @@ typedef enum abbe_cut_solid_format {
 /* The format of a path's ending, or ABBE_CUT_SOLID_COUNT. */
 abbe_cut_solid_format abbe_cut_solid_format_of(const char *path);
 
-/* Of the cut's polyhedron; scale is metres a unit of the design, above 0. STL is binary. OBJ has a
- * group a facet, of its name, and polygons. In glTF the stone has KHR_materials_ior, transmission,
- * volume and dispersion ([glTFDispersion]: 20 / V_d), colours by the transmittance of the
- * stone's own width; material NULL: an index of 1.5 without dispersion. ABBE_OUT_OF_RANGE where the
- * material does not cover the visible, ABBE_NO_MEMORY, ABBE_IO. */
+/* Writes the cut's polyhedron; scale is metres a unit of the design, above 0. STL is binary. OBJ
+ * has a group a facet, of its name, and polygons. In glTF the stone has KHR_materials_ior,
+ * transmission, volume and dispersion ([glTFDispersion]: 20
+ * V_d), colours by the transmittance of the stone's own width; material NULL: an index of 1.5
+ * without dispersion. ABBE_OUT_OF_RANGE where the material does not cover the visible,
+ * ABBE_NO_MEMORY, ABBE_IO. */
 abbe_result abbe_cut_solid_write(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
                                  double scale, const abbe_material *material,
                                  abbe_cut_solid_format format, FILE *to, abbe_error *error);

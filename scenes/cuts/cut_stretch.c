@@ -160,7 +160,7 @@ abbe_result abbe_cut_stretch_apply(abbe_cut *cut, const abbe_cut_polyhedron *p, 
   return result;
 }
 
-/* Of the side whose main angle becomes that; 0: it stays. */
+/* The factor for a side whose main angle becomes that; 0: it stays. */
 static abbe_result factor_of(const abbe_cut *cut, const abbe_cut_polyhedron *p, abbe_cut_side side,
                              double to_deg, double *out, abbe_error *error) {
   *out = 1;

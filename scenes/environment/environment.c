@@ -262,7 +262,7 @@ typedef struct polar_piece {
 
 /* A row of texels: its middle's polar angle, and how far its share reaches. */
 typedef struct polar_row {
-  double middle, step, sine, cosine; /* of the middle */
+  double middle, step, sine, cosine; /* elevation of the middle */
 } polar_row;
 
 /* Sine and cosine of middle + t, |t| <= step: by their series where that is short. */

@@ -49,11 +49,11 @@ typedef struct abbe_environment {
   abbe_illuminant illuminant;
   char *illuminant_path; /* the file that it is of, or NULL */
 
-  uint64_t map_digest;     /* of the map's texels (scenes/geometry/digest.h) */
-  double mean[3];          /* of the radiance, over the sphere */
+  uint64_t map_digest;     /* digest of the map's texels (scenes/geometry/digest.h) */
+  double mean[3];          /* mean radiance over the sphere */
   double luminance;        /* integral over the sphere of Rec.709's luminance of the RGB, > 0 */
   abbe_alias_table texels; /* drawn by luminance x solid angle */
-  size_t level_count;      /* of level[] */
+  size_t level_count;      /* levels in level[] */
   abbe_radiance_map level[ABBE_ENVIRONMENT_MAX_LEVELS]; /* each half of the one before; the first
                                                            half of map; the last 2 or 3 high */
 } abbe_environment;

@@ -115,8 +115,8 @@ typedef struct profile {
   double reach_rad; /* nothing is farther from the centre */
   double least_rad; /* its smallest measure */
   double edge_rad;  /* over which edges fade: a step between places that are asked */
-  /* of a rectangle's width and height: tangents up to which a place is wholly inside, and from
-     which it is outside; only between these angles are asked */
+  /* for a rectangle's width and height: tangents up to which a place is wholly inside, and from
+   * which it is outside; places are tested only between these angles */
   double inside[2], outside[2];
 } profile;
 
@@ -300,7 +300,7 @@ static void add_uniform(const abbe_environment_source *s, abbe_radiance_map *map
 /* --- domes --- */
 
 static void dome_at(const abbe_environment_source *s, double elevation, double rgb[3]) {
-  size_t low = 0, high = s->knot_count; /* of the knots after the last that is not above */
+  size_t low = 0, high = s->knot_count; /* knots: the last that is not above, and the next */
   while (low < high) {
     const size_t middle = low + (high - low) / 2;
     if (s->knot[middle].elevation_rad <= elevation)

@@ -17,7 +17,7 @@ void abbe_radiance_cube_direction(size_t face, double x, double y, double direct
   abbe_vector_normalise(direction);
 }
 
-/* Of what a direction meets: the face, and the texel of so many a side. */
+/* The texel that a direction meets, and the face, for so many texels a side. */
 static size_t texel_of(const double direction[3], size_t side) {
   size_t axis = 0;
   for (size_t k = 1; k < 3; k++)
@@ -37,7 +37,7 @@ static size_t texel_of(const double direction[3], size_t side) {
  */
 void abbe_radiance_cube_bordered(const abbe_radiance_cube *cube, size_t level, size_t face,
                                  size_t column, size_t row, float rgb[3]) {
-  static const double just_outside = 1e-6; /* of a face */
+  static const double just_outside = 1e-6; /* in units of a face */
   const size_t side = cube->side >> level, at[2] = {column, row};
   const bool outside[2] = {column % (side + 1) == 0, row % (side + 1) == 0};
   double place[2], sum[3] = {0, 0, 0}, count = 0;

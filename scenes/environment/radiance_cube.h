@@ -31,7 +31,7 @@ void abbe_radiance_cube_direction(size_t face, double x, double y, double direct
  * (side >> level) + 1. At a corner of the border it is the mean of the three faces that meet. */
 void abbe_radiance_cube_bordered(const abbe_radiance_cube *cube, size_t level, size_t face,
                                  size_t column, size_t row, float rgb[3]);
-/* Of a texel of a face of side x side, sr; of all 6 side^2 of them 4 pi. */
+/* The solid angle of a texel of a face of side x side, sr; all 6 side^2 of them have 4 pi. */
 double abbe_radiance_cube_solid_angle(size_t side, size_t column, size_t row);
 
 #endif

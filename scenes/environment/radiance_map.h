@@ -22,7 +22,7 @@ typedef struct abbe_radiance_map {
   size_t width, height; /* width = 2 height */
   float *rgb;           /* [height][width][3], finite, >= 0 */
   bool space_assumed;   /* the OpenEXR file that it is of does not say its space */
-  char part[40];        /* of the OpenEXR file that it is of, as abbe_image has it */
+  char part[40];        /* part of the OpenEXR file, as abbe_image names it */
 } abbe_radiance_map;
 
 /* A black map. ABBE_INVALID_ARGUMENT for a width that is odd or outside

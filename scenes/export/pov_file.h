@@ -21,7 +21,7 @@
 /* Zero means the default in every field. */
 typedef struct abbe_pov_options {
   size_t photons; /* shot at refractors, before dispersion splits them; 0: 100 000 */
-  size_t samples; /* of the spectrum, 2 to 100; 0: 31 */
+  size_t samples; /* samples of the spectrum, 2 to 100; 0: 31 */
 } abbe_pov_options;
 
 typedef struct abbe_pov_glass {

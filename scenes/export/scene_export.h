@@ -85,7 +85,8 @@ abbe_scene_export_target abbe_scene_export_of_name(const char *name);
 
 /* Zero means the default. */
 typedef struct abbe_scene_export_options {
-  double lambda_nm; /* of the one index that Mitsuba takes, 380 to 780; 0: 587.5618, the line d */
+  double lambda_nm; /* wavelength of the one index that Mitsuba takes, 380 to 780; 0: 587.5618, the
+                       line d */
 } abbe_scene_export_options;
 
 /* What became of one material that refracts. */

@@ -15,7 +15,7 @@ extern "C" {
 typedef struct abbe_vdb_desc {
   size_t side;               /* cells along each axis */
   double cell;               /* m */
-  size_t grids;              /* of the same cells, about the origin */
+  size_t grids;              /* grids of the same cells, about the origin */
   const char *const *name;   /* [grids] */
   const float *const *value; /* [grids] of [side][side][side][3]: z, y, x */
   const char *note;          /* kept with each */

@@ -8,8 +8,8 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Of what h is of, and then a run of bytes: words are mixed in one after another, by a
- * multiplication and a shift. */
+/* Mixes a run of bytes into the digest h: words one after another, by a multiplication and a
+ * shift. */
 static inline uint64_t abbe_digest(uint64_t h, const void *data, size_t size) {
   const unsigned char *at = (const unsigned char *)data;
   for (; size > 0;) {
@@ -35,7 +35,7 @@ static inline uint64_t abbe_digest_long(uint64_t h, const void *data, size_t siz
   return abbe_digest(abbe_digest(h, part, sizeof part), bytes + 4 * quarter, size - 4 * quarter);
 }
 
-/* Of an array of `count` elements, and whether there is one: data may be NULL. */
+/* Mixes in an array of `count` elements, and whether there is one: data may be NULL. */
 static inline uint64_t abbe_digest_array(uint64_t h, const void *data, size_t count, size_t size) {
   const bool there = data != NULL;
   h = abbe_digest(h, &there, sizeof there);

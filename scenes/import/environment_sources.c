@@ -104,7 +104,7 @@ enum { MAX_KNOTS = 1024, COSINE_KNOTS = 181 };
 typedef struct reading {
   abbe_yaml *yaml;
   abbe_radiance_map *map;
-  size_t count; /* of sources */
+  size_t count; /* number of sources */
   bool has_sun;
   abbe_environment_source sun; /* where it stands, for the sky */
 } reading;

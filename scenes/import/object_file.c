@@ -263,7 +263,7 @@ static abbe_result read_mirror(const abbe_object_reading *r, abbe_yaml_node node
   return abbe_scene_value_locate(r->yaml, node, ABBE_UNSUPPORTED, error);
 }
 
-/* Of crystals' two waves no medium is known; what does not refract has no inside. */
+/* No medium is known for crystals' two waves; what does not refract has no inside. */
 static abbe_result read_medium(const abbe_object_reading *r, abbe_object *out, abbe_error *error) {
   const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, "medium");
   if (node.id == 0) return ABBE_OK;

@@ -303,7 +303,7 @@ static abbe_result read_lathe(const abbe_object_reading *r, abbe_mesh *out, abbe
 
 typedef struct cut_reading {
   double width, weld;
-  double to_deg[2]; /* of the main facets on crown and pavilion; 0: as the design has them */
+  double to_deg[2]; /* angles of the main facets on crown and pavilion; 0: as the design has them */
 } cut_reading;
 
 /* The stone at other angles. */
@@ -372,7 +372,7 @@ static abbe_result read_cut(const abbe_object_reading *r, abbe_object *object, a
   return result;
 }
 
-/* Of 'material: from-file'; *part becomes the name of the material whose triangles are meant. */
+/* Reads 'material: from-file'; *part becomes the name of the material whose triangles are meant. */
 static abbe_result read_own_material(const abbe_object_reading *r, abbe_object *out, char **part,
                                      abbe_error *error) {
   const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, "material");

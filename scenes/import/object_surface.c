@@ -141,7 +141,7 @@ static abbe_result straighten(abbe_object *out, double (*plane)[4], uint32_t **p
   if (room == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for face planes");
   *plane_of = room;
   result = find_planes(out, plane, *plane_of, error);
-  out->exact.convex.tolerance = found.tolerance; /* of the file */
+  out->exact.convex.tolerance = found.tolerance; /* the file's tolerance */
   return result;
 }
 

@@ -22,10 +22,10 @@ typedef struct abbe_scene_options {
  * (base/thread/watch.h). On failure *out is zeroed. options may be NULL. */
 abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options, abbe_scene *out,
                             abbe_error *error);
-/* Of a scene that abbe_scene_load has made: its lights, ambient light and background as they are
- * with these options, which differ from those that it was made with in values of these alone. All
- * else stays as it is, so that no mesh is read again. On failure the scene is as it was; errors as
- * of abbe_scene_load. */
+/* Reads the lights of a scene that abbe_scene_load has made: its lights, ambient light and
+ * background as they are with these options, which differ from those that it was made with in
+ * values of these alone. All else stays as it is, so that no mesh is read again. On failure the
+ * scene is unchanged; errors as of abbe_scene_load. */
 abbe_result abbe_scene_load_lights(const char *path, const abbe_scene_options *options,
                                    abbe_scene *scene, abbe_error *error);
 /* As abbe_scene_load, from text; name stands for the path, in messages and for relative paths. */

@@ -42,8 +42,8 @@ typedef struct abbe_object_reading {
   abbe_yaml_node node;
   const char *folder;
   abbe_object_form form;
-  double radius;             /* of a sphere */
-  abbe_mesh_normals normals; /* of a mesh */
+  double radius;             /* a sphere's */
+  abbe_mesh_normals normals; /* a mesh's */
   double matrix[16];         /* to world */
 } abbe_object_reading;
 
@@ -100,7 +100,7 @@ abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *f
 /* The surroundings of a scene file, key `environment` (docs/scene-files.md): a picture, or sources
  * that are computed, or both added up. */
 
-#define ABBE_ENVIRONMENT_MAX_SOURCES 256 /* of one list */
+#define ABBE_ENVIRONMENT_MAX_SOURCES 256 /* for one list */
 
 /* Reads the node into a zeroed *out and prepares it; relative paths start at folder. Errors say
  * file and line; what *out holds then is the caller's to free. */
@@ -128,7 +128,7 @@ abbe_result abbe_reflectance_file_read(abbe_yaml *yaml, abbe_yaml_node node, con
 
 typedef struct abbe_object_surface {
   double matrix[16]; /* from its own coordinates to the world */
-  double radius;     /* of a sphere, in its own coordinates; 0: it is none */
+  double radius;     /* a sphere's, in its own coordinates; 0: it is none */
   bool rectangles;   /* its mesh is made of them, four vertices each */
   bool file;         /* its mesh is a file's */
   abbe_mesh_normals normals;

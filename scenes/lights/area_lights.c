@@ -44,7 +44,7 @@ static size_t columns_of(const abbe_light *rectangle, size_t points) {
   return columns < 1 ? 1 : columns > (double)points ? points : (size_t)columns;
 }
 
-/* Of at most so many, those that make even rows. */
+/* The largest number of points, at most so many, that makes even rows. */
 static size_t points_of(const abbe_light *light, size_t points) {
   if (light->kind != ABBE_LIGHT_RECTANGLE) return points;
   const size_t columns = columns_of(light, points);

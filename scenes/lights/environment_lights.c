@@ -14,7 +14,7 @@
 enum {
   COLUMNS = 128,
   ROWS = 64,
-  BINS = ROWS * COLUMNS, /* of directions of the map */
+  BINS = ROWS * COLUMNS, /* bins for directions of the map */
   MOST_LAMPS = 64,
   VALUES = 7 /* luminance, luminance x direction, RGB */
 };
@@ -23,7 +23,7 @@ static const double luminance[3] = {0.2126390058715104, 0.7151686787677559, 0.07
 
 static const double OVER_MEAN = 3;      /* so bright is what stands out */
 static const double COMPACT = 0.0109;   /* (1 - cos(12 degrees)) / 2 */
-static const double LEAST_SHARE = 0.02; /* of all light, of what becomes a light */
+static const double LEAST_SHARE = 0.02; /* share of all light that becomes a light */
 
 typedef double sums[VALUES];
 

@@ -18,7 +18,7 @@
 
 typedef struct abbe_environment_lights_desc {
   size_t count;           /* at the most */
-  double min_nm, max_nm;  /* of their spectra */
+  double min_nm, max_nm;  /* range of their spectra */
   abbe_observer observer; /* to whom a light of one watt is as bright as any other */
 } abbe_environment_lights_desc;
 

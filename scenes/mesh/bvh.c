@@ -17,7 +17,7 @@ typedef struct box {
 } box;
 
 typedef struct builder {
-  const box *bounds; /* of each triangle */
+  const box *bounds; /* box of each triangle */
   const double (*middle)[3];
   uint32_t *order;
   abbe_bvh_node *node;
@@ -28,7 +28,7 @@ typedef struct builder {
 
 static const box nothing = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
 
-/* Of finite numbers and infinities, without a call. */
+/* The lesser of two numbers, finite or infinite, without a call. */
 static double least(double a, double b) {
   return a < b ? a : b;
 }

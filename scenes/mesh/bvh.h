@@ -40,7 +40,7 @@ void abbe_bvh_free(abbe_bvh *bvh);
 
 typedef struct abbe_bvh_hit {
   double t, u, v; /* barycentric, of the second and third corner */
-  size_t index;   /* of the triangle given */
+  size_t index;   /* index of the triangle given */
 } abbe_bvh_hit;
 
 /* Nearest triangle on o + t d with t_min < t < t_max. side 1: only those that the ray meets against

@@ -8,7 +8,7 @@
 #include <string.h>
 
 typedef struct group {
-  uint64_t key; /* of its cell and side; 0: none */
+  uint64_t key; /* key of its cell and side; 0: none */
   double sum[3];
   size_t count;
   double nearest;  /* squared, of the vertex that stands for it; */
@@ -96,7 +96,8 @@ static void find_seams(groups *g) {
   }
 }
 
-/* Of its cell; what looks the other way than the cell's first vertex is another side of a wall. */
+/* The group of a vertex in its cell; a normal that points away from the cell's first vertex's
+ * belongs to another side of a wall. */
 static uint32_t group_of(const groups *g, size_t vertex) {
   const abbe_mesh *mesh = g->mesh;
   if (g->seam[vertex]) return find(g, (uint64_t)1 << 62 | vertex, vertex);

@@ -43,9 +43,10 @@ void abbe_mesh_free(abbe_mesh *mesh);
 
 /* Loads OBJ, PLY, STL or glTF; all its meshes as one. An STL's normals are those of its faces and
  * not taken. ABBE_PARSE with the line or element that is wrong, ABBE_UNSUPPORTED with the name of
- * what is not read, ABBE_GEOMETRY for coordinates that are not finite or a file without faces. *others (may be NULL) gets the paths of the files that it names and
- * that were read with it, such as a glTF's buffers: malloc'd, each ends with a zero, an empty one
- * is behind the last; NULL where there are none. */
+ * what is not read, ABBE_GEOMETRY for coordinates that are not finite or a file without faces.
+ * *others (may be NULL) gets the paths of the files that it names and that were read with it, such
+ * as a glTF's buffers: malloc'd, each ends with a zero, an empty one is behind the last; NULL where
+ * there are none. */
 abbe_result abbe_mesh_load(const char *path, abbe_mesh_normals normals, abbe_mesh *out,
                            char **others, abbe_error *error);
 /* The same of the triangles alone whose material has that name in the file; NULL: all. */
@@ -63,7 +64,7 @@ typedef struct abbe_mesh_report {
   double area;             /* m2 */
   double min[3], max[3];   /* bounds */
   size_t holes;            /* that open edges make */
-  size_t hole_edges;       /* of the widest */
+  size_t hole_edges;       /* edges of the widest */
   double hole[3];          /* its middle */
   double hole_size;        /* and the longest side of its bounds, m */
   double crowded[2][3];    /* ends of the first crowded edge */

@@ -231,8 +231,8 @@ static unsigned side_of(const ray_planes *r, const double p[3]) {
 
 enum { RAYS = 2, RAY_BITS = 4 };
 
-/* Of rays from p along two directions at once, a bit each: whether its hits are odd. side: of the
- * mesh's vertices, room for them; NULL: every face is looked at. */
+/* Counts hits of rays from p along two directions at once, a bit each: set where the number is odd.
+ * side: for the mesh's vertices; NULL: every face is looked at. */
 static unsigned odd_hits(const abbe_mesh *mesh, const double p[3], const double *const d[RAYS],
                          unsigned char *side) {
   const ray_planes planes[RAYS] = {planes_of(p, d[0]), planes_of(p, d[1])};

@@ -38,8 +38,8 @@ static bool same_points(const triple *a, const triple *b) {
 
 enum { KEPT, DROPPED, WALL }; /* a wall: as many faces each way, of which one is marked so */
 
-/* Of faces on the same points those of the side that more of them show keep one; of as many on both
- * one is marked as a wall, and its back is dropped or, where walls stay, kept. */
+/* Of faces on the same points one stays, of the side that more of them show; with as many on both
+ * sides one is flagged as a wall, and its back is dropped or, where walls stay, kept. */
 static void mark(const triple *all, size_t count, bool walls_go, unsigned char *fate,
                  size_t *doubles, size_t *walls) {
   for (size_t from = 0, to; from < count; from = to) {

@@ -330,7 +330,7 @@ static abbe_result carry_normals(const abbe_mesh *from, const abbe_topology *t, 
   return ABBE_OK;
 }
 
-/* Of the fixed mesh, by angles and where it is the file's face by its normals. */
+/* Normals of the fixed mesh, by angles, and by the file's normals where a face is the file's. */
 static abbe_result fixed_normals(const abbe_mesh *from, const abbe_topology *t, abbe_mesh *mesh,
                                  abbe_error *error) {
   abbe_topology own;

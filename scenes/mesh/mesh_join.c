@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the size, the least that closes the mesh is taken. */
+/* Shares of the size: the least that closes the mesh is taken. */
 static const double share[] = {1e-7, 1e-6, 1e-5, 1e-4, 3e-4};
 enum { SHARES = sizeof share / sizeof *share, MOST_POINTS = 1000000 };
 

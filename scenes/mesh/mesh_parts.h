@@ -34,10 +34,10 @@ double abbe_mesh_diagonal(const abbe_mesh *mesh, double centre[3]);
 /* Drops vertices that no face names. */
 abbe_result abbe_mesh_drop_unused(abbe_mesh *mesh, abbe_error *error);
 
-/* Of a mesh with open edges: a copy of it whose corners that lie a little apart are one, if that
- * closes it, by the least of a few shares of its size up to 3e-4, with its topology. *moved: of so
- * many points, by *farthest at the most, in the mesh's own unit; 0, and no copy, where that does
- * not close it. */
+/* Makes a copy of a mesh with open edges, in which corners that lie a little apart are one, if that
+ * closes it, by the least of a few shares of its size up to 3e-4, with its topology. *moved counts
+ * the points that moved, by *farthest at most, in the mesh's own unit; 0, and no copy, where that
+ * does not close it. */
 abbe_result abbe_mesh_join_corners(const abbe_mesh *mesh, const abbe_topology *topology,
                                    abbe_mesh *joined, abbe_topology *own, size_t *moved,
                                    double *farthest, abbe_error *error);

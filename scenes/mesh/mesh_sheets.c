@@ -11,7 +11,7 @@
 /* Faces looked at, pass after pass: some seconds. */
 #define MOST_WORK 2e7
 
-enum { LEAST_PASSES = 8 }; /* of however many faces */
+enum { LEAST_PASSES = 8 }; /* for however many faces */
 
 /* What hangs together over edges of two faces. */
 typedef struct patch {
@@ -95,7 +95,7 @@ static bool had_better_go(const patch *p, double whole) {
   return p->attached && p->fixes > 0 && p->area < 0.5 * whole;
 }
 
-/* Of patches that meet at an edge and had better go, all but the least wait. */
+/* Among patches that meet at an edge and had better go, all but the least wait. */
 static void let_wait(desk *d, double whole) {
   for (size_t from = 0, to; from < d->count; from = to) {
     sheet least = {INFINITY, ABBE_TOPOLOGY_NONE};

@@ -17,7 +17,7 @@ enum { FACES = 5, DIRECTIONS = 3 }; /* that vote, of which some may be where she
 typedef struct meetings {
   uint32_t *shell;
   size_t count;
-  double *nearest; /* of every shell; infinity: not met */
+  double *nearest; /* distance of every shell; infinity: not met */
   bool *leaves;    /* there the face shows its back */
 } meetings;
 

@@ -39,7 +39,7 @@ typedef struct abbe_shell_tree {
   uint32_t *face;          /* [count] in the order of the leaves */
   abbe_shell_box *of_face; /* [face_count] */
   abbe_shell_box *node;    /* node i is over the faces of 2 i + 1 and 2 i + 2 */
-  uint32_t *shell;         /* of all faces of the node; ABBE_TOPOLOGY_NONE: of several */
+  uint32_t *shell;         /* shell of all faces of the node; ABBE_TOPOLOGY_NONE: of several */
 } abbe_shell_tree;
 
 /* A node and the faces that it is over. */

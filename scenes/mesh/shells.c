@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TOUCHES 1e-6 /* of the diagonal of the bounds */
+#define TOUCHES 1e-6 /* share of the diagonal of the bounds */
 #define UNPLACED UINT32_MAX
 
 void abbe_shells_free(abbe_shells *shells) {
@@ -38,8 +38,8 @@ static int by_volume(const void *a, const void *b) {
 typedef struct sharing {
   ranked *rank;
   uint32_t *first, *other; /* whom each shell crosses: from first[i] to first[i + 1] */
-  uint32_t *barred;        /* of each solid: the last shell, from 1, that may not join it */
-  uint32_t *around;        /* of each solid: its shells around the one at hand */
+  uint32_t *barred;        /* for each solid: the last shell, from 1, that may not join it */
+  uint32_t *around;        /* for each solid: its shells around the current one */
 } sharing;
 
 static void sharing_free(sharing *h) {

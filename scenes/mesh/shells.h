@@ -19,8 +19,8 @@
 
 typedef struct abbe_shell {
   double volume;        /* signed, of its own; negative: its faces look inwards */
-  uint32_t depth;       /* of others that it lies wholly within */
-  uint32_t first, last; /* of these in abbe_shells.around, last is one past them */
+  uint32_t depth;       /* number of shells that it lies wholly within */
+  uint32_t first, last; /* range of these in abbe_shells.around, last is one past them */
   uint32_t solid;       /* which of the solids it belongs to */
 } abbe_shell;
 

@@ -25,7 +25,7 @@ typedef struct abbe_sample_node {
   double cone;     /* least cosine of its normal and theirs */
   uint32_t sample; /* that it is, is part of, or whose point stands for the cluster */
   uint32_t next;   /* the first node after it that is not below it */
-  bool cluster;    /* of several samples */
+  bool cluster;    /* holds several samples */
 } abbe_sample_node;
 
 /* Depth first: what is below a node follows it, up to `next`. */

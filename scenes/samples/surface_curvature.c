@@ -18,8 +18,8 @@ typedef struct around {
   double mean[3];
   size_t count;
   bool fits;
-  double sum[2], product[2][2]; /* of places (u, v) */
-  double turn[2], by[2][2];     /* of normals' u and v; of those times places */
+  double sum[2], product[2][2]; /* sums over places (u, v) */
+  double turn[2], by[2][2];     /* sums over normals' u and v; over those times places */
 } around;
 
 static bool is_near(const around *a, size_t number, double from[3]) {

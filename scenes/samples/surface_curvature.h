@@ -14,9 +14,9 @@ typedef struct abbe_surface_curvature {
   double curvature[2];
 } abbe_surface_curvature;
 
-/* Of each sample, over the candidates within a spacing whose normals are less than 60 degrees from
- * its own: their mean normal is that of the tangent plane, and a linear normal is fitted over it.
- * out: [count]. Places with too few candidates are flat. ABBE_NO_MEMORY. */
+/* Fits a linear normal for each sample, over the candidates within a spacing whose normals are less
+ * than 60 degrees from its own: their mean normal is that of the tangent plane. out: [count].
+ * Places with too few candidates are flat. ABBE_NO_MEMORY. */
 abbe_result abbe_surface_curvature_fit(const abbe_surface_samples *samples,
                                        abbe_surface_curvature *out, abbe_error *error);
 

@@ -162,7 +162,7 @@ static size_t remove_neighbours(const abbe_surface_samples *s, double radius, bo
 typedef struct in_cell {
   int64_t cell[4]; /* the last: the octant of the normal's largest side, where sides are apart */
   bool taken;
-  size_t number; /* of those that are kept */
+  size_t number; /* number of those that are kept */
 } in_cell;
 
 /* A slot of the cell, or a free one, in a table of mask + 1. */
@@ -303,7 +303,7 @@ typedef struct search {
   size_t found;
 } search;
 
-/* Of samples that face as the candidate does, if there are any near. */
+/* Looks for the nearest samples that face as the candidate does, if there are any near. */
 static bool look_for_nearest(void *user, size_t number) {
   search *w = user;
   const abbe_surface_point *sample = &w->s->sample[number];

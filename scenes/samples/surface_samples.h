@@ -40,7 +40,7 @@ typedef struct abbe_surface_samples {
   abbe_surface_point *sample; /* [count] */
   double *share;              /* [count] m2: of the candidates that are nearest to it; they sum to
                                  area */
-  double area;                /* of all meshes, m2 */
+  double area;                /* area of all meshes, m2 */
   double spacing;             /* sqrt(area / count), m */
   double reach;               /* the radius of neighbour, the edge of a cube; 0 at random; m */
   size_t candidate_count;
@@ -52,7 +52,7 @@ typedef struct abbe_surface_samples {
 typedef struct abbe_surface_sampling {
   size_t count; /* at most so many are kept; of random as many, else nearly */
   abbe_sample_strategy strategy;
-  uint64_t seed; /* of the candidates */
+  uint64_t seed; /* seed of the candidates */
   bool sided;    /* points whose normals are more than 90 degrees apart are on different sides of a
                     sheet: no neighbour drops the other, no cube holds both */
   bool even; /* candidates follow an additive recurrence, which fills the surfaces evenly: shares
@@ -60,8 +60,9 @@ typedef struct abbe_surface_sampling {
   bool on_surface; /* quantized ones stay on it */
 } abbe_surface_sampling;
 
-/* Of all faces of the meshes together; faces without area are never met. ABBE_INVALID_ARGUMENT for
- * more than ABBE_SURFACE_MAX_SAMPLES, ABBE_GEOMETRY where there is no area, ABBE_NO_MEMORY. */
+/* Makes samples of all faces of the meshes together; faces without area are never met.
+ * ABBE_INVALID_ARGUMENT for more than ABBE_SURFACE_MAX_SAMPLES, ABBE_GEOMETRY where there is no
+ * area, ABBE_NO_MEMORY. */
 abbe_result abbe_surface_samples_make(const abbe_mesh *const *mesh, size_t mesh_count,
                                       const abbe_surface_sampling *sampling,
                                       abbe_surface_samples *out, abbe_error *error);

@@ -14,8 +14,8 @@
 typedef struct abbe_brilliant {
   double diameter;     /* between opposite corners of the girdle, metres */
   double table;        /* its width between opposite corners, of the diameter; 0: 0.56 */
-  double crown_rad;    /* of the bezels above the girdle's plane; 0: 34.5 degrees */
-  double pavilion_rad; /* of the mains below it; 0: 40.75 degrees */
+  double crown_rad;    /* angle of the bezels above the girdle's plane; 0: 34.5 degrees */
+  double pavilion_rad; /* angle of the mains below it; 0: 40.75 degrees */
   double star;         /* how far stars reach from the table's edge to the girdle; 0: 0.5 */
   double lower;        /* how far lower halves reach from the girdle to the culet; 0: 0.77 */
   double girdle;       /* its height where it is least, of the diameter; 0: 0.03 */

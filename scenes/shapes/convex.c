@@ -26,7 +26,7 @@ typedef struct search {
   double centre[3], size, tolerance; /* m */
   double thin;                       /* faces of less height have no normal of their own, m */
   facet *order;                      /* faces, the largest first */
-  size_t faces;                      /* of them that are looked at */
+  size_t faces;                      /* faces of them that are looked at */
   face_plane *plane;
   uint32_t *plane_of;
   size_t most, count;
@@ -206,7 +206,7 @@ static abbe_result attempt(search *s, double tolerance, bool first, bool skin, a
   return ABBE_OK;
 }
 
-/* Of a large mesh a sample tells at once that it has too many planes. */
+/* A sample of a large mesh shows at once that it has too many planes. */
 enum { SAMPLE = 4096 };
 
 static abbe_result judge(search *s, abbe_convex *out, abbe_error *error) {

@@ -11,7 +11,7 @@
 
 /* Relative to the mesh's centre. n and d are sums until they are finished: by area. */
 typedef struct mean_plane {
-  double n[3], d;    /* of the largest triangle */
+  double n[3], d;    /* plane of the largest triangle */
   double sum[3], at; /* normals, and offsets along the plane's own */
   double area;
 } mean_plane;

@@ -18,7 +18,7 @@
 
 typedef struct abbe_knot {
   double major, minor;  /* the torus: around z, and of its own tube */
-  double radius;        /* of the tube along the knot, where it has no spine */
+  double radius;        /* radius of the tube along the knot, where it has no spine */
   size_t turns, coils;  /* around z, and through the torus's hole; 0: 2, 3; no common divisor */
   size_t spines;        /* on the side away from the torus; 0: none */
   double spine;         /* how far they stand out, of the radius, 0 to 2 */

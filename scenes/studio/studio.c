@@ -26,7 +26,7 @@ static const char *const settings[] = {ABBE_SETTING_KINDS(SETTING_NAME)};
 
 /* Between the outlines of stones in a row, of the larger of them. */
 #define GAP 0.35
-/* Of stones that are wider together than that, m, the looks are made larger. */
+/* Where stones together are wider than this, m, the looks are made larger. */
 #define ROOM_M 0.025
 /* The band of a ring, m: the radius of its circle, and of its wire. */
 #define BAND_M 0.0093

@@ -35,7 +35,7 @@ typedef enum abbe_studio_with {
 } abbe_studio_with;
 
 enum { ABBE_STUDIO_MOST_STONES = 64 };
-#define ABBE_STUDIO_WIDTH_M 0.0065 /* of a design, or a mesh that cannot be meant as it is */
+#define ABBE_STUDIO_WIDTH_M 0.0065 /* for a design, or a mesh that cannot be meant as it is */
 
 /* Zeroed: one stone, the default look, on a table. */
 typedef struct abbe_studio {
@@ -47,7 +47,7 @@ typedef struct abbe_studio {
   const char
       *material;      /* of all stones; NULL: what the file says, or what its index is nearest to */
   const char *folder; /* where the scene is to stand, with its slash; NULL: where it is read from */
-  const char *table;  /* of materials: a path, "default", "thesis"; NULL: default */
+  const char *table;  /* table of materials: a path, "default", "thesis"; NULL: default */
   const char *const *more; /* [more_count], further stones' files */
   size_t more_count;
 } abbe_studio;
@@ -70,7 +70,7 @@ typedef struct abbe_studio_stone {
   double size[3];     /* m, x, y and z */
   double width;       /* m, the smaller of x and y */
   double girdle;      /* share of the height that is below the girdle's middle; a mesh: 0.6 */
-  char material[128]; /* of the table, or "from-file" */
+  char material[128]; /* name in the table, or "from-file" */
   char note[256];     /* how that and the size were found; may be empty */
 } abbe_studio_stone;
 

@@ -69,7 +69,7 @@ typedef struct abbe_estimator_desc {
   size_t iterations;   /* 1 to ABBE_ESTIMATOR_MAX_ITERATIONS; steps of a march */
   bool printed;        /* starts, steps and f as printed; else by |p(0) - origin| */
   double step;         /* newton's h, not printed: m; 0: a share of |p(0) - origin| */
-  double range;        /* of a march, m; 0: four times |p(0) - origin| */
+  double range;        /* length of a march, m; 0: four times |p(0) - origin| */
   const abbe_view *view;
   abbe_estimator_lookup lookup;
   void *user;

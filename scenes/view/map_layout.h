@@ -19,8 +19,8 @@
 
 typedef struct abbe_map_layout {
   abbe_view view; /* perspective from a point; parallel for a directional light */
-  /* Of each axis (x, y): window coordinate k / STEPS falls on texture coordinate knot[axis][k];
-   * from 0 to 1, ascending, linear in between. */
+  /* For each axis (x, y): window coordinate k
+   * STEPS falls on texture coordinate knot[axis][k]; from 0 to 1, ascending, linear in between. */
   double knot[2][ABBE_MAP_LAYOUT_STEPS + 1];
 } abbe_map_layout;
 

@@ -29,7 +29,7 @@ static bool has_light(const float *texel, size_t channels) {
 
 typedef struct work {
   const abbe_image *from;
-  abbe_map_layout layout; /* of from */
+  abbe_map_layout layout; /* layout of from */
   const abbe_map_layout *to;
   size_t width, height, parts;
   double *sum; /* [height][width][channels] */

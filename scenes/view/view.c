@@ -33,7 +33,8 @@ void abbe_view_look(const double origin[3], const double forward[3], const doubl
   out->window[1] = out->window[3] = out->far = -INFINITY;
 }
 
-/* Of finite numbers; the library's own are calls, which a mesh's many vertices would pay for. */
+/* The lesser of two finite numbers; the library's own functions are calls, which a mesh's many
+ * vertices would pay for. */
 static double lesser(double a, double b) {
   return a < b ? a : b;
 }

@@ -65,7 +65,7 @@ static inline size_t abbe_caustic_volume_channels(const abbe_caustic_volume *v) 
 #define ABBE_CAUSTIC_VOLUME_MOST ((size_t)1 << 31)
 abbe_result abbe_caustic_volume_allocate(abbe_caustic_volume *volume, abbe_error *error);
 void abbe_caustic_volume_free(abbe_caustic_volume *volume);
-/* Of values or exits, in memory. */
+/* Bytes of values or exits, in memory. */
 size_t abbe_caustic_volume_bytes(const abbe_caustic_volume *volume);
 
 /* Joins cells of every node within a tolerance of unit irradiance (volume_tree.h): each has the
@@ -95,8 +95,8 @@ void abbe_caustic_volume_look(const abbe_caustic_volume *volume, abbe_volume_loo
  * distance. ABBE_VOLUME_VECTOR alone. */
 void abbe_caustic_volume_flux(const abbe_caustic_volume *volume, const abbe_volume_sight *sight,
                               const double p[3], double f[3][3]);
-/* Of a printed one: R, G and B of the nearest cell, beyond the region of its rim; before the cosine
- * between the receiver's normal and -p. */
+/* R, G and B of a printed volume's nearest cell, beyond the region that of its rim; before the
+ * cosine between the receiver's normal and -p. */
 void abbe_caustic_volume_ratio(const abbe_caustic_volume *volume, const abbe_volume_sight *sight,
                                const double p[3], double rgb[3]);
 

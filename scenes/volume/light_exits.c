@@ -10,8 +10,8 @@
 /* Cosine from which on a point faces the light: the same for who writes a table and who reads it.
  */
 static const double least_cosine = 1e-3;
-static const double least_weight = 1e-9; /* of a node */
-static const double least_part = 0.15;   /* of wavelengths' chances that is even */
+static const double least_weight = 1e-9; /* for a node */
+static const double least_part = 0.15;   /* the share of wavelengths' probabilities that is even */
 static const float most_apart = 0.1f;    /* directions of rays that become one, about rad */
 static const float most_turn = 0.5f;     /* that a ray alone is moved by, about rad */
 static const double on_surface = 2e-3;   /* in radii */
@@ -146,7 +146,7 @@ void abbe_light_exits_point(const abbe_light_exits *e, size_t point, double plac
 /* An exit of a node for light from the aim's direction. */
 typedef struct candidate {
   float weight, carried;
-  float far[2];                  /* of the aim, along the node's axes */
+  float far[2];                  /* reach of the emission sampling, along the node's axes */
   float value[ABBE_EXIT_HALVES]; /* at the node */
   float step[3], turn[3];        /* to where light from the aim goes, to first order */
   unsigned facets;

@@ -31,13 +31,14 @@ typedef struct abbe_body_symmetry {
   double (*map)[9]; /* [count] orthogonal, row-major, around the object's centre */
 } abbe_body_symmetry;
 
-/* Of the planes of a convex solid, of the vertices and normals of another mesh, within 1e-5 of its
- * radius around `centre`. An object of more marks, of more maps, or of a crystal, whose axis they
- * would turn, has the unit map alone; so has a ball. ABBE_NO_MEMORY. */
+/* Finds the symmetry of the planes of a convex solid, or of the vertices and normals of another
+ * mesh, within 1e-5 of its radius around `centre`. An object of more planes or vertices, of more
+ * maps, or of a crystal, whose axis they would turn, has the unit map alone; so has a ball.
+ * ABBE_NO_MEMORY. */
 abbe_result abbe_body_symmetry_find(const abbe_object *object, const double centre[3],
                                     double radius, abbe_body_symmetry *out, abbe_error *error);
-/* Of maps that are there, copied. ABBE_INVALID_ARGUMENT where one is not orthogonal, within 1e-6,
- * where the first is not the unit map, and for more than ABBE_BODY_SYMMETRY_MOST;
+/* Makes a symmetry of given maps, copied. ABBE_INVALID_ARGUMENT where one is not orthogonal, within
+ * 1e-6, where the first is not the unit map, and for more than ABBE_BODY_SYMMETRY_MOST;
  * ABBE_NO_MEMORY. */
 abbe_result abbe_body_symmetry_make(size_t count, const double (*map)[9], abbe_body_symmetry *out,
                                     abbe_error *error);
@@ -49,7 +50,7 @@ size_t abbe_body_symmetry_bring(const abbe_body_symmetry *symmetry, const double
                                 double out[3]);
 
 #define ABBE_LIGHT_EXITS_MOST 131072 /* points */
-#define ABBE_LIGHT_EXITS_BINS 256    /* of wavelengths, alike in width */
+#define ABBE_LIGHT_EXITS_BINS 256    /* bins of wavelengths, alike in width */
 
 /* Halves of a point: place in the object's radii, unit normal of its face, bin of wavelengths; the
  * rest is 0. */
@@ -75,10 +76,10 @@ typedef uint16_t abbe_exit_halves[ABBE_EXIT_HALVES];
 
 typedef struct abbe_light_exits {
   size_t points;       /* 0: there is no table */
-  double radius, area; /* of the object, m; of its surface, m2, in equal parts for the points and
-                          what the maps make of them */
+  double radius, area; /* radius of the object, m; area of its surface, m2, in equal parts for the
+                          points and what the maps make of them */
   abbe_body_symmetry symmetry;
-  size_t cells;            /* of the region around it: */
+  size_t cells;            /* cells of the region around it: */
   uint16_t *space;         /* [cells] halves: share of each that the object leaves free */
   abbe_exit_halves *point; /* [points] */
   size_t count;
@@ -121,8 +122,8 @@ bool abbe_light_exits_faces(const abbe_light_exits *exits, size_t point, const d
 typedef struct abbe_exit_ray {
   double place[3], way[3];       /* m from the object's centre; unit */
   double place_by[3], way_by[3]; /* their change with the object's index */
-  double share;                  /* of the light that came in at the point */
-  double weight;                 /* of the way: share is so much of what goes it */
+  double share;                  /* share of the light that came in at the point */
+  double weight;                 /* probability of the path: share is so much of what takes it */
   unsigned facets;
 } abbe_exit_ray;
 

@@ -20,7 +20,7 @@ typedef struct abbe_sphere_mesh {
   uint32_t (*face)[3];  /* [face_count] corners, anticlockwise from outside */
   uint32_t (*next)[3];  /* [face_count] the face beyond the edge from corner k to k + 1 */
   double (*edge)[3][3]; /* [face_count] unit normals of those edges' planes, to the inside */
-  size_t table_side;    /* of the octahedral table */
+  size_t table_side;    /* side of the octahedral table */
   uint32_t *table;      /* [table_side^2] the face in the middle of each texel */
 } abbe_sphere_mesh;
 

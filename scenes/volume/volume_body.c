@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Of its size: what a file of a mesh rounds. */
+/* Share of its size: what a file of a mesh rounds. */
 static const double tolerance = 1e-4;
 
 static bool is_ball(const abbe_object *o) {

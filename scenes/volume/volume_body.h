@@ -7,9 +7,9 @@
 #include "scenes/scene.h"
 
 typedef struct abbe_volume_body {
-  char name[128], material[128]; /* of the object; what it is made of */
+  char name[128], material[128]; /* the object's; what it is made of */
   bool ball;                     /* looks the same from all sides */
-  double radius;                 /* of what bounds it around its centre, m */
+  double radius;                 /* radius of what bounds it around its centre, m */
   size_t vertices, faces;
   size_t anchor[3];       /* vertices that tell how it is turned; not read of a ball */
   double anchor_at[3][3]; /* from its centre, m */

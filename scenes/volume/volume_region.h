@@ -27,7 +27,7 @@ typedef struct abbe_region_desc {
   size_t levels; /* geodesic: of its icosahedron */
   size_t shells; /* 1 to 256; grid: not read */
   double inner;  /* radius of the first shell's inside, m, above 0; grid: not read */
-  double outer;  /* of the last one's outside; half a grid's side */
+  double outer;  /* outside of the last one; half a grid's side */
 } abbe_region_desc;
 
 typedef struct abbe_volume_region {
@@ -35,9 +35,9 @@ typedef struct abbe_volume_region {
   size_t row;            /* cells of a shell, or of a grid's layer */
   size_t rows;           /* shells, or layers */
   size_t cells;          /* row * rows; cell i is the (i % row)-th of row i / row */
-  abbe_sphere_mesh mesh; /* of shells */
-  double *radius;        /* of shells [rows + 1], in geometric progression */
-  double *solid_angle;   /* of shells [row], sr */
+  abbe_sphere_mesh mesh; /* mesh of shells */
+  double *radius;        /* radii of shells [rows + 1], in geometric progression */
+  double *solid_angle;   /* solid angles of shells [row], sr */
 } abbe_volume_region;
 
 /* ABBE_INVALID_ARGUMENT, with a sentence, for what is outside the limits; ABBE_NO_MEMORY. */

@@ -32,8 +32,8 @@ typedef struct abbe_volume_tree {
   uint16_t *value; /* [leaves][channels] halves */
 } abbe_volume_tree;
 
-/* Of halves value[cells][channels], by cell. tolerance: at least 0; with 0 cells are joined that
- * are the same, and it gives every bit back. ABBE_NO_MEMORY. */
+/* Makes a tree of halves value[cells][channels], by cell. tolerance: at least 0; with 0 cells are
+ * joined that are the same, and it gives every bit back. ABBE_NO_MEMORY. */
 abbe_result abbe_volume_tree_make(const abbe_volume_order *order, size_t channels,
                                   const uint16_t *value, double tolerance, abbe_volume_tree *out,
                                   abbe_error *error);

@@ -20,7 +20,7 @@
 
 typedef struct abbe_gltf_json {
   cJSON *root;       /* an object, of version 2; cJSON_Delete frees it */
-  const char *bytes; /* of the binary chunk, within data; NULL: there is none */
+  const char *bytes; /* start of the binary chunk, within data; NULL: there is none */
   size_t size;
 } abbe_gltf_json;
 

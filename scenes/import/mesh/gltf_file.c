@@ -349,7 +349,7 @@ static void mark_children(const abbe_gltf *g, bool *below) {
   }
 }
 
-/* Of glTF y is up, here z. */
+/* In glTF y is up, here z. */
 static abbe_result walk_scene(abbe_gltf *g, bool *visited, bool *below) {
   static const double y_up[16] = {1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1};
   const cJSON *scenes = cJSON_GetObjectItemCaseSensitive(g->json.root, "scenes"), *item;

@@ -57,7 +57,7 @@ void abbe_mesh_reading_free(abbe_mesh_reading *r) {
 
 /* ---- the mesh ---- */
 
-/* Of a face whose corner's point is none. */
+/* Fails for a face whose corner's point is none. */
 static abbe_result fail_point(const abbe_mesh_reading *r, size_t face, uint32_t point,
                               abbe_error *error) {
   if (r->line > 0)

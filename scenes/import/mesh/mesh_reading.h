@@ -27,13 +27,14 @@ typedef struct abbe_mesh_corner {
 
 typedef struct abbe_mesh_reading {
   const char *path, *material;      /* material: triangles of that name alone are read; NULL: all */
-  abbe_mesh_list point, uv, normal; /* of double[3], double[2], double[3] */
-  abbe_mesh_list corner, sides;     /* of abbe_mesh_corner; of uint32_t: corners of each polygon */
-  size_t open;                      /* corners of the polygon that is being read */
-  abbe_mesh_list others;            /* of char: paths that the file names, each with its zero */
-  size_t line;                      /* that is being read, from 1; 0: the format has none */
-  uint32_t farthest;                /* the greatest point that a corner names, */
-  size_t farthest_line;             /* and the first line that does */
+  abbe_mesh_list point, uv, normal; /* lists of double[3], double[2], double[3] */
+  abbe_mesh_list corner,
+      sides;             /* a list of abbe_mesh_corner; one of uint32_t: corners of each polygon */
+  size_t open;           /* corners of the polygon that is being read */
+  abbe_mesh_list others; /* a list of char: paths that the file names, each with its zero */
+  size_t line;           /* that is being read, from 1; 0: the format has none */
+  uint32_t farthest;     /* the greatest point that a corner names, */
+  size_t farthest_line;  /* and the first line that does */
 } abbe_mesh_reading;
 
 /* Whether the list could grow by count items of size bytes, which are at *to. False too where it

@@ -23,7 +23,7 @@ typedef enum meaning {
 } meaning;
 
 typedef struct property {
-  number_kind count, kind; /* of a list's count, or NO_KIND; of its values */
+  number_kind count, kind; /* kind of a list's count, or NO_KIND; kind of its values */
   meaning meaning;
 } property;
 
@@ -39,9 +39,10 @@ typedef struct reading {
   abbe_mesh_reading *to;
   const char *at, *end;
   encoding encoding;
-  size_t corners, first_uv, uvs; /* of the face that is read: its corners, and its own list of uv */
-  size_t vertex_uv;              /* the first vertex's */
-  bool vertex_uvs;               /* vertices have some */
+  size_t corners, first_uv,
+      uvs;          /* for the face that is read: its corners, and its own list of uv */
+  size_t vertex_uv; /* the first vertex's */
+  bool vertex_uvs;  /* vertices have some */
   size_t elements;
   element element[MOST_ELEMENTS];
 } reading;
@@ -306,7 +307,7 @@ static trouble read_corner_uvs(reading *r, number_kind kind, size_t count) {
   return FINE;
 }
 
-/* Of fewer than three corners a face has none. */
+/* A face with fewer than three corners has none. */
 static trouble give_uvs(reading *r) {
   if (r->uvs != 0 && r->uvs != r->corners) return NO_UVS;
   abbe_mesh_corner *corner = r->to->corner.item;

@@ -40,7 +40,7 @@ typedef struct sight {
   abbe_exit_sheet *sheet;
   bool far; /* the light is, and `light` the direction to it; else its place */
   double light[3];
-  size_t first, step; /* of points: the first, and from one to the next */
+  size_t first, step; /* for points: the first, and from one to the next */
 } sight;
 
 static void turn(const double map[9], const double v[3], double out[3]) {
@@ -304,7 +304,7 @@ typedef struct deposit {
   double *weight; /* [cells] 1 / m3 of free space */
   float *value;
   abbe_exit_colours *colours;
-  uint32_t turn; /* of rays, for the places within parts */
+  uint32_t turn; /* turn of rays, for the places within parts */
 } deposit;
 
 static void add_part(const deposit *d, const abbe_exit_ray *ray, const double xyz[3]) {

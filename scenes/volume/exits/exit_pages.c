@@ -30,7 +30,8 @@ static size_t make_shares(float wide, size_t side, float share[MOST_REACH + 1]) 
   return reach;
 }
 
-/* Of a place before the first texel or after the last; at: from `reach` before the first on. */
+/* Folds a place before the first texel or after the last; at: counted from `reach` before the
+ * first. */
 static size_t fold(size_t at, size_t reach, size_t side) {
   const size_t i = at < reach ? reach - at - 1 : at - reach;
   return i < side ? i : 2 * side - i - 1;
@@ -40,7 +41,7 @@ static void add_row(const float *from, size_t count, float share, float *to) {
   for (size_t i = 0; i < count; i++) to[i] += share * from[i];
 }
 
-/* Of a row of texels around the i-th of those by whose shares they are summed up. */
+/* The share in a row of texels around the i-th of those by whose shares they are summed up. */
 static float share_at(const float *share, size_t reach, size_t i) {
   return share[i < reach ? reach - i : i - reach];
 }
@@ -67,8 +68,8 @@ void abbe_exit_map_smooth(const float (*from)[4], size_t side, const float wide[
 }
 
 enum { BINS = 512 };
-/* Of the points, that threads do side by side, each with maps of its own; no result depends on who
- * does which. FEWER: of them one in so many tells where the light falls. */
+/* PARTS of the points, which threads do side by side, each with maps of its own; no result depends
+ * on who does which. One in FEWER points shows where the light falls. */
 enum { PARTS = 4, FEWER = 13 };
 
 /* A window leaves so much of a side's light out on each of its ends. */
@@ -93,7 +94,7 @@ typedef struct landing {
 typedef struct catching {
   const landing *all;
   abbe_exit_track *track; /* [sheets] of a ray */
-  uint32_t turn;          /* of rays */
+  uint32_t turn;          /* turn of rays */
   double (
       *flux)[2][BINS]; /* [pages] of Y, by place along each edge: while windows are looked for */
   float (**value)[4];  /* [pages][2] maps as the pages have them, of W; NULL: nothing has landed */
@@ -153,7 +154,7 @@ static float *texel(const abbe_exit_pages *p, size_t page, size_t fine, size_t x
   return p->value[((2 * page + fine) * p->side + y) * p->side + x];
 }
 
-/* Of a page and whether it is the finer map: one of the part's own. */
+/* The map of a tile, or its finer map: one of the part's own. */
 static float (*map_of(catching *c, size_t page, size_t fine))[4] {
   const size_t side = c->all->pages->side;
   float(**map)[4] = &c->value[2 * page + fine];

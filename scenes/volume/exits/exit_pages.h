@@ -21,7 +21,7 @@ typedef struct abbe_exit_pages {
                          each; widths of 0: nothing lands on that side */
   float (*value)[4]; /* [count][2][side][side] irradiance of X, Y, Z and 0, W/m2 of a light of power
                         1: of the whole without the window, and of the window */
-  double flux;       /* of Y that landed on any, W */
+  double flux;       /* flux of Y on all receivers, W */
 } abbe_exit_pages;
 
 /* parallelogram[parallelograms]: corner, U, V, in the world; the desc's sheets are not read.
