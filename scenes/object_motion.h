@@ -12,7 +12,7 @@
  * where the object would have no finite place; the object is then as it was. */
 abbe_result abbe_object_move(abbe_object *object, const double matrix[16], abbe_error *error);
 
-/* The refractors of a scene tilted together, as a stone is rocked in the hand while eye, lights
+/* The refractors of a scene tilted together, as a stone is rocked in the hand while camera, lights
  * and all else stay where they are. */
 
 /* By tilt_rad, right-handed, about the horizontal axis of azimuth axis_rad (from +x towards +y)

@@ -33,7 +33,7 @@ typedef struct abbe_camera {
   double eye[3], target[3], up[3];
   double fov_y_rad;     /* full vertical angle */
   size_t width, height; /* pixels of the scene's own picture, default 512 x 512 */
-  bool inside;          /* the eye may be inside a refractor, as under water */
+  bool inside;          /* the camera may be inside a refractor, as under water */
 } abbe_camera;
 
 typedef enum abbe_light_kind {
@@ -48,8 +48,8 @@ typedef struct abbe_light {
   char *name;
   abbe_light_kind kind;
   double position[3];  /* point, spot; the centre of a disk or rectangle */
-  double direction[3]; /* spot, directional: unit, the way the light travels; disk, rectangle: unit,
-                          the normal of the side that shines */
+  double direction[3]; /* spot, directional: unit, the direction in which the light travels; disk,
+                          rectangle: unit, the normal of the side that shines */
   double radius;       /* disk, m; rectangle: of the circle around it */
   double edge[2][3];   /* rectangle: half of its width and of its height, m */
   size_t points;       /* disk, rectangle: of so many that stand for it (area_lights.h), with power
@@ -174,9 +174,9 @@ const abbe_illuminant *abbe_scene_illuminant(const abbe_scene *scene);
 size_t abbe_scene_file_count(const abbe_scene *scene);
 const char *abbe_scene_file(const abbe_scene *scene, size_t index);
 
-/* A light or an eye nearer to a refractor's or mirror's surface than this share of half the
+/* A light or a camera nearer to a refractor's or mirror's surface than this share of half the
  * diagonal of all refractors' bounds (of all objects' where there is a mirror) is on it: single
- * precision does not tell on which side. */
+ * precision does not resolve the side. */
 #define ABBE_SCENE_LEAST_GAP 0x1p-20
 
 /* Refuses what cannot be rendered, by name: neither light nor environment, no receiver without
@@ -198,7 +198,7 @@ void abbe_object_bound(abbe_object *object);
 
 /* Whether the point is inside the object, which is closed. */
 bool abbe_object_contains(const abbe_object *object, const double point[3]);
-/* The first refractor that the camera's eye is inside of, or NULL. */
+/* The first refractor that the camera is inside of, or NULL. */
 const abbe_object *abbe_scene_around_eye(const abbe_scene *scene);
 
 /* From a point to the object's surface, m; to a sphere's exact one, negative inside it. */

@@ -197,7 +197,7 @@ const abbe_object *abbe_scene_around_eye(const abbe_scene *scene) {
   return refractor_around(scene, scene->camera.eye);
 }
 
-/* An eye inside is mostly a mesh in another unit: the scene has to say that it is meant. */
+/* A camera inside is mostly a mesh in another unit: the scene must declare that it is meant. */
 static abbe_result check_inside(const abbe_scene *scene, abbe_error *error) {
   char sizes[256];
   const abbe_object *around = abbe_scene_around_eye(scene);

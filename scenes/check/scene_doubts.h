@@ -1,8 +1,7 @@
 /* scene_doubts.h: what in a scene can be rendered and is hardly meant: sentences for people.
  *
- * Two of one name, a camera so far away that nothing is seen, a thing sunk into its table, a lamp
- * that a table hides. What cannot be rendered is abbe_scene_check's.
- */
+ * Two of one name, a camera so far away that nothing is seen, a thing sunk into its table, a light
+ * that a table hides. What cannot be rendered is abbe_scene_check's. */
 #ifndef ABBE_SCENES_CHECK_SCENE_DOUBTS_H
 #define ABBE_SCENES_CHECK_SCENE_DOUBTS_H
 

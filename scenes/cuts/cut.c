@@ -66,7 +66,7 @@ void abbe_cut_free(abbe_cut *cut) {
   memset(cut, 0, sizeof *cut);
 }
 
-/* Room for one more than count, doubled as it fills; NULL without memory. */
+/* Makes capacity for one more than count, doubled as it fills; NULL without memory. */
 static void *grow(void *list, size_t count, size_t size) {
   const bool full = (count & (count - 1)) == 0;
   return full ? realloc(list, (count > 0 ? 2 * count : 1) * size) : list;

@@ -36,11 +36,11 @@ typedef struct abbe_cut_tier {
 
 /* Texts are malloc'd UTF-8, NULL where there is none. */
 typedef struct abbe_cut {
-  int gear;      /* teeth; below 0 where indices grow the other way round */
+  int gear;      /* teeth; below 0 where indices grow in the other direction */
   double offset; /* the index in the direction of y */
   int folds;     /* order of its symmetry, for people: every facet is listed; 0: not stated */
   bool mirror;
-  double refractive_index; /* that it was designed for; 0: not said */
+  double refractive_index; /* index that it was designed for; 0: not stated */
   char *heading[ABBE_CUT_LINES], *footnote[ABBE_CUT_LINES]; /* the first heading is its title */
   size_t tier_count, facet_count;
   abbe_cut_tier *tier;

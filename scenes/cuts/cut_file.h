@@ -16,8 +16,8 @@
 abbe_result abbe_cut_file_read(const char *path, abbe_cut *out, abbe_report *report,
                                abbe_error *error);
 
-/* The same with its stone, whose corners nearer than the share weld of half its width are one: where
- * the planes make none, the error names the file. Both outputs are to be freed. */
+/* The same with its stone, whose corners nearer than the share weld of half its width are one:
+ * where the planes make none, the error names the file. Both outputs are to be freed. */
 abbe_result abbe_cut_file_read_stone(const char *path, double weld, abbe_cut *cut,
                                      abbe_cut_polyhedron *stone, abbe_report *report,
                                      abbe_error *error);
@@ -42,10 +42,10 @@ abbe_result abbe_cut_asc_write(const abbe_cut *cut, FILE *to, abbe_report *repor
 /* Gem Cut Studio's files of designs (.gcs), in and out.
  *
  * XML of tiers and facets. A facet's normal rules over its index; a tier's depth may be missing,
- * and then the facet's corners say it. Designs are turned by half a turn about z, so that the
+ * and then the facet's corners give it. Designs are turned by half a turn about z, so that the
  * index at the gear's offset is in the direction of y, and indices are worked out anew from the
- * normals: those of the program run the other way round on the crown. Document types, entities and
- * whatever else could reach outside the file are refused. */
+ * normals: those of the program run in the other direction on the crown. Document types, entities
+ * and whatever else could reach outside the file are refused. */
 
 /* name is for messages; report (may be NULL) gets what was left out or assumed. ABBE_PARSE for what
  * is no such file, ABBE_SCHEMA for values that no stone has, with the line. */

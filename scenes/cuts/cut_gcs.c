@@ -147,7 +147,7 @@ static void begin_facet(reading *r, const char **attributes) {
   r->index_deg = number(r, attributes, "index_angle", NAN);
 }
 
-/* The normal of an angle and an index: on the crown they turn the other way than below. */
+/* The normal of an angle and an index: on the crown they turn in the other direction than below. */
 static bool find_normal(reading *r) {
   if (abbe_vector_finite(r->n) && abbe_vector_normalise(r->n)) return true;
   if (!isfinite(r->index_deg)) return false;

@@ -25,7 +25,7 @@ typedef struct work {
   double *dual;  /* [planes * 3] */
   size_t meets, room, listed;
   meet *meet;
-  uint32_t *plane; /* [room] of all meets */
+  uint32_t *plane; /* [capacity] planes of all meets */
   uint32_t *set;   /* [meets] */
 } work;
 

@@ -33,7 +33,7 @@ size_t abbe_cut_stretch_main(const abbe_cut *cut, const abbe_cut_polyhedron *pol
 /* That tier's angle, degrees above 0 on either side; 0 where there is none. */
 double abbe_cut_stretch_main_deg(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
                                  abbe_cut_side side);
-/* The factor that brings an angle to another, both between 0 and 90 degrees either way. */
+/* The factor that brings an angle to another, both between 0 and 90 degrees, up or down. */
 double abbe_cut_stretch_factor(double from_deg, double to_deg);
 
 /* Whether crown and pavilion meet without a girdle between them, and not at one height: both can

@@ -4,12 +4,11 @@
  * A latitude-longitude map (radiance_map.h), turned as a whole, of linear Rec.709 RGB relative to
  * one illuminant (colorimetry/upsampling.h lifts it to spectra): radiance in W/(m2 sr) over the
  * rendered wavelengths, where RGB (L, L, L) is L of the illuminant's own light. Directions point
- * from the scene to where the light comes from. It says what arrives from there; what meets it on
- * the way, and pictures of it, are the renderer's and the tracer's.
+ * from the scene to where the light comes from. It holds what arrives from there; what hides it,
+ * and pictures of it, are the renderer's and the tracer's.
  *
  * Make one: fill path, map, to_map, illuminant, illuminant_path, then abbe_environment_prepare,
- * which makes the rest. Internal to scenes/.
- */
+ * which makes the rest. Internal to scenes/. */
 #ifndef ABBE_SCENES_ENVIRONMENT_ENVIRONMENT_H
 #define ABBE_SCENES_ENVIRONMENT_ENVIRONMENT_H
 
@@ -25,7 +24,7 @@
 /* An entry of equal width is kept by its own index up to `keep`, and goes to `other` above. */
 typedef struct abbe_alias_table {
   size_t count;
-  double *keep;    /* [count], 0 to 1: of a bright entry among many only its last bits tell */
+  double *keep;    /* [count], 0 to 1: of a bright entry among many only its last bits matter */
   uint32_t *other; /* [count] */
 } abbe_alias_table;
 

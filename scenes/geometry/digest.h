@@ -1,5 +1,5 @@
-/* digest.h: a number that tells whether parts of a scene have changed. Not for who may forge them.
- */
+/* digest.h: a number by which changes of a scene's parts are found. It is no protection against
+ * forgery. */
 #ifndef ABBE_SCENES_GEOMETRY_DIGEST_H
 #define ABBE_SCENES_GEOMETRY_DIGEST_H
 

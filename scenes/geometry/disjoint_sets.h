@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-/* The number that stands for the set of x; ways to it are halved as they are gone. */
+/* The number that stands for the set of x; paths to it are halved as they are followed. */
 static inline uint32_t abbe_disjoint_sets_find(uint32_t *parent, uint32_t x) {
   while (parent[x] != x) x = parent[x] = parent[parent[x]];
   return x;

@@ -20,7 +20,7 @@ static abbe_result read_size(abbe_yaml *yaml, abbe_yaml_node node, abbe_camera *
   return ABBE_OK;
 }
 
-/* From where 'frame' looks: the unit vector from its objects to the eye. */
+/* From where 'frame' looks: the unit vector from its objects to the camera. */
 static abbe_result read_side(abbe_yaml *yaml, abbe_yaml_node node, double out[3],
                              abbe_error *error) {
   double up = 60, around = -90;
@@ -108,13 +108,13 @@ static abbe_result mark_all(abbe_yaml *yaml, abbe_yaml_node frame, const abbe_sc
   return result;
 }
 
-/* The camera's directions: right, up, and back, towards the eye. */
+/* The camera's directions: right, up, and back, towards the camera. */
 typedef struct axes {
   double of[3][3];
 } axes;
 
-/* How far the eye must be for all to lie within the tangents; *aside: how far their middle, as it
- * is seen from there, lies to the right and up. */
+/* How far the camera must be for all to lie within the tangents; *aside: how far their middle, as
+ * it is seen from there, lies to the right and up. */
 static double distance(const abbe_scene *scene, const bool *framed, const double target[3],
                        const axes *a, const double tangent[2], double aside[2]) {
   double far = 0, least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};

@@ -156,8 +156,8 @@ static abbe_result require_angle(const reading *r, abbe_yaml_node node, const ch
   return result == ABBE_OK ? read_angle(r, node, key, least, most, out, error) : result;
 }
 
-/* Where a source stands: 'elevation' and 'azimuth', or 'towards'. Up is the way in which elevation
- * grows. *found (NULL: it must be there): whether either is given. */
+/* Where a source stands: 'elevation' and 'azimuth', or 'towards'. Up is the direction in which
+ * elevation grows. *found (NULL: it must be there): whether either is given. */
 static abbe_result read_place(const reading *r, abbe_yaml_node node, abbe_environment_source *out,
                               bool *found, abbe_error *error) {
   const abbe_yaml_node towards = abbe_yaml_get(r->yaml, node, "towards");
@@ -259,7 +259,7 @@ static abbe_result read_sky(reading *r, abbe_yaml_node node, abbe_error *error) 
   return add(r, node, &sky, error);
 }
 
-/* --- lamps --- */
+/* --- small sources --- */
 
 /* Turned about the line of sight, anticlockwise as it is seen. */
 static void roll(abbe_environment_source *s, double angle) {

@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Water at the scene's time, as an object of a scene file asks for it. */
+/* Water at the scene's time, as an object of a scene file describes it. */
 
 static abbe_result need_water_length(abbe_yaml *yaml, abbe_yaml_node node, const char *key,
                                      double *out, abbe_error *error) {
@@ -27,7 +27,7 @@ static abbe_result need_water_length(abbe_yaml *yaml, abbe_yaml_node node, const
              : result;
 }
 
-/* The list under key, of at most `most` mappings, with room for them in *room, zeroed. */
+/* The list under key, of at most `most` mappings, with capacity for them in *room, zeroed. */
 static abbe_result list_of(const abbe_object_reading *r, const char *key, size_t most, size_t size,
                            void **room, size_t *count, abbe_yaml_node *list, abbe_error *error) {
   *list = abbe_yaml_get(r->yaml, r->node, key);
@@ -214,7 +214,7 @@ static abbe_result read_gem(const abbe_object_reading *r, abbe_mesh *out, abbe_e
              : result;
 }
 
-/* Angles in degrees, the rest in shares of the diameter or of the way; 0 stays the default. */
+/* Angles in degrees, the rest in shares of the diameter or of the distance; 0 stays the default. */
 static abbe_result read_brilliant(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
   abbe_brilliant cut = {0};
   double crown = 34.5, pavilion = 40.75;

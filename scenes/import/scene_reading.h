@@ -62,15 +62,15 @@ abbe_result abbe_setting_read(const abbe_object_reading *reading, const abbe_mat
 
 /* A scene's camera: as its file has it, or placed so that objects fill the picture. */
 
-/* The values under 'camera'. With 'frame' its eye and target are not there yet. Errors with file,
+/* The values under 'camera'. With 'frame' its place and target are not there yet. Errors with file,
  * line and key. */
 abbe_result abbe_camera_read(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera *out,
                              abbe_error *error);
 
 /* What 'frame' leaves open, once the scene has its objects: the target is the middle of those
- * objects as they are seen, the eye as near as lets them fill the share 'fill' of the picture's
- * width or height, whichever comes first. Then the whole camera is held to what a camera must be.
- * ABBE_SCHEMA for an object that is not there, with the nearest name. */
+ * objects as they are seen, the camera as near as lets them fill the share 'fill' of the picture's
+ * width or height, whichever comes first. Then the whole camera is checked. ABBE_SCHEMA for an
+ * object that is not there, with the nearest name. */
 abbe_result abbe_camera_frame(abbe_yaml *yaml, abbe_yaml_node root, abbe_scene *scene,
                               abbe_error *error);
 
@@ -119,12 +119,12 @@ abbe_result abbe_environment_read(abbe_yaml *yaml, abbe_yaml_node node, const ch
 abbe_result abbe_reflectance_file_read(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
                                        abbe_object *out, abbe_error *error);
 
-/* An object's surface in the world: fixed, placed, told apart, known exactly where it can be.
+/* An object's surface in the world: fixed, placed, split into solids, known exactly where it can
+ * be.
  *
- * A part of scene_reading.h, which reads what is asked for. Here a refractor's mesh becomes a
- * closed surface, shells that cross become solids of their own, and the surface gets its size and
- * place.
- */
+ * A part of scene_reading.h, which reads the keys. Here a refractor's mesh becomes a closed
+ * surface, shells that cross become solids of their own, and the surface gets its size and
+ * place. */
 
 typedef struct abbe_object_surface {
   double matrix[16]; /* from its own coordinates to the world */
@@ -142,10 +142,10 @@ typedef struct abbe_object_surface {
   size_t setting_count;
 } abbe_object_surface;
 
-/* From out->mesh, in its own coordinates, and out's material and name, all the rest. Shells that
- * cross become further objects behind out, *count in all, for which there is room (zeroed before).
- * ABBE_GEOMETRY for what cannot be a surface, of a refractor: in the mesh's own coordinates;
- * ABBE_UNSUPPORTED for more objects than there is room for. */
+/* Makes, from out->mesh in its own coordinates and out's material and name, all the rest. Shells
+ * that cross become further objects behind out, *count in all, up to the capacity `room` (zeroed
+ * before). ABBE_GEOMETRY for what cannot be a surface, of a refractor: in the mesh's own
+ * coordinates; ABBE_UNSUPPORTED for more objects than the capacity. */
 abbe_result abbe_object_place(const abbe_object_surface *surface, abbe_object *out, size_t room,
                               size_t *count, abbe_error *error);
 

@@ -33,7 +33,7 @@ typedef struct lamp {
   size_t number; /* in the order in which they were found */
 } lamp;
 
-/* What of a bin is a lamp's: the radiance above that. */
+/* What of a bin belongs to a compact source: the radiance above that. */
 typedef struct cut {
   double above;
   size_t lamp; /* its number; MOST_LAMPS: none's */
@@ -41,11 +41,12 @@ typedef struct cut {
 
 typedef struct search {
   const abbe_environment *environment;
-  sums *bin;            /* [BINS], of what is brighter than the present bound */
-  unsigned char *place; /* [BINS]: 1 where it is looked for, then 2 where it belongs to a lamp */
-  size_t *found;        /* [BINS], bins of one lamp */
-  cut *cuts;            /* [BINS] */
-  double (*way)[2];     /* cosine and sine of each column's azimuth */
+  sums *bin; /* [BINS], of what is brighter than the present bound */
+  unsigned char
+      *place;    /* [BINS]: 1 where it is looked for, then 2 where it belongs to a compact source */
+  size_t *found; /* [BINS], bins of one compact source */
+  cut *cuts;     /* [BINS] */
+  double (*way)[2]; /* cosine and sine of each column's azimuth */
   lamp lamp[MOST_LAMPS];
   size_t count;
 } search;
@@ -119,8 +120,8 @@ static size_t find_bins(search *s, size_t first) {
   return count;
 }
 
-/* Lamps brighter than the bound: those small enough for a sharp light are kept; others are looked
- * for again above twice the bound, where their light is theirs alone. */
+/* Finds compact sources brighter than the bound: those small enough for a sharp light are kept;
+ * others are looked for again above twice the bound, where their light is theirs alone. */
 static void find_lamps(search *s, double above) {
   const double least = LEAST_SHARE * s->environment->luminance;
   memset(s->place, 1, BINS);
@@ -202,8 +203,9 @@ static abbe_result set_light(const abbe_environment *e, const abbe_upsampling *u
   return set_spectrum(e, up, rgb, &out->illuminant, error);
 }
 
-/* Irradiance of all but the lights, by normal. By luminance it is nowhere negative: a lamp's own
- * irradiance is that of its light, or, on planes that only some of it is before, more. */
+/* Irradiance of all but the lights, by normal. By luminance it is nowhere negative: a compact
+ * source's own irradiance is that of its light, or, on planes that only some of it is before,
+ * more. */
 static void find_soft(const search *s, abbe_irradiance_map *out) {
   for (size_t row = 0; row < ABBE_IRRADIANCE_MAP_ROWS; row++)
     for (size_t column = 0; column < ABBE_IRRADIANCE_MAP_COLUMNS; column++) {
@@ -232,7 +234,7 @@ static void drop_search(search *s) {
   free(s->way);
 }
 
-/* The brightest lamps, at most so many. */
+/* The brightest compact sources, at most so many. */
 static abbe_result look_for_lamps(const abbe_environment *e, size_t most, search *s,
                                   abbe_error *error) {
   *s = (search){.environment = e,

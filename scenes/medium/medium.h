@@ -1,8 +1,8 @@
-/* medium.h: what scatters and absorbs light on its way: mist, or what is afloat in water.
+/* medium.h: what scatters and absorbs light along its path: mist, or what is afloat in water.
  *
- * Homogeneous: coefficients by wavelength and a phase function after Henyey and Greenstein, alike
- * everywhere in a region. Light is scattered once: what is scattered goes to the eye or is lost.
- */
+ * Homogeneous: coefficients by wavelength and a phase function after Henyey and Greenstein,
+ * alike everywhere in a region. Light is scattered once: what is scattered goes to the camera or
+ * is lost. */
 #ifndef ABBE_SCENES_MEDIUM_MEDIUM_H
 #define ABBE_SCENES_MEDIUM_MEDIUM_H
 
@@ -12,7 +12,7 @@
 
 #include <stdbool.h>
 
-/* A phase function is no narrower than with this mean cosine either way. */
+/* The largest mean cosine of a phase function, forwards or backwards. */
 #define ABBE_MEDIUM_MOST_G 0.99
 
 typedef struct abbe_medium {
@@ -33,8 +33,8 @@ double abbe_medium_absorption(const abbe_medium *medium, double lambda_nm);
 /* Whether coefficients vary over [low_nm, high_nm]. */
 bool abbe_medium_is_coloured(const abbe_medium *medium, double low_nm, double high_nm);
 
-/* Share of the scattered light a steradian, 1/sr, where its way turns by the angle of that cosine;
- * over all directions 1. [HenyeyGreenstein1941] */
+/* Share of the scattered light a steradian, 1/sr, where its direction turns by the angle of that
+ * cosine; over all directions 1. [HenyeyGreenstein1941] */
 double abbe_medium_phase(double g, double cosine);
 
 /* The `medium` of a scene file: of the air, and of what refracts. */

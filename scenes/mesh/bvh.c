@@ -159,7 +159,7 @@ static void build(builder *b, size_t node, size_t first, size_t count, size_t de
     b->node[node].count = (int32_t)count;
     return;
   }
-  /* where no place tells triangles apart, and too far down, halves end it */
+  /* where no place separates triangles, and too far down, halves end it */
   size_t left = best.axis >= 0 ? part(b, first, count, &best, &middles) : count / 2;
   size_t child = b->node_count;
   b->node_count += 2;

@@ -29,7 +29,7 @@ typedef struct abbe_bvh {
   abbe_bvh_node *node; /* [node_count] */
   size_t triangle_count;
   uint32_t *triangle; /* [triangle_count] the BVH's order: index of the triangle given */
-  size_t depth;       /* inner nodes on the longest way down: what a traversal stacks at the most */
+  size_t depth; /* inner nodes on the longest path down: what a traversal stacks at the most */
 } abbe_bvh;
 
 /* triangle[i]: three corners, metres; finite. ABBE_GEOMETRY without triangles, ABBE_CANCELLED by

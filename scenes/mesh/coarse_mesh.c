@@ -19,7 +19,7 @@ typedef struct groups {
   const abbe_mesh *mesh;
   double min[3], cell;
   size_t room;  /* a power of two, more than there are vertices */
-  group *table; /* [room] */
+  group *table; /* [capacity] */
   uint32_t *of; /* [vertices]: where its group is in the table */
   bool *seam;   /* [vertices]: another one stands at the same place; these stay as they are */
 } groups;

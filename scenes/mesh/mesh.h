@@ -36,7 +36,7 @@ typedef enum abbe_mesh_normals {
 
 #define ABBE_MESH_CREASE_RAD (30 * ABBE_PI / 180)
 
-/* Room for the given counts, zeroed; uv too where with_uv. Checks sizes first. */
+/* Allocates a mesh of the given counts, zeroed; uv too where with_uv. Checks sizes first. */
 abbe_result abbe_mesh_make(size_t vertices, size_t faces, bool with_uv, abbe_mesh *out,
                            abbe_error *error);
 void abbe_mesh_free(abbe_mesh *mesh);

@@ -8,7 +8,7 @@
 
 typedef struct triple {
   uint32_t point[3], face; /* points in ascending order */
-  bool odd;                /* the face runs the other way round */
+  bool odd;                /* the face is reversed */
 } triple;
 
 static triple triple_of(const abbe_topology *t, uint32_t face) {
@@ -36,7 +36,11 @@ static bool same_points(const triple *a, const triple *b) {
   return memcmp(a->point, b->point, sizeof a->point) == 0;
 }
 
-enum { KEPT, DROPPED, WALL }; /* a wall: as many faces each way, of which one is marked so */
+enum {
+  KEPT,
+  DROPPED,
+  WALL
+}; /* a wall: as many faces in either direction, of which one is flagged so */
 
 /* Of faces on the same points one stays, of the side that more of them show; with as many on both
  * sides one is flagged as a wall, and its back is dropped or, where walls stay, kept. */

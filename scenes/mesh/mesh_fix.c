@@ -111,8 +111,8 @@ static bool runs_along(const abbe_topology *t, uint32_t f, uint32_t e) {
   return false;
 }
 
-/* Walks from face to face over edges with two faces and marks in side[] which agree with the
- * first (1) and which must turn (2); queue has room for every face. Returns how many it met. */
+/* Goes from face to face over edges with two faces and notes in side[] which agree with the first
+ * (1) and which must turn (2); queue has capacity for every face. Returns how many it met. */
 static size_t walk(const abbe_topology *t, uint32_t first, unsigned char *side, uint32_t *queue) {
   size_t head = 0, tail = 0;
   queue[tail++] = first;
@@ -220,7 +220,7 @@ static abbe_result finish(abbe_mesh *mesh, const abbe_topology *t, bool repair, 
   if (result == ABBE_OK && !is_sound(&r)) result = refuse(&r, repair, error);
   size_t turned = 0;
   if (result == ABBE_OK) result = turn_outwards(mesh, t, done, &turned, error);
-  /* bodies that touch along edges are told apart by where they lie, so by which way they look */
+  /* bodies that touch along edges are separated by place and by the side that they face */
   for (int i = 0; i < 3 && result == ABBE_OK && turned > 0 && r.touching_edges > 0; i++) {
     abbe_topology again;
     result = abbe_topology_make(mesh, &again, error);

@@ -29,7 +29,7 @@ static int by_start(const void *a, const void *b) {
   return (x->to > y->to) - (x->to < y->to);
 }
 
-/* Rims as closed ways that pass no point twice: those of rim i from first[i] to first[i + 1] in
+/* Rims as closed paths that pass no point twice: those of rim i from first[i] to first[i + 1] in
  * point[]. Both arrays are malloc'd. */
 typedef struct rims {
   size_t count;
@@ -62,8 +62,8 @@ static size_t step_from(const step *all, size_t count, uint32_t from) {
   return low;
 }
 
-/* Walks along open edges; where the way comes to a point of its own, what it has gone since is a
- * rim. A way that leads nowhere is forgotten. place: of each point on the way, or NONE. */
+/* Follows open edges; where the path comes to a point of its own, its last closed part is a rim. A
+ * path that leads nowhere is dropped. place: of each point on the path, or NONE. */
 static void walk_rims(const step *all, size_t count, bool *used, uint32_t *way, uint32_t *place,
                       rims *out) {
   for (size_t start = 0; start < count; start++) {
@@ -164,7 +164,7 @@ static bool fan_is_safe(const abbe_mesh *mesh, const uint32_t *rim, size_t n, do
   return true;
 }
 
-/* Room for more vertices and faces; the mesh keeps its counts. */
+/* Makes capacity for more vertices and faces; the mesh keeps its counts. */
 static bool grow(abbe_mesh *mesh, size_t vertices, size_t faces) {
   if (vertices > ABBE_MESH_MAX_VERTICES || faces > ABBE_MESH_MAX_FACES) return false;
   void *position = realloc(mesh->position, vertices * sizeof *mesh->position);
@@ -254,7 +254,7 @@ static step edge_between(uint32_t a, uint32_t b) {
   return a < b ? (step){a, b} : (step){b, a};
 }
 
-/* Marks chords that are edges of the mesh already: of them a third face would hang. */
+/* Flags chords that are edges of the mesh already: a third face would hang on them. */
 static void mark_taken(const edges *known, const uint32_t *rim, size_t n, chord *at) {
   for (size_t i = 0; i < n; i++)
     for (size_t k = i + 2; k < n && k - i < n - 1; k++) {

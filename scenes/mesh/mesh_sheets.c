@@ -108,7 +108,7 @@ static void let_wait(desk *d, double whole) {
   }
 }
 
-/* Marks the sheets that go in one pass: none meets another. Each is of less than half of the area
+/* Flags the sheets that go in one pass: none meets another. Each is of less than half of the area
  * that those before it, which are smaller, leave. Returns how many. */
 static size_t mark_sheets(const abbe_topology *t, desk *d) {
   double whole = 0;

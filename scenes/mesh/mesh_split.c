@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The faces of one solid with their vertices; number[] has room for every vertex. */
+/* The faces of one solid with their vertices; number[] has capacity for every vertex. */
 static abbe_result take_solid(const abbe_mesh *mesh, const abbe_topology *t, const abbe_shells *s,
                               uint32_t solid, uint32_t *number, abbe_mesh *out, abbe_error *error) {
   size_t faces = 0, vertices = 0;

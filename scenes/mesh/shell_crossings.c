@@ -58,7 +58,7 @@ static void follow(abbe_shell_search *s, const abbe_shell_tree *t, abbe_shell_pa
 }
 
 /* Adds a vote for each other shell that the point lies in: along the ray the first face of a shell
- * tells by the side that it shows. */
+ * shows by its side whether it does. */
 static void vote(abbe_shell_search *s, const abbe_shell_tree *t, uint32_t self, const double p[3],
                  const double d[3], meetings *met, unsigned char *votes) {
   const abbe_shell_part all = {0, 0, s->t->face_count};
@@ -284,7 +284,7 @@ void abbe_shell_sort_crossings(abbe_shells *out) {
   out->crossing_count = kept;
 }
 
-/* Doubles the room unless a quarter of it is free. */
+/* Doubles the capacity unless a quarter of it is free. */
 static bool crossings_have_room(abbe_shell_search *s) {
   abbe_shells *out = s->out;
   if (out->crossing_count < s->room - s->room / 4) return true;

@@ -38,8 +38,8 @@ typedef struct abbe_shells {
 } abbe_shells;
 
 /* The mesh is closed, and each shell consistently oriented, outwards or inwards. ABBE_GEOMETRY
- * where hollows cross, so that no solids can be told, with the place. ABBE_UNSUPPORTED where so
- * many faces and shells cross or nest that it would take too long. ABBE_NO_MEMORY. */
+ * where hollows cross, so that solids are ambiguous, with the place. ABBE_UNSUPPORTED where so many
+ * faces and shells cross or nest that it would take too long. ABBE_NO_MEMORY. */
 abbe_result abbe_shells_find(const abbe_mesh *mesh, const abbe_topology *topology, abbe_shells *out,
                              abbe_error *error);
 void abbe_shells_free(abbe_shells *shells);

@@ -212,7 +212,7 @@ static int64_t angle_around(const abbe_topology *t, const abbe_edge *e, uint32_t
 
 /* Pairs the faces around one edge as brackets: a body opens at a face that runs against the edge
  * and closes at one along it, of the same patch if there is one, else at the nearest that is free.
- * False where they do not pair up. stack has room for them all. */
+ * False where they do not pair up. stack has capacity for them all. */
 static bool pair_up(const spoke *at, size_t count, uint32_t *parent, uint32_t *stack) {
   long depth = 0, least = 0;
   size_t first = 0, waiting = 0;

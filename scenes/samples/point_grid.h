@@ -16,16 +16,16 @@
 typedef struct abbe_point_grid {
   double cell;    /* edge of a cell, m */
   uint32_t *head; /* [mask + 1] last number of a cell's chain, or UINT32_MAX */
-  uint32_t *next; /* [room] */
-  uint32_t *key;  /* [room] of each number's cell, which tells those of a chain apart */
+  uint32_t *next; /* [capacity] */
+  uint32_t *key;  /* [capacity] of each number's cell, which separates those of a chain */
   size_t mask, room;
 } abbe_point_grid;
 
-/* An empty grid for numbers below `room`; cell > 0. ABBE_INVALID_ARGUMENT, ABBE_NO_MEMORY. */
+/* Makes an empty grid for numbers below `room`; cell > 0. ABBE_INVALID_ARGUMENT, ABBE_NO_MEMORY. */
 abbe_result abbe_point_grid_make(double cell, size_t room, abbe_point_grid *out, abbe_error *error);
 void abbe_point_grid_free(abbe_point_grid *grid);
 
-/* Adds a number below `room`, once, at its place. */
+/* Adds a number below the capacity, once, at its place. */
 void abbe_point_grid_add(abbe_point_grid *grid, const double at[3], size_t number);
 
 /* Called with a number of such a cell; false: no more. */

@@ -20,7 +20,7 @@ typedef struct builder {
   size_t *first;     /* [samples + 1] of each sample's candidates in `owned` */
   uint32_t *owned;   /* [candidates] by their owners */
   uint32_t *cluster; /* [samples] as they are halved */
-  keyed *order;      /* room for a sort */
+  keyed *order;      /* space for a sort */
 } builder;
 
 static double coordinate(const abbe_surface_point *p, int axis, double turn) {

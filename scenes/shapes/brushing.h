@@ -1,6 +1,5 @@
-/* brushing.h: how rough a mirror is and which way its grooves run. What that does to light is
- * spectral/microfacets.h's. Internal to scenes/.
- */
+/* brushing.h: how rough a mirror is and in which direction its grooves run. What that does to light
+ * is in spectral/microfacets.h. Internal to scenes/. */
 #ifndef ABBE_SCENES_SHAPES_BRUSHING_H
 #define ABBE_SCENES_SHAPES_BRUSHING_H
 
@@ -14,7 +13,7 @@ typedef struct abbe_brushing {
   bool around;             /* they run around the axis through `centre`, as on a lathe; else along
                               the axis, as far as the surface does */
   double axis[3],
-      centre[3]; /* world; of no meaning where x and y are alike. A zero axis: any way */
+      centre[3]; /* world; of no meaning where x and y are alike. A zero axis: any direction */
 } abbe_brushing;
 
 static inline bool abbe_brushing_is_rough(const abbe_brushing *b) {

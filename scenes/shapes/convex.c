@@ -116,8 +116,7 @@ static double deepest_dent(const search *s, double place[3]) {
 }
 
 /* Whether faces beside a plane's lie clearly off it or meet it at an angle, all that have a plane
- * of their own: the planes that a gentle curve is cut into are told apart by nothing but the cut.
- */
+ * of their own: the planes that a gentle curve is cut into differ by nothing but the cut. */
 static bool planes_are_clear(const search *s, const abbe_topology *t) {
   for (size_t i = 0; i < t->edge_count; i++) {
     const uint32_t *face = t->edge[i].face;

@@ -1,10 +1,9 @@
 /* convex.h: whether a closed mesh is a convex solid of few faces, as gems and prisms are: its
  * planes, or why it is none, by how much and where.
  *
- * Triangles that lie in one plane, as far as the file tells, make one of its faces. A solid whose
+ * Triangles that lie in one plane, to the digits of the file, make one of its faces. A solid whose
  * normals are rounded is none, for light would be bent by them and not by its faces. It reads a
- * mesh and changes nothing. Internal to scenes/.
- */
+ * mesh and changes nothing. Internal to scenes/. */
 #ifndef ABBE_SCENES_SHAPES_CONVEX_H
 #define ABBE_SCENES_SHAPES_CONVEX_H
 
@@ -31,7 +30,7 @@ typedef enum abbe_convex_verdict {
   ABBE_CONVEX_SOLID,
   ABBE_CONVEX_PARTS,  /* it is not one closed surface with its faces outwards */
   ABBE_CONVEX_MANY,   /* it takes more planes than asked for */
-  ABBE_CONVEX_CURVED, /* its planes are not told apart */
+  ABBE_CONVEX_CURVED, /* its planes cannot be separated */
   ABBE_CONVEX_DENTED, /* a corner lies in front of a face */
   ABBE_CONVEX_ROUNDED /* normals are not those of its faces */
 } abbe_convex_verdict;

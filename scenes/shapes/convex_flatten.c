@@ -99,7 +99,7 @@ static abbe_result find_planes(solid *s, double tolerance, abbe_error *error) {
 
 /* ---- from planes to faces ---- */
 
-/* Planes that meet in one point but for rounding would do so in an order that hangs on who asks.
+/* Planes that meet in one point but for rounding would meet in an order that depends on the caller.
  * They are parted by so much of the size, each by another share of it. */
 #define PARTED 1e-7
 
@@ -124,7 +124,7 @@ typedef struct polygon {
 
 #define OUTSIDE UINT32_MAX /* the edge of the square that a face is cut from */
 
-/* Keeps what lies behind plane k; `to` has room for one corner more than `from`. */
+/* Keeps what lies behind plane k; `to` has capacity for one corner more than `from`. */
 static void clip(const polygon *from, const mean_plane *by, uint32_t k, polygon *to) {
   to->count = 0;
   for (size_t i = 0; i < from->count; i++) {
@@ -160,7 +160,7 @@ static void begin(const solid *s, const mean_plane *p, polygon *out) {
   }
 }
 
-/* Where three planes meet, the same whoever asks. */
+/* Where three planes meet, the same for every order of them. */
 static void meet(const solid *s, uint32_t a, uint32_t b, uint32_t c, double out[3]) {
   uint32_t of[3] = {a, b, c};
   for (int i = 0; i < 3; i++) {
@@ -180,7 +180,8 @@ static void meet(const solid *s, uint32_t a, uint32_t b, uint32_t c, double out[
     out[k] = s->centre[k] + (p->d * qr[k] + q->d * rp[k] + r->d * pq[k]) / determinant;
 }
 
-/* A fan around the middle of the face; counted where out has no room yet. False: it has no end. */
+/* A fan around the middle of the face; only counted where out has no capacity yet. False: it has no
+ * end. */
 static bool add_face(const solid *s, uint32_t i, const polygon *face, abbe_mesh *out,
                      size_t *vertices, size_t *faces) {
   double middle[3] = {0, 0, 0};

@@ -1,9 +1,8 @@
 /* shape.h: shapes with parameters: as triangles, and as the exact surface where one is known.
  *
- * Shapes stand in their own coordinates, metres, z up, centred on the origin unless said
+ * Shapes stand in their own coordinates, metres, z up, centred on the origin unless stated
  * otherwise. Curved shapes are tessellated with smooth normals, faceted ones with face normals.
- * Internal to scenes/.
- */
+ * Internal to scenes/. */
 #ifndef ABBE_SCENES_SHAPES_SHAPE_H
 #define ABBE_SCENES_SHAPES_SHAPE_H
 

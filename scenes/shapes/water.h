@@ -1,10 +1,9 @@
 /* water.h: a basin of water at an instant: waves and rings of drops over a flat bottom, as a closed
  * mesh.
  *
- * Linear waves: each goes its own way, undisturbed by the others, by the walls (which reflect none)
- * and by its own height. Gravity, surface tension and the depth say how fast [Lamb1932]. Any
- * instant is computed by itself, so frames may be made in any order. Internal to scenes/.
- */
+ * Linear waves: each moves undisturbed by the others, by the walls (which reflect none) and by its
+ * own height. Gravity, surface tension and the depth give its speed [Lamb1932]. Any instant is
+ * computed by itself, so frames may be made in any order. Internal to scenes/. */
 #ifndef ABBE_SCENES_SHAPES_WATER_H
 #define ABBE_SCENES_SHAPES_WATER_H
 

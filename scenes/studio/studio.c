@@ -247,7 +247,7 @@ static abbe_yaml_node table_of(const building *b, size_t i) {
   return object_called(b, "table", &index);
 }
 
-/* Table and lamps are as large beside large stones as beside small ones. */
+/* Table and light sources are as large beside large stones as beside small ones. */
 static abbe_result set_size(building *b, abbe_error *error) {
   const double across = fmax((double)b->columns * b->pitch[0], (double)b->rows * b->pitch[1]);
   const bool finger =

@@ -27,8 +27,8 @@
  * impostor: false position of the ratio |x| / |p| as seen from the light, and before there is a
  *   bracket by the plane through the place that is seen far along the ray.
  * ratio: illinois of g over |p - light|, which is linear in d wherever p lies on a plane.
- * exact: no lookups; who asks for it meets the surfaces themselves.
- * auto: whatever the asker's default is. */
+ * exact: no lookups; rays meet the surfaces themselves.
+ * auto: the default of the profile. */
 #define ABBE_ESTIMATORS(X)                                                                         \
   X(AUTO, "auto")                                                                                  \
   X(SHAH, "shah")                                                                                  \

@@ -1,10 +1,9 @@
 /* map_layout.h: where the texels of a receiver map lie: a light's view, and its warped axes.
  *
  * A receiver map is a picture that a light projects onto the scene: each texel holds the flux that
- * landed in it. The layout says which texel holds which place, so that two maps can be compared
+ * hits a receiver in it. The layout gives the place of each texel, so that two maps can be compared
  * texel by texel. It holds no light and knows no optics. Texture coordinates run from 0 to 1, x to
- * the right and y upwards; an image's row 0 is at the top.
- */
+ * the right and y upwards; an image's row 0 is at the top. */
 #ifndef ABBE_SCENES_VIEW_MAP_LAYOUT_H
 #define ABBE_SCENES_VIEW_MAP_LAYOUT_H
 

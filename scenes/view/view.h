@@ -1,9 +1,8 @@
-/* view.h: what a light or the eye looks through: a frustum from a point or along a direction.
+/* view.h: what a light or the camera looks through: a frustum from a point or along a direction.
  *
  * The window is left, right, bottom, top: tangents on the plane at distance 1 (perspective) or
  * metres (orthographic), off-centre where that fits tighter. Doubles; the shaders' View is its
- * float copy. Lengths in metres, world coordinates.
- */
+ * float copy. Lengths in metres, world coordinates. */
 #ifndef ABBE_SCENES_VIEW_VIEW_H
 #define ABBE_SCENES_VIEW_VIEW_H
 
@@ -38,8 +37,8 @@ void abbe_view_square(abbe_view *view);
 /* Column-major world-to-clip matrix. */
 void abbe_view_matrix(const abbe_view *view, double out[16]);
 
-/* The same with depths for a buffer of floats, from 1 at near to 0 at infinity (perspective, where far
- * does not matter) or at far: a float tells depths apart to 2^-23 of them at any distance, however
+/* The same with depths for a buffer of floats, from 1 at near to 0 at infinity (perspective, where
+ * far does not matter) or at far: a float resolves depths to 2^-23 of them at any distance, however
  * close near is. */
 void abbe_view_reversed_matrix(const abbe_view *view, double out[16]);
 

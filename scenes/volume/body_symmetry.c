@@ -8,7 +8,7 @@
 static const double tolerance = 1e-5;
 /* The direction that others are brought nearest to: along nothing that shapes are made along. */
 static const double pole[3] = {0.8164, 0.4519, 0.3595};
-/* That marks are sorted along, likewise. */
+/* The direction along which vertices are sorted, likewise. */
 static const double order[3] = {0.3571, 0.7433, 0.5656};
 static const double unit_map[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
@@ -20,7 +20,7 @@ typedef struct mark {
 typedef struct search {
   mark *mark;
   size_t count;
-  const mark *first, *second; /* that tell a map, with the centre */
+  const mark *first, *second; /* that define a map, with the centre */
   abbe_body_symmetry *found;
 } search;
 
@@ -113,7 +113,7 @@ static bool keeps_all(const search *s, const double map[9]) {
   return true;
 }
 
-/* A map that is there already: corners of faceted meshes are several marks in one place. */
+/* A map that is there already: corners of faceted meshes are several vertices in one place. */
 static bool is_known(const abbe_body_symmetry *s, const double map[9]) {
   for (size_t i = 0; i < s->count; i++) {
     double off = 0;

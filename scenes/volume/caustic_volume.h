@@ -60,7 +60,7 @@ static inline size_t abbe_caustic_volume_channels(const abbe_caustic_volume *v) 
   return v->kind == ABBE_VOLUME_PRINTED ? 3 : 9;
 }
 
-/* Room for the values of a body, a region and nodes that are there, all 0: ABBE_NO_MEMORY;
+/* Allocates the values of a body, a region and nodes that are there, all 0: ABBE_NO_MEMORY;
  * ABBE_INVALID_ARGUMENT for more than ABBE_CAUSTIC_VOLUME_MOST of them, and for exits. */
 #define ABBE_CAUSTIC_VOLUME_MOST ((size_t)1 << 31)
 abbe_result abbe_caustic_volume_allocate(abbe_caustic_volume *volume, abbe_error *error);
@@ -91,7 +91,7 @@ void abbe_caustic_volume_look(const abbe_caustic_volume *volume, abbe_volume_loo
                               const double to_light[3], abbe_volume_sight *out);
 
 /* Vector irradiance at p of light of unit irradiance: f[0] of X, f[1] of Y, f[2] of Z, interpolated
- * between cells; beyond the region that of its rim on the way there, thinned by the square of the
+ * between cells; beyond the region that of its rim towards p, thinned by the square of the
  * distance. ABBE_VOLUME_VECTOR alone. */
 void abbe_caustic_volume_flux(const abbe_caustic_volume *volume, const abbe_volume_sight *sight,
                               const double p[3], double f[3][3]);

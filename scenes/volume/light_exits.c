@@ -173,7 +173,7 @@ static void read_candidate(const double far[2], const uint16_t *half, candidate 
   }
 }
 
-/* Whether all of them met the same facets and, moved to the aim, go much the same way: a smooth
+/* Whether all of them met the same facets and, moved to the aim, take much the same path: a smooth
  * surface may be met far apart without another facet. */
 static bool is_one(const candidate *c, size_t count) {
   for (size_t i = 0; i < count; i++) {
@@ -189,7 +189,7 @@ static bool is_one(const candidate *c, size_t count) {
   return count > 0;
 }
 
-/* A ray of that place and way, moved by so much of a step and a turn. */
+/* A ray of that place and direction, moved by so much of a step and a turn. */
 static void make_ray(const float *value, const float *step, const float *turn, float part,
                      double radius, abbe_exit_ray *ray) {
   for (int k = 0; k < 3; k++) {
@@ -201,8 +201,8 @@ static void make_ray(const float *value, const float *step, const float *turn, f
   abbe_vector_normalise(ray->way);
 }
 
-/* Nodes' values by weight err by half the second derivative one way, values moved to first order by
- * as much the other: half of both by the third alone. */
+/* Nodes' values by weight err by half the second derivative to one side, values moved to first
+ * order by as much to the other: half of both by the third alone. */
 static void join(const candidate *c, size_t count, double radius, abbe_exit_ray *ray) {
   float sum[ABBE_EXIT_HALVES] = {0}, step[3] = {0}, turn[3] = {0};
   for (size_t i = 0; i < count; i++) {

@@ -100,8 +100,8 @@ abbe_result abbe_light_exits_make(const abbe_light_nodes *nodes, size_t points,
 void abbe_light_exits_free(abbe_light_exits *exits);
 size_t abbe_light_exits_bytes(const abbe_light_exits *exits); /* in memory, without the indices */
 
-/* How likely a point has each bin of wavelengths: by what the eye sees of equal energy, and a part
- * of it evenly, so that no wavelength starves; they sum to 1. */
+/* The probability of each bin of wavelengths for a point: by what the eye sees of equal energy, and
+ * a part of it evenly, so that no wavelength starves; they sum to 1. */
 void abbe_light_exits_chances(double min_nm, double max_nm, double chance[ABBE_LIGHT_EXITS_BINS]);
 
 /* Two unit vectors across a node's direction; with it right-handed. */

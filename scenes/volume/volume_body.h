@@ -11,7 +11,7 @@ typedef struct abbe_volume_body {
   bool ball;                     /* looks the same from all sides */
   double radius;                 /* radius of what bounds it around its centre, m */
   size_t vertices, faces;
-  size_t anchor[3];       /* vertices that tell how it is turned; not read of a ball */
+  size_t anchor[3];       /* vertices that fix how it is turned; not read of a ball */
   double anchor_at[3][3]; /* from its centre, m */
 } abbe_volume_body;
 

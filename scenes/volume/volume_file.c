@@ -401,7 +401,7 @@ static abbe_result take_values(const char *path, const abbe_image *image, abbe_c
   const size_t channels = channels_of(v), pixels = image->width * image->height;
   size_t from[ABBE_EXIT_HALVES];
   abbe_result result = find_channels(path, image, v, from, error);
-  if (result == ABBE_OK && v->kind == ABBE_VOLUME_EXITS) /* these tell how many there are */
+  if (result == ABBE_OK && v->kind == ABBE_VOLUME_EXITS) /* these give the number of exits */
     result = read_points(path, image, from, v, error);
   if (result != ABBE_OK) return result;
   const size_t total = total_of(v);

@@ -63,7 +63,8 @@ void abbe_volume_order_free(abbe_volume_order *order) {
 
 /* ---- joining ---- */
 
-/* What is under way: values by place, and at the first place of what is joined how far it goes. */
+/* State of the joining: values by place, and at the first place of what is joined how far it
+ * reaches. */
 typedef struct joining {
   const abbe_volume_order *order;
   size_t channels;

@@ -1,9 +1,8 @@
 /* gltf_data.h: numbers that a glTF file keeps in buffers: accessors, views, buffers and their
  * files.
  *
- * A file's lists are indexed once. Buffers are loaded when something asks for them. It knows no
- * meshes. Internal to scenes/.
- */
+ * A file's lists are indexed once. Buffers are loaded when they are first needed. It knows no
+ * meshes. Internal to scenes/. */
 #ifndef ABBE_SCENES_IMPORT_MESH_GLTF_DATA_H
 #define ABBE_SCENES_IMPORT_MESH_GLTF_DATA_H
 

@@ -57,7 +57,7 @@ static abbe_result check_morphs(abbe_gltf *g, const cJSON *node, const cJSON *me
   const cJSON *own = cJSON_GetObjectItemCaseSensitive(node, "weights");
   const cJSON *weights = own ? own : cJSON_GetObjectItemCaseSensitive(mesh, "weights");
   if (cJSON_GetObjectItemCaseSensitive(primitive, "targets") == NULL) return ABBE_OK;
-  /* many nodes and primitives may ask for one long list */
+  /* many nodes and primitives may use one long list */
   const abbe_result result = abbe_gltf_charge(g, (size_t)cJSON_GetArraySize(weights), 1);
   if (result != ABBE_OK || !has_weight(weights)) return result;
   return abbe_gltf_fail(g, ABBE_UNSUPPORTED,
@@ -161,7 +161,7 @@ static bool add_triangle(abbe_mesh_reading *to, const primitive *p, size_t first
   return abbe_mesh_reading_end_polygon(to);
 }
 
-/* Lists, strips, of which every second runs the other way round, and fans. */
+/* Lists, strips, of which every second triangle is reversed, and fans. */
 static abbe_result add_primitive(abbe_gltf *g, const primitive *p, const double matrix[16]) {
   enum { LIST = 4, STRIP = 5 };
   const size_t first = g->to->point.count, step = p->mode == LIST ? 3 : 1;

@@ -131,7 +131,7 @@ static void fill_vertices(const abbe_mesh_reading *r, const features *has, abbe_
   out->given_normals = has->normals;
 }
 
-/* Faces of the polygon whose first corner is that; place has room for its corners. */
+/* Faces of the polygon whose first corner is that; place has capacity for its corners. */
 static abbe_result cut(const abbe_mesh_reading *r, const features *has, size_t first, size_t sides,
                        double (*place)[3], uint32_t (*face)[3], double *work, abbe_error *error) {
   const double(*point)[3] = r->point.item;

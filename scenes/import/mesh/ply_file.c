@@ -246,7 +246,7 @@ static bool read_number(reading *r, number_kind kind, double *out) {
 
 /* ---- the body ---- */
 
-/* Why an element was not read; in the order of what is said first. */
+/* Why an element was not read; in the order in which it is reported. */
 typedef enum trouble { FINE, ENDS, NO_INDEX, NO_UVS, NO_MEMORY } trouble;
 
 static trouble read_index(reading *r, number_kind kind, double least, double *out) {
@@ -272,7 +272,7 @@ static trouble read_corners(reading *r, number_kind kind, size_t count) {
   return abbe_mesh_reading_end_polygon(r->to) ? FINE : NO_MEMORY;
 }
 
-/* Every second triangle of a strip runs the other way round; -1 begins another strip. */
+/* Every second triangle of a strip is reversed; -1 begins another strip. */
 static trouble read_strip(reading *r, number_kind kind, size_t count) {
   double last[2] = {-1, -1};
   bool odd = false;

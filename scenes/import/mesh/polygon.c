@@ -14,7 +14,7 @@ enum { NONE = UINT32_MAX };
 #define TRY_CORNER 32
 #define TRY_EDGE 32
 
-/* ---- which way three points turn ---- */
+/* ---- the turn at three points ---- */
 
 typedef const double *point; /* two coordinates, of 1 at the most */
 
@@ -164,7 +164,7 @@ static void clip(cutting *c, uint32_t i) {
   const uint32_t before = c->previous[i], after = c->next[i], t = (uint32_t)c->triangles++;
   memcpy(c->triangle[t], (uint32_t[3]){before, i, after}, sizeof c->triangle[t]);
   memcpy(c->beside[t], (uint32_t[3]){c->behind[i], NONE, c->behind[before]}, sizeof c->beside[t]);
-  /* those behind see the edges the other way round */
+  /* those behind see the edges reversed */
   set_beside(c, c->behind[before], t, i);
   set_beside(c, c->behind[i], t, after);
   c->behind[before] = t;

@@ -265,7 +265,7 @@ void abbe_exit_colours_ends(const abbe_exit_colours *c, size_t bin, double end[2
   end[1] = c->known ? c->most - c->index[bin] : 0;
 }
 
-/* Where a metal's rays go does not depend on their wavelength, so that of all rays of a way those
+/* Where a metal's rays go does not depend on their wavelength, so that of all rays of a path those
  * of one share together have the whole light's colour. What a ray has more or less than that share
  * has its own. */
 static void mix_metal(const abbe_exit_colours *c, double carried, size_t bin, float xyz[4]) {

@@ -1,7 +1,7 @@
 /* exit_light.h: the vector irradiance around an object in a light as it stands, summed up over the
  * rays that leave the object (light_exits.h): values as a vector volume has them, of one block.
  *
- * Nothing is traced: what it asks is where the light and the object are. */
+ * Nothing is traced: it needs only where the light and the object are. */
 #ifndef ABBE_SCENES_VOLUME_EXITS_EXIT_LIGHT_H
 #define ABBE_SCENES_VOLUME_EXITS_EXIT_LIGHT_H
 

@@ -86,7 +86,7 @@ typedef struct landing {
   size_t sheets;
   float (*wide)[2];       /* [sheets] half the width of a ray, in parts of the edges */
   float (*apart)[2];      /* [sheets] how far parts of a ray may be, in those */
-  abbe_exit_track *track; /* [PARTS][sheets] room for a ray's */
+  abbe_exit_track *track; /* [PARTS][sheets] space for a ray's */
   abbe_exit_pages *pages;
 } landing;
 
@@ -96,8 +96,8 @@ typedef struct catching {
   abbe_exit_track *track; /* [sheets] of a ray */
   uint32_t turn;          /* turn of rays */
   double (
-      *flux)[2][BINS]; /* [pages] of Y, by place along each edge: while windows are looked for */
-  float (**value)[4];  /* [pages][2] maps as the pages have them, of W; NULL: nothing has landed */
+      *flux)[2][BINS]; /* [tiles] of Y, by place along each edge: while windows are looked for */
+  float (**value)[4];  /* [tiles][2] maps as the tiles have them, of W; NULL: nothing has hit one */
   double landed;       /* Y, W */
   bool full;           /* no memory was left */
 } catching;
@@ -163,7 +163,7 @@ static float (*map_of(catching *c, size_t page, size_t fine))[4] {
   return *map;
 }
 
-/* A part of a ray has landed: counted while windows are looked for, else laid. xyz: W. */
+/* A part of a ray hits a sheet: counted while windows are looked for, else added. xyz: W. */
 static void land(catching *c, size_t page, float u, float v, const float xyz[4]) {
   const abbe_exit_pages *p = c->all->pages;
   if (c->value == NULL) {
@@ -232,7 +232,7 @@ static abbe_result find_windows(const abbe_caustic_volume *v, const abbe_exit_li
   return result;
 }
 
-/* A page's map from those of all parts, in their order; sum: room for one. */
+/* A tile's map from those of all parts, in their order; sum: space for one. */
 static void finish_map(const landing *all, const catching c[PARTS], size_t map, float (*sum)[4]) {
   abbe_exit_pages *p = all->pages;
   const size_t texels = p->side * p->side, page = map / 2;
@@ -254,7 +254,7 @@ static void finish_map(const landing *all, const catching c[PARTS], size_t map, 
     abbe_exit_map_smooth((const float(*)[4])sum, p->side, wide, p->value + map * texels);
 }
 
-/* Light that a few points did not show has a page without a window: the finer map of all of it. */
+/* Light that a few points did not show has a tile without a window: the finer map of all of it. */
 static void open_windows(const catching c[PARTS], abbe_exit_pages *p) {
   for (size_t page = 0; page < p->count; page++)
     for (size_t part = 0; part < PARTS; part++)

@@ -37,7 +37,7 @@ void abbe_exit_pages_free(abbe_exit_pages *pages);
  * `from`. */
 void abbe_exit_pages_halve(const float (*from)[4], size_t side, float (*to)[4]);
 
-/* XYZ at a place of a page, u and v of 0 to 1, between its texels, as the renderer has it. */
+/* XYZ at a place of a tile, u and v of 0 to 1, between its texels, as the renderer has it. */
 void abbe_exit_pages_at(const abbe_exit_pages *pages, size_t page, double u, double v,
                         double xyz[3]);
 
@@ -63,9 +63,9 @@ static inline void abbe_exit_map_add(float (*map)[4], int side, float x, float y
   for (int k = 0; k < 4; k++) to[above + right][k] += share[3] * value[k];
 }
 
-/* What was added as a sum of tents of that half width each way, in texels; at the ends they are
- * folded back, so that the sum stays. Places are as wide as 1.2 already; of wider tents than a map
- * has room for it makes the widest. side: up to ABBE_EXIT_MAP_MOST_SIDE. */
+/* What was added as a sum of tents of that half width to either side, in texels; at the ends they
+ * are folded back, so that the sum stays. Places are as wide as 1.2 already; of wider tents than a
+ * map can hold it makes the widest. side: up to ABBE_EXIT_MAP_MOST_SIDE. */
 #define ABBE_EXIT_MAP_MOST_SIDE 1024
 void abbe_exit_map_smooth(const float (*from)[4], size_t side, const float wide[2], float (*to)[4]);
 

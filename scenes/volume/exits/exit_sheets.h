@@ -26,14 +26,14 @@ void abbe_exit_sheet_make(const double parallelogram[9], const abbe_volume_place
  */
 typedef struct abbe_exit_track {
   float height[2], fall[2];                 /* above the plane, and how fast it changes */
-  float u[2], v[2], u_along[2], v_along[2]; /* where it starts, and its way */
+  float u[2], v[2], u_along[2], v_along[2]; /* where it starts, and its direction */
 } abbe_exit_track;
 /* track: [sheets] */
 void abbe_exit_sheets_track(const abbe_exit_sheet *sheet, size_t sheets, const abbe_exit_ray *ray,
                             abbe_exit_track *track);
 
-/* Parts of a ray where they have come to: page[i] is twice the sheet's number, and 1 more where it
- * is met from behind, along its normal; -1: none is met. */
+/* Hits of a ray's parts: page[i] is twice the sheet's number, and 1 more where it is met from
+ * behind, along its normal; -1: none is met. */
 typedef struct abbe_exit_landing {
   float far[ABBE_EXIT_MOST_PARTS];
   float u[ABBE_EXIT_MOST_PARTS], v[ABBE_EXIT_MOST_PARTS]; /* 0 to 1 */
@@ -44,7 +44,7 @@ void abbe_exit_sheets_meet(const abbe_exit_track *track, size_t sheets,
                            const float step[ABBE_EXIT_MOST_PARTS], size_t parts,
                            abbe_exit_landing *out);
 
-/* Whether one stands on the way from a place along a unit direction, up to a distance. */
+/* Whether a sheet hides a place along a unit direction, up to a distance. */
 bool abbe_exit_sheets_hide(const abbe_exit_sheet *sheet, size_t sheets, const double place[3],
                            const double way[3], double limit);
 
