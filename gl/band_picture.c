@@ -12,7 +12,7 @@
 
 enum { NAME_SIZE = 32 };
 
-#define STEP_NM 0.5 /* of a band's light, linear between */
+#define STEP_NM 0.5 /* step of a band's light, linear between */
 
 /* ---- the scene of a band ---- */
 
@@ -165,7 +165,7 @@ typedef struct work {
   abbe_render_progress progress;
   void *user;
   abbe_renderer *renderer;
-  abbe_scene shown; /* of that renderer */
+  abbe_scene shown; /* scene of that renderer */
 } work;
 
 static bool tell(void *user, double done) {

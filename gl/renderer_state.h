@@ -23,7 +23,7 @@ struct abbe_renderer {
   abbe_map_layout given, local_given; /* the request's layout; the same there */
   abbe_plan plan;
   abbe_renderer_inputs inputs; /* what the parts below were made from */
-  unsigned lacking;            /* of these, a bit each: are not there */
+  unsigned lacking;            /* those of these, a bit each, that are not there */
   abbe_gpu_scene scene;
   abbe_shader_variant variant;
 
@@ -32,7 +32,7 @@ struct abbe_renderer {
   abbe_refractor_faces faces;
   abbe_light_layers layers;
   abbe_receiver_atlas atlas;
-  abbe_map_history history; /* of maps, from change to change */
+  abbe_map_history history; /* history of maps, from change to change */
   abbe_spectral_map map;
   abbe_caustics caustics;
   abbe_transports transports;
@@ -46,7 +46,7 @@ struct abbe_renderer {
   abbe_lighting lighting;
   abbe_receivers_pass receivers;
   abbe_refraction_pass refraction;
-  abbe_refraction_kept kept; /* of the one before, between it and the next; else zero */
+  abbe_refraction_kept kept; /* kept from the one before, between it and the next; else zero */
   abbe_adaptive_pass adaptive;
   abbe_picture picture;
   abbe_haze_pass haze;
@@ -54,7 +54,7 @@ struct abbe_renderer {
   bool seen; /* the picture is drawn */
 
   GLuint baseline;   /* what abbe_renderer_baseline draws into; 0 before */
-  double untimed_ms; /* of this frame, spent on its ledger */
+  double untimed_ms; /* time of this frame, spent on its ledger */
 };
 
 /* For the files of the renderer, whose public functions are on its context and in a state of its

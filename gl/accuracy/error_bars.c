@@ -20,10 +20,10 @@ static const double rest = 0.4;
 /* The mean distance of a normal number from its mean, in standard deviations: sqrt(2 / pi). */
 static const double mean_distance = 0.7978845608;
 
-/* Of the distance between samples that variants move them by. A picture that moves as a whole is no
- * error, and all of it would make one of every steep caustic; but an edge that passes between the
- * samples of all variants has none. Chosen with the number above. Where more rays are taken at an
- * edge it passes between none, and half of that tells what is left. */
+/* Part of the distance between samples by which variants move them. A picture that moves as a whole
+ * is no error, and all of it would make one of every steep caustic; but an edge that passes between
+ * the samples of all variants has none. Chosen with the number above. Where more rays are taken at
+ * an edge it passes between none, and half of that covers what is left. */
 static double sample_part(const abbe_render_desc *desc) {
   return desc->adaptive > 1 ? 1.0 / 3 : 2.0 / 3;
 }
@@ -53,7 +53,7 @@ static uint64_t mix(uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/* Of so many places along an axis, evenly spread over -0.5 to 0.5, the one that variant i has. */
+/* The place that variant i has, of so many along an axis, evenly spread over -0.5 to 0.5. */
 static double place(int axis, size_t i, size_t variants) {
   size_t of[ABBE_ERROR_BARS_MAX_VARIANTS];
   for (size_t k = 0; k < variants; k++) of[k] = k;
@@ -107,7 +107,7 @@ typedef struct work {
   abbe_context *context;
   const abbe_scene *scene;
   const abbe_error_bars_desc *desc;
-  abbe_renderer *renderer;  /* of all variants, one after another; NULL before the first */
+  abbe_renderer *renderer;  /* renderer of all variants, one after another; NULL before the first */
   abbe_render_desc request; /* resolved, without what only the picture needs */
   abbe_map_layout map;
   bool has_map;
@@ -209,7 +209,8 @@ static void estimate(const work *w, abbe_error_bars *out) {
 
 /* Summaries */
 
-/* Of the brightest pixels: the one where `share` of the light is reached, or of the lit pixels. */
+/* The brightness of the pixel at which `share` of the light is reached from the brightest on, or of
+ * the lit pixels. */
 static double threshold(double *light, size_t count, double share, bool of_pixels) {
   double total = 0, held = 0;
   size_t i = 0;
@@ -247,7 +248,7 @@ static double colour_error(const work *w, const abbe_error_bars *bars, const eye
   return abbe_difference_ciede2000(lab[0], lab[1]);
 }
 
-/* Of every pixel; they are many, so whoever watches is asked now and then. */
+/* Errors of every pixel; they are many, so cancel is polled now and then. */
 static abbe_result find_colour_errors(work *w, const abbe_error_bars *bars, const eye *e,
                                       double *out, abbe_error *error) {
   enum { SOME = 8192 };

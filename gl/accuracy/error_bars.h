@@ -58,9 +58,9 @@ typedef struct abbe_error_bars {
   double ms;     /* all of it */
 } abbe_error_bars;
 
-/* Of the frame that the renderer holds; it is not drawn anew. Each variant is a renderer of its
- * own, one after another. desc may be NULL. Errors of abbe_error_bars_check and abbe_renderer_make;
- * ABBE_CANCELLED. */
+/* Estimates the errors of the frame that the renderer holds; it is not drawn anew. Each variant is
+ * a renderer of its own, one after another. desc may be NULL. Errors of abbe_error_bars_check and
+ * abbe_renderer_make; ABBE_CANCELLED. */
 abbe_result abbe_error_bars_make(abbe_context *context, const abbe_scene *scene,
                                  abbe_renderer *renderer, const abbe_error_bars_desc *desc,
                                  abbe_error_bars *out, abbe_error *error);

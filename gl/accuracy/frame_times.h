@@ -19,7 +19,7 @@ typedef struct abbe_frame_times_desc {
 } abbe_frame_times_desc;
 
 typedef struct abbe_frame_times {
-  abbe_statistics median; /* of the frame in the middle */
+  abbe_statistics median; /* statistics of the frame in the middle */
   double fastest_ms;
 } abbe_frame_times;
 

@@ -163,7 +163,7 @@ static abbe_result read_front(const reader *r, abbe_yaml_node node, abbe_preset_
   for (int i = 0; i < ABBE_PRESET_COUNT && result == ABBE_OK; i++)
     result = abbe_yaml_get_count(r->yaml, node, preset_names[i], 0, out->count - 1, &out->named[i],
                                  r->error);
-  abbe_yaml_get(r->yaml, node, "pictures"); /* of whole processes and other tools: not read here */
+  abbe_yaml_get(r->yaml, node, "pictures"); /* for whole processes and other tools: not read here */
   return result == ABBE_OK ? abbe_yaml_check_keys(r->yaml, node, "class", r->error) : result;
 }
 

@@ -94,7 +94,7 @@ bool abbe_preset_apply(const abbe_preset_point *point, const abbe_scene *scene,
  * passes. */
 typedef struct abbe_preset_speed {
   double light, eye;
-  double unrest; /* of the repeats that told it (frame_times.h) */
+  double unrest; /* unrest of the repeats that gave it (frame_times.h) */
 } abbe_preset_speed;
 
 /* Draws the front's cheapest point once to warm up and three times for the clock. size and space

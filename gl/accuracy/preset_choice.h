@@ -8,8 +8,8 @@
 
 /* One of name, max_error and budget_ms; of none nothing is chosen. */
 typedef struct abbe_preset_request {
-  const char *name; /* of a preset, or NULL */
-  const char *file; /* of presets, or NULL: the shipped ones */
+  const char *name; /* name of a preset, or NULL */
+  const char *file; /* file of presets, or NULL: the shipped ones */
   double max_error; /* 0: none */
   double budget_ms; /* 0: none */
   bool timed;       /* promise a time too, where budget_ms does not ask for one */
@@ -19,12 +19,13 @@ typedef struct abbe_preset_choice {
   abbe_preset_request request;
   abbe_presets presets;
   const abbe_preset_front *front; /* NULL: nothing was asked for */
-  const abbe_preset_point *point; /* of the front */
+  const abbe_preset_point *point; /* point of the front */
   bool kept;                      /* the bound can be kept, by the front */
   bool overridden;    /* the picture's request or scene stands against it: it promises nothing */
   bool timed;         /* promised_ms is known */
   double promised_ms; /* on this machine */
-  double unrest;      /* of the frames that told its speed (frame_times.h); NaN: none were drawn */
+  double
+      unrest; /* unrest of the frames that gave its speed (frame_times.h); NaN: none were drawn */
 } abbe_preset_choice;
 
 /* Chooses and fills the fields of desc that are 0. With a time to keep or to promise, this

@@ -1,8 +1,9 @@
 // A beam of light in the picture: a segment, and how wide it lies across it at both ends.
 
-// Of a beam: its ends in pixels; their depths, and the widths at both ends of a cell along one axis of the grid,
-// along the other, and of its part of the spectrum, in pixels; the ends in the world, each with red or
-// green of what is scattered at the end, W/m; by how much that grows a metre on the way back, 1/m, and blue.
+// Texels of a beam: its ends in pixels; their depths, and the widths at both ends of a cell along
+// one axis of the grid, along the other, and of its part of the spectrum, in pixels; the ends in
+// the world, each with red or green of what is scattered at the end, W/m; by how much that grows a
+// metre back, 1/m, and blue.
 const int BEAM_TEXELS = 6;
 
 // Light lies evenly over each of its widths and over a pixel: together they are taken for two, which have

@@ -68,7 +68,7 @@ static void fill_light(const abbe_beam_list *list, size_t view, float (*out)[4])
   }
 }
 
-/* Of a medium, the mean of three places in each part of an interval. */
+/* A medium's attenuation in each part of an interval, the mean of three places. */
 static void fill_haze(const abbe_beam_list *list, size_t interval, float (*out)[4]) {
   const abbe_scene *scene = scene_of(list)->local;
   const bool air = list->medium < 0;
@@ -248,7 +248,7 @@ static abbe_result list_whole(abbe_beam_list *list, size_t light, const abbe_hit
   return result;
 }
 
-/* Of the ways that are traced. */
+/* Runs a batch of the paths that are traced. */
 static abbe_result run_batch(const abbe_beam_use *to, size_t light, const abbe_hit_batch *b,
                              abbe_error *error) {
   abbe_gpu *gpu = scene_of(to->list)->gpu;

@@ -30,15 +30,15 @@ uniform uint chunks, chunk;  // only photons of this chunk
 uniform uint most;           // beams that the list has room for
 uniform int medium;          // the refractor that they are in; -1: the air
 #ifdef IN_WORLD
-uniform float cell_m;  // of the grid
+uniform float cell_m;  // side of the grid's cells
 #else
 uniform vec3 eye;
 uniform vec4 eye_view[6];
 uniform vec2 size;  // pixels
 #endif
 
-const int PARTS = 8;        // of an interval
-const float NARROW = 0.35;                 // of the photons' distance: what wavelengths may part by unseen
+const int PARTS = 8;        // parts of an interval
+const float NARROW = 0.35;                 // share of the photons' distance: what wavelengths may part by unseen
 
 const float SMALL_ANGLE = 0.12;            // rad, that a cell's side is seen under at the most
 const int MOST_SPLITS = 8;
@@ -91,7 +91,8 @@ vec3 colour_of(int interval, int part) {
   return texelFetch(beam_colours, (light * intervals + interval_of(interval)) * PARTS + part).rgb;
 }
 
-// Of the light of an interval's part what is left where it begins, in a medium that takes so much of it.
+// The light of an interval's part that is left where it begins, in a medium that takes so much of
+// it.
 float left_in(Node a, Node b, int interval, int k, float per_m) {
 #ifdef TINTS
   bool own = medium >= 0 && has_tint(a.tints, medium_tint);
@@ -169,7 +170,7 @@ Cell cell_of(Photon photon, int order, int i, Node n) {
 // Light that goes along one segment.
 struct Stretch {
   vec3 from, to;
-  Apart parts;       // of its spectrum
+  Apart parts;       // parts of its spectrum
   vec2 metres;       // on light's way from the stretch's start to the eye, and what is scattered, W/m,
   vec3 first, last;  // after these
 };
@@ -224,7 +225,7 @@ void list_beam(Stretch w, Cell cell) {
 struct Line {
   bool seen;
   vec3 from, to;
-  vec2 part;  // of the whole, where it begins and ends
+  vec2 part;  // where in the whole it begins and ends
   vec2 place[2];
   vec2 depth;
   vec2 normal;   // across it

@@ -42,15 +42,15 @@ abbe_result abbe_beam_list_run(const abbe_beam_use *to, size_t count, abbe_error
 /* Light in media, for camera's rays that come to it bent or mirrored: of each a grid over its box,
  * of what is scattered there, and of light's mean direction. It is as fine as its cells. */
 
-/* Of one medium. */
+/* The grid of one medium. */
 typedef struct abbe_shaft_volume {
   const struct abbe_shaft_grid *grid;
   abbe_beam_list beams;
   GLuint sums; /* buffer of cells */
   size_t cells[3];
-  size_t first_layer;     /* of twice as many as there are cells up */
+  size_t first_layer;     /* first of twice as many layers as there are cells up */
   double low[3], high[3]; /* m */
-  double unit;            /* of sums, W */
+  double unit;            /* unit of sums, W */
 } abbe_shaft_volume;
 
 /* Zeroed: the plan has no shafts. Not to be copied. */
@@ -62,7 +62,7 @@ typedef struct abbe_shaft_grid {
   abbe_shaft_volume volume[ABBE_PLAN_MOST_SHAFTS]; /* as the plan's */
 } abbe_shaft_grid;
 
-/* Of a plan that has shafts. ABBE_GL, ABBE_NO_MEMORY. */
+/* Makes the grid of a plan that has shafts. ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_shaft_grid_make(abbe_caustics *caustics, const abbe_shader_variant *variant,
                                  abbe_shaft_grid *out, abbe_error *error);
 void abbe_shaft_grid_free(abbe_shaft_grid *grid);

@@ -7,8 +7,8 @@ layout(std430, binding = BINDING_SPLATS) readonly buffer Beams {
   uint beam_count, beam_groups[3];
   vec4 beam[];
 };
-// Of each cell red, green and blue of the light times its way there, in unit; and the sum of these along the
-// beam's direction.
+// For each cell red, green and blue of the light times its length there, in unit; and the sum of
+// these along the beam's direction.
 layout(std430, binding = BINDING_MAP_SUMS) buffer Sums { int sum[]; };
 uniform uint most;     // beams that the list holds
 uniform vec3 cells;      // along each axis

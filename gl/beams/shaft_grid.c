@@ -7,7 +7,7 @@
 #include <math.h>
 
 enum { MOST_CELLS = 1 << 19, CELLS_A_PHOTON = 8, MOST_A_SIDE = 256 };
-static const double SUMS_AT_MOST = 1 << 29; /* of a cell that all light passes */
+static const double SUMS_AT_MOST = 1 << 29; /* for a cell that all light passes */
 
 static const abbe_plan *plan_of(const abbe_shaft_grid *grid) {
   return grid->scene->plan;

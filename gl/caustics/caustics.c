@@ -40,8 +40,8 @@ static bool next_batch(const abbe_caustics *c, abbe_hit_batch *b) {
 /* Fits of a light's map: to all receivers, and to the layout that the last frame had. */
 typedef struct map_fits {
   abbe_map_fit *whole, *kept; /* NULL: there is none */
-  abbe_map_layout layout;     /* of that */
-  abbe_view lit;              /* of the whole the part that is lit, where its bins are too wide */
+  abbe_map_layout layout;     /* layout of that */
+  abbe_view lit;              /* the lit part of the whole, where its bins are too wide */
   abbe_tile_light **beside;
 } map_fits;
 

@@ -28,7 +28,7 @@ typedef struct abbe_caustics {
   abbe_deposit_pass deposit;
   size_t placed;                        /* the frame of the history that grids are placed for */
   bool measured[ABBE_SCENE_MAX_LIGHTS]; /* lists have room for the light, as a frame has found */
-  abbe_ledger energy[ABBE_SCENE_MAX_LIGHTS]; /* of unit power of each, as the last run found */
+  abbe_ledger energy[ABBE_SCENE_MAX_LIGHTS]; /* for unit power of each, as the last run found */
   bool energy_known;                         /* it had statistics */
 } abbe_caustics;
 

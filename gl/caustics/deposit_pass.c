@@ -54,7 +54,7 @@ static void set_batch(const abbe_deposit_pass *pass, GLuint program, size_t ligh
   abbe_photon_lights_set_grid(pass->map->views, program, light);
   abbe_gpu_set_int(gpu, program, "map_size", (int)plan->desc.map_size);
   abbe_gpu_set_int(gpu, program, "sample_first", (int)b->first);
-  /* of the hits that photons have; a refined interval may have more of its own */
+  /* samples of the hits that photons have; a refined interval may have more of its own */
   abbe_gpu_set_int(gpu, program, "sample_count", (int)(fine ? spectra->nodes : b->count));
   abbe_gpu_set_int(gpu, program, "interval_first", (int)b->interval_first);
   abbe_gpu_set_int(gpu, program, "interval_end", (int)b->interval_end);

@@ -12,7 +12,7 @@ const bool DOUBTS = true;
 const bool DOUBTS = false;
 #endif
 
-const float SEGMENT = 2.0;  // of a span's length, at the most, in texels of its level
+const float SEGMENT = 2.0;  // length of a span's segment, at the most, in texels of its level
 
 // From node `number` to the one before it, which is b.
 struct Interval {
@@ -43,7 +43,7 @@ struct Span {
   vec4 curve;
   Fan fan;
   float per_index;
-  int owed_row, row, first;  // of rows, the refractor whose they are
+  int owed_row, row, first;  // rows, and the refractor to which they belong
   Left owed_left, left;
   float index_b;
   vec3 half_xyz;           // up to the interval's middle

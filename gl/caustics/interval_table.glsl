@@ -13,7 +13,7 @@ const int INTERVAL_TEXELS = 3;
 const int INTERVAL_TEXELS = 2;
 #endif
 
-// Of an interval from its beginning on.
+// Sums over an interval from its beginning on.
 struct Sums {
   vec3 xyz, moment;
   float along, index;

@@ -17,7 +17,7 @@ typedef struct batch_view {
   const float *hit;               /* [photons][orders][stride][4] */
   const GLuint *path;             /* the same without the last */
   const GLuint *photon;           /* [photons][ABBE_PHOTON_BYTES / 4] */
-  size_t photons, orders, stride; /* of which the first is traced */
+  size_t photons, orders, stride; /* the first of these is traced */
   const GLuint *slot;             /* [cells], photon + 1 */
   size_t cells[2];
 } batch_view;

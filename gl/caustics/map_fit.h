@@ -15,14 +15,15 @@ enum { ABBE_FIT_BINS = 1 << 15 };
 typedef struct abbe_map_fit {
   const abbe_view *view; /* whose window */
   double part;           /* W; 0: nothing is lit yet */
-  double total, outside; /* of all hits; of those that the window does not hold; parts */
+  double total, outside; /* flux of all hits; flux outside of the window; parts */
   double bin[2][ABBE_FIT_BINS];
 } abbe_map_fit;
 
 /* Adds hits of the light's map, not those on tiles; [count][4], with their paths. */
 void abbe_map_fit_add(abbe_map_fit *fit, const abbe_receiver_atlas *atlas, const float *hit,
                       const GLuint *path, size_t count);
-/* Of the fit's view, wider by a share on each side. Where nothing was lit the layout stays. */
+/* The layout of the fit's view, wider by a share on each side. Where nothing was lit the layout
+ * stays. */
 void abbe_map_fit_layout(const abbe_map_fit *fit, double wider, abbe_map_layout *layout);
 /* Whether the window holds nearly all of this light, and is filled by it for a good part. */
 bool abbe_map_fit_serves(const abbe_map_fit *fit);

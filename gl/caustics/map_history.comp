@@ -6,7 +6,7 @@ uniform sampler2DArray kept[4];  // this frame's, the one before, ...
 layout(rgba32f, binding = 0) writeonly uniform image2DArray map;
 uniform int layer, map_size, rows;
 uniform int before;  // frames
-uniform int fresh;   // of these, so many are of the scene as it is
+uniform int fresh;   // so many of these are of the scene as it is
 const int REACH = 1;  // texels
 
 void main() {

@@ -30,14 +30,15 @@ Node node_at(int at, bool there, float index, vec2 elsewhere) {
 // What varies so evenly with the index that three nodes tell it.
 vec4 smooth_of(Node n) { return vec4(n.left.along, n.left.arrives); }
 
-// Of the light of a's half of an interval and of b's what is left in all, and in how many parts it is to be laid.
+// What is left in all of the light of a's half of an interval and of b's, and in how many parts it
+// is to be laid.
 struct Left {
   float a, b;
   int parts;
 };
 
 #ifdef TINTS
-uniform int tints_first;  // of these hits' set
+uniform int tints_first;  // first tint of these hits' set
 
 // Light is laid in parts whose optical depth ranges by no more.
 const float EVEN = 0.25;

@@ -41,7 +41,7 @@ uniform int sample_first;
 uniform int sample_count;
 uniform int interval_first;
 uniform int interval_end;
-uniform int nodes;  // of the set whose hits these are
+uniform int nodes;  // nodes of the set whose hits these are
 uniform int table_first;
 uniform uint chunks, chunk;  // only paths of this chunk
 uniform uint most;           // splats that the list has room for
@@ -108,8 +108,8 @@ Path path_at(uint listed) {
   return p;
 }
 
-// Of the wavelengths at which it hits something, that nearest the middle. (A loop that ended early would
-// do less, but Mesa 22's llvmpipe clobbers a load that is repeated after one.)
+// The hit nearest the middle among the wavelengths at which the path hits something. (A loop that
+// ended early would do less, but Mesa 22's llvmpipe clobbers a load that is repeated after one.)
 Reference reference_of(Path path) {
   Reference r;
   r.order = path.order;

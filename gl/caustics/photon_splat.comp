@@ -14,7 +14,7 @@ layout(std430, binding = BINDING_MAP_SUMS) buffer MapSums { uint map_sum[]; };
 #include "light_number.glsl"
 uniform int map_size;
 uniform uint most;
-uniform uint map_texels;  // of all levels
+uniform uint map_texels;  // texels of all levels
 uniform bool has_edges;    // light has, where refractors have facets
 
 uint level_offset(int level) {
@@ -23,10 +23,10 @@ uint level_offset(int level) {
   return (texels - (texels >> (2 * level))) / 3u * 4u;
 }
 
-const float LEAST_SIDE = 0.25;  // of a part, of a texel
+const float LEAST_SIDE = 0.25;  // least side of a part, in texels
 const int MOST_IN_ROWS = 60;
-const float MOST_WIDE = 0.84;  // of a texel: what lies turned is wider, and more than a texel leaves gaps
-const int MOST_PARTS = 16;  // of a splat in the level below its own, or it stays in its own
+const float MOST_WIDE = 0.84;  // in texels: what lies turned is wider, and more than a texel leaves gaps
+const int MOST_PARTS = 16;  // parts of a splat in the level below its own, or it stays in its own
 
 void add(uint texel, int channel, uint v) {
 #ifdef WIDE
@@ -42,12 +42,12 @@ struct ListedSplat {
   uvec3 units;
   vec2 centre, across, shift, skew;
   vec2 beside;  // its other side, square to `across`
-  vec2 off[3];  // of X, Y and Z from the middle
+  vec2 off[3];  // X, Y and Z, off the middle
   vec3 slope;   // along the shift X, Y and Z grow or fall evenly, as their means tell
   int level;
   float next_share;
   uint tile;  // and one more; 0: the map
-  vec4 rect;  // of the tile
+  vec4 rect;  // the tile's rectangle
 };
 
 ListedSplat splat_at(uint word) {
@@ -77,7 +77,7 @@ ListedSplat splat_at(uint word) {
   return s;
 }
 
-// Of a splat in one level.
+// The parts of a splat in one level.
 struct Grid {
   int level, beside, across, along;
   float size;
@@ -130,8 +130,9 @@ struct Part {
   vec2 middle, across, beside;
 };
 
-// Of the cell's Y. Its sides, and longer and wider by what its light is shifted; where light has edges, its bounds:
-// a rectangle is not the image of a slanted cell, and thin ones side by side show that as stripes.
+// The rectangle of the cell's Y. Its sides, and longer and wider by what its light is shifted;
+// where light has edges, its bounds: a rectangle is not the image of a slanted cell, and thin ones
+// side by side show that as stripes.
 Part part_of(ListedSplat s, Grid g, Cell c, vec2 off_y) {
   float at_part = (c.column + 0.5) / float(g.across) - 0.5, per_row = 1.0 / float(g.along);
   vec2 across = (s.across + sign(at_part) * s.skew) / float(g.across) / g.size;
@@ -151,7 +152,7 @@ Part part_of(ListedSplat s, Grid g, Cell c, vec2 off_y) {
   return p;
 }
 
-// Of a line's way from a to b, the mean of what lies below 0.
+// The mean of what lies below 0 on a line from a to b.
 float mean_below(float a, float b) {
   vec2 below = min(vec2(a, b), vec2(0));
   return 0.5 * (below.x + below.y) * (abs(below.x - below.y) + 1e-6) / (abs(a - b) + 1e-6);
@@ -168,7 +169,7 @@ vec3 below_edge(vec2 a, vec2 b) {
 // Where light is to lie so that its bilinear weights give the texels what a part covers of them to the right
 // and above; and how much more the one to the right and above gets.
 struct Place {
-  vec2 at;  // of the level's texels
+  vec2 at;  // place in the level's texels
   float lean;
 };
 

@@ -5,7 +5,7 @@ struct Front {
   Sums sums;
   vec2 at;
 #ifdef TINTS
-  vec3 taken[TINTS];  // of that light, by amount of each
+  vec3 taken[TINTS];  // absorbed part of that light, by amount of each
 #endif
 };
 
@@ -76,8 +76,8 @@ Glint light_of(Span s, Part p, Sums upto, inout Front front) {
 }
 
 #ifdef TINTS
-// Of a row up to a step what a tint of the span's first path takes, by amount. A table's rows go by the refractor that
-// a path met first.
+// What a tint of the span's first path absorbs in a row up to a step, by amount. A table's rows go
+// by the refractor that a path met first.
 vec3 taken_at(Span s, int k, int row, int step) {
   int rows = (s.a.tints.of[k] - s.first) * (nodes + 1) * (STEPS + 1);
   return texelFetch(interval_sums, row + INTERVAL_TEXELS * (rows + step) + 2).xyz;
@@ -95,7 +95,7 @@ Front front_at(Span s, int row, int step) {
   return f;
 }
 
-// Of a part up to there, of X, Y and Z each, what its path leaves: as their means are attenuated.
+// What its path leaves of a part up to there, of X, Y and Z each: as their means are attenuated.
 vec3 left_of(Span s, Part p, int row, int step, inout Front front) {
 #ifdef TINTS
   vec3 depth = vec3(0);

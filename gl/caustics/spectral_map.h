@@ -25,7 +25,7 @@
  * nothing of them is seen, whatever has moved, and after as many frames as are kept none of them
  * counts. Texels must stay where they are for that: a layout is kept as long as it serves. */
 
-/* Of one light. */
+/* The past maps of one light. */
 typedef struct abbe_map_past {
   bool known; /* its layout, of the last frame, in the local scene */
   abbe_map_layout layout;
@@ -40,7 +40,7 @@ typedef struct abbe_map_history {
   size_t side, layers;
   GLuint kept[ABBE_RENDER_MAX_HISTORY]; /* level 0 of the map in the last frames, in turn */
   GLuint program;
-  size_t frame; /* of the sequence, this one */
+  size_t frame; /* number of this frame in the sequence */
   size_t fresh; /* frames since the last change, before this one */
   double origin[3];
   abbe_map_past light[ABBE_SCENE_MAX_LIGHTS];

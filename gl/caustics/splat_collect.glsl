@@ -4,7 +4,7 @@
 struct Splat {
   vec3 flux, x, y;  // X, Y and Z; and times how far they lie from there
   vec2 from, shift;  // shift: along which its colours lie, from back to front
-  vec2 middle;      // of that shift, from there
+  vec2 middle;      // middle of that shift, from there
   int tile;
   float weight;
 };

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 
 struct abbe_context {
-  abbe_context_native native; /* of an own one; zero of an adopted one */
-  abbe_context_host host;     /* of an adopted one */
+  abbe_context_native native; /* handles of Abbe's own context; zero of an adopted one */
+  abbe_context_host host;     /* host of an adopted one */
   const char *name;
   abbe_gl gl;
   char description[256];

@@ -50,7 +50,7 @@ typedef struct abbe_context_host {
 abbe_result abbe_context_adopt(const abbe_context_host *host, abbe_context **out,
                                abbe_error *error);
 
-/* Of an adopted context nothing is destroyed or unbound. An own one is destroyed, and none is
+/* Nothing of an adopted context is destroyed or unbound. An own one is destroyed, and none is
  * current then if it was; another that is current stays so. */
 void abbe_context_free(abbe_context *context);
 

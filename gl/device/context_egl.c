@@ -79,7 +79,7 @@ static EGLContext create(EGLDisplay display, EGLConfig config) {
                                       EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                       EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                       EGL_NONE};
-  static const EGLint skipped[] = {0, 2, 8}; /* of the attributes */
+  static const EGLint skipped[] = {0, 2, 8}; /* attributes left out */
   EGLContext context = EGL_NO_CONTEXT;
   for (size_t i = 0; i < 3 && context == EGL_NO_CONTEXT; i++)
     context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes + skipped[i]);

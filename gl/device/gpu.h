@@ -23,8 +23,8 @@ typedef enum abbe_stored_kind {
   ABBE_STORED_PROGRAM
 } abbe_stored_kind;
 
-/* Of a buffer its bytes; of a texture its format, size, array layers and levels; of a program its
- * text, files and definitions, which the store copies. */
+/* A buffer's bytes; a texture's format, size, array layers and levels; a program's text, files and
+ * definitions, which the store copies. */
 typedef struct abbe_stored_key {
   abbe_stored_kind kind;
   GLenum format;
@@ -122,7 +122,7 @@ void abbe_buffer_memory_free(abbe_buffer_memory *memory);
 typedef struct abbe_gpu {
   const abbe_gl *gl;
   bool software; /* what runs the shaders is a processor; whoever makes the struct says so */
-  /* of a dispatch, where a GPU runs it: its driver may end one that takes seconds */
+  /* groups of a dispatch, where a GPU runs it: its driver may end one that takes seconds */
   size_t most_groups;
   GLuint framebuffer, empty_array;
   size_t target[2];                    /* texels across and up of what is drawn into */
@@ -130,10 +130,11 @@ typedef struct abbe_gpu {
   GLuint sampler_states;               /* program; none where a GPU runs them */
   GLuint texels[ABBE_GPU_TEXEL_UNITS]; /* textures that show buffers, one a unit */
   abbe_gpu_store store;
-  abbe_buffer_memory memory;   /* of large buffers in it */
-  abbe_statistics *statistics; /* of the frame that runs, or NULL: no pass is waited for */
+  abbe_buffer_memory memory; /* memory of large buffers in it */
+  abbe_statistics
+      *statistics; /* statistics of the frame that runs, or NULL: no pass is waited for */
   double lap_start_ms;
-  abbe_render_progress progress; /* of whoever watches; NULL: nobody does */
+  abbe_render_progress progress; /* the caller's progress function; NULL: there is none */
   void *progress_user;
   double done;                   /* what they were told last */
   bool stopped;                  /* they want no more: nothing is dispatched */
@@ -164,7 +165,7 @@ void abbe_gpu_trim(abbe_gpu *gpu);
 /* The same at once, where something has found no room: the device has let go of it then. Texels are
  * bound anew. */
 void abbe_gpu_make_way(abbe_gpu *gpu);
-/* Of buffers and textures in use. */
+/* Bytes of buffers and textures in use. */
 size_t abbe_gpu_bytes(const abbe_gpu *gpu);
 
 /* Programs, which are the device's: the same stages and definitions are compiled once. Uniforms
@@ -232,8 +233,8 @@ bool abbe_gpu_ask(abbe_gpu *gpu);
  * has taken so long. */
 size_t abbe_gpu_next_part(size_t units, double ms);
 
-/* Of the program that is in use, whose shader takes its number from thread.glsl: so many groups of
- * ABBE_GPU_GROUP threads; one thread a texel, in groups of 32 x 16. */
+/* Dispatches the program that is in use, whose shader takes its number from thread.glsl: so many
+ * groups of ABBE_GPU_GROUP threads; one thread a texel, in groups of 32 x 16. */
 void abbe_gpu_dispatch(abbe_gpu *gpu, GLuint program, size_t groups);
 void abbe_gpu_dispatch_2d(abbe_gpu *gpu, GLuint program, size_t width, size_t height);
 /* So many threads for each of `most` elements of a list from the first on, as far as there are any;

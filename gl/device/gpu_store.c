@@ -6,7 +6,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-#define EXTERNAL_VIRTUAL_MEMORY 0x9160 /* of GL_AMD_pinned_memory */
+#define EXTERNAL_VIRTUAL_MEMORY 0x9160 /* a value of GL_AMD_pinned_memory */
 
 /* Readers of texels take some more than they use. */
 enum { BEYOND = 4096, GRAIN = 65536 };

@@ -3,7 +3,7 @@ layout(local_size_x = 1) in;
 layout(std430, binding = BINDING_DISPATCH) buffer List { uint count, groups_x, groups_y, groups_z; };
 uniform uint group_size;
 uniform uint first;    // element that is looked at
-uniform uint most;     // of them, at the most
+uniform uint most;     // at most so many of them
 uniform uint threads;  // an element
 
 void main() {

@@ -83,7 +83,7 @@ static abbe_result expand(source *s, const char *name, const char *text, abbe_er
 
 typedef struct definition {
   const char *line, *name, *value;
-  size_t size, name_size; /* of the line, with its end */
+  size_t size, name_size; /* length of the line, with its end */
   bool wanted;
 } definition;
 

@@ -11,9 +11,10 @@
  * says of its own filter. No pass uses further units (bindings.h). */
 #define ABBE_GL_STATE_UNITS 18
 
-/* Of the current context: every enable and every setting of rasterising, testing, blending and
- * pixel transfer as GL begins with it, but rows of pixels without padding and cube maps read across
- * their edges; no sampler objects and no pixel buffers. Errors that are pending are dropped. */
+/* Sets, in the current context, every enable and every setting of rasterising, testing, blending
+ * and pixel transfer as GL begins with it, but rows of pixels without padding and cube maps read
+ * across their edges; no sampler objects and no pixel buffers. Errors that are pending are
+ * dropped. */
 void abbe_gl_state_begin(const abbe_gl *gl);
 
 /* GL's own settings once more, rows of pixels padded to 4 bytes; framebuffer 0, no program, no

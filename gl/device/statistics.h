@@ -34,17 +34,18 @@ typedef struct abbe_pass_time {
 } abbe_pass_time;
 
 typedef struct abbe_statistics {
-  double frame_ms; /* of all passes, until the device had done them; without reading the ledger */
-  double baseline_ms; /* of drawing the surfaces alone, where it was measured; else 0 */
+  double
+      frame_ms; /* time of all passes, until the device had done them; without reading the ledger */
+  double baseline_ms; /* time of drawing the surfaces alone, where it was measured; else 0 */
   size_t pass_count;  /* passes that ran, in the order in which each ended first */
   abbe_pass_time pass[ABBE_PASS_COUNT];
   /* Passes of the plan that did not run, for what they drew in an earlier frame still holds. */
   bool kept[ABBE_PASS_COUNT];
   size_t photons;         /* lit cells that show a refractor, of all lights */
   size_t wavelengths;     /* the plan's */
-  double refractor_share; /* of the cells of the first light's grid, those that have a photon */
-  double polygon_layers;  /* of wyman2006: polygons over a pixel of its image, mean; else 0 */
-  size_t device_bytes;    /* of buffers and textures */
+  double refractor_share; /* share of the cells of the first light's grid that have a photon */
+  double polygon_layers;  /* in wyman2006: polygons over a pixel of its image, mean; else 0 */
+  size_t device_bytes;    /* bytes of buffers and textures */
   abbe_ledger energy;
 } abbe_statistics;
 

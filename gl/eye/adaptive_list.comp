@@ -15,7 +15,7 @@ uniform vec2 receiver_samples;         // across and up
 uniform usampler2D eye_owner;
 uniform sampler2DArray eye_layers;
 #endif
-uniform float bend_share;  // of the light around it that the bend must be above
+uniform float bend_share;  // share of the light around it that the bend must exceed
 uniform float least_bend;  // radiance; and above this
 
 struct Row {  // three samples side by side

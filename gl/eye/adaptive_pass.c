@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { LIST_ROWS = 4 }; /* of a thread of adaptive_list.comp */
+enum { LIST_ROWS = 4 }; /* rows of a thread of adaptive_list.comp */
 
 /* A bend below these is left alone: of the light around the sample, and of what a white receiver
  * shows of the lights, so that noise in the dark asks for nothing. */
@@ -45,7 +45,8 @@ void abbe_adaptive_pass_free(abbe_adaptive_pass *pass) {
   abbe_gpu_drop_buffers(scene_of(pass)->gpu, 1, &pass->samples);
 }
 
-/* Of a white receiver in the lights' full light, where refractors stand, or the scene's middle. */
+/* The radiance of a white receiver in the lights' full light, where refractors stand, or the
+ * scene's middle. */
 static double white_radiance(const abbe_gpu_scene *scene) {
   double sum = 0;
   for (size_t i = 0; i < scene->local->light_count; i++) {

@@ -60,7 +60,7 @@ void wanted_level(uint what, out int base, out int count) {
 }
 #else
 #ifdef REFINES
-// Of a pixel's light, what a joined band may show wrong.
+// Share of a pixel's light that a joined band may show wrong.
 const float MOST_WRONG = 0.05;
 
 int level = 0, joined = 0;

@@ -15,7 +15,7 @@ typedef struct abbe_picture {
   const abbe_refraction_pass *refraction;
   GLuint program, pixels; /* pixels 0: receivers have a sample a pixel, and their colour is the
                              picture; program 0: as it is */
-  GLuint view;            /* of that colour as a 2D texture, once it was asked for */
+  GLuint view;            /* view of that colour as a 2D texture, once it was requested */
 } abbe_picture;
 
 abbe_result abbe_picture_make(const abbe_receivers_pass *receivers,

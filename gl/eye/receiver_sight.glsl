@@ -5,7 +5,7 @@ struct Sighting {
   int surface;
   vec2 uv, place;  // place: of a parallelogram, as off_anchor() says
   int side;  // chart_side, where there are CHART_SIDES
-  int sheet;  // of a parallelogram: twice its number, and 1 where it is seen from behind
+  int sheet;  // for a parallelogram: twice its number, and 1 where it is seen from behind
 };
 
 // The nearest receiver on the ray, no farther than t_max, if there is any. Sets face_n.

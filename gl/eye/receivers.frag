@@ -10,7 +10,7 @@ uniform vec3 eye;
 uniform int surface;
 #ifdef CHART_SIDES
 layout(binding = UNIT_SIDE_OF_FACE) uniform isamplerBuffer side_of_face;  // chart's side that a face's normal points to
-uniform int face_first;                                    // of the object that is drawn
+uniform int face_first;                                    // first face of the object that is drawn
 #endif
 layout(location = 0) out vec4 radiance;  // w: distance from the eye
 #ifdef AOVS

@@ -43,8 +43,8 @@ static bool bound_object(const abbe_receivers_pass *pass, const abbe_view *view,
   return any;
 }
 
-/* Of the picture's samples, a half at least must be drawn without light for it to pay that the
- * others are drawn once more. */
+/* At least half of the picture's samples must be drawn without light for it to pay that the others
+ * are drawn once more. */
 static bool pays(const abbe_receivers_pass *pass) {
   double area = 0, samples = (double)pass->lighting->camera->receiver_samples[0] *
                              (double)pass->lighting->camera->receiver_samples[1];
@@ -254,7 +254,8 @@ static abbe_result make_targets(abbe_receivers_pass *pass, abbe_error *error) {
   return result;
 }
 
-/* Of a picture of what moves, where triangles are so many that to draw them takes longer. */
+/* Rays pay in a picture of what moves, where triangles are so many that to draw them takes
+ * longer. */
 static bool takes_rays(const abbe_gpu_scene *scene) {
   enum { MANY_FACES = 8000 };
   const abbe_plan *plan = scene->plan;

@@ -9,7 +9,7 @@
 
 #include <stddef.h>
 
-/* Of the picture: samples of a receiver that light may reach. */
+/* Part of the picture: samples of a receiver that light may reach. */
 typedef struct abbe_lit_part {
   size_t receiver;
   int rect[4]; /* left, bottom, right, top; the ends excluded */

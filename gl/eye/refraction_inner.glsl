@@ -76,8 +76,8 @@ vec3 through(Hit front, vec3 d) {
   sight_tail = vec3(0);
 #endif
   if (!refract_direction(d, front.n, 1.0 / n, ray.d)) return light;
-  // Of what went in: where nearly all is mirrored, the rest is followed too; and of what is there when it first shows
-  // something, for dark bands have their part in the colour.
+  // Shares of what went in: where nearly all is mirrored, the rest is followed too; and of what is
+  // there when it first shows something, because dark bands have their part in the colour.
   float limit = share_limit * ray.share;
   float left = 0.0, left_m = 0.0;  // share of what is left, and times its way inside
   vec3 shown = vec3(0);
@@ -120,7 +120,7 @@ vec3 through(Hit front, vec3 d) {
   return light * tail;
 }
 
-// Of a refractor without an exact surface the ray meets what the front layer shows.
+// On a refractor without an exact surface the ray meets what the front layer shows.
 void look_at_layer(ivec2 at) {
   vec4 layer = texelFetch(eye_layers, ivec3(at, 0), 0);
   found = true;

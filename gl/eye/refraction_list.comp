@@ -20,7 +20,7 @@ layout(std430, binding = BINDING_MERGED_PIXELS) buffer MergedList {
   uint merged_count, merged_groups[3];
   uint merged[];
 };
-layout(rgba32f, binding = 0) writeonly uniform image2D colour;  // of samples
+layout(rgba32f, binding = 0) writeonly uniform image2D colour;  // image of samples
 uniform vec4 eye_view[6];
 
 vec2 own_eye_samples;

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a pixel, traced first, where they are more. */
+/* bands of a pixel, traced first, where they are more */
 enum { COARSE_BANDS = 7 };
 /* Pixels at a time whose bands may ask for all their samples. */
 enum { REFINE_ROOM = 1 << 20 };
@@ -60,7 +60,7 @@ static bool keeps_sights(const abbe_refraction_pass *pass) {
          plan->parallelogram_count <= MOST_SHEETS;
 }
 
-/* Of a path, followed at the most, and the share of its light below which it ends. */
+/* The exits of a path, followed at the most, and the share of its light below which it ends. */
 static size_t exits_of(const abbe_refraction_pass *pass) {
   const abbe_plan *plan = scene_of(pass)->plan;
   const bool fewer = is_coarse(pass) && plan->eye_exits > ABBE_COARSE_EXITS;
@@ -98,8 +98,7 @@ static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_v
     snprintf(facts, sizeof facts, "%s%s%s", shares,
              interleaves(pass) ? "#define INTERLEAVES\n" : "",
              pass->keeps ? "#define KEEPS_SIGHTS\n" : "");
-  if (is_coarse(pass))
-    snprintf(facts, sizeof facts, "#define COARSE_EYE\n");
+  if (is_coarse(pass)) snprintf(facts, sizeof facts, "#define COARSE_EYE\n");
   snprintf(refined, sizeof refined, "%s#define REFINED\n", shares);
   abbe_result result =
       abbe_shader_variant_compute(&camera, gpu, "refraction.comp", facts, &pass->refract, error);

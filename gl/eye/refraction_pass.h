@@ -39,7 +39,7 @@ typedef struct abbe_refraction_pass {
   bool whole; /* they are found, and so are the faces and lists */
 } abbe_refraction_pass;
 
-/* Of a plan whose camera sees no refractor it has only the picture that is resolved. What *kept
+/* For a plan whose camera sees no refractor it has only the picture that is resolved. What *kept
  * holds is taken over, and *kept becomes zero. */
 abbe_result
 abbe_refraction_pass_make(const abbe_lighting *lighting, const abbe_refractor_faces *faces,

@@ -93,7 +93,7 @@ vec3 band_light(int band, bool in_mirror, bool both, out float mirrored) {
   }
 #endif
   if (!both) reflected.share = mirrored > 0.0 ? 1.0 : 0.0;
-  if (in_mirror) w = reflected;  // of no share, off a mirror
+  if (in_mirror) w = reflected;  // no share, off a mirror
   if (both)
     mirrored = 0.0;
   else

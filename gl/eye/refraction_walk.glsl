@@ -1,8 +1,8 @@
 // The eye's rays on multi-refractor paths (walk.glsl): what the branches show, by their shares.
 
-// Of one band: the strongest paths come first. Mesa 22's llvmpipe ends every loop of a thread that has
-// been through 65535 turns of any loops; a stretch takes one for each plane and some for the hierarchy,
-// and a thread takes every PIXEL_THREADS-th band (refraction_threads.glsl).
+// Paths of one band: the strongest paths come first. Mesa 22's llvmpipe ends every loop of a thread
+// that has been through 65535 turns of any loops; a segment takes one for each plane and some for
+// the BVH, and a thread takes every PIXEL_THREADS-th band (refraction_threads.glsl).
 #ifdef REFINES
 #define BANDS_AT_ONCE COARSE_BANDS
 #else
@@ -103,7 +103,7 @@ PathState start;
 Interface first;
 
 #ifdef ROUGH
-float lobe_shift;  // of the pixel
+float lobe_shift;  // shift for the pixel
 
 // The light of a rough mirror that is met first.
 vec3 rough_shown() {

@@ -6,8 +6,8 @@
 // that shows it + 1 (camera_bands.glsl), 0: all.
 const uint SIGHT = 7u;
 const uint SIGHT_NEXT = 0xffffffu;
-// Of a pixel: XYZ of what is no receiver, and its distance; XYZ of the share that is mirrored at the front, and
-// the chain of what that shows; a chain of each thread.
+// Words of a pixel: XYZ of what is no receiver, and its distance; XYZ of the share that is mirrored
+// at the front, and the chain of what that shows; a chain of each thread.
 const uint SIGHT_WORDS = 8u + uint(PIXEL_THREADS);
 
 layout(std430, binding = BINDING_SIGHTS) SIGHTS_ACCESS buffer Sights {

@@ -211,7 +211,7 @@ static abbe_result lay_over(abbe_haze_pass *pass, abbe_error *error) {
   const abbe_gpu_scene *scene = scene_of(pass);
   const abbe_gl *gl = scene->gpu->gl;
   const abbe_picture *picture = pass->picture;
-  const int layer = picture->pixels != 0 ? -1 : 0; /* of a texture, or of an array */
+  const int layer = picture->pixels != 0 ? -1 : 0; /* layer of a texture, or of an array */
   const GLuint pixels = picture->pixels != 0 ? picture->pixels : picture->receivers->colour;
   size_t size[2];
   abbe_picture_size(picture, size);

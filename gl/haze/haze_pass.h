@@ -25,8 +25,8 @@ abbe_result abbe_haze_pass_make(abbe_picture *picture, abbe_caustics *caustics,
                                 abbe_error *error);
 void abbe_haze_pass_free(abbe_haze_pass *pass);
 
-/* Of a pass with caustics: for who follows photons for beams anyway, before the picture is drawn;
- * *draws is to be among what abbe_beam_list_run is given. ABBE_GL. */
+/* Begins a pass with caustics: for a caller that follows photons for beams anyway, before the
+ * picture is drawn; *draws is to be among what abbe_beam_list_run is given. ABBE_GL. */
 abbe_result abbe_haze_pass_begin(abbe_haze_pass *pass, abbe_beam_use *draws, abbe_error *error);
 /* Over the picture that is drawn by then. Follows the photons once more, where nobody has begun. */
 abbe_result abbe_haze_pass_run(abbe_haze_pass *pass, abbe_error *error);

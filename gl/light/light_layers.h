@@ -19,7 +19,7 @@ typedef struct abbe_light_layers {
   const abbe_refractor_faces *faces;
   GLuint layers, owner, depth; /* front and back of each light; whose the front is */
   size_t side;
-  abbe_drawn_view drawn[ABBE_SCENE_MAX_LIGHTS]; /* of each light; all zero: none */
+  abbe_drawn_view drawn[ABBE_SCENE_MAX_LIGHTS]; /* view of each light; all zero: none */
 } abbe_light_layers;
 
 abbe_result abbe_light_layers_make(const abbe_photon_lights *views,
@@ -27,8 +27,8 @@ abbe_result abbe_light_layers_make(const abbe_photon_lights *views,
                                    abbe_error *error);
 void abbe_light_layers_free(abbe_light_layers *layers);
 
-/* Of one light, then of all whose light may meet a refractor. What is there already is drawn again
- * only where passes are timed. */
+/* Draws the layers of one light, then of all whose light may meet a refractor. What is there
+ * already is drawn again only where passes are timed. */
 abbe_result abbe_light_layers_draw(abbe_light_layers *layers, size_t light, abbe_error *error);
 abbe_result abbe_light_layers_run(abbe_light_layers *layers, abbe_error *error);
 
@@ -43,8 +43,8 @@ typedef struct abbe_light_fit {
   GLuint program, found;
 } abbe_light_fit;
 
-/* Of all lights whose light may meet a refractor; layers are drawn for it where meshes are
- * traversed. ABBE_GL, ABBE_NO_MEMORY. */
+/* Fits the views of all lights whose light may meet a refractor; layers are drawn for it where
+ * meshes are traversed. ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_light_fit_run(abbe_photon_lights *views, abbe_light_layers *layers,
                                const abbe_shader_variant *variant, abbe_error *error);
 

@@ -204,7 +204,8 @@ static double per_spread(const abbe_photon_lights *views, size_t light, int axis
                       texel_size(views, light, axis, finer, after)));
 }
 
-/* Of one axis of a light, as texel_sizes.glsl reads them: of one level after another. */
+/* Uploads sizes along one axis of a light, as texel_sizes.glsl reads them: one level after
+ * another. */
 static void upload_texel_sizes(const abbe_photon_lights *views, size_t light, int axis) {
   const size_t whole = views->scene->plan->desc.map_size;
   enum { CHUNK = 256 };

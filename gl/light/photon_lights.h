@@ -17,7 +17,7 @@ enum { ABBE_WARP_STEPS = ABBE_MAP_LAYOUT_STEPS };
 typedef struct abbe_photon_light {
   abbe_view near_view;
   abbe_map_layout map;
-  size_t cells[2];     /* of the photon grid, across and up */
+  size_t cells[2];     /* cells of the photon grid, across and up */
   double unshifted[4]; /* the near view's window before its grid was shifted */
   size_t photon_count;
   double cell_flux;  /* most that one photon cell can carry, of unit power of the light */

@@ -5,7 +5,7 @@ struct Photon {
   uint cell;    // x | y << 16
   float flux;   // that the lit part carries, of unit power of its light
   uint offset;  // from the cell's middle, in cells, packSnorm2x16
-  uint extent;  // of the lit part, in cells, packUnorm2x16
+  uint extent;  // size of the lit part, in cells, packUnorm2x16
 };
 
 #ifndef MAKES_PHOTONS

@@ -32,7 +32,8 @@ static abbe_result upload(abbe_receiver_atlas *atlas, int table, GLenum format, 
                               &atlas->table[table], &atlas->texture[table], error);
 }
 
-/* Of one light, as receiver_atlas.glsl reads it: its layer, blocks of texels, sides of charts. */
+/* Writes the index of one light, as receiver_atlas.glsl reads it: its layer, blocks of texels,
+ * sides of charts. */
 static void write_index(const abbe_receiver_atlas *atlas, size_t light, size_t blocks,
                         GLint *index) {
   const abbe_receiver_tiles *tiles = &atlas->tiles[light];

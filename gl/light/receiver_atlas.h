@@ -20,7 +20,7 @@ typedef struct abbe_receiver_atlas {
   bool used; /* some light has tiles, or they are yet to be chosen */
   bool fits; /* they are yet to be chosen */
   abbe_receiver_tiles tiles[ABBE_SCENE_MAX_LIGHTS];
-  size_t layer[ABBE_SCENE_MAX_LIGHTS]; /* of the map, where the light has tiles */
+  size_t layer[ABBE_SCENE_MAX_LIGHTS]; /* layer of the map, where the light has tiles */
   GLuint table[ABBE_TILE_TABLES], texture[ABBE_TILE_TABLES];
 } abbe_receiver_atlas;
 
@@ -44,8 +44,8 @@ abbe_result abbe_receiver_atlas_choose(abbe_receiver_atlas *atlas, size_t light,
 abbe_result abbe_receiver_atlas_keep(abbe_receiver_atlas *atlas, abbe_shader_variant *variant,
                                      abbe_error *error);
 
-/* Of hits as the device keeps them, ABBE_HIT_BYTES each, places and fluxes side by side; those on
- * tiles come to texels and the tile's number. `words` of a signature. */
+/* Places hits as the device keeps them, ABBE_HIT_BYTES each, places and fluxes side by side; those
+ * on tiles come to texels and the tile's number. `words` of a signature. */
 void abbe_receiver_atlas_place(const abbe_receiver_atlas *atlas, size_t light, float *hit,
                                const GLuint *signature, size_t words, size_t count);
 /* Whether a hit of that path lies on a tile. */

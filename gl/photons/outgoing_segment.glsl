@@ -1,7 +1,8 @@
 // The interface at which light left its last refractor, kept with every hit: behind it light of any
 // wavelength between two nodes is known nearly exactly, for it follows the index so evenly before.
 
-// Of a hit: its place and flux, of unit power of its light; then the place on the interface and interface_word().
+// Texels of a hit: its place and flux, of unit power of its light; then the place on the interface
+// and interface_word().
 const int HIT_TEXELS = 2;
 
 // The interface's normal along the path out (11 bits each of its two octahedral coordinates, and the sign
@@ -30,10 +31,10 @@ int interface_tile(float word) { return int(((floatBitsToUint(word) >> 23 & 255u
 // before it by Snell's law without a root, so even next to the critical angle, where directions and places
 // do not.
 struct Segment {
-  vec3 place;         // of the hit
+  vec3 place;         // place of the hit
   vec3 interface_at;  // where it leaves
   vec3 along;         // part of its unit direction along the interface
-  vec3 n;             // of the interface, along its direction
+  vec3 n;             // normal of the interface, along its direction
   float passes;       // share that the interface lets through
   float arrives;      // flux before that, of unit power
   bool transmits, far;  // far: place and interface tell its direction
@@ -63,8 +64,8 @@ Segment segment_of(vec4 landed, vec4 left, float index) {
 // The light between two hits of one path.
 struct Fan {
   bool bends;
-  vec3 facing;  // of the plane that holds both places, as square to the light as can be
-  vec3 curve;   // of `along`: second difference
+  vec3 facing;  // normal of the plane that holds both places, as square to the light as can be
+  vec3 curve;   // second difference of `along`
 };
 
 Fan fan_between(Segment a, Segment b, vec3 curve) {
@@ -77,8 +78,8 @@ Fan fan_between(Segment a, Segment b, vec3 curve) {
   return f;
 }
 
-// Of light that is so far along from a to b, by the index: the cosine of its direction to the interface's
-// normal; 0 where the interface reflects all of it.
+// The cosine of light's direction to the interface's normal, for light that is so far along from a
+// to b, by the index; 0 where the interface reflects all of it.
 float cosine_between(Segment a, Segment b, Fan f, float s) {
   vec3 along = mix(a.along, b.along, s) + (s * (s - 1.0)) * f.curve;
   return sqrt(max(1.0 - dot(along, along), 0.0));

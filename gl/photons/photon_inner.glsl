@@ -54,7 +54,7 @@ struct Inside {
   float metres;
   Attenuation attenuation;
 #endif
-  Shares left;  // of its light
+  Shares left;  // shares of its light
 };
 
 // What leaves at interface `order`. Returns the share that is lost.
@@ -93,7 +93,7 @@ Shares absorb(float metres, float per_m, inout InnerRay ray, inout Inside inside
   return Shares(before - ray.share);
 }
 
-// Of the half that passes most.
+// What is left in the half that passes most.
 float most_left(InnerRay ray, Inside inside) {
 #ifdef TINTS
   return ray.share * max(inside.left.x, inside.left.y);

@@ -18,7 +18,7 @@ void abbe_photon_ledger_free(abbe_photon_ledger *ledger);
 
 void abbe_photon_ledger_clear(abbe_photon_ledger *ledger);
 void abbe_photon_ledger_bind(const abbe_photon_ledger *ledger);
-/* Of the light that is traced now: its unit, W, into the program that is in use. */
+/* Sets the unit of the light that is traced now, W, into the program that is in use. */
 void abbe_photon_ledger_set(const abbe_photon_ledger *ledger, GLuint program, size_t light);
 
 /* The entries as they are, and back to those. */

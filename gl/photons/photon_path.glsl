@@ -10,7 +10,7 @@ const int REACHED = 0, REFLECTED = 1, ABSORBED = 2, TRAPPED = 3, MISSED = 4;
 
 // What its light is handed on as, and what it meets first.
 struct PhotonRay {
-  uint item;  // of the list that is worked on
+  uint item;  // index in the list that is worked on
   int sample_number, wavelength;
   float flux;  // W
   vec3 o, d;

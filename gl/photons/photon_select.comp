@@ -22,9 +22,9 @@ uniform ivec2 grid;
 uniform int map_size;
 uniform uint most_pairs;  // that the list has room for
 
-uniform float interval_weight[PAIR_INTERVALS];  // of the light, by the intervals' mean
+uniform float interval_weight[PAIR_INTERVALS];  // weight of the light, by the intervals' mean
 
-// Of the photon's light in an interval: what may lie wrong by a footprint's width.
+// Share of the photon's light in an interval that may lie wrong by a footprint's width.
 const float MOST_WRONG = 0.05;
 
 // How far off the deposit's light is: of a node's distance from where its neighbours put it along a line,
@@ -123,7 +123,7 @@ float misplaced(Sample before, Sample a, Sample b, Sample after, bool has_before
 float larger_of(vec2 v) { return abs(v.x) > abs(v.y) ? v.x : v.y; }
 #endif
 
-// Of the photon's light, what may lie wrong between a and b.
+// The share of the photon's light that may lie wrong between a and b.
 float wrong_between(Sample a, Sample b, float misplaced_by, float size, float photon_flux,
                     float weight) {
   float flux_a = a.flux, flux_b = b.flux, left = 1.0;

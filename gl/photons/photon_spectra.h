@@ -29,10 +29,10 @@ abbe_result abbe_photon_spectra_take_all(abbe_photon_spectra *spectra, abbe_erro
 /* Whether some photons take more wavelengths than others. */
 bool abbe_photon_spectra_refines(const abbe_photon_spectra *spectra);
 
-/* Of a hit's signature and tints: bytes, and the format of a texture of them. */
+/* Bytes of a hit's signature and tints, and the format of a texture of them. */
 size_t abbe_photon_signature_bytes(const abbe_plan *plan);
 GLenum abbe_photon_signature_format(const abbe_plan *plan);
-/* Of so many hits, as read, of which each path has `stride` from wavelength `first` on: takes off
+/* For so many hits, as read, of which each path has `stride` from wavelength `first` on: takes off
  * what is absorbed beside these, and leaves paths alone in `signature`. */
 void abbe_photon_attenuate(const abbe_photon_spectra *spectra, size_t first, size_t stride,
                            size_t count, float *hit, GLuint *signature);

@@ -4,11 +4,11 @@
 #ifdef TINTS
 #define Shares vec2
 
-int below_texel, above_texel;  // of the first refractor's node
+int below_texel, above_texel;  // texels of the first refractor's node
 bool below_is_above, above_is_below;  // a half of another set's band stands for it
 
-// Of a refractor or mirror, by amount, in two parts below the node and two above it; the least of these; and whose
-// tint it is, -1: it has none.
+// Attenuation by a refractor or mirror, by amount, in two parts below the node and two above it;
+// the least of these; and whose tint it is, -1: it has none.
 struct Attenuation {
   vec4 parts;
   float least;
@@ -30,7 +30,7 @@ vec2 left_after(vec4 depth) { return vec2(left_after(depth.xy), left_after(depth
 // What a path has passed. Of what has no room there is nothing left to tell: it is taken off at once.
 struct Passed {
   Tints tints;
-  vec4 depth;  // of the tints, in the parts of the band
+  vec4 depth;  // depth of the tints, in the parts of the band
 };
 
 Passed none_passed() { return Passed(no_tints(), vec4(0)); }

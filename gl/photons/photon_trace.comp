@@ -25,7 +25,8 @@ layout(std430, binding = BINDING_SIGNATURES) writeonly buffer Signatures { Signa
 layout(std430, binding = BINDING_SAMPLE_WEIGHTS) readonly buffer SampleWeights { vec4 sample_weight[]; };
 // [item * slots + slot]: 1 where there is a hit at some wavelength.
 layout(std430, binding = BINDING_PATH_MARKS) writeonly buffer PathMarks { uint path_mark[]; };
-// Of reached, reflected, absorbed, trapped and missed, in ledger_unit: low and high word of the sum.
+// Sums of reached, reflected, absorbed, trapped and missed, in ledger_unit: low and high word of
+// the sum.
 layout(std430, binding = BINDING_LEDGER) buffer Ledger { uint ledger[]; };
 
 #include "pass_light.glsl"
@@ -103,8 +104,8 @@ PhotonRay ray_of(Task t) {
 }
 
 #ifdef TINTS
-// Of the band of an interval's end, one half lies in the interval. In place of the other stands the half of
-// the coarse band that covered the interval, which enter() takes back.
+// One half of the band of an interval's end lies in the interval. In place of the other stands the
+// half of the coarse band that covered the interval, which enter() takes back.
 void load_attenuation(Task t) {
   bool at_low = t.wavelength == t.low, at_high = t.wavelength == t.high;
   int all = counts.nodes == counts.wavelengths ? 0 : counts.nodes;

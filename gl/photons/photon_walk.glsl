@@ -5,7 +5,7 @@
 #define KEEPS_INTERFACE
 #include "walk.glsl"
 
-const int MOST_SEGMENTS = 128;  // of one photon's light; fewer are met but in a hall of mirrors
+const int MOST_SEGMENTS = 128;  // segments of one photon's light; fewer are met but in a hall of mirrors
 
 int wavelength;
 

@@ -11,11 +11,11 @@
 typedef struct abbe_refine_pass {
   abbe_trace_pass *trace;
   GLuint select;       /* program */
-  GLuint wants;        /* of each photon: its intervals that ask, a bit each */
+  GLuint wants;        /* for each photon: its intervals that want more wavelengths, a bit each */
   GLuint asked, pairs; /* lists of photon and interval: all that ask, of a light; a chunk's */
-  abbe_hits hits;      /* of a chunk */
+  abbe_hits hits;      /* hits of a chunk */
   size_t asked_room, pair_room;        /* elements of the two lists */
-  size_t most_pairs;                   /* of a chunk, at the most */
+  size_t most_pairs;                   /* pairs of a chunk, at the most */
   size_t count[ABBE_SCENE_MAX_LIGHTS]; /* intervals that ask, of each light, as last measured */
   size_t fine_nodes;                   /* wavelengths of an interval at the most, with both ends */
 } abbe_refine_pass;

@@ -17,7 +17,7 @@ static size_t most_hits(const abbe_trace_pass *pass) {
   scene_of(pass)->gpu->gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
   const size_t most =
       MOST_HIT_BYTES / (ABBE_HIT_BYTES + abbe_photon_signature_bytes(scene_of(pass)->plan));
-  const size_t held = (size_t)texels * 16 / ABBE_HIT_BYTES; /* of four floats a texel */
+  const size_t held = (size_t)texels * 16 / ABBE_HIT_BYTES; /* bytes: four floats a texel */
   return most < held ? most : held;
 }
 

@@ -22,7 +22,7 @@ bool abbe_plan_surrounds(const abbe_scene *scene);
 abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *desc,
                                const abbe_scene *before, abbe_scene *out, abbe_error *error);
 
-/* Of a scene as it is loaded, or with lights for its environment already.
+/* Makes the plan of a scene as it is loaded, or with lights for its environment already.
  * ABBE_INVALID_ARGUMENT for a request outside its limits, ABBE_OUT_OF_RANGE for an index that is
  * not known over the range, ABBE_UNSUPPORTED for what is not modelled. desc may be NULL. */
 abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,

@@ -26,7 +26,7 @@ typedef struct facing {
 
 typedef struct packer {
   const abbe_bvh *h;
-  facing *facing; /* of each triangle, in the tree's order */
+  facing *facing; /* facing of each triangle, in the tree's order */
   size_t first_texel, first_triangle, texels;
   double low[3], cell[3];
   uint32_t (*out)[4];
@@ -181,10 +181,10 @@ static bool make_room(forest *f, size_t texels, size_t triangles) {
 /* One tree's triangles: meshes one after another, their faces and smooth parts numbered through. */
 typedef struct grove {
   const abbe_mesh **mesh;
-  uint32_t *surface, *face_first; /* of each mesh; face_first has one more */
-  const int32_t **side;           /* of each mesh's faces (gpu_scene.h), or NULL */
+  uint32_t *surface, *face_first; /* for each mesh; face_first has one more */
+  const int32_t **side;           /* sides of each mesh's faces (gpu_scene.h), or NULL */
   size_t mesh_count;
-  uint32_t *owner, *part; /* of each face: its mesh, and which part */
+  uint32_t *owner, *part; /* for each face: its mesh, and which part */
 } grove;
 
 static void store_bits(uint32_t bits, float *out) {

@@ -116,7 +116,7 @@ abbe_result abbe_gpu_environment_colours(const abbe_illuminant *illuminant, abbe
   return ABBE_OK;
 }
 
-/* Of `count` colours, with alpha 1. */
+/* Converts `count` colours, with alpha 1. */
 static float *convert(const double matrix[9], const float *rgb, size_t count, abbe_error *error) {
   float *out = malloc(count * 4 * sizeof *out);
   if (out == NULL) {

@@ -48,9 +48,9 @@ typedef struct abbe_gpu_environment {
   GLuint soft_light; /* W/m2, by the nodes of an abbe_irradiance_map */
 } abbe_gpu_environment;
 
-/* Of a scene with lights for its environment (environment_lights.h), over the request's range, for
- * its observer, in `space`; zeros where the scene has none. ABBE_GL, ABBE_NO_MEMORY, errors of
- * abbe_upsampling_make_by. */
+/* Makes the environment of a scene with lights for it (environment_lights.h), over the request's
+ * range, for its observer, in `space`; zeros where the scene has none. ABBE_GL, ABBE_NO_MEMORY,
+ * errors of abbe_upsampling_make_by. */
 abbe_result abbe_gpu_environment_make(abbe_gpu *gpu, const abbe_scene *scene, abbe_rgb_space space,
                                       const abbe_render_desc *desc, abbe_gpu_environment *out,
                                       abbe_error *error);
@@ -102,17 +102,17 @@ typedef struct abbe_gpu_scene {
 
   abbe_gpu_mesh *mesh; /* [mesh_count], of each object */
   size_t mesh_count;
-  size_t mesh_bytes; /* of their vertices and faces */
+  size_t mesh_bytes; /* bytes of their vertices and faces */
   GLuint refractors, planes, receivers, surfaces, reflections, spectra, bands, shadows;
   GLuint surface_texture;
   GLuint band_texels, band_texels_texture; /* of camera_bands.h */
   GLuint band_reflections;                 /* 0: no dispersed light falls on receivers in colours */
   abbe_gpu_environment environment;
-  size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
+  size_t band_count, band_levels; /* for one refractor: samples, and samples joined by twos */
 
   GLuint bvh[3], bvh_texture[3]; /* nodes, triangles, corners; 0: no model needs them */
   size_t *refractor_root;        /* [refractor_count] of its tree */
-  size_t receiver_root;          /* of the tree of all receivers that are traversed */
+  size_t receiver_root;          /* root of the tree of all receivers that are traversed */
   size_t bvh_depth;
   /* [(light views + 1) x bands]: rgb of each light of unit power, last of the scene's illuminant */
   float haze_white[(ABBE_SCENE_MAX_LIGHTS + 1) * ABBE_PLAN_HAZE_BANDS][3];
@@ -130,7 +130,7 @@ enum {
   ABBE_SCENE_ALL = 15
 };
 
-/* Of this scene and plan from now on: measures them, makes nothing. */
+/* Begins with this scene and plan: measures them, makes nothing. */
 void abbe_gpu_scene_begin(abbe_gpu *gpu, const abbe_scene *local, double unit,
                           const abbe_plan *plan, const abbe_map_layout *map_layout,
                           abbe_gpu_scene *out);
@@ -154,7 +154,7 @@ void abbe_gpu_meshes_draw(const abbe_gpu_scene *scene, size_t object);
 /* By fewer triangles where that saves half of them (scenes/mesh/coarse_mesh.h). */
 void abbe_gpu_meshes_draw_coarse(const abbe_gpu_scene *scene, size_t object);
 abbe_result abbe_gpu_meshes_upload(abbe_gpu_scene *scene, abbe_error *error);
-/* Of one by itself. */
+/* Uploads one mesh by itself. */
 abbe_result abbe_gpu_mesh_upload(const abbe_gpu_scene *scene, const abbe_mesh *mesh,
                                  abbe_gpu_mesh *out, abbe_error *error);
 void abbe_gpu_mesh_free(const abbe_gpu_scene *scene, abbe_gpu_mesh *mesh);

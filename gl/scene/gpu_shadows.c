@@ -93,7 +93,7 @@ abbe_result abbe_shadow_planes_make(const double (*plane)[4], size_t count, cons
   double at[4], axis[3], u[3], v[3];
   size_t lit = 0, pairs = 0, n = 0;
   *found = 0;
-  double *before = malloc((count + 1) * sizeof *before); /* of each face, how far the light is */
+  double *before = malloc((count + 1) * sizeof *before); /* for each face, how far the light is */
   if (before == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a shadow");
   place_of(light, at);
   for (int k = 0; k < 3; k++) axis[k] = at[k] - at[3] * inside[k];

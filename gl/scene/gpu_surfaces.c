@@ -174,7 +174,7 @@ size_t abbe_gpu_surfaces_reflections(const abbe_gpu_scene *scene) {
   return scene->plan->receiver_count * slots * channels * 3;
 }
 
-/* Of a surface under a light, from XYZ: each channel by the object's own share of it. */
+/* The matrix of a surface under a light, from XYZ: each channel by the object's own share of it. */
 static void find_matrices(const abbe_object *object, const abbe_reflected_light *light,
                           const double rec709[3][9], double matrix[3][9]) {
   if (object->spectrum != NULL) {

@@ -7,8 +7,8 @@
 
 /* Shares of the light: on each side of a window, and of what may be left without a tile. */
 static const double tail = 2e-4, least_rest = 1e-3;
-/* Of the layer: a tile gets four times the share that its light is of all, within these; of many
- * tiles the least is half of an equal part. */
+/* Shares of the array layer: a tile gets four times the share that its light is of all, within
+ * these; of many tiles the least is half of an equal part. */
 static const double least_area = 1.0 / 16, most_area = 1;
 /* Below it all rectangles are as small as they may be. */
 static const double least_scale = 1e-8;

@@ -12,9 +12,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#define ABBE_RECEIVER_TILES 64 /* of one light at the most */
+#define ABBE_RECEIVER_TILES 64 /* tiles of one light at the most */
 #define ABBE_TILE_BINS 4096
-#define ABBE_TILE_FLOATS 16 /* of the shaders' Tile */
+#define ABBE_TILE_FLOATS 16 /* floats of the shaders' Tile */
 
 /* What landed on one side of a chart, corner + u U + v V, and where: flux by u and by v, 0 to 1. */
 typedef struct abbe_tile_light {
@@ -31,7 +31,7 @@ typedef struct abbe_receiver_tile {
 typedef struct abbe_receiver_tiles {
   size_t count;
   abbe_receiver_tile tile[ABBE_RECEIVER_TILES];
-  size_t rows; /* of the layer that are used */
+  size_t rows; /* rows of the layer that are used */
 } abbe_receiver_tiles;
 
 /* u and v are clamped to 0 to 1; a flux that is not above zero is left out. */

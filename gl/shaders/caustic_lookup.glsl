@@ -7,7 +7,7 @@ const float MOST_TAPS = 4.0;
 // rect: left, bottom, right, top, which the filter keeps to where that is the `whole` layer. All in parts
 // of the layer.
 vec3 layer_mean(int layer, vec2 at, vec2 a, vec2 b, vec4 rect, const bool whole) {
-  // Of a neighbour that the layer does not hold nothing is known.
+  // Nothing is known of a neighbour that the layer does not hold.
   a = all(lessThan(abs(a), vec2(1))) ? a : vec2(0);
   b = all(lessThan(abs(b), vec2(1))) ? b : vec2(0);
   vec2 longer = dot(a, a) > dot(b, b) ? a : b, shorter = dot(a, a) > dot(b, b) ? b : a;

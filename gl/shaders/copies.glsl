@@ -31,7 +31,7 @@ Receiver own_receiver[RECEIVER_ROOM];
 #define OF_RECEIVERS(DO) for (int i = 0; i < RECEIVERS; i++) DO(i)
 #endif
 
-// Of one solid; of several, each has its own part of the table.
+// One solid has the whole table; of several, each has its own part.
 #ifdef ONE_CONVEX
 #define PLANE_FIRST 0
 #define PLANE_COUNT PLANE_ROOM

@@ -14,7 +14,7 @@ const bool CHEAP_INTERFACES = true;
 struct InnerRay {
   vec3 p, d;
   int facet;    // that p lies on
-  float share;  // of the light that it began with
+  float share;  // share of the light that it began with
 };
 
 struct InnerHit {

@@ -75,7 +75,7 @@ float facets_reflect(vec2 a, vec3 wi, vec3 wo) {
   return both > 0.0 ? facets_density(a, normalize(wi + wo)) * both / (4.0 * wi.z * wo.z) : 0.0;
 }
 
-// Of what facets_sample draws, 1/sr.
+// The density of what facets_sample draws, 1/sr.
 float facets_pdf(vec2 a, vec3 wo, vec3 wi) {
   return facets_density(a, normalize(wi + wo)) * facets_visible(a, wo) / (4.0 * wo.z);
 }

@@ -1,7 +1,7 @@
 // Where a place of a parallelogram is on its page: texels are even as wide as the refractors' bounds in
 // front of it, and grow with the distance beyond.
 
-// Of one axis: the bounds' middle, and their half width, in parts of the edge.
+// Along one axis: the bounds' middle, and their half width, in parts of the edge.
 vec2 page_axis(vec4 dual, vec3 anchor) {
   float middle = dot(refractor_bounds.xyz - anchor, dual.xyz) + dual.w, wide = refractor_bounds.w * length(dual.xyz);
   return vec2(middle, max(wide, 1e-4));

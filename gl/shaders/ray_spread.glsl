@@ -3,8 +3,8 @@
 // at all on facets, and as they are interpolated over a triangle.
 
 struct Spread {
-  vec3 place_x, place_y;  // of the neighbour to the right and of that above, m from the ray's own place
-  vec3 turn_x, turn_y;    // of their directions from its own
+  vec3 place_x, place_y;  // of the neighbour to the right and of the one above, m from the ray's own place
+  vec3 turn_x, turn_y;    // their directions, relative to its own
 };
 
 Spread no_spread() { return Spread(vec3(0), vec3(0), vec3(0), vec3(0)); }
@@ -61,8 +61,8 @@ Spread spread_refracted(Spread s, vec3 d, vec3 n, float eta) {
   return s;
 }
 
-// Of a triangle of edges e1, e2 from its first corner, whose normals there are n0, n1, n2; n: of the place,
-// before it is made a unit vector.
+// The bend of a triangle of edges e1, e2 from its first corner, whose normals there are n0, n1, n2;
+// n: of the place, before it is made a unit vector.
 mat3 triangle_bend(vec3 e1, vec3 e2, vec3 n0, vec3 n1, vec3 n2, vec3 n) {
   vec3 face = cross(e1, e2);
   float size = length(n), doubled = max(length(face), 1e-30);

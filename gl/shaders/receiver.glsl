@@ -45,7 +45,8 @@ void copy_surroundings() {
 // that stands on a receiver touches it to a rounding. In radii of the refractors' bounds.
 const float touch = 1e-5;
 
-// Of light on its way to a receiver. RECEIVER_COLOURS: X, Y, Z, whose band is told before it is reflected.
+// Sums of light that comes to a receiver. RECEIVER_COLOURS: X, Y, Z, whose band is found before it
+// is reflected.
 #ifdef RECEIVER_COLOURS
 vec3 caustic_colour(vec3 xyz) { return xyz; }
 #else

@@ -9,7 +9,7 @@ const int TILE_ROWS = 4;
 int tiles_word() { return counts.tile_blocks * counts.tile_blocks + 1; }
 int words_of(int lights) { return lights * (tiles_word() + counts.chart_sides); }
 
-// Of a hit's path: it lies on a tile. Its place is then texels of the layer and the tile.
+// Flag of a hit's path: it lies on a tile. Its place is then texels of the layer and the tile.
 const uint ON_A_TILE = 0x40000000u;
 
 int tile_row(int light, int tile) { return TILE_ROWS * (light * MOST_TILES + tile); }

@@ -1,11 +1,12 @@
 // What a receiver in colours reflects of light that refractors have spread: the share of X, Y and Z by the
 // band of the light's spectrum that has that chromaticity (colorimetry/reflectance/band_reflection.h).
 
-// Of each receiver and light its white x, y and where its tables begin (0: it has none); then the tables,
-// ring by ring of each direction: shares, and how far the spectral locus lies there.
+// For each receiver and light its white x, y and where its tables begin (0: it has none); then the
+// tables, ring by ring of each direction: shares, and how far the spectral locus lies there.
 uniform samplerBuffer band_reflections;
 
-// Of the directions a and b next to it, so far between them, and so many rings from the white.
+// The share between the directions a and b next to it, so far between them, and so many rings from
+// the white.
 vec3 band_share(int first, ivec2 turn, float part, float ring) {
   int inner = min(int(ring), BAND_RINGS - 1);
   ivec2 at = first + turn * (BAND_RINGS + 1) + inner;

@@ -56,7 +56,7 @@ int receiver_part(int receiver) {
   return receiver;
 }
 
-// Of its plane, as its edges turn.
+// The normal of its plane, as its edges turn.
 vec3 receiver_normal(int receiver) {
   vec3 n = receivers[min(receiver, RECEIVER_ROOM - 1)].normal.xyz;
 #ifdef RECEIVER_HIERARCHY
@@ -81,7 +81,7 @@ int chart_side(int receiver, vec3 d) {
 #endif
 
 #ifdef RECEIVER_HIERARCHY
-vec3 face_n;  // of the face that is shaded, towards the viewer
+vec3 face_n;  // normal of the face that is shaded, towards the viewer
 
 // The side of an interpolated normal that the viewer sees, to whom `view` points; the face's where
 // that is bent away from the viewer. Sets face_n.

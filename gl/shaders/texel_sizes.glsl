@@ -1,8 +1,8 @@
 // How wide the map's columns and how high its rows are, of all levels. Who includes this gives `light` and
 // `map_size`.
 
-// Of a light: widths of columns, heights of rows, then of each 1 / (what it spreads over): 2 map_size each,
-// a level after another.
+// For a light: widths of columns, heights of rows, then of each 1
+// (what it spreads over): 2 map_size each, a level after another.
 layout(std430, binding = BINDING_TEXEL_SIZES) readonly buffer TexelSizes { float texel_size[]; };
 
 int size_row(int axis, int level) {

@@ -54,5 +54,5 @@ float angle_of(float y, float x) {
   return y < 0.0 ? -r : r;
 }
 
-// Of a direction: longitude, and from +z on.
+// The angles of a direction: longitude, and from +z on.
 vec2 sphere_angles(vec3 d) { return vec2(angle_of(d.y, d.x), angle_of(length(d.xy), d.z)); }

@@ -17,7 +17,7 @@
 
 struct PathState {
   vec3 p, d;
-  float share;    // of the light that it began with; BAND_PARTS: besides what `depth` has, or `passed`
+  float share;    // share of the light that it began with; BAND_PARTS: besides what `depth` has, or `passed`
   uint inside;    // bit r: within refractor r
   uint path;      // what it met and did so far, as one number
   int interfaces;  // met since the first; -1: none yet
@@ -34,22 +34,22 @@ struct PathState {
 #endif
 #ifdef KEEPS_TINTS
   Passed passed;
-  float least_depth;  // of tints, in all of the band, which `share` has, and not the depth of `passed`
+  float least_depth;  // least depth of tints, in all of the band, which `share` has, and not the depth of `passed`
 #endif
 #ifdef KEEPS_PARTS
-  Depth depth;  // of each part
+  Depth depth;  // depth of each part
 #endif
 };
 
 struct Interface {
   Hit hit;      // n: interpolated, outwards
-  vec3 face_n;  // of the face itself, outwards
+  vec3 face_n;  // normal of the face itself, outwards
 #ifdef KEEPS_SPREAD
   mat3 bend;    // how the normal turns along the face, 1/m
 #endif
 };
 
-// Of share 1, in free space.
+// A path of share 1, in free space.
 PathState path_from(vec3 p, vec3 d) {
   PathState w;
   w.p = p;
@@ -143,7 +143,7 @@ void absorb_at_mirror(inout PathState w, int r, float cos_i) {
 }
 #endif
 
-// Of refractors of one material the first; -1: air.
+// The first of refractors of one material; -1: air.
 int stuff_of(uint inside) {
   return inside == 0u ? -1 : refractors[medium_of(inside)].info.w;
 }
@@ -412,8 +412,8 @@ float reflect_off(inout PathState w, Interface h) {
 }
 #endif
 
-// Of one path, whose functions these are. A processor's lanes index for themselves at a price; what a GPU
-// indexes by no constant stays out of its registers, which four paths would fill.
+// Paths of one photon, whose functions these are. A processor's lanes index for themselves at a
+// price; what a GPU indexes by no constant stays out of its registers, which four paths would fill.
 PathState pending[PENDING];
 
 // Keeps a branch for later, in the place of the weakest where there is none free; returns the share

@@ -97,8 +97,8 @@ typedef enum abbe_footprint {
 
 /* What a profile's method does. A count, range or choice of 0 leaves it to the default profile. */
 typedef struct abbe_method_facts {
-  const char *says;       /* of a list: what it is */
-  const char *called;     /* of a sentence */
+  const char *says;       /* for a list: what it is */
+  const char *called;     /* its name in a sentence */
   bool own_passes;        /* it is published, with passes of its own: all in images, of one light */
   bool printed;           /* by its own constants: display brightness, no units */
   bool reflects_spectra;  /* receivers reflect spectra, not colours of the working space */
@@ -120,7 +120,7 @@ typedef struct abbe_method_facts {
   abbe_estimator estimator;
 } abbe_method_facts;
 
-/* Of what is no profile the default's. */
+/* The facts of a method; those of the default for what is no profile. */
 const abbe_method_facts *abbe_method_of(abbe_profile profile);
 
 /* "unknown" for what is not one. */

@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Of the camera's rays: the thesis's search, along the view's axis. */
+/* of the thesis's search for the camera's rays, along the view's axis */
 enum { ITERATIONS = 10 };
-static const double bias_share = 0.005; /* of the light's range */
+static const double bias_share = 0.005; /* share of the light's range */
 
 static abbe_result make_programs(abbe_image_eye *e, const abbe_shader_variant *variant,
                                  const char *more, abbe_error *error) {

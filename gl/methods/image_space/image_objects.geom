@@ -5,7 +5,7 @@ in vec3 place[];
 in vec3 place_normal[];
 uniform vec4 seen_along;  // w 1: from this point; 0: along this direction
 uniform int mirror;
-uniform int first_layer;  // of this view
+uniform int first_layer;  // first layer of this view
 uniform int only;  // this layer; -1: both
 out vec3 world;
 out vec3 world_normal;

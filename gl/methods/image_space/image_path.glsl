@@ -5,14 +5,14 @@
 
 struct Ray {
   vec3 o, r;
-  float share;   // of its light
+  float share;   // share of its light
   float inside;  // attenuation along its way, 1/m: of what follows, where light stays in the refractor
   float n;       // index of what it goes on in: 1 is air
   bool total;    // it was totally reflected at the back, and goes on in the mirror direction
 };
 
 uniform int object_face;   // whose pixels these are
-uniform vec2 grid_shift;  // of the objects' pixels, as a share of the window
+uniform vec2 grid_shift;  // shift of the objects' pixels, as a share of the window
 
 #ifdef MIRRORS
 float mirrored_share(vec4 spectrum, float c) {

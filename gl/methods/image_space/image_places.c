@@ -6,7 +6,7 @@
 #include <math.h>
 
 static const double widest = 1.55;        /* tangent of a window of objects */
-static const double nearest_share = 1e-3; /* of what is farthest */
+static const double nearest_share = 1e-3; /* share of the farthest distance */
 
 void abbe_image_cube_one(const abbe_view *view, abbe_image_cube *out) {
   *out = (abbe_image_cube){.faces = 1, .object_faces = 1};
@@ -164,7 +164,7 @@ abbe_result abbe_image_places_shadow(abbe_image_places *p, abbe_error *error) {
   return ABBE_OK;
 }
 
-/* Of one view: one of the two layers, or with -1 both. */
+/* Draws one view: one of the two layers, or with -1 both. */
 static void draw_face(abbe_image_places *p, const abbe_image_view *view, size_t face, int only) {
   const abbe_plan *plan = p->scene->plan;
   abbe_image_view_set_clip(p->scene, p->objects, "view_projection", view);

@@ -36,7 +36,7 @@ int receiver_face(vec3 at) {
 #endif
 }
 
-// Of the view that shows a place.
+// The axis of the view that shows a place.
 vec3 places_axis(vec3 at) { return places_face(receiver_face(at)).forward.xyz; }
 
 // The place on a receiver that the view sees in the direction of `at`.
@@ -50,7 +50,7 @@ bool look_up(vec3 at, out vec3 seen) {
 #else
   vec4 place = textureLod(receiver_places, uvz.xy, 0.0);
 #endif
-  seen = place.xyz / max(place.w, 1e-6);  // of neighbours, where they are interpolated
+  seen = place.xyz / max(place.w, 1e-6);  // the mean of neighbours, where they are interpolated
   return place.w > 0.5;
 }
 

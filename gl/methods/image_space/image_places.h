@@ -39,11 +39,11 @@ typedef struct abbe_image_places {
   abbe_image_view view;       /* the first of receivers */
   abbe_image_view face[ABBE_LIGHT_CUBE_FACES], object_face[ABBE_LIGHT_CUBE_FACES];
   size_t size[2], grid[2];          /* pixels of receivers, and of objects, of a view */
-  double shift[2];                  /* of the objects' pixels, in pixels, right and up */
+  double shift[2];                  /* shift of the objects' pixels, in pixels, right and up */
   GLuint seen, objects, depth_only; /* programs */
   GLuint receivers;                 /* place, m; w: 1, or 0 where none is seen */
-  GLuint depth;                     /* of receivers; of all, where shadows are asked for */
-  GLuint places, normals, depths;   /* of objects: front and back of each view */
+  GLuint depth;                     /* depth of receivers; of all, where shadows are drawn */
+  GLuint places, normals, depths;   /* front and back of objects in each view */
   GLuint query;                     /* fragments of fronts; 0: they are not counted */
 } abbe_image_places;
 

@@ -79,7 +79,7 @@ vec3 shaded_caustic(View light, vec3 n, vec3 along, vec2 uv) {
 }
 #endif
 
-// Of the light's view that shows a place: a number of its map, and its depth there.
+// Looks up the light's view that shows a place: a number of its map, and its depth there.
 #ifdef LIT_CUBE
 int lit_face() { return cube_face(world - lit_from[0].xyz); }
 float nearest_depth(vec2 uv, int face) { return textureLod(shadow_map, vec3(uv, face), 0.0).x; }

@@ -4,7 +4,7 @@
 // look_up(at, seen), places_view(), places_axis(at) and, for the exact one, receiver_hit().
 const float START_M = 1.0, STEP_M = 0.1, STEP_SHARE = 0.015625;
 const int DOUBLINGS = 8;
-const float BEHIND = 1e-3;  // of the view's far end
+const float BEHIND = 1e-3;  // share of the view's far end
 
 vec3 search_o, search_r, search_seen;
 bool search_found;

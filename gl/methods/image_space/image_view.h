@@ -62,8 +62,8 @@ abbe_result abbe_image_view_read_map(const abbe_gpu_scene *scene, GLuint map,
 /* WAVELENGTHS, INTERFACES, AS_PRINTED and the estimators' numbers; the characters that are used. */
 size_t abbe_image_tables_define(const abbe_render_desc *desc, char *out, size_t size);
 
-/* Of unit light at each wavelength: XYZ, or RGB as printed; by_white: of the sum of all. malloc'd.
- * ABBE_NO_MEMORY. */
+/* Colours of unit light at each wavelength: XYZ, or RGB as printed; by_white: of the sum of all.
+ * malloc'd. ABBE_NO_MEMORY. */
 abbe_result abbe_image_tables_colours(const abbe_gpu_scene *scene, bool by_white, float (**out)[3],
                                       abbe_error *error);
 

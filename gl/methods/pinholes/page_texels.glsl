@@ -9,7 +9,7 @@ layout(std430, binding = BINDING_UNFINISHED) buffer Unfinished {
 };
 
 #ifdef PINHOLE_CHARTS
-// Of texels of meshes' charts: place (w: 1, 0: there is none), normal.
+// Texels of meshes' charts: place (w: 1, 0: there is none), normal.
 uniform samplerBuffer page_places;
 
 int chart_row(ivec2 at) {

@@ -220,13 +220,13 @@ enum {
   UNIT = 5,
   PLACES_UNIT = 2,
   LEAST_SIDE = 16,
-  MAP_TEXELS = 4,        /* of the spectral map, a side, for one of a page */
-  MOST_TEXELS = 1 << 22, /* of all pages: many have fewer each */
+  MAP_TEXELS = 4,        /* texels of the spectral map, a side, for one of a tile */
+  MOST_TEXELS = 1 << 22, /* texels of all tiles: many have fewer each */
   MOST_PAGES = 2048,     /* layers of an array, as OpenGL promises them */
   LEAST_CUBE = 16,
   MOST_CUBE = 512,
   GROUP = 32,  /* threads of a group, so that few texels are shared out as well */
-  STRIDE = 4,  /* of the texels that are taken first */
+  STRIDE = 4,  /* every fourth of the texels is taken first */
   SKY_UNIT = 4 /* for the camera; that of front and back layers, which there are none of then */
 };
 
@@ -380,7 +380,7 @@ static abbe_result fill_texels(abbe_pinhole_pages *pages, size_t page, size_t st
   }
 }
 
-/* Of a page's texels first some far apart, then those between, columns, rows and crossings. */
+/* Fills a tile's texels: first some far apart, then those between, columns, rows and crossings. */
 static abbe_result fill_page(abbe_pinhole_pages *pages, size_t page, abbe_error *error) {
   static const int none[2] = {0, 0};
   abbe_result result = fill_texels(pages, page, STRIDE, none, error);

@@ -71,8 +71,8 @@ const float FANNED_OUT = 0.35;
 // The sample that is looked through, from p.
 Pinhole pinhole;
 int node_of;
-float weight;       // of its light
-vec3 total;         // of its ways, XYZ
+float weight;       // weight of its light
+vec3 total;         // sum over its paths, XYZ
 vec3 by_u, by_v;    // by how much a path's last direction differs over it
 
 // The path that goes on from there.
@@ -80,11 +80,11 @@ PathState w;
 Interface h;                // where it is met last
 int segment;                // that comes next
 vec3 followed, left;        // weights: of what came to an end, and of what was given up
-vec3 light, lamps;          // of all ends, and of lamps that rough mirrors show
+vec3 light, lamps;          // light of all ends, and of lights that rough mirrors show
 int of;                     // refractor of its first interface
 int ways, way;
 #ifdef ROUGH
-PathState w_first;  // of all ways
+PathState w_first;  // the first of all paths
 Interface h_first;
 vec2 wider;         // by the sample's curvature and size
 int lamp = LIGHTS;  // that is asked for at h; LIGHTS: none
@@ -150,7 +150,8 @@ void begin_rough(float far) {
   lobe_ways = float(ways);
   wider = vec2(0);
 #ifdef FOOTPRINTS
-  // Of even slopes of that half width, by GGX's measure: their standard deviation times the root of two.
+  // For even slopes of that half width, by GGX's measure: their standard deviation times the root
+  // of two.
   RoughHit m = rough_hit(w, h);
   float half_width = 0.8165 * pinhole.half_width, near = 0.5 * half_width / max(far, 1e-20);
   vec2 along = abs(pinhole.turn) * half_width;

@@ -19,13 +19,13 @@
 
 typedef struct abbe_page_charts {
   GLuint places; /* two rows a texel, of the charts of meshes: place (w: 1; 0: none), normal */
-  GLuint rows, rows_texture;  /* of all charts: from a place to its u, and v */
+  GLuint rows, rows_texture;  /* rows of all charts: from a place to its u, and v */
   GLuint faces, face_texture; /* side of a chart that each receiver's face is of */
   bool *closed;               /* [all charts] it is of what encloses a space: its back is inside */
 } abbe_page_charts;
 
-/* Of side x side texels a page, laid out as pinhole_map.glsl says; a texel beside its chart has the
- * nearest place of it. ABBE_GL, ABBE_NO_MEMORY. */
+/* Makes tiles of side x side texels, laid out as in pinhole_map.glsl; a texel beside its chart has
+ * the nearest place of it. ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_page_charts_make(const abbe_gpu_scene *scene, size_t side, abbe_page_charts *out,
                                   abbe_error *error);
 void abbe_page_charts_free(abbe_gpu *gpu, abbe_page_charts *charts);

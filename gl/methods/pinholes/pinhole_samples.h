@@ -16,7 +16,7 @@ enum { ABBE_PINHOLE_ROWS = 4, ABBE_PINHOLE_NODE_ROWS = 3 };
 typedef struct abbe_pinhole_samples {
   GLuint rows, nodes; /* nodes: 0 as published */
   size_t count, node_count;
-  double area, spacing; /* of all surfaces, m2; root of a sample's mean share, m */
+  double area, spacing; /* area of all surfaces, m2; root of a sample's mean share, m */
 } abbe_pinhole_samples;
 
 /* Other samples for each place of the photons' grid, so that the mean of frames that shift it comes
@@ -51,8 +51,8 @@ typedef struct abbe_pinhole_sky {
   size_t side;
 } abbe_pinhole_sky;
 
-/* Of a map in the place of the scene's environment's, a cube of side x side texels a face. ABBE_GL,
- * errors of abbe_radiance_cube_make and abbe_upsampling_make. */
+/* Makes the sky of a map in the place of the scene's environment's, a cube of side x side texels a
+ * face. ABBE_GL, errors of abbe_radiance_cube_make and abbe_upsampling_make. */
 abbe_result abbe_pinhole_sky_make(const abbe_gpu_scene *scene, const abbe_radiance_map *map,
                                   size_t side, abbe_pinhole_sky *out, abbe_error *error);
 void abbe_pinhole_sky_free(abbe_gpu *gpu, abbe_pinhole_sky *sky);

@@ -6,9 +6,9 @@ layout(local_size_x = 32, local_size_y = 16) in;
 #include "page_texels.glsl"
 uniform int stride;           // texels are so far apart
 uniform ivec2 first;          // and the first is there
-uniform float smooth_share;   // of its light, by how much three texels may be off a line
+uniform float smooth_share;   // share of its light by which three texels may be off a line
 
-// Of four in a row the cubic's middle, and whether they lie on a line nearly: on no step either.
+// The cubic's middle of four in a row, and whether they lie on a line nearly: on no step either.
 bool lies_between(ivec2 at, ivec2 step, vec3 open, out vec3 middle) {
   ivec2 size = imageSize(pages).xy, low = min(at - 3 * step, at + 3 * step), high = max(at - 3 * step, at + 3 * step);
   bool held = all(greaterThanEqual(low, ivec2(0))) && all(lessThan(high, size));

@@ -7,7 +7,7 @@ struct Pinhole {
   vec3 p, n;              // n towards who looks
   float area, half_width;  // m2; half of the samples' spacing, m
   vec3 u, v;               // unit tangents
-  vec2 turn;               // of the normal along them, 1/m
+  vec2 turn;               // change of the normal along them, 1/m
   vec3 colour;
 };
 

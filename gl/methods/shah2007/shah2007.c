@@ -23,7 +23,7 @@
 #include <stdlib.h>
 
 static const double white_share = 1.0 / 16;
-/* Of the Gaussian's integral, within three standard deviations. */
+/* Share of the Gaussian's integral within three standard deviations. */
 static const double held = 0.98889100346175773;
 static const double least_size = 3, most_size = 255; /* texels; drivers draw no larger points */
 static const double tau = 6.283185307179586;

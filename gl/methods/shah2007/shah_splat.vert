@@ -11,7 +11,7 @@ uniform vec4 refractor_bounds;
 #include "image_path.glsl"
 uniform int grid, wavelength;
 uniform vec3 colour[WAVELENGTHS];
-uniform float strength;    // of a vertex, in a splat's peak
+uniform float strength;    // strength of a vertex, in a splat's peak
 uniform float splat_size;  // texels
 uniform vec4 spot;         // direction, cosine of the cone
 uniform float spot_inner;

@@ -18,7 +18,7 @@ uniform vec3 texture_info;  // layer or -1, repeats
 layout(location = 0) out vec4 radiance;
 #ifdef CIE
 uniform mat3 rgb_from_xyz;
-uniform vec3 forward;   // of the light's view
+uniform vec3 forward;   // axis of the light's view
 uniform vec3 white;     // XYZ of the lamp's light
 uniform float power;    // W/sr
 uniform float ambient;  // W/m2

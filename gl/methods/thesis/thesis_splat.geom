@@ -38,7 +38,7 @@ void main() {
     wavelength = i;
     strength = beam;
 #ifdef CIE
-    float slant = -direction_at(uv).z;  // of the solid angle of a cell
+    float slant = -direction_at(uv).z;  // share of the solid angle of a cell
     strength *= slant * slant * slant * passes * exp(-attenuation_of[i] * (ahead - back));
 #endif
     EmitVertex();

@@ -9,7 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAP_TEXELS = 4, LEAST_SIDE = 16 }; /* of the spectral map, a side, for one of a page */
+enum {
+  MAP_TEXELS = 4,
+  LEAST_SIDE = 16
+}; /* texels of the spectral map, a side, for one of a tile */
 
 /* No more texels than rays start: finer ones would hold nothing more. */
 static size_t side_of(const abbe_plan *plan) {

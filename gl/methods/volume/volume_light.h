@@ -13,7 +13,7 @@
 
 typedef struct abbe_volume_pages {
   const abbe_gpu_scene *scene; /* NULL: the plan has none */
-  size_t count;                /* of a light */
+  size_t count;                /* for a light */
   GLuint texture;              /* two layers a page: whole and window */
   float (*window)[4];          /* [lights][count] */
 } abbe_volume_pages;
@@ -33,10 +33,10 @@ enum { ABBE_VOLUME_LIGHT_SIGHTS = 3 * ABBE_SCENE_MAX_LIGHTS };
 
 typedef struct abbe_volume_light {
   const abbe_gpu_scene *scene; /* NULL: the plan has no volume */
-  abbe_volume_pages pages;     /* of rays: in place of cells */
+  abbe_volume_pages pages;     /* for rays: in place of cells */
   GLuint cells;                /* values of each light's nodes, then the table of directions */
   float centre[3];
-  float turn[ABBE_VOLUME_LIGHT_SIGHTS][9]; /* of places into a node's light, column-major */
+  float turn[ABBE_VOLUME_LIGHT_SIGHTS][9]; /* turns of places into a node's light, column-major */
   float weight[ABBE_VOLUME_LIGHT_SIGHTS];  /* 0: there is no such node */
   float strength[ABBE_SCENE_MAX_LIGHTS];   /* irradiance of unit power at the centre */
 } abbe_volume_light;

@@ -2,7 +2,7 @@
 // VOLUME_OCTAHEDRAL or VOLUME_GEODESIC; VOLUME_PRINTED: as the method was published.
 uniform usamplerBuffer volume_cells;
 uniform vec3 volume_centre;
-uniform mat3 volume_turn[3 * LIGHTS];  // of places into a node's light
+uniform mat3 volume_turn[3 * LIGHTS];  // turn of places into a node's light
 uniform float volume_weight[3 * LIGHTS];
 uniform float volume_strength[LIGHTS];  // irradiance of unit power at the centre
 uniform float volume_inner, volume_outer;

@@ -21,7 +21,7 @@ typedef struct abbe_wyman_photons {
   const abbe_image_places *light;
   double background[4]; /* the plane that mirrors send light to, as printed: n . x = w */
   GLuint program;
-  GLuint places, incident; /* of the wavelength that was run last; wyman_photons.frag */
+  GLuint places, incident; /* places for the wavelength that was run last; wyman_photons.frag */
 } abbe_wyman_photons;
 
 /* definitions: of image_view.h. */
@@ -36,14 +36,15 @@ abbe_result abbe_wyman_photons_run(const abbe_wyman_photons *photons, size_t wav
 typedef struct abbe_wyman_target {
   const abbe_gpu_scene *scene;
   const abbe_wyman_photons *photons;
-  const abbe_image_places *places; /* of the image: its view and the receivers in it */
+  const abbe_image_places *places; /* places of the image: its view and the receivers in it */
   bool camera, directions, polygons, gathers;
   GLuint draw, area, gather, filter; /* programs */
   GLuint sum, direction_sum, areas, filtered[2], gathered[2];
   abbe_method_history history;
   GLuint query;  /* fragments of polygons; 0: none are drawn */
-  double layers; /* of polygons over a pixel, mean of the last frame with statistics */
-  GLuint light, light_directions; /* of the last run, two of those above; directions: 0: none */
+  double layers; /* polygons over a pixel, mean of the last frame with statistics */
+  GLuint light,
+      light_directions; /* light of the last run, two of those above; directions: 0: none */
 } abbe_wyman_target;
 
 abbe_result abbe_wyman_target_make(const abbe_wyman_photons *photons,

@@ -11,9 +11,9 @@ uniform mat4 drawn_matrix;
 uniform vec3 light_at;
 uniform int grid;
 uniform vec3 colour;
-uniform float cell_area;     // of the light's window
+uniform float cell_area;     // area of a cell in the light's window
 uniform float even_beam;     // sr
-OF_POLYGON out vec3 ratio;  // of the beam's solid angle to the polygon's
+OF_POLYGON out vec3 ratio;  // ratio of the beam's solid angle to the polygon's
 OF_POLYGON out vec3 direction;
 out vec3 world;
 const ivec2 corners[6] = ivec2[6](ivec2(0, 0), ivec2(1, 0), ivec2(1, 1), ivec2(0, 0), ivec2(1, 1), ivec2(0, 1));
@@ -24,7 +24,7 @@ struct Beam {
   vec3 along;          // sum of its photons' directions
 };
 
-// Of a triangle, projected on the unit sphere around the light.
+// The solid angle of a triangle, projected on the unit sphere around the light.
 float solid_angle(vec3 a, vec3 b, vec3 c) {
   a = normalize(a - light_at);
   return 0.5 * length(cross(normalize(b - light_at) - a, normalize(c - light_at) - a));

@@ -180,7 +180,7 @@ void abbe_wyman_target_free(abbe_wyman_target *t) {
   *t = (abbe_wyman_target){0};
 }
 
-/* Of a corner of a window, from its middle. */
+/* The angle of a corner of a window, from its middle. */
 static double corner_angle(double x, double y) {
   return atan2(x * y, sqrt(1 + x * x + y * y));
 }

@@ -2,7 +2,7 @@
 #include "view.glsl"
 uniform vec4 drawn_from[6];
 uniform sampler2D drawn_places;
-const float HIDDEN = 0.01;  // of the distance
+const float HIDDEN = 0.01;  // share of the distance
 #ifdef CORNERS  // light varies over a polygon
 #define OF_POLYGON
 #else

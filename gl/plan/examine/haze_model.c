@@ -60,7 +60,7 @@ static abbe_plan_haze haze_of(const abbe_scene *scene, const abbe_plan *plan, co
   return out;
 }
 
-/* Of a medium that scatters; where the plan has no room it is counted. */
+/* Adds a medium that scatters; where the plan's capacity is full it is counted. */
 static void add_shaft(abbe_plan *plan, int refractor, const abbe_plan_haze *haze) {
   abbe_plan_shaft shaft = {.refractor = refractor, .g = haze->g};
   for (int k = 0; k < ABBE_PLAN_HAZE_BANDS; k++)

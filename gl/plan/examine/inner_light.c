@@ -137,7 +137,7 @@ bool abbe_inner_light_follow(const abbe_exact *solid, const abbe_view *view,
     const double uv[2] = {(i % GRID + 0.5) / GRID, (i / GRID + 0.5) / GRID};
     double p[3], d[3];
     abbe_view_ray(view, uv, p, d);
-    /* of a window of tangents, a part's solid angle goes with the cube of the cosine */
+    /* in a window of tangents a part's solid angle goes with the cube of the cosine */
     const double cosine = view->orthographic ? 1 : abbe_vector_dot(d, view->forward);
     const double weight =
         cosine * cosine * cosine * (light != NULL ? abbe_light_profile(light, d) : 1);
@@ -204,8 +204,8 @@ static bool is_little(const abbe_inner_light *inside, size_t exits) {
   return inside->kept[exits] + inside->faint[exits] <= ABBE_INNER_LIGHT_MOST;
 }
 
-/* Of all that it is found from; for pictures of light that moves not of where it stands: what was
- * found before serves. */
+/* A digest of all that it is found from; for pictures of light that moves without the places of
+ * lights: what was found before serves. */
 static uint64_t digest_of(const abbe_scene *scene, const abbe_plan *plan, bool share_is_open,
                           bool exits_are_open) {
   const abbe_object *object = &scene->object[plan->refractor_object[0]];

@@ -15,8 +15,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Of the light that a plan takes exits by, the share that may stay inside, and of it the share that
- * may do so in paths that have become faint. */
+/* The share of light, by which a plan chooses exits, that may stay inside, and its share that may
+ * do so in paths that have become faint. */
 #define ABBE_INNER_LIGHT_MOST 0.005
 #define ABBE_INNER_LIGHT_MOST_FAINT 0.0025
 

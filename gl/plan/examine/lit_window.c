@@ -8,7 +8,7 @@
 /* A parallelogram's corners, one more for each side of the light's window and one for the eye. */
 enum { MAX_CORNERS = 12 };
 
-/* Of a window's width: shaders round where they look up what it holds. */
+/* Share of a window's width: shaders round where they look up what it holds. */
 static const double rounding = 1e-4;
 
 static const int margin = 2;

@@ -76,7 +76,7 @@ static abbe_result check_one_view(const abbe_scene *scene, const abbe_plan *plan
   abbe_light_views_fit(scene, light, plan, &view, NULL);
   for (size_t k = 0; k < plan->refractor_count && result == ABBE_OK; k++) {
     const abbe_object *object = &scene->object[plan->refractor_object[k]];
-    abbe_view own = view; /* of one refractor it is that one's own */
+    abbe_view own = view; /* with one refractor it is that one's own */
     if (plan->refractor_count > 1) {
       abbe_view_look(view.origin, view.forward, view.up, view.orthographic, &own);
       abbe_view_fit(&own, (const double(*)[3])object->mesh.position, object->mesh.vertex_count);

@@ -86,7 +86,7 @@ size_t abbe_tint_count(const abbe_scene *scene, const abbe_plan *plan) {
   return count;
 }
 
-/* Of a light's white: what is less is seen by nobody, as the diamond's 760 to 780 nm. */
+/* Share of a light's white: less is seen by nobody, as the diamond's 760 to 780 nm. */
 #define LEAST_EXTRAPOLATED 1e-3
 
 /* The most that a material's wavelengths outside its valid range are of a light's white. */

@@ -37,14 +37,15 @@ void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan);
 /* Stuffs whose amounts a hit keeps. */
 enum { ABBE_MOST_TINTS = 3 };
 
-/* Of refractor or mirror r, by amount; at most what leaves nothing, so that sums stay finite. */
+/* Attenuation by refractor or mirror r, by amount; at most what leaves nothing, so that sums stay
+ * finite. */
 double abbe_tint_attenuation(const abbe_scene *scene, const abbe_plan *plan, size_t r,
                              double lambda_nm);
 
-/* Of the plan's refractors and mirrors the first of the same stuff as r; -1: it takes of all
+/* The first of the plan's refractors and mirrors that is of the same stuff as r; -1: it absorbs all
  * wavelengths alike. */
 int abbe_tint_of(const abbe_scene *scene, const abbe_plan *plan, size_t r);
-/* Of all stuffs, ABBE_MOST_TINTS at the most. */
+/* The number of all stuffs, ABBE_MOST_TINTS at the most. */
 size_t abbe_tint_count(const abbe_scene *scene, const abbe_plan *plan);
 
 /* Between what a material's index and attenuation lie over a range of wavelengths.

@@ -123,7 +123,7 @@ typedef struct abbe_plan {
   bool sized_lights;         /* points stand for a light with a size */
   bool hazy;                 /* a medium scatters, or absorbs in the air; then: */
   bool eye_in_air;
-  abbe_plan_haze air_haze, eye_haze; /* of the air, and of what the eye is in */
+  abbe_plan_haze air_haze, eye_haze; /* of the air, and of what the camera is in */
   bool haze_beyond;   /* the camera may see the air's haze by a bent or mirrored ray */
   size_t shaft_count; /* media with light of photons that such rays may run through */
   abbe_plan_shaft shaft[ABBE_PLAN_MOST_SHAFTS];
@@ -133,18 +133,18 @@ typedef struct abbe_plan {
   size_t light_view_count;
   abbe_light_view light_view[ABBE_SCENE_MAX_LIGHTS];
   bool cubes;                             /* some light has one */
-  size_t off_view[ABBE_SCENE_MAX_LIGHTS]; /* of a light with a cube: an object that asks for it */
+  size_t off_view[ABBE_SCENE_MAX_LIGHTS]; /* for a light with a cube: an object that needs it */
 
   /* Over the range of wavelengths, of some refractor. */
   bool dispersive; /* its index varies */
   bool absorbing;  /* its attenuation is above zero somewhere */
   bool tinting;    /* its attenuation varies */
-  bool colouring;  /* of some mirror: its reflectance varies */
-  bool tinted_air; /* of the air: what it takes or scatters varies */
+  bool colouring;  /* some mirror's reflectance varies */
+  bool tinted_air; /* the air's absorption or scattering varies */
 
   abbe_plan_inside inside;
   abbe_plan_shape shape;
-  size_t eye_exits; /* of the camera's rays, followed at the most */
+  size_t eye_exits; /* exits of the camera's rays, followed at the most */
   double eye_share; /* below this share of their light they end */
   size_t hit_slots; /* hits of a photon at a wavelength, at the most: its exits, and the mirror on
                        the outside; on multi-refractor paths a number of its own */
@@ -154,8 +154,9 @@ typedef struct abbe_plan {
   bool page_charts; /* pinholes light receivers that are meshes: by their charts */
   bool fills;       /* light is laid between wavelengths */
   bool edges;       /* some refractor has facets: light ends at edges, and splats are cut finer */
-  size_t tints;     /* of so many stuffs hits keep how much their path passed (spectral_needs.h) */
-  bool band_parts; /* attenuation or reflectance varies: bands have parts that are attenuated alike */
+  size_t tints;     /* hits keep how much of so many stuffs their path passed (spectral_needs.h) */
+  bool band_parts;  /* attenuation or reflectance varies: bands have parts that are attenuated alike
+                     */
   bool draw_back;   /* views show the back of refractors, too */
   abbe_coarse fewer_triangles; /* for whose sake some mesh is drawn by fewer */
   bool textured;               /* some receiver has a texture */

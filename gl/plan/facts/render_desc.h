@@ -73,8 +73,8 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 /* As far as they go where a convex solid keeps light inside (gl/plan/examine/inner_light.h). */
 #define ABBE_PLAN_MOST_EXITS 24
 #define ABBE_PLAN_LOW_SHARE 0.005
-/* Of the eye's rays through exact surfaces, the share of one solid alone; what light is left
- * inside then is too little to show. */
+/* Exits of the camera's rays through exact surfaces, the share of one solid alone; what light is
+ * left inside then is too little to show. */
 #define ABBE_PLAN_EYE_EXITS 256
 #define ABBE_PLAN_EYE_SHARE 0.005
 
@@ -103,17 +103,17 @@ typedef struct abbe_render_desc {
   size_t light_points; /* that stand for a light with a size, 1 to 16; 0: 8 */
   abbe_fill fill;
   abbe_model model;
-  /* Of shah2007 and wyman2006: how rays are brought to receivers, AUTO: shah, in their twins ratio;
-   * iterations, 1 to 64, 0: 1; interfaces that light is refracted at, 1 (as by water) or 2, 0: 2.
-   * Elsewhere 0. */
+  /* For shah2007 and wyman2006: how rays are brought to receivers, AUTO: shah, in the profiles in
+   * units ratio; iterations, 1 to 64, 0: 1; interfaces that light is refracted at, 1 (as by water)
+   * or 2, 0: 2. Elsewhere 0. */
   abbe_estimator estimator;
   size_t iterations, interfaces;
-  size_t faces;    /* of shah2007 and wyman2006: views of the light, 1, or the 6 of a cube
-                      around it; 0: 6 where one does not hold a point light's
-                      surroundings, 1 for a gather in the light's image */
-  size_t low_pass; /* of shah2007: standard deviation of the filter over its map, texels, 0
-                      (none) to 32 */
-  /* Of the transport by pinholes alone: samples of all surfaces together, at most
+  size_t faces; /* for shah2007 and wyman2006: views of the light, 1, or the 6 of a cube around it;
+                   0: 6 where one does not hold a point light's surroundings, 1 for a gather in the
+                   light's image */
+  size_t low_pass; /* for shah2007: standard deviation of the filter over its map, texels, 0 (none)
+                      to 32 */
+  /* For the transport by pinholes alone: samples of all surfaces together, at most
    * ABBE_SURFACE_MAX_SAMPLES, 0: 256; how they are chosen, AUTO: neighbour. */
   size_t pinholes;
   /* and, of the default profile: the least number of clusters of samples that make a hemisphere's
@@ -122,8 +122,8 @@ typedef struct abbe_render_desc {
   size_t clusters;
   abbe_sample_strategy strategy;
   abbe_footprint footprint;
-  abbe_direction direction; /* of wyman2006; in its twin direct alone */
-  unsigned polygons;        /* of wyman2006's quads and triangles: bits of ABBE_POLYGONS */
+  abbe_direction direction; /* for wyman2006; in its profile in units direct alone */
+  unsigned polygons;        /* for wyman2006's quads and triangles: bits of ABBE_POLYGONS */
   /* Frames that a picture holds, 1 to 4, 0: 1; of the default profile and wyman2006's gathers. A
    * renderer that is changed or redrawn goes on with the frames before, so that a picture is no
    * longer that of a renderer made anew; in units the photons of each frame are shifted. The
@@ -133,8 +133,8 @@ typedef struct abbe_render_desc {
   /* Not so: light that stays is drawn once, and next frames of it come where it has changed. */
   bool history_of_changes;
   abbe_transport transport;
-  /* Of the transport 'volume', which it lives as long as; of the profile wyman2003 a printed one.
-   * lookup AUTO: abbe_caustic_volume_resolve; wyman2003: turned. */
+  /* The volume of the transport 'volume', which outlives it; for the profile wyman2003 a printed
+   * one. lookup AUTO: abbe_caustic_volume_resolve; wyman2003: turned. */
   const abbe_caustic_volume *volume;
   abbe_volume_lookup lookup;
   /* paths below this share of their light end; 0: 0.01, or 0.005 where paths that end leave too
@@ -143,7 +143,7 @@ typedef struct abbe_render_desc {
   /* exits followed at the most; 0: as many as carry energy, at most 8, or up to 24 where a convex
    * solid keeps light inside (4 where a mesh is known by its layers) */
   size_t exits;
-  abbe_rgb_space space; /* of the picture */
+  abbe_rgb_space space; /* space of the picture */
   /* whose XYZ the picture's colours are; that of 1931 for methods that are printed with their own
    * colours */
   abbe_observer observer;
@@ -151,9 +151,9 @@ typedef struct abbe_render_desc {
    * fitted to where its light lands. */
   const abbe_map_layout *map_layout;
   size_t map_layout_light;
-  /* Of the photon grid in cells and of the eye's samples in their distance, x and y, -0.5 to 0.5:
-   * other pictures that the same request could have given (gl/accuracy/error_bars.h). Pinholes are
-   * other ones for each shift of the grid. */
+  /* Shifts of the photon grid in cells and of the camera's samples in their distance, x and y, -0.5
+   * to 0.5: other pictures that the same request could have given (gl/accuracy/error_bars.h).
+   * Pinholes are other ones for each shift of the grid. */
   double photon_shift[2], sample_shift[2];
   bool everything;               /* all on, to measure what the plan saves (gl/plan/plan.h) */
   bool aovs;                     /* keep direct and caustic light of the receivers apart as well */

@@ -19,12 +19,12 @@ typedef struct abbe_render_setting {
   const char *option; /* the program's, without "--"; NULL: it has none of its own */
   abbe_setting_kind kind;
   size_t offset;        /* in abbe_render_desc */
-  double least, most;   /* of a count or number; a request may have 0: the default */
+  double least, most;   /* limits of a count or number; a request may have 0: the default */
   bool stays_open;      /* a request that is resolved may still have 0: the scene tells */
   bool of_methods;      /* only published methods, pinholes or volumes take it */
   const char *what;     /* in sentences; NULL: its reader checks it */
-  const char *default_; /* of the option, as its help shows it; NULL: none */
-  const char *help;     /* of the option */
+  const char *default_; /* default of the option, as its help shows it; NULL: none */
+  const char *help;     /* help of the option */
   const char *const *names;
   size_t name_count;
 } abbe_render_setting;
@@ -35,7 +35,7 @@ extern const size_t abbe_render_settings_count;
 /* Where a request holds it: a size_t, double, bool or int by its kind. */
 void *abbe_render_setting_in(const abbe_render_setting *setting, abbe_render_desc *desc);
 
-/* Of a request that is resolved; ABBE_INVALID_ARGUMENT names the first count that is out of its
+/* Checks a request that is resolved; ABBE_INVALID_ARGUMENT names the first count that is out of its
  * limits, and these. */
 abbe_result abbe_render_settings_check(const abbe_render_desc *desc, abbe_error *error);
 

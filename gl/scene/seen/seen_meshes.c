@@ -79,7 +79,7 @@ enum { MOST_CORNERS = 9, PLACE = 0, NORMAL = 3, UV = 6, NUMBERS = 8 };
 
 typedef struct corner {
   double at[NUMBERS], depth;
-  int64_t vertex; /* of the mesh, or -1 */
+  int64_t vertex; /* vertex of the mesh, or -1 */
 } corner;
 
 typedef struct polygon {

@@ -112,7 +112,7 @@ static double variance_of(const abbe_band_steps *s, const abbe_band_share *band,
   return all > 0 ? squares - sum * *mean : 0;
 }
 
-/* Of one surface, the mean of a part's steps; -1: it has none. */
+/* The mean of one surface over a part's steps; -1: it has none. */
 static double mean_of(const abbe_band_steps *s, const abbe_band_share *band, size_t surface) {
   double mean;
   return variance_of(s, band, surface, &mean) > 0 || mean > 0 ? mean : -1;

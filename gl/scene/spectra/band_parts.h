@@ -51,7 +51,7 @@ typedef struct abbe_band_share {
   unsigned only;             /* the part that counts, where there are parts */
 } abbe_band_share;
 
-/* Of the band's steps: the part of each, below ABBE_BAND_PARTS. part: [end - first]. */
+/* Splits the band's steps: the part of each, below ABBE_BAND_PARTS. part: [end - first]. */
 void abbe_band_parts_split(const abbe_band_steps *steps, const abbe_band_share *band,
                            unsigned char *part);
 

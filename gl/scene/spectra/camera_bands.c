@@ -12,7 +12,7 @@
  * samples take every second one: half of fewer has too few parts. */
 enum { REFINED_FROM = 9, PARTED_FROM = 6 };
 
-/* Of a step, nm: attenuation hardly varies in it. */
+/* A step, nm: attenuation hardly varies in it. */
 #define STEP_NM 2.5
 
 size_t abbe_camera_bands_count(size_t wavelengths, size_t *levels) {
@@ -216,8 +216,8 @@ static abbe_result join_indices(const band_set *s, const abbe_scene *scene, cons
   return ABBE_OK;
 }
 
-/* Of a depth by the usual path, or by one reflection: attenuation, or the factor that makes it so.
- */
+/* The surface for a depth by the usual path, or by one reflection: attenuation, or the factor that
+ * makes it so. */
 static double surface_of(const band_set *s, size_t r, const abbe_camera_band *band, double depth) {
   if (!s->plan->mirror[r]) return depth / s->steps.path_m[r];
   return abbe_mirror_factor((double)band->surface[2], (double)band->surface[3], exp(-depth));

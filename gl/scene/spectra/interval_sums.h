@@ -12,13 +12,13 @@
 typedef struct abbe_interval_sums {
   const abbe_scene *scene;
   const abbe_plan *plan;
-  size_t steps; /* of an interval; even */
+  size_t steps; /* steps of an interval; even */
   size_t bands,
-      band; /* of the range whose light is summed, and the first of the three; 0: X, Y, Z */
+      band; /* band of the range whose light is summed, and the first of the three; 0: X, Y, Z */
 } abbe_interval_sums;
 
-/* Of a step: XYZ up to it and how far along the index has moved; the sums of XYZ times that, and
- * the index; where hits keep tints, XYZ times the refractor's attenuation, by amount. */
+/* Texels of a step: XYZ up to it and how far along the index has moved; the sums of XYZ times that,
+ * and the index; where hits keep tints, XYZ times the refractor's attenuation, by amount. */
 size_t abbe_interval_sums_texels(const abbe_plan *plan);
 /* Texels of all lights and refractors for a sampling of so many nodes. */
 size_t abbe_interval_sums_size(const abbe_plan *plan, size_t steps, size_t nodes);

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PARTS = 64 /* of an interval, or of a band */ };
+enum { PARTS = 64 /* parts of an interval, or of a band */ };
 
 static double straight_at(const abbe_material *metal, double lambda_nm) {
   double n = 0, k = 0;

@@ -30,9 +30,9 @@ typedef struct abbe_spectral_tables {
   abbe_mirror_node *mirror;    /* [refractors][all]; zero of what is none */
   abbe_weights camera;         /* XYZ of all under the first light: none is negative */
 
-  /* Of photons, where the plan has caustics; else NULL. First by the coarse set, then by all, where
-   * that is more. */
-  size_t steps;                        /* of an interval */
+  /* Tables for photons, where the plan has caustics; else NULL. First by the coarse set, then by
+   * all, where that is more. */
+  size_t steps;                        /* steps of an interval */
   float (*intervals)[4];               /* interval_sums.h: X, Y, Z */
   float (*tints)[ABBE_TINT_TEXELS][4]; /* spectral_tables.h; NULL where hits keep none */
   /* [light views][all]: Y of the band below and above the node, by all and by the coarse set */
@@ -40,9 +40,9 @@ typedef struct abbe_spectral_tables {
   float *interval_weight; /* [light views][coarse - 1]: shares of X + Y + Z, of mean 1 */
 } abbe_spectral_tables;
 
-/* Of the scene's and the plan's lights, refractors and wavelengths. ABBE_OUT_OF_RANGE where an
- * index is not known, ABBE_INVALID_ARGUMENT where the range holds no light, ABBE_NO_MEMORY;
- * abbe_spectral_tables_free also then. */
+/* Makes the tables of the scene's and the plan's lights, refractors and wavelengths.
+ * ABBE_OUT_OF_RANGE where an index is not known, ABBE_INVALID_ARGUMENT where the range holds no
+ * light, ABBE_NO_MEMORY; abbe_spectral_tables_free also then. */
 abbe_result abbe_spectral_tables_make(const abbe_scene *scene, const abbe_plan *plan,
                                       abbe_spectral_tables *out, abbe_error *error);
 void abbe_spectral_tables_free(abbe_spectral_tables *tables);

@@ -17,7 +17,7 @@ int band_at;   // the band of it that is followed
 int band_of_all_sets() { return band_set * counts.bands + band_at; }
 int first_band(int r) { return (r * BAND_SETS + band_set) * counts.bands; }
 
-mat3 colour_from_rgb;  // of the band that is taken
+mat3 colour_from_rgb;  // matrix of the band that is taken
 
 #ifdef BAND_PARTS
 Depth part_x, part_y, part_z;
@@ -76,7 +76,8 @@ vec3 left_of(PathState w) {
 #endif
 }
 
-// Of what ends at the interface that it comes to, by share: inside, that would have gone on by as much as it came.
+// What ends at the interface that it comes to, by share: inside, that would have gone on by as much
+// as it came.
 vec3 left_further(PathState w, Interface h) {
   w.share = 1.0;
 #ifdef ABSORBING

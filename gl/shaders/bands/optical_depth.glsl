@@ -15,7 +15,8 @@ float least_of(Depth depth) {
 float sum_of(Depth weight, Depth part) { return dot(weight[0], part[0]) + dot(weight[1], part[1]); }
 
 #ifdef MIRRORS
-// Of a reflection: factors as mirror_reflectance() takes one, and what the metal itself reflects at that angle.
+// The depth of a reflection: factors as mirror_reflectance() takes one, and what the metal itself
+// reflects at that angle.
 Depth mirror_depth(Depth factor, float metal) {
   return Depth(-log(max(1.0 - factor[0] * (1.0 - metal), 1e-30)), -log(max(1.0 - factor[1] * (1.0 - metal), 1e-30)));
 }

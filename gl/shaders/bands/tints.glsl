@@ -58,7 +58,7 @@ Tints tints_of(uvec4 signature) {
   return t;
 }
 
-// Of two hits of one path at that place between them.
+// Tints between two hits of one path at that place between them.
 Tints tints_between(Tints a, Tints b, float t) {
   for (int k = 0; k < TINTS; k++) a.amount[k] = mix(a.amount[k], b.amount[k], a.of[k] == b.of[k] ? t : 0.0);
   return a;
@@ -70,12 +70,13 @@ bool has_tint(Tints t, int of) {
   return has;
 }
 
-// Of what tints: two texels each at [node][refractor] (spectral_tables.h). Attenuation of two parts of a band below its node,
-// and of two above it, each of a half's brightness; then by how much it differs within a half, and whose tint it is.
+// Tables of what tints: two texels each at [node][refractor] (spectral_tables.h). Attenuation of
+// two parts of a band below its node, and of two above it, each of a half's brightness; then by how
+// much it differs within a half, and whose tint it is.
 uniform samplerBuffer tints;
 const int TINT_TEXELS = 2;
 
-// Of the two parts of a half.
+// The depths of the two parts of a half.
 vec2 depth_of(Tints t, int texel, bool above) {
   vec2 depth = vec2(0);
   for (int k = 0; k < TINTS; k++) {

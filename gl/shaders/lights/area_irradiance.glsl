@@ -2,14 +2,14 @@
 // (r x dr) . n / r^2 around what of the light is above the horizon of n [Howell2021].
 
 #ifdef AREA_LIGHTS
-// Of the straight line from a to b, twice.
+// Twice the irradiance of the straight line from a to b.
 float line_irradiance(vec3 a, vec3 b, vec3 n) {
   vec3 across = cross(a, b);
   float length_ = length(across);
   return length_ > 0.0 ? dot(across, n) * atan(length_, dot(a, b)) / length_ : 0.0;
 }
 
-// Of the rectangle c + [-1, 1] u + [-1, 1] v of unit radiance.
+// The irradiance of the rectangle c + [-1, 1] u + [-1, 1] v of unit radiance.
 float rectangle_irradiance(vec3 c, vec3 u, vec3 v, vec3 n) {
   vec3 leaves = vec3(0), enters = vec3(0);
   float sum = 0.0;
@@ -26,15 +26,17 @@ float rectangle_irradiance(vec3 c, vec3 u, vec3 v, vec3 n) {
   return 0.5 * abs(sum + line_irradiance(leaves, enters, n));
 }
 
-// Of the disk around c of unit radiance, seen from its front: with r(t) = c + radius (cos t u + sin t v), u from
-// the foot of the perpendicular to its centre, the integrand is (k + l cos t + m sin t) / (a + b cos t).
+// The irradiance of the disk around c of unit radiance, seen from its front: with r(t) = c + radius
+// (cos t u + sin t v), u from the foot of the perpendicular to its centre, the integrand is (k + l
+// cos t + m sin t)
+// (a + b cos t).
 float disk_irradiance(vec3 c, float radius, vec3 facing, vec3 n) {
   vec3 across = c - dot(c, facing) * facing;
   float off = length(across);
   vec3 u = off > 1e-6 * radius ? across / off
                                : normalize(cross(facing, abs(facing.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0)));
   vec3 v = cross(u, facing);
-  float over = dot(c, n) / radius;                             // of the centre above the horizon
+  float over = dot(c, n) / radius;                             // height of the centre above the horizon
   float high = length(vec2(dot(u, n), dot(v, n)));             // and of the rim above the centre
   if (over <= -high) return 0.0;
   float a = dot(c, c) + radius * radius, b = 2.0 * radius * off, s = sqrt(max((a - b) * (a + b), 1e-30));
@@ -45,7 +47,7 @@ float disk_irradiance(vec3 c, float radius, vec3 facing, vec3 n) {
     float from = top - half_arc, to = top + half_arc;
     chord = line_irradiance(c + radius * (cos(to) * u + sin(to) * v), c + radius * (cos(from) * u + sin(from) * v), n);
   }
-  // Of 1, cos t and sin t over a + b cos t, from end to end.
+  // Integrals of 1, cos t and sin t over a + b cos t, from end to end.
   float g = b / (a + s);
   vec3 sum = vec3(2.0 * half_arc / s, -2.0 * half_arc * g / s, 0.0);
   for (int end = -1; end <= 1 && half_arc < PI; end += 2) {
@@ -61,7 +63,7 @@ float disk_irradiance(vec3 c, float radius, vec3 facing, vec3 n) {
   return 0.5 * max(k * sum.x + l * sum.y + m * sum.z + chord, 0.0);
 }
 
-float area_shares[AREA_LIGHTS];  // of each light at the place that is shaded
+float area_shares[AREA_LIGHTS];  // share of each light at the place that is shaded
 
 // By how much the irradiance of each light at p is more than that of its points. Negative where none of these is above
 // the horizon, but a part of the light: the irradiance of unit radiance, over the area.

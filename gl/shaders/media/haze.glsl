@@ -1,9 +1,9 @@
 // Haze: what it leaves of light on its way, and how it turns it. The air's fills a box; around an eye that is
 // in water its own is all around.
 const float HAZE_FAR = 1e9;  // beyond every box, m
-uniform vec3 haze_low, haze_high;  // of the air's, m
+uniform vec3 haze_low, haze_high;  // box of the air's medium, m
 uniform float haze_air_g;          // mean cosine
-// Of the medium that the eye is in, which may be the air.
+// The medium that the camera is in, which may be the air.
 uniform float haze_g;
 // By bands of the spectrum: what the air takes, what it scatters, and what the medium around the eye takes, 1/m;
 // rgb of each light of unit power in them, and last of the scene's illuminant.
@@ -19,7 +19,7 @@ float haze_way(vec3 o, vec3 d, float from, float to, out float first) {
   return max(min(min(far.x, far.y), min(far.z, to)) - first, 0.0);
 }
 
-// Of light of one wavelength, of which haze takes so much a metre.
+// The light of one wavelength that is left, of which a medium takes so much a metre.
 float haze_left(vec3 o, vec3 d, float from, float to, float per_m) {
   float first;
   return exp(-per_m * haze_way(o, d, from, to, first));

@@ -1,8 +1,8 @@
 // Light in media, cell by cell (gl/beams/beam_list.h): what of it is scattered along a ray that the camera's has
 // become, in SHAFT_STEPS steps.
 uniform sampler2DArray shaft_light;  // what is scattered, W/m3; then light's direction
-// Of each medium: its box, m; the share of the texture's width and height that it has, its first layer and cells
-// upwards; the refractor, or -1: the air, and the mean cosine.
+// For each medium: its box, m; the share of the texture's width and height that it has, its first
+// layer and cells upwards; the refractor, or -1: the air, and the mean cosine.
 uniform vec3 shaft_low[SHAFTS], shaft_high[SHAFTS];
 uniform vec4 shaft_place[SHAFTS];
 uniform vec4 shaft_medium[SHAFTS];
@@ -14,7 +14,7 @@ int shaft_of(int refractor) {
   return found;
 }
 
-// Of medium k over length_m from p, where it takes so much a metre.
+// The light of medium k over length_m from p, where it takes so much a metre.
 vec3 shafts_along(int k, vec3 p, vec3 d, float length_m, vec3 per_m) {
   vec3 sum = vec3(0), low_at = shaft_low[k], box = shaft_high[k] - low_at;
   vec4 place = shaft_place[k];
