@@ -5,7 +5,7 @@
  * and the photons of each are followed and fitted anew; that is what makes each band as sharp as
  * its own width. Within a band light counts by its power, not by what the eye makes of it.
  * Reflectances, which scenes state as colours, are lifted to spectra (upsampling.h).
- * It is not told where surroundings have colours (ABBE_UNSUPPORTED).
+ * It is refused where surroundings have colours (ABBE_UNSUPPORTED).
  */
 #ifndef ABBE_GL_BAND_PICTURE_H
 #define ABBE_GL_BAND_PICTURE_H

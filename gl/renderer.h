@@ -34,8 +34,8 @@
 
 typedef struct abbe_renderer abbe_renderer;
 
-/* Plans, uploads the scene, compiles what the plan asks for and fits the light's views. desc may
- * be NULL. Errors as abbe_plan_make, and ABBE_GL, ABBE_NO_MEMORY. */
+/* Plans, uploads the scene, compiles what the plan needs and fits the light's views. desc may be
+ * NULL. Errors as abbe_plan_make, and ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
                                const abbe_render_desc *desc, abbe_renderer **out,
                                abbe_error *error);
@@ -44,7 +44,7 @@ abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
 void abbe_renderer_free(abbe_renderer *renderer);
 
 /* Takes over the scene as it is now, the same one or another, and the request. It finds out itself
- * what differs: a camera that has moved asks for the camera's passes alone; a light that is dimmed,
+ * what differs: a camera that has moved needs the camera's passes alone; a light that is dimmed,
  * for those and a table; another material, for tables, photons and the camera's passes; an object
  * that has moved, for its bounds and all that follows. The scene must stay as it is until it is
  * handed over again, or the renderer is freed. Errors as of abbe_renderer_make. Where the scene
@@ -60,7 +60,7 @@ void abbe_renderer_redraw(abbe_renderer *renderer);
 
 const abbe_plan *abbe_renderer_plan(const abbe_renderer *renderer);
 /* Whether the light of the scene that was last taken over is drawn: the next frame is the camera's
- * alone, unless a change asks for more. */
+ * alone, unless a change needs more. */
 bool abbe_renderer_is_lit(const abbe_renderer *renderer);
 
 /* One frame: the passes whose result is not there yet, none where nothing has changed since the
@@ -71,16 +71,16 @@ bool abbe_renderer_is_lit(const abbe_renderer *renderer);
 abbe_result abbe_renderer_frame(abbe_renderer *renderer, abbe_render_progress progress, void *user,
                                 abbe_statistics *statistics, abbe_error *error);
 
-/* The time of drawing all surfaces once into the eye's picture, normals and distances alone, ms:
+/* The time of drawing all surfaces once into the camera's picture, normals and distances alone, ms:
  * the baseline of any frame. The picture stays. ABBE_UNSUPPORTED but of the default profile;
  * ABBE_GL. */
 abbe_result abbe_renderer_baseline(abbe_renderer *renderer, double *ms, abbe_error *error);
 
 /* The picture: R, G, B (X, Y, Z in that space); with AOVs (which the request must have
- * asked for) also direct.*, caustic.* (radiance of
- * the receivers that the eye sees straight) and Z (distance from the eye, m; 0: nothing). A coarse
- * picture has a pixel for each of its samples, the last of which may stand for pixels beyond it.
- * ABBE_INVALID_ARGUMENT before a whole frame was drawn; so of maps. */
+ * requested) also direct.*, caustic.* (radiance of
+ * the receivers that the camera sees straight) and Z (distance from the camera, m; 0: nothing). A
+ * coarse picture has a pixel for each of its samples, the last of which may stand for pixels beyond
+ * it. ABBE_INVALID_ARGUMENT before a whole frame was drawn; so of maps. */
 abbe_result abbe_renderer_read(abbe_renderer *renderer, bool aovs, abbe_image *out,
                                abbe_error *error);
 
@@ -116,7 +116,7 @@ typedef struct abbe_renderer_hits {
   abbe_view view;
 } abbe_renderer_hits;
 
-/* Traces one batch of wavelengths, number `first` and those after it that there is room for; the
+/* Traces one batch of wavelengths, number `first` and those after it up to the capacity; the
  * last batch has empty ones behind it. It leaves maps and pictures as they are. progress (may be
  * NULL) as of abbe_renderer_frame. ABBE_INVALID_ARGUMENT where no photons start from that light or
  * there is no such wavelength. */

@@ -217,7 +217,7 @@ static uint64_t mix_layout(uint64_t h, const abbe_map_layout *layout, size_t lig
   return h;
 }
 
-/* What the plan and the request say of light's way from lights to maps. */
+/* What the plan and the request set for light's paths from lights to maps. */
 static uint64_t mix_light_plan(uint64_t h, const abbe_plan *plan) {
   const abbe_render_desc *d = &plan->desc;
   MIX(h, d->photons);
@@ -341,7 +341,7 @@ void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
   light = mix_light_plan(mix_beams(part[ABBE_PART_SHADOWS], scene, plan), plan);
   MIX(light, part[ABBE_PART_SPECTRA]);
   if (plan->desc.transport == ABBE_TRANSPORT_PINHOLE) MIX(light, part[ABBE_PART_SURFACES]);
-  /* samples show lamps, too, and beams are in their colours */
+  /* samples show lights, too, and beams are in their colours */
   if (plan->rough || plan->hazy) light = mix_powers(light, scene, plan);
   part[ABBE_PART_LIGHT] = light;
   part[ABBE_PART_EYE] = mix_eye(light, scene, plan);

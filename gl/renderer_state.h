@@ -40,7 +40,7 @@ struct abbe_renderer {
   abbe_method *method; /* in place of these and those below, or NULL */
   bool lit;            /* all of that is drawn: the maps hold the light as it is now */
 
-  /* eye */
+  /* camera */
   abbe_camera_view camera;
   abbe_seen_meshes meshes;
   abbe_lighting lighting;

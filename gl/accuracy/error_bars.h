@@ -1,6 +1,6 @@
-/* error_bars.h: how far off a picture is, told by other pictures of the same request.
+/* error_bars.h: how far off a picture is, estimated from other pictures of the same request.
  *
- * Where the cells of the photon grid, the map's texels and the eye's samples lie is a matter of
+ * Where the cells of the photon grid, the map's texels and the camera's samples lie is a matter of
  * chance: variants of the picture lay them elsewhere, each variant at a place of its own along each
  * axis (a Latin hypercube). One more, coarse picture has half the photons a side, half the texels a
  * side and half the wavelengths. From these

@@ -72,7 +72,7 @@ static abbe_result time_change(abbe_renderer *renderer, const abbe_scene *scene,
   return result;
 }
 
-/* To the left by 1/64 of the way to the target. */
+/* To the left by 1/64 of the distance to the target. */
 static abbe_scene move_camera(const abbe_scene *scene) {
   abbe_scene moved = *scene;
   double ahead[3], left[3];

@@ -23,8 +23,8 @@ typedef struct abbe_frame_times {
   double fastest_ms;
 } abbe_frame_times;
 
-/* How much longer a median takes than the fastest, as a share of that: what repeats tell of a busy
- * machine. NaN where either is not known. */
+/* How much longer a median takes than the fastest, as a share of that: a sign of a busy machine.
+ * NaN where either is not known. */
 double abbe_frame_times_unrest(double median_ms, double fastest_ms);
 /* "the machine is busy: ..." for more than ABBE_FRAME_TIMES_QUIET, after `before`; else "". */
 void abbe_frame_times_say_unrest(double unrest, const char *before, char *out, size_t size);

@@ -286,7 +286,7 @@ bool abbe_preset_is_fine(const abbe_render_desc *d) {
 abbe_result abbe_preset_calibrate(abbe_context *context, const abbe_scene *scene,
                                   const abbe_preset_front *front, const abbe_render_desc *desc,
                                   abbe_preset_speed *out, abbe_error *error) {
-  static const double least_ms = 0.01; /* a part too short to tell a speed by */
+  static const double least_ms = 0.01; /* a part too short to measure a speed by */
   const abbe_preset_point *point = &front->point[0];
   abbe_renderer *renderer = NULL;
   abbe_frame_times times = {0};

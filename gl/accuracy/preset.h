@@ -3,7 +3,7 @@
  * For every class of scenes a front: settings of rising cost and falling error, read off sweeps
  * (abbe sweep --write-presets) and kept in gl/accuracy/presets.yaml with the run that made them.
  * Three of them have names. Others are chosen by an error or by a time; for a time, one quick frame
- * on this machine tells how fast it is. An error is a promise and no measurement: the worst of the
+ * on this machine measures its speed. An error is a promise and no measurement: the worst of the
  * front's own scenes, times the margin by which leaving one of them out would have been wrong.
  */
 #ifndef ABBE_GL_ACCURACY_PRESET_H
@@ -90,7 +90,7 @@ abbe_result abbe_presets_find(const abbe_presets *presets, const abbe_plan *plan
 bool abbe_preset_apply(const abbe_preset_point *point, const abbe_scene *scene,
                        abbe_render_desc *desc);
 
-/* This machine's time for this scene and size over the run's, for the light's and the eye's
+/* This machine's time for this scene and size over the run's, for the light's and the camera's
  * passes. */
 typedef struct abbe_preset_speed {
   double light, eye;

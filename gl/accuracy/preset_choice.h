@@ -12,7 +12,7 @@ typedef struct abbe_preset_request {
   const char *file; /* file of presets, or NULL: the shipped ones */
   double max_error; /* 0: none */
   double budget_ms; /* 0: none */
-  bool timed;       /* promise a time too, where budget_ms does not ask for one */
+  bool timed;       /* promise a time too, where budget_ms does not request one */
 } abbe_preset_request;
 
 typedef struct abbe_preset_choice {

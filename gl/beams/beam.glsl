@@ -20,7 +20,7 @@ float beam_reach(vec3 widths) {
   return 0.5 * (kernel.x + kernel.y);
 }
 
-// A share of the light a pixel of the way across, at x from the middle: 1 together.
+// Share of the light per pixel across a beam, at x from the middle: 1 together.
 float beam_share(vec3 widths, float x) {
   vec2 kernel = beam_kernel(widths);
   return clamp((0.5 * (kernel.x + kernel.y) - abs(x)) / kernel.y, 0.0, 1.0) / kernel.x;

@@ -227,8 +227,8 @@ static void list_chunk(abbe_beam_list *list, size_t light, const abbe_hit_batch 
                          c->views->light[light].photon_count * scene->plan->hit_slots, 1);
 }
 
-/* A chunk, with room for all of it; of the first there may be more chunks than before. Waits for
- * the device. */
+/* Lists a chunk, with capacity for all of it; of the first there may be more chunks than before.
+ * Waits for the device. */
 static abbe_result list_whole(abbe_beam_list *list, size_t light, const abbe_hit_batch *b,
                               size_t chunk, size_t *beams, abbe_error *error) {
   abbe_gpu *gpu = scene_of(list)->gpu;
@@ -241,7 +241,7 @@ static abbe_result list_whole(abbe_beam_list *list, size_t light, const abbe_hit
       *beams = found;
       return ABBE_OK;
     }
-    /* What fitted a room before fits it still where chunks are parted. */
+    /* What fitted a capacity before fits it still where chunks are split. */
     if (chunk == 0 && found > MOST_BEAMS) list->chunks *= found / (MOST_BEAMS * 4 / 5) + 1;
     result = make_room(list, chunk == 0 && more > MOST_BEAMS ? MOST_BEAMS : more, error);
   }

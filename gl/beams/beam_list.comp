@@ -1,4 +1,4 @@
-// Lists the beams of a batch of ways in one medium: the light of a photon there, as wide as its neighbours on the
+// Lists the beams of a batch of path segments in one medium: the light of a photon there, as wide as its neighbours on the
 // same path stand apart, and as the wavelengths do between which it lies.
 // Wavelengths that part by less than shows are one beam; an interval of others is several, each in the colour of
 // its own part of the band. Beams are listed as they lie in the picture (beam.glsl); IN_WORLD: as they lie in a
@@ -27,7 +27,7 @@ uniform int medium_tint;           // the medium's; -1: it has none
 uniform int light, stride, sample_count, sample_first;
 uniform ivec2 grid;
 uniform uint chunks, chunk;  // only photons of this chunk
-uniform uint most;           // beams that the list has room for
+uniform uint most;           // capacity of the list of beams
 uniform int medium;          // the refractor that they are in; -1: the air
 #ifdef IN_WORLD
 uniform float cell_m;  // side of the grid's cells
@@ -171,11 +171,11 @@ Cell cell_of(Photon photon, int order, int i, Node n) {
 struct Stretch {
   vec3 from, to;
   Apart parts;       // parts of its spectrum
-  vec2 metres;       // on light's way from the stretch's start to the eye, and what is scattered, W/m,
+  vec2 metres;       // along the light's path from the segment's start to the camera, and what is scattered, W/m,
   vec3 first, last;  // after these
 };
 
-// What red, green and blue lose a metre, as far as they tell: negative parts of colours may cross zero.
+// What red, green and blue lose a metre, as far as it can be found: negative parts of colours may cross zero.
 vec3 losses_of(Stretch w) {
   float whole = dot(w.first, vec3(1)) / dot(w.last, vec3(1));
   vec3 lost;
@@ -191,8 +191,8 @@ vec3 scattered_at_end(Stretch w, vec3 losses) {
   return w.last * exp(min(losses * (w.metres.y - distance(w.from, w.to)), vec3(80)));
 }
 
-// The least and the most of the way that light has in the medium from the start of a photon's to the eye: by that the
-// losses of a mixture are told. In the grid it ends with the photon's own.
+// The least and the most distance that light has in the medium from the start of a photon's segment to the camera:
+// the losses of a mixture are found by it. In the grid it ends with the photon's own.
 vec2 metres_seen(Node n);
 
 #ifdef IN_WORLD
@@ -200,7 +200,7 @@ vec2 metres_seen(Node n) { return vec2(0, max(distance(n.from, n.to), 1e-9)); }
 
 int splits(Stretch w, Cell cell) { return 1; }
 
-// How far rays part, in what the grid does not tell.
+// How far rays part, beyond what the grid resolves.
 float parting(Node at, Apart a, Cell cell) {
   float from = max(NARROW * max(length(cell.u.from), length(cell.v.from)), cell_m);
   float to = max(NARROW * max(length(cell.u.to), length(cell.v.to)), cell_m);
@@ -221,7 +221,7 @@ void list_beam(Stretch w, Cell cell) {
   beam[at + 5u] = vec4(cell.v.to, grows.b);
 }
 #else
-// A segment in the picture, as far as it is before the eye.
+// A segment in the picture, as far as it is before the camera.
 struct Line {
   bool seen;
   vec3 from, to;
@@ -263,7 +263,7 @@ Line line_of(vec3 from, vec3 to) {
   l.offset = dot(l.normal, p * per_tangent());
   l.place[0] = (p - eye_view[4].xz) * per_tangent();
   l.place[1] = (q - eye_view[4].xz) * per_tangent();
-  // Towards the eye it is a pixel long.
+  // Towards the camera it is a pixel long.
   vec2 lacking = 0.5 * max(1.0 - pixels, 0.0) * way;
   l.place[0] -= lacking;
   l.place[1] += lacking;
@@ -287,7 +287,7 @@ float parting(Node at, Apart a, Cell cell) {
   return max(w.x / unseen.x, w.y / unseen.y);
 }
 
-// Into how many parts a side a cell is split: near the eye it is more than a width in the picture.
+// Into how many parts a side a cell is split: near the camera it is more than a width in the picture.
 int splits(Stretch w, Cell cell) {
   Line l = line_of(w.from, w.to);
   vec2 widest = max(abs(widths_of(l, cell.u)), abs(widths_of(l, cell.v)));
@@ -330,7 +330,7 @@ void list_splits(Stretch w, Cell cell) {
   }
 }
 
-// Wavelengths that are one beam: where the first and the last go, the mean way, and their light.
+// Wavelengths that are one beam: where the first and the last go, the mean direction, and their light.
 struct Run {
   Node first, last;
   vec3 from, to;

@@ -1,6 +1,6 @@
-/* beam_list.h: beams of the light that refractors and mirrors throw: on its ways through a medium,
- * from interface to interface and beyond, as wide as neighbouring photons and wavelengths stand
- * apart. Photons are followed once more; beams are listed as they lie in a picture, or in the
+/* beam_list.h: beams of the light that refractors and mirrors throw: along its paths through a
+ * medium, from interface to interface and beyond, as wide as neighbouring photons and wavelengths
+ * stand apart. Photons are followed once more; beams are listed as they lie in a picture, or in the
  * world. It draws nothing. Internal to gl/.
  */
 #ifndef ABBE_GL_BEAMS_BEAM_LIST_H
@@ -18,7 +18,7 @@ typedef struct abbe_beam_list {
   GLuint colours;      /* buffer: [light views][intervals][parts] x RGB of unit power */
   GLuint haze;         /* buffer: [intervals][parts] what the medium takes and scatters, 1/m */
   GLuint tints;        /* buffer: [refractors][intervals][parts] what these take, by amount */
-  GLuint beams;        /* a list, of `room` */
+  GLuint beams;        /* a list, with a capacity of `room` */
   size_t room, chunks; /* the photons are listed in so many chunks */
 } abbe_beam_list;
 

@@ -99,7 +99,7 @@ static abbe_result sort_hits(abbe_caustics *c, size_t light, bool tiles, map_fit
   return result;
 }
 
-/* Whether bins of the window are so wide that they would tell nothing of light as wide as the
+/* Whether bins of the window are so wide that they would resolve nothing of light as wide as the
  * refractors. */
 static bool is_too_wide(const abbe_caustics *c, size_t light, const abbe_view *view) {
   const double *near = c->views->light[light].near_view.window, *w = view->window;
@@ -125,7 +125,7 @@ static abbe_result sort_closer(abbe_caustics *c, size_t light, map_fits *fits, a
   return result;
 }
 
-/* Where frames follow one another, maps have room for what moves. */
+/* Where frames follow one another, maps leave a margin for what moves. */
 static double room_around(const abbe_caustics *c) {
   return plan_of(c)->desc.history > 1 ? 0.15 : 0.02;
 }
@@ -159,7 +159,7 @@ static abbe_result fit_map(abbe_caustics *c, size_t light, abbe_error *error) {
   return result;
 }
 
-/* What the trace's shaders are told beside the scene's. */
+/* The definitions of the trace's shaders beside the scene's. */
 static abbe_shader_variant photon_variant(const abbe_caustics *c,
                                           const abbe_shader_variant *scene) {
   const abbe_plan *plan = plan_of(c);
@@ -195,7 +195,7 @@ static abbe_result fit_maps(abbe_caustics *c, abbe_shader_variant *variant, abbe
   return result == ABBE_OK && !c->atlas->used ? compile_trace(c, variant, error) : result;
 }
 
-/* The grids that lights have now: their photons, and room for them. */
+/* The grids that lights have now: their photons, and capacity for them. */
 static abbe_result use_grids(abbe_caustics *c, abbe_error *error) {
   abbe_result result = count_photons(c, error);
   abbe_photon_lights_upload(c->views); /* the unit of sums goes by photons */
@@ -307,7 +307,7 @@ static abbe_result trace_all(abbe_caustics *c, size_t light, abbe_error *error) 
   return result;
 }
 
-/* A coarse set of wavelengths, and all those of the intervals that ask for them. The coarse set is
+/* A coarse set of wavelengths, and all those of the intervals that need them. The coarse set is
  * deposited last, when it is known which of its intervals are refined. */
 static abbe_result trace_refined(abbe_caustics *c, size_t light, abbe_error *error) {
   const bool measures = !c->measured[light];

@@ -27,14 +27,15 @@ typedef struct abbe_caustics {
   abbe_refine_pass refine;
   abbe_deposit_pass deposit;
   size_t placed;                        /* the frame of the history that grids are placed for */
-  bool measured[ABBE_SCENE_MAX_LIGHTS]; /* lists have room for the light, as a frame has found */
+  bool measured[ABBE_SCENE_MAX_LIGHTS]; /* lists have the capacity for the light, as a frame has
+                                           found */
   abbe_ledger energy[ABBE_SCENE_MAX_LIGHTS]; /* for unit power of each, as the last run found */
   bool energy_known;                         /* it had statistics */
 } abbe_caustics;
 
 /* Fits views, maps, tiles and grids by tracing photons, makes the atlas and the map, completes the
- * scene's variant by the tiles that there are. Of a plan with caustics. Tells who
- * watches. Errors as of abbe_renderer_make; abbe_caustics_free also then. */
+ * scene's variant by the tiles that there are. Of a plan with caustics. Reports progress. Errors as
+ * of abbe_renderer_make; abbe_caustics_free also then. */
 abbe_result abbe_caustics_make(abbe_photon_lights *views, abbe_light_layers *layers,
                                abbe_receiver_atlas *atlas, abbe_spectral_map *map,
                                abbe_shader_variant *variant, abbe_caustics *out, abbe_error *error);

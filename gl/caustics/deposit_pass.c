@@ -3,7 +3,7 @@
 #include "gl/device/bindings.h"
 
 enum { SPLAT_BYTES = 48, LEAST_SPLATS = 1 << 12, FIRST_SPLATS = 1 << 20, MAX_SPLATS = 4 << 20 };
-enum { SPLATS_A_HIT = 4 }; /* as room is made for at first; the first frame makes more */
+enum { SPLATS_A_HIT = 4 }; /* capacity at first; the first frame makes more */
 
 static const abbe_gpu_scene *scene_of(const abbe_deposit_pass *pass) {
   return pass->trace->spectra->scene;
@@ -17,7 +17,8 @@ static abbe_result make_room(abbe_deposit_pass *pass, size_t splats, abbe_error 
                               error);
 }
 
-/* The pages of a room are written before the first frame, so few photons have a small one. */
+/* The memory pages of a buffer are written before the first frame, so few photons have a small
+ * one. */
 static size_t first_room(const abbe_trace_pass *trace) {
   const size_t wavelengths = trace->spectra->scene->plan->desc.wavelengths;
   const size_t splats = trace->most_photons * wavelengths * SPLATS_A_HIT;
@@ -112,14 +113,14 @@ static void list_splats(abbe_deposit_pass *pass, size_t light, const abbe_hit_ba
   abbe_gpu_dispatch_list(gpu, program, paths, 0, items * scene->plan->hit_slots, 1);
 }
 
-/* More chunks, each a part of one that there was: what fitted a room before fits it still. They are
- * drawn by a hash of the cell; a quarter more room covers their unevenness. */
+/* More chunks, each a part of one that there was: what fitted a capacity before fits it still. They
+ * are drawn by a hash of the cell; a quarter more capacity covers their unevenness. */
 static void part_chunks(abbe_deposit_pass *pass, size_t splats) {
   pass->chunks *= splats / (pass->most_splats * 4 / 5) + 1;
 }
 
-/* Lists a chunk; again where it has more splats than there is room for, with more room, or in
- * more chunks as long as it is the first one. */
+/* Lists a chunk; again where it has more splats than the capacity, with more capacity, or in more
+ * chunks as long as it is the first one. */
 static abbe_result list_measured(abbe_deposit_pass *pass, size_t light, const abbe_hit_batch *batch,
                                  size_t chunk, abbe_error *error) {
   abbe_result result = ABBE_OK;

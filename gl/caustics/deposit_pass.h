@@ -21,7 +21,7 @@ typedef struct abbe_deposit_pass {
   GLuint list, add; /* programs */
   GLuint splats;
   size_t splat_room, chunks; /* splats that are listed at a time; chunks of the photons */
-  size_t most_splats;        /* for which there is room before there are more chunks */
+  size_t most_splats;        /* the capacity before there are more chunks */
 } abbe_deposit_pass;
 
 /* photons: the variant of the trace. */
@@ -30,9 +30,9 @@ abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refi
                                    const abbe_shader_variant *scene, abbe_deposit_pass *out,
                                    abbe_error *error);
 void abbe_deposit_pass_free(abbe_deposit_pass *pass);
-/* Deposits a batch. measures: it waits for the device and makes room for what it finds; a batch of
- * the same photons that is deposited anew finds the same, so that no frame has to measure it again.
- * ABBE_GL, ABBE_NO_MEMORY. */
+/* Deposits a batch. measures: it waits for the device and makes capacity for what it finds; a batch
+ * of the same photons that is deposited anew finds the same, so that no frame has to measure it
+ * again. ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_deposit_pass_run(abbe_deposit_pass *pass, size_t light,
                                   const abbe_hit_batch *batch, bool measures, abbe_error *error);
 

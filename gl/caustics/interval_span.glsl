@@ -1,5 +1,5 @@
-// The light between two neighbouring nodes of a path. It is laid from a to b where they are of one path,
-// else a's half of it goes on from z and a; and before that the half that a is owed.
+// The light between two neighbouring nodes of a path. It is laid from a to b where they are of one path, else a's
+// half of it goes on from z and a; and before that the half that a still has to lay.
 
 #ifdef BRIDGE
 const bool BRIDGES = true;
@@ -47,7 +47,7 @@ struct Span {
   Left owed_left, left;
   float index_b;
   vec3 half_xyz;           // up to the interval's middle
-  int owed, parts, steps;  // parts of the half that is owed and of this light, which takes so many steps
+  int owed, parts, steps;  // parts of the half that is still to be laid and of this light, which takes so many steps
 };
 
 Trail trail_from(Node a, int row) {

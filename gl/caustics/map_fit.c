@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A light's photon cells no finer than its map can tell: where the images of nearly all cells are
+/* A light's photon cells no finer than its map resolves: where the images of nearly all cells are
  * thinner than this, a coarser grid lays the same light with fewer splats. In texels, and the
  * share of the light whose cells count. */
 static const double least_image = 2, counted_share = 0.95;
@@ -210,7 +210,7 @@ static double blurred(const double share[ABBE_WARP_STEPS], int k, int width) {
   return near / weight;
 }
 
-/* What few photons tell of the light in a step. Where steps differ no more than by chance they are
+/* The light in a step by few photons. Where steps differ no more than by chance they are
  * made alike, for at every change of texels' size light is a little off. */
 static double light_of(const double share[ABBE_WARP_STEPS], int k) {
   static const double chance = 0.02, sure = 0.05;

@@ -28,9 +28,9 @@ void abbe_map_fit_layout(const abbe_map_fit *fit, double wider, abbe_map_layout 
 /* Whether the window holds nearly all of this light, and is filled by it for a good part. */
 bool abbe_map_fit_serves(const abbe_map_fit *fit);
 
-/* A light's photon grid no finer than its map can tell. */
+/* A light's photon grid no finer than its map resolves. */
 
-/* Traces a batch of wavelengths and makes the light's grid coarser, each way by itself, where the
+/* Traces a batch of wavelengths and makes the light's grid coarser, each axis by itself, where the
  * images of nearly all cells are thinner than two texels. The map is fitted by then. */
 abbe_result abbe_cell_fit_run(abbe_trace_pass *trace, abbe_photon_lights *views, size_t light,
                               abbe_error *error);

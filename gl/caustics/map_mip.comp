@@ -1,4 +1,4 @@
-// One coarser picture of a finished map, for eyes that see many texels at once: the flux of four over
+// One coarser picture of a finished map, for cameras that see many texels at once: the flux of four over
 // their window area; where texels are alike, as those of a tile are, their mean.
 layout(local_size_x = 32, local_size_y = 16) in;
 #include "thread.glsl"

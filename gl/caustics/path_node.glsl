@@ -27,7 +27,7 @@ Node node_at(int at, bool there, float index, vec2 elsewhere) {
   return n;
 }
 
-// What varies so evenly with the index that three nodes tell it.
+// What varies so evenly with the index that three nodes define it.
 vec4 smooth_of(Node n) { return vec4(n.left.along, n.left.arrives); }
 
 // What is left in all of the light of a's half of an interval and of b's, and in how many parts it

@@ -2,7 +2,7 @@
 // path the light is laid where the index between theirs sends it (outgoing_segment.glsl), each splat with the
 // colour of its own part of the band. Where the paths differ each wavelength keeps its half of the band.
 // Intervals go from long waves to short ones: in short waves the index changes fastest, and there two
-// intervals before tell the curve. Splats closer together than photons are added first; X, Y and Z have
+// intervals before give the curve. Splats closer together than photons are added first; X, Y and Z have
 // each a place of their own, or dispersion narrower than that would be lost. A splat is spread over the
 // parallelogram that the neighbouring photons' hits span: where that is wide, in a coarser level of
 // the map. fine_nodes: the intervals on the list, by all their wavelengths; 0: those of the coarse set that
@@ -44,7 +44,7 @@ uniform int interval_end;
 uniform int nodes;  // nodes of the set whose hits these are
 uniform int table_first;
 uniform uint chunks, chunk;  // only paths of this chunk
-uniform uint most;           // splats that the list has room for
+uniform uint most;           // capacity of the list of splats
 
 // A path whose light this thread lays.
 struct Path {

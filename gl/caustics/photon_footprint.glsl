@@ -62,7 +62,7 @@ Footprint footprint_of(Photon photon, Reference r) {
     below = k == 3 ? step : below;
   }
   vec2 a = extent.x * image_of_side(right, left, skew_a), b = extent.y * image_of_side(above, below, skew_b);
-  // Principal axes of the cell's image: a fold makes it thin, whatever way the cell's sides point.
+  // Principal axes of the cell's image: a fold makes it thin, wherever the cell's sides point.
   float xx = a.x * a.x + b.x * b.x, yy = a.y * a.y + b.y * b.y, xy = a.x * a.y + b.x * b.y;
   float half_trace = 0.5 * (xx + yy), root = length(vec2(0.5 * (xx - yy), xy));
   float wide = sqrt(half_trace + root), narrow = sqrt(max(half_trace - root, 0.0));

@@ -43,7 +43,7 @@ struct ListedSplat {
   vec2 centre, across, shift, skew;
   vec2 beside;  // its other side, square to `across`
   vec2 off[3];  // X, Y and Z, off the middle
-  vec3 slope;   // along the shift X, Y and Z grow or fall evenly, as their means tell
+  vec3 slope;   // along the shift X, Y and Z grow or fall evenly, as their means show
   int level;
   float next_share;
   uint tile;  // and one more; 0: the map

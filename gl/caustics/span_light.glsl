@@ -119,7 +119,7 @@ vec3 entry_of(vec2 said, float flux, float left, bool lands) {
   return vec3(flux * left_said - said.y, flux * (left_said - left), lands ? 0.0 : flux * left);
 }
 
-// last: after what is owed nothing follows, and what is collected is listed.
+// last: after what was still to be laid nothing follows, and what is collected is listed.
 void lay(Span s, bool last, Footprint f, inout Splat collected, inout vec3 entry) {
   Front front = front_at(s, s.owed_row, STEPS);
   int count = s.owed + s.parts + (last ? 1 : 0);

@@ -268,7 +268,7 @@ static void resolve_layer(abbe_spectral_map *map, size_t light, size_t layer, si
     write_level(map, map->resolve, level, rows);
 }
 
-/* What the eye sees of the map where its samples are farther apart than texels. */
+/* What the camera sees of the map where its samples are farther apart than texels. */
 static void make_mips(abbe_spectral_map *map, size_t light, size_t layer, size_t rows) {
   use(map, map->mip, "map_levels", light, layer);
   for (size_t level = 1; level < map->views->map_levels; level++)

@@ -53,7 +53,7 @@ void abbe_map_history_free(abbe_map_history *history);
 
 /* The layout of the light's last map; false: none is kept. */
 bool abbe_map_history_layout(const abbe_map_history *history, size_t light, abbe_map_layout *out);
-/* Room for maps of so many layers; where there was other room, nothing is kept in it. */
+/* Makes capacity for maps of so many layers; with another capacity nothing is kept in it. */
 abbe_result abbe_map_history_make(abbe_map_history *history, abbe_gpu *gpu, size_t side,
                                   size_t layers, abbe_error *error);
 /* How the light's map is laid out now: where that differs, frames before do not count. */

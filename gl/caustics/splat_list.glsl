@@ -1,4 +1,4 @@
-// Splats of light on their way to the map: the place of the middle in texels (12.15 fixed point; below x the
+// Splats of light for the map: the place of the middle in texels (12.15 fixed point; below x the
 // high five bits of the tile's number from 1, 0 for the map; below y the low two, then the level in three),
 // from edge to edge across the footprint (two halves), XYZ in map units, so that the list is what is
 // summed, and from that place to where X, Y and Z lie in the mean; the shift from one

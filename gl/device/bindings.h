@@ -29,7 +29,7 @@
 #define BINDING_SAMPLE_WEIGHTS 17
 #define BINDING_LEDGER 18
 
-/* Intervals between wavelengths that ask for all theirs. */
+/* Intervals between wavelengths that need all of theirs. */
 #define BINDING_WANTS 19
 #define BINDING_PAIRS 20
 
@@ -38,7 +38,7 @@
 #define BINDING_MAP_SUMS 22
 #define BINDING_TEXEL_SIZES 23
 
-/* The camera's picture: pixels that show a refractor, and those that ask for all bands. */
+/* The camera's picture: pixels that show a refractor, and those that need all bands. */
 #define BINDING_PIXELS 24
 #define BINDING_REFINED_PIXELS 25
 
@@ -59,7 +59,7 @@
 #define BINDING_SIGHTS 31
 #define BINDING_SIGHT_PIXELS 32
 
-/* Texels of pinholes' pages: those that are filled now, and those that ask for more. */
+/* Texels of pinholes' tiles: those that are filled now, and those that need more samples. */
 #define BINDING_PAGE_TEXELS 34
 #define BINDING_UNFINISHED 33
 

@@ -67,8 +67,8 @@ static EGLDisplay open_display(EGLDeviceEXT device) {
   return opened ? display : EGL_NO_DISPLAY;
 }
 
-/* A context of 4.5 that tells of a lost device instead of ending the process, else one that does
- * not, else whatever the driver offers, which says by itself what it lacks. */
+/* A context of 4.5 that reports a lost device instead of ending the process, else one that does
+ * not, else whatever the driver offers, which lacks what its version shows. */
 static EGLContext create(EGLDisplay display, EGLConfig config) {
   static const EGLint attributes[] = {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
                                       EGL_LOSE_CONTEXT_ON_RESET,

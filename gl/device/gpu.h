@@ -15,7 +15,7 @@
 #include <stddef.h>
 
 /* Buffers, textures and programs of a device, each with what it was made as, so that what is made
- * again in the same way takes up what was put back. It makes nothing itself. */
+ * again alike takes up what was put back. It makes nothing itself. */
 
 typedef enum abbe_stored_kind {
   ABBE_STORED_BUFFER,
@@ -75,7 +75,7 @@ size_t abbe_gpu_store_count(const abbe_gpu_store *store, abbe_stored_kind kind);
  * takes such memory (GL_AMD_pinned_memory, as Mesa's llvmpipe does).
  *
  * The driver itself clears all of a buffer when it makes it, in one go, and gives its pages back
- * with it: 1.5 ms a MiB on a virtual machine, in which nobody is asked whether work goes on. Here
+ * with it: 1.5 ms a MiB on a virtual machine, during which cancel cannot be polled. Here
  * the pages come as they are used, and stay for the next buffer. */
 
 #define ABBE_MEMORY_LEAST ((size_t)1 << 20)    /* bytes of a buffer that is large */
@@ -94,7 +94,7 @@ typedef struct abbe_buffer_memory {
   abbe_memory_block block[ABBE_MEMORY_BLOCKS];
 } abbe_buffer_memory;
 
-/* Asks OpenGL; software: what runs the shaders is a processor. */
+/* Reads the limits of OpenGL; software: a processor runs the shaders. */
 void abbe_buffer_memory_begin(abbe_buffer_memory *memory, const abbe_gl *gl, bool software);
 /* Gives a buffer without storage so many bytes, whatever is in them; it is not bound, and OpenGL's
  * error is left pending where it refuses them. False: it has none, and OpenGL's own will do. */
@@ -136,9 +136,9 @@ typedef struct abbe_gpu {
   double lap_start_ms;
   abbe_render_progress progress; /* the caller's progress function; NULL: there is none */
   void *progress_user;
-  double done;                   /* what they were told last */
+  double done;                   /* the progress reported last */
   bool stopped;                  /* they want no more: nothing is dispatched */
-  void (*compiling)(void *user); /* told once, with progress_user, that shaders are compiled */
+  void (*compiling)(void *user); /* called once, with progress_user, when shaders are compiled */
 } abbe_gpu;
 
 /* *out is zero or made before; free it also where this fails. ABBE_GL, ABBE_NO_MEMORY. */
@@ -146,7 +146,7 @@ abbe_result abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *error);
 void abbe_gpu_free(abbe_gpu *gpu);
 
 /* A storage buffer; data may be NULL: what is in it is then not known. What is made is put back by
- * abbe_gpu_drop_*, and taken up by what is made alike; where there is no room, what is not in use
+ * abbe_gpu_drop_*, and taken up by what is made alike; where memory is short, what is not in use
  * gives way. So of textures. ABBE_GL, also where an older error of OpenGL is pending, which is
  * cleared; ABBE_NO_MEMORY. */
 abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
@@ -162,8 +162,8 @@ void abbe_gpu_drop_buffers(abbe_gpu *gpu, size_t count, GLuint *buffer);
 void abbe_gpu_drop_textures(abbe_gpu *gpu, size_t count, GLuint *texture);
 /* Deletes what was dropped and not taken up since. */
 void abbe_gpu_trim(abbe_gpu *gpu);
-/* The same at once, where something has found no room: the device has let go of it then. Texels are
- * bound anew. */
+/* Frees at once what is not in use, where memory was short: the device has let go of it then.
+ * Texels are bound anew. */
 void abbe_gpu_make_way(abbe_gpu *gpu);
 /* Bytes of buffers and textures in use. */
 size_t abbe_gpu_bytes(const abbe_gpu *gpu);
@@ -218,15 +218,15 @@ void abbe_gpu_set_list(abbe_gpu *gpu, GLuint list, size_t count);
 /* So many bytes from one buffer to another. */
 void abbe_gpu_copy(abbe_gpu *gpu, GLuint from, size_t from_byte, GLuint to, size_t to_byte,
                    size_t bytes);
-/* Waits for the device: elements of a list, also beyond its room. */
+/* Waits for the device: elements of a list, also beyond its capacity. */
 size_t abbe_gpu_read_count(abbe_gpu *gpu, GLuint list);
 
 /* From now on somebody watches, or nobody (progress is NULL): work is then done in parts of some
  * milliseconds, and between them they are asked whether it goes on. It waits for the device. */
 void abbe_gpu_watch(abbe_gpu *gpu, abbe_render_progress progress, void *user);
-/* Tells them what is done, 0 to 1. ABBE_CANCELLED where they have stopped it. */
+/* Reports the share that is done, 0 to 1. ABBE_CANCELLED where the caller has cancelled. */
 abbe_result abbe_gpu_tell(abbe_gpu *gpu, double done, abbe_error *error);
-/* Asks them, where there are any; whether they go on. */
+/* Polls for cancel, where there is a progress function; whether the work goes on. */
 bool abbe_gpu_ask(abbe_gpu *gpu);
 
 /* How many units of work the next part has where somebody watches, at least 1, after one of so many

@@ -12,7 +12,7 @@
  * tiles, all else while photons are traced and laid: so the balance is a check and no identity. */
 typedef struct abbe_ledger {
   double reached;
-  double reflected; /* on the outside, at the first interface, and landed nowhere */
+  double reflected; /* on the outside, at the first interface, and hit no receiver */
   double absorbed;  /* along inner paths */
   double trapped;   /* still inside when the path ended: below the energy share, or out of exits */
   double missed;    /* met no receiver, or one where neither map nor tile holds it */

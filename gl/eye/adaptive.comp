@@ -11,7 +11,7 @@ layout(std430, binding = BINDING_ADAPTIVE_SAMPLES) readonly buffer SampleList {
   uint sample_count, sample_groups[3];
   uint samples[];  // x | y << 16
 };
-layout(rgba32f, binding = 0) uniform image2D radiance;  // w: distance from the eye, of the first sample
+layout(rgba32f, binding = 0) uniform image2D radiance;  // w: distance from the camera, of the first sample
 #ifdef AOVS
 layout(rgba32f, binding = 1) writeonly uniform image2D direct;
 layout(rgba32f, binding = 2) writeonly uniform image2D caustic;

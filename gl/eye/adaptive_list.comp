@@ -1,4 +1,4 @@
-// Lists the samples of receivers in which light may vary more than one sample can tell: it bends there, from
+// Lists the samples of receivers in which light may vary more than one sample resolves: it bends there, from
 // one side over the sample to the other. A sample next to one that shows a refractor is left alone; where
 // one stands for PIXEL_SIDE x PIXEL_SIDE of refractors, one before which these all show some.
 // PIXEL_SIDE is 0 where the camera sees no refractor.
@@ -58,7 +58,7 @@ void main() {
     bool wanted = y < size.y && any(greaterThan(bend, bend_share / 9.0 * sum + least_bend));
 #if PIXEL_SIDE > 1
     bool all = wanted;
-    // Few ask for it: a loop whose length is not known is not unrolled, and ends where none does.
+    // Few need it: a loop whose length is not known is not unrolled, and ends where none does.
     for (int k = wanted ? 0 : PIXEL_SIDE * PIXEL_SIDE; all && k < PIXEL_SIDE * PIXEL_SIDE; k++)
       all = shows_refractor(PIXEL_SIDE * ivec2(first.x, y) + ivec2(k % PIXEL_SIDE, k / PIXEL_SIDE), row.behind);
     wanted = wanted && !all;

@@ -8,7 +8,7 @@
 enum { LIST_ROWS = 4 }; /* rows of a thread of adaptive_list.comp */
 
 /* A bend below these is left alone: of the light around the sample, and of what a white receiver
- * shows of the lights, so that noise in the dark asks for nothing. */
+ * shows of the lights, so that noise in the dark takes no samples. */
 static const double bend_share = 0.2, least_white = 0.01;
 
 static const abbe_gpu_scene *scene_of(const abbe_adaptive_pass *pass) {

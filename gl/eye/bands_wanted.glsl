@@ -27,7 +27,7 @@ float sphere_spread(Hit front, vec3 d, int first, int last) {
 }
 #endif
 
-// As many bands as the spread asks for, one for every pixel and a half of it. For meshes it is
+// As many bands as the spread needs, one for every pixel and a half of it. For meshes it is
 // estimated from the first interface alone; in facets inner reflections spread light further than
 // the first exit shows, so a convex solid gets a band for each wavelength.
 float wanted_bands(Hit front, vec3 d, int first, int last) {

@@ -1,6 +1,5 @@
-/* lighting.h: all that shaders ask for to light a receiver (receiver.glsl): tables, light layers,
- * spectral map, tiles. Internal to gl/.
- */
+/* lighting.h: all that shaders need to light a receiver (receiver.glsl): tables, light layers,
+ * spectral map, tiles. Internal to gl/. */
 #ifndef ABBE_GL_EYE_LIGHTING_H
 #define ABBE_GL_EYE_LIGHTING_H
 
@@ -24,7 +23,7 @@ typedef struct abbe_lighting {
   const abbe_seen_meshes *meshes; /* the camera's */
 } abbe_lighting;
 
-/* The program is in use, everything is bound, the camera is told. */
+/* The program is in use, everything is bound, the camera is set. */
 void abbe_lighting_use(const abbe_lighting *lighting, GLuint program);
 
 #endif

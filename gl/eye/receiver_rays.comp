@@ -1,5 +1,5 @@
-// Receivers as the eye sees them, by a ray a sample: of what moves, where their triangles are far more than samples.
-// Where there is none the picture stays.
+// Receivers as the camera sees them, by a ray a sample: of what moves, where their triangles are far more than
+// samples. Where there is none the picture stays.
 layout(local_size_x = 32, local_size_y = 16) in;
 #include "thread.glsl"
 #define COPIES_TABLES
@@ -7,7 +7,7 @@ layout(local_size_x = 32, local_size_y = 16) in;
 #include "refractor.glsl"
 #include "receiver.glsl"
 #include "receiver_sight.glsl"
-layout(rgba32f, binding = 0) writeonly uniform image2D radiance;  // w: distance from the eye
+layout(rgba32f, binding = 0) writeonly uniform image2D radiance;  // w: distance from the camera
 #ifdef AOVS
 layout(rgba32f, binding = 1) writeonly uniform image2D direct;
 layout(rgba32f, binding = 2) writeonly uniform image2D caustic;

@@ -1,4 +1,4 @@
-// Receivers as the eye sees them: light, shadow and spectral map in one.
+// Receivers as the camera sees them: light, shadow and spectral map in one.
 // UNLIT: no light reaches what is drawn.
 #define SEEN_BY_PIXELS  // neighbouring fragments are neighbouring samples
 #include "refractor.glsl"
@@ -12,7 +12,7 @@ uniform int surface;
 layout(binding = UNIT_SIDE_OF_FACE) uniform isamplerBuffer side_of_face;  // chart's side that a face's normal points to
 uniform int face_first;                                    // first face of the object that is drawn
 #endif
-layout(location = 0) out vec4 radiance;  // w: distance from the eye
+layout(location = 0) out vec4 radiance;  // w: distance from the camera
 #ifdef AOVS
 layout(location = 1) out vec4 direct;
 layout(location = 2) out vec4 caustic;

@@ -1,4 +1,4 @@
-// Refractors as the eye sees them: one direction a wavelength, each exit that carries enough
+// Refractors as the camera sees them: one direction a wavelength, each exit that carries enough
 // energy followed to what it shows, and the reflection on the outside. Opaque things in front win
 // by the depth test. Threads are of listed pixels: triangles smaller than a pixel cost nothing more.
 // KEEPS_SIGHTS: what it finds of receivers are places, whose light sights.comp looks up.
@@ -43,7 +43,7 @@ layout(std430, binding = BINDING_REFINED_PIXELS) buffer RefineList {
 #define SIGHTS_ACCESS
 #include "sights.glsl"
 #else
-layout(rgba32f, binding = 0) writeonly uniform image2D picture;  // rgb, distance from the eye
+layout(rgba32f, binding = 0) writeonly uniform image2D picture;  // rgb, distance from the camera
 #endif
 #endif
 uniform sampler2DArray eye_layers;    // 0: front, 1: back; normal, distance
@@ -123,7 +123,7 @@ float lobe_width, lobe_ways;
 #include "pinhole_sky.glsl"
 #endif
 #endif
-float seen_at;  // how far off what was seen last is, where it is a receiver or lamp
+float seen_at;  // how far off what was seen last is, where it is a receiver or light
 
 // Radiance along the ray from p, refractors taken away, of a receiver no farther than t_max; met:
 // there is one. spread: of the ray, where it meets none.
@@ -135,7 +135,7 @@ vec3 seen(vec3 p, vec3 d, Spread spread, float t_min, float t_max, out bool met)
 #endif
   met = receiver_seen(p, d, t_min, t_max, t, at);
 #ifdef ROUGH
-  bool blurred = lobe_width > 0.0;  // a rough mirror shows lamps itself, also those that stand for the surroundings
+  bool blurred = lobe_width > 0.0;  // a rough mirror shows lights itself, also those that stand for the surroundings
 #else
   const bool blurred = false;
 #endif
@@ -222,7 +222,7 @@ vec3 by_weight(int base, int i) { return shown_by[i] / max(bands[base + i].weigh
 // XYZ that all of the pixel's bands show.
 void write_pixel(uint where, int base, int count, vec3 sum) {
 #ifdef REFINES
-  // Within a band the light is taken to change by half of the way to its neighbours.
+  // Within a band the light is taken to change by half of the difference to its neighbours.
   uint asked = 0u;
   float most = MOST_WRONG * dot(sum, vec3(1)) * 2.0;
   vec3 left = sum;

@@ -9,7 +9,7 @@ void layers_hit(int r, vec3 p, vec3 d, out vec3 q, out vec3 n) {
 }
 #endif
 
-// The spread of the ray's neighbours on its way: of spheres and facets; what layers show counts as flat.
+// The spread of the ray's neighbours along its path: of spheres and facets; what layers show counts as flat.
 #if defined(KEEPS_SPREAD) && defined(SPHERES)
 mat3 bend_outwards() {
   return mat3(refractors[refractor].info.x == MODEL_SPHERE ? 1.0 / refractors[refractor].sphere.w : 0.0);
@@ -57,7 +57,7 @@ vec3 seen_outside(vec3 p, vec3 d, Spread spread) {
 
 // XYZ of what the band that is taken shows, from interface to interface. What is left when the path ends shows what
 // the rest has shown, in its own colour: what is still inside goes on by as much as from interface to interface. Its
-// loops have two ways out, with values of their own for what is used after them: of what the last turn alone has
+// loops have two exits, with values of their own for what is used after them: of what the last turn alone has
 // made, lanes that took fewer turns may find another's (Mesa 22's llvmpipe).
 vec3 through(Hit front, vec3 d) {
   vec2 spectrum = refractor_spectrum(refractor);
@@ -79,7 +79,7 @@ vec3 through(Hit front, vec3 d) {
   // Shares of what went in: where nearly all is mirrored, the rest is followed too; and of what is
   // there when it first shows something, because dark bands have their part in the colour.
   float limit = share_limit * ray.share;
-  float left = 0.0, left_m = 0.0;  // share of what is left, and times its way inside
+  float left = 0.0, left_m = 0.0;  // share of what is left, and times its path inside
   vec3 shown = vec3(0);
   Spread within = spread_within(front, n), outside = within;
   for (int order = 0; order < counts.exits;) {

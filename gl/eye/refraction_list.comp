@@ -1,5 +1,5 @@
 // Lists the samples in which a refractor is seen before anything opaque. PIXEL_SIDE: receivers have one
-// sample for so many of a pixel side, so that who is before whom is told by rays; the pixels are listed too.
+// sample for so many of a pixel side, so that rays decide which is in front; the pixels are listed too.
 layout(local_size_x = 32, local_size_y = 16) in;
 #include "thread.glsl"
 #ifdef PIXEL_SIDE

@@ -10,7 +10,7 @@
 
 /* bands of a pixel, traced first, where they are more */
 enum { COARSE_BANDS = 7 };
-/* Pixels at a time whose bands may ask for all their samples. */
+/* Pixels at a time whose bands may need all their samples. */
 enum { REFINE_ROOM = 1 << 20 };
 /* As sights.glsl has them: bytes of a place, words of a pixel before its chains; and what their
  * numbers and a buffer hold. */
@@ -285,7 +285,8 @@ static void refract_strip(abbe_refraction_pass *pass, size_t first, size_t size)
                            pass->pixel_threads);
 }
 
-/* In strips of what has room to be refined; in more where somebody watches, who sees it go on. */
+/* In strips of what has the capacity to be refined; in more with a progress function, which is
+ * called between them. */
 static abbe_result refract_pixels(abbe_refraction_pass *pass, abbe_error *error) {
   enum { WATCHED_STRIPS = 16 };
   abbe_gpu *gpu = scene_of(pass)->gpu;
@@ -320,7 +321,7 @@ static void bind_sights(const abbe_refraction_pass *pass) {
   abbe_gpu_bind_storage(gpu, BINDING_SIGHT_PIXELS, pass->sight_pixels);
 }
 
-/* Buffers of so much room and more, in steps, so that those of the next scene are like them. */
+/* Buffers of so much capacity and more, in steps, so that those of the next scene are like them. */
 static abbe_result make_room(abbe_refraction_pass *pass, size_t places, size_t bytes,
                              abbe_error *error) {
   enum { STEP = 1 << 20 };
@@ -339,7 +340,7 @@ static abbe_result make_room(abbe_refraction_pass *pass, size_t places, size_t b
                               &pass->sights, error);
 }
 
-/* Once more with as much room as they have turned out to take. */
+/* Once more with as much capacity as they have turned out to take. */
 static abbe_result find_sights(abbe_refraction_pass *pass, abbe_error *error) {
   enum { LIKELY = 12 };
   abbe_gpu *gpu = scene_of(pass)->gpu;

@@ -51,7 +51,7 @@ void abbe_refraction_kept_free(abbe_gpu *gpu, abbe_refraction_kept *kept);
 void abbe_refraction_pass_free(abbe_refraction_pass *pass);
 /* The faces as the camera sees them first: layers and owners. ABBE_GL. */
 abbe_result abbe_refraction_pass_draw(abbe_refraction_pass *pass, abbe_error *error);
-/* What they show. Tells who watches from a half to the whole. ABBE_CANCELLED, ABBE_GL. */
+/* What they show. Reports progress from a half to the whole. ABBE_CANCELLED, ABBE_GL. */
 abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_error *error);
 
 #endif

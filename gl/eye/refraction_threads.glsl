@@ -1,5 +1,5 @@
-// The eye's rays on multi-refractor paths, by PIXEL_THREADS threads a pixel: so each band's are followed
-// as far however many bands there are.
+// The camera's rays on multi-refractor paths, by PIXEL_THREADS threads a pixel: so each band's are followed as far
+// however many bands there are.
 
 // Where a pixel has one thread that has what is its own: all of a group's would not fit.
 #if PIXEL_THREADS == 1
@@ -14,7 +14,7 @@
 #define OF_PIXEL place
 #endif
 
-// llvmpipe goes through what no lane wants, too: of one band both ways on are followed as one path's.
+// llvmpipe also runs what no lane wants: of one band both branches are followed as one path's.
 #ifdef COARSE_EYE
 bool goes_both_ways(int count) { return count == 1; }
 #else
@@ -57,7 +57,7 @@ int pixel_thread = int(gl_LocalInvocationID.x) % PIXEL_THREADS;
 #endif
 
 // XYZ of what a band shows through the first interface, or off a mirror; or in_mirror: of what it shows
-// reflected by an interface, by unit share; mirrored: the share that is. both: of what it shows either way, and nothing is mirrored.
+// reflected by an interface, by unit share; mirrored: the share that is. both: of all that it shows, and nothing is mirrored.
 vec3 band_light(int band, bool in_mirror, bool both, out float mirrored) {
   take_band(band_set, band - first_band(refractor));
 #ifdef ROUGH

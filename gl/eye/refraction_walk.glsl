@@ -1,4 +1,4 @@
-// The eye's rays on multi-refractor paths (walk.glsl): what the branches show, by their shares.
+// The camera's rays on multi-refractor paths (walk.glsl): what the branches show, by their shares.
 
 // Paths of one band: the strongest paths come first. Mesa 22's llvmpipe ends every loop of a thread
 // that has been through 65535 turns of any loops; a segment takes one for each plane and some for
@@ -16,7 +16,7 @@ int most_segments() {
 #endif
 }
 
-uniform uint eye_inside;  // refractors that the eye is in, which are clear
+uniform uint eye_inside;  // refractors that the camera is in, which are clear
 
 #ifdef ROUGH
 #include "rough_lamps.glsl"
@@ -39,7 +39,7 @@ vec3 shown(PathState w, PathState other) {
     float t_min = w.inside == 0u ? -touch * refractor_bounds.w : 0.0;
     h.hit.t = 1e30;
 #ifdef COARSE_EYE
-    parallelogram_hit(w.p, w.d, t_min, 1e30, h.hit.t);  // a search is dear: none behind what is told cheaply
+    parallelogram_hit(w.p, w.d, t_min, 1e30, h.hit.t);  // a search is dear: none behind what is found cheaply
 #endif
     bool met = next_interface(w, h), receiver;
     vec3 radiance = seen(w.p, w.d, SPREAD_OF(w), t_min, met ? h.hit.t : 1e30, receiver);
@@ -126,7 +126,7 @@ vec3 rough_shown() {
 void begin_path(ivec2 at) {
   aim_at(at);
 #ifdef ROUGH
-  // Neighbours take ways far from each other [Roberts2018].
+  // Neighbours take directions far from each other [Roberts2018].
   lobe_shift = fract(dot(vec2(at), vec2(0.7548776662, 0.5698402910)));
   lobe_u = lobe_way(0, lobe_shift);
   lobe_width = 0.0;

@@ -11,7 +11,7 @@ layout(std430, binding = BINDING_PIXELS) readonly buffer PixelList {
   uint pixel_count, pixel_groups[3];
   uint pixel[];  // x | y << 16
 };
-layout(rgba32f, binding = 0) writeonly uniform image2D picture;  // rgb, distance from the eye
+layout(rgba32f, binding = 0) writeonly uniform image2D picture;  // rgb, distance from the camera
 uniform mat3 xyz_from_rgb;
 mat3 own_xyz_from_rgb;
 

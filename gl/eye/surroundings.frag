@@ -4,7 +4,7 @@ uniform vec3 background;
 #include "surroundings.glsl"
 uniform vec4 eye_view[6];
 uniform vec2 receiver_samples;  // across and up
-layout(location = 0) out vec4 radiance;  // w: distance from the eye, 0: nothing is there
+layout(location = 0) out vec4 radiance;  // w: distance from the camera, 0: nothing is there
 
 void main() {
   View view = View(eye_view[0], eye_view[1], eye_view[2], eye_view[3], eye_view[4], eye_view[5]);

@@ -1,4 +1,4 @@
-// What a beam of light brings to a pixel: of its length there what is scattered towards the eye, and of that what
+// What a beam of light brings to a pixel: of its length there what is scattered towards the camera, and of that what
 // its light has there across.
 #include "common.glsl"
 #include "haze.glsl"

@@ -7,7 +7,7 @@ uniform vec4 eye_view[6];
 uniform vec2 size;  // pixels
 flat out vec4 places, last_light;  // at its end: place and red of the light
 flat out vec4 depth_length, first_widths, last_widths;  // depths; lengths in pixels and in metres. A cell's; w: unit
-flat out vec4 way_light, grows_light;  // its way and green, as beam.glsl says; and blue
+flat out vec4 way_light, grows_light;  // its direction and green, as in beam.glsl; and blue
 
 void main() {
   int corner = gl_VertexID % 6, end, k;

@@ -1,8 +1,8 @@
-// The eye's way through haze, metres, in alpha; IN_AIR: and the light that lamps send straight to it on that way,
-// added to the beams of light.
+// The camera's path through a medium, metres, in alpha; IN_AIR: and the light that lights send straight to it along
+// that path, added to the photon beams.
 #include "refractor.glsl"
 #include "receiver.glsl"
-uniform sampler2D picture;  // w: distance from the eye, 0: nothing is there
+uniform sampler2D picture;  // w: distance from the camera, 0: nothing is there
 uniform vec4 eye_view[6];
 uniform vec2 size;  // pixels
 layout(location = 0) out vec4 radiance;

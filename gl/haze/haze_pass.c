@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { STEPS_ALONG = 48, COARSE_STEPS = 12 }; /* on the eye's way through haze */
+enum { STEPS_ALONG = 48, COARSE_STEPS = 12 }; /* along the camera's path through a medium */
 enum { PICTURE_UNIT = 6, BEAM_UNIT = 0 };     /* that nothing of the scene is at */
 
 static const abbe_lighting *lighting_of(const abbe_haze_pass *pass) {
@@ -37,7 +37,7 @@ static abbe_result make_targets(abbe_haze_pass *pass, abbe_error *error) {
   return result;
 }
 
-/* The refractor that the eye is in, the last of several; -1: the air. */
+/* The refractor that the camera is in, the last of several; -1: the air. */
 static int around_eye(const abbe_plan *plan) {
   int r = plan->eye_in_air ? -1 : (int)plan->refractor_count - 1;
   while (r > 0 && (plan->eye_inside >> r & 1) == 0) r--;
@@ -51,7 +51,7 @@ static bool has_shafts(const abbe_plan *plan, int medium) {
   return found;
 }
 
-/* Where no beams are drawn the grid of them shows them, if there is one around the eye. */
+/* Where no beams are drawn the grid of them shows them, if there is one around the camera. */
 static abbe_result make_shine(abbe_haze_pass *pass, const abbe_shader_variant *variant,
                               abbe_error *error) {
   static const abbe_program_stage stages[] = {{GL_VERTEX_SHADER, "screen.vert"},
@@ -131,7 +131,7 @@ static abbe_result clear_target(abbe_haze_pass *pass, abbe_error *error) {
 
 /* ---- beams of light ---- */
 
-/* Whatever the eye's rays meet first hides what is behind it. */
+/* Whatever the camera's rays meet first hides what is behind it. */
 static void draw_occluders(abbe_haze_pass *pass) {
   const abbe_gpu_scene *scene = scene_of(pass);
   const abbe_gl *gl = scene->gpu->gl;
@@ -185,7 +185,7 @@ static abbe_result draw_beams(abbe_haze_pass *pass, abbe_error *error) {
 
 /* ---- the picture ---- */
 
-/* Lamps' straight light in the air, and what is left of what is behind. */
+/* Direct light of lights in the air, and what is left of what is behind. */
 static abbe_result draw_shine(abbe_haze_pass *pass, abbe_error *error) {
   const abbe_gpu_scene *scene = scene_of(pass);
   const abbe_gl *gl = scene->gpu->gl;

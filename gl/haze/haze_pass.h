@@ -1,8 +1,8 @@
-/* haze_pass.h: haze over the finished picture: what it leaves of what the eye sees, the light that
- * lamps send straight to the eye's way, and beams of the light that refractors and mirrors throw.
- * Scattered once, along the eye's own ray up to the first surface; what is behind it or mirrored in
- * it is in the picture by then (eye/refraction.comp). Internal to gl/.
- */
+/* haze_pass.h: participating media over the finished picture: what they leave of what the camera
+ * sees, the light that lights send straight to the camera's path, and beams of the light that
+ * refractors and mirrors throw. Scattered once, along the camera's own ray up to the first surface;
+ * what is behind it or mirrored in it is in the picture by then (eye/refraction.comp). Internal to
+ * gl/. */
 #ifndef ABBE_GL_HAZE_HAZE_PASS_H
 #define ABBE_GL_HAZE_HAZE_PASS_H
 

@@ -4,7 +4,7 @@
 in vec3 world;
 flat in int area_light;
 uniform vec3 eye;
-layout(location = 0) out vec4 radiance;  // w: distance from the eye
+layout(location = 0) out vec4 radiance;  // w: distance from the camera
 #ifdef AOVS
 layout(location = 1) out vec4 direct;
 layout(location = 2) out vec4 caustic;

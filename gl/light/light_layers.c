@@ -62,7 +62,7 @@ static abbe_result fit_near_view(const abbe_light_fit *fit, size_t light, abbe_e
   double *window = fit->views->light[light].near_view.window;
   for (int turn = 0; turn < TURNS; turn++) {
     GLuint found[4] = {0};
-    /* What rays meet of meshes is told by the front layer of the view as it is now. */
+    /* What rays meet of meshes is read from the front layer of the view as it is now. */
     abbe_result result =
         fit->views->scene->plan->bvh ? abbe_light_layers_draw(fit->layers, light, error) : ABBE_OK;
     if (result != ABBE_OK) return result;
@@ -149,7 +149,7 @@ static abbe_drawn_view key_of(const abbe_view *view) {
 abbe_result abbe_light_layers_draw(abbe_light_layers *layers, size_t light, abbe_error *error) {
   const abbe_plan *plan = layers->views->scene->plan;
   abbe_gpu *gpu = layers->views->scene->gpu;
-  /* So near to exact surfaces their triangles tell too little of what they cover. */
+  /* So near to exact surfaces their triangles show too little of what they cover. */
   const bool all = abbe_photon_lights_is_face(layers->views, light) && !plan->layers && !plan->bvh;
   const abbe_drawn_view key = key_of(&layers->views->light[light].near_view);
   abbe_result result = ABBE_OK;

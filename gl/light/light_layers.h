@@ -9,7 +9,7 @@
 #include "gl/scene/shader_variant.h"
 #include "scenes/scene.h"
 
-/* What tells a view from another one. */
+/* What separates a view from another one. */
 typedef struct abbe_drawn_view {
   double matrix[16], from[3], forward[3];
 } abbe_drawn_view;

@@ -46,7 +46,7 @@ void main() {
   float flux = 0.0, least = 1e37, most = 0.0, total = 0.0, nearest = 1e9;
   vec2 mean = vec2(0), square = vec2(0), beside = vec2(0);
   // One loop looks at all of them, for what a ray meets is most of this shader: the middle and the corners;
-  // where an edge crosses the cell, its rays, then the start that they ask for, and where that is in a gap
+  // where an edge crosses the cell, its rays, then the start that they lead to, and where that is in a gap
   // the rays once more, for the nearest beside it.
   const int RAYS = 5, START = RAYS + SIDE * SIDE, AGAIN = START + 1, END = AGAIN + SIDE * SIDE;
   bool going = true;

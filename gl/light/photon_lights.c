@@ -174,7 +174,7 @@ void abbe_photon_lights_set_grid(const abbe_photon_lights *views, GLuint program
                                    (GLint)cells[0], (GLint)cells[1]);
 }
 
-/* Wide sums have room for 2^36 full photons of 2^28 units; narrow ones share 2^31 units among all
+/* Wide sums hold 2^36 full photons of 2^28 units; narrow ones share 2^31 units among all
  * photons that there are. Both count the largest of the white's X, Y and Z. */
 double abbe_photon_lights_map_unit(const abbe_photon_lights *views, size_t light) {
   const abbe_photon_light *state = &views->light[light];

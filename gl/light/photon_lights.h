@@ -1,5 +1,5 @@
 /* photon_lights.h: how each light looks: the near view of its photons and their grid, the map
- * around receivers; and the tables that tell shaders of it. A light with a cube has a view a face.
+ * around receivers; and their tables for shaders. A light with a cube has a view a face.
  * Internal to gl/.
  */
 #ifndef ABBE_GL_LIGHT_PHOTON_LIGHTS_H

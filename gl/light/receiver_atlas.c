@@ -50,7 +50,7 @@ static void write_index(const abbe_receiver_atlas *atlas, size_t light, size_t b
   }
 }
 
-/* The shaders' tables and what they are told of them: the same however many tiles a light has, so
+/* The shaders' tables and the definitions for them: the same however many tiles a light has, so
  * that what is compiled before these are chosen need not be compiled again. */
 static abbe_result tell_shaders(abbe_receiver_atlas *atlas, abbe_shader_variant *variant,
                                 abbe_error *error) {

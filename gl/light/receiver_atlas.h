@@ -1,5 +1,5 @@
 /* receiver_atlas.h: which lights have tiles, maps on receivers beside their own map, and where; the
- * tables that tell shaders. Internal to gl/.
+ * tables for shaders. Internal to gl/.
  */
 #ifndef ABBE_GL_LIGHT_RECEIVER_ATLAS_H
 #define ABBE_GL_LIGHT_RECEIVER_ATLAS_H
@@ -24,7 +24,7 @@ typedef struct abbe_receiver_atlas {
   GLuint table[ABBE_TILE_TABLES], texture[ABBE_TILE_TABLES];
 } abbe_receiver_atlas;
 
-/* Without tiles yet; where the plan asks for some, shaders of this variant can choose them. */
+/* Without tiles yet; where the plan needs some, shaders of this variant can choose them. */
 abbe_result abbe_receiver_atlas_make(const abbe_photon_lights *views, abbe_shader_variant *variant,
                                      abbe_receiver_atlas *out, abbe_error *error);
 void abbe_receiver_atlas_free(abbe_receiver_atlas *atlas);

@@ -1,4 +1,4 @@
-// Triangles of the scene, seen from the eye or from a light.
+// Triangles of the scene, seen from the camera or from a light.
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;

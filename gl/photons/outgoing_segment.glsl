@@ -37,7 +37,7 @@ struct Segment {
   vec3 n;             // normal of the interface, along its direction
   float passes;       // share that the interface lets through
   float arrives;      // flux before that, of unit power
-  bool transmits, far;  // far: place and interface tell its direction
+  bool transmits, far;  // far: place and interface define its direction
 };
 
 float transmission(bool transmits, float cosine, float index) {

@@ -17,7 +17,7 @@ void layers_hit(int r, vec3 p, vec3 d, out vec3 q, out vec3 n) {
 }
 #endif
 
-// What haze in the air leaves on the way to the refractor and from there along d from p.
+// What media in the air leave between the light and the refractor and from there along d from p.
 float outside_left(PhotonRay photon, vec3 p, vec3 d, ReceiverHit to) {
 #ifdef HAZE
   return air_left(photon, photon.o, photon.d, photon.front.t, true) * air_left(photon, p, d, length_to(to, p), false);
@@ -102,8 +102,7 @@ float most_left(InnerRay ray, Inside inside) {
 #endif
 }
 
-// Each hit is handed on with its slot; `entry` takes the shares of the light that go elsewhere. Loops have
-// two ways out, as in refraction_inner.glsl.
+// Each hit is handed on with its slot; `entry` takes the shares of the light that go elsewhere. Loops have two exits, as in refraction_inner.glsl.
 void trace(PhotonRay photon, out Shares entry[5]) {
   for (int k = 0; k < 5; k++) entry[k] = Shares(0.0);
   if (!photon.reached) return;

@@ -1,8 +1,7 @@
 // The path of a photon's light of one wavelength: from the light through refractors to receivers.
 // Every outgoing segment that still carries energy is followed, one hit each. Who includes this gives
-// `light`, `share_limit` and keep_hit(ray, hit). HAZE: with `keeps_ways` hits are not where light lands, but
-// its ways through what scatters, from interface to interface and beyond; in place of interface_word()
-// stands the refractor in which a way is, -1: the air.
+// `light`, `share_limit` and keep_hit(ray, hit). HAZE: with `keeps_ways` hits are not where light meets receivers, but its segments through what scatters, from interface to interface and beyond; in place of interface_word()
+// stands the refractor in which a segment is, -1: the air.
 
 #include "photon_tints.glsl"
 
@@ -114,7 +113,7 @@ uniform bool keeps_ways;
 // Extinction and scattering of the air, 1/m.
 vec2 air_haze(int i) { return spectra[REFRACTORS * counts.wavelengths + i].yz; }
 
-// What haze in the air leaves of light on its way, the first from a light or a later one.
+// What media in the air leave of light along a segment, the first from a light or a later one.
 float air_left(PhotonRay photon, vec3 p, vec3 d, float length_m, bool first) {
   bool from_afar = first && int(pass_light.position.w) == 2;
   return haze_left(p, d, from_afar ? -HAZE_FAR : 0.0, length_m, air_haze(photon.wavelength).x);
@@ -134,8 +133,8 @@ uint signature_of(uint path, ReceiverHit to, uint owner) {
 }
 
 #ifdef HAZE
-// The part of a way in the air, along d from p, that is in haze; hit: its slot, signature and depths, and the flux that
-// is left at its end.
+// The part of a segment in the air, along d from p, that is in a medium; hit: its slot, signature and depths, and the
+// flux that is left at its end.
 void keep_air_way(PhotonRay photon, vec3 p, vec3 d, float length_m, PhotonHit hit) {
   float first, way_m = haze_way(p, d, 0.0, length_m, first);
   hit.place = p + (first + way_m) * d;

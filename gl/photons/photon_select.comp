@@ -1,4 +1,4 @@
-// Lists the intervals between coarse wavelengths that ask for all wavelengths in them: where light would
+// Lists the intervals between coarse wavelengths that need all wavelengths in them: where light would
 // be laid wrong by more than what the map resolves of the photon, since its path ends between them or
 // bends more than the deposit follows, or where what it carries changes.
 layout(local_size_x = 256) in;
@@ -20,7 +20,7 @@ layout(std430, binding = BINDING_SIGNATURES) readonly buffer Signatures { Signat
 #include "pass_light.glsl"
 uniform ivec2 grid;
 uniform int map_size;
-uniform uint most_pairs;  // that the list has room for
+uniform uint most_pairs;  // capacity of the list
 
 uniform float interval_weight[PAIR_INTERVALS];  // weight of the light, by the intervals' mean
 
@@ -28,7 +28,7 @@ uniform float interval_weight[PAIR_INTERVALS];  // weight of the light, by the i
 const float MOST_WRONG = 0.05;
 
 // How far off the deposit's light is: of a node's distance from where its neighbours put it along a line,
-// with and without the node before; and of the stretch between two nodes of which no more is known.
+// with and without the node before; and of the interval between two nodes of which no more is known.
 const float OFF_CURVE = 0.1, OFF_LINE = 0.25, OFF_ALONE = 2e-3;
 
 #include "optics.glsl"
@@ -75,7 +75,7 @@ int reference_of(uint first) {
   return reference;
 }
 
-// What the map resolves of this photon, in texels: the shorter way to a neighbour's hit on the same path,
+// What the map resolves of this photon, in texels: the shorter distance to a neighbour's hit on the same path,
 // along either axis.
 float resolved(ivec2 cell, uint order, uint first, uint reference) {
   uint path = SIGNATURE(first + reference), at = HIT_TEXELS * (first + reference);
@@ -128,7 +128,7 @@ float wrong_between(Sample a, Sample b, float misplaced_by, float size, float ph
                     float weight) {
   float flux_a = a.flux, flux_b = b.flux, left = 1.0;
 #ifdef TINTS
-  // What is left of the halves between them, and, to tell what changes, of the same way through what tints.
+  // What is left of the halves between them, and, to find what changes, of the same path through what tints.
   int at_a = TINT_TEXELS * REFRACTORS * a.node, at_b = TINT_TEXELS * REFRACTORS * b.node;
   vec2 above = depth_of(a.tints, at_a, true), below = depth_of(b.tints, at_b, false);
   left = 0.5 * (left_after(above) + left_after(below));

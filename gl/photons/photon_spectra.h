@@ -1,6 +1,6 @@
 /* photon_spectra.h: the wavelengths that photons take, and the scene's tables of what lies between
  * them, on the device. A few wavelengths, the coarse set, are traced for every photon; all of them
- * where it asks for more. Internal to gl/.
+ * where it needs more. Internal to gl/.
  */
 #ifndef ABBE_GL_PHOTONS_PHOTON_SPECTRA_H
 #define ABBE_GL_PHOTONS_PHOTON_SPECTRA_H

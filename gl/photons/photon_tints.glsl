@@ -27,7 +27,7 @@ Attenuation attenuation_of(int r) {
 
 vec2 left_after(vec4 depth) { return vec2(left_after(depth.xy), left_after(depth.zw)); }
 
-// What a path has passed. Of what has no room there is nothing left to tell: it is taken off at once.
+// What a path has passed. What exceeds the capacity is not kept: it is taken off at once.
 struct Passed {
   Tints tints;
   vec4 depth;  // depth of the tints, in the parts of the band

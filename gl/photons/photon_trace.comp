@@ -39,8 +39,8 @@ uniform int ledger_first;  // wavelengths before this one are in the ledger alre
 // REFINED: all wavelengths of the intervals on the list, with both ends, which are of the coarse set.
 const int ALL = 0, COARSE = 1, REFINED = 2;
 uniform int set;
-uniform int hit_stride;     // samples that there is room for
-uniform uint most_pairs;    // intervals that the list has room for
+uniform int hit_stride;     // capacity for samples
+uniform uint most_pairs;    // capacity of the list of intervals
 uniform float share_limit;   // paths below this share of their light end
 uniform float ledger_unit;   // W
 

@@ -72,7 +72,7 @@ void end_path(PhotonRay photon, PathState w, ReceiverHit to, uint owner, inout u
 }
 
 #ifdef HAZE
-// w's way from an interface to what it meets next; ends: what that is, as a part of the way's signature.
+// w's segment from an interface to what it meets next; ends: what that is, as a part of the path's signature.
 void keep_way(PhotonRay photon, PathState w, float length_m, uint ends, uint owner, inout uint used) {
   bool in_air = w.inside == 0u;
   if (!in_air && (length_m >= 1e30 || spectra[medium_of(w.inside) * counts.wavelengths + wavelength].z <= 0.0)) return;

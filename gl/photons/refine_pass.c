@@ -40,7 +40,7 @@ abbe_result abbe_refine_pass_make_room(abbe_refine_pass *pass, abbe_error *error
   return result;
 }
 
-/* For all that a light's photons ask for. */
+/* For all that a light's photons need. */
 static abbe_result make_asked(abbe_refine_pass *pass, size_t pairs, abbe_error *error) {
   if (pass->asked != 0 && pairs <= pass->asked_room) return ABBE_OK;
   pass->asked_room = pairs;
@@ -78,7 +78,7 @@ abbe_result abbe_refine_pass_compile(abbe_refine_pass *pass, const abbe_shader_v
                                      &pass->select, error);
 }
 
-/* All intervals of the light's coarse set that ask. */
+/* All intervals of the light's coarse set that need more wavelengths. */
 static void select_pairs(abbe_refine_pass *pass, size_t light) {
   const abbe_trace_pass *trace = pass->trace;
   const abbe_gpu_scene *scene = trace->spectra->scene;
@@ -134,7 +134,7 @@ size_t abbe_refine_pass_chunks(const abbe_refine_pass *pass, size_t light) {
   return count > 0 ? (count + pass->pair_room - 1) / pass->pair_room : 0;
 }
 
-/* A chunk is a stretch of the list. */
+/* A chunk is a range of the list. */
 static void take_chunk(abbe_refine_pass *pass, size_t light, size_t chunk) {
   abbe_gpu *gpu = pass->trace->spectra->scene->gpu;
   const size_t first = chunk * pass->pair_room, left = pass->count[light] - first;

@@ -59,7 +59,7 @@ abbe_result abbe_trace_pass_make(abbe_photon_start *start, abbe_photon_spectra *
                           out->most_photons, plan->desc.exits, plan->desc.photons);
   size_t samples = choose_samples(out, room);
   abbe_result result = ABBE_OK;
-  /* No room to keep all of the coarse set: every photon takes all wavelengths, in batches. */
+  /* No capacity to keep all of the coarse set: every photon takes all wavelengths, in batches. */
   if (a_sample * spectra->nodes > room) result = abbe_photon_spectra_take_all(spectra, error);
   out->hits.stride = abbe_photon_spectra_refines(spectra) ? spectra->nodes
                      : samples < n                        ? samples

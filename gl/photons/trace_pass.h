@@ -13,7 +13,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Which wavelengths: some of all, those that every photon takes, those of intervals that ask. */
+/* Which wavelengths: some of all, those that every photon takes, those of intervals that need
+ * more. */
 typedef enum abbe_trace_set {
   ABBE_TRACE_ALL,
   ABBE_TRACE_COARSE,
@@ -24,7 +25,7 @@ typedef enum abbe_trace_set {
 typedef struct abbe_hits {
   GLuint hits, signatures; /* [stride] side by side */
   GLuint marks, paths;     /* [items][slots] that hit anywhere, and their list */
-  size_t stride;           /* wavelengths that have room */
+  size_t stride;           /* capacity for wavelengths */
 } abbe_hits;
 
 typedef struct abbe_trace_pass {
@@ -34,7 +35,7 @@ typedef struct abbe_trace_pass {
   abbe_photon_ledger *ledger;
   GLuint program, list_paths;
   abbe_hits hits;
-  size_t most_photons; /* that there is room for */
+  size_t most_photons; /* the capacity */
 } abbe_trace_pass;
 
 /* Decides for the photons that lights have now how many wavelengths a batch has, and whether every
@@ -43,7 +44,7 @@ abbe_result abbe_trace_pass_make(abbe_photon_start *start, abbe_photon_spectra *
                                  const abbe_receiver_atlas *atlas, abbe_photon_ledger *ledger,
                                  abbe_trace_pass *out, abbe_error *error);
 void abbe_trace_pass_free(abbe_trace_pass *pass);
-/* Room for the photons that lights have now, fewer than at first or as many. */
+/* Capacity for the photons that lights have now, fewer than at first or as many. */
 abbe_result abbe_trace_pass_make_room(abbe_trace_pass *pass, abbe_error *error);
 /* Also where the variant has changed. */
 abbe_result abbe_trace_pass_compile(abbe_trace_pass *pass, const abbe_shader_variant *variant,
@@ -57,8 +58,8 @@ void abbe_hits_free(abbe_gpu *gpu, abbe_hits *hits);
  * in the ledger already. */
 void abbe_trace_pass_batch(abbe_trace_pass *pass, size_t light, size_t first, size_t count,
                            size_t ledger_first);
-/* The same, but for hits their ways through media that scatter (photon_path.glsl), and no ledger.
- */
+/* The same, but for hits their segments through media that scatter (photon_path.glsl), and no
+ * ledger. */
 void abbe_trace_pass_ways(abbe_trace_pass *pass, size_t light, size_t first, size_t count);
 void abbe_trace_pass_coarse(abbe_trace_pass *pass, size_t light);
 

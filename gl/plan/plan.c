@@ -17,9 +17,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The plan's entries of a frame's passes, each with the fact that asks for it.
+/* The plan's entries of a frame's passes, each with the fact that needs it.
  *
- * Written when all facts are known; whether a pass runs is the table's to say
+ * Written when all facts are known; whether a pass runs is in the table
  * (gl/plan/facts/passes.h). */
 
 static const char unlit[] = "no light meets a refractor";

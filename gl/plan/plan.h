@@ -31,7 +31,7 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
 abbe_result abbe_plan_make_after(const abbe_plan *before, const abbe_scene *scene,
                                  const abbe_render_desc *desc, abbe_plan *out, abbe_error *error);
 
-/* A plan with all that is optional switched on, whether a fact asks for it or not.
+/* A plan with all that is optional switched on, whether a fact needs it or not.
  *
  * It is there to measure what the plan saves. The picture stays the same within sampling, so
  * models stay as planned: receivers by their depth, refractors by their triangles or in turn are

@@ -39,8 +39,8 @@ static double distance_to(const double p[3], const abbe_object *o) {
   return gap > 0 ? gap : fabs(abbe_object_distance(o, p));
 }
 
-/* Before all that is there, which reversed depths tell apart however far the scene reaches. Those
- * of the published methods do not. */
+/* Before all that is there, which reversed depths resolve however far the scene reaches. Those of
+ * the published methods do not. */
 static void come_near(const abbe_scene *scene, const abbe_render_desc *desc, abbe_view *view) {
   static const double least = 1e-7;
   double gap = INFINITY, min[3], max[3];

@@ -1,6 +1,5 @@
-/* gpu_scene.h: the scene on the device, as the plan asks for it: meshes, tables, triangles to be
- * traversed, shadows' planes. Every pass reads it as const. Internal to gl/.
- */
+/* gpu_scene.h: the scene on the device, as the plan needs it: meshes, tables, triangles to be
+ * traversed, shadows' planes. Every pass reads it as const. Internal to gl/. */
 #ifndef ABBE_GL_SCENE_GPU_SCENE_H
 #define ABBE_GL_SCENE_GPU_SCENE_H
 
@@ -65,7 +64,7 @@ abbe_result abbe_gpu_environment_cube(abbe_gpu *gpu, const abbe_radiance_cube *c
                                       const double matrix[9], GLuint *out, abbe_error *error);
 void abbe_gpu_environment_free(abbe_gpu *gpu, abbe_gpu_environment *environment);
 
-/* Into the program that is in use, where it asks for it. `unit`: W in one of the scene's lights. */
+/* Into the program that is in use, where it reads it. `unit`: W in one of the scene's lights. */
 void abbe_gpu_environment_set(abbe_gpu *gpu, const abbe_scene *scene,
                               const abbe_gpu_environment *environment, double unit, GLuint program);
 
@@ -93,7 +92,7 @@ typedef struct abbe_gpu_scene {
   double unit;             /* its lights are in so many W; the environment is in W */
   const abbe_plan *plan;
   const abbe_map_layout *map_layout; /* the plan's, in these coordinates; NULL: none is given */
-  abbe_receiver_charts charts;       /* where the plan has tiles, or pages of meshes */
+  abbe_receiver_charts charts;       /* where the plan has tiles, or pinhole tiles of meshes */
 
   double min[3], max[3], size; /* bounds of all objects, m, and their diagonal */
   double refractor_centre[3], refractor_radius;
@@ -161,7 +160,7 @@ void abbe_gpu_mesh_free(const abbe_gpu_scene *scene, abbe_gpu_mesh *mesh);
 void abbe_gpu_meshes_free(abbe_gpu_scene *scene);
 
 /* gpu_spectra.c: n, attenuation and bands of every refractor at all wavelengths, from the tables.
- * room: elements of a buffer that holds so many, so that tables of like size share programs. */
+ * Capacity: elements of a buffer that holds so many, so that tables of like size share programs. */
 size_t abbe_gpu_spectra_room(size_t count);
 abbe_result abbe_gpu_spectra_upload(abbe_gpu_scene *scene, abbe_error *error);
 
@@ -220,7 +219,7 @@ abbe_result abbe_bvh_nodes_pack(const abbe_bvh *hierarchy, const double (*triang
  * position, or for a directional one x itself. There are the planes of the outline and, if `faces`,
  * those of the lit faces: without them places between the solid and the light count as in shadow
  * too. One plane that holds for no place where the light is in front of no face, as for a light
- * inside. Room in out: twice `count`, and one. ABBE_NO_MEMORY; what is found is *found. */
+ * inside. Capacity of out: twice `count`, and one. ABBE_NO_MEMORY; what is found is *found. */
 abbe_result abbe_shadow_planes_make(const double (*plane)[4], size_t count, const double inside[3],
                                     const abbe_light *light, bool faces, double (*out)[4],
                                     size_t *found, abbe_error *error);

@@ -38,8 +38,8 @@ static bool turns_right(const side *a, const side *b, const side *c) {
   return u[0] * v[1] - u[1] * v[0] <= 1e-14 * size;
 }
 
-/* The hull's corners in order, its lower chain and then its upper one [Andrew1979]; hull has room
- * for two times `count`. */
+/* The hull's corners in order, its lower chain and then its upper one [Andrew1979]; hull has
+ * capacity for two times `count`. */
 static size_t keep_hull(side *all, size_t count, side *hull) {
   size_t n = 0;
   qsort(all, count, sizeof *all, by_place);

@@ -1,9 +1,9 @@
-/* receiver_tiles.h: maps on receivers, for light that the light's own map cannot hold: what lands
+/* receiver_tiles.h: maps on receivers, for light that the light's own map cannot hold: what falls
  * behind a point light, far off the map view's axis, or where a receiver hides the place.
  *
  * A chart is a parallelogram, or a part of a mesh within the parallelogram that bounds it
  * (scenes/mesh/mesh_charts.h). A tile is a window of one side of a chart and a rectangle of texels
- * for it, in one layer beside the light's map. This chooses tiles from where light landed and lays
+ * for it, in one layer beside the light's map. This chooses tiles from where light falls and lays
  * them out; it knows no GL. Internal to gl/.
  */
 #ifndef ABBE_GL_SCENE_RECEIVER_TILES_H
@@ -16,7 +16,7 @@
 #define ABBE_TILE_BINS 4096
 #define ABBE_TILE_FLOATS 16 /* floats of the shaders' Tile */
 
-/* What landed on one side of a chart, corner + u U + v V, and where: flux by u and by v, 0 to 1. */
+/* What hits one side of a chart, corner + u U + v V, and where: flux by u and by v, 0 to 1. */
 typedef struct abbe_tile_light {
   double flux;
   double bin[2][ABBE_TILE_BINS];

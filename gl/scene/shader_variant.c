@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* On a way of the camera through the grid of a medium. */
+/* Along a camera path through the grid of a medium. */
 enum { SHAFT_STEPS = 40 };
 
 void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *out) {
@@ -51,7 +51,7 @@ static void print_count(FILE *to, const char *name, size_t count) {
   fprintf(to, "#define %s %zu\n", name, count);
 }
 
-/* A block of none has room for one. */
+/* A block of none has capacity for one. */
 static void print_room(FILE *to, const char *name, size_t count) {
   print_count(to, name, count > 0 ? count : 1);
 }

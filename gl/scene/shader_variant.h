@@ -1,8 +1,8 @@
 /* shader_variant.h: what shaders are compiled for: counts and facts of the scene, which each pass
  * may copy and complete. Facts become #defines, and so do counts that size an array. The others
  * become uniforms of the program (shaders/counts.glsl), so that it serves other counts too; of
- * some, a range is told as well: the room of tables and stacks, whether exits are many. Internal to
- * gl/.
+ * some, a range is defined as well: the capacity of tables and stacks, whether exits are many.
+ * Internal to gl/.
  */
 #ifndef ABBE_GL_SCENE_SHADER_VARIANT_H
 #define ABBE_GL_SCENE_SHADER_VARIANT_H
@@ -60,7 +60,8 @@ typedef struct abbe_shader_variant {
   size_t pixel_threads; /* threads of a pixel (refraction_threads.glsl) */
   /* the map */
   size_t map_levels;
-  size_t tiles, tile_blocks, chart_sides; /* tiles: room for those of a light; 0: none has any */
+  size_t tiles, tile_blocks,
+      chart_sides; /* tiles: capacity for those of a light; 0: none has any */
   /* photons; hit_stride 0: the program follows none */
   size_t hit_stride, steps, nodes;
   bool bridge, doubts_bridges;

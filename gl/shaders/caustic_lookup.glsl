@@ -3,7 +3,7 @@
 const float MOST_TAPS = 4.0;
 
 // The mean of a layer over what lies between `at` and the neighbouring samples, `a` and `b` away: taps
-// along the longer way, in a level whose texels are half as wide as the shorter one; of nothing outside
+// along the longer axis, in a level whose texels are half as wide as the shorter one; of nothing outside
 // rect: left, bottom, right, top, which the filter keeps to where that is the `whole` layer. All in parts
 // of the layer.
 vec3 layer_mean(int layer, vec2 at, vec2 a, vec2 b, vec4 rect, const bool whole) {
@@ -21,8 +21,8 @@ vec3 layer_mean(int layer, vec2 at, vec2 a, vec2 b, vec4 rect, const bool whole)
     low = min(rect.xy + rim, middle);
     high = max(rect.zw - rim, middle);
   }
-  // No compiler can tell how often this turns, and so unroll it: a software rasteriser takes every tap of
-  // an unrolled loop for all lanes, and of this one only as many as some lane wants.
+  // No compiler knows how often this turns, and so unrolls it: a software rasteriser takes every tap of an unrolled
+  // loop for all lanes, and of this one only as many as some lane wants.
   vec3 sum = vec3(0);
   float tap = 1.0 / taps, k = 0.5 * tap;
   do {
@@ -49,8 +49,7 @@ bool takes_refracted(vec3 n, float facing, vec3 p) {
 #endif
 }
 
-// How far it is in a map to where the neighbouring samples are: PLACE(p) is where p is. SEEN_BY_PIXELS: as
-// neighbouring fragments tell. SEEN_BY_AREAS: as the area of the receiver tells for which p stands.
+// How far it is in a map to where the neighbouring samples are: PLACE(p) is where p is. SEEN_BY_PIXELS: from neighbouring fragments. SEEN_BY_AREAS: from the area of the receiver for which p stands.
 #if defined(SEEN_BY_PIXELS)
 #define STEP_RIGHT(PLACE, at) dFdx(at)
 #define STEP_ABOVE(PLACE, at) dFdy(at)

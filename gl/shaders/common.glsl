@@ -42,7 +42,7 @@ const int MODEL_LAYERS = 2;
 const int MODEL_HIERARCHY = 3;
 
 // Tables of the scene. They are uniform blocks wherever they fit: a software rasteriser reads
-// those far faster than storage. ROOM: at least one element, whatever the count.
+// those far faster than storage. ROOM: the capacity, at least one element, whatever the count.
 layout(std140, binding = BINDING_LIGHTS) uniform Lights { Light lights[LIGHT_ROOM]; };
 layout(std140, binding = BINDING_REFRACTORS) uniform Refractors { Refractor refractors[REFRACTOR_ROOM]; };
 #ifdef PLANES_IN_STORAGE

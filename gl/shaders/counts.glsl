@@ -7,8 +7,8 @@ struct Counts {
   int bands, band_levels;  // for a refractor: bands of all levels together, and levels (bands_wanted.glsl)
   int eye_bands;           // so many of these a pixel takes at the most
   int exits;               // interfaces that a path inside a refractor meets at the most
-  int slots;               // hits that a photon has room for at a wavelength
-  int hit_stride;          // wavelengths for which a photon's hits have room
+  int slots;               // capacity for a photon's hits at a wavelength
+  int hit_stride;          // wavelengths for which a photon's hits have capacity
   int nodes;               // wavelengths that every photon takes (photon_nodes.glsl)
   int map_levels;          // levels of detail of the spectral map
   int tile_blocks;         // blocks of the layer of a light's tiles, a side (receiver_atlas.glsl)

@@ -1,4 +1,4 @@
-// Snell and Fresnel; the float twins of spectral/optics.c, and as careful. eta = n_i / n_t.
+// Snell and Fresnel; the float versions of spectral/optics.c, and as careful. eta = n_i / n_t.
 
 // Square of the cosine of refraction, (1 - eta^2) + (eta cos_i)^2 = 1 - (eta sin_i)^2, by the form
 // whose terms are smaller; 0 or less at and beyond the critical angle.

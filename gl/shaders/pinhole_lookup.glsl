@@ -1,4 +1,4 @@
-// What pinholes change of the soft light on receivers: rgb irradiance, a page for each side of each
+// What pinholes change of the soft light on receivers: rgb irradiance, a tile for each side of each
 // chart; PINHOLE_CHARTS: some are parts of meshes.
 #include "pinhole_map.glsl"
 uniform sampler2DArray pinhole_pages;

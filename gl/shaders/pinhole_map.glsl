@@ -1,4 +1,4 @@
-// Where a place of a parallelogram is on its page: texels are even as wide as the refractors' bounds in
+// Where a place of a parallelogram is on its tile: texels are even as wide as the refractors' bounds in
 // front of it, and grow with the distance beyond.
 
 // Along one axis: the bounds' middle, and their half width, in parts of the edge.

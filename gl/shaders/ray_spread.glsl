@@ -1,4 +1,4 @@
-// How the ray of a picture's sample differs from its neighbours' on the way [Igehy1999], to first order: what
+// How the ray of a picture's sample differs from its neighbours' along the path [Igehy1999], to first order: what
 // a sample stands for when it comes to what is around. Normals turn as a surface is bent: as a sphere's, not
 // at all on facets, and as they are interpolated over a triangle.
 

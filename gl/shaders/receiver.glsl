@@ -80,7 +80,7 @@ void light_irradiance(int light, vec3 p, vec3 n, int side, out vec3 direct, out 
 #ifdef CAUSTICS
   vec3 uvz;
   bool held = project(l.map_view, p, uvz) && inside(uvz.xy);
-  // Before any pixel of the four goes its own way.
+  // Before any pixel of the four takes its own branch.
   vec2 at = warp(light, uvz.xy);
   vec2 to_right = STEP_RIGHT(PLACE_ON_MAP, at), to_above = STEP_ABOVE(PLACE_ON_MAP, at);
 #ifdef TILES

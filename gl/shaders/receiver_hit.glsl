@@ -70,7 +70,7 @@ vec3 receiver_normal(int receiver) {
 }
 
 #ifdef CHART_SIDES
-// The side of a receiver's chart at which light of direction d arrives, as tiles and pages are found by it.
+// The side of a receiver's chart at which light of direction d arrives; tiles are found by it.
 int chart_side(int receiver, vec3 d) {
   int chart = receiver;
 #ifdef RECEIVER_HIERARCHY

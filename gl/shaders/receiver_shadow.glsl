@@ -66,7 +66,7 @@ bool exact_shadow(int light, vec3 p, vec3 d, float distance_m) {
 #endif
 }
 
-// Share of direct light that no refractor takes away on its way to p.
+// Share of direct light that no refractor takes away before p.
 float refractor_shadow(int light, vec3 p, vec3 d, float distance_m) {
   if (LIGHT(light).misc.w == 0.0) return 1.0;
   if (exact_shadow(light, p, d, distance_m)) return 0.0;

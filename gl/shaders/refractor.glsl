@@ -13,8 +13,8 @@ struct Hit {
 };
 
 #ifdef SPHERES
-// What of the ray lies in the sphere: from `middle` on it half its length each way; across: from the centre
-// to there.
+// What of the ray lies in the sphere: from `middle` on it half its length to either side; across: from the centre to
+// there.
 bool sphere_chord(vec4 s, vec3 o, vec3 d, out vec3 across, out float middle, out float half_length) {
   vec3 oc = o - s.xyz;
   float b = dot(oc, d);
@@ -55,7 +55,7 @@ void enter_plane(int i, vec4 plane, vec3 o, vec3 d, inout float enter, inout flo
   leave = beside ? -1.0 : out_ ? min(leave, t) : leave;
 }
 
-// From within the solid, on its facet `from`: how much of the way to the plane is done in a metre, and
+// From within the solid, on its facet `from`: how much of the distance to the plane is done in a metre, and
 // the plane for which that is most. No ray has that much of a plane that it goes away from.
 void leave_plane(int i, vec4 plane, int from, vec3 p, vec3 d, inout float most, inout int facet) {
   float rate = dot(plane.xyz, d) / max(plane.w - dot(plane.xyz, p), 1e-30);

@@ -312,8 +312,7 @@ bool split(inout PathState w, Interface h, out PathState mirrored) {
 }
 
 #ifdef ROUGH
-// Rough mirrors on paths of receivers and of the camera. A path goes on by one facet, which lobe_u chooses; of
-// lamps it shows what the lobe makes of their light (rough_lamps.glsl). Who includes this sets lobe_u and
+// Rough mirrors on paths of receivers and of the camera. A path goes on by one facet, which lobe_u chooses; of lights it shows what the lobe makes of their light (rough_lamps.glsl). Who includes this sets lobe_u and
 // lobe_ways and clears lobe_width before a path.
 
 const int LOBE_WAYS = 8;
@@ -330,12 +329,12 @@ float lobe_ways;   // that are taken off a mirror
 
 bool is_rough(int r) { return rough_facets[r].x > 0.0; }
 
-// The way of number k, of LOBE_WAYS; `shift` is of the place: multiples of generalised golden ratios [Roberts2018].
+// The direction of number k, of LOBE_WAYS; `shift` is of the place: multiples of generalised golden ratios [Roberts2018].
 vec2 lobe_way(int k, float shift) {
   return fract(vec2(0.7548776662, 0.5698402910) * float(k) + vec2(0.5, 0.25) + vec2(shift, 0.6180339887 * shift));
 }
 
-// That of a number among all that ask.
+// That of a number among all that need one.
 vec2 lobe_way_of(uint number) { return vec2(uvec2(3242174889u, 2447445414u) * number >> 8) * exp2(-24.0); }
 
 // Where light comes to a rough mirror: x along the grooves, y across; wo: back along it, in x, y and n.
@@ -358,7 +357,7 @@ RoughHit rough_hit(PathState w, Interface h) {
   return RoughHit(x, y, n, wo, face_n, rough_facets[r].xy);
 }
 
-// One way on; returns the share that is not reflected.
+// One branch goes on; returns the share that is not reflected.
 float scatter_off(inout PathState w, Interface h) {
   RoughHit m = rough_hit(w, h);
   vec3 facet, wi;

@@ -7,7 +7,7 @@ enum {
           1 << ABBE_FILL_GATHER_EYE | 1 << ABBE_FILL_GATHER_LIGHT
 };
 
-/* What a method as printed and its twin in units have in common. */
+/* What a method as printed and its profile in units have in common. */
 #define THESIS                                                                                     \
   .called = "the thesis", .own_passes = true, .lamp = true, .fills = SMEARS,                       \
   .fill = ABBE_FILL_SMEAR, .photons = 512

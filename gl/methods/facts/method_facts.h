@@ -1,10 +1,10 @@
 /* method_facts.h: the methods of caustics that Abbe draws by, each with what it does otherwise than
- * Abbe's own and what it takes where a request leaves it open. Whoever asks what a method knows
- * asks here; nobody outside gl/methods tests which one it is. It makes nothing.
+ * Abbe's own and what it takes where a request leaves it open. What a method knows is found here
+ * nobody outside gl/methods tests which one it is. It makes nothing.
  *
- * A published method goes by its own constants, and its twin (-cie) by the default profile's
+ * A published method goes by its own constants, and its profile in units (-cie) by the default profile's
  * wavelengths, CIE weights, indices, Fresnel's law and units. wyman2003 looks caustics up in a
- * printed volume; all else is the default profile's, as is its twin: the transport 'volume'.
+ * printed volume; all else is the default profile's, as is its counterpart: the transport 'volume'.
  */
 #ifndef ABBE_GL_METHODS_FACTS_METHOD_FACTS_H
 #define ABBE_GL_METHODS_FACTS_METHOD_FACTS_H
@@ -102,7 +102,7 @@ typedef struct abbe_method_facts {
   bool own_passes;        /* it is published, with passes of its own: all in images, of one light */
   bool printed;           /* by its own constants: display brightness, no units */
   bool reflects_spectra;  /* receivers reflect spectra, not colours of the working space */
-  bool presets;           /* presets and choices by error or time may ask for it */
+  bool presets;           /* presets and choices by error or time may use it */
   bool lamp, directional; /* own passes look from one light; that may be a parallel one */
   bool surroundings;      /* its light is an environment's alone, all of it through pinholes */
   bool mirrors, materials; /* it knows mirrors; several materials */

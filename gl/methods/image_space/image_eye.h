@@ -1,5 +1,5 @@
 /* image_eye.h: the camera's passes of the published methods that sum a caustic map: receivers lit
- * by lamp, shadow and map, and what is seen in refractors and mirrors. Internal to gl/.
+ * by light, shadow and map, and what is seen in refractors and mirrors. Internal to gl/.
  */
 #ifndef ABBE_GL_IMAGE_SPACE_IMAGE_EYE_H
 #define ABBE_GL_IMAGE_SPACE_IMAGE_EYE_H

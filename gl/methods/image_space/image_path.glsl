@@ -6,7 +6,7 @@
 struct Ray {
   vec3 o, r;
   float share;   // share of its light
-  float inside;  // attenuation along its way, 1/m: of what follows, where light stays in the refractor
+  float inside;  // attenuation along its path, 1/m: of what follows, where light stays in the refractor
   float n;       // index of what it goes on in: 1 is air
   bool total;    // it was totally reflected at the back, and goes on in the mirror direction
 };

@@ -28,7 +28,7 @@ typedef struct abbe_image_cube {
 void abbe_image_cube_one(const abbe_view *view, abbe_image_cube *out);
 /* The cube around the scene's first light, a point or a spot. A face's map has `side` texels a
  * side, of which it shares `border` at each edge with its neighbours; 2 border < side. Objects are
- * seen through one view where that is at most 57 degrees off its middle, unless `whole` asks for
+ * seen through one view where that is at most 57 degrees off its middle, unless `whole` requires
  * six. */
 void abbe_image_cube_make(const abbe_gpu_scene *scene, size_t side, size_t border, bool whole,
                           abbe_image_cube *out);

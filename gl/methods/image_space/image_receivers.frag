@@ -1,6 +1,6 @@
-// Receivers: a lamp with a shadow map, and a caustic map that the light projects. AS_PRINTED: caustic colour,
+// Receivers: a light with a shadow map, and a caustic map that the light projects. AS_PRINTED: caustic colour,
 // with diffuse shading and shadow beside it; else in units, as receiver.glsl has them. CAUSTIC_RATIOS: the map
-// holds what the caustic's light is of the lamp's, by the window's area; with CAUSTICS_SEEN in the camera's pixels
+// holds what the caustic's light is of the light's, by the window's area; with CAUSTICS_SEEN in the camera's pixels
 // instead of the light's, or with CAUSTICS_WHOLE the ratio itself.
 // LIT_CUBE: the light's maps are the faces of a cube around it.
 #include "view.glsl"
@@ -31,7 +31,7 @@ uniform vec3 texture_info;  // layer or -1, repeats
 layout(location = 0) out vec4 radiance;
 #ifndef AS_PRINTED
 uniform mat3 rgb_from_xyz;
-uniform vec3 white;     // XYZ of the lamp's light
+uniform vec3 white;     // XYZ of the light
 uniform float power;    // W/sr or W/m2
 uniform float ambient;  // W/m2
 const float PI = 3.14159265358979;
@@ -42,7 +42,7 @@ const float SCENE_AMBIENT = 0.1;
 uniform vec4 camera_view[6];
 uniform sampler2D caustic_directions;  // sums of what arrives by direction, in the map's unit
 
-// The caustic's irradiance by what the lamp gives what faces it there: of a unit of the map.
+// The caustic's irradiance, relative to what the light gives what faces it there: of a unit of the map.
 float caustic_scale(View light, vec3 n, vec3 along) {
   float facing = abs(dot(n, along));
 #if defined(CAUSTICS_WHOLE)
@@ -64,7 +64,7 @@ vec4 caustic_texel(sampler2D map, vec2 uv) {
 #endif
 }
 
-// As printed: the lamp's shading, along the light's own direction or that of photons.
+// As printed: the light's shading, along the light's own direction or that of photons.
 vec3 shaded_caustic(View light, vec3 n, vec3 along, vec2 uv) {
   vec3 sum = caustic_texel(caustic_map, uv).rgb * caustic_scale(light, n, along);
 #ifdef DIRECTIONS

@@ -212,7 +212,7 @@ abbe_result abbe_image_view_read_map(const abbe_gpu_scene *scene, GLuint map,
   if (data == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");
   gl->BindTexture(GL_TEXTURE_2D, map);
   gl->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, data);
-  /* The passes sum the light of a lamp of unit power. */
+  /* The passes sum the light of a light of unit power. */
   abbe_result result =
       in_units(scene)
           ? abbe_map_picture_flux(data, side, layout, scene->local->light[0].power, out, error)

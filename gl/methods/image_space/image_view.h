@@ -1,5 +1,5 @@
 /* image_view.h: what the published methods share, as all of them work in images: the light's
- * frustum, matrices, the lamp, a pass over a whole image, reading. Internal to gl/.
+ * frustum, matrices, the light, a pass over a whole image, reading. Internal to gl/.
  */
 #ifndef ABBE_GL_IMAGE_SPACE_IMAGE_VIEW_H
 #define ABBE_GL_IMAGE_SPACE_IMAGE_VIEW_H
@@ -35,14 +35,14 @@ void abbe_image_view_set_view(const abbe_gpu_scene *scene, GLuint program, const
 /* The same of one of several views that follow one another. */
 void abbe_image_view_set_face(const abbe_gpu_scene *scene, GLuint program, const char *name,
                               size_t face, const abbe_view *view);
-/* spot, spot_inner and spot_colour: the lamp, white in Rec.709 at full strength, with a cone along
+/* spot, spot_inner and spot_colour: the light, white in Rec.709 at full strength, with a cone along
  * the direction; a point light's reaches everywhere. */
 void abbe_image_view_set_lamp(const abbe_gpu_scene *scene, GLuint program,
                               const double direction[3]);
 /* reflectance and texture_info of a receiver of the plan; *layer: of textures, the next. */
 void abbe_image_view_set_surface(const abbe_gpu_scene *scene, GLuint program, size_t receiver,
                                  int *layer);
-/* What only physical units ask for: rgb_from_xyz, xyz_from_rgb, forward, white, power, ambient. */
+/* What only physical units need: rgb_from_xyz, xyz_from_rgb, forward, white, power, ambient. */
 void abbe_image_view_set_units(const abbe_gpu_scene *scene, GLuint program, const abbe_view *light);
 
 /* A triangle over all of the target; layer: of an array, -1: of none. */
@@ -56,7 +56,7 @@ abbe_result abbe_image_view_read_map(const abbe_gpu_scene *scene, GLuint map,
                                      const abbe_map_layout *layout, abbe_image *out,
                                      abbe_error *error);
 
-/* What programs of the published methods are told of the request: definitions, and the colours of
+/* What programs of the published methods get of the request: definitions, and the colours of
  * wavelengths. */
 
 /* WAVELENGTHS, INTERFACES, AS_PRINTED and the estimators' numbers; the characters that are used. */

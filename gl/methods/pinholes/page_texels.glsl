@@ -1,4 +1,4 @@
-// A page's texels, and those of them that are still to be filled.
+// A tile's texels, and those of them that are still to be filled.
 // rgb; the next node of the tree that a texel takes, 0: it has not begun, DONE: none.
 layout(rgba32f, binding = 0) uniform image2DArray pages;
 const float DONE = -1.0;

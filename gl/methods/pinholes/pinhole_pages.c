@@ -249,7 +249,7 @@ static abbe_result make_sky(const abbe_gpu_scene *scene, abbe_pinhole_sky *out, 
   return result;
 }
 
-/* Texels a side; of many pages as many as there is room for. */
+/* Texels a side; of many tiles as many as memory allows. */
 static size_t side_of(const abbe_render_desc *d, size_t pages) {
   size_t side = d->map_size / MAP_TEXELS;
   while (side > LEAST_SIDE && side * side * pages > MOST_TEXELS) side /= 2;
@@ -328,7 +328,7 @@ static bool sees_refractors(const abbe_gpu_scene *scene, const double p[9], bool
   return (back ? -1 : 1) * abbe_vector_dot(n, to) > -scene->refractor_radius;
 }
 
-/* Lists those of a page's texels, `stride` apart, that no others tell, in texels[0]. */
+/* Lists those of a tile's texels, `stride` apart, that do not follow from others, in texels[0]. */
 static void select_texels(abbe_pinhole_pages *pages, size_t page, size_t stride,
                           const int first[2]) {
   abbe_gpu *gpu = pages->scene->gpu;
@@ -358,7 +358,7 @@ static void sort_texels(abbe_pinhole_pages *pages, GLuint list, size_t count) {
   gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, ABBE_GPU_LIST_HEADER, bytes, pages->order);
 }
 
-/* A part of a page's texels, until each has taken all that it asks for. */
+/* Fills a part of a tile's texels, until each has taken all that it needs. */
 static abbe_result fill_texels(abbe_pinhole_pages *pages, size_t page, size_t stride,
                                const int first[2], abbe_error *error) {
   abbe_gpu *gpu = pages->scene->gpu;
@@ -392,7 +392,7 @@ static abbe_result fill_page(abbe_pinhole_pages *pages, size_t page, abbe_error 
   return result;
 }
 
-/* The pages' charts, as the shaders count them: parallelograms before parts of meshes. What
+/* The tiles' charts, as the shaders count them: parallelograms before parts of meshes. What
  * encloses a space is not seen from inside. */
 static abbe_result fill_pages(abbe_pinhole_pages *pages, abbe_error *error) {
   const abbe_gpu_scene *scene = pages->scene;

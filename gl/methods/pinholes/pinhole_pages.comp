@@ -1,4 +1,4 @@
-// A page of a receiver's side: what mirrors and refractors change there of the light of surroundings that
+// A tile of a receiver's side: what mirrors and refractors change there of the light of surroundings that
 // nothing hides. A texel looks through each sample that it sees: light goes on from there by all interfaces, off
 // mirrors and through refractors, until it is outside, where it comes from the surroundings, or at a receiver,
 // which is dark; and what it would have seen were nothing there is taken away. So light that is alike all around
@@ -43,7 +43,7 @@ vec3 widened(vec3 a, vec3 other, float wide) {
   return is >= wide ? a : is > 1e-6 ? a * (wide / is) : other * wide;
 }
 
-// Where a texel is and which way it faces.
+// Where a texel is and in which direction it faces.
 void place_of(ivec2 at, ivec2 size, out vec3 p, out vec3 n) {
   float side = page % 2 == 0 ? 1.0 : -1.0;
 #ifdef PINHOLE_CHARTS
@@ -117,7 +117,7 @@ void begin_pinhole(vec3 p, vec3 n, int number) {
   begin_way();
 }
 
-// What the way has shown, and what is left of it as if it had.
+// What the path has shown, and what is left of it as if it had.
 void end_way() {
   for (int k = 0; k < PENDING; k++) left += left_of(pending[k]);
   left += left_of(w);
@@ -141,8 +141,8 @@ void begin_footprint(vec3 p, vec3 d, float far, out vec3 a, out vec3 b) {
 }
 
 #ifdef ROUGH
-// A sample of a rough mirror shows the surroundings by some of the lobe's ways, each as wide as the share that
-// it stands for: the more, the more it weighs. For lamps the lobe is as much wider as the sample is.
+// A sample of a rough mirror shows the surroundings by some of the lobe's directions, each as wide as the share that
+// it stands for: the more, the more it weighs. For lights the lobe is as much wider as the sample is.
 void begin_rough(float far) {
   w_first = w;
   h_first = h;
@@ -170,7 +170,7 @@ vec2 lamp_facets(RoughHit m) {
   return sqrt(m.facets * m.facets + by * by);
 }
 
-// The first lamp from number i on that the lobe shows where nothing is between.
+// The first light from number i on that the lobe shows where nothing is between.
 void find_lamp(int i) {
   RoughHit m = rough_hit(w, h);
   vec2 facets = lamp_facets(m);

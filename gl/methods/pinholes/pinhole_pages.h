@@ -14,7 +14,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Charts of receivers that are meshes, for the pages of what pinholes show: where each texel of a
+/* Charts of receivers that are meshes, for the tiles of what pinholes show: where each texel of a
  * chart lies on its mesh, and how shaders find a place's chart and texel again. */
 
 typedef struct abbe_page_charts {
@@ -37,9 +37,9 @@ typedef struct abbe_pinhole_pages {
   abbe_pinhole_samples samples;
   abbe_pinhole_sky sky;
   abbe_page_charts charts; /* where the plan has them */
-  size_t side, count;      /* texels of a page; pages: two a chart (gl/scene/gpu_scene.h) */
-  GLuint texels[2];        /* lists: of a page's, those that are filled, and that ask for more */
-  uint32_t *order;         /* [side * side] room to sort one of them */
+  size_t side, count;      /* texels of a tile; tiles: two a chart (gl/scene/gpu_scene.h) */
+  GLuint texels[2];        /* lists: of a tile's, those that are filled, and that need more */
+  uint32_t *order;         /* [side * side] space to sort one of them */
   GLuint select, fill;     /* programs */
   bool filled;             /* they hold the light as it is now */
   GLuint texture;          /* irradiance, W/m2, working space; an array */

@@ -116,7 +116,7 @@ static void store_sample(const abbe_surface_samples *s, const abbe_surface_curva
 }
 
 /* Whole numbers stand as floats, which count so far. Of a sheet that is seen from both sides no
- * normal turns away; a cluster that holds some is told as if all were. */
+ * normal turns away; a cluster that holds some counts as if all were. */
 static void store_node(const abbe_sample_node *node, bool two_sides, row *out) {
   abbe_float4_store(node->at.position, node->area, out[0]);
   abbe_float4_store(node->at.normal, node->radius, out[1]);

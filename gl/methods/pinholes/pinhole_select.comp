@@ -1,5 +1,5 @@
-// Lists the texels of a page that are to be filled: every `stride`th. One in the midst of others that are, and
-// lie on a smooth line, takes what lies between them.
+// Lists the texels of a tile that are to be filled: every `stride`th. One in the midst of others that are, and lie on
+// a smooth line, takes what lies between them.
 layout(local_size_x = 32, local_size_y = 16) in;
 #include "thread.glsl"
 #include "pinhole_sky.glsl"
@@ -28,7 +28,7 @@ vec3 open_light() {
   return 0.5235987756 * sum;
 }
 
-// Whether others that are taken already tell it. first.x, first.y: half a stride off their rows, columns.
+// Whether it follows from others that are taken already. first.x, first.y: half a stride off their rows, columns.
 bool is_between(ivec2 at, out vec3 light) {
   vec3 other;
   ivec2 along = first.x > 0 && first.y > 0 ? first : first.x > 0 ? ivec2(first.x, 0) : ivec2(0, first.y);

@@ -1,6 +1,6 @@
-// A lamp as a rough mirror shows it where nothing is between.
+// A light as a rough mirror shows it where nothing is between.
 struct LampRay {
-  PathState ray;  // to the lamp, with what the mirror leaves of its light
+  PathState ray;  // to the light, with what the mirror leaves of its light
   float distance_m, e;  // e: that of its white, in the lights' units; 0: nothing
   vec3 shown;           // radiance, of what the mirror reflects of it
 };
@@ -25,7 +25,7 @@ LampRay lobe_shows_lamp(int i, RoughHit m, vec2 facets, PathState w, Interface h
 }
 
 #ifndef ASKS_FOR_LAMPS
-// What a rough mirror shows of lamps that it sees straight: XYZ of what the band has of it, in the lights' units. wider: by how much each facet's slopes are spread besides, along the grooves and across, as by
+// What a rough mirror shows of lights that it sees straight: XYZ of what the band has of it, in the lights' units. wider: by how much each facet's slopes are spread besides, along the grooves and across, as by
 // what the path stands for.
 vec3 lobe_shows(PathState w, Interface h, vec2 wider) {
   RoughHit m = rough_hit(w, h);

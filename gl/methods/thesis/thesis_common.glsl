@@ -1,5 +1,5 @@
 // The thesis's own shading functions [Blanchette2012], kept as they are described there: view space
-// of the light or the eye, depths unprojected from the depth buffer, the brightness factors of its
+// of the light or the camera, depths unprojected from the depth buffer, the brightness factors of its
 // appendix. window is left, right, bottom, top on the plane at distance 1; planes is
 // near * far, far - near, far.
 uniform mat4 projection;

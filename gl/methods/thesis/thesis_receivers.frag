@@ -19,7 +19,7 @@ layout(location = 0) out vec4 radiance;
 #ifdef CIE
 uniform mat3 rgb_from_xyz;
 uniform vec3 forward;   // axis of the light's view
-uniform vec3 white;     // XYZ of the lamp's light
+uniform vec3 white;     // XYZ of the light
 uniform float power;    // W/sr
 uniform float ambient;  // W/m2
 const float PI = 3.14159265358979;

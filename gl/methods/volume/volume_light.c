@@ -46,7 +46,7 @@ static size_t count_levels(size_t side) {
   return levels;
 }
 
-/* The two maps of a page, level by level; half: room for a quarter of a map. */
+/* The two maps of a tile, level by level; half: space for a quarter of a map. */
 static void hand_over_page(const float (*value)[4], size_t side, size_t layer, float (*half)[4],
                            const abbe_gl *gl) {
   float(*level[2])[4] = {half, half + side * side / 4};
@@ -72,7 +72,7 @@ static bool hand_over(const abbe_volume_pages *v, size_t light, const abbe_exit_
   memcpy(v->window + light * v->count, pages->window, v->count * sizeof *v->window);
   gl->BindTexture(GL_TEXTURE_2D_ARRAY, v->texture);
   for (size_t i = 0; i < v->count; i++)
-    if (pages->window[i][2] > 0) /* else the shader asks for none */
+    if (pages->window[i][2] > 0) /* else the shader reads none */
       hand_over_page((const float(*)[4])pages->value + 2 * i * texels, pages->side,
                      2 * (light * v->count + i), half, gl);
   free(half);

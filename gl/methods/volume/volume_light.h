@@ -14,7 +14,7 @@
 typedef struct abbe_volume_pages {
   const abbe_gpu_scene *scene; /* NULL: the plan has none */
   size_t count;                /* for a light */
-  GLuint texture;              /* two layers a page: whole and window */
+  GLuint texture;              /* two layers a tile: whole and window */
   float (*window)[4];          /* [lights][count] */
 } abbe_volume_pages;
 
@@ -46,7 +46,7 @@ typedef struct abbe_volume_light {
 abbe_result abbe_volume_light_make(const abbe_gpu_scene *scene, abbe_volume_light *out,
                                    abbe_error *error);
 void abbe_volume_light_free(abbe_volume_light *volume);
-/* Bound, and told to the program that is in use; without a volume nothing is done. */
+/* Bound, and set in the program that is in use; without a volume nothing is done. */
 void abbe_volume_light_set(const abbe_volume_light *volume, GLuint program);
 
 #endif

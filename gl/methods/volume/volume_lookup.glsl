@@ -140,7 +140,7 @@ vec3 volume_irradiance(int light, vec3 p, vec3 n) {
     flux += (volume_weight[k] * reach * reach) *
             (transpose(volume_turn[k]) * volume_flux(volume_block(k), volume_turn[k] * (q * reach)));
   }
-  // What stands on the way that most of it comes.
+  // What stands in the direction that most of it comes from.
   float bright = length(flux[1]), far = length(q);
   vec3 towards = -flux[1] / max(bright, 1e-30);
 #ifdef RECEIVER_SHADOWS

@@ -9,7 +9,7 @@ in vec2 surface_uv;
 uniform vec3 eye, ambient, reflectance;
 uniform vec3 texture_info;  // layer or -1, repeats
 uniform sampler2DArray surface_texture;
-layout(location = 0) out vec4 radiance;  // w: distance from the eye
+layout(location = 0) out vec4 radiance;  // w: distance from the camera
 
 void main() {
   vec3 n = normalize(world_normal);

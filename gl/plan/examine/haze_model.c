@@ -22,7 +22,7 @@ static double absorption_at(const region *r, double nm) {
          (r->object != NULL ? abbe_material_attenuation(r->object->material, nm) : 0);
 }
 
-/* Means by what eyes see, of a band or of all. */
+/* Means by what the observer sees, of a band or of all. */
 static void mean_over(const region *r, const abbe_weights_range *range, double from_nm,
                       double to_nm, double *scattering, double *absorption) {
   const double step = (to_nm - from_nm) / STEPS;

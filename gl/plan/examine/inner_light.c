@@ -31,7 +31,7 @@ void abbe_path_limits_choose(const abbe_scene *scene, const abbe_render_desc *as
       abbe_plan_no_refraction(plan) == NULL)
     abbe_number_format(inside, sizeof inside, "; %.2g %% of it is still inside then",
                        100 * abbe_inner_light_plan(scene, asked, plan));
-  /* Layers show less and less of what is inside; and who asks for few exits sees them. A smaller
+  /* Layers show less and less of what is inside; and a request for few exits shows them. A smaller
    * share brings multi-refractor paths nothing that what is left does not show. */
   const bool few = asked != NULL && asked->exits > 0 && asked->exits < ABBE_PLAN_EXITS;
   const bool eye_goes_on = !thesis && !plan->layers && !few;
@@ -159,8 +159,8 @@ size_t abbe_inner_light_exits(const abbe_inner_light *inside, size_t least, size
   return exits;
 }
 
-/* The worst of what the scene's lights keep inside, in every entry; else what the eye sees there.
- */
+/* The worst of what the scene's lights keep inside, in every entry; else what the camera sees
+ * there. */
 static void follow_all(const abbe_scene *scene, const abbe_plan *plan, abbe_inner_light *out) {
   static const double up[3] = {0, 0, 1};
   const abbe_object *object = &scene->object[plan->refractor_object[0]];

@@ -1,6 +1,6 @@
 /* inner_light.h: how much light a convex faceted solid keeps inside, exit by exit.
  *
- * Rays of a grid over the solid, as a light sends them or the eye, followed in double precision at
+ * Rays of a grid over the solid, from a light or from the camera, followed in double precision at
  * one wavelength by Snell's and Fresnel's laws. No receivers, no colours, nothing random: the same
  * scene gives the same figures. The plan takes exits by them; no picture is made of them.
  * Internal to gl/.
@@ -42,17 +42,17 @@ bool abbe_inner_light_follow(const abbe_exact *solid, const abbe_view *view,
 size_t abbe_inner_light_exits(const abbe_inner_light *inside, size_t least, size_t most);
 
 /* Exits and the share at which paths end, written into plan->desc, for the plan's one refractor, a
- * convex solid that light leaves for good; what was asked for stays (NULL: nothing was). By the
- * light that keeps most inside or, where no light meets the solid, by the eye; at the middle of the
- * wavelengths. Returns the share of the light that is then still inside. */
+ * convex solid that light leaves for good; what was requested stays (NULL: nothing was). By the
+ * light that keeps most inside or, where no light meets the solid, by the camera; at the middle of
+ * the wavelengths. Returns the share of the light that is then still inside. */
 double abbe_inner_light_plan(const abbe_scene *scene, const abbe_render_desc *asked,
                              abbe_plan *plan);
 
-/* How far light is followed through refractors, from a light and from the eye. */
+/* How far light is followed through refractors, from a light and from the camera. */
 
-/* Exits at the most, the share of its light at which a path ends, both of the eye's rays, and how
- * many hits of a photon there is room for. asked: the request as it came, or NULL. The
- * wavelengths are counted. */
+/* Exits at the most, the share of its light at which a path ends, both of the camera's rays, and
+ * the capacity for hits of a photon. asked: the request as it came, or NULL. The wavelengths are
+ * counted. */
 void abbe_path_limits_choose(const abbe_scene *scene, const abbe_render_desc *asked,
                              abbe_plan *plan);
 

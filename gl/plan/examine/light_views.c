@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/* What reaches no further into a pyramid than a float can tell lies outside. */
+/* What reaches no further into a pyramid than a float resolves lies outside. */
 static const double rounding = 1e-7;
 
 static const double quarter = 0.78539816339744831; /* pi / 4 */
@@ -183,7 +183,7 @@ static void find_aside(const abbe_scene *scene, abbe_plan *plan, abbe_view *view
   }
 }
 
-/* What a mesh is inside is told by its layers, which no seam may cut. */
+/* What a mesh is inside is read from its layers, which no seam may cut. */
 static abbe_result check_layers(const abbe_scene *scene, const abbe_plan *plan,
                                 const abbe_light *light, int face, size_t refractor,
                                 abbe_error *error) {

@@ -1,6 +1,5 @@
-/* light_views.h: from where refractors are seen: which lights and the eye meet them, in how many
- * views. Internal to gl/.
- */
+/* light_views.h: from where refractors are seen: which lights and whether the camera meet them, in
+ * how many views. Internal to gl/. */
 #ifndef ABBE_GL_PLAN_EXAMINE_LIGHT_VIEWS_H
 #define ABBE_GL_PLAN_EXAMINE_LIGHT_VIEWS_H
 
@@ -11,8 +10,8 @@
 
 #include <stdbool.h>
 
-/* Which lights and whether the eye may meet a refractor; what none of them meets takes no light and
- * costs nothing. */
+/* Which lights and whether the camera may meet a refractor; what none of them meets takes no light
+ * and costs nothing. */
 void abbe_light_views_reach(const abbe_scene *scene, abbe_plan *plan);
 
 /* A view of each light around all refractors or, where none holds them, views through the faces of
@@ -42,8 +41,9 @@ int abbe_light_cube_face(const double direction[3]);
 /* An empty view from origin along the face's axis. */
 void abbe_light_cube_look(const double origin[3], int face, abbe_view *out);
 
-/* Grows the window of a view made by abbe_light_cube_look around the part of the object that lies in
- * the face's pyramid; never beyond -1 to 1. False, and nothing done, where it has no part there. */
+/* Grows the window of a view made by abbe_light_cube_look around the part of the object that lies
+ * in the face's pyramid; never beyond -1 to 1. False, and nothing done, where it has no part there.
+ */
 bool abbe_light_cube_fit(abbe_view *view, const abbe_object *object);
 
 /* Faces through which the light may reach the object, a bit each; what stands in between is not

@@ -5,7 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-/* A parallelogram's corners, one more for each side of the light's window and one for the eye. */
+/* A parallelogram's corners, one more for each side of the light's window and one for the
+ * camera. */
 enum { MAX_CORNERS = 12 };
 
 /* Share of a window's width: shaders round where they look up what it holds. */

@@ -1,6 +1,6 @@
 /* lit_window.h: the part of the picture in which a light may fall on a receiver.
  *
- * A narrow lamp leaves most of a picture dark, and there no shader need ask for it. This bounds
+ * A narrow light leaves most of a picture dark, and there no shader needs it. This bounds
  * what a view of the light holds of a parallelogram by a rectangle of the picture; what hides it
  * from either is not looked at. Internal to gl/.
  */
@@ -20,7 +20,7 @@
  * may reach everything. Near and far are not set. */
 bool abbe_lit_window_cone(const abbe_light *light, abbe_view *out);
 
-/* The rectangle around those of width x height pixels of the eye's window that show something of
+/* The rectangle around those of width x height pixels of the camera's window that show something of
  * the parallelogram (corner, U, V) within the window of the light's view: left, bottom, right, top;
  * right and top excluded. Two pixels wider on every side. False where there are none. */
 bool abbe_lit_window(const abbe_view *light, const abbe_view *eye, const double parallelogram[9],

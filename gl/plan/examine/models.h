@@ -10,9 +10,10 @@
 #include "gl/plan/facts/plan_facts.h"
 #include "scenes/scene.h"
 
-/* Lists the scene's refractors in the plan, each with its model, and what their materials ask of
- * the wavelengths. ABBE_UNSUPPORTED, by the object's name, where a model that is asked for cannot
- * serve it, or for more than 255 of them; ABBE_OUT_OF_RANGE for an index that is not known. */
+/* Lists the scene's refractors in the plan, each with its model, and what their materials require
+ * of the wavelengths. ABBE_UNSUPPORTED, by the object's name, where a model that is requested
+ * cannot serve it, or for more than 255 of them; ABBE_OUT_OF_RANGE for an index that is not known.
+ */
 abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan,
                                         abbe_error *error);
 
@@ -20,19 +21,19 @@ abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan
 void abbe_refractor_model_note(const abbe_scene *scene, abbe_plan *plan);
 
 /* What the renderer makes of media that scatter: one number each for all wavelengths in the air
- * and around the eye, and what it leaves out. */
+ * and around the camera, and what it leaves out. */
 
 /* Fills the plan's facts; of a scene without haze nothing. */
 void abbe_haze_model_choose(const abbe_scene *scene, abbe_plan *plan);
 /* Its entry and notes, when all other facts are known. */
 void abbe_haze_model_note(const abbe_scene *scene, abbe_plan *plan);
 
-/* How light and the eye meet receivers, and whether one may hide another. */
+/* How light and the camera meet receivers, and whether one may hide another. */
 
-/* Parallelograms as they come, as many as there is room for; triangles of all others. */
+/* Parallelograms as they come, up to the capacity; triangles of all others. */
 void abbe_receiver_model_choose(const abbe_scene *scene, abbe_plan *plan);
 
-/* Receivers that bound a convex room with the lights inside cannot shadow one another. */
+/* Receivers that bound a convex space with the lights inside cannot shadow one another. */
 void abbe_receiver_model_shadows(const abbe_scene *scene, abbe_plan *plan);
 
 /* Whether what it reflects varies over wavelength: that of a texture may. */

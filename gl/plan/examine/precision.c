@@ -7,7 +7,7 @@
 #include <math.h>
 
 /* A float keeps 2^-24 of a distance. A refractor's shape is safe at 2^16 times its radius, where
- * that is a part in 256 of it; its front and back are told apart at 2^20 times its thickness. */
+ * that is a part in 256 of it; its front and back are separate at 2^20 times its thickness. */
 static const double most_radii = 65536, most_thicknesses = 1048576;
 
 static abbe_result check_distance(const abbe_scene *scene, const abbe_light *light,
@@ -88,7 +88,7 @@ static abbe_result check_one_view(const abbe_scene *scene, const abbe_plan *plan
   return result;
 }
 
-/* Floats know the way from the light to a surface to 2^-24 of the surface's own size. */
+/* Floats know the distance from the light to a surface to 2^-24 of the surface's own size. */
 static abbe_result check_gap(const abbe_light *light, const abbe_object *object,
                              abbe_error *error) {
   static const double least_gap = 1.0 / 4096;

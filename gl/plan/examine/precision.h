@@ -1,8 +1,8 @@
 /* precision.h: whether single precision and the photon grid resolve a scene's refractors.
  *
  * Shaders compute in floats, and photons are the cells of a grid. A refractor that is lost in
- * either would be drawn wrong or by chance; it is refused with what would be right. Nothing is
- * said of receivers. Internal to gl/.
+ * either would be drawn wrong or by chance; it is refused with what would be right. Receivers are
+ * not judged. Internal to gl/.
  */
 #ifndef ABBE_GL_PLAN_EXAMINE_PRECISION_H
 #define ABBE_GL_PLAN_EXAMINE_PRECISION_H

@@ -1,4 +1,4 @@
-/* reach.h: what light, a look of the eye or another object may meet, to judge by bounds.
+/* reach.h: what light, a view ray or another object may meet, to judge by bounds.
  *
  * Judged by the object's bounds, and never wrongly no: what stands in between is not looked at.
  * Internal to gl/.
@@ -21,7 +21,7 @@ bool abbe_reach_light(const abbe_light *light, const abbe_object *object);
 bool abbe_reach_through(const abbe_light *light, const abbe_object *object,
                         const abbe_object *behind);
 
-/* False where the box around the object is behind the eye or beside a picture of width x height
+/* False where the box around the object is behind the camera or beside a picture of width x height
  * pixels and one pixel more all round. */
 bool abbe_reach_eye(const abbe_camera *camera, size_t width, size_t height,
                     const abbe_object *object);

@@ -86,7 +86,7 @@ static abbe_result check_asked(const abbe_object *object, const abbe_plan *plan,
   return ABBE_OK;
 }
 
-/* Whether nothing looks at a ball from inside: no light and no eye stands there. */
+/* Whether nothing looks at a ball from inside: no light and no camera stands there. */
 static bool is_seen_from_outside(const abbe_scene *scene, const abbe_object *ball) {
   bool outside = abbe_object_distance(ball, scene->camera.eye) > 0;
   for (size_t i = 0; i < scene->light_count; i++)
@@ -117,7 +117,7 @@ static abbe_refractor_model model_of(const abbe_object *object, const abbe_plan 
 static void write_reason(const abbe_object *object, const abbe_plan *plan, char *text,
                          size_t size) {
   const char *model = abbe_refractor_model_name(model_of(object, plan));
-  const char *because, *joint = NULL; /* before what the mesh itself tells */
+  const char *because, *joint = NULL; /* before what the mesh itself shows */
   char why[128], only[64];
   abbe_convex_reason(&object->exact.convex, why, sizeof why);
   if (abbe_method_of(plan->desc.profile)->own_passes) {
@@ -142,7 +142,7 @@ static void write_reason(const abbe_object *object, const abbe_plan *plan, char 
   snprintf(text, size, "%s: %s%s%s", model, because, tells ? joint : "", tells ? why : "");
 }
 
-/* Refractors beyond those that the plan has room for are counted. */
+/* Refractors beyond the plan's capacity are counted. */
 static void list_model(abbe_plan *plan, size_t object, const char *name, const char *reason,
                        size_t *unlisted) {
   if (plan->entry_count < MAX_LISTED)
@@ -265,7 +265,7 @@ abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan
   return ABBE_OK;
 }
 
-/* Whether lamps' light may come to a rough mirror by another surface: off rough ones samples and
+/* Whether light of lights may come to a rough mirror by another surface: off rough ones samples and
  * the camera follow it. */
 static bool smooth_besides_rough(const abbe_scene *scene, const abbe_plan *plan) {
   size_t rough = 0;

@@ -1,8 +1,7 @@
-/* spectral_needs.h: what index, attenuation and light over the wavelengths ask of the plan.
+/* spectral_needs.h: what index, attenuation and light over the wavelengths require of the plan.
  *
  * What varies, how many wavelengths that takes, and what is extrapolated or taken for one.
- * Internal to gl/.
- */
+ * Internal to gl/. */
 #ifndef ABBE_GL_PLAN_EXAMINE_SPECTRAL_NEEDS_H
 #define ABBE_GL_PLAN_EXAMINE_SPECTRAL_NEEDS_H
 
@@ -29,7 +28,7 @@ void abbe_spectral_needs_count(abbe_plan *plan);
 void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan);
 
 /* What refractors and mirrors take of light by wavelength, as photons' hits keep it: of each of
- * the first stuffs on a path how much it passed, which tells the rest at all wavelengths.
+ * the first stuffs on a path how much it passed, which gives the rest at all wavelengths.
  *
  * An amount is a path inside, m, or of a mirror one for each reflection straight on; attenuation
  * is optical depth by amount. */

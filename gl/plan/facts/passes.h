@@ -1,7 +1,7 @@
 /* passes.h: the passes of a frame, and what its plan settles beside them: ids, texts, conditions.
  *
  * The one table of them. The plan lists its entries by it, the timer and the statistics count by
- * it; nothing tells a pass by its text. It runs nothing. Internal to gl/.
+ * it; nothing identifies a pass by its text. It runs nothing. Internal to gl/.
  */
 #ifndef ABBE_GL_PLAN_FACTS_PASSES_H
 #define ABBE_GL_PLAN_FACTS_PASSES_H

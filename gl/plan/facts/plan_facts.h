@@ -107,9 +107,9 @@ typedef struct abbe_plan {
   bool caustics;                       /* some light may meet one */
   bool volume;                         /* one may, and its caustics are looked up: no photons */
   size_t volume_pages; /* in maps on receivers: two a parallelogram; 0: in cells around it */
-  const abbe_object *around_eye; /* the scene's first refractor that the eye is inside of; NULL:
+  const abbe_object *around_eye; /* the scene's first refractor that the camera is inside of; NULL:
                                     none; while the plan is made */
-  unsigned eye_inside;           /* bit r: the eye is inside refractor r */
+  unsigned eye_inside;           /* bit r: the camera is inside refractor r */
   bool camera_sees_refractor;    /* the camera may */
   /* Light is followed from interface to interface of all refractors: what leaves one may meet one
    * again, or a receiver inside; or one is a mirror; or the BVH was asked for. Without this no
@@ -127,7 +127,7 @@ typedef struct abbe_plan {
   bool haze_beyond;   /* the camera may see the air's haze by a bent or mirrored ray */
   size_t shaft_count; /* media with light of photons that such rays may run through */
   abbe_plan_shaft shaft[ABBE_PLAN_MOST_SHAFTS];
-  size_t unseen_media; /* more of them, of which the plan has no room */
+  size_t unseen_media; /* more of them, beyond the plan's capacity */
 
   /* The scene's lights, and after them the views that cubes have more than one of. */
   size_t light_view_count;
@@ -171,8 +171,8 @@ typedef struct abbe_plan {
 
 void abbe_plan_free(abbe_plan *plan);
 
-/* How many wavelengths every photon is traced at. Where its hits ask for more it takes more, up to
- * all the plan's. */
+/* How many wavelengths every photon is traced at. Where its hits need more it takes more, up to all
+ * the plan's. */
 size_t abbe_plan_least_wavelengths(const abbe_plan *plan);
 /* Why nothing refracts, as a sentence's part, or NULL. */
 const char *abbe_plan_no_refraction(const abbe_plan *plan);
@@ -183,7 +183,7 @@ const char *abbe_receiver_model_name(abbe_receiver_model model);
 bool abbe_plan_runs(const abbe_plan *plan, abbe_plan_item item, size_t index);
 
 /* Adds an entry that runs or does not by its condition, with its reason; one about an object or a
- * light by its index and name; or a note. More than there is room for are left out. */
+ * light by its index and name; or a note. More than the capacity are left out. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif

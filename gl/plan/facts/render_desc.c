@@ -65,8 +65,8 @@ static void fill_in_defaults(size_t width, size_t height, abbe_render_desc *d) {
   if (d->photons == 0) d->photons = ABBE_PLAN_PHOTONS;
   if (d->map_size == 0) d->map_size = ABBE_PLAN_MAP;
   if (d->upsample == 0) d->upsample = 1;
-  /* Between far samples lies what their neighbours tell: rays over a sample's own area are no help.
-   */
+  /* Between far samples their neighbours show what lies there: rays over a sample's own area are no
+   * help. */
   const bool one = m->own_passes || d->upsample > 1;
   if (d->supersample == 0) d->supersample = one ? 1 : ABBE_PLAN_SAMPLES;
   if (d->adaptive == 0) d->adaptive = one ? 1 : ABBE_PLAN_ADAPTIVE;
@@ -213,7 +213,7 @@ static abbe_result check_published(const abbe_render_desc *d, abbe_error *error)
   return check_drawn_photons(d, error);
 }
 
-/* What goes with a volume, and what asks for one. */
+/* What goes with a volume, and what needs one. */
 static abbe_result check_volume(const abbe_render_desc *d, abbe_error *error) {
   const bool asked = d->transport == ABBE_TRANSPORT_VOLUME;
   const bool printed = abbe_method_of(d->profile)->printed_volume;

@@ -1,7 +1,7 @@
-/* render_desc.h: what a caller asks of the renderer: the request, its limits, defaults and names.
+/* render_desc.h: what a caller requests of the renderer: the request, its limits, defaults and
+ * names.
  *
- * It knows no scene: what a request leaves open and only a scene can tell is the plan's to say.
- */
+ * It knows no scene: what a request leaves open and only a scene decides is the plan's. */
 #ifndef ABBE_GL_PLAN_FACTS_RENDER_DESC_H
 #define ABBE_GL_PLAN_FACTS_RENDER_DESC_H
 
@@ -15,7 +15,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* How light is followed through refractors. AUTO: by the scene; the others ask for one model for
+/* How light is followed through refractors. AUTO: by the scene; the others require one model for
  * all refractors. */
 #define ABBE_MODELS(X)                                                                             \
   X(AUTO, "auto")                                                                                  \
@@ -28,7 +28,7 @@ typedef enum abbe_model {
 } abbe_model;
 
 /* For pictures of what moves, and for whose sake they are coarser: nobody's, the camera's, or
- * light's too. Views of refractors, which tell what each shows of them and, by layers, what is
+ * light's too. Views of refractors, which show what each holds of them and, by layers, what is
  * behind, are drawn of fewer triangles where meshes have many. The camera takes fewer wavelengths
  * of a pixel, and its paths end after ABBE_COARSE_EXITS exits or below ABBE_COARSE_SHARE of their
  * light. Beams of refracted light in haze are left out, but for those in media that have a grid of
@@ -159,8 +159,8 @@ typedef struct abbe_render_desc {
   bool aovs;                     /* keep direct and caustic light of the receivers apart as well */
   abbe_render_progress progress; /* while the renderer is made: photons are traced once to fit */
   void *progress_user;
-  /* Told once, with progress_user, when the driver compiles shaders that it does not know: it takes
-   * seconds, the first time on a machine. May be NULL. */
+  /* Called once, with progress_user, when the driver compiles shaders that it does not know: it
+   * takes seconds, the first time on a machine. May be NULL. */
   void (*compiling)(void *user);
 } abbe_render_desc;
 
@@ -172,7 +172,7 @@ size_t abbe_render_desc_eye_wavelengths(const abbe_render_desc *desc);
 void abbe_render_desc_take_pinholes(abbe_render_desc *desc);
 
 /* The request with its defaults filled in, for a picture of width x height pixels unless it says
- * otherwise; what the scene has to tell stays 0: wavelengths and exits. desc may be NULL.
+ * otherwise; what the scene decides stays 0: wavelengths and exits. desc may be NULL.
  * ABBE_INVALID_ARGUMENT, with a sentence, for what is outside the limits above. */
 abbe_result abbe_render_desc_resolve(const abbe_render_desc *desc, size_t width, size_t height,
                                      abbe_render_desc *out, abbe_error *error);

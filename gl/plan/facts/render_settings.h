@@ -20,7 +20,7 @@ typedef struct abbe_render_setting {
   abbe_setting_kind kind;
   size_t offset;        /* in abbe_render_desc */
   double least, most;   /* limits of a count or number; a request may have 0: the default */
-  bool stays_open;      /* a request that is resolved may still have 0: the scene tells */
+  bool stays_open;      /* a request that is resolved may still have 0: the scene decides */
   bool of_methods;      /* only published methods, pinholes or volumes take it */
   const char *what;     /* in sentences; NULL: its reader checks it */
   const char *default_; /* default of the option, as its help shows it; NULL: none */

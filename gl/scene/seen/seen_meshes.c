@@ -92,7 +92,7 @@ typedef struct cutter {
   const abbe_view *view;
   abbe_mesh *out;
   uint32_t *face_of;
-  size_t vertices, faces; /* there is room for */
+  size_t vertices, faces; /* the capacity */
 } cutter;
 
 static double depth_of(const abbe_view *view, const double p[3]) {

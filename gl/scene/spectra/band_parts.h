@@ -31,7 +31,8 @@ typedef struct abbe_band_steps {
   double (*mean)[ABBE_BAND_PARTS]; /* [surfaces] of parts while they are found */
 } abbe_band_steps;
 
-/* Room for so many steps of the plan's surfaces. ABBE_NO_MEMORY; abbe_band_steps_free also then. */
+/* Makes steps for so many of the plan's surfaces. ABBE_NO_MEMORY; abbe_band_steps_free also
+ * then. */
 abbe_result abbe_band_steps_make(const abbe_scene *scene, const abbe_plan *plan, size_t count,
                                  abbe_band_steps *out, abbe_error *error);
 void abbe_band_steps_free(abbe_band_steps *steps);

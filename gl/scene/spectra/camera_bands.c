@@ -51,7 +51,7 @@ typedef struct band_set {
   double (*weight)[3];         /* [wavelengths] X, Y, Z, each of a sum of 1 */
   double (*colour)[9];         /* [wavelengths] XYZ of a colour's RGB */
   double rgb_from_xyz[9];
-  bool lifts;   /* else colours are not told apart */
+  bool lifts;   /* else colours are not separated */
   size_t *step; /* [wavelengths + 1] */
   abbe_band_steps steps;
   double *share;       /* [steps] of a band that is made */

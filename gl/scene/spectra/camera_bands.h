@@ -30,7 +30,7 @@ enum { ABBE_PART_TEXELS = 2, ABBE_PART_LIGHT_TEXELS = 6 };
 
 /* Bands of a set for so many wavelengths, all levels together; *levels: so many. */
 size_t abbe_camera_bands_count(size_t wavelengths, size_t *levels);
-/* Texels of all colours, and of all parts where the plan asks for these. */
+/* Texels of all colours, and of all parts where the plan needs these. */
 size_t abbe_camera_bands_texels(const abbe_plan *plan);
 
 /* So many wavelengths that bands are joined first, and come back where they differ. */

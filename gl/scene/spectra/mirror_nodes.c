@@ -50,8 +50,8 @@ static double weight_of(const abbe_weights_range *light, double from_nm, double 
          1e-4 * (to_nm - from_nm) / (light->max_nm - light->min_nm);
 }
 
-/* The polygon through all nodes that is nearest to the metal's reflectance; room for 3 numbers a
- * node, zeroed. */
+/* The polygon through all nodes that is nearest to the metal's reflectance; capacity for 3 numbers
+ * a node, zeroed. */
 static void fit(const abbe_material *metal, const abbe_wavelengths *w,
                 const abbe_weights_range *light, double *room, double *corner) {
   double *beside = room, *middle = room + w->count, *right = room + 2 * w->count;

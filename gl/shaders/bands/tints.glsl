@@ -15,7 +15,7 @@ Tints no_tints() {
   return t;
 }
 
-// False where there is no room.
+// False where the capacity is used up.
 bool add_tint(inout Tints t, int of, float amount) {
   bool added = of < 0;
   for (int k = 0; k < TINTS; k++) {

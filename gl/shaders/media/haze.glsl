@@ -1,16 +1,15 @@
-// Haze: what it leaves of light on its way, and how it turns it. The air's fills a box; around an eye that is
-// in water its own is all around.
+// Haze: what it leaves of light along a path, and how it turns it. The air's fills a box; around a camera that is in water its own is all around.
 const float HAZE_FAR = 1e9;  // beyond every box, m
 uniform vec3 haze_low, haze_high;  // box of the air's medium, m
 uniform float haze_air_g;          // mean cosine
 // The medium that the camera is in, which may be the air.
 uniform float haze_g;
-// By bands of the spectrum: what the air takes, what it scatters, and what the medium around the eye takes, 1/m;
+// By bands of the spectrum: what the air takes, what it scatters, and what the medium around the camera takes, 1/m;
 // rgb of each light of unit power in them, and last of the scene's illuminant.
 uniform vec4 haze_bands[HAZE_BANDS];
 uniform vec3 haze_white[(LIGHTS + 1) * HAZE_BANDS];
 
-// Metres of the part [from, to] of the way o + t d in the air's haze; where it begins.
+// Metres of the part [from, to] of the ray o + t d in the air's medium; where it begins.
 float haze_way(vec3 o, vec3 d, float from, float to, out float first) {
   vec3 slope = 1.0 / mix(d, vec3(1e-20), equal(d, vec3(0)));
   vec3 a = (haze_low - o) * slope, b = (haze_high - o) * slope;
@@ -39,8 +38,7 @@ vec3 haze_scattered(int light, float metres) {
   return sum;
 }
 
-// What is left of white light that is seen through so many metres, of each of red, green and blue: of the medium around
-// the eye, and of the air.
+// What is left of white light that is seen through so many metres, of each of red, green and blue: of the medium around the camera, and of the air.
 vec3 haze_tint(float metres, bool of_eye) {
   vec3 left = vec3(0), all = vec3(0);
   for (int k = 0; k < HAZE_BANDS; k++) {

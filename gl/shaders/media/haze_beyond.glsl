@@ -2,7 +2,7 @@
 const int STEPS_ALONG = 16;
 #include "lamp_haze.glsl"
 
-float haze_begun;       // metres of it before, on the eye's own way
+float haze_begun;       // metres of it before, on the camera's own path
 vec3 haze_begun_tint;  // what these leave of white: the pass that lays haze over the picture takes it off
 
 void begin_haze(vec3 o, vec3 d, float length_m) {
@@ -13,7 +13,7 @@ void begin_haze(vec3 o, vec3 d, float length_m) {
 
 vec3 haze_behind(float metres) { return haze_air_tint(metres) / haze_begun_tint; }
 
-// What it scatters on the way of length_m from p; metres of it before, and then behind.
+// What it scatters along length_m from p; metres of it before, and then behind.
 vec3 haze_beyond(vec3 p, vec3 d, float length_m, inout float metres) {
   float first, way = haze_way(p, d, 0.0, length_m, first), before = metres;
   vec3 sum = vec3(0);

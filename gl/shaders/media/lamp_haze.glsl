@@ -1,4 +1,4 @@
-// The light that a lamp sends straight to a ray through the air's haze, by STEPS_ALONG places on it; with the shadows of
+// The light that a light sends straight to a ray through the air's haze, by STEPS_ALONG places on it; with the shadows of
 // refractor.glsl and receiver.glsl.
 
 // Where [from, to] of the ray is in the spot's cone; empty: from >= to (as validation's own is found, by the
@@ -22,7 +22,7 @@ vec2 cone_part(Light l, vec3 o, vec3 d, float from, float to) {
   return part;
 }
 
-// Place k of so many, and how much of the way it stands for: by equal angles about a lamp that is near.
+// Place k of so many, and how much of the path it stands for: by equal angles about a light that is near.
 vec2 place_along(Light l, vec3 o, vec3 d, vec2 part, int k) {
   float u = (float(k) + 0.5) / float(STEPS_ALONG);
   if (int(l.position.w) == 2)
@@ -34,7 +34,7 @@ vec2 place_along(Light l, vec3 o, vec3 d, vec2 part, int k) {
   return vec2(middle + off, (b - a) * (height * height + off * off) / (height * float(STEPS_ALONG)));
 }
 
-// What haze scatters on [from, to] of a ray, all of it in the air's, of what a lamp sends straight there; seen through so
+// What haze scatters on [from, to] of a ray, all of it in the air's, of what a light sends straight there; seen through so
 // many metres more.
 vec3 lamp_light(int light, vec3 o, vec3 d, float from, float to, float more_m) {
   Light l = LIGHT(light);
