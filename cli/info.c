@@ -15,7 +15,7 @@ typedef struct request {
   bool json;
 } request;
 
-/* Of one channel; min, max and mean over its finite samples, NaN where there is none. */
+/* Statistics of one channel; min, max and mean over its finite samples, NaN where there is none. */
 typedef struct statistics {
   double min, max, mean;
   size_t nan, inf;

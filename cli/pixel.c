@@ -27,8 +27,8 @@ typedef struct abbe_colour_description {
   double kelvin, duv;     /* correlated colour temperature (colour_temperature.h) */
 } abbe_colour_description;
 
-/* Of XYZ as that observer sees it, with respect to a white of chromaticity white_xy. A correlated
- * colour temperature is defined for the observer of 1931 alone. */
+/* Describes XYZ as that observer sees it, with respect to a white of chromaticity white_xy. A
+ * correlated colour temperature is defined for the observer of 1931 alone. */
 static void colour_description_make(const double xyz[3], const double white_xy[2],
                                     abbe_observer observer, abbe_colour_description *out) {
   *out = (abbe_colour_description){.xyz = {xyz[0], xyz[1], xyz[2]},

@@ -23,7 +23,7 @@ typedef struct request {
   abbe_scene_input_changes changes;
   abbe_volume_fill_desc desc;
   abbe_work_options work;
-  double radii; /* of the region, in the object's; 0: 3 */
+  double radii; /* radii of the region, in the object's; 0: 3 */
   bool json, quiet;
 } request;
 

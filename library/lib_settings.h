@@ -41,7 +41,7 @@ typedef struct abbe_lib_setting {
 
 enum { ABBE_LIB_SETTINGS_MOST = 64 }; /* rows of a table */
 
-/* Of several texts with one key the last one counts. `what` names the request in sentences. text
+/* Among several texts with one key the last one counts. `what` names the request in sentences. text
  * may be NULL where count is 0. ABBE_INVALID_ARGUMENT, with the nearest key or the range, for a key
  * or value that is none. */
 abbe_result abbe_library_settings_read(const char *what, const abbe_lib_setting *known,

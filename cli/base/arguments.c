@@ -146,7 +146,7 @@ void abbe_arguments_add(const char *program, unsigned flags, const char *what, c
 
 /* ---- options ---- */
 
-/* Of the command and the parts that it is made of. */
+/* Limit for the command and the parts that it is made of. */
 enum { MAX_OPTIONS = 160 };
 typedef struct option_list {
   const struct argp_option *option[MAX_OPTIONS];

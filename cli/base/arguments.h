@@ -53,7 +53,7 @@ error_t abbe_arguments_one_file(int key, char *text, const char **path, struct a
 
 struct abbe_verbs;
 
-/* Of one command or verb: the table and the flags of its arguments (arguments.h); or, of a command
+/* The table and the flags of the arguments of one command or verb (arguments.h); or, of a command
  * with verbs, those, which follow one by one. */
 typedef struct abbe_option_table {
   const char *program, *summary; /* "abbe gem report" */

@@ -86,7 +86,7 @@ const char *abbe_command_target(const char *program, const char *option, const c
 void abbe_command_size(const char *program, const char *option, const char *text, size_t most,
                        size_t *width, size_t *height);
 
-/* Of work that several processes share: "2/8" is the third of eight parts. */
+/* A part of work that several processes share: "2/8" is the third of eight parts. */
 typedef struct abbe_command_part {
   size_t part, parts; /* parts 0: all of the work is one process's */
 } abbe_command_part;
@@ -132,9 +132,9 @@ typedef struct abbe_verb {
 typedef struct abbe_verbs {
   const abbe_verb *verb;
   size_t count;
-  const char *const *example; /* of arguments behind the command's name */
+  const char *const *example; /* arguments behind the command's name */
   size_t examples;
-  const char *page; /* of the documentation, as a sentence's end */
+  const char *page; /* page of the documentation, as a sentence's end */
 } abbe_verbs;
 
 /* Runs the verb that argv[1] names, or prints help; the program's exit code. argv[0] is "abbe

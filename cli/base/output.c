@@ -14,7 +14,7 @@ enum { BLOCK = 1024, LETTER = 4 };
 typedef struct side {
   FILE *raw, *shown;
   char held[LETTER];
-  size_t count; /* of held */
+  size_t count; /* entries held */
 } side;
 
 static side sides[2];

@@ -34,7 +34,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
-/* Of the stone, where one is asked for. */
+/* The stone's note, where one is wanted. */
 static const char *note_of(const abbe_gem_input *in, char *text, size_t size) {
   const double density = abbe_gem_input_density(in), mm = 1e3 * in->width_m;
   int used = 0;

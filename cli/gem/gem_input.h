@@ -29,7 +29,7 @@ typedef struct abbe_gem_input {
   abbe_cut_measures measures;
   abbe_material_table table;
   const abbe_material *material; /* or NULL */
-  double n;                      /* of the material at the d line, else what the design says; 0 */
+  double n;                      /* index of the material at the d line, else the design's; 0 */
 } abbe_gem_input;
 
 /* FILE, --material, --table, --width, --density, --weld, --json, --quiet. Its input is the
@@ -61,9 +61,9 @@ void abbe_gem_input_describe(const abbe_gem_input *input, struct cJSON *root);
 typedef struct abbe_gem_stone_input {
   abbe_gem_input in;
   double from_nm, to_nm; /* 0: 380 and 780 */
-  size_t count;          /* of wavelengths */
+  size_t count;          /* number of wavelengths */
   double width_m;        /* from here on: filled by load */
-  abbe_material own;     /* of the design's index, where no material is given */
+  abbe_material own;     /* the design's index, where no material is given */
   abbe_wavelengths wavelengths;
   abbe_weights weights; /* under D65, in XYZ */
   abbe_gem_stone stone;

@@ -59,7 +59,7 @@ typedef struct request {
   double crown[2], pavilion[2], head_deg, tilt_deg, axis_deg;
   size_t crowns, pavilions, size, threads;
   int measure;
-  const abbe_rank_job *job; /* of ranks that share the pairs; NULL: one process */
+  const abbe_rank_job *job; /* the ranks that share the pairs; NULL: one process */
 } request;
 
 static const struct argp_option options[] = {

@@ -28,7 +28,7 @@ static uint64_t hash(uint64_t h, const void *data, size_t size) {
   return h;
 }
 
-/* Of a file's bytes, or of its name where there is none of it. */
+/* Hashes a file's bytes, or its name where there is no file. */
 static uint64_t hash_file(uint64_t h, const char *path) {
   char block[1 << 14];
   FILE *file;

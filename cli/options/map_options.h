@@ -16,8 +16,8 @@ typedef struct abbe_map_options {
   const char *like;  /* file whose layout is taken, or NULL */
   /* After abbe_map_options_resolve: */
   size_t light_index;
-  abbe_map_layout layout; /* of like; else zeroed */
-  size_t side;            /* of like's map; else 0 */
+  abbe_map_layout layout; /* layout of like; else zeroed */
+  size_t side;            /* side of like's map; else 0 */
 } abbe_map_options;
 
 /* An argp child: --save-map, --map-light, --map-like. Its input is an abbe_map_options. */

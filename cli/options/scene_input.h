@@ -25,7 +25,7 @@ typedef struct abbe_scene_input_changes {
   const char *stone; /* NULL: as the scene says */
   const char *set[ABBE_SCENE_INPUT_MOST];
   size_t set_count;
-  double tilt_deg, axis_deg; /* of the refractors (scenes/object_motion.h) */
+  double tilt_deg, axis_deg; /* tilt of the refractors (scenes/object_motion.h) */
   bool timed;                /* at `time` s and not when the scene says */
   double time;
 } abbe_scene_input_changes;
@@ -142,7 +142,7 @@ abbe_result abbe_scene_input_at(const abbe_scene *scene, const char *materials,
 abbe_result abbe_scene_input_load(const char *program, const char *path, const char *materials,
                                   abbe_scene *out, abbe_error *error);
 
-enum { ABBE_SCENE_INPUT_ALPHA_SAMPLES = 8 }; /* of a traced picture */
+enum { ABBE_SCENE_INPUT_ALPHA_SAMPLES = 8 }; /* for a traced picture */
 /* Appends channel A to a picture of the scene, of whose pixels so many samples a side are taken. */
 abbe_result abbe_scene_input_add_alpha(const abbe_scene *scene, size_t samples, abbe_image *picture,
                                        abbe_error *error);

@@ -20,7 +20,7 @@ enum {
   OPTION_BITS
 };
 
-/* Of a picture; a white table in the light is no fault. */
+/* Share of a picture; a white table in the light is no fault. */
 #define MOST_WHITE 0.2
 
 static const struct argp_option options[] = {

@@ -21,7 +21,7 @@ typedef struct abbe_spectral_options {
 /* A child parser whose input is the options. */
 extern const struct argp abbe_spectral_options_argp;
 
-/* Of the option --observer of what makes pictures. */
+/* Help of the option --observer of what makes pictures. */
 #define ABBE_OBSERVER_HELP                                                                         \
   "whose colours they are: 1931, 1964, 2015-2 (CIE 2006), 2015-10; bands serve all (1931)"
 

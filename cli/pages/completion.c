@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-/* Of "abbe gem report" what comes behind the program's name. */
+/* What comes behind the program's name in "abbe gem report". */
 static const char *words_of(const abbe_option_table *table) {
   return table->program + strlen("abbe ");
 }

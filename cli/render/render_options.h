@@ -16,7 +16,7 @@ typedef struct abbe_render_options {
   abbe_scene_input_changes changes;
   abbe_render_desc desc;
   const char *volume_path;    /* NULL: none */
-  abbe_caustic_volume volume; /* of that file; whoever loads it frees it */
+  abbe_caustic_volume volume; /* the volume in that file; the loader frees it */
 } abbe_render_options;
 
 /* An argp child: the table of settings, size, range …, and the scene as the one argument. Its input

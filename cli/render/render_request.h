@@ -18,14 +18,14 @@ typedef struct abbe_render_request {
   abbe_render_options render;
   abbe_map_options map;
   abbe_preset_options preset;
-  abbe_preset_choice choice;   /* of a frame's settings */
+  abbe_preset_choice choice;   /* choice of a frame's settings */
   abbe_picture_choice picture; /* or of what makes the picture; without a point: not asked for */
   bool overridden;             /* the request or the scene stands against the picture's choice */
   bool may_trace;              /* where the rendered picture does not keep its bound */
   const char *picture_note;    /* on how that was chosen, or NULL */
   abbe_error_options errors;
   abbe_frame_series series; /* --turntable, --frames A:B; zeroed but for program */
-  abbe_rank_job *job;       /* of ranks that share the frames; NULL: one process */
+  abbe_rank_job *job;       /* the ranks that share the frames; NULL: one process */
   const char *exr, *png, *stats;
   bool aovs, unfilled, quiet, json;
   size_t frames, bands;

@@ -8,7 +8,7 @@
 
 /* A side, of the photons of a pass that checks: few, so that a coarse picture is told soon. */
 enum { CHECK_PHOTONS = 256 };
-/* Of passes that check: those of no traced picture. */
+/* Seed of passes that check: no traced picture has it. */
 #define CHECK_SEED 77003u
 /* For the writing of results and the end of the process. */
 static const double end_s = 0.02;

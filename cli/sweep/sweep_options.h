@@ -23,17 +23,17 @@ typedef struct abbe_sweep_options {
   abbe_sweep_request work;       /* all but settings, scene_path and progress */
   const char *plot, *report;     /* files, or NULL */
   const char *write_presets;     /* file, or NULL */
-  const char *presets;           /* of the promises; NULL: the shipped ones */
+  const char *presets;           /* file of the promises; NULL: the shipped ones */
   const char *grid;              /* a name, "presets", or NULL */
   bool listed, traced;    /* a list, or something of the reference that is traced, was given */
-  abbe_sweep_grid list;   /* of the lists */
-  abbe_command_part part; /* of the settings */
+  abbe_sweep_grid list;   /* grid of the lists */
+  abbe_command_part part; /* part of the settings */
   abbe_context_backend backend;
   bool scaling;    /* instead of a sweep: how a frame's time scales */
   bool estimators; /* instead: how far off estimators of where light lands are */
   bool processes;  /* time whole processes too */
   bool quiet, json, list_only;
-  const abbe_rank_job *job; /* of ranks that share the settings; NULL: one process */
+  const abbe_rank_job *job; /* the ranks that share the settings; NULL: one process */
 } abbe_sweep_options;
 
 /* Its input is an abbe_sweep_options with program, grids and defaults set. */

@@ -398,7 +398,7 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
   return result;
 }
 
-/* Of ranks, each traces frames of its own. */
+/* Each rank traces frames of its own. */
 static abbe_result trace_frames(request *q, const abbe_rank_job *job, const abbe_scene *scene,
                                 abbe_error *error) {
   if (job == NULL) return abbe_trace_frames(q, scene, run, error);

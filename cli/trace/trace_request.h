@@ -34,7 +34,7 @@ typedef struct abbe_trace_request {
   abbe_screen_options screen;
   char *checkpoint_path;
   const abbe_scene *traced; /* while it is */
-  size_t frame;             /* of the series, while it is traced */
+  size_t frame;             /* number in the series, while it is traced */
 } abbe_trace_request;
 
 /* Frames of `abbe trace --frames A:B`, and the PNG that moves. */

@@ -148,7 +148,7 @@ static void take(abbe_view_session *app, size_t worker, abbe_view_result *result
     app->stage = ABBE_VIEW_TRACED;
     if (result->traced.data == NULL) return;
     app->passes = result->passes;
-    abbe_view_painter_stop(app->painter); /* of a picture that goes now */
+    abbe_view_painter_stop(app->painter); /* stops the picture that is drawn now */
     replace(&app->pictures.traced, &result->traced);
   } else {
     abbe_view_painter_stop(app->painter);

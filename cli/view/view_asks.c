@@ -47,7 +47,7 @@ static bool wants_spot(const abbe_view_session *app) {
          s->refine.stage >= ABBE_VIEW_BALANCED && app->pictures.traced.data == NULL;
 }
 
-/* Of the stage whose light is drawn. */
+/* The stage whose light is drawn. */
 static abbe_view_stage lit_stage(const abbe_view_refine *r) {
   return r->stage > ABBE_VIEW_ACCURATE ? ABBE_VIEW_ACCURATE : r->stage;
 }

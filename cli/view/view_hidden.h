@@ -7,7 +7,7 @@
 
 typedef struct abbe_view_hidden {
   abbe_view_session session;
-  abbe_ui_input input; /* of the next frame; wheel and text are used up by it */
+  abbe_ui_input input; /* input of the next frame; wheel and text are used up by it */
   size_t width, height;
   abbe_context *context;
   const abbe_gl *gl;

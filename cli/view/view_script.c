@@ -13,7 +13,7 @@
 #include <time.h>
 
 enum { MOST_WORDS = 16, MOST_REMEMBERED = 32, LONGEST = 4096 };
-#define PATIENCE_S 300.0 /* of processor time, for the machine may be busy */
+#define PATIENCE_S 300.0 /* processor time, because the machine may be busy */
 #define REST_S 1.0       /* in which nothing is left to do: files are looked at meanwhile */
 #define SCRIPT_MOST_BYTES ((size_t)1 << 20)
 

@@ -31,7 +31,7 @@ extern const size_t abbe_embedded_view_page_size;
 
 typedef struct server {
   abbe_view_hidden hidden; /* the main thread's */
-  unsigned char *pixels;   /* of the last picture */
+  unsigned char *pixels;   /* pixels of the last picture */
   size_t width, height;
   char token[2 * TOKEN_BYTES + 1];
   abbe_view_guard guard;

@@ -20,9 +20,9 @@
 /* A worker, and what it was given. */
 typedef struct abbe_view_desk {
   abbe_view_worker *worker;
-  uint64_t serial; /* of what it does, */
+  uint64_t serial; /* number of what it does, */
   bool other; /* which is no job of cli/view/state/view_refine.h: a look, a turntable's frame */
-  bool asked; /* of this pixel: */
+  bool asked; /* about this pixel: */
   size_t pixel[2];
   abbe_camera camera; /* as it was led to then */
   double stopped_s;   /* when it was told to stop; below 0: it was not */
@@ -37,53 +37,54 @@ typedef struct abbe_view_session {
   const char *keep, *ocio, *materials, *volume_path;
   const abbe_caustic_volume *volume;
   abbe_display *display;
-  abbe_view_table *table; /* of it, from the first picture on; or NULL */
+  abbe_view_table *table; /* its table, from the first picture on; or NULL */
   char *views;            /* lines "display / view" */
-  size_t view;            /* of these */
+  size_t view;            /* index of these */
   char *scene[ABBE_VIEW_MOST_SCENES];
   size_t scene_count;
-  size_t edition; /* of the files: how often they have changed */
+  size_t edition; /* edition of the files: how often they have changed */
   abbe_view_pictures pictures;
   abbe_view_result taken;     /* while it is looked at */
-  abbe_view_result last;      /* of the last rendered picture: plan, statistics, settings */
-  abbe_view_stage stage;      /* of the picture that stands */
-  abbe_view_job moved;        /* of the last picture of the stage `moving`, */
+  abbe_view_result last;      /* result of the last rendered picture: plan, statistics, settings */
+  abbe_view_stage stage;      /* stage of the picture that stands */
+  abbe_view_job moved;        /* job of the last picture of the stage `moving`, */
   abbe_render_desc moving;    /* and its settings */
   double promised, estimated; /* mean CIEDE2000 in the caustic; 0: not known */
   double against; /* root mean square of rendered less traced, over the mean; 0: not known */
-  double noise;   /* of the traced picture alone, the same */
+  double noise;   /* noise of the traced picture alone, the same */
   size_t passes;  /* behind the traced picture */
-  abbe_view_painter *painter; /* of what rests */
+  abbe_view_painter *painter; /* painter of what rests */
   abbe_view_screen screen;
   bool stale;            /* the screen */
   abbe_view_shown drawn; /* what it shows */
   double drawn_exposure;
   abbe_view_probe probe;
-  abbe_view_feed *feed; /* of the pixel; NULL: not known */
-  uint64_t fed_serial;  /* of what was asked for last, and its pixel */
+  abbe_view_feed *feed; /* the light that reaches the pixel; NULL: not known */
+  uint64_t fed_serial;  /* number of what was requested last, and its pixel */
   size_t fed_pixel[2];
-  abbe_view_spot spot;  /* of the pixel, until the traced picture tells; */
-  uint64_t spot_serial; /* of what was asked for last, and its pixel */
+  abbe_view_spot spot;  /* the pixel's spectrum, until the traced picture has it; */
+  uint64_t spot_serial; /* number of what was requested last, and its pixel */
   size_t spot_pixel[2];
-  uint64_t mapped_serial; /* of what the map was asked for last, */
+  uint64_t mapped_serial; /* number of the map that was requested last, */
   abbe_view_stage mapped; /* and at which stage */
-  abbe_ui_input input;    /* of the frame before */
-  double area[2];         /* of the picture in the window */
+  abbe_ui_input input;    /* input of the frame before */
+  double area[2];         /* size of the picture in the window */
   double first_s;         /* from the program's start to its first picture; 0: there is none */
   double seen_s, frames_ms[32]; /* times between pictures while something moves */
   size_t frame_count;
   double own_ms; /* the most that a worker's own thread has worked for one of these */
-  double event_s[ABBE_VIEW_TIMED]; /* of changes by pointer, by their number; 0: another change */
+  double event_s[ABBE_VIEW_TIMED]; /* times of changes by pointer, by their number; 0: another
+                                      change */
   uint64_t pictured;               /* the last change that a picture has shown, */
   double latency_ms;               /* and from the first one that it showed to it */
   uint64_t obsolete;               /* the last change that ended a rest; 0: it is shown */
   double obsolete_s, cancel_ms;    /* when it came; and how long until a picture showed it, */
   double stop_ms;        /* what was made for the one before took to stop; the last times */
-  size_t turn_frame;     /* of the turntable, from 1; 0: it stands */
+  size_t turn_frame;     /* frame of the turntable, from 1; 0: it stands */
   uint64_t turn_serial;  /* what it turns */
   bool turned;           /* the last one is whole */
   char note[1200];       /* what was saved, or why not */
-  abbe_view_files files; /* of the scene */
+  abbe_view_files files; /* files of the scene */
   double looked_s;
 } abbe_view_session;
 

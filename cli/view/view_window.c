@@ -10,10 +10,10 @@
 
 enum { MOST_EVENTS = 64 };
 
-/* Of the pointer: it has moved there, or a button has changed there. */
+/* An event of the pointer: it has moved there, or a button has changed there. */
 typedef struct pointer_event {
   double at[2];
-  int button; /* of the input; below 0: none */
+  int button; /* button of the input; below 0: none */
   bool down;
 } pointer_event;
 

@@ -7,8 +7,8 @@
 #include "scenes/scene.h"
 #include "validation/transport/physics.h"
 
-/* Of the default profile over that range of wavelengths (0, 0: the default one). Errors of
- * abbe_plan_make. */
+/* The physics of the default profile over that range of wavelengths (0, 0: the default one). Errors
+ * of abbe_plan_make. */
 abbe_result abbe_matched_physics(const abbe_scene *scene, double min_nm, double max_nm,
                                  abbe_physics *out, abbe_error *error);
 

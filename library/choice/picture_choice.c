@@ -15,7 +15,7 @@
 #include <string.h>
 
 enum { MOST_PASSES = 65536, REPEATS = 3 };
-static const double repeats_share = 0.1; /* of a budget, for the yardstick's repeats */
+static const double repeats_share = 0.1; /* share of a budget, for the yardstick's repeats */
 static const double slack = 0.02;        /* more accuracy than that is not seen */
 
 #define ABBE_NAME_OF(code, name) name,

@@ -17,13 +17,13 @@
 
 #include <stdbool.h>
 
-/* Of one tool. */
+/* A point of one tool. */
 typedef struct abbe_picture_point {
   abbe_picture_tool tool;
-  abbe_sweep_setting setting; /* of the tracer: photons and passes; else all but the size */
-  double ms;                  /* of a whole process, in the run, with the time's margin */
+  abbe_sweep_setting setting; /* for the tracer: photons and passes; else all but the size */
+  double ms;                  /* time of a whole process, in the run, with the time's margin */
   double error;               /* the worst of the run's scenes, with the error's margin */
-  double worst, least;        /* of the run's scenes, without */
+  double worst, least;        /* over the run's scenes, without */
 } abbe_picture_point;
 
 #define ABBE_PICTURE_MAX_POINTS (ABBE_PICTURE_TOOL_COUNT * 48)
@@ -46,10 +46,10 @@ abbe_result abbe_picture_front_load(const char *path, abbe_preset_class of, abbe
 
 /* One of name, max_error and budget_ms. */
 typedef struct abbe_picture_request {
-  const char *name;                   /* of a preset, or NULL */
-  const char *file;                   /* of presets, or NULL: the shipped ones */
+  const char *name;                   /* name of a preset, or NULL */
+  const char *file;                   /* file of presets, or NULL: the shipped ones */
   double max_error;                   /* 0: none */
-  double budget_ms;                   /* of the whole process; 0: none */
+  double budget_ms;                   /* time of the whole process; 0: none */
   bool timed;                         /* promise a time too, where budget_ms does not ask for one */
   bool tool[ABBE_PICTURE_TOOL_COUNT]; /* those that may be taken; none: all */
   size_t width, height;               /* pixels; 0: the scene's */
@@ -58,14 +58,14 @@ typedef struct abbe_picture_request {
 typedef struct abbe_picture_choice {
   abbe_picture_request request;
   abbe_picture_front front;
-  const abbe_picture_point *point; /* of the front */
+  const abbe_picture_point *point; /* point of the front */
   bool kept;                       /* the bound can be kept, by the front */
   bool timed;                      /* promised_ms is known */
-  double promised_error;           /* of this scene */
+  double promised_error;           /* for this scene */
   double promised_ms;              /* on this machine, of the whole process, with the yardstick */
   double spent_ms;                 /* on the yardstick; 0: it was not needed */
   double once_ms;                  /* one run of it, the tracer's making included; or 0 */
-  double unrest;       /* of its repeats (gl/accuracy/frame_times.h); NaN: it has none */
+  double unrest;       /* unrest of its repeats (gl/accuracy/frame_times.h); NaN: it has none */
   double prepared_ms;  /* on what stands before the first frame; 0: nothing was rendered */
   bool compiled;       /* shaders were, which happens once on a machine */
   size_t passes;       /* that the picture is traced of, or checked by; 0: none */

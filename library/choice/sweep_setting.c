@@ -27,7 +27,7 @@ const char *const abbe_sweep_polygons[] = {"plain",
 const char *const abbe_sweep_directions[] = {ABBE_DIRECTIONS(NAME)};
 #undef NAME
 
-/* Of a setting's words; ABBE_POLYGONS_ALL + 1: there is no such kind. */
+/* The kinds that a setting's words name; ABBE_POLYGONS_ALL + 1: there is no such kind. */
 static unsigned polygons_of(const char *words) {
   unsigned bits = 0;
   while (bits <= ABBE_POLYGONS_ALL && *words != '\0' &&

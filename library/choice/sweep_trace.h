@@ -12,7 +12,7 @@
 #include "scenes/scene.h"
 #include "validation/tradeoff/sweep_table.h"
 
-/* Of all traced contestants; references have other noise. */
+/* The seed of all traced contestants; references have other noise. */
 #define ABBE_SWEEP_TRACE_SEED 20261u
 
 typedef struct abbe_sweep_trace_desc {

@@ -29,11 +29,11 @@
 /* A zeroed test is empty. */
 typedef struct abbe_ztest {
   size_t count;           /* elements tested */
-  size_t over2, over3;    /* of them with |z| above 2, above 3 */
-  double sum_square;      /* of z */
+  size_t over2, over3;    /* samples with |z| above 2, above 3 */
+  double sum_square;      /* sum of z^2 */
   double max;             /* greatest |z| */
   size_t untested;        /* elements without a standard error */
-  size_t untested_differ; /* of them with a difference */
+  size_t untested_differ; /* untested samples with a difference */
 } abbe_ztest;
 
 /* One element: its difference and the variance of that difference. Variance that is not finite or
@@ -63,7 +63,7 @@ double abbe_ztest_critical(size_t count, double level, double freedom);
   X(ENERGY_RATIO, "energy_ratio", "energy ratio")         /* sum of a over sum of b, of Y */       \
   X(CIEDE2000_MEAN, "ciede2000_mean", "CIEDE2000 mean")   /* [Sharma2005] */                       \
   X(CIEDE2000_P95, "ciede2000_p95", "CIEDE2000 95 %")     /* 95th percentile */                    \
-  X(CIEDE2000_MAX, "ciede2000_max", "CIEDE2000 greatest") /* of one pixel */                       \
+  X(CIEDE2000_MAX, "ciede2000_max", "CIEDE2000 greatest") /* the largest of one pixel */           \
   X(UV_MEAN, "uv_mean", "u'v' distance")                  /* [CIE15], mean weighted by REF's Y */  \
   X(CIE76_MEAN, "cie76_mean", "CIE76 mean")               /* [CIE15] */                            \
   X(CIE94_MEAN, "cie94_mean", "CIE94 mean")               /* [CIE116], REF the standard */         \
@@ -74,7 +74,7 @@ double abbe_ztest_critical(size_t count, double level, double freedom);
   X(BANDS_RELATIVE_RMSE, "bands_relative_rmse", "bands: relative RMSE")                            \
   X(BANDS_SQUARED_RELATIVE, "bands_squared_relative",                                              \
     "bands: (a-b)^2/(b+0.01)^2") /* in units of REF's mean over all bands */                       \
-  X(BANDS_ENERGY_RATIO, "bands_energy_ratio", "bands: energy ratio") /* of all bands */            \
+  X(BANDS_ENERGY_RATIO, "bands_energy_ratio", "bands: energy ratio") /* over all bands */          \
   X(Z_OVER_2, "z_over_2", "share of |z| > 2")                                                      \
   X(Z_OVER_3, "z_over_3", "share of |z| > 3")                                                      \
   X(Z_MEAN_SQUARE, "z_mean_square", "mean of z^2")                                                 \
@@ -106,7 +106,7 @@ typedef struct abbe_compare_value {
 
 typedef struct abbe_compare_channel {
   char name[24];    /* "X", "Y", "Z", or "550 nm" */
-  double lambda_nm; /* of a band; 0 for colour */
+  double lambda_nm; /* wavelength of a band; 0 for colour */
   double mean_reference, mean_test;
   abbe_compare_value relative_rmse, squared_relative, energy_ratio;
 } abbe_compare_channel;
@@ -115,7 +115,7 @@ typedef struct abbe_compare_region {
   size_t pixels;            /* compared */
   size_t invalid_reference; /* left out: a value or an error of REF that is not finite */
   size_t invalid_test;      /* left out: of TEST */
-  double uv_share;          /* of REF's Y, in pixels where both sides have a chromaticity */
+  double uv_share;          /* share of REF's Y in pixels where both sides have a chromaticity */
   abbe_compare_value metric[ABBE_COMPARE_METRIC_COUNT];
   abbe_ztest z;      /* over all pixels and channels */
   double z_critical; /* for the greatest |z|, at ABBE_ZTEST_LEVEL */
@@ -138,9 +138,9 @@ typedef struct abbe_compare_options {
   const abbe_mask *mask;   /* NULL: the whole field alone */
   double white[3];         /* XYZ; all 0: D65 at the Y that the brightest 1 % of REF's lit pixels
                               reach */
-  bool structure;          /* of pictures SSIM and both FLIP too, which take as long as the rest */
+  bool structure;          /* for pictures SSIM and both FLIP too, which take as long as the rest */
   bool best_scale;         /* multiply TEST by the factor of least squares over the whole field */
-  unsigned long long seed; /* of the noise that stands in for REF's in the colour metrics */
+  unsigned long long seed; /* seed of the noise that stands in for REF's in the colour metrics */
 } abbe_compare_options;
 
 /* Compares two fields that abbe_field_align brought together. ABBE_INVALID_ARGUMENT where REF is

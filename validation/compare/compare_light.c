@@ -22,10 +22,10 @@ static const double rounding = 0x1p-22;
  * gives r + 3 r^2; beyond r = 1 the series means nothing. */
 static const double noisy_weight = 6;
 
-/* Of one channel, or of several together. */
+/* Sums of one channel, or of several together. */
 typedef struct sums {
   double count, channels, reference, test;
-  double square, relative; /* of the metrics' terms */
+  double square, relative; /* sums of the metrics' terms */
   /* variances in the same weights, of REF and of both, and their squares */
   double variance[2], variance2[2], relative_variance[2], relative_variance2[2];
 } sums;
@@ -218,7 +218,7 @@ static void measure_z(const abbe_compare_state *s, const abbe_mask *mask,
   const double share[] = {abbe_ztest_expected_share(2, freedom),
                           abbe_ztest_expected_share(3, freedom)};
   const double mean = abbe_ztest_expected_mean_square(freedom);
-  /* Of z^2 the variance is 2 for exact errors; that of Student's is not finite up to 4 degrees. */
+  /* The variance of z^2 is 2 for exact errors; that of Student's is not finite up to 4 degrees. */
   const double spread = freedom == 0  ? 2
                         : freedom > 4 ? mean * mean * 2 * (freedom - 1) / (freedom - 4)
                                       : INFINITY;

@@ -75,15 +75,16 @@ typedef struct abbe_flip_exposures {
   size_t count;
 } abbe_flip_exposures;
 
-/* Of linear Rec.709, rgb[width * height][3], as a screen shows it: clipped to 0 to 1 (what is not
- * finite is 0). pixels_per_degree 0: the default. out[width * height]. ABBE_INVALID_ARGUMENT for an
- * empty picture, ABBE_NO_MEMORY. */
+/* FLIP of linear Rec.709, rgb[width * height][3], as a screen shows it: clipped to 0 to 1 (what is
+ * not finite is 0). pixels_per_degree 0: the default. out[width * height]. ABBE_INVALID_ARGUMENT
+ * for an empty picture, ABBE_NO_MEMORY. */
 abbe_result abbe_flip_map(const float (*reference)[3], const float (*test)[3], size_t width,
                           size_t height, double pixels_per_degree, float *out, abbe_error *error);
 
-/* Of linear Rec.709 with any amount of light. Exposures, found from the reference: from the one at
- * which its brightest pixel becomes 0.85 by the tone curve [Narkowicz2015] to the one at which its
- * median does, about a stop apart. A reference without light, or with a median of none, has two. */
+/* HDR-FLIP of linear Rec.709 with any amount of light. Exposures, found from the reference: from
+ * the one at which its brightest pixel becomes 0.85 by the tone curve [Narkowicz2015] to the one at
+ * which its median does, about a stop apart. A reference without light, or with a median of none,
+ * has two. */
 abbe_result abbe_flip_hdr_map(const float (*reference)[3], const float (*test)[3], size_t width,
                               size_t height, double pixels_per_degree, float *out,
                               abbe_flip_exposures *exposures, abbe_error *error);

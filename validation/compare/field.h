@@ -43,7 +43,7 @@ typedef struct abbe_field {
   abbe_field_samples colour; /* 0 or 3 channels */
   bool is_xyz;               /* the channels are X, Y, Z; else R, G, B */
   abbe_observer observer;    /* whose XYZ it is */
-  double to_xyz[9];          /* of the colour, row-major; XYZ is relative to D65 */
+  double to_xyz[9];          /* matrix of the colour, row-major; XYZ is relative to D65 */
   char space[40];            /* "acescg", …, "R, G, B of the file's chromaticities" */
   bool space_assumed;        /* the file does not say its space; Rec.709 was taken */
   abbe_field_samples bands;

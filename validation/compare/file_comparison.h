@@ -9,7 +9,7 @@
 typedef struct abbe_file_comparison_desc {
   const char *path[2];          /* REF, TEST */
   const char *mask;             /* "caustic", a picture whose first channel is above 0.5; or NULL */
-  double mask_share;            /* of the caustic's light */
+  double mask_share;            /* share of the caustic's light */
   abbe_compare_options options; /* its mask is not looked at */
 } abbe_file_comparison_desc;
 
@@ -18,8 +18,8 @@ typedef struct abbe_file_comparison {
   abbe_field field[2];
   size_t size[2][2];     /* width and height as read */
   const char *mask_name; /* NULL: none */
-  char mask_part[40];    /* of the file that it was drawn in, as abbe_image has it */
-  double mask_share;     /* of the caustic's light; 0: the mask was drawn */
+  char mask_part[40];    /* part of the file that it was drawn in, as abbe_image names it */
+  double mask_share;     /* share of the caustic's light; 0: the mask was drawn */
   abbe_mask mask;
   abbe_comparison comparison;
 } abbe_file_comparison;
@@ -41,7 +41,7 @@ bool abbe_file_comparison_has_errors(const abbe_file_comparison *comparison, int
 /* The largest deviation (abbe_compare_deviation) that passes. */
 typedef struct abbe_compare_tolerance {
   abbe_compare_metric metric;
-  bool mask; /* of the masked region, else of the whole field */
+  bool mask; /* over the masked region, else over the whole field */
   double tolerance;
 } abbe_compare_tolerance;
 

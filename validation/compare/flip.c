@@ -17,13 +17,13 @@ static const double csf_b[3][2] = {{0.0047, 1e-5}, {0.0053, 1e-5}, {0.04, 0.025}
 static const double widest_b = 0.04, edge_width = 0.082;
 static const double colour_power = 0.7, knee = 0.4, knee_value = 0.95;
 
-enum { MAX_REACH = 160, MAX_STOPS = 32, BLOCK = 128 /* of a row */, LANES = 8 };
+enum { MAX_REACH = 160, MAX_STOPS = 32, BLOCK = 128 /* limits of a row */, LANES = 8 };
 static const double max_pixels_per_degree = 1000;
 
 typedef struct kernel {
   int reach;
   double weight[2 * MAX_REACH + 1], sum; /* sum: before the weights were made to add up to 1 */
-  float tap[2 * MAX_REACH + 1];          /* of those that a float tells from 0 */
+  float tap[2 * MAX_REACH + 1];          /* taps that a float separates from 0 */
 } kernel;
 
 enum { SIDE_PLANES = 5, SHARED_PLANES = 6, PLANES = 2 * SIDE_PLANES + SHARED_PLANES };
@@ -99,8 +99,8 @@ static long held(long at, long count) {
   return at < 0 ? 0 : at >= count ? count - 1 : at;
 }
 
-/* Of a kernel that is the same, or the opposite, on both sides of its middle: so many rows lie
- * around in[0], and a block of each is summed where the processor keeps it. */
+/* Sums with a kernel that is the same, or the opposite, on both sides of its middle: so many rows
+ * lie around in[0], and a block of each is summed where the processor keeps it. */
 SIDE_BY_SIDE static void sum_taps(const float *const *in, const kernel *k, int count, float *out) {
   const int reach = k->reach;
   const float *tap = k->tap, sign = tap[0] == tap[2 * reach] ? 1 : -1;

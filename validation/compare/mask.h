@@ -17,7 +17,7 @@
 /* A zeroed mask is empty. */
 typedef struct abbe_mask {
   size_t count;      /* elements */
-  size_t inside;     /* of them in the mask */
+  size_t inside;     /* pixels of them in the mask */
   unsigned char *in; /* [count] 0 or 1 */
 } abbe_mask;
 

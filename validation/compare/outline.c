@@ -245,7 +245,8 @@ static bool on_rim(const abbe_outline *o, size_t x, size_t y) {
   return !in[-1] || !in[1] || !*(in - o->width) || !in[o->width];
 }
 
-/* Of every pixel: rows to the nearest pixel of the rim in its own column, or the height. */
+/* Distances of every pixel: rows to the nearest pixel of the rim in its own column, or the
+ * height. */
 static double *column_distances(const abbe_outline *o) {
   double *rows = malloc(o->width * o->height * sizeof *rows);
   for (size_t x = 0; rows != NULL && x < o->width; x++) {

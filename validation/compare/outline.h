@@ -32,14 +32,14 @@ const char *abbe_outline_hue_name(abbe_outline_hue hue);
 
 /* Zero means the default in every field. */
 typedef struct abbe_outline_options {
-  double share; /* of the light inside the outline, up to 1; 0: 0.9 */
+  double share; /* share of the light inside the outline, up to 1; 0: 0.9 */
   double blur;  /* standard deviation of the smoothing, pixels, up to 64; 0: 1; negative: none */
 } abbe_outline_options;
 
 /* Where the light of one hue is: each pixel counts by how much its largest component of red, green
  * and blue exceeds its smallest. */
 typedef struct abbe_outline_place {
-  double share;  /* of the light of all hues; the other members are 0 where this is 0 */
+  double share;  /* share of the light of all hues; the other members are 0 where this is 0 */
   double x, y;   /* its centre, pixels from the left and the top edge */
   double spread; /* root mean square distance from it, pixels */
 } abbe_outline_place;
@@ -63,9 +63,9 @@ void abbe_outline_free(abbe_outline *outline);
 
 typedef struct abbe_outline_agreement {
   double light_ratio; /* b's light over a's */
-  double overlap;     /* of the two outlines' insides: common pixels over all of both, 0 to 1 */
-  double mean_apart;  /* mean distance from one outline to the other, both ways, pixels */
-  double p95_apart;   /* its 95th percentile */
+  double overlap; /* overlap of the two outlines' insides: common pixels over all of both, 0 to 1 */
+  double mean_apart; /* mean distance from one outline to the other, both ways, pixels */
+  double p95_apart;  /* its 95th percentile */
   struct {
     double apart;   /* between the centres, pixels; NaN where a side has nothing of the hue */
     double overlap; /* common part of the two distributions over the pixels, 0 to 1 */

@@ -9,7 +9,7 @@
 
 /* Found by trials against long traces of the shipped scenes. */
 enum {
-  WINDOW = 5, /* of brightness */
+  WINDOW = 5, /* window for brightness */
   COLOUR_WINDOW = 7,
   PATCH = 2,
   VARIANCE_REACH = 4,   /* over which the photons' variance goes as their brightness */

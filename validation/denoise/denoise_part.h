@@ -24,7 +24,7 @@ typedef struct abbe_denoise_work {
 typedef struct abbe_denoise_part {
   const abbe_denoise_work *work;
   bool photons;              /* its variance follows its brightness */
-  double share[3], white[3]; /* of brightness; the mean colour times its unit */
+  double share[3], white[3]; /* share of brightness; the mean colour times its unit */
   float *room;
   float *value[3], *variance[3];
   float *out[3], *error[3]; /* filtered; mean square of its error */

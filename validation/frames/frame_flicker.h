@@ -18,8 +18,8 @@
 
 typedef struct abbe_frame_error {
   double error;  /* RMSE by the root mean square of the reference; NaN without one */
-  double change; /* of the error since the frame before, likewise; without references of the frame
-                    itself, by its own; NaN of the first */
+  double change; /* change of the error since the frame before, likewise; without references of the
+                    frame itself, by its own; NaN of the first */
   double ghost; /* light where the reference has none, by all of the reference's; NaN without one */
 } abbe_frame_error;
 

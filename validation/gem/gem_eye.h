@@ -11,7 +11,7 @@
 
 /* Unit vectors in the stone's axes. */
 typedef struct abbe_gem_eye {
-  double right[3], up[3]; /* of the picture; x and y where the stone lies level */
+  double right[3], up[3]; /* directions of the picture; x and y where the stone lies level */
   double to_eye[3];       /* z there */
 } abbe_gem_eye;
 
@@ -19,8 +19,8 @@ typedef struct abbe_gem_eye {
  * hand's fingers about the axis: what is to the left of the axis' arrow comes towards the eye. */
 abbe_gem_eye abbe_gem_eye_make(double axis_rad, double tilt_rad);
 
-/* Of pixel (column, row) of side x side, row 0 at the top, at (u, v) in it, each 0 to 1, from the
- * left and top: a place outside the stone, and the direction away from the eye. */
+/* The ray of pixel (column, row) of side x side, row 0 at the top, at (u, v) in it, each 0 to 1,
+ * from the left and top: a place outside the stone, and the direction away from the eye. */
 void abbe_gem_eye_ray(const abbe_gem_eye *eye, size_t side, size_t column, size_t row, double u,
                       double v, double o[3], double d[3]);
 

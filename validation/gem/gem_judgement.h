@@ -32,7 +32,7 @@ void abbe_gem_judgement_free(abbe_gem_judgement *judgement);
 typedef struct abbe_gem_judgement_row {
   const char *name, *text; /* for programs, for people */
   abbe_gem_number number;
-  bool share; /* of 1, shown in percent */
+  bool share; /* a share of 1, shown in percent */
 } abbe_gem_judgement_row;
 
 enum { ABBE_GEM_JUDGEMENT_MOST_ROWS = 32 };

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-#define GOLDEN_RAD (ABBE_PI * (3 - sqrt(5.0))) /* of the spiral [Vogel1979] */
+#define GOLDEN_RAD (ABBE_PI * (3 - sqrt(5.0))) /* the angle of the spiral [Vogel1979] */
 
 enum { LANES = 64 };
 

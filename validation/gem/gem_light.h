@@ -29,7 +29,7 @@ enum { ABBE_GEM_MOST_FACES = 4096, ABBE_GEM_MOST_EXITS = 512 };
 
 typedef struct abbe_gem_exit {
   float d[3];  /* unit, away from the stone: where light would come from */
-  float share; /* of the ray's light */
+  float share; /* share of the ray's light */
 } abbe_gem_exit;
 
 /* The shares of all exits, absorbed and left add up to 1. */
@@ -80,7 +80,7 @@ const char *abbe_gem_amount_text(abbe_gem_amount amount);
 
 typedef struct abbe_gem_light {
   float eye[3];   /* unit, from the stone to the eye, in the stone's axes */
-  float cos_head; /* of the head's half angle about it */
+  float cos_head; /* cosine of the head's half angle about it */
 } abbe_gem_light;
 
 /* head_rad 0 (no head) to below pi / 4. */

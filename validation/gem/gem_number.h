@@ -9,7 +9,7 @@ typedef struct abbe_gem_number {
   double value, error; /* error: one standard deviation; NaN for fewer than two repeats */
 } abbe_gem_number;
 
-/* Of sum[i] / weight[i], i < count: the ratio of the totals, and its error by the scatter of what
+/* The ratio of the totals of sum[i] and weight[i], i < count, and its error by the scatter of what
  * is left without each repeat in turn (the jackknife [Efron1982]). 0 where no weight is above 0. */
 abbe_gem_number abbe_gem_number_ratio(const double *sum, const double *weight, size_t count);
 

@@ -13,7 +13,7 @@
 enum { ABBE_GEM_MOST_ANGLES = 201 };
 
 typedef struct abbe_gem_optimum_desc {
-  double crown_from_rad, crown_to_rad; /* of the main tier, above 0 to below pi / 2 */
+  double crown_from_rad, crown_to_rad; /* angles of the main tier, above 0 to below pi 2 */
   double pavilion_from_rad, pavilion_to_rad;
   size_t crowns, pavilions; /* 1 to ABBE_GEM_MOST_ANGLES; 1: the mean of both ends */
   abbe_gem_amount measure;
@@ -29,11 +29,11 @@ typedef struct abbe_gem_optimum {
   size_t crowns, pavilions;
   double *crown_rad, *pavilion_rad; /* ascending */
   abbe_gem_number *value;           /* [pavilions][crowns]; NaN where a pair is not judged */
-  size_t best;                      /* of value[] */
+  size_t best;                      /* index of the best in value[] */
   abbe_gem_amount measure;
   bool least;
   double design_crown_rad, design_pavilion_rad;
-  abbe_gem_number design; /* of the design as it is */
+  abbe_gem_number design; /* value of the design as it is */
 } abbe_gem_optimum;
 
 /* The grid, with the design judged and no pair. weights: of the wavelengths, in XYZ.

@@ -45,7 +45,7 @@ typedef struct work {
   double head_rad;
 } work;
 
-/* Of its lightness, how far a colour is from grey. */
+/* Whether a colour is far enough from grey of its lightness. */
 static bool is_fire(const double xyz[3], const double white[3]) {
   double lab[3];
   abbe_difference_lab(xyz, white, lab);

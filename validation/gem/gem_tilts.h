@@ -59,10 +59,10 @@ typedef struct abbe_gem_tilts {
   double *tilt_rad;                                  /* [tilts] ascending */
   abbe_gem_number *curve[ABBE_GEM_TILT_CURVE_COUNT]; /* [ABBE_GEM_AXES][tilts] */
   abbe_gem_number mean[ABBE_GEM_TILT_CURVE_COUNT];   /* over all tilts and axes alike */
-  abbe_gem_number spread; /* of ISO: standard deviation over the tilts of all axes */
+  abbe_gem_number spread; /* ISO's standard deviation over the tilts of all axes */
   abbe_gem_number blinks; /* scintillation: share of pixels, a step, that become lit or dark */
   double step_rad;
-  bool has_fire; /* of one wavelength there is none to measure, and FIRE is 0 everywhere */
+  bool has_fire; /* with one wavelength there is none to measure, and FIRE is 0 everywhere */
 } abbe_gem_tilts;
 
 /* ABBE_INVALID_ARGUMENT for what is outside its range, ABBE_GEOMETRY where no ray met the stone at

@@ -36,7 +36,7 @@
     "light from all around: flux into bodies, irradiance of floors, mirrors and glass")            \
   X(mirror, "metals, a mirror ball's light, images between mirrors, a ring's caustics")            \
   X(water, "waves: where rays land, the focus under a crest, light on the bottom")                 \
-  X(medium, "light scattered once in mist and water: slabs, a lamp, a shaft, what is left")         \
+  X(medium, "light scattered once in mist and water: slabs, a lamp, a shaft, what is left")        \
   X(lamp, "lights with a size: form factors, penumbras, images through a hole and in mirrors")     \
   X(sphere, "light under a sphere, rings and enclosed flux, one wavelength")                       \
   X(white, "light under a sphere in XYZ under D65")                                                \
@@ -49,7 +49,7 @@ typedef struct abbe_known_answer {
   const char *group, *unit, *reason; /* the reason of the tolerance; static texts */
   char quantity[112];
   double exact, traced;
-  double standard_error; /* of traced, in the unit; 0 where nothing is random */
+  double standard_error; /* error of traced, in the unit; 0 where nothing is random */
   double error;          /* traced - exact */
   double tolerance;      /* largest |error| that passes, in the unit */
   double useful;         /* a tolerance beyond this tells nothing: the row fails; 0: any does */

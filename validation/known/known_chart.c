@@ -9,8 +9,8 @@ enum { MAX_GROUPS = 32 };
 
 /* Columns of numbers, each [count]; one piece of memory. */
 typedef struct columns {
-  double *x, *share;                               /* of every row */
-  double *photons, *error, *low, *high, *expected; /* of the rows that stand over photons */
+  double *x, *share;                               /* values of every row */
+  double *photons, *error, *low, *high, *expected; /* values of the rows that stand over photons */
   size_t levels;
 } columns;
 

@@ -68,8 +68,8 @@ static abbe_result add_angle(abbe_known_run *run, double degrees, abbe_error *er
   return result;
 }
 
-/* Of an index across the plane of incidence: both waves obey Snell, the extraordinary one has its
- * field across that plane (s) and the ordinary one in it (p). */
+/* Rows of an index across the plane of incidence: both waves obey Snell, the extraordinary one has
+ * its field across that plane (s) and the ordinary one in it (p). */
 static abbe_result add_across(abbe_known_run *run, double degrees, bool extraordinary,
                               abbe_error *error) {
   abbe_known_stage stage;

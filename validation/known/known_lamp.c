@@ -9,7 +9,7 @@
 #include <stdio.h>
 
 typedef struct work {
-  double from, to; /* of the group */
+  double from, to; /* range of the group */
 } work;
 
 static const char reason[] = "as improbable as four standard errors, taken from the spread of the "

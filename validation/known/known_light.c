@@ -101,7 +101,7 @@ double abbe_known_sigmas(size_t passes) {
   return passes > 1 ? gsl_cdf_tdist_Qinv(tail, (double)passes - 1) : INFINITY;
 }
 
-/* Of all passes so far. */
+/* The value of all passes so far. */
 static abbe_result value_so_far(const abbe_tracer *tracer, const abbe_known_setting *s,
                                 double *value, abbe_error *error) {
   abbe_trace_statistics statistics;

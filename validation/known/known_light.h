@@ -41,8 +41,8 @@ typedef struct abbe_known_setting {
   uint64_t samples;
   size_t side;         /* pixels of the picture */
   const char *channel; /* whose mean over the picture is known; NULL: the flux that was met, W */
-  double (*weight)(double x, double y); /* of a pixel whose middle lies there, the picture reaching
-                                           from -1 to 1 both ways, y up; NULL: 1 */
+  double (*weight)(double x, double y); /* weight of a pixel whose middle lies there, the picture
+                                           reaching from -1 to 1 both ways, y up; NULL: 1 */
 } abbe_known_setting;
 
 /* Traces the scene pass by pass and adds a row: the tolerance is the setting's slack and four

@@ -53,8 +53,8 @@ typedef struct slab {
   bool below;                       /* the eye is under it and looks up */
 } slab;
 
-/* Of a beam of 1 W/m2: the integral over the depth of what is scattered there, weakened on both
- * ways. [Pbrt4] */
+/* The radiance from a beam of 1 W/m2: the integral over the depth of what is scattered there,
+ * weakened along both paths. [Pbrt4] */
 static double slab_radiance(const slab *s) {
   const double whole = s->scattering + s->absorption, depth = whole * s->thickness;
   const double sun = s->sun_deg / ABBE_KNOWN_DEGREES, view = s->view_deg / ABBE_KNOWN_DEGREES;

@@ -50,10 +50,10 @@ static abbe_result add_metals(abbe_known_run *run, abbe_error *error) {
 /* ---- whole runs ---- */
 
 typedef struct work {
-  double from, to; /* of the group */
+  double from, to; /* range of the group */
 } work;
 
-/* Of white receivers, whose caustic the picture shows. */
+/* For white receivers, whose caustic the picture shows. */
 static const abbe_known_setting caustic = {.unit = "W/(m2 sr)",
                                            .reason = "as improbable as four standard errors, taken "
                                                      "from the spread of the passes; and 1e-3 of "

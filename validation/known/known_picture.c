@@ -41,7 +41,7 @@ static const double centre[3] = {0, 0, -PLANE *RADIUS};
 
 static abbe_result load(const view_of *v, abbe_scene *scene, abbe_error *error) {
   char lamp[160], pane[300] = "";
-  const double light = v->light, q = 0.3; /* of the way to the plane's middle */
+  const double light = v->light, q = 0.3; /* share of the distance to the plane's middle */
   if (v->through)
     abbe_number_format(
         pane, sizeof pane,

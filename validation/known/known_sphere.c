@@ -22,7 +22,7 @@ enum {
 
 #define RADIUS 0.04 /* m */
 
-/* Of the flux that reaches the plane, what lies inside each ring's outer edge. */
+/* Shares of the flux that reaches the plane, inside each ring's outer edge. */
 static const double quantile[RINGS] = {0.1, 0.35, 0.6, 0.85};
 
 /* A sphere, a light and a plane; distances in radii from the centre. */
@@ -216,7 +216,7 @@ static abbe_result expect_white(const setting *s, const abbe_scene *scene, const
 }
 
 typedef struct share {
-  double from, to; /* of the group's work */
+  double from, to; /* range of the group's work */
 } share;
 
 static abbe_result run_setting(abbe_known_run *run, const setting *s, bool white, share done,

@@ -180,8 +180,9 @@ static abbe_result add_light(abbe_known_run *run, double depth, double from, dou
 
 /* ---- what is seen of it ---- */
 
-/* Of a beam at 60 degrees: Fresnel's shares on the way in and out, Beer's law along both ways, and
- * of radiance one part in n^2, for it spreads over more directions in air. [BornWolf1999, 4.8] */
+/* Rows of a beam at 60 degrees: Fresnel's shares on entry and exit, Beer's law along both paths,
+ * and one part in n^2 of the radiance, because it spreads over more directions in air.
+ * [BornWolf1999, 4.8] */
 static abbe_result add_seen(abbe_known_run *run, double from, double to, abbe_error *error) {
   const double angle = 60 / ABBE_KNOWN_DEGREES, depth = 0.1, middle_nm = 560;
   abbe_scene scene = {0};

@@ -65,7 +65,7 @@ static ray ray_at(const abbe_sphere_setup *s, branch way, double angle) {
     t = n == 1 ? angle : asin(sin_t);
     t_slope = n == 1 ? 1 : r.cos_i / (n * r.cos_t);
   }
-  double alpha = 0, alpha_slope = 0; /* of the incoming ray, from straight down */
+  double alpha = 0, alpha_slope = 0; /* angle of the incoming ray, from straight down */
   if (s->light_distance > 0) {
     double q = R / s->light_distance, cos_alpha = sqrt((1 - q * sin_i) * (1 + q * sin_i));
     alpha = asin(q * sin_i);

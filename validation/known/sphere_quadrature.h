@@ -25,10 +25,10 @@
 /* All zero but radius, index, plane_distance and power: a beam straight through. */
 typedef struct abbe_sphere_setup {
   double radius;             /* m, > 0 */
-  double index;              /* of the sphere relative to what surrounds it, 0.1 to 10 */
+  double index;              /* index of the sphere relative to what surrounds it, 0.1 to 10 */
   double light_distance;     /* m from the centre up to the point light, > radius; 0: a beam */
   double plane_distance;     /* m from the centre down to the plane, > radius */
-  double power;              /* of the beam, W/m2 across it; of the point, W/sr; >= 0 */
+  double power;              /* power of the beam, W/m2 across it; of the point, W/sr; >= 0 */
   double attenuation_per_m;  /* inside the sphere, natural, 1/m, >= 0 */
   size_t inner_orders;       /* light after 1, 2, ... this many reflections inside counts as well */
   bool without_direct_order; /* leave out what passes without a reflection inside */

@@ -28,7 +28,7 @@ static int compare_numbers(const void *a, const void *b) {
   return x < y ? -1 : x > y;
 }
 
-/* Of sorted numbers. */
+/* A quantile of sorted numbers. */
 static double quantile(const double *sorted, size_t count, double share) {
   return count == 0 ? NAN : sorted[(size_t)(share * (double)(count - 1) + 0.5)];
 }

@@ -18,21 +18,21 @@ typedef struct abbe_estimator_point {
   bool reflected;
   size_t iterations;
   size_t rays;
-  double median, p95, worst; /* of the place, in texels, of the rays that are found */
+  double median, p95, worst; /* errors of the place, in texels, of the rays that are found */
   double lost;               /* share of the rays for which nothing is found */
   double lookups, ns;        /* mean, of a ray; ns: on this processor, in double precision */
-  /* Of shah and axis with lookups of the triangles themselves: median ratio of successive errors,
-   * in size, and the median of what abbe_estimator_rate says for these rays; else NaN. */
+  /* For shah and axis with lookups of the triangles themselves: median ratio of successive errors,
+   * in size, and the median of abbe_estimator_rate for these rays; else NaN. */
   double rate, law;
 } abbe_estimator_point;
 
 typedef struct abbe_estimator_study {
-  size_t side, grid, hidden; /* of the rays */
+  size_t side, grid, hidden; /* numbers of the rays */
   size_t count;
   abbe_estimator_point point[ABBE_ESTIMATOR_STUDY_MAX];
 } abbe_estimator_study;
 
-/* Of the scene's first light, at 550 nm. Errors as of abbe_landing_rays_make. */
+/* Studies the scene's first light, at 550 nm. Errors as of abbe_landing_rays_make. */
 abbe_result abbe_estimator_study_make(const abbe_scene *scene, size_t side, size_t grid,
                                       abbe_estimator_study *out, abbe_error *error);
 

@@ -24,21 +24,21 @@ typedef struct abbe_landing_ray {
 } abbe_landing_ray;
 
 typedef struct abbe_landing_rays {
-  abbe_view view; /* of the light, around all objects; as square as the texture of places */
+  abbe_view view; /* view of the light, around all objects; as square as the texture of places */
   size_t side;
   double (*place)[3]; /* [side * side], rows upwards: what is seen at a texel's middle */
   bool *seen;         /* [side * side] whether anything is */
   abbe_bvh receivers;
-  double (*triangle)[9]; /* of the receivers */
+  double (*triangle)[9]; /* triangles of the receivers */
   size_t count;
   abbe_landing_ray *ray; /* [count] those that land where the light sees the place */
   size_t hidden;         /* that land where it does not, for nobody to find */
 } abbe_landing_rays;
 
-/* Of light `light` of the scene, at lambda_nm: a texture of side x side places (1 to 4096), a ray
- * for each of grid x grid cells (1 to 4096) of what the light sees of refractors and mirrors.
- * ABBE_UNSUPPORTED for a light with a size, and without refractors and mirrors or receivers;
- * ABBE_INVALID_ARGUMENT, ABBE_OUT_OF_RANGE of a material, ABBE_NO_MEMORY. */
+/* Makes rays of light `light` of the scene, at lambda_nm: a texture of side x side places (1 to
+ * 4096), a ray for each of grid x grid cells (1 to 4096) of what the light sees of refractors and
+ * mirrors. ABBE_UNSUPPORTED for a light with a size, and without refractors and mirrors or
+ * receivers; ABBE_INVALID_ARGUMENT, ABBE_OUT_OF_RANGE of a material, ABBE_NO_MEMORY. */
 abbe_result abbe_landing_rays_make(const abbe_scene *scene, size_t light, double lambda_nm,
                                    size_t side, size_t grid, abbe_landing_rays *out,
                                    abbe_error *error);

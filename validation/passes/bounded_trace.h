@@ -17,7 +17,7 @@ typedef struct abbe_bounded_trace_desc {
   size_t passes;         /* at least 1, of a filtered picture 2 */
   bool filtered;
   double max_error; /* mean CIEDE2000 in the caustic, by pass_error's bound; 0: none is asked for */
-  bool (*progress)(void *user, double done); /* of the passes under way; false stops; or NULL */
+  bool (*progress)(void *user, double done); /* progress of the passes; false stops; or NULL */
   void *user;
   const volatile int *stop; /* other than 0 stops a pass midway; or NULL */
 } abbe_bounded_trace_desc;

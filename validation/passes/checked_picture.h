@@ -37,11 +37,11 @@ bool abbe_time_left_holds(const abbe_time_left *left, double seconds);
 enum { ABBE_CHECKED_PICTURE_MOST_PASSES = 1024 };
 
 typedef struct abbe_checked_picture_desc {
-  abbe_trace_desc trace; /* of the picture's size, wavelengths and space; of a seed of its own where
-                            the picture is traced too */
+  abbe_trace_desc trace; /* with the picture's size, wavelengths and space; with a seed of its own
+                            where the picture is traced too */
   double max_error;      /* mean CIEDE2000 in the caustic, above 0 */
   bool only_check;       /* ends too once the picture is known not to keep it */
-  bool (*progress)(void *user, double done); /* of the passes under way; false stops; or NULL */
+  bool (*progress)(void *user, double done); /* progress of the passes; false stops; or NULL */
   void *user;
   const volatile int *stop; /* other than 0 stops a pass midway; or NULL */
   abbe_time_left left;      /* for all of this */
@@ -51,8 +51,8 @@ typedef struct abbe_checked_picture_desc {
 
 typedef struct abbe_checked_picture {
   size_t passes;          /* that tell; 0: none */
-  abbe_pass_error given;  /* of the picture, by the passes; NaN: they tell nothing */
-  abbe_pass_error traced; /* of the passes' own picture */
+  abbe_pass_error given;  /* error of the picture, by the passes; NaN: they do not show it */
+  abbe_pass_error traced; /* error of the passes' own picture */
   bool timed_out;         /* more passes would tell more, and there was no time for them */
 } abbe_checked_picture;
 

@@ -78,7 +78,7 @@ static double difference(const abbe_field *a, const abbe_field *b, const region 
   return abbe_difference_ciede2000(lab_a, lab_b);
 }
 
-/* Of pixels in the region: sum, sum of squares, number. */
+/* Sums over pixels in the region: sum, sum of squares, number. */
 typedef struct block {
   double sum, squares, count;
 } block;
@@ -114,8 +114,8 @@ static distance measure(const abbe_field *a, const abbe_field *b, const region *
   return (distance){sum / count, sqrt(squares) / count};
 }
 
-/* Of the parts, whose differences add in squares: as much of it is the first's as the others are
- * of all passes. */
+/* The error of the parts, whose differences add in squares: the first's share of it is the others'
+ * share of all passes. */
 static void tell_raw(const abbe_pass_pictures *p, distance d, abbe_pass_error *out) {
   const double first = (double)p->part_passes / (double)p->passes;
   out->bound = (d.mean + nine_of_ten * d.error) * sqrt(1 - first);

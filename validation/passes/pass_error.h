@@ -22,10 +22,10 @@ typedef struct abbe_pass_pictures {
 
 /* Mean CIEDE2000, at least 0. */
 typedef struct abbe_pass_error {
-  double estimate; /* of all passes, were their noise to fall as one over the root of their number;
-                      of a filtered picture one over the fourth root */
-  double bound;    /* of the first passes, and 1.28 standard errors of that: nine of ten pictures
-                      are nearer than this */
+  double estimate; /* for all passes, were their noise to fall as one over the root of their number;
+                      for a filtered picture one over the fourth root */
+  double bound; /* error of the first passes, and 1.28 standard errors of that: nine of ten pictures
+                   are nearer than this */
 } abbe_pass_error;
 
 /* Both NaN where nothing is lit through refractors, the picture is black, or a pixel of the caustic
@@ -35,10 +35,10 @@ typedef struct abbe_pass_error {
 abbe_result abbe_pass_error_make(const abbe_pass_pictures *pictures, abbe_pass_error *out,
                                  abbe_error *error);
 
-/* Of a picture that none of the passes made: held against all of them, whose own noise, as the
- * first and the others tell it, is taken off in squares. The region is the picture's own caustic.
+/* The error of a picture that none of the passes made: compared with all of them, whose own noise,
+ * from the first and the others, is taken off in squares. The region is the picture's own caustic.
  * The estimate and the bound are both of the picture as it is. Both NaN too where the first and the
- * others differ by over 12: too noisy to tell anything. Filtered pictures are not looked at. Errors
+ * others differ by over 12: too noisy to show anything. Filtered pictures are not looked at. Errors
  * as above. */
 abbe_result abbe_pass_error_of_picture(const abbe_pass_pictures *pictures,
                                        const abbe_image *picture, abbe_pass_error *out,

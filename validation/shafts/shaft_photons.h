@@ -26,7 +26,7 @@ typedef struct abbe_shaft_splat {
   float value; /* radiance that the pixel's mean gains */
 } abbe_shaft_splat;
 
-/* Of one light and one thread. What is above `add` is given; the rest starts zeroed. */
+/* Photons of one light and one thread. What is above `add` is given; the rest starts zeroed. */
 typedef struct abbe_shaft_photons {
   const abbe_geometry *geometry;
   const abbe_haze *haze;
@@ -34,7 +34,7 @@ typedef struct abbe_shaft_photons {
   int eye_medium; /* refractor that the eye is in, or -1 */
   float near;     /* frame: no nearer to the eye are places splatted */
   uint32_t pass, seed;
-  uint32_t colour; /* of the light's first step */
+  uint32_t colour; /* colour of the light's first step */
   void (*add)(void *user, const abbe_shaft_splat *splat);
   void *user;
   struct RTCRay16 packet; /* to the eye, of splats that wait */

@@ -27,7 +27,7 @@ static const char *const fill_names[] = {ABBE_FILLS(ABBE_NAME_OF)};
 static const char *const model_names[] = {ABBE_MODELS(ABBE_NAME_OF)};
 #undef ABBE_NAME_OF
 
-enum { MOST_PASSES = 65536 }; /* of the tracer */
+enum { MOST_PASSES = 65536 }; /* for the tracer */
 
 typedef struct reader {
   abbe_yaml *yaml;
@@ -185,7 +185,7 @@ typedef struct expansion {
   abbe_sweep_setting *list;
   size_t count, refused;
   abbe_error *why;
-  abbe_result traceable; /* of the scene, once it was asked */
+  abbe_result traceable; /* result for the scene, once it was checked */
   bool asked;
 } expansion;
 

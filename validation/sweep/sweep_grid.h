@@ -14,7 +14,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#define ABBE_SWEEP_MAX_VALUES 16 /* of one axis */
+#define ABBE_SWEEP_MAX_VALUES 16 /* values of one axis */
 
 /* Values of one axis; none: the profile's default. */
 typedef struct abbe_sweep_values {
@@ -26,7 +26,7 @@ typedef struct abbe_sweep_values {
 typedef struct abbe_sweep_grid {
   abbe_sweep_values profiles; /* abbe_profile, or one of those below */
   abbe_sweep_values wavelengths, photons, map, samples, upsample, exits, history;
-  abbe_sweep_values passes;     /* of the tracer; of it, photons count too, and nothing else */
+  abbe_sweep_values passes;     /* for the tracer; there photons count too, and nothing else */
   abbe_sweep_values fills;      /* abbe_fill */
   abbe_sweep_values models;     /* abbe_model */
   abbe_sweep_values polygons;   /* bits of ABBE_POLYGONS */
@@ -47,8 +47,8 @@ extern const char *const abbe_sweep_profiles[ABBE_SWEEP_PROFILE_COUNT];
 #define ABBE_SWEEP_TRACE_PASSES 4 /* where none are asked for, and of 512 x 512 photons */
 #define ABBE_SWEEP_TRACE_PHOTONS 512
 
-#define ABBE_SWEEP_MAX_GRIDS 8  /* of a file */
-#define ABBE_SWEEP_MAX_PARTS 64 /* of a named grid */
+#define ABBE_SWEEP_MAX_GRIDS 8  /* grids of a file */
+#define ABBE_SWEEP_MAX_PARTS 64 /* parts of a named grid */
 
 typedef struct abbe_sweep_named_grid {
   char name[16];

@@ -6,7 +6,7 @@
 #include "colorimetry/image/image.h"
 #include "scenes/scene.h"
 
-/* Of all that light meets: camera, lights, meshes, surfaces and materials. */
+/* The hash of all that light meets: camera, lights, meshes, surfaces and materials. */
 unsigned long long abbe_sweep_hash_scene(const abbe_scene *scene);
 /* Either may be NULL. */
 unsigned long long abbe_sweep_hash_images(const abbe_image *picture, const abbe_image *map);

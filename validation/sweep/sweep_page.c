@@ -64,11 +64,11 @@ static abbe_result draw(abbe_context *context, const abbe_scene *scene, const ab
 }
 
 typedef struct page {
-  const char *path; /* of the page */
+  const char *path; /* path of the page */
   FILE *out;
   abbe_context *context;
   abbe_sweep_number time, number;
-  int turn; /* of the table, among those of scenes of one name; from 1 */
+  int turn; /* number of the table, among those of scenes of one name; from 1 */
 } page;
 
 static const char *const names[PICTURES] = {"reference", "cheapest", "middle",

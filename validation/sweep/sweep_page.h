@@ -11,7 +11,7 @@
 #include "validation/sweep/sweep_reference.h"
 #include "validation/tradeoff/sweep_table.h"
 
-#define ABBE_SWEEP_PAGE_PICTURES 6 /* of a table, at the most */
+#define ABBE_SWEEP_PAGE_PICTURES 6 /* pictures of a table, at the most */
 
 /* Writes the page of tables[count], whose fronts of that time and that error are marked, and its
  * pictures. */

@@ -5,7 +5,7 @@
 #include "gl/accuracy/preset.h"
 #include "validation/tradeoff/sweep_table.h"
 
-/* Of one point of the front that the table has. */
+/* The promise of one point of the front that the table has. */
 typedef struct abbe_sweep_promise {
   const char *preset; /* its name, or "" */
   const abbe_sweep_row *row;

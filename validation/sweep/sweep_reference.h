@@ -19,7 +19,7 @@ typedef struct abbe_sweep_reference_desc {
   size_t passes;                             /* 0: ABBE_REFERENCE_PASSES */
   size_t photons;                            /* a pass; 0: the tracer's own number */
   size_t texels;                             /* a side of the map; 0: 256 */
-  uint32_t seed;                             /* of its noise */
+  uint32_t seed;                             /* seed of its noise */
   bool matched;                              /* physics that match the renderer's plan */
   bool (*progress)(void *user, double done); /* false stops; or NULL */
   void *user;

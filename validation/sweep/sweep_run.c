@@ -23,7 +23,7 @@ typedef struct work {
   abbe_sweep sweep;
   abbe_sweep_table table;
   const char *what;   /* under way */
-  double done, share; /* of it: before this row, and the row's */
+  double done, share; /* share of it: before this row, and the row's */
 } work;
 
 static bool go_on(void *user, double done) {

@@ -26,7 +26,7 @@ typedef struct abbe_sweep_request {
   /* A program whose whole processes are timed, warm ones of all rows, cold ones of each
    * contestant's own fronts of a frame's time and the caustic's errors; or NULL. */
   const char *run;
-  const char *materials, *backend; /* of these processes, as abbe_sweep_process_desc has them */
+  const char *materials, *backend; /* for these processes, as abbe_sweep_process_desc has them */
   size_t setting_count;
   const abbe_sweep_setting *setting;
   abbe_sweep_number time, error; /* that make the front; time: one of abbe_sweep_times */

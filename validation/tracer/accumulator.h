@@ -22,9 +22,9 @@
 /* Sums of whole numbers over passes: they have the same bits in whatever order, and on however
  * many machines, the passes were done. */
 
-#define ABBE_WHOLE_SUM_MOST_PASSES (1u << 20) /* of one picture */
-/* A sample is a whole number of no more bits than these, and a sign. A product of two has two digits
- * of as many bits, which are summed apart. So many samples and digits fit into 127 bits. */
+#define ABBE_WHOLE_SUM_MOST_PASSES (1u << 20) /* passes of one picture */
+/* A sample is a whole number of no more bits than these, and a sign. A product of two has two
+ * digits of as many bits, which are summed apart. So many samples and digits fit into 127 bits. */
 #define ABBE_WHOLE_SUM_BITS 104
 
 __extension__ typedef __int128 abbe_whole_sum;
@@ -35,7 +35,8 @@ static inline void abbe_whole_sum_add_product(abbe_whole_sum a, abbe_whole_sum b
                                               abbe_whole_sum sum[2]) {
   enum { HALF = ABBE_WHOLE_SUM_BITS / 2 };
   const uint64_t mask = ((uint64_t)1 << HALF) - 1;
-  const abbe_whole_size x = (abbe_whole_size)(a < 0 ? -a : a), y = (abbe_whole_size)(b < 0 ? -b : b);
+  const abbe_whole_size x = (abbe_whole_size)(a < 0 ? -a : a),
+                        y = (abbe_whole_size)(b < 0 ? -b : b);
   const uint64_t x0 = (uint64_t)x & mask, x1 = (uint64_t)(x >> HALF);
   const uint64_t y0 = (uint64_t)y & mask, y1 = (uint64_t)(y >> HALF);
   const abbe_whole_size cross = (abbe_whole_size)x0 * y1 + (abbe_whole_size)x1 * y0;
@@ -64,9 +65,9 @@ typedef struct abbe_accumulator {
   size_t threads;
   size_t passes; /* ended so far */
   double unit;   /* value of a whole number 1: 2^-93 of the power of two that is at least `most` */
-  double per_unit[2]; /* of the finer and the coarser unit */
-  double coarse;      /* smallest magnitude that the coarser one takes */
-  double limit;       /* largest magnitude that one addition keeps */
+  double per_unit[2];     /* for the finer and the coarser unit */
+  double coarse;          /* smallest magnitude that the coarser one takes */
+  double limit;           /* largest magnitude that one addition keeps */
   int64_t **adding[2];    /* [threads][values] the pass that is under way, in each unit */
   uint64_t *cut;          /* [threads] additions beyond the limit, cut to it */
   abbe_whole_sum *sum;    /* [values] over passes */

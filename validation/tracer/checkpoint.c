@@ -343,7 +343,7 @@ abbe_result abbe_checkpoint_load(abbe_tracer *t, const char *path, abbe_error *e
 /* Who has which pass: the number of a part, from 1 on; 0: nobody. */
 typedef struct parts {
   const char *const *path;
-  abbe_pass_counts *counts; /* of each */
+  abbe_pass_counts *counts; /* counts of each */
   uint32_t *owner;          /* [ABBE_WHOLE_SUM_MOST_PASSES] */
   size_t end;               /* behind the last pass that somebody has */
   size_t whole;             /* passes that there are to be, */

@@ -64,9 +64,10 @@ typedef struct block {
   abbe_projection_map_rays rays;
   const abbe_projection_map_cell *cell[LANES];
   uint32_t first;        /* photon of the first lane */
-  uint32_t place[LANES]; /* of the photons of its cell: which */
+  uint32_t place[LANES]; /* cells of its photons */
   double part[LANES];    /* 2^32 over their number */
-  float share[LANES];    /* of the light's photons that go to the cell, and their number: product */
+  float share[LANES]; /* share of the light's photons that go to the cell, and their number: product
+                       */
   float within[LANES], disk[2][LANES];
   uint32_t step[LANES];
 } block;

@@ -5,7 +5,7 @@
 
 enum { ADDED = ABBE_GUIDE_MEANS - ABBE_GUIDE_EYE };
 
-/* Of what is no colour; beyond the limit it is cut. */
+/* For what is no colour; beyond the limit it is cut. */
 static const double plain_unit = 0x1p-40, plain_limit = 0x1p20;
 
 abbe_result abbe_guide_sums_make(size_t pixels, double picture_unit, abbe_guide_sums *out,

@@ -151,7 +151,7 @@ static void add_splat(const sink *s, const splat *p) {
   abbe_reflected reflected;
   abbe_reflectance_find(&t->reflectance, l->surface, l->face, l->u, l->v, &reflected);
   const float kept = abbe_reflectance_at_step(&t->reflectance, &reflected, l->step);
-  /* of the light on its way to the eye */
+  /* along the light's path to the camera */
   float o[3], d[3], left = 1, square = 0;
   for (int k = 0; k < 3; k++) {
     o[k] = l->p[k];
@@ -410,7 +410,8 @@ static size_t land_trial(const abbe_tracer *t, const abbe_emission *e, abbe_phot
   return landed;
 }
 
-/* Of so many photons, where of the trial's so many landed: fewer where hardly any does. */
+/* Photons to follow, by how many of the trial's photons hit a receiver: fewer where hardly any
+ * does. */
 static size_t asked_for(size_t photons, size_t landed) {
   enum { ENOUGH = 16 };
   if (landed >= ENOUGH || photons <= SPLIT_TRIALS) return photons;

@@ -39,7 +39,7 @@ typedef struct abbe_map_texels {
                                        ABBE_MAP_TEXELS_NONE: the map does not hold the place */
 } abbe_map_texels;
 
-/* Of all lanes, which hold any numbers. */
+/* Finds the texels of all lanes, which hold any numbers. */
 void abbe_map_texels_find(const abbe_map_layout *layout, size_t width, size_t height,
                           abbe_map_texels *texels);
 

@@ -7,10 +7,11 @@
 #include "validation/tracer/tracer.h"
 
 typedef struct abbe_trace_run_desc {
-  size_t passes;  /* in all; 0: any number */
-  size_t whole;   /* of all parts together, which the checkpoint keeps; 0: it is not known */
-  double seconds; /* of this run, after which it ends with two passes or more; 0: any time */
-  double error;   /* abbe_tracer_error, below which it ends with four passes or more; 0: any */
+  size_t passes; /* in all; 0: any number */
+  size_t whole;  /* passes of all parts together, which the checkpoint keeps; 0: it is not known */
+  double
+      seconds;  /* duration of this run, after which it ends with two passes or more; 0: any time */
+  double error; /* abbe_tracer_error, below which it ends with four passes or more; 0: any */
   const char *checkpoint;                    /* a file; or NULL */
   double checkpoint_s;                       /* how often it is written */
   bool (*progress)(void *user, double done); /* false stops; or NULL */

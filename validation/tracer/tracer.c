@@ -33,7 +33,7 @@ static abbe_result check_count(const char *what, size_t value, size_t most, abbe
                         value, most);
 }
 
-/* Of the picture that photons are followed and gathered for. */
+/* Pixels of the picture that photons are followed and gathered for. */
 static size_t pixels_of(const abbe_trace_desc *d) {
   return d->whole_pixels > 0 ? d->whole_pixels : d->width * d->height;
 }

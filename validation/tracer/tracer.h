@@ -40,8 +40,8 @@ typedef struct abbe_trace_desc {
   size_t map_light;              /* whose light it holds */
   const abbe_map_layout *layout; /* NULL: fitted to where the light lands */
   double min_nm, max_nm;         /* 0: 380, 780 */
-  size_t bands;                  /* of the spectral output; 0: none */
-  abbe_rgb_space space;          /* of the picture */
+  size_t bands;                  /* number of bands of the spectral output; 0: none */
+  abbe_rgb_space space;          /* space of the picture */
   abbe_observer observer;        /* whose XYZ its colours and the map's are */
   size_t photons;                /* a pass; 0: 2^20, or four a pixel where that is more */
   /* Where all is one pixel of a larger picture: how many pixels that one has, and how many a side
@@ -64,9 +64,9 @@ typedef struct abbe_trace_statistics {
   abbe_light_ledger ledger;          /* W, mean over passes */
   uint64_t cuts;                     /* contributions too large to be kept whole */
   double radius;                     /* m, of the last gather; 0: none */
-  double faintest; /* of a picture: the brightness of the dimmest of the scene's lights that is not
-                      dark, of the brightest's; below ABBE_TRACER_FAINTEST its light may be lost in
-                      the sums */
+  double faintest; /* for a picture: the brightness of the dimmest of the scene's lights that is not
+                      dark, relative to the brightest's; below ABBE_TRACER_FAINTEST its light may be
+                      lost in the sums */
 } abbe_trace_statistics;
 
 /* ABBE_INVALID_ARGUMENT for a request outside the limits, ABBE_OUT_OF_RANGE for an index that is

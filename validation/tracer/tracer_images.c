@@ -53,11 +53,11 @@ enum {
 typedef struct channel_list {
   size_t count;
   char name[MAX_CHANNELS][NAME];
-  size_t value[MAX_CHANNELS]; /* of the sums' channels */
+  size_t value[MAX_CHANNELS]; /* values of the sums' channels */
   bool error[MAX_CHANNELS];
 } channel_list;
 
-/* Of one pass nothing tells how far off it is: then there is no channel for the errors. */
+/* With one pass the error is not known: then there is no channel for it. */
 static void add_channel(const abbe_tracer *t, channel_list *list, const char *prefix,
                         const char *name, size_t value, bool error) {
   if (error && abbe_tracer_passes(t) < 2) return;

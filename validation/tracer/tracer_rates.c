@@ -24,7 +24,7 @@ static double walk_seconds(abbe_tracer *t, const abbe_emission *e) {
   return end - start;
 }
 
-/* Of both kinds, so far. */
+/* The number of rays of both kinds, so far. */
 static uint64_t rays_of(const abbe_light_walk *walk) {
   return abbe_light_walk_rays(walk) + abbe_light_walk_lamp_rays(walk);
 }

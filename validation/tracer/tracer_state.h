@@ -22,7 +22,7 @@ enum {
   ABBE_GUIDE_NORMAL = 9,
   ABBE_GUIDE_DEPTH = 12,
   ABBE_GUIDE_MEANS = 13,
-  ABBE_GUIDE_SQUARES = 13,  /* of each mean; of two digits, as the products are */
+  ABBE_GUIDE_SQUARES = 13,  /* squares of each mean; of two digits, as the products are */
   ABBE_GUIDE_PRODUCTS = 39, /* RG, RB, GB of the photons, then of the eye */
   ABBE_GUIDE_VALUES = 51
 };
@@ -30,7 +30,7 @@ enum {
 /* A zeroed one is of no pixels. */
 typedef struct abbe_guide_sums {
   size_t pixels;
-  double unit;         /* of the colours: the picture's sums' */
+  double unit;         /* unit of the colours: the picture's sums' */
   float *adding;       /* [pixels][10] the pass that is under way, but for the photons */
   abbe_whole_sum *sum; /* [pixels][ABBE_GUIDE_VALUES] over passes, in units (accumulator.h) */
 } abbe_guide_sums;
@@ -49,8 +49,8 @@ void abbe_guide_sums_end_pass(abbe_guide_sums *g, const abbe_accumulator *pictur
 
 /* A mean over so many passes. */
 double abbe_guide_sums_mean(const abbe_guide_sums *g, size_t passes, size_t pixel, size_t mean);
-/* Of the means over so many passes, at least two: a mean's square of standard error, and the
- * covariance that product 0 to 5 tells. */
+/* A mean's square of standard error over so many passes, at least two, and the covariance by
+ * product 0 to 5. */
 double abbe_guide_sums_variance(const abbe_guide_sums *g, size_t passes, size_t pixel, size_t mean);
 double abbe_guide_sums_covariance(const abbe_guide_sums *g, size_t passes, size_t pixel,
                                   size_t product);
@@ -76,7 +76,7 @@ struct abbe_tracer {
   float (*colour)[3], (*white)[3]; /* in that space */
   abbe_projection_map *projection; /* [sampling.lights] */
   size_t *photons;                 /* [sampling.lights] a pass */
-  double photon_rays;              /* of them all, as far as a trial tells */
+  double photon_rays;              /* of them all, as far as a trial shows */
   unsigned *splits;                /* [sampling.lights] interfaces at which its paths are split */
   abbe_light_walk **walk;          /* [threads] */
   abbe_accumulator picture, map;
@@ -85,20 +85,20 @@ struct abbe_tracer {
   abbe_eye_walk eye;
   uint8_t *samples; /* [pixels] of the eye's, a pass; NULL: no glass to see */
   abbe_photon_grid grid;
-  abbe_grid_photon *landed; /* of the pass that is under way, where the eye needs them */
+  abbe_grid_photon *landed; /* hits of the pass that runs, where the camera needs them */
   size_t landed_room;
   abbe_haze_grid shafts;
   abbe_haze_photon *shaft; /* [shaft_count] of the pass, that haze scatters */
   size_t shaft_count;
-  float shaft_radius;       /* of the first gather in haze, frame */
+  float shaft_radius;       /* radius of the first gather in a medium, frame */
   bool stopped;             /* a pass, midway: its sums are cleared before the next */
   bool eye_gathers;         /* some pixel may show a receiver through or in a refractor */
-  float radius;             /* of the first gather, frame */
+  float radius;             /* radius of the first gather, frame */
   size_t first, pass, step; /* the first in the sums, the next one, and from one to the next */
   size_t whole;             /* passes of all parts together, as far as they were asked for; or 0 */
   double reach;             /* W that photons stand for, at the scale of the ledger's units */
   abbe_whole_sum ledger[ABBE_TRACER_LEDGER]; /* over passes */
-  uint64_t other_rays; /* of the walks: trials, and from before a checkpoint was taken up */
+  uint64_t other_rays; /* rays of the walks: trials, and from before a checkpoint was taken up */
   abbe_trace_statistics statistics; /* its ledger: of the pass that is under way */
 };
 
@@ -119,7 +119,7 @@ static inline void abbe_tracer_finish(const abbe_tracer *t, const float mixed[3]
                  : t->to_xyz[3 * k] * mixed[0] + t->to_xyz[3 * k + 1] * mixed[1] +
                        t->to_xyz[3 * k + 2] * mixed[2];
 }
-/* Of the ledger's sums, W. */
+/* The unit of the ledger's sums, W. */
 static inline double abbe_tracer_ledger_unit(const abbe_tracer *t) {
   return (t->reach > 0 ? t->reach : 1) * 0x1p-50;
 }

@@ -30,17 +30,17 @@ const char *abbe_baseline_key(const char *profile);
 
 /* NaN: not known, or never reached. */
 typedef struct abbe_baseline_comparison {
-  const abbe_sweep_row *baseline; /* of the thesis 7 wavelengths, 512 photons, map 1024, smear; of
-                                     caustics mapping 128 photons, map 768; of photons in
-                                     image space 1024, map 512, gather-light, with the longest
-                                     history that there is; NULL: no row, or the tracer, which has
-                                     no settings of its own */
-  double equal_error_speedup;     /* its time over the least time of an error no larger */
-  double equal_time_error_ratio;  /* the least error in a time no longer, over its error */
-  size_t front;                   /* points of the baseline's front; 0: no rows */
-  size_t beaten;                  /* of them, those that a setting beats in time and in error */
-  double front_speedup;           /* the least equal-error speedup over the front */
-  double front_ratio;             /* the largest equal-time error ratio over it */
+  const abbe_sweep_row
+      *baseline; /* for the thesis 7 wavelengths, 512 photons, map 1024, smear; for caustics mapping
+                    128 photons, map 768; for photons in image space 1024, map 512, gather-light,
+                    with the longest history that there is; NULL: no row, or the tracer, which has
+                    no settings of its own */
+  double equal_error_speedup;    /* its time over the least time of an error no larger */
+  double equal_time_error_ratio; /* the least error in a time no longer, over its error */
+  size_t front;                  /* points of the baseline's front; 0: no rows */
+  size_t beaten;                 /* number of those that a setting beats in time and in error */
+  double front_speedup;          /* the least equal-error speedup over the front */
+  double front_ratio;            /* the largest equal-time error ratio over it */
 } abbe_baseline_comparison;
 
 /* By one of abbe_sweep_times; rows that do not have it do not count. ABBE_NO_MEMORY. */

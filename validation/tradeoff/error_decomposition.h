@@ -16,12 +16,12 @@
 typedef struct abbe_error_decomposition {
   const abbe_sweep_row *row; /* the setting: the default profile's most accurate; NULL: none */
   double total, total_noise;
-  double model, model_noise;       /* matched physics against full */
-  double rest, rest_noise;         /* the setting against matched physics */
-  double with_fill, without_fill;  /* against matched physics, of one setting that has both */
-  double fewer_photons;            /* the rest with half the photons a side, or fewer */
-  double fewer_wavelengths;        /* the rest with half the wavelengths, or fewer */
-  double energy, model_energy;     /* of the map, against full: the setting's, and the model's */
+  double model, model_noise;      /* matched physics against full */
+  double rest, rest_noise;        /* the setting against matched physics */
+  double with_fill, without_fill; /* against matched physics, of one setting that has both */
+  double fewer_photons;           /* the rest with half the photons a side, or fewer */
+  double fewer_wavelengths;       /* the rest with half the wavelengths, or fewer */
+  double energy, model_energy; /* energy of the map, against full: the setting's, and the model's */
   double fill_invented, fill_lost; /* shares of the map's light, of the setting */
 } abbe_error_decomposition;
 

@@ -20,9 +20,10 @@ size_t abbe_pareto_front_mark(const double *cost, const double *error, size_t co
 size_t abbe_pareto_front_order(const double *cost, const double *error, size_t count,
                                size_t *order);
 
-/* Of a front in that order, given by its own costs and errors: where it bends most, the point
- * furthest below the straight line between its ends in logarithms (an error of 0 counts as 1e-12).
- * Without a bend, or with fewer than three points, the middle one: count / 2. */
+/* Where a front in that order, given by its costs and errors, bends most: the point furthest below
+ * the straight line between its ends in logarithms (an error of 0 counts as 1e-12). Without a bend,
+ * or with fewer than three points, the middle one: count
+ * 2. */
 size_t abbe_pareto_front_knee(const double *cost, const double *error, size_t count);
 
 /* The cheapest point of such a front whose error is at most 1 + slack times the least there is. */

@@ -33,7 +33,7 @@ typedef struct front {
   point *point;
   size_t points, *order, on_front;
   double *cost, *error; /* of all points, then of the front's */
-  size_t cheapest;      /* of the points: the one that costs are told by */
+  size_t cheapest;      /* the point that costs are relative to */
   bool (*is_fine)(const abbe_sweep_setting *setting);
 } front;
 
@@ -192,8 +192,8 @@ static void write_point(FILE *out, const point *p) {
       abbe_number_text(s->share, share), s->model, p->light_ms, p->eye_ms, p->error, p->least);
 }
 
-/* Of the front's points that are finer than the defaults, the cheapest that is as good as the best;
- * on_front where there is none. */
+/* Among the front's points that are finer than the defaults, the cheapest that is as good as the
+ * best; on_front where there is none. */
 static size_t find_accurate(const front *f) {
   double least = INFINITY;
   for (size_t i = 0; i < f->on_front; i++)

@@ -25,16 +25,17 @@
 
 /* One contestant's setting, every field resolved. Of the tracer's only photons and passes count. */
 typedef struct abbe_sweep_setting {
-  char profile[ABBE_SWEEP_WORD]; /* of the renderer, or one of the names above */
+  char profile[ABBE_SWEEP_WORD]; /* profile of the renderer, or one of the names above */
   size_t wavelengths, photons, map, samples, upsample;
   char fill[ABBE_SWEEP_WORD];
   char model[ABBE_SWEEP_WORD]; /* as it was asked for: "auto" is the plan's choice */
   double share;
   size_t exits;
-  size_t passes;  /* of the tracer, each of photons x photons photons; 0: the renderer's setting */
+  size_t passes;  /* passes of the tracer, each of photons x photons photons; 0: the renderer's
+                     setting */
   size_t history; /* frames that a picture is made of, where they follow one another; 1: its own */
-  char polygons[ABBE_SWEEP_WORDS]; /* of photons in image space, where they are of another kind than
-                                      its own: "even+culled"; else "" */
+  char polygons[ABBE_SWEEP_WORDS];  /* for photons in image space, where they are of another kind
+                                       than its own: "even+culled"; else "" */
   char direction[ABBE_SWEEP_WORDS]; /* that photons in image space take light from, where it is
                                        another than the profile's: "own"; else "" */
 } abbe_sweep_setting;
@@ -44,23 +45,24 @@ typedef struct abbe_sweep_setting {
  * reference's caustic light. */
 #define ABBE_SWEEP_NUMBERS(X)                                                                      \
   X(FRAME_MS, "frame_ms", "frame, ms")             /* median of the frames */                      \
-  X(FASTEST_MS, "fastest_ms", "fastest frame, ms") /* of them */                                   \
-  X(LIGHT_MS, "light_ms", "light's passes, ms")    /* of the median frame */                       \
+  X(FASTEST_MS, "fastest_ms", "fastest frame, ms") /* of the frames */                             \
+  X(LIGHT_MS, "light_ms", "light's passes, ms")    /* in the median frame */                       \
   X(EYE_MS, "eye_ms", "eye's passes, ms")                                                          \
   X(CAMERA_MS, "camera_ms", "frame after a camera's move, ms")                                     \
   X(BASELINE_MS, "baseline_ms", "surfaces alone, ms")        /* default profile */                 \
   X(WARM_MS, "warm_ms", "whole process, shaders cached, ms") /* median of processes */             \
   X(COLD_MS, "cold_ms", "whole process, no shader cached, ms")                                     \
-  X(PHOTONS_HIT, "photons_hit", "photons that meet refractors")          /* of all lights */       \
-  X(HIT_SHARE, "hit_share", "share of the first light's photons")        /* that do */             \
-  X(LAYERS, "polygon_layers", "polygons over a pixel, mean")             /* where there are */     \
-  X(OWN_DE, "own_de", "caustic, mean CIEDE2000 by its own halves")       /* traced */              \
-  X(AFTER_1, "after_1_de", "caustic, mean CIEDE2000 of the first frame") /* of a history, where */ \
-  X(AFTER_2, "after_2_de", "of the second frame") /* the scene is at rest */                       \
+  X(PHOTONS_HIT, "photons_hit", "photons that meet refractors")    /* photons of all lights */     \
+  X(HIT_SHARE, "hit_share", "share of the first light's photons")  /* that do */                   \
+  X(LAYERS, "polygon_layers", "polygons over a pixel, mean")       /* where there are */           \
+  X(OWN_DE, "own_de", "caustic, mean CIEDE2000 by its own halves") /* traced */                    \
+  X(AFTER_1, "after_1_de", "caustic, mean CIEDE2000 of the first frame") /* scene at rest */       \
+  X(AFTER_2, "after_2_de", "of the second frame")                        /* the same */            \
   X(AFTER_4, "after_4_de", "of the fourth frame")                                                  \
   X(AFTER_8, "after_8_de", "of the eighth frame")                                                  \
-  X(FILL_INVENTED, "fill_invented", "light that the fill adds, share of the map's") /* of the */   \
-  X(FILL_LOST, "fill_lost", "light that the fill drops, share of the map's") /* map before it */   \
+  X(FILL_INVENTED, "fill_invented",                                                                \
+    "light that the fill adds, share of the map's")                          /* of the map */      \
+  X(FILL_LOST, "fill_lost", "light that the fill drops, share of the map's") /* before it */       \
   X(MAP_SCALE, "map_scale", "factor on the map")          /* 1, or the best one */                 \
   X(MAP_RMSE, "map_rmse", "map's caustic, relative RMSE") /* X, Y, Z together */                   \
   X(MAP_RMSE_NOISE, "map_rmse_noise", "noise of it")                                               \
@@ -68,10 +70,10 @@ typedef struct abbe_sweep_setting {
   X(MAP_UV_NOISE, "map_uv_noise", "noise of it")                                                   \
   X(MAP_BANDS, "map_bands", "map's caustic, relative RMSE of the bands")                           \
   X(MAP_BANDS_NOISE, "map_bands_noise", "noise of it")                                             \
-  X(MAP_ENERGY, "map_energy", "map's energy ratio") /* of all its Y */                             \
+  X(MAP_ENERGY, "map_energy", "map's energy ratio") /* ratio of all its Y */                       \
   X(MAP_ENERGY_NOISE, "map_energy_noise", "noise of it")                                           \
   X(SCALE, "scale", "factor on the picture")                                                       \
-  X(CAUSTIC_DE, "caustic_de", "caustic, mean CIEDE2000") /* of the picture */                      \
+  X(CAUSTIC_DE, "caustic_de", "caustic, mean CIEDE2000") /* in the picture */                      \
   X(CAUSTIC_DE_NOISE, "caustic_de_noise", "noise of it")                                           \
   X(CAUSTIC_DE95, "caustic_de95", "caustic, 95 % CIEDE2000")                                       \
   X(CAUSTIC_DE95_NOISE, "caustic_de95_noise", "noise of it")                                       \
@@ -100,8 +102,8 @@ typedef enum abbe_sweep_number {
   X(PROGRAM, "program") /* with its version */                                                     \
   X(SCENE, "scene")     /* path */                                                                 \
   X(SCENE_HASH, "scene hash")                                                                      \
-  X(CLASS, "class")         /* of the scene: its hardest refractor */                              \
-  X(SIZE, "size")           /* of the picture, "512x512" */                                        \
+  X(CLASS, "class")         /* class of the scene: its hardest refractor */                        \
+  X(SIZE, "size")           /* size of the picture, "512x512" */                                   \
   X(REFERENCE, "reference") /* path of the picture */                                              \
   X(REFERENCE_MAP, "reference map")                                                                \
   X(REFERENCE_HASH, "reference hash")                                                              \
@@ -109,7 +111,7 @@ typedef enum abbe_sweep_number {
   X(FRAMES, "frames")   /* behind each median */                                                   \
   X(DEVICE, "device")   /* what draws */                                                           \
   X(MACHINE, "machine") /* the processor, and how many of its threads */                           \
-  X(DATE, "date")       /* of the first row */
+  X(DATE, "date")       /* date of the first row */
 
 typedef enum abbe_sweep_fact {
 #define ABBE_SWEEP_ENUM(code, name) ABBE_SWEEP_FACT_##code,

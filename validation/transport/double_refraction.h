@@ -22,7 +22,7 @@
 /* One way on from a face. */
 typedef struct abbe_wave_way {
   float d[3];   /* unit */
-  float share;  /* of the light that came, above 0 */
+  float share;  /* share of the light that came, above 0 */
   uint8_t wave; /* abbe_uniaxial_mode of the crystal that it goes on in; 0 in isotropic media */
   bool reflected;
 } abbe_wave_way;

@@ -27,7 +27,7 @@ typedef struct abbe_environment_light {
   float to_colour[9]; /* from RGB to the picture's space, white Y = 1; row-major */
   size_t ball_count;
   float (*ball)[4]; /* [ball_count] centre and radius, frame */
-  double area;      /* of all disks together, m2 */
+  double area;      /* area of all disks together, m2 */
   float far;        /* radius of the ball around the frame's origin that holds the scene, frame */
 } abbe_environment_light;
 
@@ -46,13 +46,13 @@ void abbe_environment_light_seen(const abbe_environment_light *light, const floa
 /* Density of abbe_environment_sample at the ray's unit direction, 1/sr. */
 float abbe_environment_light_pdf(const abbe_environment_light *light, const float d[3]);
 
-/* A direction to the environment, of u in [0, 1)^3 (the first of all bits of a double), its density,
- * 1/sr, and the radiance from there. */
+/* A direction to the environment, of u in [0, 1)^3 (the first of all bits of a double), its
+ * density, 1/sr, and the radiance from there. */
 void abbe_environment_light_sample(const abbe_environment_light *light, const double u[3],
                                    float d[3], float *pdf, float rgb[3]);
 
-/* A photon's ray of u in [0, 1)^6 (the first and the fourth of all bits of a double): it starts beyond everything, along unit d. rgb: the flux in W
- * if it were the only one. */
+/* A photon's ray of u in [0, 1)^6 (the first and the fourth of all bits of a double): it starts
+ * beyond everything, along unit d. rgb: the flux in W if it were the only one. */
 void abbe_environment_light_ray(const abbe_environment_light *light, const double u[6], float o[3],
                                 float d[3], float rgb[3]);
 

@@ -8,8 +8,8 @@
 #include "base/maths.h"
 #include "validation/transport/geometry.h"
 
-/* Of a light that is not directional, of u in [0, 1)^2; the place (frame). Returns W/sr along the
- * direction of full intensity, as of all of it. */
+/* The place (frame) of a light that is not directional, for u in [0, 1)^2. Returns W/sr along the
+ * direction of full intensity, as if the place were all of it. */
 static inline float abbe_lamp_place(const abbe_geometry *g, const abbe_light *light,
                                     const float u[2], float place[3]) {
   float power = (float)light->power;

@@ -10,7 +10,7 @@ static const abbe_object *object_of(const abbe_geometry *g, size_t refractor) {
   return &g->scene->object[g->refractor_object[refractor]];
 }
 
-/* Of crystals the axes have to be alike too, whichever way they point. */
+/* The axes of crystals have to be alike too, whichever way they point. */
 static bool is_same(const abbe_geometry *g, size_t a, size_t b) {
   const abbe_object *p = object_of(g, a), *q = object_of(g, b);
   double along = 0;

@@ -15,7 +15,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Of one: its facets and grooves (scenes/shapes/brushing.h), in the frame; x 0: smooth. */
+/* One mirror's facets and grooves (scenes/shapes/brushing.h), in the frame; x 0: smooth. */
 typedef struct abbe_mirror_lobe {
   float x, y, around, axis[3], centre[3];
 } abbe_mirror_lobe;
@@ -27,7 +27,7 @@ typedef struct abbe_mirrors {
   float (*nk)[2];         /* [count][steps + 1] at the steps' edges */
 } abbe_mirrors;
 
-/* Of the geometry's mirrors over the steps + 1 wavelengths lambda_nm, ascending. Errors as
+/* Tables of the geometry's mirrors over the steps + 1 wavelengths lambda_nm, ascending. Errors as
  * abbe_material_nk: ABBE_OUT_OF_RANGE where a metal is not known over all of them. */
 abbe_result abbe_mirrors_make(const abbe_geometry *geometry, const double *lambda_nm, size_t steps,
                               abbe_mirrors *out, abbe_error *error);
@@ -83,8 +83,8 @@ void abbe_mirrors_meet(const abbe_mirrors *m, size_t mirror, const float p[3], c
 float abbe_mirrors_scatter(const abbe_rough_hit *hit, const float u[2], float out[3], float *pdf,
                            float *cos_h);
 
-/* Of light from there, along -to: radiance by irradiance, 1/sr, of facets that reflect all; the
- * density of abbe_mirrors_scatter, and the cosine to the facet's normal. */
+/* The lobe of light from there, along -to: radiance by irradiance, 1/sr, of facets that reflect
+ * all; the density of abbe_mirrors_scatter, and the cosine to the facet's normal. */
 float abbe_mirrors_lobe(const abbe_rough_hit *hit, const float to[3], float *pdf, float *cos_h);
 
 #endif

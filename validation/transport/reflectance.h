@@ -43,7 +43,7 @@ abbe_result abbe_reflectance_make(const abbe_geometry *geometry,
                                   abbe_reflectance *out, abbe_error *error);
 void abbe_reflectance_free(abbe_reflectance *reflectance);
 
-/* Of a receiver at a place on a face. */
+/* Finds the reflectance of a receiver at a place on a face. */
 void abbe_reflectance_find(const abbe_reflectance *r, uint32_t surface, uint32_t face, float u,
                            float v, abbe_reflected *out);
 /* At a step of the sampling. */

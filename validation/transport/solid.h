@@ -23,7 +23,8 @@ struct abbe_geometry;
 typedef struct abbe_solid {
   bool sphere;
   float centre[3], radius;
-  size_t count;    /* of planes; a multiple of ABBE_SOLID_LANES: what fills it up is never met */
+  size_t
+      count; /* number of planes; a multiple of ABBE_SOLID_LANES: what fills it up is never met */
   float *plane[4]; /* [count] n . x = plane[3], n unit, outwards */
 } abbe_solid;
 

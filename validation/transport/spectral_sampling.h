@@ -21,7 +21,7 @@
 
 typedef struct abbe_spectral_sampling {
   abbe_observer observer; /* whose XYZ it is */
-  size_t steps;       /* ABBE_SPECTRAL_SAMPLING_STEPS */
+  size_t steps;           /* ABBE_SPECTRAL_SAMPLING_STEPS */
   double *lambda_nm;  /* [steps + 1], ascending: the ends of the steps; the first and last are the
                          range */
   size_t lights;      /* the scene's, and its environment last, if it has one */
@@ -34,7 +34,7 @@ typedef struct abbe_spectral_sampling_desc {
   abbe_observer observer;
   double min_nm, max_nm;
   double uniform; /* part of the density, 0.01 to 1 */
-  size_t bands;   /* of equal width over the range, up to a sixteenth of the steps; 0: none */
+  size_t bands;   /* bands of equal width over the range, up to a sixteenth of the steps; 0: none */
 } abbe_spectral_sampling_desc;
 
 /* For the scene's lights. ABBE_INVALID_ARGUMENT where a light is dark there, or invisible. */

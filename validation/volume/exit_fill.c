@@ -262,7 +262,8 @@ static abbe_result fill_node(fill *f, size_t node, abbe_error *error) {
   return ABBE_OK;
 }
 
-/* Of all that decides what the table is; media's and mirrors' numbers are of their wavelengths. */
+/* A key of all that decides what the table is; media's and mirrors' numbers are of their
+ * wavelengths. */
 static uint64_t key_of(const fill *f) {
   const abbe_caustic_volume *v = f->volume;
   uint64_t h = abbe_lone_object_key(f->lone, &f->media, &f->mirrors, ABBE_VOLUME_KEY);

@@ -32,7 +32,7 @@ typedef struct abbe_exit_fill_statistics {
   uint64_t rays;    /* that were followed */
   double carried;   /* share of the light that met the object and left it */
   double alone;     /* share of exits whose change with the light is not known */
-  size_t sequences; /* of facets, told apart */
+  size_t sequences; /* sequences of facets that differ */
   size_t maps;      /* that bring it onto itself */
 } abbe_exit_fill_statistics;
 
@@ -51,9 +51,10 @@ abbe_result abbe_exit_fill(const abbe_lone_object *lone, const abbe_exit_fill_de
  * outside, so that rays side by side decide alike.
  * */
 
-#define ABBE_EXIT_WALK_CHANCES 8 /* of decisions that are given; those after follow from the last  \
-                                  */
-#define ABBE_EXIT_WALK_MOST 64   /* interfaces; what is longer is dropped */
+#define ABBE_EXIT_WALK_CHANCES                                                                     \
+  8                            /* of decisions that are given; those after follow from the last    \
+                                */
+#define ABBE_EXIT_WALK_MOST 64 /* interfaces; what is longer is dropped */
 
 /* What is the same for all rays. */
 typedef struct abbe_exit_space {
@@ -66,7 +67,7 @@ typedef struct abbe_exit_space {
 typedef struct abbe_exit_start {
   float place[3];      /* frame: where it should meet the surface first */
   float way[3];        /* unit, into it */
-  uint32_t step;       /* of the media's wavelengths */
+  uint32_t step;       /* step of the media's wavelengths */
   const float *chance; /* [ABBE_EXIT_WALK_CHANCES] in [0, 1) */
 } abbe_exit_start;
 
@@ -74,26 +75,26 @@ typedef struct abbe_exit_end {
   float place[3], way[3]; /* frame; unit */
   float carried;   /* share of its light that gets there; 0: something stood before the place,
                       or none of it came out */
-  uint32_t facets; /* of what it met and whether it was reflected there: the same for the same
-                      sequence */
+  uint32_t facets; /* a digest of what it met and whether it was reflected there: the same for the
+                      same sequence */
 } abbe_exit_end;
 
 void abbe_exit_walk(const abbe_exit_space *space, const abbe_exit_start *start, abbe_exit_end *end);
 
 typedef struct abbe_exit_point {
   float place[3], normal[3]; /* frame; of the face, outwards */
-  uint32_t bin;              /* of ABBE_LIGHT_EXITS_BINS */
+  uint32_t bin;              /* one of ABBE_LIGHT_EXITS_BINS */
   float chance[ABBE_EXIT_WALK_CHANCES];
 } abbe_exit_point;
 
 typedef struct abbe_exit_points {
   size_t count;
   abbe_exit_point *point; /* [count] */
-  double area;            /* of the whole surface, m2: of an open mirror both sides */
+  double area;            /* area of the whole surface, m2: of an open mirror both sides */
 } abbe_exit_points;
 
-/* Of `count` points on all of the surface those that lie where the symmetry brings them, at least
- * one. Wavelengths by abbe_light_exits_chances. ABBE_GEOMETRY for a surface without area,
+/* Keeps, of `count` points on all of the surface, those that lie where the symmetry brings them, at
+ * least one. Wavelengths by abbe_light_exits_chances. ABBE_GEOMETRY for a surface without area,
  * ABBE_NO_MEMORY. */
 abbe_result abbe_exit_points_make(const abbe_lone_object *lone, const abbe_body_symmetry *symmetry,
                                   size_t count, double min_nm, double max_nm, uint32_t seed,

@@ -175,7 +175,7 @@ static abbe_result make_sheet(const abbe_lone_object *lone, sheet *out, double *
     inside += each * (n[0] * a[0] + n[1] * a[1] + n[2] * a[2]) / 3;
     out->upto[i] = sum += each;
   }
-  /* of a closed surface this is its volume */
+  /* for a closed surface this is its volume */
   out->open =
       s->kind == ABBE_GEOMETRY_MIRRORS && !s->sphere && !(fabs(inside) > 1e-4 * pow(sum, 1.5));
   const double unit = lone->geometry.unit;

@@ -359,7 +359,7 @@ static abbe_result fill_exits(fill *f, abbe_error *error) {
   return result;
 }
 
-/* Of all that decides what a node's values are. */
+/* A key of all that decides what a node's values are. */
 static uint64_t key_of(const fill *f) {
   const abbe_volume_fill_desc *d = &f->desc;
   const abbe_region_desc *r = &f->volume->region.desc;

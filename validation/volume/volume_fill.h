@@ -11,13 +11,13 @@
 #include "scenes/volume/caustic_volume.h"
 #include "validation/walks/photon.h"
 
-#define ABBE_VOLUME_FILL_MOST_PHOTONS (1u << 26) /* of a pass */
+#define ABBE_VOLUME_FILL_MOST_PHOTONS (1u << 26) /* photons of a pass */
 #define ABBE_VOLUME_FILL_MOST_PASSES 100000
 
 /* A zeroed one is a valid request but for the object. */
 typedef struct abbe_volume_fill_desc {
-  size_t object; /* of the scene: a refractor or a mirror */
-  size_t light;  /* of the scene, whose illuminant it is */
+  size_t object; /* the scene's: a refractor or a mirror */
+  size_t light;  /* the scene's, whose illuminant it is */
   abbe_volume_kind kind;
   size_t nodes;            /* 0: 162; of a ball 1, but for exits */
   size_t exits;            /* above 0: in place of values the rays of so many points, at most
@@ -27,7 +27,7 @@ typedef struct abbe_volume_fill_desc {
                               48 x 48 texels; outer 0: three radii of
                               the object, inner 0: just below its surface */
   bool joins;              /* cells are joined within the tolerance (volume_tree.h) */
-  double tolerance;        /* of unit irradiance; 0: those that are the same */
+  double tolerance;        /* tolerance of unit irradiance; 0: those that are the same */
   size_t photons;          /* a node and pass; 0: 2^18 */
   size_t passes;           /* 0: 4 */
   double until_error;      /* above 0: more passes, until a node's relative error is below */
@@ -43,17 +43,17 @@ typedef struct abbe_volume_fill_desc {
 } abbe_volume_fill_desc;
 
 typedef struct abbe_volume_fill_statistics {
-  size_t passes; /* of all nodes */
+  size_t passes; /* passes of all nodes */
   uint64_t photons;
   size_t joint_bytes; /* that the joint values take; else 0 */
   double seconds;     /* wall time */
-  double carried;     /* of exits: see abbe_exit_fill_statistics, whose rays photons is */
+  double carried;     /* for exits: see abbe_exit_fill_statistics, whose rays photons is */
   double alone;
   size_t sequences, maps;
   double error; /* relative standard error, root mean square over nodes; NaN of a pass */
   abbe_light_ledger ledger; /* W for unit irradiance, mean over nodes */
-  double outflow[2];        /* of shells, vector: of Y, least and greatest over nodes and shells
-                               beyond the object, as a share of what left it; else 0 */
+  double outflow[2]; /* for shells, vector: Y, least and greatest over nodes and shells beyond the
+                        object, as a share of what left it; else 0 */
 } abbe_volume_fill_statistics;
 
 /* ABBE_INVALID_ARGUMENT for what is outside the limits, a receiver, and a scene without lights;

@@ -13,7 +13,7 @@
 
 typedef struct abbe_trace_camera {
   float eye[3], right[3], up[3], forward[3]; /* frame; unit */
-  float half_width, half_height;             /* of the film */
+  float half_width, half_height;             /* half sizes of the film */
   size_t width, height;                      /* pixels */
   float pixel_area;                          /* on the film */
 } abbe_trace_camera;

@@ -72,8 +72,8 @@ static void add_environment(const abbe_eye_context *c, const abbe_eye_path *p, c
 typedef struct gathering {
   const abbe_eye_context *c;
   const abbe_eye_path *p;
-  const abbe_reflected *reflected; /* of a receiver */
-  int medium;                      /* of a haze */
+  const abbe_reflected *reflected; /* table of a receiver */
+  int medium;                      /* medium that scatters */
   float from;                      /* where the haze begins on the path */
   float sum[3];
   float band[ABBE_BANDS_MAX];

@@ -13,7 +13,7 @@
  * wavelength. */
 typedef struct abbe_eye_path {
   float o[3], d[3];
-  float share;   /* of its light, all wavelengths alike */
+  float share;   /* share of its light, all wavelengths alike */
   float branch;  /* that part of it which interfaces inside the glass left */
   float tint[3]; /* a colour on top of that */
   bool dispersed;
@@ -54,8 +54,8 @@ static inline void abbe_eye_random4(const abbe_eye_context *c, uint32_t a, uint3
 void abbe_eye_arrive(const abbe_eye_context *context, const abbe_eye_path *path, bool met,
                      const abbe_hit *hit, bool straight);
 
-/* What haze on the path's way of that length, or INFINITY, adds to the sample and takes of the path.
- * Where its coefficients vary over wavelength the path is dispersed. straight: as above. */
+/* What haze on the path's way of that length, or INFINITY, adds to the sample and takes of the
+ * path. Where its coefficients vary over wavelength the path is dispersed. straight: as above. */
 void abbe_eye_haze(const abbe_eye_context *context, abbe_eye_path *path, float length,
                    bool straight);
 /* What a rough mirror shows of lamps and the environment that it sees straight: of what comes to it

@@ -48,10 +48,10 @@ typedef struct abbe_eye_walk {
                          interfaces */
   const uint8_t *samples;       /* [pixels] of each pixel in a pass; NULL: one */
   const abbe_photon_grid *grid; /* NULL: no photons */
-  float radius;                 /* of the gather, frame */
+  float radius;                 /* radius of the gather, frame */
   double window_nm;             /* half the range of wavelengths that a dispersed path gathers */
-  const abbe_haze_grid *shafts; /* of photons that haze scatters; NULL: none */
-  float shaft_radius;           /* of their gather, frame */
+  const abbe_haze_grid *shafts; /* grid of photons that a medium scatters; NULL: none */
+  float shaft_radius;           /* radius of their gather, frame */
   float shaft_near; /* as far as this the eye gathers those that it sees straight, by a quarter of
                        the radius, frame */
 } abbe_eye_walk;
@@ -61,7 +61,7 @@ typedef struct abbe_eye_sample {
   float caustic[3];           /* the part that came to its receiver through a refractor */
   float band[ABBE_BANDS_MAX]; /* W/(m2 sr nm) */
   float albedo[3];            /* reflectance of what shows, by each path's share of the pixel */
-  float normal[3];            /* of what the ray meets first, towards the eye; none: 0 */
+  float normal[3];            /* normal of what the ray meets first, towards the camera; none: 0 */
   float depth;                /* along the ray to there, frame; none: 0 */
   bool refractor;             /* the pixel's ray met one, or a mirror, first */
   uint32_t rays;

@@ -8,7 +8,7 @@
 #include <string.h>
 
 enum { LANES = ABBE_SOLID_LANES, IDLE = -1 };
-static const float least = 0.05f; /* of its light, below which the roulette decides */
+static const float least = 0.05f; /* share of its light, below which the roulette decides */
 
 /* glibc's own, for many numbers side by side. */
 #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && defined(NDEBUG)
@@ -20,7 +20,7 @@ typedef struct lanes {
   __attribute__((aligned(64))) float p[3][LANES];
   float d[3][LANES], eta[LANES], attenuation[LANES], flux[LANES], full[LANES], y[LANES];
   uint32_t id[LANES], steps[LANES];
-  /* of the bounce */
+  /* for the bounce */
   float n[3][LANES], t[LANES], share[LANES], left[LANES];
   float absorbed[LANES], second[LANES];
   float out[3][LANES], from[3][LANES];

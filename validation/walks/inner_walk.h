@@ -35,7 +35,7 @@ typedef struct abbe_inner_path {
   float flux, full;    /* W, and W at the start: less than a twentieth of it goes by roulette */
   float y;             /* Y of a watt, for the ledger */
   float carried;       /* matched: share of the light that a splitting path would carry */
-  uint32_t id, steps;  /* of its random numbers; interfaces met so far, at least 1 */
+  uint32_t id, steps;  /* number of its random numbers; interfaces met so far, at least 1 */
   uint32_t inner;      /* matched: interfaces met after the first */
   float second_chance; /* out, of a path that came with one step: of the way taken at its next */
   abbe_inner_end end;  /* out */

@@ -2,7 +2,7 @@
 
 #include "validation/transport/side_by_side.h"
 
-enum { FEW_FACES = 256 /* of receivers, held against each other */ };
+enum { FEW_FACES = 256 /* faces of receivers, compared with each other */ };
 
 static float above(const float n[3], const float a[3], const float p[3]) {
   return n[0] * (p[0] - a[0]) + n[1] * (p[1] - a[1]) + n[2] * (p[2] - a[2]);

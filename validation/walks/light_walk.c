@@ -39,9 +39,9 @@ struct abbe_light_walk {
   abbe_physics physics;
   uint32_t seed;
   uint64_t rays;
-  ray_batch *batch, *next; /* of this bounce and of the next */
+  ray_batch *batch, *next; /* rays of this bounce and of the next */
   inner_batch *inner;
-  uint32_t shift[4]; /* of the pass's even decisions */
+  uint32_t shift[4]; /* shifts of the pass's even decisions */
   unsigned splits;   /* interfaces at which paths are split, a bit each */
   bool small;        /* so few faces that packets stay together wherever their rays go */
   bool *hidden;      /* [lights] abbe_lamp_is_hidden */

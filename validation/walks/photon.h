@@ -12,7 +12,7 @@ typedef struct abbe_photon {
   float o[3], d[3]; /* frame; d unit */
   float flux;       /* W */
   float y;          /* Y of a watt at its wavelength, for the ledger; mean 1 */
-  uint32_t step;    /* of the spectral sampling */
+  uint32_t step;    /* step of the spectral sampling */
   float within;     /* place in the step, [0, 1) */
   uint32_t id;      /* its random numbers; unique in its pass, and next to its neighbours' */
 } abbe_photon;
@@ -24,7 +24,7 @@ typedef struct abbe_light_stretch {
   float flux;   /* as it sets out, W */
   uint32_t step;
   float within;
-  uint32_t id, steps; /* of the photon; interfaces met so far */
+  uint32_t id, steps; /* number of the photon; interfaces met so far */
   int medium;         /* the refractor that it is in, or -1: the air */
 } abbe_light_stretch;
 

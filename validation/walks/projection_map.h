@@ -22,7 +22,7 @@
 
 typedef struct abbe_projection_map_cell {
   uint16_t x, y;
-  float share; /* of the light's photons; 1 over all cells */
+  float share; /* share of the light's photons; 1 over all cells */
 } abbe_projection_map_cell;
 
 typedef struct abbe_projection_map {
@@ -30,8 +30,8 @@ typedef struct abbe_projection_map {
   bool parallel;                  /* a directional light */
   float origin[3];                /* frame: of the light, or of the plane's middle */
   float right[3], up[3], way[3];  /* unit; way: the plane's middle */
-  float low, step;                /* of both axes: plane = low + step * (cell + place in it) */
-  float measure;                  /* of a cell: sr, or m2 */
+  float low, step;                /* for both axes: plane = low + step * (cell + place in it) */
+  float measure;                  /* measure of a cell: sr, or m2 */
   double reach;                   /* W that all cells hold, before anything is met */
   float radius;                   /* frame: of a disk light, or around a rectangle */
   float edge[2][3];               /* frame: half of a rectangle's sides */
@@ -41,8 +41,8 @@ typedef struct abbe_projection_map {
   abbe_projection_map_cell *cell; /* [count] along a Z-order curve: neighbours stay together */
 } abbe_projection_map;
 
-/* Of one of the scene's lights, which outlives it. ABBE_NO_MEMORY, ABBE_CANCELLED by the thread's
- * watch (base/thread/watch.h). */
+/* Makes the map of one of the scene's lights, which outlives it. ABBE_NO_MEMORY, ABBE_CANCELLED by
+ * the thread's watch (base/thread/watch.h). */
 abbe_result abbe_projection_map_make(const abbe_geometry *geometry, size_t light,
                                      abbe_projection_map *out, abbe_error *error);
 void abbe_projection_map_free(abbe_projection_map *map);

@@ -13,7 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define ABBE_RAY_LANES 16 /* of a packet */
+#define ABBE_RAY_LANES 16 /* rays of a packet */
 
 /* What all rays of the packets have in common; they are zeroed before. */
 static inline void abbe_ray_prepare(struct RTCRayHit16 *packets, size_t count) {

@@ -22,15 +22,15 @@ typedef enum abbe_route_event {
 
 typedef struct abbe_route_vertex {
   abbe_route_event event;
-  size_t object; /* of the scene; (size_t)-1: escaped */
+  size_t object; /* index in the scene; (size_t)-1: escaped */
   double position[3];
   double normal[3];    /* unit, outwards */
   double direction[3]; /* unit, after the event */
   double distance;     /* from the vertex before, m; infinite: escaped */
-  double cos_in;       /* of the angle of incidence, 0 to 1 */
+  double cos_in;       /* cosine of the angle of incidence, 0 to 1 */
   double reflectance;  /* Fresnel's, unpolarised; 0 where nothing refracts */
   double inside_n;     /* index along the way to this vertex; in a crystal the ordinary one */
-  double share;        /* of the light that goes on this way; 1 at the end */
+  double share;        /* share of the light that takes this path; 1 at the end */
   bool extraordinary;  /* it goes on as a crystal's extraordinary wave */
 } abbe_route_vertex;
 

@@ -13,12 +13,12 @@
 /* What the residual is to; all absent: the record as it was opened. */
 typedef struct abbe_edit_source {
   const abbe_index_points *points; /* measured */
-  const abbe_material *material;   /* of another table */
-  const char *name;                /* of either, for its caption */
+  const abbe_material *material;   /* a row of another table */
+  const char *name;                /* name of either, for its caption */
 } abbe_edit_source;
 
 typedef struct abbe_edit_screen {
-  const char *path; /* of the table, for the title */
+  const char *path; /* path of the table, for the title */
   abbe_record_draft *draft;
   abbe_edit_source source;
   const abbe_material_table *known; /* for the warnings; may be NULL */

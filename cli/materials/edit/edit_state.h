@@ -18,7 +18,7 @@ typedef struct abbe_edit_state {
   char input[ABBE_EDIT_MAX_INPUT]; /* while editing */
   size_t length, cursor;           /* bytes */
   char message[1024];
-  abbe_material preview; /* of what is being typed */
+  abbe_material preview; /* the record with what is being typed */
   bool has_preview;
 } abbe_edit_state;
 

@@ -97,7 +97,7 @@ static void draw_cells(const abbe_edit_state *a, const abbe_text_plot *plot, int
 /* What one plot shows; before and points may be NULL. */
 typedef struct plot_content {
   const char *caption, *format;   /* format: of the ends of its height */
-  double least_span;              /* of its height: rounding errors are no curve */
+  double least_span;              /* share of its height: rounding errors are no curve */
   const double *x, *now, *before; /* [SAMPLES + 1] */
   const abbe_index_points *points;
   const double *point_y; /* [points->count] */

@@ -99,7 +99,7 @@ void abbe_view_sight_follow(const abbe_scene *scene, const double eye[3], const 
   }
 }
 
-#define SAME_PLANE 1e-6 /* of normals, and of places over the object's size */
+#define SAME_PLANE 1e-6 /* difference of normals, and of places over the object's size */
 
 /* A photon that lands there. */
 typedef struct abbe_view_landed {
@@ -200,7 +200,7 @@ static abbe_result add_landed(abbe_view_feed *feed, const abbe_view_hits *h, siz
   double origin[3], direction[3];
   abbe_view_ray(&h->view, uv, origin, direction);
   landed *all = feed->landed;
-  for (size_t i = 0; i < feed->photons; i++) /* of a batch before */
+  for (size_t i = 0; i < feed->photons; i++) /* photons of a batch before */
     if (memcmp(all[i].origin, origin, sizeof origin) == 0 &&
         memcmp(all[i].direction, direction, sizeof direction) == 0) {
       all[i].flux += flux;

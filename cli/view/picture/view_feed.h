@@ -23,7 +23,7 @@ enum { ABBE_VIEW_SIGHT_PLACES = 24 };
 
 typedef struct abbe_view_met {
   const abbe_object *object; /* NULL: nothing */
-  size_t index, face;        /* of the scene; of its mesh */
+  size_t index, face;        /* index in the scene; face in its mesh */
   double distance;           /* infinite where nothing is met */
 } abbe_view_met;
 
@@ -31,7 +31,7 @@ typedef struct abbe_view_sight {
   double nm;
   size_t count; /* interfaces that were met, then where it ends */
   double place[ABBE_VIEW_SIGHT_PLACES][3];
-  double length; /* of the whole way, m */
+  double length; /* length of the whole path, m */
   bool lands;    /* on a receiver: the last place */
 } abbe_view_sight;
 
@@ -44,14 +44,14 @@ enum { ABBE_VIEW_FEED_RAYS = 192, ABBE_VIEW_FEED_FACETS = 6, ABBE_VIEW_FEED_EDGE
 
 typedef struct abbe_view_ray_in {
   double entry[3], light[3]; /* on the refractor or mirror; where the ray began */
-  double share;              /* of the flux of all photons that were found */
-  size_t facet;              /* of those below; their count: of a lesser one */
+  double share;              /* share of the flux of all photons that were found */
+  size_t facet;              /* index of those below; their count: of a lesser one */
 } abbe_view_ray_in;
 
 typedef struct abbe_view_facet {
-  size_t object;            /* of the scene */
+  size_t object;            /* index in the scene */
   double normal[3], offset; /* n . x = offset, m */
-  double share;             /* of the rays followed */
+  double share;             /* share of the rays followed */
 } abbe_view_facet;
 
 typedef struct abbe_view_feed {
@@ -59,7 +59,7 @@ typedef struct abbe_view_feed {
   bool on_refractor;       /* the place that was asked for lies on one, where no photon lands: */
   abbe_view_sight sight;   /* through it to the point */
   size_t photons;          /* that light it, at any wavelength */
-  size_t ray_count;        /* of these, the strongest that meet one */
+  size_t ray_count;        /* number of these, the strongest that meet one */
   abbe_view_ray_in ray[ABBE_VIEW_FEED_RAYS];
   size_t facet_count; /* the strongest */
   abbe_view_facet facet[ABBE_VIEW_FEED_FACETS];

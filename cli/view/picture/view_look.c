@@ -41,7 +41,7 @@ static size_t wavelength_before(const abbe_render_desc *desc, double nm) {
   return (size_t)(fmin(fmax(share, 0), 1) * (double)(desc->wavelengths - 1));
 }
 
-/* Of all lights: a batch about a wavelength, or all of them. */
+/* Adds all lights: a batch about a wavelength, or all of them. */
 static abbe_result add_lights(abbe_renderer *renderer, double nm, bool all, volatile int *stop,
                               abbe_view_feed *feed, abbe_error *error) {
   const abbe_plan *plan = abbe_renderer_plan(renderer);

@@ -23,7 +23,7 @@ abbe_result abbe_view_look_closer(abbe_context *context, const abbe_renderer *re
                                   const abbe_scene *scene, const double point[3], double radius,
                                   double nm, volatile int *stop, abbe_view_feed *out,
                                   abbe_error *error);
-/* Of the first light from which photons start; zeroed where there is none. Errors of
+/* The map of the first light from which photons start; zeroed where there is none. Errors of
  * abbe_renderer_read_map. */
 abbe_result abbe_view_look_map(abbe_renderer *renderer, abbe_image *out, abbe_error *error);
 

@@ -24,7 +24,7 @@ static bool is_wanted(void *user) {
   return !atomic_load(&p->stops);
 }
 
-/* Of the thread, which holds the lock. */
+/* The painter's thread, which holds the lock. */
 static void paint(abbe_view_painter *p) {
   const abbe_view_painting *g = &p->painting;
   abbe_error error = {0};

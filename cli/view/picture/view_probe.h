@@ -16,8 +16,8 @@ typedef struct abbe_view_probe {
   double xy[2], uv[2]; /* CIE 1931 x, y and 1976 u', v' */
   double dominant_nm;  /* where the line from D65's white meets the locus; below 0: the complement,
                           on the line of purples; 0: too near to white to tell */
-  double purity;       /* of excitation, 0 to 1 */
-  size_t bands;        /* of the traced picture; 0: none yet */
+  double purity;       /* purity of excitation, 0 to 1 */
+  size_t bands;        /* bands of the traced picture; 0: none yet */
   double nm[ABBE_VIEW_PROBE_BANDS];       /* their middles */
   double radiance[ABBE_VIEW_PROBE_BANDS]; /* W/(m2 sr nm) */
   double stderr_of[ABBE_VIEW_PROBE_BANDS];

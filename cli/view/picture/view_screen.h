@@ -10,9 +10,9 @@
 
 /* Zeroed but for gl: no picture. */
 typedef struct abbe_view_screen {
-  const abbe_gl *gl; /* of the window's context, which is current in all of these */
+  const abbe_gl *gl; /* functions of the window's context, which is current in all of these */
   unsigned texture, framebuffer;
-  size_t width, height; /* of the texture */
+  size_t width, height; /* size of the texture */
   size_t side;          /* pixels of the window that one of it is, each way, */
   size_t seen[2];       /* and how many of these are the picture, across and down */
 } abbe_view_screen;

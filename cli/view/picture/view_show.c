@@ -87,7 +87,8 @@ static void put_colour(abbe_colour_map map, double t, unsigned char out[4]) {
   out[3] = 255;
 }
 
-/* Of the rendered picture, a decade for each third, up to what the exposure has as white. */
+/* Shows the rendered picture's luminance, a decade for each third, up to what the exposure has as
+ * white. */
 static void show_luminance(const abbe_view_pictures *p, double gain, unsigned char *out) {
   size_t channel[3];
   double weight[3];

@@ -9,7 +9,7 @@
 #include "colorimetry/image/display_table.h"
 #include "colorimetry/image/image.h"
 
-/* Of differences: that share of the mean Y of the traced picture is full red or blue. Of errors:
+/* For differences: that share of the mean Y of the traced picture is full red or blue. For errors:
  * from the one to the other share of the mean, a decade for each third. */
 #define ABBE_VIEW_FULL_DIFFERENCE 0.25
 #define ABBE_VIEW_LEAST_ERROR 0.001

@@ -53,7 +53,7 @@ static abbe_result add_pass(abbe_tracer *tracer, const volatile int *stop, doubl
   const double n = (double)++out->passes;
   for (size_t k = 0; k < out->bands; k++) {
     const double one = n * mean[k] - (n - 1) * before[k];
-    squares[k] += (one - before[k]) * (one - mean[k]); /* of differences from the mean */
+    squares[k] += (one - before[k]) * (one - mean[k]); /* squares of differences from the mean */
     before[k] = mean[k];
   }
   return ABBE_OK;

@@ -19,9 +19,9 @@ typedef struct abbe_view_spot {
   double stderr_of[ABBE_VIEW_SPOT_BANDS];
 } abbe_view_spot;
 
-/* Of the scene's picture of width x height pixels; at least four passes, and more until so many
- * seconds are over, up to 16. ABBE_CANCELLED where *stop (may be NULL) becomes other than 0; errors
- * of abbe_tracer_make. */
+/* Traces a pixel of the scene's picture of width x height pixels; at least four passes, and more
+ * until so many seconds are over, up to 16. ABBE_CANCELLED where *stop (may be NULL) becomes other
+ * than 0; errors of abbe_tracer_make. */
 abbe_result abbe_view_spot_trace(const abbe_scene *scene, size_t width, size_t height,
                                  const size_t pixel[2], double seconds, const volatile int *stop,
                                  abbe_view_spot *out, abbe_error *error);

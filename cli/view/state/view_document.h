@@ -18,7 +18,7 @@
 #define ABBE_VIEW_MOST_STEPS 256 /* back */
 
 typedef struct abbe_view_document {
-  char *path;                /* of the scene file, or of a stone's: */
+  char *path;                /* path of the scene file, or of a stone's: */
   const abbe_studio *studio; /* how that is shown; borrowed, and NULL of a scene */
   size_t set_count;
   char *set[ABBE_VIEW_MOST_CHANGES];     /* "KEY=VALUE" */

@@ -9,8 +9,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#define ABBE_VIEW_EVENT_MOST_PIXELS 4096  /* of a window's side */
-#define ABBE_VIEW_EVENT_MOST_CLICKS 100.0 /* of a wheel */
+#define ABBE_VIEW_EVENT_MOST_PIXELS 4096  /* pixels of a window's side */
+#define ABBE_VIEW_EVENT_MOST_CLICKS 100.0 /* clicks of a wheel */
 enum { ABBE_VIEW_MOST_EVENTS = 4096 };    /* that wait */
 
 typedef enum abbe_view_event_kind {

@@ -30,7 +30,7 @@ static const struct {
     {"ring", "major", "major radius", "mm", 1e3, 0, 0.005, 0.2},
     {"ring", "minor", "minor radius", "mm", 1e3, 0, 0.001, 0.05},
     {"prism", "apex", "apex angle", "\u00b0", 1, 60, 10, 90},
-    {NULL, "fit", "longest side", "mm", 1e3, 0, 0.001, 0.1}, /* of whatever has one */
+    {NULL, "fit", "longest side", "mm", 1e3, 0, 0.001, 0.1}, /* for whatever has one */
 };
 
 /* Values that set nothing but a size, which is that of `fit` where there is one. */

@@ -12,7 +12,7 @@
 #include "scenes/scene.h"
 
 #define ABBE_VIEW_MOST_OBJECTS 64 /* that can be taken hold of; more are left alone */
-#define ABBE_VIEW_MOST_VALUES 6   /* of a shape */
+#define ABBE_VIEW_MOST_VALUES 6   /* values of a shape */
 #define ABBE_VIEW_MOST_STONES 512 /* and as many metals */
 enum { ABBE_VIEW_NAME = 80, ABBE_VIEW_KEY = 128 };
 
@@ -28,7 +28,7 @@ typedef struct abbe_view_light {
   char name[ABBE_VIEW_NAME], key[ABBE_VIEW_KEY]; /* "lights.lamp" */
   abbe_light_kind kind;
   bool placed;        /* it has a position or a direction, which may be set */
-  double position[3]; /* of a directional light on the way to it from `aim` */
+  double position[3]; /* for a directional light a place from which it shines at `aim` */
   double aim[3];      /* the middle of what the camera sees */
   bool owned;         /* where it stands by the file alone is known: */
   double own[3];
@@ -40,8 +40,8 @@ typedef struct abbe_view_object {
   bool bends;                                    /* light: it is a refractor or a mirror */
   bool mirror;
   char material[ABBE_VIEW_NAME]; /* or metal; "": of none */
-  size_t scene_index;            /* of the scene's object */
-  double middle[3], radius;      /* of its bounds, m */
+  size_t scene_index;            /* index of the scene's object */
+  double middle[3], radius;      /* bounds, m */
   /* How it was put there, as one line of YAML without brackets, but for a last `translate`; and
    * that. Where the file fits or centres it, which would undo other steps, these are steps too, and
    * whoever sets the transform takes the keys out. */

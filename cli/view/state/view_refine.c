@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double roomy = 0.82; /* of the time, for a finer picture */
+static const double roomy = 0.82; /* share of the time, for a finer picture */
 static const double alike = 1.15; /* no time is saved by that */
 
 /* Fewer samples or photons by a step are this share of the work. */
@@ -339,7 +339,7 @@ bool abbe_view_refine_end(abbe_view_refine *refine, size_t worker, abbe_view_out
   const bool lit = job->stage != ABBE_VIEW_TRACED &&
                    (hand->light != job->light || hand->light_step != job->light_step);
   hand->busy = false;
-  /* of fewer photons it may be refused where it is not of all */
+  /* with fewer photons it may be refused where it is not with all */
   const bool too_few = job->stage == ABBE_VIEW_MOVING && job->light_step > 0;
   if (outcome == ABBE_VIEW_REFUSED && too_few) {
     refine->pace.lights = job->light_step;

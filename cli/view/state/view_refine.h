@@ -37,10 +37,10 @@
 typedef struct abbe_view_pace {
   size_t light_step, eye_step; /* to be tried next */
   size_t lights;  /* steps of the light that can be drawn, the finest first; 0: all can */
-  double ms;      /* of the last picture that counts; 0: there is none */
+  double ms;      /* time of the last picture that counts; 0: there is none */
   size_t in_time; /* pictures in turn that kept the time */
   bool strange;   /* the last one does not: nothing follows from one alone */
-  /* of pictures whose light was drawn, and of those whose light was kept; 0: not known */
+  /* times of pictures whose light was drawn, and of those whose light was kept; 0: not known */
   double lit_ms[ABBE_VIEW_LIGHT_STEPS][ABBE_VIEW_EYE_STEPS], kept_ms[ABBE_VIEW_EYE_STEPS];
 } abbe_view_pace;
 
@@ -77,10 +77,10 @@ typedef enum abbe_view_change {
 
 typedef struct abbe_view_job {
   abbe_view_stage stage;
-  uint64_t serial;       /* of the change that it shows */
+  uint64_t serial;       /* number of the change that it shows */
   abbe_view_stage light; /* the stage whose photons, map and wavelengths it takes */
-  size_t light_step;     /* of a moving light */
-  size_t eye_step;       /* of a moving picture */
+  size_t light_step;     /* for a moving light */
+  size_t eye_step;       /* for a moving picture */
   size_t pass;           /* traced: how many passes there are before it */
   bool warms;            /* a moving picture for its programs' sake, which is not shown */
 } abbe_view_job;
@@ -98,7 +98,7 @@ typedef struct abbe_view_hand {
   bool busy;
   abbe_view_job job;     /* while it is busy */
   abbe_view_stage light; /* that it holds for this scene; NONE: none */
-  size_t light_step;     /* of that */
+  size_t light_step;     /* light step of that */
   /* for its programs: */
   unsigned ready;        /* it has drawn moving pictures with such lights, a bit each, */
   abbe_view_stage moved; /* with this one last; */
@@ -106,16 +106,17 @@ typedef struct abbe_view_hand {
 } abbe_view_hand;
 
 typedef struct abbe_view_refine {
-  abbe_view_stage last;   /* wanted; NONE: TRACED */
-  bool spectrum;          /* wanted: the mean is left out, for traced passes tell it */
-  bool single;            /* no picture could be another: there is no mean */
-  bool held;              /* a button is down: it moves */
-  uint64_t serial, shown; /* of the last change; of what the last picture shows */
-  uint64_t scene;         /* of the last change that left no light */
+  abbe_view_stage last; /* wanted; NONE: TRACED */
+  bool spectrum;        /* wanted: the mean is left out, for traced passes tell it */
+  bool single;          /* no picture could be another: there is no mean */
+  bool held;            /* a button is down: it moves */
+  uint64_t serial,
+      shown;      /* numbers of the last change, and of the one that the last picture shows */
+  uint64_t scene; /* number of the last change that left no light */
   double changed_s;
-  abbe_view_stage stage; /* of the picture that shows serial; NONE: an older one stands */
+  abbe_view_stage stage; /* stage of the picture that shows serial; NONE: an older one stands */
   size_t passes;         /* traced */
-  abbe_view_pace pace;   /* of moving pictures */
+  abbe_view_pace pace;   /* pace of moving pictures */
   bool refused;
   size_t shows; /* the worker that draws what moves */
   size_t made;  /* the one that has drawn the last stage up to ACCURATE */

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define TURN_RAD_PER_PICTURE 3.2 /* of a drag over the picture's height */
+#define TURN_RAD_PER_PICTURE 3.2 /* radians for a drag over the picture's height */
 #define CLICK_PIXELS 3.0
 
 abbe_result abbe_view_state_begin(abbe_view_state *state, const abbe_view_document *document,

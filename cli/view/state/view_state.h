@@ -33,7 +33,7 @@ typedef enum abbe_view_handle_kind {
 /* Where something can be taken hold of. */
 typedef struct abbe_view_handle {
   abbe_view_handle_kind kind;
-  size_t index; /* of the outline's light or object */
+  size_t index; /* index of the outline's light or object */
   double xy[2];
 } abbe_view_handle;
 
@@ -61,9 +61,9 @@ typedef struct abbe_view_state {
   abbe_view_outline outline; /* zeroed before the first picture */
   abbe_camera camera;        /* as it is led, */
   abbe_camera pictured;      /* and that of the picture that stands; zeroed: there is none */
-  size_t width, height;      /* of the picture, pixels */
+  size_t width, height;      /* size of the picture, pixels */
   bool down[ABBE_VIEW_BUTTON_COUNT];
-  double from[2], at[2];   /* of the pointer: where a button went down; now */
+  double from[2], at[2];   /* places of the pointer: where a button went down; now */
   bool dragged, continued; /* the pointer has left that place; the step is begun */
   uint64_t turned;         /* the change that was the wheel's last turn */
   int modifiers;

@@ -255,7 +255,7 @@ static abbe_result trace(abbe_view_worker *w, const abbe_view_request *q, abbe_v
 /* What was drawn last is looked into, if it is of this scene still. */
 static abbe_result look(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out,
                         abbe_error *error) {
-  if (w->volume != NULL) return ABBE_OK; /* of no photons */
+  if (w->volume != NULL) return ABBE_OK; /* a volume has no photons */
   if (w->renderer == NULL || w->drawn != w->scene.now || w->scene.relit ||
       abbe_view_document_compare(&w->scene.document, &q->document) >= ABBE_VIEW_SETTINGS)
     return ABBE_OK;
@@ -293,7 +293,7 @@ static abbe_result take_scene(abbe_view_worker *w, const abbe_view_request *q,
   return result;
 }
 
-/* Of a request of which nothing is made yet. */
+/* Begins the result of a request of which nothing is made yet. */
 static void begin_result(const abbe_view_request *q, abbe_view_result *out) {
   memset(out, 0, sizeof *out);
   out->job = q->job;

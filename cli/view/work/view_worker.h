@@ -20,7 +20,7 @@
 #include "gl/device/statistics.h"
 #include "gl/plan/plan.h"
 
-#define ABBE_VIEW_BANDS 40                         /* of a traced pixel's spectrum */
+#define ABBE_VIEW_BANDS 40                         /* bands of a traced pixel's spectrum */
 #define ABBE_VIEW_BANDS_PIXELS ((size_t)640 * 640) /* more pixels have fewer bands */
 
 typedef struct abbe_view_request {
@@ -56,21 +56,21 @@ typedef struct abbe_view_result {
   abbe_image picture; /* rendered: R, G, B, and at rest direct.* and caustic.* */
   abbe_image traced;  /* R, G, B, stderr.*, bands */
   abbe_view_scene_news news;
-  abbe_render_desc asked; /* of a rendered picture; the rest was left to the plan: */
+  abbe_render_desc asked; /* request of a rendered picture; the rest was left to the plan: */
   abbe_render_desc desc;  /* as the plan has it; photons and map_size 0: none are followed */
   size_t line_count;
-  abbe_view_line *line; /* of the plan */
+  abbe_view_line *line; /* lines of the plan */
   bool counted;         /* the statistics are there */
   abbe_statistics statistics;
   double promised;      /* mean CIEDE2000 in the caustic, by the presets; 0: nothing promised */
-  abbe_error_bars bars; /* of the stage `mean`; its pictures too */
+  abbe_error_bars bars; /* error bars of the stage `mean`; its pictures too */
   size_t passes;        /* traced */
-  bool turned;          /* of the turntable */
+  bool turned;          /* it is a frame of the turntable */
   bool looked;          /* for one of these alone */
   bool asks, tells;     /* what feeds this pixel, its spectrum */
   size_t pixel[2];
   abbe_image map;       /* zeroed: there is none */
-  abbe_view_spot spot;  /* of the pixel that was asked for */
+  abbe_view_spot spot;  /* the spectrum of the requested pixel */
   abbe_view_feed *feed; /* NULL: the last picture drawn is not of this scene any more */
 } abbe_view_result;
 void abbe_view_result_free(abbe_view_result *result);

@@ -13,7 +13,7 @@ typedef struct course {
       width; /* that a ray apart by 1 rad of the wall has: m of the sun's beam, rad of a lamp's */
 } course;
 
-/* Of the ray that meets the wall first at the angle phi. */
+/* The course of the ray that meets the wall first at the angle phi. */
 static course follow(const abbe_catacaustic *c, double phi, size_t bounces) {
   double n[2] = {cos(phi), sin(phi)}, d[2] = {1, 0};
   course ray = {.from = {c->radius * n[0], c->radius * n[1]}};

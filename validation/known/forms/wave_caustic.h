@@ -13,7 +13,7 @@
 
 typedef struct abbe_wave_caustic {
   double amplitude, wavelength, depth; /* m */
-  double index;                        /* of the water */
+  double index;                        /* index of the water */
   double attenuation_per_m;            /* natural, along the slanting path */
 } abbe_wave_caustic;
 

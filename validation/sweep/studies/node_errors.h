@@ -9,8 +9,9 @@
 #include "scenes/volume/light_nodes.h"
 #include "validation/sweep/sweep_measure.h"
 
-#define ABBE_NODE_ERRORS_PLACES 3 /* of each kind, those nearest to the scene's first light */
-#define ABBE_NODE_ERRORS_SETS 8   /* of nodes */
+#define ABBE_NODE_ERRORS_PLACES                                                                    \
+  3                             /* places of each kind, those nearest to the scene's first light */
+#define ABBE_NODE_ERRORS_SETS 8 /* sets of nodes */
 
 /* Places of the light: first at nodes, then between them. */
 #define ABBE_NODE_ERRORS_ALL (2 * ABBE_NODE_ERRORS_PLACES)

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PICTURES = 4, DRAWS = 3 /* of a request */, MAP = 128 };
+enum { PICTURES = 4, DRAWS = 3 /* limits of a request */, MAP = 128 };
 
 void abbe_pinhole_limits_free(abbe_pinhole_limits *known) {
   if (known == NULL) return;

@@ -29,7 +29,7 @@ static abbe_transport_contestant volume_of(size_t nodes, abbe_region_desc region
       .fill = {.nodes = nodes, .region = region, .passes = 1, .photons = 162 * 20000 / nodes}};
 }
 
-/* Of each kind one that has nearly as many bytes as the method as printed, the last, has. */
+/* Adds one of each kind that has nearly as many bytes as the method as printed, the last, has. */
 static size_t add_volumes(abbe_transport_contestant *out) {
   static const abbe_region_desc texels = {.kind = ABBE_REGION_OCTAHEDRAL, .shells = 24, .side = 32},
                                 few = {.kind = ABBE_REGION_OCTAHEDRAL, .shells = 19, .side = 32},
@@ -96,7 +96,7 @@ typedef struct work {
   abbe_pinhole_limits limits;
   abbe_render_progress progress;
   void *user;
-  double done, share; /* of all: before this contestant, and its own */
+  double done, share; /* share of all: before this contestant, and its own */
 } work;
 
 static bool go_on(void *user, double done) {

@@ -15,7 +15,7 @@
 
 /* X(code, column) */
 #define ABBE_TRANSPORT_NUMBERS(X)                                                                  \
-  X(SAMPLES, "samples") /* of surfaces */                                                          \
+  X(SAMPLES, "samples") /* samples of surfaces */                                                  \
   X(NODES, "nodes")                                                                                \
   X(CELLS, "cells")                                                                                \
   X(PHOTONS_NODE, "photons_node")                                                                  \
@@ -24,7 +24,7 @@
   X(BYTES_DISK, "bytes_disk")                                                                      \
   X(BYTES_GPU, "bytes_gpu")                                                                        \
   X(FRAME_MS, "frame_ms")   /* median; all passes are drawn anew */                                \
-  X(LOOKUP_MS, "lookup_ms") /* of it, beyond that of surfaces alone */                             \
+  X(LOOKUP_MS, "lookup_ms") /* part of it beyond that of surfaces alone */                         \
   X(NONE_MS, "none_ms")     /* the same frame, every lamp turned away from the object */           \
   X(OVER_NONE, "over_none") /* frame_ms beyond that, as a share of it */                           \
   X(MOVED_MS, "moved_ms")   /* median; the light has moved */                                      \
