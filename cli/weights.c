@@ -14,7 +14,7 @@ typedef struct request {
   double min_nm, max_nm;
   abbe_rgb_space space;
   abbe_observer observer;
-  bool thesis, chosen, json; /* chosen: something that the set `thesis` fixes was asked for */
+  bool thesis, chosen, json; /* chosen: something that the set `thesis` fixes was requested */
 } request;
 
 static const char *const component_names[ABBE_RGB_SPACE_COUNT][3] = {

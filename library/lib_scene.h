@@ -43,8 +43,8 @@ abbe_result abbe_lib_scene_look(abbe_lib_scene *scene, const double eye[3], cons
 abbe_result abbe_lib_scene_camera(const abbe_lib_scene *scene, double eye[3], double target[3],
                                   double up[3], double *fov_y_rad, abbe_error *error);
 
-/* Told now and then how much is done, 0 to 1, while a picture is rendered or traced; false stops
- * that with ABBE_CANCELLED. NULL: nobody is. */
+/* Called now and then with the share that is done, 0 to 1, while a picture is rendered or traced;
+ * false stops that with ABBE_CANCELLED. NULL: nobody is. */
 typedef bool (*abbe_lib_progress)(void *user, double done);
 void abbe_lib_scene_set_progress(abbe_lib_scene *scene, abbe_lib_progress progress, void *user);
 

@@ -122,7 +122,7 @@ bool abbe_command_output_failed(void);
 int abbe_command_end(const char *program, abbe_result result, abbe_error *error);
 
 /* A command that has verbs, such as `abbe materials show`: help on all of them, and the one that
- * is asked for. */
+ * is requested. */
 
 typedef struct abbe_verb {
   const char *name, *summary;

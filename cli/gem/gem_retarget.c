@@ -102,7 +102,7 @@ static abbe_result choose_angles(request *q, abbe_error *error) {
   q->crown.factor = q->pavilion.factor;
   if (q->crown_deg > 0) q->crown.factor = abbe_cut_stretch_factor(q->crown.from_deg, q->crown_deg);
   if (q->crown_deg == 0 && q->index == 0)
-    q->crown.factor = 1; /* the pavilion alone was asked for */
+    q->crown.factor = 1; /* the pavilion alone was requested */
   const double turn = 180 / ABBE_PI;
   q->crown.to_deg = atan(q->crown.factor * tan(q->crown.from_deg / turn)) * turn;
   return ABBE_OK;

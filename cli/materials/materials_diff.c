@@ -11,7 +11,7 @@ enum { KEY_TOLERANCE = ABBE_MATERIALS_KEY_OWN };
 
 typedef struct request {
   const char *program, *first, *second;
-  double tolerance; /* NaN: none asked for */
+  double tolerance; /* NaN: none requested */
   bool json;
 } request;
 

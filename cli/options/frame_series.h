@@ -60,9 +60,9 @@ void abbe_frame_series_free(abbe_frame_series *series);
 abbe_result abbe_frame_series_mark(const abbe_frame_series *series, size_t i, abbe_image *image,
                                    abbe_error *error);
 
-/* Whether frame i of the count is this process's to draw: of its part, and, where that is asked
- * for, with a file that is not there yet or was made by another request, which is said on stderr.
- * exr and png as below, or NULL. */
+/* Whether frame i of the count is this process's to draw: of its part, and, where that is
+ * requested, with a file that is not there yet or was made by another request, which is said on
+ * stderr. exr and png as below, or NULL. */
 bool abbe_frame_series_draws(const abbe_frame_series *series, size_t i, const char *exr,
                              const char *png);
 

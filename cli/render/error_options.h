@@ -23,7 +23,7 @@ extern const struct argp abbe_error_options_argp;
 
 /* Draws the variants under a progress bar, puts the errors into the picture as layers and, with
  * --mean, the mean into its first three channels; writes --error-png. Nothing where nothing was
- * asked for. */
+ * requested. */
 abbe_result abbe_error_options_work(const abbe_error_options *options, abbe_context *context,
                                     const abbe_scene *scene, abbe_renderer *renderer, bool quiet,
                                     abbe_image *picture, abbe_error_bars *out, abbe_error *error);

@@ -24,7 +24,7 @@ typedef struct abbe_preset_options {
 extern const struct argp abbe_preset_options_argp;
 
 /* Adds "promise" to the statistics: what was chosen, promised and met; nothing where nothing was
- * asked for. `estimate` is the caustic's mean CIEDE2000 by the picture's error bars; below 0: not
+ * requested. `estimate` is the caustic's mean CIEDE2000 by the picture's error bars; below 0: not
  * known. */
 void abbe_preset_options_describe(const abbe_preset_choice *choice,
                                   const abbe_statistics *statistics, double estimate,

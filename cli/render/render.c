@@ -294,7 +294,8 @@ static abbe_result render(request *q, const abbe_scene *scene, abbe_context *con
   if (result == ABBE_OK) abbe_render_summarise(q, &statistics, prepared_s);
   if (result == ABBE_OK && !q->quiet && !q->overridden) abbe_preset_options_note_error(&q->picture);
   if (result == ABBE_OK && !q->quiet && !q->json) abbe_error_options_summarise(&q->errors, &bars);
-  /* The picture is there; but a bound that was asked for and is not kept is told by the exit code.
+  /* The picture is there; but a bound that was requested and is not kept gives an exit
+   * code.
    */
   if (result == ABBE_OK) result = abbe_preset_choice_check(&q->choice, statistics.frame_ms, error);
   if (result == ABBE_OK)
@@ -333,7 +334,7 @@ static const char *renderers_own(const request *q) {
                                                 : NULL;
 }
 
-/* Leaves the choice without a point where a frame's settings are asked for, or where the presets
+/* Leaves the choice without a point where a frame's settings are requested, or where the presets
  * know frames alone. */
 static abbe_result choose_picture(request *q, const abbe_scene *scene, abbe_error *error) {
   const abbe_preset_options *o = &q->preset;

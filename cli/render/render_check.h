@@ -9,7 +9,7 @@
 /* Whether passes of the tracer are to tell the rendered picture's error before it is written. */
 bool abbe_render_is_checked(const abbe_render_request *request);
 
-/* The picture that is asked for, to the tracer. */
+/* The picture that is requested, to the tracer. */
 abbe_traced_picture_desc abbe_render_describe_traced(const abbe_render_request *request);
 
 /* The picture becomes what the passes made where that is the one that keeps the bound. */

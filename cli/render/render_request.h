@@ -19,7 +19,7 @@ typedef struct abbe_render_request {
   abbe_map_options map;
   abbe_preset_options preset;
   abbe_preset_choice choice;   /* choice of a frame's settings */
-  abbe_picture_choice picture; /* or of what makes the picture; without a point: not asked for */
+  abbe_picture_choice picture; /* or of what makes the picture; without a point: not requested */
   bool overridden;             /* the request or the scene stands against the picture's choice */
   bool may_trace;              /* where the rendered picture does not keep its bound */
   const char *picture_note;    /* on how that was chosen, or NULL */
@@ -36,7 +36,7 @@ typedef struct abbe_render_request {
 /* Since the program was started. */
 double abbe_render_process_ms(void);
 
-/* The statistics as JSON, where they are asked for. */
+/* The statistics as JSON, where they are requested. */
 abbe_result abbe_render_write_stats(const abbe_render_request *request,
                                     const abbe_statistics *statistics, const abbe_error_bars *bars,
                                     const abbe_context *context, abbe_error *error);

@@ -15,7 +15,7 @@ typedef struct abbe_traced_picture_desc {
   bool quiet;
 } abbe_traced_picture_desc;
 
-/* Traces the choice's point, with a bar; where an error is asked for, until its own passes tell
+/* Traces the choice's point, with a bar; where an error is requested, until its own passes tell
  * that it is kept. Sets the choice's passes and met. Errors of abbe_bounded_trace_make. */
 abbe_result abbe_traced_picture_make(abbe_picture_choice *choice, const abbe_scene *scene,
                                      const abbe_traced_picture_desc *desc, abbe_image *out,
@@ -30,7 +30,7 @@ abbe_result abbe_traced_picture_check_in_time(abbe_picture_choice *choice, const
 
 /* Holds the rendered picture, with its caustic's layers, against traced passes, with a bar. Sets
  * the choice's passes and met. `traced` receives what the passes made where that keeps the error
- * that is asked for and the picture does not, and the choice's traced_instead then says so; else it
+ * that is requested and the picture does not, and the choice's traced_instead then says so; else it
  * is left without pixels, as it is without `may_trace`. Errors of abbe_checked_picture_make. */
 abbe_result abbe_traced_picture_check(abbe_picture_choice *choice, const abbe_scene *scene,
                                       const abbe_traced_picture_desc *desc, bool may_trace,

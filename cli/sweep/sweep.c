@@ -25,7 +25,7 @@
 #error "the build defines ABBE_VERSION"
 #endif
 
-/* One bar after another, for what is under way. */
+/* One bar after another, for what is in progress. */
 typedef struct bar {
   abbe_progress progress;
   const char *what;

@@ -67,7 +67,7 @@ abbe_result abbe_trace_together(abbe_trace_request *q, abbe_result made, abbe_tr
 
 /* What `abbe trace` writes of a trace, and says of it. */
 
-/* All files that are asked for; notes the time of the filter in the request. */
+/* All files that are requested; notes the time of the filter in the request. */
 abbe_result abbe_trace_write(abbe_trace_request *q, const abbe_tracer *tracer, abbe_error *error);
 
 /* A line on stderr, unless it is to be quiet. */

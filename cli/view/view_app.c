@@ -121,7 +121,7 @@ static void take_rendered(abbe_view_session *app, abbe_view_result *result) {
 static void take(abbe_view_session *app, size_t worker, abbe_view_result *result) {
   abbe_view_refine *refine = &app->state.refine;
   const bool moved = result->job.stage == ABBE_VIEW_MOVING;
-  /* what counts is how often they come: with the wait until the next one was asked for */
+  /* what counts is how often they come: with the wait until the next one was requested */
   const double waited_ms = moved ? app->desk[worker].waited_ms : 0;
   const bool newest = result->job.serial == refine->serial;
   const bool shown =

@@ -37,13 +37,13 @@ double abbe_view_app_wait(abbe_view_session *app, double now_s);
 bool abbe_view_app_stopped(const abbe_view_session *app);
 /* The window shows the picture that stands. */
 bool abbe_view_app_painted(const abbe_view_session *app);
-/* Everything that was asked for is drawn. */
+/* Everything that was requested is drawn. */
 bool abbe_view_app_rests(abbe_view_session *app, double now_s);
 
 /* What a viewer asks of its last picture at rest: the spectral map, and where the picked pixel's
  * light has come in, and its spectrum.
  *
- * Each is asked for once, of the worker that has drawn the picture. */
+ * Each is requested once, of the worker that has drawn the picture. */
 
 /* The next question, into the request; false: there is none. */
 bool abbe_view_asks_want(const abbe_view_session *session, abbe_view_request *out);
@@ -74,7 +74,7 @@ enum { ABBE_VIEW_TURN_FRAMES = 36 };
 abbe_result abbe_view_turn_begin(abbe_view_session *session, abbe_error *error);
 /* The next frame as a request; false where none is wanted. */
 bool abbe_view_turn_wants(const abbe_view_session *session, abbe_view_request *out);
-/* Keeps a frame that was asked for. */
+/* Keeps a frame that was requested. */
 void abbe_view_turn_take(abbe_view_session *session, const abbe_view_result *result);
 
 #endif

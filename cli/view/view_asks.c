@@ -8,7 +8,7 @@
 
 #define FEED_PIXELS 2.0 /* photons so near to a pixel feed it */
 
-/* Where the picked pixel's light has come in is asked for once for each picture at rest. */
+/* Where the picked pixel's light has come in is requested once for each picture at rest. */
 static bool wants_feed(const abbe_view_session *app, abbe_view_request *out) {
   const abbe_view_state *s = &app->state;
   const abbe_image *layers = &app->pictures.layers;
@@ -52,7 +52,7 @@ static abbe_view_stage lit_stage(const abbe_view_refine *r) {
   return r->stage > ABBE_VIEW_ACCURATE ? ABBE_VIEW_ACCURATE : r->stage;
 }
 
-/* The map is asked for while it is looked at, once for each stage. */
+/* The map is requested while it is looked at, once for each stage. */
 static bool wants_map(const abbe_view_session *app) {
   const abbe_view_refine *r = &app->state.refine;
   return app->state.shown == ABBE_VIEW_MAP_PICTURE && r->stage >= ABBE_VIEW_BALANCED &&
@@ -83,7 +83,7 @@ void abbe_view_asks_note(abbe_view_session *app, const abbe_view_request *reques
   }
 }
 
-/* What was noted last. If it was cancelled it may be asked for again. */
+/* What was noted last. If it was cancelled it may be requested again. */
 static bool is_answer(const abbe_view_result *result, uint64_t *serial, const size_t pixel[2]) {
   if (result->job.serial != *serial || result->pixel[0] != pixel[0] || result->pixel[1] != pixel[1])
     return false;

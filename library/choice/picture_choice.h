@@ -4,8 +4,8 @@
  * The renderer, the tracer and the filtered tracer compete on the fronts that sweeps of whole
  * processes gave (validation/tradeoff/sweep_pictures.h), in the files of gl/accuracy/preset.h. It
  * makes no picture. What it says of errors and times are promises: the worst of the run's scenes,
- * times the tool's margin. How they carry over to this scene and machine is told by the yardstick,
- * a short frame of the tracer: how long it takes, and what it says of its own error.
+ * times the tool's margin. How they carry over to this scene and machine is measured by the
+ * yardstick, a short frame of the tracer: how long it takes, and what it says of its own error.
  */
 #ifndef ABBE_LIBRARY_CHOICE_PICTURE_CHOICE_H
 #define ABBE_LIBRARY_CHOICE_PICTURE_CHOICE_H
@@ -76,25 +76,26 @@ typedef struct abbe_picture_choice {
 } abbe_picture_choice;
 
 /* Of the tools that may be taken. The yardstick is traced first, unless the renderer alone may be
- * taken and no time is asked for; three times for a budget of which all that takes a tenth at the
+ * taken and no time is requested; three times for a budget of which all that takes a tenth at the
  * most. Then every point has a promised error and time for this scene: for max_error the fastest
  * that keeps it is taken, for budget_ms the most accurate, by name one of the Pareto front that is
  * left: the cheapest for draft, the cheapest whose error is at most 2 % above the least for
  * accurate, for balanced where the front between them bends most. Where no point keeps the bound,
  * the nearest is taken. The request's texts and `out` outlive the choice's point.
- * ABBE_INVALID_ARGUMENT where nothing is asked for, ABBE_NOT_FOUND where no point is left; errors
+ * ABBE_INVALID_ARGUMENT where nothing is requested, ABBE_NOT_FOUND where no point is left; errors
  * of abbe_picture_front_load and abbe_sweep_trace_measure. */
 abbe_result abbe_picture_choose(const abbe_picture_request *request, const abbe_scene *scene,
                                 abbe_picture_choice *out, abbe_error *error);
 
-/* ABBE_TOLERANCE where a process of that time does not keep the bound that was asked for. Where
+/* ABBE_TOLERANCE where a process of that time does not keep the bound that was requested. Where
  * passes tell the picture's error these decide, whatever was promised. */
 abbe_result abbe_picture_choice_check(const abbe_picture_choice *choice, double ms,
                                       abbe_error *error);
 
 /* Whether passes have told the picture's error. */
 bool abbe_picture_choice_tells(const abbe_picture_choice *choice);
-/* "about 1.6 (at most 1.9), told by ...; expected were 2", or "2, expected (not checked: ...)". */
+/* "about 1.6 (at most 1.9), told by ...; expected were 2", or "2, expected (not checked: ...)".
+ */
 void abbe_picture_choice_say_error(const abbe_picture_choice *choice, char *out, size_t size);
 /* What the tracer and two passes of so many photons take at the most, s, by the yardstick; NaN
  * without one. */

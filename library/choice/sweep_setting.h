@@ -1,4 +1,4 @@
-/* sweep_setting.h: a table's settings as the renderer's requests, and the other way round. */
+/* sweep_setting.h: a table's settings as the renderer's requests, and reversed. */
 #ifndef ABBE_LIBRARY_CHOICE_SWEEP_SETTING_H
 #define ABBE_LIBRARY_CHOICE_SWEEP_SETTING_H
 

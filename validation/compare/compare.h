@@ -124,7 +124,7 @@ typedef struct abbe_compare_region {
 } abbe_compare_region;
 
 typedef struct abbe_comparison {
-  double scale;    /* TEST was multiplied by it; 1 unless the best was asked for */
+  double scale;    /* TEST was multiplied by it; 1 unless the best was requested */
   double unit;     /* REF's mean Y (or mean over bands): what 1 is in squared_relative */
   double white[3]; /* XYZ of CIEDE2000's white; 0 without colour */
   bool white_found;
@@ -144,7 +144,7 @@ typedef struct abbe_compare_options {
 } abbe_compare_options;
 
 /* Compares two fields that abbe_field_align brought together. ABBE_INVALID_ARGUMENT where REF is
- * black, TEST is black and its scale is asked for, the mask is of another size, or no pixel is
+ * black, TEST is black and its scale is requested, the mask is of another size, or no pixel is
  * finite on both sides; ABBE_NO_MEMORY. */
 abbe_result abbe_compare(const abbe_field *reference, const abbe_field *test,
                          const abbe_compare_options *options, abbe_comparison *out,

@@ -199,7 +199,7 @@ static void join(const job *j, float *out) {
   }
 }
 
-/* Each detector along rows and the smoothing along columns, and the other way round. */
+/* Each detector along rows and the smoothing along columns, and reversed. */
 static void detect(const job *j, const side *out) {
   filter_rows(j, j->ycc[0], &j->edge, j->half);
   filter_columns(j, j->half, &j->smooth, out->edge);
@@ -212,7 +212,7 @@ static void detect(const job *j, const side *out) {
   join(j, out->point);
 }
 
-/* A picture, multiplied by gain and tone-mapped where that is asked for. */
+/* A picture, multiplied by gain and tone-mapped where that is requested. */
 static void take_ycc(const job *j, const float (*rgb)[3], double gain, double (*tone)(double)) {
 #pragma omp parallel for
   for (size_t p = 0; p < j->pixels; p++) {

@@ -11,7 +11,7 @@
 #include "colorimetry/image/image.h"
 #include "validation/compare/field.h"
 
-/* The share of a caustic's light that its mask holds, unless another is asked for. */
+/* The share of a caustic's light that its mask holds, unless another is requested. */
 #define ABBE_MASK_CAUSTIC_SHARE 0.95
 
 /* A zeroed mask is empty. */

@@ -138,7 +138,7 @@ static abbe_result make_image(const filter *f, abbe_image *out, abbe_error *erro
   return result;
 }
 
-/* The eye's part of the caustic changes as the light of its pixel does, by its share of it. */
+/* The camera's part of the caustic changes as the light of its pixel does, by its share of it. */
 static double caustic_share(const double eye[3], const double caustic[3]) {
   const double all = eye[0] + eye[1] + eye[2], of = caustic[0] + caustic[1] + caustic[2];
   return of > 0 && all > 0 ? fmin(of / all, 1) : 0;

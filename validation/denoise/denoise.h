@@ -2,11 +2,11 @@
  *
  * Non-local means [RousselleKnausZwicker2012], guided by albedo, normal and depth
  * [RousselleManziZwicker2013], of the picture that the tracer gives with guides. Two parts are
- * filtered apart, for their noise is of two kinds: the caustic that the eye sees straight, which is
- * photons, and all that paths from the eye bring. Of each, brightness and colour are filtered apart
- * too: photons of single wavelengths make noise that is mostly colour, where the light itself has
- * little. What the filter loses of the light around a pixel is given back there. Spectral bands are
- * not filtered.
+ * filtered apart, for their noise is of two kinds: the caustic that the camera sees straight, which
+ * is photons, and all that paths from the camera bring. Of each, brightness and colour are filtered
+ * apart too: photons of single wavelengths make noise that is mostly colour, where the light itself
+ * has little. What the filter loses of the light around a pixel is given back there. Spectral bands
+ * are not filtered.
  */
 #ifndef ABBE_VALIDATION_DENOISE_DENOISE_H
 #define ABBE_VALIDATION_DENOISE_DENOISE_H

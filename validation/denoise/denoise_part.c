@@ -134,8 +134,8 @@ void abbe_denoise_part_free(abbe_denoise_part *part) {
 
 /* ---- variances that a few passes tell badly ---- */
 
-/* Around a pixel the photons' variance is in proportion to their brightness; the eye's is as it is
- * around. */
+/* Around a pixel the photons' variance is in proportion to their brightness; the camera's is as it
+ * is around. */
 static void steady_variances(abbe_denoise_part *p) {
   const abbe_denoise_work *w = p->work;
   float *room = plane(p, 12), *light = plane(p, 13), *near = plane(p, 14), *wide = plane(p, 15),

@@ -35,7 +35,7 @@ static void sum_amounts(const abbe_gem_view *v, size_t pixel, double sum[AMOUNTS
   for (int a = 0; a < AMOUNTS; a++) sum[a] /= (double)v->repeats;
 }
 
-/* Linear, of a share of light each; chosen to be told apart. */
+/* Linear, of a share of light each; chosen to be distinguishable. */
 static const double green[3] = {0.02, 0.55, 0.06}, red[3] = {0.80, 0.02, 0.03},
                     blue[3] = {0.04, 0.12, 0.85};
 

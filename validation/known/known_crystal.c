@@ -105,7 +105,7 @@ static abbe_result add_across(abbe_known_run *run, double degrees, bool extraord
 
 /* One wave alone is inside, polarised along its own field. At a face whose plane of incidence holds
  * the axis or lies across it the other wave is at right angles to that: it gets nothing, as behind
- * crossed polarisers. The face takes the way that is asked for, or else the strongest. */
+ * crossed polarisers. The face takes the way that is requested, or else the strongest. */
 static abbe_result add_extinction(abbe_known_run *run, const double axis[3], const char *what,
                                   bool extraordinary, abbe_error *error) {
   abbe_known_stage stage;

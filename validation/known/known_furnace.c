@@ -8,7 +8,7 @@ typedef struct room {
 } room;
 
 /* Ambient light of pi W/m2 makes every white receiver as bright as the background, 1 W/(m2 sr). The
- * lamp that a scene must have adds 1e-12 of that. */
+ * light that a scene must have adds 1e-12 of that. */
 static const char furnace_head[] =
     "camera: {eye: [0.02, -0.4, 0.12], target: [0, 0, 0], fov: 16, size: [48, 48]}\n"
     "ambient: 3.14159265358979\n"

@@ -1,4 +1,4 @@
-/* Media that scatter: a slab of mist in the sun from above and below, a lamp in mist, a shaft of
+/* Media that scatter: a slab of mist in the sun from above and below, a light in mist, a shaft of
  * sunlight under still water seen from within and from above, and what is left of light. */
 #include "base/maths.h"
 #include "validation/known/forms/closed_form.h"
@@ -50,7 +50,7 @@ typedef struct slab {
   double scattering, absorption, g; /* 1/m */
   double thickness;                 /* m */
   double sun_deg, view_deg;         /* from upright, both in the plane of x and z */
-  bool below;                       /* the eye is under it and looks up */
+  bool below;                       /* the camera is under it and looks up */
 } slab;
 
 /* The radiance from a beam of 1 W/m2: the integral over the depth of what is scattered there,
@@ -65,7 +65,7 @@ static double slab_radiance(const slab *s) {
   return source * m0 / (m0 + m) * (1 - exp(-depth * (1 / m0 + 1 / m)));
 }
 
-/* The eye a metre off the slab's middle, on the line along which light leaves it at view_deg. */
+/* The camera a metre off the slab's middle, on the line along which light leaves it at view_deg. */
 static abbe_result slab_scene(const slab *s, double background, double irradiance, abbe_scene *out,
                               abbe_error *error) {
   const double sun = s->sun_deg / ABBE_KNOWN_DEGREES, view = s->view_deg / ABBE_KNOWN_DEGREES;
@@ -154,11 +154,11 @@ static abbe_result add_reached(abbe_known_run *run, double from, double to, abbe
   return add_row(run, &row, 1e-2, result, &scene, from, to, error);
 }
 
-/* ---- a lamp in mist ---- */
+/* ---- a light in mist ---- */
 
 enum { LAMP_PARTS = 20000 };
 
-/* Along a ray 0.2 m past a lamp of 1 W/sr, from 1 m before to 1 m behind it. */
+/* Along a ray 0.2 m past a light of 1 W/sr, from 1 m before to 1 m behind it. */
 static double lamp_radiance(double scattering, double absorption, double g) {
   const double whole = scattering + absorption, aside = 0.2;
   double sum = 0;

@@ -69,7 +69,7 @@ static abbe_result add_run(abbe_known_run *run, abbe_known_setting s, const abbe
   return abbe_known_add_setting(run, &s, scene, w.from, w.to, error);
 }
 
-/* Mean over the square of side 2 half around (x, 0, 0) of the irradiance by a lamp of 1 W/sr at
+/* Mean over the square of side 2 half around (x, 0, 0) of the irradiance by a light of 1 W/sr at
  * (at, 0, height). */
 static double mean_irradiance(double at, double height, double x, double half) {
   enum { STEPS = 40 };
@@ -138,7 +138,7 @@ static const char between_mirrors[] =
     "- {name: right, shape: rectangle, width: 8, height: 8, mirror: 0.8, transform: [{rotate: "
     "{axis: [0, 1, 0], angle: 90}}, {translate: [0.5, 0, 3.9]}]}\n";
 
-/* A lamp between two mirrors shines as its images do, each by 0.8 fainter than the one before. */
+/* A light between two mirrors shines as its images do, each by 0.8 fainter than the one before. */
 static abbe_result add_images(abbe_known_run *run, work w, abbe_error *error) {
   const double lamp = 0.1, height = 0.5, x = -0.15, half = 0.3;
   abbe_scene scene = {0};

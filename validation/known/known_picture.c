@@ -1,4 +1,4 @@
-/* Light under a sphere as the eye sees it: pictures of whole runs, ring by ring, against the
+/* Light under a sphere as the camera sees it: pictures of whole runs, ring by ring, against the
  * quadrature. The plane is seen past the sphere, straight or through a pane. */
 #include "validation/known/forms/closed_form.h"
 #include "validation/known/known_light.h"
@@ -23,7 +23,7 @@ enum { SIDE = 128, RINGS = 4, RADII = (RINGS + 1) * (ABBE_RINGS_STEPS + 1) };
 /* Radii; the shadow's edge at 1 under a beam and 7/3 under the point lies within a ring. */
 static const double edges[2][RINGS + 1] = {{0, 0.6, 1.4, 2.4, 3.6}, {0, 0.3, 0.8, 1.6, 2.8}};
 
-/* How the eye sees the plane: straight, or through a thin pane before it, whose own refraction
+/* How the camera sees the plane: straight, or through a thin pane before it, whose own refraction
  * moves nothing by more than 3e-4 R. */
 typedef struct view_of {
   double light;

@@ -62,9 +62,9 @@ static bool clip_to_cone(const abbe_air_ray *r, const abbe_light *light, float *
   return *from < *to;
 }
 
-/* ---- lamps ---- */
+/* ---- lights ---- */
 
-/* Along the ray, by equal angles about the lamp: the place t and its density. */
+/* Along the ray, by equal angles about the light: the place t and its density. */
 static float place_about(const abbe_air_ray *r, const float lamp[3], float from, float to, float u,
                          float *density) {
   float v[3], square = 0;
@@ -119,7 +119,7 @@ float abbe_air_light_lamp(const abbe_air_ray *r, size_t index, const float u[3],
     to[k] /= distance;
     away[k] = -(double)to[k];
   }
-  if (!abbe_vector_normalise(away)) return 0; /* in the lamp itself */
+  if (!abbe_vector_normalise(away)) return 0; /* in the light itself */
   const float metres = distance * (float)g->unit;
   power *= (float)abbe_light_profile(light, away) / (metres * metres);
   if (!(power > 0)) return 0;

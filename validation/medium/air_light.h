@@ -1,7 +1,7 @@
-/* air_light.h: light that comes straight from a lamp or the surroundings to the haze in the air and
- * is scattered there once, towards the origin of a ray.
+/* air_light.h: light that comes straight from a light or the surroundings to the haze in the air
+ * and is scattered there once, towards the origin of a ray.
  *
- * One place on the ray and one of the lamp at a time, unbiased. What a refractor or mirror sends
+ * One place on the ray and one of the light at a time, unbiased. What a refractor or mirror sends
  * there is not among it: photons bring it (haze_grid.h).
  *
  * Internal to validation/.
@@ -26,7 +26,7 @@ typedef struct abbe_air_ray {
 } abbe_air_ray;
 
 /* Radiance at o of the light of that index, W/(m2 sr), of u in [0, 1)^3; adds the rays that it
- * asked for. Along the ray places are chosen by equal angles about the lamp [KullaFajardo2012], of
+ * requested. Along the ray places are chosen by equal angles about the light [KullaFajardo2012], of
  * a directional light by what is scattered. */
 float abbe_air_light_lamp(const abbe_air_ray *ray, size_t light, const float u[3], uint32_t *rays);
 

@@ -9,14 +9,14 @@
 #include "validation/passes/pass_error.h"
 #include "validation/tracer/tracer.h"
 
-/* A bound may take up to so many times the passes that were asked for. */
+/* A bound may take up to so many times the passes that were requested. */
 #define ABBE_BOUNDED_TRACE_MOST_TIMES 64
 
 typedef struct abbe_bounded_trace_desc {
   abbe_trace_desc trace; /* its guides are set where the picture is to be filtered */
   size_t passes;         /* at least 1, of a filtered picture 2 */
   bool filtered;
-  double max_error; /* mean CIEDE2000 in the caustic, by pass_error's bound; 0: none is asked for */
+  double max_error; /* mean CIEDE2000 in the caustic, by pass_error's bound; 0: none is requested */
   bool (*progress)(void *user, double done); /* progress of the passes; false stops; or NULL */
   void *user;
   const volatile int *stop; /* other than 0 stops a pass midway; or NULL */

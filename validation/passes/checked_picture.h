@@ -1,7 +1,7 @@
 /* checked_picture.h: a picture that was made otherwise, held against traced passes.
  *
- * Presets promise what other scenes had. Whether the picture of this one keeps a bound is told by
- * passes of the tracer, twice as many each time, until they tell that it does, or keep the bound
+ * Presets promise what other scenes had. Whether the picture of this one keeps a bound is measured
+ * by passes of the tracer, twice as many each time, until they tell that it does, or keep the bound
  * themselves: then theirs can be taken instead, and the other is not known to keep it. To tell
  * takes fewer passes than to make as good a picture, for their noise is known and taken off
  * (pass_error.h). Where the time has an end, passes are begun only where they end before it.
@@ -16,7 +16,7 @@
 
 /* How much of a budget is left, and whether a piece of work still fits.
  *
- * It has no clock of its own: who asks brings one. */
+ * It has no clock of its own: the caller brings one. */
 
 /* Work takes up to so many times as long as was expected of it, and has room for that. */
 #define ABBE_TIME_LEFT_ROOM 1.3

@@ -1,4 +1,4 @@
-/* pass_error.h: how far off a traced picture may be, told by its own passes.
+/* pass_error.h: how far off a traced picture may be, measured by its own passes.
  *
  * Passes are independent, so what the first of them make can be held against what the others make:
  * neither knows the other's noise, and what few bright photons did to the one they did not do to

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- to the eye ---- */
+/* ---- to the camera ---- */
 
 void abbe_shaft_photons_flush(abbe_shaft_photons *s) {
   if (s->waiting == 0) return;

@@ -1,9 +1,10 @@
 /* shaft_photons.h: photons on their way through haze: each stretch of a path is scattered at one
- * place of it, which the eye may see.
+ * place of it, which the camera may see.
  *
- * A place that the eye sees straight, in the medium that the eye is in, adds to its pixel at once,
- * unbiased; nearer than a distance it does not, where few would add much. All are kept for gathers
- * along paths of the eye. The path goes on with what is left of it, whatever happened here.
+ * A place that the camera sees straight, in the medium that the camera is in, adds to its pixel at
+ * once, unbiased; nearer than a distance it does not, where few would add much. All are kept for
+ * gathers along paths of the camera. The path goes on with what is left of it, whatever happened
+ * here.
  *
  * Internal to validation/.
  */
@@ -19,7 +20,7 @@
 
 enum { ABBE_SHAFT_LANES = 16 };
 
-/* On its way to the eye. */
+/* On its way to the camera. */
 typedef struct abbe_shaft_splat {
   size_t pixel;
   uint32_t step;
@@ -31,13 +32,13 @@ typedef struct abbe_shaft_photons {
   const abbe_geometry *geometry;
   const abbe_haze *haze;
   const abbe_trace_camera *camera;
-  int eye_medium; /* refractor that the eye is in, or -1 */
-  float near;     /* frame: no nearer to the eye are places splatted */
+  int eye_medium; /* refractor that the camera is in, or -1 */
+  float near;     /* frame: no nearer to the camera are places splatted */
   uint32_t pass, seed;
   uint32_t colour; /* colour of the light's first step */
   void (*add)(void *user, const abbe_shaft_splat *splat);
   void *user;
-  struct RTCRay16 packet; /* to the eye, of splats that wait */
+  struct RTCRay16 packet; /* to the camera, of splats that wait */
   abbe_shaft_splat splat[ABBE_SHAFT_LANES];
   size_t waiting;
   uint64_t rays;

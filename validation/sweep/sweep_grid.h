@@ -44,7 +44,7 @@ typedef struct abbe_sweep_grid {
 #define ABBE_SWEEP_PINHOLES(X) X(64) X(256) X(1024)
 #define ABBE_SWEEP_PROFILE_COUNT (ABBE_PROFILE_COUNT + 5)
 extern const char *const abbe_sweep_profiles[ABBE_SWEEP_PROFILE_COUNT];
-#define ABBE_SWEEP_TRACE_PASSES 4 /* where none are asked for, and of 512 x 512 photons */
+#define ABBE_SWEEP_TRACE_PASSES 4 /* where none are requested, and of 512 x 512 photons */
 #define ABBE_SWEEP_TRACE_PHOTONS 512
 
 #define ABBE_SWEEP_MAX_GRIDS 8  /* grids of a file */

@@ -5,7 +5,7 @@
  * compared with the reference: its receiver map in the reference's layout, its picture pixel by
  * pixel. The thesis profile knows no units, so its map and its picture are first multiplied by the
  * one factor each that suits it best; the same method in physical units (thesis-cie) gets none.
- * Maps of both, which they lay out by the lamp's cone, are resampled. It keeps no files and draws
+ * Maps of both, which they lay out by the light's cone, are resampled. It keeps no files and draws
  * no charts. Internal to validation/sweep/.
  */
 #ifndef ABBE_VALIDATION_SWEEP_SWEEP_MEASURE_H

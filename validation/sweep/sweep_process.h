@@ -31,7 +31,7 @@ abbe_result abbe_sweep_process_make(const abbe_sweep_process_desc *desc, abbe_sw
                                     abbe_error *error);
 void abbe_sweep_process_free(abbe_sweep_process *process);
 
-/* Sets warm_ms of the row, and cold_ms (of one run) where that is asked for. ABBE_IO where the
+/* Sets warm_ms of the row, and cold_ms (of one run) where that is requested. ABBE_IO where the
  * program cannot be started or does not end well, with the words of its command; ABBE_CANCELLED
  * where it was interrupted. */
 abbe_result abbe_sweep_process_measure(abbe_sweep_process *process, bool cold, abbe_sweep_row *row,

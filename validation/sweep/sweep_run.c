@@ -22,7 +22,7 @@ typedef struct work {
   abbe_sweep_model model;
   abbe_sweep sweep;
   abbe_sweep_table table;
-  const char *what;   /* under way */
+  const char *what;   /* in progress */
   double done, share; /* share of it: before this row, and the row's */
 } work;
 
@@ -163,7 +163,7 @@ static abbe_result measure_all(work *w, abbe_error *error) {
     return abbe_error_set(error, result,
                           "stopped; %zu of %zu settings are in %s, and the same command goes on",
                           w->table.count, q->setting_count, q->table);
-  /* The front is of the error that is asked for now. */
+  /* The front is of the error that is requested now. */
   return result == ABBE_OK ? keep_table(w, error) : result;
 }
 

@@ -9,8 +9,8 @@
 #include "validation/sweep/sweep_reference.h"
 #include "validation/tradeoff/sweep_table.h"
 
-/* What is under way ("reference", "matched", "sweep" or "processes"), and how much of it is done, 0
- * to 1; false stops. */
+/* What is in progress ("reference", "matched", "sweep" or "processes"), and how much of it is done,
+ * 0 to 1; false stops. */
 typedef bool (*abbe_sweep_progress)(void *user, const char *what, double done);
 
 typedef struct abbe_sweep_request {

@@ -68,7 +68,7 @@ typedef struct abbe_accumulator {
   double per_unit[2];     /* for the finer and the coarser unit */
   double coarse;          /* smallest magnitude that the coarser one takes */
   double limit;           /* largest magnitude that one addition keeps */
-  int64_t **adding[2];    /* [threads][values] the pass that is under way, in each unit */
+  int64_t **adding[2];    /* [threads][values] the pass that is in progress, in each unit */
   uint64_t *cut;          /* [threads] additions beyond the limit, cut to it */
   abbe_whole_sum *sum;    /* [values] over passes */
   abbe_whole_sum *square; /* [values][2] by abbe_whole_sum_add_product */
@@ -113,9 +113,9 @@ static inline void abbe_accumulator_add(abbe_accumulator *a, size_t thread, size
 
 /* Ends the pass: its sums become one sample of every value. */
 void abbe_accumulator_end_pass(abbe_accumulator *a);
-/* Sum of a value in the pass that is under way, in units. */
+/* Sum of a value in the pass that is in progress, in units. */
 abbe_whole_sum abbe_accumulator_adding(const abbe_accumulator *a, size_t value);
-/* Forgets the pass that is under way. */
+/* Forgets the pass that is in progress. */
 void abbe_accumulator_drop_pass(abbe_accumulator *a);
 
 /* Mean over the passes; 0 before the first. */

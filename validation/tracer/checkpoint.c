@@ -347,7 +347,7 @@ typedef struct parts {
   uint32_t *owner;          /* [ABBE_WHOLE_SUM_MOST_PASSES] */
   size_t end;               /* behind the last pass that somebody has */
   size_t whole;             /* passes that there are to be, */
-  const char *teller;       /* by whose word; NULL: it is asked for */
+  const char *teller;       /* by whose word; NULL: it is requested */
   size_t passes;            /* that there are */
 } parts;
 

@@ -100,7 +100,7 @@ typedef struct splat {
   float value; /* radiance of the pixel, for a reflectance of pi */
 } splat;
 
-/* The ray from the photon to the eye in lane k of the packet; false where it cannot be seen. */
+/* The ray from the photon to the camera in lane k of the packet; false where it cannot be seen. */
 static bool prepare_splat(const abbe_tracer *t, const abbe_photon_hit *l, struct RTCRay16 *packet,
                           size_t k, splat *out) {
   float d[3], distance, per_pixel, o[3];
@@ -200,11 +200,11 @@ static uint64_t add_to_picture(const sink *s, const abbe_photon_hit *hit, size_t
 typedef struct task_result {
   abbe_light_ledger ledger;
   uint64_t splat_rays;
-  size_t kept;                /* photons for the eye's gathers, from the task's first photon on */
+  size_t kept; /* photons for the camera's gathers, from the task's first photon on */
   abbe_shaft_photons *shafts; /* NULL: nothing scatters */
 } task_result;
 
-/* For a task whose photons haze may scatter in sight of the eye. */
+/* For a task whose photons haze may scatter in sight of the camera. */
 static abbe_shaft_photons *watch_shafts(const abbe_emission *e, sink *s) {
   abbe_tracer *t = s->t;
   if (t->desc.no_picture || !abbe_haze_is(&t->media.haze)) return NULL;

@@ -21,7 +21,8 @@
  * variance, in three dimensions (place and wavelength) [KnausZwicker2011]. */
 static const double shrink = 1.0 / 7;
 static const double first_window_nm = 25;
-/* Rays of the eye to glass, of those of the photons in a pass, so that most of the time is theirs.
+/* Rays of the camera to glass, of those of the photons in a pass, so that most of the time is
+ * theirs.
  */
 static const double eye_share = 0.12;
 
@@ -204,9 +205,9 @@ static float first_radius(const abbe_tracer *t) {
          sqrtf(far);
 }
 
-/* Four pixels as far away as the eye sees, or less where a pixel has many photons, which are spread
- * over a depth. Within a quarter of that distance photons are gathered even where they are seen
- * straight, by a quarter of the radius. */
+/* Four pixels as far away as the camera sees, or less where a pixel has many photons, which are
+ * spread over a depth. Within a quarter of that distance photons are gathered even where they are
+ * seen straight, by a quarter of the radius. */
 static void choose_shafts(abbe_tracer *t) {
   if (!abbe_haze_is(&t->media.haze)) return;
   const double pixels = (double)pixels_of(&t->desc);
@@ -217,7 +218,7 @@ static void choose_shafts(abbe_tracer *t) {
   t->eye.shaft_near = 0.25f * depth;
 }
 
-/* Where few photons are followed the pass is the eye's. */
+/* Where few photons are followed the pass is the camera's. */
 static abbe_result choose_samples(abbe_tracer *t, abbe_error *error) {
   const double photons = (double)t->desc.photons;
   const double rays = fmax(eye_share * t->photon_rays, photons - t->photon_rays);
@@ -240,7 +241,7 @@ static abbe_media_set around_eye(const abbe_geometry *g) {
   return set;
 }
 
-/* The eye needs photons around where some ray that met a refractor lands. */
+/* The camera needs photons around where some ray that met a refractor lands. */
 static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
   const bool shows =
       !t->desc.no_picture && t->geometry.refractor_count + t->geometry.mirror_count > 0;

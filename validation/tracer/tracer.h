@@ -1,13 +1,13 @@
 /* tracer.h: the reference: what light does in a scene, with error bars.
  *
  * Every path has its own wavelength. Photons go from the lights through refractors to receivers;
- * they make the receiver map, and the caustics that the eye sees straight (both unbiased). Paths
- * from the eye see direct light, mirror images and what shows through glass (unbiased), and there
- * caustics from the photons around (consistent: the bias shrinks as passes are added). A receiver
- * is lit by lamps straight and through refractors, and by the scene's ambient light, which stands
- * for light between receivers. Work is done in passes that are independent of each other, so that
- * their spread gives standard errors; same seed and settings, same result, on any number of
- * threads. It uses nothing of the renderer.
+ * they make the receiver map, and the caustics that the camera sees straight (both unbiased). Paths
+ * from the camera see direct light, mirror images and what shows through glass (unbiased), and
+ * there caustics from the photons around (consistent: the bias shrinks as passes are added). A
+ * receiver is lit by lights straight and through refractors, and by the scene's ambient light,
+ * which stands for light between receivers. Work is done in passes that are independent of each
+ * other, so that their spread gives standard errors; same seed and settings, same result, on any
+ * number of threads. It uses nothing of the renderer.
  */
 #ifndef ABBE_VALIDATION_TRACER_TRACER_H
 #define ABBE_VALIDATION_TRACER_TRACER_H
@@ -96,7 +96,7 @@ double abbe_tracer_error(const abbe_tracer *tracer);
 /* Means so far and, after two passes and more, their standard errors. Picture: R, G, B (X, Y, Z in
  * that space), stderr.R …, caustic.R … (the part that came to its receiver through a refractor),
  * then the bands S0.…nm and stderr.S0.…nm. With guides, after two passes and more: photons.R … (the
- * caustic that the eye sees straight), eye.R … (all else), albedo.R …, normal.X …, depth.Z in m
+ * caustic that the camera sees straight), eye.R … (all else), albedo.R …, normal.X …, depth.Z in m
  * (abbe_eye_sample), stderr. of each, and covariance.photons.RG …, covariance.eye.RG … of the
  * means. Map: X, Y, Z, flux a texel in W, stderr.X …, bands in W/nm. Both carry what the run was as
  * attributes. ABBE_INVALID_ARGUMENT where the request left it out. */
@@ -106,7 +106,7 @@ abbe_result abbe_tracer_map(const abbe_tracer *tracer, abbe_image *out, abbe_err
 void abbe_tracer_statistics(const abbe_tracer *tracer, abbe_trace_statistics *out);
 
 /* Rays a second of one thread's photon walk, and of Embree alone on the very same packets of rays,
- * those that ask what is hidden from a lamp among them; traces a part of a pass that is not
+ * those that ask what is hidden from a light among them; traces a part of a pass that is not
  * counted. */
 abbe_result abbe_tracer_rates(abbe_tracer *tracer, double *walk, double *embree, abbe_error *error);
 

@@ -10,20 +10,20 @@
 #include "validation/walks/eye_walk.h"
 #include "validation/walks/projection_map.h"
 
-/* What a filter of the picture reads, summed over passes: the photons' part and the eye's apart,
+/* What a filter of the picture reads, summed over passes: the photons' part and the camera's apart,
  * how their noise goes together in colour, and what shows where.
  * */
 
 /* Values of a pixel. The last ones are products, whose sums tell covariances. */
 enum {
-  ABBE_GUIDE_PHOTONS = 0, /* R, G, B of the caustic that the eye sees straight */
-  ABBE_GUIDE_EYE = 3,     /* R, G, B of all that paths from the eye bring */
+  ABBE_GUIDE_PHOTONS = 0, /* R, G, B of the caustic that the camera sees straight */
+  ABBE_GUIDE_EYE = 3,     /* R, G, B of all that paths from the camera bring */
   ABBE_GUIDE_ALBEDO = 6,
   ABBE_GUIDE_NORMAL = 9,
   ABBE_GUIDE_DEPTH = 12,
   ABBE_GUIDE_MEANS = 13,
   ABBE_GUIDE_SQUARES = 13,  /* squares of each mean; of two digits, as the products are */
-  ABBE_GUIDE_PRODUCTS = 39, /* RG, RB, GB of the photons, then of the eye */
+  ABBE_GUIDE_PRODUCTS = 39, /* RG, RB, GB of the photons, then of the camera */
   ABBE_GUIDE_VALUES = 51
 };
 
@@ -31,7 +31,7 @@ enum {
 typedef struct abbe_guide_sums {
   size_t pixels;
   double unit;         /* unit of the colours: the picture's sums' */
-  float *adding;       /* [pixels][10] the pass that is under way, but for the photons */
+  float *adding;       /* [pixels][10] the pass that is in progress, but for the photons */
   abbe_whole_sum *sum; /* [pixels][ABBE_GUIDE_VALUES] over passes, in units (accumulator.h) */
 } abbe_guide_sums;
 
@@ -44,7 +44,7 @@ void abbe_guide_sums_free(abbe_guide_sums *g);
 void abbe_guide_sums_set(abbe_guide_sums *g, size_t pixel, const float rgb[3],
                          const abbe_eye_sample *sample);
 /* Adds the pass, before it ends in the picture's sums, which have `channels` values a pixel and
- * begin with R, G, B: what is not the eye's there is the photons'. */
+ * begin with R, G, B: what is not the camera's there is the photons'. */
 void abbe_guide_sums_end_pass(abbe_guide_sums *g, const abbe_accumulator *picture, size_t channels);
 
 /* A mean over so many passes. */
@@ -83,7 +83,7 @@ struct abbe_tracer {
   abbe_guide_sums guides;
   size_t picture_channels, map_channels; /* a pixel, a texel */
   abbe_eye_walk eye;
-  uint8_t *samples; /* [pixels] of the eye's, a pass; NULL: no glass to see */
+  uint8_t *samples; /* [pixels] of the camera's, a pass; NULL: no glass to see */
   abbe_photon_grid grid;
   abbe_grid_photon *landed; /* hits of the pass that runs, where the camera needs them */
   size_t landed_room;
@@ -95,14 +95,14 @@ struct abbe_tracer {
   bool eye_gathers;         /* some pixel may show a receiver through or in a refractor */
   float radius;             /* radius of the first gather, frame */
   size_t first, pass, step; /* the first in the sums, the next one, and from one to the next */
-  size_t whole;             /* passes of all parts together, as far as they were asked for; or 0 */
+  size_t whole;             /* passes of all parts together, as far as they were requested; or 0 */
   double reach;             /* W that photons stand for, at the scale of the ledger's units */
   abbe_whole_sum ledger[ABBE_TRACER_LEDGER]; /* over passes */
   uint64_t other_rays; /* rays of the walks: trials, and from before a checkpoint was taken up */
-  abbe_trace_statistics statistics; /* its ledger: of the pass that is under way */
+  abbe_trace_statistics statistics; /* its ledger: of the pass that is in progress */
 };
 
-/* Whether nobody has asked for an end of what is made of it. */
+/* Whether nobody has requested an end of what is made of it. */
 static inline bool abbe_tracer_is_wanted(const abbe_tracer *t) {
   return t->desc.stop == NULL || *t->desc.stop == 0;
 }

@@ -74,8 +74,8 @@ static bool fill_group(const abbe_sweep_table *tables, size_t count, const char 
 }
 
 /* A table's time and error of a setting, as what the class has in common: the tracer's error is
- * told by its yardstick's, as times are; the renderer's is as it is. False where it does not have
- * both. */
+ * measured by its yardstick's, as times are; the renderer's is as it is. False where it does not
+ * have both. */
 static bool get_common(const group *g, size_t table, const abbe_sweep_setting *setting, double *ms,
                        double *error) {
   const abbe_sweep_row *row = abbe_sweep_table_find(g->table[table], setting);

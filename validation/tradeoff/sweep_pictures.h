@@ -2,10 +2,10 @@
  * process takes from its start to its end, against its error.
  *
  * Of a class of scenes, over the settings that all its sweeps have with a whole process's time.
- * What a scene takes is told by what is quick to measure anywhere, the yardstick: a frame of the
- * tracer with few photons. A point's time is the geometric mean of the yardstick's, times the worst
- * of the scenes' ratios to it. The tracer's errors are told likewise, by what the yardstick says of
- * its own error; the renderer's is the worst of the scenes'. It is a part of the file that
+ * What a scene takes is measured by what is quick to measure anywhere, the yardstick: a frame of
+ * the tracer with few photons. A point's time is the geometric mean of the yardstick's, times the
+ * worst of the scenes' ratios to it. The tracer's errors are told likewise, by what the yardstick
+ * says of its own error; the renderer's is the worst of the scenes'. It is a part of the file that
  * sweep_presets.h writes, and what library/choice/picture_choice.h reads.
  */
 #ifndef ABBE_VALIDATION_TRADEOFF_SWEEP_PICTURES_H

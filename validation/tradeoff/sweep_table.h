@@ -28,7 +28,7 @@ typedef struct abbe_sweep_setting {
   char profile[ABBE_SWEEP_WORD]; /* profile of the renderer, or one of the names above */
   size_t wavelengths, photons, map, samples, upsample;
   char fill[ABBE_SWEEP_WORD];
-  char model[ABBE_SWEEP_WORD]; /* as it was asked for: "auto" is the plan's choice */
+  char model[ABBE_SWEEP_WORD]; /* as it was requested: "auto" is the plan's choice */
   double share;
   size_t exits;
   size_t passes;  /* passes of the tracer, each of photons x photons photons; 0: the renderer's

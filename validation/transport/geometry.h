@@ -45,8 +45,8 @@ typedef struct abbe_bent_face {
 /* The surface behind one of Embree's geometry identifiers; frame units. */
 typedef struct abbe_surface {
   unsigned kind;   /* one of the bits above */
-  uint32_t index;  /* among its kind: refractor, receiver, mirror; of the light for lamps */
-  uint32_t object; /* in the scene; of the light for lamps */
+  uint32_t index;  /* among its kind: refractor, receiver, mirror; of the light for lights */
+  uint32_t object; /* in the scene; of the light for lights */
   bool sphere;     /* centre and radius hold; else triangles */
   bool flat;       /* every face has one normal: its own */
   float centre[3], radius;

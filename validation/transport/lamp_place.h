@@ -1,4 +1,4 @@
-/* lamp_place.h: a place on a lamp, drawn evenly over its area, and kept clear of its surface.
+/* lamp_place.h: a place on a light, drawn evenly over its area, and kept clear of its surface.
  *
  * Internal to validation/.
  */
@@ -30,8 +30,8 @@ static inline float abbe_lamp_place(const abbe_geometry *g, const abbe_light *li
   return power;
 }
 
-/* A place on a lamp, moved off it to the side that shines, by more than rays between there and
- * `from` are rounded and start off a face at `from`: they do not meet the lamp itself. A light
+/* A place on a light, moved off it to the side that shines, by more than rays between there and
+ * `from` are rounded and start off a face at `from`: they do not meet the light itself. A light
  * without size is left where it is. */
 static inline void abbe_lamp_clear(const abbe_light *light, const float from[3], float place[3]) {
   float size = 0;

@@ -4,7 +4,7 @@
  * Matched leaves out what the renderer's plan leaves out: where a path that has met its first
  * interface is reflected, it ends if it is left with less than a share of its light or has met a
  * number of interfaces since. The surfaces are the true ones in both, and so is what the map of a
- * light holds: what lands where the lamp would see the receiver past others.
+ * light holds: what lands where the light would see the receiver past others.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_PHYSICS_H
 #define ABBE_VALIDATION_TRANSPORT_PHYSICS_H
@@ -17,7 +17,7 @@ typedef struct abbe_physics {
   bool matched;
   size_t orders;       /* matched: interfaces after the first that may reflect, and one */
   double energy_share; /* matched: what is reflected below this share of its light ends */
-  size_t eye_orders;   /* the same of the eye's paths; 0: as the light's */
+  size_t eye_orders;   /* the same of the camera's paths; 0: as the light's */
   double eye_share;
 } abbe_physics;
 

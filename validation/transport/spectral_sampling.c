@@ -23,8 +23,8 @@ static const abbe_illuminant *illuminant_of(const abbe_scene *scene, size_t ligh
                                     : &scene->environment->illuminant;
 }
 
-/* What the eye sees of the lights, a share of 1 in all, over the fine bins; beyond them density has
- * room for one light's. */
+/* What the camera sees of the lights, a share of 1 in all, over the fine bins; beyond them density
+ * has room for one light's. */
 static abbe_result visible_density(const abbe_scene *scene, const abbe_spectral_sampling_desc *d,
                                    double *density, abbe_error *error) {
   const double min_nm = d->min_nm, max_nm = d->max_nm;
@@ -107,8 +107,8 @@ static abbe_result fill_colours(const abbe_scene *scene, abbe_spectral_sampling 
   for (size_t l = 0; l < s->lights; l++) {
     const abbe_illuminant *illuminant = illuminant_of(scene, l);
     abbe_weights weights;
-    abbe_result result = abbe_weights_make_by(s->observer, &bands, illuminant, ABBE_RGB_SPACE_XYZ,
-                                              &weights, error);
+    abbe_result result =
+        abbe_weights_make_by(s->observer, &bands, illuminant, ABBE_RGB_SPACE_XYZ, &weights, error);
     if (result != ABBE_OK) return result;
     double power = 0;
     memcpy(s->white[l], weights.sum, sizeof s->white[l]);

@@ -1,9 +1,9 @@
 /* spectral_sampling.h: the continuous spectrum of the tracer's paths.
  *
- * A path has one wavelength, drawn from a density that follows what the eye sees of the lights,
+ * A path has one wavelength, drawn from a density that follows what the camera sees of the lights,
  * mixed with a uniform one so that no part of the range starves. The density is constant over each
  * of `steps` intervals of equal probability; a path carries the mean colour of its interval, so
- * the mean over all paths is the light's white exactly. Where bands are asked for, every edge of a
+ * the mean over all paths is the light's white exactly. Where bands are requested, every edge of a
  * band is an edge of steps: each band has a whole number of them. Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_SPECTRAL_SAMPLING_H

@@ -33,7 +33,7 @@ typedef struct fill {
   abbe_exit_space space;
   abbe_media media;
   abbe_mirrors mirrors;
-  uint32_t *facet; /* NULL: its faces are not told apart */
+  uint32_t *facet; /* NULL: its faces are not separated */
   uint32_t *found; /* [points] of a node: facets' key, 0 for none */
   sequences *sequences;
 } fill;

@@ -12,7 +12,7 @@ static const float before = 4;
 /* And how far off the place what it meets first may lie. */
 static const float near_place = 1e-4f;
 
-/* A ray under way. */
+/* A ray in progress. */
 typedef struct walk {
   const abbe_exit_space *space;
   uint32_t step;

@@ -20,7 +20,7 @@
 
 enum { TASK = 16384, LINES = 1 << 18, SALT = 0x766f6c, LEAST_PASSES = 2 };
 
-/* A thread of the work under way. */
+/* A thread of the work in progress. */
 typedef struct worker {
   struct fill *fill;
   size_t thread;

@@ -30,9 +30,9 @@ static inline void abbe_trace_camera_ray(const abbe_trace_camera *c, float x, fl
   for (int k = 0; k < 3; k++) d[k] = scale * (c->forward[k] + a * c->right[k] + b * c->up[k]);
 }
 
-/* The pixel that a point (frame) is seen in; false where it is behind the eye or outside the
- * picture. *distance to the eye (frame), d the unit direction from the eye, *per_pixel: what a
- * pixel's mean radiance gains, for an isotropic radiance towards the eye of 1 from a unit of
+/* The pixel that a point (frame) is seen in; false where it is behind the camera or outside the
+ * picture. *distance to the camera (frame), d the unit direction from the camera, *per_pixel: what
+ * a pixel's mean radiance gains, for an isotropic radiance towards the camera of 1 from a unit of
  * projected area at unit distance (1 / the film's area and cosine^3). */
 static inline bool abbe_trace_camera_pixel(const abbe_trace_camera *c, const float p[3],
                                            size_t *pixel, float *distance, float d[3],
@@ -57,7 +57,7 @@ static inline bool abbe_trace_camera_pixel(const abbe_trace_camera *c, const flo
   return true;
 }
 
-/* How many samples of each pixel the eye takes in a pass.
+/* How many samples of each pixel the camera takes in a pass.
  *
  * What shows in glass changes from place to place within a pixel, and one sample of it is far from
  * the mean where the photons of the same pass have found theirs. So pixels that may show a
@@ -72,7 +72,8 @@ static inline bool abbe_trace_camera_pixel(const abbe_trace_camera *c, const flo
 void abbe_eye_samples_share(const abbe_geometry *geometry, const abbe_trace_camera *camera,
                             double rays, size_t threads, uint8_t *samples);
 
-/* How far the eye sees, mean over places of the picture that show something; frame; 1: none do. */
+/* How far the camera sees, mean over places of the picture that show something; frame; 1: none do.
+ */
 float abbe_eye_samples_depth(const abbe_geometry *geometry, const abbe_trace_camera *camera);
 
 #endif

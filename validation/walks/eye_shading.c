@@ -252,7 +252,7 @@ static void shade(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_
 }
 
 /* Radiance over the squared index is the same on both sides of an interface [BornWolf1999, 4.8]:
- * what a path of the eye brings of what is shown at its end. */
+ * what a path of the camera brings of what is shown at its end. */
 static float spread(const abbe_eye_context *c, const abbe_eye_path *p, bool within) {
   const int end = within ? abbe_media_of(p->inside) : -1, eye = abbe_media_of(c->w->inside);
   if (end == eye) return 1;
@@ -263,7 +263,7 @@ static float spread(const abbe_eye_context *c, const abbe_eye_path *p, bool with
 
 /* ---- haze ---- */
 
-/* Light that lamps and surroundings send straight to the haze in the air on the path's way; more
+/* Light that lights and surroundings send straight to the haze in the air on the path's way; more
  * samples where the path behind is cheap. */
 static void add_air_light(const abbe_eye_context *c, const abbe_eye_path *p,
                           const abbe_air_ray *ray, bool straight) {
@@ -332,7 +332,7 @@ void abbe_eye_haze(const abbe_eye_context *c, abbe_eye_path *p, float length, bo
                               .step = p->step,
                               .within = p->within};
     if (medium < 0) add_air_light(c, &own, &ray, straight);
-    /* farther off, photons find an eye that sees them straight by themselves */
+    /* farther off, photons find a camera that sees them straight by themselves */
     const float end = straight ? fminf(to, w->shaft_near) : to;
     const float radius = straight ? 0.25f * w->shaft_radius : w->shaft_radius;
     if (w->shafts != NULL && end > from && end < INFINITY)
@@ -417,7 +417,7 @@ static float weight_of(const abbe_eye_path *p, float pdf) {
   return p->lobe > 0 ? p->lobe / (p->lobe + pdf) : 1;
 }
 
-/* What ends a path: a receiver, a lamp, or nothing at all. */
+/* What ends a path: a receiver, a light, or nothing at all. */
 void abbe_eye_arrive(const abbe_eye_context *c, const abbe_eye_path *path, bool met,
                      const abbe_hit *hit, bool straight) {
   const abbe_scene *scene = c->w->geometry->scene;

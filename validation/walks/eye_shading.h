@@ -1,5 +1,5 @@
-/* eye_shading.h: what the paths of the eye find at their ends: receivers with the light on them,
- * the environment, the background, lamps.
+/* eye_shading.h: what the paths of the camera find at their ends: receivers with the light on them,
+ * the environment, the background, lights.
  *
  * Internal to validation/.
  */
@@ -9,7 +9,7 @@
 #include "validation/transport/random.h"
 #include "validation/walks/eye_walk.h"
 
-/* A path from the eye. Where it is not dispersed it carries the whole spectrum, else one
+/* A path from the camera. Where it is not dispersed it carries the whole spectrum, else one
  * wavelength. */
 typedef struct abbe_eye_path {
   float o[3], d[3];
@@ -49,8 +49,8 @@ static inline void abbe_eye_random4(const abbe_eye_context *c, uint32_t a, uint3
   for (int k = 0; k < 4; k++) out[k] = abbe_random_float(bits[k]);
 }
 
-/* What ends a path goes into the sample: a receiver, a lamp, or nothing at all. straight: the eye's
- * own ray, whose caustic the photons bring. */
+/* What ends a path goes into the sample: a receiver, a light, or nothing at all. straight: the
+ * camera's own ray, whose caustic the photons bring. */
 void abbe_eye_arrive(const abbe_eye_context *context, const abbe_eye_path *path, bool met,
                      const abbe_hit *hit, bool straight);
 
@@ -58,8 +58,8 @@ void abbe_eye_arrive(const abbe_eye_context *context, const abbe_eye_path *path,
  * path. Where its coefficients vary over wavelength the path is dispersed. straight: as above. */
 void abbe_eye_haze(const abbe_eye_context *context, abbe_eye_path *path, float length,
                    bool straight);
-/* What a rough mirror shows of lamps and the environment that it sees straight: of what comes to it
- * by other ways a path's next ray tells, and of these, too, where their weights leave room
+/* What a rough mirror shows of lights and the environment that it sees straight: of what comes to
+ * it by other ways a path's next ray tells, and of these, too, where their weights leave room
  * [VeachGuibas1995]. n: on the path's side. */
 void abbe_eye_gloss(const abbe_eye_context *context, const abbe_eye_path *path, const abbe_hit *hit,
                     const float n[3], const abbe_rough_hit *rough);

@@ -221,7 +221,7 @@ static bool scatter_waves(const abbe_eye_context *c, branches *b, abbe_eye_path 
   return goes;
 }
 
-/* One way on from a rough mirror, d; what it shows of lamps is added. Returns the share that goes
+/* One way on from a rough mirror, d; what it shows of lights is added. Returns the share that goes
  * there of what the facet met reflects. */
 static float scatter_off(const abbe_eye_context *c, abbe_eye_path *p, const abbe_hit *hit,
                          const float n[3], float d[3], float *cos_h) {
@@ -377,7 +377,7 @@ static void follow_through(const abbe_eye_context *c, const abbe_eye_path *first
   }
 }
 
-/* What the eye sees straight in a mirror: wavelengths of their own where it has a colour. */
+/* What the camera sees straight in a mirror: wavelengths of their own where it has a colour. */
 static void follow_off(const abbe_eye_context *c, const abbe_eye_path *first, const abbe_hit *hit,
                        uint32_t wave) {
   const bool takes = is_coloured_mirror(c, hit);
@@ -400,7 +400,7 @@ static void add_first(const abbe_eye_context *c, const abbe_eye_path *p, const a
   c->out->depth += p->share * length;
 }
 
-/* On from what the eye's ray meets first. */
+/* On from what the camera's ray meets first. */
 static void walk_on(const abbe_eye_context *c, abbe_eye_path *p, bool met, const abbe_hit *first,
                     uint32_t wave) {
   abbe_hit hit = *first;
@@ -426,8 +426,8 @@ static void walk_on(const abbe_eye_context *c, abbe_eye_path *p, bool met, const
   follow_through(c, p, &hit, &at, wave);
 }
 
-/* One of the pixel's samples: a path from the eye through the place (x, y) on the film. wave, a
- * fraction of 2^32, chooses wavelengths, of their own where haze around the eye has a colour. */
+/* One of the pixel's samples: a path from the camera through the place (x, y) on the film. wave, a
+ * fraction of 2^32, chooses wavelengths, of their own where haze around the camera has a colour. */
 static void walk_sample(const abbe_eye_context *c, abbe_eye_path *p, float x, float y,
                         uint32_t wave) {
   abbe_hit hit = {0};

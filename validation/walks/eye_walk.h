@@ -1,4 +1,4 @@
-/* eye_walk.h: what one pixel sees in one pass: paths from the eye through glass to what shows.
+/* eye_walk.h: what one pixel sees in one pass: paths from the camera through glass to what shows.
  *
  * Receivers are lit directly, with shadows, by point, spot, directional and disk lights, and by the
  * environment, which is seen where a path meets nothing. A pixel
@@ -6,10 +6,10 @@
  * through it. At every further interface both ways on are followed; Russian roulette takes what is
  * faint. The caustic on a
  * receiver seen that way comes from the photons around the place (consistent); on a receiver that
- * the eye sees straight it is left out, for the photons themselves find the eye (unbiased). In haze
- * it is alike: what comes straight from lamps is sampled along every path, what comes through
- * refractors and off mirrors is gathered or, where it is seen straight, left to the photons.
- * Internal to validation/.
+ * the camera sees straight it is left out, for the photons themselves find the camera (unbiased).
+ * In haze it is alike: what comes straight from lights is sampled along every path, what comes
+ * through refractors and off mirrors is gathered or, where it is seen straight, left to the
+ * photons. Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_WALKS_EYE_WALK_H
 #define ABBE_VALIDATION_WALKS_EYE_WALK_H
@@ -43,7 +43,7 @@ typedef struct abbe_eye_walk {
   const float (*white)[3];  /* [lights] in the picture's space */
   abbe_physics physics;
   uint32_t seed;
-  abbe_media_set inside; /* refractors that the eye is in; their media are clear */
+  abbe_media_set inside; /* refractors that the camera is in; their media are clear */
   float least_branch; /* share of what came into the glass below which roulette decides; 1: at all
                          interfaces */
   const uint8_t *samples;       /* [pixels] of each pixel in a pass; NULL: one */
@@ -52,8 +52,8 @@ typedef struct abbe_eye_walk {
   double window_nm;             /* half the range of wavelengths that a dispersed path gathers */
   const abbe_haze_grid *shafts; /* grid of photons that a medium scatters; NULL: none */
   float shaft_radius;           /* radius of their gather, frame */
-  float shaft_near; /* as far as this the eye gathers those that it sees straight, by a quarter of
-                       the radius, frame */
+  float shaft_near; /* as far as this the camera gathers those that it sees straight, by a quarter
+                       of the radius, frame */
 } abbe_eye_walk;
 
 typedef struct abbe_eye_sample {

@@ -8,7 +8,7 @@ static float above(const float n[3], const float a[3], const float p[3]) {
   return n[0] * (p[0] - a[0]) + n[1] * (p[1] - a[1]) + n[2] * (p[2] - a[2]);
 }
 
-/* Whether a corner of a receiver lies on the other side of a face's plane than the lamp. */
+/* Whether a corner of a receiver lies on the other side of a face's plane than the light. */
 static bool stands_before(const abbe_geometry *g, const abbe_light *light, const float corner[3],
                           const float n[3]) {
   float lamp[3], toward = 0;
@@ -31,7 +31,7 @@ static bool stands_before(const abbe_geometry *g, const abbe_light *light, const
   return false;
 }
 
-/* Receivers that are the walls of a convex room around the lamp hide nothing. */
+/* Receivers that are the walls of a convex room around the light hide nothing. */
 bool abbe_lamp_is_hidden(const abbe_geometry *g, const abbe_light *light) {
   size_t faces = 0;
   for (size_t i = 0; i < g->surface_count; i++) {
@@ -62,7 +62,7 @@ bool abbe_lamp_is_hidden(const abbe_geometry *g, const abbe_light *light) {
   return false;
 }
 
-/* Rays to the lamp in the frame, or against its direction, where `far`; as abbe_geometry_leave has
+/* Rays to the light in the frame, or against its direction, where `far`; as abbe_geometry_leave has
  * it, off their faces. */
 SIDE_BY_SIDE static void aim(const float lamp[3], int far, abbe_lamp_rays *s) {
   struct RTCRay16 *ray = &s->ray;

@@ -194,18 +194,18 @@ static inline bool abbe_light_path_is_followed(const abbe_inner_rules *r, abbe_l
   return s->inner < r->physics.orders && (double)s->carried >= r->physics.energy_share;
 }
 
-/* Whether the lamp would see the places where its photons land past other receivers.
+/* Whether the light would see the places where its photons land past other receivers.
  *
  * The map of a light holds only those: the others are marked as hidden. Refractors and mirrors
- * hide nothing: what lands in their shadow has its place in the map. Rays to the lamp wait until
+ * hide nothing: what lands in their shadow has its place in the map. Rays to the light wait until
  * there is a packet of them.
  * */
 
-/* Whether a receiver may hide a place on another from the lamp: those that are the walls of a
+/* Whether a receiver may hide a place on another from the light: those that are the walls of a
  * convex room around it hide nothing, and no ray need be traced. */
 bool abbe_lamp_is_hidden(const abbe_geometry *g, const abbe_light *light);
 
-/* Photon hits that wait for their ray to the lamp, of one light. A zeroed one has none. */
+/* Photon hits that wait for their ray to the light, of one light. A zeroed one has none. */
 typedef struct abbe_lamp_rays {
   struct RTCRay16 ray;
   size_t count;

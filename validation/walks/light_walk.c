@@ -13,7 +13,7 @@ enum {
   LANES = ABBE_RAY_LANES,
   PACKETS = ABBE_LIGHT_WALK_HITS / LANES,
   SMALL_SCENE = 4096,  /* faces */
-  COHERENT_BOUNCES = 2 /* how often rays of a packet are scattered before they are told apart */
+  COHERENT_BOUNCES = 2 /* how often rays of a packet are scattered before they are separated */
 };
 
 /* Paths that are followed side by side, and the ray of each. */
@@ -160,7 +160,7 @@ typedef struct packet {
   abbe_hit hit[LANES];
 } packet;
 
-/* A batch under way: what the photons of one light have in common. */
+/* A batch in progress: what the photons of one light have in common. */
 typedef struct run {
   abbe_light_walk *w;
   const abbe_light *light;

@@ -3,7 +3,8 @@
  * A batch of photons is followed side by side: every interface reflects or transmits each of them
  * by Fresnel's law and a random number, so a photon keeps its whole flux but for what is absorbed.
  * Paths run until they land, leave the scene, or lose the roulette. Light that reaches a receiver
- * without meeting a refractor is not counted: the eye finds it by itself. Internal to validation/.
+ * without meeting a refractor is not counted: the camera finds it by itself. Internal to
+ * validation/.
  */
 #ifndef ABBE_VALIDATION_WALKS_LIGHT_WALK_H
 #define ABBE_VALIDATION_WALKS_LIGHT_WALK_H
@@ -48,8 +49,8 @@ void abbe_light_walk_split(abbe_light_walk *walk, unsigned interfaces);
 void abbe_light_walk_for_map(abbe_light_walk *walk, bool map);
 
 typedef void (*abbe_light_walk_stretch)(void *user, const abbe_light_stretch *stretch);
-/* Told every stretch of the next runs, in the open and in refractors, but for those inside of convex
- * solids in which nothing scatters; NULL: nobody is. */
+/* Told every stretch of the next runs, in the open and in refractors, but for those inside of
+ * convex solids in which nothing scatters; NULL: nobody is. */
 void abbe_light_walk_watch(abbe_light_walk *walk, abbe_light_walk_stretch take, void *user);
 
 /* Follows count <= ABBE_LIGHT_WALK_BATCH photons of one light of the geometry's scene, or of its
@@ -60,7 +61,7 @@ size_t abbe_light_walk_run(abbe_light_walk *walk, const abbe_light *light, uint3
                            const abbe_photon *photon, size_t count, abbe_photon_hit *hit,
                            abbe_light_ledger *ledger);
 
-/* Rays of paths that were traced so far; and those that ask what is hidden from a lamp. */
+/* Rays of paths that were traced so far; and those that ask what is hidden from a light. */
 uint64_t abbe_light_walk_rays(const abbe_light_walk *walk);
 uint64_t abbe_light_walk_lamp_rays(const abbe_light_walk *walk);
 /* Keeps every packet of rays of both kinds of the next runs, up to a limit, to trace them again for

@@ -39,7 +39,7 @@ typedef struct abbe_photon_hit {
   /* Chance with which the first interfaces sent it where they did; 1 where its path was split
    * there, or where there was no choice. */
   float chance[ABBE_PHOTON_SPLITS];
-  bool hidden; /* from the lamp by other receivers, so that its map has no place for it */
+  bool hidden; /* from the light by other receivers, so that its map has no place for it */
 } abbe_photon_hit;
 
 /* Where the light of the photons went: W, each wavelength with its share of Y. The words are those
@@ -48,7 +48,7 @@ typedef struct abbe_light_ledger {
   double reached;   /* brought to a refractor, before anything else */
   double deposited; /* on receivers */
   double contact;   /* the part of it that came from inside a refractor that touches the receiver */
-  double hidden;    /* the part of it that other receivers hide from the lamp, so that its map does
+  double hidden;    /* the part of it that other receivers hide from the light, so that its map does
                        not hold it; of the light that a map is made of */
   double absorbed;  /* along inner paths, and by what the air holds */
   double missed;    /* met no receiver; with it what the renderer's ledger has as reflected */

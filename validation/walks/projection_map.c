@@ -125,7 +125,7 @@ SIDE_BY_SIDE void abbe_projection_map_aim(const abbe_projection_map *a,
 
 typedef struct patch {
   double x, y, radius; /* a disc of the plane that holds the ball's image; radius < 0: everything */
-  double own;          /* the part of radius that is the ball's, not the lamp's */
+  double own;          /* the part of radius that is the ball's, not the light's */
 } patch;
 
 static patch cover(const abbe_projection_map *a, const double centre[3], double radius) {

@@ -91,7 +91,7 @@ static void edit_terminal_give_back(void) {
   terminal = NULL;
 }
 
-/* Whether a signal asked for the end, or the terminal has hung up. */
+/* Whether a signal requested the end, or the terminal has hung up. */
 static bool edit_terminal_ended(void) {
   struct pollfd input = {.fd = STDIN_FILENO, .events = POLLIN};
   bool gone = poll(&input, 1, 0) > 0 && (input.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;

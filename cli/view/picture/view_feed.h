@@ -55,8 +55,8 @@ typedef struct abbe_view_facet {
 } abbe_view_facet;
 
 typedef struct abbe_view_feed {
-  double point[3], radius; /* whose light is asked for, m */
-  bool on_refractor;       /* the place that was asked for lies on one, where no photon lands: */
+  double point[3], radius; /* whose light is requested, m */
+  bool on_refractor;       /* the place that was requested lies on one, where no photon lands: */
   abbe_view_sight sight;   /* through it to the point */
   size_t photons;          /* that light it, at any wavelength */
   size_t ray_count;        /* number of these, the strongest that meet one */

@@ -48,7 +48,7 @@ bool abbe_ui_section(const char *label, bool open);
 void abbe_ui_text(abbe_ui_colour colour, const char *text);
 /* A name at the left and its value at a fixed place, or behind a long name. */
 void abbe_ui_pair(const char *name, const char *value);
-/* Widgets of one label are told apart by the scope that they are in. */
+/* Widgets of one label are separated by the scope that they are in. */
 void abbe_ui_scope_begin(const char *id);
 void abbe_ui_scope_end(void);
 void abbe_ui_gap(void);

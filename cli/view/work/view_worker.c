@@ -271,7 +271,7 @@ static abbe_result look(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
                                &w->stop, feed, error);
 }
 
-/* Whether no picture is asked for. */
+/* Whether no picture is requested. */
 static bool looks(const abbe_view_request *q) {
   return q->asks || q->maps || q->tells;
 }

@@ -7,10 +7,10 @@ enum { SCANNED = 3000, HALVINGS = 60 };
 /* A ray in plan, on its way after the last reflection. */
 typedef struct course {
   double from[2], direction[2];
-  double before; /* m, from the lamp to the wall; of the sun 0 */
+  double before; /* m, from the light to the wall; of the sun 0 */
   double chord;  /* m, from wall to wall */
   double
-      width; /* that a ray apart by 1 rad of the wall has: m of the sun's beam, rad of a lamp's */
+      width; /* that a ray apart by 1 rad of the wall has: m of the sun's beam, rad of a light's */
 } course;
 
 /* The course of the ray that meets the wall first at the angle phi. */

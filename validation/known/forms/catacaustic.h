@@ -1,7 +1,7 @@
 /* catacaustic.h: what a vertical mirror cylinder throws onto the floor that it stands on.
  *
  * In plan a ray's course does not depend on how steeply it falls, so the floor shows the planar
- * caustic of a circle by reflection: of parallel light a nephroid, of a lamp on the wall a
+ * caustic of a circle by reflection: of parallel light a nephroid, of a light on the wall a
  * cardioid. Double precision, whole rays, any number of reflections; the wall reflects all.
  * Internal to validation/.
  */
@@ -13,12 +13,12 @@
 /* The cylinder's axis is z, its foot stands in z = 0. */
 typedef struct abbe_catacaustic {
   double radius, height; /* m */
-  double elevation; /* rad above the horizon, of a sun whose light travels along +x; 0: a lamp */
+  double elevation; /* rad above the horizon, of a sun whose light travels along +x; 0: a light */
   double lamp[3];   /* m, inside in plan, above the floor */
 } abbe_catacaustic;
 
 /* Irradiance at the place p of the floor, inside the cylinder, by light that was reflected
- * `bounces` >= 1 times: for a sun of 1 W/m2 across the beam or a lamp of 1 W/sr. It is infinite at
+ * `bounces` >= 1 times: for a sun of 1 W/m2 across the beam or a light of 1 W/sr. It is infinite at
  * folds. *branches (may be NULL): by how many rays. */
 double abbe_catacaustic_irradiance(const abbe_catacaustic *c, const double p[2], size_t bounces,
                                    size_t *branches);

@@ -48,7 +48,7 @@ static abbe_result take_all(const char *path, abbe_sweep_table *whole, abbe_swee
 }
 
 /* All rows that are known, in the order in which one process has them: those of the whole table,
- * then the settings asked for, then what ranks were asked before. */
+ * then the settings requested, then what ranks were asked before. */
 static abbe_result put_together(const abbe_sweep_request *q, abbe_sweep_table *out,
                                 abbe_error *error) {
   abbe_sweep_table parts = {0};

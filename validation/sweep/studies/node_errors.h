@@ -31,7 +31,7 @@ void abbe_node_errors_free(abbe_node_errors *known);
 bool abbe_node_errors_places(const abbe_light_nodes *nodes, const double to_light[3],
                              double place[ABBE_NODE_ERRORS_ALL][3]);
 
-/* A lamp as it stands in that direction from `middle`, as far away as it is. False but of points
+/* A light as it stands in that direction from `middle`, as far away as it is. False but of points
  * and directional lights. */
 bool abbe_node_errors_move(const abbe_light *light, const double middle[3],
                            const double to_light[3], abbe_light *out);

@@ -1,6 +1,6 @@
-/* pinhole_limits.h: what pinholes come to with far more samples, of which the error of few is told
- * apart from what the method leaves out and from a reference's noise.
- * Internal to validation/sweep/studies/.
+/* pinhole_limits.h: what pinholes come to with far more samples, of which the error of few is
+ * separated from what the method leaves out and from a reference's noise. Internal to
+ * validation/sweep/studies/.
  */
 #ifndef ABBE_VALIDATION_SWEEP_STUDIES_PINHOLE_LIMITS_H
 #define ABBE_VALIDATION_SWEEP_STUDIES_PINHOLE_LIMITS_H

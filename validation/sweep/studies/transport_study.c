@@ -185,9 +185,9 @@ static abbe_result time_still(const work *w, abbe_renderer *renderer, double *n,
   return ABBE_OK;
 }
 
-/* A frame without caustics: lamps are spots that shine up from far above, where no object is;
+/* A frame without caustics: lights are spots that shine up from far above, where no object is;
  * receivers have one sample where those of volumes have. As published there are caustics whatever a
- * lamp's cone meets. */
+ * light's cone meets. */
 static abbe_result time_without(const work *w, const abbe_render_desc *desc, double *n,
                                 abbe_error *error) {
   const abbe_scene *scene = w->sweep->scene;
