@@ -1,6 +1,5 @@
 /* lib_handles.h: what is behind the handles of pictures and scenes, and what every function of the
- * API asks of its caller. Internal to library/.
- */
+ * API requires of its caller. Internal to library/. */
 #ifndef ABBE_LIBRARY_LIB_HANDLES_H
 #define ABBE_LIBRARY_LIB_HANDLES_H
 

@@ -146,7 +146,7 @@ abbe_result abbe_lib_scene_change(abbe_lib_scene *s, const char *const *set, siz
     free_texts(all, s->set_count + count);
     return result;
   }
-  if (s->held != s->now) free_scene(s->now); /* else the renderer has it until it is told */
+  if (s->held != s->now) free_scene(s->now); /* else the renderer has it until it is changed */
   free_texts(s->set, s->set_count);
   s->now = next;
   s->set = all;

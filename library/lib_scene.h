@@ -61,7 +61,7 @@ void abbe_lib_scene_set_progress(abbe_lib_scene *scene, abbe_lib_progress progre
  * ABBE_UNSUPPORTED, ABBE_GL, ABBE_CANCELLED, ABBE_NO_MEMORY. */
 abbe_result abbe_lib_scene_render(abbe_lib_scene *scene, const char *const *settings, size_t count,
                                   abbe_lib_picture **out, abbe_error *error);
-/* Where a light's flux landed in the last rendered picture, X, Y, Z in W a texel, and so many bands
+/* Where a light's flux fell in the last rendered picture, X, Y, Z in W a texel, and so many bands
  * in W/nm (0: none). light: a name or a number from 1; NULL: the first. ABBE_INVALID_ARGUMENT
  * before a picture was rendered. */
 abbe_result abbe_lib_scene_map(abbe_lib_scene *scene, const char *light, size_t bands,

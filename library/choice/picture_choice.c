@@ -329,7 +329,7 @@ double abbe_picture_choice_pass_s(const abbe_picture_choice *c, size_t photons) 
   return c->once_ms > 0 ? 1e-3 * c->once_ms * fmax(1, (double)photons / its) : NAN;
 }
 
-/* Why passes tell nothing. */
+/* Why passes show nothing. */
 static const char *find_reason(const abbe_picture_choice *c) {
   if (c->passes > 0 && c->others && c->timed_out)
     return "so few passes as the budget left time for are too noisy to tell";

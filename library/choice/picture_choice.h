@@ -33,7 +33,7 @@ typedef struct abbe_picture_front {
   char scenes[256];
   double base_ms, base_error; /* the yardstick's in the run, geometric means over its scenes */
   double margin[ABBE_PICTURE_TOOL_COUNT], time_margin[ABBE_PICTURE_TOOL_COUNT];
-  size_t margin_scenes;                              /* behind them; 0: too few to tell */
+  size_t margin_scenes;                              /* behind them; 0: too few to know */
   size_t count;                                      /* at least 1 */
   abbe_picture_point point[ABBE_PICTURE_MAX_POINTS]; /* [count] tool by tool */
 } abbe_picture_front;
@@ -50,7 +50,7 @@ typedef struct abbe_picture_request {
   const char *file;                   /* file of presets, or NULL: the shipped ones */
   double max_error;                   /* 0: none */
   double budget_ms;                   /* time of the whole process; 0: none */
-  bool timed;                         /* promise a time too, where budget_ms does not ask for one */
+  bool timed;                         /* promise a time too, where budget_ms does not request one */
   bool tool[ABBE_PICTURE_TOOL_COUNT]; /* those that may be taken; none: all */
   size_t width, height;               /* pixels; 0: the scene's */
 } abbe_picture_request;
@@ -70,8 +70,8 @@ typedef struct abbe_picture_choice {
   bool compiled;       /* shaders were, which happens once on a machine */
   size_t passes;       /* that the picture is traced of, or checked by; 0: none */
   bool others;         /* they are not the picture's own: it is held against them */
-  bool timed_out;      /* to tell its error, or to tell it better, there was no time left */
-  abbe_pass_error met; /* what they tell of its error: NaN, or 0 passes: nothing */
+  bool timed_out;      /* to estimate its error, or to do it better, there was no time left */
+  abbe_pass_error met; /* their estimate of its error: NaN, or 0 passes: none */
   bool traced_instead; /* the rendered picture did not keep max_error, and the passes do */
 } abbe_picture_choice;
 
@@ -88,11 +88,11 @@ abbe_result abbe_picture_choose(const abbe_picture_request *request, const abbe_
                                 abbe_picture_choice *out, abbe_error *error);
 
 /* ABBE_TOLERANCE where a process of that time does not keep the bound that was requested. Where
- * passes tell the picture's error these decide, whatever was promised. */
+ * passes estimate the picture's error these decide, whatever was promised. */
 abbe_result abbe_picture_choice_check(const abbe_picture_choice *choice, double ms,
                                       abbe_error *error);
 
-/* Whether passes have told the picture's error. */
+/* Whether passes have estimated the picture's error. */
 bool abbe_picture_choice_tells(const abbe_picture_choice *choice);
 /* "about 1.6 (at most 1.9), told by ...; expected were 2", or "2, expected (not checked: ...)".
  */

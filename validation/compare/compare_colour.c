@@ -46,7 +46,7 @@ typedef struct quiet {
 /* The tint of the pixels around where they vary no more than their errors explain, the pixel's own
  * where they vary much more, and in between by their variances [Lee1980]. Where they vary less than
  * independent errors would make them, the errors go together: by how much follows. So few pixels
- * tell a variance to a quarter or so; it is taken larger by that, lest chance be taken for
+ * give a variance to a quarter or so; it is taken larger by that, lest chance be taken for
  * togetherness. */
 static void quieten_tint(const tint *t, const double error[3], int c, quiet *q) {
   double mean = t->sum / t->weight, independent = t->noise / t->weight;
@@ -170,7 +170,7 @@ static mean weighted_mean(double sum, double weights, double weighted_squares) {
   return (mean){value, value + 2 * sqrt(spread * weighted_squares) / weights};
 }
 
-/* The region's values in ascending order; sorted is room for them. */
+/* The region's values in ascending order; sorted has capacity for them. */
 static size_t order(const abbe_compare_state *s, const abbe_mask *mask, const float *values,
                     float *sorted) {
   size_t count = 0;
@@ -208,7 +208,7 @@ static mean mean_uv(const abbe_compare_state *s, const abbe_mask *mask, const fl
 }
 
 /* How well the noise of colour is known: within 5 % of what independent errors of up to a tenth of
- * the light do; of those that go together a little more is told than they do. */
+ * the light do; that of errors that go together is estimated a little too large. */
 static const double slack = 0.05;
 
 static void set(abbe_compare_value *v, abbe_compare_sides who, mean m) {

@@ -80,7 +80,7 @@ static abbe_result draw(const char *path, const abbe_field *reference, const abb
                         const char *title, abbe_error *error) {
   const abbe_chart chart = {.title = title, .field = f};
   size_t times = enlargement(reference);
-  /* Room enough beside the field; its height decides, so that a pixel is `times` pixels. */
+  /* Space enough beside the field; its height decides, so that a pixel is `times` pixels. */
   return abbe_chart_write(path, &chart, 1, f->width * times + BESIDE,
                           f->height * times + (title != NULL ? TITLE : ABOVE) + BELOW, error);
 }

@@ -15,7 +15,7 @@
 
 #include <stdbool.h>
 
-/* X(code, name): the attribute abbe:kind of a file, or what its other attributes tell. */
+/* X(code, name): the attribute abbe:kind of a file, or what its other attributes mean. */
 #define ABBE_FIELD_KINDS(X)                                                                        \
   X(PICTURE, "picture")           /* radiance a pixel */                                           \
   X(RECEIVER_MAP, "receiver map") /* flux a texel, in a light's layout */
@@ -50,7 +50,7 @@ typedef struct abbe_field {
   double *lambda_nm;          /* [bands.channels] ascending */
   size_t unread;              /* channels of a spectrum that are none of these bands */
   abbe_field_samples caustic; /* 0 or 3 channels, in the colour's space, without errors */
-  size_t passes;              /* independent estimates behind the errors; 0: not told */
+  size_t passes;              /* independent estimates behind the errors; 0: not known */
   abbe_image header;          /* the file's attributes and its display window; no pixels */
 } abbe_field;
 

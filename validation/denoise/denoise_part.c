@@ -132,7 +132,7 @@ void abbe_denoise_part_free(abbe_denoise_part *part) {
   *part = (abbe_denoise_part){0};
 }
 
-/* ---- variances that a few passes tell badly ---- */
+/* ---- variances that a few passes estimate badly ---- */
 
 /* Around a pixel the photons' variance is in proportion to their brightness; the camera's is as it
  * is around. */

@@ -25,7 +25,7 @@ void abbe_gem_eye_ray(const abbe_gem_eye *eye, size_t side, size_t column, size_
                       double v, double o[3], double d[3]);
 
 /* A place in a pixel, by chance: each repeat is a jittered grid by itself, and independent of the
- * others, so that their scatter tells their error. */
+ * others, so that their scatter shows their error. */
 void abbe_gem_eye_place(size_t side, size_t column, size_t row, size_t repeat, double *u,
                         double *v);
 

@@ -12,7 +12,7 @@ enum { LANES = 64 };
 
 abbe_gem_lamps abbe_gem_lamps_make(const abbe_gem_eye *eye, size_t repeat, double head_rad) {
   abbe_gem_lamps out;
-  /* the room's own turn: the golden section of a whole one */
+  /* the turn of all lights: the golden section of a whole one */
   const double turn = 2 * ABBE_PI * fmod((double)repeat * 0.6180339887498949, 1);
   for (int i = 0; i < LANES; i++) {
     const double height = (i + 0.5) / ABBE_GEM_LAMPS, across = sqrt(fmax(1 - height * height, 0));

@@ -90,12 +90,12 @@ abbe_gem_light abbe_gem_light_make(const double eye[3], double head_rad);
 void abbe_gem_light_judge(const abbe_gem_light *light, const abbe_gem_path *path,
                           float amount[ABBE_GEM_AMOUNT_COUNT]);
 
-/* A room of small lamps before a stone, in which its fire and its blinking are seen.
+/* Small lights before a stone, in which its fire and its blinking are seen.
  *
- * Sixty lamps, 2 to 10 degrees across and of luminance 1, spread evenly over the hemisphere about
- * the eye's line as a spiral has it; all else is dark, and so is a lamp behind the head. They stay
- * with the eye while the stone is rocked. Each repeat turns the room by another angle, so that the
- * errors hold the lamps' places too. */
+ * Sixty lights, 2 to 10 degrees across and of luminance 1, spread evenly over the hemisphere about
+ * the eye's line as a spiral has it; all else is dark, and so is a light behind the head. They stay
+ * with the eye while the stone is rocked. Each repeat turns them by another angle, so that the
+ * errors hold the lights' places too. */
 
 enum { ABBE_GEM_LAMPS = 60 };
 #define ABBE_GEM_LAMP_MIN_DEG 2.0 /* across */

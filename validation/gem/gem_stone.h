@@ -1,6 +1,6 @@
 /* gem_stone.h: a cut stone as light meets it: its planes, and its material at some wavelengths.
  *
- * The stone is what lies behind its planes: a ray inside asks them all, and no hierarchy. Lengths
+ * The stone is what lies behind its planes: a ray inside tests them all, without a BVH. Lengths
  * are scaled so that the ball around its corners has radius 1, about the origin; axes are the
  * cut's, z up through the table. It stands alone in air. Isotropic materials; no polarisation
  * state is kept from face to face.

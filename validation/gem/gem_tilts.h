@@ -1,9 +1,9 @@
 /* gem_tilts.h: a stone rocked before the eye: its brightness by tilt, its fire, its scintillation.
  *
  * Four axes, 45 degrees apart; about each the stone goes from one side to the other in even steps.
- * Brightness is as in gem_light.h, in white light. Fire and scintillation are those of a room of
- * small lamps (gem_light.h); docs/gem-measures.md has the definitions and where they come from.
- * Results do not depend on the number of threads. Internal to validation/gem/.
+ * Brightness is as in gem_light.h, in white light. Fire and scintillation are those under small
+ * lights (gem_light.h); docs/gem-measures.md has the definitions and where they come from. Results
+ * do not depend on the number of threads. Internal to validation/gem/.
  */
 #ifndef ABBE_VALIDATION_GEM_GEM_TILTS_H
 #define ABBE_VALIDATION_GEM_GEM_TILTS_H

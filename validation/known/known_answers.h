@@ -1,4 +1,4 @@
-/* known_answers.h: the tracer held against optics that is known: a table, a row an answer.
+/* known_answers.h: the tracer compared with optics that is known: a table, a row an answer.
  *
  * A row's exact half comes from closed_form.h or sphere_quadrature.h, its traced half from the
  * tracer's own geometry and interfaces: single rays followed by fixed choices (route.h), or whole
@@ -52,7 +52,7 @@ typedef struct abbe_known_answer {
   double standard_error; /* error of traced, in the unit; 0 where nothing is random */
   double error;          /* traced - exact */
   double tolerance;      /* largest |error| that passes, in the unit */
-  double useful;         /* a tolerance beyond this tells nothing: the row fails; 0: any does */
+  double useful;         /* a tolerance beyond this is useless: the row fails; 0: any is useful */
   double photons;        /* that the row's error belongs to, for a chart of it; 0: it has none */
   bool passed;
 } abbe_known_answer;

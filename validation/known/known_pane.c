@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define ABOVE 2.0  /* m: the plane that the reflected light lands on */
+#define ABOVE 2.0  /* m: the plane that the reflected light meets */
 #define BELOW 0.06 /* m: the one under the pane */
 
 /* A pane of 1 m x 1 m. The circle where the flux is taken lies where no light of the edges comes:

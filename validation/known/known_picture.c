@@ -82,8 +82,8 @@ static abbe_result rings_of(const double edge[RINGS + 1], abbe_rings *out, abbe_
   return abbe_rings_make(&layout, SIDE, SIDE, centre, metres, RINGS, out, error);
 }
 
-/* For every pixel, the flux in W that lands in it for a radiance of 1: pi over the reflectance,
- * times the area of the plane that it sees. */
+/* For every pixel, the flux in W on it for a radiance of 1: pi over the reflectance, times the area
+ * of the plane that it sees. */
 static void flux_of_pixels(const abbe_rings *rings, float *flux) {
   const double half = tan(FOV_RAD / 2), film = pow(2 * half / SIDE, 2);
   for (size_t i = 0; i < (size_t)SIDE * SIDE; i++) {

@@ -70,7 +70,7 @@ static abbe_result load(const setting *s, double outer, abbe_scene *scene, abbe_
 
 /* ---- the rings ---- */
 
-/* The radius that holds the share of all that lands, by bisection of its logarithm. */
+/* The radius that holds the share of all that meets the plane, by bisection of its logarithm. */
 static abbe_result radius_of(const abbe_sphere_quadrature *q, double share, double *radius,
                              abbe_error *error) {
   double all = 0, flux = 0, low = 1e-6 * RADIUS, high = 1e3 * RADIUS;

@@ -21,7 +21,7 @@ typedef struct branch {
   double from, to;
 } branch;
 
-/* A part of a branch whose rays reach the plane, the landing monotone from x_from to x_to. */
+/* A part of a branch whose rays reach the plane, their place x monotone from x_from to x_to. */
 typedef struct piece {
   branch way;
   double from, to, x_from, x_to;
@@ -96,7 +96,8 @@ static double share_of(const abbe_sphere_setup *s, branch way, const ray *r) {
          abbe_optics_transmittance(s->attenuation_per_m, inside);
 }
 
-/* The landing is x = (b + h sin phi) / cos phi; cos^2 phi dx/dangle has the sign of its slope. */
+/* The place is x = (b + h sin phi)
+ * cos phi; cos^2 phi dx/dangle has the sign of its slope. */
 static double landing(const abbe_sphere_setup *s, const ray *r) {
   return (r->b + s->plane_distance * sin(r->phi)) / cos(r->phi);
 }
@@ -121,7 +122,7 @@ static double spreading(const abbe_sphere_setup *s, branch way, double angle, do
   return r.b_slope * cos(r.phi) + r.phi_slope * (r.b * sin(r.phi) + s->plane_distance);
 }
 
-/* Has the sign of landing - x where the ray goes down; finite where the landing is not. */
+/* Has the sign of the ray's place less x where the ray goes down; finite where the place is not. */
 static double beyond(const abbe_sphere_setup *s, branch way, double angle, double x) {
   ray r = ray_at(s, way, angle);
   return r.b + s->plane_distance * sin(r.phi) - x * cos(r.phi);
@@ -176,7 +177,7 @@ static bool grow(void **items, size_t *room, size_t count, size_t size) {
   return true;
 }
 
-/* At an end where the rays run level, the landing is infinite on the side they run to. */
+/* At an end where the rays run level, the place is infinite on the side they run to. */
 static double end_landing(const abbe_sphere_setup *s, branch way, double angle) {
   ray r = ray_at(s, way, angle);
   if (fabs(cos(r.phi)) < 1e-12) return sin(r.phi) > 0 ? INFINITY : -INFINITY;
@@ -200,7 +201,7 @@ static bool add_fold(abbe_sphere_quadrature *q, branch way, double angle) {
 }
 
 /* First where the turning has its extremes (so that between two cuts phi passes each level
- * direction once), then where the rays run level, then where the landing turns back. */
+ * direction once), then where the rays run level, then where the place turns back. */
 static bool add_branch(abbe_sphere_quadrature *q, branch way) {
   const abbe_sphere_setup *s = &q->setup;
   cuts turns = cut(s, way, turning, way.from, way.to);
@@ -314,7 +315,7 @@ static double incident(const abbe_sphere_setup *s) {
   return s->power * 2 * ABBE_PI * q * q / (1 + sqrt((1 - q) * (1 + q)));
 }
 
-/* The angle of the piece at which its landing is x, or the end beyond which x lies. */
+/* The angle of the piece at which its place is x, or the end beyond which x lies. */
 static double angle_of(const abbe_sphere_setup *s, const piece *p, double x) {
   bool rising = p->x_to > p->x_from;
   double low = rising ? p->from : p->to, high = rising ? p->to : p->from;

@@ -1,7 +1,7 @@
 /* sphere_quadrature.h: the light that a sphere throws onto a plane below it, by quadrature.
  *
  * Sphere, light and plane share one axis, so that a ray is one number, its angle at the surface,
- * and what lands inside a circle is a sum of one-dimensional integrals: no random numbers, no
+ * and what falls inside a circle is a sum of one-dimensional integrals: no random numbers, no
  * rays cast, no meshes. Light comes down the axis, as a beam or from a point; the plane lies
  * across the axis below the sphere and is black. Unpolarised Fresnel shares at every crossing,
  * Beer-Lambert inside. The irradiance diverges where the rays fold over (and at a focus), so the
@@ -44,7 +44,7 @@ abbe_result abbe_sphere_quadrature_make(const abbe_sphere_setup *setup,
                                         abbe_sphere_quadrature **out, abbe_error *error);
 void abbe_sphere_quadrature_free(abbe_sphere_quadrature *quadrature);
 
-/* Flux in W that lands on the plane within radius_m of the axis; infinity: on the whole plane
+/* Flux in W on the plane within radius_m of the axis; infinity: on the whole plane
  * (infinite itself where `past` counts a beam). Relative error below 1e-9 of what falls on the
  * sphere. Not thread-safe for one quadrature. */
 abbe_result abbe_sphere_quadrature_enclosed(const abbe_sphere_quadrature *quadrature,

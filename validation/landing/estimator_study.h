@@ -1,6 +1,6 @@
-/* estimator_study.h: how far from the truth the estimators of where light lands are in a scene, by
- * iterations and lookups, refraction and reflection apart; and how fast the fixed-point iterations
- * converge beside what the law says. On the processor, in double precision: no time is taken.
+/* estimator_study.h: how far from the truth the estimators of where light meets receivers are in a
+ * scene, by iterations and lookups, refraction and reflection apart; and how fast the fixed-point
+ * iterations converge beside the law. On the processor, in double precision: no time is taken.
  */
 #ifndef ABBE_VALIDATION_LANDING_ESTIMATOR_STUDY_H
 #define ABBE_VALIDATION_LANDING_ESTIMATOR_STUDY_H

@@ -214,7 +214,7 @@ double abbe_landing_rays_texels(const abbe_landing_rays *r, const double at[3],
   return (double)r->side * hypot(a[0] - b[0], a[1] - b[1]);
 }
 
-/* Lands it; whether the light sees the place. */
+/* Finds its place on a receiver; whether the light sees the place. */
 static bool land(const abbe_landing_rays *r, double size, abbe_landing_ray *ray, bool *seen) {
   double there[3], t, from[3];
   abbe_bvh_hit hit;

@@ -1,5 +1,6 @@
 /* landing_rays.h: rays on which light leaves a scene's refractors and mirrors, with the places
- * where they truly land, and what the light sees of the receivers, looked up as estimators do it.
+ * where they truly meet receivers, and what the light sees of the receivers, looked up as
+ * estimators do it.
  *
  * One light, one wavelength. Light goes through two interfaces of the triangles, or off one mirror;
  * what is totally reflected inside, or meets the object again, is left out: how it goes on is not
@@ -18,7 +19,7 @@
 
 typedef struct abbe_landing_ray {
   double origin[3], direction[3]; /* unit */
-  double distance;                /* to where it lands, m */
+  double distance;                /* to where it meets a receiver, m */
   double at[3], normal[3];        /* there, m; unit, of the face */
   bool reflected;                 /* off a mirror */
 } abbe_landing_ray;

@@ -15,7 +15,7 @@
 
 #include <stdint.h>
 
-/* The stretch [from, to] of the ray from o along unit d that lies in the haze of the air, and the
+/* The interval [from, to] of the ray from o along unit d that lies in the haze of the air, and the
  * wavelength: all in the frame. */
 typedef struct abbe_air_ray {
   const abbe_geometry *geometry;

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-/* More than noise asks for, for the bound itself is uncertain. */
+/* More than noise requires, because the bound itself is uncertain. */
 static const double ahead = 1.1;
 
 /* Pictures after a part of the passes and after all, and what the filter makes of them. */

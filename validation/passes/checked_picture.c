@@ -36,7 +36,7 @@ static bool is_above(const abbe_pass_error *e, double bound) {
   return 2 * e->estimate * e->estimate - e->bound * e->bound > bound * bound;
 }
 
-/* What is too noisy to tell goes on, unless there is no caustic. */
+/* What is too noisy to decide goes on, unless there is no caustic. */
 static bool is_decided(const abbe_checked_picture_desc *d, const abbe_checked_picture *c) {
   return c->given.bound <= d->max_error || c->traced.bound <= d->max_error ||
          isnan(c->traced.bound) || (d->only_check && is_above(&c->given, d->max_error));

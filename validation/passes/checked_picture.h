@@ -1,7 +1,7 @@
-/* checked_picture.h: a picture that was made otherwise, held against traced passes.
+/* checked_picture.h: a picture that was made otherwise, compared with traced passes.
  *
  * Presets promise what other scenes had. Whether the picture of this one keeps a bound is measured
- * by passes of the tracer, twice as many each time, until they tell that it does, or keep the bound
+ * by passes of the tracer, twice as many each time, until they show that it does, or keep the bound
  * themselves: then theirs can be taken instead, and the other is not known to keep it. To tell
  * takes fewer passes than to make as good a picture, for their noise is known and taken off
  * (pass_error.h). Where the time has an end, passes are begun only where they end before it.
@@ -18,7 +18,8 @@
  *
  * It has no clock of its own: the caller brings one. */
 
-/* Work takes up to so many times as long as was expected of it, and has room for that. */
+/* Work takes up to so many times as long as was expected of it, and fits if there is so much
+ * time. */
 #define ABBE_TIME_LEFT_ROOM 1.3
 
 /* Zeroed: the time has no end. */
@@ -50,15 +51,15 @@ typedef struct abbe_checked_picture_desc {
 } abbe_checked_picture_desc;
 
 typedef struct abbe_checked_picture {
-  size_t passes;          /* that tell; 0: none */
+  size_t passes;          /* passes that show it; 0: none */
   abbe_pass_error given;  /* error of the picture, by the passes; NaN: they do not show it */
   abbe_pass_error traced; /* error of the passes' own picture */
-  bool timed_out;         /* more passes would tell more, and there was no time for them */
+  bool timed_out;         /* more passes would show more, and there was no time for them */
 } abbe_checked_picture;
 
 /* `traced` receives what the passes made, unless timed_out. Ends with both bounds above max_error
  * after ABBE_CHECKED_PICTURE_MOST_PASSES or out of time, and with NaN after two passes where the
- * picture has no caustic. What passes told stands, also where the next ones ran out of time.
+ * picture has no caustic. What passes showed stands, also where the next ones ran out of time.
  * ABBE_INVALID_ARGUMENT for a max_error of 0 and pictures of different sizes; ABBE_CANCELLED;
  * errors of abbe_tracer_make, abbe_tracer_pass and abbe_pass_error_of_picture. */
 abbe_result abbe_checked_picture_make(const abbe_scene *scene,

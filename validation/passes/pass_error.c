@@ -66,7 +66,7 @@ static bool is_finite(const double xyz[3]) {
   return isfinite(xyz[0]) && isfinite(xyz[1]) && isfinite(xyz[2]);
 }
 
-/* NaN where a side is not finite: of such a picture nothing is told. */
+/* NaN where a side is not finite: for such a picture there is no error. */
 static double difference(const abbe_field *a, const abbe_field *b, const region *r, size_t pixel) {
   double xyz[3], lab_a[3], lab_b[3];
   abbe_field_xyz(a, pixel, xyz, NULL);
@@ -153,7 +153,7 @@ static bool is_known(distance d) {
   return isfinite(d.mean) && isfinite(d.error);
 }
 
-/* A dark caustic and a black picture are no errors of the caller's: nothing is told then. */
+/* A dark caustic and a black picture are no errors of the caller's: there is no estimate then. */
 static abbe_result tell(const abbe_pass_pictures *p, const abbe_field *part, abbe_field *whole,
                         const abbe_field *filtered_part, const abbe_field *filtered,
                         abbe_pass_error *out, abbe_error *error) {

@@ -1,8 +1,8 @@
 /* pass_error.h: how far off a traced picture may be, measured by its own passes.
  *
- * Passes are independent, so what the first of them make can be held against what the others make:
+ * Passes are independent, so what the first of them make can be compared with what the others make:
  * neither knows the other's noise, and what few bright photons did to the one they did not do to
- * the other. That tells the error of the first passes, which is no less than that of all, however
+ * the other. That is the error of the first passes, which is no less than that of all, however
  * slowly a caustic of rare bright specks comes together. Errors are mean CIEDE2000 in the caustic
  * (the brightest pixels that hold 95 % of its light), relative to the picture's own white.
  */
@@ -16,7 +16,7 @@
 typedef struct abbe_pass_pictures {
   const abbe_image *part, *whole;
   size_t part_passes, passes; /* behind them: 1 <= part_passes < passes; half is best */
-  /* What a filter makes of each, whose error is then told; or both NULL. */
+  /* What a filter makes of each, whose error is then estimated; or both NULL. */
   const abbe_image *filtered_part, *filtered;
 } abbe_pass_pictures;
 

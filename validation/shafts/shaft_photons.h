@@ -1,4 +1,4 @@
-/* shaft_photons.h: photons on their way through haze: each stretch of a path is scattered at one
+/* shaft_photons.h: photons in participating media: each segment of a path is scattered at one
  * place of it, which the camera may see.
  *
  * A place that the camera sees straight, in the medium that the camera is in, adds to its pixel at

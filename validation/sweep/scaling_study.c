@@ -278,7 +278,7 @@ abbe_result abbe_scaling_study_plot(const abbe_scaling_study *g, const char *pat
     series[used - 1].count++;
   }
   if (used == 0) return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no times to draw");
-  /* As far as the times go, so that the guide does not stretch the axis. */
+  /* As far as the times go, so that the guide does not lengthen the axis. */
   double least = y[0], most = y[0];
   for (size_t i = 0; i < g->count; i++) {
     least = fmin(least, y[i]);

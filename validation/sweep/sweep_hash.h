@@ -1,4 +1,4 @@
-/* sweep_hash.h: numbers that tell whether two sweeps saw one scene, and one reference.
+/* sweep_hash.h: numbers by which two sweeps are of one scene, and of one reference.
  * Internal to validation/sweep/. */
 #ifndef ABBE_VALIDATION_SWEEP_SWEEP_MEASURE_HASH_H
 #define ABBE_VALIDATION_SWEEP_SWEEP_MEASURE_HASH_H

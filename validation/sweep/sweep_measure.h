@@ -27,8 +27,8 @@ typedef struct abbe_sweep {
   size_t frames;             /* behind a median; 0: 5; three where they took over 3 s */
   const abbe_image *picture; /* the reference; NULL: no picture is compared */
   const abbe_image *map;     /* the same, with its layout; NULL: no map */
-  /* The same with matched physics, which tells what the model leaves out from what sampling does;
-   * or NULL. */
+  /* The same with matched physics, which separates what the model leaves out from what sampling
+   * does; or NULL. */
   const abbe_image *matched_picture, *matched_map;
 } abbe_sweep;
 

@@ -201,7 +201,7 @@ static void write_fills(const page *p, const abbe_sweep_table *t) {
   const abbe_sweep_row *rows[2 + 2 * ABBE_BASELINE_COUNT] = {0};
   size_t count = 0;
   for (size_t i = 0; i < t->count; i++) {
-    /* Every setting that is there without its fill too, and its twin. */
+    /* Every setting that is there without its fill too, and its counterpart. */
     abbe_sweep_setting filled = t->row[i].setting;
     if (strcmp(filled.fill, "none") != 0 || count + 2 > sizeof rows / sizeof *rows) continue;
     bool plain = strcmp(filled.profile, "default") == 0;

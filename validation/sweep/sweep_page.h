@@ -13,7 +13,7 @@
 
 #define ABBE_SWEEP_PAGE_PICTURES 6 /* pictures of a table, at the most */
 
-/* Writes the page of tables[count], whose fronts of that time and that error are marked, and its
+/* Writes the page of tables[count], whose fronts of that time and that error are found, and its
  * pictures. */
 abbe_result abbe_sweep_page_write(abbe_context *context, const char *path,
                                   const abbe_sweep_table *tables, size_t count,

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double least_ms = 0.01; /* a part too short to tell a speed by */
+static const double least_ms = 0.01; /* a part too short to measure a speed by */
 
 static const abbe_preset_front *find_front(const abbe_presets *presets, const char *of) {
   for (size_t i = 0; i < presets->count; i++)

@@ -2,8 +2,8 @@
  *
  * Within a pass values are added as whole numbers, by each thread for itself; whole numbers have
  * the same sum in any order, so the result does not depend on how the work was shared out. So are
- * the sums over passes. Passes are independent of each other, so their spread tells
- * the error of the mean.
+ * the sums over passes. Passes are independent of each other, so their spread gives the error of
+ * the mean.
  *
  * A single unit would take all that is dim away beside what is bright. There are two, 2^32 apart: a
  * number goes by its own size to the one that keeps all its bits, or, below 2^24 of the finer ones,

@@ -364,7 +364,7 @@ static const char *be(size_t from, size_t to) {
   return from == to ? "is" : "are";
 }
 
-/* Marks the passes of a part as its own. */
+/* Claims the passes of a part as its own. */
 static abbe_result own(parts *p, size_t part, abbe_error *error) {
   const abbe_pass_counts *c = &p->counts[part];
   char text[64];

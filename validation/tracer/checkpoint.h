@@ -23,7 +23,7 @@ abbe_result abbe_checkpoint_load(abbe_tracer *tracer, const char *path, abbe_err
 
 /* What there is to be put together. A zeroed one is a valid request. */
 typedef struct abbe_checkpoint_merging {
-  size_t whole;    /* passes, from 0 on; 0: as many as the files were told of or hold */
+  size_t whole;    /* passes, from 0 on; 0: as many as the files state or hold */
   bool incomplete; /* go on where some are missing; then they cannot be gone on with as a part */
   char lacks[512]; /* out: the first passes that are missing, in a sentence; "": none are */
 } abbe_checkpoint_merging;

@@ -204,7 +204,7 @@ typedef struct task_result {
   abbe_shaft_photons *shafts; /* NULL: nothing scatters */
 } task_result;
 
-/* For a task whose photons haze may scatter in sight of the camera. */
+/* For a task whose photons a medium may scatter in view of the camera. */
 static abbe_shaft_photons *watch_shafts(const abbe_emission *e, sink *s) {
   abbe_tracer *t = s->t;
   if (t->desc.no_picture || !abbe_haze_is(&t->media.haze)) return NULL;

@@ -15,7 +15,7 @@
 /* Rays of the walks of all threads, trials too. */
 uint64_t abbe_tracer_walk_rays(const abbe_tracer *tracer);
 
-/* The photons of the pass; what lands goes to the map, to the picture, and to tracer->landed. */
+/* The photons of the pass; hits go to the map, to the picture, and to tracer->landed. */
 abbe_result abbe_tracer_light_pass(abbe_tracer *tracer, const volatile int *stop,
                                    size_t *landed_count, abbe_error *error);
 /* Photons of a pass shared out over the lights by the light that they send to refractors. */

@@ -10,7 +10,7 @@
 
 typedef struct abbe_pass_counts {
   uint64_t first, end, step; /* passes first, first + step, ... below end */
-  uint64_t whole;            /* passes that there are to be, of all parts; 0: it was not said */
+  uint64_t whole;            /* passes that there are to be, of all parts; 0: not stated */
   uint64_t photons, light_rays, eye_rays, cuts;
 } abbe_pass_counts;
 

@@ -241,7 +241,7 @@ static abbe_media_set around_eye(const abbe_geometry *g) {
   return set;
 }
 
-/* The camera needs photons around where some ray that met a refractor lands. */
+/* The camera needs photons around where some ray that met a refractor meets a receiver. */
 static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
   const bool shows =
       !t->desc.no_picture && t->geometry.refractor_count + t->geometry.mirror_count > 0;

@@ -38,7 +38,7 @@ typedef struct abbe_trace_desc {
   size_t width, height;          /* pixels; 0: the scene's */
   size_t map_width, map_height;  /* texels of the receiver map; 0: 512 */
   size_t map_light;              /* whose light it holds */
-  const abbe_map_layout *layout; /* NULL: fitted to where the light lands */
+  const abbe_map_layout *layout; /* NULL: fitted to where the light falls */
   double min_nm, max_nm;         /* 0: 380, 780 */
   size_t bands;                  /* number of bands of the spectral output; 0: none */
   abbe_rgb_space space;          /* space of the picture */
@@ -106,7 +106,7 @@ abbe_result abbe_tracer_map(const abbe_tracer *tracer, abbe_image *out, abbe_err
 void abbe_tracer_statistics(const abbe_tracer *tracer, abbe_trace_statistics *out);
 
 /* Rays a second of one thread's photon walk, and of Embree alone on the very same packets of rays,
- * those that ask what is hidden from a light among them; traces a part of a pass that is not
+ * those that test what is hidden from a light among them; traces a part of a pass that is not
  * counted. */
 abbe_result abbe_tracer_rates(abbe_tracer *tracer, double *walk, double *embree, abbe_error *error);
 

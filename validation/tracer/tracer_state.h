@@ -14,7 +14,7 @@
  * how their noise goes together in colour, and what shows where.
  * */
 
-/* Values of a pixel. The last ones are products, whose sums tell covariances. */
+/* Values of a pixel. The last ones are products, whose sums give covariances. */
 enum {
   ABBE_GUIDE_PHOTONS = 0, /* R, G, B of the caustic that the camera sees straight */
   ABBE_GUIDE_EYE = 3,     /* R, G, B of all that paths from the camera bring */
@@ -140,7 +140,7 @@ static inline size_t abbe_tracer_most_hits(const abbe_tracer *t, size_t light, s
 /* The layout of a receiver map for which none is given: as large as where a trial's photons land.
  * */
 
-/* A view from the map's light around where its light lands, into t->layout. */
+/* Fits a view from the map's light around where its light falls, into t->layout. */
 abbe_result abbe_tracer_fit_layout(abbe_tracer *t, abbe_error *error);
 
 #endif

@@ -25,7 +25,7 @@ typedef struct abbe_error_decomposition {
   double fill_invented, fill_lost; /* shares of the map's light, of the setting */
 } abbe_error_decomposition;
 
-/* From the rows of a table, which outlives it; NaN for what no row tells. */
+/* From the rows of a table, which outlives it; NaN for what no row has. */
 void abbe_error_decomposition_make(const abbe_sweep_table *table, abbe_error_decomposition *out);
 
 /* One paragraph; "" where the table has no row of the default profile. */

@@ -2,7 +2,7 @@
  * them.
  *
  * The Pareto front of settings that cost time and make errors. It knows no settings: arrays in,
- * marks and indices out. A cost or an error that is not finite, and a cost that is not positive,
+ * flags and indices out. A cost or an error that is not finite, and a cost that is not positive,
  * is not on the front.
  */
 #ifndef ABBE_VALIDATION_TRADEOFF_PARETO_FRONT_H
@@ -11,12 +11,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Marks those of count points that no other beats: none has at most their cost and at most their
- * error, and less of one. Of equal points the first is marked. Returns how many. */
+/* Flags those of count points that no other beats: none has at most their cost and at most their
+ * error, and less of one. Of equal points the first is flagged. Returns how many. */
 size_t abbe_pareto_front_mark(const double *cost, const double *error, size_t count,
                               bool *on_front);
 
-/* The same as indices in the order of cost (and so of falling error); order[count] has room. */
+/* The same as indices in the order of cost (and so of falling error); order[count] has the
+ * capacity. */
 size_t abbe_pareto_front_order(const double *cost, const double *error, size_t count,
                                size_t *order);
 

@@ -35,7 +35,7 @@ abbe_picture_tool abbe_picture_tool_of(const abbe_sweep_setting *setting);
 
 /* Adds "  pictures:" of the class to a file of presets, over the tables of that class whose errors
  * are above their noise; nothing where one has no yardstick. A class with one scene takes the
- * widest margins of the other classes, tool by tool (1: no class tells any). ABBE_NO_MEMORY. */
+ * widest margins of the other classes, tool by tool (1: no class has any). ABBE_NO_MEMORY. */
 abbe_result abbe_sweep_pictures_write(FILE *out, const abbe_sweep_table *tables, size_t count,
                                       const char *of, abbe_sweep_number number, abbe_error *error);
 

@@ -2,7 +2,7 @@
  *
  * Every setting is a point, a profile a colour; the front is a line with its settings' names,
  * and each other profile's own front a line without; the
- * reference's own noise is a dashed line, below which an error is not known. It marks no front.
+ * reference's own noise is a dashed line, below which an error is not known. It finds no front.
  */
 #ifndef ABBE_VALIDATION_TRADEOFF_SWEEP_PLOT_H
 #define ABBE_VALIDATION_TRADEOFF_SWEEP_PLOT_H

@@ -40,7 +40,7 @@ typedef struct front {
 /* What a promise is widened by: the worst that leaving one scene out would have been wrong by. */
 typedef struct margins {
   double error, time;
-  size_t scenes; /* 0: too few to tell */
+  size_t scenes; /* 0: too few to know */
 } margins;
 
 static const char *class_of(const abbe_sweep_table *table) {
@@ -296,7 +296,7 @@ static abbe_result check(const abbe_sweep_table *tables, const char *const *name
   return ABBE_OK;
 }
 
-/* The first of its class that tells, so that a class is written once. */
+/* The first of its class that has errors above noise, so that a class is written once. */
 static bool opens_class(const abbe_sweep_table *tables, size_t count, size_t index,
                         abbe_sweep_number number) {
   size_t first = count;

@@ -14,7 +14,7 @@
 #include "validation/tradeoff/sweep_table.h"
 
 /* Writes the presets of the tables to path, beside and renamed; name[count] are the tables' paths,
- * for sentences. is_fine tells which settings are finer than the defaults; a class without one has
+ * for sentences. is_fine holds which settings are finer than the defaults; a class without one has
  * no accurate, and a comment says so. ABBE_INVALID_ARGUMENT where a table names no class, was made
  * on another machine or device than the first, or where the sweeps of a class have no setting in
  * common with a known error. */

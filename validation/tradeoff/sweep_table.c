@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* An error that is not above the reference's own noise by this much tells nothing of settings. */
+/* An error that is not above the reference's own noise by this much shows nothing of settings. */
 static const double most_noise = 0.9;
 
 enum { MAX_BYTES = 16 << 20, MAX_CELLS = 64 };

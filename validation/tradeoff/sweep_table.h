@@ -141,7 +141,7 @@ abbe_sweep_number abbe_sweep_number_find(const char *column);
 bool abbe_sweep_number_is_error(abbe_sweep_number number);
 
 /* The times that a front can be of: a frame once the scene stands, all passes or those that a
- * camera's move asks for; a whole process. The tracer keeps nothing between its pictures. */
+ * camera's move needs; a whole process. The tracer keeps nothing between its pictures. */
 #define ABBE_SWEEP_TIMES 4
 extern const abbe_sweep_number abbe_sweep_times[ABBE_SWEEP_TIMES];
 const char *abbe_sweep_fact_name(abbe_sweep_fact fact);
@@ -168,7 +168,7 @@ void abbe_sweep_table_set(abbe_sweep_table *table, abbe_sweep_fact fact, const c
 const abbe_sweep_row *abbe_sweep_table_find(const abbe_sweep_table *table,
                                             const abbe_sweep_setting *setting);
 /* Whether the errors of the default profile's settings are more than the reference's own noise: if
- * not, the table tells nothing of settings. */
+ * not, the table shows nothing of settings. */
 bool abbe_sweep_table_tells(const abbe_sweep_table *table, abbe_sweep_number number);
 /* How much longer the median of a setting's frames takes than its fastest, as a share of that; the
  * median over the rows where they differ, which a quiet machine keeps below ABBE_SWEEP_QUIET. 0
@@ -178,7 +178,7 @@ double abbe_sweep_table_unrest(const abbe_sweep_table *table);
 /* Adds a row. ABBE_INVALID_ARGUMENT where its setting is there already or the table is full. */
 abbe_result abbe_sweep_table_add(abbe_sweep_table *table, const abbe_sweep_row *row,
                                  abbe_error *error);
-/* Marks the Pareto front of that time against that error: over all rows, or (with a profile's name)
+/* Finds the Pareto front of that time against that error: over all rows, or (with a profile's name)
  * over that profile's rows alone. ABBE_NO_MEMORY. */
 abbe_result abbe_sweep_table_mark(abbe_sweep_table *table, abbe_sweep_number time,
                                   abbe_sweep_number number, const char *profile, abbe_error *error);

@@ -1,4 +1,4 @@
-/* physics.h: what the tracer models: what light does (full), or what a renderer says it models
+/* physics.h: what the tracer models: what light does (full), or what a renderer declares to model
  * (matched).
  *
  * Matched leaves out what the renderer's plan leaves out: where a path that has met its first

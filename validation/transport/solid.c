@@ -14,7 +14,7 @@ typedef struct body {
   const abbe_surface *surface;
   const abbe_solid *solid; /* its planes or sphere */
   const abbe_object *object;
-  double gap; /* least distance that tells it from others */
+  double gap; /* least distance that separates it from others */
 } body;
 
 static const abbe_object *object_of(const abbe_geometry *g, const abbe_surface *s) {

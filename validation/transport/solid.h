@@ -1,7 +1,7 @@
 /* solid.h: refractors that are convex solids or spheres with nothing else inside of them.
  *
  * A ray inside such a refractor leaves it through the nearest of its planes ahead, or at the
- * sphere: no hierarchy is asked. The planes are those of the scene's exact surface, which Embree
+ * sphere: no BVH is traversed. The planes are those of the scene's exact surface, which Embree
  * has as triangles. Frame units (geometry.h). A refractor that touches another surface, or is
  * nearer to it than what tells the two apart in single precision, is none.
  *

@@ -24,7 +24,7 @@ static const abbe_illuminant *illuminant_of(const abbe_scene *scene, size_t ligh
 }
 
 /* What the camera sees of the lights, a share of 1 in all, over the fine bins; beyond them density
- * has room for one light's. */
+ * has capacity for one light's. */
 static abbe_result visible_density(const abbe_scene *scene, const abbe_spectral_sampling_desc *d,
                                    double *density, abbe_error *error) {
   const double min_nm = d->min_nm, max_nm = d->max_nm;

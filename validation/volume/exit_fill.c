@@ -11,7 +11,7 @@
 
 enum { LINES = 1 << 18, TABLE = 4 * (ABBE_EXIT_MOST_FACETS + 1) };
 
-/* What the light turns by to tell a ray's change; rad. */
+/* What the light turns by to find a ray's change; rad. */
 static const double turned = 2e-3;
 /* More change than that is not stored, a radian or radius for a radian of the light. */
 static const double most_change = 30;
@@ -164,7 +164,7 @@ static bool find_change(const fill *f, const abbe_exit_point *p, const double no
   return false;
 }
 
-/* Bins of wavelengths between two whose indices tell a ray's change. */
+/* Bins of wavelengths between two whose indices give a ray's change. */
 enum { APART = 24 };
 
 /* The change with the index; none where that does not vary, or facets do. */

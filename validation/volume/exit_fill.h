@@ -1,6 +1,6 @@
 /* exit_fill.h: tables of the rays that leave an object (scenes/volume/light_exits.h), filled by
  * following them: for each node's light a ray from each point that faces it, and two beside it,
- * which tell how it changes with the light.
+ * which give how it changes with the light.
  *
  * Same request, same table, on any number of threads. Internal to validation/volume/.
  */

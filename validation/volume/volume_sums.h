@@ -1,8 +1,8 @@
-/* volume_sums.h: stretches of light's paths added up over the cells of a region, pass by pass, with
+/* volume_sums.h: segments of light's paths added up over the cells of a region, pass by pass, with
  * standard errors.
  *
- * Of vector irradiance a cell's is the flux of every stretch in it, times its length and direction,
- * over the cell's space. As the method was printed a stretch counts once in every cell that it
+ * Of vector irradiance a cell's is the flux of every segment in it, times its length and direction,
+ * over the cell's space. As the method was printed a segment counts once in every cell that it
  * comes to, with the cosine to where the cell lies from the centre, over what the beam alone would
  * bring there. Internal to validation/volume/.
  */
@@ -31,7 +31,7 @@ abbe_result abbe_volume_sums_make(const abbe_volume_region *region, bool printed
                                   abbe_volume_sums *out, abbe_error *error);
 void abbe_volume_sums_free(abbe_volume_sums *sums);
 
-/* A stretch from o (from the region's centre, m) along unit d, of length m or INFINITY, with the
+/* A segment from o (from the region's centre, m) along unit d, of length m or INFINITY, with the
  * flux of each colour, W, of light with an irradiance of 1 across its beam. */
 void abbe_volume_sums_add(abbe_volume_sums *sums, size_t thread, const double o[3],
                           const double d[3], double length, const float flux[3]);

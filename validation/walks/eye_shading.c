@@ -157,7 +157,7 @@ static float irradiance(const abbe_eye_context *c, const abbe_eye_path *p, const
   float facing = abbe_eye_dot(n, d);
   if (!(facing > 0)) return 0;
   double away[3] = {-(double)d[0], -(double)d[1], -(double)d[2]};
-  abbe_vector_normalise(away); /* a narrow cone's cosine asks for more than single precision */
+  abbe_vector_normalise(away); /* a narrow cone's cosine needs more than single precision */
   float e = power * falloff * facing * (float)abbe_light_profile(light, away);
   if (!(e > 0)) return 0;
   abbe_geometry_leave(hit, d, o);

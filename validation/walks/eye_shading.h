@@ -59,7 +59,7 @@ void abbe_eye_arrive(const abbe_eye_context *context, const abbe_eye_path *path,
 void abbe_eye_haze(const abbe_eye_context *context, abbe_eye_path *path, float length,
                    bool straight);
 /* What a rough mirror shows of lights and the environment that it sees straight: of what comes to
- * it by other ways a path's next ray tells, and of these, too, where their weights leave room
+ * it by other paths a path's next ray brings, and of these, too, where their weights allow
  * [VeachGuibas1995]. n: on the path's side. */
 void abbe_eye_gloss(const abbe_eye_context *context, const abbe_eye_path *path, const abbe_hit *hit,
                     const float n[3], const abbe_rough_hit *rough);

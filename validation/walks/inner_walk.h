@@ -2,7 +2,7 @@
  * where they came in to where they leave it.
  *
  * At every face Fresnel's law and a number decide between reflection and transmission, as the light
- * walk does at all other interfaces; between faces the material absorbs. It asks no hierarchy.
+ * walk does at all other interfaces; between faces the material absorbs. It traverses no BVH.
  *
  * Internal to validation/.
  */

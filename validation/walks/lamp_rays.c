@@ -31,7 +31,7 @@ static bool stands_before(const abbe_geometry *g, const abbe_light *light, const
   return false;
 }
 
-/* Receivers that are the walls of a convex room around the light hide nothing. */
+/* Receivers that are the walls of a convex space around the light hide nothing. */
 bool abbe_lamp_is_hidden(const abbe_geometry *g, const abbe_light *light) {
   size_t faces = 0;
   for (size_t i = 0; i < g->surface_count; i++) {

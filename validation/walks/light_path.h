@@ -194,15 +194,15 @@ static inline bool abbe_light_path_is_followed(const abbe_inner_rules *r, abbe_l
   return s->inner < r->physics.orders && (double)s->carried >= r->physics.energy_share;
 }
 
-/* Whether the light would see the places where its photons land past other receivers.
+/* Whether the light would see the places that its photons hit past other receivers.
  *
- * The map of a light holds only those: the others are marked as hidden. Refractors and mirrors
- * hide nothing: what lands in their shadow has its place in the map. Rays to the light wait until
+ * The map of a light holds only those: the others are flagged as hidden. Refractors and mirrors
+ * hide nothing: what falls in their shadow has its place in the map. Rays to the light wait until
  * there is a packet of them.
  * */
 
 /* Whether a receiver may hide a place on another from the light: those that are the walls of a
- * convex room around it hide nothing, and no ray need be traced. */
+ * convex space around it hide nothing, and no ray need be traced. */
 bool abbe_lamp_is_hidden(const abbe_geometry *g, const abbe_light *light);
 
 /* Photon hits that wait for their ray to the light, of one light. A zeroed one has none. */
@@ -220,7 +220,7 @@ typedef struct abbe_lamp_rays {
 void abbe_lamp_rays_add(abbe_lamp_rays *rays, const abbe_geometry *g, const abbe_light *light,
                         const abbe_hit *hit, abbe_photon_hit *photon, double flux,
                         abbe_light_ledger *ledger, abbe_ray_record *record);
-/* Traces those that wait, marks what is hidden and adds it to the ledger. */
+/* Traces those that wait, flags what is hidden and adds it to the ledger. */
 void abbe_lamp_rays_trace(abbe_lamp_rays *rays, const abbe_geometry *g, abbe_light_ledger *ledger,
                           abbe_ray_record *record);
 

@@ -252,7 +252,7 @@ static bool take_branch(const packet *p, size_t k, bool split, abbe_light_path *
 
 static void leave_solid(run *r);
 
-/* Whether the path's way on is through a solid and asks nothing of Embree. */
+/* Whether the path goes on through a solid and needs nothing of Embree. */
 static bool stays_in_solid(const abbe_light_walk *w, const abbe_light_path *s) {
   if (s->inside == 0) return false;
   if (s->steps < ABBE_PHOTON_SPLITS && w->splits >> s->steps != 0) return false; /* one is split */

@@ -30,7 +30,7 @@ abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media
                                  uint32_t seed, abbe_light_walk **out, abbe_error *error);
 void abbe_light_walk_free(abbe_light_walk *walk);
 
-/* Room for a batch and its hits, the walk's own and for its callers: a quarter of a megabyte,
+/* Capacity for a batch and its hits, the walk's own and for its callers: a quarter of a megabyte,
  * which a thread's stack may not have. */
 typedef struct abbe_light_walk_room {
   abbe_photon photon[ABBE_LIGHT_WALK_BATCH];
@@ -38,19 +38,20 @@ typedef struct abbe_light_walk_room {
 } abbe_light_walk_room;
 abbe_light_walk_room *abbe_light_walk_get_room(abbe_light_walk *walk);
 
-/* At which of its first interfaces (bit 0: the first) a path of the next runs is split: it goes
- * both ways, each with its share of the light, where it else takes one of them by chance. Nothing
- * is biased by either: splitting pays where the branch that is rarely taken is the one that lands.
+/* At which of its first interfaces (bit 0: the first) a path of the next runs is split: it takes
+ * both branches, each with its share of the light, where it else takes one of them by chance.
+ * Nothing is biased by either: splitting pays where the branch that is rarely taken is the one that
+ * meets receivers.
  */
 void abbe_light_walk_split(abbe_light_walk *walk, unsigned interfaces);
 
-/* Whether the hits of the next runs are for a map of their light: then they and the ledger tell
- * what receivers hide from it, which asks for a ray each. At first they are. */
+/* Whether the hits of the next runs are for a map of their light: then they and the ledger hold
+ * what receivers hide from it, which needs a ray each. At first they are. */
 void abbe_light_walk_for_map(abbe_light_walk *walk, bool map);
 
 typedef void (*abbe_light_walk_stretch)(void *user, const abbe_light_stretch *stretch);
-/* Told every stretch of the next runs, in the open and in refractors, but for those inside of
- * convex solids in which nothing scatters; NULL: nobody is. */
+/* Gets every segment of the next runs, in the open and in refractors, but for those inside of
+ * convex solids in which nothing scatters; NULL: nobody does. */
 void abbe_light_walk_watch(abbe_light_walk *walk, abbe_light_walk_stretch take, void *user);
 
 /* Follows count <= ABBE_LIGHT_WALK_BATCH photons of one light of the geometry's scene, or of its
@@ -61,7 +62,7 @@ size_t abbe_light_walk_run(abbe_light_walk *walk, const abbe_light *light, uint3
                            const abbe_photon *photon, size_t count, abbe_photon_hit *hit,
                            abbe_light_ledger *ledger);
 
-/* Rays of paths that were traced so far; and those that ask what is hidden from a light. */
+/* Rays of paths that were traced so far; and those that test what is hidden from a light. */
 uint64_t abbe_light_walk_rays(const abbe_light_walk *walk);
 uint64_t abbe_light_walk_lamp_rays(const abbe_light_walk *walk);
 /* Keeps every packet of rays of both kinds of the next runs, up to a limit, to trace them again for

@@ -17,7 +17,7 @@ typedef struct abbe_photon {
   uint32_t id;      /* its random numbers; unique in its pass, and next to its neighbours' */
 } abbe_photon;
 
-/* A stretch of a path that has met a refractor or a mirror: from o along unit d, frame units. */
+/* A segment of a path that has met a refractor or a mirror: from o along unit d, frame units. */
 typedef struct abbe_light_stretch {
   float o[3], d[3];
   float length; /* INFINITY where it meets nothing more */
@@ -28,7 +28,7 @@ typedef struct abbe_light_stretch {
   int medium;         /* the refractor that it is in, or -1: the air */
 } abbe_light_stretch;
 
-/* Where a photon landed on a receiver. */
+/* Where a photon hit a receiver. */
 typedef struct abbe_photon_hit {
   uint32_t surface, face;
   float u, v;

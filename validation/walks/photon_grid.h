@@ -1,6 +1,6 @@
 /* photon_grid.h: the photons of one pass, found by place.
  *
- * A hashed grid of cubes; a gather adds up what landed within a radius on the same side of the
+ * A hashed grid of cubes; a gather adds up the hits within a radius on the same side of the
  * same surface. The estimate is the flux within the disk over its area: its bias vanishes as the
  * radius shrinks from pass to pass [KnausZwicker2011]. Internal to validation/walks/.
  */
@@ -16,7 +16,7 @@
 /* A photon as the grid keeps it. */
 typedef struct abbe_grid_photon {
   float p[3];
-  float flux; /* W; the sign is the side of the face it landed on */
+  float flux; /* W; the sign is the side of the face that it hit */
   uint32_t surface;
   uint32_t colour; /* light * steps + step */
 } abbe_grid_photon;

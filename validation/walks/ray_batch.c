@@ -55,7 +55,7 @@ void abbe_ray_record_free(abbe_ray_record *record) {
   *record = (abbe_ray_record){0};
 }
 
-/* How many lanes held a ray, whose marks are taken away. */
+/* How many lanes held a ray, whose flags are taken away. */
 static size_t lanes_kept(unsigned *flags) {
   size_t lanes = 0;
   for (size_t k = 0; k < LANES; k++) {

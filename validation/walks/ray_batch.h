@@ -70,11 +70,11 @@ static inline void abbe_ray_reset(struct RTCRayHit16 *p) {
  */
 typedef struct abbe_ray_record {
   struct RTCRayHit16 *packet;
-  struct RTCRay16 *shadow; /* those that ask whether anything is on their way */
+  struct RTCRay16 *shadow; /* those that test whether anything is in their way */
   size_t count, shadows, room;
 } abbe_ray_record;
 
-/* Room for so many packets of each kind; 0: none from now on. */
+/* Makes capacity for so many packets of each kind; 0: none from now on. */
 void abbe_ray_record_make(size_t packets, abbe_ray_record *out);
 void abbe_ray_record_free(abbe_ray_record *record);
 /* Seconds that Embree alone takes for what was kept, and the number of rays; forgets them. False

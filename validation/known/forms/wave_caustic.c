@@ -20,7 +20,8 @@ double abbe_wave_caustic_focus(const abbe_wave_caustic *w) {
   return w->index / ((w->index - 1) * w->amplitude * k * k);
 }
 
-/* Light that lands at `from` to `to` enters within this of them, for no slope is steeper. */
+/* Light that meets the bottom between `from` and `to` enters within this of them, for no slope is
+ * steeper. */
 static double reach(const abbe_wave_caustic *w) {
   const double tilt = atan(w->amplitude * 2 * ABBE_PI / w->wavelength);
   return (w->depth + w->amplitude) * tan(tilt - asin(sin(tilt) / w->index));

@@ -17,7 +17,8 @@ typedef struct abbe_wave_caustic {
   double attenuation_per_m;            /* natural, along the slanting path */
 } abbe_wave_caustic;
 
-/* Where light that enters at x lands, m, and in *passed (may be NULL) which share of it does. */
+/* Where light that enters at x meets the bottom, m, and in *passed (may be NULL) which share of it
+ * does. */
 double abbe_wave_caustic_landing(const abbe_wave_caustic *w, double x, double *passed);
 
 /* Depth below the crest at which the rays beside it meet: n / ((n - 1) a k^2). */

@@ -13,7 +13,7 @@ void abbe_pinhole_limits_free(abbe_pinhole_limits *known) {
 }
 
 /* Number k of `count` pictures, each with its own samples: those go with the photons' shift. Each
- * sample is taken by itself, and pages are coarse, which costs little: both of them are alike in
+ * sample is taken by itself, and tiles are coarse, which costs little: both of them are alike in
  * the limit. */
 static abbe_result draw(abbe_context *context, const abbe_scene *scene,
                         const abbe_render_desc *desc, size_t k, size_t count, abbe_image *out,

@@ -35,7 +35,7 @@ abbe_result abbe_pinhole_limits_find(abbe_pinhole_limits *known, abbe_context *c
 double abbe_pinhole_limits_distance(const abbe_image *picture, const abbe_image *limit);
 
 /* The same of a request: the root mean square over some draws of its samples. Both are drawn with
- * each sample taken by itself and with pages of 32 texels a side, so that samples alone differ. */
+ * each sample taken by itself and with tiles of 32 texels a side, so that samples alone differ. */
 abbe_result abbe_pinhole_limits_measure(abbe_pinhole_limits *known, abbe_context *context,
                                         const abbe_scene *scene, const abbe_render_desc *desc,
                                         double *rmse, abbe_error *error);

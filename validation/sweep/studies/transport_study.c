@@ -64,7 +64,7 @@ static size_t add_volumes(abbe_transport_contestant *out) {
   return n;
 }
 
-/* Each strategy with rising numbers of samples, as published and by pages of receivers. */
+/* Each strategy with rising numbers of samples, as published and by tiles of receivers. */
 static size_t add_pinholes(abbe_transport_contestant *out) {
   static const size_t samples[] = {64, 256, 1024};
   size_t n = 0;

@@ -83,7 +83,7 @@ abbe_result abbe_transport_study_measure(const abbe_sweep *sweep,
                                          void *user, abbe_transport_study *out, size_t *refused,
                                          abbe_error *why, abbe_error *error);
 
-/* Marks the fronts, and finds over_none, and after how many frames each volume pays beside the
+/* Finds the fronts, and finds over_none, and after how many frames each volume pays beside the
  * first row's photons; abbe_transport_study_measure has done so. */
 void abbe_transport_study_judge(abbe_transport_study *study);
 
