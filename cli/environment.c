@@ -21,7 +21,7 @@ typedef struct request {
   bool json;
 } request;
 
-/* What is said of them; irradiances are on planes without anything in their way. */
+/* The measures that are printed; irradiances are on planes without anything before them. */
 typedef struct measures {
   double up[3], down[3];     /* W/m2, on a plane that faces up, down */
   double brightest[3];       /* W/(m2 sr) */

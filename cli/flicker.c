@@ -56,7 +56,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
-/* Which part of a file a frame is, is told of the first. */
+/* Which part of a file a frame is, is reported for the first. */
 static abbe_result read_numbered(const request *q, const char *path, size_t i, abbe_image *out,
                                  abbe_error *error) {
   char *name = NULL;

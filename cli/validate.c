@@ -139,7 +139,7 @@ static const char *choose_group(const request *r, const char *word) {
   return names[abbe_command_choice(r->program, "--only", word, names, count)];
 }
 
-/* Said before the work and not after it. */
+/* Reported before the work and not after it. */
 static bool is_picture(const char *path) {
   const char *dot = strrchr(path, '.');
   return dot != NULL && (strcmp(dot, ".png") == 0 || strcmp(dot, ".svg") == 0);

@@ -80,7 +80,7 @@ static struct {
   size_t count, room;
 } named;
 
-/* What tells a file from all others: itself, or its folder and its name where there is none. */
+/* What identifies a file: itself, or its folder and its name where there is none. */
 typedef struct identity {
   bool known, exists;
   dev_t device;

@@ -161,8 +161,8 @@ abbe_result abbe_command_print_json(const struct cJSON *json, abbe_error *error)
 
 static bool output_told;
 
-/* A reader that has gone, as `head` goes, is no failure to tell of: all else is done and written,
- * so the program ends as it would by the signal that it holds back. */
+/* A reader that has gone, as `head` goes, is no failure to report: all else is done and written, so
+ * the program ends as it would by the signal that it holds back. */
 static void leave_broken_pipe(void) {
   struct pollfd out = {.fd = STDOUT_FILENO, .events = POLLOUT};
   if (poll(&out, 1, 0) != 1 || !(out.revents & POLLERR)) return;

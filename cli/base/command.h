@@ -116,9 +116,9 @@ char *abbe_command_json_text(const struct cJSON *json);
 /* Prints json (NULL: it could not be made for want of memory) and a line's end to stdout. */
 abbe_result abbe_command_print_json(const struct cJSON *json, abbe_error *error);
 /* At the end of the program: true, and a sentence on stderr, where something did not reach stdout
- * and no command has said so. */
+ * and no command has reported it. */
 bool abbe_command_output_failed(void);
-/* Ends a command: 0 where all results reached stdout; else the failure, said on stderr. */
+/* Ends a command: 0 where all results reached stdout; else the failure, reported on stderr. */
 int abbe_command_end(const char *program, abbe_result result, abbe_error *error);
 
 /* A command that has verbs, such as `abbe materials show`: help on all of them, and the one that

@@ -16,7 +16,7 @@ enum { BAR_WIDTH = 30 };
 /* over: interrupted, or out of time. */
 static volatile sig_atomic_t interrupted, over;
 
-/* The first asks the work to stop, at once or as soon as some begins; a second ends the program. */
+/* The first signal stops the work, at once or as soon as some begins; a second ends the program. */
 static void interrupt(int signal_number) {
   if (interrupted) {
     signal(signal_number, SIG_DFL);
@@ -30,8 +30,8 @@ static void end_time(int signal_number) {
   over = 1;
 }
 
-/* Whoever asks for the end, a user or a machine that goes down: what is done is saved. A terminal
- * that hangs up ends nothing where the parent said so (nohup). */
+/* For requests to end, from a user or a machine that goes down: what is done is saved. A terminal
+ * that hangs up ends nothing where the parent has set that (nohup). */
 static void catch_interrupts(void) {
   struct sigaction action, present;
   memset(&action, 0, sizeof action);

@@ -17,7 +17,7 @@ typedef struct abbe_progress {
 void abbe_progress_begin(abbe_progress *progress, const char *what, bool quiet);
 /* `done` from 0 to 1; false where the user has asked to stop. Matches abbe_render_progress. */
 bool abbe_progress_update(void *progress, double done);
-/* Becomes other than 0 when the user asks to stop, for work that looks at it by itself. */
+/* Becomes other than 0 when the user stops the work, for work that polls it by itself. */
 const volatile int *abbe_progress_stopped(void);
 /* The same, and also after so many seconds from now, above 0; until abbe_progress_end. */
 const volatile int *abbe_progress_stopped_after(double seconds);

@@ -1,6 +1,5 @@
-/* rank_job.h: what a command is told where it is one of several processes, "ranks", that share its
- * work, as cli/mpi starts them. Internal to cli/.
- */
+/* rank_job.h: what a command knows where it is one of several processes, "ranks", that share its
+ * work, as cli/mpi starts them. Internal to cli/. */
 #ifndef ABBE_CLI_BASE_RANK_JOB_H
 #define ABBE_CLI_BASE_RANK_JOB_H
 
@@ -24,7 +23,7 @@ abbe_command_part abbe_rank_job_part(const abbe_rank_job *job);
 bool abbe_rank_job_is_silent(const abbe_rank_job *job);
 /* abbe_ranks_agree; own for one process. */
 abbe_result abbe_rank_job_agree(const abbe_rank_job *job, abbe_result own, abbe_error *error);
-/* abbe_command_end, but that why all ranks end is said by one of them. */
+/* abbe_command_end, but only one rank reports why all end. */
 int abbe_rank_job_end(const abbe_rank_job *job, const char *program, abbe_result result,
                       abbe_error *error);
 

@@ -90,7 +90,7 @@ void abbe_materials_print_conditions(const abbe_material *material);
 void abbe_materials_add_conditions(cJSON *to, const abbe_material *material);
 void abbe_materials_add_pair(cJSON *to, const char *key, double a, double b);
 
-/* What a conversion met on its way, told to a person or to a program. */
+/* Notes of a conversion, for a person or for a program. */
 
 /* One line a note to stderr; of each kind the first few, then how many more there are, unless all
  * are wanted. */

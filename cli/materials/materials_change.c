@@ -64,7 +64,7 @@ abbe_result abbe_change_assign(abbe_table_edit *edit, const char *name, const ch
   return result;
 }
 
-/* ---- what is said ---- */
+/* ---- what is printed ---- */
 
 static bool numbers_of(const char *text, size_t size, const char *name,
                        abbe_dispersion_numbers *out) {

@@ -77,7 +77,7 @@ static void print_text(const request *r, const abbe_material_table *table,
          found->count + unread->count > 0 ? "\n" : "", table->path, table->count + unread->count,
          c.weight[ABBE_FINDING_WRONG], c.weight[ABBE_FINDING_DOUBTFUL],
          c.weight[ABBE_FINDING_NOTE]);
-  fflush(stdout); /* what is said on stderr comes after it, in a pipe too */
+  fflush(stdout); /* what is printed on stderr comes after it, in a pipe too */
 }
 
 /* ---- JSON ---- */

@@ -33,7 +33,7 @@ typedef struct request {
   const char *program, *table, *output;
   const char *name[MAX_NAMES];
   size_t names;
-  int format; /* -1: not said */
+  int format; /* -1: not given */
   abbe_csv_sampling sampling;
   bool sampled, json, all, force;
 } request;

@@ -20,7 +20,7 @@ typedef struct request {
   bool ranged, json, residuals;
 } request;
 
-/* What is fitted, and what is said of it. */
+/* What is fitted, and what is printed of it. */
 typedef struct subject {
   abbe_index_points points;
   char text[300];

@@ -72,7 +72,7 @@ static abbe_result print_json(const request *r, const abbe_material *m, const ab
   return result;
 }
 
-/* What the check doubts is said beside the record, not in it. */
+/* What the check doubts is printed beside the record, not in it. */
 static abbe_result warn(const request *r, const abbe_material *m, const abbe_material_table *known,
                         abbe_error *error) {
   abbe_findings found = {0};

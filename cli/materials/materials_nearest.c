@@ -65,7 +65,7 @@ static abbe_result print_json(const abbe_material_table *table, const abbe_glass
   return result;
 }
 
-/* A material is not told to be its own nearest. */
+/* A material is not listed as its own nearest. */
 static void leave_out(abbe_glass_distances *d, const abbe_material_table *table,
                       const abbe_material *self) {
   size_t kept = 0;

@@ -426,7 +426,7 @@ static const struct argp parser = {
            "'extrapolate: true'; the answer then says so.",
 };
 
-/* What cannot go together is wrong use, said before anything is read. */
+/* What cannot go together is wrong use, reported before anything is read. */
 static void check(const request *r) {
   if (r->name == NULL)
     abbe_materials_wrong_use(r->program,

@@ -255,7 +255,7 @@ abbe_result abbe_frame_series_mark(const abbe_frame_series *s, size_t i, abbe_im
   return result;
 }
 
-/* Whether the file was made by this request; else that is said. */
+/* Whether the file was made by this request; else that is reported. */
 static bool is_own(const abbe_frame_series *s, const char *name, size_t number) {
   char *theirs = frame_record_read(name), *ours = frame_record_of(s->made, number);
   char text[500];

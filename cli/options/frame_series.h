@@ -61,7 +61,7 @@ abbe_result abbe_frame_series_mark(const abbe_frame_series *series, size_t i, ab
                                    abbe_error *error);
 
 /* Whether frame i of the count is this process's to draw: of its part, and, where that is
- * requested, with a file that is not there yet or was made by another request, which is said on
+ * requested, with a file that is not there yet or was made by another request, which is reported on
  * stderr. exr and png as below, or NULL. */
 bool abbe_frame_series_draws(const abbe_frame_series *series, size_t i, const char *exr,
                              const char *png);

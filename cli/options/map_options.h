@@ -1,6 +1,5 @@
-/* map_options.h: what commands that make a receiver map ask of it: whose, where to, laid out how.
- * Internal to cli/.
- */
+/* map_options.h: the options of commands that make a receiver map: of which light, where to, laid
+ * out how. Internal to cli/. */
 #ifndef ABBE_CLI_OPTIONS_MAP_OPTIONS_H
 #define ABBE_CLI_OPTIONS_MAP_OPTIONS_H
 

@@ -1,6 +1,6 @@
-/* scene_input.h: the scene that a command works on: found and read, and what is to be said of its
- * objects to people on stderr, in a table, and as JSON. It judges nothing; what was mended stands
- * with the objects. Internal to cli/.
+/* scene_input.h: the scene that a command works on: found and read, and descriptions of its objects
+ * for people on stderr, in a table, and as JSON. It judges nothing; what was mended stands with the
+ * objects. Internal to cli/.
  */
 #ifndef ABBE_CLI_OPTIONS_SCENE_INPUT_H
 #define ABBE_CLI_OPTIONS_SCENE_INPUT_H
@@ -15,8 +15,8 @@ struct cJSON;
 
 enum { ABBE_SCENE_INPUT_MOST = 64 };
 
-/* What --material, --set, --tilt and --at ask of the scene; and of the one that is made of a
- * stone's file (scenes/studio/studio.h) --look, --with, --width and --save-scene. */
+/* The changes by --material, --set, --tilt and --at; and, for the scene that is made of a stone's
+ * file (scenes/studio/studio.h), by --look, --with, --width and --save-scene. */
 typedef struct abbe_scene_input_changes {
   abbe_studio studio;
   const char *more[ABBE_STUDIO_MOST_STONES]; /* the studio's */

@@ -11,7 +11,7 @@
 
 /* Zeroed but for every_s. */
 typedef struct abbe_work_options {
-  double min_nm, max_nm; /* 0: not said */
+  double min_nm, max_nm; /* 0: not given */
   uint32_t seed;
   size_t threads; /* 0: all cores */
   bool resume;

@@ -123,7 +123,7 @@ void abbe_preset_options_describe(const abbe_preset_choice *c, const abbe_statis
   cJSON_AddNumberToObject(p, "error_at_best", point->least);
   cJSON_AddNumberToObject(p, "margin", c->front->margin);
   cJSON_AddNumberToObject(p, "margin_scenes", (double)c->front->margin_scenes);
-  /* Only a reference tells the error: abbe sweep, abbe compare. */
+  /* Only a reference gives the error: abbe sweep, abbe compare. */
   if (estimate >= 0 && strcmp(c->presets.error, "caustic_de") == 0) {
     cJSON_AddNumberToObject(p, "error_met", estimate);
     cJSON_AddStringToObject(p, "error_met_is", "an estimate by error bars: sampling alone");

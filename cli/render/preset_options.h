@@ -38,7 +38,8 @@ void abbe_preset_options_note(const abbe_preset_choice *choice);
 void abbe_preset_options_note_picture(const abbe_picture_choice *choice);
 /* Says so where what was chosen is drawn with other settings. */
 void abbe_preset_options_note_overridden(bool overridden);
-/* Says on stderr what is known of the picture's error once it is there: told or only expected. */
+/* Prints on stderr what is known of the picture's error once it is there: estimated or only
+ * expected. */
 void abbe_preset_options_note_error(const abbe_picture_choice *choice);
 
 #endif

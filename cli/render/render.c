@@ -183,7 +183,7 @@ static abbe_result run_frames(const request *q, abbe_renderer *renderer, abbe_st
   return result;
 }
 
-/* What the renderer tells while it prepares: the bar is first, for abbe_progress_update. */
+/* What the renderer reports while it prepares: the bar is first, for abbe_progress_update. */
 typedef struct preparation {
   abbe_progress bar;
   request *request;
@@ -368,7 +368,7 @@ static abbe_result choose_picture(request *q, const abbe_scene *scene, abbe_erro
   abbe_preset_point point = {0};
   result = abbe_sweep_setting_desc(&q->picture.point->setting, &point.desc, error);
   if (result == ABBE_OK) q->overridden = !abbe_preset_apply(&point, scene, &q->render.desc);
-  /* They tell where the caustic is. */
+  /* They show where the caustic is. */
   if (abbe_render_is_checked(q) || p->budget_ms > 0) q->render.desc.aovs = true;
   return result;
 }
@@ -458,7 +458,7 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
   if (abbe_rank_job_is_silent(job)) be_silent(&q);
   abbe_error error = {0};
   abbe_scene scene = {0};
-  /* The AOVs tell where the caustic is, whose error is summed up. */
+  /* The AOVs show where the caustic is, whose error is summed up. */
   q.render.desc.aovs = q.aovs || q.errors.asked;
   const char *const targets[] = {q.exr, q.png, q.map.save, q.stats, q.errors.png};
   abbe_result result = abbe_command_check_targets(targets, 5, &error);

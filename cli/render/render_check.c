@@ -17,7 +17,7 @@ abbe_traced_picture_desc abbe_render_describe_traced(const request *q) {
                                     .quiet = q->quiet};
 }
 
-/* Whether a time is requested and nothing has told the error. */
+/* Whether a time is requested and nothing has estimated the error. */
 static bool is_open(const request *q) {
   const abbe_picture_choice *c = &q->picture;
   return c->point != NULL && c->request.budget_ms > 0 && !abbe_picture_choice_tells(c);

@@ -1,4 +1,4 @@
-/* render_check.h: what of `abbe render` tells a picture's error by traced passes.
+/* render_check.h: the part of `abbe render` that estimates a picture's error by traced passes.
  * Internal to cli/render/. */
 #ifndef ABBE_CLI_RENDER_RENDER_CHECK_H
 #define ABBE_CLI_RENDER_RENDER_CHECK_H
@@ -6,7 +6,8 @@
 #include "cli/render/render_request.h"
 #include "cli/render/traced_picture.h"
 
-/* Whether passes of the tracer are to tell the rendered picture's error before it is written. */
+/* Whether passes of the tracer are to estimate the rendered picture's error before it is
+ * written. */
 bool abbe_render_is_checked(const abbe_render_request *request);
 
 /* The picture that is requested, to the tracer. */

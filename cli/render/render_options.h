@@ -1,4 +1,5 @@
-/* render_options.h: what `abbe render` and `abbe plan` both ask: the scene and the request.
+/* render_options.h: the options that `abbe render` and `abbe plan` share: the scene and the
+ * request.
  * Internal to cli/render/. */
 #ifndef ABBE_CLI_RENDER_RENDER_OPTIONS_H
 #define ABBE_CLI_RENDER_RENDER_OPTIONS_H

@@ -19,7 +19,7 @@ double abbe_render_process_ms(void) {
   return 1e3 * abbe_clock_process_seconds();
 }
 
-/* estimate: by error bars, where passes tell nothing; below 0: neither does. */
+/* estimate: by error bars, where passes give none; below 0: neither does. */
 static void describe_picture(const request *q, double estimate, cJSON *root) {
   const double error_met =
       abbe_picture_choice_tells(&q->picture) ? q->picture.met.estimate : estimate;

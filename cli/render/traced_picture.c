@@ -6,7 +6,7 @@
 #include "validation/passes/bounded_trace.h"
 #include "validation/passes/checked_picture.h"
 
-/* A side, of the photons of a pass that checks: few, so that a coarse picture is told soon. */
+/* Photons a side of a pass that checks: few, so that a coarse picture is checked soon. */
 enum { CHECK_PHOTONS = 256 };
 /* Seed of passes that check: no traced picture has it. */
 #define CHECK_SEED 77003u

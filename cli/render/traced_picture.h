@@ -15,14 +15,14 @@ typedef struct abbe_traced_picture_desc {
   bool quiet;
 } abbe_traced_picture_desc;
 
-/* Traces the choice's point, with a bar; where an error is requested, until its own passes tell
+/* Traces the choice's point, with a bar; where an error is requested, until its own passes show
  * that it is kept. Sets the choice's passes and met. Errors of abbe_bounded_trace_make. */
 abbe_result abbe_traced_picture_make(abbe_picture_choice *choice, const abbe_scene *scene,
                                      const abbe_traced_picture_desc *desc, abbe_image *out,
                                      abbe_error *error);
 
-/* Holds the picture, with its caustic's layers, against traced passes of other chance, with a bar,
- * in the time that the budget leaves, until they tell whether its error is what was expected. Sets
+/* Compares the picture, with its caustic's layers, with traced passes of other chance, with a bar,
+ * in the time that the budget leaves, until they show whether its error is what was expected. Sets
  * the choice's passes, others, timed_out and met. Errors of abbe_checked_picture_make. */
 abbe_result abbe_traced_picture_check_in_time(abbe_picture_choice *choice, const abbe_scene *scene,
                                               const abbe_traced_picture_desc *desc,

@@ -30,7 +30,7 @@ typedef struct abbe_sweep_options {
   abbe_command_part part; /* part of the settings */
   abbe_context_backend backend;
   bool scaling;    /* instead of a sweep: how a frame's time scales */
-  bool estimators; /* instead: how far off estimators of where light lands are */
+  bool estimators; /* instead: how far off estimators of receiver hits are */
   bool processes;  /* time whole processes too */
   bool quiet, json, list_only;
   const abbe_rank_job *job; /* the ranks that share the settings; NULL: one process */
@@ -39,7 +39,7 @@ typedef struct abbe_sweep_options {
 /* Its input is an abbe_sweep_options with program, grids and defaults set. */
 extern const struct argp abbe_sweep_options_argp;
 
-/* Whether --grid asks for a study of transports. */
+/* Whether --grid names a study of transports. */
 bool abbe_sweep_options_compares_transports(const abbe_sweep_options *options);
 
 /* Whether a path names a table and no scene. */

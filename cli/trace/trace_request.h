@@ -23,7 +23,7 @@ typedef struct abbe_trace_request {
   size_t passes;
   abbe_frame_series series;    /* --frames; zeroed but for program */
   size_t part_first, part_end; /* --passes: of the whole, the end not among them; 0, 0: all */
-  size_t whole; /* passes of all parts together, by --spp or --passes; 0: it is not said */
+  size_t whole; /* passes of all parts together, by --spp or --passes; 0: not given */
   bool merge, incomplete;
   const char **parts; /* files to merge */
   size_t part_count;

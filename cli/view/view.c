@@ -204,7 +204,7 @@ static abbe_result view(const view_options *o, abbe_error *error) {
                                    .last = (abbe_view_stage)o->last};
   return_pictures();
   abbe_result result = begin(o, path, &studio, &document, error);
-  /* what is wrong with the file is said before there is a window */
+  /* what is wrong with the file is reported before there is a window */
   if (result == ABBE_OK)
     result =
         abbe_scene_input_load_with(o->program, o->scene, o->materials, &o->changes, &scene, error);

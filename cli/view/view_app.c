@@ -158,8 +158,7 @@ static void take(abbe_view_session *app, size_t worker, abbe_view_result *result
   app->stale = true;
 }
 
-/* What a busy worker does is for an older state or of another pixel, and it was not told to stop.
- */
+/* What a busy worker does is for an older state or of another pixel, and it was not cancelled. */
 static bool is_obsolete(const abbe_view_session *app, size_t worker) {
   const abbe_view_state *s = &app->state;
   const abbe_view_desk *desk = &app->desk[worker];

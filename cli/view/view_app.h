@@ -40,7 +40,7 @@ bool abbe_view_app_painted(const abbe_view_session *app);
 /* Everything that was requested is drawn. */
 bool abbe_view_app_rests(abbe_view_session *app, double now_s);
 
-/* What a viewer asks of its last picture at rest: the spectral map, and where the picked pixel's
+/* What a viewer requests of its last picture at rest: the spectral map, where the picked pixel's
  * light has come in, and its spectrum.
  *
  * Each is requested once, of the worker that has drawn the picture. */

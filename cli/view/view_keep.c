@@ -136,7 +136,7 @@ char *abbe_view_keep_command(const abbe_view_session *session) {
   return out.text;
 }
 
-/* out: room for PATH_MAX */
+/* out: capacity PATH_MAX */
 static const char *folder_of(const char *path, char *out) {
   const char *slash = strrchr(path, '/');
   if (slash == NULL) return ".";

@@ -7,7 +7,7 @@
 
 #define ABBE_VIEW_KEEP_LONGEST 1000 /* bytes of a name, without an ending */
 
-/* What kept files are called, with that ending: as was said, or the scene's name and -view. */
+/* What kept files are called, with that ending: as given, or the scene's name and -view. */
 void abbe_view_keep_name(const abbe_view_session *session, const char *ending, char *out,
                          size_t size);
 /* Whether the picture that stands is that of the last change, at rest; else ABBE_INVALID_ARGUMENT.

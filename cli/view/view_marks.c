@@ -15,7 +15,7 @@ static bool show_line(const abbe_view_state *s, const double a[3], const double 
 }
 
 /* The facets through which the pixel's light has come in, the cells of these, and the straight ends
- * of some ways: from the lamp, and from where they entered to the pixel. */
+ * of some paths: from the light, and from where they entered to the pixel. */
 static void draw_feed(const abbe_view_session *app) {
   const abbe_view_state *s = &app->state;
   const abbe_view_feed *feed = abbe_view_session_feed(app);

@@ -109,7 +109,7 @@ static bool find(script *s, const char *text, double xy[2]) {
     return true;
   if (strncmp(text, "hue:", 4) == 0) return find_hue(s, text + 4, xy);
   if (strncmp(text, "handle:", 7) == 0) return find_handle(s, text + 7, xy);
-  for (int i = 0; i < 4; i++) { /* it may have to scroll into sight */
+  for (int i = 0; i < 4; i++) { /* it may have to scroll into view */
     if (abbe_ui_find(text, &x, &y, &width, &height) && y >= 0 &&
         y + height <= (double)s->hidden.height) {
       xy[0] = x + fmin(20, 0.5 * width);

@@ -153,7 +153,7 @@ static enum MHD_Result take_events(server *s, struct MHD_Connection *c, body *b)
   return say(c, MHD_HTTP_NO_CONTENT, "");
 }
 
-/* Whoever has no token, or asks in another's name: said at once, and the connection goes. */
+/* Refuses a request without the token, or in another's name: at once, and the connection goes. */
 static enum MHD_Result refuse(struct MHD_Connection *c, const char *why) {
   return reply(c, MHD_HTTP_FORBIDDEN, "text/plain; charset=utf-8", why, strlen(why), CLOSES);
 }

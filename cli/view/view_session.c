@@ -17,7 +17,7 @@ static int by_name(const void *a, const void *b) {
 }
 
 /* By its objects, which tables of materials and sweeps' grids have not. What cannot be read is
- * listed too: whoever chooses it is told why. */
+ * listed too: who chooses it gets the reason. */
 static bool is_scene(const char *path) {
   const abbe_scene_options as_it_is = {0};
   char *text = NULL;

@@ -25,7 +25,7 @@ typedef struct abbe_view_desk {
   bool asked; /* about this pixel: */
   size_t pixel[2];
   abbe_camera camera; /* as it was led to then */
-  double stopped_s;   /* when it was told to stop; below 0: it was not */
+  double stopped_s;   /* when it was cancelled; below 0: it was not */
   double ended_s;     /* when it had drawn its last moving picture, */
   double waited_ms;   /* and how long it had waited for the next one to be wanted */
 } abbe_view_desk;

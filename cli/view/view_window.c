@@ -66,7 +66,7 @@ static void wake(void) {
   glfwPostEmptyEvent();
 }
 
-/* Moves without a button in between are one; there is always room for that. */
+/* Moves without a button in between are one; there is always space for that. */
 static void push(window *w, const pointer_event *e) {
   pointer_event *last = w->events > 0 ? &w->event[w->events - 1] : NULL;
   if (e->button < 0 && last != NULL && last->button < 0)

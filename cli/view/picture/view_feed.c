@@ -101,7 +101,7 @@ void abbe_view_sight_follow(const abbe_scene *scene, const double eye[3], const 
 
 #define SAME_PLANE 1e-6 /* difference of normals, and of places over the object's size */
 
-/* A photon that lands there. */
+/* A photon that hits there. */
 typedef struct abbe_view_landed {
   double origin[3], direction[3], flux;
 } landed;
@@ -207,7 +207,7 @@ static abbe_result add_landed(abbe_view_feed *feed, const abbe_view_hits *h, siz
       return ABBE_OK;
     }
   const size_t n = feed->photons;
-  if ((n & (n - 1)) == 0) { /* room for twice as many */
+  if ((n & (n - 1)) == 0) { /* capacity for twice as many */
     landed *more = realloc(feed->landed, (n > 0 ? 2 * n : 1) * sizeof *more);
     if (more == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for photons");
     feed->landed = more;
@@ -294,7 +294,7 @@ static void sort_facets(abbe_view_feed *feed, const abbe_scene *scene, const abb
   }
 }
 
-/* Adds an edge, or takes away the one that runs back along it. False: there is no room. */
+/* Adds an edge, or takes away the one that runs back along it. False: the capacity is used up. */
 static bool add_edge(abbe_view_feed *feed, size_t first, const double a[3], const double b[3]) {
   for (size_t i = first; i < feed->edge_count; i++) {
     if (memcmp(feed->edge[i][0], b, sizeof feed->edge[i][0]) != 0 ||

@@ -35,8 +35,8 @@ typedef struct abbe_view_sight {
   bool lands;    /* on a receiver: the last place */
 } abbe_view_sight;
 
-/* From the eye along a unit direction. Where the way does not end within so many interfaces, or
- * leaves the scene, it does not land. */
+/* From the camera along a unit direction. Where the path does not end within so many interfaces, or
+ * leaves the scene, it hits nothing. */
 void abbe_view_sight_follow(const abbe_scene *scene, const double eye[3], const double direction[3],
                             double nm, abbe_view_sight *out);
 
@@ -56,7 +56,7 @@ typedef struct abbe_view_facet {
 
 typedef struct abbe_view_feed {
   double point[3], radius; /* whose light is requested, m */
-  bool on_refractor;       /* the place that was requested lies on one, where no photon lands: */
+  bool on_refractor;       /* the place that was requested lies on one, where no photon hits: */
   abbe_view_sight sight;   /* through it to the point */
   size_t photons;          /* that light it, at any wavelength */
   size_t ray_count;        /* number of these, the strongest that meet one */
@@ -82,7 +82,7 @@ typedef struct abbe_view_hits {
 } abbe_view_hits;
 
 void abbe_view_feed_begin(const double point[3], double radius, abbe_view_feed *out);
-/* Where the eye sees a refractor at the place, it becomes that which is seen through it at this
+/* Where the camera sees a refractor at the place, it becomes that which is seen through it at this
  * wavelength. False: none is, and nothing is to be added. */
 bool abbe_view_feed_look(abbe_view_feed *feed, const abbe_scene *scene, double nm);
 /* Once for each light and batch of its wavelengths; a batch begins with the last wavelength of the

@@ -133,7 +133,7 @@ bool abbe_view_camera_drag(const abbe_camera *camera, size_t width, size_t heigh
   view_of(camera, width, height, &view);
   memcpy(axis, camera->up, sizeof axis);
   abbe_vector_normalise(axis);
-  /* the plane that holds the axis and faces the eye as well as it can */
+  /* the plane that holds the axis and faces the camera as well as it can */
   add(view.forward, -abbe_vector_dot(view.forward, axis), axis, normal);
   if (drag == ABBE_VIEW_DRAG_UPRIGHT && abbe_vector_length(normal) < 0.05) return false;
   if (drag == ABBE_VIEW_DRAG_LEVEL) memcpy(normal, axis, sizeof normal);

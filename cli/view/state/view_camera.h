@@ -8,9 +8,9 @@
 
 #include "scenes/scene.h"
 
-/* The eye goes to the right and up around the target, the distance kept. */
+/* The camera goes to the right and up around the target, the distance kept. */
 void abbe_view_camera_orbit(abbe_camera *camera, double right_rad, double up_rad);
-/* The view turns to the right and up about the eye. */
+/* The view turns to the right and up about the camera. */
 void abbe_view_camera_look(abbe_camera *camera, double right_rad, double up_rad);
 /* Eye and target go to the right and up, by shares of the picture's height at the target. */
 void abbe_view_camera_pan(abbe_camera *camera, double right, double up);
@@ -20,11 +20,11 @@ void abbe_view_camera_zoom(abbe_camera *camera, double factor);
 void abbe_view_camera_fly(abbe_camera *camera, const double step[3]);
 
 /* Where a point shows in a picture of that size, pixels from its upper left corner; false behind
- * the eye. */
+ * the camera. */
 bool abbe_view_camera_project(const abbe_camera *camera, size_t width, size_t height,
                               const double point[3], double xy[2]);
 
-/* The point that a place in the picture shows, so far from the eye, m. */
+/* The point that a place in the picture shows, so far from the camera, m. */
 void abbe_view_camera_point(const abbe_camera *camera, size_t width, size_t height,
                             const double xy[2], double distance, double out[3]);
 

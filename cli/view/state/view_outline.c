@@ -107,7 +107,7 @@ static void make_light(abbe_yaml *yaml, abbe_yaml_node list, size_t i, const abb
   out->power.max = decade * 2;
 }
 
-/* A node as one line, with no more room than that. */
+/* A node as one line, no longer than size. */
 static bool flow(abbe_yaml *yaml, abbe_yaml_node node, char *out, size_t size) {
   const char *text = abbe_yaml_text(yaml, node);
   size_t used = 0;
@@ -152,7 +152,7 @@ static bool add_fit(const abbe_object *object, size_t used, char *text, size_t s
   return n > 0 && (size_t)n < size - used;
 }
 
-/* How the object was put there; false where it cannot be said in a line, or memory lacks. */
+/* How the object was put there; false where it does not fit in a line, or memory lacks. */
 static bool read_transform(abbe_yaml *yaml, abbe_yaml_node node, const abbe_object *object,
                            abbe_view_object *out) {
   const abbe_yaml_node list = abbe_yaml_get(yaml, node, "transform");

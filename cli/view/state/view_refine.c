@@ -85,8 +85,8 @@ static double expected(const abbe_view_pace *p, bool lit, const size_t now[2], d
   return guess;
 }
 
-/* The finest that is expected to take no longer; the light gives way first, for what the eye sees
- * sharp is what is looked at. False: none is. */
+/* The finest that is expected to take no longer; the light gives way first, for sharp surfaces are
+ * what people look at. False: none is. */
 static bool find_finest(const abbe_view_pace *p, bool lit, const size_t now[2], double ms,
                         double most, size_t out[2]) {
   const size_t lights = lights_of(p, lit);

@@ -22,7 +22,7 @@
 
 /* How coarse the next moving picture is, by what the last ones took.
  *
- * A table of times: of each step of the light and of the eye that was drawn, what its pictures
+ * A table of times: of each step of the light and of the camera that was drawn, what its pictures
  * took last. What was not drawn yet is guessed by its share of the work, so that one picture that
  * is too slow leads to one that is not, and steps that save nothing are left again: where a
  * picture takes as long however few its photons and samples are, it has all of them. */
@@ -107,7 +107,7 @@ typedef struct abbe_view_hand {
 
 typedef struct abbe_view_refine {
   abbe_view_stage last; /* wanted; NONE: TRACED */
-  bool spectrum;        /* wanted: the mean is left out, for traced passes tell it */
+  bool spectrum;        /* wanted: the mean is left out, for traced passes give it */
   bool single;          /* no picture could be another: there is no mean */
   bool held;            /* a button is down: it moves */
   uint64_t serial,

@@ -376,7 +376,7 @@ void abbe_view_state_release(abbe_view_state *state, abbe_view_button button, do
   const bool clicked = state->down[button] && !state->dragged && button == ABBE_VIEW_LEFT;
   state->down[button] = false;
   if (any_down(state)) return;
-  /* what was pulled stands where it was left also before a job has said so */
+  /* what was pulled stands where it was left also before a job has reported it */
   if (state->dragged)
     abbe_view_outline_stand(&state->outline, abbe_view_history_now(&state->history));
   state->continued = false;

@@ -3,7 +3,7 @@
  *
  * Pointers are in pixels of the picture, from its upper left corner; times in s, ever growing. It
  * draws nothing and reads no files. The left button turns the camera around its target, on a handle
- * it moves the light or the object; a click asks for a pixel's spectrum. The middle button, or
+ * it moves the light or the object; a click requests a pixel's spectrum. The middle button, or
  * the left one with shift, pans, the right one looks about, and while it is down w, a, s, d, q and
  * e fly. Shift makes a handle move upright, control tilts an object. Internal to cli/.
  */

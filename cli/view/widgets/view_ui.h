@@ -59,7 +59,7 @@ bool abbe_ui_slider(const char *label, double *value, double min, double max, co
                     bool logarithmic, bool *began);
 bool abbe_ui_choose(const char *label, const char *const *names, size_t count, size_t *index);
 
-/* An empty place of the panel for a drawing; false where it is out of sight. */
+/* An empty place of the panel for a drawing; false where it is out of view. */
 bool abbe_ui_place(const char *label, double width, double height, double *x, double *y);
 /* Lines and texts go no farther than this to the right and down until the panel begins. */
 void abbe_ui_clip(double width, double height);
@@ -70,9 +70,9 @@ void abbe_ui_box(double x0, double y0, double x1, double y1, abbe_ui_colour colo
 void abbe_ui_label(double x, double y, abbe_ui_colour colour, const char *text);
 double abbe_ui_panel_width(void);
 
-/* Where the widget of that label was drawn last; false where it was not or is out of sight. */
+/* Where the widget of that label was drawn last; false where it was not or is out of view. */
 bool abbe_ui_find(const char *label, double *x, double *y, double *width, double *height);
-/* The widget of that label scrolls itself into sight, when it is drawn next. */
+/* The widget of that label scrolls itself into view, when it is drawn next. */
 void abbe_ui_seek(const char *label);
 
 #ifdef __cplusplus

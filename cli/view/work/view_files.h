@@ -17,7 +17,8 @@ void abbe_view_files_free(abbe_view_files *files);
 /* Takes those of a scene that was just read, in place of others. Of what was there before the time
  * stays as it was: somebody else may have read it then. Without memory all stay. */
 void abbe_view_files_take(abbe_view_files *files, abbe_view_scene_news *news);
-/* Whether one of them is another than before; each change is told once. One that is gone is not. */
+/* Whether one of them is another than before; each change is reported once. One that is gone is
+ * not. */
 bool abbe_view_files_changed(abbe_view_files *files);
 
 #endif

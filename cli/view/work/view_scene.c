@@ -46,7 +46,7 @@ static void place_camera(abbe_view_scene *s, const abbe_view_document *document,
   if (turn_rad != 0) abbe_view_camera_orbit(&s->now->camera, turn_rad, 0);
 }
 
-/* The document's changes but for the camera's place; `set` has room for all. */
+/* The document's changes but for the camera's place; `set` has capacity for all. */
 static abbe_scene_options options_of(const abbe_view_scene *s, const abbe_view_document *d,
                                      const char *set[ABBE_VIEW_MOST_CHANGES]) {
   abbe_scene_options options = {.materials = s->materials, .set = set, .studio = d->studio};

@@ -34,7 +34,7 @@ typedef struct abbe_view_request {
                                   some are found */
   bool maps;                   /* no picture, but the spectral map */
   bool tells;                  /* no picture, but the spectrum of this pixel */
-  size_t pixel[2];             /* the picked one, of which is asked and told */
+  size_t pixel[2];             /* the picked one, which is requested and reported */
   bool turns;                  /* the picture, seen from elsewhere: */
   double turn_rad;
 } abbe_view_request;
@@ -96,9 +96,9 @@ void abbe_view_worker_wait(abbe_view_worker *worker, double seconds);
 /* The result, once; the caller frees it. False: none yet. */
 bool abbe_view_worker_take(abbe_view_worker *worker, abbe_view_result *out);
 
-/* What a stage of the viewer asks of the renderer.
+/* What a stage of the viewer requests of the renderer.
  *
- * Its settings are a preset's, coarser or finer as the job says. It draws nothing and knows no
+ * Its settings are a preset's, coarser or finer as the job requires. It draws nothing and knows no
  * worker; a picture's size is its caller's. */
 
 /* The preset that a stage takes; NULL where the front has none. */
