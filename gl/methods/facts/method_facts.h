@@ -2,9 +2,10 @@
  * Abbe's own and what it takes where a request leaves it open. What a method knows is found here
  * nobody outside gl/methods tests which one it is. It makes nothing.
  *
- * A published method goes by its own constants, and its profile in units (-cie) by the default profile's
- * wavelengths, CIE weights, indices, Fresnel's law and units. wyman2003 looks caustics up in a
- * printed volume; all else is the default profile's, as is its counterpart: the transport 'volume'.
+ * A published method goes by its own constants, and its profile in units (-cie) by the default
+ * profile's wavelengths, CIE weights, indices, Fresnel's law and units. wyman2003 looks caustics up
+ * in a printed volume; all else is the default profile's, as is its counterpart: the transport
+ * 'volume'.
  */
 #ifndef ABBE_GL_METHODS_FACTS_METHOD_FACTS_H
 #define ABBE_GL_METHODS_FACTS_METHOD_FACTS_H
