@@ -34,6 +34,8 @@ typedef struct abbe_camera {
   double fov_y_rad;     /* full vertical angle */
   size_t width, height; /* pixels of the scene's own picture, default 512 x 512 */
   bool inside;          /* the camera may be inside a refractor, as under water */
+  double aperture;      /* m, the diameter of its pupil; 0: a pinhole, all is sharp */
+  double focus;         /* m, how far along its view things are sharp; 0 of a pinhole */
 } abbe_camera;
 
 typedef enum abbe_light_kind {

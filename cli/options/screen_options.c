@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum {
   OPTION_OCIO = 0xa00,
@@ -28,7 +29,10 @@ static const struct argp_option options[] = {
      "the configuration; without it, $OCIO, else the shipped one", 0},
     {"display", OPTION_DISPLAY, "NAME", 0, "the screen; without it, the configuration's first", 0},
     {"view", OPTION_VIEW, "NAME", 0, "how to show it; without it, the display's first", 0},
-    {"exposure", OPTION_EXPOSURE, "STOPS", 0, "brighten (or darken) before the view (0)", 0},
+    {"exposure", OPTION_EXPOSURE, "STOPS|auto", 0,
+     "brighten (or darken) before the view; auto: so that a tenth of the picture is brighter than "
+     "0.8 (0)",
+     0},
     {"gamut", OPTION_GAMUT, "HOW", 0,
      "bring colours that the screen lacks inside, before the view: clip, white (towards it at "
      "constant Oklab hue) or compress (as ACES 1.3); without it, as the view does",
@@ -77,8 +81,11 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_EXPOSURE:
     o->given = "--exposure";
-    o->display.exposure = abbe_command_number(
-        o->program, "--exposure", text, -ABBE_DISPLAY_MAX_EXPOSURE, ABBE_DISPLAY_MAX_EXPOSURE);
+    o->exposed = strcmp(text, "auto") == 0;
+    o->display.exposure =
+        o->exposed ? 0
+                   : abbe_command_number(o->program, "--exposure", text, -ABBE_DISPLAY_MAX_EXPOSURE,
+                                         ABBE_DISPLAY_MAX_EXPOSURE);
     return 0;
   case OPTION_GAMUT:
     o->given = "--gamut";
@@ -134,6 +141,7 @@ abbe_result abbe_screen_options_write(const abbe_screen_options *o, const char *
                                       abbe_error *error) {
   abbe_screen_png_notes notes = {0};
   const abbe_screen_png_desc desc = {.display = o->display,
+                                     .exposed = o->exposed,
                                      .layer = layer,
                                      .name = name,
                                      .bits = o->bits,
@@ -141,8 +149,10 @@ abbe_result abbe_screen_options_write(const abbe_screen_options *o, const char *
                                      .notes = &notes};
   const abbe_result result = abbe_screen_png_write(path, image, &desc, error);
   if (name == NULL) name = "the picture";
+  if (o->exposed && result == ABBE_OK)
+    fprintf(stderr, "note: --exposure auto takes %.2f stops for %s\n", notes.exposure, name);
   if (notes.space_assumed) abbe_command_note_space(name);
-  if (notes.white > MOST_WHITE) warn_white(&notes, o->display.exposure);
+  if (notes.white > MOST_WHITE) warn_white(&notes, notes.exposure);
   abbe_command_note_odd(name, &notes.odd, "shown as the brightest light there is");
   return result;
 }

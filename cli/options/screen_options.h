@@ -15,6 +15,7 @@ typedef struct abbe_screen_options {
   const char *program;
   const char *given; /* one of them, as it was given: a picture must be shown */
   abbe_display_desc display;
+  bool exposed; /* --exposure auto */
   int bits;
   bool alpha; /* the picture has channel A, for the PNG */
 } abbe_screen_options;

@@ -134,6 +134,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     if (q->screen.alpha && (q->series.count > 0 || q->bands > 0))
       argp_error(state, "--alpha is of one picture: it goes without --turntable, --frames A:B and "
                         "--bands");
+    if (q->screen.exposed && q->series.count > 0)
+      argp_error(state, "--exposure auto is of one picture: give the stops that it takes for one");
     if (q->bands > 0 && q->map.save == NULL && q->exr == NULL)
       argp_error(state, "--bands are those of -o FILE.exr and --save-map FILE.exr: give one");
     if (q->series.count > 0 && (q->map.save != NULL || q->frames > 0 || q->errors.asked ||

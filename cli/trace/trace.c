@@ -260,6 +260,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
       argp_error(state, "--filter needs a picture (-o, --png) of two passes or more (--spp 2)");
     q->screen.alpha = q->changes.alpha;
     abbe_screen_options_end(&q->screen, q->png, state);
+    if (q->screen.exposed && q->series.count > 0)
+      argp_error(state, "--exposure auto is of one picture: give the stops that it takes for one");
     if (q->screen.alpha && q->series.count > 0)
       argp_error(state, "--alpha is of one picture: it goes without --frames");
     return 0;

@@ -157,7 +157,11 @@ abbe_result abbe_screen_png_write(const char *path, const abbe_image *image,
     *d->notes = (abbe_screen_png_notes){0};
     abbe_image_count_odd(&picked, (const size_t[]){0, 1, 2}, 3, &d->notes->odd);
   }
-  if (result == ABBE_OK && d->notes != NULL) d->notes->stops = find_stops(&picked);
+  const double stops = result == ABBE_OK ? find_stops(&picked) : 0;
+  if (d->exposed)
+    desc.exposure = fmax(-ABBE_DISPLAY_MAX_EXPOSURE, fmin(stops, ABBE_DISPLAY_MAX_EXPOSURE));
+  if (result == ABBE_OK && d->notes != NULL) d->notes->stops = stops;
+  if (result == ABBE_OK && d->notes != NULL) d->notes->exposure = desc.exposure;
   if (result == ABBE_OK) result = find_source(d, image, triple, &picked, &desc.source_space, error);
   const float *alpha = alpha_of(d, image);
   if (result == ABBE_OK && alpha != NULL) divide(alpha, image->channels, &picked);

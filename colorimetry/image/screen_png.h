@@ -13,12 +13,14 @@ typedef struct abbe_screen_png_notes {
   bool space_assumed; /* its R, G, B are of no stated space, and Rec.709's were taken */
   abbe_image_odd odd; /* odd values of the channels that are shown */
   double white;       /* the share of its pixels that are the display's white, without detail */
+  double exposure;    /* stops, that were taken */
   double stops;       /* by which more exposure a tenth of its finite pixels would be brighter than
                          0.8; 0: none is finite, or they are dark */
 } abbe_screen_png_notes;
 
 /* Zeroed: the picture's own channels in the space that it states, the default view, 8 bits. */
 typedef struct abbe_screen_png_desc {
+  bool exposed;              /* not by display.exposure but by notes' stops */
   abbe_display_desc display; /* its source_space NULL: what the picture states */
   const char *layer;         /* channels LAYER.R, LAYER.G, LAYER.B; NULL: R, G, B */
   bool alpha;                /* its channel A goes into the PNG, straight, as PNG has it: colours

@@ -48,6 +48,48 @@ static abbe_result read_frame(abbe_yaml *yaml, abbe_yaml_node node, abbe_error *
   return result;
 }
 
+/* ---- the lens ---- */
+
+#define FILM_M 0.024 /* high, as 35 mm film's */
+
+static const char *const lenses[] = {"normal-50mm", "macro-60mm", "macro-100mm", "macro-180mm",
+                                     NULL};
+
+/* Its focal length, m; 0: there is none. */
+static abbe_result read_lens(abbe_yaml *yaml, abbe_yaml_node node, double *focal,
+                             abbe_error *error) {
+  static const double lengths[] = {0.05, 0.06, 0.1, 0.18};
+  const abbe_yaml_node lens = abbe_yaml_get(yaml, node, "lens");
+  int which = 0;
+  *focal = 0;
+  if (lens.id == 0) return ABBE_OK;
+  if (abbe_yaml_get(yaml, node, "fov").id != 0)
+    return abbe_yaml_fail(yaml, lens, error,
+                          "a 'lens' on 24 mm of film has its own angle: leave out the 'fov'");
+  const abbe_result result = abbe_yaml_get_choice(yaml, node, "lens", lenses, &which, error);
+  *focal = lengths[which];
+  return result;
+}
+
+/* Of a thin lens that is sharp at that distance: the film is as far behind it as it is then. */
+static double lens_angle(double focal, double distance) {
+  return 2 * atan(0.5 * FILM_M * (distance - focal) / (focal * distance));
+}
+
+/* Of a pinhole there is nothing to read but that 'focus' needs an aperture. */
+static abbe_result read_aperture(abbe_yaml *yaml, abbe_yaml_node node, double *number,
+                                 abbe_error *error) {
+  const abbe_yaml_node focus = abbe_yaml_get(yaml, node, "focus");
+  *number = 0;
+  if (abbe_yaml_get(yaml, node, "aperture").id != 0)
+    return abbe_yaml_get_number(yaml, node, "aperture", 0.5, 1000, number, error);
+  return focus.id == 0
+             ? ABBE_OK
+             : abbe_yaml_fail(yaml, focus, error,
+                              "'focus' goes with an 'aperture', an f-number such as 16; without "
+                              "one all is sharp");
+}
+
 abbe_result abbe_camera_read(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera *out,
                              abbe_error *error) {
   abbe_yaml_node node;
@@ -68,7 +110,10 @@ abbe_result abbe_camera_read(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera *
   out->fov_y_rad = fov * ABBE_DEGREE;
   if (result == ABBE_OK) result = read_size(yaml, node, out, error);
   if (result == ABBE_OK) result = abbe_yaml_get_bool(yaml, node, "inside", &out->inside, error);
+  double number;
   if (result == ABBE_OK) result = read_frame(yaml, node, error);
+  if (result == ABBE_OK) result = read_lens(yaml, node, &number, error);
+  if (result == ABBE_OK) result = read_aperture(yaml, node, &number, error);
   return result == ABBE_OK ? abbe_yaml_check_keys(yaml, node, "the camera", error) : result;
 }
 
@@ -82,7 +127,7 @@ static bool is_called(const abbe_object *object, const char *name) {
 }
 
 static abbe_result mark(const abbe_yaml *yaml, abbe_yaml_node node, const abbe_scene *scene,
-                        bool framed[ABBE_SCENE_MAX_OBJECTS], abbe_error *error) {
+                        const char *key, bool framed[ABBE_SCENE_MAX_OBJECTS], abbe_error *error) {
   const char *name = abbe_yaml_text(yaml, node), *names[ABBE_SCENE_MAX_OBJECTS];
   bool found = false;
   for (size_t i = 0; i < scene->object_count; i++) {
@@ -93,18 +138,18 @@ static abbe_result mark(const abbe_yaml *yaml, abbe_yaml_node node, const abbe_s
   if (found) return ABBE_OK;
   const char *near = name != NULL ? abbe_nearest_word(name, names, scene->object_count) : NULL;
   return abbe_yaml_fail(
-      yaml, node, error, "'frame' wants names of objects, and none is called '%.60s'%s%.60s%s",
+      yaml, node, error, "'%s' wants names of objects, and none is called '%.60s'%s%.60s%s", key,
       name != NULL ? name : "", near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
 static abbe_result mark_all(abbe_yaml *yaml, abbe_yaml_node frame, const abbe_scene *scene,
                             bool framed[ABBE_SCENE_MAX_OBJECTS], abbe_error *error) {
-  if (!abbe_yaml_is_sequence(yaml, frame)) return mark(yaml, frame, scene, framed, error);
+  if (!abbe_yaml_is_sequence(yaml, frame)) return mark(yaml, frame, scene, "frame", framed, error);
   abbe_result result = abbe_yaml_count(yaml, frame) > 0
                            ? ABBE_OK
                            : abbe_yaml_fail(yaml, frame, error, "'frame' names no object");
   for (size_t i = 0; i < abbe_yaml_count(yaml, frame) && result == ABBE_OK; i++)
-    result = mark(yaml, abbe_yaml_item(yaml, frame, i), scene, framed, error);
+    result = mark(yaml, abbe_yaml_item(yaml, frame, i), scene, "frame", framed, error);
   return result;
 }
 
@@ -169,13 +214,74 @@ static abbe_result frame(abbe_yaml *yaml, abbe_yaml_node node, const abbe_scene 
   return ABBE_OK;
 }
 
+static double far_of(const abbe_camera *c) {
+  double view[3];
+  abbe_vector_subtract(c->target, c->eye, view);
+  return abbe_vector_length(view);
+}
+
+/* The camera of a lens: framed, as far away as its angle there wants it. */
+static abbe_result place(abbe_yaml *yaml, abbe_yaml_node node, double focal, abbe_scene *scene,
+                         abbe_error *error) {
+  abbe_camera *c = &scene->camera;
+  const bool framed = abbe_yaml_get(yaml, node, "frame").id != 0;
+  const bool stands = !framed || abbe_yaml_get(yaml, node, "eye").id != 0;
+  double least = focal, most = ABBE_SCENE_FAR;
+  abbe_result result = framed ? frame(yaml, node, scene, c, error) : ABBE_OK;
+  if (focal <= 0 || result != ABBE_OK) return result;
+  if (stands && !(far_of(c) > focal))
+    return abbe_yaml_fail(yaml, abbe_yaml_get(yaml, node, "lens"), error,
+                          "a lens is sharp beyond its focal length, and the camera's target is "
+                          "%.3g mm away",
+                          1e3 * far_of(c));
+  if (stands) c->fov_y_rad = lens_angle(focal, far_of(c));
+  for (int i = 0; i < 60 && !stands && result == ABBE_OK; i++) {
+    const double distance = sqrt(least * most);
+    c->fov_y_rad = lens_angle(focal, distance);
+    result = frame(yaml, node, scene, c, error);
+    *(far_of(c) > distance ? &least : &most) = distance;
+  }
+  return result;
+}
+
+/* 'focus' is a distance along the view, or the middle of an object; without it the target. */
+static abbe_result focus(abbe_yaml *yaml, abbe_yaml_node node, double focal, abbe_scene *scene,
+                         abbe_error *error) {
+  abbe_camera *c = &scene->camera;
+  bool named[ABBE_SCENE_MAX_OBJECTS] = {false};
+  double number, view[3];
+  const abbe_yaml_node at = abbe_yaml_get(yaml, node, "focus");
+  const char *text = abbe_yaml_text(yaml, at);
+  abbe_result result = read_aperture(yaml, node, &number, error);
+  if (result != ABBE_OK || number <= 0) return result;
+  if (focal <= 0) focal = 0.5 * FILM_M / tan(0.5 * c->fov_y_rad);
+  c->aperture = focal / number;
+  c->focus = far_of(c);
+  if (at.id == 0) return ABBE_OK;
+  if (text != NULL && strchr("0123456789.-+", text[0]) != NULL)
+    return abbe_yaml_get_length(yaml, node, "focus", 1e-6, ABBE_SCENE_FAR, &c->focus, error);
+  result = mark(yaml, at, scene, "focus", named, error);
+  abbe_vector_subtract(c->target, c->eye, view);
+  abbe_vector_normalise(view);
+  for (size_t i = 0; i < scene->object_count && result == ABBE_OK; i++) {
+    double to[3];
+    if (!named[i]) continue;
+    for (int k = 0; k < 3; k++)
+      to[k] = 0.5 * (scene->object[i].min[k] + scene->object[i].max[k]) - c->eye[k];
+    c->focus = abbe_vector_dot(to, view);
+  }
+  return result != ABBE_OK || c->focus > 0
+             ? result
+             : abbe_yaml_fail(yaml, at, error, "'%s' is behind the camera", text);
+}
+
 abbe_result abbe_camera_frame(abbe_yaml *yaml, abbe_yaml_node root, abbe_scene *scene,
                               abbe_error *error) {
   const abbe_yaml_node node = abbe_yaml_get(yaml, root, "camera");
   abbe_camera *c = &scene->camera;
-  double view[3], side[3];
-  abbe_result result =
-      abbe_yaml_get(yaml, node, "frame").id != 0 ? frame(yaml, node, scene, c, error) : ABBE_OK;
+  double view[3], side[3], focal;
+  abbe_result result = read_lens(yaml, node, &focal, error);
+  if (result == ABBE_OK) result = place(yaml, node, focal, scene, error);
   if (result != ABBE_OK) return result;
   abbe_vector_subtract(c->target, c->eye, view);
   if (!(abbe_vector_length(view) > 0.0))
@@ -185,5 +291,5 @@ abbe_result abbe_camera_frame(abbe_yaml *yaml, abbe_yaml_node root, abbe_scene *
     return abbe_yaml_fail(yaml, node, error,
                           "the camera's 'up' points along its view (or is zero); any other "
                           "direction will do");
-  return ABBE_OK;
+  return focus(yaml, node, focal, scene, error);
 }

@@ -51,6 +51,8 @@ unsigned long long abbe_sweep_hash_scene(const abbe_scene *s) {
   h = hash(h, s->camera.up, sizeof s->camera.up);
   const double loose[] = {s->camera.fov_y_rad, s->ambient, s->background};
   h = hash(h, loose, sizeof loose);
+  const double lens[] = {s->camera.aperture, s->camera.focus};
+  if (s->camera.aperture > 0) h = hash(h, lens, sizeof lens);
   for (size_t i = 0; i < s->light_count; i++) {
     const abbe_light *l = &s->light[i];
     const double numbers[] = {l->kind,         l->position[0],  l->position[1],

@@ -78,6 +78,8 @@ static uint64_t hash_scene(const abbe_tracer *t) {
   h = hash_doubles(h, s->camera.up, 3);
   const double loose[] = {s->camera.fov_y_rad, s->ambient, s->background};
   h = hash_doubles(h, loose, 3);
+  const double lens[] = {s->camera.aperture, s->camera.focus};
+  if (s->camera.aperture > 0) h = hash_doubles(h, lens, 2);
   if (s->transparent) h = hash(h, &s->transparent, sizeof s->transparent);
   for (size_t i = 0; i < s->light_count; i++) h = hash_light(h, &s->light[i]);
   if (s->environment != NULL) {

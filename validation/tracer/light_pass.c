@@ -2,6 +2,7 @@
 
 #include "validation/shafts/shaft_photons.h"
 #include "validation/tracer/emission.h"
+#include "validation/transport/random.h"
 #include "validation/transport/side_by_side.h"
 #include "validation/walks/path_splitting.h"
 
@@ -98,14 +99,24 @@ typedef struct splat {
   const abbe_photon_hit *hit;
   size_t pixel;
   float value; /* radiance of the pixel, for a reflectance of pi */
+  float eye[3];
 } splat;
+
+/* As seen from a place on the lens, which the photon's own place chooses. */
+static abbe_trace_camera camera_for(const abbe_tracer *t, const abbe_photon_hit *l) {
+  uint32_t of[3], bits[4];
+  memcpy(of, l->p, sizeof of);
+  abbe_random_bits(of[0], of[1], of[2], t->desc.seed ^ (0x6c656e73u + l->step), bits);
+  return abbe_trace_camera_at(&t->camera, abbe_random_float(bits[0]), abbe_random_float(bits[1]));
+}
 
 /* The ray from the photon to the camera in lane k of the packet; false where it cannot be seen. */
 static bool prepare_splat(const abbe_tracer *t, const abbe_photon_hit *l, struct RTCRay16 *packet,
                           size_t k, splat *out) {
   float d[3], distance, per_pixel, o[3];
   size_t pixel;
-  if (!abbe_trace_camera_pixel(&t->camera, l->p, &pixel, &distance, d, &per_pixel)) return false;
+  const abbe_trace_camera camera = camera_for(t, l);
+  if (!abbe_trace_camera_pixel(&camera, l->p, &pixel, &distance, d, &per_pixel)) return false;
   abbe_hit hit;
   for (int i = 0; i < 3; i++) d[i] = -d[i];
   abbe_geometry_place(&t->geometry.surface[l->surface], l->face, l->u, l->v, l->p, d, 0, &hit);
@@ -114,6 +125,7 @@ static bool prepare_splat(const abbe_tracer *t, const abbe_photon_hit *l, struct
   float metres = distance * (float)t->geometry.unit;
   *out = (splat){
       .hit = l, .pixel = pixel, .value = l->flux * fabsf(facing) * per_pixel / (metres * metres)};
+  memcpy(out->eye, camera.eye, sizeof out->eye);
   abbe_geometry_leave(&hit, d, o);
   packet->org_x[k] = o[0];
   packet->org_y[k] = o[1];
@@ -155,7 +167,7 @@ static void add_splat(const sink *s, const splat *p) {
   float o[3], d[3], left = 1, square = 0;
   for (int k = 0; k < 3; k++) {
     o[k] = l->p[k];
-    d[k] = t->camera.eye[k] - l->p[k];
+    d[k] = p->eye[k] - l->p[k];
     square += d[k] * d[k];
   }
   if (abbe_haze_is(&t->media.haze)) {

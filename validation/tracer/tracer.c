@@ -283,6 +283,10 @@ abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *des
   t->step = 1;
   if (desc != NULL) t->desc = *desc;
   abbe_result result = resolve(scene, &t->desc, error);
+  if (result == ABBE_OK && scene->camera.aperture > 0 && abbe_scene_is_hazy(scene))
+    result = abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "a camera with an 'aperture' sees through clear air and stones alone: "
+                            "leave it out, or the 'medium'");
   if (result == ABBE_OK) result = make_tables(t, error);
   if (result == ABBE_OK) result = abbe_tracer_check_wanted(t, error);
   if (result == ABBE_OK) result = abbe_tracer_share_photons(t, error);

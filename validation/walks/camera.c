@@ -63,7 +63,10 @@ void abbe_trace_camera_make(const abbe_geometry *geometry, size_t width, size_t 
   const abbe_camera *c = &geometry->scene->camera;
   double view[16];
   abbe_transform_look_at(c->eye, c->target, c->up, view);
-  *out = (abbe_trace_camera){.width = width, .height = height};
+  *out = (abbe_trace_camera){.width = width,
+                             .height = height,
+                             .lens = (float)(0.5 * c->aperture / geometry->unit),
+                             .focus = (float)(c->focus / geometry->unit)};
   abbe_geometry_to_frame(geometry, c->eye, out->eye);
   for (int k = 0; k < 3; k++) {
     out->right[k] = (float)view[4 * k];

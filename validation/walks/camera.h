@@ -1,4 +1,4 @@
-/* camera.h: the scene's pinhole camera in the tracer's frame.
+/* camera.h: the scene's camera in the tracer's frame: a pinhole, or a thin lens.
  *
  * Pixels are counted from the top left; a pixel's value is the mean radiance over its area on the
  * film. Film coordinates are tangents at distance 1. Internal to validation/.
@@ -16,16 +16,31 @@ typedef struct abbe_trace_camera {
   float half_width, half_height;             /* half sizes of the film */
   size_t width, height;                      /* pixels */
   float pixel_area;                          /* on the film */
+  float lens, focus; /* the radius of the lens, and how far away it is sharp, frame; 0: a pinhole */
+  float moved[2];    /* on the film: of a place on the lens, that it sees things with others */
 } abbe_trace_camera;
 
 /* The scene's camera with width x height pixels; its vertical angle holds for the height. */
 void abbe_trace_camera_make(const abbe_geometry *geometry, size_t width, size_t height,
                             abbe_trace_camera *out);
 
+/* The pinhole at a place on the lens, even in u and v from 0 to 1 over its area. What lies as far
+ * away as it is sharp stays in its pixel; all else moves by a disk whose radius on the film is
+ * lens |1 / focus - 1 / distance|. Of a pinhole it is the same. */
+static inline abbe_trace_camera abbe_trace_camera_at(const abbe_trace_camera *c, float u, float v) {
+  abbe_trace_camera out = *c;
+  if (!(c->lens > 0)) return out;
+  const float r = c->lens * sqrtf(u), x = r * cosf(6.28318531f * v), y = r * sinf(6.28318531f * v);
+  for (int k = 0; k < 3; k++) out.eye[k] += x * c->right[k] + y * c->up[k];
+  out.moved[0] = x / c->focus;
+  out.moved[1] = y / c->focus;
+  return out;
+}
+
 /* Unit direction through the place (x, y) in pixels, fractions included. */
 static inline void abbe_trace_camera_ray(const abbe_trace_camera *c, float x, float y, float d[3]) {
-  float a = (2 * x / (float)c->width - 1) * c->half_width;
-  float b = (1 - 2 * y / (float)c->height) * c->half_height;
+  float a = (2 * x / (float)c->width - 1) * c->half_width - c->moved[0];
+  float b = (1 - 2 * y / (float)c->height) * c->half_height - c->moved[1];
   float scale = 1 / sqrtf(1 + a * a + b * b);
   for (int k = 0; k < 3; k++) d[k] = scale * (c->forward[k] + a * c->right[k] + b * c->up[k]);
 }
@@ -46,8 +61,8 @@ static inline bool abbe_trace_camera_pixel(const abbe_trace_camera *c, const flo
     square += d[k] * d[k];
   }
   if (!(z > 0)) return false;
-  float a = 0.5f * (x / z / c->half_width + 1) * (float)c->width;
-  float b = 0.5f * (1 - y / z / c->half_height) * (float)c->height;
+  float a = 0.5f * ((x / z + c->moved[0]) / c->half_width + 1) * (float)c->width;
+  float b = 0.5f * (1 - (y / z + c->moved[1]) / c->half_height) * (float)c->height;
   if (!(a >= 0 && b >= 0 && a < (float)c->width && b < (float)c->height)) return false;
   *distance = sqrtf(square);
   float cosine = z / *distance;

@@ -428,11 +428,11 @@ static void walk_on(const abbe_eye_context *c, abbe_eye_path *p, bool met, const
 
 /* One of the pixel's samples: a path from the camera through the place (x, y) on the film. wave, a
  * fraction of 2^32, chooses wavelengths, of their own where haze around the camera has a colour. */
-static void walk_sample(const abbe_eye_context *c, abbe_eye_path *p, float x, float y,
-                        uint32_t wave) {
+static void walk_sample(const abbe_eye_context *c, const abbe_trace_camera *camera,
+                        abbe_eye_path *p, float x, float y, uint32_t wave) {
   abbe_hit hit = {0};
   float length = 0;
-  abbe_trace_camera_ray(c->w->camera, x, y, p->d);
+  abbe_trace_camera_ray(camera, x, y, p->d);
   bool met = trace(c, p, &hit, &length);
   if (met) add_first(c, p, &hit, length);
   const uint32_t count = is_coloured_haze(c, p) ? HEROES : 1;
@@ -461,7 +461,7 @@ void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
                          abbe_eye_sample *out) {
   abbe_eye_context c = {.w = w, .pixel = (uint32_t)pixel, .pass = pass, .out = out};
   uint32_t count = w->samples != NULL ? w->samples[pixel] : 1;
-  uint32_t shift[4];
+  uint32_t shift[4], lens[4];
   float column = (float)(pixel % w->camera->width);
   float row = (float)(pixel / w->camera->width);
   clear(w, out);
@@ -473,9 +473,12 @@ void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
                        .inside = w->inside,
                        .carried = 1,
                        .id = i * IDS};
-    memcpy(p.o, w->camera->eye, sizeof p.o);
+    abbe_eye_random_bits(&c, i, 0x6c656e73u, lens);
+    const abbe_trace_camera camera =
+        abbe_trace_camera_at(w->camera, abbe_random_float(lens[0]), abbe_random_float(lens[1]));
+    memcpy(p.o, camera.eye, sizeof p.o);
     /* multiples of golden ratios, shifted */
-    walk_sample(&c, &p, column + abbe_random_float(i * golden[0] + shift[0]),
+    walk_sample(&c, &camera, &p, column + abbe_random_float(i * golden[0] + shift[0]),
                 row + abbe_random_float(i * golden[1] + shift[1]), i * golden[2] + shift[2]);
   }
 }

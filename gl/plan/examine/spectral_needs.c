@@ -219,6 +219,8 @@ static bool shine_alike(const abbe_scene *scene, double min, double max) {
 }
 
 void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan) {
+  if (scene->camera.aperture > 0)
+    abbe_plan_note(plan, "the camera's aperture is left out: all is sharp; 'abbe trace' has it");
   if (plan->camera_sees_refractor && !shine_alike(scene, plan->desc.min_nm, plan->desc.max_nm))
     abbe_plan_note(plan, "through refractors, colours are split by the first light's illuminant");
 }

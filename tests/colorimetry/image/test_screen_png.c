@@ -121,6 +121,13 @@ TEST(stops_are_those_of_finite_light) {
   memcpy(image.data, value, sizeof value);
   OK(abbe_screen_png_write(path, &image, &desc, &error));
   assert_near(notes.stops, -2, 1e-6);
+  abbe_screen_png_desc exposed = desc;
+  exposed.exposed = true;
+  exposed.display.exposure = 5;
+  OK(abbe_screen_png_write(path, &image, &desc, &error));
+  assert_near(notes.exposure, 0, 0);
+  OK(abbe_screen_png_write(path, &image, &exposed, &error));
+  assert_near(notes.exposure, -2, 1e-6);
   for (size_t i = 0; i < 12; i++) image.data[i] = INFINITY;
   OK(abbe_screen_png_write(path, &image, &desc, &error));
   assert_true(notes.stops == 0 && notes.white == 1);

@@ -84,6 +84,14 @@ TEST(what_cannot_be_framed_is_named) {
       {"{frame: [ball], fill: 2}", "'fill: 2' is not in the range from 0.01 to 1"},
       {"{eye: [0, -1, 1], target: [0, 0, 0], fill: 0.5}", "'fill' goes with 'frame"},
       {"{frame: [ball], elevation: 90}", "not in the range from -89.9"},
+#define STANDS "eye: [0.2, -1, 0.03], target: [0.2, 0, 0.03]"
+      {"{" STANDS ", focus: ball}", "'focus' goes with an 'aperture'"},
+      {"{" STANDS ", aperture: 8, focus: bal}", "did you mean 'ball'"},
+      {"{" STANDS ", fov: 30, lens: macro-100mm}", "leave out the 'fov'"},
+      {"{" STANDS ", aperture: 0}", "range from 0.5"},
+      {"{frame: ball, lens: macro-100}", "did you mean 'macro-100mm'"},
+      {"{eye: [0, -8cm, 0], target: [0, 0, 0], lens: macro-100mm}", "beyond its focal length"},
+      {"{eye: [0.2, 1, 0], target: [0.2, 2, 0], aperture: 8, focus: ball}", "behind the camera"},
       {"{frame: [ball], up: [0, -0.5, 0.86602540378443865]}", "'up' points along its view"}};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
     char text[2048];
@@ -95,4 +103,45 @@ TEST(what_cannot_be_framed_is_named) {
             "t.yaml:1: ", abbe_scene_parse(text, strlen(text), "t.yaml", NULL, &scene, &error));
     assert_contains(last_error.text, bad[i][1]);
   }
+}
+
+/* Film as far behind a thin lens as makes the target sharp, 1 / f = 1 / film + 1 / target. */
+TEST(a_lens_has_its_angle_and_place) {
+  static const struct {
+    const char *camera;
+    double focal, far;
+  } views[] = {
+      {"{frame: [ball], lens: macro-100mm, fill: 0.8, aperture: 16}", 0.1, 0},
+      {"{frame: [brick], lens: macro-60mm, elevation: 20, aperture: 16}", 0.06, 0},
+      {"{eye: [0, -0.5, 0], target: [0, 0, 0], lens: normal-50mm, aperture: 16}", 0.05, 0.5}};
+  for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
+    abbe_scene scene;
+    double to[3], min[2], max[2];
+    make(views[i].camera, &scene);
+    const abbe_camera *c = &scene.camera;
+    for (int k = 0; k < 3; k++) to[k] = c->target[k] - c->eye[k];
+    const double far = sqrt(to[0] * to[0] + to[1] * to[1] + to[2] * to[2]);
+    const double film = 0.012 / tan(0.5 * c->fov_y_rad);
+    assert_near(1 / film + 1 / far, 1 / views[i].focal, 1e-6 / views[i].focal);
+    if (views[i].far > 0) assert_near(far, views[i].far, 1e-12);
+    assert_near(c->aperture, views[i].focal / 16, 1e-12);
+    assert_near(c->focus, far, 1e-12);
+    if (i == 0) seen(&scene, 1, 1, min, max);
+    if (i == 0) assert_near(fmax(max[0], max[1]), 0.8, 1e-4);
+    abbe_scene_free(&scene);
+  }
+}
+
+TEST(what_is_sharp_is_chosen) {
+  abbe_scene scene;
+  make("{" STANDS ", fov: 30, aperture: 8, focus: ball}", &scene);
+  assert_near(scene.camera.focus, 1.1, 1e-12);
+  assert_near(scene.camera.aperture, 0.012 / tan(15 * 3.14159265358979323846 / 180) / 8, 1e-12);
+  abbe_scene_free(&scene);
+  make("{" STANDS ", fov: 30, aperture: 8, focus: 40cm}", &scene);
+  assert_near(scene.camera.focus, 0.4, 1e-12);
+  abbe_scene_free(&scene);
+  make("{" STANDS "}", &scene);
+  assert_true(scene.camera.aperture == 0 && scene.camera.focus == 0);
+  abbe_scene_free(&scene);
 }

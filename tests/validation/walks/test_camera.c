@@ -122,3 +122,38 @@ TEST(what_is_not_in_the_picture_has_no_pixel) {
   for (int k = 0; k < 3; k++) p[k] = NAN;
   assert_false(abbe_trace_camera_pixel(&c, p, &pixel, &distance, d, &per_pixel));
 }
+
+/* A point is seen as a disk whose radius on the film is the lens's times |1 / focus - 1 / z|, even
+ * over its area; what is as far away as the focus stays a point, and rays lead to where it is. */
+TEST(a_lens_blurs_by_disks) {
+  enum { SIDE = 32, PIXELS = 4096 };
+  static const float focus = 2, lens = 0.05f;
+  for (int i = 0; i < 4; i++) {
+    const float z = 1.0f + (float)i * 0.5f;
+    abbe_trace_camera c;
+    double square = 0, most = 0;
+    abbe_trace_camera_make(&geometry, PIXELS, PIXELS, &c);
+    c.lens = lens;
+    c.focus = focus;
+    float p[3], d[3], distance, per_pixel;
+    for (int k = 0; k < 3; k++) p[k] = c.eye[k] + z * (c.forward[k] + 0.1f * c.right[k]);
+    for (int n = 0; n < SIDE * SIDE; n++) {
+      const abbe_trace_camera from = abbe_trace_camera_at(&c, ((float)(n % SIDE) + 0.5f) / SIDE,
+                                                          ((float)(n / SIDE) + 0.5f) / SIDE);
+      size_t pixel;
+      assert_true(abbe_trace_camera_pixel(&from, p, &pixel, &distance, d, &per_pixel));
+      const float x = (float)(pixel % PIXELS) + 0.5f, y = (float)(pixel / PIXELS) + 0.5f;
+      const double right = (2 * (double)x / PIXELS - 1) * (double)c.half_width - 0.1;
+      const double up = (1 - 2 * (double)y / PIXELS) * (double)c.half_height;
+      square += (right * right + up * up) / (SIDE * SIDE);
+      most = fmax(most, hypot(right, up));
+      float back[3];
+      abbe_trace_camera_ray(&from, x, y, back);
+      assert_near(dot(back, d), 1, 1e-6);
+    }
+    const double radius = (double)lens * fabs(1 / (double)focus - 1 / (double)z);
+    const double side = 2 * (double)c.half_width / PIXELS;
+    assert_near(most, radius, 0.02 * radius + side);
+    assert_near(sqrt(2 * square), radius, 0.01 * radius + side);
+  }
+}
