@@ -63,6 +63,13 @@ static void print_stone(const abbe_gem_input *in) {
     printf("  weight     not known without a density; --density gives it\n");
 }
 
+/* Facets of the pavilion through which light that comes straight down leaves: of the material, or
+ * of the index that the design is for. */
+static bool is_too_flat(const abbe_gem_input *in, const abbe_cut_tier *tier) {
+  const double n = in->material != NULL ? in->n : in->cut.refractive_index;
+  return n > 1 && tier->angle_deg < 0 && -tier->angle_deg < critical_deg(n);
+}
+
 static void print_tiers(const abbe_gem_input *in) {
   const abbe_cut *cut = &in->cut;
   printf("\n  %-6s %8s %10s  indices\n", "facet", "angle", "distance");
@@ -75,7 +82,7 @@ static void print_tiers(const abbe_gem_input *in) {
       printf("%s%g%s", i > 0 ? " " : "", cut->facet[tier->first + i].index,
              in->stone.fate[tier->first + i] == ABBE_CUT_FACE ? "" : "*");
     if (tier->instruction != NULL) printf("  %s", tier->instruction);
-    printf("\n");
+    printf("%s\n", is_too_flat(in, tier) ? "  (below the critical angle)" : "");
   }
   if (in->measures.dead + in->measures.doubled > 0) printf("  * no face\n");
 }
@@ -113,6 +120,7 @@ static abbe_result print_json(const abbe_gem_input *in, abbe_error *error) {
     if (item == NULL || !cJSON_AddItemToArray(tiers, item)) continue;
     cJSON_AddNumberToObject(item, "angle_deg", tier->angle_deg);
     cJSON_AddNumberToObject(item, "distance", tier->distance);
+    cJSON_AddBoolToObject(item, "below_critical", is_too_flat(in, tier));
     if (tier->instruction != NULL) cJSON_AddStringToObject(item, "instruction", tier->instruction);
     cJSON *facets = cJSON_AddArrayToObject(item, "facets");
     for (size_t i = tier->first; i < tier->first + tier->count; i++) {

@@ -43,8 +43,11 @@ static const struct {
   const char *name, *text;
   abbe_gem_amount amount;
   bool least;
-} measures[] = {{"iso", "ISO brightness", ABBE_GEM_ISO, false},
-                {"cos", "COS brightness", ABBE_GEM_COS, false},
+} measures[] = {{"iso", "brightness", ABBE_GEM_ISO, false},
+                {"cos", "cosine brightness", ABBE_GEM_COS, false},
+                {"gemray-iso", "GemRay's ISO", ABBE_GEM_GEMRAY_ISO, false},
+                {"gemray-cos", "GemRay's COS", ABBE_GEM_GEMRAY_COS, false},
+                {"gemray-sc2", "GemRay's SC2", ABBE_GEM_GEMRAY_SC2, false},
                 {"return", "light return", ABBE_GEM_RETURN, false},
                 {"leakage", "leakage", ABBE_GEM_DOWN, true}};
 enum { MEASURES = sizeof measures / sizeof measures[0] };
@@ -64,7 +67,9 @@ typedef struct request {
 
 static const struct argp_option options[] = {
     {"measure", KEY_MEASURE, "NAME", 0,
-     "iso, cos, return (with the head's shadow) or leakage (the least of it); without it, iso", 0},
+     "iso, cos, gemray-iso, gemray-cos, gemray-sc2, return (with the head's shadow) or leakage "
+     "(the least of it); without it, iso",
+     0},
     {"crown", KEY_CROWN, "FROM:TO", 0,
      "degrees of its main facets; without it, 8 to either side of the design's", 0},
     {"pavilion", KEY_PAVILION, "FROM:TO", 0, "likewise; without it, 4 to either side", 0},

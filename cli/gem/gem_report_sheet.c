@@ -88,7 +88,7 @@ static abbe_result put_tilt_page(abbe_sheet *s, const abbe_gem_tilts *t, abbe_er
   static const struct {
     abbe_gem_tilt_curve curve;
     const char *label;
-  } chart[] = {{ABBE_GEM_TILT_ISO, "ISO brightness, %"},
+  } chart[] = {{ABBE_GEM_TILT_ISO, "brightness, %"},
                {ABBE_GEM_TILT_RETURN, "light return, %"},
                {ABBE_GEM_TILT_DOWN, "leakage, %"},
                {ABBE_GEM_TILT_FIRE, "fire, % of pixels"}};

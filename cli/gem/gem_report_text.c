@@ -44,7 +44,7 @@ void abbe_gem_report_print(const abbe_gem_report_facts *f) {
     printf("%-58s %10s %8s\n", row[i].text, value, error);
   }
   if (!j->has_tilts) return;
-  printf("\nISO brightness by tilt, %%\n%-8s", "axis");
+  printf("\nbrightness by tilt, %%\n%-8s", "axis");
   const size_t stride = (j->tilts.tilts - 1) / 6 > 0 ? (j->tilts.tilts - 1) / 6 : 1;
   for (size_t t = 0; t < j->tilts.tilts; t += stride)
     printf(" %7.0f", j->tilts.tilt_rad[t] * 180 / ABBE_PI);

@@ -67,7 +67,7 @@ TEST(numbers_add_up) {
 TEST(pages_maps_and_tables) {
   run_says("mkdir maps && " GEM "report" DIAMOND SMALL
            "--step 15 -o r.pdf --maps maps && head -c 5 r.pdf",
-           "ISO brightness");
+           "GemRay's ISO");
   assert_contains(run_output, "%PDF-");
   assert_int_equal(
       run_line("cd maps && ls && \"$abbe\" info maps.exr && cd .. && rm -r maps r.pdf"), 0);

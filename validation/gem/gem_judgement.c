@@ -62,7 +62,7 @@ size_t abbe_gem_judgement_rows(const abbe_gem_judgement *j,
                                           j->contrast, false};
   if (!j->has_tilts) return count;
   const abbe_gem_tilts *t = &j->tilts;
-  row[count++] = (abbe_gem_judgement_row){"tilt_iso", "ISO brightness, mean over tilts",
+  row[count++] = (abbe_gem_judgement_row){"tilt_iso", "brightness, mean over tilts",
                                           t->mean[ABBE_GEM_TILT_ISO], true};
   row[count++] =
       (abbe_gem_judgement_row){"tilt_spread", "its standard deviation over tilts", t->spread, true};

@@ -51,13 +51,20 @@ void abbe_gem_path_follow(const abbe_gem_stone *stone, size_t k, const double p[
 /* Default half angle of the head's shadow, degrees: ASET's [Sasian2007]. */
 #define ABBE_GEM_HEAD_DEG 15.0
 
+/* GemRay's [GemRay] three have a head of their own and a horizon across the line of sight, from
+ * which e counts in them, so that both stay where they are as the stone tilts. */
+#define ABBE_GEM_GEMRAY_HEAD_DEG 10.0
+
 /* X(code, name, text). Each is a share of the eye's light, 0 to 1. up, down, absorbed and left add
  * up to 1; so do green, red, blue, below, absorbed and left; and return, head, down, absorbed,
  * left.
  */
 #define ABBE_GEM_AMOUNTS(X)                                                                        \
-  X(ISO, "iso", "ISO brightness: L = 1 above the girdle plane")                                    \
-  X(COS, "cos", "COS brightness: L = sin e above the girdle plane")                                \
+  X(ISO, "iso", "brightness: L = 1 above the girdle plane")                                        \
+  X(COS, "cos", "cosine brightness: L = sin e above the girdle plane")                             \
+  X(GEMRAY_ISO, "gemray_iso", "GemRay's ISO: L = 1, the head of 10 degrees dark")                  \
+  X(GEMRAY_COS, "gemray_cos", "GemRay's COS: L = sin e")                                           \
+  X(GEMRAY_SC2, "gemray_sc2", "GemRay's SC2: L = sin 2e")                                          \
   X(RETURN, "return", "light return: L = 1 above the girdle plane, the head dark")                 \
   X(HEAD, "head", "from the head, above the girdle plane")                                         \
   X(DOWN, "leakage", "from below the girdle plane")                                                \

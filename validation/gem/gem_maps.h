@@ -12,8 +12,8 @@
 /* X(code, name, text) */
 #define ABBE_GEM_MAPS(X)                                                                           \
   X(COLOUR, "return", "light return, in colour")                                                   \
-  X(ISO, "iso", "ISO brightness")                                                                  \
-  X(COS, "cos", "COS brightness")                                                                  \
+  X(ISO, "iso", "brightness")                                                                      \
+  X(COS, "cos", "cosine brightness")                                                               \
   X(ASET, "aset", "ASET, leakage black")                                                           \
   X(IDEAL, "ideal-scope", "Ideal-Scope, leakage white")                                            \
   X(LEAKAGE, "leakage", "leakage: windows are bright")

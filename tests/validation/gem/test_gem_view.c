@@ -281,3 +281,36 @@ TEST(wrong_requests_are_refused) {
   }
   judged_free(&j);
 }
+
+/* Two designs and what GemRay says of them at an index of 1.54, with its eye ten half widths away:
+ * ISO and COS, with the shadow of the head and without one. Here the eye is far away. */
+TEST(gemray_says_the_same) {
+#define TEETH_16 "3 9 15 21 27 33 39 45 51 57 63 69 75 81 87 93\n"
+#define TEETH_8 "12 24 36 48 60 72 84 96\n"
+#define BETWEEN_8 "6 18 30 42 54 66 78 90\n"
+#define TEETH_24 "2 6 10 14 18 22 26 30 34 38 42 46 50 54 58 62 66 70 74 78 82 86 90 94\n"
+#define TEETH_OTHER_16 "2 10 14 22 26 34 38 46 50 58 62 70 74 82 86 94\n"
+  static const struct {
+    const char *text;
+    double iso, cos, all, all_cos;
+  } stones[] = {{"GemCad 5.0\ng 96 0.0\na -90 1 " TEETH_16 "a -45 0.70710678 " TEETH_16
+                 "a -43 0.69535950 " TEETH_8 "a 47 0.75863364 " TEETH_16 "a 42 0.71196544 " TEETH_8
+                 "a 27 0.65206207 " BETWEEN_8 "a 0 0.48398214 96\n",
+                 0.8217, 0.3468, 0.9564, 0.4808},
+                {"GemCad 5.0\ng 96 0.0\na -90 1 " TEETH_24 "a -42 0.67490451 " TEETH_8
+                 "a -43 0.68199836 " TEETH_OTHER_16 "a -43.53 0.68873429 " BETWEEN_8
+                 "a 32 0.56841384 " TEETH_8 "a 34.5 0.59937128 " TEETH_OTHER_16
+                 "a 36.22 0.62315748 " BETWEEN_8 "a 18 0.47933751 " BETWEEN_8 "a 0 0.35029261 96\n",
+                 0.6376, 0.4502, 0.9734, 0.7848}};
+  const abbe_gem_view_desc fine = {.side = 128, .repeats = 4, .threads = 2};
+  for (size_t i = 0; i < sizeof stones / sizeof *stones; i++) {
+    judged j = judged_plain(stones[i].text, 1.54);
+    abbe_gem_view view = judged_view(&j, &fine);
+    assert_near(mean(&view, ABBE_GEM_GEMRAY_ISO), stones[i].iso, 0.003);
+    assert_near(mean(&view, ABBE_GEM_GEMRAY_COS), stones[i].cos, 0.003);
+    assert_near(mean(&view, ABBE_GEM_ISO), stones[i].all, 0.003);
+    assert_near(mean(&view, ABBE_GEM_COS), stones[i].all_cos, 0.003);
+    abbe_gem_view_free(&view);
+    judged_free(&j);
+  }
+}
