@@ -240,7 +240,6 @@ static uint64_t mix_light_plan(uint64_t h, const abbe_plan *plan) {
   MIX(h, d->transport);
   MIX(h, d->pinholes);
   MIX(h, d->clusters);
-  MIX(h, d->strategy);
   MIX(h, d->footprint);
   h = mix_layout(h, d->map_layout, d->map_layout_light);
   const bool coarse = plan->fewer_triangles == ABBE_COARSE_ALL;
@@ -325,7 +324,6 @@ static uint64_t of_pages(const abbe_scene *scene, const abbe_plan *plan, const u
   MIX(h, seed);
   MIX(h, d->pinholes);
   MIX(h, d->clusters);
-  MIX(h, d->strategy);
   MIX(h, d->footprint);
   if (plan->rough) MIX(h, part[ABBE_PART_LIGHT]);
   return h;

@@ -53,12 +53,11 @@ void abbe_lib_scene_set_progress(abbe_lib_scene *scene, abbe_lib_progress progre
  * adaptive, receiver_samples, environment_lights, light_points, exits, energy_share, profile
  * (default, thesis, thesis-cie, shah2007, shah2007-cie, wyman2006, wyman2006-cie, wand2003), fill
  * (auto, none, bridge, smear), model (auto, sphere, convex, layers, hierarchy), transport (auto,
- * photons, pinhole), of pinholes also pinholes and clusters (numbers), strategy (auto, random,
- * grid, quantized, neighbour) and footprint (auto, off, on), space (acescg, rec709, xyz), observer
- * (1931, 1964, 2015-2, 2015-10), aovs (1: direct.*, caustic.* and Z too), backend (auto, cpu, gpu:
- * of the first picture), and those of published methods that 'abbe methods --help' lists, with _
- * for -. docs/rendering.md and docs/methods.md say what they do. ABBE_INVALID_ARGUMENT,
- * ABBE_UNSUPPORTED, ABBE_GL, ABBE_CANCELLED, ABBE_NO_MEMORY. */
+ * photons, pinhole), of pinholes also pinholes and clusters (numbers), footprint (auto, off, on),
+ * space (acescg, rec709, xyz), observer (1931, 1964, 2015-2, 2015-10), aovs (1: direct.*, caustic.*
+ * and Z too), backend (auto, cpu, gpu: of the first picture), and those of published methods that
+ * 'abbe methods --help' lists, with _ for -. docs/rendering.md and docs/methods.md say what they
+ * do. ABBE_INVALID_ARGUMENT, ABBE_UNSUPPORTED, ABBE_GL, ABBE_CANCELLED, ABBE_NO_MEMORY. */
 abbe_result abbe_lib_scene_render(abbe_lib_scene *scene, const char *const *settings, size_t count,
                                   abbe_lib_picture **out, abbe_error *error);
 /* Where a light's flux fell in the last rendered picture, X, Y, Z in W a texel, and so many bands

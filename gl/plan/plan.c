@@ -168,10 +168,8 @@ static void list_light(abbe_plan *plan) {
 static void list_pinholes(abbe_plan *plan) {
   const abbe_render_desc *d = &plan->desc;
   if (d->transport != ABBE_TRANSPORT_PINHOLE) return;
-  abbe_plan_add(plan, ABBE_PASS_PINHOLES,
-                "at most %zu samples of surfaces, '%s', footprints %s; %s", d->pinholes,
-                abbe_sample_strategy_name(d->strategy),
-                d->footprint == ABBE_FOOTPRINT_ON ? "by curvature" : "off",
+  abbe_plan_add(plan, ABBE_PASS_PINHOLES, "at most %zu samples of surfaces, footprints %s; %s",
+                d->pinholes, d->footprint == ABBE_FOOTPRINT_ON ? "by curvature" : "off",
                 abbe_method_of(d->profile)->surroundings
                     ? "each pixel sees each, whatever is between"
                     : "each receiver's map sees clusters of them and parts, and what lies behind");

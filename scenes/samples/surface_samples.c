@@ -10,13 +10,6 @@
 /* For each sample that is asked for; in all at least, and at the most. */
 enum { CANDIDATES = 48, LEAST_CANDIDATES = 4096, MOST_CANDIDATES = 1 << 18, HALVINGS = 24 };
 
-const char *abbe_sample_strategy_name(abbe_sample_strategy strategy) {
-#define ABBE_NAME_OF(code, name) name,
-  static const char *const names[] = {ABBE_SAMPLE_STRATEGIES(ABBE_NAME_OF)};
-#undef ABBE_NAME_OF
-  return (int)strategy >= 0 && strategy < ABBE_SAMPLE_STRATEGY_COUNT ? names[strategy] : "unknown";
-}
-
 /* ---- candidates ---- */
 
 /* SplitMix64 [Steele2014] by number: number k of a seed, in [0, 1). */
@@ -157,97 +150,21 @@ static size_t remove_neighbours(const abbe_surface_samples *s, double radius, bo
   return count;
 }
 
-/* ---- grid ---- */
-
-typedef struct in_cell {
-  int64_t cell[4]; /* the last: the octant of the normal's largest side, where sides are apart */
-  bool taken;
-  size_t number; /* number of those that are kept */
-} in_cell;
-
-/* A slot of the cell, or a free one, in a table of mask + 1. */
-static in_cell *find_cell(in_cell *table, size_t mask, const int64_t cell[4]) {
-  uint64_t h = 0;
-  for (int k = 0; k < 4; k++) {
-    h = (h ^ (uint64_t)cell[k]) * 0x9e3779b97f4a7c15u;
-    h ^= h >> 29;
-  }
-  while (table[h & mask].taken && memcmp(table[h & mask].cell, cell, sizeof table->cell) != 0) h++;
-  return &table[h & mask];
-}
-
-/* Which of two sides a normal shows: its largest component's sign. */
-static int64_t side_of(const double n[3]) {
-  int k = 0;
-  for (int i = 1; i < 3; i++)
-    if (fabs(n[i]) > fabs(n[k])) k = i;
-  return n[k] < 0;
-}
-
-static void cell_of(const abbe_surface_point *p, double edge, bool sided, int64_t cell[4]) {
-  for (int k = 0; k < 3; k++) cell[k] = (int64_t)floor(p->position[k] / edge);
-  cell[3] = sided ? side_of(p->normal) : 0;
-}
-
-static void middle_of_cell(const abbe_surface_point *p, double edge, double middle[3]) {
-  for (int k = 0; k < 3; k++) middle[k] = (floor(p->position[k] / edge) + 0.5) * edge;
-}
-
-static double from_middle(const abbe_surface_point *p, double edge) {
-  double middle[3];
-  middle_of_cell(p, edge, middle);
-  abbe_vector_subtract(p->position, middle, middle);
-  return abbe_vector_length(middle);
-}
-
-/* As above, of cubes of an edge; of each the first candidate, or that nearest to its middle. */
-static size_t take_some(const abbe_surface_samples *s, double edge, bool sided, bool middles,
-                        size_t most, uint32_t *kept) {
-  size_t room = 16, count = 0;
-  while (room < 2 * most + 2) room *= 2;
-  in_cell *table = calloc(room, sizeof *table);
-  if (table == NULL) return SIZE_MAX;
-  for (size_t i = 0; i < s->candidate_count && count <= most; i++) {
-    const abbe_surface_point *p = &s->candidate[i];
-    int64_t cell[4];
-    cell_of(p, edge, sided, cell);
-    in_cell *slot = find_cell(table, room - 1, cell);
-    const bool first = !slot->taken;
-    if (first) slot->number = count++;
-    memcpy(slot->cell, cell, sizeof cell);
-    slot->taken = true;
-    if (slot->number < most &&
-        (first ||
-         (middles && from_middle(p, edge) < from_middle(&s->candidate[kept[slot->number]], edge))))
-      kept[slot->number] = (uint32_t)i;
-  }
-  free(table);
-  return count;
-}
-
-static size_t take_cells(const abbe_surface_samples *s, double edge, bool sided, size_t most,
-                         uint32_t *kept) {
-  return take_some(s, edge, sided, false, most, kept);
-}
-
 /* ---- which are kept ---- */
-
-typedef size_t (*keep_some)(const abbe_surface_samples *s, double reach, bool sided, size_t most,
-                            uint32_t *kept);
 
 /* The smallest reach that keeps no more than are asked for. */
 static size_t keep_by_reach(abbe_surface_samples *s, const abbe_surface_sampling *sampling,
-                            size_t most, keep_some keep, uint32_t *kept) {
+                            size_t most, uint32_t *kept) {
   double low = 0, high = 2 * sqrt(s->area / (double)most);
-  size_t count = keep(s, high, sampling->sided, most, kept);
+  size_t count = remove_neighbours(s, high, sampling->sided, most, kept);
   for (int i = 0; i < 64 && count > most && count != SIZE_MAX; i++) {
     low = high;
     high *= 2;
-    count = keep(s, high, sampling->sided, most, kept);
+    count = remove_neighbours(s, high, sampling->sided, most, kept);
   }
   for (int i = 0; i < HALVINGS && count != SIZE_MAX; i++) {
     const double middle = 0.5 * (low + high);
-    const size_t there = keep(s, middle, sampling->sided, most, kept);
+    const size_t there = remove_neighbours(s, middle, sampling->sided, most, kept);
     if (there == SIZE_MAX) return there;
     if (there > most)
       low = middle;
@@ -256,30 +173,13 @@ static size_t keep_by_reach(abbe_surface_samples *s, const abbe_surface_sampling
     if (there == most) break;
   }
   s->reach = high;
-  return count == SIZE_MAX ? count : keep(s, high, sampling->sided, most, kept);
-}
-
-static void quantize(abbe_surface_samples *s) {
-  for (size_t i = 0; i < s->count; i++) {
-    double middle[3];
-    middle_of_cell(&s->sample[i], s->reach, middle);
-    memcpy(s->sample[i].position, middle, sizeof middle);
-  }
+  return count == SIZE_MAX ? count : remove_neighbours(s, high, sampling->sided, most, kept);
 }
 
 static abbe_result keep(abbe_surface_samples *s, const abbe_surface_sampling *sampling, size_t most,
                         abbe_error *error) {
-  const abbe_sample_strategy strategy = sampling->strategy;
-  const bool cells =
-      strategy == ABBE_SAMPLE_STRATEGY_GRID || strategy == ABBE_SAMPLE_STRATEGY_QUANTIZED;
   uint32_t *kept = malloc(most * sizeof *kept);
-  size_t count = kept != NULL ? most : SIZE_MAX;
-  for (size_t i = 0; kept != NULL && i < most; i++) kept[i] = (uint32_t)i;
-  if (kept != NULL && strategy != ABBE_SAMPLE_STRATEGY_RANDOM)
-    count = keep_by_reach(s, sampling, most, cells ? take_cells : remove_neighbours, kept);
-  const bool quantized = strategy == ABBE_SAMPLE_STRATEGY_QUANTIZED;
-  if (quantized && sampling->on_surface && count != SIZE_MAX)
-    count = take_some(s, s->reach, sampling->sided, true, most, kept);
+  size_t count = kept != NULL ? keep_by_reach(s, sampling, most, kept) : SIZE_MAX;
   if (count == SIZE_MAX) {
     free(kept);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu samples of surfaces", most);
@@ -290,7 +190,6 @@ static abbe_result keep(abbe_surface_samples *s, const abbe_surface_sampling *sa
   for (size_t i = 0; i < count; i++) s->sample[i] = s->candidate[kept[i]];
   free(kept);
   s->spacing = sqrt(s->area / (double)count);
-  if (quantized && !sampling->on_surface) quantize(s);
   return ABBE_OK;
 }
 

@@ -1,12 +1,9 @@
 /* surface_samples.h: a few points that stand for surfaces, spread over them by area
  * [WandStrasser2003].
  *
- * Candidates are many points, uniform by area, at random or evenly; of these a strategy keeps some.
- * random keeps the first ones. grid keeps one of each cube that holds any, so its density goes with
- * the cubes that a surface crosses: with the sum of the absolute components of its normal.
- * quantized moves those to their cubes' middles, off the surface, or, where it is to stay on it,
- * takes the candidate that is nearest to each middle. neighbour goes through the candidates in
- * their order and drops each that is nearer to a kept one than a radius. It knows no light.
+ * Candidates are many points, uniform by area, at random or evenly. They are gone through in their
+ * order, and each that is nearer to a kept one than a radius is dropped, so that samples are as
+ * dense on all surfaces, whatever way these face. It knows no light.
  */
 #ifndef ABBE_SCENES_SAMPLES_SURFACE_SAMPLES_H
 #define ABBE_SCENES_SAMPLES_SURFACE_SAMPLES_H
@@ -17,16 +14,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-
-#define ABBE_SAMPLE_STRATEGIES(X)                                                                  \
-  X(AUTO, "auto")                                                                                  \
-  X(RANDOM, "random") X(GRID, "grid") X(QUANTIZED, "quantized") X(NEIGHBOUR, "neighbour")
-typedef enum abbe_sample_strategy {
-#define ABBE_SAMPLE_STRATEGY_ENUM(code, name) ABBE_SAMPLE_STRATEGY_##code,
-  ABBE_SAMPLE_STRATEGIES(ABBE_SAMPLE_STRATEGY_ENUM)
-#undef ABBE_SAMPLE_STRATEGY_ENUM
-      ABBE_SAMPLE_STRATEGY_COUNT
-} abbe_sample_strategy;
 
 #define ABBE_SURFACE_MAX_SAMPLES 4096
 
@@ -42,22 +29,20 @@ typedef struct abbe_surface_samples {
                                  area */
   double area;                /* area of all meshes, m2 */
   double spacing;             /* sqrt(area / count), m */
-  double reach;               /* the radius of neighbour, the edge of a cube; 0 at random; m */
+  double reach;               /* the radius, m */
   size_t candidate_count;
   abbe_surface_point *candidate; /* [candidate_count], in their order */
   uint32_t *owner;               /* [candidate_count] the sample nearest to each */
 } abbe_surface_samples;
 
-/* What is asked for. Zeros: NEIGHBOUR, 1 sample. */
+/* What is asked for. Zeros: 1 sample. */
 typedef struct abbe_surface_sampling {
-  size_t count; /* at most so many are kept; of random as many, else nearly */
-  abbe_sample_strategy strategy;
+  size_t count;  /* at most so many are kept, and nearly as many */
   uint64_t seed; /* seed of the candidates */
   bool sided;    /* points whose normals are more than 90 degrees apart are on different sides of a
-                    sheet: no neighbour drops the other, no cube holds both */
+                    sheet: neither drops the other */
   bool even; /* candidates follow an additive recurrence, which fills the surfaces evenly: shares
                 are then closer to the area that is nearest */
-  bool on_surface; /* quantized ones stay on it */
 } abbe_surface_sampling;
 
 /* Makes samples of all faces of the meshes together; faces without area are never met.
@@ -67,7 +52,5 @@ abbe_result abbe_surface_samples_make(const abbe_mesh *const *mesh, size_t mesh_
                                       const abbe_surface_sampling *sampling,
                                       abbe_surface_samples *out, abbe_error *error);
 void abbe_surface_samples_free(abbe_surface_samples *samples);
-
-const char *abbe_sample_strategy_name(abbe_sample_strategy strategy);
 
 #endif

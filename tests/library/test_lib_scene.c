@@ -168,11 +168,9 @@ TEST(pinholes_are_asked_for) {
     const char *says;
   } rows[] = {
       {{"transport=pinhole", "pinholes=20"}, ABBE_UNSUPPORTED, "an environment's light"},
-      {{"strategy=grid", "footprint=off"},
-       ABBE_INVALID_ARGUMENT,
-       "go with the transport 'pinhole'"},
+      {{"pinholes=20", "footprint=off"}, ABBE_INVALID_ARGUMENT, "go with the transport 'pinhole'"},
       {{"transport=pinhole", "pinholes=5000"}, ABBE_INVALID_ARGUMENT, "4096"},
-      {{"transport=pinhole", "strategy=nearest"}, ABBE_INVALID_ARGUMENT, "neighbour"},
+      {{"transport=pinhole", "footprint=wide"}, ABBE_INVALID_ARGUMENT, "off"},
   };
   abbe_lib_scene *s = opened(NULL, 0);
   for (size_t i = 0; i < COUNT(rows); i++) {

@@ -189,11 +189,9 @@ abbe_result abbe_pinhole_samples_make(const abbe_gpu_scene *scene, bool publishe
                                       abbe_pinhole_samples *out, abbe_error *error) {
   const abbe_plan *plan = scene->plan;
   const abbe_surface_sampling sampling = {.count = plan->desc.pinholes,
-                                          .strategy = plan->desc.strategy,
                                           .seed = abbe_pinhole_samples_seed(&plan->desc),
                                           .sided = !published,
-                                          .even = !published,
-                                          .on_surface = !published};
+                                          .even = !published};
   const abbe_mesh **mesh = calloc(plan->refractor_count + 1, sizeof *mesh);
   abbe_surface_samples s;
   *out = (abbe_pinhole_samples){0};
@@ -203,9 +201,8 @@ abbe_result abbe_pinhole_samples_make(const abbe_gpu_scene *scene, bool publishe
   abbe_result result = abbe_surface_samples_make(mesh, plan->refractor_count, &sampling, &s, error);
   free(mesh);
   if (result != ABBE_OK) return result;
-  const bool moved = published && plan->desc.strategy == ABBE_SAMPLE_STRATEGY_QUANTIZED;
   for (size_t i = 0; i < s.candidate_count; i++) move_to_sphere(scene, &s.candidate[i]);
-  for (size_t i = 0; i < s.count && !moved; i++) move_to_sphere(scene, &s.sample[i]);
+  for (size_t i = 0; i < s.count; i++) move_to_sphere(scene, &s.sample[i]);
   out->count = s.count;
   out->area = s.area;
   out->spacing = s.spacing;

@@ -22,7 +22,6 @@ static void fill_in_pinholes(abbe_render_desc *d) {
   if (d->transport == ABBE_TRANSPORT_AUTO && surroundings) d->transport = ABBE_TRANSPORT_PINHOLE;
   if (d->transport != ABBE_TRANSPORT_PINHOLE) return;
   if (d->pinholes == 0) d->pinholes = ABBE_PLAN_PINHOLES;
-  if (d->strategy == ABBE_SAMPLE_STRATEGY_AUTO) d->strategy = ABBE_SAMPLE_STRATEGY_NEIGHBOUR;
   if (d->footprint == ABBE_FOOTPRINT_AUTO) d->footprint = ABBE_FOOTPRINT_ON;
   if (d->clusters == 0 && !surroundings) d->clusters = ABBE_PLAN_CLUSTERS;
 }
@@ -160,18 +159,15 @@ static abbe_result check_pinholes(const abbe_render_desc *d, abbe_error *error) 
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the transport '%s' does not go with the profile '%s'",
                           abbe_transport_name(d->transport), name);
-  const bool asked = d->pinholes > 0 || d->strategy != ABBE_SAMPLE_STRATEGY_AUTO ||
-                     d->footprint != ABBE_FOOTPRINT_AUTO || d->clusters > 0;
+  const bool asked = d->pinholes > 0 || d->footprint != ABBE_FOOTPRINT_AUTO || d->clusters > 0;
   if (d->clusters > 0 && m->surroundings)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "clusters of pinholes go with the default profile, not with '%s'", name);
-  if ((int)d->strategy < 0 || d->strategy >= ABBE_SAMPLE_STRATEGY_COUNT || (int)d->footprint < 0 ||
-      d->footprint >= ABBE_FOOTPRINT_COUNT || (asked && !pinholes))
-    return abbe_error_set(
-        error, ABBE_INVALID_ARGUMENT,
-        "a number of pinholes, a strategy for them, footprints and clusters go with the "
-        "transport 'pinhole', not with '%s'",
-        abbe_transport_name(d->transport));
+  if ((int)d->footprint < 0 || d->footprint >= ABBE_FOOTPRINT_COUNT || (asked && !pinholes))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a number of pinholes, footprints and clusters go with the "
+                          "transport 'pinhole', not with '%s'",
+                          abbe_transport_name(d->transport));
   return ABBE_OK;
 }
 

@@ -114,13 +114,12 @@ typedef struct abbe_render_desc {
   size_t low_pass; /* for shah2007: standard deviation of the filter over its map, texels, 0 (none)
                       to 32 */
   /* For the transport by pinholes alone: samples of all surfaces together, at most
-   * ABBE_SURFACE_MAX_SAMPLES, 0: 256; how they are chosen, AUTO: neighbour. */
+   * ABBE_SURFACE_MAX_SAMPLES, 0: 256. */
   size_t pinholes;
   /* and, of the default profile: the least number of clusters of samples that make a hemisphere's
    * light, 1 to ABBE_RENDER_MAX_CLUSTERS, with which there are none; 0: 50. A texel amid others is
    * taken from these where they are off a line by one cluster's light at the most. */
   size_t clusters;
-  abbe_sample_strategy strategy;
   abbe_footprint footprint;
   abbe_direction direction; /* for wyman2006; in its profile in units direct alone */
   unsigned polygons;        /* for wyman2006's quads and triangles: bits of ABBE_POLYGONS */

@@ -82,8 +82,6 @@ const abbe_render_setting abbe_render_settings[] = {
      .of_methods = true, .what = "the number of clusters", .default_ = "50",
      .help = "of transport pinhole, samples are taken together where they send at most 1/N of a "
              "hemisphere's light; the most takes each by itself"},
-    {CHOICE(strategy, ABBE_SAMPLE_STRATEGIES, NAME_OF_2), .option = "strategy", .of_methods = true,
-     .default_ = "neighbour", .help = "of transport pinhole, how samples are spread: "},
     {CHOICE(footprint, ABBE_FOOTPRINTS, NAME_OF_2), .option = "footprint", .of_methods = true,
      .default_ = "on",
      .help = "of transport pinhole, whether a sample shows as much of the surroundings as it "

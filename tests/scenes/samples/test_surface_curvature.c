@@ -7,8 +7,7 @@
 #include "scenes/shapes/shape.h"
 
 static abbe_surface_curvature *fit(const abbe_mesh *mesh, abbe_surface_samples *s) {
-  const abbe_surface_sampling sampling = {
-      .count = 400, .strategy = ABBE_SAMPLE_STRATEGY_NEIGHBOUR, .seed = 1, .sided = true};
+  const abbe_surface_sampling sampling = {.count = 400, .seed = 1, .sided = true};
   OK(abbe_surface_samples_make(&mesh, 1, &sampling, s, &error));
   abbe_surface_curvature *out = calloc(s->count, sizeof *out);
   OK(abbe_surface_curvature_fit(s, out, &error));

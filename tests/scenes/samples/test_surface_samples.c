@@ -1,4 +1,4 @@
-/* Samples of surfaces: what each strategy keeps, how dense it is, and how fast the irradiance that
+/* Samples of surfaces: which are kept, how dense they are, and how fast the irradiance that
  * a mirror of uniform radiance gives converges to its closed forms. */
 #include "tests/check.h"
 #include "tests/random.h"
@@ -7,14 +7,9 @@
 #include "scenes/samples/surface_samples.h"
 #include "scenes/shapes/shape.h"
 
-static const abbe_sample_strategy strategies[] = {
-    ABBE_SAMPLE_STRATEGY_RANDOM, ABBE_SAMPLE_STRATEGY_GRID, ABBE_SAMPLE_STRATEGY_QUANTIZED,
-    ABBE_SAMPLE_STRATEGY_NEIGHBOUR};
-enum { STRATEGIES = 4 };
-
-static void take(const abbe_mesh *mesh, size_t count, abbe_sample_strategy strategy, uint64_t seed,
-                 bool ours, abbe_surface_samples *out) {
-  const abbe_surface_sampling sampling = {count, strategy, seed, ours, ours, ours};
+static void take(const abbe_mesh *mesh, size_t count, uint64_t seed, bool ours,
+                 abbe_surface_samples *out) {
+  const abbe_surface_sampling sampling = {count, seed, ours, ours};
   OK(abbe_surface_samples_make(&mesh, 1, &sampling, out, &error));
 }
 
@@ -44,7 +39,7 @@ TEST(neighbours_are_apart_and_cover) {
   OK(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, &error));
   for (int sided = 0; sided < 2; sided++) {
     abbe_surface_samples s = {0};
-    take(&ring, 300, ABBE_SAMPLE_STRATEGY_NEIGHBOUR, 7, sided != 0, &s);
+    take(&ring, 300, 7, sided != 0, &s);
     assert_true(s.count <= 300 && s.count > 285);
     for (size_t i = 0; i < s.count; i++)
       for (size_t k = i + 1; k < s.count; k++)
@@ -62,27 +57,20 @@ TEST(neighbours_are_apart_and_cover) {
   abbe_mesh_free(&ring);
 }
 
-/* All lie on the surface but those that are moved to their cubes as published; shares are the whole
- * area, and so are weights that are alike. */
+/* All lie on the surface; shares are the whole area. */
 TEST(area_and_places) {
   abbe_mesh ball = {0};
   OK(abbe_shape_sphere(0.02, 5, &ball, &error));
-  for (int k = 0; k < 2 * STRATEGIES; k++) {
-    const bool ours = k >= STRATEGIES;
-    const abbe_sample_strategy strategy = strategies[k % STRATEGIES];
+  for (int ours = 0; ours < 2; ours++) {
     abbe_surface_samples s = {0};
-    take(&ball, 200, strategy, 3, ours, &s);
+    take(&ball, 200, 3, ours != 0, &s);
     double sum = 0;
     for (size_t i = 0; i < s.count; i++) {
       sum += s.share[i];
-      const double radius = abbe_vector_length(s.sample[i].position);
-      if (ours || strategy != ABBE_SAMPLE_STRATEGY_QUANTIZED)
-        assert_near(radius, 0.02, 2e-5);
-      else
-        assert_true(fabs(radius - 0.02) <= 0.87 * s.reach + 2e-5);
+      assert_near(abbe_vector_length(s.sample[i].position), 0.02, 2e-5);
       assert_near(abbe_vector_length(s.sample[i].normal), 1, 1e-12);
     }
-    print_message("%s: %zu of 200\n", abbe_sample_strategy_name(strategy), s.count);
+    print_message("%zu of 200\n", s.count);
     assert_true(s.count <= 200 && s.count >= 190);
     assert_near(s.area, 4 * ABBE_PI * 4e-4, 3e-6);
     assert_near(sum, s.area, 1e-12);
@@ -92,48 +80,9 @@ TEST(area_and_places) {
   abbe_mesh_free(&ball);
 }
 
-/* Cubes between 0 and a first plane, a second one, ...; how far a point is from its cube's middle.
- */
-static double beside_middle(const abbe_surface_point *p, double edge, double cube[3]) {
-  double off[3];
-  for (int k = 0; k < 3; k++) {
-    cube[k] = floor(p->position[k] / edge);
-    off[k] = p->position[k] - (cube[k] + 0.5) * edge;
-  }
-  return abbe_vector_length(off);
-}
-
-/* Quantized ones that stay on the surface are the candidates nearest to their cubes' middles. */
-TEST(quantized_on_the_surface) {
-  abbe_mesh ring = {0};
-  OK(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, &error));
-  abbe_surface_samples s = {0};
-  abbe_surface_sampling sampling = {.count = 300, .strategy = ABBE_SAMPLE_STRATEGY_QUANTIZED};
-  sampling.on_surface = true;
-  const abbe_mesh *mesh = &ring;
-  OK(abbe_surface_samples_make(&mesh, 1, &sampling, &s, &error));
-  size_t cubes = 0;
-  for (size_t i = 0; i < s.count; i++) {
-    double own[3], other[3];
-    const double least = beside_middle(&s.sample[i], s.reach, own);
-    for (size_t k = 0; k < s.candidate_count; k++) {
-      const double off = beside_middle(&s.candidate[k], s.reach, other);
-      if (memcmp(own, other, sizeof own) == 0) assert_true(off >= least);
-    }
-    for (size_t k = 0; k < i; k++) {
-      beside_middle(&s.sample[k], s.reach, other);
-      assert_int_not_equal(memcmp(own, other, sizeof own), 0);
-    }
-    cubes++;
-  }
-  assert_true(cubes > 285);
-  abbe_surface_samples_free(&s);
-  abbe_mesh_free(&ring);
-}
-
 /* Samples a square metre on a plane across (0, 0, 1) over those on one across a tilted normal, both
  * in one set, a metre apart. */
-static double density_ratio(abbe_sample_strategy strategy, const double n[3]) {
+static double density_ratio(const double n[3]) {
   const double x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, near[3] = {0.013, 0.007, 0.0031},
                far[3] = {3, 3, 3};
   double u[3], v[3], flat = 0, tilted = 0;
@@ -146,7 +95,7 @@ static double density_ratio(abbe_sample_strategy strategy, const double n[3]) {
   const abbe_mesh *both[2] = {&mesh[0], &mesh[1]};
   for (uint64_t seed = 0; seed < 4; seed++) {
     abbe_surface_samples s = {0};
-    const abbe_surface_sampling sampling = {.count = 400, .strategy = strategy, .seed = seed};
+    const abbe_surface_sampling sampling = {.count = 400, .seed = seed};
     OK(abbe_surface_samples_make(both, 2, &sampling, &s, &error));
     for (size_t i = 0; i < s.count; i++) *(s.sample[i].mesh == 0 ? &flat : &tilted) += 1;
     abbe_surface_samples_free(&s);
@@ -156,21 +105,12 @@ static double density_ratio(abbe_sample_strategy strategy, const double n[3]) {
   return tilted / flat;
 }
 
-/* A grid's cubes are crossed by a tilted plane more often, as |n|_1, less those of which so little
- * is crossed that no candidate fell there; neighbours see no direction. */
+/* Neighbours see no direction. */
 TEST(density_by_normal) {
-  const double edge[3] = {0, sqrt(0.5), sqrt(0.5)},
-               corner[3] = {sqrt(1 / 3.0), sqrt(1 / 3.0), sqrt(1 / 3.0)};
-  const double grid_edge = density_ratio(ABBE_SAMPLE_STRATEGY_GRID, edge);
-  const double grid_corner = density_ratio(ABBE_SAMPLE_STRATEGY_GRID, corner);
-  const double even = density_ratio(ABBE_SAMPLE_STRATEGY_NEIGHBOUR, corner);
-  const double random = density_ratio(ABBE_SAMPLE_STRATEGY_RANDOM, corner);
-  print_message("grid: %.3f of %.3f, %.3f of %.3f; neighbour %.3f, random %.3f\n", grid_edge,
-                sqrt(2), grid_corner, sqrt(3), even, random);
-  assert_near(grid_edge, sqrt(2), 0.07);
-  assert_near(grid_corner, sqrt(3), 0.09);
+  const double corner[3] = {sqrt(1 / 3.0), sqrt(1 / 3.0), sqrt(1 / 3.0)};
+  const double even = density_ratio(corner);
+  print_message("%.3f\n", even);
   assert_near(even, 1, 0.05);
-  assert_near(random, 1, 0.12);
 }
 
 /* Irradiance at `at`, facing `n`, by a mirror that shows radiance 1 everywhere: that of a lamp of
@@ -208,15 +148,15 @@ static double polygon(const double (*corner)[3], size_t count, const double at[3
 }
 
 /* Slope of the error's root mean square over many seeds, by the number of samples. */
-static double slope(const abbe_mesh *mesh, abbe_sample_strategy strategy, bool ours,
-                    const double at[3], const double n[3], double right, double *last) {
+static double slope(const abbe_mesh *mesh, bool ours, const double at[3], const double n[3],
+                    double right, double *last) {
   enum { SIZES = 3, SEEDS = SANITIZED ? 1 : 32 };
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (int k = 0; k < SIZES; k++) {
     double square = 0, count = 0;
     for (uint64_t seed = 0; seed < SEEDS; seed++) {
       abbe_surface_samples s = {0};
-      take(mesh, (size_t)16 << 2 * k, strategy, seed, ours, &s);
+      take(mesh, (size_t)16 << 2 * k, seed, ours, &s);
       square += pow(estimate(&s, at, n, ours) / right - 1, 2) / SEEDS;
       count += (double)s.count / SEEDS;
       abbe_surface_samples_free(&s);
@@ -241,22 +181,16 @@ TEST(convergence_to_a_polygon) {
   abbe_vector_cross(u, v, facing);
   assert_true(abbe_vector_dot(facing, middle) < 0);
   const double right = polygon((const double(*)[3])mirror.position, 4, at, n);
-  double by[2][STRATEGIES], last[2][STRATEGIES];
-  for (int k = 0; k < 2 * STRATEGIES; k++) {
-    const bool ours = k >= STRATEGIES;
-    const int i = k % STRATEGIES;
-    by[ours][i] = slope(&mirror, strategies[i], ours, at, n, right, &last[ours][i]);
-    print_message("%s%s: slope %.2f\n", abbe_sample_strategy_name(strategies[i]),
-                  ours ? " by share" : "", by[ours][i]);
+  double by[2], last[2];
+  for (int ours = 0; ours < 2; ours++) {
+    by[ours] = slope(&mirror, ours != 0, at, n, right, &last[ours]);
+    print_message("%sslope %.2f\n", ours ? "by share: " : "", by[ours]);
   }
   abbe_mesh_free(&mirror);
   if (SANITIZED) return; /* too few seeds tell no slope */
-  /* Alike for all, samples at random take the root; a grid and neighbours are better of few. */
-  assert_near(by[0][0], -0.5, 0.08);
-  assert_true(last[0][1] < 0.5 * last[0][0] && last[0][3] < 0.5 * last[0][0]);
   /* By what is nearest to each, evenly, they are far better: a rim has its share and no more. */
-  for (int i = 1; i < STRATEGIES; i++) assert_true(by[1][i] < -0.6);
-  assert_true(last[1][2] < 0.2 * last[0][0] && last[1][3] < 0.2 * last[0][0]);
+  assert_true(by[1] < -0.6);
+  assert_true(last[1] < 0.4 * last[0]);
 }
 
 /* A disk of radius R, h above: pi R^2 / (R^2 + h^2). */
@@ -274,47 +208,38 @@ TEST(a_coaxial_disk) {
     if (i < AROUND) memcpy(disk.face[i], face, sizeof face);
   }
   const double right = ABBE_PI * radius * radius / (radius * radius + h * h);
-  for (int k = 0; k < STRATEGIES; k++) {
-    double sum = 0;
-    for (uint64_t seed = 0; seed < 4; seed++) {
-      abbe_surface_samples s = {0};
-      take(&disk, 1024, strategies[k], seed, true, &s);
-      sum += estimate(&s, at, n, true) / 4;
-      abbe_surface_samples_free(&s);
-    }
-    print_message("%s: %.4f of %.4f\n", abbe_sample_strategy_name(strategies[k]), sum, right);
-    assert_near(sum, right, 0.01 * right);
+  double sum = 0;
+  for (uint64_t seed = 0; seed < 4; seed++) {
+    abbe_surface_samples s = {0};
+    take(&disk, 1024, seed, true, &s);
+    sum += estimate(&s, at, n, true) / 4;
+    abbe_surface_samples_free(&s);
   }
+  print_message("%.4f of %.4f\n", sum, right);
+  assert_near(sum, right, 0.01 * right);
   abbe_mesh_free(&disk);
 }
 
-/* What moves takes its samples along, so that light through them does not flicker; a grid's cubes
- * stay where they are. */
+/* What moves takes its samples along, so that light through them does not flicker. */
 TEST(samples_move_along) {
   static const double by[3] = {0.0078125, -0.03125, 0.00390625};
-  for (int k = 0; k < STRATEGIES; k++) {
-    abbe_mesh ring = {0};
-    abbe_surface_samples before = {0}, after = {0};
-    OK(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, &error));
-    take(&ring, 200, strategies[k], 5, true, &before);
-    for (size_t i = 0; i < ring.vertex_count; i++)
-      for (int c = 0; c < 3; c++) ring.position[i][c] += by[c];
-    take(&ring, 200, strategies[k], 5, true, &after);
-    size_t along = 0;
-    for (size_t i = 0; i < before.count && i < after.count; i++) {
-      double off[3];
-      abbe_vector_subtract(after.sample[i].position, before.sample[i].position, off);
-      abbe_vector_subtract(off, by, off);
-      along += abbe_vector_length(off) < 1e-12 ? 1 : 0;
-    }
-    const bool cubes = strategies[k] == ABBE_SAMPLE_STRATEGY_GRID ||
-                       strategies[k] == ABBE_SAMPLE_STRATEGY_QUANTIZED;
-    assert_true(cubes ? along < before.count / 2
-                      : along == before.count && after.count == before.count);
-    abbe_surface_samples_free(&before);
-    abbe_surface_samples_free(&after);
-    abbe_mesh_free(&ring);
+  abbe_mesh ring = {0};
+  abbe_surface_samples before = {0}, after = {0};
+  OK(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, &error));
+  take(&ring, 200, 5, true, &before);
+  for (size_t i = 0; i < ring.vertex_count; i++)
+    for (int c = 0; c < 3; c++) ring.position[i][c] += by[c];
+  take(&ring, 200, 5, true, &after);
+  assert_int_equal(after.count, before.count);
+  for (size_t i = 0; i < before.count; i++) {
+    double off[3];
+    abbe_vector_subtract(after.sample[i].position, before.sample[i].position, off);
+    abbe_vector_subtract(off, by, off);
+    assert_true(abbe_vector_length(off) < 1e-12);
   }
+  abbe_surface_samples_free(&before);
+  abbe_surface_samples_free(&after);
+  abbe_mesh_free(&ring);
 }
 
 TEST(wrong_requests) {
@@ -327,6 +252,5 @@ TEST(wrong_requests) {
   sampling.count = ABBE_SURFACE_MAX_SAMPLES + 1;
   REFUSED(ABBE_INVALID_ARGUMENT, "1 to 4096",
           abbe_surface_samples_make(&mesh, 1, &sampling, &s, &error));
-  assert_string_equal(abbe_sample_strategy_name((abbe_sample_strategy)99), "unknown");
   abbe_surface_samples_free(NULL);
 }

@@ -35,7 +35,6 @@ abbe_result abbe_pinhole_limits_find(abbe_pinhole_limits *known, abbe_context *c
                                      const abbe_image **out, abbe_error *error) {
   abbe_render_desc d = *desc;
   d.pinholes = known->samples > 0 ? known->samples : ABBE_SURFACE_MAX_SAMPLES;
-  d.strategy = ABBE_SAMPLE_STRATEGY_NEIGHBOUR;
   *out = NULL;
   for (size_t i = 0; i < known->count; i++)
     if (known->limit[i].profile == d.profile && known->limit[i].footprint == d.footprint)

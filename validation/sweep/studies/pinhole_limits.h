@@ -12,8 +12,8 @@
 
 /* A zeroed one knows nothing yet. */
 typedef struct abbe_pinhole_limits {
-  /* The limit is the mean of so many pictures of so many samples, spread by neighbour, other ones
-   * in each; 0: 4 of as many as there may be. */
+  /* The limit is the mean of so many pictures of so many samples, other ones in each; 0: 4 of as
+   * many as there may be. */
   size_t pictures, samples;
   size_t count;
   struct {

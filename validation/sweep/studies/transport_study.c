@@ -64,19 +64,17 @@ static size_t add_volumes(abbe_transport_contestant *out) {
   return n;
 }
 
-/* Each strategy with rising numbers of samples, as published and by tiles of receivers. */
+/* Rising numbers of samples, as published and by tiles of receivers. */
 static size_t add_pinholes(abbe_transport_contestant *out) {
   static const size_t samples[] = {64, 256, 1024};
   size_t n = 0;
   for (int published = 0; published < 2; published++)
-    for (int s = ABBE_SAMPLE_STRATEGY_AUTO + 1; s < ABBE_SAMPLE_STRATEGY_COUNT; s++)
-      for (size_t i = 0; i < 3; i++)
-        out[n++].render =
-            (abbe_render_desc){.profile = published ? ABBE_PROFILE_WAND2003 : ABBE_PROFILE_DEFAULT,
-                               .transport = ABBE_TRANSPORT_PINHOLE,
-                               .strategy = (abbe_sample_strategy)s,
-                               .footprint = published ? ABBE_FOOTPRINT_OFF : ABBE_FOOTPRINT_ON,
-                               .pinholes = samples[i]};
+    for (size_t i = 0; i < 3; i++)
+      out[n++].render =
+          (abbe_render_desc){.profile = published ? ABBE_PROFILE_WAND2003 : ABBE_PROFILE_DEFAULT,
+                             .transport = ABBE_TRANSPORT_PINHOLE,
+                             .footprint = published ? ABBE_FOOTPRINT_OFF : ABBE_FOOTPRINT_ON,
+                             .pinholes = samples[i]};
   return n;
 }
 
@@ -400,8 +398,7 @@ void abbe_transport_study_judge(abbe_transport_study *s) {
 }
 
 bool abbe_transport_same_but_samples(const abbe_render_desc *a, const abbe_render_desc *b) {
-  return a->profile == b->profile && a->transport == b->transport && a->strategy == b->strategy &&
-         a->footprint == b->footprint;
+  return a->profile == b->profile && a->transport == b->transport && a->footprint == b->footprint;
 }
 
 double abbe_transport_study_slope(const abbe_transport_study *s, size_t row) {

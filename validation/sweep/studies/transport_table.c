@@ -52,7 +52,7 @@ abbe_result abbe_transport_table_save(const abbe_transport_study *s, const char 
   abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;
   FILE *to = writer.stream;
-  fprintf(to, "# scene: %s\ntransport,strategy,footprint,region,lookup", s->scene);
+  fprintf(to, "# scene: %s\ntransport,footprint,region,lookup", s->scene);
   for (int k = 0; k < ABBE_TRANSPORT_NUMBER_COUNT; k++) fprintf(to, ",%s", columns[k]);
   fprintf(to, ",front_time,front_bytes\n");
   for (size_t i = 0; i < s->count; i++) {
@@ -60,10 +60,8 @@ abbe_result abbe_transport_table_save(const abbe_transport_study *s, const char 
     const abbe_render_desc *d = &row->contestant.render;
     char text[ABBE_NUMBER_TEXT_SIZE], region[64];
     region_of(&row->contestant, region, sizeof region);
-    fprintf(to, "%s,%s,%s,%s,%s", transport_of(d),
-            d->pinholes > 0 ? abbe_sample_strategy_name(d->strategy) : "",
-            d->pinholes > 0 ? footprints[d->footprint] : "", region,
-            abbe_transport_looks_up(&row->contestant) ? lookups[d->lookup] : "");
+    fprintf(to, "%s,%s,%s,%s", transport_of(d), d->pinholes > 0 ? footprints[d->footprint] : "",
+            region, abbe_transport_looks_up(&row->contestant) ? lookups[d->lookup] : "");
     for (int k = 0; k < ABBE_TRANSPORT_NUMBER_COUNT; k++)
       fprintf(to, ",%s", isfinite(row->number[k]) ? abbe_number_text(row->number[k], text) : "");
     fprintf(to, ",%s,%s\n", row->on_time ? "yes" : "", row->on_bytes ? "yes" : "");
@@ -77,8 +75,7 @@ static void print_name(const abbe_transport_row *row, FILE *out) {
   region_of(c, region, sizeof region);
   fprintf(out, "| %s", transport_of(&c->render));
   if (c->render.pinholes > 0)
-    fprintf(out, " %zu %s, footprint %s", c->render.pinholes,
-            abbe_sample_strategy_name(c->render.strategy), footprints[c->render.footprint]);
+    fprintf(out, " %zu, footprint %s", c->render.pinholes, footprints[c->render.footprint]);
   if (!abbe_transport_looks_up(c)) return;
   abbe_number_write(out, ", %g nodes, %s", row->number[ABBE_TRANSPORT_NODES_NUMBER], region);
   if (c->render.lookup != ABBE_VOLUME_LOOKUP_AUTO) fprintf(out, ", %s", lookups[c->render.lookup]);
@@ -172,8 +169,8 @@ static void print_slopes(const abbe_transport_study *s, FILE *out) {
     const bool first =
         i == 0 || !abbe_transport_same_but_samples(d, &s->row[i - 1].contestant.render);
     if (first && isfinite(slope))
-      abbe_number_write(out, "%s, %s, footprint %s: slope %.2f\n", transport_of(d),
-                        abbe_sample_strategy_name(d->strategy), footprints[d->footprint], slope);
+      abbe_number_write(out, "%s, footprint %s: slope %.2f\n", transport_of(d),
+                        footprints[d->footprint], slope);
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-/* CSV: transport, strategy, footprint, region, lookup, the numbers, front_time, front_bytes.
+/* CSV: transport, footprint, region, lookup, the numbers, front_time, front_bytes.
  * ABBE_IO. */
 abbe_result abbe_transport_table_save(const abbe_transport_study *study, const char *path,
                                       abbe_error *error);

@@ -53,14 +53,13 @@ TEST(one_pinhole) {
   abbe_scene scene;
   abbe_image picture, base;
   abbe_render_desc desc = request(1);
-  desc.strategy = ABBE_SAMPLE_STRATEGY_RANDOM;
   load_text(text, &scene);
   draw_text(text, &desc, &picture);
   draw_text(DOWN SOFT WHITE_FLOOR WALL("0"), &desc, &base);
   assert_near(at(&base, 3, 3), 0.5 * ABBE_PI, 1e-3);
   const abbe_mesh *mesh = &scene.object[1].mesh;
   abbe_surface_samples s;
-  const abbe_surface_sampling sampling = {.count = 1, .strategy = ABBE_SAMPLE_STRATEGY_RANDOM};
+  const abbe_surface_sampling sampling = {.count = 1};
   OK(abbe_surface_samples_make(&mesh, 1, &sampling, &s, &error));
   const double eps = 4 * s.area / ABBE_PI;
   double most = 0;

@@ -35,7 +35,7 @@ TEST(what_is_left_open_gets_its_default) {
   d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_WAND2003});
   assert_true(d.transport == ABBE_TRANSPORT_PINHOLE && d.pinholes == 256 && d.supersample == 1);
   assert_int_equal(d.clusters, 0);
-  assert_true(d.strategy == ABBE_SAMPLE_STRATEGY_NEIGHBOUR && d.footprint == ABBE_FOOTPRINT_ON);
+  assert_true(d.footprint == ABBE_FOOTPRINT_ON);
   d = resolve(&(abbe_render_desc){0});
   assert_true(d.transport == ABBE_TRANSPORT_PHOTONS && d.pinholes == 0 && d.clusters == 0);
   d = resolve(&(abbe_render_desc){.transport = ABBE_TRANSPORT_PINHOLE});
@@ -100,10 +100,9 @@ TEST(limits_are_kept) {
       {{.clusters = 100}, "and clusters go with"},
       {{.profile = ABBE_PROFILE_WAND2003, .clusters = 100}, "clusters of pinholes"},
       {{.transport = ABBE_TRANSPORT_PINHOLE, .clusters = 1000001}, "clusters is 1000001"},
-      {{.strategy = ABBE_SAMPLE_STRATEGY_GRID}, "a strategy for them"},
       {{.transport = ABBE_TRANSPORT_PINHOLE, .pinholes = 4097}, "pinholes is 4097"},
       {{.transport = ABBE_TRANSPORT_COUNT}, "'unknown'"},
-      {{.transport = ABBE_TRANSPORT_PINHOLE, .strategy = ABBE_SAMPLE_STRATEGY_COUNT}, "strategy"},
+      {{.transport = ABBE_TRANSPORT_PINHOLE, .footprint = ABBE_FOOTPRINT_COUNT}, "footprints"},
       {{.profile = ABBE_PROFILE_THESIS, .transport = ABBE_TRANSPORT_PINHOLE}, "with the profile"},
       {{.profile = ABBE_PROFILE_WAND2003, .transport = ABBE_TRANSPORT_PHOTONS}, "'wand2003'"},
       {{.profile = ABBE_PROFILE_THESIS, .interfaces = 1}, "not with 'thesis'"},

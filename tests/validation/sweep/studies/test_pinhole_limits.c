@@ -28,10 +28,7 @@ TEST(more_samples_are_nearer) {
       "[{rotate: {axis: [0, 1, 0], angle: -90}}, {translate: [0.3, 0, 0.15]}]}\n",
       &scene);
   double rmse[3];
-  abbe_render_desc desc = {.profile = ABBE_PROFILE_WAND2003,
-                           .width = 16,
-                           .height = 16,
-                           .strategy = ABBE_SAMPLE_STRATEGY_RANDOM};
+  abbe_render_desc desc = {.profile = ABBE_PROFILE_WAND2003, .width = 16, .height = 16};
   for (int k = 0; k < 3; k++) {
     desc.pinholes = (size_t)4 << 3 * k;
     OK(abbe_pinhole_limits_measure(&known, context, &scene, &desc, &rmse[k], &error));

@@ -46,7 +46,7 @@ TEST(slopes) {
     s.row[i].number[ABBE_TRANSPORT_SAMPLES_NUMBER] = samples;
     s.row[i].number[ABBE_TRANSPORT_LIMIT_RMSE_NUMBER] = 3 / sqrt(samples);
   }
-  s.row[3].contestant.render.strategy = ABBE_SAMPLE_STRATEGY_GRID;
+  s.row[3].contestant.render.footprint = ABBE_FOOTPRINT_OFF;
   assert_near(abbe_transport_study_slope(&s, 0), -0.5, 1e-12);
   assert_near(abbe_transport_study_slope(&s, 2), -0.5, 1e-12);
   assert_true(isnan(abbe_transport_study_slope(&s, 3)));
@@ -61,7 +61,7 @@ TEST(named_contestants) {
   assert_false(abbe_transport_looks_up(&list[0]));
   for (size_t i = 1; i < volumes; i++) assert_true(abbe_transport_looks_up(&list[i]));
   const size_t pinholes = abbe_transport_study_contestants("pinhole", list);
-  assert_int_equal(pinholes, 1 + 2 * 3 * (ABBE_SAMPLE_STRATEGY_COUNT - 1));
+  assert_int_equal(pinholes, 1 + 2 * 3);
 }
 
 static bool never(void *user, double done) {

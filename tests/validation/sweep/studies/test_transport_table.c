@@ -40,7 +40,6 @@ static void make_study(void) {
   for (int i = 0; i < 2; i++) {
     abbe_transport_contestant *pinholes = add(NAN, 1);
     *pinholes = (abbe_transport_contestant){.render = {.transport = ABBE_TRANSPORT_PINHOLE,
-                                                       .strategy = ABBE_SAMPLE_STRATEGY_GRID,
                                                        .footprint = ABBE_FOOTPRINT_ON,
                                                        .pinholes = i == 0 ? 100 : 400}};
     s.row[s.count - 1].number[ABBE_TRANSPORT_SAMPLES_NUMBER] = i == 0 ? 100 : 400;
@@ -67,7 +66,7 @@ TEST(for_people) {
       "|\n"
       "| volume, 42 nodes, rays 100 | 10 | 4 | - | - | - |\n"
       "| wyman2003, 42 nodes, grid 27 | 1000 | 9 | - | - | - |\n"
-      "pinhole, grid, footprint on: slope -1.00\n";
+      "pinhole, footprint on: slope -1.00\n";
   assert_string_equal(rest, rows);
   free(text);
 }
@@ -85,13 +84,13 @@ TEST(for_programs) {
   OK(abbe_transport_table_save(&s, path, &error));
   OK(abbe_file_read(path, 1 << 16, &text, &size, &error));
   assert_contains(text, "# scene: prism.yaml\n"
-                        "transport,strategy,footprint,region,lookup,samples,nodes,cells,"
+                        "transport,footprint,region,lookup,samples,nodes,cells,"
                         "photons_node,precompute_s,bytes_memory,bytes_disk,bytes_gpu,frame_ms,"
                         "lookup_ms,none_ms,over_none,moved_ms,caustic_de,caustic_de_noise,"
                         "caustic_rmse,caustic_rmse_noise,node_error,mid_error,limit_rmse,pop,"
                         "flux_drift,pays_after,front_time,front_bytes\n");
-  assert_contains(text, "\nvolume,,,grid 27,auto,,42,,,,900,,,,,,,,7,,,,0.5,0.75,,,,,,yes\n");
-  assert_contains(text, "\npinhole,grid,on,,,100,");
+  assert_contains(text, "\nvolume,,grid 27,auto,,42,,,,900,,,,,,,,7,,,,0.5,0.75,,,,,,yes\n");
+  assert_contains(text, "\npinhole,on,,,100,");
   free(text);
   unlink(path);
 }
