@@ -190,7 +190,8 @@ static abbe_result draw(abbe_renderer *r, abbe_render_progress progress, void *u
   r->gpu.gl->Finish();
   result = abbe_renderer_end_watch(r, result, error);
   r->seen = result == ABBE_OK;
-  if (result != ABBE_OK && result != ABBE_CANCELLED) { /* lists without room, say */
+  if (result != ABBE_OK &&
+      result != ABBE_CANCELLED) { /* for instance lists beyond their capacity */
     r->lacking = (1u << ABBE_PART_COUNT) - 1;
     r->lit = false;
   }

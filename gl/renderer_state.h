@@ -36,7 +36,7 @@ struct abbe_renderer {
   abbe_spectral_map map;
   abbe_caustics caustics;
   abbe_transports transports;
-  bool pages_stay;     /* of pinholes, when light's passes are freed */
+  bool pages_stay;     /* tiles of pinholes stay when light's passes are freed */
   abbe_method *method; /* in place of these and those below, or NULL */
   bool lit;            /* all of that is drawn: the maps hold the light as it is now */
 
@@ -67,7 +67,7 @@ typedef struct abbe_renderer_watched {
   abbe_context *context;
   abbe_render_progress progress;
   void *user;
-  abbe_result result; /* of making the context current again, with its error */
+  abbe_result result; /* result of making the context current again, with its error */
   abbe_error *error;
   void (*compiling)(void *user);
 } abbe_renderer_watched;

@@ -34,7 +34,7 @@ static void apply(const abbe_biaxial *m, int power, const double v[3], double ou
 
 /* ---- one wave ---- */
 
-/* Of the tensor's section across v: the larger value and the unit direction that has it. */
+/* The larger value of the tensor's section across v and the unit direction that has it. */
 static double section(const abbe_biaxial *m, int power, const double v[3], double high[3]) {
   double a[3] = {0}, b[3], ta[3], tb[3];
   a[fabs(v[0]) < 0.6 ? 0 : 1] = 1;
@@ -270,7 +270,7 @@ static void crystal_roots(const side_medium *f, root all[4]) {
 static void crystal_wave(const side_medium *f, const root *r, wave *w) {
   const sheet s = look_at(f, r->z, r->fast);
   const double sign = r->fast ? 1 : -1;
-  /* of two forms of the same vector the one without a difference */
+  /* from two forms of the same vector, the one without a difference */
   const number sum = sign * s.root + s.difference, rest = sign * s.root - s.difference;
   const bool first = cabs(sum) >= cabs(rest);
   number a = first ? s.square * s.off : rest, b = first ? sum : s.off;
@@ -348,7 +348,7 @@ static void to_world(double frame[3][3], const number v[3], double out[3]) {
   }
 }
 
-/* Of the two rays of that direction which one it is. */
+/* Which of the two rays of that direction it is. */
 static abbe_biaxial_mode mode_of(const abbe_biaxial *m, const abbe_biaxial_state *s) {
   double d[3], r[3], trace = 0;
   apply(m, 2, s->field, d);

@@ -22,15 +22,15 @@ typedef struct abbe_biaxial {
   double axis[3][3]; /* unit, at right angles */
 } abbe_biaxial;
 
-/* Of two waves. Where all indices are alike the first is polarised across the plane of incidence
- * (s), the second in it (p). */
+/* One of two waves. Where all indices are alike the first is polarised across the plane of
+ * incidence (s), the second in it (p). */
 typedef enum abbe_biaxial_mode { ABBE_BIAXIAL_FAST, ABBE_BIAXIAL_SLOW } abbe_biaxial_mode;
 
 /* A wave by itself. */
 typedef struct abbe_biaxial_state {
   double index;     /* along its normal */
-  double normal[3]; /* of the wave */
-  double ray[3];    /* of its energy */
+  double normal[3]; /* the wave's normal */
+  double ray[3];    /* the direction of its energy */
   double field[3];  /* the unit direction of its electric field, across the ray */
 } abbe_biaxial_state;
 
@@ -54,10 +54,10 @@ double abbe_biaxial_attenuation(const abbe_biaxial *medium, const double a[3],
 
 /* A wave that leaves a face. */
 typedef struct abbe_biaxial_wave {
-  double share;             /* of the power that came to the face */
+  double share;             /* its share of the power that came to the face */
   abbe_biaxial_state state; /* holds where it travels */
   double amplitude[2];      /* real and imaginary part along the field, for an incident one of 1 */
-  abbe_biaxial_mode mode;   /* of its ray, for abbe_biaxial_of_ray */
+  abbe_biaxial_mode mode;   /* which of its rays it is, for abbe_biaxial_of_ray */
   bool travels;             /* false: evanescent */
 } abbe_biaxial_wave;
 

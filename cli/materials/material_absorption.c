@@ -32,7 +32,7 @@ static void chroma_of(const double lab[3], double out[3]) {
   out[2] = hue < 0 ? hue + 360 : hue;
 }
 
-/* Of a face that is cut across each direction; one that holds the axis shows both waves. */
+/* Shows a face that is cut across each direction; one that holds the axis shows both waves. */
 static void show_faces(const abbe_material *m) {
   static const struct {
     const char *name;

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Of the index that is shown: where it was measured, or what was asked for. */
+/* The conditions of the index that is shown: where it was measured, or what was requested. */
 static abbe_conditions conditions_of(const abbe_material *m) {
   const abbe_index_shift *s = &m->dispersion.shift;
   return s->on ? (abbe_conditions){s->to_c, s->pressure_atm}

@@ -144,7 +144,7 @@ static void show_numbers(const abbe_material *m) {
   abbe_material_published p;
   abbe_material_numbers_make(m, &n);
   abbe_material_published_make(m, &p);
-  if (m->dispersion.shift.on) p = (abbe_material_published){0}; /* of other conditions */
+  if (m->dispersion.shift.on) p = (abbe_material_published){0}; /* not of other conditions */
   printf("  n_d %s   V_d %s   B-G %s   n_F - n_C %s\n",
          abbe_materials_number(text[0], sizeof text[0], "%.6f", n.n_d),
          abbe_materials_number(text[1], sizeof text[1], "%.3f", n.v_d),

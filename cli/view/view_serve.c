@@ -36,7 +36,7 @@ typedef struct server {
   char token[2 * TOKEN_BYTES + 1];
   abbe_view_guard guard;
   struct MHD_Daemon *daemon;
-  pthread_mutex_t lock; /* of what follows: */
+  pthread_mutex_t lock; /* guards what follows: */
   pthread_cond_t called, drawn;
   bool woken, ended;
   abbe_view_events events;

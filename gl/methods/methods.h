@@ -1,4 +1,4 @@
-/* methods.h: the published methods as the renderer knows them: one that the plan asks for is made,
+/* methods.h: the published methods as the renderer knows them: one that the plan chooses is made,
  * run and read, whichever it is. Internal to gl/.
  */
 #ifndef ABBE_GL_METHODS_METHODS_H
@@ -30,7 +30,7 @@ void abbe_method_follow(abbe_method *method, abbe_method_history *frames);
 abbe_result abbe_method_read(const abbe_method *method, abbe_image *out, abbe_error *error);
 abbe_result abbe_method_read_map(abbe_method *method, bool filled, abbe_image *out,
                                  abbe_error *error);
-/* Of the last frame with statistics: photons, their cells, polygons over a pixel. */
+/* Counts for the last frame with statistics: photons, their cells, polygons over a pixel. */
 void abbe_method_count(const abbe_method *method, abbe_statistics *statistics);
 
 #endif

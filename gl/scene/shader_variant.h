@@ -49,14 +49,14 @@ typedef struct abbe_shader_variant {
   size_t exits, slots, tints;
   size_t bvh_stack, receiver_root, shadow_planes;
   bool one_shadow, receiver_colours;
-  abbe_volume_kind volume_kind; /* of a volume */
+  abbe_volume_kind volume_kind; /* kind of a volume */
   abbe_region_kind volume_region;
-  size_t volume_pages; /* of a light, in place of cells */
+  size_t volume_pages; /* tiles of a light, in place of cells */
   size_t shafts;       /* media with light for these, */
   size_t shaft_steps;  /* and steps of a way through it */
   bool copies;         /* a software rasteriser: tables are copied first (copies.glsl) */
   /* the picture */
-  size_t eye_bands;     /* of a pixel at the most, where they are not refined */
+  size_t eye_bands;     /* bands of a pixel at the most, where they are not refined */
   size_t pixel_threads; /* threads of a pixel (refraction_threads.glsl) */
   /* the map */
   size_t map_levels;

@@ -75,13 +75,13 @@ typedef struct abbe_picture_choice {
   bool traced_instead; /* the rendered picture did not keep max_error, and the passes do */
 } abbe_picture_choice;
 
-/* Of the tools that may be taken. The yardstick is traced first, unless the renderer alone may be
- * taken and no time is requested; three times for a budget of which all that takes a tenth at the
- * most. Then every point has a promised error and time for this scene: for max_error the fastest
- * that keeps it is taken, for budget_ms the most accurate, by name one of the Pareto front that is
- * left: the cheapest for draft, the cheapest whose error is at most 2 % above the least for
- * accurate, for balanced where the front between them bends most. Where no point keeps the bound,
- * the nearest is taken. The request's texts and `out` outlive the choice's point.
+/* Chooses among the tools that may be taken. The yardstick is traced first, unless the renderer
+ * alone may be taken and no time is requested; three times for a budget of which all that takes a
+ * tenth at the most. Then every point has a promised error and time for this scene: for max_error
+ * the fastest that keeps it is taken, for budget_ms the most accurate, by name one of the Pareto
+ * front that is left: the cheapest for draft, the cheapest whose error is at most 2 % above the
+ * least for accurate, for balanced where the front between them bends most. Where no point keeps
+ * the bound, the nearest is taken. The request's texts and `out` outlive the choice's point.
  * ABBE_INVALID_ARGUMENT where nothing is requested, ABBE_NOT_FOUND where no point is left; errors
  * of abbe_picture_front_load and abbe_sweep_trace_measure. */
 abbe_result abbe_picture_choose(const abbe_picture_request *request, const abbe_scene *scene,

@@ -111,7 +111,7 @@ static abbe_result copy_image(const abbe_image *in, abbe_image *out) {
 }
 
 /* The mean of all passes less that of half of them varies as the mean of all does, colours and
- * neighbours together, which standard errors of channels do not tell. */
+ * neighbours together, which standard errors of channels do not contain. */
 static double sweep_trace_own_error(const abbe_image *half, const abbe_image *picture) {
   static const char name[] = "the picture";
   abbe_field a = {0}, b = {0}, smooth = {0};

@@ -51,7 +51,7 @@ typedef struct abbe_object_reading {
 abbe_result abbe_object_read_surface(abbe_object_reading *reading, abbe_object *object,
                                      abbe_error *error);
 
-#define ABBE_SETTINGS_MOST 4 /* of one stone */
+#define ABBE_SETTINGS_MOST 4 /* settings of one stone */
 
 /* The metal around the stone, whose mesh is in its own coordinates still: *count objects in the
  * same coordinates, for which a scene has room. Errors with file, line and key. */

@@ -14,7 +14,7 @@ enum {
   ROLL = 16,    /* steps of a prong over the girdle and the crown */
   TIP = 6
 };
-#define REACH 0.6 /* of its thickness, by which metal reaches over the crown */
+#define REACH 0.6 /* share of its thickness by which metal reaches over the crown */
 #define LEAN 0.5  /* by which the foot is drawn in at the most */
 
 /* The outline's outermost place in a direction, about the middle, and the heights of the girdle. */
@@ -24,9 +24,9 @@ typedef struct support {
 
 typedef struct making {
   const abbe_object *stone;
-  double middle[2], half[2], bottom, top; /* of the stone */
+  double middle[2], half[2], bottom, top; /* the stone's middle, half sizes and heights */
   double width, gap, thick;
-  size_t rim_count; /* of its corners each from the first direction to the last */
+  size_t rim_count; /* number of its corners, each from the first direction to the last */
   support *rim;     /* [AROUND] */
   double (*row)[3]; /* [AROUND * ROD] */
   abbe_mesh *out;

@@ -26,8 +26,8 @@ typedef enum abbe_setting_kind {
       ABBE_SETTING_COUNT
 } abbe_setting_kind;
 
-#define ABBE_SETTING_GAP 1e-3      /* of the stone's width, the smaller extent along x and y */
-#define ABBE_SETTING_THICK 0.13    /* the same, where no thickness is given */
+#define ABBE_SETTING_GAP 1e-3   /* share of the stone's width, the smaller extent along x and y */
+#define ABBE_SETTING_THICK 0.13 /* the same, where no thickness is given */
 #define ABBE_SETTING_FINGER 0.0085 /* m, the inner radius of a band */
 #define ABBE_SETTING_LEAST 2       /* prongs or beads */
 #define ABBE_SETTING_MOST 24
@@ -36,8 +36,8 @@ typedef enum abbe_setting_kind {
 typedef struct abbe_setting {
   abbe_setting_kind kind;
   size_t count;  /* prongs, or beads of a plate; 0: 4 */
-  double thick;  /* of prongs, walls, a band, in the stone's unit; 0: by the width */
-  double radius; /* of a band, inside, in the stone's unit; 0: ABBE_SETTING_FINGER */
+  double thick;  /* thickness of prongs, walls, a band, in the stone's unit; 0: by the width */
+  double radius; /* inner radius of a band, in the stone's unit; 0: ABBE_SETTING_FINGER */
 } abbe_setting;
 
 /* Around the stone's mesh. ABBE_GEOMETRY for a stone that is flat, ABBE_INVALID_ARGUMENT for values

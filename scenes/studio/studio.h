@@ -41,11 +41,11 @@ enum { ABBE_STUDIO_MOST_STONES = 64 };
 typedef struct abbe_studio {
   abbe_studio_look look;
   abbe_studio_with with;
-  const char *metal; /* of a ring or a setting, a conductor of the table; NULL: gold */
-  int setting;       /* 1 + an abbe_setting_kind, around each stone; 0: none */
-  double width_m;    /* the smaller extent of each stone's outline; 0: as its file has it */
-  const char
-      *material;      /* of all stones; NULL: what the file says, or what its index is nearest to */
+  const char *metal;    /* metal of a ring or a setting, a conductor of the table; NULL: gold */
+  int setting;          /* 1 + an abbe_setting_kind, around each stone; 0: none */
+  double width_m;       /* the smaller extent of each stone's outline; 0: as its file has it */
+  const char *material; /* material of all stones; NULL: the file's, or the one that its index is
+                           nearest to */
   const char *folder; /* where the scene is to stand, with its slash; NULL: where it is read from */
   const char *table;  /* table of materials: a path, "default", "thesis"; NULL: default */
   const char *const *more; /* [more_count], further stones' files */

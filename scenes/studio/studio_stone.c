@@ -19,14 +19,14 @@
 static const struct kind {
   const char *ending;
   bool design, gltf;
-  double unit_m; /* of meshes */
+  double unit_m; /* unit of meshes */
 } kinds[] = {{".asc", true, false, 0},     {".gem", true, false, 0},
              {".gcs", true, false, 0},     {".stl", false, false, 1e-3},
              {".obj", false, false, 1e-3}, {".ply", false, false, 1e-3},
              {".gltf", false, true, 1},    {".glb", false, true, 1}};
 
 #define UNKNOWN "diamond" /* where a file says nothing of its stone */
-#define NEAR 0.015        /* of an index */
+#define NEAR 0.015        /* difference of an index */
 /* Beyond these a mesh is in another unit. */
 #define LEAST_M 0.0005
 #define MOST_M 0.5
@@ -48,7 +48,7 @@ static const char *const clear[] = {"quartz", "topaz",          "spinel",  "sapp
 static const char *const tinted[] = {"emerald",   "tourmaline-green", "peridot",   "tanzanite",
                                      "tsavorite", "spessartine",      "demantoid", NULL};
 
-/* Of those names in the table; *off: how far its index is. */
+/* The nearest of those names in the table; *off: how far its index is. */
 static const abbe_material *nearest_of(const abbe_material_table *table, const char *const *names,
                                        double n, double *off) {
   const abbe_material *best = NULL, *m;

@@ -17,7 +17,7 @@
 /* What surrounds a material, and is as warm as it is. */
 typedef struct abbe_conditions {
   double temperature_c; /* Celsius; NaN: that of each material's measurement */
-  double pressure_atm;  /* of the air, 0: there is none; NaN: 1 */
+  double pressure_atm;  /* pressure of the air, 0: there is none; NaN: 1 */
 } abbe_conditions;
 
 /* Whether they are others than catalogues'. */

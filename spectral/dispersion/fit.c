@@ -13,7 +13,7 @@
 enum { MAX_TERMS = ABBE_FIT_MAX_CAUCHY_TERMS };
 
 typedef struct basis {
-  double middle, half; /* of x's range, um^-2 */
+  double middle, half; /* the range of x, um^-2 */
   size_t terms;
   double power[MAX_TERMS][MAX_TERMS]; /* T_k = sum_j power[k][j] x^j */
 } basis;

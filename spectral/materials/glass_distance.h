@@ -17,7 +17,7 @@ typedef struct abbe_glass_distance {
   size_t index;       /* the material's index in its table */
   double rms;         /* root mean square difference of n over the range: the distance */
   double max, max_nm; /* largest difference and where; NaN by numbers */
-  double n_d, v_d;    /* of the material, NaN where its record does not cover the lines */
+  double n_d, v_d;    /* the material's, NaN where its record does not cover the lines */
 } abbe_glass_distance;
 
 typedef struct abbe_glass_distances {

@@ -60,7 +60,7 @@ typedef struct abbe_material {
   bool extrapolate;              /* the record allows use outside that range; reported when used */
   abbe_spectrum *attenuation;    /* natural attenuation coefficient, 1/m, at nm; NULL: clear; of a
                                     pleochroic crystal for a field along x */
-  abbe_spectrum *attenuation_yz[2]; /* of a pleochroic crystal, along y (NULL: as along x) and along
+  abbe_spectrum *attenuation_yz[2]; /* a pleochroic crystal's, along y (NULL: as along x) and along
                                        z, a uniaxial one's optic axis; else both NULL */
   double
       temperature_c; /* temperature of the measurement, Celsius; NaN where the source is silent */

@@ -13,10 +13,10 @@
 typedef struct abbe_glass_partner {
   const abbe_material *material;
   abbe_material_numbers numbers;
-  double power[3];  /* of the glass, of the partner, of the third or 0; their sum is 1 */
-  double power_sum; /* of their sizes */
+  double power[3];  /* powers of the glass, of the partner, of the third or 0; their sum is 1 */
+  double power_sum; /* sum of their sizes */
   double secondary; /* what is left, in units of f: of two f_g - f_F, of three f_d - f_F */
-  size_t doubles;   /* of the same index under other names, which are left out */
+  size_t doubles; /* number of materials of the same index under other names, which are left out */
 } abbe_glass_partner;
 
 typedef struct abbe_glass_partners {

@@ -1,4 +1,4 @@
-/* How SQLite's failures are told. */
+/* How SQLite's failures are reported. */
 #include "spectral/store/material_store_columns.h"
 
 #include <stddef.h>

@@ -80,7 +80,8 @@ static inline float abbe_media_attenuation(const abbe_media *m, int i, uint32_t 
   return a[0] + f * (a[1] - a[0]);
 }
 
-/* Of one wave of crystal i along the unit ray d, where some crystal is pleochroic. */
+/* The attenuation of one wave of crystal i along the unit ray d, where some crystal is
+ * pleochroic. */
 float abbe_media_attenuation_along(const abbe_media *media, int i, uint32_t k, float f,
                                    const float d[3], uint8_t wave);
 

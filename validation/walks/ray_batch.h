@@ -82,7 +82,7 @@ void abbe_ray_record_free(abbe_ray_record *record);
 bool abbe_ray_record_replay(abbe_ray_record *record, RTCScene scene, double *seconds,
                             uint64_t *rays);
 
-/* Keeps one packet more, of so many rays, while there is room. */
+/* Keeps one packet more, of so many rays, while there is capacity. */
 void abbe_ray_record_keep(abbe_ray_record *record, const struct RTCRayHit16 *packet, size_t lanes,
                           bool coherent);
 

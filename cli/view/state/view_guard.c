@@ -158,7 +158,7 @@ static void admit_all(abbe_view_guard *g, double now_s) {
     if (socket >= 0)
       admit(g, socket, now_s);
     else if (errno == EMFILE || errno == ENFILE)
-      end(g, g->next++ % ABBE_VIEW_GUARD_WAITING); /* the oldest makes room */
+      end(g, g->next++ % ABBE_VIEW_GUARD_WAITING); /* the oldest gives way */
     else if (errno != EINTR && errno != ECONNABORTED)
       return;
   }

@@ -19,7 +19,7 @@ enum {
 
 typedef struct abbe_view_guard {
   int listening, epoll;
-  unsigned port; /* of 127.0.0.1 */
+  unsigned port; /* port of 127.0.0.1 */
   const char *token;
   /* Takes a connection whose request has the token, and closes its socket. */
   void (*enter)(void *user, int socket);
@@ -30,7 +30,7 @@ typedef struct abbe_view_guard {
     double since_s;
   } waiting[ABBE_VIEW_GUARD_WAITING]; /* by their order */
   size_t next;
-  pthread_mutex_t lock; /* of what is done with connections, and of this: */
+  pthread_mutex_t lock; /* guards what is done with connections, and this: */
   bool closed;
 } abbe_view_guard;
 
@@ -45,7 +45,7 @@ void abbe_view_guard_close(abbe_view_guard *guard);
 /* After the last look. A guard that did not begin may be ended. */
 void abbe_view_guard_end(abbe_view_guard *guard);
 
-/* Whether they are equal, in a time that does not tell how much of it is right. */
+/* Whether they are equal, in a time that does not depend on how much of it is right. */
 bool abbe_view_guard_is_token(const char *token, const char *given, size_t length);
 /* Whether a request's Host, which may be NULL, is this machine by a name that no name server has:
  * localhost, 127.0.0.1 or [::1], with or without a port. */

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* of the thesis's search for the camera's rays, along the view's axis */
+/* as in the thesis's search for the camera's rays, along the view's axis */
 enum { ITERATIONS = 10 };
 static const double bias_share = 0.005; /* share of the light's range */
 

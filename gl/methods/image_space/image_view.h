@@ -82,7 +82,7 @@ typedef struct abbe_image_program {
   GLuint *program;                          /* NULL: it is not wanted */
   const char *vertex, *geometry, *fragment; /* geometry: may be NULL */
   const char *more;                         /* definitions; may be NULL */
-  bool plain;                               /* it asks for none of the variant's */
+  bool plain;                               /* it needs none of the variant's */
 } abbe_image_program;
 abbe_result abbe_image_programs_make(const abbe_shader_variant *variant, abbe_gpu *gpu,
                                      const abbe_image_program *all, size_t count,

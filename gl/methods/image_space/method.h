@@ -14,15 +14,16 @@
 /* Photons of the frames before. */
 typedef struct abbe_method_history {
   GLuint sums[ABBE_METHOD_KEPT];
-  size_t size[2], count; /* of them, those that are drawn */
-  size_t frame;          /* of the sequence, the one to come */
+  size_t size[2], count; /* size; number of those that are drawn */
+  size_t frame;          /* number of the next frame in the sequence */
   bool printed;          /* in 16 bits */
 } abbe_method_history;
 
 typedef struct abbe_method abbe_method;
 
 typedef struct abbe_method_kind {
-  size_t size; /* of a struct that begins with an abbe_method, whose kind and scene alone are set */
+  size_t size; /* size of a struct that begins with an abbe_method, whose kind and scene alone are
+                  set */
   abbe_result (*make)(abbe_method *method, const abbe_shader_variant *variant, abbe_error *error);
   /* What it has beside abbe_method's. */
   void (*free)(abbe_method *method);
@@ -37,14 +38,14 @@ typedef struct abbe_method_kind {
 struct abbe_method {
   const abbe_method_kind *kind;
   const abbe_gpu_scene *scene;
-  abbe_map_layout layout;  /* of the light's one frustum; of a cube, its first face's */
+  abbe_map_layout layout;  /* layout of the light's one frustum; of a cube, its first face's */
   abbe_image_places light; /* what the light sees, and the camera's passes: of those that sum a */
   abbe_image_eye eye;      /* caustic map; else zero */
   float (*colour)[3];      /* and [wavelengths] of unit light: XYZ, or RGB as printed; malloc'd */
   GLuint picture;          /* its own to free, unless it is the eye's */
-  size_t photon_count;     /* of the last frame with statistics: pixels that show objects */
+  size_t photon_count;     /* number in the last frame with statistics: pixels that show objects */
   double polygon_layers;   /* over a pixel, mean of the last frame with statistics */
-  abbe_method_history *history; /* of a filter over frames; NULL: it has none */
+  abbe_method_history *history; /* history of a filter over frames; NULL: it has none */
 };
 
 /* The methods that there are, each in its folder. */

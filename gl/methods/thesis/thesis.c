@@ -79,7 +79,7 @@ static abbe_result make_tables(abbe_thesis *t, abbe_error *error) {
   if (t->base.colour == NULL || t->tables.index == NULL || t->tables.attenuation_of == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the thesis's colours");
   for (size_t i = 0; i < n; i++)
-    t->tables.index[i] = (float)scene->tables.index[i]; /* of the first */
+    t->tables.index[i] = (float)scene->tables.index[i]; /* index of the first */
   if (t->cie)
     fill_cie(&scene->tables, t);
   else

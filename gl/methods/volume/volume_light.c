@@ -163,7 +163,7 @@ static void pack_floats(const float *value, size_t cells, uint32_t *out) {
   }
 }
 
-/* Of rays that leave the object in that light, as halves. */
+/* Packs rays that leave the object in that light, as halves. */
 static abbe_result pack_exits(const abbe_volume_light *v, const abbe_caustic_volume *volume,
                               const abbe_volume_place *place, size_t light, uint32_t *out,
                               abbe_error *error) {

@@ -22,7 +22,7 @@ typedef struct abbe_wand2003 {
   abbe_method base;
   abbe_pinhole_samples samples;
   abbe_pinhole_sky sky;
-  double (*colour)[3]; /* of each mirror */
+  double (*colour)[3]; /* colour of each mirror */
   abbe_camera_view camera;
   abbe_image_view view;
   GLuint surroundings, receivers, pinholes, mirrors; /* programs */

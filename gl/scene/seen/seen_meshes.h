@@ -61,7 +61,7 @@ typedef struct abbe_faces_target {
   bool back;
   bool both;                      /* or front and back, the nearest */
   const abbe_seen_meshes *meshes; /* as the camera sees them; NULL: the scene's */
-  bool coarse;                    /* of fewer triangles, where meshes have many */
+  bool coarse;                    /* with fewer triangles, where meshes have many */
 } abbe_faces_target;
 
 abbe_result abbe_refractor_faces_make(const abbe_gpu_scene *scene, abbe_refractor_faces *out,
