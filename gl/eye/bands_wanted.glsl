@@ -2,20 +2,47 @@
 // has a band for each wavelength; each further level joins those of the one before by twos. The levels of a
 // set stand one after another in `bands`.
 
+// The index beyond the first interface over that before it, at both ends of the spectrum. least: what these should be
+// apart, over the index, for the first interface to tell how far the spectrum is spread out. On multi-refractor paths
+// that may be done by what is met later.
+vec2 ends_n(int first, int last, out float least) {
+  least = 0.0;
+#ifdef WALK
+  uint beyond = eye_inside ^ 1u << uint(refractor);
+  int before_r = medium_of(eye_inside), beyond_r = medium_of(beyond);
+  vec2 before = vec2(1), n = vec2(1);
+  for (int r = 0; r < REFRACTORS; r++) {
+    int at = first_band(r);
+    vec2 own = vec2(bands[at].weight_n.w, bands[at + last - first].weight_n.w);
+    before = r == before_r ? own : before;
+    n = r == beyond_r ? own : n;
+    least = max(least, 0.6 * abs(own.x - own.y) / own.y);
+  }
+  return n / before;
+#else
+  return vec2(bands[first].weight_n.w, bands[last].weight_n.w);
+#endif
+}
+
 #ifdef SPHERES
 // The two ends of the spectrum leave a sphere where they first meet it from inside: how far apart, in
 // pixels, lies what they show then; 1e9 where that is on different receivers.
-float sphere_spread(Hit front, vec3 d, int first, int last) {
+float sphere_spread(Hit front, vec3 d, vec2 ends) {
   vec3 at[2];
   int what[2];
   for (int k = 0; k < 2; k++) {
-    float n = bands[k == 0 ? first : last].weight_n.w;
-    vec3 inner, interface_n, outer;
-    refract_direction(d, front.n, 1.0 / n, inner);
-    vec4 s = refractors[refractor].sphere;
-    interface_n = normalize(front.n - 2.0 * dot(front.n, inner) * inner);
-    refract_direction(inner, -interface_n, n, outer);
-    vec3 interface_at = s.xyz + s.w * interface_n;
+    float n = ends[k];
+    vec3 interface_at = front.p, outer;
+    if (dot(d, front.n) < 0.0) {
+      vec3 inner, interface_n;
+      vec4 s = refractors[refractor].sphere;
+      refract_direction(d, front.n, 1.0 / n, inner);
+      interface_n = normalize(front.n - 2.0 * dot(front.n, inner) * inner);
+      refract_direction(inner, -interface_n, n, outer);
+      interface_at = s.xyz + s.w * interface_n;
+    } else {  // the eye is in it
+      refract_direction(d, -front.n, 1.0 / n, outer);
+    }
     at[k] = interface_at + scene_size * outer;
     what[k] = 0;
     float t;
@@ -35,12 +62,16 @@ float wanted_bands(Hit front, vec3 d, int first, int last) {
 #ifdef MIRRORS
   if (is_mirror(refractor)) return 1e9;
 #endif
-#ifdef SPHERES
-  if (model == MODEL_SPHERE) return sphere_spread(front, d, first, last) / 1.5;
-#endif
   if (model == MODEL_CONVEX) return 1e9;
-  float c = clamp(-dot(d, front.n), 0.05, 1.0), n = bands[last].weight_n.w;
-  float turn = abs(bands[first].weight_n.w - n) * (0.2 + sqrt(1.0 - c * c) / c) / n;
+  float least;
+  vec2 ends = ends_n(first, last, least);
+  float apart = abs(ends.x - ends.y) / ends.y;
+  if (apart < least) return 1e9;
+#ifdef SPHERES
+  if (model == MODEL_SPHERE) return sphere_spread(front, d, ends) / 1.5;
+#endif
+  float c = clamp(-dot(d, front.n), 0.05, 1.0);
+  float turn = apart * (0.2 + sqrt(1.0 - c * c) / c);
   return turn * scene_size / (4.0 * front.t * pixel_angle) / 1.5;
 }
 

@@ -219,3 +219,103 @@ TEST(two_stones_from_the_side) {
   check_stones(STONE("left", "-0.052") STONE("right", "0.052"), "[0.05, -0.75, 0.2]",
                "[-0.052, 0, 0.04]", "2.5", 8);
 }
+
+/* ---- colours of what disperses, which may be neither the first refractor nor one by itself ----
+ */
+
+#define ASIDE                                                                                      \
+  "- {name: aside, kind: spot, position: [3, 3, 1], target: [4, 4, 0], cone: 5, intensity: 1}\n"
+
+/* Black strips on white, far below. */
+static void add_strips(const char *refractors, char *text, size_t size) {
+  int used = snprintf(
+      text, size,
+      "materials: glass.yaml\nambient: 3\n"
+      "camera: {eye: [0, -0.6, 0.5], target: [0, 0, 0.1], up: [0, 0, 1], fov: 16, inside: true}\n"
+      "lights:\n" ASIDE "objects:\n%s"
+      "- {name: white, shape: rectangle, width: 9, height: 9, reflectance: 0.9,\n"
+      "   transform: [{translate: [0, 1, -1]}]}\n",
+      refractors);
+  for (int i = 0; i < 12; i++)
+    used += snprintf(text + used, size - (size_t)used,
+                     "- {name: strip %d, shape: rectangle, width: 0.2, height: 9, reflectance: 0,"
+                     " transform: [{translate: [%g, 1, -0.99]}]}\n",
+                     i, 0.4 * i - 2.3);
+}
+
+/* Sum over all pixels of the products of R - G, and of B - G, in one and another picture. */
+static double tints(const abbe_image *a, const abbe_image *b) {
+  const size_t r = abbe_image_find_channel(a, "R"), g = abbe_image_find_channel(a, "G"),
+               blue = abbe_image_find_channel(a, "B"), rb = abbe_image_find_channel(b, "R"),
+               gb = abbe_image_find_channel(b, "G"), bb = abbe_image_find_channel(b, "B");
+  double sum = 0;
+  for (size_t i = 0; i < a->width * a->height; i++) {
+    const float *p = a->data + i * a->channels, *q = b->data + i * b->channels;
+    sum += (double)((p[r] - p[g]) * (q[rb] - q[gb]) + (p[blue] - p[g]) * (q[bb] - q[gb]));
+  }
+  return sum;
+}
+
+static abbe_image traced_picture(const abbe_scene *scene, uint32_t seed) {
+  abbe_image image;
+  abbe_tracer *tracer = make_tracer(
+      scene, &(abbe_trace_desc){
+                 .no_map = true, .width = SIDE, .height = SIDE, .photons = 1, .seed = seed});
+  run_passes(tracer, 24);
+  OK(abbe_tracer_picture(tracer, &image, &error));
+  abbe_tracer_free(tracer);
+  return image;
+}
+
+/* Noise of two traces knows nothing of each other, nor of what is drawn. */
+static void check_tints(const char *text) {
+  abbe_scene scene;
+  abbe_image drawn;
+  abbe_render_desc desc = small_frame;
+  load_text(text, &scene);
+  desc.width = desc.height = SIDE;
+  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  draw_frame(renderer);
+  read_picture(renderer, false, &drawn);
+  abbe_renderer_free(renderer);
+  abbe_image one = traced_picture(&scene, 1), other = traced_picture(&scene, 2);
+  const double traced = tints(&one, &other), own = tints(&drawn, &drawn);
+  const double shared = 0.5 * (tints(&drawn, &one) + tints(&drawn, &other));
+  print_message("of the tracer's tints %.3f are drawn, of what is drawn %.3f is traced\n",
+                shared / traced, shared / own);
+  assert_true(shared > 0 && shared > 0.45 * traced);
+  assert_true(shared > 0.45 * own);
+  abbe_image_free(&one);
+  abbe_image_free(&other);
+  abbe_image_free(&drawn);
+  abbe_scene_free(&scene);
+}
+
+/* Air has no dispersion, but beside glass. A card's edge is seen through it. */
+TEST(a_bubble_seen_from_inside_glass) {
+  check_tints("materials: glass.yaml\nambient: 3\n"
+              "camera: {eye: [0, -0.25, 0], target: [0.006, 0, 0], fov: 5, inside: true}\n"
+              "lights:\n" ASIDE "objects:\n"
+              "- {name: block, shape: box, size: [0.6, 0.6, 0.6], material: crown}\n"
+              "- {name: bubble, shape: sphere, radius: 0.02, material: air}\n"
+              "- {name: card, shape: box, size: [0.1, 0.002, 0.1], transform: [{translate: [0.05, "
+              "0.1, 0]}], reflectance: 0.9}\n");
+}
+
+TEST(glass_behind_what_does_not_disperse) {
+  char text[4096];
+  add_strips("- {name: near, shape: sphere, radius: 0.07, material: flat, transform: "
+             "[{translate: [0, -0.2, 0.23]}]}\n"
+             "- {name: far, shape: sphere, radius: 0.07, material: crown, transform: "
+             "[{translate: [0, 0, 0.1]}]}\n",
+             text, sizeof text);
+  check_tints(text);
+}
+
+TEST(a_ball_from_its_inside) {
+  char text[4096];
+  add_strips("- {name: ball, shape: sphere, radius: 0.3, material: crown, transform: "
+             "[{translate: [0.1, -0.6, 0.4]}]}\n",
+             text, sizeof text);
+  check_tints(text);
+}
