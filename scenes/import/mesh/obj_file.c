@@ -1,8 +1,10 @@
 /* Wavefront OBJ: polygons by points, texture coordinates and normals; materials by their names. */
+#include "base/encoding.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "scenes/import/mesh/mesh_reading.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct reading {
@@ -173,7 +175,8 @@ static abbe_result read_line(reading *r) {
   return ABBE_OK;
 }
 
-abbe_result abbe_obj_read(abbe_mesh_reading *to, const char *data, size_t size, abbe_error *error) {
+static abbe_result read_text(abbe_mesh_reading *to, const char *data, size_t size,
+                             abbe_error *error) {
   reading r = {.to = to, .at = data, .end = data + size, .error = error};
   abbe_result result = ABBE_OK;
   to->line = 1;
@@ -182,5 +185,20 @@ abbe_result abbe_obj_read(abbe_mesh_reading *to, const char *data, size_t size, 
     result = read_line(&r);
     if (result == ABBE_OK) skip_line(&r);
   }
+  return result;
+}
+
+/* A byte-order mark tells of UTF-16, or is no part of the first line. */
+abbe_result abbe_obj_read(abbe_mesh_reading *to, const char *data, size_t size, abbe_error *error) {
+  static const char *const marks[] = {"\xff\xfe", "\xfe\xff", "\xef\xbb\xbf"};
+  bool marked = false;
+  for (size_t i = 0; i < 3; i++)
+    marked = marked || (size >= strlen(marks[i]) && memcmp(data, marks[i], strlen(marks[i])) == 0);
+  if (!marked) return read_text(to, data, size, error);
+  char *text = NULL;
+  size_t length = 0;
+  abbe_result result = abbe_encoding_decode(data, size, &text, &length, error);
+  if (result == ABBE_OK) result = read_text(to, text, length, error);
+  free(text);
   return result;
 }

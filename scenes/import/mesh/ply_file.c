@@ -134,6 +134,15 @@ static bool take_format(reading *r, const char *line) {
   return false;
 }
 
+/* Blanks before and behind what the line says, and tabs in it. */
+static void tidy(char *text, size_t length) {
+  while (length > 0 && strchr("\r \t", text[length - 1]) != NULL) text[--length] = '\0';
+  const size_t blank = strspn(text, " \t");
+  memmove(text, text + blank, length - blank + 1);
+  for (; *text != '\0'; text++)
+    if (*text == '\t') *text = ' ';
+}
+
 /* One line into text, without its end, which is that of the first: a binary body may begin with
  * either of its bytes. False where there is none, or too long a one that is no comment. */
 static bool next_line(reading *r, const char *ending, char *text, size_t size) {
@@ -148,7 +157,7 @@ static bool next_line(reading *r, const char *ending, char *text, size_t size) {
   text[length] = '\0';
   r->at = end + 1;
   if (ending[1] != '\0' && r->at < r->end && *r->at == ending[1]) r->at++;
-  while (length > 0 && (text[length - 1] == '\r' || text[length - 1] == ' ')) text[--length] = '\0';
+  tidy(text, length);
   return true;
 }
 

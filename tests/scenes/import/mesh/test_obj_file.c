@@ -20,6 +20,27 @@ TEST(tetrahedra_are_read) {
   }
 }
 
+/* Editors put a mark before the first line, which is a vertex, and may write UTF-16. */
+TEST(marks_of_encodings_are_heeded) {
+  static const char text[] = POINTS "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  enum { LENGTH = sizeof text - 1 };
+  char bytes[2 * LENGTH + 2];
+  abbe_mesh m;
+  memcpy(bytes, "\xef\xbb\xbf", 3);
+  memcpy(bytes + 3, text, LENGTH);
+  OK(test_read(abbe_obj_read, "t.obj", NULL, bytes, LENGTH + 3, &m));
+  assert_tetrahedron(&m, 1, 0, 0);
+  for (size_t big = 0; big < 2; big++) {
+    memcpy(bytes, big ? "\xfe\xff" : "\xff\xfe", 2);
+    for (size_t i = 0; i < LENGTH; i++) {
+      bytes[2 + 2 * i + big] = text[i];
+      bytes[2 + 2 * i + !big] = '\0';
+    }
+    OK(test_read(abbe_obj_read, "t.obj", NULL, bytes, sizeof bytes, &m));
+    assert_tetrahedron(&m, 1, 0, 0);
+  }
+}
+
 TEST(corners_have_their_own_uv_and_normals) {
   static const char text[] = POINTS "vt 0.25 0.75\nvt 1 0 0\nvn 0 0 1\nvn 0 0 -2\n"
                                     "f 1/1/1 2/2/2 3/-1/-2\nf 4//1 2/1/2 1/2/1\n";

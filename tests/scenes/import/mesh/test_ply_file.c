@@ -140,6 +140,9 @@ TEST(texts_of_faces_are_read) {
       "ply\rformat ascii 1.0\relement vertex 4\rproperty float x\rproperty float y\r"
       "property float z\relement face 4\rproperty list uchar int vertex_index\rend_header\r"
       "0 0 0\r1 0 0\r0 2 0\r0 0 3\r3 0 2 1\r3 0 1 3\r3 0 3 2\r3 1 2 3\r",
+      "ply \n\t comment a\n\n \t\n format\tascii  1.0 \t\n element \tvertex\t4\n"
+      "\tproperty\tfloat x\n property  float\ty \nproperty float \t z\nelement face 4\n"
+      " property   list uchar \t int vertex_indices \n\tend_header\t \n" BODY,
   };
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     abbe_mesh m;
