@@ -89,6 +89,14 @@ void check_ok(abbe_result result, const abbe_error *error, const char *call, con
 void check_refusal(abbe_result code, const char *words, abbe_result result, const abbe_error *error,
                    const char *call, const char *file, int line);
 
+/* OWNED(type, name) is a local of which type_free is called where its block ends, and so is free()
+ * of a FREED pointer; not after a failure. */
+#define OWNED(type, name) __attribute__((cleanup(type##_free))) type name
+#define FREED __attribute__((cleanup(check_free)))
+static inline void check_free(void *pointer) {
+  free(*(void **)pointer);
+}
+
 /* |a - b| <= tolerance; a NaN on either side fails. */
 #define assert_near(a, b, tolerance) check_near(a, b, tolerance, #a, __FILE__, __LINE__)
 static inline void check_near(double a, double b, double tolerance, const char *what,

@@ -3,12 +3,11 @@
 #include "base/encoding.h"
 
 static void becomes(const char *bytes, size_t size, const char *wanted) {
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t length = 0;
   OK(abbe_encoding_decode(bytes, size, &text, &length, &error));
   assert_string_equal(text, wanted);
   assert_int_equal(length, strlen(wanted));
-  free(text);
 }
 #define BECOMES(bytes, wanted) becomes(bytes, sizeof bytes - 1, wanted)
 

@@ -44,12 +44,11 @@ static void empty_folder(void) {
 }
 
 static void assert_holds(const char *path, const char *text) {
-  char *data = NULL;
+  FREED char *data = NULL;
   size_t size = 0;
   OK(abbe_file_read(path, 1000, &data, &size, &error));
   assert_int_equal(size, strlen(text));
   assert_string_equal(data, text);
-  free(data);
 }
 
 GROUP(make_folder, empty_folder);
@@ -133,7 +132,7 @@ TEST(a_nameless_pipe_is_read_while_it_brings_something) {
 
 TEST(standard_input_is_read) {
   int end[2], kept = dup(STDIN_FILENO);
-  char *data = NULL;
+  FREED char *data = NULL;
   size_t size = 0;
   assert_int_equal(pipe(end), 0);
   assert_int_equal(write(end[1], "text", 4), 4);
@@ -144,16 +143,14 @@ TEST(standard_input_is_read) {
   close(kept);
   close(end[0]);
   assert_string_equal(data, "text");
-  free(data);
 }
 
 TEST(a_file_without_a_size_is_read) {
-  char *data = NULL;
+  FREED char *data = NULL;
   size_t size = 0;
   OK(abbe_file_read("/proc/self/status", 1 << 20, &data, &size, &error));
   assert_contains(data, "Name:");
   assert_int_equal(size, strlen(data));
-  free(data);
 }
 
 TEST(nothing_changes_before_commit_or_after_discard) {

@@ -72,9 +72,10 @@ static void note_image(FILE *to, const char *what, const abbe_image *image) {
 static void with_materials(FILE *to) {
   static const char *const sets[] = {"default", "thesis"};
   for (int t = 0; t < 2; t++) {
-    abbe_material_table table = {0}, known = {0};
-    abbe_report report = {0};
-    abbe_findings findings = {0};
+    OWNED(abbe_material_table, table) = {0};
+    OWNED(abbe_material_table, known) = {0};
+    OWNED(abbe_report, report) = {0};
+    OWNED(abbe_findings, findings) = {0};
     OK(abbe_material_table_load(sets[t], &table, &error));
     OK(abbe_material_table_load("default", &known, &error));
     OK(abbe_material_table_write(&table, to, &error));
@@ -90,10 +91,6 @@ static void with_materials(FILE *to) {
       fprintf(to, "%s %s %s\n", findings.finding[i].evidence,
               findings.finding[i].fix ? findings.finding[i].fix : "",
               findings.finding[i].value ? findings.finding[i].value : "");
-    abbe_findings_free(&findings);
-    abbe_report_free(&report);
-    abbe_material_table_free(&known);
-    abbe_material_table_free(&table);
   }
 }
 
@@ -109,15 +106,13 @@ static void with_imports(FILE *to) {
        "    coefficients: 0 1.03961212 0.0775 0.231792344 0.1415 1.01046945 10.176\n"}};
   for (int i = 0; i < 3; i++) {
     char path[300];
-    abbe_material_table table = {0};
-    abbe_report report = {0};
+    OWNED(abbe_material_table, table) = {0};
+    OWNED(abbe_report, report) = {0};
     in_folder(files[i][0], path);
     make_file(files[i][0], files[i][1]);
     OK(abbe_import_load(path, &(abbe_import_options){0}, &table, &report, &error));
     OK(abbe_material_table_write(&table, to, &error));
     for (size_t k = 0; k < report.count; k++) fprintf(to, "%s\n", report.note[k].text);
-    abbe_report_free(&report);
-    abbe_material_table_free(&table);
   }
 }
 
@@ -126,7 +121,7 @@ static void with_illuminants(FILE *to) {
                                          {"point.csv", "400.5 0.25\n500.5 0.5\n700.5 7.5e-1\n"}};
   for (int i = 0; i < 2; i++) {
     char path[300];
-    abbe_illuminant light;
+    OWNED(abbe_illuminant, light);
     in_folder(files[i][0], path);
     make_file(files[i][0], files[i][1]);
     OK(abbe_illuminant_make(path, &light, &error));
@@ -134,7 +129,6 @@ static void with_illuminants(FILE *to) {
                              abbe_illuminant_power(&light, 450)};
     note(to, files[i][0], power, sizeof power);
     assert_near(power[0], i == 0 ? 200.5 : 0.5, 1e-12);
-    abbe_illuminant_free(&light);
   }
 }
 
@@ -216,7 +210,7 @@ static void with_meshes(FILE *to) {
        "\"nodes\":[0]}],\"scene\":0}"}};
   for (int i = 0; i < 4; i++) {
     char path[300];
-    abbe_mesh mesh = {0};
+    OWNED(abbe_mesh, mesh) = {0};
     in_folder(files[i][0], path);
     make_file(files[i][0], files[i][1]);
     OK(abbe_mesh_load(path, ABBE_NORMALS_FLAT, &mesh, NULL, &error));
@@ -224,12 +218,11 @@ static void with_meshes(FILE *to) {
     for (size_t v = 0; v < mesh.vertex_count; v++) most = fmax(most, mesh.position[v][2]);
     assert_near(most, 0.375, 1e-6); /* of glTF, y is up: 0.25, scaled */
     note(to, files[i][0], mesh.position, mesh.vertex_count * sizeof *mesh.position);
-    abbe_mesh_free(&mesh);
   }
 }
 
 static void with_scenes(FILE *to) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_plan plan;
   char path[300];
   load_shipped("gem", &scene);
@@ -242,7 +235,8 @@ static void with_scenes(FILE *to) {
   in_folder("gem.pov", path);
   OK(abbe_pov_file_write(path, &scene, NULL, &error));
   note_file(to, "gem.pov");
-  abbe_image picture = {0}, map = {0};
+  OWNED(abbe_image, picture) = {0};
+  OWNED(abbe_image, map) = {0};
   const abbe_reference_desc desc = {.trace = {.width = 6,
                                               .height = 4,
 
@@ -254,9 +248,6 @@ static void with_scenes(FILE *to) {
                                     .passes = 2};
   OK(abbe_reference_trace(&scene, &desc, &picture, &map, &error));
   note_image(to, "traced", &picture);
-  abbe_image_free(&picture);
-  abbe_image_free(&map);
-  abbe_scene_free(&scene);
 }
 
 static void with_answers(FILE *to) {
@@ -279,7 +270,8 @@ static bool is_fine(const abbe_sweep_setting *setting) {
 }
 
 static void with_sweeps(FILE *to) {
-  abbe_sweep_table table = {0}, back = {0};
+  OWNED(abbe_sweep_table, table) = {0};
+  OWNED(abbe_sweep_table, back) = {0};
   abbe_sweep_model model = {1.5, 0.25, 0.125, 0.5, 1.25};
   char path[300], text[4000];
   for (size_t i = 1; i <= 3; i++) {
@@ -322,8 +314,6 @@ static void with_sweeps(FILE *to) {
   OK(abbe_scaling_study_save(&growth, path, &error));
   note_file(to, "growth.csv");
   abbe_scaling_study_print(&growth, to);
-  abbe_sweep_table_free(&table);
-  abbe_sweep_table_free(&back);
 }
 
 static void with_messages(FILE *to) {
@@ -364,7 +354,7 @@ static char *run(const char *locale, void (*work)(FILE *to)) {
 }
 
 static void same(void (*work)(FILE *to)) {
-  char *plain = run("C", work), *comma = run(COMMA, work);
+  FREED char *plain = run("C", work), *comma = run(COMMA, work);
   size_t at = 0;
   while (plain[at] != '\0' && plain[at] == comma[at]) at++;
   if (plain[at] != comma[at]) {
@@ -372,8 +362,6 @@ static void same(void (*work)(FILE *to)) {
     print_error("'%.100s'\nbecomes '%.100s'\n", plain + from, comma + from);
   }
   assert_true(at > 10 && plain[at] == comma[at]);
-  free(plain);
-  free(comma);
 }
 
 GROUP(comma_setup, comma_teardown);

@@ -4,7 +4,7 @@
 #include "base/utf8.h"
 
 TEST(notes_are_kept_in_order) {
-  abbe_report report = {0};
+  OWNED(abbe_report, report) = {0};
   abbe_report_add(&report, ABBE_NOTE_SKIPPED, 12, "N-BK7", "no formula %d", 99);
   abbe_report_add(&report, ABBE_NOTE_LOST, 0, NULL, "a \x1b[2J");
   abbe_report_add(NULL, ABBE_NOTE_LOST, 0, NULL, "unheard");
@@ -20,7 +20,6 @@ TEST(notes_are_kept_in_order) {
   assert_string_equal(abbe_note_kind_word(ABBE_NOTE_ASSUMED), "assumed");
   assert_string_equal(abbe_note_kind_word((abbe_note_kind)-1), "unknown");
   abbe_report_free(&report);
-  abbe_report_free(&report);
 }
 
 /* Of a long text whole letters are kept, of a long path its end. */
@@ -29,7 +28,7 @@ TEST(texts_are_cut_between_letters) {
   for (int i = 0; i < 390; i++) strcat(text, "\xc3\xa4");
   snprintf(path, sizeof path, "%s%s", "x/", text);
   memcpy(path + strlen(path) - 2, "/z", 2);
-  abbe_report report = {.file = path};
+  OWNED(abbe_report, report) = {.file = path};
   abbe_report_add(&report, ABBE_NOTE_LOST, 0, text, "x%s", text);
   const abbe_note *n = &report.note[0];
   assert_int_equal(strlen(n->text), 319);
@@ -40,15 +39,13 @@ TEST(texts_are_cut_between_letters) {
     for (const char *c = cut[i]; *c != '\0'; c += abbe_utf8_letter(c))
       assert_true(abbe_utf8_letter(c) > 0);
   assert_string_equal(n->file + 124, "/z");
-  abbe_report_free(&report);
 }
 
 TEST(there_is_an_end_to_what_is_kept) {
-  abbe_report report = {0};
+  OWNED(abbe_report, report) = {0};
   for (int i = 0; i < ABBE_REPORT_MAX_NOTES + 5; i++)
     abbe_report_add(&report, ABBE_NOTE_CHANGED, (size_t)i, "x", "%d", i);
   assert_int_equal(report.count, ABBE_REPORT_MAX_NOTES);
   assert_int_equal(report.kinds[ABBE_NOTE_CHANGED], ABBE_REPORT_MAX_NOTES + 5);
   assert_string_equal(report.note[ABBE_REPORT_MAX_NOTES - 1].text, "9999");
-  abbe_report_free(&report);
 }

@@ -10,7 +10,7 @@ static const abbe_summary_row rows[] = {{ABBE_NOTE_LOST, "no place for wit"},
 static const char *notes_of(const char *const *names, size_t count) {
   static char text[1024];
   abbe_summary summary = {0};
-  abbe_report report = {0};
+  OWNED(abbe_report, report) = {0};
   for (size_t i = 0; i < count; i++) abbe_summary_add(&summary, 0, names[i]);
   abbe_summary_report(&summary, rows, 3, &report);
   text[0] = '\0';
@@ -19,7 +19,6 @@ static const char *notes_of(const char *const *names, size_t count) {
     snprintf(text + strlen(text), sizeof text - strlen(text), "%s%s", i > 0 ? "\n" : "",
              report.note[i].text);
   }
-  abbe_report_free(&report);
   return text;
 }
 

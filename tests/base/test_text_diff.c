@@ -9,9 +9,8 @@ static char *diff(const char *before, const char *after) {
 }
 
 static void check_diff(const char *before, const char *after, const char *wanted) {
-  char *out = diff(before, after);
+  FREED char *out = diff(before, after);
   assert_string_equal(out, wanted);
-  free(out);
 }
 
 TEST(known_answers) {
@@ -75,27 +74,22 @@ TEST(a_diff_applied_gives_the_other_text) {
         snprintf(text[side] + strlen(text[side]), 4, "%c\n", letter);
       }
     }
-    char *out = diff(text[0], text[1]);
+    FREED char *out = diff(text[0], text[1]);
     apply(text[0], out, made);
     assert_string_equal(made, text[1]);
-    free(out);
   }
 }
 
 /* More lines than a table of all pairs may have: replaced as a whole, still right. */
 TEST(long_changes_are_replaced) {
   enum { LINES = 4000 };
-  char *before = calloc(LINES, 8), *after = calloc(LINES, 8), *made = calloc(LINES, 16);
+  FREED char *before = calloc(LINES, 8), *after = calloc(LINES, 8), *made = calloc(LINES, 16);
   assert_true(before != NULL && after != NULL && made != NULL);
   for (int i = 0, a = 0, b = 0; i < LINES; i++) {
     a += sprintf(before + a, "b%d\n", i);
     b += sprintf(after + b, "a%d\n", i);
   }
-  char *out = diff(before, after);
+  FREED char *out = diff(before, after);
   apply(before, out, made);
   assert_string_equal(made, after);
-  free(out);
-  free(before);
-  free(after);
-  free(made);
 }

@@ -35,11 +35,10 @@ TEST(parts) {
   static const char *const depth[] = {"Z"}, *const colours[] = {"R", "G", "B"};
   char command[400], parts[80];
   for (int i = 0; i < 2; i++) {
-    abbe_image image = {0};
+    OWNED(abbe_image, image) = {0};
     OK(abbe_image_make(4, 4, i == 0 ? 1 : 3, i == 0 ? depth : colours, &image, &error));
     for (size_t k = 0; k < 16 * image.channels; k++) image.data[k] = 1;
     OK(abbe_exr_write(i == 0 ? other : exr, &image, &error));
-    abbe_image_free(&image);
   }
   snprintf(parts, sizeof parts, "%s.parts.exr", exr);
   snprintf(command, sizeof command, "exrmultipart -combine -i %s %s -o %s > /dev/null", other, exr,
@@ -130,7 +129,7 @@ TEST(weights_used_wrongly) {
 }
 
 static void make_picture(const double *xy, const char *space, const char *const names[4]) {
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   OK(abbe_image_make(4, 3, 4, names, &image, &error));
   for (int i = 0; i < 48; i++) image.data[i] = i % 4 == 3 ? (float)i : 0.18f;
   if (xy != NULL) memcpy(image.xy, xy, sizeof image.xy);
@@ -138,7 +137,6 @@ static void make_picture(const double *xy, const char *space, const char *const 
   image.data[3] = NAN;
   image.data[7] = -INFINITY;
   OK(abbe_exr_write(exr, &image, &error));
-  abbe_image_free(&image);
 }
 
 static const char *const rgbz[4] = {"R", "G", "B", "Z"};
@@ -147,10 +145,9 @@ static void show(const char *options, double rgb[3]) {
   char arguments[512];
   snprintf(arguments, sizeof arguments, "display %s -o %s --bits 16 %s", exr, png, options);
   if (run(arguments) != 0) fail_msg("abbe %s: %s", arguments, output);
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   OK(abbe_png_read(png, &image, &error));
   for (int k = 0; k < 3; k++) rgb[k] = (double)image.data[k];
-  abbe_image_free(&image);
 }
 
 TEST(display) {
@@ -218,7 +215,7 @@ TEST(one_meaning_of_the_numbers) {
     snprintf(line, sizeof line, commands[c], exr, png);
     must(0, "does not say its colour space; linear Rec.709 is taken", line);
   }
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   OK(abbe_image_make(8, 4, 3, rgbz, &image, &error));
   for (int i = 0; i < 96; i++) image.data[i] = 1;
   OK(abbe_exr_write(exr, &image, &error));
@@ -237,7 +234,6 @@ TEST(one_meaning_of_the_numbers) {
   must(0, ": 3 pixels are infinite, drawn as the scale's end", line);
   show("--view Looking --exposure -20", said);
   for (int k = 0; k < 3; k++) assert_true(said[k] > 0.99);
-  abbe_image_free(&image);
 }
 
 static bool holds(const char *word) {
@@ -359,11 +355,10 @@ TEST(a_full_disk) {
            ABBE_PROGRAM, exr, png, "/dev/null");
   int status = system(command);
   assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 1);
-  char *data = NULL;
+  FREED char *data = NULL;
   size_t size = 0;
   OK(abbe_file_read(png, 100, &data, &size, &error));
   assert_string_equal(data, "old");
-  free(data);
 }
 
 static void leave(void) {

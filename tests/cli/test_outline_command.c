@@ -9,7 +9,7 @@ enum { WIDE = 64, HIGH = 48 };
  * in the layer caustic where that is asked for. */
 static void write_square(const char *name, int x, int y, float grey, bool apart) {
   static const char *const names[] = {"R", "G", "B", "caustic.R", "caustic.G", "caustic.B"};
-  abbe_image image;
+  OWNED(abbe_image, image) = {0};
   OK(abbe_image_make(WIDE, HIGH, apart ? 6 : 3, names, &image, &error));
   for (int i = 0; i < WIDE * HIGH; i++) {
     float *p = image.data + (size_t)i * image.channels;
@@ -19,7 +19,6 @@ static void write_square(const char *name, int x, int y, float grey, bool apart)
     if (apart) p[5] = 1;
   }
   OK(abbe_exr_write(run_path(name), &image, &error));
-  abbe_image_free(&image);
 }
 
 GROUP(run_setup, run_teardown);

@@ -42,14 +42,13 @@ static void write_text(const char *name, const char *text) {
 
 static void write_picture(const char *name) {
   static const char *const names[] = {"R", "G", "B", "x" EVIL "\nforged 1 1 1"};
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   char path[300];
   path_of(name, path);
   OK(abbe_image_make(4, 4, 4, names, &image, &error));
   for (int i = 0; i < 64; i++) image.data[i] = 0.5f;
   OK(abbe_image_set_attribute(&image, "note" EVIL, "a\n" EVIL "\r" EVIL, &error));
   OK(abbe_exr_write(path, &image, &error));
-  abbe_image_free(&image);
 }
 
 /* YAML's own escapes: a file of it holds no control characters. */

@@ -18,7 +18,7 @@ static void write_spectral(const char *path, const char *prefix, bool emissive) 
     snprintf(name[i], sizeof name[i], "%s%d,000000nm", prefix, 385 + 10 * i);
     names[i] = name[i];
   }
-  abbe_image image;
+  OWNED(abbe_image, image);
   OK(abbe_image_make(2, 2, BANDS, names, &image, &error));
   for (size_t i = 0; i < 4 * BANDS; i++) {
     const double from = 380 + 10 * (double)(i % BANDS);
@@ -26,7 +26,6 @@ static void write_spectral(const char *path, const char *prefix, bool emissive) 
         emissive ? (float)(abbe_weights_band_power(&d65, 380, 780, from, from + 10) / 10) : 0.5f;
   }
   OK(abbe_exr_write(path, &image, &error));
-  abbe_image_free(&image);
 }
 
 static void make_pictures(void) {
@@ -41,7 +40,7 @@ static void remove_pictures(void) {
 
 /* The white of A [CIE15], by the sum of X, Y and Z. */
 static void expect_a(double y) {
-  abbe_image image;
+  OWNED(abbe_image, image);
   OK(abbe_exr_read(exr, &image, &error));
   assert_int_equal(image.channels, 3);
   double xyz[3];
@@ -50,7 +49,6 @@ static void expect_a(double y) {
   assert_near(xyz[0] / sum, 0.44757, 2e-4);
   assert_near(xyz[1] / sum, 0.40745, 2e-4);
   assert_near(xyz[1], y, 1e-4);
-  abbe_image_free(&image);
 }
 
 GROUP(make_pictures, remove_pictures);

@@ -27,13 +27,12 @@ static void check_run(const char *line, int code) {
 }
 
 static bool same_pixels(const char *a, const char *b) {
-  abbe_image x, y;
+  OWNED(abbe_image, x);
+  OWNED(abbe_image, y);
   read_image(a, &x);
   read_image(b, &y);
   bool same = x.width == y.width && x.height == y.height && x.channels == y.channels &&
               memcmp(x.data, y.data, x.width * x.height * x.channels * sizeof *x.data) == 0;
-  abbe_image_free(&x);
-  abbe_image_free(&y);
   return same;
 }
 
@@ -44,7 +43,7 @@ TEST(outputs) {
   assert_string_equal(run_output, "");
   assert_string_equal(run_errors, "");
   assert_true(there("a.png") && !there("a.exr.checkpoint"));
-  abbe_image image;
+  OWNED(abbe_image, image);
   read_image("a.exr", &image);
   assert_int_equal(image.width, 16);
   assert_int_equal(image.height, 12);
@@ -59,7 +58,6 @@ TEST(outputs) {
   assert_int_equal(image.width, 16);
   assert_true(abbe_image_find_channel(&image, "stderr.Y") < image.channels);
   assert_non_null(abbe_image_attribute_text(&image, "abbe:map_view"));
-  abbe_image_free(&image);
 }
 
 TEST(numbers) {
@@ -161,10 +159,9 @@ TEST(kill) {
             0);
   assert_true(there("a.exr.checkpoint") && !there("a.exr"));
   check_run(TRACE BALL SMALL "--spp 1000000 --time 0.01 -o a.exr --resume", 0);
-  abbe_image image;
+  OWNED(abbe_image, image);
   read_image("a.exr", &image);
   assert_true(strtol(abbe_image_attribute_text(&image, "abbe:passes"), NULL, 10) >= 2);
-  abbe_image_free(&image);
 }
 
 TEST(stops) {
@@ -242,13 +239,12 @@ static void save_two_maps(const char *options, abbe_image *a, abbe_image *b) {
 }
 
 TEST(map_like) {
-  abbe_image a, b;
+  OWNED(abbe_image, a);
+  OWNED(abbe_image, b);
   save_two_maps("--seed 4", &a, &b);
   assert_string_equal(abbe_image_attribute_text(&a, "abbe:map_view"),
                       abbe_image_attribute_text(&b, "abbe:map_view"));
   assert_int_equal(a.width, b.width);
-  abbe_image_free(&a);
-  abbe_image_free(&b);
 }
 
 /* A map need not be square: it holds the same light. */

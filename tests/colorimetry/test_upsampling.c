@@ -96,8 +96,8 @@ TEST(matrices_add_up) {
       for (size_t n = 0; n < sizeof counts / sizeof *counts; n++) {
         const abbe_illuminant light = {.kind = (abbe_illuminant_kind)kind};
         const abbe_upsampling u = make(&light, 380, 780);
-        abbe_wavelengths samples;
-        abbe_weights weights;
+        OWNED(abbe_wavelengths, samples);
+        OWNED(abbe_weights, weights);
         OK(abbe_wavelengths_make(counts[n], 380, 780, &samples, &error));
         OK(abbe_weights_make(&samples, &light, (abbe_rgb_space)space, &weights, &error));
         double(*matrix)[9] = calloc(counts[n], sizeof *matrix), sum[9] = {0}, from_xyz[9];
@@ -119,8 +119,6 @@ TEST(matrices_add_up) {
           for (int k = 0; k < 3; k++) assert_near(is[k], expected[k], 1e-12);
         }
         free(matrix);
-        abbe_weights_free(&weights);
-        abbe_wavelengths_free(&samples);
       }
 }
 
@@ -136,7 +134,7 @@ TEST(least_values_are_known) {
 
 TEST(too_few_colours) {
   const double nm[] = {588, 589, 590}, power[] = {0, 1, 0};
-  abbe_illuminant sodium = {.kind = ABBE_ILLUMINANT_TABULATED};
+  OWNED(abbe_illuminant, sodium) = {.kind = ABBE_ILLUMINANT_TABULATED};
   const abbe_illuminant daylight = {0};
   OK(abbe_spectrum_make(nm, power, 3, ABBE_INTERPOLATION_LINEAR, &sodium.spectrum, &error));
   abbe_upsampling u;
@@ -145,7 +143,6 @@ TEST(too_few_colours) {
   REFUSED(ABBE_INVALID_ARGUMENT, "900", abbe_upsampling_make(&daylight, 900, 1000, &u, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_upsampling_make(&daylight, 500, 500, &u, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_upsampling_make(&daylight, NAN, 500, &u, &error));
-  abbe_illuminant_free(&sodium);
 }
 
 /* --- how far off metamers are --- */

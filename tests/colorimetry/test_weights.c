@@ -96,7 +96,7 @@ TEST(a_range_serves_many_bands) {
   for (int kind = 0; kind < ABBE_ILLUMINANT_TABULATED; kind++) {
     const abbe_illuminant light = {.kind = (abbe_illuminant_kind)kind};
     abbe_weights samples = make(7, 380, 780, light.kind, ABBE_RGB_SPACE_XYZ);
-    abbe_wavelengths w = {0};
+    OWNED(abbe_wavelengths, w) = {0};
     abbe_weights_range range;
     double sum[3] = {0}, alone[3], xyz[3];
     OK(abbe_wavelengths_make(7, 380, 780, &w, &error));
@@ -113,7 +113,6 @@ TEST(a_range_serves_many_bands) {
       }
     }
     assert_true(fabs(sum[1] - 1) < 1e-14);
-    abbe_wavelengths_free(&w);
     abbe_weights_free(&samples);
   }
 }
@@ -123,7 +122,8 @@ TEST(a_range_serves_many_bands) {
 TEST(a_range_has_a_unit) {
   const double nm[] = {300, 900}, one[] = {1, 1}, thousand[] = {1000, 1000};
   abbe_weights_range range, brighter;
-  abbe_illuminant light = {.kind = ABBE_ILLUMINANT_TABULATED}, bright = light;
+  OWNED(abbe_illuminant, light) = {.kind = ABBE_ILLUMINANT_TABULATED};
+  OWNED(abbe_illuminant, bright) = light;
   OK(abbe_spectrum_make(nm, one, 2, ABBE_INTERPOLATION_LINEAR, &light.spectrum, &error));
   OK(abbe_spectrum_make(nm, thousand, 2, ABBE_INTERPOLATION_LINEAR, &bright.spectrum, &error));
   abbe_weights_range_make(&light, 380, 780, &range);
@@ -134,8 +134,6 @@ TEST(a_range_has_a_unit) {
   abbe_weights_range_xyz(&range, 500, 600, a);
   abbe_weights_range_xyz(&brighter, 500, 600, b);
   for (int k = 0; k < 3; k++) assert_true(fabs(a[k] - b[k]) < 1e-14);
-  abbe_illuminant_free(&light);
-  abbe_illuminant_free(&bright);
 }
 
 /* What lies outside is left out; what holds nothing is black. */
@@ -229,7 +227,7 @@ TEST(rgb_keeps_negatives_and_is_the_matrix_times_xyz) {
 TEST(a_table_with_knots_of_its_own) {
   /* a box from 501 to 502 nm with a ramp: knots off the observer's grid, zero outside */
   const double nm[] = {501, 501.3, 502}, power[] = {0, 3, 1};
-  abbe_illuminant light = {.kind = ABBE_ILLUMINANT_TABULATED};
+  OWNED(abbe_illuminant, light) = {.kind = ABBE_ILLUMINANT_TABULATED};
   OK(abbe_spectrum_make(nm, power, 3, ABBE_INTERPOLATION_LINEAR, &light.spectrum, &error));
   double low[3], high[3];
   abbe_weights_band_xyz(&light, 380, 780, 380, 501.3, low);
@@ -237,19 +235,16 @@ TEST(a_table_with_knots_of_its_own) {
   assert_true(fabs(low[1] + high[1] - 1) < 1e-15);
   /* areas 0.45 and 1.4, the observer rising by a few per cent a nanometre */
   assert_true(fabs(low[1] - 0.45 / 1.85) < 5e-3);
-  abbe_illuminant_free(&light);
 }
 
 TEST(no_light_in_range) {
-  abbe_wavelengths samples = {0};
-  abbe_weights weights = {0};
+  OWNED(abbe_wavelengths, samples) = {0};
+  OWNED(abbe_weights, weights) = {0};
   const abbe_illuminant light = {0};
   OK(abbe_wavelengths_make(3, 900, 1000, &samples, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "900",
           abbe_weights_make(&samples, &light, ABBE_RGB_SPACE_XYZ, &weights, &error));
   assert_null(weights.weight);
-  abbe_wavelengths_free(&samples);
-  abbe_weights_free(&weights);
 }
 
 TEST(thesis) {
@@ -272,20 +267,18 @@ TEST(other_observers) {
             {ABBE_OBSERVER_CIE_1964, ABBE_ILLUMINANT_E, {1.0 / 3, 1.0 / 3}, 2e-4},
             {ABBE_OBSERVER_CIE_2015_2, ABBE_ILLUMINANT_E, {1.0 / 3, 1.0 / 3}, 2e-4},
             {ABBE_OBSERVER_CIE_2015_10, ABBE_ILLUMINANT_E, {1.0 / 3, 1.0 / 3}, 2e-4}};
-  abbe_wavelengths samples;
+  OWNED(abbe_wavelengths, samples);
   OK(abbe_wavelengths_make(9, 380, 780, &samples, &error));
   for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
     const abbe_illuminant light = {.kind = of[i].kind};
-    abbe_weights weights;
+    OWNED(abbe_weights, weights);
     OK(abbe_weights_make_by(of[i].observer, &samples, &light, ABBE_RGB_SPACE_XYZ, &weights,
                             &error));
     const double all = weights.sum[0] + weights.sum[1] + weights.sum[2];
     assert_true(fabs(weights.sum[1] - 1) < 1e-12);
     for (int k = 0; k < 2; k++)
       assert_true(fabs(weights.sum[k] / all - of[i].xy[k]) < of[i].tolerance);
-    abbe_weights_free(&weights);
   }
-  abbe_wavelengths_free(&samples);
 }
 
 /* Any tiling of a range adds up to its white, whose Y is 1, for every observer; and a range without

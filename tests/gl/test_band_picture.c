@@ -80,7 +80,7 @@ GROUP(setup, teardown);
 TEST(cards_in_bands) {
   const abbe_illuminant d65 = {0};
   const size_t p = (SIDE - 3) * SIDE + 2; /* shows the grey */
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_image bands, sum, picture;
   load_cards("0", "", "", &scene);
   make_bands(&scene, &frame, BANDS, &bands);
@@ -101,7 +101,6 @@ TEST(cards_in_bands) {
   abbe_image_free(&sum);
   abbe_image_free(&picture);
   abbe_image_free(&bands);
-  abbe_scene_free(&scene);
 }
 
 static void trace_bands(const abbe_scene *scene, int passes, abbe_image *out) {
@@ -135,8 +134,9 @@ static double compare_band(const abbe_image *bands, const abbe_image *traced, si
 /* Two illuminants, ambient light, colours: the tracer's bands of the same scene. It gives each of
  * its 4096 steps of wavelength, 0.1 nm or so, to one band alone: at most 2 x 0.1 nm of 40 nm. */
 TEST(cards_against_the_tracer) {
-  abbe_scene scene;
-  abbe_image bands, traced;
+  OWNED(abbe_scene, scene);
+  OWNED(abbe_image, bands);
+  OWNED(abbe_image, traced);
   double ratio;
   load_cards("1", "", ", illuminant: A", &scene);
   make_bands(&scene, &frame, BANDS, &bands);
@@ -145,16 +145,14 @@ TEST(cards_against_the_tracer) {
     compare_band(&bands, &traced, i, &ratio);
     assert_near(ratio, 1, 5e-3);
   }
-  abbe_image_free(&traced);
-  abbe_image_free(&bands);
-  abbe_scene_free(&scene);
 }
 
 /* A prism spreads each band over many pixels: light must lie there by its power. By what the eye
  * makes of it, the first band would be off by three quarters. */
 TEST(a_prism_against_the_tracer) {
-  abbe_scene scene;
-  abbe_image bands, traced;
+  OWNED(abbe_scene, scene);
+  OWNED(abbe_image, bands);
+  OWNED(abbe_image, traced);
   double ratio;
   load_shipped("prism", &scene);
   make_bands(&scene, &frame, BANDS, &bands);
@@ -165,9 +163,6 @@ TEST(a_prism_against_the_tracer) {
     assert_near(ratio, 1, 0.02);
     assert_true(off < 0.1);
   }
-  abbe_image_free(&traced);
-  abbe_image_free(&bands);
-  abbe_scene_free(&scene);
 }
 
 /* The law of refractors: the bands through the observer are the picture, as near as bands of such a
@@ -182,7 +177,7 @@ TEST(sums_are_pictures) {
   } scenes[] = {{"gem", 10, 0.08}, {"prism", 20, 0.06}, {"sphere", 10, 0.05}};
   const abbe_illuminant d65 = {0};
   for (size_t i = 0; i < (all_cases() ? 3 : 1); i++) {
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     abbe_image bands, sum, picture;
     load_shipped(scenes[i].name, &scene);
     make_bands(&scene, &frame, scenes[i].bands, &bands);
@@ -200,7 +195,6 @@ TEST(sums_are_pictures) {
     abbe_image_free(&sum);
     abbe_image_free(&picture);
     abbe_image_free(&bands);
-    abbe_scene_free(&scene);
   }
 }
 
@@ -211,7 +205,7 @@ static bool stop_now(void *user, double done) {
 }
 
 TEST(refusals_and_cancelling) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_image bands;
   double least = 1;
   load_cards("0", "", "", &scene);
@@ -224,5 +218,4 @@ TEST(refusals_and_cancelling) {
   REFUSED(ABBE_CANCELLED, "",
           abbe_band_picture_make(context, &scene, &frame, 4, stop_now, &least, &bands, &error));
   assert_true(least < 0.5 && bands.data == NULL);
-  abbe_scene_free(&scene);
 }

@@ -27,7 +27,7 @@ GROUP(make_context, free_context);
 
 /* A pane turns no light: both profiles hold the lamp's power through it, less two reflections. */
 TEST(what_arrives_is_what_was_sent) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image own_picture, own_map, picture, map;
   load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
   draw(&scene, ABBE_PROFILE_DEFAULT, &own_picture, &own_map);
@@ -46,12 +46,11 @@ TEST(what_arrives_is_what_was_sent) {
   abbe_image_free(&own_map);
   abbe_image_free(&picture);
   abbe_image_free(&map);
-  abbe_scene_free(&scene);
 }
 
 /* A floor in the open has the same radiance, pixel by pixel, in the default profile's own units. */
 TEST(light_in_the_open_is_the_same) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image own_picture, own_map, picture, map;
   load_text(CAMERA "ambient: 0.3\n" POINT_LIGHT FLOOR PANE("flat"), &scene);
   draw(&scene, ABBE_PROFILE_DEFAULT, &own_picture, &own_map);
@@ -70,5 +69,4 @@ TEST(light_in_the_open_is_the_same) {
   abbe_image_free(&own_map);
   abbe_image_free(&picture);
   abbe_image_free(&map);
-  abbe_scene_free(&scene);
 }

@@ -52,7 +52,7 @@ static void middles(const abbe_image *map, const abbe_map_layout *layout, double
 }
 
 static void assert_parted(const abbe_scene *scene, const abbe_render_desc *desc) {
-  abbe_image map = {0};
+  OWNED(abbe_image, map) = {0};
   double aside[3], at[3][2];
   moved_aside(scene, aside);
   make_map(scene, desc, &map);
@@ -68,7 +68,6 @@ static void assert_parted(const abbe_scene *scene, const abbe_render_desc *desc)
                   expected / texel);
     assert_near(apart, expected, 0.03 * widest);
   }
-  abbe_image_free(&map);
 }
 
 GROUP(make_context, free_context);
@@ -78,7 +77,7 @@ GROUP(make_context, free_context);
  * beam's cone, of a degree, makes up to 2 % of that. */
 TEST(colours_part_within_a_texel) {
   static const size_t counts[COUNTS] = {3, 5, 7, 21};
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_map_layout fitted, even;
   abbe_render_desc desc = small_frame;
   desc.width = desc.height = 16;
@@ -98,5 +97,4 @@ TEST(colours_part_within_a_texel) {
     assert_parted(&scene, &desc);
     desc.fill = ABBE_FILL_AUTO;
   }
-  abbe_scene_free(&scene);
 }

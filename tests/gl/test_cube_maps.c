@@ -80,7 +80,7 @@ GROUP(make_context, free_context);
 
 TEST(all_light_goes_in_once) {
   for (size_t i = 0; i < sizeof crowds / sizeof *crowds; i++) {
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     load_balls(crowds[i].ball, crowds[i].count, 0, point, &scene);
     look_aside(&scene);
     const abbe_statistics statistics = draw(&scene, &small_frame, true, NULL);
@@ -89,7 +89,6 @@ TEST(all_light_goes_in_once) {
                   statistics.energy.reached / expected, abbe_ledger_imbalance(&statistics.energy));
     assert_near(statistics.energy.reached, expected, 2e-3 * expected);
     assert_true(abbe_ledger_imbalance(&statistics.energy) < 1e-4);
-    abbe_scene_free(&scene);
   }
 }
 
@@ -113,14 +112,13 @@ static double light_into_cone(const place *ball, size_t count, double least_cosi
 
 TEST(a_wide_spot_has_a_cube_too) {
   static const place ball[2] = {{{-0.3, 0, 0}, 0.08}, {{0.3, 0, 0}, 0.08}};
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_balls(ball, 2, 0, "kind: spot, direction: [0, 0, -1], cone: 85, soft: 0", &scene);
   look_aside(&scene);
   const abbe_statistics spot = draw(&scene, &small_frame, true, NULL);
   const double expected = light_into_cone(ball, 2, cos(85 * ABBE_PI / 180));
   print_message("a wide spot: %.6f of the light\n", spot.energy.reached / expected);
   assert_near(spot.energy.reached, expected, 5e-3 * expected);
-  abbe_scene_free(&scene);
 }
 
 /* A picture whose balls lie across seams is no farther from that whose balls lie on the faces' axes
@@ -199,7 +197,7 @@ TEST(direct_light_is_whole) {
 TEST(the_tracer_agrees) {
   enum { SIDE = 64, BLOCK = 8, BLOCKS = SIDE / BLOCK, PASSES = 12 };
   static const abbe_model models[] = {ABBE_MODEL_AUTO, ABBE_MODEL_BVH, ABBE_MODEL_LAYERS};
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_image traced, drawn;
   abbe_map_layout layout;
   load_balls(crowds[1].ball, crowds[1].count, 0, point, &scene);
@@ -249,11 +247,10 @@ TEST(the_tracer_agrees) {
   }
   abbe_tracer_free(tracer);
   abbe_image_free(&traced);
-  abbe_scene_free(&scene);
 }
 
 TEST(a_cube_has_no_single_layout) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_image map = {0};
   load_balls(crowds[0].ball, crowds[0].count, 0, point, &scene);
   look_aside(&scene);
@@ -265,5 +262,4 @@ TEST(a_cube_has_no_single_layout) {
   /* A further face is no light of the scene. */
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_renderer_read_map(renderer, 1, true, &map, &error));
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }

@@ -145,7 +145,7 @@ GROUP(make_context, free_context);
 
 /* Another size of everything, within an eighth more than what it was. */
 TEST(a_change_needs_no_room_for_both) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(text, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &before);
   draw_frame(renderer);
@@ -160,12 +160,12 @@ TEST(a_change_needs_no_room_for_both) {
   draw_as_made_anew(renderer, &scene, &after);
   abbe_renderer_free(renderer);
   assert_int_equal(held_bytes, 0);
-  abbe_scene_free(&scene);
 }
 
 /* So of a mesh, which is uploaded before the light's buffers are made. */
 TEST(a_larger_mesh_needs_no_room_beside_them) {
-  abbe_scene scene = {0}, finer = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_scene, finer) = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   load_text(CAMERA POINT_LIGHT FLOOR "- {name: ball, shape: sphere, radius: 0.08, levels: 6, "
                                      "transform: [{translate: [0, 0, 0.2]}], material: crown}\n",
@@ -179,13 +179,11 @@ TEST(a_larger_mesh_needs_no_room_beside_them) {
   OK(abbe_renderer_change(renderer, &finer, &after, &error));
   draw_as_made_anew(renderer, &finer, &after);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
-  abbe_scene_free(&finer);
 }
 
 /* What does not fit at all is refused, and a smaller change goes on from there. */
 TEST(what_does_not_fit_is_refused) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(text, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &before);
   draw_frame(renderer);
@@ -197,7 +195,6 @@ TEST(what_does_not_fit_is_refused) {
   OK(abbe_renderer_change(renderer, &scene, &before, &error));
   draw_as_made_anew(renderer, &scene, &before);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 enum { BUFFER, TEXTURE, LEVELS, MESHES, KINDS, UNUSED_BYTES = 1 << 20 };
@@ -226,7 +223,7 @@ static void give_back(abbe_gpu_scene *scene, int kind, GLuint *out) {
 /* What is not in use gives way to what has no room, and to no other error: neither to one of the
  * allocation itself nor to one that was pending before it, which is told as it is. */
 TEST(only_a_lack_of_memory_is_tried_again) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_gpu gpu = {0};
   abbe_error why = {0};
   load_text(text, &scene);
@@ -266,5 +263,4 @@ TEST(only_a_lack_of_memory_is_tried_again) {
     abbe_gpu_trim(&gpu);
   }
   abbe_gpu_free(&gpu);
-  abbe_scene_free(&scene);
 }

@@ -24,9 +24,10 @@ GROUP(make_context, free_context);
 
 /* The plan is in the user's coordinates, as the request was, and may be one again. */
 TEST(the_plan_has_it_as_it_was_given) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_map_layout fitted, given, used;
-  abbe_image map = {0}, same = {0};
+  OWNED(abbe_image, map) = {0};
+  OWNED(abbe_image, same) = {0};
   abbe_render_desc desc = {.width = 16, .height = 16, .photons = 32, .map_size = 64};
   load_text(FAR_SCENE, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
@@ -50,7 +51,4 @@ TEST(the_plan_has_it_as_it_was_given) {
   abbe_renderer_free(renderer);
   make_map(&scene, &desc, &same); /* made with the layout at once */
   assert_same_pixels(&map, &same);
-  abbe_image_free(&map);
-  abbe_image_free(&same);
-  abbe_scene_free(&scene);
 }

@@ -26,7 +26,7 @@ GROUP(make_context, free_context);
 
 TEST(the_first_texture_keeps_photons) {
   static float texel[2][3] = {{0.5f, 0.25f, 0.75f}, {1, 0.5f, 0.25f}};
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image picture[3] = {{0}, {0}, {0}};
   load_text(CAMERA POINT_LIGHT FLOOR BRICK("crown"), &scene);
   abbe_renderer *renderer = make_renderer(&scene, &tiny);
@@ -44,12 +44,11 @@ TEST(the_first_texture_keeps_photons) {
   assert_same_pixels(&picture[0], &picture[2]);
   for (int i = 0; i < 3; i++) abbe_image_free(&picture[i]);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 /* A spot's shadows are those of its place, whatever its cone is. */
 TEST(another_cone_is_followed_anew) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image kept = {0}, anew = {0};
   load_text(CAMERA
             "lights:\n- {name: spot, kind: spot, position: [0.1, 0, 0.7], target: [0.2, 0, 0.2],"
@@ -74,7 +73,6 @@ TEST(another_cone_is_followed_anew) {
     abbe_image_free(&anew);
   }
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 #define LARGE_RING                                                                                 \
@@ -94,7 +92,7 @@ TEST(coarse_views_show_nearly_the_same) {
   enum { NONE, EYE, ALL, AGAIN, COUNT };
   static const abbe_coarse coarse[COUNT] = {ABBE_COARSE_NONE, ABBE_COARSE_EYE, ABBE_COARSE_ALL,
                                             ABBE_COARSE_NONE};
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image picture[COUNT] = {{0}};
   abbe_render_desc desc = tiny;
   desc.model = ABBE_MODEL_LAYERS;
@@ -115,7 +113,6 @@ TEST(coarse_views_show_nearly_the_same) {
   }
   for (int i = 0; i < COUNT; i++) abbe_image_free(&picture[i]);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 #define RING_IN_COLOUR                                                                             \
@@ -124,7 +121,7 @@ TEST(coarse_views_show_nearly_the_same) {
 
 /* Of receivers of many triangles, too, which rays meet then that are drawn else: but for edges. */
 TEST(rays_show_receivers_as_they_are_drawn) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image picture[2] = {{0}};
   abbe_render_desc desc = tiny;
   desc.supersample = desc.adaptive = 1;
@@ -142,5 +139,4 @@ TEST(rays_show_receivers_as_they_are_drawn) {
   assert_true(sum_apart(&picture[1], &picture[0]) < 0.01 * sum_apart(&picture[0], NULL));
   for (int i = 0; i < 2; i++) abbe_image_free(&picture[i]);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }

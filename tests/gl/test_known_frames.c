@@ -14,14 +14,13 @@ static const abbe_render_desc tiny = {.width = 16,
                                       .aovs = true};
 
 static void draw(const char *text, const abbe_render_desc *desc, abbe_image *aovs) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(text, &scene);
   abbe_renderer *renderer = make_renderer(&scene, desc);
   const abbe_statistics statistics = draw_frame(renderer);
   assert_true(statistics.energy.reached == 0 || abbe_ledger_imbalance(&statistics.energy) < 1e-4);
   read_picture(renderer, true, aovs);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 static double mean_of(const abbe_image *image, const char *name) {
@@ -31,10 +30,9 @@ static double mean_of(const abbe_image *image, const char *name) {
 }
 
 static double drawn_mean(const char *text, const abbe_render_desc *desc, const char *channel) {
-  abbe_image aovs;
+  OWNED(abbe_image, aovs);
   draw(text, desc, &aovs);
   const double mean = mean_of(&aovs, channel);
-  abbe_image_free(&aovs);
   return mean;
 }
 
@@ -224,7 +222,7 @@ TEST(a_hole_throws_the_disks_image) {
   abbe_render_desc desc = tiny;
   desc.width = desc.height = SIDE;
   desc.light_points = 15;
-  abbe_image aovs;
+  OWNED(abbe_image, aovs);
   draw("materials: default\ncamera: {eye: [0.2, 0, -0.5], target: [0.5, 0, -0.5], fov: 11.4212}\n"
        "lights: [{name: lamp, kind: disk, position: [0, 0, 1], direction: [0, 0, -1], radius: "
        "0.02, radiance: 1e4}]\nobjects:\n"
@@ -254,5 +252,4 @@ TEST(a_hole_throws_the_disks_image) {
                 moment / sum / square);
   assert_near(sum / (SIDE * SIDE) / known, 1, 0.03);
   assert_near(moment / sum / square, 1, 0.05);
-  abbe_image_free(&aovs);
 }

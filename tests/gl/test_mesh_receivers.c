@@ -233,7 +233,7 @@ TEST(triangles_do_as_parallelograms_do) {
   static const char *const texts[] = {CAMERA POINT_LIGHT TEXTURED_FLOOR CRATE HILL BALL("crown"),
                                       CAMERA SUN TEXTURED_FLOOR CRATE HILL RING("flat")};
   for (int i = all_cases() ? 0 : 1; i < 2; i++) {
-    abbe_scene scene = {0};
+    OWNED(abbe_scene, scene) = {0};
     abbe_map_layout layout;
     abbe_render_desc desc = small_frame;
     if (i == 1) desc.width = desc.height = desc.photons = 32;
@@ -251,7 +251,6 @@ TEST(triangles_do_as_parallelograms_do) {
     assert_near(mesh.energy.missed / flat.energy.missed, 1, 1e-3);
     free_frame(&flat);
     free_frame(&mesh);
-    abbe_scene_free(&scene);
   }
 }
 
@@ -306,9 +305,9 @@ TEST(light_lands_on_a_ball_behind_a_pane) {
                                  .exits = ABBE_RENDER_MAX_EXITS,
                                  .space = ABBE_RGB_SPACE_XYZ,
                                  .aovs = true};
-  abbe_scene scene = {0};
-  abbe_image picture = {0};
-  abbe_renderer_hits hits;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, picture) = {0};
+  OWNED(abbe_renderer_hits, hits) = {0};
   size_t on_globe = 0, seen = 0;
   load_text(UNDER_A_PANE, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
@@ -348,10 +347,7 @@ TEST(light_lands_on_a_ball_behind_a_pane) {
   assert_true(seen > 100);
   assert_near(sum / expected, 1, 5e-3);
   assert_true(worst < 0.045);
-  abbe_image_free(&picture);
-  abbe_renderer_hits_free(&hits);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 /* The eye looks along y into a pane; a moon in its back is all that the pane can mirror, and
@@ -370,11 +366,11 @@ TEST(light_lands_on_a_ball_behind_a_pane) {
 
 TEST(a_pane_mirrors_what_is_behind_the_eye) {
   const double known = pane_reflects * 0.5 * 0.2 / acos(-1);
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(MOON_BEHIND_THE_EYE, &scene);
   for (int i = 0; i < 2; i++) {
     abbe_render_desc desc = small_frame;
-    abbe_image picture = {0};
+    OWNED(abbe_image, picture) = {0};
     desc.space = ABBE_RGB_SPACE_XYZ;
     desc.model = i == 0 ? ABBE_MODEL_CONVEX : ABBE_MODEL_BVH;
     desc.width = desc.height = 16;
@@ -387,8 +383,6 @@ TEST(a_pane_mirrors_what_is_behind_the_eye) {
       const size_t pixel = (4 + k / 8) * 16 + 4 + k % 8; /* the middle, which shows no card */
       assert_near(picture.data[pixel * picture.channels + 1] / known, 1, 2e-3);
     }
-    abbe_image_free(&picture);
     abbe_renderer_free(renderer);
   }
-  abbe_scene_free(&scene);
 }

@@ -30,14 +30,13 @@ typedef struct frame {
 } frame;
 
 static void draw(const char *text, const abbe_render_desc *desc, frame *f) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(text, &scene);
   abbe_renderer *renderer = make_renderer(&scene, desc);
   f->energy = draw_frame(renderer).energy;
   read_picture(renderer, false, &f->picture);
   read_picture(renderer, true, &f->aovs);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 static void drop(frame *f) {

@@ -94,8 +94,8 @@ static void compare_path(const abbe_renderer_hits *l, size_t photon, sphere_path
 GROUP(make_context, free_context);
 
 TEST(a_sphere_lands_as_double_precision_says) {
-  abbe_scene scene = {0};
-  abbe_renderer_hits l = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_renderer_hits, l) = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   abbe_render_desc desc = small_frame;
   desc.wavelengths = 1; /* one sample stands in the middle, at 580 nm */
@@ -107,8 +107,6 @@ TEST(a_sphere_lands_as_double_precision_says) {
   size_t compared = 0;
   for (size_t i = 0; i < l.count; i++) compare_path(&l, i, path, &compared);
   assert_true(compared > l.count / 2);
-  abbe_renderer_hits_free(&l);
-  abbe_scene_free(&scene);
 }
 
 /* A 60-degree prism of n = 1.5 in parallel light that passes it symmetrically. */
@@ -126,14 +124,13 @@ TEST(a_sphere_lands_as_double_precision_says) {
 static void trace_prism(const char *glass, double wall_x, abbe_renderer_hits *l) {
   char text[1024];
   double pi = acos(-1), up = asin(1.5 * sin(pi / 6)) - pi / 6;
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   snprintf(text, sizeof text, PRISM_SCENE, cos(up), sin(up), wall_x, glass);
   load_text(text, &scene);
   /* Each wavelength on its own: every photon takes all seven. */
   abbe_render_desc desc = small_frame;
   desc.fill = ABBE_FILL_NONE;
   trace_photons(&scene, &desc, l);
-  abbe_scene_free(&scene);
 }
 
 /* Whether the photon meets the entrance face well above the prism's middle: then it leaves through
@@ -149,7 +146,8 @@ static bool enters_high(const abbe_renderer_hits *l, size_t photon) {
 }
 
 TEST(a_prism_deviates_least_as_the_formula_says) {
-  abbe_renderer_hits near = {0}, far = {0};
+  OWNED(abbe_renderer_hits, near) = {0};
+  OWNED(abbe_renderer_hits, far) = {0};
   trace_prism("flat", 1, &near);
   trace_prism("flat", 1.5, &far);
   assert_int_equal(near.count, far.count);
@@ -171,8 +169,6 @@ TEST(a_prism_deviates_least_as_the_formula_says) {
     compared++;
   }
   assert_true(compared > 100);
-  abbe_renderer_hits_free(&near);
-  abbe_renderer_hits_free(&far);
 }
 
 static double mean_height(const abbe_renderer_hits *l, size_t sample) {
@@ -190,18 +186,17 @@ static double mean_height(const abbe_renderer_hits *l, size_t sample) {
 
 /* The beam comes from below and is bent down: the more, the lower on the wall. */
 TEST(violet_is_bent_more_than_red) {
-  abbe_renderer_hits l = {0};
+  OWNED(abbe_renderer_hits, l) = {0};
   trace_prism("crown", 1, &l);
   assert_int_equal(l.samples, 7);
   for (size_t sample = 1; sample < 7; sample++)
     assert_true(mean_height(&l, sample) > mean_height(&l, sample - 1) + 1e-3);
-  abbe_renderer_hits_free(&l);
 }
 
 /* The shipped prism's spectrum on its wall runs from violet, deviated most, to red. */
 TEST(the_shipped_prism_makes_a_spectrum) {
-  abbe_scene scene = {0};
-  abbe_renderer_hits l = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_renderer_hits, l) = {0};
   load_shipped("prism", &scene);
   trace_photons(&scene, &small_frame, &l);
   double before = 0;
@@ -217,8 +212,6 @@ TEST(the_shipped_prism_makes_a_spectrum) {
     if (sample > 0) assert_true(sum / flux < before);
     before = sum / flux;
   }
-  abbe_renderer_hits_free(&l);
-  abbe_scene_free(&scene);
 }
 
 /* A hill far away is traversed; what lands on the floor beside it lands in the same place. */
@@ -227,7 +220,8 @@ TEST(a_hill_moves_no_hit_on_the_floor) {
   size_t on_hill = 0;
   for (int k = 0; k < 2; k++) {
     char text[1024];
-    abbe_renderer_hits alone = {0}, beside = {0};
+    OWNED(abbe_renderer_hits, alone) = {0};
+    OWNED(abbe_renderer_hits, beside) = {0};
     abbe_scene scene = {0};
     snprintf(text, sizeof text, "%s%s", CAMERA POINT_LIGHT FLOOR, balls[k]);
     load_text(text, &scene);
@@ -255,8 +249,6 @@ TEST(a_hill_moves_no_hit_on_the_floor) {
       }
     }
     assert_true(on_floor > alone.count);
-    abbe_renderer_hits_free(&alone);
-    abbe_renderer_hits_free(&beside);
   }
   assert_true(on_hill > 0);
 }
@@ -267,7 +259,7 @@ TEST(a_hill_moves_no_hit_on_the_floor) {
 TEST(a_slit_lets_its_light_through_whatever_the_grid) {
   static const size_t grids[] = {20, 33, 64, 150};
   double expected = 40 * 0.002 * 0.03 / (0.6 * 0.6) * (1 - 1.5 * (0.03 * 0.03 / 12) / (0.6 * 0.6));
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_shipped("prism", &scene);
   for (size_t i = 0; i < 8; i++) {
     abbe_render_desc desc = small_frame;
@@ -278,5 +270,4 @@ TEST(a_slit_lets_its_light_through_whatever_the_grid) {
     assert_near(draw_frame(renderer).energy.reached / expected, 1, i < 4 ? 2e-3 : 8e-3);
     abbe_renderer_free(renderer);
   }
-  abbe_scene_free(&scene);
 }

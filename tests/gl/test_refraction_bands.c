@@ -72,7 +72,7 @@ static double apart(const abbe_image *a, const abbe_image *b) {
 GROUP(make_context, free_context);
 
 TEST(joined_bands_come_back) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_bars(STONE, &scene);
   abbe_image seven = picture(&scene, 7, 1, true), all = picture(&scene, 21, 1, true);
   abbe_image asked = picture(&scene, 21, 1, false);
@@ -84,18 +84,16 @@ TEST(joined_bands_come_back) {
   abbe_image_free(&seven);
   abbe_image_free(&all);
   abbe_image_free(&asked);
-  abbe_scene_free(&scene);
 }
 
 /* Up to eight wavelengths every pixel takes all of them. */
 TEST(few_wavelengths_are_all_taken) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_bars(STONE, &scene);
   abbe_image planned = picture(&scene, 8, 1, false), all = picture(&scene, 8, 1, true);
   assert_true(apart(&planned, &all) < 1e-6);
   abbe_image_free(&planned);
   abbe_image_free(&all);
-  abbe_scene_free(&scene);
 }
 
 static void load_ring(const char *material, abbe_scene *scene) {
@@ -116,7 +114,7 @@ static void assert_shared_bands_add_up(const char *refractor, abbe_model model) 
       "   transform: [{translate: [0, 1, -1]}]}\n";
   static const size_t wavelengths[] = {3, 4, 7, 8};
   char text[1024];
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   snprintf(text, sizeof text, "%s%s", alike, refractor);
   load_text(text, &scene);
   for (size_t k = 0; k < sizeof wavelengths / sizeof *wavelengths; k++) {
@@ -126,7 +124,6 @@ static void assert_shared_bands_add_up(const char *refractor, abbe_model model) 
         assert_near(shown.data[i * shown.channels + c] / shown.data[c], 1, 1e-5);
     abbe_image_free(&shown);
   }
-  abbe_scene_free(&scene);
 }
 
 TEST(shared_bands_add_up) {
@@ -140,7 +137,7 @@ TEST(shared_bands_add_up) {
 /* The samples of a pixel take every second band each, and lie no farther from many samples that
  * take all of many wavelengths than if each took all seven. */
 TEST(shared_bands_show_the_spectrum) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_ring("crown", &scene);
   abbe_image true_to = picture(&scene, 28, 4, true);
   abbe_image shared = picture(&scene, 7, 2, false), all = picture(&scene, 7, 2, true);
@@ -152,5 +149,4 @@ TEST(shared_bands_show_the_spectrum) {
   abbe_image_free(&true_to);
   abbe_image_free(&shared);
   abbe_image_free(&all);
-  abbe_scene_free(&scene);
 }

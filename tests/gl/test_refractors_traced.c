@@ -22,8 +22,9 @@ typedef struct agreement {
 } agreement;
 
 static agreement compare(const char *text, int passes) {
-  abbe_scene scene;
-  abbe_image drawn, traced;
+  OWNED(abbe_scene, scene);
+  OWNED(abbe_image, drawn);
+  OWNED(abbe_image, traced);
   abbe_render_desc desc = small_frame;
   desc.photons = 128;
   desc.map_size = SIDE;
@@ -60,9 +61,6 @@ static agreement compare(const char *text, int passes) {
   print_message("%.4f of the tracer's light, %.4f given up, %.4f of it elsewhere\n", found.energy,
                 found.trapped, found.apart);
   abbe_tracer_free(tracer);
-  abbe_image_free(&drawn);
-  abbe_image_free(&traced);
-  abbe_scene_free(&scene);
   return found;
 }
 

@@ -22,12 +22,11 @@ static void assert_balance(const abbe_statistics *s, const char *name) {
 /* The map read as a picture holds what the ledger says was deposited, but on receivers' tiles. */
 static void assert_map_holds(abbe_renderer *renderer, const abbe_ledger *l) {
   const double deposited = l->deposited - l->on_tiles;
-  abbe_image map = {0};
+  OWNED(abbe_image, map) = {0};
   read_map(renderer, 0, &map);
   assert_finite(&map);
   /* A texel is a float: 6e-8 of it, and all of them together no more. */
   assert_near(image_sum(&map, 1) / deposited, 1, 1e-6);
-  abbe_image_free(&map);
 }
 
 static void assert_repeats(abbe_renderer *renderer) {
@@ -63,7 +62,7 @@ GROUP(make_context, free_context);
 /* All of them balance in their reference tests. */
 TEST(shipped_scenes_balance_and_repeat) {
   for (int i = 0; i < SHIPPED; i += all_cases() ? 1 : 2) {
-    abbe_scene scene = {0};
+    OWNED(abbe_scene, scene) = {0};
     load_shipped(shipped[i], &scene);
     abbe_renderer *renderer = make_renderer(&scene, &small_frame);
     abbe_statistics s = draw_frame(renderer);
@@ -74,15 +73,15 @@ TEST(shipped_scenes_balance_and_repeat) {
     assert_map_holds(renderer, &s.energy);
     assert_repeats(renderer);
     abbe_renderer_free(renderer);
-    abbe_scene_free(&scene);
   }
 }
 
 /* The thesis's map is the light's own frustum, so that it holds nothing of the prism's light. */
 static void the_thesis_renders(abbe_profile profile) {
   for (int i = 0; i < SHIPPED; i++) {
-    abbe_scene scene = {0};
-    abbe_image image = {0}, map = {0};
+    OWNED(abbe_scene, scene) = {0};
+    OWNED(abbe_image, image) = {0};
+    OWNED(abbe_image, map) = {0};
     abbe_render_desc desc = small_frame;
     desc.profile = profile;
     load_shipped(shipped[i], &scene);
@@ -96,10 +95,7 @@ static void the_thesis_renders(abbe_profile profile) {
     assert_finite(&map);
     assert_true(image_max(&image, 0) > 0);
     if (strcmp(shipped[i], "prism") != 0) assert_true(image_max(&map, 0) > 0);
-    abbe_image_free(&image);
-    abbe_image_free(&map);
     abbe_renderer_free(renderer);
-    abbe_scene_free(&scene);
   }
 }
 
@@ -123,7 +119,7 @@ TEST(mixed_scenes_balance) {
   };
   static const size_t photons[] = {1, 3, 30, 100}, maps[] = {1, 7, 100};
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-    abbe_scene scene = {0};
+    OWNED(abbe_scene, scene) = {0};
     abbe_render_desc desc = small_frame;
     if (!all_cases() && (i == 1 || i == 2 || i == 3)) continue;
     desc.photons = photons[2 + i % 2];
@@ -143,14 +139,13 @@ TEST(mixed_scenes_balance) {
       assert_true(abbe_ledger_imbalance(&s.energy) < 1e-4);
     }
     abbe_renderer_free(renderer);
-    abbe_scene_free(&scene);
   }
 }
 
 /* Samples go to the device in batches; their number changes neither balance nor total. */
 TEST(many_wavelengths_add_up) {
   static const size_t counts[] = {1, 2, 64, 65, 200};
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
   look_aside(&scene);
   double first = 0;
@@ -165,19 +160,16 @@ TEST(many_wavelengths_add_up) {
     assert_near(s.energy.deposited / first, 1, 1e-4);
     abbe_renderer_free(renderer);
   }
-  abbe_scene_free(&scene);
 }
 
 /* D65's white over the range, in the space asked for. */
 static void white_of(abbe_rgb_space space, double white[3]) {
-  abbe_wavelengths w = {0};
-  abbe_weights weights = {0};
+  OWNED(abbe_wavelengths, w) = {0};
+  OWNED(abbe_weights, weights) = {0};
   const abbe_illuminant d65 = {0};
   OK(abbe_wavelengths_make(7, 380, 780, &w, &error));
   OK(abbe_weights_make(&w, &d65, space, &weights, &error));
   memcpy(white, weights.sum, sizeof weights.sum);
-  abbe_weights_free(&weights);
-  abbe_wavelengths_free(&w);
 }
 
 /* By 2^-93 and 2^93: light that floats could not sum is scaled inside, and back. */
@@ -218,8 +210,8 @@ TEST(faint_light_is_the_same_light) {
 }
 
 TEST(white_in_white_out) {
-  abbe_scene scene = {0};
-  abbe_image map = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, map) = {0};
   abbe_render_desc desc = small_frame;
   desc.wavelengths = 7;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
@@ -232,8 +224,6 @@ TEST(white_in_white_out) {
   }
   assert_near(sum[0] / total, white[0] / white_total, 1e-4);
   assert_near(sum[1] / total, white[1] / white_total, 1e-4);
-  abbe_image_free(&map);
-  abbe_scene_free(&scene);
 }
 
 /* Grey things, a constant index and 7 wavelengths: every pixel has the light's own chromaticity,
@@ -245,8 +235,8 @@ TEST(no_dispersion_no_colour) {
   double white[3];
   white_of(ABBE_RGB_SPACE_ACESCG, white);
   for (size_t i = 0; i < 3; i++) {
-    abbe_scene scene = {0};
-    abbe_image image = {0};
+    OWNED(abbe_scene, scene) = {0};
+    OWNED(abbe_image, image) = {0};
     abbe_render_desc desc = small_frame;
     desc.wavelengths = 7;
     load_text(texts[i], &scene);
@@ -260,9 +250,7 @@ TEST(no_dispersion_no_colour) {
       assert_near(rgb[0] / white[0], rgb[1] / white[1], tolerance);
       assert_near(rgb[2] / white[2], rgb[1] / white[1], tolerance);
     }
-    abbe_image_free(&image);
     abbe_renderer_free(renderer);
-    abbe_scene_free(&scene);
   }
 }
 

@@ -15,17 +15,16 @@ static bool count_calls(void *user, double done) {
 }
 
 static void assert_picture_again(abbe_renderer *renderer, const abbe_image *before) {
-  abbe_image after = {0};
+  OWNED(abbe_image, after) = {0};
   read_picture(renderer, false, &after);
   assert_same_pixels(before, &after);
-  abbe_image_free(&after);
 }
 
 GROUP(make_context, free_context);
 
 TEST(a_frame_can_be_stopped_and_drawn_again) {
-  abbe_scene scene = {0};
-  abbe_image before = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, before) = {0};
   int calls = 0;
   double last = 0;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
@@ -38,15 +37,13 @@ TEST(a_frame_can_be_stopped_and_drawn_again) {
   OK(abbe_renderer_frame(renderer, count_calls, &last, NULL, &error));
   assert_near(last, 1, 0);
   assert_picture_again(renderer, &before);
-  abbe_image_free(&before);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 TEST(the_baseline_leaves_the_picture) {
   for (size_t samples = 1; samples <= 2; samples++) {
-    abbe_scene scene = {0};
-    abbe_image before = {0};
+    OWNED(abbe_scene, scene) = {0};
+    OWNED(abbe_image, before) = {0};
     double ms = 0;
     load_shipped("sphere", &scene);
     const abbe_render_desc desc = {.width = 32,
@@ -61,9 +58,7 @@ TEST(the_baseline_leaves_the_picture) {
     OK(abbe_renderer_baseline(renderer, &ms, &error));
     assert_true(ms > 0);
     assert_picture_again(renderer, &before);
-    abbe_image_free(&before);
     abbe_renderer_free(renderer);
-    abbe_scene_free(&scene);
   }
 }
 
@@ -72,7 +67,7 @@ TEST(the_baseline_leaves_the_picture) {
  * for what is left. */
 TEST(fewer_samples_than_pixels) {
   enum { KINDS = 5 };
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image coarse = {0}, half = {0}, odd = {0}, fine = {0}, moving = {0};
   load_shipped("sphere", &scene);
   abbe_render_desc desc = {.width = 64,
@@ -128,13 +123,12 @@ TEST(fewer_samples_than_pixels) {
   assert_true(worst < 1e-5);
   assert_true(fabs(mean - 1) < 0.01);
   for (size_t i = 0; i < KINDS; i++) abbe_image_free(out[i]);
-  abbe_scene_free(&scene);
 }
 
 /* A map laid out as another of the same scene is that map, to the bit; with half the texels a side
  * its energy is the same, and each light has a map of its own. */
 TEST(a_map_takes_a_given_layout) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_image fitted, again, half;
   abbe_map_layout first, layout, given;
   load_text(
@@ -180,11 +174,10 @@ TEST(a_map_takes_a_given_layout) {
     abbe_image_free(&again);
     abbe_image_free(&half);
   }
-  abbe_scene_free(&scene);
 }
 
 TEST(what_is_not_there_is_refused) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image map = {0};
   abbe_renderer *renderer = NULL;
   const abbe_render_desc huge = {.photons = ABBE_RENDER_MAX_PHOTONS + 1};
@@ -198,12 +191,11 @@ TEST(what_is_not_there_is_refused) {
   assert_null(map.data);
   abbe_renderer_free(renderer);
   abbe_renderer_free(NULL);
-  abbe_scene_free(&scene);
 }
 
 /* What was not drawn is not black. */
 TEST(nothing_is_read_before_a_frame) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image image = {0};
   int calls = 0;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
@@ -225,13 +217,12 @@ TEST(nothing_is_read_before_a_frame) {
     REFUSED(ABBE_CANCELLED, "", abbe_renderer_frame(renderer, stop_now, &calls, NULL, &error));
   }
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 /* Textures of what moves have a row and a column more where sides are powers of two
  * (camera_view.h), and layers are looked up in the part that is drawn. */
 TEST(layers_of_what_moves) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image image[2];
   abbe_render_desc desc = {.width = 64,
                            .height = 64,
@@ -260,7 +251,6 @@ TEST(layers_of_what_moves) {
   print_message("by layers, of what moves %.4f of the light lies elsewhere\n", apart / light);
   assert_true(apart < 0.01 * light);
   for (size_t i = 0; i < 2; i++) abbe_image_free(&image[i]);
-  abbe_scene_free(&scene);
 }
 
 /* One thread a pixel follows what the camera sees there, so a group has many pixels; what they
@@ -274,10 +264,9 @@ TEST(programs_of_what_moves_link) {
                                  .upsample = 2,
                                  .coarse = ABBE_COARSE_ALL};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-    abbe_scene scene = {0};
+    OWNED(abbe_scene, scene) = {0};
     load_shipped(names[i], &scene);
     abbe_renderer *renderer = make_renderer(&scene, &desc);
     abbe_renderer_free(renderer);
-    abbe_scene_free(&scene);
   }
 }

@@ -136,13 +136,12 @@ static void edit(edited *e, size_t i) {
 }
 
 static void inputs_of(const edited *e, abbe_renderer_inputs *out) {
-  abbe_plan plan;
+  OWNED(abbe_plan, plan);
   abbe_error error = {0};
   const abbe_result result = abbe_plan_make(&e->scene, &e->desc, &plan, &error);
   if (result != ABBE_OK) print_error("%s\n", error.text);
   assert_int_equal(result, ABBE_OK);
   abbe_renderer_inputs_of(&e->scene, &plan, out);
-  abbe_plan_free(&plan);
 }
 
 static void print_parts(const char *which, unsigned parts) {

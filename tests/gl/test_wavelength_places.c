@@ -121,9 +121,9 @@ static double place_of_texel(const bench *b, const abbe_map_layout *layout, cons
 
 static void assert_bands_in_place(const setting *s, const abbe_render_desc *desc) {
   bench b;
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_map_layout layout;
-  abbe_image map = {0};
+  OWNED(abbe_image, map) = {0};
   double ends[2], flux;
   make_bench(s, &b);
   /* The glass is known once a scene is loaded. */
@@ -174,8 +174,6 @@ static void assert_bands_in_place(const setting *s, const abbe_render_desc *desc
    * are wide. */
   assert_near(worst, 0, fmax(2e-4, 0.125 * (1.2 * width + 0.02) / (double)map.width));
   assert_near(worst_flux, 0, 3e-3);
-  abbe_image_free(&map);
-  abbe_scene_free(&scene);
 }
 
 GROUP(make_context, free_context);

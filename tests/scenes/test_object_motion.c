@@ -50,7 +50,8 @@ static void assert_same_object(const abbe_object *a, const abbe_object *b) {
 }
 
 TEST(a_moved_object_is_the_one_put_there) {
-  abbe_scene moved = {0}, there = {0};
+  OWNED(abbe_scene, moved) = {0};
+  OWNED(abbe_scene, there) = {0};
   double matrix[16];
   load_text(START BRICK_AT(FIRST) BALL_AT(FIRST) CARD_AT(FIRST), &moved);
   load_text(START BRICK_AT(FIRST THEN) BALL_AT(FIRST THEN) CARD_AT(FIRST THEN), &there);
@@ -62,12 +63,10 @@ TEST(a_moved_object_is_the_one_put_there) {
     OK(abbe_object_move(&moved.object[i], matrix, &error));
     assert_same_object(&moved.object[i], &there.object[i]);
   }
-  abbe_scene_free(&moved);
-  abbe_scene_free(&there);
 }
 
 TEST(other_matrices_are_refused) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(START BRICK_AT(FIRST), &scene);
   abbe_object *brick = &scene.object[1];
   const double corner = brick->max[0];
@@ -83,7 +82,6 @@ TEST(other_matrices_are_refused) {
     REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_object_move(brick, m, &error));
     assert_true(brick->max[0] == corner);
   }
-  abbe_scene_free(&scene);
 }
 
 /* What refracts and what reflects turn about the middle of what refracts; the floor stays. */

@@ -19,7 +19,8 @@
 #define OTHER "{translate: [0.3, 0.1, 0.4]}"
 
 TEST(all_refractors_turn_about_their_middle) {
-  abbe_scene tilted = {0}, there = {0};
+  OWNED(abbe_scene, tilted) = {0};
+  OWNED(abbe_scene, there) = {0};
   load_text(START STONE_AT("a", ONE) PANE STONE_AT("b", OTHER), &tilted);
   load_text(START STONE_AT("a", ONE TURNED) PANE STONE_AT("b", OTHER TURNED), &there);
   OK(abbe_refractors_tilt(&tilted, 25 * RAD, 30 * RAD, &error));
@@ -30,13 +31,11 @@ TEST(all_refractors_turn_about_their_middle) {
         assert_near(a->mesh.position[v][k], b->mesh.position[v][k], 1e-12);
     for (int k = 0; k < 3; k++) assert_near(a->max[k], b->max[k], 1e-12);
   }
-  abbe_scene_free(&tilted);
-  abbe_scene_free(&there);
 }
 
 /* As abbe gem report has it: what is left of the axis' arrow rises. */
 TEST(a_tilt_lifts_what_is_left_of_its_axis) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(START STONE_AT("a", "{translate: [0, 0, 0.2]}"), &scene);
   abbe_object *o = &scene.object[1];
   size_t left = 0;
@@ -45,14 +44,12 @@ TEST(a_tilt_lifts_what_is_left_of_its_axis) {
   const double before = o->mesh.position[left][2];
   OK(abbe_refractors_tilt(&scene, 10 * RAD, 0, &error));
   assert_true(o->mesh.position[left][2] > before + 0.005);
-  abbe_scene_free(&scene);
 }
 
 static void refused(const char *text, double tilt, abbe_result why, const char *part) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(text, &scene);
   REFUSED(why, part, abbe_refractors_tilt(&scene, tilt, 0, &error));
-  abbe_scene_free(&scene);
 }
 
 TEST(what_cannot_be_tilted_is_refused) {

@@ -102,8 +102,7 @@ TEST(a_receiver_larger_than_the_view_is_in_view) {
 }
 
 TEST(freeing_nothing_is_safe) {
-  abbe_scene scene = {0};
-  abbe_scene_free(&scene);
+  OWNED(abbe_scene, scene) = {0};
   abbe_scene_free(NULL);
 }
 

@@ -6,10 +6,9 @@
 #define STONE(more) "- {name: stone, shape: brilliant, diameter: 0.05, " more ", material: dense}\n"
 
 static size_t doubts_of(const char *text, abbe_scene_doubts *out) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(text, &scene);
   abbe_scene_doubt(&scene, out);
-  abbe_scene_free(&scene);
   return out->count;
 }
 

@@ -188,14 +188,12 @@ TEST(threads_read_the_same) {
   const double l[] = {400, 450, 470, 600, 700}, v[] = {1, 5, -2, 0, 3};
   abbe_spectrum *s = make(l, v, 5, ABBE_INTERPOLATION_SPLINE);
   pthread_t threads[4];
-  double *alone = read_many(s);
+  FREED double *alone = read_many(s);
   for (int i = 0; i < 4; i++) assert_int_equal(pthread_create(&threads[i], NULL, read_many, s), 0);
   for (int i = 0; i < 4; i++) {
-    void *sum = NULL;
+    FREED void *sum = NULL;
     pthread_join(threads[i], &sum);
     assert_near(*(double *)sum, *alone, 0);
-    free(sum);
   }
-  free(alone);
   abbe_spectrum_free(s);
 }

@@ -3,7 +3,7 @@
 #include "spectral/wavelengths.h"
 
 TEST(seven_over_the_default_range) {
-  abbe_wavelengths w;
+  OWNED(abbe_wavelengths, w);
   OK(abbe_wavelengths_make(7, 380, 780, &w, &error));
   assert_int_equal(w.count, 7);
   assert_near(w.lambda_nm[0], 380, 0);
@@ -17,21 +17,19 @@ TEST(seven_over_the_default_range) {
   abbe_wavelengths_free(&w);
   assert_null(w.lambda_nm);
   assert_int_equal(w.count, 0);
-  abbe_wavelengths_free(&w);
 }
 
 TEST(one_stands_in_the_middle) {
-  abbe_wavelengths w;
+  OWNED(abbe_wavelengths, w);
   OK(abbe_wavelengths_make(1, 400, 700, &w, &error));
   assert_near(w.lambda_nm[0], 550, 0);
   assert_near(w.edge_nm[0], 400, 0);
   assert_near(w.edge_nm[1], 700, 0);
-  abbe_wavelengths_free(&w);
 }
 
 TEST(bands_tile_the_range_at_any_count) {
   for (size_t count = 2; count <= ABBE_WAVELENGTHS_MAX_COUNT; count = count * 3 / 2 + 1) {
-    abbe_wavelengths w;
+    OWNED(abbe_wavelengths, w);
     OK(abbe_wavelengths_make(count, 361.3, 829.7, &w, &error));
     assert_near(w.edge_nm[0], 361.3, 0);
     assert_near(w.edge_nm[count], 829.7, 0);
@@ -41,7 +39,6 @@ TEST(bands_tile_the_range_at_any_count) {
       if (i > 0)
         assert_near(w.lambda_nm[i] - w.lambda_nm[i - 1], 468.4 / (double)(count - 1), 1e-9);
     }
-    abbe_wavelengths_free(&w);
   }
 }
 

@@ -201,8 +201,7 @@ TEST(what_the_text_would_misread_is_refused) {
 }
 
 TEST(numbers_read_back) {
-  char *list = NULL;
+  FREED char *list = NULL;
   OK(abbe_yaml_edit_list((double[]){1.5, 0.0042}, 2, &list, &error));
   assert_string_equal(list, "[1.5, 0.0042]");
-  free(list);
 }

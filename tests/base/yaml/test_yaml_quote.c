@@ -19,7 +19,8 @@ TEST(texts_read_back) {
       "\xef\xbb\xbf", "\xef\xbf\xbf", "~",       "null"};
   for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
     for (int flow = 0; flow < 2; flow++) {
-      char *quote = quoted(texts[i]), text[200];
+      FREED char *quote = quoted(texts[i]);
+      char text[200];
       abbe_yaml *yaml = NULL;
       abbe_error error = {0};
       assert_null(strchr(quote, '\n'));
@@ -30,7 +31,6 @@ TEST(texts_read_back) {
       assert_string_equal(abbe_yaml_text(yaml, abbe_yaml_get(yaml, root, "k")), texts[i]);
       assert_int_equal(abbe_yaml_count(yaml, root), 2);
       abbe_yaml_free(yaml);
-      free(quote);
     }
 }
 
@@ -46,14 +46,12 @@ TEST(only_what_must_be_is_quoted) {
                {"two\nlines", "\"two\\nlines\""},
                {"µ", "\"µ\""}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    char *quote = quoted(cases[i].text);
+    FREED char *quote = quoted(cases[i].text);
     assert_string_equal(quote, cases[i].quote);
-    free(quote);
   }
 }
 
 TEST(bytes_that_are_no_letters_are_replaced) {
-  char *quote = quoted("caf\xe9 \xe2\x82");
+  FREED char *quote = quoted("caf\xe9 \xe2\x82");
   assert_string_equal(quote, "\"caf\\ufffd \\ufffd\\ufffd\"");
-  free(quote);
 }

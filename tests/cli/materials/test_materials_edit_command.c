@@ -131,11 +131,10 @@ static int finish(void) {
 }
 
 static void check_file(const char *wanted) {
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size = 0;
   OK(abbe_file_read(path, 1 << 20, &text, &size, &error));
   assert_string_equal(text, wanted);
-  free(text);
 }
 
 static void set_up(void) {

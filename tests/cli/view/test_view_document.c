@@ -75,11 +75,10 @@ TEST(what_differs) {
   static const char *const others[] = {
       "objects.gem.material", "lights", "environment.rotate", "ambient.x", "time", "materials"};
   for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
-    abbe_view_document c;
+    OWNED(abbe_view_document, c);
     OK(abbe_view_document_copy(&b, &c, &error));
     set(&c, others[i], "1");
     assert_int_equal(abbe_view_document_compare(&b, &c), ABBE_VIEW_CHANGED);
-    abbe_view_document_free(&c);
   }
   abbe_view_document_free(&a);
   abbe_view_document_free(&b);

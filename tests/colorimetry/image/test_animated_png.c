@@ -13,11 +13,10 @@ static const char *const frames[] = {"animated_0.png", "animated_1.png", "animat
 
 static void write_frame(const char *path, size_t side, float grey) {
   static const char *const names[] = {"R", "G", "B"};
-  abbe_image image;
+  OWNED(abbe_image, image);
   OK(abbe_image_make(side, side, 3, names, &image, &error));
   for (size_t i = 0; i < 3 * side * side; i++) image.data[i] = grey * (float)(i % 7) / 7;
   OK(abbe_png_write(path, &image, 8, &error));
-  abbe_image_free(&image);
 }
 
 static uint32_t u32_at(const char *at) {
@@ -27,7 +26,7 @@ static uint32_t u32_at(const char *at) {
 
 /* Every chunk is whole, its sum right, and sequence numbers count up from 0. */
 TEST(chunks_are_by_the_standard) {
-  char *data;
+  FREED char *data = NULL;
   size_t size;
   uint32_t sequence = 0, controls = 0, others = 0, first = 0;
   for (int i = 0; i < 3; i++) write_frame(frames[i], 16, 0.3f * (float)(i + 1));
@@ -56,17 +55,15 @@ TEST(chunks_are_by_the_standard) {
   assert_int_equal(controls, 3);
   assert_int_equal(others, 2);
   assert_int_equal(first, 1);
-  free(data);
 }
 
 TEST(the_first_frame_is_what_others_see) {
-  abbe_image a, b;
+  OWNED(abbe_image, a);
+  OWNED(abbe_image, b);
   OK(abbe_png_read(MOVES, &a, &error));
   OK(abbe_png_read(frames[0], &b, &error));
   assert_int_equal(a.width, 16);
   assert_memory_equal(a.data, b.data, 3 * 16 * 16 * sizeof(float));
-  abbe_image_free(&a);
-  abbe_image_free(&b);
 }
 
 TEST(what_is_refused) {

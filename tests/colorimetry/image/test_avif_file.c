@@ -88,9 +88,9 @@ TEST(files_hold_pixels_and_their_colour) {
       {{0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290}, {0}, 18, 10, {9, 18, 9}},
       {{0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290}, {0}, 0, 10, {1, 13, 1}},
       {{0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.3290}, {0}, 0, 12, {12, 13, 1}}};
-  uint16_t *pixel = malloc(W * H * 3 * sizeof *pixel);
+  FREED uint16_t *pixel = malloc(W * H * 3 * sizeof *pixel);
   for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
-    abbe_image image;
+    OWNED(abbe_image, image);
     double xy[8];
     paint(&image);
     memcpy(image.xy, of[i].xy, sizeof image.xy);
@@ -105,18 +105,16 @@ TEST(files_hold_pixels_and_their_colour) {
     assert_int_equal(read->icc.size, 0);
     check_pixels(&image, pixel, of[i].bits);
     avifImageDestroy(read);
-    abbe_image_free(&image);
   }
-  free(pixel);
 }
 
 /* A power of 2.4 has no code that decoders agree on: a profile says it. */
 TEST(other_encodings_have_a_profile) {
   static const double power[5] = {2.4, 1, 0, 0, 0};
-  uint16_t *pixel = malloc(W * H * 3 * sizeof *pixel);
-  abbe_image image;
+  FREED uint16_t *pixel = malloc(W * H * 3 * sizeof *pixel);
+  OWNED(abbe_image, image);
   double curve[5];
-  void *icc = NULL;
+  FREED void *icc = NULL;
   size_t size = 0;
   paint(&image);
   abbe_rgb_encoding_srgb(image.xy, curve);
@@ -128,13 +126,10 @@ TEST(other_encodings_have_a_profile) {
   assert_memory_equal(read->icc.data, icc, size);
   check_pixels(&image, pixel, 10);
   avifImageDestroy(read);
-  abbe_image_free(&image);
-  free(icc);
-  free(pixel);
 }
 
 TEST(what_cannot_be_written_is_said) {
-  abbe_image image;
+  OWNED(abbe_image, image);
   assert_true(abbe_avif_is_there());
   paint(&image);
   REFUSED(ABBE_INVALID_ARGUMENT, "10 or 12", abbe_avif_write(path, &image, 8, &error));
@@ -145,15 +140,13 @@ TEST(what_cannot_be_written_is_said) {
   image.data[0] = NAN; /* is dark */
   OK(abbe_avif_write(path, &image, 10, &error));
   REFUSED(ABBE_IO, "", abbe_avif_write("/nowhere/at/all.avif", &image, 10, &error));
-  abbe_image_free(&image);
 }
 
 #else
 TEST(without_the_library_it_is_said) {
-  abbe_image image;
+  OWNED(abbe_image, image);
   paint(&image);
   assert_false(abbe_avif_is_there());
   REFUSED(ABBE_UNSUPPORTED, "libavif", abbe_avif_write(path, &image, 10, &error));
-  abbe_image_free(&image);
 }
 #endif

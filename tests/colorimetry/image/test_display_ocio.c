@@ -207,7 +207,7 @@ static double luminance(const double encoded[3]) {
 TEST(looking_at_the_spectrum) {
   enum { FIRST = 400, LAST = 700, COUNT = LAST - FIRST + 1, STEPS = 24 };
   const double half_a_step = 0.5 / 65535;
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   OK(abbe_image_make(COUNT, STEPS, 3, names, &image, &error));
   double matrix[9];
   abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
@@ -237,12 +237,12 @@ TEST(looking_at_the_spectrum) {
       if (fabs((double)p[3 + k] - c[k]) > 0.05) fail_msg("%d nm, step %d: a jump", nm, step);
   }
   abbe_display_free(display);
-  abbe_image_free(&image);
 }
 
 TEST(other_channels_stay) {
   abbe_display *display = make(&(abbe_display_desc){0});
-  abbe_image image = {0}, two = {0};
+  OWNED(abbe_image, image) = {0};
+  OWNED(abbe_image, two) = {0};
   OK(abbe_image_make(3, 2, 5, names, &image, &error));
   for (int i = 0; i < 30; i++) image.data[i] = 0.18f;
   OK(abbe_display_apply(display, &image, &error));
@@ -250,8 +250,6 @@ TEST(other_channels_stay) {
     assert_true(i % 5 < 3 ? image.data[i] > 0.4f : image.data[i] == 0.18f);
   OK(abbe_image_make(1, 1, 2, names, &two, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_display_apply(display, &two, &error));
-  abbe_image_free(&image);
-  abbe_image_free(&two);
   abbe_display_free(display);
 }
 
@@ -320,7 +318,7 @@ TEST(list) {
  * 'h' HLG of Rec.2020's primaries, '-' nothing. */
 static char encoding_of(const abbe_display_desc *desc) {
   abbe_display *display = make(desc);
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   double p3[8], curve[5];
   OK(abbe_image_make(1, 1, 3, names, &image, &error));
   image.xy[0] = 0.7; /* of the scene-linear picture */
@@ -335,7 +333,6 @@ static char encoding_of(const abbe_display_desc *desc) {
     kind = image.transfer == 16 ? 'q' : image.transfer == 18 ? 'h' : '?';
   }
   if (kind == '?' && fabs(image.xy[0] - p3[0]) < 1e-4 && image.curve[0] == curve[0]) kind = 'p';
-  abbe_image_free(&image);
   abbe_display_free(display);
   return kind;
 }

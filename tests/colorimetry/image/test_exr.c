@@ -58,15 +58,14 @@ TEST(round_trip_is_exact) {
 /* A row of values, written in half precision and read again. */
 static void through_half(const float *value, size_t count, float *back) {
   static const char *const names[] = {"Y"};
-  abbe_image image = {0}, read = {0};
+  OWNED(abbe_image, image) = {0};
+  OWNED(abbe_image, read) = {0};
   OK(abbe_image_make(count, 1, 1, names, &image, &error));
   memcpy(image.data, value, count * sizeof *value);
   OK(abbe_exr_write_half(path, &image, &error));
   OK(abbe_exr_read(path, &read, &error));
   assert_int_equal(read.attribute_count, 0);
   memcpy(back, read.data, count * sizeof *back);
-  abbe_image_free(&image);
-  abbe_image_free(&read);
 }
 
 /* IEEE 754's binary16: 11 bits, ties to even, steps of 2^-24 at the lower end. */
@@ -110,7 +109,7 @@ TEST(units_that_are_none) {
   REFUSED(ABBE_INVALID_ARGUMENT, "'abbe:stored_unit'",
           abbe_exr_write_half("/tmp/no.exr", &image, &error));
   abbe_image_free(&image);
-  char *data = NULL;
+  FREED char *data = NULL;
   size_t size = 0;
   OK(abbe_file_read(path, 1 << 20, &data, &size, &error));
   char *unit = NULL;
@@ -125,7 +124,6 @@ TEST(units_that_are_none) {
     REFUSED(ABBE_PARSE, "abbe:stored_unit", abbe_exr_read(path, &back, &error));
     assert_null(back.data);
   }
-  free(data);
 }
 
 TEST(what_cannot_be_written) {
@@ -162,11 +160,10 @@ TEST(a_full_disk_leaves_the_old_file) {
   assert_int_equal(setrlimit(RLIMIT_FSIZE, &old), 0);
   assert_int_equal(result, ABBE_IO);
   assert_non_null(strstr(why.text, path));
-  char *data = NULL;
+  FREED char *data = NULL;
   size_t size = 0;
   OK(abbe_file_read(path, 100, &data, &size, &error));
   assert_string_equal(data, "old");
-  free(data);
   abbe_image_free(&image);
 }
 
@@ -238,7 +235,7 @@ TEST(foreign_files) {
                                              EXR_COMPRESSION_PIZ};
   for (int i = 0; i < 10; i++) {
     write_foreign(i < 5 ? EXR_STORAGE_SCANLINE : EXR_STORAGE_TILED, codecs[i % 5], 37, 41);
-    abbe_image image = {0};
+    OWNED(abbe_image, image) = {0};
     abbe_error error = {0};
     if (abbe_exr_read(path, &image, &error) != ABBE_OK) fail_msg("case %d: %s", i, error.text);
     assert_true(image.width == 37 && image.height == 41 && image.channels == 3);
@@ -247,7 +244,6 @@ TEST(foreign_files) {
       if (v[0] != (float)p * 0.25f || v[1] != (p % 2 ? 1 : 2) || v[2] != (float)p)
         fail_msg("case %d, pixel %d: %g %g %g", i, p, (double)v[0], (double)v[1], (double)v[2]);
     }
-    abbe_image_free(&image);
   }
 }
 
@@ -270,11 +266,10 @@ TEST(truncated_anywhere) {
   abbe_image image = gradient(20, 40);
   write_image(&image);
   size_t size = 0;
-  char *data = load(&size);
+  FREED char *data = load(&size);
   for (size_t cut = 0; cut < size; cut += cut < 400 ? 1 : 97)
     read_must_fail(data, cut, "truncated");
   read_must_fail(data, size - 1, "truncated by a byte");
-  free(data);
   abbe_image_free(&image);
 }
 
@@ -283,18 +278,16 @@ TEST(flipped_bits_anywhere) {
   abbe_image image = gradient(20, 40);
   write_image(&image);
   size_t size = 0;
-  char *data = load(&size);
+  FREED char *data = load(&size);
   for (size_t at = 0; at < size; at += at < 500 ? 1 : 31) {
     const char flipped = (char)(1 << at * 5 % 8);
     data[at] ^= flipped;
     OK(abbe_file_write(path, data, size, &error));
     data[at] ^= flipped;
-    abbe_image back = {0};
+    OWNED(abbe_image, back) = {0};
     abbe_error why = {0};
     if (abbe_exr_read(path, &back, &why) != ABBE_OK) assert_true(why.text[0] != '\0');
-    abbe_image_free(&back);
   }
-  free(data);
   abbe_image_free(&image);
 }
 
@@ -302,7 +295,7 @@ TEST(a_huge_data_window) {
   abbe_image image = gradient(20, 40);
   write_image(&image);
   size_t size = 0;
-  char *data = load(&size);
+  FREED char *data = load(&size);
   char *window = NULL;
   for (size_t i = 0; i + 40 < size && window == NULL; i++)
     if (memcmp(data + i, "dataWindow", 11) == 0) window = data + i + 11 + 6 + 4;
@@ -313,7 +306,6 @@ TEST(a_huge_data_window) {
     memcpy(window + 8, last[i], sizeof last[i]);
     read_must_fail(data, size, "huge window");
   }
-  free(data);
   abbe_image_free(&image);
 }
 
@@ -379,7 +371,7 @@ TEST(younger_codecs) {
                 {12, "an unknown compression (number 12)"}};
   static const char *const names[] = {"R", "G", "B"};
   abbe_image image = {0};
-  char *data = NULL;
+  FREED char *data = NULL;
   size_t size = 0;
   OK(abbe_image_make(4, 4, 3, names, &image, &error));
   write_image(&image);
@@ -396,7 +388,6 @@ TEST(younger_codecs) {
     OK(abbe_file_write(path, data, size, &error));
     REFUSED(ABBE_UNSUPPORTED, codecs[i].says, abbe_exr_read(path, &image, &error));
   }
-  free(data);
   unlink(path);
 }
 

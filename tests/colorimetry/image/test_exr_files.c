@@ -62,12 +62,11 @@ static void read_and_compare(const exr_library_file *f) {
   char what[200], why[300];
   say(what, sizeof what, f);
   if (!exr_library_write(path, f, why, sizeof why)) fail_msg("%s: %s", what, why);
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   abbe_error error = {0};
   if (abbe_exr_read(path, &image, &error) != ABBE_OK) fail_msg("%s: %s", what, error.text);
   assert_int_equal(image.channels, f->channels);
   compare(&image, f->name, f->channels, what);
-  abbe_image_free(&image);
 }
 
 /* All counts of channels to six, of one type or of two, at all sizes. */
@@ -187,13 +186,12 @@ static void write_parts(int count) {
 /* mark: "" or "#PART". */
 static void reads_part(const char *mark, int part, const char *says) {
   char name[200];
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   snprintf(name, sizeof name, "%s%s", path, mark);
   OK(abbe_exr_read(name, &image, &error));
   assert_string_equal(image.part, says);
   assert_int_equal(image.channels, parts[part].channels);
   compare_part(&image, part, parts[part].name, parts[part].channels, name);
-  abbe_image_free(&image);
 }
 
 TEST(parts) {
@@ -204,7 +202,7 @@ TEST(parts) {
   reads_part("#rgb right", 3, "4 'rgb right' of 4");
   write_parts(2);
   reads_part("", 1, "2 'grey' of 2");
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   char name[200];
   static const char *const none[] = {"#rgb left", "#3", "#0", "#"};
   for (int i = 0; i < 4; i++) {
@@ -219,14 +217,13 @@ TEST(parts) {
   /* a file of that very name is itself */
   assert_int_equal(rename(path, name), 0);
   OK(abbe_exr_read(name, &image, &error));
-  abbe_image_free(&image);
   unlink(name);
 }
 
 /* Each part has a codec of its own. */
 TEST(a_codec_of_one_part) {
   static const char key[] = "compression\0compression\0\1\0\0"; /* and the size's last byte */
-  char *data = NULL;
+  FREED char *data = NULL;
   size_t size = 0;
   abbe_image image = {0};
   write_parts(PARTS);
@@ -241,7 +238,6 @@ TEST(a_codec_of_one_part) {
   OK(abbe_file_write(path, data, size, &error));
   REFUSED(ABBE_UNSUPPORTED, "an unknown compression (number 99)",
           abbe_exr_read(path, &image, &error));
-  free(data);
 }
 
 /* What a small file may unfold into is bounded, whichever window says it. */
@@ -275,24 +271,22 @@ TEST(every_half) {
   for (int y = 0; y < 65536 / WIDE; y++)
     assert_int_equal(exr_write_scanline_chunk(f, 0, y, row + WIDE * y, WIDE * sizeof *row), 0);
   assert_int_equal(exr_finish(&f), 0);
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   OK(abbe_exr_read(path, &image, &error));
   compare(&image, (const char *const[]){"Y"}, 1, "every half");
-  abbe_image_free(&image);
 }
 
 TEST(what_abbe_writes) {
   for (size_t channels = 1; channels <= 6; channels++)
     for (int s = 0; s < SIZES; s++)
       for (int half = 0; half < 2; half++) {
-        abbe_image image = {0};
+        OWNED(abbe_image, image) = {0};
         OK(abbe_image_make((size_t)sizes[s][0], (size_t)sizes[s][1], channels, names, &image,
                            &error));
         for (size_t i = 0; i < image.width * image.height * channels; i++)
           image.data[i] = (float)(i % 1000) * 0.25f + 1; /* a half can hold it */
         OK((half ? abbe_exr_write_half : abbe_exr_write)(path, &image, &error));
         compare(&image, names, (int)channels, "written by Abbe");
-        abbe_image_free(&image);
       }
 }
 
@@ -347,7 +341,7 @@ static long fill_chunks(abbe_image *image, bool half, uint64_t seed, size_t zero
 TEST(chunks_that_deflate_to_their_own_size) {
   for (size_t channels = 1; channels <= 3; channels++)
     for (int half = 0; half < 2; half++) {
-      abbe_image image = {0};
+      OWNED(abbe_image, image) = {0};
       size_t met[3] = {0};
       OK(abbe_image_make(16, 2 * CHUNK_LINES, channels, names, &image, &error));
       for (uint64_t seed = 0; seed < 64 && met[1] < 4; seed++)
@@ -355,7 +349,7 @@ TEST(chunks_that_deflate_to_their_own_size) {
           const long more = fill_chunks(&image, half, seed, zeros);
           if (labs(more) > 1) continue;
           met[more + 1]++;
-          abbe_image back = {0};
+          OWNED(abbe_image, back) = {0};
           char what[100];
           snprintf(what, sizeof what, "seed %d, %zu zeros, %zu channels, half %d, %ld bytes more",
                    (int)seed, zeros, channels, half, more);
@@ -363,10 +357,8 @@ TEST(chunks_that_deflate_to_their_own_size) {
           compare(&image, names, (int)channels, what);
           OK(abbe_exr_read(path, &back, &error));
           compare(&back, names, (int)channels, what);
-          abbe_image_free(&back);
         }
       if (met[1] == 0) fail_msg("%zu channels, half %d: no such chunk", channels, half);
-      abbe_image_free(&image);
     }
 }
 

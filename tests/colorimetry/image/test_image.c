@@ -5,14 +5,13 @@
 static const char *const rgb[] = {"R", "G", "B"};
 
 TEST(make_is_black_and_named) {
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   OK(abbe_image_make(3, 2, 3, rgb, &image, &error));
   for (int i = 0; i < 18; i++) assert_true(image.data[i] == 0);
   assert_int_equal(abbe_image_find_channel(&image, "B"), 2);
   assert_true(abbe_image_find_channel(&image, "A") == (size_t)-1);
   abbe_image_free(&image);
   assert_null(image.data);
-  abbe_image_free(&image);
   abbe_image_free(NULL);
 }
 
@@ -30,7 +29,7 @@ TEST(sizes_are_checked_first) {
 }
 
 TEST(attributes_have_a_limit) {
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   char name[16];
   OK(abbe_image_make(1, 1, 3, rgb, &image, &error));
   for (int i = 0; i < ABBE_IMAGE_MAX_ATTRIBUTES; i++) {
@@ -39,7 +38,6 @@ TEST(attributes_have_a_limit) {
   }
   OK(abbe_image_set_attribute(&image, "a7", "other", &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "'more'", abbe_image_set_attribute(&image, "more", "", &error));
-  abbe_image_free(&image);
 }
 
 TEST(what_unfolds) {
@@ -62,7 +60,8 @@ TEST(what_unfolds) {
 }
 
 TEST(places) {
-  abbe_image a = {0}, b = {0};
+  OWNED(abbe_image, a) = {0};
+  OWNED(abbe_image, b) = {0};
   OK(abbe_image_make(3, 2, 3, rgb, &a, &error));
   OK(abbe_image_make(3, 2, 3, rgb, &b, &error));
   assert_int_equal(a.display_window.x1, 2);
@@ -73,8 +72,6 @@ TEST(places) {
   b.display_window = (abbe_image_window){-7, 0, -5, 1};
   REFUSED(ABBE_INVALID_ARGUMENT, "a shows (0, 0) to (2, 1) and b (-7, 0) to (-5, 1)",
           abbe_image_check_place(&a, "a", &b, "b", &error));
-  abbe_image_free(&a);
-  abbe_image_free(&b);
 }
 
 TEST(names_are_needed) {
@@ -86,7 +83,7 @@ TEST(names_are_needed) {
 }
 
 TEST(attributes) {
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   OK(abbe_image_make(1, 1, 3, rgb, &image, &error));
   assert_null(abbe_image_attribute_text(&image, "abbe:space"));
   OK(abbe_image_set_attribute(&image, "abbe:space", "xyz", &error));
@@ -96,7 +93,6 @@ TEST(attributes) {
   assert_string_equal(abbe_image_attribute_text(&image, "abbe:space"), "acescg");
   assert_string_equal(abbe_image_attribute_text(&image, "comment"), "");
   assert_int_equal(abbe_image_set_attribute(&image, "", "x", NULL), ABBE_INVALID_ARGUMENT);
-  abbe_image_free(&image);
 }
 
 TEST(append) {

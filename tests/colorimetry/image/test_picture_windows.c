@@ -81,7 +81,7 @@ TEST(compare) {
 TEST(display) {
   write_pictures();
   ends_with(0, "$abbe display left.exr -o left.png --view Raw");
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   OK(abbe_png_read(run_path("left.png"), &image, &error));
   assert_int_equal(image.width, 32);
   assert_int_equal(image.height, 24);
@@ -90,7 +90,6 @@ TEST(display) {
       const bool inside = x >= 2 && x <= 9 && y >= 3 && y <= 8;
       assert_int_equal(image.data[3 * (y * 32 + x)] > 0, inside);
     }
-  abbe_image_free(&image);
 }
 
 /* A depth and the colours, 32 x 16, as parts of one file. */

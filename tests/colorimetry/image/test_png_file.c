@@ -74,11 +74,10 @@ TEST(a_full_disk_leaves_the_old_file) {
   assert_int_equal(setrlimit(RLIMIT_FSIZE, &old), 0);
   assert_int_equal(result, ABBE_IO);
   assert_non_null(strstr(why.text, path));
-  char *data = NULL;
+  FREED char *data = NULL;
   size_t size = 0;
   OK(abbe_file_read(path, 100, &data, &size, &error));
   assert_string_equal(data, "old");
-  free(data);
   abbe_image_free(&image);
 }
 
@@ -141,12 +140,11 @@ TEST(foreign_files) {
   for (int i = 0; i < 10; i++) {
     write_foreign(cases[i / 2].colour, cases[i / 2].bits,
                   i % 2 ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE);
-    abbe_image image = {0};
+    OWNED(abbe_image, image) = {0};
     abbe_error error = {0};
     if (abbe_png_read(path, &image, &error) != ABBE_OK) fail_msg("case %d: %s", i, error.text);
     assert_true(image.width == 8 && image.height == 8 && image.channels == 3);
     for (int k = 0; k < 3; k++) assert_true(fabsf(image.data[k] - cases[i / 2].first[k]) < 1e-6f);
-    abbe_image_free(&image);
   }
 }
 
@@ -170,24 +168,21 @@ static char *written(size_t *size) {
 
 TEST(truncated_anywhere) {
   size_t size = 0;
-  char *data = written(&size);
+  FREED char *data = written(&size);
   for (size_t cut = 0; cut < size; cut++) read_must_fail(data, cut, "truncated");
-  free(data);
 }
 
 TEST(flipped_bits_anywhere) {
   size_t size = 0;
-  char *data = written(&size);
+  FREED char *data = written(&size);
   for (size_t at = 0; at < size; at++) {
     data[at] ^= (char)(1 << at % 8);
     OK(abbe_file_write(path, data, size, &error));
     data[at] ^= (char)(1 << at % 8);
-    abbe_image back = {0};
+    OWNED(abbe_image, back) = {0};
     abbe_error why = {0};
     if (abbe_png_read(path, &back, &why) != ABBE_OK) assert_true(why.text[0] != '\0');
-    abbe_image_free(&back);
   }
-  free(data);
 }
 
 /* A header that promises too much, with its checksum right. */
@@ -195,7 +190,7 @@ TEST(a_huge_header) {
   static const unsigned sides[][2] = {{2000, 2000}, {16385, 1}, {1, 16385}};
   for (int i = 0; i < 3; i++) {
     size_t size = 0;
-    char *data = written(&size);
+    FREED char *data = written(&size);
     for (int b = 0; b < 4; b++)
       for (int k = 0; k < 2; k++) data[16 + 4 * k + b] = (char)(sides[i][k] >> (24 - 8 * b) & 255);
     unsigned crc = 0xffffffff;
@@ -205,7 +200,6 @@ TEST(a_huge_header) {
     }
     for (int b = 0; b < 4; b++) data[29 + b] = (char)(~crc >> (24 - 8 * b) & 255);
     read_must_fail(data, size, "huge header");
-    free(data);
   }
 }
 
@@ -311,12 +305,11 @@ static void say_p3_by_chunks(png_structp png, png_infop info) {
 }
 static void say_p3_by_profile(png_structp png, png_infop info) {
   double xy[8], curve[5];
-  void *icc = NULL;
+  FREED void *icc = NULL;
   size_t size = 0;
   abbe_rgb_encoding_display_p3(xy, curve);
   OK(abbe_rgb_encoding_profile(xy, curve, &icc, &size, &error));
   png_set_iCCP(png, info, "p3", 0, icc, (png_uint_32)size);
-  free(icc);
 }
 static void say_cicp(png_structp png, png_infop info, int primaries, int transfer) {
   png_unknown_chunk chunk = {.name = "cICP", .size = 4, .location = PNG_HAVE_IHDR};
@@ -351,7 +344,7 @@ TEST(the_colour_is_heeded) {
                {say_p3_by_cicp, {0.91749, 0.20029, 0.13856}, {1, 0, 0}},
                {say_rec709_by_cicp, {0.5, 0.5, 0.5}, {0.54681, 0.54681, 0.54681}}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    abbe_image image = {0};
+    OWNED(abbe_image, image) = {0};
     abbe_error why = {0};
     write_stating(cases[i].in, cases[i].say);
     if (abbe_png_read(path, &image, &why) != ABBE_OK) fail_msg("case %zu: %s", i, why.text);
@@ -360,7 +353,6 @@ TEST(the_colour_is_heeded) {
         fail_msg("case %zu: component %d is %g, not %g", i, c, (double)image.data[c],
                  cases[i].out[c]);
     assert_true(abbe_rgb_encoding_is_srgb(image.xy, image.curve));
-    abbe_image_free(&image);
   }
   abbe_image image = {0};
   write_stating(cases[0].in, say_pq);

@@ -128,7 +128,7 @@ TEST(the_profile_of_display_p3) {
 /* By formula and by Little CMS through the profile: the same. */
 TEST(to_srgb_in_two_ways) {
   double xy[8], curve[5];
-  void *icc = NULL;
+  FREED void *icc = NULL;
   size_t size = 0;
   abbe_rgb_encoding_display_p3(xy, curve);
   OK(abbe_rgb_encoding_profile(xy, curve, &icc, &size, &error));
@@ -151,7 +151,6 @@ TEST(to_srgb_in_two_ways) {
   red = one_pixel(1, 0, 0);
   OK(abbe_rgb_encoding_profile_to_srgb(&red, icc, size, "red", &error));
   pixel_is(&red, 1, 0, 0, 0);
-  free(icc);
 }
 
 static void *saved(cmsHPROFILE profile, cmsUInt32Number *size) {

@@ -116,7 +116,7 @@ TEST(stops_are_those_of_finite_light) {
   static const float value[][3] = {
       {INFINITY, INFINITY, INFINITY}, {NAN, NAN, NAN}, {3.2f, 1, 0}, {0.1f, 0.2f, 3.2f}};
   const abbe_screen_png_desc desc = {.bits = 8, .notes = &notes};
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   OK(abbe_image_make(4, 1, 3, rgb, &image, &error));
   memcpy(image.data, value, sizeof value);
   OK(abbe_screen_png_write(path, &image, &desc, &error));
@@ -131,7 +131,6 @@ TEST(stops_are_those_of_finite_light) {
   for (size_t i = 0; i < 12; i++) image.data[i] = INFINITY;
   OK(abbe_screen_png_write(path, &image, &desc, &error));
   assert_true(notes.stops == 0 && notes.white == 1);
-  abbe_image_free(&image);
   unlink(path);
 }
 
@@ -155,7 +154,7 @@ TEST(alpha_is_straight) {
   static const char *const channels[] = {"R", "G", "B", "A"};
   static const float pixels[] = {0.3f, 0.3f, 0.3f, 0.5f, 0, 0, 0, 0}, whole[] = {0.6f, 0.6f, 0.6f};
   const abbe_screen_png_desc desc = {.display = {.view = "Plain"}, .alpha = true, .bits = 8};
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   float shown[3];
   unsigned char *data;
   size_t size;
@@ -178,7 +177,6 @@ TEST(alpha_is_straight) {
     assert_int_equal(rgba[4 + k], 0);
   }
   assert_int_equal(rgba[7], 0);
-  abbe_image_free(&image);
 }
 
 TEST(what_cannot_be_shown_is_refused) {

@@ -156,7 +156,7 @@ TEST(a_grid_runs_row_by_row) {
   spot at[6];
   for (size_t i = 0; i < 6; i++) {
     abbe_chart charts[6] = {0};
-    abbe_image image;
+    OWNED(abbe_image, image);
     for (size_t k = 0; k < 6; k++) {
       charts[k].x = (abbe_chart_axis){.min = 0, .max = 10};
       charts[k].y = charts[k].x;
@@ -168,7 +168,6 @@ TEST(a_grid_runs_row_by_row) {
       fail_msg("%s", last_error.text);
     at[i] = find(&image, 0, image.width);
     assert_int_in_range(at[i].count, 24, 44);
-    abbe_image_free(&image);
   }
   for (size_t i = 0; i < 6; i++) {
     assert_near(at[i].x - at[0].x, 200.0 * (double)(i % 3), 0.6);
@@ -181,13 +180,12 @@ TEST(an_svg_is_whole_and_scales) {
   abbe_chart_series series = {.label = "a & <b>", .count = 2, .x = x, .y = y};
   abbe_chart charts[2] = {{.title = "One", .series_count = 1, .series = &series}, {.share = 0.5}};
   OK(abbe_chart_write(path[1], charts, 2, 500, 400, &error));
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size = 0;
   OK(abbe_file_read(path[1], 1 << 22, &text, &size, &error));
   assert_contains(text, "<svg");
   assert_contains(text, "viewBox=\"0 0 500 400\"");
   assert_string_equal(text + size - 7, "</svg>\n");
-  free(text);
 }
 
 /* Behind the header, where the PNG specification wants it, before the palette or the pixels. */
@@ -197,12 +195,11 @@ TEST(a_png_says_that_it_is_srgb) {
   abbe_chart chart = {.series_count = 1, .series = &series};
   abbe_image image = draw(&chart, 1, 100, 80);
   abbe_image_free(&image);
-  char *data = NULL;
+  FREED char *data = NULL;
   size_t size = 0;
   OK(abbe_file_read(path[0], 1 << 22, &data, &size, &error));
   assert_memory_equal(data + 12, "IHDR", 4);
   assert_memory_equal(data + 33, "\0\0\0\1sRGB\1\xd9\xc9\x2c\x7f", 13);
-  free(data);
 }
 
 /* Whatever it is asked to show, it shows something or says why not, and no file is left half done.

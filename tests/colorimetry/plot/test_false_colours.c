@@ -22,16 +22,15 @@ TEST(what_is_meant) {
   } of[] = {{"S0.500nm", true}, {"500nm", true},  {"549", true},    {"551nm", true},
             {"700nm", false},   {"stderr", true}, {"depth", false}, {"depth.Z", true},
             {"stderr.G", true}, {"R", true},      {"none", false},  {"500 nm", false}};
-  abbe_image image;
+  OWNED(abbe_image, image);
   make(&image);
   for (size_t i = 0; i < sizeof of / sizeof *of; i++)
     assert_int_equal(abbe_false_colours_mean(&image, of[i].layer), of[i].meant);
   assert_false(abbe_false_colours_mean(&image, NULL));
-  abbe_image_free(&image);
 }
 
 TEST(values) {
-  abbe_image image;
+  OWNED(abbe_image, image);
   float *value;
   char title[100];
   bool is_error;
@@ -53,7 +52,6 @@ TEST(values) {
         (double)value[p],
         to_xyz[3] * (3 + p / 32.0) + to_xyz[4] * (4 + p / 32.0) + to_xyz[5] * (5 + p / 32.0), 1e-5);
   free(value);
-  abbe_image_free(&image);
 }
 
 TEST(pictures_and_refusals) {

@@ -32,7 +32,7 @@ static const abbe_material *find(const char *name) {
 
 /* Columns of the picture that hold at least so many pixels of that colour. */
 static size_t columns_within(double r, double g, double b, double within, size_t least) {
-  abbe_image image;
+  OWNED(abbe_image, image);
   size_t count = 0;
   OK(abbe_png_read(path, &image, &error));
   for (size_t x = 0; x < image.width; x++) {
@@ -44,7 +44,6 @@ static size_t columns_within(double r, double g, double b, double within, size_t
     }
     count += hits >= least;
   }
-  abbe_image_free(&image);
   return count;
 }
 
@@ -94,7 +93,7 @@ TEST(continued_curves_are_dashed) {
 
 TEST(fits_and_measurements_are_drawn) {
   const abbe_material *m[2] = {find("n-bk7"), find("f2")};
-  abbe_index_points points;
+  OWNED(abbe_index_points, points);
   const char *csv = "435.8,1.5267,3e-4\n546.1,1.5187,2e-4\n656.3,1.5143,2e-4\n";
   OK(abbe_index_points_parse(csv, strlen(csv), "p", &points, &error));
   abbe_material_chart chart = {.count = 1, .material = m};
@@ -108,7 +107,6 @@ TEST(fits_and_measurements_are_drawn) {
   chart = (abbe_material_chart){
       .count = 1, .material = m, .points = &points, .min_nm = 300, .max_nm = 310};
   draw(&chart); /* no point in the range */
-  abbe_index_points_free(&points);
 }
 
 TEST(the_map_shows_all_that_have_numbers) {
@@ -134,7 +132,7 @@ TEST(what_cannot_be_drawn_is_refused) {
   chart = (abbe_material_chart){.count = 1, .material = &m};
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_material_chart_write("c.jpg", &chart, &error));
   const char *text = "materials: [{name: a, model: constant, coefficients: [1.5], source: s}]";
-  abbe_material_table flat;
+  OWNED(abbe_material_table, flat);
   const abbe_material_table *tables[] = {&flat};
   OK(abbe_material_table_parse(text, strlen(text), "t", &flat, &error));
   abbe_material_map map = {.table_count = 1, .table = tables};
@@ -143,5 +141,4 @@ TEST(what_cannot_be_drawn_is_refused) {
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_material_map_write(path, &map, NULL, &error));
   m = &flat.material[0];
   draw(&chart); /* a flat line */
-  abbe_material_table_free(&flat);
 }

@@ -12,10 +12,9 @@ static const double even[3] = {1, 1, 1};
 
 static abbe_reflected_light *make(const char *name) {
   abbe_reflected_light *light = NULL;
-  abbe_illuminant illuminant;
+  OWNED(abbe_illuminant, illuminant);
   OK(abbe_illuminant_make(name, &illuminant, &error));
   OK(abbe_reflected_light_make(&illuminant, 380, 780, &light, &error));
-  abbe_illuminant_free(&illuminant);
   return light;
 }
 

@@ -22,7 +22,7 @@ TEST(colours_are_near_the_printed_ones) {
       {0.4480, 0.4703, 0.5910}, {0.3635, 0.2325, 0.1977}, {0.1958, 0.2519, 0.1977},
       {0.3101, 0.3163, 0.9001}, {0.3101, 0.3163, 0.5910}, {0.3101, 0.3163, 0.3620},
       {0.3101, 0.3163, 0.1977}, {0.3101, 0.3163, 0.0900}, {0.3101, 0.3163, 0.0313}};
-  abbe_illuminant c = {0};
+  OWNED(abbe_illuminant, c) = {0};
   abbe_reflected_light *light = NULL;
   OK(abbe_illuminant_make("C", &c, &error));
   OK(abbe_reflected_light_make(&c, 360, 830, &light, &error));
@@ -38,7 +38,6 @@ TEST(colours_are_near_the_printed_ones) {
     abbe_spectrum_free(spectrum);
   }
   abbe_reflected_light_free(light);
-  abbe_illuminant_free(&c);
 }
 
 /* The mean of 30 charts, thousandths from 380 nm on in steps of 10 nm, and its own x, y, Y under
@@ -106,7 +105,7 @@ static const double of_mean[ABBE_COLOUR_CHECKER_COUNT][3] = {
 
 TEST(a_printed_pair_is_computed) {
   double nm[MEAN_POINTS], value[MEAN_POINTS];
-  abbe_illuminant d50 = {0};
+  OWNED(abbe_illuminant, d50) = {0};
   abbe_reflected_light *light = NULL;
   OK(abbe_illuminant_make("D50", &d50, &error));
   OK(abbe_reflected_light_make(&d50, 380, 780, &light, &error));
@@ -127,7 +126,6 @@ TEST(a_printed_pair_is_computed) {
     abbe_spectrum_free(spectrum);
   }
   abbe_reflected_light_free(light);
-  abbe_illuminant_free(&d50);
 }
 
 TEST(names_are_found_and_refused) {

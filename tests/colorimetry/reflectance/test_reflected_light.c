@@ -31,7 +31,7 @@ static void integrate(const abbe_illuminant *illuminant, const abbe_spectrum *me
 TEST(measured_patches_are_integrals) {
   static const char *const lights[] = {"D65", "A", "F11", "LED-RGB1"};
   for (size_t l = 0; l < 4; l++) {
-    abbe_illuminant illuminant;
+    OWNED(abbe_illuminant, illuminant);
     abbe_reflected_light *light = make(lights[l], 380, 780, &illuminant);
     for (size_t p = 0; p < ABBE_COLOUR_CHECKER_COUNT; p++) {
       abbe_spectrum *patch = NULL;
@@ -50,14 +50,13 @@ TEST(measured_patches_are_integrals) {
       abbe_spectrum_free(patch);
     }
     abbe_reflected_light_free(light);
-    abbe_illuminant_free(&illuminant);
   }
 }
 
 /* Under D65 a Rec.709 colour reflects that colour, as near as the table's white is to the nominal
  * one; greys are grey under any light. */
 TEST(rec709_under_d65_is_itself) {
-  abbe_illuminant illuminant;
+  OWNED(abbe_illuminant, illuminant);
   abbe_reflected_light *light = make("D65", 380, 780, &illuminant);
   double xyz[3][3], to_xyz[9], white[3];
   abbe_reflected_light_xyz(light, NULL, xyz);
@@ -70,7 +69,6 @@ TEST(rec709_under_d65_is_itself) {
   abbe_reflected_light_white(light, white);
   for (int k = 0; k < 3; k++) assert_near(xyz[0][k] + xyz[1][k] + xyz[2][k], white[k], 1e-12);
   abbe_reflected_light_free(light);
-  abbe_illuminant_free(&illuminant);
 }
 
 /* The matrices of red, green and blue add up to no change at all. */

@@ -16,7 +16,7 @@ static void make(abbe_image *image) {
 
 TEST(a_pixel_and_a_region) {
   const abbe_spectral_view view = {0};
-  abbe_image image;
+  OWNED(abbe_image, image);
   abbe_pixel_probe p;
   make(&image);
   OK(abbe_pixel_probe_make(&image, NULL, "it", (abbe_image_window){11, 21, 11, 21}, &view, &p,
@@ -35,12 +35,11 @@ TEST(a_pixel_and_a_region) {
   assert_near(p.mean[1], (1 + 101 + 301 + 401) / 4.0, 1e-12);
   assert_near(p.error[0], sqrt(3 * 3 + 103 * 103 + 303 * 303 + 403 * 403) / 4, 1e-9);
   abbe_pixel_probe_free(&p);
-  abbe_image_free(&image);
 }
 
 TEST(colour_is_xyz) {
   const abbe_spectral_view view = {0};
-  abbe_image image;
+  OWNED(abbe_image, image);
   abbe_pixel_probe p;
   make(&image);
   for (size_t c = 0; c < 3; c++) image.data[c] = 1;
@@ -49,14 +48,13 @@ TEST(colour_is_xyz) {
   assert_near(p.xyz[0], 0.3127 / 0.3290, 1e-9);
   assert_near(p.xyz[1], 1, 1e-9);
   abbe_pixel_probe_free(&p);
-  abbe_image_free(&image);
 }
 
 TEST(refusals) {
   const abbe_spectral_view view = {0};
   static const abbe_image_window outside[] = {
       {9, 20, 10, 20}, {10, 20, 13, 20}, {10, 22, 10, 22}, {11, 20, 10, 20}};
-  abbe_image image;
+  OWNED(abbe_image, image);
   abbe_pixel_probe p;
   make(&image);
   for (int i = 0; i < 4; i++) {
@@ -66,5 +64,4 @@ TEST(refusals) {
   REFUSED(ABBE_NOT_FOUND, "layer 'none'",
           abbe_pixel_probe_make(&image, "none", "it.exr", (abbe_image_window){10, 20, 10, 20},
                                 &view, &p, &error));
-  abbe_image_free(&image);
 }

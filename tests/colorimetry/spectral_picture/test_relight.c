@@ -106,22 +106,22 @@ TEST(units) {
                {"W.m^-2", "illuminance, lx", 1e-3f}};
   const abbe_relight_desc desc = {.space = ABBE_RGB_SPACE_XYZ};
   for (int i = 0; i < 3; i++) {
-    abbe_image image, xyz;
+    OWNED(abbe_image, image);
+    OWNED(abbe_image, xyz);
     make("S0.", &image);
     for (size_t b = 0; b < 2 * BANDS; b++) image.data[b] = cases[i].value;
     abbe_image_set_attribute(&image, "emissiveUnits", cases[i].unit, NULL);
     OK(abbe_relight_make(&image, "it", &desc, &xyz, &error));
     assert_near((double)xyz.data[1], 0.683 * 106.856, 0.03); /* the CIE's sum over 360 to 830 nm */
     assert_string_equal(abbe_image_attribute_text(&xyz, "abbe:unit"), cases[i].says);
-    abbe_image_free(&xyz);
-    abbe_image_free(&image);
   }
 }
 
 /* An infinite band is as bright as the brightest half, or as the brightest band that there is, and
  * does not take the others away; what is not a number stays so. */
 TEST(infinite_bands) {
-  abbe_image image, xyz;
+  OWNED(abbe_image, image);
+  OWNED(abbe_image, xyz);
   abbe_image_odd odd;
   const abbe_relight_desc desc = {.space = ABBE_RGB_SPACE_ACESCG, .odd = &odd};
   double bright[3];
@@ -138,8 +138,6 @@ TEST(infinite_bands) {
     assert_true(isnan(xyz.data[3 + k]));
   }
   assert_true(odd.infinite == 1 && odd.nan == 1);
-  abbe_image_free(&xyz);
-  abbe_image_free(&image);
 }
 
 /* Bands that are kept are those that a lamp of the other illuminant makes; and looked at again, as
@@ -175,7 +173,8 @@ TEST(bands_are_kept) {
 TEST(what_is_refused_and_what_is_needed) {
   static const char *const rgb[] = {"R", "G", "B", "left.S0.500nm", "left.S0.600nm"};
   const abbe_relight_desc none = {0}, left = {.layer = "left"};
-  abbe_image image, out;
+  OWNED(abbe_image, image);
+  OWNED(abbe_image, out);
   OK(abbe_image_make(1, 1, 5, rgb, &image, &error));
   REFUSED(ABBE_NOT_FOUND, "it.exr: it has no bands",
           abbe_relight_make(&image, "it.exr", &none, &out, &error));
@@ -184,6 +183,4 @@ TEST(what_is_refused_and_what_is_needed) {
   assert_false(abbe_relight_is_needed(&image, "right"));
   OK(abbe_relight_make(&image, "it.exr", &left, &out, &error));
   assert_string_equal(abbe_image_attribute_text(&out, "abbe:unit"), "luminance, cd/m2");
-  abbe_image_free(&out);
-  abbe_image_free(&image);
 }

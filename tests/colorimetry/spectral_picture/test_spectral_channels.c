@@ -39,7 +39,7 @@ static void make(const char *const *names, size_t count, abbe_image *out) {
 
 TEST(bands_meet_midway) {
   static const char *const names[] = {"S0.600nm", "R", "stderr.S0.500nm", "S0.500nm", "S0.520nm"};
-  abbe_image image;
+  OWNED(abbe_image, image);
   abbe_spectral_channels c;
   make(names, 5, &image);
   OK(abbe_spectral_channels_find(&image, NULL, "it", &c, &error));
@@ -55,12 +55,11 @@ TEST(bands_meet_midway) {
   }
   abbe_spectral_channels_free(&c);
   assert_int_equal(c.count, 0);
-  abbe_image_free(&image);
 }
 
 TEST(layers_and_reflectances) {
   static const char *const names[] = {"left.T.500nm", "left.T.600nm", "T.400nm"};
-  abbe_image image;
+  OWNED(abbe_image, image);
   abbe_spectral_channels c;
   make(names, 3, &image);
   OK(abbe_spectral_channels_find(&image, "left", "it", &c, &error));
@@ -73,18 +72,16 @@ TEST(layers_and_reflectances) {
   abbe_spectral_channels_free(&c);
   OK(abbe_spectral_channels_find(&image, "right", "it", &c, &error));
   assert_true(c.count == 0 && c.kind == ABBE_SPECTRAL_NONE);
-  abbe_image_free(&image);
 }
 
 TEST(twice_the_same) {
   static const char *const names[] = {"S0.500nm", "S0.0,5um"};
-  abbe_image image;
+  OWNED(abbe_image, image);
   abbe_spectral_channels c;
   make(names, 2, &image);
   REFUSED(ABBE_INVALID_ARGUMENT, "it.exr",
           abbe_spectral_channels_find(&image, NULL, "it.exr", &c, &error));
   assert_contains(last_error.text, "one wavelength");
-  abbe_image_free(&image);
 }
 
 TEST(what_is_not_read) {
@@ -92,7 +89,7 @@ TEST(what_is_not_read) {
       "S0.500nm", "S0.600nm",  "S1.500nm", "S3.600nm", "T.400nm.500nm",
       "T.500nm",  "w420nm",    "w720nm",   "R",        "a.S2.500nm",
       "S4.500nm", "T.x.500nm", "nm",       "m",        "1"};
-  abbe_image image;
+  OWNED(abbe_image, image);
   abbe_spectral_unread unread;
   make(names, 15, &image);
   abbe_spectral_channels_find_unread(&image, NULL, &unread);
@@ -104,12 +101,11 @@ TEST(what_is_not_read) {
   }
   abbe_spectral_channels_find_unread(&image, "a", &unread);
   assert_int_equal(unread.count[ABBE_SPECTRAL_UNREAD_POLARISED], 1);
-  abbe_image_free(&image);
 }
 
 TEST(the_unit) {
   static const char *const names[] = {"S0.500nm", "S0.600nm"};
-  abbe_image image;
+  OWNED(abbe_image, image);
   abbe_spectral_channels c;
   make(names, 2, &image);
   OK(abbe_spectral_channels_find(&image, NULL, "it", &c, &error));
@@ -123,5 +119,4 @@ TEST(the_unit) {
   abbe_image_set_attribute(&image, "emissiveUnits", "photons", NULL);
   REFUSED(ABBE_UNSUPPORTED, "it: its emissiveUnits are 'photons'",
           abbe_spectral_channels_find(&image, NULL, "it", &c, &error));
-  abbe_image_free(&image);
 }

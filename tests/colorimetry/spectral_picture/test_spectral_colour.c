@@ -32,8 +32,8 @@ TEST(whites_of_illuminants) {
                {ABBE_OBSERVER_CIE_1964, ABBE_ILLUMINANT_D65, {0.31382, 0.33100}},
                {ABBE_OBSERVER_CIE_1964, ABBE_ILLUMINANT_A, {0.45117, 0.40594}},
                {ABBE_OBSERVER_CIE_1964, ABBE_ILLUMINANT_D50, {0.34773, 0.35952}}};
-  abbe_image image;
-  abbe_spectral_channels c;
+  OWNED(abbe_image, image);
+  OWNED(abbe_spectral_channels, c);
   make("T.", &image, &c);
   for (size_t i = 0; i < sizeof white / sizeof *white; i++) {
     const abbe_illuminant light = {.kind = white[i].kind};
@@ -49,16 +49,14 @@ TEST(whites_of_illuminants) {
     assert_near(xy[0], white[i].xy[0], 6e-5);
     assert_near(xy[1], white[i].xy[1], 6e-5);
   }
-  abbe_spectral_channels_free(&c);
-  abbe_image_free(&image);
 }
 
 /* The light of a lamp of one watt in bands is its white with Y = 1; and every band's part is the
  * weight that a picture is made with. Under another illuminant it is that one's white. */
 TEST(a_lamp_in_bands) {
   const abbe_illuminant d65 = {0}, a = {.kind = ABBE_ILLUMINANT_A};
-  abbe_image image;
-  abbe_spectral_channels c;
+  OWNED(abbe_image, image);
+  OWNED(abbe_spectral_channels, c);
   make("S0.", &image, &c);
   const abbe_spectral_view as_it_is = {.from = &d65}, under_a = {.from = &d65, .to = &a};
   double weight[BANDS][3], other[BANDS][3], sum[3] = {0}, white[3];
@@ -76,23 +74,19 @@ TEST(a_lamp_in_bands) {
   }
   abbe_spectral_colour_white(&c, &under_a, white);
   for (int k = 0; k < 3; k++) assert_near(sum[k], white[k], 1e-12);
-  abbe_spectral_channels_free(&c);
-  abbe_image_free(&image);
 }
 
 /* A radiance of 1 W/(m2 sr nm) in the band around 555 nm alone is 683 lm/W there. */
 TEST(absolute_light) {
   static const char *const names[] = {"S0.554nm", "S0.555nm", "S0.556nm"};
   const abbe_spectral_view view = {0};
-  abbe_image image;
-  abbe_spectral_channels c;
+  OWNED(abbe_image, image);
+  OWNED(abbe_spectral_channels, c);
   double weight[3][3];
   OK(abbe_image_make(1, 1, 3, names, &image, &error));
   OK(abbe_spectral_channels_find(&image, NULL, "it", &c, &error));
   OK(abbe_spectral_colour_weights(&c, &view, "it", weight, &error));
   assert_near(weight[1][1], 683, 0.1);
-  abbe_spectral_channels_free(&c);
-  abbe_image_free(&image);
 }
 
 TEST(refusals) {

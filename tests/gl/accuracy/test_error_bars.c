@@ -25,7 +25,7 @@ GROUP(make_context, free_context);
  * or a third where the picture takes more rays at edges. */
 TEST(variants_spread_evenly) {
   static const size_t counts[] = {2, 4, 7, ABBE_ERROR_BARS_MAX_VARIANTS};
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_map_layout map, layout;
   load_shipped("sphere", &scene);
   abbe_renderer *renderer = make_renderer(&scene, &small_frame);
@@ -60,12 +60,11 @@ TEST(variants_spread_evenly) {
     assert_near(moved[1], 0, 1e-9);
   }
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 /* A grid that lies elsewhere is as good a grid: it meets the same light. */
 TEST(shifted_grids_carry_the_same_light) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_shipped("sphere", &scene);
   double least = INFINITY, most = 0;
   for (int i = 0; i < 3; i++) {
@@ -81,21 +80,18 @@ TEST(shifted_grids_carry_the_same_light) {
   /* The outline cuts some 200 of the 3200 cells at random: sqrt(200) / 3200 is half a per cent. */
   assert_true(most / least > 1);
   assert_true(most / least < 1.01);
-  abbe_scene_free(&scene);
 }
 
 static double true_error(const char *name, const abbe_image *picture) {
   char path[512];
-  abbe_field reference = {0}, test = {0};
-  abbe_comparison comparison = {0};
+  OWNED(abbe_field, reference) = {0};
+  OWNED(abbe_field, test) = {0};
+  OWNED(abbe_comparison, comparison) = {0};
   snprintf(path, sizeof path, ABBE_SOURCE_DIR "/validation/references/%s.exr", name);
   OK(abbe_field_load(path, &reference, &error));
   OK(abbe_field_make(picture, "picture", &test, &error));
   OK(abbe_compare(&reference, &test, NULL, &comparison, &error));
   double found = comparison.whole.metric[ABBE_COMPARE_RELATIVE_RMSE].value;
-  abbe_comparison_free(&comparison);
-  abbe_field_free(&reference);
-  abbe_field_free(&test);
   return found;
 }
 
@@ -103,8 +99,8 @@ static double true_error(const char *name, const abbe_image *picture) {
 TEST(errors_are_near_the_true_ones) {
   static const char *const names[] = {"prism", "gem"};
   for (int i = 0; i < 2; i++) {
-    abbe_scene scene = {0};
-    abbe_image picture = {0};
+    OWNED(abbe_scene, scene) = {0};
+    OWNED(abbe_image, picture) = {0};
     abbe_error_bars bars = {0};
     load_shipped(names[i], &scene);
     make_bars(&scene, &coarse_frame, NULL, &picture, &bars);
@@ -119,16 +115,15 @@ TEST(errors_are_near_the_true_ones) {
     assert_int_equal(bars.frames, 5);
     assert_finite(&bars.error);
     abbe_error_bars_free(&bars);
-    abbe_image_free(&picture);
-    abbe_scene_free(&scene);
   }
 }
 
 /* Nothing that the shipped scenes have: a turned brick under the sun. Its truth is a picture of the
  * same model in steps a quarter as wide. */
 TEST(errors_are_near_those_of_a_scene_that_is_not_shipped) {
-  abbe_scene scene = {0};
-  abbe_image picture = {0}, fine = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, picture) = {0};
+  OWNED(abbe_image, fine) = {0};
   abbe_error_bars bars = {0};
   abbe_render_desc desc = {
       .width = 64, .height = 64, .photons = 64, .map_size = 128, .wavelengths = 7};
@@ -149,8 +144,9 @@ TEST(errors_are_near_those_of_a_scene_that_is_not_shipped) {
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   draw_frame(renderer);
   read_picture(renderer, false, &fine);
-  abbe_field reference = {0}, test = {0};
-  abbe_comparison comparison = {0};
+  OWNED(abbe_field, reference) = {0};
+  OWNED(abbe_field, test) = {0};
+  OWNED(abbe_comparison, comparison) = {0};
   OK(abbe_field_make(&fine, "fine", &reference, &error));
   OK(abbe_field_make(&picture, "picture", &test, &error));
   OK(abbe_compare(&reference, &test, NULL, &comparison, &error));
@@ -161,18 +157,12 @@ TEST(errors_are_near_those_of_a_scene_that_is_not_shipped) {
     print_error("of the true RMSE %g, of the true CIEDE2000 %g\n", rmse, colour);
   assert_true(rmse > 0.5 && rmse < 2);
   assert_true(colour > 0.5 && colour < 2);
-  abbe_comparison_free(&comparison);
-  abbe_field_free(&reference);
-  abbe_field_free(&test);
   abbe_renderer_free(renderer);
   abbe_error_bars_free(&bars);
-  abbe_image_free(&fine);
-  abbe_image_free(&picture);
-  abbe_scene_free(&scene);
 }
 
 TEST(the_mean_has_less_error) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_error_bars bars[2] = {{.ms = 0}};
   abbe_error_bars_desc two = {.variants = 2}, desc = {.variants = 2, .of_mean = true};
   load_shipped("sphere", &scene);
@@ -185,11 +175,10 @@ TEST(the_mean_has_less_error) {
     assert_true(bars[1].error.data[i] <= bars[0].error.data[i]);
   abbe_error_bars_free(&bars[0]);
   abbe_error_bars_free(&bars[1]);
-  abbe_scene_free(&scene);
 }
 
 TEST(errors_shrink_with_finer_settings) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_render_desc coarse = coarse_frame, fine = coarse_frame;
   abbe_error_bars bars[2] = {{.ms = 0}};
   abbe_error_bars_desc two = {.variants = 2};
@@ -205,13 +194,12 @@ TEST(errors_shrink_with_finer_settings) {
   assert_true(bars[1].caustic.ciede2000 < 0.7 * bars[0].caustic.ciede2000);
   abbe_error_bars_free(&bars[0]);
   abbe_error_bars_free(&bars[1]);
-  abbe_scene_free(&scene);
 }
 
 /* A floor without end under the sun, and nothing else. */
 TEST(no_error_where_nothing_can_differ) {
-  abbe_scene scene = {0};
-  abbe_image picture = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, picture) = {0};
   abbe_error_bars bars = {0};
   load_text(
       "materials: glass.yaml\ncamera: {eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0]}\n" SUN
@@ -226,13 +214,11 @@ TEST(no_error_where_nothing_can_differ) {
   assert_int_equal(bars.frames, 4); /* no photons, no coarse picture */
   assert_int_equal(bars.caustic.pixels, 0);
   abbe_error_bars_free(&bars);
-  abbe_image_free(&picture);
-  abbe_scene_free(&scene);
 }
 
 /* Edges are all that differs where nothing refracts. */
 TEST(edges_have_errors) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_error_bars bars = {0};
   abbe_error_bars_desc two = {.variants = 2};
   load_text(CAMERA SUN FLOOR HILL, &scene);
@@ -240,14 +226,13 @@ TEST(edges_have_errors) {
   assert_true(image_max(&bars.error, 0) > 0);
   assert_finite(&bars.error);
   abbe_error_bars_free(&bars);
-  abbe_scene_free(&scene);
 }
 
 TEST(the_layer_is_what_compare_reads) {
-  abbe_scene scene = {0};
-  abbe_image picture = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, picture) = {0};
   abbe_error_bars bars = {0};
-  abbe_field field = {0};
+  OWNED(abbe_field, field) = {0};
   abbe_render_desc xyz = small_frame;
   abbe_error_bars_desc two = {.variants = 2};
   xyz.space = ABBE_RGB_SPACE_XYZ;
@@ -265,10 +250,7 @@ TEST(the_layer_is_what_compare_reads) {
   picture.width /= 2;
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_error_bars_attach(&bars, &picture, &error));
   picture.width *= 2;
-  abbe_field_free(&field);
-  abbe_image_free(&picture);
   abbe_error_bars_free(&bars);
-  abbe_scene_free(&scene);
 }
 
 static bool stop_now(void *user, double done) {
@@ -278,7 +260,7 @@ static bool stop_now(void *user, double done) {
 }
 
 TEST(what_is_refused) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_error_bars bars = {0};
   int calls = 0;
   abbe_error_bars_desc one = {.variants = 1}, many = {.variants = 65};
@@ -297,5 +279,4 @@ TEST(what_is_refused) {
   REFUSED(ABBE_INVALID_ARGUMENT, "'thesis'",
           abbe_error_bars_check(ABBE_PROFILE_THESIS, NULL, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_error_bars_check(ABBE_PROFILE_THESIS_CIE, NULL, &error));
-  abbe_scene_free(&scene);
 }

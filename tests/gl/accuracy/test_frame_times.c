@@ -18,7 +18,7 @@ static bool watch_frames(void *user, double done) {
 GROUP(make_context, free_context);
 
 TEST(times) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_frame_times times;
   load_text(SCENE, &scene);
   const abbe_render_desc small = {.width = 16, .height = 16, .photons = 16, .map_size = 32};
@@ -41,7 +41,6 @@ TEST(times) {
   OK(abbe_frame_times_baseline(renderer, 3, &ms, &error));
   assert_true(ms > 0);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 TEST(unrest) {
@@ -60,7 +59,7 @@ TEST(unrest) {
 
 /* A camera's frame traces no photon, and the camera ends where it was. */
 TEST(camera) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image before, after;
   load_text(SCENE, &scene);
   const abbe_render_desc small = {.width = 16, .height = 16, .photons = 16, .map_size = 32};
@@ -78,5 +77,4 @@ TEST(camera) {
   }
   abbe_image_free(&before);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }

@@ -217,7 +217,7 @@ TEST(layers_are_left_where_they_show_too_little) {
   const abbe_scene inside = {.camera.inside = true};
   OK(abbe_presets_load(NULL, &presets, &error));
   for (size_t t = 0; t < sizeof texts / sizeof *texts; t++) {
-    abbe_scene scene = {0};
+    OWNED(abbe_scene, scene) = {0};
     load_text(texts[t], &scene);
     for (size_t i = 0; i < presets.count; i++)
       for (size_t k = 0; k < presets.front[i].count; k++) {
@@ -238,7 +238,6 @@ TEST(layers_are_left_where_they_show_too_little) {
         assert_int_equal(abbe_preset_apply(point, &inside, &desc), !layered);
         assert_int_not_equal(desc.model, ABBE_MODEL_LAYERS);
       }
-    abbe_scene_free(&scene);
   }
   assert_true(layers > 0);
   abbe_presets_free(&presets);
@@ -260,8 +259,8 @@ TEST(classes_and_calibration) {
   abbe_error why = {0};
   OK(load_presets(HEAD CLASS THREE, &presets, &error));
   for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
-    abbe_scene scene = {0};
-    abbe_plan plan;
+    OWNED(abbe_scene, scene) = {0};
+    OWNED(abbe_plan, plan);
     const abbe_preset_front *front = NULL;
     load_text(scenes[i].text, &scene);
     OK(abbe_plan_make(&scene, NULL, &plan, &error));
@@ -276,8 +275,6 @@ TEST(classes_and_calibration) {
       assert_true(speed.light > 0 && isfinite(speed.light));
       assert_true(speed.eye > 0 && isfinite(speed.eye));
     }
-    abbe_plan_free(&plan);
-    abbe_scene_free(&scene);
   }
   abbe_presets_free(&presets);
 }

@@ -15,8 +15,8 @@ static void make_bands(const abbe_scene *scene, size_t bands, abbe_image *map) {
 GROUP(make_context, free_context);
 
 TEST(bands_add_up_to_the_colour) {
-  abbe_scene scene;
-  abbe_image map;
+  OWNED(abbe_scene, scene);
+  OWNED(abbe_image, map);
   load_shipped("gem", &scene);
   make_bands(&scene, BANDS, &map);
   assert_int_equal(map.channels, 3 + BANDS);
@@ -39,8 +39,6 @@ TEST(bands_add_up_to_the_colour) {
      * told by narrow bands alone. */
     assert_true(fabs(sum[c] / image_sum(&map, c) - 1) < 5e-4);
   }
-  abbe_image_free(&map);
-  abbe_scene_free(&scene);
 }
 
 /* Where the light of a channel lies on the map, along its column (axis 0) or row (1). */
@@ -56,8 +54,8 @@ static double middle_of(const abbe_image *map, size_t channel, int axis) {
 }
 
 TEST(a_prism_sorts_the_bands) {
-  abbe_scene scene;
-  abbe_image map;
+  OWNED(abbe_scene, scene);
+  OWNED(abbe_image, map);
   load_shipped("prism", &scene);
   make_bands(&scene, 8, &map);
   const double across = middle_of(&map, 10, 0) - middle_of(&map, 3, 0);
@@ -67,12 +65,10 @@ TEST(a_prism_sorts_the_bands) {
   assert_true(fabs(way) > 10);
   for (size_t i = 4; i < 11; i++)
     assert_true((middle_of(&map, i, axis) - middle_of(&map, i - 1, axis)) * way > 0);
-  abbe_image_free(&map);
-  abbe_scene_free(&scene);
 }
 
 TEST(the_renderer_is_as_it_was) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_image before, bands, after;
   load_shipped("gem", &scene);
   abbe_renderer *renderer = make_renderer(&scene, &small_frame);
@@ -91,11 +87,10 @@ TEST(the_renderer_is_as_it_was) {
   assert_true(image_sum(&after, 1) > 0);
   abbe_image_free(&after);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 TEST(refuses_what_has_no_bands) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_image map;
   load_shipped("gem", &scene);
   abbe_renderer *renderer = make_renderer(&scene, &small_frame);
@@ -111,5 +106,4 @@ TEST(refuses_what_has_no_bands) {
   REFUSED(ABBE_INVALID_ARGUMENT, "thesis",
           abbe_renderer_read_map_bands(renderer, 0, 3, &map, &error));
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }

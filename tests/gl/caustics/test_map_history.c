@@ -52,10 +52,9 @@ static void draw_mean(const abbe_scene *scene, const abbe_render_desc *like, siz
                       size_t last, abbe_image *out) {
   draw_alone(scene, like, first, out);
   for (size_t k = first + 1; k <= last; k++) {
-    abbe_image one = {0};
+    OWNED(abbe_image, one) = {0};
     draw_alone(scene, like, k, &one);
     for (size_t i = 0; i < 3 * SIDE * SIDE; i++) out->data[i] += one.data[i];
-    abbe_image_free(&one);
   }
   for (size_t i = 0; i < 3 * SIDE * SIDE; i++) out->data[i] /= (float)(last - first + 1);
 }
@@ -70,7 +69,7 @@ static double apart(const abbe_image *a, const abbe_image *b) {
 GROUP(make_context, free_context);
 
 TEST(a_still_scene_comes_to_the_mean) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_map_layout layout;
   abbe_image map = {0}, mean = {0}, last = {0};
   load_brick(0.1, &scene);
@@ -98,7 +97,6 @@ TEST(a_still_scene_comes_to_the_mean) {
   abbe_image_free(&map);
   abbe_image_free(&mean);
   abbe_image_free(&last);
-  abbe_scene_free(&scene);
 }
 
 static abbe_statistics change_and_draw(abbe_renderer *renderer, const abbe_scene *scene,

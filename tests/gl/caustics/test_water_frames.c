@@ -63,8 +63,8 @@ static void check_wave(double depth, double phase_deg, double tolerance) {
                            .wavelengths = 1,
                            .map_layout = &layout};
   abbe_wave_caustic w = {.amplitude = 0.002, .wavelength = 0.1, .depth = depth};
-  abbe_scene scene = {0};
-  abbe_image map = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, map) = {0};
   double mean[BINS], worst = 0;
   load_water(depth, phase_deg, &scene);
   OK(abbe_material_n(scene.object[0].material, 587.5, &w.index, &error));
@@ -84,8 +84,6 @@ static void check_wave(double depth, double phase_deg, double tolerance) {
   print_message("%g m under a wave: off by %.4f at the most\n", depth, worst);
   assert_true(worst < tolerance);
   abbe_renderer_free(renderer);
-  abbe_image_free(&map);
-  abbe_scene_free(&scene);
 }
 
 GROUP(make_context, free_context);
@@ -99,8 +97,8 @@ TEST(light_under_a_wave) {
 
 /* Fresnel's law on the way in and out, and of radiance one part in n^2 leaves the water. */
 TEST(light_under_still_water) {
-  abbe_scene scene = {0};
-  abbe_image picture = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, picture) = {0};
   double n = 0;
   load_text("materials: default\n"
             "camera: {eye: [0.05, 0, 2], target: [0.05, 0, 0], up: [0, 1, 0], fov: 2}\n"
@@ -131,8 +129,6 @@ TEST(light_under_still_water) {
   print_message("still water: %.4f of the known light\n", seen / known);
   assert_near(seen / known, 1, 0.02);
   abbe_renderer_free(renderer);
-  abbe_image_free(&picture);
-  abbe_scene_free(&scene);
 }
 
 /* From under water: a ceiling of radiance 1 straight above is seen through Fresnel's share, n^2
@@ -140,8 +136,8 @@ TEST(light_under_still_water) {
  * surface; and from inside what is inside, as it is. */
 static double seen_from_below(const char *target, double bottom) {
   char text[1024];
-  abbe_scene scene = {0};
-  abbe_image picture = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, picture) = {0};
   snprintf(text, sizeof text,
            "materials: default\nambient: 3.14159265358979\n"
            "camera: {eye: [0, 0, -0.2], target: %s, up: [0, 1, 0], fov: 2, inside: true}\n"
@@ -166,8 +162,6 @@ static double seen_from_below(const char *target, double bottom) {
   read_picture(renderer, false, &picture);
   const double mean = image_sum(&picture, 1) / (16 * 16);
   abbe_renderer_free(renderer);
-  abbe_image_free(&picture);
-  abbe_scene_free(&scene);
   return mean;
 }
 

@@ -7,7 +7,7 @@ GROUP(make_context, free_context);
 
 /* Wherever a frame or a change is cancelled, the renderer goes on. */
 TEST(a_cancelled_renderer_goes_on) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_error why = {0};
   load_text(GLASS_SCENE, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &tiny);
@@ -38,13 +38,12 @@ TEST(a_cancelled_renderer_goes_on) {
   OK(change(renderer, &scene, &tiny));
   assert_as_made_anew(renderer, &scene, &tiny, "a cancelled change");
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 /* Units of work, counted: what is dispatched, drawn and compiled. */
 /* What the camera's passes alone ask for, cancelled, leaves the light as it is. */
 TEST(a_cancelled_view_keeps_the_light) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   int left = 1;
   load_text(GLASS_SCENE, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &tiny);
@@ -63,7 +62,6 @@ TEST(a_cancelled_view_keeps_the_light) {
   abbe_renderer_redraw(renderer);
   assert_as_made_anew(renderer, &scene, &other, "a cancelled view");
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 /* The thread's watch is heard by what comes before the first program: planning, and trees. */
@@ -72,7 +70,7 @@ static bool watch_at(void *user) {
 }
 
 TEST(a_watch_ends_a_change) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_result result = ABBE_CANCELLED;
   int calls = 0;
   load_text(MESH_SCENE, &scene);
@@ -92,7 +90,6 @@ TEST(a_watch_ends_a_change) {
   assert_true(calls >= 3);
   assert_as_made_anew(renderer, &scene, &tiny, "a watched change");
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 static struct {
@@ -150,7 +147,7 @@ static void end_count(void) {
  * of a change and the frame after it, from another light on, of another size. */
 TEST(a_cancel_is_heard_soon) {
   enum { MOST_APART = 12, MOST_AFTER = 2 };
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_error error = {0};
   load_text(GLASS_SCENE, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &tiny);
@@ -174,5 +171,4 @@ TEST(a_cancel_is_heard_soon) {
   watched.progress = NULL;
   assert_as_made_anew(renderer, &scene, &watched, "cancelled changes");
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }

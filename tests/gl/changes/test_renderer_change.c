@@ -17,7 +17,7 @@ GROUP(make_context, free_context);
 
 /* What each kind of change runs. */
 TEST(a_change_runs_what_depends_on_it) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(GLASS_SCENE, &scene);
   abbe_render_desc desc = tiny;
   abbe_renderer *renderer = make_renderer(&scene, &desc);
@@ -57,12 +57,11 @@ TEST(a_change_runs_what_depends_on_it) {
     assert_as_made_anew(renderer, &scene, &desc, cases[i].what);
   }
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 /* A camera that looks away sees no refractor: its pass, and its buffers, come and go. */
 TEST(what_the_camera_sees_comes_and_goes) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(GLASS_SCENE, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &tiny);
   draw_frame(renderer);
@@ -74,13 +73,12 @@ TEST(what_the_camera_sees_comes_and_goes) {
     assert_as_made_anew(renderer, &scene, &tiny, "a turn of the camera");
   }
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 /* What all powers are measured by goes by the greatest of lights, ambient light and background. */
 TEST(the_unit_of_power_comes_and_goes) {
   static const double powers[] = {1e-20, 1e-20, 1e-20, 1, 1}, background[] = {0, 0.1, 0, 0, 1e30};
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(GLASS_SCENE, &scene);
   scene.ambient = scene.background = 0;
   abbe_renderer *renderer = make_renderer(&scene, &tiny);
@@ -97,13 +95,13 @@ TEST(the_unit_of_power_comes_and_goes) {
   assert_ran(&s, false, true);
   assert_as_made_anew(renderer, &scene, &other, "another space");
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 /* Watched and not, with more wavelengths than a pixel's coarse bands. */
 TEST(a_watched_frame_is_the_same) {
-  abbe_scene scene = {0};
-  abbe_image alone = {0}, watched = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, alone) = {0};
+  OWNED(abbe_image, watched) = {0};
   int left = 1 << 30;
   load_text(GLASS_SCENE, &scene);
   abbe_render_desc desc = tiny;
@@ -123,16 +121,14 @@ TEST(a_watched_frame_is_the_same) {
     read_picture(renderer, false, &watched);
     assert_same_pixels(&alone, &watched);
   }
-  abbe_image_free(&alone);
-  abbe_image_free(&watched);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 /* The scene that cannot be planned leaves the renderer as it was. */
 TEST(a_refused_change_changes_nothing) {
-  abbe_scene scene = {0};
-  abbe_image before = {0}, after = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, before) = {0};
+  OWNED(abbe_image, after) = {0};
   load_text(GLASS_SCENE, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &tiny);
   draw_frame(renderer);
@@ -144,10 +140,7 @@ TEST(a_refused_change_changes_nothing) {
   assert_ran(&s, false, false);
   read_picture(renderer, false, &after);
   assert_same_pixels(&before, &after);
-  abbe_image_free(&before);
-  abbe_image_free(&after);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 static unsigned dice_state;
@@ -210,7 +203,7 @@ static const char *change_anything(abbe_scene *scene, abbe_render_desc *desc, bo
 }
 
 static void walk_at_random(const char *text, unsigned seed, int steps, bool sizes) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_render_desc desc = tiny;
   dice_state = seed;
   load_text(text, &scene);
@@ -226,7 +219,6 @@ static void walk_at_random(const char *text, unsigned seed, int steps, bool size
     if (planned == ABBE_OK && dice(3) > 0) assert_as_made_anew(renderer, &scene, &desc, what);
   }
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 TEST(random_changes_of_a_solid) {
@@ -240,7 +232,8 @@ TEST(random_changes_of_meshes) {
 
 /* From one scene to another and back, and to the passes of published methods. */
 TEST(another_scene_is_a_change_too) {
-  abbe_scene solid = {0}, mesh = {0};
+  OWNED(abbe_scene, solid) = {0};
+  OWNED(abbe_scene, mesh) = {0};
   load_text(GLASS_SCENE, &solid);
   load_text(MESH_SCENE, &mesh);
   abbe_renderer *renderer = make_renderer(&solid, &tiny);
@@ -259,6 +252,4 @@ TEST(another_scene_is_a_change_too) {
   OK(change(renderer, &solid, &tiny));
   assert_as_made_anew(renderer, &solid, &tiny, "published profiles");
   abbe_renderer_free(renderer);
-  abbe_scene_free(&solid);
-  abbe_scene_free(&mesh);
 }

@@ -12,7 +12,7 @@ typedef struct list {
 } list;
 
 static void read_list(const char *prefix, list *out) {
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size = 0;
   OK(abbe_file_read(ABBE_SOURCE_DIR "/gl/device/bindings.h", 1 << 16, &text, &size, &error));
   out->count = 0;
@@ -25,7 +25,6 @@ static void read_list(const char *prefix, list *out) {
     memcpy(out->name[out->count], name, sizeof name);
     out->number[out->count++] = number;
   }
-  free(text);
 }
 
 static void check_list(const char *prefix, size_t least, int most) {

@@ -280,7 +280,7 @@ static void assert_alike(const abbe_image *a, const abbe_image *b) {
 }
 
 static void assert_same_in_any_state(const char *text, const abbe_render_desc *desc) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   taken calm = {0}, awkward = {0};
   load_text(text, &scene);
   take(&scene, desc, false, &calm);
@@ -298,7 +298,6 @@ static void assert_same_in_any_state(const char *text, const abbe_render_desc *d
   }
   free_taken(&calm);
   free_taken(&awkward);
-  abbe_scene_free(&scene);
 }
 
 static const abbe_render_desc tiny = {

@@ -103,7 +103,7 @@ abbe_result __wrap_abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *e
 }
 
 static void draw(const char *file, abbe_image *picture, abbe_image *map) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   char path[512];
   snprintf(path, sizeof path, ABBE_SOURCE_DIR "/scenes/%s.yaml", file);
   OK(abbe_scene_load(path, NULL, &scene, &error));
@@ -113,7 +113,6 @@ static void draw(const char *file, abbe_image *picture, abbe_image *map) {
   read_picture(renderer, false, picture);
   read_map(renderer, 0, map);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 /* Beams add up in the order in which threads have listed them, which is another each time. */

@@ -98,36 +98,32 @@ GROUP(make_context, free_context);
 
 /* Of a pixel at an edge the mean is that of what it covers, as near as so many rays can tell. */
 TEST(an_edge_is_covered) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   double mean[3], worst[3];
   load_text(FROM_ABOVE SUN_ABOVE TURNED_SQUARE, &scene);
   scene.light[0].power = 1e-6; /* ambient light is what it shows */
   for (size_t i = 0; i < 3; i++) {
     const size_t rays[] = {1, 2, 8};
-    abbe_image image = {0};
+    OWNED(abbe_image, image) = {0};
     const size_t listed = draw(&scene, rays[i], &image);
     measure_edge(&image, &mean[i], &worst[i]);
     print_message("%zu rays a side: coverage off by %.3f, %.3f at the most; %zu listed\n", rays[i],
                   mean[i], worst[i], listed);
-    abbe_image_free(&image);
   }
   assert_true(worst[0] > 0.4);
   assert_true(worst[2] < 0.5 / 8 && mean[2] < 0.02);
   assert_true(mean[1] < 0.6 * mean[0] && mean[2] < 0.4 * mean[1]);
-  abbe_scene_free(&scene);
 }
 
 /* What is alike all over asks for nothing, and stays to the bit. */
 TEST(flat_light_is_left_alone) {
-  abbe_scene scene = {0};
-  abbe_image once = {0}, more = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, once) = {0};
+  OWNED(abbe_image, more) = {0};
   load_text(FROM_ABOVE SUN_ABOVE FLOOR, &scene);
   draw(&scene, 1, &once);
   assert_int_equal(draw(&scene, 4, &more), 0);
   assert_same_pixels(&once, &more);
-  abbe_image_free(&once);
-  abbe_image_free(&more);
-  abbe_scene_free(&scene);
 }
 
 /* Squares of the differences of two pictures from a finer one, summed. */
@@ -143,7 +139,7 @@ static void measure_squares(const abbe_image *a, const abbe_image *b, const abbe
 /* The picture and what it is made of come nearer to those of 16 samples a pixel; the parts are
  * still the whole. */
 static void assert_nearer(const char *text, double most_left) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image once = {0}, more = {0}, fine = {0};
   load_text(text, &scene);
   scene.ambient = scene.background = 0;
@@ -169,7 +165,6 @@ static void assert_nearer(const char *text, double most_left) {
   abbe_image_free(&once);
   abbe_image_free(&more);
   abbe_image_free(&fine);
-  abbe_scene_free(&scene);
 }
 
 TEST(pictures_come_nearer_to_many_samples) {
@@ -202,8 +197,9 @@ static bool shows_ball(const abbe_scene *scene, size_t x, size_t y) {
 
 /* What lies behind a refractor is none of a ray's that is spread over a sample beside it. */
 TEST(samples_beside_a_refractor_stay) {
-  abbe_scene scene = {0};
-  abbe_image once = {0}, more = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, once) = {0};
+  OWNED(abbe_image, more) = {0};
   size_t beside = 0, changed = 0;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   scene.background = 1; /* the floor ends behind it */
@@ -223,7 +219,4 @@ TEST(samples_beside_a_refractor_stay) {
     }
   print_message("%zu samples beside it, %zu changed elsewhere\n", beside, changed);
   assert_true(beside > 10 && changed > 10);
-  abbe_image_free(&once);
-  abbe_image_free(&more);
-  abbe_scene_free(&scene);
 }

@@ -20,10 +20,9 @@ static double drawn(const char *text) {
                                  .map_size = 128,
                                  .light_points = 4,
                                  .space = ABBE_RGB_SPACE_XYZ};
-  abbe_image picture = {0};
+  OWNED(abbe_image, picture) = {0};
   draw_text(text, &desc, &picture);
   const double seen = mean_of(&picture, "Y");
-  abbe_image_free(&picture);
   return seen;
 }
 
@@ -34,17 +33,15 @@ static double traced(const char *text) {
                                 .photons = 1 << 14,
                                 .threads = 1,
                                 .space = ABBE_RGB_SPACE_XYZ};
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_tracer *tracer = NULL;
-  abbe_image picture = {0};
+  OWNED(abbe_image, picture) = {0};
   load_text(text, &scene);
   OK(abbe_tracer_make(&scene, &desc, &tracer, &error));
   for (int i = 0; i < 8; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
   OK(abbe_tracer_picture(tracer, &picture, &error));
   const double seen = mean_of(&picture, "Y");
-  abbe_image_free(&picture);
   abbe_tracer_free(tracer);
-  abbe_scene_free(&scene);
   return seen;
 }
 

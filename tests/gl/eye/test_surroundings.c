@@ -26,7 +26,7 @@ GROUP(make_context, free_context);
 
 /* Radiance of a colour that is white is that of the illuminant; RGB is Rec.709's. */
 TEST(the_sky_is_seen_as_it_is) {
-  abbe_image picture;
+  OWNED(abbe_image, picture);
   draw(SKY_ONLY "environment: {uniform: [0.2, 0.5, 1.5]}\n", &picture);
   for (size_t y = 0; y < 64; y += 7)
     for (size_t x = 0; x < 64; x += 7) {
@@ -34,12 +34,11 @@ TEST(the_sky_is_seen_as_it_is) {
       assert_near(at(&picture, x, y, 1), 0.5, 2e-3);
       assert_near(at(&picture, x, y, 2), 1.5, 3e-3);
     }
-  abbe_image_free(&picture);
 }
 
 /* Directions: a lamp at a known place stands where the camera's geometry puts it. */
 TEST(a_lamp_stands_where_it_is) {
-  abbe_image picture;
+  OWNED(abbe_image, picture);
   /* straight ahead of a level eye that looks along +y */
   draw("materials: glass.yaml\ncamera: {eye: [0, 0, 0.5], target: [0, 1, 0.5], fov: 40}\n"
        "objects:\n- {name: floor, shape: rectangle, width: 1, height: 1, reflectance: 0.5, "
@@ -65,7 +64,6 @@ TEST(a_lamp_stands_where_it_is) {
   assert_near(x_sum / sum, 32 * (1 + d[0] / d[1] / half), 0.3);
   assert_near(y_sum / sum, 32 * (1 - d[2] / d[1] / half), 0.3);
   assert_near(at(&picture, x_max, y_max, 1), 50, 1);
-  abbe_image_free(&picture);
 }
 
 /* In uniform light no clear glass is seen: what it mirrors and what comes through add up. */
@@ -78,7 +76,7 @@ TEST(clear_glass_is_not_seen_in_uniform_light) {
       "[{translate: [0, 0, 0.2]}], material: crown}\n"};
   for (int i = 0; i < 3; i++) {
     char text[2048];
-    abbe_image picture;
+    OWNED(abbe_image, picture);
     snprintf(text, sizeof text, SKY_ONLY "%senvironment: {uniform: 2}\n", glass[i]);
     draw(text, &picture);
     /* at the rims of a mesh a pixel in a hundred misses what its own triangles cover */
@@ -91,16 +89,14 @@ TEST(clear_glass_is_not_seen_in_uniform_light) {
       }
     assert_near(sum, 1, 1e-3);
     assert_true(off <= (i < 2 ? 0 : 64 * 64 / 100));
-    abbe_image_free(&picture);
   }
 }
 
 /* Lights that stand for a dome give an open floor its irradiance, 2 pi / 3 of `cos`. */
 TEST(an_open_floor_has_its_irradiance) {
-  abbe_image picture;
+  OWNED(abbe_image, picture);
   draw(CAMERA FLOOR "environment: {dome: cos}\n", &picture);
   for (size_t x = 8; x < 56; x += 8) assert_near(at(&picture, x, 40, 1) / (0.5 * 2.0 / 3), 1, 1e-2);
-  abbe_image_free(&picture);
 }
 
 /* Receivers that send on all that they get, in light that is alike all around: nothing is seen of
@@ -114,7 +110,7 @@ TEST(nothing_is_seen_in_a_furnace) {
       "1}\n"};
   for (int i = 0; i < 3; i++) {
     char text[2048];
-    abbe_image picture;
+    OWNED(abbe_image, picture);
     snprintf(text, sizeof text,
              CAMERA "objects:\n- {name: floor, shape: rectangle, width: 1, height: 1, reflectance: "
                     "1}\n%senvironment: {uniform: 2}\n",
@@ -122,7 +118,6 @@ TEST(nothing_is_seen_in_a_furnace) {
     draw(text, &picture);
     for (size_t y = 0; y < 64; y++)
       for (size_t x = 0; x < 64; x++) assert_near(at(&picture, x, y, 1), 2, 1e-2);
-    abbe_image_free(&picture);
   }
 }
 
@@ -159,19 +154,19 @@ TEST(turning_all_changes_nothing) {
 }
 
 TEST(light_is_linear) {
-  abbe_image once, thrice;
+  OWNED(abbe_image, once);
+  OWNED(abbe_image, thrice);
   draw(TURNED("0", "[0, -1, 0.5]", ""), &once);
   draw(TURNED("0", "[0, -1, 0.5]", "scale: 3, "), &thrice);
   assert_true(difference(&once, &thrice, 3) < 1e-4);
-  abbe_image_free(&once);
-  abbe_image_free(&thrice);
 }
 
 /* In uniform light clear glass is as bright as what it hides: a transparent picture of it is that
  * light times what it covers. */
 TEST(a_transparent_picture_is_premultiplied) {
-  abbe_scene scene;
-  abbe_image picture, alpha;
+  OWNED(abbe_scene, scene);
+  OWNED(abbe_image, picture);
+  OWNED(abbe_image, alpha);
   abbe_render_desc desc = small_frame;
   desc.space = ABBE_RGB_SPACE_REC709;
   desc.supersample = 2;
@@ -193,19 +188,15 @@ TEST(a_transparent_picture_is_premultiplied) {
   }
   assert_true(partly > 50); /* rims */
   assert_true(off < 20);
-  abbe_image_free(&alpha);
-  abbe_image_free(&picture);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 TEST(the_ledger_closes) {
-  abbe_image picture;
+  OWNED(abbe_image, picture);
   const abbe_statistics s = draw(
       CAMERA FLOOR BALL("crown") "environment: {dome: cos, softboxes: [{elevation: 60, radius: "
                                  "8, radiance: 9}]}\n",
       &picture);
   assert_true(s.energy.reached > 0 && s.energy.deposited > 0);
   assert_true(abbe_ledger_imbalance(&s.energy) < 1e-4);
-  abbe_image_free(&picture);
 }

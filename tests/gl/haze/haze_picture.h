@@ -6,8 +6,8 @@
 
 /* Mean of each channel of a picture of 16 by 16 pixels. */
 static inline void mean_of(const char *text, const abbe_render_desc *asked, double out[3]) {
-  abbe_scene scene;
-  abbe_image picture;
+  OWNED(abbe_scene, scene);
+  OWNED(abbe_image, picture);
   abbe_render_desc desc = *asked;
   desc.width = desc.height = 16;
   desc.supersample = 1;
@@ -20,9 +20,7 @@ static inline void mean_of(const char *text, const abbe_render_desc *asked, doub
     out[k] = 0;
     for (size_t i = 0; i < 256; i++) out[k] += (double)picture.data[i * picture.channels + k] / 256;
   }
-  abbe_image_free(&picture);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 /* The green one, in Rec.709: of white light Y. */

@@ -86,7 +86,7 @@ static double passed(const abbe_material *material, double lambda_nm, double thi
 TEST(a_pane_leaves_what_the_law_says) {
   static const size_t counts[] = {7, 21, 64};
   const double thickness = 0.06;
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(
       "materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"
       "lights:\n- {name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1}\n" FLOOR
@@ -108,7 +108,7 @@ TEST(a_pane_leaves_what_the_law_says) {
   }
   for (size_t i = 0; i < 3; i++) {
     abbe_render_desc desc = small_frame;
-    abbe_image map = {0};
+    OWNED(abbe_image, map) = {0};
     desc.wavelengths = counts[i];
     desc.energy_share = 1e-6;
     abbe_renderer *renderer = make_renderer(&scene, &desc);
@@ -121,10 +121,8 @@ TEST(a_pane_leaves_what_the_law_says) {
       assert_near(image_sum(&map, c) / reached, sum[c] / white[1], 2e-3);
     for (size_t k = 0; k < BANDS; k++)
       assert_near(image_sum(&map, 3 + k) / reached, band[k] / white[1], 0.02 * band[k] / white[1]);
-    abbe_image_free(&map);
     abbe_renderer_free(renderer);
   }
-  abbe_scene_free(&scene);
 }
 
 static double difference(const abbe_image *a, const abbe_image *b) {
@@ -163,7 +161,7 @@ TEST(refined_maps_are_those_of_all_wavelengths) {
 /* More wavelengths in an interval than in the coarse set, and paths that few of them take: what is
  * read of the coarse hits is the photon's own, in whatever order photons stand. */
 TEST(a_mesh_is_refined_alike_every_time) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image map[2] = {{0}, {0}};
   abbe_render_desc desc = small_frame;
   desc.width = desc.height = 16;
@@ -180,5 +178,4 @@ TEST(a_mesh_is_refined_alike_every_time) {
   abbe_renderer_free(renderer);
   assert_same_pixels(&map[0], &map[1]);
   for (int i = 0; i < 2; i++) abbe_image_free(&map[i]);
-  abbe_scene_free(&scene);
 }

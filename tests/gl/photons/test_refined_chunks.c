@@ -22,7 +22,7 @@ static void assert_balanced(const abbe_ledger *l) {
 }
 
 static void assert_same_light(const char *name, size_t wavelengths, const rooms *r) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image map = {0}, kept = {0};
   abbe_render_desc desc = {
       .width = 16, .height = 16, .photons = 48, .map_size = 64, .wavelengths = wavelengths};
@@ -48,7 +48,6 @@ static void assert_same_light(const char *name, size_t wavelengths, const rooms 
   abbe_image_free(&map);
   abbe_renderer_free(ample);
   abbe_renderer_free(scant);
-  abbe_scene_free(&scene);
 }
 
 GROUP(make_context, free_context);

@@ -12,10 +12,9 @@ static inline void plan_scene(const abbe_scene *scene, const abbe_render_desc *d
 }
 
 static inline void plan_text(const char *text, const abbe_render_desc *desc, abbe_plan *plan) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(text, &scene);
   plan_scene(&scene, desc, plan);
-  abbe_scene_free(&scene);
 }
 
 static inline bool is_noted(const abbe_plan *plan, const char *part) {

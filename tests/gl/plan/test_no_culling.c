@@ -31,14 +31,13 @@ static double difference(const abbe_image *a, const abbe_image *b) {
 
 static double with_everything(const abbe_scene *scene, size_t exits) {
   abbe_render_desc desc = small_frame;
-  abbe_image planned = {0}, all = {0};
+  OWNED(abbe_image, planned) = {0};
+  OWNED(abbe_image, all) = {0};
   draw(scene, &desc, &planned);
   desc.everything = true;
   desc.exits = exits;
   draw(scene, &desc, &all);
   double found = difference(&planned, &all);
-  abbe_image_free(&planned);
-  abbe_image_free(&all);
   return found;
 }
 
@@ -55,18 +54,17 @@ TEST(what_no_fact_asks_for_changes_nothing) {
       CAMERA POINT_LIGHT ASIDE FLOOR HILL BALL("flat"),
   };
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-    abbe_scene scene = {0};
+    OWNED(abbe_scene, scene) = {0};
     if (!all_cases() && i % 2 == 0) continue;
     load_text(texts[i], &scene);
     double found = with_everything(&scene, 8);
     if (!(found < 1e-3)) fail_msg("scene %zu: %g", i, found);
-    abbe_scene_free(&scene);
   }
 }
 
 TEST(every_switch_is_on) {
-  abbe_scene scene = {0};
-  abbe_plan plan;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_plan, plan);
   const abbe_render_desc all = {.everything = true};
   load_text(CAMERA POINT_LIGHT ASIDE WIDE FLOOR BALL("flat") "environment: {uniform: 0.1}\n",
             &scene);
@@ -81,13 +79,11 @@ TEST(every_switch_is_on) {
   assert_true(plan.draw_back && plan.fills && plan.camera_sees_refractor);
   assert_int_equal(plan.desc.wavelengths, 7);
   assert_int_equal(plan.desc.exits, ABBE_RENDER_MAX_EXITS);
-  abbe_plan_free(&plan);
-  abbe_scene_free(&scene);
 }
 
 TEST(what_is_asked_for_stays) {
-  abbe_scene scene = {0};
-  abbe_plan plan;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_plan, plan);
   const abbe_render_desc all = {
       .everything = true, .wavelengths = 3, .exits = 2, .fill = ABBE_FILL_NONE};
   load_text(CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat"), &scene);
@@ -95,6 +91,4 @@ TEST(what_is_asked_for_stays) {
   assert_int_equal(plan.desc.wavelengths, 3);
   assert_int_equal(plan.desc.exits, 2);
   assert_false(plan.fills || abbe_plan_find(&plan, ABBE_PASS_GAP_FILL, 0)->runs);
-  abbe_plan_free(&plan);
-  abbe_scene_free(&scene);
 }

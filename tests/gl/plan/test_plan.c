@@ -68,24 +68,21 @@ static const struct {
 };
 
 static void plan_of(const abbe_scene *scene, const abbe_render_desc *desc, lines *out) {
-  abbe_plan plan;
+  OWNED(abbe_plan, plan);
   plan_scene(scene, desc, &plan);
   tell(scene, &plan, out);
-  abbe_plan_free(&plan);
 }
 
 static void load_and_plan(const char *text, const abbe_render_desc *desc, lines *out) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(text, &scene);
   plan_of(&scene, desc, out);
-  abbe_scene_free(&scene);
 }
 
 static void load_and_plan_shipped(const char *name, lines *out) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_shipped(name, &scene);
   plan_of(&scene, NULL, out);
-  abbe_scene_free(&scene);
 }
 
 TEST(shipped_scenes) {
@@ -147,7 +144,7 @@ TEST(every_pass_goes_with_some_fact) {
 
 /* The lists are the scene's objects in their order, and the flags the models in use. */
 TEST(lists_name_the_scenes_objects) {
-  abbe_plan plan;
+  OWNED(abbe_plan, plan);
   plan_text(CAMERA POINT_LIGHT FLOOR BALL("crown") CARD BRICK("flat"), NULL, &plan);
   assert_int_equal(plan.refractor_count, 2);
   assert_true(plan.refractor_object[0] == 1 && plan.refractor_object[1] == 3);
@@ -159,7 +156,6 @@ TEST(lists_name_the_scenes_objects) {
   assert_int_equal(plan.receivers, ABBE_RECEIVER_EXACT);
   assert_true(plan.dispersive && plan.caustics && plan.camera_sees_refractor && plan.fills &&
               !plan.absorbing);
-  abbe_plan_free(&plan);
 }
 
 GROUP(plan_pairs, NULL);

@@ -5,7 +5,7 @@
 
 TEST(the_thesis_refuses_disks) {
   const abbe_render_desc thesis = {.profile = ABBE_PROFILE_THESIS};
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_plan plan;
   load_text(CAMERA "lights:\n- {name: panel, kind: disk, position: [0, 0, 0.6], target: [0, 0, 0], "
                    "radius: 0.1, radiance: 100}\n" FLOOR BALL("flat"),
@@ -17,7 +17,6 @@ TEST(the_thesis_refuses_disks) {
   REFUSED(ABBE_UNSUPPORTED, "'panel' is a disk", abbe_plan_make(&scene, &thesis, &plan, &error));
   assert_contains(last_error.text, "trace the scene");
   assert_contains(last_error.text, "of 3.14159 W/sr"); /* 100 pi 0.1^2 */
-  abbe_scene_free(&scene);
 }
 
 #define LOOKING_GLASS                                                                              \
@@ -57,12 +56,10 @@ TEST(layers_refuse_by_name_what_lies_in_a_refractor) {
   for (size_t i = 0; i < sizeof in / sizeof *in; i++)
     refuse_plan(in[i][0], &desc, ABBE_UNSUPPORTED, in[i][1]);
   for (size_t i = 0; i < sizeof beside / sizeof *beside; i++) {
-    abbe_scene scene;
-    abbe_plan plan;
+    OWNED(abbe_scene, scene);
+    OWNED(abbe_plan, plan);
     load_text(beside[i], &scene);
     OK(abbe_plan_make(&scene, &desc, &plan, &error));
-    abbe_plan_free(&plan);
-    abbe_scene_free(&scene);
   }
 }
 

@@ -4,11 +4,10 @@
 #include "gl/scene/camera_view.h"
 
 static void fit(const abbe_render_desc *desc, double fov_y_rad, abbe_camera_view *out) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_shipped("sphere", &scene);
   scene.camera.fov_y_rad = fov_y_rad;
   abbe_camera_view_fit(&scene, desc, out);
-  abbe_scene_free(&scene);
 }
 
 /* A quarter turn up: tangents of 1 up and of the picture's shape across. */

@@ -11,7 +11,7 @@ static void make(const abbe_scene *scene, abbe_local_scene *local) {
 }
 
 TEST(a_scene_around_the_origin_stays) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_local_scene local;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   make(&scene, &local);
@@ -19,7 +19,6 @@ TEST(a_scene_around_the_origin_stays) {
   assert_ptr_equal(local.scene, &scene);
   assert_true(local.origin[0] == 0 && local.origin[1] == 0 && local.origin[2] == 0);
   abbe_local_scene_free(&local);
-  abbe_scene_free(&scene);
 }
 
 /* 1e5 m from there: to a double's last digit that is what it was at the origin. */
@@ -30,7 +29,7 @@ static void check_point(const double moved[3], const double origin[3], const dou
 }
 
 TEST(everything_moves_together) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_local_scene local;
   load_text("materials: glass.yaml\n"
             "camera: {eye: [100000, 99999, 0.5], target: [100000, 100000, 0.05]}\n"
@@ -78,7 +77,6 @@ TEST(everything_moves_together) {
   check_point(back.origin, (const double[3]){0, 0, 0}, view.origin);
   abbe_local_scene_free(&local);
   abbe_local_scene_free(&local);
-  abbe_scene_free(&scene);
 }
 
 TEST(lights_repeat_where_the_scene_is) {
@@ -87,7 +85,7 @@ TEST(lights_repeat_where_the_scene_is) {
       "- {name: ball, shape: sphere, radius: 0.08, levels: 2, transform: [{translate: [1000, 0, "
       "0.2]}], material: crown}\n"};
   for (int i = 0; i < 2; i++) {
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     abbe_local_scene local;
     abbe_error error = {0};
     load_text(texts[i], &scene);
@@ -105,6 +103,5 @@ TEST(lights_repeat_where_the_scene_is) {
     }
     assert_int_equal(local.scene->object_count, scene.object_count);
     abbe_local_scene_free(&local);
-    abbe_scene_free(&scene);
   }
 }

@@ -40,12 +40,11 @@ static void render_xyz(const abbe_scene *scene, abbe_observer observer, double x
                                  .space = ABBE_RGB_SPACE_XYZ,
                                  .observer = observer};
   abbe_renderer *renderer = make_renderer(scene, &desc);
-  abbe_image image;
+  OWNED(abbe_image, image);
   draw_frame(renderer);
   read_picture(renderer, false, &image);
   check_says(&image, observer);
   mean_xyz(&image, xyz);
-  abbe_image_free(&image);
   abbe_renderer_free(renderer);
 }
 
@@ -95,7 +94,7 @@ TEST(white_cards_have_published_whites) {
             {CARD("E", "1"), ABBE_OBSERVER_CIE_2015_2, {1.0 / 3, 1.0 / 3}},
             {CARD("E", "1"), ABBE_OBSERVER_CIE_2015_10, {1.0 / 3, 1.0 / 3}}};
   for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     double xyz[2][3];
     load_text(of[i].text, &scene);
     render_xyz(&scene, of[i].observer, xyz[0]);
@@ -105,7 +104,6 @@ TEST(white_cards_have_published_whites) {
       assert_near(xyz[who][1], 1, 3e-5);
       for (int k = 0; k < 2; k++) assert_near(xyz[who][k] / all, of[i].xy[k], 6e-5);
     }
-    abbe_scene_free(&scene);
   }
 }
 
@@ -128,7 +126,7 @@ TEST(measured_cards_show_the_integral) {
                                       CARD("F11", "{patch: foliage}")};
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
     for (int o = 0; o < ABBE_OBSERVER_COUNT; o++) {
-      abbe_scene scene;
+      OWNED(abbe_scene, scene);
       double wanted[3], drawn[3], traced[3];
       load_text(texts[i], &scene);
       integrate(&scene, (abbe_observer)o, wanted);
@@ -138,7 +136,6 @@ TEST(measured_cards_show_the_integral) {
         assert_near(drawn[k], wanted[k], 3e-5);
         assert_near(traced[k], wanted[k], 3e-5);
       }
-      abbe_scene_free(&scene);
     }
 }
 
@@ -154,15 +151,15 @@ TEST(measured_cards_show_the_integral) {
  * picture as far as it is that of 1931; not that of another. */
 TEST(bands_say_what_each_observer_sees) {
   static const abbe_illuminant d65 = {.kind = ABBE_ILLUMINANT_D65};
-  abbe_scene scene;
-  abbe_image bands;
+  OWNED(abbe_scene, scene);
+  OWNED(abbe_image, bands);
   double first[2][3] = {{0}}; /* of 1931: wanted, drawn */
   load_text(ROOM, &scene);
   trace(&scene, ABBE_OBSERVER_CIE_1931, BANDS, PASSES, &bands);
   for (int o = 0; o < ABBE_OBSERVER_COUNT; o++) {
     const abbe_relight_desc desc = {.view = {.observer = (abbe_observer)o, .from = &d65},
                                     .space = ABBE_RGB_SPACE_XYZ};
-    abbe_image seen;
+    OWNED(abbe_image, seen);
     double wanted[3], drawn[3], traced[3], apart = 0;
     OK(abbe_relight_make(&bands, "it", &desc, &seen, &error));
     mean_xyz(&seen, wanted);
@@ -182,10 +179,7 @@ TEST(bands_say_what_each_observer_sees) {
       apart = fmax(apart, fabs(wanted[k] / first[0][k] - 1));
     }
     if (o > 0) assert_true(apart > 2e-2);
-    abbe_image_free(&seen);
   }
-  abbe_image_free(&bands);
-  abbe_scene_free(&scene);
 }
 
 /* An environment in colour lights a white card: to another observer what its spectrum is, which
@@ -196,7 +190,7 @@ TEST(an_environment_in_colour) {
       "materials: glass.yaml\ncamera: {eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], fov: 20}\n"
       "environment: {softboxes: [{elevation: 90, azimuth: 0, radius: 8, radiance: [9, 4, 2]}]}\n"
       "objects:\n- {name: card, shape: rectangle, width: 2, height: 2, reflectance: 1}\n";
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_image bands, seen;
   load_text(text, &scene);
   trace(&scene, ABBE_OBSERVER_CIE_1931, BANDS, 4, &bands);
@@ -218,11 +212,10 @@ TEST(an_environment_in_colour) {
     abbe_image_free(&seen);
   }
   abbe_image_free(&bands);
-  abbe_scene_free(&scene);
 }
 
 TEST(printed_colours_have_no_observer) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_renderer *renderer = NULL;
   abbe_render_desc desc = {.profile = ABBE_PROFILE_THESIS, .observer = ABBE_OBSERVER_CIE_1964};
   load_text(ROOM, &scene);
@@ -230,5 +223,4 @@ TEST(printed_colours_have_no_observer) {
           abbe_renderer_make(context, &scene, &desc, &renderer, &error));
   desc = (abbe_render_desc){.observer = ABBE_OBSERVER_COUNT};
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_renderer_make(context, &scene, &desc, &renderer, &error));
-  abbe_scene_free(&scene);
 }

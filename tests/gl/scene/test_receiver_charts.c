@@ -23,8 +23,8 @@ static void make_charts(const char *text, abbe_scene *scene, abbe_plan *plan,
 }
 
 TEST(faces_know_their_sides) {
-  abbe_scene scene = {0};
-  abbe_plan plan = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_plan, plan) = {0};
   abbe_receiver_charts charts = {0};
   make_charts(CAMERA POINT_LIGHT FLOOR HILL CRATE BALL("crown") CEILING, &scene, &plan, &charts);
   assert_int_equal(plan.receiver_count, 4);
@@ -55,6 +55,4 @@ TEST(faces_know_their_sides) {
     }
   }
   abbe_receiver_charts_free(&charts);
-  abbe_plan_free(&plan);
-  abbe_scene_free(&scene);
 }

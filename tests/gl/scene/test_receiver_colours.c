@@ -84,8 +84,9 @@ TEST(a_spectrum_on_colours) {
             {"a texture of the same", NULL, {0.7, 0.2, 0.1}, true}};
   double grey = 0;
   for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
-    abbe_scene scene;
-    abbe_image drawn, traced;
+    OWNED(abbe_scene, scene);
+    OWNED(abbe_image, drawn);
+    OWNED(abbe_image, traced);
     load_prism(of[i].patch, of[i].rgb, of[i].textured, &scene);
     render(&scene, &drawn);
     trace(&scene, &traced);
@@ -93,9 +94,6 @@ TEST(a_spectrum_on_colours) {
     print_message("%s: off by %.3f of the caustic\n", of[i].what, found);
     if (i == 0) grey = found;
     assert_true(found < grey + 0.06);
-    abbe_image_free(&drawn);
-    abbe_image_free(&traced);
-    abbe_scene_free(&scene);
   }
 }
 
@@ -115,12 +113,10 @@ TEST(tables_rest_on_facts) {
                                 "reflectance: {patch: foliage}}\n" BALL("flat"),
              false}};
   for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
-    abbe_scene scene;
-    abbe_plan plan;
+    OWNED(abbe_scene, scene);
+    OWNED(abbe_plan, plan);
     load_text(of[i].text, &scene);
     OK(abbe_plan_make(&scene, NULL, &plan, &error));
     assert_int_equal(plan.receiver_colours, of[i].has);
-    abbe_plan_free(&plan);
-    abbe_scene_free(&scene);
   }
 }

@@ -181,7 +181,8 @@ static abbe_statistics draw(const char *text, const abbe_render_desc *desc, abbe
 
 /* What a screen hides from the lamp looks as it does without the screen. */
 TEST(what_the_lamp_does_not_see) {
-  abbe_image open = {0}, hidden = {0};
+  OWNED(abbe_image, open) = {0};
+  OWNED(abbe_image, hidden) = {0};
   size_t tiles = 9;
   const abbe_statistics all = draw(LOW_EYE LAMP FLOOR GREAT_BALL, &one_exit, &open, &tiles);
   assert_int_equal(tiles, 0);
@@ -205,8 +206,6 @@ TEST(what_the_lamp_does_not_see) {
                 sqrt(difference / sum));
   assert_true(fabs(total[1] - total[0]) < 0.01 * total[0]);
   assert_true(sqrt(difference / sum) < 0.06);
-  abbe_image_free(&open);
-  abbe_image_free(&hidden);
 }
 
 /* A rectangle of 2 x 2, and the upper face of a mesh: a prism upside down. */
@@ -279,7 +278,7 @@ TEST(meshes_show_what_rectangles_do) {
  * axis, L further up its light has spread to x = t (d + L (1 + 2 d / R)), and
  * E = I ((n - 1) / (n + 1))^2 / (x / t)^2. */
 TEST(behind_the_lamp) {
-  abbe_image picture = {0};
+  OWNED(abbe_image, picture) = {0};
   abbe_render_desc desc = one_exit;
   size_t tiles = 0;
   desc.width = desc.height = 16;
@@ -294,7 +293,6 @@ TEST(behind_the_lamp) {
   const double mean = image_sum(&picture, y) / (double)(picture.width * picture.height);
   print_message("radiance %.6g, %.6g by the closed form\n", mean, radiance);
   assert_true(fabs(mean - radiance) < 0.02 * radiance);
-  abbe_image_free(&picture);
 }
 
 static double sum_of_layer(const abbe_renderer *r, size_t layer, const abbe_receiver_tiles *tiles,
@@ -335,7 +333,7 @@ TEST(a_closed_room) {
       {"two refractors", CEILING_EYE BULB ROOM WALLS BALL("crown") BRICK("crown"), 0},
   };
   for (size_t i = 0; i < sizeof rooms / sizeof *rooms; i++) {
-    abbe_scene scene = {0};
+    OWNED(abbe_scene, scene) = {0};
     abbe_render_desc desc = small_frame;
     desc.wavelengths = rooms[i].wavelengths;
     desc.energy_share = 1e-3; /* little light asks for tiles then */
@@ -344,7 +342,7 @@ TEST(a_closed_room) {
     const abbe_statistics s = draw_frame(renderer);
     const abbe_ledger *e = &s.energy;
     const abbe_receiver_tiles *tiles = &renderer->atlas.tiles[0];
-    abbe_image map = {0};
+    OWNED(abbe_image, map) = {0};
     double outside = 0;
     assert_true(renderer->atlas.used);
     read_map(renderer, 0, &map);
@@ -360,9 +358,7 @@ TEST(a_closed_room) {
     assert_true(fabs(both - e->deposited) < 1e-4 * e->deposited);
     assert_true(fabs(beside - e->on_tiles) < 1e-4 * beside);
     assert_true(outside == 0);
-    abbe_image_free(&map);
     abbe_renderer_free(renderer);
-    abbe_scene_free(&scene);
   }
 }
 
@@ -381,7 +377,7 @@ TEST(no_tiles) {
 
 /* More parts take light than there is room for maps: said, not left dark. */
 TEST(too_many_parts) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_renderer *renderer = NULL;
   abbe_render_desc desc = small_frame;
   desc.map_size = 64; /* four rectangles */
@@ -391,5 +387,4 @@ TEST(too_many_parts) {
   print_message("%s\n", last_error.text);
   assert_non_null(strstr(last_error.text, "'bubble'"));
   assert_non_null(strstr(last_error.text, "--map"));
-  abbe_scene_free(&scene);
 }

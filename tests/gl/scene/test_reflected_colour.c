@@ -30,11 +30,10 @@ static void mean_xyz(const abbe_image *image, abbe_rgb_space space, double xyz[3
 static void render_xyz(const abbe_scene *scene, abbe_rgb_space space, double xyz[3]) {
   const abbe_render_desc desc = {.width = 16, .height = 16, .space = space, .adaptive = 1};
   abbe_renderer *renderer = make_renderer(scene, &desc);
-  abbe_image image;
+  OWNED(abbe_image, image);
   draw_frame(renderer);
   read_picture(renderer, false, &image);
   mean_xyz(&image, space, xyz);
-  abbe_image_free(&image);
   abbe_renderer_free(renderer);
 }
 
@@ -44,10 +43,9 @@ static void trace_xyz(const abbe_scene *scene, abbe_rgb_space space, size_t pass
   abbe_tracer *tracer = NULL;
   OK(abbe_tracer_make(scene, &desc, &tracer, &error));
   for (size_t i = 0; i < passes; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
-  abbe_image image;
+  OWNED(abbe_image, image);
   OK(abbe_tracer_picture(tracer, &image, &error));
   mean_xyz(&image, space, xyz);
-  abbe_image_free(&image);
   abbe_tracer_free(tracer);
 }
 
@@ -74,7 +72,7 @@ TEST(flat_patches_show_the_integral) {
       CARD("F11", "{patch: red}"),     CARD("A", "{patch: cyan}"),
       CARD("F11", "{patch: foliage}"), CARD("LED-B3", "{patch: purple}")};
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     double wanted[3], drawn[3], traced[3];
     load_text(texts[i], &scene);
     integrate(&scene, wanted);
@@ -84,7 +82,6 @@ TEST(flat_patches_show_the_integral) {
       assert_near(drawn[k], wanted[k], 2e-5);
       assert_near(traced[k], wanted[k], 2e-5);
     }
-    abbe_scene_free(&scene);
   }
 }
 
@@ -92,13 +89,12 @@ TEST(lifted_colours_are_the_same_in_both) {
   static const char *const lights[] = {CARD("A", "[0.7, 0.3, 0.1]"), CARD("F2", "[0.1, 0.6, 0.2]"),
                                        CARD("D65", "[0.1, 0.2, 0.8]")};
   for (size_t i = 0; i < 3; i++) {
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     double drawn[3], traced[3];
     load_text(lights[i], &scene);
     render_xyz(&scene, ABBE_RGB_SPACE_REC709, drawn);
     trace_xyz(&scene, ABBE_RGB_SPACE_REC709, 1, traced);
     for (int k = 0; k < 3; k++) assert_near(drawn[k], traced[k], 3e-5);
-    abbe_scene_free(&scene);
   }
 }
 
@@ -117,7 +113,7 @@ TEST(lifted_colours_are_the_same_in_both) {
 /* The XYZ of a whole scene, with caustics and what is seen through glass; where more rays are sent
  * is decided by colours of the space, so none are. */
 TEST(the_space_does_not_change_the_light) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   double xyz[ABBE_RGB_SPACE_COUNT][3], traced[ABBE_RGB_SPACE_COUNT][3];
   load_text(ROOM, &scene);
   for (int s = 0; s < ABBE_RGB_SPACE_COUNT; s++) {
@@ -129,5 +125,4 @@ TEST(the_space_does_not_change_the_light) {
       assert_near(xyz[s][k] / xyz[0][k], 1, 2e-5);
       assert_near(traced[s][k] / traced[0][k], 1, 2e-5);
     }
-  abbe_scene_free(&scene);
 }

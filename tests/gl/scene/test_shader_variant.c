@@ -29,7 +29,7 @@ TEST(counts_and_flags_are_told) {
                                  .shadow_planes = 9,
                                  .one_shadow = true,
                                  .pixel_threads = 8};
-  char *text = text_of(&v, "#define MORE 1\n");
+  FREED char *text = text_of(&v, "#define MORE 1\n");
   assert_true(has(text, "#define LIGHTS 2"));
   assert_true(has(text, "#define SPECTRUM_ROOM 2048"));
   assert_true(has(text, "#define PLANE_ROOM 57"));
@@ -41,20 +41,18 @@ TEST(counts_and_flags_are_told) {
   assert_true(has(text, "#define ONE_SHADOW"));
   assert_true(has(text, "#define PIXEL_THREADS 8"));
   assert_string_equal(text + strlen(text) - 15, "#define MORE 1\n");
-  free(text);
 }
 
 /* A block may not be empty; what is not there is not told. */
 TEST(nothing_has_room_for_one) {
   const abbe_shader_variant v = {.exits = 8};
-  char *text = text_of(&v, NULL);
+  FREED char *text = text_of(&v, NULL);
   assert_true(has(text, "#define REFRACTORS 0"));
   assert_true(has(text, "#define REFRACTOR_ROOM 1"));
   static const char *const absent[] = {"SHADOW_PLANES", "ONE_SHADOW", "TILES",
                                        "STEPS",         "BRIDGE",     "MANY_EXITS",
                                        "WIDE",          "AOVS",       "IN_STORAGE"};
   for (size_t i = 0; i < sizeof absent / sizeof *absent; i++) assert_null(strstr(text, absent[i]));
-  free(text);
 }
 
 /* Where tables are copied, so are those that are known by their numbers, up to a count that is
@@ -133,7 +131,7 @@ TEST(other_counts_are_the_same_program) {
                            .steps = 128,
                            .nodes = 7,
                            .map_levels = 6};
-  char *text = text_of(&v, NULL);
+  FREED char *text = text_of(&v, NULL);
   v.wavelengths = 12;
   v.bands = 24;
   v.band_levels = v.exits = v.slots = 8;
@@ -141,8 +139,6 @@ TEST(other_counts_are_the_same_program) {
   v.receiver_root = 4;
   v.tile_blocks = v.chart_sides = v.map_levels = 9;
   v.hit_stride = v.nodes = 4;
-  char *other = text_of(&v, NULL);
+  FREED char *other = text_of(&v, NULL);
   assert_string_equal(text, other);
-  free(text);
-  free(other);
 }

@@ -314,14 +314,13 @@ TEST(what_stands_in_front) {
   /* By lamp and by sun: the sun comes over the shelf's plane and the ball before the brick. */
   static const bool expected[5][2] = {
       {false, false}, {false, false}, {true, true}, {false, false}, {false, true}};
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(text, &scene);
   for (size_t i = 0; i < 5; i++)
     for (size_t k = 0; k < 2; k++)
       if (abbe_shadow_planes_in_front(&scene.object[0], &scene.light[k], &scene.object[i + 1]) !=
           expected[i][k])
         fail_msg("%s and %s", scene.object[i + 1].name, scene.light[k].name);
-  abbe_scene_free(&scene);
 }
 
 /* A brick hides the floor below it, and not a shelf between it and the lamp, which the picture
@@ -335,8 +334,8 @@ TEST(shelves_in_front_are_lit) {
       "material: crown}\n"
       "- {name: shelf, shape: rectangle, width: 0.3, height: 0.3, transform: [{translate: [0, 0, "
       "0.8]}], reflectance: 0.5}\n";
-  abbe_scene scene = {0};
-  abbe_image image = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, image) = {0};
   load_text(text, &scene);
   abbe_render_desc desc = small_frame;
   desc.aovs = true;
@@ -348,6 +347,4 @@ TEST(shelves_in_front_are_lit) {
   const float *pixel = image.data + (32 * image.width + 32) * image.channels;
   const double expected = 0.5 / 3.141592653589793 / (0.7 * 0.7);
   assert_true(fabs((double)pixel[5] / expected - 1) < 0.05);
-  abbe_image_free(&image);
-  abbe_scene_free(&scene);
 }

@@ -18,14 +18,13 @@ static const abbe_render_desc far = {.width = 16,
                                      .exits = ABBE_RENDER_MAX_EXITS};
 
 static abbe_ledger energy_of(const char *text, const abbe_render_desc *desc) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(text, &scene);
   abbe_renderer *renderer = make_renderer(&scene, desc);
   abbe_statistics s = draw_frame(renderer);
   assert_true(abbe_ledger_imbalance(&s.energy) < 1e-4);
   assert_true(s.energy.reached > 0);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
   return s.energy;
 }
 
@@ -90,7 +89,7 @@ static void draw_both(const abbe_scene *scene, abbe_ledger energy[2], double apa
 TEST(triangles_do_as_planes_do) {
   abbe_ledger e[2];
   double apart[3];
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BRICK("smoke"), &scene);
   draw_both(&scene, e, apart);
   /* cells at the outline start by the equation of the planes, or by the light's view of them, whose
@@ -102,7 +101,6 @@ TEST(triangles_do_as_planes_do) {
   assert_near(e[1].deposited / e[0].deposited, 1, 5e-3);
   assert_near(e[1].absorbed / e[0].absorbed, 1, 5e-3);
   assert_true(apart[1] < 0.02);
-  abbe_scene_free(&scene);
 }
 
 /* A spectrum so wide that the violet's wavelengths land an eighth of the map apart: bridged alike.
@@ -110,9 +108,8 @@ TEST(triangles_do_as_planes_do) {
 TEST(triangles_spread_a_spectrum_as_planes_do) {
   abbe_ledger e[2];
   double apart[3];
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_shipped("prism", &scene);
   draw_both(&scene, e, apart);
   for (int c = 0; c < 3; c++) assert_true(apart[c] < 0.02);
-  abbe_scene_free(&scene);
 }

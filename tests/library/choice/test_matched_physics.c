@@ -5,7 +5,7 @@
 #include "library/choice/matched_physics.h"
 
 TEST(what_the_plan_follows) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_plan plan;
   abbe_physics physics = {0};
   load_shipped("gem", &scene);
@@ -20,5 +20,4 @@ TEST(what_the_plan_follows) {
   abbe_plan_free(&plan);
   /* A request that the renderer refuses has no plan to match. */
   assert_int_not_equal(abbe_matched_physics(&scene, 500, 400, &physics, NULL), ABBE_OK);
-  abbe_scene_free(&scene);
 }

@@ -14,8 +14,9 @@ static abbe_sweep_row row_of(size_t photons, size_t passes) {
 }
 
 TEST(the_picture_is_the_tracers) {
-  abbe_scene scene = {0};
-  abbe_image picture = {0}, own = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, picture) = {0};
+  OWNED(abbe_image, own) = {0};
   abbe_sweep_row row = row_of(16, 2);
   const abbe_sweep_trace_desc desc = {.width = 16, .height = 12, .frames = 3};
   const abbe_trace_desc same = {
@@ -34,13 +35,10 @@ TEST(the_picture_is_the_tracers) {
               row.number[ABBE_SWEEP_FRAME_MS]);
   assert_true(isnan(row.number[ABBE_SWEEP_MAP_RMSE]));
   abbe_tracer_free(tracer);
-  abbe_image_free(&picture);
-  abbe_image_free(&own);
-  abbe_scene_free(&scene);
 }
 
 TEST(what_is_refused) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   int asked = 0;
   abbe_sweep_row row = row_of(16, 2);
   abbe_sweep_trace_desc desc = {.width = 8, .height = 8, .progress = stop_at_once, .user = &asked};
@@ -54,5 +52,4 @@ TEST(what_is_refused) {
   scene.light_count = 0;
   REFUSED(ABBE_INVALID_ARGUMENT, "no light", abbe_sweep_trace_check(&scene, &error));
   scene.light_count = lights;
-  abbe_scene_free(&scene);
 }

@@ -3,7 +3,7 @@
 #include "tests/scenes/cuts/designs.h"
 
 TEST(directions_are_those_of_the_gear) {
-  abbe_cut cut = {.gear = 96};
+  OWNED(abbe_cut, cut) = {.gear = 96};
   OK(abbe_cut_add_tier(&cut, 45, 2, &error));
   OK(abbe_cut_add_facet(&cut, 96, &error));
   OK(abbe_cut_add_facet(&cut, 24, &error));
@@ -26,7 +26,6 @@ TEST(directions_are_those_of_the_gear) {
   assert_near(cut.facet[0].n[1], -sqrt(0.5), 1e-15);
   assert_near(cut.facet[1].n[0], sqrt(0.5), 1e-15);
   OK(abbe_cut_check(&cut, &error));
-  abbe_cut_free(&cut);
 }
 
 TEST(angles_and_indices_come_back_from_planes) {
@@ -63,7 +62,7 @@ TEST(names_go_on_within_a_tier) {
 }
 
 TEST(what_no_stone_has_is_refused) {
-  abbe_cut cut = {.gear = 96};
+  OWNED(abbe_cut, cut) = {.gear = 96};
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_cut_add_facet(&cut, 1, &error));
   REFUSED(ABBE_SCHEMA, "at least 4", abbe_cut_check(&cut, &error));
   OK(abbe_cut_add_tier(&cut, 45, 2, &error));
@@ -79,5 +78,4 @@ TEST(what_no_stone_has_is_refused) {
   cut.facet[8].d = 1;
   cut.gear = 0;
   REFUSED(ABBE_SCHEMA, "teeth", abbe_cut_check(&cut, &error));
-  abbe_cut_free(&cut);
 }

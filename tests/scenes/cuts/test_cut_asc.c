@@ -23,8 +23,8 @@ TEST(design_d_has_all_of_the_grammar) {
 }
 
 static void expect_notes(const char *text, const char *a, const char *b) {
-  abbe_cut cut;
-  abbe_report report = {0};
+  OWNED(abbe_cut, cut);
+  OWNED(abbe_report, report) = {0};
   char all[4096] = "";
   OK(abbe_cut_asc_parse(text, strlen(text), "x.asc", &cut, &report, &error));
   for (size_t i = 0; i < report.count; i++) {
@@ -33,8 +33,6 @@ static void expect_notes(const char *text, const char *a, const char *b) {
   }
   assert_contains(all, a);
   assert_contains(all, b);
-  abbe_report_free(&report);
-  abbe_cut_free(&cut);
 }
 
 #define CUBE "a 90 1 96 24 48 72\na 0 1\na -0 1\n"
@@ -106,13 +104,12 @@ TEST(bad_files_are_refused_with_the_line) {
 
 TEST(too_many_facets_are_refused) {
   const size_t size = 3 * 5000 + 32;
-  char *text = calloc(1, size);
+  FREED char *text = calloc(1, size);
   strcpy(text, "g 96 0\na 45 1");
   for (size_t i = 0, at = strlen(text); i < 5000; i++, at += 2) memcpy(text + at, " 1", 2);
   abbe_cut cut;
   REFUSED(ABBE_UNSUPPORTED, "x.asc:2: more than 4096 facets",
           abbe_cut_asc_parse(text, strlen(text), "x.asc", &cut, NULL, &error));
-  free(text);
 }
 
 static char *written(const abbe_cut *cut) {
@@ -129,7 +126,7 @@ TEST(what_is_written_reads_back) {
   for (size_t i = 0; i < sizeof designs / sizeof *designs; i++) {
     abbe_cut cut = design_parse(designs[i]);
     if (i == 2) cut.tier[0].distance = 1 / 3.0, abbe_cut_place(&cut);
-    char *text = written(&cut);
+    FREED char *text = written(&cut);
     abbe_cut back = design_parse(text);
     assert_int_equal(back.gear, cut.gear);
     assert_int_equal(back.facet_count, cut.facet_count);
@@ -143,10 +140,8 @@ TEST(what_is_written_reads_back) {
     }
     if (cut.tier[3].instruction)
       assert_string_equal(back.tier[3].instruction, cut.tier[3].instruction);
-    char *again = written(&back);
+    FREED char *again = written(&back);
     assert_string_equal(text, again);
-    free(text);
-    free(again);
     abbe_cut_free(&back);
     abbe_cut_free(&cut);
   }
@@ -154,8 +149,7 @@ TEST(what_is_written_reads_back) {
 
 TEST(gemcads_own_digits_stay) {
   abbe_cut cut = design_parse(design_a);
-  char *text = written(&cut);
+  FREED char *text = written(&cut);
   assert_string_equal(text, design_a);
-  free(text);
   abbe_cut_free(&cut);
 }

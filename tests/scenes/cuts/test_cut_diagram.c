@@ -10,17 +10,16 @@
 
 static void write_sheet(const char *path, const char *text, const char *note) {
   abbe_cut cut = design_parse(text);
-  abbe_cut_polyhedron p;
+  OWNED(abbe_cut_polyhedron, p);
   OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
   OK(abbe_cut_diagram_write(path, &cut, &p, note, &error));
-  abbe_cut_polyhedron_free(&p);
   abbe_cut_free(&cut);
 }
 
 /* Each face that is seen is one closed path, filled and outlined: of design A 33 from above, 24
  * from below and half of all from each side. */
 TEST(an_svg_has_all_faces) {
-  char *data;
+  FREED char *data = NULL;
   size_t size;
   write_sheet("cut_diagram_test.svg", design_a, "a note");
   OK(abbe_file_read("cut_diagram_test.svg", 1 << 22, &data, &size, &error));
@@ -32,7 +31,6 @@ TEST(an_svg_has_all_faces) {
     outlines += strncmp(svg_value(at, "stroke-width"), "0.7", 3) == 0;
   if (outlines < 33 + 24 + 2 * 30 || outlines > 33 + 24 + 2 * 45)
     fail_msg("%zu outlines of faces", outlines);
-  free(data);
 }
 
 TEST(a_png_is_as_long_as_its_table) {
@@ -41,7 +39,7 @@ TEST(a_png_is_as_long_as_its_table) {
   for (int i = 0; i < 60; i++) strcat(tall, "a -90 1 96 24 48 72 G and a line that says why\n");
   snprintf(headed, sizeof headed, "H a title\nH one\nH two\nH three\n%s", tall);
   for (int i = 0; i < 3; i++) {
-    char *data;
+    FREED char *data = NULL;
     size_t size;
     write_sheet("cut_diagram_test.png", i == 0 ? design_c : i == 1 ? tall : headed, NULL);
     OK(abbe_file_read("cut_diagram_test.png", 1 << 24, &data, &size, &error));
@@ -49,7 +47,6 @@ TEST(a_png_is_as_long_as_its_table) {
     assert_memory_equal(head + 12, "IHDR", 4);
     assert_int_equal(head[18] * 256 + head[19], 595 * ABBE_CUT_DIAGRAM_PIXELS);
     height[i] = (size_t)(head[22] * 256 + head[23]);
-    free(data);
   }
   assert_int_equal(unlink("cut_diagram_test.png"), 0);
   assert_int_equal(height[0], 842 * ABBE_CUT_DIAGRAM_PIXELS);
@@ -67,11 +64,10 @@ TEST(a_pdf_and_what_is_refused) {
   free(data);
   assert_int_equal(unlink("cut_diagram_test.pdf"), 0);
   abbe_cut cut = design_parse(design_c);
-  abbe_cut_polyhedron p;
+  OWNED(abbe_cut_polyhedron, p);
   OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "ends with .pdf, .svg or .png",
           abbe_cut_diagram_write("sheet.jpg", &cut, &p, NULL, &error));
   REFUSED(ABBE_IO, "", abbe_cut_diagram_write("no/such/folder/a.pdf", &cut, &p, NULL, &error));
-  abbe_cut_polyhedron_free(&p);
   abbe_cut_free(&cut);
 }

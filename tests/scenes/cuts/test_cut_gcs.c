@@ -36,7 +36,7 @@ static abbe_cut read(const char *text) {
 
 TEST(a_design_is_read) {
   abbe_cut cut = read(HEAD TABLE REST);
-  abbe_cut_polyhedron p;
+  OWNED(abbe_cut_polyhedron, p);
   assert_int_equal(cut.gear, 80);
   assert_int_equal(cut.folds, 4);
   assert_true(cut.mirror);
@@ -57,7 +57,6 @@ TEST(a_design_is_read) {
   assert_int_equal(p.vertex_count, 9);
   assert_int_equal(p.face_count, 9);
   assert_near(p.min[2], -0.8 * sqrt(2), 1e-12);
-  abbe_cut_polyhedron_free(&p);
   abbe_cut_free(&cut);
 }
 
@@ -82,15 +81,13 @@ TEST(a_strange_symmetry_is_passed_over) {
                                      "symmetry='99999999'", "mirror='0'"};
   for (size_t i = 0; i < sizeof said / sizeof *said; i++) {
     char text[2500];
-    abbe_cut cut;
-    abbe_report report = {0};
+    OWNED(abbe_cut, cut);
+    OWNED(abbe_report, report) = {0};
     snprintf(text, sizeof text, "<GemCutStudio><index gear='80' %s/>" TABLE REST, said[i]);
     OK(abbe_cut_gcs_parse(text, strlen(text), "x.gcs", &cut, &report, &error));
     assert_int_equal(cut.folds, 0);
     assert_false(cut.mirror);
     assert_int_equal(report.count, i < 4);
-    abbe_report_free(&report);
-    abbe_cut_free(&cut);
   }
 }
 
@@ -150,8 +147,9 @@ TEST(what_is_written_is_read_back) {
   const char *const designs[] = {design_a, design_b, design_c, design_d};
   for (int k = 0; k < 4; k++) {
     abbe_cut cut = design_parse(designs[k]);
-    abbe_cut_polyhedron p, q;
-    char *text = NULL;
+    OWNED(abbe_cut_polyhedron, p);
+    OWNED(abbe_cut_polyhedron, q);
+    FREED char *text = NULL;
     size_t size = 0;
     FILE *to = open_memstream(&text, &size);
     assert_non_null(to);
@@ -179,10 +177,7 @@ TEST(what_is_written_is_read_back) {
       }
       assert_near(nearest, 0, 1e-12);
     }
-    abbe_cut_polyhedron_free(&p);
-    abbe_cut_polyhedron_free(&q);
     abbe_cut_free(&cut);
     abbe_cut_free(&back);
-    free(text);
   }
 }

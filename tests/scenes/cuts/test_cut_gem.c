@@ -9,12 +9,11 @@ typedef struct file {
 
 static file written(const abbe_cut *cut) {
   file f = {0};
-  abbe_cut_polyhedron p;
+  OWNED(abbe_cut_polyhedron, p);
   OK(abbe_cut_polyhedron_make(cut, 0, &p, &error));
   FILE *to = open_memstream(&f.data, &f.size);
   OK(abbe_cut_gem_write(cut, &p, to, NULL, &error));
   fclose(to);
-  abbe_cut_polyhedron_free(&p);
   return f;
 }
 
@@ -95,14 +94,13 @@ TEST(every_truncation_is_refused) {
 static void refuse(const file *f, size_t at, const void *bytes, size_t count, const char *part) {
   abbe_cut back;
   abbe_error error = {0};
-  char *bad = malloc(f->size);
+  FREED char *bad = malloc(f->size);
   memcpy(bad, f->data, f->size);
   memcpy(bad + at, bytes, count);
   const abbe_result result = abbe_cut_gem_parse(bad, f->size, "x.gem", &back, NULL, &error);
   assert_true(result == ABBE_PARSE || result == ABBE_SCHEMA);
   assert_contains(error.text, part);
   assert_null(back.facet);
-  free(bad);
 }
 
 TEST(hostile_values_are_refused) {
@@ -137,7 +135,7 @@ TEST(long_texts_are_cut_and_told) {
   memset(text + strlen(text), 'x', 400);
   strcat(text, "\na 90 1 96 24 48 72\na -0 1\n");
   abbe_cut cut = design_parse(text), back;
-  abbe_cut_polyhedron p;
+  OWNED(abbe_cut_polyhedron, p);
   abbe_report report = {0};
   file f = {0};
   OK(abbe_cut_polyhedron_make(&cut, 0, &p, &error));
@@ -150,7 +148,6 @@ TEST(long_texts_are_cut_and_told) {
   assert_string_equal(back.facet[0].name, "K");
   abbe_report_free(&report);
   free(f.data);
-  abbe_cut_polyhedron_free(&p);
   abbe_cut_free(&back);
   abbe_cut_free(&cut);
 }

@@ -161,7 +161,7 @@ TEST(triangles_are_a_closed_convex_solid) {
   for (size_t i = 0; i < sizeof designs / sizeof *designs; i++) {
     abbe_cut cut = design_parse(designs[i]);
     abbe_cut_polyhedron p = stone(&cut, 0);
-    abbe_mesh m;
+    OWNED(abbe_mesh, m);
     abbe_mesh_report report;
     abbe_convex convex;
     double plane[256][4];
@@ -173,7 +173,6 @@ TEST(triangles_are_a_closed_convex_solid) {
     OK(abbe_convex_find(&m, 256, plane, NULL, &convex, &error));
     assert_int_equal(convex.verdict, ABBE_CONVEX_SOLID);
     assert_int_equal(convex.planes, planes[i]);
-    abbe_mesh_free(&m);
     abbe_cut_polyhedron_free(&p);
     abbe_cut_free(&cut);
   }

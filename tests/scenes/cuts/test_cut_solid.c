@@ -80,7 +80,7 @@ static const cJSON *under(const cJSON *object, const char *key) {
 TEST(gltf_knows_the_stone) {
   abbe_cut cut = design_parse(design_b);
   abbe_cut_polyhedron p = stone_of(&cut);
-  abbe_material_table table;
+  OWNED(abbe_material_table, table);
   const abbe_material *diamond;
   char *data;
   size_t size;
@@ -105,7 +105,6 @@ TEST(gltf_knows_the_stone) {
   cJSON_Delete(root);
   free(data);
   assert_int_equal(unlink(paths[2]), 0);
-  abbe_material_table_free(&table);
   abbe_cut_polyhedron_free(&p);
   abbe_cut_free(&cut);
 }

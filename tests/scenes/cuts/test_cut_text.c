@@ -17,7 +17,7 @@ TEST(letters_of_windows_1252_become_a_byte_each) {
 TEST(bytes_come_back_as_letters) {
   char bytes[256], back[256];
   for (int i = 0; i < 255; i++) bytes[i] = (char)(i + 1);
-  char *text = abbe_cut_text_widen(bytes, 255);
+  FREED char *text = abbe_cut_text_widen(bytes, 255);
   assert_int_equal(abbe_cut_text_narrow(text, back, sizeof back), 255);
   for (int i = 0; i < 255; i++) {
     const unsigned char byte = (unsigned char)bytes[i];
@@ -25,5 +25,4 @@ TEST(bytes_come_back_as_letters) {
     const bool control = byte < ' ' || byte == 0x7f;
     assert_int_equal((unsigned char)back[i], none ? '?' : control ? ' ' : byte);
   }
-  free(text);
 }

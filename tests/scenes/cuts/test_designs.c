@@ -39,8 +39,8 @@ static void read(size_t i, abbe_cut *cut, abbe_cut_polyhedron *p) {
 
 TEST(each_is_closed) {
   for (size_t i = 0; i < COUNT; i++) {
-    abbe_cut cut;
-    abbe_cut_polyhedron p;
+    OWNED(abbe_cut, cut);
+    OWNED(abbe_cut_polyhedron, p);
     abbe_cut_measures m;
     read(i, &cut, &p);
     abbe_cut_measures_make(&cut, &p, &m);
@@ -52,8 +52,6 @@ TEST(each_is_closed) {
                m.faces[ABBE_CUT_GIRDLE], m.dead + m.doubled);
     assert_int_equal(p.vertex_count + p.face_count, p.edge_count + 2);
     assert_true(cut.heading[0] != NULL && cut.refractive_index > 1.3 && m.width > 0.5);
-    abbe_cut_polyhedron_free(&p);
-    abbe_cut_free(&cut);
   }
 }
 
@@ -71,8 +69,8 @@ static bool has_plane(const abbe_cut *cut, const double n[3], double d) {
 
 TEST(each_has_its_symmetry) {
   for (size_t i = 0; i < COUNT; i++) {
-    abbe_cut cut;
-    abbe_cut_polyhedron p;
+    OWNED(abbe_cut, cut);
+    OWNED(abbe_cut_polyhedron, p);
     read(i, &cut, &p);
     const double turn = 2 * 3.14159265358979323846 / cut.folds;
     assert_true(cut.folds >= 1);
@@ -84,8 +82,6 @@ TEST(each_has_its_symmetry) {
       if (!has_plane(&cut, turned, d) || (cut.mirror && !has_plane(&cut, mirrored, d)))
         fail_msg("%s: facet %zu has no like", designs[i].name, f + 1);
     }
-    abbe_cut_polyhedron_free(&p);
-    abbe_cut_free(&cut);
   }
 }
 

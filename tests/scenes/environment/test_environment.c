@@ -27,7 +27,7 @@ static void make(size_t width, abbe_environment *out) {
 TEST(densities_integrate_to_one) {
   static const size_t widths[] = {4, 6, 16, 36};
   for (size_t w = 0; w < 4; w++) {
-    abbe_environment e;
+    OWNED(abbe_environment, e);
     double sum = 0, mean = 0;
     make(widths[w], &e);
     const int rows = 500, columns = 1000;
@@ -43,7 +43,6 @@ TEST(densities_integrate_to_one) {
     assert_near(sum, 1, 3e-4);
     assert_near(mean, e.mean[0], 3e-4 * e.mean[0]);
     assert_near(e.luminance, 4 * ABBE_PI * e.mean[0], 1e-9 * e.luminance);
-    abbe_environment_free(&e);
   }
 }
 
@@ -52,7 +51,7 @@ TEST(densities_integrate_to_one) {
 TEST(samples_follow_their_density) {
   static const size_t widths[] = {4, 6, 16, 36};
   for (size_t w = 0; w < 4; w++) {
-    abbe_environment e;
+    OWNED(abbe_environment, e);
     double is[12] = {0}, expected[12] = {0};
     make(widths[w], &e);
     enum { SAMPLES = 200000 };
@@ -88,14 +87,13 @@ TEST(samples_follow_their_density) {
         for (int k = 0; k < 3; k++) expected[9 + k] += own[k] * share;
       }
     for (int i = 0; i < 12; i++) assert_near(is[i], expected[i], 0.005);
-    abbe_environment_free(&e);
   }
 }
 
 /* The ends of [0, 1): nothing is outside, and no sample is where it is dark. */
 TEST(extreme_numbers) {
   static const double ends[] = {0, 0x1p-60, 0.5, 1 - 0x1p-53};
-  abbe_environment e;
+  OWNED(abbe_environment, e);
   make(16, &e);
   for (int i = 0; i < 64; i++)
     for (int j = 0; j < 128; j++) {
@@ -105,11 +103,11 @@ TEST(extreme_numbers) {
       assert_true(abbe_vector_finite(d) && isfinite(pdf) && pdf >= 0);
       assert_near(abbe_vector_length(d), 1, 1e-12);
     }
-  abbe_environment_free(&e);
 }
 
 TEST(turning_both_changes_nothing) {
-  abbe_environment still = {0}, turned = {0};
+  OWNED(abbe_environment, still) = {0};
+  OWNED(abbe_environment, turned) = {0};
   make(64, &still);
   make(64, &turned);
   abbe_environment_turn(0, NULL, 0, still.to_map);
@@ -128,12 +126,11 @@ TEST(turning_both_changes_nothing) {
     abbe_environment_irradiance(&turned, moved, other);
     for (int k = 0; k < 3; k++) assert_near(one[k], other[k], 1e-9 * one[k]);
   }
-  abbe_environment_free(&still);
-  abbe_environment_free(&turned);
 }
 
 TEST(light_is_linear) {
-  abbe_environment one, three;
+  OWNED(abbe_environment, one);
+  OWNED(abbe_environment, three);
   const double n[3] = {0.6, 0, 0.8};
   double a[3], b[3];
   make(64, &one);
@@ -147,12 +144,10 @@ TEST(light_is_linear) {
   assert_near(b[0], 3 * a[0], 1e-5 * b[0]);
   assert_near(three.mean[0], 3 * one.mean[0], 1e-6 * three.mean[0]);
   assert_near(abbe_environment_pdf(&three, n), abbe_environment_pdf(&one, n), 1e-6);
-  abbe_environment_free(&one);
-  abbe_environment_free(&three);
 }
 
 TEST(levels_are_blurred) {
-  abbe_environment e;
+  OWNED(abbe_environment, e);
   make(64, &e);
   assert_int_equal(e.level_count, 4);
   assert_int_equal(e.level[3].height, 2);
@@ -161,12 +156,11 @@ TEST(levels_are_blurred) {
     abbe_environment_radiance_of_level(&e, l, (const double[3]){0, 0, 1}, rgb);
     assert_true(rgb[0] >= 0 && rgb[0] <= 200);
   }
-  abbe_environment_free(&e);
   abbe_environment_free(NULL);
 }
 
 TEST(the_brightest_part) {
-  abbe_environment e = {0};
+  OWNED(abbe_environment, e) = {0};
   double share;
   OK(abbe_radiance_map_make(256, &e.map, &error));
   for (size_t i = 0; i < 3 * 256 * 128; i++) e.map.rgb[i] = i / 3 % 256 < 64 ? 3 : 1;
@@ -177,7 +171,6 @@ TEST(the_brightest_part) {
     OK(abbe_environment_brightest(&e, known[i][0], &share, &error));
     assert_near(share, known[i][1], 1e-6);
   }
-  abbe_environment_free(&e);
 }
 
 TEST(what_is_refused) {
@@ -187,12 +180,11 @@ TEST(what_is_refused) {
   } cases[] = {
       {-1e-3f, "is -0.001"}, {NAN, "nan"}, {INFINITY, "inf"}, {2e12f, "2e+12"}, {0, "black"}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    abbe_environment e = {0};
+    OWNED(abbe_environment, e) = {0};
     OK(abbe_radiance_map_make(16, &e.map, &error));
     e.map.rgb[3 * (16 * 2 + 5) + 1] = cases[i].value;
     REFUSED(ABBE_INVALID_ARGUMENT, cases[i].part, abbe_environment_prepare(&e, &error));
     if (i < 4) assert_contains(last_error.text, "green of the texel at column 5, row 2");
     assert_null(e.texels.keep);
-    abbe_environment_free(&e);
   }
 }

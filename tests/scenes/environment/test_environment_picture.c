@@ -38,7 +38,7 @@ GROUP(begin, finish);
 
 TEST(latlong_pictures) {
   abbe_image image = picture(16, 8, rgb_names), kept = picture(16, 8, rgb_names);
-  abbe_radiance_map map;
+  OWNED(abbe_radiance_map, map);
   OK(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, &error));
   assert_true(map.width == 16 && map.height == 8);
   assert_memory_equal(map.rgb, kept.data, 3 * 16 * 8 * sizeof(float));
@@ -51,7 +51,6 @@ TEST(latlong_pictures) {
   OK(abbe_file_write(path, data, head + 32, &error));
   OK(abbe_environment_picture_read(path, ABBE_LAYOUT_LATLONG, &map, &error));
   assert_true(map.rgb[3] == 0.5f && map.rgb[4] == 0 && map.rgb[0] == 0);
-  abbe_radiance_map_free(&map);
 }
 
 /* The same light by other numbers: in ACEScg, in XYZ. */
@@ -60,7 +59,7 @@ TEST(colours_are_converted) {
     abbe_image image = picture(16, 8, space == ABBE_RGB_SPACE_XYZ ? xyz_names : rgb_names);
     abbe_image kept = picture(16, 8, rgb_names);
     double to_xyz[9], from_xyz[9];
-    abbe_radiance_map map;
+    OWNED(abbe_radiance_map, map);
     abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
     abbe_rgb_space_from_xyz((abbe_rgb_space)space, from_xyz);
     if (space != ABBE_RGB_SPACE_XYZ) abbe_rgb_space_chromaticities((abbe_rgb_space)space, image.xy);
@@ -72,7 +71,6 @@ TEST(colours_are_converted) {
     }
     OK(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, &error));
     for (size_t i = 0; i < 3 * 16 * 8; i++) assert_near(map.rgb[i], kept.data[i], 1e-5);
-    abbe_radiance_map_free(&map);
     abbe_image_free(&kept);
   }
 }
@@ -80,12 +78,11 @@ TEST(colours_are_converted) {
 /* A green of ACEScg is no colour of Rec.709. */
 TEST(what_rec709_cannot_hold_is_clipped) {
   abbe_image image = picture(4, 2, rgb_names);
-  abbe_radiance_map map;
+  OWNED(abbe_radiance_map, map);
   abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_ACESCG, image.xy);
   for (size_t i = 0; i < 24; i++) image.data[i] = i % 3 == 1;
   OK(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, &error));
   assert_true(map.rgb[0] == 0 && map.rgb[1] > 1 && map.rgb[2] == 0);
-  abbe_radiance_map_free(&map);
 }
 
 /* abbe:space is taken as every other reader takes it, before the chromaticities; a file that says
@@ -112,12 +109,11 @@ TEST(the_space_that_a_file_says) {
 TEST(grey_pictures) {
   static const char *const names[] = {"Y"};
   abbe_image image;
-  abbe_radiance_map map;
+  OWNED(abbe_radiance_map, map);
   OK(abbe_image_make(4, 2, 1, names, &image, &error));
   for (size_t i = 0; i < 8; i++) image.data[i] = (float)i;
   OK(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, &error));
   for (size_t i = 0; i < 24; i++) assert_true(map.rgb[i] == (float)(i / 3));
-  abbe_radiance_map_free(&map);
 }
 
 /* Faces of one colour each, both crosses and OpenEXR's column: what looks along each axis, and that
@@ -148,7 +144,7 @@ TEST(cubes) {
         pixel[2] = turned ? i % SIDE >= SIDE / 2 : i % SIDE < SIDE / 2;
       }
     }
-    abbe_radiance_map map;
+    OWNED(abbe_radiance_map, map) = {0};
     double rgb[3];
     OK(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, &error));
     assert_true(map.width == 4 * SIDE);
@@ -168,7 +164,6 @@ TEST(cubes) {
     abbe_radiance_map_at(&map, (const double[3]){0, 0.4, -1}, rgb);
     assert_near(rgb[2], 1, 1e-6);
     for (size_t i = 0; i < map.width * map.height; i++) assert_near(map.rgb[3 * i], 1, 1e-6);
-    abbe_radiance_map_free(&map);
   }
 }
 

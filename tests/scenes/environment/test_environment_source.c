@@ -160,9 +160,8 @@ TEST(what_is_refused) {
       {.kind = ABBE_SOURCE_RECTANGLE, .half_width_rad = 1, .half_height_rad = 1.6},
       {.kind = ABBE_SOURCE_SKY, .sky = {17, {0, 0, 1}}},
   };
-  abbe_radiance_map map;
+  OWNED(abbe_radiance_map, map);
   OK(abbe_radiance_map_make(16, &map, &error));
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
     REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_environment_source_add(&bad[i], &map, &error));
-  abbe_radiance_map_free(&map);
 }

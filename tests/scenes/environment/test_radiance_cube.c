@@ -43,7 +43,7 @@ static void make_map(abbe_radiance_map *map) {
 }
 
 TEST(every_level_holds_the_light) {
-  abbe_radiance_map map;
+  OWNED(abbe_radiance_map, map);
   abbe_radiance_cube cube;
   double mean[3], first[3] = {0, 0, 0};
   make_map(&map);
@@ -64,7 +64,6 @@ TEST(every_level_holds_the_light) {
     }
   }
   abbe_radiance_cube_free(&cube);
-  abbe_radiance_map_free(&map);
 }
 
 /* The texel beyond an edge is that of the neighbour which shares the edge: directions of both are
@@ -106,7 +105,7 @@ TEST(borders_are_the_neighbours) {
 
 /* Where the map is smooth a texel is what the map shows in its direction. */
 TEST(texels_show_the_map) {
-  abbe_radiance_map map;
+  OWNED(abbe_radiance_map, map);
   abbe_radiance_cube cube;
   make_map(&map);
   OK(abbe_radiance_cube_make(&map, 256, &cube, &error));
@@ -119,7 +118,6 @@ TEST(texels_show_the_map) {
     if (d[0] < 0) assert_near((double)cube.level[0][3 * i + 1], 0.3, 1e-6);
   }
   abbe_radiance_cube_free(&cube);
-  abbe_radiance_map_free(&map);
 }
 
 TEST(wrong_sides) {

@@ -16,7 +16,7 @@ static abbe_export_index index_of(const abbe_material_table *table, const char *
 
 /* crown: n = 1.5 + 0.006 um2 / lambda^2. */
 TEST(a_law_of_two_terms) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   abbe_export_index i = index_of(&scene.table, "crown", ABBE_EXPORT_FORM_CAUCHY, 0);
   assert_near(i.value[0], 1.5, 1e-12);
@@ -35,11 +35,10 @@ TEST(a_law_of_two_terms) {
   assert_true(i.worst > 0.9 * most && i.worst < 1.05 * most);
   assert_true(i.worst_nm < 386);
   assert_near(abbe_export_index_at(&i, 500), 1.5 + 0.006 / 0.25, 1e-12);
-  abbe_scene_free(&scene);
 }
 
 TEST(one_and_three_indices) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   abbe_export_index i = index_of(&scene.table, "crown", ABBE_EXPORT_FORM_ONE, 500);
   assert_near(i.value[0], 1.524, 1e-12);
@@ -54,12 +53,11 @@ TEST(one_and_three_indices) {
     assert_near(i.worst, 0, 1e-12);
     assert_near(abbe_export_index_at(&i, 666), 1.5, 1e-12);
   }
-  abbe_scene_free(&scene);
 }
 
 /* narrow is known from 400 to 700 nm; loose too, but goes on. */
 TEST(records_that_end) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   abbe_export_index i = index_of(&scene.table, "narrow", ABBE_EXPORT_FORM_TABLE, 0);
   assert_true(i.held);
@@ -69,11 +67,10 @@ TEST(records_that_end) {
   i = index_of(&scene.table, "loose", ABBE_EXPORT_FORM_TABLE, 0);
   assert_true(!i.held);
   assert_near(i.table[0], 1.5 + 0.006 / (0.36 * 0.36), 1e-12);
-  abbe_scene_free(&scene);
 }
 
 TEST(stated_errors_are_those_measured) {
-  abbe_material_table table;
+  OWNED(abbe_material_table, table) = {0};
   OK(abbe_material_table_load("default", &table, &error));
   for (size_t m = 0; m < table.count; m++) {
     const abbe_material *material = &table.material[m];
@@ -99,5 +96,4 @@ TEST(stated_errors_are_those_measured) {
     assert_true(worst[ABBE_EXPORT_FORM_CAUCHY] <= worst[ABBE_EXPORT_FORM_ONE] + 1e-12);
     assert_true(worst[ABBE_EXPORT_FORM_TABLE] <= worst[ABBE_EXPORT_FORM_ONE] / 100 + 1e-12);
   }
-  abbe_material_table_free(&table);
 }

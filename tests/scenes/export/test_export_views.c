@@ -132,7 +132,7 @@ TEST(cameras_show_the_same_pixels) {
   static void (*const pixel[])(const char *, double, double, const double *, double *) = {
       pbrt_pixel, mitsuba_pixel, luxcore_pixel, gltf_pixel, blender_pixel};
   static const size_t sizes[][2] = {{300, 200}, {200, 300}, {256, 256}};
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text("materials: glass.yaml\ncamera: {eye: [0.3, -1, 0.5], target: [0.02, 0, 0.05], "
             "up: [0.2, 0, 1], fov: 40}\n" POINT_LIGHT FLOOR BALL("crown"),
             &scene);
@@ -150,7 +150,6 @@ TEST(cameras_show_the_same_pixels) {
       }
       done(text);
     }
-  abbe_scene_free(&scene);
 }
 
 /* ---- surroundings ---- */
@@ -170,7 +169,7 @@ TEST(surroundings_stand_where_they_were) {
   static const abbe_scene_export_target all[] = {ABBE_SCENE_EXPORT_PBRT, ABBE_SCENE_EXPORT_MITSUBA,
                                                  ABBE_SCENE_EXPORT_LUXCORE,
                                                  ABBE_SCENE_EXPORT_BLENDER};
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA FLOOR BALL("flat") "environment: {size: 64, uniform: 0.1, softboxes: [{azimuth: "
                                       "30, elevation: 40, width: 20, height: 20, radiance: 9}]}\n",
             &scene);
@@ -179,7 +178,7 @@ TEST(surroundings_stand_where_they_were) {
                         cos(40 * pi / 180) * sin(30 * pi / 180), sin(40 * pi / 180)};
   for (size_t t = 0; t < 4; t++) {
     char path[200];
-    abbe_image image;
+    OWNED(abbe_image, image);
     double mean = 0, weights = 0, middle[3] = {0};
     done(written(&scene, all[t]));
     snprintf(path, sizeof path, "%s/it-environment.exr", folder);
@@ -206,8 +205,6 @@ TEST(surroundings_stand_where_they_were) {
     assert_near(mean / weights, scene.environment->mean[1], 0.02 * scene.environment->mean[1]);
     assert_true(abbe_vector_normalise(middle));
     assert_true(abbe_vector_dot(middle, to) > cos(1.5 * pi / 180));
-    abbe_image_free(&image);
   }
   clear_folder();
-  abbe_scene_free(&scene);
 }

@@ -35,7 +35,7 @@ TEST(an_index_of_its_law_is_found_again) {
   close(file);
   const char *text = lawful();
   OK(abbe_file_write(path, text, strlen(text), &error));
-  abbe_material_table table;
+  OWNED(abbe_material_table, table);
   OK(abbe_material_table_load(path, &table, &error));
   unlink(path);
   const abbe_pov_glass glass = glass_of(&table, "lawful");
@@ -46,12 +46,11 @@ TEST(an_index_of_its_law_is_found_again) {
   assert_near(abbe_povray_index_at(&glass.index, 555), 1.7, 1e-8);
   assert_near(abbe_povray_index_at(&glass.index, 380), 1.7 * sqrt(1.05), 1e-7);
   assert_near(abbe_povray_index_at(&glass.index, 730), 1.7 / sqrt(1.05), 1e-7);
-  abbe_material_table_free(&table);
 }
 
 /* The fit leaves what it says, and less than both ends' own numbers would in the middle. */
 TEST(real_glasses_are_met_as_said) {
-  abbe_material_table table;
+  OWNED(abbe_material_table, table) = {0};
   OK(abbe_material_table_load("default", &table, &error));
   for (size_t i = 0; i < table.count; i++) {
     const abbe_material *m = &table.material[i];
@@ -81,7 +80,6 @@ TEST(real_glasses_are_met_as_said) {
     abbe_material_n(m, 555, &n_555, NULL);
     assert_true(fabs(g.index.ior - n_555) < fabs(sqrt(n_380 * n_730) - n_555));
   }
-  abbe_material_table_free(&table);
 }
 
 static char *written(const abbe_scene *scene, const abbe_pov_options *options) {
@@ -127,9 +125,9 @@ static double number_after(const char *text, const char *words) {
 }
 
 TEST(a_point_light_keeps_its_brightness) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
-  char *text = written(&scene, NULL);
+  FREED char *text = written(&scene, NULL);
   assert_well_formed(text);
   const double scale = abbe_pov_file_scale(&scene);
   assert_near(scale, 10, 0); /* a floor of 2 m: 20 units */
@@ -148,12 +146,10 @@ TEST(a_point_light_keeps_its_brightness) {
   assert_non_null(strstr(text, "no_image no_reflection"));
   assert_non_null(strstr(text, "#declare Surface = sphere {\n  <0, 0, 2>, 0.8"));
   assert_near(number_after(text, "Photons = "), 100000, 0);
-  free(text);
-  abbe_scene_free(&scene);
 }
 
 TEST(every_kind_of_light_is_written) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(
       CAMERA
       "lights:\n"
@@ -164,7 +160,7 @@ TEST(every_kind_of_light_is_written) {
       "radiance: 100}\n" FLOOR BALL("smoke") BRICK("flat") RING("crown") HILL,
       &scene);
   const abbe_pov_options options = {.photons = 7, .samples = 3};
-  char *text = written(&scene, &options);
+  FREED char *text = written(&scene, &options);
   assert_well_formed(text);
   assert_near(number_after(text, "Photons = "), 7, 0);
   assert_near(number_after(text, "Samples = "), 3, 0);
@@ -188,13 +184,11 @@ TEST(every_kind_of_light_is_written) {
   const double middle[3] = {655, 535, 435};
   for (int c = 0; c < 3; c++)
     assert_near((1 - rgb[c]) / length * scale, 20 - 15 * (middle[c] - 400) / 300, 0.5);
-  free(text);
-  abbe_scene_free(&scene);
 }
 
 /* Names are comments that cannot end early; a path that cannot be spelt is refused. */
 TEST(names_do_no_harm) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
   free(scene.object[1].name);
   scene.object[1].name = strdup("x\n} light_source { <0,0,0> \r color 1 }");
@@ -206,11 +200,10 @@ TEST(names_do_no_harm) {
   REFUSED(ABBE_UNSUPPORTED, "plainer name",
           abbe_pov_file_write("/tmp/abbe-test-never.pov", &scene, NULL, &error));
   assert_int_not_equal(access("/tmp/abbe-test-never.pov", F_OK), 0);
-  abbe_scene_free(&scene);
 }
 
 TEST(what_cannot_be_is_refused) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_pov_options options = {.samples = 1};
   load_text(CAMERA POINT_LIGHT FLOOR "- {name: ball, shape: sphere, radius: 0.1, transform: "
                                      "[{translate: [0, 0, 0.2]}], mirror: 0.9}\n",
@@ -233,17 +226,14 @@ TEST(what_cannot_be_is_refused) {
   load_text(CAMERA FLOOR BALL("flat") "environment: {size: 64, uniform: 1}\n", &scene);
   REFUSED(ABBE_UNSUPPORTED, "'environment'", abbe_pov_file_write(never, &scene, NULL, &error));
   assert_int_not_equal(access(never, F_OK), 0);
-  abbe_scene_free(&scene);
 }
 
 TEST(shipped_scenes_are_written) {
   static const char *const names[] = {"sphere", "prism", "gem", "glass", "rainbow"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     load_shipped(names[i], &scene);
-    char *text = written(&scene, NULL);
+    FREED char *text = written(&scene, NULL);
     assert_well_formed(text);
-    free(text);
-    abbe_scene_free(&scene);
   }
 }

@@ -24,7 +24,7 @@ TEST(the_index_in_the_file_has_the_stated_error) {
   static const char *const words[] = {"\"spectrum eta\" [", "name=\"n_m0_sf10\"",
                                       "interiorior =", "\"ior\":", "= glass('m0_sf10', "};
   static const size_t counts[] = {190, 1, 1, 1, 3};
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_shipped("prism", &scene);
   for (int target = 0; target < ABBE_SCENE_EXPORT_COUNT; target++) {
     char *text = written(&scene, (abbe_scene_export_target)target);
@@ -51,7 +51,6 @@ TEST(the_index_in_the_file_has_the_stated_error) {
     assert_true(index->worst > 0);
     done(text);
   }
-  abbe_scene_free(&scene);
 }
 
 /* ---- lights ---- */
@@ -69,7 +68,7 @@ TEST(the_index_in_the_file_has_the_stated_error) {
 
 TEST(lights_keep_their_power) {
   const double sphere = 4 * 3.14159265358979323846;
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   double v[16];
   load_text(CAMERA LIGHTS FLOOR BALL("murk") BRICK("flat"), &scene);
   char *text = written(&scene, ABBE_SCENE_EXPORT_PBRT);
@@ -101,12 +100,11 @@ TEST(lights_keep_their_power) {
   assert_near(v[12], 3, 1e-9);
   assert_near(v[7], -0.6, 1e-9); /* lamps shine along -z, the third column */
   done(text);
-  abbe_scene_free(&scene);
 }
 
 /* The format's validator refuses components of colours beyond 1: the largest is 1. */
 TEST(colours_in_gltf) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA LIGHTS FLOOR BALL("murk") BRICK("flat"), &scene);
   char *text = written(&scene, ABBE_SCENE_EXPORT_GLTF);
   const char *const keys[] = {"color", "emissiveFactor"};
@@ -122,14 +120,13 @@ TEST(colours_in_gltf) {
   assert_int_equal(count[0], 3);
   assert_int_equal(count[1], 2);
   done(text);
-  abbe_scene_free(&scene);
 }
 
 /* An equal-energy lamp in glTF: 683 lm/W times the mean of V over 380 to 780 nm, 0.2672 (the
  * integral of V is 106.86 nm). In Mitsuba its film's Y, the integral of ybar times the values over
  * 106.75, is the power. */
 TEST(photometric_and_film_units) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   double v[200];
   load_text(CAMERA "lights:\n- {name: lamp, kind: point, position: [0, 0, 0.9], intensity: 2, "
                    "illuminant: E}\n" FLOOR BALL("flat"),
@@ -146,7 +143,6 @@ TEST(photometric_and_film_units) {
   numbers_after(values, "value=", v, 81);
   for (int i = 0; i < 81; i++) assert_near(v[i] * 106.86 / 106.7503, 2, 0.01);
   done(text);
-  abbe_scene_free(&scene);
 }
 
 /* ---- the rest ---- */
@@ -226,7 +222,7 @@ TEST(reflectances_are_read_back) {
   for (int i = 0; i < 4; i++) {
     char source[2000];
     double pair[600][2];
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     snprintf(
         source, sizeof source,
         CAMERA POINT_LIGHT
@@ -249,7 +245,6 @@ TEST(reflectances_are_read_back) {
     text = written(&scene, ABBE_SCENE_EXPORT_LUXCORE);
     assert_int_equal(noted(ABBE_NOTE_LOST, "floor", "measured reflectance"), i / 2 == 0);
     done(text);
-    abbe_scene_free(&scene);
   }
   clear_folder();
 }
@@ -275,7 +270,7 @@ TEST(names_do_no_harm) {
 }
 
 TEST(nothing_half_written_stays) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   char path[200], blocked[220];
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("crown"), &scene);
   /* a folder stands where the last companion is to be written */
@@ -308,7 +303,6 @@ TEST(nothing_half_written_stays) {
       ABBE_INVALID_ARGUMENT, "",
       abbe_scene_export_write(path, &scene, ABBE_SCENE_EXPORT_MITSUBA, &options, &report, &error));
   assert_int_equal(clear_folder(), 0);
-  abbe_scene_free(&scene);
 }
 
 /* pbrt's own rules of tokens: strings, brackets, directives and numbers, brackets in pairs. */

@@ -12,7 +12,7 @@ static const double above[3] = {0, 0, 1};
 
 TEST(grids) {
   const abbe_region_desc grid = {.kind = ABBE_REGION_GRID, .side = 6, .outer = 0.3};
-  abbe_caustic_volume v;
+  OWNED(abbe_caustic_volume, v);
   abbe_error why = {0};
   make_volume(ABBE_VOLUME_VECTOR, grid, 12, false, &v);
   const abbe_result result = abbe_volume_vdb_write(path, &v, above, &why);
@@ -29,14 +29,12 @@ TEST(grids) {
     free(bytes);
     unlink(path);
   }
-  abbe_caustic_volume_free(&v);
 }
 
 TEST(others_are_refused) {
   const abbe_region_desc shells = {
       .kind = ABBE_REGION_GEODESIC, .levels = 1, .shells = 5, .inner = 0.1, .outer = 0.7};
-  abbe_caustic_volume v;
+  OWNED(abbe_caustic_volume, v);
   make_volume(ABBE_VOLUME_VECTOR, shells, 1, false, &v);
   REFUSED(ABBE_INVALID_ARGUMENT, "--grid N", abbe_volume_vdb_write(path, &v, above, &error));
-  abbe_caustic_volume_free(&v);
 }

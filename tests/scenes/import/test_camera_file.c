@@ -44,36 +44,33 @@ TEST(objects_fill_the_picture) {
       {"{frame: [brick], fov: 20, fill: 0.5, size: [200, 400]}", 2, 2, 0.5},
       {"{frame: [brick, ball], fov: 60, fill: 0.8, elevation: 89, size: [300, 100]}", 1, 2, 0.8}};
   for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     double min[2], max[2];
     make(views[i].camera, &scene);
     seen(&scene, views[i].first, views[i].last, min, max);
     assert_near(fmax(max[0], max[1]), views[i].fill, 1e-4);
     for (int k = 0; k < 2; k++) assert_near(min[k], -max[k], 1e-4);
-    abbe_scene_free(&scene);
   }
 }
 
 TEST(the_side_is_the_cameras_own) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   double view[3];
   make("{frame: [ball], elevation: 30, azimuth: 60, fov: 20}", &scene);
   for (int k = 0; k < 3; k++) view[k] = scene.camera.eye[k] - scene.camera.target[k];
   assert_near(atan2(view[2], hypot(view[0], view[1])), 30 * 3.14159265358979323846 / 180, 1e-12);
   assert_near(atan2(view[1], view[0]), 60 * 3.14159265358979323846 / 180, 1e-12);
-  abbe_scene_free(&scene);
 }
 
 /* As where a camera that was led by hand is kept beside what the file frames. */
 TEST(an_eye_and_a_target_stay) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   make("{frame: [ball], eye: [0, -1, 1], target: [0.2, 0, 0]}", &scene);
   assert_true(scene.camera.eye[1] == -1 && scene.camera.target[0] == 0.2);
   abbe_scene_free(&scene);
   make("{frame: [ball], eye: [0, -1, 1]}", &scene);
   assert_near(scene.camera.target[0], 0.2, 1e-15);
   assert_near(scene.camera.target[2], 0.03, 1e-15);
-  abbe_scene_free(&scene);
 }
 
 TEST(what_cannot_be_framed_is_named) {

@@ -24,12 +24,11 @@ static void surroundings(const char *text, abbe_environment *out) {
 }
 
 static void check_irradiance(const char *text, const double normal[3], double expected) {
-  abbe_environment e;
+  OWNED(abbe_environment, e);
   double rgb[3];
   surroundings(text, &e);
   abbe_environment_irradiance(&e, normal, rgb);
   assert_near(rgb[0], expected, 1e-4 * (expected + 0.2));
-  abbe_environment_free(&e);
 }
 
 TEST(known_irradiances) {
@@ -58,7 +57,7 @@ static void radiance_at(const abbe_environment *e, double x, double y, double z,
 }
 
 TEST(places_and_turns) {
-  abbe_environment e;
+  OWNED(abbe_environment, e);
   double rgb[3];
   surroundings(
       "{softboxes: [{elevation: 20, azimuth: 90, width: 40, height: 4, radiance: [1, 2, 3]}]}", &e);
@@ -87,12 +86,11 @@ TEST(places_and_turns) {
   abbe_environment_free(&e);
   surroundings("{spots: [{elevation: 40, solid_angle: 0.01, radiance: 5}]}", &e);
   assert_near(e.mean[0] * 4 * ABBE_PI, 0.05, 1e-7);
-  abbe_environment_free(&e);
 }
 
 TEST(aset) {
   static const double elevations[] = {-10, 20, 60, 80};
-  abbe_environment e;
+  OWNED(abbe_environment, e);
   surroundings("{dome: aset}", &e);
   for (int i = 0; i < 4; i++) {
     double rgb[3];
@@ -100,13 +98,12 @@ TEST(aset) {
     const double expected[3] = {i == 2, i == 1, i == 3};
     for (int k = 0; k < 3; k++) assert_near(rgb[k], expected[k], 1e-6);
   }
-  abbe_environment_free(&e);
 }
 
 TEST(pictures) {
   static const char *const names[] = {"R", "G", "B"};
   abbe_image image;
-  abbe_environment e;
+  OWNED(abbe_environment, e);
   double rgb[3];
   char name[64], path[96], text[512];
   snprintf(name, sizeof name, "abbe-test-surroundings-%d.exr", (int)getpid());
@@ -126,7 +123,6 @@ TEST(pictures) {
   abbe_environment_free(&e);
   snprintf(text, sizeof text, "file: %s\nlayout: cube\n", name);
   REFUSED(ABBE_SCHEMA, "text:1: ", parse(text, &e, &error));
-  abbe_environment_free(&e);
   unlink(path);
 }
 
@@ -183,19 +179,18 @@ TEST(what_is_refused) {
       {"{dome: [[0, 1], [91, 1]]}", "91"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    abbe_environment e;
+    OWNED(abbe_environment, e);
     abbe_error error;
     if (parse(cases[i].text, &e, &error) == ABBE_OK) fail_msg("%s is read", cases[i].text);
     assert_contains(error.text, cases[i].part);
     assert_contains(error.text, "text:1: ");
-    abbe_environment_free(&e);
   }
 }
 
 /* Sodium light has one colour. */
 TEST(an_illuminant_has_colours) {
   char path[64], text[128];
-  abbe_environment e;
+  OWNED(abbe_environment, e);
   snprintf(path, sizeof path, "/tmp/abbe-test-line-%d.txt", (int)getpid());
   snprintf(text, sizeof text, "{uniform: 1,\n illuminant: %s}", path);
   static const char line[] = "588 0\n589 1\n590 0\n", lines[] = "400 1\n500 3\n600 2\n700 1\n";
@@ -206,7 +201,6 @@ TEST(an_illuminant_has_colours) {
   OK(abbe_file_write(path, lines, strlen(lines), &error));
   surroundings(text, &e);
   assert_string_equal(e.illuminant_path, path);
-  abbe_environment_free(&e);
   unlink(path);
 }
 
@@ -241,7 +235,7 @@ TEST(scenes_have_surroundings) {
 TEST(what_is_documented_loads) {
   static const double grounds[] = {2, 3.4, 3};
   static const double tolerance[] = {1.2, 1e-2, 1e-3};
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size, found = 0;
   OK(abbe_file_read(ABBE_SOURCE_DIR "/docs/scene-files.md", 1 << 20, &text, &size, &error));
   for (char *at = text; (at = strstr(at, "```yaml\nenvironment:")) != NULL; found++) {
@@ -249,14 +243,12 @@ TEST(what_is_documented_loads) {
     char scene_text[4096];
     const int length = (int)(strstr(at, "```") - at);
     snprintf(scene_text, sizeof scene_text, "%s%.*s", VIEW, length, at);
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     double rgb[3];
     load_text(scene_text, &scene);
     abbe_environment_irradiance(scene.environment, up, rgb);
     assert_int_in_range(found, 0, 2);
     assert_near(rgb[1], grounds[found], tolerance[found]);
-    abbe_scene_free(&scene);
   }
   assert_int_equal(found, 3);
-  free(text);
 }

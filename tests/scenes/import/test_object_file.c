@@ -125,16 +125,14 @@ static void recut(const char *file, const char *keys, double crown, double pavil
 }
 
 static void write_gcs(const char *path) {
-  abbe_cut cut;
-  abbe_cut_polyhedron stone;
+  OWNED(abbe_cut, cut);
+  OWNED(abbe_cut_polyhedron, stone);
   OK(abbe_cut_file_read(ABBE_SOURCE_DIR "/scenes/designs/emerald.asc", &cut, NULL, &error));
   OK(abbe_cut_polyhedron_make(&cut, 0, &stone, &error));
   FILE *to = fopen(path, "w");
   assert_non_null(to);
   OK(abbe_cut_gcs_write(&cut, &stone, to, NULL, &error));
   fclose(to);
-  abbe_cut_polyhedron_free(&stone);
-  abbe_cut_free(&cut);
 }
 
 TEST(cuts_are_cut_at_other_angles) {

@@ -21,7 +21,7 @@ static void load_plate(const char *format, const char *path, abbe_scene *scene) 
 
 TEST(a_file_gives_a_spectrum) {
   const char *path = write_table("nm;leaf;stone\n400;0,1;0,5\n500;0,3;0,5\n700;0,2;0,5\n");
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_plate("{spectrum: %s, column: leaf}", path, &scene);
   const abbe_object *o = &scene.object[0];
   assert_int_equal(abbe_object_kind_of(o), ABBE_OBJECT_RECEIVER);
@@ -34,18 +34,16 @@ TEST(a_file_gives_a_spectrum) {
   abbe_scene_free(&scene);
   load_plate("{spectrum: %s, column: stone}", path, &scene);
   for (int k = 0; k < 3; k++) assert_near(scene.object[0].reflectance[k], 0.5, 5e-4);
-  abbe_scene_free(&scene);
   unlink(path);
 }
 
 TEST(a_patch_gives_a_spectrum) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(PLATE("{patch: red}"), &scene);
   const abbe_object *o = &scene.object[0];
   assert_null(o->spectrum_path);
   assert_true(abbe_spectrum_at(o->spectrum, 650) > 10 * abbe_spectrum_at(o->spectrum, 500));
   assert_true(o->reflectance[0] > 4 * o->reflectance[1]);
-  abbe_scene_free(&scene);
 }
 
 static void refuses(const char *format, const char *table, abbe_result result, const char *says) {

@@ -11,7 +11,7 @@
 
 /* Of N-BK7 as [SchottTIE19]'s model has it: what renderer, tracer and exports ask for. */
 TEST(glass_is_as_warm_as_the_scene) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(WARM("n-bk7") BRICK("air"), &scene);
   double n = 0;
   OK(abbe_material_n(scene.object[1].material, LINE_D_NM, &n, &error));
@@ -22,11 +22,10 @@ TEST(glass_is_as_warm_as_the_scene) {
   OK(abbe_export_index_make(scene.object[1].material, ABBE_EXPORT_FORM_ONE, LINE_D_NM, &index,
                             &error));
   assert_near(index.value[0], 1.5172435, 5e-8);
-  abbe_scene_free(&scene);
 }
 
 TEST(metals_are_said_to_stay_as_they_were_measured) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_scene_doubts doubts;
   load_text(WARM("n-bk7") "- {name: coin, shape: box, size: [0.1, 0.1, 0.01], transform: "
                           "[{translate: [0.4, 0, 0.2]}], mirror: gold}\n",
@@ -34,7 +33,6 @@ TEST(metals_are_said_to_stay_as_they_were_measured) {
   abbe_scene_doubt(&scene, &doubts);
   assert_int_equal(doubts.count, 1);
   assert_contains(doubts.text[0], "'coin' has n and k of gold as they were measured, not at 40 C");
-  abbe_scene_free(&scene);
 }
 
 TEST(what_has_no_index_there_is_refused) {

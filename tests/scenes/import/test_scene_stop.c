@@ -12,7 +12,7 @@ TEST(reading_ends_when_it_is_told_to) {
   } scenes[] = {{"bunny", 60}, {"stone", 60}};
   for (size_t i = 0; i < 2; i++) {
     char path[512];
-    abbe_scene scene;
+    OWNED(abbe_scene, scene) = {0};
     abbe_result result = ABBE_CANCELLED;
     patience p = {0};
     snprintf(path, sizeof path, "%s/scenes/%s.yaml", ABBE_SOURCE_DIR, scenes[i].name);
@@ -28,6 +28,5 @@ TEST(reading_ends_when_it_is_told_to) {
     }
     assert_int_equal(result, ABBE_OK);
     if (p.asked < scenes[i].least) fail_msg("%s: asked %zu times", scenes[i].name, p.asked);
-    abbe_scene_free(&scene);
   }
 }

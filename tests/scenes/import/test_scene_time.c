@@ -67,7 +67,7 @@ TEST(water_is_at_its_time) {
                             .wave = &wave,
                             .drop_count = 1,
                             .drop = &drop};
-  abbe_mesh known;
+  OWNED(abbe_mesh, known);
   OK(abbe_water_make(&water, &known, &error));
   abbe_scene scene = load_at(text, "time=0.75");
   const abbe_mesh *seen = &scene.object[1].mesh;
@@ -84,7 +84,6 @@ TEST(water_is_at_its_time) {
                   NULL);
   assert_int_equal(scene.object[1].exact.kind, ABBE_EXACT_CONVEX);
   abbe_scene_free(&scene);
-  abbe_mesh_free(&known);
 }
 
 static void refuses(const char *text, const char *part, const char *line) {

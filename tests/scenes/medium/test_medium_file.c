@@ -4,7 +4,7 @@
 #include "scenes/medium/medium.h"
 
 TEST(mist_and_murky_glass_are_read) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA POINT_LIGHT
             "medium: {scattering: [[400, 4], [500, 2]], absorption: 0.5, g: -0.3,\n"
             "         box: [[-1, -2, -3], [1, 2, 3]]}\n" FLOOR
@@ -27,7 +27,6 @@ TEST(mist_and_murky_glass_are_read) {
   abbe_scene_free(&scene);
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
   assert_false(abbe_scene_is_hazy(&scene));
-  abbe_scene_free(&scene);
 }
 
 static void refuses(const char *air, const char *object, const char *says) {

@@ -331,7 +331,7 @@ TEST(the_shaders_find_the_same) {
 
 /* A box has six, a ring one; a box without normals that break, one. */
 TEST(parts_end_where_normals_break) {
-  abbe_mesh mesh = {0};
+  OWNED(abbe_mesh, mesh) = {0};
   uint32_t group[8192];
   OK(abbe_shape_box((double[3]){1, 2, 3}, &mesh, &error));
   assert_int_equal(abbe_bvh_parts(&mesh, group), 6);
@@ -345,5 +345,4 @@ TEST(parts_end_where_normals_break) {
   abbe_mesh_free(&mesh);
   OK(abbe_shape_ring(0.08, 0.02, 64, 32, &mesh, &error));
   assert_int_equal(abbe_bvh_parts(&mesh, group), 1);
-  abbe_mesh_free(&mesh);
 }

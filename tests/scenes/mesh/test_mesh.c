@@ -7,13 +7,12 @@
 #include <unistd.h>
 
 TEST(make_checks_sizes) {
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   assert_int_equal(abbe_mesh_make(0, 1, false, &m, NULL), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_mesh_make(SIZE_MAX, 1, false, &m, NULL), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_mesh_make(3, ABBE_MESH_MAX_FACES + 1u, false, &m, NULL),
                    ABBE_INVALID_ARGUMENT);
   assert_null(m.position);
-  abbe_mesh_free(&m);
   abbe_mesh_free(NULL);
 }
 
@@ -46,7 +45,7 @@ TEST(points_within_a_sphere_are_inside) {
 }
 
 TEST(subdivision_keeps_a_mesh_closed_and_smooth) {
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   const double size[3] = {1, 1, 1};
   OK(abbe_shape_box(size, &m, &error));
   OK(abbe_mesh_subdivide(&m, 3, &error));
@@ -59,7 +58,6 @@ TEST(subdivision_keeps_a_mesh_closed_and_smooth) {
   OK(abbe_mesh_subdivide(&m, 2, &error));
   assert_int_equal(m.face_count, 32);
   for (size_t v = 0; v < m.vertex_count; v++) assert_true(m.normal[v][2] == 1);
-  abbe_mesh_free(&m);
 }
 
 TEST(subdividing_an_octahedron_weights_the_limit_right) {
@@ -67,7 +65,7 @@ TEST(subdividing_an_octahedron_weights_the_limit_right) {
   const double at[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   const uint32_t face[8][3] = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
                                {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   OK(abbe_mesh_make(6, 8, false, &m, &error));
   memcpy(m.position, at, sizeof at);
   memcpy(m.face, face, sizeof face);
@@ -81,7 +79,6 @@ TEST(subdividing_an_octahedron_weights_the_limit_right) {
   }
   assert_int_equal(corners, 6);
   assert_int_equal(middles, 12);
-  abbe_mesh_free(&m);
 }
 
 TEST(transforms_mirror_and_keep_outwards) {
@@ -258,11 +255,10 @@ TEST(a_file_s_normals_are_its_default) {
 
 TEST(smooth_normals_are_shared_across_split_vertices) {
   const double size[3] = {1, 1, 1};
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   OK(abbe_shape_box(size, &m, &error));
   OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_SMOOTH, &error));
   assert_int_equal(m.vertex_count, 24);
   for (size_t v = 0; v < 24; v++)
     assert_true(abbe_vector_dot(m.normal[v], m.position[v]) > 0.8 * sqrt(0.75));
-  abbe_mesh_free(&m);
 }

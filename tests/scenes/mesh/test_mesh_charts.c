@@ -29,8 +29,8 @@ static void check_laws(const abbe_mesh *mesh, const abbe_mesh_charts *charts) {
 
 TEST(a_box_has_a_chart_a_side) {
   const double size[3] = {1, 2, 3};
-  abbe_mesh box;
-  abbe_mesh_charts charts;
+  OWNED(abbe_mesh, box);
+  OWNED(abbe_mesh_charts, charts);
   OK(abbe_shape_box(size, &box, &error));
   OK(abbe_mesh_charts_make(&box, &charts, &error));
   assert_int_equal(charts.count, 6);
@@ -42,14 +42,12 @@ TEST(a_box_has_a_chart_a_side) {
   }
   assert_true(fabs(area - 2 * (1 * 2 + 2 * 3 + 3 * 1)) < 1e-12);
   check_laws(&box, &charts);
-  abbe_mesh_charts_free(&charts);
-  abbe_mesh_free(&box);
 }
 
 /* Caps of 60 degrees around x leave bands around y, and those nothing around z but four corners. */
 TEST(curved_meshes_have_few) {
-  abbe_mesh mesh;
-  abbe_mesh_charts charts;
+  OWNED(abbe_mesh, mesh);
+  OWNED(abbe_mesh_charts, charts);
   OK(abbe_shape_sphere(1, 5, &mesh, &error));
   OK(abbe_mesh_charts_make(&mesh, &charts, &error));
   print_message("sphere: %zu charts\n", charts.count);
@@ -62,8 +60,6 @@ TEST(curved_meshes_have_few) {
   print_message("ring: %zu charts\n", charts.count);
   assert_int_in_range(charts.count, 8, 16);
   check_laws(&mesh, &charts);
-  abbe_mesh_charts_free(&charts);
-  abbe_mesh_free(&mesh);
 }
 
 /* Split vertices hang together, what only lies side by side does not, and slivers are no charts. */
@@ -71,8 +67,8 @@ TEST(what_hangs_together) {
   static const double at[11][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                    {5, 0, 0}, {6, 0, 0}, {5, 1, 0}, {7, 0, 0}, {8, 0, 0}};
   static const uint32_t face[4][3] = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}, {9, 10, 9}};
-  abbe_mesh mesh;
-  abbe_mesh_charts charts;
+  OWNED(abbe_mesh, mesh);
+  OWNED(abbe_mesh_charts, charts);
   OK(abbe_mesh_make(11, 4, false, &mesh, &error));
   memcpy(mesh.position, at, sizeof at);
   memcpy(mesh.face, face, sizeof face);
@@ -86,6 +82,4 @@ TEST(what_hangs_together) {
   mesh.face[0][1] = mesh.face[0][0];
   OK(abbe_mesh_charts_make(&mesh, &charts, &error));
   assert_int_equal(charts.count, 0);
-  abbe_mesh_charts_free(&charts);
-  abbe_mesh_free(&mesh);
 }

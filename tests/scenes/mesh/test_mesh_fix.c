@@ -250,11 +250,10 @@ TEST(repair_closes_slits) {
   memcpy(m.face[12], middle, sizeof middle);
   (void)left;
   assert_int_equal(test_mesh_faults(&m).open_edges, 3);
-  char *what = repaired(&m);
+  FREED char *what = repaired(&m);
   const abbe_mesh_report r = test_mesh_faults(&m);
   assert_int_equal(r.open_edges + r.crowded_edges + r.flipped_edges + r.degenerate_faces, 0);
   assert_near(r.volume, 1, 1e-12);
-  free(what);
   abbe_mesh_free(&m);
 }
 
@@ -306,22 +305,20 @@ TEST(more_solids_than_are_followed_are_refused) {
 }
 
 TEST(a_surface_that_crosses_itself_is_said) {
-  abbe_mesh m;
-  char *what = NULL;
+  OWNED(abbe_mesh, m);
+  FREED char *what = NULL;
   OK(abbe_shape_ring(1, 0.3, 48, 24, &m, &error));
   for (size_t v = 0; v < m.vertex_count; v++)
     if (m.position[v][0] > 0.8) m.position[v][0] -= 2.1;
   OK(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error));
   assert_contains(what, "the surface crosses itself, in ");
   assert_contains(what, ": light may go wrong there");
-  free(what);
-  abbe_mesh_free(&m);
 }
 
 /* A cylinder: around it smooth, at its rims not. */
 TEST(normals_by_angles_keep_creases) {
   const double profile[4][2] = {{0, 0}, {1, 0}, {1, 2}, {0, 2}};
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   OK(abbe_shape_lathe(profile, 4, 24, &m, &error));
   OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
   OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_AUTO, &error));
@@ -335,11 +332,10 @@ TEST(normals_by_angles_keep_creases) {
     else
       assert_near(n[0] * p[0] + n[1] * p[1], 1, 1e-9);
   }
-  abbe_mesh_free(&m);
 }
 
 TEST(degenerate_faces_are_fixed) {
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   /* a box whose top has a vertex in the middle of one edge: one face without area beside it */
   const double at[9][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},  {0, 0, 1},
                            {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0.5, 0, 1}};
@@ -353,7 +349,6 @@ TEST(degenerate_faces_are_fixed) {
   assert_int_equal(test_mesh_faults(&m).open_edges, 0);
   assert_fixes(&m, "1 face without area split away");
   assert_true(fabs(test_mesh_faults(&m).volume - 1) < 1e-12);
-  abbe_mesh_free(&m);
 }
 
 /* Two shells in one mesh: b is moved into a. */

@@ -8,11 +8,10 @@ static bool is_closed(const abbe_mesh *m) {
 }
 
 static void assert_repairs(abbe_mesh *m, const char *word) {
-  char *what = NULL;
+  FREED char *what = NULL;
   OK(abbe_mesh_fix(m, ABBE_NORMALS_AUTO, true, NULL, &what, &error));
   assert_contains(what, word);
   assert_true(is_closed(m));
-  free(what);
 }
 
 /* A box and room for more points and faces, none of which is there yet. */

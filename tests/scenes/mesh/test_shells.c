@@ -4,10 +4,9 @@
 #include "scenes/shapes/shape.h"
 
 static abbe_result find(const abbe_mesh *m, abbe_shells *out, abbe_error *error) {
-  abbe_topology t;
+  OWNED(abbe_topology, t);
   assert_int_equal(abbe_topology_make(m, &t, NULL), ABBE_OK);
   const abbe_result result = abbe_shells_find(m, &t, out, error);
-  abbe_topology_free(&t);
   return result;
 }
 
@@ -125,8 +124,8 @@ TEST(faces_on_one_another_are_no_crossing_but_told) {
 }
 
 TEST(a_surface_that_crosses_itself_is_told) {
-  abbe_mesh m;
-  abbe_shells s;
+  OWNED(abbe_mesh, m);
+  OWNED(abbe_shells, s);
   OK(abbe_shape_ring(1, 0.3, 48, 24, &m, &error));
   OK(find(&m, &s, &error));
   assert_int_equal(s.self_count, 0);
@@ -137,14 +136,12 @@ TEST(a_surface_that_crosses_itself_is_told) {
   OK(find(&m, &s, &error));
   assert_true(s.self_count > 0);
   assert_true(s.self_place[0] < -0.5);
-  abbe_shells_free(&s);
-  abbe_mesh_free(&m);
 }
 
 /* A grid of balls, of which each ninth crosses the next: as many rays and pairs as a tree saves. */
 TEST(many_shells_are_told_apart) {
   enum { COUNT = 300 };
-  test_box *box = calloc(COUNT, sizeof *box);
+  FREED test_box *box = calloc(COUNT, sizeof *box);
   assert_non_null(box);
   for (int i = 0; i < COUNT; i++) {
     const double at[3] = {3.0 * (i % 10), 3.0 * (i / 10 % 10), 3.0 * (i / 100)};
@@ -160,12 +157,11 @@ TEST(many_shells_are_told_apart) {
   assert_int_equal(s.solid_count, 2);
   for (size_t i = 0; i < COUNT; i++) assert_int_equal(s.shell[i].depth, 0);
   abbe_shells_free(&s);
-  free(box);
 }
 
 /* Boxes each in the next larger one. */
 static abbe_mesh nested_boxes(size_t count) {
-  test_box *box = calloc(count, sizeof *box);
+  FREED test_box *box = calloc(count, sizeof *box);
   assert_non_null(box);
   for (size_t i = 0; i < count; i++)
     for (int k = 0; k < 3; k++) {
@@ -173,7 +169,6 @@ static abbe_mesh nested_boxes(size_t count) {
       box[i].min[k] = -box[i].max[k];
     }
   abbe_mesh m = test_boxes(box, count);
-  free(box);
   return m;
 }
 
@@ -181,10 +176,9 @@ static abbe_mesh nested_boxes(size_t count) {
 TEST(deep_nests_take_the_square_of_their_depth) {
   enum { COUNT = 200 };
   abbe_mesh m = nested_boxes(COUNT);
-  abbe_shells s;
+  OWNED(abbe_shells, s);
   OK(find(&m, &s, &error));
   for (uint32_t i = 0; i < COUNT; i++) assert_int_equal(s.shell[i].depth, COUNT - 1 - i);
-  abbe_shells_free(&s);
   abbe_mesh_free(&m);
 }
 

@@ -6,8 +6,8 @@
 
 TEST(a_split_box_has_eight_points_and_eighteen_edges) {
   const double size[3] = {1, 2, 3};
-  abbe_mesh box;
-  abbe_topology t;
+  OWNED(abbe_mesh, box);
+  OWNED(abbe_topology, t);
   OK(abbe_shape_box(size, &box, &error));
   OK(abbe_topology_make(&box, &t, &error));
   assert_int_equal(box.vertex_count, 24);
@@ -17,13 +17,11 @@ TEST(a_split_box_has_eight_points_and_eighteen_edges) {
   for (size_t e = 0; e < t.edge_count; e++)
     assert_true(t.edge[e].along == 1 && t.edge[e].against == 1);
   abbe_topology_free(&t);
-  abbe_topology_free(&t);
-  abbe_mesh_free(&box);
 }
 
 TEST(points_join_within_the_tolerance_only) {
-  abbe_mesh m;
-  abbe_topology t;
+  OWNED(abbe_mesh, m);
+  OWNED(abbe_topology, t);
   OK(abbe_mesh_make(6, 2, false, &m, &error));
   const double at[6][3] = {{0, 0, 0},     {1, 0, 0},      {0, 1, 0},
                            {0, 0, 3e-10}, {1, 0, -3e-10}, {0, 1, 1e-7}};
@@ -33,24 +31,20 @@ TEST(points_join_within_the_tolerance_only) {
   OK(abbe_topology_make(&m, &t, &error));
   assert_int_equal(t.point_count, 4);
   assert_int_equal(t.edge_count, 5);
-  abbe_topology_free(&t);
-  abbe_mesh_free(&m);
 }
 
 TEST(a_large_mesh_is_whole) {
-  abbe_mesh m;
-  abbe_topology t;
+  OWNED(abbe_mesh, m);
+  OWNED(abbe_topology, t);
   OK(abbe_shape_ring(1, 0.3, 256, 128, &m, &error));
   OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
   OK(abbe_topology_make(&m, &t, &error));
   assert_int_equal(t.point_count, 256 * 128);
   assert_int_equal(t.edge_count, 3 * 256 * 128);
-  abbe_topology_free(&t);
-  abbe_mesh_free(&m);
 }
 
 TEST(bad_indices_and_positions_are_refused) {
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   abbe_topology t;
   OK(abbe_shape_rectangle(1, 1, &m, &error));
   m.face[1][2] = 4;
@@ -60,7 +54,6 @@ TEST(bad_indices_and_positions_are_refused) {
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_topology_make(&m, &t, &error));
   m.position[2][1] = 1e300;
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_topology_make(&m, &t, &error));
-  abbe_mesh_free(&m);
 }
 
 static size_t count_touching(const abbe_topology *t) {
@@ -76,7 +69,7 @@ TEST(bodies_that_touch_along_an_edge_are_two) {
     const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false},
                              {{1, i & 1 ? -1 : 1, 0}, {2, i & 1 ? 0 : 2, 1}, false}};
     double matrix[16];
-    abbe_topology t;
+    OWNED(abbe_topology, t);
     abbe_mesh m = test_boxes(box, 2);
     abbe_transform_rotate(0.8 * i, turn, matrix);
     OK(abbe_mesh_transform(&m, matrix, &error));
@@ -84,14 +77,13 @@ TEST(bodies_that_touch_along_an_edge_are_two) {
     assert_int_equal(count_touching(&t), 1);
     assert_int_equal(t.shell_count, 2);
     for (size_t f = 0; f < 24; f++) assert_int_equal(t.shell[f], f / 12);
-    abbe_topology_free(&t);
     abbe_mesh_free(&m);
   }
 }
 
 /* Back to back, by a whole side; and one corner on another. */
 TEST(what_touches_otherwise_is_two_as_well) {
-  abbe_topology t;
+  OWNED(abbe_topology, t);
   const test_box side[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 0, 0}, {2, 1, 1}, false}};
   abbe_mesh m = test_boxes(side, 2);
   OK(abbe_topology_make(&m, &t, &error));
@@ -104,13 +96,12 @@ TEST(what_touches_otherwise_is_two_as_well) {
   OK(abbe_topology_make(&m, &t, &error));
   assert_int_equal(t.point_count, 15);
   assert_int_equal(t.shell_count, 2);
-  abbe_topology_free(&t);
   abbe_mesh_free(&m);
 }
 
 /* A fin on an edge; and one of two boxes inside out: nothing pairs up. */
 TEST(what_does_not_pair_up_hangs_together) {
-  abbe_topology t;
+  OWNED(abbe_topology, t);
   const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 1, 0}, {2, 2, 1}, true}};
   abbe_mesh m = test_boxes(box, 2);
   m.face[12][0] = 6, m.face[12][1] = 7; /* from the edge x = y = 1 to a corner */
@@ -118,6 +109,5 @@ TEST(what_does_not_pair_up_hangs_together) {
   OK(abbe_topology_make(&m, &t, &error));
   assert_int_equal(count_touching(&t), 0);
   assert_int_equal(t.shell_count, 1);
-  abbe_topology_free(&t);
   abbe_mesh_free(&m);
 }

@@ -23,7 +23,7 @@ static bool stop_now(void *user, size_t number) {
 
 TEST(all_near_ones_are_found) {
   uint64_t random = 1;
-  abbe_point_grid grid;
+  OWNED(abbe_point_grid, grid);
   const double cell = 0.07;
   OK(abbe_point_grid_make(cell, COUNT, &grid, &error));
   for (int i = 0; i < COUNT; i++) {
@@ -49,14 +49,12 @@ TEST(all_near_ones_are_found) {
   int seen = 0;
   abbe_point_grid_visit(&grid, at[0], stop_now, &seen);
   assert_int_equal(seen, 1);
-  abbe_point_grid_free(&grid);
 }
 
 TEST(wrong_cells) {
-  abbe_point_grid grid;
+  OWNED(abbe_point_grid, grid);
   const double wrong[] = {0, -1, NAN, INFINITY};
   for (size_t i = 0; i < 4; i++)
     REFUSED(ABBE_INVALID_ARGUMENT, "above 0 m", abbe_point_grid_make(wrong[i], 4, &grid, &error));
-  abbe_point_grid_free(&grid);
   abbe_point_grid_free(NULL);
 }

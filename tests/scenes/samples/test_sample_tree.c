@@ -37,13 +37,13 @@ static void check_node(const abbe_sample_tree *tree, size_t i) {
 
 TEST(all_are_in_it_once) {
   static const size_t counts[] = {1, 2, 90};
-  abbe_mesh ring = {0};
+  OWNED(abbe_mesh, ring) = {0};
   OK(abbe_shape_ring(0.03, 0.008, 48, 24, &ring, &error));
   for (size_t k = 0; k < 3; k++) {
-    abbe_surface_samples s;
+    OWNED(abbe_surface_samples, s) = {0};
     abbe_sample_tree tree;
     sample(&ring, counts[k], &s, &tree);
-    size_t *met = calloc(s.count, sizeof *met);
+    FREED size_t *met = calloc(s.count, sizeof *met);
     double leaves = 0;
     assert_int_equal(tree.node[0].next, tree.count);
     for (size_t i = 0; i < tree.count; i++) {
@@ -59,25 +59,20 @@ TEST(all_are_in_it_once) {
     }
     for (size_t i = 0; i < s.count; i++) assert_int_equal(met[i], 1);
     assert_near(leaves, s.area, 1e-12);
-    free(met);
     abbe_sample_tree_free(&tree);
-    abbe_surface_samples_free(&s);
   }
-  abbe_mesh_free(&ring);
 }
 
 /* Clusters face one way: of a ball no node of less than a sixteenth holds two sides. */
 TEST(clusters_face_alike) {
-  abbe_mesh ball = {0};
-  abbe_surface_samples s;
+  OWNED(abbe_mesh, ball) = {0};
+  OWNED(abbe_surface_samples, s);
   abbe_sample_tree tree;
   OK(abbe_shape_sphere(0.02, 4, &ball, &error));
   sample(&ball, 256, &s, &tree);
   for (size_t i = 0; i < tree.count; i++)
     if (tree.node[i].area < s.area / 15) assert_true(tree.node[i].cone > 0.3);
   abbe_sample_tree_free(&tree);
-  abbe_surface_samples_free(&s);
-  abbe_mesh_free(&ball);
 }
 
 /* A square 2 a wide and parallel to the floor at a height, facing down. */
@@ -134,8 +129,8 @@ static double from_corner(double a, double b, double h) {
 TEST(cuts) {
   static const double places[] = {0, 0.1, 0.3, 1, 3};
   const double a = 0.1, h = 0.15;
-  abbe_mesh roof = {0};
-  abbe_surface_samples s;
+  OWNED(abbe_mesh, roof) = {0};
+  OWNED(abbe_surface_samples, s);
   abbe_sample_tree tree;
   make_roof(a, h, &roof);
   sample(&roof, 256, &s, &tree);
@@ -161,8 +156,6 @@ TEST(cuts) {
   }
   assert_true(before <= 2);
   abbe_sample_tree_free(&tree);
-  abbe_surface_samples_free(&s);
-  abbe_mesh_free(&roof);
 }
 
 TEST(nothing) {

@@ -23,25 +23,22 @@ static abbe_surface_curvature *fit(const abbe_mesh *mesh, abbe_surface_samples *
 
 TEST(sphere) {
   const double radius = 0.02;
-  abbe_mesh ball = {0};
-  abbe_surface_samples s = {0};
+  OWNED(abbe_mesh, ball) = {0};
+  OWNED(abbe_surface_samples, s) = {0};
   OK(abbe_shape_sphere(radius, 5, &ball, &error));
-  abbe_surface_curvature *c = fit(&ball, &s);
+  FREED abbe_surface_curvature *c = fit(&ball, &s);
   for (size_t i = 0; i < s.count; i++)
     for (int k = 0; k < 2; k++) assert_near(c[i].curvature[k] * radius, 1, 0.03);
-  free(c);
-  abbe_surface_samples_free(&s);
-  abbe_mesh_free(&ball);
 }
 
 /* Seen from inside the normals of its mesh spread the other way; both walls are there. */
 TEST(cylinder) {
   const double inner = 0.04, outer = 0.0435, height = 0.1;
   const double profile[4][2] = {{inner, 0}, {inner, height}, {outer, height}, {outer, 0}};
-  abbe_mesh ring = {0};
-  abbe_surface_samples s = {0};
+  OWNED(abbe_mesh, ring) = {0};
+  OWNED(abbe_surface_samples, s) = {0};
   OK(abbe_shape_lathe(profile, 4, 256, &ring, &error));
-  abbe_surface_curvature *c = fit(&ring, &s);
+  FREED abbe_surface_curvature *c = fit(&ring, &s);
   size_t walls[2] = {0, 0};
   for (size_t i = 0; i < s.count; i++) {
     const double *p = s.sample[i].position, r = hypot(p[0], p[1]);
@@ -56,19 +53,13 @@ TEST(cylinder) {
     assert_near(fabs(c[i].along[1][2]), 1, 0.01);
   }
   assert_true(walls[0] > 50 && walls[1] > 50);
-  free(c);
-  abbe_surface_samples_free(&s);
-  abbe_mesh_free(&ring);
 }
 
 TEST(plane) {
-  abbe_mesh plane = {0};
-  abbe_surface_samples s = {0};
+  OWNED(abbe_mesh, plane) = {0};
+  OWNED(abbe_surface_samples, s) = {0};
   OK(abbe_shape_rectangle(0.3, 0.2, &plane, &error));
-  abbe_surface_curvature *c = fit(&plane, &s);
+  FREED abbe_surface_curvature *c = fit(&plane, &s);
   for (size_t i = 0; i < s.count; i++)
     for (int k = 0; k < 2; k++) assert_near(c[i].curvature[k], 0, 1e-9);
-  free(c);
-  abbe_surface_samples_free(&s);
-  abbe_mesh_free(&plane);
 }

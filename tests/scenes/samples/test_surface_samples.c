@@ -35,10 +35,10 @@ static double distance(const abbe_surface_point *a, const abbe_surface_point *b)
 
 /* Kept ones are a radius apart, and every candidate is within it of a kept one. */
 TEST(neighbours_are_apart_and_cover) {
-  abbe_mesh ring = {0};
+  OWNED(abbe_mesh, ring) = {0};
   OK(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, &error));
   for (int sided = 0; sided < 2; sided++) {
-    abbe_surface_samples s = {0};
+    OWNED(abbe_surface_samples, s) = {0};
     take(&ring, 300, 7, sided != 0, &s);
     assert_true(s.count <= 300 && s.count > 285);
     for (size_t i = 0; i < s.count; i++)
@@ -52,17 +52,15 @@ TEST(neighbours_are_apart_and_cover) {
           least = fmin(least, distance(&s.candidate[i], &s.sample[k]));
       assert_true(least < s.reach);
     }
-    abbe_surface_samples_free(&s);
   }
-  abbe_mesh_free(&ring);
 }
 
 /* All lie on the surface; shares are the whole area. */
 TEST(area_and_places) {
-  abbe_mesh ball = {0};
+  OWNED(abbe_mesh, ball) = {0};
   OK(abbe_shape_sphere(0.02, 5, &ball, &error));
   for (int ours = 0; ours < 2; ours++) {
-    abbe_surface_samples s = {0};
+    OWNED(abbe_surface_samples, s) = {0};
     take(&ball, 200, 3, ours != 0, &s);
     double sum = 0;
     for (size_t i = 0; i < s.count; i++) {
@@ -75,9 +73,7 @@ TEST(area_and_places) {
     assert_near(s.area, 4 * ABBE_PI * 4e-4, 3e-6);
     assert_near(sum, s.area, 1e-12);
     assert_near(s.spacing, sqrt(s.area / (double)s.count), 1e-15);
-    abbe_surface_samples_free(&s);
   }
-  abbe_mesh_free(&ball);
 }
 
 /* Samples a square metre on a plane across (0, 0, 1) over those on one across a tilted normal, both
@@ -94,11 +90,10 @@ static double density_ratio(const double n[3]) {
   make_rectangle(far, u, v, 1, 1, &mesh[1]);
   const abbe_mesh *both[2] = {&mesh[0], &mesh[1]};
   for (uint64_t seed = 0; seed < 4; seed++) {
-    abbe_surface_samples s = {0};
+    OWNED(abbe_surface_samples, s) = {0};
     const abbe_surface_sampling sampling = {.count = 400, .seed = seed};
     OK(abbe_surface_samples_make(both, 2, &sampling, &s, &error));
     for (size_t i = 0; i < s.count; i++) *(s.sample[i].mesh == 0 ? &flat : &tilted) += 1;
-    abbe_surface_samples_free(&s);
   }
   abbe_mesh_free(&mesh[0]);
   abbe_mesh_free(&mesh[1]);
@@ -155,11 +150,10 @@ static double slope(const abbe_mesh *mesh, bool ours, const double at[3], const 
   for (int k = 0; k < SIZES; k++) {
     double square = 0, count = 0;
     for (uint64_t seed = 0; seed < SEEDS; seed++) {
-      abbe_surface_samples s = {0};
+      OWNED(abbe_surface_samples, s) = {0};
       take(mesh, (size_t)16 << 2 * k, seed, ours, &s);
       square += pow(estimate(&s, at, n, ours) / right - 1, 2) / SEEDS;
       count += (double)s.count / SEEDS;
-      abbe_surface_samples_free(&s);
     }
     const double x = log(count), y = 0.5 * log(square);
     print_message("  %.0f: %.4g\n", count, sqrt(square));
@@ -197,7 +191,7 @@ TEST(convergence_to_a_polygon) {
 TEST(a_coaxial_disk) {
   enum { AROUND = 512 };
   const double radius = 0.2, h = 0.25, at[3] = {0}, n[3] = {0, 0, 1};
-  abbe_mesh disk = {0};
+  OWNED(abbe_mesh, disk) = {0};
   OK(abbe_mesh_make(AROUND + 1, AROUND, false, &disk, &error));
   for (uint32_t i = 0; i <= AROUND; i++) {
     const double angle = 2 * ABBE_PI * i / AROUND, r = i < AROUND ? radius : 0;
@@ -210,21 +204,20 @@ TEST(a_coaxial_disk) {
   const double right = ABBE_PI * radius * radius / (radius * radius + h * h);
   double sum = 0;
   for (uint64_t seed = 0; seed < 4; seed++) {
-    abbe_surface_samples s = {0};
+    OWNED(abbe_surface_samples, s) = {0};
     take(&disk, 1024, seed, true, &s);
     sum += estimate(&s, at, n, true) / 4;
-    abbe_surface_samples_free(&s);
   }
   print_message("%.4f of %.4f\n", sum, right);
   assert_near(sum, right, 0.01 * right);
-  abbe_mesh_free(&disk);
 }
 
 /* What moves takes its samples along, so that light through them does not flicker. */
 TEST(samples_move_along) {
   static const double by[3] = {0.0078125, -0.03125, 0.00390625};
-  abbe_mesh ring = {0};
-  abbe_surface_samples before = {0}, after = {0};
+  OWNED(abbe_mesh, ring) = {0};
+  OWNED(abbe_surface_samples, before) = {0};
+  OWNED(abbe_surface_samples, after) = {0};
   OK(abbe_shape_ring(0.03, 0.008, 64, 32, &ring, &error));
   take(&ring, 200, 5, true, &before);
   for (size_t i = 0; i < ring.vertex_count; i++)
@@ -237,9 +230,6 @@ TEST(samples_move_along) {
     abbe_vector_subtract(off, by, off);
     assert_true(abbe_vector_length(off) < 1e-12);
   }
-  abbe_surface_samples_free(&before);
-  abbe_surface_samples_free(&after);
-  abbe_mesh_free(&ring);
 }
 
 TEST(wrong_requests) {

@@ -14,7 +14,7 @@ static size_t count_planes(const double (*plane)[4], size_t count, double z_low,
 
 TEST(has_the_faces_of_a_brilliant) {
   const abbe_brilliant cut = {.diameter = 0.01};
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   abbe_mesh_report report;
   double plane[80][4];
   size_t count = 0;
@@ -32,13 +32,12 @@ TEST(has_the_faces_of_a_brilliant) {
   assert_int_equal(count_planes((const double(*)[4])plane, count, 1e-6, 0.999999), 32);
   assert_int_equal(count_planes((const double(*)[4])plane, count, -1e-6, 1e-6), 16);
   assert_int_equal(count_planes((const double(*)[4])plane, count, -1, -1e-6), 24);
-  abbe_mesh_free(&m);
 }
 
 TEST(bezels_and_mains_have_their_angles) {
   const abbe_brilliant cut = {
       .diameter = 2, .crown_rad = 33 / DEGREES, .pavilion_rad = 41.2 / DEGREES};
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   double plane[80][4];
   size_t count = 0, bezels = 0, mains = 0;
   OK(abbe_brilliant_make(&cut, &m, &error));
@@ -58,7 +57,6 @@ TEST(bezels_and_mains_have_their_angles) {
   assert_true(fabs(report.max[2] - (0.03 + 0.44 * tan(33 / DEGREES))) < 1e-12);
   assert_true(fabs(report.min[2] + 0.03 + tan(41.2 / DEGREES)) < 1e-12);
   assert_true(fabs(report.max[0] - 1) < 1e-12);
-  abbe_mesh_free(&m);
 }
 
 TEST(refuses_what_is_no_stone) {

@@ -38,7 +38,7 @@ static void round_to(abbe_mesh *m, double step) {
 TEST(a_box_far_away_has_its_planes) {
   const double size[3] = {1, 1, 1}, offset[3] = {1000, 0, 0};
   double move[16];
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   abbe_convex found;
   OK(abbe_shape_box(size, &m, &error));
   abbe_transform_translate(offset, move);
@@ -58,11 +58,10 @@ TEST(a_box_far_away_has_its_planes) {
   OK(abbe_convex_find(&m, 5, plane, NULL, &found, &error));
   assert_int_equal(found.verdict, ABBE_CONVEX_MANY);
   assert_reason(&found, "more than 5 planes");
-  abbe_mesh_free(&m);
 }
 
 TEST(a_dent_is_measured_and_placed) {
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   OK(abbe_shape_sphere(1, 1, &m, &error));
   OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
   abbe_convex found = judge(&m);
@@ -93,7 +92,6 @@ TEST(a_dent_is_measured_and_placed) {
   assert_near(there, most, 1e-9);
   assert_reason(&found, " m, ");
   assert_reason(&found, "% of its size, in front of a face");
-  abbe_mesh_free(&m);
 }
 
 TEST(what_is_open_or_several_is_none) {
@@ -168,13 +166,12 @@ TEST(a_gentle_curve_is_not_cut_into_planes) {
     memcpy(closed, profile, sizeof closed);
     closed[1][0] = 0.5, closed[1][1] = 0;
     memcpy(closed + 2, profile + 1, 41 * sizeof *closed);
-    abbe_mesh m;
+    OWNED(abbe_mesh, m);
     OK(abbe_shape_lathe((const double(*)[2])closed, 43, 96, &m, &error));
     OK(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, &error));
     const abbe_convex found = judge(&m);
     if (found.verdict != ABBE_CONVEX_MANY && found.verdict != ABBE_CONVEX_CURVED)
       fail_msg("radius %g: verdict %d, %zu planes", radius, found.verdict, found.planes);
-    abbe_mesh_free(&m);
   }
 }
 
@@ -186,7 +183,7 @@ TEST(thin_faces_go_with_a_plane) {
   const uint32_t face[14][3] = {{0, 2, 1}, {0, 3, 2}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7},
                                 {2, 7, 6}, {3, 0, 4}, {3, 4, 7}, {0, 1, 5}, {0, 5, 4},
                                 {4, 5, 8}, {4, 8, 7}, {8, 5, 6}, {8, 6, 7}};
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   uint32_t plane_of[14];
   abbe_convex found;
   OK(abbe_mesh_make(9, 14, false, &m, &error));
@@ -199,7 +196,6 @@ TEST(thin_faces_go_with_a_plane) {
   assert_true(found.off > 0.5); /* the needle's normal, which the planes' is to replace */
   const double *p = plane[plane_of[10]];
   assert_true(fabs(p[2] - 1) < 1e-6 || fabs(p[1] + 1) < 1e-6);
-  abbe_mesh_free(&m);
 }
 
 /* A stone drawn by hand: kites folded by a few degrees. Flattened it has the planes that it was to
@@ -235,7 +231,7 @@ TEST(a_stone_of_folded_kites_is_flattened) {
 /* Planes that all meet in one point: only rounding says in which order. */
 TEST(points_of_many_planes_stay_closed) {
   for (size_t sides = 3; sides < 40; sides++) {
-    abbe_mesh m;
+    OWNED(abbe_mesh, m);
     abbe_mesh_report r;
     double moved = 0;
     OK(abbe_shape_gem(sides, 1, 0.6, 0.25, 0.5, &m, &error));
@@ -244,12 +240,11 @@ TEST(points_of_many_planes_stay_closed) {
     OK(abbe_mesh_check(&m, &r, &error));
     assert_int_equal(r.open_edges + r.crowded_edges + r.flipped_edges, 0);
     assert_int_equal(judge(&m).planes, 3 * sides + 1);
-    abbe_mesh_free(&m);
   }
 }
 
 TEST(what_is_no_stone_is_not_flattened) {
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   double moved;
   OK(abbe_shape_ring(1, 0.3, 48, 24, &m, &error));
   const double(*before)[3] = (const double(*)[3])m.position;
@@ -261,7 +256,6 @@ TEST(what_is_no_stone_is_not_flattened) {
   REFUSED(ABBE_GEOMETRY, "is no convex solid yet: (",
           abbe_convex_flatten(&m, 0.02, 4096, &moved, &error));
   assert_ptr_equal(before, m.position);
-  abbe_mesh_free(&m);
 }
 
 TEST(nothing_is_judged_of_nothing) {

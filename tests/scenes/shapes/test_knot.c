@@ -38,12 +38,11 @@ static double length_of(const abbe_knot *k) {
 
 /* By Pappus: the area across times the length of the middle line. */
 TEST(a_tube_has_its_volume) {
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   OK(abbe_knot_make(&plain, &m, &error));
   assert_int_equal(m.face_count, 2 * 400 * 32);
   const double right = ABBE_PI * 0.008 * 0.008 * length_of(&plain);
   assert_near(report_of(&m).volume / right, 1, 0.01); /* of 32 corners for a circle: -0.0064 */
-  abbe_mesh_free(&m);
 }
 
 /* A ring, once around: a tube has room up to its hole. */

@@ -13,7 +13,7 @@ static bool is_convex(const abbe_mesh *mesh, size_t most, double (*plane)[4], si
 }
 
 TEST(sphere_has_the_faces_and_nearly_the_volume) {
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   OK(abbe_shape_sphere(0.05, 4, &m, &error));
   assert_int_equal(m.face_count, 5120);
   const abbe_mesh_report r = assert_closed(&m, 0.7);
@@ -22,20 +22,18 @@ TEST(sphere_has_the_faces_and_nearly_the_volume) {
     assert_true(fabs(abbe_vector_length(m.position[v]) - 0.05) < 1e-15);
     assert_true(fabs(abbe_vector_dot(m.position[v], m.normal[v]) - 0.05) < 1e-15);
   }
-  abbe_mesh_free(&m);
 }
 
 TEST(ring_is_the_thesis_ring) {
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   OK(abbe_shape_ring(0.04, 0.01, 256, 128, &m, &error));
   assert_int_equal(m.face_count, 65536);
   const abbe_mesh_report r = assert_closed(&m, 0.7);
   assert_true(fabs(r.volume / (2 * ABBE_PI * ABBE_PI * 0.04 * 0.01 * 0.01) - 1) < 0.002);
-  abbe_mesh_free(&m);
 }
 
 TEST(gem_is_convex_with_nineteen_planes) {
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   double plane[32][4];
   size_t count = 0;
   OK(abbe_shape_gem(6, 0.05, 0.028, 0.016, 0.043, &m, &error));
@@ -43,11 +41,10 @@ TEST(gem_is_convex_with_nineteen_planes) {
   assert_closed(&m, 0.7);
   assert_true(is_convex(&m, 32, plane, &count));
   assert_int_equal(count, 19);
-  abbe_mesh_free(&m);
 }
 
 TEST(prism_has_its_apex_angle) {
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   double plane[8][4];
   size_t count = 0;
   OK(abbe_shape_prism(ABBE_PI / 3, 0.05, 0.1, &m, &error));
@@ -62,12 +59,11 @@ TEST(prism_has_its_apex_angle) {
       if (plane[i][2] > 0.1 && plane[j][2] > 0.1)
         apex = ABBE_PI - acos(abbe_vector_dot(plane[i], plane[j]));
   assert_true(fabs(apex - ABBE_PI / 3) < 1e-9);
-  abbe_mesh_free(&m);
 }
 
 TEST(box_and_rectangle_face_outwards) {
   const double size[3] = {1, 2, 3};
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   OK(abbe_shape_box(size, &m, &error));
   assert_true(fabs(assert_closed(&m, 0.7).volume - 6) < 1e-12);
   assert_non_null(m.uv);
@@ -76,19 +72,17 @@ TEST(box_and_rectangle_face_outwards) {
   double n[3];
   abbe_vector_triangle(m.position[0], m.position[1], m.position[2], n);
   assert_true(n[2] > 0 && m.normal[3][2] == 1 && m.uv[2][0] == 1 && m.uv[2][1] == 1);
-  abbe_mesh_free(&m);
 }
 
 TEST(lathe_of_a_cylinder_keeps_its_rims_sharp) {
   const double profile[4][2] = {{0, 0}, {0.1, 0}, {0.1, 0.3}, {0, 0.3}};
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   OK(abbe_shape_lathe(profile, 4, 64, &m, &error));
   assert_int_equal(m.face_count, 2 * 64 * 2);
   const abbe_mesh_report r = assert_closed(&m, 0.7);
   assert_true(fabs(r.volume / (ABBE_PI * 0.01 * 0.3) - 1) < 0.002);
   for (size_t v = 0; v < m.vertex_count; v++)
     assert_true(fabs(m.normal[v][2]) < 1e-12 || fabs(fabs(m.normal[v][2]) - 1) < 1e-12);
-  abbe_mesh_free(&m);
 }
 
 TEST(lathe_of_an_arc_is_smooth) {
@@ -97,12 +91,11 @@ TEST(lathe_of_an_arc_is_smooth) {
     profile[i][0] = i == 0 || i == 32 ? 0 : sin(ABBE_PI * i / 32);
     profile[i][1] = -cos(ABBE_PI * i / 32);
   }
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   OK(abbe_shape_lathe((const double(*)[2])profile, 33, 48, &m, &error));
   assert_closed(&m, 0.7);
   for (size_t v = 0; v < m.vertex_count; v++)
     assert_true(abbe_vector_dot(m.normal[v], m.position[v]) > 0.9999);
-  abbe_mesh_free(&m);
 }
 
 /* A pipe's wall, a disk and a bowl: rims where the profile ends off the axis. */
@@ -117,7 +110,7 @@ TEST(an_open_lathe_has_rims) {
                {disk, 2, 64, ABBE_PI * 0.01},
                {bowl, 3, 3 * 64, ABBE_PI * (0.1 * hypot(0.1, 0.02) + 0.25 * hypot(0.05, 0.06))}};
   for (int i = 0; i < 3; i++) {
-    abbe_mesh m;
+    OWNED(abbe_mesh, m);
     double area = 0;
     OK(abbe_shape_lathe(cases[i].profile, cases[i].count, 64, &m, &error));
     assert_int_equal(m.face_count, cases[i].faces);
@@ -130,7 +123,6 @@ TEST(an_open_lathe_has_rims) {
       assert_true(abbe_vector_dot(n, m.normal[m.face[f][0]]) > 0.9 * abbe_vector_length(n));
     }
     assert_true(fabs(area / cases[i].area - 1) < 0.003);
-    abbe_mesh_free(&m);
   }
 }
 

@@ -10,15 +10,13 @@
 
 static void load(const char *design, abbe_object *out) {
   char path[256];
-  abbe_cut cut;
-  abbe_cut_polyhedron stone;
+  OWNED(abbe_cut, cut);
+  OWNED(abbe_cut_polyhedron, stone);
   snprintf(path, sizeof path, ABBE_SOURCE_DIR "/scenes/designs/%s.asc", design);
   OK(abbe_cut_file_read_stone(path, ABBE_CUT_WELD, &cut, &stone, NULL, &error));
   const double own = fmin(stone.max[0] - stone.min[0], stone.max[1] - stone.min[1]);
   *out = (abbe_object){0};
   OK(abbe_cut_polyhedron_mesh(&cut, &stone, WIDTH / own, &out->mesh, &error));
-  abbe_cut_polyhedron_free(&stone);
-  abbe_cut_free(&cut);
 }
 
 static abbe_mesh_report closed(const abbe_mesh *mesh, size_t shells) {
@@ -76,7 +74,7 @@ TEST(prongs_are_counted) {
   abbe_object stone;
   load("brilliant-diamond", &stone);
   for (size_t count = 3; count <= 8; count += count == 4 ? 2 : 1) {
-    abbe_mesh metal;
+    OWNED(abbe_mesh, metal) = {0};
     OK(abbe_setting_make(&stone.mesh, &(abbe_setting){.count = count}, &metal, &error));
     closed(&metal, count + 2);
     for (size_t i = 0; i < count; i++) {
@@ -92,7 +90,6 @@ TEST(prongs_are_counted) {
       assert_true(nearest < 3 * ABBE_SETTING_GAP * WIDTH);
       assert_true(in < 0.46 * WIDTH);
     }
-    abbe_mesh_free(&metal);
   }
   abbe_mesh_free(&stone.mesh);
 }
@@ -103,7 +100,8 @@ TEST(volumes_are_those_of_their_sections) {
   enum { SIDES = 2048 };
   static const double r = 0.003, high = 0.002, t = 0.0006;
   const double profile[][2] = {{0, 0}, {r, 0}, {r, high}, {0, high}};
-  abbe_mesh stone, metal;
+  OWNED(abbe_mesh, stone);
+  OWNED(abbe_mesh, metal);
   OK(abbe_shape_lathe(profile, 4, SIDES, &stone, &error));
   const double gap = ABBE_SETTING_GAP * 2 * r, in = r + gap;
   OK(abbe_setting_make(&stone, &(abbe_setting){.kind = ABBE_SETTING_PAVE, .thick = t, .count = 2},
@@ -129,8 +127,6 @@ TEST(volumes_are_those_of_their_sections) {
       2 * 2 * half * (wall * (under + 0.2 * wall - foot) + 0.4 * wall * (1.3 * wall + gap));
   const double bars = 2 * (half - 0.1 * wall - in) * 2 * (in + 0.5 * wall) * wall;
   assert_near(report.volume, walls + bars, 1e-3 * walls);
-  abbe_mesh_free(&metal);
-  abbe_mesh_free(&stone);
 }
 
 TEST(what_cannot_be_set_is_refused) {
@@ -158,7 +154,7 @@ static abbe_result parse(const char *stone, abbe_scene *out, abbe_error *error) 
 
 /* Metal is an ordinary object behind its stone, moves with it, and stands where both do. */
 TEST(a_scene_sets_a_stone) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   OK(parse(
       "material: ruby, stand: [1cm, 0, 2mm], transform: [{scale: 2}], setting: [{kind: prongs, "
       "count: 6, metal: platinum}, {kind: band, metal: gold}]",
@@ -175,7 +171,6 @@ TEST(a_scene_sets_a_stone) {
   assert_near(band->max[0] - band->min[0],
               2 * 2 * (ABBE_SETTING_FINGER + 2 * ABBE_SETTING_THICK * WIDTH), 1e-5);
   assert_near(apart(stone, claws), 2 * ABBE_SETTING_GAP * WIDTH, ABBE_SETTING_GAP * WIDTH);
-  abbe_scene_free(&scene);
 }
 
 TEST(what_is_no_setting_is_refused) {

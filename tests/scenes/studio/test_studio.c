@@ -41,7 +41,7 @@ TEST(every_look_shows_a_stone) {
   for (int look = 0; look < ABBE_STUDIO_LOOK_COUNT; look++)
     for (int with = 0; with < ABBE_STUDIO_WITH_COUNT; with++) {
       const abbe_studio studio = {.look = (abbe_studio_look)look, .with = (abbe_studio_with)with};
-      abbe_scene scene;
+      OWNED(abbe_scene, scene);
       load(QUARTZ, &studio, &scene);
       const abbe_object *stone = called(&scene, "stone"), *table = called(&scene, "table");
       assert_non_null(stone);
@@ -52,7 +52,6 @@ TEST(every_look_shows_a_stone) {
       if (with == ABBE_STUDIO_WITH_TABLE) assert_near(stone->min[2], 0, 1e-15);
       if (with == ABBE_STUDIO_WITH_RING) assert_true(stone->min[2] > 0.01);
       assert_int_equal(called(&scene, "band") != NULL, with == ABBE_STUDIO_WITH_RING);
-      abbe_scene_free(&scene);
     }
 }
 
@@ -67,7 +66,7 @@ TEST(settings_hold_every_stone) {
                                   .more = more,
                                   .more_count = !ring,
                                   .metal = "silver"};
-      abbe_scene scene;
+      OWNED(abbe_scene, scene);
       char name[64];
       load(OVAL, &studio, &scene);
       snprintf(name, sizeof name, "stone%s's %s", ring ? "" : " 1", names[kind]);
@@ -84,18 +83,16 @@ TEST(settings_hold_every_stone) {
           snprintf(name, sizeof name, "stone 2's %s", names[kind]);
           assert_near(called(&scene, name)->min[0], metal->max[0], 1e-8);
         }
-      abbe_scene_free(&scene);
     }
 }
 
 TEST(width_and_stone_are_the_users) {
   const abbe_studio studio = {.width_m = 0.012, .material = "ruby"};
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load(OVAL, &studio, &scene);
   const abbe_object *stone = called(&scene, "stone");
   assert_near(stone->max[0] - stone->min[0], 0.012, 1e-12);
   assert_string_equal(stone->material->name, "ruby");
-  abbe_scene_free(&scene);
 }
 
 /* Between any two is a gap, and all are in the picture. */
@@ -103,7 +100,7 @@ TEST(several_stand_side_by_side) {
   const char *const more[] = {OVAL, QUARTZ, OVAL, QUARTZ};
   for (size_t count = 1; count <= 4; count++) {
     const abbe_studio studio = {.more = more, .more_count = count};
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     load(QUARTZ, &studio, &scene);
     const abbe_object *stone[5];
     for (size_t i = 0; i <= count; i++) {
@@ -117,7 +114,6 @@ TEST(several_stand_side_by_side) {
                     stone[k]->max[1] < stone[i]->min[1] || stone[i]->max[1] < stone[k]->min[1]);
     }
     assert_true(scene.camera.width > 512);
-    abbe_scene_free(&scene);
   }
 }
 
@@ -149,7 +145,8 @@ TEST(a_saved_scene_is_the_same) {
   const abbe_scene_options options = {.studio = &studio};
   char *text;
   size_t size;
-  abbe_scene made, saved;
+  OWNED(abbe_scene, made);
+  OWNED(abbe_scene, saved);
   OK(abbe_scene_text(OVAL, &options, &text, &size, &error));
   put(path, text);
   free(text);
@@ -161,8 +158,6 @@ TEST(a_saved_scene_is_the_same) {
   const abbe_mesh *a = &called(&made, "stone")->mesh, *b = &called(&saved, "stone")->mesh;
   assert_int_equal(a->vertex_count, b->vertex_count);
   assert_memory_equal(a->position, b->position, a->vertex_count * sizeof *a->position);
-  abbe_scene_free(&made);
-  abbe_scene_free(&saved);
   unlink(path);
 }
 
@@ -170,7 +165,8 @@ TEST(a_saved_scene_is_the_same) {
 TEST(lamps_grow_with_the_stones) {
   static const abbe_studio_look looks[] = {ABBE_STUDIO_LOOK_white, ABBE_STUDIO_LOOK_dispersion};
   for (int i = 0; i < 2; i++) {
-    abbe_scene small, large;
+    OWNED(abbe_scene, small);
+    OWNED(abbe_scene, large);
     load(QUARTZ, &(abbe_studio){.look = looks[i]}, &small);
     load(QUARTZ, &(abbe_studio){.look = looks[i], .width_m = 0.2}, &large);
     const abbe_light *a = &small.light[0], *b = &large.light[0];
@@ -181,8 +177,6 @@ TEST(lamps_grow_with_the_stones) {
     /* the same light on the stone: of a disk by its radiance, of a point by W/sr */
     assert_near(b->power, a->kind == ABBE_LIGHT_POINT ? factor * factor * a->power : a->power,
                 1e-9 * b->power);
-    abbe_scene_free(&small);
-    abbe_scene_free(&large);
   }
 }
 
@@ -194,13 +188,12 @@ TEST(an_index_finds_a_stone) {
       {1.54, "quartz"},   {1.577, "emerald"}, /* no clear stone is near, and no glass */
       {1.62, "topaz"},    {1.66, "peridot"},  {1.76, "sapphire"}, {2.15, "cubic-zirconia"},
       {2.417, "diamond"}, {1.1, "quartz"},    {3, "moissanite"}};
-  abbe_material_table table;
+  OWNED(abbe_material_table, table);
   const abbe_material_table none = {0};
   OK(abbe_material_table_load(NULL, &table, &error));
   for (size_t i = 0; i < sizeof stones / sizeof *stones; i++)
     assert_string_equal(abbe_studio_nearest(&table, stones[i].n)->name, stones[i].name);
   assert_null(abbe_studio_nearest(&none, 1.54));
-  abbe_material_table_free(&table);
 }
 
 TEST(what_is_wrong_is_said) {

@@ -9,15 +9,14 @@ static double sum_of(const abbe_image *alpha) {
 }
 
 static void make(const char *text, size_t width, size_t height, size_t samples, abbe_image *out) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(text, &scene);
   OK(abbe_coverage_make(&scene, width, height, samples, out, &error));
-  abbe_scene_free(&scene);
 }
 
 /* A ball of radius r at distance d in the middle of the view is a disk of r / sqrt(d^2 - r^2). */
 TEST(a_ball_covers_its_disk) {
-  abbe_image alpha;
+  OWNED(abbe_image, alpha);
   make("materials: glass.yaml\ncamera: {eye: [0, -1, 0], target: [0, 0, 0], fov: 40}\n"
        "environment: {uniform: 1}\nobjects:\n"
        "- {name: ball, shape: sphere, radius: 0.2, levels: 6, material: flat}\n",
@@ -26,12 +25,11 @@ TEST(a_ball_covers_its_disk) {
   assert_near(sum_of(&alpha), 3.14159265358979 * r * r, 1e-3 * 3.14159265358979 * r * r);
   assert_near((double)alpha.data[20 * 80 + 40], 1, 1e-6);
   assert_near((double)alpha.data[0], 0, 0);
-  abbe_image_free(&alpha);
 }
 
 /* Rows go downwards, columns to the right; a quarter of the picture is covered to its edges. */
 TEST(a_wall_covers_its_side) {
-  abbe_image alpha;
+  OWNED(abbe_image, alpha);
   make("materials: glass.yaml\ncamera: {eye: [0, -1, 0], target: [0, 0, 0], fov: 90}\n"
        "environment: {uniform: 1}\nobjects:\n"
        "- {name: wall, shape: rectangle, width: 1, height: 1, reflectance: 1,\n"
@@ -40,14 +38,12 @@ TEST(a_wall_covers_its_side) {
   for (size_t y = 0; y < 16; y++)
     for (size_t x = 0; x < 16; x++)
       assert_near((double)alpha.data[y * 16 + x], y < 8 && x >= 8 ? 1 : 0, 0);
-  abbe_image_free(&alpha);
 }
 
 TEST(nothing_covers_nothing) {
-  abbe_image alpha;
+  OWNED(abbe_image, alpha);
   make("camera: {eye: [0, -1, 0], target: [0, 0, 0]}\nenvironment: {uniform: 1}\n", 8, 8, 1,
        &alpha);
   assert_string_equal(alpha.channel[0], "A");
   assert_near(sum_of(&alpha), 0, 0);
-  abbe_image_free(&alpha);
 }

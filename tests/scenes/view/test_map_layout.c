@@ -138,7 +138,7 @@ static void make_image(abbe_image *out) {
 TEST(attributes_give_back_every_bit) {
   const char *host = setlocale(LC_ALL, "de_DE.UTF-8");
   for (int orthographic = 0; orthographic < 2; orthographic++) {
-    abbe_image image;
+    OWNED(abbe_image, image);
     abbe_map_layout layout = slanted(orthographic), back;
     make_image(&image);
     layout.view.origin[0] = -1.0 / 3e-300;
@@ -153,7 +153,6 @@ TEST(attributes_give_back_every_bit) {
     assert_memory_equal(back.view.window, layout.view.window, sizeof back.view.window);
     assert_true(back.view.near == 0.5 && back.view.far == 9);
     assert_memory_equal(back.knot, layout.knot, sizeof back.knot);
-    abbe_image_free(&image);
   }
   if (host != NULL) setlocale(LC_ALL, "C");
 }
@@ -216,16 +215,15 @@ TEST(impossible_layouts_are_refused) {
       break;
     }
     REFUSED(ABBE_INVALID_ARGUMENT, part, abbe_map_layout_check(&l, &error));
-    abbe_image image;
+    OWNED(abbe_image, image);
     make_image(&image);
     assert_int_equal(abbe_map_layout_write(&l, NULL, &image, NULL), ABBE_INVALID_ARGUMENT);
     assert_int_equal(image.attribute_count, 0);
-    abbe_image_free(&image);
   }
 }
 
 static void refuse(const char *name, const char *text, abbe_result code, const char *part) {
-  abbe_image image;
+  OWNED(abbe_image, image);
   abbe_map_layout layout = slanted(false), none = {0};
   make_image(&image);
   OK(abbe_map_layout_write(&layout, NULL, &image, &error));
@@ -233,7 +231,6 @@ static void refuse(const char *name, const char *text, abbe_result code, const c
   REFUSED(code, part, abbe_map_layout_read(&image, "that.exr", &layout, &error));
   assert_contains(last_error.text, "that.exr");
   assert_memory_equal(&layout, &none, sizeof none);
-  abbe_image_free(&image);
 }
 
 TEST(broken_attributes_are_refused) {
@@ -250,10 +247,9 @@ TEST(broken_attributes_are_refused) {
     refuse("abbe:map_view", views[i], ABBE_PARSE, "view");
   refuse("abbe:map_warp_x", "0 1", ABBE_PARSE, "abbe:map_warp_x");
   refuse("abbe:map_warp_y", "", ABBE_PARSE, "abbe:map_warp_y");
-  abbe_image image;
+  OWNED(abbe_image, image);
   abbe_map_layout layout;
   make_image(&image);
   REFUSED(ABBE_NOT_FOUND, "no receiver map",
           abbe_map_layout_read(&image, "picture.exr", &layout, &error));
-  abbe_image_free(&image);
 }

@@ -11,7 +11,7 @@
   ", transform: [{rotate: {axis: [1, 2, 3], angle: 40}}, {translate: [0.1, 0, 0.5]}]}\n"
 
 static void find(const char *object, abbe_body_symmetry *out) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_volume_body body;
   abbe_volume_place place;
   char text[2048];
@@ -20,7 +20,6 @@ static void find(const char *object, abbe_body_symmetry *out) {
   OK(abbe_volume_body_make(&scene.object[1], &body, &error));
   OK(abbe_volume_body_find(&body, &scene.object[1], &place, &error));
   OK(abbe_body_symmetry_find(&scene.object[1], place.centre, body.radius, out, &error));
-  abbe_scene_free(&scene);
 }
 
 TEST(orders_of_known_groups) {

@@ -29,7 +29,7 @@ TEST(halves) {
 /* Under a node's own light, in a cell's middle of a grid. */
 TEST(a_node_and_a_cell_are_what_is_stored) {
   for (int lookup = ABBE_VOLUME_LOOKUP_NEAREST; lookup < ABBE_VOLUME_LOOKUP_COUNT; lookup++) {
-    abbe_caustic_volume v;
+    OWNED(abbe_caustic_volume, v);
     make_volume(ABBE_VOLUME_VECTOR, grid, 42, false, &v);
     for (size_t node = 0; node < 42; node += 5)
       for (size_t cell = 0; cell < v.region.cells; cell += 777) {
@@ -42,7 +42,6 @@ TEST(a_node_and_a_cell_are_what_is_stored) {
           assert_near(f[c / 3][c % 3],
                       abbe_half_value(v.value[(node * v.region.cells + cell) * 9 + c]), 1e-6);
       }
-    abbe_caustic_volume_free(&v);
   }
 }
 
@@ -76,33 +75,32 @@ TEST(turns_are_exact_for_a_ball) {
   double blended[2];
   static const size_t counts[] = {12, 162, 1};
   for (int i = 0; i < 3; i++) {
-    abbe_caustic_volume v;
+    OWNED(abbe_caustic_volume, v);
     make_volume(ABBE_VOLUME_VECTOR, shells, counts[i], true, &v);
     const double cells = ball_error(&v, ABBE_VOLUME_LOOKUP_TURN, true);
     const double turned = ball_error(&v, ABBE_VOLUME_LOOKUP_TURN, false);
     assert_true(turned < 1.25 * cells);
     if (i < 2) blended[i] = ball_error(&v, ABBE_VOLUME_LOOKUP_BLEND, false);
     if (i == 0) assert_true(blended[0] > 5 * cells);
-    abbe_caustic_volume_free(&v);
   }
   assert_true(blended[1] < 0.4 * blended[0]);
 }
 
 TEST(a_ball_is_turned_by_itself) {
-  abbe_caustic_volume v;
+  OWNED(abbe_caustic_volume, v);
   make_volume(ABBE_VOLUME_VECTOR, triangles, 12, true, &v);
   assert_int_equal(abbe_caustic_volume_resolve(&v, ABBE_VOLUME_LOOKUP_AUTO),
                    ABBE_VOLUME_LOOKUP_TURN);
   v.body.ball = false;
   assert_int_equal(abbe_caustic_volume_resolve(&v, ABBE_VOLUME_LOOKUP_AUTO),
                    ABBE_VOLUME_LOOKUP_BLEND);
-  abbe_caustic_volume_free(&v);
 }
 
 /* No value is off by more than the tolerance, and fewer bytes hold them. */
 TEST(joint_cells) {
   const abbe_region_desc small = {.kind = ABBE_REGION_GRID, .side = 16, .outer = 3};
-  abbe_caustic_volume v, joint;
+  OWNED(abbe_caustic_volume, v);
+  OWNED(abbe_caustic_volume, joint);
   size_t same = 0, bytes = 0;
   make_volume(ABBE_VOLUME_VECTOR, small, 12, false, &v);
   make_volume(ABBE_VOLUME_VECTOR, small, 12, false, &joint);
@@ -112,15 +110,14 @@ TEST(joint_cells) {
   assert_true(bytes < same);
   for (size_t i = 0; i < 12 * v.region.cells * 9; i++)
     assert_near(abbe_half_value(joint.value[i]), abbe_half_value(v.value[i]), 6);
-  abbe_caustic_volume_free(&v);
-  abbe_caustic_volume_free(&joint);
 }
 
 /* Beyond the rim light thins by the square of the distance; printed it does not. */
 TEST(beyond_the_region) {
   const abbe_region_desc all[] = {grid, shells, triangles};
   for (int i = 0; i < 3; i++) {
-    abbe_caustic_volume v, printed;
+    OWNED(abbe_caustic_volume, v);
+    OWNED(abbe_caustic_volume, printed);
     make_volume(ABBE_VOLUME_VECTOR, all[i], 12, false, &v);
     make_volume(ABBE_VOLUME_PRINTED, all[i], 12, false, &printed);
     abbe_volume_sight sight;
@@ -142,16 +139,13 @@ TEST(beyond_the_region) {
     abbe_caustic_volume_ratio(&printed, &sight, far, y);
     for (int c = 0; c < 3; c++) assert_near(x[c], y[c], 1e-12);
     assert_true(x[0] > 0);
-    abbe_caustic_volume_free(&v);
-    abbe_caustic_volume_free(&printed);
   }
 }
 
 TEST(too_many_values_are_refused) {
-  abbe_caustic_volume v = {0};
+  OWNED(abbe_caustic_volume, v) = {0};
   const abbe_region_desc large = {.kind = ABBE_REGION_GRID, .side = 256, .outer = 1};
   OK(abbe_volume_region_make(&large, &v.region, &error));
   OK(abbe_light_nodes_make(162, (const double[3]){0, 0, 1}, &v.nodes, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "fewer", abbe_caustic_volume_allocate(&v, &error));
-  abbe_caustic_volume_free(&v);
 }

@@ -29,7 +29,7 @@ static void make_bench(size_t across, bench *b) {
   OK(abbe_volume_body_find(&v->body, &b->scene.object[1], &b->place, &error));
   OK(abbe_volume_region_make(&region, &v->region, &error));
   OK(abbe_light_nodes_make(42, (const double[3]){0, 0, 1}, &v->nodes, &error));
-  abbe_exit_halves *point = calloc(across * across, sizeof *point);
+  FREED abbe_exit_halves *point = calloc(across * across, sizeof *point);
   assert_non_null(point);
   const double r = v->body.radius;
   for (size_t i = 0; i < across * across; i++) {
@@ -58,7 +58,6 @@ static void make_bench(size_t across, bench *b) {
       for (int a = 0; a < 2; a++)
         for (int k = 0; k < 3; k++) half[ABBE_EXIT_WAY_BY + 3 * a + k] = abbe_half_of(-axis[a][k]);
     }
-  free(point);
 }
 
 static void free_bench(bench *b) {

@@ -16,7 +16,7 @@
       "[{translate: [-0.2, 0.1, 0.2]}]}\n"
 
 TEST(motion_is_found) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   static const double axis[3] = {1, -2, 0.5}, offset[3] = {0.1, -0.2, 0.3};
   load_text(SCENE, &scene);
   for (size_t i = 1; i < 3; i++) {
@@ -41,11 +41,10 @@ TEST(motion_is_found) {
       for (int r = 0; r < 3; r++) assert_near(first.turn[3 * r + k], r == k, 1e-12);
     }
   }
-  abbe_scene_free(&scene);
 }
 
 TEST(the_ball_around_it_holds_it) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(SCENE, &scene);
   for (size_t i = 1; i < 3; i++) {
     abbe_volume_body body;
@@ -60,11 +59,10 @@ TEST(the_ball_around_it_holds_it) {
     }
     assert_near(body.radius, most, i == 1 ? 1e-12 : 1e-3);
   }
-  abbe_scene_free(&scene);
 }
 
 TEST(others_are_told_apart) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_volume_body wedge, ball;
   abbe_volume_place place;
   load_text(SCENE, &scene);
@@ -80,5 +78,4 @@ TEST(others_are_told_apart) {
           abbe_volume_body_find(&wedge, &scene.object[1], &place, &error));
   scene.object[2].exact.radius *= 1.01;
   REFUSED(ABBE_UNSUPPORTED, "", abbe_volume_body_find(&ball, &scene.object[2], &place, &error));
-  abbe_scene_free(&scene);
 }

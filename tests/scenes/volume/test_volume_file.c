@@ -14,7 +14,8 @@ static const abbe_region_desc regions[] = {
 
 TEST(files_give_volumes_back) {
   for (int i = 0; i < 12; i++) {
-    abbe_caustic_volume v, back;
+    OWNED(abbe_caustic_volume, v);
+    OWNED(abbe_caustic_volume, back);
     const size_t nodes = i / 3 % 2 != 0 ? 12 : 1;
     make_volume(i < 6 ? ABBE_VOLUME_VECTOR : ABBE_VOLUME_PRINTED, regions[i % 3], nodes, i % 2 != 0,
                 &v);
@@ -36,8 +37,6 @@ TEST(files_give_volumes_back) {
     if (v.kind == ABBE_VOLUME_PRINTED) assert_near(back.byte, v.byte, 0);
     assert_memory_equal(back.value, v.value,
                         v.nodes.count * v.region.cells * abbe_caustic_volume_channels(&v) * 2);
-    abbe_caustic_volume_free(&v);
-    abbe_caustic_volume_free(&back);
   }
   unlink(path);
 }
@@ -85,13 +84,12 @@ TEST(files_give_rays_back) {
                                           {"abbe:volume_nodes", "1 along 0 0 1"},
                                           {"abbe:volume", "vector"}};
   for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
-    abbe_image image = {0};
+    OWNED(abbe_image, image) = {0};
     OK(abbe_volume_file_write(path, &v, &error));
     OK(abbe_exr_read(path, &image, &error));
     OK(abbe_image_set_attribute(&image, broken[i][0], broken[i][1], &error));
     OK(abbe_exr_write_half(path, &image, &error));
     REFUSED(ABBE_PARSE, path, abbe_volume_file_read(path, &back, &error));
-    abbe_image_free(&image);
   }
   abbe_caustic_volume_free(&v);
   unlink(path);
@@ -100,7 +98,7 @@ TEST(files_give_rays_back) {
 /* A good file with one attribute changed. */
 static abbe_result read_with(const char *name, const char *text, abbe_error *error) {
   abbe_caustic_volume v, back;
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   make_volume(ABBE_VOLUME_PRINTED, regions[1], 12, false, &v);
   assert_int_equal(abbe_volume_file_write(path, &v, NULL), ABBE_OK);
   assert_int_equal(abbe_exr_read(path, &image, NULL), ABBE_OK);
@@ -108,7 +106,6 @@ static abbe_result read_with(const char *name, const char *text, abbe_error *err
   assert_int_equal(abbe_exr_write_half(path, &image, NULL), ABBE_OK);
   const abbe_result result = abbe_volume_file_read(path, &back, error);
   if (result == ABBE_OK) abbe_caustic_volume_free(&back);
-  abbe_image_free(&image);
   abbe_caustic_volume_free(&v);
   unlink(path);
   return result;
@@ -159,14 +156,13 @@ TEST(broken_values_are_told) {
   static const float wrong[] = {NAN, INFINITY, 0.5f, 256, -1};
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
     abbe_caustic_volume v, back;
-    abbe_image image = {0};
+    OWNED(abbe_image, image) = {0};
     make_volume(ABBE_VOLUME_PRINTED, regions[0], 1, true, &v);
     OK(abbe_volume_file_write(path, &v, &error));
     OK(abbe_exr_read(path, &image, &error));
     image.data[7] = wrong[i];
     OK(abbe_exr_write(path, &image, &error));
     REFUSED(ABBE_PARSE, "channel", abbe_volume_file_read(path, &back, &error));
-    abbe_image_free(&image);
     abbe_caustic_volume_free(&v);
   }
   unlink(path);

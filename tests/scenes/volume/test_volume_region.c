@@ -18,7 +18,7 @@ static void make(size_t i, abbe_volume_region *out) {
 
 TEST(cells_fill_the_region) {
   for (size_t i = 0; i < REGIONS; i++) {
-    abbe_volume_region r;
+    OWNED(abbe_volume_region, r);
     make(i, &r);
     double sum = 0;
     for (size_t cell = 0; cell < r.cells; cell++) {
@@ -31,7 +31,6 @@ TEST(cells_fill_the_region) {
     }
     const double whole = i == 0 ? 216 : 4 * ABBE_PI / 3 * (27 - 0.729);
     assert_near(sum, whole, 1e-10 * whole);
-    abbe_volume_region_free(&r);
   }
 }
 
@@ -59,7 +58,7 @@ TEST(rays_are_cut_at_the_cells) {
   static abbe_region_piece piece[ABBE_REGION_MOST_PIECES];
   uint64_t seed = 11;
   for (size_t i = 0; i < REGIONS; i++) {
-    abbe_volume_region r;
+    OWNED(abbe_volume_region, r);
     make(i, &r);
     for (int n = 0; n < 4000; n++) {
       double o[3], d[3], sum = 0;
@@ -73,7 +72,6 @@ TEST(rays_are_cut_at_the_cells) {
       }
       assert_near(sum, chord(i, o, d, limit), 1e-9);
     }
-    abbe_volume_region_free(&r);
   }
 }
 
@@ -82,7 +80,7 @@ TEST(pieces_lie_in_their_cells) {
   static abbe_region_piece piece[ABBE_REGION_MOST_PIECES];
   uint64_t seed = 12;
   for (size_t i = 0; i < REGIONS; i++) {
-    abbe_volume_region r;
+    OWNED(abbe_volume_region, r) = {0};
     make(i, &r);
     for (int n = 0; n < 2000; n++) {
       double o[3], d[3], p[3], t = 0;
@@ -103,7 +101,6 @@ TEST(pieces_lie_in_their_cells) {
         assert_int_equal(cell, piece[k].cell);
       }
     }
-    abbe_volume_region_free(&r);
   }
 }
 
@@ -112,7 +109,7 @@ TEST(rays_along_edges_end) {
   static abbe_region_piece piece[ABBE_REGION_MOST_PIECES];
   static const double ways[][3] = {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0.6, 0.8, 0}};
   for (size_t i = 0; i < REGIONS; i++) {
-    abbe_volume_region r;
+    OWNED(abbe_volume_region, r);
     make(i, &r);
     for (size_t w = 0; w < 4; w++) {
       const double o[3] = {-4 * ways[w][0], -4 * ways[w][1], -4 * ways[w][2]};
@@ -122,7 +119,6 @@ TEST(rays_along_edges_end) {
       const double whole = i == 0 ? (w < 3 ? 6 : 6 / 0.8) : 6 - 1.8;
       assert_near(sum, whole, 1e-9);
     }
-    abbe_volume_region_free(&r);
   }
 }
 
@@ -132,9 +128,9 @@ TEST(areas_across_a_beam) {
   static abbe_region_piece piece[ABBE_REGION_MOST_PIECES];
   const double d[3] = {0.48, 0.6, 0.64}, x[3] = {0.8, 0, -0.6}, y[3] = {-0.36, 0.8, -0.48};
   for (size_t i = 0; i < REGIONS; i++) {
-    abbe_volume_region r;
+    OWNED(abbe_volume_region, r);
     make(i, &r);
-    unsigned *met = calloc(r.cells, sizeof *met), *last = calloc(r.cells, sizeof *last);
+    FREED unsigned *met = calloc(r.cells, sizeof *met), *last = calloc(r.cells, sizeof *last);
     for (unsigned n = 0; n < SIDE * SIDE; n++) {
       const double u = ((n % SIDE + 0.5) / SIDE - 0.5) * 11,
                    v = ((n / SIDE + 0.5) / SIDE - 0.5) * 11;
@@ -153,9 +149,6 @@ TEST(areas_across_a_beam) {
     }
     /* cubes are exact but for the lines' distance; faces of shells bulge */
     assert_true(worst < (i == 0 ? 0.01 : 0.12));
-    free(met);
-    free(last);
-    abbe_volume_region_free(&r);
   }
 }
 
@@ -185,7 +178,8 @@ static double linear_error(const abbe_volume_region *r) {
 /* On a grid it is kept; on shells as far as cells are flat: finer ones are nearer. */
 TEST(weights_between_cells) {
   for (size_t i = 0; i < REGIONS; i++) {
-    abbe_volume_region r, fine;
+    OWNED(abbe_volume_region, r);
+    OWNED(abbe_volume_region, fine);
     abbe_region_desc desc = regions[i];
     make(i, &r);
     desc.side *= 4;
@@ -194,8 +188,6 @@ TEST(weights_between_cells) {
     OK(abbe_volume_region_make(&desc, &fine, &error));
     if (i == 0) assert_near(linear_error(&r), 0, 1e-12);
     if (i > 0) assert_true(linear_error(&fine) < 0.35 * linear_error(&r));
-    abbe_volume_region_free(&r);
-    abbe_volume_region_free(&fine);
   }
 }
 

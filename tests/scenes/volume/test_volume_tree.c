@@ -11,7 +11,7 @@ static const abbe_region_desc regions[] = {
 TEST(trees) {
   static const double tolerances[] = {0, 0.5, 4, 1000};
   for (int i = 0; i < 3; i++) {
-    abbe_caustic_volume v;
+    OWNED(abbe_caustic_volume, v) = {0};
     abbe_volume_order order;
     make_volume(ABBE_VOLUME_VECTOR, regions[i], 1, false, &v);
     const size_t cells = v.region.cells;
@@ -21,11 +21,11 @@ TEST(trees) {
       abbe_volume_region_middle(&v.region, c, p);
       if (p[2] > 0) memset(v.value + 9 * c, 0, 18);
     }
-    uint16_t *back = calloc(cells * 9, sizeof *back);
+    FREED uint16_t *back = calloc(cells * 9, sizeof *back);
     OK(abbe_volume_order_make(&v.region, &order, &error));
     size_t before = cells + 1;
     for (size_t t = 0; t < 4; t++) {
-      abbe_volume_tree tree;
+      OWNED(abbe_volume_tree, tree) = {0};
       OK(abbe_volume_tree_make(&order, 9, v.value, tolerances[t], &tree, &error));
       abbe_volume_tree_expand(&tree, &order, 9, back);
       assert_true(tree.leaves <= before && tree.leaves < cells);
@@ -46,21 +46,17 @@ TEST(trees) {
         assert_memory_equal(tree.value + 9 * abbe_volume_tree_find(&tree, &order, k), back + 9 * k,
                             18);
       assert_int_equal(abbe_volume_tree_bytes(&tree, 9), tree.leaves * 22);
-      abbe_volume_tree_free(&tree);
     }
     /* all that may be joined is: the grid, or twenty faces of a shell, or a shell */
     assert_int_equal(before, i == 0 ? 1 : i == 1 ? 20 * 6 : 6);
-    free(back);
     abbe_volume_order_free(&order);
-    abbe_caustic_volume_free(&v);
   }
 }
 
 TEST(sides_are_powers_of_two) {
-  abbe_volume_region r;
+  OWNED(abbe_volume_region, r);
   abbe_volume_order order;
   const abbe_region_desc odd = {.kind = ABBE_REGION_GRID, .side = 12, .outer = 1};
   OK(abbe_volume_region_make(&odd, &r, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "power of two", abbe_volume_order_make(&r, &order, &error));
-  abbe_volume_region_free(&r);
 }

@@ -65,7 +65,7 @@ TEST(a_second_header_begins_a_block_of_k) {
 }
 
 TEST(bad_lines_are_noted_and_passed_over) {
-  abbe_report report = {0};
+  OWNED(abbe_report, report) = {0};
   abbe_csv_points p =
       parse("400,1.5\n500,what\n-5,1.5\n600\n600,0\n700,1.4\n400,9\n800,1,-1\n", NULL, &report);
   assert_int_equal(p.n.count, 2);
@@ -75,7 +75,6 @@ TEST(bad_lines_are_noted_and_passed_over) {
   assert_int_equal(report.note[0].line, 2);
   assert_contains(report.note[0].text, "not a number: 'what'");
   abbe_csv_points_free(&p);
-  abbe_report_free(&report);
 }
 
 static void refuses(const char *text, const abbe_csv_options *options, abbe_result code,

@@ -190,7 +190,7 @@ TEST(published_sellmeier_coefficients_are_found_again) {
        760},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    abbe_index_points points;
+    OWNED(abbe_index_points, points);
     OK(abbe_index_points_sample(&cases[i].glass, cases[i].min_nm, cases[i].max_nm, 2, 200, &points,
                                 &error));
     abbe_fit fit = made(
@@ -200,7 +200,6 @@ TEST(published_sellmeier_coefficients_are_found_again) {
     for (size_t k = 0; k < fit.dispersion.count; k++)
       assert_near(fit.dispersion.c[k], cases[i].glass.c[k], 1e-6 * fabs(cases[i].glass.c[k]));
     assert_true(fit.max_error < 1e-10);
-    abbe_index_points_free(&points);
   }
 }
 
@@ -213,13 +212,12 @@ TEST(random_sellmeier_curves_are_met) {
                          .c = {0, random_between(&random, 0.8, 3.5),
                                random_between(&random, 0.004, 0.04),
                                random_between(&random, 0.2, 3), random_between(&random, 50, 300)}};
-    abbe_index_points points;
+    OWNED(abbe_index_points, points);
     OK(abbe_index_points_sample(&d, 350, 2000, 2, 120, &points, &error));
     abbe_fit fit = made(&points, (abbe_fit_request){.form = ABBE_FIT_SELLMEIER, .terms = 2});
     if (!(fit.max_error < 1e-9))
       fail_msg("%d: B %g C %g, B %g C %g is missed by %g", i, d.c[1], d.c[2], d.c[3], d.c[4],
                fit.max_error);
-    abbe_index_points_free(&points);
   }
 }
 

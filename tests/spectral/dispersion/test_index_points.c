@@ -118,7 +118,7 @@ TEST(formulas_are_sampled_to_both_ends) {
   } cases[] = {{380, 780, 2, 1000, 401},   {380, 780, 500, 1000, 500}, {380, 780, 2, 100, 100},
                {380.5, 382.25, 2, 100, 3}, {380, 381, 7, 9, 7},        {1, 1e6, 2, 50, 50}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    abbe_index_points p;
+    OWNED(abbe_index_points, p);
     OK(abbe_index_points_sample(&d, cases[i].min_nm, cases[i].max_nm, cases[i].least, cases[i].most,
                                 &p, &error));
     assert_int_equal(p.count, cases[i].count);
@@ -129,7 +129,6 @@ TEST(formulas_are_sampled_to_both_ends) {
       assert_near(p.n[k], 1.5 + 0.004e6 / (p.lambda_nm[k] * p.lambda_nm[k]), 1e-9);
       if (k > 0) assert_true(p.lambda_nm[k] > p.lambda_nm[k - 1]);
     }
-    abbe_index_points_free(&p);
   }
 }
 

@@ -18,14 +18,13 @@ static inline abbe_findings checked_table(const abbe_material_table *table) {
 static inline abbe_material_table checked_parse(const char *records) {
   char text[2048];
   abbe_material_table table;
-  abbe_report report = {0};
+  OWNED(abbe_report, report) = {0};
   abbe_error error = {0};
   snprintf(text, sizeof text, "materials:\n%s", records);
   if (abbe_material_table_parse_lenient(text, strlen(text), "t.yaml", &table, &report, &error) !=
       ABBE_OK)
     fail_msg("%s", error.text);
   assert_int_equal(report.count, 0);
-  abbe_report_free(&report);
   return table;
 }
 

@@ -23,7 +23,7 @@ static size_t count_of(const abbe_findings *found, abbe_finding_weight at_least)
 GROUP(shipped_load, shipped_free);
 
 TEST(the_thesis_has_four_wrong_rows_and_bk7) {
-  abbe_material_table thesis;
+  OWNED(abbe_material_table, thesis);
   OK(abbe_material_table_load("thesis", &thesis, &error));
   abbe_findings found = checked_table(&thesis);
   const char *const wrong[] = {"fused-silica", "k5", "bak4", "baf10"};
@@ -41,7 +41,6 @@ TEST(the_thesis_has_four_wrong_rows_and_bk7) {
   assert_contains(found.finding[0].evidence, "fused-silica has 1.45846 and 67.82");
   abbe_findings_free(&found);
   abbe_findings_free(&found);
-  abbe_material_table_free(&thesis);
 }
 
 TEST(the_default_table_is_well) {
@@ -249,7 +248,7 @@ TEST(certain_fixes_fix) {
   for (int pass = 0; pass < 3 && certain > 0; pass++) {
     size_t size = 0;
     const char *now = abbe_table_edit_text(edit, &size);
-    abbe_material_table table;
+    OWNED(abbe_material_table, table) = {0};
     abbe_report report = {0};
     OK(abbe_material_table_parse_lenient(now, size, "t.yaml", &table, &report, &error));
     assert_int_equal(report.count, 0);
@@ -265,7 +264,6 @@ TEST(certain_fixes_fix) {
     fixed += certain;
     if (certain == 0) assert_int_equal(count_of(&found, ABBE_FINDING_DOUBTFUL), 0);
     abbe_findings_free(&found);
-    abbe_material_table_free(&table);
   }
   assert_int_equal(certain, 0);
   assert_int_equal(fixed, 7);
@@ -287,7 +285,7 @@ static abbe_material row(const abbe_dispersion *d) {
 
 /* The finding of that kind, or none where the kind is ABBE_FINDING_KIND_COUNT, and nothing else. */
 static void expect(const abbe_material *m, abbe_finding_kind kind, const abbe_dispersion *right) {
-  abbe_findings found = {0};
+  OWNED(abbe_findings, found) = {0};
   OK(abbe_check_material(m, NULL, &found, &error));
   bool good = kind == ABBE_FINDING_KIND_COUNT ? found.count == 0
                                               : found.count == 1 && found.finding[0].kind == kind;
@@ -298,7 +296,6 @@ static void expect(const abbe_material *m, abbe_finding_kind kind, const abbe_di
              m->dispersion.c[1], m->dispersion.c[2]);
   }
   if (right != NULL) assert_near(strtod(found.finding[0].value + 1, NULL), right->c[0], 2e-6);
-  abbe_findings_free(&found);
 }
 
 TEST(densities_in_another_unit_are_found) {
@@ -373,7 +370,7 @@ TEST(senseless_records_are_survived) {
     m.published_n_d = random_between(&random, -1, 3);
     m.published_v_d = random_between(&random, -1, 100);
     m.fit[0] = (abbe_material_fit){2, {1.5, 0.004}, 1e-4, 380, 780};
-    abbe_findings found = {0};
+    OWNED(abbe_findings, found) = {0};
     const abbe_material_table one = {.count = 1, .material = &m};
     OK(abbe_check_table(&one, &shipped, &found, &error));
     for (size_t k = 0; k < found.count; k++) {
@@ -381,7 +378,6 @@ TEST(senseless_records_are_survived) {
       assert_non_null(found.finding[k].fix);
       if (found.finding[k].certain) assert_null(strstr(found.finding[k].value, "nan"));
     }
-    abbe_findings_free(&found);
   }
 }
 

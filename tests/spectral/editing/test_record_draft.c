@@ -48,11 +48,10 @@ static void put(abbe_record_draft *d, const char *key, const char *value) {
 }
 
 static void check_file(const char *part, bool wanted) {
-  char *found = NULL;
+  FREED char *found = NULL;
   size_t size = 0;
   OK(abbe_file_read(path, 1 << 20, &found, &size, &error));
   if ((strstr(found, part) != NULL) != wanted) fail_msg("'%s' in\n%s", part, found);
-  free(found);
 }
 
 static double n_d(const abbe_material *m) {

@@ -40,11 +40,10 @@ static const char *text_of(const abbe_table_edit *edit) {
 
 /* The diff of the edit, without its head. */
 static void check_diff(abbe_table_edit *edit, const char *wanted) {
-  char *diff = NULL;
+  FREED char *diff = NULL;
   OK(abbe_table_edit_check(edit, &error));
   OK(abbe_table_edit_diff(edit, &diff, &error));
   if (strstr(diff, wanted) == NULL) fail_msg("%s\nis not\n%s", diff, wanted);
-  free(diff);
   abbe_table_edit_free(edit);
 }
 
@@ -67,13 +66,12 @@ TEST(values_are_set) {
 }
 
 static void check_value(const abbe_table_edit *edit, const char *key, const char *wanted) {
-  char *text = NULL;
+  FREED char *text = NULL;
   OK(abbe_table_edit_get(edit, "Crown", key, &text, &error));
   if (wanted == NULL)
     assert_null(text);
   else
     assert_string_equal(text, wanted);
-  free(text);
 }
 
 TEST(values_are_told_and_taken_back) {
@@ -134,9 +132,9 @@ TEST(each_edit_stays_inside_its_record) {
   const char *const paths[] = {ABBE_SOURCE_DIR "/spectral/materials/materials.yaml",
                                ABBE_SOURCE_DIR "/spectral/materials/thesis.yaml"};
   for (int file = 0; file < 2; file++) {
-    char *before = NULL;
+    FREED char *before = NULL;
     size_t size = 0;
-    abbe_material_table table;
+    OWNED(abbe_material_table, table) = {0};
     OK(abbe_file_read(paths[file], 1 << 20, &before, &size, &error));
     OK(abbe_material_table_parse(before, size, "t", &table, &error));
     for (size_t i = 0; i < table.count; i++)
@@ -161,8 +159,6 @@ TEST(each_edit_stays_inside_its_record) {
         assert_string_not_equal(before, after);
         abbe_table_edit_free(edit);
       }
-    abbe_material_table_free(&table);
-    free(before);
   }
 }
 
@@ -369,11 +365,10 @@ static void drop_file(void) {
 }
 
 static void check_file(const char *wanted) {
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size = 0;
   OK(abbe_file_read(path, 1 << 20, &text, &size, &error));
   assert_string_equal(text, wanted);
-  free(text);
 }
 
 TEST_WITH(a_saved_edit_is_on_the_disk, make_file, drop_file) {
@@ -437,7 +432,7 @@ TEST_WITH(a_new_table_begins_with_a_record, make_file, drop_file) {
 
 TEST(a_record_moves_from_table_to_table) {
   abbe_table_edit *from = parse(two), *to = parse("materials: [{name: a}]\n");
-  char *text = NULL;
+  FREED char *text = NULL;
   OK(abbe_table_edit_record(from, "crown", &text, &error));
   assert_string_equal(text, "name: crown # a crown\nmodel: cauchy\n"
                             "coefficients: [1.5220, # high\n               0.00459]\n"
@@ -446,7 +441,6 @@ TEST(a_record_moves_from_table_to_table) {
   assert_string_equal(text_of(to),
                       "materials: [{name: a}, {name: crown, model: cauchy, coefficients: [1.5220, "
                       "0.00459], range_nm: [380, 780], source: \"[Somebody] p. 3\"}]\n");
-  free(text);
   abbe_table_edit_free(from);
   abbe_table_edit_free(to);
 }

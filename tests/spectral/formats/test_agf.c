@@ -227,10 +227,9 @@ TEST(one_bad_glass_does_not_stop_the_rest) {
 
 static void refuses(const char *text, abbe_result code, const char *part) {
   abbe_material_table table;
-  abbe_report mine = {0};
+  OWNED(abbe_report, mine) = {0};
   REFUSED(code, part, abbe_agf_parse(text, strlen(text), "x.agf", &table, &mine, &error));
   assert_null(table.material);
-  abbe_report_free(&mine);
 }
 
 TEST(what_is_no_catalogue_is_refused) {
@@ -242,7 +241,7 @@ TEST(what_is_no_catalogue_is_refused) {
 /* A thousand glasses with 33 transmittances each, as a maker's catalogue has. */
 TEST(a_whole_catalogue_is_read) {
   enum { GLASSES = 1000, EACH = 2200 };
-  char *text = malloc(GLASSES * EACH);
+  FREED char *text = malloc(GLASSES * EACH);
   assert_non_null(text);
   size_t used = (size_t)sprintf(text, "CC big\n");
   for (int i = 0; i < GLASSES; i++) {
@@ -255,7 +254,6 @@ TEST(a_whole_catalogue_is_read) {
   assert_int_equal(t.count, GLASSES);
   assert_int_equal(report.count, 0);
   abbe_material_table_free(&t);
-  free(text);
 }
 
 static void end(void) {

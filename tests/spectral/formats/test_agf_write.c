@@ -7,19 +7,17 @@
 #include "spectral/formats/material_write.h"
 
 static abbe_material_table reread(const abbe_material_table *table, abbe_report *report) {
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size = 0;
   FILE *to = open_memstream(&text, &size);
   abbe_error why = {0};
   OK(abbe_agf_write(table, to, report, &error));
   fclose(to);
   abbe_material_table back;
-  abbe_report notes = {0};
+  OWNED(abbe_report, notes) = {0};
   if (abbe_agf_parse(text, size, "back.agf", &back, &notes, &why) != ABBE_OK)
     fail_msg("%s\n%s", why.text, text);
   assert_int_equal(notes.kinds[ABBE_NOTE_SKIPPED], 0);
-  abbe_report_free(&notes);
-  free(text);
   return back;
 }
 
@@ -31,9 +29,9 @@ static bool noted(const abbe_report *report, const char *part) {
 
 /* n and the attenuation of every shipped row are those of the row, and what is lost is said. */
 TEST(the_shipped_table_becomes_a_catalogue) {
-  abbe_material_table table;
+  OWNED(abbe_material_table, table) = {0};
   OK(abbe_material_table_load(NULL, &table, &error));
-  abbe_report report = {0};
+  OWNED(abbe_report, report) = {0};
   abbe_material_table back = reread(&table, &report);
   size_t glasses = 0;
   for (size_t i = 0; i < table.count; i++) {
@@ -62,23 +60,21 @@ TEST(the_shipped_table_becomes_a_catalogue) {
   assert_true(noted(&report, "cannot allow use outside"));
   assert_true(noted(&report, "it is a conductor"));
   assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], table.count - glasses);
-  abbe_report_free(&report);
   abbe_material_table_free(&back);
-  abbe_material_table_free(&table);
 }
 
 /* A table that came from a catalogue goes back to one and comes again, the same in all that both
  * can say. */
 TEST(a_catalogue_survives_the_way_through_a_table) {
   srand(5);
-  abbe_material_table table = {0};
+  OWNED(abbe_material_table, table) = {0};
   for (size_t i = 0; i < 400; i++) {
     abbe_material m = random_material(i);
     free(m.comment);
     m.comment = rand() % 2 ? strdup("a remark, 25 C") : NULL;
     OK(abbe_material_table_append(&table, &m, &error));
   }
-  abbe_report report = {0};
+  OWNED(abbe_report, report) = {0};
   abbe_material_table once = reread(&table, &report), twice = reread(&once, NULL);
   assert_int_equal(once.count + report.kinds[ABBE_NOTE_SKIPPED], table.count);
   assert_int_equal(twice.count, once.count);
@@ -97,10 +93,8 @@ TEST(a_catalogue_survives_the_way_through_a_table) {
     assert_true(same_number(a->temperature_c, b->temperature_c, 0));
   }
   assert_true(noted(&report, "no place for the temperatures of expansions"));
-  abbe_report_free(&report);
   abbe_material_table_free(&twice);
   abbe_material_table_free(&once);
-  abbe_material_table_free(&table);
 }
 
 /* The lines of `text` that begin with IT, each number in its shortest form. */
@@ -127,10 +121,10 @@ TEST(transmittances_come_back_to_the_last_digit) {
       "IT 0.5 0.999 10\nIT 0.6 0.99 10\nIT 0.7 0.97 10\nIT 0.8 0.3 1\nIT 0.9 0.012 2\n"
       "NM C 2 0 1.5168 64.17\nCD 1.03961212 0.00600069867 0 0 0 0\nLD 0.3 2.5\n"
       "IT 0.4 0.91 1.9\nIT 0.5 0.93 1.9\nIT 0.6 1 1.9\n";
-  abbe_material_table table;
+  OWNED(abbe_material_table, table);
   OK(abbe_agf_parse(text, strlen(text), "m.agf", &table, NULL, &error));
   assert_int_equal(table.count, 3);
-  char *written = NULL;
+  FREED char *written = NULL;
   size_t size = 0;
   FILE *to = open_memstream(&written, &size);
   OK(abbe_agf_write(&table, to, NULL, &error));
@@ -140,8 +134,6 @@ TEST(transmittances_come_back_to_the_last_digit) {
   assert_int_equal(count, 19);
   assert_int_equal(transmittances(written, after, 24), count);
   for (size_t i = 0; i < count; i++) assert_string_equal(after[i], before[i]);
-  free(written);
-  abbe_material_table_free(&table);
 }
 
 /* Whatever absorbs, and however much: not a bit of it changes. */

@@ -21,7 +21,7 @@ TEST(written_points_are_the_materials) {
   srand(4);
   for (size_t i = 0; i < 200; i++) {
     abbe_material m = random_material(i);
-    abbe_report report = {0};
+    OWNED(abbe_report, report) = {0};
     abbe_csv_points p = reread(&m, NULL, &report);
     for (size_t k = 0; k < p.n.count; k++) {
       double n = 0;
@@ -34,7 +34,6 @@ TEST(written_points_are_the_materials) {
       assert_int_equal(p.n.count, 81); /* 380 to 780 */
     assert_int_equal(p.k.count, m.attenuation != NULL ? p.n.count : 0);
     assert_true(report.kinds[ABBE_NOTE_LOST] > 0);
-    abbe_report_free(&report);
     abbe_csv_points_free(&p);
     abbe_material_free(&m);
   }
@@ -53,7 +52,7 @@ static abbe_material glass(void) {
 /* The error that is told is that of straight lines through the points. */
 TEST(sampling_is_asked_for_and_its_error_told) {
   abbe_material m = glass();
-  abbe_report report = {0};
+  OWNED(abbe_report, report) = {0};
   abbe_csv_points p = reread(&m, &(abbe_csv_sampling){450, 525, 50}, &report);
   assert_int_equal(p.n.count, 3);
   assert_near(p.n.point[1].lambda_nm, 500, 0);
@@ -62,7 +61,6 @@ TEST(sampling_is_asked_for_and_its_error_told) {
   char told[64];
   snprintf(told, sizeof told, "off by up to %.2g", worst);
   assert_contains(report.note[0].text, told);
-  abbe_report_free(&report);
   abbe_csv_points_free(&p);
 }
 

@@ -39,10 +39,9 @@ TEST(remarks_decide_nothing) {
     char text[400];
     snprintf(text, sizeof text, "COMMENTS: |\n  %s\n%s", remarks[i], RII);
     assert_int_equal(abbe_import_detect(text, strlen(text)), ABBE_IMPORT_RII);
-    abbe_material_table table = {0};
+    OWNED(abbe_material_table, table) = {0};
     OK(abbe_import_parse(text, strlen(text), "A/nk/B.yml", NULL, &table, NULL, &error));
     assert_string_equal(table.material[0].comment, remarks[i]);
-    abbe_material_table_free(&table);
   }
   static const char dated[] = "2012 11 30, the maker's own\n" AGF;
   assert_int_equal(abbe_import_detect(dated, strlen(dated)), ABBE_IMPORT_AGF);
@@ -54,8 +53,8 @@ TEST(all_kinds_go_into_one_table) {
   } files[] = {
       {AGF, "maker.agf"}, {RII, "a/SiO2/nk/Me.yml"}, {CSV, "dir/my glass.csv"}, {YAML, "t.yaml"}};
   const char *const names[] = {"A", "SiO2-Me", "my glass", "Y"};
-  abbe_material_table table = {0};
-  abbe_report report = {0};
+  OWNED(abbe_material_table, table) = {0};
+  OWNED(abbe_report, report) = {0};
   for (int i = 0; i < 4; i++)
     OK(abbe_import_parse(files[i].text, strlen(files[i].text), files[i].path, NULL, &table, &report,
                          &error));
@@ -74,12 +73,10 @@ TEST(all_kinds_go_into_one_table) {
   OK(abbe_material_table_unique(&table, &report, &error));
   assert_int_equal(table.count, 4);
   assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], 1);
-  abbe_report_free(&report);
-  abbe_material_table_free(&table);
 }
 
 TEST(options_name_what_the_file_does_not) {
-  abbe_material_table table = {0};
+  OWNED(abbe_material_table, table) = {0};
   const abbe_import_options options = {.format = ABBE_IMPORT_CSV,
                                        .name = "prism",
                                        .source = "own measurement",
@@ -90,7 +87,6 @@ TEST(options_name_what_the_file_does_not) {
   assert_string_equal(table.material[0].source, "own measurement");
   assert_near(table.material[0].max_nm, 500, 0);
   assert_non_null(table.material[0].attenuation);
-  abbe_material_table_free(&table);
 }
 
 static void refuses(const char *text, const abbe_import_options *options, abbe_result code,

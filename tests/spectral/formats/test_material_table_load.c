@@ -210,7 +210,7 @@ TEST(every_recorded_fit_is_made_again) {
 }
 
 TEST(every_source_is_in_the_bibliography) {
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size = 0;
   OK(abbe_file_read(ABBE_SOURCE_DIR "/BIBLIOGRAPHY.md", 1 << 20, &text, &size, &error));
   const char *const tables[] = {"default", "thesis"};
@@ -226,7 +226,6 @@ TEST(every_source_is_in_the_bibliography) {
     }
     abbe_material_table_free(&table);
   }
-  free(text);
 }
 
 /* Verbatim: the digits that the thesis prints, and what is wrong with them. */

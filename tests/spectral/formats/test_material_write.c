@@ -20,37 +20,33 @@ static abbe_material_table reread(const abbe_material_table *table, char **text)
 TEST(shipped_tables_come_back_the_same) {
   const char *const names[] = {"default", "thesis"};
   for (int t = 0; t < 2; t++) {
-    abbe_material_table table;
+    OWNED(abbe_material_table, table);
     OK(abbe_material_table_load(names[t], &table, &error));
-    char *text = NULL;
+    FREED char *text = NULL;
     abbe_material_table back = reread(&table, &text);
     assert_int_equal(back.count, table.count);
     assert_string_equal(back.description, table.description);
     for (size_t i = 0; i < back.count; i++)
       assert_same_record(&table.material[i], &back.material[i]);
-    free(text);
     abbe_material_table_free(&back);
-    abbe_material_table_free(&table);
   }
 }
 
 TEST(random_records_come_back_the_same) {
   srand(11);
   for (int round = 0; round < 20; round++) {
-    abbe_material_table table = {0};
+    OWNED(abbe_material_table, table) = {0};
     for (size_t i = 0; i < 25; i++) {
       abbe_material m = random_material(i);
       OK(abbe_material_check(&m, &error));
       OK(abbe_material_table_append(&table, &m, &error));
     }
-    char *text = NULL;
+    FREED char *text = NULL;
     abbe_material_table back = reread(&table, &text);
     assert_int_equal(back.count, 25);
     for (size_t i = 0; i < back.count; i++)
       assert_same_record(&table.material[i], &back.material[i]);
-    free(text);
     abbe_material_table_free(&back);
-    abbe_material_table_free(&table);
   }
 }
 
@@ -91,14 +87,12 @@ TEST(odd_texts_come_back_the_same) {
                        .max_nm = 1e6,
                        .temperature_c = NAN,
                        .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}}};
-    abbe_material_table table = {0};
+    OWNED(abbe_material_table, table) = {0};
     OK(abbe_material_table_append(&table, &m, &error));
-    char *text = NULL;
+    FREED char *text = NULL;
     abbe_material_table back = reread(&table, &text);
     assert_string_equal(back.material[0].comment, odd[i]);
-    free(text);
     abbe_material_table_free(&back);
-    abbe_material_table_free(&table);
   }
 }
 

@@ -6,7 +6,7 @@
 #include "spectral/formats/material_write.h"
 
 static abbe_material reread(const abbe_material *m, abbe_report *report) {
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size = 0;
   FILE *to = open_memstream(&text, &size);
   abbe_error why = {0};
@@ -15,21 +15,19 @@ static abbe_material reread(const abbe_material *m, abbe_report *report) {
   abbe_material back;
   if (abbe_rii_parse(text, size, "x.yml", m->name, &back, NULL, &why) != ABBE_OK)
     fail_msg("%s\n%s", why.text, text);
-  free(text);
   return back;
 }
 
 TEST(shipped_rows_come_back_the_same) {
   const char *const tables[] = {"default", "thesis"};
   for (int t = 0; t < 2; t++) {
-    abbe_material_table table;
+    OWNED(abbe_material_table, table);
     OK(abbe_material_table_load(tables[t], &table, &error));
     for (size_t i = 0; i < table.count; i++) {
       abbe_material back = reread(&table.material[i], NULL);
       assert_carried(&table.material[i], &back, 1e-14);
       abbe_material_free(&back);
     }
-    abbe_material_table_free(&table);
   }
 }
 
@@ -43,7 +41,7 @@ TEST(random_records_come_back_the_same) {
     free(m.comment);
     m.source = strdup("A. Author, \"Title\" & <more>, 2001: p. 3");
     m.comment = i % 2 ? strdup("20 \xc2\xb0\x43 # not a comment") : NULL;
-    abbe_report report = {0};
+    OWNED(abbe_report, report) = {0};
     abbe_material back = reread(&m, &report);
     bool lost = m.description != NULL || m.warning != NULL || m.fit[0].terms > 0 || m.extrapolate ||
                 abbe_material_is_uniaxial(&m);
@@ -79,7 +77,6 @@ TEST(random_records_come_back_the_same) {
           abbe_spectrum_interpolation(m.attenuation) == ABBE_INTERPOLATION_LINEAR)
         assert_near(abbe_material_attenuation(&back, l), abbe_material_attenuation_along(&m, 0, l),
                     1e-11 * abbe_material_attenuation_along(&m, 0, l));
-    abbe_report_free(&report);
     abbe_material_free(&back);
     abbe_material_free(&m);
   }

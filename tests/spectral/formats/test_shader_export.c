@@ -57,7 +57,7 @@ TEST(the_laws_of_others_are_found_again) {
 
 /* N-BK7 has n_d 1.5168 and V_d 64.17: 20 / 64.17 = 0.3117. */
 TEST(gltf_has_the_numbers_of_the_catalogue) {
-  char *text = written(ABBE_SHADER_GLTF, shipped.material, shipped.count);
+  FREED char *text = written(ABBE_SHADER_GLTF, shipped.material, shipped.count);
   cJSON *root = cJSON_Parse(text);
   assert_non_null(root);
   cJSON *list = cJSON_GetObjectItem(root, "materials");
@@ -81,7 +81,6 @@ TEST(gltf_has_the_numbers_of_the_catalogue) {
     assert_near(blue, exp(-1), 1e-6);
   }
   cJSON_Delete(root);
-  free(text);
 }
 
 /* Every sample that pbrt gets is the index there, from 360 to 830 nm without a gap: it takes 0
@@ -153,14 +152,14 @@ TEST(names_become_identifiers_once_each) {
 /* exp(-(1 - fade_color) d / fade_distance) is exp(-a d). */
 TEST(povray_fades_as_the_material_absorbs) {
   const abbe_material *m = shipped_material("n-sf11");
-  char *text = written(ABBE_SHADER_POVRAY, m, 1), *at = strstr(text, "fade_distance ");
+  FREED char *text = written(ABBE_SHADER_POVRAY, m, 1);
+  char *at = strstr(text, "fade_distance ");
   double distance = strtod(at + strlen("fade_distance "), NULL), colour[3];
   at = strchr(at, '<') + 1;
   for (int i = 0; i < 3; i++) colour[i] = strtod(at, &at), at++;
   const double primary_nm[3] = {611.4, 549.1, 464.2};
   for (int i = 0; i < 3; i++)
     assert_near((1 - colour[i]) / distance, abbe_material_attenuation(m, primary_nm[i]), 1e-9);
-  free(text);
 }
 
 TEST(failures_are_told) {

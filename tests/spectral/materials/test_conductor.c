@@ -190,10 +190,10 @@ TEST(yaml_and_stores_keep_a_conductor) {
 /* ---- in other forms ---- */
 
 TEST(refractiveindex_info_keeps_a_conductor) {
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size = 0;
   abbe_material m = gold(), back;
-  abbe_report report = {0};
+  OWNED(abbe_report, report) = {0};
   FILE *to = open_memstream(&text, &size);
   OK(abbe_rii_write(&m, to, &report, &error));
   fclose(to);
@@ -202,10 +202,8 @@ TEST(refractiveindex_info_keeps_a_conductor) {
   OK(abbe_rii_parse(text, size, "gold.yml", "gold", &back, &report, &error));
   same_conductor(&m, &back);
   assert_int_equal(report.kinds[ABBE_NOTE_CHANGED], 1);
-  abbe_report_free(&report);
   abbe_material_free(&back);
   abbe_material_free(&m);
-  free(text);
 }
 
 /* Where light gets through most of the visible, k stays absorption; so it does beyond the visible,
@@ -218,19 +216,18 @@ TEST(what_is_no_metal_stays_transparent) {
       "DATA:\n  - type: tabulated n\n    data: |\n      0.4 1.5\n      0.7 1.4\n"
       "  - type: tabulated k\n    data: |\n      0.4 1.5\n      0.5 1.5\n      0.7 1.4\n"};
   for (int i = 0; i < 3; i++) {
-    abbe_material m;
+    OWNED(abbe_material, m);
     OK(abbe_rii_parse(texts[i], strlen(texts[i]), "a.yml", "a", &m, NULL, &error));
     assert_false(abbe_material_is_conductor(&m));
     assert_non_null(m.attenuation);
-    abbe_material_free(&m);
   }
 }
 
 TEST(csv_keeps_a_conductor) {
   char path[] = "/tmp/abbe-conductor-XXXXXX";
   abbe_material m = gold();
-  abbe_material_table back = {0};
-  abbe_report report = {0};
+  OWNED(abbe_material_table, back) = {0};
+  OWNED(abbe_report, report) = {0};
   FILE *to = fdopen(mkstemp(path), "w");
   OK(abbe_csv_write(&m, NULL, to, NULL, &error));
   fclose(to);
@@ -238,8 +235,6 @@ TEST(csv_keeps_a_conductor) {
       .format = ABBE_IMPORT_CSV, .name = "gold", .source = "[JohnsonChristy1972]"};
   OK(abbe_import_load(path, &options, &back, &report, &error));
   same_conductor(&m, &back.material[0]);
-  abbe_report_free(&report);
-  abbe_material_table_free(&back);
   abbe_material_free(&m);
   unlink(path);
 }
@@ -257,9 +252,9 @@ TEST(catalogues_of_glass_leave_a_conductor_out) {
               {ABBE_SHADER_GLTF, 1, "\"materials\""},
               {ABBE_SHADER_PBRT, 0, "\"string type\" \"conductor\""}};
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    char *text = NULL;
+    FREED char *text = NULL;
     size_t size = 0;
-    abbe_report report = {0};
+    OWNED(abbe_report, report) = {0};
     FILE *to = open_memstream(&text, &size);
     assert_int_equal(rows[i].shader < 0
                          ? abbe_agf_write(&t, to, &report, NULL)
@@ -269,8 +264,6 @@ TEST(catalogues_of_glass_leave_a_conductor_out) {
     assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], rows[i].skipped);
     assert_contains(text, rows[i].part);
     assert_null(strstr(text, "nan"));
-    free(text);
-    abbe_report_free(&report);
   }
   abbe_material_table_free(&t);
 }
@@ -310,11 +303,10 @@ TEST(a_change_of_k_is_told) {
 
 TEST(the_check_knows_a_conductor) {
   abbe_material m = gold();
-  abbe_findings found = {0};
+  OWNED(abbe_findings, found) = {0};
   OK(abbe_check_material(&m, NULL, &found, &error));
   assert_int_equal(found.count, 1);
   assert_int_equal(found.finding[0].kind, ABBE_FINDING_DARK);
   assert_contains(found.finding[0].fix, "points that reach further");
-  abbe_findings_free(&found);
   abbe_material_free(&m);
 }

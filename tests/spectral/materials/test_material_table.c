@@ -395,7 +395,7 @@ TEST(bad_absorption_and_fits_are_refused) {
 
 /* What the documentation shows is read as it stands. */
 TEST(the_documented_table_is_one) {
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size = 0;
   OK(abbe_file_read(ABBE_SOURCE_DIR "/docs/materials.md", 1 << 20, &text, &size, &error));
   char *begin = strstr(text, "```yaml\n");
@@ -409,7 +409,6 @@ TEST(the_documented_table_is_one) {
   assert_near(exp(-0.01 * abbe_material_attenuation(find_material(&t, "liqueur"), 464.2)), 0.08,
               1e-12);
   abbe_material_table_free(&t);
-  free(text);
 }
 
 /* For an examination all that can be read is there, and the rest is told with its line. */
@@ -420,7 +419,7 @@ TEST(a_lenient_reading_keeps_what_can_be_read) {
                       "- 3\n"
                       "- {name: A, model: sellmeier2, coefficients: [0, 1, 0.2],\n"
                       "   range_nm: [0.38, 780], source: s}\n";
-  abbe_material_table t;
+  OWNED(abbe_material_table, t);
   abbe_report report = {0};
   REFUSED(ABBE_SCHEMA, "", abbe_material_table_parse(text, sizeof text - 1, "t.yaml", &t, &error));
   OK(abbe_material_table_parse_lenient(text, sizeof text - 1, "t.yaml", &t, &report, &error));
@@ -443,12 +442,11 @@ TEST(a_lenient_reading_keeps_what_can_be_read) {
   REFUSED(ABBE_IO, "", abbe_material_table_load_lenient("/no/such.yaml", &t, NULL, &error));
   OK(abbe_material_table_load_lenient("thesis", &t, NULL, &error));
   assert_int_equal(t.count, 5);
-  abbe_material_table_free(&t);
 }
 
 /* Any cut of a good file is either a smaller good file or a complaint; nothing leaks or crashes. */
 static void cut_table_is_harmless(const char *path, size_t step) {
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size = 0;
   OK(abbe_file_read(path, 1 << 20, &text, &size, &error));
   for (size_t cut = 0; cut < size; cut += step) {
@@ -459,7 +457,6 @@ static void cut_table_is_harmless(const char *path, size_t step) {
     else
       assert_contains(why.text, "cut.yaml");
   }
-  free(text);
 }
 
 TEST(cut_tables_are_harmless) {

@@ -46,15 +46,14 @@ TEST(rows_are_matched) {
 }
 
 TEST(a_table_is_the_same_as_itself) {
-  abbe_material_table first, second;
+  OWNED(abbe_material_table, first);
+  OWNED(abbe_material_table, second);
   abbe_table_difference d;
   OK(abbe_material_table_load("default", &first, &error));
   OK(abbe_material_table_load("default", &second, &error));
   OK(abbe_table_compare(&first, &second, &d, &error));
   assert_int_equal(d.kinds[ABBE_ROW_SAME], first.count);
   abbe_table_difference_free(&d);
-  abbe_material_table_free(&first);
-  abbe_material_table_free(&second);
 }
 
 /* One key changed at a time is one part that differs, and no other. */

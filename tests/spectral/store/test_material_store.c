@@ -89,7 +89,7 @@ GROUP(setup, teardown);
 
 TEST(every_record_comes_back_the_same) {
   srand(21);
-  abbe_material_table table = {0};
+  OWNED(abbe_material_table, table) = {0};
   for (size_t i = 0; i < 300; i++) {
     abbe_material m = random_material(i);
     OK(abbe_material_table_append(&table, &m, &error));
@@ -106,18 +106,16 @@ TEST(every_record_comes_back_the_same) {
     assert_int_equal(back.material[i].line, i + 1);
   }
   abbe_material_table_free(&back);
-  abbe_material_table_free(&table);
 }
 
 TEST(the_shipped_table_comes_back_the_same) {
-  abbe_material_table table;
+  OWNED(abbe_material_table, table);
   OK(abbe_material_table_load(NULL, &table, &error));
   write_store(&table);
   abbe_material_table back = read_all();
   assert_int_equal(back.count, table.count);
   for (size_t i = 0; i < back.count; i++) assert_same_record(&table.material[i], &back.material[i]);
   abbe_material_table_free(&back);
-  abbe_material_table_free(&table);
 }
 
 /* ---- rows by name ---- */
@@ -145,11 +143,10 @@ TEST(one_name_reads_one_row) {
 /* Which is what YAML and the shipped tables do with all of theirs. */
 TEST(other_tables_are_asked_in_the_same_words) {
   const char *const name = "diamond";
-  abbe_material_table table;
+  OWNED(abbe_material_table, table);
   const abbe_material *m = NULL;
   OK(abbe_material_table_load_named(NULL, &name, 1, &table, &error));
   OK(abbe_material_table_find(&table, "sapphire", &m, &error));
-  abbe_material_table_free(&table);
 }
 
 /* ---- files of strangers ---- */
@@ -215,15 +212,13 @@ TEST(a_row_that_is_used_has_an_index) {
 TEST(a_bad_row_is_noted_and_left_out) {
   write_three();
   run_sql("UPDATE materials SET model = 'cachy' WHERE id = 2");
-  abbe_material_table table;
-  abbe_report unread = {0};
+  OWNED(abbe_material_table, table);
+  OWNED(abbe_report, unread) = {0};
   OK(abbe_material_table_load_lenient(path, &table, &unread, &error));
   assert_int_equal(table.count, 2);
   assert_int_equal(unread.count, 1);
   assert_int_equal(unread.note[0].line, 2);
   assert_string_equal(unread.note[0].name, "B");
-  abbe_report_free(&unread);
-  abbe_material_table_free(&table);
 }
 
 TEST(other_databases_are_no_stores) {
@@ -255,10 +250,10 @@ TEST(other_databases_are_no_stores) {
 /* Whatever a disk or a stranger does to the bytes: a table, or a sentence. */
 TEST(changed_bytes_are_survived) {
   write_three();
-  char *bytes = NULL;
+  FREED char *bytes = NULL;
   size_t size = 0, read = 0, refused = 0;
   OK(abbe_file_read(path, 1 << 24, &bytes, &size, &error));
-  char *changed = malloc(size);
+  FREED char *changed = malloc(size);
   uint64_t random = 3;
   for (int i = 0; i < 1500; i++) {
     memcpy(changed, bytes, size);
@@ -266,7 +261,7 @@ TEST(changed_bytes_are_survived) {
     for (uint64_t k = 1 + random_bits(&random) % 6; k > 0; k--)
       changed[random_bits(&random) % (i % 3 == 0 ? 200 : size)] = (char)random_bits(&random);
     write_bytes(changed, length);
-    abbe_material_table table;
+    OWNED(abbe_material_table, table);
     abbe_error why = {0};
     abbe_result result = abbe_material_store_read(path, NULL, 0, NULL, &table, &why);
     if (result != ABBE_OK) assert_true(why.text[0] != '\0' && table.material == NULL);
@@ -278,11 +273,8 @@ TEST(changed_bytes_are_survived) {
     const char *const names[] = {"a", "b", "c"};
     result = abbe_material_store_read(path, names, 3, NULL, &table, &why);
     for (size_t k = 0; k < table.count; k++) OK(abbe_material_check(&table.material[k], &error));
-    abbe_material_table_free(&table);
   }
   assert_true(read > 100 && refused > 100);
-  free(changed);
-  free(bytes);
 }
 
 /* ---- writing ---- */

@@ -41,7 +41,7 @@ TEST(range) {
 
 /* Pixels of the colour of t in the picture at path, the scale bar's too. */
 static size_t count(const char *path, double t, size_t *width, size_t *height) {
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   double rgb[3];
   size_t found = 0;
   OK(abbe_png_read(path, &image, &error));
@@ -54,7 +54,6 @@ static size_t count(const char *path, double t, size_t *width, size_t *height) {
   }
   *width = image.width;
   *height = image.height;
-  abbe_image_free(&image);
   return found;
 }
 

@@ -300,12 +300,11 @@ TEST(from_a_file) {
   abbe_map_layout layout = layout_of(-1, 5);
   OK(abbe_map_layout_write(&layout, NULL, &image, &error));
   OK(abbe_exr_write(path, &image, &error));
-  abbe_field f = {0};
+  OWNED(abbe_field, f) = {0};
   OK(abbe_field_load(path, &f, &error));
   unlink(path);
   assert_int_equal(f.kind, ABBE_FIELD_RECEIVER_MAP);
   assert_true(f.is_xyz && f.colour.error == NULL && f.passes == 0);
   assert_memory_equal(f.colour.value, image.data, 18 * sizeof(float));
-  abbe_field_free(&f);
   abbe_image_free(&image);
 }

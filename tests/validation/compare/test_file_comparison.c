@@ -10,13 +10,12 @@ static char paths[3][64];
 
 static void write_picture(const char *path, float value, bool errors) {
   static const char *const names[] = {"X", "Y", "Z", "stderr.X", "stderr.Y", "stderr.Z"};
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   OK(abbe_image_make(4, 4, errors ? 6 : 3, names, &image, &error));
   for (size_t i = 0; i < 16; i++)
     for (size_t k = 0; k < image.channels; k++)
       image.data[i * image.channels + k] = k < 3 ? value : 0.001f;
   OK(abbe_exr_write(path, &image, &error));
-  abbe_image_free(&image);
 }
 
 static abbe_file_comparison compare(const char *a, const char *b) {

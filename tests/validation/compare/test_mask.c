@@ -40,7 +40,7 @@ TEST(of_equals_the_first) {
 /* A wide field: the mask holds the share, and without its faintest pixel it would not. */
 TEST(smallest_on_many_pixels) {
   enum { COUNT = 20000 };
-  double *light = malloc(COUNT * sizeof *light);
+  FREED double *light = malloc(COUNT * sizeof *light);
   assert_non_null(light);
   double total = 0;
   for (int i = 0; i < COUNT; i++) total += light[i] = exp(8 * sin(i * 0.7) * cos(i * 0.0123));
@@ -54,7 +54,6 @@ TEST(smallest_on_many_pixels) {
   assert_true(held - faintest < 0.95 * total);
   assert_true(brightest_out <= faintest);
   abbe_mask_free(&mask);
-  free(light);
 }
 
 TEST(what_is_no_light) {

@@ -339,7 +339,7 @@ static double distance(const abbe_image *a, const abbe_image *b, const char *nam
 /* A few passes, filtered, against many of another seed: nearer than they were, and the bands and
  * the light as a whole are as traced. In R, G, B and in X, Y, Z. */
 TEST(a_traced_picture_comes_nearer) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(SCENE, &scene);
   static const abbe_rgb_space spaces[2] = {ABBE_RGB_SPACE_ACESCG, ABBE_RGB_SPACE_XYZ};
   static const char *const of[2][3] = {{"R", "G", "B"}, {"X", "Y", "Z"}};
@@ -356,16 +356,14 @@ TEST(a_traced_picture_comes_nearer) {
     abbe_image_free(&few);
     abbe_image_free(&out);
   }
-  abbe_scene_free(&scene);
 }
 
 /* One pass tells no errors, so there is nothing to go by. */
 TEST(one_pass_is_refused) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(SCENE, &scene);
   abbe_image one = trace(&scene, ABBE_RGB_SPACE_ACESCG, 1, 1), out;
   REFUSED(ABBE_INVALID_ARGUMENT, "two passes",
           abbe_denoise_picture(&one, &(abbe_denoise_desc){0}, &out, &error));
   abbe_image_free(&one);
-  abbe_scene_free(&scene);
 }

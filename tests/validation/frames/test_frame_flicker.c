@@ -71,7 +71,8 @@ TEST(what_does_not_fit_is_refused) {
   static const char *const y[] = {"Y"};
   abbe_frame_flicker f = {0};
   abbe_frame_error out;
-  abbe_image small, grey;
+  OWNED(abbe_image, small);
+  OWNED(abbe_image, grey);
   add(&f, make(false, 1, 1), (abbe_image){0});
   OK(abbe_image_make(2, 2, 1, y, &small, &error));
   OK(abbe_image_make(SIDE, SIDE, 1, y, &grey, &error));
@@ -81,6 +82,4 @@ TEST(what_does_not_fit_is_refused) {
           abbe_frame_flicker_add(&f, &grey, NULL, &out, &error));
   abbe_frame_flicker_free(&f);
   abbe_frame_flicker_free(NULL);
-  abbe_image_free(&small);
-  abbe_image_free(&grey);
 }

@@ -6,13 +6,12 @@ static const abbe_gem_view_desc small = {.head_rad = 15 * DEG, .side = 24, .repe
 
 /* Of the middle pixel, which the stone fills. */
 static void middle(const abbe_gem_view *view, abbe_gem_map map, float rgb[3]) {
-  abbe_image image;
+  OWNED(abbe_image, image);
   OK(abbe_gem_map_paint(view, map, &image, &error));
   for (size_t c = 0; c < 3; c++) {
     rgb[c] = image.data[3 * (view->side * view->side / 2 + view->side / 2) + c];
     assert_near(image.data[c], 1, 0); /* white where no stone is */
   }
-  abbe_image_free(&image);
 }
 
 /* A roof shows the head alone; a plate shows what is behind it, and the head by its faces. */
@@ -49,7 +48,7 @@ TEST(colours_are_those_of_the_scopes) {
 TEST(channels_have_the_measures) {
   judged j = judged_plain(design_b, 2.417);
   abbe_gem_view v = judged_view(&j, &small);
-  abbe_image image;
+  OWNED(abbe_image, image);
   OK(abbe_gem_map_image(&v, &image, &error));
   const size_t cover = abbe_image_find_channel(&image, "cover");
   const size_t y = abbe_image_find_channel(&image, "Y");
@@ -66,7 +65,6 @@ TEST(channels_have_the_measures) {
     }
     assert_near(sum / met, abbe_gem_view_amount(&v, (abbe_gem_amount)a).value, 1e-5);
   }
-  abbe_image_free(&image);
   abbe_gem_view_free(&v);
   judged_free(&j);
 }

@@ -51,7 +51,7 @@ TEST(errors_stand_over_their_rows_in_their_groups_colour) {
                               {.group = "a", .error = -1, .tolerance = 2},
                               {.group = "b", .error = NAN, .tolerance = 1},
                               {.group = "b", .error = 0, .tolerance = 0}};
-  char *text = draw(rows, 4);
+  FREED char *text = draw(rows, 4);
   mark m[MOST];
   assert_int_equal(find_marks(text, m), 3); /* nothing is drawn of what is no number */
   assert_near(m[2].x - m[1].x, 2 * (m[1].x - m[0].x), 0.01);
@@ -59,7 +59,6 @@ TEST(errors_stand_over_their_rows_in_their_groups_colour) {
   assert_near(m[1].y - m[0].y, 200, 1);           /* half of what -1 to 1 take up */
   assert_near(m[0].red, m[1].red, 0);
   assert_true(m[2].red != m[0].red);
-  free(text);
 }
 
 TEST(rows_out_of_tolerance_are_seen) {
@@ -68,13 +67,12 @@ TEST(rows_out_of_tolerance_are_seen) {
                               {.group = "b", .error = 1, .tolerance = NAN},
                               {.group = "b", .error = 3, .tolerance = 0},
                               {.group = "c", .error = 1e300, .tolerance = 1e-300}};
-  char *text = draw(rows, 5);
+  FREED char *text = draw(rows, 5);
   mark m[MOST];
   assert_int_equal(find_marks(text, m), 2);
   assert_near(m[1].y - m[0].y, 200 * 7 / 7.7,
               1); /* 1.1 times the furthest reach the frame's edge */
   assert_contains(text, "</svg>");
-  free(text);
 }
 
 /* Two rows that stand over photons make a second chart above, with their errors. */
@@ -82,7 +80,7 @@ TEST(photons_make_a_chart_of_their_own) {
   abbe_known_answer rows[] = {
       {.group = "a", .exact = 0.1, .traced = 0.11, .tolerance = 0.1, .photons = 1000},
       {.group = "a", .exact = 0.05, .traced = 0.04, .tolerance = 0.1, .photons = 4000}};
-  char *both = draw(rows, 2), *one = draw(rows, 1);
+  FREED char *both = draw(rows, 2), *one = draw(rows, 1);
   mark m[MOST], upper[MOST];
   size_t count = find_marks(both, m), above = 0;
   for (size_t i = 0; i < count; i++)
@@ -91,8 +89,6 @@ TEST(photons_make_a_chart_of_their_own) {
   assert_true(above >= 2); /* and the legend's, which stands inside */
   assert_true(upper[0].x < upper[1].x && upper[0].y < upper[1].y); /* more photons, less error */
   assert_int_equal(find_marks(one, m), 1);
-  free(both);
-  free(one);
 }
 
 TEST(nothing_is_refused) {

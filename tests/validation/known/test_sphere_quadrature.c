@@ -254,7 +254,7 @@ TEST(nothing_is_made) {
 }
 
 TEST(white_light_is_the_sum_of_its_bands) {
-  abbe_material_table table = {0};
+  OWNED(abbe_material_table, table) = {0};
   const abbe_material *flint = NULL;
   const abbe_illuminant d65 = {0};
   OK(abbe_material_table_load(NULL, &table, &error));
@@ -274,7 +274,6 @@ TEST(white_light_is_the_sum_of_its_bands) {
   assert_near(white[0][1], 5 * ABBE_PI * 0.04 * 0.04, 1e-12);
   assert_near(white[0][0] / white[0][1], 0.95043, 2e-4); /* D65 [CIE15] */
   assert_near(white[0][2] / white[0][1], 1.08880, 5e-4);
-  abbe_material_table_free(&table);
 }
 
 /* ---- wrong use ---- */

@@ -15,10 +15,9 @@ static const abbe_estimator_point *find(const abbe_estimator_study *s, abbe_esti
 }
 
 static void study(const char *text, abbe_estimator_study *out) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(text, &scene);
   OK(abbe_estimator_study_make(&scene, 256, 64, out, &error));
-  abbe_scene_free(&scene);
 }
 
 TEST(a_ball_over_a_floor) {

@@ -24,7 +24,7 @@ static void make(const char *text, size_t side, size_t grid, abbe_scene *scene,
 
 /* A pane shifts a ray sideways by h sin(a) (1 - cos a / (n cos b)), and does not turn it. */
 TEST(a_pane_shifts) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_landing_rays r;
   make(CAMERA POINT_LIGHT FLOOR PANE, 64, 64, &scene, &r);
   assert_true(r.count > 20);
@@ -42,12 +42,11 @@ TEST(a_pane_shifts) {
     assert_false(ray->reflected);
   }
   abbe_landing_rays_free(&r);
-  abbe_scene_free(&scene);
 }
 
 /* Off a flat mirror light comes as from the lamp's image. */
 TEST(a_mirror_has_the_lamps_image) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_landing_rays r;
   make(CAMERA POINT_LIGHT FLOOR STEEP, 64, 256, &scene, &r);
   assert_true(r.count > 20);
@@ -64,12 +63,11 @@ TEST(a_mirror_has_the_lamps_image) {
     assert_near(abbe_vector_length(across), 0, 1e-9);
   }
   abbe_landing_rays_free(&r);
-  abbe_scene_free(&scene);
 }
 
 /* The texture holds what exact lookups see at its texels' middles, and at their sides nearly. */
 TEST(lookups_agree) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_landing_rays r;
   make(CAMERA SUN FLOOR HILL BALL("crown"), 128, 32, &scene, &r);
   size_t seen = 0;
@@ -91,11 +89,10 @@ TEST(lookups_agree) {
   assert_false(abbe_landing_rays_look(&r, aside, found));
   assert_false(abbe_landing_rays_look_exactly(&r, aside, found));
   abbe_landing_rays_free(&r);
-  abbe_scene_free(&scene);
 }
 
 TEST(what_is_refused) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_landing_rays r;
   load_text(CAMERA POINT_LIGHT FLOOR, &scene);
   REFUSED(ABBE_UNSUPPORTED, "refractors and mirrors",
@@ -105,5 +102,4 @@ TEST(what_is_refused) {
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_landing_rays_make(&scene, 1, 550, 64, 64, &r, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_landing_rays_make(&scene, 0, 550, 0, 64, &r, &error));
   abbe_landing_rays_free(&r);
-  abbe_scene_free(&scene);
 }

@@ -66,7 +66,7 @@ static void check_rays(const abbe_haze_grid *g, const abbe_haze_photon *photon, 
 TEST(a_gather_finds_what_is_there) {
   static const double sizes[][3] = {{1, 1, 1}, {1, 0.02, 0.4}, {0.7, 0, 0.7}};
   static const float radii[] = {0.05f, 0.004f, 0.2f};
-  abbe_haze_photon *photon = malloc(COUNT * sizeof *photon);
+  FREED abbe_haze_photon *photon = malloc(COUNT * sizeof *photon);
   assert_non_null(photon);
   abbe_haze_grid grid = {0};
   for (size_t i = 0; i < 3; i++) {
@@ -75,7 +75,6 @@ TEST(a_gather_finds_what_is_there) {
     check_rays(&grid, photon, i == 1 ? 0.03f : radii[i]); /* wider than it was made for, too */
   }
   abbe_haze_grid_free(&grid);
-  free(photon);
 }
 
 TEST(none_and_all_in_one_place) {

@@ -56,7 +56,7 @@ static void finish(void) {
 GROUP(begin, finish);
 
 TEST(without_a_bound) {
-  abbe_image picture;
+  OWNED(abbe_image, picture);
   abbe_bounded_trace_desc desc = describe(4, false, 0);
   abbe_bounded_trace t = make(&desc, &picture);
   assert_int_equal(t.passes, 4);
@@ -72,12 +72,11 @@ TEST(without_a_bound) {
   t = make(&desc, &picture);
   assert_true(isnan(t.own.estimate)); /* nobody asked, and it takes another filter's run */
   check_picture(&desc, 2, &picture);
-  abbe_image_free(&picture);
 }
 
 TEST(until_it_is_kept) {
   for (int filtered = 0; filtered < 2; filtered++) {
-    abbe_image picture;
+    OWNED(abbe_image, picture);
     abbe_bounded_trace_desc desc = describe(2, filtered, 1000);
     abbe_bounded_trace t = make(&desc, &picture);
     assert_int_equal(t.passes, filtered ? 4 : 2);
@@ -95,7 +94,6 @@ TEST(until_it_is_kept) {
     t = make(&desc, &picture);
     assert_int_equal(t.passes, filtered ? 4 : 2);
     assert_true(t.own.bound > desc.max_error);
-    abbe_image_free(&picture);
   }
 }
 

@@ -61,12 +61,11 @@ TEST(a_bad_picture) {
   assert_true(c.given.bound > 2);
   if (!(c.traced.bound <= 2)) fail_msg("%zu passes: %g of their own", c.passes, c.traced.bound);
   /* The passes are the tracer's own, to the bit. */
-  abbe_image own;
+  OWNED(abbe_image, own);
   abbe_tracer *tracer = make_tracer(&scene, &trace);
   run_passes(tracer, c.passes);
   OK(abbe_tracer_picture(tracer, &own, &error));
   check_same_image(&own, &traced);
-  abbe_image_free(&own);
   abbe_tracer_free(tracer);
   abbe_image_free(&traced);
   abbe_image_free(&picture);

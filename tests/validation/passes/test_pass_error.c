@@ -83,19 +83,17 @@ static abbe_image blur(const abbe_image *in) {
 
 /* What abbe compare says of the caustic. */
 static double true_error(const abbe_image *truth, const abbe_image *picture) {
-  abbe_field a, b;
+  OWNED(abbe_field, a);
+  OWNED(abbe_field, b);
   abbe_mask mask;
-  abbe_comparison c;
+  OWNED(abbe_comparison, c);
   const abbe_compare_options options = {.mask = &mask};
   OK(abbe_field_make(truth, "truth", &a, &error));
   OK(abbe_field_make(picture, "picture", &b, &error));
   OK(abbe_mask_make_caustic(&a, "truth", ABBE_MASK_CAUSTIC_SHARE, &mask, &error));
   OK(abbe_compare(&a, &b, &options, &c, &error));
   const double value = c.mask.metric[ABBE_COMPARE_CIEDE2000_MEAN].value;
-  abbe_comparison_free(&c);
   abbe_mask_free(&mask);
-  abbe_field_free(&a);
-  abbe_field_free(&b);
   return value;
 }
 
@@ -249,10 +247,9 @@ TEST(what_has_no_caustic) {
   p = (abbe_pass_pictures){.part = &image, .whole = &image, .part_passes = 1, .passes = 2};
   p.part_passes = 2;
   REFUSED(ABBE_INVALID_ARGUMENT, "2 of 2 passes", abbe_pass_error_make(&p, &own, &error));
-  abbe_image small;
+  OWNED(abbe_image, small);
   OK(abbe_image_make(8, 8, 6, channels, &small, &error));
   p = (abbe_pass_pictures){.part = &small, .whole = &image, .part_passes = 1, .passes = 2};
   REFUSED(ABBE_INVALID_ARGUMENT, "differ in size", abbe_pass_error_make(&p, &own, &error));
-  abbe_image_free(&small);
   abbe_image_free(&image);
 }

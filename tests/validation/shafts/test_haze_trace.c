@@ -55,28 +55,26 @@ TEST(what_is_left_is_known) {
 
 TEST(zeros_change_no_bit) {
   const abbe_trace_desc desc = {.width = 16, .height = 12, .no_map = true, .photons = 1 << 13};
-  abbe_image clear, zero;
+  OWNED(abbe_image, clear);
+  OWNED(abbe_image, zero);
   trace(CAMERA POINT_LIGHT FLOOR BALL("murk"), &desc, 2, &clear, NULL);
   trace(CAMERA POINT_LIGHT MIST("0") FLOOR
         "- {name: ball, shape: sphere, radius: 0.08, levels: 4, transform: [{translate: [0, 0, "
         "0.2]}], material: murk, medium: {scattering: 0, g: 0.5}}\n",
         &desc, 2, &zero, NULL);
   check_same_image(&clear, &zero);
-  abbe_image_free(&clear);
-  abbe_image_free(&zero);
 }
 
 TEST(threads_change_no_bit) {
   static const char text[] = CAMERA POINT_LIGHT MIST("[[400, 3], [700, 1]]") FLOOR BALL("crown");
   abbe_trace_desc desc = {
       .width = 16, .height = 12, .no_map = true, .photons = 1 << 15, .threads = 1};
-  abbe_image one, three;
+  OWNED(abbe_image, one);
+  OWNED(abbe_image, three);
   trace(text, &desc, 2, &one, NULL);
   desc.threads = 3;
   trace(text, &desc, 2, &three, NULL);
   check_same_image(&one, &three);
-  abbe_image_free(&one);
-  abbe_image_free(&three);
 }
 
 /* Mist under a plate of air's index, which hides the lamp: photons bring what came straight
@@ -96,11 +94,10 @@ TEST(photons_bring_what_came_straight) {
   static const char *const scenes[] = {VIEW, VIEW ROOF, VIEW ROOF PANE};
   double sum[3];
   for (int i = 0; i < 3; i++) {
-    abbe_image picture;
+    OWNED(abbe_image, picture);
     const abbe_trace_desc desc = {.width = 8, .height = 8, .no_map = true, .photons = 1 << 16};
     trace(scenes[i], &desc, 4, &picture, NULL);
     sum[i] = channel_sum(&picture, "G");
-    abbe_image_free(&picture);
   }
   assert_true(sum[0] > 0);
   assert_near(sum[1] / sum[0], 1, 0.02);

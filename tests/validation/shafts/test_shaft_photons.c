@@ -60,7 +60,7 @@ TEST(a_beam_is_seen_as_bright_as_it_is) {
   const double lambda_nm[STEPS + 1] = {500, 550, 600};
   for (int wall = 0; wall < 2; wall++) {
     char text[1024];
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     abbe_geometry g;
     abbe_media m;
     abbe_trace_camera camera;
@@ -74,7 +74,7 @@ TEST(a_beam_is_seen_as_bright_as_it_is) {
     OK(abbe_geometry_make(&scene, &g, &error));
     OK(abbe_media_make(&g, lambda_nm, STEPS, &m, &error));
     abbe_trace_camera_make(&g, 1, 1, &camera);
-    abbe_shaft_photons *s = aligned_alloc(64, (sizeof *s + 63) / 64 * 64);
+    FREED abbe_shaft_photons *s = aligned_alloc(64, (sizeof *s + 63) / 64 * 64);
     memset(s, 0, sizeof *s);
     s->geometry = &g;
     s->haze = &m.haze;
@@ -111,9 +111,7 @@ TEST(a_beam_is_seen_as_bright_as_it_is) {
     shine(s, &g, 1.4);
     assert_int_equal(s->count, before);
     abbe_shaft_photons_free(s);
-    free(s);
     abbe_media_free(&m);
     abbe_geometry_free(&g);
-    abbe_scene_free(&scene);
   }
 }

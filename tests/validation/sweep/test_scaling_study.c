@@ -31,7 +31,7 @@ static bool never(void *user, double done) {
 }
 
 TEST(all_axes) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_scaling_study g;
   load_text(SCENE, &scene);
   unsigned long long before = abbe_sweep_hash_scene(&scene);
@@ -66,5 +66,4 @@ TEST(all_axes) {
   free(text);
   unlink(path);
   rmdir(folder);
-  abbe_scene_free(&scene);
 }

@@ -22,7 +22,7 @@ static size_t expand(const abbe_scene *scene, const abbe_sweep_grid *grids, size
 }
 
 TEST(grids_hold_each_setting_once) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_sweep_setting *list;
   size_t refused;
   load_text(CAMERA SPOT FLOOR BALL("crown"), &scene);
@@ -42,13 +42,12 @@ TEST(grids_hold_each_setting_once) {
     for (size_t k = 0; k < i; k++) assert_false(abbe_sweep_setting_same(&list[i], &list[k]));
     /* A setting's request resolves to itself. */
     abbe_render_desc desc;
-    abbe_plan plan;
+    OWNED(abbe_plan, plan);
     abbe_sweep_setting again;
     OK(abbe_sweep_setting_desc(&list[i], &desc, &error));
     OK(abbe_plan_make(&scene, &desc, &plan, &error));
     abbe_sweep_setting_of(&plan.desc, &again);
     assert_true(abbe_sweep_setting_same(&list[i], &again));
-    abbe_plan_free(&plan);
   }
   free(list);
   /* Samples and exits are without effect in the thesis profile: one setting. */
@@ -113,7 +112,6 @@ TEST(grids_hold_each_setting_once) {
     free(list);
   }
   abbe_sweep_grids_free(&grids_of_file);
-  abbe_scene_free(&scene);
 }
 
 /* Presets join the scenes of a class by setting, whatever exits their own plans take. */
@@ -143,7 +141,7 @@ TEST(the_thin_grid_is_the_same_for_every_convex_solid) {
 }
 
 TEST(what_a_profile_does_not_know_is_left_out) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_sweep_setting *list;
   size_t refused, count;
   load_text(CAMERA SUN FLOOR BALL("crown"), &scene);
@@ -155,7 +153,6 @@ TEST(what_a_profile_does_not_know_is_left_out) {
   REFUSED(ABBE_INVALID_ARGUMENT, "'sun' is directional",
           abbe_sweep_grid_expand(&scene, &grid, 1, &list, &count, &refused, NULL, &error));
   assert_null(list);
-  abbe_scene_free(&scene);
 }
 
 TEST(files) {

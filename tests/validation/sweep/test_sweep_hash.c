@@ -13,21 +13,19 @@ TEST(hashes_tell_scenes_and_references_apart) {
                                       CAMERA SPOT FLOOR BALL("crown"), CAMERA POINT_LIGHT FLOOR};
   unsigned long long seen[4];
   for (size_t i = 0; i < 4; i++) {
-    abbe_scene scene = {0};
+    OWNED(abbe_scene, scene) = {0};
     load_text(texts[i], &scene);
     seen[i] = abbe_sweep_hash_scene(&scene);
     assert_true(seen[i] == abbe_sweep_hash_scene(&scene));
     for (size_t k = 0; k < i; k++) assert_true(seen[i] != seen[k]);
-    abbe_scene_free(&scene);
   }
   static const char *const names[] = {"Y"};
-  abbe_image a = {0}, b = {0};
+  OWNED(abbe_image, a) = {0};
+  OWNED(abbe_image, b) = {0};
   OK(abbe_image_make(4, 4, 1, names, &a, &error));
   OK(abbe_image_make(4, 4, 1, names, &b, &error));
   assert_true(abbe_sweep_hash_images(&a, &b) == abbe_sweep_hash_images(&b, &a));
   b.data[3] = 1;
   assert_true(abbe_sweep_hash_images(&a, &b) != abbe_sweep_hash_images(&b, &a));
   assert_true(abbe_sweep_hash_images(&a, NULL) != abbe_sweep_hash_images(&b, NULL));
-  abbe_image_free(&a);
-  abbe_image_free(&b);
 }

@@ -49,8 +49,9 @@ static abbe_sweep_row measure(const abbe_sweep *sweep, const abbe_sweep_setting 
 GROUP(make_context, free_context);
 
 TEST(the_same_picture_has_no_error) {
-  abbe_scene scene = {0};
-  abbe_image picture, map;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, picture);
+  OWNED(abbe_image, map);
   load_text(SCENE, &scene);
   abbe_sweep_setting setting = small_setting(&scene, ABBE_PROFILE_DEFAULT);
   own_reference(&scene, &setting, &picture, &map);
@@ -83,15 +84,13 @@ TEST(the_same_picture_has_no_error) {
   assert_near(row.number[ABBE_SWEEP_MAP_ENERGY], 0.5, 1e-6);
   sweep.map = NULL;
   assert_true(isnan(measure(&sweep, &setting).number[ABBE_SWEEP_MAP_RMSE]));
-  abbe_image_free(&picture);
-  abbe_image_free(&map);
-  abbe_scene_free(&scene);
 }
 
 /* The thesis profile against itself, but in another brightness: the best factor finds it back. */
 TEST(the_thesis_gets_its_best_brightness) {
-  abbe_scene scene = {0};
-  abbe_image picture, map;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, picture);
+  OWNED(abbe_image, map);
   load_text(CAMERA SPOT FLOOR BALL("crown"), &scene);
   abbe_sweep_setting setting = small_setting(&scene, ABBE_PROFILE_THESIS);
   own_reference(&scene, &setting, &picture, &map);
@@ -114,15 +113,13 @@ TEST(the_thesis_gets_its_best_brightness) {
   assert_near(row.number[ABBE_SWEEP_MAP_SCALE], 0, 0);
   assert_near(row.number[ABBE_SWEEP_MAP_ENERGY], 0, 0);
   assert_true(row.number[ABBE_SWEEP_MAP_RMSE] >= 1);
-  abbe_image_free(&picture);
-  abbe_image_free(&map);
-  abbe_scene_free(&scene);
 }
 
 /* The same method in physical units is judged in them, and its fill's light is counted. */
 TEST(the_method_in_units_gets_no_factor) {
-  abbe_scene scene = {0};
-  abbe_image picture, map;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, picture);
+  OWNED(abbe_image, map);
   load_text(CAMERA SPOT FLOOR BALL("crown"), &scene);
   abbe_sweep_setting setting = small_setting(&scene, ABBE_PROFILE_THESIS_CIE);
   own_reference(&scene, &setting, &picture, &map);
@@ -151,16 +148,13 @@ TEST(the_method_in_units_gets_no_factor) {
   row = measure(&sweep, &setting);
   assert_near(row.number[ABBE_SWEEP_FILL_INVENTED], 0, 1e-4);
   assert_near(row.number[ABBE_SWEEP_FILL_LOST], 0, 1e-4);
-  abbe_image_free(&picture);
-  abbe_image_free(&map);
-  abbe_scene_free(&scene);
 }
 
 /* Of a still scene the fourth frame is the mean of four grids, and stays; held against itself it
  * has no error, and the frames before have. */
 TEST(frames_come_together) {
-  abbe_scene scene = {0};
-  abbe_image picture;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, picture);
   abbe_render_desc desc;
   load_text(CAMERA SPOT FLOOR BALL("flat"), &scene);
   abbe_sweep_setting setting = small_setting(&scene, ABBE_PROFILE_DEFAULT);
@@ -185,8 +179,6 @@ TEST(frames_come_together) {
   assert_near(n[ABBE_SWEEP_AFTER_4], 0, 1e-4);
   assert_near(n[ABBE_SWEEP_AFTER_8], 0, 1e-3);
   assert_near(n[ABBE_SWEEP_CAUSTIC_DE], 0, 1e-3);
-  abbe_image_free(&picture);
-  abbe_scene_free(&scene);
 }
 
 static bool never(void *user, double done) {
@@ -197,7 +189,7 @@ static bool never(void *user, double done) {
 
 /* Against a traced reference: the numbers are there with their noise, maps of other sizes too. */
 TEST(against_a_traced_reference) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image picture, map, drawn;
   abbe_map_layout layout;
   load_text(SCENE, &scene);
@@ -249,14 +241,12 @@ TEST(against_a_traced_reference) {
   abbe_image_free(&drawn);
   abbe_image_free(&picture);
   abbe_image_free(&map);
-  abbe_scene_free(&scene);
 }
 
 TEST(a_scene_without_refractors_has_no_map) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_map_layout layout;
   load_text(CAMERA POINT_LIGHT FLOOR, &scene);
   REFUSED(ABBE_UNSUPPORTED, "no refractor",
           abbe_sweep_fit_layout(context, &scene, 0, &layout, &error));
-  abbe_scene_free(&scene);
 }

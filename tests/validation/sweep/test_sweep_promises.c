@@ -30,7 +30,7 @@ TEST(by_hand) {
   assert_true(file >= 0);
   close(file);
   OK(abbe_file_write(path, PRESETS, strlen(PRESETS), &error));
-  abbe_sweep_table t = {0};
+  OWNED(abbe_sweep_table, t) = {0};
   abbe_sweep_promises p;
   abbe_sweep_table_set(&t, ABBE_SWEEP_FACT_CLASS, "convex");
   add(&t, 64, 50, 30, 5);
@@ -56,5 +56,4 @@ TEST(by_hand) {
   abbe_sweep_promises_free(&p);
   unlink(path);
   REFUSED(ABBE_IO, "", abbe_sweep_promises_make(&t, path, &p, &error));
-  abbe_sweep_table_free(&t);
 }

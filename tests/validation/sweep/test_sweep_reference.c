@@ -23,9 +23,9 @@ TEST(names) {
 
 TEST(given_files) {
   static const char *const names[] = {"R", "G", "B"};
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_sweep_reference r;
-  abbe_image image = {0};
+  OWNED(abbe_image, image) = {0};
   abbe_error why = {0};
   size_t light = 7;
   char path[64];
@@ -45,6 +45,4 @@ TEST(given_files) {
   abbe_sweep_reference_free(&r);
   unlink(path);
   REFUSED(ABBE_IO, "", abbe_sweep_reference_load(&scene, path, NULL, &r, &light, &error));
-  abbe_image_free(&image);
-  abbe_scene_free(&scene);
 }

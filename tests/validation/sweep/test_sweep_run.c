@@ -41,9 +41,9 @@ GROUP(begin, finish);
 /* With a picture that is given: tracing one is tested through the program. */
 TEST(a_sweep_goes_on_where_it_was_stopped) {
   static const char *const names[] = {"X", "Y", "Z"};
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image image;
-  abbe_sweep_setting *setting;
+  FREED abbe_sweep_setting *setting = NULL;
   size_t count, refused, left = 0;
   char path[96], picture[96];
   snprintf(path, sizeof path, "%s/s.csv", folder);
@@ -85,12 +85,10 @@ TEST(a_sweep_goes_on_where_it_was_stopped) {
   q.program = "abbe other";
   REFUSED(ABBE_INVALID_ARGUMENT, "were measured with the program 'abbe test'",
           abbe_sweep_run(context, &scene, &q, &t, &error));
-  free(setting);
-  abbe_scene_free(&scene);
 }
 
 TEST(settings_of_presets) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_sweep_setting *setting;
   size_t count;
   load_text(SCENE, &scene);
@@ -102,5 +100,4 @@ TEST(settings_of_presets) {
   load_text(CAMERA POINT_LIGHT FLOOR, &scene);
   REFUSED(ABBE_UNSUPPORTED, "", abbe_sweep_preset_settings(&scene, NULL, &setting, &count, &error));
   assert_null(setting);
-  abbe_scene_free(&scene);
 }

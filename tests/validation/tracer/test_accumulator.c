@@ -248,13 +248,12 @@ TEST(small_numbers_are_not_lost) {
 }
 
 TEST(what_cannot_be_kept_is_refused) {
-  abbe_accumulator a;
+  OWNED(abbe_accumulator, a);
   const double most[] = {0, -1, NAN, INFINITY, 1e101, 1e-101};
   for (int i = 0; i < 6; i++) {
     REFUSED(ABBE_INVALID_ARGUMENT, "positive", abbe_accumulator_make(1, 1, most[i], &a, &error));
   }
   assert_int_equal(abbe_accumulator_make(0, 1, 1, &a, NULL), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_accumulator_make(1, 0, 1, &a, NULL), ABBE_INVALID_ARGUMENT);
-  abbe_accumulator_free(&a);
   abbe_accumulator_free(NULL);
 }

@@ -17,35 +17,33 @@ static double band_at(const abbe_image *image, const char *prefix, double middle
 /* A grey floor in even light: half of 1 W/(m2 sr), over 400 nm. */
 TEST(a_lit_floor_is_even) {
   static const size_t counts[] = {1, 20, 80, 160, 256};
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA EVEN_SUN FLOOR, &scene);
   for (size_t c = 0; c < 5; c++) {
     const abbe_trace_desc desc = {
         .no_map = true, .width = 3, .height = 3, .photons = 256, .threads = 1, .bands = counts[c]};
     abbe_tracer *tracer = make_tracer(&scene, &desc);
-    abbe_image picture;
+    OWNED(abbe_image, picture);
     run_passes(tracer, 2);
     OK(abbe_tracer_picture(tracer, &picture, &error));
     for (size_t i = 0; i < counts[c]; i++) {
       const double middle = 380 + 400 * ((double)i + 0.5) / (double)counts[c];
       assert_near(band_at(&picture, "", middle, 4), 0.00125, 1e-5 * 0.00125);
     }
-    abbe_image_free(&picture);
     abbe_tracer_free(tracer);
   }
-  abbe_scene_free(&scene);
 }
 
 /* All that photons bring through a ball without dispersion. Its mean over bands is what each has,
  * and no band is farther off than errors of so many bands may be. */
 TEST(photons_are_even) {
   enum { BANDS = 160, PASSES = 48 };
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA EVEN_SUN FLOOR BALL("flat"), &scene);
   const abbe_trace_desc desc = {
       .no_picture = true, .map_width = 1, .photons = 1 << 14, .threads = 1, .bands = BANDS};
   abbe_tracer *tracer = make_tracer(&scene, &desc);
-  abbe_image map;
+  OWNED(abbe_image, map);
   double mean = 0, squares = 0, greatest = 0;
   run_passes(tracer, PASSES);
   assert_int_equal(abbe_tracer_map(tracer, &map, NULL), ABBE_OK);
@@ -59,7 +57,5 @@ TEST(photons_are_even) {
   }
   print_message("%d bands: mean of z^2 %.2f, greatest |z| %.2f\n", BANDS, squares, greatest);
   assert_true(squares < 1.5 && greatest < 5);
-  abbe_image_free(&map);
   abbe_tracer_free(tracer);
-  abbe_scene_free(&scene);
 }

@@ -29,10 +29,9 @@ static void setup(void) {
   abbe_trace_desc fitted = small;
   fitted.layout = NULL;
   abbe_tracer *tracer = make_tracer(&scene, &fitted);
-  abbe_image map;
+  OWNED(abbe_image, map);
   OK(abbe_tracer_map(tracer, &map, &error));
   OK(abbe_map_layout_read(&map, "map", &layout, &error));
-  abbe_image_free(&map);
   abbe_tracer_free(tracer);
 }
 
@@ -197,10 +196,9 @@ TEST(another_scene_is_told) {
   static const char *const others[] = {SCENE(HILL), CAMERA POINT_LIGHT FLOOR BEADS("flat"),
                                        CAMERA SUN FLOOR BEADS("crown")};
   for (int i = 0; i < 3; i++) {
-    abbe_scene other;
+    OWNED(abbe_scene, other);
     load_text(others[i], &other);
     check_refused(&other, &small, ABBE_INVALID_ARGUMENT, "another scene");
-    abbe_scene_free(&other);
   }
 }
 
@@ -261,10 +259,10 @@ TEST(axes_and_edges_are_part_of_the_scene) {
 
 TEST(broken_files_are_told) {
   save(&small, 2);
-  char *data = NULL;
+  FREED char *data = NULL;
   size_t size = 0;
   OK(abbe_file_read(path, 1 << 24, &data, &size, &error));
-  char *broken = malloc(size + 8);
+  FREED char *broken = malloc(size + 8);
   assert_non_null(broken);
   abbe_error why;
   abbe_tracer *tracer = make_tracer(&scene, &small);
@@ -289,8 +287,6 @@ TEST(broken_files_are_told) {
     assert_contains(why.text, path);
   }
   assert_int_equal(abbe_tracer_passes(tracer), 0);
-  free(broken);
-  free(data);
   abbe_tracer_free(tracer);
 }
 

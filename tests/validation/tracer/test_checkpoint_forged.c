@@ -49,7 +49,7 @@ TEST(forged_numbers_are_told) {
   abbe_error why = {0};
   abbe_tracer *tracer = make_tracer(&scene, &small);
   size_t size = 0;
-  char *data = saved(2, &size);
+  FREED char *data = saved(2, &size);
   write_forged(data, size);
   OK(abbe_checkpoint_load(tracer, path, &error));
   abbe_tracer_free(tracer);
@@ -83,7 +83,6 @@ TEST(forged_numbers_are_told) {
     REFUSED(ABBE_PARSE, "", abbe_checkpoint_load(tracer, path, &error));
     assert_int_equal(abbe_tracer_passes(tracer), 0);
   }
-  free(data);
   abbe_tracer_free(tracer);
 }
 
@@ -92,7 +91,7 @@ TEST(other_instructions_are_told) {
   abbe_tracer *tracer = make_tracer(&scene, &small);
   char ours[64];
   size_t size = 0;
-  char *data = saved(1, &size);
+  FREED char *data = saved(1, &size);
   char *const line = strstr(data, "instructions ");
   assert_non_null(line);
   snprintf(ours, sizeof ours, "%.*s", (int)strcspn(line, "\n"), line);
@@ -103,6 +102,5 @@ TEST(other_instructions_are_told) {
   const char *const paths[] = {path};
   REFUSED(ABBE_INVALID_ARGUMENT, "put parts together",
           abbe_checkpoint_merge(tracer, paths, 1, NULL, &error));
-  free(data);
   abbe_tracer_free(tracer);
 }

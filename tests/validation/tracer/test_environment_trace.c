@@ -100,14 +100,13 @@ TEST(a_convex_body_meets_pi_times_its_surface) {
   for (size_t i = 0; i < 2; i++) {
     char text[2048];
     fixture f;
-    abbe_image picture;
+    OWNED(abbe_image, picture);
     snprintf(text, sizeof text, CAMERA POINT_LIGHT FAR_SPECK "%s", cases[i].body);
     make(text, uniform, &f);
     trace(&f, 1 << 14, 32, &picture);
     abbe_trace_statistics s;
     abbe_tracer_statistics(f.tracer, &s);
     assert_near(s.ledger.reached / (ABBE_PI * 2 * cases[i].surface), 1, 2e-3);
-    abbe_image_free(&picture);
     drop(&f);
   }
 }
@@ -149,7 +148,7 @@ TEST(photons_find_a_grain_beside_a_boulder) {
 /* Through clear glass every ray ends in the same light: no pixel shows the glass. */
 TEST(clear_glass_is_not_seen_in_uniform_light) {
   fixture f;
-  abbe_image picture;
+  OWNED(abbe_image, picture);
   make(CAMERA POINT_LIGHT FAR_SPECK "- {name: stone, shape: brilliant, diameter: 0.3, transform: "
                                     "[{translate: [0, 0, 0.2]}], material: crown}\n",
        uniform, &f);
@@ -160,14 +159,14 @@ TEST(clear_glass_is_not_seen_in_uniform_light) {
   assert_near(sum / (48 * 48) / 2, 1, 2e-3);
   /* where only sky shows it is exact */
   assert_near(luminance(&picture, 1, 1), 2, 1e-3);
-  abbe_image_free(&picture);
   drop(&f);
 }
 
 /* What it covers alone is in a transparent picture, and what is behind it through it. */
 TEST(a_transparent_picture_is_premultiplied) {
   fixture f;
-  abbe_image picture, alpha;
+  OWNED(abbe_image, picture);
+  OWNED(abbe_image, alpha);
   make("materials: glass.yaml\ncamera: {frame: [stone], fov: 30}\n" POINT_LIGHT "objects:\n"
        "- {name: grain, shape: rectangle, width: 0.01, height: 0.01, reflectance: 0.5,\n"
        "   centre: [0, 2.5, -4.33]}\n"
@@ -186,14 +185,12 @@ TEST(a_transparent_picture_is_premultiplied) {
   assert_near(luminance(&picture, 1, 1), 0, 0);
   assert_true(covered > 100);
   assert_near(sum / covered / 2, 1, 1e-2);
-  abbe_image_free(&alpha);
-  abbe_image_free(&picture);
   drop(&f);
 }
 
 TEST(a_whole_mirror_is_not_seen_in_uniform_light) {
   fixture f;
-  abbe_image picture;
+  OWNED(abbe_image, picture);
   make(CAMERA POINT_LIGHT FAR_SPECK
        "- {name: ring, shape: ring, major: 0.15, minor: 0.05, around: 32, across: 16, transform: "
        "[{translate: [0, 0, 0.1]}], mirror: 1}\n",
@@ -201,20 +198,18 @@ TEST(a_whole_mirror_is_not_seen_in_uniform_light) {
   trace(&f, 1024, 4, &picture);
   for (size_t y = 0; y < 48; y++)
     for (size_t x = 0; x < 48; x++) assert_near(luminance(&picture, x, y), 2, 2e-3);
-  abbe_image_free(&picture);
   drop(&f);
 }
 
 static void check_floor(radiance_of radiance, double irradiance) {
   fixture f;
-  abbe_image picture;
+  OWNED(abbe_image, picture);
   make(CAMERA POINT_LIGHT FLOOR, radiance, &f);
   trace(&f, 1024, 16, &picture);
   double sum = 0;
   for (size_t y = 24; y < 48; y++)
     for (size_t x = 0; x < 48; x++) sum += luminance(&picture, x, y) / (24 * 48);
   assert_near(sum / (0.5 * irradiance / ABBE_PI), 1, 5e-3);
-  abbe_image_free(&picture);
   drop(&f);
 }
 
@@ -267,7 +262,7 @@ static double from_below(const double d[3]) {
 TEST(what_is_not_seen_takes_nothing_away) {
   for (int power = 0; power <= 12; power += 3) {
     fixture f;
-    abbe_image picture;
+    OWNED(abbe_image, picture);
     beam = pow(10, power);
     make_fine("materials: glass.yaml\nambient: 0.15\ncamera: {eye: [0, 0, 1], target: [0, 0, 0], "
               "up: [0, 1, 0], fov: 20}\n" POINT_LIGHT FLOOR,
@@ -277,7 +272,6 @@ TEST(what_is_not_seen_takes_nothing_away) {
       assert_near(luminance(&picture, x, 20), 0.15 * 0.5 / ABBE_PI, 1e-6);
       assert_near(channel(&picture, "stderr.G", x, 20), 0, 1e-6);
     }
-    abbe_image_free(&picture);
     drop(&f);
   }
 }
@@ -285,7 +279,7 @@ TEST(what_is_not_seen_takes_nothing_away) {
 /* What no sums can hold together is told. */
 TEST(lights_too_far_apart_are_told) {
   fixture f;
-  abbe_image picture;
+  OWNED(abbe_image, picture);
   abbe_trace_statistics s;
   beam = 1e12;
   make_fine("materials: glass.yaml\nambient: 1e-9\ncamera: {eye: [0, 0, 1], target: [0, 0, 0], up: "
@@ -295,7 +289,6 @@ TEST(lights_too_far_apart_are_told) {
   abbe_tracer_statistics(f.tracer, &s);
   assert_true(s.faintest < ABBE_TRACER_FAINTEST);
   assert_near(s.faintest * f.scene.environment->luminance / 1e-9, 1, 1e-12);
-  abbe_image_free(&picture);
   drop(&f);
 }
 
@@ -311,7 +304,7 @@ TEST(photons_are_for_what_shows_them) {
   for (size_t i = 0; i < 3; i++) {
     char text[2048];
     fixture f;
-    abbe_image picture;
+    OWNED(abbe_image, picture);
     snprintf(text, sizeof text,
              CAMERA POINT_LIGHT
              "objects:\n- {name: stone, shape: brilliant, diameter: 0.3, "
@@ -331,7 +324,6 @@ TEST(photons_are_for_what_shows_them) {
         for (size_t x = 0; x < 48; x++) sum += luminance(&picture, x, y) / (48 * 48);
       assert_near(sum, 2, 5e-3);
     }
-    abbe_image_free(&picture);
     drop(&f);
   }
 }
@@ -339,7 +331,7 @@ TEST(photons_are_for_what_shows_them) {
 /* What a clear ball takes from the speck below it, it brings back: as much light falls on it. */
 TEST(a_clear_ball_takes_nothing_away) {
   fixture f;
-  abbe_image picture;
+  OWNED(abbe_image, picture);
   make(CAMERA POINT_LIGHT SPECK "- {name: ball, shape: sphere, radius: 0.08, levels: 2, transform: "
                                 "[{translate: [0, 0, 0.1]}], material: crown}\n",
        uniform, &f);
@@ -356,7 +348,6 @@ TEST(a_clear_ball_takes_nothing_away) {
     }
   assert_true(caustic > 0.3); /* of 1 */
   assert_near(sum, 1, 1.5e-2);
-  abbe_image_free(&picture);
   drop(&f);
 }
 
@@ -415,15 +406,14 @@ TEST(turning_all_changes_nothing) {
 /* The same paths, of twice the light. */
 TEST(light_is_linear) {
   static const double eye[3] = {0.2, -1, 0.5};
-  abbe_image once, twice;
+  OWNED(abbe_image, once);
+  OWNED(abbe_image, twice);
   draw_stone("0", eye, half_sky, &once);
   draw_stone("0", eye, doubled, &twice);
   for (size_t y = 0; y < 48; y++)
     for (size_t x = 0; x < 48; x++)
       assert_near(channel(&twice, "G", x, y), 2 * channel(&once, "G", x, y),
                   1e-3 * channel(&once, "G", x, y) + 1e-4);
-  abbe_image_free(&once);
-  abbe_image_free(&twice);
 }
 
 /* In the shipped scenes of surroundings and mirrors no light is made or lost. */
@@ -431,7 +421,7 @@ TEST(the_ledger_closes) {
   static const char *const names[] = {"metal-ring", "metal-ball",   "spoon",         "metals",
                                       "octahedra",  "glass-studio", "diamond-studio"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i += SANITIZED ? 3 : 1) {
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     load_shipped(names[i], &scene);
     const abbe_trace_desc desc = {
         .no_map = true, .width = 4, .height = 4, .photons = 30000, .threads = 2};
@@ -447,6 +437,5 @@ TEST(the_ledger_closes) {
     assert_near(all / l->reached, 1, 1e-4);
     assert_true(l->lost < 1e-4 * l->reached);
     abbe_tracer_free(tracer);
-    abbe_scene_free(&scene);
   }
 }

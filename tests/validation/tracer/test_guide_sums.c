@@ -33,7 +33,7 @@ static void drop(traced *r) {
 /* Photons and the eye's light make the picture, their variances those of the caustic and the rest
  * where no glass is seen; a floor's guides are the floor's. Nothing else changes by them. */
 TEST(guides_are_of_the_picture) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text("materials: glass.yaml\ncamera: {eye: [0, -0.5, 0.35], target: [0, 0, 0.05], fov: "
             "50}\n" POINT_LIGHT FLOOR BEADS("crown"),
             &scene);
@@ -70,14 +70,13 @@ TEST(guides_are_of_the_picture) {
   assert_near((double)*layer(&with.picture, "depth.Z", corner), 0.42, 0.1);
   drop(&plain);
   drop(&with);
-  abbe_scene_free(&scene);
 }
 
 /* Variances and covariances of the mean of three passes, by hand. */
 TEST(sums_tell_covariances) {
   static const float rgb[3][3] = {{5, 1, 2}, {3, 2, 4}, {4, 6, 0}},
                      eye[3][3] = {{1, 1, 1}, {1, 1, 2}, {1, 4, 0}};
-  abbe_accumulator picture;
+  OWNED(abbe_accumulator, picture);
   abbe_guide_sums g;
   OK(abbe_accumulator_make(3, 2, 1e6, &picture, &error));
   OK(abbe_guide_sums_make(1, picture.unit, &g, &error));
@@ -100,5 +99,4 @@ TEST(sums_tell_covariances) {
   assert_near(abbe_guide_sums_covariance(&g, 3, 0, 2), -1 * unit, 1e-6); /* GB */
   assert_near(abbe_guide_sums_covariance(&g, 3, 0, 5), -3 * unit, 1e-6); /* the eye's GB */
   abbe_guide_sums_free(&g);
-  abbe_accumulator_free(&picture);
 }

@@ -21,7 +21,7 @@ static void assert_same(const abbe_image *a, const abbe_image *b) {
 
 TEST(stopped_and_taken_up_is_the_same) {
   char folder[] = "/tmp/abbe-test-reference-XXXXXX", path[64];
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image whole[2], parts[2];
   int calls = 0;
   assert_non_null(mkdtemp(folder));
@@ -46,12 +46,11 @@ TEST(stopped_and_taken_up_is_the_same) {
   /* It stays until the caller has put away what was given; besides it nothing is left. */
   assert_int_equal(unlink(path), 0);
   assert_int_equal(rmdir(folder), 0);
-  abbe_scene_free(&scene);
 }
 
 TEST(a_checkpoint_of_another_request_is_refused) {
   char folder[] = "/tmp/abbe-test-reference-XXXXXX", path[64];
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image picture, map;
   int calls = 0;
   assert_non_null(mkdtemp(folder));
@@ -65,11 +64,10 @@ TEST(a_checkpoint_of_another_request_is_refused) {
   assert_null(map.data);
   unlink(path);
   rmdir(folder);
-  abbe_scene_free(&scene);
 }
 
 TEST(a_part_that_is_left_out) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image picture, map;
   load_text(SCENE, &scene);
   abbe_reference_desc desc = {.trace = small, .passes = 2};
@@ -78,5 +76,4 @@ TEST(a_part_that_is_left_out) {
   assert_null(picture.data);
   assert_int_equal(map.width, 16);
   abbe_image_free(&map);
-  abbe_scene_free(&scene);
 }

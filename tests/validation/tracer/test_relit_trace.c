@@ -19,7 +19,7 @@ static const char SCENE[] =
 
 static void trace(const char *illuminant, size_t bands, abbe_image *out) {
   char text[1200];
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_tracer *tracer = NULL;
   snprintf(text, sizeof text, SCENE, illuminant);
   load_text(text, &scene);
@@ -34,7 +34,6 @@ static void trace(const char *illuminant, size_t bands, abbe_image *out) {
   for (int i = 0; i < PASSES; i++) OK(abbe_tracer_pass(tracer, NULL, &error));
   OK(abbe_tracer_picture(tracer, out, &error));
   abbe_tracer_free(tracer);
-  abbe_scene_free(&scene);
 }
 
 /* XYZ over the picture, and the standard errors that the file states, as of independent pixels. */

@@ -24,7 +24,7 @@ static bool look(void *user, double done) {
 }
 
 TEST(what_ends_a_run) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(SCENE, &scene);
   abbe_tracer *t = make_tracer(&scene, &small);
   watch w = {.left = 2};
@@ -47,11 +47,10 @@ TEST(what_ends_a_run) {
   OK(abbe_trace_run(t, &run, &error));
   assert_int_equal(abbe_tracer_passes(t), 4);
   abbe_tracer_free(t);
-  abbe_scene_free(&scene);
 }
 
 TEST(checkpoints) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   char path[64];
   snprintf(path, sizeof path, "/tmp/abbe_test_trace_run_%ld", (long)getpid());
   load_text(SCENE, &scene);
@@ -68,16 +67,15 @@ TEST(checkpoints) {
   REFUSED(ABBE_IO, "", abbe_trace_run(t, &run, &error));
   abbe_tracer_free(t);
   abbe_tracer_free(again);
-  abbe_scene_free(&scene);
 }
 
 /* Whoever asks for an end has it before another ray is traced, whatever is being made. */
 TEST(an_end_is_heard_everywhere) {
   volatile int stop = 0;
   abbe_trace_desc desc = small;
-  abbe_image image;
+  OWNED(abbe_image, image);
   abbe_tracer *tracer = NULL;
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(SCENE, &scene);
   desc.stop = &stop;
   tracer = make_tracer(&scene, &desc);
@@ -94,7 +92,5 @@ TEST(an_end_is_heard_everywhere) {
   assert_null(other);
   stop = 0;
   OK(abbe_tracer_picture(tracer, &image, &error));
-  abbe_image_free(&image);
   abbe_tracer_free(tracer);
-  abbe_scene_free(&scene);
 }

@@ -43,7 +43,7 @@ static traced trace(const abbe_scene *scene, const abbe_trace_desc *desc, size_t
 
 /* Photons come in tasks of 16384: several of them, so that threads have something to share. */
 TEST(threads_do_not_matter_and_the_seed_does) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CLOSE TWO_LIGHTS FLOOR BEADS("smoke"), &scene);
   abbe_trace_desc desc = small;
   desc.photons = 36000;
@@ -64,43 +64,39 @@ TEST(threads_do_not_matter_and_the_seed_does) {
   assert_string_equal(abbe_image_attribute_text(&other.map, "abbe:seed"), "1");
   drop(&other);
   drop(&one);
-  abbe_scene_free(&scene);
 }
 
 /* The caller's arithmetic is as it was: numbers below 2^-126 are still numbers. */
 /* Maps of two seeds can be compared: their texels lie alike. */
 TEST(the_layout_does_not_hang_on_the_seed) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA POINT_LIGHT FLOOR BEADS("crown"), &scene);
   abbe_map_layout layout[2];
   for (uint32_t seed = 0; seed < 2; seed++) {
     abbe_trace_desc desc = {.no_picture = true, .map_width = 16, .photons = 1000, .seed = seed};
     abbe_tracer *tracer = make_tracer(&scene, &desc);
     run_passes(tracer, 1);
-    abbe_image map;
+    OWNED(abbe_image, map);
     OK(abbe_tracer_map(tracer, &map, &error));
     OK(abbe_map_layout_read(&map, "map", &layout[seed], &error));
-    abbe_image_free(&map);
     abbe_tracer_free(tracer);
   }
   assert_true(abbe_map_layout_same(&layout[0], &layout[1]));
-  abbe_scene_free(&scene);
 }
 
 TEST(tiny_numbers_are_left_to_the_caller) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CLOSE POINT_LIGHT FLOOR, &scene);
   traced r = trace(&scene, &small, 1);
   volatile float tiny = 0x1p-126f;
   tiny *= 0.5f;
   assert_true(tiny > 0);
   drop(&r);
-  abbe_scene_free(&scene);
 }
 
 /* A pass that is stopped is forgotten: the next ones give what they would have given. */
 TEST(a_stopped_pass_is_forgotten) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CLOSE POINT_LIGHT FLOOR BEADS("crown"), &scene);
   traced whole = trace(&scene, &small, 3);
   abbe_tracer *tracer = make_tracer(&scene, &small);
@@ -122,7 +118,6 @@ TEST(a_stopped_pass_is_forgotten) {
   abbe_tracer_free(tracer);
   drop(&whole);
   drop(&broken);
-  abbe_scene_free(&scene);
 }
 
 /* Over independent seeds the means spread as their standard errors say. The ratio of the two
@@ -130,7 +125,7 @@ TEST(a_stopped_pass_is_forgotten) {
  * values that are independent, and the tolerance is four of them for a third of the values. */
 TEST(standard_errors_are_honest) {
   enum { SEEDS = 10, VALUES = 16 };
-  abbe_scene scene;
+  OWNED(abbe_scene, scene) = {0};
   load_text(CLOSE POINT_LIGHT FLOOR BEADS("crown"), &scene);
   abbe_trace_desc desc = {
       .width = 4, .height = 2, .map_width = 4, .map_height = 2, .photons = 1000, .threads = 1};
@@ -164,18 +159,17 @@ TEST(standard_errors_are_honest) {
   }
   assert_true(values >= 12);
   assert_near(ratio / values, 1, 4 * sqrt(2.0 / (SEEDS - 1) / (values / 3)));
-  abbe_scene_free(&scene);
 }
 
 /* How many of a map's texels differ in colour from the light's white beyond their errors. */
 static size_t coloured_texels(const char *text) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(text, &scene);
   abbe_trace_desc desc = {
       .no_picture = true, .map_width = 24, .photons = 20000, .threads = 1, .seed = 3};
   abbe_tracer *tracer = make_tracer(&scene, &desc);
   run_passes(tracer, 8);
-  abbe_image map;
+  OWNED(abbe_image, map);
   OK(abbe_tracer_map(tracer, &map, &error));
   const double white[3] = {0.95047, 1, 1.08883}; /* D65 */
   size_t channel[3], errors[3], coloured = 0, lit = 0;
@@ -198,9 +192,7 @@ static size_t coloured_texels(const char *text) {
   double sum = channel_sum(&map, "Y");
   for (int k = 0; k < 3; k++)
     assert_near(channel_sum(&map, names[k]) / sum, white[k], 0.02 * white[k]);
-  abbe_image_free(&map);
   abbe_tracer_free(tracer);
-  abbe_scene_free(&scene);
   return coloured;
 }
 
@@ -213,7 +205,7 @@ TEST(no_dispersion_no_colour) {
 /* The map holds what landed, within its window; the light's cone around the ball was all reached.
  */
 TEST(the_map_holds_what_landed) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CLOSE POINT_LIGHT FLOOR BALL("flat"), &scene);
   abbe_trace_desc desc = {.no_picture = true, .map_width = 32, .photons = 30000, .threads = 1};
   abbe_tracer *tracer = make_tracer(&scene, &desc);
@@ -226,7 +218,7 @@ TEST(the_map_holds_what_landed) {
   double parts = s.ledger.deposited + s.ledger.missed + s.ledger.absorbed + s.ledger.trapped;
   assert_near((parts + s.ledger.lost) / s.ledger.reached, 1, 1e-3);
   assert_true(s.ledger.lost < 1e-4 * s.ledger.reached);
-  abbe_image map;
+  OWNED(abbe_image, map);
   OK(abbe_tracer_map(tracer, &map, &error));
   double held = channel_sum(&map, "Y") / s.ledger.deposited;
   assert_true(held > 0.9 && held < 1.001);
@@ -236,14 +228,12 @@ TEST(the_map_holds_what_landed) {
   assert_string_equal(abbe_image_attribute_text(&map, "abbe:map_light"), "lamp");
   abbe_image none;
   assert_int_equal(abbe_tracer_picture(tracer, &none, NULL), ABBE_INVALID_ARGUMENT);
-  abbe_image_free(&map);
   abbe_tracer_free(tracer);
-  abbe_scene_free(&scene);
 }
 
 /* Watts a nanometre times the bands' width are watts: of an even light, Y's mean is that too. */
 TEST(bands_hold_the_maps_watts) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CLOSE "lights:\n- {name: lamp, kind: point, position: [0.05, 0.03, 0.6], intensity: 1, "
                   "illuminant: E}\n" FLOOR BALL("flat"),
             &scene);
@@ -262,25 +252,23 @@ TEST(bands_hold_the_maps_watts) {
   assert_string_equal(abbe_image_attribute_text(&r.map, "spectralLayoutVersion"), "1.0");
   abbe_tracer_free(tracer);
   drop(&r);
-  abbe_scene_free(&scene);
 }
 
 /* Without glass there is no caustic, and the map is empty; the picture stands. */
 TEST(a_scene_without_glass) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CLOSE POINT_LIGHT FLOOR, &scene);
   traced r = trace(&scene, &small, 2);
   assert_true(channel_sum(&r.map, "Y") == 0);
   assert_true(channel_sum(&r.picture, "caustic.G") == 0);
   assert_true(channel_sum(&r.picture, "G") > 0);
   drop(&r);
-  abbe_scene_free(&scene);
 }
 
 /* Direct light is shadowed by glass, and the caustic brings a part of it back; ACEScg and XYZ are
  * one picture in two spaces. */
 TEST(the_caustic_is_part_of_the_picture) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CLOSE POINT_LIGHT FLOOR BEADS("crown"), &scene);
   abbe_trace_desc desc = small;
   desc.bands = 0;
@@ -290,7 +278,7 @@ TEST(the_caustic_is_part_of_the_picture) {
     desc.space = (abbe_rgb_space)space;
     abbe_tracer *tracer = make_tracer(&scene, &desc);
     run_passes(tracer, 4);
-    abbe_image picture;
+    OWNED(abbe_image, picture);
     OK(abbe_tracer_picture(tracer, &picture, &error));
     bool xyz = space == ABBE_RGB_SPACE_XYZ;
     const char *const names[3] = {xyz ? "X" : "R", xyz ? "Y" : "G", xyz ? "Z" : "B"};
@@ -304,16 +292,14 @@ TEST(the_caustic_is_part_of_the_picture) {
     assert_true(abbe_rgb_space_of_chromaticities(picture.xy) == (abbe_rgb_space)space);
     abbe_image none;
     assert_int_equal(abbe_tracer_map(tracer, &none, NULL), ABBE_INVALID_ARGUMENT);
-    abbe_image_free(&picture);
     abbe_tracer_free(tracer);
   }
   assert_near(y[ABBE_RGB_SPACE_XYZ] / y[ABBE_RGB_SPACE_ACESCG], 1, 2e-3);
-  abbe_scene_free(&scene);
 }
 
 /* One pass has no spread: its files say nothing of errors, and two passes' do. */
 TEST(one_pass_has_no_errors) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CLOSE POINT_LIGHT FLOOR BEADS("crown"), &scene);
   abbe_trace_desc desc = small;
   desc.bands = 4;
@@ -321,7 +307,7 @@ TEST(one_pass_has_no_errors) {
   for (size_t passes = 1; passes <= 2; passes++) {
     run_passes(tracer, 1);
     for (int map = 0; map < 2; map++) {
-      abbe_image image;
+      OWNED(abbe_image, image);
       OK((map ? abbe_tracer_map : abbe_tracer_picture)(tracer, &image, NULL));
       size_t errors = 0;
       for (size_t c = 0; c < image.channels; c++)
@@ -329,15 +315,13 @@ TEST(one_pass_has_no_errors) {
       assert_int_equal(errors, passes == 1 ? 0 : 3 + 4);
       for (size_t i = 0; i < image.width * image.height * image.channels; i++)
         assert_true(isfinite(image.data[i]));
-      abbe_image_free(&image);
     }
   }
   abbe_tracer_free(tracer);
-  abbe_scene_free(&scene);
 }
 
 TEST(the_error_falls) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CLOSE POINT_LIGHT FLOOR BEADS("crown"), &scene);
   abbe_tracer *tracer = make_tracer(&scene, &small);
   assert_true(isinf(abbe_tracer_error(tracer)));
@@ -355,7 +339,6 @@ TEST(the_error_falls) {
   assert_true(s.light_rays > 32 * 3000 && s.eye_rays >= 32 * 12 * 9);
   assert_true(s.cuts == 0 && s.radius > 0);
   abbe_tracer_free(tracer);
-  abbe_scene_free(&scene);
 }
 
 static void refuse(const abbe_scene *scene, abbe_trace_desc desc, abbe_result why,
@@ -371,7 +354,7 @@ static void refuse(const abbe_scene *scene, abbe_trace_desc desc, abbe_result wh
 }
 
 TEST(what_is_out_of_limits_is_refused) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CLOSE POINT_LIGHT FLOOR BALL("narrow"), &scene);
   const abbe_result bad = ABBE_INVALID_ARGUMENT;
   refuse(&scene, (abbe_trace_desc){.width = 8193}, bad, "8193");
@@ -399,7 +382,6 @@ TEST(what_is_out_of_limits_is_refused) {
   abbe_scene_free(&scene);
   load_text(CLOSE FLOOR BALL("flat") "environment: {size: 64, uniform: 1}\n", &scene);
   refuse(&scene, (abbe_trace_desc){.width = 8}, bad, "a map is of one light");
-  abbe_scene_free(&scene);
   abbe_tracer_free(NULL);
 }
 
@@ -418,7 +400,7 @@ TEST(size_does_not_matter) {
              "[{translate: [0, 0, %.9g]}], material: crown}\n",
              -0.5 * s, 0.35 * s, 0.05 * s, 0.05 * s, 0.03 * s, 0.6 * s, 2 * s, 2 * s, 0.08 * s,
              0.2 * s);
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     load_text(text, &scene);
     scene.light[0].power = s * s;
     traced r = trace(&scene, &small, 4);
@@ -431,6 +413,5 @@ TEST(size_does_not_matter) {
     assert_near(picture / expected, 1, 0.01);
     assert_near(map / lit, 1, 0.01);
     drop(&r);
-    abbe_scene_free(&scene);
   }
 }

@@ -21,7 +21,7 @@ static abbe_baseline_comparison compare_with(const abbe_sweep_table *table, cons
 }
 
 TEST(by_hand) {
-  abbe_sweep_table t = {0};
+  OWNED(abbe_sweep_table, t) = {0};
   abbe_baseline_comparison d = compare_with(&t, "thesis");
   assert_null(d.baseline);
   assert_int_equal(d.front, 0);
@@ -55,5 +55,4 @@ TEST(by_hand) {
   d = compare_with(&t, "thesis-cie");
   assert_true(isnan(d.front_ratio));
   assert_contains(abbe_baseline_text("thesis-cie"), "physical units");
-  abbe_sweep_table_free(&t);
 }

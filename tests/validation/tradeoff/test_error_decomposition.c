@@ -30,7 +30,7 @@ static void set_model(abbe_sweep_table *table, double de) {
 }
 
 TEST(parts_and_words) {
-  abbe_sweep_table t = {0};
+  OWNED(abbe_sweep_table, t) = {0};
   abbe_sweep_model model;
   abbe_error_decomposition s;
   char words[2000];
@@ -80,5 +80,4 @@ TEST(parts_and_words) {
   abbe_error_decomposition_say(&s, words, 20);
   assert_int_equal(strlen(words), 19);
   assert_int_equal(words[20], 'x');
-  abbe_sweep_table_free(&t);
 }

@@ -19,7 +19,7 @@ static void add(abbe_sweep_table *table, const char *profile, size_t photons, do
 TEST(the_chart) {
   char folder[] = "/tmp/abbe-test-sweep-plot-XXXXXX", path[64], *text;
   size_t size;
-  abbe_sweep_table table = {0};
+  OWNED(abbe_sweep_table, table) = {0};
   static const abbe_sweep_number numbers[] = {ABBE_SWEEP_CAUSTIC_DE, ABBE_SWEEP_FRAME_MS,
                                               ABBE_SWEEP_PICTURE_DE};
   assert_non_null(mkdtemp(folder));
@@ -44,7 +44,6 @@ TEST(the_chart) {
   REFUSED(ABBE_INVALID_ARGUMENT, "",
           abbe_sweep_plot(path, &table, ABBE_SWEEP_FRAME_MS, numbers, 0, &error));
   assert_int_equal(rmdir(folder), 0);
-  abbe_sweep_table_free(&table);
 }
 
 static abbe_result plot_scenes(const char *path, const abbe_sweep_table *tables, size_t count,

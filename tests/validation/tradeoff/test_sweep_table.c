@@ -21,7 +21,8 @@ static void add(abbe_sweep_table *table, abbe_sweep_row row) {
 
 TEST(what_is_saved_is_loaded) {
   char path[] = "/tmp/abbe-test-sweep-XXXXXX";
-  abbe_sweep_table table = {0}, read = {0};
+  OWNED(abbe_sweep_table, table) = {0};
+  OWNED(abbe_sweep_table, read) = {0};
   uint64_t random = 3;
   int file = mkstemp(path);
   assert_true(file >= 0);
@@ -51,12 +52,10 @@ TEST(what_is_saved_is_loaded) {
     for (int k = 0; k < ABBE_SWEEP_NUMBER_COUNT; k++)
       assert_true(a->number[k] == b->number[k] || (isnan(a->number[k]) && isnan(b->number[k])));
   }
-  abbe_sweep_table_free(&table);
-  abbe_sweep_table_free(&read);
 }
 
 TEST(frames_before_are_apart) {
-  abbe_sweep_table table = {0};
+  OWNED(abbe_sweep_table, table) = {0};
   char text[64];
   add(&table, row_of("default", 7, 10, 5));
   abbe_sweep_row row = row_of("default", 7, 5, 2);
@@ -66,11 +65,10 @@ TEST(frames_before_are_apart) {
   assert_string_equal(text, "w7 p128 m512 s2 h4");
   OK(abbe_sweep_table_mark(&table, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, NULL, &error));
   assert_true(table.row[0].front && !table.row[1].front);
-  abbe_sweep_table_free(&table);
 }
 
 TEST(settings_are_told_apart) {
-  abbe_sweep_table table = {0};
+  OWNED(abbe_sweep_table, table) = {0};
   abbe_sweep_row row = row_of("default", 7, 10, 1);
   char text[160];
   add(&table, row);
@@ -122,11 +120,10 @@ TEST(settings_are_told_apart) {
   assert_true(abbe_sweep_setting_is_traced(&row.setting));
   abbe_sweep_setting_label(&row.setting, text, sizeof text);
   assert_string_equal(text, "trace-filter 4 x p128");
-  abbe_sweep_table_free(&table);
 }
 
 TEST(the_front_of_all_and_of_a_profile) {
-  abbe_sweep_table table = {0};
+  OWNED(abbe_sweep_table, table) = {0};
   add(&table, row_of("default", 3, 10, 5));
   add(&table, row_of("default", 7, 20, 2));
   add(&table, row_of("default", 21, 40, NAN));
@@ -138,12 +135,11 @@ TEST(the_front_of_all_and_of_a_profile) {
   OK(abbe_sweep_table_mark(&table, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, "thesis", &error));
   static const bool thesis[] = {false, false, false, true, true};
   for (int i = 0; i < 5; i++) assert_int_equal(table.row[i].front, thesis[i]);
-  abbe_sweep_table_free(&table);
 }
 
 /* The front of another time is another one, and settings without that time are not on it. */
 TEST(the_front_of_a_process) {
-  abbe_sweep_table table = {0};
+  OWNED(abbe_sweep_table, table) = {0};
   size_t count, *order;
   add(&table, row_of("default", 3, 10, 5));
   add(&table, row_of("default", 7, 20, 4));
@@ -156,12 +152,11 @@ TEST(the_front_of_a_process) {
   assert_int_equal(count, 1);
   assert_int_equal(order[0], 3);
   free(order);
-  abbe_sweep_table_free(&table);
 }
 
 /* Medians of frames are 0, 10, 20, 60 and 400 % above the fastest. */
 TEST(a_busy_machine_is_noticed) {
-  abbe_sweep_table table = {0};
+  OWNED(abbe_sweep_table, table) = {0};
   static const double over[] = {0, 4, 0.1, 0.2, 0.6};
   assert_near(abbe_sweep_table_unrest(&table), 0, 0);
   for (size_t i = 0; i < 5; i++) {
@@ -170,13 +165,12 @@ TEST(a_busy_machine_is_noticed) {
     add(&table, row);
   }
   assert_near(abbe_sweep_table_unrest(&table), 0.6, 1e-12); /* of those that vary at all */
-  abbe_sweep_table_free(&table);
 }
 
 /* The saved text of a table of one row, for breaking. */
 static char *text_of_one_row(void) {
   char path[] = "/tmp/abbe-test-sweep-XXXXXX", *text = calloc(1, 8192);
-  abbe_sweep_table table = {0};
+  OWNED(abbe_sweep_table, table) = {0};
   close(mkstemp(path));
   abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_SCENE, "a.yaml");
   add(&table, row_of("default", 7, 10, 5));
@@ -185,7 +179,6 @@ static char *text_of_one_row(void) {
   assert_true(fread(text, 1, 8191, file) > 0);
   fclose(file);
   unlink(path);
-  abbe_sweep_table_free(&table);
   return text;
 }
 
@@ -212,7 +205,8 @@ TEST(broken_tables_are_named) {
       {"frame_ms", "frame_s", "column 15 is 'frame_s' where a sweep has 'frame_ms'"},
       {"front\n", "front,more\n", "where a sweep has ''"},
   };
-  char *text = text_of_one_row(), changed[8300];
+  FREED char *text = text_of_one_row();
+  char changed[8300];
   for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
     const char *at = strstr(text, broken[i].from);
     assert_non_null(at);
@@ -228,12 +222,10 @@ TEST(broken_tables_are_named) {
   refuse("# scene: a\n", 11, "no line of column names");
   /* Cut anywhere it is refused, or is a table with no row and no half of one. */
   for (size_t size = 0; size < strlen(text) - 1; size++) {
-    abbe_sweep_table read = {0};
+    OWNED(abbe_sweep_table, read) = {0};
     if (abbe_sweep_table_parse(text, size, "s.csv", &read, NULL) == ABBE_OK)
       assert_true(read.count == 0 || size + 1 >= strlen(text) - 1);
-    abbe_sweep_table_free(&read);
   }
-  free(text);
 }
 
 TEST(tables_of_different_things_do_not_agree) {

@@ -106,7 +106,7 @@ TEST(ways_are_chosen_by_their_shares) {
 
 /* Axes are turned with the object; two of one material are one medium if their axes are. */
 TEST(media_know_their_axes) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_geometry g;
   abbe_media m;
   const double lambda_nm[2] = {587.5618, 600};
@@ -131,5 +131,4 @@ TEST(media_know_their_axes) {
   assert_true(u.n_e == u.n_o);
   abbe_media_free(&m);
   abbe_geometry_free(&g);
-  abbe_scene_free(&scene);
 }

@@ -14,14 +14,13 @@ static void ray(const abbe_geometry *g, const double from[3], const double to[3]
 
 /* part: of the sentence that refuses it, or NULL. */
 static void make_of(const char *text, const char *part) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_geometry g;
   abbe_error error = {0};
   load_text(text, &scene);
   assert_int_equal(abbe_geometry_make(&scene, &g, &error), part ? ABBE_UNSUPPORTED : ABBE_OK);
   if (part) assert_non_null(strstr(error.text, part));
   abbe_geometry_free(&g);
-  abbe_scene_free(&scene);
 }
 
 /* A plate of half a diagonal of 0.1 m or so: eight steps off its faces are 2^-15 of that. */
@@ -48,7 +47,7 @@ TEST(foil_is_refused_however_it_is_turned) {
 }
 
 TEST(hits_a_sphere_from_outside_and_inside) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   abbe_geometry g;
   OK(abbe_geometry_make(&scene, &g, &error));
@@ -73,13 +72,12 @@ TEST(hits_a_sphere_from_outside_and_inside) {
   assert_true(abbe_geometry_occluded(&g, ABBE_GEOMETRY_REFRACTORS, o, d, INFINITY));
   assert_false(abbe_geometry_occluded(&g, ABBE_GEOMETRY_RECEIVERS, o, d, 1));
   abbe_geometry_free(&g);
-  abbe_scene_free(&scene);
 }
 
 /* A closed mesh is left as often as it is entered, also along its edges and through its corners:
  * watertight. */
 TEST(no_ray_slips_between_faces) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_shipped("gem", &scene);
   abbe_geometry g;
   OK(abbe_geometry_make(&scene, &g, &error));
@@ -99,7 +97,6 @@ TEST(no_ray_slips_between_faces) {
         assert_true(abbe_geometry_hit(&g, ABBE_GEOMETRY_REFRACTORS, o, d, INFINITY, &hit));
       }
   abbe_geometry_free(&g);
-  abbe_scene_free(&scene);
 }
 
 /* The same hits, relative to the size, for scenes from 1e-4 to 1e5 m and far from the origin. */
@@ -107,7 +104,7 @@ TEST(size_and_place_do_not_matter) {
   float expected[3] = {0};
   const double sizes[] = {1, 1e-4, 1e5}, places[] = {0, 0, 1e6};
   for (int i = 0; i < 3; i++) {
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     load_text(CAMERA POINT_LIGHT FLOOR RING("crown"), &scene);
     for (size_t j = 0; j < scene.object_count; j++) {
       abbe_object *o = &scene.object[j];
@@ -137,6 +134,5 @@ TEST(size_and_place_do_not_matter) {
         assert_true(fabsf(hit.n[k] - expected[k]) < 1e-4f);
     }
     abbe_geometry_free(&g);
-    abbe_scene_free(&scene);
   }
 }

@@ -21,7 +21,7 @@ TEST(crossing_and_crossing_back_change_nothing) {
 
 /* Between knots the index is interpolated: the error of a line over a step of 0.2 nm. */
 TEST(tables_follow_the_formula) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("smoke"), &scene);
   abbe_geometry g;
   OK(abbe_geometry_make(&scene, &g, &error));
@@ -44,11 +44,10 @@ TEST(tables_follow_the_formula) {
   assert_true(abbe_media_n(&m, -1, 3, 0.5f) == 1);
   abbe_media_free(&m);
   abbe_geometry_free(&g);
-  abbe_scene_free(&scene);
 }
 
 TEST(refuses_what_the_record_does_not_know) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &scene);
   abbe_geometry g;
   OK(abbe_geometry_make(&scene, &g, &error));
@@ -56,11 +55,10 @@ TEST(refuses_what_the_record_does_not_know) {
   double lambda_nm[2] = {380, 780};
   REFUSED(ABBE_OUT_OF_RANGE, "narrow", abbe_media_make(&g, lambda_nm, 1, &m, &error));
   abbe_geometry_free(&g);
-  abbe_scene_free(&scene);
 }
 
 TEST(refractors_of_one_material_are_one_medium) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("dense") RING("crown"), &scene);
   abbe_geometry g;
   OK(abbe_geometry_make(&scene, &g, &error));
@@ -74,5 +72,4 @@ TEST(refractors_of_one_material_are_one_medium) {
   assert_false(abbe_media_same(&m, 1, -1));
   abbe_media_free(&m);
   abbe_geometry_free(&g);
-  abbe_scene_free(&scene);
 }

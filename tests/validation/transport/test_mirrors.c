@@ -12,7 +12,7 @@ enum { STEPS = 40 };
   ", shape: sphere, radius: 0.05, transform: [{translate: [0, 0, 0.3]}], mirror: " what "}\n"
 
 TEST(metals_reflect_as_their_n_and_k_say) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene) = {0};
   abbe_geometry g;
   abbe_mirrors m;
   double lambda_nm[STEPS + 1];
@@ -41,11 +41,10 @@ TEST(metals_reflect_as_their_n_and_k_say) {
   }
   abbe_mirrors_free(&m);
   abbe_geometry_free(&g);
-  abbe_scene_free(&scene);
 }
 
 TEST(what_is_not_known_is_refused) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_geometry g;
   abbe_mirrors m;
   const double lambda_nm[] = {380, 1e5};
@@ -53,5 +52,4 @@ TEST(what_is_not_known_is_refused) {
   OK(abbe_geometry_make(&scene, &g, &error));
   REFUSED(ABBE_OUT_OF_RANGE, "gold", abbe_mirrors_make(&g, lambda_nm, 1, &m, &error));
   abbe_geometry_free(&g);
-  abbe_scene_free(&scene);
 }

@@ -156,7 +156,7 @@ TEST(colours_are_the_xyz_in_the_space) {
 }
 
 TEST(what_cannot_be_sampled_is_refused) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA LIGHTS_OF_THREE_KINDS FLOOR, &scene);
   abbe_spectral_sampling s;
   /* no eye sees it */
@@ -173,5 +173,4 @@ TEST(what_cannot_be_sampled_is_refused) {
     assert_int_equal(abbe_spectral_sampling_make(&scene, &desc, &s, NULL), ABBE_INVALID_ARGUMENT);
   }
   abbe_spectral_sampling_free(&s);
-  abbe_scene_free(&scene);
 }

@@ -161,11 +161,11 @@ static double middle_error(const abbe_scene *scene, const abbe_caustic_volume *v
 TEST(a_prism_bends_as_snell_has_it) {
   enum { LEVELS = SANITIZED ? 2 : 3 };
   static const size_t nodes[] = {42, 162, 642};
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   double error[LEVELS], ghosts[LEVELS];
   load_text(WEDGE("crown"), &scene);
   for (size_t i = 0; i < LEVELS; i++) {
-    abbe_caustic_volume v;
+    OWNED(abbe_caustic_volume, v);
     abbe_volume_fill_statistics done;
     const double apart = 1.107 / (double)(2 << i);
     const abbe_volume_fill_desc desc = {.object = 1,
@@ -180,12 +180,10 @@ TEST(a_prism_bends_as_snell_has_it) {
         "alone\n",
         nodes[i], error[i], ghosts[i], apart * apart / 2, done.sequences, done.alone);
     assert_near(done.carried, 1, 0.01);
-    abbe_caustic_volume_free(&v);
   }
   for (size_t i = 0; i < LEVELS; i++) assert_true(ghosts[i] < (i == 0 ? 0.05 : 0.01));
   for (size_t i = 1; i < LEVELS; i++)
     assert_true(error[i] < error[i - 1] / 4 || (i == 2 && error[i] < 5e-4)); /* halves' own steps */
-  abbe_scene_free(&scene);
 }
 
 /* ---- a ball ---- */
@@ -233,8 +231,8 @@ static void look_at_ball_ray(void *user, const abbe_exit_ray *ray, double flux, 
 
 /* A lamp at a distance D: a ball of n focuses its light at f D / (D - f), f = n R / (2 (n - 1)). */
 TEST(lamps_nearby_are_lamps_nearby) {
-  abbe_scene scene = {0};
-  abbe_caustic_volume v;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_caustic_volume, v);
   abbe_volume_fill_statistics done;
   load_text(ORB("flat"), &scene);
   const abbe_volume_fill_desc desc = {.object = 1,
@@ -263,16 +261,15 @@ TEST(lamps_nearby_are_lamps_nearby) {
     assert_near(focus, f * far / (far - f), 0.06);
     assert_true(off < 0.01);
   }
-  abbe_caustic_volume_free(&v);
-  abbe_scene_free(&scene);
 }
 
 /* ---- light around it ---- */
 
 /* At a node the cells hold what photons bring there, in any light's colour. */
 TEST(cells_hold_what_photons_bring) {
-  abbe_scene scene = {0};
-  abbe_caustic_volume exits, values;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_caustic_volume, exits);
+  OWNED(abbe_caustic_volume, values);
   abbe_volume_fill_statistics done;
   load_text(WEDGE("crown"), &scene);
   const abbe_region_desc region = {.kind = ABBE_REGION_OCTAHEDRAL, .side = 8, .shells = 4};
@@ -291,7 +288,7 @@ TEST(cells_hold_what_photons_bring) {
   fill_volume(&scene, &desc, &exits, &done);
   fill_volume(&scene, &by_photons, &values, &done);
   const size_t count = 9 * exits.region.cells, node = 5;
-  float *value = malloc(count * sizeof *value);
+  FREED float *value = malloc(count * sizeof *value);
   assert_non_null(value);
   abbe_volume_place place;
   OK(abbe_volume_body_find(&exits.body, &scene.object[1], &place, &error));
@@ -318,14 +315,10 @@ TEST(cells_hold_what_photons_bring) {
     assert_near(now[c] / now[1], exits.white[c], 0.03);
     assert_near(then[c] / then[1], white[c], 0.03);
   }
-  free(value);
-  abbe_caustic_volume_free(&exits);
-  abbe_caustic_volume_free(&values);
-  abbe_scene_free(&scene);
 }
 
 TEST(threads_change_nothing) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_caustic_volume v[3];
   abbe_volume_fill_statistics done;
   load_text(WEDGE("murk"), &scene);
@@ -342,11 +335,10 @@ TEST(threads_change_nothing) {
   assert_memory_not_equal(v[0].exits.point, v[2].exits.point,
                           v[0].exits.points * sizeof *v[0].exits.point);
   for (size_t i = 0; i < 3; i++) abbe_caustic_volume_free(&v[i]);
-  abbe_scene_free(&scene);
 }
 
 TEST(requests) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_caustic_volume v;
   abbe_volume_fill_statistics done;
   int calls = 0;
@@ -362,5 +354,4 @@ TEST(requests) {
   REFUSED(ABBE_CANCELLED, "", abbe_volume_fill(&scene, &desc, &v, &done, &error));
   assert_int_equal(calls, 1);
   assert_null(v.exits.exit);
-  abbe_scene_free(&scene);
 }

@@ -28,7 +28,7 @@ TEST(bytes_come_back) {
 }
 
 TEST(broken_files_are_told) {
-  char *data;
+  FREED char *data = NULL;
   size_t size;
   double number = 3;
   const abbe_kept_bytes part = {&number, sizeof number};
@@ -47,7 +47,6 @@ TEST(broken_files_are_told) {
                      ABBE_PARSE);
     data[i] ^= 1;
   }
-  free(data);
   unlink(path);
 }
 
@@ -69,10 +68,11 @@ static bool stop_halfway(void *user, double done) {
 
 /* Stopped after half the nodes, and gone on with: what an unbroken run makes. */
 TEST(fills_go_on_to_the_same_bits) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(CAMERA SUN FLOOR BRICK("crown"), &scene);
   for (int exits = 0; exits < 2; exits++) {
-    abbe_caustic_volume whole, part;
+    OWNED(abbe_caustic_volume, whole);
+    OWNED(abbe_caustic_volume, part);
     abbe_volume_fill_statistics once, twice;
     abbe_volume_fill_desc d = request(exits);
     OK(abbe_volume_fill(&scene, &d, &whole, &once, &error));
@@ -93,11 +93,8 @@ TEST(fills_go_on_to_the_same_bits) {
     else
       assert_memory_equal(whole.value, part.value, 12 * 64 * 9 * sizeof *whole.value);
     assert_near(once.error, twice.error, 0);
-    abbe_caustic_volume_free(&whole);
-    abbe_caustic_volume_free(&part);
     unlink(path);
   }
-  abbe_scene_free(&scene);
 }
 
 /* ---- files with a right hash that no fill has written ---- */
@@ -133,13 +130,14 @@ static void forge(const abbe_scene *scene, const abbe_volume_fill_desc *d, char 
 }
 
 TEST(forged_files_are_refused) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(CAMERA SUN FLOOR BRICK("crown"), &scene);
   for (int exits = 0; exits < 2; exits++) {
-    abbe_caustic_volume whole, part;
+    OWNED(abbe_caustic_volume, whole);
+    OWNED(abbe_caustic_volume, part);
     abbe_volume_fill_statistics once, twice;
     abbe_volume_fill_desc d = request(exits);
-    char *data;
+    FREED char *data = NULL;
     size_t size;
     OK(abbe_volume_fill(&scene, &d, &whole, &once, &error));
     d.checkpoint = path;
@@ -171,10 +169,6 @@ TEST(forged_files_are_refused) {
     OK(abbe_volume_fill(&scene, &d, &part, &twice, &error));
     assert_memory_equal(exits ? (void *)whole.exits.exit : whole.value,
                         exits ? (void *)part.exits.exit : part.value, bytes);
-    free(data);
     unlink(path);
-    abbe_caustic_volume_free(&whole);
-    abbe_caustic_volume_free(&part);
   }
-  abbe_scene_free(&scene);
 }

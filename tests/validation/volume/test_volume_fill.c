@@ -20,8 +20,8 @@ static double value_at(const abbe_caustic_volume *v, size_t node, size_t cell, s
 /* Light straight down on a plate of n = 1.5: 2 n / (n^2 + 1) of it goes on through all reflections
  * inside, and the rest goes back; in the plate's own cells nothing is asked. */
 TEST(a_plate_has_two_beams) {
-  abbe_scene scene = {0};
-  abbe_caustic_volume v;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_caustic_volume, v) = {0};
   abbe_volume_fill_statistics done;
   load_text(PLATE("flat"), &scene);
   const abbe_volume_fill_desc desc = {.object = 1,
@@ -51,14 +51,12 @@ TEST(a_plate_has_two_beams) {
   assert_true(seen > 50);
   /* all that met it came out again */
   assert_near(done.ledger.missed / done.ledger.reached, 1, 1e-5);
-  abbe_caustic_volume_free(&v);
-  abbe_scene_free(&scene);
 }
 
 /* Through an index of 1 the beam goes on as it was, in the object's shadow alone. */
 TEST(index_one_is_a_beam) {
-  abbe_scene scene = {0};
-  abbe_caustic_volume v;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_caustic_volume, v);
   abbe_volume_fill_statistics done;
   load_text(ORB("air"), &scene);
   const abbe_volume_fill_desc desc = {.object = 1,
@@ -85,8 +83,6 @@ TEST(index_one_is_a_beam) {
       seen += inside;
     }
   assert_true(seen > 20);
-  abbe_caustic_volume_free(&v);
-  abbe_scene_free(&scene);
 }
 
 enum { BALL_PHOTONS = SANITIZED ? 1 << 15 : 1 << 17 };
@@ -118,7 +114,7 @@ static void trace_layer(abbe_scene *scene, double middle, double height, size_t 
     floor->exact.parallelogram[0][2] = at;
     floor->min[2] = floor->max[2] = at;
     abbe_tracer *tracer = make_tracer(scene, &desc);
-    abbe_image map = {0};
+    OWNED(abbe_image, map) = {0};
     run_passes(tracer, 4);
     OK(abbe_tracer_map(tracer, &map, &error));
     const size_t y = abbe_image_find_channel(&map, "Y"),
@@ -129,7 +125,6 @@ static void trace_layer(abbe_scene *scene, double middle, double height, size_t 
       sum[i] += (double)map.data[i * map.channels + y] / area / FLOORS;
       square[i] += pow((double)map.data[i * map.channels + e] / area / FLOORS, 2);
     }
-    abbe_image_free(&map);
     abbe_tracer_free(tracer);
   }
 }
@@ -138,8 +133,8 @@ static void trace_layer(abbe_scene *scene, double middle, double height, size_t 
  * it, within four standard errors of both. */
 TEST(a_ball_is_as_the_tracer_has_it) {
   enum { SIDE = 12, LAYERS_END = SANITIZED ? 3 : 4 };
-  abbe_scene scene = {0};
-  abbe_caustic_volume v;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_caustic_volume, v);
   abbe_volume_fill_statistics done;
   load_text(ORB("crown"), &scene);
   const double down[3] = {0, 0, -1};
@@ -167,14 +162,12 @@ TEST(a_ball_is_as_the_tracer_has_it) {
     }
     assert_near(all / both, 1, 0.01);
   }
-  abbe_caustic_volume_free(&v);
-  abbe_scene_free(&scene);
 }
 
 /* Without receivers in the way every shell beyond the object has all the flux that left it. */
 TEST(shells_have_the_flux_of_the_ledger) {
-  abbe_scene scene = {0};
-  abbe_caustic_volume v;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_caustic_volume, v);
   abbe_volume_fill_statistics done;
   load_text(ORB("murk"), &scene);
   const abbe_volume_fill_desc desc = {
@@ -190,12 +183,10 @@ TEST(shells_have_the_flux_of_the_ledger) {
   assert_true(done.ledger.absorbed > 0.01 * done.ledger.reached);
   assert_near((done.ledger.missed + done.ledger.absorbed) / done.ledger.reached, 1, 1e-4);
   assert_int_equal(done.photons, 12 * 2 << 14);
-  abbe_caustic_volume_free(&v);
-  abbe_scene_free(&scene);
 }
 
 TEST(threads_change_nothing) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_caustic_volume v[3];
   abbe_volume_fill_statistics done;
   load_text(ORB("crown"), &scene);
@@ -215,12 +206,11 @@ TEST(threads_change_nothing) {
   assert_memory_not_equal(v[0].value, v[2].value, bytes);
   assert_near(v[0].byte, v[1].byte, 0);
   for (size_t i = 0; i < 3; i++) abbe_caustic_volume_free(&v[i]);
-  abbe_scene_free(&scene);
 }
 
 TEST(requests) {
-  abbe_scene scene = {0};
-  abbe_caustic_volume v;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_caustic_volume, v);
   abbe_volume_fill_statistics done;
   int calls = 0;
   load_text(ORB("crown"), &scene);
@@ -245,6 +235,4 @@ TEST(requests) {
   assert_int_equal(v.nodes.count, 1); /* a ball's */
   assert_near(v.region.desc.outer, 0.15, 1e-12);
   assert_near(v.error, done.error, 0);
-  abbe_caustic_volume_free(&v);
-  abbe_scene_free(&scene);
 }

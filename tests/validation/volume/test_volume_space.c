@@ -5,9 +5,9 @@
 #include "validation/volume/lone_object.h"
 
 TEST(a_ball_takes_its_volume) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_geometry g;
-  abbe_volume_region r;
+  OWNED(abbe_volume_region, r);
   const double radius = 0.05, centre[3] = {0, 0, 0.1};
   load_text(CAMERA POINT_LIGHT FLOOR "- {name: ball, shape: sphere, radius: 0.05, levels: 3, "
                                      "material: flat, transform: [{translate: [0, 0, 0.1]}]}\n",
@@ -18,7 +18,7 @@ TEST(a_ball_takes_its_volume) {
   const abbe_region_desc desc = {.kind = ABBE_REGION_GRID, .side = 20, .outer = 2 * radius};
   OK(abbe_geometry_make(&alone, &g, &error));
   OK(abbe_volume_region_make(&desc, &r, &error));
-  float *share = calloc(r.cells, sizeof *share);
+  FREED float *share = calloc(r.cells, sizeof *share);
   OK(abbe_volume_space_measure(&g, &r, centre, radius, 400000, share, &error));
   double taken = 0;
   for (size_t cell = 0; cell < r.cells; cell++) {
@@ -33,8 +33,5 @@ TEST(a_ball_takes_its_volume) {
     taken += (1 - (double)share[cell]) * abbe_volume_region_volume(&r, cell);
   }
   assert_near(taken / (4 * ABBE_PI / 3 * pow(radius, 3)), 1, 0.01);
-  free(share);
-  abbe_volume_region_free(&r);
   abbe_geometry_free(&g);
-  abbe_scene_free(&scene);
 }

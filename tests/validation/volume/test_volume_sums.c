@@ -12,7 +12,7 @@ static void make_region(abbe_region_desc desc, abbe_volume_region *out) {
 
 /* Along x through a row of a grid: flux times length by the cell's volume, and by its space. */
 TEST(one_stretch) {
-  abbe_volume_region r;
+  OWNED(abbe_volume_region, r);
   abbe_volume_sums s;
   float space[64];
   make_region((abbe_region_desc){.kind = ABBE_REGION_GRID, .side = 4, .outer = 2}, &r);
@@ -34,7 +34,6 @@ TEST(one_stretch) {
     }
   assert_near(abbe_volume_sums_relative_error(&s), 1.0 / 3, 1e-6);
   abbe_volume_sums_free(&s);
-  abbe_volume_region_free(&r);
 }
 
 /* Whatever starts within and goes out passes every shell: all have the same flux. */
@@ -43,7 +42,7 @@ TEST(every_shell_has_the_flux_that_leaves) {
       {.kind = ABBE_REGION_GEODESIC, .levels = 4, .shells = 6, .inner = 1, .outer = 3},
       {.kind = ABBE_REGION_OCTAHEDRAL, .side = 64, .shells = 6, .inner = 1, .outer = 3}};
   for (int i = 0; i < 2; i++) {
-    abbe_volume_region r;
+    OWNED(abbe_volume_region, r);
     abbe_volume_sums s;
     uint64_t seed = 9;
     make_region(regions[i], &r);
@@ -61,13 +60,12 @@ TEST(every_shell_has_the_flux_that_leaves) {
     for (size_t shell = 0; shell < r.rows; shell++)
       assert_near(abbe_volume_sums_outflow(&s, shell) / 10000, 1, 0.003);
     abbe_volume_sums_free(&s);
-    abbe_volume_region_free(&r);
   }
 }
 
 /* Nothing ends or begins in a shell that light crosses both ways: what comes in goes out. */
 TEST(what_comes_in_goes_out) {
-  abbe_volume_region r;
+  OWNED(abbe_volume_region, r);
   abbe_volume_sums s;
   uint64_t seed = 10;
   make_region(
@@ -86,14 +84,13 @@ TEST(what_comes_in_goes_out) {
   for (size_t shell = 0; shell < r.rows; shell++)
     assert_near(abbe_volume_sums_outflow(&s, shell) / 10000, 0, 0.003);
   abbe_volume_sums_free(&s);
-  abbe_volume_region_free(&r);
 }
 
 /* A beam with nothing in it brings every cell the cosine to where it lies, behind the middle. */
 TEST(a_printed_beam) {
   enum { SIDE = 2000 };
   static const double d[3] = {0.48, 0.6, 0.64}, x[3] = {0.8, 0, -0.6}, y[3] = {-0.36, 0.8, -0.48};
-  abbe_volume_region r;
+  OWNED(abbe_volume_region, r);
   abbe_volume_sums s;
   make_region((abbe_region_desc){.kind = ABBE_REGION_GRID, .side = 6, .outer = 3}, &r);
   OK(abbe_volume_sums_make(&r, true, NULL, d, 1, &s, &error));
@@ -113,5 +110,4 @@ TEST(a_printed_beam) {
     assert_near(abbe_volume_sums_mean(&s, cell, 2), 2 * cosine, 0.006);
   }
   abbe_volume_sums_free(&s);
-  abbe_volume_region_free(&r);
 }

@@ -39,7 +39,7 @@ static void make_crystal(const char *text, const abbe_physics *physics, fixture 
 /* Of the light that enters as one wave a slab lets through, with all inner reflections, (1 - r) /
  * (1 + r): each wave by its own index, and neither makes any of the other head on. */
 TEST(a_beam_becomes_two) {
-  fixture *f = malloc(sizeof *f);
+  FREED fixture *f = malloc(sizeof *f);
   make_crystal(CALCITE("[1, 0, 1]"), NULL, f);
   const double from[3] = {0.02, 0.01, 0.5}, down[3] = {0, 0, -1}, cos_axis = sqrt(0.5);
   const double n[2] = {n_o, abbe_uniaxial_index(n_o, n_e, cos_axis)};
@@ -69,7 +69,6 @@ TEST(a_beam_becomes_two) {
   assert_near(f->ledger.reached, (double)photons, 1e-6 * (double)photons);
   assert_near(f->ledger.lost, 0, 0);
   drop(f);
-  free(f);
 }
 
 /* Through a slab whose axis lies in its face head on, each wave with its own loss: two
@@ -77,7 +76,7 @@ TEST(a_beam_becomes_two) {
 TEST(a_pleochroic_slab_passes_two_exponentials) {
   enum { BATCHES = 64 };
   static const double per_m[2] = {30, 4}, thick = 0.1, n[2] = {1.66, 1.48};
-  fixture *f = malloc(sizeof *f);
+  FREED fixture *f = malloc(sizeof *f);
   make_table(TABLE_OF("\n   absorption: {ordinary: {attenuation_per_m: [[500, 30]]},\n"
                       "     extraordinary: {attenuation_per_m: [[500, 4]]}}"),
              CALCITE("[1, 1, 0]"), NULL, f);
@@ -103,13 +102,12 @@ TEST(a_pleochroic_slab_passes_two_exponentials) {
               f->ledger.deposited + f->ledger.absorbed + f->ledger.missed + f->ledger.trapped,
               1e-5 * f->ledger.reached);
   drop(f);
-  free(f);
 }
 
 /* All that reaches the block is somewhere, whatever faces it meets and how often it is split. */
 TEST(the_ledger_closes) {
   for (unsigned splits = 0; splits < 4; splits++) {
-    fixture *f = malloc(sizeof *f);
+    FREED fixture *f = malloc(sizeof *f);
     make_crystal(CALCITE("[1, 0.3, 0.7]"), NULL, f);
     abbe_light_walk_split(f->walk, splits);
     flood(f, 40);
@@ -118,7 +116,6 @@ TEST(the_ledger_closes) {
     assert_near(parts / l->reached, 1, 1e-5);
     assert_true(l->lost < 1e-3 * l->reached);
     drop(f);
-    free(f);
   }
 }
 
@@ -126,20 +123,19 @@ TEST(the_ledger_closes) {
 TEST(splitting_biases_nothing) {
   double landed[2];
   for (int i = 0; i < 2; i++) {
-    fixture *f = malloc(sizeof *f);
+    FREED fixture *f = malloc(sizeof *f);
     make_crystal(CALCITE("[1, 0.3, 0.7]"), NULL, f);
     abbe_light_walk_split(f->walk, i == 0 ? 0 : 3);
     flood(f, 100);
     landed[i] = f->ledger.deposited / f->ledger.reached;
     drop(f);
-    free(f);
   }
   assert_near(landed[1], landed[0], 5e-3);
 }
 
 /* Matched physics is the renderer's, which has the ordinary index alone. */
 TEST(matched_physics_knows_one_index) {
-  fixture *f = malloc(sizeof *f);
+  FREED fixture *f = malloc(sizeof *f);
   const abbe_physics matched = {.matched = true, .orders = 1000, .energy_share = 0};
   make_crystal(CALCITE("[1, 0, 1]"), &matched, f);
   abbe_media_forget_axes(&f->media);
@@ -147,7 +143,6 @@ TEST(matched_physics_knows_one_index) {
   const double r = pow((n_o - 1) / (n_o + 1), 2);
   check_share((double)shoot(f, from, down, 32), 32.0 * BATCH, (1 - r) / (1 + r));
   drop(f);
-  free(f);
 }
 
 /* ---- the eye ---- */

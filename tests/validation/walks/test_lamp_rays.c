@@ -21,7 +21,7 @@ typedef struct lit {
 
 static lit trace(const char *text) {
   lit l;
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(text, &scene);
   const abbe_trace_desc desc = {.width = 4,
                                 .height = 4,
@@ -35,7 +35,6 @@ static lit trace(const char *text) {
   OK(abbe_tracer_picture(tracer, &l.picture, &error));
   OK(abbe_tracer_map(tracer, &l.map, &error));
   abbe_tracer_free(tracer);
-  abbe_scene_free(&scene);
   return l;
 }
 

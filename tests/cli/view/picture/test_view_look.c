@@ -21,7 +21,7 @@ TEST(a_caustic_is_fed_however_few_photons_there_are) {
   static const size_t photons[] = {8, 20};
   static abbe_view_feed feed;
   volatile int stop = 0;
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(text, &scene);
   for (size_t i = 0; i < sizeof photons / sizeof *photons; i++) {
     const abbe_render_desc desc = {
@@ -54,5 +54,4 @@ TEST(a_caustic_is_fed_however_few_photons_there_are) {
   OK(abbe_view_look_closer(context, renderer, &scene, place, radius, 550, &stop, &feed, &error));
   assert_int_equal(feed.photons, found);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }

@@ -22,7 +22,7 @@ TEST(a_pixel_has_the_light_of_its_place) {
   static const size_t pixels[][2] = {{12, 100}, {131, 30}};
   const volatile int stop = 1;
   static abbe_view_spot spot;
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(text, &scene);
   for (size_t i = 0; i < sizeof pixels / sizeof *pixels; i++) {
     const double xy[2] = {(double)pixels[i][0] + 0.5, (double)pixels[i][1] + 0.5};
@@ -46,7 +46,6 @@ TEST(a_pixel_has_the_light_of_its_place) {
   REFUSED(ABBE_CANCELLED, "",
           abbe_view_spot_trace(&scene, WIDTH, HEIGHT, pixels[0], 0, &stop, &spot, &error));
   assert_int_equal(spot.bands, 0);
-  abbe_scene_free(&scene);
 }
 
 /* The sun through a plate onto a floor, seen through the same plate: the plate lets
@@ -71,7 +70,7 @@ TEST(a_caustic_behind_glass_has_all_bands) {
   enum { WIDTH = 512, HEIGHT = 512 };
   static const size_t pixel[2] = {256, 256};
   static abbe_view_spot spot;
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   double total = 0;
   load_text(plate, &scene);
   const double angle = atan2(2, 2.7),
@@ -83,7 +82,6 @@ TEST(a_caustic_behind_glass_has_all_bands) {
   }
   print_message("%.4f of the known light\n", total / known);
   assert_near(total / known, 1, 0.1); /* about 1000 photons: 3 % */
-  abbe_scene_free(&scene);
 }
 
 TEST(the_spectrum_of_more_passes_is_told) {

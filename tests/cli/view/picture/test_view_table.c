@@ -19,7 +19,8 @@ TEST(it_is_the_one_that_is_made_at_once) {
   const struct timespec time = {.tv_nsec = 1000000};
   abbe_display *display = NULL;
   abbe_display_table *other = NULL;
-  abbe_image a, b;
+  OWNED(abbe_image, a);
+  OWNED(abbe_image, b);
   OK(abbe_display_make(&desc, &display, &error));
   abbe_view_table *table = abbe_view_table_begin(display);
   assert_non_null(table);
@@ -30,8 +31,6 @@ TEST(it_is_the_one_that_is_made_at_once) {
   OK(abbe_display_table_apply(abbe_view_table_get(table), &a, &error));
   OK(abbe_display_table_apply(other, &b, &error));
   assert_memory_equal(a.data, b.data, 3 * sizeof *a.data * SIDE * SIDE);
-  abbe_image_free(&a);
-  abbe_image_free(&b);
   abbe_display_table_free(other);
   abbe_view_table_free(table);
   abbe_display_free(display);

@@ -76,7 +76,7 @@ TEST(what_is_refused_leaves_the_scene) {
   for (size_t i = 0; i < 3; i++) {
     abbe_view_scene_news news = {0};
     abbe_error why = {0};
-    abbe_view_document wrong;
+    OWNED(abbe_view_document, wrong);
     OK(abbe_view_document_copy(&d, &wrong, &error));
     set(&wrong, bad[i][0], bad[i][1]);
     assert_int_not_equal(abbe_view_scene_take(&s, &wrong, false, 0, &news, &why), ABBE_OK);
@@ -84,7 +84,6 @@ TEST(what_is_refused_leaves_the_scene) {
     assert_ptr_equal(s.now->object, objects);
     assert_near(s.now->light[0].power, power, 0);
     assert_false(take(&s, &d, false));
-    abbe_view_document_free(&wrong);
   }
   abbe_view_document_free(&d);
   abbe_view_scene_free(&s);

@@ -21,7 +21,7 @@ typedef struct floor_map {
 } floor_map;
 
 static inline void make_floor_map(const char *text, const abbe_render_desc *desc, floor_map *out) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_map_layout layout;
   *out = (floor_map){0};
   load_text(text, &scene);
@@ -31,7 +31,6 @@ static inline void make_floor_map(const char *text, const abbe_render_desc *desc
   abbe_renderer_map_layout(renderer, 0, &layout);
   out->view = layout.view;
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 /* At texels, the first row at the top; false where the ray does not come down to the floor. */

@@ -23,13 +23,12 @@ static const abbe_render_desc small = {.profile = ABBE_PROFILE_WYMAN2006_CIE,
                                        .space = ABBE_RGB_SPACE_XYZ};
 
 static inline double map_energy(const abbe_scene *scene, const abbe_render_desc *desc) {
-  abbe_image map = {0};
+  OWNED(abbe_image, map) = {0};
   abbe_renderer *renderer = make_renderer(scene, desc);
   draw_frame(renderer);
   read_map(renderer, 0, &map);
   abbe_renderer_free(renderer);
   const double sum = image_sum(&map, 1);
-  abbe_image_free(&map);
   return sum;
 }
 

@@ -114,7 +114,7 @@ GROUP(make_context, free_context);
 /* Light of all panes, and what a texel well within one of them is of the lamp's: by how far it is
  * from the seams. */
 TEST(what_is_sent_arrives_all_around) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   cube_map m;
   char text[4096] = ROOM;
   size_t used = strlen(text);
@@ -155,12 +155,11 @@ TEST(what_is_sent_arrives_all_around) {
   assert_near(sum[1] / (double)count[1], 1, 0.01);
   assert_true(worst < 0.05);
   free_cube(&m);
-  abbe_scene_free(&scene);
 }
 
 /* One pane on a corner: the light sees it through one view, and three faces have its light. */
 TEST(a_corner_has_its_light) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   char text[1024] = ROOM;
   add_pane(pane[PANES - 1], "material: flat", text, strlen(text), sizeof text);
   load_text(text, &scene);
@@ -176,7 +175,6 @@ TEST(a_corner_has_its_light) {
     for (int k = 1; k < 3; k++) assert_near(where[k] / where[0], 1, 0.01);
     free_cube(&m);
   }
-  abbe_scene_free(&scene);
 }
 
 /* Light that a mirror sends back past the lamp is lost by one view, and arrives on a cube. */
@@ -184,7 +182,7 @@ TEST(a_mirror_lights_what_is_behind_the_lamp) {
   static const char text[] =
       ROOM "- {name: mirror, shape: rectangle, width: 0.1, height: 0.1, mirror: 0.8, transform: "
            "[{rotate: {axis: [0, 1, 0], angle: -90}}, {translate: [0.5, 0.05, -0.07]}]}\n";
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   cube_map m;
   abbe_render_desc desc = around;
   double where[3];
@@ -198,7 +196,6 @@ TEST(a_mirror_lights_what_is_behind_the_lamp) {
   assert_near(sum / sent, 1, 0.02);
   assert_true(where[0] / sum < -0.95);
   free_cube(&m);
-  abbe_scene_free(&scene);
 }
 
 /* A ball in an edge's direction bends light across it: every estimator brings it to where the exact
@@ -209,7 +206,7 @@ TEST(estimators_land_across_seams) {
   static const abbe_estimator kinds[] = {ABBE_ESTIMATOR_EXACT,    ABBE_ESTIMATOR_SHAH,
                                          ABBE_ESTIMATOR_AXIS,     ABBE_ESTIMATOR_SECANT,
                                          ABBE_ESTIMATOR_IMPOSTOR, ABBE_ESTIMATOR_RATIO};
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   double exact = 0, at[3] = {0};
   load_text(text, &scene);
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
@@ -232,12 +229,11 @@ TEST(estimators_land_across_seams) {
     for (int k = 0; k < 3; k++) assert_near(where[k] / sum, at[k] / exact, 0.002);
     free_cube(&m);
   }
-  abbe_scene_free(&scene);
 }
 
 /* A lamp above a floor: the picture by one view and by six. */
 TEST(one_view_and_six_agree) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image picture[2] = {{0}};
   double sum[2] = {0}, off = 0;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
@@ -259,15 +255,14 @@ TEST(one_view_and_six_agree) {
   assert_near(sum[1] / sum[0], 1, 0.01);
   assert_true(off / sum[0] < 0.03);
   for (size_t i = 0; i < 2; i++) abbe_image_free(&picture[i]);
-  abbe_scene_free(&scene);
 }
 
 /* Through panes all around, by photons in image space: the camera sees on the walls what it sees by
  * caustics mapping. */
 TEST(photons_in_image_space_agree) {
   static const abbe_fill fills[] = {ABBE_FILL_TRIANGLES, ABBE_FILL_QUADS, ABBE_FILL_GATHER_EYE};
-  abbe_scene scene = {0};
-  abbe_image right = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, right) = {0};
   char text[4096] = ROOM;
   size_t used = strlen(text);
   for (int i = 0; i < PANES; i++)
@@ -275,7 +270,7 @@ TEST(photons_in_image_space_agree) {
   load_text(text, &scene);
   for (size_t i = 0; i <= sizeof fills / sizeof *fills; i++) {
     abbe_render_desc desc = around;
-    abbe_image picture = {0};
+    OWNED(abbe_image, picture) = {0};
     desc.width = desc.height = 64;
     if (i > 0) {
       desc.profile = ABBE_PROFILE_WYMAN2006_CIE;
@@ -292,15 +287,12 @@ TEST(photons_in_image_space_agree) {
     print_message("'%s': off by %.4f of the picture's light\n", abbe_fill_name(fills[i - 1]),
                   off / image_sum(&right, 1));
     assert_true(off / image_sum(&right, 1) < 0.05);
-    abbe_image_free(&picture);
   }
-  abbe_image_free(&right);
-  abbe_scene_free(&scene);
 }
 
 /* As printed, too; what a cube is not for, and who takes it by themselves. */
 TEST(who_has_a_cube) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_plan plan;
   abbe_renderer *renderer = NULL;
   abbe_image map = {0};
@@ -335,5 +327,4 @@ TEST(who_has_a_cube) {
   desc.faces = 6;
   desc.profile = ABBE_PROFILE_DEFAULT;
   REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_plan_make(&scene, &desc, &plan, &error));
-  abbe_scene_free(&scene);
 }

@@ -117,7 +117,7 @@ static void load_moved(double at, double share, abbe_scene *out) {
 
 /* The next frame's picture, light's middle and variance in it, in pixels across; less `dark`. */
 static void moments(abbe_renderer *renderer, const abbe_image *dark, double out[2]) {
-  abbe_image picture = {0};
+  OWNED(abbe_image, picture) = {0};
   double sum = 0, first = 0, second = 0;
   abbe_renderer_redraw(renderer);
   draw_frame(renderer);
@@ -132,7 +132,6 @@ static void moments(abbe_renderer *renderer, const abbe_image *dark, double out[
   }
   out[0] = first / sum;
   out[1] = second / sum - out[0] * out[0];
-  abbe_image_free(&picture);
 }
 
 /* T3. Of v pixels a frame, four frames lag by 1.5 v and spread by 1.25 v^2 more. */
@@ -201,7 +200,7 @@ static double noise(const abbe_scene *scene, size_t history) {
   desc.map_size = SIDE;
   desc.history = history;
   for (size_t k = 0; k < (SAMPLES + 1) * history; k++) {
-    abbe_image map = {0};
+    OWNED(abbe_image, map) = {0};
     for (int axis = 0; axis < 2; axis++) {
       seed = seed * 1664525u + 1013904223u;
       desc.photon_shift[axis] = (double)(seed >> 8) / 0x1p24 - 0.5;
@@ -218,7 +217,6 @@ static double noise(const abbe_scene *scene, size_t history) {
       sum[2 * i] += light / SAMPLES;
       sum[2 * i + 1] += light * light / SAMPLES;
     }
-    abbe_image_free(&map);
   }
   for (size_t i = 0; i < SIDE * SIDE; i++) variance += sum[2 * i + 1] - sum[2 * i] * sum[2 * i];
   abbe_renderer_free(renderer);
@@ -227,10 +225,9 @@ static double noise(const abbe_scene *scene, size_t history) {
 
 /* T4. Frames whose noise is independent leave a quarter of its variance. */
 TEST(noise_goes_by_four) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
   const double one = noise(&scene, 1), four = noise(&scene, 4);
   print_message("variance of four frames: %.3f of one's\n", four / one);
   assert_near(four / one, 0.25, 0.07);
-  abbe_scene_free(&scene);
 }

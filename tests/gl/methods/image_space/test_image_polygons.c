@@ -7,8 +7,8 @@ GROUP(make_context, free_context);
 /* As printed, by beams that are all alike: under the lamp, in the middle of a field of 90 degrees,
  * a cell has 4 / N^2 sr, and the mean one 2 pi / 3 / N^2. */
 TEST(even_beams) {
-  abbe_scene scene = {0};
-  abbe_image picture = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, picture) = {0};
   double spread;
   load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
   abbe_render_desc desc = small;
@@ -21,8 +21,6 @@ TEST(even_beams) {
   const double mean = middle(&picture, &spread), share = 3.14159265358979 / 6 / pow(0.99, 3);
   print_message("even beams: %.4f\n", mean);
   assert_near(mean, 0.5 * (0.99 * share + 0.1), 0.015);
-  abbe_image_free(&picture);
-  abbe_scene_free(&scene);
 }
 
 /* Other kinds of polygons: what arrives is what was sent, by quads and triangles alike, and behind
@@ -31,7 +29,8 @@ TEST(polygons_of_other_kinds) {
   static const unsigned kinds[] = {ABBE_POLYGONS_CORNERS, ABBE_POLYGONS_CULLED,
                                    ABBE_POLYGONS_IN_LIGHT,
                                    ABBE_POLYGONS_CORNERS | ABBE_POLYGONS_IN_LIGHT};
-  abbe_scene pane = {0}, mirror = {0};
+  OWNED(abbe_scene, pane) = {0};
+  OWNED(abbe_scene, mirror) = {0};
   abbe_image picture = {0};
   double spread, own_spread;
   load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &pane);
@@ -56,14 +55,12 @@ TEST(polygons_of_other_kinds) {
       abbe_image_free(&picture);
     }
   }
-  abbe_scene_free(&pane);
-  abbe_scene_free(&mirror);
 }
 
 /* A step under the pane: one column of cells lies between it and the floor. It is under the lamp,
  * where a column has a little more light than its share. */
 TEST(polygons_between_surfaces) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(CAMERA POINT_LIGHT FLOOR
             "- {name: step, shape: rectangle, width: 1, height: 2, reflectance: 0.5, transform: "
             "[{translate: [0.561, 0, 0.1]}]}\n" PANE("flat"),
@@ -83,7 +80,6 @@ TEST(polygons_between_surfaces) {
                   lost);
     assert_near(lost, 1.15, 0.25);
   }
-  abbe_scene_free(&scene);
 }
 
 /* A mirror's light on the floor, seen from nearby. */
@@ -99,7 +95,8 @@ static void load_mirror(const char *share, abbe_scene *out) {
 /* G4. What the camera's image and the light's gather draws near as pixels and texels shrink: the
  * mean difference by the mean light of the mirror. */
 TEST(gathers_agree) {
-  abbe_scene dark = {0}, bright = {0};
+  OWNED(abbe_scene, dark) = {0};
+  OWNED(abbe_scene, bright) = {0};
   double apart[2];
   load_mirror("0.0001", &dark);
   load_mirror("0.8", &bright);
@@ -124,6 +121,4 @@ TEST(gathers_agree) {
   }
   print_message("gathers are %.4f apart, then %.4f\n", apart[0], apart[1]);
   assert_true(apart[0] > 0 && apart[1] < 0.6 * apart[0]);
-  abbe_scene_free(&dark);
-  abbe_scene_free(&bright);
 }

@@ -19,7 +19,8 @@ TEST(still_light_is_kept) {
               {ABBE_PROFILE_WYMAN2006, ABBE_FILL_QUADS, true, 0},
               {ABBE_PROFILE_WYMAN2006_CIE, ABBE_FILL_QUADS, false, ABBE_POLYGONS_IN_LIGHT},
               {ABBE_PROFILE_WYMAN2006_CIE, ABBE_FILL_GATHER_EYE, true, 0}};
-  abbe_scene scene = {0}, moved = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_scene, moved) = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
   load_text(
       "materials: glass.yaml\ncamera: {eye: [0.4, -0.8, 0.6], target: [0, 0, 0]}\n" POINT_LIGHT
@@ -33,7 +34,8 @@ TEST(still_light_is_kept) {
                                    .height = 48,
                                    .photons = 64,
                                    .map_size = 64};
-    abbe_image kept = {0}, anew = {0};
+    OWNED(abbe_image, kept) = {0};
+    OWNED(abbe_image, anew) = {0};
     abbe_renderer *renderer = make_renderer(&scene, &desc);
     abbe_statistics statistics = draw_frame(renderer);
     assert_true(abbe_statistics_ran(&statistics, ABBE_PASS_PHOTONS));
@@ -50,9 +52,5 @@ TEST(still_light_is_kept) {
     read_picture(renderer, false, &anew);
     abbe_renderer_free(renderer);
     assert_same_pixels(&kept, &anew);
-    abbe_image_free(&kept);
-    abbe_image_free(&anew);
   }
-  abbe_scene_free(&scene);
-  abbe_scene_free(&moved);
 }

@@ -14,7 +14,7 @@ GROUP(make_context, free_context);
 /* A pane turns no light: each reconstruction's map holds the lamp's power through it, less two
  * reflections. Polygons miss half a cell all around. */
 TEST(what_arrives_is_what_was_sent) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
   /* as of the thesis's passes, whose test says how much it is */
   const double h = 0.2995, a = 0.15, angle = 4 * asin(a * a / (a * a + h * h));
@@ -25,13 +25,12 @@ TEST(what_arrives_is_what_was_sent) {
     print_message("%s: %.4f of what was sent\n", abbe_fill_name(fills[k]), sum / (angle * 0.9216));
     assert_near(sum, angle * 0.9216, 0.03 * angle);
   }
-  abbe_scene_free(&scene);
 }
 
 /* Behind a thin pane, where the shadow map knows a shadow, the ratio of solid angles is 1, and the
  * picture is that of the light through it. Gathers of a constant field are constant. */
 TEST(a_pane_is_direct_light) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image right = {0}, picture = {0};
   double spread, own_spread;
   load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
@@ -55,7 +54,6 @@ TEST(a_pane_is_direct_light) {
     abbe_image_free(&picture);
   }
   abbe_image_free(&right);
-  abbe_scene_free(&scene);
 }
 
 /* As printed, likewise: shadowed by the pane and lit by its photons as the floor is beside it, for
@@ -63,7 +61,7 @@ TEST(a_pane_is_direct_light) {
 TEST(a_pane_as_printed) {
   static const abbe_direction directions[] = {ABBE_DIRECTION_OWN, ABBE_DIRECTION_MEAN,
                                               ABBE_DIRECTION_DIRECT};
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image picture = {0};
   double spread;
   load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
@@ -83,13 +81,12 @@ TEST(a_pane_as_printed) {
       assert_near(mean, 0.5 * (0.99 + 0.1), 0.03);
       abbe_image_free(&picture);
     }
-  abbe_scene_free(&scene);
 }
 
 /* A flat mirror sends all of its share of the lamp's light to the floor, as the default profile has
  * it. */
 TEST(a_flat_mirror_has_the_lamps_light) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(CAMERA POINT_LIGHT FLOOR MIRROR("0.8"), &scene);
   abbe_render_desc desc = small;
   desc.photons = 1024;
@@ -109,7 +106,6 @@ TEST(a_flat_mirror_has_the_lamps_light) {
     print_message("%s: %.4f of the mirror's light\n", abbe_fill_name(fills[k]), sum[k] / right);
     assert_near(sum[k] / right, 1, 0.05); /* its cells are whole ones */
   }
-  abbe_scene_free(&scene);
 }
 
 /* Where the camera's pixel sees the floor. */
@@ -138,14 +134,13 @@ TEST(directions_differ_by_their_cosines) {
   desc.profile = ABBE_PROFILE_WYMAN2006;
   desc.space = ABBE_RGB_SPACE_REC709;
   for (int i = 0; i < 3; i++) {
-    abbe_scene scene = {0};
+    OWNED(abbe_scene, scene) = {0};
     load_text(i == 0 ? CAMERA POINT_LIGHT FLOOR MIRROR("0.0001")
                      : CAMERA POINT_LIGHT FLOOR MIRROR("0.8"),
               &scene);
     desc.direction = i == 1 ? ABBE_DIRECTION_OWN : ABBE_DIRECTION_DIRECT;
     make_picture(&scene, &desc, &picture[i]);
     abbe_camera_view_fit(&scene, &desc, &camera);
-    abbe_scene_free(&scene);
   }
   abbe_vector_subtract(lamp, centre, to);
   for (int k = 0; k < 3; k++) image[k] = lamp[k] - 2 * abbe_vector_dot(to, n) * n[k];
@@ -168,7 +163,7 @@ TEST(directions_differ_by_their_cosines) {
 
 /* One photon in 32 x 32 texels: as printed all are dropped, in units none is. */
 TEST(sparse_neighbourhoods) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
   abbe_render_desc desc = small;
   desc.photons = 64;
@@ -177,7 +172,6 @@ TEST(sparse_neighbourhoods) {
   desc.profile = ABBE_PROFILE_WYMAN2006;
   desc.space = ABBE_RGB_SPACE_REC709;
   assert_true(map_energy(&scene, &desc) == 0);
-  abbe_scene_free(&scene);
 }
 
 /* Frames */
@@ -194,7 +188,7 @@ static void next_frame(abbe_renderer *renderer, abbe_image *map) {
 
 /* A still scene is the same frame by frame as printed; in units it is the mean of four grids. */
 TEST(a_still_scene) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_image first = {0}, map = {0}, one = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
   abbe_render_desc desc = {.profile = ABBE_PROFILE_WYMAN2006,
@@ -213,7 +207,7 @@ TEST(a_still_scene) {
   renderer = make_renderer(&scene, &desc);
   for (int k = 0; k < 6; k++) next_frame(renderer, &map);
   abbe_renderer_free(renderer);
-  double *mean = calloc(128 * 128, sizeof *mean);
+  FREED double *mean = calloc(128 * 128, sizeof *mean);
   assert_non_null(mean);
   double apart = 0;
   for (int k = 0; k < 4; k++) {
@@ -230,17 +224,16 @@ TEST(a_still_scene) {
     apart = fmax(apart, fabs((double)one.data[3 * i + 1] - mean[i]));
   }
   assert_true(apart > 1e-3 * most); /* the grids do differ */
-  free(mean);
   abbe_image_free(&first);
   abbe_image_free(&map);
   abbe_image_free(&one);
-  abbe_scene_free(&scene);
 }
 
 /* A mirror that is uncovered shows by quarters, and one that is covered goes by them. */
 static void step(abbe_profile profile, bool up) {
-  abbe_scene dark = {0}, bright = {0};
-  abbe_image map = {0};
+  OWNED(abbe_scene, dark) = {0};
+  OWNED(abbe_scene, bright) = {0};
+  OWNED(abbe_image, map) = {0};
   load_text(CAMERA POINT_LIGHT FLOOR MIRROR("0.0001"), &dark);
   load_text(CAMERA POINT_LIGHT FLOOR MIRROR("0.8"), &bright);
   abbe_render_desc desc = {
@@ -262,9 +255,6 @@ static void step(abbe_profile profile, bool up) {
     assert_near(share, up ? 0.25 * k : 1 - 0.25 * k, 0.02);
   }
   abbe_renderer_free(renderer);
-  abbe_image_free(&map);
-  abbe_scene_free(&dark);
-  abbe_scene_free(&bright);
 }
 
 TEST(steps) {
@@ -337,10 +327,9 @@ TEST(flicker_and_ghost) {
 
 /* What it does not know. */
 TEST(refusals) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_renderer *renderer = NULL;
   load_text(CAMERA SUN FLOOR BALL("flat"), &scene);
   REFUSED(ABBE_UNSUPPORTED, "directional",
           abbe_renderer_make(context, &scene, &small, &renderer, &error));
-  abbe_scene_free(&scene);
 }

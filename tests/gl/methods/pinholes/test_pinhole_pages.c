@@ -43,14 +43,13 @@ static abbe_render_desc request(abbe_transport transport, size_t pinholes) {
 }
 
 static void draw_by(const char *text, const abbe_render_desc *desc, abbe_image *out) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(text, &scene);
   abbe_renderer *renderer = make_renderer(&scene, desc);
   draw_frame(renderer);
   read_picture(renderer, false, out);
   assert_finite(out);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 static void draw(const char *text, abbe_transport transport, size_t pinholes, abbe_image *out) {
@@ -73,14 +72,13 @@ GROUP(make_context, free_context);
 /* Clear glass and whole mirrors in a room of even light are not there, however few the pinholes;
  * the floor is lit from above alone, so nothing that looks down to it may be. */
 TEST(furnace) {
-  abbe_image with, without;
+  OWNED(abbe_image, with);
+  OWNED(abbe_image, without);
   static const char text[] = DOWN SOFT WHITE_FLOOR WALL("1");
   draw(text, ABBE_TRANSPORT_PINHOLE, 50, &with);
   draw(text, ABBE_TRANSPORT_PHOTONS, 0, &without);
   for (size_t i = 0; i < SIDE * SIDE * 3; i++)
     assert_near((double)with.data[i], (double)without.data[i], 2e-5);
-  abbe_image_free(&with);
-  abbe_image_free(&without);
 }
 
 /* Largest difference to `share` of what the polygon sends, of even light, over all open light. */
@@ -103,13 +101,12 @@ static double worst_of(const abbe_image *picture, const double (*corner)[3], dou
 TEST(a_mirror_absorbs) {
   const double corner[4][3] = {
       {0.3, -0.25, 0}, {0.3, 0.25, 0}, {0.3, 0.25, 0.3}, {0.3, -0.25, 0.3}};
-  abbe_image picture;
+  OWNED(abbe_image, picture);
   abbe_render_desc desc = request(ABBE_TRANSPORT_PINHOLE, 1024);
   draw_by(DOWN SOFT WHITE_FLOOR WALL("0.25"), &desc, &picture);
   const double worst = worst_of(&picture, corner, 0.75, 37); /* up to 2 cm before it */
   print_message("off by %.4f at most\n", worst);
   assert_true(worst < 0.02);
-  abbe_image_free(&picture);
 }
 
 /* Each shift of the photons' grid has samples of its own, whose errors even out: means of four
@@ -119,13 +116,12 @@ TEST(frames_have_other_samples) {
   static double at_place[FRAMES][SIDE][SIDE];
   double one = 0, four = 0, all = 0;
   for (int i = 0; i < FRAMES; i++) {
-    abbe_image picture;
+    OWNED(abbe_image, picture);
     abbe_render_desc desc = request(ABBE_TRANSPORT_PINHOLE, 16);
     desc.photon_shift[0] = (i + 0.5) / FRAMES - 0.5;
     draw_by(DOWN SOFT WHITE_FLOOR WALL("0"), &desc, &picture);
     for (size_t y = 0; y < SIDE; y += STEP)
       for (size_t x = 0; x < 34; x += STEP) at_place[i][y][x] = at(&picture, x, y);
-    abbe_image_free(&picture);
   }
   for (size_t y = 0; y < SIDE; y += STEP)
     for (size_t x = 0; x < 34; x += STEP) {
@@ -151,8 +147,9 @@ TEST(pages_stay_while_a_lamp_moves) {
   static const char *const walls[] = {DOWN SOFT LAMP WHITE_FLOOR WALL("0.5"),
                                       DOWN SOFT LAMP WHITE_FLOOR ROUGH_WALL};
   for (int rough = 0; rough < 2; rough++) {
-    abbe_scene scene;
-    abbe_image kept, anew;
+    OWNED(abbe_scene, scene);
+    OWNED(abbe_image, kept);
+    OWNED(abbe_image, anew);
     const abbe_render_desc desc = request(ABBE_TRANSPORT_PINHOLE, 8);
     load_text(walls[rough], &scene);
     abbe_renderer *renderer = make_renderer(&scene, &desc);
@@ -173,11 +170,8 @@ TEST(pages_stay_while_a_lamp_moves) {
     abbe_renderer_redraw(renderer);
     const abbe_statistics again = draw_frame(renderer);
     assert_true(abbe_statistics_ran(&again, ABBE_PASS_PINHOLES));
-    abbe_image_free(&kept);
-    abbe_image_free(&anew);
     abbe_renderer_free(renderer);
     abbe_renderer_free(other);
-    abbe_scene_free(&scene);
   }
 }
 
@@ -194,12 +188,11 @@ TEST(a_history_keeps_samples) {
 TEST(a_roof_hides) {
   const double corner[4][3] = {
       {-0.25, -0.25, 0.3}, {0.25, -0.25, 0.3}, {0.25, 0.25, 0.3}, {-0.25, 0.25, 0.3}};
-  abbe_image picture;
+  OWNED(abbe_image, picture);
   draw(DOWN SOFT WHITE_FLOOR ROOF, ABBE_TRANSPORT_PINHOLE, 1024, &picture);
   const double worst = worst_of(&picture, corner, 1, 8); /* beside the roof, as seen from above */
   print_message("off by %.4f at most\n", worst);
   assert_true(worst < 0.02);
-  abbe_image_free(&picture);
 }
 
 /* Samples in clusters, and texels between others, are off by less than what one cluster may send,
@@ -233,7 +226,8 @@ TEST(a_floor_of_triangles) {
   static const char disk[] =
       "objects:\n- {name: floor, shape: lathe, around: 64, profile: [[0, 0], [2, "
       "0]], reflectance: 1}\n";
-  abbe_image mesh, rectangle;
+  OWNED(abbe_image, mesh);
+  OWNED(abbe_image, rectangle);
   char text[2048];
   snprintf(text, sizeof text, DOWN SOFT "%s" WALL("0.25"), disk);
   draw(text, ABBE_TRANSPORT_PINHOLE, 200, &mesh);
@@ -247,8 +241,6 @@ TEST(a_floor_of_triangles) {
   print_message("off by %.5f where the wall takes up to %.3f\n", worst, most);
   assert_true(most > 0.3);
   assert_true(worst < 2e-3);
-  abbe_image_free(&mesh);
-  abbe_image_free(&rectangle);
 }
 
 /* A ball beside a black square, in even light: what each place sees of the square is missing. */
@@ -259,7 +251,7 @@ TEST(a_ball_is_lit) {
       "{axis: [0, 1, 0], angle: -90}}, {translate: [0.45, 0, 0.35]}]}\n";
   static const double corner[4][3] = {
       {0.45, -0.25, 0.1}, {0.45, 0.25, 0.1}, {0.45, 0.25, 0.6}, {0.45, -0.25, 0.6}};
-  abbe_image picture;
+  OWNED(abbe_image, picture) = {0};
   abbe_render_desc desc = request(ABBE_TRANSPORT_PINHOLE, 400);
   desc.clusters = 200;
   draw_by(text, &desc, &picture);
@@ -290,7 +282,6 @@ TEST(a_ball_is_lit) {
   print_message("off by %.4f at %zu places that lose up to %.3f\n", worst, places, most);
   assert_true(places > 30 && most > 0.2);
   assert_true(worst < 0.01);
-  abbe_image_free(&picture);
 }
 
 /* What one mirror hides of another counts once: behind a wall that hides it a ball changes nothing.
@@ -299,14 +290,13 @@ TEST(hidden_ones) {
   static const char behind[] = "- {name: far ball, shape: sphere, radius: 0.05, levels: 4, mirror: "
                                "0, transform: [{translate: [0.45, 0, 0.06]}]}\n";
   char text[2048];
-  abbe_image with, without;
+  OWNED(abbe_image, with);
+  OWNED(abbe_image, without);
   snprintf(text, sizeof text, "%s%s", DOWN SOFT WHITE_FLOOR WALL("1"), behind);
   draw(text, ABBE_TRANSPORT_PINHOLE, 200, &with);
   draw(DOWN SOFT WHITE_FLOOR WALL("1"), ABBE_TRANSPORT_PHOTONS, 0, &without);
   for (size_t y = 16; y < 32; y++)
     for (size_t x = 0; x < 36; x++) assert_near(at(&with, x, y), at(&without, x, y), 2e-3);
-  abbe_image_free(&with);
-  abbe_image_free(&without);
 }
 
 /* Refractors too: a clear ball is not there in even light, but where it shows the dark floor. */
@@ -341,8 +331,8 @@ TEST(dispersion_on_colours) {
            "0.5, 0.2]}\n" BALL("crown");
   double sum[2];
   for (int k = 0; k < 2; k++) {
-    abbe_scene scene;
-    abbe_image picture;
+    OWNED(abbe_scene, scene);
+    OWNED(abbe_image, picture);
     const abbe_render_desc desc = {.width = SIDE,
                                    .height = SIDE,
                                    .supersample = 1,
@@ -358,8 +348,6 @@ TEST(dispersion_on_colours) {
     assert_finite(&picture);
     sum[k] = image_sum(&picture, 1);
     abbe_renderer_free(renderer);
-    abbe_image_free(&picture);
-    abbe_scene_free(&scene);
   }
   print_message("%.4f of the light without\n", sum[1] / sum[0]);
   assert_near(sum[1] / sum[0], 1, 0.05);
@@ -373,12 +361,11 @@ TEST(refusals) {
       {DOWN SUN WHITE_FLOOR WALL("0.9"), "this scene has none"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     abbe_renderer *renderer = NULL;
     const abbe_render_desc desc = {.width = 16, .height = 16, .transport = ABBE_TRANSPORT_PINHOLE};
     load_text(cases[i].text, &scene);
     REFUSED(ABBE_UNSUPPORTED, cases[i].says,
             abbe_renderer_make(context, &scene, &desc, &renderer, &error));
-    abbe_scene_free(&scene);
   }
 }

@@ -22,7 +22,7 @@
 enum { SIDE = 24 };
 
 static void draw(const char *text, size_t pinholes, abbe_image *out) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   const abbe_render_desc desc = {.width = SIDE,
                                  .height = SIDE,
                                  .supersample = 1,
@@ -39,7 +39,6 @@ static void draw(const char *text, size_t pinholes, abbe_image *out) {
   read_picture(renderer, false, out);
   assert_finite(out);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 static double at(const abbe_image *p, size_t x, size_t y) {
@@ -75,7 +74,7 @@ GROUP(make_context, free_context);
 TEST(samples_send_the_lobe) {
   static const double d[3] = {0.8, 0, -0.6}, straight = 3 * 0.6;
   static const abbe_microfacets m = {0.2, 0.5};
-  abbe_image picture;
+  OWNED(abbe_image, picture);
   double worst = 0, most = 0;
   draw(DOWN SIDEWAYS WHITE_FLOOR WALL("0.9", "[0.2, 0.5]"), 200, &picture);
   for (size_t y = 2; y < SIDE; y += 4)
@@ -87,12 +86,11 @@ TEST(samples_send_the_lobe) {
     }
   print_message("off by %.4f of the most\n", worst / most);
   assert_true(most > 0.1 && worst < 0.04 * most);
-  abbe_image_free(&picture);
 }
 
 /* Even light that facets send to the floor: nearly all of what the wall hides. */
 TEST(even_light_keeps_nearly_all) {
-  abbe_image picture;
+  OWNED(abbe_image, picture);
   double least = 1, most = 0;
   draw(DOWN "environment: {uniform: 0.5, size: 64}\n" WHITE_FLOOR WALL("1", "[0.05, 0.05]"), 60,
        &picture);
@@ -103,7 +101,6 @@ TEST(even_light_keeps_nearly_all) {
     }
   print_message("%.4f to %.4f of open light\n", least, most);
   assert_true(most < 1 + 2e-3 && least > 0.98);
-  abbe_image_free(&picture);
 }
 
 /* The camera looks straight down onto a plate. */
@@ -116,7 +113,7 @@ TEST(even_light_keeps_nearly_all) {
  * 0.8774 at 0.3, 0.9883 at 0.1. */
 TEST(the_camera_sees_the_lobe) {
   static const abbe_microfacets m = {0.1, 0.3};
-  abbe_image picture;
+  OWNED(abbe_image, picture);
   draw(DOWN DIM "lights:\n- {name: sun, kind: directional, direction: [-0.48, 0, -0.8773], "
                 "irradiance: 3}\n" PLATE("[0.1, 0.3]"),
        8, &picture);
@@ -135,7 +132,6 @@ TEST(the_camera_sees_the_lobe) {
     for (size_t x = SIDE / 2 - 4; x < SIDE / 2 + 4; x++) sum += at(&picture, x, y) / 64;
   print_message("%.4f of even light\n", sum / 1.6);
   assert_near(sum / 1.6, 0.8774, 0.01);
-  abbe_image_free(&picture);
 }
 
 TEST(refusals) {
@@ -146,12 +142,11 @@ TEST(refusals) {
   } rows[] = {{{.profile = ABBE_PROFILE_WAND2003}, "smooth ones alone"},
               {{.transport = ABBE_TRANSPORT_PHOTONS}, "by the transport 'pinhole' alone"}};
   for (size_t i = 0; i < 2; i++) {
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     abbe_renderer *renderer = NULL;
     load_text(text, &scene);
     REFUSED(ABBE_UNSUPPORTED, rows[i].says,
             abbe_renderer_make(context, &scene, &rows[i].desc, &renderer, &error));
     assert_contains(last_error.text, "'wall'");
-    abbe_scene_free(&scene);
   }
 }

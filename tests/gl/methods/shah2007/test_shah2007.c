@@ -25,25 +25,23 @@ GROUP(make_context, free_context);
 
 /* A pane turns no light: the map holds the lamp's power through it, less two reflections. */
 TEST(what_arrives_is_what_was_sent) {
-  abbe_scene scene = {0};
-  abbe_image map = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, map) = {0};
   load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
   const double sum = map_energy(&scene, &small, &map);
   /* as of the thesis's passes, whose test says how much it is */
   const double h = 0.2995, a = 0.15, angle = 4 * asin(a * a / (a * a + h * h));
   assert_near(sum, angle * 0.9216, 0.03 * angle);
-  abbe_image_free(&map);
-  abbe_scene_free(&scene);
 }
 
 /* A low pass keeps the light, and spreads it by its variance along either axis. */
 TEST(a_low_pass_spreads_light) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   double sum[2], variance[2] = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
   for (int k = 0; k < 2; k++) {
     abbe_render_desc desc = small;
-    abbe_image map = {0};
+    OWNED(abbe_image, map) = {0};
     double mean = 0, square = 0;
     desc.map_size = 256;
     desc.low_pass = k == 0 ? 0 : 5;
@@ -55,18 +53,16 @@ TEST(a_low_pass_spreads_light) {
       square += light * x * x;
     }
     variance[k] = square - mean * mean;
-    abbe_image_free(&map);
   }
   print_message("%.6f of the light, %.3f texels^2 more\n", sum[1] / sum[0],
                 variance[1] - variance[0]);
   assert_near(sum[1] / sum[0], 1, 1e-3);
   assert_near(variance[1] - variance[0], 25, 1); /* less the tails that are cut */
-  abbe_scene_free(&scene);
 }
 
 /* Each estimator's map has the exact one's light, and nearly its place: moments of the caustic. */
 TEST(estimators_land_alike) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   double exact[3] = {0};
   load_text(CAMERA POINT_LIGHT FLOOR PANE("flat"), &scene);
   static const abbe_estimator kinds[] = {ABBE_ESTIMATOR_EXACT,    ABBE_ESTIMATOR_RATIO,
@@ -74,7 +70,7 @@ TEST(estimators_land_alike) {
                                          ABBE_ESTIMATOR_ILLINOIS, ABBE_ESTIMATOR_IMPOSTOR};
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
     abbe_render_desc desc = small;
-    abbe_image map = {0};
+    OWNED(abbe_image, map) = {0};
     double moment[3] = {0};
     desc.estimator = kinds[k];
     desc.iterations = 5;
@@ -89,9 +85,7 @@ TEST(estimators_land_alike) {
     if (k == 0) memcpy(exact, moment, sizeof exact);
     assert_near(moment[0] / exact[0], 1, 0.01);
     for (int c = 1; c < 3; c++) assert_near(moment[c], exact[c], 1);
-    abbe_image_free(&map);
   }
-  abbe_scene_free(&scene);
 }
 
 #define MIRROR                                                                                     \
@@ -102,8 +96,9 @@ TEST(estimators_land_alike) {
 /* A flat mirror sends all of its share of the lamp's light to the floor, as the default profile has
  * it. */
 TEST(a_flat_mirror_has_the_lamps_light) {
-  abbe_scene scene = {0};
-  abbe_image own = {0}, map = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, own) = {0};
+  OWNED(abbe_image, map) = {0};
   load_text(CAMERA POINT_LIGHT FLOOR MIRROR, &scene);
   abbe_render_desc desc = small;
   desc.photons =
@@ -113,33 +108,28 @@ TEST(a_flat_mirror_has_the_lamps_light) {
   const double right = map_energy(&scene, &desc, &own);
   assert_true(right > 0);
   assert_near(sum / right, 1, 0.04);
-  abbe_image_free(&own);
-  abbe_image_free(&map);
-  abbe_scene_free(&scene);
 }
 
 /* The sun, one interface and two: both pass; through two, a second share is reflected. */
 TEST(one_interface_and_the_sun) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(CAMERA SUN FLOOR PANE("flat"), &scene);
   double sum[2];
   for (size_t k = 0; k < 2; k++) {
     abbe_render_desc desc = small;
-    abbe_image map = {0};
+    OWNED(abbe_image, map) = {0};
     desc.interfaces = k + 1;
     sum[k] = map_energy(&scene, &desc, &map);
-    abbe_image_free(&map);
   }
   assert_true(sum[0] > 0);
   assert_near(sum[1] / sum[0], 0.96, 0.005);
-  abbe_scene_free(&scene);
 }
 
 /* A ball of air in the sun, all of whose light lands: two thirds of what its vertices are in full,
  * for (N . L) counts projection twice. */
 TEST(projection_is_counted_twice) {
-  abbe_scene scene = {0};
-  abbe_image map = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, map) = {0};
   abbe_render_desc desc = small;
   load_text(CAMERA SUN FLOOR BALL("air"), &scene);
   desc.profile = ABBE_PROFILE_SHAH2007;
@@ -148,14 +138,12 @@ TEST(projection_is_counted_twice) {
   desc.map_size = 2048; /* splats of six texels, whose sum does not go by where they lie */
   const double sum = map_energy(&scene, &desc, &map), white = 2048.0 * 2048 / 16;
   assert_near(sum / white, 2.0 / 3, 0.02);
-  abbe_image_free(&map);
-  abbe_scene_free(&scene);
 }
 
 /* As printed: (N . L) / V, so that brightness does not go by the object's size, and three colours.
  */
 TEST(as_printed) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   double sum[2];
   abbe_image map = {0}, picture = {0};
   abbe_render_desc desc = small;
@@ -181,5 +169,4 @@ TEST(as_printed) {
   assert_string_equal(picture.channel[0], "R");
   abbe_renderer_free(renderer);
   abbe_image_free(&picture);
-  abbe_scene_free(&scene);
 }

@@ -34,8 +34,8 @@ static void make_volume(const abbe_scene *scene, abbe_volume_kind kind, size_t n
 /* A light that moves under a renderer draws what a renderer of its own draws there, bit by bit, and
  * where the camera's rays through the object go is kept. */
 static void check_kept_sights(const char *text, abbe_volume_kind kind) {
-  abbe_scene scene = {0};
-  abbe_caustic_volume v;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_caustic_volume, v);
   abbe_image changed = {0}, anew = {0}, map = {0};
   load_text(text, &scene);
   make_volume(&scene, kind, 42, &v);
@@ -66,8 +66,6 @@ static void check_kept_sights(const char *text, abbe_volume_kind kind) {
   abbe_renderer_free(renderer);
   abbe_image_free(&changed);
   abbe_image_free(&anew);
-  abbe_caustic_volume_free(&v);
-  abbe_scene_free(&scene);
 }
 
 GROUP(make_context, free_context);
@@ -91,9 +89,10 @@ TEST(kept_sights_show_what_rays_show) {
   const char *const text[] = {ball, wedge, plate};
   for (int k = 0; k < 3; k++) {
     enum { SIDE = 48 };
-    abbe_scene scene = {0};
-    abbe_caustic_volume v;
-    abbe_image kept = {0}, large = {0};
+    OWNED(abbe_scene, scene) = {0};
+    OWNED(abbe_caustic_volume, v);
+    OWNED(abbe_image, kept) = {0};
+    OWNED(abbe_image, large) = {0};
     load_text(text[k], &scene);
     make_volume(&scene, k == 0 ? ABBE_VOLUME_VECTOR : ABBE_VOLUME_EXITS, 12, &v);
     abbe_render_desc desc = {.width = SIDE,
@@ -117,9 +116,5 @@ TEST(kept_sights_show_what_rays_show) {
       all += mean;
     }
     assert_near(off / all, 0, 1e-5);
-    abbe_image_free(&kept);
-    abbe_image_free(&large);
-    abbe_caustic_volume_free(&v);
-    abbe_scene_free(&scene);
   }
 }

@@ -209,23 +209,21 @@ GROUP(make_context, free_context);
 
 /* Single precision finds another cell than double at its edges, once in a thousand places. */
 TEST(pixels_have_what_the_volume_holds) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(ball, &scene);
   for (size_t region = 0; region < 3; region++)
     for (int kind = 0; kind < 2; kind++) {
-      abbe_caustic_volume v;
+      OWNED(abbe_caustic_volume, v);
       make_volume(&scene, (abbe_volume_kind)kind, region, 12, &v);
       for (int lookup = ABBE_VOLUME_LOOKUP_NEAREST; lookup < ABBE_VOLUME_LOOKUP_COUNT; lookup++)
         assert_near(mean_difference(&scene, &v, (abbe_volume_lookup)lookup), 0, 0.004);
-      abbe_caustic_volume_free(&v);
     }
-  abbe_scene_free(&scene);
 }
 
 /* The object turned and moved, the light a point elsewhere: the same volume. */
 TEST(objects_and_lights_move) {
-  abbe_scene scene = {0};
-  abbe_caustic_volume v;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_caustic_volume, v);
   double turn[16], step[16];
   static const double axis[3] = {0.3, 1, 0.2}, offset[3] = {0.05, 0.1, 0.12};
   load_text(wedge, &scene);
@@ -240,15 +238,13 @@ TEST(objects_and_lights_move) {
   static const double there[3] = {-0.8, -0.4, 2.4};
   memcpy(scene.light[0].position, there, sizeof there);
   assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_BLEND), 0, 0.004);
-  abbe_caustic_volume_free(&v);
-  abbe_scene_free(&scene);
 }
 
 /* Rays: of the sun, a lamp that is near, a cone that meets a part of the object; of any white. */
 TEST(rays_serve_any_light) {
   static const double lamp[3] = {-0.1, -0.2, 0.7}, down[3] = {0, 0, -1};
-  abbe_scene scene = {0};
-  abbe_caustic_volume v;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_caustic_volume, v);
   load_text(wedge, &scene);
   make_volume(&scene, ABBE_VOLUME_EXITS, 2, 12, &v);
   assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_AUTO), 0, 0.004);
@@ -268,8 +264,6 @@ TEST(rays_serve_any_light) {
   snprintf(text, sizeof text, "%s%s", wedge, HILL);
   load_text(text, &scene);
   assert_near(mean_difference(&scene, &v, ABBE_VOLUME_LOOKUP_AUTO), 0, 0.004);
-  abbe_caustic_volume_free(&v);
-  abbe_scene_free(&scene);
 }
 
 /* The largest step between pictures of a light that turns past nodes, of the mean light. */
@@ -314,16 +308,14 @@ static double largest_step(abbe_scene *scene, const abbe_caustic_volume *v,
 
 /* From node to node the nearest one's caustic jumps; three nodes' fades. */
 TEST(blends_do_not_pop) {
-  abbe_scene scene = {0};
-  abbe_caustic_volume v;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_caustic_volume, v);
   load_text(wedge, &scene);
   make_volume(&scene, ABBE_VOLUME_VECTOR, 2, 42, &v);
   const double jump = largest_step(&scene, &v, ABBE_VOLUME_LOOKUP_NEAREST);
   const double fade = largest_step(&scene, &v, ABBE_VOLUME_LOOKUP_BLEND);
   print_message("largest step: nearest %.3f, blend %.3f of the light\n", jump, fade);
   assert_true(fade < 0.4 * jump);
-  abbe_caustic_volume_free(&v);
-  abbe_scene_free(&scene);
 }
 
 static void refuse(const abbe_scene *scene, const abbe_render_desc *desc, abbe_result wanted,
@@ -333,8 +325,10 @@ static void refuse(const abbe_scene *scene, const abbe_render_desc *desc, abbe_r
 }
 
 TEST(what_it_does_not_hold_is_refused) {
-  abbe_scene scene = {0}, two = {0};
-  abbe_caustic_volume v, printed;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_scene, two) = {0};
+  OWNED(abbe_caustic_volume, v);
+  OWNED(abbe_caustic_volume, printed);
   load_text(ball, &scene);
   load_text(CAMERA SUN FLOOR BALL("crown") BRICK("crown"), &two);
   make_volume(&scene, ABBE_VOLUME_VECTOR, 0, 1, &v);
@@ -369,8 +363,4 @@ TEST(what_it_does_not_hold_is_refused) {
   d = (abbe_render_desc){.volume = &v, .max_nm = 800};
   refuse(&scene, &d, ABBE_UNSUPPORTED, "800");
   v.kind = ABBE_VOLUME_VECTOR;
-  abbe_caustic_volume_free(&v);
-  abbe_caustic_volume_free(&printed);
-  abbe_scene_free(&scene);
-  abbe_scene_free(&two);
 }

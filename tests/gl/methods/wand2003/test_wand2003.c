@@ -50,15 +50,16 @@ GROUP(make_context, free_context);
  * without it, less by eps / (d2 + eps). */
 TEST(one_pinhole) {
   static const char text[] = DOWN SOFT WHITE_FLOOR WALL("0.8");
-  abbe_scene scene;
-  abbe_image picture, base;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, picture) = {0};
+  OWNED(abbe_image, base) = {0};
   abbe_render_desc desc = request(1);
   load_text(text, &scene);
   draw_text(text, &desc, &picture);
   draw_text(DOWN SOFT WHITE_FLOOR WALL("0"), &desc, &base);
   assert_near(at(&base, 3, 3), 0.5 * ABBE_PI, 1e-3);
   const abbe_mesh *mesh = &scene.object[1].mesh;
-  abbe_surface_samples s;
+  OWNED(abbe_surface_samples, s) = {0};
   const abbe_surface_sampling sampling = {.count = 1};
   OK(abbe_surface_samples_make(&mesh, 1, &sampling, &s, &error));
   const double eps = 4 * s.area / ABBE_PI;
@@ -76,17 +77,13 @@ TEST(one_pinhole) {
       assert_near(at(&picture, x, y) - at(&base, x, y), right, 2e-3 * right + 2e-6);
     }
   assert_true(most > 0.01);
-  abbe_image_free(&base);
-  abbe_image_free(&picture);
-  abbe_surface_samples_free(&s);
-  abbe_scene_free(&scene);
 }
 
 /* A mirror under light that is alike all around is a lamp of its shape. */
 TEST(a_mirror_is_a_lamp_of_its_shape) {
   const double corner[4][3] = {
       {0.3, -0.25, 0}, {0.3, 0.25, 0}, {0.3, 0.25, 0.3}, {0.3, -0.25, 0.3}};
-  abbe_image picture;
+  OWNED(abbe_image, picture);
   const abbe_render_desc desc = request(2048);
   draw_text(DOWN SOFT WHITE_FLOOR WALL("0.8"), &desc, &picture);
   double worst = 0;
@@ -100,7 +97,6 @@ TEST(a_mirror_is_a_lamp_of_its_shape) {
     }
   print_message("off by %.4f at most\n", worst);
   assert_true(worst < 0.04);
-  abbe_image_free(&picture);
 }
 
 /* Whatever is around, a ball sends the same to all sides far away: r2 / 4 of the integral of
@@ -110,9 +106,10 @@ TEST(a_ball_sends_light_to_all_sides) {
       "environment: {size: 256, spots: [{elevation: 50, azimuth: 30, radiance: 8, sigma: 12}, "
       "{elevation: -30, azimuth: 200, radiance: 4, sigma: 20}], uniform: 0.1}\n";
   char text[2048], bare[2048];
-  abbe_image picture, without;
+  OWNED(abbe_image, picture);
+  OWNED(abbe_image, without);
   const abbe_render_desc desc = request(2048);
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   snprintf(text, sizeof text, DOWN "%s" WHITE_FLOOR MIRROR_BALL, sky);
   /* a mirror that adds nothing */
   snprintf(bare, sizeof bare, DOWN "%s" WHITE_FLOOR WALL("0"), sky);
@@ -128,9 +125,6 @@ TEST(a_ball_sends_light_to_all_sides) {
       const double right = 0.8 * 1e-4 / 4 * all / d2 * 0.3 / sqrt(d2);
       assert_near(at(&picture, x, y) - at(&without, x, y), right, 0.06 * right + 2e-6);
     }
-  abbe_image_free(&picture);
-  abbe_image_free(&without);
-  abbe_scene_free(&scene);
 }
 
 #define SPOT(sigma, radiance)                                                                      \
@@ -140,7 +134,8 @@ TEST(a_ball_sends_light_to_all_sides) {
   "- {name: pipe, shape: lathe, around: 256, profile: [[0.3, 0], [0.3, 0.2]], mirror: 0.9}\n"
 
 TEST(linear) {
-  abbe_image one, two;
+  OWNED(abbe_image, one);
+  OWNED(abbe_image, two);
   const abbe_render_desc desc = request(200);
   draw_text(DOWN SPOT("12", "5") WHITE_FLOOR PIPE, &desc, &one);
   draw_text(DOWN
@@ -149,8 +144,6 @@ TEST(linear) {
             &desc, &two);
   for (size_t i = 0; i < SIDE * SIDE * 3; i++)
     assert_near((double)two.data[i], 3 * (double)one.data[i], 2e-6 + 1e-5 * (double)two.data[i]);
-  abbe_image_free(&one);
-  abbe_image_free(&two);
 }
 
 /* Surroundings, mirror and eye by 90 degrees about z: the pixels of a quarter turn are as before,
@@ -236,7 +229,8 @@ TEST(a_pipe_draws_a_nephroid) {
   static const char sun[] =
       "environment: {size: 1024, sun: {elevation: 35, azimuth: 180, irradiance: 1, diameter: 6}}\n";
   char text[2048], bare[2048];
-  abbe_image picture, base;
+  OWNED(abbe_image, picture) = {0};
+  OWNED(abbe_image, base) = {0};
   abbe_render_desc desc = request(4096);
   snprintf(text, sizeof text, DOWN "%s" WHITE_FLOOR PIPE, sun);
   snprintf(bare, sizeof bare, DOWN "%s" WHITE_FLOOR WALL("0"), sun);
@@ -257,8 +251,6 @@ TEST(a_pipe_draws_a_nephroid) {
   }
   assert_true(most > 4);
   assert_true(worst < 0.08);
-  abbe_image_free(&picture);
-  abbe_image_free(&base);
 }
 
 TEST(refusals) {
@@ -271,12 +263,11 @@ TEST(refusals) {
       {DOWN SOFT WHITE_FLOOR WALL("0.9") BALL("flat"), "'ball' is a refractor"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     abbe_renderer *renderer = NULL;
     const abbe_render_desc desc = request(10);
     load_text(cases[i].text, &scene);
     REFUSED(ABBE_UNSUPPORTED, cases[i].says,
             abbe_renderer_make(context, &scene, &desc, &renderer, &error));
-    abbe_scene_free(&scene);
   }
 }

@@ -7,8 +7,8 @@
   "medium: {scattering: " scattering ", absorption: 0.5, g: 0.4, box: [[-1, -1, 0], [1, 1, 1]]}\n"
 
 TEST(mist_is_a_fact) {
-  abbe_scene scene;
-  abbe_plan plan;
+  OWNED(abbe_scene, scene);
+  OWNED(abbe_plan, plan);
   load_text(CAMERA POINT_LIGHT MIST("2") FLOOR BALL("flat"), &scene);
   OK(abbe_plan_make(&scene, NULL, &plan, &error));
   assert_true(plan.hazy && plan.eye_in_air);
@@ -28,26 +28,22 @@ TEST(mist_is_a_fact) {
   OK(abbe_plan_make(&scene, NULL, &plan, &error));
   assert_false(plan.hazy);
   assert_null(abbe_plan_find(&plan, ABBE_PASS_EYE_HAZE, 0));
-  abbe_plan_free(&plan);
-  abbe_scene_free(&scene);
 }
 
 /* Between what it is at the ends, nearer to where X, Y and Z have their middle. */
 TEST(a_coloured_medium_is_its_mean) {
-  abbe_scene scene;
-  abbe_plan plan;
+  OWNED(abbe_scene, scene);
+  OWNED(abbe_plan, plan);
   load_text(CAMERA POINT_LIGHT MIST("[[380, 0], [780, 4]]") FLOOR BALL("flat"), &scene);
   OK(abbe_plan_make(&scene, NULL, &plan, &error));
   assert_near(plan.air_haze.scattering, 4 * (524 - 380) / 400.0, 0.1);
   assert_true(is_noted(&plan, "taken for white"));
-  abbe_plan_free(&plan);
-  abbe_scene_free(&scene);
 }
 
 /* An object's medium takes of light like an absorbing material. */
 TEST(murky_glass_attenuates) {
-  abbe_scene scene;
-  abbe_plan plan;
+  OWNED(abbe_scene, scene);
+  OWNED(abbe_plan, plan);
   load_text(CAMERA POINT_LIGHT FLOOR
             "- {name: ball, shape: sphere, radius: 0.08, transform: [{translate: [0, 0, 0.2]}], "
             "material: flat, medium: {scattering: 3}}\n",
@@ -55,14 +51,12 @@ TEST(murky_glass_attenuates) {
   OK(abbe_plan_make(&scene, NULL, &plan, &error));
   assert_true(plan.hazy && plan.absorbing && !plan.tinting);
   assert_near(plan.eye_haze.scattering, 0, 0);
-  abbe_plan_free(&plan);
-  abbe_scene_free(&scene);
 }
 
 /* Of white light red goes first; what is in the water is seen through its surface. */
 TEST(blue_water) {
-  abbe_scene scene;
-  abbe_plan plan;
+  OWNED(abbe_scene, scene);
+  OWNED(abbe_plan, plan);
   load_file(ABBE_SOURCE_DIR "/scenes/water/shafts.yaml", &scene);
   OK(abbe_plan_make(&scene, NULL, &plan, &error));
   const abbe_plan_haze *h = &plan.eye_haze;
@@ -73,8 +67,6 @@ TEST(blue_water) {
   assert_true(plan.shaft[0].scattering > h->scatters[3]);
   assert_true(abbe_plan_find(&plan, ABBE_PASS_SHAFTS, 0)->runs);
   assert_true(is_noted(&plan, "taken for white"));
-  abbe_plan_free(&plan);
-  abbe_scene_free(&scene);
 }
 
 TEST(published_methods_refuse_it) {

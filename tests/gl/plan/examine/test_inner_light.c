@@ -106,7 +106,7 @@ TEST(what_no_light_meets_keeps_none) {
 }
 
 TEST(diamond_keeps_more_than_crown) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_inner_light diamond, crown;
   load_shipped("diamond", &scene);
   const abbe_object *stone = NULL;
@@ -120,7 +120,6 @@ TEST(diamond_keeps_more_than_crown) {
       abbe_inner_light_follow(&stone->exact, &view, NULL, 1.52, 0, share_of_nothing, &crown));
   for (size_t k = 3; k <= ABBE_RENDER_MAX_EXITS; k++)
     assert_true(diamond.kept[k] > 1.5 * crown.kept[k]);
-  abbe_scene_free(&scene);
 }
 
 TEST(exits_are_as_few_as_do) {
@@ -143,7 +142,7 @@ static double planned(const abbe_scene *scene, const abbe_render_desc *asked, ab
 
 /* Its plan follows the gem's light until little is inside; what is asked for stays. */
 TEST(a_gem_takes_as_many_exits_as_carry_light) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_plan plan, fewer, asked;
   load_shipped("gem", &scene);
   const double left = planned(&scene, NULL, &plan);
@@ -160,12 +159,11 @@ TEST(a_gem_takes_as_many_exits_as_carry_light) {
   abbe_plan_free(&plan);
   abbe_plan_free(&fewer);
   abbe_plan_free(&asked);
-  abbe_scene_free(&scene);
 }
 
 /* An earlier plan's light is that of the same stone and lamps, and of no others. */
 TEST(an_earlier_plan_is_taken_over) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_plan first, again, moved;
   load_shipped("gem", &scene);
   OK(abbe_plan_make(&scene, NULL, &first, &error));
@@ -180,13 +178,12 @@ TEST(an_earlier_plan_is_taken_over) {
   abbe_plan_free(&first);
   abbe_plan_free(&again);
   abbe_plan_free(&moved);
-  abbe_scene_free(&scene);
 }
 
 /* But while light moves it is that of where lamps stood, and of the same stone. */
 TEST(an_earlier_plan_serves_light_that_moves) {
   const abbe_render_desc coarse = {.coarse = ABBE_COARSE_ALL};
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_plan first, moved, rests, other;
   load_shipped("gem", &scene);
   OK(abbe_plan_make(&scene, &coarse, &first, &error));
@@ -205,7 +202,6 @@ TEST(an_earlier_plan_serves_light_that_moves) {
   abbe_plan_free(&moved);
   abbe_plan_free(&rests);
   abbe_plan_free(&other);
-  abbe_scene_free(&scene);
 }
 
 #define STONE                                                                                      \
@@ -221,7 +217,7 @@ TEST(the_ledger_says_the_same) {
   for (int i = 0; i < 2; i++)
     for (size_t exits = 1; exits <= 5; exits += 2) {
       char text[2048];
-      abbe_scene scene = {0};
+      OWNED(abbe_scene, scene) = {0};
       abbe_plan plan;
       snprintf(text, sizeof text, CAMERA "%s" FLOOR STONE, lights[i]);
       load_text(text, &scene);
@@ -236,6 +232,5 @@ TEST(the_ledger_says_the_same) {
       const abbe_ledger e = draw_frame(renderer).energy;
       assert_near(left / (e.trapped / e.reached), 1, 0.08);
       abbe_renderer_free(renderer);
-      abbe_scene_free(&scene);
     }
 }

@@ -96,12 +96,11 @@ TEST(windows_hold_what_is_there) {
       "shape: ring, major: 0.4, minor: 0.05, transform: [{translate: [0.3, -0.2, 0.1]}]"};
   for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
     char text[1024];
-    abbe_scene scene;
+    OWNED(abbe_scene, scene);
     snprintf(text, sizeof text, CAMERA POINT_LIGHT FLOOR "- {name: it, %s, material: flat}\n",
              shapes[i]);
     load_text(text, &scene);
     check_windows(&scene.object[1], scene.object[1].exact.kind == ABBE_EXACT_SPHERE);
-    abbe_scene_free(&scene);
   }
 }
 
@@ -140,11 +139,10 @@ TEST(the_way_to_a_box_is_the_nearest) {
   static const struct {
     double at[3], way;
   } rows[] = {{{0.2, 0, 0.4}, 0.17}, {{0.25, 0.04, 0.24}, 0.01}, {{0.28, 0.08, 0.23}, 0.05}};
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   load_text(CAMERA POINT_LIGHT FLOOR BRICK("flat"), &scene);
   for (size_t i = 0; i < 3; i++)
     assert_near(abbe_object_distance(&scene.object[1], rows[i].at), rows[i].way, 1e-12);
-  abbe_scene_free(&scene);
 }
 
 #define AMID(i, x, y)                                                                              \
@@ -162,7 +160,7 @@ TEST(maps_have_an_end) {
             "- {name: south, shape: sphere, radius: 0.08, levels: 2, transform: [{translate: [0, "
             "-0.4, 0.2]}], material: flat}\n";
   char text[4096];
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_plan plan;
   snprintf(text, sizeof text,
            CAMERA "lights:\n" AMID("1", "0", "0") AMID("2", "0.01", "0") AMID("3", "0", "0.01")
@@ -187,13 +185,12 @@ TEST(maps_have_an_end) {
            balls);
   load_text(text, &scene);
   REFUSED(ABBE_UNSUPPORTED, "more than 16 maps", abbe_plan_make(&scene, NULL, &plan, &error));
-  abbe_scene_free(&scene);
 }
 
 /* A seam may not cut what only its layers tell; a mesh's triangles may be cut. */
 TEST(layers_need_one_view) {
-  abbe_scene scene;
-  abbe_plan plan;
+  OWNED(abbe_scene, scene);
+  OWNED(abbe_plan, plan);
   abbe_render_desc desc = {.model = ABBE_MODEL_LAYERS};
   load_text(CAMERA "lights:\n- {name: lamp, kind: point, position: [0, 0, 0.281], intensity: "
                    "1}\n" FLOOR BALL("flat"),
@@ -203,6 +200,4 @@ TEST(layers_need_one_view) {
   desc.model = ABBE_MODEL_BVH;
   OK(abbe_plan_make(&scene, &desc, &plan, &error));
   assert_true(plan.cubes);
-  abbe_plan_free(&plan);
-  abbe_scene_free(&scene);
 }

@@ -12,8 +12,8 @@ TEST(the_thesis_profile_looks_through_one_view) {
   static const abbe_profile profiles[] = {ABBE_PROFILE_THESIS, ABBE_PROFILE_THESIS_CIE};
   for (size_t i = 0; i < 4; i++) {
     char text[1024];
-    abbe_scene scene;
-    abbe_plan plan;
+    OWNED(abbe_scene, scene);
+    OWNED(abbe_plan, plan);
     abbe_error error = {0};
     snprintf(text, sizeof text,
              CAMERA "lights:\n- {name: lamp, kind: %s, position: [0.1, 0, 0.2], intensity: "
@@ -24,7 +24,5 @@ TEST(the_thesis_profile_looks_through_one_view) {
     const abbe_result result = abbe_plan_make(&scene, &desc, &plan, &error);
     assert_int_equal(result, rows[i / 2].one_view ? ABBE_OK : ABBE_UNSUPPORTED);
     if (!rows[i / 2].one_view) assert_contains(error.text, "looks through one view");
-    abbe_plan_free(&plan);
-    abbe_scene_free(&scene);
   }
 }

@@ -105,7 +105,7 @@ TEST(square_on_the_axis) {
   "   transform: [{translate: [0.2, 0.1, 0.03]}]}\n"
 
 static void draw(const char *text, bool unlit, size_t samples, abbe_image *picture) {
-  abbe_scene scene;
+  OWNED(abbe_scene, scene);
   abbe_render_desc desc = small_frame;
   desc.width = 96;
   desc.supersample = samples;
@@ -116,7 +116,6 @@ static void draw(const char *text, bool unlit, size_t samples, abbe_image *pictu
   draw_frame(renderer);
   read_picture(renderer, true, picture);
   abbe_renderer_free(renderer);
-  abbe_scene_free(&scene);
 }
 
 /* A second lamp that shines all around, too faint to show, has the picture drawn lit throughout. */
@@ -126,7 +125,8 @@ TEST(unlit_where_nothing_shines) {
       CAMERA "ambient: 0.2\n" NARROW_SPOT
              "- {name: faint, kind: point, position: [0.3, 0.3, 0.5], intensity: 1e-9}\n" ROOM;
   for (size_t samples = 1; samples <= 2; samples++) {
-    abbe_image parts, whole;
+    OWNED(abbe_image, parts);
+    OWNED(abbe_image, whole);
     draw(narrow, true, samples, &parts);
     draw(wide, false, samples, &whole);
     for (size_t c = 0; c < parts.channels; c++) {
@@ -137,7 +137,5 @@ TEST(unlit_where_nothing_shines) {
         assert_near((double)parts.data[at], (double)whole.data[at], 1e-5 * most);
       }
     }
-    abbe_image_free(&parts);
-    abbe_image_free(&whole);
   }
 }

@@ -4,7 +4,7 @@
 #include "gl/plan/examine/spectral_needs.h"
 
 TEST(extremes_are_those_of_the_range) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_material_range range;
   double first, last;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("murk"), &scene); /* n falls; 20 per m at 400, 0 at 500 */
@@ -20,15 +20,13 @@ TEST(extremes_are_those_of_the_range) {
   assert_near(range.middle_per_m, 0, 0);
   OK(abbe_material_range_make(murk, 500, 700, &range, &error));
   assert_near(range.most_per_m, 0, 0);
-  abbe_scene_free(&scene);
 }
 
 TEST(an_unknown_index_is_an_error) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_material_range range;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &scene);
   const abbe_material *narrow = scene.object[1].material;
   OK(abbe_material_range_make(narrow, 400, 700, &range, &error));
   REFUSED(ABBE_OUT_OF_RANGE, "narrow", abbe_material_range_make(narrow, 400, 701, &range, &error));
-  abbe_scene_free(&scene);
 }

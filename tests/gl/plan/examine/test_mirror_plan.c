@@ -17,7 +17,7 @@ static void check(const abbe_plan *plan, abbe_plan_item item, size_t index, cons
 }
 
 TEST(a_grey_ball_asks_for_one_wavelength) {
-  abbe_plan plan;
+  OWNED(abbe_plan, plan);
   plan_text(SILVERED POINT_LIGHT FLOOR MIRROR_BALL("0.9"), NULL, &plan);
   assert_int_equal(plan.refractor_count, 1);
   assert_int_equal(plan.mirror_count, 1);
@@ -29,11 +29,10 @@ TEST(a_grey_ball_asks_for_one_wavelength) {
   check(&plan, ABBE_CHOICE_MIRROR, 1, "reflects 0.9 of the light");
   check(&plan, ABBE_CHOICE_MULTI_REFRACTOR_PATHS, 0, "what a mirror sends on");
   check(&plan, ABBE_CHOICE_WAVELENGTHS, 0, "mirrors reflect all wavelengths alike");
-  abbe_plan_free(&plan);
 }
 
 TEST(a_metal_asks_for_all) {
-  abbe_plan plan;
+  OWNED(abbe_plan, plan);
   plan_text(SILVERED POINT_LIGHT FLOOR MIRROR_BALL("gold"), NULL, &plan);
   assert_true(plan.colouring);
   assert_false(plan.fills || plan.dispersive);
@@ -41,12 +40,11 @@ TEST(a_metal_asks_for_all) {
   check(&plan, ABBE_CHOICE_MIRROR, 1, "by wavelength");
   check(&plan, ABBE_CHOICE_WAVELENGTHS, 0, "a mirror's reflectance varies");
   assert_int_equal(abbe_plan_least_wavelengths(&plan), ABBE_PLAN_WAVELENGTHS);
-  abbe_plan_free(&plan);
 }
 
 /* A path's parts of a band hold what a metal takes between coarse wavelengths. */
 TEST(glass_beside_a_metal_asks_for_no_more_wavelengths) {
-  abbe_plan plan;
+  OWNED(abbe_plan, plan);
   plan_text(SILVERED POINT_LIGHT FLOOR MIRROR_PANE("gold") BALL("n-bk7"), NULL, &plan);
   assert_true(plan.fills && plan.bvh && plan.mirror[0] && !plan.mirror[1]);
   assert_int_equal(plan.model[0], ABBE_REFRACTOR_BVH);
@@ -54,19 +52,17 @@ TEST(glass_beside_a_metal_asks_for_no_more_wavelengths) {
   abbe_plan_free(&plan);
   plan_text(SILVERED POINT_LIGHT FLOOR MIRROR_PANE("0.9") BALL("n-bk7"), NULL, &plan);
   assert_int_equal(abbe_plan_least_wavelengths(&plan), 4);
-  abbe_plan_free(&plan);
 }
 
 /* A ball is known by its triangles to whom is inside: they have two sides. */
 TEST(a_ball_around_the_lamp_is_a_mesh) {
-  abbe_plan plan;
+  OWNED(abbe_plan, plan);
   plan_text(
       SILVERED POINT_LIGHT FLOOR
       "- {name: ball, shape: sphere, radius: 0.1, transform: [{translate: [0.05, 0.03, 0.6]}], "
       "mirror: 0.9}\n",
       NULL, &plan);
   assert_int_equal(plan.model[0], ABBE_REFRACTOR_BVH);
-  abbe_plan_free(&plan);
 }
 
 TEST(a_metal_is_known_over_the_range) {

@@ -5,13 +5,11 @@
 #include "gl/plan/plan.h"
 
 static abbe_result check(const char *text, size_t photons, abbe_error *error) {
-  abbe_scene scene;
-  abbe_plan plan;
+  OWNED(abbe_scene, scene);
+  OWNED(abbe_plan, plan);
   const abbe_render_desc desc = {.photons = photons};
   load_text(text, &scene);
   abbe_result result = abbe_plan_make(&scene, &desc, &plan, error);
-  abbe_plan_free(&plan);
-  abbe_scene_free(&scene);
   return result;
 }
 

@@ -137,11 +137,10 @@ TEST(sides_and_overlaps) {
   const double floor[9] = {0, 0, 1, 2, 0, 0, 0, 2, 0};
   assert_near(abbe_reach_side(floor, (double[3]){5, 5, 4}), 3, 1e-15);
   assert_near(abbe_reach_side(floor, (double[3]){-5, 0, -1}), -2, 1e-15);
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat") BRICK("flat") RING("flat"), &scene);
   assert_false(abbe_reach_overlap(&scene.object[1], &scene.object[2]));
   assert_true(abbe_reach_overlap(&scene.object[1], &scene.object[3]));
-  abbe_scene_free(&scene);
 }
 
 /* A plane at 45 degrees: boxes on one side of it share its bounds, and are not reached into. */

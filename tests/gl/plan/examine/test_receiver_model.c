@@ -4,7 +4,7 @@
 #include "gl/plan/examine/models.h"
 
 TEST(a_curved_receiver_asks_for_a_hierarchy) {
-  abbe_plan plan;
+  OWNED(abbe_plan, plan);
   plan_text(CAMERA POINT_LIGHT FLOOR HILL BALL("crown"), NULL, &plan);
   assert_int_equal(plan.receivers, ABBE_RECEIVER_BVH);
   assert_int_equal(plan.receiver_model[0], ABBE_RECEIVER_EXACT);
@@ -13,11 +13,10 @@ TEST(a_curved_receiver_asks_for_a_hierarchy) {
   assert_false(abbe_plan_find(&plan, ABBE_PASS_RECEIVER_DEPTH, 0)->runs);
   assert_contains(abbe_plan_find(&plan, ABBE_CHOICE_RECEIVER_MODEL, 0)->reason,
                   "'hill' is a general mesh");
-  abbe_plan_free(&plan);
 }
 
 TEST(too_many_rectangles_are_traversed) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_plan plan;
   double many[97][9];
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
@@ -37,5 +36,4 @@ TEST(too_many_rectangles_are_traversed) {
                   "with 'floor' there are more than 96 parallelograms");
   abbe_plan_free(&plan);
   *exact = floor;
-  abbe_scene_free(&scene);
 }

@@ -26,7 +26,7 @@ TEST(a_model_that_is_asked_for) {
        "'convex' cannot serve 'ball'"},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    abbe_scene scene = {0};
+    OWNED(abbe_scene, scene) = {0};
     abbe_plan plan;
     abbe_error error = {0};
     load_text(rows[i].text, &scene);
@@ -40,12 +40,11 @@ TEST(a_model_that_is_asked_for) {
       assert_true(plan.multi_refractor_paths == rows[i].walk);
       abbe_plan_free(&plan);
     }
-    abbe_scene_free(&scene);
   }
 }
 
 TEST(too_many_refractors_are_unsupported) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_plan plan;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   abbe_object *object = scene.object, *many = calloc(256, sizeof *many);
@@ -64,7 +63,6 @@ TEST(too_many_refractors_are_unsupported) {
   scene.object = object;
   scene.object_count = 2;
   free(many);
-  abbe_scene_free(&scene);
 }
 
 #define DROP(name, radius, z)                                                                      \
@@ -90,21 +88,19 @@ TEST(refractors_that_overlap_are_noted) {
   /* walked light keeps the scene's rule; two layers know one refractor at a time */
   const abbe_render_desc apart = {.profile = ABBE_PROFILE_THESIS};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    abbe_scene scene;
-    abbe_plan plan;
+    OWNED(abbe_scene, scene);
+    OWNED(abbe_plan, plan);
     load_text(rows[i].text, &scene);
     OK(abbe_plan_make(&scene, &apart, &plan, &error));
     if (is_noted(&plan, "overlap") != (rows[i].part != NULL) ||
         (rows[i].part != NULL && !is_noted(&plan, rows[i].part)))
       fail_msg("scene %zu: %s", i,
                plan.note_count > 0 ? plan.note[plan.note_count - 1] : "no note");
-    abbe_plan_free(&plan);
-    abbe_scene_free(&scene);
   }
 }
 
 TEST(convex_meshes_are_known) {
-  abbe_mesh mesh = {0};
+  OWNED(abbe_mesh, mesh) = {0};
   OK(abbe_shape_sphere(2, 3, &mesh, &error));
   assert_true(abbe_mesh_is_convex(&mesh));
   /* one corner drawn in by a tenth */
@@ -113,5 +109,4 @@ TEST(convex_meshes_are_known) {
   abbe_mesh_free(&mesh);
   OK(abbe_shape_ring(0.08, 0.02, 32, 16, &mesh, &error));
   assert_false(abbe_mesh_is_convex(&mesh));
-  abbe_mesh_free(&mesh);
 }

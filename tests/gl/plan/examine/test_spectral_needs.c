@@ -4,7 +4,7 @@
 #include "gl/plan/examine/spectral_needs.h"
 
 TEST(an_index_that_is_not_known_is_refused_or_noted) {
-  abbe_plan plan;
+  OWNED(abbe_plan, plan);
   refuse_plan(CAMERA POINT_LIGHT FLOOR BALL("narrow"), NULL, ABBE_OUT_OF_RANGE, "narrow");
   plan_text(CAMERA POINT_LIGHT FLOOR BALL("loose"), NULL, &plan);
   assert_true(is_noted(&plan, "loose: the index is extrapolated"));
@@ -17,24 +17,22 @@ TEST(an_index_that_is_not_known_is_refused_or_noted) {
   const abbe_render_desc inside = {.min_nm = 420, .max_nm = 680};
   plan_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &inside, &plan);
   assert_false(is_noted(&plan, "extrapolated"));
-  abbe_plan_free(&plan);
 }
 
 /* Its colours by ray, how far apart they are, and what is drawn. */
 TEST(pleochroism_is_noted) {
-  abbe_plan plan;
+  OWNED(abbe_plan, plan);
   const char *head = "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR;
   char text[2048];
   snprintf(text, sizeof text, "%s%s", head, BALL("tourmaline-green"));
   plan_text(text, NULL, &plan);
   assert_true(is_noted(&plan, "tourmaline-green: pleochroic; 5 mm pass CIELAB 86 -49 46 of its "
                               "ordinary ray and 97 -12 14 of the extraordinary one, 50 apart"));
-  abbe_plan_free(&plan);
 }
 
 /* A crystal has one index here, and the plan says what is left out, once a material. */
 TEST(double_refraction_is_noted) {
-  abbe_plan plan;
+  OWNED(abbe_plan, plan);
   const char *head = "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR;
   char text[2048];
   snprintf(text, sizeof text, "%s%s%s", head, BALL("calcite"), BRICK("calcite"));
@@ -49,5 +47,4 @@ TEST(double_refraction_is_noted) {
   snprintf(text, sizeof text, "%s%s", head, BALL("diamond"));
   plan_text(text, NULL, &plan);
   assert_false(is_noted(&plan, "double refraction"));
-  abbe_plan_free(&plan);
 }

@@ -63,8 +63,9 @@ TEST(what_is_seen_stays) {
   for (double side = 10; side < 2e5; side *= 100) {
     const abbe_view view = view_from(1);
     const double max[3] = {side / 2, side / 2, 0}, min[3] = {-side / 2, -side / 2, 0};
-    abbe_mesh square, cut;
-    uint32_t *face_of;
+    OWNED(abbe_mesh, square) = {0};
+    OWNED(abbe_mesh, cut) = {0};
+    FREED uint32_t *face_of = NULL;
     make_square(side, &square);
     assert_true(abbe_cut_mesh_needed(&square, min, max, &view));
     OK(abbe_cut_mesh_make(&square, &view, &cut, &face_of, &error));
@@ -90,17 +91,15 @@ TEST(what_is_seen_stays) {
       assert_int_equal(held(&cut, p, uv), meets);
       for (int k = 0; k < 2 && meets; k++) assert_near(uv[k], p[k] / side + 0.5, 1e-9);
     }
-    free(face_of);
-    abbe_mesh_free(&cut);
-    abbe_mesh_free(&square);
   }
 }
 
 /* An edge with a part on one side alone has none on the other, or ends at the window. */
 TEST(parts_share_their_corners) {
   const abbe_view view = view_from(1);
-  abbe_mesh square, cut;
-  uint32_t *face_of;
+  OWNED(abbe_mesh, square);
+  OWNED(abbe_mesh, cut);
+  FREED uint32_t *face_of = NULL;
   size_t alone = 0;
   make_square(1e5, &square);
   OK(abbe_cut_mesh_make(&square, &view, &cut, &face_of, &error));
@@ -123,19 +122,15 @@ TEST(parts_share_their_corners) {
     alone += !shared && seen && !rim;
   }
   assert_int_equal(alone, 0);
-  free(face_of);
-  abbe_mesh_free(&cut);
-  abbe_mesh_free(&square);
 }
 
 TEST(small_things_are_not_cut) {
   const abbe_view view = view_from(1);
-  abbe_mesh square;
+  OWNED(abbe_mesh, square);
   make_square(1, &square);
   const double move[3] = {0.5, 3, 0};
   for (int i = 0; i < 4; i++)
     for (int k = 0; k < 3; k++) square.position[i][k] += move[k];
   const double min[3] = {0, 2.5, 0}, max[3] = {1, 3.5, 0};
   assert_false(abbe_cut_mesh_needed(&square, min, max, &view));
-  abbe_mesh_free(&square);
 }

@@ -130,7 +130,7 @@ static void assert_reads(const wish *w, double size, double shift, double tolera
 /* The tetrahedron is 1 wide, 2 high along glTF's y and 3 deep. */
 TEST(meshes_stand) {
   static char data[8192];
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   abbe_mesh_report r;
   const size_t size = make(&(wish){.type = FLOAT}, data);
   OK(test_read(abbe_gltf_read, "t.gltf", NULL, data, size, &m));
@@ -141,7 +141,6 @@ TEST(meshes_stand) {
     assert_near(r.min[k], min[k], 0);
     assert_near(r.max[k], max[k], 0);
   }
-  abbe_mesh_free(&m);
 }
 
 TEST(numbers_are_read_of_every_kind) {
@@ -188,7 +187,7 @@ TEST(nodes_place_meshes) {
   for (int i = 0; i < 2; i++) assert_reads(&placed[i], 2, 5, 1e-12);
   assert_reads(&placed[2], 1, 0, 0);
   /* a mirror turns faces, so that they look outwards again */
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   abbe_mesh_report r;
   OK(read_wish(&(wish){.node = ",\"scale\":[-1,1,1]"}, &m));
   OK(abbe_mesh_check(&m, &r, &error));
@@ -200,7 +199,6 @@ TEST(nodes_place_meshes) {
   OK(abbe_mesh_check(&m, &r, &error));
   assert_near(r.min[0], -2, 1e-12);
   assert_near(r.max[1], 1, 1e-12);
-  abbe_mesh_free(&m);
 }
 
 #define VEC(width, type, count)                                                                    \
@@ -224,7 +222,7 @@ TEST(instances_are_read) {
       .root = ",\"extensionsRequired\":[\"EXT_mesh_gpu_instancing\"]",
       .bytes = bytes,
       .size = sizeof bytes};
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   abbe_mesh_report r;
   OK(read_wish(&w, &m));
   assert_int_equal(m.face_count, 8);
@@ -233,7 +231,6 @@ TEST(instances_are_read) {
   assert_int_equal(r.shells, 2);
   assert_near(r.max[0], 10, 1e-9);
   assert_near(r.min[1], -4, 1e-9);
-  abbe_mesh_free(&m);
 }
 
 /* The last corner stands elsewhere. */
@@ -250,7 +247,7 @@ TEST(sparse_numbers_are_read) {
       .size = sizeof bytes};
   /* it belongs to the accessor of positions, whose object is closed before */
   static char data[8192];
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   abbe_mesh_report r;
   size_t size = make(&w, data);
   data[size] = '\0';
@@ -261,7 +258,6 @@ TEST(sparse_numbers_are_read) {
   OK(read_turned("t.gltf", data, size, &m));
   OK(abbe_mesh_check(&m, &r, &error));
   assert_near(r.volume, 2, 1e-12);
-  abbe_mesh_free(&m);
 }
 
 /* Positions that only an extension has are no zeros. */
@@ -301,7 +297,7 @@ TEST(strips_and_fans_are_read) {
                     .bytes = mode == 5 ? (const void *)strip : fan,
                     .size = sizeof strip};
     static char data[8192];
-    abbe_mesh m;
+    OWNED(abbe_mesh, m);
     abbe_mesh_report r;
     size_t size = make(&w, data);
     data[size] = '\0';
@@ -314,7 +310,6 @@ TEST(strips_and_fans_are_read) {
     assert_int_equal(m.face_count, mode == 5 ? 4 : 3);
     assert_int_equal(r.open_edges, mode == 5 ? 0 : 3);
     if (mode == 5) assert_near(fabs(r.volume), 1, 1e-12);
-    abbe_mesh_free(&m);
   }
 }
 

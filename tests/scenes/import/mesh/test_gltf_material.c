@@ -30,7 +30,7 @@ TEST(abbe_numbers_of_the_extension) {
   static const double rows[][2] = {{2.04, 9.8}, {0.625, 32}, {0.36, 55}, {0.33, 59}};
   for (size_t i = 0; i < 4; i++) {
     char json[1000], *name;
-    abbe_material m;
+    OWNED(abbe_material, m);
     abbe_material_numbers numbers;
     snprintf(json, sizeof json,
              "{\"materials\":[%s,\"KHR_materials_dispersion\":{\"dispersion\":%g}}}]}",
@@ -43,13 +43,12 @@ TEST(abbe_numbers_of_the_extension) {
     assert_null(name);
     assert_null(m.attenuation);
     assert_null(m.warning);
-    abbe_material_free(&m);
   }
 }
 
 TEST(defaults_and_what_is_left_out) {
-  abbe_material m;
-  char *name;
+  OWNED(abbe_material, m);
+  FREED char *name = NULL;
   double n;
   OK(load("{\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.85,0.85,0.85,1]},"
           "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":0.9},\"KHR_"
@@ -66,8 +65,6 @@ TEST(defaults_and_what_is_left_out) {
   assert_near(abbe_material_attenuation(&m, 611.4), log(2) / 0.02, 1e-6);
   assert_near(abbe_material_attenuation(&m, 549.1), log(4) / 0.02, 1e-6);
   assert_near(abbe_material_attenuation(&m, 464.2), log(1e6) / 0.02, 1e-3);
-  free(name);
-  abbe_material_free(&m);
 }
 
 TEST(bad_files_are_refused) {
@@ -110,14 +107,12 @@ TEST(bad_files_are_refused) {
        NULL, ABBE_INVALID_ARGUMENT, "x"},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    abbe_material m;
-    char *name = NULL;
+    OWNED(abbe_material, m);
+    FREED char *name = NULL;
     abbe_error error = {0};
     const abbe_result result = load(rows[i].json, rows[i].part, &m, &name, &error);
     if (result != rows[i].result || strstr(error.text, rows[i].says) == NULL)
       fail_msg("row %zu: %d: %s", i, (int)result, error.text);
-    free(name);
-    abbe_material_free(&m);
   }
   abbe_material m;
   char *name;

@@ -67,7 +67,7 @@ static double length_around(const test_polygon *p) {
 static void check(const test_polygon *p, const double frame[9], int digits, double tolerance) {
   static text t;
   for (int obj = 0; obj < 2; obj++) {
-    abbe_mesh m;
+    OWNED(abbe_mesh, m);
     abbe_mesh_report r;
     char *what = NULL;
     write_prism(p, frame, digits, obj, &t);
@@ -80,7 +80,6 @@ static void check(const test_polygon *p, const double frame[9], int digits, doub
     assert_near(r.area, area, tolerance * area);
     OK(abbe_mesh_fix(&m, ABBE_NORMALS_FLAT, false, NULL, &what, &error));
     if (what != NULL) fail_msg("%s", what);
-    abbe_mesh_free(&m);
   }
 }
 
@@ -120,7 +119,7 @@ TEST(faces_have_holes) {
     static text t;
     size_t corner[TEST_POLYGON_MOST];
     test_polygon p;
-    abbe_mesh m;
+    OWNED(abbe_mesh, m);
     abbe_mesh_report r;
     test_holes(holes, &p);
     t.size = 0;
@@ -133,6 +132,5 @@ TEST(faces_have_holes) {
     OK(abbe_mesh_check(&m, &r, &error));
     assert_near(r.area, 100 - holes, 1e-9);
     assert_int_equal(r.degenerate_faces + r.crowded_edges + r.flipped_edges, 0);
-    abbe_mesh_free(&m);
   }
 }

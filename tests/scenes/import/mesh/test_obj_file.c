@@ -44,7 +44,7 @@ TEST(marks_of_encodings_are_heeded) {
 TEST(corners_have_their_own_uv_and_normals) {
   static const char text[] = POINTS "vt 0.25 0.75\nvt 1 0 0\nvn 0 0 1\nvn 0 0 -2\n"
                                     "f 1/1/1 2/2/2 3/-1/-2\nf 4//1 2/1/2 1/2/1\n";
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   OK(test_read(abbe_obj_read, "t.obj", NULL, text, strlen(text), &m));
   assert_true(m.given_normals);
   assert_int_equal(m.face_count, 2);
@@ -56,7 +56,6 @@ TEST(corners_have_their_own_uv_and_normals) {
     assert_near(m.uv[v][1], uv[i][1], 0);
     assert_near(m.normal[v][2], z[i], 0);
   }
-  abbe_mesh_free(&m);
 }
 
 /* Programs write faces whose texture coordinates and normals they leave out. */

@@ -100,7 +100,7 @@ TEST(strips_alternate_and_begin_anew) {
                                        "6 0 1 2 2 3 4\n"};
   static const size_t count[] = {3, 2, 2};
   for (int i = 0; i < 3; i++) {
-    abbe_mesh m;
+    OWNED(abbe_mesh, m);
     char text[512];
     snprintf(text, sizeof text, PLAIN "%s", strips[i]);
     OK(parse(text, strlen(text), &m));
@@ -111,7 +111,6 @@ TEST(strips_alternate_and_begin_anew) {
                            m.position[m.face[f][2]], n);
       assert_true(n[2] > 0);
     }
-    abbe_mesh_free(&m);
   }
 }
 
@@ -165,7 +164,7 @@ TEST(a_body_may_begin_with_the_end_of_a_line) {
                                       "end_header"};
   for (int e = 0; e < 3; e++)
     for (unsigned char first = '\n'; first <= '\r'; first++) {
-      abbe_mesh m;
+      OWNED(abbe_mesh, m) = {0};
       char data[512] = "";
       const unsigned char body[] = {first, 0, 0, 1, 0, 0, 0, 1, 0, 3, 0, 1, 2};
       for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
@@ -177,7 +176,6 @@ TEST(a_body_may_begin_with_the_end_of_a_line) {
       memcpy(data + head, body, sizeof body);
       OK(parse(data, head + sizeof body, &m));
       assert_near(m.position[0][0], first, 0);
-      abbe_mesh_free(&m);
     }
 }
 
@@ -191,7 +189,7 @@ TEST(vertices_and_corners_have_uv_and_normals) {
   static const char corners[] =
       FACES("property list uchar float texcoord\n") "3 0 1 2 6 0.5 0.25 1 0 0 1\n";
   for (int i = 0; i < 2; i++) {
-    abbe_mesh m;
+    OWNED(abbe_mesh, m);
     const char *text = i == 0 ? vertices : corners;
     OK(parse(text, strlen(text), &m));
     assert_true(m.given_normals == (i == 0));
@@ -199,7 +197,6 @@ TEST(vertices_and_corners_have_uv_and_normals) {
     assert_near(m.uv[m.face[0][0]][0], 0.5, 0);
     assert_near(m.uv[m.face[0][0]][1], 0.25, 0);
     assert_near(m.uv[m.face[0][2]][1], 1, 0);
-    abbe_mesh_free(&m);
   }
 }
 
@@ -217,7 +214,7 @@ TEST(texture_coordinates_stay_with_their_face) {
       VERTICES("4") "property list uchar int vertex_indices\nproperty list uchar float texcoord\n"
                     "end_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
                     "4 1 2 3 0 8 0 0 1 0 1 1 0 1\n3 1 2 3 0\n";
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   OK(parse(before, strlen(before), &m));
   assert_int_equal(m.face_count, 1);
   assert_near(m.uv[m.face[0][0]][0], 0.5, 0);
@@ -229,7 +226,6 @@ TEST(texture_coordinates_stay_with_their_face) {
   assert_near(m.uv[m.face[0][1]][0], 1, 0);
   for (int k = 0; k < 3; k++)
     for (int c = 0; c < 2; c++) assert_near(m.uv[m.face[2][k]][c], 0, 0);
-  abbe_mesh_free(&m);
 }
 
 TEST(what_is_wrong_is_said) {
@@ -278,7 +274,7 @@ TEST(what_is_wrong_is_said) {
 
 TEST(a_mesh_is_loaded_from_them) {
   char data[1024];
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   const size_t size = binary(false, data);
   FILE *f = fopen("t_strips.ply", "wb");
   assert_non_null(f);
@@ -290,5 +286,4 @@ TEST(a_mesh_is_loaded_from_them) {
   if (result != ABBE_OK) fail_msg("%s", last_error.text);
   assert_int_equal(m.face_count, 4);
   assert_int_equal(m.vertex_count, 12);
-  abbe_mesh_free(&m);
 }

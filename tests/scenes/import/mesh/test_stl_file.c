@@ -56,12 +56,11 @@ TEST(texts_are_read) {
 
 TEST(several_solids_are_one_mesh) {
   char one[4096], text[8192];
-  abbe_mesh m;
+  OWNED(abbe_mesh, m);
   write_text(false, "", "\n", "endsolid own\n", one);
   snprintf(text, sizeof text, "%s%s", one, one);
   OK(test_read(abbe_stl_read, "t.stl", NULL, text, strlen(text), &m));
   assert_int_equal(m.face_count, 8);
-  abbe_mesh_free(&m);
 }
 
 /* Some programs begin these with 'solid' too. */

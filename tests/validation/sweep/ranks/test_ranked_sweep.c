@@ -59,7 +59,7 @@ static void prepare(asked *a) {
 
 /* Of a rank that was killed after its one row: as if it had been the last of three. */
 static void leave_a_row(const asked *a, double time_ms) {
-  abbe_sweep_table t = {0};
+  OWNED(abbe_sweep_table, t) = {0};
   char path[128];
   OK(abbe_sweep_table_load(one, &t, &error));
   t.row[0] = t.row[2];
@@ -68,7 +68,6 @@ static void leave_a_row(const asked *a, double time_ms) {
   assert_true(abbe_sweep_setting_same(&t.row[0].setting, &a->setting[2]));
   snprintf(path, sizeof path, "%s.2", table);
   OK(abbe_sweep_table_save(&t, path, &error));
-  abbe_sweep_table_free(&t);
 }
 
 /* A context is made where its process is: none is there when it forks. */

@@ -57,8 +57,9 @@ TEST(lights_move) {
 
 /* Photons are what they are compared with: fewer are off by little, and drawn again as before. */
 TEST(photons_know_no_nodes) {
-  abbe_scene scene = {0};
-  abbe_image before, after;
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, before);
+  OWNED(abbe_image, after);
   abbe_light_nodes nodes;
   const double up[3] = {0, 0, 1};
   abbe_node_errors known = {0};
@@ -82,10 +83,7 @@ TEST(photons_know_no_nodes) {
   read_picture(renderer, false, &after);
   for (size_t i = 0; i < after.width * after.height * after.channels; i++)
     assert_near((double)before.data[i], (double)after.data[i], 0);
-  abbe_image_free(&before);
-  abbe_image_free(&after);
   abbe_renderer_free(renderer);
   abbe_node_errors_free(&known);
   abbe_light_nodes_free(&nodes);
-  abbe_scene_free(&scene);
 }

@@ -15,7 +15,7 @@ TEST(distance) {
 }
 
 TEST(more_samples_are_nearer) {
-  abbe_scene scene = {0};
+  OWNED(abbe_scene, scene) = {0};
   abbe_pinhole_limits known = {.pictures = 2, .samples = 1024};
   const abbe_image *first, *again;
   load_text(
@@ -41,5 +41,4 @@ TEST(more_samples_are_nearer) {
   OK(abbe_pinhole_limits_find(&known, context, &scene, &desc, &again, &error));
   assert_ptr_equal(first, again);
   abbe_pinhole_limits_free(&known);
-  abbe_scene_free(&scene);
 }

@@ -76,8 +76,8 @@ static bool never(void *user, double done) {
       "[{translate: [0, 0, 0.15]}]}\n"
 
 TEST(a_ball) {
-  abbe_scene scene = {0};
-  abbe_image picture = {0};
+  OWNED(abbe_scene, scene) = {0};
+  OWNED(abbe_image, picture) = {0};
   abbe_error why = {0};
   static abbe_transport_study s;
   size_t refused;
@@ -135,6 +135,4 @@ TEST(a_ball) {
   REFUSED(
       ABBE_INVALID_ARGUMENT, "",
       abbe_transport_study_measure(&sweep, list, 4, file, NULL, NULL, &s, &refused, NULL, &error));
-  abbe_image_free(&picture);
-  abbe_scene_free(&scene);
 }

@@ -49,7 +49,7 @@ static void make_study(void) {
 
 TEST(for_people) {
   make_study();
-  char *text = NULL;
+  FREED char *text = NULL;
   size_t size;
   FILE *out = open_memstream(&text, &size);
   assert_non_null(out);
@@ -68,7 +68,6 @@ TEST(for_people) {
       "| wyman2003, 42 nodes, grid 27 | 1000 | 9 | - | - | - |\n"
       "pinhole, footprint on: slope -1.00\n";
   assert_string_equal(rest, rows);
-  free(text);
 }
 
 TEST(for_programs) {
