@@ -275,6 +275,33 @@ static bool smooth_besides_rough(const abbe_scene *scene, const abbe_plan *plan)
 }
 
 /* The scene's rule, that the later object wins, is not the renderer's. */
+/* The first refractor that light leaves after many inner reflections, for it is totally reflected
+ * beyond 30 degrees; NULL: none. */
+static const abbe_object *find_keeper(const abbe_scene *scene, const abbe_plan *plan) {
+  const double high = 2;
+  for (size_t i = 0; i < plan->refractor_count; i++) {
+    const abbe_object *object = &scene->object[plan->refractor_object[i]];
+    abbe_material_range range;
+    if (abbe_object_kind_of(object) == ABBE_OBJECT_REFRACTOR &&
+        abbe_material_range_make(object->material, plan->desc.min_nm, plan->desc.max_nm, &range,
+                                 NULL) == ABBE_OK &&
+        range.most_n > high)
+      return object;
+  }
+  return NULL;
+}
+
+static void note_layers(const abbe_scene *scene, abbe_plan *plan) {
+  const abbe_object *keeper =
+      plan->desc.model == ABBE_MODEL_LAYERS ? find_keeper(scene, plan) : NULL;
+  if (keeper != NULL)
+    abbe_plan_note(plan,
+                   "'%.50s' keeps light for many inner reflections, and layers show few of them: "
+                   "the object is too dark, by a half where it is a cut diamond; any other model "
+                   "follows them",
+                   keeper->name);
+}
+
 void abbe_refractor_model_note(const abbe_scene *scene, abbe_plan *plan) {
   const abbe_object *first[2] = {NULL, NULL};
   size_t pairs = 0;
@@ -282,6 +309,7 @@ void abbe_refractor_model_note(const abbe_scene *scene, abbe_plan *plan) {
     abbe_plan_note(plan,
                    "light of lamps that comes to a rough mirror through glass or off a smooth "
                    "mirror is left out, on receivers and as the camera sees it");
+  note_layers(scene, plan);
   if (plan->multi_refractor_paths) return;
   if (plan->refractor_count > 1)
     abbe_plan_note(plan, "light that leaves one refractor and meets another goes on unrefracted");

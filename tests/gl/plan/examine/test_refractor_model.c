@@ -99,6 +99,28 @@ TEST(refractors_that_overlap_are_noted) {
   }
 }
 
+/* Layers show few of a diamond's reflections, and enough of what lets light out soon. */
+TEST(light_that_layers_do_not_show_is_noted) {
+  static const abbe_render_desc layers = {.model = ABBE_MODEL_LAYERS};
+  static const struct {
+    const char *text;
+    const abbe_render_desc *asked;
+    bool noted;
+  } rows[] = {{CAMERA POINT_LIGHT FLOOR BRICK("dense"), &layers, true},
+              {CAMERA POINT_LIGHT FLOOR BRICK("dense"), NULL, false},
+              {CAMERA POINT_LIGHT FLOOR BRICK("crown"), &layers, false}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    abbe_scene scene;
+    abbe_plan plan;
+    load_text(rows[i].text, &scene);
+    OK(abbe_plan_make(&scene, rows[i].asked, &plan, &error));
+    assert_int_equal(is_noted(&plan, "'brick' keeps light for many inner reflections"),
+                     rows[i].noted);
+    abbe_plan_free(&plan);
+    abbe_scene_free(&scene);
+  }
+}
+
 TEST(convex_meshes_are_known) {
   OWNED(abbe_mesh, mesh) = {0};
   OK(abbe_shape_sphere(2, 3, &mesh, &error));
