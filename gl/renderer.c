@@ -166,8 +166,7 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
         (double)first->photon_count / ((double)first->cells[0] * (double)first->cells[1]);
   }
   if (r->plan.caustics && r->method == NULL) abbe_caustics_energy(&r->caustics, &s->energy);
-  double *part = &s->energy.reached;
-  for (size_t i = 0; i < sizeof s->energy / sizeof *part; i++) part[i] *= r->local.unit;
+  abbe_ledger_scale(&s->energy, r->local.unit);
   for (abbe_pass pass = 0; pass < ABBE_PASS_COUNT && (r->method == NULL || s->pass_count == 0);
        pass++)
     s->kept[pass] = abbe_plan_runs(&r->plan, pass, 0) && !abbe_statistics_ran(s, pass);

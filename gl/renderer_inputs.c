@@ -1,6 +1,6 @@
 #include "gl/renderer_inputs.h"
 
-#include "gl/methods/pinholes/pinhole_samples.h"
+#include "gl/methods/transports/transports.h"
 #include "gl/scene/spectra/camera_bands.h"
 #include "scenes/geometry/digest.h"
 

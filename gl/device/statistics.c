@@ -8,6 +8,12 @@ double abbe_ledger_imbalance(const abbe_ledger *l) {
   return fabs(l->reached + l->interpolated - parts) / l->reached;
 }
 
+void abbe_ledger_scale(abbe_ledger *l, double by) {
+  double *const entry[] = {&l->reached, &l->reflected, &l->absorbed, &l->trapped,
+                           &l->missed,  &l->deposited, &l->on_tiles, &l->interpolated};
+  for (size_t i = 0; i < sizeof entry / sizeof *entry; i++) *entry[i] *= by;
+}
+
 void abbe_statistics_add_ms(abbe_statistics *s, abbe_pass pass, double ms) {
   size_t i = 0;
   if ((int)pass < 0 || pass >= ABBE_PASS_COUNT) return;

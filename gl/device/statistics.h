@@ -27,6 +27,8 @@ typedef struct abbe_ledger {
 /* |reached + interpolated - (reflected + absorbed + trapped + missed + deposited)| / reached; 0
  * where nothing was reached. */
 double abbe_ledger_imbalance(const abbe_ledger *ledger);
+/* All of it, in another unit. */
+void abbe_ledger_scale(abbe_ledger *ledger, double by);
 
 typedef struct abbe_pass_time {
   abbe_pass pass;

@@ -17,13 +17,7 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
                                .receivers = p->parallelogram_count,
                                .surfaces = p->receiver_count,
                                .reflections = abbe_gpu_surfaces_reflections(scene),
-                               .wavelengths = p->desc.wavelengths,
-                               .bands = scene->band_count,
-                               .band_levels = scene->band_levels,
-                               .exits = p->desc.exits,
-                               .slots = p->hit_slots,
                                .bvh_stack = scene->bvh_depth + 1,
-                               .receiver_root = scene->receiver_root,
                                .shadow_planes = scene->shadow_planes,
                                .one_shadow = p->light_view_count * p->refractor_count == 1,
                                .tints = p->tints,
@@ -34,8 +28,10 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
                                                 : p->desc.wavelengths > 1 ? 8
                                                                           : 2,
 #define FLAG_OF(field, define, value) .field = value,
-                               ABBE_VARIANT_FLAGS(FLAG_OF)
+#define COUNT_OF(field, value) .field = value,
+                               ABBE_VARIANT_FLAGS(FLAG_OF) ABBE_VARIANT_COUNTS(COUNT_OF)
 #undef FLAG_OF
+#undef COUNT_OF
   };
   if (p->volume) {
     out->volume_kind = p->desc.volume->kind;
@@ -172,18 +168,9 @@ static void set_counts(const abbe_shader_variant *v, const abbe_gl *gl, GLuint p
     const char *name;
     size_t value;
   } counts[] = {
-      {"counts.wavelengths", v->wavelengths},
-      {"counts.bands", v->bands},
-      {"counts.band_levels", v->band_levels},
-      {"counts.eye_bands", v->eye_bands},
-      {"counts.exits", v->exits},
-      {"counts.slots", v->slots},
-      {"counts.hit_stride", v->hit_stride},
-      {"counts.nodes", v->nodes},
-      {"counts.map_levels", v->map_levels},
-      {"counts.tile_blocks", v->tile_blocks},
-      {"counts.chart_sides", v->chart_sides},
-      {"counts.receiver_root", v->receiver_root},
+#define COUNT(field, value) {"counts." #field, v->field},
+      ABBE_VARIANT_COUNTS(COUNT)
+#undef COUNT
   };
   gl->UseProgram(program);
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)

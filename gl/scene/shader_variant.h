@@ -39,15 +39,32 @@
   X(pinholes, PINHOLES, p->desc.transport == ABBE_TRANSPORT_PINHOLE) /* receivers have pages */    \
   X(page_charts, PINHOLE_CHARTS, p->page_charts) /* also those that are meshes */
 
+/* Counts that are uniforms of every program (shaders/counts.glsl): X(field, at first); those of 0
+ * are for passes to complete. */
+#define ABBE_VARIANT_COUNTS(X)                                                                     \
+  X(wavelengths, p->desc.wavelengths)                                                              \
+  X(bands, scene->band_count)                                                                      \
+  X(band_levels, scene->band_levels)                                                               \
+  X(eye_bands, 0) /* bands of a pixel at the most, where they are not refined */                   \
+  X(exits, p->desc.exits)                                                                          \
+  X(slots, p->hit_slots)                                                                           \
+  X(hit_stride, 0) /* 0: the program follows no photons */                                         \
+  X(nodes, 0)                                                                                      \
+  X(map_levels, 0)                                                                                 \
+  X(tile_blocks, 0)                                                                                \
+  X(chart_sides, 0)                                                                                \
+  X(receiver_root, scene->receiver_root)
+
 typedef struct abbe_shader_variant {
-#define ABBE_VARIANT_FIELD(field, define, value) bool field;
-  ABBE_VARIANT_FLAGS(ABBE_VARIANT_FIELD)
-#undef ABBE_VARIANT_FIELD
+#define ABBE_VARIANT_FLAG(field, define, value) bool field;
+#define ABBE_VARIANT_COUNT(field, value) size_t field;
+  ABBE_VARIANT_FLAGS(ABBE_VARIANT_FLAG)
+  ABBE_VARIANT_COUNTS(ABBE_VARIANT_COUNT)
+#undef ABBE_VARIANT_FLAG
+#undef ABBE_VARIANT_COUNT
   /* the scene */
   size_t lights, area_lights, refractors, receivers, surfaces, reflections, planes;
-  size_t wavelengths, bands, band_levels;
-  size_t exits, slots, tints;
-  size_t bvh_stack, receiver_root, shadow_planes;
+  size_t tints, bvh_stack, shadow_planes;
   bool one_shadow, receiver_colours;
   abbe_volume_kind volume_kind; /* kind of a volume */
   abbe_region_kind volume_region;
@@ -56,14 +73,9 @@ typedef struct abbe_shader_variant {
   size_t shaft_steps;  /* and steps of a way through it */
   bool copies;         /* a software rasteriser: tables are copied first (copies.glsl) */
   /* the picture */
-  size_t eye_bands;     /* bands of a pixel at the most, where they are not refined */
   size_t pixel_threads; /* threads of a pixel (refraction_threads.glsl) */
-  /* the map */
-  size_t map_levels;
-  size_t tiles, tile_blocks,
-      chart_sides; /* tiles: capacity for those of a light; 0: none has any */
-  /* photons; hit_stride 0: the program follows none */
-  size_t hit_stride, steps, nodes;
+  size_t tiles;         /* capacity for those of a light; 0: none has any */
+  size_t steps;         /* steps of photons */
   bool bridge, doubts_bridges;
 } abbe_shader_variant;
 

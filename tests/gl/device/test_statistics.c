@@ -27,3 +27,10 @@ TEST(a_ledger_balances_or_says_by_how_much_not) {
   l.reached = 0;
   assert_near(abbe_ledger_imbalance(&l), 0, 0);
 }
+
+TEST(a_ledger_is_scaled_whole) {
+  abbe_ledger l = {1, 2, 3, 4, 5, 6, 7, 8};
+  const abbe_ledger twice = {2, 4, 6, 8, 10, 12, 14, 16};
+  abbe_ledger_scale(&l, 2);
+  assert_memory_equal(&l, &twice, sizeof l);
+}
