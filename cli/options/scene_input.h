@@ -56,7 +56,8 @@ enum {
    ABBE_SCENE_INPUT_LOOK,                                                                          \
    "NAME",                                                                                         \
    0,                                                                                              \
-   "of a stone's file: white, black, velvet, daylight, darkfield, lightbox, dispersion (white)",   \
+   "of a stone's file: white, black, velvet, daylight, darkfield, lightbox, dispersion, fire, "    \
+   "backdrop (white)",                                                                             \
    group},                                                                                         \
       {"with",                                                                                     \
        ABBE_SCENE_INPUT_WITH,                                                                      \

@@ -16,7 +16,7 @@
 
 /* X(name): scenes/looks/NAME.yaml. The first is the default. */
 #define ABBE_STUDIO_LOOKS(X)                                                                       \
-  X(white) X(black) X(velvet) X(daylight) X(darkfield) X(lightbox) X(dispersion)
+  X(white) X(black) X(velvet) X(daylight) X(darkfield) X(lightbox) X(dispersion) X(fire) X(backdrop)
 /* X(code, name): what a stone is shown with. The first is the default. */
 #define ABBE_STUDIO_WITHS(X) X(TABLE, table) X(RING, ring) X(NONE, none)
 

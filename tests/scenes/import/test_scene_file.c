@@ -51,6 +51,8 @@ TEST(every_shipped_scene_loads) {
       {"looks/darkfield", 110, ABBE_EXACT_CONVEX, 73},
       {"looks/lightbox", 110, ABBE_EXACT_CONVEX, 73},
       {"looks/dispersion", 110, ABBE_EXACT_CONVEX, 73},
+      {"looks/fire", 110, ABBE_EXACT_CONVEX, 73},
+      {"looks/backdrop", 110, ABBE_EXACT_CONVEX, 73},
   };
   for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
     abbe_scene scene = load(scenes[i].name);
