@@ -4,6 +4,7 @@
 #include "base/number.h"
 #include "colorimetry/colour_temperature.h"
 #include "colorimetry/illuminant_tables.h"
+#include "colorimetry/observer.h"
 #include "spectral/dispersion/csv_points.h"
 
 #include <math.h>
@@ -215,6 +216,32 @@ static abbe_result make_at_temperature(const char *name, double daylight, double
   return daylight > 0 ? make_daylight(daylight, out, error) : make_planckian(planckian, out, error);
 }
 
+static abbe_result make_lines(const char *name, const abbe_illuminant_line *line, size_t count,
+                              abbe_illuminant *out, abbe_error *error) {
+  double nm[3 * ABBE_ILLUMINANT_MOST_LINES], power[3 * ABBE_ILLUMINANT_MOST_LINES];
+  for (size_t i = 0; i < 3 * count; i++) {
+    nm[i] = line[i / 3].lambda_nm + ((double)(i % 3) - 1) * ABBE_ILLUMINANT_LINE_HALF_NM;
+    power[i] = i % 3 == 1 ? line[i / 3].power : 0;
+  }
+  if (nm[0] < ABBE_OBSERVER_MIN_NM || nm[3 * count - 1] > ABBE_OBSERVER_MAX_NM ||
+      strlen(name) >= sizeof out->name)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the illuminant '%.40s': a line lies from 360 to 830 nm, in up to %zu "
+                          "letters",
+                          name, sizeof out->name - 1);
+  snprintf(out->name, sizeof out->name, "%s", name);
+  return take(nm, power, 3 * count, ABBE_INTERPOLATION_LINEAR, out, error);
+}
+
+size_t abbe_illuminant_lines(const abbe_illuminant *illuminant,
+                             double lambda_nm[ABBE_ILLUMINANT_MOST_LINES]) {
+  abbe_illuminant_line line[ABBE_ILLUMINANT_MOST_LINES];
+  if (illuminant->kind != ABBE_ILLUMINANT_TABULATED) return 0;
+  const size_t count = abbe_illuminant_lines_named(illuminant->name, line);
+  for (size_t i = 0; i < count; i++) lambda_nm[i] = line[i].lambda_nm;
+  return count;
+}
+
 /* "FL2" is F2. */
 static const abbe_illuminant_table *find_table(const char *name) {
   const bool fl = strncasecmp(name, "FL", 2) == 0;
@@ -233,22 +260,25 @@ static int find_kind(const char *name) {
 }
 
 bool abbe_illuminant_is_name(const char *name) {
+  abbe_illuminant_line line[ABBE_ILLUMINANT_MOST_LINES];
   if (name == NULL) return false;
   return find_kind(name) >= 0 || find_table(name) != NULL || daylight_kelvin(name) > 0 ||
-         planckian_kelvin(name) > 0;
+         planckian_kelvin(name) > 0 || abbe_illuminant_lines_named(name, line) > 0;
 }
 
 const char *abbe_illuminant_listed(size_t index) {
   if (index < ABBE_ILLUMINANT_TABULATED) return names[index];
   index -= ABBE_ILLUMINANT_TABULATED;
-  return index < ABBE_ILLUMINANT_TABLE_COUNT ? abbe_illuminant_tables[index].name : NULL;
+  return index < ABBE_ILLUMINANT_TABLE_COUNT
+             ? abbe_illuminant_tables[index].name
+             : abbe_illuminant_lines_listed(index - ABBE_ILLUMINANT_TABLE_COUNT);
 }
 
 static const char *nearest(const char *name) {
-  enum { COUNT = ABBE_ILLUMINANT_TABULATED + ABBE_ILLUMINANT_TABLE_COUNT };
-  const char *all[COUNT];
-  for (size_t i = 0; i < COUNT; i++) all[i] = abbe_illuminant_listed(i);
-  return abbe_nearest_word(name, all, COUNT);
+  const char *all[64];
+  size_t count = 0;
+  while (count < 64 && (all[count] = abbe_illuminant_listed(count)) != NULL) count++;
+  return abbe_nearest_word(name, all, count);
 }
 
 abbe_result abbe_illuminant_make(const char *name_or_path, abbe_illuminant *out,
@@ -261,6 +291,9 @@ abbe_result abbe_illuminant_make(const char *name_or_path, abbe_illuminant *out,
   }
   const abbe_illuminant_table *table = find_table(name_or_path);
   if (table != NULL) return make_published(table, out, error);
+  abbe_illuminant_line line[ABBE_ILLUMINANT_MOST_LINES];
+  const size_t lines = abbe_illuminant_lines_named(name_or_path, line);
+  if (lines > 0) return make_lines(name_or_path, line, lines, out, error);
   const double daylight = daylight_kelvin(name_or_path), planckian = planckian_kelvin(name_or_path);
   if (daylight > 0 || planckian > 0)
     return make_at_temperature(name_or_path, daylight, planckian, out, error);

@@ -1,5 +1,10 @@
 #include "colorimetry/illuminant_tables.h"
 
+#include "base/number.h"
+
+#include <string.h>
+#include <strings.h>
+
 /* From 300 nm. */
 static const double c[] = {
     0,      0,     0,      0,     0.01,   0.2,    0.4,   1.55,   2.7,    4.85,   7,
@@ -238,3 +243,57 @@ const abbe_illuminant_table abbe_illuminant_tables[ABBE_ILLUMINANT_TABLE_COUNT] 
     TABLE("LED-V2", 380, led_v2)};
 
 const double *const abbe_illuminant_daylight[3] = {s0, s1, s2};
+
+/* ---- lines ---- */
+
+/* Lines of 1/100 of the strongest and more that the eye sees [Sansonetti2005]. */
+static const struct {
+  const char *name;
+  abbe_illuminant_line line[ABBE_ILLUMINANT_MOST_LINES];
+} lamps[] = {
+    {"sodium", {{588.9950, 80000}, {589.5924, 40000}}},
+    {"mercury",
+     {{404.6563, 1800},
+      {407.7831, 150},
+      {435.8328, 4000},
+      {546.0735, 1100},
+      {576.9598, 240},
+      {579.0663, 280}}},
+    {"hydrogen", {{410.174, 15}, {434.047, 30}, {486.133, 80}, {656.272, 120}, {656.2852, 180}}},
+};
+enum { LAMPS = sizeof lamps / sizeof *lamps };
+
+/* [Schott2014] */
+static const struct {
+  const char *letter;
+  double lambda_nm;
+} fraunhofer[] = {{"i", 365.0146},  {"h", 404.6561}, {"g", 435.8343}, {"F'", 479.9914},
+                  {"F", 486.1327},  {"e", 546.0740}, {"d", 587.5618}, {"D", 589.2938},
+                  {"C'", 643.8469}, {"C", 656.2725}, {"r", 706.5188}};
+
+/* nm of "632.8nm" or "line-d"; 0 where it is neither. */
+static double alone(const char *name) {
+  const char *end = name;
+  double nm = 0;
+  if (abbe_number_read(name, &end, &nm) && strcasecmp(end, "nm") == 0) return nm > 0 ? nm : 0;
+  if (strncasecmp(name, "line-", 5) != 0) return 0;
+  for (size_t i = 0; i < sizeof fraunhofer / sizeof *fraunhofer; i++)
+    if (strcmp(name + 5, fraunhofer[i].letter) == 0) return fraunhofer[i].lambda_nm;
+  return 0;
+}
+
+size_t abbe_illuminant_lines_named(const char *name,
+                                   abbe_illuminant_line out[ABBE_ILLUMINANT_MOST_LINES]) {
+  size_t count = 0;
+  for (size_t i = 0; i < LAMPS; i++)
+    if (strcasecmp(name, lamps[i].name) == 0)
+      for (; count < ABBE_ILLUMINANT_MOST_LINES && lamps[i].line[count].power > 0; count++)
+        out[count] = lamps[i].line[count];
+  const double nm = count == 0 ? alone(name) : 0;
+  if (nm > 0) out[count++] = (abbe_illuminant_line){nm, 1};
+  return count;
+}
+
+const char *abbe_illuminant_lines_listed(size_t index) {
+  return index < LAMPS ? lamps[index].name : NULL;
+}

@@ -3,6 +3,7 @@
 #include "colorimetry/observer.h"
 #include "colorimetry/upsampling.h"
 #include "colorimetry/weights.h"
+#include "gl/plan/examine/spectral_needs.h"
 #include "spectral/spectrum.h"
 
 #include <math.h>
@@ -30,10 +31,28 @@ static double density(const abbe_illuminant *light, const double range_nm[2],
          (band_nm[1] - band_nm[0]);
 }
 
+/* Of lines all stay, as the band has an end; each has its own height. */
+static abbe_result flatten_lines(const abbe_illuminant *light, abbe_illuminant *out,
+                                 abbe_error *error) {
+  const abbe_spectrum *s = light->spectrum;
+  const size_t count = abbe_spectrum_count(s);
+  const double *nm = abbe_spectrum_lambda_nm(s);
+  double power[3 * ABBE_ILLUMINANT_MOST_LINES];
+  for (size_t i = 0; i < count; i++) {
+    double xyz[3];
+    abbe_observer_xyz(nm[i], xyz);
+    power[i] = abbe_spectrum_value(s)[i] / (xyz[0] + xyz[1] + xyz[2]);
+  }
+  *out = *light;
+  return abbe_spectrum_make(nm, power, count, ABBE_INTERPOLATION_LINEAR, &out->spectrum, error);
+}
+
 /* The light within the band, over what the eye makes of it: what is then seen of each wavelength,
  * as X + Y + Z, is its power. */
 static abbe_result flatten(const abbe_illuminant *light, const double band_nm[2],
                            abbe_illuminant *out, abbe_error *error) {
+  double line[ABBE_ILLUMINANT_MOST_LINES];
+  if (abbe_illuminant_lines(light, line) > 0) return flatten_lines(light, out, error);
   const double width = band_nm[1] - band_nm[0];
   const size_t steps = width > 1 ? (size_t)ceil(width / STEP_NM) : 2;
   double *nm = calloc(2 * (steps + 1), sizeof *nm), *power = nm + steps + 1;
@@ -242,7 +261,7 @@ static abbe_result draw_band(work *w, abbe_image *out, abbe_error *error) {
   band_ends(w, w->band, band);
   desc.min_nm = band[0];
   desc.max_nm = band[1];
-  desc.wavelengths = wavelengths_of(w);
+  desc.wavelengths = w->desc.wavelengths > 0 ? wavelengths_of(w) : 0;
   desc.space = ABBE_RGB_SPACE_XYZ;
   desc.observer = ABBE_OBSERVER_CIE_1931; /* what it makes of a band is divided out */
   desc.aovs = false;
@@ -269,7 +288,11 @@ abbe_result abbe_band_picture_make(abbe_context *context, const abbe_scene *scen
   work w = {.context = context, .scene = scene, .bands = bands, .progress = progress, .user = user};
   abbe_result result =
       abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &w.desc, error);
-  if (result == ABBE_OK && w.desc.wavelengths == 0) w.desc.wavelengths = ABBE_PLAN_WAVELENGTHS;
+  double line[ABBE_PLAN_MOST_LINES]; /* of lines each band has its own as wavelengths */
+  const bool lines =
+      result == ABBE_OK && abbe_spectral_needs_lines(scene, w.desc.min_nm, w.desc.max_nm, line) > 0;
+  if (result == ABBE_OK && w.desc.wavelengths == 0 && !lines)
+    w.desc.wavelengths = ABBE_PLAN_WAVELENGTHS;
   if (result == ABBE_OK) result = check(&w, error);
   if (result == ABBE_OK) result = make_image(&w, out, error);
   for (w.band = 0; w.band < bands && result == ABBE_OK; w.band++)

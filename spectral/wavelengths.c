@@ -23,8 +23,8 @@ static double node(size_t i, size_t count, double min_nm, double max_nm) {
   return min_nm + (max_nm - min_nm) * ((double)i / (double)(count - 1));
 }
 
-abbe_result abbe_wavelengths_make(size_t count, double min_nm, double max_nm, abbe_wavelengths *out,
-                                  abbe_error *error) {
+static abbe_result make(size_t count, const double *lambda_nm, double min_nm, double max_nm,
+                        abbe_wavelengths *out, abbe_error *error) {
   *out = (abbe_wavelengths){0};
   abbe_result result = check(count, min_nm, max_nm, error);
   if (result != ABBE_OK) return result;
@@ -35,7 +35,8 @@ abbe_result abbe_wavelengths_make(size_t count, double min_nm, double max_nm, ab
     abbe_wavelengths_free(&made);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu wavelengths", count);
   }
-  for (size_t i = 0; i < count; i++) made.lambda_nm[i] = node(i, count, min_nm, max_nm);
+  for (size_t i = 0; i < count; i++)
+    made.lambda_nm[i] = lambda_nm != NULL ? lambda_nm[i] : node(i, count, min_nm, max_nm);
   made.edge_nm[0] = min_nm;
   made.edge_nm[count] = max_nm;
   for (size_t i = 1; i < count; i++)
@@ -49,6 +50,16 @@ abbe_result abbe_wavelengths_make(size_t count, double min_nm, double max_nm, ab
   }
   *out = made;
   return ABBE_OK;
+}
+
+abbe_result abbe_wavelengths_make(size_t count, double min_nm, double max_nm, abbe_wavelengths *out,
+                                  abbe_error *error) {
+  return make(count, NULL, min_nm, max_nm, out, error);
+}
+
+abbe_result abbe_wavelengths_of_nodes(size_t count, const double *lambda_nm, double min_nm,
+                                      double max_nm, abbe_wavelengths *out, abbe_error *error) {
+  return make(count, lambda_nm, min_nm, max_nm, out, error);
 }
 
 void abbe_wavelengths_free(abbe_wavelengths *wavelengths) {

@@ -23,8 +23,11 @@ typedef struct abbe_wavelengths {
 
 /* count nodes over [min_nm, max_nm]. ABBE_INVALID_ARGUMENT unless 1 <= count <=
  * ABBE_WAVELENGTHS_MAX_COUNT and 0 < min_nm < max_nm, both finite. *out is owned by the caller. */
-abbe_result abbe_wavelengths_make(size_t count, double min_nm, double max_nm,
-                                  abbe_wavelengths *out, abbe_error *error);
+abbe_result abbe_wavelengths_make(size_t count, double min_nm, double max_nm, abbe_wavelengths *out,
+                                  abbe_error *error);
+/* Those nodes, which ascend inside the range; bands meet midway between them. Errors as above. */
+abbe_result abbe_wavelengths_of_nodes(size_t count, const double *lambda_nm, double min_nm,
+                                      double max_nm, abbe_wavelengths *out, abbe_error *error);
 /* Frees the arrays and zeroes the struct; safe on a zeroed one. */
 void abbe_wavelengths_free(abbe_wavelengths *wavelengths);
 

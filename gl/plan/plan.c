@@ -271,7 +271,8 @@ static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc
       plan->reaches[i] = plan->caustics = true;
   plan->camera_sees_refractor = plan->draw_back = plan->absorbing = true;
   plan->tiles = plan->caustics && plan->receiver_count > 0;
-  if (plan->desc.wavelengths < 7 && (asked == NULL || asked->wavelengths == 0)) {
+  if (plan->desc.wavelengths < 7 && plan->lines == 0 &&
+      (asked == NULL || asked->wavelengths == 0)) {
     plan->desc.wavelengths = 7;
     rewrite(plan, ABBE_CHOICE_WAVELENGTHS, 7, "wavelengths");
     rewrite(plan, ABBE_PASS_PHOTONS, 7, "wavelengths");
@@ -390,7 +391,7 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   }
   abbe_receiver_model_shadows(scene, out);
   abbe_haze_model_choose(scene, out);
-  abbe_spectral_needs_count(out);
+  abbe_spectral_needs_count(scene, out);
   abbe_path_limits_choose(scene, desc, out);
   result = abbe_watch_check(error); /* it may not have followed all light */
   if (result != ABBE_OK) {

@@ -246,7 +246,11 @@ static double efficacy(const abbe_illuminant *illuminant) {
   double watts = 0;
   const double from = ABBE_WAVELENGTH_MIN_NM, to = ABBE_WAVELENGTH_MAX_NM;
   abbe_weights_range_make(illuminant, from, to, &range);
-  for (double nm = from; nm < to; nm += 1)
+  double line[ABBE_ILLUMINANT_MOST_LINES];
+  const size_t points = 3 * abbe_illuminant_lines(illuminant, line);
+  for (size_t i = 0; i < points; i++)
+    watts += ABBE_ILLUMINANT_LINE_HALF_NM * abbe_spectrum_value(illuminant->spectrum)[i];
+  for (double nm = from; nm < to && points == 0; nm += 1)
     watts +=
         0.5 * (abbe_illuminant_power(illuminant, nm) + abbe_illuminant_power(illuminant, nm + 1));
   return LUMENS * range.white_y / watts;

@@ -199,6 +199,13 @@ void abbe_export_light_rgb(const abbe_illuminant *illuminant, double rgb[3]) {
 void abbe_export_light_spectrum(const abbe_illuminant *illuminant, double factor,
                                 void (*put)(void *user, double lambda_nm, double value),
                                 void *user) {
+  double line[ABBE_ILLUMINANT_MOST_LINES];
+  const size_t points = 3 * abbe_illuminant_lines(illuminant, line);
+  for (size_t i = 0; i < points; i++) { /* its own points: nothing shines between them */
+    const double nm = abbe_spectrum_lambda_nm(illuminant->spectrum)[i];
+    put(user, nm, factor * abbe_spectrum_value(illuminant->spectrum)[i]);
+  }
+  if (points > 0) return;
   const bool dense =
       illuminant->kind == ABBE_ILLUMINANT_TABULATED || illuminant->kind == ABBE_ILLUMINANT_A;
   for (double nm = ABBE_WAVELENGTH_MIN_NM; nm <= ABBE_WAVELENGTH_MAX_NM; nm += dense ? 1 : 5)

@@ -15,9 +15,13 @@ enum { LEAST_SIZE = 64, MOST_SIZE = 4096, DEFAULT_SIZE = 1024 };
 static abbe_result read_illuminant(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
                                    abbe_environment *out, abbe_error *error) {
   abbe_upsampling ignored;
+  double line[ABBE_ILLUMINANT_MOST_LINES];
   abbe_result result = abbe_scene_value_illuminant(yaml, node, folder, &out->illuminant,
                                                    &out->illuminant_path, error);
   if (result != ABBE_OK) return result;
+  if (abbe_illuminant_lines(&out->illuminant, line) > 0)
+    return abbe_yaml_fail(yaml, abbe_yaml_get(yaml, node, "illuminant"), error,
+                          "'illuminant': surroundings have no light of lines; lights may have it");
   result = abbe_upsampling_make(&out->illuminant, ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM,
                                 &ignored, error);
   const abbe_yaml_node at = abbe_yaml_get(yaml, node, "illuminant");

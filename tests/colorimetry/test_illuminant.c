@@ -243,15 +243,53 @@ TEST(black_bodies) {
   abbe_illuminant_free(&hot);
 }
 
+/* All of a line is in its band, wherever the bands' edges are, at the colour of its wavelength. */
+TEST(lines_are_exact_and_not_binned) {
+  static const struct {
+    const char *name;
+    size_t lines;
+    double first_nm, last_nm;
+  } lamps[] = {{"sodium", 2, 588.9950, 589.5924},  {"Mercury", 6, 404.6563, 579.0663},
+               {"hydrogen", 5, 410.174, 656.2852}, {"632.8nm", 1, 632.8, 632.8},
+               {"line-d", 1, 587.5618, 587.5618},  {"line-F'", 1, 479.9914, 479.9914}};
+  for (size_t i = 0; i < sizeof lamps / sizeof *lamps; i++) {
+    abbe_illuminant light = make(lamps[i].name);
+    double nm[ABBE_ILLUMINANT_MOST_LINES], xyz[3], bar[3];
+    assert_int_equal(abbe_illuminant_lines(&light, nm), lamps[i].lines);
+    assert_near(nm[0], lamps[i].first_nm, 0);
+    assert_near(nm[lamps[i].lines - 1], lamps[i].last_nm, 0);
+    assert_string_equal(abbe_illuminant_name(&light), lamps[i].name);
+    if (lamps[i].lines == 1) {
+      abbe_weights_band_xyz(&light, 380, 780, 380, 780, xyz);
+      abbe_observer_xyz(nm[0], bar);
+      for (int k = 0; k < 3; k++) assert_near(xyz[k], bar[k] / bar[1], 1e-6);
+    }
+    abbe_illuminant_free(&light);
+  }
+  abbe_illuminant sodium = make("sodium"), d65 = {0}, bad = {0};
+  double nm[ABBE_ILLUMINANT_MOST_LINES];
+  assert_int_equal(abbe_illuminant_lines(&d65, nm), 0);
+  assert_near(abbe_weights_band_power(&sodium, 380, 780, 589, 589.1), 0, 0);
+  assert_near(abbe_weights_band_power(&sodium, 380, 780, 588.99, 589), 2.0 / 3, 1e-9);
+  assert_near(abbe_weights_band_power(&sodium, 380, 780, 589.59, 780), 1.0 / 3, 1e-9);
+  abbe_illuminant_free(&sodium);
+  REFUSED(ABBE_INVALID_ARGUMENT, "a line lies from 360 to 830 nm",
+          abbe_illuminant_make("1064nm", &bad, &error));
+  REFUSED(ABBE_NOT_FOUND, "did you mean 'sodium'?", abbe_illuminant_make("sodum", &bad, &error));
+  REFUSED(ABBE_NOT_FOUND, "neither", abbe_illuminant_make("line-x", &bad, &error));
+}
+
 TEST(every_listed_name_is_a_light) {
   size_t count = 0;
   for (const char *name; (name = abbe_illuminant_listed(count)) != NULL; count++) {
     abbe_illuminant light = make(name);
     assert_true(abbe_illuminant_is_name(name));
-    assert_true(abbe_illuminant_power(&light, 550) > 0);
+    double nm[ABBE_ILLUMINANT_MOST_LINES];
+    const size_t lines = abbe_illuminant_lines(&light, nm);
+    assert_true(abbe_illuminant_power(&light, lines > 0 ? nm[0] : 550) > 0);
     abbe_illuminant_free(&light);
   }
-  assert_int_equal(count, 26);
+  assert_int_equal(count, 29);
   abbe_illuminant f11 = make("fl11"), same = make("F11");
   assert_near(abbe_illuminant_power(&f11, 545), abbe_illuminant_power(&same, 545), 0);
   abbe_illuminant_free(&f11);

@@ -219,3 +219,41 @@ TEST(refusals_and_cancelling) {
           abbe_band_picture_make(context, &scene, &frame, 4, stop_now, &least, &bands, &error));
   assert_true(least < 0.5 && bands.data == NULL);
 }
+
+/* The light of a sodium lamp has one colour wherever it goes, and is in the one band of its lines,
+ * as the tracer has it. */
+TEST(a_sodium_lamp_has_no_colour_but_one) {
+  static const char text[] =
+      CAMERA "lights:\n- {name: lamp, kind: point, position: [0.05, 0.03, 0.6], intensity: 1,\n"
+             "   illuminant: sodium}\n" FLOOR BALL("crown");
+  abbe_scene scene;
+  abbe_image bands, picture, traced;
+  load_text(text, &scene);
+  const size_t lit = 5; /* 580 to 620 nm */
+  double white[3], sum[3] = {0};
+  abbe_weights_white(ABBE_OBSERVER_CIE_1931, &scene.light[0].illuminant, 380, 780, white);
+  make_bands(&scene, &frame, BANDS, &bands);
+  make_picture(&scene, ABBE_RGB_SPACE_XYZ, &picture);
+  trace_bands(&scene, 4, &traced);
+  for (size_t p = 0; p < SIDE * SIDE; p++) {
+    const float *xyz = picture.data + 3 * p;
+    for (int k = 0; k < 3; k += 2)
+      assert_near((double)xyz[k], white[k] * (double)xyz[1], 1e-3 * (double)xyz[1] + 1e-7);
+    for (size_t i = 0; i < BANDS; i++) {
+      const size_t at = abbe_image_find_channel(&traced, bands.channel[i]);
+      const float one = bands.data[BANDS * p + i], other = traced.data[traced.channels * p + at];
+      sum[1] += i == lit ? 40 * (double)one : 0;
+      sum[2] += i == lit ? 40 * (double)other : 0;
+      if (i != lit) assert_true(one == 0 && other == 0);
+    }
+    sum[0] += (double)xyz[1];
+  }
+  print_message("sodium: bands %.5f and the tracer's %.5f of the picture\n", sum[1] / sum[0],
+                sum[2] / sum[0]);
+  assert_near(sum[1] / sum[0], 1, 2e-3);
+  assert_near(sum[2] / sum[0], 1, 0.02);
+  abbe_image_free(&traced);
+  abbe_image_free(&picture);
+  abbe_image_free(&bands);
+  abbe_scene_free(&scene);
+}

@@ -60,6 +60,8 @@ unsigned long long abbe_sweep_hash_scene(const abbe_scene *s) {
                               l->direction[2], l->radius,       l->cone_rad,
                               l->soft_rad,     l->power,        l->illuminant.kind};
     h = hash(h, numbers, sizeof numbers);
+    double line[ABBE_ILLUMINANT_MOST_LINES];
+    h = hash(h, line, abbe_illuminant_lines(&l->illuminant, line) * sizeof *line);
     for (int k = 0; k < INDEX_STEPS; k++) {
       double power = abbe_illuminant_power(&l->illuminant, 380 + 50.0 * k);
       h = hash(h, &power, sizeof power);

@@ -6,6 +6,7 @@
 #include "spectral/optics.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum { STEPS = 81 };
 
@@ -186,6 +187,7 @@ abbe_result abbe_spectral_needs_mirror(const abbe_object *mirror, abbe_plan *pla
 static const char *wavelengths_reason(const abbe_plan *plan, bool asked) {
   return abbe_plan_no_refraction(plan) != NULL ? abbe_plan_no_refraction(plan)
          : asked                               ? "as asked"
+         : plan->lines > 0                     ? "the lines of the lights"
          : plan->dispersive                    ? "the index varies with wavelength"
          : plan->tinting                       ? "the attenuation varies with wavelength"
          : plan->colouring                     ? "a mirror's reflectance varies with wavelength"
@@ -195,12 +197,42 @@ static const char *wavelengths_reason(const abbe_plan *plan, bool asked) {
              : "all indices are constant, one geometry serves all";
 }
 
-void abbe_spectral_needs_count(abbe_plan *plan) {
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+size_t abbe_spectral_needs_lines(const abbe_scene *scene, double min_nm, double max_nm,
+                                 double lambda_nm[ABBE_PLAN_MOST_LINES]) {
+  double all[ABBE_SCENE_MAX_LIGHTS * ABBE_ILLUMINANT_MOST_LINES];
+  size_t count = 0, kept = 0;
+  if (scene->environment != NULL) return 0;
+  for (size_t i = 0; i < scene->light_count; i++) {
+    const size_t lines = abbe_illuminant_lines(&scene->light[i].illuminant, all + count);
+    if (lines == 0) return 0;
+    count += lines;
+  }
+  qsort(all, count, sizeof *all, ascending);
+  for (size_t i = 0; i < count; i++) {
+    if (!(all[i] > min_nm && all[i] < max_nm)) continue;
+    if (kept > 0 && !(all[i] > lambda_nm[kept - 1])) continue;
+    if (kept == ABBE_PLAN_MOST_LINES) return 0;
+    lambda_nm[kept++] = all[i];
+  }
+  return kept;
+}
+
+void abbe_spectral_needs_count(const abbe_scene *scene, abbe_plan *plan) {
   const bool asked = plan->desc.wavelengths != 0;
   const size_t own = abbe_method_of(plan->desc.profile)->wavelengths;
   const bool varies = plan->dispersive || plan->tinting || plan->colouring || plan->tinted_air;
   if (!asked) plan->desc.wavelengths = !varies ? 1 : own > 0 ? own : ABBE_PLAN_WAVELENGTHS;
-  if (abbe_plan_no_refraction(plan) != NULL) plan->desc.wavelengths = 1;
+  double line[ABBE_PLAN_MOST_LINES];
+  plan->lines = 0;
+  if (varies && !asked && own == 0 && !abbe_method_of(plan->desc.profile)->own_passes)
+    plan->lines = abbe_spectral_needs_lines(scene, plan->desc.min_nm, plan->desc.max_nm, line);
+  if (plan->lines > 0) plan->desc.wavelengths = plan->lines;
+  if (abbe_plan_no_refraction(plan) != NULL) plan->desc.wavelengths = 1, plan->lines = 0;
   abbe_plan_add(plan, ABBE_CHOICE_WAVELENGTHS, "%zu from %g to %g nm: %s", plan->desc.wavelengths,
                 plan->desc.min_nm, plan->desc.max_nm, wavelengths_reason(plan, asked));
 }

@@ -22,7 +22,12 @@ abbe_result abbe_spectral_needs_mirror(const abbe_object *mirror, abbe_plan *pla
                                        size_t size, abbe_error *error);
 
 /* How many wavelengths, where the request leaves it open, and why. */
-void abbe_spectral_needs_count(abbe_plan *plan);
+void abbe_spectral_needs_count(const abbe_scene *scene, abbe_plan *plan);
+enum { ABBE_PLAN_MOST_LINES = 32 };
+/* Lines of the scene's lights from min_nm to max_nm, ascending; how many. 0 where a light, or the
+ * surroundings, have others than lines, or there are too many. */
+size_t abbe_spectral_needs_lines(const abbe_scene *scene, double min_nm, double max_nm,
+                                 double lambda_nm[ABBE_PLAN_MOST_LINES]);
 
 /* A note where lights of several spectra are taken for one. */
 void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan);

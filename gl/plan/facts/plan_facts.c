@@ -37,7 +37,7 @@ size_t abbe_plan_least_wavelengths(const abbe_plan *plan) {
   const size_t n = plan->desc.wavelengths;
   /* Hits do not know what the air changes between two wavelengths. */
   const bool apart = plan->fills && !abbe_method_of(plan->desc.profile)->own_passes;
-  return apart && !plan->tinted_air && n > coarse ? coarse : n;
+  return apart && !plan->tinted_air && plan->lines == 0 && n > coarse ? coarse : n;
 }
 
 static bool has_lamp(const abbe_plan *p) {

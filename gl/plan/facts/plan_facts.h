@@ -83,6 +83,8 @@ double abbe_plan_haze_edge(const abbe_render_desc *desc, int k);
 
 typedef struct abbe_plan {
   abbe_render_desc desc; /* the request, with a value for each that it left to the plan */
+  size_t lines;          /* of the lights in the range, which have no other light; the wavelengths
+                            are theirs. 0: they are evenly spaced */
 
   /* Objects, by their index in the scene, each with its model. Mirrors are among the refractors:
    * photons start at them, and paths that go from one to the next meet them, too. */

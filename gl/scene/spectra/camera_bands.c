@@ -62,17 +62,17 @@ static size_t steps_of(const band_set *s, size_t i) {
   return (size_t)fmax(ceil((s->edge_nm[i + 1] - s->edge_nm[i]) / STEP_NM), 1);
 }
 
-/* Set 0 has the plan's bands. Those of a share meet midway between its own wavelengths, and end
- * where the range ends. */
+/* Set 0 has the plan's bands, as all have of lines. Those of a share meet midway between its own
+ * wavelengths, and end where the range ends. */
 static void place(band_set *s, int set) {
   const abbe_wavelengths *w = &s->tables->all;
+  const bool own = set == 0 || s->plan->lines > 0;
   s->edge_nm[0] = w->edge_nm[0];
   for (size_t i = 0; i < w->count; i++) {
     const double width = w->edge_nm[i + 1] - w->edge_nm[i];
     s->lambda_nm[i] =
-        set == 0 ? w->lambda_nm[i] : w->edge_nm[i] + (set - 0.5) / ABBE_CAMERA_BAND_SHARES * width;
-    if (i > 0)
-      s->edge_nm[i] = set == 0 ? w->edge_nm[i] : 0.5 * (s->lambda_nm[i - 1] + s->lambda_nm[i]);
+        own ? w->lambda_nm[i] : w->edge_nm[i] + (set - 0.5) / ABBE_CAMERA_BAND_SHARES * width;
+    if (i > 0) s->edge_nm[i] = own ? w->edge_nm[i] : 0.5 * (s->lambda_nm[i - 1] + s->lambda_nm[i]);
   }
   s->edge_nm[w->count] = w->edge_nm[w->count];
 }

@@ -52,6 +52,7 @@ static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *
     a = edge = i == 0 ? min : max;
     b = max;
   }
+  const bool lines = of->plan->lines > 1; /* the nodes, with all light at the nearer one */
   double n_a = 1, n_b = 1, sum[3] = {0, 0, 0}, moment[3] = {0, 0, 0}, taken[3] = {0, 0, 0},
          before = b;
   if (material != NULL) {
@@ -66,6 +67,7 @@ static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *
     spectrum_part part;
     weigh_part(of, range, lambda_nm, before, &part);
     for (int c = 0; c < 3; c++) at[1 + c] = part.lambda_nm[c];
+    for (int c = 0; c < 4 && lines; c++) at[c] = k <= half ? b : a;
     for (int c = 0; c < 4; c++) {
       n[c] = n_b;
       if (material != NULL) abbe_material_n(material, at[c], &n[c], NULL);

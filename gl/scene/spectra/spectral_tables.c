@@ -88,6 +88,18 @@ size_t abbe_spectral_tables_node(size_t wavelengths, size_t nodes, size_t k) {
   return nodes > 1 ? (k * (wavelengths - 1) + (nodes - 1) / 2) / (nodes - 1) : 0;
 }
 
+/* Several begin and end with the outer lines' own ends, as all light lies between two nodes. */
+static abbe_result make_lines(const abbe_scene *scene, const abbe_plan *plan, abbe_wavelengths *out,
+                              abbe_error *error) {
+  double line[ABBE_PLAN_MOST_LINES], min = plan->desc.min_nm, max = plan->desc.max_nm;
+  const size_t count = abbe_spectral_needs_lines(scene, min, max, line);
+  if (count > 1) {
+    min = line[0] -= ABBE_ILLUMINANT_LINE_HALF_NM;
+    max = line[count - 1] += ABBE_ILLUMINANT_LINE_HALF_NM;
+  }
+  return abbe_wavelengths_of_nodes(count, line, min, max, out, error);
+}
+
 /* The nodes that every photon takes, as a sampling of their own. */
 static abbe_result make_coarse(abbe_spectral_tables *t, size_t count, abbe_error *error) {
   const abbe_wavelengths *all = &t->all;
@@ -222,8 +234,9 @@ abbe_result abbe_spectral_tables_make(const abbe_scene *scene, const abbe_plan *
   const abbe_render_desc *desc = &plan->desc;
   abbe_spectral_tables *t = out;
   *t = (abbe_spectral_tables){.steps = MOST_STEPS};
-  abbe_result result =
-      abbe_wavelengths_make(desc->wavelengths, desc->min_nm, desc->max_nm, &t->all, error);
+  abbe_result result = plan->lines > 0 ? make_lines(scene, plan, &t->all, error)
+                                       : abbe_wavelengths_make(desc->wavelengths, desc->min_nm,
+                                                               desc->max_nm, &t->all, error);
   if (result == ABBE_OK) result = make_coarse(t, abbe_plan_least_wavelengths(plan), error);
   while (t->steps > 2 && t->steps * t->coarse.count > MOST_SUMS) t->steps /= 2;
   if (result == ABBE_OK) result = evaluate_materials(scene, plan, t, error);

@@ -174,3 +174,36 @@ TEST(what_cannot_be_sampled_is_refused) {
   }
   abbe_spectral_sampling_free(&s);
 }
+
+/* Light of lines comes at their wavelengths, whatever else shines and where bands end. */
+TEST(paths_of_lines_have_their_wavelengths) {
+  for (size_t bands = 0; bands <= 7; bands += 7) {
+    abbe_scene scene;
+    abbe_spectral_sampling s;
+    load_text(CAMERA "lights:\n- {name: lamp, kind: point, position: [0, 0, 1], intensity: 1, "
+                     "illuminant: sodium}\n- {name: day, kind: point, position: [0, 1, 1], "
+                     "intensity: 1}\n" FLOOR,
+              &scene);
+    const abbe_spectral_sampling_desc desc = {
+        .min_nm = 380, .max_nm = 780, .uniform = 0.15, .bands = bands};
+    OK(abbe_spectral_sampling_make(&scene, &desc, &s, &error));
+    size_t bright[2] = {0};
+    double sum = 0, power[2] = {0};
+    for (size_t k = 0; k < STEPS; k++) {
+      if (!(s.power[k] > 0)) continue;
+      const double middle = 0.5 * (s.lambda_nm[k] + s.lambda_nm[k + 1]);
+      const int line = middle < 589.3 ? 0 : 1;
+      assert_near(s.lambda_nm[k], line == 0 ? 588.9950 : 589.5924, 1.001e-3);
+      assert_near(s.lambda_nm[k + 1], line == 0 ? 588.9950 : 589.5924, 1.001e-3);
+      bright[line]++;
+      power[line] += (double)s.power[k] / STEPS;
+      sum += (double)s.xyz[k][1] / STEPS;
+    }
+    assert_near(power[0], 2.0 / 3, 1e-6);
+    assert_near(power[1], 1.0 / 3, 1e-6);
+    assert_near(sum, 1, 1e-6);
+    /* half of the visible paths are the lamp's */
+    assert_near((double)(bright[0] + bright[1]) / STEPS, 0.85 / 2, 0.005);
+    drop(&scene, &s);
+  }
+}

@@ -1,6 +1,7 @@
 /* What is evaluated over the spectrum once for all passes, and again where a material changes. */
 #include "tests/gl/plan/planned.h"
 
+#include "gl/plan/examine/spectral_needs.h"
 #include "gl/scene/spectra/interval_sums.h"
 #include "gl/scene/spectra/spectral_tables.h"
 
@@ -123,4 +124,68 @@ TEST(coarse_nodes_reach_both_ends_in_order) {
     for (size_t k = 0; k < 4; k++)
       assert_true(abbe_spectral_tables_node(n, 5, k) < abbe_spectral_tables_node(n, 5, k + 1));
   }
+}
+
+/* Of lines each is a node: all light is there, at the beginning or at the end of an interval. */
+TEST(lines_are_nodes_and_nothing_lies_between) {
+  static const struct {
+    const char *illuminant;
+    size_t lines;
+  } lamps[] = {{"mercury", 6}, {"sodium", 2}, {"632.8nm", 1}};
+  for (size_t i = 0; i < sizeof lamps / sizeof *lamps; i++) {
+    char text[1000];
+    double line[ABBE_ILLUMINANT_MOST_LINES];
+    snprintf(text, sizeof text,
+             CAMERA
+             "lights:\n- {name: lamp, kind: point, position: [0.05, 0.03, 0.6], intensity: 1,"
+             " illuminant: %s}\n" FLOOR BALL("crown"),
+             lamps[i].illuminant);
+    fixture f;
+    const abbe_render_desc desc = {0};
+    load_text(text, &f.scene);
+    plan_scene(&f.scene, &desc, &f.plan);
+    assert_int_equal(f.plan.lines, lamps[i].lines);
+    OK(abbe_spectral_tables_make(&f.scene, &f.plan, &f.tables, &error));
+    const abbe_spectral_tables *t = &f.tables;
+    const size_t nodes = t->all.count;
+    assert_int_equal(nodes, lamps[i].lines);
+    assert_int_equal(t->coarse.count, nodes);
+    assert_int_equal(abbe_illuminant_lines(&f.scene.light[0].illuminant, line), nodes);
+    for (size_t k = 0; k < nodes; k++) assert_near(t->all.lambda_nm[k], line[k], 1.001e-3);
+    const float(*table)[4] = (const float(*)[4])t->intervals;
+    assert_near(sum_of(&f, table, nodes, 1), 1, 1e-6);
+    const size_t texels = abbe_interval_sums_texels(&f.plan), an_interval = texels * (t->steps + 1);
+    for (size_t row = 0; row <= nodes && nodes > 1; row++)
+      for (size_t k = 0; k <= t->steps; k++) {
+        const float along = table[row * an_interval + k * texels][3];
+        assert_true(along == 0 || along == 1);
+      }
+    done(&f);
+  }
+}
+
+/* What is asked for, and light of other kinds, keep the even spacing. */
+TEST(wavelengths_are_even_where_not_all_light_is_of_lines) {
+  abbe_scene scene;
+  double line[ABBE_PLAN_MOST_LINES];
+  load_text(CAMERA "lights:\n- {name: lamp, kind: point, position: [0, 0, 1], intensity: 1, "
+                   "illuminant: hydrogen}\n- {name: laser, kind: point, position: [0, 1, 1], "
+                   "intensity: 1, illuminant: 632.8nm}\n" FLOOR BALL("crown"),
+            &scene);
+  assert_int_equal(abbe_spectral_needs_lines(&scene, 380, 780, line), 6);
+  assert_near(line[3], 632.8, 0);
+  assert_int_equal(abbe_spectral_needs_lines(&scene, 480, 640, line), 2);
+  abbe_plan plan;
+  const abbe_render_desc asked = {.wavelengths = 7};
+  plan_scene(&scene, &asked, &plan);
+  assert_int_equal(plan.lines, 0);
+  assert_int_equal(plan.desc.wavelengths, 7);
+  abbe_plan_free(&plan);
+  abbe_scene_free(&scene);
+  load_text(CAMERA "lights:\n- {name: lamp, kind: point, position: [0, 0, 1], intensity: 1, "
+                   "illuminant: hydrogen}\n- {name: day, kind: point, position: [0, 1, 1], "
+                   "intensity: 1}\n" FLOOR BALL("crown"),
+            &scene);
+  assert_int_equal(abbe_spectral_needs_lines(&scene, 380, 780, line), 0);
+  abbe_scene_free(&scene);
 }
