@@ -137,7 +137,7 @@ static abbe_result report_pov(const request *q, const abbe_scene *scene, abbe_er
     if (!q->json) {
       fprintf(stderr, "%s: ior %.6f, dispersion %.6f; n off by %.2g at %g nm, %.2g in the mean\n",
               m->name, g.index.ior, g.index.dispersion, g.worst, g.worst_nm, g.rms);
-      if (abbe_material_is_uniaxial(m))
+      if (abbe_material_is_crystal(m))
         fprintf(stderr, "%s: its double refraction is left out\n", m->name);
       if (abbe_material_is_pleochroic(m))
         fprintf(stderr, "%s: its absorption is the mean over its axes\n", m->name);

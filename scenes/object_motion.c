@@ -102,6 +102,28 @@ static void move_exact(abbe_exact *e, const double m[16], double scale) {
   if (e->convex.verdict == ABBE_CONVEX_DENTED) e->convex.off *= scale;
 }
 
+double abbe_object_square_axes(abbe_object *object) {
+  const double *z = object->axis, along = abbe_vector_dot(object->axis_x, z);
+  double *x = object->axis_x;
+  for (int k = 0; k < 3; k++) x[k] -= along * z[k];
+  const double sine = abbe_vector_length(x);
+  if (sine < ABBE_AXES_SQUARE) {
+    const int least = fabs(z[0]) < 0.6 ? 0 : 1;
+    for (int k = 0; k < 3; k++) x[k] = (k == least) - z[least] * z[k];
+  }
+  abbe_vector_normalise(x);
+  return sine;
+}
+
+void abbe_object_turn_axes(abbe_object *object, const double matrix[16]) {
+  abbe_transform_direction(matrix, object->axis, object->axis);
+  abbe_vector_normalise(object->axis);
+  if (!(abbe_vector_length(object->axis_x) > 0)) return;
+  abbe_transform_direction(matrix, object->axis_x, object->axis_x);
+  abbe_vector_normalise(object->axis_x);
+  abbe_object_square_axes(object);
+}
+
 abbe_result abbe_object_move(abbe_object *object, const double matrix[16], abbe_error *error) {
   double scale;
   if (!is_motion(matrix, &scale))
@@ -119,8 +141,7 @@ abbe_result abbe_object_move(abbe_object *object, const double matrix[16], abbe_
   abbe_result result = abbe_mesh_transform(&object->mesh, matrix, error);
   if (result != ABBE_OK) return result;
   move_exact(&object->exact, matrix, scale);
-  abbe_transform_direction(matrix, object->axis, object->axis);
-  abbe_vector_normalise(object->axis);
+  abbe_object_turn_axes(object, matrix);
   abbe_brushing_move(&object->brushing, matrix);
   abbe_object_bound(object);
   return ABBE_OK;

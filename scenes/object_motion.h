@@ -12,6 +12,13 @@
  * where the object would have no finite place; the object is then as it was. */
 abbe_result abbe_object_move(abbe_object *object, const double matrix[16], abbe_error *error);
 
+/* Turns a crystal's x to be across its z, to any such direction where the sine of their angle is
+ * below ABBE_AXES_SQUARE; that sine. */
+#define ABBE_AXES_SQUARE 1e-3
+double abbe_object_square_axes(abbe_object *object);
+/* The crystal's axes, by the direction part of the matrix; x stays across z. */
+void abbe_object_turn_axes(abbe_object *object, const double matrix[16]);
+
 /* The refractors of a scene tilted together, as a stone is rocked in the hand while camera, lights
  * and all else stay where they are. */
 

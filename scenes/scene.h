@@ -97,8 +97,10 @@ typedef struct abbe_object {
   double fitted;         /* what `fit` scaled it by about the origin, after `transform`; 1 */
   double centring[3];    /* by which `centre` moved it then, m; 0 */
   const abbe_material *material; /* refractor: of the scene's table or its own; else NULL */
-  double axis[3]; /* a uniaxial crystal's optic axis in the world, unit; of no meaning for other
-                     materials */
+  double axis[3];     /* a uniaxial crystal's optic axis in the world, or z of a biaxial one, unit;
+                         of no meaning for other materials */
+  double axis_x[3];   /* x of a biaxial crystal, unit and across z */
+  double axes_turned; /* by how much x was turned to be so, radians */
   abbe_material *own_material; /* refractor: that of its mesh's file, owned, or NULL */
   abbe_medium *medium;         /* refractor: what scatters in it, owned, or NULL */
   double reflectance[3];       /* receiver: linear Rec.709, 0 to 1, as reflected_light.h lifts it;

@@ -188,10 +188,12 @@ static void find_roots(const side_medium *f, number z[4]) {
     c[i] -= k * k * ww[i];
     c[i + 2] -= ww[i];
   }
-  const double centre = -c[3] / (4 * c[4]), radius = pow(fabs(c[0] / c[4]), 0.25) + 0.1;
-  for (int i = 0; i < 4; i++) z[i] = centre + radius * cexp(I * (ABBE_PI / 2 * i + 0.4));
+  /* about those of a medium of one index between */
+  const double square = 3 / (t[0][0] + t[1][1] + t[2][2]) - k * k, size = sqrt(fabs(square)) + 1e-3;
+  const number near = square > 0 ? size : I * size, off = 0.02 * (1 + 0.5 * I) * size;
+  for (int i = 0; i < 4; i++) z[i] = (i < 2 ? near : -near) + (i & 1 ? off : -off);
   double moved = 1;
-  for (int round = 0; round < MOST && moved > 1e-15 * radius; round++) {
+  for (int round = 0; round < MOST && moved > 1e-9; round++) {
     moved = 0;
     for (int i = 0; i < 4; i++) {
       number value = c[4], slope = 0, others = 0;
@@ -203,9 +205,9 @@ static void find_roots(const side_medium *f, number z[4]) {
       for (int j = 0; j < 4; j++)
         if (j != i && z[j] != z[i]) others += 1 / (z[i] - z[j]);
       const number step = value / (slope - value * others);
-      if (!(cabs(step) < 1e6)) continue;
+      if (!(abbe_boundary_size(step) < 1e6)) continue;
       z[i] -= step;
-      moved = fmax(moved, cabs(step));
+      moved = fmax(moved, abbe_boundary_size(step));
     }
   }
 }
@@ -228,7 +230,7 @@ static void polish(const side_medium *f, root *r) {
     const number step = s.slope != 0 ? (s.value - 1) / s.slope : 0;
     if (!(cabs(r->z - step - first) < 1e-4 * (1 + cabs(first)))) break;
     r->z -= step;
-    if (cabs(step) < 1e-16) break;
+    if (abbe_boundary_size(step) < 1e-15) break;
   }
   const double slope = creal(look_at(f, r->z, r->fast).slope);
   /* energy goes the way in which the value grows */
@@ -236,7 +238,7 @@ static void polish(const side_medium *f, root *r) {
 }
 
 static double misses(const side_medium *f, number z, bool fast) {
-  return cabs(look_at(f, z, fast).value - 1);
+  return abbe_boundary_size(look_at(f, z, fast).value - 1);
 }
 
 /* First the two that leave to the side of n, then the others, each on its sheet. */

@@ -1,6 +1,6 @@
 foreach(name wavelengths spectrum optics microfacets biaxial uniaxial uniaxial_answers
         conditions dispersion index_points index_difference fit points csv_points povray_index
-        material material_numbers material_query material_table partners absorption conductor glass_distance convert
+        material material_numbers material_query material_table crystal_record partners absorption conductor glass_distance convert
         table_compare
         agf agf_formula agf_write rii rii_write csv_write material_write material_import material_table_load
         import_batch

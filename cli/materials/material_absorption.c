@@ -1,8 +1,12 @@
-/* What a material absorbs, by direction where it is pleochroic, as text and as JSON. */
+/* What a material absorbs, by direction where it is pleochroic, and the three indices of a biaxial
+ * one, as text and as JSON. */
 #include "cli/materials/materials.h"
 
+#include "base/maths.h"
 #include "colorimetry/pleochroism.h"
+#include "spectral/biaxial.h"
 #include "spectral/materials/absorption.h"
+#include "spectral/wavelengths.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,6 +14,7 @@
 /* For a field along that axis. */
 static void show_attenuation(const abbe_material *m, int axis) {
   const abbe_spectrum *own = axis > 0 ? m->attenuation_yz[axis - 1] : m->attenuation;
+  if (own == NULL) own = m->attenuation;
   const double *l = abbe_spectrum_lambda_nm(own), *a = abbe_spectrum_value(own);
   size_t count = abbe_spectrum_count(own);
   for (size_t i = 0; i < count && i < 8; i++)
@@ -38,18 +43,24 @@ static void show_faces(const abbe_material *m) {
     const char *name;
     int axis;  /* whose field or, */
     bool face; /* unpolarised, whose face it is */
-  } rows[] = {{"ordinary ray", 0, false},
-              {"extraordinary ray", 2, false},
-              {"face across the axis", 2, true},
-              {"face along the axis", 0, true}};
+  } uniaxial[] = {{"ordinary ray", 0, false},
+                  {"extraordinary ray", 2, false},
+                  {"face across the axis", 2, true},
+                  {"face along the axis", 0, true}},
+    biaxial[] = {{"field along x", 0, false}, {"field along y", 1, false},
+                 {"field along z", 2, false}, {"face across x", 0, true},
+                 {"face across y", 1, true},  {"face across z", 2, true}};
+  const bool three = abbe_material_is_biaxial(m);
   abbe_pleochroism p[2];
   for (int i = 0; i < 2; i++) abbe_pleochroism_make(m, face_m[i], &p[i]);
   printf("  pleochroic    colours of D65: L*, chroma and hue through 5 mm, and through 10 mm\n");
-  for (size_t r = 0; r < sizeof rows / sizeof rows[0]; r++) {
-    printf("                %-21s", rows[r].name);
+  for (int r = 0; r < (three ? 6 : 4); r++) {
+    const bool face = three ? biaxial[r].face : uniaxial[r].face;
+    const int axis = three ? biaxial[r].axis : uniaxial[r].axis;
+    printf("                %-21s", three ? biaxial[r].name : uniaxial[r].name);
     for (int i = 0; i < 2; i++) {
       double lch[3];
-      chroma_of(rows[r].face ? p[i].face_lab[rows[r].axis] : p[i].field_lab[rows[r].axis], lch);
+      chroma_of(face ? p[i].face_lab[axis] : p[i].field_lab[axis], lch);
       printf(" %5.1f %5.1f %5.1f%s", lch[0], lch[1], lch[2], i == 0 ? "   " : "\n");
     }
   }
@@ -67,10 +78,14 @@ void abbe_materials_show_absorption(const abbe_material *m) {
     show_attenuation(m, 0);
     return;
   }
-  printf("  ordinary      1/m, at nm:");
-  show_attenuation(m, 0);
-  printf("  extraordinary 1/m, at nm:");
-  show_attenuation(m, 2);
+  static const char *const waves[] = {"ordinary", "", "extraordinary"}, *const axes[] = {"along x",
+                                                                                         "along y",
+                                                                                         "along z"};
+  const bool three = abbe_material_is_biaxial(m);
+  for (int axis = 0; axis < 3; axis += three ? 1 : 2) {
+    printf("  %-13s 1/m, at nm:", three ? axes[axis] : waves[axis]);
+    show_attenuation(m, axis);
+  }
   show_faces(m);
 }
 
@@ -84,10 +99,13 @@ static void add_points(cJSON *to, const char *key, const abbe_spectrum *spectrum
   }
 }
 
-/* `attenuation_per_m` is the ordinary wave's; the colours are CIELAB of D65. */
+/* `attenuation_per_m` is the ordinary wave's or that along x; the colours are CIELAB of D65. */
 static void add_pleochroism(cJSON *to, const abbe_material *m) {
   cJSON *item = cJSON_AddObjectToObject(to, "pleochroism");
-  add_points(item, "extraordinary_per_m", m->attenuation_yz[1]);
+  const bool three = abbe_material_is_biaxial(m);
+  const abbe_spectrum *y = m->attenuation_yz[0] != NULL ? m->attenuation_yz[0] : m->attenuation;
+  if (three) add_points(item, "y_per_m", y);
+  add_points(item, three ? "z_per_m" : "extraordinary_per_m", m->attenuation_yz[1]);
   cJSON *list = cJSON_AddArrayToObject(item, "colours");
   for (int i = 0; i < 2; i++) {
     abbe_pleochroism p;
@@ -101,8 +119,14 @@ static void add_pleochroism(cJSON *to, const abbe_material *m) {
     } rows[] = {{"ordinary_lab", p.field_lab[0]},
                 {"extraordinary_lab", p.field_lab[2]},
                 {"across_the_axis_lab", p.face_lab[2]},
-                {"along_the_axis_lab", p.face_lab[0]}};
-    for (int k = 0; k < 4; k++)
+                {"along_the_axis_lab", p.face_lab[0]},
+                {"x_lab", p.field_lab[0]},
+                {"y_lab", p.field_lab[1]},
+                {"z_lab", p.field_lab[2]},
+                {"across_x_lab", p.face_lab[0]},
+                {"across_y_lab", p.face_lab[1]},
+                {"across_z_lab", p.face_lab[2]}};
+    for (int k = three ? 4 : 0; k < (three ? 10 : 4); k++)
       cJSON_AddItemToObject(colours, rows[k].key, cJSON_CreateDoubleArray(rows[k].lab, 3));
     cJSON_AddNumberToObject(colours, "largest_difference", p.largest);
   }
@@ -114,4 +138,30 @@ void abbe_materials_add_absorption(cJSON *to, const abbe_material *m) {
   else
     cJSON_AddNullToObject(to, "attenuation_per_m");
   if (abbe_material_is_pleochroic(m)) add_pleochroism(to, m);
+}
+
+/* ---- three indices ---- */
+
+/* At d; twice the half angle of the optic axes, in degrees. NaN where the record has none. */
+static double three_indices(const abbe_material *m, double n[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    if (abbe_material_n_along(m, axis, ABBE_LINE_D_NM, &n[axis], NULL) != ABBE_OK) n[axis] = NAN;
+  return 2 * abbe_biaxial_half_angle(n) * 180 / ABBE_PI;
+}
+
+void abbe_materials_show_biaxial(const abbe_material *m) {
+  double n[3];
+  if (!abbe_material_is_biaxial(m)) return;
+  const double twice = three_indices(m, n);
+  printf("  biaxial       n_d %.6f, %.6f, %.6f   2V about z %.2f degrees, %s\n", n[0], n[1], n[2],
+         twice, twice < 90 ? "positive" : "negative");
+}
+
+void abbe_materials_add_biaxial(cJSON *to, const abbe_material *m) {
+  double n[3];
+  if (!abbe_material_is_biaxial(m)) return;
+  cJSON *item = cJSON_AddObjectToObject(to, "biaxial");
+  const double twice = three_indices(m, n);
+  cJSON_AddItemToObject(item, "n_d", cJSON_CreateDoubleArray(n, 3));
+  cJSON_AddNumberToObject(item, "two_v_deg", twice);
 }

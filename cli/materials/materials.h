@@ -76,6 +76,9 @@ abbe_result abbe_materials_print_json(const cJSON *root, abbe_error *error);
  * too. JSON has `attenuation_per_m` (of the ordinary wave) and `pleochroism`. */
 void abbe_materials_show_absorption(const abbe_material *material);
 void abbe_materials_add_absorption(cJSON *to, const abbe_material *material);
+/* Of a biaxial crystal, at d: its three indices and the angle of its optic axes about z. */
+void abbe_materials_show_biaxial(const abbe_material *material);
+void abbe_materials_add_biaxial(cJSON *to, const abbe_material *material);
 /* Adds text, or null where there is none. */
 void abbe_materials_add_text(cJSON *to, const char *key, const char *text);
 /* n_d, v_d, the indices at the lines, b_g and partial dispersions; null where the record does not

@@ -112,6 +112,7 @@ static void show_extraordinary(const abbe_material *m) {
 static void show_formula(const abbe_material *m) {
   show_curve(&m->dispersion);
   show_extraordinary(m);
+  abbe_materials_show_biaxial(m);
   printf("  range         %g to %g nm%s\n", m->min_nm, m->max_nm,
          m->extrapolate ? ", extrapolated outside" : "");
   abbe_materials_print_conditions(m);
@@ -261,6 +262,7 @@ static void add_extraordinary(cJSON *to, const abbe_material *m) {
 static void add_record(cJSON *to, const abbe_material *m) {
   add_curve(to, &m->dispersion);
   if (abbe_material_is_uniaxial(m)) add_extraordinary(to, m);
+  abbe_materials_add_biaxial(to, m);
   abbe_materials_add_pair(to, "range_nm", m->min_nm, m->max_nm);
   cJSON_AddBoolToObject(to, "extrapolate", m->extrapolate);
   cJSON_AddNumberToObject(to, "temperature_c", m->temperature_c);

@@ -47,6 +47,8 @@ static abbe_result add_glass(const survey *s, const abbe_material *m, double lam
                     m->max_nm);
   if (abbe_material_is_uniaxial(m))
     LOST(s, m->name, "its double refraction; the ordinary index is written");
+  if (abbe_material_is_biaxial(m))
+    LOST(s, m->name, "its double refraction; the middle index is written");
   if (abbe_material_is_pleochroic(m))
     LOST(s, m->name, "its pleochroism; the mean of its absorption over its axes is written");
   if (g->index.form == ABBE_EXPORT_FORM_ONE && m->dispersion.model != ABBE_DISPERSION_CONSTANT)

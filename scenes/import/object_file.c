@@ -200,29 +200,6 @@ static abbe_result find_material(const abbe_object_reading *r, const char *key,
   return result;
 }
 
-/* In the object's own coordinates, until it is placed. */
-static abbe_result read_axis(const abbe_object_reading *r, abbe_object *out, abbe_error *error) {
-  const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, "axis");
-  const double along_z[3] = {0, 0, 1};
-  memcpy(out->axis, along_z, sizeof along_z);
-  if (node.id == 0) return ABBE_OK;
-  if (out->material == NULL)
-    return abbe_yaml_fail(r->yaml, node, error,
-                          "'axis' is the optic axis of a crystal that refracts; this object has "
-                          "no 'material'");
-  if (!abbe_material_is_uniaxial(out->material))
-    return abbe_yaml_fail(r->yaml, node, error,
-                          "'axis' is the optic axis of a uniaxial crystal; the material '%s' has "
-                          "one index in all directions: leave the key out, or take a material with "
-                          "an 'extraordinary' index",
-                          out->material->name);
-  const abbe_result result = abbe_yaml_get_numbers(r->yaml, r->node, "axis", 3, -ABBE_SCENE_FAR,
-                                                   ABBE_SCENE_FAR, out->axis, error);
-  if (result == ABBE_OK && !abbe_vector_normalise(out->axis))
-    return abbe_yaml_fail(r->yaml, node, error, "'axis' is zero; it must point somewhere");
-  return result;
-}
-
 static abbe_result read_refractor(const abbe_object_reading *r, abbe_yaml_node node,
                                   const abbe_material_table *table, abbe_object *out,
                                   abbe_error *error) {
@@ -271,7 +248,7 @@ static abbe_result read_medium(const abbe_object_reading *r, abbe_object *out, a
     return abbe_yaml_fail(r->yaml, node, error,
                           "'medium' is what scatters inside of an object that refracts; this one "
                           "has no 'material' (the air's 'medium' stands beside 'objects')");
-  if (abbe_material_is_uniaxial(out->material))
+  if (abbe_material_is_crystal(out->material))
     return abbe_yaml_fail(r->yaml, node, error,
                           "the material '%s' is a crystal, in which scattering is not modelled: "
                           "leave the 'medium' out, or take a material with one index",
@@ -365,7 +342,7 @@ static abbe_result read_substance(const abbe_object_reading *r, const abbe_mater
   abbe_result result = material.id ? read_refractor(r, material, table, out, error)
                        : mirror.id ? read_mirror(r, mirror, table, out, error)
                                    : read_receiver(r, out, error);
-  if (result == ABBE_OK) result = read_axis(r, out, error);
+  if (result == ABBE_OK) result = abbe_object_read_axes(r, out, error);
   if (result == ABBE_OK) result = read_brushing(r, out, error);
   return result == ABBE_OK ? read_medium(r, out, error) : result;
 }

@@ -4,6 +4,7 @@
 #include "base/number.h"
 #include "scenes/geometry/transform.h"
 #include "scenes/mesh/topology.h"
+#include "scenes/object_motion.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -244,6 +245,8 @@ static abbe_result make_part(const abbe_object *whole, size_t i, size_t count, a
   memset(mesh, 0, sizeof *mesh);
   out->material = whole->material;
   memcpy(out->axis, whole->axis, sizeof out->axis);
+  memcpy(out->axis_x, whole->axis_x, sizeof out->axis_x);
+  out->axes_turned = whole->axes_turned;
   out->line = whole->line;
   out->name = malloc(size);
   if (!out->name) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a name");
@@ -306,8 +309,7 @@ static abbe_result shape_one(const abbe_object_surface *s, abbe_object *out, abb
 static abbe_result place_one(const abbe_object_surface *s, const double matrix[16],
                              abbe_object *out, abbe_error *error) {
   abbe_result result = abbe_mesh_transform(&out->mesh, matrix, error);
-  abbe_transform_direction(matrix, out->axis, out->axis);
-  abbe_vector_normalise(out->axis);
+  abbe_object_turn_axes(out, matrix);
   abbe_brushing_move(&out->brushing, matrix);
   if (result == ABBE_OK) result = find_exact(s, matrix, out, error);
   if (result == ABBE_OK) abbe_object_bound(out);

@@ -47,6 +47,11 @@ typedef struct abbe_object_reading {
   double matrix[16];         /* to world */
 } abbe_object_reading;
 
+/* `axis` or `axes` of a crystal, in the object's own coordinates; without them x and z as they are
+ * named. */
+abbe_result abbe_object_read_axes(const abbe_object_reading *reading, abbe_object *object,
+                                  abbe_error *error);
+
 /* The surface under `shape` or `mesh`, in its own coordinates, and its form, radius and normals. */
 abbe_result abbe_object_read_surface(abbe_object_reading *reading, abbe_object *object,
                                      abbe_error *error);

@@ -168,7 +168,7 @@ abbe_result abbe_body_symmetry_find(const abbe_object *object, const double cent
                                     double radius, abbe_body_symmetry *out, abbe_error *error) {
   abbe_result result = make_room(ABBE_BODY_SYMMETRY_MOST, out, error);
   if (result != ABBE_OK) return result;
-  const bool crystal = object->material != NULL && abbe_material_is_uniaxial(object->material);
+  const bool crystal = object->material != NULL && abbe_material_is_crystal(object->material);
   if (object->exact.kind == ABBE_EXACT_SPHERE || crystal || !(radius > 0)) return ABBE_OK;
   search s = {.found = out};
   s.mark = malloc(ABBE_BODY_SYMMETRY_MOST_MARKS * sizeof *s.mark);

@@ -33,8 +33,8 @@ static const abbe_summary_row losses[LOSSES] = {
     [DESCRIPTION] = {ABBE_NOTE_LOST, "AGF has no place for a description"},
     [WARNING] = {ABBE_NOTE_LOST, "AGF has no place for a warning"},
     [FITS] = {ABBE_NOTE_LOST, "AGF has no place for recorded fits"},
-    [EXTRAORDINARY] = {ABBE_NOTE_LOST, "AGF has one index a glass: the ordinary one"},
-    [PLEOCHROISM] = {ABBE_NOTE_LOST, "AGF has one transmittance a glass: the ordinary wave's"},
+    [EXTRAORDINARY] = {ABBE_NOTE_LOST, "AGF has one index a glass: the ordinary or middle one"},
+    [PLEOCHROISM] = {ABBE_NOTE_LOST, "AGF has one transmittance a glass: that along x"},
     [EXTRAPOLATE] = {ABBE_NOTE_LOST, "AGF cannot allow use outside the range"},
     [EXPANSION] = {ABBE_NOTE_LOST, "AGF has no place for the temperatures of expansions"},
     [INTERPOLATION] = {ABBE_NOTE_LOST, "AGF does not say how attenuation runs between points"},
@@ -252,7 +252,7 @@ static void count_losses(const abbe_material *m, abbe_summary *t) {
   if (m->description != NULL) abbe_summary_add(t, DESCRIPTION, m->name);
   if (m->warning != NULL) abbe_summary_add(t, WARNING, m->name);
   if (m->fit[0].terms > 0 || m->fit[1].terms > 0) abbe_summary_add(t, FITS, m->name);
-  if (abbe_material_is_uniaxial(m)) abbe_summary_add(t, EXTRAORDINARY, m->name);
+  if (abbe_material_is_crystal(m)) abbe_summary_add(t, EXTRAORDINARY, m->name);
   if (abbe_material_is_pleochroic(m)) abbe_summary_add(t, PLEOCHROISM, m->name);
   if (m->extrapolate) abbe_summary_add(t, EXTRAPOLATE, m->name);
   for (int i = 0; i < 2; i++)

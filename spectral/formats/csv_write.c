@@ -86,10 +86,11 @@ static void note_losses(const abbe_material *m, abbe_report *report) {
   abbe_report_add(report, ABBE_NOTE_LOST, m->line, m->name,
                   "a table of points has no place for its name and source%s, but in a comment",
                   more ? ", nor for the rest of the record" : "");
-  if (abbe_material_is_uniaxial(m))
+  if (abbe_material_is_crystal(m))
     abbe_report_add(report, ABBE_NOTE_LOST, m->line, m->name,
-                    "a table of points has one index: the ordinary one%s",
-                    abbe_material_is_pleochroic(m) ? ", and its wave's k" : "");
+                    "a table of points has one index: the %s one%s",
+                    abbe_material_is_biaxial(m) ? "middle" : "ordinary",
+                    abbe_material_is_pleochroic(m) ? ", and one k: that along x" : "");
   if (m->attenuation != NULL)
     abbe_report_add(report, ABBE_NOTE_LOST, m->line, m->name,
                     "absorption is written as k at the wavelengths of n alone");

@@ -105,6 +105,12 @@ static void write_dispersion(const abbe_material *m, FILE *to) {
     fputs("    extraordinary:\n", to);
     write_curve(&m->extraordinary, 6, to);
   }
+  if (abbe_material_is_biaxial(m)) {
+    fputs("    biaxial:\n      alpha:\n", to);
+    write_curve(&m->outer[0], 8, to);
+    fputs("      gamma:\n", to);
+    write_curve(&m->outer[1], 8, to);
+  }
   if (m->extrapolate) fputs("    extrapolate: true\n", to);
   if (!isnan(m->temperature_c)) write_number("    temperature_c", m->temperature_c, to);
 }
@@ -124,10 +130,14 @@ static void write_absorption(const abbe_material *m, FILE *to) {
     write_attenuation(m->attenuation, 6, to);
     return;
   }
-  fputs("      ordinary:\n", to);
-  write_attenuation(m->attenuation, 8, to);
-  fputs("      extraordinary:\n", to);
-  write_attenuation(m->attenuation_yz[1], 8, to);
+  static const char *const axes[] = {"x", "y", "z"}, *const waves[] = {"ordinary", "",
+                                                                       "extraordinary"};
+  const bool three = abbe_material_is_biaxial(m);
+  for (int axis = 0; axis < 3; axis += three ? 1 : 2) {
+    const abbe_spectrum *own = axis > 0 ? m->attenuation_yz[axis - 1] : NULL;
+    fprintf(to, "      %s:\n", three ? axes[axis] : waves[axis]);
+    write_attenuation(own != NULL ? own : m->attenuation, 8, to);
+  }
 }
 
 static bool any(const double *value, size_t count) {

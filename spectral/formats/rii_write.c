@@ -157,8 +157,9 @@ static void note_losses(const abbe_material *m, abbe_report *report) {
       {m->description != NULL, "the database has no place for a description"},
       {m->warning != NULL, "the database has no place for a warning"},
       {m->fit[0].terms > 0 || m->fit[1].terms > 0, "the database has no place for recorded fits"},
+      {abbe_material_is_biaxial(m), "a file of the database has one index: the middle one"},
       {abbe_material_is_uniaxial(m), "a file of the database has one index: the ordinary one"},
-      {abbe_material_is_pleochroic(m), "a file of the database has one k: the ordinary wave's"},
+      {abbe_material_is_pleochroic(m), "a file of the database has one k: that along x"},
       {m->extrapolate, "the database cannot allow use outside the range"},
       {table != NULL && m->dispersion.k == NULL &&
            abbe_spectrum_interpolation(table) != ABBE_INTERPOLATION_MONOTONE,

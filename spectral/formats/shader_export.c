@@ -392,9 +392,10 @@ abbe_result abbe_shader_write(abbe_shader shader, const abbe_material_table *tab
                       "it is a conductor; of the shaders, only pbrt's are written of those");
       continue;
     }
-    if (abbe_material_is_uniaxial(m))
+    if (abbe_material_is_crystal(m))
       abbe_report_add(
-          report, ABBE_NOTE_LOST, m->line, m->name, "it is written with its ordinary index alone%s",
+          report, ABBE_NOTE_LOST, m->line, m->name, "it is written with its %s index alone%s",
+          abbe_material_is_biaxial(m) ? "middle" : "ordinary",
           abbe_material_is_pleochroic(m) ? ", and with the mean of its absorption over its axes"
                                          : "");
     if (w.count > 0) fputs(forms[shader].between, to);

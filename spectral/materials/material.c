@@ -17,6 +17,7 @@ void abbe_material_free(abbe_material *material) {
   free(material->catalogue.status);
   abbe_dispersion_free(&material->dispersion);
   abbe_dispersion_free(&material->extraordinary);
+  for (int i = 0; i < 2; i++) abbe_dispersion_free(&material->outer[i]);
   abbe_spectrum_free(material->attenuation);
   for (int i = 0; i < 2; i++) abbe_spectrum_free(material->attenuation_yz[i]);
   *material = (abbe_material){0};
@@ -86,6 +87,9 @@ static abbe_result check_range(const abbe_material *m, abbe_error *error) {
                           "%s: its range of %g to %g nm does not ascend between %g and %g", m->name,
                           m->min_nm, m->max_nm, ABBE_SPECTRUM_LOW_NM, ABBE_SPECTRUM_HIGH_NM);
   abbe_result result = check_points(m, table, "its points", error);
+  for (int i = 0; i < 2 && result == ABBE_OK; i++)
+    result = check_points(m, m->outer[i].table,
+                          i == 0 ? "those of its index alpha" : "those of its index gamma", error);
   return result == ABBE_OK
              ? check_points(m, m->extraordinary.table, "those of its extraordinary index", error)
              : result;
@@ -107,11 +111,56 @@ static abbe_result check_curve(const abbe_material *m, const abbe_dispersion *d,
   return ABBE_OK;
 }
 
+/* Three indices ascend at every wavelength, and are such as stones have. */
+static abbe_result check_order(const abbe_material *m, abbe_error *error) {
+  enum { STEPS = 1000 };
+  for (int i = 0; i <= STEPS; i++) {
+    const double nm = m->min_nm + (m->max_nm - m->min_nm) * i / STEPS,
+                 a = abbe_dispersion_n(&m->outer[0], nm), b = abbe_dispersion_n(&m->dispersion, nm),
+                 c = abbe_dispersion_n(&m->outer[1], nm);
+    if (a > b || b > c)
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "%s: its indices are to ascend, alpha <= beta <= gamma; at %g nm they "
+                            "are %.6g, %.6g, %.6g",
+                            m->name, nm, a, b, c);
+    if (!(a > 0 && c <= 10))
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "%s: an index of a crystal is above 0 and at most 10; at %g nm they "
+                            "are %.6g, %.6g, %.6g",
+                            m->name, nm, a, b, c);
+  }
+  return ABBE_OK;
+}
+
 static abbe_result check_index(const abbe_material *m, abbe_error *error) {
   if (abbe_material_is_conductor(m)) return ABBE_OK;
   abbe_result result = check_curve(m, &m->dispersion, "", error);
+  if (result == ABBE_OK && abbe_material_is_biaxial(m)) {
+    result = check_curve(m, &m->outer[0], "alpha's ", error);
+    if (result == ABBE_OK) result = check_curve(m, &m->outer[1], "gamma's ", error);
+    if (result == ABBE_OK) result = check_order(m, error);
+  }
   if (result != ABBE_OK || !abbe_material_is_uniaxial(m)) return result;
   return check_curve(m, &m->extraordinary, "extraordinary ", error);
+}
+
+/* Of three indices, all are there and real, and there is no second of another kind. */
+static abbe_result check_outer(const abbe_material *m, abbe_error *error) {
+  abbe_error why;
+  if (!abbe_material_is_biaxial(m)) return ABBE_OK;
+  if (abbe_material_is_uniaxial(m))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: a crystal has two indices, with 'extraordinary', or three, with "
+                          "'biaxial', and not both",
+                          m->name);
+  for (int i = 0; i < 2; i++) {
+    if (m->outer[i].model == ABBE_DISPERSION_CONDUCTOR ||
+        abbe_dispersion_check(&m->outer[i], &why) != ABBE_OK)
+      return abbe_error_set(
+          error, ABBE_INVALID_ARGUMENT, "%s: its index %s: %s", m->name, i == 0 ? "alpha" : "gamma",
+          m->outer[i].model == ABBE_DISPERSION_CONDUCTOR ? "it has to be real" : why.text);
+  }
+  return ABBE_OK;
 }
 
 static abbe_result check_extraordinary(const abbe_material *m, abbe_error *error) {
@@ -130,11 +179,14 @@ static abbe_result check_extraordinary(const abbe_material *m, abbe_error *error
 /* By the field's direction absorb crystals alone; of a uniaxial one x and y are alike. */
 abbe_result abbe_material_check_absorption(const abbe_material *m, abbe_error *error) {
   if (m->attenuation_yz[0] == NULL && m->attenuation_yz[1] == NULL) return ABBE_OK;
-  if (!abbe_material_is_uniaxial(m))
+  if (!abbe_material_is_crystal(m))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: it absorbs by direction, and has one index in all directions; only "
-                          "a crystal, with an 'extraordinary' index, is pleochroic",
+                          "a crystal, with an 'extraordinary' index or 'biaxial' ones, is "
+                          "pleochroic",
                           m->name);
+  if (abbe_material_is_biaxial(m) && m->attenuation != NULL && m->attenuation_yz[1] != NULL)
+    return ABBE_OK;
   if (m->attenuation != NULL && m->attenuation_yz[0] == NULL && m->attenuation_yz[1] != NULL)
     return ABBE_OK;
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -151,6 +203,7 @@ static abbe_result check_conductor(const abbe_material *m, abbe_error *error) {
                      : m->published_n_d != 0                      ? "n_d"
                      : m->published_v_d != 0                      ? "v_d"
                      : abbe_material_is_uniaxial(m)               ? "extraordinary"
+                     : abbe_material_is_biaxial(m)                ? "biaxial"
                                                                   : NULL;
   if (!abbe_material_is_conductor(m) || idle == NULL) return ABBE_OK;
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: the model conductor has no use for '%s'",
@@ -169,6 +222,7 @@ abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: %s", material->name, why.text);
   result = check_conductor(material, error);
   if (result == ABBE_OK) result = check_extraordinary(material, error);
+  if (result == ABBE_OK) result = check_outer(material, error);
   if (result == ABBE_OK) result = abbe_material_check_absorption(material, error);
   return result == ABBE_OK ? check_range(material, error) : result;
 }
@@ -224,7 +278,7 @@ static const char *no_thermal(const abbe_material *m) {
   if (!abbe_material_has_thermal(m))
     return "its record gives no dn/dT, which is not 0 for that; 'catalogue: thermal' takes six "
            "coefficients";
-  if (abbe_material_is_uniaxial(m)) return "its record has one dn/dT for two indices";
+  if (abbe_material_is_crystal(m)) return "its record has one dn/dT for several indices";
   return m->catalogue.thermal[5] < 0
              ? "its lambda_tk is negative, of which programs square it and others do not"
              : NULL;
@@ -259,7 +313,7 @@ abbe_result abbe_material_place(abbe_material *material, const abbe_conditions *
                           shift.to_c, why);
   memcpy(shift.thermal, m->catalogue.thermal, sizeof shift.thermal);
   m->dispersion.shift = shift;
-  m->extraordinary.shift = shift;
+  m->extraordinary.shift = m->outer[0].shift = m->outer[1].shift = shift;
   return ABBE_OK;
 }
 
@@ -273,8 +327,28 @@ abbe_result abbe_material_n_absolute(const abbe_material *material, double lambd
   return result;
 }
 
+static bool is_given(const abbe_dispersion *d) {
+  return d->count > 0 || d->table != NULL;
+}
+
 bool abbe_material_is_uniaxial(const abbe_material *material) {
-  return material->extraordinary.count > 0 || material->extraordinary.table != NULL;
+  return is_given(&material->extraordinary);
+}
+
+bool abbe_material_is_biaxial(const abbe_material *material) {
+  return is_given(&material->outer[0]) || is_given(&material->outer[1]);
+}
+
+bool abbe_material_is_crystal(const abbe_material *material) {
+  return abbe_material_is_uniaxial(material) || abbe_material_is_biaxial(material);
+}
+
+abbe_result abbe_material_n_along(const abbe_material *material, int axis, double lambda_nm,
+                                  double *n, abbe_error *error) {
+  const abbe_dispersion *d = &material->dispersion;
+  if (axis != 1 && abbe_material_is_biaxial(material)) d = &material->outer[axis / 2];
+  if (axis == 2 && abbe_material_is_uniaxial(material)) d = &material->extraordinary;
+  return index_of(material, d, lambda_nm, n, error);
 }
 
 abbe_result abbe_material_n_extraordinary(const abbe_material *material, double lambda_nm,

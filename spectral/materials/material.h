@@ -2,8 +2,9 @@
  *
  * It is transparent, with a real index, or a conductor, with n and k and nothing to do with light
  * but to mirror it: a conductor has no attenuation, fit, published n_d or V_d, and does not
- * extrapolate. A transparent one may be a uniaxial crystal, with two indices (spectral/uniaxial.h),
- * and a crystal may be pleochroic: then it absorbs by the direction of the light's field.
+ * extrapolate. A transparent one may be a crystal, with two indices (spectral/uniaxial.h) or three
+ * (spectral/biaxial.h), and a crystal may be pleochroic: then it absorbs by the direction of the
+ * light's field.
  *
  * A zeroed record with a name, a source and a dispersion is a valid one, but for temperature_c: 0
  * means 0 Celsius, NaN that the source is silent.
@@ -56,6 +57,8 @@ typedef struct abbe_material {
   abbe_dispersion dispersion;
   abbe_dispersion extraordinary; /* the second index of a uniaxial crystal, whose ordinary index is
                                     the other; of any other material zeroed */
+  abbe_dispersion outer[2];      /* the lowest and the highest index of a biaxial crystal, whose
+                                    middle one is `dispersion`; of any other material zeroed */
   double min_nm, max_nm;         /* valid range of the dispersion, from its source */
   bool extrapolate;              /* the record allows use outside that range; reported when used */
   abbe_spectrum *attenuation;    /* natural attenuation coefficient, 1/m, at nm; NULL: clear; of a
@@ -91,8 +94,8 @@ size_t abbe_material_catalogue_bound(abbe_material_catalogue *catalogue);
  * has 1 to 80 printable characters and no space at its ends, there is a source, the coefficients go
  * with the model, the range ascends inside [ABBE_SPECTRUM_LOW_NM, ABBE_SPECTRUM_HIGH_NM] and inside
  * the points of a tabulated model, the formula has a real index at 1001 wavelengths over it, the
- * extraordinary one as well, and a conductor has nothing that only a transparent material has.
- * ABBE_INVALID_ARGUMENT, with a sentence that begins with the name. */
+ * extraordinary one as well and three indices in their order, and a conductor has nothing that only
+ * a transparent material has. ABBE_INVALID_ARGUMENT, with a sentence that begins with the name. */
 abbe_result abbe_material_check(const abbe_material *material, abbe_error *error);
 /* Checks all of it but the last, which takes its time: what needs no value of the formula. */
 abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *error);
@@ -122,6 +125,13 @@ abbe_result abbe_material_n_absolute(const abbe_material *material, double lambd
 
 /* Whether it is a uniaxial crystal: it has an extraordinary index besides. */
 bool abbe_material_is_uniaxial(const abbe_material *material);
+/* Whether it has three indices, and whether it has more than one. */
+bool abbe_material_is_biaxial(const abbe_material *material);
+bool abbe_material_is_crystal(const abbe_material *material);
+/* The index of a field along principal axis 0, 1 or 2, as abbe_material_n: of a biaxial crystal
+ * alpha, beta and gamma; of a uniaxial one ordinary, ordinary and extraordinary. */
+abbe_result abbe_material_n_along(const abbe_material *material, int axis, double lambda_nm,
+                                  double *n, abbe_error *error);
 /* The extraordinary index, as abbe_material_n; that of any other material is its only one. */
 abbe_result abbe_material_n_extraordinary(const abbe_material *material, double lambda_nm,
                                           double *n, abbe_error *error);

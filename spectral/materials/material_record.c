@@ -134,6 +134,9 @@ static abbe_result read_pleochroism(abbe_record_reading *r, abbe_yaml_node where
   abbe_error why;
   abbe_spectrum **of_two[] = {&m->attenuation, &m->attenuation_yz[1]},
                 **of_three[] = {&m->attenuation, y, &m->attenuation_yz[1]};
+  if (!xyz && abbe_material_is_biaxial(m))
+    return abbe_yaml_fail(r->yaml, where, r->error,
+                          "'absorption' of a biaxial crystal goes along 'x', 'y' and 'z'");
   abbe_result result = read_axes(r, where, xyz ? three : two, xyz ? 3 : 2, xyz ? of_three : of_two);
   if (result == ABBE_OK && *y != NULL && is_same(*y, m->attenuation)) {
     abbe_spectrum_free(*y);
@@ -270,11 +273,11 @@ static abbe_result read_texts(abbe_record_reading *r) {
 /* Every key is asked for before the values are judged by what is missing, so that a mistyped key
  * is reported as such. */
 static abbe_result check_record_keys(abbe_record_reading *r) {
-  static const char *const keys[] = {"name",       "description",   "model",        "coefficients",
-                                     "points",     "interpolation", "range_nm",     "extrapolate",
-                                     "absorption", "temperature_c", "source",       "warning",
-                                     "fit",        "n_d",           "v_d",          "comment",
-                                     "catalogue",  "density_g_cm3", "extraordinary"};
+  static const char *const keys[] = {"name",       "description",   "model",         "coefficients",
+                                     "points",     "interpolation", "range_nm",      "extrapolate",
+                                     "absorption", "temperature_c", "source",        "warning",
+                                     "fit",        "n_d",           "v_d",           "comment",
+                                     "catalogue",  "density_g_cm3", "extraordinary", "biaxial"};
   for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
     abbe_yaml_get(r->yaml, r->record, keys[i]);
   return abbe_yaml_check_keys(r->yaml, r->record, "a material", r->error);

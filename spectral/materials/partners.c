@@ -10,7 +10,7 @@
 static bool usable(const abbe_material *m, abbe_material_numbers *out) {
   abbe_material_numbers_make(m, out);
   if (m->dispersion.model == ABBE_DISPERSION_CAUCHY && m->dispersion.count < 3) return false;
-  return !abbe_material_is_conductor(m) && !abbe_material_is_uniaxial(m) && isfinite(out->v_d) &&
+  return !abbe_material_is_conductor(m) && !abbe_material_is_crystal(m) && isfinite(out->v_d) &&
          isfinite(out->p_gF);
 }
 
@@ -81,8 +81,7 @@ abbe_result abbe_glass_partners_find(const abbe_material_table *table, const abb
                                : third != NULL && !usable(third, &with) ? third
                                                                         : NULL;
   if (wrong != NULL)
-    return abbe_error_set(error, ABBE_OUT_OF_RANGE,
-                          "%s has no single index with a V_d and a P_gF",
+    return abbe_error_set(error, ABBE_OUT_OF_RANGE, "%s has no single index with a V_d and a P_gF",
                           wrong->name);
   out->partner = calloc(table->count + 1, sizeof *out->partner);
   if (out->partner == NULL)

@@ -2,6 +2,7 @@
 
 #include "spectral/materials/conductor.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -146,9 +147,9 @@ static abbe_result read_pairs(abbe_record_reading *r, abbe_yaml_node where, abbe
   return abbe_record_read_points(r, points, "points", 1e-3, 1e3, interpolation, &d->table);
 }
 
-static abbe_result read_tabulated(abbe_record_reading *r) {
+static abbe_result read_tabulated(abbe_record_reading *r, abbe_yaml_node own) {
   abbe_material *m = r->material;
-  abbe_result result = read_pairs(r, r->record, &m->dispersion);
+  abbe_result result = read_pairs(r, own, &m->dispersion);
   if (result != ABBE_OK) return result;
   const double *lambda_nm = abbe_spectrum_lambda_nm(m->dispersion.table);
   double low = lambda_nm[0], high = lambda_nm[abbe_spectrum_count(m->dispersion.table) - 1];
@@ -181,9 +182,9 @@ static abbe_result read_coefficients(abbe_record_reading *r, abbe_yaml_node wher
   return ABBE_OK;
 }
 
-static abbe_result read_formula(abbe_record_reading *r) {
+static abbe_result read_formula(abbe_record_reading *r, abbe_yaml_node own) {
   abbe_material *m = r->material;
-  abbe_result result = read_coefficients(r, r->record, &m->dispersion);
+  abbe_result result = read_coefficients(r, own, &m->dispersion);
   if (result != ABBE_OK) return result;
   abbe_yaml_node node = {0};
   m->min_nm = ABBE_SPECTRUM_LOW_NM;
@@ -204,9 +205,9 @@ static abbe_result check_idle_keys(abbe_record_reading *r, abbe_yaml_node where,
                                    abbe_dispersion_model model) {
   static const char *const of_points[] = {"coefficients", NULL};
   static const char *const of_formulas[] = {"points", "interpolation", NULL};
-  static const char *const of_conductors[] = {"coefficients", "interpolation", "extrapolate",
-                                              "absorption",   "fit",           "n_d",
-                                              "v_d",          "extraordinary", NULL};
+  static const char *const of_conductors[] = {
+      "coefficients", "interpolation", "extrapolate",   "absorption", "fit",
+      "n_d",          "v_d",           "extraordinary", "biaxial",    NULL};
   const char *const *idle = model == ABBE_DISPERSION_CONDUCTOR   ? of_conductors
                             : model == ABBE_DISPERSION_TABULATED ? of_points
                                                                  : of_formulas;
@@ -219,36 +220,83 @@ static abbe_result check_idle_keys(abbe_record_reading *r, abbe_yaml_node where,
   return ABBE_OK;
 }
 
-/* The second index of a uniaxial crystal, over the range of the first. */
-static abbe_result read_extraordinary(abbe_record_reading *r) {
-  abbe_dispersion *d = &r->material->extraordinary;
-  const abbe_yaml_node where = abbe_yaml_get(r->yaml, r->record, "extraordinary");
-  if (where.id == 0) return ABBE_OK;
+/* An index besides, over the range of the record's own: model and numbers under the key. */
+static abbe_result read_second(abbe_record_reading *r, abbe_yaml_node parent, const char *key,
+                               abbe_dispersion *d) {
+  const abbe_yaml_node where = abbe_yaml_get(r->yaml, parent, key);
+  char what[40];
+  snprintf(what, sizeof what, "'%s'", key);
   if (!abbe_yaml_is_mapping(r->yaml, where))
     return abbe_yaml_fail(r->yaml, where, r->error,
-                          "'extraordinary' wants a model and its numbers, such as {model: cauchy, "
-                          "coefficients: [1.48, 0.003]}");
+                          "'%s' wants a model and its numbers, such as {model: cauchy, "
+                          "coefficients: [1.48, 0.003]}",
+                          key);
   static const char *const keys[] = {"model", "coefficients", "points", "interpolation"};
   for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) abbe_yaml_get(r->yaml, where, keys[i]);
-  abbe_result result = abbe_yaml_check_keys(r->yaml, where, "'extraordinary'", r->error);
+  abbe_result result = abbe_yaml_check_keys(r->yaml, where, what, r->error);
   if (result == ABBE_OK) result = read_model(r, where, &d->model);
   if (result == ABBE_OK && d->model == ABBE_DISPERSION_CONDUCTOR)
     return abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, where, "model"), r->error,
-                          "'extraordinary' is a real index; the model conductor has n and k");
+                          "'%s' is a real index; the model conductor has n and k", key);
   if (result == ABBE_OK) result = check_idle_keys(r, where, d->model);
   if (result != ABBE_OK) return result;
   return d->model == ABBE_DISPERSION_TABULATED ? read_pairs(r, where, d)
                                                : read_coefficients(r, where, d);
 }
 
+/* The second index of a uniaxial crystal, or the outer two of a biaxial one. */
+static abbe_result read_crystal(abbe_record_reading *r) {
+  static const char *const names[] = {"alpha", "gamma"};
+  abbe_material *m = r->material;
+  abbe_result result = ABBE_OK;
+  if (abbe_yaml_get(r->yaml, r->record, "extraordinary").id != 0)
+    result = read_second(r, r->record, "extraordinary", &m->extraordinary);
+  const abbe_yaml_node three = abbe_yaml_get(r->yaml, r->record, "biaxial");
+  if (three.id == 0 || result != ABBE_OK) return result;
+  for (int i = 0; i < 2 && result == ABBE_OK; i++) {
+    if (abbe_yaml_get(r->yaml, three, names[i]).id == 0)
+      return abbe_yaml_fail(r->yaml, three, r->error, "'biaxial' wants '%s' too", names[i]);
+    result = read_second(r, three, names[i], &m->outer[i]);
+  }
+  return result == ABBE_OK ? abbe_yaml_check_keys(r->yaml, three, "'biaxial'", r->error) : result;
+}
+
+/* Where the record's own index stands: in itself or, of a biaxial crystal, under beta. */
+static abbe_result find_own(abbe_record_reading *r, abbe_yaml_node *own) {
+  static const char *const keys[] = {"model", "coefficients", "points", "interpolation"};
+  const abbe_yaml_node three = abbe_yaml_get(r->yaml, r->record, "biaxial");
+  *own = r->record;
+  if (three.id == 0) return ABBE_OK;
+  if (!abbe_yaml_is_mapping(r->yaml, three))
+    return abbe_yaml_fail(r->yaml, three, r->error,
+                          "'biaxial' wants 'alpha', 'beta' and 'gamma', each a model and its "
+                          "numbers");
+  const abbe_yaml_node beta = abbe_yaml_get(r->yaml, three, "beta");
+  if (beta.id == 0) return ABBE_OK;
+  if (!abbe_yaml_is_mapping(r->yaml, beta))
+    return abbe_yaml_fail(r->yaml, beta, r->error, "'beta' wants a model and its numbers");
+  for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
+    const abbe_yaml_node twice = abbe_yaml_get(r->yaml, r->record, keys[i]);
+    if (twice.id != 0)
+      return abbe_yaml_fail(r->yaml, twice, r->error,
+                            "'%s' stands beside 'biaxial', whose 'beta' is the record's own index",
+                            keys[i]);
+    abbe_yaml_get(r->yaml, beta, keys[i]);
+  }
+  *own = beta;
+  return abbe_yaml_check_keys(r->yaml, beta, "'beta'", r->error);
+}
+
 abbe_result abbe_record_read_dispersion(abbe_record_reading *r) {
   abbe_dispersion *d = &r->material->dispersion;
-  abbe_result result = read_model(r, r->record, &d->model);
+  abbe_yaml_node own;
+  abbe_result result = find_own(r, &own);
+  if (result == ABBE_OK) result = read_model(r, own, &d->model);
   if (result == ABBE_OK) result = check_idle_keys(r, r->record, d->model);
   if (result != ABBE_OK) return result;
   bool points = d->model == ABBE_DISPERSION_TABULATED || d->model == ABBE_DISPERSION_CONDUCTOR;
-  result = points ? read_tabulated(r) : read_formula(r);
-  if (result == ABBE_OK) result = read_extraordinary(r);
+  result = points ? read_tabulated(r, own) : read_formula(r, own);
+  if (result == ABBE_OK) result = read_crystal(r);
   if (result != ABBE_OK || r->lenient) return result;
   abbe_error why;
   if (abbe_material_check(r->material, &why) != ABBE_OK)

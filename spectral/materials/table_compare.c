@@ -74,7 +74,9 @@ static unsigned parts_of(const abbe_material *a, const abbe_material *b) {
       [ABBE_ROW_PART_COEFFICIENTS] = p->count == q->count && same_numbers(p->c, q->c, p->count),
       [ABBE_ROW_PART_POINTS] = same_points(p->table, q->table) && same_points(p->k, q->k),
       [ABBE_ROW_PART_RANGE] = a->min_nm == b->min_nm && a->max_nm == b->max_nm,
-      [ABBE_ROW_PART_EXTRAORDINARY] = same_index(&a->extraordinary, &b->extraordinary),
+      [ABBE_ROW_PART_EXTRAORDINARY] = same_index(&a->extraordinary, &b->extraordinary) &&
+                                      same_index(&a->outer[0], &b->outer[0]) &&
+                                      same_index(&a->outer[1], &b->outer[1]),
       [ABBE_ROW_PART_EXTRAPOLATE] = a->extrapolate == b->extrapolate,
       [ABBE_ROW_PART_TEMPERATURE] = same_number(a->temperature_c, b->temperature_c),
       [ABBE_ROW_PART_PUBLISHED] =

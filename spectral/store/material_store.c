@@ -261,17 +261,19 @@ static abbe_result read_index(reader *r, const abbe_store_column column[4], abbe
 }
 
 static abbe_result read_dispersion(reader *r) {
-  static const abbe_store_column ordinary[4] = {ABBE_STORE_model, ABBE_STORE_coefficients,
-                                                ABBE_STORE_interpolation, ABBE_STORE_points},
-                                 extraordinary[4] = {ABBE_STORE_extraordinary_model,
-                                                     ABBE_STORE_extraordinary_coefficients,
-                                                     ABBE_STORE_extraordinary_interpolation,
-                                                     ABBE_STORE_extraordinary_points};
+#define INDEX_COLUMNS(of)                                                                          \
+  {                                                                                                \
+    ABBE_STORE_##of##model, ABBE_STORE_##of##coefficients, ABBE_STORE_##of##interpolation,         \
+        ABBE_STORE_##of##points                                                                    \
+  }
+  static const abbe_store_column columns[4][4] = {INDEX_COLUMNS(), INDEX_COLUMNS(extraordinary_),
+                                                  INDEX_COLUMNS(alpha_), INDEX_COLUMNS(gamma_)};
   abbe_material *m = r->material;
+  abbe_dispersion *const to[4] = {&m->dispersion, &m->extraordinary, &m->outer[0], &m->outer[1]};
   if (sqlite3_column_type(r->q, ABBE_STORE_model + 1) == SQLITE_NULL)
     return damaged(r, ABBE_STORE_model, "is missing");
-  abbe_result result = read_index(r, ordinary, &m->dispersion);
-  if (result == ABBE_OK) result = read_index(r, extraordinary, &m->extraordinary);
+  abbe_result result = ABBE_OK;
+  for (int i = 0; i < 4 && result == ABBE_OK; i++) result = read_index(r, columns[i], to[i]);
   const double low = ABBE_SPECTRUM_LOW_NM, high = ABBE_SPECTRUM_HIGH_NM;
   if (result == ABBE_OK) result = read_number(r, ABBE_STORE_from_nm, low, high, &m->min_nm);
   return result == ABBE_OK ? read_number(r, ABBE_STORE_to_nm, low, high, &m->max_nm) : result;
@@ -305,6 +307,9 @@ static abbe_result read_row(reader *r) {
   if (result == ABBE_OK)
     result = read_spectrum(r, ABBE_STORE_attenuation_per_m, ABBE_STORE_attenuation_interpolation, 0,
                            1e15, &m->attenuation);
+  if (result == ABBE_OK)
+    result = read_spectrum(r, ABBE_STORE_attenuation_y_per_m,
+                           ABBE_STORE_attenuation_y_interpolation, 0, 1e15, &m->attenuation_yz[0]);
   if (result == ABBE_OK)
     result = read_spectrum(r, ABBE_STORE_attenuation_z_per_m,
                            ABBE_STORE_attenuation_z_interpolation, 0, 1e15, &m->attenuation_yz[1]);

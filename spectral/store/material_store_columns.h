@@ -24,6 +24,12 @@ enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 3, ABBE_STORE_M
   X(extraordinary_model, "TEXT")                                                                   \
   X(extraordinary_coefficients, "BLOB")                                                            \
   X(extraordinary_interpolation, "TEXT")                                                           \
+  X(alpha_model, "TEXT")                                                                           \
+  X(alpha_coefficients, "BLOB")                                                                    \
+  X(alpha_interpolation, "TEXT")                                                                   \
+  X(gamma_model, "TEXT")                                                                           \
+  X(gamma_coefficients, "BLOB")                                                                    \
+  X(gamma_interpolation, "TEXT")                                                                   \
   X(from_nm, "REAL")                                                                               \
   X(to_nm, "REAL")                                                                                 \
   X(extrapolate, "INTEGER")                                                                        \
@@ -45,8 +51,12 @@ enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 3, ABBE_STORE_M
   X(cauchy3, "BLOB")                                                                               \
   X(attenuation_interpolation, "TEXT")                                                             \
   X(attenuation_per_m, "BLOB")                                                                     \
+  X(attenuation_y_interpolation, "TEXT")                                                           \
+  X(attenuation_y_per_m, "BLOB")                                                                   \
   X(attenuation_z_interpolation, "TEXT")                                                           \
   X(attenuation_z_per_m, "BLOB") /* the other is along x */                                        \
+  X(alpha_points, "BLOB")                                                                          \
+  X(gamma_points, "BLOB")                                                                          \
   X(extraordinary_points, "BLOB")                                                                  \
   X(points, "BLOB")
 

@@ -104,6 +104,27 @@ static int bind_catalogue(sqlite3_stmt *q, const abbe_material_catalogue *c) {
   return code;
 }
 
+/* The indices besides the record's own. */
+static int bind_crystal(sqlite3_stmt *q, const abbe_material *m) {
+#define INDEX_COLUMNS(of)                                                                          \
+  {                                                                                                \
+    ABBE_STORE_##of##model, ABBE_STORE_##of##coefficients, ABBE_STORE_##of##points,                \
+        ABBE_STORE_##of##interpolation                                                             \
+  }
+  static const abbe_store_column columns[3][4] = {INDEX_COLUMNS(extraordinary_),
+                                                  INDEX_COLUMNS(alpha_), INDEX_COLUMNS(gamma_)};
+  const abbe_dispersion *const from[3] = {&m->extraordinary, &m->outer[0], &m->outer[1]};
+  int code = SQLITE_OK;
+  for (int i = 0; i < 3 && code == SQLITE_OK; i++) {
+    const abbe_dispersion *d = from[i];
+    if (d->count == 0 && d->table == NULL) continue;
+    code = bind_text(q, columns[i][0], abbe_dispersion_model_name(d->model));
+    if (code == SQLITE_OK) code = bind_numbers(q, columns[i][1], d->c, d->count);
+    if (code == SQLITE_OK) code = bind_spectrum(q, columns[i][2], columns[i][3], d->table);
+  }
+  return code;
+}
+
 static int bind_material(sqlite3_stmt *q, const abbe_material *m) {
   const abbe_dispersion *d = &m->dispersion;
   const struct {
@@ -132,17 +153,13 @@ static int bind_material(sqlite3_stmt *q, const abbe_material *m) {
     code = abbe_material_is_conductor(m)
                ? bind_conductor(q, d)
                : bind_spectrum(q, ABBE_STORE_points, ABBE_STORE_interpolation, d->table);
-  const abbe_dispersion *e = &m->extraordinary;
-  if (code == SQLITE_OK && abbe_material_is_uniaxial(m))
-    code = bind_text(q, ABBE_STORE_extraordinary_model, abbe_dispersion_model_name(e->model));
-  if (code == SQLITE_OK)
-    code = bind_numbers(q, ABBE_STORE_extraordinary_coefficients, e->c, e->count);
-  if (code == SQLITE_OK)
-    code = bind_spectrum(q, ABBE_STORE_extraordinary_points, ABBE_STORE_extraordinary_interpolation,
-                         e->table);
+  if (code == SQLITE_OK) code = bind_crystal(q, m);
   if (code == SQLITE_OK)
     code = bind_spectrum(q, ABBE_STORE_attenuation_per_m, ABBE_STORE_attenuation_interpolation,
                          m->attenuation);
+  if (code == SQLITE_OK)
+    code = bind_spectrum(q, ABBE_STORE_attenuation_y_per_m, ABBE_STORE_attenuation_y_interpolation,
+                         m->attenuation_yz[0]);
   if (code == SQLITE_OK)
     code = bind_spectrum(q, ABBE_STORE_attenuation_z_per_m, ABBE_STORE_attenuation_z_interpolation,
                          m->attenuation_yz[1]);

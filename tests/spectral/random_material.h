@@ -37,6 +37,16 @@ static inline abbe_spectrum *random_spectrum(double low, double high) {
   return made;
 }
 
+static inline abbe_spectrum *scaled_spectrum(const abbe_spectrum *s, double by) {
+  double value[64];
+  const size_t count = abbe_spectrum_count(s);
+  for (size_t i = 0; i < count; i++) value[i] = by * abbe_spectrum_value(s)[i];
+  abbe_spectrum *made = NULL;
+  OK(abbe_spectrum_make(abbe_spectrum_lambda_nm(s), value, count, abbe_spectrum_interpolation(s),
+                        &made, &error));
+  return made;
+}
+
 static inline void random_terms(abbe_dispersion *d, double power_low) {
   size_t terms = (size_t)rand() % 6;
   d->c[d->count++] = random_in(1, 3);
@@ -157,6 +167,12 @@ static inline abbe_material random_material(size_t number) {
         abbe_spectrum_lambda_nm(m.dispersion.table)[abbe_spectrum_count(m.dispersion.table) - 1];
   }
   if (rand() % 3 == 0) m.extraordinary = random_second(&m.dispersion);
+  if (m.dispersion.model == ABBE_DISPERSION_CAUCHY && !abbe_material_is_uniaxial(&m))
+    for (int i = 0; i < 2; i++) {
+      m.outer[i] = m.dispersion;
+      m.outer[i].c[0] += i == 0 ? -0.01 : 0.02;
+      if (m.attenuation != NULL) m.attenuation_yz[i] = scaled_spectrum(m.attenuation, i + 2);
+    }
   if (abbe_material_is_uniaxial(&m) && m.attenuation != NULL)
     m.attenuation_yz[1] = random_spectrum(0, 300);
   random_catalogue(&m.catalogue);

@@ -62,6 +62,10 @@ static uint64_t hash_media(uint64_t h, const abbe_media *m) {
   h = hash(h, m->n, values * sizeof *m->n);
   if (m->attenuation != NULL) h = hash(h, m->attenuation, values * sizeof *m->attenuation);
   if (m->extraordinary == NULL) return h;
+  if (m->principal != NULL) {
+    h = hash(h, m->principal, 3 * values * sizeof *m->principal);
+    h = hash(h, m->frame, m->refractors * sizeof *m->frame);
+  }
   if (m->pleochroism != NULL) h = hash(h, m->pleochroism, 3 * values * sizeof *m->pleochroism);
   h = hash(h, m->extraordinary, values * sizeof *m->extraordinary);
   h = hash(h, m->crystal, m->refractors * sizeof *m->crystal);

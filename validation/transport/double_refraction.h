@@ -1,11 +1,12 @@
-/* double_refraction.h: light at the faces of uniaxial crystals, for the walks.
+/* double_refraction.h: light at the faces of crystals, for the walks.
  *
  * Inside a crystal a path carries one of its two waves, with that wave's own linear polarisation;
  * at a face it goes on as up to two waves a side. Waves are added by power, not by amplitude: there
  * is no interference of the two. Light in isotropic media counts as unpolarised. Directions are
  * those of the rays; n is the unit normal on the side that the light comes from.
  *
- * The physics is spectral/uniaxial.h's, in double precision.
+ * The physics is spectral/uniaxial.h's, where a face has a crystal of three indices at one side
+ * spectral/biaxial.h's, in double precision.
  *
  * Internal to validation/.
  */
@@ -23,7 +24,8 @@
 typedef struct abbe_wave_way {
   float d[3];   /* unit */
   float share;  /* share of the light that came, above 0 */
-  uint8_t wave; /* abbe_uniaxial_mode of the crystal that it goes on in; 0 in isotropic media */
+  uint8_t wave; /* abbe_uniaxial_mode or abbe_biaxial_mode of the crystal that it goes on in; 0 in
+                   isotropic media */
   bool reflected;
 } abbe_wave_way;
 
@@ -37,6 +39,11 @@ typedef struct abbe_wave_ways {
 /* wave: of the light that comes, as above. */
 void abbe_wave_ways_find(const abbe_uniaxial *from, const abbe_uniaxial *to, const float n[3],
                          const float d[3], uint8_t wave, abbe_wave_ways *out);
+
+/* The same where one of the media has three indices; one of two has its ordinary one twice, first.
+ */
+void abbe_wave_ways_find_biaxial(const abbe_biaxial *from, const abbe_biaxial *to, const float n[3],
+                                 const float d[3], uint8_t wave, abbe_wave_ways *out);
 
 /* The medium as a crystal or, with both indices alike, as what is none; -1: air. */
 void abbe_media_crystal(const abbe_media *media, int medium, uint32_t step, float within,

@@ -4,13 +4,14 @@
  * set of refractors around a point is enough to know its medium, and a surface that another,
  * later refractor covers is no interface, nor is one between two of the same material. The tables
  * hold index and attenuation of every refractor at the sampler's wavelengths. Air (n = 1) is where
- * no refractor is. A uniaxial crystal has two indices and an axis (double_refraction.h); two of one
- * material are one medium where their axes are alike. Internal to validation/.
+ * no refractor is. A crystal has two indices and an axis, or three of each (double_refraction.h);
+ * two of one material are one medium where their axes are alike. Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_MEDIA_H
 #define ABBE_VALIDATION_TRANSPORT_MEDIA_H
 
 #include "base/error.h"
+#include "spectral/biaxial.h"
 #include "validation/transport/geometry.h"
 #include "validation/transport/haze.h"
 
@@ -36,16 +37,20 @@ static inline void abbe_media_cross(abbe_media_set set, uint32_t i, bool enterin
 
 typedef struct abbe_media {
   size_t refractors, steps;
-  float *n;             /* [refractors][steps + 1] at the steps' edges */
-  float *attenuation;   /* the same, a frame unit; NULL where all are clear */
-  bool *dispersive;     /* [refractors] the index varies over the steps */
-  uint32_t *stuff;      /* [refractors] the first refractor of the same material */
-  float *extraordinary; /* the other index of crystals, as n; NULL where there are none */
-  bool *crystal;        /* [refractors] */
-  double (*axis)[3];    /* [refractors] unit, of crystals */
-  float *pleochroism;   /* [refractors][steps + 1][3] attenuation along x, y, z, a frame unit; NULL
-                           where no crystal absorbs by direction */
-  abbe_haze haze;       /* what scatters in them and in the air */
+  float *n;              /* [refractors][steps + 1] at the steps' edges */
+  float *attenuation;    /* the same, a frame unit; NULL where all are clear */
+  bool *dispersive;      /* [refractors] the index varies over the steps */
+  uint32_t *stuff;       /* [refractors] the first refractor of the same material */
+  float *extraordinary;  /* the other index of crystals, as n; NULL where there are none */
+  bool *crystal;         /* [refractors] */
+  double (*axis)[3];     /* [refractors] unit, of crystals */
+  float *principal;      /* [refractors][steps + 1][3] indices of crystals along x, y, z; NULL where
+                            none has three */
+  double (*frame)[3][3]; /* [refractors] x, y, z of crystals, unit */
+  bool *biaxial, *pleochroic; /* [refractors] */
+  float *pleochroism; /* [refractors][steps + 1][3] attenuation along x, y, z, a frame unit; NULL
+                         where no crystal absorbs by direction */
+  abbe_haze haze;     /* what scatters in them and in the air */
 } abbe_media;
 
 /* Tables over the steps + 1 wavelengths lambda_nm, ascending. Errors as abbe_material_n. */
@@ -59,6 +64,11 @@ void abbe_media_forget_axes(abbe_media *media);
 /* Whether the medium (-1: air) has two indices. */
 static inline bool abbe_media_is_crystal(const abbe_media *m, int i) {
   return i >= 0 && m->extraordinary != NULL && m->crystal[i];
+}
+
+/* Whether it has three. */
+static inline bool abbe_media_is_biaxial(const abbe_media *m, int i) {
+  return i >= 0 && m->principal != NULL && m->biaxial[i];
 }
 
 /* Whether two media (-1: air) are one, so that there is no interface between them. */
@@ -80,6 +90,9 @@ static inline float abbe_media_attenuation(const abbe_media *m, int i, uint32_t 
   return a[0] + f * (a[1] - a[0]);
 }
 
+/* Crystal i with its axes; one of two indices has the ordinary one twice. */
+void abbe_media_axes(const abbe_media *media, int i, uint32_t k, float f, abbe_biaxial *out);
+
 /* The attenuation of one wave of crystal i along the unit ray d, where some crystal is
  * pleochroic. */
 float abbe_media_attenuation_along(const abbe_media *media, int i, uint32_t k, float f,
@@ -88,7 +101,7 @@ float abbe_media_attenuation_along(const abbe_media *media, int i, uint32_t k, f
 /* The same of any medium along the unit ray d, of that wave where it is a crystal. */
 static inline float abbe_media_loss(const abbe_media *m, int i, uint32_t k, float f,
                                     const float d[3], uint8_t wave) {
-  if (m->pleochroism != NULL && abbe_media_is_crystal(m, i))
+  if (m->pleochroism != NULL && i >= 0 && m->pleochroic[i])
     return abbe_media_attenuation_along(m, i, k, f, d, wave);
   return abbe_media_attenuation(m, i, k, f);
 }

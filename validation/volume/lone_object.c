@@ -136,6 +136,10 @@ static uint64_t materials_key(const abbe_media *m, const abbe_mirrors *r, uint64
     h = abbe_volume_key(h, m->attenuation, values * sizeof *m->attenuation);
   if (m->extraordinary != NULL) {
     h = abbe_volume_key(h, m->extraordinary, values * sizeof *m->extraordinary);
+    if (m->principal != NULL) {
+      h = abbe_volume_key(h, m->principal, 3 * values * sizeof *m->principal);
+      h = abbe_volume_key(h, m->frame, m->refractors * sizeof *m->frame);
+    }
     if (m->pleochroism != NULL)
       h = abbe_volume_key(h, m->pleochroism, 3 * values * sizeof *m->pleochroism);
     h = abbe_volume_key(h, m->axis, m->refractors * sizeof *m->axis);

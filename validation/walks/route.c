@@ -1,5 +1,6 @@
 #include "validation/walks/route.h"
 
+#include "base/maths.h"
 #include "spectral/optics.h"
 #include "validation/transport/double_refraction.h"
 #include "validation/transport/interface.h"
@@ -36,6 +37,23 @@ static abbe_result medium_of(const walker *w, abbe_media_set set, abbe_uniaxial 
              : result;
 }
 
+/* Any medium with its axes; whether it has three indices. */
+static abbe_result axes_of(const walker *w, abbe_media_set set, abbe_biaxial *out, bool *biaxial,
+                           abbe_error *error) {
+  *out = (abbe_biaxial){{1, 1, 1}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  const int medium = abbe_media_of(set);
+  if (medium < 0) return ABBE_OK;
+  const abbe_object *object = &w->g->scene->object[w->g->refractor_object[medium]];
+  *biaxial = *biaxial || abbe_material_is_biaxial(object->material);
+  memcpy(out->axis[0], object->axis_x, sizeof object->axis_x);
+  memcpy(out->axis[2], object->axis, sizeof object->axis);
+  abbe_vector_cross(object->axis, object->axis_x, out->axis[1]);
+  abbe_result result = ABBE_OK;
+  for (int axis = 0; axis < 3 && result == ABBE_OK; axis++)
+    result = abbe_material_n_along(object->material, axis, w->lambda_nm, &out->n[axis], error);
+  return result;
+}
+
 /* The way that the choice names, or else the strongest. */
 static const abbe_wave_way *way_of(const abbe_wave_ways *ways, char choice) {
   const abbe_wave_way *best = &ways->way[0];
@@ -52,19 +70,16 @@ static const abbe_wave_way *way_of(const abbe_wave_ways *ways, char choice) {
 }
 
 /* A face of a crystal. */
-static void meet_crystal(walker *w, const abbe_hit *hit, bool entering, const float n[3],
-                         const abbe_uniaxial media[2], const char **choice,
-                         abbe_route_vertex *out) {
-  abbe_wave_ways ways;
-  abbe_wave_ways_find(&media[0], &media[1], n, w->d, w->wave, &ways);
-  const abbe_wave_way *way = way_of(&ways, **choice != '\0' ? *(*choice)++ : 't');
+static void meet_crystal(walker *w, const abbe_hit *hit, bool entering, const abbe_wave_ways *ways,
+                         const char **choice, abbe_route_vertex *out) {
+  const abbe_wave_way *way = way_of(ways, **choice != '\0' ? *(*choice)++ : 't');
   abbe_media_set before, after;
   abbe_media_cross(w->inside, hit->surface->index, entering, &before, &after);
   memcpy(w->d, way->d, sizeof w->d);
   w->wave = way->wave;
   w->inside = way->reflected ? before : after;
   out->event = way->reflected ? ABBE_ROUTE_REFLECTED : ABBE_ROUTE_TRANSMITTED;
-  out->reflectance = (double)ways.reflected;
+  out->reflectance = (double)ways->reflected;
   out->share = (double)way->share;
   out->extraordinary = way->wave == ABBE_UNIAXIAL_EXTRAORDINARY;
 }
@@ -96,11 +111,20 @@ static abbe_result meet(walker *w, const abbe_hit *hit, const char **choice, abb
   abbe_uniaxial media[2];
   if (result == ABBE_OK) result = medium_of(w, before, &media[0], error);
   if (result == ABBE_OK) result = medium_of(w, after, &media[1], error);
+  abbe_biaxial axes[2];
+  bool biaxial = false;
+  if (result == ABBE_OK) result = axes_of(w, before, &axes[0], &biaxial, error);
+  if (result == ABBE_OK) result = axes_of(w, after, &axes[1], &biaxial, error);
   if (result != ABBE_OK) return result;
   out->cos_in = (double)cos_i;
   out->inside_n = n_i;
-  if (media[0].n_o != media[0].n_e || media[1].n_o != media[1].n_e) {
-    meet_crystal(w, hit, entering, n, media, choice, out);
+  if (biaxial || media[0].n_o != media[0].n_e || media[1].n_o != media[1].n_e) {
+    abbe_wave_ways ways;
+    if (biaxial)
+      abbe_wave_ways_find_biaxial(&axes[0], &axes[1], n, w->d, w->wave, &ways);
+    else
+      abbe_wave_ways_find(&media[0], &media[1], n, w->d, w->wave, &ways);
+    meet_crystal(w, hit, entering, &ways, choice, out);
     return ABBE_OK;
   }
   float eta = (float)(n_i / n_t), d[3];

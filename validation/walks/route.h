@@ -31,7 +31,7 @@ typedef struct abbe_route_vertex {
   double reflectance;  /* Fresnel's, unpolarised; 0 where nothing refracts */
   double inside_n;     /* index along the way to this vertex; in a crystal the ordinary one */
   double share;        /* share of the light that takes this path; 1 at the end */
-  bool extraordinary;  /* it goes on as a crystal's extraordinary wave */
+  bool extraordinary;  /* it goes on as a crystal's extraordinary or slower wave */
 } abbe_route_vertex;
 
 /* Follows the ray from `from` along direction (unit) at lambda_nm, starting outside of all

@@ -1,8 +1,10 @@
 #include "gl/plan/examine/spectral_needs.h"
 
+#include "base/maths.h"
 #include "base/number.h"
 #include "colorimetry/pleochroism.h"
 #include "colorimetry/weights.h"
+#include "spectral/biaxial.h"
 #include "spectral/optics.h"
 
 #include <math.h>
@@ -124,18 +126,76 @@ static void note_birefringence(const abbe_material *material, double lambda_nm, 
                  material->name, fabs(n_e - n_o), n_e < n_o ? "lower" : "higher", lambda_nm);
 }
 
+/* One of three indices is taken for glass of its middle one. */
+static void note_biaxial(const abbe_object *object, double low, double high, abbe_plan *plan) {
+  const abbe_material *m = object->material;
+  double n[3], twice[2];
+  if (!abbe_material_is_biaxial(m)) return;
+  for (int end = 0; end < 2; end++) {
+    for (int axis = 0; axis < 3; axis++)
+      if (abbe_material_n_along(m, axis, end == 0 ? low : high, &n[axis], NULL) != ABBE_OK) return;
+    twice[end] = 2 * abbe_biaxial_half_angle(n) * 180 / ABBE_PI;
+  }
+  for (int axis = 0; axis < 3; axis++)
+    if (abbe_material_n_along(m, axis, (low + high) / 2, &n[axis], NULL) != ABBE_OK) return;
+  const double middle = 2 * abbe_biaxial_half_angle(n) * 180 / ABBE_PI;
+  abbe_plan_note(
+      plan,
+      "%s: biaxial, %s; 2V about z is %.1f degrees at %g nm, %.1f and %.1f at the ends; x "
+      "is %.2f %.2f %.2f, z %.2f %.2f %.2f; its middle index alone is drawn, the others "
+      "are %.4f lower and %.4f higher",
+      m->name, middle < 90 ? "positive" : "negative", middle, (low + high) / 2, twice[0], twice[1],
+      object->axis_x[0], object->axis_x[1], object->axis_x[2], object->axis[0], object->axis[1],
+      object->axis[2], n[1] - n[0], n[2] - n[1]);
+}
+
+/* Two of three indices that are alike, and axes that had to be turned. */
+static void note_axes(const abbe_object *object, double lambda_nm, abbe_plan *plan) {
+  double n[3];
+  for (int axis = 0; axis < 3; axis++)
+    if (abbe_material_n_along(object->material, axis, lambda_nm, &n[axis], NULL) != ABBE_OK) return;
+  if (abbe_material_is_biaxial(object->material) && (n[0] == n[1] || n[1] == n[2]))
+    abbe_plan_note(plan, "%s: two of its three indices are equal: it is a uniaxial crystal",
+                   object->material->name);
+  if (object->axes_turned > ABBE_PI / 180)
+    abbe_plan_note(plan, "%s: x of its 'axes' was turned by %.1f degrees to be across z",
+                   object->name, object->axes_turned * 180 / ABBE_PI);
+}
+
 /* A pleochroic crystal absorbs by the mean over its axes. */
 static void note_pleochroism(const abbe_material *material, abbe_plan *plan) {
   enum { MM = 5 };
   if (!abbe_material_is_pleochroic(material)) return;
   abbe_pleochroism p;
   abbe_pleochroism_make(material, 1e-3 * MM, &p);
-  const double *o = p.field_lab[0], *e = p.field_lab[2];
+  const double *o = p.field_lab[0], *e = p.field_lab[2], *y = p.field_lab[1];
+  if (abbe_material_is_biaxial(material)) {
+    abbe_plan_note(plan,
+                   "%s: pleochroic; %d mm pass CIELAB %.0f %.0f %.0f of fields along x, %.0f %.0f "
+                   "%.0f along y and %.0f %.0f %.0f along z, at most %.0f apart; the mean over its "
+                   "axes is drawn, and 'abbe trace' follows each wave",
+                   material->name, MM, o[0], o[1], o[2], y[0], y[1], y[2], e[0], e[1], e[2],
+                   p.largest);
+    return;
+  }
   abbe_plan_note(plan,
                  "%s: pleochroic; %d mm pass CIELAB %.0f %.0f %.0f of its ordinary ray and %.0f "
                  "%.0f %.0f of the extraordinary one, %.0f apart; the mean over its axes is drawn, "
                  "and 'abbe trace' follows each",
                  material->name, MM, o[0], o[1], o[2], e[0], e[1], e[2], p.largest);
+}
+
+/* The first object of the material, of those that the plan does not have yet. */
+static void note_object(const abbe_scene *scene, const abbe_material *material, abbe_plan *plan) {
+  const double low = plan->desc.min_nm, high = plan->desc.max_nm;
+  size_t before = 0, i = 0;
+  for (size_t k = 0; k < plan->refractor_count; k++)
+    before += scene->object[plan->refractor_object[k]].material == material;
+  for (size_t met = 0; i < scene->object_count; i++)
+    if (scene->object[i].material == material && met++ == before) break;
+  if (i == scene->object_count || !abbe_material_is_crystal(material)) return;
+  if (before == 0) note_biaxial(&scene->object[i], low, high, plan);
+  note_axes(&scene->object[i], (low + high) / 2, plan);
 }
 
 abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_material *material,
@@ -154,6 +214,7 @@ abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_mate
     noted = scene->object[plan->refractor_object[i]].material == material;
   if (!noted) note_birefringence(material, 0.5 * (min + max), plan);
   if (!noted) note_pleochroism(material, plan);
+  note_object(scene, material, plan);
   if (outside && !noted)
     abbe_plan_note(plan, "%s: the index is extrapolated outside its valid range, %g to %g nm",
                    material->name, material->min_nm, material->max_nm);

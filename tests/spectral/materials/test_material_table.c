@@ -150,59 +150,6 @@ TEST(absorption_is_a_spectrum_or_a_colour) {
   abbe_material_table_free(&t);
 }
 
-/* Of a crystal along its axes, each in any of the ways; x and y of a uniaxial one are alike. */
-TEST(absorption_goes_by_axes) {
-#define CRYSTAL                                                                                    \
-  "model: constant, coefficients: [1.6], source: s,\n"                                             \
-  "   extraordinary: {model: constant, coefficients: [1.5]},\n   absorption: "
-  abbe_material_table t =
-      parse("materials:\n"
-            "- {name: a, " CRYSTAL "{ordinary: {attenuation_per_m: [[400, 10], [500, 20]]},\n"
-            "     extraordinary: {colour: [0.9, 0.25, 1], distance_m: 0.02}}}\n"
-            "- {name: b, " CRYSTAL "{x: {k: [[400, 1e-7], [500, 2e-7]]}, "
-            "y: {k: [[400, 1e-7], [500, 2e-7]]},\n"
-            "     z: {transmittance: [[400, 0.5]], thickness_m: 0.01}}}\n");
-  assert_true(abbe_material_is_pleochroic(&t.material[0]));
-  assert_near(abbe_material_attenuation_along(&t.material[0], 0, 450), 15, 1e-13);
-  assert_near(abbe_material_attenuation_along(&t.material[0], 1, 450), 15, 1e-13);
-  assert_near(abbe_material_attenuation_along(&t.material[0], 2, 549.1), -log(0.25) / 0.02, 1e-10);
-  assert_near(abbe_material_attenuation(&t.material[0], 549.1), (2 * 20 - log(0.25) / 0.02) / 3,
-              1e-10);
-  assert_null(t.material[1].attenuation_yz[0]);
-  assert_near(abbe_material_attenuation_along(&t.material[1], 2, 600), log(2) / 0.01, 1e-10);
-  abbe_material_table_free(&t);
-}
-
-TEST(absorption_that_no_axes_have_is_refused) {
-#define A "{attenuation_per_m: [[400, 1]]}"
-#define B "{attenuation_per_m: [[400, 2]]}"
-  const struct {
-    const char *text, *part;
-  } rows[] = {
-      {CRYSTAL "{ordinary: " A "}", "'absorption' along axes wants 'extraordinary' too"},
-      {CRYSTAL "{extraordinary: " A "}", "'absorption' along axes wants 'ordinary' too"},
-      {CRYSTAL "{x: " A ", z: " A "}", "'absorption' along axes wants 'y' too"},
-      {CRYSTAL "{ordinary: 3, extraordinary: " A "}", "'ordinary' wants 'attenuation_per_m'"},
-      {CRYSTAL "{ordinary: {}, extraordinary: " A "}", "'absorption' wants one of"},
-      {CRYSTAL "{ordinary: " A ", extraordinary: " A ", k: [[400, 1]]}", "has no key 'k'"},
-      {CRYSTAL "{ordinary: " A ", extraordinary: " A ", z: " A "}", "has no key 'z'"},
-      {CRYSTAL "{x: " A ", y: " B ", z: " A "}", "a uniaxial crystal absorbs alike along x and y"},
-      {"model: constant, coefficients: [1.6], source: s,\n   absorption: {ordinary: " A
-       ", extraordinary: " B "}",
-       "it absorbs by direction, and has one index in all directions"},
-  };
-  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    char text[1024];
-    abbe_material_table t;
-    snprintf(text, sizeof text, "materials:\n- {name: a, %s}\n", rows[i].text);
-    REFUSED(ABBE_SCHEMA, rows[i].part,
-            abbe_material_table_parse(text, strlen(text), "t.yaml", &t, &error));
-  }
-#undef A
-#undef B
-#undef CRYSTAL
-}
-
 TEST(absorption_is_also_a_transmittance_or_k) {
   abbe_material_table t = parse("materials:\n"
                                 "- {name: a, model: constant, coefficients: [1.5], source: s,\n"

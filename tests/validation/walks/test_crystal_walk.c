@@ -104,6 +104,61 @@ TEST(a_pleochroic_slab_passes_two_exponentials) {
   drop(f);
 }
 
+#define THREE                                                                                      \
+  "materials:\n- {name: spar, model: constant, coefficients: [1.68], source: made up,\n"           \
+  "   biaxial: {alpha: {model: constant, coefficients: [1.53]},\n"                                 \
+  "     gamma: {model: constant, coefficients: [1.75]}},\n"                                        \
+  "   absorption: {x: {attenuation_per_m: [[500, 10]]}, y: {attenuation_per_m: [[500, 3]]},\n"     \
+  "     z: {attenuation_per_m: [[500, 1]]}}}\n"
+#define BIAXIAL(x, z)                                                                              \
+  "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR                          \
+  "- {name: slab, shape: box, size: [0.4, 0.4, 0.1], transform: [{translate: [0, 0, 0.3]}], "      \
+  "material: spar, axes: {x: " x ", z: " z "}}\n"
+
+/* Head on into a slab of three indices, x along the normal: the waves have the other two indices
+ * and absorptions, and neither makes any of the other. */
+TEST(a_biaxial_slab_passes_both_waves) {
+  enum { BATCHES = 64 };
+  static const double per_m[2] = {3, 1}, thick = 0.1, n[2] = {1.68, 1.75};
+  fixture *f = malloc(sizeof *f);
+  make_table(THREE, BIAXIAL("[0, 0, 1]", "[1, 1, 0]"), NULL, f);
+  const double from[3] = {0.02, 0.01, 0.5}, down[3] = {0, 0, -1};
+  double landed = 0, wanted = 0, sent = 0;
+  for (uint32_t b = 0; b < BATCHES; b++) {
+    for (uint32_t i = 0; i < BATCH; i++) f->photon[i] = photon_of(f, from, down, i);
+    for (uint32_t i = 0; i < BATCH; i++) sent += (double)f->photon[i].flux;
+    const size_t hits =
+        abbe_light_walk_run(f->walk, &f->scene.light[0], b, f->photon, BATCH, f->hit, &f->ledger);
+    for (size_t i = 0; i < hits; i++) {
+      double p[3];
+      abbe_geometry_to_world(&f->geometry, f->hit[i].p, p);
+      if (p[2] > 0.1) continue;
+      landed += (double)f->hit[i].flux;
+      assert_near(p[0], from[0], 1e-5);
+      assert_near(p[1], from[1], 1e-5);
+    }
+  }
+  for (int wave = 0; wave < 2; wave++) {
+    const double r = pow((n[wave] - 1) / (n[wave] + 1), 2), tau = exp(-per_m[wave] * thick);
+    wanted += 0.5 * (1 - r) * (1 - r) * tau / (1 - r * r * tau * tau);
+  }
+  assert_near(landed / sent, wanted, 4 * 0.35 / sqrt(BATCHES * BATCH));
+  drop(f);
+  free(f);
+}
+
+TEST(the_ledger_of_three_indices_closes) {
+  fixture *f = malloc(sizeof *f);
+  make_table(THREE, BIAXIAL("[1, 0.3, 0.2]", "[0.1, 0.3, 1]"), NULL, f);
+  flood(f, 40);
+  const abbe_light_ledger *l = &f->ledger;
+  const double parts = l->deposited + l->absorbed + l->missed + l->trapped + l->lost;
+  assert_near(parts / l->reached, 1, 1e-5);
+  assert_true(l->lost < 1e-3 * l->reached);
+  drop(f);
+  free(f);
+}
+
 /* All that reaches the block is somewhere, whatever faces it meets and how often it is split. */
 TEST(the_ledger_closes) {
   for (unsigned splits = 0; splits < 4; splits++) {
