@@ -174,7 +174,7 @@ static inline abbe_material random_material(size_t number) {
       if (m.attenuation != NULL) m.attenuation_yz[i] = scaled_spectrum(m.attenuation, i + 2);
     }
   if (abbe_material_is_uniaxial(&m) && m.attenuation != NULL)
-    m.attenuation_yz[1] = random_spectrum(0, 300);
+    m.attenuation_yz[1] = scaled_spectrum(m.attenuation, 0.3);
   random_catalogue(&m.catalogue);
   if (rand() % 2)
     m.fit[0] = (abbe_material_fit){2, {random_in(1, 2), random_in(0, 0.01)}, 1e-4, 380, 780};

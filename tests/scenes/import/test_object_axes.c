@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "base/maths.h"
-#include "scenes/scene.h"
+#include "scenes/import/scene_file.h"
 
 #define HEAD                                                                                       \
   "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"                                            \
