@@ -110,9 +110,20 @@ static const struct argp_option options[] = {
     {"json", KEY_JSON, NULL, 0, "every nm as JSON, numbers in full", 0},
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(request, KEY_ILLUMINANT, illuminant),
+    ABBE_TAKE_RANGE(request, KEY_RANGE, desc.min_nm, desc.max_nm),
+    ABBE_TAKE_COUNT(request, KEY_BANDS, desc.bands, 1, 4096),
+    ABBE_TAKE_TARGET(request, 'o', picture, ".png"),
+    ABBE_TAKE_TEXT(request, KEY_PLOT, plot),
+    ABBE_TAKE_FLAG(request, KEY_JSON, json),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   const char *names[ABBE_OBSERVER_COUNT];
   request *r = state->input;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case KEY_OBSERVER:
     for (int i = 0; i < ABBE_OBSERVER_COUNT; i++) names[i] = abbe_observer_name((abbe_observer)i);
@@ -121,26 +132,8 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
       r->desc.observer = (abbe_observer)abbe_command_choice(r->program, "--observer", arg, names,
                                                             ABBE_OBSERVER_COUNT);
     return 0;
-  case KEY_ILLUMINANT:
-    r->illuminant = arg;
-    return 0;
-  case KEY_RANGE:
-    abbe_command_range(r->program, "--range", arg, &r->desc.min_nm, &r->desc.max_nm);
-    return 0;
-  case KEY_BANDS:
-    r->desc.bands = abbe_command_count(r->program, "--bands", arg, 1, 4096);
-    return 0;
   case KEY_STEP:
     r->step = (double)abbe_command_count(r->program, "--step", arg, 1, 350);
-    return 0;
-  case 'o':
-    r->picture = abbe_command_target(state->name, "-o", arg, ".png");
-    return 0;
-  case KEY_PLOT:
-    r->plot = arg;
-    return 0;
-  case KEY_JSON:
-    r->json = true;
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

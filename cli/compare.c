@@ -342,16 +342,20 @@ static void finish(request *q, struct argp_state *state) {
                  abbe_compare_metric_name(q->tolerance[i].metric));
 }
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(request, KEY_MASK, desc.mask),
+    ABBE_TAKE_NUMBER(request, KEY_MASK_SHARE, desc.mask_share, 0.001, 1),
+    ABBE_TAKE_TEXT(request, KEY_DIFFERENCE, difference),
+    ABBE_TAKE_NUMBER(request, KEY_RANGE, range, 1e-30, 1e30),
+    ABBE_TAKE_FLAG(request, KEY_JSON, json),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   static const char *const scales[] = {"best"};
   request *q = state->input;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
-  case KEY_MASK:
-    q->desc.mask = arg;
-    return 0;
-  case KEY_MASK_SHARE:
-    q->desc.mask_share = abbe_command_number(q->program, "--mask-share", arg, 0.001, 1);
-    return 0;
   case KEY_WHITE:
     set_white(q, arg, state);
     return 0;
@@ -361,17 +365,8 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case KEY_TOLERANCE:
     add_tolerance(q, arg, state);
     return 0;
-  case KEY_DIFFERENCE:
-    q->difference = arg;
-    return 0;
-  case KEY_RANGE:
-    q->range = abbe_command_number(q->program, "--range", arg, 1e-30, 1e30);
-    return 0;
   case KEY_SEED:
     q->desc.options.seed = abbe_command_count(q->program, "--seed", arg, 0, 4294967295u);
-    return 0;
-  case KEY_JSON:
-    q->json = true;
     return 0;
   case ARGP_KEY_ARG:
     if (q->desc.path[1] != NULL) argp_error(state, "'%s' is one argument too many", arg);

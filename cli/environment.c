@@ -168,25 +168,21 @@ static const struct argp_option options[] = {
     {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0},
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TARGET(request, 'o', out, ".exr"),
+    ABBE_TAKE_TARGET(request, KEY_PNG, png, ".png"),
+    ABBE_TAKE_FLAG(request, KEY_JSON, json),
+    ABBE_TAKE_ARGUMENT(request, input),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
-  case 'o':
-    r->out = abbe_command_target(state->name, "-o", arg, ".exr");
-    return 0;
-  case KEY_PNG:
-    r->png = abbe_command_target(state->name, "--png", arg, ".png");
-    return 0;
   case KEY_EXPOSURE:
     r->exposure = abbe_command_number(state->name, "--exposure", arg, -ABBE_DISPLAY_MAX_EXPOSURE,
                                       ABBE_DISPLAY_MAX_EXPOSURE);
-    return 0;
-  case KEY_JSON:
-    r->json = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (r->input != NULL) argp_error(state, "'%s' is one argument too many", arg);
-    r->input = arg;
     return 0;
   case ARGP_KEY_END:
     if (r->input == NULL) argp_error(state, "of which scene or picture?");

@@ -77,33 +77,22 @@ static void choose_target(request *q, struct argp_state *state) {
     argp_error(state, "--lambda is for Mitsuba alone; leave it out");
 }
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(request, 'o', output),
+    ABBE_TAKE_TEXT(request, OPTION_TO, to),
+    ABBE_TAKE_NUMBER(request, OPTION_LAMBDA, other.lambda_nm, 380, 780),
+    ABBE_TAKE_COUNT(request, OPTION_PHOTONS, pov.photons, 1, ABBE_POV_MAX_PHOTONS),
+    ABBE_TAKE_COUNT(request, OPTION_SAMPLES, pov.samples, 2, ABBE_POV_MAX_SAMPLES),
+    ABBE_TAKE_TEXT(request, OPTION_MATERIALS, materials),
+    ABBE_TAKE_FLAG(request, OPTION_JSON, json),
+    ABBE_TAKE_FLAG(request, 'q', quiet),
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   request *q = state->input;
+  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
-  case 'o':
-    q->output = text;
-    return 0;
-  case OPTION_TO:
-    q->to = text;
-    return 0;
-  case OPTION_LAMBDA:
-    q->other.lambda_nm = abbe_command_number(q->program, "--lambda", text, 380, 780);
-    return 0;
-  case OPTION_PHOTONS:
-    q->pov.photons = abbe_command_count(q->program, "--photons", text, 1, ABBE_POV_MAX_PHOTONS);
-    return 0;
-  case OPTION_SAMPLES:
-    q->pov.samples = abbe_command_count(q->program, "--samples", text, 2, ABBE_POV_MAX_SAMPLES);
-    return 0;
-  case OPTION_MATERIALS:
-    q->materials = text;
-    return 0;
-  case OPTION_JSON:
-    q->json = true;
-    return 0;
-  case 'q':
-    q->quiet = true;
-    return 0;
   case ARGP_KEY_ARG:
     abbe_scene_input_take_file(&q->changes, &q->scene, text, state);
     return 0;

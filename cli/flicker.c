@@ -28,24 +28,20 @@ static const struct argp_option options[] = {
     {"json", OPTION_JSON, NULL, 0, "as JSON", 0},
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(request, OPTION_REFERENCE, reference),
+    ABBE_TAKE_FLAG(request, OPTION_CAUSTIC, caustic),
+    ABBE_TAKE_FLAG(request, OPTION_JSON, json),
+    ABBE_TAKE_ARGUMENT(request, path),
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   request *q = state->input;
+  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
   case OPTION_FRAMES:
     abbe_frame_series_take(&q->series, text);
-    return 0;
-  case OPTION_REFERENCE:
-    q->reference = text;
-    return 0;
-  case OPTION_CAUSTIC:
-    q->caustic = true;
-    return 0;
-  case OPTION_JSON:
-    q->json = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (q->path != NULL) argp_error(state, "'%s' is one argument too many", text);
-    q->path = text;
     return 0;
   case ARGP_KEY_END:
     if (q->path == NULL || q->series.count == 0)

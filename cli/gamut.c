@@ -110,22 +110,21 @@ static const struct argp_option options[] = {
     {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0},
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TARGET(request, KEY_OVERLAY, overlay, ".png"),
+    ABBE_TAKE_TEXT(request, KEY_DIAGRAM, diagram),
+    ABBE_TAKE_FLAG(request, KEY_JSON, json),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   const char *names[ABBE_GAMUT_COUNT];
   request *r = state->input;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case KEY_SPACE:
     for (int i = 0; i < ABBE_GAMUT_COUNT; i++) names[i] = abbe_gamut_name((abbe_gamut)i);
     r->gamut = (abbe_gamut)abbe_command_choice(r->program, "--space", arg, names, ABBE_GAMUT_COUNT);
-    return 0;
-  case KEY_OVERLAY:
-    r->overlay = abbe_command_target(state->name, "--overlay", arg, ".png");
-    return 0;
-  case KEY_DIAGRAM:
-    r->diagram = arg;
-    return 0;
-  case KEY_JSON:
-    r->json = true;
     return 0;
   default:
     return abbe_arguments_one_file(key, arg, &r->path, state);

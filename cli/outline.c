@@ -25,21 +25,20 @@ static const struct argp_option options[] = {
     {"json", OPTION_JSON, NULL, 0, "as JSON", 0},
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(request, OPTION_MINUS, minus),
+    ABBE_TAKE_NUMBER(request, OPTION_SHARE, outline.share, 0.001, 1),
+    ABBE_TAKE_FLAG(request, OPTION_JSON, json),
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   request *q = state->input;
+  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
-  case OPTION_MINUS:
-    q->minus = text;
-    return 0;
-  case OPTION_SHARE:
-    q->outline.share = abbe_command_number(q->program, "--share", text, 0.001, 1);
-    return 0;
   case OPTION_BLUR:
     q->outline.blur = abbe_command_number(q->program, "--blur", text, 0, 64);
     if (q->outline.blur == 0) q->outline.blur = -1;
-    return 0;
-  case OPTION_JSON:
-    q->json = true;
     return 0;
   case ARGP_KEY_ARG:
     if (q->files == 2) argp_error(state, "two pictures at the most; '%s' is one too many", text);

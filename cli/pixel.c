@@ -282,20 +282,19 @@ static void set_place(request *r, const char *text, struct argp_state *state) {
   r->placed = true;
 }
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(request, KEY_LAYER, layer),
+    ABBE_TAKE_TEXT(request, KEY_PLOT, plot),
+    ABBE_TAKE_FLAG(request, KEY_JSON, json),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &r->spectral;
-    return 0;
-  case KEY_LAYER:
-    r->layer = arg;
-    return 0;
-  case KEY_PLOT:
-    r->plot = arg;
-    return 0;
-  case KEY_JSON:
-    r->json = true;
     return 0;
   case ARGP_KEY_ARG:
     if (r->placed) argp_error(state, "'%s' is one argument too many", arg);

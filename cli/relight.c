@@ -52,34 +52,29 @@ static const struct argp_option options[] = {
      "without --lit-by: an even 1 W/(m2 sr nm) is Y = 1, not lm (of a radiance: cd/m2)", 0},
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TARGET(request, 'o', exr, ".exr"),
+    ABBE_TAKE_TARGET(request, KEY_PNG, png, ".png"),
+    ABBE_TAKE_TEXT(request, KEY_LAYER, desc.layer),
+    ABBE_TAKE_FLAG(request, KEY_BANDS, desc.bands),
+    ABBE_TAKE_FLAG(request, KEY_RELATIVE, desc.relative),
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   const char *spaces[ABBE_RGB_SPACE_COUNT];
   request *r = state->input;
+  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &r->spectral;
     state->child_inputs[1] = &r->screen;
-    return 0;
-  case 'o':
-    r->exr = abbe_command_target(state->name, "-o", text, ".exr");
-    return 0;
-  case KEY_PNG:
-    r->png = abbe_command_target(state->name, "--png", text, ".png");
     return 0;
   case KEY_SPACE:
     for (int i = 0; i < ABBE_RGB_SPACE_COUNT; i++)
       spaces[i] = abbe_rgb_space_name((abbe_rgb_space)i);
     r->desc.space = (abbe_rgb_space)abbe_command_choice(r->program, "--space", text, spaces,
                                                         ABBE_RGB_SPACE_COUNT);
-    return 0;
-  case KEY_LAYER:
-    r->desc.layer = text;
-    return 0;
-  case KEY_BANDS:
-    r->desc.bands = true;
-    return 0;
-  case KEY_RELATIVE:
-    r->desc.relative = true;
     return 0;
   case ARGP_KEY_END:
     abbe_arguments_one_file(key, text, &r->in, state);

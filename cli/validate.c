@@ -145,31 +145,26 @@ static bool is_picture(const char *path) {
   return dot != NULL && (strcmp(dot, ".png") == 0 || strcmp(dot, ".svg") == 0);
 }
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_COUNT(request, KEY_SAMPLES, options.samples, 1000, 1000000000000),
+    ABBE_TAKE_COUNT(request, KEY_SEED, options.seed, 0, UINT32_MAX),
+    ABBE_TAKE_COUNT(request, KEY_THREADS, options.threads, 1, 1024),
+    ABBE_TAKE_FLAG(request, KEY_QUIET, quiet),
+    ABBE_TAKE_FLAG(request, KEY_JSON, json),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case KEY_ONLY:
     r->options.only = choose_group(r, arg);
-    return 0;
-  case KEY_SAMPLES:
-    r->options.samples = abbe_command_count(r->program, "--samples", arg, 1000, 1000000000000);
-    return 0;
-  case KEY_SEED:
-    r->options.seed = abbe_command_count(r->program, "--seed", arg, 0, UINT32_MAX);
-    return 0;
-  case KEY_THREADS:
-    r->options.threads = abbe_command_count(r->program, "--threads", arg, 1, 1024);
     return 0;
   case KEY_CHART:
     if (!is_picture(arg))
       argp_error(state, "--chart '%s' wants a name that ends with .png or .svg", arg);
     r->chart = arg;
-    return 0;
-  case KEY_QUIET:
-    r->quiet = true;
-    return 0;
-  case KEY_JSON:
-    r->json = true;
     return 0;
   case ARGP_KEY_ARG:
     argp_error(state, "'%s' is one argument too many", arg);

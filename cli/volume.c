@@ -146,37 +146,25 @@ static error_t parse_work(int key, char *text, request *q) {
   }
 }
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TARGET(request, 'o', out, ".exr"),
+    ABBE_TAKE_TARGET(request, OPTION_VDB, vdb, ".vdb"),
+    ABBE_TAKE_FLAG(request, OPTION_JSON, json),
+    ABBE_TAKE_FLAG(request, 'q', quiet),
+    ABBE_TAKE_TEXT(request, OPTION_OBJECT, object),
+    ABBE_TAKE_TEXT(request, OPTION_LIGHT, light),
+    ABBE_TAKE_COUNT(request, OPTION_NODES, desc.nodes, 1, ABBE_LIGHT_NODES_MOST),
+    ABBE_TAKE_COUNT(request, OPTION_RAYS, desc.exits, 1, ABBE_LIGHT_EXITS_MOST),
+    ABBE_TAKE_FLAG(request, OPTION_ASYMMETRIC, desc.asymmetric),
+    ABBE_TAKE_NUMBER(request, OPTION_RADII, radii, 1.1, 1000),
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   request *q = state->input;
   abbe_volume_fill_desc *d = &q->desc;
+  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
-  case 'o':
-    q->out = abbe_command_target(state->name, "-o", text, ".exr");
-    return 0;
-  case OPTION_VDB:
-    q->vdb = abbe_command_target(state->name, "--vdb", text, ".vdb");
-    return 0;
-  case OPTION_JSON:
-    q->json = true;
-    return 0;
-  case 'q':
-    q->quiet = true;
-    return 0;
-  case OPTION_OBJECT:
-    q->object = text;
-    return 0;
-  case OPTION_LIGHT:
-    q->light = text;
-    return 0;
-  case OPTION_NODES:
-    d->nodes = abbe_command_count(q->program, "--nodes", text, 1, ABBE_LIGHT_NODES_MOST);
-    return 0;
-  case OPTION_RAYS:
-    d->exits = abbe_command_count(q->program, "--rays", text, 1, ABBE_LIGHT_EXITS_MOST);
-    return 0;
-  case OPTION_ASYMMETRIC:
-    d->asymmetric = true;
-    return 0;
   case OPTION_SHELLS:
     take_shells(q, text);
     return 0;
@@ -188,9 +176,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_JOIN:
     d->joins = true;
     d->tolerance = abbe_command_number(q->program, "--join", text, 0, 1e6);
-    return 0;
-  case OPTION_RADII:
-    q->radii = abbe_command_number(q->program, "--radii", text, 1.1, 1000);
     return 0;
   case OPTION_PRINTED:
     d->kind = ABBE_VOLUME_PRINTED;

@@ -138,20 +138,22 @@ static abbe_rgb_space choose_space(const request *r, const char *word) {
                                              ABBE_RGB_SPACE_COUNT);
 }
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_COUNT(request, KEY_COUNT, count, 1, ABBE_WAVELENGTHS_MAX_COUNT),
+    ABBE_TAKE_TEXT(request, KEY_ILLUMINANT, illuminant),
+    ABBE_TAKE_FLAG(request, KEY_JSON, json),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   static const char *const sets[] = {"cie", "thesis"};
   request *r = state->input;
   r->chosen = r->chosen || (key >= KEY_COUNT && key <= KEY_SPACE);
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
-  case KEY_COUNT:
-    r->count = abbe_command_count(r->program, "--count", arg, 1, ABBE_WAVELENGTHS_MAX_COUNT);
-    return 0;
   case KEY_RANGE:
     abbe_command_range(r->program, "--range", arg, &r->min_nm, &r->max_nm);
     if (r->min_nm <= 0) argp_error(state, "--range '%s' starts at 0 nm or below", arg);
-    return 0;
-  case KEY_ILLUMINANT:
-    r->illuminant = arg;
     return 0;
   case KEY_OBSERVER:
     r->observer = abbe_spectral_options_observer(r->program, arg);
@@ -161,9 +163,6 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     return 0;
   case KEY_SET:
     r->thesis = abbe_command_choice(r->program, "--set", arg, sets, 2) == 1;
-    return 0;
-  case KEY_JSON:
-    r->json = true;
     return 0;
   case ARGP_KEY_ARG:
     argp_error(state, "'%s' is one argument too many", arg);

@@ -304,3 +304,47 @@ error_t abbe_arguments_one_file(int key, char *text, const char **path, struct a
   if (*path == NULL) argp_error(state, "which file?");
   return 0;
 }
+
+static const struct argp_option *option_of(const struct argp *argp, int key) {
+  for (const struct argp_option *o = argp->options; o != NULL && (o->name || o->key || o->doc); o++)
+    if (o->key == key) return o;
+  const struct argp_option *found = NULL;
+  for (const struct argp_child *c = argp->children; !found && c != NULL && c->argp != NULL; c++)
+    found = option_of(c->argp, key);
+  return found;
+}
+
+bool abbe_take_option(const abbe_take *takes, int key, char *text, struct argp_state *state) {
+  const abbe_take *t = takes;
+  while (t->kind != 0 && t->key != key) t++;
+  if (t->kind == 0) return false;
+  char *const request = state->input, called[64] = "";
+  const struct argp_option *option = option_of(state->root_argp, key);
+  if (option != NULL && key < 128) snprintf(called, sizeof called, "-%c", key);
+  if (option != NULL && key >= 128) snprintf(called, sizeof called, "--%s", option->name);
+  const char **word = (const char **)(request + t->at);
+  double *number = (double *)(request + t->at), *end = (double *)(request + t->to);
+  switch (t->kind) {
+  case ABBE_TAKES_FLAG:
+    *(bool *)word = true;
+    break;
+  case ABBE_TAKES_NUMBER:
+    *number = abbe_command_number(state->name, called, text, t->least, t->most);
+    break;
+  case ABBE_TAKES_COUNT:
+    *(size_t *)word = abbe_command_count(state->name, called, text, (unsigned long)t->least,
+                                         (unsigned long)t->most);
+    break;
+  case ABBE_TAKES_RANGE:
+    abbe_command_range(state->name, called, text, number, end);
+    break;
+  case ABBE_TAKES_TARGET:
+    *word = abbe_command_target(state->name, called, text, t->ending);
+    break;
+  default:
+    if (key == ARGP_KEY_ARG && *word != NULL)
+      argp_error(state, "'%s' is one argument too many", text);
+    *word = text;
+  }
+  return true;
+}

@@ -10,6 +10,7 @@
 #define ABBE_CLI_BASE_ARGUMENTS_H
 
 #include <argp.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 /* Flags of an argp_option beside argp's own, which end at 0x10. A table that is edited in place is
@@ -44,6 +45,50 @@ const abbe_argument *abbe_arguments_given(size_t index);
 /* For the parser of a command about one file, what is no option: takes ARGP_KEY_ARG, and
  * ARGP_KEY_END, at which there must be one; ARGP_ERR_UNKNOWN for other keys. */
 error_t abbe_arguments_one_file(int key, char *text, const char **path, struct argp_state *state);
+
+/* Options whose value goes into one field of the request: a row each, in place of a case of the
+ * parser, and {0} at the end. The types of the fields are checked where the row is written. */
+typedef struct abbe_take {
+  int kind, key;
+  size_t at, to; /* of the fields in the request */
+  double least, most;
+  const char *ending;
+} abbe_take;
+enum {
+  ABBE_TAKES_TEXT = 1,
+  ABBE_TAKES_FLAG,
+  ABBE_TAKES_NUMBER,
+  ABBE_TAKES_COUNT,
+  ABBE_TAKES_RANGE,
+  ABBE_TAKES_TARGET
+};
+#define ABBE_TAKE_AT(request, field, type)                                                         \
+  (offsetof(request, field) + 0 * sizeof(char[_Generic(((request *)0)->field, type : 1)]))
+/* const char *: the value as it stands. */
+#define ABBE_TAKE_TEXT(request, key, field)                                                        \
+  { ABBE_TAKES_TEXT, key, ABBE_TAKE_AT(request, field, const char *), 0, 0, 0, NULL }
+/* The same of what is no option, of which there may be one. */
+#define ABBE_TAKE_ARGUMENT(request, field) ABBE_TAKE_TEXT(request, ARGP_KEY_ARG, field)
+/* bool: true. */
+#define ABBE_TAKE_FLAG(request, key, field)                                                        \
+  { ABBE_TAKES_FLAG, key, ABBE_TAKE_AT(request, field, bool), 0, 0, 0, NULL }
+/* double, and size_t: from least to most. */
+#define ABBE_TAKE_NUMBER(request, key, field, least, most)                                         \
+  { ABBE_TAKES_NUMBER, key, ABBE_TAKE_AT(request, field, double), 0, least, most, NULL }
+#define ABBE_TAKE_COUNT(request, key, field, least, most)                                          \
+  { ABBE_TAKES_COUNT, key, ABBE_TAKE_AT(request, field, size_t), 0, least, most, NULL }
+/* Two doubles, of a value such as 380:780. */
+#define ABBE_TAKE_RANGE(request, key, from, to)                                                    \
+  {                                                                                                \
+    ABBE_TAKES_RANGE, key, ABBE_TAKE_AT(request, from, double), ABBE_TAKE_AT(request, to, double), \
+        0, 0, NULL                                                                                 \
+  }
+/* const char *: a file to write, whose name ends so. */
+#define ABBE_TAKE_TARGET(request, key, field, ending)                                              \
+  { ABBE_TAKES_TARGET, key, ABBE_TAKE_AT(request, field, const char *), 0, 0, 0, ending }
+/* Puts the value of the option into its field of state->input; false where no row has the key. A
+ * value that is wrong ends the program with ABBE_EXIT_USAGE. */
+bool abbe_take_option(const abbe_take *takes, int key, char *text, struct argp_state *state);
 
 /* The options of every command and verb, for what is made of them: manual pages and the shells'
  * completion.

@@ -34,22 +34,19 @@ static const struct argp_option options[] = {
     {"create", KEY_CREATE, NULL, 0, "make the table's file, where there is none yet", 0},
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(request, KEY_FROM, from),
+    ABBE_TAKE_TEXT(request, KEY_AS, as),
+    ABBE_TAKE_TEXT(request, KEY_RECORD, record),
+    ABBE_TAKE_FLAG(request, KEY_CREATE, create),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
   if (abbe_change_option(&r->change, key, arg)) return 0;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
-  case KEY_FROM:
-    r->from = arg;
-    return 0;
-  case KEY_AS:
-    r->as = arg;
-    return 0;
-  case KEY_RECORD:
-    r->record = arg;
-    return 0;
-  case KEY_CREATE:
-    r->create = true;
-    return 0;
   case ARGP_KEY_ARG:
     if (r->name == NULL && strchr(arg, '=') == NULL) {
       r->name = arg;

@@ -213,34 +213,20 @@ static const struct argp_option options[] = {
     ABBE_MATERIALS_JSON_OPTION,
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(request, ABBE_MATERIALS_KEY_TABLE, table),
+    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
+    ABBE_TAKE_TEXT(request, KEY_KNOWN, known),
+    ABBE_TAKE_FLAG(request, KEY_FIX, fix),
+    ABBE_TAKE_FLAG(request, KEY_DRY_RUN, dry_run),
+    ABBE_TAKE_FLAG(request, KEY_ALL, all),
+    ABBE_TAKE_ARGUMENT(request, name),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
-  request *r = state->input;
-  switch (key) {
-  case ABBE_MATERIALS_KEY_TABLE:
-    r->table = arg;
-    return 0;
-  case ABBE_MATERIALS_KEY_JSON:
-    r->json = true;
-    return 0;
-  case KEY_KNOWN:
-    r->known = arg;
-    return 0;
-  case KEY_FIX:
-    r->fix = true;
-    return 0;
-  case KEY_DRY_RUN:
-    r->dry_run = true;
-    return 0;
-  case KEY_ALL:
-    r->all = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (r->name != NULL) argp_error(state, "'%s' is one argument too many", arg);
-    r->name = arg;
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
+  if (abbe_take_option(takes, key, arg, state)) return 0;
+  return ARGP_ERR_UNKNOWN;
 }
 
 static const struct argp parser = {

@@ -21,28 +21,18 @@ static const struct argp_option options[] = {
      0},
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(request, ABBE_MATERIALS_KEY_TABLE, table),
+    ABBE_TAKE_TEXT(request, KEY_POINTS, points),
+    ABBE_TAKE_TEXT(request, KEY_AGAINST, against),
+    ABBE_TAKE_TEXT(request, KEY_FROM, from),
+    ABBE_TAKE_ARGUMENT(request, name),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
-  request *r = state->input;
-  switch (key) {
-  case ABBE_MATERIALS_KEY_TABLE:
-    r->table = arg;
-    return 0;
-  case KEY_POINTS:
-    r->points = arg;
-    return 0;
-  case KEY_AGAINST:
-    r->against = arg;
-    return 0;
-  case KEY_FROM:
-    r->from = arg;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (r->name != NULL) argp_error(state, "'%s' is one argument too many", arg);
-    r->name = arg;
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
+  if (abbe_take_option(takes, key, arg, state)) return 0;
+  return ARGP_ERR_UNKNOWN;
 }
 
 static const struct argp parser = {

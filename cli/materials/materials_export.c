@@ -53,12 +53,18 @@ static const struct argp_option options[] = {
     {"json", ABBE_MATERIALS_KEY_JSON, NULL, 0, "the notes as JSON, with -o", 0},
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(request, ABBE_MATERIALS_KEY_TABLE, table),
+    ABBE_TAKE_FLAG(request, KEY_ALL, all),
+    ABBE_TAKE_FLAG(request, KEY_FORCE, force),
+    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
-  case ABBE_MATERIALS_KEY_TABLE:
-    r->table = arg;
-    return 0;
   case KEY_TO:
     r->format = abbe_command_choice(r->program, "--to", arg, format_names, FORMATS);
     return 0;
@@ -72,15 +78,6 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case KEY_STEP:
     r->sampling.step_nm = abbe_command_number(r->program, "--step", arg, 1e-3, 1e5);
     r->sampled = true;
-    return 0;
-  case KEY_ALL:
-    r->all = true;
-    return 0;
-  case KEY_FORCE:
-    r->force = true;
-    return 0;
-  case ABBE_MATERIALS_KEY_JSON:
-    r->json = true;
     return 0;
   case ARGP_KEY_ARG:
     if (r->names == MAX_NAMES) argp_error(state, "more than %d names", MAX_NAMES);

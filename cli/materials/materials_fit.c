@@ -322,47 +322,31 @@ static const struct argp_option options[] = {
     ABBE_MATERIALS_JSON_OPTION,
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(request, KEY_POINTS, points),
+    ABBE_TAKE_TEXT(request, KEY_FORMULA, formula),
+    ABBE_TAKE_COUNT(request, KEY_TERMS, fit.terms, 1, 32),
+    ABBE_TAKE_RANGE(request, KEY_OVER, over_from_nm, over_to_nm),
+    ABBE_TAKE_FLAG(request, KEY_RESIDUALS, residuals),
+    ABBE_TAKE_TEXT(request, KEY_PLOT, plot),
+    ABBE_TAKE_TEXT(request, KEY_RECORD, record),
+    ABBE_TAKE_TEXT(request, ABBE_MATERIALS_KEY_TABLE, table),
+    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
+    ABBE_TAKE_ARGUMENT(request, name),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   static const char *const forms[] = {"cauchy", "sellmeier"};
   request *r = state->input;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
-  case KEY_POINTS:
-    r->points = arg;
-    return 0;
-  case KEY_FORMULA:
-    r->formula = arg;
-    return 0;
   case KEY_FORM:
     r->fit.form = (abbe_fit_form)abbe_command_choice(r->program, "--form", arg, forms, 2);
-    return 0;
-  case KEY_TERMS:
-    r->fit.terms = abbe_command_count(r->program, "--terms", arg, 1, 32);
     return 0;
   case KEY_RANGE:
     abbe_command_range(r->program, "--range", arg, &r->fit.min_nm, &r->fit.max_nm);
     r->ranged = true;
-    return 0;
-  case KEY_OVER:
-    abbe_command_range(r->program, "--over", arg, &r->over_from_nm, &r->over_to_nm);
-    return 0;
-  case KEY_RESIDUALS:
-    r->residuals = true;
-    return 0;
-  case KEY_PLOT:
-    r->plot = arg;
-    return 0;
-  case KEY_RECORD:
-    r->record = arg;
-    return 0;
-  case ABBE_MATERIALS_KEY_TABLE:
-    r->table = arg;
-    return 0;
-  case ABBE_MATERIALS_KEY_JSON:
-    r->json = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (r->name != NULL) argp_error(state, "'%s' is one argument too many", arg);
-    r->name = arg;
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

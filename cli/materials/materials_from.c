@@ -145,6 +145,15 @@ static double half_digit(const char *text) {
   return 0.5 * pow(10, (exponent != NULL ? atof(exponent + 1) : 0) - (double)after);
 }
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(request, KEY_NAME, name),
+    ABBE_TAKE_TEXT(request, KEY_SOURCE, source),
+    ABBE_TAKE_RANGE(request, KEY_RANGE, from_nm, to_nm),
+    ABBE_TAKE_TEXT(request, KEY_KNOWN, known),
+    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   static const char *const names[VALUES] = {"--nd", "--vd",  "--bg",        "--a",
                                             "--b",  "--ior", "--dispersion"};
@@ -156,24 +165,10 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     r->half[i] = half_digit(arg);
     return 0;
   }
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case KEY_FORM:
     r->form = (abbe_fit_form)abbe_command_choice(r->program, "--form", arg, forms, 2);
-    return 0;
-  case KEY_NAME:
-    r->name = arg;
-    return 0;
-  case KEY_SOURCE:
-    r->source = arg;
-    return 0;
-  case KEY_RANGE:
-    abbe_command_range(r->program, "--range", arg, &r->from_nm, &r->to_nm);
-    return 0;
-  case KEY_KNOWN:
-    r->known = arg;
-    return 0;
-  case ABBE_MATERIALS_KEY_JSON:
-    r->json = true;
     return 0;
   case ARGP_KEY_ARG:
     argp_error(state, "'%s' is one argument too many; numbers go with options such as --nd", arg);

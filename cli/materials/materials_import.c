@@ -56,21 +56,23 @@ static void read_csv_option(request *r, int key, const char *arg) {
         (abbe_csv_third)abbe_command_choice(r->program, "--third", arg, thirds, 3);
 }
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(request, KEY_NAME, batch.import.name),
+    ABBE_TAKE_TEXT(request, KEY_PREFIX, batch.prefix),
+    ABBE_TAKE_TEXT(request, KEY_SOURCE, batch.import.source),
+    ABBE_TAKE_FLAG(request, KEY_ALL, all),
+    ABBE_TAKE_FLAG(request, KEY_FORCE, force),
+    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   static const char *const formats[] = {"auto", "agf", "rii", "csv", "yaml", "sqlite"};
   request *r = state->input;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case 'o':
     r->output = r->batch.target = arg;
-    return 0;
-  case KEY_NAME:
-    r->batch.import.name = arg;
-    return 0;
-  case KEY_PREFIX:
-    r->batch.prefix = arg;
-    return 0;
-  case KEY_SOURCE:
-    r->batch.import.source = arg;
     return 0;
   case KEY_FORMAT:
     r->batch.import.format =
@@ -79,15 +81,6 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case KEY_UNIT:
   case KEY_THIRD:
     read_csv_option(r, key, arg);
-    return 0;
-  case KEY_ALL:
-    r->all = true;
-    return 0;
-  case KEY_FORCE:
-    r->force = true;
-    return 0;
-  case ABBE_MATERIALS_KEY_JSON:
-    r->json = true;
     return 0;
   case ARGP_KEY_ARGS:
     r->batch.path = (const char *const *)&state->argv[state->next];

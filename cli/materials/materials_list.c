@@ -205,36 +205,27 @@ static abbe_material_key key_of(const char *program, const char *word) {
                                                 ABBE_MATERIAL_KEY_COUNT);
 }
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(request, KEY_NAME, query.name),
+    ABBE_TAKE_RANGE(request, KEY_ND, query.n_d_min, query.n_d_max),
+    ABBE_TAKE_RANGE(request, KEY_VD, query.v_d_min, query.v_d_max),
+    ABBE_TAKE_TEXT(request, KEY_SOURCE, query.source),
+    ABBE_TAKE_FLAG(request, KEY_REVERSE, query.descending),
+    ABBE_TAKE_TEXT(request, ABBE_MATERIALS_KEY_TABLE, table),
+    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
   abbe_material_query *q = &r->query;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
-  case KEY_NAME:
-    q->name = arg;
-    return 0;
-  case KEY_ND:
-    abbe_command_range(r->program, "--nd", arg, &q->n_d_min, &q->n_d_max);
-    return 0;
-  case KEY_VD:
-    abbe_command_range(r->program, "--vd", arg, &q->v_d_min, &q->v_d_max);
-    return 0;
-  case KEY_SOURCE:
-    q->source = arg;
-    return 0;
   case KEY_SORT:
     q->sort = key_of(r->program, arg);
     return 0;
-  case KEY_REVERSE:
-    q->descending = true;
-    return 0;
   case KEY_COLUMNS:
     take_columns(r, arg);
-    return 0;
-  case ABBE_MATERIALS_KEY_TABLE:
-    r->table = arg;
-    return 0;
-  case ABBE_MATERIALS_KEY_JSON:
-    r->json = true;
     return 0;
   case ARGP_KEY_ARG:
     abbe_materials_wrong_use(r->program, "list takes no name; did you mean show? (--name filters)");

@@ -150,36 +150,22 @@ static const struct argp_option options[] = {
     ABBE_MATERIALS_JSON_OPTION,
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_NUMBER(request, KEY_ND, n_d, 1.0001, 10),
+    ABBE_TAKE_NUMBER(request, KEY_VD, v_d, 0.1, 1e6),
+    ABBE_TAKE_TEXT(request, KEY_LIKE, like),
+    ABBE_TAKE_TEXT(request, KEY_LIKE_TABLE, like_table),
+    ABBE_TAKE_TEXT(request, KEY_POINTS, points),
+    ABBE_TAKE_RANGE(request, KEY_RANGE, from_nm, to_nm),
+    ABBE_TAKE_COUNT(request, KEY_COUNT, count, 1, 10000),
+    ABBE_TAKE_TEXT(request, ABBE_MATERIALS_KEY_TABLE, table),
+    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
-  request *r = state->input;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
-  case KEY_ND:
-    r->n_d = abbe_command_number(r->program, "--nd", arg, 1.0001, 10);
-    return 0;
-  case KEY_VD:
-    r->v_d = abbe_command_number(r->program, "--vd", arg, 0.1, 1e6);
-    return 0;
-  case KEY_LIKE:
-    r->like = arg;
-    return 0;
-  case KEY_LIKE_TABLE:
-    r->like_table = arg;
-    return 0;
-  case KEY_POINTS:
-    r->points = arg;
-    return 0;
-  case KEY_RANGE:
-    abbe_command_range(r->program, "--range", arg, &r->from_nm, &r->to_nm);
-    return 0;
-  case KEY_COUNT:
-    r->count = abbe_command_count(r->program, "--count", arg, 1, 10000);
-    return 0;
-  case ABBE_MATERIALS_KEY_TABLE:
-    r->table = arg;
-    return 0;
-  case ABBE_MATERIALS_KEY_JSON:
-    r->json = true;
-    return 0;
   case ARGP_KEY_ARG:
     argp_error(state, "'%s' is one argument too many; --like %s compares with that material", arg,
                arg);

@@ -54,8 +54,7 @@ static void print_text(const request *r, const abbe_glass_partners *found) {
            m->catalogue.status != NULL ? m->catalogue.status : "-");
     printf(p->doubles > 0 ? ", and %zu of the same index\n" : "\n", p->doubles);
   }
-  if (found->skipped > 0)
-    printf("\n%zu have no single index with a P_gF\n", found->skipped);
+  if (found->skipped > 0) printf("\n%zu have no single index with a P_gF\n", found->skipped);
 }
 
 static abbe_result print_json(const request *r, const abbe_glass_partners *found,
@@ -141,34 +140,20 @@ static const struct argp_option options[] = {
     ABBE_MATERIALS_JSON_OPTION,
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(request, KEY_WITH, third),
+    ABBE_TAKE_NUMBER(request, KEY_MOST, most_power, 1, 1e6),
+    ABBE_TAKE_COUNT(request, KEY_COUNT, count, 1, 10000),
+    ABBE_TAKE_TEXT(request, 'o', map),
+    ABBE_TAKE_TEXT(request, ABBE_MATERIALS_KEY_TABLE, table),
+    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
+    ABBE_TAKE_ARGUMENT(request, name),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
-  request *r = state->input;
-  switch (key) {
-  case KEY_WITH:
-    r->third = arg;
-    return 0;
-  case KEY_MOST:
-    r->most_power = abbe_command_number(r->program, "--most-power", arg, 1, 1e6);
-    return 0;
-  case KEY_COUNT:
-    r->count = abbe_command_count(r->program, "--count", arg, 1, 10000);
-    return 0;
-  case 'o':
-    r->map = arg;
-    return 0;
-  case ABBE_MATERIALS_KEY_TABLE:
-    r->table = arg;
-    return 0;
-  case ABBE_MATERIALS_KEY_JSON:
-    r->json = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (r->name != NULL) argp_error(state, "'%s' is one argument too many", arg);
-    r->name = arg;
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
+  if (abbe_take_option(takes, key, arg, state)) return 0;
+  return ARGP_ERR_UNKNOWN;
 }
 
 static const struct argp parser = {

@@ -129,27 +129,22 @@ static void read_size(request *r, const char *text) {
   abbe_materials_wrong_use(r->program, sentence);
 }
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(request, 'o', out),
+    ABBE_TAKE_FLAG(request, KEY_MAP, map),
+    ABBE_TAKE_RANGE(request, KEY_RANGE, from, to),
+    ABBE_TAKE_FLAG(request, KEY_FITS, fits),
+    ABBE_TAKE_TEXT(request, KEY_POINTS, points),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
-  case 'o':
-    r->out = arg;
-    return 0;
   case ABBE_MATERIALS_KEY_TABLE:
     if (r->table_count == MAX_TABLES) argp_error(state, "more than %d tables", MAX_TABLES);
     r->table[r->table_count++] = arg;
-    return 0;
-  case KEY_MAP:
-    r->map = true;
-    return 0;
-  case KEY_RANGE:
-    abbe_command_range(r->program, "--range", arg, &r->from, &r->to);
-    return 0;
-  case KEY_FITS:
-    r->fits = true;
-    return 0;
-  case KEY_POINTS:
-    r->points = arg;
     return 0;
   case KEY_SIZE:
     read_size(r, arg);

@@ -380,33 +380,24 @@ static const struct argp_option options[] = {
      "the two Cauchy fits over 380:780 nm made anew, as YAML for the record", 0},
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_NUMBER(request, KEY_TEMPERATURE, conditions.temperature_c, ABBE_CONDITIONS_LEAST_C,
+                     ABBE_CONDITIONS_MOST_C),
+    ABBE_TAKE_NUMBER(request, KEY_PRESSURE, conditions.pressure_atm, 0, ABBE_CONDITIONS_MOST_ATM),
+    ABBE_TAKE_TEXT(request, ABBE_MATERIALS_KEY_TABLE, table),
+    ABBE_TAKE_FLAG(request, ABBE_MATERIALS_KEY_JSON, json),
+    ABBE_TAKE_FLAG(request, KEY_FIT, fit),
+    ABBE_TAKE_ARGUMENT(request, name),
+    {0},
+};
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
+  if (abbe_take_option(takes, key, arg, state)) return 0;
   switch (key) {
   case KEY_AT:
     if (r->at_count == MAX_AT) argp_error(state, "more than %d --at", MAX_AT);
     r->at[r->at_count++] = abbe_command_number(r->program, "--at", arg, 1, 1e6);
-    return 0;
-  case KEY_TEMPERATURE:
-    r->conditions.temperature_c = abbe_command_number(
-        r->program, "--temperature", arg, ABBE_CONDITIONS_LEAST_C, ABBE_CONDITIONS_MOST_C);
-    return 0;
-  case KEY_PRESSURE:
-    r->conditions.pressure_atm =
-        abbe_command_number(r->program, "--pressure", arg, 0, ABBE_CONDITIONS_MOST_ATM);
-    return 0;
-  case ABBE_MATERIALS_KEY_TABLE:
-    r->table = arg;
-    return 0;
-  case ABBE_MATERIALS_KEY_JSON:
-    r->json = true;
-    return 0;
-  case KEY_FIT:
-    r->fit = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (r->name != NULL) argp_error(state, "'%s' is one argument too many", arg);
-    r->name = arg;
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

@@ -16,21 +16,16 @@ static const struct argp_option options[] = {
      "texels that lie exactly as in that map, and as many", 3},
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TARGET(abbe_map_options, OPTION_SAVE_MAP, save, ".exr"),
+    ABBE_TAKE_TEXT(abbe_map_options, OPTION_MAP_LIGHT, light),
+    ABBE_TAKE_TEXT(abbe_map_options, OPTION_MAP_LIKE, like),
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state) {
-  abbe_map_options *o = state->input;
-  switch (key) {
-  case OPTION_SAVE_MAP:
-    o->save = abbe_command_target(state->name, "--save-map", text, ".exr");
-    return 0;
-  case OPTION_MAP_LIGHT:
-    o->light = text;
-    return 0;
-  case OPTION_MAP_LIKE:
-    o->like = text;
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
+  if (abbe_take_option(takes, key, text, state)) return 0;
+  return ARGP_ERR_UNKNOWN;
 }
 
 const struct argp abbe_map_options_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};

@@ -199,19 +199,26 @@ static void check_parts(const request *q, struct argp_state *state) {
     argp_error(state, "%s goes without --%s", name, q->rates ? "rates" : "resume");
 }
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TARGET(request, 'o', exr, ".exr"),
+    ABBE_TAKE_TARGET(request, OPTION_PNG, png, ".png"),
+    ABBE_TAKE_FLAG(request, OPTION_JSON, json),
+    ABBE_TAKE_FLAG(request, 'q', quiet),
+    ABBE_TAKE_TEXT(request, OPTION_MATERIALS, materials),
+    ABBE_TAKE_FLAG(request, OPTION_HALF, half),
+    ABBE_TAKE_TEXT(request, OPTION_CHECKPOINT, checkpoint),
+    ABBE_TAKE_FLAG(request, OPTION_RATES, rates),
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   request *q = state->input;
+  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &q->map;
     state->child_inputs[1] = &q->screen;
     state->child_inputs[2] = &q->series;
-    return 0;
-  case 'o':
-    q->exr = abbe_command_target(state->name, "-o", text, ".exr");
-    return 0;
-  case OPTION_PNG:
-    q->png = abbe_command_target(state->name, "--png", text, ".png");
     return 0;
   case OPTION_STATS:
     if (strcmp(text, "-") == 0)
@@ -219,26 +226,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     else
       q->stats = abbe_command_target(state->name, "--stats", text, ".json");
     return 0;
-  case OPTION_JSON:
-    q->json = true;
-    return 0;
-  case 'q':
-    q->quiet = true;
-    return 0;
-  case OPTION_MATERIALS:
-    q->materials = text;
-    return 0;
-  case OPTION_HALF:
-    q->half = true;
-    return 0;
   case OPTION_FILTER:
     q->filter = q->desc.guides = true;
-    return 0;
-  case OPTION_CHECKPOINT:
-    q->checkpoint = text;
-    return 0;
-  case OPTION_RATES:
-    q->rates = true;
     return 0;
   case ARGP_KEY_ARG:
     if (q->scene == NULL || abbe_studio_is_stone(text))

@@ -72,46 +72,32 @@ static const struct argp_option options[] = {
      2},
     {0}};
 
+static const abbe_take takes[] = {
+    ABBE_TAKE_TEXT(view_options, OPTION_SCRIPT, script),
+    ABBE_TAKE_TEXT(view_options, OPTION_KEEP, keep),
+    ABBE_TAKE_COUNT(view_options, OPTION_WAVELENGTHS, wavelengths, 1, ABBE_RENDER_MAX_WAVELENGTHS),
+    ABBE_TAKE_COUNT(view_options, OPTION_PHOTONS, photons, 1, ABBE_RENDER_MAX_PHOTONS),
+    ABBE_TAKE_COUNT(view_options, OPTION_MAP, map_size, 1, ABBE_RENDER_MAX_MAP),
+    ABBE_TAKE_TEXT(view_options, OPTION_MATERIALS, materials),
+    ABBE_TAKE_TEXT(view_options, OPTION_MATERIAL, changes.studio.material),
+    ABBE_TAKE_TEXT(view_options, OPTION_VOLUME, volume),
+    ABBE_TAKE_TEXT(view_options, OPTION_OCIO, ocio),
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   static const char *const stages[] = {"moving", "balanced", "accurate", "mean", "traced"};
   view_options *o = state->input;
+  if (abbe_take_option(takes, key, text, state)) return 0;
   switch (key) {
-  case OPTION_SCRIPT:
-    o->script = text;
-    return 0;
   case OPTION_SIZE:
     abbe_command_size(o->program, "--size", text, 8192, &o->width, &o->height);
-    return 0;
-  case OPTION_KEEP:
-    o->keep = text;
     return 0;
   case OPTION_SERVE:
     o->port = (int)abbe_command_count(o->program, "--serve", text, 0, 65535);
     return 0;
   case OPTION_LAST:
     o->last = 1 + abbe_command_choice(o->program, "--last", text, stages, 5);
-    return 0;
-  case OPTION_WAVELENGTHS:
-    o->wavelengths =
-        abbe_command_count(o->program, "--wavelengths", text, 1, ABBE_RENDER_MAX_WAVELENGTHS);
-    return 0;
-  case OPTION_PHOTONS:
-    o->photons = abbe_command_count(o->program, "--photons", text, 1, ABBE_RENDER_MAX_PHOTONS);
-    return 0;
-  case OPTION_MAP:
-    o->map_size = abbe_command_count(o->program, "--map", text, 1, ABBE_RENDER_MAX_MAP);
-    return 0;
-  case OPTION_MATERIALS:
-    o->materials = text;
-    return 0;
-  case OPTION_MATERIAL:
-    o->changes.studio.material = text;
-    return 0;
-  case OPTION_VOLUME:
-    o->volume = text;
-    return 0;
-  case OPTION_OCIO:
-    o->ocio = text;
     return 0;
   case ARGP_KEY_ARG:
     abbe_scene_input_take_file(&o->changes, &o->scene, text, state);
