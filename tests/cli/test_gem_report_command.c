@@ -121,7 +121,8 @@ TEST(what_is_refused) {
       {GEM "report" DIAMOND SMALL "-o r.png", ".pdf", 2},
       {GEM "report" DIAMOND SMALL "--tilt 0 --maps none", "none/", 1},
       {GEM "report" DIAMOND "--material silver", "is a metal", 1},
-      {GEM "optimise" DIAMOND "--material diamond --measure fire", "iso, cos, return, leakage", 2},
+      {GEM "optimise" DIAMOND "--material diamond --measure fire",
+       "iso, cos, gemray-iso, gemray-cos, gemray-sc2, return, leakage", 2},
       {GEM "optimise" DIAMOND "--material diamond --crown 30:95", "below 90", 2},
       {GEM "optimise" DIAMOND "--material diamond --grid 1x1 --plot p.jpg", ".png or .svg", 1},
   };
