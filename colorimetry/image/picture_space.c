@@ -1,6 +1,8 @@
 #include "colorimetry/image/picture_space.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <string.h>
 #include <strings.h>
 
 static bool is_stated(const double xy[8]) {
@@ -20,12 +22,64 @@ static abbe_result find_observer(const abbe_image *image, const char *name, abbe
                         name, word, abbe_observer_text(ABBE_OBSERVER_CIE_1931));
 }
 
+/* Scene-linear spaces of the Color Interop Forum's recommendation 03: xy of primaries and white. */
+static const struct {
+  const char *id;
+  double xy[8];
+} interop[] = {
+    {"lin_ap1_scene", {0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767}},
+    {"lin_ap0_scene", {0.7347, 0.2653, 0, 1, 0.0001, -0.077, 0.32168, 0.33767}},
+    {"lin_rec709_scene", {0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329}},
+    {"lin_p3d65_scene", {0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.329}},
+    {"lin_rec2020_scene", {0.708, 0.292, 0.17, 0.797, 0.131, 0.046, 0.3127, 0.329}},
+    {"lin_adobergb_scene", {0.64, 0.33, 0.21, 0.71, 0.15, 0.06, 0.3127, 0.329}},
+    {"lin_ciexyzd65_scene",
+     {1, 0, 0, 1, 0, 0, 1.0 / 3, 1.0 / 3}}, /* as ABBE_RGB_SPACE_XYZ has it */
+};
+enum { INTEROP = sizeof interop / sizeof *interop };
+
+/* Of an ID, or of what is left of it without namespaces; NULL of none that is known. */
+static const double *interop_xy(const char *id) {
+  for (; id != NULL; id = strchr(id, ':') != NULL ? strchr(id, ':') + 1 : NULL)
+    for (size_t i = 0; i < INTEROP; i++)
+      if (strcmp(id, interop[i].id) == 0) return interop[i].xy;
+  return NULL;
+}
+
+/* The file's colorInteropID as chromaticities; *out is NULL where it has none, or "unknown". */
+static abbe_result find_interop(const abbe_image *image, const char *name, const double **out,
+                                abbe_error *error) {
+  const char *id = abbe_image_attribute_text(image, "colorInteropID");
+  *out = NULL;
+  if (id == NULL || strcmp(id, "unknown") == 0) return ABBE_OK;
+  if (strcmp(id, "data") == 0)
+    return abbe_error_set(error, ABBE_COLOUR,
+                          "%s: its colorInteropID says that its channels are data and no colours",
+                          name);
+  *out = interop_xy(id);
+  if (*out == NULL)
+    return abbe_error_set(error, ABBE_COLOUR,
+                          "%s: its colorInteropID '%.60s' is no linear space that is known, such "
+                          "as lin_ap1_scene or lin_rec709_scene",
+                          name, id);
+  for (int i = 0; i < 8 && is_stated(image->xy); i++)
+    if (!(fabs(image->xy[i] - (*out)[i]) <= 1e-3))
+      return abbe_error_set(error, ABBE_COLOUR,
+                            "%s: its colorInteropID '%.60s' and its chromaticities contradict each "
+                            "other",
+                            name, id);
+  return ABBE_OK;
+}
+
 abbe_result abbe_picture_space_find(const abbe_image *image, bool is_xyz, const char *name,
                                     abbe_picture_space *out, abbe_error *error) {
   *out = (abbe_picture_space){.space = is_xyz ? ABBE_RGB_SPACE_XYZ : ABBE_RGB_SPACE_COUNT};
-  const abbe_result result = find_observer(image, name, &out->observer, error);
+  const double *xy = NULL;
+  abbe_result result = find_observer(image, name, &out->observer, error);
+  if (result == ABBE_OK && !is_xyz) result = find_interop(image, name, &xy, error);
   if (result != ABBE_OK) return result;
   const char *word = abbe_image_attribute_text(image, "abbe:space");
+  if (xy != NULL) word = NULL; /* the ID is what other programs write last */
   for (int s = 0; out->space == ABBE_RGB_SPACE_COUNT && word && s < ABBE_RGB_SPACE_COUNT; s++)
     if (strcasecmp(word, abbe_rgb_space_name((abbe_rgb_space)s)) == 0)
       out->space = (abbe_rgb_space)s;
@@ -33,11 +87,13 @@ abbe_result abbe_picture_space_find(const abbe_image *image, bool is_xyz, const 
     return abbe_error_set(error, ABBE_COLOUR,
                           "%s: its attribute abbe:space is '%.60s', not acescg, rec709 or xyz",
                           name, word);
-  if (out->space == ABBE_RGB_SPACE_COUNT && is_stated(image->xy)) {
+  const char *stated = xy != NULL ? "colorInteropID" : "chromaticities";
+  if (xy == NULL && is_stated(image->xy)) xy = image->xy;
+  if (out->space == ABBE_RGB_SPACE_COUNT && xy != NULL) {
     abbe_error why = {0};
-    out->space = abbe_rgb_space_of_chromaticities(image->xy);
-    snprintf(out->text, sizeof out->text, "RGB of the file's chromaticities");
-    if (abbe_rgb_space_chromaticities_to_xyz(image->xy, out->to_xyz, &why) != ABBE_OK)
+    out->space = abbe_rgb_space_of_chromaticities(xy);
+    snprintf(out->text, sizeof out->text, "RGB of the file's %s", stated);
+    if (abbe_rgb_space_chromaticities_to_xyz(xy, out->to_xyz, &why) != ABBE_OK)
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: %.400s", name, why.text);
     if (out->space == ABBE_RGB_SPACE_COUNT) return ABBE_OK;
   }

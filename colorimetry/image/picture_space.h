@@ -16,10 +16,10 @@ typedef struct abbe_picture_space {
   bool assumed;           /* the file does not state its space; Rec.709 was taken */
 } abbe_picture_space;
 
-/* The space of channels X, Y, Z (is_xyz) or R, G, B: the attribute abbe:space, else the
- * chromaticities, else what their absence means in OpenEXR: Rec.709. `name` is what errors call the
- * picture. ABBE_INVALID_ARGUMENT for chromaticities that span no space, ABBE_COLOUR for an
- * abbe:space and an observer that are none. */
+/* The space of channels X, Y, Z (is_xyz) or R, G, B: of R, G, B the attribute colorInteropID, else
+ * abbe:space, else the chromaticities, else what their absence means in OpenEXR: Rec.709. `name` is
+ * what errors call the picture. ABBE_INVALID_ARGUMENT for chromaticities that span no space,
+ * ABBE_COLOUR for an abbe:space and an observer that are none. */
 abbe_result abbe_picture_space_find(const abbe_image *image, bool is_xyz, const char *name,
                                     abbe_picture_space *out, abbe_error *error);
 
