@@ -126,9 +126,9 @@ static abbe_result say(const request *q, const abbe_gem_report_facts *f, abbe_er
     result = abbe_gem_report_maps(q->maps, f->judgement, error);
   if (result != ABBE_OK) return result;
   if (q->stone.in.json) return abbe_gem_report_print_json(f, error);
-  if (q->csv && abbe_material_is_uniaxial(f->input->in.material) && !q->stone.in.quiet)
-    fprintf(stderr, "note: %s is taken with its ordinary index alone\n",
-            f->input->in.material->name);
+  if (q->csv && abbe_material_is_crystal(f->input->in.material) && !q->stone.in.quiet)
+    fprintf(stderr, "note: %s is taken with its %s index alone\n", f->input->in.material->name,
+            abbe_material_is_biaxial(f->input->in.material) ? "middle" : "ordinary");
   if (q->csv)
     abbe_gem_report_print_csv(f);
   else

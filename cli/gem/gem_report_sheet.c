@@ -121,6 +121,8 @@ abbe_result abbe_gem_report_sheet(const char *path, const abbe_gem_report_facts 
            f->head_deg, f->judgement->view.wavelengths,
            abbe_material_is_uniaxial(f->input->in.material)
                ? "; the ordinary index alone, double refraction is left out"
+           : abbe_material_is_biaxial(f->input->in.material)
+               ? "; the middle index alone, double refraction is left out"
                : "");
   abbe_sheet_text(s, MARGIN, MARGIN + 36, 8, false, false, 0.35, text);
   result = put_maps(s, f, MARGIN + 46, error);

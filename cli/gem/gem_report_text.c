@@ -30,8 +30,12 @@ void abbe_gem_report_print(const abbe_gem_report_facts *f) {
          f->input->in.material->name, 1000 * f->input->width_m);
   printf("%.0f rays of the eye from above, each at %zu wavelengths; head's half angle %g degrees\n",
          rays(&j->view), j->view.wavelengths, f->head_deg);
-  if (abbe_material_is_uniaxial(f->input->in.material))
-    printf("%s is taken with its ordinary index alone: its double refraction is left out\n",
+  if (abbe_material_is_crystal(f->input->in.material))
+    printf("%s is taken with its %s index alone: its double refraction is left out\n",
+           f->input->in.material->name,
+           abbe_material_is_biaxial(f->input->in.material) ? "middle" : "ordinary");
+  if (abbe_material_is_pleochroic(f->input->in.material))
+    printf("%s is pleochroic: it is taken with the mean of its absorption over its axes\n",
            f->input->in.material->name);
   if (j->has_tilts)
     printf("tilted about %d axes up to %g degrees by %g\n", ABBE_GEM_AXES,
@@ -128,7 +132,9 @@ abbe_result abbe_gem_report_print_json(const abbe_gem_report_facts *f, abbe_erro
   cJSON_AddStringToObject(root, "title", abbe_gem_input_title(&f->input->in));
   cJSON_AddStringToObject(root, "material", f->input->in.material->name);
   cJSON_AddStringToObject(root, "index",
-                          abbe_material_is_uniaxial(f->input->in.material) ? "ordinary" : "full");
+                          abbe_material_is_uniaxial(f->input->in.material)  ? "ordinary"
+                          : abbe_material_is_biaxial(f->input->in.material) ? "middle"
+                                                                            : "full");
   cJSON_AddNumberToObject(root, "width_mm", 1000 * f->input->width_m);
   cJSON_AddNumberToObject(root, "head_deg", f->head_deg);
   cJSON_AddNumberToObject(root, "rays", rays(&j->view));
