@@ -1,9 +1,9 @@
 /* materials.h: the verbs of `abbe materials`, a file each.
  *
- * A verb is one line of ABBE_MATERIALS_VERBS and one function in cli/materials/materials_NAME.c.
- * The program finds it by its name, lists it with its summary in `abbe materials --help`, and hands
- * it its arguments with argv[0] "abbe materials NAME". No verb holds logic that a library could
- * use. Internal to cli/materials/.
+ * A verb is one line of ABBE_MATERIALS_VERBS and one function in cli/materials/materials_NAME.c
+ * (rename stands beside remove). The program finds it by its name, lists it with its summary in
+ * `abbe materials --help`, and hands it its arguments with argv[0] "abbe materials NAME". No verb
+ * holds logic that a library could use. Internal to cli/materials/.
  */
 #ifndef ABBE_CLI_MATERIALS_MATERIALS_H
 #define ABBE_CLI_MATERIALS_MATERIALS_H
