@@ -93,7 +93,7 @@ TEST(what_no_source_gives_is_refused_and_not_taken_for_0) {
   quartz.temperature_c = 20;
   quartz.catalogue.thermal[0] = 1e-6;
   const abbe_conditions warm = {40, NAN}, vacuum = {NAN, 0};
-  REFUSED(ABBE_UNSUPPORTED, "two indices", abbe_material_place(&quartz, &warm, &error));
+  REFUSED(ABBE_UNSUPPORTED, "several indices", abbe_material_place(&quartz, &warm, &error));
   OK(abbe_material_place(&quartz, &vacuum, &error));
   double n[2];
   OK(abbe_material_n_extraordinary(&quartz, 550, &n[0], &error));
