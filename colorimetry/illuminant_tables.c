@@ -246,7 +246,9 @@ const double *const abbe_illuminant_daylight[3] = {s0, s1, s2};
 
 /* ---- lines ---- */
 
-/* Lines of 1/100 of the strongest and more that the eye sees [Sansonetti2005]. */
+/* The lines by which the lamps are known, in air [Sansonetti2005]. Their powers are nominal: they
+ * follow tables of discharges, which differ among each other as lamps do. Sodium's are its
+ * statistical weights, 2 to 1. */
 static const struct {
   const char *name;
   abbe_illuminant_line line[ABBE_ILLUMINANT_MOST_LINES];
