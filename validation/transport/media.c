@@ -144,6 +144,9 @@ abbe_result abbe_media_make(const abbe_geometry *geometry, const double *lambda_
   if (result == ABBE_OK) drop_idle(&m);
   if (result == ABBE_OK)
     result = abbe_haze_make(geometry, lambda_nm, steps, m.attenuation, &m.haze, error);
+  /* the mean over the axes may be grey where each axis has a colour */
+  for (size_t i = 0; i < m.refractors && m.pleochroism != NULL && abbe_haze_is(&m.haze); i++)
+    m.haze.coloured[i] = m.haze.coloured[i] || m.pleochroic[i];
   if (result != ABBE_OK) abbe_media_free(&m);
   *out = m;
   return result;

@@ -106,4 +106,13 @@ static inline float abbe_media_loss(const abbe_media *m, int i, uint32_t k, floa
   return abbe_media_attenuation(m, i, k, f);
 }
 
+/* What absorption and scattering take of it where there is haze. Crystals have no medium of their
+ * own, so a pleochroic one only absorbs. */
+static inline float abbe_media_extinction(const abbe_media *m, int i, uint32_t k, float f,
+                                          const float d[3], uint8_t wave) {
+  if (m->pleochroism != NULL && i >= 0 && m->pleochroic[i])
+    return abbe_media_attenuation_along(m, i, k, f, d, wave);
+  return abbe_haze_extinction(&m->haze, i, k, f);
+}
+
 #endif

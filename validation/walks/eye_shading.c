@@ -338,7 +338,8 @@ void abbe_eye_haze(const abbe_eye_context *c, abbe_eye_path *p, float length, bo
     if (w->shafts != NULL && end > from && end < INFINITY)
       add_shafts(c, &own, medium, from, end, radius);
   }
-  p->share *= expf(-(to - from) * abbe_haze_extinction(h, medium, p->step, p->within));
+  p->share *= expf(-(to - from) *
+                   abbe_media_extinction(w->media, medium, p->step, p->within, p->d, p->wave));
 }
 
 /* Density of a light's even points over its area by solid angle, where unit d meets it at p, 1/sr;

@@ -85,14 +85,15 @@ static inline bool abbe_light_path_survives(const abbe_inner_rules *r, abbe_ligh
 }
 
 /* What a haze takes on the way of that length: absorbed, or scattered off the path. */
-static inline bool abbe_light_path_fade(const abbe_inner_rules *r, const abbe_haze *haze,
+static inline bool abbe_light_path_fade(const abbe_inner_rules *r, const abbe_media *media,
                                         abbe_light_path *s, const struct RTCRayHit16 *rays,
                                         size_t k, abbe_light_ledger *ledger) {
+  const abbe_haze *haze = &media->haze;
   const int medium = abbe_media_of(s->inside);
   float o[3], d[3], from = 0, to = rays->ray.tfar[k];
   abbe_ray_take(rays, k, o, d);
   if (!abbe_haze_clip(haze, medium, o, d, &from, &to)) return true;
-  const float whole = abbe_haze_extinction(haze, medium, s->step, s->within);
+  const float whole = abbe_media_extinction(media, medium, s->step, s->within, d, s->wave);
   if (!(whole > 0)) return true;
   const float part = abbe_haze_scattering(haze, medium, s->step, s->within) / whole;
   const float left = expf(-(to - from) * whole), taken = s->y * s->flux * (1 - left);
@@ -119,7 +120,7 @@ static inline void abbe_light_path_begin(const abbe_haze *haze, abbe_light_path 
 static inline bool abbe_light_path_absorb(const abbe_inner_rules *r, const abbe_media *media,
                                           abbe_light_path *s, const struct RTCRayHit16 *rays,
                                           size_t k, abbe_light_ledger *ledger) {
-  if (abbe_haze_is(&media->haze)) return abbe_light_path_fade(r, &media->haze, s, rays, k, ledger);
+  if (abbe_haze_is(&media->haze)) return abbe_light_path_fade(r, media, s, rays, k, ledger);
   int medium = abbe_media_of(s->inside);
   if (medium < 0 || media->attenuation == NULL) return true;
   float o[3], d[3];
