@@ -31,6 +31,7 @@ static uint64_t mix_material(uint64_t h, const abbe_material *m) {
   MIX(h, m->min_nm);
   MIX(h, m->max_nm);
   MIX(h, m->extrapolate);
+  for (int i = 0; i < 2; i++) h = mix_spectrum(h, m->attenuation_yz[i]);
   return mix_spectrum(h, m->attenuation);
 }
 
@@ -154,6 +155,7 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
   MIX(h, d->profile);
   MIX(h, d->observer);
   MIX(h, d->wavelengths);
+  MIX(h, plan->lines);
   MIX(h, d->min_nm);
   MIX(h, d->max_nm);
   MIX(h, plan->caustics);

@@ -175,3 +175,41 @@ TEST(each_field_is_of_its_parts) {
   memset(&floor_of(&e)->texture, 0, sizeof floor_of(&e)->texture);
   abbe_scene_free(&e.scene);
 }
+
+/* A pleochroic crystal passes the mean over its axes here, so each axis counts. */
+TEST(absorption_along_each_axis_is_of_the_spectra) {
+  edited e = {.desc = {.width = 32, .height = 32, .photons = 32, .map_size = 64}};
+  abbe_renderer_inputs before, after;
+  load_text("camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR BALL(
+                "tourmaline-green"),
+            &e.scene);
+  inputs_of(&e, &before);
+  abbe_material *crystal = glass_of(&e);
+  abbe_spectrum *z = crystal->attenuation_yz[1], *other = NULL;
+  const size_t count = abbe_spectrum_count(z);
+  double *value = calloc(count, sizeof *value);
+  for (size_t i = 0; i < count; i++) value[i] = 1.001 * abbe_spectrum_value(z)[i];
+  OK(abbe_spectrum_make(abbe_spectrum_lambda_nm(z), value, count, abbe_spectrum_interpolation(z),
+                        &other, &error));
+  crystal->attenuation_yz[1] = other;
+  inputs_of(&e, &after);
+  assert_int_equal(abbe_renderer_inputs_differ(&before, &after), SPECTRA | WAY);
+  crystal->attenuation_yz[1] = z;
+  abbe_spectrum_free(other);
+  free(value);
+  abbe_scene_free(&e.scene);
+}
+
+/* Two wavelengths by request are even, and by themselves they are sodium's lines. */
+TEST(lines_of_lights_are_of_the_spectra) {
+  edited e = {.desc = {.width = 32, .height = 32, .photons = 32, .map_size = 64}};
+  abbe_renderer_inputs even, lines;
+  load_text(CAMERA "lights: [{name: lamp, kind: point, position: [0, 0, 0.6], intensity: 1, "
+                   "illuminant: sodium}]\n" FLOOR BALL("crown"),
+            &e.scene);
+  inputs_of(&e, &lines);
+  e.desc.wavelengths = 2;
+  inputs_of(&e, &even);
+  assert_int_equal(abbe_renderer_inputs_differ(&even, &lines), SPECTRA | WAY);
+  abbe_scene_free(&e.scene);
+}
