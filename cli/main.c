@@ -1,6 +1,7 @@
 #include "cli/base/command.h"
 #include "cli/base/output.h"
 #include "cli/pages/pages.h"
+#include "cli/python_command.h"
 
 #include "base/nearest.h"
 #include "colorimetry/image/display_ocio.h"
@@ -27,6 +28,10 @@ static const abbe_pages_command commands[] = {
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
+#define ABBE_NAME_OF(name, summary) #name,
+static const char *const python_commands[] = {ABBE_PYTHON_COMMANDS(ABBE_NAME_OF)};
+enum { PYTHON_COUNT = sizeof python_commands / sizeof python_commands[0] };
+
 static void help(FILE *out) {
 #define ROW(name, summary) fprintf(out, "  %-12s %s\n", #name, summary);
   fprintf(out,
@@ -39,6 +44,10 @@ static void help(FILE *out) {
   ABBE_PICTURE_COMMANDS(ROW)
   fprintf(out, "\nMaterials, colours and measurements:\n");
   ABBE_DATA_COMMANDS(ROW)
+#define SENTENCE(name, summary) fprintf(out, "'abbe %s' %s.\n", #name, summary);
+  fprintf(out, "\nIn Python, with numpy and for plots matplotlib:\n");
+  ABBE_PYTHON_COMMANDS(SENTENCE)
+#undef SENTENCE
   fprintf(out, "\n'abbe help COMMAND' or 'abbe COMMAND --help' shows a command's options.\n"
                "Exit codes: 0 done, 1 failed, 2 used wrongly, 3 out of tolerance.\n");
 #undef ROW
@@ -93,7 +102,14 @@ int main(int argc, char **argv) {
   }
   if (wants_help) word = argv[2];
 
-  const char *names[COMMAND_COUNT];
+  const char *names[COMMAND_COUNT + PYTHON_COUNT];
+  for (int i = 0; i < PYTHON_COUNT; i++) {
+    names[COMMAND_COUNT + i] = python_commands[i];
+    if (strcmp(word, python_commands[i]) != 0) continue;
+    char *help_argv[] = {(char[]){"--help"}};
+    return wants_help ? abbe_python_command_run(word, 1, help_argv)
+                      : abbe_python_command_run(word, argc - 2, argv + 2);
+  }
   for (int i = 0; i < COMMAND_COUNT; i++) {
     names[i] = commands[i].name;
     if (strcmp(word, names[i]) != 0) continue;
@@ -105,7 +121,7 @@ int main(int argc, char **argv) {
     argv[1] = program;
     return commands[i].run(argc - 1, argv + 1);
   }
-  const char *near = abbe_nearest_word(word, names, COMMAND_COUNT);
+  const char *near = abbe_nearest_word(word, names, COMMAND_COUNT + PYTHON_COUNT);
   fprintf(stderr, "abbe: there is no command '%s'", word);
   if (near != NULL) fprintf(stderr, "; did you mean '%s'?", near);
   fprintf(stderr, "\nTry 'abbe help'.\n");

@@ -84,6 +84,17 @@ if(TARGET abbe_shared)
   configure_file(library/python/abbe/_place.py.in ${CMAKE_CURRENT_BINARY_DIR}/_place.py @ONLY)
   file(GLOB modules CONFIGURE_DEPENDS library/python/abbe/*.py)
   install(FILES ${modules} ${CMAKE_CURRENT_BINARY_DIR}/_place.py DESTINATION ${python})
+  file(GLOB sweep CONFIGURE_DEPENDS library/python/abbe/sweep/*.py)
+  install(FILES ${sweep} DESTINATION ${python}/sweep)
+  # The same beside the program where it is built, which runs it for `abbe sweep`.
+  add_dependencies(abbe abbe_shared)
+  set(library_beside ../../libabbe.so.${abi})
+  configure_file(library/python/abbe/_place.py.in
+    ${CMAKE_CURRENT_BINARY_DIR}/python/abbe/_place.py @ONLY)
+  foreach(module ${modules} ${CMAKE_CURRENT_SOURCE_DIR}/library/python/abbe/sweep)
+    get_filename_component(name ${module} NAME)
+    file(CREATE_LINK ${module} ${CMAKE_CURRENT_BINARY_DIR}/python/abbe/${name} SYMBOLIC)
+  endforeach()
 endif()
 
 include(${CMAKE_CURRENT_LIST_DIR}/pack.cmake)

@@ -31,7 +31,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_MAIN_PACKAGE_NAME abbe)
 # Loaded when a context is wanted, so that no linker tells of it.
 set(CPACK_DEBIAN_MAIN_PACKAGE_DEPENDS "libegl-mesa0 | libosmesa6")
-set(CPACK_DEBIAN_MAIN_PACKAGE_RECOMMENDS "python3-numpy")
+set(CPACK_DEBIAN_MAIN_PACKAGE_RECOMMENDS "python3-numpy, python3-matplotlib")
 if(ABBE_MPI)
   list(APPEND CPACK_COMPONENTS_ALL mpi)
   set(CPACK_DEBIAN_MAIN_PACKAGE_SUGGESTS "abbe-mpi")

@@ -5,6 +5,7 @@
 #include "validation/compare/compare.h"
 #include "validation/compare/difference_picture.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 struct abbe_lib_comparison {
@@ -119,6 +120,17 @@ abbe_result abbe_lib_comparison_value(const abbe_lib_comparison *c, const char *
   *noise = v->noise;
   *limit = v->limit;
   return ABBE_OK;
+}
+
+double abbe_lib_comparison_both_noise(const abbe_lib_comparison *c, const char *metric,
+                                      bool masked) {
+  if (c == NULL || metric == NULL || (masked && !c->comparison.masked)) return NAN;
+  const abbe_compare_metric which = abbe_compare_metric_find(metric);
+  return which == ABBE_COMPARE_METRIC_COUNT ? NAN : region_of(c, masked)->metric[which].both_noise;
+}
+
+double abbe_lib_comparison_scale(const abbe_lib_comparison *c) {
+  return c == NULL ? NAN : c->comparison.scale;
 }
 
 const char *abbe_lib_comparison_verdict(const abbe_lib_comparison *c, const char *metric,

@@ -38,6 +38,11 @@ const char *abbe_lib_comparison_metric(size_t index);
 abbe_result abbe_lib_comparison_value(const abbe_lib_comparison *comparison, const char *metric,
                                       bool masked, double *value, double *noise, double *limit,
                                       abbe_error *error);
+/* What it would be by the noise of both, where the test has standard errors; else NaN. */
+double abbe_lib_comparison_both_noise(const abbe_lib_comparison *comparison, const char *metric,
+                                      bool masked);
+/* The factor that the test was multiplied by; 1 without best_scale. */
+double abbe_lib_comparison_scale(const abbe_lib_comparison *comparison);
 /* "unknown", "below the reference's noise", "below the noise of both" or "above the noise". NULL
  * where there is no such metric. */
 const char *abbe_lib_comparison_verdict(const abbe_lib_comparison *comparison, const char *metric,

@@ -6,6 +6,7 @@
 #include "gl/renderer.h"
 #include "library/lib_scene.h"
 #include "scenes/scene.h"
+#include "scenes/view/map_layout.h"
 
 #include <assert.h>
 
@@ -37,9 +38,22 @@ struct abbe_lib_scene {
   bool looked;      /* the camera is not the file's */
   abbe_context *context;
   abbe_renderer *renderer;
+  abbe_render_desc desc;  /* the renderer's last request */
+  abbe_map_layout layout; /* of maps to be rendered, where laid */
+  bool laid;
+  size_t laid_light;
   abbe_lib_progress progress;
   void *user;
 };
+
+/* A request of abbe_lib_scene_render: its settings and the device. */
+typedef struct abbe_library_render_request {
+  abbe_render_desc desc;
+  int backend;
+  bool redraw;
+} abbe_library_render_request;
+abbe_result abbe_library_render_request_read(const char *const *settings, size_t count,
+                                             abbe_library_render_request *out, abbe_error *error);
 
 /* Frees the renderer and what it holds of the scene. */
 void abbe_library_scene_drop_renderer(abbe_lib_scene *scene);

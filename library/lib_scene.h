@@ -55,9 +55,10 @@ void abbe_lib_scene_set_progress(abbe_lib_scene *scene, abbe_lib_progress progre
  * (auto, none, bridge, smear), model (auto, sphere, convex, layers, hierarchy), transport (auto,
  * photons, pinhole), of pinholes also pinholes and clusters (numbers), footprint (auto, off, on),
  * space (acescg, rec709, xyz), observer (1931, 1964, 2015-2, 2015-10), aovs (1: direct.*, caustic.*
- * and Z too), backend (auto, cpu, gpu: of the first picture), and those of published methods that
- * 'abbe methods --help' lists, with _ for -. docs/rendering.md and docs/methods.md say what they
- * do. ABBE_INVALID_ARGUMENT, ABBE_UNSUPPORTED, ABBE_GL, ABBE_CANCELLED, ABBE_NO_MEMORY. */
+ * and Z too), backend (auto, cpu, gpu: of the first picture), redraw (1: every pass anew, of a
+ * picture that holds several frames), and those of published methods that 'abbe methods --help'
+ * lists, with _ for -. docs/rendering.md and docs/methods.md say what they do.
+ * ABBE_INVALID_ARGUMENT, ABBE_UNSUPPORTED, ABBE_GL, ABBE_CANCELLED, ABBE_NO_MEMORY. */
 abbe_result abbe_lib_scene_render(abbe_lib_scene *scene, const char *const *settings, size_t count,
                                   abbe_lib_picture **out, abbe_error *error);
 /* Where a light's flux fell in the last rendered picture, X, Y, Z in W a texel, and so many bands
@@ -70,9 +71,11 @@ abbe_result abbe_lib_scene_map(abbe_lib_scene *scene, const char *light, size_t 
  * (channels stderr.*, caustic.*). Settings: passes (64, unless seconds or error is given), seconds,
  * error (relative standard error), width, height, photons (a pass), bands, seed, threads, min_nm,
  * max_nm, space, observer, physics (full, or matched: what the renderer models and no more), filter
- * (1: less noise, by non-local means), map_size (a side), light (whose map). like: a map, for a map
- * of the same texels; or NULL. picture and map may be NULL: then that is left out.
- * ABBE_INVALID_ARGUMENT, ABBE_OUT_OF_RANGE, ABBE_UNSUPPORTED, ABBE_CANCELLED, ABBE_NO_MEMORY. */
+ * (1: less noise, by non-local means), map_size (a side), light (whose map), checkpoint (a file
+ * that a stopped trace is kept in and goes on from). like: a map, for a map of the same texels, or
+ * of map_size of them in the same place; or NULL. picture and map may be NULL: then that is left
+ * out. ABBE_INVALID_ARGUMENT, ABBE_OUT_OF_RANGE, ABBE_UNSUPPORTED, ABBE_CANCELLED, ABBE_NO_MEMORY.
+ */
 abbe_result abbe_lib_scene_trace(abbe_lib_scene *scene, const char *const *settings, size_t count,
                                  const abbe_lib_picture *like, abbe_lib_picture **picture,
                                  abbe_lib_picture **map, abbe_error *error);

@@ -3,11 +3,13 @@
 #include "library/lib_handles.h"
 #include "library/lib_settings.h"
 #include "validation/denoise/denoise.h"
+#include "validation/tracer/checkpoint.h"
 #include "validation/tracer/trace_run.h"
 
 #include <stdint.h>
+#include <unistd.h>
 
-enum { DEFAULT_PASSES = 64, MOST_PASSES = 1000000 };
+enum { DEFAULT_PASSES = 64, MOST_PASSES = 1000000, CHECKPOINT_S = 30 };
 
 typedef struct request {
   abbe_trace_desc desc;
@@ -44,7 +46,8 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
       ABBE_LIB_CHOICE("physics", &q->physics, physics),
       ABBE_LIB_FLAG("filter", &q->filter),
       ABBE_LIB_COUNT("map_size", &q->map_size, 1, ABBE_TRACER_MAX_SIDE),
-      ABBE_LIB_TEXT("light", &q->light)};
+      ABBE_LIB_TEXT("light", &q->light),
+      ABBE_LIB_TEXT("checkpoint", &q->run.checkpoint)};
   abbe_result result = abbe_library_settings_read("trace", known, sizeof known / sizeof *known,
                                                   settings, count, error);
   if (q->run.passes == 0 && q->run.seconds == 0 && q->run.error == 0)
@@ -54,6 +57,7 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
   d->observer = (abbe_observer)q->observer;
   d->guides = q->filter;
   d->map_width = d->map_height = q->map_size;
+  q->run.checkpoint_s = CHECKPOINT_S;
   if (result == ABBE_OK && q->filter && q->run.passes == 1)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "trace: the filter needs two passes or more");
@@ -68,8 +72,8 @@ static abbe_result complete(const abbe_lib_scene *s, const abbe_lib_picture *lik
   if (result == ABBE_OK && like != NULL) {
     result = abbe_map_layout_read(&like->image, "the map", &q->layout, error);
     d->layout = &q->layout;
-    d->map_width = like->image.width;
-    d->map_height = like->image.height;
+    if (q->map_size == 0) d->map_width = like->image.width;
+    if (q->map_size == 0) d->map_height = like->image.height;
   }
   if (result == ABBE_OK && q->physics == 1)
     result = abbe_matched_physics(s->now, d->min_nm, d->max_nm, &d->physics, error);
@@ -100,6 +104,16 @@ static abbe_result take_map(const abbe_tracer *tracer, abbe_lib_picture **out, a
   return result == ABBE_OK ? abbe_library_picture_adopt(&image, out, error) : result;
 }
 
+/* From the checkpoint on, where there is one; what is stopped is kept in it. */
+static abbe_result run(abbe_tracer *tracer, const abbe_trace_run_desc *desc, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  if (desc->checkpoint != NULL && access(desc->checkpoint, F_OK) == 0)
+    result = abbe_checkpoint_load(tracer, desc->checkpoint, error);
+  if (result == ABBE_OK) result = abbe_trace_run(tracer, desc, error);
+  if (result == ABBE_CANCELLED && abbe_trace_keep(tracer, desc, error) != ABBE_OK) return ABBE_IO;
+  return result;
+}
+
 abbe_result abbe_lib_scene_trace(abbe_lib_scene *s, const char *const *settings, size_t count,
                                  const abbe_lib_picture *like, abbe_lib_picture **picture,
                                  abbe_lib_picture **map, abbe_error *error) {
@@ -114,7 +128,7 @@ abbe_result abbe_lib_scene_trace(abbe_lib_scene *s, const char *const *settings,
   q.run.progress = s->progress;
   q.run.user = s->user;
   result = abbe_tracer_make(s->now, &q.desc, &tracer, error);
-  if (result == ABBE_OK) result = abbe_trace_run(tracer, &q.run, error);
+  if (result == ABBE_OK) result = run(tracer, &q.run, error);
   if (result == ABBE_OK && picture != NULL) result = take_picture(&q, tracer, picture, error);
   if (result == ABBE_OK && map != NULL) result = take_map(tracer, map, error);
   if (result != ABBE_OK && picture != NULL) {

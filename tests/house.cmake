@@ -69,7 +69,7 @@ add_custom_command(OUTPUT ${calls}
   WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
   DEPENDS ${header_files} ${CMAKE_CURRENT_SOURCE_DIR}/null_arguments/generate
   VERBATIM)
-abbe_test(null_arguments cpu abbe_library abbe_sweep abbe_gl abbe_validation abbe_scenes abbe_colorimetry
+abbe_test(null_arguments cpu abbe_library abbe_gl abbe_validation abbe_scenes abbe_colorimetry
   abbe_spectral abbe_base)
 target_sources(test_null_arguments PRIVATE ${calls})
 abbe_label(cpu memory NAMES null_arguments)

@@ -9,13 +9,10 @@ foreach(name
     compare compare_noise
     denoise
     difference_picture
-    baseline_comparison
-    error_decomposition
     estimator_study landing_rays
     environment_trace
     eye_samples
     eye_walk
-    pareto_front
     gem_grid_file gem_maps gem_optimum gem_tilts gem_view
     guide_sums map_texels
     field
@@ -54,26 +51,14 @@ foreach(name
     trace_run
     tracer
     exit_fill exit_points exit_walk volume_checkpoint volume_fill volume_space volume_sums
-    sweep_pictures
-    sweep_plot
-    sweep_presets
-    sweep_table
     ztest
     )
   abbe_test(${name} cpu ${validation_rooms})
 endforeach()
-abbe_test(locale cpu abbe_sweep abbe_gl ${validation_rooms})
-foreach(name sweep_grid sweep_hash sweep_process sweep_promises sweep_reference)
-  abbe_test(${name} cpu abbe_sweep abbe_gl ${validation_rooms})
-endforeach()
-foreach(name ranked_sweep scaling_study sweep_measure sweep_page sweep_run node_errors pinhole_limits
-        transport_study transport_table)
-  abbe_test(${name} gl abbe_sweep abbe_gl ${validation_rooms})
-endforeach()
+abbe_test(locale cpu abbe_gl ${validation_rooms})
 abbe_test(compare_command program ${validation_rooms} PkgConfig::CJSON)
 abbe_test(preset_command program ${validation_rooms} PkgConfig::CJSON)
-abbe_test(sweep_command program ${validation_rooms} PkgConfig::CJSON)
-foreach(name compare_command preset_command sweep_command)
+foreach(name compare_command preset_command)
   target_compile_definitions(test_${name} PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>")
   add_dependencies(test_${name} abbe)
 endforeach()

@@ -43,8 +43,10 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
   X(materials, "look into, edit, convert and check tables of materials")                           \
   X(weights, "what each wavelength sample adds to a colour, in XYZ or RGB")                        \
   X(atlas, "show the spectral colours, what bands make of them, and what displays can show")       \
-  X(sweep, "measure settings: time against error, and which are worth it")                         \
   X(validate, "hold the reference tracer against optics that is known")
+/* In Python, and not among those whose options the program knows. */
+#define ABBE_PYTHON_COMMANDS(X)                                                                    \
+  X(sweep, "measures settings: time against error, and which are worth it")
 #define ABBE_COMMANDS(X) ABBE_SCENE_COMMANDS(X) ABBE_PICTURE_COMMANDS(X) ABBE_DATA_COMMANDS(X)
 
 #define ABBE_COMMAND_DECLARE(name, summary) int abbe_command_##name(int argc, char **argv);

@@ -33,12 +33,6 @@ int abbe_rank_job_end(const abbe_rank_job *job, const char *program, abbe_result
  * Gives the exit code. */
 int abbe_render_by_ranks(int argc, char **argv, abbe_rank_job *job);
 
-/* `abbe sweep`, and one sweep by several processes, as cli/mpi starts them. */
-
-/* Each rank measures rows of its own (validation/sweep/ranks); rank 0 writes the table and shows
- * it. Gives the exit code. */
-int abbe_sweep_by_ranks(int argc, char **argv, abbe_rank_job *job);
-
 /* `abbe trace`, and the same by several processes, as cli/mpi starts them. */
 
 /* Rank 0 alone writes and says what came of it. Gives the exit code. */

@@ -81,7 +81,6 @@ static const struct {
     {"trace", NULL, "abbe-mpi trace", "passes, or frames over time", abbe_trace_by_ranks},
     {"render", NULL, "abbe-mpi render", "frames from all around, or over time",
      abbe_render_by_ranks},
-    {"sweep", NULL, "abbe-mpi sweep", "settings", abbe_sweep_by_ranks},
     {"gem", "optimise", "abbe-mpi gem optimise", "pairs of angles", abbe_gem_optimise_by_ranks}};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 

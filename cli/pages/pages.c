@@ -225,9 +225,15 @@ static void man_page_command(FILE *out, const char *name, const char *summary) {
 static void man_page_end(FILE *out) {
   fputs(".SH EXAMPLES\n", out);
   put_text(out, ABBE_FIRST_STEPS, strlen(ABBE_FIRST_STEPS));
+#define SENTENCE(name, summary)                                                                    \
+  "'abbe " #name "' " summary "; 'abbe " #name " --help' has its options.\n"
+  static const char python[] = ABBE_PYTHON_COMMANDS(SENTENCE);
+#undef SENTENCE
   fputs("Scenes that are not where they are said to be are taken from those that came with the "
-        "program.\n",
+        "program.\n"
+        ".SH IN PYTHON\n",
         out);
+  put_text(out, python, strlen(python));
   end(out, "abbe-render");
 }
 
@@ -252,11 +258,6 @@ static void man_page_ranks(FILE *out, const char *version) {
       ".B \\-\\-resume\nthose alone that are not there. Options are those of\n"
       ".BR abbe\\-render (1),\nbut\n.BR \\-\\-part ,\n.B \\-\\-merge\nand\n.BR "
       "\\-\\-budget\\-ms .\n"
-      ".TP\n.B sweep\nRank 0 traces the reference, then ranks measure settings, each into a table "
-      "named by its number, until all are in one. Times are each rank's own: give each a machine "
-      "of one kind that does nothing else. Options are those of\n.BR abbe\\-sweep (1),\nbut\n"
-      ".BR \\-\\-part ,\n.BR \\-\\-list ,\n.BR \\-\\-scaling ,\n.BR \\-\\-estimators ,\n"
-      ".B \\-\\-processes\nand\n.BR \\-\\-trace\\-only .\n"
       ".TP\n.B gem optimise\nRanks judge pairs of angles, kept beside the file of\n"
       ".BR \\-\\-pairs ,\n.B \\-o\nor\n.BR \\-\\-plot ,\nof which one must be given. Options are "
       "those of\n.BR abbe\\-gem\\-optimise (1),\nbut\n.B \\-\\-part\nand\n.BR \\-\\-merge .\n",

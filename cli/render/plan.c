@@ -63,8 +63,7 @@ static abbe_result print_json(const abbe_scene *scene, const abbe_plan *plan, ab
 
 int abbe_command_plan(int argc, char **argv) {
   static const struct argp_option options[] = {{"json", 'j', NULL, 0, "as JSON", 0}, {0}};
-  const struct argp_child children[] = {{abbe_render_options_argp(), 0, "The request:", 1},
-                                               {0}};
+  const struct argp_child children[] = {{abbe_render_options_argp(), 0, "The request:", 1}, {0}};
   const struct argp argp = {
       options,
       parse,

@@ -40,7 +40,7 @@ static const struct argp_option options[] = {
 
 #define ABBE_NAME_OF(code, name) name,
 static const char *const names[] = {ABBE_PRESETS(ABBE_NAME_OF)};
-#define ABBE_TOOL_OF(code, name, profile) name,
+#define ABBE_TOOL_OF(code, name) name,
 static const char *const tools[] = {ABBE_PICTURE_TOOLS(ABBE_TOOL_OF)};
 static const char *const times[] = {"picture", "frame"};
 
@@ -218,8 +218,8 @@ void abbe_preset_options_note_error(const abbe_picture_choice *c) {
   if (c->traced_instead)
     fprintf(stderr, ", of what they made; it is taken, for the rendered picture's is not known to "
                     "be that small");
-  else if (told && own && !c->others && c->passes > c->point->setting.passes)
-    fprintf(stderr, "; %zu were too few for what is asked", c->point->setting.passes);
+  else if (told && own && !c->others && c->passes > c->point->passes)
+    fprintf(stderr, "; %zu were too few for what is asked", c->point->passes);
   else if (told && c->met.estimate > c->promised_error)
     fprintf(stderr, "; that is more, for this scene's light is of another kind");
   fprintf(stderr, "\n");

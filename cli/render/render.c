@@ -12,7 +12,6 @@
 
 #include "colorimetry/image/exr.h"
 #include "gl/accuracy/frame_times.h"
-#include "library/choice/sweep_setting.h"
 #include "scenes/import/scene_file.h"
 
 #include <argp.h>
@@ -367,9 +366,8 @@ static abbe_result choose_picture(request *q, const abbe_scene *scene, abbe_erro
   if (result != ABBE_OK || q->picture.point->tool != ABBE_PICTURE_RENDER) return result;
   if (own != NULL)
     q->picture_note = "options of the renderer are given, so the tracer is not considered";
-  abbe_preset_point point = {0};
-  result = abbe_sweep_setting_desc(&q->picture.point->setting, &point.desc, error);
-  if (result == ABBE_OK) q->overridden = !abbe_preset_apply(&point, scene, &q->render.desc);
+  const abbe_preset_point point = {.desc = abbe_picture_point_desc(q->picture.point)};
+  q->overridden = !abbe_preset_apply(&point, scene, &q->render.desc);
   /* They show where the caustic is. */
   if (abbe_render_is_checked(q) || p->budget_ms > 0) q->render.desc.aovs = true;
   return result;

@@ -29,11 +29,10 @@ abbe_result abbe_traced_picture_make(abbe_picture_choice *choice, const abbe_sce
                                      abbe_error *error) {
   abbe_progress progress;
   abbe_bounded_trace told;
-  const abbe_sweep_setting *setting = &choice->point->setting;
-  const abbe_bounded_trace_desc trace = {.trace = describe(desc, setting->photons),
-                                         .passes = setting->passes,
-                                         .filtered =
-                                             choice->point->tool == ABBE_PICTURE_TRACE_FILTER,
+  const abbe_picture_point *point = choice->point;
+  const abbe_bounded_trace_desc trace = {.trace = describe(desc, point->photons),
+                                         .passes = point->passes,
+                                         .filtered = point->tool == ABBE_PICTURE_TRACE_FILTER,
                                          .max_error = choice->request.max_error,
                                          .progress = abbe_progress_update,
                                          .user = &progress,

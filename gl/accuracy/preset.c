@@ -276,13 +276,6 @@ bool abbe_preset_apply(const abbe_preset_point *point, const abbe_scene *scene,
   return same && d->fill == p->fill && d->model == p->model && abbe_method_of(d->profile)->presets;
 }
 
-bool abbe_preset_is_fine(const abbe_render_desc *d) {
-  return d->wavelengths > ABBE_PLAN_WAVELENGTHS && d->photons > ABBE_PLAN_PHOTONS &&
-         d->map_size >= ABBE_PLAN_MAP && d->supersample >= ABBE_PLAN_SAMPLES && d->upsample == 1 &&
-         d->exits >= ABBE_PLAN_EXITS && d->energy_share <= ABBE_PLAN_SHARE &&
-         d->fill == ABBE_FILL_BRIDGE && d->model == ABBE_MODEL_AUTO;
-}
-
 abbe_result abbe_preset_calibrate(abbe_context *context, const abbe_scene *scene,
                                   const abbe_preset_front *front, const abbe_render_desc *desc,
                                   abbe_preset_speed *out, abbe_error *error) {

@@ -67,10 +67,6 @@ typedef struct abbe_presets {
   abbe_preset_front front[ABBE_PRESET_CLASS_COUNT];
 } abbe_presets;
 
-/* Whether the settings are nowhere coarser than those that a plan takes by itself, and of more
- * wavelengths and photons: what is called accurate is that. */
-bool abbe_preset_is_fine(const abbe_render_desc *desc);
-
 /* From a file, or with NULL the shipped ones. ABBE_SCHEMA, ABBE_PARSE and ABBE_IO name file, line
  * and key. */
 abbe_result abbe_presets_load(const char *path, abbe_presets *out, abbe_error *error);

@@ -21,10 +21,6 @@ static const char *const names[] = {
 #undef ABBE_CONTEXT_NAME
 };
 
-const char *abbe_context_backend_name(abbe_context_backend backend) {
-  return (int)backend >= 0 && backend < ABBE_CONTEXT_BACKEND_COUNT ? names[backend] : "unknown";
-}
-
 static const char *const remedies[] = {
     [ABBE_CONTEXT_AUTO] = "--backend cpu needs Mesa's llvmpipe, 20.3 or later (Debian's "
                           "libegl-mesa0; GALLIUM_DRIVER unset)",

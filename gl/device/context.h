@@ -65,6 +65,5 @@ const char *abbe_context_description(const abbe_context *context);
 /* Why AUTO took the CPU although a GPU is there: "EGL's device (…) …", without a full stop; ""
  * where there is no GPU or none was asked for. Owned by the context. */
 const char *abbe_context_refused_gpu(const abbe_context *context);
-const char *abbe_context_backend_name(abbe_context_backend backend);
 
 #endif

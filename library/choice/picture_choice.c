@@ -4,10 +4,10 @@
 #include "base/number.h"
 #include "base/yaml/yaml.h"
 #include "gl/accuracy/frame_times.h"
+#include "gl/accuracy/preset_choice.h"
 #include "gl/plan/plan.h"
-#include "library/choice/sweep_setting.h"
-#include "library/choice/sweep_trace.h"
-#include "validation/tradeoff/pareto_front.h"
+#include "library/choice/pareto_front.h"
+#include "library/choice/trace_times.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,12 +19,15 @@ static const double repeats_share = 0.1; /* share of a budget, for the yardstick
 static const double slack = 0.02;        /* more accuracy than that is not seen */
 
 #define ABBE_NAME_OF(code, name) name,
-#define ABBE_TOOL_OF(code, name, profile) name,
 static const char *const class_names[] = {ABBE_PRESET_CLASSES(ABBE_NAME_OF) NULL};
 static const char *const fill_names[] = {ABBE_FILLS(ABBE_NAME_OF) NULL};
 static const char *const model_names[] = {ABBE_MODELS(ABBE_NAME_OF) NULL};
 static const char *const preset_names[] = {ABBE_PRESETS(ABBE_NAME_OF) NULL};
-static const char *const tool_names[] = {ABBE_PICTURE_TOOLS(ABBE_TOOL_OF) NULL};
+static const char *const tool_names[] = {ABBE_PICTURE_TOOLS(ABBE_NAME_OF) NULL};
+
+const char *abbe_picture_tool_name(abbe_picture_tool tool) {
+  return (unsigned)tool < ABBE_PICTURE_TOOL_COUNT ? tool_names[tool] : "unknown";
+}
 
 /* ---- reading ---- */
 
@@ -50,46 +53,39 @@ static abbe_result get_count(const reader *r, abbe_yaml_node node, const char *k
   return result;
 }
 
-static abbe_result read_render(const reader *r, abbe_yaml_node node, abbe_sweep_setting *s) {
+static abbe_result read_render(const reader *r, abbe_yaml_node node, abbe_picture_point *d) {
   int fill = ABBE_FILL_BRIDGE, model = ABBE_MODEL_AUTO;
   const struct {
     const char *key;
     size_t most, *out;
-  } counts[] = {{"wavelengths", ABBE_RENDER_MAX_WAVELENGTHS, &s->wavelengths},
-                {"map", ABBE_RENDER_MAX_MAP, &s->map},
-                {"samples", 4, &s->samples},
-                {"upsample", 4, &s->upsample},
-                {"exits", ABBE_RENDER_MAX_EXITS, &s->exits}};
-  s->history = 1;
+  } counts[] = {{"wavelengths", ABBE_RENDER_MAX_WAVELENGTHS, &d->wavelengths},
+                {"map", ABBE_RENDER_MAX_MAP, &d->map_size},
+                {"samples", 4, &d->supersample},
+                {"upsample", 4, &d->upsample},
+                {"exits", ABBE_RENDER_MAX_EXITS, &d->exits}};
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof counts / sizeof *counts && result == ABBE_OK; i++)
     result = get_count(r, node, counts[i].key, counts[i].most, counts[i].out);
-  if (result == ABBE_OK) result = get_above_0(r, node, "share", &s->share);
-  if (result == ABBE_OK && s->share > 1)
+  if (result == ABBE_OK) result = get_above_0(r, node, "share", &d->energy_share);
+  if (result == ABBE_OK && d->energy_share > 1)
     result = abbe_yaml_fail(r->yaml, node, r->error, "the share may be above 0, to 1");
   if (result == ABBE_OK)
     result = abbe_yaml_get_choice(r->yaml, node, "fill", fill_names, &fill, r->error);
   if (result == ABBE_OK)
     result = abbe_yaml_get_choice(r->yaml, node, "model", model_names, &model, r->error);
-  snprintf(s->profile, sizeof s->profile, "%s", abbe_profile_name(ABBE_PROFILE_DEFAULT));
-  snprintf(s->fill, sizeof s->fill, "%s", fill_names[fill]);
-  snprintf(s->model, sizeof s->model, "%s", model_names[model]);
+  d->fill = (abbe_fill)fill;
+  d->model = (abbe_model)model;
   return result;
 }
 
 static abbe_result read_point(const reader *r, abbe_yaml_node node, abbe_picture_tool tool,
                               abbe_picture_point *out) {
-  size_t photons, passes;
   *out = (abbe_picture_point){.tool = tool};
-  abbe_result result = get_count(r, node, "photons", ABBE_RENDER_MAX_PHOTONS, &photons);
+  abbe_result result = get_count(r, node, "photons", ABBE_RENDER_MAX_PHOTONS, &out->photons);
   if (result == ABBE_OK && out->tool == ABBE_PICTURE_RENDER) {
-    result = read_render(r, node, &out->setting);
-    out->setting.photons = photons;
+    result = read_render(r, node, out);
   } else if (result == ABBE_OK) {
-    result = get_count(r, node, "passes", MOST_PASSES, &passes);
-    if (result == ABBE_OK)
-      abbe_sweep_setting_of_trace(photons, passes, out->tool == ABBE_PICTURE_TRACE_FILTER,
-                                  &out->setting);
+    result = get_count(r, node, "passes", MOST_PASSES, &out->passes);
   }
   if (result == ABBE_OK) result = get_above_0(r, node, "ms", &out->ms);
   if (result == ABBE_OK) result = get_above_0(r, node, "error", &out->worst);
@@ -212,22 +208,22 @@ typedef struct yardstick {
 
 static abbe_result measure(abbe_picture_choice *c, const abbe_scene *scene, yardstick *out,
                            abbe_error *error) {
-  abbe_sweep_row row = {0};
+  abbe_trace_times times;
   const double start = abbe_clock_seconds();
-  abbe_sweep_trace_desc desc = {
-      .width = c->request.width, .height = c->request.height, .frames = 1};
-  abbe_sweep_setting_of_trace(ABBE_PICTURE_YARDSTICK_PHOTONS, ABBE_PICTURE_YARDSTICK_PASSES, false,
-                              &row.setting);
-  abbe_result result = abbe_sweep_trace_measure(scene, &desc, &row, NULL, error);
-  const double own = row.number[ABBE_SWEEP_OWN_DE];
+  abbe_trace_times_desc desc = {.passes = ABBE_PICTURE_YARDSTICK_PASSES,
+                                .photons = ABBE_PICTURE_YARDSTICK_PHOTONS,
+                                .width = c->request.width,
+                                .height = c->request.height,
+                                .frames = 1};
+  abbe_result result = abbe_trace_times_measure(scene, &desc, &times, NULL, error);
+  const double own = times.own_de;
   c->once_ms = 1e3 * (abbe_clock_seconds() - start);
   desc.frames = REPEATS;
   if (result == ABBE_OK && (REPEATS + 1) * c->once_ms <= repeats_share * c->request.budget_ms) {
-    result = abbe_sweep_trace_measure(scene, &desc, &row, NULL, error);
-    c->unrest =
-        abbe_frame_times_unrest(row.number[ABBE_SWEEP_FRAME_MS], row.number[ABBE_SWEEP_FASTEST_MS]);
+    result = abbe_trace_times_measure(scene, &desc, &times, NULL, error);
+    c->unrest = abbe_frame_times_unrest(times.frame_ms, times.fastest_ms);
   }
-  out->time = row.number[ABBE_SWEEP_FRAME_MS] / c->front.base_ms;
+  out->time = times.frame_ms / c->front.base_ms;
   out->error = own > 0 ? own / c->front.base_error : NAN; /* no caustic: nothing is promised */
   c->spent_ms = 1e3 * (abbe_clock_seconds() - start);
   return result;
@@ -403,13 +399,26 @@ abbe_result abbe_picture_choice_check(const abbe_picture_choice *c, double ms, a
   return ABBE_OK;
 }
 
+abbe_render_desc abbe_picture_point_desc(const abbe_picture_point *p) {
+  return (abbe_render_desc){.wavelengths = p->wavelengths,
+                            .photons = p->photons,
+                            .map_size = p->map_size,
+                            .supersample = p->supersample,
+                            .upsample = p->upsample,
+                            .exits = p->exits,
+                            .energy_share = p->energy_share,
+                            .fill = p->fill,
+                            .model = p->model};
+}
+
 void abbe_picture_describe(const abbe_picture_point *point, char *out, size_t size) {
   char text[200];
-  const abbe_sweep_setting *s = &point->setting;
-  abbe_sweep_setting_describe(s, text, sizeof text);
+  const abbe_render_desc desc = abbe_picture_point_desc(point);
+  abbe_preset_describe(&desc, text, sizeof text);
   if (point->tool == ABBE_PICTURE_RENDER)
     snprintf(out, size, "the renderer: %s", text);
   else
-    snprintf(out, size, "the tracer: %zu passes of %zu photons%s", s->passes,
-             s->photons * s->photons, point->tool == ABBE_PICTURE_TRACE_FILTER ? ", filtered" : "");
+    snprintf(out, size, "the tracer: %zu passes of %zu photons%s", point->passes,
+             point->photons * point->photons,
+             point->tool == ABBE_PICTURE_TRACE_FILTER ? ", filtered" : "");
 }

@@ -2,7 +2,7 @@
  * or by the time from the start of the process to its end.
  *
  * The renderer, the tracer and the filtered tracer compete on the fronts that sweeps of whole
- * processes gave (validation/tradeoff/sweep_pictures.h), in the files of gl/accuracy/preset.h. It
+ * processes gave (library/python/abbe/sweep/presets.py), in the files of gl/accuracy/preset.h. It
  * makes no picture. What it says of errors and times are promises: the worst of the run's scenes,
  * times the tool's margin. How they carry over to this scene and machine is measured by the
  * yardstick, a short frame of the tracer: how long it takes, and what it says of its own error.
@@ -13,17 +13,34 @@
 #include "gl/accuracy/preset.h"
 #include "scenes/scene.h"
 #include "validation/passes/pass_error.h"
-#include "validation/tradeoff/sweep_pictures.h"
 
 #include <stdbool.h>
 
-/* A point of one tool. */
+#define ABBE_PICTURE_TOOLS(X) X(RENDER, "render") X(TRACE, "trace") X(TRACE_FILTER, "trace-filter")
+typedef enum abbe_picture_tool {
+#define ABBE_PICTURE_ENUM(code, name) ABBE_PICTURE_##code,
+  ABBE_PICTURE_TOOLS(ABBE_PICTURE_ENUM)
+#undef ABBE_PICTURE_ENUM
+      ABBE_PICTURE_TOOL_COUNT
+} abbe_picture_tool;
+const char *abbe_picture_tool_name(abbe_picture_tool tool);
+
+/* A frame of the tracer that tells this scene and machine from the run's. */
+#define ABBE_PICTURE_YARDSTICK_PASSES 2
+#define ABBE_PICTURE_YARDSTICK_PHOTONS 128
+
+/* Of one tool. */
 typedef struct abbe_picture_point {
   abbe_picture_tool tool;
-  abbe_sweep_setting setting; /* for the tracer: photons and passes; else all but the size */
-  double ms;                  /* time of a whole process, in the run, with the time's margin */
-  double error;               /* the worst of the run's scenes, with the error's margin */
-  double worst, least;        /* over the run's scenes, without */
+  size_t photons; /* a side */
+  size_t passes;  /* of the tracer; what follows is the renderer's */
+  size_t wavelengths, map_size, supersample, upsample, exits;
+  double energy_share;
+  abbe_fill fill;
+  abbe_model model;
+  double ms;           /* of a whole process, in the run, with the time's margin */
+  double error;        /* the worst of the run's scenes, with the error's margin */
+  double worst, least; /* of the run's scenes, without */
 } abbe_picture_point;
 
 #define ABBE_PICTURE_MAX_POINTS (ABBE_PICTURE_TOOL_COUNT * 48)
@@ -83,7 +100,7 @@ typedef struct abbe_picture_choice {
  * least for accurate, for balanced where the front between them bends most. Where no point keeps
  * the bound, the nearest is taken. The request's texts and `out` outlive the choice's point.
  * ABBE_INVALID_ARGUMENT where nothing is requested, ABBE_NOT_FOUND where no point is left; errors
- * of abbe_picture_front_load and abbe_sweep_trace_measure. */
+ * of abbe_picture_front_load and abbe_trace_times_measure. */
 abbe_result abbe_picture_choose(const abbe_picture_request *request, const abbe_scene *scene,
                                 abbe_picture_choice *out, abbe_error *error);
 
@@ -100,6 +117,9 @@ void abbe_picture_choice_say_error(const abbe_picture_choice *choice, char *out,
 /* What the tracer and two passes of so many photons take at the most, s, by the yardstick; NaN
  * without one. */
 double abbe_picture_choice_pass_s(const abbe_picture_choice *choice, size_t photons);
+
+/* The request of a point of the renderer; size and space are left 0. */
+abbe_render_desc abbe_picture_point_desc(const abbe_picture_point *point);
 
 /* "the renderer: 7 wavelengths, ..." or "the tracer: 4 passes of 262144 photons, filtered". */
 void abbe_picture_describe(const abbe_picture_point *point, char *out, size_t size);

@@ -1,5 +1,6 @@
 /* light_nodes.h: directions to a light for which caustics are computed beforehand, spread evenly
  * over the sphere, and which of them stand for any other direction [WymanHansenShirley2003].
+ * Internal to scenes/volume/.
  */
 #ifndef ABBE_SCENES_VOLUME_LIGHT_NODES_H
 #define ABBE_SCENES_VOLUME_LIGHT_NODES_H

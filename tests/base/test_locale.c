@@ -3,7 +3,6 @@
 #include "tests/decimal_comma.h"
 #include "tests/fontconfig.h"
 #include "tests/scenes/scene_text.h"
-#include "tests/validation/tradeoff/sweep_row.h"
 
 #include "base/number.h"
 #include "colorimetry/image/display_ocio.h"
@@ -20,10 +19,7 @@
 #include "spectral/formats/shader_export.h"
 #include "validation/compare/field.h"
 #include "validation/known/known_answers.h"
-#include "validation/sweep/scaling_study.h"
 #include "validation/tracer/reference.h"
-#include "validation/tradeoff/error_decomposition.h"
-#include "validation/tradeoff/sweep_presets.h"
 
 /* ---- what is noted of a run ---- */
 
@@ -265,55 +261,17 @@ static void with_answers(FILE *to) {
   }
 }
 
-static bool is_fine(const abbe_sweep_setting *setting) {
-  return setting->photons > 300;
-}
-
-static void with_sweeps(FILE *to) {
-  OWNED(abbe_sweep_table, table) = {0};
-  OWNED(abbe_sweep_table, back) = {0};
-  abbe_sweep_model model = {1.5, 0.25, 0.125, 0.5, 1.25};
-  char path[300], text[4000];
-  for (size_t i = 1; i <= 3; i++) {
-    abbe_sweep_row row = sweep_row("default", 64 * i);
-    row.setting.share = i == 3 ? 0.0125 : 0.01;
-    row.number[ABBE_SWEEP_LIGHT_MS] = 10.5 * (double)i;
-    row.number[ABBE_SWEEP_EYE_MS] = 1.25;
-    row.number[ABBE_SWEEP_FRAME_MS] = 10.5 * (double)i + 1.25;
-    row.number[ABBE_SWEEP_CAUSTIC_DE] = 4.5 / (double)i;
-    OK(abbe_sweep_table_add(&table, &row, &error));
-  }
-  abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_SCENE, "a.yaml");
-  abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_CLASS, "spheres");
-  abbe_sweep_model_write(&model, &table);
-  in_folder("sweep.csv", path);
-  OK(abbe_sweep_table_save(&table, path, &error));
-  note_file(to, "sweep.csv");
-  OK(abbe_sweep_table_load(path, &back, &error));
-  note(to, "row", back.row[1].number, sizeof back.row[1].number);
-  model = (abbe_sweep_model){0};
-  assert_true(abbe_sweep_model_read(&back, &model));
-  note(to, "model", &model, sizeof model);
-  abbe_error_decomposition split;
-  abbe_error_decomposition_make(&back, &split);
-  abbe_error_decomposition_say(&split, text, sizeof text);
-  fprintf(to, "%s\n", text);
-  const char *const name[] = {"sweep.csv"};
-  in_folder("presets.yaml", path);
-  OK(abbe_sweep_presets_write(path, &back, name, 1, ABBE_SWEEP_CAUSTIC_DE, is_fine, &error));
-  note_file(to, "presets.yaml");
+static void with_presets(FILE *to) {
   abbe_presets presets;
-  OK(abbe_presets_load(path, &presets, &error));
+  OK(abbe_presets_load(NULL, &presets, &error));
+  const abbe_preset_front *front = &presets.front[0];
+  note(to, "margin", &front->margin, sizeof front->margin);
+  for (size_t i = 0; i < front->count; i++) {
+    const double number[] = {front->point[i].light_ms, front->point[i].error,
+                             front->point[i].desc.energy_share};
+    note(to, "preset", number, sizeof number);
+  }
   abbe_presets_free(&presets);
-  abbe_scaling_study growth = {
-      .scene = "a.yaml",
-      .count = 2,
-      .point = {{.x = 0.5, .frame_ms = 1.5, .light_ms = 0.25, .eye_ms = 1, .baseline_ms = 0.125},
-                {.x = 1.5, .frame_ms = 2.5, .light_ms = 0.75, .eye_ms = 2, .baseline_ms = 0.375}}};
-  in_folder("growth.csv", path);
-  OK(abbe_scaling_study_save(&growth, path, &error));
-  note_file(to, "growth.csv");
-  abbe_scaling_study_print(&growth, to);
 }
 
 static void with_messages(FILE *to) {
@@ -378,5 +336,5 @@ SAME(charts)
 SAME(meshes)
 SAME(scenes)
 SAME(answers)
-SAME(sweeps)
+SAME(presets)
 SAME(messages)

@@ -89,15 +89,6 @@ static const struct named {
     {"atlas", "illuminant", READS},
     {"atlas", "output", WRITES},
     {"atlas", "plot", WRITES},
-    {"sweep", "", READS},
-    {"sweep", "output", WRITES},
-    {"sweep", "plot", WRITES},
-    {"sweep", "report", WRITES},
-    {"sweep", "write-presets", WRITES},
-    {"sweep", "presets", READS},
-    {"sweep", "materials", READS},
-    {"sweep", "reference", READS},
-    {"sweep", "reference-map", READS},
     {"compare", "", READS},
     {"compare", "difference", WRITES},
     {"compare", "mask", READS},
@@ -266,8 +257,6 @@ TEST(files_of_a_scene) {
       "trace scene.yaml -q --spp 1 --photons 8 -o c.exr --checkpoint t.yaml",
       "trace scene.yaml -q --spp 1 --photons 8 -o c.exr --checkpoint wedge.mtl",
       "export scene.yaml -q --to povray -o wedge.obj",
-      "sweep scene.yaml -q -o lamp.txt",
-      "sweep scene.yaml -q -o s.csv --report t.yaml",
   };
   run_must(make);
   for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
@@ -281,8 +270,7 @@ TEST(files_of_a_scene) {
   assert_int_not_equal(run_line("ls | grep -E 'exr|csv|checkpoint'"), 0);
 }
 
-/* What no option names is claimed as well; of sweeps, tests/cli/sweep/test_sweep_command.c has it.
- */
+/* What no option names is claimed as well. */
 TEST(files_that_no_option_names) {
   assert_true(run_line("\"$abbe\" trace a.yaml -o c.exr --png c.exr.checkpoint") == 2);
   assert_contains(run_errors, "the checkpoint 'c.exr.checkpoint'");
@@ -310,7 +298,6 @@ TEST(names_that_are_meant) {
       {"render a.yaml --xyzzy --png a.png", "there is no option '--xyzzy'\n"},
       {"render a.yaml --ma 64 --png a.png", "'--map'"},
       {"trace a.yaml -o a.exr --checkpint b", "did you mean '--checkpoint'?"},
-      {"sweep a.yaml --profile thesis -o a.csv", "did you mean '--profiles'?"},
       {"materials list --tabel t.yaml", "did you mean '--table'?"},
       {"materials nearest --pionts p.csv", "did you mean '--points'?"},
       {"weights --cuont 3", "did you mean '--count'?"},

@@ -21,10 +21,7 @@ static const struct {
     {"tests", ALL},
 };
 
-/* The exceptions: the sweep compares both pictures, as the library does; C++ stays in the bridges.
- */
-static const char *const exception_files = "validation/sweep/", *const exception_rooms =
-                                                                    "gl library";
+/* C++ stays in the bridges. */
 static const char *const bridges[] = {"cli/view/widgets/view_ui.cpp",
                                       "colorimetry/image/display_ocio.cpp",
                                       "scenes/export/vdb_bytes.cpp",
@@ -34,8 +31,7 @@ static const char *const bridges[] = {"cli/view/widgets/view_ui.cpp",
 
 static bool may_use(const char *file, const char *used) {
   const char *from = sources_room(file), *to = sources_room(used);
-  bool allowed = strncmp(file, exception_files, strlen(exception_files)) == 0 &&
-                 sources_has_word(exception_rooms, to);
+  bool allowed = false;
   for (size_t i = 0; i < sizeof directions / sizeof *directions; i++)
     if (strcmp(directions[i].room, from) == 0)
       allowed = allowed || sources_has_word(directions[i].may, to);
@@ -98,11 +94,7 @@ TEST(the_rule_refuses_wrong_directions) {
   assert_true(may_use("gl/plan/plan.c", "scenes/scene.h"));
   assert_true(may_use("scenes/scene.c", "colorimetry/image/image.h"));
   assert_true(may_use("cli/render/render.c", "validation/tracer/tracer.h"));
-  assert_true(may_use("validation/sweep/sweep.c", "gl/renderer.h"));
-  assert_true(may_use("validation/sweep/sweep_growth.c", "gl/renderer.h"));
-  assert_true(may_use("validation/sweep/sweep_run.c", "library/choice/sweep_setting.h"));
-  assert_false(may_use("validation/tracer/tracer.c", "library/choice/sweep_setting.h"));
-  assert_false(may_use("validation/sweep/sweep.c", "cli/base/command.h"));
+  assert_false(may_use("validation/tracer/tracer.c", "library/choice/picture_choice.h"));
   assert_false(may_use("validation/tracer/tracer.c", "gl/plan/plan.h"));
   assert_false(may_use("gl/plan/plan.c", "validation/tracer/tracer.h"));
   assert_false(may_use("base/file.c", "colorimetry/image/image.h"));

@@ -3,7 +3,6 @@
 #include "tests/check.h"
 #include "tests/faults/disk.h"
 #include "tests/fontconfig.h"
-#include "tests/validation/tradeoff/sweep_row.h"
 
 #include "base/file.h"
 #include "colorimetry/image/exr.h"
@@ -13,7 +12,6 @@
 #include "scenes/import/scene_file.h"
 #include "spectral/editing/table_edit.h"
 #include "validation/tracer/checkpoint.h"
-#include "validation/tradeoff/sweep_table.h"
 #include "validation/volume/volume_checkpoint.h"
 
 #include <dirent.h>
@@ -63,15 +61,6 @@ static abbe_result write_chart(const char *path, abbe_error *error) {
   return abbe_chart_write(path, &chart, 1, 64, 64, error);
 }
 
-static abbe_result write_sweep(const char *path, abbe_error *error) {
-  abbe_sweep_table table = {0};
-  abbe_sweep_row row = sweep_row("default", 64);
-  abbe_result result = abbe_sweep_table_add(&table, &row, error);
-  if (result == ABBE_OK) result = abbe_sweep_table_save(&table, path, error);
-  abbe_sweep_table_free(&table);
-  return result;
-}
-
 static abbe_result write_checkpoint(const char *path, abbe_error *error) {
   return abbe_checkpoint_save(tracer, path, error);
 }
@@ -105,7 +94,6 @@ static const target targets[] = {
     {"picture.png", write_png, NULL, NULL},
     {"chart.svg", write_chart, NULL, "</svg>\n"},
     {"chart.png", write_chart, NULL, NULL},
-    {"sweep.csv", write_sweep, NULL, NULL},
     {"trace.checkpoint", write_checkpoint, NULL, NULL},
     {"volume.checkpoint", write_volume_checkpoint, NULL, NULL},
     {"scene.pov", write_pov, NULL, NULL},

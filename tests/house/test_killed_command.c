@@ -146,36 +146,6 @@ TEST(a_table) {
       &(command){"\"$abbe\" materials set a source=t --table t.yaml", {"t.yaml"}, old, NULL, 1});
 }
 
-/* Rows hold times, so that the table differs from run to run: it can be read, and goes on. */
-TEST(a_sweep) {
-  static const char sweep[] =
-      "\"$abbe\" sweep " SCENE " -q --size 8x8 --frames 1 --spp 2 --traced-photons 100 --texels 8 "
-      "--map 32 --samples 1 --profiles default --wavelengths 7 --photons 8,16 -o s.csv";
-  char line[2048];
-  run_each(run_remove, NULL);
-  run_must(sweep);
-  content picture = read_whole("s-reference.exr"), map = read_whole("s-reference-map.exr");
-  size_t tried = 0;
-  for (size_t n = 2;; n += 110 * sparse(), tried++) {
-    run_each(run_remove, NULL);
-    snprintf(line, sizeof line, "LD_PRELOAD='" ABBE_PRELOAD "' ABBE_FAULT=kill:%zu %s", n, sweep);
-    const int code = run_line(line);
-    if (code == 0) break;
-    assert_int_equal(code, 137);
-    if (access(path_of("s.csv"), F_OK) == 0) /* looked at where it stands, it is whole */
-      run_must("\"$abbe\" sweep s.csv --json");
-    if (run_line(sweep) != 0) fail_msg("after %s it does not go on: %s", line, run_errors);
-    assert_true(holds("s-reference.exr", &picture) && holds("s-reference-map.exr", &map));
-    assert_int_equal(access(path_of("s-reference.checkpoint"), F_OK), -1);
-    run_must("grep -c '^default,' s.csv");
-    assert_string_equal(run_output, "2\n");
-  }
-  assert_true(tried >= 2);
-  free(picture.data);
-  free(map.data);
-  run_each(run_remove, NULL);
-}
-
 /* At moments of the clock, by each signal: taken up until it is done, it is the unbroken trace. */
 TEST(any_moment) {
   static const char *const signals[] = {"INT", "TERM", "HUP", "KILL"};

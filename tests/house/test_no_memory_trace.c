@@ -1,8 +1,7 @@
-/* Every allocation failing in turn: the tracer and its checkpoints, comparisons, sweeps, outlines.
+/* Every allocation failing in turn: the tracer and its checkpoints, comparisons, outlines.
  */
 #include "tests/faults/operations.h"
 #include "tests/fontconfig.h"
-#include "tests/validation/tradeoff/sweep_row.h"
 
 #include "base/file.h"
 #include "scenes/export/pov_file.h"
@@ -16,9 +15,6 @@
 #include "validation/known/rings.h"
 #include "validation/tracer/checkpoint.h"
 #include "validation/tracer/reference.h"
-#include "validation/tradeoff/sweep_plot.h"
-#include "validation/tradeoff/sweep_presets.h"
-#include "validation/tradeoff/sweep_table.h"
 
 #define FUZZ ABBE_SOURCE_DIR "/tests/fuzz/"
 
@@ -164,41 +160,6 @@ static abbe_result pov(abbe_error *error) {
   return result;
 }
 
-/* ---- sweeps ---- */
-
-static abbe_result fill_table(abbe_sweep_table *table, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  abbe_sweep_table_set(table, ABBE_SWEEP_FACT_SCENE, "scenes/gem.yaml");
-  for (size_t i = 0; i < 20 && result == ABBE_OK; i++) {
-    abbe_sweep_row row = sweep_row("default", 64);
-    row.setting.wavelengths = i + 1;
-    for (int k = 0; k < ABBE_SWEEP_NUMBER_COUNT; k++)
-      row.number[k] = (double)(k == ABBE_SWEEP_CAUSTIC_DE ? 40 - i : 10 + i);
-    result = abbe_sweep_table_add(table, &row, error);
-  }
-  return result;
-}
-
-static abbe_result sweep(abbe_error *error) {
-  static const abbe_sweep_number numbers[] = {ABBE_SWEEP_CAUSTIC_DE};
-  abbe_sweep_table table = {0}, back = {0};
-  const char *path = operation_path("sweep.csv");
-  abbe_result result = fill_table(&table, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_sweep_table_mark(&table, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, "default", error);
-  if (result == ABBE_OK) result = abbe_sweep_table_save(&table, path, error);
-  if (result == ABBE_OK) result = abbe_sweep_table_load(path, &back, error);
-  if (result == ABBE_OK) result = abbe_sweep_table_agree(&table, "it", &back, error);
-  if (result == ABBE_OK) digest(&back.count, sizeof back.count);
-  if (result == ABBE_OK)
-    result = abbe_sweep_plot(operation_path("sweep.svg"), &table, ABBE_SWEEP_FRAME_MS, numbers, 1,
-                             error);
-  abbe_sweep_table_free(&back);
-  abbe_sweep_table_free(&table);
-  return result;
-}
-
 static abbe_result known(abbe_error *error) {
   const abbe_known_options options = {.only = "slab", .threads = 1};
   abbe_known_answers answers = {0};
@@ -239,7 +200,6 @@ TEST(comparisons) {
   static const operation list[] = {{"compare", compare, 0},
                                    {"outlines", outlines, 0},
                                    {"POV-Ray scene", pov, 0},
-                                   {"sweep", sweep, 200},
                                    {"known answers", known, 6}};
   operation_check_all(list, sizeof list / sizeof *list);
 }

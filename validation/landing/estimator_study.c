@@ -167,36 +167,6 @@ abbe_result abbe_estimator_study_make(const abbe_scene *scene, size_t side, size
   return ABBE_OK;
 }
 
-/* All points of one kind of light have the same rays. */
-static size_t rays_of(const abbe_estimator_study *study, bool reflected) {
-  for (size_t i = 0; i < study->count; i++)
-    if (study->point[i].reflected == reflected) return study->point[i].rays;
-  return 0;
-}
-
-void abbe_estimator_study_print(const abbe_estimator_study *study, FILE *to) {
-  fprintf(to,
-          "a texture of %zu x %zu places, %zu x %zu cells of what the light sees of refractors and "
-          "mirrors; %zu rays are refracted, %zu reflected, and %zu more land where the light does "
-          "not see\n\n"
-          "| light | estimator | iterations | lookups | ns a ray | median, texels | 95 %% | worst "
-          "| lost | "
-          "rate (law) |\n|---|---|---|---|---|---|---|---|---|---|\n",
-          study->side, study->side, study->grid, study->grid, rays_of(study, false),
-          rays_of(study, true), study->hidden);
-  for (size_t i = 0; i < study->count; i++) {
-    const abbe_estimator_point *p = &study->point[i];
-    fprintf(to, "| %s | %s%s | %zu", p->reflected ? "reflected" : "refracted",
-            abbe_estimator_name(p->kind), p->printed ? ", as printed" : "", p->iterations);
-    abbe_number_write(to, " | %.1f | %.0f | %.3g | %.3g | %.3g | %.2g %% |", p->lookups, p->ns,
-                      p->median, p->p95, p->worst, 100 * p->lost);
-    if (isfinite(p->rate) && p->iterations == 1)
-      abbe_number_write(to, " %.3f (%.3f) |\n", p->rate, p->law);
-    else
-      fprintf(to, " |\n");
-  }
-}
-
 abbe_result abbe_estimator_study_save(const abbe_estimator_study *study, const char *path,
                                       abbe_error *error) {
   abbe_file_writer writer = {0};

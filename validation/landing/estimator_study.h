@@ -8,8 +8,6 @@
 #include "scenes/view/estimator.h"
 #include "validation/landing/landing_rays.h"
 
-#include <stdio.h>
-
 #define ABBE_ESTIMATOR_STUDY_MAX 256
 
 typedef struct abbe_estimator_point {
@@ -36,8 +34,7 @@ typedef struct abbe_estimator_study {
 abbe_result abbe_estimator_study_make(const abbe_scene *scene, size_t side, size_t grid,
                                       abbe_estimator_study *out, abbe_error *error);
 
-/* A Markdown table on `to`; CSV. */
-void abbe_estimator_study_print(const abbe_estimator_study *study, FILE *to);
+/* CSV. */
 abbe_result abbe_estimator_study_save(const abbe_estimator_study *study, const char *path,
                                       abbe_error *error);
 

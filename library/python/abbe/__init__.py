@@ -14,8 +14,8 @@ from .comparison import Comparison, compare
 from .gem import GemReport, gem_report
 from .materials import Material, Materials, weights
 from .picture import Picture, load
-from .scene import Scene
+from .scene import Scene, presets
 
 __version__ = version()
 __all__ = ["Comparison", "Error", "GemReport", "Material", "Materials", "Picture", "Scene",
-           "compare", "gem_report", "load", "version", "weights"]
+           "compare", "gem_report", "load", "presets", "version", "weights"]

@@ -54,6 +54,18 @@ _FUNCTIONS = {
     "scene_render": (int, [_handle, _texts, c_size_t, _out]),
     "scene_map": (int, [_handle, c_char_p, c_size_t, _out]),
     "scene_trace": (int, [_handle, _texts, c_size_t, _handle, _out, _out]),
+    "text_free": (None, [_handle]),
+    "scene_plan": (int, [_handle, _texts, c_size_t, _out]),
+    "scene_place_map": (int, [_handle, c_char_p, _out]),
+    "scene_lay_map": (int, [_handle, _handle]),
+    "scene_times": (int, [_handle, _texts, c_size_t, _out, _out]),
+    "scene_trace_times": (int, [_handle, _texts, c_size_t, _out, _out]),
+    "scene_refine": (int, [_handle]),
+    "scene_estimators": (int, [_handle, c_size_t, c_size_t, c_char_p]),
+    "picture_resample": (int, [_handle, _handle, _out]),
+    "presets_read": (int, [c_char_p, c_char_p, _out]),
+    "comparison_both_noise": (c_double, [_handle, c_char_p, c_bool]),
+    "comparison_scale": (c_double, [_handle]),
     "comparison_make": (int, [_handle, _handle, _handle, _texts, c_size_t, _out]),
     "comparison_free": (None, [_handle]),
     "comparison_metric": (c_char_p, [c_size_t]),
@@ -82,7 +94,7 @@ _FUNCTIONS = {
 def _load():
     """The library at ABBE_LIBRARY, else the one that was installed with this module, else the
     system's."""
-    beside = os.path.join(os.path.dirname(os.path.realpath(__file__)), _place.LIBRARY)
+    beside = os.path.join(os.path.dirname(os.path.realpath(_place.__file__)), _place.LIBRARY)
     chosen = os.environ.get("ABBE_LIBRARY")
     path = chosen or (beside if os.path.exists(beside) else _place.SONAME)
     library = ctypes.CDLL(path)
@@ -134,6 +146,27 @@ def call(name, *arguments):
         return
     text = error.text.decode("utf-8", "replace") or _library.abbe_result_text(code).decode()
     raise Error(code, text)
+
+
+def taken(pointer):
+    """The text that the library gave, which is freed."""
+    try:
+        return decode(ctypes.string_at(pointer.value))
+    finally:
+        plain("text_free")(pointer)
+
+
+def pairs(text):
+    """Lines KEY=VALUE as a dict, numbers as numbers."""
+    return dict(_pair(line) for line in text.splitlines())
+
+
+def _pair(line):
+    key, _, value = line.partition("=")
+    try:
+        return key, float(value) if "." in value or "e" in value else int(value)
+    except ValueError:
+        return key, value
 
 
 def version():

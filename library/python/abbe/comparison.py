@@ -47,6 +47,16 @@ class Comparison(Handle):
         verdict = plain("comparison_verdict")(self._pointer, required(metric, "metric"), masked)
         return Value(*(number.value for number in numbers), decode(verdict))
 
+    def both_noise(self, metric, masked=None):
+        """What the noise of both alone would give; NaN where the test has no standard errors."""
+        masked = self.masked if masked is None else masked
+        return plain("comparison_both_noise")(self._pointer, required(metric, "metric"), masked)
+
+    @property
+    def scale(self):
+        """The factor that the test was multiplied by; 1 without best_scale."""
+        return plain("comparison_scale")(self._pointer)
+
     def __getitem__(self, metric):
         return self.value(metric).value
 

@@ -101,6 +101,12 @@ class Picture(Handle):
     def __setitem__(self, name, text):
         call("picture_set_attribute", self._pointer, required(name, "name"), required(text, name))
 
+    def resample(self, like):
+        """This map's light in the texels of another map of the same light."""
+        pointer = c_void_p()
+        call("picture_resample", self._pointer, like._pointer, byref(pointer))
+        return of_pointer(pointer)
+
     def save(self, path, **how):
         """As OpenEXR; as PNG where the path ends so, through OpenColorIO: with exposure (stops),
         view, display, config, layer, bits."""

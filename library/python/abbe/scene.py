@@ -2,8 +2,8 @@
 import math
 from ctypes import byref, c_double, c_size_t, c_void_p
 
-from ._native import (Handle, Progress, Watch, call, encode, plain, required, settings, texts,
-                      unpacked)
+from ._native import (Handle, Progress, Watch, call, encode, pairs, plain, required, settings,
+                      taken, texts, unpacked)
 from .picture import of_pointer
 
 
@@ -93,6 +93,54 @@ class Scene(Handle):
                       None if like is None else like._pointer, None, byref(pointer))
         return of_pointer(pointer)
 
+    def trace_both(self, like=None, progress=None, **how):
+        """The reference and its map by the same passes."""
+        picture, drawn = c_void_p(), c_void_p()
+        self._watched(progress, "scene_trace", *settings(how),
+                      None if like is None else like._pointer, byref(picture), byref(drawn))
+        return of_pointer(picture), of_pointer(drawn)
+
+    def plan(self, **how):
+        """What a request of render() comes to, without rendering: its settings as they are
+        resolved, and what the scene is: class, hash, size, mesh, mesh_faces, caustics, light_views,
+        device (once something was rendered)."""
+        pointer = c_void_p()
+        call("scene_plan", self._pointer, *settings(how), byref(pointer))
+        return pairs(taken(pointer))
+
+    def place_map(self, backend=None):
+        """Where the default picture's map would lie: a map of one texel, for `like`."""
+        pointer = c_void_p()
+        call("scene_place_map", self._pointer, encode(backend, "backend"), byref(pointer))
+        return of_pointer(pointer)
+
+    def lay_map(self, like):
+        """Maps rendered from now on have the texels of that map; None: fitted to what lands."""
+        call("scene_lay_map", self._pointer, None if like is None else like._pointer)
+
+    def times(self, progress=None, **how):
+        """How long frames of the last rendered picture take, ms, and that picture: frames (behind
+        the median), enough_ms, baseline, camera."""
+        return self._timed(progress, "scene_times", how)
+
+    def trace_times(self, progress=None, **how):
+        """The same of the tracer: passes, photons (a side), filter, width, height, frames."""
+        return self._timed(progress, "scene_trace_times", how)
+
+    def refine(self):
+        """Cuts every face of the refractors in four, flat, until something is changed."""
+        call("scene_refine", self._pointer)
+
+    def estimators(self, path, side=768, grid=128):
+        """How far off the estimators of where light lands are, as CSV."""
+        call("scene_estimators", self._pointer, c_size_t(side), c_size_t(grid),
+             required(path, "path"))
+
+    def _timed(self, progress, name, how):
+        picture, pointer = c_void_p(), c_void_p()
+        self._watched(progress, name, *settings(how), byref(picture), byref(pointer))
+        return pairs(taken(pointer)), of_pointer(picture)
+
     def _watched(self, progress, name, *arguments):
         with Watch(progress) as function:
             plain("scene_set_progress")(self._pointer, function, None)
@@ -100,3 +148,17 @@ class Scene(Handle):
                 call(name, self._pointer, *arguments)
             finally:
                 plain("scene_set_progress")(self._pointer, Progress(), None)
+
+
+def presets(of, path=None):
+    """What a file of presets (None: the shipped ones) promises of a class of scenes, as a dict with
+    error, error_text, scenes, margin, time_margin and points, the cheapest first; empty where there
+    is no such class."""
+    pointer = c_void_p()
+    call("presets_read", encode(path, "path"), required(of, "of"), byref(pointer))
+    lines = taken(pointer).splitlines()
+    out = pairs("\n".join(line for line in lines if not line.startswith("point=")))
+    if lines:
+        out["points"] = [pairs("\n".join(line.split(" "))) for line in lines
+                         if line.startswith("point=")]
+    return out

@@ -4,8 +4,7 @@
 
 #include "base/file.h"
 #include "library/choice/picture_choice.h"
-#include "library/choice/sweep_setting.h"
-#include "library/choice/sweep_trace.h"
+#include "library/choice/trace_times.h"
 
 #include <unistd.h>
 
@@ -57,12 +56,12 @@ TEST(the_file) {
   assert_int_equal(f.count, 4);
   assert_string_equal(f.scenes, "beads");
   assert_int_equal(f.point[1].tool, ABBE_PICTURE_RENDER);
-  assert_int_equal(f.point[1].setting.photons, 32);
+  assert_int_equal(f.point[1].photons, 32);
   assert_near(f.point[1].worst, 3, 0);
   assert_near(f.point[1].error, 6, 0);
   assert_near(f.point[1].ms, 6, 0);
   assert_int_equal(f.point[3].tool, ABBE_PICTURE_TRACE);
-  assert_int_equal(f.point[3].setting.passes, 8);
+  assert_int_equal(f.point[3].passes, 8);
   assert_near(f.point[3].error, 1e-9, 0);
   REFUSED(ABBE_UNSUPPORTED, "class meshes",
           abbe_picture_front_load(path, ABBE_PRESET_CLASS_MESHES, &f, &error));
@@ -74,44 +73,46 @@ TEST(the_renderer_alone) {
   write_file(WHOLE);
   abbe_picture_request q = {.max_error = 16, .tool = {[ABBE_PICTURE_RENDER] = true}};
   choose(q, &c);
-  assert_int_equal(c.point->setting.photons, 16);
+  assert_int_equal(c.point->photons, 16);
   assert_true(c.kept && !c.timed);
   assert_near(c.promised_error, 16, 0);
   assert_near(c.spent_ms, 0, 0);
   q.max_error = 15.9;
   choose(q, &c);
-  assert_int_equal(c.point->setting.photons, 32);
+  assert_int_equal(c.point->photons, 32);
   OK(abbe_picture_choice_check(&c, 1e9, &error));
   q.max_error = 5.9;
   choose(q, &c);
-  assert_int_equal(c.point->setting.photons, 32);
+  assert_int_equal(c.point->photons, 32);
   assert_false(c.kept);
   REFUSED(ABBE_TOLERANCE, "an error of 5.9; the nearest was taken, of which 6 is promised",
           abbe_picture_choice_check(&c, 1, &error));
   q.max_error = 0;
   q.name = "draft";
   choose(q, &c);
-  assert_int_equal(c.point->setting.photons, 16);
+  assert_int_equal(c.point->photons, 16);
   q.name = "accurate";
   choose(q, &c);
-  assert_int_equal(c.point->setting.photons, 32);
+  assert_int_equal(c.point->photons, 32);
 }
 
 /* The tracer's errors are the yardstick's own, as often as the file says; times likewise. */
 TEST(promises_are_told_by_the_yardstick) {
   abbe_picture_choice c;
-  abbe_sweep_row row = {0};
+  abbe_trace_times times;
   write_file(WHOLE);
   choose((abbe_picture_request){.max_error = 1e-6}, &c);
   assert_int_equal(c.point->tool, ABBE_PICTURE_TRACE);
-  assert_int_equal(c.point->setting.passes, 8);
+  assert_int_equal(c.point->passes, 8);
   assert_true(c.kept && c.timed && c.spent_ms > 0);
-  abbe_sweep_setting_of_trace(ABBE_PICTURE_YARDSTICK_PHOTONS, ABBE_PICTURE_YARDSTICK_PASSES, false,
-                              &row.setting);
-  const abbe_sweep_trace_desc desc = {.width = 16, .height = 16, .frames = 1};
-  OK(abbe_sweep_trace_measure(&scene, &desc, &row, NULL, &error));
-  assert_true(row.number[ABBE_SWEEP_OWN_DE] > 0);
-  assert_near(c.promised_error, 1e-9 * row.number[ABBE_SWEEP_OWN_DE], 1e-20);
+  const abbe_trace_times_desc desc = {.passes = ABBE_PICTURE_YARDSTICK_PASSES,
+                                      .photons = ABBE_PICTURE_YARDSTICK_PHOTONS,
+                                      .width = 16,
+                                      .height = 16,
+                                      .frames = 1};
+  OK(abbe_trace_times_measure(&scene, &desc, &times, NULL, &error));
+  assert_true(times.own_de > 0);
+  assert_near(c.promised_error, 1e-9 * times.own_de, 1e-20);
   assert_true(c.promised_ms > 1e9);
 }
 
@@ -180,14 +181,14 @@ TEST(by_time) {
   write_file(WHOLE);
   /* Of what no machine does in that time the fastest. */
   choose((abbe_picture_request){.budget_ms = 1e-3}, &c);
-  assert_int_equal(c.point->setting.photons, 16);
+  assert_int_equal(c.point->photons, 16);
   assert_false(c.kept);
   REFUSED(ABBE_TOLERANCE, "the budget of 0.001 ms is not kept, for nothing faster is known",
           abbe_picture_choice_check(&c, 1, &error));
   OK(abbe_picture_choice_check(&c, 1e-4, &error));
   /* An age is time for all but what takes 1e12 times the yardstick. */
   choose((abbe_picture_request){.budget_ms = 1e9}, &c);
-  assert_int_equal(c.point->setting.photons, 32);
+  assert_int_equal(c.point->photons, 32);
   assert_true(c.kept && c.promised_ms <= 1e9);
 }
 
@@ -216,8 +217,7 @@ TEST(a_busy_machine) {
 
 TEST(words) {
   char text[300];
-  abbe_picture_point point = {.tool = ABBE_PICTURE_TRACE_FILTER};
-  abbe_sweep_setting_of_trace(256, 4, true, &point.setting);
+  const abbe_picture_point point = {.tool = ABBE_PICTURE_TRACE_FILTER, .photons = 256, .passes = 4};
   abbe_picture_describe(&point, text, sizeof text);
   assert_string_equal(text, "the tracer: 4 passes of 65536 photons, filtered");
   write_file(WHOLE);
