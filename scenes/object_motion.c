@@ -27,7 +27,8 @@ static void turn_about(const double middle[3], double rad, const double axis[3],
   abbe_transform_multiply(step, out, out);
 }
 
-/* Refractors, and with them mirrors or not, turned about the axis through a place. */
+/* Refractors and the metal that holds them, and with them other mirrors or not, turned about the
+ * axis through a place. */
 static abbe_result turn(abbe_scene *scene, bool mirrors, const double middle[3],
                         const double axis[3], double rad, abbe_error *error) {
   double matrix[16];
@@ -35,7 +36,8 @@ static abbe_result turn(abbe_scene *scene, bool mirrors, const double middle[3],
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < scene->object_count && result == ABBE_OK; i++) {
     const abbe_object_kind kind = abbe_object_kind_of(&scene->object[i]);
-    if (kind == ABBE_OBJECT_REFRACTOR || (mirrors && kind == ABBE_OBJECT_MIRROR))
+    if (kind == ABBE_OBJECT_REFRACTOR || scene->object[i].holds ||
+        (mirrors && kind == ABBE_OBJECT_MIRROR))
       result = abbe_object_move(&scene->object[i], matrix, error);
   }
   return result == ABBE_OK ? abbe_scene_check(scene, error) : result;

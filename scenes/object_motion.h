@@ -19,8 +19,8 @@ double abbe_object_square_axes(abbe_object *object);
 /* The crystal's axes, by the direction part of the matrix; x stays across z. */
 void abbe_object_turn_axes(abbe_object *object, const double matrix[16]);
 
-/* The refractors of a scene tilted together, as a stone is rocked in the hand while camera, lights
- * and all else stay where they are. */
+/* The refractors of a scene tilted together, with the settings that hold them, as a stone is rocked
+ * in the hand while camera, lights and all else stay where they are. */
 
 /* By tilt_rad, right-handed, about the horizontal axis of azimuth axis_rad (from +x towards +y)
  * through the middle of the bounds of all refractors. abbe_scene_check follows.

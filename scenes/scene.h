@@ -111,6 +111,7 @@ typedef struct abbe_object {
   abbe_image texture;          /* linear Rec.709, "R","G","B"; zeroed without a texture */
   double texture_repeat[2];
   bool mirror;
+  bool holds; /* mirror: the metal around a refractor, which is tilted with it */
   const abbe_material *conductor; /* mirror: of its n and k, owned by the scene's table, or NULL: */
   double mirror_reflectance;      /* 0 to 1, at all angles and wavelengths */
   abbe_brushing brushing;         /* mirror: how rough it is */

@@ -452,12 +452,13 @@ abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *f
   if (result == ABBE_OK) result = read_size_and_place(&r, &surface, error);
   if (result == ABBE_OK) result = read_solid(&r, &surface, error);
   if (result == ABBE_OK) result = read_substance(&r, table, out, error);
-  if (result == ABBE_OK)
-    result = abbe_setting_read(&r, table, out, room - 1, metal, &surface.setting_count, error);
-  if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "an object", error);
-  surface.setting = metal;
   memcpy(surface.matrix, r.matrix, sizeof surface.matrix);
   surface.radius = r.form == ABBE_OBJECT_SPHERE ? r.radius : 0;
+  if (result == ABBE_OK)
+    result =
+        abbe_setting_read(&r, table, out, &surface, room - 1, metal, &surface.setting_count, error);
+  if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "an object", error);
+  surface.setting = metal;
   surface.rectangles = r.form == ABBE_OBJECT_RECTANGLE || r.form == ABBE_OBJECT_BOX;
   surface.file = r.form == ABBE_OBJECT_MESH;
   surface.normals = normals_of(&r);

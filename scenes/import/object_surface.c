@@ -82,6 +82,15 @@ static abbe_result fit_matrix(const abbe_object_surface *s, abbe_object *part, s
   return ABBE_OK;
 }
 
+double abbe_object_unit(const abbe_object_surface *surface, const abbe_mesh *mesh) {
+  abbe_object_surface bare = *surface;
+  abbe_object stone = {.mesh = *mesh};
+  double matrix[16];
+  bare.setting_count = 0;
+  if (fit_matrix(&bare, &stone, 1, matrix, NULL) != ABBE_OK) return 0;
+  return cbrt(fabs(abbe_transform_determinant3(matrix)));
+}
+
 /* ---- what is known exactly ---- */
 
 static abbe_result parallelograms(abbe_object *out, abbe_error *error) {

@@ -58,13 +58,6 @@ abbe_result abbe_object_read_surface(abbe_object_reading *reading, abbe_object *
 
 #define ABBE_SETTINGS_MOST 4 /* settings of one stone */
 
-/* The metal around the stone, whose mesh is in its own coordinates still: *count objects in the
- * same coordinates, for which a scene has room. Errors with file, line and key. */
-abbe_result abbe_setting_read(const abbe_object_reading *reading, const abbe_material_table *table,
-                              const abbe_object *stone, size_t room,
-                              abbe_object out[ABBE_SETTINGS_MOST], size_t *count,
-                              abbe_error *error);
-
 /* A scene's camera: as its file has it, or placed so that objects fill the picture. */
 
 /* The values under 'camera'. With 'frame' its place and target are not there yet. Errors with file,
@@ -153,6 +146,18 @@ typedef struct abbe_object_surface {
  * coordinates; ABBE_UNSUPPORTED for more objects than the capacity. */
 abbe_result abbe_object_place(const abbe_object_surface *surface, abbe_object *out, size_t room,
                               size_t *count, abbe_error *error);
+
+/* Metres that one unit of the mesh's own coordinates is where it is placed: of all directions the
+ * geometric mean. 0 where it has no size. */
+double abbe_object_unit(const abbe_object_surface *surface, const abbe_mesh *mesh);
+
+/* The metal around the stone, whose mesh is in its own coordinates still, and will be placed as
+ * the surface says: *count objects in the same coordinates, for which a scene has room. Errors with
+ * file, line and key. */
+abbe_result abbe_setting_read(const abbe_object_reading *reading, const abbe_material_table *table,
+                              const abbe_object *stone, const abbe_object_surface *surface,
+                              size_t room, abbe_object out[ABBE_SETTINGS_MOST], size_t *count,
+                              abbe_error *error);
 
 /* Where the stone was placed (`before` is ABBE_OK), the metal around it moves the same way and
  * behind the *count objects at out; else it is freed. Returns what was before, or what fails. */

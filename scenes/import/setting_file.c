@@ -12,49 +12,82 @@
 static const char *const kind_names[] = {ABBE_SETTING_KINDS(KIND_NAME) NULL};
 #undef KIND_NAME
 
+static abbe_result refuse(abbe_yaml *yaml, abbe_yaml_node node, const char *key, bool wanted,
+                          const char *kind, abbe_error *error) {
+  const abbe_yaml_node at = abbe_yaml_get(yaml, node, key);
+  if (wanted || at.id == 0) return ABBE_OK;
+  return abbe_yaml_fail(yaml, at, error, "a setting of kind '%s' has no '%s': leave it out", kind,
+                        key);
+}
+
+/* The shape; what has no effect on its kind is refused. */
+static abbe_result read_shape(abbe_yaml *yaml, abbe_yaml_node node, abbe_setting *out,
+                              abbe_error *error) {
+  abbe_yaml_node ignored;
+  int kind = 0;
+  abbe_result result = abbe_yaml_require(yaml, node, "kind", &ignored, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_choice(yaml, node, "kind", kind_names, &kind, error);
+  out->kind = (abbe_setting_kind)kind;
+  const bool counted = out->kind == ABBE_SETTING_PRONGS || out->kind == ABBE_SETTING_PAVE;
+  if (result == ABBE_OK) result = refuse(yaml, node, "count", counted, kind_names[kind], error);
+  if (result == ABBE_OK)
+    result = refuse(yaml, node, "radius", out->kind == ABBE_SETTING_BAND, kind_names[kind], error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_count(yaml, node, "count", ABBE_SETTING_LEAST, ABBE_SETTING_MOST,
+                                 &out->count, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_length(yaml, node, "thick", 0, ABBE_SCENE_FAR, &out->thick, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_length(yaml, node, "radius", 0, ABBE_SCENE_FAR, &out->radius, error);
+  return result;
+}
+
+static abbe_result read_metal(abbe_yaml *yaml, abbe_yaml_node node,
+                              const abbe_material_table *table, abbe_object *out,
+                              abbe_error *error) {
+  abbe_yaml_node metal;
+  char *name = NULL;
+  abbe_result result = abbe_yaml_require(yaml, node, "metal", &metal, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_string(yaml, node, "metal", &name, error);
+  if (result == ABBE_OK) {
+    result = abbe_material_table_find(table, name, &out->conductor, error);
+    if (result != ABBE_OK) abbe_scene_value_locate(yaml, metal, result, error);
+  }
+  free(name);
+  if (result == ABBE_OK && !abbe_material_is_conductor(out->conductor))
+    return abbe_yaml_fail(yaml, metal, error, "'%s' is no metal; take one such as gold",
+                          out->conductor->name);
+  return result;
+}
+
 static abbe_result read_one(const abbe_object_reading *r, abbe_yaml_node node,
-                            const abbe_material_table *table, const abbe_object *stone,
+                            const abbe_material_table *table, const abbe_object *stone, double unit,
                             abbe_object *out, abbe_error *error) {
   abbe_yaml *yaml = r->yaml;
-  abbe_setting setting = {0};
-  abbe_yaml_node metal;
-  int kind = 0;
+  abbe_setting setting = {.unit = unit};
   if (!abbe_yaml_is_mapping(yaml, node))
     return abbe_yaml_fail(yaml, node, error,
                           "'setting' must be a mapping such as {kind: prongs, count: 4, metal: "
                           "gold}, or a list of these");
-  abbe_result result = abbe_yaml_require(yaml, node, "kind", &metal, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_choice(yaml, node, "kind", kind_names, &kind, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_count(yaml, node, "count", ABBE_SETTING_LEAST, ABBE_SETTING_MOST,
-                                 &setting.count, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_length(yaml, node, "thick", 0, ABBE_SCENE_FAR, &setting.thick, error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_length(yaml, node, "radius", 0, ABBE_SCENE_FAR, &setting.radius, error);
-  if (result == ABBE_OK) result = abbe_yaml_require(yaml, node, "metal", &metal, error);
+  abbe_result result = read_shape(yaml, node, &setting, error);
+  if (result == ABBE_OK) result = read_metal(yaml, node, table, out, error);
   if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "a setting", error);
   if (result != ABBE_OK) return result;
-  out->mirror = true;
+  out->mirror = out->holds = true;
   out->line = stone->line;
-  result = abbe_material_table_find(table, abbe_yaml_text(yaml, metal), &out->conductor, error);
-  if (result == ABBE_OK && !abbe_material_is_conductor(out->conductor))
-    return abbe_yaml_fail(yaml, metal, error, "'%s' is no metal; take one such as gold",
-                          out->conductor->name);
-  setting.kind = (abbe_setting_kind)kind;
-  if (result == ABBE_OK) result = abbe_setting_make(&stone->mesh, &setting, &out->mesh, error);
+  result = abbe_setting_make(&stone->mesh, &setting, &out->mesh, error);
   if (result != ABBE_OK) return abbe_scene_value_locate(yaml, node, result, error);
   char name[128];
-  snprintf(name, sizeof name, "%.90s's %s", stone->name, kind_names[kind]);
+  snprintf(name, sizeof name, "%.90s's %s", stone->name, kind_names[setting.kind]);
   out->name = strdup(name);
   return out->name != NULL ? ABBE_OK
                            : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a name");
 }
 
 abbe_result abbe_setting_read(const abbe_object_reading *r, const abbe_material_table *table,
-                              const abbe_object *stone, size_t room,
-                              abbe_object out[ABBE_SETTINGS_MOST], size_t *count,
+                              const abbe_object *stone, const abbe_object_surface *surface,
+                              size_t room, abbe_object out[ABBE_SETTINGS_MOST], size_t *count,
                               abbe_error *error) {
   const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, "setting");
   const bool list = abbe_yaml_is_sequence(r->yaml, node);
@@ -67,9 +100,10 @@ abbe_result abbe_setting_read(const abbe_object_reading *r, const abbe_material_
     return abbe_yaml_fail(r->yaml, node, error,
                           "%zu settings: a stone has up to %d, and a scene %d objects", most,
                           ABBE_SETTINGS_MOST, ABBE_SCENE_MAX_OBJECTS);
+  const double unit = most > 0 ? abbe_object_unit(surface, &stone->mesh) : 0;
   abbe_result result = ABBE_OK;
   for (; *count < most && result == ABBE_OK; ++*count)
-    result = read_one(r, list ? abbe_yaml_item(r->yaml, node, *count) : node, table, stone,
+    result = read_one(r, list ? abbe_yaml_item(r->yaml, node, *count) : node, table, stone, unit,
                       &out[*count], error);
   return result;
 }

@@ -1,6 +1,7 @@
 #include "scenes/studio/setting.h"
 
 #include "base/maths.h"
+#include "base/thread/watch.h"
 #include "scenes/scene.h"
 #include "scenes/shapes/shape.h"
 
@@ -14,8 +15,9 @@ enum {
   ROLL = 16,    /* steps of a prong over the girdle and the crown */
   TIP = 6
 };
-#define REACH 0.6 /* share of its thickness by which metal reaches over the crown */
-#define LEAN 0.5  /* by which the foot is drawn in at the most */
+#define REACH 0.6       /* share of its thickness by which metal reaches over the crown */
+#define MOST_WIDTHS 1e4 /* inner radius of a band, in widths of the stone */
+#define LEAN 0.5        /* by which the foot is drawn in at the most */
 
 /* The outline's outermost place in a direction, about the middle, and the heights of the girdle. */
 typedef struct support {
@@ -26,6 +28,7 @@ typedef struct making {
   const abbe_object *stone;
   double middle[2], half[2], bottom, top; /* the stone's middle, half sizes and heights */
   double width, gap, thick;
+  double unit;      /* m */
   size_t rim_count; /* number of its corners, each from the first direction to the last */
   support *rim;     /* [AROUND] */
   double (*row)[3]; /* [AROUND * ROD] */
@@ -72,6 +75,7 @@ static abbe_result find_rim(making *m) {
     return abbe_error_set(m->error, ABBE_NO_MEMORY, "no memory for a setting");
   support before = support_at(m, -2 * ABBE_PI / AROUND), now = support_at(m, 0);
   for (int i = 0; i < AROUND; i++) {
+    if (i % 16 == 0 && abbe_watch_check(m->error) != ABBE_OK) return ABBE_CANCELLED;
     const support next = support_at(m, 2 * ABBE_PI * (i + 1) / AROUND);
     if (i % (AROUND / 8) == 0 || !is_same(&before, &now) || !is_same(&now, &next))
       m->rim[m->rim_count++] = now;
@@ -88,10 +92,15 @@ static void place(const making *m, const support *s, double out, double drawn, d
   at[2] = z;
 }
 
+static bool goes_on(making *m) {
+  if (m->result == ABBE_OK) m->result = abbe_watch_check(m->error);
+  return m->result == ABBE_OK;
+}
+
 /* The lowest height at which a ball over the stone touches nothing of it, or `least`. */
-static double height_of_ball(const making *m, double x, double y, double radius, double least) {
+static double height_of_ball(making *m, double x, double y, double radius, double least) {
   double z = m->top + 1.01 * radius;
-  for (int i = 0; i < 400 && z > least; i++) {
+  for (int i = 0; i < 400 && z > least && goes_on(m); i++) {
     const double p[3] = {x, y, z};
     const double free = abbe_object_distance(m->stone, p) - radius;
     if (!(free > 1e-5 * radius)) break;
@@ -176,12 +185,12 @@ static void put_round(const double at[3], const double out[2], double radius, do
 /* ---- prongs ---- */
 
 /* How far feet at `foot` may be drawn in so that nothing around that line enters the stone. */
-static double lean(const making *m, double radius, double foot) {
+static double lean(making *m, double radius, double foot) {
   double least = 0, most = LEAN;
   for (int step = 0; step < 7; step++) {
     const double drawn = step == 0 ? LEAN : 0.5 * (least + most);
     bool clear = true;
-    for (int a = 0; a < 16 && clear; a++) {
+    for (int a = 0; a < 16 && clear && goes_on(m); a++) {
       const support s = support_at(m, 2 * ABBE_PI * a / 16);
       for (int i = 1; i <= 12 && clear; i++) {
         double p[3];
@@ -258,7 +267,7 @@ static void add_prongs(making *m, size_t count) {
 /* ---- walls ---- */
 
 /* The height of a lip's underside, over all of its edge. */
-static double height_of_lip(const making *m, double drawn) {
+static double height_of_lip(making *m, double drawn) {
   enum { STEPS = 4 };
   double high = -INFINITY, from[3] = {0}, to[3];
   for (size_t i = 0; i <= m->rim_count; i++) {
@@ -390,13 +399,23 @@ static abbe_result measure(making *m, const abbe_mesh *stone) {
 }
 
 static abbe_result check(const making *m, const abbe_setting *s) {
+  if (m->stone->mesh.face_count > ABBE_SETTING_FACES)
+    return abbe_error_set(m->error, ABBE_UNSUPPORTED,
+                          "a stone of %zu triangles cannot be set: up to %d; 'flatten' makes a "
+                          "scanned one a stone of few facets",
+                          m->stone->mesh.face_count, ABBE_SETTING_FACES);
   if (s->count > 0 && (s->count < ABBE_SETTING_LEAST || s->count > ABBE_SETTING_MOST))
     return abbe_error_set(m->error, ABBE_INVALID_ARGUMENT, "a setting has %d to %d prongs or beads",
                           ABBE_SETTING_LEAST, ABBE_SETTING_MOST);
-  if (!(s->thick >= 0 && s->thick <= 0.5 * m->width) || !(s->radius >= 0 && s->radius < 1e6))
+  if (!(s->thick >= 0 && s->thick <= 0.5 * m->width * m->unit))
     return abbe_error_set(m->error, ABBE_INVALID_ARGUMENT,
                           "metal %g m thick is not possible: up to half of the stone's width, %g m",
-                          s->thick, 0.5 * m->width);
+                          s->thick, 0.5 * m->width * m->unit);
+  if (!(s->radius >= 0 && s->radius <= MOST_WIDTHS * m->width * m->unit))
+    return abbe_error_set(
+        m->error, ABBE_INVALID_ARGUMENT,
+        "a band of %g m inside is not possible: up to %g times the stone's width, %g m", s->radius,
+        MOST_WIDTHS, MOST_WIDTHS * m->width * m->unit);
   return ABBE_OK;
 }
 
@@ -408,13 +427,14 @@ double abbe_setting_pitch(const abbe_setting *setting, double length, double wid
 abbe_result abbe_setting_make(const abbe_mesh *stone, const abbe_setting *setting, abbe_mesh *out,
                               abbe_error *error) {
   const abbe_object object = {.mesh = *stone};
-  making m = {.stone = &object, .out = out, .error = error};
+  making m = {
+      .stone = &object, .unit = setting->unit > 0 ? setting->unit : 1, .out = out, .error = error};
   memset(out, 0, sizeof *out);
   m.result = measure(&m, stone);
   if (m.result == ABBE_OK) m.result = check(&m, setting);
   if (m.result == ABBE_OK) m.result = find_rim(&m);
   const size_t count = setting->count > 0 ? setting->count : 4;
-  m.thick = setting->thick > 0 ? setting->thick : ABBE_SETTING_THICK * m.width;
+  m.thick = setting->thick > 0 ? setting->thick / m.unit : ABBE_SETTING_THICK * m.width;
   switch (m.result == ABBE_OK ? setting->kind : ABBE_SETTING_COUNT) {
   case ABBE_SETTING_BEZEL:
     add_bezel(&m);
@@ -423,7 +443,7 @@ abbe_result abbe_setting_make(const abbe_mesh *stone, const abbe_setting *settin
     add_channel(&m);
     break;
   case ABBE_SETTING_BAND:
-    add_band(&m, setting->radius > 0 ? setting->radius : ABBE_SETTING_FINGER);
+    add_band(&m, (setting->radius > 0 ? setting->radius : ABBE_SETTING_FINGER) / m.unit);
     break;
   case ABBE_SETTING_PAVE:
     add_pave(&m, count);

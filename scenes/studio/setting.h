@@ -29,6 +29,7 @@ typedef enum abbe_setting_kind {
 #define ABBE_SETTING_GAP 1e-3   /* share of the stone's width, the smaller extent along x and y */
 #define ABBE_SETTING_THICK 0.13 /* the same, where no thickness is given */
 #define ABBE_SETTING_FINGER 0.0085 /* m, the inner radius of a band */
+#define ABBE_SETTING_FACES 50000   /* of the stone, at the most */
 #define ABBE_SETTING_LEAST 2       /* prongs or beads */
 #define ABBE_SETTING_MOST 24
 
@@ -36,12 +37,14 @@ typedef enum abbe_setting_kind {
 typedef struct abbe_setting {
   abbe_setting_kind kind;
   size_t count;  /* prongs, or beads of a plate; 0: 4 */
-  double thick;  /* thickness of prongs, walls, a band, in the stone's unit; 0: by the width */
-  double radius; /* inner radius of a band, in the stone's unit; 0: ABBE_SETTING_FINGER */
+  double thick;  /* thickness of prongs, walls, a band, m; 0: by the width */
+  double radius; /* inner radius of a band, m; 0: ABBE_SETTING_FINGER */
+  double unit;   /* m, one unit of the stone's mesh; 0: 1 */
 } abbe_setting;
 
 /* Around the stone's mesh. ABBE_GEOMETRY for a stone that is flat, ABBE_INVALID_ARGUMENT for values
- * out of range, ABBE_NO_MEMORY. */
+ * out of range, ABBE_UNSUPPORTED for more than ABBE_SETTING_FACES, ABBE_CANCELLED by the thread's
+ * watch, ABBE_NO_MEMORY. */
 abbe_result abbe_setting_make(const abbe_mesh *stone, const abbe_setting *setting, abbe_mesh *out,
                               abbe_error *error);
 

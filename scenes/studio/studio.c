@@ -113,7 +113,7 @@ static void setting_of(const building *b, char *out, size_t size) {
   if (b->studio->setting == 0) return;
   const size_t used = (size_t)snprintf(out, size, "setting:\n- {kind: %s, metal: %.100s}\n",
                                        settings[b->studio->setting - 1], metal);
-  if (b->studio->with == ABBE_STUDIO_WITH_RING)
+  if (b->studio->with == ABBE_STUDIO_WITH_RING && b->studio->setting != 1 + ABBE_SETTING_BAND)
     snprintf(out + used, size - used, "- {kind: band, metal: %.100s}\n", metal);
 }
 

@@ -1,8 +1,10 @@
 #include "tests/check.h"
+#include "tests/patience.h"
 
 #include "base/maths.h"
 #include "scenes/cuts/cut_file.h"
 #include "scenes/import/scene_file.h"
+#include "scenes/object_motion.h"
 #include "scenes/shapes/shape.h"
 #include "scenes/studio/setting.h"
 
@@ -139,7 +141,33 @@ TEST(what_cannot_be_set_is_refused) {
           abbe_setting_make(&stone, &(abbe_setting){.count = 25}, &metal, &error));
   REFUSED(ABBE_INVALID_ARGUMENT, "half of the stone's width",
           abbe_setting_make(&stone, &(abbe_setting){.thick = 3}, &metal, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "20000 m",
+          abbe_setting_make(&stone, &(abbe_setting){.radius = 3e4}, &metal, &error));
   abbe_mesh_free(&stone);
+  OK(abbe_shape_sphere(1, 7, &stone, &error));
+  assert_true(stone.face_count > ABBE_SETTING_FACES);
+  REFUSED(ABBE_UNSUPPORTED, "triangles cannot be set",
+          abbe_setting_make(&stone, &(abbe_setting){0}, &metal, &error));
+  abbe_mesh_free(&stone);
+}
+
+/* A watch ends the work soon. */
+TEST(a_setting_is_watched) {
+  OWNED(abbe_mesh, stone);
+  abbe_mesh metal;
+  OK(abbe_shape_sphere(1, 2, &stone, &error));
+  for (int kind = 0; kind < ABBE_SETTING_COUNT; kind++)
+    for (size_t most = 0; most < 60; most += 50) {
+      patience user = {.most = most};
+      abbe_watch watch = {.goes_on = patience_lasts, .user = &user};
+      if (most > 0 && kind == ABBE_SETTING_BAND) continue;
+      abbe_watch_set(&watch);
+      const abbe_result result =
+          abbe_setting_make(&stone, &(abbe_setting){.kind = (abbe_setting_kind)kind}, &metal, NULL);
+      abbe_watch_set(NULL);
+      assert_int_equal(result, ABBE_CANCELLED);
+      assert_int_equal(user.asked, most + 1);
+    }
 }
 
 static abbe_result parse(const char *stone, abbe_scene *out, abbe_error *error) {
@@ -168,9 +196,64 @@ TEST(a_scene_sets_a_stone) {
   assert_near(band->min[2], 0.002, 1e-12);
   assert_near(0.5 * (stone->min[0] + stone->max[0]), 0.01, 1e-12);
   assert_near(0.5 * (band->min[0] + band->max[0]), 0.01, 1e-12);
+  assert_true(claws->holds && band->holds && !stone->holds);
+  /* the finger is no larger for a stone that is */
   assert_near(band->max[0] - band->min[0],
-              2 * 2 * (ABBE_SETTING_FINGER + 2 * ABBE_SETTING_THICK * WIDTH), 1e-5);
+              2 * (ABBE_SETTING_FINGER + 2 * ABBE_SETTING_THICK * 2 * WIDTH), 1e-5);
   assert_near(apart(stone, claws), 2 * ABBE_SETTING_GAP * WIDTH, ABBE_SETTING_GAP * WIDTH);
+}
+
+static void put_stl(const char *path, const abbe_mesh *mesh) {
+  FILE *f = fopen(path, "w");
+  assert_non_null(f);
+  fprintf(f, "solid stone\n");
+  for (size_t i = 0; i < mesh->face_count; i++) {
+    fprintf(f, "facet normal 0 0 0\nouter loop\n");
+    for (int k = 0; k < 3; k++) {
+      const double *p = mesh->position[mesh->face[i][k]];
+      fprintf(f, "vertex %.9g %.9g %.9g\n", p[0], p[1], p[2]);
+    }
+    fprintf(f, "endloop\nendfacet\n");
+  }
+  fprintf(f, "endsolid stone\n");
+  fclose(f);
+}
+
+/* A stone in millimetres that gets its width, or is scaled, has a ring of the same finger. */
+TEST(lengths_are_of_the_scene) {
+  static const char *const sizes[] = {"width: 6.5mm", "fit: 6.5mm", "transform: [{scale: 1e-3}]"};
+  OWNED(abbe_mesh, ball);
+  OK(abbe_shape_sphere(3.25, 2, &ball, &error));
+  put_stl("setting-mm.stl", &ball);
+  for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+    OWNED(abbe_scene, scene);
+    char text[512];
+    snprintf(text, sizeof text,
+             "camera: {eye: [0, -0.1, 0.1], target: [0, 0, 0]}\nenvironment: {uniform: 1}\n"
+             "objects:\n- {name: gem, mesh: setting-mm.stl, material: ruby, %s, setting: "
+             "[{kind: band, metal: gold}, {kind: band, metal: gold, radius: 7mm, thick: 1mm}]}\n",
+             sizes[i]);
+    OK(abbe_scene_parse(text, strlen(text), "./text", NULL, &scene, &error));
+    const double t = ABBE_SETTING_THICK * 0.0065;
+    const abbe_object *band = &scene.object[1];
+    assert_near(band[0].max[0] - band[0].min[0], 2 * (ABBE_SETTING_FINGER + 2 * t), 1e-4);
+    assert_near(band[1].max[0] - band[1].min[0], 2 * (0.007 + 2 * 0.001), 1e-4);
+  }
+  remove("setting-mm.stl");
+}
+
+/* Metal that holds a stone is tilted with it; other mirrors stay. */
+TEST(metal_is_tilted_with_its_stone) {
+  OWNED(abbe_scene, scene);
+  OK(parse("material: ruby, setting: {kind: prongs, metal: gold}}\n"
+           "- {name: mirror, shape: box, size: [1cm, 1cm, 1mm], mirror: 0.5, stand: [0, 0, -3cm]",
+           &scene, &error));
+  const double gap = apart(&scene.object[0], &scene.object[1]), mirror = scene.object[2].min[2];
+  const double before = scene.object[1].min[2];
+  OK(abbe_refractors_tilt(&scene, 0.4, 0, &error));
+  assert_near(apart(&scene.object[0], &scene.object[1]), gap, 1e-9);
+  assert_true(fabs(scene.object[1].min[2] - before) > 1e-4);
+  assert_near(scene.object[2].min[2], mirror, 0);
 }
 
 TEST(what_is_no_setting_is_refused) {
@@ -184,6 +267,13 @@ TEST(what_is_no_setting_is_refused) {
       {"material: ruby, setting: {kind: prongs}", "'metal' is missing", ABBE_SCHEMA},
       {"material: ruby, setting: {kind: prongs, metal: glod}", "did you mean 'gold'",
        ABBE_NOT_FOUND},
+      {"material: ruby, setting: {kind: prongs, metal: [gold]}", "'metal' wants text", ABBE_SCHEMA},
+      {"material: ruby, setting: {kind: bezel, count: 6, metal: gold}", "'bezel' has no 'count'",
+       ABBE_SCHEMA},
+      {"material: ruby, setting: {kind: prongs, radius: 9mm, metal: gold}",
+       "'prongs' has no 'radius'", ABBE_SCHEMA},
+      {"material: ruby, setting: {kind: band, radius: 1e5, metal: gold}", "inside is not possible",
+       ABBE_INVALID_ARGUMENT},
       {"material: ruby, setting: {kind: prongs, metal: topaz}", "'topaz' is no metal", ABBE_SCHEMA},
       {"material: ruby, setting: {kind: prongs, metal: gold, count: 1}", "from 2 to 24",
        ABBE_SCHEMA},

@@ -73,6 +73,9 @@ TEST(settings_hold_every_stone) {
       const abbe_object *metal = called(&scene, name);
       assert_non_null(metal);
       assert_string_equal(metal->conductor->name, "silver");
+      size_t holding = 0;
+      for (size_t i = 0; i < scene.object_count; i++) holding += scene.object[i].holds;
+      assert_int_equal(holding, !ring || kind == ABBE_SETTING_BAND ? studio.more_count + 1 : 2);
       double lowest = metal->min[2];
       for (size_t i = 0; i < scene.object_count; i++)
         if (strstr(scene.object[i].name, "stone") != NULL)
