@@ -244,35 +244,68 @@ static abbe_result place(abbe_yaml *yaml, abbe_yaml_node node, double focal, abb
   return result;
 }
 
+/* Along the view to the middle of those objects together. */
+static double distance_to(const abbe_scene *scene, const bool *named) {
+  const abbe_camera *c = &scene->camera;
+  double view[3], to[3];
+  abbe_vector_subtract(c->target, c->eye, view);
+  abbe_vector_normalise(view);
+  for (int k = 0; k < 3; k++) {
+    double min = INFINITY, max = -INFINITY;
+    for (size_t i = 0; i < scene->object_count; i++) {
+      if (!named[i]) continue;
+      min = fmin(min, scene->object[i].min[k]);
+      max = fmax(max, scene->object[i].max[k]);
+    }
+    to[k] = 0.5 * (min + max) - c->eye[k];
+  }
+  return abbe_vector_dot(to, view);
+}
+
 /* 'focus' is a distance along the view, or the middle of an object; without it the target. */
 static abbe_result focus(abbe_yaml *yaml, abbe_yaml_node node, double focal, abbe_scene *scene,
                          abbe_error *error) {
   abbe_camera *c = &scene->camera;
   bool named[ABBE_SCENE_MAX_OBJECTS] = {false};
-  double number, view[3];
+  double number;
   const abbe_yaml_node at = abbe_yaml_get(yaml, node, "focus");
   const char *text = abbe_yaml_text(yaml, at);
   abbe_result result = read_aperture(yaml, node, &number, error);
   if (result != ABBE_OK || number <= 0) return result;
+  const double lens = focal; /* without one the film is there for the f-number alone */
   if (focal <= 0) focal = 0.5 * FILM_M / tan(0.5 * c->fov_y_rad);
   c->aperture = focal / number;
   c->focus = far_of(c);
   if (at.id == 0) return ABBE_OK;
-  if (text != NULL && strchr("0123456789.-+", text[0]) != NULL)
-    return abbe_yaml_get_length(yaml, node, "focus", 1e-6, ABBE_SCENE_FAR, &c->focus, error);
-  result = mark(yaml, at, scene, "focus", named, error);
-  abbe_vector_subtract(c->target, c->eye, view);
-  abbe_vector_normalise(view);
-  for (size_t i = 0; i < scene->object_count && result == ABBE_OK; i++) {
-    double to[3];
-    if (!named[i]) continue;
-    for (int k = 0; k < 3; k++)
-      to[k] = 0.5 * (scene->object[i].min[k] + scene->object[i].max[k]) - c->eye[k];
-    c->focus = abbe_vector_dot(to, view);
+  if (text != NULL && strchr("0123456789.-+", text[0]) != NULL) {
+    result = abbe_yaml_get_length(yaml, node, "focus", 1e-6, ABBE_SCENE_FAR, &c->focus, error);
+  } else {
+    result = mark(yaml, at, scene, "focus", named, error);
+    if (result == ABBE_OK) c->focus = distance_to(scene, named);
+    if (result == ABBE_OK && !(c->focus > 0))
+      return abbe_yaml_fail(yaml, at, error, "'%s' is behind the camera", text);
   }
-  return result != ABBE_OK || c->focus > 0
-             ? result
-             : abbe_yaml_fail(yaml, at, error, "'%s' is behind the camera", text);
+  if (result != ABBE_OK || c->focus > lens) return result;
+  return abbe_yaml_fail(yaml, at, error,
+                        "a lens is sharp beyond its focal length, %.3g mm, and 'focus' is %.3g mm "
+                        "away",
+                        1e3 * lens, 1e3 * c->focus);
+}
+
+/* The pupil is in air. */
+static abbe_result check_pupil(abbe_yaml *yaml, abbe_yaml_node node, const abbe_scene *scene,
+                               abbe_error *error) {
+  const abbe_camera *c = &scene->camera;
+  const double radius = 0.5 * c->aperture;
+  for (size_t i = 0; i < scene->object_count && radius > 0; i++) {
+    const double near = fabs(abbe_object_distance_within(&scene->object[i], c->eye, radius));
+    if (near < radius)
+      return abbe_yaml_fail(yaml, abbe_yaml_get(yaml, node, "aperture"), error,
+                            "the pupil is %.3g mm wide, and object '%.60s' is %.3g mm from its "
+                            "middle: take a greater f-number",
+                            2e3 * radius, scene->object[i].name, 1e3 * near);
+  }
+  return ABBE_OK;
 }
 
 abbe_result abbe_camera_frame(abbe_yaml *yaml, abbe_yaml_node root, abbe_scene *scene,
@@ -291,5 +324,6 @@ abbe_result abbe_camera_frame(abbe_yaml *yaml, abbe_yaml_node root, abbe_scene *
     return abbe_yaml_fail(yaml, node, error,
                           "the camera's 'up' points along its view (or is zero); any other "
                           "direction will do");
-  return focus(yaml, node, focal, scene, error);
+  result = focus(yaml, node, focal, scene, error);
+  return result == ABBE_OK ? check_pupil(yaml, node, scene, error) : result;
 }

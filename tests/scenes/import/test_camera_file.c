@@ -89,6 +89,8 @@ TEST(what_cannot_be_framed_is_named) {
       {"{frame: ball, lens: macro-100}", "did you mean 'macro-100mm'"},
       {"{eye: [0, -8cm, 0], target: [0, 0, 0], lens: macro-100mm}", "beyond its focal length"},
       {"{eye: [0.2, 1, 0], target: [0.2, 2, 0], aperture: 8, focus: ball}", "behind the camera"},
+      {"{" STANDS ", lens: macro-100mm, aperture: 8, focus: 9cm}", "'focus' is 90 mm away"},
+      {"{" STANDS ", lens: macro-100mm, aperture: 1}", "100 mm wide, and object 'table' is 30 mm"},
       {"{frame: [ball], up: [0, -0.5, 0.86602540378443865]}", "'up' points along its view"}};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
     char text[2048];
@@ -110,7 +112,7 @@ TEST(a_lens_has_its_angle_and_place) {
   } views[] = {
       {"{frame: [ball], lens: macro-100mm, fill: 0.8, aperture: 16}", 0.1, 0},
       {"{frame: [brick], lens: macro-60mm, elevation: 20, aperture: 16}", 0.06, 0},
-      {"{eye: [0, -0.5, 0], target: [0, 0, 0], lens: normal-50mm, aperture: 16}", 0.05, 0.5}};
+      {"{eye: [0, -0.5, 0.1], target: [0, 0, 0.1], lens: normal-50mm, aperture: 16}", 0.05, 0.5}};
   for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
     abbe_scene scene;
     double to[3], min[2], max[2];
@@ -137,6 +139,15 @@ TEST(what_is_sharp_is_chosen) {
   abbe_scene_free(&scene);
   make("{" STANDS ", fov: 30, aperture: 8, focus: 40cm}", &scene);
   assert_near(scene.camera.focus, 0.4, 1e-12);
+  abbe_scene_free(&scene);
+  static const char parts[] =
+      "materials: glass.yaml\ncamera: {" STANDS ", aperture: 8, focus: pair}\n"
+      "environment: {uniform: 1}\nobjects:\n"
+      "- {name: pair (part 1), shape: sphere, radius: 3cm, centre: [0.2, 0.1, 0], material: flat}\n"
+      "- {name: pair (part 2), shape: sphere, radius: 3cm, centre: [0.2, 0.5, 0], material: "
+      "flat}\n";
+  load_text(parts, &scene);
+  assert_near(scene.camera.focus, 1.3, 1e-12);
   abbe_scene_free(&scene);
   make("{" STANDS "}", &scene);
   assert_true(scene.camera.aperture == 0 && scene.camera.focus == 0);
