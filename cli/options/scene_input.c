@@ -259,6 +259,13 @@ abbe_result abbe_scene_input_at(const abbe_scene *scene, const char *materials,
   return load(scene->path, materials, &timed, out, error);
 }
 
+abbe_result abbe_scene_input_check_alpha(const abbe_scene *scene, abbe_error *error) {
+  if (!scene->transparent || !(scene->camera.aperture > 0)) return ABBE_OK;
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "--alpha of a traced picture is of a camera that is sharp: take the "
+                        "'aperture' out (--set camera.aperture= --set camera.focus=)");
+}
+
 abbe_result abbe_scene_input_add_alpha(const abbe_scene *scene, size_t samples, abbe_image *picture,
                                        abbe_error *error) {
   abbe_image alpha;

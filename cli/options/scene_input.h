@@ -144,6 +144,8 @@ abbe_result abbe_scene_input_load(const char *program, const char *path, const c
                                   abbe_scene *out, abbe_error *error);
 
 enum { ABBE_SCENE_INPUT_ALPHA_SAMPLES = 8 }; /* for a traced picture */
+/* Before a picture is traced: with --alpha its camera has no aperture, else ABBE_UNSUPPORTED. */
+abbe_result abbe_scene_input_check_alpha(const abbe_scene *scene, abbe_error *error);
 /* Appends channel A to a picture of the scene, of whose pixels so many samples a side are taken. */
 abbe_result abbe_scene_input_add_alpha(const abbe_scene *scene, size_t samples, abbe_image *picture,
                                        abbe_error *error);

@@ -214,7 +214,9 @@ static abbe_result trace(request *q, const abbe_scene *scene, abbe_error *error)
   abbe_image image = {0};
   if (!q->quiet) abbe_scene_input_note(scene);
   if (!q->quiet) note_picture(q);
-  abbe_result result = abbe_traced_picture_make(&q->picture, scene, &desc, &image, error);
+  abbe_result result = abbe_scene_input_check_alpha(scene, error);
+  if (result == ABBE_OK)
+    result = abbe_traced_picture_make(&q->picture, scene, &desc, &image, error);
   if (result == ABBE_OK && q->screen.alpha)
     result = abbe_scene_input_add_alpha(scene, ABBE_SCENE_INPUT_ALPHA_SAMPLES, &image, error);
   if (result == ABBE_OK && q->exr != NULL) result = abbe_exr_write(q->exr, &image, error);
@@ -235,8 +237,10 @@ static abbe_result write_picture(request *q, const abbe_scene *scene, abbe_conte
                                  abbe_renderer *renderer, abbe_error_bars *bars,
                                  abbe_error *error) {
   abbe_image image = {0};
+  abbe_scene sharp = *scene; /* as the frame is, and alpha of it */
+  if (q->screen.alpha) sharp.camera.aperture = sharp.camera.focus = 0;
   abbe_result result = abbe_renderer_read(renderer, q->aovs, &image, error);
-  if (result == ABBE_OK) result = abbe_render_check_frame(q, scene, renderer, &image, error);
+  if (result == ABBE_OK) result = abbe_render_check_frame(q, &sharp, renderer, &image, error);
   if (result == ABBE_OK && !q->picture.traced_instead)
     result = abbe_render_annotate(q, renderer, context, &image, error);
   if (result == ABBE_OK)

@@ -455,6 +455,7 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
   if (result == ABBE_OK) result = name_checkpoint(&q, &error);
   if (result == ABBE_OK)
     result = abbe_scene_input_load_with(argv[0], q.scene, q.materials, &q.changes, &scene, &error);
+  if (result == ABBE_OK) result = abbe_scene_input_check_alpha(&scene, &error);
   if (result == ABBE_OK && !q.quiet) abbe_scene_input_note(&scene);
   result = abbe_rank_job_agree(job, result, &error);
   q.series.resume = q.work.resume;

@@ -43,9 +43,6 @@ abbe_result abbe_coverage_make(const abbe_scene *scene, size_t width, size_t hei
   if (samples < 1 || samples > 16)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "1 to 16 samples a pixel's side, not %zu",
                           samples);
-  if (scene->camera.aperture > 0)
-    return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "--alpha is of a camera that is sharp: leave out its 'aperture'");
   abbe_result result = gather(scene, &triangle, &count, error);
   if (result == ABBE_OK) result = abbe_image_make(width, height, 1, names, out, error);
   if (result == ABBE_OK && count > 0)

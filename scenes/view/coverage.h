@@ -9,7 +9,8 @@
 
 #include "scenes/scene.h"
 
-/* An image of one channel, A, from 0 to 1, rows downwards. samples: 1 to 16. ABBE_NO_MEMORY. */
+/* An image of one channel, A, from 0 to 1, rows downwards, of a camera that is sharp whatever its
+ * aperture. samples: 1 to 16. ABBE_NO_MEMORY. */
 abbe_result abbe_coverage_make(const abbe_scene *scene, size_t width, size_t height, size_t samples,
                                abbe_image *out, abbe_error *error);
 

@@ -68,6 +68,10 @@ static const struct wrong {
      "would be written over the argument 'round.asc', which is read; name another file", 2},
     {QUARTZ RENDER "round.asc --set objects.stone.file=missing.asc", "round.asc's scene:", 1},
     {QUARTZ RENDER "round.asc --alpha --turntable 8", "--alpha is of one picture", 2},
+    {QUARTZ "\"$abbe\" trace round.asc --alpha --set camera.aperture=16",
+     "of a traced picture is of a camera that is sharp", 1},
+    {QUARTZ RENDER "round.asc --max-error 5 --tool trace --alpha --set camera.aperture=16",
+     "of a traced picture is of a camera that is sharp", 1},
     {QUARTZ "\"$abbe\" view rond.asc", "did you mean 'round.asc'?", 1},
     {QUARTZ "\"$abbe\" gem report round.asc --material rubi",
      "the table 'default' has no material 'rubi'; did you mean 'ruby'?", 1},
@@ -196,6 +200,9 @@ TEST(a_saved_scene_draws_the_same) {
 
 TEST(a_picture_is_named_after_its_stone) {
   run_must(QUARTZ RENDER "round.asc --size 16x16 --with none --alpha && test -s round.png");
+  /* the renderer's picture is sharp, and so is its alpha */
+  run_must(QUARTZ RENDER "round.asc --size 16x16 --with none --alpha "
+                         "--set camera.aperture=16 && test -s round.png");
   assert_contains(run_errors, "round.asc as quartz, 6.5 mm wide (its design is for an index of");
   run_each(run_remove, NULL);
 }
