@@ -137,6 +137,9 @@ static void survey_surroundings(const survey *s) {
       CHANGED(s, "environment", "resampled to STEM-environment.exr, linear Rec.709");
   }
   if (s->scene->medium != NULL) LOST(s, "medium", "the air is clear");
+  if (s->scene->camera.aperture > 0)
+    LOST(s, "camera", "its aperture: all is sharp, not only what is %.4g m along its view",
+         s->scene->camera.focus);
   if (s->scene->ambient > 0)
     LOST(s, "ambient", "the format has no light without shadows (%.3g W/m2)", s->scene->ambient);
   if (s->scene->background > 0)

@@ -249,6 +249,19 @@ TEST(reflectances_are_read_back) {
   clear_folder();
 }
 
+TEST(an_aperture_is_lost) {
+  for (int target = 0; target < ABBE_SCENE_EXPORT_COUNT; target++)
+    for (int lens = 0; lens < 2; lens++) {
+      OWNED(abbe_scene, scene);
+      load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
+      if (lens) scene.camera.aperture = 0.01, scene.camera.focus = 0.25;
+      char *text = written(&scene, (abbe_scene_export_target)target);
+      assert_int_equal(noted(ABBE_NOTE_LOST, "camera", "0.25 m"), lens);
+      done(text);
+    }
+  clear_folder();
+}
+
 /* Names become identifiers; what would end a comment does not. */
 TEST(names_do_no_harm) {
   abbe_scene scene;
