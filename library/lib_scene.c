@@ -175,6 +175,10 @@ static abbe_result check_camera(const abbe_camera *c, abbe_error *error) {
                         "along the line between them");
 }
 
+static double far_of(const abbe_camera *c) {
+  return hypot(hypot(c->target[0] - c->eye[0], c->target[1] - c->eye[1]), c->target[2] - c->eye[2]);
+}
+
 abbe_result abbe_lib_scene_look(abbe_lib_scene *s, const double eye[3], const double target[3],
                                 const double up[3], double fov_y_rad, abbe_error *error) {
   ABBE_REQUIRE(s, error);
@@ -184,6 +188,7 @@ abbe_result abbe_lib_scene_look(abbe_lib_scene *s, const double eye[3], const do
   if (target != NULL) memcpy(camera->target, target, sizeof camera->target);
   if (up != NULL) memcpy(camera->up, up, sizeof camera->up);
   if (fov_y_rad != 0) camera->fov_y_rad = fov_y_rad;
+  if (fabs(before.focus - far_of(&before)) <= 1e-9 * before.focus) camera->focus = far_of(camera);
   abbe_result result = check_camera(camera, error);
   if (result == ABBE_OK) result = abbe_scene_check(s->now, error);
   if (result != ABBE_OK)

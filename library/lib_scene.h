@@ -35,9 +35,11 @@ abbe_result abbe_lib_scene_change(abbe_lib_scene *scene, const char *const *set,
                                   abbe_error *error);
 
 /* Where the camera stands, what it looks at, which way is up, and its full vertical angle; each may
- * be NULL, or 0: as it is. It holds until camera.* is set. ABBE_INVALID_ARGUMENT for numbers that
- * are not finite, an angle outside (0, pi), and a view that is none; ABBE_GEOMETRY and others where
- * that cannot be rendered. On failure the camera stays as it was. */
+ * be NULL, or 0: as it is. A camera with an aperture keeps its pupil, and is sharp at its target as
+ * before where it was; else its focus stays as far. It holds until camera.* is set.
+ * ABBE_INVALID_ARGUMENT for numbers that are not finite, an angle outside (0, pi), and a view that
+ * is none; ABBE_GEOMETRY and others where that cannot be rendered. On failure the camera stays as
+ * it was. */
 abbe_result abbe_lib_scene_look(abbe_lib_scene *scene, const double eye[3], const double target[3],
                                 const double up[3], double fov_y_rad, abbe_error *error);
 abbe_result abbe_lib_scene_camera(const abbe_lib_scene *scene, double eye[3], double target[3],

@@ -3,6 +3,7 @@
 #include "tests/check.h"
 
 #include "library/lib_comparison.h"
+#include "library/lib_handles.h"
 #include "library/lib_scene.h"
 
 static const char *const sphere = ABBE_SOURCE_DIR "/scenes/sphere.yaml";
@@ -74,6 +75,24 @@ TEST(the_camera_moves_and_comes_back) {
   OK(abbe_lib_scene_look(s, eye, NULL, NULL, 0, &error));
   assert_same(first, rendered(s), true);
   abbe_lib_scene_free(s);
+}
+
+/* A focus at the target stays there; one that was given stays as far, and the pupil as wide. */
+TEST(a_camera_that_moves_stays_sharp) {
+  static const char *const given[] = {"camera.aperture=16", "camera.focus=0.2"};
+  for (size_t count = 1; count <= 2; count++) {
+    abbe_lib_scene *s = opened(given, count);
+    const abbe_camera before = s->now->camera;
+    double moved[3], far = 0;
+    for (int i = 0; i < 3; i++) {
+      moved[i] = before.eye[i] + 0.3 * (before.target[i] - before.eye[i]);
+      far = hypot(far, moved[i] - before.target[i]);
+    }
+    OK(abbe_lib_scene_look(s, moved, NULL, NULL, 0, &error));
+    assert_near(s->now->camera.focus, count == 1 ? far : 0.2, 1e-12);
+    assert_near(s->now->camera.aperture, before.aperture, 0);
+    abbe_lib_scene_free(s);
+  }
 }
 
 TEST(a_trace_agrees_with_the_picture) {
