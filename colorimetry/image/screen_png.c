@@ -116,8 +116,8 @@ static int by_size(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* By the greatest finite channels of pixels all over the picture. */
-static double find_stops(const abbe_image *picked) {
+/* By the greatest finite channels of pixels all over the picture, of those that are covered. */
+static double find_stops(const float *alpha, size_t stride, const abbe_image *picked) {
   enum { MOST = 4096 };
   static const double bright = 0.8, share = 0.9;
   float most[MOST];
@@ -125,6 +125,7 @@ static double find_stops(const abbe_image *picked) {
   size_t count = 0;
   for (size_t i = 0; i < pixels; i += step) {
     const float *p = picked->data + 3 * i;
+    if (alpha != NULL && !(alpha[i * stride] > 0)) continue;
     most[count] = fmaxf(p[0], fmaxf(p[1], p[2]));
     if (isfinite(most[count])) count++;
   }
@@ -157,14 +158,14 @@ abbe_result abbe_screen_png_write(const char *path, const abbe_image *image,
     *d->notes = (abbe_screen_png_notes){0};
     abbe_image_count_odd(&picked, (const size_t[]){0, 1, 2}, 3, &d->notes->odd);
   }
-  const double stops = result == ABBE_OK ? find_stops(&picked) : 0;
+  const float *alpha = alpha_of(d, image);
+  if (result == ABBE_OK && alpha != NULL) divide(alpha, image->channels, &picked);
+  const double stops = result == ABBE_OK ? find_stops(alpha, image->channels, &picked) : 0;
   if (d->exposed)
     desc.exposure = fmax(-ABBE_DISPLAY_MAX_EXPOSURE, fmin(stops, ABBE_DISPLAY_MAX_EXPOSURE));
   if (result == ABBE_OK && d->notes != NULL) d->notes->stops = stops;
   if (result == ABBE_OK && d->notes != NULL) d->notes->exposure = desc.exposure;
   if (result == ABBE_OK) result = find_source(d, image, triple, &picked, &desc.source_space, error);
-  const float *alpha = alpha_of(d, image);
-  if (result == ABBE_OK && alpha != NULL) divide(alpha, image->channels, &picked);
   if (result == ABBE_OK) result = abbe_display_make(&desc, &transform, error);
   if (result == ABBE_OK) result = abbe_display_apply(transform, &picked, error);
   if (result == ABBE_OK && d->notes != NULL) d->notes->white = share_of_white(&picked);

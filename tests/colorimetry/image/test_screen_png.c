@@ -179,6 +179,21 @@ TEST(alpha_is_straight) {
   assert_int_equal(rgba[7], 0);
 }
 
+/* What is not covered is not black: a quarter of the picture of a light of 3.2 is as all of it. */
+TEST(stops_are_those_of_what_is_covered) {
+  static const char *const channels[] = {"R", "G", "B", "A"};
+  OWNED(abbe_image, image) = {0};
+  OK(abbe_image_make(40, 1, 4, channels, &image, &error));
+  abbe_image_set_attribute(&image, "abbe:space", "rec709", NULL);
+  for (size_t i = 0; i < 4 * 3; i++) image.data[i] = i % 4 == 3 ? 0.5f : 1.6f;
+  for (int alpha = 0; alpha < 2; alpha++) {
+    const abbe_screen_png_desc desc = {.bits = 8, .notes = &notes, .alpha = alpha == 1};
+    OK(abbe_screen_png_write(path, &image, &desc, &error));
+    assert_near(notes.stops, alpha ? -2 : 0, 1e-6);
+  }
+  unlink(path);
+}
+
 TEST(what_cannot_be_shown_is_refused) {
   static const char *const names[] = {"U", "V", "R"}, *const rgb[] = {"R", "G", "B"};
   const abbe_screen_png_desc desc = {.name = "it.exr"};
