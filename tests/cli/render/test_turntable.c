@@ -18,7 +18,8 @@ TEST(frames_and_what_moves) {
   assert_int_equal(run_left(), 0);
 }
 
-/* Where light is alike all around, a stone that turns shows what a camera sees that goes around. */
+/* Where light is alike all around, a stone that turns shows what a camera sees that goes around. A
+ * fifth of a turn either way are two sights of six sides. */
 TEST(the_stone_turns) {
   run_must("cat >s.yaml <<'END'\n"
            "camera: {eye: [0, -4cm, 3cm], target: [0, 0, -1mm], fov: 15}\n"
@@ -27,12 +28,14 @@ TEST(the_stone_turns) {
            "  - {name: stone, shape: gem, sides: 6, girdle: 5mm, table: 3mm, crown: 2mm, "
            "pavilion: 4mm, material: ruby}\n"
            "END\n");
-#define TURN "\"$abbe\" render s.yaml --size 24x24 -q --turntable 4 -o "
-  run_must(TURN "c.exr && " TURN "s.exr --turn stone && for i in 1 2 4; do "
+#define TURN "\"$abbe\" render s.yaml --size 24x24 -q --turntable 5 -o "
+  run_must(TURN "c.exr && " TURN "s.exr --turn stone && for i in 1 2 3 4 5; do "
                 "\"$abbe\" compare s-000$i.exr c-000$i.exr --tolerance relative_rmse=1e-3 || "
                 "exit 1; done");
   assert_int_equal(
       run_line("\"$abbe\" compare s-0001.exr s-0002.exr --tolerance relative_rmse=1e-2"), 3);
+  assert_int_equal(
+      run_line("\"$abbe\" compare s-0002.exr c-0005.exr --tolerance relative_rmse=1e-2"), 3);
   run_must("rm s-0003.exr && " TURN "s.exr --turn stone --resume && test -s s-0003.exr");
   run_must("rm s* c*");
   assert_true(run_refuses(GEM "--turn stone --png t.png", 2, "--turn goes with --turntable N"));
