@@ -25,7 +25,7 @@ static uint64_t mix_material(uint64_t h, const abbe_material *m) {
   h = abbe_digest(h, m->dispersion.c, sizeof m->dispersion.c);
   h = mix_spectrum(h, m->dispersion.table);
   const abbe_index_shift *s = &m->dispersion.shift;
-  const double shift[] = {s->on ? 1 : 0, s->from_c, s->to_c, s->pressure_atm};
+  const double shift[] = {s->on ? 1 : 0, s->from_c, s->to_c, s->pressure_atm, s->from_atm};
   h = abbe_digest(h, shift, sizeof shift);
   h = abbe_digest(h, s->thermal, sizeof s->thermal);
   MIX(h, m->min_nm);

@@ -23,13 +23,17 @@ typedef struct abbe_conditions {
 /* Whether they are others than catalogues'. */
 bool abbe_conditions_given(const abbe_conditions *at);
 
-/* Index of dry air. */
+/* Colder, air of 1 atm is no gas. */
+#define ABBE_AIR_LEAST_C (-190.0)
+
+/* Index of dry air; below ABBE_AIR_LEAST_C as at that temperature. */
 double abbe_air_n(double lambda_nm, double temperature_c, double pressure_atm);
 
 /* How an index moves. Zeroed: it stays. */
 typedef struct abbe_index_shift {
   bool on;
   double from_c, to_c, pressure_atm;
+  double from_atm;   /* of the air that the catalogue's n is relative to; 0: to vacuum */
   double thermal[6]; /* D0, D1, D2, E0, E1, lambda_tk (um) */
 } abbe_index_shift;
 

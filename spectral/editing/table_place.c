@@ -88,11 +88,11 @@ abbe_result abbe_table_place_record(const abbe_yaml_edit *edit, const char *name
 
 /* A record's keys in the order of docs/materials.md, so that a new one goes where readers look. */
 static size_t rank(const char *key) {
-  static const char *const order[] = {"name",    "description",   "model",       "coefficients",
-                                      "points",  "interpolation", "range_nm",    "extraordinary",
-                                      "biaxial", "temperature_c", "extrapolate", "density_g_cm3",
-                                      "n_d",     "v_d",           "source",      "warning",
-                                      "comment", "absorption",    "catalogue",   "fit"};
+  static const char *const order[] = {
+      "name",          "description",   "model",   "coefficients",  "points",     "interpolation",
+      "range_nm",      "extraordinary", "biaxial", "temperature_c", "n_absolute", "extrapolate",
+      "density_g_cm3", "n_d",           "v_d",     "source",        "warning",    "comment",
+      "absorption",    "catalogue",     "fit"};
   enum { COUNT = sizeof order / sizeof order[0] };
   for (size_t i = 0; i < COUNT; i++)
     if (strcmp(order[i], key) == 0) return i;

@@ -20,6 +20,7 @@ typedef enum loss {
   EXTRAORDINARY,
   PLEOCHROISM,
   EXTRAPOLATE,
+  ABSOLUTE,
   EXPANSION,
   INTERPOLATION,
   REWRITTEN,
@@ -36,6 +37,7 @@ static const abbe_summary_row losses[LOSSES] = {
     [EXTRAORDINARY] = {ABBE_NOTE_LOST, "AGF has one index a glass: the ordinary or middle one"},
     [PLEOCHROISM] = {ABBE_NOTE_LOST, "AGF has one transmittance a glass: that along x"},
     [EXTRAPOLATE] = {ABBE_NOTE_LOST, "AGF cannot allow use outside the range"},
+    [ABSOLUTE] = {ABBE_NOTE_LOST, "AGF's indices are relative to air, and this one is to vacuum"},
     [EXPANSION] = {ABBE_NOTE_LOST, "AGF has no place for the temperatures of expansions"},
     [INTERPOLATION] = {ABBE_NOTE_LOST, "AGF does not say how attenuation runs between points"},
     [REWRITTEN] = {ABBE_NOTE_CHANGED, "the formula is written as another one with the same n"},
@@ -255,6 +257,7 @@ static void count_losses(const abbe_material *m, abbe_summary *t) {
   if (abbe_material_is_crystal(m)) abbe_summary_add(t, EXTRAORDINARY, m->name);
   if (abbe_material_is_pleochroic(m)) abbe_summary_add(t, PLEOCHROISM, m->name);
   if (m->extrapolate) abbe_summary_add(t, EXTRAPOLATE, m->name);
+  if (m->n_absolute) abbe_summary_add(t, ABSOLUTE, m->name);
   for (int i = 0; i < 2; i++)
     if (m->catalogue.expansion_range_k[2 * i + 1] > 0) {
       abbe_summary_add(t, EXPANSION, m->name);

@@ -113,6 +113,7 @@ static void write_dispersion(const abbe_material *m, FILE *to) {
   }
   if (m->extrapolate) fputs("    extrapolate: true\n", to);
   if (!isnan(m->temperature_c)) write_number("    temperature_c", m->temperature_c, to);
+  if (m->n_absolute) fputs("    n_absolute: true\n", to);
 }
 
 static void write_attenuation(const abbe_spectrum *attenuation, int indent, FILE *to) {

@@ -312,6 +312,7 @@ static abbe_result read_conditions(reader *r, abbe_yaml_node root) {
     absolute |= is_true(r, node, "n_absolute") || is_true(r, node, "n_is_absolute");
     vacuum |= is_true(r, node, "wavelength_vacuum") || is_true(r, node, "wavelength_is_vacuum");
   }
+  r->m->n_absolute = absolute;
   if (!absolute && !vacuum) return ABBE_OK;
   char text[240];
   snprintf(text, sizeof text, "%s%s%s",

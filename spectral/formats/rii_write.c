@@ -194,10 +194,10 @@ abbe_result abbe_rii_write(const abbe_material *material, FILE *to, abbe_report 
   else
     write_formula(m, to);
   if (m->attenuation != NULL) write_points("k", m->attenuation, true, to);
-  if (!isnan(m->temperature_c)) {
-    fputs("CONDITIONS:\n", to);
+  if (m->n_absolute || !isnan(m->temperature_c)) fputs("CONDITIONS:\n", to);
+  if (m->n_absolute) fputs("    n_absolute: true\n", to);
+  if (!isnan(m->temperature_c))
     line(to, "temperature", abbe_number_tidy(m->temperature_c + 273.15));
-  }
   write_properties(m, to);
   note_losses(m, report);
   if (fflush(to) == 0 && !ferror(to)) return ABBE_OK;

@@ -272,6 +272,11 @@ bool abbe_material_has_thermal(const abbe_material *material) {
 
 static const double USUAL_C = 20; /* where a source is silent */
 
+/* Pressure of the air that the record's index is relative to; where there is no air, vacuum. */
+static double own_atm(const abbe_material *m) {
+  return m->n_absolute || m->temperature_c < ABBE_AIR_LEAST_C ? 0 : 1;
+}
+
 /* NULL, or why the index is not known at another temperature than its measurement's. */
 static const char *no_thermal(const abbe_material *m) {
   if (isnan(m->temperature_c)) return "its record does not say at what temperature its index is";
@@ -295,8 +300,10 @@ abbe_result abbe_material_place(abbe_material *material, const abbe_conditions *
   abbe_index_shift shift = {.on = true,
                             .from_c = own_c,
                             .to_c = isnan(at->temperature_c) ? own_c : at->temperature_c,
-                            .pressure_atm = isnan(at->pressure_atm) ? 1 : at->pressure_atm};
-  if (!(shift.to_c >= ABBE_CONDITIONS_LEAST_C && shift.to_c <= ABBE_CONDITIONS_MOST_C) ||
+                            .pressure_atm = isnan(at->pressure_atm) ? 1 : at->pressure_atm,
+                            .from_atm = own_atm(m)};
+  const double given_c = isnan(at->temperature_c) ? USUAL_C : at->temperature_c;
+  if (!(given_c >= ABBE_CONDITIONS_LEAST_C && given_c <= ABBE_CONDITIONS_MOST_C) ||
       !(shift.pressure_atm >= 0 && shift.pressure_atm <= ABBE_CONDITIONS_MOST_ATM))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%g C and %g atm are no conditions from %g to %g C and 0 to %g atm",
@@ -323,7 +330,8 @@ abbe_result abbe_material_n_absolute(const abbe_material *material, double lambd
   const double own_c = isnan(material->temperature_c) ? USUAL_C : material->temperature_c;
   const abbe_result result = abbe_material_n(material, lambda_nm, n, error);
   if (result == ABBE_OK)
-    *n *= s->on ? abbe_air_n(lambda_nm, s->to_c, s->pressure_atm) : abbe_air_n(lambda_nm, own_c, 1);
+    *n *= s->on ? abbe_air_n(lambda_nm, s->to_c, s->pressure_atm)
+                : abbe_air_n(lambda_nm, own_c, own_atm(material));
   return result;
 }
 

@@ -67,8 +67,10 @@ typedef struct abbe_material {
                                        z, a uniaxial one's optic axis; else both NULL */
   double
       temperature_c; /* temperature of the measurement, Celsius; NaN where the source is silent */
-  char *source;      /* key into BIBLIOGRAPHY.md, then details */
-  char *warning;     /* what a user of this row must know (thesis rows); may be NULL */
+  bool n_absolute; /* its indices are relative to vacuum; else to air of that temperature and 1 atm,
+                      or below ABBE_AIR_LEAST_C to vacuum as well */
+  char *source;    /* key into BIBLIOGRAPHY.md, then details */
+  char *warning;   /* what a user of this row must know (thesis rows); may be NULL */
   abbe_material_fit fit[2]; /* two and three terms */
   double published_n_d;     /* n_d and V_d as the source prints them, for the check; */
   double published_v_d;     /* 0 where it prints none */
@@ -115,8 +117,8 @@ bool abbe_material_has_thermal(const abbe_material *material);
 /* Takes its index, from now on, at those conditions; twice moves it from its record's again. A
  * material of an index of exactly 1 is the air around, and stays. Where a temperature is not of its
  * measurement, ABBE_UNSUPPORTED of what gives no dn/dT, or one for two indices, or a negative
- * lambda_tk, which programs read in two ways; also of a conductor. ABBE_INVALID_ARGUMENT outside
- * ABBE_CONDITIONS_LEAST_C to _MOST_C or _MOST_ATM. */
+ * lambda_tk, which programs read in two ways; also of a conductor. ABBE_INVALID_ARGUMENT of given
+ * ones outside ABBE_CONDITIONS_LEAST_C to _MOST_C or _MOST_ATM. */
 abbe_result abbe_material_place(abbe_material *material, const abbe_conditions *at,
                                 abbe_error *error);
 /* Its absolute index there, n relative to vacuum; as abbe_material_n. */

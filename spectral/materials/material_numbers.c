@@ -69,15 +69,20 @@ static void keyed(double value, double *out, double *half) {
 
 void abbe_material_dn_dt(const abbe_material *material, double lambda_nm, double temperature_c,
                          double out[2]) {
+  /* 10 degrees to both sides, as far as conditions reach */
+  const double side_c[2] = {fmax(temperature_c - 10, ABBE_CONDITIONS_LEAST_C),
+                            fmin(temperature_c + 10, ABBE_CONDITIONS_MOST_C)};
   double n[2][2] = {{NAN, NAN}, {NAN, NAN}};
   for (int i = 0; i < 2; i++) {
     abbe_material m = *material; /* owns nothing of its own */
-    const abbe_conditions at = {temperature_c + (i == 0 ? -10 : 10), 1};
-    if (isnan(temperature_c) || abbe_material_place(&m, &at, NULL) != ABBE_OK) continue;
+    const abbe_conditions at = {side_c[i], 1};
+    if (isnan(temperature_c) || !(side_c[0] < side_c[1]) ||
+        abbe_material_place(&m, &at, NULL) != ABBE_OK)
+      continue;
     abbe_material_n(&m, lambda_nm, &n[i][0], NULL);
     abbe_material_n_absolute(&m, lambda_nm, &n[i][1], NULL);
   }
-  for (int k = 0; k < 2; k++) out[k] = (n[1][k] - n[0][k]) / 20;
+  for (int k = 0; k < 2; k++) out[k] = (n[1][k] - n[0][k]) / (side_c[1] - side_c[0]);
 }
 
 void abbe_material_published_make(const abbe_material *m, abbe_material_published *out) {

@@ -273,11 +273,11 @@ static abbe_result read_texts(abbe_record_reading *r) {
 /* Every key is asked for before the values are judged by what is missing, so that a mistyped key
  * is reported as such. */
 static abbe_result check_record_keys(abbe_record_reading *r) {
-  static const char *const keys[] = {"name",       "description",   "model",         "coefficients",
-                                     "points",     "interpolation", "range_nm",      "extrapolate",
-                                     "absorption", "temperature_c", "source",        "warning",
-                                     "fit",        "n_d",           "v_d",           "comment",
-                                     "catalogue",  "density_g_cm3", "extraordinary", "biaxial"};
+  static const char *const keys[] = {
+      "name",          "description", "model",      "coefficients",  "points",    "interpolation",
+      "range_nm",      "extrapolate", "absorption", "temperature_c", "source",    "warning",
+      "fit",           "n_d",         "v_d",        "comment",       "catalogue", "density_g_cm3",
+      "extraordinary", "biaxial",     "n_absolute"};
   for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
     abbe_yaml_get(r->yaml, r->record, keys[i]);
   return abbe_yaml_check_keys(r->yaml, r->record, "a material", r->error);
@@ -295,6 +295,8 @@ static abbe_result read_record(abbe_record_reading *r) {
   if (result == ABBE_OK)
     result = abbe_yaml_get_number(r->yaml, r->record, "temperature_c", -273.15, 1e4,
                                   &m->temperature_c, r->error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_bool(r->yaml, r->record, "n_absolute", &m->n_absolute, r->error);
   if (result == ABBE_OK) result = read_absorption(r);
   if (result == ABBE_OK) result = read_published(r);
   if (result == ABBE_OK) result = read_density(r);

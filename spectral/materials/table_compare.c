@@ -79,6 +79,7 @@ static unsigned parts_of(const abbe_material *a, const abbe_material *b) {
                                       same_index(&a->outer[1], &b->outer[1]),
       [ABBE_ROW_PART_EXTRAPOLATE] = a->extrapolate == b->extrapolate,
       [ABBE_ROW_PART_TEMPERATURE] = same_number(a->temperature_c, b->temperature_c),
+      [ABBE_ROW_PART_ABSOLUTE] = a->n_absolute == b->n_absolute,
       [ABBE_ROW_PART_PUBLISHED] =
           a->published_n_d == b->published_n_d && a->published_v_d == b->published_v_d,
       [ABBE_ROW_PART_SOURCE] = same_text(a->source, b->source),

@@ -31,6 +31,7 @@ typedef enum abbe_row_kind {
   X(EXTRAORDINARY, "extraordinary")                                                                \
   X(EXTRAPOLATE, "extrapolate")                                                                    \
   X(TEMPERATURE, "temperature_c")                                                                  \
+  X(ABSOLUTE, "n_absolute")                                                                        \
   X(PUBLISHED, "n_d and v_d")                                                                      \
   X(SOURCE, "source")                                                                              \
   X(WARNING, "warning")                                                                            \

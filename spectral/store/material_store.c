@@ -281,7 +281,7 @@ static abbe_result read_dispersion(reader *r) {
 
 static abbe_result read_row(reader *r) {
   abbe_material *m = r->material;
-  double extrapolate = 0;
+  double extrapolate = 0, absolute = 0;
   m->temperature_c = NAN;
   m->line = (size_t)sqlite3_column_int64(r->q, 0);
   const struct {
@@ -300,6 +300,8 @@ static abbe_result read_row(reader *r) {
   m->extrapolate = extrapolate != 0;
   if (result == ABBE_OK)
     result = read_number(r, ABBE_STORE_temperature_c, -273.15, 1e4, &m->temperature_c);
+  if (result == ABBE_OK) result = read_number(r, ABBE_STORE_n_absolute, 0, 1, &absolute);
+  m->n_absolute = absolute != 0;
   if (result == ABBE_OK) result = read_number(r, ABBE_STORE_n_d, 1e-3, 1e3, &m->published_n_d);
   if (result == ABBE_OK) result = read_number(r, ABBE_STORE_v_d, -1e6, 1e6, &m->published_v_d);
   if (result == ABBE_OK) result = read_fit(r, ABBE_STORE_cauchy2, 2, &m->fit[0]);

@@ -9,7 +9,7 @@
 #include <sqlite3.h>
 
 /* "Abbe" in the file's header, and the version of what follows. */
-enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 3, ABBE_STORE_MAX_TERMS = 3 };
+enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 4, ABBE_STORE_MAX_TERMS = 3 };
 
 /* X(name, type): the columns after id. Lists of numbers are doubles, the least byte first; points
  * are pairs of them, nm and value, or nm, n and k of a conductor. What is large comes last: SQLite
@@ -34,6 +34,7 @@ enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 3, ABBE_STORE_M
   X(to_nm, "REAL")                                                                                 \
   X(extrapolate, "INTEGER")                                                                        \
   X(temperature_c, "REAL")                                                                         \
+  X(n_absolute, "INTEGER")                                                                         \
   X(n_d, "REAL")                                                                                   \
   X(v_d, "REAL")                                                                                   \
   X(source, "TEXT")                                                                                \

@@ -145,6 +145,7 @@ static int bind_material(sqlite3_stmt *q, const abbe_material *m) {
   if (code == SQLITE_OK) code = sqlite3_bind_int(q, ABBE_STORE_extrapolate + 1, m->extrapolate);
   if (code == SQLITE_OK && !isnan(m->temperature_c))
     code = sqlite3_bind_double(q, ABBE_STORE_temperature_c + 1, m->temperature_c);
+  if (code == SQLITE_OK) code = sqlite3_bind_int(q, ABBE_STORE_n_absolute + 1, m->n_absolute);
   if (code == SQLITE_OK) code = bind_number(q, ABBE_STORE_n_d, m->published_n_d);
   if (code == SQLITE_OK) code = bind_number(q, ABBE_STORE_v_d, m->published_v_d);
   if (code == SQLITE_OK) code = bind_fit(q, ABBE_STORE_cauchy2, &m->fit[0]);

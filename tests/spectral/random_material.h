@@ -160,6 +160,7 @@ static inline abbe_material random_material(size_t number) {
   if (rand() % 2) m.published_n_d = random_in(1.3, 2);
   if (rand() % 2) m.published_v_d = random_in(20, 90);
   m.extrapolate = rand() % 2;
+  m.n_absolute = number % 5 == 0;
   if (rand() % 2) m.attenuation = random_spectrum(0, 300);
   if (m.dispersion.table != NULL) {
     m.min_nm = abbe_spectrum_lambda_nm(m.dispersion.table)[0];

@@ -106,6 +106,7 @@ static inline void check_same_record(const abbe_material *a, const abbe_material
                "absorption along axes", a->name, file, line);
   for (int i = 0; i < 2; i++)
     check_same(same_dispersion(&a->outer[i], &b->outer[i]), "outer index", a->name, file, line);
+  check_same(a->n_absolute == b->n_absolute, "n_absolute", a->name, file, line);
   check_same(a->extrapolate == b->extrapolate, "extrapolate", a->name, file, line);
   check_same(a->published_n_d == b->published_n_d && a->published_v_d == b->published_v_d,
              "n_d and V_d", a->name, file, line);

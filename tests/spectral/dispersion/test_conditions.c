@@ -71,6 +71,41 @@ TEST(pressure_alone_needs_no_coefficients) {
   assert_near(index_at("n-bk7", 550, 20, 1, false), index_at("n-bk7", 550, NAN, NAN, false), 0);
 }
 
+/* Measurements below air's boiling point are in vacuum, and above 200 C in thin air. */
+TEST(a_pressure_alone_is_for_records_of_any_temperature) {
+  const double own_c[2] = {-269.15, 1000}, air[2] = {1, abbe_air_n(550, 1000, 1)};
+  for (int i = 0; i < 2; i++) {
+    abbe_material m = *shipped_material("diamond");
+    double n[3];
+    m.temperature_c = own_c[i];
+    const abbe_conditions thin = {NAN, 0}, wrong = {own_c[i], NAN};
+    OK(abbe_material_n(&m, 550, &n[0], &error));
+    OK(abbe_material_n_absolute(&m, 550, &n[1], &error));
+    assert_near(n[1], n[0] * air[i], 1e-12);
+    OK(abbe_material_place(&m, &thin, &error));
+    OK(abbe_material_n(&m, 550, &n[2], &error));
+    assert_near(n[2], n[1], 1e-12);
+    REFUSED(ABBE_INVALID_ARGUMENT, "no conditions", abbe_material_place(&m, &wrong, &error));
+  }
+  assert_near(abbe_air_n(550, 1000, 1) - 1, 0.000278 / (1 + 3.4785e-3 * 985), 1e-6);
+}
+
+/* Near the ends of what conditions reach the mean is over fewer than 20 degrees. */
+TEST(dn_dt_is_known_as_far_as_conditions_reach) {
+  const abbe_material *m = shipped_material("n-bk7");
+  const double ends[2][2] = {{195, 189}, {-245, -239}};
+  for (int i = 0; i < 2; i++) {
+    double end[2], beside[2];
+    abbe_material_dn_dt(m, ABBE_LINE_E_NM, ends[i][0], end);
+    abbe_material_dn_dt(m, ABBE_LINE_E_NM, ends[i][1], beside);
+    for (int k = 0; k < 2; k++) assert_near(end[k], beside[k], 0.5e-6);
+    assert_true(end[1] != 0 && beside[1] != 0);
+  }
+  double beyond[2];
+  abbe_material_dn_dt(m, ABBE_LINE_E_NM, 220, beyond);
+  assert_true(isnan(beyond[0]) && isnan(beyond[1]));
+}
+
 TEST(what_no_source_gives_is_refused_and_not_taken_for_0) {
   const struct {
     const char *name, *words;

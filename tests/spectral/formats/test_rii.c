@@ -176,6 +176,19 @@ TEST(absolute_indices_get_a_warning) {
   assert_contains(m.warning, "relative to vacuum");
   assert_contains(m.warning, "Wavelengths are those in vacuum");
   assert_near(m.temperature_c, 20, 0);
+  /* in vacuum it is what it is, and in air lower */
+  double n, absolute;
+  const abbe_conditions vacuum = {NAN, 0}, air = {NAN, 1};
+  OK(abbe_material_n_absolute(&m, 550, &absolute, &error));
+  assert_near(absolute, 1.5, 0);
+  OK(abbe_material_place(&m, &vacuum, &error));
+  OK(abbe_material_n(&m, 550, &n, &error));
+  assert_near(n, 1.5, 1e-15);
+  OK(abbe_material_place(&m, &air, &error));
+  OK(abbe_material_n(&m, 550, &n, &error));
+  OK(abbe_material_n_absolute(&m, 550, &absolute, &error));
+  assert_near(n, 1.5 / abbe_air_n(550, 20, 1), 1e-12);
+  assert_near(absolute, 1.5, 1e-12);
   abbe_material_free(&m);
 }
 

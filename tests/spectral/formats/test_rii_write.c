@@ -55,6 +55,7 @@ TEST(random_records_come_back_the_same) {
     assert_string_equal(m.source, back.source);
     assert_true(same_text(m.comment, back.comment));
     assert_true(same_number(m.temperature_c, back.temperature_c, 1e-12));
+    assert_true(m.n_absolute == back.n_absolute);
     assert_true(m.published_n_d == back.published_n_d && m.published_v_d == back.published_v_d);
     if (m.dispersion.table == NULL) {
       bool constant = m.dispersion.count == 1 && back.dispersion.model == ABBE_DISPERSION_CONSTANT;
