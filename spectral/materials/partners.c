@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <strings.h>
 
 /* Catalogues of two makers, and of two years, print the same glass to this. */
 #define SAME_N 5e-6
@@ -59,17 +60,31 @@ static bool same_glass(const abbe_material_numbers *a, const abbe_material_numbe
          fabs(a->n_C - b->n_C) < SAME_N && fabs(a->n_g - b->n_g) < SAME_N;
 }
 
+/* How well a catalogue speaks for it: for sale, then of unknown status, then obsolete; of these
+ * what has a cost. */
+static int standing(const abbe_material *m) {
+  const abbe_material_catalogue *c = &m->catalogue;
+  const bool cost = c->rating_count > 0 && c->ratings[0] > 0;
+  const int status = c->status == NULL ? 1 : strcasecmp(c->status, "obsolete") == 0 ? 0 : 2;
+  return 2 * status + cost;
+}
+
 static void join_doubles(abbe_glass_partners *p) {
   size_t kept = 0;
   for (size_t i = 0; i < p->count; i++) {
     size_t k = 0;
     while (k < kept && !same_glass(&p->partner[k].numbers, &p->partner[i].numbers)) k++;
-    if (k < kept)
-      p->partner[k].doubles++;
-    else
+    if (k == kept) {
       p->partner[kept++] = p->partner[i];
+      continue;
+    }
+    const size_t doubles = p->partner[k].doubles + 1;
+    if (standing(p->partner[i].material) > standing(p->partner[k].material))
+      p->partner[k] = p->partner[i];
+    p->partner[k].doubles = doubles;
   }
   p->count = kept;
+  qsort(p->partner, p->count, sizeof *p->partner, by_secondary);
 }
 
 abbe_result abbe_glass_partners_find(const abbe_material_table *table, const abbe_material *glass,
@@ -83,6 +98,10 @@ abbe_result abbe_glass_partners_find(const abbe_material_table *table, const abb
   if (wrong != NULL)
     return abbe_error_set(error, ABBE_OUT_OF_RANGE, "%s has no single index with a V_d and a P_gF",
                           wrong->name);
+  if (third != NULL && same_glass(&own, &with))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s and %s are one glass, and three lenses take three", glass->name,
+                          third->name);
   out->partner = calloc(table->count + 1, sizeof *out->partner);
   if (out->partner == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu glasses", table->count);

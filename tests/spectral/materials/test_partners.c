@@ -113,3 +113,29 @@ TEST(partners_are_ranked_and_a_glass_of_two_names_stands_once) {
   REFUSED(ABBE_OUT_OF_RANGE, "plain has no single index with a V_d and a P_gF",
           abbe_glass_partners_find(&table, find_material(&table, "plain"), NULL, 12, &p, &error));
 }
+
+/* A glass with itself leaves no condition to fulfil. */
+TEST(a_triplet_takes_three_glasses) {
+  abbe_glass_partners p;
+  const abbe_material *glass = find_material(&table, "n-bk7");
+  REFUSED(ABBE_INVALID_ARGUMENT, "n-bk7 and n-bk7 are one glass",
+          abbe_glass_partners_find(&table, glass, glass, 12, &p, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "n-bk7 and bk7 are one glass",
+          abbe_glass_partners_find(&table, glass, find_material(&table, "bk7"), 12, &p, &error));
+}
+
+/* Of two names of one glass that which is for sale is shown, whichever comes first. */
+TEST(a_double_that_is_for_sale_stands_for_both) {
+  char standard[] = "standard", obsolete[] = "Obsolete";
+  for (int sold = 0; sold < 2; sold++) {
+    abbe_material f2[2] = {*find_material(&table, "f2"), *find_material(&table, "f2-again")};
+    for (int i = 0; i < 2; i++) f2[i].catalogue.status = i == sold ? standard : obsolete;
+    const abbe_material_table two = {.material = f2, .count = 2};
+    abbe_glass_partners p;
+    OK(abbe_glass_partners_find(&two, find_material(&table, "n-bk7"), NULL, 12, &p, &error));
+    assert_int_equal(p.count, 1);
+    assert_int_equal(p.partner[0].doubles, 1);
+    assert_string_equal(p.partner[0].material->name, f2[sold].name);
+    abbe_glass_partners_free(&p);
+  }
+}
