@@ -10,6 +10,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* For a field along that axis. */
 static void show_attenuation(const abbe_material *m, int axis) {
@@ -87,6 +88,43 @@ void abbe_materials_show_absorption(const abbe_material *m) {
     show_attenuation(m, axis);
   }
   show_faces(m);
+}
+
+/* ---- at one wavelength ---- */
+
+/* The axes whose losses differ: one, of a uniaxial crystal two, of a biaxial one three. */
+static int loss_axes(const abbe_material *m, int axis[3]) {
+  static const int three[3] = {0, 1, 2}, two[3] = {0, 2, 2};
+  const bool biaxial = abbe_material_is_biaxial(m);
+  memcpy(axis, biaxial ? three : two, sizeof three);
+  if (m->attenuation == NULL) return 0;
+  return !abbe_material_is_pleochroic(m) ? 1 : biaxial ? 3 : 2;
+}
+
+const char *abbe_materials_loss_columns(const abbe_material *m) {
+  static const char *const columns[] = {"", "         1/m", "  ordinary 1/m  extraordinary 1/m",
+                                        "     1/m of x     1/m of y     1/m of z"};
+  int axis[3];
+  return columns[loss_axes(m, axis)];
+}
+
+void abbe_materials_print_losses(const abbe_material *m, double lambda_nm) {
+  static const int widths[4][3] = {{0}, {12}, {14, 19}, {13, 13, 13}};
+  int axis[3];
+  const int count = loss_axes(m, axis);
+  for (int i = 0; i < count; i++)
+    printf("%*.4g", widths[count][i], abbe_material_attenuation_along(m, axis[i], lambda_nm));
+}
+
+void abbe_materials_add_losses(cJSON *to, const abbe_material *m, double lambda_nm) {
+  static const char *const keys[3] = {"attenuation_per_m", "attenuation_y_per_m",
+                                      "attenuation_z_per_m"};
+  int axis[3];
+  const int count = loss_axes(m, axis);
+  cJSON_AddNumberToObject(to, keys[0], abbe_material_attenuation_along(m, 0, lambda_nm));
+  for (int i = 1; i < count; i++)
+    cJSON_AddNumberToObject(to, count == 2 ? "attenuation_extraordinary_per_m" : keys[i],
+                            abbe_material_attenuation_along(m, axis[i], lambda_nm));
 }
 
 /* ---- JSON ---- */

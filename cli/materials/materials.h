@@ -76,6 +76,11 @@ abbe_result abbe_materials_print_json(const cJSON *root, abbe_error *error);
  * too. JSON has `attenuation_per_m` (of the ordinary wave) and `pleochroism`. */
 void abbe_materials_show_absorption(const abbe_material *material);
 void abbe_materials_add_absorption(cJSON *to, const abbe_material *material);
+/* What it absorbs at one wavelength, 1/m: columns of a table, none of what is clear, and their
+ * head; in JSON `attenuation_per_m`, with keys of their own for the other waves or axes. */
+const char *abbe_materials_loss_columns(const abbe_material *material);
+void abbe_materials_print_losses(const abbe_material *material, double lambda_nm);
+void abbe_materials_add_losses(cJSON *to, const abbe_material *material, double lambda_nm);
 /* Of a biaxial crystal, at d: its three indices and the angle of its optic axes about z. */
 void abbe_materials_show_biaxial(const abbe_material *material);
 void abbe_materials_add_biaxial(cJSON *to, const abbe_material *material);

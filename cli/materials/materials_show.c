@@ -194,14 +194,14 @@ static abbe_result show_text(const request *r, const abbe_material *m, const abb
   const bool two = abbe_material_is_uniaxial(m);
   if (r->at_count > 0)
     printf("\n  %10s  %12s%s%s\n", "nm", two ? "ordinary n" : "n", two ? " extraordinary" : "",
-           m->attenuation != NULL ? "         1/m" : "");
+           abbe_materials_loss_columns(m));
   for (size_t i = 0; i < r->at_count; i++) {
     double n = 0;
     abbe_result result = abbe_material_n(m, r->at[i], &n, error);
     if (result != ABBE_OK) return result;
     printf("  %10.6g  %12.9f", r->at[i], n);
     if (two) printf("  %12.9f", extraordinary_at(m, r->at[i]));
-    if (m->attenuation != NULL) printf("  %10.4g", abbe_material_attenuation(m, r->at[i]));
+    abbe_materials_print_losses(m, r->at[i]);
     printf("%s\n", abbe_material_extrapolates(m, r->at[i]) ? "  extrapolated" : "");
   }
   return ABBE_OK;
@@ -339,7 +339,7 @@ static abbe_result show_json(const request *r, const abbe_material_table *table,
   cJSON *list = metal ? NULL : cJSON_AddArrayToObject(root, "n");
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < r->at_count && !metal && result == ABBE_OK; i++) {
-    double n = 0, absolute = 0;
+    double n = 0, absolute = NAN;
     result = abbe_material_n(m, r->at[i], &n, error);
     abbe_material_n_absolute(m, r->at[i], &absolute, NULL);
     cJSON *item = cJSON_CreateObject();
@@ -348,7 +348,7 @@ static abbe_result show_json(const request *r, const abbe_material_table *table,
     cJSON_AddNumberToObject(item, "n_absolute", absolute);
     if (abbe_material_is_uniaxial(m))
       cJSON_AddNumberToObject(item, "n_extraordinary", extraordinary_at(m, r->at[i]));
-    cJSON_AddNumberToObject(item, "attenuation_per_m", abbe_material_attenuation(m, r->at[i]));
+    abbe_materials_add_losses(item, m, r->at[i]);
     cJSON_AddBoolToObject(item, "extrapolated", abbe_material_extrapolates(m, r->at[i]));
     cJSON_AddItemToArray(list, item);
   }
@@ -424,8 +424,9 @@ static void check(const request *r) {
   if (r->name == NULL)
     abbe_materials_wrong_use(r->program,
                              "show what? Name a material; 'abbe materials list' has them");
-  if (r->fit && (r->json || r->at_count > 0))
-    abbe_materials_wrong_use(r->program, "--fit goes without --json and --at");
+  if (r->fit && (r->json || r->at_count > 0 || abbe_conditions_given(&r->conditions)))
+    abbe_materials_wrong_use(r->program,
+                             "--fit goes without --json, --at, --temperature and --pressure");
 }
 
 static abbe_result answer(const request *r, const abbe_material_table *table, abbe_error *error) {
@@ -442,7 +443,7 @@ static abbe_result answer(const request *r, const abbe_material_table *table, ab
   if (abbe_conditions_given(&r->conditions))
     result = abbe_material_place(&here, &r->conditions, error);
   if (result != ABBE_OK) return result;
-  if (r->fit) return show_fit_yaml(&here, error);
+  if (r->fit) return show_fit_yaml(m, error);
   abbe_material_table known;
   abbe_findings found = {0};
   result = abbe_material_table_load(NULL, &known, error);

@@ -1,7 +1,7 @@
 /* The verbs of `abbe materials` that are about numbers: list, show, nearest, check, fit, from. */
 #include "tests/cli/run_json.h"
 
-#include "spectral/materials/material_table.h"
+#include "spectral/formats/material_table_load.h"
 
 static void answers(const char *line, int code, const char *part) {
   int actual = run_line(line);
@@ -128,6 +128,26 @@ TEST(nearest_finds_by_numbers_curve_and_points) {
   assert_true(json_number(first(json, "nearest"), "rms") < 1e-4);
   cJSON_Delete(json);
   answers("$abbe materials nearest --like n-bk7 --range 500:2000", 0, "were skipped");
+}
+
+/* Beside two indices stand two losses, as the record gives them. */
+TEST(losses_stand_by_wave) {
+  cJSON *json = run_json("$abbe materials show tourmaline-green --at 550 --json", 0);
+  OWNED(abbe_material_table, table);
+  OK(abbe_material_table_load("default", &table, &error));
+  const abbe_material *m = NULL;
+  OK(abbe_material_table_find(&table, "tourmaline-green", &m, &error));
+  const double ordinary = abbe_material_attenuation_along(m, 0, 550),
+               extraordinary = abbe_material_attenuation_along(m, 2, 550);
+  assert_true(ordinary > 1.5 * extraordinary);
+  assert_near(json_number(first(json, "n"), "attenuation_per_m"), ordinary, 1e-9 * ordinary);
+  assert_near(json_number(first(json, "n"), "attenuation_extraordinary_per_m"), extraordinary,
+              1e-9 * ordinary);
+  char line[96];
+  snprintf(line, sizeof line, "%14.4g%19.4g\n", ordinary, extraordinary);
+  answers("$abbe materials show tourmaline-green --at 550", 0, line);
+  assert_contains(run_output, "ordinary 1/m  extraordinary 1/m\n");
+  cJSON_Delete(json);
 }
 
 TEST(partners_are_listed_and_drawn) {
@@ -308,6 +328,8 @@ TEST(wrong_input_gets_a_sentence) {
       {"$abbe materials partners", 2, "partners of what?"},
       {"$abbe materials partners gold", 1, "gold has no single index with a V_d and a P_gF"},
       {"$abbe materials partners n-bk7 --with flourite", 1, "did you mean 'fluorite'?"},
+      {"$abbe materials partners n-bk7 --with n-bk7", 1, "n-bk7 and n-bk7 are one glass"},
+      {"$abbe materials show n-bk7 --fit --temperature -40", 2, "--fit goes without"},
       {"$abbe materials partners n-bk7 --most-power 1", 1, "no glass of 'default' makes"},
       {"$abbe materials nearest", 2, "nearest to what?"},
       {"$abbe materials nearest --nd 1.5", 2, "--nd and --vd go together"},
