@@ -146,12 +146,12 @@ abbe_gem_light abbe_gem_light_make(const double eye[3], double head_rad) {
   for (int k = 0; k < 3; k++) light.eye[k] = (float)eye[k];
   /* beyond any cosine where there is no head */
   light.cos_head = head_rad > 0 ? (float)cos(head_rad) : 2;
+  light.cos_gemray = (float)cos(ABBE_GEM_GEMRAY_HEAD_DEG * ABBE_DEGREE);
   return light;
 }
 
 void abbe_gem_light_judge(const abbe_gem_light *light, const abbe_gem_path *path,
                           float amount[ABBE_GEM_AMOUNT_COUNT]) {
-  static const float cos_gemray = 0.98480775f; /* of ABBE_GEM_GEMRAY_HEAD_DEG */
   for (int k = 0; k < ABBE_GEM_AMOUNT_COUNT; k++) amount[k] = 0;
   for (size_t i = 0; i < path->count; i++) {
     const abbe_gem_exit *e = &path->exit[i];
@@ -166,7 +166,7 @@ void abbe_gem_light_judge(const abbe_gem_light *light, const abbe_gem_path *path
     } else {
       amount[ABBE_GEM_DOWN] += e->share;
     }
-    if (to_eye > 0 && to_eye <= cos_gemray) {
+    if (to_eye > 0 && to_eye <= light->cos_gemray) {
       amount[ABBE_GEM_GEMRAY_ISO] += e->share;
       amount[ABBE_GEM_GEMRAY_COS] += e->share * to_eye;
       amount[ABBE_GEM_GEMRAY_SC2] += e->share * 2 * to_eye * sqrtf(1 - to_eye * to_eye);

@@ -86,8 +86,9 @@ const char *abbe_gem_amount_name(abbe_gem_amount amount);
 const char *abbe_gem_amount_text(abbe_gem_amount amount);
 
 typedef struct abbe_gem_light {
-  float eye[3];   /* unit, from the stone to the eye, in the stone's axes */
-  float cos_head; /* cosine of the head's half angle about it */
+  float eye[3];     /* unit, from the stone to the eye, in the stone's axes */
+  float cos_head;   /* cosine of the head's half angle about it */
+  float cos_gemray; /* that of GemRay's head */
 } abbe_gem_light;
 
 /* head_rad 0 (no head) to below pi / 4. */

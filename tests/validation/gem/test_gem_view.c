@@ -314,3 +314,28 @@ TEST(gemray_says_the_same) {
     judged_free(&j);
   }
 }
+
+/* One exit at the angle a to the eye's line, whatever way the eye looks: e counts from the plane
+ * across that line, and the head is dark within 10 degrees of it. */
+TEST(gemray_s_weights_are_of_the_angle_to_the_eye) {
+  const double eye[3] = {0.6, 0, 0.8}, across[3] = {-0.8, 0, 0.6};
+  const struct {
+    double angle_deg;
+    bool lit;
+  } exits[] = {{5, false}, {9.9, false}, {10.1, true}, {40, true}, {89, true}, {91, false}};
+  const abbe_gem_light light = abbe_gem_light_make(eye, 15 * ABBE_DEGREE);
+  abbe_gem_path *path = calloc(1, sizeof *path);
+  path->count = 1;
+  path->exit[0].share = 0.5f;
+  for (size_t i = 0; i < sizeof exits / sizeof *exits; i++) {
+    const double a = exits[i].angle_deg * ABBE_DEGREE, lit = exits[i].lit ? 0.5 : 0;
+    float amount[ABBE_GEM_AMOUNT_COUNT];
+    for (int k = 0; k < 3; k++) path->exit[0].d[k] = (float)(cos(a) * eye[k] + sin(a) * across[k]);
+    abbe_gem_light_judge(&light, path, amount);
+    assert_near((double)amount[ABBE_GEM_GEMRAY_ISO], lit, 1e-7);
+    assert_near((double)amount[ABBE_GEM_GEMRAY_COS], lit * cos(a), 1e-6);
+    assert_near((double)amount[ABBE_GEM_GEMRAY_SC2], lit * 2 * cos(a) * sqrt(1 - cos(a) * cos(a)),
+                1e-6);
+  }
+  free(path);
+}
