@@ -11,16 +11,6 @@ typedef double complex number;
 
 static const double grazing = 1e-6; /* below, rounding hides which way it goes */
 
-static void scale_to_unit(double v[3]) {
-  const double length = sqrt(abbe_vector_dot(v, v));
-  for (int k = 0; k < 3; k++) v[k] /= length;
-}
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-  for (int k = 0; k < 3; k++)
-    out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
 /* n^power along each axis, applied to v. */
 static void apply(const abbe_biaxial *m, int power, const double v[3], double out[3]) {
   double made[3] = {0};
@@ -38,9 +28,9 @@ static void apply(const abbe_biaxial *m, int power, const double v[3], double ou
 static double section(const abbe_biaxial *m, int power, const double v[3], double high[3]) {
   double a[3] = {0}, b[3], ta[3], tb[3];
   a[fabs(v[0]) < 0.6 ? 0 : 1] = 1;
-  cross(v, a, b);
-  scale_to_unit(b);
-  cross(b, v, a);
+  abbe_vector_cross(v, a, b);
+  abbe_vector_normalise(b);
+  abbe_vector_cross(b, v, a);
   apply(m, power, a, ta);
   apply(m, power, b, tb);
   const double off = abbe_vector_dot(a, tb), aa = abbe_vector_dot(a, ta),
@@ -48,7 +38,7 @@ static double section(const abbe_biaxial *m, int power, const double v[3], doubl
   double x = d >= 0 ? s + d : off, y = d >= 0 ? off : s - d;
   if (!(x != 0 || y != 0)) x = 1;
   for (int k = 0; k < 3; k++) high[k] = x * a[k] + y * b[k];
-  scale_to_unit(high);
+  abbe_vector_normalise(high);
   return (aa + bb) / 2 + s;
 }
 
@@ -58,19 +48,19 @@ void abbe_biaxial_of_normal(const abbe_biaxial *m, abbe_biaxial_mode mode, const
   section(m, -2, normal, d);
   if (mode == ABBE_BIAXIAL_SLOW) {
     double other[3];
-    cross(normal, d, other);
+    abbe_vector_cross(normal, d, other);
     memcpy(d, other, sizeof d);
   }
   apply(m, -2, d, e);
   out->index = 1 / sqrt(abbe_vector_dot(d, e));
-  scale_to_unit(e);
+  abbe_vector_normalise(e);
   const double along = abbe_vector_dot(e, normal);
   for (int k = 0; k < 3; k++) {
     out->normal[k] = normal[k];
     out->field[k] = e[k];
     out->ray[k] = normal[k] - along * e[k];
   }
-  scale_to_unit(out->ray);
+  abbe_vector_normalise(out->ray);
 }
 
 /* E across the ray; H across both, of the length of the root of E D; k = D x H / H^2. */
@@ -80,15 +70,15 @@ void abbe_biaxial_of_ray(const abbe_biaxial *m, abbe_biaxial_mode mode, const do
   section(m, 2, ray, e);
   if (mode == ABBE_BIAXIAL_FAST) {
     double other[3];
-    cross(ray, e, other);
+    abbe_vector_cross(ray, e, other);
     memcpy(e, other, sizeof e);
   }
   apply(m, 2, e, d);
   const double along = sqrt(abbe_vector_dot(e, d)); /* the index along the ray */
-  cross(ray, e, h);
-  cross(d, h, k);
+  abbe_vector_cross(ray, e, h);
+  abbe_vector_cross(d, h, k);
   out->index = sqrt(abbe_vector_dot(k, k)) / along;
-  scale_to_unit(k);
+  abbe_vector_normalise(k);
   memcpy(out->normal, k, sizeof k);
   memcpy(out->ray, ray, sizeof k);
   memcpy(out->field, e, sizeof e);
@@ -328,9 +318,9 @@ static void make_frame(const double n[3], const double k[3], double frame[3][3],
     for (int i = 0; i < 3; i++) along[i] = (i == least) - n[least] * n[i];
     *tangential = 0;
   }
-  scale_to_unit(along);
+  abbe_vector_normalise(along);
   memcpy(frame[2], n, sizeof frame[2]);
-  cross(n, along, frame[1]);
+  abbe_vector_cross(n, along, frame[1]);
 }
 
 static side_medium place(const abbe_biaxial *m, double frame[3][3], double k) {
@@ -376,8 +366,8 @@ static void tell(const abbe_biaxial *m, double frame[3][3], int which, const wav
   to_world(frame, w->e, s->field);
   to_world(frame, ray, s->ray);
   s->index = sqrt(abbe_vector_dot(s->normal, s->normal));
-  if (s->index > 0) scale_to_unit(s->normal);
-  if (w->travels) scale_to_unit(s->ray);
+  if (s->index > 0) abbe_vector_normalise(s->normal);
+  if (w->travels) abbe_vector_normalise(s->ray);
   out->mode = is_isotropic(m) || !w->travels ? (abbe_biaxial_mode)which : mode_of(m, s);
 }
 
@@ -389,7 +379,7 @@ static void graze(const abbe_biaxial *from, const double n[3], abbe_biaxial_mode
   double mirrored[3];
   *out = (abbe_biaxial_split){0};
   for (int i = 0; i < 3; i++) mirrored[i] = ray[i] - twice * n[i];
-  scale_to_unit(mirrored);
+  abbe_vector_normalise(mirrored);
   abbe_biaxial_of_ray(from, mode, mirrored, &w->state);
   w->share = 1;
   w->amplitude[0] = -1;

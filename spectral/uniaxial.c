@@ -11,11 +11,6 @@ typedef double complex number;
 
 static const double grazing = 1e-6; /* below, rounding hides in which direction it goes */
 
-static void scale_to_unit(double v[3]) {
-  const double length = sqrt(abbe_vector_dot(v, v));
-  for (int k = 0; k < 3; k++) v[k] /= length;
-}
-
 static void cross(const number a[3], const number b[3], number out[3]) {
   for (int k = 0; k < 3; k++)
     out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
@@ -63,7 +58,7 @@ void abbe_uniaxial_ray(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const do
     stretch(m, normal, e, o, ray);
   else
     memmove(ray, normal, 3 * sizeof *ray);
-  scale_to_unit(ray);
+  abbe_vector_normalise(ray);
 }
 
 void abbe_uniaxial_normal(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const double ray[3],
@@ -73,7 +68,7 @@ void abbe_uniaxial_normal(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const
     stretch(m, ray, o, e, normal);
   else
     memmove(normal, ray, 3 * sizeof *normal);
-  scale_to_unit(normal);
+  abbe_vector_normalise(normal);
 }
 
 /* ---- waves of one tangential wave vector ---- */
@@ -102,7 +97,7 @@ static void make_face(const double n[3], const double k[3], face *f) {
     for (int i = 0; i < 3; i++) f->along[i] = (i == least) - n[least] * n[i];
     f->k = 0;
   }
-  scale_to_unit(f->along);
+  abbe_vector_normalise(f->along);
   for (int i = 0; i < 3; i++)
     f->across[i] = n[(i + 1) % 3] * f->along[(i + 2) % 3] - n[(i + 2) % 3] * f->along[(i + 1) % 3];
 }
@@ -223,7 +218,7 @@ static void graze(const abbe_uniaxial *from, const double n[3], abbe_uniaxial_mo
   const double twice = 2 * abbe_vector_dot(ray, n);
   memset(out, 0, sizeof *out);
   for (int i = 0; i < 3; i++) w->ray[i] = ray[i] - twice * n[i];
-  scale_to_unit(w->ray);
+  abbe_vector_normalise(w->ray);
   abbe_uniaxial_normal(from, mode, w->ray, w->normal);
   w->index = bends(from, mode)
                  ? abbe_uniaxial_index(from->n_o, from->n_e, abbe_vector_dot(w->normal, from->axis))
