@@ -26,6 +26,8 @@ typedef struct support {
 
 typedef struct making {
   const abbe_object *stone;
+  abbe_object
+      under; /* those of its faces that a ball above can touch; its corners are the stone's */
   double middle[2], half[2], bottom, top; /* the stone's middle, half sizes and heights */
   double width, gap, thick;
   double unit;      /* m */
@@ -71,7 +73,9 @@ static bool is_same(const support *a, const support *b) {
 static abbe_result find_rim(making *m) {
   m->rim = malloc(AROUND * sizeof *m->rim);
   m->row = malloc((size_t)AROUND * ROD * sizeof *m->row);
-  if (m->rim == NULL || m->row == NULL)
+  m->under.mesh.face = malloc(m->stone->mesh.face_count * sizeof *m->under.mesh.face);
+  m->under.mesh.position = m->stone->mesh.position;
+  if (m->rim == NULL || m->row == NULL || m->under.mesh.face == NULL)
     return abbe_error_set(m->error, ABBE_NO_MEMORY, "no memory for a setting");
   support before = support_at(m, -2 * ABBE_PI / AROUND), now = support_at(m, 0);
   for (int i = 0; i < AROUND; i++) {
@@ -97,12 +101,31 @@ static bool goes_on(making *m) {
   return m->result == ABBE_OK;
 }
 
+/* Leaves of `under` what is nearer than that to the vertical line. */
+static void find_under(making *m, double x, double y, double radius) {
+  const abbe_mesh *all = &m->stone->mesh;
+  const double at[2] = {x, y};
+  m->under.mesh.face_count = 0;
+  for (size_t f = 0; f < all->face_count; f++) {
+    const uint32_t *face = all->face[f];
+    bool beside = false;
+    for (int k = 0; k < 2; k++) {
+      const double a = all->position[face[0]][k], b = all->position[face[1]][k],
+                   c = all->position[face[2]][k];
+      beside =
+          beside || fmin(a, fmin(b, c)) > at[k] + radius || fmax(a, fmax(b, c)) < at[k] - radius;
+    }
+    if (!beside) memcpy(m->under.mesh.face[m->under.mesh.face_count++], face, sizeof *all->face);
+  }
+}
+
 /* The lowest height at which a ball over the stone touches nothing of it, or `least`. */
 static double height_of_ball(making *m, double x, double y, double radius, double least) {
   double z = m->top + 1.01 * radius;
+  find_under(m, x, y, radius);
   for (int i = 0; i < 400 && z > least && goes_on(m); i++) {
     const double p[3] = {x, y, z};
-    const double free = abbe_object_distance(m->stone, p) - radius;
+    const double free = abbe_object_distance(&m->under, p) - radius;
     if (!(free > 1e-5 * radius)) break;
     z -= free;
   }
@@ -456,6 +479,7 @@ abbe_result abbe_setting_make(const abbe_mesh *stone, const abbe_setting *settin
   }
   free(m.rim);
   free(m.row);
+  free(m.under.mesh.face);
   if (m.result == ABBE_OK) m.result = abbe_mesh_compute_normals(out, ABBE_NORMALS_AUTO, error);
   if (m.result != ABBE_OK) abbe_mesh_free(out);
   return m.result;

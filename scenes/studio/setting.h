@@ -29,7 +29,7 @@ typedef enum abbe_setting_kind {
 #define ABBE_SETTING_GAP 1e-3   /* share of the stone's width, the smaller extent along x and y */
 #define ABBE_SETTING_THICK 0.13 /* the same, where no thickness is given */
 #define ABBE_SETTING_FINGER 0.0085 /* m, the inner radius of a band */
-#define ABBE_SETTING_FACES 50000   /* of the stone, at the most */
+#define ABBE_SETTING_FACES 200000  /* of the stone, at the most */
 #define ABBE_SETTING_LEAST 2       /* prongs or beads */
 #define ABBE_SETTING_MOST 24
 

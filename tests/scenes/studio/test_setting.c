@@ -144,7 +144,7 @@ TEST(what_cannot_be_set_is_refused) {
   REFUSED(ABBE_INVALID_ARGUMENT, "20000 m",
           abbe_setting_make(&stone, &(abbe_setting){.radius = 3e4}, &metal, &error));
   abbe_mesh_free(&stone);
-  OK(abbe_shape_sphere(1, 7, &stone, &error));
+  OK(abbe_shape_sphere(1, 8, &stone, &error));
   assert_true(stone.face_count > ABBE_SETTING_FACES);
   REFUSED(ABBE_UNSUPPORTED, "triangles cannot be set",
           abbe_setting_make(&stone, &(abbe_setting){0}, &metal, &error));
