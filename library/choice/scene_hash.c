@@ -11,6 +11,20 @@ static unsigned long long hash(unsigned long long h, const void *data, size_t si
 
 static const unsigned long long hash_start = 14695981039346656037u;
 
+/* What a crystal has besides its ordinary or middle index and its mean loss. */
+static unsigned long long hash_crystal(unsigned long long h, const abbe_object *o) {
+  h = hash(h, o->axis, sizeof o->axis);
+  if (abbe_material_is_biaxial(o->material)) h = hash(h, o->axis_x, sizeof o->axis_x);
+  for (int i = 0; i < INDEX_STEPS; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      const double lambda_nm = 380 + 50.0 * i;
+      double numbers[2] = {0, abbe_material_attenuation_along(o->material, axis, lambda_nm)};
+      abbe_material_n_along(o->material, axis, lambda_nm, &numbers[0], NULL);
+      h = hash(h, numbers, sizeof numbers);
+    }
+  return h;
+}
+
 static unsigned long long hash_object(unsigned long long h, const abbe_object *o) {
   h = hash(h, o->mesh.position, o->mesh.vertex_count * sizeof *o->mesh.position);
   h = hash(h, o->mesh.face, o->mesh.face_count * sizeof *o->mesh.face);
@@ -27,6 +41,7 @@ static unsigned long long hash_object(unsigned long long h, const abbe_object *o
     double numbers[] = {n, abbe_material_attenuation(o->material, lambda_nm)};
     h = hash(h, numbers, sizeof numbers);
   }
+  if (o->material != NULL && abbe_material_is_crystal(o->material)) h = hash_crystal(h, o);
   if (!o->mirror) return h;
   h = hash(h, &o->mirror_reflectance, sizeof o->mirror_reflectance);
   if (abbe_brushing_is_rough(&o->brushing)) {
