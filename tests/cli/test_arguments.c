@@ -98,6 +98,8 @@ static const struct named {
     {"materials plot", "output", WRITES},
     {"materials plot", "table", READS},
     {"materials plot", "points", READS},
+    {"materials partners", "output", WRITES},
+    {"materials partners", "table", READS},
     {"materials nearest", "table", READS},
     {"materials nearest", "like-table", READS},
     {"materials nearest", "points", READS},
