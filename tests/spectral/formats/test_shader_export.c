@@ -47,7 +47,8 @@ TEST(the_laws_of_others_are_found_again) {
   assert_near(dispersion, 1.03, 1e-12);
   assert_near(error, 0, 1e-12);
   abbe_dispersion_free(&m.dispersion);
-  m.dispersion = (abbe_dispersion){ABBE_DISPERSION_CAUCHY, 2, {1.5046, 0.0042}, NULL, NULL};
+  m.dispersion =
+      (abbe_dispersion){.model = ABBE_DISPERSION_CAUCHY, .count = 2, .c = {1.5046, 0.0042}};
   m.max_nm = 800;
   abbe_shader_gltf_numbers(&m, &ior, &dispersion, &error);
   assert_near(ior, 1.5046 + 0.0042 / 0.5875618 / 0.5875618, 1e-14);

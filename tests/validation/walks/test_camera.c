@@ -140,7 +140,7 @@ TEST(a_lens_blurs_by_disks) {
     for (int n = 0; n < SIDE * SIDE; n++) {
       const abbe_trace_camera from = abbe_trace_camera_at(&c, ((float)(n % SIDE) + 0.5f) / SIDE,
                                                           ((float)(n / SIDE) + 0.5f) / SIDE);
-      size_t pixel;
+      size_t pixel = 0;
       assert_true(abbe_trace_camera_pixel(&from, p, &pixel, &distance, d, &per_pixel));
       const float x = (float)(pixel % PIXELS) + 0.5f, y = (float)(pixel / PIXELS) + 0.5f;
       const double right = (2 * (double)x / PIXELS - 1) * (double)c.half_width - 0.1;
