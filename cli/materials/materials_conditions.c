@@ -19,6 +19,7 @@ void abbe_materials_print_conditions(const abbe_material *material) {
   char text[32];
   if (!isnan(m->temperature_c)) printf("  temperature   %g C\n", m->temperature_c);
   if (abbe_material_is_conductor(m)) return;
+  if (m->n_absolute) printf("  index         relative to vacuum\n");
   if (m->dispersion.shift.on) {
     abbe_material_n_absolute(m, ABBE_LINE_D_NM, &n_d, NULL);
     printf("  shown         at %g C in air of %g atm; n_d %s relative to vacuum\n",
@@ -36,6 +37,7 @@ void abbe_materials_print_conditions(const abbe_material *material) {
 void abbe_materials_add_conditions(cJSON *to, const abbe_material *material) {
   const abbe_conditions at = conditions_of(material);
   double gain[2];
+  cJSON_AddBoolToObject(to, "n_absolute", material->n_absolute);
   cJSON *item = cJSON_AddObjectToObject(to, "shown_at");
   cJSON_AddNumberToObject(item, "temperature_c", at.temperature_c);
   cJSON_AddNumberToObject(item, "pressure_atm", at.pressure_atm);

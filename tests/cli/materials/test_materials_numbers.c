@@ -130,6 +130,29 @@ TEST(nearest_finds_by_numbers_curve_and_points) {
   answers("$abbe materials nearest --like n-bk7 --range 500:2000", 0, "were skipped");
 }
 
+/* An index that a file says is relative to vacuum stays so in tables and stores and back. */
+TEST(an_index_relative_to_vacuum_stays_so) {
+  run_must("printf 'REFERENCES: r\\nDATA:\\n- {type: formula 5, wavelength_range: 0.4 0.7, "
+           "coefficients: 1.5}\\nCONDITIONS: {n_absolute: true, temperature: 293.15}\\n' > v.yml");
+  run_must("$abbe materials import v.yml --name v -o v.yaml");
+  run_must("$abbe materials import v.yaml -o v.sqlite");
+  run_must("$abbe materials export v --table v.sqlite --to rii -o w.yml");
+  run_must("$abbe materials import w.yml --name v -o w.yaml");
+  static const char *const tables[] = {"v.yaml", "v.sqlite", "w.yaml"};
+  for (int i = 0; i < 3; i++) {
+    char line[128];
+    snprintf(line, sizeof line, "$abbe materials show v --table %s --pressure 0", tables[i]);
+    answers(line, 0, "index         relative to vacuum\n");
+    assert_contains(run_output, "n_d 1.500000 relative to vacuum");
+    strcat(line, " --at 550 --json");
+    cJSON *json = run_json(line, 0);
+    assert_true(cJSON_IsTrue(cJSON_GetObjectItem(json, "n_absolute")));
+    assert_near(json_number(first(json, "n"), "n"), 1.5, 1e-12);
+    assert_near(json_number(first(json, "n"), "n_absolute"), 1.5, 1e-12);
+    cJSON_Delete(json);
+  }
+}
+
 /* Beside two indices stand two losses, as the record gives them. */
 TEST(losses_stand_by_wave) {
   cJSON *json = run_json("$abbe materials show tourmaline-green --at 550 --json", 0);
