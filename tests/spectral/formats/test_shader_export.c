@@ -107,11 +107,12 @@ TEST(pbrt_gets_the_index_every_five_nanometres) {
 }
 
 TEST(held_indices_are_told) {
-  abbe_material m = {.name = letter,
-                     .source = plain,
-                     .min_nm = 400,
-                     .max_nm = 700,
-                     .dispersion = {ABBE_DISPERSION_CAUCHY, 2, {1.5, 0.004}, NULL}};
+  abbe_material m = {
+      .name = letter,
+      .source = plain,
+      .min_nm = 400,
+      .max_nm = 700,
+      .dispersion = {.model = ABBE_DISPERSION_CAUCHY, .count = 2, .c = {1.5, 0.004}}};
   free(written(ABBE_SHADER_PBRT, &m, 1));
   assert_int_equal(report.kinds[ABBE_NOTE_ASSUMED], 1);
   assert_contains(report.note[1].text, "reach from 400 to 700 nm; n is held at their ends out to "
@@ -126,11 +127,12 @@ TEST(names_become_identifiers_once_each) {
   char *const names[] = {(char[]){"n-bk7"}, (char[]){"n_bk7"}, (char[]){"n bk7"},
                          (char[]){"7 \xc3\xa4 \"x\""}};
   for (int i = 0; i < 4; i++)
-    m[i] = (abbe_material){.name = names[i],
-                           .source = broken,
-                           .min_nm = 400,
-                           .max_nm = 700,
-                           .dispersion = {ABBE_DISPERSION_CAUCHY, 2, {1.5, 0.004}, NULL}};
+    m[i] = (abbe_material){
+        .name = names[i],
+        .source = broken,
+        .min_nm = 400,
+        .max_nm = 700,
+        .dispersion = {.model = ABBE_DISPERSION_CAUCHY, .count = 2, .c = {1.5, 0.004}}};
   char *text = written(ABBE_SHADER_POVRAY, m, 4);
   assert_contains(text, "#declare Abbe_n_bk7 =");
   assert_contains(text, "#declare Abbe_n_bk7_2 =");
