@@ -44,7 +44,7 @@ TEST(pictures_show_the_caustic) {
 TEST(noise_is_no_agreement) {
   assert_int_equal(run_line("\"$abbe\" validate --only absorption --samples 1000 --threads 1"), 3);
   assert_contains(run_output, "TOO NOISY");
-  assert_contains(run_errors, "of 5 known answers are out of tolerance");
+  assert_contains(run_errors, "of 7 known answers are out of tolerance");
 }
 
 TEST(errors_are_drawn) {

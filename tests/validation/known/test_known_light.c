@@ -52,7 +52,7 @@ TEST(settings_end) {
   } beyond[] = {{abbe_known_sphere_setting, 20, false},
                 {abbe_known_sphere_setting, 3, true},
                 {abbe_known_pane_setting, 13, false},
-                {abbe_known_pane_setting, 5, true},
+                {abbe_known_pane_setting, 7, true},
                 {make_picture, 3, false}};
   for (int i = 0; i < 5; i++) {
     abbe_known_answers a = {0};
