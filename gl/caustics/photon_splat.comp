@@ -83,8 +83,7 @@ struct Grid {
   float size;
 };
 
-// Parts whose bounds are no wider than a texel; of light with edges, which lie by their bounds, hardly wider. With
-// what they are shifted by bounds would be, and no part is laid wider: so that shift is half a texel at the most.
+// Parts whose bounds are no wider than a texel; of light with edges, which lie by their bounds, hardly wider.
 Grid grid_of(int level, ListedSplat s) {
   Grid g;
   g.level = level;
@@ -96,8 +95,7 @@ Grid grid_of(int level, ListedSplat s) {
   vec2 room = (1.0 - narrow / float(g.beside) * axis.yx) / max(axis, 1e-3);
   part = has_edges ? part : min(room.x, room.y);
   g.across = clamp(int(ceil(wide / part)), 1, MOST_IN_ROWS);
-  float along = max(abs(s.shift.x), abs(s.shift.y)) / g.size;
-  g.along = clamp(int(ceil(has_edges ? 2.0 * along : along - 0.25)), 1, MOST_IN_ROWS);
+  g.along = clamp(int(ceil(max(abs(s.shift.x), abs(s.shift.y)) / g.size - 0.25)), 1, MOST_IN_ROWS);
   return g;
 }
 
