@@ -10,7 +10,7 @@ if(AVIF_FOUND)
   target_compile_definitions(test_avif_file PRIVATE ABBE_HAS_AVIF)
 endif()
 abbe_test(stones cpu abbe_colorimetry abbe_spectral abbe_base)
-abbe_test(colour_commands cpu abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)
+abbe_test(colour_commands cpu exr_library abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)
 target_compile_definitions(test_colour_commands PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>")
 add_dependencies(test_colour_commands abbe)
 # OpenEXR's own C++ library, which shares no code with the C core that Abbe reads by.
