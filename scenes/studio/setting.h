@@ -48,8 +48,8 @@ typedef struct abbe_setting {
 abbe_result abbe_setting_make(const abbe_mesh *stone, const abbe_setting *setting, abbe_mesh *out,
                               abbe_error *error);
 
-/* From the middle of one stone to that of the next in a row, along a side of the outline of that
- * length, of a stone that wide. */
+/* From the middle of one stone to that of the next in a row, m: length is the outline's
+ * extent along the row, width the stone's, both m after placing. */
 double abbe_setting_pitch(const abbe_setting *setting, double length, double width);
 
 #endif

@@ -26,7 +26,8 @@ bool abbe_conditions_given(const abbe_conditions *at);
 /* Colder, air of 1 atm is no gas. */
 #define ABBE_AIR_LEAST_C (-190.0)
 
-/* Index of dry air; below ABBE_AIR_LEAST_C as at that temperature. */
+/* Index of dry air at nm, Celsius and atm, by Kohlrausch [SchottTIE19]: 1 without pressure; below
+ * ABBE_AIR_LEAST_C as at that temperature. */
 double abbe_air_n(double lambda_nm, double temperature_c, double pressure_atm);
 
 /* How an index moves. Zeroed: it stays. */
