@@ -1,4 +1,4 @@
-foreach(name wavelengths spectrum optics microfacets biaxial uniaxial uniaxial_answers
+foreach(name wavelengths spectrum optics film microfacets biaxial uniaxial uniaxial_answers
         conditions dispersion index_points index_difference fit points csv_points povray_index
         material material_numbers material_query material_table crystal_record partners absorption conductor glass_distance convert
         table_compare

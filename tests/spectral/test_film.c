@@ -1,0 +1,199 @@
+#include "spectral/film.h"
+
+#include "tests/check.h"
+
+#include "base/maths.h"
+#include "spectral/optics.h"
+
+#include <complex.h>
+#include <stdint.h>
+
+#define MGF2_NM (550 / (4 * 1.38)) /* a quarter of a wavelength of 550 nm */
+
+typedef struct stack {
+  size_t count;
+  abbe_film_layer layer[ABBE_FILM_MOST_LAYERS];
+} stack;
+
+static const double glass[2] = {1.52, 0};
+
+static abbe_film_light at(const stack *s, bool reversed, double from, const double to[2],
+                          double degrees, double nm) {
+  abbe_film_light out;
+  abbe_film_light_at(s->layer, s->count, reversed, from, to, cos(degrees * ABBE_DEGREE), nm, &out);
+  return out;
+}
+
+static double reflected(const stack *s, double to, double nm) {
+  const double medium[2] = {to, 0};
+  return at(s, false, 1, medium, 0, nm).reflected[0];
+}
+
+static stack one(double n, double k, double nm) {
+  return (stack){1, {{n, k, nm}}};
+}
+
+TEST(an_anti_reflection_coating_of_magnesium_fluoride) {
+  const stack s = one(1.38, 0, MGF2_NM);
+  const double rows[][2] = {{550, 0.012600790},
+                            {450, 0.0162043},
+                            {650, 0.0143684},
+                            {400, 0.022052515},
+                            {700, 0.015961969}};
+  for (int i = 0; i < 5; i++)
+    assert_near(reflected(&s, 1.52, rows[i][0]), rows[i][1], i == 1 || i == 2 ? 5e-8 : 5e-10);
+  const stack none = {0};
+  assert_near(reflected(&none, 1.52, 550), 0.042579995, 5e-10);
+  abbe_film_light out = at(&s, false, 1, glass, 45, 550);
+  assert_near(out.reflected[ABBE_FILM_S], 0.040047718, 5e-10);
+  assert_near(out.reflected[ABBE_FILM_P], 0.001355739, 5e-10);
+  const double air[2] = {1, 0};
+  out = at(&s, true, 1.52, air, 30, 550);
+  assert_near(out.reflected[ABBE_FILM_S], 0.051454540, 5e-10);
+  assert_near(out.reflected[ABBE_FILM_P], 0.000320226, 5e-10);
+}
+
+TEST(films_of_a_half_wave_a_root_and_many_layers) {
+  const stack none = {0}, half = one(1.38, 0, 2 * MGF2_NM), coated = one(1.38, 0, MGF2_NM);
+  assert_near(reflected(&half, 1.52, 550), reflected(&none, 1.52, 550), 1e-15);
+  assert_near(reflected(&coated, 2.417, 550), 0.0140705, 5e-8);
+  assert_near(reflected(&none, 2.417, 550), 0.1719688, 5e-8);
+  const stack root = one(sqrt(2.417), 0, 550 / (4 * sqrt(2.417)));
+  assert_near(reflected(&root, 2.417, 550), 0, 1e-15);
+  stack many = {.count = 11};
+  for (int i = 0; i < 11; i++) {
+    const double n = i % 2 == 0 ? 2.35 : 1.38;
+    many.layer[i] = (abbe_film_layer){n, 0, 550 / (4 * n)};
+  }
+  assert_near(reflected(&many, 1.52, 550), 0.994645548, 5e-10);
+  const stack three = {3, {{1.38, 0, MGF2_NM}, {2.15, 0, 550 / (2 * 2.15)}, {1.70, 0, 550 / 6.8}}};
+  assert_near(reflected(&three, 1.52, 450), 0.004153581, 5e-10);
+  const stack bubble = one(1.33, 0, 100), thin = one(1.33, 0, 5);
+  assert_near(reflected(&bubble, 1, 550), 0.0769246, 5e-8);
+  assert_near(reflected(&thin, 1, 550), 0.000481, 5e-7);
+}
+
+TEST(titania_on_topaz) {
+  static const double nm[] = {60, 90, 120, 150};
+  static const double row[][3] = {{.28088, .31603, .31102},
+                                  {.06030, .17772, .26736},
+                                  {.23025, .06251, .09715},
+                                  {.29848, .25081, .09302}};
+  for (int i = 0; i < 4; i++) {
+    const stack s = one(2.40, 0, nm[i]);
+    for (int k = 0; k < 3; k++) assert_near(reflected(&s, 1.61, 450 + 100 * k), row[i][k], 5.1e-6);
+  }
+  const stack s = one(2.40, 0, 120);
+  const double air[2] = {1, 0}, topaz[2] = {1.61, 0};
+  abbe_film_light in = at(&s, true, 1.61, air, 20, 550);
+  assert_near(in.reflected[ABBE_FILM_S], 0.0851382, 5e-8);
+  assert_near(in.reflected[ABBE_FILM_P], 0.0323444, 5e-8);
+  const double outside = asin(1.61 * sin(20 * ABBE_DEGREE)) / ABBE_DEGREE;
+  const abbe_film_light out = at(&s, false, 1, topaz, outside, 550);
+  for (int p = 0; p < 2; p++) {
+    assert_near(out.reflected[p], in.reflected[p], 1e-14);
+    assert_near(out.transmitted[p], 1 - in.reflected[p], 1e-14);
+  }
+  in = at(&s, true, 1.61, air, 45, 550);
+  for (int p = 0; p < 2; p++) {
+    assert_near(in.reflected[p], 1, 1e-14);
+    assert_true(in.transmitted[p] == 0);
+  }
+}
+
+TEST(metal_films_absorb_and_pass_alike_both_ways) {
+  const double air[2] = {1, 0}, bk7[2] = {1.5168, 0}, topaz[2] = {1.61, 0};
+  const stack grey = one(0.42, 2.4, 10), chromium = one(3.18, 4.41, 10);
+  abbe_film_light out = at(&grey, false, 1, topaz, 0, 550), in = at(&grey, true, 1.61, air, 0, 550);
+  assert_near(out.transmitted[0], 0.7295517, 5e-8);
+  assert_near(in.transmitted[0], 0.7295517, 5e-8);
+  assert_near(out.reflected[0], 0.1622338, 5e-8);
+  assert_near(in.reflected[0], 0.0974556, 5e-8);
+  out = at(&chromium, false, 1, bk7, 0, 587.56);
+  in = at(&chromium, true, 1.5168, air, 0, 587.56);
+  assert_near(out.reflected[0], 0.431482776, 5e-10);
+  assert_near(out.transmitted[0], 0.183909144, 5e-10);
+  assert_near(in.reflected[0], 0.237165867, 5e-10);
+  assert_near(in.transmitted[0], 0.183909144, 5e-10);
+}
+
+TEST(a_gap_of_air_is_tunnelled_through) {
+  const double bk7[2] = {1.5168, 0};
+  const stack gap = one(1, 0, 100);
+  const abbe_film_light out = at(&gap, false, 1.5168, bk7, 45, 587.56);
+  for (int p = 0; p < 2; p++) assert_near(out.reflected[p] + out.transmitted[p], 1, 1e-14);
+  assert_near(out.reflected[ABBE_FILM_S], 0.308006731, 1e-9);
+  assert_near(out.reflected[ABBE_FILM_P], 0.158428032, 1e-9);
+}
+
+/* coh_tmm of the package tmm [Byrnes2016], its own test. */
+TEST(absorbing_layers_on_an_absorbing_ground) {
+  const stack s = {2, {{2, 4, 2}, {3, 0.3, 3}}};
+  const double to[2] = {1, 0.1};
+  const abbe_film_light out = at(&s, false, 1, to, 0.1 / ABBE_DEGREE, 100);
+  assert_near(out.reflected[ABBE_FILM_S], 0.372732088, 5e-10);
+  assert_near(out.transmitted[ABBE_FILM_S], 0.226044920, 5e-8);
+  assert_near(out.reflected[ABBE_FILM_P], 0.370161104, 5e-10);
+  assert_near(out.transmitted[ABBE_FILM_P], 0.228243743, 5e-8);
+}
+
+TEST(without_a_film_it_is_fresnels_law_and_its_phase) {
+  const stack none = {0}, naught = one(2, 3, 0);
+  const double air[2] = {1, 0};
+  for (double degrees = 0; degrees < 90; degrees += 0.7)
+    for (int i = 0; i < 2; i++) {
+      const double n = i == 0 ? 1 : 1.5, to[2] = {i == 0 ? 1.5 : 1, 0};
+      const abbe_film_light a = at(&none, false, n, to, degrees, 500),
+                            b = at(&naught, false, n, to, degrees, 500);
+      double r, t;
+      abbe_film_unpolarised(&a, &r, &t);
+      assert_near(r, abbe_optics_fresnel(cos(degrees * ABBE_DEGREE), n / to[0]), 1e-13);
+      assert_near(r + t, 1, 1e-13);
+      assert_near(a.reflected[0], b.reflected[0], 1e-13);
+    }
+  /* total reflection retards p against s: n 1.5, 45 degrees */
+  const abbe_film_light out = at(&none, false, 1.5, air, 45, 500);
+  const double complex s = out.r[0][0] + I * out.r[0][1], p = out.r[1][0] + I * out.r[1][1];
+  assert_near(fabs(carg(s * conj(p))) / ABBE_DEGREE, 36.86990, 5e-6);
+  /* metal on the ground is the mirror's law */
+  const double silver[2] = {0.06, 3.6};
+  const abbe_film_light metal = at(&none, false, 1, silver, 40, 550);
+  double r, t;
+  abbe_film_unpolarised(&metal, &r, &t);
+  assert_near(r, abbe_optics_fresnel_conductor(cos(40 * ABBE_DEGREE), 0.06, 3.6), 1e-14);
+}
+
+static double any(uint32_t *state) {
+  *state = *state * 1664525u + 1013904223u;
+  return (*state >> 8) * 0x1p-24;
+}
+
+/* Energy closes, light passes alike both ways, and nothing overflows, whatever the stack is. */
+TEST(any_stack_keeps_its_energy_both_ways) {
+  uint32_t state = 1;
+  for (int i = 0; i < 20000; i++) {
+    stack s = {.count = (size_t)(17 * any(&state))};
+    const bool clear = i % 2 == 0;
+    for (size_t k = 0; k < s.count; k++)
+      s.layer[k] =
+          (abbe_film_layer){0.1 + 4 * any(&state), clear ? 0 : 10 * any(&state) * any(&state),
+                            ABBE_FILM_MOST_NM * pow(any(&state), 4)};
+    const double a[2] = {1 + 2 * any(&state), 0}, b[2] = {1 + 2 * any(&state), 0},
+                 nm = 380 + 400 * any(&state);
+    const double sine = any(&state), back = a[0] * sine / b[0];
+    abbe_film_light out, in;
+    abbe_film_light_at(s.layer, s.count, false, a[0], b, sqrt(1 - sine * sine), nm, &out);
+    if (back < 1)
+      abbe_film_light_at(s.layer, s.count, true, b[0], a, sqrt(1 - back * back), nm, &in);
+    for (int p = 0; p < 2; p++) {
+      const double sum = out.reflected[p] + out.transmitted[p];
+      assert_true(out.reflected[p] >= 0 && out.transmitted[p] >= 0 && sum < 1 + 1e-9);
+      if (clear) assert_near(sum, 1, 1e-9);
+      if (back < 1) assert_near(out.transmitted[p], in.transmitted[p], 1e-9);
+      if (back > 1) assert_true(out.transmitted[p] == 0);
+    }
+  }
+  const stack thick = one(1.5, 20, ABBE_FILM_MOST_NM);
+  const abbe_film_light out = at(&thick, false, 1, glass, 30, 380);
+  assert_true(out.transmitted[0] == 0 && out.reflected[0] > 0.5 && out.reflected[1] < 1);
+}
