@@ -3,6 +3,8 @@
 #include "cli/options/screen_options.h"
 #include "cli/options/spectral_options.h"
 
+#include "base/number.h"
+#include "colorimetry/display/lut.h"
 #include "colorimetry/image/avif_file.h"
 #include "colorimetry/image/image.h"
 #include "colorimetry/plot/false_colours.h"
@@ -11,12 +13,15 @@
 #include <argp.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct request {
   const char *program, *in, *out, *layer;
   const char *source; /* --source's space */
   abbe_spectral_options spectral;
   abbe_screen_options screen;
+  size_t nodes; /* of a table, and its stops; 0: the default */
+  double low, high;
   bool list;
 } request;
 
@@ -85,10 +90,60 @@ static abbe_result display(const request *r, const abbe_image *image, abbe_error
   return abbe_screen_options_write(&r->screen, r->out, image, r->layer, r->in, error);
 }
 
-enum { KEY_LIST = 256, KEY_SOURCE, KEY_LAYER };
+/* "sRGB / Looking": what the options choose of the list, whose first lines are the defaults. */
+static abbe_result name_view(const request *r, char *out, size_t size, abbe_error *error) {
+  const abbe_display_desc *d = &r->screen.display;
+  char *text = NULL, *rest = NULL;
+  const size_t length = d->display ? strlen(d->display) : 0;
+  const abbe_result result = abbe_display_list(d->config, &text, error);
+  if (result != ABBE_OK) return result;
+  snprintf(out, size, "%s", d->display ? d->display : "its default");
+  for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+    if (d->display && (strncmp(line, d->display, length) != 0 || line[length] != ' ')) continue;
+    const char *view = strrchr(line, '/');
+    if (d->view && view)
+      snprintf(out, size, "%.*s/ %s", (int)(view - line), line, d->view);
+    else
+      snprintf(out, size, "%s", line);
+    break;
+  }
+  free(text);
+  return ABBE_OK;
+}
+
+static abbe_result write_table(const request *r, abbe_error *error) {
+  abbe_display_desc desc = r->screen.display;
+  if (desc.source_space == NULL) desc.source_space = "ACEScg";
+  char view[200];
+  abbe_display *display = NULL;
+  abbe_lut_error off;
+  abbe_result result = abbe_display_make(&desc, &display, error);
+  if (result == ABBE_OK) result = name_view(r, view, sizeof view, error);
+  const abbe_lut_desc lut = {.display = display,
+                             .input = desc.source_space,
+                             .output = view,
+                             .nodes = r->nodes,
+                             .low = r->low,
+                             .high = r->high};
+  if (result == ABBE_OK) result = abbe_lut_write(&lut, r->out, &off, error);
+  if (result == ABBE_OK)
+    fprintf(stderr,
+            "note: %s is from %s to %s; between its nodes it is off by %.2g on average "
+            "and %.2g at most, greys by %.2g at most, of the display's white\n",
+            r->out, lut.input, view, off.mean, off.most, off.most_grey);
+  abbe_display_free(display);
+  return result;
+}
+
+enum { KEY_LIST = 256, KEY_SOURCE, KEY_LAYER, KEY_NODES, KEY_STOPS };
 
 static const struct argp_option options[] = {
-    {"output", 'o', "OUT.png|OUT.avif", ABBE_ARGUMENT_WRITES, "the picture to write", 0},
+    {"output", 'o', "OUT.png|OUT.cube", ABBE_ARGUMENT_WRITES,
+     "the picture to write, .png or .avif; .cube or .clf: the view as a table for other programs, "
+     "of no picture",
+     0},
+    {"nodes", KEY_NODES, "N", 0, "of each side of a table (33)", 0},
+    {"stops", KEY_STOPS, "LOW:HIGH", 0, "what a table covers, from 0.18 (-10:6.5)", 0},
     {"layer", KEY_LAYER, "NAME", 0,
      "show the layer NAME.R, NAME.G, NAME.B; a channel, a band (550nm) or a standard error "
      "(stderr) "
@@ -99,6 +154,13 @@ static const struct argp_option options[] = {
     {"list", KEY_LIST, NULL, 0, "list the displays and their views", 0},
     {0}};
 
+static void take_stops(const char *text, request *r, struct argp_state *state) {
+  const char *at = text;
+  if (!abbe_number_read(at, &at, &r->low) || *at++ != ':' || !abbe_number_read(at, &at, &r->high) ||
+      *at != '\0' || !(r->low < r->high))
+    argp_error(state, "--stops '%s' is no range such as -10:6.5", text);
+}
+
 static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
   switch (key) {
@@ -107,7 +169,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     state->child_inputs[1] = &r->screen;
     return 0;
   case 'o':
-    r->out = abbe_avif_is_meant(arg) ? arg : abbe_command_target(state->name, "-o", arg, ".png");
+    r->out = abbe_avif_is_meant(arg) || abbe_lut_is_meant(arg)
+                 ? arg
+                 : abbe_command_target(state->name, "-o", arg, ".png");
     return 0;
   case KEY_SOURCE:
     r->source = arg;
@@ -119,8 +183,27 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case KEY_LIST:
     r->list = true;
     return 0;
+  case KEY_NODES:
+    r->nodes =
+        abbe_command_count(state->name, "--nodes", arg, ABBE_LUT_MIN_NODES, ABBE_LUT_MAX_NODES);
+    return 0;
+  case KEY_STOPS:
+    take_stops(arg, r, state);
+    return 0;
   case ARGP_KEY_END:
     if (r->list) return 0;
+    if (r->out != NULL && abbe_lut_is_meant(r->out)) {
+      if (r->in != NULL || r->layer != NULL || r->spectral.given || r->screen.exposed)
+        argp_error(state, "a table is of a view, not of a picture: leave out %s",
+                   r->in != NULL       ? r->in
+                   : r->layer != NULL  ? "--layer"
+                   : r->screen.exposed ? "--exposure auto"
+                                       : "the options of spectral pictures");
+      return 0;
+    }
+    if (r->nodes != 0 || r->low != r->high)
+      argp_error(state, "%s is for a table: give -o FILE.cube or FILE.clf",
+                 r->nodes != 0 ? "--nodes" : "--stops");
     abbe_arguments_one_file(key, arg, &r->in, state);
     if (r->out == NULL) argp_error(state, "-o names the PNG to write");
     abbe_screen_options_end(&r->screen, r->out, state);
@@ -139,7 +222,7 @@ static const struct argp parser = {
     .options = options,
     .children = children,
     .parser = parse,
-    .args_doc = "IN.exr -o OUT.png|OUT.avif\n--list",
+    .args_doc = "IN.exr -o OUT.png|OUT.avif\n-o OUT.cube|OUT.clf\n--list",
     .doc = "Turns a linear OpenEXR picture into a PNG or an AVIF for a screen, through "
            "OpenColorIO.\v"
            "Examples:\n"
@@ -153,6 +236,7 @@ static const struct argp parser = {
            "  abbe display lamp.exr -o lamp.png --white 2856 --gamut white\n"
            "  abbe display gem.exr -o gem.png --display 'Rec.2100 PQ'\n"
            "  abbe display gem.exr -o gem.avif --display 'Rec.2100 PQ' --bits 12\n"
+           "  abbe display -o look.cube --view Looking --source ACEScg\n"
            "  abbe display --list --ocio studio.ocio\n",
 };
 
@@ -161,6 +245,7 @@ int abbe_command_display(int argc, char **argv) {
   abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &r);
   abbe_error error = {0};
   if (r.list) return abbe_command_end(r.program, list_views(&r, &error), &error);
+  if (abbe_lut_is_meant(r.out)) return abbe_command_end(r.program, write_table(&r, &error), &error);
   abbe_image image = {0};
   abbe_result result = abbe_spectral_options_load(&r.spectral, &error);
   if (result == ABBE_OK) result = abbe_command_read_picture(r.in, &image, &error);
