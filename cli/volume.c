@@ -6,8 +6,6 @@
 
 #include "base/maths.h"
 #include "base/nearest.h"
-#include "scenes/export/vdb_bytes.h"
-#include "scenes/export/volume_vdb.h"
 #include "scenes/volume/volume_file.h"
 #include "validation/volume/volume_fill.h"
 
@@ -19,7 +17,7 @@
 #include <sys/stat.h>
 
 typedef struct request {
-  const char *program, *scene, *out, *vdb, *object, *light, *materials;
+  const char *program, *scene, *out, *object, *light, *materials;
   abbe_scene_input_changes changes;
   abbe_volume_fill_desc desc;
   abbe_work_options work;
@@ -38,7 +36,6 @@ enum {
   OPTION_JOIN,
   OPTION_RADII,
   OPTION_PRINTED,
-  OPTION_VDB,
   OPTION_PHOTONS,
   OPTION_PASSES,
   OPTION_UNTIL_ERROR,
@@ -49,9 +46,6 @@ enum {
 
 static const struct argp_option options[] = {
     {"output", 'o', "FILE.exr", ABBE_ARGUMENT_WRITES, "the volume", 0},
-    {"vdb", OPTION_VDB, "FILE.vdb", ABBE_ARGUMENT_WRITES,
-     "of a grid, what it brings to its cells in the scene's light, for other programs (OpenVDB)",
-     0},
     {"json", OPTION_JSON, NULL, 0, "what was done, as JSON on standard output", 0},
     {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
     {"object", OPTION_OBJECT, "NAME", 0, "whose caustics; the scene's only refractor without", 1},
@@ -148,7 +142,6 @@ static error_t parse_work(int key, char *text, request *q) {
 
 static const abbe_take takes[] = {
     ABBE_TAKE_TARGET(request, 'o', out, ".exr"),
-    ABBE_TAKE_TARGET(request, OPTION_VDB, vdb, ".vdb"),
     ABBE_TAKE_FLAG(request, OPTION_JSON, json),
     ABBE_TAKE_FLAG(request, 'q', quiet),
     ABBE_TAKE_TEXT(request, OPTION_OBJECT, object),
@@ -187,11 +180,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case ARGP_KEY_END:
     if (q->scene == NULL) argp_error(state, "of which scene? Try scenes/sphere.yaml");
     if (q->out == NULL) argp_error(state, "where to? Give -o FILE.exr");
-    if (q->vdb != NULL && d->region.side == 0)
-      argp_error(state, "--vdb writes a grid: give --grid N");
-    if (q->vdb != NULL &&
-        (d->region.kind != ABBE_REGION_GRID || d->exits > 0 || d->kind != ABBE_VOLUME_VECTOR))
-      argp_error(state, "--vdb writes a grid of vectors: no shells, --rays or --printed");
     return 0;
   default:
     return parse_work(key, text, q);
@@ -302,25 +290,6 @@ static abbe_result print_json(const request *q, const abbe_caustic_volume *v,
   return result;
 }
 
-/* In the light as it meets the object's centre. */
-static abbe_result write_vdb(const request *q, const abbe_scene *scene,
-                             const abbe_caustic_volume *v, abbe_error *error) {
-  const abbe_light *light = &scene->light[q->desc.light];
-  abbe_volume_place place;
-  double to_light[3], own[3];
-  abbe_result result =
-      abbe_volume_body_find(&v->body, &scene->object[q->desc.object], &place, error);
-  if (result != ABBE_OK) return result;
-  for (int k = 0; k < 3; k++)
-    to_light[k] = light->kind == ABBE_LIGHT_DIRECTIONAL ? -light->direction[k]
-                                                        : light->position[k] - place.centre[k];
-  abbe_vector_normalise(to_light);
-  for (int k = 0; k < 3; k++)
-    own[k] = place.turn[k] * to_light[0] + place.turn[3 + k] * to_light[1] +
-             place.turn[6 + k] * to_light[2];
-  return abbe_volume_vdb_write(q->vdb, v, own, error);
-}
-
 /* Beside the volume, where it has no name of its own. */
 static abbe_result name_checkpoint(request *q, char **path, abbe_error *error) {
   const size_t size = strlen(q->out) + 16;
@@ -339,10 +308,8 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
   abbe_volume_fill_statistics done;
   char *path;
   abbe_result result = name_checkpoint(q, &path, error);
-  if (result == ABBE_OK && q->vdb != NULL) result = abbe_vdb_bytes_check(error);
   if (result == ABBE_OK) result = fill(q, scene, &volume, &done, error);
   if (result == ABBE_OK) result = abbe_volume_file_write(q->out, &volume, error);
-  if (result == ABBE_OK && q->vdb != NULL) result = write_vdb(q, scene, &volume, error);
   if (result == ABBE_OK) remove(q->desc.checkpoint);
   if (result == ABBE_OK && !q->quiet) summarise(q, &volume, &done);
   if (result == ABBE_OK && q->json) result = print_json(q, &volume, &done, error);
@@ -375,7 +342,7 @@ int abbe_command_volume(int argc, char **argv) {
   abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};
   abbe_scene scene = {0};
-  abbe_result result = abbe_command_check_targets((const char *const[]){q.out, q.vdb}, 2, &error);
+  abbe_result result = abbe_command_check_targets((const char *const[]){q.out}, 1, &error);
   if (result == ABBE_OK)
     result = abbe_scene_input_load_with(argv[0], q.scene, q.materials, &q.changes, &scene, &error);
   if (result == ABBE_OK) result = run(&q, &scene, &error);

@@ -3,7 +3,6 @@ option(ABBE_SANITIZE "Build with the address and undefined-behaviour sanitizers"
 option(ABBE_HARDEN "Fortified libc calls, stack protectors, and a program that is position-independent \
 and whose tables are read-only once it runs" ON)
 option(ABBE_TESTS "Build the tests" ON)
-option(ABBE_OPENVDB "Write volumes as OpenVDB files too (libopenvdb-dev)" OFF)
 option(ABBE_FUZZ "Link the fuzz targets with libFuzzer (clang only)" OFF)
 
 set(CMAKE_C_STANDARD 17)

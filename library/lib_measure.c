@@ -11,7 +11,6 @@
 #include "library/lib_handles.h"
 #include "library/lib_settings.h"
 #include "scenes/view/map_resample.h"
-#include "validation/landing/estimator_study.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -242,17 +241,6 @@ abbe_result abbe_lib_scene_refine(abbe_lib_scene *s, abbe_error *error) {
   ABBE_REQUIRE(s, error);
   if (s->held == s->now) abbe_library_scene_drop_renderer(s);
   return abbe_finer_scene_cut(s->now, error);
-}
-
-abbe_result abbe_lib_scene_estimators(const abbe_lib_scene *s, size_t side, size_t grid,
-                                      const char *path, abbe_error *error) {
-  ABBE_REQUIRE(s && path, error);
-  abbe_estimator_study *study = calloc(1, sizeof *study);
-  if (study == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the study");
-  abbe_result result = abbe_estimator_study_make(s->now, side, grid, study, error);
-  if (result == ABBE_OK) result = abbe_estimator_study_save(study, path, error);
-  free(study);
-  return result;
 }
 
 abbe_result abbe_lib_picture_resample(const abbe_lib_picture *map, const abbe_lib_picture *like,

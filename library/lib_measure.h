@@ -65,12 +65,6 @@ abbe_result abbe_lib_scene_trace_times(abbe_lib_scene *scene, const char *const 
  * ABBE_NO_MEMORY. */
 abbe_result abbe_lib_scene_refine(abbe_lib_scene *scene, abbe_error *error);
 
-/* How far off the estimators of where light lands are, by iterations and lookups, of the first
- * light at 550 nm: a table as CSV in `path`. side: of the texture; grid: of the rays. ABBE_IO,
- * ABBE_UNSUPPORTED, ABBE_NO_MEMORY. */
-abbe_result abbe_lib_scene_estimators(const abbe_lib_scene *scene, size_t side, size_t grid,
-                                      const char *path, abbe_error *error);
-
 /* A map's light in the texels of another one of the same light. ABBE_INVALID_ARGUMENT where the two
  * lie in different places, or one is no map. */
 abbe_result abbe_lib_picture_resample(const abbe_lib_picture *map, const abbe_lib_picture *like,

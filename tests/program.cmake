@@ -38,7 +38,6 @@ foreach(name
     newcomers
     export_command
     materials_change_command
-    materials_edit_command
     materials_numbers
     materials_plot_command
     materials_exchange_command

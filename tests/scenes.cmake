@@ -9,7 +9,7 @@ foreach(name transform disjoint_sets
         sphere_mesh light_nodes body_symmetry exit_map exit_pages exit_sheets light_exits volume_region volume_body caustic_volume volume_file volume_tree
         medium medium_file
         point_grid sample_tree surface_curvature surface_samples
-        view coverage estimator map_layout map_resample pov_file export_index volume_vdb)
+        view coverage estimator map_layout map_resample pov_file export_index)
   abbe_test(${name} cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 endforeach()
 abbe_test(gltf_material cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base)

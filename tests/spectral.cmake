@@ -4,11 +4,10 @@ foreach(name wavelengths spectrum optics film microfacets biaxial uniaxial uniax
         table_compare
         agf agf_formula agf_write rii rii_write csv_write material_write material_import material_table_load
         import_batch
-        check check_right table_edit table_fix record_draft)
+        check check_right table_edit table_fix)
   abbe_test(${name} cpu abbe_spectral abbe_base)
 endforeach()
 abbe_test(material_store cpu abbe_spectral abbe_base PkgConfig::SQLITE)
-abbe_test(shader_export cpu abbe_spectral abbe_base PkgConfig::CJSON)
 abbe_test(materials_command cpu abbe_spectral abbe_base PkgConfig::CJSON)
 target_compile_definitions(test_materials_command PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>")
 add_dependencies(test_materials_command abbe)

@@ -9,7 +9,6 @@ foreach(name
     compare compare_noise
     denoise
     difference_picture
-    estimator_study landing_rays
     environment_trace
     eye_samples
     eye_walk

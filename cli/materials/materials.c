@@ -15,8 +15,7 @@ static const char *const examples[] = {"list",
                                        "import maker.agf -o glasses.yaml",
                                        "check --table glasses.yaml",
                                        "set sf10 coefficients.1=1.61625977 --table glasses.yaml "
-                                       "--dry-run",
-                                       "edit sf10 --table glasses.yaml"};
+                                       "--dry-run"};
 
 int abbe_command_materials(int argc, char **argv) {
   const abbe_verbs all = {.verb = verbs,

@@ -30,13 +30,12 @@
   X(fit, "a Cauchy or Sellmeier form through a material, a formula or points")                     \
   X(from, "a record from n_d and V_d, a gem's dispersion, A and B, or glTF's pair")                \
   X(diff, "what differs between two tables, and by how much")                                      \
-  X(edit, "edit a record on the full screen, with live curves and warnings")                       \
   X(set, "change values of a record, and nothing else in the file")                                \
   X(add, "add a record to a table, new or from another table")                                     \
   X(remove, "take records out of a table")                                                         \
   X(rename, "give a record another name")                                                          \
   X(import, "make a table of catalogues, refractiveindex.info files and points")                   \
-  X(export, "write materials as AGF, RII, CSV, YAML, or for other renderers")
+  X(export, "write materials as AGF, RII, CSV or YAML")
 
 #define ABBE_MATERIALS_DECLARE(name, summary) int abbe_materials_##name(int argc, char **argv);
 ABBE_MATERIALS_VERBS(ABBE_MATERIALS_DECLARE)

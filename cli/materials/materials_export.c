@@ -3,7 +3,6 @@
 #include "base/file.h"
 #include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
-#include "spectral/formats/shader_export.h"
 #include "spectral/store/material_store.h"
 
 #include <argp.h>
@@ -15,19 +14,9 @@
 
 enum { MAX_NAMES = ABBE_MATERIAL_TABLE_MAX_COUNT };
 
-typedef enum format {
-  YAML,
-  STORE,
-  AGF,
-  RII,
-  CSV,
-  SHADERS,
-  FORMATS = SHADERS + ABBE_SHADER_COUNT
-} format;
+typedef enum format { YAML, STORE, AGF, RII, CSV, FORMATS } format;
 
-/* The shaders follow in their own order. */
-static const char *const format_names[FORMATS] = {"yaml", "sqlite", "agf", "rii", "csv",
-                                                  "pbrt", "povray", "mdl", "gltf"};
+static const char *const format_names[FORMATS] = {"yaml", "sqlite", "agf", "rii", "csv"};
 
 typedef struct request {
   const char *program, *table, *output;
@@ -42,8 +31,8 @@ enum { KEY_TO = ABBE_MATERIALS_KEY_OWN, KEY_RANGE, KEY_STEP, KEY_ALL, KEY_FORCE 
 
 static const struct argp_option options[] = {
     ABBE_MATERIALS_TABLE_OPTION,
-    {"to", KEY_TO, "FORMAT", 0,
-     "yaml, sqlite, agf, rii, csv, pbrt, povray, mdl or gltf; without it, by the ending of -o", 0},
+    {"to", KEY_TO, "FORMAT", 0, "yaml, sqlite, agf, rii or csv; without it, by the ending of -o",
+     0},
     {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES | ABBE_ARGUMENT_STREAMS,
      "where to; without it or as -, to standard output", 0},
     {"force", KEY_FORCE, NULL, 0, "write over a file that is there", 0},
@@ -95,8 +84,6 @@ static const struct argp parser = {
     .doc = "Writes materials of a table in other forms: all of them, or those named.\v"
            "Examples:\n"
            "  abbe materials export --table mine.yaml -o mine.agf\n"
-           "  abbe materials export n-bk7 f2 --to pbrt -o glasses.pbrt\n"
-           "  abbe materials export diamond --to gltf\n"
            "  abbe materials export water --to csv --range 400:700 --step 10\n"
            "  abbe materials export sapphire --to rii -o sapphire.yml\n"
            "  abbe materials export --to yaml -o my-copy.yaml\n\n"
@@ -110,15 +97,7 @@ static int format_of(const char *path) {
   static const struct {
     const char *ending;
     int format;
-  } endings[] = {{".yaml", YAML},
-                 {".sqlite", STORE},
-                 {".yml", RII},
-                 {".agf", AGF},
-                 {".csv", CSV},
-                 {".pbrt", SHADERS + ABBE_SHADER_PBRT},
-                 {".inc", SHADERS + ABBE_SHADER_POVRAY},
-                 {".mdl", SHADERS + ABBE_SHADER_MDL},
-                 {".gltf", SHADERS + ABBE_SHADER_GLTF}};
+  } endings[] = {{".yaml", YAML}, {".sqlite", STORE}, {".yml", RII}, {".agf", AGF}, {".csv", CSV}};
   const char *dot = path != NULL ? strrchr(path, '.') : NULL;
   for (size_t i = 0; dot != NULL && i < sizeof endings / sizeof endings[0]; i++)
     if (strcasecmp(dot, endings[i].ending) == 0) return endings[i].format;
@@ -128,8 +107,9 @@ static int format_of(const char *path) {
 static void check(request *r) {
   if (r->format < 0) r->format = format_of(r->output);
   if (r->format < 0)
-    abbe_materials_wrong_use(r->program, "to what? --to yaml, agf, rii, csv, pbrt, povray, mdl or "
-                                         "gltf, or -o with such an ending");
+    abbe_materials_wrong_use(r->program,
+                             "to what? --to yaml, sqlite, agf, rii or csv, or -o with such an "
+                             "ending; for other renderers 'abbe export' writes a scene");
   if (r->format == STORE && r->output == NULL)
     abbe_materials_wrong_use(r->program, "a store is a file; name it with -o FILE.sqlite");
   if ((r->format == RII || r->format == CSV) && r->names != 1)
@@ -175,10 +155,8 @@ static abbe_result write_to(const request *r, const abbe_material_table *chosen,
     return abbe_agf_write(chosen, to, report, error);
   case RII:
     return abbe_rii_write(&chosen->material[0], to, report, error);
-  case CSV:
-    return abbe_csv_write(&chosen->material[0], &r->sampling, to, report, error);
   default:
-    return abbe_shader_write((abbe_shader)(r->format - SHADERS), chosen, to, report, error);
+    return abbe_csv_write(&chosen->material[0], &r->sampling, to, report, error);
   }
 }
 

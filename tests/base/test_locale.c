@@ -16,7 +16,6 @@
 #include "spectral/formats/material_import.h"
 #include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
-#include "spectral/formats/shader_export.h"
 #include "validation/compare/field.h"
 #include "validation/known/known_answers.h"
 #include "validation/tracer/reference.h"
@@ -76,8 +75,6 @@ static void with_materials(FILE *to) {
     OK(abbe_material_table_load("default", &known, &error));
     OK(abbe_material_table_write(&table, to, &error));
     OK(abbe_agf_write(&table, to, &report, &error));
-    for (int s = 0; s < ABBE_SHADER_COUNT; s++)
-      OK(abbe_shader_write((abbe_shader)s, &table, to, &report, &error));
     const abbe_csv_sampling sampling = {450, 525, 12.5};
     OK(abbe_csv_write(&table.material[1], &sampling, to, &report, &error));
     OK(abbe_rii_write(&table.material[1], to, &report, &error));

@@ -5,7 +5,6 @@
 #include "tests/fuzz/fuzz.h"
 
 #include "spectral/formats/material_write.h"
-#include "spectral/formats/shader_export.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,8 +12,6 @@
 static inline void fuzz_write_rest(const abbe_material_table *table, FILE *to) {
   abbe_error error;
   FUZZ_PROMISE(abbe_agf_write(table, to, NULL, &error) == ABBE_OK);
-  for (int i = 0; i < ABBE_SHADER_COUNT; i++)
-    FUZZ_PROMISE(abbe_shader_write((abbe_shader)i, table, to, NULL, &error) == ABBE_OK);
   if (table->count == 0) return;
   FUZZ_PROMISE(abbe_rii_write(&table->material[0], to, NULL, &error) == ABBE_OK);
   abbe_csv_write(&table->material[0], NULL, to, NULL, &error);

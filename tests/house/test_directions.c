@@ -25,7 +25,6 @@ static const struct {
 static const char *const bridges[] = {"cli/view/widgets/view_ui.cpp",
                                       "colorimetry/display/lut_ocio.cpp",
                                       "colorimetry/image/display_ocio.cpp",
-                                      "scenes/export/vdb_bytes.cpp",
                                       "scenes/geometry/transform.cpp",
                                       "tests/colorimetry/image/exr_library.cpp",
                                       "tests/install/outside.cpp"};

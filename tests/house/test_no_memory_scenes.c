@@ -9,7 +9,6 @@
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/plot/chart.h"
 #include "colorimetry/plot/material_chart.h"
-#include "colorimetry/plot/text_plot.h"
 #include "colorimetry/weights.h"
 #include "gl/accuracy/preset.h"
 #include "gl/plan/plan.h"
@@ -97,16 +96,6 @@ static abbe_result material_charts(abbe_error *error) {
   const abbe_material_chart curves = {.count = 2, .material = two, .fits = true};
   result = abbe_material_chart_write(operation_path("curves.svg"), &curves, error);
   abbe_material_table_free(&table);
-  return result;
-}
-
-static abbe_result text_plot(abbe_error *error) {
-  static const double x[] = {0, 1, 2}, y[] = {0, 1, 4};
-  abbe_text_plot plot = {0};
-  const abbe_axis ax = {.min = 0, .max = 2}, ay = {.min = 0, .max = 4};
-  abbe_result result = abbe_text_plot_make(20, 5, ax, ay, &plot, error);
-  if (result == ABBE_OK) abbe_text_plot_line(&plot, 1, 3, x, y);
-  abbe_text_plot_free(&plot);
   return result;
 }
 
@@ -330,7 +319,6 @@ TEST(pictures) {
       {"PNG", png, 0},
       {"charts", chart, 0},
       {"curves", material_charts, 300},
-      {"text plot", text_plot, 0},
       {"weights", weights, 0},
       {"display", display, 0},
   };

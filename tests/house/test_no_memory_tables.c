@@ -4,14 +4,12 @@
 #include "base/text_diff.h"
 #include "spectral/dispersion/fit.h"
 #include "spectral/editing/check.h"
-#include "spectral/editing/record_draft.h"
 #include "spectral/editing/table_edit.h"
 #include "spectral/editing/table_fix.h"
 #include "spectral/formats/import_batch.h"
 #include "spectral/formats/material_import.h"
 #include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
-#include "spectral/formats/shader_export.h"
 #include "spectral/materials/convert.h"
 #include "spectral/materials/material_query.h"
 #include "spectral/materials/table_compare.h"
@@ -92,11 +90,8 @@ static abbe_result write_as(int kind, const abbe_material_table *table, FILE *to
   case 2:
     result = abbe_rii_write(&table->material[0], to, &report, error);
     break;
-  case 3:
-    result = abbe_csv_write(&table->material[2], NULL, to, &report, error);
-    break;
   default:
-    result = abbe_shader_write((abbe_shader)(kind - 4), table, to, &report, error);
+    result = abbe_csv_write(&table->material[2], NULL, to, &report, error);
   }
   abbe_report_free(&report);
   return result;
@@ -105,7 +100,7 @@ static abbe_result write_as(int kind, const abbe_material_table *table, FILE *to
 static abbe_result write_tables(abbe_error *error) {
   abbe_material_table table;
   abbe_result result = parse(small, &table, error);
-  for (int kind = 0; kind < 4 + ABBE_SHADER_COUNT && result == ABBE_OK; kind++) {
+  for (int kind = 0; kind < 4 && result == ABBE_OK; kind++) {
     char *text = NULL;
     size_t size = 0;
     FILE *to = open_memstream(&text, &size);
@@ -222,18 +217,6 @@ static abbe_result fix_table(abbe_error *error) {
   return result;
 }
 
-static abbe_result draft_record(abbe_error *error) {
-  abbe_record_draft *draft = NULL;
-  const char *path = operation_path("draft.yaml");
-  abbe_result result = abbe_file_write(path, small, sizeof small - 1, error);
-  if (result == ABBE_OK) result = abbe_record_draft_open(path, "a", &draft, error);
-  if (result == ABBE_OK) result = abbe_record_draft_put(draft, "source", "elsewhere", error);
-  if (result == ABBE_OK) result = abbe_record_draft_resize(draft, true, error);
-  if (result == ABBE_OK) result = abbe_record_draft_save(draft, error);
-  abbe_record_draft_free(draft);
-  return result;
-}
-
 static abbe_result fit(abbe_error *error) {
   abbe_material_table table;
   abbe_index_points points = {0};
@@ -297,7 +280,6 @@ TEST(tables) {
       {"examine a table", examine, 0},
       {"edit a table", edit_table, 120},
       {"fix a table", fix_table, 500},
-      {"draft a record", draft_record, 80},
       {"fit", fit, 300},
       {"convert", convert, 0},
       {"spectrum, samples, diff", small_things, 0},

@@ -422,8 +422,6 @@ class Command(Temporary):
         sizes = [float(line[1]) for line in lines if line[0] == "faces"]
         self.assertEqual([size / sizes[0] for size in sizes], [1, 4, 16, 64])
         self.assertEqual(out.count("(slope "), 5)
-        out = self.ok("scenes/sphere.yaml", "--estimators", "--map", "64", "--photons", "16")
-        self.assertIn("| refracted | shah, as printed | 1 | 2.0 |", out)
 
     def test_whole_processes(self):
         one = [word for word in TWO if word not in ("-q",)]

@@ -61,7 +61,6 @@ _FUNCTIONS = {
     "scene_times": (int, [_handle, _texts, c_size_t, _out, _out]),
     "scene_trace_times": (int, [_handle, _texts, c_size_t, _out, _out]),
     "scene_refine": (int, [_handle]),
-    "scene_estimators": (int, [_handle, c_size_t, c_size_t, c_char_p]),
     "picture_resample": (int, [_handle, _handle, _out]),
     "presets_read": (int, [c_char_p, c_char_p, _out]),
     "comparison_both_noise": (c_double, [_handle, c_char_p, c_bool]),

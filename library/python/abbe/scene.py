@@ -131,11 +131,6 @@ class Scene(Handle):
         """Cuts every face of the refractors in four, flat, until something is changed."""
         call("scene_refine", self._pointer)
 
-    def estimators(self, path, side=768, grid=128):
-        """How far off the estimators of where light lands are, as CSV."""
-        call("scene_estimators", self._pointer, c_size_t(side), c_size_t(grid),
-             required(path, "path"))
-
     def _timed(self, progress, name, how):
         picture, pointer = c_void_p(), c_void_p()
         self._watched(progress, name, *settings(how), byref(picture), byref(pointer))

@@ -139,9 +139,8 @@ TEST(wrong_use_gets_a_sentence) {
 
 /* Each line of the examples is a command or its next line: none was broken to fit the page. */
 TEST(help_shows_examples) {
-  const char *const verbs[] = {"list", "show",   "plot",   "nearest", "check",
-                               "fit",  "from",   "diff",   "edit",    "set",
-                               "add",  "remove", "rename", "import",  "export"};
+  const char *const verbs[] = {"list", "show", "plot", "nearest", "check",  "fit",    "from",
+                               "diff", "set",  "add",  "remove",  "rename", "import", "export"};
   for (size_t i = 0; i < sizeof verbs / sizeof verbs[0]; i++) {
     char line[96], example[64];
     snprintf(line, sizeof line, MATERIALS "%s --help", verbs[i]);

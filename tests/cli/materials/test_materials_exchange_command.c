@@ -29,13 +29,6 @@ TEST(a_table_goes_out_and_comes_back) {
        "sampled every 10 nm from 400 to 700 nm");
   assert_contains(run_output, "name: w\n");
   assert_contains(run_output, "range_nm: [400, 700]");
-  for (int i = 0; i < 4; i++) {
-    static const char *const forms[] = {"pbrt", "povray", "mdl", "gltf"};
-    char line[128];
-    snprintf(line, sizeof line, M "export f2 diamond --to %s", forms[i]);
-    runs(line, "off by up to");
-    assert_contains(run_output, "diamond");
-  }
   runs("rm copy.yaml sapphire.yml w.csv", "");
   assert_int_equal(run_left(), 0);
 }

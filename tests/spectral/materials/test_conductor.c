@@ -5,7 +5,6 @@
 #include "spectral/formats/material_import.h"
 #include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
-#include "spectral/formats/shader_export.h"
 #include "spectral/materials/conductor.h"
 #include "spectral/materials/glass_distance.h"
 #include "spectral/materials/material_numbers.h"
@@ -242,29 +241,15 @@ TEST(csv_keeps_a_conductor) {
 TEST(catalogues_of_glass_leave_a_conductor_out) {
   abbe_material m = gold();
   abbe_material_table t = table_of(&m);
-  const struct {
-    int shader; /* -1: AGF */
-    size_t skipped;
-    const char *part;
-  } rows[] = {{-1, 1, "CC"},
-              {ABBE_SHADER_POVRAY, 1, "#version"},
-              {ABBE_SHADER_MDL, 1, "mdl 1.6"},
-              {ABBE_SHADER_GLTF, 1, "\"materials\""},
-              {ABBE_SHADER_PBRT, 0, "\"string type\" \"conductor\""}};
-  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    FREED char *text = NULL;
-    size_t size = 0;
-    OWNED(abbe_report, report) = {0};
-    FILE *to = open_memstream(&text, &size);
-    assert_int_equal(rows[i].shader < 0
-                         ? abbe_agf_write(&t, to, &report, NULL)
-                         : abbe_shader_write((abbe_shader)rows[i].shader, &t, to, &report, NULL),
-                     ABBE_OK);
-    fclose(to);
-    assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], rows[i].skipped);
-    assert_contains(text, rows[i].part);
-    assert_null(strstr(text, "nan"));
-  }
+  FREED char *text = NULL;
+  size_t size = 0;
+  OWNED(abbe_report, report) = {0};
+  FILE *to = open_memstream(&text, &size);
+  OK(abbe_agf_write(&t, to, &report, &error));
+  fclose(to);
+  assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], 1);
+  assert_contains(text, "CC");
+  assert_null(strstr(text, "nan"));
   abbe_material_table_free(&t);
 }
 

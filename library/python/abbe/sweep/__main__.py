@@ -23,7 +23,6 @@ examples:
   abbe sweep part-*.csv -o gem.csv
   abbe sweep scenes/gem.yaml -o gem.csv --decompose --report gem.md
   abbe sweep scenes/gem.yaml -o scaling.csv --scaling --plot scaling.png
-  abbe sweep scenes/sphere.yaml --estimators
   abbe sweep *.csv --write-presets presets.yaml
 """
 MOST_VALUES = 16
@@ -145,8 +144,6 @@ def _parser():
         help="say what these promise beside what was met (the shipped ones)")
     add("--scaling", action="store_true", help="instead: how the time scales with photons, "
         "wavelengths, pixels, faces, share of the view")
-    add("--estimators", action="store_true", help="instead: how far from the truth the estimators "
-        "of shah2007 are; of --map and --photons the first (768, 128)")
     add("--error", metavar="COLUMN", type=_error, default="caustic_de",
         help="that makes the Pareto front: caustic_de, map_rmse, picture_de, ... (caustic_de)")
     add("--time", metavar="|".join(TIMES), type=_choice(*TIMES), default="frame",
@@ -206,7 +203,7 @@ def _check(parser, q):
     q.traced = any(getattr(q, name) is not None for name in TRACED)
     q.tables = files[0].endswith(".csv")
     if q.tables:
-        if q.part or q.lists or q.grid or q.scaling or q.estimators:
+        if q.part or q.lists or q.grid or q.scaling:
             parser.error(f"'{files[0]}' is a table: it is shown, and nothing is measured")
         return
     shown = q.report or q.json or q.list
@@ -214,10 +211,7 @@ def _check(parser, q):
         parser.error("--write-presets reads tables: give SWEEP.csv..., and no scene")
     if len(files) > 1:
         parser.error(f"one scene at a time: '{files[0]}' and '{files[1]}'")
-    if q.estimators and (q.grid or q.traced or shown or q.scaling or q.plot or q.reference):
-        parser.error("--estimators renders nothing: it goes with -o, --map, --photons and "
-                     "--materials alone")
-    if not q.output and not q.list and not q.estimators:
+    if not q.output and not q.list:
         parser.error("where to? Give -o FILE.csv")
     if q.lists and q.grid:
         parser.error("--grid and lists such as --wavelengths 3,7: one or the other")
@@ -413,8 +407,6 @@ def _run(parser, q, bar):
     sweep = measure.Sweep(scene, q.materials, q.backend, q.frames, q.size)
     if q.scaling:
         return studies.scaling(sweep, q, bar)
-    if q.estimators:
-        return studies.estimators(sweep, q)
     settings = _settings(q, sweep, bar)
     if q.list:
         for setting in settings:

@@ -1,8 +1,6 @@
-"""Instead of a sweep: how a frame's time grows, and how far off estimators of where light lands
-are."""
+"""Instead of a sweep: how a frame's time grows."""
 import math
 import os
-import tempfile
 
 from . import grids, show
 from .table import Wrong, number, written
@@ -109,33 +107,3 @@ def _plot(path, sweep, rows, slopes, base, side):
     axes.legend()
     show.save(figure, path)
     pyplot.close(figure)
-
-
-def estimators(sweep, q):
-    """How far off the estimators of where light lands are, on the processor."""
-    side, grid = (q.lists[axis][0] if axis in q.lists else usual
-                  for axis, usual in (("map", 768), ("photons", 128)))
-    with tempfile.TemporaryDirectory(prefix="abbe-") as folder:
-        path = q.output or os.path.join(folder, "estimators.csv")
-        sweep.scene.estimators(path, side, grid)
-        with open(path, encoding="utf-8") as file:
-            lines = file.read().splitlines()
-    hidden = next(line.split(": ")[1] for line in lines if line.startswith("# hidden"))
-    lines = [line.split(",") for line in lines if not line.startswith("#")]
-    rows = [dict(zip(lines[0], line)) for line in lines[1:]]
-    rays = {light: next((row["rays"] for row in rows if row["light"] == light), 0)
-            for light in ("refracted", "reflected")}
-    print(f"a texture of {side} x {side} places, {grid} x {grid} cells of what the light sees of "
-          f"refractors and mirrors; {rays['refracted']} rays are refracted, {rays['reflected']} "
-          f"reflected, and {hidden} more land where the light does not see\n\n"
-          "| light | estimator | iterations | lookups | ns a ray | median, texels | 95 % | worst "
-          "| lost | rate (law) |\n|---|---|---|---|---|---|---|---|---|---|")
-    for row in rows:
-        values = {key: float(text) if text else math.nan for key, text in row.items()
-                  if key not in ("light", "estimator", "printed")}
-        known = row["rate"] and row["iterations"] == "1"
-        print(f"| {row['light']} | {row['estimator']}{', as printed' * int(row['printed'])} "
-              f"| {row['iterations']} | {values['lookups']:.1f} | {values['ns']:.0f} "
-              f"| {values['median_texels']:.3g} | {values['p95_texels']:.3g} "
-              f"| {values['worst_texels']:.3g} | {100 * values['lost']:.2g} % |"
-              + (f" {values['rate']:.3f} ({values['law']:.3f}) |" if known else " |"))
