@@ -20,13 +20,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 
 int abbe_command_methods(int argc, char **argv) {
   const struct argp argp = {
-      abbe_render_options_of_methods(),
+      abbe_render_options_aside(),
       parse,
       NULL,
       "Lists the published methods that 'abbe render --profile NAME' draws by, as they were "
       "printed "
       "and, with -cie, with CIE weights, Fresnel's law and watts. Below are the options of 'abbe "
-      "render' that only they, pinholes and caustic volumes take.\v"
+      "render' that only they, pinholes and caustic volumes take, and its seldom ones.\v"
       "Examples:\n"
       "  abbe methods\n"
       "  abbe render scenes/sphere.yaml --profile thesis --png thesis.png --view Plain\n"

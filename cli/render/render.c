@@ -22,7 +22,6 @@
 enum {
   OPTION_PNG = 0x200,
   OPTION_AOVS,
-  OPTION_UNFILLED,
   OPTION_BANDS,
   OPTION_STATS,
   OPTION_BACKEND,
@@ -40,7 +39,6 @@ static const struct argp_option options[] = {
     {"aovs", OPTION_AOVS, NULL, 0, "direct and caustic light and distance in the EXR too", 0},
     {"bands", OPTION_BANDS, "N", 0,
      "N bands of wavelengths in the EXR and the saved map too: N frames more", 0},
-    {"unfilled", OPTION_UNFILLED, NULL, 0, "the thesis's map before its fill", 0},
     {"stats", OPTION_STATS, "FILE|-", ABBE_ARGUMENT_WRITES | ABBE_ARGUMENT_STREAMS,
      "times, photons and the energy ledger as JSON; -: on standard output", 0},
     {"json", OPTION_JSON, NULL, 0, "the same on standard output", 0},
@@ -92,9 +90,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_BANDS:
     q->bands = abbe_command_count(p, "--bands", text, 1, ABBE_RENDER_MAX_BANDS);
-    return 0;
-  case OPTION_UNFILLED:
-    q->unfilled = true;
     return 0;
   case OPTION_STATS:
     if (strcmp(text, "-") == 0)

@@ -18,6 +18,7 @@ enum {
   OPTION_POLYGONS,
   OPTION_OBSERVER,
   OPTION_VOLUME,
+  OPTION_UNFILLED,
   OPTION_MATERIALS,
   OPTION_SETTING
 };
@@ -26,21 +27,27 @@ static const struct argp_option others[] = {
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
     {"range", OPTION_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", 1},
     {"observer", OPTION_OBSERVER, "NAME", 0, ABBE_OBSERVER_HELP, 1},
-    {"volume", OPTION_VOLUME, "FILE.exr", ABBE_ARGUMENT_READS,
-     "the caustic volume that caustics are looked up in", 1},
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
      "a table instead of the scene's: default, thesis or a file", 1},
     ABBE_SCENE_INPUT_OPTIONS(1),
     ABBE_SCENE_INPUT_STUDIO_OPTIONS(1),
     ABBE_SCENE_INPUT_ALPHA_OPTION(1),
 };
-static const struct argp_option others_of_methods[] = {
+static const struct argp_option others_aside[] = {
+    {"volume", OPTION_VOLUME, "FILE.exr", ABBE_ARGUMENT_READS,
+     "the caustic volume that caustics are looked up in", 1},
+    {"unfilled", OPTION_UNFILLED, NULL, 0, "of thesis, the map before its fill", 1},
     {"polygons", OPTION_POLYGONS, "LIST", 0,
      "of wyman2006's quads and triangles: even beams, light by corners, those between surfaces "
      "culled, drawn in-light, such as corners,culled (none)",
      1}};
 
-enum { OTHERS = sizeof others / sizeof *others, MOST_OPTIONS = 64, HELP_SIZE = 320 };
+enum {
+  OTHERS = sizeof others / sizeof *others,
+  ASIDE = sizeof others_aside / sizeof *others_aside,
+  MOST_OPTIONS = 64,
+  HELP_SIZE = 320
+};
 
 /* What a choice may be, but for what is taken without it. */
 static size_t list_names(const abbe_render_setting *s, char *out, size_t size) {
@@ -65,16 +72,16 @@ static void describe(const abbe_render_setting *s, char out[HELP_SIZE]) {
   snprintf(out, HELP_SIZE, s->default_ != NULL ? "%s%s (%s)" : "%s%s", s->help, range, s->default_);
 }
 
-/* Options of the settings that are for methods alone, or of the others; flags are argp's, of each.
+/* Options of the settings that are shown aside, or of the others; flags are argp's, of each.
  * Returns how many there are. */
-static size_t list_settings(bool of_methods, int flags, struct argp_option *out) {
+static size_t list_settings(bool aside, int flags, struct argp_option *out) {
   static char help[MOST_OPTIONS][HELP_SIZE];
   static const char *const arguments[] = {
       [ABBE_SETTING_COUNT] = "N", [ABBE_SETTING_NUMBER] = "X", [ABBE_SETTING_CHOICE] = "NAME"};
   size_t count = 0;
   for (size_t i = 0; i < abbe_render_settings_count && i < MOST_OPTIONS; i++) {
     const abbe_render_setting *s = &abbe_render_settings[i];
-    if (s->option == NULL || s->of_methods != of_methods) continue;
+    if (s->option == NULL || s->aside != aside) continue;
     describe(s, help[i]);
     out[count++] = (struct argp_option){
         s->option, OPTION_SETTING + (int)i, arguments[s->kind], flags, help[i], 1};
@@ -144,6 +151,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_OBSERVER:
     d->observer = abbe_spectral_options_observer(p, text);
     return 0;
+  case OPTION_UNFILLED:
+    o->unfilled = true;
+    return 0;
   case OPTION_VOLUME:
     o->volume_path = text;
     return 0;
@@ -164,7 +174,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
-/* Those of methods are taken, and shown on their own page. */
+/* Those aside are taken, and shown on their own page. */
 const struct argp *abbe_render_options_argp(void) {
   static struct argp_option options[OTHERS + MOST_OPTIONS];
   static const struct argp argp = {options, parse, "SCENE.yaml\nSTONE.asc...", NULL, NULL,
@@ -172,15 +182,17 @@ const struct argp *abbe_render_options_argp(void) {
   memcpy(options, others, sizeof others);
   size_t count = OTHERS + list_settings(false, 0, options + OTHERS);
   count += list_settings(true, OPTION_HIDDEN, options + count);
-  options[count] = others_of_methods[0];
-  options[count].flags |= OPTION_HIDDEN;
+  for (int i = 0; i < ASIDE; i++) {
+    options[count + i] = others_aside[i];
+    options[count + i].flags |= OPTION_HIDDEN;
+  }
   return &argp;
 }
 
-const struct argp_option *abbe_render_options_of_methods(void) {
+const struct argp_option *abbe_render_options_aside(void) {
   static struct argp_option options[MOST_OPTIONS];
   const size_t count = list_settings(true, 0, options);
-  options[count] = others_of_methods[0];
+  memcpy(options + count, others_aside, sizeof others_aside);
   return options;
 }
 

@@ -16,6 +16,7 @@ typedef struct abbe_render_options {
   const char *materials; /* table to use instead of the scene's */
   abbe_scene_input_changes changes;
   abbe_render_desc desc;
+  bool unfilled;              /* of thesis, the map before its fill */
   const char *volume_path;    /* NULL: none */
   abbe_caustic_volume volume; /* the volume in that file; the loader frees it */
 } abbe_render_options;
@@ -23,8 +24,9 @@ typedef struct abbe_render_options {
 /* An argp child: the table of settings, size, range …, and the scene as the one argument. Its input
  * is an abbe_render_options with program set. */
 const struct argp *abbe_render_options_argp(void);
-/* Those of them that only published methods, pinholes or caustic volumes take, for their page. */
-const struct argp_option *abbe_render_options_of_methods(void);
+/* Those of them that `abbe methods --help` shows: seldom wanted, or of published methods, pinholes
+ * and caustic volumes alone. */
+const struct argp_option *abbe_render_options_aside(void);
 
 /* The volume that is named, into the request; errors of abbe_volume_file_read. */
 abbe_result abbe_render_options_load_volume(abbe_render_options *request, abbe_error *error);

@@ -27,7 +27,7 @@ typedef struct abbe_render_request {
   abbe_frame_series series; /* --turntable, --frames A:B; zeroed but for program */
   abbe_rank_job *job;       /* the ranks that share the frames; NULL: one process */
   const char *exr, *png, *stats;
-  bool aovs, unfilled, quiet, json;
+  bool aovs, quiet, json;
   size_t frames, bands;
   abbe_context_backend backend;
   abbe_screen_options screen;

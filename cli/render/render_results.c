@@ -142,7 +142,7 @@ abbe_result abbe_render_save_map(const request *q, abbe_renderer *renderer, abbe
   abbe_result result =
       q->bands > 0
           ? abbe_renderer_read_map_bands(renderer, q->map.light_index, q->bands, &map, error)
-          : abbe_renderer_read_map(renderer, q->map.light_index, !q->unfilled, &map, error);
+          : abbe_renderer_read_map(renderer, q->map.light_index, !q->render.unfilled, &map, error);
   if (result != ABBE_OK) return result;
   result = abbe_image_set_attribute(&map, "abbe:unit",
                                     thesis ? "display brightness" : "flux a texel, W", error);

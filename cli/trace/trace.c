@@ -211,6 +211,16 @@ static const abbe_take takes[] = {
     {0},
 };
 
+static void take_part(request *q, const char *path) {
+  const char **parts = realloc(q->parts, (q->part_count + 1) * sizeof *parts);
+  if (parts == NULL) {
+    fprintf(stderr, "%s: no memory for the arguments\n", q->program);
+    exit(ABBE_EXIT_FAILED);
+  }
+  q->parts = parts;
+  q->parts[q->part_count++] = path;
+}
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   request *q = state->input;
   if (abbe_take_option(takes, key, text, state)) return 0;
@@ -233,7 +243,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     if (q->scene == NULL || abbe_studio_is_stone(text))
       abbe_scene_input_take_file(&q->changes, &q->scene, text, state);
     else
-      q->parts[q->part_count++] = text;
+      take_part(q, text);
     return 0;
   case ARGP_KEY_END:
     if (q->scene == NULL) argp_error(state, "which scene? Try scenes/sphere.yaml");
@@ -431,12 +441,7 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
                .series.program = argv[0],
                .work.every_s = 30,
                .ranks = job != NULL ? &job->ranks : NULL};
-  q.parts = calloc((size_t)argc + 1, sizeof *q.parts);
   abbe_error error = {0};
-  if (q.parts == NULL) {
-    abbe_error_set(&error, ABBE_NO_MEMORY, "no memory for the arguments");
-    return abbe_command_end(argv[0], ABBE_NO_MEMORY, &error);
-  }
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   if (job != NULL) job->ready();
   q.quiet = q.quiet || abbe_rank_job_is_silent(job);

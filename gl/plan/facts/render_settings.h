@@ -21,7 +21,7 @@ typedef struct abbe_render_setting {
   size_t offset;        /* in abbe_render_desc */
   double least, most;   /* limits of a count or number; a request may have 0: the default */
   bool stays_open;      /* a request that is resolved may still have 0: the scene decides */
-  bool of_methods;      /* only published methods, pinholes or volumes take it */
+  bool aside;           /* seldom wanted, or of methods alone: shown by 'abbe methods --help' */
   const char *what;     /* in sentences; NULL: its reader checks it */
   const char *default_; /* default of the option, as its help shows it; NULL: none */
   const char *help;     /* help of the option */
