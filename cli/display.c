@@ -5,7 +5,6 @@
 
 #include "base/number.h"
 #include "colorimetry/display/lut.h"
-#include "colorimetry/image/avif_file.h"
 #include "colorimetry/image/image.h"
 #include "colorimetry/plot/false_colours.h"
 #include "colorimetry/spectral_picture/relight.h"
@@ -139,7 +138,8 @@ enum { KEY_LIST = 256, KEY_SOURCE, KEY_LAYER, KEY_NODES, KEY_STOPS };
 
 static const struct argp_option options[] = {
     {"output", 'o', "OUT.png|OUT.cube", ABBE_ARGUMENT_WRITES,
-     "the picture to write, .png or .avif; .cube or .clf: the view as a table for other programs, "
+     "the picture to write, .png, .webp, .jpg, .gif or .avif; .cube or .clf: the view as a table "
+     "for other programs, "
      "of no picture",
      0},
     {"nodes", KEY_NODES, "N", 0, "of each side of a table (33)", 0},
@@ -169,9 +169,10 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     state->child_inputs[1] = &r->screen;
     return 0;
   case 'o':
-    r->out = abbe_avif_is_meant(arg) || abbe_lut_is_meant(arg)
-                 ? arg
-                 : abbe_command_target(state->name, "-o", arg, ".png");
+    if (abbe_lut_is_meant(arg))
+      r->out = arg;
+    else
+      abbe_command_output(state->name, "-o", arg, NULL, &r->out);
     return 0;
   case KEY_SOURCE:
     r->source = arg;
@@ -205,7 +206,7 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
       argp_error(state, "%s is for a table: give -o FILE.cube or FILE.clf",
                  r->nodes != 0 ? "--nodes" : "--stops");
     abbe_arguments_one_file(key, arg, &r->in, state);
-    if (r->out == NULL) argp_error(state, "-o names the PNG to write");
+    if (r->out == NULL) argp_error(state, "-o names the picture to write, such as OUT.png");
     abbe_screen_options_end(&r->screen, r->out, state);
     return 0;
   default:
@@ -222,22 +223,24 @@ static const struct argp parser = {
     .options = options,
     .children = children,
     .parser = parse,
-    .args_doc = "IN.exr -o OUT.png|OUT.avif\n-o OUT.cube|OUT.clf\n--list",
-    .doc = "Turns a linear OpenEXR picture into a PNG or an AVIF for a screen, through "
-           "OpenColorIO.\v"
-           "Examples:\n"
-           "  abbe display gem.exr -o gem.png\n"
-           "  abbe display gem.exr -o gem.png --view Plain --exposure 1.5 --bits 16\n"
-           "  abbe display gem.exr -o caustic.png --layer caustic\n"
-           "  abbe display bands.exr -o band.png --layer 550nm\n"
-           "  abbe display parts.exr#rgba -o rgba.png\n"
-           "  abbe display gem.exr -o error.png --layer stderr\n"
-           "  abbe display bands.exr -o evening.png --lit-by D65 --illuminant A\n"
-           "  abbe display lamp.exr -o lamp.png --white 2856 --gamut white\n"
-           "  abbe display gem.exr -o gem.png --display 'Rec.2100 PQ'\n"
-           "  abbe display gem.exr -o gem.avif --display 'Rec.2100 PQ' --bits 12\n"
-           "  abbe display -o look.cube --view Looking --source ACEScg\n"
-           "  abbe display --list --ocio studio.ocio\n",
+    .args_doc = "IN.exr -o OUT.png\n-o OUT.cube|OUT.clf\n--list",
+    .doc =
+        "Turns a linear OpenEXR picture into a PNG, WebP, JPEG, GIF or AVIF for a screen, through "
+        "OpenColorIO.\v"
+        "Examples:\n"
+        "  abbe display gem.exr -o gem.png\n"
+        "  abbe display gem.exr -o gem.png --view Plain --exposure 1.5 --bits 16\n"
+        "  abbe display gem.exr -o caustic.png --layer caustic\n"
+        "  abbe display bands.exr -o band.png --layer 550nm\n"
+        "  abbe display parts.exr#rgba -o rgba.png\n"
+        "  abbe display gem.exr -o error.png --layer stderr\n"
+        "  abbe display bands.exr -o evening.png --lit-by D65 --illuminant A\n"
+        "  abbe display lamp.exr -o lamp.png --white 2856 --gamut white\n"
+        "  abbe display gem.exr -o gem.png --display 'Rec.2100 PQ'\n"
+        "  abbe display gem.exr -o gem.jpg --exposure auto\n"
+        "  abbe display gem.exr -o gem.avif --display 'Rec.2100 PQ' --bits 12\n"
+        "  abbe display -o look.cube --view Looking --source ACEScg\n"
+        "  abbe display --list --ocio studio.ocio\n",
 };
 
 int abbe_command_display(int argc, char **argv) {

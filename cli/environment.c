@@ -4,8 +4,8 @@
 #include "cli/options/scene_input.h"
 
 #include "colorimetry/image/exr.h"
-#include "colorimetry/image/screen_png.h"
 #include "colorimetry/rgb_space.h"
+#include "colorimetry/screen/screen_png.h"
 #include "scenes/environment/environment_picture.h"
 
 #include <argp.h>
@@ -169,8 +169,8 @@ static const struct argp_option options[] = {
     {0}};
 
 static const abbe_take takes[] = {
-    ABBE_TAKE_TARGET(request, 'o', out, ".exr"),
-    ABBE_TAKE_TARGET(request, KEY_PNG, png, ".png"),
+    ABBE_TAKE_OUTPUT(request, 'o', out, png),
+    ABBE_TAKE_OUTPUT(request, KEY_PNG, png, png),
     ABBE_TAKE_FLAG(request, KEY_JSON, json),
     ABBE_TAKE_ARGUMENT(request, input),
     {0},

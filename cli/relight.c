@@ -24,7 +24,7 @@ static abbe_result relight(const request *r, const abbe_image *image, abbe_error
   desc.odd = &odd;
   abbe_spectral_options_note_unread(image, desc.layer, r->in);
   abbe_result result = abbe_relight_make(image, r->in, &desc, &out, error);
-  if (r->png != NULL) odd.nan = 0; /* the PNG's note says it */
+  if (r->png != NULL) odd.nan = 0; /* its note says it */
   if (result == ABBE_OK)
     abbe_command_note_odd(r->in, &odd, "counted as the brightest finite band, or as 65504");
   if (result == ABBE_OK && r->spectral.illuminant != NULL)
@@ -42,9 +42,10 @@ static abbe_result relight(const request *r, const abbe_image *image, abbe_error
 enum { KEY_PNG = 256, KEY_SPACE, KEY_LAYER, KEY_BANDS, KEY_RELATIVE };
 
 static const struct argp_option options[] = {
-    {"output", 'o', "OUT.exr", ABBE_ARGUMENT_WRITES, "the scene-linear picture", 0},
+    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES,
+     "the scene-linear picture, .exr; or that for a display, by its ending as --png", 0},
     {"png", KEY_PNG, "OUT.png", ABBE_ARGUMENT_WRITES,
-     "the picture for a display, through OpenColorIO", 0},
+     "the picture for a display, through OpenColorIO: .png, .webp, .jpg, .gif or .avif", 0},
     {"space", KEY_SPACE, "NAME", 0, "acescg, rec709 or xyz; without it, acescg", 0},
     {"layer", KEY_LAYER, "NAME", 0, "the channels NAME.S0.550nm …", 0},
     {"bands", KEY_BANDS, NULL, 0, "keep the bands too, under the new illuminant", 0},
@@ -53,8 +54,8 @@ static const struct argp_option options[] = {
     {0}};
 
 static const abbe_take takes[] = {
-    ABBE_TAKE_TARGET(request, 'o', exr, ".exr"),
-    ABBE_TAKE_TARGET(request, KEY_PNG, png, ".png"),
+    ABBE_TAKE_OUTPUT(request, 'o', exr, png),
+    ABBE_TAKE_OUTPUT(request, KEY_PNG, png, png),
     ABBE_TAKE_TEXT(request, KEY_LAYER, desc.layer),
     ABBE_TAKE_FLAG(request, KEY_BANDS, desc.bands),
     ABBE_TAKE_FLAG(request, KEY_RELATIVE, desc.relative),
@@ -89,7 +90,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 
 static const struct argp_child children[] = {
     {&abbe_spectral_options_argp, 0, "How the spectrum is looked at:", 1},
-    {&abbe_screen_options_argp, 0, "How the PNG shows it:", 2},
+    {&abbe_screen_options_argp, 0, "How the picture for a display shows it:", 2},
     {0}};
 
 static const struct argp parser = {

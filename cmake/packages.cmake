@@ -30,8 +30,10 @@ pkg_check_modules(GLFW IMPORTED_TARGET glfw3)
 pkg_check_modules(IMGUI IMPORTED_TARGET imgui)
 # For abbe view --serve alone.
 pkg_check_modules(MICROHTTPD IMPORTED_TARGET libmicrohttpd)
-# For AVIF files; without it all else is written.
+# For AVIF, JPEG and WebP files; without them all else is written.
 pkg_check_modules(AVIF IMPORTED_TARGET libavif)
+pkg_check_modules(JPEG IMPORTED_TARGET libjpeg)
+pkg_check_modules(WEBP IMPORTED_TARGET libwebp libwebpmux)
 find_package(Threads REQUIRED)
 set(ABBE_VIEWER OFF)
 if(GLFW_FOUND AND IMGUI_FOUND AND EGL_FOUND)

@@ -2,8 +2,8 @@
 
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/png_file.h"
-#include "colorimetry/image/screen_png.h"
 #include "colorimetry/rgb_space.h"
+#include "colorimetry/screen/screen_png.h"
 #include "library/lib_handles.h"
 #include "library/lib_settings.h"
 
@@ -135,6 +135,6 @@ abbe_result abbe_lib_picture_save_png(const abbe_lib_picture *picture, const cha
   abbe_result result = abbe_library_settings_read("save_png", known, sizeof known / sizeof *known,
                                                   settings, count, error);
   if (result != ABBE_OK) return result;
-  desc.bits = depth == 1 ? 16 : 8;
+  desc.bits = depth == 1 ? 16 : 0;
   return abbe_screen_png_write(path, &picture->image, &desc, error);
 }

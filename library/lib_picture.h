@@ -48,9 +48,10 @@ abbe_result abbe_lib_picture_set_attribute(abbe_lib_picture *picture, const char
 /* As OpenEXR, float32, whole or not at all. ABBE_IO. */
 abbe_result abbe_lib_picture_save(const abbe_lib_picture *picture, const char *path,
                                   abbe_error *error);
-/* For a screen, through OpenColorIO. Settings: config (a file; else $OCIO, else the one that
- * ships), display, view, layer (its channels LAYER.R …), exposure (stops, -60 to 60), bits (8 or
- * 16). ABBE_COLOUR, ABBE_NOT_FOUND without colour, ABBE_IO. */
+/* For a screen, through OpenColorIO: .png, .webp, .jpg, .gif or .avif by its ending. Settings:
+ * config (a file; else $OCIO, else the one that ships), display, view, layer (its channels LAYER.R
+ * …), exposure (stops, -60 to 60), bits (8 or 16). ABBE_COLOUR, ABBE_UNSUPPORTED for what the build
+ * has no library for, ABBE_NOT_FOUND without colour, ABBE_IO. */
 abbe_result abbe_lib_picture_save_png(const abbe_lib_picture *picture, const char *path,
                                       const char *const *settings, size_t count, abbe_error *error);
 

@@ -4,10 +4,10 @@ foreach(name atlas axis chart chromaticity colour_map colour_temperature differe
 endforeach()
 target_link_libraries(test_rgb_encoding PRIVATE PkgConfig::LCMS)
 abbe_test(animated_png cpu abbe_colorimetry abbe_spectral abbe_base PNG::PNG) # which brings zlib
-abbe_test(avif_file cpu abbe_colorimetry abbe_spectral abbe_base)
+abbe_test(screen_file cpu abbe_colorimetry abbe_spectral abbe_base)
 if(AVIF_FOUND)
-  target_link_libraries(test_avif_file PRIVATE PkgConfig::AVIF)
-  target_compile_definitions(test_avif_file PRIVATE ABBE_HAS_AVIF)
+  target_link_libraries(test_screen_file PRIVATE PkgConfig::AVIF)
+  target_compile_definitions(test_screen_file PRIVATE ABBE_HAS_AVIF)
 endif()
 abbe_test(stones cpu abbe_colorimetry abbe_spectral abbe_base)
 abbe_test(colour_commands cpu exr_library abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)

@@ -341,6 +341,10 @@ bool abbe_take_option(const abbe_take *takes, int key, char *text, struct argp_s
   case ABBE_TAKES_TARGET:
     *word = abbe_command_target(state->name, called, text, t->ending);
     break;
+  case ABBE_TAKES_OUTPUT:
+    abbe_command_output(state->name, called, text, t->at != t->to ? word : NULL,
+                        (const char **)(request + t->to));
+    break;
   default:
     if (key == ARGP_KEY_ARG && *word != NULL)
       argp_error(state, "'%s' is one argument too many", text);

@@ -60,7 +60,8 @@ enum {
   ABBE_TAKES_NUMBER,
   ABBE_TAKES_COUNT,
   ABBE_TAKES_RANGE,
-  ABBE_TAKES_TARGET
+  ABBE_TAKES_TARGET,
+  ABBE_TAKES_OUTPUT
 };
 #define ABBE_TAKE_AT(request, field, type)                                                         \
   (offsetof(request, field) + 0 * sizeof(char[_Generic(((request *)0)->field, type : 1)]))
@@ -86,6 +87,13 @@ enum {
 /* const char *: a file to write, whose name ends so. */
 #define ABBE_TAKE_TARGET(request, key, field, ending)                                              \
   { ABBE_TAKES_TARGET, key, ABBE_TAKE_AT(request, field, const char *), 0, 0, 0, ending }
+/* const char *: the name of a picture, as abbe_command_output has it; of one for a display alone,
+ * exr is png. */
+#define ABBE_TAKE_OUTPUT(request, key, exr, png)                                                   \
+  {                                                                                                \
+    ABBE_TAKES_OUTPUT, key, ABBE_TAKE_AT(request, exr, const char *),                              \
+        ABBE_TAKE_AT(request, png, const char *), 0, 0, NULL                                       \
+  }
 /* Puts the value of the option into its field of state->input; false where no row has the key. A
  * value that is wrong ends the program with ABBE_EXIT_USAGE. */
 bool abbe_take_option(const abbe_take *takes, int key, char *text, struct argp_state *state);

@@ -6,6 +6,7 @@
 #include "base/number.h"
 #include "base/utf8.h"
 #include "colorimetry/image/exr.h"
+#include "colorimetry/screen/screen_file.h"
 
 #include <cjson/cJSON.h>
 #include <errno.h>
@@ -212,6 +213,25 @@ const char *abbe_command_target(const char *program, const char *option, const c
     exit(ABBE_EXIT_USAGE);
   }
   return text;
+}
+
+void abbe_command_output(const char *program, const char *option, const char *text,
+                         const char **exr, const char **png) {
+  const abbe_screen_file_needs none = {0};
+  abbe_error error = {0};
+  if (abbe_screen_kind_of(text) == NULL && exr != NULL) {
+    *exr = abbe_command_target(program, option, text, ".exr");
+    return;
+  }
+  if (*png != NULL)
+    fprintf(stderr, "%s: '%s' and '%s' are two pictures for a display; name one\n", program, *png,
+            text);
+  else if (abbe_screen_file_check(text, &none, &error) != ABBE_OK)
+    fprintf(stderr, "%s: %s\n", program, error.text);
+  else
+    *png = abbe_screen_kind_of(text) != NULL ? text
+                                             : abbe_command_target(program, option, text, ".png");
+  if (*png != text) exit(ABBE_EXIT_USAGE);
 }
 
 void abbe_command_size(const char *program, const char *option, const char *text, size_t most,

@@ -84,6 +84,12 @@ int abbe_command_choice(const char *program, const char *option, const char *tex
 const char *abbe_command_target(const char *program, const char *option, const char *text,
                                 const char *ending);
 
+/* The name of a picture: *exr where its ending is of no kind for a display (screen_file.h), else
+ * *png. exr NULL: all is for a display. A second one for a display, and a kind whose library the
+ * build lacks, are refused. */
+void abbe_command_output(const char *program, const char *option, const char *text,
+                         const char **exr, const char **png);
+
 /* "512x512" as width and height, each 1 to `most`. */
 void abbe_command_size(const char *program, const char *option, const char *text, size_t most,
                        size_t *width, size_t *height);

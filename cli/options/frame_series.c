@@ -4,9 +4,9 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "cli/base/arguments.h"
-#include "colorimetry/image/animated_png.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/png_file.h"
+#include "colorimetry/screen/screen_file.h"
 #include "scenes/scene.h"
 
 #include <stdio.h>
@@ -188,7 +188,12 @@ void abbe_frame_series_take_move(abbe_frame_series *s, abbe_scene_input_changes 
   abbe_scene_input_take(changes, ABBE_SCENE_INPUT_SET, first, s->program);
 }
 
-void abbe_frame_series_check_moves(const abbe_frame_series *s, struct argp_state *state) {
+void abbe_frame_series_check(const abbe_frame_series *s, const char *png,
+                             struct argp_state *state) {
+  const abbe_screen_file_needs needs = {.moves = true};
+  abbe_error error = {0};
+  if (s->count > 0 && png != NULL && abbe_screen_file_check(png, &needs, &error) != ABBE_OK)
+    argp_error(state, "%s", error.text);
   if (s->moves > 0 && (s->count == 0 || s->around))
     argp_error(state, "--move goes with --frames A:B");
 }
@@ -229,7 +234,8 @@ abbe_result abbe_frame_series_name(const char *path, size_t number, char **out, 
   const size_t stem = dot != NULL && (slash == NULL || dot > slash) ? (size_t)(dot - path) : length;
   *out = malloc(room);
   if (*out == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a frame's name");
-  snprintf(*out, room, "%.*s-%04zu%s", (int)stem, path, number, path + stem);
+  snprintf(*out, room, "%.*s-%04zu%s", (int)stem, path, number,
+           abbe_screen_kind_of(path) != NULL ? ".png" : path + stem);
   return ABBE_OK;
 }
 
@@ -309,7 +315,7 @@ abbe_result abbe_frame_series_merge(const abbe_frame_series *s, const char *path
     result = abbe_frame_series_name(path, s->first + i, &png[i], error);
   if (result == ABBE_OK) result = check_records((const char *const *)png, s->count, error);
   if (result == ABBE_OK)
-    result = abbe_animated_png_write(path, (const char *const *)png, s->count, rate(s), error);
+    result = abbe_screen_file_move(path, (const char *const *)png, s->count, rate(s), error);
   for (size_t i = 0; png != NULL && i < s->count; i++) free(png[i]);
   free(png);
   return result;

@@ -1,5 +1,6 @@
 /* frame_series.h: pictures one after another: which frames, when each of them is, what moves in
- * them, what their files are called, and the PNG that moves. It draws nothing. Internal to cli/.
+ * them, what their files are called, and the picture that moves. It draws nothing. Internal to
+ * cli/.
  */
 #ifndef ABBE_CLI_OPTIONS_FRAME_SERIES_H
 #define ABBE_CLI_OPTIONS_FRAME_SERIES_H
@@ -44,8 +45,9 @@ void abbe_frame_series_take(abbe_frame_series *series, const char *text);
 /* "KEY=A:B"; the scene begins with KEY=A. Ends the program where it is none, or one too many. */
 void abbe_frame_series_take_move(abbe_frame_series *series, abbe_scene_input_changes *changes,
                                  const char *text);
-/* Moves without frames over time end the program. */
-void abbe_frame_series_check_moves(const abbe_frame_series *series, struct argp_state *state);
+/* Moves without frames over time, and a file (NULL: none) that cannot move, end the program. */
+void abbe_frame_series_check(const abbe_frame_series *series, const char *png,
+                             struct argp_state *state);
 
 /* The scene of frame i, at its time and with what has moved till then. */
 abbe_result abbe_frame_series_scene(const abbe_frame_series *series, const abbe_scene *scene,
@@ -66,11 +68,12 @@ abbe_result abbe_frame_series_mark(const abbe_frame_series *series, size_t i, ab
 bool abbe_frame_series_draws(const abbe_frame_series *series, size_t i, const char *exr,
                              const char *png);
 
-/* "stone.png" is "stone-0001.png" for the number 1; malloc'd, NULL without a path. */
+/* "stone.png", and any other picture for a display, is "stone-0001.png" for the number 1; malloc'd,
+ * NULL without a path. */
 abbe_result abbe_frame_series_name(const char *path, size_t number, char **out, abbe_error *error);
 
-/* path, a PNG that moves, of the series' numbered files beside it. ABBE_INVALID_ARGUMENT where they
- * carry records of several requests; errors of abbe_animated_png_write. */
+/* path, a picture that moves, of the series' numbered files beside it. ABBE_INVALID_ARGUMENT where
+ * they carry records of several requests; errors of abbe_screen_file_move. */
 abbe_result abbe_frame_series_merge(const abbe_frame_series *series, const char *path,
                                     abbe_error *error);
 

@@ -4,7 +4,7 @@
 #include "cli/base/command.h"
 
 #include "colorimetry/colour_temperature.h"
-#include "colorimetry/image/avif_file.h"
+#include "colorimetry/screen/screen_file.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -42,7 +42,7 @@ static const struct argp_option options[] = {
      "on)",
      0},
     {"bits", OPTION_BITS, "N", 0,
-     "of a PNG 8 or 16 (8, for PQ and HLG 16), of an AVIF 10 or 12 (10)", 0},
+     "of a PNG 8 or 16 (8, for PQ and HLG 16), of an AVIF 10 or 12 (10), of others 8", 0},
     {0}};
 
 static void take_gamut(abbe_screen_options *o, const char *text) {
@@ -109,11 +109,12 @@ const struct argp abbe_screen_options_argp = {options, parse, NULL, NULL, NULL, 
 void abbe_screen_options_end(const abbe_screen_options *o, const char *png,
                              struct argp_state *state) {
   if (o->given != NULL && png == NULL)
-    argp_error(state, "%s is for the PNG: give --png FILE.png too", o->given);
-  const bool avif = abbe_avif_is_meant(png);
-  if (o->bits != 0 && avif != (o->bits == 10 || o->bits == 12))
-    argp_error(state, "--bits '%d': %s", o->bits,
-               avif ? "an AVIF has 10 or 12" : "a PNG has 8 or 16, and an AVIF 10 or 12");
+    argp_error(state, "%s is for the picture for a display: give --png FILE.png too", o->given);
+  const abbe_screen_file_needs needs[] = {{.bits = o->bits}, {.alpha = o->alpha}};
+  abbe_error error = {0};
+  for (int i = 0; png != NULL && i < 2; i++)
+    if (abbe_screen_file_check(png, &needs[i], &error) != ABBE_OK)
+      argp_error(state, "%s %s", i == 0 ? "--bits:" : "--alpha:", error.text);
 }
 
 abbe_result abbe_screen_options_check(const abbe_screen_options *o, abbe_rgb_space space,

@@ -5,8 +5,8 @@
 #define ABBE_CLI_OPTIONS_SCREEN_OPTIONS_H
 
 #include "colorimetry/image/display_ocio.h"
-#include "colorimetry/image/screen_png.h"
 #include "colorimetry/rgb_space.h"
+#include "colorimetry/screen/screen_png.h"
 
 #include <argp.h>
 

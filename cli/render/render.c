@@ -33,9 +33,10 @@ enum {
 typedef abbe_render_request request;
 
 static const struct argp_option options[] = {
-    {"output", 'o', "FILE.exr", ABBE_ARGUMENT_WRITES, "the scene-linear picture", 0},
+    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES,
+     "the scene-linear picture, .exr; or that for a display, by its ending as --png", 0},
     {"png", OPTION_PNG, "FILE.png", ABBE_ARGUMENT_WRITES,
-     "the picture for a display, through OpenColorIO", 0},
+     "the picture for a display, through OpenColorIO: .png, .webp, .jpg, .gif or .avif", 0},
     {"aovs", OPTION_AOVS, NULL, 0, "direct and caustic light and distance in the EXR too", 0},
     {"bands", OPTION_BANDS, "N", 0,
      "N bands of wavelengths in the EXR and the saved map too: N frames more", 0},
@@ -44,7 +45,7 @@ static const struct argp_option options[] = {
     {"json", OPTION_JSON, NULL, 0, "the same on standard output", 0},
     {"frames", OPTION_FRAMES, "N|A:B", 0,
      "warm up, then report the median of N frames (1); A:B: frames A to B - 1 over time, numbered, "
-     "and FILE.png that moves",
+     "and FILE.png, .webp or .gif that moves",
      0},
     ABBE_FRAME_SERIES_MOVE(OPTION_MOVE, 0),
     {"backend", OPTION_BACKEND, "NAME", 0, "cpu, gpu, or auto: a GPU where there is one (auto)", 0},
@@ -80,10 +81,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     state->child_inputs[5] = &q->screen;
     return 0;
   case 'o':
-    q->exr = abbe_command_target(state->name, "-o", text, ".exr");
+    abbe_command_output(state->name, "-o", text, &q->exr, &q->png);
     return 0;
   case OPTION_PNG:
-    q->png = abbe_command_target(state->name, "--png", text, ".png");
+    abbe_command_output(state->name, "--png", text, NULL, &q->png);
     return 0;
   case OPTION_AOVS:
     q->aovs = true;
@@ -138,10 +139,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
                  "%s writes frames by -o FILE.exr and --png FILE.png, and goes "
                  "without --save-map, --frames N, --bands and --error-bars",
                  q->series.around ? "--turntable" : "--frames A:B");
-    abbe_frame_series_check_moves(&q->series, state);
+    abbe_frame_series_check(&q->series, q->png, state);
     check_ranks(q, state);
     if (q->series.merge && q->png == NULL)
-      argp_error(state, "--merge makes a PNG that moves: give --png FILE.png");
+      argp_error(state, "--merge makes a picture that moves: give --png FILE.png");
     if (q->errors.mean && q->aovs)
       argp_error(state, "--mean has no --aovs: they are of one picture, not of the mean");
     return 0;
@@ -421,7 +422,7 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
       {&abbe_preset_options_argp, 0, "By error or by time:", 2},
       {&abbe_error_options_argp, 0, "How far off it is:", 4},
       {&abbe_render_frames_argp, 0, "From all around, and over time:", 5},
-      {&abbe_screen_options_argp, 0, "How the PNG shows it:", 6},
+      {&abbe_screen_options_argp, 0, "How the picture for a display shows it:", 6},
       {0}};
   const struct argp argp = {
       options,

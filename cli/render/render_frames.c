@@ -24,7 +24,8 @@ enum { MOST_AROUND = 9999 };
 
 static const struct argp_option options[] = {
     {"turntable", OPTION_TURNTABLE, "N", 0,
-     "N frames from all around, numbered: FILE-0001.exr, FILE-0001.png, and FILE.png that moves",
+     "N frames from all around, numbered: FILE-0001.exr, FILE-0001.png, and FILE.png, .webp or "
+     ".gif that moves",
      5},
     {"turn", OPTION_TURN, "WHAT", 0,
      "of a turntable: camera, which goes around, or stone, which turns with its metal under lights "
@@ -35,7 +36,7 @@ static const struct argp_option options[] = {
     {"resume", OPTION_RESUME, NULL, 0, "draw those frames alone whose files are not there", 5},
     {"merge", OPTION_MERGE, NULL, 0,
      "draw nothing: make FILE.png of the numbered frames that are there", 5},
-    {"fps", OPTION_FPS, "F", 0, "frames a second, of time and of the PNG that moves (25)", 5},
+    {"fps", OPTION_FPS, "F", 0, "frames a second, of time and of the picture that moves (25)", 5},
     {0}};
 
 /* What says nothing of one picture. */

@@ -49,10 +49,12 @@ enum { DEFAULT_PASSES = 64, MOST_PASSES = 1000000 };
 typedef abbe_trace_request request;
 
 static const struct argp_option options[] = {
-    {"output", 'o', "FILE.exr", ABBE_ARGUMENT_WRITES,
-     "the scene-linear picture with its standard errors", 0},
+    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES,
+     "the scene-linear picture with its standard errors, .exr; or that for a display, by its "
+     "ending as --png",
+     0},
     {"png", OPTION_PNG, "FILE.png", ABBE_ARGUMENT_WRITES,
-     "the picture for a display, through OpenColorIO", 0},
+     "the picture for a display, through OpenColorIO: .png, .webp, .jpg, .gif or .avif", 0},
     {"stats", OPTION_STATS, "FILE|-", ABBE_ARGUMENT_WRITES | ABBE_ARGUMENT_STREAMS,
      "passes, rays, times and the energy ledger as JSON; -: on standard output", 0},
     {"json", OPTION_JSON, NULL, 0, "the same on standard output", 0},
@@ -200,8 +202,8 @@ static void check_parts(const request *q, struct argp_state *state) {
 }
 
 static const abbe_take takes[] = {
-    ABBE_TAKE_TARGET(request, 'o', exr, ".exr"),
-    ABBE_TAKE_TARGET(request, OPTION_PNG, png, ".png"),
+    ABBE_TAKE_OUTPUT(request, 'o', exr, png),
+    ABBE_TAKE_OUTPUT(request, OPTION_PNG, png, png),
     ABBE_TAKE_FLAG(request, OPTION_JSON, json),
     ABBE_TAKE_FLAG(request, 'q', quiet),
     ABBE_TAKE_TEXT(request, OPTION_MATERIALS, materials),
@@ -415,7 +417,7 @@ static abbe_result trace_frames(request *q, const abbe_rank_job *job, const abbe
 static int run_command(int argc, char **argv, abbe_rank_job *job) {
   static const struct argp_child children[] = {
       {&abbe_map_options_argp, 0, "Receiver map:", 3},
-      {&abbe_screen_options_argp, 0, "How the PNG shows it:", 4},
+      {&abbe_screen_options_argp, 0, "How the picture for a display shows it:", 4},
       {&abbe_trace_frames_argp, 0, "Over time:", 5},
       {0}};
   static const struct argp argp = {

@@ -8,9 +8,9 @@ enum { OPTION_FRAMES = 0x900, OPTION_FPS, OPTION_PART };
 
 static const struct argp_option options[] = {
     {"frames", OPTION_FRAMES, "A:B", 0,
-     "frames A to B - 1 over time, numbered, and FILE.png that moves", 5},
-    {"fps", OPTION_FPS, "F", 0, "frames a second, of time and of the PNG that moves (25)", 5},
-    {"part", OPTION_PART, "K/N", 0, "only every N-th frame from the K-th on, and no PNG that moves",
+     "frames A to B - 1 over time, numbered, and FILE.png, .webp or .gif that moves", 5},
+    {"fps", OPTION_FPS, "F", 0, "frames a second, of time and of the picture that moves (25)", 5},
+    {"part", OPTION_PART, "K/N", 0, "only every N-th frame from the K-th on, and none that moves",
      5},
     {0}};
 
@@ -35,7 +35,7 @@ const struct argp abbe_trace_frames_argp = {options, parse, NULL, NULL, NULL, NU
 
 void abbe_trace_frames_check(const abbe_trace_request *q, struct argp_state *state) {
   const abbe_frame_series *s = &q->series;
-  abbe_frame_series_check_moves(s, state);
+  abbe_frame_series_check(s, q->png, state);
   if (s->count == 0 && (s->per_second > 0 || s->part.parts > 0))
     argp_error(state, "--%s goes with --frames A:B", s->per_second > 0 ? "fps" : "part");
   if (s->part.parts > 0 && q->ranks != NULL)

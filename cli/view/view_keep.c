@@ -5,7 +5,7 @@
 #include "cli/view/picture/view_show.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/png_file.h"
-#include "colorimetry/image/screen_png.h"
+#include "colorimetry/screen/screen_png.h"
 #include "scenes/import/scene_file.h"
 
 #include <limits.h>

@@ -2,7 +2,7 @@
 
 #include "base/maths.h"
 #include "cli/view/view_keep.h"
-#include "colorimetry/image/animated_png.h"
+#include "colorimetry/screen/screen_file.h"
 
 #include <stdio.h>
 
@@ -45,8 +45,7 @@ static abbe_result write_moving(const abbe_view_session *session, abbe_error *er
     list[i] = frame[i];
   }
   name_of(session, 0, name);
-  return abbe_animated_png_write(name, list, ABBE_VIEW_TURN_FRAMES, ABBE_VIEW_TURN_PER_SECOND,
-                                 error);
+  return abbe_screen_file_move(name, list, ABBE_VIEW_TURN_FRAMES, ABBE_VIEW_TURN_PER_SECOND, error);
 }
 
 void abbe_view_turn_take(abbe_view_session *session, const abbe_view_result *result) {

@@ -294,7 +294,7 @@ TEST(display_fails) {
   char a[512];
   unlink(png);
   must(2, "which file", "display -o a.png");
-  must(2, "--bits '12'", "display a.exr -o a.png --bits 12");
+  must(2, "8 or 16 bits, not 12", "display a.exr -o a.png --bits 12");
   must(2, "--exposure 'bright'", "display a.exr -o a.png --exposure bright");
   snprintf(a, sizeof a, "display %s", exr);
   must(2, "-o names", a);

@@ -108,9 +108,9 @@ class Picture(Handle):
         return of_pointer(pointer)
 
     def save(self, path, **how):
-        """As OpenEXR; as PNG where the path ends so, through OpenColorIO: with exposure (stops),
-        view, display, config, layer, bits."""
-        if not str(path).lower().endswith(".png"):
+        """As OpenEXR; for a screen where the path ends with .png, .webp, .jpg, .gif or .avif, through
+        OpenColorIO: with exposure (stops), view, display, config, layer, bits."""
+        if not str(path).lower().endswith((".png", ".webp", ".jpg", ".jpeg", ".gif", ".avif")):
             if how:
                 raise TypeError("an OpenEXR file takes no settings: " + ", ".join(how))
             call("picture_save", self._pointer, required(path, "path"))

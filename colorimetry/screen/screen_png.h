@@ -1,10 +1,10 @@
-/* screen_png.h: a scene-linear picture as a PNG or an AVIF for a screen, through OpenColorIO.
+/* screen_png.h: a scene-linear picture as a file for a screen, through OpenColorIO.
  *
  * It finds which of the picture's channels are colour and in which space they are; what the
  * transform does is display_ocio.h's.
  */
-#ifndef ABBE_COLORIMETRY_IMAGE_SCREEN_PNG_H
-#define ABBE_COLORIMETRY_IMAGE_SCREEN_PNG_H
+#ifndef ABBE_COLORIMETRY_SCREEN_SCREEN_PNG_H
+#define ABBE_COLORIMETRY_SCREEN_SCREEN_PNG_H
 
 #include "colorimetry/image/display_ocio.h"
 
@@ -20,20 +20,20 @@ typedef struct abbe_screen_png_notes {
 
 /* Zeroed: the picture's own channels in the space that it states, the default view, 8 bits. */
 typedef struct abbe_screen_png_desc {
-  bool exposed;              /* not by display.exposure but by notes' stops */
-  abbe_display_desc display; /* its source_space NULL: what the picture states */
-  const char *layer;         /* channels LAYER.R, LAYER.G, LAYER.B; NULL: R, G, B */
-  bool alpha;                /* its channel A goes into the PNG, straight, as PNG has it: colours
-                                are those before they were multiplied by it */
-  const char *name;          /* the picture's name, for sentences; NULL: "the picture" */
-  int bits; /* of a PNG 8 or 16, 0: 8, for an HDR display 16; of an AVIF 10 or 12, 0: 10 */
+  bool exposed;                 /* not by display.exposure but by notes' stops */
+  abbe_display_desc display;    /* its source_space NULL: what the picture states */
+  const char *layer;            /* channels LAYER.R, LAYER.G, LAYER.B; NULL: R, G, B */
+  bool alpha;                   /* its channel A goes into the file, straight: colours are those
+                                   before they were multiplied by it */
+  const char *name;             /* the picture's name, for sentences; NULL: "the picture" */
+  int bits;                     /* of abbe_screen_file_write */
   abbe_screen_png_notes *notes; /* filled; may be NULL */
 } abbe_screen_png_desc;
 
-/* Writes an AVIF where path ends with .avif (avif_file.h). Shows R, G, B, else X, Y, Z, else Y, in
- * the space of abbe_picture_space_find. ABBE_NOT_FOUND without such channels; errors of
- * abbe_picture_space_find, abbe_display_make, abbe_display_apply, abbe_png_write and
- * abbe_avif_write. */
+/* Writes the kind of file that path's ending names (screen_file.h). Shows R, G, B, else X, Y, Z,
+ * else Y, in the space of abbe_picture_space_find. ABBE_NOT_FOUND without such channels; errors of
+ * abbe_picture_space_find, abbe_display_make, abbe_display_apply and
+ * abbe_screen_file_write. */
 abbe_result abbe_screen_png_write(const char *path, const abbe_image *image,
                                   const abbe_screen_png_desc *desc, abbe_error *error);
 

@@ -2,8 +2,8 @@
 #include "tests/check.h"
 
 #include "base/file.h"
-#include "colorimetry/image/animated_png.h"
 #include "colorimetry/image/png_file.h"
+#include "colorimetry/screen/screen_file.h"
 
 #include <unistd.h>
 #include <zlib.h>
@@ -30,7 +30,7 @@ TEST(chunks_are_by_the_standard) {
   size_t size;
   uint32_t sequence = 0, controls = 0, others = 0, first = 0;
   for (int i = 0; i < 3; i++) write_frame(frames[i], 16, 0.3f * (float)(i + 1));
-  OK(abbe_animated_png_write(MOVES, frames, 3, 25, &error));
+  OK(abbe_screen_file_move(MOVES, frames, 3, 25, &error));
   OK(abbe_file_read(MOVES, 1 << 20, &data, &size, &error));
   assert_memory_equal(data + 12, "IHDR", 4);
   assert_memory_equal(data + 8 + 25 + 4, "acTL", 4);
@@ -67,19 +67,19 @@ TEST(the_first_frame_is_what_others_see) {
 }
 
 TEST(what_is_refused) {
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_animated_png_write("none.png", frames, 0, 25, &error));
-  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_animated_png_write("none.png", frames, 2, NAN, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_screen_file_move("none.png", frames, 0, 25, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "", abbe_screen_file_move("none.png", frames, 2, NAN, &error));
   write_frame(frames[1], 8, 0.5f);
   REFUSED(ABBE_INVALID_ARGUMENT, "another kind",
-          abbe_animated_png_write("none.png", frames, 3, 25, &error));
+          abbe_screen_file_move("none.png", frames, 3, 25, &error));
   OK(abbe_file_write(frames[1], "\x89PNG, they say", 15, &error));
-  REFUSED(ABBE_PARSE, "", abbe_animated_png_write("none.png", frames, 3, 25, &error));
+  REFUSED(ABBE_PARSE, "", abbe_screen_file_move("none.png", frames, 3, 25, &error));
   char *data;
   size_t size;
   OK(abbe_file_read(frames[0], 1 << 20, &data, &size, &error));
   for (size_t cut = 0; cut < size; cut += 7) {
     OK(abbe_file_write(frames[1], data, cut, &error));
-    REFUSED(ABBE_PARSE, "", abbe_animated_png_write("none.png", frames, 2, 25, &error));
+    REFUSED(ABBE_PARSE, "", abbe_screen_file_move("none.png", frames, 2, 25, &error));
   }
   free(data);
   assert_int_not_equal(access("none.png", F_OK), 0);

@@ -1,14 +1,4 @@
-#include "colorimetry/image/avif_file.h"
-
-#include <string.h>
-#include <strings.h>
-
-bool abbe_avif_is_meant(const char *path) {
-  const char *dot = path != NULL ? strrchr(path, '.') : NULL;
-  return dot != NULL && strcasecmp(dot, ".avif") == 0;
-}
-
-#ifdef ABBE_HAS_AVIF
+#include "colorimetry/screen/screen_file.h"
 
 #include "base/file.h"
 #include "colorimetry/image/rgb_encoding.h"
@@ -17,13 +7,10 @@ bool abbe_avif_is_meant(const char *path) {
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Quantizers from 0 to 63: no step of an even picture is seen. */
 enum { BEST = 0, WORST = 8, SPEED = 6 };
-
-bool abbe_avif_is_there(void) {
-  return true;
-}
 
 static abbe_result fail(const char *path, avifResult why, abbe_error *error) {
   return abbe_error_set(error, why == AVIF_RESULT_OUT_OF_MEMORY ? ABBE_NO_MEMORY : ABBE_IO,
@@ -100,45 +87,20 @@ static abbe_result encode(const char *path, const avifImage *image, abbe_error *
   return result;
 }
 
-static abbe_result check(const char *path, const abbe_image *image, int bits, abbe_error *error) {
-  if (bits != 10 && bits != 12)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "%s: an AVIF of %d bits cannot be written; 10 or 12 can", path, bits);
-  if (image->data == NULL || image->channels < 3 || image->width * image->height == 0)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: there are no R, G, B to write", path);
+/* In full range and without sharing of colour among pixels (4:4:4). */
+abbe_result abbe_avif_write(const char *path, const abbe_image *image, int bits,
+                            abbe_error *error) {
   if (image->transfer != 0 && abbe_rgb_encoding_primaries_code(image->xy) == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: PQ and HLG are written for the primaries of Rec.709, Rec.2020 or P3",
                           path);
-  return ABBE_OK;
-}
-
-abbe_result abbe_avif_write(const char *path, const abbe_image *image, int bits,
-                            abbe_error *error) {
-  abbe_result result = check(path, image, bits, error);
-  if (result != ABBE_OK) return result;
   avifImage *out = avifImageCreate((uint32_t)image->width, (uint32_t)image->height, (uint32_t)bits,
                                    AVIF_PIXEL_FORMAT_YUV444);
   if (out == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "%s: there is no memory for its pixels", path);
-  result = set_colour(image, out, error);
+  abbe_result result = set_colour(image, out, error);
   if (result == ABBE_OK) result = fill(path, image, bits, out, error);
   if (result == ABBE_OK) result = encode(path, out, error);
   avifImageDestroy(out);
   return result;
 }
-
-#else
-
-bool abbe_avif_is_there(void) {
-  return false;
-}
-
-abbe_result abbe_avif_write(const char *path, const abbe_image *image, int bits,
-                            abbe_error *error) {
-  (void)bits;
-  return abbe_error_set(error, ABBE_UNSUPPORTED,
-                        "%s: this abbe was built without libavif; a .png can be written", path);
-}
-
-#endif

@@ -3,8 +3,8 @@
 
 #include "base/file.h"
 #include "colorimetry/image/png_file.h"
-#include "colorimetry/image/screen_png.h"
 #include "colorimetry/rgb_space.h"
+#include "colorimetry/screen/screen_png.h"
 
 #include <png.h>
 #include <unistd.h>

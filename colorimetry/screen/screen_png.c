@@ -1,8 +1,8 @@
-#include "colorimetry/image/screen_png.h"
+#include "colorimetry/screen/screen_png.h"
 
-#include "colorimetry/image/avif_file.h"
 #include "colorimetry/image/picture_space.h"
 #include "colorimetry/image/png_file.h"
+#include "colorimetry/screen/screen_file.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -174,14 +174,7 @@ abbe_result abbe_screen_png_write(const char *path, const abbe_image *image,
   const char *made = abbe_image_attribute_text(image, ABBE_PNG_TEXT);
   if (result == ABBE_OK && made != NULL)
     result = abbe_image_set_attribute(&picked, ABBE_PNG_TEXT, made, error);
-  if (result == ABBE_OK && abbe_avif_is_meant(path))
-    result = abbe_avif_write(path, &picked, d->bits != 0 ? d->bits : 10, error);
-  else if (result == ABBE_OK)
-    result = abbe_png_write(path, &picked,
-                            d->bits != 0           ? d->bits
-                            : picked.transfer != 0 ? 16
-                                                   : 8,
-                            error);
+  if (result == ABBE_OK) result = abbe_screen_file_write(path, &picked, d->bits, error);
   abbe_display_free(transform);
   abbe_image_free(&picked);
   return result;
