@@ -20,7 +20,7 @@ struct abbe_lib_gem_report {
 };
 
 typedef struct request {
-  const char *table;
+  const char *table, *axis;
   double width_m, min_nm, max_nm, head_rad, tilt_rad, step_rad, weld;
   size_t wavelengths, size, repeats, threads;
 } request;
@@ -38,6 +38,7 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
                  .repeats = 4};
   const abbe_lib_setting known[] = {
       ABBE_LIB_TEXT("table", &q->table),
+      ABBE_LIB_TEXT("axis", &q->axis),
       ABBE_LIB_NUMBER("width_m", &q->width_m, 1e-6, 1e3),
       ABBE_LIB_NUMBER("min_nm", &q->min_nm, 1, 1e6),
       ABBE_LIB_NUMBER("max_nm", &q->max_nm, 1, 1e6),
@@ -90,6 +91,9 @@ static abbe_result prepare(const request *q, const char *path, const char *mater
   if (result == ABBE_OK)
     result = abbe_gem_stone_make(&w->cut, &w->polyhedron, w->material, &w->wavelengths, q->width_m,
                                  &w->stone, error);
+  abbe_gem_axes axes;
+  if (result == ABBE_OK && q->axis != NULL) result = abbe_gem_axes_read(q->axis, &axes, error);
+  if (result == ABBE_OK && q->axis != NULL) result = abbe_gem_stone_turn(&w->stone, &axes, error);
   return result;
 }
 

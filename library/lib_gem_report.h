@@ -20,9 +20,10 @@ typedef struct abbe_lib_gem_report abbe_lib_gem_report;
  * the library. material: of the table. Settings: table (default, thesis or a file), width_m (6.5
  * mm), wavelengths (16), min_nm, max_nm (380, 780), head_rad (half angle of the head's shadow, 15
  * degrees), tilt_rad (to either side, 30 degrees; 0: not tilted, and no fire), step_rad (2
- * degrees), size (a side of the maps, 96), repeats (4), threads, weld. progress may be NULL.
- * ABBE_NOT_FOUND, ABBE_IO, ABBE_PARSE, ABBE_GEOMETRY, ABBE_OUT_OF_RANGE, ABBE_UNSUPPORTED for a
- * metal, ABBE_CANCELLED, ABBE_NO_MEMORY. */
+ * degrees), size (a side of the maps, 96), repeats (4), threads, weld, axis (of a crystal: X,Y,Z,
+ * and of three indices its z and x; 0,0,1). progress may be NULL. ABBE_NOT_FOUND, ABBE_IO,
+ * ABBE_PARSE, ABBE_GEOMETRY, ABBE_OUT_OF_RANGE, ABBE_UNSUPPORTED for a metal, ABBE_CANCELLED,
+ * ABBE_NO_MEMORY. */
 abbe_result abbe_lib_gem_report_make(const char *path, const char *material,
                                      const char *const *settings, size_t count,
                                      bool (*progress)(void *user, double done), void *user,

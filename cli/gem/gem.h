@@ -14,6 +14,7 @@
 #include "scenes/cuts/cut_polyhedron.h"
 #include "spectral/materials/material.h"
 #include "validation/gem/gem_judgement.h"
+#include "validation/gem/gem_optimum.h"
 
 /* X(name, summary): every verb NAME is `int abbe_gem_NAME(int argc, char **argv)`. */
 #define ABBE_GEM_VERBS(X)                                                                          \
@@ -27,6 +28,17 @@
 /* The pairs of one search by several processes (validation/gem/ranked_optimum.h); rank 0 writes and
  * says what came of it. Gives the exit code. */
 int abbe_gem_optimise_by_ranks(int argc, char **argv, abbe_rank_job *job);
+
+/* To path, .png or .svg: the measure over both angles. */
+abbe_result abbe_gem_optimise_plot(const char *path, const abbe_gem_input *input,
+                                   const abbe_gem_optimum *optimum, const char *measure,
+                                   abbe_error *error);
+
+/* Tries ways of a crystal in its cut, by desc's measure and view, and says what came of it: tilts
+ * from 0 to 90 degrees, azimuths as abbe_gem_orientation_axes has them. measure: for people. */
+abbe_result abbe_gem_optimise_axis(const abbe_gem_stone_input *input, const char *measure,
+                                   const abbe_gem_optimum_desc *desc, size_t tilts, size_t azimuths,
+                                   abbe_error *error);
 
 #define ABBE_GEM_DECLARE(name, summary) int abbe_gem_##name(int argc, char **argv);
 ABBE_GEM_VERBS(ABBE_GEM_DECLARE)

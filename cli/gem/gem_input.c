@@ -55,6 +55,15 @@ static abbe_result take_index(abbe_gem_stone_input *q, abbe_error *error) {
   return ABBE_OK;
 }
 
+static abbe_result turn(abbe_gem_stone_input *q, abbe_error *error) {
+  if (!abbe_material_is_crystal(q->in.material))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "--axis '%s': %s has one index in all directions; leave the option out",
+                          q->axis, q->in.material->name);
+  const abbe_result result = abbe_gem_axes_read(q->axis, &q->axes, error);
+  return result == ABBE_OK ? abbe_gem_stone_turn(&q->stone, &q->axes, error) : result;
+}
+
 abbe_result abbe_gem_stone_input_load(abbe_gem_stone_input *q, abbe_error *error) {
   const abbe_illuminant d65 = {0};
   const double from = q->from_nm > 0 ? q->from_nm : ABBE_WAVELENGTH_MIN_NM;
@@ -68,6 +77,7 @@ abbe_result abbe_gem_stone_input_load(abbe_gem_stone_input *q, abbe_error *error
   if (result == ABBE_OK)
     result = abbe_gem_stone_make(&q->in.cut, &q->in.stone, q->in.material, &q->wavelengths,
                                  q->width_m, &q->stone, error);
+  if (result == ABBE_OK && q->axis != NULL) result = turn(q, error);
   if (result == ABBE_OK && !q->in.quiet) note_range(q, from, to);
   return result;
 }

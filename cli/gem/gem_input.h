@@ -62,10 +62,12 @@ typedef struct abbe_gem_stone_input {
   abbe_gem_input in;
   double from_nm, to_nm; /* 0: 380 and 780 */
   size_t count;          /* number of wavelengths */
+  const char *axis;      /* how a crystal lies, as abbe_gem_axes_read has it, or NULL */
   double width_m;        /* from here on: filled by load */
   abbe_material own;     /* the design's index, where no material is given */
   abbe_wavelengths wavelengths;
   abbe_weights weights; /* under D65, in XYZ */
+  abbe_gem_axes axes;
   abbe_gem_stone stone;
 } abbe_gem_stone_input;
 

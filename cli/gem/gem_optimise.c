@@ -1,4 +1,5 @@
 #include "base/maths.h"
+#include "base/number.h"
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
@@ -6,7 +7,6 @@
 #include "cli/gem/gem.h"
 #include "cli/gem/gem_input.h"
 
-#include "colorimetry/plot/chart.h"
 #include "scenes/cuts/cut_stretch.h"
 #include "validation/gem/gem_grid_file.h"
 #include "validation/gem/gem_optimum.h"
@@ -59,8 +59,8 @@ typedef struct request {
   bool merge;
   const char **table; /* to merge */
   size_t tables;
-  double crown[2], pavilion[2], head_deg, tilt_deg, axis_deg;
-  size_t crowns, pavilions, size, threads;
+  double crown[2], pavilion[2], head_deg, tilt_deg, azimuth_deg;
+  size_t crowns, pavilions, tilts, azimuths, size, threads; /* tilts 0: no search for axes */
   int measure;
   const abbe_rank_job *job; /* the ranks that share the pairs; NULL: one process */
 } request;
@@ -79,8 +79,12 @@ static const struct argp_option options[] = {
      0},
     {"head-shadow", KEY_HEAD, "DEGREES", 0,
      "half angle of the viewer's head, 0 to below 45; without it, 15", 0},
-    {"tilt", KEY_TILT, "DEGREES", 0, "judge the stone so tilted; without it, level", 0},
-    {"axis", KEY_AXIS, "DEGREES", 0, "azimuth of the tilt's axis; without it, 0", 0},
+    {"tilt", KEY_TILT, "DEGREES[,AZIMUTH]", 0,
+     "judge the stone so tilted about the horizontal axis of that azimuth; without it, level", 0},
+    {"axis", KEY_AXIS, "X,Y,Z or TILTSxAZIMUTHS", 0,
+     "how a crystal lies in its cut, as abbe gem report has it; or so many ways are tried, and the "
+     "angles kept",
+     0},
     {"range", KEY_RANGE, "FROM:TO", 0, "wavelengths, nm; without it, 380:780", 0},
     {"size", KEY_SIZE, "PIXELS", 0, "a side of the view, of 4 rays a pixel; without it, 32", 0},
     {"threads", KEY_THREADS, "N", 0, "without it, all; results do not depend on it", 0},
@@ -103,16 +107,32 @@ static void read_measure(request *q, const char *text) {
   q->measure = abbe_command_choice(q->stone.in.program, "--measure", text, names, MEASURES);
 }
 
+static void read_tilt(request *q, const char *text) {
+  const char *end;
+  const bool read =
+      abbe_number_read(text, &end, &q->tilt_deg) && fabs(q->tilt_deg) <= 90 &&
+      (*end == '\0' || (*end == ',' && abbe_number_read(end + 1, &end, &q->azimuth_deg) &&
+                        fabs(q->azimuth_deg) <= 360 && *end == '\0'));
+  if (read) return;
+  fprintf(stderr, "%s: --tilt '%s': it is DEGREES or DEGREES,AZIMUTH, up to 90 and 360\n",
+          q->stone.in.program, text);
+  exit(ABBE_EXIT_USAGE);
+}
+
 static error_t parse_more(int key, char *arg, request *q) {
   switch (key) {
   case KEY_HEAD:
     q->head_deg = abbe_command_number(q->stone.in.program, "--head-shadow", arg, 0, 44.999);
     return 0;
   case KEY_TILT:
-    q->tilt_deg = abbe_command_number(q->stone.in.program, "--tilt", arg, -90, 90);
+    read_tilt(q, arg);
     return 0;
   case KEY_AXIS:
-    q->axis_deg = abbe_command_number(q->stone.in.program, "--axis", arg, -360, 360);
+    if (strchr(arg, 'x') == NULL)
+      q->stone.axis = arg;
+    else
+      abbe_command_size(q->stone.in.program, "--axis", arg, ABBE_GEM_MOST_ANGLES, &q->tilts,
+                        &q->azimuths);
     return 0;
   case KEY_RANGE:
     abbe_command_range(q->stone.in.program, "--range", arg, &q->stone.from_nm, &q->stone.to_nm);
@@ -144,6 +164,10 @@ static const char *kept_beside(const request *q) {
 
 /* That the parts' options go together, and which pieces of work there are. */
 static void check_parts(const request *q, struct argp_state *state) {
+  if (q->tilts > 0 && (q->job != NULL || q->merge || q->part.parts > 0 || q->pairs != NULL ||
+                       q->out != NULL || q->plot != NULL))
+    argp_error(state, "--axis with so many ways keeps the angles: --part, --merge, --pairs, "
+                      "--plot and -o are for angles");
   if (q->tables > 0 && !q->merge) argp_error(state, "one design; '%s' is too much", q->table[0]);
   if (q->job != NULL && (q->merge || q->part.parts > 0))
     argp_error(state, "--part and --merge are for one process: abbe gem optimise");
@@ -251,50 +275,6 @@ static abbe_result print_json(const request *q, const abbe_gem_stone_input *in,
   return result;
 }
 
-/* An axis whose pixels have their angle in their middle. */
-static abbe_chart_axis axis(const char *label, const double *rad, size_t count) {
-  const double first = degrees(rad[0]), last = degrees(rad[count - 1]);
-  const double half = count > 1 ? 0.5 * (last - first) / ((double)count - 1) : 0.5;
-  return (abbe_chart_axis){.label = label, .min = first - half, .max = last + half};
-}
-
-static abbe_result plot(const request *q, const abbe_gem_stone_input *in, const abbe_gem_optimum *o,
-                        abbe_error *error) {
-  float *value = malloc(o->crowns * o->pavilions * sizeof *value);
-  if (value == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a chart");
-  for (size_t i = 0; i < o->crowns * o->pavilions; i++)
-    value[(o->pavilions - 1 - i / o->crowns) * o->crowns + i % o->crowns] =
-        (float)(100 * o->value[i].value);
-  char title[300], label[64];
-  snprintf(title, sizeof title, "%s in %s", abbe_gem_input_title(&in->in), in->in.material->name);
-  snprintf(label, sizeof label, "%s, %%", measures[q->measure].text);
-  const abbe_chart_field field = {.width = o->crowns,
-                                  .height = o->pavilions,
-                                  .value = value,
-                                  .map = ABBE_COLOUR_MAP_AMOUNT,
-                                  .label = label};
-  const double x[2] = {degrees(o->crown_rad[o->best % o->crowns]), degrees(o->design_crown_rad)};
-  const double y[2] = {degrees(o->pavilion_rad[o->best / o->crowns]),
-                       degrees(o->design_pavilion_rad)};
-  const abbe_chart_series series[2] = {
-      {.label = "best", .style = ABBE_CHART_POINTS, .count = 1, .x = x, .y = y, .colour = 3},
-      {.label = "the design",
-       .style = ABBE_CHART_POINTS,
-       .count = 1,
-       .x = x + 1,
-       .y = y + 1,
-       .colour = 6}};
-  const abbe_chart chart = {.title = title,
-                            .x = axis("crown, degrees", o->crown_rad, o->crowns),
-                            .y = axis("pavilion, degrees", o->pavilion_rad, o->pavilions),
-                            .field = &field,
-                            .series_count = 2,
-                            .series = series};
-  abbe_result result = abbe_chart_write(q->plot, &chart, 1, 860, 640, error);
-  free(value);
-  return result;
-}
-
 /* The cut becomes the best one. */
 static abbe_result write_best(request *q, const abbe_gem_optimum *o, abbe_error *error) {
   abbe_gem_input *in = &q->stone.in;
@@ -316,7 +296,8 @@ static abbe_gem_optimum_desc describe(const request *q, abbe_progress *progress)
                                  .measure = measures[q->measure].amount,
                                  .least = measures[q->measure].least,
                                  .width_m = q->stone.width_m,
-                                 .view = {.axis_rad = q->axis_deg * ABBE_PI / 180,
+                                 .axes = q->stone.axes,
+                                 .view = {.axis_rad = q->azimuth_deg * ABBE_PI / 180,
                                           .tilt_rad = q->tilt_deg * ABBE_PI / 180,
                                           .head_rad = q->head_deg * ABBE_PI / 180,
                                           .side = q->size,
@@ -411,7 +392,8 @@ static abbe_result write_all(request *q, const abbe_gem_optimum *o, abbe_error *
   const abbe_gem_stone_input *s = &q->stone;
   abbe_result result = ABBE_OK;
   if (q->pairs != NULL) result = abbe_gem_grid_file_write(q->pairs, o, error);
-  if (result == ABBE_OK && q->plot != NULL) result = plot(q, s, o, error);
+  if (result == ABBE_OK && q->plot != NULL)
+    result = abbe_gem_optimise_plot(q->plot, &s->in, o, measures[q->measure].text, error);
   if (result == ABBE_OK && q->out != NULL) result = write_best(q, o, error);
   if (result == ABBE_OK && q->job != NULL) abbe_rank_files_remove(kept_beside(q));
   if (result == ABBE_OK && !s->in.json && q->part.parts > 0)
@@ -429,6 +411,13 @@ static abbe_result run(request *q, abbe_error *error) {
   if (result == ABBE_OK)
     result = abbe_command_check_targets((const char *[]){q->out, q->plot, q->pairs}, 3, error);
   if (result == ABBE_OK) result = abbe_gem_stone_input_load(&q->stone, error);
+  if (result == ABBE_OK && q->tilts > 0) {
+    const abbe_gem_optimum_desc desc = describe(q, NULL);
+    result = abbe_gem_optimise_axis(&q->stone, measures[q->measure].text, &desc, q->tilts,
+                                    q->azimuths, error);
+    abbe_gem_stone_input_free(&q->stone);
+    return result;
+  }
   if (result == ABBE_OK) result = find_angles(q, error);
   result = abbe_rank_job_agree(q->job, result, error);
   if (result == ABBE_OK)
@@ -453,6 +442,7 @@ static int run_command(int argc, char **argv, abbe_rank_job *job) {
       "  abbe gem optimise brilliant.asc --material quartz -o best.asc --plot best.png\n"
       "  abbe gem optimise brilliant.asc --material diamond --measure cos --crown 30:40 "
       "--pavilion 39:43 --grid 21x21\n"
+      "  abbe gem optimise brilliant.asc --material tanzanite --axis 4x4\n"
       "  abbe gem optimise pear.asc --material ruby --grid 201x201 --part 3/8 --pairs part-3.csv\n"
       "  abbe gem optimise pear.asc --material ruby --grid 201x201 --merge part-*.csv -o "
       "best.asc\n",

@@ -13,6 +13,7 @@ enum {
   KEY_CSV = 0x100,
   KEY_MAPS,
   KEY_HEAD,
+  KEY_AXIS,
   KEY_TILT,
   KEY_STEP,
   KEY_RANGE,
@@ -35,6 +36,11 @@ static const struct argp_option options[] = {
     {"csv", KEY_CSV, NULL, 0, "all numbers as CSV", 0},
     {"maps", KEY_MAPS, "FOLDER", ABBE_ARGUMENT_ONCE,
      "maps.exr and a PNG of each map, into a folder that is there", 0},
+    {"axis", KEY_AXIS, "X,Y,Z", 0,
+     "the optic axis of a crystal in its cut, z up; of one of three indices six numbers, its axes "
+     "z "
+     "and x. Without it, 0,0,1",
+     0},
     {"head-shadow", KEY_HEAD, "DEGREES", 0,
      "half angle of the viewer's head, 0 to below 45; without it, 15", 0},
     {"tilt", KEY_TILT, "DEGREES", 0,
@@ -84,6 +90,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case KEY_MAPS:
     q->maps = arg;
     return 0;
+  case KEY_AXIS:
+    q->stone.axis = arg;
+    return 0;
   case KEY_HEAD:
     q->head_deg = abbe_command_number(q->stone.in.program, "--head-shadow", arg, 0, 44.999);
     return 0;
@@ -126,9 +135,6 @@ static abbe_result say(const request *q, const abbe_gem_report_facts *f, abbe_er
     result = abbe_gem_report_maps(q->maps, f->judgement, error);
   if (result != ABBE_OK) return result;
   if (q->stone.in.json) return abbe_gem_report_print_json(f, error);
-  if (q->csv && abbe_material_is_crystal(f->input->in.material) && !q->stone.in.quiet)
-    fprintf(stderr, "note: %s is taken with its %s index alone\n", f->input->in.material->name,
-            abbe_material_is_biaxial(f->input->in.material) ? "middle" : "ordinary");
   if (q->csv)
     abbe_gem_report_print_csv(f);
   else

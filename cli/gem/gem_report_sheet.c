@@ -119,11 +119,7 @@ abbe_result abbe_gem_report_sheet(const char *path, const abbe_gem_report_facts 
   abbe_sheet_text(s, MARGIN, MARGIN + 26, 8, false, false, 0.35, text);
   snprintf(text, sizeof text, "head's shadow of half angle %g degrees; D65, %zu wavelengths%s",
            f->head_deg, f->judgement->view.wavelengths,
-           abbe_material_is_uniaxial(f->input->in.material)
-               ? "; the ordinary index alone, double refraction is left out"
-           : abbe_material_is_biaxial(f->input->in.material)
-               ? "; the middle index alone, double refraction is left out"
-               : "");
+           f->judgement->is_crystal ? "; both waves of the crystal" : "");
   abbe_sheet_text(s, MARGIN, MARGIN + 36, 8, false, false, 0.35, text);
   result = put_maps(s, f, MARGIN + 46, error);
   put_numbers(s, f, MARGIN + 46 + 2 * 184 + 22);

@@ -22,6 +22,23 @@ static double rays(const abbe_gem_view *v) {
   return met;
 }
 
+/* How it lies, and its colour in other ways. */
+static void print_crystal(const abbe_gem_report_facts *f) {
+  const abbe_gem_judgement *j = f->judgement;
+  if (!j->is_crystal) return;
+  double(*const frame)[3] = f->input->stone.media.frame[0];
+  printf("both waves of a crystal of %s indices, z along %.3g %.3g %.3g",
+         j->is_biaxial ? "three" : "two", frame[2][0], frame[2][1], frame[2][2]);
+  if (j->is_biaxial) printf(", x along %.3g %.3g %.3g", frame[0][0], frame[0][1], frame[0][2]);
+  printf("\ncolour of its light return, CIELAB:");
+  for (int i = 0; i < ABBE_GEM_ORIENTATIONS; i++) {
+    const double *lab = j->orientation[i].lab;
+    printf("%s %.0f %.0f %.0f %s", i > 0 ? ";" : "", lab[0], lab[1], lab[2],
+           abbe_gem_orientation_text(j, i));
+  }
+  printf("\n");
+}
+
 void abbe_gem_report_print(const abbe_gem_report_facts *f) {
   const abbe_gem_judgement *j = f->judgement;
   abbe_gem_judgement_row row[ABBE_GEM_JUDGEMENT_MOST_ROWS];
@@ -30,13 +47,7 @@ void abbe_gem_report_print(const abbe_gem_report_facts *f) {
          f->input->in.material->name, 1000 * f->input->width_m);
   printf("%.0f rays of the eye from above, each at %zu wavelengths; head's half angle %g degrees\n",
          rays(&j->view), j->view.wavelengths, f->head_deg);
-  if (abbe_material_is_crystal(f->input->in.material))
-    printf("%s is taken with its %s index alone: its double refraction is left out\n",
-           f->input->in.material->name,
-           abbe_material_is_biaxial(f->input->in.material) ? "middle" : "ordinary");
-  if (abbe_material_is_pleochroic(f->input->in.material))
-    printf("%s is pleochroic: it is taken with the mean of its absorption over its axes\n",
-           f->input->in.material->name);
+  print_crystal(f);
   if (j->has_tilts)
     printf("tilted about %d axes up to %g degrees by %g\n", ABBE_GEM_AXES,
            j->tilts.tilt_rad[j->tilts.tilts - 1] * 180 / ABBE_PI,
@@ -110,6 +121,22 @@ static void add_wavelengths(cJSON *root, const abbe_gem_report_facts *f) {
   }
 }
 
+static void add_crystal(cJSON *root, const abbe_gem_report_facts *f) {
+  const abbe_gem_judgement *j = f->judgement;
+  double(*const frame)[3] = f->input->stone.media.frame[0];
+  cJSON *axes = cJSON_AddObjectToObject(root, "axes");
+  cJSON_AddItemToObject(axes, "z", cJSON_CreateDoubleArray(frame[2], 3));
+  if (j->is_biaxial) cJSON_AddItemToObject(axes, "x", cJSON_CreateDoubleArray(frame[0], 3));
+  cJSON *list = cJSON_AddArrayToObject(root, "orientations");
+  for (int i = 0; i < ABBE_GEM_ORIENTATIONS; i++) {
+    cJSON *one = cJSON_CreateObject();
+    cJSON_AddStringToObject(one, "lies", abbe_gem_orientation_text(j, i));
+    add_number(one, "iso", j->orientation[i].value);
+    cJSON_AddItemToObject(one, "lab", cJSON_CreateDoubleArray(j->orientation[i].lab, 3));
+    cJSON_AddItemToArray(list, one);
+  }
+}
+
 static void add_tilts(cJSON *root, const abbe_gem_tilts *t) {
   cJSON *list = cJSON_AddArrayToObject(root, "tilts");
   for (size_t i = 0; i < ABBE_GEM_AXES * t->tilts; i++) {
@@ -131,10 +158,7 @@ abbe_result abbe_gem_report_print_json(const abbe_gem_report_facts *f, abbe_erro
   cJSON_AddStringToObject(root, "file", f->input->in.path);
   cJSON_AddStringToObject(root, "title", abbe_gem_input_title(&f->input->in));
   cJSON_AddStringToObject(root, "material", f->input->in.material->name);
-  cJSON_AddStringToObject(root, "index",
-                          abbe_material_is_uniaxial(f->input->in.material)  ? "ordinary"
-                          : abbe_material_is_biaxial(f->input->in.material) ? "middle"
-                                                                            : "full");
+  if (j->is_crystal) add_crystal(root, f);
   cJSON_AddNumberToObject(root, "width_mm", 1000 * f->input->width_m);
   cJSON_AddNumberToObject(root, "head_deg", f->head_deg);
   cJSON_AddNumberToObject(root, "rays", rays(&j->view));

@@ -39,6 +39,20 @@ TEST(shares_add_up) {
   abbe_lib_gem_report_free(quartz);
 }
 
+TEST(a_crystal_lies_as_it_is_laid) {
+  static const char *const lying[] = {"size=16", "repeats=3", "wavelengths=2", "tilt_rad=0",
+                                      "axis=1,0,0"};
+  abbe_lib_gem_report *up = judged("zircon"), *down = NULL;
+  OK(abbe_lib_gem_report_make(design, "zircon", lying, 5, NULL, NULL, &down, &error));
+  assert_near(number_of(up, "iso_lying_x"), number_of(down, "iso_lying_x"), 0);
+  assert_near(number_of(down, "iso_upright"), number_of(up, "iso_upright"), 0);
+  assert_true(fabs(number_of(up, "iso") - number_of(down, "iso")) > 1e-4);
+  abbe_lib_gem_report_free(up);
+  abbe_lib_gem_report_free(down);
+  REFUSED(ABBE_INVALID_ARGUMENT, "no axis",
+          abbe_lib_gem_report_make(design, "diamond", lying, 5, NULL, NULL, &down, &error));
+}
+
 TEST(what_is_none_is_refused) {
   abbe_lib_gem_report *r = NULL;
   REFUSED(ABBE_NOT_FOUND, "",

@@ -32,10 +32,11 @@ void abbe_gem_eye_ray(const abbe_gem_eye *eye, size_t side, size_t column, size_
   }
 }
 
-void abbe_gem_eye_place(size_t side, size_t column, size_t row, size_t repeat, double *u,
-                        double *v) {
-  float turn[4];
-  abbe_random4((uint32_t)column, (uint32_t)row, (uint32_t)side, (uint32_t)repeat, turn);
-  *u = turn[0];
-  *v = turn[1];
+uint32_t abbe_gem_eye_place(size_t side, size_t column, size_t row, size_t repeat, double *u,
+                            double *v) {
+  uint32_t bits[4];
+  abbe_random_bits((uint32_t)column, (uint32_t)row, (uint32_t)side, (uint32_t)repeat, bits);
+  *u = (double)abbe_random_float(bits[0]);
+  *v = (double)abbe_random_float(bits[1]);
+  return bits[2];
 }

@@ -25,8 +25,8 @@ void abbe_gem_eye_ray(const abbe_gem_eye *eye, size_t side, size_t column, size_
                       double v, double o[3], double d[3]);
 
 /* A place in a pixel, by chance: each repeat is a jittered grid by itself, and independent of the
- * others, so that their scatter shows their error. */
-void abbe_gem_eye_place(size_t side, size_t column, size_t row, size_t repeat, double *u,
-                        double *v);
+ * others, so that their scatter shows their error. Returns a seed for what else the ray decides. */
+uint32_t abbe_gem_eye_place(size_t side, size_t column, size_t row, size_t repeat, double *u,
+                            double *v);
 
 #endif

@@ -5,6 +5,31 @@
 #include "validation/gem/gem_tilts.h"
 #include "validation/gem/gem_view.h"
 
+/* A crystal turned in its cut. */
+typedef struct abbe_gem_orientation {
+  double tilt_rad, azimuth_rad;
+  abbe_gem_number value; /* of a measure */
+  double lab[3];         /* CIELAB of its mean colour, white being light that is returned whole */
+} abbe_gem_orientation;
+
+/* Of two indices: the optic axis, at that angle from the cut's z and that azimuth in the cut. Of
+ * three: what of the crystal looks up through the table, at that angle from its z and that azimuth
+ * from its x towards its y. */
+abbe_gem_axes abbe_gem_orientation_axes(const abbe_gem_stone *stone, double tilt_rad,
+                                        double azimuth_rad);
+/* Fills in what the stone is at out's angles. Errors as abbe_gem_view_make, and
+ * ABBE_INVALID_ARGUMENT for what is no crystal. */
+abbe_result abbe_gem_orientation_judge(const abbe_gem_stone *stone, const abbe_weights *weights,
+                                       const abbe_gem_view_desc *desc, abbe_gem_amount measure,
+                                       abbe_gem_orientation *out, abbe_error *error);
+
+/* Those of a judgement: upright, lying along x and along y; of three indices z, x and y up. */
+enum { ABBE_GEM_ORIENTATIONS = 3 };
+
+struct abbe_gem_judgement;
+/* "optic axis upright", "crystal's z up", and so on. */
+const char *abbe_gem_orientation_text(const struct abbe_gem_judgement *judgement, int i);
+
 typedef struct abbe_gem_judgement_desc {
   abbe_gem_view_desc view;
   bool tilts;                 /* else only from where the view is */
@@ -19,6 +44,8 @@ typedef struct abbe_gem_judgement {
   abbe_gem_number xyz[3]; /* mean colour of the light return; white has Y = 1 */
   bool has_tilts;
   abbe_gem_tilts tilts;
+  bool is_crystal, is_biaxial;
+  abbe_gem_orientation orientation[ABBE_GEM_ORIENTATIONS]; /* of a crystal: ISO */
 } abbe_gem_judgement;
 
 /* Errors as abbe_gem_view_make and abbe_gem_tilts_make. */

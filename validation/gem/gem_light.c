@@ -1,7 +1,9 @@
 #include "validation/gem/gem_light.h"
 
 #include "base/maths.h"
+#include "validation/transport/double_refraction.h"
 #include "validation/transport/interface.h"
+#include "validation/transport/random.h"
 #include "validation/transport/side_by_side.h"
 
 #include <math.h>
@@ -77,9 +79,51 @@ static void add_exit(abbe_gem_path *path, const float d[3], float share) {
   e->share = share;
 }
 
+/* What becomes of light at a face. */
+typedef struct meeting {
+  float reflected, back[3], through[3];
+  uint8_t wave; /* in a crystal, of the light that stays in it or comes into it */
+} meeting;
+
+static void copy(const float from[3], float to[3]) {
+  for (int i = 0; i < 3; i++) to[i] = from[i];
+}
+
+/* Of two waves, one goes on, by chance. n: on the side that the light comes from. */
+static meeting meet_crystal(const abbe_gem_stone *s, size_t k, bool inside, const float n[3],
+                            const float d[3], uint8_t wave, float chance) {
+  abbe_wave_ways ways;
+  abbe_media_ways(&s->media, inside ? 0 : -1, inside ? -1 : 0, (uint32_t)k, 0, n, d, wave, &ways);
+  const abbe_wave_way *back = abbe_wave_ways_choose(&ways, 0, chance),
+                      *through = abbe_wave_ways_choose(&ways, 1, chance);
+  meeting m = {.reflected = ways.reflected, .wave = inside ? back->wave : through->wave};
+  copy(back->d, m.back);
+  copy(through->d, m.through);
+  return m;
+}
+
+static meeting meet_glass(const abbe_gem_stone *s, size_t k, bool inside, const float n[3],
+                          const float d[3]) {
+  meeting m = {0};
+  float cos_t, index = abbe_media_n(&s->media, 0, (uint32_t)k, 0), eta = inside ? index : 1 / index;
+  const float cos_i = fminf(fmaxf(-(d[0] * n[0] + d[1] * n[1] + d[2] * n[2]), 0), 1);
+  m.reflected = abbe_interface_reflectance(cos_i, eta, &cos_t);
+  abbe_interface_reflect(d, n, cos_i, m.back);
+  if (m.reflected < 1) abbe_interface_refract(d, n, eta, cos_i, cos_t, m.through);
+  return m;
+}
+
+static meeting meet(const abbe_gem_stone *s, size_t k, int face, const float n[3], const float d[3],
+                    uint8_t wave, uint32_t seed) {
+  float chance[4];
+  if (!abbe_media_is_crystal(&s->media, 0)) return meet_glass(s, k, face > 0, n, d);
+  abbe_random4(seed, (uint32_t)face, 0, 0, chance);
+  return meet_crystal(s, k, face > 0, n, d, wave, chance[0]);
+}
+
 void abbe_gem_path_follow(const abbe_gem_stone *s, size_t k, const double p0[3], const double n0[3],
-                          const double d0[3], abbe_gem_path *out) {
-  float p[3], n[3], d[3], way[3], cos_t;
+                          const double d0[3], uint32_t seed, abbe_gem_path *out) {
+  float p[3], n[3], d[3];
   for (int i = 0; i < 3; i++) {
     p[i] = (float)p0[i];
     n[i] = (float)n0[i];
@@ -87,37 +131,29 @@ void abbe_gem_path_follow(const abbe_gem_stone *s, size_t k, const double p0[3],
   }
   out->count = 0;
   out->absorbed = 0;
-  float cos_i = fminf(fmaxf(-(d[0] * n[0] + d[1] * n[1] + d[2] * n[2]), 0), 1);
-  float reflected = abbe_interface_reflectance(cos_i, 1 / s->n[k], &cos_t);
-  abbe_interface_reflect(d, n, cos_i, way);
-  add_exit(out, way, reflected);
-  abbe_interface_refract(d, n, 1 / s->n[k], cos_i, cos_t, way);
-  float share = 1 - reflected;
-  for (int face = 1; face < ABBE_GEM_MOST_FACES && out->count < ABBE_GEM_MOST_EXITS &&
-                     share >= ABBE_GEM_LEAST_SHARE;
-       face++) {
-    for (int i = 0; i < 3; i++) d[i] = way[i];
+  meeting m = meet(s, k, 0, n, d, 0, seed);
+  add_exit(out, m.back, m.reflected);
+  copy(m.through, d);
+  float share = 1 - m.reflected;
+  const float least =
+      abbe_media_is_crystal(&s->media, 0) ? ABBE_GEM_LEAST_CRYSTAL : ABBE_GEM_LEAST_SHARE;
+  for (int face = 1;
+       face < ABBE_GEM_MOST_FACES && out->count < ABBE_GEM_MOST_EXITS && share >= least; face++) {
     float q[3], t = abbe_solid_leave(&s->solid, p, d, q, n);
-    for (int i = 0; i < 3; i++) p[i] = q[i];
-    if (s->attenuation[k] > 0) {
-      const float kept = share * expf(-s->attenuation[k] * t);
+    copy(q, p);
+    const float loss = abbe_media_loss(&s->media, 0, (uint32_t)k, 0, d, m.wave);
+    if (loss > 0) {
+      const float kept = share * expf(-loss * t);
       out->absorbed += share - kept;
       share = kept;
     }
-    /* the normal on the side that the light comes from */
-    cos_i = 0;
-    for (int i = 0; i < 3; i++) {
-      cos_i += d[i] * n[i];
-      n[i] = -n[i];
+    for (int i = 0; i < 3; i++) n[i] = -n[i];
+    m = meet(s, k, face, n, d, m.wave, seed);
+    if (m.reflected < 1) {
+      add_exit(out, m.through, share * (1 - m.reflected));
+      share *= m.reflected;
     }
-    cos_i = fminf(fmaxf(cos_i, 0), 1);
-    reflected = abbe_interface_reflectance(cos_i, s->n[k], &cos_t);
-    if (reflected < 1) {
-      abbe_interface_refract(d, n, s->n[k], cos_i, cos_t, way);
-      add_exit(out, way, share * (1 - reflected));
-      share *= reflected;
-    }
-    abbe_interface_reflect(d, n, cos_i, way);
+    copy(m.back, d);
   }
   out->left = share;
 }

@@ -20,11 +20,13 @@
  * By reciprocity the eye's ray is followed backwards. A stone is convex: what leaves it never
  * comes back, so at each face one part leaves for good and one goes on, and the tree of all paths
  * is a chain. Both are followed by their shares, by Fresnel's law (the mean of both polarisations,
- * abbe_interface_reflectance); nothing is decided by chance. Between faces the material absorbs. */
+ * abbe_interface_reflectance). In a crystal two waves go on from a face: one of them does, chosen
+ * by its share (double_refraction.h). Between faces the material absorbs. */
 
 /* A path ends where it carries less than this share of the ray's light, or at its most faces; what
  * it still carries is kept account of. */
 #define ABBE_GEM_LEAST_SHARE 1e-4f
+#define ABBE_GEM_LEAST_CRYSTAL 1e-3f /* where chance decides on waves */
 enum { ABBE_GEM_MOST_FACES = 4096, ABBE_GEM_MOST_EXITS = 512 };
 
 typedef struct abbe_gem_exit {
@@ -44,9 +46,10 @@ typedef struct abbe_gem_path {
 bool abbe_gem_path_enter(const abbe_gem_stone *stone, const double o[3], const double d[3],
                          double p[3], double n[3]);
 
-/* From a place and normal of abbe_gem_path_enter, at wavelength k of the stone. */
+/* From a place and normal of abbe_gem_path_enter, at wavelength k of the stone. seed: of a
+ * crystal's choices of waves; one for all wavelengths of a ray keeps chance out of its colour. */
 void abbe_gem_path_follow(const abbe_gem_stone *stone, size_t k, const double p[3],
-                          const double n[3], const double d[3], abbe_gem_path *out);
+                          const double n[3], const double d[3], uint32_t seed, abbe_gem_path *out);
 
 /* Default half angle of the head's shadow, degrees: ASET's [Sasian2007]. */
 #define ABBE_GEM_HEAD_DEG 15.0

@@ -31,6 +31,8 @@ static abbe_result judge(const work *w, const abbe_cut *cut, abbe_gem_number *ou
   if (result == ABBE_OK)
     result =
         abbe_gem_stone_make(cut, &p, w->material, w->wavelengths, w->desc->width_m, &stone, error);
+  if (result == ABBE_OK && abbe_vector_length(w->desc->axes.z) > 0)
+    result = abbe_gem_stone_turn(&stone, &w->desc->axes, error);
   if (result == ABBE_OK)
     result = abbe_gem_view_make(&stone, w->weights, &w->desc->view, &view, error);
   if (result == ABBE_OK) *out = abbe_gem_view_amount(&view, w->desc->measure);

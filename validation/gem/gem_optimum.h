@@ -19,6 +19,7 @@ typedef struct abbe_gem_optimum_desc {
   abbe_gem_amount measure;
   bool least; /* the least of it is best */
   double width_m;
+  abbe_gem_axes axes; /* of a crystal; zeroed: along the cut's */
   abbe_gem_view_desc view;
   size_t part, parts;         /* every parts-th pair from the part-th on; parts 0: all */
   abbe_gem_progress progress; /* or NULL */

@@ -54,7 +54,8 @@ static bool is_fire(const double xyz[3], const double white[3]) {
 }
 
 static state follow(const work *w, const abbe_gem_light *light, const abbe_gem_lamps *lamps,
-                    const double p[3], const double n[3], const double d[3], double sum[CURVES]) {
+                    const double p[3], const double n[3], const double d[3], uint32_t seed,
+                    double sum[CURVES]) {
   static const abbe_gem_amount source[CURVES] = {
       [ABBE_GEM_TILT_ISO] = ABBE_GEM_ISO,
       [ABBE_GEM_TILT_COS] = ABBE_GEM_COS,
@@ -66,7 +67,7 @@ static state follow(const work *w, const abbe_gem_light *light, const abbe_gem_l
   double xyz[3] = {0};
   for (size_t k = 0; k < w->stone->wavelengths; k++) {
     float amount[ABBE_GEM_AMOUNT_COUNT];
-    abbe_gem_path_follow(w->stone, k, p, n, d, &path);
+    abbe_gem_path_follow(w->stone, k, p, n, d, seed, &path);
     abbe_gem_light_judge(light, &path, amount);
     const double lit = (double)abbe_gem_lamps_light(lamps, &path);
     const double *weight = w->weights->weight[k];
@@ -85,11 +86,11 @@ static void trace(const work *w, double axis_rad, double tilt_rad, frame *f) {
     const abbe_gem_lamps lamps = abbe_gem_lamps_make(&eye, r, w->head_rad);
     for (size_t i = 0; i < w->side * w->side; i++) {
       double u, v, o[3], d[3], p[3], n[3], sum[CURVES] = {0};
-      abbe_gem_eye_place(w->side, i % w->side, i / w->side, r, &u, &v);
+      const uint32_t seed = abbe_gem_eye_place(w->side, i % w->side, i / w->side, r, &u, &v);
       abbe_gem_eye_ray(&eye, w->side, i % w->side, i / w->side, u, v, o, d);
       if (!abbe_gem_path_enter(w->stone, o, d, p, n)) continue;
       f->met[r]++;
-      f->state[i * w->repeats + r] = (unsigned char)follow(w, &light, &lamps, p, n, d, sum);
+      f->state[i * w->repeats + r] = (unsigned char)follow(w, &light, &lamps, p, n, d, seed, sum);
       for (int c = 0; c < CURVES; c++) f->sum[c][r] += sum[c];
     }
   }

@@ -36,11 +36,11 @@ typedef struct work {
 
 /* One ray of the eye at all wavelengths. */
 static void follow(const work *w, const double p[3], const double n[3], const double d[3],
-                   float *amount, double (*spectrum)[AMOUNTS], double colour[3]) {
+                   uint32_t seed, float *amount, double (*spectrum)[AMOUNTS], double colour[3]) {
   abbe_gem_path path;
   for (size_t k = 0; k < w->stone->wavelengths; k++) {
     float own[AMOUNTS];
-    abbe_gem_path_follow(w->stone, k, p, n, d, &path);
+    abbe_gem_path_follow(w->stone, k, p, n, d, seed, &path);
     abbe_gem_light_judge(&w->light, &path, own);
     const double *weight = w->weights->weight[k];
     for (int a = 0; a < AMOUNTS; a++) {
@@ -58,13 +58,13 @@ static void trace_row(const work *w, size_t row, row_sums *sums) {
     double all[3] = {0}, covered = 0;
     for (size_t r = 0; r < v->repeats; r++) {
       double x, y, o[3], d[3], p[3], n[3], colour[3] = {0};
-      abbe_gem_eye_place(v->side, column, row, r, &x, &y);
+      const uint32_t seed = abbe_gem_eye_place(v->side, column, row, r, &x, &y);
       abbe_gem_eye_ray(&w->eye, v->side, column, row, x, y, o, d);
       if (!abbe_gem_path_enter(w->stone, o, d, p, n)) continue;
       v->hit[pixel * v->repeats + r] = 1;
       sums->met[r]++;
       covered++;
-      follow(w, p, n, d, &v->amount[(pixel * v->repeats + r) * AMOUNTS],
+      follow(w, p, n, d, seed, &v->amount[(pixel * v->repeats + r) * AMOUNTS],
              &sums->spectrum[r * v->wavelengths], colour);
       for (int c = 0; c < 3; c++) {
         sums->colour[r][c] += colour[c];

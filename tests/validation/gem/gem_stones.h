@@ -85,4 +85,16 @@ static inline abbe_material glass(double n) {
                          .max_nm = 800};
 }
 
+/* A clear crystal of those three indices; of two where the first two are alike. */
+static inline abbe_material crystal(double alpha, double beta, double gamma) {
+  abbe_material m = glass(beta);
+  abbe_dispersion *outer[] = {alpha == beta ? NULL : &m.outer[0],
+                              alpha == beta ? &m.extraordinary : &m.outer[1]};
+  const double n[] = {alpha, gamma};
+  for (int i = 0; i < 2; i++)
+    if (outer[i] != NULL)
+      *outer[i] = (abbe_dispersion){.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {n[i]}};
+  return m;
+}
+
 #endif

@@ -1,5 +1,7 @@
 #include "tests/validation/gem/gem_stones.h"
 
+#include "validation/gem/gem_judgement.h"
+
 static const abbe_gem_view_desc small = {
     .head_rad = 15 * DEG, .side = 32, .repeats = 4, .threads = 2};
 
@@ -81,7 +83,7 @@ static double strongest_elevation(const char *text, double n, double x, double y
   float most = 0;
   assert_true(abbe_gem_path_enter(&j.stone, o, d, p, normal));
   assert_near(normal[2], 1, 1e-12); /* by the table */
-  abbe_gem_path_follow(&j.stone, 0, p, normal, d, &path);
+  abbe_gem_path_follow(&j.stone, 0, p, normal, d, 0, &path);
   for (size_t i = 1; i < path.count; i++)
     if (path.exit[i].share > most) {
       most = path.exit[i].share;
@@ -267,6 +269,99 @@ TEST(areas_and_contrast_do_not_depend_on_the_grid) {
     abbe_gem_view_free(&v);
   }
   judged_free(&j);
+}
+
+static double deviations(abbe_gem_number n, double known) {
+  return fabs(n.value - known) / n.error;
+}
+
+/* A slab of calcite, its axis in the face: between two faces each wave keeps to itself, and of both
+ * together the half comes back of 0.1155736 and of 0.0736532. */
+TEST(slab_of_calcite_returns_what_each_wave_does) {
+  const abbe_material calcite = crystal(1.65834, 1.65834, 1.48613);
+  judged j = judged_make(slab, &calcite, 1);
+  abbe_gem_axes lying;
+  OK(abbe_gem_axes_read("0,2,0", &lying, &error));
+  OK(abbe_gem_stone_turn(&j.stone, &lying, &error));
+  abbe_gem_view view = judged_view(&j, &small);
+  assert_true(deviations(abbe_gem_view_amount(&view, ABBE_GEM_ISO), (0.1155736 + 0.0736532) / 2) <
+              6);
+  assert_near(mean(&view, ABBE_GEM_ISO), (0.1155736 + 0.0736532) / 2, 1e-3);
+  abbe_gem_view_free(&view);
+  judged_free(&j);
+}
+
+/* Two exponentials, never one of the mean: 10 mm wide, 5 mm thick. */
+TEST(slab_of_tourmaline_absorbs_each_wave_by_itself) {
+  const double nm[1] = {500}, a_o[1] = {400}, a_e[1] = {60}, n[2] = {1.644, 1.624};
+  abbe_material m = crystal(n[0], n[0], n[1]);
+  OK(abbe_spectrum_make(nm, a_o, 1, ABBE_INTERPOLATION_LINEAR, &m.attenuation, &error));
+  OK(abbe_spectrum_make(nm, a_e, 1, ABBE_INTERPOLATION_LINEAR, &m.attenuation_yz[1], &error));
+  judged j = judged_make(slab, &m, 2);
+  const abbe_gem_axes lying = {.z = {1, 0, 0}};
+  OK(abbe_gem_stone_turn(&j.stone, &lying, &error));
+  abbe_gem_view view = judged_view(&j, &small);
+  double down = 0;
+  for (int wave = 0; wave < 2; wave++) {
+    const double r = pow((n[wave] - 1) / (n[wave] + 1), 2),
+                 a = exp(-0.005 * (wave == 0 ? a_o[0] : a_e[0]));
+    down += 0.5 * (1 - r) * (1 - r) * a / (1 - r * r * a * a);
+  }
+  assert_true(deviations(abbe_gem_view_amount(&view, ABBE_GEM_DOWN), down) < 6);
+  assert_near(mean(&view, ABBE_GEM_DOWN), down, 0.01);
+  abbe_gem_view_free(&view);
+  judged_free(&j);
+  abbe_spectrum_free(m.attenuation);
+  abbe_spectrum_free(m.attenuation_yz[1]);
+}
+
+/* A quartz brilliant in zircon, peridot and sphene without their colour, by abbe's tracer: the
+ * axis upright and lying, of three indices z up and x up. Its lying zircon is known to 0.4 %. */
+TEST(brightness_knows_how_a_crystal_lies) {
+  static const struct {
+    double n[3], upright, lying, off;
+  } stones[] = {{{1.925, 1.925, 1.984}, 0.890, 0.851, 0.008},
+                {{1.654, 1.672, 1.690}, 0.947, 0.885, 0.008},
+                {{1.900, 1.907, 2.034}, 0.903, 0.823, 0.012}};
+  const abbe_gem_view_desc view = {.side = 64, .repeats = 4, .threads = 2};
+  for (size_t i = 0; i < sizeof stones / sizeof *stones; i++) {
+    const double *n = stones[i].n;
+    const abbe_material m = crystal(n[0], n[1], n[2]);
+    judged j = judged_make(design_a, &m, 1);
+    abbe_gem_orientation up = {0}, down = {.tilt_rad = 90 * DEG};
+    OK(abbe_gem_orientation_judge(&j.stone, &j.weights, &view, ABBE_GEM_ISO, &up, &error));
+    OK(abbe_gem_orientation_judge(&j.stone, &j.weights, &view, ABBE_GEM_ISO, &down, &error));
+    assert_near(up.value.value, stones[i].upright, stones[i].off);
+    assert_near(down.value.value, stones[i].lying, stones[i].off);
+    assert_true(up.value.error < 0.005 && down.value.error < 0.005);
+    judged_free(&j);
+  }
+}
+
+/* Nearly one index is one index. */
+TEST(two_indices_that_meet_are_one) {
+  const abbe_material near = crystal(1.76, 1.76, 1.76000001);
+  judged glass_one = judged_plain(design_a, 1.76), crystal_one = judged_make(design_a, &near, 1);
+  abbe_gem_view a = judged_view(&glass_one, &small), b = judged_view(&crystal_one, &small);
+  assert_true(
+      apart(abbe_gem_view_amount(&a, ABBE_GEM_ISO), abbe_gem_view_amount(&b, ABBE_GEM_ISO)) < 4);
+  abbe_gem_view_free(&a);
+  abbe_gem_view_free(&b);
+  judged_free(&glass_one);
+  judged_free(&crystal_one);
+}
+
+TEST(axes_that_are_none_are_refused) {
+  static const char *const wrong[] = {"1,0", "0,0,0", "1,0,0,", "1,0,0,0,1", "1,0,0,0,1,0,0", "up"};
+  abbe_gem_axes axes = {.z = {0, 0, 1}, .x = {0, 0, -2}};
+  const abbe_material topaz = crystal(1.607, 1.610, 1.617);
+  judged plain = judged_plain(slab, 1.5), three = judged_make(slab, &topaz, 1);
+  REFUSED(ABBE_INVALID_ARGUMENT, "no axis", abbe_gem_stone_turn(&plain.stone, &axes, &error));
+  REFUSED(ABBE_INVALID_ARGUMENT, "parallel", abbe_gem_stone_turn(&three.stone, &axes, &error));
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+    REFUSED(ABBE_INVALID_ARGUMENT, wrong[i], abbe_gem_axes_read(wrong[i], &axes, &error));
+  judged_free(&plain);
+  judged_free(&three);
 }
 
 TEST(wrong_requests_are_refused) {
