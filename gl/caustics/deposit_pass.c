@@ -1,8 +1,10 @@
 #include "gl/caustics/deposit_pass.h"
 
+#include "gl/caustics/splat_sums.h"
 #include "gl/device/bindings.h"
 
-enum { SPLAT_BYTES = 48, LEAST_SPLATS = 1 << 12, FIRST_SPLATS = 1 << 20, MAX_SPLATS = 4 << 20 };
+enum { SPLAT_BYTES = 4 * ABBE_SPLAT_WORDS };
+enum { LEAST_SPLATS = 1 << 12, FIRST_SPLATS = 1 << 20, MAX_SPLATS = 4 << 20 };
 enum { SPLATS_A_HIT = 4 }; /* capacity at first; the first frame makes more */
 
 static const abbe_gpu_scene *scene_of(const abbe_deposit_pass *pass) {
@@ -34,7 +36,7 @@ abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refi
       .trace = trace, .refine = refine, .map = map, .chunks = 1, .most_splats = MAX_SPLATS};
   abbe_result result =
       abbe_shader_variant_compute(photons, gpu, "photon_deposit.comp", NULL, &out->list, error);
-  if (result == ABBE_OK)
+  if (result == ABBE_OK && !gpu->software)
     result = abbe_shader_variant_compute(scene, gpu, "photon_splat.comp", NULL, &out->add, error);
   return result == ABBE_OK ? make_room(out, first_room(trace), error) : result;
 }
@@ -139,8 +141,41 @@ static abbe_result list_measured(abbe_deposit_pass *pass, size_t light, const ab
   return result;
 }
 
-static void add_splats(abbe_deposit_pass *pass, size_t light) {
+static bool goes_on(void *gpu) {
+  return abbe_gpu_ask(gpu);
+}
+
+/* On the processor's own threads, which need no atomics. */
+static abbe_result add_here(abbe_deposit_pass *pass, size_t light, abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
+  const abbe_gl *gl = gpu->gl;
+  const abbe_photon_lights *views = pass->map->views;
+  const abbe_receiver_tiles *tiles = &pass->trace->atlas->tiles[light];
+  abbe_splat_sums sums = {.side = scene_of(pass)->plan->desc.map_size,
+                          .texels = views->map_texels,
+                          .wide = views->wide,
+                          .edges = scene_of(pass)->plan->edges,
+                          .tiles = tiles->count > 0 ? tiles : NULL};
+  const size_t list = ABBE_GPU_LIST_HEADER + pass->splat_room * SPLAT_BYTES;
+  const size_t words =
+      sums.texels * (tiles->count > 0 ? 2 : 1) * abbe_photon_lights_map_words(views);
+  gl->BindBuffer(GL_COPY_READ_BUFFER, pass->splats);
+  gl->BindBuffer(GL_COPY_WRITE_BUFFER, pass->map->sums);
+  const uint32_t *splats =
+      gl->MapBufferRange(GL_COPY_READ_BUFFER, 0, (GLsizeiptr)list, GL_MAP_READ_BIT);
+  sums.word = gl->MapBufferRange(GL_COPY_WRITE_BUFFER, 0, (GLsizeiptr)words * 4,
+                                 GL_MAP_READ_BIT | GL_MAP_WRITE_BIT);
+  if (splats != NULL && sums.word != NULL)
+    abbe_splat_sums_add(&sums, splats + ABBE_GPU_LIST_HEADER / sizeof *splats,
+                        splats[0] < pass->splat_room ? splats[0] : pass->splat_room, goes_on, gpu);
+  if (splats != NULL) gl->UnmapBuffer(GL_COPY_READ_BUFFER);
+  if (sums.word != NULL) gl->UnmapBuffer(GL_COPY_WRITE_BUFFER);
+  return abbe_gl_check(gl, "the adding of splats", error);
+}
+
+static abbe_result add_splats(abbe_deposit_pass *pass, size_t light, abbe_error *error) {
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  if (gpu->software) return add_here(pass, light, error);
   gpu->gl->UseProgram(pass->add);
   abbe_gpu_set_int(gpu, pass->add, "light", (int)light);
   abbe_gpu_set_int(gpu, pass->add, "map_size", (int)scene_of(pass)->plan->desc.map_size);
@@ -149,6 +184,7 @@ static void add_splats(abbe_deposit_pass *pass, size_t light) {
   abbe_gpu_set_uint(gpu, pass->add, "map_texels", pass->map->views->map_texels);
   abbe_gpu_bind_storage(gpu, BINDING_MAP_SUMS, pass->map->sums);
   abbe_gpu_dispatch_list(gpu, pass->add, pass->splats, 0, pass->splat_room, 1);
+  return ABBE_OK;
 }
 
 abbe_result abbe_deposit_pass_run(abbe_deposit_pass *pass, size_t light,
@@ -162,7 +198,7 @@ abbe_result abbe_deposit_pass_run(abbe_deposit_pass *pass, size_t light,
       list_splats(pass, light, batch, chunk);
     abbe_gpu_book_lap(gpu,
                       scene_of(pass)->plan->fills ? ABBE_PASS_GAP_FILL : ABBE_PASS_SPECTRAL_MAP);
-    if (result == ABBE_OK) add_splats(pass, light);
+    if (result == ABBE_OK) result = add_splats(pass, light, error);
     abbe_gpu_book_lap(gpu, ABBE_PASS_SPECTRAL_MAP);
   }
   return result;

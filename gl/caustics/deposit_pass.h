@@ -18,7 +18,7 @@ typedef struct abbe_deposit_pass {
   const abbe_trace_pass *trace;
   const abbe_refine_pass *refine;
   abbe_spectral_map *map;
-  GLuint list, add; /* programs */
+  GLuint list, add; /* programs; add: where the device is no processor (splat_sums.h) */
   GLuint splats;
   size_t splat_room, chunks; /* splats that are listed at a time; chunks of the photons */
   size_t most_splats;        /* the capacity before there are more chunks */

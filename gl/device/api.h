@@ -37,6 +37,8 @@
   X(COLORMASK, ColorMask)                                                                          \
   X(DEPTHRANGE, DepthRange)                                                                        \
   X(FLUSH, Flush)                                                                                  \
+  X(MAPBUFFERRANGE, MapBufferRange)                                                                \
+  X(UNMAPBUFFER, UnmapBuffer)                                                                      \
   X(FRONTFACE, FrontFace)                                                                          \
   X(HINT, Hint)                                                                                    \
   X(POLYGONMODE, PolygonMode)                                                                      \

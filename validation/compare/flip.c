@@ -4,7 +4,7 @@
 #include "base/order.h"
 #include "colorimetry/difference.h"
 #include "colorimetry/rgb_space.h"
-#include "validation/transport/side_by_side.h"
+#include "base/side_by_side.h"
 
 #include <math.h>
 #include <stdlib.h>

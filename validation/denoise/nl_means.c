@@ -1,5 +1,7 @@
 #include "validation/denoise/nl_means.h"
 
+#include "base/side_by_side.h"
+
 #include <math.h>
 #include <omp.h>
 #include <stdint.h>
@@ -27,9 +29,6 @@ void abbe_plane_mean(const float *from, size_t width, size_t height, size_t reac
 #pragma omp parallel for num_threads((int)threads)
   for (size_t x = 0; x < width; x++) mean_of_line(room + x, height, width, reach, out + x);
 }
-
-/* The compiler makes wide variants of the loops below. */
-#define SIDE_BY_SIDE __attribute__((target_clones("avx512f", "avx2", "default")))
 
 enum { TILE = 64, MOST_PATCH = 4, ROOM = TILE + 2 * MOST_PATCH };
 

@@ -1,10 +1,10 @@
 #include "validation/gem/gem_light.h"
 
 #include "base/maths.h"
+#include "base/side_by_side.h"
 #include "validation/transport/double_refraction.h"
 #include "validation/transport/interface.h"
 #include "validation/transport/random.h"
-#include "validation/transport/side_by_side.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 #include "validation/tracer/emission.h"
 
 #include "validation/transport/random.h"
-#include "validation/transport/side_by_side.h"
+#include "base/side_by_side.h"
 
 #include <stdlib.h>
 

@@ -3,7 +3,7 @@
 #include "validation/shafts/shaft_photons.h"
 #include "validation/tracer/emission.h"
 #include "validation/transport/random.h"
-#include "validation/transport/side_by_side.h"
+#include "base/side_by_side.h"
 #include "validation/walks/path_splitting.h"
 
 #include <omp.h>

@@ -1,7 +1,7 @@
 #include "validation/transport/solid.h"
 
 #include "validation/transport/geometry.h"
-#include "validation/transport/side_by_side.h"
+#include "base/side_by_side.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include "validation/transport/geometry.h"
 #include "validation/transport/interface.h"
 #include "validation/transport/random.h"
-#include "validation/transport/side_by_side.h"
+#include "base/side_by_side.h"
 
 #include <string.h>
 

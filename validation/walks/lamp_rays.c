@@ -1,6 +1,6 @@
 #include "validation/walks/light_path.h"
 
-#include "validation/transport/side_by_side.h"
+#include "base/side_by_side.h"
 
 enum { FEW_FACES = 256 /* faces of receivers, compared with each other */ };
 

@@ -4,7 +4,7 @@
 #include "base/thread/watch.h"
 #include "validation/transport/lamp_place.h"
 #include "validation/transport/random.h"
-#include "validation/transport/side_by_side.h"
+#include "base/side_by_side.h"
 
 #include <assert.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "validation/walks/scatter.h"
 
 #include "validation/transport/interface.h"
-#include "validation/transport/side_by_side.h"
+#include "base/side_by_side.h"
 
 SIDE_BY_SIDE void abbe_scatter_packet(abbe_scatter *s) {
   for (size_t k = 0; k < ABBE_RAY_LANES; k++) {

@@ -1,9 +1,14 @@
-/* Splats on the map (photon_splat.comp): each lights the parallelogram that it stands for, and side
- * by side they make an even light, at every size, turn and place against the texels.
+/* Splats on the map (photon_splat.comp, splat_sums.h): each lights the parallelogram that it stands
+ * for, and side by side they make an even light, at every size, turn and place against the texels.
+ * The device and the processor's threads add the same.
  */
+#include "gl/caustics/splat_sums.h"
 #include "tests/gl/glsl.h"
 
-enum { SIDE = 128, LEVELS = 6, WORDS = 12, MOST = 4096, UNITS = 1 << 20 };
+#include <inttypes.h>
+
+enum { SIDE = 128, LEVELS = 6, WORDS = ABBE_SPLAT_WORDS, MOST = 4096, UNITS = 1 << 20 };
+enum { TEXELS = SIDE * SIDE / 3 * 4 };
 
 typedef struct splat {
   double at[2], across[2], narrow; /* texels; the side of a length square to `across` */
@@ -36,18 +41,35 @@ static size_t texels_of(int level) {
   return (size_t)(SIDE >> level) * (SIDE >> level);
 }
 
-static uint32_t list[4 + MOST * WORDS], sums[2 * SIDE * SIDE * 3];
+static uint32_t list[4 + MOST * WORDS], sums[12 * TEXELS], here[12 * TEXELS];
+static abbe_receiver_tiles tiles = {
+    .count = 2, .tile = {{.rect = {0, 64, 32, 96}}, {.rect = {64, 96, 0, 128}}}};
 
-static void run(const splat *splats, size_t count, bool edges) {
+/* To here what splat_sums.h makes of the list. */
+static void run_here(size_t count, bool edges, bool wide, bool on_tiles) {
+  const abbe_splat_sums s = {.word = here,
+                             .side = SIDE,
+                             .texels = (SIDE * SIDE - (SIDE * SIDE >> 2 * LEVELS)) / 3 * 4,
+                             .wide = wide,
+                             .edges = edges,
+                             .tiles = on_tiles ? &tiles : NULL};
+  memset(here, 0, sizeof here);
+  abbe_splat_sums_add(&s, list + 4, count, NULL, NULL);
+}
+
+/* To sums what the device does. */
+static void run_there(size_t count, bool edges, bool wide, bool on_tiles) {
   const abbe_gl *gl = abbe_context_gl(context);
-  static GLuint program;
-  abbe_error why = {0};
-  if (program == 0 && abbe_program_make_compute(gl, "photon_splat.comp", "#define LIGHTS 1\n",
-                                                &program, &why) != ABBE_OK)
-    fail_msg("%s", why.text);
-  memset(list, 0, sizeof list);
-  list[0] = (uint32_t)count;
-  for (size_t i = 0; i < count; i++) pack(&splats[i], list + 4 + i * WORDS);
+  GLuint program = 0;
+  char defines[256];
+  snprintf(defines, sizeof defines, "#define LIGHTS 1\n%s%s", wide ? "#define WIDE\n" : "",
+           on_tiles ? "#define TILES\n#define MOST_TILES 2\n" : "");
+  OK(abbe_program_make_compute(gl, "photon_splat.comp", defines, &program, &error));
+  float rows[2 * ABBE_TILE_FLOATS] = {0};
+  for (int i = 0; i < 2; i++)
+    for (int k = 0; k < 4; k++)
+      rows[i * ABBE_TILE_FLOATS + 8 + k] = (float)tiles.tile[i].rect[k % 2 * 2 + k / 2];
+  glsl_texels(gl, UNIT_TILE_ROWS, GL_RGBA32F, sizeof rows, rows);
   memset(sums, 0, sizeof sums);
   GLuint buffer[2] = {glsl_buffer(gl, BINDING_SPLATS, sizeof list, list),
                       glsl_buffer(gl, BINDING_MAP_SUMS, sizeof sums, sums)};
@@ -55,11 +77,22 @@ static void run(const splat *splats, size_t count, bool edges) {
   gl->Uniform1i(gl->GetUniformLocation(program, "map_size"), SIDE);
   gl->Uniform1ui(gl->GetUniformLocation(program, "most"), MOST);
   gl->Uniform1i(gl->GetUniformLocation(program, "has_edges"), edges ? 1 : 0);
+  gl->Uniform1ui(gl->GetUniformLocation(program, "map_texels"),
+                 (SIDE * SIDE - (SIDE * SIDE >> 2 * LEVELS)) / 3 * 4);
   gl->DispatchCompute((GLuint)((count + 255) / 256), 1, 1);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof sums, sums);
   gl->DeleteBuffers(2, buffer);
+  gl->DeleteProgram(program);
   OK(abbe_gl_check(gl, "the splats", &error));
+}
+
+static void run(const splat *splats, size_t count, bool edges) {
+  memset(list, 0, sizeof list);
+  list[0] = (uint32_t)count;
+  for (size_t i = 0; i < count; i++) pack(&splats[i], list + 4 + i * WORDS);
+  run_here(count, edges, false, false);
+  memcpy(sums, here, sizeof sums);
 }
 
 /* The level whose texels are as wide as a footprint's narrower side asks for
@@ -167,4 +200,53 @@ static void check_even(bool edges, double limit) {
 TEST(side_by_side_they_are_even) {
   check_even(false, 1e-3);
   check_even(true, 0.1);
+}
+
+/* Splats with colours that lie apart, uneven halves, shares of two levels, on the map and on tiles,
+ * also at their edges: device and processor differ by roundings of places alone. */
+TEST(device_and_processor_add_the_same) {
+  enum { COUNT = 1500 };
+  for (int turn = 0; turn < 8; turn++) {
+    const bool edges = turn & 1, wide = turn & 2, on_tiles = turn & 4;
+    memset(list, 0, sizeof list);
+    list[0] = COUNT;
+    for (int i = 0; i < COUNT; i++) {
+      uint32_t *word = list + 4 + i * WORDS;
+      double u[16];
+      for (int k = 0; k < 16; k++) u[k] = fmod((i + 1) * sqrt(2 + 3 * k), 1);
+      const int level = (int)(5 * u[0]), tile = on_tiles ? (int)(3 * u[1]) : 0;
+      const double size = ldexp(1, level);
+      const size_t *rect =
+          tile > 0 ? tiles.tile[tile - 1].rect : (const size_t[]){0, SIDE, 0, SIDE};
+      for (int k = 0; k < 2; k++) {
+        const double low = (double)rect[2 * k], high = (double)rect[2 * k + 1];
+        word[k] = (uint32_t)((low + (high - low - 0.01) * u[2 + k]) * 32768) << 5;
+      }
+      word[0] |= (uint32_t)tile >> 2;
+      word[1] |= (uint32_t)(tile & 3) << 3 | (uint32_t)level;
+      word[2] = halves(size * (6 * u[4] - 3), i % 9 == 0 ? 0 : size * (6 * u[5] - 3));
+      for (int c = 0; c < 3; c++) {
+        word[3 + c] = i % 7 == c ? 0 : (uint32_t)((wide ? 256.0 : 1) * UNITS * u[6 + c]);
+        word[6 + c] = halves(size * (0.4 * u[9 + c] - 0.2), size * (0.4 * u[10 + c] - 0.2));
+      }
+      word[9] = i % 3 == 0 ? 0 : halves(size * (4 * u[12] - 2), size * (4 * u[13] - 2));
+      word[10] = i % 5 == 0 ? 0 : halves(size * (u[14] - 0.5), size * (u[15] - 0.5));
+      word[11] = halves(size * (0.3 + 0.5 * u[11]), i % 2 == 0 || level == 0 ? 0 : u[8]);
+    }
+    run_there(COUNT, edges, wide, on_tiles);
+    run_here(COUNT, edges, wide, on_tiles);
+    double all = 0, apart = 0;
+    int64_t more = 0;
+    for (size_t i = 0; i < 6 * TEXELS; i++) {
+      const uint64_t there = wide ? sums[2 * i] | (uint64_t)sums[2 * i + 1] << 32 : sums[i];
+      const uint64_t ours = wide ? here[2 * i] | (uint64_t)here[2 * i + 1] << 32 : here[i];
+      const int64_t differs = (int64_t)(there - ours);
+      all += (double)there;
+      apart += fabs((double)differs);
+      more += differs;
+      if (llabs(differs) > (wide ? 8 * 256 : 8))
+        fail_msg("case %d, word %zu: %" PRIu64 " for %" PRIu64, turn, i, ours, there);
+    }
+    assert_true(all > COUNT * (double)UNITS && apart < 2e-6 * all && more == 0);
+  }
 }
