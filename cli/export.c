@@ -120,6 +120,8 @@ static abbe_result report_pov(const request *q, const abbe_scene *scene, abbe_er
   for (size_t i = 0; i < scene->object_count && result == ABBE_OK; i++) {
     const abbe_material *m = scene->object[i].material;
     abbe_pov_glass g;
+    if (scene->object[i].coatings != NULL && !q->json)
+      fprintf(stderr, "%s: its coating is left out\n", scene->object[i].name);
     if (abbe_object_kind_of(&scene->object[i]) != ABBE_OBJECT_REFRACTOR || said(scene, i)) continue;
     result = abbe_pov_file_glass(m, abbe_scene_illuminant(scene), &g, error);
     if (result != ABBE_OK) break;

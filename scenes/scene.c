@@ -23,6 +23,7 @@ static void object_free(abbe_object *object) {
   abbe_material_free(object->own_material);
   free(object->own_material);
   abbe_medium_free(object->medium);
+  abbe_coatings_free(object->coatings);
   free(object->fixes);
 }
 
@@ -62,6 +63,10 @@ static const char *other_file(const char *paths, size_t index) {
   return *paths != '\0' ? paths : NULL;
 }
 
+static size_t coating_count(const abbe_object *object) {
+  return object->coatings != NULL ? object->coatings->count : 0;
+}
+
 static size_t other_count(const abbe_object *object) {
   size_t count = 0;
   while (other_file(object->mesh_others, count)) count++;
@@ -70,7 +75,8 @@ static size_t other_count(const abbe_object *object) {
 
 size_t abbe_scene_file_count(const abbe_scene *scene) {
   size_t count = 4 + scene->light_count + 3 * scene->object_count;
-  for (size_t i = 0; i < scene->object_count; i++) count += other_count(&scene->object[i]);
+  for (size_t i = 0; i < scene->object_count; i++)
+    count += other_count(&scene->object[i]) + coating_count(&scene->object[i]);
   return count;
 }
 
@@ -88,11 +94,12 @@ const char *abbe_scene_file(const abbe_scene *scene, size_t index) {
   index -= 2;
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *object = &scene->object[i];
-    const size_t files = 3 + other_count(object);
+    const size_t coated = 3 + coating_count(object), files = coated + other_count(object);
     if (index == 0) return object->mesh_path;
     if (index == 1) return object->texture_path;
     if (index == 2) return object->spectrum_path;
-    if (index < files) return other_file(object->mesh_others, index - 3);
+    if (index < coated) return object->coatings->coating[index - 3].path;
+    if (index < files) return other_file(object->mesh_others, index - coated);
     index -= files;
   }
   return NULL;

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "colorimetry/illuminant.h"
 #include "colorimetry/image/image.h"
+#include "scenes/coating/coating.h"
 #include "scenes/environment/environment.h"
 #include "scenes/environment/radiance_map.h"
 #include "scenes/medium/medium.h"
@@ -103,6 +104,7 @@ typedef struct abbe_object {
   double axes_turned; /* by how much x was turned to be so, radians */
   abbe_material *own_material; /* refractor: that of its mesh's file, owned, or NULL */
   abbe_medium *medium;         /* refractor: what scatters in it, owned, or NULL */
+  abbe_coatings *coatings;     /* refractor: films on it, owned, or NULL */
   double reflectance[3];       /* receiver: linear Rec.709, 0 to 1, as reflected_light.h lifts it;
                                   of a spectrum: its colour under D65, kept within that */
   abbe_spectrum *spectrum;     /* receiver: its measured reflectance, owned; NULL: Rec.709's */

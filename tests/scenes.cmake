@@ -2,7 +2,7 @@ foreach(name transform disjoint_sets
         mesh coarse_mesh mesh_fix mesh_repair mesh_charts topology shells
         convex shape brilliant brushing knot water scene_time scene_conditions
         cut cut_asc cut_diagram designs cut_file cut_gcs cut_gem cut_measures cut_polyhedron cut_stretch cut_text
-        digest scene scene_doubts object_file object_motion refractor_tilt object_surface reflectance_file light_file camera_file object_axes scene_file scene_stop setting studio
+        digest scene scene_doubts object_file object_motion refractor_tilt object_surface reflectance_file light_file camera_file object_axes coating_file scene_file scene_stop setting studio
         polygon mesh_reading obj_file ply_file stl_file gltf_file
         alias_table area_lights environment environment_file environment_lights environment_picture environment_source irradiance_map
         radiance_cube radiance_map sky

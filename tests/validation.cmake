@@ -27,7 +27,7 @@ foreach(name
     known_light
     mask
     media
-    mirrors mirror_walk rough_mirrors crystal_walk double_refraction
+    mirrors mirror_walk rough_mirrors coated_walk crystal_walk double_refraction
     rings
     nl_means
     outline

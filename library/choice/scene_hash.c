@@ -25,6 +25,16 @@ static unsigned long long hash_crystal(unsigned long long h, const abbe_object *
   return h;
 }
 
+static unsigned long long hash_coatings(unsigned long long h, const abbe_coatings *c) {
+  for (size_t i = 0; c != NULL && i < c->count; i++)
+    for (int k = 0; k < INDEX_STEPS; k++) {
+      abbe_film_layer layer[ABBE_FILM_MOST_LAYERS] = {{0, 0, 0}};
+      abbe_coating_at(&c->coating[i], 380 + 50.0 * k, layer, NULL);
+      h = hash(h, layer, c->coating[i].count * sizeof *layer);
+    }
+  return c != NULL && c->face != NULL ? hash(h, c->face, c->face_count) : h;
+}
+
 static unsigned long long hash_object(unsigned long long h, const abbe_object *o) {
   h = hash(h, o->mesh.position, o->mesh.vertex_count * sizeof *o->mesh.position);
   h = hash(h, o->mesh.face, o->mesh.face_count * sizeof *o->mesh.face);
@@ -42,6 +52,7 @@ static unsigned long long hash_object(unsigned long long h, const abbe_object *o
     h = hash(h, numbers, sizeof numbers);
   }
   if (o->material != NULL && abbe_material_is_crystal(o->material)) h = hash_crystal(h, o);
+  h = hash_coatings(h, o->coatings);
   if (!o->mirror) return h;
   h = hash(h, &o->mirror_reflectance, sizeof o->mirror_reflectance);
   if (abbe_brushing_is_rough(&o->brushing)) {

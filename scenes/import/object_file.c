@@ -344,6 +344,7 @@ static abbe_result read_substance(const abbe_object_reading *r, const abbe_mater
                                    : read_receiver(r, out, error);
   if (result == ABBE_OK) result = abbe_object_read_axes(r, out, error);
   if (result == ABBE_OK) result = read_brushing(r, out, error);
+  if (result == ABBE_OK) result = abbe_object_read_coating(r, table, out, error);
   return result == ABBE_OK ? read_medium(r, out, error) : result;
 }
 
@@ -422,7 +423,11 @@ static abbe_result read_solid(const abbe_object_reading *r, abbe_object_surface 
 static abbe_result place(const abbe_object_reading *r, const abbe_object_surface *surface,
                          abbe_object *out, size_t room, size_t *count, abbe_error *error) {
   const abbe_result result = abbe_object_place(surface, out, room, count, error);
-  if (result == ABBE_OK) return ABBE_OK;
+  if (result == ABBE_OK && *count > 1 && out->coatings != NULL)
+    return abbe_yaml_fail(r->yaml, r->node, error,
+                          "parts of '%s' cross, and films on such a mesh are not modelled",
+                          out->name);
+  if (result == ABBE_OK) return abbe_object_settle_coating(r, out, error);
   char sentence[900];
   snprintf(sentence, sizeof sentence, "%.890s", error ? error->text : "");
   abbe_error_set(error, result, "object '%.60s': %s", out->name, sentence);
@@ -464,5 +469,6 @@ abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *f
   surface.normals = normals_of(&r);
   if (result == ABBE_OK)
     result = place(&r, &surface, out, room - surface.setting_count, count, error);
+  free(r.facet);
   return abbe_setting_place(&surface, result, metal, out, count, error);
 }

@@ -317,12 +317,26 @@ static abbe_result stretch(const cut_reading *q, abbe_cut *cut, abbe_cut_polyhed
   return result;
 }
 
+/* Names of its facets, for what is said of some of them. */
+static abbe_result name_facets(abbe_object_reading *r, const abbe_cut *cut, abbe_error *error) {
+  if (abbe_yaml_get(r->yaml, r->node, "coating").id == 0) return ABBE_OK;
+  r->facet = calloc(cut->facet_count + 1, sizeof *r->facet);
+  if (r->facet == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for facets");
+  for (size_t i = 0; i < cut->facet_count; i++) {
+    memcpy(r->facet[i].n, cut->facet[i].n, sizeof r->facet[i].n);
+    snprintf(r->facet[i].name, sizeof r->facet[i].name, "%s", abbe_cut_facet_name(cut, i));
+  }
+  r->facet_count = cut->facet_count;
+  return ABBE_OK;
+}
+
 /* The planes of a design as wide as it is to be: the smaller extent of its outline. */
-static abbe_result make_cut(const char *path, const cut_reading *q, abbe_object *object,
+static abbe_result make_cut(abbe_object_reading *r, const cut_reading *q, abbe_object *object,
                             abbe_error *error) {
   abbe_cut cut = {0};
   abbe_cut_polyhedron stone = {0};
-  abbe_result result = abbe_cut_file_read_stone(path, q->weld, &cut, &stone, NULL, error);
+  abbe_result result =
+      abbe_cut_file_read_stone(object->mesh_path, q->weld, &cut, &stone, NULL, error);
   if (result == ABBE_OK) {
     if (!abbe_cut_stretch_bound(&cut, &stone)) /* else the pavilion's moves both */
       object->cut_deg[0] = abbe_cut_stretch_main_deg(&cut, &stone, ABBE_CUT_CROWN);
@@ -333,6 +347,7 @@ static abbe_result make_cut(const char *path, const cut_reading *q, abbe_object 
     const double own = fmin(stone.max[0] - stone.min[0], stone.max[1] - stone.min[1]);
     result = abbe_cut_polyhedron_mesh(&cut, &stone, q->width / own, &object->mesh, error);
   }
+  if (result == ABBE_OK) result = name_facets(r, &cut, error);
   abbe_cut_polyhedron_free(&stone);
   abbe_cut_free(&cut);
   return result;
@@ -350,7 +365,7 @@ static abbe_result read_cut_angle(const abbe_object_reading *r, const char *key,
                         key);
 }
 
-static abbe_result read_cut(const abbe_object_reading *r, abbe_object *object, abbe_error *error) {
+static abbe_result read_cut(abbe_object_reading *r, abbe_object *object, abbe_error *error) {
   cut_reading q = {.weld = ABBE_CUT_WELD};
   char *name = NULL;
   abbe_yaml_node ignored;
@@ -367,7 +382,7 @@ static abbe_result read_cut(const abbe_object_reading *r, abbe_object *object, a
   if (result == ABBE_OK) result = read_cut_angle(r, "pavilion", &q.to_deg[1], error);
   if (result == ABBE_OK && (object->mesh_path = abbe_scene_value_path(r->folder, name)) == NULL)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
-  if (result == ABBE_OK) result = make_cut(object->mesh_path, &q, object, error);
+  if (result == ABBE_OK) result = make_cut(r, &q, object, error);
   free(name);
   return result;
 }

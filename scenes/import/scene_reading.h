@@ -37,6 +37,12 @@ typedef enum abbe_object_form {
   ABBE_OBJECT_MESH
 } abbe_object_form;
 
+/* A facet of a cut, in the object's own coordinates. */
+typedef struct abbe_named_facet {
+  double n[3];
+  char name[32];
+} abbe_named_facet;
+
 typedef struct abbe_object_reading {
   abbe_yaml *yaml;
   abbe_yaml_node node;
@@ -45,12 +51,21 @@ typedef struct abbe_object_reading {
   double radius;             /* a sphere's */
   abbe_mesh_normals normals; /* a mesh's */
   double matrix[16];         /* to world */
+  abbe_named_facet *facet;   /* [facet_count] of a cut that is coated; owned */
+  size_t facet_count;
 } abbe_object_reading;
 
 /* `axis` or `axes` of a crystal, in the object's own coordinates; without them x and z as they are
  * named. */
 abbe_result abbe_object_read_axes(const abbe_object_reading *reading, abbe_object *object,
                                   abbe_error *error);
+
+/* `coating`, and once the object is placed which of its faces have which. */
+abbe_result abbe_object_read_coating(const abbe_object_reading *reading,
+                                     const abbe_material_table *table, abbe_object *object,
+                                     abbe_error *error);
+abbe_result abbe_object_settle_coating(const abbe_object_reading *reading, abbe_object *object,
+                                       abbe_error *error);
 
 /* The surface under `shape` or `mesh`, in its own coordinates, and its form, radius and normals. */
 abbe_result abbe_object_read_surface(abbe_object_reading *reading, abbe_object *object,

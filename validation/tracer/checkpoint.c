@@ -59,6 +59,7 @@ static uint64_t hash_haze(uint64_t h, const abbe_haze *haze) {
 static uint64_t hash_media(uint64_t h, const abbe_media *m) {
   const size_t values = m->refractors * (m->steps + 1);
   h = hash_haze(h, &m->haze);
+  if (m->films.count > 0) h = hash(h, &m->films.key, sizeof m->films.key);
   h = hash(h, m->n, values * sizeof *m->n);
   if (m->attenuation != NULL) h = hash(h, m->attenuation, values * sizeof *m->attenuation);
   if (m->extraordinary == NULL) return h;

@@ -144,6 +144,7 @@ abbe_result abbe_media_make(const abbe_geometry *geometry, const double *lambda_
   if (result == ABBE_OK) drop_idle(&m);
   if (result == ABBE_OK)
     result = abbe_haze_make(geometry, lambda_nm, steps, m.attenuation, &m.haze, error);
+  if (result == ABBE_OK) result = abbe_films_make(geometry, lambda_nm, steps, &m.films, error);
   /* the mean over the axes may be grey where each axis has a colour */
   for (size_t i = 0; i < m.refractors && m.pleochroism != NULL && abbe_haze_is(&m.haze); i++)
     m.haze.coloured[i] = m.haze.coloured[i] || m.pleochroic[i];
@@ -160,6 +161,7 @@ void abbe_media_free(abbe_media *m) {
   free(m->stuff);
   free_crystals(m);
   abbe_haze_free(&m->haze);
+  abbe_films_free(&m->films);
   *m = (abbe_media){0};
 }
 
@@ -197,5 +199,6 @@ float abbe_media_attenuation_along(const abbe_media *m, int i, uint32_t k, float
 }
 
 void abbe_media_forget_axes(abbe_media *m) {
+  abbe_films_free(&m->films);
   free_crystals(m);
 }

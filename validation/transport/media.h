@@ -11,6 +11,7 @@
 #define ABBE_VALIDATION_TRANSPORT_MEDIA_H
 
 #include "base/error.h"
+#include "scenes/coating/coating.h"
 #include "spectral/biaxial.h"
 #include "validation/transport/geometry.h"
 #include "validation/transport/haze.h"
@@ -35,6 +36,38 @@ static inline void abbe_media_cross(abbe_media_set set, uint32_t i, bool enterin
   *after = entering ? set | bit : set & ~bit;
 }
 
+/* What films on faces make of unpolarised light: layers at the sampler's steps; shares are computed
+ * where they are asked for, in double precision (spectral/film.h).
+ * A zeroed one is of no films. */
+typedef struct abbe_films {
+  size_t count, steps;
+  double *lambda_nm;                               /* [steps + 1] */
+  size_t *layers;                                  /* [count] */
+  abbe_film_layer (*layer)[ABBE_FILM_MOST_LAYERS]; /* [count][steps + 1] */
+  const abbe_coatings **on; /* [refractors] or NULL; the films of each follow one another: */
+  size_t *first;            /* [refractors] */
+  uint64_t key;             /* a digest of all that */
+} abbe_films;
+
+/* Errors as abbe_coating_at. */
+abbe_result abbe_films_make(const abbe_geometry *geometry, const double *lambda_nm, size_t steps,
+                            abbe_films *out, abbe_error *error);
+void abbe_films_free(abbe_films *films);
+
+/* The film on a refractor's face, or -1. */
+static inline int abbe_films_on(const abbe_films *f, uint32_t refractor, uint32_t face) {
+  if (f->count == 0 || f->on[refractor] == NULL) return -1;
+  const abbe_coatings *c = f->on[refractor];
+  const int number = c->face == NULL ? 1 : c->face[face];
+  return number == 0 ? -1 : (int)f->first[refractor] + number - 1;
+}
+
+/* Light that comes from index n_from to n_to, from outside where it is entering, within step k at
+ * the share `within` of it. *passes: what is not absorbed, 0 to 1; returns the share of that which
+ * is reflected. */
+float abbe_films_reflectance(const abbe_films *films, int film, bool entering, float n_from,
+                             float n_to, float cos_i, uint32_t k, float within, float *passes);
+
 typedef struct abbe_media {
   size_t refractors, steps;
   float *n;              /* [refractors][steps + 1] at the steps' edges */
@@ -51,6 +84,7 @@ typedef struct abbe_media {
   float *pleochroism; /* [refractors][steps + 1][3] attenuation along x, y, z, a frame unit; NULL
                          where no crystal absorbs by direction */
   abbe_haze haze;     /* what scatters in them and in the air */
+  abbe_films films;   /* on their surfaces */
 } abbe_media;
 
 /* Tables over the steps + 1 wavelengths lambda_nm, ascending. Errors as abbe_material_n. */
@@ -58,7 +92,8 @@ abbe_result abbe_media_make(const abbe_geometry *geometry, const double *lambda_
                             abbe_media *out, abbe_error *error);
 void abbe_media_free(abbe_media *media);
 
-/* Takes crystals for isotropic with their ordinary index, as the renderer does. */
+/* Takes crystals for isotropic with their ordinary index, and all faces for bare, as the renderer
+ * does. */
 void abbe_media_forget_axes(abbe_media *media);
 
 /* Whether the medium (-1: air) has two indices. */
@@ -74,6 +109,11 @@ static inline bool abbe_media_is_biaxial(const abbe_media *m, int i) {
 /* Whether two media (-1: air) are one, so that there is no interface between them. */
 static inline bool abbe_media_same(const abbe_media *m, int a, int b) {
   return a == b || (a >= 0 && b >= 0 && m->stuff[a] == m->stuff[b]);
+}
+
+/* The film on the surface that is hit between two media, or -1; a covered surface has none. */
+static inline int abbe_media_film(const abbe_media *m, int from, int to, const abbe_hit *hit) {
+  return from == to ? -1 : abbe_films_on(&m->films, hit->surface->index, hit->face);
 }
 
 /* Index of medium i (-1: air) within step k, at the share f of it. */

@@ -144,6 +144,7 @@ static uint64_t materials_key(const abbe_media *m, const abbe_mirrors *r, uint64
       h = abbe_volume_key(h, m->pleochroism, 3 * values * sizeof *m->pleochroism);
     h = abbe_volume_key(h, m->axis, m->refractors * sizeof *m->axis);
   }
+  if (m->films.count > 0) h = abbe_volume_key(h, &m->films.key, sizeof m->films.key);
   h = abbe_volume_key(h, r->reflectance, r->count * sizeof *r->reflectance);
   return abbe_volume_key(h, r->nk, r->count * (r->steps + 1) * sizeof *r->nk);
 }

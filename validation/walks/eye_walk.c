@@ -6,7 +6,10 @@
 
 #include <string.h>
 
-enum { HEROES = 4, MIRROR_BANDS = 8, MAX_STEPS = 10000, BRANCHES_ROOM = 16, IDS = 8 };
+/* A mirror image is tinted by so many wavelengths, a film's by more; each stands for its share of
+ * all parts of the spectrum. */
+enum { MIRROR_BANDS = 8, FILM_BANDS = 64, ALL_PARTS = 128 };
+enum { HEROES = 4, MAX_STEPS = 10000, BRANCHES_ROOM = 16, IDS = 8 };
 /* Golden ratios of three dimensions, 2^32 each: places of a pixel's samples and their wavelengths
  * [Roberts2018]. */
 static const uint32_t golden[3] = {3518319155u, 2882110345u, 2360945575u};
@@ -47,6 +50,7 @@ typedef struct crossing {
   int from, to;
   float n[3], cos_i; /* the normal on the path's side */
   bool entering;
+  int film;     /* on the face, or -1 */
   bool crystal; /* on either side; then also how the path comes: */
   float d[3];
   uint8_t wave;
@@ -63,6 +67,7 @@ static void cross(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_
   abbe_media_cross(p->inside, hit->surface->index, x->entering, &x->before, &x->after);
   x->from = abbe_media_of(x->before);
   x->to = abbe_media_of(x->after);
+  x->film = abbe_media_film(c->w->media, x->from, x->to, hit);
   x->crystal =
       abbe_media_is_crystal(c->w->media, x->from) || abbe_media_is_crystal(c->w->media, x->to);
   memcpy(x->d, p->d, sizeof x->d);
@@ -74,17 +79,23 @@ static void find_ways(const abbe_eye_context *c, const crossing *x, uint32_t ste
   abbe_media_ways(c->w->media, x->from, x->to, step, within, x->n, x->d, x->wave, out);
 }
 
+/* way: eta, the cosine beyond, and what a film does not absorb; of the latter a share. */
 static float reflectance_at(const abbe_eye_context *c, const crossing *x, uint32_t step,
-                            float within, float *eta, float *cos_t) {
+                            float within, float way[3]) {
   const abbe_media *m = c->w->media;
   if (x->crystal) {
     abbe_wave_ways ways;
     find_ways(c, x, step, within, &ways);
-    *eta = *cos_t = 1;
+    way[0] = way[1] = way[2] = 1;
     return ways.reflected;
   }
-  *eta = abbe_media_n(m, x->from, step, within) / abbe_media_n(m, x->to, step, within);
-  return abbe_interface_reflectance(x->cos_i, *eta, cos_t);
+  const float n[2] = {abbe_media_n(m, x->from, step, within), abbe_media_n(m, x->to, step, within)};
+  way[0] = n[0] / n[1];
+  way[2] = 1;
+  const float bare = abbe_interface_reflectance(x->cos_i, way[0], &way[1]);
+  return x->film < 0 ? bare
+                     : abbe_films_reflectance(&m->films, x->film, x->entering, n[0], n[1], x->cos_i,
+                                              step, within, &way[2]);
 }
 
 /* Sends the path on, mirrored or refracted. */
@@ -121,7 +132,8 @@ static bool matched_rules(const abbe_eye_context *c, abbe_eye_path *p, bool refl
 
 static bool disperses(const abbe_eye_context *c, const crossing *x) {
   const bool *d = c->w->media->dispersive;
-  return c->w->bands->count > 0 || (x->from >= 0 && d[x->from]) || (x->to >= 0 && d[x->to]);
+  return c->w->bands->count > 0 || x->film >= 0 || (x->from >= 0 && d[x->from]) ||
+         (x->to >= 0 && d[x->to]);
 }
 
 static bool is_coloured_haze(const abbe_eye_context *c, const abbe_eye_path *p) {
@@ -149,7 +161,7 @@ typedef struct branches {
 
 /* One of the two ways on from an interface; false where it ends there. */
 static bool branch_off(const abbe_eye_context *c, abbe_eye_path *p, const abbe_hit *hit,
-                       const crossing *x, bool reflects, float share, const float way[2],
+                       const crossing *x, bool reflects, float share, const float way[3],
                        float random) {
   if (!matched_rules(c, p, reflects, share)) return false;
   float part = reflects ? share : 1 - share, least = c->w->least_branch;
@@ -169,7 +181,8 @@ static bool branch_off(const abbe_eye_context *c, abbe_eye_path *p, const abbe_h
  * none goes on. */
 static bool scatter(const abbe_eye_context *c, branches *b, abbe_eye_path *p, const abbe_hit *hit,
                     const crossing *x, float random) {
-  float way[2], share = reflectance_at(c, x, p->step, p->within, &way[0], &way[1]);
+  float way[3], share = reflectance_at(c, x, p->step, p->within, way);
+  p->share *= way[2];
   if (share <= 0 || share >= 1 || b->count == BRANCHES_ROOM) {
     bool reflects = random < share;
     if (!matched_rules(c, p, reflects, share)) return false;
@@ -285,7 +298,7 @@ static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p
   p->lobe = 0;
   crossing x;
   cross(c, p, &hit, &x);
-  if (abbe_media_same(c->w->media, x.from, x.to)) {
+  if (x.film < 0 && abbe_media_same(c->w->media, x.from, x.to)) {
     p->inside = x.after;
     abbe_geometry_leave(&hit, p->d, p->o);
     return true;
@@ -312,31 +325,33 @@ static void follow_mirror(const abbe_eye_context *c, const abbe_eye_path *first,
   const abbe_eye_walk *w = c->w;
   abbe_eye_path p = *first;
   p.id++;
-  float eta, cos_t;
+  float way[3];
   if (w->bands->count > 0 || p.dispersed) {
     disperse(&p, wave);
-    p.share *= reflectance_at(c, x, p.step, p.within, &eta, &cos_t);
+    const float share = reflectance_at(c, x, p.step, p.within, way);
+    p.share *= share * way[2];
   } else {
     float sum[3] = {0};
-    uint32_t steps = (uint32_t)w->sampling->steps, size = steps / MIRROR_BANDS;
-    for (uint32_t b = 0; b < MIRROR_BANDS; b++) {
-      float share = reflectance_at(c, x, b * size + size / 2, 0, &eta, &cos_t);
+    const uint32_t bands = x->film < 0 ? MIRROR_BANDS : FILM_BANDS, parts = ALL_PARTS / bands;
+    const uint32_t steps = (uint32_t)w->sampling->steps, size = steps / bands;
+    for (uint32_t b = 0; b < bands; b++) {
+      const float part = reflectance_at(c, x, b * size + size / 2, 0, way), share = part * way[2];
       for (int k = 0; k < 3; k++) {
         float colour = 0;
-        for (uint32_t i = b * size; i < (b + 1) * size; i += size / 16)
-          colour += w->colour[i][k] / 16;
-        sum[k] += share * colour / MIRROR_BANDS;
+        for (uint32_t i = b * size; i < (b + 1) * size; i += size / parts)
+          colour += w->colour[i][k] / (float)parts;
+        sum[k] += share * colour / (float)bands;
       }
     }
     /* the sampled colours' own sum, so that a constant reflectance has no tint */
     for (int k = 0; k < 3; k++) {
       float all = 0;
-      for (uint32_t i = 0; i < steps; i += size / 16) all += w->colour[i][k] / (16 * MIRROR_BANDS);
+      for (uint32_t i = 0; i < steps; i += size / parts) all += w->colour[i][k] / ALL_PARTS;
       p.tint[k] *= sum[k] / all;
     }
   }
-  p.carried = reflectance_at(c, x, (uint32_t)w->sampling->steps / 2, 0, &eta, &cos_t);
-  send(&p, hit, x, true, eta, cos_t);
+  p.carried = reflectance_at(c, x, (uint32_t)w->sampling->steps / 2, 0, way);
+  send(&p, hit, x, true, way[0], way[1]);
   follow(c, &p);
 }
 
@@ -368,11 +383,11 @@ static void follow_through(const abbe_eye_context *c, const abbe_eye_path *first
       follow_waves(c, &p, hit, x);
       continue;
     }
-    float eta, cos_t, share = reflectance_at(c, x, p.step, p.within, &eta, &cos_t);
+    float way[3], share = reflectance_at(c, x, p.step, p.within, way);
     if (share >= 1) continue;
-    p.share *= 1 - share;
+    p.share *= (1 - share) * way[2];
     p.carried = 1 - share;
-    send(&p, hit, x, false, eta, cos_t);
+    send(&p, hit, x, false, way[0], way[1]);
     follow(c, &p);
   }
 }
@@ -415,7 +430,7 @@ static void walk_on(const abbe_eye_context *c, abbe_eye_path *p, bool met, const
   }
   crossing at;
   cross(c, p, &hit, &at);
-  if (abbe_media_same(c->w->media, at.from, at.to)) {
+  if (at.film < 0 && abbe_media_same(c->w->media, at.from, at.to)) {
     p->id++;
     p->inside = at.after;
     abbe_geometry_leave(&hit, p->d, p->o);

@@ -182,6 +182,62 @@ static inline uint8_t abbe_light_path_bend(const abbe_inner_rules *r, const abbe
   return way->wave;
 }
 
+/* At a coated face: the same of the film; returns what it does not absorb. */
+static inline float abbe_light_path_coat(const abbe_media *media, const abbe_light_path *s,
+                                         int film, int from, int to, bool entering, abbe_scatter *p,
+                                         size_t k) {
+  float d[3], n[3], ng[3], out[3], cos_t, passes;
+  for (int i = 0; i < 3; i++) {
+    d[i] = p->d[i][k];
+    n[i] = p->n[i][k];
+    ng[i] = p->ng[i][k];
+  }
+  const float cosine = -(d[0] * n[0] + d[1] * n[1] + d[2] * n[2]), cos_i = fminf(cosine, 1);
+  p->share[k] = abbe_films_reflectance(
+      &media->films, film, entering, abbe_media_n(media, from, s->step, s->within),
+      abbe_media_n(media, to, s->step, s->within), cos_i, s->step, s->within, &passes);
+  const bool reflects = p->chance[k] < p->share[k];
+  if (reflects == (p->reflects[k] != 0)) return passes;
+  abbe_interface_reflectance(cos_i, p->eta[k], &cos_t);
+  if (reflects)
+    abbe_interface_reflect(d, n, cos_i, out);
+  else
+    abbe_interface_refract(d, n, p->eta[k], cos_i, cos_t, out);
+  abbe_interface_keep_side(ng, reflects ? 1 : -1, out);
+  for (int i = 0; i < 3; i++) {
+    p->out[i][k] = out[i];
+    p->from[i][k] = 2 * p->p[i][k] - p->from[i][k];
+  }
+  p->reflects[k] = reflects;
+  return passes;
+}
+
+/* What a film absorbs, once of a path that is split; false: nothing is left. */
+static inline bool abbe_light_path_pass(const abbe_inner_rules *r, float passes, bool split,
+                                        bool second, abbe_light_path *s,
+                                        abbe_light_ledger *ledger) {
+  if (!second) ledger->absorbed += (double)(s->y * s->flux * (1 - passes));
+  s->flux *= passes;
+  s->carried *= passes;
+  return split || abbe_light_path_survives(r, s, ledger);
+}
+
+/* Where lane k's path comes to a receiver. */
+static inline abbe_photon_hit abbe_light_path_hit(const abbe_light_path *s, const abbe_hit *hit,
+                                                  const abbe_scatter *p, size_t k) {
+  float along = 0;
+  for (int i = 0; i < 3; i++) along += p->d[i][k] * hit->ng[i];
+  return (abbe_photon_hit){.surface = hit->surface->object,
+                           .face = hit->face,
+                           .u = hit->u,
+                           .v = hit->v,
+                           .p = {hit->p[0], hit->p[1], hit->p[2]},
+                           .side = along < 0 ? 1 : -1,
+                           .flux = s->flux,
+                           .step = s->step,
+                           .chance = {s->chance[0], s->chance[1]}};
+}
+
 /* Matched physics: whether the renderer would still follow the path. */
 static inline bool abbe_light_path_is_followed(const abbe_inner_rules *r, abbe_light_path *s,
                                                bool reflects, float share) {

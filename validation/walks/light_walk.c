@@ -155,6 +155,8 @@ typedef struct packet {
   abbe_media_set before[LANES], after[LANES];
   bool straight[LANES]; /* media of one index: no interface */
   bool crystal[LANES];  /* on either side */
+  int film[LANES];      /* on the face, or -1 */
+  float passes[LANES];  /* what it does not absorb */
   uint8_t wave[LANES];  /* that a path goes on as, in a crystal */
   path_state state[LANES];
   abbe_hit hit[LANES];
@@ -183,7 +185,8 @@ static void meet_interface(const abbe_light_walk *w, const abbe_light_path *s, p
   const bool entering = abbe_scatter_meet(&p->scatter, k, hit, d);
   abbe_media_cross(s->inside, hit->surface->index, entering, &p->before[k], &p->after[k]);
   int from = abbe_media_of(p->before[k]), to = abbe_media_of(p->after[k]);
-  p->straight[k] = abbe_media_same(w->media, from, to);
+  p->film[k] = abbe_media_film(w->media, from, to, hit);
+  p->straight[k] = p->film[k] < 0 && abbe_media_same(w->media, from, to);
   p->crystal[k] = !p->straight[k] &&
                   (abbe_media_is_crystal(w->media, from) || abbe_media_is_crystal(w->media, to));
   p->scatter.eta[k] = p->straight[k] ? 1
@@ -334,17 +337,7 @@ static void deposit(run *r, size_t k, const abbe_light_path *s) {
   const abbe_hit *hit = &r->packet.hit[k];
   abbe_photon_hit *out = &r->hit[r->hits++];
   const double flux = (double)(s->y * s->flux);
-  float along = 0;
-  for (int i = 0; i < 3; i++) along += r->packet.scatter.d[i][k] * hit->ng[i];
-  *out = (abbe_photon_hit){.surface = hit->surface->object,
-                           .face = hit->face,
-                           .u = hit->u,
-                           .v = hit->v,
-                           .side = along < 0 ? 1 : -1,
-                           .flux = s->flux,
-                           .step = s->step,
-                           .chance = {s->chance[0], s->chance[1]}};
-  memcpy(out->p, hit->p, sizeof out->p);
+  *out = abbe_light_path_hit(s, hit, &r->packet.scatter, k);
   r->ledger->deposited += flux;
   if (r->hidden)
     abbe_lamp_rays_add(&r->w->lamp_rays, r->w->g, r->light, hit, out, flux, r->ledger,
@@ -374,6 +367,9 @@ static void advance(run *r, const abbe_light_path *paths, size_t count, bool sec
     }
     abbe_light_path s = paths[k];
     const bool split = is_split(r->w, &s);
+    if (r->packet.film[k] >= 0 &&
+        !abbe_light_path_pass(&r->rules, r->packet.passes[k], split, second, &s, r->ledger))
+      continue;
     if ((second && !split) || !take_branch(&r->packet, k, split, &s)) continue;
     state = go_on(r, k, &s);
     if (state != SCATTERS) end_path(r, k, state, &s);
@@ -382,12 +378,17 @@ static void advance(run *r, const abbe_light_path *paths, size_t count, bool sec
 
 static void scatter_packet(run *r, const abbe_light_path *paths, size_t count) {
   packet *p = &r->packet;
+  const abbe_media *m = r->w->media;
   abbe_scatter_packet(&p->scatter);
-  for (size_t k = 0; r->w->media->crystal != NULL && k < count; k++)
-    if (p->state[k] == SCATTERS && p->crystal[k])
-      p->wave[k] =
-          abbe_light_path_bend(&r->rules, r->w->media, &paths[k], abbe_media_of(p->before[k]),
-                               abbe_media_of(p->after[k]), &p->scatter, k);
+  for (size_t k = 0; (m->crystal != NULL || m->films.count > 0) && k < count; k++) {
+    const int from = abbe_media_of(p->before[k]), to = abbe_media_of(p->after[k]);
+    if (p->state[k] != SCATTERS) continue;
+    if (p->crystal[k])
+      p->wave[k] = abbe_light_path_bend(&r->rules, m, &paths[k], from, to, &p->scatter, k);
+    if (p->film[k] >= 0)
+      p->passes[k] = abbe_light_path_coat(m, &paths[k], p->film[k], from, to,
+                                          p->after[k] > p->before[k], &p->scatter, k);
+  }
 }
 
 /* Each lane's path goes on as its number decides; one that is split is reflected, and then

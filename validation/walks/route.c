@@ -96,6 +96,19 @@ static void record(const walker *w, const abbe_hit *hit, abbe_route_event event,
   }
 }
 
+/* The film on the face that is met: what it reflects, and what it passes on. */
+static abbe_result meet_film(const walker *w, const abbe_coating *coating, bool entering,
+                             const double n[2], double cos_i, double shares[2], abbe_error *error) {
+  abbe_film_layer layer[ABBE_FILM_MOST_LAYERS];
+  abbe_film_light light;
+  const double to[2] = {n[1], 0};
+  const abbe_result result = abbe_coating_at(coating, w->lambda_nm, layer, error);
+  if (result != ABBE_OK) return result;
+  abbe_film_light_at(layer, coating->count, !entering, n[0], to, cos_i, w->lambda_nm, &light);
+  abbe_film_unpolarised(&light, &shares[0], &shares[1]);
+  return ABBE_OK;
+}
+
 /* The interface at the hit: turns w->d and w->inside. */
 static abbe_result meet(walker *w, const abbe_hit *hit, const char **choice, abbe_route_vertex *out,
                         abbe_error *error) {
@@ -131,6 +144,14 @@ static abbe_result meet(walker *w, const abbe_hit *hit, const char **choice, abb
   float share = abbe_media_of(before) == abbe_media_of(after)
                     ? 0
                     : abbe_interface_reflectance(cos_i, eta, &cos_t);
+  const abbe_coating *coating =
+      abbe_media_of(before) == abbe_media_of(after)
+          ? NULL
+          : abbe_coatings_on(w->g->scene->object[hit->surface->object].coatings, hit->face);
+  double shares[2] = {(double)share, 1 - (double)share};
+  if (coating != NULL)
+    result = meet_film(w, coating, entering, (double[]){n_i, n_t}, (double)cos_i, shares, error);
+  if (result != ABBE_OK) return result;
   bool reflects = share >= 1;
   if (!reflects && **choice != '\0') {
     reflects = **choice == 'r' || **choice == 'R';
@@ -145,8 +166,8 @@ static abbe_result meet(walker *w, const abbe_hit *hit, const char **choice, abb
   memcpy(w->d, d, sizeof d);
   w->inside = reflects ? before : after;
   out->event = reflects ? ABBE_ROUTE_REFLECTED : ABBE_ROUTE_TRANSMITTED;
-  out->reflectance = (double)share;
-  out->share = (double)(reflects ? share : 1 - share);
+  out->reflectance = shares[0];
+  out->share = shares[reflects ? 0 : 1];
   return ABBE_OK;
 }
 

@@ -28,7 +28,7 @@ typedef struct abbe_route_vertex {
   double direction[3]; /* unit, after the event */
   double distance;     /* from the vertex before, m; infinite: escaped */
   double cos_in;       /* cosine of the angle of incidence, 0 to 1 */
-  double reflectance;  /* Fresnel's, unpolarised; 0 where nothing refracts */
+  double reflectance;  /* unpolarised, of a film where there is one; 0 where nothing refracts */
   double inside_n;     /* index along the way to this vertex; in a crystal the ordinary one */
   double share;        /* share of the light that takes this path; 1 at the end */
   bool extraordinary;  /* it goes on as a crystal's extraordinary or slower wave */

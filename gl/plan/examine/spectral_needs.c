@@ -311,7 +311,37 @@ static bool shine_alike(const abbe_scene *scene, double min, double max) {
   return true;
 }
 
+/* What a film reflects head on, in per cent, beside the bare face. */
+static void note_film(const abbe_object *object, const abbe_coating *coating, abbe_plan *plan) {
+  static const double nm[3] = {450, 550, 650};
+  double r[2][3], bare[3], ignored, thinnest = INFINITY;
+  const abbe_coating none = {0};
+  for (int i = 0; i < 3; i++) {
+    double n = 0;
+    if (abbe_material_n(object->material, nm[i], &n, NULL) != ABBE_OK ||
+        abbe_coating_straight(&none, n, false, nm[i], &bare[i], &ignored, NULL) != ABBE_OK ||
+        abbe_coating_straight(coating, n, false, nm[i], &r[0][i], &ignored, NULL) != ABBE_OK ||
+        abbe_coating_straight(coating, n, true, nm[i], &r[1][i], &ignored, NULL) != ABBE_OK)
+      return;
+  }
+  for (size_t i = 0; i < coating->count; i++) thinnest = fmin(thinnest, coating->layer[i].nm);
+  abbe_plan_note(plan,
+                 "%s: film: R at 0 degrees at 450/550/650 nm is %.2f/%.2f/%.2f %% "
+                 "from outside, %.2f/%.2f/%.2f %% from inside; it is drawn bare, with "
+                 "%.2f/%.2f/%.2f %%, and 'abbe trace' has the film",
+                 object->name, 100 * r[0][0], 100 * r[0][1], 100 * r[0][2], 100 * r[1][0],
+                 100 * r[1][1], 100 * r[1][2], 100 * bare[0], 100 * bare[1], 100 * bare[2]);
+  if (thinnest < 1)
+    abbe_plan_note(plan, "%s: a layer of its film is %.2g nm, thinner than an index holds for",
+                   object->name, thinnest);
+}
+
 void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan) {
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *o = &scene->object[i];
+    for (size_t k = 0; o->coatings != NULL && k < o->coatings->count; k++)
+      note_film(o, &o->coatings->coating[k], plan);
+  }
   if (scene->camera.aperture > 0)
     abbe_plan_note(plan, "the camera's aperture is left out: all is sharp; 'abbe trace' has it");
   if (plan->camera_sees_refractor && !shine_alike(scene, plan->desc.min_nm, plan->desc.max_nm))

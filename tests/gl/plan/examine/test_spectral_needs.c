@@ -30,6 +30,22 @@ TEST(pleochroism_is_noted) {
                               "ordinary ray and 97 -12 14 of the extraordinary one, 50 apart"));
 }
 
+/* What a film reflects, from both sides, beside the bare face. */
+TEST(films_are_noted) {
+  OWNED(abbe_plan, plan);
+  const char *head = "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR;
+  char text[2048];
+  snprintf(text, sizeof text, "%s%s", head, BALL("n-bk7, coating: {layers: [[1.38, 99.638]]}"));
+  plan_text(text, NULL, &plan);
+  assert_true(is_noted(&plan, "ball: film: R at 0 degrees at 450/550/650 nm is "
+                              "1.60/1.27/1.47 % from outside, 1.60/1.27/1.47 % from inside; it is "
+                              "drawn bare, with 4.33/4.24/4.19 %"));
+  abbe_plan_free(&plan);
+  snprintf(text, sizeof text, "%s%s", head, BALL("n-bk7, coating: {layers: [[1.38, 0.5]]}"));
+  plan_text(text, NULL, &plan);
+  assert_true(is_noted(&plan, "a layer of its film is 0.5 nm"));
+}
+
 /* A crystal has one index here, and the plan says what is left out, once a material. */
 TEST(double_refraction_is_noted) {
   OWNED(abbe_plan, plan);

@@ -1,0 +1,178 @@
+/* The key 'coating': what is read of layers, files and facets, and what is refused. */
+#include "tests/scenes/scene_text.h"
+
+#define HEAD                                                                                       \
+  "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"                                            \
+  "lights: [{name: l, kind: point, position: [0, 0, 2], intensity: 1}]\nobjects:\n"                \
+  "- {name: floor, shape: rectangle, width: 1, height: 1, reflectance: 1}\n"
+
+#define COATINGS                                                                                   \
+  "! made up\nMATE MGF2\n0.4 1.39 0\n0.7 1.37 0 ! red\nMATE CHROME\n.55 3.2 -4.4\nMATE GAIN\n"     \
+  "0.5 2 1\nTAPR RIM\nPT 0 1\nCOAT AR\nMGF2 0.25\nCOAT THICK\nMGF2 0.0996 1 0\nCHROME .01 1\n"     \
+  "f2 0.1 1\nCOAT LOOP\nMGF2 .1 1 2\nCOAT TAPERED\nMGF2 .1 1 0 RIM\nCOAT LOST\nUNOBTANIUM .1 1\n"  \
+  "COAT AMPLIFIES\nGAIN .1 1\nCOAT DEEP\nMGF2 5.1 1\nCOAT BROKEN\nMGF2 thin 1\nTABLE T\nANGL 0\n"  \
+  "WAVE 0.5 0.1 0.1 0.9 0.9\nIDEAL I 0.9 0.1\nCOAT NAUGHT\n"
+
+typedef struct folder {
+  char path[64], file[96], zec[96];
+} folder;
+
+static void make_folder(folder *f) {
+  snprintf(f->path, sizeof f->path, "/tmp/abbe-test-coating-XXXXXX");
+  assert_non_null(mkdtemp(f->path));
+  snprintf(f->file, sizeof f->file, "%s/COATING.DAT", f->path);
+  snprintf(f->zec, sizeof f->zec, "%s/AR.ZEC", f->path);
+  OK(abbe_file_write(f->file, COATINGS, strlen(COATINGS), &error));
+  OK(abbe_file_write(f->zec, "x", 1, &error));
+}
+
+static void drop_folder(folder *f) {
+  unlink(f->file);
+  unlink(f->zec);
+  rmdir(f->path);
+}
+
+/* An object with its middle at 0.2 m, turned by a quarter. */
+static abbe_result parse(const folder *f, const char *rest, abbe_scene *scene, abbe_error *out) {
+  char text[2048], name[128];
+  snprintf(text, sizeof text,
+           HEAD "- {name: a, transform: [{rotate: {axis: [1, 0, 0], angle: 90}}, {translate: [0, "
+                "0, 0.2]}], %s}\n",
+           rest);
+  snprintf(name, sizeof name, "%s/scene.yaml", f->path);
+  OK(abbe_file_write(name, text, strlen(text), &error));
+  const abbe_result result = abbe_scene_load(name, NULL, scene, out);
+  unlink(name);
+  return result;
+}
+
+#define BOX "shape: box, size: [0.1, 0.1, 0.1], material: n-bk7, coating: "
+#define FROM(name) BOX "{file: COATING.DAT, name: " name "}"
+
+static void check_layers(const folder *f, const char *rest, double nm, size_t count,
+                         const double wanted[][3]) {
+  abbe_scene scene;
+  abbe_film_layer layer[ABBE_FILM_MOST_LAYERS];
+  OK(parse(f, rest, &scene, &error));
+  const abbe_coatings *c = scene.object[1].coatings;
+  assert_int_equal(c->coating[0].count, count);
+  OK(abbe_coating_at(&c->coating[0], nm, layer, &error));
+  for (size_t i = 0; i < count; i++) {
+    assert_near(layer[i].n, wanted[i][0], 1e-6);
+    assert_near(layer[i].k, wanted[i][1], 1e-6);
+    assert_near(layer[i].nm, wanted[i][2], 1e-3);
+  }
+  abbe_scene_free(&scene);
+}
+
+TEST(layers_are_read_in_every_form) {
+  folder f;
+  make_folder(&f);
+  check_layers(&f, BOX "{layers: [[1.38, 99.6], [[0.42, 2.4], 10], [f2, 20]]}", 587.5618, 3,
+               (const double[][3]){{1.38, 0, 99.6}, {0.42, 2.4, 10}, {1.620040, 0, 20}});
+  check_layers(&f, BOX "{layers: [[1.38, 1], [2.15, 2]], quarter: 550}", 500, 2,
+               (const double[][3]){{1.38, 0, 99.63768}, {2.15, 0, 127.90698}});
+  check_layers(&f, BOX "{file: COATING.DAT, name: ar, primary: 550}", 550, 1,
+               (const double[][3]){{1.38, 0, 99.63768}});
+  check_layers(&f, FROM("THICK"), 587.5618, 3,
+               (const double[][3]){{1.377496, 0, 99.6}, {3.2, 4.4, 10}, {1.620040, 0, 100}});
+  check_layers(&f, BOX "{file: COATING.DAT, name: AR, primary: 550}", 300, 1,
+               (const double[][3]){{1.39, 0, 99.63768}});
+  drop_folder(&f);
+}
+
+/* Which faces have which coating, by the object's own axes. */
+TEST(facets_are_coated_by_name) {
+  folder f;
+  make_folder(&f);
+  abbe_scene scene;
+  OK(parse(&f,
+           BOX "[{layers: [[1.38, 99.6]]}, {layers: [[2.4, 60]], faces: [table]}, {layers: [[2.4, "
+               "90]], faces: GIRDLE}]",
+           &scene, &error));
+  const abbe_object *o = &scene.object[1];
+  size_t count[4] = {0};
+  for (size_t i = 0; i < o->mesh.face_count; i++) {
+    const abbe_coating *on = abbe_coatings_on(o->coatings, i);
+    count[on == NULL ? 3 : on - o->coatings->coating]++;
+    /* its table, of +z, looks to -y */
+    if (on == &o->coatings->coating[1])
+      assert_near(o->mesh.normal[o->mesh.face[i][0]][1], -1, 1e-9);
+  }
+  assert_int_equal(count[0], 2);
+  assert_int_equal(count[1], 2);
+  assert_int_equal(count[2], 8);
+  abbe_scene_free(&scene);
+  char rest[512];
+  snprintf(rest, sizeof rest,
+           "shape: cut, file: %s/scenes/designs/brilliant-diamond.asc, width: 0.1, material: "
+           "n-bk7, coating: {layers: [[1.38, 99.6]], faces: [pavilion]}",
+           ABBE_SOURCE_DIR);
+  OK(parse(&f, rest, &scene, &error));
+  double coated = 0, faces = (double)scene.object[1].mesh.face_count;
+  for (size_t i = 0; i < scene.object[1].mesh.face_count; i++)
+    coated += abbe_coatings_on(scene.object[1].coatings, i) != NULL;
+  assert_true(coated > 0.2 * faces && coated < 0.6 * faces);
+  assert_int_equal(abbe_scene_file_count(&scene), 4 + 1 + 6 + 1);
+  abbe_scene_free(&scene);
+  drop_folder(&f);
+}
+
+TEST(coatings_that_cannot_be_are_refused) {
+  static const struct {
+    abbe_result code;
+    const char *rest, *part;
+  } rows[] = {
+      {ABBE_SCHEMA, BOX "{layers: [[1.38, -1]]}", "thickness"},
+      {ABBE_SCHEMA, BOX "{layers: [[1.38, 5001]]}", "5000"},
+      {ABBE_SCHEMA, BOX "{layers: [[1.38, 99]], quarter: 550}", "is thicker than 5000 nm"},
+      {ABBE_SCHEMA, BOX "{layers: [[[1.38, -0.1], 20]]}", "k of a layer"},
+      {ABBE_SCHEMA, BOX "{layers: [[0, 20]]}", "is above 0"},
+      {ABBE_SCHEMA, BOX "{layers: [[1.38]]}", "a layer is [what, nm]"},
+      {ABBE_SCHEMA, BOX "{layers: []}", "'layers' is empty"},
+      {ABBE_SCHEMA,
+       BOX "{layers: [[1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, "
+           "1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], [1.4, 1], "
+           "[1.4, 1]]}",
+       "16"},
+      {ABBE_NOT_FOUND, BOX "{layers: [[MgF3, 20]]}", "MgF3"},
+      {ABBE_UNSUPPORTED, BOX "{layers: [[sapphire, 20]]}", "'sapphire' is a crystal"},
+      {ABBE_SCHEMA, BOX "1", "a 'coating' is {layers"},
+      {ABBE_SCHEMA, BOX "{layers: [[1.38, 99.6]], side: up}", "has no key 'side'"},
+      {ABBE_SCHEMA, BOX "{layers: [[1.38, 99.6]], faces: [table, rim]}",
+       "has no facet 'rim'; facets are named table, crown, girdle, pavilion"},
+      {ABBE_SCHEMA,
+       "shape: sphere, radius: 0.1, material: n-bk7, coating: {layers: [[1.38, 99]], faces: table}",
+       "a sphere has no facets"},
+      {ABBE_SCHEMA,
+       "shape: box, size: [0.1, 0.1, 0.1], reflectance: 1, coating: {layers: [[1, 1]]}",
+       "this object has no 'material'"},
+      {ABBE_SCHEMA,
+       "shape: box, size: [0.1, 0.1, 0.1], mirror: silver, coating: {layers: [[1, 1]]}",
+       "this object has no 'material'"},
+      {ABBE_SCHEMA,
+       "shape: box, size: [0.1, 0.1, 0.1], material: quartz, coating: {layers: [[1.4, 1]]}",
+       "'quartz' is a crystal, on which films are not modelled"},
+      {ABBE_SCHEMA, FROM("AR"), "such as 'primary: 550'"},
+      {ABBE_NOT_FOUND, FROM("ARR"), "has no coating 'ARR'; it has AR, THICK, LOOP"},
+      {ABBE_UNSUPPORTED, FROM("LOOP"), "COATING.DAT:18: the layer of 'MGF2' begins or ends a loop"},
+      {ABBE_UNSUPPORTED, FROM("TAPERED"), "taper 'RIM'"},
+      {ABBE_NOT_FOUND, FROM("LOST"), "the material 'UNOBTANIUM'"},
+      {ABBE_SCHEMA, FROM("AMPLIFIES"), "would make light"},
+      {ABBE_SCHEMA, FROM("DEEP"), "is 5100 nm thick"},
+      {ABBE_PARSE, FROM("BROKEN"), "a layer is a material"},
+      {ABBE_UNSUPPORTED, FROM("T"), "of the kind TABLE"},
+      {ABBE_UNSUPPORTED, FROM("I"), "of the kind IDEAL"},
+      {ABBE_SCHEMA, FROM("NAUGHT"), "has no layers"},
+      {ABBE_UNSUPPORTED, BOX "{file: AR.ZEC, name: AR}", "is an encrypted coating"},
+      {ABBE_IO, BOX "{file: none.dat, name: AR}", "none.dat"},
+      {ABBE_SCHEMA, BOX "{file: COATING.DAT}", "name"},
+  };
+  folder f;
+  make_folder(&f);
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    abbe_scene scene;
+    REFUSED(rows[i].code, rows[i].part, parse(&f, rows[i].rest, &scene, &error));
+  }
+  drop_folder(&f);
+}
